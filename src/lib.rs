@@ -1,0 +1,16 @@
+//! Locally adaptive level of detail for ray tracing hardware, bit for bit.
+//!
+//! The floors, lowest first; data runs up and never back:
+//! [`num`] (fixed point, roundings, bits), [`block`] (the hardware's combinational blocks), [`mesh`] (triangle meshes to hierarchies),
+//! [`format`] (memory images and the scene file), [`traverse`] (methods built from blocks), [`report`] (images and figures).
+//! Apart from them stands [`golden`]: the plain exact traverser and the `f64` reference that everything is checked against.
+//!
+//! One ray's journey: a camera makes it in `f64`; [`traverse::ModelSpace`] moves it to the model's box and rounds it once to a
+//! [`num::Ray`]; the loop of the paper's figure 9 ([`traverse`]) walks the quad-BVH over the base triangles and, inside a
+//! tessellation tree, asks [`block::lod_test`] whether a node's triangle serves; if not, [`block::tessellate`] morphs the inserted vertices, and
+//! [`block::box_test`] and [`block::child_sort`] choose where to go next; if it does, [`block::tri_test`] and
+//! [`block::hit_divide`] find the hit and [`block::bary_map`] maps it to the full-resolution mesh.
+
+pub mod format;
+pub mod mesh;
+pub mod num;

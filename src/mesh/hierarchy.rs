@@ -1,0 +1,131 @@
+//! A hierarchy in integers: what the memory images are encoded from and what the golden traverser reads.
+
+use super::lattice::{self, LatticePoint};
+use crate::num::BoundScale;
+use serde::{Deserialize, Serialize};
+
+/// Where the model's integer space lies: `world = offset + scale * units`.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Placement {
+    /// World position of units (0, 0, 0).
+    pub offset: [f64; 3],
+    /// World length of one unit, positive and finite.
+    pub scale: f64,
+}
+
+/// Displacement bound codes of all edges of levels 0..N-1 of all trees.
+///
+/// Edges of level n of a tree: each upward triangle (i, j), i + j < 2^n, of the level's own lattice owns three: 0 = (i+1, j)-(i, j+1), 1 = (i, j+1)-(i, j),
+/// 2 = (i, j)-(i+1, j); stored row by row like lattice points, level after level, tree after tree.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct EdgeCodes {
+    /// Scale of the model.
+    pub scale: BoundScale,
+    /// One 10-bit code per edge.
+    pub codes: Vec<u16>,
+}
+
+/// A hierarchy of `levels` splits over an indexed base mesh.
+#[derive(Clone, Debug)]
+pub struct Hierarchy {
+    /// Number of splits N.
+    pub levels: u32,
+    /// Model space to world.
+    pub placement: Placement,
+    /// Number of base vertices.
+    pub base_vertices: u32,
+    /// Base triangles.
+    pub triangles: Vec<[u32; 3]>,
+    /// Positions in units, `lattice::len(levels)` for each tree.
+    pub points: Vec<[i32; 3]>,
+    /// Displacement bounds.
+    pub bounds: EdgeCodes,
+}
+
+/// Number of edges of level `level` of one tree.
+#[inline]
+pub const fn edges_of_level(level: u32) -> usize {
+    let k = 1usize << level;
+    3 * k * (k + 1) / 2
+}
+
+/// Number of edges of levels 0..`levels` of one tree.
+#[inline]
+pub const fn edges_of_tree(levels: u32) -> usize {
+    let (mut sum, mut n) = (0, 0);
+    while n < levels {
+        sum += edges_of_level(n);
+        n += 1;
+    }
+    sum
+}
+
+/// Index within a tree's codes of the edge of level `level` between two points of the full lattice of `levels` splits.
+#[inline]
+pub fn edge_index(levels: u32, level: u32, a: LatticePoint, b: LatticePoint) -> usize {
+    let step = levels - level;
+    let (i, j) = (a.0.min(b.0) >> step, a.1.min(b.1) >> step);
+    let side = match (a.0 == b.0, a.1 == b.1) {
+        (false, false) => 0,
+        (true, _) => 1,
+        (_, true) => 2,
+    };
+    let (k, i, j) = (1usize << level, i as usize, j as usize);
+    // Rows of upward triangles hold k, k-1, ... of them.
+    let upward = j * k + i - (j * j.saturating_sub(1)) / 2;
+    edges_of_tree(level) + 3 * upward + side
+}
+
+impl Hierarchy {
+    /// Points of one tree, in lattice order.
+    #[inline]
+    pub fn tree(&self, tree: usize) -> &[[i32; 3]] {
+        let len = lattice::len(self.levels);
+        &self.points[tree * len..][..len]
+    }
+
+    /// Bound codes of one tree.
+    #[inline]
+    pub fn codes(&self, tree: usize) -> &[u16] {
+        let len = edges_of_tree(self.levels);
+        &self.bounds.codes[tree * len..][..len]
+    }
+
+    /// Codes of the edges (e0, e1, e2) of a node of `level` with these corners; `level` below N.
+    #[inline]
+    pub fn node_codes(&self, tree: usize, level: u32, p: [LatticePoint; 3]) -> [u16; 3] {
+        let codes = self.codes(tree);
+        [[p[1], p[2]], [p[2], p[0]], [p[0], p[1]]].map(|[a, b]| codes[edge_index(self.levels, level, a, b)])
+    }
+
+    /// World position of a point in units.
+    pub fn to_world(&self, p: [i32; 3]) -> [f64; 3] {
+        std::array::from_fn(|k| self.placement.offset[k] + self.placement.scale * f64::from(p[k]))
+    }
+
+    /// Number of full-resolution triangles.
+    pub fn finest_triangles(&self) -> u64 {
+        (self.triangles.len() as u64) << (2 * self.levels)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_edge_has_one_index() {
+        let levels = 4;
+        let mut seen = vec![0u32; edges_of_tree(levels)];
+        for level in 0..levels {
+            for n in 0..1u32 << (2 * level) {
+                let p = lattice::node(levels, level, n);
+                for [a, b] in [[p[1], p[2]], [p[2], p[0]], [p[0], p[1]]] {
+                    assert_eq!(edge_index(levels, level, a, b), edge_index(levels, level, b, a));
+                    seen[edge_index(levels, level, a, b)] += 1;
+                }
+            }
+        }
+        assert!(seen.iter().all(|&s| s == 1 || s == 2));
+    }
+}

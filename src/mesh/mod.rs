@@ -1,0 +1,8 @@
+//! Floor 2: triangle meshes in, hierarchies of 1-to-4 splits out.
+
+mod hierarchy;
+pub mod lattice;
+mod surface;
+
+pub use hierarchy::{EdgeCodes, Hierarchy, Placement, edge_index, edges_of_level, edges_of_tree};
+pub use surface::Surface;

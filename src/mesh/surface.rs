@@ -1,0 +1,37 @@
+//! A surface as a base mesh and one lattice of positions per base triangle, in the user's own (world) units.
+
+use super::lattice;
+
+/// A hierarchy before it is rounded: what the remesher and the procedural scenes make.
+///
+/// Positions on the border of a tree must be bit-identical in every tree that shares the base edge.
+#[derive(Clone, Debug, Default)]
+pub struct Surface {
+    /// Number of splits N, 0 to [`crate::num::MAX_LEVELS`].
+    pub levels: u32,
+    /// Number of base vertices that `triangles` index.
+    pub base_vertices: u32,
+    /// Base triangles, counter-clockwise seen from outside; each three distinct indices.
+    pub triangles: Vec<[u32; 3]>,
+    /// Finite positions, `lattice::len(levels)` for each base triangle in order.
+    pub positions: Vec<[f64; 3]>,
+    /// Shading normals beside `positions`, any non-zero length; may differ between trees (creases).
+    pub normals: Vec<[f32; 3]>,
+    /// Index into `colours` for each base triangle; empty if there are no materials.
+    pub materials: Vec<u16>,
+    /// Material colours, linear RGB in 0..=1.
+    pub colours: Vec<[f32; 3]>,
+}
+
+impl Surface {
+    /// Positions of one tree.
+    pub fn tree(&self, tree: usize) -> &[[f64; 3]] {
+        let len = lattice::len(self.levels);
+        &self.positions[tree * len..][..len]
+    }
+
+    /// Number of full-resolution triangles.
+    pub fn finest_triangles(&self) -> u64 {
+        (self.triangles.len() as u64) << (2 * self.levels)
+    }
+}

@@ -1,0 +1,69 @@
+//! The named formats of `docs/numbers.md`: widths, limits, and the integer ray.
+
+use super::{U, Vec3, wire::wire_struct};
+
+/// Largest magnitude of a model coordinate in units, so that 16-bit box codes keep to +-32766.
+pub const COORD_LIMIT: i32 = 0x7FFE_0000;
+/// Zero bits at the bottom of every stored coordinate (28 of 32 bits are stored).
+pub const PADDING_BITS: u32 = 4;
+/// Largest number of 1-to-4 splits.
+pub const MAX_LEVELS: u32 = 10;
+/// Units per step of a 16-bit box code, as a shift.
+pub const BOX_SHIFT: u32 = 16;
+/// Units by which the model's box is enlarged before a ray is moved to it.
+pub const BOX_MARGIN: i32 = 64;
+/// Length of a ray direction.
+pub const DIRECTION_SCALE: i32 = (1 << 30) - 1;
+/// s = 1 of an edge state.
+pub const S_ONE: u64 = 256;
+/// 1 of a barycentric coordinate.
+pub const BARY_ONE: u64 = 1 << 31;
+/// t_near (2^16 units) to t (2^-32 of the direction), as a shift.
+pub const T_NEAR_TO_T_SHIFT: u32 = 18;
+
+/// Vertex position in units.
+pub type Point = Vec3<32>;
+/// Displacement bound code.
+pub type BoundCode = U<10>;
+/// Edge state s, 0 to 256.
+pub type EdgeState = U<9>;
+/// Ray parameter in steps of 2^-32.
+pub type RayT = U<35>;
+/// Barycentric coordinate, 2^31 = 1.
+pub type Bary = U<32>;
+/// Box entry distance in steps of 2^16 units.
+pub type TNear = U<18>;
+
+wire_struct! {
+    /// Scale of the displacement bounds of one model: `h = floor(code^2 * mantissa / 2^shift)` units.
+    pub struct BoundScale {
+        /// 18-bit mantissa.
+        mantissa: U<18>,
+        /// Right shift.
+        shift: U<6>,
+    }
+}
+
+wire_struct! {
+    /// Ray cone: tolerated displacement at distance l is `floor((offset + l * slope) / 2^shift)` units, clamped to 0 ..= 2^34-1.
+    pub struct Cone {
+        /// (2/delta) r0 in steps of 2^-shift units.
+        offset: U<53>,
+        /// (2/delta) tan(theta) in steps of 2^-shift.
+        slope: U<18>,
+        /// Right shift.
+        shift: U<6>,
+    }
+}
+
+wire_struct! {
+    /// A ray in model space.
+    pub struct Ray {
+        /// Origin in units.
+        origin: Vec3<32>,
+        /// Direction, length close to 2^30 - 1.
+        direction: Vec3<31>,
+        /// Its cone and the wanted quality.
+        cone: Cone,
+    }
+}

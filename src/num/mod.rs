@@ -1,0 +1,18 @@
+//! Floor 0: fixed point with stated widths, exact vectors, the roundings, and [`Wire`] (structs as bits).
+//!
+//! `docs/numbers.md` states every format and rounding once; the names there are the names here.
+
+mod bits;
+mod fixed;
+mod formats;
+mod round;
+mod vec3;
+mod wire;
+
+pub use bits::{BitReader, BitVec, BitWriter};
+pub use fixed::{S, U, WS, WU};
+pub use formats::*;
+pub use round::*;
+pub use vec3::Vec3;
+pub(crate) use wire::wire_struct;
+pub use wire::{Field, Wire};
