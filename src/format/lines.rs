@@ -7,17 +7,8 @@
 //! | sibling group | 64 bytes: four [`BoundData`], child 0 first | `bounds` |
 //! | inserted vertices q0, q1, q2 | 32 bytes: [`VertexData`] | `vertices` |
 
-use crate::num::{BoundCode, PADDING_BITS, Point, S, U, Vec3, box_code_ceil, box_code_floor, wire_struct};
-
-wire_struct! {
-    /// A box in steps of 2^16 units, rounded outwards.
-    pub struct Box16 {
-        /// Lower corner.
-        lo: Vec3<16>,
-        /// Upper corner.
-        hi: Vec3<16>,
-    }
-}
+pub use crate::num::Box16;
+use crate::num::{BoundCode, PADDING_BITS, Point, S, U, Vec3, wire_struct};
 
 wire_struct! {
     /// Bound data of one node: 16 bytes.
@@ -101,28 +92,6 @@ impl ChildRef {
     /// Reference to a leaf of `count` (1 to 4) things from `index` (below 2^28) on.
     pub fn leaf(index: u32, count: u32) -> Self {
         Self { kind: U::new(Self::LEAF), count: U::new(u64::from(count) - 1), index: U::new(u64::from(index)) }
-    }
-}
-
-impl Box16 {
-    /// The smallest box in 2^16-unit steps that holds these points; `points` is not empty.
-    pub fn of_points(points: &[[i32; 3]]) -> Self {
-        let mut lo = [i32::MAX; 3];
-        let mut hi = [i32::MIN; 3];
-        for p in points {
-            for k in 0..3 {
-                lo[k] = lo[k].min(p[k]);
-                hi[k] = hi[k].max(p[k]);
-            }
-        }
-        Self::from_codes(lo.map(box_code_floor), hi.map(box_code_ceil))
-    }
-
-    /// From codes.
-    #[inline]
-    pub fn from_codes(lo: [i16; 3], hi: [i16; 3]) -> Self {
-        let v = |c: [i16; 3]| Vec3::new(i64::from(c[0]), i64::from(c[1]), i64::from(c[2]));
-        Self { lo: v(lo), hi: v(hi) }
     }
 }
 

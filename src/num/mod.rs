@@ -3,6 +3,7 @@
 //! `docs/numbers.md` states every format and rounding once; the names there are the names here.
 
 mod bits;
+mod box16;
 mod fixed;
 mod formats;
 mod round;
@@ -10,6 +11,7 @@ mod vec3;
 mod wire;
 
 pub use bits::{BitReader, BitVec, BitWriter};
+pub use box16::Box16;
 pub use fixed::{S, U, WS, WU};
 pub use formats::*;
 pub use round::*;

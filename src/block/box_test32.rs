@@ -1,0 +1,61 @@
+//! Ray against one box of 32-bit coordinates: the full-precision variant of [`super::box_test`] (paper section 6.1).
+//!
+//! The same conditions in units: lo_i d_j - hi_j d_i <= x_i d_j - x_j d_i and hi_j >= x_j. `t_near` from floor((lo_i - x_i) / 2^16).
+//! Legal: |v| < 2^31, lo <= hi; constants from [`super::ray_setup`].
+
+use super::Block;
+use super::box_test::{self, entry, finish};
+use super::ray_setup::{self, Axis};
+use crate::num::{BOX_SHIFT, Point, RayT, S, wire_struct};
+
+wire_struct! {
+    /// Input of [`BoxTest32`].
+    pub struct In {
+        /// The ray's constants.
+        ray: ray_setup::Out,
+        /// t of the closest hit so far.
+        t_max: RayT,
+        /// Lower corner in units.
+        lo: Point,
+        /// Upper corner in units.
+        hi: Point,
+    }
+}
+
+/// The block.
+pub struct BoxTest32;
+
+/// (near, far) in mirrored axes: 33 bits signed.
+#[inline(always)]
+fn slab(axis: &Axis, lo: S<32>, hi: S<32>) -> (i64, i64) {
+    let (lo, hi) = if axis.mirror { (-hi.get(), -lo.get()) } else { (lo.get(), hi.get()) };
+    (lo - axis.x.get(), hi - axis.x.get())
+}
+
+impl Block for BoxTest32 {
+    const NAME: &'static str = "box_test32";
+    type In = In;
+    type Out = box_test::Out;
+    #[inline(always)]
+    fn eval(input: &In) -> box_test::Out {
+        let r = &input.ray;
+        let (near_x, far_x) = slab(&r.x, input.lo.x, input.hi.x);
+        let (near_y, far_y) = slab(&r.y, input.lo.y, input.hi.y);
+        let (near_z, far_z) = slab(&r.z, input.lo.z, input.hi.z);
+        let [dx, dy, dz] = [r.x.d, r.y.d, r.z.d].map(|d| d.get().cast_signed());
+
+        // 33 x 30 bits: 63 signed.
+        let pair = |near_i: i64, d_j: i64, far_j: i64, d_i: i64| near_i * d_j <= far_j * d_i;
+        let planes = pair(near_x, dy, far_y, dx)
+            & pair(near_y, dx, far_x, dy)
+            & pair(near_y, dz, far_z, dy)
+            & pair(near_z, dy, far_y, dz)
+            & pair(near_z, dx, far_x, dz)
+            & pair(near_x, dz, far_z, dx);
+        let ahead = (far_x >= 0) & (far_y >= 0) & (far_z >= 0);
+
+        let entries = [(&r.x, near_x), (&r.y, near_y), (&r.z, near_z)].map(|(axis, near)| entry(axis, near >> BOX_SHIFT));
+        let t_near = entries[0].max(entries[1]).max(entries[2]);
+        finish(planes & ahead, t_near, input.t_max)
+    }
+}

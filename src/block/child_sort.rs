@@ -1,0 +1,67 @@
+//! Order of four children by entry distance (paper figure 9, "sort child nodes").
+//!
+//! Hit children first, nearer before farther, equal distances by child number; `count` of them are hit. The rest of `order` holds the missed
+//! children, by number. Legal: anything.
+
+use super::Block;
+use crate::num::{TNear, U, wire_struct};
+
+wire_struct! {
+    /// Input of [`ChildSort`].
+    pub struct In {
+        /// Child k is hit.
+        hit: [bool; 4],
+        /// Entry distance of child k.
+        t_near: [TNear; 4],
+    }
+}
+
+wire_struct! {
+    /// Output of [`ChildSort`].
+    pub struct Out {
+        /// Number of children hit, 0 to 4.
+        count: U<3>,
+        /// Child numbers, nearest first.
+        order: [U<2>; 4],
+    }
+}
+
+/// The block.
+pub struct ChildSort;
+
+impl Block for ChildSort {
+    const NAME: &'static str = "child_sort";
+    type In = In;
+    type Out = Out;
+    #[inline(always)]
+    fn eval(input: &In) -> Out {
+        // Key: missed, t_near, number: 21 bits, all different.
+        let mut keys: [u64; 4] =
+            std::array::from_fn(|k| u64::from(!input.hit[k]) << 20 | if input.hit[k] { input.t_near[k].get() << 2 } else { 0 } | k as u64);
+        // A five-comparator network.
+        for (a, b) in [(0, 1), (2, 3), (0, 2), (1, 3), (1, 2)] {
+            let (low, high) = (keys[a].min(keys[b]), keys[a].max(keys[b]));
+            keys[a] = low;
+            keys[b] = high;
+        }
+        let count = input.hit.iter().map(|&h| u64::from(h)).sum();
+        Out { count: U::new(count), order: keys.map(|k| U::new(k & 3)) }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    proptest! {
+        #[test]
+        fn order_is_a_stable_sort(hit in prop::array::uniform4(any::<bool>()), t in prop::array::uniform4(0u64..6)) {
+            let out = ChildSort::eval(&In { hit, t_near: t.map(U::new) });
+            let mut wanted: Vec<usize> = (0..4).collect();
+            wanted.sort_by_key(|&k| (!hit[k], if hit[k] { t[k] } else { 0 }));
+            prop_assert_eq!(out.order.map(|o| o.get() as usize).to_vec(), wanted);
+            prop_assert_eq!(out.count.get() as usize, hit.iter().filter(|&&h| h).count());
+        }
+    }
+}

@@ -1,0 +1,66 @@
+//! The division of hits: q = floor(numerator 2^32 / denominator), saturating at 35 bits.
+//!
+//! With numerator t_num and denominator det it gives t; with v or w it gives a barycentric coordinate in steps of 2^-32, of which the
+//! last bit is dropped (floor of a floor). Legal: denominator > 0.
+
+use super::Block;
+use super::tri_test::{EdgeFunction, TNumerator};
+use crate::num::{RayT, wire_struct};
+
+wire_struct! {
+    /// Input of [`HitDivide`].
+    pub struct In {
+        /// Numerator.
+        numerator: TNumerator,
+        /// Denominator, not 0.
+        denominator: EdgeFunction,
+    }
+}
+
+wire_struct! {
+    /// Output of [`HitDivide`].
+    pub struct Out {
+        /// The quotient.
+        quotient: RayT,
+    }
+}
+
+/// The block.
+pub struct HitDivide;
+
+impl Block for HitDivide {
+    const NAME: &'static str = "hit_divide";
+    type In = In;
+    type Out = Out;
+    #[inline(always)]
+    fn eval(input: &In) -> Out {
+        let (n, d) = (input.numerator.get(), input.denominator.get());
+        let whole = n / d;
+        if whole >= 1 << 3 {
+            return Out { quotient: RayT::MAX }; // 8 * 2^32 does not fit 35 bits
+        }
+        // The remainder is below 2^96: 128 bits after the shift.
+        let fraction = ((n - whole * d) << 32) / d;
+        let [whole, fraction] = [whole, fraction].map(|q| q as u64); // below 2^3 and 2^32
+        Out { quotient: RayT::new(whole << 32 | fraction) }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::num::WU;
+    use num_bigint::BigUint;
+    use proptest::prelude::*;
+
+    proptest! {
+        #[test]
+        fn agrees_with_big_integers(n in 0u128..1 << 99, d in 1u128..1 << 96, sn in 0u32..99, sd in 0u32..96) {
+            let (n, d) = (n >> sn, (d >> sd).max(1));
+            let exact = (BigUint::from(n) << 32u32) / BigUint::from(d);
+            let wanted = exact.min(BigUint::from(RayT::MAX.get()));
+            let out = HitDivide::eval(&In { numerator: WU::new(n), denominator: WU::new(d) });
+            prop_assert_eq!(BigUint::from(out.quotient.get()), wanted);
+        }
+    }
+}

@@ -1,0 +1,136 @@
+//! Does a node's triangle serve this ray, and if not, how far do its edges open? (paper section 3.7)
+//!
+//! Per edge (a, b) with bound h: l = floor(min((a-x).d, (b-x).d) / 2^30), D = clamp(floor((offset + l slope) / 2^shift), 0, 2^34 - 1);
+//! s = 0 iff h <= D, s = 256 iff h >= 2D (and h > D), else clamp(floor((h-D) 256 / D), 1, 255).
+//! So s = 0 is decided on the exact comparison; h = 0 gives 0 whatever D is; an edge at or behind the origin has D = 0: full detail.
+//! s is symmetric in a and b, does not decrease in h and does not increase in l.
+//! Legal: points and origin with |v| < 2^31, |d| <= 2^30.
+
+use super::bound_decode::{self, Bound, BoundDecode};
+use super::{Block, dot};
+use crate::num::{BoundCode, BoundScale, Cone, EdgeState, Point, Ray, S, S_ONE, U, wire_struct};
+
+wire_struct! {
+    /// Input of [`LodTest`].
+    pub struct In {
+        /// The ray.
+        ray: Ray,
+        /// Corner p0 of the (morphed) triangle.
+        p0: Point,
+        /// Corner p1.
+        p1: Point,
+        /// Corner p2.
+        p2: Point,
+        /// Bound code of edge (p1, p2).
+        e0: BoundCode,
+        /// Bound code of edge (p2, p0).
+        e1: BoundCode,
+        /// Bound code of edge (p0, p1).
+        e2: BoundCode,
+        /// The model's bound scale.
+        scale: BoundScale,
+    }
+}
+
+wire_struct! {
+    /// Output of [`LodTest`].
+    pub struct Out {
+        /// Some edge state is not 0: go down.
+        refine: bool,
+        /// State of edge (p1, p2).
+        s0: EdgeState,
+        /// State of edge (p2, p0).
+        s1: EdgeState,
+        /// State of edge (p0, p1).
+        s2: EdgeState,
+    }
+}
+
+/// The block.
+pub struct LodTest;
+
+/// Distance along the ray, in steps of 2^-30 units: |p - x| < 2^32 sqrt 3 and |d| <= 2^30, so below 2^62.8, partial sums too (Cauchy-Schwarz).
+#[inline(always)]
+fn along(ray: &Ray, p: Point) -> S<64> {
+    let ([px, py, pz], [x, y, z]) = (p.get(), ray.origin.get());
+    S::new(dot([px - x, py - y, pz - z], ray.direction.get()))
+}
+
+/// D: the displacement that the ray tolerates for an edge whose nearer end lies at `nearer`.
+#[inline(always)]
+fn tolerated(cone: &Cone, nearer: i64) -> U<34> {
+    // 64 - 30 = 34 bits signed.
+    let l = S::<34>::new(nearer >> 30);
+    // 34 x 18 bits: 52 signed; with the 53-bit unsigned offset: 55 signed.
+    let sum = S::<55>::new(cone.offset.get().cast_signed() + l.get() * cone.slope.get().cast_signed());
+    let shifted = sum.get() >> cone.shift.get();
+    U::new(shifted.clamp(0, U::<34>::MAX.get().cast_signed()).cast_unsigned())
+}
+
+/// s of an edge with bound `h` of which the ray tolerates `d`.
+#[inline(always)]
+fn edge_state(h: Bound, d: U<34>) -> EdgeState {
+    let (h, d) = (h.get(), d.get());
+    if h <= d {
+        EdgeState::ZERO
+    } else if h >= 2 * d {
+        EdgeState::new(S_ONE)
+    } else {
+        // 0 < h - d < d: the quotient is below 256.
+        EdgeState::new(((h - d) * S_ONE / d).clamp(1, S_ONE - 1))
+    }
+}
+
+impl Block for LodTest {
+    const NAME: &'static str = "lod_test";
+    type In = In;
+    type Out = Out;
+    #[inline(always)]
+    fn eval(input: &In) -> Out {
+        let l = [input.p0, input.p1, input.p2].map(|p| along(&input.ray, p).get());
+        let state = |code, a: i64, b: i64| {
+            let h = BoundDecode::eval(&bound_decode::In { code, scale: input.scale }).h;
+            edge_state(h, tolerated(&input.ray.cone, a.min(b)))
+        };
+        let (s0, s1, s2) = (state(input.e0, l[1], l[2]), state(input.e1, l[2], l[0]), state(input.e2, l[0], l[1]));
+        Out { refine: (s0.get() | s1.get() | s2.get()) != 0, s0, s1, s2 }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    fn cone(offset: u64, slope: u64, shift: u64) -> Cone {
+        Cone { offset: U::new(offset), slope: U::new(slope), shift: U::new(shift) }
+    }
+
+    #[test]
+    fn states_at_the_borders() {
+        let s = |h, d| edge_state(Bound::new(h), U::new(d)).get();
+        assert_eq!([s(0, 0), s(1, 0), s(0, 5)], [0, 256, 0]);
+        assert_eq!([s(100, 100), s(101, 100), s(199, 100), s(200, 100), s(150, 100)], [0, 2, 253, 256, 128]);
+        assert_eq!(s(1_000_001, 1_000_000), 1); // above 0, so never rounded to it
+    }
+
+    #[test]
+    fn behind_the_origin_is_full_detail_and_saturation_is_the_base() {
+        assert_eq!(tolerated(&cone(0, 1000, 4), -5 << 30).get(), 0);
+        assert_eq!(tolerated(&cone((1 << 53) - 1, 0, 0), -5 << 30), U::MAX);
+        assert_eq!(tolerated(&cone(0, 0, 0), i64::MAX).get(), 0);
+        assert_eq!(tolerated(&cone(7, 3, 1), (10 << 30) + 5).get(), 18); // floor(37 / 2)
+    }
+
+    proptest! {
+        #[test]
+        fn states_are_monotone(h in 0u64..1 << 33, more in 0u64..1 << 20, d in 0u64..1 << 34, shift in 0u64..30) {
+            let (h, d) = (h >> shift, d >> shift);
+            let s = |h: u64, d| edge_state(Bound::new(h.min((1 << 33) - 1)), U::new(d)).get();
+            prop_assert!(s(h + more, d) >= s(h, d));
+            prop_assert!(s(h, (d + more).min((1 << 34) - 1)) <= s(h, d));
+            prop_assert_eq!(s(h, d) == 0, h <= d);
+            prop_assert_eq!(s(h, d) == 256, h > d && h >= 2 * d);
+        }
+    }
+}

@@ -1,0 +1,36 @@
+//! Floor 1: the hardware's blocks as pure functions, one file each, without float or clock.
+//!
+//! A block's `In` and `Out` are [`Wire`] structs with the field names of the SystemVerilog; its mathematics stands at the head of its
+//! file, every width beside the line that needs it. `docs/numbers.md` states the formats.
+
+pub mod bary_map;
+pub mod bound_decode;
+pub mod box_test;
+pub mod box_test32;
+pub mod child_sort;
+pub mod hit_divide;
+pub mod lod_test;
+pub mod ray_setup;
+pub mod tessellate;
+pub mod tri_test;
+pub mod widen_box;
+
+use crate::num::Wire;
+
+/// A combinational block.
+pub trait Block {
+    /// Its name: the file here, the file and module in `rtl/`.
+    const NAME: &'static str;
+    /// What goes in.
+    type In: Wire;
+    /// What comes out.
+    type Out: Wire;
+    /// The function, exact and total over the legal inputs stated at the head of the block's file.
+    fn eval(input: &Self::In) -> Self::Out;
+}
+
+/// Dot product of two integer vectors; the caller proves that it and its partial sums fit 64 bits.
+#[inline(always)]
+fn dot(a: [i64; 3], b: [i64; 3]) -> i64 {
+    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
+}

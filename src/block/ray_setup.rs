@@ -1,0 +1,131 @@
+//! Per-ray constants of the box tests.
+//!
+//! Axes are mirrored so that d >= 0 (x and boxes change sign with them). c_ij = x_i d_j - x_j d_i; `plucker_ij` = floor(c_ij / 2^16);
+//! `ceil_i` = ceil(x_i / 2^16); mantissa_i / 2^shift_i = 2^30 / d_i rounded down, shift_i the largest k <= 17 with floor(2^(30+k) / d_i) < 2^18, or 0 with the
+//! mantissa held at 2^18 - 1; both 0 for d_i = 0.
+//! Legal: |x_i| < 2^31, |d_i| < 2^30.
+
+use super::Block;
+use crate::num::{BOX_SHIFT, Ray, S, U, Vec3, wire_struct};
+
+wire_struct! {
+    /// Reciprocal of one direction component, rounded down.
+    pub struct Reciprocal {
+        /// Mantissa.
+        mantissa: U<18>,
+        /// Right shift.
+        shift: U<5>,
+    }
+}
+
+wire_struct! {
+    /// Constants of one axis.
+    pub struct Axis {
+        /// The direction component is negative: mirror.
+        mirror: bool,
+        /// Its magnitude.
+        d: U<30>,
+        /// Mirrored origin in units.
+        x: S<32>,
+        /// ceil(x / 2^16).
+        ceil: S<17>,
+        /// 2^30 / d, rounded down.
+        reciprocal: Reciprocal,
+    }
+}
+
+wire_struct! {
+    /// Output of [`RaySetup`].
+    pub struct Out {
+        /// First axis.
+        x: Axis,
+        /// Second axis.
+        y: Axis,
+        /// Third axis.
+        z: Axis,
+        /// c_yz, c_zx, c_xy (the moment x cross d, mirrored).
+        moment: Vec3<63>,
+    }
+}
+
+/// The block.
+pub struct RaySetup;
+
+#[inline(always)]
+fn reciprocal(d: U<30>) -> Reciprocal {
+    const LARGEST: u64 = (1 << 18) - 1;
+    let d = d.get();
+    if d == 0 {
+        return Reciprocal::default();
+    }
+    // d in [2^e, 2^(e+1)): floor(2^(30+k) / d) < 2^18 holds for k = e - 13 and for k = e - 12 iff d > 2^e (or the quotient rounds below).
+    let e = d.ilog2();
+    let upper = e.saturating_sub(12).min(17);
+    let k = if (1u64 << (30 + upper)) / d <= LARGEST { upper } else { upper.saturating_sub(1) };
+    let mantissa = ((1u64 << (30 + k)) / d).min(LARGEST);
+    Reciprocal { mantissa: U::new(mantissa), shift: U::new(u64::from(k)) }
+}
+
+#[inline(always)]
+fn axis(x: S<32>, d: S<31>) -> Axis {
+    let mirror = d.get() < 0;
+    // |d| < 2^30 and |x| < 2^31, so both magnitudes keep their width.
+    let d = U::new(d.get().unsigned_abs());
+    let x = S::<32>::new(if mirror { -x.get() } else { x.get() });
+    // ceil of 32 bits over 2^16: at most 2^15, 17 bits.
+    let ceil = S::new((x.get() + ((1 << BOX_SHIFT) - 1)) >> BOX_SHIFT);
+    Axis { mirror, d, x, ceil, reciprocal: reciprocal(d) }
+}
+
+#[inline(always)]
+fn moment(i: &Axis, j: &Axis) -> S<63> {
+    // Each product below 2^61, the difference below 2^62.
+    S::new(i.x.get() * j.d.get().cast_signed() - j.x.get() * i.d.get().cast_signed())
+}
+
+impl Block for RaySetup {
+    const NAME: &'static str = "ray_setup";
+    type In = Ray;
+    type Out = Out;
+    #[inline(always)]
+    fn eval(ray: &Ray) -> Out {
+        let (o, d) = (ray.origin, ray.direction);
+        let (x, y, z) = (axis(o.x, d.x), axis(o.y, d.y), axis(o.z, d.z));
+        Out { x, y, z, moment: Vec3 { x: moment(&y, &z), y: moment(&z, &x), z: moment(&x, &y) } }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    fn check(d: u64) {
+        let r = reciprocal(U::new(d));
+        let (m, k) = (r.mantissa.get(), r.shift.get());
+        // By the definition: the largest k <= 17 that fits, or 0.
+        let wanted = (0..=17u64).rev().find(|k| (1u64 << (30 + k)) / d < 1 << 18).unwrap_or(0);
+        assert_eq!(k, wanted, "d = {d}");
+        assert_eq!(m, ((1u64 << (30 + k)) / d).min((1 << 18) - 1), "d = {d}");
+        assert!(m >= 1 << 17);
+    }
+
+    #[test]
+    fn reciprocals_follow_the_definition_at_powers_of_two() {
+        for e in 0..30 {
+            for d in [(1u64 << e) - 1, 1 << e, (1 << e) + 1] {
+                if d > 0 && d < 1 << 30 {
+                    check(d);
+                }
+            }
+        }
+        assert_eq!(reciprocal(U::ZERO), Reciprocal::default());
+    }
+
+    proptest! {
+        #[test]
+        fn reciprocals_follow_the_definition(d in 1u64..1 << 30, shift in 0u32..30) {
+            check((d >> shift).max(1));
+        }
+    }
+}

@@ -1,0 +1,63 @@
+//! `crack`: watertightness, measured.
+
+use super::output::{grouped, open, print_json, print_line, progress};
+use lodray::format::decode;
+use lodray::report::crack::{Closedness, closedness, measure};
+use lodray::traverse::{LodImage, ModelSpace};
+use std::path::PathBuf;
+use std::process::ExitCode;
+
+#[derive(clap::Args)]
+pub struct Args {
+    /// Scene file of a closed model
+    scene: PathBuf,
+    /// Number of rays
+    #[arg(long, default_value_t = 10_000_000)]
+    rays: u64,
+    /// Seed
+    #[arg(long, default_value_t = 1)]
+    seed: u64,
+    /// Print the figures as JSON
+    #[arg(long)]
+    json: bool,
+}
+
+pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
+    let scene = open(&args.scene)?;
+    let hierarchy = decode(&scene);
+    let closed = closedness(&hierarchy.triangles);
+    anyhow::ensure!(
+        closed != Closedness::Open,
+        "{}: the model has open borders, so crossings cannot be balanced; crack needs a closed model",
+        args.scene.display()
+    );
+    anyhow::ensure!(args.rays > 0, "--rays must be at least 1");
+    let bar = progress(args.rays, "shooting");
+    let oriented = closed == Closedness::Oriented;
+    let report = measure(&hierarchy, &LodImage::of(&scene), &ModelSpace::of(&scene), oriented, args.rays, args.seed, &|n| bar.inc(n));
+    bar.finish_and_clear();
+
+    if args.json {
+        print_json(&report)?;
+    } else {
+        let mut text = format!(
+            "{:<12}{:>14}{:>14}{:>14}{:>14}{:>8}{:>12}\n",
+            "aimed at", "rays", "crossing", "axis-parallel", "mixed levels", "odd", "unbalanced"
+        );
+        for r in &report.rows {
+            let name = format!("{:?}", r.target);
+            let cells = [r.rays, r.crossing, r.axis_parallel, r.mixed_levels].map(grouped);
+            text += &format!(
+                "{name:<12}{:>14}{:>14}{:>14}{:>14}{:>8}{:>12}\n",
+                cells[0], cells[1], cells[2], cells[3], r.odd, r.unbalanced
+            );
+        }
+        let compared = if oriented { "front and back crossings compared" } else { "not consistently oriented: parity only" };
+        text += &format!("{} misses or double hits in {} rays ({compared})", report.breaches(), grouped(report.rays()));
+        if let Some(number) = report.first_breach {
+            text += &format!("; the first is ray {number} of seed {}", args.seed);
+        }
+        print_line(&text)?;
+    }
+    Ok(if report.breaches() == 0 { ExitCode::SUCCESS } else { ExitCode::FAILURE })
+}

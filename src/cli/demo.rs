@@ -1,0 +1,114 @@
+//! `demo`: a built-in scene from three distances, LOD beside BVH and full resolution.
+
+use super::args::LeafArgs;
+use super::build::l0_nodes;
+use super::output::{folder, grouped, print_json, print_line};
+use super::pictures::Shot;
+use super::render::{Built, Comparison, MethodName, compare_shots};
+use anyhow::Context;
+use lodray::bvh::LeafLayout;
+use lodray::format;
+use lodray::mesh::procedural::{Options, Scene, generate};
+use lodray::render::{Camera, View, write_and_rename};
+use lodray::traverse::ModelSpace;
+use serde::Serialize;
+use std::io::Write;
+use std::path::PathBuf;
+use std::process::ExitCode;
+
+/// Terrain of 512 base triangles and 524,288 at full resolution: seconds to build, and far finer than the pictures.
+const LEVELS: u32 = 5;
+const DISTANCES: [(&str, f64); 3] = [("near", 0.6), ("middle", 2.0), ("far", 8.0)];
+const SIDE: u32 = 512;
+
+#[derive(clap::Args)]
+pub struct Args {
+    /// Folder for pictures and table
+    #[arg(short, long, default_value = "out/demo")]
+    out: PathBuf,
+    /// Print the table as JSON
+    #[arg(long)]
+    json: bool,
+}
+
+#[derive(Serialize)]
+struct Row {
+    view: &'static str,
+    distance: f64,
+    method: &'static str,
+    distinct_lines: u64,
+    lines_per_ray: f64,
+    nodes_per_ray: f64,
+    triangles_per_ray: f64,
+    mean_level: f64,
+    error: Comparison,
+}
+
+pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
+    folder(&args.out)?;
+    let options = Options { levels: Some(LEVELS), ..Options::new(Scene::Terrain) };
+    let surface = generate(&options)?;
+    let scene = format::build(&surface, "terrain", serde_json::json!({ "generate": options }), l0_nodes)?;
+    let space = ModelSpace::of(&scene);
+    let leaves = LeafArgs { leaf_layout: LeafLayout::Line, leaf_size: 4 };
+    let bvh = Built::new(MethodName::Bvh, &scene, leaves)?;
+    let truth = Built::new(MethodName::Reference, &scene, leaves)?;
+
+    let mut rows = Vec::new();
+    for (view, distance) in DISTANCES {
+        let camera = Camera::new(&View { distance: Some(distance), ..View::default() }, &space, SIDE, SIDE)?;
+        let shoot = |built: &Built, what: &str| built.shoot(&scene, &space, &camera, 1.0, what);
+        let (lod, bvh, full) = (shoot(&Built::Lod, "LOD"), shoot(&bvh, "BVH"), shoot(&truth, "full resolution"));
+        lod.save(&scene, &args.out, &format!("{view}-lod-"), false)?;
+        lod.save_error(&full, &args.out, &format!("{view}-lod-"))?;
+        bvh.save(&scene, &args.out, &format!("{view}-bvh-"), false)?;
+        full.save(&scene, &args.out, &format!("{view}-full-"), false)?;
+        rows.push(row(view, distance, "lod", &lod, &full));
+        rows.push(row(view, distance, "bvh", &bvh, &full));
+    }
+
+    let table = table(&rows, scene.finest_triangles());
+    let path = args.out.join("table.txt");
+    write_and_rename(&path, |out| writeln!(out, "{table}")).with_context(|| format!("cannot write {}", path.display()))?;
+    if args.json { print_json(&rows)? } else { print_line(&format!("{table}\npictures in {}", args.out.display()))? }
+    Ok(ExitCode::SUCCESS)
+}
+
+fn row(view: &'static str, distance: f64, method: &'static str, shot: &Shot, truth: &Shot) -> Row {
+    let stats = &shot.frame.stats;
+    let mean = |n: u64| n as f64 / stats.rays as f64;
+    Row {
+        view,
+        distance,
+        method,
+        distinct_lines: stats.distinct_lines(),
+        lines_per_ray: mean(stats.lines_read()),
+        nodes_per_ray: mean(stats.nodes),
+        triangles_per_ray: mean(stats.triangles),
+        mean_level: stats.mean_level,
+        error: compare_shots(shot, truth),
+    }
+}
+
+fn table(rows: &[Row], triangles: u64) -> String {
+    let mut text = format!(
+        "terrain, {} triangles at full resolution, {SIDE}x{SIDE} rays; errors against full resolution\n{:<8}{:>9}{:>8}{:>16}{:>11}{:>11}{:>15}{:>12}{:>9}{:>10}\n",
+        grouped(triangles), "view", "distance", "method", "distinct lines", "lines/ray", "nodes/ray", "triangles/ray", "mean level", "RMSE", "PSNR"
+    );
+    for r in rows {
+        text += &format!(
+            "{:<8}{:>9}{:>8}{:>16}{:>11.2}{:>11.2}{:>15.2}{:>12.2}{:>9.3}{:>10}\n",
+            r.view,
+            r.distance,
+            r.method,
+            grouped(r.distinct_lines),
+            r.lines_per_ray,
+            r.nodes_per_ray,
+            r.triangles_per_ray,
+            r.mean_level,
+            r.error.image.rmse,
+            r.error.image.psnr_db.map_or("inf".to_owned(), |p| format!("{p:.1} dB"))
+        );
+    }
+    text.trim_end().to_owned()
+}

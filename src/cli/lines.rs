@@ -1,0 +1,125 @@
+//! `lines`: the distinct 32-byte lines that a frame touches, by distance, LOD against every full-resolution BVH layout.
+
+use super::args::{CameraArgs, delta};
+use super::output::{grouped, open, print_json, print_line, progress};
+use clap::ValueEnum;
+use lodray::bvh::{BoxFormat, FullBvh, LeafLayout};
+use lodray::format::decode;
+use lodray::render::{Method, render};
+use lodray::traverse::{LodImage, ModelSpace};
+use serde::Serialize;
+use std::path::PathBuf;
+use std::process::ExitCode;
+
+#[derive(clap::Args)]
+pub struct Args {
+    /// Scene file
+    scene: PathBuf,
+    /// Distances in bounding radii
+    #[arg(long, value_delimiter = ',', default_value = "1.2,2,4,8,16,32")]
+    distances: Vec<f64>,
+    /// Quality
+    #[arg(long, default_value = "1", value_parser = delta)]
+    delta: f64,
+    /// Count the 32-bit-box BVH too
+    #[arg(long)]
+    bvh32: bool,
+    #[command(flatten)]
+    camera: CameraArgs,
+    /// Print the figures as JSON
+    #[arg(long)]
+    json: bool,
+}
+
+/// Distinct lines of one structure at each distance.
+#[derive(Serialize)]
+struct Row {
+    structure: String,
+    distinct_lines: Vec<u64>,
+}
+
+#[derive(Serialize)]
+struct Report {
+    distances: Vec<f64>,
+    delta: f64,
+    /// Shares of the LOD frame's distinct lines that are L0 nodes and records.
+    base_share: Vec<f64>,
+    mean_level: Vec<f64>,
+    rows: Vec<Row>,
+    /// Best BVH with 16-bit boxes over LOD.
+    ratio: Vec<f64>,
+}
+
+pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
+    let scene = open(&args.scene)?;
+    let space = ModelSpace::of(&scene);
+    let cameras = args.distances.iter().map(|&d| args.camera.camera(&space, Some(d))).collect::<Result<Vec<_>, _>>()?;
+    let formats = if args.bvh32 { &[BoxFormat::Box16, BoxFormat::Box32][..] } else { &[BoxFormat::Box16][..] };
+    let bar = progress((2 + formats.len() as u64 * 9) * cameras.len() as u64, "tracing");
+
+    let count = |method: &Method<'_>, delta: f64| -> Vec<_> {
+        let frames = cameras.iter().map(|camera| {
+            bar.inc(1);
+            render(method, &space, camera, delta, &|| ()).stats
+        });
+        frames.collect()
+    };
+    let distinct = |stats: &[lodray::render::FrameStats]| stats.iter().map(|s| s.distinct_lines()).collect::<Vec<u64>>();
+
+    let image = LodImage::of(&scene);
+    let lod = count(&Method::Lod(image), args.delta);
+    let mut rows = vec![
+        Row { structure: "LOD".to_owned(), distinct_lines: distinct(&lod) },
+        Row { structure: "LOD structure at full detail".to_owned(), distinct_lines: distinct(&count(&Method::Lod(image), f64::INFINITY)) },
+    ];
+    let hierarchy = decode(&scene);
+    let mut best = vec![u64::MAX; cameras.len()];
+    for &format in formats {
+        for size in [1, 2, 4] {
+            let mut bvh = FullBvh::build(&hierarchy, format, LeafLayout::Line, size)?;
+            for &layout in LeafLayout::value_variants() {
+                bvh.set_layout(&hierarchy, layout);
+                let lines = distinct(&count(&Method::Bvh(&bvh), args.delta));
+                if format == BoxFormat::Box16 {
+                    best.iter_mut().zip(&lines).for_each(|(b, &n)| *b = n.min(*b));
+                }
+                let bits = if format == BoxFormat::Box16 { 16 } else { 32 };
+                rows.push(Row { structure: format!("BVH {bits}-bit, {layout:?}, {size} a leaf"), distinct_lines: lines });
+            }
+        }
+    }
+    bar.finish_and_clear();
+
+    let ratio = best.iter().zip(&rows[0].distinct_lines).map(|(&b, &l)| b as f64 / l.max(1) as f64).collect();
+    let base = |s: &lodray::render::FrameStats| {
+        use lodray::traverse::Kind;
+        let of = s.lines.iter().filter(|k| matches!(k.kind, Kind::BvhNode | Kind::L0Record)).map(|k| k.distinct).sum::<u64>();
+        of as f64 / s.distinct_lines().max(1) as f64
+    };
+    let report = Report {
+        distances: args.distances.clone(),
+        delta: args.delta,
+        base_share: lod.iter().map(base).collect(),
+        mean_level: lod.iter().map(|s| s.mean_level).collect(),
+        rows,
+        ratio,
+    };
+    if args.json { print_json(&report)? } else { print_line(&table(&report))? }
+    Ok(ExitCode::SUCCESS)
+}
+
+fn table(r: &Report) -> String {
+    let line = |name: &str, cells: Vec<String>| {
+        let cells: String = cells.iter().map(|c| format!("{c:>13}")).collect();
+        format!("{name:<32}{cells}\n")
+    };
+    let decimals = |v: &[f64]| v.iter().map(|x| format!("{x:.2}")).collect::<Vec<_>>();
+    let mut text = line("distance (bounding radii)", r.distances.iter().map(f64::to_string).collect());
+    for row in &r.rows {
+        text += &line(&row.structure, row.distinct_lines.iter().map(|&n| grouped(n)).collect());
+    }
+    text += &line("best 16-bit BVH / LOD", decimals(&r.ratio));
+    text += &line("share of L0 in LOD's lines", decimals(&r.base_share));
+    text += &line("mean level", decimals(&r.mean_level));
+    text.trim_end().to_owned()
+}

@@ -1,0 +1,198 @@
+//! `render`: one view of a scene through one method.
+
+use super::args::{CameraArgs, LeafArgs, delta};
+use super::output::{folder, grouped, open, print_json, print_line};
+use super::pictures::{Shot, shoot};
+use clap::ValueEnum;
+use lodray::bvh::{BoxFormat, FullBvh};
+use lodray::format::{Scene, decode};
+use lodray::golden::reference::Reference;
+use lodray::mesh::Hierarchy;
+use lodray::render::{Camera, FrameStats, ImageError, Method, compare};
+use lodray::traverse::{LodImage, ModelSpace};
+use serde::Serialize;
+use std::path::PathBuf;
+use std::process::ExitCode;
+
+/// How rays find their hits.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum MethodName {
+    /// Locally adaptive level of detail
+    Lod,
+    /// Quad-BVH of the full-resolution mesh, 16-bit boxes
+    Bvh,
+    /// The same with 32-bit boxes
+    Bvh32,
+    /// f64, full resolution: the truth
+    Reference,
+}
+
+#[derive(clap::Args)]
+pub struct Args {
+    /// Scene file
+    scene: PathBuf,
+    /// How rays find their hits
+    #[arg(long, value_enum, default_value_t = MethodName::Lod)]
+    method: MethodName,
+    /// Quality: 1 keeps a level's displacement under a pixel, 0 is the base mesh, inf full detail
+    #[arg(long, default_value = "1", value_parser = delta)]
+    delta: f64,
+    #[command(flatten)]
+    camera: CameraArgs,
+    #[command(flatten)]
+    leaves: LeafArgs,
+    /// Folder for the pictures
+    #[arg(short, long, default_value = "out")]
+    out: PathBuf,
+    /// Compare with full resolution: error map and figures
+    #[arg(long)]
+    compare: bool,
+    /// Print the figures as JSON
+    #[arg(long)]
+    json: bool,
+}
+
+#[derive(Serialize)]
+struct Report {
+    method: MethodName,
+    delta: f64,
+    size: [u32; 2],
+    eye: [f64; 3],
+    seconds: f64,
+    stats: FrameStats,
+    per_ray: PerRay,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    error: Option<Comparison>,
+}
+
+/// Means over all rays of the frame.
+#[derive(Serialize)]
+struct PerRay {
+    nodes: f64,
+    lod_tests: f64,
+    triangles: f64,
+    lines_read: f64,
+    bytes_read: f64,
+    distinct_lines: f64,
+}
+
+#[derive(Serialize)]
+pub struct Comparison {
+    #[serde(flatten)]
+    pub image: ImageError,
+    /// Pixels that hit in one picture only.
+    pub coverage_differs: u64,
+}
+
+/// What a method needs besides the scene.
+pub enum Built {
+    Lod,
+    Bvh(FullBvh),
+    Reference(Hierarchy),
+}
+
+impl Built {
+    /// Builds what `name` needs.
+    pub fn new(name: MethodName, scene: &Scene, leaves: LeafArgs) -> anyhow::Result<Self> {
+        Ok(match name {
+            MethodName::Lod => Self::Lod,
+            MethodName::Bvh => Self::Bvh(FullBvh::build(&decode(scene), BoxFormat::Box16, leaves.leaf_layout, leaves.leaf_size)?),
+            MethodName::Bvh32 => Self::Bvh(FullBvh::build(&decode(scene), BoxFormat::Box32, leaves.leaf_layout, leaves.leaf_size)?),
+            MethodName::Reference => Self::Reference(decode(scene)),
+        })
+    }
+
+    /// Renders with it.
+    pub fn shoot(&self, scene: &Scene, space: &ModelSpace, camera: &Camera, delta: f64, what: &str) -> Shot {
+        match self {
+            Self::Lod => shoot(&Method::Lod(LodImage::of(scene)), scene, space, camera, delta, what),
+            Self::Bvh(bvh) => shoot(&Method::Bvh(bvh), scene, space, camera, delta, what),
+            Self::Reference(h) => shoot(&Method::Reference(&Reference::new(h)), scene, space, camera, delta, what),
+        }
+    }
+}
+
+pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
+    let scene = open(&args.scene)?;
+    let space = ModelSpace::of(&scene);
+    let camera = args.camera.camera(&space, None)?;
+    folder(&args.out)?;
+
+    let built = Built::new(args.method, &scene, args.leaves)?;
+    let begun = std::time::Instant::now();
+    let shot = built.shoot(&scene, &space, &camera, args.delta, "tracing");
+    let seconds = begun.elapsed().as_secs_f64();
+    drop(built);
+    shot.save(&scene, &args.out, "", true)?;
+
+    let error = if args.compare {
+        let truth = Built::new(MethodName::Reference, &scene, args.leaves)?.shoot(&scene, &space, &camera, args.delta, "full resolution");
+        shot.save_error(&truth, &args.out, "")?;
+        Some(compare_shots(&shot, &truth))
+    } else {
+        None
+    };
+
+    let stats = shot.frame.stats;
+    let mean = |n: u64| n as f64 / stats.rays as f64;
+    let per_ray = PerRay {
+        nodes: mean(stats.nodes),
+        lod_tests: mean(stats.lod_tests),
+        triangles: mean(stats.triangles),
+        lines_read: mean(stats.lines_read()),
+        bytes_read: 32.0 * mean(stats.lines_read()),
+        distinct_lines: mean(stats.distinct_lines()),
+    };
+    let report = Report {
+        method: args.method,
+        delta: args.delta,
+        size: [camera.width, camera.height],
+        eye: camera.eye.to_array(),
+        seconds,
+        stats,
+        per_ray,
+        error,
+    };
+    if args.json { print_json(&report)? } else { print_line(&table(&report, &args.out))? }
+    Ok(ExitCode::SUCCESS)
+}
+
+/// Compares a picture with the true one.
+pub fn compare_shots(shot: &Shot, truth: &Shot) -> Comparison {
+    let differs = shot.frame.pixels.iter().zip(&truth.frame.pixels).filter(|(a, b)| a.is_some() != b.is_some()).count();
+    Comparison { image: compare(&shot.image, &truth.image), coverage_differs: differs as u64 }
+}
+
+fn table(r: &Report, out: &std::path::Path) -> String {
+    let mut text = format!(
+        "{} rays, {} hit, {:.2} s\nper ray: {:.2} nodes, {:.2} LOD tests, {:.2} triangles, {:.2} lines read ({:.0} bytes)\nmean level {:.3}\n",
+        grouped(r.stats.rays),
+        grouped(r.stats.hits),
+        r.seconds,
+        r.per_ray.nodes,
+        r.per_ray.lod_tests,
+        r.per_ray.triangles,
+        r.per_ray.lines_read,
+        r.per_ray.bytes_read,
+        r.stats.mean_level,
+    );
+    if !r.stats.lines.is_empty() {
+        text += &format!("{:<14}{:>16}{:>16}\n", "lines of", "read", "distinct");
+        for k in &r.stats.lines {
+            text += &format!("{:<14}{:>16}{:>16}\n", k.kind.name(), grouped(k.read), grouped(k.distinct));
+        }
+        text += &format!("{:<14}{:>16}{:>16}\n", "all", grouped(r.stats.lines_read()), grouped(r.stats.distinct_lines()));
+    }
+    if let Some(e) = &r.error {
+        let psnr = e.image.psnr_db.map_or("infinite".to_owned(), |p| format!("{p:.2} dB"));
+        text += &format!(
+            "against full resolution: RMSE {:.3}, PSNR {psnr}, maximum {}, {:.2} % of pixels differ, {} differ in coverage\n",
+            e.image.rmse,
+            e.image.maximum,
+            100.0 * e.image.differing,
+            grouped(e.coverage_differs)
+        );
+    }
+    text + &format!("pictures in {}", out.display())
+}

@@ -1,0 +1,209 @@
+//! One ray per pixel through a method.
+
+use super::lines::LineProbe;
+use super::{Camera, LineSets};
+use crate::bvh::FullBvh;
+use crate::golden::reference::Reference;
+use crate::traverse::{BvhTraverser, ClosestHit, Hit, Kind, LodImage, LodTraverser, ModelRay, ModelSpace, RayCounts, Section};
+use rayon::prelude::*;
+use serde::Serialize;
+
+/// How rays find their hits.
+#[derive(Clone, Copy)]
+pub enum Method<'a> {
+    /// Locally adaptive level of detail.
+    Lod(LodImage<'a>),
+    /// Quad-BVH over the full-resolution mesh.
+    Bvh(&'a FullBvh),
+    /// `f64`, full resolution.
+    Reference(&'a Reference<'a>),
+}
+
+impl Method<'_> {
+    /// The sections of its memory; empty for the reference, which has none in hardware.
+    pub fn sections(&self) -> Vec<Section> {
+        match self {
+            Self::Lod(image) => image.sections(),
+            Self::Bvh(bvh) => crate::traverse::bvh_sections(bvh),
+            Self::Reference(_) => Vec::new(),
+        }
+    }
+}
+
+/// What one pixel's ray found.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Pixel {
+    /// Distance from the eye in world units.
+    pub distance: f64,
+    /// Base triangle.
+    pub tree: u32,
+    /// Full-resolution triangle within its tree.
+    pub full_node: u32,
+    /// Barycentrics on the full-resolution triangle.
+    pub full_bary: [f32; 3],
+    /// Level of the triangle that was met, and its node there.
+    pub level: u32,
+    /// Node on that level.
+    pub node: u32,
+}
+
+/// A traced frame, row by row from the top.
+pub struct Frame {
+    /// Columns.
+    pub width: u32,
+    /// Rows.
+    pub height: u32,
+    /// What each pixel found.
+    pub pixels: Vec<Option<Pixel>>,
+    /// What it took.
+    pub stats: FrameStats,
+}
+
+/// What a frame took.
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+pub struct FrameStats {
+    /// Rays shot.
+    pub rays: u64,
+    /// Rays that hit.
+    pub hits: u64,
+    /// Groups of four boxes tested.
+    pub nodes: u64,
+    /// LOD tests.
+    pub lod_tests: u64,
+    /// Triangle tests.
+    pub triangles: u64,
+    /// Lines read, by kind of data.
+    pub lines: Vec<KindCount>,
+    /// Mean level of the triangles hit.
+    pub mean_level: f64,
+}
+
+/// Lines of one kind of data.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct KindCount {
+    /// What they hold.
+    pub kind: Kind,
+    /// Lines read, counted each time.
+    pub read: u64,
+    /// Distinct 32-byte lines touched in the frame.
+    pub distinct: u64,
+}
+
+impl FrameStats {
+    /// Distinct 32-byte lines touched.
+    pub fn distinct_lines(&self) -> u64 {
+        self.lines.iter().map(|k| k.distinct).sum()
+    }
+
+    /// Lines read, counted each time.
+    pub fn lines_read(&self) -> u64 {
+        self.lines.iter().map(|k| k.read).sum()
+    }
+}
+
+/// Traces one ray per pixel. `row_done` is called once for each finished row, from any thread.
+pub fn render(method: &Method<'_>, space: &ModelSpace, camera: &Camera, delta: f64, row_done: &(dyn Fn() + Sync)) -> Frame {
+    let sets = LineSets::new(&method.sections());
+    let width = camera.width as usize;
+    let mut pixels = vec![None; width * camera.height as usize];
+    let counts = pixels
+        .par_chunks_mut(width)
+        .enumerate()
+        .map_init(
+            || Tracer::new(method),
+            |tracer, (y, row)| {
+                let mut probe = LineProbe { counts: RayCounts::default(), sets: &sets };
+                for (x, pixel) in row.iter_mut().enumerate() {
+                    // Rows and columns are below 2^16.
+                    *pixel = tracer.pixel(space, camera, delta, [x as u32, y as u32], &mut probe);
+                }
+                row_done();
+                probe.counts
+            },
+        )
+        .reduce(RayCounts::default, |mut a, b| {
+            a.add(&b);
+            a
+        });
+    let stats = FrameStats {
+        rays: pixels.len() as u64,
+        hits: pixels.iter().flatten().count() as u64,
+        nodes: counts.nodes,
+        lod_tests: counts.lod_tests,
+        triangles: counts.triangles,
+        lines: kind_counts(&counts, &sets),
+        mean_level: mean(pixels.iter().flatten().map(|p| f64::from(p.level))),
+    };
+    Frame { width: camera.width, height: camera.height, pixels, stats }
+}
+
+fn kind_counts(counts: &RayCounts, sets: &LineSets) -> Vec<KindCount> {
+    let distinct = sets.counts();
+    let all = Kind::ALL.iter().map(|&kind| KindCount { kind, read: counts.lines[kind as usize], distinct: distinct[kind as usize] });
+    all.filter(|k| k.read > 0).collect()
+}
+
+fn mean(values: impl Iterator<Item = f64>) -> f64 {
+    let (sum, count) = values.fold((0.0, 0u64), |(s, n), v| (s + v, n + 1));
+    if count == 0 { 0.0 } else { sum / count as f64 }
+}
+
+/// One thread's traverser.
+enum Tracer<'a> {
+    Lod(LodTraverser<'a>),
+    Bvh(BvhTraverser<'a>),
+    Reference(&'a Reference<'a>),
+}
+
+impl<'a> Tracer<'a> {
+    fn new(method: &Method<'a>) -> Self {
+        match method {
+            Method::Lod(image) => Self::Lod(LodTraverser::new(*image)),
+            Method::Bvh(bvh) => Self::Bvh(BvhTraverser::new(bvh)),
+            Method::Reference(reference) => Self::Reference(reference),
+        }
+    }
+
+    fn pixel(&mut self, space: &ModelSpace, camera: &Camera, delta: f64, [x, y]: [u32; 2], probe: &mut LineProbe<'_>) -> Option<Pixel> {
+        let world = camera.ray(x, y);
+        match self {
+            Self::Lod(traverser) => {
+                let ray = space.enter(&world, delta)?;
+                let mut hit = ClosestHit::new(traverser.levels());
+                traverser.trace(&ray.ray, probe, &mut hit);
+                hit.record().map(|hit| pixel(&ray, &hit))
+            }
+            Self::Bvh(traverser) => {
+                let ray = space.enter(&world, delta)?;
+                let mut hit = ClosestHit::new(traverser.levels());
+                traverser.trace(&ray.ray, probe, &mut hit);
+                hit.record().map(|hit| pixel(&ray, &hit))
+            }
+            Self::Reference(reference) => {
+                let hit = reference.trace(space.to_units(world.origin), world.direction)?;
+                Some(Pixel {
+                    distance: hit.t * space.placement.scale,
+                    tree: hit.tree,
+                    full_node: hit.full_node,
+                    full_bary: hit.bary.map(|b| b as f32),
+                    level: reference.levels(),
+                    node: hit.full_node,
+                })
+            }
+        }
+    }
+}
+
+fn pixel(ray: &ModelRay, hit: &Hit) -> Pixel {
+    let weight = |b: crate::num::Bary| (b.get() as f64 / crate::num::BARY_ONE as f64) as f32;
+    // Field widths are below 32 bits.
+    let [tree, full_node, level, node] = [hit.tree.get(), hit.full_node.get(), hit.level.get(), hit.node.get()].map(|v| v as u32);
+    Pixel {
+        distance: ray.distance(hit.t.get()),
+        tree,
+        full_node,
+        full_bary: [weight(hit.full_b0), weight(hit.full_b1), weight(hit.full_b2)],
+        level,
+        node,
+    }
+}

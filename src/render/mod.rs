@@ -1,0 +1,13 @@
+//! Floor 5: frames: camera, one ray per pixel through any method, shading, and the maps that show what was done.
+
+mod camera;
+mod frame;
+mod lines;
+mod picture;
+mod shade;
+
+pub use camera::{Camera, CameraError, DEFAULT_VIEW_ANGLE_DEGREES, View};
+pub use frame::{Frame, FrameStats, Method, Pixel, render};
+pub use lines::LineSets;
+pub use picture::{ImageError, compare, save_png};
+pub use shade::{error_map, level_map, normal_map, shaded};

@@ -1,0 +1,3 @@
+//! Floor 5: measurements over whole scenes and frames.
+
+pub mod crack;

@@ -1,0 +1,153 @@
+//! Hits: what a traversal returns, and what it does with each triangle that the ray meets.
+
+use crate::block::bary_map::{self, BaryMap, NodeIndex};
+use crate::block::hit_divide::{self, HitDivide};
+use crate::block::tri_test::{self, EdgeFunction, TNumerator};
+use crate::block::Block;
+use crate::num::{BARY_ONE, Bary, RayT, U, wire_struct};
+
+wire_struct! {
+    /// The hit record.
+    pub struct Hit {
+        /// Ray parameter in steps of 2^-32 of the direction.
+        t: RayT,
+        /// The front face was met.
+        front: bool,
+        /// Base triangle.
+        tree: U<28>,
+        /// Level of the triangle that was met, 0 to N.
+        level: U<4>,
+        /// Its node on that level.
+        node: NodeIndex,
+        /// Weight of its p0, 2^31 = 1.
+        b0: Bary,
+        /// Weight of its p1.
+        b1: Bary,
+        /// Weight of its p2.
+        b2: Bary,
+        /// Node on level N: the full-resolution triangle is `tree * 4^N + full_node`.
+        full_node: NodeIndex,
+        /// Weight of the full-resolution triangle's corner 0.
+        full_b0: Bary,
+        /// Weight of corner 1.
+        full_b1: Bary,
+        /// Weight of corner 2.
+        full_b2: Bary,
+    }
+}
+
+/// Which triangle of a hierarchy.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
+pub struct TriangleId {
+    /// Base triangle.
+    pub tree: u32,
+    /// Level.
+    pub level: u32,
+    /// Node on that level.
+    pub node: u32,
+}
+
+impl TriangleId {
+    /// Order among triangles at equal t: the first full-resolution triangle below, for a hierarchy of `levels` splits.
+    #[inline(always)]
+    pub fn first_full(self, levels: u32) -> u64 {
+        u64::from(self.tree) << (2 * levels) | u64::from(self.node) << (2 * (levels - self.level))
+    }
+}
+
+/// Receives every triangle that a ray meets.
+pub trait HitSink {
+    /// Nothing beyond this t is wanted.
+    fn t_max(&self) -> RayT;
+    /// Triangle `id` was met; `test.hit` is true.
+    fn offer(&mut self, id: TriangleId, test: &tri_test::Out);
+}
+
+/// Keeps the closest hit: smaller t, then smaller id.
+#[derive(Clone, Debug)]
+pub struct ClosestHit {
+    levels: u32,
+    t: RayT,
+    best: Option<(TriangleId, tri_test::Out)>,
+}
+
+impl ClosestHit {
+    /// Nothing yet, in a hierarchy of `levels` splits.
+    pub fn new(levels: u32) -> Self {
+        Self { levels, t: RayT::MAX, best: None }
+    }
+
+    /// The hit record: divides and maps.
+    pub fn record(&self) -> Option<Hit> {
+        let (id, test) = self.best.as_ref()?;
+        let weight = |edge: EdgeFunction| {
+            // An edge function is at most det: the quotient is at most 2^32 before its last bit is dropped.
+            let numerator = TNumerator::new(edge.get());
+            HitDivide::eval(&hit_divide::In { numerator, denominator: test.det }).quotient.get() >> 1
+        };
+        let (b1, b2) = (weight(test.v), weight(test.w));
+        // Both were rounded down and v + w <= det.
+        let [b0, b1, b2] = [BARY_ONE - b1 - b2, b1, b2].map(Bary::new);
+        let node = U::new(u64::from(id.node));
+        let full = BaryMap::eval(&bary_map::In { levels: U::new(u64::from(self.levels - id.level)), node, b0, b1, b2 });
+        Some(Hit {
+            t: self.t,
+            front: test.front,
+            tree: U::new(u64::from(id.tree)),
+            level: U::new(u64::from(id.level)),
+            node,
+            b0,
+            b1,
+            b2,
+            full_node: full.node,
+            full_b0: full.b0,
+            full_b1: full.b1,
+            full_b2: full.b2,
+        })
+    }
+}
+
+impl HitSink for ClosestHit {
+    #[inline(always)]
+    fn t_max(&self) -> RayT {
+        self.t
+    }
+
+    #[inline(always)]
+    fn offer(&mut self, id: TriangleId, test: &tri_test::Out) {
+        let t = HitDivide::eval(&hit_divide::In { numerator: test.t_num, denominator: test.det }).quotient;
+        let closer = match &self.best {
+            None => true,
+            Some((best, _)) => (t, id.first_full(self.levels)) < (self.t, best.first_full(self.levels)),
+        };
+        if closer {
+            self.t = t;
+            self.best = Some((id, *test));
+        }
+    }
+}
+
+/// Counts all crossings of the surface: for a closed surface and a ray that starts outside, `front` equals `back`.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Crossings {
+    /// Front faces met.
+    pub front: u32,
+    /// Back faces met.
+    pub back: u32,
+}
+
+impl HitSink for Crossings {
+    #[inline(always)]
+    fn t_max(&self) -> RayT {
+        RayT::MAX
+    }
+
+    #[inline(always)]
+    fn offer(&mut self, _: TriangleId, test: &tri_test::Out) {
+        if test.front {
+            self.front += 1;
+        } else {
+            self.back += 1;
+        }
+    }
+}

@@ -1,0 +1,258 @@
+//! The traversal loop of the paper's figure 9: quad-BVH over base triangles, then tessellation trees with an LOD test at every node.
+
+use super::stack::{Entry, Op, TraversalStack};
+use super::{HitSink, Kind, Probe, Section, TriangleId};
+use crate::block::box_test::{self, BoxTest};
+use crate::block::child_sort::{self, ChildSort};
+use crate::block::lod_test::{self, LodTest};
+use crate::block::ray_setup::{self, RaySetup};
+use crate::block::tessellate::{self, Tessellate, child_triangle};
+use crate::block::tri_test::{self, TriTest};
+use crate::block::widen_box::{self, WidenBox};
+use crate::block::Block;
+use crate::format::{BoundData, BvhChild, ChildRef, L0Record, Scene, VertexData};
+use crate::num::{BoundCode, BoundScale, MAX_LEVELS, Point, Ray, RayT, T_NEAR_TO_T_SHIFT, TNear, U, Wire};
+
+/// The memory images of one model, as the hardware sees them.
+#[derive(Clone, Copy, Debug)]
+pub struct LodImage<'a> {
+    /// Number of splits N.
+    pub levels: u32,
+    /// Scale of the displacement bounds.
+    pub scale: BoundScale,
+    /// Quad-BVH nodes over base triangles; node 0 is the root.
+    pub nodes: &'a [[u64; 8]],
+    /// L0 records, one per tree.
+    pub records: &'a [[u64; 8]],
+    /// Sibling groups of bound data.
+    pub bounds: &'a [[u64; 8]],
+    /// Inserted vertices.
+    pub vertices: &'a [[u64; 4]],
+}
+
+impl<'a> LodImage<'a> {
+    /// The images of a scene.
+    pub fn of(scene: &'a Scene) -> Self {
+        Self {
+            levels: scene.levels(),
+            scale: scene.meta().bound_scale(),
+            nodes: scene.nodes(),
+            records: scene.records(),
+            bounds: scene.bounds(),
+            vertices: scene.vertices(),
+        }
+    }
+
+    /// Its sections.
+    pub fn sections(&self) -> Vec<Section> {
+        let section = |kind, bytes: usize| Section { kind, lines: bytes as u64 / 32 };
+        vec![
+            section(Kind::BvhNode, size_of_val(self.nodes)),
+            section(Kind::L0Record, size_of_val(self.records)),
+            section(Kind::BoundData, size_of_val(self.bounds)),
+            section(Kind::VertexData, size_of_val(self.vertices)),
+        ]
+    }
+}
+
+/// Triangle of a node: corners, and its inserted vertices as morphed for this ray.
+#[derive(Clone, Copy, Default)]
+struct Split {
+    p: [Point; 3],
+    q: [Point; 3],
+}
+
+/// Traces rays through one image; keeps its stack from ray to ray.
+pub struct LodTraverser<'a> {
+    image: LodImage<'a>,
+    stack: TraversalStack,
+    /// The split triangle of each level on the way to the current node.
+    splits: [Split; MAX_LEVELS as usize],
+}
+
+/// One ray under way.
+struct Journey<'a, P, H> {
+    image: &'a LodImage<'a>,
+    stack: &'a mut TraversalStack,
+    splits: &'a mut [Split; MAX_LEVELS as usize],
+    ray: &'a Ray,
+    setup: ray_setup::Out,
+    /// The current tree.
+    tree: u32,
+    probe: &'a mut P,
+    sink: &'a mut H,
+}
+
+impl<'a> LodTraverser<'a> {
+    /// A traverser of `image`, which must be consistent (a scene that was opened or built is).
+    pub fn new(image: LodImage<'a>) -> Self {
+        Self { image, stack: TraversalStack::default(), splits: Default::default() }
+    }
+
+    /// Number of splits N of the image.
+    pub fn levels(&self) -> u32 {
+        self.image.levels
+    }
+
+    /// Traces `ray`: every triangle that serves the ray and is met goes to `sink`, every line read to `probe`.
+    pub fn trace<P: Probe, H: HitSink>(&mut self, ray: &Ray, probe: &mut P, sink: &mut H) {
+        let setup = RaySetup::eval(ray);
+        self.stack.clear();
+        self.stack.step(Op::Push(Entry::default()));
+        let Self { image, stack, splits } = self;
+        let mut journey = Journey { image, stack, splits, ray, setup, tree: 0, probe, sink };
+        while let Some(entry) = journey.stack.step(Op::Pop) {
+            if !is_beyond(entry.t_near, journey.sink.t_max()) {
+                journey.visit(&entry);
+            }
+        }
+    }
+}
+
+/// True if a box entered at `t_near` cannot hold a hit that beats one at `t`.
+#[inline(always)]
+pub(super) fn is_beyond(t_near: TNear, t: RayT) -> bool {
+    t_near.get() << T_NEAR_TO_T_SHIFT > t.get()
+}
+
+/// Child `k` of a group of four 16-byte records.
+#[inline(always)]
+pub(super) fn quarter<T: Wire>(group: &[u64; 8], k: usize) -> T {
+    T::from_words(&group[2 * k..2 * k + 2])
+}
+
+/// Tells the probe that both lines of 64-byte record `index` are read.
+#[inline(always)]
+pub(super) fn read_pair<P: Probe>(probe: &mut P, kind: Kind, index: usize) {
+    probe.line(kind, 2 * index as u64);
+    probe.line(kind, 2 * index as u64 + 1);
+}
+
+/// Pushes the hit children, farthest first, so that the nearest is on top.
+#[inline(always)]
+pub(super) fn push_sorted(stack: &mut TraversalStack, tests: &[box_test::Out; 4], entries: &[Entry; 4]) {
+    let sorted = ChildSort::eval(&child_sort::In { hit: tests.map(|t| t.hit), t_near: tests.map(|t| t.t_near) });
+    for place in (0..sorted.count.get() as usize).rev() {
+        let k = sorted.order[place].get() as usize;
+        stack.step(Op::Push(Entry { t_near: tests[k].t_near, ..entries[k] }));
+    }
+}
+
+impl<P: Probe, H: HitSink> Journey<'_, P, H> {
+    #[inline(always)]
+    fn visit(&mut self, entry: &Entry) {
+        match entry.kind.get() {
+            Entry::BVH_NODE => self.bvh_node(entry.index.get() as usize),
+            Entry::TREE => self.root(entry.index.get() as usize),
+            _ => {
+                let (level, node) = (entry.level.get() as u32, entry.index.get() as u32);
+                let split = &self.splits[level as usize - 1];
+                let p = child_triangle(split.p, split.q, node as usize & 3);
+                self.tree_node(level, node, p, [entry.e0, entry.e1, entry.e2]);
+            }
+        }
+    }
+
+    /// Tests the four children of a quad-BVH node.
+    fn bvh_node(&mut self, index: usize) {
+        read_pair(self.probe, Kind::BvhNode, index);
+        self.probe.node();
+        let group = &self.image.nodes[index];
+        let mut tests = [box_test::Out::default(); 4];
+        let mut entries = [Entry::default(); 4];
+        for k in 0..4 {
+            let BvhChild { child, bounds } = quarter(group, k);
+            if child.kind.get() == ChildRef::EMPTY {
+                continue;
+            }
+            tests[k] = BoxTest::eval(&box_test::In { ray: self.setup, t_max: self.sink.t_max(), bounds });
+            // Inner nodes and leaves have the kinds of their entries one lower.
+            entries[k] = Entry { kind: U::new(child.kind.get() - 1), index: child.index, ..Entry::default() };
+        }
+        push_sorted(self.stack, &tests, &entries);
+    }
+
+    /// Enters a tree.
+    fn root(&mut self, tree: usize) {
+        read_pair(self.probe, Kind::L0Record, tree);
+        let record = &self.image.records[tree];
+        self.tree = tree as u32; // an index of 28 bits
+        let p = VertexData::from_words(&record[..4]).points();
+        let root = L0Record::from_words(&record[4..]).root;
+        self.tree_node(0, 0, p, [root.e0, root.e1, root.e2]);
+    }
+
+    /// Decides whether the triangle `p` of node (`level`, `node`) serves the ray, and tests it or goes down.
+    #[inline(always)]
+    fn tree_node(&mut self, level: u32, node: u32, p: [Point; 3], [e0, e1, e2]: [BoundCode; 3]) {
+        let levels = self.image.levels;
+        if level == levels {
+            return self.triangle(level, node, p);
+        }
+        self.probe.lod_test();
+        let lod = LodTest::eval(&lod_test::In { ray: *self.ray, p0: p[0], p1: p[1], p2: p[2], e0, e1, e2, scale: self.image.scale });
+        if !lod.refine {
+            return self.triangle(level, node, p);
+        }
+
+        let place = first_node(level) + node as usize;
+        let line = self.tree as usize * first_node(levels) + place;
+        self.probe.line(Kind::VertexData, line as u64);
+        let [q0, q1, q2] = VertexData::from_words(&self.image.vertices[line]).points();
+        let grid = U::new(u64::from(levels - level - 1));
+        let t = Tessellate::eval(&tessellate::In { grid, s0: lod.s0, s1: lod.s1, s2: lod.s2, p0: p[0], p1: p[1], p2: p[2], q0, q1, q2 });
+        let q = [t.q0, t.q1, t.q2];
+
+        if level + 1 == levels {
+            for k in 0..4 {
+                self.triangle(levels, 4 * node + k, child_triangle(p, q, k as usize));
+            }
+            return;
+        }
+        let group = self.tree as usize * first_node(levels - 1) + place;
+        self.splits[level as usize] = Split { p, q };
+        self.tree_children(level + 1, 4 * node, group);
+    }
+
+    /// Tests the boxes of the four children, widened by their morphed triangles.
+    #[inline(always)]
+    fn tree_children(&mut self, level: u32, first: u32, group: usize) {
+        read_pair(self.probe, Kind::BoundData, group);
+        self.probe.node();
+        let split = &self.splits[level as usize - 1];
+        let group = &self.image.bounds[group];
+        let mut tests = [box_test::Out::default(); 4];
+        let mut entries = [Entry::default(); 4];
+        for k in 0..4 {
+            let BoundData { e0, e1, e2, bounds, .. } = quarter(group, k);
+            let [p0, p1, p2] = child_triangle(split.p, split.q, k);
+            let bounds = WidenBox::eval(&widen_box::In { bounds, p0, p1, p2 }).bounds;
+            tests[k] = BoxTest::eval(&box_test::In { ray: self.setup, t_max: self.sink.t_max(), bounds });
+            entries[k] = Entry {
+                t_near: TNear::ZERO,
+                kind: U::new(Entry::TREE_NODE),
+                level: U::new(u64::from(level)),
+                index: U::new(u64::from(first) + k as u64),
+                e0,
+                e1,
+                e2,
+            };
+        }
+        push_sorted(self.stack, &tests, &entries);
+    }
+
+    #[inline(always)]
+    fn triangle(&mut self, level: u32, node: u32, p: [Point; 3]) {
+        self.probe.triangle();
+        let test = TriTest::eval(&tri_test::In { ray: *self.ray, p0: p[0], p1: p[1], p2: p[2] });
+        if test.hit {
+            self.sink.offer(TriangleId { tree: self.tree, level, node }, &test);
+        }
+    }
+}
+
+/// Number of nodes above `level` in a tree: where the level starts, (4^level - 1) / 3.
+#[inline(always)]
+fn first_node(level: u32) -> usize {
+    ((1 << (2 * level)) - 1) / 3
+}

@@ -1,0 +1,18 @@
+//! Floor 3: methods built from blocks. A method takes an integer ray, walks its memory images and gives a hit; every line it reads is told to a
+//! [`Probe`], and nothing above needs to know which method ran.
+
+mod cone;
+mod hit;
+mod lod;
+mod model_space;
+mod probe;
+mod quad_bvh;
+mod stack;
+
+pub use cone::cone;
+pub use hit::{ClosestHit, Crossings, Hit, HitSink, TriangleId};
+pub use lod::{LodImage, LodTraverser};
+pub use model_space::{ModelRay, ModelSpace, WorldRay};
+pub use probe::{Kind, NoProbe, Probe, RayCounts, Section};
+pub use quad_bvh::BvhTraverser;
+pub use stack::{Entry, Op, STACK_ENTRIES, TraversalStack};

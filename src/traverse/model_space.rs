@@ -1,0 +1,159 @@
+//! From world to the model's integers, once per ray (paper section 4.1).
+
+use super::cone;
+use crate::format::Scene;
+use crate::mesh::Placement;
+use crate::num::{BOX_MARGIN, DIRECTION_SCALE, Point, Ray, Vec3};
+
+/// A ray in world space with its cone.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct WorldRay {
+    /// Origin.
+    pub origin: [f64; 3],
+    /// Direction, any positive length.
+    pub direction: [f64; 3],
+    /// Cone radius at the origin, in world units.
+    pub radius: f64,
+    /// Tangent of the cone's half angle.
+    pub tan_theta: f64,
+}
+
+/// Where a model lies, and the box of all its vertices.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ModelSpace {
+    /// Model space to world.
+    pub placement: Placement,
+    /// Lower corner of all full-resolution vertices, in units.
+    pub lo: [i32; 3],
+    /// Upper corner.
+    pub hi: [i32; 3],
+}
+
+/// A ray as the hardware takes it, and how to get back.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ModelRay {
+    /// The integer ray.
+    pub ray: Ray,
+    /// Distance in world units from the world ray's origin to the integer ray's.
+    pub start: f64,
+    /// World length of one step of t.
+    pub step: f64,
+}
+
+impl ModelRay {
+    /// World distance of a hit at `t`.
+    pub fn distance(&self, t: u64) -> f64 {
+        self.start + self.step * t as f64
+    }
+}
+
+impl ModelSpace {
+    /// The space of a scene.
+    pub fn of(scene: &Scene) -> Self {
+        let meta = scene.meta();
+        Self { placement: meta.placement, lo: meta.lo, hi: meta.hi }
+    }
+
+    /// Centre of the box in world space.
+    pub fn centre(&self) -> [f64; 3] {
+        std::array::from_fn(|k| self.placement.offset[k] + self.placement.scale * 0.5 * (f64::from(self.lo[k]) + f64::from(self.hi[k])))
+    }
+
+    /// Half the diagonal of the box in world space.
+    pub fn radius(&self) -> f64 {
+        let sides: [f64; 3] = std::array::from_fn(|k| f64::from(self.hi[k]) - f64::from(self.lo[k]));
+        0.5 * self.placement.scale * sides.iter().map(|s| s * s).sum::<f64>().sqrt()
+    }
+
+    /// A world position in units, not rounded.
+    pub fn to_units(&self, p: [f64; 3]) -> [f64; 3] {
+        std::array::from_fn(|k| (p[k] - self.placement.offset[k]) / self.placement.scale)
+    }
+
+    /// Moves `world` to the model's enlarged box and rounds it; `None` if it misses that box or has no direction.
+    pub fn enter(&self, world: &WorldRay, delta: f64) -> Option<ModelRay> {
+        let direction = unit(world.direction)?;
+        let origin = self.to_units(world.origin);
+        let margin = f64::from(BOX_MARGIN);
+        let lo = self.lo.map(|v| f64::from(v) - margin);
+        let hi = self.hi.map(|v| f64::from(v) + margin);
+
+        let (mut near, mut far) = (0.0f64, f64::INFINITY);
+        for k in 0..3 {
+            if direction[k] == 0.0 {
+                if origin[k] < lo[k] || origin[k] > hi[k] {
+                    return None;
+                }
+            } else {
+                let (a, b) = ((lo[k] - origin[k]) / direction[k], (hi[k] - origin[k]) / direction[k]);
+                near = near.max(a.min(b));
+                far = far.min(a.max(b));
+            }
+        }
+        // A comparison that NaN fails too.
+        if !(near <= far) {
+            return None;
+        }
+
+        let d = direction.map(|c| (c * f64::from(DIRECTION_SCALE)).round() as i64); // at most DIRECTION_SCALE
+        let length = d.iter().map(|&c| (c as f64) * (c as f64)).sum::<f64>().sqrt();
+        // Clamping keeps the point in the enlarged box, hence in 32 bits.
+        let x: [i64; 3] = std::array::from_fn(|k| (origin[k] + near * direction[k]).clamp(lo[k], hi[k]).round() as i64);
+        let radius = world.radius / self.placement.scale + near * world.tan_theta;
+        let ray = Ray {
+            origin: Point::new(x[0], x[1], x[2]),
+            direction: Vec3::new(d[0], d[1], d[2]),
+            cone: cone(delta, radius, world.tan_theta),
+        };
+        let scale = self.placement.scale;
+        Some(ModelRay { ray, start: near * scale, step: length * scale / 2f64.powi(32) })
+    }
+}
+
+/// `v` at length 1; `None` for zero and for anything not finite.
+fn unit(v: [f64; 3]) -> Option<[f64; 3]> {
+    let largest = v.iter().fold(0.0f64, |m, c| m.max(c.abs()));
+    if !(largest > 0.0 && largest.is_finite() && v.iter().all(|c| c.is_finite())) {
+        return None;
+    }
+    // Scaled first, so that squares neither overflow nor vanish.
+    let v = v.map(|c| c / largest);
+    let length = v.iter().map(|c| c * c).sum::<f64>().sqrt();
+    Some(v.map(|c| c / length))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn space() -> ModelSpace {
+        ModelSpace { placement: Placement { offset: [10.0, 0.0, 0.0], scale: 0.5 }, lo: [-1600, -1600, -1600], hi: [1600, 1600, 1600] }
+    }
+
+    fn ray(origin: [f64; 3], direction: [f64; 3]) -> WorldRay {
+        WorldRay { origin, direction, radius: 1.0, tan_theta: 0.25 }
+    }
+
+    #[test]
+    fn a_ray_from_outside_starts_on_the_enlarged_box() {
+        let m = space().enter(&ray([10.0, 0.0, 5000.0], [0.0, 0.0, -3.0]), 2.0).unwrap();
+        assert_eq!(m.ray.origin.get(), [0, 0, 1664]);
+        assert_eq!(m.ray.direction.get(), [0, 0, -((1 << 30) - 1)]);
+        assert_eq!(m.start, (10000.0 - 1664.0) * 0.5);
+        // Radius 2 units at the origin, plus a quarter of the way.
+        let wanted = 2.0 + (10000.0 - 1664.0) * 0.25;
+        assert_eq!(m.ray.cone.offset.get() as f64 / 2f64.powi(m.ray.cone.shift.get() as i32), wanted);
+        // One step of t is 2^-32 of the direction's length.
+        assert!((m.distance(1 << 34) - (m.start + 4.0 * ((1 << 30) - 1) as f64 * 0.5)).abs() < 1e-3);
+    }
+
+    #[test]
+    fn a_ray_from_inside_stays_and_others_miss() {
+        let inside = space().enter(&ray([10.0, 1.0, 1.4], [1.0, 1.0, 0.0]), 1.0).unwrap();
+        assert_eq!((inside.ray.origin.get(), inside.start), ([0, 2, 3], 0.0));
+        assert!(space().enter(&ray([10.0, 0.0, 5000.0], [0.0, 0.0, 1.0]), 1.0).is_none());
+        assert!(space().enter(&ray([5000.0, 0.0, 5000.0], [0.0, 0.0, -1.0]), 1.0).is_none());
+        assert!(space().enter(&ray([10.0, 0.0, 5000.0], [0.0; 3]), 1.0).is_none());
+        assert!(space().enter(&ray([f64::NAN, 0.0, 5000.0], [0.0, 0.0, -1.0]), 1.0).is_none());
+    }
+}

@@ -1,0 +1,101 @@
+//! The baseline: the full-resolution mesh under a quad-BVH with 16-bit or 32-bit boxes, built from the same blocks (paper section 6.1).
+
+use super::lod::{is_beyond, push_sorted, quarter, read_pair};
+use super::stack::{Entry, Op, TraversalStack};
+use super::{HitSink, Kind, Probe, TriangleId};
+use crate::block::Block;
+use crate::block::box_test::{self, BoxTest};
+use crate::block::box_test32::{self, BoxTest32};
+use crate::block::ray_setup::{self, RaySetup};
+use crate::block::tri_test::{self, TriTest};
+use crate::bvh::{BvhChild32, FullBvh, LeafLayout, Nodes};
+use crate::format::{BvhChild, ChildRef};
+use crate::num::{Point, Ray, U, Wire};
+
+/// Traces rays through a full-resolution quad-BVH; keeps its stack from ray to ray.
+pub struct BvhTraverser<'a> {
+    bvh: &'a FullBvh,
+    stack: TraversalStack,
+}
+
+impl<'a> BvhTraverser<'a> {
+    /// A traverser of `bvh`.
+    pub fn new(bvh: &'a FullBvh) -> Self {
+        Self { bvh, stack: TraversalStack::default() }
+    }
+
+    /// Number of splits N of the hierarchy below which the mesh lies.
+    pub fn levels(&self) -> u32 {
+        self.bvh.levels
+    }
+
+    /// Traces `ray`: every triangle met goes to `sink`, every line read to `probe`.
+    pub fn trace<P: Probe, H: HitSink>(&mut self, ray: &Ray, probe: &mut P, sink: &mut H) {
+        let setup = RaySetup::eval(ray);
+        self.stack.clear();
+        self.stack.step(Op::Push(Entry::default()));
+        while let Some(entry) = self.stack.step(Op::Pop) {
+            if is_beyond(entry.t_near, sink.t_max()) {
+                continue;
+            }
+            let index = entry.index.get() as usize;
+            if entry.kind.get() == Entry::BVH_NODE {
+                self.node(&setup, index, probe, sink);
+            } else {
+                // Leaves keep their count in `level`, which trees need and leaves do not.
+                for slot in index..=index + entry.level.get() as usize {
+                    self.leaf(ray, slot, probe, sink);
+                }
+            }
+        }
+    }
+
+    #[inline(always)]
+    fn node<P: Probe, H: HitSink>(&mut self, setup: &ray_setup::Out, index: usize, probe: &mut P, sink: &H) {
+        probe.node();
+        let mut tests = [box_test::Out::default(); 4];
+        let mut entries = [Entry::default(); 4];
+        let t_max = sink.t_max();
+        // Inner nodes and leaves have the kinds of their entries one lower.
+        let waiting =
+            |child: ChildRef| Entry { kind: U::new(child.kind.get() - 1), level: U::new(child.count.get()), index: child.index, ..Entry::default() };
+        match &self.bvh.nodes {
+            Nodes::Box16(nodes) => {
+                read_pair(probe, Kind::BvhNode, index);
+                for k in 0..4 {
+                    let BvhChild { child, bounds } = quarter(&nodes[index], k);
+                    if child.kind.get() != ChildRef::EMPTY {
+                        tests[k] = BoxTest::eval(&box_test::In { ray: *setup, t_max, bounds });
+                        entries[k] = waiting(child);
+                    }
+                }
+            }
+            Nodes::Box32(nodes) => {
+                read_pair(probe, Kind::BvhNode, 2 * index);
+                read_pair(probe, Kind::BvhNode, 2 * index + 1);
+                for k in 0..4 {
+                    let BvhChild32 { child, lo, hi, .. } = BvhChild32::from_words(&nodes[index][4 * k..4 * k + 4]);
+                    if child.kind.get() != ChildRef::EMPTY {
+                        tests[k] = BoxTest32::eval(&box_test32::In { ray: *setup, t_max, lo, hi });
+                        entries[k] = waiting(child);
+                    }
+                }
+            }
+        }
+        push_sorted(&mut self.stack, &tests, &entries);
+    }
+
+    #[inline(always)]
+    fn leaf<P: Probe, H: HitSink>(&mut self, ray: &Ray, slot: usize, probe: &mut P, sink: &mut H) {
+        self.bvh.leaves.lines(slot, |kind, line| probe.line(kind, line));
+        probe.triangle();
+        let (points, id) = self.bvh.leaves.triangle(slot);
+        let [p0, p1, p2] = points.map(Point::from_i32);
+        let test = TriTest::eval(&tri_test::In { ray: *ray, p0, p1, p2 });
+        if test.hit {
+            let levels = self.bvh.levels;
+            let [tree, node] = [id >> (2 * levels), id & ((1 << (2 * levels)) - 1)].map(|v| v as u32); // 28 and 20 bits
+            sink.offer(TriangleId { tree, level: levels, node }, &test);
+        }
+    }
+}

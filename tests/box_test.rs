@@ -1,0 +1,127 @@
+//! Both box tests against exact rational slabs, with the nasty categories counted.
+
+use lodray::block::box_test::{self, BoxTest};
+use lodray::block::box_test32::{self, BoxTest32};
+use lodray::block::ray_setup::RaySetup;
+use lodray::block::Block;
+use lodray::num::{Box16, Cone, Point, Ray, RayT, Vec3};
+use proptest::prelude::*;
+
+/// Exact: is there a real t >= 0 with x + t d in the closed box? Gives the entry t as a fraction (numerator, denominator > 0).
+fn slabs(x: [i64; 3], d: [i64; 3], lo: [i64; 3], hi: [i64; 3]) -> Option<(i128, i128)> {
+    let (mut near, mut far) = ((0i128, 1i128), None::<(i128, i128)>);
+    let less = |a: (i128, i128), b: (i128, i128)| a.0 * b.1 < b.0 * a.1;
+    for k in 0..3 {
+        if d[k] == 0 {
+            if x[k] < lo[k] || x[k] > hi[k] {
+                return None;
+            }
+            continue;
+        }
+        let fraction = |wall: i64| {
+            let (n, m) = (i128::from(wall - x[k]), i128::from(d[k]));
+            if m < 0 { (-n, -m) } else { (n, m) }
+        };
+        let (a, b) = if d[k] > 0 { (fraction(lo[k]), fraction(hi[k])) } else { (fraction(hi[k]), fraction(lo[k])) };
+        if less(near, a) {
+            near = a;
+        }
+        if far.is_none_or(|f| less(b, f)) {
+            far = Some(b);
+        }
+    }
+    match far {
+        Some(far) if less(far, near) => None,
+        _ => Some(near),
+    }
+}
+
+fn ray(x: [i64; 3], d: [i64; 3]) -> Ray {
+    Ray { origin: Point::new(x[0], x[1], x[2]), direction: Vec3::new(d[0], d[1], d[2]), cone: Cone::default() }
+}
+
+fn check(out: box_test::Out, exact: Option<(i128, i128)>, name: &str) {
+    assert_eq!(out.hit, exact.is_some(), "{name}");
+    match exact {
+        // t_near counts 2^16 units of 2^-30 of the direction: t_near 2^16 <= t 2^30.
+        Some((n, m)) => assert!((i128::from(out.t_near.get()) << 16) * m <= n << 30, "{name}: t_near beyond the entry"),
+        None => assert_eq!(out.t_near.get(), 0, "{name}"),
+    }
+}
+
+/// A direction of nearly full length.
+fn direction(v: [i64; 3]) -> Option<[i64; 3]> {
+    let length = v.iter().map(|&c| (c as f64).powi(2)).sum::<f64>().sqrt();
+    (length > 0.0).then(|| v.map(|c| (c as f64 / length * f64::from((1 << 30) - 1)).round() as i64))
+}
+
+fn both(x: [i64; 3], d: [i64; 3], codes: [[i64; 3]; 2]) {
+    let (lo, hi): ([i64; 3], [i64; 3]) =
+        (std::array::from_fn(|k| codes[0][k].min(codes[1][k])), std::array::from_fn(|k| codes[0][k].max(codes[1][k])));
+    let setup = RaySetup::eval(&ray(x, d));
+    let units = |c: [i64; 3]| c.map(|v| v << 16);
+    let exact = slabs(x, d, units(lo), units(hi));
+    let bounds = Box16::from_codes(lo.map(|v| v as i16), hi.map(|v| v as i16));
+    check(BoxTest::eval(&box_test::In { ray: setup, t_max: RayT::MAX, bounds }), exact, "16 bits");
+    let p = |c: [i64; 3]| Point::new(c[0], c[1], c[2]);
+    check(BoxTest32::eval(&box_test32::In { ray: setup, t_max: RayT::MAX, lo: p(units(lo)), hi: p(units(hi)) }), exact, "32 bits");
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { cases: 100_000, ..ProptestConfig::default() })]
+
+    #[test]
+    fn anything(x in prop::array::uniform3(-0x7FFE_0040i64..=0x7FFE_0040), d in prop::array::uniform3(-1000i64..=1000), zero in 0u32..16,
+                a in prop::array::uniform3(-32_766i64..=32_766), size in prop::array::uniform3(0i64..2000), shrink in 0u32..12) {
+        let mut d = d;
+        for (k, d) in d.iter_mut().enumerate() {
+            if zero >> k & 1 == 1 { *d = 0; }
+        }
+        if let Some(d) = direction(d) {
+            let b = std::array::from_fn(|k| (a[k] + (size[k] >> shrink)).min(32_766));
+            both(x, d, [a, b]);
+        }
+    }
+
+    #[test]
+    fn aimed_at_corners_faces_and_edges(corner in prop::array::uniform3(-30_000i64..=30_000), size in prop::array::uniform3(0i64..4),
+                                        step in prop::array::uniform3(-400i64..=400), steps in 0i64..200_000, off in prop::array::uniform3(-1i64..=1), on in 0u32..3) {
+        if step != [0; 3] {
+            // Exactly through a corner, or one unit beside it.
+            let length = step.iter().map(|&c| (c * c) as f64).sum::<f64>().sqrt();
+            let d = step.map(|s| s * (f64::from((1 << 30) - 1) / length) as i64);
+            let x: [i64; 3] = std::array::from_fn(|k| ((corner[k] << 16) - steps * step[k] + if on == 0 { off[k] } else { 0 }).clamp(-0x7FFE_0040, 0x7FFE_0040));
+            both(x, d, [corner, std::array::from_fn(|k| corner[k] + size[k])]);
+        }
+    }
+}
+
+#[test]
+fn named_cases() {
+    let one = (1 << 30) - 1;
+    let (lo, hi) = ([-2i64, -2, -2], [2i64, 2, 2]);
+    let at = |x: [i64; 3], d: [i64; 3], codes: [[i64; 3]; 2]| {
+        let setup = RaySetup::eval(&ray(x, d));
+        both(x, d, codes);
+        let bounds = Box16::from_codes(codes[0].map(|v| v as i16), codes[1].map(|v| v as i16));
+        BoxTest::eval(&box_test::In { ray: setup, t_max: RayT::MAX, bounds }).hit
+    };
+    assert!(at([0, 0, 0], [0, 0, one], [lo, hi]), "origin inside");
+    assert!(at([2 << 16, 0, 0], [0, one, 0], [lo, hi]), "along a face");
+    assert!(!at([(2 << 16) + 1, 0, 0], [0, one, 0], [lo, hi]), "one unit beside it");
+    assert!(at([2 << 16, 2 << 16, 2 << 16], [one, 0, 0], [lo, hi]), "at a corner, leaving");
+    assert!(!at([0, 0, 3 << 16], [0, 0, one], [lo, hi]), "behind");
+    assert!(at([0, 0, 3 << 16], [0, 0, -one], [[0; 3], [0; 3]]), "a box of no size, met");
+    assert!(at([-0x7FFE_0040, 0, 0], [one, 0, 0], [[32_766, 0, 0], [32_766, 0, 0]]), "across the whole range");
+}
+
+#[test]
+fn a_box_beyond_the_closest_hit_is_missed() {
+    let setup = RaySetup::eval(&ray([0, 0, 0], [0, 0, (1 << 30) - 1]));
+    let bounds = Box16::from_codes([0, 0, 100], [1, 1, 101]);
+    let near = BoxTest::eval(&box_test::In { ray: setup, t_max: RayT::MAX, bounds });
+    assert!(near.hit && near.t_near.get() >= 99);
+    let t = near.t_near.get() << 18;
+    assert!(BoxTest::eval(&box_test::In { ray: setup, t_max: RayT::new(t), bounds }).hit, "an equal distance may still win by its id");
+    assert!(!BoxTest::eval(&box_test::In { ray: setup, t_max: RayT::new(t - 1), bounds }).hit);
+}

@@ -1,0 +1,217 @@
+//! The blocks' traversal equals the exact golden traverser in every field of every hit.
+
+mod common;
+
+use common::{Rng, ball, cone, model, octahedron, terrain};
+use lodray::bvh::{BoxFormat, FullBvh, LeafLayout};
+use lodray::format::{self, Scene};
+use lodray::golden::exact::{Exact, ExactHit};
+use lodray::mesh::Hierarchy;
+use lodray::mesh::procedural::{self, Options};
+use lodray::num::{Cone, Point, Ray, Vec3};
+use lodray::render::{Camera, View};
+use lodray::traverse::{BvhTraverser, ClosestHit, Crossings, Hit, LodImage, LodTraverser, ModelSpace, NoProbe};
+use proptest::prelude::*;
+
+/// The fields of a hit as the golden traverser names them.
+fn plain(hit: &Hit) -> ExactHit {
+    let [b0, b1, b2, f0, f1, f2] = [hit.b0, hit.b1, hit.b2, hit.full_b0, hit.full_b1, hit.full_b2].map(|b| b.get() as u32);
+    ExactHit {
+        t: hit.t.get(),
+        tree: hit.tree.get() as u32,
+        level: hit.level.get() as u32,
+        node: hit.node.get() as u32,
+        bary: [b0, b1, b2],
+        full_node: hit.full_node.get() as u32,
+        full_bary: [f0, f1, f2],
+        front: hit.front,
+    }
+}
+
+struct Bench<'a> {
+    golden: Exact<'a>,
+    lod: LodTraverser<'a>,
+    bvhs: Vec<BvhTraverser<'a>>,
+    levels: u32,
+}
+
+impl Bench<'_> {
+    /// Compares every way to trace `ray`; gives the golden hit.
+    fn check(&mut self, ray: &Ray) -> Option<ExactHit> {
+        let golden = self.golden.trace(ray);
+        let mut closest = ClosestHit::new(self.levels);
+        self.lod.trace(ray, &mut NoProbe, &mut closest);
+        assert_eq!(closest.record().as_ref().map(plain), golden, "LOD, {ray:?}");
+
+        let crossings = self.golden.crossings(ray);
+        let mut counted = Crossings::default();
+        self.lod.trace(ray, &mut NoProbe, &mut counted);
+        assert_eq!((counted.front, counted.back), (crossings.front, crossings.back), "crossings, {ray:?}");
+
+        if !self.bvhs.is_empty() {
+            let full = self.golden.trace_full(ray);
+            for bvh in &mut self.bvhs {
+                let mut closest = ClosestHit::new(self.levels);
+                bvh.trace(ray, &mut NoProbe, &mut closest);
+                assert_eq!(closest.record().as_ref().map(plain), full, "BVH, {ray:?}");
+            }
+            let mut closest = ClosestHit::new(self.levels);
+            self.lod.trace(&Ray { cone: Cone::default(), ..*ray }, &mut NoProbe, &mut closest);
+            assert_eq!(closest.record().as_ref().map(plain), full, "full detail, {ray:?}");
+        }
+        golden
+    }
+}
+
+fn scene_of(h: &Hierarchy) -> Scene {
+    format::encode_hierarchy(h, "test", lodray::bvh::over_trees).expect("a valid model")
+}
+
+fn full_bvhs(h: &Hierarchy) -> Vec<FullBvh> {
+    let build = |format, layout, size| FullBvh::build(h, format, layout, size).expect("a valid model");
+    vec![
+        build(BoxFormat::Box16, LeafLayout::Line, 4),
+        build(BoxFormat::Box16, LeafLayout::Indexed, 2),
+        build(BoxFormat::Box32, LeafLayout::Packed, 1),
+    ]
+}
+
+/// Runs `rays` through everything on one model; gives how many hit.
+fn compare(h: &Hierarchy, with_bvhs: bool, rays: impl IntoIterator<Item = Ray>) -> u64 {
+    let scene = scene_of(h);
+    let full = if with_bvhs { full_bvhs(h) } else { Vec::new() };
+    let mut bench = Bench {
+        golden: Exact::new(h),
+        lod: LodTraverser::new(LodImage::of(&scene)),
+        bvhs: full.iter().map(BvhTraverser::new).collect(),
+        levels: h.levels,
+    };
+    rays.into_iter().filter(|ray| bench.check(ray).is_some()).count() as u64
+}
+
+/// Rays of many kinds at a model: from around and inside, at vertices exactly, axis-parallel, grazing, with all kinds of cones.
+fn rays(h: &Hierarchy, count: u64, seed: u64) -> Vec<Ray> {
+    let mut rng = Rng(seed);
+    let limit = 0x7FFE_0040i64;
+    let ray = |_| {
+        let near = h.points[rng.below(h.points.len() as u64) as usize].map(i64::from);
+        let spread = 1u64 << rng.below(31);
+        let mut x: [i64; 3] = near.map(|v| v + (rng.signed() * spread as f64) as i64);
+        let target = h.points[rng.below(h.points.len() as u64) as usize].map(i64::from);
+        let mut towards: [f64; 3] = std::array::from_fn(|k| (target[k] - x[k]) as f64);
+        match rng.below(6) {
+            0 => {
+                let k = rng.below(3) as usize;
+                towards = [0.0; 3];
+                towards[k] = if rng.below(2) == 0 { 1.0 } else { -1.0 };
+                x = std::array::from_fn(|i| if i == k { x[i] } else { target[i] });
+            }
+            1 => towards[rng.below(3) as usize] = 0.0,
+            2 => towards = std::array::from_fn(|_| rng.signed()),
+            _ => {}
+        }
+        let x = x.map(|v| v.clamp(-limit, limit));
+        let length = towards.iter().map(|v| v * v).sum::<f64>().sqrt();
+        if length == 0.0 {
+            towards = [1.0, 0.0, 0.0];
+        }
+        let length = towards.iter().map(|v| v * v).sum::<f64>().sqrt();
+        let d = towards.map(|v| (v / length * f64::from((1 << 30) - 1)).round() as i64);
+        let magnitude = 2f64.powf(rng.unit() * 40.0 - 20.0);
+        let cone = match rng.below(8) {
+            0 => Cone::default(),
+            1 => cone(1e9, 0.0),
+            2 => cone(f64::from(1 << 24) * rng.unit(), 0.0),
+            _ => cone(if rng.below(2) == 0 { 0.0 } else { magnitude * 4096.0 }, magnitude / 256.0),
+        };
+        Ray { origin: Point::new(x[0], x[1], x[2]), direction: Vec3::new(d[0], d[1], d[2]), cone }
+    };
+    (0..count).map(ray).collect()
+}
+
+/// Rays of a camera at several distances and qualities.
+fn camera_rays(scene: &Scene, side: u32) -> Vec<Ray> {
+    let space = ModelSpace::of(scene);
+    let mut all = Vec::new();
+    for distance in [0.3, 1.2, 4.0, 30.0] {
+        for delta in [0.3, 1.0, 8.0] {
+            let view = View { distance: Some(distance), ..View::default() };
+            let camera = Camera::new(&view, &space, side, side).expect("a view");
+            let pixels = (0..side * side).map(|i| camera.ray(i % side, i / side));
+            all.extend(pixels.filter_map(|world| Some(space.enter(&world, delta)?.ray)));
+        }
+    }
+    all
+}
+
+#[test]
+fn random_balls_and_terrains() {
+    let mut hits = 0;
+    for seed in 0..12u64 {
+        let levels = seed as u32 % 5;
+        let roughness = [0.05, 0.4, 1.5][seed as usize % 3];
+        let h = ball(levels, roughness, seed);
+        hits += compare(&h, true, rays(&h, 1500, seed));
+        let h = terrain(3, levels, roughness, seed);
+        hits += compare(&h, true, rays(&h, 1500, seed + 100));
+    }
+    println!("{hits} hits compared");
+    assert!(hits > 10_000, "only {hits} hits");
+}
+
+#[test]
+fn deep_trees() {
+    for levels in [7, 8, 10] {
+        let (base, triangles) = octahedron();
+        let h = model(levels, &base, triangles[..2].to_vec(), |p, level| {
+            let size = f64::from(1 << 30) / f64::from(1u32 << levels);
+            std::array::from_fn(|k| p[k] as f64 * size + f64::from(level) * size * 3.0 * f64::from((p[k] % 5) as i32))
+        });
+        let hits = compare(&h, levels < 10, rays(&h, 1500, u64::from(levels)));
+        assert!(hits > 300, "N = {levels}: only {hits} hits");
+    }
+}
+
+#[test]
+fn non_manifold_fans_and_loose_triangles() {
+    // Five triangles around one edge, one of them turned, one degenerate in space, and a loose one.
+    let base = [[0, 0, -4], [0, 0, 4], [4, 0, 0], [0, 4, 1], [-4, 0, -1], [0, -4, 0], [3, 3, 3], [0, 0, 0]];
+    let triangles = vec![[0, 1, 2], [0, 1, 3], [1, 0, 4], [0, 1, 5], [0, 1, 7], [2, 3, 6]];
+    let mut hits = 0;
+    for levels in 0..=4 {
+        let h = model(levels, &base, triangles.clone(), |p, level| {
+            let scale = f64::from(1 << 27) / f64::from(1u32 << levels);
+            let bump = if level == 0 { 0.0 } else { 2e7 / f64::from(level) };
+            std::array::from_fn(|k| p[k] as f64 * scale + bump * (p[(k + 1) % 3] as f64 * 0.7).sin())
+        });
+        hits += compare(&h, true, rays(&h, 4000, u64::from(levels)));
+    }
+    assert!(hits > 3000, "only {hits} hits");
+}
+
+#[test]
+fn procedural_scenes() {
+    use procedural::Scene::{Cloth, Room, Sphere, Spikes, Terrain};
+    for (kind, base, levels) in [(Terrain, 32, 4), (Cloth, 32, 3), (Sphere, 32, 4), (Spikes, 32, 3), (Room, 64, 2)] {
+        let options = Options { levels: Some(levels), base: Some(base), ..Options::new(kind) };
+        let surface = procedural::generate(&options).expect("options");
+        let scene = format::build(&surface, "test", serde_json::Value::Null, lodray::bvh::over_trees).expect("a scene");
+        let h = format::decode(&scene);
+        let mut all = camera_rays(&scene, 24);
+        all.extend(rays(&h, 3000, 5));
+        let tried = all.len();
+        let hits = compare(&h, true, all);
+        println!("{kind:?}: {hits} hits of {tried} rays");
+        assert!(hits > 2000, "{kind:?}: only {hits} hits");
+    }
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { cases: 200, ..ProptestConfig::default() })]
+
+    #[test]
+    fn any_ball(levels in 0u32..=4, roughness in 0.0f64..4.0, seed: u64) {
+        let h = ball(levels, roughness, seed);
+        compare(&h, true, rays(&h, 100, seed));
+    }
+}

@@ -1,0 +1,94 @@
+//! The triangle test against big integers and a perturbed direction.
+
+use lodray::block::Block;
+use lodray::block::tri_test::{In, TriTest};
+use lodray::num::{Cone, Point, Ray, Vec3};
+use num_bigint::{BigInt, Sign};
+use proptest::prelude::*;
+
+type Big = [BigInt; 3];
+
+fn big(v: [i64; 3]) -> Big {
+    v.map(BigInt::from)
+}
+
+fn cross(a: &Big, b: &Big) -> Big {
+    [&a[1] * &b[2] - &a[2] * &b[1], &a[2] * &b[0] - &a[0] * &b[2], &a[0] * &b[1] - &a[1] * &b[0]]
+}
+
+fn dot(a: &Big, b: &Big) -> BigInt {
+    &a[0] * &b[0] + &a[1] * &b[1] + &a[2] * &b[2]
+}
+
+/// What the test must give, with the direction really perturbed: 2^400 d + (2^300, 2^150, 1) has the sign of the tie rule because components
+/// of the normals are far below 2^100.
+fn expected(x: [i64; 3], d: [i64; 3], p: [[i64; 3]; 3]) -> Option<(bool, BigInt, BigInt, BigInt)> {
+    let shift = |n: u32| BigInt::from(1) << n;
+    let perturbed: Big = {
+        let d = big(d).map(|c| c << 400u32);
+        [&d[0] + shift(300), &d[1] + shift(150), &d[2] + shift(0)]
+    };
+    let [a, b, c] = p.map(|p| big(std::array::from_fn(|k| p[k] - x[k])));
+    let sign = |p: &Big, q: &Big| match dot(&perturbed, &cross(p, q)).sign() {
+        Sign::Plus => true,
+        Sign::Minus => false,
+        Sign::NoSign => (0..3).map(|k| &q[k] - &p[k]).find(|v| v.sign() != Sign::NoSign).is_none_or(|v| v.sign() == Sign::Plus),
+    };
+    let signs = [sign(&b, &c), sign(&c, &a), sign(&a, &b)];
+    let d = big(d);
+    let (v, w) = (dot(&d, &cross(&c, &a)), dot(&d, &cross(&a, &b)));
+    let det = dot(&d, &cross(&b, &c)) + &v + &w;
+    let t_num = dot(&a, &cross(&b, &c));
+    if signs != [signs[0]; 3] || det.sign() == Sign::NoSign || (&t_num * &det).sign() == Sign::Minus {
+        return None;
+    }
+    let front = det.sign() == Sign::Minus;
+    Some(if front { (front, -v, -w, -det) } else { (front, v, w, det) })
+}
+
+fn check(x: [i64; 3], d: [i64; 3], p: [[i64; 3]; 3]) -> bool {
+    let point = |v: [i64; 3]| Point::new(v[0], v[1], v[2]);
+    let ray = Ray { origin: point(x), direction: Vec3::new(d[0], d[1], d[2]), cone: Cone::default() };
+    let out = TriTest::eval(&In { ray, p0: point(p[0]), p1: point(p[1]), p2: point(p[2]) });
+    match expected(x, d, p) {
+        None => assert!(!out.hit, "{x:?} {d:?} {p:?}"),
+        Some((front, v, w, det)) => {
+            assert!(out.hit && out.front == front, "{x:?} {d:?} {p:?}");
+            assert_eq!([v, w, det], [out.v, out.w, out.det].map(|n| BigInt::from(n.get())));
+        }
+    }
+    out.hit
+}
+
+const LIMIT: i64 = 0x7FFE_0000;
+
+fn triple(limit: i64) -> impl Strategy<Value = [i64; 3]> {
+    prop::array::uniform3(-limit..=limit)
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { cases: 30_000, ..ProptestConfig::default() })]
+
+    #[test]
+    fn anything(x in triple(LIMIT + 64), d in triple(600_000_000), p in prop::array::uniform3(triple(LIMIT)), shift in 0u32..31) {
+        check(x, d, p.map(|p| p.map(|c| c >> shift)));
+    }
+
+    /// Coordinates so small that ties, coincidences and degenerate triangles are common.
+    #[test]
+    fn ties(x in triple(3), d in triple(2), p in prop::array::uniform3(triple(2)), scale in 0u32..28) {
+        let up = |v: [i64; 3]| v.map(|c| c << scale);
+        check(up(x), d.map(|c| c << 28), p.map(up));
+    }
+
+    /// A closed tetrahedron is entered as often as left, whatever the tie.
+    #[test]
+    fn a_tetrahedron_is_crossed_evenly(far in triple(4), d in triple(3), p in prop::array::uniform4(triple(3))) {
+        if d != [0; 3] {
+            let x: [i64; 3] = std::array::from_fn(|k| far[k] - 16 * d[k]);
+            let faces = [[0, 1, 2], [0, 3, 1], [1, 3, 2], [2, 3, 0]];
+            let hits = faces.iter().filter(|f| check(x, d.map(|c| c << 27), f.map(|i| p[i]))).count();
+            prop_assert_eq!(hits % 2, 0);
+        }
+    }
+}
