@@ -12,5 +12,6 @@
 //! [`block::hit_divide`] find the hit and [`block::bary_map`] maps it to the full-resolution mesh.
 
 pub mod format;
+pub mod golden;
 pub mod mesh;
 pub mod num;
