@@ -13,5 +13,6 @@
 
 pub mod block;
 pub mod format;
+pub mod golden;
 pub mod mesh;
 pub mod num;

@@ -1,0 +1,203 @@
+//! The method as a plain recursion in exact arithmetic, with every rounding that `docs/numbers.md` states and no other.
+//!
+//! A node of level n < N serves if its three edge states are 0, a node of level N always; otherwise its three inserted vertices
+//! are moved towards their edges' midpoints and its four children are visited. Every triangle that serves is tested; the closest hit is
+//! the least (t, id). Boxes only spare work: see `cull`.
+
+use super::{
+    cull::Boxes,
+    hit_map, lod,
+    predicates::{self, Meeting, Vector},
+};
+use crate::{
+    mesh::{
+        Hierarchy,
+        lattice::{self, LatticePoint},
+    },
+    num::Ray,
+};
+
+/// The closest hit.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct ExactHit {
+    /// Ray parameter in steps of 2^-32, 35 bits.
+    pub t: u64,
+    /// Base triangle.
+    pub tree: u32,
+    /// Level of the node that was hit.
+    pub level: u32,
+    /// The node on its level.
+    pub node: u32,
+    /// Barycentrics on that node's triangle, 2^31 = 1.
+    pub bary: [u32; 3],
+    /// The full-resolution triangle within the tree, 0 to 4^N - 1.
+    pub full_node: u32,
+    /// Barycentrics on the full-resolution triangle, 2^31 = 1.
+    pub full_bary: [u32; 3],
+    /// The determinant was positive: the ray runs along the normal (p1 - p0) x (p2 - p0).
+    pub front: bool,
+}
+
+impl ExactHit {
+    /// The order of hits: smaller t, then smaller first full-resolution triangle.
+    fn order(&self, levels: u32) -> (u64, u64) {
+        (self.t, (u64::from(self.tree) << (2 * levels)) + (u64::from(self.node) << (2 * (levels - self.level))))
+    }
+}
+
+/// How often a ray crosses the surface, by the sign of the determinant.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Crossings {
+    /// Crossings with a positive determinant.
+    pub front: u32,
+    /// Crossings with a negative determinant.
+    pub back: u32,
+}
+
+/// A triangle that serves, with its morphed corners.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Served {
+    /// Base triangle.
+    pub tree: u32,
+    /// Level of the node.
+    pub level: u32,
+    /// The node on its level.
+    pub node: u32,
+    /// Corners in units.
+    pub corners: [Vector; 3],
+}
+
+/// The exact traverser of one model.
+pub struct Exact<'a> {
+    model: &'a Hierarchy,
+    boxes: Option<Boxes>,
+}
+
+impl<'a> Exact<'a> {
+    /// For a valid model: points on their levels' grids and bounds that hold.
+    pub fn new(model: &'a Hierarchy) -> Self {
+        Self { model, boxes: Some(Boxes::new(model)) }
+    }
+
+    /// The same without boxes: every triangle of the surface is tested.
+    pub fn without_culling(model: &'a Hierarchy) -> Self {
+        Self { model, boxes: None }
+    }
+
+    /// The closest hit on the surface that the ray's cone asks for.
+    pub fn trace(&self, ray: &Ray) -> Option<ExactHit> {
+        self.closest(ray, true)
+    }
+
+    /// The closest hit on the full-resolution surface.
+    pub fn trace_full(&self, ray: &Ray) -> Option<ExactHit> {
+        self.closest(ray, false)
+    }
+
+    /// All crossings of the surface that the ray's cone asks for.
+    pub fn crossings(&self, ray: &Ray) -> Crossings {
+        let mut count = Crossings::default();
+        self.walk(ray, true).run(&mut |_, met| if met.front { count.front += 1 } else { count.back += 1 });
+        count
+    }
+
+    /// The whole surface that the ray's cone asks for, in tree order.
+    pub fn surface(&self, ray: &Ray) -> Vec<Served> {
+        let mut surface = Vec::new();
+        let walk = Walk { boxes: None, ..self.walk(ray, true) };
+        for tree in 0..self.model.triangles.len() as u32 {
+            walk.tree(tree, &mut |served| surface.push(served));
+        }
+        surface
+    }
+
+    fn walk(&self, ray: &Ray, lod: bool) -> Walk<'_> {
+        let viewer = lod::Viewer { origin: ray.origin.get(), direction: ray.direction.get(), cone: ray.cone };
+        Walk { model: self.model, boxes: self.boxes.as_ref(), viewer, lod }
+    }
+
+    fn closest(&self, ray: &Ray, lod: bool) -> Option<ExactHit> {
+        let levels = self.model.levels;
+        let mut best: Option<ExactHit> = None;
+        self.walk(ray, lod).run(&mut |at, met| {
+            let bary = met.bary();
+            let (full_node, full_bary) = hit_map::descend(at.node, bary, levels - at.level);
+            let Served { tree, level, node, .. } = at;
+            let hit = ExactHit { t: met.t(), tree, level, node, bary, full_node, full_bary, front: met.front };
+            if best.is_none_or(|b| hit.order(levels) < b.order(levels)) {
+                best = Some(hit);
+            }
+        });
+        best
+    }
+}
+
+/// One ray's recursion.
+struct Walk<'a> {
+    model: &'a Hierarchy,
+    boxes: Option<&'a Boxes>,
+    viewer: lod::Viewer,
+    /// False: full resolution everywhere.
+    lod: bool,
+}
+
+impl Walk<'_> {
+    /// Calls `hit` for every triangle of the surface that the ray meets.
+    fn run(&self, hit: &mut impl FnMut(Served, Meeting)) {
+        let (x, d) = (self.viewer.origin, self.viewer.direction);
+        let mut test = |at: Served| {
+            let [a, b, c] = at.corners.map(|p| predicates::sub(p, x));
+            if let Some(met) = predicates::meet(d, a, b, c) {
+                hit(at, met);
+            }
+        };
+        match self.boxes {
+            Some(boxes) => boxes.trees(x, d, &mut |tree| self.tree(tree, &mut test)),
+            None => (0..self.model.triangles.len() as u32).for_each(|tree| self.tree(tree, &mut test)),
+        }
+    }
+
+    /// Calls `serve` for the triangles of one tree.
+    fn tree(&self, tree: u32, serve: &mut impl FnMut(Served)) {
+        let places = lattice::root(self.model.levels);
+        self.node(Served { tree, level: 0, node: 0, corners: places.map(|p| self.point(tree, p)) }, places, serve);
+    }
+
+    fn node(&self, at: Served, places: [LatticePoint; 3], serve: &mut impl FnMut(Served)) {
+        let Served { tree, level, node, corners: p } = at;
+        if level == self.model.levels {
+            return serve(at);
+        }
+        if self.boxes.is_some_and(|b| b.node(tree, level, node).missed_by(self.viewer.origin, self.viewer.direction, &p)) {
+            return;
+        }
+        let s = self.states(&at, places);
+        if s == [0; 3] {
+            return serve(at);
+        }
+        let grid = self.model.levels - level - 1;
+        let stored = lattice::midpoints(places).map(|q| self.point(tree, q));
+        // Edge i is opposite corner i.
+        let q: [Vector; 3] = std::array::from_fn(|i| lod::inserted(p[(i + 1) % 3], p[(i + 2) % 3], stored[i], s[i], grid));
+        let children = [[p[0], q[2], q[1]], [q[2], p[1], q[0]], [q[1], q[0], p[2]], q];
+        for (k, corners) in (0..4).zip(children) {
+            self.node(Served { tree, level: level + 1, node: 4 * node + k, corners }, lattice::child(places, k), serve);
+        }
+    }
+
+    /// States of the edges (e0, e1, e2) of a node of a level below N.
+    fn states(&self, at: &Served, places: [LatticePoint; 3]) -> [i64; 3] {
+        if !self.lod {
+            return [256; 3];
+        }
+        let codes = self.model.node_codes(at.tree as usize, at.level, places);
+        std::array::from_fn(|i| {
+            let bound = lod::displacement(self.model.bounds.scale, codes[i]);
+            lod::state(&self.viewer, at.corners[(i + 1) % 3], at.corners[(i + 2) % 3], bound)
+        })
+    }
+
+    fn point(&self, tree: u32, at: LatticePoint) -> Vector {
+        self.model.tree(tree as usize)[lattice::index(self.model.levels, at)].map(i64::from)
+    }
+}

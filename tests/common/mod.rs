@@ -1,0 +1,150 @@
+//! Small models and rays for tests.
+
+use lodray::{
+    golden::naive_bounds,
+    mesh::{EdgeCodes, Hierarchy, Placement, lattice},
+    num::{Cone, Ray, U, Vec3, snap},
+};
+
+/// A plain 64-bit generator (splitmix64): the same numbers everywhere.
+#[derive(Clone)]
+pub struct Rng(pub u64);
+
+impl Rng {
+    pub fn next(&mut self) -> u64 {
+        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
+        mix(self.0)
+    }
+
+    /// Uniform in 0..1.
+    pub fn unit(&mut self) -> f64 {
+        (self.next() >> 11) as f64 / (1u64 << 53) as f64
+    }
+
+    /// Uniform in -1..1.
+    pub fn signed(&mut self) -> f64 {
+        2.0 * self.unit() - 1.0
+    }
+
+    pub fn below(&mut self, n: u64) -> u64 {
+        self.next() % n
+    }
+}
+
+fn mix(mut v: u64) -> u64 {
+    v = (v ^ (v >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+    v = (v ^ (v >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
+    v ^ (v >> 31)
+}
+
+/// Three numbers in -1..1 that depend on an integer point only.
+fn noise(p: [i64; 3], seed: u64) -> [f64; 3] {
+    let key = p.iter().fold(seed, |h, &v| mix(h ^ v.cast_unsigned()));
+    let mut rng = Rng(key);
+    [rng.signed(), rng.signed(), rng.signed()]
+}
+
+/// A hierarchy over base vertices with small integer coordinates; `place` maps M times the interpolated base position and the
+/// vertex's level to a position in units, so vertices that trees share get one position.
+pub fn model(levels: u32, base: &[[i64; 3]], triangles: Vec<[u32; 3]>, place: impl Fn([i64; 3], u32) -> [f64; 3]) -> Hierarchy {
+    let m = 1i64 << levels;
+    let mut points = Vec::new();
+    for t in &triangles {
+        let [a, b, c] = t.map(|v| base[v as usize]);
+        for j in 0..=m {
+            for i in 0..=m - j {
+                let p = std::array::from_fn(|k| (m - i - j) * a[k] + i * b[k] + j * c[k]);
+                let level = lattice::level_of(levels, (i as u32, j as u32));
+                points.push(place(p, level).map(|v| snap(v, levels - level)));
+            }
+        }
+    }
+    let mut h = Hierarchy {
+        levels,
+        placement: Placement { offset: [0.0; 3], scale: 1.0 },
+        base_vertices: base.len() as u32,
+        triangles,
+        points,
+        bounds: EdgeCodes::default(),
+    };
+    naive_bounds(&mut h);
+    h
+}
+
+/// Corner positions of an octahedron and its outward triangles.
+pub fn octahedron() -> (Vec<[i64; 3]>, Vec<[u32; 3]>) {
+    let base = vec![[1, 0, 0], [-1, 0, 0], [0, 1, 0], [0, -1, 0], [0, 0, 1], [0, 0, -1]];
+    let mut triangles = Vec::new();
+    for (x, y, z) in (0..8u32).map(|o| (o & 1, 2 + (o >> 1 & 1), 4 + (o >> 2 & 1))) {
+        // An odd number of negative axes mirrors the triangle.
+        triangles.push(if (x + y + z) % 2 == 0 { [x, y, z] } else { [y, x, z] });
+    }
+    (base, triangles)
+}
+
+/// A closed bumpy ball of radius 2^28; `roughness` 1 gives spikes and folds, 0 a sphere.
+pub fn ball(levels: u32, roughness: f64, seed: u64) -> Hierarchy {
+    let (base, triangles) = octahedron();
+    model(levels, &base, triangles, |p, level| {
+        let length = p.iter().map(|&v| (v * v) as f64).sum::<f64>().sqrt();
+        let n = noise(p, seed);
+        let bump = roughness / f64::from(1u32 << level);
+        std::array::from_fn(|k| (p[k] as f64 / length + bump * n[k]) * f64::from(1 << 28))
+    })
+}
+
+/// An open terrain of side * side quads that fills most of the integer space, z up.
+pub fn terrain(side: u32, levels: u32, roughness: f64, seed: u64) -> Hierarchy {
+    let w = side + 1;
+    let base: Vec<[i64; 3]> = (0..w * w).map(|v| [i64::from(v % w), i64::from(v / w), 0]).collect();
+    let mut triangles = Vec::new();
+    for v in (0..side * side).map(|q| q / side * w + q % side) {
+        triangles.extend([[v, v + 1, v + w], [v + 1, v + w + 1, v + w]]);
+    }
+    let full = f64::from(side << levels);
+    model(levels, &base, triangles, |p, level| {
+        let n = noise(p, seed);
+        let step = 1.9 * f64::from(1 << 30) / f64::from(side << level);
+        let xy = |k: usize| (2.0 * p[k] as f64 / full - 1.0) * 1.9 * f64::from(1 << 30);
+        let hill = (xy(0) / 3e8).sin() * (xy(1) / 4e8).cos() * 2e8;
+        [xy(0) + 0.2 * roughness * step * n[0], xy(1) + 0.2 * roughness * step * n[1], hill + roughness * step * n[2]]
+    })
+}
+
+/// A cone that tolerates `at_origin` units at the origin and `per_unit` more for each unit of distance.
+pub fn cone(at_origin: f64, per_unit: f64) -> Cone {
+    const SHIFT: u32 = 18;
+    let one = f64::from(1u32 << SHIFT);
+    Cone { offset: U::saturating((at_origin * one) as u64), slope: U::saturating((per_unit * one) as u64), shift: U::new(u64::from(SHIFT)) }
+}
+
+/// A cone of any width, from full detail to the base mesh of a ball.
+pub fn any_cone(rng: &mut Rng) -> Cone {
+    match rng.below(8) {
+        0 => Cone::default(),
+        1 => cone(1e10, 0.0),
+        2 | 3 => cone(2f64.powf(4.0 + 25.0 * rng.unit()), 0.0),
+        _ => cone(2f64.powf(28.0 * rng.unit()), 2f64.powf(-17.0 + 16.0 * rng.unit())),
+    }
+}
+
+/// A random direction of length 2^30 - 1, rounded.
+pub fn direction(rng: &mut Rng) -> [i64; 3] {
+    loop {
+        let d = [rng.signed(), rng.signed(), rng.signed()];
+        let length = d.iter().map(|v| v * v).sum::<f64>().sqrt();
+        if length > 0.1 && length <= 1.0 {
+            return d.map(|v| (v / length * f64::from((1 << 30) - 1)).round() as i64);
+        }
+    }
+}
+
+/// The ray with this origin and direction; both must fit their formats.
+pub fn ray(origin: [i64; 3], d: [i64; 3], cone: Cone) -> Ray {
+    Ray { origin: Vec3::new(origin[0], origin[1], origin[2]), direction: Vec3::new(d[0], d[1], d[2]), cone }
+}
+
+/// The ray along `d` that passes exactly through `p` at parameter 1.
+pub fn ray_through(p: [i64; 3], d: [i64; 3], cone: Cone) -> Ray {
+    ray(std::array::from_fn(|k| p[k] - d[k]), d, cone)
+}
