@@ -1,0 +1,186 @@
+//! Procedural scenes, seeded and reproducible: the same options give the same bytes on any number of threads.
+//!
+//! | scene | base triangles | default | what it is |
+//! |---|---|---|---|
+//! | `terrain` | 2 g^2 | 512, N = 7 | fractal heightfield |
+//! | `cloth` | 2 g^2 | 2,048, N = 5 | flat parts, a few folds and a fine weave |
+//! | `sphere` | 8 k^2 | 512, N = 5 | displaced sphere, closed |
+//! | `spikes` | 8 k^2 | 128, N = 4 | sphere with needles, closed |
+//! | `room` | 2 g^2 + 10 max(1, g/4)^2 | 2,688, N = 5 | a box with an open side around the cloth |
+//!
+//! g and k are whole numbers from 1; of the possible counts the least at or above the wanted one is taken.
+
+mod base;
+mod cloth;
+mod noise;
+mod room;
+mod sphere;
+mod spikes;
+mod terrain;
+
+use super::Surface;
+use crate::num::MAX_LEVELS;
+use serde::{Deserialize, Serialize};
+
+/// Most base triangles of a scene.
+pub const MAX_TREES: u64 = 1 << 27;
+/// Most full-resolution triangles of a scene.
+pub const MAX_TRIANGLES: u64 = 1 << 32;
+
+/// A procedural scene.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, clap::ValueEnum, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Scene {
+    /// Fractal heightfield.
+    Terrain,
+    /// Draped sheet with folds, flat parts and a fine weave.
+    Cloth,
+    /// Displaced sphere, closed.
+    Sphere,
+    /// Sphere with needles far longer than its edges, closed.
+    Spikes,
+    /// Box with an open side around the cloth.
+    Room,
+}
+
+impl Scene {
+    /// Splits if none are asked for.
+    pub const fn default_levels(self) -> u32 {
+        match self {
+            Self::Terrain => 7,
+            Self::Cloth | Self::Sphere | Self::Room => 5,
+            Self::Spikes => 4,
+        }
+    }
+
+    /// Base triangles if none are asked for.
+    pub const fn default_base(self) -> u32 {
+        match self {
+            Self::Terrain | Self::Sphere => 512,
+            Self::Cloth => 2_048,
+            Self::Spikes => 128,
+            Self::Room => 2_688,
+        }
+    }
+
+    /// Roughness if none is asked for.
+    pub const fn default_roughness(self) -> f64 {
+        match self {
+            Self::Terrain => 0.55,
+            Self::Sphere => 0.45,
+            Self::Cloth | Self::Spikes | Self::Room => 0.5,
+        }
+    }
+
+    /// Base triangles with grid size `n` (g or k of the table in the module's head).
+    const fn trees(self, n: u32) -> u64 {
+        let square = n as u64 * n as u64;
+        match self {
+            Self::Terrain | Self::Cloth => 2 * square,
+            Self::Sphere | Self::Spikes => 8 * square,
+            Self::Room => {
+                let wall = room::wall_quads(n) as u64;
+                2 * square + 10 * wall * wall
+            }
+        }
+    }
+
+    /// The least grid size with at least `base` base triangles.
+    fn grid(self, base: u32) -> u32 {
+        // All scenes have at least 2 n^2 triangles, so 2^15.5 suffices for any `base`; counts rise with n.
+        let (mut low, mut high) = (1, 1 << 16);
+        while low < high {
+            let middle = (low + high) / 2;
+            if self.trees(middle) >= u64::from(base) {
+                high = middle;
+            } else {
+                low = middle + 1;
+            }
+        }
+        low
+    }
+}
+
+/// What to generate.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Options {
+    /// Which scene.
+    pub scene: Scene,
+    /// Splits N, 0 to [`MAX_LEVELS`]; the scene's default if none.
+    pub levels: Option<u32>,
+    /// Wanted base triangles, 1 to [`MAX_TREES`]; the scene's default if none. The least possible count at or above is taken.
+    pub base: Option<u32>,
+    /// Any number; another seed gives another scene of the kind.
+    pub seed: u64,
+    /// Between 0 and 1, both excluded. `terrain` and `sphere`: amplitude of an octave of noise relative to the one before. `cloth` and
+    /// `room`: height of the weave, `spikes`: length of the needles, both relative to the default's 0.5.
+    pub roughness: Option<f64>,
+}
+
+impl Options {
+    /// The scene at its default size, seed 0.
+    pub const fn new(scene: Scene) -> Self {
+        Self { scene, levels: None, base: None, seed: 0, roughness: None }
+    }
+}
+
+/// Why a scene cannot be generated.
+#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+pub enum GenerateError {
+    /// Too many splits.
+    #[error("{0} levels are too many: 0 to {MAX_LEVELS} are possible")]
+    Levels(u32),
+    /// No such number of base triangles.
+    #[error("{0} base triangles: 1 to {MAX_TREES} are possible")]
+    Base(u64),
+    /// Roughness out of range.
+    #[error("roughness {0} is not between 0 and 1")]
+    Roughness(f64),
+    /// The scene would be too large.
+    #[error("{trees} base triangles with {levels} levels are more than {MAX_TRIANGLES} triangles")]
+    Triangles {
+        /// Base triangles that the scene would have.
+        trees: u64,
+        /// Splits.
+        levels: u32,
+    },
+    /// The machine has too little memory.
+    #[error("no memory for {bytes} bytes")]
+    Memory {
+        /// Size of the piece that could not be had.
+        bytes: u64,
+    },
+}
+
+/// Makes a scene.
+pub fn generate(options: &Options) -> Result<Surface, GenerateError> {
+    let scene = options.scene;
+    let levels = options.levels.unwrap_or(scene.default_levels());
+    if levels > MAX_LEVELS {
+        return Err(GenerateError::Levels(levels));
+    }
+    let wanted = options.base.unwrap_or(scene.default_base());
+    if wanted == 0 || u64::from(wanted) > MAX_TREES {
+        return Err(GenerateError::Base(wanted.into()));
+    }
+    let roughness = options.roughness.unwrap_or(scene.default_roughness());
+    if !(roughness > 0.0 && roughness < 1.0) {
+        return Err(GenerateError::Roughness(roughness));
+    }
+    let n = scene.grid(wanted);
+    let trees = scene.trees(n);
+    if trees > MAX_TREES {
+        return Err(GenerateError::Base(trees));
+    }
+    if trees << (2 * levels) > MAX_TRIANGLES {
+        return Err(GenerateError::Triangles { trees, levels });
+    }
+    let seed = options.seed;
+    match scene {
+        Scene::Terrain => terrain::generate(n, levels, seed, roughness),
+        Scene::Cloth => cloth::generate(n, levels, seed, 2.0 * roughness),
+        Scene::Sphere => sphere::generate(n, levels, seed, roughness),
+        Scene::Spikes => spikes::generate(n, levels, seed, 2.0 * roughness),
+        Scene::Room => room::generate(n, levels, seed, 2.0 * roughness),
+    }
+}
