@@ -7,6 +7,7 @@
 use super::GenerateError;
 use crate::mesh::{Surface, lattice};
 use rayon::prelude::*;
+use std::f64::consts::FRAC_PI_2;
 
 /// Integer parameters of a point.
 pub(super) type Parameter = [i32; 3];
@@ -34,6 +35,13 @@ pub(super) struct Base {
     pub triangles: Vec<[u32; 3]>,
 }
 
+/// Adds `more` to `v`, or fails if there is no such memory.
+pub(super) fn append<T: Copy>(v: &mut Vec<T>, more: &[T]) -> Result<(), GenerateError> {
+    v.try_reserve_exact(more.len()).map_err(|_| GenerateError::Memory { bytes: size_of_val(more) as u64 })?;
+    v.extend_from_slice(more);
+    Ok(())
+}
+
 /// An empty vector with room for `len`, or an error if there is no such memory.
 pub(super) fn reserved<T>(len: usize) -> Result<Vec<T>, GenerateError> {
     let mut v = Vec::new();
@@ -42,8 +50,7 @@ pub(super) fn reserved<T>(len: usize) -> Result<Vec<T>, GenerateError> {
 }
 
 impl Base {
-    /// `g` by `g` quads of parameters (x, z, 0), 0..=g each, counter-clockwise where z points towards the eye's side of x (seen from +y).
-    /// Diagonals alternate, so that no direction is favoured.
+    /// `g` by `g` quads of parameters (x, z, 0), 0..=g each, counter-clockwise seen from +y. Diagonals alternate, so that no direction is favoured.
     pub(super) fn grid(g: u32) -> Result<Self, GenerateError> {
         let side = g as usize;
         let mut parameters = reserved((side + 1) * (side + 1))?;
@@ -147,7 +154,7 @@ pub(super) fn direction(p: Parameter, k: i32) -> [f64; 3] {
     let w = p.map(|c| {
         let t = f64::from(c) / f64::from(k);
         let tt = t * t;
-        t * (1.570_796_3 + tt * (-0.645_964_1 + tt * (0.079_692_6 - tt * 0.004_681_8)))
+        t * (FRAC_PI_2 + tt * (-0.645_964_1 + tt * (0.079_692_6 - tt * 0.004_681_8)))
     });
     unit(w)
 }

@@ -13,7 +13,7 @@ const TABLE: (f64, f64) = (0.38, 0.14);
 /// Radius of the bend at the table's edge.
 const BEND: f64 = 0.06;
 /// Threads across the sheet and height of their weave at `detail` = 1.
-const WEAVE: (f64, f64) = (180.0, 6e-4);
+const WEAVE: (f64, f64) = (180.0, 3e-4);
 /// Height of the table, so that the sheet is centred about the origin.
 const HEIGHT: f64 = 0.3;
 
@@ -35,12 +35,6 @@ pub(super) fn generate(g: u32, levels: u32, seed: u64, detail: f64) -> Result<Su
 pub(super) fn placed(g: u32, levels: u32, seed: u64, detail: f64, centre: [f64; 3], scale: f64) -> Result<Surface, GenerateError> {
     let cloth = Cloth { steps: (g << levels) as i32, seed: noise::stream(seed, 1), detail, centre, scale };
     Base::grid(g)?.tessellate(levels, &cloth)
-}
-
-/// 3t^2 - 2t^3 with t held to 0..=1.
-fn smooth(t: f64) -> f64 {
-    let t = t.clamp(0.0, 1.0);
-    t * t * (3.0 - 2.0 * t)
 }
 
 /// One thread seen from the side: a smooth wave of period 2 and height -1..=1.
@@ -68,18 +62,18 @@ impl Cloth {
         let bend = (1.0 + (over / BEND) * (over / BEND)).sqrt();
         let (out, down) = (over / bend, BEND * (bend - 1.0));
         // Spare cloth: 1 in the middle of a corner, 0 along the sides.
-        let spare = smooth(4.0 * way[0] * way[0] * way[1] * way[1]);
+        let spare = 4.0 * way[0] * way[0] * way[1] * way[1];
         // Folds run down from the rim: the same along a line that hangs.
         let rim = [0, 1].map(|k| core[k] + (corner + 0.12) * way[k]);
         let wave =
             noise::noise2(self.seed, rim.map(|c| c * 9.3 + 37.4)) + 0.5 * noise::noise2(self.seed ^ 0x55, rim.map(|c| c * 21.7 + 11.3));
-        let hang = smooth(over / 0.45);
-        let fold = hang * (0.22 * spare + wave * (0.05 + 0.26 * spare));
+        let hang = over * over / (over + 0.2);
+        let fold = hang * (0.5 * spare + wave * (0.16 + 0.7 * spare));
         // The weave stands on the sheet: up on top, outwards where it hangs.
         let turned = over / (over + BEND);
         let reach = corner + out + fold + weave * turned;
         // What goes sideways does not go down.
-        let y = HEIGHT - down * (1.0 - 0.12 * spare * hang) + weave * (1.0 - turned);
+        let y = HEIGHT - down * (1.0 - 0.3 * spare * hang) + weave * (1.0 - turned);
         [core[0] + way[0] * reach, y, core[1] + way[1] * reach]
     }
 }

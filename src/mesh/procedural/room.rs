@@ -1,21 +1,34 @@
-//! `room`: the cube from -1 to 1, open towards +z, around a [`super::cloth`]; all walls face inwards.
+//! `room`: a box 2 wide, 1.4 high and 2 deep centred at the origin, open towards +z, around a [`super::cloth`]; all walls face inwards.
 //!
 //! Materials: 0 white (floor, ceiling, back), 1 red (left, x = -1), 2 green (right, x = 1), 3 blue (cloth).
 
 use super::GenerateError;
-use super::base::{Base, Parameter, Shape, reserved};
+use super::base::{Base, Parameter, Shape, append, reserved};
 use super::cloth;
 use crate::mesh::Surface;
 use std::collections::HashMap;
 
 const COLOURS: [[f32; 3]; 4] = [[0.75, 0.74, 0.70], [0.60, 0.06, 0.05], [0.12, 0.45, 0.09], [0.12, 0.22, 0.55]];
-/// Origin, first and second direction (their cross product points into the room) and material of each wall.
-const WALLS: [([i32; 3], [i32; 3], [i32; 3], u16); 5] = [
-    ([0, 0, 0], [0, 0, 1], [1, 0, 0], 0), // floor
-    ([0, 1, 0], [1, 0, 0], [0, 0, 1], 0), // ceiling
-    ([0, 0, 0], [1, 0, 0], [0, 1, 0], 0), // back
-    ([0, 0, 0], [0, 1, 0], [0, 0, 1], 1), // left
-    ([1, 0, 0], [0, 0, 1], [0, 1, 0], 2), // right
+/// Half sizes of the box.
+const HALF: [f64; 3] = [1.0, 0.7, 1.0];
+/// Centre and scale of the cloth: its corners just miss the floor.
+const CLOTH: ([f64; 3], f64) = ([0.0, -0.48, -0.1], 0.8);
+/// A wall of the box, in the directions of the axes.
+struct Side {
+    origin: [i32; 3],
+    along: [i32; 3],
+    /// `along` x `across` points into the room.
+    across: [i32; 3],
+    material: u16,
+}
+
+const SIDES: [Side; 5] = [
+    // Floor, ceiling, back, left, right.
+    Side { origin: [0, 0, 0], along: [0, 0, 1], across: [1, 0, 0], material: 0 },
+    Side { origin: [0, 1, 0], along: [1, 0, 0], across: [0, 0, 1], material: 0 },
+    Side { origin: [0, 0, 0], along: [1, 0, 0], across: [0, 1, 0], material: 0 },
+    Side { origin: [0, 0, 0], along: [0, 1, 0], across: [0, 0, 1], material: 1 },
+    Side { origin: [1, 0, 0], along: [0, 0, 1], across: [0, 1, 0], material: 2 },
 ];
 
 /// Quads along a wall for a cloth of `g` quads across.
@@ -23,7 +36,7 @@ pub(super) const fn wall_quads(g: u32) -> u32 {
     if g < 4 { 1 } else { g / 4 }
 }
 
-/// One wall: parameters (x, y, z) on the cube's grid, normal the same everywhere.
+/// One wall: parameters (x, y, z) on the box's grid, normal the same everywhere.
 struct Wall {
     steps: i32,
     normal: [f32; 3],
@@ -31,22 +44,23 @@ struct Wall {
 
 impl Shape for Wall {
     fn point(&self, p: Parameter) -> ([f64; 3], [f32; 3]) {
-        (p.map(|c| f64::from(2 * c - self.steps) / f64::from(self.steps)), self.normal)
+        let place = p.map(|c| f64::from(2 * c - self.steps) / f64::from(self.steps));
+        (std::array::from_fn(|k| HALF[k] * place[k]), self.normal)
     }
 }
 
 /// A room around a cloth of `g` by `g` quads.
 pub(super) fn generate(g: u32, levels: u32, seed: u64, detail: f64) -> Result<Surface, GenerateError> {
-    let mut room = cloth::placed(g, levels, seed, detail, [0.0, -0.46, -0.1], 0.74)?;
+    let mut room = cloth::placed(g, levels, seed, detail, CLOTH.0, CLOTH.1)?;
     let w = wall_quads(g) as i32;
-    let trees = room.triangles.len() + WALLS.len() * 2 * (w * w) as usize;
+    let trees = room.triangles.len() + SIDES.len() * 2 * (w * w) as usize;
     room.materials = reserved(trees)?;
     room.materials.resize(room.triangles.len(), 3);
     room.colours = COLOURS.to_vec();
 
-    // Walls share the vertices of the cube's edges.
+    // Walls share the vertices of the box's edges.
     let mut vertices = HashMap::new();
-    for (origin, along, across, material) in WALLS {
+    for Side { origin, along, across, material } in SIDES {
         let normal = [0, 1, 2].map(|k| (along[(k + 1) % 3] * across[(k + 2) % 3] - along[(k + 2) % 3] * across[(k + 1) % 3]) as f32);
         let corner = |a: i32, b: i32| -> Parameter { std::array::from_fn(|k| origin[k] * w + along[k] * a + across[k] * b) };
         let mut base = Base { parameters: Vec::new(), triangles: Vec::new() };
@@ -67,8 +81,8 @@ pub(super) fn generate(g: u32, levels: u32, seed: u64, detail: f64) -> Result<Su
         }
         let wall = base.tessellate(levels, &Wall { steps: w << levels, normal })?;
         room.triangles.extend(wall.triangles.iter().map(|t| t.map(|v| indices[v as usize])));
-        room.positions.extend_from_slice(&wall.positions);
-        room.normals.extend_from_slice(&wall.normals);
+        append(&mut room.positions, &wall.positions)?;
+        append(&mut room.normals, &wall.normals)?;
         room.materials.resize(room.triangles.len(), material);
     }
     room.base_vertices += vertices.len() as u32;

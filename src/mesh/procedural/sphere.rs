@@ -9,7 +9,8 @@ use crate::mesh::Surface;
 const FIRST: (f64, f64) = (1.6, 0.30);
 
 struct Sphere {
-    seeds: Vec<u32>,
+    /// Seed and offset of each octave: the offset keeps the zeros of noise off the axes.
+    octaves: Vec<(u32, [f64; 3])>,
     gain: f64,
     /// Finest steps along an edge of the octahedron.
     steps: i32,
@@ -20,8 +21,13 @@ pub(super) fn generate(k: u32, levels: u32, seed: u64, gain: f64) -> Result<Surf
     let steps = k << levels;
     // Cells not much smaller than triangles: `steps` of these span a quarter circle, about 1.6.
     let octaves = steps.ilog2().max(1);
-    let seeds = (0..octaves).map(|n| noise::stream(seed, 2 + n)).collect();
-    Base::octahedron(k)?.tessellate(levels, &Sphere { seeds, gain, steps: steps as i32 })
+    let octaves = (0..octaves)
+        .map(|n| {
+            let seed = noise::stream(seed, n << 8 | 2);
+            (seed, [0, 1, 2].map(|axis| 8.0 * noise::unit(noise::hash(seed, [axis, 0, 0]))))
+        })
+        .collect();
+    Base::octahedron(k)?.tessellate(levels, &Sphere { octaves, gain, steps: steps as i32 })
 }
 
 impl Shape for Sphere {
@@ -29,9 +35,7 @@ impl Shape for Sphere {
         let d = direction(p, self.steps);
         let (mut frequency, mut amplitude) = FIRST;
         let (mut radius, mut slope) = (1.0, [0.0; 3]);
-        for &seed in &self.seeds {
-            // An odd offset for each octave keeps the zeros of noise off the axes.
-            let offset = [0, 1, 2].map(|k| 8.0 * noise::unit(noise::hash(seed, [k, 7, 7])));
+        for &(seed, offset) in &self.octaves {
             let (value, gradient) = noise::noise3(seed, std::array::from_fn(|k| d[k] * frequency + offset[k]));
             radius += amplitude * value;
             slope = std::array::from_fn(|k| slope[k] + amplitude * frequency * gradient[k]);

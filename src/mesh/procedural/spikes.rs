@@ -9,9 +9,9 @@ use super::noise;
 use crate::mesh::Surface;
 
 /// One vertex in so many is a needle.
-const ONE_IN: u32 = 11;
+const ONE_IN: u32 = 14;
 /// Least and largest length of a needle at `detail` = 1, in radii.
-const LENGTH: (f64, f64) = (0.35, 1.4);
+const LENGTH: (f64, f64) = (0.3, 1.2);
 
 struct Spikes {
     seed: u32,
@@ -28,7 +28,7 @@ pub(super) fn generate(k: u32, levels: u32, seed: u64, detail: f64) -> Result<Su
 impl Spikes {
     fn radius(&self, p: Parameter) -> f64 {
         let h = noise::hash(self.seed, p);
-        if h % ONE_IN != 0 {
+        if !h.is_multiple_of(ONE_IN) {
             return 1.0;
         }
         // Squared: many short needles, few long ones.

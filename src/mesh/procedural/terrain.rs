@@ -11,10 +11,14 @@ use super::noise::{self, Cell2};
 use crate::mesh::Surface;
 
 /// Height of the first octave per unit of noise, world units.
-const AMPLITUDE: f64 = 0.42;
+const AMPLITUDE: f64 = 0.44;
 /// How much peaks are sharpened and valleys flattened: height = h + SHARPEN h^2, which is monotone for |h| < 1 / (2 SHARPEN).
 const SHARPEN: f64 = 0.9;
-/// Lattice corners of noise the scene may be slid to; the one with the lowest ground around the camera's place is taken.
+/// The first octaves, which decide how rough the ground is.
+const COARSE: usize = 3;
+/// Points at a time.
+const BLOCK: usize = 128;
+/// Places of noise the scene may be slid to; the one with the lowest ground around the camera's place is taken.
 const SLIDES: u32 = 24;
 
 /// One octave: noise coordinates are `turn * (x, z) + offset`.
@@ -79,9 +83,9 @@ impl Terrain {
 
     /// Height over a place in the square, for choosing where to be.
     fn height(&self, p: [f64; 2]) -> f64 {
-        let sum = self.octaves.iter().map(|o| o.amplitude * noise::noise2(o.seed, o.at(p)));
-        let h: f64 = sum.sum();
-        h + SHARPEN * h * h
+        let (mut position, mut normal) = ([[0.0; 3]], [[0.0; 3]]);
+        self.block(&[p], &mut position, &mut normal);
+        position[0][1]
     }
 }
 
@@ -89,6 +93,37 @@ impl Octave {
     #[inline(always)]
     fn at(&self, [x, z]: [f64; 2]) -> [f64; 2] {
         [self.turn[0] * x - self.turn[1] * z + self.offset[0], self.turn[1] * x + self.turn[0] * z + self.offset[1]]
+    }
+
+    /// Adds this octave's height and slopes at `places`.
+    fn add(&self, places: &[[f64; 2]], sums: &mut [[f64; 3]]) {
+        let [cos, sin] = self.turn.map(|t| t * self.amplitude);
+        self.visit(places, sums, |cell, x, z, sum| {
+            let [v, dx, dz] = cell.value_gradient(x, z);
+            sum[0] += self.amplitude * v;
+            sum[1] += cos * dx + sin * dz;
+            sum[2] += cos * dz - sin * dx;
+        });
+    }
+
+    /// Adds the height alone. For the finest octave: its cells are as small as triangles, and slopes within them say nothing about
+    /// the surface.
+    fn add_height(&self, places: &[[f64; 2]], sums: &mut [[f64; 3]]) {
+        self.visit(places, sums, |cell, x, z, sum| sum[0] += self.amplitude * cell.value(x, z));
+    }
+
+    #[inline(always)]
+    fn visit(&self, places: &[[f64; 2]], sums: &mut [[f64; 3]], add: impl Fn(&Cell2, f64, f64, &mut [f64; 3])) {
+        let mut last = (i32::MIN, i32::MIN);
+        let mut cell = Cell2::default();
+        for (&place, sum) in places.iter().zip(sums) {
+            let [(cx, x), (cz, z)] = self.at(place).map(noise::cell);
+            if (cx, cz) != last {
+                last = (cx, cz);
+                cell = Cell2::new(self.seed, cx, cz);
+            }
+            add(&cell, x, z, sum);
+        }
     }
 }
 
@@ -100,38 +135,46 @@ impl Shape for Terrain {
     }
 
     fn row(&self, start: Parameter, step: Parameter, positions: &mut [[f64; 3]], normals: &mut [[f32; 3]]) {
-        let place = |i: usize| [0, 1].map(|k| self.coordinate(start[k] + step[k] * i as i32));
-        // Octave by octave along the row, so that the cell of the point before mostly serves again. Until the last loop positions hold
-        // (slope along x, height, slope along z).
-        let finest = self.octaves.len() - 1;
-        for (n, octave) in self.octaves.iter().enumerate() {
-            let mut last = (i32::MIN, i32::MIN);
-            let mut cell = Cell2::default();
-            for (i, sum) in positions.iter_mut().enumerate() {
-                let [(cx, x), (cz, z)] = octave.at(place(i)).map(noise::cell);
-                if (cx, cz) != last {
-                    last = (cx, cz);
-                    cell = Cell2::new(octave.seed, cx, cz);
-                }
-                if n < finest {
-                    let [v, dx, dz] = cell.value_gradient(x, z).map(|v| v * octave.amplitude);
-                    sum[0] += octave.turn[0] * dx + octave.turn[1] * dz;
-                    sum[1] += v;
-                    sum[2] += octave.turn[0] * dz - octave.turn[1] * dx;
-                } else {
-                    // Its cells are as small as triangles: slopes within them say nothing about the surface.
-                    sum[1] += octave.amplitude * cell.value(x, z);
-                }
+        let mut p = start;
+        for (positions, normals) in positions.chunks_mut(BLOCK).zip(normals.chunks_mut(BLOCK)) {
+            let mut places = [[0.0; 2]; BLOCK];
+            for place in &mut places[..positions.len()] {
+                *place = [self.coordinate(p[0]), self.coordinate(p[1])];
+                p = [p[0] + step[0], p[1] + step[1], 0];
             }
+            self.block(&places[..positions.len()], positions, normals);
         }
-        for (i, (position, normal)) in positions.iter_mut().zip(normals).enumerate() {
-            let [dx, h, dz] = *position;
-            let [x, z] = place(i);
-            *position = [x, h + SHARPEN * h * h, z];
+    }
+}
+
+impl Terrain {
+    /// Positions and normals of at most [`BLOCK`] places, octave by octave: the cell of the place before mostly serves again.
+    fn block(&self, places: &[[f64; 2]], positions: &mut [[f64; 3]], normals: &mut [[f32; 3]]) {
+        // Height, slope along x, slope along z.
+        let (mut coarse, mut fine) = ([[0.0; 3]; BLOCK], [[0.0; 3]; BLOCK]);
+        let (coarse, fine) = (&mut coarse[..places.len()], &mut fine[..places.len()]);
+        let (first, rest) = self.octaves.split_at(COARSE.min(self.octaves.len()));
+        first.iter().for_each(|octave| octave.add(places, coarse));
+        if let Some((finest, rest)) = rest.split_last() {
+            rest.iter().for_each(|octave| octave.add(places, fine));
+            finest.add_height(places, fine);
+        }
+        for (k, (position, normal)) in positions.iter_mut().zip(normals).enumerate() {
+            let ([c, cx, cz], [f, fx, fz]) = (coarse[k], fine[k]);
+            let (w, dw) = weight(c);
+            let (h, factor) = (c + w * f, 1.0 + dw * f);
+            *position = [places[k][0], h + SHARPEN * h * h, places[k][1]];
             let steeper = 1.0 + 2.0 * SHARPEN * h;
-            let (dx, dz) = (steeper * dx, steeper * dz);
+            let (dx, dz) = (steeper * (cx * factor + w * fx), steeper * (cz * factor + w * fz));
             let scale = 1.0 / (1.0 + dx * dx + dz * dz).sqrt();
             *normal = [-dx * scale, scale, -dz * scale].map(|c| c as f32);
         }
     }
+}
+
+/// How rough the ground is at coarse height `c`, and the derivative: valleys are smoother than peaks.
+fn weight(c: f64) -> (f64, f64) {
+    let t = ((c + 0.22) * 2.0).clamp(0.0, 1.0);
+    // A clamped t has slope 0 on both sides.
+    (0.3 + 0.8 * t * t * (3.0 - 2.0 * t), 9.6 * t * (1.0 - t))
 }
