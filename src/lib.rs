@@ -12,7 +12,11 @@
 //! [`block::hit_divide`] find the hit and [`block::bary_map`] maps it to the full-resolution mesh.
 
 pub mod block;
+pub mod bvh;
 pub mod format;
 pub mod golden;
 pub mod mesh;
 pub mod num;
+pub mod render;
+pub mod report;
+pub mod traverse;

@@ -1,7 +1,8 @@
 //! Arguments that several subcommands take.
 
 use clap::Args;
-use lodray::bvh::LeafLayout;
+use clap::ValueEnum;
+use lodray::bvh;
 use lodray::render::{Camera, DEFAULT_VIEW_ANGLE_DEGREES, View};
 use lodray::traverse::ModelSpace;
 use std::str::FromStr;
@@ -76,6 +77,27 @@ pub fn delta(s: &str) -> Result<f64, String> {
     match s.parse::<f64>() {
         Ok(v) if v >= 0.0 => Ok(v),
         _ => Err(format!("'{s}' is not a quality: 0 (base mesh) to inf (full detail), 1 is one pixel")),
+    }
+}
+
+/// Leaf layouts by name.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum LeafLayout {
+    /// Index triples and shared vertices
+    Indexed,
+    /// Nine 32-bit coordinates, 36 bytes
+    Packed,
+    /// One 32-byte line of 28-bit coordinates
+    Line,
+}
+
+impl From<LeafLayout> for bvh::LeafLayout {
+    fn from(layout: LeafLayout) -> Self {
+        match layout {
+            LeafLayout::Indexed => Self::Indexed,
+            LeafLayout::Packed => Self::Packed,
+            LeafLayout::Line => Self::Line,
+        }
     }
 }
 

@@ -2,11 +2,11 @@
 
 use super::info;
 use super::output::{check_target, print_line, progress};
-use lodray::bvh;
-use lodray::format::{self, Scene};
+use lodray::bvh::over_trees;
+use lodray::format::{self, Scene, SceneInfo};
+use lodray::mesh::Surface;
 use lodray::mesh::remesh::{RemeshOptions, remesh};
 use lodray::mesh::read;
-use lodray::num::Box16;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use std::sync::Mutex;
@@ -49,14 +49,14 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
     }
     let name = args.mesh.file_stem().map_or_else(String::new, |s| s.to_string_lossy().into_owned());
     let origin = serde_json::json!({ "mesh": mesh.report, "remesh": report });
-    let scene = format::build(&surface, &name, origin, l0_nodes)?;
+    let scene = build_scene(&surface, &name, origin)?;
     drop(surface);
     finish(&scene, &args.out, args.json)
 }
 
-/// The quad-BVH over a scene's trees.
-pub fn l0_nodes(boxes: &[Box16]) -> Vec<[u64; 8]> {
-    bvh::over_trees(boxes)
+/// The scene of a surface; `origin` says how it was made.
+pub fn build_scene(surface: &Surface, name: &str, origin: serde_json::Value) -> anyhow::Result<Scene> {
+    Ok(format::build(surface, SceneInfo { name: name.to_owned(), origin }, over_trees)?)
 }
 
 /// Saves a new scene and says what it holds.

@@ -1,7 +1,6 @@
 //! `crack`: watertightness, measured.
 
 use super::output::{grouped, open, print_json, print_line, progress};
-use lodray::format::decode;
 use lodray::report::crack::{Closedness, closedness, measure};
 use lodray::traverse::{LodImage, ModelSpace};
 use std::path::PathBuf;
@@ -24,7 +23,7 @@ pub struct Args {
 
 pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
     let scene = open(&args.scene)?;
-    let hierarchy = decode(&scene);
+    let hierarchy = scene.decode();
     let closed = closedness(&hierarchy.triangles);
     anyhow::ensure!(
         closed != Closedness::Open,

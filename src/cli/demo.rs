@@ -1,13 +1,11 @@
 //! `demo`: a built-in scene from three distances, LOD beside BVH and full resolution.
 
-use super::args::LeafArgs;
-use super::build::l0_nodes;
+use super::args::{LeafArgs, LeafLayout};
+use super::build::build_scene;
 use super::output::{folder, grouped, print_json, print_line};
 use super::pictures::Shot;
 use super::render::{Built, Comparison, MethodName, compare_shots};
 use anyhow::Context;
-use lodray::bvh::LeafLayout;
-use lodray::format;
 use lodray::mesh::procedural::{Options, Scene, generate};
 use lodray::render::{Camera, View, write_and_rename};
 use lodray::traverse::ModelSpace;
@@ -48,7 +46,7 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
     folder(&args.out)?;
     let options = Options { levels: Some(LEVELS), ..Options::new(Scene::Terrain) };
     let surface = generate(&options)?;
-    let scene = format::build(&surface, "terrain", serde_json::json!({ "generate": options }), l0_nodes)?;
+    let scene = build_scene(&surface, "terrain", serde_json::json!({ "generate": options }))?;
     let space = ModelSpace::of(&scene);
     let leaves = LeafArgs { leaf_layout: LeafLayout::Line, leaf_size: 4 };
     let bvh = Built::new(MethodName::Bvh, &scene, leaves)?;

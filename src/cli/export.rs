@@ -25,6 +25,6 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
     anyhow::ensure!(level <= scene.levels(), "--level {level} is beyond the scene's finest level {}", scene.levels());
     write_and_rename(&args.out, |out| export_level(&scene, level, out))
         .map_err(|e| anyhow::anyhow!("cannot write {}: {e}", args.out.display()))?;
-    print_line(&format!("{}: {} triangles", args.out.display(), grouped((scene.tree_count() as u64) << (2 * level))))?;
+    print_line(&format!("{}: {} triangles", args.out.display(), grouped((scene.trees() as u64) << (2 * level))))?;
     Ok(ExitCode::SUCCESS)
 }

@@ -1,8 +1,7 @@
 //! `generate`: a procedural scene.
 
-use super::build::{finish, l0_nodes};
+use super::build::{build_scene, finish};
 use super::output::check_target;
-use lodray::format;
 use lodray::mesh::procedural::{Options, Scene, generate};
 use std::path::PathBuf;
 use std::process::ExitCode;
@@ -38,7 +37,7 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
     let surface = generate(&options)?;
     let origin = serde_json::json!({ "generate": options });
     let name = format!("{:?}", args.scene).to_lowercase();
-    let scene = format::build(&surface, &name, origin, l0_nodes)?;
+    let scene = build_scene(&surface, &name, origin)?;
     drop(surface);
     finish(&scene, &args.out, args.json)
 }

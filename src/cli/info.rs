@@ -56,14 +56,14 @@ pub fn print(scene: &Scene, json: bool) -> anyhow::Result<()> {
         part("bound data", size_of_val(scene.bounds())),
         part("vertex data", size_of_val(scene.vertices())),
         part("normals", size_of_val(scene.normals())),
-        part("base indices", size_of_val(scene.base_indices())),
+        part("base indices", size_of_val(scene.triangles())),
     ];
     let hierarchy: u64 = parts[1..4].iter().map(|p| p.bytes).sum();
     let meta = scene.meta();
     let info = Info {
         name: &meta.name,
         levels: scene.levels(),
-        base_triangles: scene.tree_count() as u64,
+        base_triangles: scene.trees() as u64,
         base_vertices: u64::from(meta.base_vertices),
         finest_triangles: triangles,
         centre: space.centre(),

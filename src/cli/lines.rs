@@ -2,9 +2,7 @@
 
 use super::args::{CameraArgs, delta};
 use super::output::{grouped, open, print_json, print_line, progress};
-use clap::ValueEnum;
-use lodray::bvh::{BoxFormat, FullBvh, LeafLayout};
-use lodray::format::decode;
+use lodray::bvh::{FullBvh, FullOptions, LeafLayout, Options};
 use lodray::render::{Method, render};
 use lodray::traverse::{LodImage, ModelSpace};
 use serde::Serialize;
@@ -54,7 +52,7 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
     let scene = open(&args.scene)?;
     let space = ModelSpace::of(&scene);
     let cameras = args.distances.iter().map(|&d| args.camera.camera(&space, Some(d))).collect::<Result<Vec<_>, _>>()?;
-    let formats = if args.bvh32 { &[BoxFormat::Box16, BoxFormat::Box32][..] } else { &[BoxFormat::Box16][..] };
+    let formats = if args.bvh32 { &[false, true][..] } else { &[false][..] };
     let bar = progress((2 + formats.len() as u64 * 9) * cameras.len() as u64, "tracing");
 
     let count = |method: &Method<'_>, delta: f64| -> Vec<_> {
@@ -72,18 +70,19 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
         Row { structure: "LOD".to_owned(), distinct_lines: distinct(&lod) },
         Row { structure: "LOD structure at full detail".to_owned(), distinct_lines: distinct(&count(&Method::Lod(image), f64::INFINITY)) },
     ];
-    let hierarchy = decode(&scene);
+    let hierarchy = scene.decode();
     let mut best = vec![u64::MAX; cameras.len()];
-    for &format in formats {
+    for &wide_boxes in formats {
         for size in [1, 2, 4] {
-            let mut bvh = FullBvh::build(&hierarchy, format, LeafLayout::Line, size)?;
-            for &layout in LeafLayout::value_variants() {
-                bvh.set_layout(&hierarchy, layout);
+            let options = FullOptions { tree: Options::with_leaf(size), wide_boxes, layout: LeafLayout::Line };
+            let mut bvh = FullBvh::build(&hierarchy, &options)?;
+            for layout in [LeafLayout::Indexed, LeafLayout::Packed, LeafLayout::Line] {
+                bvh.leaves = bvh.relayout(&hierarchy, layout)?;
                 let lines = distinct(&count(&Method::Bvh(&bvh), args.delta));
-                if format == BoxFormat::Box16 {
+                if !wide_boxes {
                     best.iter_mut().zip(&lines).for_each(|(b, &n)| *b = n.min(*b));
                 }
-                let bits = if format == BoxFormat::Box16 { 16 } else { 32 };
+                let bits = if wide_boxes { 32 } else { 16 };
                 rows.push(Row { structure: format!("BVH {bits}-bit, {layout:?}, {size} a leaf"), distinct_lines: lines });
             }
         }

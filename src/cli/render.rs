@@ -4,10 +4,9 @@ use super::args::{CameraArgs, LeafArgs, delta};
 use super::output::{folder, grouped, open, print_json, print_line};
 use super::pictures::{Shot, shoot};
 use clap::ValueEnum;
-use lodray::bvh::{BoxFormat, FullBvh};
-use lodray::format::{Scene, decode};
+use lodray::bvh::{FullBvh, FullOptions, Options};
+use lodray::format::Scene;
 use lodray::golden::reference::Reference;
-use lodray::mesh::Hierarchy;
 use lodray::render::{Camera, FrameStats, ImageError, Method, compare};
 use lodray::traverse::{LodImage, ModelSpace};
 use serde::Serialize;
@@ -89,7 +88,7 @@ pub struct Comparison {
 pub enum Built {
     Lod,
     Bvh(FullBvh),
-    Reference(Hierarchy),
+    Reference(Reference),
 }
 
 impl Built {
@@ -97,9 +96,9 @@ impl Built {
     pub fn new(name: MethodName, scene: &Scene, leaves: LeafArgs) -> anyhow::Result<Self> {
         Ok(match name {
             MethodName::Lod => Self::Lod,
-            MethodName::Bvh => Self::Bvh(FullBvh::build(&decode(scene), BoxFormat::Box16, leaves.leaf_layout, leaves.leaf_size)?),
-            MethodName::Bvh32 => Self::Bvh(FullBvh::build(&decode(scene), BoxFormat::Box32, leaves.leaf_layout, leaves.leaf_size)?),
-            MethodName::Reference => Self::Reference(decode(scene)),
+            MethodName::Bvh => Self::Bvh(full_bvh(scene, leaves, false)?),
+            MethodName::Bvh32 => Self::Bvh(full_bvh(scene, leaves, true)?),
+            MethodName::Reference => Self::Reference(Reference::new(&scene.decode())),
         })
     }
 
@@ -108,9 +107,14 @@ impl Built {
         match self {
             Self::Lod => shoot(&Method::Lod(LodImage::of(scene)), scene, space, camera, delta, what),
             Self::Bvh(bvh) => shoot(&Method::Bvh(bvh), scene, space, camera, delta, what),
-            Self::Reference(h) => shoot(&Method::Reference(&Reference::new(h)), scene, space, camera, delta, what),
+            Self::Reference(reference) => shoot(&Method::Reference(reference), scene, space, camera, delta, what),
         }
     }
+}
+
+fn full_bvh(scene: &Scene, leaves: LeafArgs, wide_boxes: bool) -> anyhow::Result<FullBvh> {
+    let options = FullOptions { tree: Options::with_leaf(leaves.leaf_size), wide_boxes, layout: leaves.leaf_layout.into() };
+    Ok(FullBvh::build(&scene.decode(), &options)?)
 }
 
 pub fn run(args: &Args) -> anyhow::Result<ExitCode> {

@@ -34,7 +34,7 @@ pub struct ExactHit {
     pub full_node: u32,
     /// Barycentrics on the full-resolution triangle, 2^31 = 1.
     pub full_bary: [u32; 3],
-    /// The determinant was positive: the ray runs along the normal (p1 - p0) x (p2 - p0).
+    /// The determinant was negative: the ray runs against the normal (p1 - p0) x (p2 - p0).
     pub front: bool,
 }
 
@@ -48,9 +48,9 @@ impl ExactHit {
 /// How often a ray crosses the surface, by the sign of the determinant.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Crossings {
-    /// Crossings with a positive determinant.
-    pub front: u32,
     /// Crossings with a negative determinant.
+    pub front: u32,
+    /// Crossings with a positive determinant.
     pub back: u32,
 }
 

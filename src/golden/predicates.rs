@@ -16,7 +16,7 @@ pub(super) struct Meeting {
     w: i128,
     det: i128,
     t_num: i128,
-    /// The determinant was positive before it was made so.
+    /// The determinant was negative before it was made positive.
     pub front: bool,
 }
 
@@ -61,7 +61,7 @@ pub(super) fn meet(d: Vector, a: Vector, b: Vector, c: Vector) -> Option<Meeting
     }
     let t_num = dot(a, cross(b, c));
     let s = det.signum();
-    let met = Meeting { u: u * s, v: v * s, w: w * s, det: det * s, t_num: t_num * s, front: det > 0 };
+    let met = Meeting { u: u * s, v: v * s, w: w * s, det: det * s, t_num: t_num * s, front: det < 0 };
     (met.t_num >= 0).then_some(met)
 }
 
@@ -101,10 +101,10 @@ mod tests {
         let m = shoot([16, 8, 0], [0, 0, 32]).unwrap();
         assert_eq!(m.t(), 2 << 32);
         assert_eq!(m.bary(), [(1 << 31) / 8 * 5, 1 << 29, 1 << 28]);
-        assert!(m.front);
+        assert!(!m.front);
         let back = shoot([16, 8, 128], [0, 0, -48]).unwrap();
         assert_eq!(back.t(), (4u64 << 32) / 3);
-        assert!(!back.front);
+        assert!(back.front);
         assert!(shoot([16, 8, 65], [0, 0, 32]).is_none());
         assert_eq!(shoot([16, 8, 64], [0, 0, 32]).unwrap().t(), 0);
     }

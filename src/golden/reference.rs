@@ -38,7 +38,7 @@ pub struct ReferenceHit {
     pub full_node: u32,
     /// Barycentrics on it.
     pub bary: [f64; 3],
-    /// The ray runs along the normal (p1 - p0) x (p2 - p0), as in [`super::ExactHit::front`].
+    /// The ray runs against the normal (p1 - p0) x (p2 - p0), as in [`super::ExactHit::front`].
     pub front: bool,
 }
 
@@ -72,6 +72,11 @@ struct Moved {
 }
 
 impl Reference {
+    /// Number of splits N of the hierarchy.
+    pub fn levels(&self) -> u32 {
+        self.levels
+    }
+
     /// Copies the full-resolution vertices and builds the hierarchy over them; deterministic.
     pub fn new(h: &Hierarchy) -> Self {
         let limits = |start: f64, pick: fn(f64, f64) -> f64| -> [f64; 3] {
@@ -242,6 +247,6 @@ impl Moved {
         let along = self.direction[self.axes[0]];
         let t = (bary[0] * a[2] + bary[1] * b[2] + bary[2] * c[2]) / along;
         // The axes are turned, not mirrored; a direction against the last one turns the sign of the determinant.
-        (t >= 0.0).then_some((t, bary, (det > 0.0) == (along > 0.0)))
+        (t >= 0.0).then_some((t, bary, (det > 0.0) != (along > 0.0)))
     }
 }

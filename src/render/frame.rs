@@ -16,7 +16,7 @@ pub enum Method<'a> {
     /// Quad-BVH over the full-resolution mesh.
     Bvh(&'a FullBvh),
     /// `f64`, full resolution.
-    Reference(&'a Reference<'a>),
+    Reference(&'a Reference),
 }
 
 impl Method<'_> {
@@ -152,7 +152,7 @@ fn mean(values: impl Iterator<Item = f64>) -> f64 {
 enum Tracer<'a> {
     Lod(LodTraverser<'a>),
     Bvh(BvhTraverser<'a>),
-    Reference(&'a Reference<'a>),
+    Reference(&'a Reference),
 }
 
 impl<'a> Tracer<'a> {

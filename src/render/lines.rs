@@ -70,7 +70,7 @@ mod tests {
             probe.line(Kind::BoundData, line);
         }
         probe.line(Kind::VertexData, 0);
-        assert_eq!(sets.counts(), [0, 0, 3, 1, 0, 0]);
-        assert_eq!(probe.counts.lines, [0, 0, 5, 1, 0, 0]);
+        assert_eq!(sets.counts(), [0, 0, 3, 1, 0]);
+        assert_eq!(probe.counts.lines, [0, 0, 5, 1, 0]);
     }
 }

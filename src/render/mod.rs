@@ -9,5 +9,5 @@ mod shade;
 pub use camera::{Camera, CameraError, DEFAULT_VIEW_ANGLE_DEGREES, View};
 pub use frame::{Frame, FrameStats, Method, Pixel, render};
 pub use lines::LineSets;
-pub use picture::{ImageError, compare, save_png};
+pub use picture::{ImageError, compare, save_png, write_and_rename};
 pub use shade::{error_map, level_map, normal_map, shaded};

@@ -32,10 +32,11 @@ pub fn shaded(frame: &Frame, scene: &Scene, camera: &Camera) -> RgbImage {
     paint(frame, |index, pixel| {
         let Some(pixel) = pixel else { return BACKGROUND };
         let normal = normal(scene, pixel);
+        let material = scene.record(pixel.tree as usize).material.get() as u16;
         let (x, y) = (index as u32 % frame.width, index as u32 / frame.width);
         let view = DVec3::from_array(camera.ray(x, y).direction).as_vec3();
         let cosine = normal.dot(view).abs();
-        scene.colour(pixel.tree).map_or(GREY, Vec3::from_array) * (0.06 + 0.94 * cosine)
+        scene.colour(material).map_or(GREY, Vec3::from_array) * (0.06 + 0.94 * cosine)
     })
 }
 
@@ -72,7 +73,7 @@ pub fn error_map(a: &RgbImage, b: &RgbImage) -> RgbImage {
 fn normal(scene: &Scene, pixel: &Pixel) -> Vec3 {
     let levels = scene.levels();
     let corners = lattice::node(levels, levels, pixel.full_node);
-    let sum: Vec3 = (0..3).map(|k| Vec3::from_array(scene.normal_at(pixel.tree, corners[k])) * pixel.full_bary[k]).sum();
+    let sum: Vec3 = (0..3).map(|k| Vec3::from_array(scene.normal_at(pixel.tree as usize, corners[k])) * pixel.full_bary[k]).sum();
     sum.normalize_or_zero()
 }
 

@@ -14,5 +14,5 @@ pub use hit::{ClosestHit, Crossings, Hit, HitSink, TriangleId};
 pub use lod::{LodImage, LodTraverser};
 pub use model_space::{ModelRay, ModelSpace, WorldRay};
 pub use probe::{Kind, NoProbe, Probe, RayCounts, Section};
-pub use quad_bvh::BvhTraverser;
+pub use quad_bvh::{BvhTraverser, bvh_sections};
 pub use stack::{Entry, Op, STACK_ENTRIES, TraversalStack};

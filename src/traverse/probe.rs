@@ -14,15 +14,13 @@ pub enum Kind {
     BoundData,
     /// Inserted vertices.
     VertexData,
-    /// Leaf of the full-resolution BVH: index triples, packed triangles or triangle lines.
+    /// Triangles of the full-resolution BVH: index triples and vertices, packed triangles or triangle lines.
     Leaf,
-    /// Shared vertices of an indexed leaf.
-    LeafVertex,
 }
 
 impl Kind {
     /// All kinds, in order of declaration.
-    pub const ALL: [Self; 6] = [Self::BvhNode, Self::L0Record, Self::BoundData, Self::VertexData, Self::Leaf, Self::LeafVertex];
+    pub const ALL: [Self; 5] = [Self::BvhNode, Self::L0Record, Self::BoundData, Self::VertexData, Self::Leaf];
 
     /// Name in reports.
     pub const fn name(self) -> &'static str {
@@ -32,7 +30,6 @@ impl Kind {
             Self::BoundData => "bound_data",
             Self::VertexData => "vertex_data",
             Self::Leaf => "leaf",
-            Self::LeafVertex => "leaf_vertex",
         }
     }
 }

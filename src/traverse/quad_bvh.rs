@@ -2,13 +2,13 @@
 
 use super::lod::{is_beyond, push_sorted, quarter, read_pair};
 use super::stack::{Entry, Op, TraversalStack};
-use super::{HitSink, Kind, Probe, TriangleId};
+use super::{HitSink, Kind, Probe, Section, TriangleId};
 use crate::block::Block;
 use crate::block::box_test::{self, BoxTest};
 use crate::block::box_test32::{self, BoxTest32};
 use crate::block::ray_setup::{self, RaySetup};
 use crate::block::tri_test::{self, TriTest};
-use crate::bvh::{BvhChild32, FullBvh, LeafLayout, Nodes};
+use crate::bvh::{BvhChild32, FullBvh, FullNodes, LINE_BYTES};
 use crate::format::{BvhChild, ChildRef};
 use crate::num::{Point, Ray, U, Wire};
 
@@ -16,6 +16,12 @@ use crate::num::{Point, Ray, U, Wire};
 pub struct BvhTraverser<'a> {
     bvh: &'a FullBvh,
     stack: TraversalStack,
+}
+
+/// The sections of a full-resolution BVH's memory.
+pub fn bvh_sections(bvh: &FullBvh) -> Vec<Section> {
+    let section = |kind, bytes: u64| Section { kind, lines: bytes.div_ceil(LINE_BYTES) };
+    vec![section(Kind::BvhNode, bvh.nodes.bytes()), section(Kind::Leaf, bvh.leaves.bytes())]
 }
 
 impl<'a> BvhTraverser<'a> {
@@ -60,7 +66,7 @@ impl<'a> BvhTraverser<'a> {
         let waiting =
             |child: ChildRef| Entry { kind: U::new(child.kind.get() - 1), level: U::new(child.count.get()), index: child.index, ..Entry::default() };
         match &self.bvh.nodes {
-            Nodes::Box16(nodes) => {
+            FullNodes::Boxes16(nodes) => {
                 read_pair(probe, Kind::BvhNode, index);
                 for k in 0..4 {
                     let BvhChild { child, bounds } = quarter(&nodes[index], k);
@@ -70,7 +76,7 @@ impl<'a> BvhTraverser<'a> {
                     }
                 }
             }
-            Nodes::Box32(nodes) => {
+            FullNodes::Boxes32(nodes) => {
                 read_pair(probe, Kind::BvhNode, 2 * index);
                 read_pair(probe, Kind::BvhNode, 2 * index + 1);
                 for k in 0..4 {
@@ -87,14 +93,14 @@ impl<'a> BvhTraverser<'a> {
 
     #[inline(always)]
     fn leaf<P: Probe, H: HitSink>(&mut self, ray: &Ray, slot: usize, probe: &mut P, sink: &mut H) {
-        self.bvh.leaves.lines(slot, |kind, line| probe.line(kind, line));
+        self.bvh.leaves.lines(slot, |address| probe.line(Kind::Leaf, address / LINE_BYTES));
         probe.triangle();
         let (points, id) = self.bvh.leaves.triangle(slot);
         let [p0, p1, p2] = points.map(Point::from_i32);
         let test = TriTest::eval(&tri_test::In { ray: *ray, p0, p1, p2 });
         if test.hit {
             let levels = self.bvh.levels;
-            let [tree, node] = [id >> (2 * levels), id & ((1 << (2 * levels)) - 1)].map(|v| v as u32); // 28 and 20 bits
+            let (tree, node) = (id >> (2 * levels), id & ((1 << (2 * levels)) - 1));
             sink.offer(TriangleId { tree, level: levels, node }, &test);
         }
     }
