@@ -11,6 +11,7 @@
 //! [`block::box_test`] and [`block::child_sort`] choose where to go next; if it does, [`block::tri_test`] and
 //! [`block::hit_divide`] find the hit and [`block::bary_map`] maps it to the full-resolution mesh.
 
+pub mod bvh;
 pub mod format;
 pub mod mesh;
 pub mod num;
