@@ -3,8 +3,8 @@
 //! `LODRAY_TERRAIN_LEVELS` makes the scene smaller for a quick look.
 
 use criterion::{Criterion, Throughput, criterion_group, criterion_main};
-use lodray::bvh::{BoxFormat, FullBvh, LeafLayout, over_trees};
-use lodray::format;
+use lodray::bvh::{FullBvh, FullOptions, LeafLayout, Options as TreeOptions, over_trees};
+use lodray::format::{self, SceneInfo};
 use lodray::mesh::procedural::{self, Options};
 use lodray::num::Ray;
 use lodray::render::{Camera, View};
@@ -18,7 +18,7 @@ fn benches(c: &mut Criterion) {
     let levels = std::env::var("LODRAY_TERRAIN_LEVELS").ok().and_then(|v| v.parse().ok());
     let options = Options { levels, ..Options::new(procedural::Scene::Terrain) };
     let surface = procedural::generate(&options).expect("options");
-    let scene = format::build(&surface, "terrain", serde_json::Value::Null, over_trees).expect("a scene");
+    let scene = format::build(&surface, SceneInfo::default(), over_trees).expect("a scene");
     drop(surface);
     let space = ModelSpace::of(&scene);
     let camera = Camera::new(&View { distance: Some(2.0), ..View::default() }, &space, 1024, 1024).expect("a view");
@@ -38,7 +38,7 @@ fn benches(c: &mut Criterion) {
     group.throughput(Throughput::Elements(rays.len() as u64)).sample_size(20);
     group.bench_function("lod, hitting rays", |b| b.iter(|| rays.iter().filter(|r| black_box(hit_by(r)).is_some()).count()));
 
-    let bvh = FullBvh::build(&format::decode(&scene), BoxFormat::Box16, LeafLayout::Line, 4).expect("a valid model");
+    let bvh = FullBvh::build(&scene.decode(), &FullOptions { tree: TreeOptions::with_leaf(4), wide_boxes: false, layout: LeafLayout::Line }).expect("a valid model");
     let mut traverser = BvhTraverser::new(&bvh);
     group.bench_function("16-bit quad-BVH, hitting rays", |b| {
         b.iter(|| {

@@ -2,9 +2,9 @@
 
 mod common;
 
-use common::{Rng, ball, cone, model, octahedron, terrain};
-use lodray::bvh::{BoxFormat, FullBvh, LeafLayout};
-use lodray::format::{self, Scene};
+use common::{Rng, ball, build, cone, model, octahedron, scene_of, terrain};
+use lodray::bvh::{FullBvh, FullOptions, LeafLayout, Options as TreeOptions};
+use lodray::format::Scene;
 use lodray::golden::exact::{Exact, ExactHit};
 use lodray::mesh::Hierarchy;
 use lodray::mesh::procedural::{self, Options};
@@ -63,17 +63,13 @@ impl Bench<'_> {
     }
 }
 
-fn scene_of(h: &Hierarchy) -> Scene {
-    format::encode_hierarchy(h, "test", lodray::bvh::over_trees).expect("a valid model")
-}
-
 fn full_bvhs(h: &Hierarchy) -> Vec<FullBvh> {
-    let build = |format, layout, size| FullBvh::build(h, format, layout, size).expect("a valid model");
-    vec![
-        build(BoxFormat::Box16, LeafLayout::Line, 4),
-        build(BoxFormat::Box16, LeafLayout::Indexed, 2),
-        build(BoxFormat::Box32, LeafLayout::Packed, 1),
-    ]
+    let variants = [(false, LeafLayout::Line, 4), (false, LeafLayout::Indexed, 2), (true, LeafLayout::Packed, 1)];
+    let build = |(wide_boxes, layout, size)| {
+        let options = FullOptions { tree: TreeOptions::with_leaf(size), wide_boxes, layout };
+        FullBvh::build(h, &options).expect("a valid model")
+    };
+    variants.map(build).into()
 }
 
 /// Runs `rays` through everything on one model; gives how many hit.
@@ -195,8 +191,8 @@ fn procedural_scenes() {
     for (kind, base, levels) in [(Terrain, 32, 4), (Cloth, 32, 3), (Sphere, 32, 4), (Spikes, 32, 3), (Room, 64, 2)] {
         let options = Options { levels: Some(levels), base: Some(base), ..Options::new(kind) };
         let surface = procedural::generate(&options).expect("options");
-        let scene = format::build(&surface, "test", serde_json::Value::Null, lodray::bvh::over_trees).expect("a scene");
-        let h = format::decode(&scene);
+        let scene = build(&surface);
+        let h = scene.decode();
         let mut all = camera_rays(&scene, 24);
         all.extend(rays(&h, 3000, 5));
         let tried = all.len();

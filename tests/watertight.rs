@@ -2,9 +2,8 @@
 
 mod common;
 
-use common::ball;
-use lodray::bvh::over_trees;
-use lodray::format::{self, Scene};
+use common::{ball, build, scene_of};
+use lodray::format::Scene;
 use lodray::mesh::Hierarchy;
 use lodray::mesh::procedural::{self, Options};
 use lodray::report::crack::{Closedness, CrackReport, closedness, measure};
@@ -28,14 +27,14 @@ fn closed_models_have_neither_misses_nor_double_hits() {
     let mut models: Vec<(String, Hierarchy, Scene)> = Vec::new();
     for (levels, roughness) in [(0, 0.3), (1, 1.0), (3, 0.1), (3, 2.0), (5, 0.6)] {
         let h = ball(levels, roughness, u64::from(levels));
-        let scene = format::encode_hierarchy(&h, "ball", over_trees).expect("a valid model");
+        let scene = scene_of(&h);
         models.push((format!("ball N = {levels}, roughness {roughness}"), h, scene));
     }
     for kind in [procedural::Scene::Sphere, procedural::Scene::Spikes] {
         let options = Options { levels: Some(4), base: Some(128), ..Options::new(kind) };
         let surface = procedural::generate(&options).expect("options");
-        let scene = format::build(&surface, "closed", serde_json::Value::Null, over_trees).expect("a scene");
-        models.push((format!("{kind:?}"), format::decode(&scene), scene));
+        let scene = build(&surface);
+        models.push((format!("{kind:?}"), scene.decode(), scene));
     }
 
     let each = total().div_ceil(models.len() as u64);
@@ -62,7 +61,7 @@ fn a_surface_with_a_hole_is_noticed() {
     h.points.truncate(h.triangles.len() * lodray::mesh::lattice::len(2));
     lodray::golden::naive_bounds(&mut h);
     assert_eq!(closedness(&h.triangles), Closedness::Open);
-    let scene = format::encode_hierarchy(&h, "hole", over_trees).expect("a valid model");
+    let scene = scene_of(&h);
     let report = measure(&h, &LodImage::of(&scene), &ModelSpace::of(&scene), true, 20_000, 3, &|_| ());
     assert!(report.breaches() > 100, "a measurement that cannot fail measures nothing");
     assert!(report.first_breach.is_some());

@@ -1,8 +1,10 @@
 //! Small models and rays for tests.
 
 use lodray::{
+    bvh::over_trees,
+    format::{self, Scene, SceneInfo},
     golden::naive_bounds,
-    mesh::{EdgeCodes, Hierarchy, Placement, lattice},
+    mesh::{EdgeCodes, Hierarchy, Placement, Surface, lattice},
     num::{Cone, Ray, U, Vec3, snap},
 };
 
@@ -147,4 +149,22 @@ pub fn ray(origin: [i64; 3], d: [i64; 3], cone: Cone) -> Ray {
 /// The ray along `d` that passes exactly through `p` at parameter 1.
 pub fn ray_through(p: [i64; 3], d: [i64; 3], cone: Cone) -> Ray {
     ray(std::array::from_fn(|k| p[k] - d[k]), d, cone)
+}
+
+/// The scene of a surface.
+pub fn build(surface: &Surface) -> Scene {
+    format::build(surface, SceneInfo::default(), over_trees).expect("a valid surface")
+}
+
+/// The scene of a hierarchy, all normals up.
+pub fn scene_of(h: &Hierarchy) -> Scene {
+    let surface = Surface {
+        levels: h.levels,
+        base_vertices: h.base_vertices,
+        triangles: h.triangles.clone(),
+        normals: vec![[0.0, 0.0, 1.0]; h.points.len()],
+        ..Surface::default()
+    };
+    let nodes = over_trees(&format::tree_boxes(h)).expect("at least one tree");
+    format::encode(h, &surface, SceneInfo::default(), &nodes).expect("a valid model")
 }

@@ -1,0 +1,476 @@
+//! The baseline: a quad-BVH over the full-resolution triangles of a hierarchy, and its leaf triangles in three layouts.
+//!
+//! | layout | bytes | read per triangle |
+//! |---|---|---|
+//! | indexed | 12 per triangle + 12 per vertex | an index triple, three vertices anywhere behind all triples |
+//! | packed | 36 per triangle | nine coordinates across two or three lines |
+//! | line | 32 per triangle | one line of 28-bit coordinates |
+//!
+//! The full-resolution triangle id of each slot is kept beside the layout and charged to none: a design would look it up once per final hit.
+
+use super::{Box32, BvhError, Node16, Node32, Options, build::Prim, build_nodes, check_count, encode16, encode32};
+use crate::format::VertexData;
+use crate::mesh::{Hierarchy, lattice};
+use crate::num::{COORD_LIMIT, MAX_LEVELS, Wire};
+use rayon::prelude::*;
+
+/// Bytes of a memory line.
+pub const LINE_BYTES: u64 = 32;
+
+/// How leaf triangles lie in memory.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum LeafLayout {
+    /// Index triples of 12 bytes, then shared vertices of 12 bytes from the next line on, in the order in which the leaves first use them.
+    Indexed,
+    /// Nine 32-bit coordinates, 36 bytes, without gaps.
+    Packed,
+    /// One 32-byte line of 28-bit coordinates ([`VertexData`]).
+    Line,
+}
+
+/// How a [`FullBvh`] is built.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct FullOptions {
+    /// The tree.
+    pub tree: Options,
+    /// 32-bit instead of 16-bit boxes.
+    pub wide_boxes: bool,
+    /// The leaves.
+    pub layout: LeafLayout,
+}
+
+/// Nodes in one of the two encodings; node 0 is the root.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum FullNodes {
+    /// 64 bytes each.
+    Boxes16(Vec<Node16>),
+    /// 128 bytes each.
+    Boxes32(Vec<Node32>),
+}
+
+impl FullNodes {
+    /// Number of nodes.
+    pub fn len(&self) -> usize {
+        match self {
+            Self::Boxes16(n) => n.len(),
+            Self::Boxes32(n) => n.len(),
+        }
+    }
+
+    /// Never: there is a root.
+    pub fn is_empty(&self) -> bool {
+        self.len() == 0
+    }
+
+    /// Memory in bytes.
+    pub fn bytes(&self) -> u64 {
+        match self {
+            Self::Boxes16(n) => size_of_val(n.as_slice()) as u64,
+            Self::Boxes32(n) => size_of_val(n.as_slice()) as u64,
+        }
+    }
+}
+
+/// Quad-BVH over the full-resolution triangles of a hierarchy; leaf references count slots of `leaves`.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct FullBvh {
+    /// The nodes.
+    pub nodes: FullNodes,
+    /// The triangles.
+    pub leaves: Leaves,
+}
+
+/// Triangles in the order of the tree's leaves, each with a slot.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Leaves {
+    storage: Storage,
+    /// Full-resolution triangle id of each slot.
+    ids: Vec<u32>,
+}
+
+#[derive(Clone, Debug, PartialEq, Eq)]
+enum Storage {
+    Indexed { triples: Vec<[u32; 3]>, vertices: Vec<[i32; 3]> },
+    Packed(Vec<[i32; 9]>),
+    Line(Vec<[u64; 4]>),
+}
+
+impl FullBvh {
+    /// Builds over `hierarchy`.
+    ///
+    /// # Errors
+    /// No or too many triangles, too many levels, points missing or beyond the coordinate limit, or illegal options.
+    pub fn build(hierarchy: &Hierarchy, options: &FullOptions) -> Result<Self, BvhError> {
+        let mesh = Finest::new(hierarchy)?;
+        let depth = super::MAX_DEPTH;
+        let (nodes, ids) = if options.wide_boxes {
+            let (nodes, ids) = build_nodes(mesh.primitives(), &options.tree, depth, encode32)?;
+            (FullNodes::Boxes32(nodes), ids)
+        } else {
+            let (nodes, ids) = build_nodes(mesh.primitives(), &options.tree, depth, encode16)?;
+            (FullNodes::Boxes16(nodes), ids)
+        };
+        Ok(Self { nodes, leaves: Leaves::gather(&mesh, ids, options.layout) })
+    }
+
+    /// The same leaves in another layout; the nodes stay valid. `hierarchy` is the one this was built over.
+    ///
+    /// # Errors
+    /// A hierarchy of another size, as [`BvhError::Points`], or one that could not be built over.
+    pub fn relayout(&self, hierarchy: &Hierarchy, layout: LeafLayout) -> Result<Leaves, BvhError> {
+        let mesh = Finest::new(hierarchy)?;
+        if mesh.count() != self.leaves.len() {
+            return Err(BvhError::Points { points: hierarchy.points.len(), expected: self.leaves.len() as u64 });
+        }
+        Ok(Leaves::gather(&mesh, self.leaves.ids.clone(), layout))
+    }
+
+    /// Memory of nodes and leaves in bytes.
+    pub fn bytes(&self) -> u64 {
+        self.nodes.bytes() + self.leaves.bytes()
+    }
+}
+
+impl Leaves {
+    /// Stores the triangles `ids` (all below the mesh's count) in this order.
+    fn gather(mesh: &Finest<'_>, ids: Vec<u32>, layout: LeafLayout) -> Self {
+        let storage = match layout {
+            LeafLayout::Indexed => indexed(mesh, &ids),
+            LeafLayout::Packed => Storage::Packed(ids.par_iter().map(|&id| flat(mesh.triangle(id))).collect()),
+            LeafLayout::Line => {
+                let line = |&id: &u32| {
+                    let mut words = [0; 4];
+                    VertexData::from_points(mesh.triangle(id)).to_words(&mut words);
+                    words
+                };
+                Storage::Line(ids.par_iter().map(line).collect())
+            }
+        };
+        Self { storage, ids }
+    }
+
+    /// The layout.
+    pub fn layout(&self) -> LeafLayout {
+        match self.storage {
+            Storage::Indexed { .. } => LeafLayout::Indexed,
+            Storage::Packed(_) => LeafLayout::Packed,
+            Storage::Line(_) => LeafLayout::Line,
+        }
+    }
+
+    /// Number of slots.
+    pub fn len(&self) -> usize {
+        self.ids.len()
+    }
+
+    /// Never: there is at least one triangle.
+    pub fn is_empty(&self) -> bool {
+        self.ids.is_empty()
+    }
+
+    /// The triangle in `slot` (below [`Leaves::len`]) in units, read from its stored form, and its full-resolution id.
+    #[inline]
+    pub fn triangle(&self, slot: usize) -> ([[i32; 3]; 3], u32) {
+        let corners = match &self.storage {
+            Storage::Indexed { triples, vertices } => triples[slot].map(|v| vertices[v as usize]),
+            Storage::Packed(records) => {
+                let r = &records[slot];
+                [[r[0], r[1], r[2]], [r[3], r[4], r[5]], [r[6], r[7], r[8]]]
+            }
+            // Stored coordinates have 28 + 4 bits.
+            Storage::Line(lines) => VertexData::from_words(&lines[slot]).points().map(|p| p.get().map(|c| c as i32)),
+        };
+        (corners, self.ids[slot])
+    }
+
+    /// Byte addresses, relative to the start of the leaf section and multiples of [`LINE_BYTES`], of the lines read for the triangle in `slot`
+    /// (below [`Leaves::len`]): each line once, in the order in which it is first needed. At most eight.
+    #[inline]
+    pub fn lines(&self, slot: usize, mut read: impl FnMut(u64)) {
+        match &self.storage {
+            Storage::Indexed { triples, .. } => {
+                let mut seen = [0u64; 8];
+                let mut count = 0;
+                let mut touch = |first_byte: u64| {
+                    // Twelve bytes lie in one or two lines.
+                    let lines = [first_byte & !(LINE_BYTES - 1), (first_byte + 11) & !(LINE_BYTES - 1)];
+                    for line in lines {
+                        if !seen[..count].contains(&line) {
+                            seen[count] = line;
+                            count += 1;
+                            read(line);
+                        }
+                    }
+                };
+                touch(12 * slot as u64);
+                let vertices = vertex_section(triples.len());
+                for v in triples[slot] {
+                    touch(vertices + 12 * u64::from(v));
+                }
+            }
+            Storage::Packed(_) => {
+                let first = 36 * slot as u64;
+                let mut line = first & !(LINE_BYTES - 1);
+                while line < first + 36 {
+                    read(line);
+                    line += LINE_BYTES;
+                }
+            }
+            Storage::Line(_) => read(LINE_BYTES * slot as u64),
+        }
+    }
+
+    /// Memory of the leaf section in bytes, ids not counted.
+    pub fn bytes(&self) -> u64 {
+        match &self.storage {
+            Storage::Indexed { triples, vertices } => vertex_section(triples.len()) + 12 * vertices.len() as u64,
+            Storage::Packed(records) => 36 * records.len() as u64,
+            Storage::Line(lines) => LINE_BYTES * lines.len() as u64,
+        }
+    }
+
+    /// Number of shared vertices of the indexed layout; three per triangle in the others.
+    pub fn vertices(&self) -> usize {
+        match &self.storage {
+            Storage::Indexed { vertices, .. } => vertices.len(),
+            _ => 3 * self.len(),
+        }
+    }
+}
+
+/// Where the vertices start behind this many index triples.
+fn vertex_section(triples: usize) -> u64 {
+    (12 * triples as u64).next_multiple_of(LINE_BYTES)
+}
+
+fn flat([a, b, c]: [[i32; 3]; 3]) -> [i32; 9] {
+    [a[0], a[1], a[2], b[0], b[1], b[2], c[0], c[1], c[2]]
+}
+
+/// The full-resolution triangles of a hierarchy.
+struct Finest<'a> {
+    points: &'a [[i32; 3]],
+    trees: usize,
+    levels: u32,
+    /// Points per tree.
+    stride: usize,
+    /// Lattice indices of the corners of every triangle of one tree: the same for all.
+    corners: Vec<[u32; 3]>,
+}
+
+impl<'a> Finest<'a> {
+    fn new(hierarchy: &'a Hierarchy) -> Result<Self, BvhError> {
+        let levels = hierarchy.levels;
+        if levels > MAX_LEVELS {
+            return Err(BvhError::Levels(levels));
+        }
+        let trees = hierarchy.triangles.len();
+        let stride = lattice::len(levels);
+        check_count((trees as u64).saturating_mul(1 << (2 * levels)))?;
+        if hierarchy.points.len() != trees * stride {
+            return Err(BvhError::Points { points: hierarchy.points.len(), expected: (trees * stride) as u64 });
+        }
+        let too_far = |p: &[i32; 3]| p.iter().any(|c| c.unsigned_abs() > COORD_LIMIT.unsigned_abs());
+        if let Some(bad) = hierarchy.points.par_iter().position_first(too_far) {
+            return Err(BvhError::IllegalBox(bad / stride));
+        }
+        let mut corners = Vec::with_capacity(1 << (2 * levels));
+        list_corners(levels, levels, lattice::root(levels), &mut corners);
+        Ok(Self { points: &hierarchy.points, trees, levels, stride, corners })
+    }
+
+    /// Number of triangles, at most 2^28.
+    fn count(&self) -> usize {
+        self.trees << (2 * self.levels)
+    }
+
+    /// Indices of the corners of a triangle among all points, which number fewer than 2^30.
+    #[inline]
+    fn corners(&self, id: u32) -> [u32; 3] {
+        let per_tree = 2 * self.levels;
+        let first = (id >> per_tree) * self.stride as u32;
+        self.corners[(id & ((1 << per_tree) - 1)) as usize].map(|c| first + c)
+    }
+
+    #[inline]
+    fn triangle(&self, id: u32) -> [[i32; 3]; 3] {
+        self.corners(id).map(|c| self.points[c as usize])
+    }
+
+    fn primitives(&self) -> Vec<Prim> {
+        (0..self.count() as u32).into_par_iter().map(|id| Prim::new(&Box32::of_triangle(self.triangle(id)), id)).collect()
+    }
+}
+
+/// Appends the corners of the finest triangles below a triangle that `splits` splits remain to.
+fn list_corners(levels: u32, splits: u32, p: [lattice::LatticePoint; 3], out: &mut Vec<[u32; 3]>) {
+    if splits == 0 {
+        return out.push(p.map(|c| lattice::index(levels, c) as u32)); // below 2^20
+    }
+    for k in 0..4 {
+        list_corners(levels, splits - 1, lattice::child(p, k), out);
+    }
+}
+
+/// Shares the vertices: those inside a tree by their place in its lattice, those on the borders of trees by position.
+fn indexed(mesh: &Finest<'_>, ids: &[u32]) -> Storage {
+    const UNUSED: u32 = u32::MAX;
+    let m = 1u32 << mesh.levels;
+    let border = |k: u32| [(k, 0), (0, k), (m - k, k)].map(|c| lattice::index(mesh.levels, c));
+    let mut on_border: Vec<usize> = (0..=m).flat_map(border).collect();
+    on_border.sort_unstable();
+    on_border.dedup();
+    let mut shared: Vec<([i32; 3], u32)> = (0..mesh.trees)
+        .into_par_iter()
+        .flat_map_iter(|t| on_border.iter().map(move |c| t * mesh.stride + c))
+        .map(|at| (mesh.points[at], at as u32)) // fewer than 2^30 points
+        .collect();
+    shared.par_sort_unstable();
+    let mut same: Vec<u32> = (0..mesh.points.len() as u32).into_par_iter().collect();
+    for run in shared.chunk_by(|a, b| a.0 == b.0) {
+        for &(_, at) in run {
+            same[at as usize] = run[0].1;
+        }
+    }
+    drop(shared);
+
+    let mut triples: Vec<[u32; 3]> = ids.par_iter().map(|&id| mesh.corners(id).map(|c| same[c as usize])).collect();
+    drop(same);
+    let mut renamed = vec![UNUSED; mesh.points.len()];
+    let mut vertices = Vec::new();
+    for v in triples.iter_mut().flatten() {
+        let at = *v as usize;
+        if renamed[at] == UNUSED {
+            renamed[at] = vertices.len() as u32; // no more than points
+            vertices.push(mesh.points[at]);
+        }
+        *v = renamed[at];
+    }
+    Storage::Indexed { triples, vertices }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::bvh::check::synthetic_terrain;
+    use crate::format::{BvhChild, ChildRef};
+    use std::collections::BTreeSet;
+
+    const LAYOUTS: [LeafLayout; 3] = [LeafLayout::Indexed, LeafLayout::Packed, LeafLayout::Line];
+
+    fn options(max_leaf: u32, wide_boxes: bool, layout: LeafLayout) -> FullOptions {
+        FullOptions { tree: Options::with_leaf(max_leaf), wide_boxes, layout }
+    }
+
+    #[test]
+    fn every_layout_gives_every_triangle_once() {
+        for levels in [0, 1, 4] {
+            let h = synthetic_terrain(3, levels);
+            for max_leaf in [1, 2, 4] {
+                let built = FullBvh::build(&h, &options(max_leaf, false, LeafLayout::Line)).unwrap();
+                for layout in LAYOUTS {
+                    let leaves = built.relayout(&h, layout).unwrap();
+                    assert_eq!(leaves.layout(), layout);
+                    assert_eq!(FullBvh::build(&h, &options(max_leaf, false, layout)).unwrap().leaves, leaves);
+                    let mut seen = BTreeSet::new();
+                    for slot in 0..leaves.len() {
+                        let (corners, id) = leaves.triangle(slot);
+                        let (tree, i) = (id >> (2 * levels), id & ((1 << (2 * levels)) - 1));
+                        let want = lattice::node(levels, levels, i).map(|c| h.tree(tree as usize)[lattice::index(levels, c)]);
+                        assert_eq!(corners, want);
+                        assert!(seen.insert(id));
+                    }
+                    assert_eq!(seen.len() as u64, h.finest_triangles());
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn indexed_vertices_are_shared_and_in_order_of_first_use() {
+        let (quads, levels) = (3, 3);
+        let h = synthetic_terrain(quads, levels);
+        let full = FullBvh::build(&h, &options(2, false, LeafLayout::Indexed)).unwrap();
+        let side = (quads as usize) << levels;
+        assert_eq!(full.leaves.vertices(), (side + 1) * (side + 1));
+        let Storage::Indexed { triples, vertices } = &full.leaves.storage else { panic!("wrong layout") };
+        let mut next = 0;
+        for &v in triples.iter().flatten() {
+            assert!(v <= next);
+            next = next.max(v + 1);
+        }
+        assert_eq!(next as usize, vertices.len());
+    }
+
+    #[test]
+    fn lines_are_those_of_the_records() {
+        let h = synthetic_terrain(2, 3);
+        for layout in LAYOUTS {
+            let leaves = FullBvh::build(&h, &options(4, false, layout)).unwrap().leaves;
+            for slot in 0..leaves.len() {
+                let mut lines = Vec::new();
+                leaves.lines(slot, |l| lines.push(l));
+                let mut bytes = BTreeSet::new();
+                let mut record = |from: u64, len: u64| bytes.extend((from..from + len).map(|b| b / 32 * 32));
+                match &leaves.storage {
+                    Storage::Indexed { triples, .. } => {
+                        record(12 * slot as u64, 12);
+                        let first = (12 * triples.len() as u64).div_ceil(32) * 32;
+                        triples[slot].iter().for_each(|v| record(first + 12 * u64::from(*v), 12));
+                    }
+                    Storage::Packed(_) => record(36 * slot as u64, 36),
+                    Storage::Line(_) => record(32 * slot as u64, 32),
+                }
+                assert_eq!(lines.len(), bytes.len());
+                assert_eq!(lines.into_iter().collect::<BTreeSet<_>>(), bytes);
+                assert!(bytes.iter().all(|l| *l < leaves.bytes()));
+            }
+        }
+    }
+
+    #[test]
+    fn both_box_widths_refer_to_the_same_and_16_bits_contain_32() {
+        let h = synthetic_terrain(4, 4);
+        let FullNodes::Boxes16(narrow) = FullBvh::build(&h, &options(4, false, LeafLayout::Line)).unwrap().nodes else { panic!("16") };
+        let FullNodes::Boxes32(wide) = FullBvh::build(&h, &options(4, true, LeafLayout::Line)).unwrap().nodes else { panic!("32") };
+        assert_eq!(narrow.len(), wide.len());
+        let mut children = 0;
+        for (n, w) in narrow.iter().zip(&wide) {
+            for k in 0..4 {
+                let n = BvhChild::from_words(&n[2 * k..]);
+                let w = super::super::BvhChild32::from_words(&w[4 * k..]);
+                assert_eq!(n.child, w.child);
+                if n.child.kind.get() == ChildRef::EMPTY {
+                    assert_eq!((n, w), Default::default());
+                    continue;
+                }
+                children += 1;
+                let (lo, hi, wide_lo, wide_hi) = (n.bounds.lo.get(), n.bounds.hi.get(), w.lo.get(), w.hi.get());
+                for a in 0..3 {
+                    assert!(lo[a] << 16 <= wide_lo[a] && wide_lo[a] - (lo[a] << 16) < 65_536);
+                    assert!(hi[a] << 16 >= wide_hi[a] && (hi[a] << 16) - wide_hi[a] < 65_536);
+                }
+            }
+        }
+        assert!(children > 2000, "only {children} children");
+    }
+
+    #[test]
+    fn hierarchies_that_do_not_add_up_are_refused() {
+        let good = synthetic_terrain(2, 2);
+        let o = options(4, false, LeafLayout::Line);
+        let mut h = good.clone();
+        h.points.pop();
+        assert!(matches!(FullBvh::build(&h, &o), Err(BvhError::Points { .. })));
+        let mut h = good.clone();
+        (h.triangles, h.points) = (vec![], vec![]);
+        assert_eq!(FullBvh::build(&h, &o), Err(BvhError::Empty));
+        let mut h = good.clone();
+        h.levels = 11;
+        assert_eq!(FullBvh::build(&h, &o), Err(BvhError::Levels(11)));
+        let mut h = good.clone();
+        h.points[20][1] = i32::MIN;
+        assert_eq!(FullBvh::build(&h, &o), Err(BvhError::IllegalBox(1)));
+        assert!(FullBvh::build(&good, &o).unwrap().relayout(&synthetic_terrain(3, 2), LeafLayout::Packed).is_err());
+    }
+}

@@ -1,0 +1,245 @@
+//! Floor 2: the quad-BVH over base triangles, and over full-resolution triangles for the baseline.
+//!
+//! A binary tree by the surface area heuristic (binned, exact for small ranges) down to single primitives; collapsed to four children per
+//! node by dynamic programming, which also chooses the leaves; written as 64-byte nodes (16-bit boxes) or 128-byte nodes (32-bit boxes).
+//! The result depends on the input alone: not on the number of threads, nor on the machine.
+
+mod build;
+mod check;
+mod collapse;
+mod encode;
+mod leaves;
+
+pub use check::{Defect, check, sah_cost};
+pub use encode::{BvhChild32, Node16, Node32, encode16, encode32};
+pub use leaves::{FullBvh, FullNodes, FullOptions, LINE_BYTES, LeafLayout, Leaves};
+
+use crate::format::Box16;
+use crate::num::COORD_LIMIT;
+use rayon::prelude::*;
+use thiserror::Error;
+
+/// Largest number of nodes on a path from the root to a leaf, whatever the input.
+pub const MAX_DEPTH: u32 = 24;
+/// Largest number of primitives: references hold 28 bits.
+pub const MAX_PRIMITIVES: usize = 1 << 28;
+
+/// A box in units: `lo <= hi`, both at most [`COORD_LIMIT`] in magnitude.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub struct Box32 {
+    /// Lower corner.
+    pub lo: [i32; 3],
+    /// Upper corner.
+    pub hi: [i32; 3],
+}
+
+impl Box32 {
+    /// The smallest box around three points.
+    #[inline]
+    pub fn of_triangle(p: [[i32; 3]; 3]) -> Self {
+        Self {
+            lo: std::array::from_fn(|k| p[0][k].min(p[1][k]).min(p[2][k])),
+            hi: std::array::from_fn(|k| p[0][k].max(p[1][k]).max(p[2][k])),
+        }
+    }
+
+    /// The smallest box around both.
+    #[inline]
+    #[must_use]
+    pub fn union(&self, other: &Self) -> Self {
+        Self { lo: std::array::from_fn(|k| self.lo[k].min(other.lo[k])), hi: std::array::from_fn(|k| self.hi[k].max(other.hi[k])) }
+    }
+
+    /// Whether `inner` lies in this box, borders included.
+    #[inline]
+    pub fn contains(&self, inner: &Self) -> bool {
+        (0..3).all(|k| self.lo[k] <= inner.lo[k] && inner.hi[k] <= self.hi[k])
+    }
+
+    /// Half the surface area, in square units; a flat box may have none.
+    #[inline]
+    pub fn half_area(&self) -> f64 {
+        // f64 before the difference: it needs 33 bits.
+        let [x, y, z]: [f64; 3] = std::array::from_fn(|k| f64::from(self.hi[k]) - f64::from(self.lo[k]));
+        x * y + y * z + z * x
+    }
+
+    fn is_legal(&self) -> bool {
+        (0..3).all(|k| -COORD_LIMIT <= self.lo[k] && self.lo[k] <= self.hi[k] && self.hi[k] <= COORD_LIMIT)
+    }
+}
+
+/// How the binary tree becomes a quad tree.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
+pub enum Collapse {
+    /// The cheapest of all collapses of the binary tree, by dynamic programming.
+    #[default]
+    Optimal,
+    /// Opens the child of largest area until there are four; leaves as large as allowed. For comparison.
+    Greedy,
+}
+
+/// What the surface area heuristic counts, relative to each other.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Costs {
+    /// One visit of a node: two 32-byte lines, four box tests.
+    pub node: f64,
+    /// One triangle of a leaf: one line or a little more, one triangle test.
+    pub primitive: f64,
+}
+
+impl Default for Costs {
+    /// By lines read, which is what the energy follows: two for a node, one for a triangle.
+    fn default() -> Self {
+        Self { node: 1.0, primitive: 0.5 }
+    }
+}
+
+/// How a quad-BVH is built.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Options {
+    /// Largest number of primitives of a leaf, 1 to 4.
+    pub max_leaf: u32,
+    /// Collapse to four children.
+    pub collapse: Collapse,
+    /// Costs of the heuristic, both positive and finite.
+    pub costs: Costs,
+}
+
+impl Options {
+    /// Leaves of at most `max_leaf` primitives, optimal collapse, default costs.
+    pub fn with_leaf(max_leaf: u32) -> Self {
+        Self { max_leaf, collapse: Collapse::default(), costs: Costs::default() }
+    }
+}
+
+/// Why a quad-BVH could not be built.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Error)]
+pub enum BvhError {
+    /// No primitives.
+    #[error("a quad-BVH needs at least one primitive")]
+    Empty,
+    /// More primitives than references can name.
+    #[error("{0} primitives: a quad-BVH holds at most 2^28")]
+    TooMany(u64),
+    /// A leaf size outside 1 to 4.
+    #[error("leaves hold 1 to 4 primitives, not {0}")]
+    LeafSize(u32),
+    /// Costs that are not positive and finite.
+    #[error("the costs of the surface area heuristic must be positive and finite")]
+    Costs,
+    /// A box whose corners are exchanged or beyond the coordinate limit.
+    #[error("box {0} is inside out or exceeds the coordinate limit")]
+    IllegalBox(usize),
+    /// A hierarchy whose number of points does not fit its number of trees.
+    #[error("the hierarchy has {points} points where {expected} are needed")]
+    Points {
+        /// Number of points there are.
+        points: usize,
+        /// Number of points there should be.
+        expected: u64,
+    },
+    /// A hierarchy with more splits than the format allows.
+    #[error("{0} levels: a hierarchy has at most 10")]
+    Levels(u32),
+}
+
+/// What a child of a node is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
+pub enum Child {
+    /// An unused slot; always after the used ones.
+    #[default]
+    Empty,
+    /// Another node.
+    Inner(u32),
+    /// Primitives `order[first..first + count]`.
+    Leaf {
+        /// Position of the first in the order.
+        first: u32,
+        /// Number of primitives, 1 to 4.
+        count: u8,
+    },
+}
+
+/// A node: up to four children and their boxes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
+pub struct QuadNode {
+    /// The boxes, all zero in an empty slot.
+    pub boxes: [Box32; 4],
+    /// The children.
+    pub children: [Child; 4],
+}
+
+/// A quad-BVH; node 0 is the root.
+///
+/// The inner children of a node stand side by side, followed by everything below the first, then everything below the second, and so on
+/// (depth first with siblings kept together). A leaf's primitives stand in `order` in the order of the tree, left to right.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct QuadTree {
+    /// The nodes.
+    pub nodes: Vec<QuadNode>,
+    /// Primitive indices in leaf order; every index occurs once.
+    pub order: Vec<u32>,
+}
+
+/// Builds the quad-BVH of these boxes; primitive k is `boxes[k]`.
+///
+/// # Errors
+/// No boxes, too many, a box that is inside out or too large, or illegal options.
+pub fn build(boxes: &[Box32], options: &Options) -> Result<QuadTree, BvhError> {
+    check_count(boxes.len() as u64)?;
+    if let Some(bad) = boxes.par_iter().position_first(|b| !b.is_legal()) {
+        return Err(BvhError::IllegalBox(bad));
+    }
+    // Indices fit: at most 2^28.
+    let prims = boxes.par_iter().enumerate().map(|(k, b)| build::Prim::new(b, k as u32)).collect();
+    let (nodes, order) = build_nodes(prims, options, MAX_DEPTH, |n| *n)?;
+    Ok(QuadTree { nodes, order })
+}
+
+/// Nodes over the trees of a scene: leaf index = tree index, one tree per leaf, boxes as given.
+///
+/// # Errors
+/// No trees, too many, or a box that is inside out or uses the codes beyond +-32766.
+pub fn over_trees(boxes: &[Box16]) -> Result<Vec<Node16>, BvhError> {
+    // Codes have 16 bits, so code << 16 fits 32.
+    let wide = |b: &Box16| Box32 { lo: b.lo.get().map(|c| (c << 16) as i32), hi: b.hi.get().map(|c| (c << 16) as i32) };
+    let boxes: Vec<Box32> = boxes.par_iter().map(wide).collect();
+    let tree = build(&boxes, &Options::with_leaf(1))?;
+    let by_tree = |n: &QuadNode| {
+        let name = |c: Child| match c {
+            Child::Leaf { first, count } => Child::Leaf { first: tree.order[first as usize], count },
+            other => other,
+        };
+        encode16(&QuadNode { boxes: n.boxes, children: n.children.map(name) })
+    };
+    Ok(tree.nodes.par_iter().map(by_tree).collect())
+}
+
+fn check_count(count: u64) -> Result<(), BvhError> {
+    match count {
+        0 => Err(BvhError::Empty),
+        n if n > MAX_PRIMITIVES as u64 => Err(BvhError::TooMany(n)),
+        _ => Ok(()),
+    }
+}
+
+/// Builds over legal primitives (1 to [`MAX_PRIMITIVES`]) and turns each node into what `encode` makes of it, so that no second copy of the
+/// nodes is held. `depth` is the bound on the nodes of a path; at least half the logarithm of the count.
+fn build_nodes<T, F>(mut prims: Vec<build::Prim>, options: &Options, depth: u32, encode: F) -> Result<(Vec<T>, Vec<u32>), BvhError>
+where
+    T: Copy + Default + Send,
+    F: Fn(&QuadNode) -> T + Sync,
+{
+    if !(1..=4).contains(&options.max_leaf) {
+        return Err(BvhError::LeafSize(options.max_leaf));
+    }
+    let Costs { node, primitive } = options.costs;
+    if !(node > 0.0 && node.is_finite() && primitive > 0.0 && primitive.is_finite()) {
+        return Err(BvhError::Costs);
+    }
+    let binary = build::binary_tree(&mut prims, options, depth);
+    let nodes = collapse::nodes(&collapse::Source::new(&prims, &binary, options), depth, encode);
+    drop(binary);
+    Ok((nodes, prims.par_iter().map(|p| p.id).collect()))
+}
