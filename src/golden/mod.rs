@@ -12,6 +12,6 @@ mod naive_bounds;
 mod predicates;
 pub mod reference;
 
-pub use exact::{Crossings, Exact, ExactHit};
+pub use exact::{Crossings, Exact, ExactHit, Served};
 pub use naive_bounds::{TrueBounds, naive_bounds, true_bounds};
 pub use reference::{Reference, ReferenceHit};
