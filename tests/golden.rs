@@ -370,6 +370,30 @@ fn the_reference_finds_what_brute_force_finds() {
 }
 
 #[test]
+fn ten_splits_work() {
+    let h = terrain(1, 10, 0.3, 10);
+    let (exact, reference) = (Exact::new(&h), Reference::new(&h));
+    let mut rng = Rng(11);
+    let (mut hits, mut levels) = (0, [0; 11]);
+    for _ in 0..500 {
+        let r = ball_ray(&h, &mut rng).to_small_if_terrain(&h, &mut rng);
+        if let Some(hit) = exact.trace(&r) {
+            levels[hit.level as usize] += 1;
+            assert!(hit.full_node < 1 << 20 && hit.full_node >> (2 * (10 - hit.level)) == hit.node);
+        }
+        let (full, found) = (exact.trace_full(&r), reference.trace(r.origin.get().map(|v| v as f64), r.direction.get().map(|v| v as f64)));
+        if let (Some(e), Some(f)) = (full, found) {
+            hits += 1;
+            assert!((e.t as f64 * length(r.direction.get()) / 4_294_967_296.0 - f.t).abs() < 1.0);
+        } else {
+            assert!(full.is_none() && found.is_none(), "{r:?} {full:?} {found:?}");
+        }
+    }
+    println!("{hits} hits; by level {levels:?}");
+    assert!(hits > 100 && levels.iter().filter(|&&n| n > 0).count() > 5);
+}
+
+#[test]
 fn a_model_without_triangles_is_missed() {
     let h = Hierarchy { triangles: vec![], points: vec![], base_vertices: 0, ..single_triangle() };
     let r = ray([0, 0, 5], [0, 0, -5], Cone::default());
@@ -507,4 +531,11 @@ fn reference_speed() {
         hits += u32::from(reference.trace([rng.signed() * 1e9, rng.signed() * 1e9, 5e8], d.map(|v| v as f64)).is_some());
     }
     println!("{:.0} rays/s, {hits} hits", 1e5 / start.elapsed().as_secs_f64());
+}
+
+#[test]
+fn traversers_serve_many_threads() {
+    fn shared<T: Send + Sync>() {}
+    shared::<Exact<'_>>();
+    shared::<Reference>();
 }

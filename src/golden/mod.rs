@@ -1,7 +1,7 @@
 //! Apart from the floors: the plain exact traverser and the `f64` reference that everything is checked against.
 //!
-//! [`exact`] is the method as a definition: every rounding of `docs/numbers.md`, all else exact, one recursion. [`reference`] is the
-//! full-resolution mesh in `f64`, the truth for image and geometric error. [`naive_bounds`] computes displacement bounds by
+//! [`exact`] is the method as a definition: every rounding of `docs/numbers.md`, all else exact, one recursion. [`mod@reference`] is the
+//! full-resolution mesh in `f64`, the truth for image and geometric error. [`naive_bounds()`] computes displacement bounds by
 //! their definition. Nothing here uses a hardware block, a memory image, or a rounding of [`crate::num`]; only the plain types of `num` and `mesh`.
 
 mod cull;
@@ -12,6 +12,6 @@ mod naive_bounds;
 mod predicates;
 pub mod reference;
 
-pub use exact::{Crossings, Exact, ExactHit};
+pub use exact::{Crossings, Exact, ExactHit, Served};
 pub use naive_bounds::{TrueBounds, naive_bounds, true_bounds};
 pub use reference::{Reference, ReferenceHit};

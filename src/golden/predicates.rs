@@ -139,6 +139,23 @@ mod tests {
     }
 
     #[test]
+    fn each_coefficient_decides_when_those_before_it_vanish() {
+        // In each row the coefficient after the deciding one, or the edge's direction, says the opposite.
+        for (d, p, q, sign) in [
+            ([0, 1, 0], [0, 8, 0], [0, 0, 8], 1),    // n = (64, 0, 0), q - p = (0, -8, 8)
+            ([1, 0, 0], [0, 0, 8], [8, 0, -8], 1),   // n = (0, 64, 0)
+            ([1, 0, 0], [-8, 0, 0], [0, 0, -8], -1), // n = (0, -64, 0), q - p = (8, 0, -8)
+            ([1, 0, 0], [8, 0, 0], [0, 8, 0], 1),    // n = (0, 0, 64), q - p = (-8, 8, 0)
+            ([0, 0, -1], [0, 8, 0], [-8, 0, 0], -1), // E = -64, n = (0, 0, 64)
+            ([5, 6, 7], [2, 0, 0], [-3, 0, 0], -1),  // origin on the edge: its direction -x
+            ([5, 6, 7], [0, 3, -9], [0, 1, -3], -1), // origin on its line: -y before +z
+            ([5, 6, 7], [0, 0, -9], [0, 0, 4], 1),
+        ] {
+            assert_eq!(edge_function(d, p, q).1, sign, "{d:?} {p:?} {q:?}");
+        }
+    }
+
+    #[test]
     fn halves_of_an_edge_keep_its_sign() {
         // Through the origin's line, the plane of the ray, and at large: splitting at the midpoint halves every coefficient.
         for (p, q) in
