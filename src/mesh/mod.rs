@@ -2,6 +2,7 @@
 
 mod hierarchy;
 pub mod lattice;
+pub mod procedural;
 mod surface;
 
 pub use hierarchy::{EdgeCodes, Hierarchy, Placement, edge_index, edges_of_level, edges_of_tree};
