@@ -1,9 +1,9 @@
 //! `terrain`: a fractal heightfield over a square of width 2 centred at the origin, y up.
 //!
 //! Height is a sum of octaves of gradient noise: 2 cells across for the first, twice as many for each further one down to the finest
-//! lattice spacing, amplitude times the gain from one to the next. Each octave is turned against the one before (so that no axis shows)
-//! and has its own offset (so that the zeros of noise do not fall on lattice points). The finest octaves depend on the number of
-//! splits; all others do not, so that fewer splits show the same mountains.
+//! lattice spacing, amplitude times the gain from one to the next. From the fourth on they are also weaker in valleys than on peaks, by
+//! a smooth factor that follows the first three. Each octave is turned against the one before (so that no axis shows) and has its own
+//! offset (so that the zeros of noise do not fall on lattice points). More splits add octaves and change none of the others.
 
 use super::GenerateError;
 use super::base::{Base, Parameter, Shape};
@@ -18,8 +18,8 @@ const SHARPEN: f64 = 0.9;
 const COARSE: usize = 3;
 /// Points at a time.
 const BLOCK: usize = 128;
-/// Places of noise the scene may be slid to; the one with the lowest ground around the camera's place is taken.
-const SLIDES: u32 = 24;
+/// Variants of each seed; the one with the lowest ground around the camera's place is taken.
+const VARIANTS: u32 = 24;
 
 /// One octave: noise coordinates are `turn * (x, z) + offset`.
 #[derive(Clone, Copy)]
@@ -45,16 +45,17 @@ pub(super) fn generate(g: u32, levels: u32, seed: u64, gain: f64) -> Result<Surf
 impl Terrain {
     fn new(steps: u32, seed: u64, gain: f64) -> Self {
         // The view of the paper stands low over (0, 0.25) and looks at the origin: there should be a valley, not the inside of a mountain.
-        let low = |slide: u32| {
-            let coarse = Self::slid(64, seed, slide, gain);
+        let low = |variant: u32| {
+            // Of a fixed size and roughness, so that these change the detail and not the place.
+            let coarse = Self::variant(64, seed, variant, 0.55);
             let ground = |z: f64| coarse.height([0.0, z]);
             ground(0.25).max(ground(0.15)).max(ground(0.35)).max(ground(0.0) - 0.1)
         };
-        let slide = (0..SLIDES).map(|s| (low(s), s)).min_by(|a, b| a.0.total_cmp(&b.0)).map_or(0, |(_, s)| s);
-        Self::slid(steps, seed, slide, gain)
+        let variant = (0..VARIANTS).map(|s| (low(s), s)).min_by(|a, b| a.0.total_cmp(&b.0)).map_or(0, |(_, s)| s);
+        Self::variant(steps, seed, variant, gain)
     }
 
-    fn slid(steps: u32, seed: u64, slide: u32, gain: f64) -> Self {
+    fn variant(steps: u32, seed: u64, variant: u32, gain: f64) -> Self {
         // Cells across: 2, 4, ... up to the steps across, at least one octave.
         let octaves = steps.ilog2().max(1);
         // Cosine and sine of about 36.9 degrees, exact enough to keep the length.
@@ -63,7 +64,7 @@ impl Terrain {
         let mut amplitude = AMPLITUDE;
         let octaves = (0..octaves)
             .map(|n| {
-                let seed = noise::stream(seed, n << 8 | slide);
+                let seed = noise::stream(seed, n << 8 | variant);
                 // In the middle of a cell, and far enough from zero never to matter.
                 let part = |axis| 0.25 + 0.5 * noise::unit(noise::hash(seed, [axis, 0, 0]));
                 let octave = Octave { seed, turn, offset: [part(0), part(1)], amplitude };
@@ -177,4 +178,48 @@ fn weight(c: f64) -> (f64, f64) {
     let t = ((c + 0.22) * 2.0).clamp(0.0, 1.0);
     // A clamped t has slope 0 on both sides.
     (0.3 + 0.8 * t * t * (3.0 - 2.0 * t), 9.6 * t * (1.0 - t))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn normals_are_the_derivatives() {
+        let mut terrain = Terrain::new(128, 4, 0.55);
+        // The finest octave does not count towards normals.
+        terrain.octaves.last_mut().expect("octaves").amplitude = 0.0;
+        let e = 1e-6;
+        for n in 0..500 {
+            let [x, z] = [0, 1].map(|axis| 2.0 * noise::unit(noise::hash(9, [n, axis, 0])) - 1.0);
+            let (mut position, mut normal) = ([[0.0; 3]], [[0.0; 3]]);
+            terrain.block(&[[x, z]], &mut position, &mut normal);
+            let dx = (terrain.height([x + e, z]) - terrain.height([x - e, z])) / (2.0 * e);
+            let dz = (terrain.height([x, z + e]) - terrain.height([x, z - e])) / (2.0 * e);
+            let [a, b, c] = normal[0].map(f64::from);
+            assert!((a / b + dx).abs() < 1e-3 && (c / b + dz).abs() < 1e-3, "{a} {b} {c} {dx} {dz}");
+        }
+    }
+
+    #[test]
+    fn splits_and_gain_change_the_detail_and_not_the_mountains() {
+        let base = |levels, gain| {
+            let s = generate(16, levels, 1, gain).expect("a small terrain");
+            (0..s.triangles.len()).map(|t| s.tree(t)[0][1]).collect::<Vec<_>>()
+        };
+        let reference = base(5, 0.55);
+        for (other, most) in [(base(3, 0.55), 0.02), (base(5, 0.45), 0.12)] {
+            assert!(reference.iter().zip(&other).all(|(a, b)| (a - b).abs() < most));
+        }
+    }
+
+    #[test]
+    fn a_point_alone_is_the_point_of_its_row() {
+        let terrain = Terrain::new(512, 2, 0.6);
+        let (mut positions, mut normals) = ([[0.0; 3]; 300], [[0.0; 3]; 300]);
+        terrain.row([310, 7, 0], [-1, 1, 0], &mut positions, &mut normals);
+        for k in 0..300 {
+            assert_eq!(terrain.point([310 - k, 7 + k, 0]), (positions[k as usize], normals[k as usize]));
+        }
+    }
 }
