@@ -1,5 +1,17 @@
 //! Floor 2: memory images: the lines that the hardware reads, bit for bit, and the scene file that holds them.
 
+mod colour;
+mod decode;
+mod encode;
+mod file;
+pub mod layout;
 mod lines;
+mod normal;
+mod scene;
+mod sections;
 
+pub use encode::{SceneInfo, build, encode, tree_boxes};
 pub use lines::{BoundData, Box16, BvhChild, ChildRef, L0Record, VertexData};
+pub use normal::{decode_normal, encode_normal};
+pub use scene::{Meta, Scene, SceneError};
+pub use sections::{MAGIC, Section, VERSION};

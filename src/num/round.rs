@@ -63,6 +63,55 @@ pub fn bound_encode(scale: BoundScale, bound: u64) -> u16 {
     low
 }
 
+/// Smallest integer not below the length of `d` (each component at most 2^33 in magnitude): [`sqrt_ceil`] of the squared length, faster.
+#[inline]
+pub fn length_ceil(d: [i64; 3]) -> u64 {
+    let squared: u128 = d.iter().map(|c| u128::from(c.unsigned_abs()) * u128::from(c.unsigned_abs())).sum();
+    // The guess is off by at most 1: the root is below 2^34 and an f64 holds it to 2^-18.
+    let guess = d.iter().map(|&c| c as f64 * c as f64).sum::<f64>().sqrt().ceil();
+    let mut root = guess as u64;
+    let square = |r: u64| u128::from(r) * u128::from(r);
+    while square(root) < squared {
+        root += 1;
+    }
+    while root > 0 && square(root - 1) >= squared {
+        root -= 1;
+    }
+    root
+}
+
+/// [`bound_encode`] for many bounds of one scale: a guess and its correction in place of a search.
+#[derive(Clone, Copy, Debug)]
+pub struct BoundEncoder {
+    scale: BoundScale,
+    /// Codes per square root of a unit.
+    factor: f64,
+}
+
+impl BoundEncoder {
+    /// An encoder for this scale.
+    pub fn new(scale: BoundScale) -> Self {
+        let factor = match scale.mantissa.get() {
+            0 => 0.0,                                                                   // every code decodes to 0, so code 0 serves
+            mantissa => (2f64.powi(scale.shift.get() as i32) / mantissa as f64).sqrt(), // shift has 6 bits
+        };
+        Self { scale, factor }
+    }
+
+    /// Smallest code that decodes to at least `bound` units; `bound` at most the scale's largest.
+    #[inline]
+    pub fn encode(&self, bound: u64) -> u16 {
+        let mut code = ((bound as f64).sqrt() * self.factor).min(1023.0) as u16;
+        while code > 0 && bound_decode(self.scale, code - 1) >= bound {
+            code -= 1;
+        }
+        while code < 1023 && bound_decode(self.scale, code) < bound {
+            code += 1;
+        }
+        code
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -106,12 +155,20 @@ mod tests {
         }
 
         #[test]
+        fn length_ceil_is_the_root_of_the_squared_length(d in prop::array::uniform3(-(1i64 << 33)..=1 << 33), bits in 0u32..34) {
+            let d = d.map(|c| c >> bits);
+            let squared: u128 = d.iter().map(|&c| u128::from(c.unsigned_abs()).pow(2)).sum();
+            prop_assert_eq!(length_ceil(d), sqrt_ceil(squared));
+        }
+
+        #[test]
         fn codes_round_up_and_are_tight(largest in 1u64..1 << 33, part in 0.0f64..=1.0) {
             let scale = bound_scale(largest);
             let bound = ((largest as f64 * part) as u64).min(largest);
             let code = bound_encode(scale, bound);
             prop_assert!(bound_decode(scale, code) >= bound);
             prop_assert!(code == 0 || bound_decode(scale, code - 1) < bound);
+            prop_assert_eq!(BoundEncoder::new(scale).encode(bound), code);
         }
     }
 }

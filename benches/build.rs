@@ -1,0 +1,29 @@
+//! Rates of building, writing, opening and auditing a terrain-like scene.
+#![allow(missing_docs)]
+
+#[path = "../tests/common/mod.rs"]
+mod common;
+
+use common::{grid, quad_tree};
+use criterion::{Criterion, Throughput, criterion_group, criterion_main};
+use lodray::format::{Scene, build};
+use lodray::mesh::quantise;
+
+fn build_and_write(c: &mut Criterion) {
+    // 512 trees of 7 splits: 8.4 million triangles.
+    let surface = grid(7, 16);
+    let directory = tempfile::tempdir().expect("a temporary directory");
+    let path = directory.path().join("bench.lod");
+    let mut group = c.benchmark_group("scene");
+    group.sample_size(10).throughput(Throughput::Elements(surface.finest_triangles()));
+    group.bench_function("quantise and bounds", |b| b.iter(|| quantise(&surface).expect("a valid surface")));
+    group.bench_function("build", |b| b.iter(|| build(&surface, common::info("bench"), quad_tree).expect("a valid surface")));
+    group.bench_function("build and write", |b| {
+        b.iter(|| build(&surface, common::info("bench"), quad_tree).and_then(|s| s.save(&path)).expect("written"));
+    });
+    group.bench_function("open", |b| b.iter(|| Scene::open(&path).expect("valid")));
+    group.finish();
+}
+
+criterion_group!(benches, build_and_write);
+criterion_main!(benches);

@@ -1,0 +1,193 @@
+//! A scene: one byte image, owned or mapped from its file, read through typed slices.
+
+use super::sections::{COUNT, Section};
+use super::{layout, normal};
+use crate::mesh::{Placement, SurfaceError, lattice};
+use crate::num::{BoundScale, U};
+use memmap2::{Mmap, MmapMut};
+use serde::{Deserialize, Serialize};
+use std::ops::Range;
+use std::path::PathBuf;
+use thiserror::Error;
+
+#[cfg(target_endian = "big")]
+compile_error!("scene files are mapped as they are: little-endian machines only");
+
+/// Why a scene cannot be built, written or read.
+#[derive(Debug, Error)]
+pub enum SceneError {
+    /// The surface is not fit to build from.
+    #[error(transparent)]
+    Surface(#[from] SurfaceError),
+    /// What the builder was given does not fit together.
+    #[error("scene: {0}")]
+    Build(String),
+    /// The operating system refuses.
+    #[error("{}: {action}: {source}", path.display())]
+    Io {
+        /// The scene file.
+        path: PathBuf,
+        /// What was being done.
+        action: &'static str,
+        /// Its answer.
+        source: std::io::Error,
+    },
+    /// The file is not a valid scene file.
+    #[error("{}: {problem}", path.display())]
+    Invalid {
+        /// The scene file.
+        path: PathBuf,
+        /// What is wrong, naming section and field.
+        problem: String,
+    },
+}
+
+/// The META section: what the images do not say themselves.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Meta {
+    /// Name of the model, for reports.
+    pub name: String,
+    /// Version of the program that wrote the file.
+    pub program: String,
+    /// Number of splits N, 0 to 10.
+    pub levels: u32,
+    /// Number of trees (base triangles).
+    pub trees: u32,
+    /// Number of base vertices.
+    pub base_vertices: u32,
+    /// Units to world.
+    pub placement: Placement,
+    /// Bound scale: mantissa, 18 bits.
+    pub bound_mantissa: u32,
+    /// Bound scale: shift, 6 bits.
+    pub bound_shift: u32,
+    /// Lower corner of the box of all vertices in units.
+    pub lo: [i32; 3],
+    /// Upper corner of the box of all vertices in units.
+    pub hi: [i32; 3],
+    /// How the model was made.
+    #[serde(default, skip_serializing_if = "serde_json::Value::is_null")]
+    pub origin: serde_json::Value,
+}
+
+impl Meta {
+    /// Scale of the displacement bounds.
+    pub fn bound_scale(&self) -> BoundScale {
+        // Widths are checked when a file is opened.
+        BoundScale { mantissa: U::saturating(self.bound_mantissa.into()), shift: U::saturating(self.bound_shift.into()) }
+    }
+}
+
+#[derive(Debug)]
+pub(super) enum Image {
+    Owned(MmapMut),
+    Mapped(Mmap),
+}
+
+/// Memory images of one model and what belongs to them. Slices are looked up in the image at each call: take them out of hot loops.
+#[derive(Debug)]
+pub struct Scene {
+    pub(super) image: Image,
+    pub(super) ranges: [Range<usize>; COUNT],
+    pub(super) meta: Meta,
+}
+
+impl Scene {
+    /// What the images do not say themselves.
+    pub fn meta(&self) -> &Meta {
+        &self.meta
+    }
+
+    /// The whole file image.
+    pub fn bytes(&self) -> &[u8] {
+        match &self.image {
+            Image::Owned(m) => m,
+            Image::Mapped(m) => m,
+        }
+    }
+
+    /// Bytes of a section.
+    pub fn section(&self, section: Section) -> &[u8] {
+        &self.bytes()[self.ranges[section.slot()].clone()]
+    }
+
+    /// L0 quad-BVH nodes, the root first; four [`super::BvhChild`] each, child 0 in the lowest words.
+    pub fn nodes(&self) -> &[[u64; 8]] {
+        bytemuck::cast_slice(self.section(Section::Nodes))
+    }
+
+    /// L0 records, one per tree: a [`super::VertexData`] line (p0, p1, p2), then a [`super::L0Record`] line.
+    pub fn records(&self) -> &[[u64; 8]] {
+        bytemuck::cast_slice(self.section(Section::Records))
+    }
+
+    /// Sibling groups of four [`super::BoundData`], where [`layout::child_group`] says.
+    pub fn bounds(&self) -> &[[u64; 8]] {
+        bytemuck::cast_slice(self.section(Section::Bounds))
+    }
+
+    /// Vertex lines ([`super::VertexData`]: q0, q1, q2), where [`layout::vertex_line`] says.
+    pub fn vertices(&self) -> &[[u64; 4]] {
+        bytemuck::cast_slice(self.section(Section::Vertices))
+    }
+
+    /// Octahedral normals, `lattice::len(levels)` per tree.
+    pub fn normals(&self) -> &[u32] {
+        bytemuck::cast_slice(self.section(Section::Normals))
+    }
+
+    /// Base vertex indices of each tree.
+    pub fn triangles(&self) -> &[[u32; 3]] {
+        bytemuck::cast_slice(self.section(Section::Triangles))
+    }
+
+    /// Material colours: sRGB-encoded red, green, blue, and 255; may be empty.
+    pub fn colours(&self) -> &[[u8; 4]] {
+        bytemuck::cast_slice(self.section(Section::Colours))
+    }
+
+    /// Number of splits N.
+    pub fn levels(&self) -> u32 {
+        self.meta.levels
+    }
+
+    /// Number of trees.
+    pub fn trees(&self) -> usize {
+        self.meta.trees as usize
+    }
+
+    /// Number of full-resolution triangles.
+    pub fn finest_triangles(&self) -> u64 {
+        u64::from(self.meta.trees) << (2 * self.meta.levels)
+    }
+
+    /// Bytes of bound and vertex data, L0 records included, per full-resolution triangle.
+    pub fn bytes_per_triangle(&self) -> f64 {
+        let bytes: usize = [Section::Records, Section::Bounds, Section::Vertices].map(|s| self.section(s).len()).iter().sum();
+        bytes as f64 / self.finest_triangles() as f64
+    }
+
+    /// Unit shading normal at a lattice point (of the full lattice) of a tree.
+    pub fn normal_at(&self, tree: usize, point: lattice::LatticePoint) -> [f32; 3] {
+        let levels = self.levels();
+        normal::decode_normal(self.normals()[tree * lattice::len(levels) + lattice::index(levels, point)])
+    }
+
+    /// Linear colour of a material, or `None` if there are no colours.
+    pub fn colour(&self, material: u16) -> Option<[f32; 3]> {
+        self.colours().get(usize::from(material)).map(|&[r, g, b, _]| [r, g, b].map(super::colour::to_linear))
+    }
+
+    /// Lengths that all sections but META have, from META's counts; `None` if they overflow.
+    pub(super) fn section_lengths(meta: &Meta, section: Section) -> Option<usize> {
+        let per_tree = match section {
+            Section::Records => 64,
+            Section::Bounds => 64 * layout::sibling_groups(meta.levels),
+            Section::Vertices => 32 * layout::vertex_lines(meta.levels),
+            Section::Normals => 4 * lattice::len(meta.levels),
+            Section::Triangles => 12,
+            Section::Meta | Section::Nodes | Section::Colours => return None,
+        };
+        per_tree.checked_mul(meta.trees as usize)
+    }
+}

@@ -1,0 +1,199 @@
+//! From a surface in world units to a hierarchy in integers: the placement, the snapping of each point, the bounds.
+
+use super::borders::SharedEdges;
+use super::bounds::edge_codes;
+use super::{Hierarchy, Placement, Surface, lattice};
+use crate::num::{COORD_LIMIT, MAX_LEVELS, snap};
+use rayon::prelude::*;
+use thiserror::Error;
+
+/// Why a surface cannot become a hierarchy.
+#[derive(Clone, Debug, PartialEq, Error)]
+pub enum SurfaceError {
+    /// There is nothing to trace.
+    #[error("surface has no triangles")]
+    Empty,
+    /// Too many splits.
+    #[error("surface levels: {0} splits, at most {MAX_LEVELS} are possible")]
+    Levels(u32),
+    /// More trees than a 28-bit reference can name.
+    #[error("surface triangles: {0} base triangles, fewer than 2^28 are possible")]
+    TooManyTrees(usize),
+    /// An array's length does not follow from the others.
+    #[error("surface {field}: {found} entries, {expected} expected")]
+    Length {
+        /// Which array.
+        field: &'static str,
+        /// Its length.
+        found: usize,
+        /// The length that it should have.
+        expected: usize,
+    },
+    /// A base triangle uses a vertex that does not exist, or one vertex twice.
+    #[error("surface triangles: base triangle {tree} has vertices {triangle:?}; three different ones below {base_vertices} are needed")]
+    BadTriangle {
+        /// Which base triangle.
+        tree: usize,
+        /// Its indices.
+        triangle: [u32; 3],
+        /// Number of base vertices.
+        base_vertices: u32,
+    },
+    /// A position or normal is not finite, or a normal has no length.
+    #[error("surface {field}: entry {index} (tree {tree}) is {value:?}")]
+    BadVector {
+        /// Which array.
+        field: &'static str,
+        /// Which entry.
+        index: usize,
+        /// The tree that it belongs to.
+        tree: usize,
+        /// What it is.
+        value: [f64; 3],
+    },
+    /// The extent of the model cannot be divided into units in `f64`.
+    #[error("surface positions: extent {0:e} is outside what can be divided into units")]
+    Extent(f64),
+    /// A point on a shared base edge or vertex differs between trees.
+    #[error("surface positions: trees {trees:?} disagree on point {place} of {of} along base edge {ends:?}")]
+    Unequal {
+        /// The two trees.
+        trees: [u32; 2],
+        /// Base vertices of the edge.
+        ends: [u32; 2],
+        /// Where along it.
+        place: u32,
+        /// Of how many steps.
+        of: u32,
+    },
+    /// Two trees place one base vertex at two points.
+    #[error("surface positions: tree {tree} does not agree with an earlier tree on the place of base vertex {vertex}")]
+    UnequalVertex {
+        /// The later tree.
+        tree: usize,
+        /// The base vertex.
+        vertex: u32,
+    },
+    /// A material index without colour.
+    #[error("surface materials: base triangle {tree} has material {material}, but there are {colours} colours")]
+    BadMaterial {
+        /// Which base triangle.
+        tree: usize,
+        /// Its material.
+        material: u16,
+        /// Number of colours.
+        colours: usize,
+    },
+}
+
+/// The hierarchy of a surface: points snapped to the grids of their levels, and the bounds of all edges.
+///
+/// # Errors
+/// Whatever [`SurfaceError`] names: lengths, indices or values that [`Surface`] does not allow.
+pub fn quantise(surface: &Surface) -> Result<Hierarchy, SurfaceError> {
+    check_shape(surface)?;
+    let placement = placement(&surface.positions, lattice::len(surface.levels))?;
+    let points = snap_points(surface, placement);
+    let shared = SharedEdges::new(&surface.triangles);
+    check_shared_points(surface, &points, &shared)?;
+    let bounds = edge_codes(surface.levels, &points, &shared);
+    let Surface { levels, base_vertices, .. } = *surface;
+    Ok(Hierarchy { levels, placement, base_vertices, triangles: surface.triangles.clone(), points, bounds })
+}
+
+/// Lengths, indices and materials.
+fn check_shape(s: &Surface) -> Result<(), SurfaceError> {
+    if s.levels > MAX_LEVELS {
+        return Err(SurfaceError::Levels(s.levels));
+    }
+    let trees = s.triangles.len();
+    if trees == 0 {
+        return Err(SurfaceError::Empty);
+    }
+    if trees >= 1 << 28 {
+        return Err(SurfaceError::TooManyTrees(trees));
+    }
+    let expected = trees * lattice::len(s.levels);
+    for (field, found, expected) in [
+        ("positions", s.positions.len(), expected),
+        ("normals", s.normals.len(), expected),
+        ("materials", s.materials.len(), if s.materials.is_empty() { 0 } else { trees }),
+    ] {
+        if found != expected {
+            return Err(SurfaceError::Length { field, found, expected });
+        }
+    }
+    for (tree, &triangle) in s.triangles.iter().enumerate() {
+        let [a, b, c] = triangle;
+        if a == b || b == c || c == a || triangle.iter().any(|&v| v >= s.base_vertices) {
+            return Err(SurfaceError::BadTriangle { tree, triangle, base_vertices: s.base_vertices });
+        }
+    }
+    if let Some((tree, &material)) = s.materials.iter().enumerate().find(|&(_, &m)| usize::from(m) >= s.colours.len()) {
+        return Err(SurfaceError::BadMaterial { tree, material, colours: s.colours.len() });
+    }
+    Ok(())
+}
+
+/// Places units so that the box of all positions is centred and its largest half extent comes to one unit less than [`COORD_LIMIT`]: then no
+/// rounding passes the limit, which lies on every level's grid.
+fn placement(positions: &[[f64; 3]], per_tree: usize) -> Result<Placement, SurfaceError> {
+    if let Some(index) = positions.par_iter().position_first(|p| !p.iter().all(|c| c.is_finite())) {
+        return Err(SurfaceError::BadVector { field: "positions", index, tree: index / per_tree, value: positions[index] });
+    }
+    type Corners = [[f64; 3]; 2];
+    let none: Corners = [[f64::INFINITY; 3], [f64::NEG_INFINITY; 3]];
+    let join = |[a, b]: Corners, [c, d]: Corners| [std::array::from_fn(|k| a[k].min(c[k])), std::array::from_fn(|k| b[k].max(d[k]))];
+    let [lo, hi] = positions.par_iter().fold(|| none, |b, &p| join(b, [p, p])).reduce(|| none, join);
+    // Halved first: the sum of two finite numbers need not be finite. Adding 0 turns -0 into 0.
+    let offset: [f64; 3] = std::array::from_fn(|k| lo[k] / 2.0 + hi[k] / 2.0 + 0.0);
+    // Not (hi - lo) / 2: far from the world's origin the centre itself is rounded.
+    let half = (0..3).map(|k| (hi[k] - offset[k]).max(offset[k] - lo[k])).fold(0.0, f64::max);
+    let scale = if half == 0.0 { 1.0 / f64::from(COORD_LIMIT) } else { half / f64::from(COORD_LIMIT - 1) };
+    if !scale.is_normal() {
+        return Err(SurfaceError::Extent(2.0 * half));
+    }
+    Ok(Placement { offset, scale })
+}
+
+/// Every point to its level's grid.
+fn snap_points(surface: &Surface, placement: Placement) -> Vec<[i32; 3]> {
+    let levels = surface.levels;
+    let len = lattice::len(levels);
+    let Placement { offset, scale } = placement;
+    // The zero bits of each lattice point are the same for all trees.
+    let m = 1 << levels;
+    let zero_bits: Vec<u32> = (0..=m).flat_map(|j| (0..=m - j).map(move |i| levels - lattice::level_of(levels, (i, j)))).collect();
+    let mut points = vec![[0; 3]; surface.positions.len()];
+    points.par_chunks_mut(len).zip(surface.positions.par_chunks(len)).for_each(|(points, positions)| {
+        for ((point, position), &bits) in points.iter_mut().zip(positions).zip(&zero_bits) {
+            *point = std::array::from_fn(|k| snap((position[k] - offset[k]) / scale, bits));
+        }
+    });
+    points
+}
+
+/// Base vertices and points of shared base edges are the same in all trees.
+fn check_shared_points(surface: &Surface, points: &[[i32; 3]], shared: &SharedEdges) -> Result<(), SurfaceError> {
+    let levels = surface.levels;
+    let len = lattice::len(levels);
+    let mut corners: Vec<Option<[i32; 3]>> = vec![None; surface.base_vertices as usize];
+    for (tree, triangle) in surface.triangles.iter().enumerate() {
+        for (&vertex, corner) in triangle.iter().zip(lattice::root(levels)) {
+            let point = points[tree * len + lattice::index(levels, corner)];
+            if *corners[vertex as usize].get_or_insert(point) != point {
+                return Err(SurfaceError::UnequalVertex { tree, vertex });
+            }
+        }
+    }
+    let at = |u: &super::borders::EdgeUse, place| points[u.tree as usize * len + lattice::index(levels, u.point(levels, place))];
+    let of = 1 << levels;
+    for uses in shared.edges() {
+        for other in &uses[1..] {
+            if let Some(place) = (0..=of).find(|&place| at(&uses[0], place) != at(other, place)) {
+                return Err(SurfaceError::Unequal { trees: [uses[0].tree, other.tree], ends: other.ends, place, of });
+            }
+        }
+    }
+    Ok(())
+}
