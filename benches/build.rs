@@ -4,7 +4,7 @@
 #[path = "../tests/common/mod.rs"]
 mod common;
 
-use common::{grid, quad_tree};
+use common::grid;
 use criterion::{Criterion, Throughput, criterion_group, criterion_main};
 use lodray::format::{Scene, build};
 use lodray::mesh::quantise;
@@ -17,9 +17,9 @@ fn build_and_write(c: &mut Criterion) {
     let mut group = c.benchmark_group("scene");
     group.sample_size(10).throughput(Throughput::Elements(surface.finest_triangles()));
     group.bench_function("quantise and bounds", |b| b.iter(|| quantise(&surface).expect("a valid surface")));
-    group.bench_function("build", |b| b.iter(|| build(&surface, common::info("bench"), quad_tree).expect("a valid surface")));
+    group.bench_function("build", |b| b.iter(|| build(&surface, common::info("bench"), lodray::bvh::over_trees).expect("a valid surface")));
     group.bench_function("build and write", |b| {
-        b.iter(|| build(&surface, common::info("bench"), quad_tree).and_then(|s| s.save(&path)).expect("written"));
+        b.iter(|| build(&surface, common::info("bench"), lodray::bvh::over_trees).and_then(|s| s.save(&path)).expect("written"));
     });
     group.bench_function("open", |b| b.iter(|| Scene::open(&path).expect("valid")));
     group.finish();

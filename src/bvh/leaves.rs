@@ -74,6 +74,8 @@ impl FullNodes {
 /// Quad-BVH over the full-resolution triangles of a hierarchy; leaf references count slots of `leaves`.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct FullBvh {
+    /// Number of splits N of the hierarchy.
+    pub levels: u32,
     /// The nodes.
     pub nodes: FullNodes,
     /// The triangles.
@@ -110,7 +112,7 @@ impl FullBvh {
             let (nodes, ids) = build_nodes(mesh.primitives(), &options.tree, depth, encode16)?;
             (FullNodes::Boxes16(nodes), ids)
         };
-        Ok(Self { nodes, leaves: Leaves::gather(&mesh, ids, options.layout) })
+        Ok(Self { levels: hierarchy.levels, nodes, leaves: Leaves::gather(&mesh, ids, options.layout) })
     }
 
     /// The same leaves in another layout; the nodes stay valid. `hierarchy` is the one this was built over.

@@ -10,7 +10,6 @@ use lodray::mesh::procedural::{Options, Scene, generate};
 use lodray::render::{Camera, View, write_and_rename};
 use lodray::traverse::ModelSpace;
 use serde::Serialize;
-use std::io::Write;
 use std::path::PathBuf;
 use std::process::ExitCode;
 

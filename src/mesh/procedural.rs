@@ -403,15 +403,12 @@ mod tests {
         let s = small(Scene::Room, 2_688, 2);
         assert!(s.positions.iter().all(|p| p[0].abs() <= 1.0 && p[1].abs() <= 0.7 && p[2].abs() <= 1.0));
         assert!((0..4).all(|m| s.materials.contains(&m)));
-<<<<<<< HEAD
-=======
         // The cloth is inside whatever its folds.
         for seed in 0..100 {
             let room = Options { seed, base: Some(400), levels: Some(1), ..Options::new(Scene::Room) };
             let s = generate(&room).expect("valid options");
             assert!(s.positions.iter().all(|p| p[0].abs() <= 1.0 && p[1].abs() <= 0.7 && p[2].abs() <= 1.0), "{seed}");
         }
->>>>>>> scenes
     }
 
     #[test]
