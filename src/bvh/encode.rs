@@ -35,7 +35,7 @@ fn box16(b: &Box32) -> Box16 {
     Box16::from_codes(b.lo.map(box_code_floor), b.hi.map(|v| box_code_ceil(v.min(COORD_LIMIT))))
 }
 
-/// The node with its boxes rounded outwards to 16-bit codes.
+/// The node with its boxes rounded outwards to 16-bit codes. It keeps to the limits of [`super::build`]: indices below 2^28, leaves of 1 to 4.
 pub fn encode16(node: &QuadNode) -> Node16 {
     let mut words = [0; 8];
     for (line, (b, &c)) in words.as_chunks_mut::<2>().0.iter_mut().zip(node.boxes.iter().zip(&node.children)) {
@@ -44,7 +44,7 @@ pub fn encode16(node: &QuadNode) -> Node16 {
     words
 }
 
-/// The node with its boxes in units.
+/// The node with its boxes in units; the same limits as for [`encode16`].
 pub fn encode32(node: &QuadNode) -> Node32 {
     let mut words = [0; 16];
     for (line, (b, &c)) in words.as_chunks_mut::<4>().0.iter_mut().zip(node.boxes.iter().zip(&node.children)) {
