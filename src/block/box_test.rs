@@ -48,12 +48,12 @@ pub(super) fn entry(axis: &Axis, near: i64) -> u64 {
     (product >> axis.reciprocal.shift.get()).min(TNear::MAX.get())
 }
 
-/// `hit` and `t_near` together, with early termination.
+/// The answer for a box that the ray meets at `t_near`, with early termination.
 #[inline(always)]
-pub(super) fn finish(slabs: bool, t_near: u64, t_max: RayT) -> Out {
+pub(super) fn finish(t_near: u64, t_max: RayT) -> Out {
     // 18 + 18 bits against 35.
-    let hit = slabs & ((t_near << T_NEAR_TO_T_SHIFT) <= t_max.get());
-    Out { hit, t_near: if hit { TNear::new(t_near) } else { TNear::ZERO } }
+    let hit = (t_near << T_NEAR_TO_T_SHIFT) <= t_max.get();
+    if hit { Out { hit, t_near: TNear::new(t_near) } } else { Out::default() }
 }
 
 impl Block for BoxTest {
@@ -66,7 +66,7 @@ impl Block for BoxTest {
         let (lo_x, hi_x) = mirrored(&r.x, b.lo.x, b.hi.x);
         let (lo_y, hi_y) = mirrored(&r.y, b.lo.y, b.hi.y);
         let (lo_z, hi_z) = mirrored(&r.z, b.lo.z, b.hi.z);
-        let [dx, dy, dz] = [r.x.d, r.y.d, r.z.d].map(|d| d.get().cast_signed());
+        let (dx, dy, dz) = (r.x.d.get().cast_signed(), r.y.d.get().cast_signed(), r.z.d.get().cast_signed());
         let [c_yz, c_zx, c_xy] = r.moment.get();
 
         // 16 x 30 bits twice: 47 signed against 63 - 16.
@@ -79,8 +79,10 @@ impl Block for BoxTest {
             & pair(lo_x, dz, hi_z, dx, -c_zx);
         let ahead = (hi_x >= r.x.ceil.get()) & (hi_y >= r.y.ceil.get()) & (hi_z >= r.z.ceil.get());
 
-        let entries = [(&r.x, lo_x), (&r.y, lo_y), (&r.z, lo_z)].map(|(axis, lo)| entry(axis, lo - axis.ceil.get()));
-        let t_near = entries[0].max(entries[1]).max(entries[2]);
-        finish(planes & ahead, t_near, input.t_max)
+        if !(planes & ahead) {
+            return Out::default();
+        }
+        let near = |axis: &Axis, lo: i64| entry(axis, lo - axis.ceil.get());
+        finish(near(&r.x, lo_x).max(near(&r.y, lo_y)).max(near(&r.z, lo_z)), input.t_max)
     }
 }

@@ -42,7 +42,7 @@ impl Block for BoxTest32 {
         let (near_x, far_x) = slab(&r.x, input.lo.x, input.hi.x);
         let (near_y, far_y) = slab(&r.y, input.lo.y, input.hi.y);
         let (near_z, far_z) = slab(&r.z, input.lo.z, input.hi.z);
-        let [dx, dy, dz] = [r.x.d, r.y.d, r.z.d].map(|d| d.get().cast_signed());
+        let (dx, dy, dz) = (r.x.d.get().cast_signed(), r.y.d.get().cast_signed(), r.z.d.get().cast_signed());
 
         // 33 x 30 bits: 63 signed.
         let pair = |near_i: i64, d_j: i64, far_j: i64, d_i: i64| near_i * d_j <= far_j * d_i;
@@ -54,8 +54,10 @@ impl Block for BoxTest32 {
             & pair(near_x, dz, far_z, dx);
         let ahead = (far_x >= 0) & (far_y >= 0) & (far_z >= 0);
 
-        let entries = [(&r.x, near_x), (&r.y, near_y), (&r.z, near_z)].map(|(axis, near)| entry(axis, near >> BOX_SHIFT));
-        let t_near = entries[0].max(entries[1]).max(entries[2]);
-        finish(planes & ahead, t_near, input.t_max)
+        if !(planes & ahead) {
+            return box_test::Out::default();
+        }
+        let near = |axis: &Axis, near: i64| entry(axis, near >> BOX_SHIFT);
+        finish(near(&r.x, near_x).max(near(&r.y, near_y)).max(near(&r.z, near_z)), input.t_max)
     }
 }

@@ -36,16 +36,18 @@ impl Block for ChildSort {
     #[inline(always)]
     fn eval(input: &In) -> Out {
         // Key: missed, t_near, number: 21 bits, all different.
-        let mut keys: [u64; 4] =
-            std::array::from_fn(|k| u64::from(!input.hit[k]) << 20 | if input.hit[k] { input.t_near[k].get() << 2 } else { 0 } | k as u64);
+        let key = |k: usize| u64::from(!input.hit[k]) << 20 | if input.hit[k] { input.t_near[k].get() << 2 } else { 0 } | k as u64;
+        let mut keys = [key(0), key(1), key(2), key(3)];
         // A five-comparator network.
         for (a, b) in [(0, 1), (2, 3), (0, 2), (1, 3), (1, 2)] {
             let (low, high) = (keys[a].min(keys[b]), keys[a].max(keys[b]));
             keys[a] = low;
             keys[b] = high;
         }
-        let count = input.hit.iter().map(|&h| u64::from(h)).sum();
-        Out { count: U::new(count), order: keys.map(|k| U::new(k & 3)) }
+        let [a, b, c, d] = input.hit;
+        let count = u64::from(a) + u64::from(b) + u64::from(c) + u64::from(d);
+        let number = |key: u64| U::new(key & 3);
+        Out { count: U::new(count), order: [number(keys[0]), number(keys[1]), number(keys[2]), number(keys[3])] }
     }
 }
 

@@ -81,18 +81,21 @@ fn edge_state(h: Bound, d: U<34>) -> EdgeState {
     }
 }
 
+/// State of the edge with bound code `code` between end points at `a` and `b` along the ray.
+#[inline(always)]
+fn edge(input: &In, code: BoundCode, a: S<64>, b: S<64>) -> EdgeState {
+    let h = BoundDecode::eval(&bound_decode::In { code, scale: input.scale }).h;
+    edge_state(h, tolerated(&input.ray.cone, a.min(b).get()))
+}
+
 impl Block for LodTest {
     const NAME: &'static str = "lod_test";
     type In = In;
     type Out = Out;
     #[inline(always)]
     fn eval(input: &In) -> Out {
-        let l = [input.p0, input.p1, input.p2].map(|p| along(&input.ray, p).get());
-        let state = |code, a: i64, b: i64| {
-            let h = BoundDecode::eval(&bound_decode::In { code, scale: input.scale }).h;
-            edge_state(h, tolerated(&input.ray.cone, a.min(b)))
-        };
-        let (s0, s1, s2) = (state(input.e0, l[1], l[2]), state(input.e1, l[2], l[0]), state(input.e2, l[0], l[1]));
+        let (l0, l1, l2) = (along(&input.ray, input.p0), along(&input.ray, input.p1), along(&input.ray, input.p2));
+        let (s0, s1, s2) = (edge(input, input.e0, l1, l2), edge(input, input.e1, l2, l0), edge(input, input.e2, l0, l1));
         Out { refine: (s0.get() | s1.get() | s2.get()) != 0, s0, s1, s2 }
     }
 }

@@ -11,7 +11,7 @@ use crate::block::tri_test::{self, TriTest};
 use crate::block::widen_box::{self, WidenBox};
 use crate::block::Block;
 use crate::format::{BoundData, BvhChild, ChildRef, L0Record, Scene, VertexData};
-use crate::num::{BoundCode, BoundScale, MAX_LEVELS, Point, Ray, RayT, T_NEAR_TO_T_SHIFT, TNear, U, Wire};
+use crate::num::{BoundCode, BoundScale, EdgeState, MAX_LEVELS, Point, Ray, RayT, S_ONE, T_NEAR_TO_T_SHIFT, TNear, U, Wire};
 
 /// The memory images of one model, as the hardware sees them.
 #[derive(Clone, Copy, Debug)]
@@ -60,6 +60,8 @@ impl<'a> LodImage<'a> {
 struct Split {
     p: [Point; 3],
     q: [Point; 3],
+    /// Some vertex on the way was morphed, so that stored boxes need widening; without, widening changes nothing.
+    morphed: bool,
 }
 
 /// Traces rays through one image; keeps its stack from ray to ray.
@@ -128,13 +130,14 @@ pub(super) fn read_pair<P: Probe>(probe: &mut P, kind: Kind, index: usize) {
     probe.line(kind, 2 * index as u64 + 1);
 }
 
-/// Pushes the hit children, farthest first, so that the nearest is on top.
+/// Pushes the hit children, farthest first, so that the nearest is on top; `entry` makes the entry of child k but for its `t_near`.
 #[inline(always)]
-pub(super) fn push_sorted(stack: &mut TraversalStack, tests: &[box_test::Out; 4], entries: &[Entry; 4]) {
-    let sorted = ChildSort::eval(&child_sort::In { hit: tests.map(|t| t.hit), t_near: tests.map(|t| t.t_near) });
+pub(super) fn push_sorted(stack: &mut TraversalStack, tests: &[box_test::Out; 4], entry: impl Fn(usize) -> Entry) {
+    let [a, b, c, d] = tests;
+    let sorted = ChildSort::eval(&child_sort::In { hit: [a.hit, b.hit, c.hit, d.hit], t_near: [a.t_near, b.t_near, c.t_near, d.t_near] });
     for place in (0..sorted.count.get() as usize).rev() {
         let k = sorted.order[place].get() as usize;
-        stack.step(Op::Push(Entry { t_near: tests[k].t_near, ..entries[k] }));
+        stack.step(Op::Push(Entry { t_near: tests[k].t_near, ..entry(k) }));
     }
 }
 
@@ -159,17 +162,17 @@ impl<P: Probe, H: HitSink> Journey<'_, P, H> {
         self.probe.node();
         let group = &self.image.nodes[index];
         let mut tests = [box_test::Out::default(); 4];
-        let mut entries = [Entry::default(); 4];
-        for k in 0..4 {
+        for (k, test) in tests.iter_mut().enumerate() {
             let BvhChild { child, bounds } = quarter(group, k);
-            if child.kind.get() == ChildRef::EMPTY {
-                continue;
+            if child.kind.get() != ChildRef::EMPTY {
+                *test = BoxTest::eval(&box_test::In { ray: self.setup, t_max: self.sink.t_max(), bounds });
             }
-            tests[k] = BoxTest::eval(&box_test::In { ray: self.setup, t_max: self.sink.t_max(), bounds });
-            // Inner nodes and leaves have the kinds of their entries one lower.
-            entries[k] = Entry { kind: U::new(child.kind.get() - 1), index: child.index, ..Entry::default() };
         }
-        push_sorted(self.stack, &tests, &entries);
+        push_sorted(self.stack, &tests, |k| {
+            let BvhChild { child, .. } = quarter(group, k);
+            // Inner nodes and leaves have the kinds of their entries one lower.
+            Entry { kind: U::new(child.kind.get() - 1), index: child.index, ..Entry::default() }
+        });
     }
 
     /// Enters a tree.
@@ -210,7 +213,9 @@ impl<P: Probe, H: HitSink> Journey<'_, P, H> {
             return;
         }
         let group = self.tree as usize * first_node(levels - 1) + place;
-        self.splits[level as usize] = Split { p, q };
+        let above = level > 0 && self.splits[level as usize - 1].morphed;
+        let morphed = above || [lod.s0, lod.s1, lod.s2] != [EdgeState::new(S_ONE); 3];
+        self.splits[level as usize] = Split { p, q, morphed };
         self.tree_children(level + 1, 4 * node, group);
     }
 
@@ -222,13 +227,17 @@ impl<P: Probe, H: HitSink> Journey<'_, P, H> {
         let split = &self.splits[level as usize - 1];
         let group = &self.image.bounds[group];
         let mut tests = [box_test::Out::default(); 4];
-        let mut entries = [Entry::default(); 4];
-        for k in 0..4 {
-            let BoundData { e0, e1, e2, bounds, .. } = quarter(group, k);
-            let [p0, p1, p2] = child_triangle(split.p, split.q, k);
-            let bounds = WidenBox::eval(&widen_box::In { bounds, p0, p1, p2 }).bounds;
-            tests[k] = BoxTest::eval(&box_test::In { ray: self.setup, t_max: self.sink.t_max(), bounds });
-            entries[k] = Entry {
+        for (k, test) in tests.iter_mut().enumerate() {
+            let BoundData { mut bounds, .. } = quarter(group, k);
+            if split.morphed {
+                let [p0, p1, p2] = child_triangle(split.p, split.q, k);
+                bounds = WidenBox::eval(&widen_box::In { bounds, p0, p1, p2 }).bounds;
+            }
+            *test = BoxTest::eval(&box_test::In { ray: self.setup, t_max: self.sink.t_max(), bounds });
+        }
+        push_sorted(self.stack, &tests, |k| {
+            let BoundData { e0, e1, e2, .. } = quarter(group, k);
+            Entry {
                 t_near: TNear::ZERO,
                 kind: U::new(Entry::TREE_NODE),
                 level: U::new(u64::from(level)),
@@ -236,9 +245,8 @@ impl<P: Probe, H: HitSink> Journey<'_, P, H> {
                 e0,
                 e1,
                 e2,
-            };
-        }
-        push_sorted(self.stack, &tests, &entries);
+            }
+        });
     }
 
     #[inline(always)]

@@ -60,7 +60,6 @@ impl<'a> BvhTraverser<'a> {
     fn node<P: Probe, H: HitSink>(&mut self, setup: &ray_setup::Out, index: usize, probe: &mut P, sink: &H) {
         probe.node();
         let mut tests = [box_test::Out::default(); 4];
-        let mut entries = [Entry::default(); 4];
         let t_max = sink.t_max();
         // Inner nodes and leaves have the kinds of their entries one lower.
         let waiting =
@@ -68,27 +67,28 @@ impl<'a> BvhTraverser<'a> {
         match &self.bvh.nodes {
             FullNodes::Boxes16(nodes) => {
                 read_pair(probe, Kind::BvhNode, index);
-                for k in 0..4 {
-                    let BvhChild { child, bounds } = quarter(&nodes[index], k);
+                let child = |k| quarter::<BvhChild>(&nodes[index], k);
+                for (k, test) in tests.iter_mut().enumerate() {
+                    let BvhChild { child, bounds } = child(k);
                     if child.kind.get() != ChildRef::EMPTY {
-                        tests[k] = BoxTest::eval(&box_test::In { ray: *setup, t_max, bounds });
-                        entries[k] = waiting(child);
+                        *test = BoxTest::eval(&box_test::In { ray: *setup, t_max, bounds });
                     }
                 }
+                push_sorted(&mut self.stack, &tests, |k| waiting(child(k).child));
             }
             FullNodes::Boxes32(nodes) => {
                 read_pair(probe, Kind::BvhNode, 2 * index);
                 read_pair(probe, Kind::BvhNode, 2 * index + 1);
-                for k in 0..4 {
-                    let BvhChild32 { child, lo, hi, .. } = BvhChild32::from_words(&nodes[index][4 * k..4 * k + 4]);
+                let child = |k| BvhChild32::from_words(&nodes[index][4 * k..4 * k + 4]);
+                for (k, test) in tests.iter_mut().enumerate() {
+                    let BvhChild32 { child, lo, hi } = child(k);
                     if child.kind.get() != ChildRef::EMPTY {
-                        tests[k] = BoxTest32::eval(&box_test32::In { ray: *setup, t_max, lo, hi });
-                        entries[k] = waiting(child);
+                        *test = BoxTest32::eval(&box_test32::In { ray: *setup, t_max, lo, hi });
                     }
                 }
+                push_sorted(&mut self.stack, &tests, |k| waiting(child(k).child));
             }
         }
-        push_sorted(&mut self.stack, &tests, &entries);
     }
 
     #[inline(always)]
