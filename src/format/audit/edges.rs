@@ -59,24 +59,25 @@ impl Edges {
     }
 
     /// Base vertices: one position each. Returns how many comparisons the indices call for.
-    pub fn check_corners(&self, triangles: &[[u32; 3]], base_vertices: u32, lattices: &Lattices, found: &mut Tallies) -> u64 {
+    pub fn check_corners(&self, triangles: &[[u32; 3]], lattices: &Lattices, found: &mut Tallies) -> u64 {
         let m = 1 << self.levels;
-        let mut first: Vec<Option<usize>> = vec![None; base_vertices as usize];
+        let mut corners: Vec<(u32, usize, usize)> = Vec::with_capacity(3 * triangles.len());
         for (tree, t) in triangles.iter().enumerate() {
             for (&v, place) in t.iter().zip([(0, 0), (m, 0), (0, m)]) {
-                let at = tree * lattice::len(self.levels) + lattice::index(self.levels, place);
-                let Some(slot) = first.get_mut(v as usize) else { continue }; // refused when the file is opened
-                match *slot {
-                    None => *slot = Some(at),
-                    Some(other) => {
-                        let (p, q) = (lattices.points[other], lattices.points[at]);
-                        found.check(Kind::VerticesAcross, p == q, || format!("tree {tree}: base vertex {v} is {q:?}, elsewhere {p:?}"));
-                    }
-                }
+                corners.push((v, tree, tree * lattice::len(self.levels) + lattice::index(self.levels, place)));
             }
         }
-        let used = first.iter().flatten().count();
-        (3 * triangles.len() - used) as u64
+        corners.sort_unstable();
+        let mut vertices = 0;
+        for uses in corners.chunk_by(|a, b| a.0 == b.0) {
+            vertices += 1;
+            let (v, first, at) = uses[0];
+            for &(_, tree, other) in &uses[1..] {
+                let (p, q) = (lattices.points[at], lattices.points[other]);
+                found.check(Kind::VerticesAcross, p == q, || format!("base vertex {v}: {p:?} in tree {first}, {q:?} in tree {tree}"));
+            }
+        }
+        corners.len() as u64 - vertices
     }
 
     /// Gives vertices inserted at `level` (1 to N) on shared edges the largest displacement of all trees.

@@ -15,6 +15,7 @@ use crate::num::bound_decode;
 use edges::Edges;
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
+use std::fmt;
 use tally::{CHECKS, Kind, Tallies};
 
 /// What one check found.
@@ -58,6 +59,23 @@ impl AuditReport {
     }
 }
 
+impl fmt::Display for AuditReport {
+    /// A line per check: verdict, count, name, and the first breach.
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        for c in &self.checks {
+            let verdict = if c.passed() { "ok" } else { "FAILED" };
+            writeln!(f, "{verdict:>6} {:>12} checked: {}", c.checked, c.name)?;
+            if c.checked != c.expected {
+                writeln!(f, "{:>19} had to be checked", c.expected)?;
+            }
+            if let Some(first) = &c.first {
+                writeln!(f, "{:>19} breaches, the first: {first}", c.breaches)?;
+            }
+        }
+        Ok(())
+    }
+}
+
 /// Checks a scene that has been opened or built.
 pub fn audit(scene: &Scene) -> AuditReport {
     let levels = scene.levels();
@@ -73,7 +91,7 @@ pub fn audit(scene: &Scene) -> AuditReport {
     }
 
     let edges = Edges::new(scene.triangles(), levels);
-    let corners = edges.check_corners(scene.triangles(), scene.meta().base_vertices, &lattices, &mut found);
+    let corners = edges.check_corners(scene.triangles(), &lattices, &mut found);
     edges.check_shared(&lattices, &mut found);
     lattices.largest_displacements(levels, &edges);
     found = found.join(lattices.check_codes(levels, &allowed(scene)));
