@@ -6,6 +6,7 @@ mod common;
 
 use common::grid;
 use criterion::{Criterion, Throughput, criterion_group, criterion_main};
+use lodray::format::audit::audit;
 use lodray::format::{Scene, build};
 use lodray::mesh::quantise;
 
@@ -22,6 +23,8 @@ fn build_and_write(c: &mut Criterion) {
         b.iter(|| build(&surface, common::info("bench"), lodray::bvh::over_trees).and_then(|s| s.save(&path)).expect("written"));
     });
     group.bench_function("open", |b| b.iter(|| Scene::open(&path).expect("valid")));
+    let scene = Scene::open(&path).expect("valid");
+    group.bench_function("audit", |b| b.iter(|| assert!(audit(&scene).passed())));
     group.finish();
 }
 

@@ -65,7 +65,7 @@ impl Scene {
         let levels = self.levels();
         let (len, edges) = (lattice::len(levels), edges_of_tree(levels));
         let mut points = vec![[0; 3]; self.trees() * len];
-        points.par_chunks_mut(len).enumerate().for_each(|(tree, points)| self.decode_points(tree, points));
+        points.par_chunks_mut(len).enumerate().for_each(|(tree, points)| self.decode_points(tree, levels, points));
         let mut codes = vec![0; self.trees() * edges];
         if edges > 0 {
             codes.par_chunks_mut(edges).enumerate().for_each(|(tree, codes)| self.decode_codes(tree, codes));
@@ -80,12 +80,13 @@ impl Scene {
         }
     }
 
-    fn decode_points(&self, tree: usize, points: &mut [[i32; 3]]) {
+    /// Writes a tree's points of levels 0 to `finest` into its full lattice.
+    pub(super) fn decode_points(&self, tree: usize, finest: u32, points: &mut [[i32; 3]]) {
         let levels = self.levels();
         for (corner, at) in self.corners(tree).into_iter().zip(lattice::root(levels)) {
             points[lattice::index(levels, at)] = corner;
         }
-        self.each_node(&mut |level, node, p| {
+        self.each_node(finest, &mut |level, node, p| {
             for (q, at) in self.inserted(tree, level, node).into_iter().zip(lattice::midpoints(p)) {
                 points[lattice::index(levels, at)] = q;
             }
@@ -94,7 +95,7 @@ impl Scene {
 
     fn decode_codes(&self, tree: usize, codes: &mut [u16]) {
         let levels = self.levels();
-        self.each_node(&mut |level, node, p| {
+        self.each_node(levels, &mut |level, node, p| {
             let data = self.bound_data(tree, level, node);
             for (code, [a, b]) in [data.e0, data.e1, data.e2].into_iter().zip([[p[1], p[2]], [p[2], p[0]], [p[0], p[1]]]) {
                 codes[edge_index(levels, level, a, b)] = code.get() as u16; // 10 bits
@@ -102,16 +103,16 @@ impl Scene {
         });
     }
 
-    /// Calls `f` with level, node and corners of every node of levels 0 to N-1 of a tree, depth first.
-    fn each_node(&self, f: &mut impl FnMut(u32, usize, [LatticePoint; 3])) {
-        fn below(levels: u32, level: u32, node: usize, p: [LatticePoint; 3], f: &mut impl FnMut(u32, usize, [LatticePoint; 3])) {
-            if level < levels {
+    /// Calls `f` with level, node and corners of every node of levels 0 to `finest` - 1 of a tree, depth first.
+    fn each_node(&self, finest: u32, f: &mut impl FnMut(u32, usize, [LatticePoint; 3])) {
+        fn below(finest: u32, level: u32, node: usize, p: [LatticePoint; 3], f: &mut impl FnMut(u32, usize, [LatticePoint; 3])) {
+            if level < finest {
                 f(level, node, p);
                 for k in 0..4 {
-                    below(levels, level + 1, 4 * node + k as usize, lattice::child(p, k), f);
+                    below(finest, level + 1, 4 * node + k as usize, lattice::child(p, k), f);
                 }
             }
         }
-        below(self.levels(), 0, 0, lattice::root(self.levels()), f);
+        below(finest, 0, 0, lattice::root(self.levels()), f);
     }
 }

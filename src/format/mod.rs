@@ -1,8 +1,10 @@
 //! Floor 2: memory images: the lines that the hardware reads, bit for bit, and the scene file that holds them.
 
+pub mod audit;
 mod colour;
 mod decode;
 mod encode;
+mod export;
 mod file;
 pub mod layout;
 mod lines;
@@ -11,6 +13,7 @@ mod scene;
 mod sections;
 
 pub use encode::{SceneInfo, build, encode, tree_boxes};
+pub use export::{ExportCounts, export_level};
 pub use lines::{BoundData, Box16, BvhChild, ChildRef, L0Record, VertexData};
 pub use normal::{decode_normal, encode_normal};
 pub use scene::{Meta, Scene, SceneError};

@@ -4,6 +4,7 @@
 //! smaller base vertex index to the larger, so that every tree counts alike whichever way it runs along the edge.
 
 use super::{edges_of_tree, lattice::LatticePoint};
+use rayon::prelude::*;
 
 /// One tree's use of a base edge.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -66,7 +67,7 @@ impl SharedEdges {
     pub fn new(triangles: &[[u32; 3]]) -> Self {
         let each = triangles.iter().zip(0..).flat_map(|(&t, tree)| [0, 1, 2].map(|side| EdgeUse::new(tree, side, t)));
         let mut uses: Vec<_> = each.collect();
-        uses.sort_unstable();
+        uses.par_sort_unstable();
         Self { uses }
     }
 

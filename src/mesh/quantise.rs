@@ -177,13 +177,15 @@ fn snap_points(surface: &Surface, placement: Placement) -> Vec<[i32; 3]> {
 fn check_shared_points(surface: &Surface, points: &[[i32; 3]], shared: &SharedEdges) -> Result<(), SurfaceError> {
     let levels = surface.levels;
     let len = lattice::len(levels);
-    let mut corners: Vec<Option<[i32; 3]>> = vec![None; surface.base_vertices as usize];
-    for (tree, triangle) in surface.triangles.iter().enumerate() {
-        for (&vertex, corner) in triangle.iter().zip(lattice::root(levels)) {
-            let point = points[tree * len + lattice::index(levels, corner)];
-            if *corners[vertex as usize].get_or_insert(point) != point {
-                return Err(SurfaceError::UnequalVertex { tree, vertex });
-            }
+    let corner = |tree: usize, k: usize| points[tree * len + lattice::index(levels, lattice::root(levels)[k])];
+    let each = surface.triangles.iter().enumerate().flat_map(|(tree, t)| [0, 1, 2].map(|k| (t[k], tree, k)));
+    // Sorted, not indexed by vertex: nothing bounds the number of base vertices that no tree uses.
+    let mut corners: Vec<(u32, usize, usize)> = each.collect();
+    corners.par_sort_unstable();
+    for pair in corners.windows(2) {
+        let ((vertex, tree, k), (other, later, l)) = (pair[0], pair[1]);
+        if vertex == other && corner(tree, k) != corner(later, l) {
+            return Err(SurfaceError::UnequalVertex { tree: later, vertex });
         }
     }
     let at = |u: &super::borders::EdgeUse, place| points[u.tree as usize * len + lattice::index(levels, u.point(levels, place))];

@@ -1,0 +1,165 @@
+//! The audit of a scene: everything that traversal relies on, recomputed from the stored vertices.
+//!
+//! Apart from the record formats nothing here is shared with the code that builds scenes: trees are read by their own recursion, displacements stay
+//! squared (no root is rounded), and truths are kept at the inserted vertices and not by edge. Each check has the number of things that it must
+//! look at; looking at fewer is a failure, so no check passes by doing nothing.
+
+mod bvh;
+mod edges;
+mod tally;
+mod tree;
+
+use super::Scene;
+use crate::mesh::{edges_of_level, edges_of_tree, lattice};
+use crate::num::bound_decode;
+use edges::Edges;
+use rayon::prelude::*;
+use serde::{Deserialize, Serialize};
+use std::fmt;
+use tally::{CHECKS, Kind, Tallies};
+
+/// What one check found.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Check {
+    /// What must hold.
+    pub name: String,
+    /// How many things were looked at.
+    pub checked: u64,
+    /// How many had to be.
+    pub expected: u64,
+    /// How many do not hold.
+    pub breaches: u64,
+    /// The first of them, by tree.
+    pub first: Option<String>,
+}
+
+impl Check {
+    /// Nothing is wrong and nothing was left out.
+    pub fn passed(&self) -> bool {
+        self.breaches == 0 && self.checked == self.expected
+    }
+}
+
+/// What an audit found.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct AuditReport {
+    /// All checks.
+    pub checks: Vec<Check>,
+}
+
+impl AuditReport {
+    /// All checks passed.
+    pub fn passed(&self) -> bool {
+        self.checks.iter().all(Check::passed)
+    }
+
+    /// The check of this name.
+    pub fn check(&self, name: &str) -> Option<&Check> {
+        self.checks.iter().find(|c| c.name == name)
+    }
+}
+
+impl fmt::Display for AuditReport {
+    /// A line per check: verdict, count, name, and the first breach.
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        for c in &self.checks {
+            let verdict = if c.passed() { "ok" } else { "FAILED" };
+            writeln!(f, "{verdict:>6} {:>12} checked: {}", c.checked, c.name)?;
+            if c.checked != c.expected {
+                writeln!(f, "{:>19} had to be checked", c.expected)?;
+            }
+            if let Some(first) = &c.first {
+                writeln!(f, "{:>19} breaches, the first: {first}", c.breaches)?;
+            }
+        }
+        Ok(())
+    }
+}
+
+/// Checks a scene that has been opened or built.
+pub fn audit(scene: &Scene) -> AuditReport {
+    let levels = scene.levels();
+    let len = lattice::len(levels);
+    let mut lattices = tree::Lattices::new(scene.trees() * len);
+    let per_tree = lattices.trees(len).zip(scene.records()).enumerate();
+    let mut found = per_tree.map(|(t, (lattice, record))| tree::read(scene, t, record, lattice)).reduce(Tallies::default, Tallies::join);
+    let (lo, hi) = (scene.meta().lo, scene.meta().hi);
+    for k in 0..3 {
+        for (which, stored, truth) in [("lo", lo[k], found.lo[k]), ("hi", hi[k], found.hi[k])] {
+            found.check(Kind::ModelBox, stored == truth, || format!("META {which}[{k}] is {stored}, the vertices give {truth}"));
+        }
+    }
+
+    let edges = Edges::new(scene.triangles(), levels);
+    let corners = edges.check_corners(scene.triangles(), &lattices, &mut found);
+    edges.check_shared(&lattices, &mut found);
+    lattices.largest_displacements(levels, &edges);
+    found = found.join(lattices.check_codes(levels, &allowed(scene)));
+    bvh::check(scene, &mut found);
+    found = found.join(check_shading(scene));
+
+    let expected = expected(scene, &edges, corners);
+    let checks = CHECKS.iter().zip(found.tallies).zip(expected).map(|((&(kind, name), tally), (for_kind, expected))| {
+        debug_assert_eq!(kind, for_kind);
+        Check { name: name.into(), checked: tally.checked, expected, breaches: tally.breaches, first: tally.first }
+    });
+    AuditReport { checks: checks.collect() }
+}
+
+/// For each code the largest squared displacement, in squares of 8 units, that it covers.
+fn allowed(scene: &Scene) -> Vec<u64> {
+    let scale = scene.meta().bound_scale();
+    let square = |code| u128::from(bound_decode(scale, code)).pow(2) / 64;
+    (0..1024).map(|code| u64::try_from(square(code)).unwrap_or(u64::MAX)).collect()
+}
+
+/// Normals and materials.
+fn check_shading(scene: &Scene) -> Tallies {
+    let len = lattice::len(scene.levels());
+    let colours = scene.colours().len().max(1) as u64; // without colours all are material 0
+    let per_tree = scene.normals().par_chunks(len).zip(scene.records()).enumerate();
+    let checked = per_tree.map(|(t, (normals, _))| {
+        let mut found = Tallies::default();
+        for (point, &code) in normals.iter().enumerate() {
+            let ok = (code & 0xFFFF) != 0x8000 && (code >> 16) != 0x8000;
+            found.check(Kind::Normals, ok, || format!("tree {t}: normal {point} is {code:#010x}"));
+        }
+        let material = scene.record(t).material.get();
+        found.check(Kind::Materials, material < colours, || format!("tree {t}: material {material} of {colours}"));
+        found
+    });
+    checked.reduce(Tallies::default, Tallies::join)
+}
+
+/// How many things each check must look at, from the counts alone.
+fn expected(scene: &Scene, edges: &Edges, shared_corners: u64) -> [(Kind, u64); CHECKS.len()] {
+    let n = scene.levels();
+    let trees = scene.trees() as u64;
+    let [len, edge_count] = [lattice::len(n), edges_of_tree(n)].map(|c| c as u64);
+    // Nodes of levels 0 to N-1: each stores three inserted vertices and three codes.
+    let inner = ((1u64 << (2 * n)) - 1) / 3;
+    let grouped = inner.saturating_sub(1);
+    // Six edges meet at an inserted vertex, four on the tree's border, for all levels but the last that has codes.
+    let meeting: u64 = (0..n.saturating_sub(1)).map(|level| 6 * edges_of_level(level) as u64 - 6 * (1 << level)).sum();
+    let nodes = scene.nodes().len() as u64;
+    [
+        (Kind::Reserved, trees * (2 + grouped + inner) + 4 * nodes),
+        (Kind::Limit, trees * 3 * (1 + inner)),
+        (Kind::LowBits, trees * 3 * (1 + inner)),
+        (Kind::VerticesInTree, trees * (3 * inner - (len - 3))),
+        (Kind::VerticesAcross, edges.extra_uses * ((1 << n) - 1) + shared_corners),
+        (Kind::CodesInTree, trees * (3 * inner - edge_count)),
+        (Kind::CodesAcross, edges.extra_uses * ((1 << n) - 1)),
+        (Kind::Bounds, trees * edge_count),
+        (Kind::Monotone, trees * meeting),
+        (Kind::Boxes, trees * inner.max(1)),
+        (Kind::ModelBox, 6),
+        (Kind::BaseTriangles, trees),
+        (Kind::BvhNodes, nodes),
+        (Kind::BvhTrees, trees),
+        (Kind::BvhLeafBoxes, trees),
+        (Kind::BvhInnerBoxes, nodes - 1),
+        (Kind::Normals, trees * len),
+        (Kind::Materials, trees),
+    ]
+}

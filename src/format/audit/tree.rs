@@ -1,0 +1,253 @@
+//! Trees: reading the stored nodes into lattices, and the checks that need one tree only.
+//!
+//! An inserted vertex stands for the edge that it splits: the edge's code and its true displacement are kept at the vertex's place.
+
+use super::edges::Edges;
+use super::tally::{Kind, Tallies};
+use crate::format::{BoundData, L0Record, Scene, VertexData};
+use crate::mesh::lattice;
+use crate::num::{COORD_LIMIT, Wire};
+use rayon::prelude::*;
+
+/// Code of a lattice point at which no edge has been seen.
+const UNSEEN: u16 = u16::MAX;
+
+/// What was read, per lattice point, tree after tree.
+pub(super) struct Lattices {
+    /// Position in units.
+    pub points: Vec<[i32; 3]>,
+    /// Code of the edge that the point splits.
+    pub codes: Vec<u16>,
+    /// Displacement in squares of 8 units: at first the point's own, then the largest that the edge's bound must cover.
+    pub displacements: Vec<u64>,
+}
+
+/// The part of one tree.
+pub(super) struct Lattice<'a> {
+    points: &'a mut [[i32; 3]],
+    codes: &'a mut [u16],
+    displacements: &'a mut [u64],
+}
+
+impl Lattices {
+    pub fn new(len: usize) -> Self {
+        Self { points: vec![[0; 3]; len], codes: vec![UNSEEN; len], displacements: vec![0; len] }
+    }
+
+    /// The lattices of all trees, `len` points each.
+    pub fn trees(&mut self, len: usize) -> impl IndexedParallelIterator<Item = Lattice<'_>> {
+        self.points
+            .par_chunks_mut(len)
+            .zip(self.codes.par_chunks_mut(len))
+            .zip(self.displacements.par_chunks_mut(len))
+            .map(|((points, codes), displacements)| Lattice { points, codes, displacements })
+    }
+
+    /// Raises each displacement to the largest of those below it, finest level first, over all trees.
+    pub fn largest_displacements(&mut self, levels: u32, edges: &Edges) {
+        // Vertices of level `levels` stand for the finest edges with a bound: nothing is below them.
+        for level in (1..=levels).rev() {
+            if level < levels {
+                self.displacements.par_chunks_mut(lattice::len(levels)).for_each(|d| {
+                    each_inserted(levels, level, |at, meeting| {
+                        for &finer in meeting {
+                            d[at] = d[at].max(d[finer]);
+                        }
+                    });
+                });
+            }
+            edges.raise_shared(level, &mut self.displacements);
+        }
+    }
+
+    /// Codes against displacements, and against the codes of the edges that meet at the vertex.
+    pub fn check_codes(&self, levels: u32, allowed: &[u64]) -> Tallies {
+        let len = lattice::len(levels);
+        let per_tree = self.codes.par_chunks(len).zip(self.displacements.par_chunks(len)).enumerate().map(|(t, (codes, truths))| {
+            let mut found = Tallies::default();
+            for level in 1..=levels {
+                each_inserted(levels, level, |at, meeting| {
+                    let code = codes[at];
+                    let covers = allowed.get(usize::from(code)).is_some_and(|&most| truths[at] <= most);
+                    found.check(Kind::Bounds, covers, || {
+                        let truth = 8.0 * (truths[at] as f64).sqrt();
+                        format!("tree {t}: edge of level {} split at lattice point {at} has code {code}, displacement {truth}", level - 1)
+                    });
+                    for &finer in meeting {
+                        found.check(Kind::Monotone, codes[finer] <= code, || {
+                            format!(
+                                "tree {t}: edge of level {} at lattice point {at} has code {code}, a finer one {}",
+                                level - 1,
+                                codes[finer]
+                            )
+                        });
+                    }
+                });
+            }
+            found
+        });
+        per_tree.reduce(Tallies::default, Tallies::join)
+    }
+}
+
+/// Calls `f` for each vertex inserted at `level` (1 to N) with its index and those of the vertices that split the edges which meet at it (none
+/// on the last level, whose edges have no bounds).
+fn each_inserted(levels: u32, level: u32, mut f: impl FnMut(usize, &[usize])) {
+    const AROUND: [(i32, i32); 6] = [(1, 0), (0, 1), (-1, 1), (-1, 0), (0, -1), (1, -1)];
+    let (m, step) = (1i32 << levels, 1i32 << (levels - level));
+    let half = step / 2;
+    for j in (0..=m).step_by(step as usize) {
+        for i in (0..=m - j).step_by(step as usize) {
+            if (i | j) & step == 0 {
+                continue; // of a coarser level
+            }
+            let mut meeting = [0; 6];
+            let mut count = 0;
+            for (di, dj) in AROUND {
+                let (x, y) = (i + half * di, j + half * dj);
+                if half > 0 && x >= 0 && y >= 0 && x + y <= m {
+                    meeting[count] = lattice::index(levels, (x as u32, y as u32)); // not negative
+                    count += 1;
+                }
+            }
+            f(lattice::index(levels, (i as u32, j as u32)), &meeting[..count]);
+        }
+    }
+}
+
+/// Reads a tree by recursion over its stored nodes and checks what can be checked on the way.
+pub(super) fn read(scene: &Scene, tree: usize, record: &[u64; 8], lattice: Lattice<'_>) -> Tallies {
+    let levels = scene.levels();
+    let lines = ((1 << (2 * levels)) - 1) / 3;
+    let groups = if levels < 2 { 0 } else { (lines - 1) / 4 };
+    let mut reader = Reader {
+        tree,
+        levels,
+        lines: &scene.vertices()[tree * lines..][..lines],
+        groups: &scene.bounds()[tree * groups..][..groups],
+        lattice,
+        found: Tallies::default(),
+    };
+    let [a, b, c] = scene.triangles()[tree];
+    reader.found.check(Kind::BaseTriangles, a != b && b != c && c != a, || format!("tree {tree}: vertices {a}, {b}, {c}"));
+
+    let corners = VertexData::from_words(&record[..4]);
+    let second = L0Record::from_words(&record[4..]);
+    reader.found.check(Kind::Reserved, corners.reserved.get() == 0, || format!("tree {tree}: first line of the L0 record"));
+    let codes = [second.root.e0, second.root.e1, second.root.e2];
+    let zero = [second.reserved_high.get(), second.reserved.get(), second.root.reserved.get()] == [0; 3]
+        && (levels > 0 || codes.iter().all(|c| c.get() == 0));
+    reader.found.check(Kind::Reserved, zero, || format!("tree {tree}: second line of the L0 record"));
+
+    let points = corners.points().map(|p| p.get().map(|c| c as i32)); // 32 bits by their type
+    let places = [(0, 0), (1 << levels, 0), (0, 1 << levels)];
+    for (point, place) in points.into_iter().zip(places) {
+        reader.coordinates(0, point, || format!("tree {tree}: corner at {place:?}"));
+        reader.lattice.points[lattice::index(levels, place)] = point;
+    }
+    let (lo, hi) = reader.node(0, 0, places, points, second.root);
+    (reader.found.lo, reader.found.hi) = (lo, hi);
+    reader.found
+}
+
+struct Reader<'a> {
+    tree: usize,
+    levels: u32,
+    lines: &'a [[u64; 4]],
+    groups: &'a [[u64; 8]],
+    lattice: Lattice<'a>,
+    found: Tallies,
+}
+
+type Place = (u32, u32);
+
+impl Reader<'_> {
+    /// Checks a node and all below it; gives the box of its full-resolution vertices. `places` and `p` are its corners.
+    fn node(&mut self, level: u32, node: usize, places: [Place; 3], p: [[i32; 3]; 3], data: BoundData) -> ([i32; 3], [i32; 3]) {
+        let (mut lo, mut hi) = (p[0], p[0]);
+        let mut widen = |v: [i32; 3]| {
+            for k in 0..3 {
+                lo[k] = lo[k].min(v[k]);
+                hi[k] = hi[k].max(v[k]);
+            }
+        };
+        p.into_iter().for_each(&mut widen);
+        if level < self.levels {
+            let (q_places, q) = self.inserted(level, node, places, p, data);
+            if level + 1 == self.levels {
+                q.into_iter().for_each(&mut widen);
+            } else {
+                let corners = [[(0, 0), (1, 2), (1, 1)], [(1, 2), (0, 1), (1, 0)], [(1, 1), (1, 0), (0, 2)], [(1, 0), (1, 1), (1, 2)]];
+                let group = self.groups[first(level) + node];
+                for (k, corners) in corners.into_iter().enumerate() {
+                    let child_places = corners.map(|(new, i)| if new == 1 { q_places[i] } else { places[i] });
+                    let child = corners.map(|(new, i)| if new == 1 { q[i] } else { p[i] });
+                    let data = BoundData::from_words(&group[2 * k..]);
+                    let (tree, below) = (self.tree, 4 * node + k);
+                    self.found.check(Kind::Reserved, data.reserved.get() == 0, || {
+                        format!("tree {tree}: bound data of node {below} of level {}", level + 1)
+                    });
+                    let (a, b) = self.node(level + 1, below, child_places, child, data);
+                    widen(a);
+                    widen(b);
+                }
+            }
+        }
+        if level < self.levels || level == 0 {
+            let (stored_lo, stored_hi) = (data.bounds.lo.get(), data.bounds.hi.get());
+            let holds = (0..3).all(|k| stored_lo[k] << 16 <= i64::from(lo[k]) && stored_hi[k] << 16 >= i64::from(hi[k]));
+            let tree = self.tree;
+            self.found.check(Kind::Boxes, holds, || {
+                format!(
+                    "tree {tree}: node {node} of level {level} spans {lo:?} to {hi:?}, its box {stored_lo:?} to {stored_hi:?} (times 2^16)"
+                )
+            });
+        }
+        (lo, hi)
+    }
+
+    /// Checks the inserted vertices and codes of a node and gives the vertices.
+    #[inline]
+    fn inserted(&mut self, level: u32, node: usize, places: [Place; 3], p: [[i32; 3]; 3], data: BoundData) -> ([Place; 3], [[i32; 3]; 3]) {
+        let (tree, levels) = (self.tree, self.levels);
+        let line = VertexData::from_words(&self.lines[first(level) + node]);
+        self.found.check(Kind::Reserved, line.reserved.get() == 0, || format!("tree {tree}: vertex line of node {node} of level {level}"));
+        let q = line.points().map(|v| v.get().map(|c| c as i32)); // 32 bits by their type
+        let codes = [data.e0, data.e1, data.e2].map(|c| c.get() as u16); // 10 bits
+        let mut q_places = places;
+        for k in 0..3 {
+            let (a, b) = ((k + 1) % 3, (k + 2) % 3);
+            let place = (u32::midpoint(places[a].0, places[b].0), u32::midpoint(places[a].1, places[b].1));
+            q_places[k] = place;
+            let at = lattice::index(levels, place);
+            let name = || format!("tree {tree}: q{k} of node {node} of level {level} (lattice point {at})");
+            self.coordinates(level + 1, q[k], name);
+            if self.lattice.codes[at] == UNSEEN {
+                self.lattice.codes[at] = codes[k];
+                self.lattice.points[at] = q[k];
+                // 2q - a - b: stored coordinates are multiples of 16, so eighths of units of the displacement have 30 bits.
+                let twice = |c: usize| (2 * i64::from(q[k][c]) - i64::from(p[a][c]) - i64::from(p[b][c])) / 16;
+                self.lattice.displacements[at] = (0..3).map(|c| twice(c).unsigned_abs().pow(2)).sum();
+            } else {
+                let (code, point) = (self.lattice.codes[at], self.lattice.points[at]);
+                self.found.check(Kind::VerticesInTree, point == q[k], || format!("{} is {:?}, its other side {point:?}", name(), q[k]));
+                self.found.check(Kind::CodesInTree, code == codes[k], || format!("{}: code {}, its other side {code}", name(), codes[k]));
+            }
+        }
+        (q_places, q)
+    }
+
+    /// Limit and grid of a vertex of level `level`.
+    #[inline]
+    fn coordinates(&mut self, level: u32, v: [i32; 3], name: impl Fn() -> String) {
+        let within = v.iter().all(|c| (-COORD_LIMIT..=COORD_LIMIT).contains(c));
+        self.found.check(Kind::Limit, within, || format!("{} is {v:?}", name()));
+        let low = (1i32 << (self.levels - level)) - 1;
+        self.found.check(Kind::LowBits, v.iter().all(|c| c & low == 0), || format!("{} is {v:?}", name()));
+    }
+}
+
+/// Number of nodes on the levels above `level`.
+fn first(level: u32) -> usize {
+    (0..level).map(|n| 1 << (2 * n)).sum()
+}
