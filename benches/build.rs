@@ -1,10 +1,7 @@
 //! Rates of building, writing, opening and auditing a terrain-like scene.
 #![allow(missing_docs)]
 
-#[path = "../tests/common/mod.rs"]
-mod common;
-
-use common::grid;
+use lodray_test_support::surfaces::grid;
 use criterion::{Criterion, Throughput, criterion_group, criterion_main};
 use lodray::format::audit::audit;
 use lodray::format::{Scene, build};
@@ -18,9 +15,9 @@ fn build_and_write(c: &mut Criterion) {
     let mut group = c.benchmark_group("scene");
     group.sample_size(10).throughput(Throughput::Elements(surface.finest_triangles()));
     group.bench_function("quantise and bounds", |b| b.iter(|| quantise(&surface).expect("a valid surface")));
-    group.bench_function("build", |b| b.iter(|| build(&surface, common::info("bench"), lodray::bvh::over_trees).expect("a valid surface")));
+    group.bench_function("build", |b| b.iter(|| build(&surface, lodray_test_support::surfaces::info("bench"), lodray::bvh::over_trees).expect("a valid surface")));
     group.bench_function("build and write", |b| {
-        b.iter(|| build(&surface, common::info("bench"), lodray::bvh::over_trees).and_then(|s| s.save(&path)).expect("written"));
+        b.iter(|| build(&surface, lodray_test_support::surfaces::info("bench"), lodray::bvh::over_trees).and_then(|s| s.save(&path)).expect("written"));
     });
     group.bench_function("open", |b| b.iter(|| Scene::open(&path).expect("valid")));
     let scene = Scene::open(&path).expect("valid");

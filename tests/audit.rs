@@ -1,8 +1,6 @@
 //! The audit: sound scenes pass with nothing left out, and each kind of damage under right checksums is found by the check that is meant for it.
 
-mod common;
-
-use common::{fan, grid, octahedron, scene, surface};
+use lodray_test_support::surfaces::{fan, grid, octahedron, scene, surface};
 use lodray::format::audit::{AuditReport, audit};
 use lodray::format::{BoundData, BvhChild, Scene, VertexData, export_level, layout};
 use lodray::mesh::{Surface, edge_index, lattice, quantise};
@@ -12,9 +10,9 @@ use proptest::prelude::*;
 #[test]
 fn sound_scenes_pass_and_nothing_is_left_out() {
     for levels in [0, 1, 2, 5] {
-        let one = surface(levels, &[[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]], &[[0, 1, 2]], common::bumps);
+        let one = surface(levels, &[[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]], &[[0, 1, 2]], lodray_test_support::surfaces::bumps);
         // Two trees with the same three vertices share all edges.
-        let twice = surface(levels, &[[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]], &[[0, 1, 2], [2, 1, 0]], common::bumps);
+        let twice = surface(levels, &[[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]], &[[0, 1, 2], [2, 1, 0]], lodray_test_support::surfaces::bumps);
         let flat = surface(levels, &[[5.0; 3]; 3], &[[0, 1, 2]], |p| p);
         for s in [one, twice, flat, grid(levels, 3), octahedron(levels), fan(levels)] {
             let report = audit(&scene(&s));
@@ -27,7 +25,7 @@ fn sound_scenes_pass_and_nothing_is_left_out() {
 
 #[test]
 fn ten_levels_and_unused_base_vertices_work() {
-    let mut s = surface(10, &[[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]], &[[0, 1, 2]], common::bumps);
+    let mut s = surface(10, &[[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]], &[[0, 1, 2]], lodray_test_support::surfaces::bumps);
     s.base_vertices = u32::MAX;
     let scene = scene(&s);
     let report = audit(&scene);
@@ -44,9 +42,9 @@ fn bytes_per_triangle_keep_to_the_promise() {
 /// Applies `f` to the bytes of section `kind`, reseals, opens, audits.
 fn damaged(good: &Scene, kind: usize, f: impl Fn(&mut [u8])) -> AuditReport {
     let mut bytes = good.bytes().to_vec();
-    let (offset, length) = common::section(&bytes, kind);
+    let (offset, length) = lodray_test_support::surfaces::section(&bytes, kind);
     f(&mut bytes[offset..offset + length]);
-    common::reseal(&mut bytes);
+    lodray_test_support::surfaces::reseal(&mut bytes);
     let directory = tempfile::tempdir().unwrap();
     let path = directory.path().join("damaged.lod");
     std::fs::write(&path, bytes).unwrap();
@@ -279,11 +277,11 @@ proptest! {
     fn no_damage_makes_anything_panic(kind in 2usize..9, places in prop::collection::vec((any::<prop::sample::Index>(), any::<u8>()), 1..20)) {
         let good = scene(&octahedron(3));
         let mut bytes = good.bytes().to_vec();
-        let (offset, length) = common::section(&bytes, kind);
+        let (offset, length) = lodray_test_support::surfaces::section(&bytes, kind);
         for (place, value) in places {
             bytes[offset + place.index(length)] = value;
         }
-        common::reseal(&mut bytes);
+        lodray_test_support::surfaces::reseal(&mut bytes);
         let changed = bytes != good.bytes();
         let directory = tempfile::tempdir().unwrap();
         let path = directory.path().join("damaged.lod");

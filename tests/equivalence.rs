@@ -1,8 +1,6 @@
 //! The blocks' traversal equals the exact golden traverser in every field of every hit.
 
-mod common;
-
-use common::{Rng, ball, build, cone, model, octahedron, scene_of, terrain};
+use lodray_test_support::models::{Rng, ball, build, cone, model, octahedron, scene_of, terrain};
 use lodray::bvh::{FullBvh, FullOptions, LeafLayout, Options as TreeOptions};
 use lodray::format::Scene;
 use lodray::golden::exact::{Exact, ExactHit};

@@ -1,8 +1,6 @@
 //! The golden traverser and the reference against themselves, each other, and cases worked out by hand.
 
-mod common;
-
-use common::*;
+use lodray_test_support::models::*;
 use lodray::{
     golden::{Crossings, Exact, ExactHit, Reference, true_bounds},
     mesh::{EdgeCodes, Hierarchy, Placement, lattice},

@@ -1,8 +1,6 @@
 //! Surfaces to integers: any finite extent fits, and what does not fit is refused by name.
 
-mod common;
-
-use common::{bumps, grid, surface};
+use lodray_test_support::surfaces::{bumps, grid, surface};
 use lodray::mesh::{Surface, lattice, quantise};
 use lodray::num::{COORD_LIMIT, snap};
 
@@ -60,6 +58,6 @@ fn what_does_not_fit_is_refused_by_name() {
     refused("base vertex", &|s| s.positions[8][2] += 0.01);
     let mut s = grid(3, 2);
     s.normals[7] = [0.0; 3];
-    let message = lodray::format::build(&s, common::info("test"), common::quad_tree).unwrap_err().to_string();
+    let message = lodray::format::build(&s, lodray_test_support::surfaces::info("test"), |boxes| Ok::<_, String>(lodray_test_support::surfaces::quad_tree(boxes))).unwrap_err().to_string();
     assert!(message.contains("normals: entry 7"), "{message}");
 }

@@ -1,9 +1,6 @@
 //! Scene files: what is written comes back, and what is broken is refused.
 
-#[path = "common/surfaces.rs"]
-mod common;
-
-use common::{fan, grid, octahedron, scene};
+use lodray_test_support::surfaces::{fan, grid, octahedron, scene};
 use lodray::format::{Scene, export_level};
 use lodray::mesh::{lattice, quantise};
 
@@ -83,7 +80,7 @@ fn every_flipped_bit_is_noticed() {
         assert!(open(&bytes).is_err(), "byte {at}");
     }
     for (kind, name) in ["META", "NODES", "RECORDS", "BOUNDS", "VERTICES", "NORMALS", "TRIANGLES", "COLOURS"].into_iter().enumerate() {
-        let (offset, length) = common::section(&good, kind + 1);
+        let (offset, length) = lodray_test_support::surfaces::section(&good, kind + 1);
         let mut bytes = good.clone();
         bytes[offset + length / 2] ^= 0x10;
         let message = open(&bytes).unwrap_err();
@@ -103,7 +100,7 @@ fn truncated_long_foreign_and_newer_files_are_refused() {
     assert!(open(b"solid ascii\nfacet normal 0 0 1").unwrap_err().contains("magic"));
     let mut newer = good.clone();
     newer[8] = 2;
-    common::reseal(&mut newer);
+    lodray_test_support::surfaces::reseal(&mut newer);
     assert!(open(&newer).unwrap_err().contains("newer"));
     assert!(Scene::open(std::path::Path::new("/nonexistent/x.lod")).unwrap_err().to_string().contains("x.lod"));
     assert!(Scene::open(&std::env::temp_dir()).is_err());
@@ -111,11 +108,11 @@ fn truncated_long_foreign_and_newer_files_are_refused() {
 
 /// Replaces text in META (of the same length) and opens the resealed file.
 fn with_meta(good: &[u8], from: &str, to: &str) -> Result<Scene, String> {
-    let (offset, length) = common::section(good, 1);
+    let (offset, length) = lodray_test_support::surfaces::section(good, 1);
     let at = good[offset..offset + length].windows(from.len()).position(|w| w == from.as_bytes()).expect("META holds the text");
     let mut bytes = good.to_vec();
     bytes[offset + at..][..to.len()].copy_from_slice(to.as_bytes());
-    common::reseal(&mut bytes);
+    lodray_test_support::surfaces::reseal(&mut bytes);
     open(&bytes)
 }
 
@@ -134,7 +131,7 @@ fn resealed_nonsense_is_refused_with_section_and_field() {
         sum_header_only(&mut bytes);
         open(&bytes).unwrap_err()
     };
-    let (vertices, _) = common::section(&good, 5);
+    let (vertices, _) = lodray_test_support::surfaces::section(&good, 5);
     let entry = 64 + 32 * 4;
     for (message, parts) in [
         (broken(&|b| word(b, entry + 8, vertices as u64 + 4)), ["VERTICES", "misaligned"]),
@@ -150,11 +147,11 @@ fn resealed_nonsense_is_refused_with_section_and_field() {
         assert!(parts.iter().any(|p| message.contains(p)), "{message}");
     }
     // A quad-BVH that leads in a circle or nowhere.
-    let (nodes, _) = common::section(&good, 2);
+    let (nodes, _) = lodray_test_support::surfaces::section(&good, 2);
     for reference in [1u64 << 30, 1 << 30 | 999, 2 << 30 | 8, 2 << 30 | 3 << 28 | 6, 3 << 30] {
         let mut bytes = good.clone();
         bytes[nodes + 12..nodes + 16].copy_from_slice(&(reference as u32).to_le_bytes());
-        common::reseal(&mut bytes);
+        lodray_test_support::surfaces::reseal(&mut bytes);
         assert!(open(&bytes).unwrap_err().contains("NODES"));
     }
 }

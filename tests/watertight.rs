@@ -1,8 +1,6 @@
 //! Watertight, measured: no miss and no double hit on closed models, aimed at vertices and edges and within one unit of them.
 
-mod common;
-
-use common::{ball, build, scene_of};
+use lodray_test_support::models::{ball, build, scene_of};
 use lodray::format::Scene;
 use lodray::mesh::Hierarchy;
 use lodray::mesh::procedural::{self, Options};

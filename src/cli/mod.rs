@@ -4,12 +4,14 @@ mod args;
 mod build;
 mod crack;
 mod demo;
+mod export;
 mod generate;
 mod info;
 mod lines;
 mod output;
 mod pictures;
 mod render;
+mod verify;
 
 use clap::{Parser, Subcommand};
 use std::process::ExitCode;
@@ -28,14 +30,20 @@ enum Command {
     Demo(demo::Args),
     /// Make a procedural scene
     Generate(generate::Args),
+    /// Make a scene from a mesh file (OBJ or PLY)
+    Build(build::Args),
     /// Print what a scene file holds
     Info(info::Args),
+    /// Audit a scene file: recompute every promise from the vertices
+    Verify(verify::Args),
     /// Render a scene
     Render(render::Args),
     /// Count the memory lines that a frame touches, LOD against every BVH layout, by distance
     Lines(lines::Args),
     /// Shoot rays at edges and vertices of a closed scene and count misses and double hits
     Crack(crack::Args),
+    /// Write one level of a scene as an OBJ mesh
+    Export(export::Args),
 }
 
 /// Runs the program; the exit code is that of a finding (a breach in an audit), errors are errors.
@@ -46,9 +54,12 @@ pub fn run(cli: Cli) -> anyhow::Result<ExitCode> {
     match cli.command {
         Command::Demo(args) => demo::run(&args),
         Command::Generate(args) => generate::run(&args),
+        Command::Build(args) => build::run(&args),
         Command::Info(args) => info::run(&args),
+        Command::Verify(args) => verify::run(&args),
         Command::Render(args) => render::run(&args),
         Command::Lines(args) => lines::run(&args),
         Command::Crack(args) => crack::run(&args),
+        Command::Export(args) => export::run(&args),
     }
 }

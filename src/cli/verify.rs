@@ -1,0 +1,34 @@
+//! `verify`: the audit.
+
+use super::output::{grouped, open, print_json, print_line};
+use lodray::format::audit::audit;
+use std::path::PathBuf;
+use std::process::ExitCode;
+
+#[derive(clap::Args)]
+pub struct Args {
+    /// Scene file
+    scene: PathBuf,
+    /// Print the figures as JSON
+    #[arg(long)]
+    json: bool,
+}
+
+pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
+    let scene = open(&args.scene)?;
+    let report = audit(&scene);
+    if args.json {
+        print_json(&report)?;
+    } else {
+        let mut text = format!("{:<60}{:>16}{:>12}\n", "check", "checked", "breaches");
+        for check in &report.checks {
+            text += &format!("{:<60}{:>16}{:>12}\n", check.name, grouped(check.checked), grouped(check.breaches));
+            if let Some(first) = &check.first {
+                text += &format!("  first: {first}\n");
+            }
+        }
+        text += if report.passed() { "passed" } else { "FAILED" };
+        print_line(&text)?;
+    }
+    Ok(if report.passed() { ExitCode::SUCCESS } else { ExitCode::FAILURE })
+}
