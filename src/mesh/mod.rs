@@ -1,8 +1,16 @@
 //! Floor 2: triangle meshes in, hierarchies of 1-to-4 splits out.
 
+mod clean;
+mod distance;
 mod hierarchy;
 pub mod lattice;
+mod read;
+mod remesh;
 mod surface;
 
+pub use clean::{CleanReport, MeshError, TriangleMesh};
+pub use distance::{Distance, TwoSidedDistance};
 pub use hierarchy::{EdgeCodes, Hierarchy, Placement, edge_index, edges_of_level, edges_of_tree};
+pub use read::{ReadError, read};
+pub use remesh::{RemeshError, RemeshOptions, RemeshReport, remesh};
 pub use surface::Surface;
