@@ -45,8 +45,7 @@ pub(super) struct Target {
 
 impl Target {
     pub fn new(corners: Vec<[Vec3; 3]>) -> Target {
-        let boxes: Vec<Aabb> =
-            corners.par_iter().map(|&[a, b, c]| Aabb::new(a.min(b).min(c), a.max(b).max(c))).collect();
+        let boxes: Vec<Aabb> = corners.par_iter().map(|&[a, b, c]| Aabb::new(a.min(b).min(c), a.max(b).max(c))).collect();
         Target { bvh: Bvh::from_leaves(BvhBuildStrategy::Binned, &boxes), corners }
     }
 

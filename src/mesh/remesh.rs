@@ -4,10 +4,12 @@
 //! 2. [`base`] collapses edges by their quadric error, feature lines only along themselves.
 //! 3. [`topology`] finds the base mesh's edges and, for those on a feature line, the piece of the line that each stands for.
 //! 4. [`split`] inserts vertices level by level: on feature lines by arc length, elsewhere by projection on the original surface.
-//! 5. [`shading`] makes the normals and counts what went wrong.
+//! 5. [`settle`] moves vertices that were left beside the surface, or that fold it, to better places.
+//! 6. [`shading`] makes the normals and counts what went wrong.
 
 mod base;
 mod project;
+mod settle;
 mod shading;
 mod source;
 mod split;
@@ -29,6 +31,15 @@ const MAX_TRIANGLES: u64 = 1 << 27;
 const REDUCTION: usize = 64;
 /// ... but at least this many.
 const MIN_BASE: usize = 256;
+
+/// Bends beyond these angles (degrees) are tried as creases, in this order.
+const CREASES: [f64; 4] = [40.0, 60.0, 85.0, 180.0];
+/// Splits that show whether a base mesh goes well.
+const TRIAL_LEVELS: u32 = 2;
+/// It does if no more than this part of the lattice points is beside the surface or in a triangle that faces away.
+const LITTLE_TROUBLE: f64 = 0.01;
+/// Up to this factor more base triangles than wanted will do.
+const ENOUGH: f64 = 1.25;
 
 /// What to make of a mesh.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -114,15 +125,13 @@ pub fn remesh(
     let count = mesh.triangles.len();
     let wanted = options.base_triangles.unwrap_or((count / REDUCTION).max(MIN_BASE)).min(count);
 
-    progress("base mesh", 0, 1);
-    let (source, base) = base::simplify(mesh, wanted);
-    progress("base mesh", 1, 1);
-    let triangles = (base.len() as u64) << (2 * levels);
+    let (source, topology) = choose_base(mesh, wanted, progress);
+    let base = topology.triangles.len();
+    let triangles = (base as u64) << (2 * levels);
     if triangles > MAX_TRIANGLES {
-        return Err(RemeshError::TooMany { base: base.len(), levels, triangles });
+        return Err(RemeshError::TooMany { base, levels, triangles });
     }
 
-    let topology = Topology::new(&source, base);
     let forest = split::split(&source, &topology, levels, progress);
     progress("normals", 0, 1);
     let (normals, flipped_triangles) = shading::shade(&topology, &forest);
@@ -153,6 +162,38 @@ pub fn remesh(
     Ok((surface, report))
 }
 
+/// Makes a base mesh for one crease angle after the other, splits it a little, and takes the first that goes well; else the best.
+///
+/// Creases kept are edges kept sharp, but on a rough or coarse surface they can be so many that they leave no room for anything else.
+fn choose_base(mesh: &TriangleMesh, wanted: usize, progress: &dyn Fn(&str, u64, u64)) -> (Source, Topology) {
+    let attempt = |crease: f64| {
+        let (source, base) = base::simplify(mesh, wanted, crease.to_radians());
+        let topology = Topology::new(&source, base);
+        let forest = split::split(&source, &topology, TRIAL_LEVELS, &|_, _, _| {});
+        let mut report = RemeshReport::default();
+        forest.count_methods(&topology, &mut report);
+        let bad = report.midpoints_kept + shading::shade(&topology, &forest).1;
+        let trouble = bad as f64 / forest.positions.len() as f64;
+        let too_many = (topology.triangles.len() as f64 / wanted as f64 - ENOUGH).max(0.0);
+        ((source, topology), trouble + too_many)
+    };
+    let total = CREASES.len() as u64;
+    progress("base mesh", 0, total);
+    let (mut best, mut least) = attempt(CREASES[0]);
+    for (&crease, done) in CREASES[1..].iter().zip(1..) {
+        if least <= LITTLE_TROUBLE {
+            break;
+        }
+        progress("base mesh", done, total);
+        let (next, trouble) = attempt(crease);
+        if trouble < least {
+            (best, least) = (next, trouble);
+        }
+    }
+    progress("base mesh", total, total);
+    best
+}
+
 fn check(mesh: &TriangleMesh) -> Result<(), RemeshError> {
     let bad = |what| Err(RemeshError::BadMesh { what });
     if mesh.triangles.is_empty() {
@@ -170,13 +211,16 @@ fn check(mesh: &TriangleMesh) -> Result<(), RemeshError> {
     Ok(())
 }
 
-/// Positions in the user's units; base vertices are exactly those of the original.
+/// Positions in the user's units; base vertices that did not move are exactly those of the original.
 fn to_world(source: &Source, topology: &Topology, positions: &[Vec3], levels: u32, mesh: &TriangleMesh) -> Vec<[f64; 3]> {
     let mut world: Vec<[f64; 3]> = positions.par_iter().map(|&p| source.to_world(p)).collect();
     let corners = lattice::root(levels).map(|p| lattice::index(levels, p));
-    for (tree, triangle) in world.chunks_exact_mut(lattice::len(levels)).zip(&topology.triangles) {
+    for (t, triangle) in topology.triangles.iter().enumerate() {
         for k in 0..3 {
-            tree[corners[k]] = mesh.positions[topology.vertices[triangle[k] as usize] as usize];
+            let (at, vertex) = (t * lattice::len(levels) + corners[k], topology.vertices[triangle[k] as usize] as usize);
+            if positions[at] == source.positions[vertex] {
+                world[at] = mesh.positions[vertex];
+            }
         }
     }
     world

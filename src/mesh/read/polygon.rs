@@ -46,8 +46,7 @@ fn area(a: [f64; 2], b: [f64; 2], c: [f64; 2]) -> f64 {
 /// Corners in the coordinate plane that the polygon faces most, scaled to about 1, counter-clockwise.
 fn project(positions: &[[f64; 3]], corners: &[u32]) -> Vec<[f64; 2]> {
     let origin = positions[corners[0] as usize];
-    let mut local: Vec<[f64; 3]> =
-        corners.iter().map(|&c| std::array::from_fn(|k| positions[c as usize][k] - origin[k])).collect();
+    let mut local: Vec<[f64; 3]> = corners.iter().map(|&c| std::array::from_fn(|k| positions[c as usize][k] - origin[k])).collect();
     let size = local.iter().flatten().fold(f64::MIN_POSITIVE, |m, v| m.max(v.abs()));
     local.iter_mut().flatten().for_each(|v| *v /= size);
     // Newell's normal: the polygon's areas in the three coordinate planes.

@@ -5,29 +5,12 @@ use super::source::Source;
 use meshopt::{SimplifyOptions, VertexDataAdapter};
 use std::collections::HashSet;
 
-/// Bends beyond these angles (degrees) are creases: the first for which the wanted number of triangles is about reached. Creases of a
-/// rough surface can be so many that nothing else is left to collapse.
-const CREASES: [f64; 4] = [40.0, 60.0, 85.0, 180.0];
-
-/// Up to this factor more triangles than wanted will do.
-const ENOUGH: f64 = 1.25;
-
-/// The original and a base mesh of about `wanted` triangles, each as three wedges of the original.
-pub(super) fn simplify(mesh: &TriangleMesh, wanted: usize) -> (Source, Vec<[u32; 3]>) {
-    let mut best: Option<(Source, Vec<[u32; 3]>)> = None;
-    for crease in CREASES {
-        let source = Source::new(mesh, crease.to_radians());
-        let base = collapse(&source, wanted);
-        let done = base.len() as f64 <= ENOUGH * wanted as f64;
-        // Creases are given up only for a good deal fewer triangles.
-        if best.as_ref().is_none_or(|(_, b)| base.len() as f64 * ENOUGH < b.len() as f64) {
-            best = Some((source, base));
-        }
-        if done {
-            break;
-        }
-    }
-    best.unwrap_or_else(|| (Source::new(mesh, std::f64::consts::PI), Vec::new()))
+/// The original, cut where it bends by more than `crease` (radians), and a base mesh of about `wanted` triangles, each as three wedges of
+/// the original.
+pub(super) fn simplify(mesh: &TriangleMesh, wanted: usize, crease: f64) -> (Source, Vec<[u32; 3]>) {
+    let source = Source::new(mesh, crease);
+    let base = collapse(&source, wanted);
+    (source, base)
 }
 
 fn collapse(source: &Source, wanted: usize) -> Vec<[u32; 3]> {
@@ -35,8 +18,7 @@ fn collapse(source: &Source, wanted: usize) -> Vec<[u32; 3]> {
         return source.wedges.clone();
     }
     // One vertex for each wedge: feature lines become seams, which only collapse along themselves.
-    let positions: Vec<[f32; 3]> =
-        source.wedge_vertex.iter().map(|&v| source.positions[v as usize].to_array().map(|x| x as f32)).collect();
+    let positions: Vec<[f32; 3]> = source.wedge_vertex.iter().map(|&v| source.positions[v as usize].to_array().map(|x| x as f32)).collect();
     let Ok(adapter) = VertexDataAdapter::new(bytemuck::cast_slice(&positions), size_of::<[f32; 3]>(), 0) else {
         return source.wedges.clone();
     };
@@ -55,7 +37,13 @@ fn collapse(source: &Source, wanted: usize) -> Vec<[u32; 3]> {
         let [a, b, c] = t.map(|w| source.wedge_vertex[w as usize]);
         // A pair that faces both ways is a closed surface; the same triangle twice is not.
         let first = a.min(b).min(c);
-        let key = if first == a { [a, b, c] } else if first == b { [b, c, a] } else { [c, a, b] };
+        let key = if first == a {
+            [a, b, c]
+        } else if first == b {
+            [b, c, a]
+        } else {
+            [c, a, b]
+        };
         a != b && b != c && c != a && seen.insert(key)
     };
     let kept: Vec<[u32; 3]> = indices.chunks_exact(3).map(|t| [t[0], t[1], t[2]]).filter(distinct).collect();

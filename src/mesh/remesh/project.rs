@@ -59,9 +59,7 @@ pub(super) fn insert(source: &Source, a: Point, b: Point, direction: Vec3, patch
     if method >= Method::Midpoint {
         return midpoint;
     }
-    let accept = |t: u32| {
-        patch.is_none_or(|p| source.patch[t as usize] == p) && source.face_normal[t as usize].dot(direction) > FACING
-    };
+    let accept = |t: u32| patch.is_none_or(|p| source.patch[t as usize] == p) && source.face_normal[t as usize].dot(direction) > FACING;
     let ray = (method == Method::Ray).then(|| source.target.line(middle, direction, REACH * length, accept)).flatten();
     let far = |point: Vec3| (point - middle).length();
     if let Some(hit) = ray

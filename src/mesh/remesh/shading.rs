@@ -31,9 +31,8 @@ pub(super) fn shade(topology: &Topology, forest: &Forest) -> (Vec<[f32; 3]>, u64
 
     for edge in topology.edges.iter().filter(|e| e.smooth) {
         for s in 1..m {
-            let places: Vec<usize> = (edge.uses.iter())
-                .map(|&(t, k)| t as usize * len + index(side_point(m, k, topology.sides[t as usize][k].1, s)))
-                .collect();
+            let places: Vec<usize> =
+                (edge.uses.iter()).map(|&(t, k)| t as usize * len + index(side_point(m, k, topology.sides[t as usize][k].1, s))).collect();
             let sum = places.iter().map(|&i| normals[i]).sum();
             places.iter().for_each(|&i| normals[i] = sum);
         }

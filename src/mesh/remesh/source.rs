@@ -9,7 +9,6 @@ use super::super::distance::{Hit, Target, Vec3};
 /// bound. Away from feature lines a vertex has one wedge.
 pub(super) struct Source {
     pub positions: Vec<Vec3>,
-    pub triangles: Vec<[u32; 3]>,
     /// Wedges of each triangle's corners.
     pub wedges: Vec<[u32; 3]>,
     /// Vertex of each wedge.
@@ -28,6 +27,14 @@ pub(super) struct Source {
     centre: Vec3,
     scale: f64,
 }
+
+/// A crease bends this many times as much as the edges beside it: a rough or coarse surface that bends everywhere has none, ...
+const CONTRAST: f64 = 2.5;
+/// ... except where it bends by more than this (radians).
+const ALWAYS: f64 = 1.4;
+
+/// Creases shorter than this, in units of the box, are bumps.
+const SHORTEST: f64 = 0.1;
 
 /// An edge's end points in order, its triangle, and whether the triangle runs from the first to the second.
 type EdgeUse = (u32, u32, u32, bool);
@@ -80,7 +87,6 @@ impl Source {
 
         let (low, high) = bounds(&positions);
         Source {
-            triangles: mesh.triangles.clone(),
             wedges,
             wedge_vertex,
             wedge_normal,
@@ -127,22 +133,39 @@ fn placement(mesh: &TriangleMesh) -> (Vec3, f64) {
 
 /// For each edge in order: whether it is on a feature line.
 fn find_creases(uses: &[EdgeUse], positions: &[Vec3], normals: &[Vec3], crease: f64) -> Vec<bool> {
-    /// Bends shorter than this, in units of the box, are bumps and not creases.
-    const SHORTEST: f64 = 0.1;
-    let limit = crease.cos();
     let runs: Vec<&[EdgeUse]> = uses.chunk_by(same_edge).collect();
-    let sharp = |run: &[EdgeUse]| matches!(run, [s, t] if s.3 != t.3 && normals[s.2 as usize].dot(normals[t.2 as usize]) < limit);
-    let hard = |run: &[EdgeUse]| !matches!(run, [s, t] if s.3 != t.3);
+    // The angle by which the surface bends at each edge; none at borders and where it cannot be told.
+    let bend: Vec<Option<f64>> = (runs.iter())
+        .map(|run| match run {
+            [s, t] if s.3 != t.3 => Some(normals[s.2 as usize].dot(normals[t.2 as usize]).clamp(-1.0, 1.0).acos()),
+            _ => None,
+        })
+        .collect();
+    let mut sides = vec![Vec::with_capacity(3); normals.len()];
+    for (run, e) in runs.iter().zip(0usize..) {
+        run.iter().for_each(|u| sides[u.2 as usize].push(e));
+    }
+    // Of the four other edges of its two triangles, one or two may be creases that meet this one.
+    let second_around = |e: usize| {
+        let mut around: Vec<f64> =
+            (runs[e].iter().flat_map(|u| &sides[u.2 as usize])).filter(|&&f| f != e).filter_map(|&f| bend[f]).collect();
+        around.sort_unstable_by(f64::total_cmp);
+        around.get(1).or(around.first()).copied().unwrap_or(0.0)
+    };
+    let hard = |e: usize| bend[e].is_none();
+    let sharp = |e: usize| bend[e].is_some_and(|b| b > crease && (b > ALWAYS.max(crease) || b > CONTRAST * second_around(e)));
+    let marked: Vec<bool> = (0..runs.len()).map(|e| hard(e) || sharp(e)).collect();
+
     // Bends in a row are measured together.
     let mut lines = Sets::new(positions.len());
-    runs.iter().filter(|r| sharp(r) || hard(r)).for_each(|r| lines.join(r[0].0, r[0].1));
+    let ends = |e: usize| (runs[e][0].0, runs[e][0].1);
+    (0..runs.len()).filter(|&e| marked[e]).for_each(|e| lines.join(ends(e).0, ends(e).1));
     let (line, count) = lines.numbers();
     let mut length = vec![0.0; count];
-    for run in runs.iter().filter(|r| sharp(r) || hard(r)) {
-        let (a, b) = (run[0].0 as usize, run[0].1 as usize);
-        length[line[a] as usize] += (positions[b] - positions[a]).length();
+    for (a, b) in (0..runs.len()).filter(|&e| marked[e]).map(ends) {
+        length[line[a as usize] as usize] += (positions[b as usize] - positions[a as usize]).length();
     }
-    runs.iter().map(|r| hard(r) || (sharp(r) && length[line[r[0].0 as usize] as usize] >= SHORTEST)).collect()
+    (0..runs.len()).map(|e| hard(e) || (marked[e] && length[line[ends(e).0 as usize] as usize] >= SHORTEST)).collect()
 }
 
 /// Disjoint sets of 0..n.

@@ -70,11 +70,14 @@ pub(super) fn split(source: &Source, topology: &Topology, levels: u32, progress:
             tree[lattice::index(levels, corner)] = Point { position, normal: source.wedge_normal[wedge], method: Method::Corner };
         }
     }
+    let splitter = |h| Splitter { source, topology, levels, len, m: 1 << levels, h };
+    splitter(1 << levels).settle(&mut points);
     for level in 0..levels {
         progress("levels", level.into(), levels.into());
-        let splitter = Splitter { source, topology, levels, len, m: 1 << levels, h: 1 << (levels - level - 1) };
+        let splitter = splitter(1 << (levels - level - 1));
         splitter.insert_all(&mut points);
         splitter.unfold(&mut points);
+        splitter.settle(&mut points);
     }
     progress("levels", levels.into(), levels.into());
     let positions = points.par_iter().map(|p| p.position).collect();
@@ -82,18 +85,18 @@ pub(super) fn split(source: &Source, topology: &Topology, levels: u32, progress:
 }
 
 /// One level's split.
-struct Splitter<'a> {
-    source: &'a Source,
-    topology: &'a Topology,
-    levels: u32,
-    len: usize,
+pub(super) struct Splitter<'a> {
+    pub source: &'a Source,
+    pub topology: &'a Topology,
+    pub levels: u32,
+    pub len: usize,
     /// Lattice steps per side, and half the length of the sides that are split.
-    m: u32,
-    h: u32,
+    pub m: u32,
+    pub h: u32,
 }
 
 impl Splitter<'_> {
-    fn index(&self, p: LatticePoint) -> usize {
+    pub fn index(&self, p: LatticePoint) -> usize {
         lattice::index(self.levels, p)
     }
 
@@ -126,7 +129,7 @@ impl Splitter<'_> {
         (self.h..self.m).step_by(2 * self.h as usize)
     }
 
-    fn is_inner(&self, (i, j): LatticePoint) -> bool {
+    pub fn is_inner(&self, (i, j): LatticePoint) -> bool {
         i > 0 && j > 0 && i + j < self.m
     }
 
@@ -162,9 +165,7 @@ impl Splitter<'_> {
                 let position = line.at(f64::from(s) / f64::from(self.m));
                 if method == Method::Half { plain((position + middle) / 2.0, method) } else { plain(position, Method::Line) }
             }
-            _ if edge.smooth => {
-                insert(self.source, a, b, direction + a.normal + b.normal, self.topology.patches[t as usize], method)
-            }
+            _ if edge.smooth => insert(self.source, a, b, direction + a.normal + b.normal, self.topology.patches[t as usize], method),
             _ => Point { normal: Vec3::ZERO, ..insert(self.source, a, b, direction, None, method) },
         }
     }
@@ -241,8 +242,14 @@ impl Splitter<'_> {
     }
 
     /// The base edge that a point on the border of a tree is on, and how far from its smaller end.
-    fn edge_place(&self, t: usize, (i, j): LatticePoint) -> (u32, u32) {
-        let (k, s) = if j == 0 { (2, i) } else if i == 0 { (1, self.m - j) } else { (0, j) };
+    pub fn edge_place(&self, t: usize, (i, j): LatticePoint) -> (u32, u32) {
+        let (k, s) = if j == 0 {
+            (2, i)
+        } else if i == 0 {
+            (1, self.m - j)
+        } else {
+            (0, j)
+        };
         let (edge, forward) = self.topology.sides[t][k];
         (edge, if forward { s } else { self.m - s })
     }

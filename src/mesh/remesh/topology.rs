@@ -18,6 +18,10 @@ pub(super) struct Topology {
     pub edges: Vec<Edge>,
     /// For each triangle the edges opposite its vertices, and whether each runs there from its smaller to its larger vertex.
     pub sides: Vec<[(u32, bool); 3]>,
+    /// For each base vertex its triangles and which of their corners it is.
+    pub around: Vec<Vec<(u32, usize)>>,
+    /// True for base vertices with smooth edges only.
+    pub is_smooth: Vec<bool>,
 }
 
 /// An edge of the base mesh.
@@ -102,6 +106,15 @@ impl Topology {
             edges.push(Edge { ends, uses: run.iter().map(|u| (u.2, u.3)).collect(), smooth, line });
         }
 
+        let mut around = vec![Vec::new(); vertices.len()];
+        for (tri, t) in triangles.iter().zip(0u32..) {
+            (0..3).for_each(|k| around[tri[k] as usize].push((t, k)));
+        }
+        let mut is_smooth: Vec<bool> = vertices.iter().map(|&v| source.feature[v as usize].is_empty()).collect();
+        for edge in edges.iter().filter(|e: &&Edge| !e.smooth) {
+            edge.ends.into_iter().for_each(|v| is_smooth[v as usize] = false);
+        }
+
         let patches = wedge_patches(source);
         let patches: Vec<Option<u32>> = base
             .iter()
@@ -119,7 +132,7 @@ impl Topology {
                 source.target.closest(middle, 1e9, accept).map_or(0, |hit| hit.triangle)
             })
             .collect();
-        Topology { vertices, triangles, wedges: base, patches, faces, edges, sides }
+        Topology { vertices, triangles, wedges: base, patches, faces, edges, sides, around, is_smooth }
     }
 
     /// For each triangle corner the number of its set: corners of a vertex that smooth edges connect.
