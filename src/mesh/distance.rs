@@ -159,7 +159,8 @@ pub(super) fn two_sided(original: &Target, new: &Target, diagonal: f64) -> TwoSi
     let mut from = corner_samples(&original.corners);
     from.extend(centroids(&original.corners));
     from.extend(area_samples(&original.corners, MAX_SAMPLES));
-    let percent = 100.0 / diagonal;
+    // Nothing can be said of a mesh too small to have a diagonal.
+    let percent = Some(100.0 / diagonal).filter(|p| p.is_finite()).unwrap_or(0.0);
     TwoSidedDistance { to_original: measure(&to, original, percent), from_original: measure(&from, new, percent) }
 }
 

@@ -30,7 +30,7 @@ const MAX_TRIANGLES: u64 = 1 << 27;
 /// The default base mesh has one triangle for this many of the input, ...
 const REDUCTION: usize = 64;
 /// ... but at least this many.
-const MIN_BASE: usize = 256;
+const MIN_BASE: usize = 512;
 
 /// Bends beyond these angles (degrees) are tried as creases, in this order.
 const CREASES: [f64; 4] = [40.0, 60.0, 85.0, 180.0];
@@ -46,7 +46,7 @@ const ENOUGH: f64 = 1.25;
 pub struct RemeshOptions {
     /// Number of splits N, 0 to [`MAX_LEVELS`].
     pub levels: u32,
-    /// Wanted number of base triangles; by default 1/64 of the input, but at least 256, and never more than the input.
+    /// Wanted number of base triangles; by default 1/64 of the input, but at least 512, and never more than the input.
     pub base_triangles: Option<usize>,
 }
 
@@ -95,8 +95,8 @@ pub enum RemeshError {
         /// What they would make.
         triangles: u64,
     },
-    /// The mesh has no triangle with an area, an index out of range or a coordinate that is not finite.
-    #[error("the mesh cannot be remeshed: it has {what}")]
+    /// The mesh breaks a promise of [`TriangleMesh`].
+    #[error("the mesh cannot be remeshed, it has {what}")]
     BadMesh {
         /// What is wrong with it.
         what: &'static str,
@@ -202,11 +202,17 @@ fn check(mesh: &TriangleMesh) -> Result<(), RemeshError> {
     if mesh.triangles.iter().flatten().any(|&v| v as usize >= mesh.positions.len()) {
         return bad("a vertex index out of range");
     }
+    if mesh.triangles.iter().any(|t| t[0] == t[1] || t[1] == t[2] || t[2] == t[0]) {
+        return bad("a triangle with a repeated vertex");
+    }
     if mesh.positions.iter().flatten().any(|&v| !super::clean::is_coordinate(v)) {
         return bad("a coordinate that is not finite");
     }
     if !mesh.materials.is_empty() && mesh.materials.len() != mesh.triangles.len() {
         return bad("a different number of materials and triangles");
+    }
+    if mesh.materials.iter().any(|&m| m as usize >= mesh.colours.len()) {
+        return bad("a material without a colour");
     }
     Ok(())
 }

@@ -73,7 +73,8 @@ pub(super) fn parse(bytes: &[u8], _directory: &Path) -> Result<Parts, Fault> {
         Err(error) => return fault("header", first_line(&error)),
     };
     check_header(header.elements.values())?;
-    let line = reader.line();
+    // The reader counts the line that it would read next.
+    let line = reader.line().saturating_sub(1);
     let mut payload = Payload { parser, encoding: header.encoding, rest: reader.into_inner(), line };
 
     let mut parts = Parts::default();
@@ -182,7 +183,7 @@ impl<'a> Payload<'a> {
 fn append(element: &str, indices: &[i64], parts: &mut Parts) -> Result<(), String> {
     let count = parts.positions.len();
     let strip = element == "tristrips";
-    let bad = |&&i: &&i64| !(0..count as i64).contains(&i) && !(strip && i == -1);
+    let bad = |&&i: &&i64| !((0..count as i64).contains(&i) || strip && i == -1);
     if let Some(i) = indices.iter().find(bad) {
         return Err(format!("vertex index {i} is out of range, there are {count} vertices"));
     }

@@ -50,12 +50,12 @@ fn project(positions: &[[f64; 3]], corners: &[u32]) -> Vec<[f64; 2]> {
     let size = local.iter().flatten().fold(f64::MIN_POSITIVE, |m, v| m.max(v.abs()));
     local.iter_mut().flatten().for_each(|v| *v /= size);
     // Newell's normal: the polygon's areas in the three coordinate planes.
-    let mut normal = [0.0; 3];
+    let mut normal = [0.0f64; 3];
     for (i, p) in local.iter().enumerate() {
         let q = local[(i + 1) % local.len()];
-        for k in 0..3 {
+        for (k, sum) in normal.iter_mut().enumerate() {
             let (u, v) = ((k + 1) % 3, (k + 2) % 3);
-            normal[k] += p[u] * q[v] - p[v] * q[u];
+            *sum += p[u] * q[v] - p[v] * q[u];
         }
     }
     let axis = (0..3).fold(0, |best, k| if normal[k].abs() > normal[best].abs() { k } else { best });

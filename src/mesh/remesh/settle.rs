@@ -11,10 +11,10 @@ use super::split::{Splitter, side_point, triangles};
 use rayon::prelude::*;
 
 /// Passes over all vertices in question after each split.
-const PASSES: usize = 16;
+const PASSES: usize = 32;
 
 /// A triangle faces the surface if the cosine between its normal and the sum of those at its corners is at least this.
-const FACING: f64 = 0.15;
+const FACING: f64 = 0.3;
 
 /// How far the surface is looked for, in mean lengths of the edges around.
 const REACH: f64 = 6.0;
@@ -35,7 +35,9 @@ type Wing = [Point; 2];
 
 impl Splitter<'_> {
     pub fn settle(&self, points: &mut [Point]) {
-        for _ in 0..PASSES {
+        for pass in 0..PASSES {
+            // Smoothing away from the surface spreads to later levels, so it is left for the end.
+            let smooth = self.h == 1 && pass >= PASSES / 2;
             let mut places: Vec<Place> = points
                 .par_chunks_exact(self.len)
                 .enumerate()
@@ -46,9 +48,9 @@ impl Splitter<'_> {
             places.dedup();
             let mut moved = false;
             for place in places {
-                moved |= self.move_one(points, place);
+                moved |= self.move_one(points, place, smooth);
             }
-            if !moved {
+            if !moved && (smooth || self.h > 1) {
                 break;
             }
         }
@@ -61,7 +63,7 @@ impl Splitter<'_> {
             let [a, b, c] = corners.map(|p| tree[self.index(p)]);
             let away = facing(a, [b, c]) < FACING;
             for (p, point) in corners.into_iter().zip([a, b, c]) {
-                if (away || is_beside(&point)) && point.method != Method::Line {
+                if away || (is_beside(&point)) {
                     found.push(p);
                 }
             }
@@ -80,10 +82,10 @@ impl Splitter<'_> {
             return self.topology.is_smooth[v as usize].then_some(Place::Vertex(v));
         }
         let (edge, s) = self.edge_place(t, p);
-        self.topology.edges[edge as usize].smooth.then_some(Place::Edge(edge, s))
+        Some(Place::Edge(edge, s))
     }
 
-    fn move_one(&self, points: &mut [Point], place: Place) -> bool {
+    fn move_one(&self, points: &mut [Point], place: Place, smooth: bool) -> bool {
         let spots: Vec<(u32, LatticePoint)> = match place {
             Place::Vertex(v) => {
                 let around = &self.topology.around[v as usize];
@@ -100,7 +102,12 @@ impl Splitter<'_> {
         let wings: Vec<Wing> =
             spots.iter().flat_map(|&(t, p)| self.around(p).map(move |w| w.map(|q| seen[t as usize * self.len + self.index(q)]))).collect();
         let now = points[index(spots[0])];
-        let better = self.best(now, &wings, self.topology.patches[spots[0].0 as usize]);
+        let patch = self.topology.patches[spots[0].0 as usize];
+        let choices = match place {
+            Place::Edge(edge, s) if !self.topology.edges[edge as usize].smooth => self.along_line(points, edge, s),
+            _ => self.choices(now, &wings, patch, smooth),
+        };
+        let better = best(now, choices, &wings);
         if let Some(point) = better {
             spots.iter().for_each(|&spot| points[index(spot)] = point);
         }
@@ -118,8 +125,17 @@ impl Splitter<'_> {
         (0..6).filter_map(move |k| Some([at(RING[k])?, at(RING[(k + 1) % 6])?]))
     }
 
-    /// A better place than `now`, if there is one.
-    fn best(&self, now: Point, wings: &[Wing], patch: Option<u32>) -> Option<Point> {
+    /// On a feature line: straight between the neighbours.
+    fn along_line(&self, points: &[Point], edge: u32, s: u32) -> Vec<Point> {
+        let (t, k) = self.topology.edges[edge as usize].uses[0];
+        let forward = self.topology.sides[t as usize][k].1;
+        let at = |s: u32| points[t as usize * self.len + self.index(side_point(self.m, k, forward, s))].position;
+        let position = (at(s - self.h) + at(s + self.h)) / 2.0;
+        vec![Point { position, normal: Vec3::ZERO, method: Method::Half }]
+    }
+
+    /// Places on the surface near the vertex and near the middle of the triangles around, places half way there, and that middle.
+    fn choices(&self, now: Point, wings: &[Wing], patch: Option<u32>, smooth: bool) -> Vec<Point> {
         let count = wings.len() as f64;
         let middle = wings.iter().map(|[a, b]| (a.position + b.position) / 2.0).sum::<Vec3>() / count;
         let reach = REACH * wings.iter().map(|[a, b]| (b.position - a.position).length()).sum::<f64>() / count;
@@ -133,12 +149,18 @@ impl Splitter<'_> {
         };
         let (near, central) = (on_surface(now.position), on_surface(middle));
         let between = |to: Point| Point { position: (now.position + to.position) / 2.0, method: Method::Half, ..to };
-        let choices = [near, central, near.map(between), central.map(between)];
-        let (best, turn) = (choices.into_iter().flatten()).map(|c| (c, turn_away(c, wings))).min_by(|a, b| a.1.total_cmp(&b.1))?;
-        let turn_now = turn_away(now, wings);
-        let arrives = is_beside(&now) && !is_beside(&best) && turn <= turn_now;
-        (arrives || turn < turn_now - LEAST).then_some(best)
+        let off = Point { position: middle, normal: central.or(near).unwrap_or(now).normal, method: Method::Midpoint };
+        [near, central, near.map(between), central.map(between), smooth.then_some(off)].into_iter().flatten().collect()
     }
+}
+
+/// The best of `choices`, if it is better than `now`.
+fn best(now: Point, choices: Vec<Point>, wings: &[Wing]) -> Option<Point> {
+    let scored = choices.into_iter().map(|c| (c, turn_away(c, wings)));
+    let (best, turn) = scored.min_by(|a, b| a.1.total_cmp(&b.1))?;
+    let turn_now = turn_away(now, wings);
+    let arrives = is_beside(&now) && !is_beside(&best) && turn <= turn_now;
+    (arrives || turn < turn_now - LEAST).then_some(best)
 }
 
 fn is_beside(p: &Point) -> bool {
