@@ -1,6 +1,7 @@
 //! `export`: one level as a mesh.
 
 use super::output::{check_target, grouped, open, print_line};
+use anyhow::Context;
 use lodray::format::export_level;
 use lodray::render::write_and_rename;
 use std::path::PathBuf;
@@ -23,8 +24,14 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
     let scene = open(&args.scene)?;
     let level = args.level.unwrap_or(scene.levels());
     anyhow::ensure!(level <= scene.levels(), "--level {level} is beyond the scene's finest level {}", scene.levels());
-    write_and_rename(&args.out, |out| export_level(&scene, level, out))
-        
-    print_line(&format!("{}: {} triangles", args.out.display(), grouped((scene.trees() as u64) << (2 * level))))?;
+    let mut counts = None;
+    write_and_rename(&args.out, |out| {
+        counts = Some(export_level(&scene, level, out)?);
+        Ok(())
+    })
+    .with_context(|| format!("cannot write {}", args.out.display()))?;
+    if let Some(counts) = counts {
+        print_line(&format!("{}: {} vertices, {} triangles", args.out.display(), grouped(counts.vertices), grouped(counts.faces)))?;
+    }
     Ok(ExitCode::SUCCESS)
 }

@@ -2,13 +2,21 @@
 
 mod borders;
 mod bounds;
+mod clean;
+mod distance;
 mod hierarchy;
 pub mod lattice;
 pub mod procedural;
 mod quantise;
+mod read;
+mod remesh;
 mod surface;
 
 pub use borders::{EdgeUse, SharedEdges};
+pub use clean::{CleanReport, MeshError, TriangleMesh};
+pub use distance::{Distance, TwoSidedDistance};
 pub use hierarchy::{EdgeCodes, Hierarchy, Placement, edge_index, edges_of_level, edges_of_tree};
 pub use quantise::{SurfaceError, quantise};
+pub use read::{ReadError, read};
+pub use remesh::{RemeshError, RemeshOptions, RemeshReport, remesh};
 pub use surface::Surface;

@@ -1,0 +1,202 @@
+//! Triangle soup to a clean indexed mesh: equal vertices welded, useless triangles and vertices dropped, every change counted.
+
+use serde::{Deserialize, Serialize};
+use std::collections::{HashMap, HashSet};
+
+/// Largest coordinate magnitude taken: squares and fourth powers of differences stay finite in `f64`.
+const MAX_COORDINATE: f64 = 1e60;
+
+/// An indexed triangle mesh in the user's own units, without degenerate or repeated triangles.
+///
+/// Every position is finite and referenced, no two are equal, and each triangle has three distinct vertices. Open borders, non-manifold
+/// edges and inconsistent windings are kept as they came.
+#[derive(Clone, Debug, Default)]
+pub struct TriangleMesh {
+    /// Vertex positions.
+    pub positions: Vec<[f64; 3]>,
+    /// Counter-clockwise seen from outside.
+    pub triangles: Vec<[u32; 3]>,
+    /// Index into `colours` for each triangle; empty if there are no materials.
+    pub materials: Vec<u16>,
+    /// Material colours, linear RGB in 0..=1.
+    pub colours: Vec<[f32; 3]>,
+    /// What cleaning found and did.
+    pub report: CleanReport,
+}
+
+/// Counts of what cleaning found, dropped and kept.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub struct CleanReport {
+    /// Vertices before cleaning.
+    pub vertices_read: usize,
+    /// Triangles before cleaning, polygons and strips already cut into triangles.
+    pub triangles_read: usize,
+    /// Vertices merged into an earlier one at the same position.
+    pub welded_vertices: usize,
+    /// Vertices dropped because no kept triangle refers to them.
+    pub unreferenced_vertices: usize,
+    /// Triangles dropped for a repeated vertex or an area of exactly zero.
+    pub degenerate_triangles: usize,
+    /// Triangles dropped because an earlier one has the same three vertices, in any order.
+    pub duplicate_triangles: usize,
+    /// Edges of three or more kept triangles.
+    pub non_manifold_edges: usize,
+    /// Edges of one kept triangle.
+    pub border_edges: usize,
+    /// Edges of two kept triangles that run along it in the same direction.
+    pub inconsistent_edges: usize,
+}
+
+/// Why vertices and triangles do not make a mesh.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum MeshError {
+    /// A triangle names a vertex that is not there.
+    #[error("triangle {triangle}: vertex index {index} is out of range (there are {vertices} vertices)")]
+    Index {
+        /// Which triangle, from 0.
+        triangle: usize,
+        /// The bad index.
+        index: u32,
+        /// Number of vertices.
+        vertices: usize,
+    },
+    /// A coordinate is NaN, infinite or too large to compute with.
+    #[error("vertex {vertex}: coordinate {value} is not a finite number below {MAX_COORDINATE:e}")]
+    Coordinate {
+        /// Which vertex, from 0.
+        vertex: usize,
+        /// The bad coordinate.
+        value: f64,
+    },
+    /// A material index does not match a colour, or there is not one for each triangle.
+    #[error("triangle {triangle}: its material has no colour")]
+    Material {
+        /// Which triangle, from 0.
+        triangle: usize,
+    },
+    /// Nothing is left.
+    #[error("no triangle is left of {triangles} after dropping {degenerate} degenerate ones")]
+    Empty {
+        /// Triangles before cleaning.
+        triangles: usize,
+        /// Degenerate ones among them.
+        degenerate: usize,
+    },
+}
+
+/// True if this is a coordinate that a mesh may have.
+pub(super) fn is_coordinate(v: f64) -> bool {
+    v.abs() <= MAX_COORDINATE
+}
+
+impl TriangleMesh {
+    /// Cleans vertices and triangles into a mesh; `materials` is empty or has one index into `colours` for each triangle.
+    ///
+    /// # Errors
+    /// If an index is out of range, a coordinate is not finite, materials do not match, or no triangle is left.
+    pub fn from_parts(
+        positions: &[[f64; 3]],
+        triangles: &[[u32; 3]],
+        materials: &[u16],
+        colours: Vec<[f32; 3]>,
+    ) -> Result<TriangleMesh, MeshError> {
+        check(positions, triangles, materials, &colours)?;
+        let mut report = CleanReport { vertices_read: positions.len(), triangles_read: triangles.len(), ..Default::default() };
+        let first = weld(positions);
+        report.welded_vertices = first.iter().enumerate().filter(|&(i, &f)| i != f as usize).count();
+
+        let mut seen = HashSet::with_capacity(triangles.len());
+        let (mut kept, mut kept_materials) = (Vec::with_capacity(triangles.len()), Vec::new());
+        for (t, corners) in triangles.iter().enumerate() {
+            let tri = corners.map(|v| first[v as usize]);
+            let mut key = tri;
+            key.sort_unstable();
+            if is_degenerate(tri.map(|v| positions[v as usize])) {
+                report.degenerate_triangles += 1;
+            } else if !seen.insert(key) {
+                report.duplicate_triangles += 1;
+            } else {
+                kept.push(tri);
+                kept_materials.extend(materials.get(t));
+            }
+        }
+        if kept.is_empty() {
+            return Err(MeshError::Empty { triangles: triangles.len(), degenerate: report.degenerate_triangles });
+        }
+
+        let positions = compact(positions, &mut kept);
+        report.unreferenced_vertices = report.vertices_read - report.welded_vertices - positions.len();
+        count_edges(&kept, &mut report);
+        Ok(TriangleMesh { positions, triangles: kept, materials: kept_materials, colours, report })
+    }
+}
+
+fn check(positions: &[[f64; 3]], triangles: &[[u32; 3]], materials: &[u16], colours: &[[f32; 3]]) -> Result<(), MeshError> {
+    for (vertex, p) in positions.iter().enumerate() {
+        if let Some(&value) = p.iter().find(|&&v| !is_coordinate(v)) {
+            return Err(MeshError::Coordinate { vertex, value });
+        }
+    }
+    for (triangle, corners) in triangles.iter().enumerate() {
+        if let Some(&index) = corners.iter().find(|&&v| v as usize >= positions.len()) {
+            return Err(MeshError::Index { triangle, index, vertices: positions.len() });
+        }
+        if !materials.is_empty() && materials.get(triangle).is_none_or(|&m| m as usize >= colours.len()) {
+            return Err(MeshError::Material { triangle });
+        }
+    }
+    Ok(())
+}
+
+/// For each vertex the first one at the same position; adding zero makes -0.0 equal 0.0 bit for bit.
+fn weld(positions: &[[f64; 3]]) -> Vec<u32> {
+    let mut seen = HashMap::with_capacity(positions.len());
+    positions.iter().zip(0u32..).map(|(p, i)| *seen.entry(p.map(|v| (v + 0.0).to_bits())).or_insert(i)).collect()
+}
+
+/// True for an area of exactly zero; edges are scaled first, so that tiny triangles do not underflow.
+pub(super) fn is_degenerate(p: [[f64; 3]; 3]) -> bool {
+    let edge = |k: usize| -> [f64; 3] {
+        let e: [f64; 3] = std::array::from_fn(|d| p[k][d] - p[0][d]);
+        let size = e.iter().fold(0.0f64, |m, v| m.max(v.abs()));
+        if size > 0.0 { e.map(|v| v / size) } else { e }
+    };
+    let (a, b) = (edge(1), edge(2));
+    p[0] == p[1] || p[1] == p[2] || p[2] == p[0] || (0..3).all(|k| a[k] * b[(k + 1) % 3] == a[(k + 1) % 3] * b[k])
+}
+
+/// Referenced positions in order of their old index; `triangles` are renumbered.
+fn compact(positions: &[[f64; 3]], triangles: &mut [[u32; 3]]) -> Vec<[f64; 3]> {
+    let mut used = vec![false; positions.len()];
+    triangles.iter().flatten().for_each(|&v| used[v as usize] = true);
+    let mut kept = Vec::new();
+    let new: Vec<u32> = positions
+        .iter()
+        .zip(&used)
+        .map(|(p, &used)| {
+            let id = kept.len() as u32;
+            if used {
+                kept.push(p.map(|v| v + 0.0));
+            }
+            id
+        })
+        .collect();
+    triangles.iter_mut().flatten().for_each(|v| *v = new[*v as usize]);
+    kept
+}
+
+fn count_edges(triangles: &[[u32; 3]], report: &mut CleanReport) {
+    let mut edges: Vec<(u32, u32, bool)> = triangles
+        .iter()
+        .flat_map(|&[a, b, c]| [(a, b), (b, c), (c, a)])
+        .map(|(a, b)| if a < b { (a, b, true) } else { (b, a, false) })
+        .collect();
+    edges.sort_unstable();
+    for run in edges.chunk_by(|a, b| (a.0, a.1) == (b.0, b.1)) {
+        match run {
+            [_] => report.border_edges += 1,
+            [a, b] => report.inconsistent_edges += usize::from(a.2 == b.2),
+            _ => report.non_manifold_edges += 1,
+        }
+    }
+}

@@ -1,0 +1,205 @@
+//! Closest points and line hits on a set of triangles, and from them the two-sided distance between two meshes.
+
+use parry3d_f64::bounding_volume::Aabb;
+use parry3d_f64::partitioning::{Bvh, BvhBuildStrategy, BvhNode};
+use rayon::prelude::*;
+use serde::{Deserialize, Serialize};
+
+/// The vector type of the geometry library, so that nothing has to be converted.
+pub(super) type Vec3 = parry3d_f64::math::Vector;
+
+/// At most this many samples of each kind (vertices, centroids, random points) are measured; more are thinned evenly.
+const MAX_SAMPLES: usize = 300_000;
+
+/// Mean and largest distance, in percent of the diagonal of the original's bounding box.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Distance {
+    /// Mean over the samples.
+    pub mean: f64,
+    /// Largest of the samples.
+    pub max: f64,
+}
+
+/// Distances between a remeshed surface and its original, both ways.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct TwoSidedDistance {
+    /// From vertices and centroids of the new surface to the original.
+    pub to_original: Distance,
+    /// From vertices, centroids and area-weighted points of the original to the new surface.
+    pub from_original: Distance,
+}
+
+/// A point found on a [`Target`].
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Hit {
+    pub triangle: u32,
+    pub barycentrics: [f64; 3],
+    pub point: Vec3,
+}
+
+/// Triangles to project on.
+pub(super) struct Target {
+    corners: Vec<[Vec3; 3]>,
+    bvh: Bvh,
+}
+
+impl Target {
+    pub fn new(corners: Vec<[Vec3; 3]>) -> Target {
+        let boxes: Vec<Aabb> = corners.par_iter().map(|&[a, b, c]| Aabb::new(a.min(b).min(c), a.max(b).max(c))).collect();
+        Target { bvh: Bvh::from_leaves(BvhBuildStrategy::Binned, &boxes), corners }
+    }
+
+    /// The closest point within `reach` on a triangle that `accept` takes.
+    pub fn closest(&self, p: Vec3, reach: f64, accept: impl Fn(u32) -> bool) -> Option<Hit> {
+        let far = |node: &BvhNode, _| (node.mins() - p).max(p - node.maxs()).max(Vec3::ZERO).length_squared();
+        let leaf = |triangle: u32, _| {
+            if !accept(triangle) {
+                return None;
+            }
+            let [a, b, c] = self.corners[triangle as usize];
+            let w = closest_barycentrics(p, a, b, c);
+            let point = a * w[0] + b * w[1] + c * w[2];
+            Some(((point - p).length_squared(), Hit { triangle, barycentrics: w, point }))
+        };
+        // Squared, and a point exactly at the limit counts.
+        let (_, (_, hit)) = self.bvh.find_best((reach * reach).next_up(), far, leaf)?;
+        Some(hit)
+    }
+
+    /// The nearest point, to either side, in which the line through `p` along the unit vector `direction` meets a triangle that `accept`
+    /// takes, no further than `reach`.
+    pub fn line(&self, p: Vec3, direction: Vec3, reach: f64, accept: impl Fn(u32) -> bool) -> Option<Hit> {
+        let inverse = direction.recip();
+        let far = |node: &BvhNode, _| {
+            let (a, b) = ((node.mins() - p) * inverse, (node.maxs() - p) * inverse);
+            let (mut enter, mut leave) = (f64::NEG_INFINITY, f64::INFINITY);
+            // `max` and `min` of numbers pass over a NaN, which a line inside a face of the box makes.
+            for k in 0..3 {
+                enter = enter.max(a[k].min(b[k]));
+                leave = leave.min(a[k].max(b[k]));
+            }
+            // A hair wider, for boxes of no thickness.
+            let slack = 1e-12 * (1.0 + enter.abs().min(leave.abs()));
+            if enter > leave + slack { f64::MAX } else { enter.max(-leave).max(0.0) }
+        };
+        let leaf = |triangle: u32, _| {
+            let (t, w) = line_hit(p, direction, self.corners[triangle as usize])?;
+            if !accept(triangle) {
+                return None;
+            }
+            Some((t.abs(), Hit { triangle, barycentrics: w, point: p + direction * t }))
+        };
+        let (_, (_, hit)) = self.bvh.find_best(reach, far, leaf)?;
+        Some(hit)
+    }
+
+    fn distance(&self, p: Vec3) -> f64 {
+        self.closest(p, f64::MAX.sqrt(), |_| true).map_or(0.0, |hit| (hit.point - p).length())
+    }
+}
+
+/// Signed distance along the line and barycentrics; hits on the very edge count.
+fn line_hit(p: Vec3, direction: Vec3, [a, b, c]: [Vec3; 3]) -> Option<(f64, [f64; 3])> {
+    const EDGE: f64 = -1e-9;
+    let (ab, ac, ap) = (b - a, c - a, p - a);
+    let cross = direction.cross(ac);
+    let det = ab.dot(cross);
+    if det == 0.0 {
+        return None;
+    }
+    let v = ap.dot(cross) / det;
+    let other = ap.cross(ab);
+    let w = direction.dot(other) / det;
+    let t = ac.dot(other) / det;
+    (v >= EDGE && w >= EDGE && v + w <= 1.0 - EDGE && t.is_finite()).then_some((t, [1.0 - v - w, v, w]))
+}
+
+/// Barycentrics of the closest point of a triangle (Ericson, Real-Time Collision Detection, 5.1.5).
+fn closest_barycentrics(p: Vec3, a: Vec3, b: Vec3, c: Vec3) -> [f64; 3] {
+    // 0 / 0 in a triangle without extent: any point of it will do.
+    let ratio = |x: f64, y: f64| if y > 0.0 { x / (x + y) } else { 1.0 };
+    let (ab, ac) = (b - a, c - a);
+    let (d1, d2) = (ab.dot(p - a), ac.dot(p - a));
+    if d1 <= 0.0 && d2 <= 0.0 {
+        return [1.0, 0.0, 0.0];
+    }
+    let (d3, d4) = (ab.dot(p - b), ac.dot(p - b));
+    if d3 >= 0.0 && d4 <= d3 {
+        return [0.0, 1.0, 0.0];
+    }
+    let vc = d1 * d4 - d3 * d2;
+    if vc <= 0.0 && d1 >= 0.0 && d3 <= 0.0 {
+        let v = ratio(d1, -d3);
+        return [1.0 - v, v, 0.0];
+    }
+    let (d5, d6) = (ab.dot(p - c), ac.dot(p - c));
+    if d6 >= 0.0 && d5 <= d6 {
+        return [0.0, 0.0, 1.0];
+    }
+    let vb = d5 * d2 - d1 * d6;
+    if vb <= 0.0 && d2 >= 0.0 && d6 <= 0.0 {
+        let w = ratio(d2, -d6);
+        return [1.0 - w, 0.0, w];
+    }
+    let va = d3 * d6 - d5 * d4;
+    if va <= 0.0 && d4 - d3 >= 0.0 && d5 - d6 >= 0.0 {
+        let w = ratio(d4 - d3, d5 - d6);
+        return [0.0, 1.0 - w, w];
+    }
+    let scale = 1.0 / (va + vb + vc);
+    let (v, w) = (vb * scale, vc * scale);
+    [1.0 - v - w, v, w]
+}
+
+/// Measures `new` against `original` both ways, `diagonal` being 100 percent. The samples, and the order in which they are summed, do not
+/// depend on the number of threads.
+pub(super) fn two_sided(original: &Target, new: &Target, diagonal: f64) -> TwoSidedDistance {
+    let mut to = corner_samples(&new.corners);
+    to.extend(centroids(&new.corners));
+    let mut from = corner_samples(&original.corners);
+    from.extend(centroids(&original.corners));
+    from.extend(area_samples(&original.corners, MAX_SAMPLES));
+    // Nothing can be said of a mesh too small to have a diagonal.
+    let percent = Some(100.0 / diagonal).filter(|p| p.is_finite()).unwrap_or(0.0);
+    TwoSidedDistance { to_original: measure(&to, original, percent), from_original: measure(&from, new, percent) }
+}
+
+fn measure(samples: &[Vec3], target: &Target, percent: f64) -> Distance {
+    let distances: Vec<f64> = samples.par_iter().map(|&p| percent * target.distance(p)).collect();
+    let max = distances.iter().fold(0.0f64, |m, &d| m.max(d));
+    Distance { mean: distances.iter().sum::<f64>() / distances.len().max(1) as f64, max }
+}
+
+fn corner_samples(corners: &[[Vec3; 3]]) -> Vec<Vec3> {
+    // A vertex has about six triangles: one corner of each is plenty, in turn.
+    let step = corners.len().div_ceil(MAX_SAMPLES).max(1);
+    corners.iter().enumerate().step_by(step).map(|(i, c)| c[(i / step) % 3]).collect()
+}
+
+fn centroids(corners: &[[Vec3; 3]]) -> impl Iterator<Item = Vec3> {
+    corners.iter().step_by(corners.len().div_ceil(MAX_SAMPLES).max(1)).map(|&[a, b, c]| (a + b + c) / 3.0)
+}
+
+/// `count` points spread evenly over the area: a low-discrepancy sequence, so the same ones every time.
+fn area_samples(corners: &[[Vec3; 3]], count: usize) -> Vec<Vec3> {
+    // Powers of the reciprocal of the plastic number.
+    const STEPS: [f64; 2] = [0.754_877_666_246_693, 0.569_840_290_998_053];
+    let mut total = 0.0;
+    let sums: Vec<f64> = corners
+        .iter()
+        .map(|&[a, b, c]| {
+            total += (b - a).cross(c - a).length();
+            total
+        })
+        .collect();
+    let sample = |k: usize| {
+        let place = (k as f64 + 0.5) / count as f64 * total;
+        let [a, b, c] = corners[sums.partition_point(|&s| s < place).min(corners.len() - 1)];
+        let [mut u, mut v] = STEPS.map(|s| (k as f64 * s).fract());
+        if u + v > 1.0 {
+            (u, v) = (1.0 - u, 1.0 - v);
+        }
+        a + (b - a) * u + (c - a) * v
+    };
+    (0..if corners.is_empty() { 0 } else { count }).map(sample).collect()
+}
