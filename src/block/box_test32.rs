@@ -54,10 +54,7 @@ impl Block for BoxTest32 {
             & pair(near_x, dz, far_z, dx);
         let ahead = (far_x >= 0) & (far_y >= 0) & (far_z >= 0);
 
-        if !(planes & ahead) {
-            return box_test::Out::default();
-        }
         let near = |axis: &Axis, near: i64| entry(axis, near >> BOX_SHIFT);
-        finish(near(&r.x, near_x).max(near(&r.y, near_y)).max(near(&r.z, near_z)), input.t_max)
+        finish(planes & ahead, near(&r.x, near_x).max(near(&r.y, near_y)).max(near(&r.z, near_z)), input.t_max)
     }
 }
