@@ -88,12 +88,16 @@ impl Target {
     pub fn line(&self, p: Vec3, direction: Vec3, reach: f64, accept: impl Fn(u32) -> bool) -> Option<Hit> {
         let inverse = direction.recip();
         let far = |node: &BvhNode, _| {
-            let (a, b) = ((node.mins() - p) * inverse, (node.maxs() - p) * inverse);
+            let (low, high) = (node.mins() - p, node.maxs() - p);
             let (mut enter, mut leave) = (f64::NEG_INFINITY, f64::INFINITY);
-            // `max` and `min` of numbers pass over a NaN, which a line inside a face of the box makes.
             for k in 0..3 {
-                enter = enter.max(a[k].min(b[k]));
-                leave = leave.min(a[k].max(b[k]));
+                if direction[k].abs() > f64::MIN_POSITIVE.sqrt() {
+                    let (a, b) = (low[k] * inverse[k], high[k] * inverse[k]);
+                    enter = enter.max(a.min(b));
+                    leave = leave.min(a.max(b));
+                } else if low[k] > 0.0 || high[k] < 0.0 {
+                    return f64::MAX;
+                }
             }
             // A hair wider, for boxes of no thickness.
             let slack = 1e-12 * (1.0 + enter.abs().min(leave.abs()));
