@@ -326,3 +326,41 @@ fn parts_that_make_no_mesh_are_refused() {
     assert!(matches!(make(&p[..2], &[[0, 1, 1]], &[0]), MeshError::Material { triangle: 0 }));
     assert!(matches!(make(&p[..2], &[[0, 1, 1]], &[]), MeshError::Empty { triangles: 1, degenerate: 1 }));
 }
+
+#[test]
+fn damaged_files_never_panic() {
+    let files = Files::new();
+    let ply = ascii(FACES, &format!("{CORNERS}3 0 1 2\n4 0 2 3 1\n")).into_bytes();
+    let big = binary(true);
+    let obj = format!("mtllib a.mtl\nvt 0 1\nvn 0 0 1\n{TETRAHEDRON}usemtl x\nf 1/1/1 2//1 -1/-1 -2\n").into_bytes();
+    let mut state = 1u64;
+    let mut random = |n: usize| {
+        state = state.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
+        (state >> 33) as usize % n
+    };
+    let (mut read_well, mut refused) = (0, 0);
+    for round in 0..1500 {
+        let (name, original) = [("a.obj", &obj), ("a.ply", &ply), ("b.ply", &big)][round % 3];
+        let mut bytes = original.clone();
+        for _ in 0..=random(4) {
+            let at = random(bytes.len());
+            match random(3) {
+                0 => bytes[at] = random(256) as u8,
+                1 => bytes[at] = b"0123456789-./ \nvf"[random(17)],
+                _ => _ = bytes.remove(at),
+            }
+        }
+        let path = files.write(name, &bytes);
+        match read(&path) {
+            Ok(mesh) => {
+                read_well += 1;
+                assert!(!mesh.triangles.is_empty());
+            }
+            Err(error) => {
+                refused += 1;
+                assert!(error.to_string().starts_with(path.to_str().unwrap()));
+            }
+        }
+    }
+    assert!(read_well > 100 && refused > 100, "{read_well} {refused}");
+}

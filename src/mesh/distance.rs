@@ -40,19 +40,35 @@ pub(super) struct Hit {
 /// Triangles to project on.
 pub(super) struct Target {
     corners: Vec<[Vec3; 3]>,
+    /// This many triangles in a row, which should lie together, make one leaf of the tree of boxes.
+    group: usize,
     bvh: Bvh,
 }
 
 impl Target {
     pub fn new(corners: Vec<[Vec3; 3]>) -> Target {
-        let boxes: Vec<Aabb> = corners.par_iter().map(|&[a, b, c]| Aabb::new(a.min(b).min(c), a.max(b).max(c))).collect();
-        Target { bvh: Bvh::from_leaves(BvhBuildStrategy::Binned, &boxes), corners }
+        Target::grouped(corners, 1)
+    }
+
+    pub fn grouped(corners: Vec<[Vec3; 3]>, group: usize) -> Target {
+        let bounds = |c: &[[Vec3; 3]]| {
+            let points = || c.iter().flatten().copied();
+            Aabb::new(points().fold(Vec3::INFINITY, Vec3::min), points().fold(Vec3::NEG_INFINITY, Vec3::max))
+        };
+        let boxes: Vec<Aabb> = corners.par_chunks(group).map(bounds).collect();
+        Target { bvh: Bvh::from_leaves(BvhBuildStrategy::Binned, &boxes), corners, group }
+    }
+
+    /// The triangles of a leaf.
+    fn leaf(&self, leaf: u32) -> impl Iterator<Item = u32> {
+        let first = leaf as usize * self.group;
+        first as u32..(first + self.group).min(self.corners.len()) as u32
     }
 
     /// The closest point within `reach` on a triangle that `accept` takes.
     pub fn closest(&self, p: Vec3, reach: f64, accept: impl Fn(u32) -> bool) -> Option<Hit> {
         let far = |node: &BvhNode, _| (node.mins() - p).max(p - node.maxs()).max(Vec3::ZERO).length_squared();
-        let leaf = |triangle: u32, _| {
+        let one = |triangle: u32| {
             if !accept(triangle) {
                 return None;
             }
@@ -61,6 +77,7 @@ impl Target {
             let point = a * w[0] + b * w[1] + c * w[2];
             Some(((point - p).length_squared(), Hit { triangle, barycentrics: w, point }))
         };
+        let leaf = |leaf: u32, _| self.leaf(leaf).filter_map(one).min_by(|a, b| a.0.total_cmp(&b.0));
         // Squared, and a point exactly at the limit counts.
         let (_, (_, hit)) = self.bvh.find_best((reach * reach).next_up(), far, leaf)?;
         Some(hit)
@@ -71,24 +88,29 @@ impl Target {
     pub fn line(&self, p: Vec3, direction: Vec3, reach: f64, accept: impl Fn(u32) -> bool) -> Option<Hit> {
         let inverse = direction.recip();
         let far = |node: &BvhNode, _| {
-            let (a, b) = ((node.mins() - p) * inverse, (node.maxs() - p) * inverse);
+            let (low, high) = (node.mins() - p, node.maxs() - p);
             let (mut enter, mut leave) = (f64::NEG_INFINITY, f64::INFINITY);
-            // `max` and `min` of numbers pass over a NaN, which a line inside a face of the box makes.
             for k in 0..3 {
-                enter = enter.max(a[k].min(b[k]));
-                leave = leave.min(a[k].max(b[k]));
+                if direction[k].abs() > f64::MIN_POSITIVE.sqrt() {
+                    let (a, b) = (low[k] * inverse[k], high[k] * inverse[k]);
+                    enter = enter.max(a.min(b));
+                    leave = leave.min(a.max(b));
+                } else if low[k] > 0.0 || high[k] < 0.0 {
+                    return f64::MAX;
+                }
             }
             // A hair wider, for boxes of no thickness.
             let slack = 1e-12 * (1.0 + enter.abs().min(leave.abs()));
             if enter > leave + slack { f64::MAX } else { enter.max(-leave).max(0.0) }
         };
-        let leaf = |triangle: u32, _| {
+        let one = |triangle: u32| {
             let (t, w) = line_hit(p, direction, self.corners[triangle as usize])?;
             if !accept(triangle) {
                 return None;
             }
             Some((t.abs(), Hit { triangle, barycentrics: w, point: p + direction * t }))
         };
+        let leaf = |leaf: u32, _| self.leaf(leaf).filter_map(one).min_by(|a, b| a.0.total_cmp(&b.0));
         let (_, (_, hit)) = self.bvh.find_best(reach, far, leaf)?;
         Some(hit)
     }
@@ -202,4 +224,51 @@ fn area_samples(corners: &[[Vec3; 3]], count: usize) -> Vec<Vec3> {
         a + (b - a) * u + (c - a) * v
     };
     (0..if corners.is_empty() { 0 } else { count }).map(sample).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Triangles of a bumpy sheet, four by four.
+    fn sheet() -> Vec<[Vec3; 3]> {
+        let at = |i: u32, j: u32| Vec3::new(i.into(), j.into(), f64::from((i * 7 + j * 5) % 4) * 0.3);
+        (0..16).flat_map(|k| (0..16).map(move |j| (k, j))).map(|(i, j)| [at(i, j), at(i + 1, j), at(i, j + 1)]).collect()
+    }
+
+    #[test]
+    fn the_closest_point_is_no_further_than_any_sample() {
+        let target = Target::new(sheet());
+        for (k, p) in area_samples(&sheet(), 50).into_iter().enumerate() {
+            let p = p + Vec3::new(0.3, -0.4, (k % 7) as f64 - 3.0);
+            let best = target.distance(p);
+            let sampled = area_samples(&sheet(), 5000).into_iter().map(|q| (q - p).length()).fold(f64::MAX, f64::min);
+            assert!(best <= sampled && sampled - best < 0.2, "{best} {sampled}");
+        }
+    }
+
+    #[test]
+    fn groups_do_not_change_what_is_found() {
+        let (one, many) = (Target::new(sheet()), Target::grouped(sheet(), 16));
+        for k in 0..200 {
+            let p = Vec3::new(f64::from(k % 19) * 0.9, f64::from(k % 17), f64::from(k % 5) - 2.0);
+            assert_eq!(one.distance(p), many.distance(p));
+            let direction = Vec3::new(0.1, f64::from(k % 3) * 0.2, 1.0).normalize();
+            let line = |t: &Target| t.line(p, direction, 9.0, |_| true).map(|hit| (hit.point - p).length());
+            assert_eq!(line(&one), line(&many));
+        }
+    }
+
+    #[test]
+    fn a_line_looks_both_ways_and_no_further_than_its_reach() {
+        let target = Target::new(vec![[Vec3::ZERO, Vec3::X, Vec3::Y]]);
+        for z in [-2.0, 2.0] {
+            let p = Vec3::new(0.25, 0.25, z);
+            let hit = target.line(p, Vec3::Z, 3.0, |_| true).unwrap();
+            assert!((hit.point - Vec3::new(0.25, 0.25, 0.0)).length() < 1e-12);
+            assert!(target.line(p, Vec3::Z, 1.9, |_| true).is_none());
+            assert!(target.line(p, Vec3::Z, 3.0, |_| false).is_none());
+            assert!(target.line(p, Vec3::X, 3.0, |_| true).is_none());
+        }
+    }
 }

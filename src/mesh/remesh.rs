@@ -24,8 +24,8 @@ use serde::{Deserialize, Serialize};
 use source::Source;
 use topology::Topology;
 
-/// Most finest triangles that are made: beyond this the working memory passes about 10 GB.
-const MAX_TRIANGLES: u64 = 1 << 27;
+/// Most finest triangles that are made: they need about 12 GB while they are.
+const MAX_TRIANGLES: u64 = 1 << 26;
 
 /// The default base mesh has one triangle for this many of the input, ...
 const REDUCTION: usize = 64;
@@ -36,8 +36,10 @@ const MIN_BASE: usize = 512;
 const CREASES: [f64; 4] = [40.0, 60.0, 85.0, 180.0];
 /// Splits that show whether a base mesh goes well.
 const TRIAL_LEVELS: u32 = 2;
-/// It does if no more than this part of the lattice points is beside the surface or in a triangle that faces away.
-const LITTLE_TROUBLE: f64 = 0.01;
+/// It does if no more than this part of the lattice points is beside the surface or in a triangle that faces away, ...
+const LITTLE_TROUBLE: f64 = 0.001;
+/// ... and creases are given up only to reduce that to this part of itself.
+const WORTH: f64 = 0.5;
 /// Up to this factor more base triangles than wanted will do.
 const ENOUGH: f64 = 1.25;
 
@@ -148,13 +150,13 @@ pub fn remesh(
     };
 
     progress("distance", 0, 1);
-    let corners = shading::finest_corners(&forest, &forest.positions);
+    let corners = shading::finest_corners(&forest);
     let mut report = RemeshReport {
         base_triangles: topology.triangles.len(),
         finest_triangles: surface.finest_triangles(),
         flipped_triangles,
         degenerate_triangles: corners.par_iter().filter(|c| super::clean::is_degenerate(c.map(|p| p.to_array()))).count() as u64,
-        distance: two_sided(&source.target, &Target::new(corners), source.diagonal),
+        distance: two_sided(&source.target, &Target::grouped(corners, 1 << (2 * levels.min(2))), source.diagonal),
         ..Default::default()
     };
     forest.count_methods(&topology, &mut report);
@@ -186,7 +188,7 @@ fn choose_base(mesh: &TriangleMesh, wanted: usize, progress: &dyn Fn(&str, u64, 
         }
         progress("base mesh", done, total);
         let (next, trouble) = attempt(crease);
-        if trouble < least {
+        if trouble < WORTH * least {
             (best, least) = (next, trouble);
         }
     }

@@ -51,11 +51,13 @@ pub(super) fn shade(topology: &Topology, forest: &Forest) -> (Vec<[f32; 3]>, u64
     (normals.par_iter().enumerate().map(unit).collect(), flipped)
 }
 
-/// Corners of all triangles of the finest level.
-pub(super) fn finest_corners(forest: &Forest, positions: &[Vec3]) -> Vec<[Vec3; 3]> {
-    let m = 1u32 << forest.levels;
-    positions
-        .par_chunks_exact(lattice::len(forest.levels))
-        .flat_map_iter(|tree| triangles(m, 1).map(|c| c.map(|p| tree[lattice::index(forest.levels, p)])))
+/// Corners of all triangles of the finest level, in the order of their nodes, so that neighbours stand together.
+pub(super) fn finest_corners(forest: &Forest) -> Vec<[Vec3; 3]> {
+    let levels = forest.levels;
+    let corners = |tree: &[Vec3], node| lattice::node(levels, levels, node).map(|p| tree[lattice::index(levels, p)]);
+    forest
+        .positions
+        .par_chunks_exact(lattice::len(levels))
+        .flat_map_iter(|tree| (0..1u32 << (2 * levels)).map(move |node| corners(tree, node)))
         .collect()
 }
