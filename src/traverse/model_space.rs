@@ -70,10 +70,13 @@ impl ModelSpace {
         std::array::from_fn(|k| (p[k] - self.placement.offset[k]) / self.placement.scale)
     }
 
-    /// Moves `world` to the model's enlarged box and rounds it; `None` if it misses that box or has no direction.
+    /// Moves `world` to the model's enlarged box and rounds it; `None` if it misses that box, has no direction or is not finite.
     pub fn enter(&self, world: &WorldRay, delta: f64) -> Option<ModelRay> {
         let direction = unit(world.direction)?;
         let origin = self.to_units(world.origin);
+        if !origin.iter().all(|c| c.is_finite()) {
+            return None;
+        }
         let margin = f64::from(BOX_MARGIN);
         let lo = self.lo.map(|v| f64::from(v) - margin);
         let hi = self.hi.map(|v| f64::from(v) + margin);
@@ -90,8 +93,7 @@ impl ModelSpace {
                 far = far.min(a.max(b));
             }
         }
-        // A comparison that NaN fails too.
-        if !(near <= far) {
+        if near > far {
             return None;
         }
 
