@@ -1,10 +1,10 @@
 //! The audit: sound scenes pass with nothing left out, and each kind of damage under right checksums is found by the check that is meant for it.
 
-use lodray_test_support::surfaces::{fan, grid, octahedron, scene, surface};
 use lodray::format::audit::{AuditReport, audit};
 use lodray::format::{BoundData, BvhChild, Scene, VertexData, export_level, layout};
 use lodray::mesh::{Surface, edge_index, lattice, quantise};
 use lodray::num::{U, Vec3, Wire, bound_decode};
+use lodray_test_support::surfaces::{fan, grid, octahedron, scene, surface};
 use proptest::prelude::*;
 
 #[test]
@@ -12,7 +12,8 @@ fn sound_scenes_pass_and_nothing_is_left_out() {
     for levels in [0, 1, 2, 5] {
         let one = surface(levels, &[[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]], &[[0, 1, 2]], lodray_test_support::surfaces::bumps);
         // Two trees with the same three vertices share all edges.
-        let twice = surface(levels, &[[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]], &[[0, 1, 2], [2, 1, 0]], lodray_test_support::surfaces::bumps);
+        let twice =
+            surface(levels, &[[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]], &[[0, 1, 2], [2, 1, 0]], lodray_test_support::surfaces::bumps);
         let flat = surface(levels, &[[5.0; 3]; 3], &[[0, 1, 2]], |p| p);
         for s in [one, twice, flat, grid(levels, 3), octahedron(levels), fan(levels)] {
             let report = audit(&scene(&s));

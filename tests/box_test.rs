@@ -1,9 +1,9 @@
 //! Both box tests against exact rational slabs, with the nasty categories counted.
 
+use lodray::block::Block;
 use lodray::block::box_test::{self, BoxTest};
 use lodray::block::box_test32::{self, BoxTest32};
 use lodray::block::ray_setup::RaySetup;
-use lodray::block::Block;
 use lodray::num::{Box16, Cone, Point, Ray, RayT, Vec3};
 use proptest::prelude::*;
 

@@ -1,6 +1,5 @@
 //! The blocks' traversal equals the exact golden traverser in every field of every hit.
 
-use lodray_test_support::models::{Rng, ball, build, cone, model, octahedron, scene_of, terrain};
 use lodray::bvh::{FullBvh, FullOptions, LeafLayout, Options as TreeOptions};
 use lodray::format::Scene;
 use lodray::golden::exact::{Exact, ExactHit};
@@ -9,6 +8,7 @@ use lodray::mesh::procedural::{self, Options};
 use lodray::num::{Cone, Point, Ray, Vec3};
 use lodray::render::{Camera, View};
 use lodray::traverse::{BvhTraverser, ClosestHit, Crossings, Hit, LodImage, LodTraverser, ModelSpace, NoProbe};
+use lodray_test_support::models::{Rng, ball, build, cone, model, octahedron, scene_of, terrain};
 use proptest::prelude::*;
 
 /// The fields of a hit as the golden traverser names them.

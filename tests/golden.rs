@@ -1,11 +1,11 @@
 //! The golden traverser and the reference against themselves, each other, and cases worked out by hand.
 
-use lodray_test_support::models::*;
 use lodray::{
     golden::{Crossings, Exact, ExactHit, Reference, true_bounds},
     mesh::{EdgeCodes, Hierarchy, Placement, lattice},
     num::{Cone, Ray, U},
 };
+use lodray_test_support::models::*;
 
 const HALF: u32 = 1 << 30;
 

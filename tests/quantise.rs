@@ -1,8 +1,8 @@
 //! Surfaces to integers: any finite extent fits, and what does not fit is refused by name.
 
-use lodray_test_support::surfaces::{bumps, grid, surface};
 use lodray::mesh::{Surface, lattice, quantise};
 use lodray::num::{COORD_LIMIT, snap};
+use lodray_test_support::surfaces::{bumps, grid, surface};
 
 const QUAD: [[f64; 3]; 4] = [[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [1.0, 1.0, 0.0]];
 
@@ -58,6 +58,10 @@ fn what_does_not_fit_is_refused_by_name() {
     refused("base vertex", &|s| s.positions[8][2] += 0.01);
     let mut s = grid(3, 2);
     s.normals[7] = [0.0; 3];
-    let message = lodray::format::build(&s, lodray_test_support::surfaces::info("test"), |boxes| Ok::<_, String>(lodray_test_support::surfaces::quad_tree(boxes))).unwrap_err().to_string();
+    let message = lodray::format::build(&s, lodray_test_support::surfaces::info("test"), |boxes| {
+        Ok::<_, String>(lodray_test_support::surfaces::quad_tree(boxes))
+    })
+    .unwrap_err()
+    .to_string();
     assert!(message.contains("normals: entry 7"), "{message}");
 }

@@ -1,8 +1,8 @@
 //! Scene files: what is written comes back, and what is broken is refused.
 
-use lodray_test_support::surfaces::{fan, grid, octahedron, scene};
 use lodray::format::{Scene, export_level};
 use lodray::mesh::{lattice, quantise};
+use lodray_test_support::surfaces::{fan, grid, octahedron, scene};
 
 #[test]
 fn a_saved_scene_opens_with_the_same_bytes() {

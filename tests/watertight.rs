@@ -1,11 +1,11 @@
 //! Watertight, measured: no miss and no double hit on closed models, aimed at vertices and edges and within one unit of them.
 
-use lodray_test_support::models::{ball, build, scene_of};
 use lodray::format::Scene;
 use lodray::mesh::Hierarchy;
 use lodray::mesh::procedural::{self, Options};
 use lodray::report::crack::{Closedness, CrackReport, closedness, measure};
 use lodray::traverse::{LodImage, ModelSpace};
+use lodray_test_support::models::{ball, build, scene_of};
 
 /// Rays over all models; `LODRAY_RAYS` asks for more.
 fn total() -> u64 {

@@ -46,10 +46,8 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
         for r in &report.rows {
             let name = format!("{:?}", r.target);
             let cells = [r.rays, r.crossing, r.axis_parallel, r.mixed_levels].map(grouped);
-            text += &format!(
-                "{name:<12}{:>14}{:>14}{:>14}{:>14}{:>8}{:>12}\n",
-                cells[0], cells[1], cells[2], cells[3], r.odd, r.unbalanced
-            );
+            text +=
+                &format!("{name:<12}{:>14}{:>14}{:>14}{:>14}{:>8}{:>12}\n", cells[0], cells[1], cells[2], cells[3], r.odd, r.unbalanced);
         }
         let compared = if oriented { "front and back crossings compared" } else { "not consistently oriented: parity only" };
         text += &format!("{} misses or double hits in {} rays ({compared})", report.breaches(), grouped(report.rays()));

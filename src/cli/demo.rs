@@ -67,7 +67,11 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
     let table = table(&rows, scene.finest_triangles());
     let path = args.out.join("table.txt");
     write_and_rename(&path, |out| writeln!(out, "{table}")).with_context(|| format!("cannot write {}", path.display()))?;
-    if args.json { print_json(&rows)? } else { print_line(&format!("{table}\npictures in {}", args.out.display()))? }
+    if args.json {
+        print_json(&rows)?
+    } else {
+        print_line(&format!("{table}\npictures in {}", args.out.display()))?
+    }
     Ok(ExitCode::SUCCESS)
 }
 
@@ -90,7 +94,17 @@ fn row(view: &'static str, distance: f64, method: &'static str, shot: &Shot, tru
 fn table(rows: &[Row], triangles: u64) -> String {
     let mut text = format!(
         "terrain, {} triangles at full resolution, {SIDE}x{SIDE} rays; errors against full resolution\n{:<8}{:>9}{:>8}{:>16}{:>11}{:>11}{:>15}{:>12}{:>9}{:>10}\n",
-        grouped(triangles), "view", "distance", "method", "distinct lines", "lines/ray", "nodes/ray", "triangles/ray", "mean level", "RMSE", "PSNR"
+        grouped(triangles),
+        "view",
+        "distance",
+        "method",
+        "distinct lines",
+        "lines/ray",
+        "nodes/ray",
+        "triangles/ray",
+        "mean level",
+        "RMSE",
+        "PSNR"
     );
     for r in rows {
         text += &format!(

@@ -103,7 +103,11 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
         rows,
         ratio,
     };
-    if args.json { print_json(&report)? } else { print_line(&table(&report))? }
+    if args.json {
+        print_json(&report)?
+    } else {
+        print_line(&table(&report))?
+    }
     Ok(ExitCode::SUCCESS)
 }
 

@@ -158,7 +158,11 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
         per_ray,
         error,
     };
-    if args.json { print_json(&report)? } else { print_line(&table(&report, &args.out))? }
+    if args.json {
+        print_json(&report)?
+    } else {
+        print_line(&table(&report, &args.out))?
+    }
     Ok(ExitCode::SUCCESS)
 }
 

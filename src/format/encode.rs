@@ -23,7 +23,9 @@ pub struct SceneInfo {
 /// # Errors
 /// The surface is not fit, or `build_l0` failed or returned no nodes.
 pub fn build<E: std::fmt::Display>(
-    surface: &Surface, info: SceneInfo, build_l0: impl FnOnce(&[Box16]) -> Result<Vec<[u64; 8]>, E>,
+    surface: &Surface,
+    info: SceneInfo,
+    build_l0: impl FnOnce(&[Box16]) -> Result<Vec<[u64; 8]>, E>,
 ) -> Result<Scene, SceneError> {
     let hierarchy = quantise(surface)?;
     let nodes = build_l0(&tree_boxes(&hierarchy)).map_err(|e| SceneError::Build(format!("quad-BVH: {e}")))?;

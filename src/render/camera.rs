@@ -104,8 +104,7 @@ impl Camera {
 
     /// The ray through picture position (`x`, `y`) in pixels.
     pub fn ray_at(&self, x: f64, y: f64) -> WorldRay {
-        let direction =
-            self.forward + self.right * (x - 0.5 * f64::from(self.width)) - self.above * (y - 0.5 * f64::from(self.height));
+        let direction = self.forward + self.right * (x - 0.5 * f64::from(self.width)) - self.above * (y - 0.5 * f64::from(self.height));
         WorldRay { origin: self.eye.to_array(), direction: direction.normalize().to_array(), radius: 0.0, tan_theta: self.tan_theta }
     }
 }

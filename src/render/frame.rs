@@ -101,23 +101,33 @@ impl FrameStats {
     }
 }
 
+/// Rays are traced in small tiles, so that what one reads is still in the cache for the next; a band of tiles is one unit of work.
+const TILE_COLUMNS: usize = 32;
+const TILE_ROWS: usize = 8;
+
 /// Traces one ray per pixel. `row_done` is called once for each finished row, from any thread.
 pub fn render(method: &Method<'_>, space: &ModelSpace, camera: &Camera, delta: f64, row_done: &(dyn Fn() + Sync)) -> Frame {
     let sets = LineSets::new(&method.sections());
     let width = camera.width as usize;
     let mut pixels = vec![None; width * camera.height as usize];
     let counts = pixels
-        .par_chunks_mut(width)
+        .par_chunks_mut(width * TILE_ROWS)
         .enumerate()
         .map_init(
             || Tracer::new(method),
-            |tracer, (y, row)| {
+            |tracer, (band, rows)| {
                 let mut probe = LineProbe { counts: RayCounts::default(), sets: &sets };
-                for (x, pixel) in row.iter_mut().enumerate() {
-                    // Rows and columns are below 2^16.
-                    *pixel = tracer.pixel(space, camera, delta, [x as u32, y as u32], &mut probe);
+                for left in (0..width).step_by(TILE_COLUMNS) {
+                    for (row, pixels) in rows.chunks_mut(width).enumerate() {
+                        let right = width.min(left + TILE_COLUMNS);
+                        for (x, pixel) in (left..right).zip(&mut pixels[left..right]) {
+                            // Rows and columns are below 2^16.
+                            let at = [x as u32, (band * TILE_ROWS + row) as u32];
+                            *pixel = tracer.pixel(space, camera, delta, at, &mut probe);
+                        }
+                    }
                 }
-                row_done();
+                (0..rows.len() / width).for_each(|_| row_done());
                 probe.counts
             },
         )

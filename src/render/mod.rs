@@ -2,12 +2,14 @@
 
 mod camera;
 mod frame;
+mod geometry;
 mod lines;
 mod picture;
 mod shade;
 
 pub use camera::{Camera, CameraError, DEFAULT_VIEW_ANGLE_DEGREES, View};
 pub use frame::{Frame, FrameStats, Method, Pixel, render};
+pub use geometry::{GeometricError, geometric_error};
 pub use lines::LineSets;
 pub use picture::{ImageError, compare, save_png, write_and_rename};
-pub use shade::{error_map, level_map, normal_map, shaded};
+pub use shade::{error_map, level_map, normal_map, shaded, view_cosine};

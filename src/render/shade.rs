@@ -31,13 +31,17 @@ const LEVELS: [[f32; 3]; 11] = [
 pub fn shaded(frame: &Frame, scene: &Scene, camera: &Camera) -> RgbImage {
     paint(frame, |index, pixel| {
         let Some(pixel) = pixel else { return BACKGROUND };
-        let normal = normal(scene, pixel);
         let material = scene.record(pixel.tree as usize).material.get() as u16;
-        let (x, y) = (index as u32 % frame.width, index as u32 / frame.width);
-        let view = DVec3::from_array(camera.ray(x, y).direction).as_vec3();
-        let cosine = normal.dot(view).abs();
+        let cosine = view_cosine(scene, camera, index, pixel);
         scene.colour(material).map_or(GREY, Vec3::from_array) * (0.06 + 0.94 * cosine)
     })
+}
+
+/// |n.d| at pixel number `index` of a frame: full-resolution shading normal against the view direction.
+pub fn view_cosine(scene: &Scene, camera: &Camera, index: usize, pixel: &Pixel) -> f32 {
+    let (x, y) = (index as u32 % camera.width, index as u32 / camera.width); // below 2^16 each
+    let view = DVec3::from_array(camera.ray(x, y).direction).as_vec3();
+    normal(scene, pixel).dot(view).abs()
 }
 
 /// Full-resolution normals as colours, (n + 1) / 2.
@@ -52,7 +56,8 @@ pub fn normal_map(frame: &Frame, scene: &Scene) -> RgbImage {
 pub fn level_map(frame: &Frame) -> RgbImage {
     paint(frame, |_, pixel| {
         let Some(pixel) = pixel else { return BACKGROUND };
-        let mixed = (u64::from(pixel.tree) << 24 ^ u64::from(pixel.level) << 20 ^ u64::from(pixel.node)).wrapping_mul(0x9E37_79B9_7F4A_7C15);
+        let mixed =
+            (u64::from(pixel.tree) << 24 ^ u64::from(pixel.level) << 20 ^ u64::from(pixel.node)).wrapping_mul(0x9E37_79B9_7F4A_7C15);
         let brightness = 0.55 + 0.45 * ((mixed >> 40) as f32 / (1u32 << 24) as f32);
         Vec3::from_array(LEVELS[pixel.level as usize % LEVELS.len()]) * brightness
     })

@@ -127,10 +127,18 @@ impl Random {
 ///
 /// `progress` is told how many rays were shot since its last call, from any thread.
 pub fn measure(
-    hierarchy: &Hierarchy, image: &LodImage<'_>, space: &ModelSpace, oriented: bool, rays: u64, seed: u64, progress: &(dyn Fn(u64) + Sync),
+    hierarchy: &Hierarchy,
+    image: &LodImage<'_>,
+    space: &ModelSpace,
+    oriented: bool,
+    rays: u64,
+    seed: u64,
+    progress: &(dyn Fn(u64) + Sync),
 ) -> CrackReport {
     const BATCH: u64 = 4096;
-    let zero = || (TARGETS.map(|target| Row { target, rays: 0, crossing: 0, axis_parallel: 0, mixed_levels: 0, odd: 0, unbalanced: 0 }), None::<u64>);
+    let zero = || {
+        (TARGETS.map(|target| Row { target, rays: 0, crossing: 0, axis_parallel: 0, mixed_levels: 0, odd: 0, unbalanced: 0 }), None::<u64>)
+    };
     let (rows, first_breach) = (0..rays.div_ceil(BATCH))
         .into_par_iter()
         .map_init(
@@ -275,4 +283,3 @@ fn target_point(h: &Hierarchy, target: Target, random: &mut Random) -> [i64; 3] 
         }
     }
 }
-

@@ -1,9 +1,9 @@
 //! Hits: what a traversal returns, and what it does with each triangle that the ray meets.
 
+use crate::block::Block;
 use crate::block::bary_map::{self, BaryMap, NodeIndex};
 use crate::block::hit_divide::{self, HitDivide};
 use crate::block::tri_test::{self, EdgeFunction, TNumerator};
-use crate::block::Block;
 use crate::num::{BARY_ONE, Bary, RayT, U, wire_struct};
 
 wire_struct! {

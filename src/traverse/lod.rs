@@ -2,6 +2,7 @@
 
 use super::stack::{Entry, Op, TraversalStack};
 use super::{HitSink, Kind, Probe, Section, TriangleId};
+use crate::block::Block;
 use crate::block::box_test::{self, BoxTest};
 use crate::block::child_sort::{self, ChildSort};
 use crate::block::lod_test::{self, LodTest};
@@ -9,7 +10,6 @@ use crate::block::ray_setup::{self, RaySetup};
 use crate::block::tessellate::{self, Tessellate, child_triangle};
 use crate::block::tri_test::{self, TriTest};
 use crate::block::widen_box::{self, WidenBox};
-use crate::block::Block;
 use crate::format::{BoundData, BvhChild, ChildRef, L0Record, Scene, VertexData};
 use crate::num::{BoundCode, BoundScale, EdgeState, MAX_LEVELS, Point, Ray, RayT, S_ONE, T_NEAR_TO_T_SHIFT, TNear, U, Wire};
 

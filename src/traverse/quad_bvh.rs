@@ -62,8 +62,12 @@ impl<'a> BvhTraverser<'a> {
         let mut tests = [box_test::Out::default(); 4];
         let t_max = sink.t_max();
         // Inner nodes and leaves have the kinds of their entries one lower.
-        let waiting =
-            |child: ChildRef| Entry { kind: U::new(child.kind.get() - 1), level: U::new(child.count.get()), index: child.index, ..Entry::default() };
+        let waiting = |child: ChildRef| Entry {
+            kind: U::new(child.kind.get() - 1),
+            level: U::new(child.count.get()),
+            index: child.index,
+            ..Entry::default()
+        };
         match &self.bvh.nodes {
             FullNodes::Boxes16(nodes) => {
                 read_pair(probe, Kind::BvhNode, index);
