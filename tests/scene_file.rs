@@ -183,7 +183,7 @@ fn exported_levels_are_welded_by_topology() {
             for (index, corner) in models[0].mesh.indices[3 * node..][..3].iter().zip(scene.triangle(0, level as u32, node)) {
                 let world = scene.decode().to_world(corner);
                 let found = &models[0].mesh.positions[3 * *index as usize..][..3];
-                assert!((0..3).all(|c| (f64::from(found[c]) - world[c]).abs() < 1e-5));
+                assert!((0..3).all(|c| (found[c] - world[c]).abs() < 1e-5));
             }
         }
     }

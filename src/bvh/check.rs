@@ -150,7 +150,7 @@ pub(super) fn synthetic_terrain(quads: u32, levels: u32) -> crate::mesh::Hierarc
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::bvh::{BvhError, Collapse, FullBvh, FullOptions, LeafLayout, Options, build, build::Prim, build_nodes, over_trees};
+    use crate::bvh::{BvhError, Collapse, Options, build, build::Prim, build_nodes, over_trees};
     use crate::format::{Box16, BvhChild, ChildRef};
     use crate::num::{COORD_LIMIT, Wire};
     use proptest::prelude::*;
@@ -346,41 +346,6 @@ mod tests {
             }).collect();
             let tree = build(&boxes, &Options::with_leaf(max_leaf)).unwrap();
             prop_assert_eq!(check(&tree, &boxes), Ok(()));
-        }
-    }
-
-    /// Prints time, size and cost over 8.4 M triangles.
-    #[test]
-    #[ignore = "seconds and gigabytes; run with --ignored --nocapture"]
-    fn figures_of_a_large_terrain() {
-        let h = synthetic_terrain(16, std::env::var("LODRAY_LEVELS").ok().and_then(|v| v.parse().ok()).unwrap_or(7));
-        let count = h.finest_triangles() as f64;
-        for max_leaf in [1, 2, 4] {
-            for layout in [LeafLayout::Line, LeafLayout::Indexed] {
-                let start = std::time::Instant::now();
-                let full = FullBvh::build(&h, &FullOptions { tree: Options::with_leaf(max_leaf), wide_boxes: false, layout }).unwrap();
-                let s = start.elapsed().as_secs_f64();
-                println!(
-                    "leaf {max_leaf} {layout:?}: {s:.2} s, {:.2} M/s, {} nodes, {:.1} bytes/triangle",
-                    count / s / 1e6,
-                    full.nodes.len(),
-                    full.bytes() as f64 / count
-                );
-            }
-        }
-        let boxes: Vec<Box32> = (0..h.triangles.len())
-            .flat_map(|t| (0..1u32 << (2 * h.levels)).map(move |i| (t, i)))
-            .map(|(t, i)| {
-                let p = crate::mesh::lattice::node(h.levels, h.levels, i).map(|c| h.tree(t)[crate::mesh::lattice::index(h.levels, c)]);
-                Box32::of_triangle(p)
-            })
-            .collect();
-        for max_leaf in [1, 2, 4] {
-            for collapse in [Collapse::Optimal, Collapse::Greedy] {
-                let o = options(max_leaf, collapse);
-                let tree = build(&boxes, &o).unwrap();
-                println!("leaf {max_leaf} {collapse:?}: SAH {:.3}, {} nodes", sah_cost(&tree, &o.costs), tree.nodes.len());
-            }
         }
     }
 }
