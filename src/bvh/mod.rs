@@ -20,7 +20,7 @@ use rayon::prelude::*;
 use thiserror::Error;
 
 /// Largest number of nodes on a path from the root to a leaf, whatever the input.
-pub const MAX_DEPTH: u32 = 24;
+pub const MAX_DEPTH: u32 = crate::num::MAX_BVH_DEPTH;
 /// Largest number of primitives: references hold 28 bits.
 pub const MAX_PRIMITIVES: usize = 1 << 28;
 

@@ -3,7 +3,7 @@
 use super::scene::Image;
 use super::sections::{Section, checksum, read_header};
 use super::{BvhChild, ChildRef, L0Record, Meta, Scene, SceneError};
-use crate::num::{COORD_LIMIT, MAX_LEVELS, Wire};
+use crate::num::{COORD_LIMIT, MAX_BVH_DEPTH, MAX_LEVELS, Wire, bound_decode};
 use memmap2::Mmap;
 use rayon::prelude::*;
 use std::fs::File;
@@ -96,8 +96,11 @@ impl Scene {
         }
         let nodes = self.nodes();
         let mut seen = vec![false; nodes.len()];
-        let mut open = vec![0];
-        while let Some(index) = open.pop() {
+        let mut open = vec![(0, 1)];
+        while let Some((index, depth)) = open.pop() {
+            if depth > MAX_BVH_DEPTH {
+                return Err(format!("section NODES: node {index} lies deeper than {MAX_BVH_DEPTH} nodes"));
+            }
             match seen.get_mut(index) {
                 Some(seen) if !*seen => *seen = true,
                 Some(_) => return Err(format!("section NODES: node {index} is referred to twice")),
@@ -108,10 +111,10 @@ impl Scene {
                 let at = child.index.get() as usize; // 28 bits
                 match child.kind.get() {
                     ChildRef::EMPTY => {}
-                    ChildRef::INNER => open.push(at),
-                    ChildRef::LEAF if at + child.count.get() as usize >= self.trees() => {
+                    ChildRef::INNER => open.push((at, depth + 1)),
+                    ChildRef::LEAF if at >= self.trees() || child.count.get() != 0 => {
                         return Err(format!(
-                            "section NODES: node {index} refers to tree {at} and {} more of {}",
+                            "section NODES: node {index} refers to tree {at} and {} more of {}, not to one",
                             child.count,
                             self.trees()
                         ));
@@ -136,6 +139,9 @@ fn check_meta(meta: &Meta) -> Result<(), String> {
     }
     if meta.bound_mantissa >= 1 << 18 || meta.bound_shift >= 1 << 6 {
         return fail("bound_mantissa, bound_shift", format!("{}, {} exceed 18 and 6 bits", meta.bound_mantissa, meta.bound_shift));
+    }
+    if bound_decode(meta.bound_scale(), 1023) >= 1 << 33 {
+        return fail("bound_mantissa, bound_shift", "the largest bound exceeds 33 bits".into());
     }
     let placement = meta.placement;
     if !(placement.scale.is_normal() && placement.scale > 0.0 && placement.offset.iter().all(|c| c.is_finite())) {

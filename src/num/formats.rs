@@ -8,6 +8,8 @@ pub const COORD_LIMIT: i32 = 0x7FFE_0000;
 pub const PADDING_BITS: u32 = 4;
 /// Largest number of 1-to-4 splits.
 pub const MAX_LEVELS: u32 = 10;
+/// Largest number of quad-BVH nodes on a path from the root to a leaf: what the traversal stack has room for.
+pub const MAX_BVH_DEPTH: u32 = 24;
 /// Units per step of a 16-bit box code, as a shift.
 pub const BOX_SHIFT: u32 = 16;
 /// Units by which the model's box is enlarged before a ray is moved to it.

@@ -5,8 +5,8 @@
 
 use crate::num::{BoundCode, TNear, U, wire_struct};
 
-/// Room for a quad-BVH of [`crate::bvh::MAX_DEPTH`] levels and a tree of ten: each level leaves at most three siblings waiting.
-pub const STACK_ENTRIES: usize = 3 * (crate::bvh::MAX_DEPTH as usize + crate::num::MAX_LEVELS as usize) + 1;
+/// Room for a quad-BVH of [`MAX_BVH_DEPTH`](crate::num::MAX_BVH_DEPTH) levels and a tree of ten: each level leaves at most three siblings waiting.
+pub const STACK_ENTRIES: usize = 3 * (crate::num::MAX_BVH_DEPTH as usize + crate::num::MAX_LEVELS as usize) + 1;
 
 wire_struct! {
     /// One waiting node.
