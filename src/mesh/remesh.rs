@@ -48,7 +48,8 @@ const ENOUGH: f64 = 1.25;
 pub struct RemeshOptions {
     /// Number of splits N, 0 to [`MAX_LEVELS`].
     pub levels: u32,
-    /// Wanted number of base triangles; by default 1/64 of the input, but at least 512, and never more than the input.
+    /// Wanted number of base triangles; by default 1/64 of the input, but at least 512 (fewer with nine or ten levels, which would make too many
+    /// triangles of them), and never more than the input.
     pub base_triangles: Option<usize>,
 }
 
@@ -57,6 +58,8 @@ pub struct RemeshOptions {
 pub struct RemeshReport {
     /// Base triangles reached; more than wanted if the topology or the feature lines did not allow it.
     pub base_triangles: usize,
+    /// Triangles that collapsed to degenerate ones or to ones already there, and were dropped from the base mesh.
+    pub dropped_base_triangles: usize,
     /// Triangles of the finest level.
     pub finest_triangles: u64,
     /// Inserted vertices put where a line along the interpolated normal meets the original surface.
@@ -125,9 +128,11 @@ pub fn remesh(
     }
     check(mesh)?;
     let count = mesh.triangles.len();
-    let wanted = options.base_triangles.unwrap_or((count / REDUCTION).max(MIN_BASE)).min(count);
+    // With many levels the default is what the size limit leaves room for.
+    let default = (count / REDUCTION).max(MIN_BASE).min((MAX_TRIANGLES >> (2 * levels)) as usize / 2);
+    let wanted = options.base_triangles.unwrap_or(default).min(count);
 
-    let (source, topology) = choose_base(mesh, wanted, progress);
+    let (source, topology, dropped) = choose_base(mesh, wanted, progress);
     let base = topology.triangles.len();
     let triangles = (base as u64) << (2 * levels);
     if triangles > MAX_TRIANGLES {
@@ -153,6 +158,7 @@ pub fn remesh(
     let corners = shading::finest_corners(&forest);
     let mut report = RemeshReport {
         base_triangles: topology.triangles.len(),
+        dropped_base_triangles: dropped,
         finest_triangles: surface.finest_triangles(),
         flipped_triangles,
         degenerate_triangles: corners.par_iter().filter(|c| super::clean::is_degenerate(c.map(|p| p.to_array()))).count() as u64,
@@ -167,9 +173,9 @@ pub fn remesh(
 /// Makes a base mesh for one crease angle after the other, splits it a little, and takes the first that goes well; else the best.
 ///
 /// Creases kept are edges kept sharp, but on a rough or coarse surface they can be so many that they leave no room for anything else.
-fn choose_base(mesh: &TriangleMesh, wanted: usize, progress: &dyn Fn(&str, u64, u64)) -> (Source, Topology) {
+fn choose_base(mesh: &TriangleMesh, wanted: usize, progress: &dyn Fn(&str, u64, u64)) -> (Source, Topology, usize) {
     let attempt = |crease: f64| {
-        let (source, base) = base::simplify(mesh, wanted, crease.to_radians());
+        let (source, base, dropped) = base::simplify(mesh, wanted, crease.to_radians());
         let topology = Topology::new(&source, base);
         let forest = split::split(&source, &topology, TRIAL_LEVELS, &|_, _, _| {});
         let mut report = RemeshReport::default();
@@ -177,7 +183,7 @@ fn choose_base(mesh: &TriangleMesh, wanted: usize, progress: &dyn Fn(&str, u64, 
         let bad = report.midpoints_kept + shading::shade(&topology, &forest).1;
         let trouble = bad as f64 / forest.positions.len() as f64;
         let too_many = (topology.triangles.len() as f64 / wanted as f64 - ENOUGH).max(0.0);
-        ((source, topology), trouble + too_many)
+        ((source, topology, dropped), trouble + too_many)
     };
     let total = CREASES.len() as u64;
     progress("base mesh", 0, total);

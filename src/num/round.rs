@@ -38,8 +38,15 @@ pub fn bound_decode(scale: BoundScale, code: u16) -> u64 {
     (c * c * scale.mantissa.get()) >> scale.shift.get()
 }
 
-/// The scale for largest bound `largest` units (at most 2^33 - 1): code 1023 decodes to `largest` or a little above.
+/// No displacement is longer: the diagonal of the coordinates' cube, 2 sqrt(3) [`COORD_LIMIT`], rounded up; below 2^32.8.
+pub const LARGEST_BOUND: u64 = {
+    let side = 2 * COORD_LIMIT as u128;
+    (3 * side * side).isqrt() as u64 + 1
+};
+
+/// The scale for largest bound `largest` units, at most [`LARGEST_BOUND`]: code 1023 decodes to `largest` or a little above, below 2^33.
 pub fn bound_scale(largest: u64) -> BoundScale {
+    debug_assert!(largest <= LARGEST_BOUND);
     const TOP: u128 = 1023 * 1023;
     if largest == 0 {
         return BoundScale::default();
@@ -138,10 +145,10 @@ mod tests {
 
     #[test]
     fn scale_covers_the_largest_bound() {
-        for h in [1, 2, 3, 1000, 1 << 20, (1 << 33) - 1] {
+        for h in [1, 2, 3, 1000, 1 << 20, 1 << 32, LARGEST_BOUND] {
             let s = bound_scale(h);
             assert!(bound_decode(s, 1023) >= h);
-            assert!(bound_decode(s, 1023) < 1 << 33 || h == (1 << 33) - 1);
+            assert!(bound_decode(s, 1023) < 1 << 33);
             assert!(bound_decode(s, 1023) as f64 <= h as f64 * 1.0001 + 1.0, "{h}");
         }
         assert_eq!(bound_decode(bound_scale(0), 1023), 0);
@@ -162,7 +169,7 @@ mod tests {
         }
 
         #[test]
-        fn codes_round_up_and_are_tight(largest in 1u64..1 << 33, part in 0.0f64..=1.0) {
+        fn codes_round_up_and_are_tight(largest in 1..=LARGEST_BOUND, part in 0.0f64..=1.0) {
             let scale = bound_scale(largest);
             let bound = ((largest as f64 * part) as u64).min(largest);
             let code = bound_encode(scale, bound);

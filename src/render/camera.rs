@@ -7,6 +7,11 @@ use thiserror::Error;
 /// The paper's camera: focal length 35 on a sensor of height 24.
 pub const DEFAULT_VIEW_ANGLE_DEGREES: f64 = 37.849_288_832_102_47;
 
+/// Most columns and rows of a picture.
+const MAX_SIDE: u32 = 1 << 16;
+/// Most pixels of a picture: what is kept of each takes about 50 bytes.
+const MAX_PIXELS: u64 = 1 << 26;
+
 /// Where to look from; what is `None` is chosen to suit the model.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct View {
@@ -67,8 +72,8 @@ impl Camera {
         if !(view.fov > 0.0 && view.fov < 180.0) {
             return Err(CameraError::Field("--fov", "between 0 and 180 degrees"));
         }
-        if width == 0 || height == 0 || width > 1 << 16 || height > 1 << 16 {
-            return Err(CameraError::Field("--size", "between 1x1 and 65536x65536"));
+        if width == 0 || height == 0 || width > MAX_SIDE || height > MAX_SIDE || u64::from(width) * u64::from(height) > MAX_PIXELS {
+            return Err(CameraError::Field("--size", "at most 65536 pixels wide and high, and 67108864 in all"));
         }
         let target = target.unwrap_or_else(|| DVec3::from_array(space.centre()));
         let eye = match (eye, view.distance) {
