@@ -5,6 +5,7 @@ use lodray::format::{BoundData, BvhChild, Scene, VertexData, export_level, layou
 use lodray::mesh::{Surface, edge_index, lattice, quantise};
 use lodray::num::{U, Vec3, Wire, bound_decode};
 use lodray_test_support::surfaces::{fan, grid, octahedron, scene, surface};
+use lodray_test_support::cases;
 use proptest::prelude::*;
 
 #[test]
@@ -266,7 +267,7 @@ fn any_surface() -> impl Strategy<Value = Surface> {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(200))]
+    #![proptest_config(cases(200))]
 
     #[test]
     fn any_surface_passes(s in any_surface()) {

@@ -5,7 +5,9 @@ use lodray::block::box_test::{self, BoxTest};
 use lodray::block::box_test32::{self, BoxTest32};
 use lodray::block::ray_setup::RaySetup;
 use lodray::num::{Box16, Cone, Point, Ray, RayT, Vec3};
+use lodray_test_support::cases;
 use proptest::prelude::*;
+use std::sync::atomic::{AtomicU64, Ordering::Relaxed};
 
 /// Exact: is there a real t >= 0 with x + t d in the closed box? Gives the entry t as a fraction (numerator, denominator > 0).
 fn slabs(x: [i64; 3], d: [i64; 3], lo: [i64; 3], hi: [i64; 3]) -> Option<(i128, i128)> {
@@ -40,6 +42,33 @@ fn ray(x: [i64; 3], d: [i64; 3]) -> Ray {
     Ray { origin: Point::new(x[0], x[1], x[2]), direction: Vec3::new(d[0], d[1], d[2]), cone: Cone::default() }
 }
 
+/// What was tried, so that no category passes by being empty.
+struct Tried {
+    hits: AtomicU64,
+    misses: AtomicU64,
+    inside: AtomicU64,
+    axis_parallel: AtomicU64,
+    flat_boxes: AtomicU64,
+}
+
+impl Tried {
+    const fn new() -> Self {
+        const ZERO: AtomicU64 = AtomicU64::new(0);
+        Self { hits: ZERO, misses: ZERO, inside: ZERO, axis_parallel: ZERO, flat_boxes: ZERO }
+    }
+
+    /// Prints the counts and fails unless each is at least `least`.
+    fn report(&self, name: &str, least: u64) {
+        let Self { hits, misses, inside, axis_parallel, flat_boxes } = self;
+        let all = [("hits", hits), ("misses", misses), ("inside", inside), ("axis-parallel", axis_parallel), ("flat", flat_boxes)];
+        for (kind, count) in all {
+            let count = count.load(Relaxed);
+            println!("{name}: {count} {kind}");
+            assert!(count >= least, "{name}: only {count} {kind}");
+        }
+    }
+}
+
 fn check(out: box_test::Out, exact: Option<(i128, i128)>, name: &str) {
     assert_eq!(out.hit, exact.is_some(), "{name}");
     match exact {
@@ -55,22 +84,41 @@ fn direction(v: [i64; 3]) -> Option<[i64; 3]> {
     (length > 0.0).then(|| v.map(|c| (c as f64 / length * f64::from((1 << 30) - 1)).round() as i64))
 }
 
-fn both(x: [i64; 3], d: [i64; 3], codes: [[i64; 3]; 2]) {
+fn both(x: [i64; 3], d: [i64; 3], codes: [[i64; 3]; 2], tried: &Tried) {
     let (lo, hi): ([i64; 3], [i64; 3]) =
         (std::array::from_fn(|k| codes[0][k].min(codes[1][k])), std::array::from_fn(|k| codes[0][k].max(codes[1][k])));
     let setup = RaySetup::eval(&ray(x, d));
     let units = |c: [i64; 3]| c.map(|v| v << 16);
     let exact = slabs(x, d, units(lo), units(hi));
+    let count = |counter: &AtomicU64, yes: bool| counter.fetch_add(u64::from(yes), Relaxed);
+    count(&tried.hits, exact.is_some());
+    count(&tried.misses, exact.is_none());
+    count(&tried.inside, (0..3).all(|k| units(lo)[k] <= x[k] && x[k] <= units(hi)[k]));
+    count(&tried.axis_parallel, d.contains(&0));
+    count(&tried.flat_boxes, (0..3).any(|k| lo[k] == hi[k]));
     let bounds = Box16::from_codes(lo.map(|v| v as i16), hi.map(|v| v as i16));
     check(BoxTest::eval(&box_test::In { ray: setup, t_max: RayT::MAX, bounds }), exact, "16 bits");
     let p = |c: [i64; 3]| Point::new(c[0], c[1], c[2]);
     check(BoxTest32::eval(&box_test32::In { ray: setup, t_max: RayT::MAX, lo: p(units(lo)), hi: p(units(hi)) }), exact, "32 bits");
+    // The same walls moved off the 16-bit grid.
+    let (lo, hi) = (units(lo).map(|v| v + 12_345), units(hi).map(|v| v + 54_321));
+    check(BoxTest32::eval(&box_test32::In { ray: setup, t_max: RayT::MAX, lo: p(lo), hi: p(hi) }), slabs(x, d, lo, hi), "32 bits, unaligned");
+}
+
+static ANYTHING: Tried = Tried::new();
+static AIMED: Tried = Tried::new();
+
+#[test]
+fn random_boxes_and_rays() {
+    anything();
+    ANYTHING.report("anything", 1000);
+    aimed_at_corners_faces_and_edges();
+    AIMED.report("aimed", 100);
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig { cases: 100_000, ..ProptestConfig::default() })]
+    #![proptest_config(cases(100_000))]
 
-    #[test]
     fn anything(x in prop::array::uniform3(-0x7FFE_0040i64..=0x7FFE_0040), d in prop::array::uniform3(-1000i64..=1000), zero in 0u32..16,
                 a in prop::array::uniform3(-32_766i64..=32_766), size in prop::array::uniform3(0i64..2000), shrink in 0u32..12) {
         let mut d = d;
@@ -78,20 +126,21 @@ proptest! {
             if zero >> k & 1 == 1 { *d = 0; }
         }
         if let Some(d) = direction(d) {
-            let b = std::array::from_fn(|k| (a[k] + (size[k] >> shrink)).min(32_766));
-            both(x, d, [a, b]);
+            let b: [i64; 3] = std::array::from_fn(|k| (a[k] + (size[k] >> shrink)).min(32_766));
+            // Every other ray starts in or near the box.
+            let near = std::array::from_fn(|k| ((x[k] >> 8) + ((a[k] + b[k]) << 15)).clamp(-0x7FFE_0040, 0x7FFE_0040));
+            both(if zero < 8 { x } else { near }, d, [a, b], &ANYTHING);
         }
     }
 
-    #[test]
     fn aimed_at_corners_faces_and_edges(corner in prop::array::uniform3(-30_000i64..=30_000), size in prop::array::uniform3(0i64..4),
-                                        step in prop::array::uniform3(-400i64..=400), steps in 0i64..200_000, off in prop::array::uniform3(-1i64..=1), on in 0u32..3) {
+                                        step in prop::array::uniform3(-400i64..=400), steps in prop_oneof![0i64..8, 0i64..200_000], off in prop::array::uniform3(-1i64..=1), on in 0u32..3) {
         if step != [0; 3] {
             // Exactly through a corner, or one unit beside it.
             let length = step.iter().map(|&c| (c * c) as f64).sum::<f64>().sqrt();
             let d = step.map(|s| s * (f64::from((1 << 30) - 1) / length) as i64);
             let x: [i64; 3] = std::array::from_fn(|k| ((corner[k] << 16) - steps * step[k] + if on == 0 { off[k] } else { 0 }).clamp(-0x7FFE_0040, 0x7FFE_0040));
-            both(x, d, [corner, std::array::from_fn(|k| corner[k] + size[k])]);
+            both(x, d, [corner, std::array::from_fn(|k| corner[k] + size[k])], &AIMED);
         }
     }
 }
@@ -102,7 +151,7 @@ fn named_cases() {
     let (lo, hi) = ([-2i64, -2, -2], [2i64, 2, 2]);
     let at = |x: [i64; 3], d: [i64; 3], codes: [[i64; 3]; 2]| {
         let setup = RaySetup::eval(&ray(x, d));
-        both(x, d, codes);
+        both(x, d, codes, &Tried::new());
         let bounds = Box16::from_codes(codes[0].map(|v| v as i16), codes[1].map(|v| v as i16));
         BoxTest::eval(&box_test::In { ray: setup, t_max: RayT::MAX, bounds }).hit
     };

@@ -9,6 +9,7 @@ use lodray::num::{Cone, Point, Ray, Vec3};
 use lodray::render::{Camera, View};
 use lodray::traverse::{BvhTraverser, ClosestHit, Crossings, Hit, LodImage, LodTraverser, ModelSpace, NoProbe};
 use lodray_test_support::models::{Rng, ball, build, cone, model, octahedron, scene_of, terrain};
+use lodray_test_support::cases;
 use proptest::prelude::*;
 
 /// The fields of a hit as the golden traverser names them.
@@ -202,7 +203,7 @@ fn procedural_scenes() {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig { cases: 200, ..ProptestConfig::default() })]
+    #![proptest_config(cases(200))]
 
     #[test]
     fn any_ball(levels in 0u32..=4, roughness in 0.0f64..4.0, seed: u64) {

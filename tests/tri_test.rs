@@ -4,7 +4,9 @@ use lodray::block::Block;
 use lodray::block::tri_test::{In, TriTest};
 use lodray::num::{Cone, Point, Ray, Vec3};
 use num_bigint::{BigInt, Sign};
+use lodray_test_support::cases;
 use proptest::prelude::*;
+use std::sync::atomic::{AtomicU64, Ordering::Relaxed};
 
 type Big = [BigInt; 3];
 
@@ -22,7 +24,7 @@ fn dot(a: &Big, b: &Big) -> BigInt {
 
 /// What the test must give, with the direction really perturbed: 2^400 d + (2^300, 2^150, 1) has the sign of the tie rule because components
 /// of the normals are far below 2^100.
-fn expected(x: [i64; 3], d: [i64; 3], p: [[i64; 3]; 3]) -> Option<(bool, BigInt, BigInt, BigInt)> {
+fn expected(x: [i64; 3], d: [i64; 3], p: [[i64; 3]; 3]) -> Option<(bool, [BigInt; 4])> {
     let shift = |n: u32| BigInt::from(1) << n;
     let perturbed: Big = {
         let d = big(d).map(|c| c << 400u32);
@@ -43,7 +45,8 @@ fn expected(x: [i64; 3], d: [i64; 3], p: [[i64; 3]; 3]) -> Option<(bool, BigInt,
         return None;
     }
     let front = det.sign() == Sign::Minus;
-    Some(if front { (front, -v, -w, -det) } else { (front, v, w, det) })
+    let numbers = [v, w, det, t_num];
+    Some((front, if front { numbers.map(|n| -n) } else { numbers }))
 }
 
 fn check(x: [i64; 3], d: [i64; 3], p: [[i64; 3]; 3]) -> bool {
@@ -52,9 +55,10 @@ fn check(x: [i64; 3], d: [i64; 3], p: [[i64; 3]; 3]) -> bool {
     let out = TriTest::eval(&In { ray, p0: point(p[0]), p1: point(p[1]), p2: point(p[2]) });
     match expected(x, d, p) {
         None => assert!(!out.hit, "{x:?} {d:?} {p:?}"),
-        Some((front, v, w, det)) => {
+        Some((front, numbers)) => {
             assert!(out.hit && out.front == front, "{x:?} {d:?} {p:?}");
-            assert_eq!([v, w, det], [out.v, out.w, out.det].map(|n| BigInt::from(n.get())));
+            let [v, w, det] = [out.v, out.w, out.det].map(|n| BigInt::from(n.get()));
+            assert_eq!(numbers, [v, w, det, BigInt::from(out.t_num.get())]);
         }
     }
     out.hit
@@ -66,19 +70,29 @@ fn triple(limit: i64) -> impl Strategy<Value = [i64; 3]> {
     prop::array::uniform3(-limit..=limit)
 }
 
-proptest! {
-    #![proptest_config(ProptestConfig { cases: 30_000, ..ProptestConfig::default() })]
+static ANYTHING: AtomicU64 = AtomicU64::new(0);
+static TIES: AtomicU64 = AtomicU64::new(0);
 
-    #[test]
+#[test]
+fn random_triangles_and_rays() {
+    anything();
+    ties();
+    let hits = [&ANYTHING, &TIES].map(|c| c.load(Relaxed));
+    println!("{hits:?} hits");
+    assert!(hits.iter().all(|&n| n > 1000), "{hits:?} hits");
+}
+
+proptest! {
+    #![proptest_config(cases(30_000))]
+
     fn anything(x in triple(LIMIT + 64), d in triple(600_000_000), p in prop::array::uniform3(triple(LIMIT)), shift in 0u32..31) {
-        check(x, d, p.map(|p| p.map(|c| c >> shift)));
+        ANYTHING.fetch_add(check(x.map(|c| c >> shift), d, p.map(|p| p.map(|c| c >> shift))).into(), Relaxed);
     }
 
     /// Coordinates so small that ties, coincidences and degenerate triangles are common.
-    #[test]
     fn ties(x in triple(3), d in triple(2), p in prop::array::uniform3(triple(2)), scale in 0u32..28) {
         let up = |v: [i64; 3]| v.map(|c| c << scale);
-        check(up(x), d.map(|c| c << 28), p.map(up));
+        TIES.fetch_add(check(up(x), d.map(|c| c << 28), p.map(up)).into(), Relaxed);
     }
 
     /// A closed tetrahedron is entered as often as left, whatever the tie.

@@ -5,7 +5,7 @@ use super::sections::{COUNT, HEADER, Section, checksum, place, write_header};
 use super::{BoundData, Box16, L0Record, Meta, Scene, SceneError, VertexData, colour, layout, normal};
 use crate::mesh::lattice::{self, LatticePoint};
 use crate::mesh::{Hierarchy, Surface, SurfaceError, quantise};
-use crate::num::{U, Wire, box_code_ceil, box_code_floor};
+use crate::num::{COORD_LIMIT, PADDING_BITS, U, Wire, box_code_ceil, box_code_floor};
 use memmap2::MmapMut;
 use rayon::prelude::*;
 
@@ -32,6 +32,20 @@ pub fn build<E: std::fmt::Display>(
     encode(&hierarchy, surface, info, &nodes)
 }
 
+/// Every point keeps to the limit and to its level's grid: what the formats store and the blocks take for granted.
+fn check_points(h: &Hierarchy) -> Result<(), SceneError> {
+    let m = 1u32 << h.levels;
+    let places: Vec<LatticePoint> = (0..=m).flat_map(|j| (0..=m - j).map(move |i| (i, j))).collect();
+    let zero_bits = |place| (h.levels - lattice::level_of(h.levels, place)).max(PADDING_BITS);
+    let masks: Vec<i32> = places.iter().map(|&place| (1 << zero_bits(place)) - 1).collect();
+    let fits = |p: &[i32; 3], mask: i32| p.iter().all(|c| c & mask == 0 && c.unsigned_abs() <= COORD_LIMIT.unsigned_abs());
+    let bad = |points: &[[i32; 3]]| points.iter().zip(&masks).any(|(p, &mask)| !fits(p, mask));
+    match h.points.par_chunks(places.len()).position_first(bad) {
+        Some(tree) => Err(SceneError::Build(format!("tree {tree} has a point off its grid or beyond +-{COORD_LIMIT}"))),
+        None => Ok(()),
+    }
+}
+
 /// Box of each tree's full-resolution triangles, as in its L0 record.
 pub fn tree_boxes(hierarchy: &Hierarchy) -> Vec<Box16> {
     hierarchy.points.par_chunks(lattice::len(hierarchy.levels)).map(Box16::of_points).collect()
@@ -46,6 +60,7 @@ pub fn encode(hierarchy: &Hierarchy, surface: &Surface, info: SceneInfo, nodes: 
     if (surface.levels, &surface.triangles, surface.normals.len()) != (hierarchy.levels, &hierarchy.triangles, hierarchy.points.len()) {
         return Err(SceneError::Build("hierarchy and surface differ in levels, triangles or normals".into()));
     }
+    check_points(hierarchy)?;
     if nodes.is_empty() {
         return Err(SceneError::Build("quad-BVH has no nodes".into()));
     }

@@ -3,3 +3,9 @@
 
 pub mod models;
 pub mod surfaces;
+
+/// `count` cases; what ever failed is kept in a file of the same name beside the test's source, to be committed and tried first.
+pub fn cases(count: u32) -> proptest::test_runner::Config {
+    use proptest::test_runner::{Config, FileFailurePersistence};
+    Config { failure_persistence: Some(Box::new(FileFailurePersistence::WithSource("regressions"))), ..Config::with_cases(count) }
+}
