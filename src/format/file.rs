@@ -2,12 +2,11 @@
 
 use super::scene::Image;
 use super::sections::{Section, checksum, read_header};
-use super::{BvhChild, ChildRef, L0Record, Meta, Scene, SceneError};
+use super::{BvhChild, ChildRef, L0Record, Meta, Scene, SceneError, write_and_rename};
 use crate::num::{COORD_LIMIT, MAX_LEVELS, Wire};
 use memmap2::Mmap;
 use rayon::prelude::*;
 use std::fs::File;
-use std::io::Write;
 use std::path::Path;
 
 impl Scene {
@@ -16,20 +15,11 @@ impl Scene {
     /// # Errors
     /// Whatever the operating system refuses.
     pub fn save(&self, path: &Path) -> Result<(), SceneError> {
-        let io = |action| move |source| SceneError::Io { path: path.to_path_buf(), action, source };
-        let directory = path.parent().filter(|d| !d.as_os_str().is_empty()).unwrap_or(Path::new("."));
-        let mut builder = tempfile::Builder::new();
-        builder.prefix(".lodray-").suffix(".tmp");
-        #[cfg(unix)]
-        {
-            // Like any new file (the umask applies), not private to its writer.
-            use std::os::unix::fs::PermissionsExt;
-            builder.permissions(std::fs::Permissions::from_mode(0o666));
-        }
-        let mut file = builder.tempfile_in(directory).map_err(io("cannot create a temporary file beside it"))?;
-        file.write_all(self.bytes()).map_err(io("cannot write"))?;
-        file.persist(path).map_err(|e| io("cannot rename the temporary file to it")(e.error))?;
-        Ok(())
+        write_and_rename(path, |out| out.write_all(self.bytes())).map_err(|source| SceneError::Io {
+            path: path.to_path_buf(),
+            action: "cannot write",
+            source,
+        })
     }
 
     /// Maps a scene file and checks it: frame, all checksums, counts, and every index that traversal follows.
