@@ -2,10 +2,15 @@
 
 use clap::Args;
 use clap::ValueEnum;
+use clap::builder::RangedI64ValueParser;
 use lodray::bvh;
+use lodray::num::MAX_LEVELS;
 use lodray::render::{Camera, DEFAULT_VIEW_ANGLE_DEGREES, View};
 use lodray::traverse::ModelSpace;
 use std::str::FromStr;
+
+/// Most pixels of a picture: traced pixels and their shading then stay below 8 GB.
+const MAX_PIXELS: u64 = 1 << 26;
 
 /// A picture size, WIDTHxHEIGHT.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -17,7 +22,11 @@ impl FromStr for Size {
         let wrong = || format!("'{s}' is not a size such as 1024x768");
         let (w, h) = s.split_once(['x', 'X']).ok_or_else(wrong)?;
         let side = |v: &str| v.parse::<u32>().ok().filter(|v| (1..=65536).contains(v)).ok_or_else(wrong);
-        Ok(Self(side(w)?, side(h)?))
+        let (w, h) = (side(w)?, side(h)?);
+        if u64::from(w) * u64::from(h) > MAX_PIXELS {
+            return Err(format!("'{s}' is more than {MAX_PIXELS} pixels"));
+        }
+        Ok(Self(w, h))
     }
 }
 
@@ -25,8 +34,9 @@ impl FromStr for Size {
 fn three(s: &str) -> Result<Triple, String> {
     let parts: Vec<f64> = s.split(',').map_while(|v| v.trim().parse().ok()).collect();
     match <[f64; 3]>::try_from(parts) {
-        Ok(v) if s.split(',').count() == 3 => Ok(Triple(v)),
-        _ => Err(format!("'{s}' is not three numbers such as 0,1.5,-2")),
+        // Beyond 1e100 squared lengths overflow; NaN fails the comparison too.
+        Ok(v) if s.split(',').count() == 3 && v.iter().all(|c| c.abs() <= 1e100) => Ok(Triple(v)),
+        _ => Err(format!("'{s}' is not three finite numbers such as 0,1.5,-2")),
     }
 }
 
@@ -38,10 +48,10 @@ pub struct Triple(pub [f64; 3]);
 #[derive(Args, Clone, Debug)]
 pub struct CameraArgs {
     /// Picture size in pixels
-    #[arg(long, value_name = "WxH", default_value = "1024x1024")]
+    #[arg(long, value_name = "WxH", default_value = "1024x1024", allow_hyphen_values = true)]
     pub size: Size,
     /// Distance from the target in bounding radii (default 2 unless --eye is given)
-    #[arg(long, value_name = "RADII", allow_negative_numbers = true)]
+    #[arg(long, value_name = "RADII", value_parser = radii, allow_hyphen_values = true)]
     pub distance: Option<f64>,
     /// Eye position (with --distance: only the direction from the target)
     #[arg(long, value_name = "X,Y,Z", value_parser = three, allow_hyphen_values = true)]
@@ -53,7 +63,7 @@ pub struct CameraArgs {
     #[arg(long, value_name = "X,Y,Z", value_parser = three, allow_hyphen_values = true)]
     up: Option<Triple>,
     /// Vertical view angle in degrees (default: focal length 35 on a sensor of height 24)
-    #[arg(long, value_name = "DEGREES", default_value_t = DEFAULT_VIEW_ANGLE_DEGREES, hide_default_value = true, allow_negative_numbers = true)]
+    #[arg(long, value_name = "DEGREES", default_value_t = DEFAULT_VIEW_ANGLE_DEGREES, hide_default_value = true, value_parser = angle, allow_hyphen_values = true)]
     fov: f64,
 }
 
@@ -72,12 +82,33 @@ impl CameraArgs {
     }
 }
 
+/// A distance in bounding radii, within what a picture can show anything of.
+pub fn radii(s: &str) -> Result<f64, String> {
+    match s.parse::<f64>() {
+        Ok(v) if (1e-6..=1e6).contains(&v) => Ok(v),
+        _ => Err(format!("'{s}' is not a distance between 1e-6 and 1e6 bounding radii")),
+    }
+}
+
+/// A view angle.
+fn angle(s: &str) -> Result<f64, String> {
+    match s.parse::<f64>() {
+        Ok(v) if v > 0.0 && v < 180.0 => Ok(v),
+        _ => Err(format!("'{s}' is not between 0 and 180 degrees")),
+    }
+}
+
 /// LOD quality: a non-negative number or `inf`.
 pub fn delta(s: &str) -> Result<f64, String> {
     match s.parse::<f64>() {
         Ok(v) if v >= 0.0 => Ok(v),
         _ => Err(format!("'{s}' is not a quality: 0 (base mesh) to inf (full detail), 1 is one pixel")),
     }
+}
+
+/// Numbers of splits.
+pub fn levels() -> RangedI64ValueParser<u32> {
+    clap::value_parser!(u32).range(0..=i64::from(MAX_LEVELS))
 }
 
 /// Leaf layouts by name.
@@ -126,11 +157,19 @@ mod tests {
     #[test]
     fn sizes_and_triples() {
         assert_eq!("640x480".parse(), Ok(Size(640, 480)));
-        for bad in ["640", "0x3", "ax3", "70000x2", "-1x4", ""] {
+        for bad in ["640", "0x3", "ax3", "70000x2", "65536x65536", "-1x4", ""] {
             assert!(bad.parse::<Size>().is_err(), "{bad}");
         }
         assert_eq!(three("1,-2, 3.5"), Ok(Triple([1.0, -2.0, 3.5])));
-        assert!(three("1,2").is_err() && three("1,2,3,4").is_err() && three("1,b,3").is_err());
+        assert!(
+            three("1,2").is_err()
+                && three("1,2,3,4").is_err()
+                && three("1,b,3").is_err()
+                && three("1,nan,3").is_err()
+                && three("1,1e300,3").is_err()
+        );
+        assert!(radii("0.5").is_ok() && radii("0").is_err() && radii("-1").is_err() && radii("nan").is_err() && radii("1e300").is_err());
+        assert!(angle("40").is_ok() && angle("0").is_err() && angle("180").is_err() && angle("nan").is_err());
         assert!(delta("inf").is_ok() && delta("-1").is_err() && delta("nan").is_err());
     }
 }

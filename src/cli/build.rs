@@ -1,7 +1,8 @@
 //! `build`: a scene from a mesh file.
 
+use super::args::levels;
 use super::info;
-use super::output::{check_target, print_line, progress};
+use super::output::{busy, check_target, print_line, progress};
 use lodray::bvh::over_trees;
 use lodray::format::{self, Scene, SceneInfo};
 use lodray::mesh::{RemeshOptions, Surface, read, remesh};
@@ -13,11 +14,11 @@ pub struct Args {
     /// Mesh file: OBJ or PLY
     mesh: PathBuf,
     /// Number of 1-to-4 splits, 0 to 10
-    #[arg(long, default_value_t = 5)]
+    #[arg(long, default_value_t = 5, value_parser = levels(), allow_negative_numbers = true)]
     levels: u32,
     /// Wanted number of base triangles (default: 1/64 of the mesh, at least 512)
-    #[arg(long, value_name = "TRIANGLES")]
-    base: Option<usize>,
+    #[arg(long, value_name = "TRIANGLES", value_parser = clap::value_parser!(u32).range(1..), allow_negative_numbers = true)]
+    base: Option<u32>,
     /// Scene file to write
     #[arg(short, long)]
     out: PathBuf,
@@ -27,9 +28,9 @@ pub struct Args {
 }
 
 pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
-    check_target(&args.out)?;
-    let mesh = read(&args.mesh)?;
-    let options = RemeshOptions { levels: args.levels, base_triangles: args.base };
+    check_target(&args.out, Some(&args.mesh))?;
+    let mesh = busy("reading", || read(&args.mesh))?;
+    let options = RemeshOptions { levels: args.levels, base_triangles: args.base.map(|n| n as usize) };
     let bar = progress(1, "remeshing");
     let (surface, report) = remesh(&mesh, &options, &|what, done, of| {
         if bar.message() != what {
@@ -49,12 +50,12 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
 
 /// The scene of a surface; `origin` says how it was made.
 pub fn build_scene(surface: &Surface, name: &str, origin: serde_json::Value) -> anyhow::Result<Scene> {
-    Ok(format::build(surface, SceneInfo { name: name.to_owned(), origin }, over_trees)?)
+    Ok(busy("encoding", || format::build(surface, SceneInfo { name: name.to_owned(), origin }, over_trees))?)
 }
 
 /// Saves a new scene and says what it holds.
 pub fn finish(scene: &Scene, out: &Path, json: bool) -> anyhow::Result<ExitCode> {
-    scene.save(out)?;
+    busy("writing", || scene.save(out))?;
     if !json {
         print_line(&format!("{}:", out.display()))?;
     }

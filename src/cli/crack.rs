@@ -1,6 +1,6 @@
 //! `crack`: watertightness, measured.
 
-use super::output::{grouped, open, print_json, print_line, progress};
+use super::output::{busy, grouped, open, print_json, print_line, progress};
 use lodray::report::crack::{Closedness, closedness, measure};
 use lodray::traverse::{LodImage, ModelSpace};
 use std::path::PathBuf;
@@ -11,10 +11,10 @@ pub struct Args {
     /// Scene file of a closed model
     scene: PathBuf,
     /// Number of rays
-    #[arg(long, default_value_t = 10_000_000)]
+    #[arg(long, default_value_t = 10_000_000, value_parser = clap::value_parser!(u64).range(1..), allow_negative_numbers = true)]
     rays: u64,
     /// Seed
-    #[arg(long, default_value_t = 1)]
+    #[arg(long, default_value_t = 1, allow_negative_numbers = true)]
     seed: u64,
     /// Print the figures as JSON
     #[arg(long)]
@@ -23,14 +23,13 @@ pub struct Args {
 
 pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
     let scene = open(&args.scene)?;
-    let hierarchy = scene.decode();
-    let closed = closedness(&hierarchy.triangles);
+    let closed = closedness(scene.triangles());
     anyhow::ensure!(
         closed != Closedness::Open,
         "{}: the model has open borders, so crossings cannot be balanced; crack needs a closed model",
         args.scene.display()
     );
-    anyhow::ensure!(args.rays > 0, "--rays must be at least 1");
+    let hierarchy = busy("decoding", || scene.decode());
     let bar = progress(args.rays, "shooting");
     let oriented = closed == Closedness::Oriented;
     let report = measure(&hierarchy, &LodImage::of(&scene), &ModelSpace::of(&scene), oriented, args.rays, args.seed, &|n| bar.inc(n));

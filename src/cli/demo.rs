@@ -2,12 +2,13 @@
 
 use super::args::{LeafArgs, LeafLayout};
 use super::build::build_scene;
-use super::output::{folder, grouped, print_json, print_line};
+use super::output::{busy, folder, grouped, print_json, print_line};
 use super::pictures::Shot;
 use super::render::{Built, Comparison, MethodName, compare_shots};
 use anyhow::Context;
+use lodray::format::write_and_rename;
 use lodray::mesh::procedural::{Options, Scene, generate};
-use lodray::render::{Camera, View, write_and_rename};
+use lodray::render::{Camera, View};
 use lodray::traverse::ModelSpace;
 use serde::Serialize;
 use std::path::PathBuf;
@@ -17,6 +18,7 @@ use std::process::ExitCode;
 const LEVELS: u32 = 5;
 const DISTANCES: [(&str, f64); 3] = [("near", 0.6), ("middle", 2.0), ("far", 8.0)];
 const SIDE: u32 = 512;
+const TABLE: &str = "table.txt";
 
 #[derive(clap::Args)]
 pub struct Args {
@@ -42,9 +44,9 @@ struct Row {
 }
 
 pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
-    folder(&args.out)?;
+    folder(&args.out, [TABLE], None)?;
     let options = Options { levels: Some(LEVELS), ..Options::new(Scene::Terrain) };
-    let surface = generate(&options)?;
+    let surface = busy("generating", || generate(&options))?;
     let scene = build_scene(&surface, "terrain", serde_json::json!({ "generate": options }))?;
     let space = ModelSpace::of(&scene);
     let leaves = LeafArgs { leaf_layout: LeafLayout::Line, leaf_size: 4 };
@@ -65,7 +67,7 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
     }
 
     let table = table(&rows, scene.finest_triangles());
-    let path = args.out.join("table.txt");
+    let path = args.out.join(TABLE);
     write_and_rename(&path, |out| writeln!(out, "{table}")).with_context(|| format!("cannot write {}", path.display()))?;
     if args.json {
         print_json(&rows)?

@@ -1,9 +1,8 @@
 //! `export`: one level as a mesh.
 
-use super::output::{check_target, grouped, open, print_line};
+use super::output::{busy, check_target, grouped, open, print_line};
 use anyhow::Context;
-use lodray::format::export_level;
-use lodray::render::write_and_rename;
+use lodray::format::{export_level, write_and_rename};
 use std::path::PathBuf;
 use std::process::ExitCode;
 
@@ -12,7 +11,7 @@ pub struct Args {
     /// Scene file
     scene: PathBuf,
     /// Level, 0 (base mesh) to N (default: N)
-    #[arg(long)]
+    #[arg(long, allow_negative_numbers = true)]
     level: Option<u32>,
     /// OBJ file to write
     #[arg(short, long)]
@@ -20,16 +19,16 @@ pub struct Args {
 }
 
 pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
-    check_target(&args.out)?;
+    check_target(&args.out, Some(&args.scene))?;
     let scene = open(&args.scene)?;
     let level = args.level.unwrap_or(scene.levels());
-    anyhow::ensure!(level <= scene.levels(), "--level {level} is beyond the scene's finest level {}", scene.levels());
+    anyhow::ensure!(level <= scene.levels(), "--level {level} is beyond {}'s finest level {}", args.scene.display(), scene.levels());
     let mut counts = None;
-    write_and_rename(&args.out, |out| {
+    let fill = |out: &mut dyn std::io::Write| {
         counts = Some(export_level(&scene, level, out)?);
         Ok(())
-    })
-    .with_context(|| format!("cannot write {}", args.out.display()))?;
+    };
+    busy("writing", || write_and_rename(&args.out, fill)).with_context(|| format!("cannot write {}", args.out.display()))?;
     if let Some(counts) = counts {
         print_line(&format!("{}: {} vertices, {} triangles", args.out.display(), grouped(counts.vertices), grouped(counts.faces)))?;
     }

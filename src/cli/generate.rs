@@ -1,8 +1,9 @@
 //! `generate`: a procedural scene.
 
+use super::args::levels;
 use super::build::{build_scene, finish};
-use super::output::check_target;
-use lodray::mesh::procedural::{Options, Scene, generate};
+use super::output::{busy, check_target};
+use lodray::mesh::procedural::{MAX_TREES, Options, Scene, generate};
 use std::path::PathBuf;
 use std::process::ExitCode;
 
@@ -12,16 +13,16 @@ pub struct Args {
     #[arg(value_enum)]
     scene: Scene,
     /// Number of 1-to-4 splits, 0 to 10
-    #[arg(long)]
+    #[arg(long, value_parser = levels(), allow_negative_numbers = true)]
     levels: Option<u32>,
     /// Wanted number of base triangles; the next possible number is taken
-    #[arg(long, value_name = "TRIANGLES")]
+    #[arg(long, value_name = "TRIANGLES", value_parser = base, allow_negative_numbers = true)]
     base: Option<u32>,
     /// Seed
-    #[arg(long, default_value_t = 0)]
+    #[arg(long, default_value_t = 0, allow_negative_numbers = true)]
     seed: u64,
     /// Terrain and sphere: amplitude of each octave relative to the one before; others: amount of fine detail. Between 0 and 1
-    #[arg(long, allow_negative_numbers = true)]
+    #[arg(long, value_parser = share, allow_hyphen_values = true)]
     roughness: Option<f64>,
     /// Scene file to write
     #[arg(short, long)]
@@ -32,12 +33,50 @@ pub struct Args {
 }
 
 pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
-    check_target(&args.out)?;
+    check_target(&args.out, None)?;
     let options = Options { scene: args.scene, levels: args.levels, base: args.base, seed: args.seed, roughness: args.roughness };
-    let surface = generate(&options)?;
+    check_memory(&options)?;
+    let surface = busy("generating", || generate(&options))?;
     let origin = serde_json::json!({ "generate": options });
     let name = format!("{:?}", args.scene).to_lowercase();
     let scene = build_scene(&surface, &name, origin)?;
     drop(surface);
     finish(&scene, &args.out, args.json)
+}
+
+fn base(s: &str) -> Result<u32, String> {
+    match s.parse::<u32>() {
+        Ok(v) if (1..=MAX_TREES).contains(&v.into()) => Ok(v),
+        _ => Err(format!("'{s}' is not a number of triangles from 1 to {MAX_TREES}")),
+    }
+}
+
+fn share(s: &str) -> Result<f64, String> {
+    match s.parse::<f64>() {
+        Ok(v) if (0.0..=1.0).contains(&v) => Ok(v),
+        _ => Err(format!("'{s}' is not between 0 and 1")),
+    }
+}
+
+/// Refuses what this machine has no memory for, where it says how much it has: an allocation that fails ends the program on the spot.
+fn check_memory(options: &Options) -> anyhow::Result<()> {
+    // Measured: the surface, its hierarchy and the scene's images together at their peak.
+    const BYTES_PER_TRIANGLE: u64 = 48;
+    let levels = options.levels.unwrap_or(options.scene.default_levels());
+    let needed = (u64::from(options.base.unwrap_or(options.scene.default_base())) << (2 * levels)) * BYTES_PER_TRIANGLE;
+    let Some(available) = available_memory() else { return Ok(()) };
+    let gigabytes = |bytes: u64| bytes as f64 / 1e9;
+    anyhow::ensure!(
+        needed <= available,
+        "--levels {levels}: this scene needs about {:.1} GB of memory, {:.1} GB are free; take fewer levels or a smaller --base",
+        gigabytes(needed),
+        gigabytes(available)
+    );
+    Ok(())
+}
+
+fn available_memory() -> Option<u64> {
+    let text = std::fs::read_to_string("/proc/meminfo").ok()?;
+    let line = text.lines().find_map(|line| line.strip_prefix("MemAvailable:"))?;
+    Some(line.trim().strip_suffix("kB")?.trim().parse::<u64>().ok()? * 1024)
 }

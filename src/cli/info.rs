@@ -2,6 +2,7 @@
 
 use super::output::{grouped, open, print_json, print_line};
 use lodray::format::Scene;
+use lodray::mesh::TwoSidedDistance;
 use lodray::traverse::ModelSpace;
 use serde::Serialize;
 use std::path::PathBuf;
@@ -36,6 +37,9 @@ struct Info<'a> {
     parts: Vec<Part>,
     /// Bound and vertex data, L0 records included, per full-resolution triangle.
     hierarchy_bytes_per_triangle: f64,
+    /// Distances to the original mesh in percent of its diagonal, where the scene was built from one.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    distance: Option<TwoSidedDistance>,
     origin: &'a serde_json::Value,
 }
 
@@ -71,6 +75,7 @@ pub fn print(scene: &Scene, json: bool) -> anyhow::Result<()> {
         unit: space.placement.scale,
         hierarchy_bytes_per_triangle: per(hierarchy),
         parts,
+        distance: serde_json::from_value(meta.origin["remesh"]["distance"].clone()).ok(),
         origin: &meta.origin,
     };
     if json { print_json(&info) } else { print_line(&text(&info)) }
@@ -93,8 +98,22 @@ fn text(i: &Info<'_>) -> String {
         text += &format!("{:<16}{:>16}{:>22.3}\n", p.name, grouped(p.bytes), p.per_finest_triangle);
     }
     text += &format!("bound and vertex data with L0 records: {:.3} bytes per finest triangle\n", i.hierarchy_bytes_per_triangle);
+    if let Some(d) = &i.distance {
+        let there = format!("mean {}, maximum {}", percent(d.to_original.mean), percent(d.to_original.max));
+        let back = format!("mean {}, maximum {}", percent(d.from_original.mean), percent(d.from_original.max));
+        text += &format!("distance to the original: {there} of the diagonal; back: {back}\n");
+    }
     text += &origin(i.origin, "");
     text.trim_end().to_owned()
+}
+
+/// Three digits that count; what is left of rounding on an exact fit is not worth its zeros.
+fn percent(value: f64) -> String {
+    if value > 0.0 && value < 1e-6 {
+        return "below 0.000001 %".to_owned();
+    }
+    let decimals = if value > 0.0 { (2.0 - value.log10().floor()).clamp(0.0, 8.0) as usize } else { 0 };
+    format!("{value:.decimals$} %")
 }
 
 /// How the scene was made, one line for each leaf of the report.
@@ -106,5 +125,14 @@ fn origin(value: &serde_json::Value, path: &str) -> String {
             map.iter().map(|(key, value)| origin(value, &join(key))).collect()
         }
         other => format!("{path}: {other}\n"),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    #[test]
+    fn percentages_have_three_digits() {
+        let shown = [0.0, 1e-17, 0.000_712, 0.25, 12.345, 1234.5].map(super::percent);
+        assert_eq!(shown, ["0 %", "below 0.000001 %", "0.000712 %", "0.250 %", "12.3 %", "1234 %"]);
     }
 }

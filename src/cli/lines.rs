@@ -1,6 +1,6 @@
 //! `lines`: the distinct 32-byte lines that a frame touches, by distance, LOD against every full-resolution BVH layout.
 
-use super::args::{CameraArgs, delta};
+use super::args::{CameraArgs, delta, radii};
 use super::output::{grouped, open, print_json, print_line, progress};
 use lodray::bvh::{FullBvh, FullOptions, LeafLayout, Options};
 use lodray::render::{Method, render};
@@ -14,10 +14,17 @@ pub struct Args {
     /// Scene file
     scene: PathBuf,
     /// Distances in bounding radii
-    #[arg(long, value_delimiter = ',', default_value = "1.2,2,4,8,16,32")]
+    #[arg(
+        long,
+        value_delimiter = ',',
+        default_value = "1.2,2,4,8,16,32",
+        value_parser = radii,
+        allow_hyphen_values = true,
+        conflicts_with = "distance"
+    )]
     distances: Vec<f64>,
     /// Quality
-    #[arg(long, default_value = "1", value_parser = delta)]
+    #[arg(long, default_value = "1", value_parser = delta, allow_hyphen_values = true)]
     delta: f64,
     /// Count the 32-bit-box BVH too
     #[arg(long)]

@@ -1,7 +1,7 @@
 //! `render`: one view of a scene through one method.
 
 use super::args::{CameraArgs, LeafArgs, delta};
-use super::output::{folder, grouped, open, print_json, print_line};
+use super::output::{busy, folder, grouped, open, print_json, print_line};
 use super::pictures::{Shot, shoot};
 use clap::ValueEnum;
 use lodray::bvh::{FullBvh, FullOptions, Options};
@@ -35,7 +35,7 @@ pub struct Args {
     #[arg(long, value_enum, default_value_t = MethodName::Lod)]
     method: MethodName,
     /// Quality: 1 keeps a level's displacement under a pixel, 0 is the base mesh, inf full detail
-    #[arg(long, default_value = "1", value_parser = delta)]
+    #[arg(long, default_value = "1", value_parser = delta, allow_hyphen_values = true)]
     delta: f64,
     #[command(flatten)]
     camera: CameraArgs,
@@ -58,6 +58,8 @@ struct Report {
     delta: f64,
     size: [u32; 2],
     eye: [f64; 3],
+    /// Not in the JSON, which is the same for every run.
+    #[serde(skip)]
     seconds: f64,
     stats: FrameStats,
     per_ray: PerRay,
@@ -98,7 +100,7 @@ impl Built {
             MethodName::Lod => Self::Lod,
             MethodName::Bvh => Self::Bvh(full_bvh(scene, leaves, false)?),
             MethodName::Bvh32 => Self::Bvh(full_bvh(scene, leaves, true)?),
-            MethodName::Reference => Self::Reference(Reference::new(&scene.decode())),
+            MethodName::Reference => Self::Reference(busy("building the reference", || Reference::new(&scene.decode()))),
         })
     }
 
@@ -114,21 +116,21 @@ impl Built {
 
 fn full_bvh(scene: &Scene, leaves: LeafArgs, wide_boxes: bool) -> anyhow::Result<FullBvh> {
     let options = FullOptions { tree: Options::with_leaf(leaves.leaf_size), wide_boxes, layout: leaves.leaf_layout.into() };
-    Ok(FullBvh::build(&scene.decode(), &options)?)
+    Ok(busy("building the BVH", || FullBvh::build(&scene.decode(), &options))?)
 }
 
 pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
     let scene = open(&args.scene)?;
     let space = ModelSpace::of(&scene);
     let camera = args.camera.camera(&space, None)?;
-    folder(&args.out)?;
+    let pictures = ["image.png", "levels.png", "normals.png", "error.png"];
+    folder(&args.out, pictures.into_iter().take(3 + usize::from(args.compare)), Some(&args.scene))?;
 
     let built = Built::new(args.method, &scene, args.leaves)?;
     let begun = std::time::Instant::now();
     let shot = built.shoot(&scene, &space, &camera, args.delta, "tracing");
     let seconds = begun.elapsed().as_secs_f64();
     drop(built);
-    shot.save(&scene, &args.out, "", true)?;
 
     let error = if args.compare {
         let truth = Built::new(MethodName::Reference, &scene, args.leaves)?.shoot(&scene, &space, &camera, args.delta, "full resolution");
@@ -137,6 +139,7 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
     } else {
         None
     };
+    shot.save(&scene, &args.out, "", true)?;
 
     let stats = shot.frame.stats;
     let mean = |n: u64| n as f64 / stats.rays as f64;

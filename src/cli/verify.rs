@@ -1,6 +1,6 @@
 //! `verify`: the audit.
 
-use super::output::{grouped, open, print_json, print_line};
+use super::output::{busy, grouped, open, print_json, print_line};
 use lodray::format::audit::audit;
 use std::path::PathBuf;
 use std::process::ExitCode;
@@ -16,13 +16,14 @@ pub struct Args {
 
 pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
     let scene = open(&args.scene)?;
-    let report = audit(&scene);
+    let report = busy("checking", || audit(&scene));
     if args.json {
         print_json(&report)?;
     } else {
-        let mut text = format!("{:<60}{:>16}{:>12}\n", "check", "checked", "breaches");
+        let mut text = format!("{:<60}{:>16}{:>16}{:>12}\n", "check", "checked", "expected", "breaches");
         for check in &report.checks {
-            text += &format!("{:<60}{:>16}{:>12}\n", check.name, grouped(check.checked), grouped(check.breaches));
+            let [checked, expected, breaches] = [check.checked, check.expected, check.breaches].map(grouped);
+            text += &format!("{:<60}{checked:>16}{expected:>16}{breaches:>12}\n", check.name);
             if let Some(first) = &check.first {
                 text += &format!("  first: {first}\n");
             }

@@ -2,12 +2,11 @@
 
 use super::scene::Image;
 use super::sections::{Section, checksum, read_header};
-use super::{BvhChild, ChildRef, L0Record, Meta, Scene, SceneError};
-use crate::num::{COORD_LIMIT, MAX_BVH_DEPTH, MAX_LEVELS, Wire, bound_decode};
+use super::{BoundData, Box16, BvhChild, ChildRef, L0Record, Meta, Scene, SceneError, VertexData, write_and_rename};
+use crate::num::{COORD_LIMIT, MAX_BVH_DEPTH, MAX_LEVELS, PADDING_BITS, Wire, bound_decode};
 use memmap2::Mmap;
 use rayon::prelude::*;
 use std::fs::File;
-use std::io::Write;
 use std::path::Path;
 
 impl Scene {
@@ -16,20 +15,11 @@ impl Scene {
     /// # Errors
     /// Whatever the operating system refuses.
     pub fn save(&self, path: &Path) -> Result<(), SceneError> {
-        let io = |action| move |source| SceneError::Io { path: path.to_path_buf(), action, source };
-        let directory = path.parent().filter(|d| !d.as_os_str().is_empty()).unwrap_or(Path::new("."));
-        let mut builder = tempfile::Builder::new();
-        builder.prefix(".lodray-").suffix(".tmp");
-        #[cfg(unix)]
-        {
-            // Like any new file (the umask applies), not private to its writer.
-            use std::os::unix::fs::PermissionsExt;
-            builder.permissions(std::fs::Permissions::from_mode(0o666));
-        }
-        let mut file = builder.tempfile_in(directory).map_err(io("cannot create a temporary file beside it"))?;
-        file.write_all(self.bytes()).map_err(io("cannot write"))?;
-        file.persist(path).map_err(|e| io("cannot rename the temporary file to it")(e.error))?;
-        Ok(())
+        write_and_rename(path, |out| out.write_all(self.bytes())).map_err(|source| SceneError::Io {
+            path: path.to_path_buf(),
+            action: "cannot write",
+            source,
+        })
     }
 
     /// Maps a scene file and checks it: frame, all checksums, counts, and every index that traversal follows.
@@ -79,7 +69,34 @@ impl Scene {
         }
         let scene = Self { image, ranges, meta };
         scene.check_indices()?;
+        scene.check_values()?;
         Ok(scene)
+    }
+
+    /// Coordinates and box codes are what the blocks take for granted, so that no width overflows.
+    fn check_values(&self) -> Result<(), String> {
+        let limit = i64::from(COORD_LIMIT >> PADDING_BITS);
+        let beyond = |line: &[u64]| {
+            let VertexData { v0, v1, v2, .. } = VertexData::from_words(line);
+            [v0, v1, v2].iter().any(|v| v.get().iter().any(|c| c.abs() > limit))
+        };
+        if let Some(line) = self.vertices().par_iter().position_first(|line| beyond(line)) {
+            return Err(format!("section VERTICES: line {line} has a coordinate beyond +-{COORD_LIMIT}"));
+        }
+        let inverted = |b: Box16| (0..3).any(|k| b.lo.get()[k] > b.hi.get()[k] || b.lo.get()[k] < -32_767);
+        let bad = |r: &[u64; 8]| beyond(&r[..4]) || inverted(L0Record::from_words(&r[4..]).root.bounds);
+        if let Some(tree) = self.records().par_iter().position_first(bad) {
+            return Err(format!("section RECORDS: tree {tree} has a coordinate beyond +-{COORD_LIMIT} or a box inside out"));
+        }
+        let bad = |group: &[u64; 8]| group.as_chunks::<2>().0.iter().any(|words| inverted(BoundData::from_words(words).bounds));
+        if let Some(group) = self.bounds().par_iter().position_first(bad) {
+            return Err(format!("section BOUNDS: group {group} has a box inside out"));
+        }
+        let bad = |node: &[u64; 8]| node.as_chunks::<2>().0.iter().any(|words| inverted(BvhChild::from_words(words).bounds));
+        match self.nodes().par_iter().position_first(bad) {
+            Some(node) => Err(format!("section NODES: node {node} has a box inside out")),
+            None => Ok(()),
+        }
     }
 
     /// Every index that traversal or shading follows leads somewhere, and the quad-BVH is a tree.

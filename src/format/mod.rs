@@ -9,6 +9,7 @@ mod file;
 pub mod layout;
 mod lines;
 mod normal;
+mod replace;
 mod scene;
 mod sections;
 
@@ -16,5 +17,6 @@ pub use encode::{SceneInfo, build, encode, tree_boxes};
 pub use export::{ExportCounts, export_level};
 pub use lines::{BoundData, Box16, BvhChild, ChildRef, L0Record, VertexData};
 pub use normal::{decode_normal, encode_normal};
+pub use replace::{temporary_beside, write_and_rename};
 pub use scene::{Meta, Scene, SceneError};
 pub use sections::{MAGIC, Section, VERSION};

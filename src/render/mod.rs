@@ -11,5 +11,5 @@ pub use camera::{Camera, CameraError, DEFAULT_VIEW_ANGLE_DEGREES, View};
 pub use frame::{Frame, FrameStats, Method, Pixel, render};
 pub use geometry::{GeometricError, geometric_error};
 pub use lines::LineSets;
-pub use picture::{ImageError, compare, save_png, write_and_rename};
+pub use picture::{ImageError, compare, save_png};
 pub use shade::{error_map, level_map, normal_map, shaded, view_cosine};

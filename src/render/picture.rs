@@ -1,8 +1,9 @@
 //! Pictures: saving, and how far one is from another.
 
+use crate::format::write_and_rename;
 use image::RgbImage;
 use serde::Serialize;
-use std::io::{self, BufWriter, Write};
+use std::io;
 use std::path::Path;
 
 /// How far a picture is from the true one, channels from 0 to 255.
@@ -42,20 +43,6 @@ pub fn save_png(image: &RgbImage, path: &Path) -> io::Result<()> {
         let encoder = image::codecs::png::PngEncoder::new(out);
         image.write_with_encoder(encoder).map_err(io::Error::other)
     })
-}
-
-/// Writes a file through `fill` under a temporary name beside `path` and renames it, so that no half-written file is ever seen.
-///
-/// # Errors
-/// What `fill` or the file system says; `path` is then untouched.
-pub fn write_and_rename(path: &Path, fill: impl FnOnce(&mut dyn Write) -> io::Result<()>) -> io::Result<()> {
-    let folder = path.parent().filter(|p| !p.as_os_str().is_empty()).unwrap_or(Path::new("."));
-    let file = tempfile::Builder::new().prefix(".lodray-").suffix(".tmp").tempfile_in(folder)?;
-    let mut out = BufWriter::new(file);
-    fill(&mut out)?;
-    let file = out.into_inner().map_err(io::IntoInnerError::into_error)?;
-    file.persist(path).map_err(|e| e.error)?;
-    Ok(())
 }
 
 #[cfg(test)]

@@ -1,0 +1,248 @@
+//! Every subcommand end to end, as a user types it.
+
+use serde_json::Value;
+use std::collections::BTreeMap;
+use std::fs;
+use std::path::PathBuf;
+
+/// A folder of its own to run the program in.
+struct Desk(tempfile::TempDir);
+
+impl Desk {
+    fn new() -> Self {
+        Self(tempfile::tempdir().unwrap())
+    }
+
+    fn path(&self, name: &str) -> PathBuf {
+        self.0.path().join(name)
+    }
+
+    /// Runs `lodray` with `args`, `threads` of 0 being as many as there are cores; gives exit code and standard output, and expects silence on
+    /// standard error unless it fails.
+    fn run_on(&self, threads: u32, args: &str) -> (i32, String) {
+        let mut command = assert_cmd::cargo::cargo_bin_cmd!("lodray");
+        command.current_dir(self.0.path()).args(args.split_whitespace()).env("RAYON_NUM_THREADS", threads.to_string());
+        let output = command.output().unwrap();
+        let [out, err] = [output.stdout, output.stderr].map(|text| String::from_utf8(text).unwrap());
+        assert!(!err.contains("panicked"), "{args}: {err}");
+        assert!(!output.status.success() || err.is_empty(), "{args}: not silent: {err}");
+        (output.status.code().unwrap(), out + &err)
+    }
+
+    /// Runs and expects success.
+    fn run(&self, args: &str) -> String {
+        let (code, text) = self.run_on(0, args);
+        assert_eq!(code, 0, "{args}: {text}");
+        text
+    }
+
+    /// Runs with `--json`, expects success and one JSON document.
+    fn json(&self, args: &str) -> Value {
+        serde_json::from_str(&self.run(&format!("{args} --json"))).unwrap()
+    }
+
+    /// All files below `folder` with their contents.
+    fn files(&self, folder: &str) -> BTreeMap<String, Vec<u8>> {
+        let entries = fs::read_dir(self.path(folder)).unwrap().map(|e| e.unwrap());
+        entries.map(|e| (e.file_name().into_string().unwrap(), fs::read(e.path()).unwrap())).collect()
+    }
+}
+
+/// A bumpy square of 2 n^2 triangles.
+fn sheet(n: u32) -> String {
+    let mut text = String::new();
+    for (y, x) in (0..=n).flat_map(|y| (0..=n).map(move |x| (y, x))) {
+        let (x, y) = (f64::from(x) / f64::from(n), f64::from(y) / f64::from(n));
+        text += &format!("v {x} {} {y}\n", 0.1 * (7.0 * x).sin() * (5.0 * y).cos());
+    }
+    for (y, x) in (0..n).flat_map(|y| (0..n).map(move |x| (y, x))) {
+        let a = y * (n + 1) + x + 1;
+        let (b, c, d) = (a + 1, a + n + 1, a + n + 2);
+        text += &format!("f {a} {c} {b}\nf {b} {c} {d}\n");
+    }
+    text
+}
+
+#[test]
+fn generate_and_info() {
+    let desk = Desk::new();
+    for (name, base) in [("terrain", 32), ("cloth", 32), ("sphere", 32), ("spikes", 32), ("room", 42)] {
+        let made = desk.json(&format!("generate {name} --levels 2 --base {base} --seed 3 -o {name}.lod"));
+        assert_eq!(made["name"], name);
+        assert_eq!(made, desk.json(&format!("info {name}.lod")));
+        assert_eq!(made["finest_triangles"].as_u64().unwrap(), made["base_triangles"].as_u64().unwrap() * 16);
+        assert_eq!((&made["levels"], &made["origin"]["generate"]["seed"]), (&2.into(), &3.into()));
+    }
+    let info = desk.json("info sphere.lod");
+    let bytes: u64 = info["parts"].as_array().unwrap().iter().map(|p| p["bytes"].as_u64().unwrap()).sum();
+    let whole = fs::metadata(desk.path("sphere.lod")).unwrap().len();
+    assert!(bytes < whole && bytes > whole / 2);
+    for word in ["32 base triangles", "bytes per finest triangle", "L0 records", "generate.seed: 3"] {
+        assert!(desk.run("info sphere.lod").contains(word), "{word}");
+    }
+}
+
+#[test]
+fn build_tells_how_far_it_is_from_the_original() {
+    let desk = Desk::new();
+    fs::write(desk.path("sheet.obj"), sheet(24)).unwrap();
+    let made = desk.json("build sheet.obj -o sheet.lod --levels 3 --base 40");
+    assert_eq!((&made["name"], &made["levels"]), (&"sheet".into(), &3.into()));
+    for way in ["to_original", "from_original"] {
+        let (mean, max) = (made["distance"][way]["mean"].as_f64().unwrap(), made["distance"][way]["max"].as_f64().unwrap());
+        assert!(0.0 < mean && mean < max && max < 5.0, "{way}: {mean} {max}");
+    }
+    assert_eq!(made["distance"], made["origin"]["remesh"]["distance"]);
+    let text = desk.run("info sheet.lod");
+    assert!(text.contains("distance to the original: mean 0.") && text.contains("of the diagonal; back: mean 0."), "{text}");
+    assert!(desk.run("verify sheet.lod").ends_with("passed\n"));
+}
+
+#[test]
+fn verify_counts_and_fails() {
+    let desk = Desk::new();
+    desk.run("generate terrain --levels 3 --base 32 -o a.lod");
+    let text = desk.run("verify a.lod");
+    assert!(text.contains("checked") && text.contains("expected") && text.ends_with("passed\n"));
+    let report = desk.json("verify a.lod");
+    for check in report["checks"].as_array().unwrap() {
+        assert_eq!(check["checked"], check["expected"], "{check}");
+        assert_eq!(check["breaches"], 0, "{check}");
+    }
+
+    // Every section is under a checksum: a flipped bit anywhere but in the padding is noticed, and named.
+    let good = fs::read(desk.path("a.lod")).unwrap();
+    for place in [1, 100, good.len() / 3, good.len() / 2, good.len() - 65] {
+        let mut bad = good.clone();
+        bad[place] ^= 4;
+        fs::write(desk.path("bad.lod"), bad).unwrap();
+        let (code, text) = desk.run_on(0, "verify bad.lod");
+        assert_eq!(code, 1, "byte {place}: {text}");
+        assert!(text.starts_with("error: bad.lod: ") && text.lines().count() == 1, "{text}");
+    }
+}
+
+#[test]
+fn render_with_every_method() {
+    let desk = Desk::new();
+    desk.run("generate sphere --levels 3 --base 32 -o a.lod");
+    for method in ["lod", "bvh", "bvh32", "reference"] {
+        let report = desk.json(&format!("render a.lod --method {method} --size 40x24 --distance 3 --compare -o {method}"));
+        assert_eq!((&report["method"], &report["stats"]["rays"]), (&method.into(), &960.into()));
+        assert!(report["stats"]["hits"].as_u64().unwrap() > 50);
+        let rmse = report["error"]["rmse"].as_f64().unwrap();
+        let limit = if method == "lod" { 40.0 } else { 2.0 };
+        assert!(rmse <= limit, "{method}: {rmse}");
+        assert!(report["error"]["maximum"].is_u64() && report["error"]["differing"].is_f64(), "{report}");
+        assert_eq!(report["stats"]["lines"].as_array().unwrap().is_empty(), method == "reference");
+        let names: Vec<String> = desk.files(method).into_keys().collect();
+        assert_eq!(names, ["error.png", "image.png", "levels.png", "normals.png"]);
+        for name in names {
+            assert_eq!(image::image_dimensions(desk.path(method).join(name)).unwrap(), (40, 24));
+        }
+    }
+    // The reference differs from itself nowhere, and its error map is black.
+    assert!(image::open(desk.path("reference/error.png")).unwrap().to_rgb8().pixels().all(|p| p.0 == [0; 3]));
+
+    let text = desk.run("render a.lod --eye 0,0,-4 --target 0,0,0 --up 0,1,0 --fov 30 --delta inf --size 8x8 -o far/away");
+    assert!(text.contains("64 rays") && text.contains("pictures in far/away"), "{text}");
+    assert_eq!(desk.files("far/away").len(), 3);
+}
+
+#[test]
+fn lines_by_distance() {
+    let desk = Desk::new();
+    desk.run("generate terrain --levels 3 --base 32 -o a.lod");
+    let report = desk.json("lines a.lod --distances 1.5,6 --size 32x32 --bvh32");
+    assert_eq!(report["distances"], serde_json::json!([1.5, 6.0]));
+    assert_eq!(report["rows"].as_array().unwrap().len(), 2 + 18);
+    for field in ["ratio", "base_share", "mean_level"] {
+        assert_eq!(report[field].as_array().unwrap().len(), 2, "{field}");
+    }
+    assert!(desk.run("lines a.lod --distances 4 --size 8x8").contains("best 16-bit BVH / LOD"));
+}
+
+#[test]
+fn crack_needs_a_closed_model() {
+    let desk = Desk::new();
+    desk.run("generate sphere --levels 2 --base 32 -o closed.lod");
+    desk.run("generate terrain --levels 2 --base 32 -o open.lod");
+    let report = desk.json("crack closed.lod --rays 3000 --seed 5");
+    assert_eq!(report["rows"].as_array().unwrap().iter().map(|r| r["rays"].as_u64().unwrap()).sum::<u64>(), 3000);
+    assert!(desk.run("crack closed.lod --rays 300").contains("0 misses or double hits in 300 rays"));
+    let (code, text) = desk.run_on(0, "crack open.lod --rays 300");
+    assert_eq!(code, 1);
+    assert!(text.starts_with("error: open.lod: ") && text.contains("open borders"), "{text}");
+}
+
+#[test]
+fn export_is_read_again() {
+    let desk = Desk::new();
+    desk.run("generate sphere --levels 3 --base 32 -o a.lod");
+    for (level, option) in [(0u32, "--level 0"), (2, "--level 2"), (3, "")] {
+        // A closed surface without handles: V = F / 2 + 2.
+        let faces = 32usize << (2 * level);
+        let said = desk.run(&format!("export a.lod {option} -o a.obj"));
+        assert!(said.starts_with("a.obj: "), "{said}");
+        let mesh = lodray::mesh::read(&desk.path("a.obj")).unwrap();
+        assert_eq!((mesh.triangles.len(), mesh.positions.len()), (faces, faces / 2 + 2));
+    }
+    assert_eq!(desk.files(".").len(), 2, "left-over files");
+}
+
+#[test]
+fn demo_writes_pictures_and_a_table() {
+    let desk = Desk::new();
+    let rows: Value = desk.json("demo --out new/demo");
+    let views: Vec<_> = rows.as_array().unwrap().iter().map(|r| (r["view"].as_str().unwrap(), r["method"].as_str().unwrap())).collect();
+    assert_eq!(views, ["near", "middle", "far"].map(|v| [(v, "lod"), (v, "bvh")]).concat());
+    let names: Vec<String> = desk.files("new/demo").into_keys().collect();
+    assert_eq!(names.iter().filter(|n| n.ends_with("-image.png")).count(), 9);
+    assert_eq!(names.iter().filter(|n| n.ends_with("-levels.png")).count(), 9);
+    assert_eq!(names.iter().filter(|n| n.ends_with("-lod-error.png")).count(), 3);
+    assert!(names.contains(&"table.txt".to_owned()));
+}
+
+#[test]
+fn any_number_of_threads_gives_the_same_bytes() {
+    let outputs = [0, 1, 3].map(|threads| {
+        let desk = Desk::new();
+        fs::write(desk.path("sheet.obj"), sheet(20)).unwrap();
+        let commands = [
+            "generate sphere --levels 3 --base 32 -o sphere.lod --json",
+            "generate spikes --levels 2 --base 32 -o spikes.lod",
+            "build sheet.obj -o sheet.lod --levels 2 --base 60 --json",
+            "verify sheet.lod",
+            "verify sphere.lod --json",
+            "render sphere.lod --size 48x48 --compare -o a --json",
+            "render sheet.lod --method bvh --size 48x48 --compare -o b --json",
+            "lines sheet.lod --distances 2,8 --size 48x48",
+            "crack sphere.lod --rays 2000",
+            "export sheet.lod -o sheet2.obj",
+        ];
+        let said = commands.map(|args| desk.run_on(threads, args));
+        let pictures = [desk.files("a"), desk.files("b")];
+        fs::remove_dir_all(desk.path("a")).unwrap();
+        fs::remove_dir_all(desk.path("b")).unwrap();
+        (said, pictures, desk.files("."))
+    });
+    assert!(outputs[0].0.iter().all(|(code, _)| *code == 0));
+    for other in &outputs[1..] {
+        assert_eq!(other.0, outputs[0].0);
+        assert!(other.1 == outputs[0].1, "pictures differ");
+        assert!(other.2 == outputs[0].2, "files differ");
+    }
+}
+
+#[test]
+fn a_reader_that_leaves_early_is_no_error() {
+    let desk = Desk::new();
+    desk.run("generate sphere --levels 1 --base 8 -o a.lod");
+    for args in [&["info", "a.lod"][..], &["verify", "a.lod"], &["help"]] {
+        let (reader, writer) = std::io::pipe().unwrap();
+        drop(reader);
+        let mut command = std::process::Command::new(assert_cmd::cargo::cargo_bin!("lodray"));
+        let output = command.current_dir(desk.0.path()).args(args).stdout(writer).output().unwrap();
+        assert!(output.status.success() && output.stderr.is_empty(), "{args:?}: {output:?}");
+    }
+}
