@@ -1,7 +1,7 @@
 //! The audit: sound scenes pass with nothing left out, and each kind of damage under right checksums is found by the check that is meant for it.
 
 use lodray::format::audit::{AuditReport, audit};
-use lodray::format::{BoundData, BvhChild, Scene, VertexData, export_level, layout};
+use lodray::format::{BoundData, BvhChild, Scene, SceneError, VertexData, export_level, layout};
 use lodray::mesh::{Surface, edge_index, lattice, quantise};
 use lodray::num::{U, Vec3, Wire, bound_decode};
 use lodray_test_support::surfaces::{fan, grid, octahedron, scene, surface};
@@ -43,6 +43,11 @@ fn bytes_per_triangle_keep_to_the_promise() {
 
 /// Applies `f` to the bytes of section `kind`, reseals, opens, audits.
 fn damaged(good: &Scene, kind: usize, f: impl Fn(&mut [u8])) -> AuditReport {
+    audit(&reopened(good, kind, f).expect("the frame is sound"))
+}
+
+/// Applies `f` to the bytes of section `kind`, reseals, opens.
+fn reopened(good: &Scene, kind: usize, f: impl Fn(&mut [u8])) -> Result<Scene, SceneError> {
     let mut bytes = good.bytes().to_vec();
     let (offset, length) = lodray_test_support::surfaces::section(&bytes, kind);
     f(&mut bytes[offset..offset + length]);
@@ -50,7 +55,7 @@ fn damaged(good: &Scene, kind: usize, f: impl Fn(&mut [u8])) -> AuditReport {
     let directory = tempfile::tempdir().unwrap();
     let path = directory.path().join("damaged.lod");
     std::fs::write(&path, bytes).unwrap();
-    audit(&Scene::open(&path).expect("the frame is sound"))
+    Scene::open(&path)
 }
 
 /// The damage is found by this check.
@@ -149,7 +154,11 @@ fn each_damage_is_found_by_its_check() {
     let inside = "inserted vertices are equal on both sides of an edge";
     found_by(&damaged(&good, VERTICES, |b| change(b, line(1, 3), nudge)), inside);
     let outside = |r: &mut VertexData| r.v0 = Vec3::new((1 << 27) - 64, 0, 0);
-    found_by(&damaged(&good, VERTICES, |b| change(b, line(1, 3), outside)), "coordinates keep to the limit");
+    let refused = |kind, f: &dyn Fn(&mut [u8])| reopened(&good, kind, f).expect_err("refused").to_string();
+    assert!(refused(VERTICES, &|b| change(b, line(1, 3), outside)).contains("coordinate beyond"));
+    assert!(refused(RECORDS, &|b| change(b, 64, outside)).contains("coordinate beyond"));
+    let least = |r: &mut BoundData| r.bounds.lo = Vec3::new(0, -32_768, 0);
+    assert!(refused(BOUNDS, &|b| change(b, group, least)).contains("box inside out"));
 
     let reserved = "reserved bits and empty slots are zero";
     found_by(&damaged(&good, VERTICES, |b| change(b, line(2, 1), |r: &mut VertexData| r.reserved = U::new(1))), reserved);
