@@ -4,8 +4,8 @@ use lodray::format::audit::{AuditReport, audit};
 use lodray::format::{BoundData, BvhChild, Scene, SceneError, VertexData, export_level, layout};
 use lodray::mesh::{Surface, edge_index, lattice, quantise};
 use lodray::num::{U, Vec3, Wire, bound_decode};
-use lodray_test_support::surfaces::{fan, grid, octahedron, scene, surface};
 use lodray_test_support::cases;
+use lodray_test_support::surfaces::{fan, grid, octahedron, scene, surface};
 use proptest::prelude::*;
 
 #[test]

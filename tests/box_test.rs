@@ -102,7 +102,11 @@ fn both(x: [i64; 3], d: [i64; 3], codes: [[i64; 3]; 2], tried: &Tried) {
     check(BoxTest32::eval(&box_test32::In { ray: setup, t_max: RayT::MAX, lo: p(units(lo)), hi: p(units(hi)) }), exact, "32 bits");
     // The same walls moved off the 16-bit grid.
     let (lo, hi) = (units(lo).map(|v| v + 12_345), units(hi).map(|v| v + 54_321));
-    check(BoxTest32::eval(&box_test32::In { ray: setup, t_max: RayT::MAX, lo: p(lo), hi: p(hi) }), slabs(x, d, lo, hi), "32 bits, unaligned");
+    check(
+        BoxTest32::eval(&box_test32::In { ray: setup, t_max: RayT::MAX, lo: p(lo), hi: p(hi) }),
+        slabs(x, d, lo, hi),
+        "32 bits, unaligned",
+    );
 }
 
 static ANYTHING: Tried = Tried::new();

@@ -8,8 +8,8 @@ use lodray::mesh::procedural::{self, Options};
 use lodray::num::{Cone, Point, Ray, Vec3};
 use lodray::render::{Camera, View};
 use lodray::traverse::{BvhTraverser, ClosestHit, Crossings, Hit, LodImage, LodTraverser, ModelSpace, NoProbe};
-use lodray_test_support::models::{Rng, ball, build, cone, model, octahedron, scene_of, terrain};
 use lodray_test_support::cases;
+use lodray_test_support::models::{Rng, ball, build, cone, model, octahedron, scene_of, terrain};
 use proptest::prelude::*;
 
 /// The fields of a hit as the golden traverser names them.

@@ -3,8 +3,8 @@
 use lodray::block::Block;
 use lodray::block::tri_test::{In, TriTest};
 use lodray::num::{Cone, Point, Ray, Vec3};
-use num_bigint::{BigInt, Sign};
 use lodray_test_support::cases;
+use num_bigint::{BigInt, Sign};
 use proptest::prelude::*;
 use std::sync::atomic::{AtomicU64, Ordering::Relaxed};
 

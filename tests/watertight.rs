@@ -1,11 +1,11 @@
 //! Watertight, measured: no miss and no double hit on closed models, aimed at vertices and edges and within one unit of them.
 
 use lodray::format::Scene;
-use lodray::mesh::{Hierarchy, RemeshOptions, TriangleMesh, remesh};
 use lodray::mesh::procedural::{self, Options};
+use lodray::mesh::{Hierarchy, RemeshOptions, TriangleMesh, remesh};
+use lodray::num::COORD_LIMIT;
 use lodray::report::crack::{Closedness, CrackReport, closedness, measure};
 use lodray::traverse::{LodImage, ModelSpace};
-use lodray::num::COORD_LIMIT;
 use lodray_test_support::models::{ball, build, model, octahedron, scene_of};
 
 /// Rays over all models; `LODRAY_RAYS` asks for more.

@@ -1,7 +1,7 @@
 //! `crack`: watertightness, measured.
 
 use super::output::{busy, grouped, open, print_json, print_line, progress};
-use lodray::report::crack::{Closedness, closedness, measure};
+use lodray::report::crack::{Closedness, Row, closedness, measure};
 use lodray::traverse::{LodImage, ModelSpace};
 use std::path::PathBuf;
 use std::process::ExitCode;
@@ -52,6 +52,12 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
         text += &format!("{} misses or double hits in {} rays ({compared})", report.breaches(), grouped(report.rays()));
         if let Some(number) = report.first_breach {
             text += &format!("; the first is ray {number} of seed {}", args.seed);
+        }
+        let count = |f: fn(&Row) -> u64| report.rows.iter().map(f).sum::<u64>();
+        if count(|r| r.crossing) == 0 {
+            text += "\nwarning: no ray met the surface, so nothing was shown";
+        } else if scene.levels() > 1 && count(|r| r.mixed_levels) == 0 {
+            text += "\nnote: all triangles met were of one level (a flat model?), so edge states did not differ";
         }
         print_line(&text)?;
     }

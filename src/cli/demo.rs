@@ -61,9 +61,11 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
         lod.save(&scene, &args.out, &format!("{view}-lod-"), false)?;
         lod.save_error(&full, &args.out, &format!("{view}-lod-"))?;
         bvh.save(&scene, &args.out, &format!("{view}-bvh-"), false)?;
+        bvh.save_error(&full, &args.out, &format!("{view}-bvh-"))?;
         full.save(&scene, &args.out, &format!("{view}-full-"), false)?;
-        rows.push(row(view, distance, "lod", &lod, &full));
-        rows.push(row(view, distance, "bvh", &bvh, &full));
+        for (method, shot) in [("lod", &lod), ("bvh", &bvh)] {
+            rows.push(row(view, distance, method, shot, compare_shots(shot, &full, &scene, &camera)));
+        }
     }
 
     let table = table(&rows, scene.finest_triangles());
@@ -77,7 +79,7 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
     Ok(ExitCode::SUCCESS)
 }
 
-fn row(view: &'static str, distance: f64, method: &'static str, shot: &Shot, truth: &Shot) -> Row {
+fn row(view: &'static str, distance: f64, method: &'static str, shot: &Shot, error: Comparison) -> Row {
     let stats = &shot.frame.stats;
     let mean = |n: u64| n as f64 / stats.rays as f64;
     Row {
@@ -89,13 +91,13 @@ fn row(view: &'static str, distance: f64, method: &'static str, shot: &Shot, tru
         nodes_per_ray: mean(stats.nodes),
         triangles_per_ray: mean(stats.triangles),
         mean_level: stats.mean_level,
-        error: compare_shots(shot, truth),
+        error,
     }
 }
 
 fn table(rows: &[Row], triangles: u64) -> String {
     let mut text = format!(
-        "terrain, {} triangles at full resolution, {SIDE}x{SIDE} rays; errors against full resolution\n{:<8}{:>9}{:>8}{:>16}{:>11}{:>11}{:>15}{:>12}{:>9}{:>10}\n",
+        "terrain, {} triangles at full resolution, {SIDE}x{SIDE} rays; errors against full resolution\n{:<8}{:>9}{:>8}{:>16}{:>11}{:>11}{:>15}{:>12}{:>9}{:>10}{:>12}\n",
         grouped(triangles),
         "view",
         "distance",
@@ -106,11 +108,12 @@ fn table(rows: &[Row], triangles: u64) -> String {
         "triangles/ray",
         "mean level",
         "RMSE",
-        "PSNR"
+        "PSNR",
+        "pixels off"
     );
     for r in rows {
         text += &format!(
-            "{:<8}{:>9}{:>8}{:>16}{:>11.2}{:>11.2}{:>15.2}{:>12.2}{:>9.3}{:>10}\n",
+            "{:<8}{:>9}{:>8}{:>16}{:>11.2}{:>11.2}{:>15.2}{:>12.2}{:>9.3}{:>10}{:>12.3}\n",
             r.view,
             r.distance,
             r.method,
@@ -120,7 +123,8 @@ fn table(rows: &[Row], triangles: u64) -> String {
             r.triangles_per_ray,
             r.mean_level,
             r.error.image.rmse,
-            r.error.image.psnr_db.map_or("inf".to_owned(), |p| format!("{p:.1} dB"))
+            r.error.image.psnr_db.map_or("inf".to_owned(), |p| format!("{p:.1} dB")),
+            r.error.geometry_pixels.mean
         );
     }
     text.trim_end().to_owned()

@@ -1,6 +1,6 @@
 //! `export`: one level as a mesh.
 
-use super::output::{busy, check_target, grouped, open, print_line};
+use super::output::{busy, check_target, grouped, open, print_json, print_line};
 use anyhow::Context;
 use lodray::format::{export_level, write_and_rename};
 use std::path::PathBuf;
@@ -16,6 +16,9 @@ pub struct Args {
     /// OBJ file to write
     #[arg(short, long)]
     out: PathBuf,
+    /// Print the figures as JSON
+    #[arg(long)]
+    json: bool,
 }
 
 pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
@@ -30,6 +33,10 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
     };
     busy("writing", || write_and_rename(&args.out, fill)).with_context(|| format!("cannot write {}", args.out.display()))?;
     if let Some(counts) = counts {
+        if args.json {
+            print_json(&serde_json::json!({ "level": level, "vertices": counts.vertices, "faces": counts.faces }))?;
+            return Ok(ExitCode::SUCCESS);
+        }
         print_line(&format!("{}: {} vertices, {} triangles", args.out.display(), grouped(counts.vertices), grouped(counts.faces)))?;
     }
     Ok(ExitCode::SUCCESS)

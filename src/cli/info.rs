@@ -3,6 +3,7 @@
 use super::output::{grouped, open, print_json, print_line};
 use lodray::format::Scene;
 use lodray::mesh::TwoSidedDistance;
+use lodray::num::PADDING_BITS;
 use lodray::traverse::ModelSpace;
 use serde::Serialize;
 use std::path::PathBuf;
@@ -34,6 +35,9 @@ struct Info<'a> {
     centre: [f64; 3],
     radius: f64,
     unit: f64,
+    /// World length of the grid that base vertices are rounded to, and bits of 28 that it costs them.
+    base_grid: f64,
+    base_bits_lost: u32,
     parts: Vec<Part>,
     /// Bound and vertex data, L0 records included, per full-resolution triangle.
     hierarchy_bytes_per_triangle: f64,
@@ -73,6 +77,8 @@ pub fn print(scene: &Scene, json: bool) -> anyhow::Result<()> {
         centre: space.centre(),
         radius: space.radius(),
         unit: space.placement.scale,
+        base_grid: space.placement.scale * f64::from(1u32 << scene.levels().max(PADDING_BITS)),
+        base_bits_lost: scene.levels().saturating_sub(PADDING_BITS),
         hierarchy_bytes_per_triangle: per(hierarchy),
         parts,
         distance: serde_json::from_value(meta.origin["remesh"]["distance"].clone()).ok(),
@@ -92,6 +98,12 @@ fn text(i: &Info<'_>) -> String {
         i.centre,
         i.radius,
         i.unit
+    );
+    text += &format!(
+        "base vertices are rounded to {:e}: {} of 28 bits{}\n",
+        i.base_grid,
+        28 - i.base_bits_lost,
+        if i.levels > 8 { ", fewer than single precision's 24 (N above 8)" } else { "" }
     );
     text += &format!("{:<16}{:>16}{:>22}\n", "part", "bytes", "per finest triangle");
     for p in &i.parts {

@@ -1,6 +1,6 @@
 //! Integers whose width is part of the type.
 //!
-//! `S<W>` / `U<W>`: signed / unsigned, up to 64 / 63 bits, held in an `i64` / `u64`. `WS<W>` / `WU<W>`: the same up to 127 bits, held
+//! `S<W>` / `U<W>`: signed / unsigned, up to 64 bits, held in an `i64` / `u64`. `WS<W>` / `WU<W>`: the same up to 127 bits, held
 //! in an `i128` / `u128`. Constructing a value outside the width panics in builds with debug assertions (all tests); block code
 //! proves beside each construction that it cannot happen.
 
