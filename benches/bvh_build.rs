@@ -3,7 +3,7 @@
 //! `LODRAY_TERRAIN_LEVELS` makes the scene smaller for a quick look.
 
 use criterion::{BenchmarkId, Criterion, SamplingMode, Throughput, criterion_group, criterion_main};
-use lodray::bvh::{FullBvh, FullOptions, LeafLayout, Options};
+use lodray::bvh::{FullBvh, FullOptions, LeafLayout};
 use lodray::mesh::procedural::{self, generate};
 use lodray::mesh::quantise;
 use std::hint::black_box;
@@ -16,7 +16,7 @@ fn benches(c: &mut Criterion) {
     let mut group = c.benchmark_group("full-resolution quad-BVH of the terrain");
     group.throughput(Throughput::Elements(hierarchy.finest_triangles())).sample_size(10).sampling_mode(SamplingMode::Flat);
     for max_leaf in [1, 2, 4] {
-        let options = FullOptions { tree: Options::with_leaf(max_leaf), wide_boxes: false, layout: LeafLayout::Line };
+        let options = FullOptions::new(max_leaf, false, LeafLayout::Line);
         group.bench_with_input(BenchmarkId::new("leaf", max_leaf), &options, |b, options| {
             b.iter(|| black_box(FullBvh::build(&hierarchy, options).expect("a valid model")));
         });

@@ -3,7 +3,7 @@
 //! `LODRAY_TERRAIN_LEVELS` makes the scene smaller for a quick look.
 
 use criterion::{Criterion, Throughput, criterion_group, criterion_main};
-use lodray::bvh::{FullBvh, FullOptions, LeafLayout, Options as TreeOptions, over_trees};
+use lodray::bvh::{FullBvh, FullOptions, LeafLayout, over_trees};
 use lodray::format::{self, SceneInfo};
 use lodray::mesh::procedural::{self, Options};
 use lodray::num::Ray;
@@ -39,7 +39,7 @@ fn benches(c: &mut Criterion) {
     group.bench_function("lod, hitting rays", |b| b.iter(|| rays.iter().filter(|r| black_box(hit_by(r)).is_some()).count()));
 
     let bvh =
-        FullBvh::build(&scene.decode(), &FullOptions { tree: TreeOptions::with_leaf(4), wide_boxes: false, layout: LeafLayout::Line })
+        FullBvh::build(&scene.decode(), &FullOptions::new(4, false, LeafLayout::Line))
             .expect("a valid model");
     let mut traverser = BvhTraverser::new(&bvh);
     group.bench_function("16-bit quad-BVH, hitting rays", |b| {

@@ -1,6 +1,6 @@
 //! The blocks' traversal equals the exact golden traverser in every field of every hit.
 
-use lodray::bvh::{FullBvh, FullOptions, LeafLayout, Options as TreeOptions};
+use lodray::bvh::{FullBvh, FullOptions, LeafLayout};
 use lodray::format::Scene;
 use lodray::golden::exact::{Exact, ExactHit};
 use lodray::mesh::Hierarchy;
@@ -66,8 +66,7 @@ impl Bench<'_> {
 fn full_bvhs(h: &Hierarchy) -> Vec<FullBvh> {
     let variants = [(false, LeafLayout::Line, 4), (false, LeafLayout::Indexed, 2), (true, LeafLayout::Packed, 1)];
     let build = |(wide_boxes, layout, size)| {
-        let options = FullOptions { tree: TreeOptions::with_leaf(size), wide_boxes, layout };
-        FullBvh::build(h, &options).expect("a valid model")
+        FullBvh::build(h, &FullOptions::new(size, wide_boxes, layout)).expect("a valid model")
     };
     variants.map(build).into()
 }

@@ -21,7 +21,7 @@ wire_struct! {
     }
 }
 
-/// Indices are below 2^28 and counts 1 to 4 in every tree that [`super::build`] makes.
+/// Indices are below 2^28 and counts 1 to 4 in every tree that [`super::build()`] makes.
 fn reference(c: Child) -> ChildRef {
     match c {
         Child::Empty => ChildRef::default(),
@@ -35,7 +35,7 @@ fn box16(b: &Box32) -> Box16 {
     Box16::from_codes(b.lo.map(box_code_floor), b.hi.map(|v| box_code_ceil(v.min(COORD_LIMIT))))
 }
 
-/// The node with its boxes rounded outwards to 16-bit codes. It keeps to the limits of [`super::build`]: indices below 2^28, leaves of 1 to 4.
+/// The node with its boxes rounded outwards to 16-bit codes. It keeps to the limits of [`super::build()`]: indices below 2^28, leaves of 1 to 4.
 pub fn encode16(node: &QuadNode) -> Node16 {
     let mut words = [0; 8];
     for (line, (b, &c)) in words.as_chunks_mut::<2>().0.iter_mut().zip(node.boxes.iter().zip(&node.children)) {

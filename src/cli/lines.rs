@@ -2,7 +2,7 @@
 
 use super::args::{CameraArgs, delta, radii};
 use super::output::{grouped, open, print_json, print_line, progress};
-use lodray::bvh::{FullBvh, FullOptions, LeafLayout, Options};
+use lodray::bvh::{FullBvh, FullOptions, LeafLayout};
 use lodray::render::{Method, render};
 use lodray::traverse::{LodImage, ModelSpace};
 use serde::Serialize;
@@ -81,10 +81,8 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
     let mut best = vec![u64::MAX; cameras.len()];
     for &wide_boxes in formats {
         for size in [1, 2, 4] {
-            let options = FullOptions { tree: Options::with_leaf(size), wide_boxes, layout: LeafLayout::Line };
-            let mut bvh = FullBvh::build(&hierarchy, &options)?;
             for layout in [LeafLayout::Indexed, LeafLayout::Packed, LeafLayout::Line] {
-                bvh.leaves = bvh.relayout(&hierarchy, layout)?;
+                let bvh = FullBvh::build(&hierarchy, &FullOptions::new(size, wide_boxes, layout))?;
                 let lines = distinct(&count(&Method::Bvh(&bvh), args.delta));
                 if !wide_boxes {
                     best.iter_mut().zip(&lines).for_each(|(b, &n)| *b = n.min(*b));

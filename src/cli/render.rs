@@ -4,7 +4,7 @@ use super::args::{CameraArgs, LeafArgs, delta};
 use super::output::{busy, folder, grouped, open, print_json, print_line};
 use super::pictures::{Shot, shoot};
 use clap::ValueEnum;
-use lodray::bvh::{FullBvh, FullOptions, Options};
+use lodray::bvh::{FullBvh, FullOptions};
 use lodray::format::Scene;
 use lodray::golden::reference::Reference;
 use lodray::render::{Camera, FrameStats, GeometricError, ImageError, KindCount, Method, Pixel, compare, geometric_error, view_cosine};
@@ -127,7 +127,7 @@ impl Built {
 }
 
 fn full_bvh(scene: &Scene, leaves: LeafArgs, wide_boxes: bool) -> anyhow::Result<FullBvh> {
-    let options = FullOptions { tree: Options::with_leaf(leaves.leaf_size), wide_boxes, layout: leaves.leaf_layout.into() };
+    let options = FullOptions::new(leaves.leaf_size, wide_boxes, leaves.leaf_layout.into());
     Ok(busy("building the BVH", || FullBvh::build(&scene.decode(), &options))?)
 }
 
