@@ -38,22 +38,35 @@ pub struct BoxTest;
 /// Box side in mirrored axes: (lo, hi), 16 bits because codes keep to +-32767.
 #[inline(always)]
 fn mirrored(axis: &Axis, lo: S<16>, hi: S<16>) -> (i64, i64) {
-    if axis.mirror { (-hi.get(), -lo.get()) } else { (lo.get(), hi.get()) }
+    let (lo, hi) = (i64::from(lo.narrow()), i64::from(hi.narrow()));
+    // Without a branch, so that several boxes can be tested side by side: -v = (v ^ -1) + 1.
+    let flip = -i64::from(axis.mirror);
+    let swap = (lo ^ hi) & flip;
+    ((lo ^ swap ^ flip) - flip, (hi ^ swap ^ flip) - flip)
+}
+
+/// Product of two numbers of at most 32 bits each: one 32 x 32 -> 64-bit multiplier, which vector units have and a 64 x 64-bit one they lack.
+#[inline(always)]
+fn narrow_product(a: i64, b: i64) -> i64 {
+    debug_assert!(i32::try_from(a).is_ok() && i32::try_from(b).is_ok());
+    let [a, b] = [a, b].map(|v| v as i32); // nothing is lost: see above
+    i64::from(a) * i64::from(b)
 }
 
 /// Entry distance of one axis from `near`, 17 to 18 bits signed in steps of 2^16 units; times an 18-bit mantissa: 36.
 #[inline(always)]
-pub(super) fn entry(axis: &Axis, near: i64) -> u64 {
-    let product = near.max(0).cast_unsigned() * axis.reciprocal.mantissa.get();
-    (product >> axis.reciprocal.shift.get()).min(TNear::MAX.get())
+pub(super) fn entry(axis: &Axis, near: i64) -> i64 {
+    let product = narrow_product(near.max(0), axis.reciprocal.mantissa.get().cast_signed()).cast_unsigned();
+    (product >> axis.reciprocal.shift.get()).cast_signed()
 }
 
 /// `hit` and `t_near` together, with early termination. Without a branch: whether a box is hit is what no predictor knows.
 #[inline(always)]
-pub(super) fn finish(slabs: bool, t_near: u64, t_max: RayT) -> Out {
+pub(super) fn finish(slabs: bool, t_near: i64, t_max: RayT) -> Out {
+    let t_near = t_near.min(TNear::MAX.get().cast_signed()).cast_unsigned();
     // 18 + 18 bits against 35.
     let hit = slabs & ((t_near << T_NEAR_TO_T_SHIFT) <= t_max.get());
-    Out { hit, t_near: TNear::new(t_near * u64::from(hit)) }
+    Out { hit, t_near: TNear::new(if hit { t_near } else { 0 }) }
 }
 
 impl Block for BoxTest {
@@ -70,7 +83,8 @@ impl Block for BoxTest {
         let [c_yz, c_zx, c_xy] = r.moment.get();
 
         // 16 x 30 bits twice: 47 signed against 63 - 16.
-        let pair = |lo_i: i64, d_j: i64, hi_j: i64, d_i: i64, c: i64| lo_i * d_j - hi_j * d_i <= c >> BOX_SHIFT;
+        let pair =
+            |lo_i: i64, d_j: i64, hi_j: i64, d_i: i64, c: i64| narrow_product(lo_i, d_j) - narrow_product(hi_j, d_i) <= c >> BOX_SHIFT;
         let planes = pair(lo_x, dy, hi_y, dx, c_xy)
             & pair(lo_y, dx, hi_x, dy, -c_xy)
             & pair(lo_y, dz, hi_z, dy, c_yz)

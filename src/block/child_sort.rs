@@ -36,7 +36,7 @@ impl Block for ChildSort {
     #[inline(always)]
     fn eval(input: &In) -> Out {
         // Key: missed, t_near, number: 21 bits, all different.
-        let key = |k: usize| u64::from(!input.hit[k]) << 20 | (input.t_near[k].get() * u64::from(input.hit[k])) << 2 | k as u64;
+        let key = |k: usize| (if input.hit[k] { input.t_near[k].get() << 2 } else { 1 << 20 }) | k as u64;
         let mut keys = [key(0), key(1), key(2), key(3)];
         // A five-comparator network.
         for (a, b) in [(0, 1), (2, 3), (0, 2), (1, 3), (1, 2)] {

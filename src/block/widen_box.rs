@@ -35,14 +35,14 @@ pub struct WidenBox;
 #[inline(always)]
 fn lower(lo: S<16>, a: S<32>, b: S<32>, c: S<32>) -> S<16> {
     // floor is monotone: one shift after the minimum. 32 - 16 bits.
-    S::new(lo.get().min(a.get().min(b.get()).min(c.get()) >> BOX_SHIFT))
+    S::new(i64::from(lo.narrow().min(a.narrow().min(b.narrow()).min(c.narrow()) >> BOX_SHIFT)))
 }
 
 #[inline(always)]
 fn upper(hi: S<16>, a: S<32>, b: S<32>, c: S<32>) -> S<16> {
     let round_up = (1 << BOX_SHIFT) - 1;
     // At most ceil(COORD_LIMIT / 2^16) = 32766: 16 bits.
-    S::new(hi.get().max((a.get().max(b.get()).max(c.get()) + round_up) >> BOX_SHIFT))
+    S::new(i64::from(hi.narrow().max((a.narrow().max(b.narrow()).max(c.narrow()) + round_up) >> BOX_SHIFT)))
 }
 
 impl Block for WidenBox {

@@ -115,6 +115,24 @@ fixed_int!(
     WU, u128, wu_min, wu_max
 );
 
+impl<const W: u32> S<W> {
+    /// The value as a 32-bit integer; only widths up to 32 compile. It tells the compiler that a 32 x 32 -> 64-bit multiplier will do.
+    #[inline(always)]
+    pub const fn narrow(self) -> i32 {
+        const { assert!(W <= 32) };
+        self.0 as i32 // at most 32 bits by its width
+    }
+}
+
+impl<const W: u32> U<W> {
+    /// The value as a 32-bit signed integer; only widths up to 31 compile.
+    #[inline(always)]
+    pub const fn narrow(self) -> i32 {
+        const { assert!(W <= 31) };
+        self.0 as i32 // at most 31 bits by its width
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

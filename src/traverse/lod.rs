@@ -1,17 +1,15 @@
 //! The traversal loop of the paper's figure 9: quad-BVH over base triangles, then tessellation trees with an LOD test at every node.
 
+use super::children::{Sorted, Split, bvh_children, tree_children};
 use super::stack::{Entry, Op, TraversalStack};
 use super::{HitSink, Kind, Probe, Section, TriangleId};
 use crate::block::Block;
-use crate::block::box_test::{self, BoxTest};
-use crate::block::child_sort::{self, ChildSort};
 use crate::block::lod_test::{self, LodTest};
 use crate::block::ray_setup::{self, RaySetup};
 use crate::block::tessellate::{self, Tessellate, child_triangle};
 use crate::block::tri_test::{self, TriTest};
-use crate::block::widen_box::{self, WidenBox};
-use crate::format::{BoundData, BvhChild, ChildRef, L0Record, Scene, VertexData};
-use crate::num::{BoundCode, BoundScale, EdgeState, MAX_LEVELS, Point, Ray, RayT, S_ONE, T_NEAR_TO_T_SHIFT, TNear, U, Wire};
+use crate::format::{BoundData, BvhChild, L0Record, Scene, VertexData};
+use crate::num::{BoundCode, BoundScale, MAX_LEVELS, Point, Ray, RayT, T_NEAR_TO_T_SHIFT, TNear, U, Wire};
 
 /// The memory images of one model, as the hardware sees them.
 #[derive(Clone, Copy, Debug)]
@@ -55,15 +53,6 @@ impl<'a> LodImage<'a> {
     }
 }
 
-/// Triangle of a node: corners, and its inserted vertices as morphed for this ray.
-#[derive(Clone, Copy, Default)]
-struct Split {
-    p: [Point; 3],
-    q: [Point; 3],
-    /// Some vertex on the way was morphed, so that stored boxes need widening; without, widening changes nothing.
-    morphed: bool,
-}
-
 /// Traces rays through one image; keeps its stack from ray to ray.
 pub struct LodTraverser<'a> {
     image: LodImage<'a>,
@@ -100,13 +89,16 @@ impl<'a> LodTraverser<'a> {
     pub fn trace<P: Probe, H: HitSink>(&mut self, ray: &Ray, probe: &mut P, sink: &mut H) {
         let setup = RaySetup::eval(ray);
         self.stack.clear();
-        self.stack.step(Op::Push(Entry::default()));
         let Self { image, stack, splits } = self;
         let mut journey = Journey { image, stack, splits, ray, setup, tree: 0, probe, sink };
-        while let Some(entry) = journey.stack.step(Op::Pop) {
-            if !is_beyond(entry.t_near, journey.sink.t_max()) {
-                journey.visit(&entry);
+        let mut next = Some(Entry::default());
+        loop {
+            // A child just tested is not beyond the closest hit; an entry that waited may be by now.
+            while let Some(entry) = next {
+                next = journey.visit(&entry);
             }
+            let Some(entry) = journey.stack.step(Op::Pop) else { return };
+            next = (!is_beyond(entry.t_near, journey.sink.t_max())).then_some(entry);
         }
     }
 }
@@ -130,20 +122,23 @@ pub(super) fn read_pair<P: Probe>(probe: &mut P, kind: Kind, index: usize) {
     probe.line(kind, 2 * index as u64 + 1);
 }
 
-/// Pushes the hit children, farthest first, so that the nearest is on top; `entry` makes the entry of child k but for its `t_near`.
+/// Gives the nearest hit child, to go on with, and pushes the others, farthest first; `entry` makes the entry of child k but for its `t_near`.
 #[inline(always)]
-pub(super) fn push_sorted(stack: &mut TraversalStack, tests: &[box_test::Out; 4], entry: impl Fn(usize) -> Entry) {
-    let [a, b, c, d] = tests;
-    let sorted = ChildSort::eval(&child_sort::In { hit: [a.hit, b.hit, c.hit, d.hit], t_near: [a.t_near, b.t_near, c.t_near, d.t_near] });
-    for place in (0..sorted.count.get() as usize).rev() {
-        let k = sorted.order[place].get() as usize;
-        stack.step(Op::Push(Entry { t_near: tests[k].t_near, ..entry(k) }));
+pub(super) fn push_sorted(stack: &mut TraversalStack, sorted: &Sorted, entry: impl Fn(usize) -> Entry) -> Option<Entry> {
+    let at = |place: usize| {
+        let k = sorted.children.order[place].get() as usize;
+        Entry { t_near: sorted.t_near[k], ..entry(k) }
+    };
+    let count = sorted.children.count.get() as usize;
+    for place in (1..count).rev() {
+        stack.step(Op::Push(at(place)));
     }
+    (count > 0).then(|| at(0))
 }
 
 impl<P: Probe, H: HitSink> Journey<'_, P, H> {
     #[inline(always)]
-    fn visit(&mut self, entry: &Entry) {
+    fn visit(&mut self, entry: &Entry) -> Option<Entry> {
         match entry.kind.get() {
             Entry::BVH_NODE => self.bvh_node(entry.index.get() as usize),
             Entry::TREE => self.root(entry.index.get() as usize),
@@ -151,51 +146,49 @@ impl<P: Probe, H: HitSink> Journey<'_, P, H> {
                 let (level, node) = (entry.level.get() as u32, entry.index.get() as u32);
                 let split = &self.splits[level as usize - 1];
                 let p = child_triangle(split.p, split.q, node as usize & 3);
-                self.tree_node(level, node, p, [entry.e0, entry.e1, entry.e2]);
+                self.tree_node(level, node, p, [entry.e0, entry.e1, entry.e2])
             }
         }
     }
 
     /// Tests the four children of a quad-BVH node.
-    fn bvh_node(&mut self, index: usize) {
+    #[inline(always)]
+    fn bvh_node(&mut self, index: usize) -> Option<Entry> {
         read_pair(self.probe, Kind::BvhNode, index);
         self.probe.node();
         let group = &self.image.nodes[index];
-        let mut tests = [box_test::Out::default(); 4];
-        for (k, test) in tests.iter_mut().enumerate() {
-            let BvhChild { child, bounds } = quarter(group, k);
-            if child.kind.get() != ChildRef::EMPTY {
-                *test = BoxTest::eval(&box_test::In { ray: self.setup, t_max: self.sink.t_max(), bounds });
-            }
-        }
+        let tests = bvh_children(&self.setup, self.sink.t_max(), group);
         push_sorted(self.stack, &tests, |k| {
             let BvhChild { child, .. } = quarter(group, k);
             // Inner nodes and leaves have the kinds of their entries one lower.
             Entry { kind: U::new(child.kind.get() - 1), index: child.index, ..Entry::default() }
-        });
+        })
     }
 
     /// Enters a tree.
-    fn root(&mut self, tree: usize) {
+    #[inline(always)]
+    fn root(&mut self, tree: usize) -> Option<Entry> {
         read_pair(self.probe, Kind::L0Record, tree);
         let record = &self.image.records[tree];
         self.tree = tree as u32; // an index of 28 bits
         let p = VertexData::from_words(&record[..4]).points();
         let root = L0Record::from_words(&record[4..]).root;
-        self.tree_node(0, 0, p, [root.e0, root.e1, root.e2]);
+        self.tree_node(0, 0, p, [root.e0, root.e1, root.e2])
     }
 
     /// Decides whether the triangle `p` of node (`level`, `node`) serves the ray, and tests it or goes down.
     #[inline(always)]
-    fn tree_node(&mut self, level: u32, node: u32, p: [Point; 3], [e0, e1, e2]: [BoundCode; 3]) {
+    fn tree_node(&mut self, level: u32, node: u32, p: [Point; 3], [e0, e1, e2]: [BoundCode; 3]) -> Option<Entry> {
         let levels = self.image.levels;
         if level == levels {
-            return self.triangle(level, node, p);
+            self.triangle(level, node, p);
+            return None;
         }
         self.probe.lod_test();
         let lod = LodTest::eval(&lod_test::In { ray: *self.ray, p0: p[0], p1: p[1], p2: p[2], e0, e1, e2, scale: self.image.scale });
         if !lod.refine {
-            return self.triangle(level, node, p);
+            self.triangle(level, node, p);
+            return None;
         }
 
         let place = first_node(level) + node as usize;
@@ -210,31 +203,21 @@ impl<P: Probe, H: HitSink> Journey<'_, P, H> {
             for k in 0..4 {
                 self.triangle(levels, 4 * node + k, child_triangle(p, q, k as usize));
             }
-            return;
+            return None;
         }
         let group = self.tree as usize * first_node(levels - 1) + place;
-        let above = level > 0 && self.splits[level as usize - 1].morphed;
-        let morphed = above || [lod.s0, lod.s1, lod.s2] != [EdgeState::new(S_ONE); 3];
-        self.splits[level as usize] = Split { p, q, morphed };
-        self.tree_children(level + 1, 4 * node, group);
+        self.splits[level as usize] = Split { p, q };
+        self.tree_children(level + 1, 4 * node, group)
     }
 
     /// Tests the boxes of the four children, widened by their morphed triangles.
     #[inline(always)]
-    fn tree_children(&mut self, level: u32, first: u32, group: usize) {
+    fn tree_children(&mut self, level: u32, first: u32, group: usize) -> Option<Entry> {
         read_pair(self.probe, Kind::BoundData, group);
         self.probe.node();
         let split = &self.splits[level as usize - 1];
         let group = &self.image.bounds[group];
-        let mut tests = [box_test::Out::default(); 4];
-        for (k, test) in tests.iter_mut().enumerate() {
-            let BoundData { mut bounds, .. } = quarter(group, k);
-            if split.morphed {
-                let [p0, p1, p2] = child_triangle(split.p, split.q, k);
-                bounds = WidenBox::eval(&widen_box::In { bounds, p0, p1, p2 }).bounds;
-            }
-            *test = BoxTest::eval(&box_test::In { ray: self.setup, t_max: self.sink.t_max(), bounds });
-        }
+        let tests = tree_children(&self.setup, self.sink.t_max(), group, split);
         push_sorted(self.stack, &tests, |k| {
             let BoundData { e0, e1, e2, .. } = quarter(group, k);
             Entry {
@@ -246,7 +229,7 @@ impl<P: Probe, H: HitSink> Journey<'_, P, H> {
                 e1,
                 e2,
             }
-        });
+        })
     }
 
     #[inline(always)]

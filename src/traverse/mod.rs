@@ -1,6 +1,7 @@
 //! Floor 3: methods built from blocks. A method takes an integer ray, walks its memory images and gives a hit; every line it reads is told to a
 //! [`Probe`], and nothing above needs to know which method ran.
 
+mod children;
 mod cone;
 mod hit;
 mod lod;

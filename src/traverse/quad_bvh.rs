@@ -1,11 +1,12 @@
 //! The baseline: the full-resolution mesh under a quad-BVH with 16-bit or 32-bit boxes, built from the same blocks (paper section 6.1).
 
+use super::children::{Sorted, bvh_children, sort};
 use super::lod::{is_beyond, push_sorted, quarter, read_pair};
 use super::stack::{Entry, Op, TraversalStack};
 use super::{HitSink, Kind, Probe, Section, TriangleId};
 use crate::block::Block;
-use crate::block::box_test::{self, BoxTest};
 use crate::block::box_test32::{self, BoxTest32};
+use crate::block::child_sort;
 use crate::block::ray_setup::{self, RaySetup};
 use crate::block::tri_test::{self, TriTest};
 use crate::bvh::{BvhChild32, FullBvh, FullNodes, LINE_BYTES};
@@ -39,27 +40,33 @@ impl<'a> BvhTraverser<'a> {
     pub fn trace<P: Probe, H: HitSink>(&mut self, ray: &Ray, probe: &mut P, sink: &mut H) {
         let setup = RaySetup::eval(ray);
         self.stack.clear();
-        self.stack.step(Op::Push(Entry::default()));
-        while let Some(entry) = self.stack.step(Op::Pop) {
+        let mut next = Some(Entry::default());
+        loop {
+            let entry = match next.or_else(|| self.stack.step(Op::Pop)) {
+                Some(entry) => entry,
+                None => return,
+            };
+            next = None;
             if is_beyond(entry.t_near, sink.t_max()) {
                 continue;
             }
             let index = entry.index.get() as usize;
             if entry.kind.get() == Entry::BVH_NODE {
-                self.node(&setup, index, probe, sink);
+                next = self.node(&setup, index, probe, sink);
             } else {
                 // Leaves keep their count in `level`, which trees need and leaves do not.
-                for slot in index..=index + entry.level.get() as usize {
-                    self.leaf(ray, slot, probe, sink);
+                let slots = index..index + entry.level.get() as usize + 1;
+                self.bvh.leaves.lines(slots.clone(), |address| probe.line(Kind::Leaf, address / LINE_BYTES));
+                for slot in slots {
+                    self.triangle(ray, slot, probe, sink);
                 }
             }
         }
     }
 
     #[inline(always)]
-    fn node<P: Probe, H: HitSink>(&mut self, setup: &ray_setup::Out, index: usize, probe: &mut P, sink: &H) {
+    fn node<P: Probe, H: HitSink>(&mut self, setup: &ray_setup::Out, index: usize, probe: &mut P, sink: &H) -> Option<Entry> {
         probe.node();
-        let mut tests = [box_test::Out::default(); 4];
         let t_max = sink.t_max();
         // Inner nodes and leaves have the kinds of their entries one lower.
         let waiting = |child: ChildRef| Entry {
@@ -72,32 +79,30 @@ impl<'a> BvhTraverser<'a> {
             FullNodes::Boxes16(nodes) => {
                 read_pair(probe, Kind::BvhNode, index);
                 let child = |k| quarter::<BvhChild>(&nodes[index], k);
-                for (k, test) in tests.iter_mut().enumerate() {
-                    let BvhChild { child, bounds } = child(k);
-                    if child.kind.get() != ChildRef::EMPTY {
-                        *test = BoxTest::eval(&box_test::In { ray: *setup, t_max, bounds });
-                    }
-                }
-                push_sorted(&mut self.stack, &tests, |k| waiting(child(k).child));
+                let tests = bvh_children(setup, t_max, &nodes[index]);
+                push_sorted(&mut self.stack, &tests, |k| waiting(child(k).child))
             }
             FullNodes::Boxes32(nodes) => {
                 read_pair(probe, Kind::BvhNode, 2 * index);
                 read_pair(probe, Kind::BvhNode, 2 * index + 1);
                 let child = |k| BvhChild32::from_words(&nodes[index][4 * k..4 * k + 4]);
-                for (k, test) in tests.iter_mut().enumerate() {
+                let mut tests = child_sort::In::default();
+                for k in 0..4 {
                     let BvhChild32 { child, lo, hi } = child(k);
                     if child.kind.get() != ChildRef::EMPTY {
-                        *test = BoxTest32::eval(&box_test32::In { ray: *setup, t_max, lo, hi });
+                        let test = BoxTest32::eval(&box_test32::In { ray: *setup, t_max, lo, hi });
+                        (tests.hit[k], tests.t_near[k]) = (test.hit, test.t_near);
                     }
                 }
-                push_sorted(&mut self.stack, &tests, |k| waiting(child(k).child));
+                let mut sorted = Sorted::default();
+                sort(&tests, &mut sorted);
+                push_sorted(&mut self.stack, &sorted, |k| waiting(child(k).child))
             }
         }
     }
 
     #[inline(always)]
-    fn leaf<P: Probe, H: HitSink>(&mut self, ray: &Ray, slot: usize, probe: &mut P, sink: &mut H) {
-        self.bvh.leaves.lines(slot, |address| probe.line(Kind::Leaf, address / LINE_BYTES));
+    fn triangle<P: Probe, H: HitSink>(&mut self, ray: &Ray, slot: usize, probe: &mut P, sink: &mut H) {
         probe.triangle();
         let (points, id) = self.bvh.leaves.triangle(slot);
         let [p0, p1, p2] = points.map(Point::from_i32);

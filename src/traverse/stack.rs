@@ -3,7 +3,7 @@
 //! Entries carry no vertices: the traversal keeps one triangle with its inserted vertices per level, which a depth-first order never
 //! overwrites while a child of it waits.
 
-use crate::num::{BoundCode, TNear, U, wire_struct};
+use crate::num::{BoundCode, TNear, U, Wire, wire_struct};
 
 /// Room for a quad-BVH of [`MAX_BVH_DEPTH`](crate::num::MAX_BVH_DEPTH) levels and a tree of ten: each level leaves at most three siblings waiting.
 pub const STACK_ENTRIES: usize = 3 * (crate::num::MAX_BVH_DEPTH as usize + crate::num::MAX_LEVELS as usize) + 1;
@@ -28,6 +28,8 @@ wire_struct! {
     }
 }
 
+const _: () = assert!(Entry::WIDTH <= 128);
+
 impl Entry {
     /// `kind` of a quad-BVH node.
     pub const BVH_NODE: u64 = 0;
@@ -49,13 +51,14 @@ pub enum Op {
 /// The stack.
 #[derive(Clone, Debug)]
 pub struct TraversalStack {
-    entries: [Entry; STACK_ENTRIES],
+    /// As bits, as in hardware: 82 of 128.
+    entries: [[u64; 2]; STACK_ENTRIES],
     len: usize,
 }
 
 impl Default for TraversalStack {
     fn default() -> Self {
-        Self { entries: [Entry::default(); STACK_ENTRIES], len: 0 }
+        Self { entries: [[0; 2]; STACK_ENTRIES], len: 0 }
     }
 }
 
@@ -66,13 +69,13 @@ impl TraversalStack {
     pub fn step(&mut self, op: Op) -> Option<Entry> {
         match op {
             Op::Push(entry) => {
-                self.entries[self.len] = entry;
+                entry.to_words(&mut self.entries[self.len]);
                 self.len += 1;
                 None
             }
             Op::Pop => {
                 self.len = self.len.checked_sub(1)?;
-                Some(self.entries[self.len])
+                Some(Entry::from_words(&self.entries[self.len]))
             }
         }
     }
