@@ -53,8 +53,13 @@ struct Tried {
 
 impl Tried {
     const fn new() -> Self {
-        const ZERO: AtomicU64 = AtomicU64::new(0);
-        Self { hits: ZERO, misses: ZERO, inside: ZERO, axis_parallel: ZERO, flat_boxes: ZERO }
+        Self {
+            hits: AtomicU64::new(0),
+            misses: AtomicU64::new(0),
+            inside: AtomicU64::new(0),
+            axis_parallel: AtomicU64::new(0),
+            flat_boxes: AtomicU64::new(0),
+        }
     }
 
     /// Prints the counts and fails unless each is at least `least`.

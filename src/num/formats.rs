@@ -33,8 +33,8 @@ pub type EdgeState = U<9>;
 pub type RayT = U<35>;
 /// Barycentric coordinate, 2^31 = 1.
 pub type Bary = U<32>;
-/// Box entry distance in steps of 2^16 units.
-pub type TNear = U<18>;
+/// Box entry distance in steps of 2^16 units: 17 bits, because a hit has `t_near 2^18 <= t_max` < 2^35.
+pub type TNear = U<17>;
 
 wire_struct! {
     /// Scale of the displacement bounds of one model: `h = floor(code^2 * mantissa / 2^shift)` units.
