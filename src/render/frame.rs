@@ -150,16 +150,16 @@ fn mean(values: impl Iterator<Item = f64>) -> f64 {
 
 /// One thread's traverser.
 enum Tracer<'a> {
-    Lod(LodTraverser<'a>),
-    Bvh(BvhTraverser<'a>),
+    Lod(Box<LodTraverser<'a>>),
+    Bvh(Box<BvhTraverser<'a>>),
     Reference(&'a Reference),
 }
 
 impl<'a> Tracer<'a> {
     fn new(method: &Method<'a>) -> Self {
         match method {
-            Method::Lod(image) => Self::Lod(LodTraverser::new(*image)),
-            Method::Bvh(bvh) => Self::Bvh(BvhTraverser::new(bvh)),
+            Method::Lod(image) => Self::Lod(Box::new(LodTraverser::new(*image))),
+            Method::Bvh(bvh) => Self::Bvh(Box::new(BvhTraverser::new(bvh))),
             Method::Reference(reference) => Self::Reference(reference),
         }
     }
