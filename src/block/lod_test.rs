@@ -81,11 +81,11 @@ fn edge_state(h: Bound, d: U<34>) -> EdgeState {
     }
 }
 
-/// State of the edge with bound code `code` between end points at `a` and `b` along the ray.
+/// Bound h and tolerance D of the edge with bound code `code` between end points at `a` and `b` along the ray.
 #[inline(always)]
-fn edge(input: &In, code: BoundCode, a: S<64>, b: S<64>) -> EdgeState {
+fn limits(input: &In, code: BoundCode, a: S<64>, b: S<64>) -> (Bound, U<34>) {
     let h = BoundDecode::eval(&bound_decode::In { code, scale: input.scale }).h;
-    edge_state(h, tolerated(&input.ray.cone, a.min(b).get()))
+    (h, tolerated(&input.ray.cone, a.min(b).get()))
 }
 
 impl Block for LodTest {
@@ -95,8 +95,14 @@ impl Block for LodTest {
     #[inline(always)]
     fn eval(input: &In) -> Out {
         let (l0, l1, l2) = (along(&input.ray, input.p0), along(&input.ray, input.p1), along(&input.ray, input.p2));
-        let (s0, s1, s2) = (edge(input, input.e0, l1, l2), edge(input, input.e1, l2, l0), edge(input, input.e2, l0, l1));
-        Out { refine: (s0.get() | s1.get() | s2.get()) != 0, s0, s1, s2 }
+        let limits = [(input.e0, l1, l2), (input.e1, l2, l0), (input.e2, l0, l1)].map(|(code, a, b)| limits(input, code, a, b));
+        // s = 0 exactly when h <= D: one decision for all three edges.
+        let [(h0, d0), (h1, d1), (h2, d2)] = limits;
+        if (h0.get() <= d0.get()) & (h1.get() <= d1.get()) & (h2.get() <= d2.get()) {
+            return Out::default();
+        }
+        let [s0, s1, s2] = limits.map(|(h, d)| edge_state(h, d));
+        Out { refine: true, s0, s1, s2 }
     }
 }
 
