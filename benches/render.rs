@@ -38,9 +38,7 @@ fn benches(c: &mut Criterion) {
     group.throughput(Throughput::Elements(rays.len() as u64)).sample_size(20);
     group.bench_function("lod, hitting rays", |b| b.iter(|| rays.iter().filter(|r| black_box(hit_by(r)).is_some()).count()));
 
-    let bvh =
-        FullBvh::build(&scene.decode(), &FullOptions::new(4, false, LeafLayout::Line))
-            .expect("a valid model");
+    let bvh = FullBvh::build(&scene.decode(), &FullOptions::new(4, false, LeafLayout::Line)).expect("a valid model");
     let mut traverser = BvhTraverser::new(&bvh);
     group.bench_function("16-bit quad-BVH, hitting rays", |b| {
         b.iter(|| {

@@ -65,9 +65,7 @@ impl Bench<'_> {
 
 fn full_bvhs(h: &Hierarchy) -> Vec<FullBvh> {
     let variants = [(false, LeafLayout::Line, 4), (false, LeafLayout::Indexed, 2), (true, LeafLayout::Packed, 1)];
-    let build = |(wide_boxes, layout, size)| {
-        FullBvh::build(h, &FullOptions::new(size, wide_boxes, layout)).expect("a valid model")
-    };
+    let build = |(wide_boxes, layout, size)| FullBvh::build(h, &FullOptions::new(size, wide_boxes, layout)).expect("a valid model");
     variants.map(build).into()
 }
 

@@ -48,11 +48,11 @@ pub struct BaryMap;
 fn step(b: [u64; 3]) -> (u64, [u64; 3]) {
     const HALF: u64 = BARY_ONE / 2;
     // At most one exceeds one half, because they add up to one.
-    match b.iter().position(|&c| c > HALF) {
-        Some(k) => {
+    match (0..3).zip(0u64..).find(|&(k, _): &(usize, u64)| b[k] > HALF) {
+        Some((k, child)) => {
             let mut out = b.map(|c| 2 * c);
             out[k] -= BARY_ONE;
-            (k as u64, out)
+            (child, out)
         }
         None => (3, b.map(|c| BARY_ONE - 2 * c)),
     }

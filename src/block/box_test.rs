@@ -49,11 +49,12 @@ fn mirrored(axis: &Axis, lo: S<16>, hi: S<16>) -> (i64, i64) {
 #[inline(always)]
 fn narrow_product(a: i64, b: i64) -> i64 {
     debug_assert!(i32::try_from(a).is_ok() && i32::try_from(b).is_ok());
-    let [a, b] = [a, b].map(|v| v as i32); // nothing is lost: see above
+    #[expect(clippy::as_conversions, reason = "32 bits hold them: asserted above")]
+    let (a, b) = (a as i32, b as i32);
     i64::from(a) * i64::from(b)
 }
 
-/// Entry distance of one axis from `near`, 17 to 18 bits signed in steps of 2^16 units; times an 18-bit mantissa: 36.
+/// Entry distance of one axis from `near`, 17 bits signed in steps of 2^16 units (box codes within +-32767); times an 18-bit mantissa: 35.
 #[inline(always)]
 pub(super) fn entry(axis: &Axis, near: i64) -> i64 {
     let product = narrow_product(near.max(0), axis.reciprocal.mantissa.get().cast_signed()).cast_unsigned();
@@ -64,7 +65,7 @@ pub(super) fn entry(axis: &Axis, near: i64) -> i64 {
 #[inline(always)]
 pub(super) fn finish(slabs: bool, t_near: i64, t_max: RayT) -> Out {
     let t_near = t_near.min(TNear::MAX.get().cast_signed()).cast_unsigned();
-    // 18 + 18 bits against 35.
+    // 17 + 18 bits against 35.
     let hit = slabs & ((t_near << T_NEAR_TO_T_SHIFT) <= t_max.get());
     Out { hit, t_near: TNear::new(if hit { t_near } else { 0 }) }
 }

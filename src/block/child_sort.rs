@@ -35,9 +35,9 @@ impl Block for ChildSort {
     type Out = Out;
     #[inline(always)]
     fn eval(input: &In) -> Out {
-        // Key: missed, t_near, number: 21 bits, all different.
-        let key = |k: usize| (if input.hit[k] { input.t_near[k].get() << 2 } else { 1 << 20 }) | k as u64;
-        let mut keys = [key(0), key(1), key(2), key(3)];
+        // Key: missed, t_near (17 bits), number (2): all different.
+        let key = |k: usize, number: u64| (if input.hit[k] { input.t_near[k].get() << 2 } else { 1 << 20 }) | number;
+        let mut keys = [key(0, 0), key(1, 1), key(2, 2), key(3, 3)];
         // A five-comparator network.
         for (a, b) in [(0, 1), (2, 3), (0, 2), (1, 3), (1, 2)] {
             let (low, high) = (keys[a].min(keys[b]), keys[a].max(keys[b]));

@@ -41,7 +41,8 @@ impl Block for HitDivide {
         }
         // The remainder is below 2^96: 128 bits after the shift.
         let fraction = ((n - whole * d) << 32) / d;
-        let [whole, fraction] = [whole, fraction].map(|q| q as u64); // below 2^3 and 2^32
+        #[expect(clippy::as_conversions, reason = "below 2^3 and below 2^32")]
+        let [whole, fraction] = [whole as u64, fraction as u64];
         Out { quotient: RayT::new(whole << 32 | fraction) }
     }
 }

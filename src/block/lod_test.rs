@@ -4,7 +4,7 @@
 //! s = 0 iff h <= D, s = 256 iff h >= 2D (and h > D), else clamp(floor((h-D) 256 / D), 1, 255).
 //! So s = 0 is decided on the exact comparison; h = 0 gives 0 whatever D is; an edge at or behind the origin has D = 0: full detail.
 //! s is symmetric in a and b, does not decrease in h and does not increase in l.
-//! Legal: points and origin with |v| < 2^31, |d| <= 2^30.
+//! Legal: points and origin with |v| < 2^31, |d| <= 2^30 and each |d_i| < 2^30.
 
 use super::bound_decode::{self, Bound, BoundDecode};
 use super::{Block, dot};

@@ -3,6 +3,8 @@
 //! A block's `In` and `Out` are [`Wire`] structs with the field names of the SystemVerilog; its mathematics stands at the head of its
 //! file, every width beside the line that needs it. `docs/numbers.md` states the formats.
 
+#![cfg_attr(not(test), warn(clippy::as_conversions))]
+
 pub mod bary_map;
 pub mod bound_decode;
 pub mod box_test;

@@ -1,6 +1,6 @@
 //! Per-ray constants of the box tests.
 //!
-//! Axes are mirrored so that d >= 0 (x and boxes change sign with them). c_ij = x_i d_j - x_j d_i; `plucker_ij` = floor(c_ij / 2^16);
+//! Axes are mirrored so that d >= 0 (x and boxes change sign with them). `moment` holds c_ij = x_i d_j - x_j d_i for yz, zx, xy;
 //! `ceil_i` = ceil(x_i / 2^16); mantissa_i / 2^shift_i = 2^30 / d_i rounded down, shift_i the largest k <= 17 with floor(2^(30+k) / d_i) < 2^18, or 0 with the
 //! mantissa held at 2^18 - 1; both 0 for d_i = 0.
 //! Legal: |x_i| < 2^31, |d_i| < 2^30.

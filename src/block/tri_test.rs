@@ -5,7 +5,7 @@
 //! if p x q = 0, that of the first non-zero component of q - p; if p = q, positive. Hit iff the three signs agree, det != 0 and
 //! t_num / det >= 0; both faces are hit, the front one if det < 0. Half edges have parallel normals and directions, so both sides of a T-junction and of an edge
 //! decide alike: a closed surface is crossed exactly once.
-//! Legal: |v| < 2^31 for points and origin, |d| <= 2^30. On a miss all numbers are 0. On a hit they are taken with det > 0.
+//! Legal: |v| < 2^31 for points and origin, |d| <= 2^30 and each |d_i| < 2^30. On a miss all numbers are 0. On a hit they are taken with det > 0.
 
 use super::Block;
 use crate::num::{Point, Ray, WU, wire_struct};

@@ -429,8 +429,12 @@ mod tests {
     #[test]
     fn both_box_widths_refer_to_the_same_and_16_bits_contain_32() {
         let h = synthetic_terrain(4, 4);
-        let FullNodes::Boxes16(narrow) = FullBvh::build(&h, &FullOptions::new(4, false, LeafLayout::Line)).unwrap().nodes else { panic!("16") };
-        let FullNodes::Boxes32(wide) = FullBvh::build(&h, &FullOptions::new(4, true, LeafLayout::Line)).unwrap().nodes else { panic!("32") };
+        let FullNodes::Boxes16(narrow) = FullBvh::build(&h, &FullOptions::new(4, false, LeafLayout::Line)).unwrap().nodes else {
+            panic!("16")
+        };
+        let FullNodes::Boxes32(wide) = FullBvh::build(&h, &FullOptions::new(4, true, LeafLayout::Line)).unwrap().nodes else {
+            panic!("32")
+        };
         assert_eq!(narrow.len(), wide.len());
         let mut children = 0;
         for (n, w) in narrow.iter().zip(&wide) {

@@ -33,12 +33,6 @@ pub const fn child_group(levels: u32, tree: usize, level: u32, node: usize) -> u
     tree * sibling_groups(levels) + level_start(level) + node
 }
 
-/// First full-resolution triangle id below node (`level`, `node`) of `tree`.
-#[inline]
-pub const fn first_triangle(levels: u32, tree: usize, level: u32, node: usize) -> u64 {
-    ((tree as u64) << (2 * levels)) + ((node as u64) << (2 * (levels - level)))
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -61,11 +55,5 @@ mod tests {
             }
             assert_eq!((line, group), (3 * vertex_lines(levels), 3 * sibling_groups(levels)));
         }
-    }
-
-    #[test]
-    fn a_node_begins_at_its_first_descendant() {
-        assert_eq!(first_triangle(3, 2, 1, 3), 2 * 64 + 48);
-        assert_eq!(first_triangle(3, 2, 3, 63), 2 * 64 + 63);
     }
 }

@@ -8,7 +8,7 @@ use crate::block::lod_test::{self, LodTest};
 use crate::block::ray_setup::{self, RaySetup};
 use crate::block::tessellate::{self, Tessellate, child_triangle};
 use crate::block::tri_test::{self, TriTest};
-use crate::format::{BoundData, BvhChild, L0Record, Scene, VertexData};
+use crate::format::{BoundData, BvhChild, L0Record, Scene, VertexData, layout};
 use crate::num::{BoundCode, BoundScale, MAX_LEVELS, Point, Ray, RayT, T_NEAR_TO_T_SHIFT, TNear, U, Wire};
 
 /// The memory images of one model, as the hardware sees them.
@@ -191,8 +191,7 @@ impl<P: Probe, H: HitSink> Journey<'_, P, H> {
             return None;
         }
 
-        let place = first_node(level) + node as usize;
-        let line = self.tree as usize * first_node(levels) + place;
+        let line = layout::vertex_line(levels, self.tree as usize, level, node as usize);
         self.probe.line(Kind::VertexData, line as u64);
         let [q0, q1, q2] = VertexData::from_words(&self.image.vertices[line]).points();
         let grid = U::new(u64::from(levels - level - 1));
@@ -205,7 +204,7 @@ impl<P: Probe, H: HitSink> Journey<'_, P, H> {
             }
             return None;
         }
-        let group = self.tree as usize * first_node(levels - 1) + place;
+        let group = layout::child_group(levels, self.tree as usize, level, node as usize);
         self.splits[level as usize] = Split { p, q };
         self.tree_children(level + 1, 4 * node, group)
     }
@@ -240,10 +239,4 @@ impl<P: Probe, H: HitSink> Journey<'_, P, H> {
             self.sink.offer(TriangleId { tree: self.tree, level, node }, &test);
         }
     }
-}
-
-/// Number of nodes above `level` in a tree: where the level starts, (4^level - 1) / 3.
-#[inline(always)]
-fn first_node(level: u32) -> usize {
-    ((1 << (2 * level)) - 1) / 3
 }

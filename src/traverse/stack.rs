@@ -51,7 +51,7 @@ pub enum Op {
 /// The stack.
 #[derive(Clone, Debug)]
 pub struct TraversalStack {
-    /// As bits, as in hardware: 82 of 128.
+    /// As bits, as in hardware: 81 of 128.
     entries: [[u64; 2]; STACK_ENTRIES],
     len: usize,
 }
