@@ -1,5 +1,5 @@
 //! Small models, surfaces and rays for the tests and benchmarks of lodray.
-#![allow(missing_docs)] // helpers, named for what they make
+#![allow(missing_docs)] // the names say what is made
 
 pub mod models;
 pub mod surfaces;
