@@ -165,6 +165,8 @@ fn files_that_are_no_mesh_files_are_named() {
     std::fs::create_dir(&directory).unwrap();
     let message = read(&directory).unwrap_err().to_string();
     assert!(message.starts_with(directory.to_str().unwrap()), "{message}");
+    let nameless = read(files.0.path()).unwrap_err().to_string();
+    assert!(nameless.contains("is a directory"), "{nameless}");
 }
 
 const PLY_VERTICES: &str = "element vertex 4\nproperty float x\nproperty float y\nproperty float z\nproperty uchar red\n";

@@ -73,6 +73,10 @@ fn fault<T>(place: impl Display, what: impl Display) -> Result<T, Fault> {
 /// # Errors
 /// One error that names the file and the line, element or field: see [`ReadError`].
 pub fn read(path: &Path) -> Result<TriangleMesh, ReadError> {
+    if path.is_dir() {
+        // Whatever it is called: its name is not what is wrong with it.
+        return Err(ReadError::Io { path: path.into(), source: std::io::ErrorKind::IsADirectory.into() });
+    }
     let extension = path.extension().map(|e| e.to_string_lossy().to_lowercase());
     let parse = match extension.as_deref() {
         Some("obj") => obj::parse,
