@@ -99,7 +99,7 @@ fn meshes() {
     refuse(&[
         ("build missing.obj -o new.lod", FAILS, "missing.obj: No such file"),
         ("build folder.obj -o new.lod", FAILS, "folder.obj: is a directory"),
-        ("build folder -o new.lod", FAILS, "folder: unknown kind of mesh file"),
+        ("build folder -o new.lod", FAILS, "folder: is a directory"),
         ("build good.lod -o new.lod", FAILS, "good.lod: unknown kind of mesh file"),
         ("build empty.obj -o new.lod", FAILS, "empty.obj: line 1: the file is empty"),
         ("build empty.ply -o new.lod", FAILS, "empty.ply: line 1: the file is empty"),
