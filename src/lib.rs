@@ -20,4 +20,5 @@ pub mod mesh;
 pub mod num;
 pub mod render;
 pub mod report;
+pub mod sim;
 pub mod traverse;

@@ -3,8 +3,8 @@
 use lodray::block::Block;
 use lodray::block::box_test::{self, BoxTest};
 use lodray::block::box_test32::{self, BoxTest32};
-use lodray::block::ray_setup::RaySetup;
-use lodray::num::{Box16, Cone, Point, Ray, RayT, Vec3};
+use lodray::block::ray_setup::{self, RaySetup};
+use lodray::num::{Box16, Direction, Point, RayT};
 use lodray_test_support::cases;
 use proptest::prelude::*;
 use std::sync::atomic::{AtomicU64, Ordering::Relaxed};
@@ -38,8 +38,8 @@ fn slabs(x: [i64; 3], d: [i64; 3], lo: [i64; 3], hi: [i64; 3]) -> Option<(i128, 
     }
 }
 
-fn ray(x: [i64; 3], d: [i64; 3]) -> Ray {
-    Ray { origin: Point::new(x[0], x[1], x[2]), direction: Vec3::new(d[0], d[1], d[2]), cone: Cone::default() }
+fn ray(x: [i64; 3], d: [i64; 3]) -> ray_setup::In {
+    ray_setup::In { origin: Point::new(x[0], x[1], x[2]), direction: Direction::new(d[0], d[1], d[2]) }
 }
 
 /// What was tried, so that no category passes by being empty.

@@ -2,7 +2,7 @@
 
 use lodray::block::Block;
 use lodray::block::tri_test::{In, TriTest};
-use lodray::num::{Cone, Point, Ray, Vec3};
+use lodray::num::{Direction, Point};
 use lodray_test_support::cases;
 use num_bigint::{BigInt, Sign};
 use proptest::prelude::*;
@@ -51,8 +51,8 @@ fn expected(x: [i64; 3], d: [i64; 3], p: [[i64; 3]; 3]) -> Option<(bool, [BigInt
 
 fn check(x: [i64; 3], d: [i64; 3], p: [[i64; 3]; 3]) -> bool {
     let point = |v: [i64; 3]| Point::new(v[0], v[1], v[2]);
-    let ray = Ray { origin: point(x), direction: Vec3::new(d[0], d[1], d[2]), cone: Cone::default() };
-    let out = TriTest::eval(&In { ray, p0: point(p[0]), p1: point(p[1]), p2: point(p[2]) });
+    let direction = Direction::new(d[0], d[1], d[2]);
+    let out = TriTest::eval(&In { origin: point(x), direction, p0: point(p[0]), p1: point(p[1]), p2: point(p[2]) });
     match expected(x, d, p) {
         None => assert!(!out.hit, "{x:?} {d:?} {p:?}"),
         Some((front, numbers)) => {

@@ -4,7 +4,7 @@
 //! 1/2 goes to the centre. The sum stays 1 exactly and no memory is read.
 //! Legal: b0 + b1 + b2 = 2^31, levels 0 to 10, node below 4^(10 - levels).
 
-use super::Block;
+use super::{Block, Timing};
 use crate::num::{BARY_ONE, Bary, U, wire_struct};
 
 /// Number of a node within its level: 4^10 at most.
@@ -60,6 +60,7 @@ fn step(b: [u64; 3]) -> (u64, [u64; 3]) {
 
 impl Block for BaryMap {
     const NAME: &'static str = "bary_map";
+    const TIMING: Timing = Timing::pipelined(10);
     type In = In;
     type Out = Out;
     #[inline]

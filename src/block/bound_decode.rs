@@ -4,7 +4,7 @@
 //! never below the true bound. Monotone in the code; code 0 gives 0.
 //! Legal: any code; scales made by [`crate::num::bound_scale`] (h below 2^33).
 
-use super::Block;
+use super::{Block, Timing};
 use crate::num::{BoundCode, BoundScale, U, wire_struct};
 
 /// Width of a decoded bound: |q - m| < 2^32.8 for coordinates in +-2^31.
@@ -33,6 +33,7 @@ pub struct BoundDecode;
 
 impl Block for BoundDecode {
     const NAME: &'static str = "bound_decode";
+    const TIMING: Timing = Timing::pipelined(3);
     type In = In;
     type Out = Out;
     #[inline(always)]

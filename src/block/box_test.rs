@@ -6,8 +6,8 @@
 //! if t_near * 2^18 > t_max (early termination). A miss gives t_near = 0.
 //! Legal: box codes in +-32767, lo <= hi; constants from [`super::ray_setup`].
 
-use super::Block;
 use super::ray_setup::{self, Axis};
+use super::{Block, Timing};
 use crate::num::{BOX_SHIFT, Box16, RayT, S, T_NEAR_TO_T_SHIFT, TNear, wire_struct};
 
 wire_struct! {
@@ -72,6 +72,7 @@ pub(super) fn finish(slabs: bool, t_near: i64, t_max: RayT) -> Out {
 
 impl Block for BoxTest {
     const NAME: &'static str = "box_test";
+    const TIMING: Timing = Timing::pipelined(6);
     type In = In;
     type Out = Out;
     #[inline(always)]

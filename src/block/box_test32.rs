@@ -3,9 +3,9 @@
 //! The same conditions in units: lo_i d_j - hi_j d_i <= x_i d_j - x_j d_i and hi_j >= x_j. `t_near` from floor((lo_i - x_i) / 2^16).
 //! Legal: |v| < 2^31, lo <= hi; constants from [`super::ray_setup`].
 
-use super::Block;
 use super::box_test::{self, entry, finish};
 use super::ray_setup::{self, Axis};
+use super::{Block, Timing};
 use crate::num::{BOX_SHIFT, Point, RayT, S, wire_struct};
 
 wire_struct! {
@@ -29,11 +29,12 @@ pub struct BoxTest32;
 #[inline(always)]
 fn slab(axis: &Axis, lo: S<32>, hi: S<32>) -> (i64, i64) {
     let (lo, hi) = if axis.mirror { (-hi.get(), -lo.get()) } else { (lo.get(), hi.get()) };
-    (lo - axis.x.get(), hi - axis.x.get())
+    (lo - axis.origin.get(), hi - axis.origin.get())
 }
 
 impl Block for BoxTest32 {
     const NAME: &'static str = "box_test32";
+    const TIMING: Timing = Timing::pipelined(8);
     type In = In;
     type Out = box_test::Out;
     #[inline(always)]

@@ -3,7 +3,7 @@
 //! Hit children first, nearer before farther, equal distances by child number; `count` of them are hit. The rest of `order` holds the missed
 //! children, by number. Legal: anything.
 
-use super::Block;
+use super::{Block, Timing};
 use crate::num::{TNear, U, wire_struct};
 
 wire_struct! {
@@ -31,6 +31,7 @@ pub struct ChildSort;
 
 impl Block for ChildSort {
     const NAME: &'static str = "child_sort";
+    const TIMING: Timing = Timing::pipelined(3);
     type In = In;
     type Out = Out;
     #[inline(always)]

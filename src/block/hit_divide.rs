@@ -3,8 +3,8 @@
 //! With numerator t_num and denominator det it gives t; with v or w it gives a barycentric coordinate in steps of 2^-32, of which the
 //! last bit is dropped (floor of a floor). Legal: denominator > 0.
 
-use super::Block;
 use super::tri_test::{EdgeFunction, TNumerator};
+use super::{Block, Timing};
 use crate::num::{RayT, wire_struct};
 
 wire_struct! {
@@ -30,6 +30,7 @@ pub struct HitDivide;
 
 impl Block for HitDivide {
     const NAME: &'static str = "hit_divide";
+    const TIMING: Timing = Timing { latency: 40, interval: 40 };
     type In = In;
     type Out = Out;
     #[inline(always)]

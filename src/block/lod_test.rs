@@ -7,7 +7,7 @@
 //! Legal: points and origin with |v| < 2^31, |d| <= 2^30 and each |d_i| < 2^30.
 
 use super::bound_decode::{self, Bound, BoundDecode};
-use super::{Block, dot};
+use super::{Block, Timing, dot};
 use crate::num::{BoundCode, BoundScale, Cone, EdgeState, Point, Ray, S, S_ONE, U, wire_struct};
 
 wire_struct! {
@@ -90,6 +90,7 @@ fn limits(input: &In, code: BoundCode, a: S<64>, b: S<64>) -> (Bound, U<34>) {
 
 impl Block for LodTest {
     const NAME: &'static str = "lod_test";
+    const TIMING: Timing = Timing::pipelined(22);
     type In = In;
     type Out = Out;
     #[inline(always)]

@@ -10,19 +10,41 @@ pub mod bound_decode;
 pub mod box_test;
 pub mod box_test32;
 pub mod child_sort;
+pub mod child_test;
 pub mod hit_divide;
+pub mod hit_select;
 pub mod lod_test;
+pub mod node_address;
 pub mod ray_setup;
 pub mod tessellate;
+pub mod tree_base;
 pub mod tri_test;
 pub mod widen_box;
 
 use crate::num::Wire;
 
-/// A combinational block.
+/// Cycles of a block's pipeline in `rtl/`, with nothing in its way.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Timing {
+    /// Cycles from the one in which the input is taken to the first in which the output is offered.
+    pub latency: u32,
+    /// Cycles from one input taken to the next.
+    pub interval: u32,
+}
+
+impl Timing {
+    /// A pipeline of `latency` stages that takes an input in every cycle.
+    pub const fn pipelined(latency: u32) -> Self {
+        Self { latency, interval: 1 }
+    }
+}
+
+/// A combinational block: what it computes, and the cycles its pipeline takes for it.
 pub trait Block {
     /// Its name: the file here, the file and module in `rtl/`.
     const NAME: &'static str;
+    /// Cycles of its RTL; where the RTL has a parameter that changes them, for its default.
+    const TIMING: Timing;
     /// What goes in.
     type In: Wire;
     /// What comes out.

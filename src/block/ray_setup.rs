@@ -5,8 +5,8 @@
 //! mantissa held at 2^18 - 1; both 0 for d_i = 0.
 //! Legal: |x_i| < 2^31, |d_i| < 2^30.
 
-use super::Block;
-use crate::num::{BOX_SHIFT, Ray, S, U, Vec3, wire_struct};
+use super::{Block, Timing};
+use crate::num::{BOX_SHIFT, Direction, Point, S, U, Vec3, wire_struct};
 
 wire_struct! {
     /// Reciprocal of one direction component, rounded down.
@@ -26,11 +26,21 @@ wire_struct! {
         /// Its magnitude.
         d: U<30>,
         /// Mirrored origin in units.
-        x: S<32>,
+        origin: S<32>,
         /// ceil(x / 2^16).
         ceil: S<17>,
         /// 2^30 / d, rounded down.
         reciprocal: Reciprocal,
+    }
+}
+
+wire_struct! {
+    /// Input of [`RaySetup`].
+    pub struct In {
+        /// Origin in units.
+        origin: Point,
+        /// Direction.
+        direction: Direction,
     }
 }
 
@@ -74,22 +84,23 @@ fn axis(x: S<32>, d: S<31>) -> Axis {
     let x = S::<32>::new(if mirror { -x.get() } else { x.get() });
     // ceil of 32 bits over 2^16: at most 2^15, 17 bits.
     let ceil = S::new((x.get() + ((1 << BOX_SHIFT) - 1)) >> BOX_SHIFT);
-    Axis { mirror, d, x, ceil, reciprocal: reciprocal(d) }
+    Axis { mirror, d, origin: x, ceil, reciprocal: reciprocal(d) }
 }
 
 #[inline(always)]
 fn moment(i: &Axis, j: &Axis) -> S<63> {
     // Each product below 2^61, the difference below 2^62.
-    S::new(i.x.get() * j.d.get().cast_signed() - j.x.get() * i.d.get().cast_signed())
+    S::new(i.origin.get() * j.d.get().cast_signed() - j.origin.get() * i.d.get().cast_signed())
 }
 
 impl Block for RaySetup {
     const NAME: &'static str = "ray_setup";
-    type In = Ray;
+    const TIMING: Timing = Timing { latency: 26, interval: 26 };
+    type In = In;
     type Out = Out;
     #[inline(always)]
-    fn eval(ray: &Ray) -> Out {
-        let (o, d) = (ray.origin, ray.direction);
+    fn eval(input: &In) -> Out {
+        let (o, d) = (input.origin, input.direction);
         let (x, y, z) = (axis(o.x, d.x), axis(o.y, d.y), axis(o.z, d.z));
         Out { x, y, z, moment: Vec3 { x: moment(&y, &z), y: moment(&z, &x), z: moment(&x, &y) } }
     }

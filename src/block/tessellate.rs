@@ -5,7 +5,7 @@
 //! rounding depends on which triangle asks.
 //! Legal: corners multiples of 2^(grid+1), q of 2^grid, grid = N - level - 1 (0 to 9), |v| < 2^31, s from 0 to 256.
 
-use super::Block;
+use super::{Block, Timing};
 use crate::num::{EdgeState, Point, S, U, Vec3, wire_struct};
 
 wire_struct! {
@@ -71,6 +71,7 @@ fn morph(a: Point, b: Point, q: Point, s: EdgeState, grid: U<4>) -> Point {
 
 impl Block for Tessellate {
     const NAME: &'static str = "tessellate";
+    const TIMING: Timing = Timing::pipelined(6);
     type In = In;
     type Out = Out;
     #[inline(always)]

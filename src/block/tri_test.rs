@@ -7,14 +7,16 @@
 //! decide alike: a closed surface is crossed exactly once.
 //! Legal: |v| < 2^31 for points and origin, |d| <= 2^30 and each |d_i| < 2^30. On a miss all numbers are 0. On a hit they are taken with det > 0.
 
-use super::Block;
-use crate::num::{Point, Ray, WU, wire_struct};
+use super::{Block, Timing};
+use crate::num::{Direction, Point, WU, wire_struct};
 
 wire_struct! {
     /// Input of [`TriTest`].
     pub struct In {
-        /// The ray.
-        ray: Ray,
+        /// Origin of the ray.
+        origin: Point,
+        /// Its direction.
+        direction: Direction,
         /// Corner a = p0.
         p0: Point,
         /// Corner b = p1.
@@ -80,12 +82,13 @@ fn tie_is_positive(normal: [i128; 3], p: [i64; 3], q: [i64; 3]) -> bool {
 
 impl Block for TriTest {
     const NAME: &'static str = "tri_test";
+    const TIMING: Timing = Timing::pipelined(13);
     type In = In;
     type Out = Out;
     #[inline(always)]
     fn eval(input: &In) -> Out {
-        let x = input.ray.origin.get();
-        let d = input.ray.direction.get();
+        let x = input.origin.get();
+        let d = input.direction.get();
         // 33-bit differences.
         let relative = |p: Point| {
             let p = p.get();
@@ -125,12 +128,11 @@ impl Block for TriTest {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::num::{Cone, Vec3};
 
     fn shoot(origin: [i64; 3], direction: [i64; 3], p: [[i64; 3]; 3]) -> Out {
         let v = |a: [i64; 3]| Point::new(a[0], a[1], a[2]);
-        let ray = Ray { origin: v(origin), direction: Vec3::new(direction[0], direction[1], direction[2]), cone: Cone::default() };
-        TriTest::eval(&In { ray, p0: v(p[0]), p1: v(p[1]), p2: v(p[2]) })
+        let direction = Direction::new(direction[0], direction[1], direction[2]);
+        TriTest::eval(&In { origin: v(origin), direction, p0: v(p[0]), p1: v(p[1]), p2: v(p[2]) })
     }
 
     const DOWN: [i64; 3] = [0, 0, -(1 << 29)];

@@ -4,7 +4,7 @@
 //! convex combination of the morphed corners and of stored vertices, which lie in the stored box. Without morphing it changes nothing.
 //! Legal: |p| <= `COORD_LIMIT`, so that the ceiling fits 16 bits.
 
-use super::Block;
+use super::{Block, Timing};
 use crate::num::{BOX_SHIFT, Box16, Point, S, Vec3, wire_struct};
 
 wire_struct! {
@@ -47,6 +47,7 @@ fn upper(hi: S<16>, a: S<32>, b: S<32>, c: S<32>) -> S<16> {
 
 impl Block for WidenBox {
     const NAME: &'static str = "widen_box";
+    const TIMING: Timing = Timing::pipelined(2);
     type In = In;
     type Out = Out;
     #[inline(always)]

@@ -25,6 +25,10 @@ pub const T_NEAR_TO_T_SHIFT: u32 = 18;
 
 /// Vertex position in units.
 pub type Point = Vec3<32>;
+/// Ray direction: each component below 2^30 in magnitude.
+pub type Direction = Vec3<31>;
+/// Address of a 32-byte memory line: 2 TiB.
+pub type LineAddress = U<36>;
 /// Displacement bound code.
 pub type BoundCode = U<10>;
 /// Edge state s, 0 to 256.
@@ -64,7 +68,7 @@ wire_struct! {
         /// Origin in units.
         origin: Vec3<32>,
         /// Direction, length close to 2^30 - 1.
-        direction: Vec3<31>,
+        direction: Direction,
         /// Its cone and the wanted quality.
         cone: Cone,
     }

@@ -5,64 +5,38 @@
 
 use super::lod::quarter;
 use crate::block::Block;
-use crate::block::box_test::{self, BoxTest};
-use crate::block::child_sort::{self, ChildSort};
+use crate::block::child_test::{self, ChildTest};
 use crate::block::ray_setup;
-use crate::block::tessellate::child_triangle;
-use crate::block::widen_box::{self, WidenBox};
 use crate::format::{BoundData, BvhChild, ChildRef};
-use crate::num::{Point, RayT, TNear};
+use crate::num::{Point, RayT};
 
 /// Triangle of a node: corners, and its inserted vertices as morphed for this ray.
 #[derive(Clone, Copy, Default)]
-pub(super) struct Split {
+pub(crate) struct Split {
     /// Corners.
     pub p: [Point; 3],
     /// Inserted vertices.
     pub q: [Point; 3],
 }
 
-/// Children in the order of their visit.
-#[derive(Clone, Copy, Default)]
-pub(super) struct Sorted {
-    /// Which, and how many.
-    pub children: child_sort::Out,
-    /// Entry distance of child k.
-    pub t_near: [TNear; 4],
-}
-
-/// Sorts tested children.
+/// Children of a quad-BVH node.
 #[inline(always)]
-pub(super) fn sort(tests: &child_sort::In, out: &mut Sorted) {
-    *out = Sorted { children: ChildSort::eval(tests), t_near: tests.t_near };
-}
-
-/// Children of a quad-BVH node; an empty slot is never hit.
-#[inline(always)]
-fn bvh(ray: &ray_setup::Out, t_max: RayT, group: &[u64; 8], out: &mut Sorted) {
-    let mut tests = child_sort::In::default();
+fn bvh(ray: &ray_setup::Out, t_max: RayT, group: &[u64; 8], out: &mut child_test::Out) {
+    let mut input = child_test::In { ray: *ray, t_max, ..Default::default() };
     for k in 0..4 {
         let BvhChild { child, bounds } = quarter(group, k);
-        let test = BoxTest::eval(&box_test::In { ray: *ray, t_max, bounds });
-        tests.hit[k] = test.hit & (child.kind.get() != ChildRef::EMPTY);
-        tests.t_near[k] = test.t_near;
+        input.present[k] = child.kind.get() != ChildRef::EMPTY;
+        input.bounds[k] = bounds;
     }
-    sort(&tests, out);
+    *out = ChildTest::eval(&input);
 }
 
-/// Children of a tree's node, their boxes widened by their morphed triangles (where nothing was morphed, that changes nothing).
+/// Children of a tree's node (where nothing was morphed, widening changes nothing).
 #[inline(always)]
-fn tree(ray: &ray_setup::Out, t_max: RayT, group: &[u64; 8], split: &Split, out: &mut Sorted) {
-    let mut tests = child_sort::In::default();
-    for k in 0..4 {
-        let BoundData { bounds, .. } = quarter(group, k);
-        let [p0, p1, p2] = child_triangle(split.p, split.q, k);
-        let bounds = WidenBox::eval(&widen_box::In { bounds, p0, p1, p2 }).bounds;
-        let test = BoxTest::eval(&box_test::In { ray: *ray, t_max, bounds });
-        tests.hit[k] = test.hit;
-        tests.t_near[k] = test.t_near;
-    }
-    sort(&tests, out);
+fn tree(ray: &ray_setup::Out, t_max: RayT, group: &[u64; 8], split: &Split, out: &mut child_test::Out) {
+    let bounds = [0, 1, 2, 3].map(|k| quarter::<BoundData>(group, k).bounds);
+    let ([p0, p1, p2], [q0, q1, q2]) = (split.p, split.q);
+    *out = ChildTest::eval(&child_test::In { ray: *ray, t_max, present: [true; 4], bounds, widen: true, p0, p1, p2, q0, q1, q2 });
 }
 
 /// Declares `$name`, which does what `$body` does, compiled for AVX2 where the processor has it.
@@ -70,13 +44,13 @@ macro_rules! side_by_side {
     ($(#[$doc:meta])* $name:ident = $body:ident($($arg:ident: $ty:ty),*)) => {
         $(#[$doc])*
         #[inline(always)]
-        pub(super) fn $name($($arg: $ty),*) -> Sorted {
+        pub(crate) fn $name($($arg: $ty),*) -> child_test::Out {
             // Written through a reference: that the results lie side by side in memory is what starts the compiler's search for lanes.
-            let mut out = Sorted::default();
+            let mut out = child_test::Out::default();
             #[cfg(target_arch = "x86_64")]
             {
                 #[target_feature(enable = "avx2")]
-                fn avx2($($arg: $ty),*, out: &mut Sorted) {
+                fn avx2($($arg: $ty),*, out: &mut child_test::Out) {
                     $body($($arg),*, out);
                 }
                 if std::arch::is_x86_feature_detected!("avx2") {

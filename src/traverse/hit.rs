@@ -3,6 +3,7 @@
 use crate::block::Block;
 use crate::block::bary_map::{self, BaryMap, NodeIndex};
 use crate::block::hit_divide::{self, HitDivide};
+use crate::block::hit_select::{self, FullId, HitSelect};
 use crate::block::tri_test::{self, EdgeFunction, TNumerator};
 use crate::num::{BARY_ONE, Bary, RayT, U, wire_struct};
 
@@ -47,14 +48,6 @@ pub struct TriangleId {
     pub node: u32,
 }
 
-impl TriangleId {
-    /// Order among triangles at equal t: the first full-resolution triangle below, for a hierarchy of `levels` splits.
-    #[inline(always)]
-    pub fn first_full(self, levels: u32) -> u64 {
-        u64::from(self.tree) << (2 * levels) | u64::from(self.node) << (2 * (levels - self.level))
-    }
-}
-
 /// Receives every triangle that a ray meets.
 pub trait HitSink {
     /// Nothing beyond this t is wanted.
@@ -68,13 +61,14 @@ pub trait HitSink {
 pub struct ClosestHit {
     levels: u32,
     t: RayT,
+    id: FullId,
     best: Option<(TriangleId, tri_test::Out)>,
 }
 
 impl ClosestHit {
     /// Nothing yet, in a hierarchy of `levels` splits.
     pub fn new(levels: u32) -> Self {
-        Self { levels, t: RayT::MAX, best: None }
+        Self { levels, t: RayT::MAX, id: FullId::ZERO, best: None }
     }
 
     /// The hit record: divides and maps.
@@ -116,12 +110,18 @@ impl HitSink for ClosestHit {
     #[inline(always)]
     fn offer(&mut self, id: TriangleId, test: &tri_test::Out) {
         let t = HitDivide::eval(&hit_divide::In { numerator: test.t_num, denominator: test.det }).quotient;
-        let closer = match &self.best {
-            None => true,
-            Some((best, _)) => (t, id.first_full(self.levels)) < (self.t, best.first_full(self.levels)),
-        };
-        if closer {
-            self.t = t;
+        let select = HitSelect::eval(&hit_select::In {
+            levels: U::new(u64::from(self.levels)),
+            known: self.best.is_some(),
+            best_t: self.t,
+            best_id: self.id,
+            t,
+            tree: U::new(u64::from(id.tree)),
+            level: U::new(u64::from(id.level)),
+            node: U::new(u64::from(id.node)),
+        });
+        if select.closer {
+            (self.t, self.id) = (t, select.id);
             self.best = Some((id, *test));
         }
     }

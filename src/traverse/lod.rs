@@ -1,9 +1,10 @@
 //! The traversal loop of the paper's figure 9: quad-BVH over base triangles, then tessellation trees with an LOD test at every node.
 
-use super::children::{Sorted, Split, bvh_children, tree_children};
+use super::children::{Split, bvh_children, tree_children};
 use super::stack::{Entry, Op, TraversalStack};
 use super::{HitSink, Kind, Probe, Section, TriangleId};
 use crate::block::Block;
+use crate::block::child_test;
 use crate::block::lod_test::{self, LodTest};
 use crate::block::ray_setup::{self, RaySetup};
 use crate::block::tessellate::{self, Tessellate, child_triangle};
@@ -87,7 +88,7 @@ impl<'a> LodTraverser<'a> {
 
     /// Traces `ray`: every triangle that serves the ray and is met goes to `sink`, every line read to `probe`.
     pub fn trace<P: Probe, H: HitSink>(&mut self, ray: &Ray, probe: &mut P, sink: &mut H) {
-        let setup = RaySetup::eval(ray);
+        let setup = RaySetup::eval(&ray_setup::In { origin: ray.origin, direction: ray.direction });
         self.stack.clear();
         let Self { image, stack, splits } = self;
         let mut journey = Journey { image, stack, splits, ray, setup, tree: 0, probe, sink };
@@ -124,12 +125,12 @@ pub(super) fn read_pair<P: Probe>(probe: &mut P, kind: Kind, index: usize) {
 
 /// Gives the nearest hit child, to go on with, and pushes the others, farthest first; `entry` makes the entry of child k but for its `t_near`.
 #[inline(always)]
-pub(super) fn push_sorted(stack: &mut TraversalStack, sorted: &Sorted, entry: impl Fn(usize) -> Entry) -> Option<Entry> {
+pub(super) fn push_sorted(stack: &mut TraversalStack, sorted: &child_test::Out, entry: impl Fn(usize) -> Entry) -> Option<Entry> {
     let at = |place: usize| {
-        let k = sorted.children.order[place].get() as usize;
+        let k = sorted.order[place].get() as usize;
         Entry { t_near: sorted.t_near[k], ..entry(k) }
     };
-    let count = sorted.children.count.get() as usize;
+    let count = sorted.count.get() as usize;
     for place in (1..count).rev() {
         stack.step(Op::Push(at(place)));
     }
@@ -234,7 +235,7 @@ impl<P: Probe, H: HitSink> Journey<'_, P, H> {
     #[inline(always)]
     fn triangle(&mut self, level: u32, node: u32, p: [Point; 3]) {
         self.probe.triangle();
-        let test = TriTest::eval(&tri_test::In { ray: *self.ray, p0: p[0], p1: p[1], p2: p[2] });
+        let test = TriTest::eval(&tri_test::In { origin: self.ray.origin, direction: self.ray.direction, p0: p[0], p1: p[1], p2: p[2] });
         if test.hit {
             self.sink.offer(TriangleId { tree: self.tree, level, node }, &test);
         }

@@ -1,12 +1,13 @@
 //! The baseline: the full-resolution mesh under a quad-BVH with 16-bit or 32-bit boxes, built from the same blocks (paper section 6.1).
 
-use super::children::{Sorted, bvh_children, sort};
+use super::children::bvh_children;
 use super::lod::{is_beyond, push_sorted, quarter, read_pair};
 use super::stack::{Entry, Op, TraversalStack};
 use super::{HitSink, Kind, Probe, Section, TriangleId};
 use crate::block::Block;
 use crate::block::box_test32::{self, BoxTest32};
 use crate::block::child_sort;
+use crate::block::child_test::sort;
 use crate::block::ray_setup::{self, RaySetup};
 use crate::block::tri_test::{self, TriTest};
 use crate::bvh::{BvhChild32, FullBvh, FullNodes, LINE_BYTES};
@@ -38,7 +39,7 @@ impl<'a> BvhTraverser<'a> {
 
     /// Traces `ray`: every triangle met goes to `sink`, every line read to `probe`.
     pub fn trace<P: Probe, H: HitSink>(&mut self, ray: &Ray, probe: &mut P, sink: &mut H) {
-        let setup = RaySetup::eval(ray);
+        let setup = RaySetup::eval(&ray_setup::In { origin: ray.origin, direction: ray.direction });
         self.stack.clear();
         let mut next = Some(Entry::default());
         loop {
@@ -94,9 +95,7 @@ impl<'a> BvhTraverser<'a> {
                         (tests.hit[k], tests.t_near[k]) = (test.hit, test.t_near);
                     }
                 }
-                let mut sorted = Sorted::default();
-                sort(&tests, &mut sorted);
-                push_sorted(&mut self.stack, &sorted, |k| waiting(child(k).child))
+                push_sorted(&mut self.stack, &sort(&tests), |k| waiting(child(k).child))
             }
         }
     }
@@ -106,7 +105,7 @@ impl<'a> BvhTraverser<'a> {
         probe.triangle();
         let (points, id) = self.bvh.leaves.triangle(slot);
         let [p0, p1, p2] = points.map(Point::from_i32);
-        let test = TriTest::eval(&tri_test::In { ray: *ray, p0, p1, p2 });
+        let test = TriTest::eval(&tri_test::In { origin: ray.origin, direction: ray.direction, p0, p1, p2 });
         if test.hit {
             let levels = self.bvh.levels;
             let (tree, node) = (id >> (2 * levels), id & ((1 << (2 * levels)) - 1));

@@ -1,0 +1,502 @@
+/// Every width and packed struct of the design: the twins of `src/num`, of the blocks' `In` and `Out` and of the unit's ports.
+///
+/// A struct `foo::In` in Rust is `foo_in_t` here, field for field, the first field most significant; `[T; N]` is `logic [N-1:0][W-1:0]`, element
+/// 0 least significant (arrays of structs are kept flat, because free synthesis tools mistake them). `tests/rtl` compares the two.
+package lod_pkg;
+
+  // Widths (docs/numbers.md).
+  localparam int unsigned RAY_T_W = 35;          // t in steps of 2^-32
+  localparam int unsigned T_NEAR_W = 17;         // t_near in steps of 2^16 units
+  localparam int unsigned BARY_W = 32;           // 2^31 = 1
+  localparam int unsigned EDGE_STATE_W = 9;      // 256 = 1
+  localparam int unsigned BOUND_CODE_W = 10;
+  localparam int unsigned BOUND_W = 33;          // |q - m| < 2^32.8
+  localparam int unsigned LINE_ADDRESS_W = 36;   // 2 TiB of 32-byte lines
+  localparam int unsigned NODE_INDEX_W = 20;     // 4^10 nodes on the last level
+  localparam int unsigned FULL_ID_W = 48;        // 28 bits of tree, 2 of each of ten levels
+  localparam int unsigned EDGE_FUNCTION_W = 96;  // |p x q| |d| < 2^96
+  localparam int unsigned T_NUMERATOR_W = 99;    // |a| |b| |c| < 2^98.4
+
+  // Limits and scales.
+  localparam int unsigned MAX_LEVELS = 10;
+  localparam int unsigned MAX_BVH_DEPTH = 24;
+  localparam int unsigned STACK_ENTRIES = 3 * (MAX_BVH_DEPTH + MAX_LEVELS) + 1;
+  localparam int unsigned BOX_SHIFT = 16;
+  localparam int unsigned T_NEAR_TO_T_SHIFT = 18;
+  localparam int unsigned S_ONE = 256;
+
+  // Cycles from an input taken to its output offered, and (where not 1) from one input taken to the next: `Block::TIMING` in Rust.
+  localparam int unsigned BARY_MAP_LATENCY = 10;
+  localparam int unsigned BOUND_DECODE_LATENCY = 3;
+  localparam int unsigned BOX_TEST_LATENCY = 6;
+  localparam int unsigned BOX_TEST32_LATENCY = 8;
+  localparam int unsigned CHILD_SORT_LATENCY = 3;
+  localparam int unsigned HIT_DIVIDE_LATENCY = 40;
+  localparam int unsigned HIT_DIVIDE_INTERVAL = 40;
+  localparam int unsigned HIT_SELECT_LATENCY = 3;
+  localparam int unsigned LOD_TEST_LATENCY = 22;
+  localparam int unsigned NODE_ADDRESS_LATENCY = 2;
+  localparam int unsigned RAY_SETUP_LATENCY = 26;
+  localparam int unsigned RAY_SETUP_INTERVAL = 26;
+  localparam int unsigned TESSELLATE_LATENCY = 6;
+  localparam int unsigned TREE_BASE_LATENCY = 3;
+  localparam int unsigned TRI_TEST_LATENCY = 13;
+  localparam int unsigned WIDEN_BOX_LATENCY = 2;
+  localparam int unsigned CHILD_TEST_LATENCY = WIDEN_BOX_LATENCY + BOX_TEST_LATENCY + CHILD_SORT_LATENCY;
+
+  // Vertex position or ray origin in units.
+  typedef struct packed {
+    logic signed [31:0] x;
+    logic signed [31:0] y;
+    logic signed [31:0] z;
+  } point_t;
+  localparam int unsigned POINT_W = 3 * 32;
+
+  // Ray direction: each component below 2^30 in magnitude.
+  typedef struct packed {
+    logic signed [30:0] x;
+    logic signed [30:0] y;
+    logic signed [30:0] z;
+  } direction_t;
+  localparam int unsigned DIRECTION_W = 3 * 31;
+
+  // Stored vertex: units / 16.
+  typedef struct packed {
+    logic signed [27:0] x;
+    logic signed [27:0] y;
+    logic signed [27:0] z;
+  } stored_point_t;
+  localparam int unsigned STORED_POINT_W = 3 * 28;
+
+  // Corner of a box in steps of 2^16 units.
+  typedef struct packed {
+    logic signed [15:0] x;
+    logic signed [15:0] y;
+    logic signed [15:0] z;
+  } code3_t;
+  localparam int unsigned CODE3_W = 3 * 16;
+
+  // Moment of a ray: origin cross direction.
+  typedef struct packed {
+    logic signed [62:0] x;
+    logic signed [62:0] y;
+    logic signed [62:0] z;
+  } moment_t;
+  localparam int unsigned MOMENT_W = 3 * 63;
+
+  // Scale of the displacement bounds of one model: `h = floor(code^2 * mantissa / 2^shift)` units.
+  typedef struct packed {
+    logic [17:0] mantissa;  // 18-bit mantissa.
+    logic [5:0] shift;      // Right shift.
+  } bound_scale_t;
+  localparam int unsigned BOUND_SCALE_W = 18 + 6;
+
+  // Ray cone: tolerated displacement at distance l is `floor((offset + l * slope) / 2^shift)` units, clamped to 0 ..= 2^34-1.
+  typedef struct packed {
+    logic [52:0] offset;  // (2/delta) r0 in steps of 2^-shift units.
+    logic [17:0] slope;   // (2/delta) tan(theta) in steps of 2^-shift.
+    logic [5:0] shift;    // Right shift.
+  } cone_t;
+  localparam int unsigned CONE_W = 53 + 18 + 6;
+
+  // A ray in model space.
+  typedef struct packed {
+    point_t origin;         // Origin in units.
+    direction_t direction;  // Direction, length close to 2^30 - 1.
+    cone_t cone;            // Its cone and the wanted quality.
+  } ray_t;
+  localparam int unsigned RAY_W = POINT_W + DIRECTION_W + CONE_W;
+
+  // A box in steps of 2^16 units, rounded outwards.
+  typedef struct packed {
+    code3_t lo;  // Lower corner.
+    code3_t hi;  // Upper corner.
+  } box16_t;
+  localparam int unsigned BOX16_W = CODE3_W + CODE3_W;
+
+  // Reciprocal of one direction component, rounded down.
+  typedef struct packed {
+    logic [17:0] mantissa;  // Mantissa.
+    logic [4:0] shift;      // Right shift.
+  } reciprocal_t;
+  localparam int unsigned RECIPROCAL_W = 18 + 5;
+
+  // Constants of one axis.
+  typedef struct packed {
+    logic mirror;                // The direction component is negative: mirror.
+    logic [29:0] d;              // Its magnitude.
+    logic signed [31:0] origin;  // Mirrored origin in units.
+    logic signed [16:0] ceil;    // ceil(x / 2^16).
+    reciprocal_t reciprocal;     // 2^30 / d, rounded down.
+  } axis_t;
+  localparam int unsigned AXIS_W = 1 + 30 + 32 + 17 + RECIPROCAL_W;
+
+  // Input of ray_setup.
+  typedef struct packed {
+    point_t origin;         // Origin in units.
+    direction_t direction;  // Direction.
+  } ray_setup_in_t;
+  localparam int unsigned RAY_SETUP_IN_W = POINT_W + DIRECTION_W;
+
+  // Output of ray_setup.
+  typedef struct packed {
+    axis_t x;         // First axis.
+    axis_t y;         // Second axis.
+    axis_t z;         // Third axis.
+    moment_t moment;  // c_yz, c_zx, c_xy (the moment x cross d, mirrored).
+  } ray_setup_out_t;
+  localparam int unsigned RAY_SETUP_OUT_W = AXIS_W + AXIS_W + AXIS_W + MOMENT_W;
+
+  // Input of bound_decode.
+  typedef struct packed {
+    logic [BOUND_CODE_W-1:0] code;  // The stored code.
+    bound_scale_t scale;            // The model's scale.
+  } bound_decode_in_t;
+  localparam int unsigned BOUND_DECODE_IN_W = BOUND_CODE_W + BOUND_SCALE_W;
+
+  // Output of bound_decode.
+  typedef struct packed {
+    logic [BOUND_W-1:0] h;  // Displacement bound in units.
+  } bound_decode_out_t;
+  localparam int unsigned BOUND_DECODE_OUT_W = BOUND_W;
+
+  // Input of lod_test.
+  typedef struct packed {
+    ray_t ray;                    // The ray.
+    point_t p0;                   // Corner p0 of the (morphed) triangle.
+    point_t p1;                   // Corner p1.
+    point_t p2;                   // Corner p2.
+    logic [BOUND_CODE_W-1:0] e0;  // Bound code of edge (p1, p2).
+    logic [BOUND_CODE_W-1:0] e1;  // Bound code of edge (p2, p0).
+    logic [BOUND_CODE_W-1:0] e2;  // Bound code of edge (p0, p1).
+    bound_scale_t scale;          // The model's bound scale.
+  } lod_test_in_t;
+  localparam int unsigned LOD_TEST_IN_W = RAY_W + POINT_W + POINT_W + POINT_W + BOUND_CODE_W + BOUND_CODE_W + BOUND_CODE_W + BOUND_SCALE_W;
+
+  // Output of lod_test.
+  typedef struct packed {
+    logic refine;                 // Some edge state is not 0: go down.
+    logic [EDGE_STATE_W-1:0] s0;  // State of edge (p1, p2).
+    logic [EDGE_STATE_W-1:0] s1;  // State of edge (p2, p0).
+    logic [EDGE_STATE_W-1:0] s2;  // State of edge (p0, p1).
+  } lod_test_out_t;
+  localparam int unsigned LOD_TEST_OUT_W = 1 + EDGE_STATE_W + EDGE_STATE_W + EDGE_STATE_W;
+
+  // Input of tessellate.
+  typedef struct packed {
+    logic [3:0] grid;             // Zero bits at the bottom of an inserted vertex.
+    logic [EDGE_STATE_W-1:0] s0;  // State of edge (p1, p2).
+    logic [EDGE_STATE_W-1:0] s1;  // State of edge (p2, p0).
+    logic [EDGE_STATE_W-1:0] s2;  // State of edge (p0, p1).
+    point_t p0;                   // Corner p0.
+    point_t p1;                   // Corner p1.
+    point_t p2;                   // Corner p2.
+    point_t q0;                   // Stored vertex on (p1, p2).
+    point_t q1;                   // Stored vertex on (p2, p0).
+    point_t q2;                   // Stored vertex on (p0, p1).
+  } tessellate_in_t;
+  localparam int unsigned TESSELLATE_IN_W = 4 + EDGE_STATE_W + EDGE_STATE_W + EDGE_STATE_W + POINT_W + POINT_W + POINT_W + POINT_W + POINT_W + POINT_W;
+
+  // Output of tessellate: the morphed vertices.
+  typedef struct packed {
+    point_t q0;  // On (p1, p2).
+    point_t q1;  // On (p2, p0).
+    point_t q2;  // On (p0, p1).
+  } tessellate_out_t;
+  localparam int unsigned TESSELLATE_OUT_W = POINT_W + POINT_W + POINT_W;
+
+  // Input of widen_box.
+  typedef struct packed {
+    box16_t bounds;  // Stored box.
+    point_t p0;      // Corner of the morphed child triangle.
+    point_t p1;      // Corner.
+    point_t p2;      // Corner.
+  } widen_box_in_t;
+  localparam int unsigned WIDEN_BOX_IN_W = BOX16_W + POINT_W + POINT_W + POINT_W;
+
+  // Output of widen_box.
+  typedef struct packed {
+    box16_t bounds;  // The union.
+  } widen_box_out_t;
+  localparam int unsigned WIDEN_BOX_OUT_W = BOX16_W;
+
+  // Input of box_test.
+  typedef struct packed {
+    ray_setup_out_t ray;        // The ray's constants.
+    logic [RAY_T_W-1:0] t_max;  // t of the closest hit so far.
+    box16_t bounds;             // The box.
+  } box_test_in_t;
+  localparam int unsigned BOX_TEST_IN_W = RAY_SETUP_OUT_W + RAY_T_W + BOX16_W;
+
+  // Output of both box tests.
+  typedef struct packed {
+    logic hit;                    // The ray meets the box before `t_max`.
+    logic [T_NEAR_W-1:0] t_near;  // Lower bound of the entry distance.
+  } box_test_out_t;
+  localparam int unsigned BOX_TEST_OUT_W = 1 + T_NEAR_W;
+
+  // Input of box_test32.
+  typedef struct packed {
+    ray_setup_out_t ray;        // The ray's constants.
+    logic [RAY_T_W-1:0] t_max;  // t of the closest hit so far.
+    point_t lo;                 // Lower corner in units.
+    point_t hi;                 // Upper corner in units.
+  } box_test32_in_t;
+  localparam int unsigned BOX_TEST32_IN_W = RAY_SETUP_OUT_W + RAY_T_W + POINT_W + POINT_W;
+
+  // Input of child_sort.
+  typedef struct packed {
+    logic [3:0] hit;                   // Child k is hit.
+    logic [3:0][T_NEAR_W-1:0] t_near;  // Entry distance of child k.
+  } child_sort_in_t;
+  localparam int unsigned CHILD_SORT_IN_W = 4 + 4 * T_NEAR_W;
+
+  // Output of child_sort.
+  typedef struct packed {
+    logic [2:0] count;       // Number of children hit, 0 to 4.
+    logic [3:0][1:0] order;  // Child numbers, nearest first.
+  } child_sort_out_t;
+  localparam int unsigned CHILD_SORT_OUT_W = 3 + 4 * 2;
+
+  // Input of child_test.
+  typedef struct packed {
+    ray_setup_out_t ray;              // The ray's constants.
+    logic [RAY_T_W-1:0] t_max;        // t of the closest hit so far.
+    logic [3:0] present;              // Child k exists.
+    logic [3:0][BOX16_W-1:0] bounds;  // Box of child k.
+    logic widen;                      // Widen the boxes by the children of the triangle below.
+    point_t p0;                       // Corner p0 of the parent.
+    point_t p1;                       // Corner p1.
+    point_t p2;                       // Corner p2.
+    point_t q0;                       // Its inserted vertex on (p1, p2), as morphed for this ray.
+    point_t q1;                       // On (p2, p0).
+    point_t q2;                       // On (p0, p1).
+  } child_test_in_t;
+  localparam int unsigned CHILD_TEST_IN_W = RAY_SETUP_OUT_W + RAY_T_W + 4 + 4 * BOX16_W + 1 + POINT_W + POINT_W + POINT_W + POINT_W + POINT_W + POINT_W;
+
+  // Output of child_test.
+  typedef struct packed {
+    logic [2:0] count;                 // Number of children hit, 0 to 4.
+    logic [3:0][1:0] order;            // Child numbers, nearest first.
+    logic [3:0][T_NEAR_W-1:0] t_near;  // Entry distance of child k; 0 if it is missed.
+  } child_test_out_t;
+  localparam int unsigned CHILD_TEST_OUT_W = 3 + 4 * 2 + 4 * T_NEAR_W;
+
+  // Input of tri_test.
+  typedef struct packed {
+    point_t origin;         // Origin of the ray.
+    direction_t direction;  // Its direction.
+    point_t p0;             // Corner a = p0.
+    point_t p1;             // Corner b = p1.
+    point_t p2;             // Corner c = p2.
+  } tri_test_in_t;
+  localparam int unsigned TRI_TEST_IN_W = POINT_W + DIRECTION_W + POINT_W + POINT_W + POINT_W;
+
+  // Output of tri_test.
+  typedef struct packed {
+    logic hit;                        // The ray meets the triangle.
+    logic front;                      // It meets its front (counter-clockwise) face.
+    logic [EDGE_FUNCTION_W-1:0] v;    // Weight of p1 times det.
+    logic [EDGE_FUNCTION_W-1:0] w;    // Weight of p2 times det.
+    logic [EDGE_FUNCTION_W-1:0] det;  // u + v + w.
+    logic [T_NUMERATOR_W-1:0] t_num;  // t times det.
+  } tri_test_out_t;
+  localparam int unsigned TRI_TEST_OUT_W = 1 + 1 + EDGE_FUNCTION_W + EDGE_FUNCTION_W + EDGE_FUNCTION_W + T_NUMERATOR_W;
+
+  // Input of hit_divide.
+  typedef struct packed {
+    logic [T_NUMERATOR_W-1:0] numerator;      // Numerator.
+    logic [EDGE_FUNCTION_W-1:0] denominator;  // Denominator, not 0.
+  } hit_divide_in_t;
+  localparam int unsigned HIT_DIVIDE_IN_W = T_NUMERATOR_W + EDGE_FUNCTION_W;
+
+  // Output of hit_divide.
+  typedef struct packed {
+    logic [RAY_T_W-1:0] quotient;  // The quotient.
+  } hit_divide_out_t;
+  localparam int unsigned HIT_DIVIDE_OUT_W = RAY_T_W;
+
+  // Input of hit_select.
+  typedef struct packed {
+    logic [3:0] levels;             // Number of splits N.
+    logic known;                    // There is a closest hit so far.
+    logic [RAY_T_W-1:0] best_t;     // Its t.
+    logic [FULL_ID_W-1:0] best_id;  // Its id.
+    logic [RAY_T_W-1:0] t;          // t of the new hit.
+    logic [27:0] tree;              // Its base triangle.
+    logic [3:0] level;              // Its level.
+    logic [NODE_INDEX_W-1:0] node;  // Its node on that level.
+  } hit_select_in_t;
+  localparam int unsigned HIT_SELECT_IN_W = 4 + 1 + RAY_T_W + FULL_ID_W + RAY_T_W + 28 + 4 + NODE_INDEX_W;
+
+  // Output of hit_select.
+  typedef struct packed {
+    logic closer;              // The new hit is the closest now.
+    logic [FULL_ID_W-1:0] id;  // Its id.
+  } hit_select_out_t;
+  localparam int unsigned HIT_SELECT_OUT_W = 1 + FULL_ID_W;
+
+  // Input of bary_map.
+  typedef struct packed {
+    logic [3:0] levels;             // Levels to go down: N - n.
+    logic [NODE_INDEX_W-1:0] node;  // Node on level n.
+    logic [BARY_W-1:0] b0;          // Weight of p0.
+    logic [BARY_W-1:0] b1;          // Weight of p1.
+    logic [BARY_W-1:0] b2;          // Weight of p2.
+  } bary_map_in_t;
+  localparam int unsigned BARY_MAP_IN_W = 4 + NODE_INDEX_W + BARY_W + BARY_W + BARY_W;
+
+  // Output of bary_map.
+  typedef struct packed {
+    logic [NODE_INDEX_W-1:0] node;  // Node on level N.
+    logic [BARY_W-1:0] b0;          // Weight of its corner 0.
+    logic [BARY_W-1:0] b1;          // Weight of its corner 1.
+    logic [BARY_W-1:0] b2;          // Weight of its corner 2.
+  } bary_map_out_t;
+  localparam int unsigned BARY_MAP_OUT_W = NODE_INDEX_W + BARY_W + BARY_W + BARY_W;
+
+  // Input of tree_base.
+  typedef struct packed {
+    logic [3:0] levels;                   // Number of splits N.
+    logic [27:0] tree;                    // The tree.
+    logic [LINE_ADDRESS_W-1:0] vertices;  // First line of the vertex data.
+    logic [LINE_ADDRESS_W-1:0] bounds;    // First line of the bound data.
+  } tree_base_in_t;
+  localparam int unsigned TREE_BASE_IN_W = 4 + 28 + LINE_ADDRESS_W + LINE_ADDRESS_W;
+
+  // Output of tree_base.
+  typedef struct packed {
+    logic [LINE_ADDRESS_W-1:0] vertices;  // First line of the tree's vertex data.
+    logic [LINE_ADDRESS_W-1:0] bounds;    // First line of its bound data.
+  } tree_base_out_t;
+  localparam int unsigned TREE_BASE_OUT_W = LINE_ADDRESS_W + LINE_ADDRESS_W;
+
+  // Input of node_address.
+  typedef struct packed {
+    logic [LINE_ADDRESS_W-1:0] base;  // First line of the section, or of the tree within it.
+    logic [3:0] level;                // Level of the node within its tree; 0 outside of trees.
+    logic [27:0] index;               // Number of the record on its level.
+    logic pair;                       // Records have two lines.
+    logic half;                       // The second of them; 0 for one-line records.
+  } node_address_in_t;
+  localparam int unsigned NODE_ADDRESS_IN_W = LINE_ADDRESS_W + 4 + 28 + 1 + 1;
+
+  // Output of node_address.
+  typedef struct packed {
+    logic [LINE_ADDRESS_W-1:0] address;  // The line.
+  } node_address_out_t;
+  localparam int unsigned NODE_ADDRESS_OUT_W = LINE_ADDRESS_W;
+
+  // Bound data of one node: 16 bytes.
+  typedef struct packed {
+    logic [1:0] reserved;         // Zero.
+    logic [BOUND_CODE_W-1:0] e0;  // Code of edge (p1, p2).
+    logic [BOUND_CODE_W-1:0] e1;  // Code of edge (p2, p0).
+    logic [BOUND_CODE_W-1:0] e2;  // Code of edge (p0, p1).
+    box16_t bounds;               // Box of the full-resolution triangles below the node.
+  } bound_data_t;
+  localparam int unsigned BOUND_DATA_W = 2 + BOUND_CODE_W + BOUND_CODE_W + BOUND_CODE_W + BOX16_W;
+
+  // Three points of 28-bit coordinates (the stored part: units / 16): one 32-byte line.
+  typedef struct packed {
+    logic [3:0] reserved;  // Zero.
+    stored_point_t v0;     // q0 (or p0 in an L0 record).
+    stored_point_t v1;     // q1 (or p1).
+    stored_point_t v2;     // q2 (or p2).
+  } vertex_data_t;
+  localparam int unsigned VERTEX_DATA_W = 4 + STORED_POINT_W + STORED_POINT_W + STORED_POINT_W;
+
+  // Second line of an L0 record.
+  typedef struct packed {
+    logic [63:0] reserved_high;  // Zero.
+    logic [47:0] reserved;       // Zero.
+    logic [15:0] material;       // Material index.
+    bound_data_t root;           // Bound data of the root (codes zero if N = 0).
+  } l0_record_t;
+  localparam int unsigned L0_RECORD_W = 64 + 48 + 16 + BOUND_DATA_W;
+
+  // What a quad-BVH slot refers to.
+  typedef struct packed {
+    logic [1:0] kind;    // 0 empty, 1 inner node, 2 leaf.
+    logic [1:0] count;   // Leaf: number of triangles or trees minus one.
+    logic [27:0] index;  // Node index, or index of the leaf's first triangle slot or tree.
+  } child_ref_t;
+  localparam int unsigned CHILD_REF_W = 2 + 2 + 28;
+
+  // One of the four children of a quad-BVH node: 16 bytes.
+  typedef struct packed {
+    child_ref_t child;  // What it refers to.
+    box16_t bounds;     // Its box; all zero in an empty slot.
+  } bvh_child_t;
+  localparam int unsigned BVH_CHILD_W = CHILD_REF_W + BOX16_W;
+
+  // One waiting node.
+  typedef struct packed {
+    logic [T_NEAR_W-1:0] t_near;  // Lower bound of the distance to its box.
+    logic [1:0] kind;             // 0: quad-BVH node `index`; 1: tree `index`; 2: node `index` on `level` of the current tree.
+    logic [3:0] level;            // Level within the tree, 1 to 9; else 0.
+    logic [27:0] index;           // Which one.
+    logic [BOUND_CODE_W-1:0] e0;  // Bound code of edge (p1, p2) of a tree's node; else 0.
+    logic [BOUND_CODE_W-1:0] e1;  // Bound code of edge (p2, p0).
+    logic [BOUND_CODE_W-1:0] e2;  // Bound code of edge (p0, p1).
+  } stack_entry_t;
+  localparam int unsigned STACK_ENTRY_W = T_NEAR_W + 2 + 4 + 28 + BOUND_CODE_W + BOUND_CODE_W + BOUND_CODE_W;
+
+  // The hit record.
+  typedef struct packed {
+    logic [RAY_T_W-1:0] t;               // Ray parameter in steps of 2^-32 of the direction.
+    logic front;                         // The front face was met.
+    logic [27:0] tree;                   // Base triangle.
+    logic [3:0] level;                   // Level of the triangle that was met, 0 to N.
+    logic [NODE_INDEX_W-1:0] node;       // Its node on that level.
+    logic [BARY_W-1:0] b0;               // Weight of its p0, 2^31 = 1.
+    logic [BARY_W-1:0] b1;               // Weight of its p1.
+    logic [BARY_W-1:0] b2;               // Weight of its p2.
+    logic [NODE_INDEX_W-1:0] full_node;  // Node on level N: the full-resolution triangle is `tree * 4^N + full_node`.
+    logic [BARY_W-1:0] full_b0;          // Weight of the full-resolution triangle's corner 0.
+    logic [BARY_W-1:0] full_b1;          // Weight of corner 1.
+    logic [BARY_W-1:0] full_b2;          // Weight of corner 2.
+  } hit_t;
+  localparam int unsigned HIT_W = RAY_T_W + 1 + 28 + 4 + NODE_INDEX_W + BARY_W + BARY_W + BARY_W + NODE_INDEX_W + BARY_W + BARY_W + BARY_W;
+
+  // The model that the rays meet; held still while rays are under way.
+  typedef struct packed {
+    logic [3:0] levels;                   // Number of splits N.
+    bound_scale_t scale;                  // Scale of the displacement bounds.
+    logic [LINE_ADDRESS_W-1:0] nodes;     // First line of the quad-BVH's nodes.
+    logic [LINE_ADDRESS_W-1:0] records;   // First line of the L0 records.
+    logic [LINE_ADDRESS_W-1:0] bounds;    // First line of the bound data.
+    logic [LINE_ADDRESS_W-1:0] vertices;  // First line of the vertex data.
+  } scene_config_t;
+  localparam int unsigned SCENE_CONFIG_W = 4 + BOUND_SCALE_W + LINE_ADDRESS_W + LINE_ADDRESS_W + LINE_ADDRESS_W + LINE_ADDRESS_W;
+
+  // A ray to trace.
+  typedef struct packed {
+    logic [31:0] tag;  // Comes back with the hit.
+    ray_t ray;         // The ray in model space.
+  } ray_in_t;
+  localparam int unsigned RAY_IN_W = 32 + RAY_W;
+
+  // A ray traced.
+  typedef struct packed {
+    logic [31:0] tag;  // The ray's tag.
+    logic found;       // The ray met something.
+    hit_t hit;         // What; all zero if nothing.
+  } hit_out_t;
+  localparam int unsigned HIT_OUT_W = 32 + 1 + HIT_W;
+
+  // A memory line asked for.
+  typedef struct packed {
+    logic [7:0] tag;                     // Ray context (upper six bits) and place of the line in its record (lower two).
+    logic [LINE_ADDRESS_W-1:0] address;  // The line.
+  } memory_request_t;
+  localparam int unsigned MEMORY_REQUEST_W = 8 + LINE_ADDRESS_W;
+
+  // A memory line that came.
+  typedef struct packed {
+    logic [7:0] tag;         // Tag of the request.
+    logic [3:0][63:0] line;  // Its 32 bytes, word 0 first.
+  } memory_answer_t;
+  localparam int unsigned MEMORY_ANSWER_W = 8 + 4 * 64;
+
+endpackage

@@ -1,0 +1,83 @@
+//! The four children of a node against a ray: boxes widened by their morphed triangles, tested, and sorted (paper figure 9).
+//!
+//! Four [`WidenBox`], four [`BoxTest`] and one [`ChildSort`] in a row. Children of a quad-BVH node have no triangles: `widen` is false and their
+//! boxes stay as they are. A child that is not present is never hit.
+//! Legal: what the parts ask for.
+
+use super::box_test::{self, BoxTest};
+use super::child_sort::{self, ChildSort};
+use super::ray_setup;
+use super::tessellate::child_triangle;
+use super::widen_box::{self, WidenBox};
+use super::{Block, Timing};
+use crate::num::{Box16, Point, RayT, TNear, U, wire_struct};
+
+wire_struct! {
+    /// Input of [`ChildTest`].
+    pub struct In {
+        /// The ray's constants.
+        ray: ray_setup::Out,
+        /// t of the closest hit so far.
+        t_max: RayT,
+        /// Child k exists.
+        present: [bool; 4],
+        /// Box of child k.
+        bounds: [Box16; 4],
+        /// Widen the boxes by the children of the triangle below.
+        widen: bool,
+        /// Corner p0 of the parent.
+        p0: Point,
+        /// Corner p1.
+        p1: Point,
+        /// Corner p2.
+        p2: Point,
+        /// Its inserted vertex on (p1, p2), as morphed for this ray.
+        q0: Point,
+        /// On (p2, p0).
+        q1: Point,
+        /// On (p0, p1).
+        q2: Point,
+    }
+}
+
+wire_struct! {
+    /// Output of [`ChildTest`].
+    pub struct Out {
+        /// Number of children hit, 0 to 4.
+        count: U<3>,
+        /// Child numbers, nearest first.
+        order: [U<2>; 4],
+        /// Entry distance of child k; 0 if it is missed.
+        t_near: [TNear; 4],
+    }
+}
+
+/// The block.
+pub struct ChildTest;
+
+impl Block for ChildTest {
+    const NAME: &'static str = "child_test";
+    const TIMING: Timing = Timing::pipelined(WidenBox::TIMING.latency + BoxTest::TIMING.latency + ChildSort::TIMING.latency);
+    type In = In;
+    type Out = Out;
+    #[inline(always)]
+    fn eval(i: &In) -> Out {
+        let mut tests = child_sort::In::default();
+        for k in 0..4 {
+            let [p0, p1, p2] = child_triangle([i.p0, i.p1, i.p2], [i.q0, i.q1, i.q2], k);
+            let stored = i.bounds[k];
+            let bounds = if i.widen { WidenBox::eval(&widen_box::In { bounds: stored, p0, p1, p2 }).bounds } else { stored };
+            let test = BoxTest::eval(&box_test::In { ray: i.ray, t_max: i.t_max, bounds });
+            tests.hit[k] = test.hit & i.present[k];
+            tests.t_near[k] = if i.present[k] { test.t_near } else { TNear::ZERO };
+        }
+        sort(&tests)
+    }
+}
+
+/// The sorted children with their distances.
+#[inline(always)]
+pub fn sort(tests: &child_sort::In) -> Out {
+    let sorted = ChildSort::eval(tests);
+    Out { count: sorted.count, order: sorted.order, t_near: tests.t_near }
+}

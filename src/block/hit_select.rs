@@ -1,0 +1,89 @@
+//! Is a new hit closer than the closest so far?
+//!
+//! Smaller t first, then smaller id: the first full-resolution triangle below, tree 4^N + node 4^(N - level). So the result does not depend on
+//! the order of visit. Two hits of equal t and id are the same triangle: not closer.
+//! Legal: level <= levels <= 10, node below 4^level.
+
+use super::bary_map::NodeIndex;
+use super::{Block, Timing};
+use crate::num::{RayT, U, wire_struct};
+
+/// Number of a full-resolution triangle: 28 bits of tree, 2 of each of ten levels.
+pub type FullId = U<48>;
+
+wire_struct! {
+    /// Input of [`HitSelect`].
+    pub struct In {
+        /// Number of splits N.
+        levels: U<4>,
+        /// There is a closest hit so far.
+        known: bool,
+        /// Its t.
+        best_t: RayT,
+        /// Its id.
+        best_id: FullId,
+        /// t of the new hit.
+        t: RayT,
+        /// Its base triangle.
+        tree: U<28>,
+        /// Its level.
+        level: U<4>,
+        /// Its node on that level.
+        node: NodeIndex,
+    }
+}
+
+wire_struct! {
+    /// Output of [`HitSelect`].
+    pub struct Out {
+        /// The new hit is the closest now.
+        closer: bool,
+        /// Its id.
+        id: FullId,
+    }
+}
+
+/// The block.
+pub struct HitSelect;
+
+impl Block for HitSelect {
+    const NAME: &'static str = "hit_select";
+    const TIMING: Timing = Timing::pipelined(3);
+    type In = In;
+    type Out = Out;
+    #[inline(always)]
+    fn eval(i: &In) -> Out {
+        let levels = i.levels.get();
+        // A node of level n below 4^n shifted by 2 (N - n): below 4^N, so the fields do not overlap.
+        let id = FullId::new(i.tree.get() << (2 * levels) | i.node.get() << (2 * (levels - i.level.get())));
+        let closer = !i.known || i.t < i.best_t || (i.t == i.best_t && id < i.best_id);
+        Out { closer, id }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn nearer_wins_then_the_first_triangle() {
+        let closer = |best_t, best_id, t, node| {
+            let input = In {
+                levels: U::new(3),
+                known: true,
+                best_t: U::new(best_t),
+                best_id: U::new(best_id),
+                t: U::new(t),
+                tree: U::new(1),
+                level: U::new(2),
+                node: U::new(node),
+            };
+            HitSelect::eval(&input).closer
+        };
+        // Node 5 of level 2 of tree 1 of 4^3 triangles a tree: 64 + 20.
+        assert!(closer(10, 0, 9, 5) && !closer(10, 100, 11, 5));
+        assert!(closer(10, 85, 10, 5) && !closer(10, 84, 10, 5) && !closer(10, 83, 10, 5));
+        let first = HitSelect::eval(&In { tree: U::new(7), t: RayT::MAX, ..In::default() });
+        assert!(first.closer && first.id.get() == 7);
+    }
+}

@@ -1,0 +1,67 @@
+//! Address of a memory line of a record (`docs/scene-format.md`).
+//!
+//! With i = (4^level - 1) / 3 + index: base + i for one-line records, base + 2i + half for two-line ones. Records outside of trees have level 0.
+//! Legal: level <= 9; result below 2^36, which the size of the sections keeps.
+
+use super::{Block, Timing};
+use crate::num::{LineAddress, U, wire_struct};
+
+wire_struct! {
+    /// Input of [`NodeAddress`].
+    pub struct In {
+        /// First line of the section, or of the tree within it.
+        base: LineAddress,
+        /// Level of the node within its tree; 0 outside of trees.
+        level: U<4>,
+        /// Number of the record on its level.
+        index: U<28>,
+        /// Records have two lines.
+        pair: bool,
+        /// The second of them; 0 for one-line records.
+        half: bool,
+    }
+}
+
+wire_struct! {
+    /// Output of [`NodeAddress`].
+    pub struct Out {
+        /// The line.
+        address: LineAddress,
+    }
+}
+
+/// The block.
+pub struct NodeAddress;
+
+impl Block for NodeAddress {
+    const NAME: &'static str = "node_address";
+    const TIMING: Timing = Timing::pipelined(2);
+    type In = In;
+    type Out = Out;
+    #[inline(always)]
+    fn eval(i: &In) -> Out {
+        // (4^n - 1) / 3 = binary 0101..01 with n ones: below 2^17 for n <= 9.
+        let start = 0x5_5555 & ((1 << (2 * i.level.get())) - 1);
+        let record = start + i.index.get();
+        let line = if i.pair { 2 * record + u64::from(i.half) } else { record };
+        Out { address: LineAddress::new(i.base.get() + line) }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::format::layout;
+
+    #[test]
+    fn agrees_with_the_layout() {
+        for level in 0..=9u32 {
+            for node in [0, 1, (1usize << (2 * level)) - 1] {
+                let input = In { base: U::new(100), level: U::new(u64::from(level)), index: U::new(node as u64), pair: false, half: false };
+                assert_eq!(NodeAddress::eval(&input).address.get() as usize, 100 + layout::vertex_line(10, 0, level, node));
+                let second = NodeAddress::eval(&In { pair: true, half: true, ..input });
+                assert_eq!(second.address.get() as usize, 101 + 2 * layout::child_group(10, 0, level, node));
+            }
+        }
+    }
+}

@@ -1,0 +1,3 @@
+//! Floor 4: the cycle level.
+
+pub mod ports;
