@@ -499,4 +499,60 @@ package lod_pkg;
   } memory_answer_t;
   localparam int unsigned MEMORY_ANSWER_W = 8 + 4 * 64;
 
+  // Inside the traversal unit (docs/traversal-unit.md).
+  localparam int unsigned MAX_CONTEXTS = 64;
+  localparam int unsigned CONTEXT_W = 6;
+  localparam int unsigned TRI_TAG_W = CONTEXT_W + 2;
+  localparam int unsigned DIVIDE_TAG_W = 2 + CONTEXT_W + 2;
+
+  // State of a ray context.
+  typedef enum logic [4:0] {
+    IDLE        = 5'd0,
+    SETUP       = 5'd1,
+    SETUP_WAIT  = 5'd2,
+    VISIT       = 5'd3,
+    FETCH       = 5'd4,
+    CHILD       = 5'd5,
+    CHILD_WAIT  = 5'd6,
+    PUSH        = 5'd7,
+    POP         = 5'd8,
+    LOD         = 5'd9,
+    LOD_WAIT    = 5'd10,
+    MORPH       = 5'd11,
+    MORPH_WAIT  = 5'd12,
+    TRI         = 5'd13,
+    DIVIDE_V    = 5'd14,
+    DIVIDE_W    = 5'd15,
+    DIVIDE_WAIT = 5'd16,
+    SUM         = 5'd17,
+    MAP         = 5'd18,
+    MAP_WAIT    = 5'd19,
+    DONE        = 5'd20
+  } context_state_t;
+
+  // What a context fetches.
+  typedef enum logic [1:0] {
+    NODE   = 2'd0,  // quad-BVH node
+    RECORD = 2'd1,  // L0 record
+    VERTEX = 2'd2   // inserted vertices and, but on the last split, the children's bound data
+  } fetch_t;
+
+  // Kinds of stack entries.
+  localparam logic [1:0] ENTRY_BVH_NODE = 2'd0;
+  localparam logic [1:0] ENTRY_TREE = 2'd1;
+  localparam logic [1:0] ENTRY_TREE_NODE = 2'd2;
+
+  // What a division is for.
+  localparam logic [1:0] DIVIDE_FOR_T = 2'd0;
+  localparam logic [1:0] DIVIDE_FOR_V = 2'd1;
+  localparam logic [1:0] DIVIDE_FOR_W = 2'd2;
+
+  // A hit on its way to the closest.
+  typedef struct packed {
+    logic [CONTEXT_W-1:0] owner;  // Its context.
+    logic [1:0] number;           // Which of the context's triangles.
+    tri_test_out_t test;          // Its numerators.
+  } queued_hit_t;
+  localparam int unsigned QUEUED_HIT_W = CONTEXT_W + 2 + TRI_TEST_OUT_W;
+
 endpackage
