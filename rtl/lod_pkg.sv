@@ -44,6 +44,17 @@ package lod_pkg;
   localparam int unsigned WIDEN_BOX_LATENCY = 2;
   localparam int unsigned CHILD_TEST_LATENCY = WIDEN_BOX_LATENCY + BOX_TEST_LATENCY + CHILD_SORT_LATENCY;
 
+  // A factor of `multiplier` is cut into limbs of 17 bits, the highest signed with up to 18.
+  localparam int unsigned MULTIPLIER_LIMB_W = 17;
+  function automatic int unsigned multiplier_limbs(input int unsigned w);
+    multiplier_limbs = (w - 1 + MULTIPLIER_LIMB_W - 1) / MULTIPLIER_LIMB_W;
+  endfunction
+
+  // Cycles of `multiplier`: the limb products, then one tree level each.
+  function automatic int unsigned multiplier_latency(input int unsigned a_w, input int unsigned b_w);
+    multiplier_latency = 1 + $clog2(multiplier_limbs(a_w)) + $clog2(multiplier_limbs(b_w));
+  endfunction
+
   // Vertex position or ray origin in units.
   typedef struct packed {
     logic signed [31:0] x;
