@@ -14,8 +14,12 @@ package lod_pkg;
   localparam int unsigned LINE_ADDRESS_W = 36;   // 2 TiB of 32-byte lines
   localparam int unsigned NODE_INDEX_W = 20;     // 4^10 nodes on the last level
   localparam int unsigned FULL_ID_W = 48;        // 28 bits of tree, 2 of each of ten levels
+  localparam int unsigned RELATIVE_W = 33;       // difference of two 32-bit coordinates
+  localparam int unsigned NORMAL_W = 66;         // component of p x q: |p_i q_j| < 2^64, two of them
   localparam int unsigned EDGE_FUNCTION_W = 96;  // |p x q| |d| < 2^96
+  localparam int unsigned SIGNED_EDGE_W = EDGE_FUNCTION_W + 1;
   localparam int unsigned T_NUMERATOR_W = 99;    // |a| |b| |c| < 2^98.4
+  localparam int unsigned SIGNED_T_NUMERATOR_W = T_NUMERATOR_W + 1;
 
   // Limits and scales.
   localparam int unsigned MAX_LEVELS = 10;
@@ -40,19 +44,30 @@ package lod_pkg;
   localparam int unsigned RAY_SETUP_INTERVAL = 26;
   localparam int unsigned TESSELLATE_LATENCY = 6;
   localparam int unsigned TREE_BASE_LATENCY = 3;
-  localparam int unsigned TRI_TEST_LATENCY = 13;
+  localparam int unsigned TRI_TEST_LATENCY = 14;
+  localparam int unsigned TRI_TEST_1_LATENCY = 16;  // with EDGES_PER_CYCLE = 1
+  localparam int unsigned TRI_TEST_1_INTERVAL = 3;
   localparam int unsigned WIDEN_BOX_LATENCY = 2;
+  localparam int unsigned EDGE_FUNCTION_LATENCY = 10;  // part of tri_test
   localparam int unsigned CHILD_TEST_LATENCY = WIDEN_BOX_LATENCY + BOX_TEST_LATENCY + CHILD_SORT_LATENCY;
 
   // A factor of `multiplier` is cut into limbs of 17 bits, the highest signed with up to 18.
   localparam int unsigned MULTIPLIER_LIMB_W = 17;
   function automatic int unsigned multiplier_limbs(input int unsigned w);
-    multiplier_limbs = (w - 1 + MULTIPLIER_LIMB_W - 1) / MULTIPLIER_LIMB_W;
+    multiplier_limbs = w <= MULTIPLIER_LIMB_W + 1 ? 1 : (w - 1 + MULTIPLIER_LIMB_W - 1) / MULTIPLIER_LIMB_W;
   endfunction
 
   // Cycles of `multiplier`: the limb products, then one tree level each.
   function automatic int unsigned multiplier_latency(input int unsigned a_w, input int unsigned b_w);
     multiplier_latency = 1 + $clog2(multiplier_limbs(a_w)) + $clog2(multiplier_limbs(b_w));
+  endfunction
+
+  // Cycles of `dot_product`: its products, then two sums; of `cross_product`: its products, then the differences.
+  function automatic int unsigned dot_product_latency(input int unsigned a_w, input int unsigned b_w);
+    dot_product_latency = multiplier_latency(a_w, b_w) + 2;
+  endfunction
+  function automatic int unsigned cross_product_latency(input int unsigned w);
+    cross_product_latency = multiplier_latency(w, w) + 1;
   endfunction
 
   // Vertex position or ray origin in units.

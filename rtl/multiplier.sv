@@ -2,7 +2,7 @@
 ///
 /// The factors are cut into limbs of 17 bits, unsigned but for the highest, which is signed and has up to 18 bits; each product of two limbs is one
 /// 18 x 18 signed multiplier of the FPGA. The limb products are registered, then added: first along a, then along b, one tree level per stage.
-/// Legal: A_W, B_W >= 2. Latency: lod_pkg::multiplier_latency(A_W, B_W); interval 1.
+/// Legal: A_W, B_W >= 1. Latency: lod_pkg::multiplier_latency(A_W, B_W); interval 1.
 module multiplier #(
   parameter int unsigned A_W = 33,
   parameter int unsigned B_W = 33
@@ -18,8 +18,8 @@ module multiplier #(
   output logic [A_W+B_W-1:0] product_o
 );
 
-  if (A_W < 2 || B_W < 2) begin : g_illegal_widths
-    $error("multiplier: A_W = %0d, B_W = %0d, both must be at least 2", A_W, B_W);
+  if (A_W < 1 || B_W < 1) begin : g_illegal_widths
+    $error("multiplier: A_W = %0d, B_W = %0d, both must be at least 1", A_W, B_W);
   end
 
   localparam int unsigned LIMB_W = lod_pkg::MULTIPLIER_LIMB_W;
