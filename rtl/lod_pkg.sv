@@ -9,6 +9,8 @@ package lod_pkg;
   localparam int unsigned T_NEAR_W = 17;         // t_near in steps of 2^16 units
   localparam int unsigned BARY_W = 32;           // 2^31 = 1
   localparam int unsigned EDGE_STATE_W = 9;      // 256 = 1
+  localparam int unsigned DISTANCE_W = 34;       // l = (p - x).d / 2^30, signed: 64 - 30 bits
+  localparam int unsigned TOLERANCE_W = 34;      // D, clamped to this width
   localparam int unsigned BOUND_CODE_W = 10;
   localparam int unsigned BOUND_W = 33;          // |q - m| < 2^32.8
   localparam int unsigned LINE_ADDRESS_W = 36;   // 2 TiB of 32-byte lines
@@ -35,10 +37,10 @@ package lod_pkg;
   localparam int unsigned BOX_TEST_LATENCY = 6;
   localparam int unsigned BOX_TEST32_LATENCY = 8;
   localparam int unsigned CHILD_SORT_LATENCY = 3;
-  localparam int unsigned HIT_DIVIDE_LATENCY = 40;
-  localparam int unsigned HIT_DIVIDE_INTERVAL = 40;
+  localparam int unsigned HIT_DIVIDE_LATENCY = 36;
+  localparam int unsigned HIT_DIVIDE_INTERVAL = 36;
   localparam int unsigned HIT_SELECT_LATENCY = 3;
-  localparam int unsigned LOD_TEST_LATENCY = 22;
+  localparam int unsigned LOD_TEST_LATENCY = 23;
   localparam int unsigned NODE_ADDRESS_LATENCY = 2;
   localparam int unsigned RAY_SETUP_LATENCY = 26;
   localparam int unsigned RAY_SETUP_INTERVAL = 26;
@@ -48,7 +50,10 @@ package lod_pkg;
   localparam int unsigned TRI_TEST_1_LATENCY = 16;  // with EDGES_PER_CYCLE = 1
   localparam int unsigned TRI_TEST_1_INTERVAL = 3;
   localparam int unsigned WIDEN_BOX_LATENCY = 2;
-  localparam int unsigned EDGE_FUNCTION_LATENCY = 10;  // part of tri_test
+  localparam int unsigned EDGE_FUNCTION_LATENCY = 10;  // parts of tri_test
+  localparam int unsigned TRI_DECIDE_LATENCY = 3;
+  localparam int unsigned CONE_TOLERANCE_LATENCY = 6;  // parts of lod_test
+  localparam int unsigned EDGE_OPENING_LATENCY = 9;
   localparam int unsigned CHILD_TEST_LATENCY = WIDEN_BOX_LATENCY + BOX_TEST_LATENCY + CHILD_SORT_LATENCY;
 
   // A factor of `multiplier` is cut into limbs of 17 bits, the highest signed with up to 18.

@@ -2,7 +2,7 @@
 ///
 /// An edge function counts as positive if it is above 0, or if it is 0 and its tie sign says so. Hit iff all three agree, det = u + v + w != 0 and
 /// t_num / det >= 0. Where the signs agree no two of u, v, w have opposite signs, so det = 0 iff all three are 0, and all sums stay below 2^96;
-/// where they do not, sums may wrap: it is a miss. Latency: 3; interval 1.
+/// where they do not, sums may wrap: it is a miss. Latency: lod_pkg::TRI_DECIDE_LATENCY = 3; interval 1.
 module tri_decide #(
   parameter int unsigned TAG_W = 8
 ) (

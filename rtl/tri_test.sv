@@ -25,10 +25,10 @@ module tri_test #(
 
   localparam int unsigned W = lod_pkg::RELATIVE_W;
   localparam int unsigned EDGE_W = lod_pkg::SIGNED_EDGE_W;
-  localparam int unsigned DECIDE_LATENCY = 3;
+  localparam int unsigned LATENCY = 1 + lod_pkg::EDGE_FUNCTION_LATENCY + lod_pkg::TRI_DECIDE_LATENCY;
 
-  if (lod_pkg::TRI_TEST_LATENCY != 1 + lod_pkg::EDGE_FUNCTION_LATENCY + DECIDE_LATENCY) begin : g_illegal_latency
-    $error("tri_test: lod_pkg::TRI_TEST_LATENCY must be %0d", 1 + lod_pkg::EDGE_FUNCTION_LATENCY + DECIDE_LATENCY);
+  if (lod_pkg::TRI_TEST_LATENCY != LATENCY) begin : g_illegal_latency
+    $error("tri_test: lod_pkg::TRI_TEST_LATENCY must be %0d", LATENCY);
   end
   if (lod_pkg::TRI_TEST_1_LATENCY != lod_pkg::TRI_TEST_LATENCY + 2 || lod_pkg::TRI_TEST_1_INTERVAL != 3) begin : g_illegal_timing
     $error("tri_test: two further passes make lod_pkg::TRI_TEST_1_LATENCY %0d and TRI_TEST_1_INTERVAL 3", lod_pkg::TRI_TEST_LATENCY + 2);
