@@ -33,8 +33,8 @@ package lod_pkg;
 
   // Cycles from an input taken to its output offered, and (where not 1) from one input taken to the next: `Block::TIMING` in Rust.
   localparam int unsigned BARY_MAP_LATENCY = 10;
-  localparam int unsigned BOUND_DECODE_LATENCY = 3;
-  localparam int unsigned BOX_TEST_LATENCY = 6;
+  localparam int unsigned BOUND_DECODE_LATENCY = 6;
+  localparam int unsigned BOX_TEST_LATENCY = 8;
   localparam int unsigned BOX_TEST32_LATENCY = 8;
   localparam int unsigned CHILD_SORT_LATENCY = 3;
   localparam int unsigned HIT_DIVIDE_LATENCY = 36;
@@ -42,14 +42,15 @@ package lod_pkg;
   localparam int unsigned HIT_SELECT_LATENCY = 3;
   localparam int unsigned LOD_TEST_LATENCY = 23;
   localparam int unsigned NODE_ADDRESS_LATENCY = 2;
-  localparam int unsigned RAY_SETUP_LATENCY = 26;
-  localparam int unsigned RAY_SETUP_INTERVAL = 26;
+  localparam int unsigned RAY_SETUP_LATENCY = 22;
+  localparam int unsigned RAY_SETUP_INTERVAL = 22;
   localparam int unsigned TESSELLATE_LATENCY = 6;
-  localparam int unsigned TREE_BASE_LATENCY = 3;
+  localparam int unsigned TREE_BASE_LATENCY = 5;
   localparam int unsigned TRI_TEST_LATENCY = 14;
   localparam int unsigned TRI_TEST_1_LATENCY = 16;  // with EDGES_PER_CYCLE = 1
   localparam int unsigned TRI_TEST_1_INTERVAL = 3;
-  localparam int unsigned WIDEN_BOX_LATENCY = 2;
+  localparam int unsigned WIDEN_BOX_LATENCY = 3;
+  localparam int unsigned ENTRY_DISTANCE_LATENCY = 5;  // part of the box tests
   localparam int unsigned EDGE_FUNCTION_LATENCY = 10;  // parts of tri_test
   localparam int unsigned TRI_DECIDE_LATENCY = 3;
   localparam int unsigned CONE_TOLERANCE_LATENCY = 6;  // parts of lod_test
