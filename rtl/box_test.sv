@@ -122,7 +122,7 @@ module box_test #(
   // Against the limits.
   logic [2:0][LIMIT_W-1:0] limit_there, turned_there;
   logic                    ahead_there, slabs, slabs_q, valid_slabs, ready_slabs, slabs_last;
-  logic [5:0]              within;
+  logic [5:0]              passes;
   pipe_delay #(.W(6 * LIMIT_W + 1), .STAGES(PRODUCT_LATENCY)) u_limits (
     .clk_i, .rst_ni, .valid_i(valid_near), .ready_o(), .data_i({limit_near, turned_near, ahead_near}),
     .valid_o(), .ready_i(ready_difference), .data_o({limit_there, turned_there, ahead_there})
@@ -132,9 +132,9 @@ module box_test #(
     logic signed [LIMIT_W-1:0]   bound;
     assign value     = difference_q[k];
     assign bound     = k < 3 ? limit_there[k%3] : turned_there[k%3];
-    assign within[k] = value <= bound;
+    assign passes[k] = value <= bound;
   end
-  assign slabs = ahead_there && within == '1;
+  assign slabs = ahead_there && passes == '1;
   pipe_stage #(.W(1)) u_slabs (
     .clk_i, .rst_ni, .valid_i(valid_difference), .ready_o(ready_difference), .data_i(slabs),
     .valid_o(valid_slabs), .ready_i(ready_slabs), .data_o(slabs_q)

@@ -79,7 +79,7 @@ module box_test32 #(
   );
 
   // Six pairs of axes (I, J): near_I d_J against far_J d_I.
-  logic [5:0] within, ready_low, valid_low, ready_high, valid_high;
+  logic [5:0] passes, ready_low, valid_low, ready_high, valid_high;
   logic       ahead, ahead_there, slabs, slabs_q, ready_product, valid_slabs, ready_slabs, slabs_last;
   for (genvar k = 0; k < 6; k++) begin : g_pair
     localparam int unsigned I = k < 3 ? (k + 1) % 3 : (k + 2) % 3;
@@ -93,13 +93,13 @@ module box_test32 #(
       .clk_i, .rst_ni, .valid_i(valid_side), .ready_o(ready_high[k]), .a_i(far_q[J]), .b_i({1'b0, d_q[I]}),
       .valid_o(valid_high[k]), .ready_i(ready_product), .product_o(high)
     );
-    assign within[k] = low <= high;
+    assign passes[k] = low <= high;
   end
   assign ahead = !(far_q[2][SIDE_W-1] || far_q[1][SIDE_W-1] || far_q[0][SIDE_W-1]);
   pipe_delay #(.W(1), .STAGES(PRODUCT_LATENCY)) u_ahead (
     .clk_i, .rst_ni, .valid_i(valid_side), .ready_o(), .data_i(ahead), .valid_o(), .ready_i(ready_product), .data_o(ahead_there)
   );
-  assign slabs = ahead_there && within == '1;
+  assign slabs = ahead_there && passes == '1;
   pipe_stage #(.W(1)) u_slabs (
     .clk_i, .rst_ni, .valid_i(valid_low[0]), .ready_o(ready_product), .data_i(slabs),
     .valid_o(valid_slabs), .ready_i(ready_slabs), .data_o(slabs_q)
