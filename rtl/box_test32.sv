@@ -13,7 +13,7 @@ module box_test32 #(
   input  logic [TAG_W-1:0]       tag_i,
   output logic                   valid_o,
   input  logic                   ready_i,
-  output lod_pkg::box_test32_out_t out_o,
+  output lod_pkg::box_test_out_t out_o,
   output logic [TAG_W-1:0]       tag_o
 );
 
