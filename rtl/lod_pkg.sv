@@ -9,13 +9,19 @@ package lod_pkg;
   localparam int unsigned T_NEAR_W = 17;         // t_near in steps of 2^16 units
   localparam int unsigned BARY_W = 32;           // 2^31 = 1
   localparam int unsigned EDGE_STATE_W = 9;      // 256 = 1
+  localparam int unsigned DISTANCE_W = 34;       // l = (p - x).d / 2^30, signed: 64 - 30 bits
+  localparam int unsigned TOLERANCE_W = 34;      // D, clamped to this width
   localparam int unsigned BOUND_CODE_W = 10;
   localparam int unsigned BOUND_W = 33;          // |q - m| < 2^32.8
   localparam int unsigned LINE_ADDRESS_W = 36;   // 2 TiB of 32-byte lines
   localparam int unsigned NODE_INDEX_W = 20;     // 4^10 nodes on the last level
   localparam int unsigned FULL_ID_W = 48;        // 28 bits of tree, 2 of each of ten levels
+  localparam int unsigned RELATIVE_W = 33;       // difference of two 32-bit coordinates
+  localparam int unsigned NORMAL_W = 66;         // component of p x q: |p_i q_j| < 2^64, two of them
   localparam int unsigned EDGE_FUNCTION_W = 96;  // |p x q| |d| < 2^96
+  localparam int unsigned SIGNED_EDGE_W = EDGE_FUNCTION_W + 1;
   localparam int unsigned T_NUMERATOR_W = 99;    // |a| |b| |c| < 2^98.4
+  localparam int unsigned SIGNED_T_NUMERATOR_W = T_NUMERATOR_W + 1;
 
   // Limits and scales.
   localparam int unsigned MAX_LEVELS = 10;
@@ -31,18 +37,43 @@ package lod_pkg;
   localparam int unsigned BOX_TEST_LATENCY = 6;
   localparam int unsigned BOX_TEST32_LATENCY = 8;
   localparam int unsigned CHILD_SORT_LATENCY = 3;
-  localparam int unsigned HIT_DIVIDE_LATENCY = 40;
-  localparam int unsigned HIT_DIVIDE_INTERVAL = 40;
+  localparam int unsigned HIT_DIVIDE_LATENCY = 36;
+  localparam int unsigned HIT_DIVIDE_INTERVAL = 36;
   localparam int unsigned HIT_SELECT_LATENCY = 3;
-  localparam int unsigned LOD_TEST_LATENCY = 22;
+  localparam int unsigned LOD_TEST_LATENCY = 23;
   localparam int unsigned NODE_ADDRESS_LATENCY = 2;
   localparam int unsigned RAY_SETUP_LATENCY = 26;
   localparam int unsigned RAY_SETUP_INTERVAL = 26;
   localparam int unsigned TESSELLATE_LATENCY = 6;
   localparam int unsigned TREE_BASE_LATENCY = 3;
-  localparam int unsigned TRI_TEST_LATENCY = 13;
+  localparam int unsigned TRI_TEST_LATENCY = 14;
+  localparam int unsigned TRI_TEST_1_LATENCY = 16;  // with EDGES_PER_CYCLE = 1
+  localparam int unsigned TRI_TEST_1_INTERVAL = 3;
   localparam int unsigned WIDEN_BOX_LATENCY = 2;
+  localparam int unsigned EDGE_FUNCTION_LATENCY = 10;  // parts of tri_test
+  localparam int unsigned TRI_DECIDE_LATENCY = 3;
+  localparam int unsigned CONE_TOLERANCE_LATENCY = 6;  // parts of lod_test
+  localparam int unsigned EDGE_OPENING_LATENCY = 9;
   localparam int unsigned CHILD_TEST_LATENCY = WIDEN_BOX_LATENCY + BOX_TEST_LATENCY + CHILD_SORT_LATENCY;
+
+  // A factor of `multiplier` is cut into limbs of 17 bits, the highest signed with up to 18.
+  localparam int unsigned MULTIPLIER_LIMB_W = 17;
+  function automatic int unsigned multiplier_limbs(input int unsigned w);
+    multiplier_limbs = w <= MULTIPLIER_LIMB_W + 1 ? 1 : (w - 1 + MULTIPLIER_LIMB_W - 1) / MULTIPLIER_LIMB_W;
+  endfunction
+
+  // Cycles of `multiplier`: the limb products, then one tree level each.
+  function automatic int unsigned multiplier_latency(input int unsigned a_w, input int unsigned b_w);
+    multiplier_latency = 1 + $clog2(multiplier_limbs(a_w)) + $clog2(multiplier_limbs(b_w));
+  endfunction
+
+  // Cycles of `dot_product`: its products, then two sums; of `cross_product`: its products, then the differences.
+  function automatic int unsigned dot_product_latency(input int unsigned a_w, input int unsigned b_w);
+    dot_product_latency = multiplier_latency(a_w, b_w) + 2;
+  endfunction
+  function automatic int unsigned cross_product_latency(input int unsigned w);
+    cross_product_latency = multiplier_latency(w, w) + 1;
+  endfunction
 
   // Vertex position or ray origin in units.
   typedef struct packed {
