@@ -14,33 +14,54 @@ use crate::num::{BoundCode, MAX_LEVELS, Point, Ray, U, Wire};
 use crate::sim::ports::SceneConfig;
 use crate::traverse::{Entry, Op, Split, TraversalStack, is_beyond};
 
-/// State of a context.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-#[repr(u8)]
-#[expect(missing_docs, reason = "docs/traversal-unit.md gives every state")]
-pub enum State {
-    #[default]
-    Idle = 0,
-    Setup = 1,
-    SetupWait = 2,
-    Visit = 3,
-    Fetch = 4,
-    Child = 5,
-    ChildWait = 6,
-    Push = 7,
-    Pop = 8,
-    Lod = 9,
-    LodWait = 10,
-    Morph = 11,
-    MorphWait = 12,
-    Tri = 13,
-    DivideV = 14,
-    DivideW = 15,
-    DivideWait = 16,
-    Sum = 17,
-    Map = 18,
-    MapWait = 19,
-    Done = 20,
+/// Declares the states with their numbers and the names of `lod_pkg::context_state_t`.
+macro_rules! states {
+    ($($state:ident = $name:literal),+ $(,)?) => {
+        /// State of a context.
+        #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+        #[repr(u8)]
+        #[expect(missing_docs, reason = "docs/traversal-unit.md gives every state")]
+        pub enum State {
+            #[default]
+            $($state),+
+        }
+
+        impl State {
+            /// All states, by number.
+            pub const ALL: &[Self] = &[$(Self::$state),+];
+
+            /// Name in the RTL.
+            pub const fn name(self) -> &'static str {
+                match self {
+                    $(Self::$state => $name),+
+                }
+            }
+        }
+    };
+}
+
+states! {
+    Idle = "IDLE",
+    Setup = "SETUP",
+    SetupWait = "SETUP_WAIT",
+    Visit = "VISIT",
+    Fetch = "FETCH",
+    Child = "CHILD",
+    ChildWait = "CHILD_WAIT",
+    Push = "PUSH",
+    Pop = "POP",
+    Lod = "LOD",
+    LodWait = "LOD_WAIT",
+    Morph = "MORPH",
+    MorphWait = "MORPH_WAIT",
+    Tri = "TRI",
+    DivideV = "DIVIDE_V",
+    DivideW = "DIVIDE_W",
+    DivideWait = "DIVIDE_WAIT",
+    Sum = "SUM",
+    Map = "MAP",
+    MapWait = "MAP_WAIT",
+    Done = "DONE",
 }
 
 /// What a context fetches.

@@ -12,8 +12,10 @@ mod memory;
 mod operands;
 mod records;
 mod register;
+pub mod steps;
 mod traffic;
 mod unit;
+pub mod wave;
 mod wires;
 
 pub use context::{Fetch, State};
@@ -40,13 +42,10 @@ impl EdgesPerCycle {
     pub fn timing(self) -> Timing {
         match self {
             Self::Three => TriTest::TIMING,
-            Self::One => TRI_TEST_ONE_EDGE,
+            Self::One => TriTest::ONE_EDGE,
         }
     }
 }
-
-/// `tri_test` at one edge a cycle.
-const TRI_TEST_ONE_EDGE: Timing = Timing { latency: 16, interval: 3 };
 
 /// The most contexts that a unit can have: six bits.
 pub const MAX_CONTEXTS: usize = 64;

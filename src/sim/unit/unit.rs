@@ -78,7 +78,7 @@ pub struct TraversalUnit {
     pub(super) queue: VecDeque<Met>,
     /// The hit in the division, and the one in the comparison with its t.
     candidate: Register<Met>,
-    chosen: Register<(Met, RayT)>,
+    pub(super) chosen: Register<(Met, RayT)>,
     /// The hit port's register.
     pub(super) hit: Stage<HitOut>,
     cycles: u64,
