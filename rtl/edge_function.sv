@@ -45,7 +45,7 @@ module edge_function (
 
   logic [3*D_W-1:0] d_q;
   logic             along_positive_q;
-  pipe_delay #(.W(3 * D_W + 1), .STAGES(CROSS_LATENCY)) u_beside_cross (
+  pipe_delay #(.W(3 * D_W + 1), .STAGES(CROSS_LATENCY), .SKIDS(64'd1 << (CROSS_LATENCY - 1))) u_beside_cross (
     .clk_i, .rst_ni, .valid_i, .ready_o(), .data_i({d_i, along_positive}),
     .valid_o(), .ready_i(ready_normal), .data_o({d_q, along_positive_q})
   );
@@ -59,7 +59,7 @@ module edge_function (
   assign {nx, ny, nz} = normal;
   logic tie;
   assign tie = nx != 0 ? !nx[N_W-1] : ny != 0 ? !ny[N_W-1] : nz != 0 ? !nz[N_W-1] : along_positive_q;
-  pipe_delay #(.W(1), .STAGES(DOT_LATENCY)) u_tie (
+  pipe_delay #(.W(1), .STAGES(DOT_LATENCY), .SKIDS(64'd1 << (DOT_LATENCY - 1))) u_tie (
     .clk_i, .rst_ni, .valid_i(valid_normal), .ready_o(), .data_i(tie), .valid_o(), .ready_i, .data_o(tie_o)
   );
 

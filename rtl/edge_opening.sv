@@ -2,7 +2,7 @@
 ///
 /// s = 0 iff h <= D, s = 256 iff h >= 2 D (and h > D), else clamp(floor((h - D) 256 / D), 1, 255): there 0 < h - D < D, so that the quotient is the
 /// 8 bits of a restoring division, one step per stage. open_o = (h > D) = (s != 0). Both come from the last register through a few gates.
-/// Legal: any. Latency: lod_pkg::EDGE_OPENING_LATENCY; interval 1.
+/// Its first stage is a `pipe_skid`. Legal: any. Latency: lod_pkg::EDGE_OPENING_LATENCY; interval 1.
 module edge_opening (
   input  logic                             clk_i,
   input  logic                             rst_ni,
@@ -31,7 +31,7 @@ module edge_opening (
   logic [D_W-1:0] h, excess;
   assign h      = D_W'(h_i);
   assign excess = h - d_i;  // used where h > D
-  pipe_stage #(.W(STATE_W)) u_compare (
+  pipe_skid #(.W(STATE_W)) u_compare (
     .clk_i, .rst_ni, .valid_i, .ready_o, .data_i({h > d_i, {1'b0, h} >= {d_i, 1'b0}, d_i, excess, {BITS{1'b0}}}),
     .valid_o(valid[0]), .ready_i(ready[0]), .data_o(state[0])
   );
@@ -41,12 +41,15 @@ module edge_opening (
     logic [D_W-1:0]  divisor, remainder, remainder_next;
     logic [BITS-1:0] quotient;
     assign {open, full, divisor, remainder, quotient} = state[k];
+    // Steps shift in from below; no bit has reached the top before the last one.
+    logic unused_top;
+    assign unused_top = quotient[BITS-1];
     divide_step #(.W(D_W)) u_step (
       .remainder_i(remainder), .divisor_i(divisor), .quotient_bit_o(quotient_bit), .remainder_o(remainder_next)
     );
     pipe_stage #(.W(STATE_W)) u_stage (
       .clk_i, .rst_ni, .valid_i(valid[k]), .ready_o(ready[k]),
-      .data_i({open, full, divisor, remainder_next, BITS'({quotient, quotient_bit})}),
+      .data_i({open, full, divisor, remainder_next, quotient[BITS-2:0], quotient_bit}),
       .valid_o(valid[k+1]), .ready_i(ready[k+1]), .data_o(state[k+1])
     );
   end

@@ -33,24 +33,25 @@ package lod_pkg;
 
   // Cycles from an input taken to its output offered, and (where not 1) from one input taken to the next: `Block::TIMING` in Rust.
   localparam int unsigned BARY_MAP_LATENCY = 10;
-  localparam int unsigned BOUND_DECODE_LATENCY = 3;
-  localparam int unsigned BOX_TEST_LATENCY = 6;
+  localparam int unsigned BOUND_DECODE_LATENCY = 6;
+  localparam int unsigned BOX_TEST_LATENCY = 8;
   localparam int unsigned BOX_TEST32_LATENCY = 8;
   localparam int unsigned CHILD_SORT_LATENCY = 3;
   localparam int unsigned HIT_DIVIDE_LATENCY = 36;
   localparam int unsigned HIT_DIVIDE_INTERVAL = 36;
   localparam int unsigned HIT_SELECT_LATENCY = 3;
-  localparam int unsigned LOD_TEST_LATENCY = 23;
+  localparam int unsigned LOD_TEST_LATENCY = 24;
   localparam int unsigned NODE_ADDRESS_LATENCY = 2;
-  localparam int unsigned RAY_SETUP_LATENCY = 26;
-  localparam int unsigned RAY_SETUP_INTERVAL = 26;
+  localparam int unsigned RAY_SETUP_LATENCY = 22;
+  localparam int unsigned RAY_SETUP_INTERVAL = 22;
   localparam int unsigned TESSELLATE_LATENCY = 6;
-  localparam int unsigned TREE_BASE_LATENCY = 3;
-  localparam int unsigned TRI_TEST_LATENCY = 14;
-  localparam int unsigned TRI_TEST_1_LATENCY = 16;  // with EDGES_PER_CYCLE = 1
+  localparam int unsigned TREE_BASE_LATENCY = 5;
+  localparam int unsigned TRI_TEST_LATENCY = 16;
+  localparam int unsigned TRI_TEST_1_LATENCY = 18;  // with EDGES_PER_CYCLE = 1
   localparam int unsigned TRI_TEST_1_INTERVAL = 3;
-  localparam int unsigned WIDEN_BOX_LATENCY = 2;
-  localparam int unsigned EDGE_FUNCTION_LATENCY = 10;  // parts of tri_test
+  localparam int unsigned WIDEN_BOX_LATENCY = 3;
+  localparam int unsigned ENTRY_DISTANCE_LATENCY = 5;  // part of the box tests
+  localparam int unsigned EDGE_FUNCTION_LATENCY = 12;  // parts of tri_test
   localparam int unsigned TRI_DECIDE_LATENCY = 3;
   localparam int unsigned CONE_TOLERANCE_LATENCY = 6;  // parts of lod_test
   localparam int unsigned EDGE_OPENING_LATENCY = 9;
@@ -67,12 +68,12 @@ package lod_pkg;
     multiplier_latency = 1 + $clog2(multiplier_limbs(a_w)) + $clog2(multiplier_limbs(b_w));
   endfunction
 
-  // Cycles of `dot_product`: its products, then two sums; of `cross_product`: its products, then the differences.
+  // Cycles of `dot_product`: factors, products, two sums; of `cross_product`: factors, products, differences.
   function automatic int unsigned dot_product_latency(input int unsigned a_w, input int unsigned b_w);
-    dot_product_latency = multiplier_latency(a_w, b_w) + 2;
+    dot_product_latency = 1 + multiplier_latency(a_w, b_w) + 2;
   endfunction
   function automatic int unsigned cross_product_latency(input int unsigned w);
-    cross_product_latency = multiplier_latency(w, w) + 1;
+    cross_product_latency = 1 + multiplier_latency(w, w) + 1;
   endfunction
 
   // Vertex position or ray origin in units.

@@ -28,15 +28,20 @@ module lod_test #(
   // (p - x).d: |p - x| < 2^32 sqrt 3 and |d| <= 2^30, so below 2^62.8, partial sums too (Cauchy-Schwarz).
   localparam int unsigned ALONG_W = W + COMPONENT_W;
 
-  localparam int unsigned NEARER_LATENCY = 1 + lod_pkg::dot_product_latency(W, COMPONENT_W) + 1;
+  localparam int unsigned ALONG_LATENCY = 1 + lod_pkg::dot_product_latency(W, COMPONENT_W);
+  localparam int unsigned NEARER_LATENCY = ALONG_LATENCY + 1;
   localparam int unsigned LIMITS_LATENCY = NEARER_LATENCY + lod_pkg::CONE_TOLERANCE_LATENCY;
   localparam int unsigned LATENCY = LIMITS_LATENCY + lod_pkg::EDGE_OPENING_LATENCY + 1;
   if (lod_pkg::LOD_TEST_LATENCY != LATENCY) begin : g_illegal_latency
     $error("lod_test: lod_pkg::LOD_TEST_LATENCY must be %0d", LATENCY);
   end
-  if (lod_pkg::BOUND_DECODE_LATENCY > LIMITS_LATENCY) begin : g_illegal_decode
-    $error("lod_test: lod_pkg::BOUND_DECODE_LATENCY is above the %0d of the tolerance", LIMITS_LATENCY);
+  if (lod_pkg::BOUND_DECODE_LATENCY > lod_pkg::CONE_TOLERANCE_LATENCY) begin : g_illegal_decode
+    $error("lod_test: lod_pkg::BOUND_DECODE_LATENCY is above CONE_TOLERANCE_LATENCY = %0d", lod_pkg::CONE_TOLERANCE_LATENCY);
   end
+
+  // Stages that are a `pipe_skid`: the last of the distances and the first of the openings. What goes beside them has its own at the same stages.
+  localparam bit [63:0] ALONG_SKIDS = 64'd1 << (ALONG_LATENCY - 1);
+  localparam bit [63:0] SKIDS = ALONG_SKIDS | 64'd1 << LIMITS_LATENCY;
 
   // Corners relative to the origin: differences of 32-bit coordinates, 33 bits.
   logic [2:0][3*W-1:0]             corners, corners_q;
@@ -83,13 +88,15 @@ module lod_test #(
 
   // D of each edge, and its bound in time for it.
   lod_pkg::cone_t cone_q;
-  pipe_delay #(.W(lod_pkg::CONE_W), .STAGES(NEARER_LATENCY)) u_cone (
+  pipe_delay #(.W(lod_pkg::CONE_W), .STAGES(NEARER_LATENCY), .SKIDS(ALONG_SKIDS)) u_cone (
     .clk_i, .rst_ni, .valid_i, .ready_o(), .data_i(in_i.ray.cone), .valid_o(), .ready_i(ready_nearer), .data_o(cone_q)
   );
   logic [2:0][CODE_W-1:0] codes_q;
   lod_pkg::bound_scale_t  scale_q;
   logic                   valid_codes, ready_codes;
-  pipe_delay #(.W(3 * CODE_W + lod_pkg::BOUND_SCALE_W), .STAGES(LIMITS_LATENCY - lod_pkg::BOUND_DECODE_LATENCY)) u_codes (
+  pipe_delay #(
+    .W(3 * CODE_W + lod_pkg::BOUND_SCALE_W), .STAGES(LIMITS_LATENCY - lod_pkg::BOUND_DECODE_LATENCY), .SKIDS(ALONG_SKIDS)
+  ) u_codes (
     .clk_i, .rst_ni, .valid_i, .ready_o(), .data_i({in_i.e2, in_i.e1, in_i.e0, in_i.scale}),
     .valid_o(valid_codes), .ready_i(ready_codes), .data_o({codes_q, scale_q})
   );
@@ -121,7 +128,7 @@ module lod_test #(
 
   logic [TAG_W-1:0] tag;
   logic             ready_out;
-  pipe_delay #(.W(TAG_W), .STAGES(LATENCY - 1)) u_tag (
+  pipe_delay #(.W(TAG_W), .STAGES(LATENCY - 1), .SKIDS(SKIDS)) u_tag (
     .clk_i, .rst_ni, .valid_i, .ready_o(), .data_i(tag_i), .valid_o(), .ready_i(ready_out), .data_o(tag)
   );
   pipe_stage #(.W(lod_pkg::LOD_TEST_OUT_W + TAG_W)) u_out (

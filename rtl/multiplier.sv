@@ -2,10 +2,12 @@
 ///
 /// The factors are cut into limbs of 17 bits, unsigned but for the highest, which is signed and has up to 18 bits; each product of two limbs is one
 /// 18 x 18 signed multiplier of the FPGA. The limb products are registered, then added: first along a, then along b, one tree level per stage.
-/// Legal: A_W, B_W >= 1. Latency: lod_pkg::multiplier_latency(A_W, B_W); interval 1.
+/// FACTOR_STAGES registers of its own before the multipliers of the FPGA help where factors come from afar.
+/// Legal: A_W, B_W >= 1. Latency: FACTOR_STAGES + lod_pkg::multiplier_latency(A_W, B_W); interval 1.
 module multiplier #(
   parameter int unsigned A_W = 33,
-  parameter int unsigned B_W = 33
+  parameter int unsigned B_W = 33,
+  parameter int unsigned FACTOR_STAGES = 0
 ) (
   input  logic               clk_i,
   input  logic               rst_ni,
@@ -36,10 +38,18 @@ module multiplier #(
   localparam int unsigned PRODUCT_W = A_W + B_W;
   localparam int unsigned LIMB_PRODUCTS_W = A_LIMBS * B_LIMBS * LIMB_PRODUCT_W;
 
+  logic signed [A_W-1:0] a_near;
+  logic signed [B_W-1:0] b_near;
+  logic                  valid_factors, ready_factors;
+  pipe_delay #(.W(A_W + B_W), .STAGES(FACTOR_STAGES)) u_factors (
+    .clk_i, .rst_ni, .valid_i, .ready_o, .data_i({a_i, b_i}),
+    .valid_o(valid_factors), .ready_i(ready_factors), .data_o({a_near, b_near})
+  );
+
   logic signed [A_EXT_W-1:0] a;
   logic signed [B_EXT_W-1:0] b;
-  assign a = A_EXT_W'($signed(a_i));
-  assign b = B_EXT_W'($signed(b_i));
+  assign a = A_EXT_W'(a_near);
+  assign b = B_EXT_W'(b_near);
 
   logic [LIMB_PRODUCTS_W-1:0] limb_products, limb_products_q;
   logic                       valid_products, ready_products;
@@ -55,7 +65,7 @@ module multiplier #(
   end
 
   pipe_stage #(.W(LIMB_PRODUCTS_W)) u_products (
-    .clk_i, .rst_ni, .valid_i, .ready_o, .data_i(limb_products),
+    .clk_i, .rst_ni, .valid_i(valid_factors), .ready_o(ready_factors), .data_i(limb_products),
     .valid_o(valid_products), .ready_i(ready_products), .data_o(limb_products_q)
   );
 

@@ -30,6 +30,9 @@ module tri_edges_parallel #(
   localparam int unsigned N_W = lod_pkg::NORMAL_W;
   localparam int unsigned D_W = lod_pkg::DIRECTION_W;
   localparam int unsigned CROSS_LATENCY = lod_pkg::cross_product_latency(W);
+  // Where the products end in a `pipe_skid`, so does what goes beside them.
+  localparam bit [63:0] CROSS_SKIDS = 64'd1 << (CROSS_LATENCY - 1);
+  localparam bit [63:0] EDGE_SKIDS = CROSS_SKIDS | 64'd1 << (lod_pkg::EDGE_FUNCTION_LATENCY - 1);
   if (lod_pkg::EDGE_FUNCTION_LATENCY != CROSS_LATENCY + lod_pkg::dot_product_latency(N_W, W)) begin : g_illegal_latency
     $error("tri_edges_parallel: a.(b x c) and the edge functions must have one latency");
   end
@@ -60,7 +63,7 @@ module tri_edges_parallel #(
   // a meets b x c as it leaves u_u's cross product.
   logic [3*W-1:0] a_beside;
   logic           valid_normal, ready_normal;
-  pipe_delay #(.W(3 * W), .STAGES(CROSS_LATENCY)) u_beside_cross (
+  pipe_delay #(.W(3 * W), .STAGES(CROSS_LATENCY), .SKIDS(CROSS_SKIDS)) u_beside_cross (
     .clk_i, .rst_ni, .valid_i(valid_relative), .ready_o(), .data_i(a),
     .valid_o(valid_normal), .ready_i(ready_normal), .data_o(a_beside)
   );
@@ -69,7 +72,7 @@ module tri_edges_parallel #(
     .valid_o(), .ready_i, .sum_o(t_num_o)
   );
 
-  pipe_delay #(.W(TAG_W), .STAGES(lod_pkg::EDGE_FUNCTION_LATENCY)) u_tag (
+  pipe_delay #(.W(TAG_W), .STAGES(lod_pkg::EDGE_FUNCTION_LATENCY), .SKIDS(EDGE_SKIDS)) u_tag (
     .clk_i, .rst_ni, .valid_i(valid_relative), .ready_o(), .data_i(tag), .valid_o(), .ready_i, .data_o(tag_o)
   );
 

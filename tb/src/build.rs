@@ -1,0 +1,93 @@
+//! What to build: a top, its sources, parameters and options.
+
+use crate::sources::Sources;
+use crate::{Error, Model, compile};
+use lodray::block::Block;
+use std::fmt::Display;
+use std::path::PathBuf;
+use std::sync::Arc;
+
+/// A model to be built. Two builds of equal content, parameters and options share one shared library, across tests and runs.
+#[derive(Clone, Debug)]
+pub struct Build {
+    pub(crate) top: String,
+    pub(crate) parameters: Vec<(String, String)>,
+    pub(crate) trace: bool,
+    pub(crate) coverage: bool,
+    files: Files,
+}
+
+#[derive(Clone, Debug)]
+enum Files {
+    /// Of `rtl/`, and these.
+    Rtl(Vec<PathBuf>),
+    /// These alone, as a synthesis tool wrote them.
+    Netlist(Vec<PathBuf>),
+}
+
+impl Build {
+    /// A top of `rtl/`.
+    pub fn rtl(top: &str) -> Self {
+        Self::of(top, Files::Rtl(Vec::new()))
+    }
+
+    /// The RTL of a block.
+    pub fn block<B: Block>() -> Self {
+        Self::rtl(B::NAME)
+    }
+
+    /// A top of one of these files, which may use the modules of `rtl/`.
+    pub fn with_files(top: &str, files: Vec<PathBuf>) -> Self {
+        Self::of(top, Files::Rtl(files))
+    }
+
+    /// A top of these Verilog files alone: what synthesis made of the RTL. Its parameters are settled, warnings are not errors.
+    pub fn netlist(top: &str, files: Vec<PathBuf>) -> Self {
+        Self::of(top, Files::Netlist(files))
+    }
+
+    fn of(top: &str, files: Files) -> Self {
+        let coverage = std::env::var_os("LODRAY_COVERAGE").is_some();
+        Self { top: top.to_owned(), parameters: Vec::new(), trace: false, coverage, files }
+    }
+
+    /// Sets a parameter of the top.
+    pub fn parameter(mut self, name: &str, value: impl Display) -> Self {
+        self.parameters.push((name.to_owned(), value.to_string()));
+        self
+    }
+
+    /// Lets the model write waveforms.
+    pub fn trace(mut self) -> Self {
+        self.trace = true;
+        self
+    }
+
+    /// Lets the model count lines and toggles, as the environment variable `LODRAY_COVERAGE` does for all.
+    pub fn coverage(mut self) -> Self {
+        self.coverage = true;
+        self
+    }
+
+    /// The name of the top.
+    pub fn top(&self) -> &str {
+        &self.top
+    }
+
+    /// Whether the top is a synthesised netlist.
+    pub(crate) fn is_netlist(&self) -> bool {
+        matches!(self.files, Files::Netlist(_))
+    }
+
+    pub(crate) fn sources(&self) -> Result<Sources, Error> {
+        match &self.files {
+            Files::Rtl(extra) => Sources::with(extra, &self.top),
+            Files::Netlist(files) => Sources::exactly(files),
+        }
+    }
+
+    /// Builds it, or takes what an earlier build left, and loads it.
+    pub fn model(&self) -> Result<Arc<Model>, Error> {
+        compile::model(self)
+    }
+}

@@ -1,0 +1,76 @@
+//! What can go wrong on the way to a comparison, or in it.
+
+use crate::Failure;
+use std::path::PathBuf;
+
+/// One line for each way to fail; tests print it and fail.
+#[derive(Debug, thiserror::Error)]
+pub enum Error {
+    /// No Verilator to be found.
+    #[error("Verilator is missing ({0}): run scripts/tools")]
+    ToolMissing(String),
+    /// The tool refused the sources.
+    #[error("Verilator refuses {top}:\n{output}")]
+    Refused {
+        /// The top.
+        top: String,
+        /// What it said.
+        output: String,
+    },
+    /// The compiler failed.
+    #[error("the C++ compiler ({compiler}) fails on the model of {top}:\n{output}")]
+    Compiler {
+        /// The command.
+        compiler: String,
+        /// The top.
+        top: String,
+        /// What it said.
+        output: String,
+    },
+    /// A file cannot be read, written or moved.
+    #[error("{path}: {source}")]
+    File {
+        /// Which one.
+        path: PathBuf,
+        /// Why.
+        source: std::io::Error,
+    },
+    /// The compiled model cannot be loaded.
+    #[error("{path}: {source}")]
+    Load {
+        /// The shared library.
+        path: PathBuf,
+        /// Why.
+        source: libloading::Error,
+    },
+    /// The model has no such port, or not of that width or kind.
+    #[error("{top}: {what}")]
+    Ports {
+        /// The top.
+        top: String,
+        /// What is missing or different.
+        what: String,
+    },
+    /// The RTL differs from the Rust block.
+    #[error(transparent)]
+    Failure(#[from] Box<Failure>),
+    /// The setting of an environment variable is no number.
+    #[error("{name}={value}: not a number")]
+    Setting {
+        /// The variable.
+        name: &'static str,
+        /// Its value.
+        value: String,
+    },
+    /// A check without a single transaction.
+    #[error("{0}: no transaction was played, so nothing was checked")]
+    Nothing(String),
+}
+
+impl Error {
+    /// An [`Error::File`] for this path.
+    pub(crate) fn file(path: impl Into<PathBuf>) -> impl FnOnce(std::io::Error) -> Self {
+        let path = path.into();
+        move |source| Self::File { path, source }
+    }
+}

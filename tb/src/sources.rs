@@ -1,0 +1,100 @@
+//! Which files of `rtl/` a top needs: its own, those of the modules it names, and theirs.
+//!
+//! A file bears the name of its module, so a word of the text that is the name of a file counts as a use of it. A change in one block
+//! then rebuilds only the tops above it.
+
+use crate::Error;
+use std::collections::{BTreeMap, BTreeSet};
+use std::path::{Path, PathBuf};
+
+const PACKAGE: &str = "lod_pkg";
+const WAIVERS: &str = "lint.vlt";
+
+/// The root of the repository.
+pub fn root() -> &'static Path {
+    Path::new(env!("CARGO_MANIFEST_DIR")).parent().unwrap_or(Path::new("."))
+}
+
+/// The folder of the RTL: `rtl/`, or the one that `LODRAY_RTL` names.
+pub(crate) fn rtl() -> PathBuf {
+    std::env::var_os("LODRAY_RTL").map_or_else(|| root().join("rtl"), |given| root().join(given))
+}
+
+/// Source files in the order of the command line, with their content.
+#[derive(Clone, Debug)]
+pub(crate) struct Sources {
+    files: Vec<(PathBuf, Vec<u8>)>,
+}
+
+impl Sources {
+    /// Those of a top in [`rtl`].
+    pub fn of_top(top: &str) -> Result<Self, Error> {
+        Self::within(&rtl(), &[], top)
+    }
+
+    /// Those of a top in one of the given files or in [`rtl`].
+    pub fn with(extra: &[PathBuf], top: &str) -> Result<Self, Error> {
+        Self::within(&rtl(), extra, top)
+    }
+
+    /// Exactly these.
+    pub fn exactly(files: &[PathBuf]) -> Result<Self, Error> {
+        let read = |path: &PathBuf| Ok((path.clone(), std::fs::read(path).map_err(Error::file(path))?));
+        Ok(Self { files: files.iter().map(read).collect::<Result<_, Error>>()? })
+    }
+
+    fn within(folder: &Path, extra: &[PathBuf], top: &str) -> Result<Self, Error> {
+        let mut known: BTreeMap<String, PathBuf> = BTreeMap::new();
+        for entry in std::fs::read_dir(folder).map_err(Error::file(folder))? {
+            let path = entry.map_err(Error::file(folder))?.path();
+            add(&mut known, path);
+        }
+        for path in extra {
+            add(&mut known, path.clone());
+        }
+        let mut needed = BTreeSet::new();
+        let mut waiting = vec![top.to_owned()];
+        while let Some(module) = waiting.pop() {
+            let Some(path) = known.get(&module) else {
+                return Err(Error::Ports { top: top.to_owned(), what: format!("no file {module}.sv in {}", folder.display()) });
+            };
+            if needed.insert(module) {
+                let text = std::fs::read_to_string(path).map_err(Error::file(path))?;
+                waiting.extend(words(&text).filter(|word| known.contains_key(*word)).map(str::to_owned));
+            }
+        }
+        let mut files: Vec<PathBuf> = Vec::new();
+        files.extend(Some(folder.join(WAIVERS)).filter(|path| path.is_file()));
+        if needed.remove(PACKAGE) {
+            files.push(known[PACKAGE].clone());
+        }
+        files.extend(needed.iter().map(|module| known[module].clone()));
+        Self::exactly(&files)
+    }
+
+    /// The files as arguments, relative to the root where they are below it.
+    pub fn arguments(&self) -> impl Iterator<Item = String> {
+        self.contents().map(|(path, _)| path.display().to_string())
+    }
+
+    /// The files' names and contents: all that the result of a build takes from them.
+    pub fn contents(&self) -> impl Iterator<Item = (&Path, &[u8])> {
+        self.files.iter().map(|(path, content)| (path.strip_prefix(root()).unwrap_or(path), content.as_slice()))
+    }
+}
+
+fn add(known: &mut BTreeMap<String, PathBuf>, path: PathBuf) {
+    if path.extension().is_some_and(|e| e == "sv")
+        && let Some(stem) = path.file_stem().and_then(|s| s.to_str())
+    {
+        known.insert(stem.to_owned(), path);
+    }
+}
+
+/// The words of a text, comments left out.
+fn words(text: &str) -> impl Iterator<Item = &str> {
+    text.lines()
+        .map(|line| line.split("//").next().unwrap_or(line))
+        .flat_map(|line| line.split(|c: char| !(c.is_ascii_alphanumeric() || c == '_')))
+        .filter(|word| !word.is_empty())
+}
