@@ -96,7 +96,7 @@ class Run:
             figures["placed"] = sorted([*figures.get("placed", []), result], key=lambda placed: placed["mhz"])
             figures["mhz"] = [placed["mhz"] for placed in figures["placed"]]
             return
-        figures[kind], figures[f"{kind}_netlist"] = result
+        figures[kind], figures[f"{kind}_at"] = result
         if kind == "ecp5" and not self.options.no_place:
             if not ecp5.fits(result[0]):
                 figures["mhz"] = "does not fit"
