@@ -9,13 +9,19 @@ package lod_pkg;
   localparam int unsigned T_NEAR_W = 17;         // t_near in steps of 2^16 units
   localparam int unsigned BARY_W = 32;           // 2^31 = 1
   localparam int unsigned EDGE_STATE_W = 9;      // 256 = 1
+  localparam int unsigned DISTANCE_W = 34;       // l = (p - x).d / 2^30, signed: 64 - 30 bits
+  localparam int unsigned TOLERANCE_W = 34;      // D, clamped to this width
   localparam int unsigned BOUND_CODE_W = 10;
   localparam int unsigned BOUND_W = 33;          // |q - m| < 2^32.8
   localparam int unsigned LINE_ADDRESS_W = 36;   // 2 TiB of 32-byte lines
   localparam int unsigned NODE_INDEX_W = 20;     // 4^10 nodes on the last level
   localparam int unsigned FULL_ID_W = 48;        // 28 bits of tree, 2 of each of ten levels
+  localparam int unsigned RELATIVE_W = 33;       // difference of two 32-bit coordinates
+  localparam int unsigned NORMAL_W = 66;         // component of p x q: |p_i q_j| < 2^64, two of them
   localparam int unsigned EDGE_FUNCTION_W = 96;  // |p x q| |d| < 2^96
+  localparam int unsigned SIGNED_EDGE_W = EDGE_FUNCTION_W + 1;
   localparam int unsigned T_NUMERATOR_W = 99;    // |a| |b| |c| < 2^98.4
+  localparam int unsigned SIGNED_T_NUMERATOR_W = T_NUMERATOR_W + 1;
 
   // Limits and scales.
   localparam int unsigned MAX_LEVELS = 10;
@@ -27,22 +33,48 @@ package lod_pkg;
 
   // Cycles from an input taken to its output offered, and (where not 1) from one input taken to the next: `Block::TIMING` in Rust.
   localparam int unsigned BARY_MAP_LATENCY = 10;
-  localparam int unsigned BOUND_DECODE_LATENCY = 3;
-  localparam int unsigned BOX_TEST_LATENCY = 6;
+  localparam int unsigned BOUND_DECODE_LATENCY = 6;
+  localparam int unsigned BOX_TEST_LATENCY = 8;
   localparam int unsigned BOX_TEST32_LATENCY = 8;
   localparam int unsigned CHILD_SORT_LATENCY = 3;
-  localparam int unsigned HIT_DIVIDE_LATENCY = 40;
-  localparam int unsigned HIT_DIVIDE_INTERVAL = 40;
+  localparam int unsigned HIT_DIVIDE_LATENCY = 36;
+  localparam int unsigned HIT_DIVIDE_INTERVAL = 36;
   localparam int unsigned HIT_SELECT_LATENCY = 3;
-  localparam int unsigned LOD_TEST_LATENCY = 22;
+  localparam int unsigned LOD_TEST_LATENCY = 24;
   localparam int unsigned NODE_ADDRESS_LATENCY = 2;
-  localparam int unsigned RAY_SETUP_LATENCY = 26;
-  localparam int unsigned RAY_SETUP_INTERVAL = 26;
+  localparam int unsigned RAY_SETUP_LATENCY = 22;
+  localparam int unsigned RAY_SETUP_INTERVAL = 22;
   localparam int unsigned TESSELLATE_LATENCY = 6;
-  localparam int unsigned TREE_BASE_LATENCY = 3;
-  localparam int unsigned TRI_TEST_LATENCY = 13;
-  localparam int unsigned WIDEN_BOX_LATENCY = 2;
+  localparam int unsigned TREE_BASE_LATENCY = 5;
+  localparam int unsigned TRI_TEST_LATENCY = 16;
+  localparam int unsigned TRI_TEST_1_LATENCY = 18;  // with EDGES_PER_CYCLE = 1
+  localparam int unsigned TRI_TEST_1_INTERVAL = 3;
+  localparam int unsigned WIDEN_BOX_LATENCY = 3;
+  localparam int unsigned ENTRY_DISTANCE_LATENCY = 5;  // part of the box tests
+  localparam int unsigned EDGE_FUNCTION_LATENCY = 12;  // parts of tri_test
+  localparam int unsigned TRI_DECIDE_LATENCY = 3;
+  localparam int unsigned CONE_TOLERANCE_LATENCY = 6;  // parts of lod_test
+  localparam int unsigned EDGE_OPENING_LATENCY = 9;
   localparam int unsigned CHILD_TEST_LATENCY = WIDEN_BOX_LATENCY + BOX_TEST_LATENCY + CHILD_SORT_LATENCY;
+
+  // A factor of `multiplier` is cut into limbs of 17 bits, the highest signed with up to 18.
+  localparam int unsigned MULTIPLIER_LIMB_W = 17;
+  function automatic int unsigned multiplier_limbs(input int unsigned w);
+    multiplier_limbs = w <= MULTIPLIER_LIMB_W + 1 ? 1 : (w - 1 + MULTIPLIER_LIMB_W - 1) / MULTIPLIER_LIMB_W;
+  endfunction
+
+  // Cycles of `multiplier`: the limb products, then one tree level each.
+  function automatic int unsigned multiplier_latency(input int unsigned a_w, input int unsigned b_w);
+    multiplier_latency = 1 + $clog2(multiplier_limbs(a_w)) + $clog2(multiplier_limbs(b_w));
+  endfunction
+
+  // Cycles of `dot_product`: factors, products, two sums; of `cross_product`: factors, products, differences.
+  function automatic int unsigned dot_product_latency(input int unsigned a_w, input int unsigned b_w);
+    dot_product_latency = 1 + multiplier_latency(a_w, b_w) + 2;
+  endfunction
+  function automatic int unsigned cross_product_latency(input int unsigned w);
+    cross_product_latency = 1 + multiplier_latency(w, w) + 1;
+  endfunction
 
   // Vertex position or ray origin in units.
   typedef struct packed {
@@ -498,5 +530,61 @@ package lod_pkg;
     logic [3:0][63:0] line;  // Its 32 bytes, word 0 first.
   } memory_answer_t;
   localparam int unsigned MEMORY_ANSWER_W = 8 + 4 * 64;
+
+  // Inside the traversal unit (docs/traversal-unit.md).
+  localparam int unsigned MAX_CONTEXTS = 64;
+  localparam int unsigned CONTEXT_W = 6;
+  localparam int unsigned TRI_TAG_W = CONTEXT_W + 2;
+  localparam int unsigned DIVIDE_TAG_W = 2 + CONTEXT_W + 2;
+
+  // State of a ray context.
+  typedef enum logic [4:0] {
+    IDLE        = 5'd0,
+    SETUP       = 5'd1,
+    SETUP_WAIT  = 5'd2,
+    VISIT       = 5'd3,
+    FETCH       = 5'd4,
+    CHILD       = 5'd5,
+    CHILD_WAIT  = 5'd6,
+    PUSH        = 5'd7,
+    POP         = 5'd8,
+    LOD         = 5'd9,
+    LOD_WAIT    = 5'd10,
+    MORPH       = 5'd11,
+    MORPH_WAIT  = 5'd12,
+    TRI         = 5'd13,
+    DIVIDE_V    = 5'd14,
+    DIVIDE_W    = 5'd15,
+    DIVIDE_WAIT = 5'd16,
+    SUM         = 5'd17,
+    MAP         = 5'd18,
+    MAP_WAIT    = 5'd19,
+    DONE        = 5'd20
+  } context_state_t;
+
+  // What a context fetches.
+  typedef enum logic [1:0] {
+    NODE   = 2'd0,  // quad-BVH node
+    RECORD = 2'd1,  // L0 record
+    VERTEX = 2'd2   // inserted vertices and, but on the last split, the children's bound data
+  } fetch_t;
+
+  // Kinds of stack entries.
+  localparam logic [1:0] ENTRY_BVH_NODE = 2'd0;
+  localparam logic [1:0] ENTRY_TREE = 2'd1;
+  localparam logic [1:0] ENTRY_TREE_NODE = 2'd2;
+
+  // What a division is for.
+  localparam logic [1:0] DIVIDE_FOR_T = 2'd0;
+  localparam logic [1:0] DIVIDE_FOR_V = 2'd1;
+  localparam logic [1:0] DIVIDE_FOR_W = 2'd2;
+
+  // A hit on its way to the closest.
+  typedef struct packed {
+    logic [CONTEXT_W-1:0] owner;  // Its context.
+    logic [1:0] number;           // Which of the context's triangles.
+    tri_test_out_t test;          // Its numerators.
+  } queued_hit_t;
+  localparam int unsigned QUEUED_HIT_W = CONTEXT_W + 2 + TRI_TEST_OUT_W;
 
 endpackage

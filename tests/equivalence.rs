@@ -7,25 +7,11 @@ use lodray::mesh::Hierarchy;
 use lodray::mesh::procedural::{self, Options};
 use lodray::num::{Cone, Point, Ray, Vec3};
 use lodray::render::{Camera, View};
-use lodray::traverse::{BvhTraverser, ClosestHit, Crossings, Hit, LodImage, LodTraverser, ModelSpace, NoProbe};
+use lodray::traverse::{BvhTraverser, ClosestHit, Crossings, LodImage, LodTraverser, ModelSpace, NoProbe};
 use lodray_test_support::cases;
 use lodray_test_support::models::{Rng, ball, build, cone, model, octahedron, scene_of, terrain};
+use lodray_test_support::plain::plain;
 use proptest::prelude::*;
-
-/// The fields of a hit as the golden traverser names them.
-fn plain(hit: &Hit) -> ExactHit {
-    let [b0, b1, b2, f0, f1, f2] = [hit.b0, hit.b1, hit.b2, hit.full_b0, hit.full_b1, hit.full_b2].map(|b| b.get() as u32);
-    ExactHit {
-        t: hit.t.get(),
-        tree: hit.tree.get() as u32,
-        level: hit.level.get() as u32,
-        node: hit.node.get() as u32,
-        bary: [b0, b1, b2],
-        full_node: hit.full_node.get() as u32,
-        full_bary: [f0, f1, f2],
-        front: hit.front,
-    }
-}
 
 struct Bench<'a> {
     golden: Exact<'a>,

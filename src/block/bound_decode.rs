@@ -33,7 +33,7 @@ pub struct BoundDecode;
 
 impl Block for BoundDecode {
     const NAME: &'static str = "bound_decode";
-    const TIMING: Timing = Timing::pipelined(3);
+    const TIMING: Timing = Timing::pipelined(6);
     type In = In;
     type Out = Out;
     #[inline(always)]

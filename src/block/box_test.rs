@@ -72,7 +72,7 @@ pub(super) fn finish(slabs: bool, t_near: i64, t_max: RayT) -> Out {
 
 impl Block for BoxTest {
     const NAME: &'static str = "box_test";
-    const TIMING: Timing = Timing::pipelined(6);
+    const TIMING: Timing = Timing::pipelined(8);
     type In = In;
     type Out = Out;
     #[inline(always)]

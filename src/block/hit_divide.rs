@@ -30,7 +30,7 @@ pub struct HitDivide;
 
 impl Block for HitDivide {
     const NAME: &'static str = "hit_divide";
-    const TIMING: Timing = Timing { latency: 40, interval: 40 };
+    const TIMING: Timing = Timing { latency: 36, interval: 36 };
     type In = In;
     type Out = Out;
     #[inline(always)]

@@ -95,7 +95,7 @@ fn moment(i: &Axis, j: &Axis) -> S<63> {
 
 impl Block for RaySetup {
     const NAME: &'static str = "ray_setup";
-    const TIMING: Timing = Timing { latency: 26, interval: 26 };
+    const TIMING: Timing = Timing { latency: 22, interval: 22 };
     type In = In;
     type Out = Out;
     #[inline(always)]

@@ -36,7 +36,7 @@ pub struct TreeBase;
 
 impl Block for TreeBase {
     const NAME: &'static str = "tree_base";
-    const TIMING: Timing = Timing::pipelined(3);
+    const TIMING: Timing = Timing::pipelined(5);
     type In = In;
     type Out = Out;
     #[inline(always)]

@@ -47,7 +47,7 @@ fn upper(hi: S<16>, a: S<32>, b: S<32>, c: S<32>) -> S<16> {
 
 impl Block for WidenBox {
     const NAME: &'static str = "widen_box";
-    const TIMING: Timing = Timing::pipelined(2);
+    const TIMING: Timing = Timing::pipelined(3);
     type In = In;
     type Out = Out;
     #[inline(always)]

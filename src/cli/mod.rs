@@ -11,6 +11,7 @@ mod lines;
 mod output;
 mod pictures;
 mod render;
+mod trace;
 mod verify;
 
 use clap::{Parser, Subcommand};
@@ -38,6 +39,8 @@ enum Command {
     Verify(verify::Args),
     /// Render a scene
     Render(render::Args),
+    /// Follow one ray through the traversal unit: as a waveform, or as text
+    Trace(trace::Args),
     /// Count the memory lines that a frame touches, LOD against every BVH layout, by distance
     Lines(lines::Args),
     /// Shoot rays at edges and vertices of a closed scene and count misses and double hits
@@ -58,6 +61,7 @@ pub fn run(cli: Cli) -> anyhow::Result<ExitCode> {
         Command::Info(args) => info::run(&args),
         Command::Verify(args) => verify::run(&args),
         Command::Render(args) => render::run(&args),
+        Command::Trace(args) => trace::run(&args),
         Command::Lines(args) => lines::run(&args),
         Command::Crack(args) => crack::run(&args),
         Command::Export(args) => export::run(&args),

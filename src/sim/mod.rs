@@ -1,3 +1,4 @@
-//! Floor 4: the cycle level.
+//! Floor 4: the cycle level: what happens in which cycle, with the functions of the floors below and none of its own.
 
 pub mod ports;
+pub mod unit;

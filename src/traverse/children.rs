@@ -5,8 +5,12 @@
 
 use super::lod::quarter;
 use crate::block::Block;
-use crate::block::child_test::{self, ChildTest};
+use crate::block::box_test::{self, BoxTest};
+use crate::block::child_sort;
+use crate::block::child_test::{self, sort};
 use crate::block::ray_setup;
+use crate::block::tessellate::child_triangle;
+use crate::block::widen_box::{self, WidenBox};
 use crate::format::{BoundData, BvhChild, ChildRef};
 use crate::num::{Point, RayT};
 
@@ -19,24 +23,32 @@ pub(crate) struct Split {
     pub q: [Point; 3],
 }
 
-/// Children of a quad-BVH node.
+/// Children of a quad-BVH node; an empty slot is never hit.
 #[inline(always)]
 fn bvh(ray: &ray_setup::Out, t_max: RayT, group: &[u64; 8], out: &mut child_test::Out) {
-    let mut input = child_test::In { ray: *ray, t_max, ..Default::default() };
+    let mut tests = child_sort::In::default();
     for k in 0..4 {
         let BvhChild { child, bounds } = quarter(group, k);
-        input.present[k] = child.kind.get() != ChildRef::EMPTY;
-        input.bounds[k] = bounds;
+        let test = BoxTest::eval(&box_test::In { ray: *ray, t_max, bounds });
+        tests.hit[k] = test.hit & (child.kind.get() != ChildRef::EMPTY);
+        tests.t_near[k] = test.t_near;
     }
-    *out = ChildTest::eval(&input);
+    *out = sort(&tests);
 }
 
 /// Children of a tree's node (where nothing was morphed, widening changes nothing).
 #[inline(always)]
 fn tree(ray: &ray_setup::Out, t_max: RayT, group: &[u64; 8], split: &Split, out: &mut child_test::Out) {
-    let bounds = [0, 1, 2, 3].map(|k| quarter::<BoundData>(group, k).bounds);
-    let ([p0, p1, p2], [q0, q1, q2]) = (split.p, split.q);
-    *out = ChildTest::eval(&child_test::In { ray: *ray, t_max, present: [true; 4], bounds, widen: true, p0, p1, p2, q0, q1, q2 });
+    let mut tests = child_sort::In::default();
+    for k in 0..4 {
+        let BoundData { bounds, .. } = quarter(group, k);
+        let [p0, p1, p2] = child_triangle(split.p, split.q, k);
+        let bounds = WidenBox::eval(&widen_box::In { bounds, p0, p1, p2 }).bounds;
+        let test = BoxTest::eval(&box_test::In { ray: *ray, t_max, bounds });
+        tests.hit[k] = test.hit;
+        tests.t_near[k] = test.t_near;
+    }
+    *out = sort(&tests);
 }
 
 /// Declares `$name`, which does what `$body` does, compiled for AVX2 where the processor has it.

@@ -106,13 +106,13 @@ impl<'a> LodTraverser<'a> {
 
 /// True if a box entered at `t_near` cannot hold a hit that beats one at `t`.
 #[inline(always)]
-pub(super) fn is_beyond(t_near: TNear, t: RayT) -> bool {
+pub(crate) fn is_beyond(t_near: TNear, t: RayT) -> bool {
     t_near.get() << T_NEAR_TO_T_SHIFT > t.get()
 }
 
 /// Child `k` of a group of four 16-byte records.
 #[inline(always)]
-pub(super) fn quarter<T: Wire>(group: &[u64; 8], k: usize) -> T {
+pub(crate) fn quarter<T: Wire>(group: &[u64; 8], k: usize) -> T {
     T::from_words(&group[2 * k..2 * k + 2])
 }
 

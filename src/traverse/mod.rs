@@ -10,9 +10,11 @@ mod probe;
 mod quad_bvh;
 mod stack;
 
+pub(crate) use children::Split;
 pub use cone::cone;
 pub use hit::{ClosestHit, Crossings, Hit, HitSink, TriangleId};
 pub use lod::{LodImage, LodTraverser};
+pub(crate) use lod::{is_beyond, quarter};
 pub use model_space::{ModelRay, ModelSpace, WorldRay};
 pub use probe::{Kind, NoProbe, Probe, RayCounts, Section};
 pub use quad_bvh::{BvhTraverser, bvh_sections};

@@ -2,6 +2,7 @@
 #![allow(missing_docs)] // the names say what is made
 
 pub mod models;
+pub mod plain;
 pub mod surfaces;
 
 /// `count` cases; what ever failed is kept in a file of the same name beside the test's source, to be committed and tried first.

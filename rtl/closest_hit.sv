@@ -1,0 +1,83 @@
+/// The closest hit of one ray so far, and the way from its numerators to the hit record.
+///
+/// A result of `hit_select` that is closer takes the place of the hit before; without one `t_max_o` is the largest t. At the end b1 and b2 come from two divisions,
+/// b0 = 2^31 - b1 - b2 follows in the cycle of `sum_i`, and `bary_map` gives the full-resolution triangle. No reset: `clear_i` comes first.
+module closest_hit (
+  input  logic                               clk_i,
+  input  logic [3:0]                         levels_i,
+  input  logic                               clear_i,
+  output logic                               known_o,
+  output logic [lod_pkg::RAY_T_W-1:0]        t_max_o,
+  output logic [lod_pkg::FULL_ID_W-1:0]      id_o,
+  // A hit was compared; which one it is.
+  input  logic                               select_valid_i,
+  input  lod_pkg::hit_select_out_t           select_i,
+  input  logic [lod_pkg::RAY_T_W-1:0]        t_i,
+  input  logic [27:0]                        tree_i,
+  input  logic [3:0]                         level_i,
+  input  logic [lod_pkg::NODE_INDEX_W-1:0]   node_i,
+  input  logic                               front_i,
+  input  logic [lod_pkg::EDGE_FUNCTION_W-1:0] v_i,
+  input  logic [lod_pkg::EDGE_FUNCTION_W-1:0] w_i,
+  input  logic [lod_pkg::EDGE_FUNCTION_W-1:0] det_i,
+  // Barycentrics: the division of v, or of w.
+  input  logic                               divide_v_i,
+  output lod_pkg::hit_divide_in_t            divide_o,
+  input  logic                               divide_valid_i,
+  input  logic [1:0]                         divide_what_i,
+  input  lod_pkg::hit_divide_out_t           divide_i,
+  input  logic                               sum_i,
+  output lod_pkg::bary_map_in_t              map_o,
+  input  logic                               map_valid_i,
+  input  lod_pkg::bary_map_out_t             map_i,
+  output lod_pkg::hit_t                      hit_o
+);
+
+  logic                                known_q;
+  logic [lod_pkg::RAY_T_W-1:0]         t_max_q;
+  logic [lod_pkg::FULL_ID_W-1:0]       id_q;
+  logic [27:0]                         tree_q;
+  logic [3:0]                          level_q;
+  logic [lod_pkg::NODE_INDEX_W-1:0]    node_q;
+  logic                                front_q;
+  logic [lod_pkg::EDGE_FUNCTION_W-1:0] v_q, w_q, det_q;
+  logic [lod_pkg::BARY_W-1:0]          b0_q, b1_q, b2_q;
+  lod_pkg::bary_map_out_t              full_q;
+
+  assign {known_o, t_max_o, id_o} = {known_q, t_max_q, id_q};
+
+  always_ff @(posedge clk_i) begin
+    if (clear_i) begin
+      known_q <= 1'b0;
+      t_max_q <= '1;
+    end else if (select_valid_i && select_i.closer) begin
+      known_q <= 1'b1;
+      t_max_q <= t_i;
+    end
+    if (select_valid_i && select_i.closer) begin
+      id_q    <= select_i.id;
+      tree_q  <= tree_i;
+      level_q <= level_i;
+      node_q  <= node_i;
+      front_q <= front_i;
+      {v_q, w_q, det_q} <= {v_i, w_i, det_i};
+    end
+  end
+
+  // Edge functions fit a numerator of t: 96 bits of 99.
+  assign divide_o = {lod_pkg::T_NUMERATOR_W'(divide_v_i ? v_q : w_q), det_q};
+
+  always_ff @(posedge clk_i) begin
+    // An edge function is at most det, so quotients are at most 2^32; their last bit is dropped: 32 bits.
+    if (divide_valid_i && divide_what_i == lod_pkg::DIVIDE_FOR_V) b1_q <= divide_i.quotient[lod_pkg::BARY_W:1];
+    if (divide_valid_i && divide_what_i == lod_pkg::DIVIDE_FOR_W) b2_q <= divide_i.quotient[lod_pkg::BARY_W:1];
+    // Both were rounded down and v + w <= det: not negative.
+    if (sum_i) b0_q <= 32'h8000_0000 - b1_q - b2_q;
+    if (map_valid_i) full_q <= map_i;
+  end
+
+  // The hit's level is at most N.
+  assign map_o = {levels_i - level_q, node_q, b0_q, b1_q, b2_q};
+  assign hit_o = {t_max_q, front_q, tree_q, level_q, node_q, b0_q, b1_q, b2_q, full_q};
+
+endmodule

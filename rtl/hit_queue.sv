@@ -1,0 +1,59 @@
+/// First in, first out: hits on their way from the triangle test to the division.
+///
+/// `data_o` is the oldest item, valid while `empty_o` is low; a pop drops it at the end of the cycle. An item pushed is seen from the next cycle on. The caller never has
+/// more than `DEPTH` items under way, so there is no full flag. Only pointers and length are reset.
+module hit_queue #(
+  parameter int unsigned W = 1,
+  parameter int unsigned DEPTH = 4
+) (
+  input  logic         clk_i,
+  input  logic         rst_ni,
+  input  logic         push_i,
+  input  logic [W-1:0] data_i,
+  input  logic         pop_i,
+  output logic [W-1:0] data_o,
+  output logic         empty_o
+);
+
+  if (DEPTH < 2) begin : g_illegal
+    $error("hit_queue: DEPTH must be at least 2");
+  end
+
+  localparam int unsigned INDEX_W = $clog2(DEPTH);
+  // 0 to DEPTH.
+  localparam int unsigned LEN_W = $clog2(DEPTH + 1);
+  localparam logic [INDEX_W-1:0] LAST = INDEX_W'(DEPTH - 1);
+
+  logic [W-1:0]       items_q [DEPTH];
+  logic [INDEX_W-1:0] head_q;
+  logic [INDEX_W-1:0] tail_q;
+  logic [LEN_W-1:0]   len_q;
+
+  assign data_o  = items_q[head_q];
+  assign empty_o = len_q == '0;
+
+  always_ff @(posedge clk_i) begin
+    if (!rst_ni) begin
+      head_q <= '0;
+      tail_q <= '0;
+      len_q  <= '0;
+    end else begin
+      if (push_i) tail_q <= (tail_q == LAST) ? '0 : tail_q + INDEX_W'(1);
+      if (pop_i) head_q <= (head_q == LAST) ? '0 : head_q + INDEX_W'(1);
+      if (push_i && !pop_i) len_q <= len_q + LEN_W'(1);
+      if (pop_i && !push_i) len_q <= len_q - LEN_W'(1);
+    end
+  end
+
+  always_ff @(posedge clk_i) begin
+    if (push_i) items_q[tail_q] <= data_i;
+  end
+
+  always_ff @(posedge clk_i) begin
+    if (rst_ni) begin
+      assert (!(push_i && !pop_i && len_q == LEN_W'(DEPTH)));
+      assert (!(pop_i && empty_o));
+    end
+  end
+
+endmodule

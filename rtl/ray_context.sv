@@ -1,0 +1,446 @@
+/// One ray under way: the state machine of the paper's figure 9, with its stack, its split triangles, its line buffers and its closest hit.
+///
+/// States, conditions and registers are those of docs/traversal-unit.md. A context asks for a block with `*_request_o`, holding the operands until
+/// `*_grant_i`; the result comes with `*_valid_i`, later. It computes nothing itself but counts.
+/// Only states and bits that ask for something are reset.
+module ray_context (
+  input  logic                             clk_i,
+  input  logic                             rst_ni,
+  input  lod_pkg::scene_config_t           scene_i,
+  // Ray in.
+  output logic                             idle_o,
+  input  logic                             take_i,
+  input  lod_pkg::ray_in_t                 ray_i,
+  // ray_setup.
+  output logic                             setup_request_o,
+  output lod_pkg::ray_setup_in_t           setup_o,
+  input  logic                             setup_grant_i,
+  input  logic                             setup_valid_i,
+  input  lod_pkg::ray_setup_out_t          setup_i,
+  // node_address and the memory behind it; `place_o` is the line's place in its record.
+  output logic                             fetch_request_o,
+  output logic [1:0]                       fetch_place_o,
+  output lod_pkg::node_address_in_t        fetch_o,
+  input  logic                             fetch_grant_i,
+  input  logic                             line_valid_i,
+  input  lod_pkg::memory_answer_t          line_i,
+  // tree_base.
+  output logic                             base_request_o,
+  output lod_pkg::tree_base_in_t           base_o,
+  input  logic                             base_grant_i,
+  input  logic                             base_valid_i,
+  input  lod_pkg::tree_base_out_t          base_i,
+  // child_test.
+  output logic                             child_request_o,
+  output lod_pkg::child_test_in_t          child_o,
+  input  logic                             child_grant_i,
+  input  logic                             child_valid_i,
+  input  lod_pkg::child_test_out_t         child_i,
+  // lod_test.
+  output logic                             lod_request_o,
+  output lod_pkg::lod_test_in_t            lod_o,
+  input  logic                             lod_grant_i,
+  input  logic                             lod_valid_i,
+  input  lod_pkg::lod_test_out_t           lod_i,
+  // tessellate.
+  output logic                             morph_request_o,
+  output lod_pkg::tessellate_in_t          morph_o,
+  input  logic                             morph_grant_i,
+  input  logic                             morph_valid_i,
+  input  lod_pkg::tessellate_out_t         morph_i,
+  // tri_test; `number_o` tells the triangles of a context apart.
+  output logic                             tri_request_o,
+  output logic [1:0]                       tri_number_o,
+  output lod_pkg::tri_test_in_t            tri_o,
+  input  logic                             tri_grant_i,
+  input  logic                             tri_miss_i,
+  // hit_select: `hit_number_i` is the triangle that t belongs to; its numerators follow with the result.
+  input  logic [1:0]                       hit_number_i,
+  input  logic [lod_pkg::RAY_T_W-1:0]      hit_t_i,
+  output lod_pkg::hit_select_in_t          select_o,
+  input  logic                             select_valid_i,
+  input  lod_pkg::hit_select_out_t         select_i,
+  input  logic [lod_pkg::RAY_T_W-1:0]      chosen_t_i,
+  input  lod_pkg::queued_hit_t             chosen_i,
+  // hit_divide, for the barycentrics; `divide_what_i` and `divide_valid_i` tell results apart.
+  output logic                             divide_request_o,
+  output logic [1:0]                       divide_what_o,
+  output lod_pkg::hit_divide_in_t          divide_o,
+  input  logic                             divide_grant_i,
+  input  logic                             divide_valid_i,
+  input  logic [1:0]                       divide_what_i,
+  input  lod_pkg::hit_divide_out_t         divide_i,
+  // bary_map.
+  output logic                             map_request_o,
+  output lod_pkg::bary_map_in_t            map_o,
+  input  logic                             map_grant_i,
+  input  logic                             map_valid_i,
+  input  lod_pkg::bary_map_out_t           map_i,
+  // Hit out.
+  output logic                             hit_request_o,
+  output lod_pkg::hit_out_t                hit_o,
+  input  logic                             hit_grant_i
+);
+
+  localparam int unsigned NODE_W = lod_pkg::NODE_INDEX_W;
+  localparam int unsigned SPLIT_W = 6 * lod_pkg::POINT_W;
+
+  // ---- Registers ----
+
+  lod_pkg::context_state_t state_q, state_d;
+  lod_pkg::fetch_t         fetch_q;
+
+  // The ray.
+  logic [31:0]             tag_q;
+  lod_pkg::ray_t           ray_q;
+  lod_pkg::ray_setup_out_t setup_q;
+
+  // Where it is: entry under visit, tree, node, its triangle with inserted vertices, bound codes and edge states.
+  lod_pkg::stack_entry_t            entry_q;
+  logic [27:0]                      tree_q;
+  logic [3:0]                       level_q;
+  logic [NODE_W-1:0]                node_q;
+  lod_pkg::point_t                  p0_q, p1_q, p2_q, q0_q, q1_q, q2_q;
+  logic [lod_pkg::BOUND_CODE_W-1:0] e0_q, e1_q, e2_q;
+  lod_pkg::lod_test_out_t           lod_q;
+  lod_pkg::tree_base_out_t          base_q;
+
+  // Lines asked for and not yet sent, sent and not yet there, and there.
+  logic [2:0]   want_q, waiting_q;
+  logic         base_want_q, base_ready_q;
+  logic [255:0] line0_q, line1_q, line2_q;
+
+  // Children still to be pushed.
+  lod_pkg::child_test_out_t sorted_q;
+  logic [2:0]               count_q;
+
+  // Triangle tests: still to be sent (0 to 4), the next one's number, without a verdict yet (0 to 4); `four_q`: the four children, not the node itself.
+  logic       four_q;
+  logic [2:0] left_q, pending_q;
+  logic [1:0] next_q;
+
+  // ---- Records in the line buffers ----
+
+  lod_pkg::vertex_data_t corners, inserted;
+  lod_pkg::l0_record_t   record;
+
+  assign corners  = line0_q;
+  assign record   = line1_q;
+  assign inserted = line2_q;
+
+  logic last_split;
+  // levels <= 10 and level_q < levels where this is used.
+  assign last_split = level_q + 4'd1 == scene_i.levels;
+
+  // ---- Closest hit ----
+
+  // A triangle's level and node: this node, or its child of that number.
+  logic [3:0]        hit_level;
+  logic [NODE_W-1:0] hit_node, chosen_node;
+
+  // Children of level N - 1 <= 9: their nodes are below 4^10.
+  assign hit_level   = four_q ? level_q + 4'd1 : level_q;
+  assign hit_node    = four_q ? {node_q[NODE_W-3:0], hit_number_i} : node_q;
+  assign chosen_node = four_q ? {node_q[NODE_W-3:0], chosen_i.number} : node_q;
+
+  logic                          known;
+  logic [lod_pkg::RAY_T_W-1:0]   t_max;
+  logic [lod_pkg::FULL_ID_W-1:0] best_id;
+  lod_pkg::hit_t                 best;
+
+  closest_hit u_closest (
+    .clk_i,
+    .levels_i(scene_i.levels),
+    .clear_i(setup_valid_i),
+    .known_o(known), .t_max_o(t_max), .id_o(best_id),
+    .select_valid_i, .select_i,
+    .t_i(chosen_t_i), .tree_i(tree_q), .level_i(hit_level), .node_i(chosen_node),
+    .front_i(chosen_i.test.front), .v_i(chosen_i.test.v), .w_i(chosen_i.test.w), .det_i(chosen_i.test.det),
+    .divide_v_i(state_q == lod_pkg::DIVIDE_V), .divide_o,
+    .divide_valid_i, .divide_what_i, .divide_i,
+    .sum_i(state_q == lod_pkg::SUM),
+    .map_o, .map_valid_i, .map_i,
+    .hit_o(best)
+  );
+
+  // ---- Stack and split triangles ----
+
+  logic                  push, pop, drop, stack_empty;
+  lod_pkg::stack_entry_t top, child_entry;
+
+  traversal_stack u_stack (
+    .clk_i, .rst_ni,
+    .clear_i(setup_valid_i),
+    .push_i(push), .entry_i(child_entry),
+    .pop_i(pop), .entry_o(top), .empty_o(stack_empty)
+  );
+
+  assign push = state_q == lod_pkg::PUSH && count_q > 3'd1;
+  assign pop  = state_q == lod_pkg::POP && !stack_empty;
+  // 17 + 18 bits against 35.
+  assign drop = {top.t_near, lod_pkg::T_NEAR_TO_T_SHIFT'(0)} > t_max;
+
+  // One triangle with its inserted vertices per level that splits into nodes: levels 0 to 8.
+  logic [SPLIT_W-1:0] splits_q [9];
+  logic [3:0]         parent_level;
+  lod_pkg::point_t    a0, a1, a2, m0, m1, m2;
+
+  assign parent_level = entry_q.level - 4'd1;
+  assign {a0, a1, a2, m0, m1, m2} = splits_q[parent_level];
+
+  always_ff @(posedge clk_i) begin
+    if (morph_valid_i && !last_split) begin
+      splits_q[level_q] <= {p0_q, p1_q, p2_q, morph_i.q0, morph_i.q1, morph_i.q2};
+    end
+  end
+
+  // ---- Children ----
+
+  logic [3:0]                       present;
+  logic [3:0][lod_pkg::BOX16_W-1:0] bounds;
+
+  child_records u_children (
+    .tree_i(fetch_q == lod_pkg::VERTEX),
+    .line0_i(line0_q), .line1_i(line1_q),
+    .level_i(level_q), .node_i(node_q),
+    .count_i(count_q), .order_i(sorted_q.order), .t_near_i(sorted_q.t_near),
+    .present_o(present), .bounds_o(bounds), .entry_o(child_entry)
+  );
+
+  // ---- Requests ----
+
+  assign idle_o = state_q == lod_pkg::IDLE;
+
+  assign setup_request_o = state_q == lod_pkg::SETUP;
+  assign setup_o         = {ray_q.origin, ray_q.direction};
+
+  assign fetch_request_o = state_q == lod_pkg::FETCH && want_q != '0;
+  assign fetch_place_o   = want_q[2] ? 2'd2 : want_q[0] ? 2'd0 : 2'd1;
+
+  always_comb begin
+    fetch_o       = '0;
+    fetch_o.pair  = !want_q[2];
+    fetch_o.half  = !want_q[2] && !want_q[0];
+    fetch_o.index = entry_q.index;
+    case (fetch_q)
+      lod_pkg::NODE:   fetch_o.base = scene_i.nodes;
+      lod_pkg::RECORD: fetch_o.base = scene_i.records;
+      default: begin
+        fetch_o.base  = want_q[2] ? base_q.vertices : base_q.bounds;
+        fetch_o.level = level_q;
+        fetch_o.index = 28'(node_q);
+      end
+    endcase
+  end
+
+  assign base_request_o = state_q == lod_pkg::FETCH && base_want_q;
+  assign base_o         = {scene_i.levels, tree_q, scene_i.vertices, scene_i.bounds};
+
+  assign child_request_o = state_q == lod_pkg::CHILD && waiting_q[1:0] == '0;
+
+  assign child_o = {setup_q, t_max, present, bounds, fetch_q == lod_pkg::VERTEX, p0_q, p1_q, p2_q, q0_q, q1_q, q2_q};
+
+  assign lod_request_o = state_q == lod_pkg::LOD;
+  assign lod_o         = {ray_q, p0_q, p1_q, p2_q, e0_q, e1_q, e2_q, scene_i.scale};
+
+  assign morph_request_o = state_q == lod_pkg::MORPH;
+
+  always_comb begin
+    morph_o      = '0;
+    // level_q < levels here: 0 to 9.
+    morph_o.grid = scene_i.levels - level_q - 4'd1;
+    {morph_o.s0, morph_o.s1, morph_o.s2} = {lod_q.s0, lod_q.s1, lod_q.s2};
+    {morph_o.p0, morph_o.p1, morph_o.p2} = {p0_q, p1_q, p2_q};
+    morph_o.q0 = {inserted.v0.x, 4'd0, inserted.v0.y, 4'd0, inserted.v0.z, 4'd0};
+    morph_o.q1 = {inserted.v1.x, 4'd0, inserted.v1.y, 4'd0, inserted.v1.z, 4'd0};
+    morph_o.q2 = {inserted.v2.x, 4'd0, inserted.v2.y, 4'd0, inserted.v2.z, 4'd0};
+  end
+
+  assign tri_request_o = state_q == lod_pkg::TRI && left_q != '0;
+  assign tri_number_o  = next_q;
+
+  always_comb begin
+    tri_o           = '0;
+    tri_o.origin    = ray_q.origin;
+    tri_o.direction = ray_q.direction;
+    if (!four_q) {tri_o.p0, tri_o.p1, tri_o.p2} = {p0_q, p1_q, p2_q};
+    else begin
+      unique case (next_q)
+        2'd0: {tri_o.p0, tri_o.p1, tri_o.p2} = {p0_q, q2_q, q1_q};
+        2'd1: {tri_o.p0, tri_o.p1, tri_o.p2} = {q2_q, p1_q, q0_q};
+        2'd2: {tri_o.p0, tri_o.p1, tri_o.p2} = {q1_q, q0_q, p2_q};
+        2'd3: {tri_o.p0, tri_o.p1, tri_o.p2} = {q0_q, q1_q, q2_q};
+      endcase
+    end
+  end
+
+  assign select_o    = {scene_i.levels, known, t_max, best_id, hit_t_i, tree_q, hit_level, hit_node};
+
+  assign divide_request_o = state_q == lod_pkg::DIVIDE_V || state_q == lod_pkg::DIVIDE_W;
+  assign divide_what_o    = (state_q == lod_pkg::DIVIDE_V) ? lod_pkg::DIVIDE_FOR_V : lod_pkg::DIVIDE_FOR_W;
+  assign map_request_o = state_q == lod_pkg::MAP;
+  assign hit_request_o = state_q == lod_pkg::DONE;
+
+  always_comb begin
+    hit_o     = '0;
+    hit_o.tag = tag_q;
+    if (known) begin
+      hit_o.found = 1'b1;
+      hit_o.hit   = best;
+    end
+  end
+
+  // ---- Next state ----
+
+  logic record_there;
+  assign record_there = want_q == '0 && waiting_q == '0;
+
+  always_comb begin
+    state_d = state_q;
+    case (state_q)
+      lod_pkg::IDLE:       if (take_i) state_d = lod_pkg::SETUP;
+      lod_pkg::SETUP:      if (setup_grant_i) state_d = lod_pkg::SETUP_WAIT;
+      lod_pkg::SETUP_WAIT: if (setup_valid_i) state_d = lod_pkg::VISIT;
+      lod_pkg::VISIT:      state_d = (entry_q.kind == lod_pkg::ENTRY_TREE_NODE) ? lod_pkg::LOD : lod_pkg::FETCH;
+      lod_pkg::FETCH: begin
+        case (fetch_q)
+          lod_pkg::NODE:   if (record_there) state_d = lod_pkg::CHILD;
+          lod_pkg::RECORD: if (record_there && base_ready_q) state_d = (scene_i.levels == '0) ? lod_pkg::TRI : lod_pkg::LOD;
+          default:         if (want_q == '0 && !waiting_q[2]) state_d = lod_pkg::MORPH;
+        endcase
+      end
+      lod_pkg::CHILD:      if (child_grant_i) state_d = lod_pkg::CHILD_WAIT;
+      lod_pkg::CHILD_WAIT: if (child_valid_i) state_d = lod_pkg::PUSH;
+      lod_pkg::PUSH: begin
+        if (count_q == 3'd1) state_d = lod_pkg::VISIT;
+        else if (count_q == 3'd0) state_d = lod_pkg::POP;
+      end
+      lod_pkg::POP: begin
+        if (stack_empty) state_d = known ? lod_pkg::DIVIDE_V : lod_pkg::DONE;
+        else if (!drop) state_d = lod_pkg::VISIT;
+      end
+      lod_pkg::LOD:         if (lod_grant_i) state_d = lod_pkg::LOD_WAIT;
+      lod_pkg::LOD_WAIT:    if (lod_valid_i) state_d = lod_i.refine ? lod_pkg::FETCH : lod_pkg::TRI;
+      lod_pkg::MORPH:       if (morph_grant_i) state_d = lod_pkg::MORPH_WAIT;
+      lod_pkg::MORPH_WAIT:  if (morph_valid_i) state_d = last_split ? lod_pkg::TRI : lod_pkg::CHILD;
+      lod_pkg::TRI:         if (left_q == '0 && pending_q == '0) state_d = lod_pkg::POP;
+      lod_pkg::DIVIDE_V:    if (divide_grant_i) state_d = lod_pkg::DIVIDE_W;
+      lod_pkg::DIVIDE_W:    if (divide_grant_i) state_d = lod_pkg::DIVIDE_WAIT;
+      lod_pkg::DIVIDE_WAIT: if (divide_valid_i && divide_what_i == lod_pkg::DIVIDE_FOR_W) state_d = lod_pkg::SUM;
+      lod_pkg::SUM:         state_d = lod_pkg::MAP;
+      lod_pkg::MAP:         if (map_grant_i) state_d = lod_pkg::MAP_WAIT;
+      lod_pkg::MAP_WAIT:    if (map_valid_i) state_d = lod_pkg::DONE;
+      lod_pkg::DONE:        if (hit_grant_i) state_d = lod_pkg::IDLE;
+      default:              state_d = lod_pkg::IDLE;
+    endcase
+  end
+
+  always_ff @(posedge clk_i) begin
+    if (!rst_ni) state_q <= lod_pkg::IDLE;
+    else state_q <= state_d;
+  end
+
+  // ---- Ray ----
+
+  always_ff @(posedge clk_i) begin
+    if (take_i) {tag_q, ray_q} <= ray_i;
+    if (setup_valid_i) setup_q <= setup_i;
+  end
+
+  // ---- Entry, node and triangle ----
+
+  always_ff @(posedge clk_i) begin
+    if (setup_valid_i) entry_q <= '0;
+    else if (state_q == lod_pkg::PUSH && count_q == 3'd1) entry_q <= child_entry;
+    else if (pop && !drop) entry_q <= top;
+  end
+
+  always_ff @(posedge clk_i) begin
+    if (state_q == lod_pkg::VISIT) begin
+      if (entry_q.kind == lod_pkg::ENTRY_TREE) tree_q <= entry_q.index;
+      if (entry_q.kind == lod_pkg::ENTRY_TREE_NODE) begin
+        level_q <= entry_q.level;
+        // Nodes of a tree are below 4^10.
+        node_q  <= entry_q.index[NODE_W-1:0];
+        {e0_q, e1_q, e2_q} <= {entry_q.e0, entry_q.e1, entry_q.e2};
+        unique case (entry_q.index[1:0])
+          2'd0: {p0_q, p1_q, p2_q} <= {a0, m2, m1};
+          2'd1: {p0_q, p1_q, p2_q} <= {m2, a1, m0};
+          2'd2: {p0_q, p1_q, p2_q} <= {m1, m0, a2};
+          2'd3: {p0_q, p1_q, p2_q} <= {m0, m1, m2};
+        endcase
+      end
+    end else if (state_q == lod_pkg::FETCH && fetch_q == lod_pkg::RECORD && record_there && base_ready_q) begin
+      level_q <= '0;
+      node_q  <= '0;
+      {e0_q, e1_q, e2_q} <= {record.root.e0, record.root.e1, record.root.e2};
+      p0_q <= {corners.v0.x, 4'd0, corners.v0.y, 4'd0, corners.v0.z, 4'd0};
+      p1_q <= {corners.v1.x, 4'd0, corners.v1.y, 4'd0, corners.v1.z, 4'd0};
+      p2_q <= {corners.v2.x, 4'd0, corners.v2.y, 4'd0, corners.v2.z, 4'd0};
+    end
+    if (lod_valid_i) lod_q <= lod_i;
+    if (morph_valid_i) {q0_q, q1_q, q2_q} <= morph_i;
+  end
+
+  // ---- Lines ----
+
+  logic [2:0] granted, arrived;
+
+  assign granted = fetch_grant_i ? 3'b001 << fetch_place_o : 3'b000;
+  assign arrived = line_valid_i ? 3'b001 << line_i.tag[1:0] : 3'b000;
+
+  always_ff @(posedge clk_i) begin
+    if (!rst_ni) begin
+      want_q      <= '0;
+      waiting_q   <= '0;
+      base_want_q <= 1'b0;
+    end else begin
+      waiting_q <= (waiting_q | granted) & ~arrived;
+      if (state_q == lod_pkg::VISIT && entry_q.kind != lod_pkg::ENTRY_TREE_NODE) want_q <= 3'b011;
+      else if (lod_valid_i && lod_i.refine) want_q <= last_split ? 3'b100 : 3'b111;
+      else want_q <= want_q & ~granted;
+      if (state_q == lod_pkg::VISIT && entry_q.kind == lod_pkg::ENTRY_TREE) base_want_q <= 1'b1;
+      else if (base_grant_i) base_want_q <= 1'b0;
+    end
+  end
+
+  always_ff @(posedge clk_i) begin
+    if (arrived[0]) line0_q <= line_i.line;
+    if (arrived[1]) line1_q <= line_i.line;
+    if (arrived[2]) line2_q <= line_i.line;
+    if (base_valid_i) base_q <= base_i;
+    if (state_q == lod_pkg::VISIT && entry_q.kind == lod_pkg::ENTRY_TREE) base_ready_q <= 1'b0;
+    else if (base_valid_i) base_ready_q <= 1'b1;
+    if (state_q == lod_pkg::VISIT && entry_q.kind == lod_pkg::ENTRY_BVH_NODE) fetch_q <= lod_pkg::NODE;
+    else if (state_q == lod_pkg::VISIT && entry_q.kind == lod_pkg::ENTRY_TREE) fetch_q <= lod_pkg::RECORD;
+    else if (lod_valid_i && lod_i.refine) fetch_q <= lod_pkg::VERTEX;
+  end
+
+  // ---- Children and triangles ----
+
+  always_ff @(posedge clk_i) begin
+    if (child_valid_i) begin
+      sorted_q <= child_i;
+      count_q  <= child_i.count;
+    end else if (push) count_q <= count_q - 3'd1;
+  end
+
+  logic enter_tri;
+  assign enter_tri = state_d == lod_pkg::TRI && state_q != lod_pkg::TRI;
+
+  always_ff @(posedge clk_i) begin
+    if (enter_tri) begin
+      four_q    <= state_q == lod_pkg::MORPH_WAIT;
+      left_q    <= (state_q == lod_pkg::MORPH_WAIT) ? 3'd4 : 3'd1;
+      next_q    <= '0;
+      pending_q <= '0;
+    end else begin
+      if (tri_grant_i) begin
+        left_q <= left_q - 3'd1;
+        next_q <= next_q + 2'd1;
+      end
+      pending_q <= pending_q + 3'(tri_grant_i) - 3'(tri_miss_i) - 3'(select_valid_i);
+    end
+  end
+
+endmodule

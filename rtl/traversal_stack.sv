@@ -1,0 +1,48 @@
+/// The traversal stack of one ray (paper figure 9): what is still to be visited, nearest on top.
+///
+/// `entry_o` is the top entry, valid while `empty_o` is low; a pop drops it at the end of the cycle. Push, pop and clear exclude each other. Depth: `STACK_ENTRIES`, which a quad-BVH of
+/// `MAX_BVH_DEPTH` levels and a tree of `MAX_LEVELS` cannot exceed (each level leaves at most three siblings waiting). Only the length is reset.
+module traversal_stack (
+  input  logic                  clk_i,
+  input  logic                  rst_ni,
+  input  logic                  clear_i,
+  input  logic                  push_i,
+  input  lod_pkg::stack_entry_t entry_i,
+  input  logic                  pop_i,
+  output lod_pkg::stack_entry_t entry_o,
+  output logic                  empty_o
+);
+
+  localparam int unsigned DEPTH = lod_pkg::STACK_ENTRIES;
+  // 0 to DEPTH.
+  localparam int unsigned LEN_W = $clog2(DEPTH + 1);
+
+  logic [lod_pkg::STACK_ENTRY_W-1:0] entries_q [DEPTH];
+  logic [LEN_W-1:0] len_q;
+  logic [LEN_W-1:0] top;
+
+  // Never read while empty, when this wraps.
+  assign top     = len_q - LEN_W'(1);
+  assign entry_o = entries_q[top];
+  assign empty_o = len_q == '0;
+
+  always_ff @(posedge clk_i) begin
+    if (!rst_ni) len_q <= '0;
+    else if (clear_i) len_q <= '0;
+    else if (push_i) len_q <= len_q + LEN_W'(1);
+    else if (pop_i) len_q <= top;
+  end
+
+  always_ff @(posedge clk_i) begin
+    if (push_i) entries_q[len_q] <= entry_i;
+  end
+
+  always_ff @(posedge clk_i) begin
+    if (rst_ni) begin
+      assert (32'(push_i) + 32'(pop_i) + 32'(clear_i) <= 1);
+      assert (!(push_i && len_q == LEN_W'(DEPTH)));
+      assert (!(pop_i && empty_o));
+    end
+  end
+
+endmodule

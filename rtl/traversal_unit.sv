@@ -1,0 +1,342 @@
+/// The traversal loop of the paper's figure 9 for several rays at once: rays in, memory lines in, closest hits out.
+///
+/// `CONTEXTS` ray contexts (state machines) share one of each block; docs/traversal-unit.md gives every state, arbitration and port rule, and
+/// `src/sim/unit` is the cycle model. A result always has a place, so no block ever waits for its consumer; only the memory and hit ports stall.
+/// Memory: one 32-byte line a request, any latency and order of answers, at most three outstanding a context; answers are always taken.
+/// Hits: smaller t first, then smaller triangle; every field as at full resolution (paper section 3.6).
+module traversal_unit #(
+  parameter int unsigned CONTEXTS = 4,
+  parameter int unsigned EDGES_PER_CYCLE = 3
+) (
+  input  logic                     clk_i,
+  input  logic                     rst_ni,
+  input  lod_pkg::scene_config_t   scene_i,
+  input  logic                     valid_i,
+  output logic                     ready_o,
+  input  lod_pkg::ray_in_t         in_i,
+  output logic                     valid_o,
+  input  logic                     ready_i,
+  output lod_pkg::hit_out_t        out_o,
+  output logic                     mem_valid_o,
+  input  logic                     mem_ready_i,
+  output lod_pkg::memory_request_t mem_o,
+  input  logic                     mem_valid_i,
+  output logic                     mem_ready_o,
+  input  lod_pkg::memory_answer_t  mem_i
+);
+
+  localparam int unsigned N = CONTEXTS;
+  localparam int unsigned CONTEXT_W = lod_pkg::CONTEXT_W;
+
+  if (CONTEXTS < 1 || CONTEXTS > lod_pkg::MAX_CONTEXTS) begin : g_illegal_contexts
+    $error("traversal_unit: CONTEXTS must be 1 to 64");
+  end
+  if (lod_pkg::HIT_DIVIDE_LATENCY <= lod_pkg::HIT_SELECT_LATENCY) begin : g_illegal_latency
+    $error("traversal_unit: two hits would meet in hit_select");
+  end
+
+  // ---- Rays in: the idle context of the lowest number ----
+
+  logic [N-1:0] idle, take;
+
+  assign ready_o = idle != '0;
+  assign take    = valid_i ? idle & (~idle + N'(1)) : '0;
+
+  // ---- Requests of the contexts, and the winners' operands ----
+
+  logic [N-1:0] setup_request, setup_grant;
+  logic [N-1:0][lod_pkg::RAY_SETUP_IN_W-1:0] setup_data;
+  logic setup_in_valid, setup_in_ready, setup_valid;
+  lod_pkg::ray_setup_in_t setup_in;
+  lod_pkg::ray_setup_out_t setup_out;
+  logic [CONTEXT_W-1:0] setup_in_tag, setup_tag;
+
+  shared_input #(.N(N), .W(lod_pkg::RAY_SETUP_IN_W)) u_setup_input (
+    .clk_i, .rst_ni,
+    .request_i(setup_request), .data_i(setup_data), .grant_o(setup_grant),
+    .valid_o(setup_in_valid), .ready_i(setup_in_ready), .data_o(setup_in), .index_o(setup_in_tag)
+  );
+
+  ray_setup #(.TAG_W(CONTEXT_W)) u_ray_setup (
+    .clk_i, .rst_ni,
+    .valid_i(setup_in_valid), .ready_o(setup_in_ready), .in_i(setup_in), .tag_i(setup_in_tag),
+    .valid_o(setup_valid), .ready_i(1'b1), .out_o(setup_out), .tag_o(setup_tag)
+  );
+
+  logic [N-1:0] base_request, base_grant;
+  logic [N-1:0][lod_pkg::TREE_BASE_IN_W-1:0] base_data;
+  logic base_in_valid, base_in_ready, base_valid;
+  lod_pkg::tree_base_in_t base_in;
+  lod_pkg::tree_base_out_t base_out;
+  logic [CONTEXT_W-1:0] base_in_tag, base_tag;
+
+  shared_input #(.N(N), .W(lod_pkg::TREE_BASE_IN_W)) u_base_input (
+    .clk_i, .rst_ni,
+    .request_i(base_request), .data_i(base_data), .grant_o(base_grant),
+    .valid_o(base_in_valid), .ready_i(base_in_ready), .data_o(base_in), .index_o(base_in_tag)
+  );
+
+  tree_base #(.TAG_W(CONTEXT_W)) u_tree_base (
+    .clk_i, .rst_ni,
+    .valid_i(base_in_valid), .ready_o(base_in_ready), .in_i(base_in), .tag_i(base_in_tag),
+    .valid_o(base_valid), .ready_i(1'b1), .out_o(base_out), .tag_o(base_tag)
+  );
+
+  logic [N-1:0] child_request, child_grant;
+  logic [N-1:0][lod_pkg::CHILD_TEST_IN_W-1:0] child_data;
+  logic child_in_valid, child_in_ready, child_valid;
+  lod_pkg::child_test_in_t child_in;
+  lod_pkg::child_test_out_t child_out;
+  logic [CONTEXT_W-1:0] child_in_tag, child_tag;
+
+  shared_input #(.N(N), .W(lod_pkg::CHILD_TEST_IN_W)) u_child_input (
+    .clk_i, .rst_ni,
+    .request_i(child_request), .data_i(child_data), .grant_o(child_grant),
+    .valid_o(child_in_valid), .ready_i(child_in_ready), .data_o(child_in), .index_o(child_in_tag)
+  );
+
+  child_test #(.TAG_W(CONTEXT_W)) u_child_test (
+    .clk_i, .rst_ni,
+    .valid_i(child_in_valid), .ready_o(child_in_ready), .in_i(child_in), .tag_i(child_in_tag),
+    .valid_o(child_valid), .ready_i(1'b1), .out_o(child_out), .tag_o(child_tag)
+  );
+
+  logic [N-1:0] lod_request, lod_grant;
+  logic [N-1:0][lod_pkg::LOD_TEST_IN_W-1:0] lod_data;
+  logic lod_in_valid, lod_in_ready, lod_valid;
+  lod_pkg::lod_test_in_t lod_in;
+  lod_pkg::lod_test_out_t lod_out;
+  logic [CONTEXT_W-1:0] lod_in_tag, lod_tag;
+
+  shared_input #(.N(N), .W(lod_pkg::LOD_TEST_IN_W)) u_lod_input (
+    .clk_i, .rst_ni,
+    .request_i(lod_request), .data_i(lod_data), .grant_o(lod_grant),
+    .valid_o(lod_in_valid), .ready_i(lod_in_ready), .data_o(lod_in), .index_o(lod_in_tag)
+  );
+
+  lod_test #(.TAG_W(CONTEXT_W)) u_lod_test (
+    .clk_i, .rst_ni,
+    .valid_i(lod_in_valid), .ready_o(lod_in_ready), .in_i(lod_in), .tag_i(lod_in_tag),
+    .valid_o(lod_valid), .ready_i(1'b1), .out_o(lod_out), .tag_o(lod_tag)
+  );
+
+  logic [N-1:0] morph_request, morph_grant;
+  logic [N-1:0][lod_pkg::TESSELLATE_IN_W-1:0] morph_data;
+  logic morph_in_valid, morph_in_ready, morph_valid;
+  lod_pkg::tessellate_in_t morph_in;
+  lod_pkg::tessellate_out_t morph_out;
+  logic [CONTEXT_W-1:0] morph_in_tag, morph_tag;
+
+  shared_input #(.N(N), .W(lod_pkg::TESSELLATE_IN_W)) u_morph_input (
+    .clk_i, .rst_ni,
+    .request_i(morph_request), .data_i(morph_data), .grant_o(morph_grant),
+    .valid_o(morph_in_valid), .ready_i(morph_in_ready), .data_o(morph_in), .index_o(morph_in_tag)
+  );
+
+  tessellate #(.TAG_W(CONTEXT_W)) u_tessellate (
+    .clk_i, .rst_ni,
+    .valid_i(morph_in_valid), .ready_o(morph_in_ready), .in_i(morph_in), .tag_i(morph_in_tag),
+    .valid_o(morph_valid), .ready_i(1'b1), .out_o(morph_out), .tag_o(morph_tag)
+  );
+
+  logic [N-1:0] map_request, map_grant;
+  logic [N-1:0][lod_pkg::BARY_MAP_IN_W-1:0] map_data;
+  logic map_in_valid, map_in_ready, map_valid;
+  lod_pkg::bary_map_in_t map_in;
+  lod_pkg::bary_map_out_t map_out;
+  logic [CONTEXT_W-1:0] map_in_tag, map_tag;
+
+  shared_input #(.N(N), .W(lod_pkg::BARY_MAP_IN_W)) u_map_input (
+    .clk_i, .rst_ni,
+    .request_i(map_request), .data_i(map_data), .grant_o(map_grant),
+    .valid_o(map_in_valid), .ready_i(map_in_ready), .data_o(map_in), .index_o(map_in_tag)
+  );
+
+  bary_map #(.TAG_W(CONTEXT_W)) u_bary_map (
+    .clk_i, .rst_ni,
+    .valid_i(map_in_valid), .ready_o(map_in_ready), .in_i(map_in), .tag_i(map_in_tag),
+    .valid_o(map_valid), .ready_i(1'b1), .out_o(map_out), .tag_o(map_tag)
+  );
+
+  // ---- Memory: requests carry their place in the record besides the operands ----
+
+  localparam int unsigned FETCH_W = 2 + lod_pkg::NODE_ADDRESS_IN_W;
+
+  logic [N-1:0] fetch_request, fetch_grant;
+  logic [N-1:0][FETCH_W-1:0] fetch_data;
+  logic fetch_in_valid, fetch_in_ready;
+  logic [1:0] fetch_place;
+  lod_pkg::node_address_in_t fetch_in;
+  lod_pkg::node_address_out_t fetch_out;
+  logic [CONTEXT_W-1:0] fetch_in_tag;
+  logic [7:0] fetch_tag;
+
+  shared_input #(.N(N), .W(FETCH_W)) u_fetch_input (
+    .clk_i, .rst_ni,
+    .request_i(fetch_request), .data_i(fetch_data), .grant_o(fetch_grant),
+    .valid_o(fetch_in_valid), .ready_i(fetch_in_ready), .data_o({fetch_place, fetch_in}), .index_o(fetch_in_tag)
+  );
+
+  node_address #(.TAG_W(8)) u_node_address (
+    .clk_i, .rst_ni,
+    .valid_i(fetch_in_valid), .ready_o(fetch_in_ready), .in_i(fetch_in), .tag_i({fetch_in_tag, fetch_place}),
+    .valid_o(mem_valid_o), .ready_i(mem_ready_i), .out_o(fetch_out), .tag_o(fetch_tag)
+  );
+
+  assign mem_o       = {fetch_tag, fetch_out.address};
+  assign mem_ready_o = 1'b1;
+
+  // ---- Triangles: the tag carries the triangle's number too ----
+
+  localparam int unsigned TRI_W = 2 + lod_pkg::TRI_TEST_IN_W;
+
+  logic [N-1:0] tri_request, tri_grant;
+  logic [N-1:0][TRI_W-1:0] tri_data;
+  logic tri_in_valid, tri_in_ready, tri_valid;
+  logic [1:0] tri_in_number, tri_number;
+  lod_pkg::tri_test_in_t tri_in;
+  lod_pkg::tri_test_out_t tri_out;
+  logic [CONTEXT_W-1:0] tri_in_tag, tri_owner;
+
+  shared_input #(.N(N), .W(TRI_W)) u_tri_input (
+    .clk_i, .rst_ni,
+    .request_i(tri_request), .data_i(tri_data), .grant_o(tri_grant),
+    .valid_o(tri_in_valid), .ready_i(tri_in_ready), .data_o({tri_in_number, tri_in}), .index_o(tri_in_tag)
+  );
+
+  tri_test #(.TAG_W(lod_pkg::TRI_TAG_W), .EDGES_PER_CYCLE(EDGES_PER_CYCLE)) u_tri_test (
+    .clk_i, .rst_ni,
+    .valid_i(tri_in_valid), .ready_o(tri_in_ready), .in_i(tri_in), .tag_i({tri_in_tag, tri_in_number}),
+    .valid_o(tri_valid), .ready_i(1'b1), .out_o(tri_out), .tag_o({tri_owner, tri_number})
+  );
+
+  // ---- Hits wait for their division ----
+
+  logic queue_pop, queue_empty;
+  lod_pkg::queued_hit_t met, head, candidate_q, chosen_q;
+
+  assign met = {tri_owner, tri_number, tri_out};
+
+  hit_queue #(.W(lod_pkg::QUEUED_HIT_W), .DEPTH(4 * CONTEXTS)) u_queue (
+    .clk_i, .rst_ni,
+    .push_i(tri_valid && tri_out.hit), .data_i(met),
+    .pop_i(queue_pop), .data_o(head), .empty_o(queue_empty)
+  );
+
+  // ---- Divisions: waiting hits first, then barycentrics of finished rays ----
+
+  localparam int unsigned DIVIDE_W = 2 + lod_pkg::HIT_DIVIDE_IN_W;
+
+  logic [N-1:0] divide_request, divide_grant;
+  logic [N-1:0][DIVIDE_W-1:0] divide_data;
+  logic own_valid, divide_in_ready, divide_valid;
+  logic [1:0] own_what, divide_what, divide_number;
+  lod_pkg::hit_divide_in_t own_in, divide_in;
+  lod_pkg::hit_divide_out_t divide_out;
+  logic [CONTEXT_W-1:0] own_tag, divide_owner;
+  logic [lod_pkg::DIVIDE_TAG_W-1:0] divide_in_tag;
+
+  shared_input #(.N(N), .W(DIVIDE_W)) u_divide_input (
+    .clk_i, .rst_ni,
+    .request_i(divide_request), .data_i(divide_data), .grant_o(divide_grant),
+    .valid_o(own_valid), .ready_i(divide_in_ready && queue_empty), .data_o({own_what, own_in}), .index_o(own_tag)
+  );
+
+  assign divide_in     = queue_empty ? own_in : {head.test.t_num, head.test.det};
+  assign divide_in_tag = queue_empty ? {own_what, own_tag, 2'd0} : {lod_pkg::DIVIDE_FOR_T, head.owner, head.number};
+  assign queue_pop     = divide_in_ready && !queue_empty;
+
+  hit_divide #(.TAG_W(lod_pkg::DIVIDE_TAG_W)) u_hit_divide (
+    .clk_i, .rst_ni,
+    .valid_i(own_valid || !queue_empty), .ready_o(divide_in_ready), .in_i(divide_in), .tag_i(divide_in_tag),
+    .valid_o(divide_valid), .ready_i(1'b1), .out_o(divide_out), .tag_o({divide_what, divide_owner, divide_number})
+  );
+
+  // ---- Is it the closest? The hit follows its division, and then its comparison ----
+
+  logic [N-1:0][lod_pkg::HIT_SELECT_IN_W-1:0] select_data;
+  logic t_valid, select_valid;
+  lod_pkg::hit_select_in_t select_in;
+  lod_pkg::hit_select_out_t select_out;
+  logic [CONTEXT_W-1:0] select_owner;
+  logic [lod_pkg::RAY_T_W-1:0] chosen_t_q;
+
+  assign t_valid = divide_valid && divide_what == lod_pkg::DIVIDE_FOR_T;
+
+  always_comb begin
+    select_in = '0;
+    for (int unsigned k = 0; k < N; k++) begin
+      if (t_valid && divide_owner == CONTEXT_W'(k)) select_in = select_in | select_data[k];
+    end
+  end
+
+  hit_select #(.TAG_W(CONTEXT_W)) u_hit_select (
+    .clk_i, .rst_ni,
+    .valid_i(t_valid), .ready_o(), .in_i(select_in), .tag_i(divide_owner),
+    .valid_o(select_valid), .ready_i(1'b1), .out_o(select_out), .tag_o(select_owner)
+  );
+
+  always_ff @(posedge clk_i) begin
+    if (queue_pop) candidate_q <= head;
+    if (t_valid) begin
+      chosen_q   <= candidate_q;
+      chosen_t_q <= divide_out.quotient;
+    end
+  end
+
+  // ---- Hits out ----
+
+  logic [N-1:0] hit_request, hit_grant;
+  logic [N-1:0][lod_pkg::HIT_OUT_W-1:0] hit_data;
+  logic hit_in_valid, hit_in_ready;
+  lod_pkg::hit_out_t hit_in;
+
+  shared_input #(.N(N), .W(lod_pkg::HIT_OUT_W)) u_hit_input (
+    .clk_i, .rst_ni,
+    .request_i(hit_request), .data_i(hit_data), .grant_o(hit_grant),
+    .valid_o(hit_in_valid), .ready_i(hit_in_ready), .data_o(hit_in), .index_o()
+  );
+
+  pipe_stage #(.W(lod_pkg::HIT_OUT_W)) u_hit_stage (
+    .clk_i, .rst_ni,
+    .valid_i(hit_in_valid), .ready_o(hit_in_ready), .data_i(hit_in),
+    .valid_o, .ready_i, .data_o(out_o)
+  );
+
+  // ---- The contexts ----
+
+  for (genvar k = 0; k < N; k++) begin : g_context
+    localparam logic [CONTEXT_W-1:0] ME = CONTEXT_W'(k);
+
+    ray_context u_context (
+      .clk_i, .rst_ni, .scene_i,
+      .idle_o(idle[k]), .take_i(take[k]), .ray_i(in_i),
+      .setup_request_o(setup_request[k]), .setup_o(setup_data[k]), .setup_grant_i(setup_grant[k]),
+      .setup_valid_i(setup_valid && setup_tag == ME), .setup_i(setup_out),
+      .base_request_o(base_request[k]), .base_o(base_data[k]), .base_grant_i(base_grant[k]),
+      .base_valid_i(base_valid && base_tag == ME), .base_i(base_out),
+      .child_request_o(child_request[k]), .child_o(child_data[k]), .child_grant_i(child_grant[k]),
+      .child_valid_i(child_valid && child_tag == ME), .child_i(child_out),
+      .lod_request_o(lod_request[k]), .lod_o(lod_data[k]), .lod_grant_i(lod_grant[k]),
+      .lod_valid_i(lod_valid && lod_tag == ME), .lod_i(lod_out),
+      .morph_request_o(morph_request[k]), .morph_o(morph_data[k]), .morph_grant_i(morph_grant[k]),
+      .morph_valid_i(morph_valid && morph_tag == ME), .morph_i(morph_out),
+      .map_request_o(map_request[k]), .map_o(map_data[k]), .map_grant_i(map_grant[k]),
+      .map_valid_i(map_valid && map_tag == ME), .map_i(map_out),
+      .fetch_request_o(fetch_request[k]), .fetch_place_o(fetch_data[k][FETCH_W-1:FETCH_W-2]),
+      .fetch_o(fetch_data[k][FETCH_W-3:0]), .fetch_grant_i(fetch_grant[k]),
+      .line_valid_i(mem_valid_i && mem_i.tag[7:2] == ME), .line_i(mem_i),
+      .tri_request_o(tri_request[k]), .tri_number_o(tri_data[k][TRI_W-1:TRI_W-2]),
+      .tri_o(tri_data[k][TRI_W-3:0]), .tri_grant_i(tri_grant[k]),
+      .tri_miss_i(tri_valid && !tri_out.hit && tri_owner == ME),
+      .hit_number_i(divide_number), .hit_t_i(divide_out.quotient), .select_o(select_data[k]),
+      .select_valid_i(select_valid && select_owner == ME), .select_i(select_out),
+      .chosen_t_i(chosen_t_q), .chosen_i(chosen_q),
+      .divide_request_o(divide_request[k]), .divide_what_o(divide_data[k][DIVIDE_W-1:DIVIDE_W-2]),
+      .divide_o(divide_data[k][DIVIDE_W-3:0]), .divide_grant_i(divide_grant[k]),
+      .divide_valid_i(divide_valid && divide_owner == ME), .divide_what_i(divide_what), .divide_i(divide_out),
+      .hit_request_o(hit_request[k]), .hit_o(hit_data[k]), .hit_grant_i(hit_grant[k])
+    );
+  end
+
+endmodule

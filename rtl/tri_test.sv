@@ -1,0 +1,70 @@
+/// Ray against one triangle: exact Plücker test with a tie rule (paper appendix A). Twin of src/block/tri_test.rs.
+///
+/// With a, b, c relative to the origin: u = d.(b x c), v = d.(c x a), w = d.(a x b), det = u + v + w, t_num = a.(b x c), all exact.
+/// Sign of an edge function d.(p x q): its own; if 0, that of the first non-zero component of p x q; if p x q = 0, that of the first non-zero
+/// component of q - p; if p = q, positive. Hit iff the three signs agree, det != 0 and t_num / det >= 0; front face iff det < 0.
+/// Legal: |v| < 2^31 for points and origin, |d| <= 2^30 and each |d_i| < 2^30. On a miss all numbers are 0. On a hit they are taken with det > 0.
+///
+/// EDGES_PER_CYCLE = 3: latency TRI_TEST_LATENCY, interval 1, 168 multipliers. 1: latency TRI_TEST_1_LATENCY, interval TRI_TEST_1_INTERVAL,
+/// 56 multipliers.
+module tri_test #(
+  parameter int unsigned TAG_W = 8,
+  parameter int unsigned EDGES_PER_CYCLE = 3
+) (
+  input  logic                   clk_i,
+  input  logic                   rst_ni,
+  input  logic                   valid_i,
+  output logic                   ready_o,
+  input  lod_pkg::tri_test_in_t  in_i,
+  input  logic [TAG_W-1:0]       tag_i,
+  output logic                   valid_o,
+  input  logic                   ready_i,
+  output lod_pkg::tri_test_out_t out_o,
+  output logic [TAG_W-1:0]       tag_o
+);
+
+  localparam int unsigned W = lod_pkg::RELATIVE_W;
+  localparam int unsigned EDGE_W = lod_pkg::SIGNED_EDGE_W;
+  localparam int unsigned LATENCY = 1 + lod_pkg::EDGE_FUNCTION_LATENCY + lod_pkg::TRI_DECIDE_LATENCY;
+
+  if (lod_pkg::TRI_TEST_LATENCY != LATENCY) begin : g_illegal_latency
+    $error("tri_test: lod_pkg::TRI_TEST_LATENCY must be %0d", LATENCY);
+  end
+  if (lod_pkg::TRI_TEST_1_LATENCY != lod_pkg::TRI_TEST_LATENCY + 2 || lod_pkg::TRI_TEST_1_INTERVAL != 3) begin : g_illegal_timing
+    $error("tri_test: two further passes make lod_pkg::TRI_TEST_1_LATENCY %0d and TRI_TEST_1_INTERVAL 3", lod_pkg::TRI_TEST_LATENCY + 2);
+  end
+
+  // Differences of 32-bit coordinates: 33 bits.
+  logic [3*W-1:0] a, b, c;
+  assign a = {W'(in_i.p0.x) - W'(in_i.origin.x), W'(in_i.p0.y) - W'(in_i.origin.y), W'(in_i.p0.z) - W'(in_i.origin.z)};
+  assign b = {W'(in_i.p1.x) - W'(in_i.origin.x), W'(in_i.p1.y) - W'(in_i.origin.y), W'(in_i.p1.z) - W'(in_i.origin.z)};
+  assign c = {W'(in_i.p2.x) - W'(in_i.origin.x), W'(in_i.p2.y) - W'(in_i.origin.y), W'(in_i.p2.z) - W'(in_i.origin.z)};
+
+  logic                                     valid_edges, ready_edges;
+  logic [EDGE_W-1:0]                        u, v, w;
+  logic                                     tie_u, tie_v, tie_w;
+  logic [lod_pkg::SIGNED_T_NUMERATOR_W-1:0] t_num;
+  logic [TAG_W-1:0]                         tag;
+  if (EDGES_PER_CYCLE == 3) begin : g_parallel
+    tri_edges_parallel #(.TAG_W(TAG_W)) u_edges (
+      .clk_i, .rst_ni, .valid_i, .ready_o, .a_i(a), .b_i(b), .c_i(c), .d_i(in_i.direction), .tag_i,
+      .valid_o(valid_edges), .ready_i(ready_edges), .u_o(u), .v_o(v), .w_o(w),
+      .tie_u_o(tie_u), .tie_v_o(tie_v), .tie_w_o(tie_w), .t_num_o(t_num), .tag_o(tag)
+    );
+  end else if (EDGES_PER_CYCLE == 1) begin : g_serial
+    tri_edges_serial #(.TAG_W(TAG_W)) u_edges (
+      .clk_i, .rst_ni, .valid_i, .ready_o, .a_i(a), .b_i(b), .c_i(c), .d_i(in_i.direction), .tag_i,
+      .valid_o(valid_edges), .ready_i(ready_edges), .u_o(u), .v_o(v), .w_o(w),
+      .tie_u_o(tie_u), .tie_v_o(tie_v), .tie_w_o(tie_w), .t_num_o(t_num), .tag_o(tag)
+    );
+  end else begin : g_illegal_edges
+    $error("tri_test: EDGES_PER_CYCLE = %0d, must be 1 or 3", EDGES_PER_CYCLE);
+  end
+
+  tri_decide #(.TAG_W(TAG_W)) u_decide (
+    .clk_i, .rst_ni, .valid_i(valid_edges), .ready_o(ready_edges), .u_i(u), .v_i(v), .w_i(w),
+    .tie_u_i(tie_u), .tie_v_i(tie_v), .tie_w_i(tie_w), .t_num_i(t_num), .tag_i(tag),
+    .valid_o, .ready_i, .out_o, .tag_o
+  );
+
+endmodule

@@ -1,0 +1,151 @@
+//! `trace`: one ray through the traversal unit, cycle by cycle.
+
+use super::args::{CameraArgs, delta};
+use super::output::{check_target, grouped, open, print_line};
+use anyhow::Context;
+use lodray::format::write_and_rename;
+use lodray::num::Ray;
+use lodray::sim::unit::environment::RunReport;
+use lodray::sim::unit::steps::Steps;
+use lodray::sim::unit::wave::{Waves, gtkwave_save, gtkwave_states, one_ray, surfer_commands};
+use lodray::sim::unit::{SceneMemory, TraversalUnit, UnitConfig};
+use lodray::traverse::{LodImage, ModelSpace};
+use std::path::{Path, PathBuf};
+use std::process::ExitCode;
+use std::str::FromStr;
+
+#[derive(clap::Args)]
+pub struct Args {
+    /// Scene file
+    scene: PathBuf,
+    /// Pixel whose ray is followed; 0,0 is the upper left one
+    #[arg(long, value_name = "X,Y", allow_hyphen_values = true)]
+    pixel: Place,
+    /// Quality: 1 keeps a level's displacement under a pixel, 0 is the base mesh, inf full detail
+    #[arg(long, default_value = "1", value_parser = delta, allow_hyphen_values = true)]
+    delta: f64,
+    #[command(flatten)]
+    camera: CameraArgs,
+    /// Cycles from a memory request to its answer
+    #[arg(long, value_name = "CYCLES", default_value_t = 40, value_parser = clap::value_parser!(u32).range(1..=100_000), allow_negative_numbers = true)]
+    memory_latency: u32,
+    /// Waveform (VCD); save files for GTKWave and Surfer are written beside it. "-": as --text
+    #[arg(short, long, value_name = "FILE", required_unless_present = "text")]
+    out: Option<PathBuf>,
+    /// Print each step: visits, memory lines, edge states, decisions
+    #[arg(long)]
+    text: bool,
+}
+
+/// A pixel, X,Y.
+#[derive(Clone, Copy, Debug)]
+struct Place(u32, u32);
+
+impl FromStr for Place {
+    type Err = String;
+    fn from_str(s: &str) -> Result<Self, String> {
+        let parts = s.split_once(',').and_then(|(x, y)| Some(Self(x.trim().parse().ok()?, y.trim().parse().ok()?)));
+        parts.ok_or_else(|| format!("'{s}' is not a pixel such as 320,200"))
+    }
+}
+
+/// The ray's unit.
+struct Bench<'a> {
+    memory: SceneMemory<'a>,
+    latency: u32,
+    ray: Ray,
+}
+
+impl Bench<'_> {
+    fn unit(&self) -> TraversalUnit {
+        TraversalUnit::new(UnitConfig { contexts: 1, ..UnitConfig::default() }, self.memory.config())
+    }
+}
+
+pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
+    let scene = open(&args.scene)?;
+    let space = ModelSpace::of(&scene);
+    let camera = args.camera.camera(&space, None)?;
+    let Place(x, y) = args.pixel;
+    let (width, height) = (camera.width, camera.height);
+    anyhow::ensure!(x < width && y < height, "pixel {x},{y} is outside of the picture of {width}x{height} pixels (see --size)");
+    let file = args.out.as_deref().filter(|path| *path != Path::new("-"));
+    let files = file.map(|vcd| Files::beside(vcd, &args.scene)).transpose()?;
+    let entered = space.enter(&camera.ray(x, y), args.delta);
+    let ray = entered.with_context(|| format!("the ray of pixel {x},{y} misses the model's box, so the unit never gets it"))?.ray;
+
+    let bench = Bench { memory: SceneMemory::new(LodImage::of(&scene), 0), latency: args.memory_latency, ray };
+    if let Some(files) = files {
+        let report = files.write(&bench)?;
+        if !args.text {
+            let (ray, requests) = (&report.rays[0], grouped(report.requests));
+            let found = if ray.hit.found { "hit" } else { "miss" };
+            print_line(&format!(
+                "{found} after {} cycles, {requests} memory lines; waveform in {}",
+                grouped(ray.cycles()),
+                files.vcd.display()
+            ))?;
+        }
+    }
+    if args.text || file.is_none() {
+        print_line(&text(&bench)?)?;
+    }
+    Ok(ExitCode::SUCCESS)
+}
+
+/// The ray's steps.
+fn text(bench: &Bench<'_>) -> anyhow::Result<String> {
+    let mut steps = Steps::new(bench.unit(), &bench.memory);
+    let report = one_ray(&mut steps, &bench.memory, bench.latency, &bench.ray)?;
+    let Ray { origin, direction, cone } = bench.ray;
+    let mut text = format!(
+        "ray from {:?} along {:?}, cone ({} + l {}) / 2^{}\n   cycle  step\n",
+        origin.get(),
+        direction.get(),
+        cone.offset,
+        cone.slope,
+        cone.shift
+    );
+    for (cycle, step) in steps.steps() {
+        text += &format!("{cycle:>8}  {step}\n");
+    }
+    Ok(text + &format!("{} cycles, {} memory lines", grouped(report.rays[0].cycles()), grouped(report.requests)))
+}
+
+/// The waveform and its save files.
+struct Files {
+    vcd: PathBuf,
+    gtkw: PathBuf,
+    states: PathBuf,
+    surfer: PathBuf,
+}
+
+impl Files {
+    /// The files beside `vcd`, refused if they cannot be written.
+    fn beside(vcd: &Path, input: &Path) -> anyhow::Result<Self> {
+        let with = |extension| vcd.with_extension(extension);
+        let files = Self { vcd: vcd.to_owned(), gtkw: with("gtkw"), states: with("states"), surfer: with("sucl") };
+        for path in files.all() {
+            check_target(path, Some(input))?;
+        }
+        let clash = files.all().iter().skip(1).any(|path| *path == vcd);
+        anyhow::ensure!(!clash, "cannot write {}: the ending is that of a save file; use .vcd", vcd.display());
+        Ok(files)
+    }
+
+    fn all(&self) -> [&Path; 4] {
+        [&self.vcd, &self.gtkw, &self.states, &self.surfer]
+    }
+
+    fn write(&self, bench: &Bench<'_>) -> anyhow::Result<RunReport> {
+        let mut waves = Waves::new(bench.unit())?;
+        let report = one_ray(&mut waves, &bench.memory, bench.latency, &bench.ray)?;
+        let name = |path: &Path| path.file_name().unwrap_or_default().to_string_lossy().into_owned();
+        let gtkw = gtkwave_save(&name(&self.vcd), &name(&self.states), waves.widths());
+        let contents = [waves.finish()?, gtkw.into_bytes(), gtkwave_states().into_bytes(), surfer_commands().into_bytes()];
+        for (path, content) in self.all().into_iter().zip(contents) {
+            write_and_rename(path, |out| out.write_all(&content)).with_context(|| format!("cannot write {}", path.display()))?;
+        }
+        Ok(report)
+    }
+}

@@ -1,0 +1,104 @@
+//! The closest hit of one ray so far, and its way to the hit record (`rtl/closest_hit.sv`).
+
+use super::register::Register;
+use crate::block::bary_map::{self, NodeIndex};
+use crate::block::hit_divide;
+use crate::block::hit_select::{self, FullId};
+use crate::block::tri_test::{self, EdgeFunction, TNumerator};
+use crate::num::{BARY_ONE, Bary, RayT, U};
+use crate::traverse::Hit;
+
+/// A triangle that was met.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Met {
+    /// Context of the ray.
+    pub owner: usize,
+    /// Which of the context's triangles.
+    pub number: u16,
+    /// Its numerators.
+    pub test: tri_test::Out,
+}
+
+/// Registers of the closest hit.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Closest {
+    pub known: Register<bool>,
+    pub t_max: Register<RayT>,
+    pub id: Register<FullId>,
+    tree: U<28>,
+    level: U<4>,
+    node: NodeIndex,
+    front: bool,
+    v: EdgeFunction,
+    w: EdgeFunction,
+    det: EdgeFunction,
+    b0: Bary,
+    b1: Bary,
+    b2: Bary,
+    full: bary_map::Out,
+}
+
+impl Closest {
+    /// Nothing yet.
+    pub fn clear(&mut self) {
+        self.known.set(false);
+        self.t_max.set(RayT::MAX);
+    }
+
+    /// Takes a hit that was compared if it is closer.
+    pub fn select(&mut self, select: &hit_select::Out, t: RayT, [tree, level, node]: [u64; 3], test: &tri_test::Out) {
+        if select.closer {
+            self.known.set(true);
+            self.t_max.set(t);
+            self.id.set(select.id);
+            (self.tree, self.level, self.node) = (U::new(tree), U::new(level), U::new(node));
+            (self.front, self.v, self.w, self.det) = (test.front, test.v, test.w, test.det);
+        }
+    }
+
+    /// Operands of the division of v, or of w.
+    pub fn divide_in(&self, v: bool) -> hit_divide::In {
+        hit_divide::In { numerator: TNumerator::new(if v { self.v } else { self.w }.get()), denominator: self.det }
+    }
+
+    /// The quotient of v, or of w.
+    pub fn divided(&mut self, v: bool, out: &hit_divide::Out) {
+        // An edge function is at most det: the quotient is at most 2^32 before its last bit is dropped.
+        let weight = Bary::new(out.quotient.get() >> 1);
+        *(if v { &mut self.b1 } else { &mut self.b2 }) = weight;
+    }
+
+    /// The third weight.
+    pub fn sum(&mut self) {
+        // Both were rounded down and v + w <= det.
+        self.b0 = Bary::new(BARY_ONE - self.b1.get() - self.b2.get());
+    }
+
+    /// Operands of the map to full resolution in a hierarchy of `levels` splits.
+    pub fn map_in(&self, levels: U<4>) -> bary_map::In {
+        bary_map::In { levels: U::new(levels.get() - self.level.get()), node: self.node, b0: self.b0, b1: self.b1, b2: self.b2 }
+    }
+
+    /// The full-resolution triangle.
+    pub fn mapped(&mut self, out: &bary_map::Out) {
+        self.full = *out;
+    }
+
+    /// The hit record, if there is a hit.
+    pub fn hit(&self) -> Option<Hit> {
+        self.known.get().then(|| Hit {
+            t: self.t_max.get(),
+            front: self.front,
+            tree: self.tree,
+            level: self.level,
+            node: self.node,
+            b0: self.b0,
+            b1: self.b1,
+            b2: self.b2,
+            full_node: self.full.node,
+            full_b0: self.full.b0,
+            full_b1: self.full.b1,
+            full_b2: self.full.b2,
+        })
+    }
+}

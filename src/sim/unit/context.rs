@@ -1,0 +1,352 @@
+//! One ray under way: the state machine of `docs/traversal-unit.md` (`rtl/ray_context.sv`).
+//!
+//! [`Context::tick`] is the end of a cycle: every condition is on registers as they stood at its start, but for grants, results and memory lines
+//! of the same cycle. What a context asks for, and with which operands, is in `operands`.
+
+use super::closest::{Closest, Met};
+use super::records::child_entry;
+use super::register::Register;
+use super::wires::{Cycle, DIVIDE_FOR_T, DIVIDE_FOR_V, DIVIDE_FOR_W};
+use crate::block::bary_map::NodeIndex;
+use crate::block::{child_test, lod_test, ray_setup, tessellate::child_triangle, tree_base};
+use crate::format::{L0Record, VertexData};
+use crate::num::{BoundCode, MAX_LEVELS, Point, Ray, U, Wire};
+use crate::sim::ports::SceneConfig;
+use crate::traverse::{Entry, Op, Split, TraversalStack, is_beyond};
+
+/// Declares the states with their numbers and the names of `lod_pkg::context_state_t`.
+macro_rules! states {
+    ($($state:ident = $name:literal),+ $(,)?) => {
+        /// State of a context.
+        #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+        #[repr(u8)]
+        #[expect(missing_docs, reason = "docs/traversal-unit.md gives every state")]
+        pub enum State {
+            #[default]
+            $($state),+
+        }
+
+        impl State {
+            /// All states, by number.
+            pub const ALL: &[Self] = &[$(Self::$state),+];
+
+            /// Name in the RTL.
+            pub const fn name(self) -> &'static str {
+                match self {
+                    $(Self::$state => $name),+
+                }
+            }
+        }
+    };
+}
+
+states! {
+    Idle = "IDLE",
+    Setup = "SETUP",
+    SetupWait = "SETUP_WAIT",
+    Visit = "VISIT",
+    Fetch = "FETCH",
+    Child = "CHILD",
+    ChildWait = "CHILD_WAIT",
+    Push = "PUSH",
+    Pop = "POP",
+    Lod = "LOD",
+    LodWait = "LOD_WAIT",
+    Morph = "MORPH",
+    MorphWait = "MORPH_WAIT",
+    Tri = "TRI",
+    DivideV = "DIVIDE_V",
+    DivideW = "DIVIDE_W",
+    DivideWait = "DIVIDE_WAIT",
+    Sum = "SUM",
+    Map = "MAP",
+    MapWait = "MAP_WAIT",
+    Done = "DONE",
+}
+
+/// What a context fetches.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[repr(u8)]
+pub enum Fetch {
+    /// Quad-BVH node.
+    #[default]
+    Node = 0,
+    /// L0 record.
+    Record = 1,
+    /// Inserted vertices and, but on the last split, the children's bound data.
+    Vertex = 2,
+}
+
+/// The registers of a context; those with names of the RTL's `*_q`.
+#[derive(Clone, Default)]
+pub struct Context {
+    pub state: State,
+    pub fetch: Register<Fetch>,
+    pub tag: U<32>,
+    pub ray: Ray,
+    pub setup: ray_setup::Out,
+    pub entry: Register<Entry>,
+    pub tree: Register<U<28>>,
+    pub level: Register<U<4>>,
+    pub node: Register<NodeIndex>,
+    /// Corners of the node's triangle, its inserted vertices, bound codes and edge states.
+    pub p: Register<[Point; 3]>,
+    pub q: Register<[Point; 3]>,
+    pub e: [BoundCode; 3],
+    pub lod: Register<lod_test::Out>,
+    pub base: tree_base::Out,
+    /// Lines asked for and not yet sent, and sent and not yet there, by place.
+    pub want: u8,
+    pub waiting: u8,
+    pub base_want: bool,
+    pub base_ready: Register<bool>,
+    /// Line buffers 0 and 1, and 2.
+    pub record: [u64; 8],
+    pub inserted: [u64; 4],
+    /// Children still to be pushed.
+    pub sorted: Register<child_test::Out>,
+    pub count: Register<U<3>>,
+    /// Triangle tests: of the four children, not of the node itself; still to be sent; number of the next; without a verdict yet.
+    pub four: Register<bool>,
+    pub left: Register<U<3>>,
+    pub next: Register<U<2>>,
+    pub pending: Register<U<3>>,
+    pub stack: TraversalStack,
+    pub closest: Closest,
+    pub splits: [Split; MAX_LEVELS as usize - 1],
+}
+
+impl Context {
+    /// The node's children are of level N: triangles, not nodes.
+    pub fn last_split(&self, scene: &SceneConfig) -> bool {
+        self.level.get().get() + 1 == scene.levels.get()
+    }
+
+    /// Tree, level and node of triangle `number`: of this node, or its child of that number.
+    pub fn triangle_id(&self, number: u16) -> [u64; 3] {
+        let [tree, level, node] = [self.tree.get().get(), self.level.get().get(), self.node.get().get()];
+        if self.four.get() { [tree, level + 1, node << 2 | u64::from(number)] } else { [tree, level, node] }
+    }
+
+    /// The end of a cycle of context `me`.
+    pub fn tick(&mut self, me: usize, scene: &SceneConfig, cycle: &Cycle) {
+        let (want, waiting) = (self.want, self.waiting);
+        let last_split = self.last_split(scene);
+        if let Some(&quotient) = cycle.divide.result(me)
+            && quotient.what != DIVIDE_FOR_T
+        {
+            self.closest.divided(quotient.what == DIVIDE_FOR_V, &quotient.out);
+        }
+        let to = match self.state {
+            State::Idle => match cycle.ray {
+                Some((owner, ray)) if owner == me => {
+                    (self.tag, self.ray) = (ray.tag, ray.ray);
+                    State::Setup
+                }
+                _ => State::Idle,
+            },
+            State::Setup => self.when(cycle.setup.granted(me), State::SetupWait),
+            State::SetupWait => match cycle.setup.result(me) {
+                Some(setup) => {
+                    self.setup = *setup;
+                    self.closest.clear();
+                    self.stack.clear();
+                    self.entry.set(Entry::default());
+                    State::Visit
+                }
+                None => State::SetupWait,
+            },
+            State::Visit => self.visit(),
+            State::Fetch => {
+                if cycle.base.granted(me) {
+                    self.base_want = false;
+                }
+                let there = want == 0 && waiting == 0;
+                match self.fetch.get() {
+                    Fetch::Node => self.when(there, State::Child),
+                    Fetch::Record if there && self.base_ready.get() => self.enter_tree(scene),
+                    Fetch::Record => State::Fetch,
+                    Fetch::Vertex => self.when(want == 0 && waiting & 0b100 == 0, State::Morph),
+                }
+            }
+            State::Child => self.when(cycle.child.granted(me), State::ChildWait),
+            State::ChildWait => match cycle.child.result(me) {
+                Some(&sorted) => {
+                    self.sorted.set(sorted);
+                    self.count.set(sorted.count);
+                    State::Push
+                }
+                None => State::ChildWait,
+            },
+            State::Push => self.push(),
+            State::Pop => self.pop(),
+            State::Lod => self.when(cycle.lod.granted(me), State::LodWait),
+            State::LodWait => match cycle.lod.result(me) {
+                Some(&lod) => {
+                    self.lod.set(lod);
+                    if lod.refine {
+                        self.fetch.set(Fetch::Vertex);
+                        self.want = if last_split { 0b100 } else { 0b111 };
+                        State::Fetch
+                    } else {
+                        self.enter_triangles(false)
+                    }
+                }
+                None => State::LodWait,
+            },
+            State::Morph => self.when(cycle.morph.granted(me), State::MorphWait),
+            State::MorphWait => match cycle.morph.result(me) {
+                Some(morphed) => {
+                    let q = [morphed.q0, morphed.q1, morphed.q2];
+                    self.q.set(q);
+                    if last_split {
+                        self.enter_triangles(true)
+                    } else {
+                        self.splits[self.level.get().get() as usize] = Split { p: self.p.get(), q };
+                        State::Child
+                    }
+                }
+                None => State::MorphWait,
+            },
+            State::Tri => self.triangles(me, cycle),
+            State::DivideV => self.when(cycle.divide.granted(me), State::DivideW),
+            State::DivideW => self.when(cycle.divide.granted(me), State::DivideWait),
+            State::DivideWait => self.when(cycle.divide.result(me).is_some_and(|q| q.what == DIVIDE_FOR_W), State::Sum),
+            State::Sum => {
+                self.closest.sum();
+                State::Map
+            }
+            State::Map => self.when(cycle.map.granted(me), State::MapWait),
+            State::MapWait => match cycle.map.result(me) {
+                Some(full) => {
+                    self.closest.mapped(full);
+                    State::Done
+                }
+                None => State::MapWait,
+            },
+            State::Done => self.when(cycle.hit.granted(me), State::Idle),
+        };
+        self.lines(me, cycle, 1 << self.place_of(want));
+        self.state = to;
+    }
+
+    /// The next state: `to` when something happened.
+    fn when(&self, happened: bool, to: State) -> State {
+        if happened { to } else { self.state }
+    }
+
+    fn visit(&mut self) -> State {
+        let entry = self.entry.get();
+        match entry.kind.get() {
+            Entry::BVH_NODE => {
+                self.fetch.set(Fetch::Node);
+                self.want = 0b011;
+                State::Fetch
+            }
+            Entry::TREE => {
+                self.tree.set(entry.index);
+                self.fetch.set(Fetch::Record);
+                self.want = 0b011;
+                self.base_want = true;
+                self.base_ready.set(false);
+                State::Fetch
+            }
+            _ => {
+                self.level.set(entry.level);
+                // Nodes of a tree are below 4^10.
+                self.node.set(U::new(entry.index.get()));
+                self.e = [entry.e0, entry.e1, entry.e2];
+                let parent = &self.splits[entry.level.get() as usize - 1];
+                self.p.set(child_triangle(parent.p, parent.q, entry.index.get() as usize & 3));
+                State::Lod
+            }
+        }
+    }
+
+    fn enter_tree(&mut self, scene: &SceneConfig) -> State {
+        self.level.set(U::ZERO);
+        self.node.set(U::ZERO);
+        self.p.set(VertexData::from_words(&self.record[..4]).points());
+        let root = L0Record::from_words(&self.record[4..]).root;
+        self.e = [root.e0, root.e1, root.e2];
+        if scene.levels == U::ZERO { self.enter_triangles(false) } else { State::Lod }
+    }
+
+    fn push(&mut self) -> State {
+        let count = self.count.get().get();
+        match count {
+            0 => State::Pop,
+            1 => {
+                self.entry.set(child_entry(self, 0));
+                State::Visit
+            }
+            _ => {
+                self.stack.step(Op::Push(child_entry(self, count as usize - 1)));
+                self.count.set(U::new(count - 1));
+                State::Push
+            }
+        }
+    }
+
+    fn pop(&mut self) -> State {
+        match self.stack.step(Op::Pop) {
+            None if self.closest.known.get() => State::DivideV,
+            None => State::Done,
+            Some(top) if is_beyond(top.t_near, self.closest.t_max.get()) => State::Pop,
+            Some(top) => {
+                self.entry.set(top);
+                State::Visit
+            }
+        }
+    }
+
+    fn enter_triangles(&mut self, four: bool) -> State {
+        self.four.set(four);
+        self.left.set(U::new(if four { 4 } else { 1 }));
+        self.next.set(U::ZERO);
+        self.pending.set(U::ZERO);
+        State::Tri
+    }
+
+    fn triangles(&mut self, me: usize, cycle: &Cycle) -> State {
+        let (left, mut pending) = (self.left.get().get(), self.pending.get().get());
+        let done = left == 0 && pending == 0;
+        if cycle.tri.granted(me) {
+            self.left.set(U::new(left - 1));
+            // Two bits: after number 3 comes no other.
+            self.next.set(U::new((self.next.get().get() + 1) & 3));
+            pending += 1;
+        }
+        if cycle.tri.result(me).is_some_and(|test| !test.hit) {
+            pending -= 1;
+        }
+        if let Some((select, t, Met { number, test, .. })) = cycle.select.result(me) {
+            let id = self.triangle_id(*number);
+            self.closest.select(select, *t, id, test);
+            pending -= 1;
+        }
+        self.pending.set(U::new(pending));
+        self.when(done, State::Pop)
+    }
+
+    /// Memory lines sent for and come, and the bases of the tree; `asked` is the bit of the line that the context asked for in this cycle.
+    fn lines(&mut self, me: usize, cycle: &Cycle, asked: u8) {
+        if cycle.fetch.granted(me) {
+            self.want &= !asked;
+            self.waiting |= asked;
+        }
+        if let Some(answer) = cycle.fetch.result(me) {
+            let place = answer.tag.get() & 3;
+            match place {
+                0 => self.record[..4].copy_from_slice(&answer.line.map(U::get)),
+                1 => self.record[4..].copy_from_slice(&answer.line.map(U::get)),
+                _ => self.inserted = answer.line.map(U::get),
+            }
+            self.waiting &= !(1 << place);
+        }
+        if let Some(&base) = cycle.base.result(me) {
+            self.base = base;
+            self.base_ready.set(true);
+        }
+    }
+}

@@ -1,0 +1,281 @@
+//! Rays, memory and a taker of hits around a unit, cycle by cycle: one environment for the model and for the RTL.
+//!
+//! In every cycle it looks at the outputs, which come from registers, and gives the inputs. A ray once offered, and what the unit offers, is held
+//! until it is taken: the environment checks that. Memory answers at most once a cycle: of the answers due the one due first, then that of the
+//! request taken first. What the unit must not do (an address outside of the model, a tag in use, a hit of no ray, silence) is an error.
+
+use super::memory::SceneMemory;
+use super::traffic::Traffic;
+use super::unit::{Inputs, Outputs, TraversalUnit};
+use crate::num::{Ray, U};
+use crate::sim::ports::{HitOut, MemoryAnswer, MemoryRequest, RayIn};
+use std::cmp::Reverse;
+use std::collections::BinaryHeap;
+use thiserror::Error;
+
+/// A unit with its ports: the model, its RTL, or both side by side.
+pub trait UnitPort {
+    /// The output ports in this cycle.
+    fn outputs(&mut self) -> Outputs;
+    /// The end of the cycle with these inputs.
+    fn tick(&mut self, inputs: &Inputs);
+    /// What every context is doing, for error messages.
+    fn describe(&mut self) -> String;
+}
+
+impl UnitPort for TraversalUnit {
+    fn outputs(&mut self) -> Outputs {
+        Self::outputs(self)
+    }
+    fn tick(&mut self, inputs: &Inputs) {
+        Self::tick(self, inputs);
+    }
+    fn describe(&mut self) -> String {
+        Self::describe(self)
+    }
+}
+
+/// What a unit did wrong.
+#[derive(Clone, Debug, PartialEq, Eq, Error)]
+pub enum UnitError {
+    /// It asked for a line that no section holds.
+    #[error("cycle {cycle}: line {address:#x} (tag {tag:#x}) is outside of the model")]
+    Address {
+        /// When.
+        cycle: u64,
+        /// The line.
+        address: u64,
+        /// Tag of the request.
+        tag: u64,
+    },
+    /// A request bears the tag of one not yet answered.
+    #[error("cycle {cycle}: tag {tag:#x} is already outstanding")]
+    TagInUse {
+        /// When.
+        cycle: u64,
+        /// The tag.
+        tag: u64,
+    },
+    /// A port changed what it offered before it was taken.
+    #[error("cycle {cycle}: the {port} port did not hold what it offered")]
+    NotHeld {
+        /// When.
+        cycle: u64,
+        /// Which port.
+        port: &'static str,
+    },
+    /// A hit bears the tag of no ray under way.
+    #[error("cycle {cycle}: a hit with tag {tag} of no ray under way")]
+    StrayHit {
+        /// When.
+        cycle: u64,
+        /// The tag.
+        tag: u64,
+    },
+    /// No port moved for too long.
+    #[error("cycle {cycle}: nothing moved for {quiet} cycles\n{contexts}")]
+    Deadlock {
+        /// When.
+        cycle: u64,
+        /// For how long.
+        quiet: u64,
+        /// What every context is doing.
+        contexts: String,
+    },
+}
+
+/// A ray traced.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct RayReport {
+    /// Cycle in which the unit took it.
+    pub taken: u64,
+    /// Cycle in which its hit was taken.
+    pub done: u64,
+    /// The hit.
+    pub hit: HitOut,
+}
+
+impl RayReport {
+    /// Cycles from ray to hit.
+    pub fn cycles(&self) -> u64 {
+        self.done - self.taken
+    }
+}
+
+/// What happened at the ports.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct RunReport {
+    /// Cycles until the last hit was taken.
+    pub cycles: u64,
+    /// Every ray, in the order given.
+    pub rays: Vec<RayReport>,
+    /// Memory requests.
+    pub requests: u64,
+    /// Cycles in which a memory request waited, a hit waited, and a ray waited.
+    pub waited: [u64; 3],
+}
+
+/// The quiet cycles beyond the memory's latency that no unit needs: every block's latency together is far below.
+const PATIENCE: u64 = 10_000;
+
+/// Runs `rays`, whose tags are their numbers, through `unit` until all are done.
+///
+/// # Errors
+/// The unit did something that it must not do.
+pub fn run(unit: &mut impl UnitPort, memory: &SceneMemory<'_>, traffic: &Traffic, rays: &[Ray]) -> Result<RunReport, UnitError> {
+    let mut around = Environment::new(memory, traffic, rays);
+    while around.done < rays.len() {
+        let outputs = unit.outputs();
+        let inputs = around.inputs();
+        around.check_held(&outputs)?;
+        let moved = around.take(&outputs, &inputs)?;
+        unit.tick(&inputs);
+        around.quiet = if moved { 0 } else { around.quiet + 1 };
+        if around.quiet > PATIENCE + traffic.latency.longest() {
+            return Err(UnitError::Deadlock { cycle: around.cycle, quiet: around.quiet, contexts: unit.describe() });
+        }
+        around.cycle += 1;
+    }
+    Ok(around.report())
+}
+
+/// A ray on its way.
+#[derive(Clone, Copy)]
+enum Way {
+    Waiting,
+    Taken(u64),
+    Done(RayReport),
+}
+
+struct Environment<'a> {
+    memory: &'a SceneMemory<'a>,
+    traffic: &'a Traffic,
+    rays: &'a [Ray],
+    cycle: u64,
+    ways: Vec<Way>,
+    /// Rays taken, and hits taken.
+    next: usize,
+    done: usize,
+    /// A ray is being offered.
+    offering: bool,
+    /// Answers by the cycle they are due in, and by request.
+    due: BinaryHeap<Reverse<(u64, u64, MemoryRequestBits)>>,
+    outstanding: [bool; 256],
+    requests: u64,
+    waited: [u64; 3],
+    /// What the ports offered in the last cycle and was not taken.
+    held: Outputs,
+    quiet: u64,
+}
+
+/// Tag and address of a request.
+type MemoryRequestBits = (u64, u64);
+
+impl<'a> Environment<'a> {
+    fn new(memory: &'a SceneMemory<'a>, traffic: &'a Traffic, rays: &'a [Ray]) -> Self {
+        Self {
+            memory,
+            traffic,
+            rays,
+            cycle: 0,
+            ways: vec![Way::Waiting; rays.len()],
+            next: 0,
+            done: 0,
+            offering: false,
+            due: BinaryHeap::new(),
+            outstanding: [false; 256],
+            requests: 0,
+            waited: [0; 3],
+            held: Outputs::default(),
+            quiet: 0,
+        }
+    }
+
+    /// The inputs of this cycle, which do not depend on its outputs.
+    fn inputs(&mut self) -> Inputs {
+        let cycle = self.cycle;
+        self.offering |= self.next < self.rays.len() && !self.traffic.ray_gap.at(cycle);
+        let ray = || RayIn { tag: U::new(self.next as u64), ray: self.rays[self.next] };
+        let ray = self.offering.then(ray);
+        let due = self.due.peek().is_some_and(|Reverse((due, ..))| *due <= cycle);
+        let answer = if due { self.due.pop() } else { None };
+        let answer = answer.and_then(|Reverse((_, _, (tag, address)))| {
+            self.outstanding[tag as usize] = false; // eight bits
+            // Checked when it was asked for.
+            self.memory.line(U::new(address)).map(|line| MemoryAnswer { tag: U::new(tag), line })
+        });
+        Inputs { ray, hit_ready: !self.traffic.hit_stall.at(cycle), mem_ready: !self.traffic.memory_stall.at(cycle), answer }
+    }
+
+    fn check_held(&self, outputs: &Outputs) -> Result<(), UnitError> {
+        let not_held = |port| Err(UnitError::NotHeld { cycle: self.cycle, port });
+        if self.held.mem.is_some() && outputs.mem != self.held.mem {
+            return not_held("memory");
+        }
+        if self.held.hit.is_some() && outputs.hit != self.held.hit {
+            return not_held("hit");
+        }
+        Ok(())
+    }
+
+    /// What moves over the ports in this cycle; whether anything does.
+    fn take(&mut self, outputs: &Outputs, inputs: &Inputs) -> Result<bool, UnitError> {
+        let mut moved = inputs.answer.is_some();
+        if inputs.ray.is_some() {
+            if outputs.ready {
+                self.ways[self.next] = Way::Taken(self.cycle);
+                self.next += 1;
+                self.offering = false;
+                moved = true;
+            } else {
+                self.waited[2] += 1;
+            }
+        }
+        self.held =
+            Outputs { ready: false, hit: outputs.hit.filter(|_| !inputs.hit_ready), mem: outputs.mem.filter(|_| !inputs.mem_ready) };
+        self.waited[0] += u64::from(self.held.mem.is_some());
+        self.waited[1] += u64::from(self.held.hit.is_some());
+        if let Some(request) = outputs.mem.filter(|_| inputs.mem_ready) {
+            self.request(&request)?;
+            moved = true;
+        }
+        if let Some(hit) = outputs.hit.filter(|_| inputs.hit_ready) {
+            self.finish(hit)?;
+            moved = true;
+        }
+        Ok(moved)
+    }
+
+    fn request(&mut self, request: &MemoryRequest) -> Result<(), UnitError> {
+        let (cycle, tag, address) = (self.cycle, request.tag.get(), request.address.get());
+        if self.memory.locate(request.address).is_none() {
+            return Err(UnitError::Address { cycle, address, tag });
+        }
+        let outstanding = &mut self.outstanding[tag as usize]; // eight bits
+        if std::mem::replace(outstanding, true) {
+            return Err(UnitError::TagInUse { cycle, tag });
+        }
+        self.due.push(Reverse((cycle + self.traffic.latency.of(self.requests), self.requests, (tag, address))));
+        self.requests += 1;
+        Ok(())
+    }
+
+    fn finish(&mut self, hit: HitOut) -> Result<(), UnitError> {
+        let (cycle, tag) = (self.cycle, hit.tag.get());
+        // A tag has 32 bits.
+        let way = self.ways.get_mut(tag as usize).ok_or(UnitError::StrayHit { cycle, tag })?;
+        let Way::Taken(taken) = *way else { return Err(UnitError::StrayHit { cycle, tag }) };
+        *way = Way::Done(RayReport { taken, done: cycle, hit });
+        self.done += 1;
+        Ok(())
+    }
+
+    fn report(self) -> RunReport {
+        let done = |way: &Way| match way {
+            Way::Done(report) => Some(*report),
+            _ => None,
+        };
+        let rays = self.ways.iter().filter_map(done).collect();
+        RunReport { cycles: self.cycle, rays, requests: self.requests, waited: self.waited }
+    }
+}

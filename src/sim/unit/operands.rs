@@ -1,0 +1,141 @@
+//! What a context asks for in a cycle, and with which operands.
+
+use super::context::{Context, Fetch, State};
+use super::records::children_in;
+use super::wires::{DIVIDE_FOR_V, DIVIDE_FOR_W};
+use crate::block::tessellate::child_triangle;
+use crate::block::{bary_map, child_test, hit_divide, hit_select, lod_test, node_address, ray_setup, tessellate, tree_base, tri_test};
+use crate::format::VertexData;
+use crate::num::{LineAddress, RayT, U, Wire};
+use crate::sim::ports::{HitOut, SceneConfig};
+
+/// What contexts share, one arbiter each.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Resource {
+    Setup,
+    Fetch,
+    Base,
+    Child,
+    Lod,
+    Morph,
+    Tri,
+    Divide,
+    Map,
+    Hit,
+}
+
+impl Resource {
+    /// How many there are.
+    pub const COUNT: usize = Self::Hit as usize + 1;
+}
+
+impl Context {
+    /// Tells `ask` every resource that the context asks for in this cycle.
+    pub fn requests(&self, mut ask: impl FnMut(Resource)) {
+        match self.state {
+            State::Setup => ask(Resource::Setup),
+            State::Fetch => {
+                if self.want != 0 {
+                    ask(Resource::Fetch);
+                }
+                if self.base_want {
+                    ask(Resource::Base);
+                }
+            }
+            State::Child if self.waiting & 0b011 == 0 => ask(Resource::Child),
+            State::Lod => ask(Resource::Lod),
+            State::Morph => ask(Resource::Morph),
+            State::Tri if self.left.get().get() != 0 => ask(Resource::Tri),
+            State::DivideV | State::DivideW => ask(Resource::Divide),
+            State::Map => ask(Resource::Map),
+            State::Done => ask(Resource::Hit),
+            _ => (),
+        }
+    }
+
+    /// Place of the line to send for next among those wanted: inserted vertices first.
+    pub fn place_of(&self, want: u8) -> u16 {
+        match want {
+            w if w & 0b100 != 0 => 2,
+            w if w & 0b001 != 0 => 0,
+            _ => 1,
+        }
+    }
+
+    /// Operands of `ray_setup`.
+    pub fn setup_in(&self) -> ray_setup::In {
+        ray_setup::In { origin: self.ray.origin, direction: self.ray.direction }
+    }
+
+    /// Operands of `node_address`.
+    pub fn fetch_in(&self, scene: &SceneConfig) -> node_address::In {
+        let place = self.place_of(self.want);
+        let record = |base: LineAddress| (base, U::ZERO, self.entry.get().index);
+        let (base, level, index) = match self.fetch.get() {
+            Fetch::Node => record(scene.nodes),
+            Fetch::Record => record(scene.records),
+            Fetch::Vertex => {
+                let base = if place == 2 { self.base.vertices } else { self.base.bounds };
+                (base, self.level.get(), U::new(self.node.get().get()))
+            }
+        };
+        node_address::In { base, level, index, pair: place != 2, half: place == 1 }
+    }
+
+    /// Operands of `tree_base`.
+    pub fn base_in(&self, scene: &SceneConfig) -> tree_base::In {
+        tree_base::In { levels: scene.levels, tree: self.tree.get(), vertices: scene.vertices, bounds: scene.bounds }
+    }
+
+    /// Operands of `child_test`.
+    pub fn child_in(&self) -> child_test::In {
+        children_in(self)
+    }
+
+    /// Operands of `lod_test`.
+    pub fn lod_in(&self, scene: &SceneConfig) -> lod_test::In {
+        let ([p0, p1, p2], [e0, e1, e2]) = (self.p.get(), self.e);
+        lod_test::In { ray: self.ray, p0, p1, p2, e0, e1, e2, scale: scene.scale }
+    }
+
+    /// Operands of `tessellate`.
+    pub fn morph_in(&self, scene: &SceneConfig) -> tessellate::In {
+        let lod_test::Out { s0, s1, s2, .. } = self.lod.get();
+        let ([p0, p1, p2], [q0, q1, q2]) = (self.p.get(), VertexData::from_words(&self.inserted).points());
+        let grid = U::new(scene.levels.get() - self.level.get().get() - 1);
+        tessellate::In { grid, s0, s1, s2, p0, p1, p2, q0, q1, q2 }
+    }
+
+    /// Operands of `tri_test`.
+    pub fn tri_in(&self) -> tri_test::In {
+        let p = self.p.get();
+        let [p0, p1, p2] = if self.four.get() { child_triangle(p, self.q.get(), self.next.get().get() as usize) } else { p };
+        tri_test::In { origin: self.ray.origin, direction: self.ray.direction, p0, p1, p2 }
+    }
+
+    /// What the context divides, and the operands of `hit_divide`.
+    pub fn divide_in(&self) -> (u16, hit_divide::In) {
+        let v = self.state == State::DivideV;
+        (if v { DIVIDE_FOR_V } else { DIVIDE_FOR_W }, self.closest.divide_in(v))
+    }
+
+    /// Operands of `hit_select` for triangle `number`, met at `t`.
+    pub fn select_in(&self, scene: &SceneConfig, number: u16, t: RayT) -> hit_select::In {
+        let [tree, level, node] = self.triangle_id(number);
+        let (known, best_t, best_id) = (self.closest.known.get(), self.closest.t_max.get(), self.closest.id.get());
+        hit_select::In { levels: scene.levels, known, best_t, best_id, t, tree: U::new(tree), level: U::new(level), node: U::new(node) }
+    }
+
+    /// Operands of `bary_map`.
+    pub fn map_in(&self, scene: &SceneConfig) -> bary_map::In {
+        self.closest.map_in(scene.levels)
+    }
+
+    /// The ray's hit, once it is done.
+    pub fn hit_out(&self) -> HitOut {
+        match self.closest.hit() {
+            Some(hit) => HitOut { tag: self.tag, found: true, hit },
+            None => HitOut { tag: self.tag, ..HitOut::default() },
+        }
+    }
+}

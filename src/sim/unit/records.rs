@@ -1,0 +1,39 @@
+//! The four children in two memory lines (`rtl/child_records.sv`): boxes for [`child_test`], and one of them as a stack entry.
+
+use super::context::{Context, Fetch};
+use crate::block::child_test;
+use crate::format::{BoundData, BvhChild, ChildRef};
+use crate::num::{TNear, U};
+use crate::traverse::{Entry, quarter};
+
+/// Operands of the test of a node's children.
+pub fn children_in(context: &Context) -> child_test::In {
+    let widen = context.fetch.get() == Fetch::Vertex;
+    let [p0, p1, p2] = context.p.get();
+    let [q0, q1, q2] = context.q.get();
+    let mut input =
+        child_test::In { ray: context.setup, t_max: context.closest.t_max.get(), widen, p0, p1, p2, q0, q1, q2, ..Default::default() };
+    for k in 0..4 {
+        let BvhChild { child, bounds } = quarter(&context.record, k);
+        input.present[k] = widen || child.kind.get() != ChildRef::EMPTY;
+        input.bounds[k] = bounds;
+    }
+    input
+}
+
+/// The child at `place` of the order as a stack entry.
+pub fn child_entry(context: &Context, place: usize) -> Entry {
+    let sorted = context.sorted.get();
+    let k = sorted.order[place].get();
+    let child = k as usize; // two bits
+    let t_near: TNear = sorted.t_near[child];
+    if context.fetch.get() == Fetch::Vertex {
+        let BoundData { e0, e1, e2, .. } = quarter(&context.record, child);
+        let level = U::new(context.level.get().get() + 1);
+        Entry { t_near, kind: U::new(Entry::TREE_NODE), level, index: U::new(context.node.get().get() << 2 | k), e0, e1, e2 }
+    } else {
+        let BvhChild { child, .. } = quarter(&context.record, child);
+        // Inner nodes and leaves have the kinds of their entries one lower.
+        Entry { t_near, kind: U::new(child.kind.get() - 1), index: child.index, ..Entry::default() }
+    }
+}

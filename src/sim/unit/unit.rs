@@ -1,0 +1,318 @@
+//! The whole unit: contexts, arbiters, blocks, and the way of hits (`rtl/traversal_unit.sv`).
+
+use super::arbiter::Arbiter;
+use super::closest::Met;
+use super::context::{Context, State};
+use super::operands::Resource;
+use super::register::{BlockCounts, Pipeline, Register, Stage};
+use super::wires::{Cycle, DIVIDE_FOR_T, Link, Quotient, Served, Wires};
+use super::{MAX_CONTEXTS, UnitConfig};
+use crate::block::Block;
+use crate::block::bary_map::BaryMap;
+use crate::block::child_test::ChildTest;
+use crate::block::hit_divide::{self, HitDivide};
+use crate::block::hit_select::HitSelect;
+use crate::block::lod_test::LodTest;
+use crate::block::node_address::NodeAddress;
+use crate::block::ray_setup::RaySetup;
+use crate::block::tessellate::Tessellate;
+use crate::block::tree_base::TreeBase;
+use crate::block::tri_test::TriTest;
+use crate::num::{RayT, U};
+use crate::sim::ports::{HitOut, MemoryAnswer, MemoryRequest, RayIn, SceneConfig};
+use std::collections::VecDeque;
+
+/// Output ports in a cycle.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Outputs {
+    /// `ready_o`: a ray would be taken.
+    pub ready: bool,
+    /// `valid_o` and `out_o`.
+    pub hit: Option<HitOut>,
+    /// `mem_valid_o` and `mem_o`.
+    pub mem: Option<MemoryRequest>,
+}
+
+/// Input ports in a cycle.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Inputs {
+    /// `valid_i` and `in_i`.
+    pub ray: Option<RayIn>,
+    /// `ready_i`.
+    pub hit_ready: bool,
+    /// `mem_ready_i`.
+    pub mem_ready: bool,
+    /// `mem_valid_i` and `mem_i`.
+    pub answer: Option<MemoryAnswer>,
+}
+
+/// What a unit did.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct UnitCounts {
+    /// Cycles.
+    pub cycles: u64,
+    /// Cycles of all contexts by [`State`].
+    pub states: [u64; State::Done as usize + 1],
+    /// What each block did, by name.
+    pub blocks: Vec<(&'static str, BlockCounts)>,
+    /// Most hits that waited for their division at once.
+    pub longest_queue: usize,
+}
+
+/// The unit.
+pub struct TraversalUnit {
+    pub(super) scene: SceneConfig,
+    pub(super) contexts: Vec<Context>,
+    arbiters: [Arbiter; Resource::COUNT],
+    pub(super) ray_setup: Pipeline<RaySetup>,
+    pub(super) node_address: Pipeline<NodeAddress>,
+    pub(super) tree_base: Pipeline<TreeBase>,
+    pub(super) child_test: Pipeline<ChildTest>,
+    pub(super) lod_test: Pipeline<LodTest>,
+    pub(super) tessellate: Pipeline<Tessellate>,
+    pub(super) tri_test: Pipeline<TriTest>,
+    pub(super) hit_divide: Pipeline<HitDivide>,
+    pub(super) hit_select: Pipeline<HitSelect>,
+    pub(super) bary_map: Pipeline<BaryMap>,
+    /// Hits on their way from the triangle test to the division.
+    pub(super) queue: VecDeque<Met>,
+    /// The hit in the division, and the one in the comparison with its t.
+    candidate: Register<Met>,
+    pub(super) chosen: Register<(Met, RayT)>,
+    /// The hit port's register.
+    pub(super) hit: Stage<HitOut>,
+    cycles: u64,
+    states: [u64; State::Done as usize + 1],
+    longest_queue: usize,
+}
+
+impl TraversalUnit {
+    /// A unit behind its reset.
+    ///
+    /// # Panics
+    /// The number of contexts is not 1 to [`MAX_CONTEXTS`].
+    pub fn new(config: UnitConfig, scene: SceneConfig) -> Self {
+        assert!((1..=MAX_CONTEXTS).contains(&config.contexts), "a unit has 1 to {MAX_CONTEXTS} contexts, not {}", config.contexts);
+        Self {
+            scene,
+            contexts: vec![Context::default(); config.contexts],
+            arbiters: Default::default(),
+            ray_setup: Pipeline::new(),
+            node_address: Pipeline::new(),
+            tree_base: Pipeline::new(),
+            child_test: Pipeline::new(),
+            lod_test: Pipeline::new(),
+            tessellate: Pipeline::new(),
+            tri_test: Pipeline::with(config.edges_per_cycle.timing()),
+            hit_divide: Pipeline::new(),
+            hit_select: Pipeline::new(),
+            bary_map: Pipeline::new(),
+            queue: VecDeque::new(),
+            candidate: Register::default(),
+            chosen: Register::default(),
+            hit: Stage::default(),
+            cycles: 0,
+            states: Default::default(),
+            longest_queue: 0,
+        }
+    }
+
+    /// The output ports in this cycle.
+    pub fn outputs(&self) -> Outputs {
+        Outputs {
+            ready: self.contexts.iter().any(|c| c.state == State::Idle),
+            hit: self.hit.offered(),
+            mem: self.node_address.offered().map(|(out, tag)| MemoryRequest { tag: U::new(u64::from(tag)), address: out.address }),
+        }
+    }
+
+    /// Tag of the ray that context `context` has, if it is not idle.
+    pub fn ray_tag(&self, context: usize) -> Option<u64> {
+        self.contexts.get(context).filter(|c| c.state != State::Idle).map(|c| c.tag.get())
+    }
+
+    /// What it did so far.
+    pub fn counts(&self) -> UnitCounts {
+        let blocks = vec![
+            (RaySetup::NAME, self.ray_setup.counts()),
+            (NodeAddress::NAME, self.node_address.counts()),
+            (TreeBase::NAME, self.tree_base.counts()),
+            (ChildTest::NAME, self.child_test.counts()),
+            (LodTest::NAME, self.lod_test.counts()),
+            (Tessellate::NAME, self.tessellate.counts()),
+            (TriTest::NAME, self.tri_test.counts()),
+            (HitDivide::NAME, self.hit_divide.counts()),
+            (HitSelect::NAME, self.hit_select.counts()),
+            (BaryMap::NAME, self.bary_map.counts()),
+        ];
+        UnitCounts { cycles: self.cycles, states: self.states, blocks, longest_queue: self.longest_queue }
+    }
+
+    /// One line per context: its state and place.
+    pub fn describe(&self) -> String {
+        let line = |(k, c): (usize, &Context)| {
+            format!(
+                "context {k}: {:?}, ray {}, tree {} level {} node {}, lines wanted {:03b} waiting {:03b}, stack {}, triangles left {} pending {}\n",
+                c.state,
+                c.tag,
+                c.tree.get(),
+                c.level.get(),
+                c.node.get(),
+                c.want,
+                c.waiting,
+                c.stack.len(),
+                c.left.get(),
+                c.pending.get()
+            )
+        };
+        self.contexts.iter().enumerate().map(line).collect::<String>() + &format!("hit queue: {}\n", self.queue.len())
+    }
+
+    /// The end of a cycle.
+    pub fn tick(&mut self, inputs: &Inputs) {
+        let wires = self.wires(inputs);
+        self.commit(inputs, &wires);
+    }
+
+    /// Everything that is combinational in this cycle.
+    pub(super) fn wires(&self, inputs: &Inputs) -> Wires {
+        let mut asking = [0u64; Resource::COUNT];
+        for (k, context) in self.contexts.iter().enumerate() {
+            context.requests(|resource| asking[resource as usize] |= 1 << k);
+        }
+        let winner = |resource| self.arbiters[resource as usize].winner(asking[resource as usize]);
+        let scene = &self.scene;
+        // Six bits, and two of triangle number or place.
+        let numbered = |k: usize, number: u16| (k as u16) << 2 | number;
+
+        let queue_empty = self.queue.is_empty();
+        let divide_ready = self.hit_divide.ready(true);
+        let divide = match self.queue.front() {
+            Some(head) => {
+                let input = hit_divide::In { numerator: head.test.t_num, denominator: head.test.det };
+                let tag = DIVIDE_FOR_T << 8 | numbered(head.owner, head.number);
+                Link { input: Some((input, tag)), ready: divide_ready, winner: None }
+            }
+            None => self.link(winner(Resource::Divide), divide_ready, |c, k| {
+                let (what, input) = c.divide_in();
+                (input, what << 8 | numbered(k, 0))
+            }),
+        };
+        let select = self.hit_divide.offered().filter(|&(_, tag)| tag >> 8 == DIVIDE_FOR_T).map(|(out, tag)| {
+            let owner = usize::from(tag >> 2 & 63);
+            (self.contexts[owner].select_in(scene, tag & 3, out.quotient), tag >> 2 & 63)
+        });
+        Wires {
+            take: inputs.ray.and_then(|_| self.contexts.iter().position(|c| c.state == State::Idle)),
+            setup: self.link(winner(Resource::Setup), self.ray_setup.ready(true), |c, k| (c.setup_in(), k as u16)),
+            fetch: self.link(winner(Resource::Fetch), self.node_address.ready(inputs.mem_ready), |c, k| {
+                (c.fetch_in(scene), numbered(k, c.place_of(c.want)))
+            }),
+            base: self.link(winner(Resource::Base), self.tree_base.ready(true), |c, k| (c.base_in(scene), k as u16)),
+            child: self.link(winner(Resource::Child), self.child_test.ready(true), |c, k| (c.child_in(), k as u16)),
+            lod: self.link(winner(Resource::Lod), self.lod_test.ready(true), |c, k| (c.lod_in(scene), k as u16)),
+            morph: self.link(winner(Resource::Morph), self.tessellate.ready(true), |c, k| (c.morph_in(scene), k as u16)),
+            tri: self.link(winner(Resource::Tri), self.tri_test.ready(true), |c, k| {
+                let number = c.next.get().get() as u16; // two bits
+                (c.tri_in(), numbered(k, number))
+            }),
+            divide,
+            queue_pop: divide_ready && !queue_empty,
+            select: Link { input: select, ready: true, winner: None },
+            map: self.link(winner(Resource::Map), self.bary_map.ready(true), |c, k| (c.map_in(scene), k as u16)),
+            hit: self.link(winner(Resource::Hit), self.hit.ready(inputs.hit_ready), |c, _| (c.hit_out(), 0)),
+        }
+    }
+
+    fn link<I>(&self, winner: Option<usize>, ready: bool, input: impl FnOnce(&Context, usize) -> (I, u16)) -> Link<I> {
+        Link { input: winner.map(|k| input(&self.contexts[k], k)), ready, winner }
+    }
+
+    fn commit(&mut self, inputs: &Inputs, w: &Wires) {
+        let plain = |tag: u16| usize::from(tag);
+        let owner = |tag: u16| usize::from(tag >> 2 & 63);
+        let tri = self.tri_test.offered();
+        let divided = self.hit_divide.offered();
+        let cycle = Cycle {
+            ray: w.take.zip(inputs.ray),
+            setup: Served { granted: w.setup.granted(), result: self.ray_setup.offered().map(|(out, tag)| (plain(tag), out)) },
+            fetch: Served { granted: w.fetch.granted(), result: inputs.answer.map(|a| (a.tag.get() as usize >> 2, a)) }, // 8 bits
+            base: Served { granted: w.base.granted(), result: self.tree_base.offered().map(|(out, tag)| (plain(tag), out)) },
+            child: Served { granted: w.child.granted(), result: self.child_test.offered().map(|(out, tag)| (plain(tag), out)) },
+            lod: Served { granted: w.lod.granted(), result: self.lod_test.offered().map(|(out, tag)| (plain(tag), out)) },
+            morph: Served { granted: w.morph.granted(), result: self.tessellate.offered().map(|(out, tag)| (plain(tag), out)) },
+            tri: Served { granted: w.tri.granted(), result: tri.map(|(out, tag)| (owner(tag), out)) },
+            divide: Served {
+                granted: w.divide.granted(),
+                result: divided.map(|(out, tag)| (owner(tag), Quotient { what: tag >> 8, out })),
+            },
+            select: Served {
+                granted: None,
+                result: self.hit_select.offered().map(|(out, tag)| {
+                    let (met, t) = self.chosen.get();
+                    (plain(tag), (out, t, met))
+                }),
+            },
+            map: Served { granted: w.map.granted(), result: self.bary_map.offered().map(|(out, tag)| (plain(tag), out)) },
+            hit: Served { granted: w.hit.granted(), result: None },
+        };
+
+        self.cycles += 1;
+        for (k, context) in self.contexts.iter_mut().enumerate() {
+            self.states[context.state as usize] += 1;
+            context.tick(k, &self.scene, &cycle);
+        }
+        let grants = [
+            (Resource::Setup, w.setup.granted()),
+            (Resource::Fetch, w.fetch.granted()),
+            (Resource::Base, w.base.granted()),
+            (Resource::Child, w.child.granted()),
+            (Resource::Lod, w.lod.granted()),
+            (Resource::Morph, w.morph.granted()),
+            (Resource::Tri, w.tri.granted()),
+            (Resource::Divide, w.divide.granted()),
+            (Resource::Map, w.map.granted()),
+            (Resource::Hit, w.hit.granted()),
+        ];
+        for (resource, granted) in grants {
+            if let Some(winner) = granted {
+                self.arbiters[resource as usize].took(winner);
+            }
+        }
+
+        // A hit follows its division, and then its comparison.
+        if let Some((out, tag)) = divided
+            && tag >> 8 == DIVIDE_FOR_T
+        {
+            self.chosen.set((self.candidate.get(), out.quotient));
+        }
+        if w.queue_pop
+            && let Some(head) = self.queue.pop_front()
+        {
+            self.candidate.set(head);
+        }
+        if let Some((test, tag)) = tri
+            && test.hit
+        {
+            self.queue.push_back(Met { owner: owner(tag), number: tag & 3, test });
+            self.longest_queue = self.longest_queue.max(self.queue.len());
+        }
+
+        self.ray_setup.tick(input(&w.setup), true);
+        self.node_address.tick(input(&w.fetch), inputs.mem_ready);
+        self.tree_base.tick(input(&w.base), true);
+        self.child_test.tick(input(&w.child), true);
+        self.lod_test.tick(input(&w.lod), true);
+        self.tessellate.tick(input(&w.morph), true);
+        self.tri_test.tick(input(&w.tri), true);
+        self.hit_divide.tick(input(&w.divide), true);
+        self.hit_select.tick(input(&w.select), true);
+        self.bary_map.tick(input(&w.map), true);
+        self.hit.tick(w.hit.input.map(|(hit, _)| hit), inputs.hit_ready);
+    }
+}
+
+/// The input of a link as a pipeline takes it.
+fn input<I>(link: &Link<I>) -> Option<(&I, u16)> {
+    link.input.as_ref().map(|(input, tag)| (input, *tag))
+}

@@ -1,0 +1,217 @@
+//! The signals of the waveform: names, widths and values, in one walk over the unit.
+
+use crate::block::{Block, hit_select, node_address, tessellate};
+use crate::num::{BitVec, U, Wire};
+use crate::sim::ports::{HitOut, MemoryAnswer, MemoryRequest};
+use crate::sim::unit::context::Context;
+use crate::sim::unit::register::Pipeline;
+use crate::sim::unit::wires::{Link, Wires};
+use crate::sim::unit::{Inputs, TraversalUnit};
+use crate::traverse::STACK_ENTRIES;
+use vcd::Value;
+
+/// Bits of a signal, the most significant first.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Vector(Vec<Value>);
+
+impl Vector {
+    /// The bits.
+    pub fn bits(&self) -> &[Value] {
+        &self.0
+    }
+
+    fn of<T: Wire>(value: &T) -> Self {
+        Self::of_bits(&value.to_bits())
+    }
+
+    fn of_bits(bits: &BitVec) -> Self {
+        let bit = |k: u32| Value::from(bits.words()[(k / 64) as usize] >> (k % 64) & 1 == 1);
+        Self((0..bits.width()).rev().map(bit).collect())
+    }
+
+    /// The low `width` bits of a small number.
+    fn number(value: u64, width: u32) -> Self {
+        let mut bits = BitVec::zero(width);
+        bits.words_mut()[0] = value;
+        Self::of_bits(&bits)
+    }
+
+    fn flag(value: bool) -> Self {
+        Self(vec![value.into()])
+    }
+
+    fn unknown(width: u32) -> Self {
+        Self(vec![Value::X; width as usize])
+    }
+
+    /// A register's value.
+    fn register<T: Wire>(value: Option<T>) -> Self {
+        value.map_or(Self::unknown(T::WIDTH), |value| Self::of(&value))
+    }
+
+    /// What is offered, or all zero.
+    fn offer<T: Wire>(value: Option<&T>) -> Self {
+        value.map_or(Self::number(0, T::WIDTH), Self::of)
+    }
+
+    /// Makes `width` bits from bit `low` on unknown.
+    fn blur(mut self, low: u32, width: u32) -> Self {
+        let end = self.0.len() - low as usize;
+        self.0[end - width as usize..end].fill(Value::X);
+        self
+    }
+}
+
+/// Hears of every signal, always in the same order.
+pub trait Visitor {
+    /// A scope begins.
+    fn enter(&mut self, scope: &str);
+    /// It ends.
+    fn leave(&mut self);
+    /// A signal in it.
+    fn signal(&mut self, name: &str, value: Vector);
+}
+
+/// Width of a counter from 0 to `most`.
+fn counter_width(most: usize) -> u32 {
+    usize::BITS - most.leading_zeros()
+}
+
+/// All signals of a cycle but the clock.
+pub fn walk(unit: &TraversalUnit, inputs: &Inputs, wires: &Wires, to: &mut impl Visitor) {
+    let outputs = unit.outputs();
+    to.enter("traversal_unit");
+    to.signal("rst_ni", Vector::flag(true));
+    to.signal("scene_i", Vector::of(&unit.scene));
+    to.signal("valid_i", Vector::flag(inputs.ray.is_some()));
+    to.signal("ready_o", Vector::flag(outputs.ready));
+    to.signal("in_i", Vector::offer(inputs.ray.as_ref()));
+    to.signal("valid_o", Vector::flag(outputs.hit.is_some()));
+    to.signal("ready_i", Vector::flag(inputs.hit_ready));
+    to.signal("out_o", Vector::register::<HitOut>(unit.hit.data()));
+    to.signal("mem_valid_o", Vector::flag(outputs.mem.is_some()));
+    to.signal("mem_ready_i", Vector::flag(inputs.mem_ready));
+    let request = |(out, tag): (node_address::Out, u16)| MemoryRequest { tag: U::new(tag.into()), address: out.address };
+    to.signal("mem_o", Vector::register(unit.node_address.data().map(request)));
+    to.signal("mem_valid_i", Vector::flag(inputs.answer.is_some()));
+    to.signal("mem_ready_o", Vector::flag(true));
+    to.signal("mem_i", Vector::offer::<MemoryAnswer>(inputs.answer.as_ref()));
+
+    for (k, context) in unit.contexts.iter().enumerate() {
+        to.enter(&format!("g_context[{k}]"));
+        to.enter("u_context");
+        context_signals(context, to);
+        to.leave();
+        to.leave();
+    }
+
+    block(to, &unit.ray_setup, &wires.setup, 6);
+    block_waiting(to, &unit.node_address, &wires.fetch, 8, inputs.mem_ready);
+    block(to, &unit.tree_base, &wires.base, 6);
+    child_test(to, unit, wires);
+    block(to, &unit.lod_test, &wires.lod, 6);
+    block(to, &unit.tessellate, &wires.morph, 6);
+    block(to, &unit.tri_test, &wires.tri, 8);
+    to.enter("u_queue");
+    to.signal("len_q", Vector::number(unit.queue.len() as u64, counter_width(4 * unit.contexts.len())));
+    to.leave();
+    block(to, &unit.hit_divide, &wires.divide, 10);
+    hit_select(to, unit, wires);
+    block(to, &unit.bary_map, &wires.map, 6);
+    to.leave();
+}
+
+/// Registers of a context, by their names in the RTL.
+fn context_signals(c: &Context, to: &mut impl Visitor) {
+    to.signal("state_q", Vector::number(c.state as u64, 5));
+    to.signal("fetch_q", c.fetch.known().map_or(Vector::unknown(2), |fetch| Vector::number(fetch as u64, 2)));
+    to.signal("entry_q", Vector::register(c.entry.known()));
+    to.signal("tree_q", Vector::register(c.tree.known()));
+    to.signal("level_q", Vector::register(c.level.known()));
+    to.signal("node_q", Vector::register(c.node.known()));
+    to.signal("lod_q", Vector::register(c.lod.known()));
+    to.signal("want_q", Vector::number(c.want.into(), 3));
+    to.signal("waiting_q", Vector::number(c.waiting.into(), 3));
+    to.signal("base_want_q", Vector::flag(c.base_want));
+    to.signal("base_ready_q", Vector::register(c.base_ready.known()));
+    to.signal("sorted_q", Vector::register(c.sorted.known()));
+    to.signal("count_q", Vector::register(c.count.known()));
+    to.signal("four_q", Vector::register(c.four.known()));
+    to.signal("left_q", Vector::register(c.left.known()));
+    to.signal("next_q", Vector::register(c.next.known()));
+    to.signal("pending_q", Vector::register(c.pending.known()));
+    to.enter("u_closest");
+    to.signal("known_q", Vector::register(c.closest.known.known()));
+    to.signal("t_max_q", Vector::register(c.closest.t_max.known()));
+    to.signal("id_q", Vector::register(c.closest.id.known()));
+    to.leave();
+    to.enter("u_stack");
+    to.signal("len_q", Vector::number(c.stack.len() as u64, counter_width(STACK_ENTRIES)));
+    to.leave();
+}
+
+/// A block whose consumer is always ready.
+fn block<B: Block>(to: &mut impl Visitor, pipeline: &Pipeline<B>, link: &Link<B::In>, tag_width: u32)
+where
+    B::Out: Copy + Default,
+{
+    block_waiting(to, pipeline, link, tag_width, true);
+}
+
+fn block_waiting<B: Block>(to: &mut impl Visitor, pipeline: &Pipeline<B>, link: &Link<B::In>, tag_width: u32, consumer_ready: bool)
+where
+    B::Out: Copy + Default,
+{
+    let input = Vector::offer(link.input.as_ref().map(|(input, _)| input));
+    let tag = Vector::number(link.input.as_ref().map_or(0, |(_, tag)| (*tag).into()), tag_width);
+    block_ports(to, pipeline, link, [input, tag], consumer_ready);
+}
+
+fn block_ports<B: Block>(to: &mut impl Visitor, pipeline: &Pipeline<B>, link: &Link<B::In>, [input, tag]: [Vector; 2], consumer_ready: bool)
+where
+    B::Out: Copy + Default,
+{
+    let tag_width = tag.0.len() as u32; // at most ten bits
+    to.enter(&format!("u_{}", B::NAME));
+    to.signal("valid_i", Vector::flag(link.input.is_some()));
+    to.signal("ready_o", Vector::flag(link.ready));
+    to.signal("in_i", input);
+    to.signal("tag_i", tag);
+    to.signal("valid_o", Vector::flag(pipeline.offered().is_some()));
+    to.signal("ready_i", Vector::flag(consumer_ready));
+    to.signal("out_o", Vector::register(pipeline.data().map(|(out, _)| out)));
+    to.signal("tag_o", pipeline.data().map_or(Vector::unknown(tag_width), |(_, tag)| Vector::number(tag.into(), tag_width)));
+    to.leave();
+}
+
+/// `child_test` sees the triangle's registers even where it does not use them: before the first tree they are unknown.
+fn child_test(to: &mut impl Visitor, unit: &TraversalUnit, wires: &Wires) {
+    const CORNERS: u32 = tessellate::Out::WIDTH;
+    let link = &wires.child;
+    let mut input = Vector::offer(link.input.as_ref().map(|(input, _)| input));
+    if let Some(context) = link.winner.map(|k| &unit.contexts[k]) {
+        // The last fields: three corners, then as many inserted vertices.
+        if context.p.known().is_none() {
+            input = input.blur(CORNERS, CORNERS);
+        }
+        if context.q.known().is_none() {
+            input = input.blur(0, CORNERS);
+        }
+    }
+    let tag = Vector::number(link.input.as_ref().map_or(0, |(_, tag)| (*tag).into()), 6);
+    block_ports(to, &unit.child_test, link, [input, tag], true);
+}
+
+/// `hit_select` sees the owner of the last division, and an id that is unknown before the first hit.
+fn hit_select(to: &mut impl Visitor, unit: &TraversalUnit, wires: &Wires) {
+    let link = &wires.select;
+    let mut input = Vector::offer(link.input.as_ref().map(|(input, _)| input));
+    if let Some((_, owner)) = &link.input
+        && unit.contexts[usize::from(*owner)].closest.id.known().is_none()
+    {
+        let behind = |name| hit_select::In::FIELDS.iter().rev().take_while(|field| field.name != name).map(|field| field.width).sum();
+        input = input.blur(behind("best_id"), hit_select::FullId::WIDTH);
+    }
+    let owner = unit.hit_divide.data().map_or(Vector::unknown(6), |(_, tag)| Vector::number((tag >> 2 & 63).into(), 6));
+    block_ports(to, &unit.hit_select, link, [input, owner], true);
+}
