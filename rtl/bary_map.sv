@@ -37,7 +37,8 @@ module bary_map #(
   for (genvar k = 0; k < LEVELS; k++) begin : g_level
     logic [3:0]          left, left_next;
     logic [NODE_W-1:0]   node, node_next;
-    logic [2:0][B_W-1:0] b, b_step, b_next;
+    // Flat: Yosys loses the width of packed arrays inside a generate block.
+    logic [3*B_W-1:0]    b, b_step, b_next;
     logic [TAG_W-1:0]    tag;
     logic [1:0]          child;
     assign {left, node, b, tag} = state[k];
