@@ -25,35 +25,24 @@ impl<T: Copy + Default> Register<T> {
 }
 
 /// The elastic register of `rtl/pipe_stage.sv`: takes an item when it is empty or its item leaves in the same cycle.
-#[derive(Clone, Debug, Default)]
-pub struct Stage<T> {
-    valid: bool,
-    data: Register<T>,
-}
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Stage<T>(Option<T>);
 
-impl<T: Copy + Default> Stage<T> {
+impl<T: Copy> Stage<T> {
     /// The item offered.
     pub fn offered(&self) -> Option<T> {
-        self.valid.then(|| self.data.get())
-    }
-
-    /// The data register, whether an item is offered or not.
-    pub fn data(&self) -> Option<T> {
-        self.data.known()
+        self.0
     }
 
     /// It would take an item in this cycle.
     pub fn ready(&self, consumer_ready: bool) -> bool {
-        consumer_ready || !self.valid
+        consumer_ready || self.0.is_none()
     }
 
     /// The end of a cycle.
     pub fn tick(&mut self, input: Option<T>, consumer_ready: bool) {
         if self.ready(consumer_ready) {
-            self.valid = input.is_some();
-            if let Some(item) = input {
-                self.data.set(item);
-            }
+            self.0 = input;
         }
     }
 }
@@ -79,8 +68,6 @@ pub struct Pipeline<B: Block> {
     timing: Timing,
     /// Items under way with their tags and the registers they are in, 1 to `latency`, the oldest first.
     items: VecDeque<(u32, B::Out, u16)>,
-    /// The last register's data, whether valid or not.
-    last: Register<(B::Out, u16)>,
     /// Cycles until the next input can be taken.
     wait: u32,
     counts: BlockCounts,
@@ -88,7 +75,7 @@ pub struct Pipeline<B: Block> {
 
 impl<B: Block> Pipeline<B>
 where
-    B::Out: Copy + Default,
+    B::Out: Copy,
 {
     /// An empty pipeline of the block's own timing.
     pub fn new() -> Self {
@@ -97,7 +84,7 @@ where
 
     /// An empty pipeline of another timing.
     pub fn with(timing: Timing) -> Self {
-        Self { timing, items: VecDeque::new(), last: Register::default(), wait: 0, counts: BlockCounts::default() }
+        Self { timing, items: VecDeque::new(), wait: 0, counts: BlockCounts::default() }
     }
 
     /// Whether it would take an input in this cycle.
@@ -109,17 +96,6 @@ where
     /// The result offered, with its tag.
     pub fn offered(&self) -> Option<(B::Out, u16)> {
         self.items.front().filter(|item| item.0 == self.timing.latency).map(|&(_, out, tag)| (out, tag))
-    }
-
-    /// What stands at the output, whether offered or not: the last result with its tag. An iterative block works in its output register, so
-    /// there only what is offered is known, and the tag is that of the item inside.
-    pub fn shown(&self) -> (Option<B::Out>, Option<u16>) {
-        if self.timing.interval == self.timing.latency && self.timing.latency > 1 {
-            let tag = self.items.front().map(|item| item.2);
-            (self.offered().map(|(out, _)| out), tag.or(self.last.known().map(|(_, tag)| tag)))
-        } else {
-            self.last.known().unzip()
-        }
     }
 
     /// What it did so far.
@@ -138,23 +114,16 @@ where
         }
         // Each item moves on, at most to right behind the one before it.
         let mut room = self.timing.latency;
-        for (place, out, tag) in &mut self.items {
+        for (place, ..) in &mut self.items {
             if *place < room {
                 *place += 1;
-                if *place == self.timing.latency {
-                    self.last.set((*out, *tag));
-                }
             }
             room = *place - 1;
         }
         self.wait = self.wait.saturating_sub(1);
         match input {
             Some((input, tag)) if ready => {
-                let out = B::eval(input);
-                self.items.push_back((1, out, tag));
-                if self.timing.latency == 1 {
-                    self.last.set((out, tag));
-                }
+                self.items.push_back((1, B::eval(input), tag));
                 self.wait = self.timing.interval - 1;
                 self.counts.taken += 1;
             }

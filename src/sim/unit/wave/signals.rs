@@ -1,7 +1,7 @@
 //! The signals of the waveform: names, widths and values, in one walk over the unit.
 
-use crate::block::{Block, child_test, hit_select, lod_test, node_address, tessellate};
-use crate::num::{BitVec, Field, U, Wire};
+use crate::block::{Block, child_test, hit_select, lod_test, tessellate};
+use crate::num::{BitVec, Field, Wire};
 use crate::sim::ports::{HitOut, MemoryAnswer, MemoryRequest, RayIn, SceneConfig};
 use crate::sim::unit::context::Context;
 use crate::sim::unit::register::Pipeline;
@@ -112,12 +112,10 @@ pub fn walk(unit: &TraversalUnit, inputs: &Inputs, wires: &Wires, to: &mut impl 
     typed::<RayIn>(to, "in_i", &Vector::offer(inputs.ray.as_ref()));
     to.signal("valid_o", Vector::flag(outputs.hit.is_some()));
     to.signal("ready_i", Vector::flag(inputs.hit_ready));
-    typed::<HitOut>(to, "out_o", &Vector::register(unit.hit.data()));
+    typed::<HitOut>(to, "out_o", &Vector::register(outputs.hit));
     to.signal("mem_valid_o", Vector::flag(outputs.mem.is_some()));
     to.signal("mem_ready_i", Vector::flag(inputs.mem_ready));
-    let request = |(out, tag): (node_address::Out, u16)| MemoryRequest { tag: U::new(tag.into()), address: out.address };
-    let (address, tag) = unit.node_address.shown();
-    typed::<MemoryRequest>(to, "mem_o", &Vector::register(address.zip(tag).map(request)));
+    typed::<MemoryRequest>(to, "mem_o", &Vector::register(outputs.mem));
     to.signal("mem_valid_i", Vector::flag(inputs.answer.is_some()));
     to.signal("mem_ready_o", Vector::flag(true));
     typed::<MemoryAnswer>(to, "mem_i", &Vector::offer(inputs.answer.as_ref()));
@@ -178,14 +176,14 @@ fn context_signals(c: &Context, to: &mut impl Visitor) {
 /// A block whose consumer is always ready.
 fn block<B: Block>(to: &mut impl Visitor, pipeline: &Pipeline<B>, link: &Link<B::In>, tag_width: u32)
 where
-    B::Out: Copy + Default,
+    B::Out: Copy,
 {
     block_waiting(to, pipeline, link, tag_width, true);
 }
 
 fn block_waiting<B: Block>(to: &mut impl Visitor, pipeline: &Pipeline<B>, link: &Link<B::In>, tag_width: u32, consumer_ready: bool)
 where
-    B::Out: Copy + Default,
+    B::Out: Copy,
 {
     let input = Vector::offer(link.input.as_ref().map(|(input, _)| input));
     let tag = Vector::number(link.input.as_ref().map_or(0, |(_, tag)| (*tag).into()), tag_width);
@@ -194,7 +192,7 @@ where
 
 fn block_ports<B: Block>(to: &mut impl Visitor, pipeline: &Pipeline<B>, link: &Link<B::In>, [input, tag]: [Vector; 2], consumer_ready: bool)
 where
-    B::Out: Copy + Default,
+    B::Out: Copy,
 {
     let tag_width = tag.0.len() as u32; // at most ten bits
     to.enter(&format!("u_{}", B::NAME));
@@ -204,7 +202,8 @@ where
     to.signal("tag_i", tag);
     to.signal("valid_o", Vector::flag(pipeline.offered().is_some()));
     to.signal("ready_i", Vector::flag(consumer_ready));
-    let (out, tag) = pipeline.shown();
+    // Where nothing is offered the RTL's registers hold anything.
+    let (out, tag) = pipeline.offered().unzip();
     typed::<B::Out>(to, "out_o", &Vector::register(out));
     to.signal("tag_o", tag.map_or(Vector::unknown(tag_width), |tag| Vector::number(tag.into(), tag_width)));
     to.leave();
@@ -228,16 +227,17 @@ fn children(to: &mut impl Visitor, unit: &TraversalUnit, wires: &Wires) {
     block_ports(to, &unit.child_test, link, [input, tag], true);
 }
 
-/// `hit_select` sees the owner of the last division, and an id that is unknown before the first hit.
+/// `hit_select` sees an id that is unknown before the first hit, and the tag of the division whether that is done or not.
 fn comparison(to: &mut impl Visitor, unit: &TraversalUnit, wires: &Wires) {
     let link = &wires.select;
     let mut input = Vector::offer(link.input.as_ref().map(|(input, _)| input));
-    if let Some((_, owner)) = &link.input
-        && unit.contexts[usize::from(*owner)].closest.id.known().is_none()
-    {
-        let behind = |name| hit_select::In::FIELDS.iter().rev().take_while(|field| field.name != name).map(|field| field.width).sum();
-        input = input.blur(behind("best_id"), hit_select::FullId::WIDTH);
+    let mut owner = Vector::unknown(6);
+    if let Some((_, tag)) = &link.input {
+        owner = Vector::number((*tag).into(), 6);
+        if unit.contexts[usize::from(*tag)].closest.id.known().is_none() {
+            let behind = |name| hit_select::In::FIELDS.iter().rev().take_while(|field| field.name != name).map(|field| field.width).sum();
+            input = input.blur(behind("best_id"), hit_select::FullId::WIDTH);
+        }
     }
-    let owner = unit.hit_divide.shown().1.map_or(Vector::unknown(6), |tag| Vector::number((tag >> 2 & 63).into(), 6));
     block_ports(to, &unit.hit_select, link, [input, owner], true);
 }
