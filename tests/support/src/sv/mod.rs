@@ -1,10 +1,12 @@
 //! As much of SystemVerilog as `rtl/` uses: the package's numbers, structs and enums, and the heads of modules.
 
+mod donts;
 mod expression;
 mod module;
 mod package;
 mod tokens;
 
+pub use donts::donts;
 pub use module::{Module, Port};
 pub use package::{Package, Shape, StructField};
 
