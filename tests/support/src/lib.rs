@@ -1,4 +1,4 @@
-//! Small models, surfaces and rays for the tests and benchmarks of lodray.
+//! Small models, surfaces and rays for the tests and benchmarks of lodray, and a reader of the RTL's declarations.
 #![allow(missing_docs)] // the names say what is made
 
 pub mod models;
