@@ -6,7 +6,7 @@ use lodray::num::{LineAddress, Ray};
 use lodray::sim::unit::environment::{RunReport, UnitError, UnitPort, run};
 use lodray::sim::unit::{EdgesPerCycle, Inputs, Latency, Outputs, SceneMemory, Stall, Traffic, TraversalUnit, UnitConfig, UnitCounts};
 use lodray::traverse::{ClosestHit, Hit, Kind, LodImage, LodTraverser, Probe, RayCounts};
-use lodray_test_support::models::{Rng, any_cone, ball, direction, model, octahedron, ray, ray_through, scene_of, terrain};
+use lodray_test_support::models::{any_rays, ball, model, octahedron, scene_of, terrain};
 use lodray_test_support::plain::plain;
 
 /// Lines in the order of their reading, and counts.
@@ -78,25 +78,6 @@ fn configs() -> Vec<UnitConfig> {
         .into()
 }
 
-/// Rays through a model's points and past them, from all sides, with cones of all widths.
-fn rays(h: &Hierarchy, count: usize, seed: u64) -> Vec<Ray> {
-    let mut rng = Rng(seed);
-    let mut random = || {
-        let at = h.points[rng.below(h.points.len() as u64) as usize].map(i64::from);
-        let spread = 1u64 << rng.below(28);
-        let near = at.map(|v| v + (rng.signed() * spread as f64) as i64);
-        let d = direction(&mut rng);
-        let cone = any_cone(&mut rng);
-        let start: [i64; 3] = std::array::from_fn(|k| near[k] - d[k]);
-        if start.iter().all(|v| v.abs() < 1 << 31) {
-            ray_through(near, d, cone)
-        } else {
-            ray(near.map(|v| v.clamp(-(1 << 30), 1 << 30)), d, cone)
-        }
-    };
-    (0..count).map(|_| random()).collect()
-}
-
 struct Model {
     name: String,
     h: Hierarchy,
@@ -139,7 +120,7 @@ fn equals_the_functional_and_the_golden_traverser() {
         let scene = scene_of(h);
         let image = LodImage::of(&scene);
         let memory = SceneMemory::new(image, *first_line);
-        let rays = rays(h, 80, number as u64);
+        let rays = any_rays(h, 80, number as u64);
 
         let golden = Exact::new(h);
         let mut lod = LodTraverser::new(image);
@@ -187,7 +168,7 @@ fn one_context_takes_each_ray_the_same_cycles_whatever_came_before() {
     let h = ball(3, 0.4, 1);
     let scene = scene_of(&h);
     let memory = SceneMemory::new(LodImage::of(&scene), 0);
-    let rays = rays(&h, 50, 2);
+    let rays = any_rays(&h, 50, 2);
     let traffic = Traffic::smooth(Latency::Fixed(20));
     let config = UnitConfig { contexts: 1, ..UnitConfig::default() };
     let (together, ..) = simulate(&memory, config, &traffic, &rays);
@@ -202,7 +183,7 @@ fn contexts_hide_latency() {
     let h = terrain(3, 4, 0.4, 1);
     let scene = scene_of(&h);
     let memory = SceneMemory::new(LodImage::of(&scene), 0);
-    let rays = rays(&h, 400, 3);
+    let rays = any_rays(&h, 400, 3);
     let traffic = Traffic::smooth(Latency::Fixed(100));
     let cycles =
         [1, 4, 16, 64].map(|contexts| simulate(&memory, UnitConfig { contexts, ..UnitConfig::default() }, &traffic, &rays).0.cycles);
@@ -228,7 +209,7 @@ fn misbehaviour_is_an_error() {
     let h = ball(1, 0.4, 1);
     let scene = scene_of(&h);
     let memory = SceneMemory::new(LodImage::of(&scene), 100);
-    let rays = rays(&h, 1, 2);
+    let rays = any_rays(&h, 1, 2);
     let try_out = |outputs| run(&mut Broken(outputs), &memory, &Traffic::smooth(Latency::Fixed(3)), &rays).expect_err("an error");
     let asleep = try_out(Outputs::default());
     assert!(matches!(&asleep, UnitError::Deadlock { contexts, .. } if contexts.contains("asleep")), "{asleep}");

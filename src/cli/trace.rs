@@ -58,7 +58,7 @@ struct Bench<'a> {
 
 impl Bench<'_> {
     fn unit(&self) -> TraversalUnit {
-        TraversalUnit::new(UnitConfig { contexts: 1, ..UnitConfig::default() }, self.memory.config())
+        TraversalUnit::new(UnitConfig::one_context(), self.memory.config())
     }
 }
 

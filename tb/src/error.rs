@@ -18,12 +18,10 @@ pub enum Error {
         output: String,
     },
     /// The compiler failed.
-    #[error("the C++ compiler ({compiler}) fails on the model of {top}:\n{output}")]
+    #[error("the C++ compiler ({compiler}) fails:\n{output}")]
     Compiler {
         /// The command.
         compiler: String,
-        /// The top.
-        top: String,
         /// What it said.
         output: String,
     },

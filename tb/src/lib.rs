@@ -23,6 +23,7 @@ mod batch;
 mod build;
 mod check;
 mod compile;
+mod cxx;
 mod error;
 mod failure;
 mod library;

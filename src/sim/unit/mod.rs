@@ -59,6 +59,13 @@ pub struct UnitConfig {
     pub edges_per_cycle: EdgesPerCycle,
 }
 
+impl UnitConfig {
+    /// A unit for one ray at a time.
+    pub const fn one_context() -> Self {
+        Self { contexts: 1, edges_per_cycle: EdgesPerCycle::Three }
+    }
+}
+
 impl Default for UnitConfig {
     fn default() -> Self {
         Self { contexts: 4, edges_per_cycle: EdgesPerCycle::Three }

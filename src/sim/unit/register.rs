@@ -111,9 +111,15 @@ where
         self.items.front().filter(|item| item.0 == self.timing.latency).map(|&(_, out, tag)| (out, tag))
     }
 
-    /// The last register's data, whether offered or not.
-    pub fn data(&self) -> Option<(B::Out, u16)> {
-        self.last.known()
+    /// What stands at the output, whether offered or not: the last result with its tag. An iterative block works in its output register, so
+    /// there only what is offered is known, and the tag is that of the item inside.
+    pub fn shown(&self) -> (Option<B::Out>, Option<u16>) {
+        if self.timing.interval == self.timing.latency && self.timing.latency > 1 {
+            let tag = self.items.front().map(|item| item.2);
+            (self.offered().map(|(out, _)| out), tag.or(self.last.known().map(|(_, tag)| tag)))
+        } else {
+            self.last.known().unzip()
+        }
     }
 
     /// What it did so far.

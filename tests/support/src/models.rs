@@ -151,6 +151,25 @@ pub fn ray_through(p: [i64; 3], d: [i64; 3], cone: Cone) -> Ray {
     ray(std::array::from_fn(|k| p[k] - d[k]), d, cone)
 }
 
+/// Rays through a model's points and past them, from all sides, with cones of all widths.
+pub fn any_rays(h: &Hierarchy, count: usize, seed: u64) -> Vec<Ray> {
+    let mut rng = Rng(seed);
+    let mut random = || {
+        let at = h.points[rng.below(h.points.len() as u64) as usize].map(i64::from);
+        let spread = 1u64 << rng.below(28);
+        let near = at.map(|v| v + (rng.signed() * spread as f64) as i64);
+        let d = direction(&mut rng);
+        let cone = any_cone(&mut rng);
+        let start: [i64; 3] = std::array::from_fn(|k| near[k] - d[k]);
+        if start.iter().all(|v| v.abs() < 1 << 31) {
+            ray_through(near, d, cone)
+        } else {
+            ray(near.map(|v| v.clamp(-(1 << 30), 1 << 30)), d, cone)
+        }
+    };
+    (0..count).map(|_| random()).collect()
+}
+
 /// The scene of a surface.
 pub fn build(surface: &Surface) -> Scene {
     format::build(surface, SceneInfo::default(), over_trees).expect("a valid surface")

@@ -92,7 +92,8 @@ pub fn walk(unit: &TraversalUnit, inputs: &Inputs, wires: &Wires, to: &mut impl 
     to.signal("mem_valid_o", Vector::flag(outputs.mem.is_some()));
     to.signal("mem_ready_i", Vector::flag(inputs.mem_ready));
     let request = |(out, tag): (node_address::Out, u16)| MemoryRequest { tag: U::new(tag.into()), address: out.address };
-    to.signal("mem_o", Vector::register(unit.node_address.data().map(request)));
+    let (address, tag) = unit.node_address.shown();
+    to.signal("mem_o", Vector::register(address.zip(tag).map(request)));
     to.signal("mem_valid_i", Vector::flag(inputs.answer.is_some()));
     to.signal("mem_ready_o", Vector::flag(true));
     to.signal("mem_i", Vector::offer::<MemoryAnswer>(inputs.answer.as_ref()));
@@ -179,8 +180,9 @@ where
     to.signal("tag_i", tag);
     to.signal("valid_o", Vector::flag(pipeline.offered().is_some()));
     to.signal("ready_i", Vector::flag(consumer_ready));
-    to.signal("out_o", Vector::register(pipeline.data().map(|(out, _)| out)));
-    to.signal("tag_o", pipeline.data().map_or(Vector::unknown(tag_width), |(_, tag)| Vector::number(tag.into(), tag_width)));
+    let (out, tag) = pipeline.shown();
+    to.signal("out_o", Vector::register(out));
+    to.signal("tag_o", tag.map_or(Vector::unknown(tag_width), |tag| Vector::number(tag.into(), tag_width)));
     to.leave();
 }
 
@@ -212,6 +214,6 @@ fn hit_select(to: &mut impl Visitor, unit: &TraversalUnit, wires: &Wires) {
         let behind = |name| hit_select::In::FIELDS.iter().rev().take_while(|field| field.name != name).map(|field| field.width).sum();
         input = input.blur(behind("best_id"), hit_select::FullId::WIDTH);
     }
-    let owner = unit.hit_divide.data().map_or(Vector::unknown(6), |(_, tag)| Vector::number((tag >> 2 & 63).into(), 6));
+    let owner = unit.hit_divide.shown().1.map_or(Vector::unknown(6), |tag| Vector::number((tag >> 2 & 63).into(), 6));
     block_ports(to, &unit.hit_select, link, [input, owner], true);
 }

@@ -1,0 +1,224 @@
+//! The RTL of the traversal unit beside its cycle model in one environment: every port compared in every cycle, every hit against the golden
+//! traverser's. `LODRAY_CYCLES` asks for that many cycles (default 1 million), `LODRAY_SEED` for another seed.
+
+use lodray::format::Scene;
+use lodray::golden::exact::Exact;
+use lodray::mesh::Hierarchy;
+use lodray::mesh::procedural::{self, Options};
+use lodray::num::{Ray, Wire};
+use lodray::render::{Camera, View};
+use lodray::sim::ports::{HitOut, MemoryAnswer, MemoryRequest, RayIn, SceneConfig};
+use lodray::sim::unit::environment::{RunReport, UnitPort, run};
+use lodray::sim::unit::{EdgesPerCycle, Inputs, Latency, Outputs, SceneMemory, Stall, Traffic, TraversalUnit, UnitConfig};
+use lodray::traverse::{LodImage, ModelSpace};
+use lodray_test_support::models::{Rng, any_rays, ball, build, scene_of, terrain};
+use lodray_test_support::plain::plain;
+use std::sync::Arc;
+use tb::{Build, Direction, Model, PortId, Sim};
+
+/// The RTL with these parameters; `cargo test` compiles each once.
+fn model(config: UnitConfig) -> Arc<Model> {
+    let edges = match config.edges_per_cycle {
+        EdgesPerCycle::One => 1,
+        EdgesPerCycle::Three => 3,
+    };
+    let build = Build::rtl("traversal_unit").parameter("CONTEXTS", config.contexts).parameter("EDGES_PER_CYCLE", edges);
+    // The waveform's test needs the unit of one context too.
+    let build = if config == UnitConfig::one_context() { build.trace() } else { build };
+    build.model().unwrap_or_else(|error| panic!("{error}"))
+}
+
+/// The RTL's ports.
+struct Rtl {
+    sim: Sim,
+    ready: PortId,
+    hit: (PortId, PortId),
+    mem: (PortId, PortId),
+    ray_in: (PortId, PortId),
+    hit_ready: PortId,
+    mem_ready: PortId,
+    answer: (PortId, PortId),
+}
+
+impl Rtl {
+    /// A simulation behind its reset.
+    fn new(config: UnitConfig, scene: &SceneConfig, seed: u64) -> Self {
+        let mut sim = Sim::new(&model(config), seed);
+        let port = |sim: &Sim, name, width, direction| sim.port(name, width, direction).unwrap_or_else(|error| panic!("{error}"));
+        let input = |sim: &Sim, name, width| port(sim, name, width, Direction::In);
+        let output = |sim: &Sim, name, width| port(sim, name, width, Direction::Out);
+        let mut rtl = Self {
+            ready: output(&sim, "ready_o", 1),
+            hit: (output(&sim, "valid_o", 1), output(&sim, "out_o", HitOut::WIDTH)),
+            mem: (output(&sim, "mem_valid_o", 1), output(&sim, "mem_o", MemoryRequest::WIDTH)),
+            ray_in: (input(&sim, "valid_i", 1), input(&sim, "in_i", RayIn::WIDTH)),
+            hit_ready: input(&sim, "ready_i", 1),
+            mem_ready: input(&sim, "mem_ready_i", 1),
+            answer: (input(&sim, "mem_valid_i", 1), input(&sim, "mem_i", MemoryAnswer::WIDTH)),
+            sim: {
+                let (reset, scene_i) = (input(&sim, "rst_ni", 1), input(&sim, "scene_i", SceneConfig::WIDTH));
+                sim.poke(scene_i, scene);
+                sim.poke(reset, &false);
+                (0..2).for_each(|_| sim.clock());
+                sim.poke(reset, &true);
+                sim
+            },
+        };
+        rtl.sim.eval();
+        rtl
+    }
+}
+
+impl UnitPort for Rtl {
+    fn outputs(&mut self) -> Outputs {
+        // All of them come from registers, so they stand before the inputs of this cycle.
+        let hit = if self.sim.peek(self.hit.0) { Some(self.sim.peek(self.hit.1)) } else { None };
+        let mem = if self.sim.peek(self.mem.0) { Some(self.sim.peek(self.mem.1)) } else { None };
+        Outputs { ready: self.sim.peek(self.ready), hit, mem }
+    }
+
+    fn tick(&mut self, inputs: &Inputs) {
+        self.sim.poke(self.ray_in.0, &inputs.ray.is_some());
+        self.sim.poke(self.ray_in.1, &inputs.ray.unwrap_or_default());
+        self.sim.poke(self.hit_ready, &inputs.hit_ready);
+        self.sim.poke(self.mem_ready, &inputs.mem_ready);
+        self.sim.poke(self.answer.0, &inputs.answer.is_some());
+        self.sim.poke(self.answer.1, &inputs.answer.unwrap_or_default());
+        self.sim.clock();
+    }
+
+    fn describe(&mut self) -> String {
+        "(the RTL)".to_owned()
+    }
+}
+
+/// Model and RTL with the same inputs.
+struct SideBySide {
+    model: TraversalUnit,
+    rtl: Rtl,
+    cycle: u64,
+    what: String,
+}
+
+impl UnitPort for SideBySide {
+    fn outputs(&mut self) -> Outputs {
+        let (model, rtl) = (self.model.outputs(), self.rtl.outputs());
+        if model != rtl {
+            let port = match () {
+                () if model.ready != rtl.ready => "ready_o",
+                () if model.hit != rtl.hit => "valid_o, out_o",
+                () => "mem_valid_o, mem_o",
+            };
+            let (what, cycle, contexts) = (&self.what, self.cycle, self.model.describe());
+            panic!("{what}: cycle {cycle}: port {port} differs\nmodel {model:?}\nRTL   {rtl:?}\n{contexts}");
+        }
+        model
+    }
+
+    fn tick(&mut self, inputs: &Inputs) {
+        self.model.tick(inputs);
+        self.rtl.tick(inputs);
+        self.cycle += 1;
+    }
+
+    fn describe(&mut self) -> String {
+        self.model.describe()
+    }
+}
+
+/// Runs `rays` through both and compares every hit with the golden traverser's; gives the report and the number of hits.
+fn compare(scene: &Scene, h: &Hierarchy, config: UnitConfig, traffic: &Traffic, rays: &[Ray], seed: u64) -> (RunReport, u64) {
+    let memory = SceneMemory::new(LodImage::of(scene), seed % (1 << 35));
+    let what = format!("seed {seed}, {config:?}, {traffic:?}");
+    let mut both = SideBySide {
+        model: TraversalUnit::new(config, memory.config()),
+        rtl: Rtl::new(config, &memory.config(), seed),
+        cycle: 0,
+        what: what.clone(),
+    };
+    let report = run(&mut both, &memory, traffic, rays).unwrap_or_else(|error| panic!("{what}: {error}"));
+    assert!(!both.rtl.sim.failed(), "{what}: an assertion of the RTL failed");
+    let golden = Exact::new(h);
+    for (ray, traced) in rays.iter().zip(&report.rays) {
+        let HitOut { found, hit, .. } = traced.hit;
+        assert_eq!(found.then(|| plain(&hit)), golden.trace(ray), "{what}: {ray:?}");
+    }
+    let hits = report.rays.iter().filter(|ray| ray.hit.found).count();
+    (report, hits as u64)
+}
+
+fn number(name: &str, default: u64) -> u64 {
+    let parse = |text: String| text.replace('_', "").parse().unwrap_or_else(|_| panic!("{name}={text} is not a number"));
+    std::env::var(name).map_or(default, parse)
+}
+
+fn configs() -> [UnitConfig; 3] {
+    let eight = UnitConfig { contexts: 8, edges_per_cycle: EdgesPerCycle::Three };
+    let four = UnitConfig { contexts: 4, edges_per_cycle: EdgesPerCycle::One };
+    [UnitConfig::one_context(), four, eight]
+}
+
+/// Any traffic: fixed and random latency, ports that stall never, in single cycles, or for long.
+fn any_traffic(rng: &mut Rng) -> Traffic {
+    let mut stall = || match rng.below(3) {
+        0 => Stall::Never,
+        _ => Stall::Random { eighths: rng.below(7) as u8, stretch: 1 << rng.below(6), seed: rng.draw() },
+    };
+    let (memory_stall, hit_stall, ray_gap) = (stall(), stall(), stall());
+    let latency = match rng.below(3) {
+        0 => Latency::Fixed(1 + rng.below(60) as u32),
+        _ => Latency::Random { min: 1 + rng.below(8) as u32, max: 1 << rng.below(8), seed: rng.draw() },
+    };
+    Traffic { latency, memory_stall, hit_stall, ray_gap }
+}
+
+#[test]
+fn random_rays_under_random_traffic() {
+    let wanted = number("LODRAY_CYCLES", 1_000_000);
+    let seed = number("LODRAY_SEED", 1);
+    let (mut cycles, mut traced, mut hits) = (0, 0, 0);
+    for round in 0.. {
+        let seed = seed + round;
+        let mut rng = Rng(seed);
+        let levels = (round % 7) as u32;
+        let roughness = [0.05, 0.4, 1.5][rng.below(3) as usize];
+        let h = if rng.below(2) == 0 { ball(levels, roughness, seed) } else { terrain(2, levels, roughness, seed) };
+        let config = configs()[(round % 3) as usize];
+        let rays = any_rays(&h, 20 * config.contexts, seed);
+        let (report, met) = compare(&scene_of(&h), &h, config, &any_traffic(&mut rng), &rays, seed);
+        cycles += report.cycles;
+        traced += rays.len();
+        hits += met;
+        if cycles >= wanted {
+            break;
+        }
+    }
+    println!("seed {seed}: {cycles} cycles compared, {traced} rays, {hits} hits");
+    assert!(hits > 0);
+}
+
+/// A frame of a procedural scene on model and RTL.
+fn frame(kind: procedural::Scene, config: UnitConfig, latency: Latency) {
+    const SIDE: u32 = 96;
+    let options = Options { levels: Some(3), base: Some(32), ..Options::new(kind) };
+    let scene = build(&procedural::generate(&options).expect("options"));
+    let h = scene.decode();
+    let space = ModelSpace::of(&scene);
+    let camera = Camera::new(&View { distance: Some(2.5), ..View::default() }, &space, SIDE, SIDE).expect("a view");
+    let pixels = (0..SIDE * SIDE).map(|i| camera.ray(i % SIDE, i / SIDE));
+    // Where a ray misses the model's box there is nothing to trace.
+    let rays: Vec<Ray> = pixels.filter_map(|world| Some(space.enter(&world, 1.0)?.ray)).collect();
+    let (report, hits) = compare(&scene, &h, config, &Traffic::smooth(latency), &rays, 1);
+    println!("{kind:?}: {SIDE}x{SIDE} pixels, {} rays, {hits} hits, {} cycles", rays.len(), report.cycles);
+    assert!(hits > 1000, "only {hits} hits");
+}
+
+#[test]
+fn a_frame_of_a_terrain() {
+    frame(procedural::Scene::Terrain, configs()[2], Latency::Random { min: 5, max: 60, seed: 1 });
+}
+
+#[test]
+fn a_frame_of_a_sphere() {
+    frame(procedural::Scene::Sphere, configs()[1], Latency::Fixed(20));
+}
