@@ -37,7 +37,7 @@ impl Vec3<32> {
 
 impl<const W: u32> Wire for Vec3<W> {
     const WIDTH: u32 = 3 * W;
-    const FIELDS: &'static [Field] = &[Field { name: "x", width: W }, Field { name: "y", width: W }, Field { name: "z", width: W }];
+    const FIELDS: &'static [Field] = &[Field::of::<S<W>>("x"), Field::of::<S<W>>("y"), Field::of::<S<W>>("z")];
     #[inline(always)]
     fn put(&self, w: &mut BitWriter<'_>) {
         self.x.put(w);

@@ -9,6 +9,17 @@ pub struct Field {
     pub name: &'static str,
     /// Its width in bits.
     pub width: u32,
+    /// Its number of elements if it is an array, else 1.
+    pub elements: u32,
+    /// Its own fields if it is a struct.
+    pub fields: &'static [Self],
+}
+
+impl Field {
+    /// The field `name` of type `T`.
+    pub const fn of<T: Wire>(name: &'static str) -> Self {
+        Self { name, width: T::WIDTH, elements: T::ELEMENTS, fields: T::FIELDS }
+    }
 }
 
 /// A value with a fixed number of bits. Of a struct the first field is the most significant; of an array `[T; N]`, as of `logic [N-1:0]`,
@@ -18,6 +29,8 @@ pub trait Wire: Sized {
     const WIDTH: u32;
     /// The fields of a struct, most significant first; empty for plain integers and arrays.
     const FIELDS: &'static [Field] = &[];
+    /// Number of elements of an array; 1 of everything else.
+    const ELEMENTS: u32 = 1;
 
     /// Appends the bits, most significant first.
     fn put(&self, w: &mut BitWriter<'_>);
@@ -118,7 +131,8 @@ impl Wire for bool {
 }
 
 impl<T: Wire + Copy + Default, const N: usize> Wire for [T; N] {
-    const WIDTH: u32 = T::WIDTH * N as u32; // N is a small array length
+    const WIDTH: u32 = T::WIDTH * Self::ELEMENTS;
+    const ELEMENTS: u32 = N as u32; // a small array length
     #[inline(always)]
     fn put(&self, w: &mut BitWriter<'_>) {
         for v in self.iter().rev() {
@@ -145,7 +159,7 @@ macro_rules! wire_struct {
         impl $crate::num::Wire for $name {
             const WIDTH: u32 = 0 $(+ <$ty as $crate::num::Wire>::WIDTH)+;
             const FIELDS: &'static [$crate::num::Field] = &[
-                $($crate::num::Field { name: stringify!($field), width: <$ty as $crate::num::Wire>::WIDTH }),+
+                $($crate::num::Field::of::<$ty>(stringify!($field))),+
             ];
             #[inline(always)]
             fn put(&self, w: &mut $crate::num::BitWriter<'_>) {
@@ -177,7 +191,7 @@ mod tests {
         let v = Small { a: U::new(0xa), b: S::new(-1), l: [U::new(1), U::new(2)] };
         assert_eq!(v.to_bits().words(), &[0xaf21]);
         assert_eq!(Small::WIDTH, 16);
-        assert_eq!(Small::FIELDS[2], Field { name: "l", width: 8 });
+        assert_eq!(Small::FIELDS[2], Field { name: "l", width: 8, elements: 2, fields: &[] });
     }
 
     proptest! {

@@ -67,6 +67,11 @@ impl Waves {
         Ok(Self { unit, writer, clock, signals, widths, cycle: 0, error: None })
     }
 
+    /// Cycles so far.
+    pub fn cycles(&self) -> u64 {
+        self.cycle
+    }
+
     /// Width of every signal by its path.
     pub fn widths(&self) -> &BTreeMap<String, u32> {
         &self.widths
