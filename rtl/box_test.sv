@@ -28,7 +28,7 @@ module box_test #(
   localparam int unsigned PRODUCT_W = CODE_W + D_W + 1;
   localparam int unsigned LIMIT_W = MOMENT_W - lod_pkg::BOX_SHIFT;
   localparam int unsigned PRODUCT_LATENCY = lod_pkg::multiplier_latency(CODE_W, D_W + 1);
-  localparam int unsigned WAIT = 1 + lod_pkg::ENTRY_DISTANCE_LATENCY - PRODUCT_LATENCY - 2;
+  localparam int unsigned WAIT = 1 + lod_pkg::ENTRY_DISTANCE_LATENCY - PRODUCT_LATENCY - 3;
   localparam int unsigned LATENCY = 1 + 1 + lod_pkg::ENTRY_DISTANCE_LATENCY + 1;
   if (lod_pkg::BOX_TEST_LATENCY != LATENCY) begin : g_illegal_latency
     $error("box_test: lod_pkg::BOX_TEST_LATENCY must be %0d", LATENCY);
@@ -122,7 +122,9 @@ module box_test #(
   // Against the limits.
   logic [2:0][LIMIT_W-1:0] limit_there, turned_there;
   logic                    ahead_there, slabs, slabs_q, valid_slabs, ready_slabs, slabs_last;
+  logic                    valid_passes, ready_passes;
   logic [5:0]              passes;
+  logic [6:0]              passes_q;
   pipe_delay #(.W(6 * LIMIT_W + 1), .STAGES(PRODUCT_LATENCY)) u_limits (
     .clk_i, .rst_ni, .valid_i(valid_near), .ready_o(), .data_i({limit_near, turned_near, ahead_near}),
     .valid_o(), .ready_i(ready_difference), .data_o({limit_there, turned_there, ahead_there})
@@ -134,9 +136,13 @@ module box_test #(
     assign bound     = k < 3 ? limit_there[k%3] : turned_there[k%3];
     assign passes[k] = value <= bound;
   end
-  assign slabs = ahead_there && passes == '1;
+  pipe_stage #(.W(7)) u_passes (
+    .clk_i, .rst_ni, .valid_i(valid_difference), .ready_o(ready_difference), .data_i({ahead_there, passes}),
+    .valid_o(valid_passes), .ready_i(ready_passes), .data_o(passes_q)
+  );
+  assign slabs = passes_q == '1;
   pipe_stage #(.W(1)) u_slabs (
-    .clk_i, .rst_ni, .valid_i(valid_difference), .ready_o(ready_difference), .data_i(slabs),
+    .clk_i, .rst_ni, .valid_i(valid_passes), .ready_o(ready_passes), .data_i(slabs),
     .valid_o(valid_slabs), .ready_i(ready_slabs), .data_o(slabs_q)
   );
   pipe_delay #(.W(1), .STAGES(WAIT)) u_wait (

@@ -20,7 +20,8 @@ module cone_tolerance (
   localparam int unsigned SHIFT_W = 6;
   // l slope: 52 bits signed; with the 53 bits unsigned of offset: 55 signed. offset + l 2^17: the same.
   localparam int unsigned SUM_W = 55;
-  localparam int unsigned PRODUCT_LATENCY = lod_pkg::multiplier_latency(L_W, SLOPE_W);
+  localparam int unsigned FACTOR_STAGES = 1;
+  localparam int unsigned PRODUCT_LATENCY = FACTOR_STAGES + lod_pkg::multiplier_latency(L_W, SLOPE_W);
   if (lod_pkg::CONE_TOLERANCE_LATENCY != PRODUCT_LATENCY + 4) begin : g_illegal_latency
     $error("cone_tolerance: lod_pkg::CONE_TOLERANCE_LATENCY must be %0d", PRODUCT_LATENCY + 4);
   end
@@ -28,7 +29,7 @@ module cone_tolerance (
   // l (slope - 2^17), and offset + l 2^17 beside it.
   logic signed [L_W+SLOPE_W-1:0] product;
   logic                          valid_product, ready_product;
-  multiplier #(.A_W(L_W), .B_W(SLOPE_W)) u_product (
+  multiplier #(.A_W(L_W), .B_W(SLOPE_W), .FACTOR_STAGES(FACTOR_STAGES)) u_product (
     .clk_i, .rst_ni, .valid_i, .ready_o, .a_i(l_i), .b_i({!cone_i.slope[SLOPE_W-1], cone_i.slope[SLOPE_W-2:0]}),
     .valid_o(valid_product), .ready_i(ready_product), .product_o(product)
   );

@@ -40,7 +40,7 @@ package lod_pkg;
   localparam int unsigned HIT_DIVIDE_LATENCY = 36;
   localparam int unsigned HIT_DIVIDE_INTERVAL = 36;
   localparam int unsigned HIT_SELECT_LATENCY = 3;
-  localparam int unsigned LOD_TEST_LATENCY = 24;
+  localparam int unsigned LOD_TEST_LATENCY = 25;
   localparam int unsigned NODE_ADDRESS_LATENCY = 2;
   localparam int unsigned RAY_SETUP_LATENCY = 22;
   localparam int unsigned RAY_SETUP_INTERVAL = 22;
@@ -53,7 +53,7 @@ package lod_pkg;
   localparam int unsigned ENTRY_DISTANCE_LATENCY = 5;  // part of the box tests
   localparam int unsigned EDGE_FUNCTION_LATENCY = 12;  // parts of tri_test
   localparam int unsigned TRI_DECIDE_LATENCY = 3;
-  localparam int unsigned CONE_TOLERANCE_LATENCY = 6;  // parts of lod_test
+  localparam int unsigned CONE_TOLERANCE_LATENCY = 7;  // parts of lod_test
   localparam int unsigned EDGE_OPENING_LATENCY = 9;
   localparam int unsigned CHILD_TEST_LATENCY = WIDEN_BOX_LATENCY + BOX_TEST_LATENCY + CHILD_SORT_LATENCY;
 

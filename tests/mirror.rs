@@ -328,3 +328,14 @@ fn names_of_modules_and_ports_follow_the_convention() {
     println!("{compared} ports of {} modules looked at", modules.len());
     assert!(modules.len() >= 20 && compared >= 200, "too little was found in rtl/");
 }
+
+#[test]
+fn the_readme_states_the_timings() {
+    let readme = std::fs::read_to_string(tb::root().join("README.md")).expect("README.md");
+    for block in rust_side().0 {
+        let start = format!("| `{}` |", block.name);
+        let row = readme.lines().find(|line| line.starts_with(&start)).unwrap_or_else(|| panic!("README.md has no row for {}", block.name));
+        let stated = format!("| {} | {} |", block.timing.latency, block.timing.interval);
+        assert!(row.ends_with(&stated), "README.md says of {}: {row}; it should end with {stated}", block.name);
+    }
+}

@@ -90,7 +90,7 @@ fn limits(input: &In, code: BoundCode, a: S<64>, b: S<64>) -> (Bound, U<34>) {
 
 impl Block for LodTest {
     const NAME: &'static str = "lod_test";
-    const TIMING: Timing = Timing::pipelined(24);
+    const TIMING: Timing = Timing::pipelined(25);
     type In = In;
     type Out = Out;
     #[inline(always)]

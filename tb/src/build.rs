@@ -1,10 +1,10 @@
 //! What to build: a top, its sources, parameters and options.
 
-use crate::sources::Sources;
+use crate::sources::{Sources, root};
 use crate::{Error, Model, compile};
 use lodray::block::Block;
 use std::fmt::Display;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 /// A model to be built. Two builds of equal content, parameters and options share one shared library, across tests and runs.
@@ -86,8 +86,18 @@ impl Build {
         }
     }
 
-    /// Builds it, or takes what an earlier build left, and loads it.
+    /// Builds it, or takes what an earlier build left, and loads it; with `LODRAY_NETLISTS`, that folder's netlist of it.
     pub fn model(&self) -> Result<Arc<Model>, Error> {
-        compile::model(self)
+        match (&self.files, std::env::var_os("LODRAY_NETLISTS")) {
+            (Files::Rtl(extra), Some(folder)) if extra.is_empty() => compile::model(&self.synthesised(&root().join(folder))),
+            _ => compile::model(self),
+        }
+    }
+
+    /// The netlist that a folder holds of it: the parameters are in the file's name (`tri_test-EDGES_PER_CYCLE=1.v`), and settled.
+    fn synthesised(&self, folder: &Path) -> Self {
+        let parameters: String = self.parameters.iter().map(|(name, value)| format!("-{name}={value}")).collect();
+        let file = folder.join(format!("{}{parameters}.v", self.top));
+        Self { parameters: Vec::new(), files: Files::Netlist(vec![file]), ..self.clone() }
     }
 }

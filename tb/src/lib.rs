@@ -5,8 +5,8 @@
 //! model with a [`Plan`] (free-running or stalled, a seed), and holds every bit, tag and cycle against the Rust block. [`Sim`]
 //! drives any top port by port and cycle by cycle.
 //!
-//! Environment: `LODRAY_VERILATOR` (another Verilator), `LODRAY_RTL` (another folder than `rtl/`), `LODRAY_SEED` (replays a seed),
-//! `LODRAY_WAVES=DIR` (waveforms of mismatches), `LODRAY_COVERAGE=DIR` (coverage data of every model).
+//! Environment: `LODRAY_VERILATOR` (another Verilator), `LODRAY_RTL` (another folder than `rtl/`), `LODRAY_NETLISTS=DIR` (synthesised
+//! netlists in place of the RTL), `LODRAY_SEED` (replays a seed), `LODRAY_WAVES=DIR` (waveforms of mismatches), `LODRAY_COVERAGE=DIR` (coverage data of every model).
 //!
 //! ```no_run
 //! use lodray::block::bound_decode::{BoundDecode, In};

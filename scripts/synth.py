@@ -1,0 +1,133 @@
+"""Size, depth and clock of every block, in generic gates and on a Lattice ECP5.
+
+Each step's result is kept under target/synth by the content that it depends on, so a run that was stopped goes on where it was, and only what changed is done
+again. One block's failure names itself and leaves the others alone.
+"""
+
+import argparse
+import concurrent.futures
+import os
+import sys
+
+from synthesis import blocks, check, ecp5, gates, report
+from synthesis.tools import Failure, Tools
+
+
+def main():
+    """Runs what the command line asks for."""
+    options = parse()
+    try:
+        tools = Tools()
+        wanted = blocks.chosen(options.block) or blocks.every()
+        figures, failures = Run(tools, options).all(wanted)
+        rows = [report.row(block.name, figures[block.name]) for block in wanted if block.name in figures]
+        print(report.plain(rows))
+        if options.paths:
+            print_paths(wanted, figures)
+        if options.check and not failures:
+            tested = [block for block in wanted if options.block or block.module in blocks.twins()]
+            for block in tested:
+                check.export(block, figures[block.name]["gates_at"])
+            check.run(tested)
+        if options.doc and not failures:
+            report.document(rows, tools.versions, options.seeds)
+    except Failure as why:
+        sys.exit(f"scripts/synth: {why}")
+    except KeyboardInterrupt:
+        sys.exit("scripts/synth: stopped; the next run goes on from here")
+    for name, why in failures.items():
+        print(f"scripts/synth: {name}: {why}", file=sys.stderr)
+    sys.exit(1 if failures else 0)
+
+
+def parse():
+    """The command line."""
+    parser = argparse.ArgumentParser(prog="scripts/synth", description=__doc__.split("\n", maxsplit=1)[0])
+    parser.add_argument("block", nargs="*", help="module of rtl/ (tri_test-EDGES_PER_CYCLE=1 gives a parameter); all blocks if none is named")
+    parser.add_argument("--seeds", type=int, default=3, metavar="N", help="place and route N times and take the median clock (default 3)")
+    parser.add_argument("--no-place", action="store_true", help="leave place and route out")
+    parser.add_argument("--no-gates", action="store_true", help="leave the generic gates out")
+    parser.add_argument("--paths", action="store_true", help="print the longest path of the slowest seed of each block")
+    parser.add_argument("--jobs", type=int, default=os.cpu_count(), metavar="N", help="tools at work at once (default: one per core)")
+    parser.add_argument("--check", action="store_true", help="write the netlists to target/synth/netlists and run the blocks' own tests on them")
+    parser.add_argument("--doc", action="store_true", help="write the table into docs/hardware.md")
+    options = parser.parse_args()
+    if options.seeds < 1 or options.jobs < 1:
+        parser.error("--seeds and --jobs must be at least 1")
+    if options.doc and (options.block or options.no_place or options.no_gates):
+        parser.error("--doc writes the whole table: name no block and leave nothing out")
+    if options.check and options.no_gates:
+        parser.error("--check needs the gates")
+    return options
+
+
+class Run:
+    """The steps of all blocks on a pool of threads, each of which waits for one tool at a time."""
+
+    def __init__(self, tools, options):
+        self.tools, self.options = tools, options
+        self.figures, self.failures, self.steps, self.done = {}, {}, {}, 0
+
+    def all(self, wanted):
+        """(figures by block, the failures' reasons by block)."""
+        with concurrent.futures.ThreadPoolExecutor(self.options.jobs) as pool:
+            for block in wanted:
+                self.figures[block.name] = {}
+                self.start(pool, block, "ecp5", ecp5.synthesise)
+                if not self.options.no_gates:
+                    self.start(pool, block, "gates", gates.synthesise)
+            try:
+                while self.steps:
+                    self.say()
+                    for step in concurrent.futures.wait(self.steps, return_when=concurrent.futures.FIRST_COMPLETED).done:
+                        self.finish(pool, step, *self.steps.pop(step))
+            except KeyboardInterrupt:
+                pool.shutdown(cancel_futures=True)
+                raise
+        self.say(end=True)
+        return self.figures, self.failures
+
+    def start(self, pool, block, kind, work, *arguments):
+        """Queues a step."""
+        self.steps[pool.submit(work, block, *arguments, self.tools)] = (block, kind)
+
+    def finish(self, pool, step, block, kind):
+        """Takes a step's result; placement follows the FPGA's synthesis."""
+        self.done += 1
+        figures = self.figures[block.name]
+        try:
+            result = step.result()
+        except Failure as why:
+            self.failures.setdefault(block.name, f"{kind}: {why}")
+            return
+        if kind == "place":
+            figures["placed"] = sorted([*figures.get("placed", []), result], key=lambda placed: placed["mhz"])
+            figures["mhz"] = [placed["mhz"] for placed in figures["placed"]]
+            return
+        figures[kind], figures[f"{kind}_at"] = result
+        if kind == "ecp5" and not self.options.no_place:
+            if not ecp5.fits(result[0]):
+                figures["mhz"] = "does not fit"
+                return
+            for seed in range(1, self.options.seeds + 1):
+                self.start(pool, block, "place", ecp5.place, result[1], seed)
+
+    def say(self, end=False):
+        """Progress, on a terminal only."""
+        if sys.stderr.isatty():
+            names = sorted({block.name for block, _ in self.steps.values()})
+            line = "" if end else f"{self.done} of {self.done + len(self.steps)} steps, to do: {', '.join(names)}"
+            print(f"\r\x1b[K{line[:150]}", end="", file=sys.stderr, flush=True)
+
+
+def print_paths(wanted, figures):
+    """The longest path of each block's slowest seed."""
+    for block in wanted:
+        for placed in figures[block.name].get("placed", [])[:1]:
+            print(f"\n{block.name}: {placed['mhz']} MHz")
+            for kind, delay, cell in placed["path"]:
+                print(f"  {kind:8} {delay:6.2f} ns  {cell}")
+
+
+if __name__ == "__main__":
+    main()

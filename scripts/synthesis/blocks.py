@@ -1,0 +1,72 @@
+"""The blocks: which there are, with which parameters, and the files that each is made of."""
+
+import dataclasses
+import re
+
+from .tools import ROOT, Failure
+
+RTL = ROOT / "rtl"
+PACKAGE = "lod_pkg"
+
+# Blocks are the modules with a twin in src/block; of these, some come in several forms.
+FORMS = {"tri_test": [{}, {"EDGES_PER_CYCLE": 1}]}
+# Modules without a twin there that are worth a row.
+FURTHER = ["edge_function", "traversal_stack"]
+
+
+@dataclasses.dataclass(frozen=True)
+class Block:
+    """A module with its parameters."""
+
+    module: str
+    parameters: tuple = ()
+
+    @property
+    def name(self):
+        """Its name in tables, on the command line and in file names."""
+        return "-".join([self.module, *(f"{name}={value}" for name, value in self.parameters)])
+
+    def sources(self):
+        """Its files, the package first, then by name: the closure of the modules named in them (a file bears its module's name)."""
+        known = {path.stem: path for path in RTL.glob("*.sv")}
+        if self.module not in known:
+            raise Failure(f"rtl/{self.module}.sv is missing")
+        needed, waiting = set(), [PACKAGE, self.module]
+        while waiting:
+            name = waiting.pop()
+            if name not in needed:
+                needed.add(name)
+                code = re.sub(r"//.*", "", known[name].read_text(encoding="utf-8"))
+                waiting += [word for word in set(re.findall(r"\w+", code)) if word in known]
+        return [known[name].relative_to(ROOT) for name in [PACKAGE, *sorted(needed - {PACKAGE})]]
+
+    def ingredients(self):
+        """All that its synthesis depends on but for the tools."""
+        return {"module": self.module, "parameters": self.parameters, "sources": {str(path): (ROOT / path).read_text(encoding="utf-8") for path in self.sources()}}
+
+    def read(self):
+        """Yosys commands that read it and make it the top, under its module's name."""
+        files = " ".join(map(str, self.sources()))
+        parameters = " ".join(f"-chparam {name} {value}" for name, value in self.parameters)
+        return [f"read_verilog -sv {files}", f"hierarchy -check -top {self.module} {parameters}", f"rename -top {self.module}"]
+
+
+def twins():
+    """The modules with a Rust twin."""
+    return sorted(path.stem for path in (ROOT / "src/block").glob("*.rs") if path.stem != "mod")
+
+
+def every():
+    """Every block."""
+    return [Block(name, tuple(form.items())) for name in twins() + FURTHER for form in FORMS.get(name, [{}])]
+
+
+def chosen(names):
+    """The blocks of these names: a module's name means all its forms; any module of rtl/ will do."""
+    found = []
+    for name in names:
+        known = [block for block in every() if name in (block.module, block.name)]
+        module, *parameters = name.split("-")
+        exact = [block for block in known if block.name == name and block.parameters]
+        found += exact or known or [Block(module, tuple(tuple(given.split("=", 1)) for given in parameters))]
+    return found

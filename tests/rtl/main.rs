@@ -1,0 +1,24 @@
+//! Every block of `rtl/` against its Rust twin, at its ports: bit for bit, free-running and with random stalls on both sides.
+//!
+//! A million transactions a block and mode; `LODRAY_TRANSACTIONS` sets another number, `LODRAY_SEED` replays a seed. Each file here has the legal inputs of its
+//! block by named category, and promises of what must have happened among them.
+
+mod bary_map;
+mod bound_decode;
+mod box_test;
+mod box_test32;
+mod child_sort;
+mod child_test;
+mod draw;
+mod hit_divide;
+mod hit_select;
+mod lod_test;
+mod node_address;
+mod queues;
+mod ray_setup;
+mod suite;
+mod tessellate;
+mod traversal_stack;
+mod tree_base;
+mod tri_test;
+mod widen_box;
