@@ -109,7 +109,11 @@ fn rtl_equals_rust() {
             }),
             ("h = 2D exactly", |i, o| {
                 let h = BoundDecode::eval(&bound_decode::In { code: i.e0, scale: i.scale }).h.get();
-                i.ray.cone.slope.get() == 0 && i.ray.cone.shift.get() == 0 && h > 0 && h == 2 * i.ray.cone.offset.get() && o.s0.get() == S_ONE
+                i.ray.cone.slope.get() == 0
+                    && i.ray.cone.shift.get() == 0
+                    && h > 0
+                    && h == 2 * i.ray.cone.offset.get()
+                    && o.s0.get() == S_ONE
             }),
             ("D = 0 and h = 0", |i, o| i.ray.cone == flat_cone(0) && i.e1.get() == 0 && o.s1.get() == 0 && o.refine),
             ("a corner at the origin", |i, o| i.p0 == i.ray.origin && o.refine),

@@ -19,8 +19,13 @@ pub struct Suite<B: Block> {
     pub promises: Vec<Promise<B>>,
 }
 
+/// Ends a test in one line.
+pub fn fail<T>(error: tb::Error) -> T {
+    panic!("{error}")
+}
+
 /// Transactions a block and mode.
-fn transactions() -> u64 {
+pub fn transactions() -> u64 {
     match std::env::var("LODRAY_TRANSACTIONS") {
         Ok(value) => value.parse().unwrap_or_else(|_| panic!("LODRAY_TRANSACTIONS={value} is not a number")),
         Err(_) => 1_000_000,
@@ -39,13 +44,13 @@ where
 
     /// Runs both modes; what fails is told in one line.
     pub fn run(&self) {
-        let seed = tb::seed(0x10d_4a75).unwrap_or_else(|error| panic!("{error}"));
+        let seed = tb::seed(0x10d_4a75).unwrap_or_else(fail);
         let count = transactions();
         self.keep_promises(seed, count.min(20_000 * self.categories.len() as u64));
         for mode in [Mode::Free, Mode::Stalled] {
             let start = std::time::Instant::now();
             let plan = Plan::new(mode, seed).timing(self.timing);
-            let report = check_block::<B>(&self.build, &plan, self.inputs(seed, count)).unwrap_or_else(|error| panic!("{error}"));
+            let report = check_block::<B>(&self.build, &plan, self.inputs(seed, count)).unwrap_or_else(fail);
             let rate = report.transactions as f64 / start.elapsed().as_secs_f64() / 1e6;
             println!("{} {mode:?}: {report:?}, {rate:.2} M/s with what was left to build", self.build.top());
             assert_eq!(report.transactions, count);

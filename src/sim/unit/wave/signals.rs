@@ -1,13 +1,13 @@
 //! The signals of the waveform: names, widths and values, in one walk over the unit.
 
-use crate::block::{Block, hit_select, node_address, tessellate};
-use crate::num::{BitVec, U, Wire};
-use crate::sim::ports::{HitOut, MemoryAnswer, MemoryRequest};
+use crate::block::{Block, child_test, hit_select, lod_test, node_address, tessellate};
+use crate::num::{BitVec, Layout, U, Wire};
+use crate::sim::ports::{HitOut, MemoryAnswer, MemoryRequest, RayIn, SceneConfig};
 use crate::sim::unit::context::Context;
 use crate::sim::unit::register::Pipeline;
 use crate::sim::unit::wires::{Link, Wires};
 use crate::sim::unit::{Inputs, TraversalUnit};
-use crate::traverse::STACK_ENTRIES;
+use crate::traverse::{Entry, STACK_ENTRIES};
 use vcd::Value;
 
 /// Bits of a signal, the most significant first.
@@ -72,6 +72,32 @@ pub trait Visitor {
     fn signal(&mut self, name: &str, value: Vector);
 }
 
+/// A signal of type `T`: as in the RTL's waveforms a struct is a scope of its fields, and an array its elements, unless they are single bits.
+fn typed<T: Wire>(to: &mut impl Visitor, name: &str, value: &Vector) {
+    descend(to, name, T::LAYOUT, &value.0);
+}
+
+fn descend(to: &mut impl Visitor, name: &str, layout: Layout, bits: &[Value]) {
+    match layout {
+        Layout::Struct(fields) => {
+            to.enter(name);
+            let mut rest = bits;
+            for field in fields {
+                let (value, behind) = rest.split_at(field.width as usize);
+                descend(to, field.name, field.layout, value);
+                rest = behind;
+            }
+            to.leave();
+        }
+        Layout::Array(elements) if bits.len() > elements as usize => {
+            for (k, value) in bits.chunks(bits.len() / elements as usize).rev().enumerate() {
+                to.signal(&format!("{name}[{k}]"), Vector(value.to_vec()));
+            }
+        }
+        _ => to.signal(name, Vector(bits.to_vec())),
+    }
+}
+
 /// Width of a counter from 0 to `most`.
 fn counter_width(most: usize) -> u32 {
     usize::BITS - most.leading_zeros()
@@ -82,21 +108,21 @@ pub fn walk(unit: &TraversalUnit, inputs: &Inputs, wires: &Wires, to: &mut impl 
     let outputs = unit.outputs();
     to.enter("traversal_unit");
     to.signal("rst_ni", Vector::flag(true));
-    to.signal("scene_i", Vector::of(&unit.scene));
+    typed::<SceneConfig>(to, "scene_i", &Vector::of(&unit.scene));
     to.signal("valid_i", Vector::flag(inputs.ray.is_some()));
     to.signal("ready_o", Vector::flag(outputs.ready));
-    to.signal("in_i", Vector::offer(inputs.ray.as_ref()));
+    typed::<RayIn>(to, "in_i", &Vector::offer(inputs.ray.as_ref()));
     to.signal("valid_o", Vector::flag(outputs.hit.is_some()));
     to.signal("ready_i", Vector::flag(inputs.hit_ready));
-    to.signal("out_o", Vector::register::<HitOut>(unit.hit.data()));
+    typed::<HitOut>(to, "out_o", &Vector::register(unit.hit.data()));
     to.signal("mem_valid_o", Vector::flag(outputs.mem.is_some()));
     to.signal("mem_ready_i", Vector::flag(inputs.mem_ready));
     let request = |(out, tag): (node_address::Out, u16)| MemoryRequest { tag: U::new(tag.into()), address: out.address };
     let (address, tag) = unit.node_address.shown();
-    to.signal("mem_o", Vector::register(address.zip(tag).map(request)));
+    typed::<MemoryRequest>(to, "mem_o", &Vector::register(address.zip(tag).map(request)));
     to.signal("mem_valid_i", Vector::flag(inputs.answer.is_some()));
     to.signal("mem_ready_o", Vector::flag(true));
-    to.signal("mem_i", Vector::offer::<MemoryAnswer>(inputs.answer.as_ref()));
+    typed::<MemoryAnswer>(to, "mem_i", &Vector::offer(inputs.answer.as_ref()));
 
     for (k, context) in unit.contexts.iter().enumerate() {
         to.enter(&format!("g_context[{k}]"));
@@ -109,7 +135,7 @@ pub fn walk(unit: &TraversalUnit, inputs: &Inputs, wires: &Wires, to: &mut impl 
     block(to, &unit.ray_setup, &wires.setup, 6);
     block_waiting(to, &unit.node_address, &wires.fetch, 8, inputs.mem_ready);
     block(to, &unit.tree_base, &wires.base, 6);
-    child_test(to, unit, wires);
+    children(to, unit, wires);
     block(to, &unit.lod_test, &wires.lod, 6);
     block(to, &unit.tessellate, &wires.morph, 6);
     block(to, &unit.tri_test, &wires.tri, 8);
@@ -117,7 +143,7 @@ pub fn walk(unit: &TraversalUnit, inputs: &Inputs, wires: &Wires, to: &mut impl 
     to.signal("len_q", Vector::number(unit.queue.len() as u64, counter_width(4 * unit.contexts.len())));
     to.leave();
     block(to, &unit.hit_divide, &wires.divide, 10);
-    hit_select(to, unit, wires);
+    comparison(to, unit, wires);
     block(to, &unit.bary_map, &wires.map, 6);
     to.leave();
 }
@@ -126,16 +152,16 @@ pub fn walk(unit: &TraversalUnit, inputs: &Inputs, wires: &Wires, to: &mut impl 
 fn context_signals(c: &Context, to: &mut impl Visitor) {
     to.signal("state_q", Vector::number(c.state as u64, 5));
     to.signal("fetch_q", c.fetch.known().map_or(Vector::unknown(2), |fetch| Vector::number(fetch as u64, 2)));
-    to.signal("entry_q", Vector::register(c.entry.known()));
+    typed::<Entry>(to, "entry_q", &Vector::register(c.entry.known()));
     to.signal("tree_q", Vector::register(c.tree.known()));
     to.signal("level_q", Vector::register(c.level.known()));
     to.signal("node_q", Vector::register(c.node.known()));
-    to.signal("lod_q", Vector::register(c.lod.known()));
+    typed::<lod_test::Out>(to, "lod_q", &Vector::register(c.lod.known()));
     to.signal("want_q", Vector::number(c.want.into(), 3));
     to.signal("waiting_q", Vector::number(c.waiting.into(), 3));
     to.signal("base_want_q", Vector::flag(c.base_want));
     to.signal("base_ready_q", Vector::register(c.base_ready.known()));
-    to.signal("sorted_q", Vector::register(c.sorted.known()));
+    typed::<child_test::Out>(to, "sorted_q", &Vector::register(c.sorted.known()));
     to.signal("count_q", Vector::register(c.count.known()));
     to.signal("four_q", Vector::register(c.four.known()));
     to.signal("left_q", Vector::register(c.left.known()));
@@ -176,18 +202,18 @@ where
     to.enter(&format!("u_{}", B::NAME));
     to.signal("valid_i", Vector::flag(link.input.is_some()));
     to.signal("ready_o", Vector::flag(link.ready));
-    to.signal("in_i", input);
+    typed::<B::In>(to, "in_i", &input);
     to.signal("tag_i", tag);
     to.signal("valid_o", Vector::flag(pipeline.offered().is_some()));
     to.signal("ready_i", Vector::flag(consumer_ready));
     let (out, tag) = pipeline.shown();
-    to.signal("out_o", Vector::register(out));
+    typed::<B::Out>(to, "out_o", &Vector::register(out));
     to.signal("tag_o", tag.map_or(Vector::unknown(tag_width), |tag| Vector::number(tag.into(), tag_width)));
     to.leave();
 }
 
 /// `child_test` sees the triangle's registers even where it does not use them: before the first tree they are unknown.
-fn child_test(to: &mut impl Visitor, unit: &TraversalUnit, wires: &Wires) {
+fn children(to: &mut impl Visitor, unit: &TraversalUnit, wires: &Wires) {
     const CORNERS: u32 = tessellate::Out::WIDTH;
     let link = &wires.child;
     let mut input = Vector::offer(link.input.as_ref().map(|(input, _)| input));
@@ -205,7 +231,7 @@ fn child_test(to: &mut impl Visitor, unit: &TraversalUnit, wires: &Wires) {
 }
 
 /// `hit_select` sees the owner of the last division, and an id that is unknown before the first hit.
-fn hit_select(to: &mut impl Visitor, unit: &TraversalUnit, wires: &Wires) {
+fn comparison(to: &mut impl Visitor, unit: &TraversalUnit, wires: &Wires) {
     let link = &wires.select;
     let mut input = Vector::offer(link.input.as_ref().map(|(input, _)| input));
     if let Some((_, owner)) = &link.input

@@ -1,96 +1,22 @@
 //! The RTL of the traversal unit beside its cycle model in one environment: every port compared in every cycle, every hit against the golden
 //! traverser's. `LODRAY_CYCLES` asks for that many cycles (default 1 million), `LODRAY_SEED` for another seed.
 
+mod port;
+mod wave;
+
 use lodray::format::Scene;
 use lodray::golden::exact::Exact;
 use lodray::mesh::Hierarchy;
 use lodray::mesh::procedural::{self, Options};
-use lodray::num::{Ray, Wire};
+use lodray::num::Ray;
 use lodray::render::{Camera, View};
-use lodray::sim::ports::{HitOut, MemoryAnswer, MemoryRequest, RayIn, SceneConfig};
+use lodray::sim::ports::HitOut;
 use lodray::sim::unit::environment::{RunReport, UnitPort, run};
 use lodray::sim::unit::{EdgesPerCycle, Inputs, Latency, Outputs, SceneMemory, Stall, Traffic, TraversalUnit, UnitConfig};
 use lodray::traverse::{LodImage, ModelSpace};
 use lodray_test_support::models::{Rng, any_rays, ball, build, scene_of, terrain};
 use lodray_test_support::plain::plain;
-use std::sync::Arc;
-use tb::{Build, Direction, Model, PortId, Sim};
-
-/// The RTL with these parameters; `cargo test` compiles each once.
-fn model(config: UnitConfig) -> Arc<Model> {
-    let edges = match config.edges_per_cycle {
-        EdgesPerCycle::One => 1,
-        EdgesPerCycle::Three => 3,
-    };
-    let build = Build::rtl("traversal_unit").parameter("CONTEXTS", config.contexts).parameter("EDGES_PER_CYCLE", edges);
-    // The waveform's test needs the unit of one context too.
-    let build = if config == UnitConfig::one_context() { build.trace() } else { build };
-    build.model().unwrap_or_else(|error| panic!("{error}"))
-}
-
-/// The RTL's ports.
-struct Rtl {
-    sim: Sim,
-    ready: PortId,
-    hit: (PortId, PortId),
-    mem: (PortId, PortId),
-    ray_in: (PortId, PortId),
-    hit_ready: PortId,
-    mem_ready: PortId,
-    answer: (PortId, PortId),
-}
-
-impl Rtl {
-    /// A simulation behind its reset.
-    fn new(config: UnitConfig, scene: &SceneConfig, seed: u64) -> Self {
-        let mut sim = Sim::new(&model(config), seed);
-        let port = |sim: &Sim, name, width, direction| sim.port(name, width, direction).unwrap_or_else(|error| panic!("{error}"));
-        let input = |sim: &Sim, name, width| port(sim, name, width, Direction::In);
-        let output = |sim: &Sim, name, width| port(sim, name, width, Direction::Out);
-        let mut rtl = Self {
-            ready: output(&sim, "ready_o", 1),
-            hit: (output(&sim, "valid_o", 1), output(&sim, "out_o", HitOut::WIDTH)),
-            mem: (output(&sim, "mem_valid_o", 1), output(&sim, "mem_o", MemoryRequest::WIDTH)),
-            ray_in: (input(&sim, "valid_i", 1), input(&sim, "in_i", RayIn::WIDTH)),
-            hit_ready: input(&sim, "ready_i", 1),
-            mem_ready: input(&sim, "mem_ready_i", 1),
-            answer: (input(&sim, "mem_valid_i", 1), input(&sim, "mem_i", MemoryAnswer::WIDTH)),
-            sim: {
-                let (reset, scene_i) = (input(&sim, "rst_ni", 1), input(&sim, "scene_i", SceneConfig::WIDTH));
-                sim.poke(scene_i, scene);
-                sim.poke(reset, &false);
-                (0..2).for_each(|_| sim.clock());
-                sim.poke(reset, &true);
-                sim
-            },
-        };
-        rtl.sim.eval();
-        rtl
-    }
-}
-
-impl UnitPort for Rtl {
-    fn outputs(&mut self) -> Outputs {
-        // All of them come from registers, so they stand before the inputs of this cycle.
-        let hit = if self.sim.peek(self.hit.0) { Some(self.sim.peek(self.hit.1)) } else { None };
-        let mem = if self.sim.peek(self.mem.0) { Some(self.sim.peek(self.mem.1)) } else { None };
-        Outputs { ready: self.sim.peek(self.ready), hit, mem }
-    }
-
-    fn tick(&mut self, inputs: &Inputs) {
-        self.sim.poke(self.ray_in.0, &inputs.ray.is_some());
-        self.sim.poke(self.ray_in.1, &inputs.ray.unwrap_or_default());
-        self.sim.poke(self.hit_ready, &inputs.hit_ready);
-        self.sim.poke(self.mem_ready, &inputs.mem_ready);
-        self.sim.poke(self.answer.0, &inputs.answer.is_some());
-        self.sim.poke(self.answer.1, &inputs.answer.unwrap_or_default());
-        self.sim.clock();
-    }
-
-    fn describe(&mut self) -> String {
-        "(the RTL)".to_owned()
-    }
-}
+use port::Rtl;
 
 /// Model and RTL with the same inputs.
 struct SideBySide {

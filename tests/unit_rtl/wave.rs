@@ -1,0 +1,109 @@
+//! One ray's waveform from the model and from the RTL: equal in every signal of the model's, in every cycle.
+
+use crate::port::{RESET, Rtl};
+use lodray::num::Ray;
+use lodray::sim::unit::wave::{PERIOD, Waves, one_ray};
+use lodray::sim::unit::{SceneMemory, TraversalUnit, UnitConfig};
+use lodray::traverse::LodImage;
+use lodray_test_support::models::{any_rays, ball, scene_of, terrain};
+use std::collections::BTreeMap;
+use std::io::BufReader;
+use vcd::{Command, IdCode, Parser, ScopeItem, Value};
+
+/// Values of every signal by path, one per cycle.
+struct Waveform(BTreeMap<String, Vec<Vec<Value>>>);
+
+fn paths(items: &[ScopeItem], within: &str, to: &mut Vec<(String, IdCode, usize)>) {
+    for item in items {
+        match item {
+            ScopeItem::Var(var) => to.push((format!("{within}{}", var.reference), var.code, var.size as usize)),
+            ScopeItem::Scope(scope) => paths(&scope.items, &format!("{within}{}.", scope.identifier), to),
+            _ => (),
+        }
+    }
+}
+
+impl Waveform {
+    /// Reads the signals that are `wanted`; cycle c is what stands at the end of its time from `PERIOD` (c + `first`) on.
+    fn read(bytes: &[u8], first: u64, cycles: u64, wanted: impl Fn(&str) -> bool) -> Self {
+        let mut parser = Parser::new(BufReader::new(bytes));
+        let header = parser.parse_header().expect("a VCD header");
+        let mut signals = Vec::new();
+        paths(&header.items, "", &mut signals);
+        signals.retain(|(path, ..)| wanted(path));
+        let widths: BTreeMap<IdCode, usize> = signals.iter().map(|(_, code, width)| (*code, *width)).collect();
+        let mut now: BTreeMap<IdCode, Vec<Value>> = widths.iter().map(|(code, width)| (*code, vec![Value::X; *width])).collect();
+        let mut all: BTreeMap<IdCode, Vec<Vec<Value>>> = BTreeMap::new();
+        let mut taken = 0;
+        for command in parser {
+            match command.expect("a VCD command") {
+                Command::Timestamp(time) => {
+                    // All changes before this time are in `now`.
+                    while taken < cycles && time >= PERIOD * (first + taken + 1) {
+                        now.iter().for_each(|(code, value)| all.entry(*code).or_default().push(value.clone()));
+                        taken += 1;
+                    }
+                }
+                Command::ChangeScalar(code, value) if now.contains_key(&code) => {
+                    now.insert(code, vec![value]);
+                }
+                Command::ChangeVector(code, vector) if now.contains_key(&code) => {
+                    let bits: Vec<Value> = vector.iter().collect();
+                    // A vector may come without its leading zeros.
+                    let fill = if bits.first() == Some(&Value::X) { Value::X } else { Value::V0 };
+                    let missing = widths[&code] - bits.len();
+                    now.insert(code, [vec![fill; missing], bits].concat());
+                }
+                _ => (),
+            }
+        }
+        assert_eq!(taken, cycles, "the waveform ends early");
+        Self(signals.into_iter().map(|(path, code, _)| (path, all[&code].clone())).collect())
+    }
+}
+
+/// Compares the waveforms of one ray; gives signals, cycles and bits compared.
+fn compare(memory: &SceneMemory<'_>, latency: u32, ray: &Ray, seed: u64) -> (usize, u64, u64) {
+    let config = UnitConfig::one_context();
+    let mut model = Waves::new(TraversalUnit::new(config, memory.config())).expect("a waveform");
+    let expected = one_ray(&mut model, memory, latency, ray).expect("a ray");
+    let cycles = model.cycles();
+    let model = Waveform::read(&model.finish().expect("a waveform"), 0, cycles, |path| !path.ends_with("clk_i"));
+
+    let folder = tempfile::tempdir().expect("a folder");
+    let path = folder.path().join("ray.vcd");
+    let mut rtl = Rtl::new(config, &memory.config(), seed);
+    rtl.sim.open_vcd(&path).expect("a waveform");
+    assert_eq!(one_ray(&mut rtl, memory, latency, ray).expect("a ray"), expected);
+    rtl.sim.clock();
+    rtl.sim.close_vcd();
+    let rtl = Waveform::read(&std::fs::read(&path).expect("a waveform"), RESET, cycles, |path| model.0.contains_key(path));
+
+    let mut bits = 0;
+    for (signal, values) in &model.0 {
+        let other = rtl.0.get(signal).unwrap_or_else(|| panic!("the RTL has no signal {signal}"));
+        for (cycle, (a, b)) in values.iter().zip(other).enumerate() {
+            assert_eq!(a.len(), b.len(), "{signal}");
+            let same = a.iter().zip(b).all(|(a, b)| *a == Value::X || a == b);
+            let text = |v: &[Value]| v.iter().map(ToString::to_string).collect::<String>();
+            assert!(same, "{signal}, cycle {cycle}, seed {seed}:\nmodel {}\nRTL   {}", text(a), text(b));
+            bits += a.iter().filter(|v| **v != Value::X).count() as u64;
+        }
+    }
+    (model.0.len(), cycles, bits)
+}
+
+#[test]
+fn the_waveforms_of_model_and_rtl_are_equal() {
+    let (mut signals, mut cycles, mut bits) = (0, 0, 0);
+    for (number, h) in [ball(4, 0.4, 1), terrain(2, 2, 0.4, 2), ball(0, 0.4, 3)].iter().enumerate() {
+        let scene = scene_of(h);
+        let memory = SceneMemory::new(LodImage::of(&scene), 0);
+        for ray in any_rays(h, 8, number as u64) {
+            let (s, c, b) = compare(&memory, 17, &ray, number as u64 + 1);
+            (signals, cycles, bits) = (s, cycles + c, bits + b);
+        }
+    }
+    println!("{signals} signals, {cycles} cycles, {bits} bits compared");
+    assert!(bits > 1_000_000);
+}
