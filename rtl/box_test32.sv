@@ -1,20 +1,20 @@
 /// Ray against one box of 32-bit coordinates: the full-precision variant of `box_test`. Twin of src/block/box_test32.rs (paper section 6.1).
 ///
 /// With axes mirrored so that d >= 0 and sides relative to the origin: hit iff near_i d_j <= far_j d_i for all i != j and far_j >= 0.
-/// `t_near` from floor(near_i / 2^16). Legal: |v| < 2^31, lo <= hi; constants from `ray_setup`. Latency BOX_TEST32_LATENCY; interval 1. 48 multipliers for the planes, 6 for t_near.
+/// `t_near` from floor(near_i / 2^16). Legal: |v| < 2^31, lo <= hi; constants from `ray_setup`. Latency BOX_TEST32_LATENCY; interval 1. 48 multipliers for the planes, 3 for t_near.
 module box_test32 #(
   parameter int unsigned TAG_W = 8
 ) (
-  input  logic                   clk_i,
-  input  logic                   rst_ni,
-  input  logic                   valid_i,
-  output logic                   ready_o,
-  input  lod_pkg::box_test32_in_t  in_i,
-  input  logic [TAG_W-1:0]       tag_i,
-  output logic                   valid_o,
-  input  logic                   ready_i,
-  output lod_pkg::box_test_out_t out_o,
-  output logic [TAG_W-1:0]       tag_o
+  input  logic                    clk_i,
+  input  logic                    rst_ni,
+  input  logic                    valid_i,
+  output logic                    ready_o,
+  input  lod_pkg::box_test32_in_t in_i,
+  input  logic [TAG_W-1:0]        tag_i,
+  output logic                    valid_o,
+  input  logic                    ready_i,
+  output lod_pkg::box_test_out_t  out_o,
+  output logic [TAG_W-1:0]        tag_o
 );
 
   localparam int unsigned W = lod_pkg::POINT_W / 3;
