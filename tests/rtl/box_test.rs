@@ -67,6 +67,7 @@ fn suite() -> Suite<BoxTest> {
             Is::often("t_max at the entry", |d| ends(d, 0), |i, o| o.hit && o.t_near.get() << T_NEAR_TO_T_SHIFT == i.t_max.get()),
             Is::often("t_max one step before the entry", |d| ends(d, -1), |_, o| !o.hit),
             Is::often("saturated distance", |d| open(boxes::short::<SHIFT>(d)), |_, o| o.hit && o.t_near == TNear::MAX),
+            Is::often("a few steps ahead", |d| open(boxes::near::<SHIFT>(d)), |_, o| o.hit && (1..9).contains(&o.t_near.get())),
             Is::any("extremes", |d| open(boxes::extreme::<SHIFT>(d))),
         ],
         vec![

@@ -133,7 +133,7 @@ pub fn ahead<const SHIFT: u32>(draw: &mut Draw) -> Meeting {
     let direction = draw.full_direction();
     let (lo, hi) = corners::<SHIFT>(draw, DIRECTION_MAX, 0);
     let target = of_box(draw, lo, hi);
-    Meeting { origin: draw.afar_of(target, direction), direction, lo, hi }
+    Meeting { origin: draw.afar(target, direction), direction, lo, hi }
 }
 
 /// A box behind the origin: where the ray goes on some axis, the box ends before.
@@ -150,6 +150,16 @@ pub fn short<const SHIFT: u32>(draw: &mut Draw) -> Meeting {
     let d = direction([0; 3].map(|_| draw.between(-3, 3)));
     let d = if d == Direction::default() { Direction::new(1, 0, 0) } else { d };
     aimed::<SHIFT>(draw, d, 0)
+}
+
+/// A small box a few steps of 2^16 units ahead.
+pub fn near<const SHIFT: u32>(draw: &mut Draw) -> Meeting {
+    let target = [0; 3].map(|_| draw.between(-16000, 16000) << 16);
+    let (d, distance) = (draw.full_direction(), draw.between(0, 8));
+    // (2^30 distance) / 2^14: distance steps.
+    let origin = point([0, 1, 2].map(|k| target[k] - ((d.get()[k] * distance) >> 14)));
+    let size = 1 << draw.between(0, 2);
+    Meeting { origin, direction: d, lo: target, hi: target.map(|v| v + (size << 16)) }
 }
 
 /// No direction, or the longest one; the largest box, or one in a corner of the range; origins in corners.

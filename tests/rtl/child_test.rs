@@ -59,6 +59,20 @@ fn crowded(draw: &mut Draw, widen: bool) -> In {
     In { ray, t_max: RayT::MAX, present: [0; 4].map(|_| !draw.once_in(8)), bounds, widen, p0, p1, p2, q0, q1, q2 }
 }
 
+/// A quarter of space each: distances that widening turns around.
+fn quarters(draw: &mut Draw) -> In {
+    let input = crowded(draw, true);
+    let size = 1 << draw.between(20, 28);
+    let centre = [0; 3].map(|_| draw.between(-(1 << 29), 1 << 29));
+    let bounds = [0; 4].map(|_| {
+        let a = near(draw, centre, size);
+        around(a, near(draw, a.get(), size / 4))
+    });
+    let [p0, p1, p2, q0, q1, q2] = [0; 6].map(|_| near(draw, centre, 2 * size));
+    let d = draw.full_direction();
+    In { ray: setup(draw.afar(centre, d), d), present: [true; 4], bounds, p0, p1, p2, q0, q1, q2, ..input }
+}
+
 /// Four times the same box, ahead of the ray.
 fn equal(draw: &mut Draw) -> In {
     let input = crowded(draw, false);
@@ -68,7 +82,7 @@ fn equal(draw: &mut Draw) -> In {
     let d = draw.full_direction();
     let codes = |v: [i64; 3]| v.map(|c| c as i16); // 16 bits
     let bounds = [Box16::from_codes(codes(lo), codes(hi)); 4];
-    In { ray: setup(draw.afar_of(target, d), d), present: [true; 4], bounds, ..input }
+    In { ray: setup(draw.afar(target, d), d), present: [true; 4], bounds, ..input }
 }
 
 /// The origin in all boxes.
@@ -131,6 +145,7 @@ fn suite() -> Suite<ChildTest> {
             Is::any("random", random),
             Is::often("children of a quad-BVH node", |d| crowded(d, false), |_, o| o.count.get() > 0),
             Is::often("children of a tree's node", |d| crowded(d, true), |_, o| o.count.get() > 0),
+            Is::often("boxes beside triangles", quarters, |i, o| o.count.get() > unwidened(i).count.get()),
             Is::often("equal t_near", equal, |_, o| {
                 o.count.get() == 4 && o.t_near == [o.t_near[0]; 4] && o.order.map(U::get) == [0, 1, 2, 3]
             }),

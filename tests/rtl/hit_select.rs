@@ -44,6 +44,11 @@ fn relative(draw: &mut Draw) -> In {
     In { known: true, best_t: input.t, best_id: U::new(input.tree.get() << (2 * levels)), node: U::ZERO, level: U::new(level), ..input }
 }
 
+/// The last triangle of all.
+fn last(draw: &mut Draw) -> In {
+    In { levels: U::new(10), level: U::new(10), tree: U::MAX, node: U::MAX, ..random(draw) }
+}
+
 fn legal(i: &In) -> bool {
     i.levels.get() <= 10 && i.level <= i.levels && i.node.get() < 1 << (2 * i.level.get())
 }
@@ -61,11 +66,11 @@ fn suite() -> Suite<HitSelect> {
             Is::all("equal t, smaller id so far", |d| near(d, 0, -1), |_, o| !o.closer),
             Is::all("t one step smaller, smaller id so far", |d| near(d, 1, -1), |_, o| o.closer),
             Is::all("t one step larger, larger id so far", |d| near(d, -1, 1), |_, o| !o.closer),
+            Is::all("the largest id", last, |_, o| o.id == U::MAX),
             Is::all("the same triangle on another level", relative, |i, o| i.best_id == o.id && !o.closer),
         ],
         vec![
             ("smaller id at equal t", |i, o| i.known && i.t == i.best_t && o.closer),
-            ("the largest id", |_, o| o.id == U::MAX),
             ("the largest t", |i, o| i.t == U::MAX && !o.closer),
         ],
         vec![("N", 0..=10, |i, _| i.levels.get()), ("level", 0..=10, |i, _| i.level.get()), ("closer", 0..=1, |_, o| o.closer.into())],

@@ -48,7 +48,7 @@ fn pixels(draw: &mut Draw) -> In {
     let d = draw.full_direction();
     let size = 1 << draw.between(8, 24);
     let target = [0; 3].map(|_| draw.between(-(1 << 30), 1 << 30));
-    let origin = draw.afar_of(target, d);
+    let origin = draw.afar(target, d);
     let [p0, p1, p2] = [0; 3].map(|_| point(target.map(|v| v + draw.between(-size, size))));
     let cone = Cone { offset: U::new(draw.below(1 << 40)), slope: U::new(draw.below(1 << 18)), shift: U::new(24 + draw.below(12)) };
     let [e0, e1, e2] = [0; 3].map(|_| U::new(draw.below(1024)));

@@ -50,6 +50,9 @@ impl Draw {
             _ => self.full_direction(),
         };
         let d = if is_direction(d) { d } else { direction(d.get().map(|v| v / 2)) };
+        // Half of them shorter, so that a ray can take many steps within the range.
+        let shorter = if self.once_in(2) { self.below(24) } else { 0 };
+        let d = direction(d.get().map(|v| v >> shorter));
         if d == Direction::default() { Direction::new(0, 0, 1) } else { d }
     }
 
@@ -88,17 +91,17 @@ impl Draw {
                 most = most.min((if c > 0 { t + POINT_MAX } else { POINT_MAX - t }) / c.abs());
             }
         }
-        let steps = match self.below(8) {
+        let steps = match self.below(16) {
             0 => 0,
             1 => most,
-            2 | 3 => self.between(0, most) >> self.below(32),
-            _ => self.between(0, most),
+            2..6 => self.between(0, most) >> self.below(32),
+            _ => self.between(most.min(1), most),
         };
         point([0, 1, 2].map(|k| target[k] - steps * d.get()[k]))
     }
 
     /// The origin of a ray that comes close to `target` from any distance; |target| < 2^31 - 2^30 in each coordinate.
-    pub fn afar_of(&mut self, target: [i64; 3], d: Direction) -> Point {
+    pub fn afar(&mut self, target: [i64; 3], d: Direction) -> Point {
         let steps = self.between(0, 1 << 16);
         point([0, 1, 2].map(|k| target[k] - ((d.get()[k] * steps) >> 16)))
     }

@@ -65,7 +65,7 @@ fn edge_weights(draw: &mut Draw) -> [i64; 3] {
 pub fn inside(draw: &mut Draw) -> In {
     let (p, weights) = (corners(draw, DIRECTION_MAX), inside_weights(draw));
     let d = if draw.once_in(4) { draw.direction() } else { draw.full_direction() };
-    let origin = draw.afar_of(weighted(p, weights), d);
+    let origin = draw.afar(weighted(p, weights), d);
     turned(draw, origin, d, p)
 }
 
