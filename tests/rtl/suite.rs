@@ -93,7 +93,8 @@ where
     pub fn run(&self, mode: Mode) {
         let seed = tb::seed(0x10d_4a75).unwrap_or_else(fail);
         let count = transactions();
-        let name = format!("{} {mode:?}", self.build.top());
+        let Timing { latency, interval } = self.timing;
+        let name = format!("{} (latency {latency}, interval {interval}) {mode:?}", self.build.top());
         self.build.model().unwrap_or_else(fail);
 
         let start = Instant::now();
@@ -106,8 +107,8 @@ where
         let report = played.unwrap_or_else(fail);
         let rate = report.transactions as f64 / start.elapsed().as_secs_f64() / 1e6;
         println!(
-            "{name}: seed {seed}, {} transactions in {} cycles, {rate:.2} M/s, latency {} to {}, interval from {}",
-            report.transactions, report.cycles, report.min_latency, report.max_latency, report.min_interval
+            "{name}: seed {seed}, {} transactions in {} cycles, {rate:.2} M/s; up to {} cycles to an output",
+            report.transactions, report.cycles, report.max_latency
         );
         let lacking = inputs.report();
         if !lacking.is_empty() || report.transactions != count {
@@ -115,7 +116,7 @@ where
         }
         if mode == Mode::Free {
             let seen = (report.min_latency, report.max_latency, report.min_interval);
-            let (latency, interval) = (u64::from(self.timing.latency), u64::from(self.timing.interval));
+            let (latency, interval) = (u64::from(latency), u64::from(interval));
             assert_eq!(seen, (latency, latency, interval), "{name}: latency and interval at the ports");
         }
     }
