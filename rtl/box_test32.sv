@@ -25,7 +25,7 @@ module box_test32 #(
   localparam int unsigned SIDE_W = W + 1;
   localparam int unsigned PRODUCT_W = SIDE_W + D_W + 1;
   localparam int unsigned PRODUCT_LATENCY = lod_pkg::multiplier_latency(SIDE_W, D_W + 1);
-  localparam int unsigned WAIT = lod_pkg::ENTRY_DISTANCE_LATENCY - PRODUCT_LATENCY - 1;
+  localparam int unsigned WAIT = lod_pkg::ENTRY_DISTANCE_LATENCY - PRODUCT_LATENCY - 2;
   localparam int unsigned LATENCY = 2 + lod_pkg::ENTRY_DISTANCE_LATENCY + 1;
   if (lod_pkg::BOX_TEST32_LATENCY != LATENCY) begin : g_illegal_latency
     $error("box_test32: lod_pkg::BOX_TEST32_LATENCY must be %0d", LATENCY);
@@ -80,7 +80,8 @@ module box_test32 #(
 
   // Six pairs of axes (I, J): near_I d_J against far_J d_I.
   logic [5:0] passes, ready_low, valid_low, ready_high, valid_high;
-  logic       ahead, ahead_there, slabs, slabs_q, ready_product, valid_slabs, ready_slabs, slabs_last;
+  logic       ahead, ahead_there, slabs, slabs_q, ready_product, valid_passes, ready_passes, valid_slabs, ready_slabs, slabs_last;
+  logic [6:0] passes_q;
   for (genvar k = 0; k < 6; k++) begin : g_pair
     localparam int unsigned I = k < 3 ? (k + 1) % 3 : (k + 2) % 3;
     localparam int unsigned J = k < 3 ? (k + 2) % 3 : (k + 1) % 3;
@@ -99,9 +100,13 @@ module box_test32 #(
   pipe_delay #(.W(1), .STAGES(PRODUCT_LATENCY)) u_ahead (
     .clk_i, .rst_ni, .valid_i(valid_side), .ready_o(), .data_i(ahead), .valid_o(), .ready_i(ready_product), .data_o(ahead_there)
   );
-  assign slabs = ahead_there && passes == '1;
+  pipe_stage #(.W(7)) u_passes (
+    .clk_i, .rst_ni, .valid_i(valid_low[0]), .ready_o(ready_product), .data_i({ahead_there, passes}),
+    .valid_o(valid_passes), .ready_i(ready_passes), .data_o(passes_q)
+  );
+  assign slabs = passes_q == '1;
   pipe_stage #(.W(1)) u_slabs (
-    .clk_i, .rst_ni, .valid_i(valid_low[0]), .ready_o(ready_product), .data_i(slabs),
+    .clk_i, .rst_ni, .valid_i(valid_passes), .ready_o(ready_passes), .data_i(slabs),
     .valid_o(valid_slabs), .ready_i(ready_slabs), .data_o(slabs_q)
   );
   pipe_delay #(.W(1), .STAGES(WAIT)) u_wait (
