@@ -3,8 +3,10 @@
 use lodray::golden::exact::Exact;
 use lodray::mesh::Hierarchy;
 use lodray::num::{LineAddress, Ray};
-use lodray::sim::unit::environment::{RunReport, UnitError, UnitPort, run};
-use lodray::sim::unit::{EdgesPerCycle, Inputs, Latency, Outputs, SceneMemory, Stall, Traffic, TraversalUnit, UnitConfig, UnitCounts};
+use lodray::sim::unit::environment::{RunReport, UnitPort, run};
+use lodray::sim::unit::{
+    EdgesPerCycle, Inputs, Latency, Outputs, SceneMemory, Stall, Traffic, TraversalUnit, UnitConfig, UnitCounts, UnitError,
+};
 use lodray::traverse::{ClosestHit, Hit, Kind, LodImage, LodTraverser, Probe, RayCounts};
 use lodray_test_support::models::{any_rays, ball, model, octahedron, scene_of, terrain};
 use lodray_test_support::plain::plain;

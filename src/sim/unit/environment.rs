@@ -4,14 +4,14 @@
 //! until it is taken: the environment checks that. Memory answers at most once a cycle: of the answers due the one due first, then that of the
 //! request taken first. What the unit must not do (an address outside of the model, a tag in use, a hit of no ray, silence) is an error.
 
+use super::error::UnitError;
 use super::memory::SceneMemory;
 use super::traffic::Traffic;
-use super::unit::{Inputs, Outputs, TraversalUnit};
+use super::{Inputs, Outputs, TraversalUnit};
 use crate::num::{Ray, U};
 use crate::sim::ports::{HitOut, MemoryAnswer, MemoryRequest, RayIn};
 use std::cmp::Reverse;
 use std::collections::BinaryHeap;
-use thiserror::Error;
 
 /// A unit with its ports: the model, its RTL, or both side by side.
 pub trait UnitPort {
@@ -33,55 +33,6 @@ impl UnitPort for TraversalUnit {
     fn describe(&mut self) -> String {
         Self::describe(self)
     }
-}
-
-/// What a unit did wrong.
-#[derive(Clone, Debug, PartialEq, Eq, Error)]
-pub enum UnitError {
-    /// It asked for a line that no section holds.
-    #[error("cycle {cycle}: line {address:#x} (tag {tag:#x}) is outside of the model")]
-    Address {
-        /// When.
-        cycle: u64,
-        /// The line.
-        address: u64,
-        /// Tag of the request.
-        tag: u64,
-    },
-    /// A request bears the tag of one not yet answered.
-    #[error("cycle {cycle}: tag {tag:#x} is already outstanding")]
-    TagInUse {
-        /// When.
-        cycle: u64,
-        /// The tag.
-        tag: u64,
-    },
-    /// A port changed what it offered before it was taken.
-    #[error("cycle {cycle}: the {port} port did not hold what it offered")]
-    NotHeld {
-        /// When.
-        cycle: u64,
-        /// Which port.
-        port: &'static str,
-    },
-    /// A hit bears the tag of no ray under way.
-    #[error("cycle {cycle}: a hit with tag {tag} of no ray under way")]
-    StrayHit {
-        /// When.
-        cycle: u64,
-        /// The tag.
-        tag: u64,
-    },
-    /// No port moved for too long.
-    #[error("cycle {cycle}: nothing moved for {quiet} cycles\n{contexts}")]
-    Deadlock {
-        /// When.
-        cycle: u64,
-        /// For how long.
-        quiet: u64,
-        /// What every context is doing.
-        contexts: String,
-    },
 }
 
 /// A ray traced.

@@ -7,22 +7,27 @@
 mod arbiter;
 mod closest;
 mod context;
+mod counts;
 pub mod environment;
+mod error;
 mod memory;
 mod operands;
 mod records;
 mod register;
+mod state;
 pub mod steps;
 mod traffic;
-mod unit;
+mod traversal_unit;
 pub mod wave;
 mod wires;
 
-pub use context::{Fetch, State};
+pub use counts::UnitCounts;
+pub use error::UnitError;
 pub use memory::SceneMemory;
 pub use register::BlockCounts;
+pub use state::{Fetch, State};
 pub use traffic::{Latency, Stall, Traffic};
-pub use unit::{Inputs, Outputs, TraversalUnit, UnitCounts};
+pub use traversal_unit::{Inputs, Outputs, TraversalUnit};
 
 use crate::block::tri_test::TriTest;
 use crate::block::{Block, Timing};

@@ -1,7 +1,8 @@
 //! What a context asks for in a cycle, and with which operands.
 
-use super::context::{Context, Fetch, State};
+use super::context::Context;
 use super::records::children_in;
+use super::state::{Fetch, State};
 use super::wires::{DIVIDE_FOR_V, DIVIDE_FOR_W};
 use crate::block::tessellate::child_triangle;
 use crate::block::{bary_map, child_test, hit_divide, hit_select, lod_test, node_address, ray_setup, tessellate, tree_base, tri_test};

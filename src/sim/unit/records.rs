@@ -1,6 +1,7 @@
 //! The four children in two memory lines (`rtl/child_records.sv`): boxes for [`child_test`], and one of them as a stack entry.
 
-use super::context::{Context, Fetch};
+use super::context::Context;
+use super::state::Fetch;
 use crate::block::child_test;
 use crate::format::{BoundData, BvhChild, ChildRef};
 use crate::num::{TNear, U};

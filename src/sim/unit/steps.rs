@@ -1,8 +1,8 @@
 //! One ray as text: what the unit does with it, step by step, from the cycle model.
 
-use super::context::State;
 use super::environment::UnitPort;
 use super::records::child_entry;
+use super::state::State;
 use super::{Inputs, Outputs, SceneMemory, TraversalUnit};
 use crate::block::{lod_test, tri_test};
 use crate::num::{LineAddress, U};

@@ -7,8 +7,8 @@ mod signals;
 
 pub use save::{gtkwave_save, gtkwave_states, surfer_commands};
 
-use super::environment::{RunReport, UnitError, UnitPort, run};
-use super::{Inputs, Latency, Outputs, SceneMemory, Traffic, TraversalUnit};
+use super::environment::{RunReport, UnitPort, run};
+use super::{Inputs, Latency, Outputs, SceneMemory, Traffic, TraversalUnit, UnitError};
 use crate::num::Ray;
 use signals::{Vector, Visitor, walk};
 use std::collections::BTreeMap;

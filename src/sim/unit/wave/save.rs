@@ -4,89 +4,145 @@ use crate::sim::unit::State;
 use std::collections::BTreeMap;
 use std::fmt::Write;
 
-/// How GTKWave shows a signal: its trace flags, right-justified hexadecimal, binary and decimal, and through a file of names.
+/// How GTKWave shows a signal, as its trace flags: right-justified, and in which base; names come from a file.
 const HEX: &str = "@22";
 const BITS: &str = "@28";
 const DECIMAL: &str = "@24";
+const SIGNED: &str = "@420";
 const NAMES: &str = "@2022";
 
-/// A signal to show: path and GTKWave's flags.
-type Shown = (String, &'static str);
+/// Signals of one scope that are shown alike.
+type Row = (&'static str, &'static str, &'static [&'static str]);
 
-/// The groups of signals, the ray's journey first.
-fn groups() -> Vec<(&'static str, Vec<Shown>)> {
-    let top = |name: &str| format!("traversal_unit.{name}");
-    let context = |name: &str| format!("traversal_unit.g_context[0].u_context.{name}");
-    let of = |flags: &'static str, names: &[&str], path: &dyn Fn(&str) -> String| -> Vec<Shown> {
-        names.iter().map(|name| (path(name), flags)).collect()
-    };
-    let mut all = vec![
-        ("Clock", of(BITS, &["clk_i"], &top)),
-        (
-            "Journey",
-            [
-                of(NAMES, &["state_q"], &context),
-                of(DECIMAL, &["tree_q", "level_q", "node_q"], &context),
-                of(HEX, &["lod_q", "entry_q"], &context),
-                of(DECIMAL, &["u_stack.len_q"], &context),
-                of(BITS, &["u_closest.known_q"], &context),
-                of(HEX, &["u_closest.t_max_q"], &context),
-            ]
-            .concat(),
-        ),
-        (
-            "Memory",
-            [
-                of(BITS, &["mem_valid_o", "mem_ready_i"], &top),
-                of(HEX, &["mem_o"], &top),
-                of(BITS, &["mem_valid_i"], &top),
-                of(HEX, &["mem_i"], &top),
-                of(BITS, &["want_q", "waiting_q", "base_want_q", "base_ready_q"], &context),
-            ]
-            .concat(),
-        ),
-    ];
-    let blocks = [
-        ("Children", "child_test"),
-        ("Level_of_detail", "lod_test"),
-        ("Morph", "tessellate"),
-        ("Triangles", "tri_test"),
-        ("Division", "hit_divide"),
-        ("Comparison", "hit_select"),
-        ("Full_resolution", "bary_map"),
-        ("Ray_setup", "ray_setup"),
-        ("Tree_base", "tree_base"),
-        ("Line_address", "node_address"),
-    ];
-    for (group, block) in blocks {
-        let port = |name: &str| top(&format!("u_{block}.{name}"));
-        let mut signals = [of(BITS, &["valid_i", "ready_o"], &port), of(HEX, &["in_i"], &port)].concat();
-        signals.extend([of(BITS, &["valid_o"], &port), of(HEX, &["out_o"], &port)].concat());
-        match block {
-            "child_test" => signals.extend(of(DECIMAL, &["count_q"], &context)),
-            "tri_test" => {
-                signals.extend(of(DECIMAL, &["left_q", "next_q", "pending_q"], &context));
-                signals.extend(of(DECIMAL, &["u_queue.len_q"], &top));
-            }
-            _ => (),
-        }
-        all.push((group, signals));
-    }
-    let ray = [of(BITS, &["valid_i", "ready_o"], &top), of(HEX, &["in_i"], &top)].concat();
-    let hit = [of(BITS, &["valid_o", "ready_i"], &top), of(HEX, &["out_o"], &top)].concat();
-    all.extend([("Ray_in", ray), ("Hit_out", hit)]);
-    all
+const UNIT: &str = "traversal_unit";
+const CONTEXT: &str = "traversal_unit.g_context[0].u_context";
+
+/// The groups, the ray's journey first.
+const GROUPS: &[(&str, &[Row])] = &[
+    (
+        "Journey",
+        &[
+            (UNIT, BITS, &["clk_i"]),
+            (CONTEXT, NAMES, &["state_q"]),
+            (CONTEXT, DECIMAL, &["entry_q.kind", "entry_q.index", "entry_q.t_near", "tree_q", "level_q", "node_q"]),
+            (CONTEXT, DECIMAL, &["lod_q.refine", "lod_q.s0", "lod_q.s1", "lod_q.s2", "u_stack.len_q"]),
+            (CONTEXT, BITS, &["u_closest.known_q"]),
+            (CONTEXT, HEX, &["u_closest.t_max_q"]),
+        ],
+    ),
+    (
+        "Memory",
+        &[
+            (UNIT, BITS, &["mem_valid_o", "mem_ready_i"]),
+            (UNIT, HEX, &["mem_o.tag", "mem_o.address"]),
+            (UNIT, BITS, &["mem_valid_i"]),
+            (UNIT, HEX, &["mem_i.tag"]),
+            (CONTEXT, BITS, &["want_q", "waiting_q", "base_want_q", "base_ready_q"]),
+        ],
+    ),
+    (
+        "Children",
+        &[
+            (UNIT, BITS, &["u_child_test.valid_i", "u_child_test.in_i.present", "u_child_test.in_i.widen", "u_child_test.valid_o"]),
+            (UNIT, DECIMAL, &["u_child_test.out_o.count", "u_child_test.out_o.order[0]"]),
+            (CONTEXT, DECIMAL, &["count_q"]),
+        ],
+    ),
+    (
+        "Level_of_detail",
+        &[
+            (UNIT, BITS, &["u_lod_test.valid_i"]),
+            (UNIT, DECIMAL, &["u_lod_test.in_i.e0", "u_lod_test.in_i.e1", "u_lod_test.in_i.e2"]),
+            (UNIT, BITS, &["u_lod_test.valid_o", "u_lod_test.out_o.refine"]),
+            (UNIT, DECIMAL, &["u_lod_test.out_o.s0", "u_lod_test.out_o.s1", "u_lod_test.out_o.s2"]),
+        ],
+    ),
+    (
+        "Morph",
+        &[
+            (UNIT, BITS, &["u_tessellate.valid_i"]),
+            (UNIT, DECIMAL, &["u_tessellate.in_i.grid"]),
+            (UNIT, BITS, &["u_tessellate.valid_o"]),
+            (UNIT, SIGNED, &["u_tessellate.out_o.q0.x", "u_tessellate.out_o.q0.y", "u_tessellate.out_o.q0.z"]),
+        ],
+    ),
+    (
+        "Triangles",
+        &[
+            (UNIT, BITS, &["u_tri_test.valid_i", "u_tri_test.valid_o", "u_tri_test.out_o.hit", "u_tri_test.out_o.front"]),
+            (CONTEXT, DECIMAL, &["left_q", "next_q", "pending_q"]),
+            (UNIT, DECIMAL, &["u_queue.len_q"]),
+        ],
+    ),
+    (
+        "Division",
+        &[
+            (UNIT, BITS, &["u_hit_divide.valid_i", "u_hit_divide.ready_o"]),
+            (UNIT, HEX, &["u_hit_divide.in_i.numerator", "u_hit_divide.in_i.denominator"]),
+            (UNIT, BITS, &["u_hit_divide.valid_o"]),
+            (UNIT, HEX, &["u_hit_divide.out_o.quotient"]),
+        ],
+    ),
+    (
+        "Comparison",
+        &[
+            (UNIT, BITS, &["u_hit_select.valid_i"]),
+            (UNIT, HEX, &["u_hit_select.in_i.t", "u_hit_select.in_i.best_t"]),
+            (UNIT, BITS, &["u_hit_select.valid_o", "u_hit_select.out_o.closer"]),
+        ],
+    ),
+    (
+        "Full_resolution",
+        &[
+            (UNIT, BITS, &["u_bary_map.valid_i"]),
+            (UNIT, DECIMAL, &["u_bary_map.in_i.levels", "u_bary_map.in_i.node"]),
+            (UNIT, BITS, &["u_bary_map.valid_o"]),
+            (UNIT, DECIMAL, &["u_bary_map.out_o.node"]),
+            (UNIT, HEX, &["u_bary_map.out_o.b0", "u_bary_map.out_o.b1", "u_bary_map.out_o.b2"]),
+        ],
+    ),
+    (
+        "Addresses",
+        &[
+            (UNIT, BITS, &["u_tree_base.valid_i", "u_tree_base.valid_o", "u_node_address.valid_i", "u_node_address.ready_o"]),
+            (UNIT, HEX, &["u_node_address.in_i.base"]),
+            (UNIT, DECIMAL, &["u_node_address.in_i.level", "u_node_address.in_i.index"]),
+        ],
+    ),
+    (
+        "Ray_in",
+        &[
+            (UNIT, BITS, &["valid_i", "ready_o"]),
+            (UNIT, SIGNED, &["in_i.ray.origin.x", "in_i.ray.origin.y", "in_i.ray.origin.z"]),
+            (UNIT, SIGNED, &["in_i.ray.direction.x", "in_i.ray.direction.y", "in_i.ray.direction.z"]),
+            (UNIT, BITS, &["u_ray_setup.valid_i", "u_ray_setup.valid_o"]),
+        ],
+    ),
+    (
+        "Hit_out",
+        &[
+            (UNIT, BITS, &["valid_o", "ready_i", "out_o.found", "out_o.hit.front"]),
+            (UNIT, HEX, &["out_o.hit.t"]),
+            (UNIT, DECIMAL, &["out_o.hit.tree", "out_o.hit.level", "out_o.hit.node", "out_o.hit.full_node"]),
+            (UNIT, HEX, &["out_o.hit.b0", "out_o.hit.b1", "out_o.hit.b2"]),
+        ],
+    ),
+];
+
+/// Path and flags of every signal of a group.
+fn signals(rows: &'static [Row]) -> impl Iterator<Item = (String, &'static str)> {
+    rows.iter().flat_map(|(scope, flags, names)| names.iter().map(move |name| (format!("{scope}.{name}"), *flags)))
 }
 
 /// GTKWave's save file for the waveform in file `vcd`, whose signals have these widths; `states` is the file of [`gtkwave_states`].
 pub fn gtkwave_save(vcd: &str, states: &str, widths: &BTreeMap<String, u32>) -> String {
     let mut text = format!(
-        "[*] One ray through traversal_unit (lodray trace)\n[dumpfile] \"{vcd}\"\n[timestart] 0\n[size] 1600 1000\n[pos] -1 -1\n*-8.0 0\n[signals_width] 300\n[sst_expanded] 0\n"
+        "[*] One ray through traversal_unit (lodray trace)\n[dumpfile] \"{vcd}\"\n[timestart] 0\n[size] 1600 1000\n[pos] -1 -1\n*-9.0 0\n[signals_width] 260\n[sst_expanded] 0\n"
     );
-    for (group, signals) in groups() {
+    for (group, rows) in GROUPS {
         // Writing to a string cannot fail.
         let _ = writeln!(text, "@800200\n-{group}");
-        for (path, flags) in signals {
+        for (path, flags) in signals(rows) {
             let width = widths.get(&path).copied().unwrap_or(1);
             let range = if width > 1 { format!("[{}:0]", width - 1) } else { String::new() };
             let names = if flags == NAMES { format!("^1 {states}\n") } else { String::new() };
@@ -105,11 +161,30 @@ pub fn gtkwave_states() -> String {
 /// A command file for Surfer that shows the same signals.
 pub fn surfer_commands() -> String {
     let mut text = String::new();
-    for (group, signals) in groups() {
+    for (group, rows) in GROUPS {
         let _ = writeln!(text, "divider_add {group}");
-        for (path, _) in signals {
+        for (path, _) in signals(rows) {
             let _ = writeln!(text, "variable_add {path}");
         }
     }
     text + "zoom_fit\n"
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::sim::ports::SceneConfig;
+    use crate::sim::unit::wave::Waves;
+    use crate::sim::unit::{TraversalUnit, UnitConfig};
+
+    #[test]
+    fn every_signal_shown_is_in_the_waveform() {
+        let unit = TraversalUnit::new(UnitConfig::one_context(), SceneConfig::default());
+        let waves = Waves::new(unit).unwrap();
+        let shown: Vec<String> = GROUPS.iter().flat_map(|(_, rows)| signals(rows)).map(|(path, _)| path).collect();
+        assert!(shown.len() > 50);
+        for path in shown {
+            assert!(path == "traversal_unit.clk_i" || waves.widths().contains_key(&path), "{path}");
+        }
+    }
 }

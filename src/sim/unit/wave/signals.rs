@@ -1,7 +1,7 @@
 //! The signals of the waveform: names, widths and values, in one walk over the unit.
 
 use crate::block::{Block, child_test, hit_select, lod_test, node_address, tessellate};
-use crate::num::{BitVec, Field, U, Wire};
+use crate::num::{BitVec, Layout, U, Wire};
 use crate::sim::ports::{HitOut, MemoryAnswer, MemoryRequest, RayIn, SceneConfig};
 use crate::sim::unit::context::Context;
 use crate::sim::unit::register::Pipeline;
@@ -74,25 +74,27 @@ pub trait Visitor {
 
 /// A signal of type `T`: as in the RTL's waveforms a struct is a scope of its fields, and an array its elements, unless they are single bits.
 fn typed<T: Wire>(to: &mut impl Visitor, name: &str, value: &Vector) {
-    descend(to, name, T::FIELDS, T::ELEMENTS, &value.0);
+    descend(to, name, T::LAYOUT, &value.0);
 }
 
-fn descend(to: &mut impl Visitor, name: &str, fields: &[Field], elements: u32, bits: &[Value]) {
-    if !fields.is_empty() {
-        to.enter(name);
-        let mut rest = bits;
-        for field in fields {
-            let (value, behind) = rest.split_at(field.width as usize);
-            descend(to, field.name, field.fields, field.elements, value);
-            rest = behind;
+fn descend(to: &mut impl Visitor, name: &str, layout: Layout, bits: &[Value]) {
+    match layout {
+        Layout::Struct(fields) => {
+            to.enter(name);
+            let mut rest = bits;
+            for field in fields {
+                let (value, behind) = rest.split_at(field.width as usize);
+                descend(to, field.name, field.layout, value);
+                rest = behind;
+            }
+            to.leave();
         }
-        to.leave();
-    } else if elements > 1 && bits.len() > elements as usize {
-        for (k, value) in bits.chunks(bits.len() / elements as usize).rev().enumerate() {
-            to.signal(&format!("{name}[{k}]"), Vector(value.to_vec()));
+        Layout::Array(elements) if bits.len() > elements as usize => {
+            for (k, value) in bits.chunks(bits.len() / elements as usize).rev().enumerate() {
+                to.signal(&format!("{name}[{k}]"), Vector(value.to_vec()));
+            }
         }
-    } else {
-        to.signal(name, Vector(bits.to_vec()));
+        _ => to.signal(name, Vector(bits.to_vec())),
     }
 }
 

@@ -2,12 +2,12 @@
 
 use super::arbiter::Arbiter;
 use super::closest::Met;
-use super::context::{Context, State};
+use super::context::Context;
 use super::operands::Resource;
-use super::register::{BlockCounts, Pipeline, Register, Stage};
+use super::register::{Pipeline, Register, Stage};
+use super::state::State;
 use super::wires::{Cycle, DIVIDE_FOR_T, Link, Quotient, Served, Wires};
 use super::{MAX_CONTEXTS, UnitConfig};
-use crate::block::Block;
 use crate::block::bary_map::BaryMap;
 use crate::block::child_test::ChildTest;
 use crate::block::hit_divide::{self, HitDivide};
@@ -46,19 +46,6 @@ pub struct Inputs {
     pub answer: Option<MemoryAnswer>,
 }
 
-/// What a unit did.
-#[derive(Clone, Debug, Default, PartialEq, Eq)]
-pub struct UnitCounts {
-    /// Cycles.
-    pub cycles: u64,
-    /// Cycles of all contexts by [`State`].
-    pub states: [u64; State::Done as usize + 1],
-    /// What each block did, by name.
-    pub blocks: Vec<(&'static str, BlockCounts)>,
-    /// Most hits that waited for their division at once.
-    pub longest_queue: usize,
-}
-
 /// The unit.
 pub struct TraversalUnit {
     pub(super) scene: SceneConfig,
@@ -81,9 +68,9 @@ pub struct TraversalUnit {
     pub(super) chosen: Register<(Met, RayT)>,
     /// The hit port's register.
     pub(super) hit: Stage<HitOut>,
-    cycles: u64,
-    states: [u64; State::Done as usize + 1],
-    longest_queue: usize,
+    pub(super) cycles: u64,
+    pub(super) states: [u64; State::Done as usize + 1],
+    pub(super) longest_queue: usize,
 }
 
 impl TraversalUnit {
@@ -129,43 +116,6 @@ impl TraversalUnit {
     /// Tag of the ray that context `context` has, if it is not idle.
     pub fn ray_tag(&self, context: usize) -> Option<u64> {
         self.contexts.get(context).filter(|c| c.state != State::Idle).map(|c| c.tag.get())
-    }
-
-    /// What it did so far.
-    pub fn counts(&self) -> UnitCounts {
-        let blocks = vec![
-            (RaySetup::NAME, self.ray_setup.counts()),
-            (NodeAddress::NAME, self.node_address.counts()),
-            (TreeBase::NAME, self.tree_base.counts()),
-            (ChildTest::NAME, self.child_test.counts()),
-            (LodTest::NAME, self.lod_test.counts()),
-            (Tessellate::NAME, self.tessellate.counts()),
-            (TriTest::NAME, self.tri_test.counts()),
-            (HitDivide::NAME, self.hit_divide.counts()),
-            (HitSelect::NAME, self.hit_select.counts()),
-            (BaryMap::NAME, self.bary_map.counts()),
-        ];
-        UnitCounts { cycles: self.cycles, states: self.states, blocks, longest_queue: self.longest_queue }
-    }
-
-    /// One line per context: its state and place.
-    pub fn describe(&self) -> String {
-        let line = |(k, c): (usize, &Context)| {
-            format!(
-                "context {k}: {:?}, ray {}, tree {} level {} node {}, lines wanted {:03b} waiting {:03b}, stack {}, triangles left {} pending {}\n",
-                c.state,
-                c.tag,
-                c.tree.get(),
-                c.level.get(),
-                c.node.get(),
-                c.want,
-                c.waiting,
-                c.stack.len(),
-                c.left.get(),
-                c.pending.get()
-            )
-        };
-        self.contexts.iter().enumerate().map(line).collect::<String>() + &format!("hit queue: {}\n", self.queue.len())
     }
 
     /// The end of a cycle.

@@ -1,0 +1,69 @@
+//! What a unit did so far, and what it is doing.
+
+use super::TraversalUnit;
+use super::context::Context;
+use super::register::BlockCounts;
+use super::state::State;
+use crate::block::Block;
+use crate::block::bary_map::BaryMap;
+use crate::block::child_test::ChildTest;
+use crate::block::hit_divide::HitDivide;
+use crate::block::hit_select::HitSelect;
+use crate::block::lod_test::LodTest;
+use crate::block::node_address::NodeAddress;
+use crate::block::ray_setup::RaySetup;
+use crate::block::tessellate::Tessellate;
+use crate::block::tree_base::TreeBase;
+use crate::block::tri_test::TriTest;
+
+/// What a unit did.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct UnitCounts {
+    /// Cycles.
+    pub cycles: u64,
+    /// Cycles of all contexts by [`State`].
+    pub states: [u64; State::Done as usize + 1],
+    /// What each block did, by name.
+    pub blocks: Vec<(&'static str, BlockCounts)>,
+    /// Most hits that waited for their division at once.
+    pub longest_queue: usize,
+}
+
+impl TraversalUnit {
+    /// What it did so far.
+    pub fn counts(&self) -> UnitCounts {
+        let blocks = vec![
+            (RaySetup::NAME, self.ray_setup.counts()),
+            (NodeAddress::NAME, self.node_address.counts()),
+            (TreeBase::NAME, self.tree_base.counts()),
+            (ChildTest::NAME, self.child_test.counts()),
+            (LodTest::NAME, self.lod_test.counts()),
+            (Tessellate::NAME, self.tessellate.counts()),
+            (TriTest::NAME, self.tri_test.counts()),
+            (HitDivide::NAME, self.hit_divide.counts()),
+            (HitSelect::NAME, self.hit_select.counts()),
+            (BaryMap::NAME, self.bary_map.counts()),
+        ];
+        UnitCounts { cycles: self.cycles, states: self.states, blocks, longest_queue: self.longest_queue }
+    }
+
+    /// One line per context: its state and place.
+    pub fn describe(&self) -> String {
+        let line = |(k, c): (usize, &Context)| {
+            format!(
+                "context {k}: {:?}, ray {}, tree {} level {} node {}, lines wanted {:03b} waiting {:03b}, stack {}, triangles left {} pending {}\n",
+                c.state,
+                c.tag,
+                c.tree.get(),
+                c.level.get(),
+                c.node.get(),
+                c.want,
+                c.waiting,
+                c.stack.len(),
+                c.left.get(),
+                c.pending.get()
+            )
+        };
+        self.contexts.iter().enumerate().map(line).collect::<String>() + &format!("hit queue: {}\n", self.queue.len())
+    }
+}

@@ -1,0 +1,105 @@
+//! `lodray trace`: waveform, save files and text of one ray, and what it refuses.
+
+use std::fs;
+use std::path::Path;
+use std::process::Output;
+
+fn lodray(folder: &Path, args: &str) -> Output {
+    assert_cmd::cargo::cargo_bin_cmd!("lodray").current_dir(folder).args(args.split_whitespace()).output().unwrap()
+}
+
+/// A folder with a scene.
+fn desk() -> tempfile::TempDir {
+    let folder = tempfile::tempdir().unwrap();
+    assert!(lodray(folder.path(), "generate sphere --levels 3 --base 32 -o a.lod").status.success());
+    folder
+}
+
+fn succeed(folder: &Path, args: &str) -> String {
+    let Output { status, stdout, stderr } = lodray(folder, args);
+    let [out, err] = [stdout, stderr].map(|text| String::from_utf8(text).unwrap());
+    assert!(status.success() && err.is_empty(), "{args}: {err}");
+    out
+}
+
+/// Runs, expects failure with one line that holds `words`, and nothing written.
+fn fail(folder: &Path, args: &str, words: &str) {
+    let names = || fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().file_name()).collect::<std::collections::BTreeSet<_>>();
+    let before = names();
+    let output = lodray(folder, args);
+    let err = String::from_utf8(output.stderr).unwrap();
+    assert!(!output.status.success() && output.stdout.is_empty(), "{args}");
+    assert!(err.starts_with("error: ") && err.contains(words), "{args}: {err}");
+    assert_eq!(names(), before, "{args}");
+}
+
+#[test]
+fn waveform_and_save_files_stand_side_by_side() {
+    let folder = desk();
+    let desk = folder.path();
+    let said = succeed(desk, "trace a.lod --pixel 24,24 --size 48x48 --distance 3 -o ray.vcd");
+    assert!(said.starts_with("hit after ") && said.contains("memory lines; waveform in ray.vcd"), "{said}");
+    let vcd = fs::read(desk.join("ray.vcd")).unwrap();
+    let header = vcd::Parser::new(&vcd[..]).parse_header().unwrap();
+    let state = header.find_var(&["traversal_unit", "g_context[0]", "u_context", "state_q"]).expect("the state");
+    assert_eq!((state.size, header.timescale), (5, Some((1, vcd::TimescaleUnit::NS))));
+    assert!(header.find_var(&["traversal_unit", "u_lod_test", "out_o", "refine"]).is_some());
+
+    let text = |name: &str| fs::read_to_string(desk.join(name)).unwrap();
+    let gtkw = text("ray.gtkw");
+    for words in ["[dumpfile] \"ray.vcd\"", "^1 ray.states\ntraversal_unit.g_context[0].u_context.state_q[4:0]\n", "-Level_of_detail\n"] {
+        assert!(gtkw.contains(words), "{words}");
+    }
+    assert!(text("ray.states").starts_with("00 IDLE\n01 SETUP\n") && text("ray.states").ends_with("14 DONE\n"));
+    assert!(text("ray.sucl").contains("variable_add traversal_unit.u_lod_test.out_o.s0\n"));
+    assert_eq!(fs::read_dir(desk).unwrap().count(), 5, "left-over files");
+
+    // The same bytes again, over the old ones.
+    succeed(desk, "trace a.lod --pixel 24,24 --size 48x48 --distance 3 -o ray.vcd");
+    assert_eq!(fs::read(desk.join("ray.vcd")).unwrap(), vcd);
+}
+
+#[test]
+fn steps_as_text() {
+    let folder = desk();
+    let desk = folder.path();
+    let steps = succeed(desk, "trace a.lod --pixel 24,24 --size 48x48 --distance 3 --text");
+    for words in [
+        "visit quad-BVH node 0\n",
+        "read line 0x0 (bvh_node 0)\n",
+        "visit tree ",
+        "level 0 node 0: edge states ",
+        "triangle level ",
+        "hit: t ",
+    ] {
+        assert!(steps.contains(words), "{words}: {steps}");
+    }
+    assert_eq!(steps, succeed(desk, "trace a.lod --pixel 24,24 --size 48x48 --distance 3 -o -"));
+    assert_eq!(fs::read_dir(desk).unwrap().count(), 1, "files were written");
+
+    // Quality 0 is the base mesh; a slower memory only takes longer.
+    let base = succeed(desk, "trace a.lod --pixel 24,24 --size 48x48 --distance 3 --delta 0 --text");
+    assert!(base.contains("level 0 node 0: edge states 0 0 0 of 256: serves\n") && !base.contains("refine"), "{base}");
+    let slow = succeed(desk, "trace a.lod --pixel 24,24 --size 48x48 --distance 3 --memory-latency 200 --text");
+    let without_cycles =
+        |text: &str| text.lines().skip(2).filter_map(|line| Some(line.split_at_checked(8)?.1.to_owned())).collect::<Vec<_>>();
+    let ([a, b], lines) = ([&steps, &slow].map(|text| without_cycles(text)), steps.lines().count());
+    assert_eq!(a[..lines - 3], b[..lines - 3]);
+    assert_ne!(steps, slow);
+}
+
+#[test]
+fn what_cannot_be_traced_is_refused() {
+    let folder = desk();
+    let desk = folder.path();
+    fail(desk, "trace a.lod --pixel 48,3 --size 48x48 -o ray.vcd", "pixel 48,3 is outside of the picture of 48x48 pixels");
+    fail(desk, "trace a.lod --pixel 0,0 --size 48x48 --distance 20 -o ray.vcd", "the ray of pixel 0,0 misses the model's box");
+    fail(desk, "trace a.lod --pixel 1 --size 48x48 -o ray.vcd", "'1' is not a pixel such as 320,200");
+    fail(desk, "trace a.lod --pixel 24,-1 -o ray.vcd", "'24,-1' is not a pixel");
+    fail(desk, "trace a.lod --pixel 24,24 --size 48x48", "--out");
+    fail(desk, "trace a.lod --pixel 24,24 --size 48x48 --memory-latency 0 --text", "--memory-latency");
+    fail(desk, "trace a.lod --pixel 24,24 --size 48x48 -o a.lod", "it is the input file");
+    fail(desk, "trace a.lod --pixel 24,24 --size 48x48 -o none/ray.vcd", "folder none does not exist");
+    fail(desk, "trace a.lod --pixel 24,24 --size 48x48 -o ray.gtkw", "use .vcd");
+    fail(desk, "trace b.lod --pixel 24,24 -o ray.vcd", "b.lod: cannot open");
+}
