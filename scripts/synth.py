@@ -30,7 +30,7 @@ def main():
                 check.export(block, figures[block.name]["gates_at"])
             check.run(tested)
         if options.doc and not failures:
-            report.document(rows, tools.versions, options.seeds)
+            report.document(rows, figures, tools.versions, options.seeds)
     except Failure as why:
         sys.exit(f"scripts/synth: {why}")
     except KeyboardInterrupt:
