@@ -2,7 +2,7 @@
 ///
 /// With axes mirrored so that d >= 0: hit iff lo_i d_j - hi_j d_i <= floor(c_ij / 2^16) for all i != j and hi_j >= ceil(x_j / 2^16); c_ji = -c_ij.
 /// `t_near` from `entry_distance`; missed too if t_near 2^18 > t_max. A miss gives t_near = 0.
-/// Legal: box codes in +-32767, lo <= hi; constants from `ray_setup`. Latency BOX_TEST_LATENCY; interval 1. 24 multipliers for the planes, 6 for t_near.
+/// Legal: box codes in +-32767, lo <= hi; constants from `ray_setup`. Latency BOX_TEST_LATENCY; interval 1. 24 multipliers for the planes, 3 for t_near.
 module box_test #(
   parameter int unsigned TAG_W = 8
 ) (

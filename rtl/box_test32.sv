@@ -1,20 +1,20 @@
 /// Ray against one box of 32-bit coordinates: the full-precision variant of `box_test`. Twin of src/block/box_test32.rs (paper section 6.1).
 ///
 /// With axes mirrored so that d >= 0 and sides relative to the origin: hit iff near_i d_j <= far_j d_i for all i != j and far_j >= 0.
-/// `t_near` from floor(near_i / 2^16). Legal: |v| < 2^31, lo <= hi; constants from `ray_setup`. Latency BOX_TEST32_LATENCY; interval 1. 48 multipliers for the planes, 6 for t_near.
+/// `t_near` from floor(near_i / 2^16). Legal: |v| < 2^31, lo <= hi; constants from `ray_setup`. Latency BOX_TEST32_LATENCY; interval 1. 48 multipliers for the planes, 3 for t_near.
 module box_test32 #(
   parameter int unsigned TAG_W = 8
 ) (
-  input  logic                   clk_i,
-  input  logic                   rst_ni,
-  input  logic                   valid_i,
-  output logic                   ready_o,
-  input  lod_pkg::box_test32_in_t  in_i,
-  input  logic [TAG_W-1:0]       tag_i,
-  output logic                   valid_o,
-  input  logic                   ready_i,
-  output lod_pkg::box_test_out_t out_o,
-  output logic [TAG_W-1:0]       tag_o
+  input  logic                    clk_i,
+  input  logic                    rst_ni,
+  input  logic                    valid_i,
+  output logic                    ready_o,
+  input  lod_pkg::box_test32_in_t in_i,
+  input  logic [TAG_W-1:0]        tag_i,
+  output logic                    valid_o,
+  input  logic                    ready_i,
+  output lod_pkg::box_test_out_t  out_o,
+  output logic [TAG_W-1:0]        tag_o
 );
 
   localparam int unsigned W = lod_pkg::POINT_W / 3;
@@ -25,7 +25,7 @@ module box_test32 #(
   localparam int unsigned SIDE_W = W + 1;
   localparam int unsigned PRODUCT_W = SIDE_W + D_W + 1;
   localparam int unsigned PRODUCT_LATENCY = lod_pkg::multiplier_latency(SIDE_W, D_W + 1);
-  localparam int unsigned WAIT = lod_pkg::ENTRY_DISTANCE_LATENCY - PRODUCT_LATENCY - 1;
+  localparam int unsigned WAIT = lod_pkg::ENTRY_DISTANCE_LATENCY - PRODUCT_LATENCY - 2;
   localparam int unsigned LATENCY = 2 + lod_pkg::ENTRY_DISTANCE_LATENCY + 1;
   if (lod_pkg::BOX_TEST32_LATENCY != LATENCY) begin : g_illegal_latency
     $error("box_test32: lod_pkg::BOX_TEST32_LATENCY must be %0d", LATENCY);
@@ -80,7 +80,8 @@ module box_test32 #(
 
   // Six pairs of axes (I, J): near_I d_J against far_J d_I.
   logic [5:0] passes, ready_low, valid_low, ready_high, valid_high;
-  logic       ahead, ahead_there, slabs, slabs_q, ready_product, valid_slabs, ready_slabs, slabs_last;
+  logic       ahead, ahead_there, slabs, slabs_q, ready_product, valid_passes, ready_passes, valid_slabs, ready_slabs, slabs_last;
+  logic [6:0] passes_q;
   for (genvar k = 0; k < 6; k++) begin : g_pair
     localparam int unsigned I = k < 3 ? (k + 1) % 3 : (k + 2) % 3;
     localparam int unsigned J = k < 3 ? (k + 2) % 3 : (k + 1) % 3;
@@ -99,9 +100,13 @@ module box_test32 #(
   pipe_delay #(.W(1), .STAGES(PRODUCT_LATENCY)) u_ahead (
     .clk_i, .rst_ni, .valid_i(valid_side), .ready_o(), .data_i(ahead), .valid_o(), .ready_i(ready_product), .data_o(ahead_there)
   );
-  assign slabs = ahead_there && passes == '1;
+  pipe_stage #(.W(7)) u_passes (
+    .clk_i, .rst_ni, .valid_i(valid_low[0]), .ready_o(ready_product), .data_i({ahead_there, passes}),
+    .valid_o(valid_passes), .ready_i(ready_passes), .data_o(passes_q)
+  );
+  assign slabs = passes_q == '1;
   pipe_stage #(.W(1)) u_slabs (
-    .clk_i, .rst_ni, .valid_i(valid_low[0]), .ready_o(ready_product), .data_i(slabs),
+    .clk_i, .rst_ni, .valid_i(valid_passes), .ready_o(ready_passes), .data_i(slabs),
     .valid_o(valid_slabs), .ready_i(ready_slabs), .data_o(slabs_q)
   );
   pipe_delay #(.W(1), .STAGES(WAIT)) u_wait (

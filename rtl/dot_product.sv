@@ -1,7 +1,8 @@
 /// Elastic dot product of two signed vectors: sum_o = a.x b.x + a.y b.y + a.z b.z.
 ///
 /// Vectors are {x, y, z}. Legal: any for which the sum and its partial sums fit SUM_W bits, signed. Latency: lod_pkg::dot_product_latency(A_W, B_W),
-/// which is that of the multipliers with one factor stage and of two sums, the last a `pipe_skid`; interval 1.
+/// which is that of the multipliers with one factor stage and of two sums; interval 1. The last stage of the multipliers, the third from the end, is
+/// a `pipe_skid`.
 module dot_product #(
   parameter int unsigned A_W = 33,
   parameter int unsigned B_W = 31,
@@ -25,15 +26,15 @@ module dot_product #(
 
   logic signed [PRODUCT_W-1:0] x, y, z;
   logic                        valid_products, ready_products;
-  multiplier #(.A_W(A_W), .B_W(B_W), .FACTOR_STAGES(1)) u_x (
+  multiplier #(.A_W(A_W), .B_W(B_W), .FACTOR_STAGES(1), .LAST_IS_SKID(1'b1)) u_x (
     .clk_i, .rst_ni, .valid_i, .ready_o, .a_i(a_i[2*A_W +: A_W]), .b_i(b_i[2*B_W +: B_W]),
     .valid_o(valid_products), .ready_i(ready_products), .product_o(x)
   );
-  multiplier #(.A_W(A_W), .B_W(B_W), .FACTOR_STAGES(1)) u_y (
+  multiplier #(.A_W(A_W), .B_W(B_W), .FACTOR_STAGES(1), .LAST_IS_SKID(1'b1)) u_y (
     .clk_i, .rst_ni, .valid_i, .ready_o(), .a_i(a_i[A_W +: A_W]), .b_i(b_i[B_W +: B_W]),
     .valid_o(), .ready_i(ready_products), .product_o(y)
   );
-  multiplier #(.A_W(A_W), .B_W(B_W), .FACTOR_STAGES(1)) u_z (
+  multiplier #(.A_W(A_W), .B_W(B_W), .FACTOR_STAGES(1), .LAST_IS_SKID(1'b1)) u_z (
     .clk_i, .rst_ni, .valid_i, .ready_o(), .a_i(a_i[0 +: A_W]), .b_i(b_i[0 +: B_W]),
     .valid_o(), .ready_i(ready_products), .product_o(z)
   );
@@ -49,7 +50,7 @@ module dot_product #(
 
   logic [SUM_W-1:0] xyz;
   assign xyz = xy_q + SUM_W'(z_q);
-  pipe_skid #(.W(SUM_W)) u_xyz (
+  pipe_stage #(.W(SUM_W)) u_xyz (
     .clk_i, .rst_ni, .valid_i(valid_xy), .ready_o(ready_xy), .data_i(xyz),
     .valid_o, .ready_i, .data_o(sum_o)
   );

@@ -59,7 +59,7 @@ module edge_function (
   assign {nx, ny, nz} = normal;
   logic tie;
   assign tie = nx != 0 ? !nx[N_W-1] : ny != 0 ? !ny[N_W-1] : nz != 0 ? !nz[N_W-1] : along_positive_q;
-  pipe_delay #(.W(1), .STAGES(DOT_LATENCY), .SKIDS(64'd1 << (DOT_LATENCY - 1))) u_tie (
+  pipe_delay #(.W(1), .STAGES(DOT_LATENCY), .SKIDS(64'd1 << (DOT_LATENCY - 3))) u_tie (
     .clk_i, .rst_ni, .valid_i(valid_normal), .ready_o(), .data_i(tie), .valid_o(), .ready_i, .data_o(tie_o)
   );
 

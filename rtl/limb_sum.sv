@@ -3,10 +3,12 @@
 /// One level per stage: neighbours are added, of which the lower STEP bits pass by the adder; the rest of the tree is this module again, over half
 /// as many numbers STEP bits wider. Legal: N >= 1, STEP < W, and each level's sums must fit W + STEP bits, as those of the limb products of one
 /// multiplication do (a run of n limbs times an 18-bit limb: 17 n + 19 bits). Latency: clog2(N).
+/// LAST_IS_SKID makes the last level's register a `pipe_skid`.
 module limb_sum #(
   parameter int unsigned N = 2,
   parameter int unsigned W = 36,
   parameter int unsigned STEP = 17,
+  parameter bit LAST_IS_SKID = 1'b0,
   localparam int unsigned SUM_W = W + (N - 1) * STEP
 ) (
   input  logic             clk_i,
@@ -55,11 +57,11 @@ module limb_sum #(
       end
     end
 
-    pipe_stage #(.W(HALF * PAIR_W)) u_stage (
+    pipe_delay #(.W(HALF * PAIR_W), .STAGES(1), .SKIDS(64'(LAST_IS_SKID && HALF == 1))) u_level (
       .clk_i, .rst_ni, .valid_i, .ready_o, .data_i(pairs),
       .valid_o(valid_q), .ready_i(ready_q), .data_o(pairs_q)
     );
-    limb_sum #(.N(HALF), .W(PAIR_W), .STEP(2 * STEP)) u_rest (
+    limb_sum #(.N(HALF), .W(PAIR_W), .STEP(2 * STEP), .LAST_IS_SKID(LAST_IS_SKID)) u_rest (
       .clk_i, .rst_ni, .valid_i(valid_q), .ready_o(ready_q), .data_i(pairs_q),
       .valid_o, .ready_i, .sum_o(rest)
     );

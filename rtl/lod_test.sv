@@ -39,9 +39,10 @@ module lod_test #(
     $error("lod_test: lod_pkg::BOUND_DECODE_LATENCY is above CONE_TOLERANCE_LATENCY = %0d", lod_pkg::CONE_TOLERANCE_LATENCY);
   end
 
-  // Stages that are a `pipe_skid`: the last of the distances and the first of the openings. What goes beside them has its own at the same stages.
-  localparam bit [63:0] ALONG_SKIDS = 64'd1 << (ALONG_LATENCY - 1);
-  localparam bit [63:0] SKIDS = ALONG_SKIDS | 64'd1 << LIMITS_LATENCY;
+  // Stages that are a `pipe_skid`: the last of the distances' multipliers, the nearer end and the first of the openings. What goes beside them has
+  // its own at the same stages.
+  localparam bit [63:0] NEARER_SKIDS = 64'd1 << (ALONG_LATENCY - 3) | 64'd1 << (NEARER_LATENCY - 1);
+  localparam bit [63:0] SKIDS = NEARER_SKIDS | 64'd1 << LIMITS_LATENCY;
 
   // Corners relative to the origin: differences of 32-bit coordinates, 33 bits.
   logic [2:0][3*W-1:0]             corners, corners_q;
@@ -81,21 +82,21 @@ module lod_test #(
     assign nearer[k] = a < b ? a : b;
   end
   logic valid_nearer, ready_nearer;
-  pipe_stage #(.W(3 * L_W)) u_nearer (
+  pipe_skid #(.W(3 * L_W)) u_nearer (
     .clk_i, .rst_ni, .valid_i(valid_dot[0]), .ready_o(ready_along), .data_i(nearer),
     .valid_o(valid_nearer), .ready_i(ready_nearer), .data_o(nearer_q)
   );
 
   // D of each edge, and its bound in time for it.
   lod_pkg::cone_t cone_q;
-  pipe_delay #(.W(lod_pkg::CONE_W), .STAGES(NEARER_LATENCY), .SKIDS(ALONG_SKIDS)) u_cone (
+  pipe_delay #(.W(lod_pkg::CONE_W), .STAGES(NEARER_LATENCY), .SKIDS(NEARER_SKIDS)) u_cone (
     .clk_i, .rst_ni, .valid_i, .ready_o(), .data_i(in_i.ray.cone), .valid_o(), .ready_i(ready_nearer), .data_o(cone_q)
   );
   logic [2:0][CODE_W-1:0] codes_q;
   lod_pkg::bound_scale_t  scale_q;
   logic                   valid_codes, ready_codes;
   pipe_delay #(
-    .W(3 * CODE_W + lod_pkg::BOUND_SCALE_W), .STAGES(LIMITS_LATENCY - lod_pkg::BOUND_DECODE_LATENCY), .SKIDS(ALONG_SKIDS)
+    .W(3 * CODE_W + lod_pkg::BOUND_SCALE_W), .STAGES(LIMITS_LATENCY - lod_pkg::BOUND_DECODE_LATENCY), .SKIDS(NEARER_SKIDS)
   ) u_codes (
     .clk_i, .rst_ni, .valid_i, .ready_o(), .data_i({in_i.e2, in_i.e1, in_i.e0, in_i.scale}),
     .valid_o(valid_codes), .ready_i(ready_codes), .data_o({codes_q, scale_q})

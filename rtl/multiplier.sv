@@ -2,12 +2,14 @@
 ///
 /// The factors are cut into limbs of 17 bits, unsigned but for the highest, which is signed and has up to 18 bits; each product of two limbs is one
 /// 18 x 18 signed multiplier of the FPGA. The limb products are registered, then added: first along a, then along b, one tree level per stage.
-/// FACTOR_STAGES registers of its own before the multipliers of the FPGA help where factors come from afar.
+/// FACTOR_STAGES registers of its own before the multipliers of the FPGA help where factors come from afar. LAST_IS_SKID
+/// makes the last register a `pipe_skid`, which cuts the chain of readies.
 /// Legal: A_W, B_W >= 1. Latency: FACTOR_STAGES + lod_pkg::multiplier_latency(A_W, B_W); interval 1.
 module multiplier #(
   parameter int unsigned A_W = 33,
   parameter int unsigned B_W = 33,
-  parameter int unsigned FACTOR_STAGES = 0
+  parameter int unsigned FACTOR_STAGES = 0,
+  parameter bit LAST_IS_SKID = 1'b0
 ) (
   input  logic               clk_i,
   input  logic               rst_ni,
@@ -64,7 +66,7 @@ module multiplier #(
     end
   end
 
-  pipe_stage #(.W(LIMB_PRODUCTS_W)) u_products (
+  pipe_delay #(.W(LIMB_PRODUCTS_W), .STAGES(1), .SKIDS(64'(LAST_IS_SKID && A_LIMBS * B_LIMBS == 1))) u_products (
     .clk_i, .rst_ni, .valid_i(valid_factors), .ready_o(ready_factors), .data_i(limb_products),
     .valid_o(valid_products), .ready_i(ready_products), .data_o(limb_products_q)
   );
@@ -74,7 +76,7 @@ module multiplier #(
   logic [B_LIMBS*ROW_W-1:0] rows;
   logic                     valid_rows, ready_rows;
   for (genvar j = 0; j < B_LIMBS; j++) begin : g_row_sum
-    limb_sum #(.N(A_LIMBS), .W(LIMB_PRODUCT_W), .STEP(LIMB_W)) u_row (
+    limb_sum #(.N(A_LIMBS), .W(LIMB_PRODUCT_W), .STEP(LIMB_W), .LAST_IS_SKID(LAST_IS_SKID && B_LIMBS == 1)) u_row (
       .clk_i, .rst_ni, .valid_i(valid_products), .ready_o(ready_row[j]),
       .data_i(limb_products_q[j*A_LIMBS*LIMB_PRODUCT_W +: A_LIMBS*LIMB_PRODUCT_W]),
       .valid_o(valid_row[j]), .ready_i(ready_rows), .sum_o(rows[j*ROW_W +: ROW_W])
@@ -88,7 +90,7 @@ module multiplier #(
   end
 
   logic [FULL_W-1:0] full;
-  limb_sum #(.N(B_LIMBS), .W(ROW_W), .STEP(LIMB_W)) u_sum (
+  limb_sum #(.N(B_LIMBS), .W(ROW_W), .STEP(LIMB_W), .LAST_IS_SKID(LAST_IS_SKID)) u_sum (
     .clk_i, .rst_ni, .valid_i(valid_rows), .ready_o(ready_rows), .data_i(rows),
     .valid_o, .ready_i, .sum_o(full)
   );

@@ -7,16 +7,16 @@
 module ray_setup #(
   parameter int unsigned TAG_W = 8
 ) (
-  input  logic                   clk_i,
-  input  logic                   rst_ni,
-  input  logic                   valid_i,
-  output logic                   ready_o,
+  input  logic                    clk_i,
+  input  logic                    rst_ni,
+  input  logic                    valid_i,
+  output logic                    ready_o,
   input  lod_pkg::ray_setup_in_t  in_i,
-  input  logic [TAG_W-1:0]       tag_i,
-  output logic                   valid_o,
-  input  logic                   ready_i,
+  input  logic [TAG_W-1:0]        tag_i,
+  output logic                    valid_o,
+  input  logic                    ready_i,
   output lod_pkg::ray_setup_out_t out_o,
-  output logic [TAG_W-1:0]       tag_o
+  output logic [TAG_W-1:0]        tag_o
 );
 
   localparam int unsigned X_W = lod_pkg::POINT_W / 3;
@@ -26,7 +26,9 @@ module ray_setup #(
   localparam int unsigned CEIL_W = 17;
   localparam int unsigned MOMENT_W = lod_pkg::MOMENT_W / 3;
   localparam int unsigned PRODUCT_W = X_W + D_W + 1;
-  localparam int unsigned PRODUCT_LATENCY = lod_pkg::multiplier_latency(X_W, D_W + 1);
+  // Choosing the factors takes a cycle of its own.
+  localparam int unsigned FACTOR_STAGES = 1;
+  localparam int unsigned PRODUCT_LATENCY = FACTOR_STAGES + lod_pkg::multiplier_latency(X_W, D_W + 1);
   localparam int unsigned PRODUCTS = 6;
   // Cycle 1 finds the highest bit, cycle 2 normalises, then the steps, and one cycle to choose.
   localparam int unsigned FIRST_STEP = 2;
@@ -145,7 +147,7 @@ module ray_setup #(
       default:     {factor_x, factor_d} = {x_q[1], d_q[0]};
     endcase
   end
-  multiplier #(.A_W(X_W), .B_W(D_W + 1)) u_product (
+  multiplier #(.A_W(X_W), .B_W(D_W + 1), .FACTOR_STAGES(FACTOR_STAGES)) u_product (
     .clk_i, .rst_ni, .valid_i(busy_q && count_q < COUNT_W'(PRODUCTS)), .ready_o(unused_ready), .a_i(factor_x), .b_i({1'b0, factor_d}),
     .valid_o(valid_product), .ready_i(1'b1), .product_o(product)
   );

@@ -30,9 +30,9 @@ module tri_edges_parallel #(
   localparam int unsigned N_W = lod_pkg::NORMAL_W;
   localparam int unsigned D_W = lod_pkg::DIRECTION_W;
   localparam int unsigned CROSS_LATENCY = lod_pkg::cross_product_latency(W);
-  // Where the products end in a `pipe_skid`, so does what goes beside them.
+  // Where the cross products and the multipliers of the dot products end in a `pipe_skid`, so does what goes beside them.
   localparam bit [63:0] CROSS_SKIDS = 64'd1 << (CROSS_LATENCY - 1);
-  localparam bit [63:0] EDGE_SKIDS = CROSS_SKIDS | 64'd1 << (lod_pkg::EDGE_FUNCTION_LATENCY - 1);
+  localparam bit [63:0] EDGE_SKIDS = CROSS_SKIDS | 64'd1 << (lod_pkg::EDGE_FUNCTION_LATENCY - 3);
   if (lod_pkg::EDGE_FUNCTION_LATENCY != CROSS_LATENCY + lod_pkg::dot_product_latency(N_W, W)) begin : g_illegal_latency
     $error("tri_edges_parallel: a.(b x c) and the edge functions must have one latency");
   end

@@ -33,9 +33,8 @@ module tri_edges_serial #(
   localparam int unsigned EDGE_W = lod_pkg::SIGNED_EDGE_W;
   localparam int unsigned PASS_W = 2;
   localparam int unsigned CROSS_LATENCY = lod_pkg::cross_product_latency(W);
-  localparam int unsigned FACTOR_STAGES = 1;
-  localparam int unsigned PRODUCT_LATENCY = FACTOR_STAGES + lod_pkg::multiplier_latency(N_W, W);
-  if (lod_pkg::EDGE_FUNCTION_LATENCY != CROSS_LATENCY + 1 + PRODUCT_LATENCY + 1) begin : g_illegal_latency
+  localparam int unsigned PRODUCT_LATENCY = lod_pkg::multiplier_latency(N_W, W);
+  if (lod_pkg::EDGE_FUNCTION_LATENCY != CROSS_LATENCY + 1 + PRODUCT_LATENCY + 2) begin : g_illegal_latency
     $error("tri_edges_serial: the path of t_num must have the latency of the edge function");
   end
 
@@ -108,27 +107,33 @@ module tri_edges_serial #(
 
   logic signed [N_W+W-1:0] product;
   logic                    valid_product, ready_product;
-  multiplier #(.A_W(N_W), .B_W(W), .FACTOR_STAGES(FACTOR_STAGES)) u_product (
+  multiplier #(.A_W(N_W), .B_W(W), .LAST_IS_SKID(1'b1)) u_product (
     .clk_i, .rst_ni, .valid_i(valid_factors), .ready_o(ready_factors), .a_i(n_k_q), .b_i(a_k_q),
     .valid_o(valid_product), .ready_i(ready_product), .product_o(product)
   );
   logic [PASS_W-1:0] pass_product;
   logic [TAG_W-1:0]  tag_product;
-  pipe_delay #(.W(PASS_W + TAG_W), .STAGES(PRODUCT_LATENCY)) u_beside_product (
+  pipe_delay #(.W(PASS_W + TAG_W), .STAGES(PRODUCT_LATENCY), .SKIDS(64'd1 << (PRODUCT_LATENCY - 1))) u_beside_product (
     .clk_i, .rst_ni, .valid_i(valid_factors), .ready_o(), .data_i({pass_factors, tag_factors}),
     .valid_o(), .ready_i(ready_product), .data_o({pass_product, tag_product})
   );
 
-  // The sum so far.
+  // The sum so far, then one stage more for the second sum of the edge function.
   logic [T_W-1:0]    t_num, t_num_q;
   logic [PASS_W-1:0] pass_value;
   assign t_num = T_W'(product) + (pass_product == 0 ? '0 : t_num_q);
   always_ff @(posedge clk_i) begin
     if (valid_product && ready_product) t_num_q <= t_num;
   end
-  // As the edge function ends in a `pipe_skid`, so does t_num.
-  pipe_skid #(.W(T_W + PASS_W + TAG_W)) u_t_num (
-    .clk_i, .rst_ni, .valid_i(valid_product), .ready_o(ready_product), .data_i({t_num, pass_product, tag_product}),
+  logic              valid_sum, ready_sum;
+  logic [PASS_W-1:0] pass_sum;
+  logic [TAG_W-1:0]  tag_sum;
+  pipe_stage #(.W(PASS_W + TAG_W)) u_beside_sum (
+    .clk_i, .rst_ni, .valid_i(valid_product), .ready_o(ready_product), .data_i({pass_product, tag_product}),
+    .valid_o(valid_sum), .ready_i(ready_sum), .data_o({pass_sum, tag_sum})
+  );
+  pipe_stage #(.W(T_W + PASS_W + TAG_W)) u_t_num (
+    .clk_i, .rst_ni, .valid_i(valid_sum), .ready_o(ready_sum), .data_i({t_num_q, pass_sum, tag_sum}),
     .valid_o(), .ready_i(ready_value), .data_o({t_num_o, pass_value, tag_o})
   );
 

@@ -5,16 +5,16 @@
 module widen_box #(
   parameter int unsigned TAG_W = 8
 ) (
-  input  logic                   clk_i,
-  input  logic                   rst_ni,
-  input  logic                   valid_i,
-  output logic                   ready_o,
+  input  logic                    clk_i,
+  input  logic                    rst_ni,
+  input  logic                    valid_i,
+  output logic                    ready_o,
   input  lod_pkg::widen_box_in_t  in_i,
-  input  logic [TAG_W-1:0]       tag_i,
-  output logic                   valid_o,
-  input  logic                   ready_i,
+  input  logic [TAG_W-1:0]        tag_i,
+  output logic                    valid_o,
+  input  logic                    ready_i,
   output lod_pkg::widen_box_out_t out_o,
-  output logic [TAG_W-1:0]       tag_o
+  output logic [TAG_W-1:0]        tag_o
 );
 
   localparam int unsigned CODE_W = lod_pkg::CODE3_W / 3;

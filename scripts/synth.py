@@ -9,7 +9,7 @@ import concurrent.futures
 import os
 import sys
 
-from synthesis import blocks, ecp5, gates, report
+from synthesis import blocks, check, ecp5, gates, report
 from synthesis.tools import Failure, Tools
 
 
@@ -24,8 +24,13 @@ def main():
         print(report.plain(rows))
         if options.paths:
             print_paths(wanted, figures)
+        if options.check and not failures:
+            tested = [block for block in wanted if options.block or block.module in blocks.twins()]
+            for block in tested:
+                check.export(block, figures[block.name]["gates_at"])
+            check.run(tested)
         if options.doc and not failures:
-            report.document(rows, tools.versions, options.seeds)
+            report.document(rows, figures, tools.versions, options.seeds)
     except Failure as why:
         sys.exit(f"scripts/synth: {why}")
     except KeyboardInterrupt:
@@ -44,12 +49,15 @@ def parse():
     parser.add_argument("--no-gates", action="store_true", help="leave the generic gates out")
     parser.add_argument("--paths", action="store_true", help="print the longest path of the slowest seed of each block")
     parser.add_argument("--jobs", type=int, default=os.cpu_count(), metavar="N", help="tools at work at once (default: one per core)")
+    parser.add_argument("--check", action="store_true", help="write the netlists to target/synth/netlists and run the blocks' own tests on them")
     parser.add_argument("--doc", action="store_true", help="write the table into docs/hardware.md")
     options = parser.parse_args()
     if options.seeds < 1 or options.jobs < 1:
         parser.error("--seeds and --jobs must be at least 1")
     if options.doc and (options.block or options.no_place or options.no_gates):
         parser.error("--doc writes the whole table: name no block and leave nothing out")
+    if options.check and options.no_gates:
+        parser.error("--check needs the gates")
     return options
 
 

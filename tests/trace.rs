@@ -51,7 +51,7 @@ fn waveform_and_save_files_stand_side_by_side() {
         assert!(gtkw.contains(words), "{words}");
     }
     assert!(text("ray.states").starts_with("00 IDLE\n01 SETUP\n") && text("ray.states").ends_with("14 DONE\n"));
-    assert!(text("ray.sucl").contains("variable_add traversal_unit.u_lod_test.out_o.s0\n"));
+    assert!(text("ray.sucl").contains("variable_add traversal_unit.g_context[0].u_context.lod_q.s0\n"));
     assert_eq!(fs::read_dir(desk).unwrap().count(), 5, "left-over files");
 
     // The same bytes again, over the old ones.

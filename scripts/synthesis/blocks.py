@@ -9,7 +9,7 @@ RTL = ROOT / "rtl"
 PACKAGE = "lod_pkg"
 
 # Blocks are the modules with a twin in src/block; of these, some come in several forms.
-FORMS = {"tri_test": [{"EDGES_PER_CYCLE": 1}, {"EDGES_PER_CYCLE": 3}]}
+FORMS = {"tri_test": [{}, {"EDGES_PER_CYCLE": 1}]}
 # Modules without a twin there that are worth a row.
 FURTHER = ["edge_function", "traversal_stack"]
 
@@ -51,10 +51,14 @@ class Block:
         return [f"read_verilog -sv {files}", f"hierarchy -check -top {self.module} {parameters}", f"rename -top {self.module}"]
 
 
+def twins():
+    """The modules with a Rust twin."""
+    return sorted(path.stem for path in (ROOT / "src/block").glob("*.rs") if path.stem != "mod")
+
+
 def every():
     """Every block."""
-    twins = sorted(path.stem for path in (ROOT / "src/block").glob("*.rs") if path.stem != "mod")
-    return [Block(name, tuple(form.items())) for name in twins + FURTHER for form in FORMS.get(name, [{}])]
+    return [Block(name, tuple(form.items())) for name in twins() + FURTHER for form in FORMS.get(name, [{}])]
 
 
 def chosen(names):
@@ -63,5 +67,6 @@ def chosen(names):
     for name in names:
         known = [block for block in every() if name in (block.module, block.name)]
         module, *parameters = name.split("-")
-        found += known or [Block(module, tuple(tuple(given.split("=", 1)) for given in parameters))]
+        exact = [block for block in known if block.name == name and block.parameters]
+        found += exact or known or [Block(module, tuple(tuple(given.split("=", 1)) for given in parameters))]
     return found

@@ -29,11 +29,11 @@ def script(block, folder):
         "booth", "alumacc", "opt", "memory", "opt -fast -full", "opt -undriven -fine", "techmap", "opt -fast",
         "dfflegalize -cell $_DFF_P_ x -cell $_DFFE_PP_ x", "opt_expr", "opt_clean",
         f"abc -g {gates} -script {ABC}", "opt_clean", "check -assert",
-        f"tee -q -o {folder}/stat.json stat -json",
         f"json -o {folder}/multipliers.json A:multiplier",
-        # One flat module and the multipliers, in wires of one bit: what simulates well.
-        "flatten", "opt_clean", "splitnets", "opt_clean", f"write_verilog -noattr {folder}/netlist.v",
-        "setattr -mod -unset keep_hierarchy A:multiplier", "flatten", "opt_clean", "ltp -noff",
+        # One flat module and the multipliers: registers that no output needs show only now. Wires of one bit simulate well.
+        "flatten -noscopeinfo", "opt -nodffe -nosdff", "opt_clean", "splitnets", "opt_clean", "check -assert",
+        f"tee -q -o {folder}/stat.json stat -json", f"write_verilog -noattr {folder}/netlist.v",
+        "setattr -mod -unset keep_hierarchy A:multiplier", "flatten -noscopeinfo", "opt_clean", "ltp -noff",
     ]
 
 

@@ -7,14 +7,17 @@ BEGIN, END = "<!-- scripts/synth: begin -->", "<!-- scripts/synth: end -->"
 HEADINGS = ["block", "GE", "flip-flops", "multipliers", "depth", "LUTs", "ECP5 FFs", "DSPs", "MHz", "seeds"]
 
 
+# What a traversal unit has one of each of, and what level of detail adds to it, as (block, how many).
+UNIT = ["ray_setup", "node_address", "tree_base", "child_test", "lod_test", "tessellate", "tri_test", "hit_divide", "hit_select", "bary_map"]
+ADDED = [("lod_test", 1), ("tessellate", 1), ("widen_box", 4), ("bary_map", 1), ("tree_base", 1)]
+
+
 def row(name, figures):
     """A block's figures as words, in the order of HEADINGS; what was not asked for is a dash."""
     gates, ecp5, clocks = figures.get("gates"), figures.get("ecp5"), figures.get("mhz")
     words = [name]
     if gates:
-        shapes = ", ".join(f"{count} of {shape}" for shape, count in sorted(gates["multipliers"].items(), key=lambda found: -found[1]))
-        words += [f"{gates['ge']:,}", f"{gates['flip_flops']:,}", f"{sum(gates['multipliers'].values())}", str(gates["depth"])]
-        del shapes
+        words += [f"{gates['ge']:,}", f"{gates['flip_flops']:,}", str(sum(gates["multipliers"].values())), str(gates["depth"])]
     else:
         words += ["-"] * 4
     words += [f"{ecp5['luts']:,}", f"{ecp5['flip_flops']:,}", str(ecp5["dsps"])] if ecp5 else ["-"] * 3
@@ -35,18 +38,26 @@ def plain(rows):
     return "\n".join(line.rstrip() for line in lines)
 
 
-def markdown(rows, versions, seeds):
-    """The table and what made it."""
+def share(figures):
+    """What level of detail adds to the blocks of a unit, in words."""
+    unit = sum(figures[name]["gates"]["ge"] for name in UNIT)
+    added = sum(count * figures[name]["gates"]["ge"] for name, count in ADDED)
+    parts = ", ".join(f"{count} `{name}`" if count > 1 else f"`{name}`" for name, count in ADDED)
+    return f"One of each block of a traversal unit has {unit:,} GE together; what level of detail adds to it ({parts}) is {added:,} of these, {100 * added / unit:.0f} %."
+
+
+def markdown(rows, figures, versions, seeds):
+    """The table, what follows from it and what made it."""
     marks = ["---", *["---:"] * (len(HEADINGS) - 1)]
     lines = ["| " + " | ".join(words) + " |" for words in [HEADINGS, marks, *([f"`{row[0]}`", *row[1:]] for row in rows)]]
     made = f"`scripts/synth --doc`, {seeds} seed{'s' if seeds > 1 else ''}, {versions[YOSYS]}, {versions[NEXTPNR]}, LFE5U-85F in CABGA756, speed grade 6."
-    return "\n".join([*lines, "", made])
+    return "\n".join([*lines, "", made, "", share(figures)])
 
 
-def document(rows, versions, seeds):
+def document(rows, figures, versions, seeds):
     """Puts the table between its marks in docs/hardware.md."""
     text = DOC.read_text(encoding="utf-8")
     if text.count(BEGIN) != 1 or text.count(END) != 1:
         raise Failure(f"docs/hardware.md must hold the marks {BEGIN} and {END}, once each")
     before, after = text.split(BEGIN)[0], text.split(END)[1]
-    write(DOC, f"{before}{BEGIN}\n{markdown(rows, versions, seeds)}\n{END}{after}")
+    write(DOC, f"{before}{BEGIN}\n{markdown(rows, figures, versions, seeds)}\n{END}{after}")

@@ -17,4 +17,4 @@ pub use formats::*;
 pub use round::*;
 pub use vec3::Vec3;
 pub(crate) use wire::wire_struct;
-pub use wire::{Field, Wire};
+pub use wire::{Field, Layout, Wire};

@@ -1,6 +1,6 @@
 //! Exact integer vectors.
 
-use super::{BitReader, BitWriter, Field, S, Wire};
+use super::{BitReader, BitWriter, Field, Layout, S, Wire};
 
 /// Three signed components of `W` bits.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default, Hash)]
@@ -20,6 +20,10 @@ impl<const W: u32> Vec3<W> {
         Self { x: S::new(x), y: S::new(y), z: S::new(z) }
     }
 
+    const fn component(name: &'static str) -> Field {
+        Field { name, width: W, layout: Layout::Signed }
+    }
+
     /// The components as plain integers, x first.
     #[inline(always)]
     pub const fn get(self) -> [i64; 3] {
@@ -37,7 +41,7 @@ impl Vec3<32> {
 
 impl<const W: u32> Wire for Vec3<W> {
     const WIDTH: u32 = 3 * W;
-    const FIELDS: &'static [Field] = &[Field::of::<S<W>>("x"), Field::of::<S<W>>("y"), Field::of::<S<W>>("z")];
+    const FIELDS: &'static [Field] = &[Self::component("x"), Self::component("y"), Self::component("z")];
     #[inline(always)]
     fn put(&self, w: &mut BitWriter<'_>) {
         self.x.put(w);

@@ -2,24 +2,28 @@
 
 use super::{BitReader, BitVec, BitWriter, S, U, WS, WU};
 
-/// Name and width of one field of a [`Wire`] struct, in declaration order.
+/// One field of a [`Wire`] struct, in declaration order.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Field {
     /// The name, the same as in the SystemVerilog packed struct.
     pub name: &'static str,
     /// Its width in bits.
     pub width: u32,
-    /// Its number of elements if it is an array, else 1.
-    pub elements: u32,
-    /// Its own fields if it is a struct.
-    pub fields: &'static [Self],
+    /// What its bits are.
+    pub layout: Layout,
 }
 
-impl Field {
-    /// The field `name` of type `T`.
-    pub const fn of<T: Wire>(name: &'static str) -> Self {
-        Self { name, width: T::WIDTH, elements: T::ELEMENTS, fields: T::FIELDS }
-    }
+/// What the bits of a [`Wire`] value are.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Layout {
+    /// An unsigned number or a flag.
+    Unsigned,
+    /// A signed number.
+    Signed,
+    /// That many elements of equal width.
+    Array(u32),
+    /// A struct of these fields.
+    Struct(&'static [Field]),
 }
 
 /// A value with a fixed number of bits. Of a struct the first field is the most significant; of an array `[T; N]`, as of `logic [N-1:0]`,
@@ -29,8 +33,8 @@ pub trait Wire: Sized {
     const WIDTH: u32;
     /// The fields of a struct, most significant first; empty for plain integers and arrays.
     const FIELDS: &'static [Field] = &[];
-    /// Number of elements of an array; 1 of everything else.
-    const ELEMENTS: u32 = 1;
+    /// What the bits are.
+    const LAYOUT: Layout = Layout::Struct(Self::FIELDS);
 
     /// Appends the bits, most significant first.
     fn put(&self, w: &mut BitWriter<'_>);
@@ -60,6 +64,7 @@ pub trait Wire: Sized {
 
 impl<const W: u32> Wire for U<W> {
     const WIDTH: u32 = W;
+    const LAYOUT: Layout = Layout::Unsigned;
     #[inline(always)]
     fn put(&self, w: &mut BitWriter<'_>) {
         w.put(self.get(), W);
@@ -72,6 +77,7 @@ impl<const W: u32> Wire for U<W> {
 
 impl<const W: u32> Wire for S<W> {
     const WIDTH: u32 = W;
+    const LAYOUT: Layout = Layout::Signed;
     #[inline(always)]
     fn put(&self, w: &mut BitWriter<'_>) {
         w.put(self.get().cast_unsigned(), W);
@@ -99,6 +105,7 @@ fn take_wide(width: u32, r: &mut BitReader<'_>) -> u128 {
 
 impl<const W: u32> Wire for WU<W> {
     const WIDTH: u32 = W;
+    const LAYOUT: Layout = Layout::Unsigned;
     fn put(&self, w: &mut BitWriter<'_>) {
         put_wide(self.get(), W, w);
     }
@@ -109,6 +116,7 @@ impl<const W: u32> Wire for WU<W> {
 
 impl<const W: u32> Wire for WS<W> {
     const WIDTH: u32 = W;
+    const LAYOUT: Layout = Layout::Signed;
     fn put(&self, w: &mut BitWriter<'_>) {
         put_wide(self.get().cast_unsigned(), W, w);
     }
@@ -120,6 +128,7 @@ impl<const W: u32> Wire for WS<W> {
 
 impl Wire for bool {
     const WIDTH: u32 = 1;
+    const LAYOUT: Layout = Layout::Unsigned;
     #[inline(always)]
     fn put(&self, w: &mut BitWriter<'_>) {
         w.put(u64::from(*self), 1);
@@ -131,8 +140,8 @@ impl Wire for bool {
 }
 
 impl<T: Wire + Copy + Default, const N: usize> Wire for [T; N] {
-    const WIDTH: u32 = T::WIDTH * Self::ELEMENTS;
-    const ELEMENTS: u32 = N as u32; // a small array length
+    const WIDTH: u32 = T::WIDTH * N as u32; // N is a small array length
+    const LAYOUT: Layout = Layout::Array(N as u32);
     #[inline(always)]
     fn put(&self, w: &mut BitWriter<'_>) {
         for v in self.iter().rev() {
@@ -159,7 +168,11 @@ macro_rules! wire_struct {
         impl $crate::num::Wire for $name {
             const WIDTH: u32 = 0 $(+ <$ty as $crate::num::Wire>::WIDTH)+;
             const FIELDS: &'static [$crate::num::Field] = &[
-                $($crate::num::Field::of::<$ty>(stringify!($field))),+
+                $($crate::num::Field {
+                    name: stringify!($field),
+                    width: <$ty as $crate::num::Wire>::WIDTH,
+                    layout: <$ty as $crate::num::Wire>::LAYOUT,
+                }),+
             ];
             #[inline(always)]
             fn put(&self, w: &mut $crate::num::BitWriter<'_>) {
@@ -191,7 +204,7 @@ mod tests {
         let v = Small { a: U::new(0xa), b: S::new(-1), l: [U::new(1), U::new(2)] };
         assert_eq!(v.to_bits().words(), &[0xaf21]);
         assert_eq!(Small::WIDTH, 16);
-        assert_eq!(Small::FIELDS[2], Field { name: "l", width: 8, elements: 2, fields: &[] });
+        assert_eq!(Small::FIELDS[2], Field { name: "l", width: 8, layout: Layout::Array(2) });
     }
 
     proptest! {

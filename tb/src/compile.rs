@@ -101,12 +101,9 @@ impl<'a> Job<'a> {
             let whole = self.compiler.library(work.path(), &runtime)?;
             std::fs::rename(&whole, &by_output).map_err(Error::file(&by_output))?;
         }
-        match std::fs::hard_link(&by_output, &library) {
-            // Another process was faster.
-            Err(_) if library.is_file() => {}
-            result => result.map_err(Error::file(&library))?,
-        }
-        Ok(library)
+        // It may be there from another process by now, or the file system may know no links: the first name serves as well.
+        let _ = std::fs::hard_link(&by_output, &library);
+        Ok(by_output)
     }
 
     /// Writes the C++ of the model and the shim into a folder; returns the hash of all of it.

@@ -40,5 +40,5 @@ pub use failure::{Failure, Fault};
 pub use model::Model;
 pub use ports::{Direction, Port};
 pub use sim::{PortId, Sim};
-pub use sources::root;
+pub use sources::{root, rtl};
 pub use tool::{Verilator, lint};

@@ -16,7 +16,7 @@ pub fn root() -> &'static Path {
 }
 
 /// The folder of the RTL: `rtl/`, or the one that `LODRAY_RTL` names.
-pub(crate) fn rtl() -> PathBuf {
+pub fn rtl() -> PathBuf {
     std::env::var_os("LODRAY_RTL").map_or_else(|| root().join("rtl"), |given| root().join(given))
 }
 

@@ -35,7 +35,7 @@ fn fault(number: u32, mode: Mode) -> Fault {
 
 #[test]
 fn a_right_block_passes_free_and_stalled() {
-    let free = run(0, Mode::Free, 200_000).unwrap();
+    let free = run(0, Mode::Free, 200_000).unwrap_or_else(|error| panic!("{error}"));
     assert_eq!((free.transactions, free.min_latency, free.max_latency, free.min_interval), (200_000, 3, 3, 1));
     let stalled = run(0, Mode::Stalled, 200_000).unwrap();
     assert_eq!((stalled.transactions, stalled.min_latency), (200_000, 3));
@@ -98,4 +98,16 @@ fn ports_of_other_widths_are_refused() {
     let build = Build::with_files("rotate", vec![root().join("tb/tests/rtl/rotate.sv")]).parameter("FAULT", 0);
     let result = check_block::<Wide>(&build, &Plan::new(Mode::Free, 1), [Vec3::default()]);
     assert!(result.is_err_and(|e| e.to_string().contains("93")));
+}
+
+#[test]
+fn without_verilator_a_test_fails_and_says_what_to_run() {
+    let this = std::env::current_exe().unwrap();
+    let out = std::process::Command::new(this)
+        .args(["--exact", "a_right_block_passes_free_and_stalled"])
+        .env("LODRAY_VERILATOR", root().join("no/such/verilator"))
+        .output()
+        .unwrap();
+    let text = String::from_utf8_lossy(&out.stdout);
+    assert!(!out.status.success() && text.contains("run scripts/tools"), "{text}");
 }

@@ -1,98 +1,92 @@
-use crate::draw::{Draw, POINT_MAX};
-use crate::suite::Suite;
+//! The 16-bit box test.
+
+use crate::boxes::{self, Meeting, grazes, is_setup, octant};
+use crate::draw::Draw;
+use crate::suite::{Category, Suite};
 use lodray::block::Block;
 use lodray::block::box_test::{BoxTest, In};
-use lodray::num::{Box16, RayT, T_NEAR_TO_T_SHIFT, U};
+use lodray::num::{Box16, RayT, T_NEAR_TO_T_SHIFT, TNear, U};
+use tb::Mode;
+
+const SHIFT: u32 = 16;
+
+fn open(m: Meeting) -> In {
+    let codes = |v: [i64; 3]| v.map(|c| (c >> SHIFT) as i16); // of 32 bits
+    In { ray: m.setup(), t_max: RayT::MAX, bounds: Box16::from_codes(codes(m.lo), codes(m.hi)) }
+}
+
+fn units(i: &In) -> ([i64; 3], [i64; 3]) {
+    let units = |v: [i64; 3]| v.map(|c| c << SHIFT);
+    (units(i.bounds.lo.get()), units(i.bounds.hi.get()))
+}
 
 fn random(draw: &mut Draw) -> In {
-    In { ray: draw.setup(), t_max: draw.t_max(), bounds: draw.box16() }
+    In { t_max: draw.t_max(), ..open(boxes::random::<SHIFT>(draw)) }
 }
 
-/// Rays exactly through corners, edges and faces of a box, or from there on.
-fn touching(draw: &mut Draw) -> In {
-    aimed(draw, Draw::short_direction)
+fn inside(draw: &mut Draw) -> In {
+    In { t_max: draw.t_max(), ..open(boxes::inside::<SHIFT>(draw)) }
 }
 
-fn axis_parallel_touching(draw: &mut Draw) -> In {
-    aimed(draw, |draw| {
-        let d = draw.axis_parallel().get().map(|v| v >> 2);
-        lodray::num::Direction::new(d[0], d[1], d[2])
-    })
+/// The ray ends where the box begins, plus `by` steps.
+fn ends(draw: &mut Draw, by: i64) -> In {
+    let input = open(boxes::ahead::<SHIFT>(draw));
+    let entry = (BoxTest::eval(&input).t_near.get() << T_NEAR_TO_T_SHIFT).cast_signed();
+    In { t_max: U::new((entry + by).max(0).cast_unsigned()), ..input }
 }
 
-fn plane_parallel_touching(draw: &mut Draw) -> In {
-    aimed(draw, |draw| {
-        let d = draw.plane_parallel().get().map(|v| v >> 2);
-        lodray::num::Direction::new(d[0], d[1], d[2])
-    })
+fn legal(i: &In) -> bool {
+    let (lo, hi) = (i.bounds.lo.get(), i.bounds.hi.get());
+    is_setup(&i.ray) && (0..3).all(|k| lo[k] <= hi[k] && lo[k] >= -32767 && hi[k] <= 32767)
 }
 
-fn aimed(draw: &mut Draw, direction: fn(&mut Draw) -> lodray::num::Direction) -> In {
-    let bounds = small_box(draw);
-    let units = |v: [i64; 3]| v.map(|c| c << 16);
-    let mut target = draw.on_box(units(bounds.lo.get()), units(bounds.hi.get()));
-    // Some pass a unit beside.
-    if draw.once_in(2) {
-        target[draw.below(3) as usize] += draw.below(3).cast_signed() - 1;
-    }
-    let d = direction(draw);
-    let origin = draw.origin_towards(target, d);
-    In { ray: draw.setup_of(origin, d), t_max: RayT::MAX, bounds }
-}
+type Is = Category<BoxTest>;
 
-/// A box within +-2^29 units.
-fn small_box(draw: &mut Draw) -> Box16 {
-    let corner = |draw: &mut Draw| [0; 3].map(|_| draw.signed(8191) as i16);
-    let (a, b) = (corner(draw), corner(draw));
-    Box16::from_codes([0, 1, 2].map(|k| a[k].min(b[k])), [0, 1, 2].map(|k| a[k].max(b[k])))
-}
-
-/// Rays of full length that hit, and end exactly at the box, or a step before or behind.
-fn t_max_at_entry(draw: &mut Draw) -> In {
-    let bounds = small_box(draw);
-    let centre = [0, 1, 2].map(|k| (bounds.lo.get()[k] + bounds.hi.get()[k]) << 15);
-    let d = draw.axis_parallel().get().map(|v| v / 2 + draw.signed(1 << 28));
-    let d = lodray::num::Direction::new(d[0], d[1], d[2]);
-    let back = draw.below(3).cast_signed();
-    let [x, y, z] = [0, 1, 2].map(|k| (centre[k] - back * d.get()[k]).clamp(-POINT_MAX, POINT_MAX));
-    let ray = draw.setup_of(lodray::num::Point::new(x, y, z), d);
-    let open = In { ray, t_max: RayT::MAX, bounds };
-    let entry = BoxTest::eval(&open).t_near.get() << T_NEAR_TO_T_SHIFT;
-    In { t_max: U::new((entry + draw.below(3)).saturating_sub(1).min(RayT::MAX.get())), ..open }
-}
-
-/// Nothing and everything: empty direction, the largest box, the farthest origins.
-fn extreme(draw: &mut Draw) -> In {
-    let direction = if draw.once_in(2) { lodray::num::Direction::default() } else { draw.axis_parallel() };
-    let origin = lodray::num::Point::new(draw.signed(POINT_MAX), POINT_MAX, -POINT_MAX);
-    let bounds = if draw.once_in(2) { Box16::from_codes([-32767; 3], [32767; 3]) } else { draw.box16() };
-    In { ray: draw.setup_of(origin, direction), t_max: draw.t_max(), bounds }
+fn suite() -> Suite<BoxTest> {
+    Suite::new(
+        legal,
+        vec![
+            Is::any("random", random),
+            Is::all("origin in the box", inside, |_, o| o.hit && o.t_near == TNear::ZERO),
+            Is::all("through a corner", |d| open(boxes::corner::<SHIFT>(d)), |_, o| o.hit),
+            Is::all(
+                "grazing an edge",
+                |d| open(boxes::grazing::<SHIFT>(d)),
+                |i, o| {
+                    let (lo, hi) = units(i);
+                    o.hit && (grazes(&i.ray, lo, hi) || [i.ray.x, i.ray.y, i.ray.z].iter().any(|a| a.d.get() == 0))
+                },
+            ),
+            Is::some("one unit beside that", |d| open(boxes::beside::<SHIFT>(d)), |_, o| !o.hit),
+            Is::all("axis-parallel", |d| open(boxes::axis_parallel::<SHIFT>(d)), |_, o| o.hit),
+            Is::all("parallel to a plane", |d| open(boxes::plane_parallel::<SHIFT>(d)), |_, o| o.hit),
+            Is::all("almost axis-parallel", |d| open(boxes::leaning::<SHIFT>(d)), |_, o| o.hit),
+            Is::all("one unit off a face", |d| open(boxes::off_a_face::<SHIFT>(d)), |_, o| !o.hit),
+            Is::all("flat boxes", |d| open(boxes::flat::<SHIFT>(d)), |_, o| o.hit),
+            Is::all("box behind", |d| open(boxes::behind::<SHIFT>(d)), |_, o| !o.hit),
+            Is::often("t_max at the entry", |d| ends(d, 0), |i, o| o.hit && o.t_near.get() << T_NEAR_TO_T_SHIFT == i.t_max.get()),
+            Is::often("t_max one step before the entry", |d| ends(d, -1), |_, o| !o.hit),
+            Is::often("saturated distance", |d| open(boxes::short::<SHIFT>(d)), |_, o| o.hit && o.t_near == TNear::MAX),
+            Is::often("a few steps ahead", |d| open(boxes::near::<SHIFT>(d)), |_, o| o.hit && (1..9).contains(&o.t_near.get())),
+            Is::any("extremes", |d| open(boxes::extreme::<SHIFT>(d))),
+        ],
+        vec![
+            ("a distance of one step", |_, o| o.t_near.get() == 1),
+            ("no direction, hit", |i, o| o.hit && i.ray.x.d.get() | i.ray.y.d.get() | i.ray.z.d.get() == 0),
+            ("no direction, miss", |i, o| !o.hit && i.ray.x.d.get() | i.ray.y.d.get() | i.ray.z.d.get() == 0),
+            ("a point of a box, met", |i, o| o.hit && i.bounds.lo == i.bounds.hi),
+            ("moment cut off by rounding", |i, o| o.hit && i.ray.moment.get().iter().any(|m| m & 0xffff != 0)),
+        ],
+        vec![("octant", 0..=7, |i, _| octant(&i.ray)), ("hit", 0..=1, |_, o| o.hit.into())],
+    )
 }
 
 #[test]
-fn rtl_equals_rust() {
-    Suite::<BoxTest>::new(
-        &[
-            ("random", random),
-            ("through corners, edges and faces", touching),
-            ("axis-parallel along faces", axis_parallel_touching),
-            ("parallel to a plane", plane_parallel_touching),
-            ("t_max at the entry", t_max_at_entry),
-            ("extremes", extreme),
-        ],
-        &[
-            ("hit", |_, o| o.hit),
-            ("miss", |_, o| !o.hit),
-            ("hit of a flat box", |i, o| o.hit && i.bounds.lo.x == i.bounds.hi.x),
-            ("hit at t_max", |i, o| o.hit && o.t_near.get() > 0 && o.t_near.get() << T_NEAR_TO_T_SHIFT == i.t_max.get()),
-            ("culled one step before t_max", |i, o| {
-                let open = BoxTest::eval(&In { t_max: RayT::MAX, ..*i });
-                !o.hit && open.hit && open.t_near.get() << T_NEAR_TO_T_SHIFT == i.t_max.get() + 1
-            }),
-            ("axis-parallel hit", |i, o| o.hit && i.ray.x.d.get() == 0 && i.ray.y.d.get() == 0),
-            ("moment cut off by rounding", |i, o| o.hit && i.ray.moment.get().iter().any(|m| m & 0xffff != 0)),
-            ("no direction at all", |i, _| i.ray.x.d.get() | i.ray.y.d.get() | i.ray.z.d.get() == 0),
-        ],
-    )
-    .run();
+fn free_running() {
+    suite().run(Mode::Free);
+}
+
+#[test]
+fn stalled() {
+    suite().run(Mode::Stalled);
 }

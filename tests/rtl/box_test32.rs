@@ -1,82 +1,84 @@
-use crate::draw::{Draw, POINT_MAX};
-use crate::suite::Suite;
+//! The 32-bit box test.
+
+use crate::boxes::{self, Meeting, grazes, is_setup, octant};
+use crate::draw::Draw;
+use crate::rays::{is_point, point};
+use crate::suite::{Category, Suite};
 use lodray::block::Block;
 use lodray::block::box_test32::{BoxTest32, In};
-use lodray::num::{Direction, Point, RayT, T_NEAR_TO_T_SHIFT, U};
+use lodray::num::{RayT, T_NEAR_TO_T_SHIFT, TNear, U};
+use tb::Mode;
 
-/// Lower and upper corner of a box with |v| <= `max`, often flat.
-fn corners(draw: &mut Draw, max: i64) -> (Point, Point) {
-    let (a, b) = (draw.point(max).get(), draw.point(max).get());
-    let flat = draw.below(6) as usize;
-    let [lx, ly, lz] = [0, 1, 2].map(|k| a[k].min(b[k]));
-    let [hx, hy, hz] = [0, 1, 2].map(|k| if k == flat { a[k].min(b[k]) } else { a[k].max(b[k]) });
-    (Point::new(lx, ly, lz), Point::new(hx, hy, hz))
+const SHIFT: u32 = 0;
+
+fn open(m: Meeting) -> In {
+    In { ray: m.setup(), t_max: RayT::MAX, lo: point(m.lo), hi: point(m.hi) }
 }
 
 fn random(draw: &mut Draw) -> In {
-    let (lo, hi) = corners(draw, POINT_MAX);
-    In { ray: draw.setup(), t_max: draw.t_max(), lo, hi }
+    In { t_max: draw.t_max(), ..open(boxes::random::<SHIFT>(draw)) }
 }
 
-fn aimed(draw: &mut Draw, direction: fn(&mut Draw) -> Direction) -> In {
-    let (lo, hi) = corners(draw, 1 << 29);
-    let mut target = draw.on_box(lo.get(), hi.get());
-    if draw.once_in(2) {
-        target[draw.below(3) as usize] += draw.below(3).cast_signed() - 1;
-    }
-    let d = direction(draw);
-    let origin = draw.origin_towards(target, d);
-    In { ray: draw.setup_of(origin, d), t_max: RayT::MAX, lo, hi }
+fn inside(draw: &mut Draw) -> In {
+    In { t_max: draw.t_max(), ..open(boxes::inside::<SHIFT>(draw)) }
 }
 
-fn touching(draw: &mut Draw) -> In {
-    aimed(draw, Draw::short_direction)
+/// The ray ends where the box begins, plus `by` steps.
+fn ends(draw: &mut Draw, by: i64) -> In {
+    let input = open(boxes::ahead::<SHIFT>(draw));
+    let entry = (BoxTest32::eval(&input).t_near.get() << T_NEAR_TO_T_SHIFT).cast_signed();
+    In { t_max: U::new((entry + by).max(0).cast_unsigned()), ..input }
 }
 
-fn axis_parallel_touching(draw: &mut Draw) -> In {
-    aimed(draw, |draw| {
-        let d = draw.axis_parallel().get().map(|v| v >> 2);
-        Direction::new(d[0], d[1], d[2])
-    })
+fn legal(i: &In) -> bool {
+    let (lo, hi) = (i.lo.get(), i.hi.get());
+    is_setup(&i.ray) && is_point(i.lo) && is_point(i.hi) && (0..3).all(|k| lo[k] <= hi[k])
 }
 
-fn t_max_at_entry(draw: &mut Draw) -> In {
-    let (lo, hi) = corners(draw, 1 << 29);
-    let target = draw.on_box(lo.get(), hi.get());
-    let d = draw.axis_parallel().get().map(|v| v / 2 + draw.signed(1 << 28));
-    let d = Direction::new(d[0], d[1], d[2]);
-    let [x, y, z] = [0, 1, 2].map(|k| (target[k] - 2 * d.get()[k]).clamp(-POINT_MAX, POINT_MAX));
-    let open = In { ray: draw.setup_of(Point::new(x, y, z), d), t_max: RayT::MAX, lo, hi };
-    let entry = BoxTest32::eval(&open).t_near.get() << T_NEAR_TO_T_SHIFT;
-    In { t_max: U::new((entry + draw.below(3)).saturating_sub(1).min(RayT::MAX.get())), ..open }
-}
+type Is = Category<BoxTest32>;
 
-fn extreme(draw: &mut Draw) -> In {
-    let direction = if draw.once_in(2) { Direction::default() } else { draw.direction() };
-    let origin = Point::new(draw.signed(POINT_MAX), POINT_MAX, -POINT_MAX);
-    let (lo, hi) = (Point::new(-POINT_MAX, -POINT_MAX, -POINT_MAX), Point::new(POINT_MAX, POINT_MAX, POINT_MAX));
-    In { ray: draw.setup_of(origin, direction), t_max: draw.t_max(), lo, hi }
+fn suite() -> Suite<BoxTest32> {
+    Suite::new(
+        legal,
+        vec![
+            Is::any("random", random),
+            Is::all("origin in the box", inside, |_, o| o.hit && o.t_near == TNear::ZERO),
+            Is::all("through a corner", |d| open(boxes::corner::<SHIFT>(d)), |_, o| o.hit),
+            Is::all(
+                "grazing an edge",
+                |d| open(boxes::grazing::<SHIFT>(d)),
+                |i, o| o.hit && (grazes(&i.ray, i.lo.get(), i.hi.get()) || [i.ray.x, i.ray.y, i.ray.z].iter().any(|a| a.d.get() == 0)),
+            ),
+            Is::some("one unit beside that", |d| open(boxes::beside::<SHIFT>(d)), |_, o| !o.hit),
+            Is::all("axis-parallel", |d| open(boxes::axis_parallel::<SHIFT>(d)), |_, o| o.hit),
+            Is::all("parallel to a plane", |d| open(boxes::plane_parallel::<SHIFT>(d)), |_, o| o.hit),
+            Is::all("almost axis-parallel", |d| open(boxes::leaning::<SHIFT>(d)), |_, o| o.hit),
+            Is::all("one unit off a face", |d| open(boxes::off_a_face::<SHIFT>(d)), |_, o| !o.hit),
+            Is::all("flat boxes", |d| open(boxes::flat::<SHIFT>(d)), |_, o| o.hit),
+            Is::all("box behind", |d| open(boxes::behind::<SHIFT>(d)), |_, o| !o.hit),
+            Is::often("t_max at the entry", |d| ends(d, 0), |i, o| o.hit && o.t_near.get() << T_NEAR_TO_T_SHIFT == i.t_max.get()),
+            Is::often("t_max one step before the entry", |d| ends(d, -1), |_, o| !o.hit),
+            Is::often("saturated distance", |d| open(boxes::short::<SHIFT>(d)), |_, o| o.hit && o.t_near == TNear::MAX),
+            Is::often("a few steps ahead", |d| open(boxes::near::<SHIFT>(d)), |_, o| o.hit && (1..9).contains(&o.t_near.get())),
+            Is::any("extremes", |d| open(boxes::extreme::<SHIFT>(d))),
+        ],
+        vec![
+            ("a distance of one step", |_, o| o.t_near.get() == 1),
+            ("no direction, hit", |i, o| o.hit && i.ray.x.d.get() | i.ray.y.d.get() | i.ray.z.d.get() == 0),
+            ("no direction, miss", |i, o| !o.hit && i.ray.x.d.get() | i.ray.y.d.get() | i.ray.z.d.get() == 0),
+            ("a point of a box, met", |i, o| o.hit && i.lo == i.hi),
+            ("the largest box", |i, _| i.hi.x.get() - i.lo.x.get() == (1 << 32) - 2),
+        ],
+        vec![("octant", 0..=7, |i, _| octant(&i.ray)), ("hit", 0..=1, |_, o| o.hit.into())],
+    )
 }
 
 #[test]
-fn rtl_equals_rust() {
-    Suite::<BoxTest32>::new(
-        &[
-            ("random", random),
-            ("through corners, edges and faces", touching),
-            ("axis-parallel along faces", axis_parallel_touching),
-            ("t_max at the entry", t_max_at_entry),
-            ("extremes", extreme),
-        ],
-        &[
-            ("hit", |_, o| o.hit),
-            ("miss", |_, o| !o.hit),
-            ("hit of a flat box", |i, o| o.hit && i.lo.x == i.hi.x),
-            ("hit at t_max", |i, o| o.hit && o.t_near.get() > 0 && o.t_near.get() << T_NEAR_TO_T_SHIFT == i.t_max.get()),
-            ("axis-parallel hit", |i, o| o.hit && i.ray.x.d.get() == 0 && i.ray.y.d.get() == 0),
-            ("largest box", |i, _| i.lo.x.get() == -POINT_MAX && i.hi.z.get() == POINT_MAX),
-            ("no direction at all", |i, _| i.ray.x.d.get() | i.ray.y.d.get() | i.ray.z.d.get() == 0),
-        ],
-    )
-    .run();
+fn free_running() {
+    suite().run(Mode::Free);
+}
+
+#[test]
+fn stalled() {
+    suite().run(Mode::Stalled);
 }

@@ -1,8 +1,6 @@
 //! Random integers as blocks like them least: all magnitudes, zeros, extremes.
 
-use lodray::block::Block;
-use lodray::block::ray_setup::{self, RaySetup};
-use lodray::num::{Box16, COORD_LIMIT, Cone, Direction, Point, Ray, RayT, U};
+use lodray::num::{BoundScale, Box16, COORD_LIMIT, Cone, LARGEST_BOUND, Point, Ray, RayT, U, bound_scale};
 use lodray_test_support::models::Rng;
 
 /// Largest magnitude of a point's coordinate.
@@ -11,16 +9,26 @@ pub const POINT_MAX: i64 = (1 << 31) - 1;
 pub const DIRECTION_MAX: i64 = (1 << 30) - 1;
 
 /// The source of a test's inputs.
-pub struct Draw(Rng);
+pub struct Draw {
+    pub(crate) rng: Rng,
+    /// Scales take long to make: one in sixteen that are drawn is new.
+    scales: Vec<BoundScale>,
+}
 
 impl Draw {
     pub fn new(seed: u64) -> Self {
-        Self(Rng(seed))
+        let scales = [0, 1, 2, 1 << 20, (1 << 32) - 1, 1 << 32, LARGEST_BOUND].map(bound_scale).to_vec();
+        Self { rng: Rng(seed), scales }
     }
 
     /// 0 to `n` - 1.
     pub fn below(&mut self, n: u64) -> u64 {
-        self.0.below(n)
+        self.rng.below(n)
+    }
+
+    /// `low` to `high`, both included.
+    pub fn between(&mut self, low: i64, high: i64) -> i64 {
+        low + self.below(high.abs_diff(low) + 1).cast_signed()
     }
 
     /// True once in `n`.
@@ -28,9 +36,24 @@ impl Draw {
         self.below(n) == 0
     }
 
+    /// One of these.
+    pub fn one_of<T: Copy>(&mut self, these: &[T]) -> T {
+        these[self.below(these.len() as u64) as usize]
+    }
+
+    /// -1, 0 or 1.
+    pub fn beside(&mut self) -> i64 {
+        self.between(-1, 1)
+    }
+
+    /// `v` or -`v`.
+    pub fn sign(&mut self, v: i64) -> i64 {
+        if self.once_in(2) { -v } else { v }
+    }
+
     /// `W` random bits, often of a smaller magnitude, sometimes all zero or all one.
     pub fn bits<const W: u32>(&mut self) -> U<W> {
-        let v = self.0.draw() >> (64 - W);
+        let v = self.rng.draw() >> (64 - W);
         U::new(match self.below(8) {
             0 => 0,
             1 => U::<W>::MAX.get(),
@@ -41,7 +64,7 @@ impl Draw {
 
     /// The same for 128 bits.
     pub fn wide(&mut self, width: u32) -> u128 {
-        let v = (u128::from(self.0.draw()) << 64 | u128::from(self.0.draw())) >> (128 - width);
+        let v = (u128::from(self.rng.draw()) << 64 | u128::from(self.rng.draw())) >> (128 - width);
         match self.below(8) {
             0 => 0,
             1 => u128::MAX >> (128 - width),
@@ -52,7 +75,7 @@ impl Draw {
 
     /// -`max` to `max`, of all magnitudes, with zeros and extremes.
     pub fn signed(&mut self, max: i64) -> i64 {
-        let v = self.below(2 * max.unsigned_abs() + 1).cast_signed() - max;
+        let v = self.between(-max, max);
         match self.below(8) {
             0 => 0,
             1 => max,
@@ -62,9 +85,17 @@ impl Draw {
         }
     }
 
+    /// A coordinate, near a step of box codes one time in four.
+    pub fn coordinate(&mut self, max: i64) -> i64 {
+        match self.below(4) {
+            0 => ((self.signed(max >> 16) << 16) + self.beside()).clamp(-max, max),
+            _ => self.signed(max),
+        }
+    }
+
     /// A point with |v| <= `max`.
     pub fn point(&mut self, max: i64) -> Point {
-        Point::new(self.signed(max), self.signed(max), self.signed(max))
+        Point::new(self.coordinate(max), self.coordinate(max), self.coordinate(max))
     }
 
     /// A point of a model.
@@ -72,51 +103,26 @@ impl Draw {
         self.point(i64::from(COORD_LIMIT))
     }
 
-    /// A direction of any length up to 2^30.
-    pub fn direction(&mut self) -> Direction {
-        let d = [0; 3].map(|_| self.signed(DIRECTION_MAX));
-        // 2^60 is the square of the largest length.
-        let long = d.iter().map(|&c| i128::from(c) * i128::from(c)).sum::<i128>() > 1 << 60;
-        let [x, y, z] = if long { d.map(|c| c / 2) } else { d };
-        Direction::new(x, y, z)
+    /// A corner of the coordinate range.
+    pub fn corner(&mut self) -> [i64; 3] {
+        [POINT_MAX; 3].map(|v| self.sign(v))
     }
 
-    /// A direction along an axis.
-    pub fn axis_parallel(&mut self) -> Direction {
-        let mut d = [0; 3];
-        d[self.below(3) as usize] = if self.once_in(2) { DIRECTION_MAX } else { -DIRECTION_MAX };
-        Direction::new(d[0], d[1], d[2])
-    }
-
-    /// A direction within a coordinate plane.
-    pub fn plane_parallel(&mut self) -> Direction {
-        let mut d = self.direction().get();
-        d[self.below(3) as usize] = 0;
-        Direction::new(d[0], d[1], d[2])
-    }
-
-    /// A direction for which a step or a few from any middling point stay within range.
-    pub fn short_direction(&mut self) -> Direction {
-        let [x, y, z] = [0; 3].map(|_| self.signed(1 << 28));
-        Direction::new(x, y, z)
-    }
-
-    /// The origin of a ray that passes exactly through `target` (|v| <= 2^29) after one to four steps of `d`, or starts there.
-    pub fn origin_towards(&mut self, target: [i64; 3], d: Direction) -> Point {
-        let steps = self.below(5).cast_signed();
-        let [x, y, z] = [0, 1, 2].map(|k| target[k] - steps * d.get()[k]);
-        Point::new(x, y, z)
-    }
-
-    /// Constants of a ray from `origin` in `direction`.
-    pub fn setup_of(&mut self, origin: Point, direction: Direction) -> ray_setup::Out {
-        RaySetup::eval(&ray_setup::In { origin, direction })
-    }
-
-    /// Constants of any ray.
-    pub fn setup(&mut self) -> ray_setup::Out {
-        let (origin, direction) = (self.point(POINT_MAX), self.direction());
-        self.setup_of(origin, direction)
+    /// The scale of any model's bounds.
+    pub fn scale(&mut self) -> BoundScale {
+        if self.scales.len() < 64 || self.once_in(16) {
+            let largest = (self.rng.draw() >> (31 + self.below(33))).min(LARGEST_BOUND);
+            let scale = bound_scale(largest);
+            if self.scales.len() < 64 {
+                self.scales.push(scale);
+            } else {
+                let place = self.below(64) as usize;
+                self.scales[place] = scale;
+            }
+            return scale;
+        }
+        let place = self.below(64) as usize;
+        self.scales[place]
     }
 
     /// A cone of all kinds: none, parallel, wide, saturated.
@@ -134,22 +140,13 @@ impl Draw {
         if self.once_in(2) { RayT::MAX } else { self.bits() }
     }
 
-    /// A box of codes, often flat, sometimes the largest.
-    pub fn box16(&mut self) -> Box16 {
-        let mut corner = || [0; 3].map(|_| self.signed(32766) as i16);
+    /// A box of codes with |code| <= `max`, often flat.
+    pub fn box16(&mut self, max: i64) -> Box16 {
+        let mut corner = || [0; 3].map(|_| self.signed(max) as i16); // at most 16 bits
         let (a, b) = (corner(), corner());
         let flat = self.below(6) as usize;
         let lo = [0, 1, 2].map(|k: usize| a[k].min(b[k]));
         let hi = [0, 1, 2].map(|k: usize| if k == flat { lo[k] } else { a[k].max(b[k]) });
         Box16::from_codes(lo, hi)
-    }
-
-    /// One of the points of a box of codes, in units: a corner, or on an edge or a face.
-    pub fn on_box(&mut self, lo: [i64; 3], hi: [i64; 3]) -> [i64; 3] {
-        [0, 1, 2].map(|k| match self.below(4) {
-            0 => lo[k],
-            1 | 2 => hi[k],
-            _ => (lo[k] + hi[k]) / 2,
-        })
     }
 }

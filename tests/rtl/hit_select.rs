@@ -1,9 +1,12 @@
+//! The closest hit.
+
 use crate::draw::Draw;
-use crate::suite::Suite;
+use crate::suite::{Category, Suite};
 use lodray::block::hit_select::{HitSelect, In};
 use lodray::num::U;
+use tb::Mode;
 
-fn node(draw: &mut Draw) -> In {
+fn random(draw: &mut Draw) -> In {
     let levels = draw.below(11);
     let level = draw.below(levels + 1);
     let node = if draw.once_in(4) { (1 << (2 * level)) - 1 } else { draw.below(1 << (2 * level)) };
@@ -19,36 +22,67 @@ fn node(draw: &mut Draw) -> In {
     }
 }
 
-fn equal_t(draw: &mut Draw) -> In {
-    let input = node(draw);
-    In { best_t: input.t, ..input }
+fn first(draw: &mut Draw) -> In {
+    In { known: false, best_t: U::ZERO, best_id: U::ZERO, ..random(draw) }
 }
 
-/// The same triangle, and its neighbours by number.
-fn equal_id(draw: &mut Draw) -> In {
-    let input = equal_t(draw);
+/// A best hit of this t, and of the id of the new one plus `by`.
+fn near(draw: &mut Draw, t: i64, by: i64) -> In {
+    let input = random(draw);
     let (levels, level) = (input.levels.get(), input.level.get());
     let id = input.tree.get() << (2 * levels) | input.node.get() << (2 * (levels - level));
-    In { best_id: U::new((id + draw.below(3)).saturating_sub(1).min(U::<48>::MAX.get())), ..input }
+    let best_id = id.saturating_add_signed(by).min(U::<48>::MAX.get());
+    // Away from both ends, so that one more and one less exist.
+    let t_new = input.t.get().clamp(1, U::<35>::MAX.get() - 1);
+    In { known: true, t: U::new(t_new), best_t: U::new(t_new.saturating_add_signed(t)), best_id: U::new(best_id), ..input }
 }
 
-fn one_apart(draw: &mut Draw) -> In {
-    let input = equal_id(draw);
-    In { best_t: U::new((input.t.get() + draw.below(3)).saturating_sub(1).min(U::<35>::MAX.get())), ..input }
+/// The best hit is on an ancestor or a descendant that begins with the same full-resolution triangle: the same id.
+fn relative(draw: &mut Draw) -> In {
+    let input = random(draw);
+    let (levels, level) = (input.levels.get(), draw.below(input.levels.get() + 1));
+    In { known: true, best_t: input.t, best_id: U::new(input.tree.get() << (2 * levels)), node: U::ZERO, level: U::new(level), ..input }
+}
+
+/// The last triangle of all.
+fn last(draw: &mut Draw) -> In {
+    In { levels: U::new(10), level: U::new(10), tree: U::MAX, node: U::MAX, ..random(draw) }
+}
+
+fn legal(i: &In) -> bool {
+    i.levels.get() <= 10 && i.level <= i.levels && i.node.get() < 1 << (2 * i.level.get())
+}
+
+type Is = Category<HitSelect>;
+
+fn suite() -> Suite<HitSelect> {
+    Suite::new(
+        legal,
+        vec![
+            Is::any("random", random),
+            Is::all("first hit", first, |_, o| o.closer),
+            Is::all("equal t and id", |d| near(d, 0, 0), |i, o| i.best_id == o.id && !o.closer),
+            Is::all("equal t, larger id so far", |d| near(d, 0, 1), |i, o| o.closer == (i.best_id > o.id)),
+            Is::all("equal t, smaller id so far", |d| near(d, 0, -1), |_, o| !o.closer),
+            Is::all("t one step smaller, smaller id so far", |d| near(d, 1, -1), |_, o| o.closer),
+            Is::all("t one step larger, larger id so far", |d| near(d, -1, 1), |_, o| !o.closer),
+            Is::all("the largest id", last, |_, o| o.id == U::MAX),
+            Is::all("the same triangle on another level", relative, |i, o| i.best_id == o.id && !o.closer),
+        ],
+        vec![
+            ("smaller id at equal t", |i, o| i.known && i.t == i.best_t && o.closer),
+            ("the largest t", |i, o| i.t == U::MAX && !o.closer),
+        ],
+        vec![("N", 0..=10, |i, _| i.levels.get()), ("level", 0..=10, |i, _| i.level.get()), ("closer", 0..=1, |_, o| o.closer.into())],
+    )
 }
 
 #[test]
-fn rtl_equals_rust() {
-    Suite::<HitSelect>::new(
-        &[("random", node), ("equal t", equal_t), ("equal t and id", equal_id), ("t one apart", one_apart)],
-        &[
-            ("first hit", |i, o| !i.known && o.closer),
-            ("same triangle again", |i, o| i.known && i.t == i.best_t && o.id == i.best_id && !o.closer),
-            ("smaller id at equal t", |i, o| i.known && i.t == i.best_t && o.closer),
-            ("N = 0", |i, _| i.levels.get() == 0),
-            ("N = 10 at level 10", |i, _| i.level.get() == 10),
-            ("N = 10 at level 0", |i, _| i.levels.get() == 10 && i.level.get() == 0),
-        ],
-    )
-    .run();
+fn free_running() {
+    suite().run(Mode::Free);
+}
+
+#[test]
+fn stalled() {
+    suite().run(Mode::Stalled);
 }

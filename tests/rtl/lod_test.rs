@@ -1,123 +1,242 @@
+//! The level-of-detail test.
+
 use crate::draw::{Draw, POINT_MAX};
-use crate::suite::Suite;
+use crate::rays::{DIAGONAL, direction, is_direction, is_point, point};
+use crate::suite::{Category, Suite};
 use lodray::block::Block;
 use lodray::block::bound_decode::{self, BoundDecode};
 use lodray::block::lod_test::{In, LodTest, Out};
-use lodray::num::{Cone, Direction, Point, Ray, S_ONE, U, bound_scale};
+use lodray::num::{BoundCode, BoundScale, Cone, Point, Ray, S_ONE, U, bound_scale};
+use tb::Mode;
+
+/// Bound, distance l, displacement before its clamp, and state of edge `k`.
+struct Edge {
+    h: u64,
+    l: i64,
+    unclamped: i64,
+    s: u64,
+}
+
+/// l of edge `k`.
+fn distance(i: &In, k: usize) -> i64 {
+    let (x, d) = (i.ray.origin.get(), i.ray.direction.get());
+    let dot = |p: Point| (0..3).map(|k| (p.get()[k] - x[k]) * d[k]).sum::<i64>();
+    let p = [i.p0, i.p1, i.p2];
+    dot(p[(k + 1) % 3]).min(dot(p[(k + 2) % 3])) >> 30
+}
+
+fn bound(code: BoundCode, scale: BoundScale) -> u64 {
+    BoundDecode::eval(&bound_decode::In { code, scale }).h.get()
+}
+
+fn edges(i: &In, o: &Out) -> [Edge; 3] {
+    let (codes, states, cone) = ([i.e0, i.e1, i.e2], [o.s0, o.s1, o.s2], i.ray.cone);
+    [0, 1, 2].map(|k| {
+        let l = distance(i, k);
+        let unclamped = (cone.offset.get().cast_signed() + l * cone.slope.get().cast_signed()) >> cone.shift.get();
+        Edge { h: bound(codes[k], i.scale), l, unclamped, s: states[k].get() }
+    })
+}
 
 fn random(draw: &mut Draw) -> In {
-    In {
-        ray: draw.ray(),
-        p0: draw.point(POINT_MAX),
-        p1: draw.point(POINT_MAX),
-        p2: draw.point(POINT_MAX),
-        e0: draw.bits(),
-        e1: draw.bits(),
-        e2: draw.bits(),
-        scale: bound_scale(draw.bits::<32>().get()),
+    let [p0, p1, p2] = [0; 3].map(|_| draw.point(POINT_MAX));
+    In { ray: draw.ray(), p0, p1, p2, e0: draw.bits(), e1: draw.bits(), e2: draw.bits(), scale: draw.scale() }
+}
+
+/// A plausible frame: bounds small against distances, cones of about a pixel, a small triangle ahead.
+fn pixels(draw: &mut Draw) -> In {
+    let d = draw.full_direction();
+    let size = 1 << draw.between(8, 24);
+    let target = [0; 3].map(|_| draw.between(-(1 << 30), 1 << 30));
+    let origin = draw.afar(target, d);
+    let [p0, p1, p2] = [0; 3].map(|_| point(target.map(|v| v + draw.between(-size, size))));
+    let cone = Cone { offset: U::new(draw.below(1 << 40)), slope: U::new(draw.below(1 << 18)), shift: U::new(24 + draw.below(12)) };
+    let [e0, e1, e2] = [0; 3].map(|_| U::new(draw.below(1024)));
+    In { ray: Ray { origin, direction: d, cone }, p0, p1, p2, e0, e1, e2, scale: draw.scale() }
+}
+
+/// A scale whose largest bound is at least `least` units.
+fn scale_of(draw: &mut Draw, least: u64) -> BoundScale {
+    loop {
+        let scale = draw.scale();
+        if bound(U::MAX, scale) >= least {
+            return scale;
+        }
     }
 }
 
-/// A plausible frame: full-length rays, bounds small against distances, cones of a pixel.
-fn pixels(draw: &mut Draw) -> In {
-    let d = draw.axis_parallel().get().map(|v| v / 2 + draw.signed(1 << 28));
-    let origin = draw.point(1 << 30);
-    let cone = Cone { offset: U::new(draw.below(1 << 40)), slope: U::new(draw.below(1 << 18)), shift: U::new(24 + draw.below(12)) };
-    let ray = Ray { origin, direction: Direction::new(d[0], d[1], d[2]), cone };
-    let largest = 1 << (8 + draw.below(20));
-    In { ray, scale: bound_scale(largest), ..random(draw) }
+/// A cone that tolerates exactly `tolerance` at distance `l`: with as large a part from its slope as fits.
+fn cone_through(draw: &mut Draw, l: i64, tolerance: u64) -> Cone {
+    // The tolerance and its fraction take 53 bits at most.
+    let room = 53 - u64::from(u64::BITS - tolerance.leading_zeros());
+    let shift = draw.below(room + 1);
+    let wanted = (tolerance << shift | draw.below(1 << shift)).cast_signed();
+    let mut slope = draw.bits::<18>().get();
+    while !(0..1 << 53).contains(&(wanted - l * slope.cast_signed())) {
+        slope >>= 1;
+    }
+    let offset = (wanted - l * slope.cast_signed()).cast_unsigned();
+    Cone { offset: U::new(offset), slope: U::new(slope), shift: U::new(shift) }
 }
 
-/// A cone that tolerates exactly `tolerance`, whatever the distance.
-fn flat_cone(tolerance: u64) -> Cone {
-    Cone { offset: U::new(tolerance), slope: U::ZERO, shift: U::ZERO }
+/// An edge with a bound of at least 1024 units whose ray tolerates `tolerance` of that bound.
+fn tolerating(draw: &mut Draw, tolerance: fn(&mut Draw, u64) -> u64) -> In {
+    let input = if draw.once_in(2) { random(draw) } else { pixels(draw) };
+    let (mut codes, k) = ([input.e0, input.e1, input.e2], draw.below(3) as usize);
+    let scale = scale_of(draw, 1024);
+    if bound(codes[k], scale) < 1024 {
+        codes[k] = U::MAX;
+    }
+    let tolerance = tolerance(draw, bound(codes[k], scale));
+    let cone = cone_through(draw, distance(&input, k), tolerance);
+    let [e0, e1, e2] = codes;
+    In { ray: Ray { cone, ..input.ray }, e0, e1, e2, scale, ..input }
 }
 
-/// Tolerances around a bound of the triangle, and around half of it: the borders of s.
-fn borders(draw: &mut Draw) -> In {
-    let input = random(draw);
-    let code = [input.e0, input.e1, input.e2][draw.below(3) as usize];
-    let h = BoundDecode::eval(&bound_decode::In { code, scale: input.scale }).h.get();
-    let tolerance = match draw.below(4) {
-        0 => h,
-        1 => h.div_ceil(2),
-        2 => h / 2,
-        // s = 255 / 256 or about.
-        _ => (h * 256 / 511).max(1),
-    };
-    let tolerance = (tolerance + draw.below(3)).saturating_sub(1);
-    In { ray: Ray { cone: flat_cone(tolerance), ..input.ray }, ..input }
-}
-
-/// Triangles behind, at and before the origin: r below, at and above 0.
+/// All corners at or behind the origin.
 fn behind(draw: &mut Draw) -> In {
     let input = random(draw);
-    let p = |draw: &mut Draw| {
-        let at = input.ray.origin.get();
-        let [x, y, z] = at.map(|c| (c + draw.signed(1 << 20)).clamp(-POINT_MAX, POINT_MAX));
-        if draw.once_in(3) { input.ray.origin } else { Point::new(x, y, z) }
+    let (x, d) = (input.ray.origin.get(), input.ray.direction.get());
+    let mut corner = || {
+        if draw.once_in(4) {
+            return input.ray.origin;
+        }
+        // Against the ray on each axis.
+        let size = 1 << draw.below(31);
+        point([0, 1, 2].map(|k| (x[k] - d[k].signum() * draw.between(0, size)).clamp(-POINT_MAX, POINT_MAX)))
     };
-    let cone = Cone { offset: U::new(draw.below(3)), slope: draw.bits(), shift: U::new(draw.below(4)) };
-    In { ray: Ray { cone, ..input.ray }, p0: p(draw), p1: p(draw), p2: p(draw), ..input }
+    let (p0, p1, p2) = (corner(), corner(), corner());
+    In { p0, p1, p2, ..input }
 }
 
-/// No bounds at all, on one edge or on all.
-fn no_bounds(draw: &mut Draw) -> In {
-    let input = borders(draw);
-    let zero = draw.below(4);
-    let keep = |k: u64, code| if zero == k || zero == 3 { U::ZERO } else { code };
-    let cone = if draw.once_in(2) { flat_cone(0) } else { input.ray.cone };
-    In { ray: Ray { cone, ..input.ray }, e0: keep(0, input.e0), e1: keep(1, input.e1), e2: keep(2, input.e2), ..input }
+/// The cone narrows to nothing, or to less, before the triangle.
+fn no_radius(draw: &mut Draw) -> In {
+    let input = behind(draw);
+    let nearest = [0, 1, 2].map(|k| distance(&input, k)).into_iter().max().unwrap_or(0);
+    let slope = draw.below(1 << 18);
+    let most = slope * nearest.unsigned_abs();
+    let cone = Cone { offset: U::new(draw.below(most + 1)), slope: U::new(slope), shift: draw.bits() };
+    In { ray: Ray { cone, ..input.ray }, e0: U::MAX, e1: U::MAX, e2: U::MAX, scale: scale_of(draw, 1), ..input }
 }
 
-/// The farthest corners along the longest ray.
+fn corner_at_origin(draw: &mut Draw) -> In {
+    let input = random(draw);
+    let cone = Cone { offset: U::ZERO, ..input.ray.cone };
+    In { p0: input.ray.origin, ray: Ray { cone, ..input.ray }, e1: U::MAX, e2: U::MAX, scale: scale_of(draw, 1), ..input }
+}
+
+fn zero_bounds(draw: &mut Draw) -> In {
+    In { e0: U::ZERO, e1: U::ZERO, e2: U::ZERO, ..behind(draw) }
+}
+
+fn one_zero_bound(draw: &mut Draw) -> In {
+    In { e0: U::ZERO, e1: U::MAX, e2: U::MAX, ..no_radius(draw) }
+}
+
+fn flat_model(draw: &mut Draw) -> In {
+    In { scale: bound_scale(0), ..behind(draw) }
+}
+
+fn with_cone(draw: &mut Draw, cone: Cone) -> In {
+    let input = random(draw);
+    In { ray: Ray { cone, ..input.ray }, ..input }
+}
+
+/// delta = 0.
+fn base_mesh(draw: &mut Draw) -> In {
+    with_cone(draw, Cone { offset: U::MAX, slope: U::ZERO, shift: U::ZERO })
+}
+
+/// delta = infinity.
+fn full_detail(draw: &mut Draw) -> In {
+    with_cone(draw, Cone { offset: U::ZERO, slope: U::ZERO, shift: U::new(63) })
+}
+
+/// More than 34 bits of tolerance.
+fn saturated(draw: &mut Draw) -> In {
+    let cone = Cone { offset: U::MAX, slope: U::new(draw.below(1 << 10)), shift: U::new(draw.below(16)) };
+    with_cone(draw, cone)
+}
+
+fn degenerate(draw: &mut Draw) -> In {
+    let input = pixels(draw);
+    In { p1: input.p0, p2: if draw.once_in(2) { input.p0 } else { input.p2 }, ..input }
+}
+
+/// The longest way there is, forwards or backwards.
 fn extreme(draw: &mut Draw) -> In {
-    let side = |draw: &mut Draw| if draw.once_in(2) { POINT_MAX } else { -POINT_MAX };
-    let corner = |draw: &mut Draw| Point::new(side(draw), side(draw), side(draw));
-    // (2^30 / sqrt 3) in each component.
-    let component = |draw: &mut Draw| if draw.once_in(2) { 619_925_131 } else { -619_925_131 };
-    let direction = Direction::new(component(draw), component(draw), component(draw));
-    let ray = Ray { origin: corner(draw), direction, cone: draw.cone() };
-    In { ray, p0: corner(draw), p1: corner(draw), p2: corner(draw), ..random(draw) }
+    let from = draw.corner();
+    let mut across = || point(from.map(|v| -v + v.signum() * draw.bits::<8>().get().cast_signed()));
+    let (p0, p1, p2) = (across(), across(), across());
+    let way = draw.sign(1);
+    let ray = Ray { origin: point(from), direction: direction(from.map(|v| -way * v.signum() * DIAGONAL)), cone: draw.cone() };
+    In { ray, p0, p1, p2, ..random(draw) }
 }
 
-fn has(out: &Out, s: u64) -> bool {
-    [out.s0, out.s1, out.s2].iter().any(|state| state.get() == s)
+fn legal(i: &In) -> bool {
+    is_direction(i.ray.direction) && [i.ray.origin, i.p0, i.p1, i.p2].into_iter().all(is_point)
+}
+
+fn has(o: &Out, s: u64) -> bool {
+    [o.s0, o.s1, o.s2].iter().any(|state| state.get() == s)
+}
+
+type Is = Category<LodTest>;
+
+fn suite() -> Suite<LodTest> {
+    Suite::new(
+        legal,
+        vec![
+            Is::any("random", random),
+            Is::often("pixels", pixels, |i, _| distance(i, 0) > 0),
+            Is::all(
+                "s = 0: D = h exactly",
+                |d| tolerating(d, |_, h| h),
+                |i, o| edges(i, o).iter().any(|e| e.h > 0 && e.s == 0 && e.unclamped == e.h.cast_signed()),
+            ),
+            Is::all("s just above 0: D = h - 1", |d| tolerating(d, |_, h| h - 1), |_, o| has(o, 1)),
+            Is::all("s just below 1", |d| tolerating(d, |_, h| h / 2 + 1), |_, o| has(o, S_ONE - 1)),
+            Is::all("s = 1: D = h / 2", |d| tolerating(d, |_, h| h / 2), |_, o| has(o, S_ONE)),
+            Is::all(
+                "s between",
+                |d| tolerating(d, |d, h| h / 2 + 1 + d.below(h / 2 - 1)),
+                |i, o| edges(i, o).iter().any(|e| (1..S_ONE).contains(&e.s) && e.unclamped > 0),
+            ),
+            Is::all("r <= 0", no_radius, |i, o| edges(i, o).iter().all(|e| e.unclamped <= 0 && e.h > 0 && e.s == S_ONE)),
+            Is::all("behind the origin", behind, |i, _| (0..3).all(|k| distance(i, k) <= 0)),
+            Is::all("a corner at the origin", corner_at_origin, |i, o| edges(i, o)[1].l <= 0 && o.s1.get() == S_ONE),
+            Is::all("zero bounds", zero_bounds, |_, o| !o.refine),
+            Is::all("one zero bound", one_zero_bound, |_, o| o.s0.get() == 0 && o.s1.get() == S_ONE),
+            Is::all("a flat model", flat_model, |_, o| !o.refine),
+            Is::all("delta = 0: the base mesh", base_mesh, |_, o| !o.refine),
+            Is::all("delta = infinity: full detail", full_detail, |i, o| {
+                edges(i, o).iter().all(|e| e.s == if e.h > 0 { S_ONE } else { 0 })
+            }),
+            Is::some("saturated tolerance", saturated, |i, o| edges(i, o).iter().all(|e| e.unclamped >= 1 << 34) && !o.refine),
+            Is::any("corners that coincide", degenerate),
+            Is::all("extremes", extreme, |i, _| (0..3).all(|k| distance(i, k).abs() > 6 << 30)),
+        ],
+        vec![
+            ("h = 2D exactly", |i, o| edges(i, o).iter().any(|e| e.unclamped > 0 && e.h == 2 * e.unclamped.cast_unsigned())),
+            ("h = 2D - 1", |i, o| edges(i, o).iter().any(|e| e.unclamped > 0 && e.h + 1 == 2 * e.unclamped.cast_unsigned())),
+            ("three different states", |_, o| o.s0 != o.s1 && o.s1 != o.s2 && o.s2 != o.s0),
+            ("a slope that decides", |i, o| o.refine && i.ray.cone.slope.get() > 0 && (1..S_ONE).contains(&o.s0.get())),
+        ],
+        vec![
+            ("s0 in sixteenths", 0..=16, |_, o| o.s0.get() >> 4),
+            ("s1 in sixteenths", 0..=16, |_, o| o.s1.get() >> 4),
+            ("s2 in sixteenths", 0..=16, |_, o| o.s2.get() >> 4),
+            ("refine", 0..=1, |_, o| o.refine.into()),
+        ],
+    )
 }
 
 #[test]
-fn rtl_equals_rust() {
-    Suite::<LodTest>::new(
-        &[
-            ("random", random),
-            ("pixels", pixels),
-            ("borders of s", borders),
-            ("behind and at the origin", behind),
-            ("zero bounds", no_bounds),
-            ("extremes", extreme),
-        ],
-        &[
-            ("serves", |_, o| !o.refine),
-            ("s = 0 beside others", |_, o| o.refine && has(o, 0)),
-            ("s just above 0", |_, o| has(o, 1)),
-            ("s just below 1", |_, o| has(o, S_ONE - 1)),
-            ("s = 1", |_, o| has(o, S_ONE)),
-            ("s between", |_, o| has(o, 100)),
-            ("h = D exactly", |i, o| {
-                let h = BoundDecode::eval(&bound_decode::In { code: i.e0, scale: i.scale }).h.get();
-                i.ray.cone.slope.get() == 0 && i.ray.cone.shift.get() == 0 && h > 0 && h == i.ray.cone.offset.get() && o.s0.get() == 0
-            }),
-            ("h = 2D exactly", |i, o| {
-                let h = BoundDecode::eval(&bound_decode::In { code: i.e0, scale: i.scale }).h.get();
-                i.ray.cone.slope.get() == 0
-                    && i.ray.cone.shift.get() == 0
-                    && h > 0
-                    && h == 2 * i.ray.cone.offset.get()
-                    && o.s0.get() == S_ONE
-            }),
-            ("D = 0 and h = 0", |i, o| i.ray.cone == flat_cone(0) && i.e1.get() == 0 && o.s1.get() == 0 && o.refine),
-            ("a corner at the origin", |i, o| i.p0 == i.ray.origin && o.refine),
-        ],
-    )
-    .run();
+fn free_running() {
+    suite().run(Mode::Free);
+}
+
+#[test]
+fn stalled() {
+    suite().run(Mode::Stalled);
 }

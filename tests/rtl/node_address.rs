@@ -1,36 +1,80 @@
+//! Addresses of records.
+
 use crate::draw::Draw;
-use crate::suite::Suite;
+use crate::suite::{Category, Suite};
 use lodray::block::node_address::{In, NodeAddress};
 use lodray::num::U;
+use tb::Mode;
+
+/// Line of a record, from its section's first.
+fn line(i: &In) -> u64 {
+    let record = ((1 << (2 * i.level.get())) - 1) / 3 + i.index.get();
+    if i.pair { 2 * record + u64::from(i.half) } else { record }
+}
+
+/// With a base that leaves room for it.
+fn based(draw: &mut Draw, record: In) -> In {
+    let most = U::<36>::MAX.get() - line(&record);
+    In { base: U::new(draw.bits::<36>().get().min(most)), ..record }
+}
 
 fn record(draw: &mut Draw) -> In {
     let pair = draw.once_in(2);
-    In { base: U::new(draw.bits::<35>().get()), level: U::ZERO, index: draw.bits(), pair, half: pair && draw.once_in(2) }
+    let record = In { base: U::ZERO, level: U::ZERO, index: draw.bits(), pair, half: pair && draw.once_in(2) };
+    based(draw, record)
 }
 
 fn node(draw: &mut Draw) -> In {
     let level = draw.below(10);
     let index = if draw.once_in(4) { (1 << (2 * level)) - 1 } else { draw.below(1 << (2 * level)) };
-    In { level: U::new(level), index: U::new(index), ..record(draw) }
+    let node = In { level: U::new(level), index: U::new(index), ..record(draw) };
+    based(draw, node)
 }
 
-/// The last line there is.
+fn any_level(draw: &mut Draw) -> In {
+    let node = In { level: U::new(draw.below(10)), ..record(draw) };
+    based(draw, node)
+}
+
 fn top(draw: &mut Draw) -> In {
-    let input = record(draw);
-    let line = if input.pair { 2 * input.index.get() + u64::from(input.half) } else { input.index.get() };
-    In { base: U::new(U::<36>::MAX.get() - line), ..input }
+    let record = any_level(draw);
+    In { base: U::new(U::<36>::MAX.get() - line(&record)), ..record }
+}
+
+fn bottom(draw: &mut Draw) -> In {
+    In { base: U::ZERO, ..any_level(draw) }
+}
+
+fn legal(i: &In) -> bool {
+    i.level.get() <= 9 && (i.pair || !i.half) && i.base.get() + line(i) <= U::<36>::MAX.get()
+}
+
+type Is = Category<NodeAddress>;
+
+fn suite() -> Suite<NodeAddress> {
+    Suite::new(
+        legal,
+        vec![
+            Is::any("records", record),
+            Is::any("nodes of trees", node),
+            Is::any("every index on every level", any_level),
+            Is::all("top of memory", top, |_, o| o.address == U::MAX),
+            Is::all("bottom of memory", bottom, |i, o| o.address.get() == line(i)),
+        ],
+        vec![("largest index", |i, _| i.index == U::MAX), ("address 0", |_, o| o.address == U::ZERO)],
+        vec![
+            ("level", 0..=9, |i, _| i.level.get()),
+            ("one line, first and second of two", 0..=2, |i, _| u64::from(i.pair) + u64::from(i.half)),
+        ],
+    )
 }
 
 #[test]
-fn rtl_equals_rust() {
-    Suite::<NodeAddress>::new(
-        &[("records", record), ("nodes of trees", node), ("top of memory", top)],
-        &[
-            ("level 9", |i, _| i.level.get() == 9),
-            ("second halves", |i, _| i.half),
-            ("the last line", |_, o| o.address == U::MAX),
-            ("largest index", |i, _| i.index == U::MAX),
-        ],
-    )
-    .run();
+fn free_running() {
+    suite().run(Mode::Free);
+}
+
+#[test]
+fn stalled() {
+    suite().run(Mode::Stalled);
 }

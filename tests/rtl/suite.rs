@@ -2,32 +2,79 @@
 
 use crate::draw::Draw;
 use lodray::block::{Block, Timing};
-use std::fmt::Debug;
+use std::fmt::{Debug, Display};
+use std::ops::RangeInclusive;
+use std::time::Instant;
 use tb::{Build, Mode, Plan, check_block};
 
-/// A named way of drawing legal inputs.
-pub type Category<B> = (&'static str, fn(&mut Draw) -> <B as Block>::In);
-/// Something that must have happened among the transactions.
-pub type Promise<B> = (&'static str, fn(&<B as Block>::In, &<B as Block>::Out) -> bool);
+/// Events and spreads are looked for in so many inputs from the first on, and then in one of sixteen: they take long.
+const ALL_SEEN: u64 = 50_000;
+
+/// How many inputs of a category must keep its promise.
+#[derive(Clone, Copy, PartialEq)]
+enum Share {
+    All,
+    Eighth,
+    One,
+}
+
+/// A named way of drawing legal inputs, and what its name promises.
+pub struct Category<B: Block> {
+    name: &'static str,
+    make: fn(&mut Draw) -> B::In,
+    holds: fn(&B::In, &B::Out) -> bool,
+    share: Share,
+}
+
+impl<B: Block> Category<B> {
+    /// Its name promises nothing.
+    pub fn any(name: &'static str, make: fn(&mut Draw) -> B::In) -> Self {
+        Self { name, make, holds: |_, _| true, share: Share::All }
+    }
+
+    /// Every input keeps the promise.
+    pub fn all(name: &'static str, make: fn(&mut Draw) -> B::In, holds: fn(&B::In, &B::Out) -> bool) -> Self {
+        Self { name, make, holds, share: Share::All }
+    }
+
+    /// At least one input in eight does.
+    pub fn often(name: &'static str, make: fn(&mut Draw) -> B::In, holds: fn(&B::In, &B::Out) -> bool) -> Self {
+        Self { name, make, holds, share: Share::Eighth }
+    }
+
+    /// Some inputs do.
+    pub fn some(name: &'static str, make: fn(&mut Draw) -> B::In, holds: fn(&B::In, &B::Out) -> bool) -> Self {
+        Self { name, make, holds, share: Share::One }
+    }
+}
+
+/// Something that must happen among the transactions.
+pub type Event<B> = (&'static str, fn(&<B as Block>::In, &<B as Block>::Out) -> bool);
+/// A number of which each value of a range must occur, and no other.
+pub type Spread<B> = (&'static str, RangeInclusive<u64>, fn(&<B as Block>::In, &<B as Block>::Out) -> u64);
 
 /// The test of one block.
 pub struct Suite<B: Block> {
     pub build: Build,
     /// Where a parameter gives another than the block's own.
     pub timing: Timing,
+    /// The legal inputs, as the head of the block's file states them.
+    pub legal: fn(&B::In) -> bool,
     pub categories: Vec<Category<B>>,
-    pub promises: Vec<Promise<B>>,
+    pub events: Vec<Event<B>>,
+    pub spreads: Vec<Spread<B>>,
 }
 
-/// Ends a test in one line.
-pub fn fail<T>(error: tb::Error) -> T {
-    panic!("{error}")
+/// Ends a test with one line, without the words of a panic around it.
+pub fn fail<T>(error: impl Display) -> T {
+    eprintln!("{error}");
+    std::panic::resume_unwind(Box::new(()))
 }
 
 /// Transactions a block and mode.
 pub fn transactions() -> u64 {
     match std::env::var("LODRAY_TRANSACTIONS") {
-        Ok(value) => value.parse().unwrap_or_else(|_| panic!("LODRAY_TRANSACTIONS={value} is not a number")),
+        Ok(value) => value.parse().unwrap_or_else(|_| fail(format!("LODRAY_TRANSACTIONS={value}: not a number"))),
         Err(_) => 1_000_000,
     }
 }
@@ -38,51 +85,138 @@ where
     B::Out: Debug,
 {
     /// The block as it stands, with its own timing.
-    pub fn new(categories: &[Category<B>], promises: &[Promise<B>]) -> Self {
-        Self { build: Build::block::<B>(), timing: B::TIMING, categories: categories.to_vec(), promises: promises.to_vec() }
+    pub fn new(legal: fn(&B::In) -> bool, categories: Vec<Category<B>>, events: Vec<Event<B>>, spreads: Vec<Spread<B>>) -> Self {
+        Self { build: Build::block::<B>(), timing: B::TIMING, legal, categories, events, spreads }
     }
 
-    /// Runs both modes; what fails is told in one line.
-    pub fn run(&self) {
+    /// Plays the block's transactions at the ports, each of them drawn from a random category, and holds the categories to their promises.
+    pub fn run(&self, mode: Mode) {
         let seed = tb::seed(0x10d_4a75).unwrap_or_else(fail);
         let count = transactions();
-        self.keep_promises(seed, count.min(20_000 * self.categories.len() as u64));
-        for mode in [Mode::Free, Mode::Stalled] {
-            let start = std::time::Instant::now();
-            let plan = Plan::new(mode, seed).timing(self.timing);
-            let report = check_block::<B>(&self.build, &plan, self.inputs(seed, count)).unwrap_or_else(fail);
-            let rate = report.transactions as f64 / start.elapsed().as_secs_f64() / 1e6;
-            println!("{} {mode:?}: {report:?}, {rate:.2} M/s with what was left to build", self.build.top());
-            assert_eq!(report.transactions, count);
-            if mode == Mode::Free {
-                let seen = (report.min_latency, report.max_latency, report.min_interval);
-                let (latency, interval) = (u64::from(self.timing.latency), u64::from(self.timing.interval));
-                assert_eq!(seen, (latency, latency, interval), "{}: latency and interval at the ports", B::NAME);
-            }
+        let Timing { latency, interval } = self.timing;
+        let name = format!("{} (latency {latency}, interval {interval}) {mode:?}", self.build.top());
+        self.build.model().unwrap_or_else(fail);
+
+        let start = Instant::now();
+        // The two modes see different inputs.
+        let mut inputs = Inputs::new(self, seed ^ u64::from(mode == Mode::Stalled) << 63, count);
+        let played = check_block::<B>(&self.build, &Plan::new(mode, seed).timing(self.timing), &mut inputs);
+        if let Some(fault) = &inputs.fault {
+            fail(format!("{name}: {fault}; replay: LODRAY_SEED={seed}"))
+        }
+        let report = played.unwrap_or_else(fail);
+        let rate = report.transactions as f64 / start.elapsed().as_secs_f64() / 1e6;
+        println!(
+            "{name}: seed {seed}, {} transactions in {} cycles, {rate:.2} M/s; up to {} cycles to an output",
+            report.transactions, report.cycles, report.max_latency
+        );
+        let lacking = inputs.report();
+        if !lacking.is_empty() || report.transactions != count {
+            fail(format!("{name}: {} of {count} transactions; not seen: {}", report.transactions, lacking.join(", ")))
+        }
+        if mode == Mode::Free {
+            let seen = (report.min_latency, report.max_latency, report.min_interval);
+            let (latency, interval) = (u64::from(latency), u64::from(interval));
+            assert_eq!(seen, (latency, latency, interval), "{name}: latency and interval at the ports");
         }
     }
+}
 
-    /// `count` inputs, the categories in turn.
-    fn inputs(&self, seed: u64, count: u64) -> impl Iterator<Item = B::In> {
-        let mut draw = Draw::new(seed);
-        let samples: Vec<_> = self.categories.iter().map(|c| c.1).collect();
-        (0..count).zip(samples.into_iter().cycle()).map(move |(_, sample)| sample(&mut draw))
+/// The inputs of one run, with a count of what happens in them.
+struct Inputs<'a, B: Block> {
+    suite: &'a Suite<B>,
+    draw: Draw,
+    left: u64,
+    made: u64,
+    /// Drawn from each category, and how many of them kept its promise.
+    drawn: Vec<(u64, u64)>,
+    seen: Vec<u64>,
+    spread: Vec<Vec<u64>>,
+    /// An illegal input or a broken promise: the generator is wrong, whatever the RTL does.
+    fault: Option<String>,
+}
+
+impl<'a, B: Block> Inputs<'a, B> {
+    fn new(suite: &'a Suite<B>, seed: u64, count: u64) -> Self {
+        let spread = suite.spreads.iter().map(|(_, range, _)| vec![0; (range.end() - range.start() + 1) as usize]).collect();
+        let (drawn, seen) = (vec![(0, 0); suite.categories.len()], vec![0; suite.events.len()]);
+        Self { suite, draw: Draw::new(seed), left: count, made: 0, drawn, seen, spread, fault: None }
     }
 
-    /// Counts what the promises say among the first inputs, and fails at zero.
-    fn keep_promises(&self, seed: u64, count: u64) {
-        let mut kept = vec![0u64; self.promises.len()];
-        for input in self.inputs(seed, count) {
-            let out = B::eval(&input);
-            for (k, (_, holds)) in kept.iter_mut().zip(&self.promises) {
-                *k += u64::from(holds(&input, &out));
+    /// Looks for the events and notes the spreads; true if one is outside of its range.
+    fn observe(&mut self, input: &B::In, out: &B::Out) -> bool {
+        for (seen, (_, holds)) in self.seen.iter_mut().zip(&self.suite.events) {
+            *seen += u64::from(holds(input, out));
+        }
+        let mut outside = false;
+        for (counts, (_, range, value)) in self.spread.iter_mut().zip(&self.suite.spreads) {
+            match usize::try_from(value(input, out).wrapping_sub(*range.start())).ok().and_then(|at| counts.get_mut(at)) {
+                Some(count) => *count += 1,
+                None => outside = true,
             }
         }
-        let names: Vec<_> = self.categories.iter().map(|c| c.0).collect();
-        println!("{}: {count} inputs from {} categories: {}", B::NAME, names.len(), names.join(", "));
-        for (k, (name, _)) in kept.iter().zip(&self.promises) {
-            println!("{}: {name}: {k}", B::NAME);
-            assert_ne!(*k, 0, "{}: no input with {name}", B::NAME);
+        outside
+    }
+
+    /// Prints every count; gives what is lacking.
+    fn report(&self) -> Vec<String> {
+        let mut lacking = Vec::new();
+        let mut line = |ok: bool, text: String| {
+            println!("  {text}");
+            if !ok {
+                lacking.push(text);
+            }
+        };
+        for (category, &(drawn, kept)) in self.suite.categories.iter().zip(&self.drawn) {
+            let enough = match category.share {
+                Share::All => drawn > 0,
+                Share::Eighth => drawn > 0 && 8 * kept >= drawn,
+                Share::One => kept > 0,
+            };
+            let share = if category.share == Share::All { String::new() } else { format!(", {kept} of them so") };
+            line(enough, format!("{}: {drawn}{share}", category.name));
         }
+        for ((name, _), &seen) in self.suite.events.iter().zip(&self.seen) {
+            line(seen > 0, format!("- {name}: {seen}"));
+        }
+        for ((name, range, _), counts) in self.suite.spreads.iter().zip(&self.spread) {
+            line(counts.iter().all(|&n| n > 0), format!("- {name}, each of {range:?}: {counts:?}"));
+        }
+        lacking
+    }
+}
+
+impl<B: Block> Iterator for Inputs<'_, B>
+where
+    B::In: Debug,
+    B::Out: Debug,
+{
+    type Item = B::In;
+
+    fn next(&mut self) -> Option<B::In> {
+        if self.left == 0 || self.fault.is_some() {
+            return None;
+        }
+        self.left -= 1;
+        let k = self.draw.below(self.suite.categories.len() as u64) as usize;
+        let category = &self.suite.categories[k];
+        let input = (category.make)(&mut self.draw);
+        let out = B::eval(&input);
+
+        let kept = (category.holds)(&input, &out);
+        self.drawn[k].0 += 1;
+        self.drawn[k].1 += u64::from(kept);
+        let mut outside = false;
+        self.made += 1;
+        if self.made <= ALL_SEEN || self.made.is_multiple_of(16) {
+            outside = self.observe(&input, &out);
+        }
+        let legal = (self.suite.legal)(&input);
+        if !legal || outside || (category.share == Share::All && !kept) {
+            let what = if !legal { "an illegal input" } else { "a broken promise" };
+            self.fault = Some(format!("{what} of \"{}\": {input:?} -> {out:?}", category.name));
+            return None;
+        }
+        Some(input)
     }
 }

@@ -1,14 +1,18 @@
+//! Morphed vertices.
+
 use crate::draw::{Draw, POINT_MAX};
-use crate::suite::Suite;
+use crate::rays::{is_point, point};
+use crate::suite::{Category, Suite};
 use lodray::block::tessellate::{In, Tessellate};
 use lodray::num::{EdgeState, Point, S_ONE, U};
+use tb::Mode;
 
-fn on_grid(draw: &mut Draw, grid: u64) -> Point {
-    let [x, y, z] = draw.point(POINT_MAX).get().map(|v| v >> grid << grid).map(|v| if v < -POINT_MAX { v + (1 << grid) } else { v });
-    Point::new(x, y, z)
+/// A point of which each coordinate has its low `zeros` bits zero.
+fn on_grid(draw: &mut Draw, zeros: u64) -> Point {
+    point([0; 3].map(|_| draw.signed(POINT_MAX >> zeros) << zeros))
 }
 
-fn with_states(draw: &mut Draw, mut state: impl FnMut(&mut Draw) -> EdgeState) -> In {
+fn triangle(draw: &mut Draw, mut state: impl FnMut(&mut Draw) -> EdgeState) -> In {
     let grid = draw.below(10);
     let [s0, s1, s2] = [0; 3].map(|_| state(draw));
     let [p0, p1, p2] = [0; 3].map(|_| on_grid(draw, grid + 1));
@@ -17,42 +21,88 @@ fn with_states(draw: &mut Draw, mut state: impl FnMut(&mut Draw) -> EdgeState) -
 }
 
 fn random(draw: &mut Draw) -> In {
-    with_states(draw, |draw| U::new(draw.below(S_ONE + 1)))
+    triangle(draw, |draw| U::new(draw.below(S_ONE + 1)))
+}
+
+fn with_state(draw: &mut Draw, s: u64) -> In {
+    triangle(draw, |_| U::new(s))
 }
 
 fn border_states(draw: &mut Draw) -> In {
-    with_states(draw, |draw| U::new([0, 1, S_ONE - 1, S_ONE][draw.below(4) as usize]))
+    triangle(draw, |draw| U::new(draw.one_of(&[0, 1, S_ONE - 1, S_ONE])))
 }
 
-/// Inserted vertices next to the midpoint, where rounding to the grid decides.
-fn near_midpoint(draw: &mut Draw) -> In {
+fn edges(i: &In) -> [(Point, Point, Point); 3] {
+    [(i.p1, i.p2, i.q0), (i.p2, i.p0, i.q1), (i.p0, i.p1, i.q2)]
+}
+
+fn midpoint(a: Point, b: Point) -> [i64; 3] {
+    [0, 1, 2].map(|k| (a.get()[k] + b.get()[k]) / 2)
+}
+
+/// Inserted vertices a few steps of the grid from the midpoint: what is added rounds to none or few of them.
+fn beside_midpoint(draw: &mut Draw, steps: i64) -> In {
     let input = random(draw);
     let grid = input.grid.get();
-    let mut beside = |a: Point, b: Point| {
-        let [x, y, z] = [0, 1, 2].map(|k| {
-            let m = (a.get()[k] + b.get()[k]) / 2;
-            (m + (draw.signed(3) << grid)).clamp(-POINT_MAX >> grid << grid, POINT_MAX >> grid << grid).max(-POINT_MAX + (1 << grid) - 1)
-        });
-        let [x, y, z] = [x, y, z].map(|v| v >> grid << grid);
-        Point::new(x, y, z)
-    };
-    let (q0, q1, q2) = (beside(input.p1, input.p2), beside(input.p2, input.p0), beside(input.p0, input.p1));
+    let most = POINT_MAX >> grid;
+    let [q0, q1, q2] = edges(&input)
+        .map(|(a, b, _)| point(midpoint(a, b).map(|m| ((m >> grid) + draw.between(-steps, steps)).clamp(-most, most) << grid)));
     In { q0, q1, q2, ..input }
 }
 
-#[test]
-fn rtl_equals_rust() {
-    Suite::<Tessellate>::new(
-        &[("random", random), ("states at the borders", border_states), ("beside the midpoint", near_midpoint)],
-        &[
-            ("s = 0 gives the midpoint", |i, o| i.s0.get() == 0 && 2 * o.q0.get()[0] == i.p1.get()[0] + i.p2.get()[0]),
-            ("s = 1 gives the stored vertex", |i, o| i.s1.get() == S_ONE && o.q1 == i.q1),
-            ("s just above 0", |i, _| i.s2.get() == 1),
-            ("s just below 1", |i, _| i.s2.get() == S_ONE - 1),
-            ("grid 0", |i, _| i.grid.get() == 0),
-            ("grid 9", |i, _| i.grid.get() == 9),
-            ("largest step", |i, _| (i.q0.get()[0] - (i.p1.get()[0] + i.p2.get()[0]) / 2).abs() > (1 << 32) - 2048),
+/// Edges in one corner of the range, their vertices in another.
+fn extreme(draw: &mut Draw) -> In {
+    let input = border_states(draw);
+    let zeros = input.grid.get() + 1;
+    let far = draw.corner().map(|v| v.signum() * (POINT_MAX >> zeros << zeros));
+    let (p, q) = (point(far), point(far.map(|v| -v)));
+    In { p0: p, p1: p, p2: p, q0: q, q1: q, q2: q, ..input }
+}
+
+fn legal(i: &In) -> bool {
+    let grid = i.grid.get();
+    let on = |p: Point, zeros: u64| is_point(p) && p.get().iter().all(|v| v & ((1 << zeros) - 1) == 0);
+    grid <= 9
+        && [i.s0, i.s1, i.s2].iter().all(|s| s.get() <= S_ONE)
+        && [i.p0, i.p1, i.p2].into_iter().all(|p| on(p, grid + 1))
+        && [i.q0, i.q1, i.q2].into_iter().all(|q| on(q, grid))
+}
+
+type Is = Category<Tessellate>;
+
+fn suite() -> Suite<Tessellate> {
+    Suite::new(
+        legal,
+        vec![
+            Is::any("random", random),
+            Is::any("states at the borders", border_states),
+            Is::all(
+                "s = 0: midpoints",
+                |d| with_state(d, 0),
+                |i, o| edges(i).map(|(a, b, _)| midpoint(a, b)) == [o.q0, o.q1, o.q2].map(Point::get),
+            ),
+            Is::all("s just above 0", |d| with_state(d, 1), |i, _| i.s0.get() == 1),
+            Is::all("s just below 1", |d| with_state(d, S_ONE - 1), |i, _| i.s0.get() == S_ONE - 1),
+            Is::all("s = 1: stored vertices", |d| with_state(d, S_ONE), |i, o| [i.q0, i.q1, i.q2] == [o.q0, o.q1, o.q2]),
+            Is::all("stored at the midpoint", |d| beside_midpoint(d, 0), |i, o| [i.q0, i.q1, i.q2] == [o.q0, o.q1, o.q2]),
+            Is::any("a step from the midpoint", |d| beside_midpoint(d, 1)),
+            Is::any("a few steps from the midpoint", |d| beside_midpoint(d, 300)),
+            Is::all("the longest way", extreme, |i, _| (i.q0.get()[0] - i.p0.get()[0]).abs() > (1 << 32) - 4096),
         ],
+        vec![("a step down that rounds to one", |i, o| {
+            let (m, q, got) = (midpoint(i.p1, i.p2)[0], i.q0.get()[0], o.q0.get()[0]);
+            q < m && (m - q) >> i.grid.get() == 1 && got == q && i.s0.get() < S_ONE
+        })],
+        vec![("grid: N - n - 1", 0..=9, |i, _| i.grid.get()), ("s", 0..=256, |i, _| i.s1.get())],
     )
-    .run();
+}
+
+#[test]
+fn free_running() {
+    suite().run(Mode::Free);
+}
+
+#[test]
+fn stalled() {
+    suite().run(Mode::Stalled);
 }

@@ -1,45 +1,80 @@
+//! Where a tree's lines begin.
+
 use crate::draw::Draw;
-use crate::suite::Suite;
+use crate::suite::{Category, Suite};
 use lodray::block::tree_base::{In, TreeBase};
 use lodray::num::U;
+use tb::Mode;
 
-/// Lines of a tree's vertex data.
-fn lines(levels: u64) -> u64 {
+const LAST: u64 = U::<36>::MAX.get();
+
+/// (4^levels - 1) / 3.
+fn triangles(levels: u64) -> u64 {
     ((1 << (2 * levels)) - 1) / 3
 }
 
-/// As many trees as 2^35 lines hold.
+/// Lines of vertex data and of bound data before those of the tree.
+fn before(i: &In) -> (u64, u64) {
+    let groups = i.levels.get().checked_sub(1).map_or(0, triangles);
+    (i.tree.get() * triangles(i.levels.get()), 2 * i.tree.get() * groups)
+}
+
+/// As many trees as memory holds, or fewer, or one.
 fn random(draw: &mut Draw) -> In {
     let levels = draw.below(11);
-    let most = ((1u64 << 35) / lines(levels).max(1)).min((1 << 28) - 1);
+    let most = (LAST / triangles(levels).max(1)).min((1 << 28) - 1);
     let tree = match draw.below(4) {
         0 => most,
         1 => draw.bits::<28>().get().min(most),
         _ => draw.below(most + 1),
     };
-    In { levels: U::new(levels), tree: U::new(tree), vertices: U::new(draw.bits::<34>().get()), bounds: U::new(draw.bits::<34>().get()) }
+    let input = In { levels: U::new(levels), tree: U::new(tree), vertices: U::ZERO, bounds: U::ZERO };
+    let (vertices, bounds) = before(&input);
+    let below = |draw: &mut Draw, used: u64| U::new(draw.bits::<36>().get().min(LAST - used));
+    In { vertices: below(draw, vertices), bounds: below(draw, bounds), ..input }
 }
 
 /// Both sections as far up as they go.
 fn top(draw: &mut Draw) -> In {
     let input = random(draw);
-    let (levels, tree) = (input.levels.get(), input.tree.get());
-    let groups = if levels == 0 { 0 } else { lines(levels - 1) };
-    let last = U::<36>::MAX.get();
-    In { vertices: U::new(last - tree * lines(levels)), bounds: U::new(last - 2 * tree * groups), ..input }
+    let (vertices, bounds) = before(&input);
+    In { vertices: U::new(LAST - vertices), bounds: U::new(LAST - bounds), ..input }
+}
+
+fn first_tree(draw: &mut Draw) -> In {
+    In { tree: U::ZERO, ..random(draw) }
+}
+
+fn legal(i: &In) -> bool {
+    let (vertices, bounds) = before(i);
+    i.levels.get() <= 10 && i.vertices.get() + vertices <= LAST && i.bounds.get() + bounds <= LAST
+}
+
+type Is = Category<TreeBase>;
+
+fn suite() -> Suite<TreeBase> {
+    Suite::new(
+        legal,
+        vec![
+            Is::any("random", random),
+            Is::all("top of memory", top, |_, o| o.vertices.get() == LAST && o.bounds.get() == LAST),
+            Is::all("first tree", first_tree, |i, o| o.vertices == i.vertices && o.bounds == i.bounds),
+        ],
+        vec![
+            ("N = 0: no lines", |i, o| i.levels.get() == 0 && i.tree.get() > 0 && o.vertices == i.vertices && o.bounds == i.bounds),
+            ("N = 1: no bounds", |i, o| i.levels.get() == 1 && i.tree.get() > 0 && o.vertices != i.vertices && o.bounds == i.bounds),
+            ("the largest tree", |i, _| i.tree == U::MAX),
+        ],
+        vec![("N", 0..=10, |i, _| i.levels.get())],
+    )
 }
 
 #[test]
-fn rtl_equals_rust() {
-    Suite::<TreeBase>::new(
-        &[("random", random), ("top of memory", top)],
-        &[
-            ("N = 0", |i, o| i.levels.get() == 0 && o.vertices == i.vertices && o.bounds == i.bounds),
-            ("N = 1", |i, o| i.levels.get() == 1 && o.bounds == i.bounds),
-            ("N = 10", |i, _| i.levels.get() == 10 && i.tree.get() > 0),
-            ("largest tree", |i, _| i.tree == U::MAX),
-            ("the last line", |_, o| o.vertices == U::MAX && o.bounds == U::MAX),
-        ],
-    )
-    .run();
+fn free_running() {
+    suite().run(Mode::Free);
+}
+
+#[test]
+fn stalled() {
+    suite().run(Mode::Stalled);
 }

@@ -1,9 +1,10 @@
-//! Small models, surfaces and rays for the tests and benchmarks of lodray.
+//! Small models, surfaces and rays for the tests and benchmarks of lodray, and a reader of the RTL's declarations.
 #![allow(missing_docs)] // the names say what is made
 
 pub mod models;
 pub mod plain;
 pub mod surfaces;
+pub mod sv;
 
 /// `count` cases; what ever failed is kept in a file of the same name beside the test's source, to be committed and tried first.
 pub fn cases(count: u32) -> proptest::test_runner::Config {

@@ -44,8 +44,7 @@ const GROUPS: &[(&str, &[Row])] = &[
         "Children",
         &[
             (UNIT, BITS, &["u_child_test.valid_i", "u_child_test.in_i.present", "u_child_test.in_i.widen", "u_child_test.valid_o"]),
-            (UNIT, DECIMAL, &["u_child_test.out_o.count", "u_child_test.out_o.order[0]"]),
-            (CONTEXT, DECIMAL, &["count_q"]),
+            (CONTEXT, DECIMAL, &["sorted_q.count", "sorted_q.order[0]", "sorted_q.t_near[0]", "count_q"]),
         ],
     ),
     (
@@ -54,7 +53,6 @@ const GROUPS: &[(&str, &[Row])] = &[
             (UNIT, BITS, &["u_lod_test.valid_i"]),
             (UNIT, DECIMAL, &["u_lod_test.in_i.e0", "u_lod_test.in_i.e1", "u_lod_test.in_i.e2"]),
             (UNIT, BITS, &["u_lod_test.valid_o", "u_lod_test.out_o.refine"]),
-            (UNIT, DECIMAL, &["u_lod_test.out_o.s0", "u_lod_test.out_o.s1", "u_lod_test.out_o.s2"]),
         ],
     ),
     (
@@ -63,7 +61,7 @@ const GROUPS: &[(&str, &[Row])] = &[
             (UNIT, BITS, &["u_tessellate.valid_i"]),
             (UNIT, DECIMAL, &["u_tessellate.in_i.grid"]),
             (UNIT, BITS, &["u_tessellate.valid_o"]),
-            (UNIT, SIGNED, &["u_tessellate.out_o.q0.x", "u_tessellate.out_o.q0.y", "u_tessellate.out_o.q0.z"]),
+            (CONTEXT, SIGNED, &["p0_q.x", "p0_q.y", "p0_q.z", "q0_q.x", "q0_q.y", "q0_q.z"]),
         ],
     ),
     (

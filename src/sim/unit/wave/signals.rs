@@ -1,7 +1,7 @@
 //! The signals of the waveform: names, widths and values, in one walk over the unit.
 
 use crate::block::{Block, child_test, hit_select, lod_test, tessellate};
-use crate::num::{BitVec, Field, Wire};
+use crate::num::{BitVec, Layout, Point, Wire};
 use crate::sim::ports::{HitOut, MemoryAnswer, MemoryRequest, RayIn, SceneConfig};
 use crate::sim::unit::context::Context;
 use crate::sim::unit::register::Pipeline;
@@ -74,25 +74,27 @@ pub trait Visitor {
 
 /// A signal of type `T`: as in the RTL's waveforms a struct is a scope of its fields, and an array its elements, unless they are single bits.
 fn typed<T: Wire>(to: &mut impl Visitor, name: &str, value: &Vector) {
-    descend(to, name, T::FIELDS, T::ELEMENTS, &value.0);
+    descend(to, name, T::LAYOUT, &value.0);
 }
 
-fn descend(to: &mut impl Visitor, name: &str, fields: &[Field], elements: u32, bits: &[Value]) {
-    if !fields.is_empty() {
-        to.enter(name);
-        let mut rest = bits;
-        for field in fields {
-            let (value, behind) = rest.split_at(field.width as usize);
-            descend(to, field.name, field.fields, field.elements, value);
-            rest = behind;
+fn descend(to: &mut impl Visitor, name: &str, layout: Layout, bits: &[Value]) {
+    match layout {
+        Layout::Struct(fields) => {
+            to.enter(name);
+            let mut rest = bits;
+            for field in fields {
+                let (value, behind) = rest.split_at(field.width as usize);
+                descend(to, field.name, field.layout, value);
+                rest = behind;
+            }
+            to.leave();
         }
-        to.leave();
-    } else if elements > 1 && bits.len() > elements as usize {
-        for (k, value) in bits.chunks(bits.len() / elements as usize).rev().enumerate() {
-            to.signal(&format!("{name}[{k}]"), Vector(value.to_vec()));
+        Layout::Array(elements) if bits.len() > elements as usize => {
+            for (k, value) in bits.chunks(bits.len() / elements as usize).rev().enumerate() {
+                to.signal(&format!("{name}[{k}]"), Vector(value.to_vec()));
+            }
         }
-    } else {
-        to.signal(name, Vector(bits.to_vec()));
+        _ => to.signal(name, Vector(bits.to_vec())),
     }
 }
 
@@ -152,6 +154,12 @@ fn context_signals(c: &Context, to: &mut impl Visitor) {
     to.signal("tree_q", Vector::register(c.tree.known()));
     to.signal("level_q", Vector::register(c.level.known()));
     to.signal("node_q", Vector::register(c.node.known()));
+    for (k, p) in ["p0_q", "p1_q", "p2_q"].into_iter().enumerate() {
+        typed::<Point>(to, p, &Vector::register(c.p.known().map(|p| p[k])));
+    }
+    for (k, q) in ["q0_q", "q1_q", "q2_q"].into_iter().enumerate() {
+        typed::<Point>(to, q, &Vector::register(c.q.known().map(|q| q[k])));
+    }
     typed::<lod_test::Out>(to, "lod_q", &Vector::register(c.lod.known()));
     to.signal("want_q", Vector::number(c.want.into(), 3));
     to.signal("waiting_q", Vector::number(c.waiting.into(), 3));

@@ -1,0 +1,40 @@
+"""The blocks' own tests, on their netlists instead of the RTL."""
+
+import os
+import re
+import subprocess
+
+from . import multipliers
+from .gates import read_json
+from .tools import OUT, ROOT, Failure, write
+
+NETLISTS = OUT / "netlists"
+TRANSACTIONS = 20_000
+
+
+def export(block, folder):
+    """Puts a block's netlist where the tests look for it. Its multipliers' gates have been checked apart; here they are plain products, which simulate faster."""
+    text = (ROOT / folder / "netlist.v").read_text(encoding="utf-8")
+    for name, module in read_json(folder / "multipliers.json")["modules"].items():
+        if multipliers.is_multiplier(name):
+            text, count = re.subn(rf"^module \\{re.escape(name)} .*?^endmodule\n", lambda _, name=name, module=module: multipliers.behavioural(name, module), text, flags=re.M | re.S)
+            if count != 1:
+                raise Failure(f"{block.name}: {count} modules {name} in the netlist, not one")
+    write(ROOT / NETLISTS / f"{block.name}.v", text)
+
+
+def run(blocks):
+    """Runs the blocks' tests, and only those, on the netlists."""
+    modules = sorted({block.module for block in blocks})
+    untested = [module for module in modules if not (ROOT / "tests/rtl" / f"{module}.rs").is_file()]
+    if untested:
+        raise Failure(f"no tests in tests/rtl for {', '.join(untested)}")
+    settings = {"LODRAY_NETLISTS": str(NETLISTS), "LODRAY_TRANSACTIONS": str(TRANSACTIONS)}
+    command = ["cargo", "test", "--test", "rtl", "--", *(f"{module}::" for module in modules)]
+    print(" ".join([*(f"{name}={value}" for name, value in settings.items()), *command]), flush=True)
+    got = subprocess.run(command, cwd=ROOT, env={**os.environ, **settings}, capture_output=True, text=True)
+    passed = re.findall(r"^test (\w+)::\S+ \.\.\. ok$", got.stdout, re.MULTILINE)
+    missing = [module for module in modules if module not in passed]
+    if got.returncode != 0 or missing:
+        raise Failure(f"the tests of {', '.join(missing) or 'some block'} do not pass on the netlists:\n{got.stdout[-4000:]}{got.stderr[-2000:]}")
+    print(f"{len(passed)} tests of {len(modules)} blocks passed on their netlists, {TRANSACTIONS:,} transactions free-running and as many stalled each")
