@@ -1,8 +1,8 @@
 /// One step of a restoring division: the next quotient bit and remainder of remainder_i / divisor_i.
 ///
 /// quotient_bit_o = (2 remainder_i >= divisor_i), remainder_o = 2 remainder_i - quotient_bit_o * divisor_i.
-/// Invariant: remainder_i < divisor_i gives remainder_o < divisor_i. From remainder n, k steps yield the k bits of floor(2^k n / divisor), highest first.
-/// Legal: remainder_i < divisor_i. Combinational.
+/// Invariant: remainder_i < divisor_i gives remainder_o < divisor_i. From remainder n, k steps yield the k bits of floor(2^k n / divisor), highest
+/// first. Legal: remainder_i < divisor_i. Combinational.
 module divide_step #(
   parameter int unsigned W = 34
 ) (
