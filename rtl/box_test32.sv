@@ -24,9 +24,11 @@ module box_test32 #(
   // Differences of 32-bit coordinates; times 30 bits unsigned.
   localparam int unsigned SIDE_W = W + 1;
   localparam int unsigned PRODUCT_W = SIDE_W + D_W + 1;
-  localparam int unsigned PRODUCT_LATENCY = lod_pkg::multiplier_latency(SIDE_W, D_W + 1);
-  localparam int unsigned WAIT = lod_pkg::ENTRY_DISTANCE_LATENCY - PRODUCT_LATENCY - 2;
-  localparam int unsigned LATENCY = 2 + lod_pkg::ENTRY_DISTANCE_LATENCY + 1;
+  // Sides and directions come from afar: registers of its own beside each of the 48 multipliers.
+  localparam int unsigned FACTOR_STAGES = 1;
+  localparam int unsigned PRODUCT_LATENCY = FACTOR_STAGES + lod_pkg::multiplier_latency(SIDE_W, D_W + 1);
+  localparam int unsigned WAIT = 1 + lod_pkg::ENTRY_DISTANCE_LATENCY - PRODUCT_LATENCY - 2;
+  localparam int unsigned LATENCY = 3 + lod_pkg::ENTRY_DISTANCE_LATENCY + 1;
   if (lod_pkg::BOX_TEST32_LATENCY != LATENCY) begin : g_illegal_latency
     $error("box_test32: lod_pkg::BOX_TEST32_LATENCY must be %0d", LATENCY);
   end
@@ -67,14 +69,19 @@ module box_test32 #(
   );
 
   // Distances to the near sides, 0 if behind: floor(33 bits / 2^16) is 17 bits signed, 16 if not negative.
-  logic [2:0][NEAR_W-1:0] distance;
-  logic                   valid_last, ready_last;
+  logic [2:0][NEAR_W-1:0] distance, distance_q;
+  logic [2:0][lod_pkg::RECIPROCAL_W-1:0] reciprocal_distance;
+  logic                   valid_distance, ready_distance, valid_last, ready_last;
   logic [T_W-1:0]         entry;
   for (genvar k = 0; k < 3; k++) begin : g_distance
     assign distance[k] = near_q[k][SIDE_W-1] ? '0 : near_q[k][SIDE_W-2:lod_pkg::BOX_SHIFT];
   end
+  pipe_stage #(.W(3 * (NEAR_W + lod_pkg::RECIPROCAL_W))) u_distance (
+    .clk_i, .rst_ni, .valid_i(valid_side), .ready_o(ready_side), .data_i({distance, reciprocal_q}),
+    .valid_o(valid_distance), .ready_i(ready_distance), .data_o({distance_q, reciprocal_distance})
+  );
   entry_distance u_entry (
-    .clk_i, .rst_ni, .valid_i(valid_side), .ready_o(ready_side), .near_i(distance), .reciprocal_i(reciprocal_q),
+    .clk_i, .rst_ni, .valid_i(valid_distance), .ready_o(ready_distance), .near_i(distance_q), .reciprocal_i(reciprocal_distance),
     .valid_o(valid_last), .ready_i(ready_last), .t_near_o(entry)
   );
 
@@ -86,11 +93,11 @@ module box_test32 #(
     localparam int unsigned I = k < 3 ? (k + 1) % 3 : (k + 2) % 3;
     localparam int unsigned J = k < 3 ? (k + 2) % 3 : (k + 1) % 3;
     logic signed [PRODUCT_W-1:0] low, high;
-    multiplier #(.A_W(SIDE_W), .B_W(D_W + 1)) u_low (
+    multiplier #(.A_W(SIDE_W), .B_W(D_W + 1), .FACTOR_STAGES(FACTOR_STAGES)) u_low (
       .clk_i, .rst_ni, .valid_i(valid_side), .ready_o(ready_low[k]), .a_i(near_q[I]), .b_i({1'b0, d_q[J]}),
       .valid_o(valid_low[k]), .ready_i(ready_product), .product_o(low)
     );
-    multiplier #(.A_W(SIDE_W), .B_W(D_W + 1)) u_high (
+    multiplier #(.A_W(SIDE_W), .B_W(D_W + 1), .FACTOR_STAGES(FACTOR_STAGES)) u_high (
       .clk_i, .rst_ni, .valid_i(valid_side), .ready_o(ready_high[k]), .a_i(far_q[J]), .b_i({1'b0, d_q[I]}),
       .valid_o(valid_high[k]), .ready_i(ready_product), .product_o(high)
     );

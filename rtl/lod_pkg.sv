@@ -35,7 +35,7 @@ package lod_pkg;
   localparam int unsigned BARY_MAP_LATENCY = 10;
   localparam int unsigned BOUND_DECODE_LATENCY = 6;
   localparam int unsigned BOX_TEST_LATENCY = 8;
-  localparam int unsigned BOX_TEST32_LATENCY = 8;
+  localparam int unsigned BOX_TEST32_LATENCY = 9;
   localparam int unsigned CHILD_SORT_LATENCY = 3;
   localparam int unsigned HIT_DIVIDE_LATENCY = 36;
   localparam int unsigned HIT_DIVIDE_INTERVAL = 36;

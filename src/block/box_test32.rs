@@ -34,7 +34,7 @@ fn slab(axis: &Axis, lo: S<32>, hi: S<32>) -> (i64, i64) {
 
 impl Block for BoxTest32 {
     const NAME: &'static str = "box_test32";
-    const TIMING: Timing = Timing::pipelined(8);
+    const TIMING: Timing = Timing::pipelined(9);
     type In = In;
     type Out = box_test::Out;
     #[inline(always)]
