@@ -27,7 +27,9 @@ module box_test #(
   // 16 bits times 30 unsigned: below 2^45 in magnitude, their differences below 2^46; floor(c / 2^16) and its negative: 47 bits.
   localparam int unsigned PRODUCT_W = CODE_W + D_W + 1;
   localparam int unsigned LIMIT_W = MOMENT_W - lod_pkg::BOX_SHIFT;
-  localparam int unsigned PRODUCT_LATENCY = lod_pkg::multiplier_latency(CODE_W, D_W + 1);
+  // Codes and directions come from afar: registers of its own beside each multiplier; `u_entry` takes as long.
+  localparam int unsigned FACTOR_STAGES = 1;
+  localparam int unsigned PRODUCT_LATENCY = FACTOR_STAGES + lod_pkg::multiplier_latency(CODE_W, D_W + 1);
   localparam int unsigned WAIT = 1 + lod_pkg::ENTRY_DISTANCE_LATENCY - PRODUCT_LATENCY - 3;
   localparam int unsigned LATENCY = 1 + 1 + lod_pkg::ENTRY_DISTANCE_LATENCY + 1;
   if (lod_pkg::BOX_TEST_LATENCY != LATENCY) begin : g_illegal_latency
@@ -103,11 +105,11 @@ module box_test #(
     localparam int unsigned I = k < 3 ? (k + 1) % 3 : (k + 2) % 3;
     localparam int unsigned J = k < 3 ? (k + 2) % 3 : (k + 1) % 3;
     logic [PRODUCT_W-1:0] low, high;
-    multiplier #(.A_W(CODE_W), .B_W(D_W + 1)) u_low (
+    multiplier #(.A_W(CODE_W), .B_W(D_W + 1), .FACTOR_STAGES(FACTOR_STAGES)) u_low (
       .clk_i, .rst_ni, .valid_i(valid_mirror), .ready_o(ready_low[k]), .a_i(lo_q[I]), .b_i({1'b0, d_q[J]}),
       .valid_o(valid_low[k]), .ready_i(ready_product), .product_o(low)
     );
-    multiplier #(.A_W(CODE_W), .B_W(D_W + 1)) u_high (
+    multiplier #(.A_W(CODE_W), .B_W(D_W + 1), .FACTOR_STAGES(FACTOR_STAGES)) u_high (
       .clk_i, .rst_ni, .valid_i(valid_mirror), .ready_o(ready_high[k]), .a_i(hi_q[J]), .b_i({1'b0, d_q[I]}),
       .valid_o(valid_high[k]), .ready_i(ready_product), .product_o(high)
     );
