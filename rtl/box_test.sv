@@ -138,7 +138,7 @@ module box_test #(
     assign bound     = k < 3 ? limit_there[k%3] : turned_there[k%3];
     assign passes[k] = value <= bound;
   end
-  pipe_stage #(.W(7)) u_passes (
+  pipe_skid #(.W(7)) u_passes (
     .clk_i, .rst_ni, .valid_i(valid_difference), .ready_o(ready_difference), .data_i({ahead_there, passes}),
     .valid_o(valid_passes), .ready_i(ready_passes), .data_o(passes_q)
   );
@@ -155,7 +155,7 @@ module box_test #(
   logic               hit;
   logic [T_W-1:0]     t_last, t_near;
   logic [TAG_W-1:0]   tag_last;
-  pipe_delay #(.W(T_W + TAG_W), .STAGES(LATENCY - 1)) u_beside (
+  pipe_delay #(.W(T_W + TAG_W), .STAGES(LATENCY - 1), .SKIDS(lod_pkg::BOX_TEST_SKIDS)) u_beside (
     .clk_i, .rst_ni, .valid_i, .ready_o(), .data_i({in_i.t_max[lod_pkg::RAY_T_W-1:lod_pkg::T_NEAR_TO_T_SHIFT], tag_i}),
     .valid_o(), .ready_i(ready_last), .data_o({t_last, tag_last})
   );

@@ -107,7 +107,7 @@ module box_test32 #(
   pipe_delay #(.W(1), .STAGES(PRODUCT_LATENCY)) u_ahead (
     .clk_i, .rst_ni, .valid_i(valid_side), .ready_o(), .data_i(ahead), .valid_o(), .ready_i(ready_product), .data_o(ahead_there)
   );
-  pipe_stage #(.W(7)) u_passes (
+  pipe_skid #(.W(7)) u_passes (
     .clk_i, .rst_ni, .valid_i(valid_low[0]), .ready_o(ready_product), .data_i({ahead_there, passes}),
     .valid_o(valid_passes), .ready_i(ready_passes), .data_o(passes_q)
   );
@@ -124,7 +124,7 @@ module box_test32 #(
   logic               hit;
   logic [T_W-1:0]     t_last, t_near;
   logic [TAG_W-1:0]   tag_last;
-  pipe_delay #(.W(T_W + TAG_W), .STAGES(LATENCY - 1)) u_beside (
+  pipe_delay #(.W(T_W + TAG_W), .STAGES(LATENCY - 1), .SKIDS(lod_pkg::BOX_TEST32_SKIDS)) u_beside (
     .clk_i, .rst_ni, .valid_i, .ready_o(), .data_i({in_i.t_max[lod_pkg::RAY_T_W-1:lod_pkg::T_NEAR_TO_T_SHIFT], tag_i}),
     .valid_o(), .ready_i(ready_last), .data_o({t_last, tag_last})
   );

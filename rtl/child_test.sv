@@ -23,6 +23,9 @@ module child_test #(
   localparam int unsigned T_W = lod_pkg::T_NEAR_W;
   localparam int unsigned POINT_W = lod_pkg::POINT_W;
 
+  // Stages that are a `pipe_skid`: the last of widen_box, and one of the box tests.
+  localparam bit [63:0] WIDEN_SKIDS = 64'd1 << (WIDEN - 1);
+
   // Corners of the four children (docs/numbers.md).
   logic [3:0][3*POINT_W-1:0] corners;
   assign corners[0] = {in_i.p0, in_i.q2, in_i.q1};
@@ -35,7 +38,7 @@ module child_test #(
   logic [lod_pkg::RAY_T_W-1:0] t_max_q;
   logic [3:0]                  present_q;
   logic                        valid_ray, ready_ray;
-  pipe_delay #(.W(lod_pkg::RAY_SETUP_OUT_W + lod_pkg::RAY_T_W + 4), .STAGES(WIDEN)) u_ray (
+  pipe_delay #(.W(lod_pkg::RAY_SETUP_OUT_W + lod_pkg::RAY_T_W + 4), .STAGES(WIDEN), .SKIDS(WIDEN_SKIDS)) u_ray (
     .clk_i, .rst_ni, .valid_i, .ready_o, .data_i({in_i.ray, in_i.t_max, in_i.present}),
     .valid_o(valid_ray), .ready_i(ready_ray), .data_o({ray_q, t_max_q, present_q})
   );
@@ -70,7 +73,7 @@ module child_test #(
   // Children that are not there neither count nor have a distance.
   logic [3:0]          present_there, hit_there;
   logic [3:0][T_W-1:0] t_near_there, t_near_last;
-  pipe_delay #(.W(4), .STAGES(TEST)) u_present (
+  pipe_delay #(.W(4), .STAGES(TEST), .SKIDS(lod_pkg::BOX_TEST_SKIDS)) u_present (
     .clk_i, .rst_ni, .valid_i(valid_ray), .ready_o(), .data_i(present_q), .valid_o(), .ready_i(ready_test), .data_o(present_there)
   );
   for (genvar k = 0; k < 4; k++) begin : g_there
@@ -87,7 +90,7 @@ module child_test #(
   );
   assign out_o = {sorted, t_near_last};
 
-  pipe_delay #(.W(TAG_W), .STAGES(WIDEN + TEST + SORT)) u_tag (
+  pipe_delay #(.W(TAG_W), .STAGES(WIDEN + TEST + SORT), .SKIDS(WIDEN_SKIDS | lod_pkg::BOX_TEST_SKIDS << WIDEN)) u_tag (
     .clk_i, .rst_ni, .valid_i, .ready_o(), .data_i(tag_i), .valid_o(), .ready_i, .data_o(tag_o)
   );
 

@@ -1,7 +1,8 @@
 /// The t_near of a box: the largest of the three axes' entry distances (docs/numbers.md, "Box test").
 ///
 /// Per axis floor(near mantissa / 2^shift), in steps of 2^16 units, held at 2^17 - 1; near is the distance to the box's near side, 0 if the side is behind.
-/// `mantissa` / 2^`shift` is the reciprocal of the direction, rounded down. Legal: any. Latency ENTRY_DISTANCE_LATENCY; interval 1.
+/// `mantissa` / 2^`shift` is the reciprocal of the direction, rounded down. Legal: any. Its last register but one is a
+/// `pipe_skid`. Latency ENTRY_DISTANCE_LATENCY; interval 1.
 module entry_distance (
   input  logic                                  clk_i,
   input  logic                                  rst_ni,
@@ -58,7 +59,7 @@ module entry_distance (
   logic           valid_pair, ready_last;
   logic [T_W-1:0] pair, pair_q, third_q, largest;
   assign pair = held_q[0] > held_q[1] ? held_q[0] : held_q[1];
-  pipe_stage #(.W(2 * T_W)) u_pair (
+  pipe_skid #(.W(2 * T_W)) u_pair (
     .clk_i, .rst_ni, .valid_i(valid_shift), .ready_o(ready_pair), .data_i({pair, held_q[2]}),
     .valid_o(valid_pair), .ready_i(ready_last), .data_o({pair_q, third_q})
   );

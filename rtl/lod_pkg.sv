@@ -51,6 +51,9 @@ package lod_pkg;
   localparam int unsigned TRI_TEST_1_INTERVAL = 3;
   localparam int unsigned WIDEN_BOX_LATENCY = 3;
   localparam int unsigned ENTRY_DISTANCE_LATENCY = 5;  // part of the box tests
+  // Bit k: stage k of the box tests is a `pipe_skid`. Two registers follow it.
+  localparam bit [63:0] BOX_TEST_SKIDS = 64'd1 << (BOX_TEST_LATENCY - 3);
+  localparam bit [63:0] BOX_TEST32_SKIDS = 64'd1 << (BOX_TEST32_LATENCY - 3);
   localparam int unsigned EDGE_FUNCTION_LATENCY = 12;  // parts of tri_test
   localparam int unsigned TRI_DECIDE_LATENCY = 3;
   localparam int unsigned CONE_TOLERANCE_LATENCY = 7;  // parts of lod_test

@@ -1,7 +1,8 @@
 /// The box of a child for this ray: its stored box and its morphed triangle. Twin of src/block/widen_box.rs (paper section 3.4).
 ///
 /// lo' = min(lo, floor(p / 2^16)), hi' = max(hi, ceil(p / 2^16)) over the three corners, in box codes from the start: floor and ceil are monotone.
-/// Legal: |p| <= 0x7FFE_0000, so that the ceiling fits 16 bits. Latency WIDEN_BOX_LATENCY = 3, interval 1.
+/// Legal: |p| <= 0x7FFE_0000, so that the ceiling fits 16 bits. Its last register is a `pipe_skid`.
+/// Latency WIDEN_BOX_LATENCY = 3, interval 1.
 module widen_box #(
   parameter int unsigned TAG_W = 8
 ) (
@@ -60,7 +61,7 @@ module widen_box #(
     .clk_i, .rst_ni, .valid_i(valid_codes), .ready_o(ready_codes), .data_i({low_pairs, high_pairs, tag_codes}),
     .valid_o(valid_pairs), .ready_i(ready_pairs), .data_o({low_pairs_q, high_pairs_q, tag_pairs})
   );
-  pipe_stage #(.W(6 * CODE_W + TAG_W)) u_out (
+  pipe_skid #(.W(6 * CODE_W + TAG_W)) u_out (
     .clk_i, .rst_ni, .valid_i(valid_pairs), .ready_o(ready_pairs), .data_i({low, high, tag_pairs}),
     .valid_o, .ready_i, .data_o({out_o, tag_o})
   );

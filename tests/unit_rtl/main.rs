@@ -73,9 +73,10 @@ fn compare(scene: &Scene, h: &Hierarchy, config: UnitConfig, traffic: &Traffic, 
     (report, hits as u64)
 }
 
-fn number(name: &str, default: u64) -> u64 {
-    let parse = |text: String| text.replace('_', "").parse().unwrap_or_else(|_| panic!("{name}={text} is not a number"));
-    std::env::var(name).map_or(default, parse)
+/// Cycles to compare: `LODRAY_CYCLES`, or a million.
+fn cycles_wanted() -> u64 {
+    let parse = |text: String| text.replace('_', "").parse().unwrap_or_else(|_| panic!("LODRAY_CYCLES={text}: not a number"));
+    std::env::var("LODRAY_CYCLES").map_or(1_000_000, parse)
 }
 
 fn configs() -> [UnitConfig; 3] {
@@ -100,8 +101,8 @@ fn any_traffic(rng: &mut Rng) -> Traffic {
 
 #[test]
 fn random_rays_under_random_traffic() {
-    let wanted = number("LODRAY_CYCLES", 1_000_000);
-    let seed = number("LODRAY_SEED", 1);
+    let wanted = cycles_wanted();
+    let seed = tb::seed(1).unwrap_or_else(|error| panic!("{error}"));
     let (mut cycles, mut traced, mut hits) = (0, 0, 0);
     for round in 0.. {
         let seed = seed + round;
