@@ -101,7 +101,7 @@ def describe(name, text, site):
 
 
 def verdict(index, name, text, site, command, limit):
-    """Runs one mutant; gives "killed", "lint", or "lives"."""
+    """Runs one mutant; gives "killed", "lint", "lives", or "late" if the tests did not end in time, which says nothing."""
     rtl = ROOT / "target" / "mutants" / f"{name}-{index}" / "rtl"
     shutil.rmtree(rtl.parent, ignore_errors=True)
     shutil.copytree(RTL, rtl)
@@ -111,7 +111,7 @@ def verdict(index, name, text, site, command, limit):
     try:
         run = subprocess.run(command, cwd=ROOT, env=env, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, timeout=limit)
     except subprocess.TimeoutExpired:
-        return "killed"
+        return "late"
     finally:
         shutil.rmtree(rtl.parent, ignore_errors=True)
     if " 0 passed; 0 failed" in run.stdout:
@@ -150,7 +150,7 @@ def main():
         random.Random(f"{args.seed} {name}").shuffle(drawn)
         plans.append((name, drawn, command, by or "unit"))
 
-    totals = {"killed": 0, "lint": 0, "lives": 0}
+    totals = {"killed": 0, "lint": 0, "lives": 0, "late": 0}
     unexplained = []
 
     def work(plan):
@@ -161,7 +161,7 @@ def main():
                 break
             outcome = verdict(index, name, sources[name], site, command, args.timeout)
             what = describe(name, sources[name], site)
-            tried += outcome != "lint"
+            tried += outcome in ("killed", "lives")
             lines.append((outcome, what, by))
         return lines
 
@@ -175,7 +175,7 @@ def main():
                 if outcome != "lint":
                     note = f"  [{reason}]" if outcome == "lives" and reason else ""
                     print(f"{outcome:7} {what['file']}.sv:{what['line']} ({what['rule']}, {by}): {what['before']}  =>  {what['after']}{note}", flush=True)
-    print(f"{totals['killed']} killed, {totals['lives']} live ({len(unexplained)} of them unexplained), {totals['lint']} more stopped by lint")
+    print(f"{totals['killed']} killed, {totals['lives']} live ({len(unexplained)} of them unexplained), {totals['lint']} more stopped by lint, {totals['late']} not done in time")
     if totals["killed"] == 0:
         sys.exit("mutate: nothing was killed")
     if unexplained:
