@@ -24,7 +24,7 @@ module child_test #(
   localparam int unsigned POINT_W = lod_pkg::POINT_W;
 
   // Stages that are a `pipe_skid`: the last of widen_box, and one of the box tests.
-  localparam bit [63:0] WIDEN_SKIDS = 64'd1 << (WIDEN - 1);
+  localparam logic [63:0] WIDEN_SKIDS = 64'd1 << (WIDEN - 1);
 
   // Corners of the four children (docs/numbers.md).
   logic [3:0][3*POINT_W-1:0] corners;

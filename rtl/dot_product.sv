@@ -1,12 +1,13 @@
 /// Elastic dot product of two signed vectors: sum_o = a.x b.x + a.y b.y + a.z b.z.
 ///
-/// Vectors are {x, y, z}. Legal: any for which the sum and its partial sums fit SUM_W bits, signed. Latency: lod_pkg::dot_product_latency(A_W, B_W),
-/// which is that of the multipliers with one factor stage and of two sums; interval 1. The last stage of the multipliers, the third from the end, is
+/// Vectors are {x, y, z}. Legal: any for which the sum and its partial sums fit SUM_W bits, signed. Latency: PRODUCT_STAGES - 1 +
+/// lod_pkg::dot_product_latency(A_W, B_W), which is that of the multipliers with one factor stage and of two sums; interval 1. The last stage of the multipliers, the third from the end, is
 /// a `pipe_skid`.
 module dot_product #(
   parameter int unsigned A_W = 33,
   parameter int unsigned B_W = 31,
-  parameter int unsigned SUM_W = A_W + B_W
+  parameter int unsigned SUM_W = A_W + B_W,
+  parameter int unsigned PRODUCT_STAGES = 1
 ) (
   input  logic             clk_i,
   input  logic             rst_ni,
@@ -26,15 +27,15 @@ module dot_product #(
 
   logic signed [PRODUCT_W-1:0] x, y, z;
   logic                        valid_products, ready_products;
-  multiplier #(.A_W(A_W), .B_W(B_W), .FACTOR_STAGES(1), .LAST_IS_SKID(1'b1)) u_x (
+  multiplier #(.A_W(A_W), .B_W(B_W), .FACTOR_STAGES(1), .PRODUCT_STAGES(PRODUCT_STAGES), .LAST_IS_SKID(1'b1)) u_x (
     .clk_i, .rst_ni, .valid_i, .ready_o, .a_i(a_i[2*A_W +: A_W]), .b_i(b_i[2*B_W +: B_W]),
     .valid_o(valid_products), .ready_i(ready_products), .product_o(x)
   );
-  multiplier #(.A_W(A_W), .B_W(B_W), .FACTOR_STAGES(1), .LAST_IS_SKID(1'b1)) u_y (
+  multiplier #(.A_W(A_W), .B_W(B_W), .FACTOR_STAGES(1), .PRODUCT_STAGES(PRODUCT_STAGES), .LAST_IS_SKID(1'b1)) u_y (
     .clk_i, .rst_ni, .valid_i, .ready_o(), .a_i(a_i[A_W +: A_W]), .b_i(b_i[B_W +: B_W]),
     .valid_o(), .ready_i(ready_products), .product_o(y)
   );
-  multiplier #(.A_W(A_W), .B_W(B_W), .FACTOR_STAGES(1), .LAST_IS_SKID(1'b1)) u_z (
+  multiplier #(.A_W(A_W), .B_W(B_W), .FACTOR_STAGES(1), .PRODUCT_STAGES(PRODUCT_STAGES), .LAST_IS_SKID(1'b1)) u_z (
     .clk_i, .rst_ni, .valid_i, .ready_o(), .a_i(a_i[0 +: A_W]), .b_i(b_i[0 +: B_W]),
     .valid_o(), .ready_i(ready_products), .product_o(z)
   );

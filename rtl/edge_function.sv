@@ -23,7 +23,8 @@ module edge_function (
   localparam int unsigned N_W = lod_pkg::NORMAL_W;
   localparam int unsigned D_W = lod_pkg::DIRECTION_W / 3;
   localparam int unsigned CROSS_LATENCY = lod_pkg::cross_product_latency(W);
-  localparam int unsigned DOT_LATENCY = lod_pkg::dot_product_latency(N_W, D_W);
+  localparam int unsigned PRODUCT_STAGES = 2;
+  localparam int unsigned DOT_LATENCY = PRODUCT_STAGES - 1 + lod_pkg::dot_product_latency(N_W, D_W);
   if (lod_pkg::EDGE_FUNCTION_LATENCY != CROSS_LATENCY + DOT_LATENCY) begin : g_illegal_latency
     $error("edge_function: lod_pkg::EDGE_FUNCTION_LATENCY must be %0d", CROSS_LATENCY + DOT_LATENCY);
   end
@@ -50,7 +51,7 @@ module edge_function (
     .valid_o(), .ready_i(ready_normal), .data_o({d_q, along_positive_q})
   );
 
-  dot_product #(.A_W(N_W), .B_W(D_W), .SUM_W(lod_pkg::SIGNED_EDGE_W)) u_dot (
+  dot_product #(.A_W(N_W), .B_W(D_W), .SUM_W(lod_pkg::SIGNED_EDGE_W), .PRODUCT_STAGES(PRODUCT_STAGES)) u_dot (
     .clk_i, .rst_ni, .valid_i(valid_normal), .ready_o(ready_normal), .a_i(normal), .b_i(d_q),
     .valid_o, .ready_i, .sum_o(value_o)
   );

@@ -46,15 +46,15 @@ package lod_pkg;
   localparam int unsigned RAY_SETUP_INTERVAL = 22;
   localparam int unsigned TESSELLATE_LATENCY = 6;
   localparam int unsigned TREE_BASE_LATENCY = 5;
-  localparam int unsigned TRI_TEST_LATENCY = 16;
-  localparam int unsigned TRI_TEST_1_LATENCY = 18;  // with EDGES_PER_CYCLE = 1
+  localparam int unsigned TRI_TEST_LATENCY = 18;
+  localparam int unsigned TRI_TEST_1_LATENCY = 20;  // with EDGES_PER_CYCLE = 1
   localparam int unsigned TRI_TEST_1_INTERVAL = 3;
   localparam int unsigned WIDEN_BOX_LATENCY = 3;
   localparam int unsigned ENTRY_DISTANCE_LATENCY = 5;  // part of the box tests
   // Bit k: stage k of the box tests is a `pipe_skid`. Two registers follow it.
-  localparam bit [63:0] BOX_TEST_SKIDS = 64'd1 << (BOX_TEST_LATENCY - 3);
-  localparam bit [63:0] BOX_TEST32_SKIDS = 64'd1 << (BOX_TEST32_LATENCY - 3);
-  localparam int unsigned EDGE_FUNCTION_LATENCY = 12;  // parts of tri_test
+  localparam logic [63:0] BOX_TEST_SKIDS = 64'd1 << (BOX_TEST_LATENCY - 3);
+  localparam logic [63:0] BOX_TEST32_SKIDS = 64'd1 << (BOX_TEST32_LATENCY - 3);
+  localparam int unsigned EDGE_FUNCTION_LATENCY = 14;  // parts of tri_test
   localparam int unsigned TRI_DECIDE_LATENCY = 3;
   localparam int unsigned CONE_TOLERANCE_LATENCY = 7;  // parts of lod_test
   localparam int unsigned EDGE_OPENING_LATENCY = 9;
@@ -71,12 +71,12 @@ package lod_pkg;
     multiplier_latency = 1 + $clog2(multiplier_limbs(a_w)) + $clog2(multiplier_limbs(b_w));
   endfunction
 
-  // Cycles of `dot_product`: factors, products, two sums; of `cross_product`: factors, products, differences.
+  // Cycles of `dot_product`: factors, products, two sums; of `cross_product`: factors, products in two stages, differences.
   function automatic int unsigned dot_product_latency(input int unsigned a_w, input int unsigned b_w);
     dot_product_latency = 1 + multiplier_latency(a_w, b_w) + 2;
   endfunction
   function automatic int unsigned cross_product_latency(input int unsigned w);
-    cross_product_latency = 1 + multiplier_latency(w, w) + 1;
+    cross_product_latency = 1 + multiplier_latency(w, w) + 1 + 1;
   endfunction
 
   // Vertex position or ray origin in units.

@@ -41,8 +41,8 @@ module lod_test #(
 
   // Stages that are a `pipe_skid`: the last of the distances' multipliers, the nearer end and the first of the openings. What goes beside them has
   // its own at the same stages.
-  localparam bit [63:0] NEARER_SKIDS = 64'd1 << (ALONG_LATENCY - 3) | 64'd1 << (NEARER_LATENCY - 1);
-  localparam bit [63:0] SKIDS = NEARER_SKIDS | 64'd1 << LIMITS_LATENCY;
+  localparam logic [63:0] NEARER_SKIDS = 64'd1 << (ALONG_LATENCY - 3) | 64'd1 << (NEARER_LATENCY - 1);
+  localparam logic [63:0] SKIDS = NEARER_SKIDS | 64'd1 << LIMITS_LATENCY;
 
   // Corners relative to the origin: differences of 32-bit coordinates, 33 bits.
   logic [2:0][3*W-1:0]             corners, corners_q;

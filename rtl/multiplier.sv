@@ -2,13 +2,14 @@
 ///
 /// The factors are cut into limbs of 17 bits, unsigned but for the highest, which is signed and has up to 18 bits; each product of two limbs is one
 /// 18 x 18 signed multiplier of the FPGA. The limb products are registered, then added: first along a, then along b, one tree level per stage.
-/// FACTOR_STAGES registers of its own before the multipliers of the FPGA help where factors come from afar. LAST_IS_SKID
-/// makes the last register a `pipe_skid`, which cuts the chain of readies.
-/// Legal: A_W, B_W >= 1. Latency: FACTOR_STAGES + lod_pkg::multiplier_latency(A_W, B_W); interval 1.
+/// FACTOR_STAGES registers of its own before the multipliers of the FPGA help where factors come from afar, and PRODUCT_STAGES, of which one is always
+/// there, where products have a long way. LAST_IS_SKID makes the last register a `pipe_skid`, which cuts the chain of readies.
+/// Legal: A_W, B_W, PRODUCT_STAGES >= 1. Latency: FACTOR_STAGES + PRODUCT_STAGES - 1 + lod_pkg::multiplier_latency(A_W, B_W); interval 1.
 module multiplier #(
   parameter int unsigned A_W = 33,
   parameter int unsigned B_W = 33,
   parameter int unsigned FACTOR_STAGES = 0,
+  parameter int unsigned PRODUCT_STAGES = 1,
   parameter bit LAST_IS_SKID = 1'b0
 ) (
   input  logic               clk_i,
@@ -22,8 +23,8 @@ module multiplier #(
   output logic [A_W+B_W-1:0] product_o
 );
 
-  if (A_W < 1 || B_W < 1) begin : g_illegal_widths
-    $error("multiplier: A_W = %0d, B_W = %0d, both must be at least 1", A_W, B_W);
+  if (A_W < 1 || B_W < 1 || PRODUCT_STAGES < 1) begin : g_illegal_widths
+    $error("multiplier: A_W = %0d, B_W = %0d, PRODUCT_STAGES = %0d, all must be at least 1", A_W, B_W, PRODUCT_STAGES);
   end
 
   localparam int unsigned LIMB_W = lod_pkg::MULTIPLIER_LIMB_W;
@@ -66,7 +67,7 @@ module multiplier #(
     end
   end
 
-  pipe_delay #(.W(LIMB_PRODUCTS_W), .STAGES(1), .SKIDS(64'(LAST_IS_SKID && A_LIMBS * B_LIMBS == 1))) u_products (
+  pipe_delay #(.W(LIMB_PRODUCTS_W), .STAGES(PRODUCT_STAGES), .SKIDS(64'(LAST_IS_SKID && A_LIMBS * B_LIMBS == 1) << (PRODUCT_STAGES - 1))) u_products (
     .clk_i, .rst_ni, .valid_i(valid_factors), .ready_o(ready_factors), .data_i(limb_products),
     .valid_o(valid_products), .ready_i(ready_products), .data_o(limb_products_q)
   );

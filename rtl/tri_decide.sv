@@ -2,7 +2,7 @@
 ///
 /// An edge function counts as positive if it is above 0, or if it is 0 and its tie sign says so. Hit iff all three agree, det = u + v + w != 0 and
 /// t_num / det >= 0. Where the signs agree no two of u, v, w have opposite signs, so det = 0 iff all three are 0, and all sums stay below 2^96;
-/// where they do not, sums may wrap: it is a miss. Latency: lod_pkg::TRI_DECIDE_LATENCY = 3; interval 1.
+/// where they do not, sums may wrap: it is a miss. Its second register is a `pipe_skid`. Latency: lod_pkg::TRI_DECIDE_LATENCY = 3; interval 1.
 module tri_decide #(
   parameter int unsigned TAG_W = 8
 ) (
@@ -66,7 +66,7 @@ module tri_decide #(
   logic [EDGE_W-1:0] det_q, v_det_q, w_det_q;
   logic [T_W-1:0]    t_num_det_q;
   logic [TAG_W-1:0]  tag_det_q;
-  pipe_stage #(.W(2 + 3 * EDGE_W + T_W + TAG_W)) u_det (
+  pipe_skid #(.W(2 + 3 * EDGE_W + T_W + TAG_W)) u_det (
     .clk_i, .rst_ni, .valid_i(valid_signs), .ready_o(ready_signs),
     .data_i({hit, hit && !positive_u_q, det, v_q, w_q, t_num_q, tag_q}),
     .valid_o(valid_det), .ready_i(ready_det), .data_o({hit_q, front_q, det_q, v_det_q, w_det_q, t_num_det_q, tag_det_q})

@@ -30,10 +30,11 @@ module tri_edges_parallel #(
   localparam int unsigned N_W = lod_pkg::NORMAL_W;
   localparam int unsigned D_W = lod_pkg::DIRECTION_W;
   localparam int unsigned CROSS_LATENCY = lod_pkg::cross_product_latency(W);
+  localparam int unsigned PRODUCT_STAGES = 2;
   // Where the cross products and the multipliers of the dot products end in a `pipe_skid`, so does what goes beside them.
-  localparam bit [63:0] CROSS_SKIDS = 64'd1 << (CROSS_LATENCY - 1);
-  localparam bit [63:0] EDGE_SKIDS = CROSS_SKIDS | 64'd1 << (lod_pkg::EDGE_FUNCTION_LATENCY - 3);
-  if (lod_pkg::EDGE_FUNCTION_LATENCY != CROSS_LATENCY + lod_pkg::dot_product_latency(N_W, W)) begin : g_illegal_latency
+  localparam logic [63:0] CROSS_SKIDS = 64'd1 << (CROSS_LATENCY - 1);
+  localparam logic [63:0] EDGE_SKIDS = CROSS_SKIDS | 64'd1 << (lod_pkg::EDGE_FUNCTION_LATENCY - 3);
+  if (lod_pkg::EDGE_FUNCTION_LATENCY != CROSS_LATENCY + PRODUCT_STAGES - 1 + lod_pkg::dot_product_latency(N_W, W)) begin : g_illegal_latency
     $error("tri_edges_parallel: a.(b x c) and the edge functions must have one latency");
   end
 
@@ -67,7 +68,7 @@ module tri_edges_parallel #(
     .clk_i, .rst_ni, .valid_i(valid_relative), .ready_o(), .data_i(a),
     .valid_o(valid_normal), .ready_i(ready_normal), .data_o(a_beside)
   );
-  dot_product #(.A_W(N_W), .B_W(W), .SUM_W(lod_pkg::SIGNED_T_NUMERATOR_W)) u_t_num (
+  dot_product #(.A_W(N_W), .B_W(W), .SUM_W(lod_pkg::SIGNED_T_NUMERATOR_W), .PRODUCT_STAGES(PRODUCT_STAGES)) u_t_num (
     .clk_i, .rst_ni, .valid_i(valid_normal), .ready_o(ready_normal), .a_i(normal_bc), .b_i(a_beside),
     .valid_o(), .ready_i, .sum_o(t_num_o)
   );

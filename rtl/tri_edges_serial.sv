@@ -33,7 +33,8 @@ module tri_edges_serial #(
   localparam int unsigned EDGE_W = lod_pkg::SIGNED_EDGE_W;
   localparam int unsigned PASS_W = 2;
   localparam int unsigned CROSS_LATENCY = lod_pkg::cross_product_latency(W);
-  localparam int unsigned PRODUCT_LATENCY = lod_pkg::multiplier_latency(N_W, W);
+  localparam int unsigned PRODUCT_STAGES = 2;
+  localparam int unsigned PRODUCT_LATENCY = PRODUCT_STAGES - 1 + lod_pkg::multiplier_latency(N_W, W);
   if (lod_pkg::EDGE_FUNCTION_LATENCY != CROSS_LATENCY + 1 + PRODUCT_LATENCY + 2) begin : g_illegal_latency
     $error("tri_edges_serial: the path of t_num must have the latency of the edge function");
   end
@@ -107,7 +108,7 @@ module tri_edges_serial #(
 
   logic signed [N_W+W-1:0] product;
   logic                    valid_product, ready_product;
-  multiplier #(.A_W(N_W), .B_W(W), .LAST_IS_SKID(1'b1)) u_product (
+  multiplier #(.A_W(N_W), .B_W(W), .PRODUCT_STAGES(PRODUCT_STAGES), .LAST_IS_SKID(1'b1)) u_product (
     .clk_i, .rst_ni, .valid_i(valid_factors), .ready_o(ready_factors), .a_i(n_k_q), .b_i(a_k_q),
     .valid_o(valid_product), .ready_i(ready_product), .product_o(product)
   );

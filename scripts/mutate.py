@@ -1,7 +1,7 @@
 """Breaks the RTL in small ways, one at a time, and shows that the tests notice each.
 
 A mutant is one change of one operator, width, constant or condition in one file of rtl/. Sites are found by the rules below and drawn with a seed, so many a
-file. Each mutant is a copy of rtl/ that the block's test (or the unit's) runs against. A mutant that does not pass Verilator's lint says nothing about the tests:
+file. Each mutant is a copy of rtl/ that the tests of the blocks that contain the file (or the unit's) run against, smallest block first, until one notices. A mutant that does not pass Verilator's lint says nothing about the tests:
 it is counted apart and another one is drawn. Survivors must be listed with their reason in scripts/mutants.toml; any other makes the script fail.
 """
 
@@ -138,28 +138,31 @@ def main():
     tests = binaries(["rtl", "unit_rtl"])
     reasons = tomllib.loads(REASONS.read_text()).get("lives", []) if REASONS.exists() else []
 
-    # Each file is tried by the smallest top that contains it; what only moves items has tests of its own.
+    # The tests of a file are those of the tops that contain it; what only moves items has tests of its own.
     own = {name: "queues" for name in ("arbiter", "hit_queue", "pipe_stage", "pipe_skid")}
     cost = lambda top: sum(len(sources[m]) for m in closure(top, sources))
     plans = []
     for name in args.files or sources:
         holders = sorted((t for t in tops if name in closure(t, sources)), key=cost)
-        by = own.get(name) or (holders[0] if holders else None)
-        command = [tests["rtl"], f"{by}::"] if by else [tests["unit_rtl"]]
+        tops_of = [own[name]] if name in own else holders
+        commands = {top: [tests["rtl"], f"{top}::"] for top in tops_of} or {"unit": [tests["unit_rtl"]]}
         drawn = sites(sources[name])
         random.Random(f"{args.seed} {name}").shuffle(drawn)
-        plans.append((name, drawn, command, by or "unit"))
+        plans.append((name, drawn, commands))
 
     totals = {"killed": 0, "lint": 0, "lives": 0, "late": 0}
     unexplained = []
 
     def work(plan):
-        name, drawn, command, by = plan
+        name, drawn, commands = plan
         lines, tried = [], 0
         for index, site in enumerate(drawn):
             if tried == args.per_file:
                 break
-            outcome = verdict(index, name, sources[name], site, command, args.timeout)
+            for by, command in commands.items():
+                outcome = verdict(index, name, sources[name], site, command, args.timeout)
+                if outcome != "lives":
+                    break
             what = describe(name, sources[name], site)
             tried += outcome in ("killed", "lives")
             lines.append((outcome, what, by))
