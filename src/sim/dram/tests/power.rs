@@ -156,7 +156,7 @@ fn counts_are_those_of_the_commands() {
             dram.advance(clocks * 7, &mut |_, _| {});
             let counts = dram.counts()[0];
             let expected = recount(&dram, &device, clocks);
-            assert!(counts.row_hits > 100 && counts.row_misses > 100 && counts.refreshes > 90);
+            assert!(counts.row_hits > 50 && counts.row_misses > 50 && counts.row_conflicts > 50 && counts.refreshes > 90, "{counts:?}");
             assert_eq!(counts.row_hits + counts.row_misses + counts.row_conflicts, 3000);
             let ChannelCounts { row_hits, row_misses, row_conflicts, queued_clocks, longest_queue, .. } = counts;
             let same = ChannelCounts { row_hits, row_misses, row_conflicts, queued_clocks, longest_queue, ..expected };

@@ -133,8 +133,8 @@ fn channels_do_not_disturb_each_other() {
         assert!(mine.len() > 500);
         let mut one = made(&DramConfig::new(device.clone(), 8));
         let alone = drive(&mut one, &mine.iter().map(|&k| wishes[k]).collect::<Vec<_>>());
-        let same = mine.iter().zip(&alone).all(|(&k, times)| together[k] == *times);
-        assert!(same, "channel {channel}");
-        assert_eq!(one.trace(channel as usize).len(), all.trace(channel as usize)[..one.trace(channel as usize).len()].len());
+        assert!(mine.iter().zip(&alone).all(|(&k, times)| together[k] == *times), "channel {channel}");
+        let (commands, all_commands) = (one.trace(channel as usize), all.trace(channel as usize));
+        assert_eq!(commands, &all_commands[..commands.len()]);
     }
 }
