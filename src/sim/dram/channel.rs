@@ -4,61 +4,13 @@
 //! request's. One command per clock. A due refresh goes before everything of its rank. Requests of a bank may overtake its oldest one
 //! `hit_cap` times per activate, so that none waits forever.
 
+use super::choose::{Act, Candidates, Choice, Step};
 use super::config::{Controller, PagePolicy};
 use super::counts::ChannelCounts;
 use super::device::Device;
 use super::queue::{NONE, Opened, Queue, READ, WRITE};
 use super::ranks::{NO_ROW, Ranks};
 use super::trace::{Command, Given};
-
-/// Steps towards a request; also the index of the shared limit in [`Limits`].
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Step {
-    Column,
-    Activate,
-    Precharge,
-}
-
-/// What a command is for; the order is that of precedence within a clock.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Act {
-    CloseAll { rank: usize },
-    Refresh { rank: usize },
-    Towards { bank: usize },
-    Close { bank: usize },
-}
-
-/// The next command and its clock.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Choice {
-    pub clock: u64,
-    /// Smaller goes first within a clock.
-    pub order: u64,
-    pub act: Act,
-}
-
-/// The next step of a bank's queue.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Candidate {
-    /// First clock that the bank itself allows.
-    pub ready: u64,
-    pub order: u64,
-    pub slot: u16,
-    pub group: u8,
-    pub step: Step,
-}
-
-/// First clocks that a bank group and its rank allow, by [`Step`], and the first clock that a refresh forbids.
-#[derive(Clone, Copy, Debug, Default)]
-pub(super) struct Limits {
-    pub steps: [u64; 3],
-    pub due: u64,
-}
-
-pub(super) const REFRESH_ORDER: u64 = 0;
-pub(super) const COLUMN_ORDER: u64 = 1 << 60;
-pub(super) const ROW_ORDER: u64 = 2 << 60;
-pub(super) const CLOSE_ORDER: u64 = 3 << 60;
 
 /// One channel.
 #[derive(Clone, Debug)]
@@ -72,8 +24,7 @@ pub(super) struct Channel {
     pub(super) hits: Vec<[u16; 2]>,
     /// Requests served before an older one of the bank since its activate.
     pub(super) overtaken: Vec<u32>,
-    pub(super) candidates: Vec<Candidate>,
-    pub(super) limits: Vec<Limits>,
+    pub(super) candidates: Candidates,
     /// Banks with an open row.
     pub(super) open: u64,
     /// First clock without a command.
@@ -88,19 +39,14 @@ impl Channel {
     /// A channel at clock 0, all rows closed.
     pub fn new(device: &Device, controller: &Controller) -> Self {
         let banks = device.banks();
-        let ranks = Ranks::new(device);
-        let groups = (device.organisation.ranks * device.organisation.bank_groups) as usize;
-        let candidate = Candidate { ready: 0, order: 0, slot: NONE, group: 0, step: Step::Activate };
-        let candidates = (0..banks as usize).map(|bank| Candidate { group: ranks.group_of(bank) as u8, ..candidate }); // at most 64
         let mut channel = Self {
-            candidates: candidates.collect(),
-            ranks,
+            candidates: Candidates::new(),
+            ranks: Ranks::new(device),
             queues: [Queue::new(controller.read_queue, banks), Queue::new(controller.write_queue, banks)],
             controller: controller.clone(),
             kind: READ,
             hits: vec![[NONE; 2]; banks as usize],
             overtaken: vec![0; banks as usize],
-            limits: vec![Limits::default(); groups],
             open: 0,
             free: 0,
             ages: 0,
@@ -175,12 +121,12 @@ impl Channel {
         self.free = t + 1;
         match choice.act {
             Act::Towards { bank } => {
-                let kind_changed = self.step(bank, t, done);
-                self.update_limits_of(self.ranks.rank_of(bank));
-                if kind_changed {
+                let step = self.candidates.steps[bank];
+                if self.step(bank, t, done) {
                     self.update_limits();
                     self.update_candidates();
                 } else {
+                    self.update_limits_of(self.ranks.rank_of(bank), step);
                     self.update_candidate(bank);
                 }
             }
@@ -188,7 +134,7 @@ impl Channel {
                 self.leave_power_down(self.ranks.rank_of(bank), t);
                 self.close(bank, t);
                 self.note(t, Given::Precharge { bank });
-                self.update_limits_of(self.ranks.rank_of(bank));
+                self.update_limits_of(self.ranks.rank_of(bank), Step::Precharge);
             }
             Act::CloseAll { rank } => {
                 self.leave_power_down(rank, t);
@@ -198,14 +144,14 @@ impl Channel {
                     }
                 }
                 self.note(t, Given::PrechargeAll { rank });
-                self.update_limits_of(rank);
+                self.update_limits();
                 self.update_candidates();
             }
             Act::Refresh { rank } => {
                 self.leave_power_down(rank, t);
                 self.ranks.refresh(rank, t, &mut self.counts);
                 self.note(t, Given::Refresh { rank });
-                self.update_limits_of(rank);
+                self.update_limits();
                 self.update_candidates();
             }
         }
@@ -214,9 +160,8 @@ impl Channel {
 
     /// Gives a bank's candidate at clock `t`; whether the other kind is now served.
     fn step(&mut self, bank: usize, t: u64, done: &mut impl FnMut(u64, u64)) -> bool {
-        let Candidate { slot, step, .. } = self.candidates[bank];
-        let kind = self.kind;
-        match step {
+        let (slot, kind) = (self.candidates.slots[bank], self.kind);
+        match self.candidates.steps[bank] {
             Step::Activate => {
                 let request = self.queues[kind].get_mut(slot);
                 let row = request.row;

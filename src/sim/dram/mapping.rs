@@ -56,14 +56,8 @@ impl Mapping {
         if !channels.is_power_of_two() || channels > 1 << 10 {
             return Err(invalid("channels", "must be a power of two up to 1024", channels));
         }
-        let sizes = [
-            channels,
-            organisation.ranks,
-            organisation.bank_groups,
-            organisation.banks_per_group,
-            organisation.rows,
-            organisation.columns,
-        ];
+        let sizes =
+            [channels, organisation.ranks, organisation.bank_groups, organisation.banks_per_group, organisation.rows, organisation.columns];
         let wrong = |what: String| DramError::Mapping { mapping: text.to_owned(), what };
         // Part and bits of each token, the least significant first; no bits where the token has no number.
         let mut tokens = Vec::new();
@@ -72,7 +66,8 @@ impl Mapping {
             let name = token.trim_end_matches(|c: char| c.is_ascii_digit());
             let part = PARTS.iter().position(|&part| part == name).ok_or_else(|| wrong(format!("{token:?} is no part")))?;
             let number = &token[name.len()..];
-            let bits = if number.is_empty() { None } else { Some(number.parse::<u32>().map_err(|_| wrong(format!("{token:?}: too many bits")))?) };
+            let bits =
+                if number.is_empty() { None } else { Some(number.parse::<u32>().map_err(|_| wrong(format!("{token:?}: too many bits")))?) };
             tokens.push((part, bits));
         }
         for &(part, bits) in &tokens {

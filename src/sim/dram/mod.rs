@@ -2,7 +2,7 @@
 //!
 //! - [`device`]: what a device is, read from `machines/dram/*.toml`; every figure there bears its source.
 //! - [`mapping`]: which bits of a line number choose channel, rank, bank group, bank, row and column.
-//! - `channel`, `choose`: a channel's controller. Reads and writes wait in queues of fixed depth, a list per bank. The next command is known at any time
+//! - `channel`, `choose`, `queue`, `power_down`: a channel's controller. Reads and writes wait in queues of fixed depth, a list per bank. The next command is known at any time
 //!   (its clock is the largest of a few earliest clocks), so nothing is looked at in the clocks between; it is found anew when a
 //!   command was given or a request came.
 //! - `ranks`: the devices' rules. Every command moves the earliest clocks of later ones: of its bank (nRCD, nRAS, nRP, nRC, nRTP, nWR), its bank group
@@ -23,6 +23,7 @@ pub mod device;
 pub mod energy;
 pub mod error;
 pub mod mapping;
+mod power_down;
 mod queue;
 mod ranks;
 pub mod trace;
@@ -51,6 +52,8 @@ pub struct Dram {
     channels: Vec<Channel>,
     /// Time of each channel's next command.
     next_ps: Vec<u64>,
+    /// The same where requests wait, else `u64::MAX`.
+    events_ps: Vec<u64>,
     now_ps: u64,
 }
 
@@ -64,7 +67,8 @@ impl Dram {
         let mapping = Mapping::new(&config.mapping, config.channels, &config.device.organisation)?;
         let channel = Channel::new(&config.device, &config.controller);
         let next_ps = vec![channel.next_clock() * config.device.clock_ps; config.channels as usize];
-        Ok(Self { device: config.device.clone(), mapping, channels: vec![channel; config.channels as usize], next_ps, now_ps: 0 })
+        let events_ps = vec![u64::MAX; next_ps.len()];
+        Ok(Self { device: config.device.clone(), mapping, channels: vec![channel; next_ps.len()], next_ps, events_ps, now_ps: 0 })
     }
 
     /// Which lines it holds: 0 up to this; others wrap around.
@@ -94,24 +98,26 @@ impl Dram {
         let organisation = &self.device.organisation;
         let bank = (place.rank * organisation.bank_groups + place.group) * organisation.banks_per_group + place.bank;
         channel.push(now.div_ceil(clock_ps), bank as usize, place.row, id, write);
-        self.next_ps[place.channel as usize] = channel.next_clock() * clock_ps;
+        let next = channel.next_clock() * clock_ps;
+        self.next_ps[place.channel as usize] = next;
+        self.events_ps[place.channel as usize] = next;
         self.now_ps = now;
     }
 
     /// When to advance next; `None` if no request waits.
     pub fn next_event(&self) -> Option<u64> {
-        let busy = self.channels.iter().zip(&self.next_ps).filter(|(channel, _)| channel.waiting() > 0);
-        busy.map(|(_, &next)| next).min()
+        self.events_ps.iter().copied().min().filter(|&next| next < u64::MAX)
     }
 
     /// Lets time pass to `to` and gives all commands up to it. `done` gets the id of each request whose read or write command was given, and when its
     /// data are through, which may be after `to`. Calls come channel by channel, not in order of time. Refreshes have no end: neither may `to`.
     pub fn advance(&mut self, to: u64, done: &mut impl FnMut(u64, u64)) {
         let clock_ps = self.device.clock_ps;
-        for (channel, next) in self.channels.iter_mut().zip(&mut self.next_ps) {
+        for ((channel, next), event) in self.channels.iter_mut().zip(&mut self.next_ps).zip(&mut self.events_ps) {
             if *next <= to {
                 channel.advance(to / clock_ps, &mut |id, end| done(id, end * clock_ps));
                 *next = channel.next_clock() * clock_ps;
+                *event = if channel.waiting() > 0 { *next } else { u64::MAX };
             }
         }
         self.now_ps = self.now_ps.max(to);

@@ -6,6 +6,9 @@ use super::counts::ChannelCounts;
 use super::device::{Device, Timing};
 use super::queue::{READ, WRITE};
 
+/// Most banks of a channel: as many as a word has flags.
+pub(super) const MOST_BANKS: usize = 64;
+
 /// No row is open.
 pub(super) const NO_ROW: u32 = u32::MAX;
 
@@ -59,7 +62,9 @@ pub(super) struct Ranks {
     pub ranks: Vec<Rank>,
     groups: Vec<Group>,
     groups_per_rank: usize,
-    banks_per_group: usize,
+    banks_per_rank: usize,
+    /// Group and rank of each bank.
+    homes: [(u8, u8); MOST_BANKS],
 }
 
 impl Ranks {
@@ -80,30 +85,32 @@ impl Ranks {
             idle_from: 0,
             waiting: 0,
         };
+        let banks_per_group = organisation.banks_per_group as usize;
+        let banks_per_rank = banks_per_group * organisation.bank_groups as usize;
         Self {
             timing: device.timing.clone(),
             banks: vec![bank; device.banks() as usize],
             ranks: vec![rank; organisation.ranks as usize],
             groups: vec![Group::default(); (organisation.ranks * organisation.bank_groups) as usize],
             groups_per_rank: organisation.bank_groups as usize,
-            banks_per_group: organisation.banks_per_group as usize,
+            banks_per_rank,
+            homes: std::array::from_fn(|bank| ((bank / banks_per_group) as u8, (bank / banks_per_rank) as u8)), // at most 63
         }
     }
 
     /// The group of a bank.
     pub fn group_of(&self, bank: usize) -> usize {
-        bank / self.banks_per_group
+        usize::from(self.homes[bank].0)
     }
 
     /// The rank of a bank.
     pub fn rank_of(&self, bank: usize) -> usize {
-        bank / (self.banks_per_group * self.groups_per_rank)
+        usize::from(self.homes[bank].1)
     }
 
     /// The banks of a rank.
     pub fn banks_of(&self, rank: usize) -> std::ops::Range<usize> {
-        let banks = self.banks_per_group * self.groups_per_rank;
-        rank * banks..(rank + 1) * banks
+        rank * self.banks_per_rank..(rank + 1) * self.banks_per_rank
     }
 
     /// The groups of a rank.
@@ -111,14 +118,14 @@ impl Ranks {
         rank * self.groups_per_rank..(rank + 1) * self.groups_per_rank
     }
 
-    /// First clock that the group and its rank allow a read or write.
-    pub fn column_of_group(&self, group: usize, kind: usize) -> u64 {
-        self.groups[group].column[kind].max(self.ranks[group / self.groups_per_rank].column[kind])
+    /// First clock that a group and its rank allow a read or write.
+    pub fn column_of_group(&self, rank: usize, group: usize, kind: usize) -> u64 {
+        self.groups[group].column[kind].max(self.ranks[rank].column[kind])
     }
 
-    /// First clock that the group and its rank allow an activate.
-    pub fn activate_of_group(&self, group: usize) -> u64 {
-        let rank = &self.ranks[group / self.groups_per_rank];
+    /// First clock that a group and its rank allow an activate.
+    pub fn activate_of_group(&self, rank: usize, group: usize) -> u64 {
+        let rank = &self.ranks[rank];
         let window = rank.window[rank.oldest].map_or(0, |clock| clock + self.timing.n_faw);
         self.groups[group].activate.max(rank.activate).max(window)
     }

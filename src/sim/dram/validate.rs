@@ -2,11 +2,10 @@
 
 use super::device::{Io, Organisation, Supply, Timing};
 use super::error::{DramError, invalid};
+use super::ranks::MOST_BANKS;
 
 /// More than any of JEDEC's figures; keeps sums of a few far from overflow.
 const MOST_CLOCKS: u64 = 1 << 20;
-/// Banks of a channel fit one word of flags.
-const MOST_BANKS: u64 = 64;
 
 impl Organisation {
     pub(super) fn validate(&self) -> Result<(), DramError> {
@@ -23,8 +22,12 @@ impl Organisation {
             }
         }
         let banks = u64::from(self.ranks) * u64::from(self.bank_groups) * u64::from(self.banks_per_group);
-        if banks > MOST_BANKS {
-            return Err(invalid("organisation.ranks", format!("times bank_groups times banks_per_group must be at most {MOST_BANKS}"), banks));
+        if banks > MOST_BANKS as u64 {
+            return Err(invalid(
+                "organisation.ranks",
+                format!("times bank_groups times banks_per_group must be at most {MOST_BANKS}"),
+                banks,
+            ));
         }
         if !(1..=64).contains(&self.devices_per_rank) {
             return Err(invalid("organisation.devices_per_rank", "must be 1 to 64", self.devices_per_rank));

@@ -40,7 +40,8 @@ fn every_value_has_its_source_beside_it() {
             let (assignment, comment) = line.split_once('#').unwrap_or((line, ""));
             let spoken = ["name", "devices_per_rank", "read_mw_per_pin", "write_mw_per_pin"]; // said above or beside in words
             let key = assignment.split_whitespace().next().unwrap();
-            let in_words = spoken.contains(&key) || comment.contains("nRAS + nRP") || comment.contains("has none") || comment.contains("1.75 GHz");
+            let in_words =
+                spoken.contains(&key) || comment.contains("nRAS + nRP") || comment.contains("has none") || comment.contains("1.75 GHz");
             assert!(in_words || sources.iter().any(|source| comment.contains(source)), "{line}");
             values += 1;
         }

@@ -39,8 +39,11 @@ fn a_hit_that_comes_later_overtakes_only_before_the_row_is_closed() {
     let device = gddr5();
     let t = &device.timing;
     let conflict = |at| {
-        let wishes =
-            [(0, line(&device, 0, 0, 0, 0, 0), false), (0, line(&device, 0, 0, 0, 1, 0), false), (at * 800, line(&device, 0, 0, 0, 0, 1), false)];
+        let wishes = [
+            (0, line(&device, 0, 0, 0, 0, 0), false),
+            (0, line(&device, 0, 0, 0, 1, 0), false),
+            (at * 800, line(&device, 0, 0, 0, 0, 1), false),
+        ];
         order(&drive(&mut single(&device), &wishes))
     };
     // The row is closed at nRAS, later than nRCDRD + nRTP; a request of that very clock still counts.

@@ -68,7 +68,13 @@ fn random_traffic_keeps_every_rule() {
     let presets = Device::presets().map(|name| Device::preset(name).unwrap());
     for device in presets.iter().chain([&odd_device()]) {
         for (name, findings) in all_findings(device, device, 4000) {
-            assert!(findings.breaches.is_empty(), "{} {name}: {} breaches, first {}", device.name, findings.breaches.len(), findings.breaches[0]);
+            assert!(
+                findings.breaches.is_empty(),
+                "{} {name}: {} breaches, first {}",
+                device.name,
+                findings.breaches.len(),
+                findings.breaches[0]
+            );
         }
     }
 }
@@ -78,8 +84,29 @@ fn every_rule_binds_to_the_clock() {
     let device = odd_device();
     let tight: BTreeSet<_> = all_findings(&device, &device, 4000).into_iter().flat_map(|(_, findings)| findings.tight).collect();
     let all = [
-        "nCCD_L", "nCCD_L of writes", "nCCD_S", "nCCD_S of writes", "nFAW", "nPPD", "nRAS", "nRC", "nRCDRD", "nRCDWR", "nREFI", "nRFC", "nRP",
-        "nRP before a refresh", "nRRD_L", "nRRD_S", "nRTP", "nRTRS", "nRTW", "nWR", "nWTR_L", "nWTR_S", "one command per clock",
+        "nCCD_L",
+        "nCCD_L of writes",
+        "nCCD_S",
+        "nCCD_S of writes",
+        "nFAW",
+        "nPPD",
+        "nRAS",
+        "nRC",
+        "nRCDRD",
+        "nRCDWR",
+        "nREFI",
+        "nRFC",
+        "nRP",
+        "nRP before a refresh",
+        "nRRD_L",
+        "nRRD_S",
+        "nRTP",
+        "nRTRS",
+        "nRTW",
+        "nWR",
+        "nWTR_L",
+        "nWTR_S",
+        "one command per clock",
     ];
     let missing: Vec<_> = all.iter().filter(|name| !tight.contains(*name)).collect();
     assert!(missing.is_empty(), "no pair of commands meets {missing:?} to the clock");
