@@ -9,8 +9,8 @@ const REQUESTS: u64 = 1_000_000;
 /// Reads `line(k)` for every k, each as soon as its queue has room; the time of the last data.
 fn run(config: &DramConfig, line: impl Fn(u64) -> u64) -> u64 {
     let mut dram = Dram::new(config).expect("a preset is valid");
-    let (mut now, mut last) = (0, 0);
-    let mut done = |_, end| last = end.max(last);
+    let (mut now, mut last) = (0, 0u64);
+    let mut done = |_, end: u64| last = end.max(last);
     for k in 0..REQUESTS {
         let line = line(k);
         while !dram.accepts(line, false) {

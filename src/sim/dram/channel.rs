@@ -172,7 +172,7 @@ impl Channel {
                 self.counts.activates += 1;
                 self.open |= 1 << bank;
                 self.overtaken[bank] = 0;
-                self.hits[bank] = [READ, WRITE].map(|kind| self.queues[kind].first_to_row(self.queues[kind].head(bank), row));
+                self.hits[bank] = [self.first_hit(bank, READ, row), self.first_hit(bank, WRITE, row)];
                 self.note(t, Given::Activate { bank, row });
                 false
             }
@@ -209,6 +209,12 @@ impl Channel {
                 self.choose_kind()
             }
         }
+    }
+
+    /// The oldest request of a kind to a bank's row.
+    fn first_hit(&self, bank: usize, kind: usize, row: u32) -> u16 {
+        let queue = &self.queues[kind];
+        queue.first_to_row(queue.head(bank), row)
     }
 
     fn close(&mut self, bank: usize, t: u64) {

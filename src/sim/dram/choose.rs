@@ -81,7 +81,8 @@ impl Candidates {
             let bank = banks.trailing_zeros() as usize % MOST_BANKS;
             banks &= banks - 1;
             let clock = self.ready[bank].max(self.limits[usize::from(self.limit[bank])]).max(free);
-            best = best.min(key(clock, self.orders[bank]));
+            let key = key(clock, self.orders[bank]);
+            best = std::hint::select_unpredictable(key < best, key, best);
         }
         best
     }

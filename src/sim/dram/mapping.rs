@@ -14,6 +14,8 @@ pub const DEFAULT_MAPPING: &str = "row:rank:bank:column:group:channel";
 /// The parts by name.
 const PARTS: [&str; 6] = ["channel", "rank", "group", "bank", "row", "column"];
 
+const CHANNEL: usize = 0;
+
 /// Where a line is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Place {
@@ -40,10 +42,19 @@ struct Piece {
     to: u32,
 }
 
+impl Piece {
+    /// These bits of a line number, in their place within the part.
+    fn bits_of(&self, line: u64) -> u32 {
+        ((line >> self.from & self.mask) as u32) << self.to // at most 24 bits
+    }
+}
+
 /// A mapping of lines to places, one to one up to [`Mapping::lines`].
 #[derive(Clone, Debug)]
 pub struct Mapping {
+    /// Those of the channel first.
     pieces: Vec<Piece>,
+    channel_pieces: usize,
     bits: u32,
 }
 
@@ -93,7 +104,9 @@ impl Mapping {
             }
         }
         pieces.retain(|piece| piece.mask != 0);
-        Ok(Self { pieces, bits: from })
+        pieces.sort_by_key(|piece| piece.part != CHANNEL);
+        let channel_pieces = pieces.iter().filter(|piece| piece.part == CHANNEL).count();
+        Ok(Self { pieces, channel_pieces, bits: from })
     }
 
     /// Lines of all channels.
@@ -101,11 +114,16 @@ impl Mapping {
         1 << self.bits
     }
 
+    /// The channel of a line.
+    pub fn channel(&self, line: u64) -> u32 {
+        self.pieces[..self.channel_pieces].iter().fold(0, |channel, piece| channel | piece.bits_of(line))
+    }
+
     /// Where a line is.
     pub fn place(&self, line: u64) -> Place {
         let mut parts = [0u32; PARTS.len()];
         for piece in &self.pieces {
-            parts[piece.part] |= ((line >> piece.from & piece.mask) as u32) << piece.to; // at most 24 bits
+            parts[piece.part] |= piece.bits_of(line);
         }
         let [channel, rank, group, bank, row, column] = parts;
         Place { channel, rank, group, bank, row, column }
@@ -145,6 +163,7 @@ mod tests {
             let mapping = Mapping::new(text, 4, &SMALL).unwrap();
             let places: HashSet<_> = (0..mapping.lines()).map(|line| format!("{:?}", mapping.place(line))).collect();
             assert_eq!(places.len() as u64, mapping.lines(), "{text}");
+            assert!((0..mapping.lines()).all(|line| mapping.channel(line) == mapping.place(line).channel), "{text}");
         }
     }
 

@@ -78,7 +78,7 @@ impl Dram {
 
     /// Whether a read or write of `line` can be pushed now: its channel's queue has room.
     pub fn accepts(&self, line: u64, write: bool) -> bool {
-        self.channels[self.mapping.place(line).channel as usize].accepts(write)
+        self.channels[self.mapping.channel(line) as usize].accepts(write)
     }
 
     /// Reads or writes `line` from time `now` on; `id` comes back with the answer. The time must be that of the last [`Dram::advance`], or later

@@ -112,10 +112,13 @@ fn every_rule_binds_to_the_clock() {
     assert!(missing.is_empty(), "no pair of commands meets {missing:?} to the clock");
 }
 
+/// Changes a device.
+type Change = fn(&mut Device);
+
 #[test]
 fn checker_finds_what_is_a_clock_too_early() {
     let device = odd_device();
-    let stricter: [(&str, fn(&mut Device)); 19] = [
+    let stricter: [(&str, Change); 19] = [
         ("nRCDRD", |d| d.timing.n_rcd_rd += 1),
         ("nRCDWR", |d| d.timing.n_rcd_wr += 1),
         ("nRAS", |d| d.timing.n_ras += 1),
