@@ -1,8 +1,8 @@
 //! The controller's side of a channel: which command is given next.
 //!
-//! FR-FCFS: of the commands that are allowed in the earliest clock in which any is, a read or write of an open row goes first, then the oldest
-//! request's. One command per clock. A due refresh goes before everything of its rank. Requests of a bank may overtake its oldest one
-//! `hit_cap` times per activate, so that none waits forever.
+//! FR-FCFS: of the commands that are allowed in the earliest clock in which any is, a read or write of an open row goes first, then the
+//! oldest request's. One command per clock. A due refresh goes before everything of its rank. Requests of a bank may overtake its oldest
+//! one `hit_cap` times per activate, so that none waits forever.
 
 use super::choose::{Act, Candidates, Choice, Step};
 use super::config::{Controller, PagePolicy};
@@ -80,6 +80,7 @@ impl Channel {
     /// The queue is full.
     pub fn push(&mut self, arrival: u64, bank: usize, row: u32, id: u64, write: bool) {
         let kind = usize::from(write);
+        self.free = self.free.max(arrival); // if the other kind is now served, not in clocks that have passed
         let slot = self.queues[kind].push(bank, id, arrival, self.ages, row);
         self.ages += 1;
         self.counts.longest_queue = self.counts.longest_queue.max(self.waiting() as u64);
@@ -99,7 +100,8 @@ impl Channel {
         self.choose();
     }
 
-    /// Gives the commands up to clock `until`; `done` gets the id and last data clock of each request whose read or write command was given.
+    /// Gives the commands up to clock `until`; `done` gets the id and last data clock of each request whose read or write command was
+    /// given.
     pub fn advance(&mut self, until: u64, done: &mut impl FnMut(u64, u64)) {
         while let Some(choice) = self.next.filter(|choice| choice.clock <= until) {
             self.give(choice, done);

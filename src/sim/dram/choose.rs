@@ -48,7 +48,8 @@ fn clock_of(key: u128) -> u64 {
     (key >> 64) as u64
 }
 
-/// The next step of each bank's queue, and what bank groups and ranks allow. Arrays side by side: this is what is searched for every command.
+/// The next step of each bank's queue, and what bank groups and ranks allow. Arrays side by side: this is what is searched for every
+/// command.
 #[derive(Clone, Debug)]
 pub(super) struct Candidates {
     /// First clock that the bank itself allows.

@@ -40,7 +40,7 @@ pub struct Controller {
 
 impl Default for Controller {
     fn default() -> Self {
-        // 64 entries and the cap of 16 as in Ramulator 2's controller and FRFCFS-Cap; 96 writes as in the paper's simulator would change nothing.
+        // The cap is that of Ramulator's FRFCFS_Cap (src/Scheduler.h).
         Self { read_queue: 64, write_queue: 64, write_high: 48, write_low: 16, hit_cap: 16, page: PagePolicy::Open, power_down: None }
     }
 }

@@ -1,7 +1,7 @@
 //! What a DRAM device is: organisation, timings and currents, read from TOML.
 //!
-//! Timings are in clocks of the command clock and bear JEDEC's names with `n` for `t` (`nRCDRD` is tRCD for reads in clocks). A column is one line of
-//! 32 bytes, the burst of one read or write.
+//! Timings are in clocks of the command clock and bear JEDEC's names with `n` for `t` (`nRCDRD` is tRCD for reads in clocks). A column is
+//! one line of 32 bytes, the burst of one read or write.
 
 use super::error::{DramError, invalid};
 use serde::Deserialize;

@@ -1,7 +1,7 @@
 //! Energy from counts, by the method of Micron's technical note TN-41-01 (Calculating Memory System Power for DDR3).
 //!
-//! Powers there are averages over shares of time; here each share is a count of clocks, so the sums are energies. Per device and supply, with V the
-//! voltage and tCK the clock's period:
+//! Powers there are averages over shares of time; here each share is a count of clocks, so the sums are energies. Per device and supply,
+//! with V the voltage and tCK the clock's period:
 //! - background: V tCK (IDD3N x clocks with a bank active + IDD2N x clocks with all precharged), IDD3P and IDD2P in power-down;
 //! - activate: V tCK (IDD0 nRC - IDD3N nRAS - IDD2N (nRC - nRAS)) for each activate and its precharge: what IDD0 is above the background;
 //! - read: V tCK nBL (IDD4R - IDD3N) each; write: the same with IDD4W;

@@ -1,14 +1,14 @@
 //! Which bits of a line number choose channel, rank, bank group, bank, row and column.
 //!
 //! Written from the most significant part to the least, `:` between them: `row:rank:bank:column:group:channel`. A part may
-//! be split: with a number it takes that many bits, without one those that no number takes: `row:rank:bank:column:group:column1:channel`. The
-//! rightmost piece of a part has its lowest bits. Lines beyond the capacity wrap around.
+//! be split: with a number it takes that many bits, without one those that no number takes: `row:rank:bank:column:group:column1:channel`.
+//! The rightmost piece of a part has its lowest bits. Lines beyond the capacity wrap around.
 
 use super::device::Organisation;
 use super::error::{DramError, invalid};
 
-/// The default. Neighbouring lines lie in different channels, then in different bank groups (so that a stream is paced by nCCD_S), then in the same
-/// row of all those; banks and rows change last, so that a stream opens few rows.
+/// The default. Neighbouring lines lie in different channels, then in different bank groups (so that a stream is paced by nCCD_S), then in
+/// the same row of all those; banks and rows change last, so that a stream opens few rows.
 pub const DEFAULT_MAPPING: &str = "row:rank:bank:column:group:channel";
 
 /// The parts by name.

@@ -2,18 +2,18 @@
 //!
 //! - [`device`]: what a device is, read from `machines/dram/*.toml`; every figure there bears its source.
 //! - [`mapping`]: which bits of a line number choose channel, rank, bank group, bank, row and column.
-//! - `channel`, `choose`, `queue`, `power_down`: a channel's controller. Reads and writes wait in queues of fixed depth, a list per bank. The next command is known at any time
-//!   (its clock is the largest of a few earliest clocks), so nothing is looked at in the clocks between; it is found anew when a
-//!   command was given or a request came.
-//! - `ranks`: the devices' rules. Every command moves the earliest clocks of later ones: of its bank (nRCD, nRAS, nRP, nRC, nRTP, nWR), its bank group
-//!   (nCCD_L, nRRD_L, nWTR_L), its rank (nCCD_S, nRRD_S, nFAW, nWTR_S, nRTW, nPPD) and the other ranks (the data bus, nRTRS).
-//! - Refresh: all banks of a rank every nREFI, never postponed: from the clock in which it is due the rank takes nothing else; its rows are closed, it is
-//!   refreshed and blocked for nRFC.
+//! - `channel`, `choose`, `queue`, `power_down`: a channel's controller. Reads and writes wait in queues of fixed depth, a list per bank.
+//!   The next command is known at any time (its clock is the largest of a few earliest clocks), so nothing is looked at in the clocks
+//!   between; it is found anew when a command was given or a request came.
+//! - `ranks`: the devices' rules. Every command moves the earliest clocks of later ones: of its bank (nRCD, nRAS, nRP, nRC, nRTP, nWR), its
+//!   bank group (nCCD_L, nRRD_L, nWTR_L), its rank (nCCD_S, nRRD_S, nFAW, nWTR_S, nRTW, nPPD) and the other ranks (the data bus, nRTRS).
+//! - Refresh: all banks of a rank every nREFI, never postponed: from the clock in which it is due the rank takes nothing else; its rows are
+//!   closed, it is refreshed and blocked for nRFC.
 //! - Writes are answered when their data are through; reads do not look into the write queue (there are no data here).
 //! - [`mod@energy`]: joules from counts, at report time.
 //!
-//! Time is in picoseconds, a command clock a whole number of them, so nothing drifts. A request that comes at time t is first considered in the first
-//! clock at or after t.
+//! Time is in picoseconds, a command clock a whole number of them, so nothing drifts. A request that comes at time t is first considered in
+//! the first clock at or after t.
 
 mod channel;
 mod choose;
@@ -81,8 +81,8 @@ impl Dram {
         self.channels[self.mapping.channel(line) as usize].accepts(write)
     }
 
-    /// Reads or writes `line` from time `now` on; `id` comes back with the answer. The time must be that of the last [`Dram::advance`], or later
-    /// with no event between.
+    /// Reads or writes `line` from time `now` on; `id` comes back with the answer. The time must be that of the last [`Dram::advance`], or
+    /// later with no event between.
     ///
     /// # Panics
     /// The queue is full: ask [`Dram::accepts`]. In debug builds, if events before `now` are outstanding or time runs backwards.
@@ -109,8 +109,9 @@ impl Dram {
         self.events_ps.iter().copied().min().filter(|&next| next < u64::MAX)
     }
 
-    /// Lets time pass to `to` and gives all commands up to it. `done` gets the id of each request whose read or write command was given, and when its
-    /// data are through, which may be after `to`. Calls come channel by channel, not in order of time. Refreshes have no end: neither may `to`.
+    /// Lets time pass to `to` and gives all commands up to it. `done` gets the id of each request whose read or write command was given,
+    /// and when its data are through, which may be after `to`. Calls come channel by channel, not in order of time. Refreshes have no end:
+    /// neither may `to`.
     pub fn advance(&mut self, to: u64, done: &mut impl FnMut(u64, u64)) {
         let clock_ps = self.device.clock_ps;
         for ((channel, next), event) in self.channels.iter_mut().zip(&mut self.next_ps).zip(&mut self.events_ps) {

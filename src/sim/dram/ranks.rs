@@ -1,6 +1,7 @@
 //! The device's side of a channel: which rows are open, and from which clock on each command is allowed.
 //!
-//! Every command pushes the earliest clocks of later commands forward, at the level at which the rule holds: bank, bank group, rank, other ranks.
+//! Every command pushes the earliest clocks of later commands forward, at the level at which the rule holds: bank, bank group, rank, other
+//! ranks.
 
 use super::counts::ChannelCounts;
 use super::device::{Device, Timing};
@@ -54,7 +55,8 @@ pub(super) struct Rank {
     pub waiting: u32,
 }
 
-/// Ranks, bank groups and banks of a channel. A bank's number is (rank x groups + group) x banks per group + bank, a group's rank x groups + group.
+/// Ranks, bank groups and banks of a channel. A bank's number is (rank x groups + group) x banks per group + bank, a group's rank x groups
+/// + group.
 #[derive(Clone, Debug)]
 pub(super) struct Ranks {
     pub timing: Timing,

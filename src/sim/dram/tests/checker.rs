@@ -5,7 +5,7 @@ use crate::sim::dram::trace::{Command, Given};
 
 /// A command without its operands.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Kind {
+pub enum Kind {
     Act,
     Pre,
     Rd,
@@ -16,27 +16,39 @@ use Kind::{Act, Pre, Rd, Ref, Wr};
 
 /// Between which banks a rule holds.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Scope {
+pub enum Scope {
     Bank,
     Group,
     Rank,
 }
 
+impl Scope {
+    /// Whether two banks are within it.
+    pub fn joins(self, device: &Device, from: usize, to: usize) -> bool {
+        let banks = match self {
+            Scope::Bank => 1,
+            Scope::Group => device.organisation.banks_per_group as usize,
+            Scope::Rank => banks_per_rank(device),
+        };
+        from / banks == to / banks
+    }
+}
+
 /// A command to one bank; a precharge of all and a refresh are one to each bank of the rank.
 #[derive(Clone, Copy, Debug)]
-struct Event {
-    clock: u64,
-    kind: Kind,
-    bank: usize,
-    row: u32,
+pub struct Event {
+    pub clock: u64,
+    pub kind: Kind,
+    pub bank: usize,
+    pub row: u32,
     /// Place of its command in the trace.
-    command: usize,
+    pub command: usize,
 }
 
 /// From, to, scope, least clocks, the keys that make it.
-type Rule = (Kind, Kind, Scope, u64, &'static str);
+pub type Rule = (Kind, Kind, Scope, u64, &'static str);
 
-fn rules(device: &Device) -> Vec<Rule> {
+pub fn rules(device: &Device) -> Vec<Rule> {
     let t = &device.timing;
     let written = t.n_cwl + t.n_bl;
     vec![
@@ -96,11 +108,11 @@ pub fn check(device: &Device, trace: &[Command]) -> Findings {
     findings
 }
 
-fn banks_per_rank(device: &Device) -> usize {
+pub fn banks_per_rank(device: &Device) -> usize {
     (device.organisation.bank_groups * device.organisation.banks_per_group) as usize
 }
 
-fn events(device: &Device, trace: &[Command]) -> Vec<Event> {
+pub fn events(device: &Device, trace: &[Command]) -> Vec<Event> {
     let per_rank = banks_per_rank(device);
     let mut events = Vec::new();
     for (command, &Command { clock, given }) in trace.iter().enumerate() {
@@ -141,18 +153,11 @@ fn check_rows(events: &[Event], findings: &mut Findings) {
 fn check_pairs(device: &Device, events: &[Event], findings: &mut Findings) {
     let rules = rules(device);
     let furthest = rules.iter().map(|rule| rule.3).max().unwrap();
-    let per_group = device.organisation.banks_per_group as usize;
-    let per_rank = banks_per_rank(device);
     for (later, to) in events.iter().enumerate() {
         for from in events[..later].iter().rev().take_while(|from| from.clock + furthest >= to.clock) {
             let of_pair = rules.iter().filter(|rule| (rule.0, rule.1) == (from.kind, to.kind) && from.command != to.command);
             for &(_, _, scope, least, name) in of_pair {
-                let same = match scope {
-                    Scope::Bank => from.bank == to.bank,
-                    Scope::Group => from.bank / per_group == to.bank / per_group,
-                    Scope::Rank => from.bank / per_rank == to.bank / per_rank,
-                };
-                if same {
+                if scope.joins(device, from.bank, to.bank) {
                     findings.distance(name, to.clock - from.clock, least, || format!("{from:?} {to:?}"));
                 }
             }

@@ -4,6 +4,7 @@ mod checker;
 mod description;
 mod latency;
 mod power;
+mod reference;
 mod scheduling;
 mod throughput;
 mod timing;
@@ -70,7 +71,8 @@ fn line(device: &Device, rank: u32, group: u32, bank: u32, row: u32, column: u32
 /// A request: when, which line, whether it writes.
 type Wish = (u64, u64, bool);
 
-/// Runs requests in their order, each as soon as its time has come and its queue has room; then to the end. When each came and when its data were through.
+/// Runs requests in their order, each as soon as its time has come and its queue has room; then to the end. When each came and when its
+/// data were through.
 fn drive(dram: &mut Dram, wishes: &[Wish]) -> Vec<(u64, u64)> {
     let mut times = vec![(u64::MAX, u64::MAX); wishes.len()];
     let mut answers = 0;

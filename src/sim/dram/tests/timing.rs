@@ -6,7 +6,8 @@ use crate::sim::dram::trace::Given;
 use crate::sim::dram::{Controller, Device, DramConfig, PagePolicy};
 use std::collections::BTreeSet;
 
-/// Random traffic of one shape: share of writes in 256, span of lines, mean gap in clocks, how often the next line follows the last one (in 256).
+/// Random traffic of one shape: share of writes in 256, span of lines, mean gap in clocks, how often the next line follows the last one (in
+/// 256).
 #[derive(Clone, Copy, Debug)]
 struct Shape {
     writes: u64,
