@@ -52,6 +52,14 @@ wire_struct! {
     }
 }
 
+impl Out {
+    /// Number of children hit.
+    #[inline(always)]
+    pub fn met(&self) -> u32 {
+        self.count.get() as u32 // three bits
+    }
+}
+
 /// The block.
 pub struct ChildTest;
 

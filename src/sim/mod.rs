@@ -4,4 +4,5 @@ pub mod dram;
 pub mod energy;
 pub mod machine;
 pub mod ports;
+pub mod stream;
 pub mod unit;
