@@ -76,6 +76,11 @@ impl Dram {
         self.mapping.lines()
     }
 
+    /// The channel of `line`.
+    pub fn channel(&self, line: u64) -> u32 {
+        self.mapping.channel(line)
+    }
+
     /// Whether a read or write of `line` can be pushed now: its channel's queue has room.
     pub fn accepts(&self, line: u64, write: bool) -> bool {
         self.channels[self.mapping.channel(line) as usize].accepts(write)

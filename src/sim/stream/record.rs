@@ -3,6 +3,9 @@
 use super::event::{Event, Step};
 use crate::traverse::{Kind, Probe, Section};
 
+/// Where a section begins that a method lacks.
+const ABSENT: u64 = u64::MAX;
+
 /// First line of each kind of data, the sections one behind the other.
 #[derive(Clone, Copy, Debug)]
 pub struct Layout {
@@ -13,18 +16,26 @@ pub struct Layout {
 impl Layout {
     /// The layout of a method's memory; `None` if its lines have no 32-bit numbers.
     pub fn new(sections: &[Section]) -> Option<Self> {
-        let mut layout = Self { first: [0; Kind::ALL.len()], lines: 0 };
+        let mut layout = Self { first: [ABSENT; Kind::ALL.len()], lines: 0 };
         for section in sections {
             layout.first[section.kind as usize] = layout.lines;
             // Pairs of lines, and the four of a node with wide boxes, begin at multiples of four.
             layout.lines = (layout.lines + section.lines).next_multiple_of(4);
         }
-        (layout.lines <= 1 << 32).then_some(layout)
+        (layout.lines < 1 << 32).then_some(layout)
     }
 
     /// Lines of all sections.
     pub fn lines(&self) -> u64 {
         self.lines
+    }
+
+    /// What a line holds.
+    #[inline]
+    pub fn kind(&self, line: u32) -> Kind {
+        let from = |kind: Kind| self.first[kind as usize];
+        // Sections that a method lacks begin nowhere before the others.
+        Kind::ALL.into_iter().filter(|&kind| from(kind) <= u64::from(line)).max_by_key(|&kind| from(kind)).unwrap_or(Kind::BvhNode)
     }
 
     /// The number of a line of a section.
@@ -137,6 +148,8 @@ mod tests {
         let sections = [section(Kind::BvhNode, 6), section(Kind::L0Record, 4), section(Kind::BoundData, 10), section(Kind::VertexData, 9)];
         let layout = Layout::new(&sections).unwrap();
         assert_eq!(layout.lines(), 8 + 4 + 12 + 12);
+        let kinds = [0, 7, 8, 11, 12, 23, 24, 35].map(|line| layout.kind(line) as usize);
+        assert_eq!(kinds, [0, 0, 1, 1, 2, 2, 3, 3]);
         let mut ray = Recorder::new(&layout);
         let pair = |ray: &mut Recorder<'_>, kind, line| (ray.line(kind, line), ray.line(kind, line + 1));
         pair(&mut ray, Kind::BvhNode, 2);
@@ -183,7 +196,7 @@ mod tests {
 
     #[test]
     fn more_lines_than_numbers_are_refused() {
-        assert!(Layout::new(&[Section { kind: Kind::BvhNode, lines: 1 << 32 }]).is_some());
-        assert!(Layout::new(&[Section { kind: Kind::BvhNode, lines: (1 << 32) + 1 }]).is_none());
+        assert!(Layout::new(&[Section { kind: Kind::BvhNode, lines: (1 << 32) - 4 }]).is_some());
+        assert!(Layout::new(&[Section { kind: Kind::BvhNode, lines: (1 << 32) - 3 }]).is_none());
     }
 }
