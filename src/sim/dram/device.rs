@@ -10,7 +10,7 @@ use serde::Deserialize;
 pub const LINE_BYTES: u64 = 32;
 
 /// The devices that come with the program: name and description (`machines/dram`).
-const PRESETS: [(&str, &str); 3] = [
+pub const PRESETS: [(&str, &str); 3] = [
     ("gddr5", include_str!("../../../machines/dram/gddr5.toml")),
     ("gddr6", include_str!("../../../machines/dram/gddr6.toml")),
     ("ddr3-scaled", include_str!("../../../machines/dram/ddr3-scaled.toml")),

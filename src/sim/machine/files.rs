@@ -1,10 +1,11 @@
 //! Where descriptions and the tables that they name lie.
 
 use super::error::MachineError;
+use crate::sim::dram::device::PRESETS;
 use std::fs;
 use std::path::{Path, PathBuf};
 
-/// What comes with the program: path below `machines`, and text.
+/// What comes with the program: path below `machines`, and text; the devices of `machines/dram` are the DRAM model's own.
 const SHIPPED: [(&str, &str); 10] = [
     ("haydel2023.toml", include_str!("../../../machines/haydel2023.toml")),
     ("haydel2023-ddr3.toml", include_str!("../../../machines/haydel2023-ddr3.toml")),
@@ -53,10 +54,11 @@ pub fn machines() -> impl Iterator<Item = &'static str> {
 
 /// The text of a file that comes with the program.
 fn shipped(path: &str) -> Result<&'static str, MachineError> {
-    let found = SHIPPED.iter().find(|file| file.0 == path);
-    found.map(|file| file.1).ok_or_else(|| {
+    let devices = PRESETS.map(|(name, text)| (format!("dram/{name}.toml"), text));
+    let files = || SHIPPED.iter().copied().chain(devices.iter().map(|(path, text)| (path.as_str(), *text)));
+    files().find(|file| file.0 == path).map(|file| file.1).ok_or_else(|| {
         let folder = |path: &str| path.rsplit_once('/').map_or(String::new(), |(folder, _)| folder.to_owned());
-        let beside = SHIPPED.iter().filter(|file| folder(file.0) == folder(path));
+        let beside = files().filter(|file| folder(file.0) == folder(path));
         MachineError::NotShipped { name: path.to_owned(), known: beside.map(|file| file.0).collect::<Vec<_>>().join(", ") }
     })
 }

@@ -69,7 +69,8 @@ impl<S: feed::Source> FreeCores<S> {
     /// Every context takes a ray.
     pub fn start(&mut self, memory: &mut Hierarchy) {
         for context in 0..self.contexts.len() as u32 {
-            self.next_ray(context, memory);
+            self.next_ray(context);
+            self.go_on(context, memory);
         }
     }
 
@@ -96,21 +97,28 @@ impl<S: feed::Source> FreeCores<S> {
         }
     }
 
-    fn next_ray(&mut self, context: u32, memory: &mut Hierarchy) {
+    fn next_ray(&mut self, context: u32) {
         let group = context / self.rays_in_flight / self.per_group;
-        let state = &mut self.contexts[context as usize];
-        state.ray = self.feed.ray(group);
-        if state.ray.is_some() {
+        let ray = self.feed.ray(group);
+        if ray.is_some() {
             self.under_way += 1;
             self.work.ray();
-            self.go_on(context, memory);
+        }
+        self.contexts[context as usize].ray = ray;
+    }
+
+    /// Takes ray after ray up to the first lines that one asks for.
+    #[inline]
+    fn go_on(&mut self, context: u32, memory: &mut Hierarchy) {
+        while self.contexts[context as usize].ray.is_some() && !self.asks(context, memory) {
+            self.next_ray(context);
         }
     }
 
-    /// Takes the ray through all steps that ask for nothing, up to the lines that it asks for next, or its end.
-    fn go_on(&mut self, context: u32, memory: &mut Hierarchy) {
+    /// Takes the ray through all steps that ask for nothing, up to the lines that it asks for next, or its end: false.
+    fn asks(&mut self, context: u32, memory: &mut Hierarchy) -> bool {
         let state = &mut self.contexts[context as usize];
-        let Some(ray) = &mut state.ray else { return };
+        let Some(ray) = &mut state.ray else { return false };
         let (mut count, mut steps, mut end) = (0, 0, None);
         for event in ray.rest() {
             let step = event.step();
@@ -139,7 +147,7 @@ impl<S: feed::Source> FreeCores<S> {
             counts.rays += 1;
             counts.hits += u64::from(found);
             self.under_way -= 1;
-            return self.next_ray(context, memory);
+            return false;
         }
         (state.count, state.sent, state.come) = (count as u8, 0, 0);
         (state.since, state.from) = (memory.now(), Source::L1);
@@ -154,6 +162,7 @@ impl<S: feed::Source> FreeCores<S> {
                 memory.wake_at(state.free, port);
             }
         }
+        true
     }
 
     /// The port asks for a line.
