@@ -2,6 +2,7 @@
 //!
 //! A core holds some rays and asks for one line a cycle, for the rays in the order in which they became ready.
 
+use super::FrontEnd;
 use super::counts::Source;
 use super::feed::{self, Feed, Ray};
 use super::hierarchy::Hierarchy;
@@ -63,37 +64,6 @@ impl<S: feed::Source> FreeCores<S> {
             per_group: cores.per_group,
             under_way: 0,
             work: Work::default(),
-        }
-    }
-
-    /// Every context takes a ray.
-    pub fn start(&mut self, memory: &mut Hierarchy) {
-        for context in 0..self.contexts.len() as u32 {
-            self.next_ray(context);
-            self.go_on(context, memory);
-        }
-    }
-
-    /// Whether rays are under way.
-    pub fn is_busy(&self) -> bool {
-        self.under_way > 0
-    }
-
-    /// Core `port` may ask again.
-    pub fn wake(&mut self, port: u32, memory: &mut Hierarchy) {
-        self.ask(port, memory);
-    }
-
-    /// A line of `context` came from `from`.
-    #[inline]
-    pub fn answer(&mut self, context: u32, from: Source, memory: &mut Hierarchy) {
-        let state = &mut self.contexts[context as usize];
-        state.come += 1;
-        state.from = state.from.max(from);
-        if state.come == state.count {
-            let waited = memory.now() - state.since;
-            memory.counts_mut().waits.add(state.from, waited);
-            self.go_on(context, memory);
         }
     }
 
@@ -185,9 +155,37 @@ impl<S: feed::Source> FreeCores<S> {
             memory.wake_at(state.free, port);
         }
     }
+}
 
-    /// What the contexts do, for error messages.
-    pub fn describe(&self) -> String {
+impl<S: feed::Source> FrontEnd for FreeCores<S> {
+    fn start(&mut self, memory: &mut Hierarchy) {
+        for context in 0..self.contexts.len() as u32 {
+            self.next_ray(context);
+            self.go_on(context, memory);
+        }
+    }
+
+    fn wake(&mut self, port: u32, memory: &mut Hierarchy) {
+        self.ask(port, memory);
+    }
+
+    #[inline]
+    fn answer(&mut self, context: u32, from: Source, memory: &mut Hierarchy) {
+        let state = &mut self.contexts[context as usize];
+        state.come += 1;
+        state.from = state.from.max(from);
+        if state.come == state.count {
+            let waited = memory.now() - state.since;
+            memory.counts_mut().waits.add(state.from, waited);
+            self.go_on(context, memory);
+        }
+    }
+
+    fn is_busy(&self) -> bool {
+        self.under_way > 0
+    }
+
+    fn describe(&self) -> String {
         let waiting = self.contexts.iter().filter(|context| context.ray.is_some()).count();
         let first = self.contexts.iter().enumerate().filter_map(|(k, context)| {
             let ray = context.ray.as_ref()?;

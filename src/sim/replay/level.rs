@@ -97,11 +97,6 @@ impl Level {
         self.banks[bank as usize].queue.len() + ahead < self.queue
     }
 
-    /// Whether the queue of `bank` is empty.
-    pub fn is_empty(&self, bank: u32) -> bool {
-        self.banks[bank as usize].queue.is_empty()
-    }
-
     /// Puts a request into the queue of `bank`. Gives the cycle in which to [`Level::serve`] the bank, if it slept.
     #[inline]
     pub fn enqueue(&mut self, bank: u32, request: Request) -> Option<u64> {
@@ -167,10 +162,5 @@ impl Level {
         let waiting: usize = self.banks.iter().map(|bank| bank.queue.len()).sum();
         let blocked = self.banks.iter().filter(|bank| bank.blocked.is_some()).count();
         format!("{name}: {waiting} requests queued, {blocked} banks blocked, {} misses under way", self.mshrs.in_use())
-    }
-
-    /// Requests in the queues of all banks, and misses under way.
-    pub fn occupancy(&self) -> (usize, usize) {
-        (self.banks.iter().map(|bank| bank.queue.len()).sum(), self.mshrs.in_use())
     }
 }

@@ -75,25 +75,45 @@ pub fn dram_of(machine: &Machine) -> Result<DramConfig, ReplayError> {
 /// # Errors
 /// The machine is impossible or too large, or nothing happens any more while rays are under way.
 pub fn run_free(machine: &Machine, layout: &Layout, source: impl Source) -> Result<Run, ReplayError> {
+    let mut cores = FreeCores::new(&machine.cores, source);
+    let run = drive(&mut cores, machine, layout)?;
+    Ok(Run { operations: cores.work.operations().clone(), ..run })
+}
+
+/// Who asks the memory hierarchy for lines.
+trait FrontEnd {
+    /// Begins, in cycle 0.
+    fn start(&mut self, memory: &mut Hierarchy);
+    /// The cycle it asked for has come, or its held request was taken.
+    fn wake(&mut self, id: u32, memory: &mut Hierarchy);
+    /// A line came for `waiter`.
+    fn answer(&mut self, waiter: u32, from: counts::Source, memory: &mut Hierarchy);
+    /// Rays are under way.
+    fn is_busy(&self) -> bool;
+    /// What it does, for error messages.
+    fn describe(&self) -> String;
+}
+
+/// Lets `front` run on `machine` until it is done; the blocks' operations are not counted here.
+fn drive(front: &mut impl FrontEnd, machine: &Machine, layout: &Layout) -> Result<Run, ReplayError> {
     check_size(machine)?;
     let dram = dram_of(machine)?;
     let mut memory =
         Hierarchy::new(machine, &dram, layout).map_err(|source| ReplayError::Dram { file: machine.dram.device.clone(), source })?;
-    let mut cores = FreeCores::new(&machine.cores, source);
     let mut intervals = Intervals::new();
-    cores.start(&mut memory);
+    front.start(&mut memory);
     loop {
         while let Some(happening) = memory.take() {
             match happening {
-                Happening::Wake(port) => cores.wake(port, &mut memory),
-                Happening::Answer(context, from) => cores.answer(context, from, &mut memory),
+                Happening::Wake(id) => front.wake(id, &mut memory),
+                Happening::Answer(waiter, from) => front.answer(waiter, from, &mut memory),
             }
         }
-        if !cores.is_busy() {
+        if !front.is_busy() {
             break;
         }
         let Some(next) = memory.next() else {
-            let state = format!("{}\n{}", cores.describe(), memory.describe());
+            let state = format!("{}\n{}", front.describe(), memory.describe());
             return Err(ReplayError::Deadlock { cycle: memory.now(), state });
         };
         intervals.up_to(next, &mut memory);
@@ -102,14 +122,8 @@ pub fn run_free(machine: &Machine, layout: &Layout, source: impl Source) -> Resu
     let cycles = memory.now();
     let intervals = intervals.end(&mut memory);
     let dram = memory.dram();
-    Ok(Run {
-        cycles,
-        channels: dram.counts(),
-        dram: dram.energy(),
-        counts: memory.counts(),
-        operations: cores.work.operations().clone(),
-        intervals,
-    })
+    let (channels, dram) = (dram.counts(), dram.energy());
+    Ok(Run { cycles, channels, dram, counts: memory.counts(), operations: Operations::default(), intervals })
 }
 
 /// Events name contexts, cores and miss registers by 28 bits.
