@@ -21,7 +21,7 @@ pub struct Args {
     /// Seed
     #[arg(long, default_value_t = 0, allow_negative_numbers = true)]
     seed: u64,
-    /// Terrain and sphere: amplitude of each octave relative to the one before; others: amount of fine detail. Between 0 and 1
+    /// Terrain, sphere and wall: amplitude of each octave relative to the one before; others: amount of fine detail. Between 0 and 1
     #[arg(long, value_parser = share, allow_hyphen_values = true)]
     roughness: Option<f64>,
     /// Scene file to write
