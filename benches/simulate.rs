@@ -48,7 +48,7 @@ fn measure(name: &str, method: &Method<'_>, scene: &Scene) {
     });
     let mut accesses = 0;
     let replaying = best(|| {
-        let run = replay::run_free(&machine, &layout, chunks.iter().cloned()).expect("a run");
+        let run = replay::run_free(&machine, &layout, chunks.iter().cloned(), None).expect("a run");
         accesses = run.counts.l1.requests;
     });
     let together = best(|| simulate(&frame, std::slice::from_ref(&machine), &|_| ()).pop().expect("a run").map(drop).expect("a run"));

@@ -17,7 +17,7 @@ pub fn simulate(frame: &FrameRays<'_>, machines: &[Machine], traced: &dyn Fn(u64
             .iter()
             .map(|machine| {
                 let (sender, receiver): (_, Receiver<Chunk>) = sync_channel(AHEAD);
-                (sender, scope.spawn(move || replay::run_free(machine, frame.layout, receiver.into_iter())))
+                (sender, scope.spawn(move || replay::run_free(machine, frame.layout, receiver.into_iter(), None)))
             })
             .unzip();
         frame.produce(|batches| {

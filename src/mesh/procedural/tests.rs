@@ -110,7 +110,7 @@ fn trees_meet_to_the_bit_for_any_base_and_levels() {
                 assert_eq!(2 * paired + open, 3 * s.triangles.len());
                 if closed {
                     // Euler: V - E + F = 2 for each body.
-                    let bodies = if scene == Scene::Wall { super::wall::MODELS as usize } else { 1 };
+                    let bodies = if scene == Scene::Wall { wall::MODELS as usize } else { 1 };
                     assert_eq!(s.base_vertices as usize + s.triangles.len(), paired + 2 * bodies);
                 }
             }

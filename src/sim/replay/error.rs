@@ -28,6 +28,9 @@ pub enum ReplayError {
         /// How many there are.
         count: u64,
     },
+    /// The waveform's writer.
+    #[error("waveform: {0}")]
+    Wave(#[from] std::io::Error),
     /// Nothing happens any more, but rays are under way.
     #[error("deadlock after cycle {cycle}:\n{state}")]
     Deadlock {

@@ -10,6 +10,7 @@
 use super::counts::{Counts, Source};
 use super::level::{Level, Request, Served};
 use super::slots::Slots;
+use super::wave::Shown;
 use super::wheel::Wheel;
 use crate::sim::dram::{Dram, DramConfig, DramError};
 use crate::sim::machine::{Cores, Crossbar, Machine};
@@ -60,6 +61,26 @@ pub enum Happening {
     Wake(u32),
     /// The line that was asked for came.
     Answer(u32, Source),
+}
+
+impl Shown for Hierarchy {
+    fn show(&self, show: &mut dyn FnMut(&str, &str, u64)) {
+        for (group, port) in self.ports.iter().enumerate() {
+            let (queued, misses) = self.l1.occupancy(group as u32);
+            let scope = format!("group_{group}");
+            for (name, value) in [("l1_queued", queued), ("l1_misses_under_way", misses), ("crossbar_queued", port.misses.len())] {
+                show(&scope, name, value as u64);
+            }
+        }
+        let (queued, misses) = self.l2.occupancy(0);
+        let asleep = self.doors.iter().map(|door| door.asleep.len()).sum();
+        for (name, value) in [("l2_queued", queued), ("l2_misses_under_way", misses), ("groups_held_back", asleep)] {
+            show("l2", name, value as u64);
+        }
+        for (name, value) in [("waiting", self.dram.waiting()), ("held_back", self.refused_count)] {
+            show("dram", name, value as u64);
+        }
+    }
 }
 
 /// A group's side of the crossbar: misses in order.

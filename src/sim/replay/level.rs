@@ -157,10 +157,19 @@ impl Level {
         true
     }
 
+    /// Requests queued and misses under way in cache `copy`.
+    pub fn occupancy(&self, copy: u32) -> (usize, usize) {
+        let banks = copy * self.per_copy..(copy + 1) * self.per_copy;
+        banks.fold((0, 0), |(queued, misses), bank| (queued + self.banks[bank as usize].queue.len(), misses + self.mshrs.in_use_of(bank)))
+    }
+
     /// What is not at rest, for error messages.
     pub fn describe(&self, name: &str) -> String {
         let waiting: usize = self.banks.iter().map(|bank| bank.queue.len()).sum();
         let blocked = self.banks.iter().filter(|bank| bank.blocked.is_some()).count();
-        format!("{name}: {waiting} requests queued, {blocked} banks blocked, {} misses under way", self.mshrs.in_use())
+        format!(
+            "{name}: {waiting} requests queued, {blocked} banks blocked, {} misses under way",
+            (0..self.banks.len() as u32).map(|bank| self.mshrs.in_use_of(bank)).sum::<usize>()
+        )
     }
 }

@@ -4,7 +4,7 @@
 //! - `feed`: rays, from the functional layer ([`stream`](super::stream)).
 //! - `cores`: who asks for lines when compute takes no time.
 //! - `hierarchy`: L1s, crossbar, L2 and memory; `level`, `tags`, `mshr` and `slots` are its parts.
-//! - `intervals`: everything counted, over time.
+//! - `intervals`: everything counted, over time; `wave`: a window of cycles as a waveform.
 //!
 //! One thread runs a replay; frames on several machines are several replays, fed by one functional pass.
 
@@ -18,6 +18,7 @@ mod level;
 mod mshr;
 mod slots;
 mod tags;
+mod wave;
 mod wheel;
 mod work;
 
@@ -28,6 +29,7 @@ pub use counts::{CacheCounts, Counts, KindTraffic, Waits};
 pub use error::ReplayError;
 pub use feed::{Chunk, Source};
 pub use intervals::Interval;
+pub use wave::Window;
 
 use super::dram::{ChannelCounts, Device, DramConfig, DramEnergy};
 use super::energy::Operations;
@@ -36,6 +38,7 @@ use super::stream::Layout;
 use cores::FreeCores;
 use hierarchy::{Happening, Hierarchy};
 use intervals::Intervals;
+use wave::Wave;
 
 /// What a run gave.
 #[derive(Clone, Debug, PartialEq)]
@@ -52,6 +55,8 @@ pub struct Run {
     pub dram: DramEnergy,
     /// The same over time.
     pub intervals: Vec<Interval>,
+    /// The waveform of the window asked for.
+    pub wave: Option<Vec<u8>>,
 }
 
 /// The memory of a machine.
@@ -74,9 +79,9 @@ pub fn dram_of(machine: &Machine) -> Result<DramConfig, ReplayError> {
 ///
 /// # Errors
 /// The machine is impossible or too large, or nothing happens any more while rays are under way.
-pub fn run_free(machine: &Machine, layout: &Layout, source: impl Source) -> Result<Run, ReplayError> {
+pub fn run_free(machine: &Machine, layout: &Layout, source: impl Source, window: Option<Window>) -> Result<Run, ReplayError> {
     let mut cores = FreeCores::new(&machine.cores, source);
-    let run = drive(&mut cores, machine, layout)?;
+    let run = drive(&mut cores, machine, layout, window)?;
     Ok(Run { operations: cores.work.operations().clone(), ..run })
 }
 
@@ -95,12 +100,13 @@ trait FrontEnd {
 }
 
 /// Lets `front` run on `machine` until it is done; the blocks' operations are not counted here.
-fn drive(front: &mut impl FrontEnd, machine: &Machine, layout: &Layout) -> Result<Run, ReplayError> {
+fn drive(front: &mut impl FrontEnd, machine: &Machine, layout: &Layout, window: Option<Window>) -> Result<Run, ReplayError> {
     check_size(machine)?;
     let dram = dram_of(machine)?;
     let mut memory =
         Hierarchy::new(machine, &dram, layout).map_err(|source| ReplayError::Dram { file: machine.dram.device.clone(), source })?;
     let mut intervals = Intervals::new();
+    let mut wave = window.map(Wave::new);
     front.start(&mut memory);
     loop {
         while let Some(happening) = memory.take() {
@@ -108,6 +114,9 @@ fn drive(front: &mut impl FrontEnd, machine: &Machine, layout: &Layout) -> Resul
                 Happening::Wake(id) => front.wake(id, &mut memory),
                 Happening::Answer(waiter, from) => front.answer(waiter, from, &mut memory),
             }
+        }
+        if let Some(wave) = &mut wave {
+            wave.sample(&memory, &machine.cores)?;
         }
         if !front.is_busy() {
             break;
@@ -123,7 +132,15 @@ fn drive(front: &mut impl FrontEnd, machine: &Machine, layout: &Layout) -> Resul
     let intervals = intervals.end(&mut memory);
     let dram = memory.dram();
     let (channels, dram) = (dram.counts(), dram.energy());
-    Ok(Run { cycles, channels, dram, counts: memory.counts(), operations: Operations::default(), intervals })
+    Ok(Run {
+        cycles,
+        channels,
+        dram,
+        counts: memory.counts(),
+        operations: Operations::default(),
+        intervals,
+        wave: wave.map(Wave::into_bytes),
+    })
 }
 
 /// Events name contexts, cores and miss registers by 28 bits.

@@ -104,9 +104,10 @@ impl Mshrs {
         }
     }
 
-    /// Registers in use, of all banks.
-    pub fn in_use(&self) -> usize {
-        self.misses.iter().filter(|miss| miss.first != NONE).count()
+    /// Registers of `bank` in use.
+    pub fn in_use_of(&self, bank: u32) -> usize {
+        let from = bank as usize * self.per_bank;
+        self.misses[from..from + self.per_bank].iter().filter(|miss| miss.first != NONE).count()
     }
 }
 
@@ -126,7 +127,7 @@ mod tests {
         assert_eq!(mshrs.enter(0, 9, 40), Entered::New { slot: 0 }, "banks do not share");
         let mut answered = Vec::new();
         mshrs.free(2, |waiter| answered.push(waiter));
-        assert_eq!((answered, mshrs.in_use()), (vec![10, 11, 12], 2));
+        assert_eq!((answered, mshrs.in_use_of(0), mshrs.in_use_of(1)), (vec![10, 11, 12], 1, 1));
         assert_eq!(mshrs.enter(1, 7, 30), Entered::New { slot: 0 });
         assert_eq!(mshrs.line(2), 7);
         let links = mshrs.links.len();

@@ -30,7 +30,7 @@ fn rays(lines: &[Vec<u32>]) -> Chunk {
 }
 
 fn run(machine: &Machine, lines: &[Vec<u32>]) -> Run {
-    run_free(machine, &layout(), std::iter::once(rays(lines))).unwrap()
+    run_free(machine, &layout(), std::iter::once(rays(lines)), None).unwrap()
 }
 
 /// Cycles on the way to the L2's miss, and back from memory.
@@ -224,7 +224,7 @@ fn a_stream_reaches_most_of_the_peak() {
         // Every ray reads its own stretch, all together one stream.
         let lines: Vec<Vec<u32>> = (0..4096).map(|ray| (0..64).map(|k| k * 4096 + ray).collect()).collect();
         let chunks: Vec<Chunk> = lines.chunks(64).map(rays).collect();
-        let run = run_free(&machine, &layout(), chunks.into_iter()).unwrap();
+        let run = run_free(&machine, &layout(), chunks.into_iter(), None).unwrap();
         conserved(&run);
         let config = dram_of(&machine).unwrap();
         let peak = config.device.peak_bytes_per_second() * f64::from(config.channels);
@@ -249,13 +249,46 @@ fn silence_is_an_error_that_tells_what_everyone_does() {
             "one context waits for ever".to_owned()
         }
     }
-    let error = drive(&mut Silent, &machine(&[]), &layout()).unwrap_err().to_string();
+    let error = drive(&mut Silent, &machine(&[]), &layout(), None).unwrap_err().to_string();
     assert!(error.starts_with("deadlock after cycle 9:\none context waits for ever\nL1: 0 requests queued"), "{error}");
 }
 
 #[test]
 fn machines_that_events_cannot_name_are_refused() {
     let machine = machine(&[("cores.groups", 4096), ("cores.per_group", 4096)]);
-    let error = run_free(&machine, &layout(), std::iter::empty()).unwrap_err().to_string();
+    let error = run_free(&machine, &layout(), std::iter::empty(), None).unwrap_err().to_string();
     assert_eq!(error, "rays in flight of the machine are more than 4194304: 16777216");
+}
+
+#[test]
+fn a_waveform_shows_the_events_of_its_window() {
+    let lines = wandering(50, 20);
+    let machine = machine(&[("cores.groups", 2), ("cores.per_group", 4)]);
+    let run_with = |window| run_free(&machine, &layout(), std::iter::once(rays(&lines)), Some(window)).unwrap();
+    let whole = run_with(Window { from: 0, to: u64::MAX });
+    let text = String::from_utf8(whole.wave.clone().unwrap()).unwrap();
+    let mut vcd = vcd::Parser::new(text.as_bytes());
+    let header = vcd.parse_header().unwrap();
+    let hits = header.find_var(&["machine", "events", "l1_hits"]).unwrap().code;
+    assert!(header.find_var(&["machine", "group_1", "l1_misses_under_way"]).is_some());
+    // A value stands until the next: sum it over cycles.
+    let (mut sum, mut value, mut cycle) = (0, 0, 0);
+    for command in vcd {
+        match command.unwrap() {
+            vcd::Command::Timestamp(ps) => {
+                let next = machine.cores.cycle_at(ps);
+                sum += value * (next - cycle);
+                cycle = next;
+            }
+            vcd::Command::ChangeVector(id, bits) if id == hits => {
+                value = bits.iter().fold(0, |v, bit| 2 * v + u64::from(bit == vcd::Value::V1));
+            }
+            _ => (),
+        }
+    }
+    assert_eq!(sum + value, whole.counts.l1.hits);
+    let window = run_with(Window { from: 200, to: 260 });
+    let part = window.wave.as_ref().unwrap().len();
+    assert!(part > 500 && part < text.len() / 2, "{part} of {}", text.len());
+    assert_eq!(Run { wave: None, ..window }, Run { wave: None, ..whole }, "to look changes nothing");
 }
