@@ -5,4 +5,5 @@ pub mod energy;
 pub mod machine;
 pub mod ports;
 pub mod stream;
+pub mod timing;
 pub mod unit;
