@@ -73,7 +73,11 @@ impl<R: Steps> UnitTiming<R> {
                 let context = &mut self.contexts[who];
                 let Step::Lod { refine } = context.step() else { panic!("an LOD test here, not {:?}", context.step()) };
                 context.advance();
-                if refine { context.enter_split(result + 1) } else { context.enter_triangles(result + 1) }
+                if refine {
+                    context.enter_split(result + 1)
+                } else {
+                    context.enter_triangles(result + 1)
+                }
                 self.sleep(who, now);
             }
             Resource::Morph => {
@@ -131,7 +135,9 @@ impl<R: Steps> UnitTiming<R> {
         self.left(State::Child, who, now + 1);
         self.states[State::ChildWait as usize] += result - now;
         let context = &mut self.contexts[who];
-        let (Step::Node { met, .. } | Step::Bounds { met, .. }) = context.step() else { panic!("children are tested, not {:?}", context.step()) };
+        let (Step::Node { met, .. } | Step::Bounds { met, .. }) = context.step() else {
+            panic!("children are tested, not {:?}", context.step())
+        };
         context.advance();
         // One child a cycle, and none takes one too.
         let push = u64::from(met.max(1));

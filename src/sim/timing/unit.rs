@@ -199,23 +199,22 @@ impl<R: Steps> UnitTiming<R> {
     #[inline]
     fn ask(&mut self, who: usize, now: u64) {
         let context = &self.contexts[who];
-        match context.state {
-            State::Setup => self.ask_for(Resource::Setup, who, now),
-            State::Fetch => {
-                self.ask_for(Resource::Fetch, who, now);
-                if context.fetches_tree() {
-                    self.ask_for(Resource::Base, who, now);
-                }
-            }
-            State::Child => self.ask_for(Resource::Child, who, now),
-            State::Lod => self.ask_for(Resource::Lod, who, now),
-            State::Morph => self.ask_for(Resource::Morph, who, now),
-            State::Tri => self.ask_for(Resource::Tri, who, now),
-            State::DivideV => self.ask_for(Resource::Divide, who, now),
-            State::Map => self.ask_for(Resource::Map, who, now),
-            State::Done => self.ask_for(Resource::Hit, who, now),
+        let resource = match context.state {
+            State::Setup => Resource::Setup,
+            State::Fetch => Resource::Fetch,
+            State::Child => Resource::Child,
+            State::Lod => Resource::Lod,
+            State::Morph => Resource::Morph,
+            State::Tri => Resource::Tri,
+            State::DivideV => Resource::Divide,
+            State::Map => Resource::Map,
+            State::Done => Resource::Hit,
             state => unreachable!("nobody wakes in {state:?}"),
+        };
+        if resource == Resource::Fetch && context.fetches_tree() {
+            self.ask_for(Resource::Base, who, now);
         }
+        self.ask_for(resource, who, now);
     }
 
     #[inline(always)]
