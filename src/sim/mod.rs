@@ -6,4 +6,5 @@ pub mod machine;
 pub mod ports;
 pub mod replay;
 pub mod stream;
+pub mod timing;
 pub mod unit;
