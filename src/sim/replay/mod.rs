@@ -2,7 +2,7 @@
 //!
 //! - `wheel`: what happens when.
 //! - `feed`: rays, from the functional layer ([`stream`](super::stream)).
-//! - `cores`: who asks for lines when compute takes no time.
+//! - `cores`: who asks for lines when compute takes no time; `units`: traversal units, who do in the cycles of the RTL.
 //! - `hierarchy`: L1s, crossbar, L2 and memory; `level`, `tags`, `mshr` and `slots` are its parts.
 //! - `intervals`: everything counted, over time; `wave`: a window of cycles as a waveform.
 //!
@@ -18,6 +18,7 @@ mod level;
 mod mshr;
 mod slots;
 mod tags;
+mod units;
 mod wave;
 mod wheel;
 mod work;
@@ -35,9 +36,11 @@ use super::dram::{ChannelCounts, Device, DramConfig, DramEnergy};
 use super::energy::Operations;
 use super::machine::Machine;
 use super::stream::Layout;
+use super::unit::UnitCounts;
 use cores::FreeCores;
 use hierarchy::{Happening, Hierarchy};
 use intervals::Intervals;
+use units::Units;
 use wave::Wave;
 
 /// What a run gave.
@@ -49,6 +52,8 @@ pub struct Run {
     pub counts: Counts,
     /// Operations of the blocks.
     pub operations: Operations,
+    /// What the traversal units did, all together; none if compute takes no time.
+    pub units: Option<UnitCounts>,
     /// What each memory channel did.
     pub channels: Vec<ChannelCounts>,
     /// The memory's energy.
@@ -83,6 +88,16 @@ pub fn run_free(machine: &Machine, layout: &Layout, source: impl Source, window:
     let mut cores = FreeCores::new(&machine.cores, source);
     let run = drive(&mut cores, machine, layout, window)?;
     Ok(Run { operations: cores.work.operations().clone(), ..run })
+}
+
+/// The same with traversal units that take the cycles of the RTL.
+///
+/// # Errors
+/// As [`run_free`].
+pub fn run_units(machine: &Machine, layout: &Layout, source: impl Source, window: Option<Window>) -> Result<Run, ReplayError> {
+    let mut units = Units::new(machine, source);
+    let run = drive(&mut units, machine, layout, window)?;
+    Ok(Run { operations: units.work.operations().clone(), units: Some(units.counts(run.cycles)), ..run })
 }
 
 /// Who asks the memory hierarchy for lines.
@@ -138,6 +153,7 @@ fn drive(front: &mut impl FrontEnd, machine: &Machine, layout: &Layout, window: 
         dram,
         counts: memory.counts(),
         operations: Operations::default(),
+        units: None,
         intervals,
         wave: wave.map(Wave::into_bytes),
     })
@@ -151,6 +167,7 @@ fn check_size(machine: &Machine) -> Result<(), ReplayError> {
         ("rays in flight", product(&[cores.groups, cores.per_group, cores.rays_in_flight]), 1 << 22),
         ("miss registers of the L1s", product(&[cores.groups, l1.banks, l1.mshrs]), 1 << 26),
         ("lines of the L1s", cores.groups as u64 * l1.lines(), 1 << 30),
+        ("traversal units", product(&[cores.groups, machine.units.per_group]), units::MOST_UNITS),
         ("miss registers of the L2", product(&[l2.banks, l2.mshrs]), 1 << 26),
     ];
     match sizes.into_iter().find(|&(_, count, most)| count > most) {
