@@ -9,8 +9,10 @@ mod generate;
 mod info;
 mod lines;
 mod output;
+mod pass;
 mod pictures;
 mod render;
+mod simulate;
 mod trace;
 mod verify;
 
@@ -39,6 +41,8 @@ enum Command {
     Verify(verify::Args),
     /// Render a scene
     Render(render::Args),
+    /// Simulate a frame on a machine: time, caches, memory and energy
+    Simulate(simulate::Args),
     /// Follow one ray through the traversal unit: as a waveform, or as text
     Trace(trace::Args),
     /// Count the memory lines that a frame touches, LOD against every BVH layout, by distance
@@ -61,6 +65,7 @@ pub fn run(cli: Cli) -> anyhow::Result<ExitCode> {
         Command::Info(args) => info::run(&args),
         Command::Verify(args) => verify::run(&args),
         Command::Render(args) => render::run(&args),
+        Command::Simulate(args) => simulate::run(&args),
         Command::Trace(args) => trace::run(&args),
         Command::Lines(args) => lines::run(&args),
         Command::Crack(args) => crack::run(&args),
