@@ -2,6 +2,7 @@
 
 mod args;
 mod build;
+mod compare;
 mod crack;
 mod demo;
 mod export;
@@ -13,6 +14,7 @@ mod pass;
 mod pictures;
 mod render;
 mod simulate;
+mod sweep;
 mod trace;
 mod verify;
 
@@ -43,6 +45,10 @@ enum Command {
     Render(render::Args),
     /// Simulate a frame on a machine: time, caches, memory and energy
     Simulate(simulate::Args),
+    /// Simulate many frames on many machines, from a list of jobs; what was interrupted goes on where it was
+    Sweep(sweep::Args),
+    /// Put two results of simulations side by side
+    Compare(compare::Args),
     /// Follow one ray through the traversal unit: as a waveform, or as text
     Trace(trace::Args),
     /// Count the memory lines that a frame touches, LOD against every BVH layout, by distance
@@ -66,6 +72,8 @@ pub fn run(cli: Cli) -> anyhow::Result<ExitCode> {
         Command::Verify(args) => verify::run(&args),
         Command::Render(args) => render::run(&args),
         Command::Simulate(args) => simulate::run(&args),
+        Command::Sweep(args) => sweep::run(&args),
+        Command::Compare(args) => compare::run(&args),
         Command::Trace(args) => trace::run(&args),
         Command::Lines(args) => lines::run(&args),
         Command::Crack(args) => crack::run(&args),

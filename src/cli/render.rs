@@ -88,7 +88,7 @@ struct KindPerRay {
     distinct_lines: f64,
 }
 
-#[derive(Serialize)]
+#[derive(Clone, Serialize)]
 pub struct Comparison {
     #[serde(flatten)]
     pub image: ImageError,

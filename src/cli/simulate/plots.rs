@@ -51,8 +51,9 @@ fn title(what: &str, r: &SimResult, machine: &str) -> Vec<String> {
     let setup = &r.setup;
     let delta = setup.method.delta.map_or_else(String::new, |delta| format!(" at delta {delta}"));
     let [width, height] = setup.view.size;
+    let machine = if machine.is_empty() { String::new() } else { format!("; {machine}") };
     let place = setup.view.distance.map_or_else(String::new, |distance| format!(" from {distance} radii"));
-    vec![what.to_owned(), format!("{}, {}{delta}, {width}x{height} rays{place}; {machine}", setup.scene.name, setup.method.name)]
+    vec![what.to_owned(), format!("{}, {}{delta}, {width}x{height} rays{place}{machine}", setup.scene.name, setup.method.name)]
 }
 
 /// Squares and names, from the top down.
@@ -97,7 +98,7 @@ pub fn energy(results: &[SimResult]) -> anyhow::Result<String> {
             .margin(10)
             .x_label_area_size(34)
             .y_label_area_size(84)
-            .build_cartesian_2d((0..results.len()).into_segmented(), 0.0..most)
+            .build_cartesian_2d((0..results.len() - 1).into_segmented(), 0.0..most)
             .map_err(wrong)?;
         let name = |at: &SegmentValue<usize>| match at {
             SegmentValue::CenterOf(k) => machines.get(*k).map_or_else(String::new, ToString::to_string),

@@ -4,7 +4,7 @@ use crate::cli::output::grouped;
 use lodray::report::result::{CacheResult, SimResult};
 
 /// Columns of the name and of each figure.
-const NAME: usize = 12;
+const NAME: usize = 14;
 const CELL: usize = 14;
 
 /// A number with about four digits, or all before the point.
@@ -95,7 +95,7 @@ fn memory(lines: &mut Lines, r: &SimResult) {
     let rates = [amount(dram.bytes_per_second * 1e-9), percent(dram.bandwidth_share), amount(dram.mean_queue_nanoseconds)];
     lines.line("", counts.into_iter().chain(rates));
     lines.0 += &format!(
-        "            {}: {} channels, {} GB/s at most; the busiest has {:.2} of the mean; {} cycles of misses before full queues\n",
+        "              {}: {} channels, {} GB/s at most; the busiest has {:.2} of the mean; {} cycles of misses before full queues\n",
         dram.device,
         dram.channels.len(),
         amount(dram.peak_bytes_per_second * 1e-9),
