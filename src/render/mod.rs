@@ -8,7 +8,7 @@ mod picture;
 mod shade;
 mod steps;
 
-pub use camera::{Camera, CameraError, DEFAULT_VIEW_ANGLE_DEGREES, View};
+pub use camera::{Camera, CameraError, DEFAULT_DISTANCE, DEFAULT_VIEW_ANGLE_DEGREES, View};
 pub use frame::{Frame, FrameStats, KindCount, Method, Pixel, render};
 pub use geometry::{GeometricError, geometric_error};
 pub use lines::LineSets;

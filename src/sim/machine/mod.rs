@@ -82,6 +82,24 @@ impl Machine {
     /// # Errors
     /// No such key, a value of the wrong type, or an impossible one.
     pub fn set(&mut self, key: &str, value: &str) -> Result<(), MachineError> {
+        self.set_all(&[(key, value)])
+    }
+
+    /// Changes the values of several keys at once: only together need they be possible. On an error the machine stays as it was.
+    ///
+    /// # Errors
+    /// No such key, a value of the wrong type, or an impossible one.
+    pub fn set_all(&mut self, changes: &[(&str, &str)]) -> Result<(), MachineError> {
+        let mut changed = self.clone();
+        changes.iter().try_for_each(|(key, value)| changed.replace(key, value))?;
+        let all = || changes.iter().map(|(key, value)| format!("{key} = {value}")).collect::<Vec<_>>().join(", ");
+        changed.validate().map_err(|breach| breach.in_file(&all()))?;
+        *self = changed;
+        Ok(())
+    }
+
+    /// Changes a value, possible or not.
+    fn replace(&mut self, key: &str, value: &str) -> Result<(), MachineError> {
         let wrong = |why: String| MachineError::Override { key: key.to_owned(), value: value.to_owned(), why };
         let mut root = Table::try_from(&*self).map_err(|error| wrong(error.to_string()))?;
         let (path, leaf) = key.rsplit_once('.').unwrap_or(("", key));
@@ -98,9 +116,7 @@ impl Machine {
         };
         table.insert(leaf.to_owned(), parsed);
         let changed: Self = root.try_into().map_err(|error: toml::de::Error| wrong(error.message().to_owned()))?;
-        let changed = Self { folder: self.folder.clone(), ..changed };
-        changed.validate().map_err(|breach| breach.in_file(&format!("{key} = {value}")))?;
-        *self = changed;
+        *self = Self { folder: std::mem::take(&mut self.folder), ..changed };
         Ok(())
     }
 

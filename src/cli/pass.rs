@@ -1,0 +1,97 @@
+//! One functional pass over a frame, replayed on machines: what `simulate` and `sweep` share.
+
+use super::args::{Change, LeafArgs, SimMethod};
+use super::output::progress;
+use super::render::{Built, MethodName};
+use anyhow::Context;
+use lodray::format::Scene;
+use lodray::render::{Camera, FrameRays};
+use lodray::report::result::{Compute, MachineFacts, MethodFacts, SceneFacts, Setup, SimResult, ViewFacts};
+use lodray::report::simulate;
+use lodray::sim::machine::Machine;
+use lodray::sim::stream::Layout;
+use lodray::traverse::ModelSpace;
+use std::path::Path;
+
+impl From<SimMethod> for MethodName {
+    fn from(method: SimMethod) -> Self {
+        match method {
+            SimMethod::Lod => Self::Lod,
+            SimMethod::Bvh => Self::Bvh,
+            SimMethod::Bvh32 => Self::Bvh32,
+        }
+    }
+}
+
+/// A frame to run.
+pub struct Pass<'a> {
+    pub scene: &'a Scene,
+    pub space: &'a ModelSpace,
+    pub method: SimMethod,
+    /// What the method needs.
+    pub built: &'a Built,
+    pub leaves: LeafArgs,
+    pub camera: Camera,
+    /// Where it was placed, if by distance.
+    pub distance: Option<f64>,
+    pub delta: f64,
+}
+
+/// A machine, and how compute is simulated on it.
+#[derive(Clone)]
+pub struct Target {
+    pub machine: MachineFacts,
+    pub compute: Compute,
+}
+
+/// The machine of a shipped name or a description's path, changed.
+pub fn machine(name: &str, changes: &[Change]) -> anyhow::Result<MachineFacts> {
+    let path = Path::new(name);
+    let is_path = path.components().count() > 1 || path.extension().is_some_and(|e| e == "toml");
+    let mut description = if is_path { Machine::load(path)? } else { Machine::shipped(name)? };
+    let pairs: Vec<_> = changes.iter().map(|change| (change.key.as_str(), change.value.as_str())).collect();
+    description.set_all(&pairs)?;
+    let label = if is_path { path.file_stem().unwrap_or_default().to_string_lossy().into_owned() } else { name.to_owned() };
+    Ok(MachineFacts { label, set: changes.iter().map(ToString::to_string).collect(), description })
+}
+
+impl Pass<'_> {
+    /// Traces the rays once and replays them on every target.
+    pub fn run(&self, targets: &[Target]) -> anyhow::Result<Vec<anyhow::Result<SimResult>>> {
+        let method = self.built.method(self.scene);
+        let sections = method.sections();
+        let layout = Layout::new(&sections).context("the scene is too large to simulate: its lines have no 32-bit numbers")?;
+        let frame = FrameRays { method: &method, space: self.space, camera: &self.camera, delta: self.delta, layout: &layout };
+        let free: Vec<_> = targets.iter().filter(|t| t.compute == Compute::Free).map(|t| t.machine.description.clone()).collect();
+        let bar = progress(frame.batches() as u64, "simulating");
+        let mut runs = if free.is_empty() { Vec::new() } else { simulate(&frame, &free, &|batches| bar.inc(batches)) }.into_iter();
+        bar.finish_and_clear();
+        let bytes = sections.iter().map(|section| section.lines * lodray::bvh::LINE_BYTES).sum();
+        let result = |target: &Target| {
+            let run = match target.compute {
+                Compute::Free => runs.next().context("a machine gave no run")??,
+                Compute::Units => anyhow::bail!("compute = units is not built yet; use free"),
+            };
+            Ok(SimResult::new(self.setup(target, bytes), &run)?)
+        };
+        Ok(targets.iter().map(result).collect())
+    }
+
+    fn setup(&self, target: &Target, bytes: u64) -> Setup {
+        let LeafArgs { leaf_layout, leaf_size } = self.leaves;
+        let lod = self.method == SimMethod::Lod;
+        let method = MethodFacts {
+            name: self.method.name().to_owned(),
+            delta: lod.then_some(self.delta),
+            leaves: (!lod).then(|| format!("{} {leaf_size}", leaf_layout.name())),
+            bytes,
+        };
+        Setup {
+            scene: SceneFacts::from(self.scene),
+            method,
+            view: ViewFacts::new(&self.camera, self.distance),
+            compute: target.compute,
+            machine: target.machine.clone(),
+        }
+    }
+}
