@@ -5,7 +5,8 @@
 use lodray::bvh::{FullBvh, FullOptions, LeafLayout};
 use lodray::format::Scene;
 use lodray::render::{Camera, FrameRays, Method, View};
-use lodray::report::simulate;
+use lodray::report::result::Compute;
+use lodray::report::{Job, simulate};
 use lodray::sim::machine::Machine;
 use lodray::sim::replay::{self, Chunk};
 use lodray::sim::stream::Layout;
@@ -51,13 +52,21 @@ fn measure(name: &str, method: &Method<'_>, scene: &Scene) {
         let run = replay::run_free(&machine, &layout, chunks.iter().cloned(), None).expect("a run");
         accesses = run.counts.l1.requests;
     });
-    let together = best(|| simulate(&frame, std::slice::from_ref(&machine), &|_| ()).pop().expect("a run").map(drop).expect("a run"));
+    let mut units_requests = 0;
+    let units = best(|| {
+        let run = replay::run_units(&machine, &layout, chunks.iter().cloned(), None).expect("a run");
+        units_requests = run.counts.l1.requests;
+    });
+    assert_eq!(accesses, units_requests);
+    let job = Job { machine: machine.clone(), compute: Compute::Free, window: None };
+    let together = best(|| simulate(&frame, std::slice::from_ref(&job), &|_| ()).pop().expect("a run").map(drop).expect("a run"));
     let rays = f64::from(SIDE * SIDE) / 1e3;
     println!(
-        "{name:<30} tracing {:8.0} k rays/s   replay {:8.0} k rays/s {:6.1} M accesses/s   together {:8.0} k rays/s   {:.1} accesses per ray",
+        "{name:<30} tracing {:8.0} k rays/s   replay {:8.0} k rays/s {:6.1} M accesses/s   with units {:8.0} k rays/s   together {:8.0} k rays/s   {:.1} accesses per ray",
         rays / tracing,
         rays / replaying,
         accesses as f64 / 1e6 / replaying,
+        rays / units,
         rays / together,
         accesses as f64 / 1e3 / rays
     );

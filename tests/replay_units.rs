@@ -79,7 +79,8 @@ fn many_units_lose_nothing_however_little_room_there_is() {
     let image = LodImage::of(&scene);
     let rays = steps(image, &any_rays(&h, 1000, 4));
     let shape = [("cores.groups", 4), ("units.per_group", 2), ("units.contexts", 16)];
-    let little = [("l1.mshrs", 1), ("l1.targets", 1), ("l1.queue", 1), ("l2.mshrs", 1), ("l2.queue", 1), ("l2.banks", 1), ("dram.queue", 1)];
+    let little =
+        [("l1.mshrs", 1), ("l1.targets", 1), ("l1.queue", 1), ("l2.mshrs", 1), ("l2.queue", 1), ("l2.banks", 1), ("dram.queue", 1)];
     let roomy = units(&machine(&shape), image, &rays);
     let tight = units(&machine(&[&shape[..], &little].concat()), image, &rays);
     for run in [&roomy, &tight] {

@@ -7,8 +7,9 @@ use anyhow::Context;
 use lodray::format::Scene;
 use lodray::render::{Camera, FrameRays};
 use lodray::report::result::{Compute, MachineFacts, MethodFacts, SceneFacts, Setup, SimResult, ViewFacts};
-use lodray::report::simulate;
+use lodray::report::{Job, simulate};
 use lodray::sim::machine::Machine;
+use lodray::sim::replay::{ReplayError, Run, Window};
 use lodray::sim::stream::Layout;
 use lodray::traverse::ModelSpace;
 use std::path::Path;
@@ -42,7 +43,12 @@ pub struct Pass<'a> {
 pub struct Target {
     pub machine: MachineFacts,
     pub compute: Compute,
+    /// The cycles of which a waveform is wanted.
+    pub window: Option<Window>,
 }
+
+/// The figures of a run, and its waveform if one was wanted.
+pub type Outcome = anyhow::Result<(SimResult, Option<Vec<u8>>)>;
 
 /// The machine of a shipped name or a description's path, changed.
 pub fn machine(name: &str, changes: &[Change]) -> anyhow::Result<MachineFacts> {
@@ -57,24 +63,22 @@ pub fn machine(name: &str, changes: &[Change]) -> anyhow::Result<MachineFacts> {
 
 impl Pass<'_> {
     /// Traces the rays once and replays them on every target.
-    pub fn run(&self, targets: &[Target]) -> anyhow::Result<Vec<anyhow::Result<SimResult>>> {
+    pub fn run(&self, targets: &[Target]) -> anyhow::Result<Vec<Outcome>> {
         let method = self.built.method(self.scene);
         let sections = method.sections();
         let layout = Layout::new(&sections).context("the scene is too large to simulate: its lines have no 32-bit numbers")?;
         let frame = FrameRays { method: &method, space: self.space, camera: &self.camera, delta: self.delta, layout: &layout };
-        let free: Vec<_> = targets.iter().filter(|t| t.compute == Compute::Free).map(|t| t.machine.description.clone()).collect();
+        let job = |target: &Target| Job { machine: target.machine.description.clone(), compute: target.compute, window: target.window };
+        let jobs: Vec<_> = targets.iter().map(job).collect();
         let bar = progress(frame.batches() as u64, "simulating");
-        let mut runs = if free.is_empty() { Vec::new() } else { simulate(&frame, &free, &|batches| bar.inc(batches)) }.into_iter();
+        let runs = simulate(&frame, &jobs, &|batches| bar.inc(batches));
         bar.finish_and_clear();
         let bytes = sections.iter().map(|section| section.lines * lodray::bvh::LINE_BYTES).sum();
-        let result = |target: &Target| {
-            let run = match target.compute {
-                Compute::Free => runs.next().context("a machine gave no run")??,
-                Compute::Units => anyhow::bail!("compute = units is not built yet; use free"),
-            };
-            Ok(SimResult::new(self.setup(target, bytes), &run)?)
+        let result = |(target, run): (&Target, Result<Run, ReplayError>)| {
+            let run = run?;
+            Ok((SimResult::new(self.setup(target, bytes), &run)?, run.wave))
         };
-        Ok(targets.iter().map(result).collect())
+        Ok(targets.iter().zip(runs).map(result).collect())
     }
 
     fn setup(&self, target: &Target, bytes: u64) -> Setup {

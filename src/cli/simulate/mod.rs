@@ -5,11 +5,14 @@ mod plots;
 mod table;
 
 use super::args::{CameraArgs, Change, LeafArgs, SimMethod, delta};
-use super::output::{folder, open, print_json, print_line};
+use super::output::{check_target, folder, open, print_json, print_line};
 use super::pass::{Pass, Target, machine};
 use super::render::Built;
+use anyhow::Context;
 use files::Files;
+use lodray::format::write_and_rename;
 use lodray::report::result::{Compute, SimResult};
+use lodray::sim::replay::Window;
 use lodray::traverse::ModelSpace;
 use std::path::PathBuf;
 use std::process::ExitCode;
@@ -42,15 +45,34 @@ pub struct Args {
     /// Folder for the figures as JSON, what happened over time as CSV, and plots as SVG
     #[arg(short, long)]
     out: Option<PathBuf>,
+    /// File for a waveform (VCD) of the machine: queues, misses under way and cache events; needs --window
+    #[arg(long, value_name = "FILE", requires = "window")]
+    vcd: Option<PathBuf>,
+    /// Cycles of the waveform, first and last
+    #[arg(long, value_name = "FROM:TO", requires = "vcd", value_parser = window)]
+    window: Option<Window>,
     /// Print the figures as JSON; of several machines as an array
     #[arg(long)]
     json: bool,
+}
+
+/// A stretch of cycles.
+fn window(s: &str) -> Result<Window, String> {
+    let ends = s.split_once(':').and_then(|(from, to)| Some((from.parse().ok()?, to.parse().ok()?)));
+    match ends {
+        Some((from, to)) if from <= to => Ok(Window { from, to }),
+        _ => Err(format!("'{s}' is not a stretch of cycles such as 1000:2000")),
+    }
 }
 
 pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
     let machines = args.machine.iter().map(|name| machine(name, &args.set)).collect::<anyhow::Result<Vec<_>>>()?;
     for (k, machine) in machines.iter().enumerate() {
         anyhow::ensure!(machines[..k].iter().all(|before| before.label != machine.label), "--machine: {} is given twice", machine.label);
+    }
+    if let Some(vcd) = &args.vcd {
+        anyhow::ensure!(machines.len() == 1, "--vcd: takes one machine, not {}", machines.len());
+        check_target(vcd, Some(&args.scene))?;
     }
     let scene = open(&args.scene)?;
     let space = ModelSpace::of(&scene);
@@ -72,8 +94,12 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
         distance: args.camera.radii(),
         delta: args.delta,
     };
-    let targets: Vec<_> = machines.into_iter().map(|machine| Target { machine, compute: args.compute }).collect();
-    let results = pass.run(&targets)?.into_iter().collect::<anyhow::Result<Vec<SimResult>>>()?;
+    let targets: Vec<_> = machines.into_iter().map(|machine| Target { machine, compute: args.compute, window: args.window }).collect();
+    let outcomes = pass.run(&targets)?.into_iter().collect::<anyhow::Result<Vec<_>>>()?;
+    let (results, mut waves): (Vec<SimResult>, Vec<_>) = outcomes.into_iter().unzip();
+    if let (Some(vcd), Some(wave)) = (&args.vcd, waves.pop().flatten()) {
+        write_and_rename(vcd, |out| out.write_all(&wave)).with_context(|| format!("cannot write {}", vcd.display()))?;
+    }
 
     if let Some(files) = &files {
         files.write(&results)?;

@@ -217,7 +217,7 @@ impl File {
                 let is_path = entry.name.ends_with(".toml");
                 let name = if is_path { folder.join(&entry.name).display().to_string() } else { entry.name.clone() };
                 let machine = machine(&name, &variant).with_context(|| format!("machine {}", entry.name))?;
-                targets.extend(self.compute.iter().map(|&compute| Target { machine: machine.clone(), compute }));
+                targets.extend(self.compute.iter().map(|&compute| Target { machine: machine.clone(), compute, window: None }));
             }
         }
         let scenes =

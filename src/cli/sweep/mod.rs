@@ -6,14 +6,13 @@ mod rows;
 use super::args::SimMethod;
 use super::generate::make;
 use super::output::{check_target, folder, open, print_line};
-use super::pass::{Pass, Target};
+use super::pass::{Outcome, Pass, Target};
 use super::pictures::Shot;
 use super::render::{Built, MethodName, compare_shots};
 use anyhow::Context;
 use jobs::{Jobs, Origin, SceneJobs, ViewJob};
 use lodray::format::{Scene, write_and_rename};
 use lodray::render::{Camera, View};
-use lodray::report::result::SimResult;
 use lodray::traverse::ModelSpace;
 use rows::ImageFigures;
 use std::collections::{BTreeMap, HashSet};
@@ -163,9 +162,9 @@ impl Workshop<'_> {
             delta,
         };
         let targets: Vec<_> = group.jobs.iter().map(|(_, target)| target.clone()).collect();
-        let row = |(result, (key, _)): (anyhow::Result<SimResult>, &(String, Target))| match result {
+        let row = |(result, (key, _)): (Outcome, &(String, Target))| match result {
             Err(error) => failure(key, &error),
-            Ok(mut result) => {
+            Ok((mut result, _)) => {
                 if !self.jobs.intervals {
                     result.intervals = Vec::new();
                 }

@@ -12,6 +12,7 @@ mod memory;
 mod roofline;
 mod setup;
 mod traffic;
+mod units;
 
 pub use energy::{ComputeEnergy, DramParts, EnergyResult, LeakageEnergy, ReadFill};
 pub use intervals::{IntervalPower, IntervalResult};
@@ -19,6 +20,7 @@ pub use memory::{CacheResult, ChannelResult, CrossbarResult, DramResult, WaitSha
 pub use roofline::{Bound, Roofline};
 pub use setup::{Compute, MachineFacts, MethodFacts, SceneFacts, Setup, ViewFacts};
 pub use traffic::{KindResult, LevelBytes, TrafficResult};
+pub use units::{BlockResult, UnitsResult};
 
 use crate::sim::energy::{EnergyCounts, EnergyModel};
 use crate::sim::machine::MachineError;
@@ -72,6 +74,9 @@ pub struct SimResult {
     pub traffic: TrafficResult,
     /// What the parts of the memory system would need alone.
     pub roofline: Roofline,
+    /// The traversal units, if compute takes time.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub units: Option<UnitsResult>,
     /// Operations of the hardware blocks, by block; those that occurred.
     pub operations: BTreeMap<String, u64>,
     /// Over time; may be left out of tables of many runs.
@@ -116,6 +121,10 @@ impl SimResult {
             energy: EnergyResult::new(&model.report(&energy_counts, &energy::dram_parts(&run.dram)), seconds),
             traffic: TrafficResult::new(&counts.traffic, counts.rays, setup.method.name == "lod"),
             roofline: Roofline::new(&setup, run, &dram),
+            units: run
+                .units
+                .as_ref()
+                .map(|counts| UnitsResult::new(counts, u64::from(machine.cores.groups) * u64::from(machine.units.per_group))),
             operations: run.operations.iter().filter(|&(_, n)| n > 0).map(|(o, n)| (o.name().to_owned(), n)).collect(),
             intervals: intervals::intervals(&run.intervals, &model, machine, units),
             dram,
