@@ -15,6 +15,7 @@
 mod advance;
 mod context;
 mod counts;
+mod grant;
 mod hits;
 mod ports;
 mod station;
