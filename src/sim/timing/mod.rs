@@ -16,6 +16,7 @@ mod advance;
 mod context;
 mod counts;
 mod describe;
+mod grant;
 mod hits;
 mod ports;
 mod station;

@@ -4,7 +4,7 @@ use super::context::Context;
 use super::hits::HitQueue;
 use super::ports::{Ports, Request, Steps, untag};
 use super::station::Station;
-use super::wheel::Wheel;
+use super::wheel::{Wheel, bits};
 use crate::block::bary_map::BaryMap;
 use crate::block::child_test::ChildTest;
 use crate::block::hit_divide::HitDivide;
@@ -25,20 +25,20 @@ use std::collections::VecDeque;
 pub struct UnitTiming<R> {
     pub(super) contexts: Vec<Context<R>>,
     pub(super) wheel: Wheel,
-    arbiters: [Arbiter; Resource::COUNT],
+    pub(super) arbiters: [Arbiter; Resource::COUNT],
     /// Who asks for each resource, and since when anybody does; resources that somebody asks for.
     pub(super) asking: [u64; Resource::COUNT],
-    since: [u64; Resource::COUNT],
-    asked: u32,
+    pub(super) since: [u64; Resource::COUNT],
+    pub(super) asked: u32,
     /// By resource.
     pub(super) stations: [Station; Resource::COUNT],
     pub(super) select: Station,
     pub(super) idle: u64,
     /// Requests on their way through `node_address`, and since when.
-    requests: VecDeque<(u64, Request)>,
+    pub(super) requests: VecDeque<(u64, Request)>,
     pub(super) hits: HitQueue,
     /// The hit port's register.
-    hit: Option<(R, bool)>,
+    pub(super) hit: Option<(R, bool)>,
     /// The first cycle without a tick.
     now: u64,
     next: Option<u64>,
@@ -123,15 +123,10 @@ impl<R: Steps> UnitTiming<R> {
     pub fn tick<P: Ports<Ray = R>>(&mut self, now: u64, ports: &mut P) -> Option<u64> {
         assert!(now >= self.now && self.next.is_none_or(|next| now <= next), "cycle {now}: was to be ticked in {:?}", self.next);
         self.now = now + 1;
-        let mut awake = self.wheel.wake(now);
-        while awake != 0 {
-            let who = awake.trailing_zeros() as usize;
-            awake &= awake - 1;
+        for who in bits(self.wheel.wake(now)) {
             self.ask(who, now);
         }
 
-        let mut next = None;
-        let mut at = |cycle: u64| next = Some(next.map_or(cycle, |next: u64| next.min(cycle)));
         let latency = self.stations[Resource::Fetch as usize].latency();
         let mut memory_waits = false;
         if let Some(request) = self.request(now) {
@@ -144,19 +139,15 @@ impl<R: Steps> UnitTiming<R> {
         if !hit_waits {
             self.hit = None;
         }
+        let mut another = false;
         if self.idle != 0
             && let Some(ray) = ports.ray()
         {
             self.take(ray, now);
-            if self.idle != 0 {
-                at(now + 1);
-            }
+            another = self.idle != 0;
         }
 
-        let mut asked = self.asked;
-        while asked != 0 {
-            let resource = Resource::ALL[asked.trailing_zeros() as usize];
-            asked &= asked - 1;
+        for resource in bits(u64::from(self.asked)).map(|k| Resource::ALL[k]) {
             let ready = match resource {
                 Resource::Fetch => self.requests.len() < latency as usize,
                 Resource::Hit => !hit_waits,
@@ -169,105 +160,33 @@ impl<R: Steps> UnitTiming<R> {
         }
         self.divide_hit(now);
 
-        // What goes on of itself.
-        let mut asked = self.asked;
-        while asked != 0 {
-            let resource = Resource::ALL[asked.trailing_zeros() as usize];
-            asked &= asked - 1;
+        self.next = if another { Some(now + 1) } else { self.goes_on(now, memory_waits, hit_waits) };
+        self.next
+    }
+
+    /// The next cycle behind `now` in which anything happens of itself.
+    fn goes_on(&self, now: u64, memory_waits: bool, hit_waits: bool) -> Option<u64> {
+        let soon = now + 1;
+        let mut next = self.wheel.next(soon);
+        if next == Some(soon) || self.hit.is_some() && !hit_waits {
+            return Some(soon);
+        }
+        let mut at = |cycle: u64| next = Some(next.map_or(cycle, |next| next.min(cycle)).max(soon));
+        let latency = self.stations[Resource::Fetch as usize].latency();
+        for resource in bits(u64::from(self.asked)).map(|k| Resource::ALL[k]) {
             match resource {
                 // Full, it moves with its first request, below.
                 Resource::Fetch if self.requests.len() >= latency as usize => (),
                 Resource::Hit if hit_waits => (),
-                _ => at(self.stations[resource as usize].free().max(now + 1)),
+                _ => at(self.stations[resource as usize].free()),
             }
         }
         if let Some(since) = self.hits.head() {
-            at(since.max(self.stations[Resource::Divide as usize].free()).max(now + 1));
+            at(since.max(self.stations[Resource::Divide as usize].free()));
         }
         if let Some((taken, _)) = self.requests.front().filter(|_| !memory_waits) {
-            at((taken + latency).max(now + 1));
+            at(taken + latency);
         }
-        if self.hit.is_some() && !hit_waits {
-            at(now + 1);
-        }
-        self.wheel.next(now + 1).into_iter().for_each(at);
-        self.next = next;
         next
-    }
-
-    /// Context `who` asks for what its state needs, from cycle `now` on.
-    #[inline]
-    fn ask(&mut self, who: usize, now: u64) {
-        let context = &self.contexts[who];
-        let resource = match context.state {
-            State::Setup => Resource::Setup,
-            State::Fetch => Resource::Fetch,
-            State::Child => Resource::Child,
-            State::Lod => Resource::Lod,
-            State::Morph => Resource::Morph,
-            State::Tri => Resource::Tri,
-            State::DivideV => Resource::Divide,
-            State::Map => Resource::Map,
-            State::Done => Resource::Hit,
-            state => unreachable!("nobody wakes in {state:?}"),
-        };
-        if resource == Resource::Fetch && context.fetches_tree() {
-            self.ask_for(Resource::Base, who, now);
-        }
-        self.ask_for(resource, who, now);
-    }
-
-    #[inline(always)]
-    fn ask_for(&mut self, resource: Resource, who: usize, now: u64) {
-        let asking = &mut self.asking[resource as usize];
-        if *asking == 0 {
-            self.since[resource as usize] = now;
-            self.asked |= 1 << resource as usize;
-        }
-        *asking |= 1 << who;
-    }
-
-    /// `resource` takes the request of the context whose turn it is.
-    #[inline]
-    fn grant(&mut self, resource: Resource, now: u64) {
-        let at = resource as usize;
-        let who = self.arbiters[at].winner(self.asking[at]).expect("somebody asks");
-        self.arbiters[at].took(who);
-        let since = self.since[at];
-        let again = match resource {
-            Resource::Fetch => {
-                let (request, more) = self.fetch(who, now);
-                self.requests.push_back((now, request));
-                self.stations[at].enter(since, now);
-                more
-            }
-            Resource::Hit => {
-                self.hit = Some(self.finish(who, now));
-                false
-            }
-            _ => self.granted(resource, who, since, now),
-        };
-        if !again {
-            self.asking[at] &= !(1 << who);
-            if self.asking[at] == 0 {
-                self.asked &= !(1 << at);
-            }
-        }
-    }
-
-    /// The division serves the hit queue.
-    fn divide_hit(&mut self, now: u64) {
-        let divide = &mut self.stations[Resource::Divide as usize];
-        if divide.free() > now {
-            return;
-        }
-        if let Some((since, who)) = self.hits.pop(now) {
-            // Contexts that ask meanwhile wait too, perhaps longer than the hit.
-            let asked = self.asking[Resource::Divide as usize] != 0;
-            let since = if asked { since.min(self.since[Resource::Divide as usize]) } else { since };
-            let divided = divide.take(since, now);
-            let selected = self.select.take(divided, divided);
-            self.selected(who, selected, now);
-        }
     }
 }

@@ -3,6 +3,16 @@
 /// Cycles ahead that the wheel can tell apart.
 const SLOTS: u64 = 64;
 
+/// The numbers of the bits that are set.
+#[inline(always)]
+pub fn bits(mut set: u64) -> impl Iterator<Item = usize> {
+    std::iter::from_fn(move || {
+        let first = (set != 0).then(|| set.trailing_zeros() as usize);
+        set &= set.wrapping_sub(1);
+        first
+    })
+}
+
 /// The cycles in which contexts wake, one each: a slot of contexts for each of the next cycles.
 #[derive(Clone)]
 pub struct Wheel {
@@ -40,11 +50,9 @@ impl Wheel {
     pub fn wake(&mut self, now: u64) -> u64 {
         let mut awake = std::mem::take(&mut self.slots[(now % SLOTS) as usize]);
         self.occupied &= !(1 << (now % SLOTS));
-        let mut far = awake & self.far;
+        let far = awake & self.far;
         self.far &= !far;
-        while far != 0 {
-            let who = far.trailing_zeros() as usize;
-            far &= far - 1;
+        for who in bits(far) {
             if self.at[who] > now {
                 awake &= !(1 << who);
                 self.sleep(now, self.at[who], who);
@@ -73,11 +81,7 @@ mod tests {
         let mut woken = [0; 7];
         let mut now = 101;
         while let Some(next) = wheel.next(now) {
-            let mut awake = wheel.wake(next);
-            while awake != 0 {
-                woken[awake.trailing_zeros() as usize] = next;
-                awake &= awake - 1;
-            }
+            bits(wheel.wake(next)).for_each(|who| woken[who] = next);
             now = next + 1;
         }
         assert_eq!(woken, times);
