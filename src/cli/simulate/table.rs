@@ -10,7 +10,7 @@ const CELL: usize = 14;
 /// A number with about four digits, or all before the point.
 pub fn amount(value: f64) -> String {
     match value.abs() {
-        size if size >= 1e4 => grouped(value.round() as u64), // energies, times and bytes are not negative
+        size if size >= 1e3 => grouped(value.round() as u64), // energies, times and bytes are not negative
         size if size >= 100.0 => format!("{value:.1}"),
         size if size >= 10.0 => format!("{value:.2}"),
         _ => format!("{value:.3}"),
