@@ -86,7 +86,10 @@ fn conserved(r: &Value) {
     assert_eq!(count(r, "/l1/misses"), count(r, "/l2/requests"));
     assert_eq!(count(r, "/l2/misses"), count(r, "/dram/reads"));
     assert_eq!(count(r, "/dram/bytes"), 32 * count(r, "/dram/reads"));
-    assert_eq!(count(r, "/dram/reads"), ["row_hits", "row_misses", "row_conflicts"].iter().map(|k| count(r, &format!("/dram/{k}"))).sum());
+    assert_eq!(
+        count(r, "/dram/reads"),
+        ["row_hits", "row_misses", "row_conflicts"].iter().map(|k| count(r, &format!("/dram/{k}"))).sum::<u64>()
+    );
     assert_eq!(count(r, "/dram/reads"), sum(r["dram"]["channels"].as_array().unwrap(), "reads"));
     let kinds = r["traffic"]["kinds"].as_array().unwrap();
     for (kind, whole) in [("l1", "/l1/requests"), ("l2", "/l2/requests"), ("dram", "/dram/reads")] {
@@ -193,6 +196,7 @@ fn wrong_words_are_one_clear_error() {
     for (args, code, fragment) in [
         ("--machine nope", FAILS, "nope.toml comes with the program; there are: haydel2023.toml"),
         ("--machine none/nope.toml", FAILS, "none/nope.toml: No such file"),
+        ("--machine bad.toml", FAILS, "bad.toml: TOML parse error at line 1, column 1: missing field `cores`"),
         ("--machine packet,packet", FAILS, "packet is given twice"),
         ("--set l1.bites=3", FAILS, "l1.bites = 3: unknown field"),
         ("--set l1.bytes=many", FAILS, "the value must be an integer"),
@@ -207,9 +211,6 @@ fn wrong_words_are_one_clear_error() {
     ] {
         desk.refused(&format!("{SHOT} {args}"), code, fragment);
     }
-    let (code, _, err) = desk.run_on(0, &format!("{SHOT} --machine bad.toml"));
-    assert_eq!(code, FAILS);
-    assert!(err.starts_with("error: bad.toml: "), "{err}");
     desk.refused("simulate none.lod", FAILS, "none.lod: cannot open");
     desk.refused("compare a.json b.json", FAILS, "cannot read a.json");
     desk.refused("compare a.lod a.lod", FAILS, "a.lod");
