@@ -23,6 +23,11 @@ const LEAKAGE: RGBColor = RGBColor(170, 170, 170);
 /// In the order of the energy's parts.
 const COLOURS: [RGBColor; 5] = [L1, L2, DRAM, COMPUTE, LEAKAGE];
 
+/// Name, colour and power of a part.
+type Part = (&'static str, RGBColor, fn(&IntervalPower) -> f64);
+/// Name, colour and value of a plot.
+type Panel = (String, RGBColor, Box<dyn Fn(&IntervalResult) -> f64>);
+
 /// Draws a picture of `size` under a title of one or two lines.
 fn svg(size: (u32, u32), title: &[String], draw: impl FnOnce(&Area<'_>) -> anyhow::Result<()>) -> anyhow::Result<String> {
     let mut text = String::new();
@@ -155,8 +160,7 @@ fn last(r: &SimResult) -> f64 {
 
 /// Power over time, the parts on top of each other.
 pub fn power(r: &SimResult) -> anyhow::Result<String> {
-    let parts: [(&str, RGBColor, fn(&IntervalPower) -> f64); 4] =
-        [("leakage", LEAKAGE, |w| w.leakage), ("L1", L1, |w| w.l1), ("L2", L2, |w| w.l2), ("DRAM", DRAM, |w| w.dram)];
+    let parts: [Part; 4] = [("leakage", LEAKAGE, |w| w.leakage), ("L1", L1, |w| w.l1), ("L2", L2, |w| w.l2), ("DRAM", DRAM, |w| w.dram)];
     let sum = |i: &IntervalResult, count: usize| i.watts.map_or(0.0, |w| parts[..count].iter().map(|part| part.2(&w)).sum());
     let most = top(r.intervals.iter().map(|i| sum(i, parts.len())));
     let what =
@@ -187,7 +191,7 @@ pub fn traffic(r: &SimResult) -> anyhow::Result<String> {
     let seconds = if r.cycles == 0 { 1.0 } else { r.milliseconds * 1e-3 / r.cycles as f64 };
     let rate = move |bytes: u64, cycles: u64| bytes as f64 / (cycles as f64 * seconds) * 1e-9;
     let line = lodray::bvh::LINE_BYTES;
-    let values: [(String, RGBColor, Box<dyn Fn(&IntervalResult) -> f64>); 3] = [
+    let values: [Panel; 3] = [
         ("L1s, asked of".to_owned(), L1, Box::new(move |i| rate(i.l1_requests * line, i.cycles))),
         ("L2, asked of".to_owned(), L2, Box::new(move |i| rate(i.l2_requests * line, i.cycles))),
         (format!("DRAM, at most {:.0} GB/s", r.dram.peak_bytes_per_second * 1e-9), DRAM, Box::new(move |i| rate(i.dram_bytes, i.cycles))),
