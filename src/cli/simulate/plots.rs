@@ -3,8 +3,8 @@
 use anyhow::anyhow;
 use lodray::report::result::{IntervalPower, IntervalResult, SimResult};
 use plotters::coord::Shift;
-use plotters::coord::ranged1d::{IntoSegmentedCoord, SegmentValue};
 use plotters::prelude::*;
+use plotters::style::text_anchor::{HPos, Pos, VPos};
 
 type Area<'a> = DrawingArea<SVGBackend<'a>, Shift>;
 
@@ -90,7 +90,6 @@ pub fn energy(results: &[SimResult]) -> anyhow::Result<String> {
     let units: Vec<_> = results.iter().map(|r| r.energy.unit.as_str()).collect();
     // Joules and relative energies have no axis in common: then each bar is its own whole.
     let shares = units.iter().any(|unit| *unit != first.energy.unit);
-    let machines: Vec<_> = results.iter().map(|r| r.setup.machine.label.as_str()).collect();
     let machine = if results.len() == 1 { first.setup.machine.title() } else { first.setup.machine.set.join(" ") };
     let what = if shares { "Energy of a frame, parts of all".to_owned() } else { "Energy of a frame".to_owned() };
     let scale = |r: &SimResult| if shares && r.energy.total > 0.0 { 100.0 / r.energy.total } else { 1.0 };
@@ -103,33 +102,29 @@ pub fn energy(results: &[SimResult]) -> anyhow::Result<String> {
             .margin(10)
             .x_label_area_size(34)
             .y_label_area_size(84)
-            .build_cartesian_2d((0..results.len() - 1).into_segmented(), 0.0..most)
+            .build_cartesian_2d(0.0..f64::from(bars), 0.0..most)
             .map_err(wrong)?;
-        let name = |at: &SegmentValue<usize>| match at {
-            SegmentValue::CenterOf(k) => machines.get(*k).map_or_else(String::new, ToString::to_string),
-            _ => String::new(),
-        };
         chart
             .configure_mesh()
             .disable_x_mesh()
             .light_line_style(TRANSPARENT)
-            .x_labels(results.len() + 1)
-            .x_label_formatter(&name)
+            .x_labels(0)
             .y_label_formatter(&tick)
             .y_desc(unit.as_str())
             .label_style((FONT, TEXT))
             .draw()
             .map_err(wrong)?;
-        for (k, result) in results.iter().enumerate() {
+        let below = (FONT, TEXT).into_text_style(&plot).pos(Pos::new(HPos::Center, VPos::Top));
+        for (k, result) in (0..bars).map(f64::from).zip(results) {
             let mut base = 0.0;
             for ((_, part), colour) in result.energy.split().into_iter().zip(COLOURS) {
                 let part = part * scale(result);
-                let corners = [(SegmentValue::Exact(k), base), (SegmentValue::Exact(k + 1), base + part)];
-                let mut bar = Rectangle::new(corners, colour.filled());
-                bar.set_margin(0, 0, 36, 36);
+                let bar = Rectangle::new([(k + 0.2, base), (k + 0.8, base + part)], colour.filled());
                 chart.plotting_area().draw(&bar).map_err(wrong)?;
                 base += part;
             }
+            let name = Text::new(result.setup.machine.label.clone(), (0, 8), below.clone());
+            chart.plotting_area().draw(&(EmptyElement::at((k + 0.5, 0.0)) + name)).map_err(wrong)?;
         }
         let entries: Vec<_> = first.energy.split().into_iter().zip(COLOURS).rev().map(|((name, _), colour)| (name, colour)).collect();
         legend(&names, &entries)

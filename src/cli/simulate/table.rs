@@ -79,14 +79,14 @@ fn head(r: &SimResult) -> String {
 
 fn memory(lines: &mut Lines, r: &SimResult) {
     let counts = |c: &CacheResult| [c.requests, c.hits, c.misses, c.merges].map(grouped);
-    lines.line("caches", ["requests", "hits", "misses", "merges", "hit rate"]);
+    lines.line("caches", ["requests", "hits", "misses", "merges", "hit rate", "conflicts"]);
     for (name, cache) in [("  L1", &r.l1), ("  L2", &r.l2)] {
-        lines.line(name, counts(cache).into_iter().chain([percent(cache.hit_rate)]));
+        lines.line(name, counts(cache).into_iter().chain([percent(cache.hit_rate), grouped(cache.conflicts)]));
     }
-    lines.line("waits", ["conflicts", "queued", "bank blocked", "queue full", "crossbar"]);
-    let waits = |c: &CacheResult| [c.conflicts, c.queued_cycles, c.blocked_cycles, c.refused_cycles].map(grouped);
-    for (name, cache, crossbar) in [("  L1, cycles", &r.l1, r.crossbar.answer_cycles), ("  L2, cycles", &r.l2, r.crossbar.request_cycles)] {
-        lines.line(name, waits(cache).into_iter().chain([grouped(crossbar)]));
+    lines.line("waits, cycles", ["bank queue", "before it", "bank blocked", "crossbar"]);
+    // Each row with the crossbar's way to it.
+    for (name, cache, crossbar) in [("  L1", &r.l1, r.crossbar.answer_cycles), ("  L2", &r.l2, r.crossbar.request_cycles)] {
+        lines.line(name, [cache.queued_cycles, cache.refused_cycles, cache.blocked_cycles, crossbar].map(grouped));
     }
     let dram = &r.dram;
     lines.gap();
