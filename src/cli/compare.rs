@@ -1,6 +1,6 @@
 //! `compare`: two results of simulations side by side.
 
-use super::output::{print_json, print_line};
+use super::output::{grouped, print_json, print_line};
 use super::simulate::amount;
 use super::sweep::Row;
 use anyhow::Context;
@@ -114,11 +114,16 @@ fn figures(a: &SimResult, b: &SimResult) -> Vec<Figure> {
     ]
 }
 
+/// A count, or another figure.
+fn figure(value: f64) -> String {
+    if value.fract() == 0.0 { grouped(value as u64) } else { amount(value) }
+}
+
 fn table(r: &Report, unit: &str) -> String {
     let mut text = format!("A: {}\nB: {}\nenergies in {unit}\n\n{:<22}{:>14}{:>14}{:>10}\n", r.a, r.b, "", "A", "B", "B / A");
     for f in &r.figures {
         let ratio = f.ratio.map_or_else(|| "-".to_owned(), |ratio| format!("{ratio:.3}"));
-        text += &format!("{:<22}{:>14}{:>14}{ratio:>10}\n", f.name, amount(f.a), amount(f.b));
+        text += &format!("{:<22}{:>14}{:>14}{ratio:>10}\n", f.name, figure(f.a), figure(f.b));
     }
     text.trim_end().to_owned()
 }

@@ -8,7 +8,7 @@ use lodray::format::Scene;
 use lodray::render::{Camera, FrameRays};
 use lodray::report::result::{Compute, MachineFacts, MethodFacts, SceneFacts, Setup, SimResult, ViewFacts};
 use lodray::report::{Job, simulate};
-use lodray::sim::machine::Machine;
+use lodray::sim::machine::{Machine, MachineError};
 use lodray::sim::replay::{ReplayError, Run, Window};
 use lodray::sim::stream::Layout;
 use lodray::traverse::ModelSpace;
@@ -54,11 +54,22 @@ pub type Outcome = anyhow::Result<(SimResult, Option<Vec<u8>>)>;
 pub fn machine(name: &str, changes: &[Change]) -> anyhow::Result<MachineFacts> {
     let path = Path::new(name);
     let is_path = path.components().count() > 1 || path.extension().is_some_and(|e| e == "toml");
-    let mut description = if is_path { Machine::load(path)? } else { Machine::shipped(name)? };
+    let mut description = if is_path { Machine::load(path) } else { Machine::shipped(name) }.map_err(in_one_line)?;
     let pairs: Vec<_> = changes.iter().map(|change| (change.key.as_str(), change.value.as_str())).collect();
     description.set_all(&pairs)?;
     let label = if is_path { path.file_stem().unwrap_or_default().to_string_lossy().into_owned() } else { name.to_owned() };
     Ok(MachineFacts { label, set: changes.iter().map(ToString::to_string).collect(), description })
+}
+
+/// An error of the TOML reader is several lines, with a picture of the place; the first and the last of it say all.
+fn in_one_line(error: MachineError) -> anyhow::Error {
+    match error {
+        MachineError::Toml { file, source } => {
+            let picture = source.to_string();
+            anyhow::anyhow!("{file}: {}: {}", picture.lines().next().unwrap_or_default(), source.message())
+        }
+        other => other.into(),
+    }
 }
 
 impl Pass<'_> {

@@ -59,7 +59,7 @@ impl FrameRays<'_> {
             for x in left..width.min(left + TILE) {
                 let found = tracer.pixel(self.space, self.camera, self.delta, [x, y], &mut recorder).is_some();
                 recorder.end(found);
-                ends.push(recorder.len() as u32); // 64 rays
+                ends.push(recorder.steps() as u32); // 64 rays
             }
         }
         Batch::recorded(recorder, ends)

@@ -3,8 +3,8 @@
 use anyhow::anyhow;
 use lodray::report::result::{IntervalPower, IntervalResult, SimResult};
 use plotters::coord::Shift;
-use plotters::coord::ranged1d::{IntoSegmentedCoord, SegmentValue};
 use plotters::prelude::*;
+use plotters::style::text_anchor::{HPos, Pos, VPos};
 
 type Area<'a> = DrawingArea<SVGBackend<'a>, Shift>;
 
@@ -22,6 +22,11 @@ const COMPUTE: RGBColor = RGBColor(170, 51, 119);
 const LEAKAGE: RGBColor = RGBColor(170, 170, 170);
 /// In the order of the energy's parts.
 const COLOURS: [RGBColor; 5] = [L1, L2, DRAM, COMPUTE, LEAKAGE];
+
+/// Name, colour and power of a part.
+type Part = (&'static str, RGBColor, fn(&IntervalPower) -> f64);
+/// Name, colour and value of a plot.
+type Panel = (String, RGBColor, Box<dyn Fn(&IntervalResult) -> f64>);
 
 /// Draws a picture of `size` under a title of one or two lines.
 fn svg(size: (u32, u32), title: &[String], draw: impl FnOnce(&Area<'_>) -> anyhow::Result<()>) -> anyhow::Result<String> {
@@ -85,7 +90,6 @@ pub fn energy(results: &[SimResult]) -> anyhow::Result<String> {
     let units: Vec<_> = results.iter().map(|r| r.energy.unit.as_str()).collect();
     // Joules and relative energies have no axis in common: then each bar is its own whole.
     let shares = units.iter().any(|unit| *unit != first.energy.unit);
-    let machines: Vec<_> = results.iter().map(|r| r.setup.machine.label.as_str()).collect();
     let machine = if results.len() == 1 { first.setup.machine.title() } else { first.setup.machine.set.join(" ") };
     let what = if shares { "Energy of a frame, parts of all".to_owned() } else { "Energy of a frame".to_owned() };
     let scale = |r: &SimResult| if shares && r.energy.total > 0.0 { 100.0 / r.energy.total } else { 1.0 };
@@ -98,33 +102,29 @@ pub fn energy(results: &[SimResult]) -> anyhow::Result<String> {
             .margin(10)
             .x_label_area_size(34)
             .y_label_area_size(84)
-            .build_cartesian_2d((0..results.len() - 1).into_segmented(), 0.0..most)
+            .build_cartesian_2d(0.0..f64::from(bars), 0.0..most)
             .map_err(wrong)?;
-        let name = |at: &SegmentValue<usize>| match at {
-            SegmentValue::CenterOf(k) => machines.get(*k).map_or_else(String::new, ToString::to_string),
-            _ => String::new(),
-        };
         chart
             .configure_mesh()
             .disable_x_mesh()
             .light_line_style(TRANSPARENT)
-            .x_labels(results.len() + 1)
-            .x_label_formatter(&name)
+            .x_labels(0)
             .y_label_formatter(&tick)
             .y_desc(unit.as_str())
             .label_style((FONT, TEXT))
             .draw()
             .map_err(wrong)?;
-        for (k, result) in results.iter().enumerate() {
+        let below = (FONT, TEXT).into_text_style(&plot).pos(Pos::new(HPos::Center, VPos::Top));
+        for (k, result) in (0..bars).map(f64::from).zip(results) {
             let mut base = 0.0;
             for ((_, part), colour) in result.energy.split().into_iter().zip(COLOURS) {
                 let part = part * scale(result);
-                let corners = [(SegmentValue::Exact(k), base), (SegmentValue::Exact(k + 1), base + part)];
-                let mut bar = Rectangle::new(corners, colour.filled());
-                bar.set_margin(0, 0, 36, 36);
+                let bar = Rectangle::new([(k + 0.2, base), (k + 0.8, base + part)], colour.filled());
                 chart.plotting_area().draw(&bar).map_err(wrong)?;
                 base += part;
             }
+            let name = Text::new(result.setup.machine.label.clone(), (0, 8), below.clone());
+            chart.plotting_area().draw(&(EmptyElement::at((k + 0.5, 0.0)) + name)).map_err(wrong)?;
         }
         let entries: Vec<_> = first.energy.split().into_iter().zip(COLOURS).rev().map(|((name, _), colour)| (name, colour)).collect();
         legend(&names, &entries)
@@ -155,8 +155,7 @@ fn last(r: &SimResult) -> f64 {
 
 /// Power over time, the parts on top of each other.
 pub fn power(r: &SimResult) -> anyhow::Result<String> {
-    let parts: [(&str, RGBColor, fn(&IntervalPower) -> f64); 4] =
-        [("leakage", LEAKAGE, |w| w.leakage), ("L1", L1, |w| w.l1), ("L2", L2, |w| w.l2), ("DRAM", DRAM, |w| w.dram)];
+    let parts: [Part; 4] = [("leakage", LEAKAGE, |w| w.leakage), ("L1", L1, |w| w.l1), ("L2", L2, |w| w.l2), ("DRAM", DRAM, |w| w.dram)];
     let sum = |i: &IntervalResult, count: usize| i.watts.map_or(0.0, |w| parts[..count].iter().map(|part| part.2(&w)).sum());
     let most = top(r.intervals.iter().map(|i| sum(i, parts.len())));
     let what =
@@ -187,7 +186,7 @@ pub fn traffic(r: &SimResult) -> anyhow::Result<String> {
     let seconds = if r.cycles == 0 { 1.0 } else { r.milliseconds * 1e-3 / r.cycles as f64 };
     let rate = move |bytes: u64, cycles: u64| bytes as f64 / (cycles as f64 * seconds) * 1e-9;
     let line = lodray::bvh::LINE_BYTES;
-    let values: [(String, RGBColor, Box<dyn Fn(&IntervalResult) -> f64>); 3] = [
+    let values: [Panel; 3] = [
         ("L1s, asked of".to_owned(), L1, Box::new(move |i| rate(i.l1_requests * line, i.cycles))),
         ("L2, asked of".to_owned(), L2, Box::new(move |i| rate(i.l2_requests * line, i.cycles))),
         (format!("DRAM, at most {:.0} GB/s", r.dram.peak_bytes_per_second * 1e-9), DRAM, Box::new(move |i| rate(i.dram_bytes, i.cycles))),

@@ -10,7 +10,7 @@ const CELL: usize = 14;
 /// A number with about four digits, or all before the point.
 pub fn amount(value: f64) -> String {
     match value.abs() {
-        size if size >= 1e4 => grouped(value.round() as u64), // energies, times and bytes are not negative
+        size if size >= 1e3 => grouped(value.round() as u64), // energies, times and bytes are not negative
         size if size >= 100.0 => format!("{value:.1}"),
         size if size >= 10.0 => format!("{value:.2}"),
         _ => format!("{value:.3}"),
@@ -79,14 +79,14 @@ fn head(r: &SimResult) -> String {
 
 fn memory(lines: &mut Lines, r: &SimResult) {
     let counts = |c: &CacheResult| [c.requests, c.hits, c.misses, c.merges].map(grouped);
-    lines.line("caches", ["requests", "hits", "misses", "merges", "hit rate"]);
+    lines.line("caches", ["requests", "hits", "misses", "merges", "hit rate", "conflicts"]);
     for (name, cache) in [("  L1", &r.l1), ("  L2", &r.l2)] {
-        lines.line(name, counts(cache).into_iter().chain([percent(cache.hit_rate)]));
+        lines.line(name, counts(cache).into_iter().chain([percent(cache.hit_rate), grouped(cache.conflicts)]));
     }
-    lines.line("waits", ["conflicts", "queued", "bank blocked", "queue full", "crossbar"]);
-    let waits = |c: &CacheResult| [c.conflicts, c.queued_cycles, c.blocked_cycles, c.refused_cycles].map(grouped);
-    for (name, cache, crossbar) in [("  L1, cycles", &r.l1, r.crossbar.answer_cycles), ("  L2, cycles", &r.l2, r.crossbar.request_cycles)] {
-        lines.line(name, waits(cache).into_iter().chain([grouped(crossbar)]));
+    lines.line("waits, cycles", ["bank queue", "before it", "bank blocked", "crossbar"]);
+    // Each row with the crossbar's way to it.
+    for (name, cache, crossbar) in [("  L1", &r.l1, r.crossbar.answer_cycles), ("  L2", &r.l2, r.crossbar.request_cycles)] {
+        lines.line(name, [cache.queued_cycles, cache.refused_cycles, cache.blocked_cycles, crossbar].map(grouped));
     }
     let dram = &r.dram;
     lines.gap();
@@ -105,8 +105,24 @@ fn memory(lines: &mut Lines, r: &SimResult) {
 }
 
 fn times(lines: &mut Lines, r: &SimResult) {
-    lines.line("contexts", ["wait for L1", "for L2", "for DRAM", "idle"]);
-    lines.line("", [r.waits.l1, r.waits.l2, r.waits.dram, r.waits.idle].map(percent));
+    let w = &r.waits;
+    match &r.units {
+        None => {
+            lines.line("contexts", ["wait for L1", "for L2", "for DRAM", "idle"]);
+            lines.line("", [w.l1, w.l2, w.dram, w.idle].map(percent));
+        }
+        Some(units) => {
+            lines.line("contexts", ["wait for lines", "compute", "idle"]);
+            lines.line("", [w.memory, w.compute, w.idle].map(percent));
+            lines.line(&format!("{} units", grouped(units.units)), ["operations", "utilisation", "busy", "refused"]);
+            for (name, block) in &units.blocks {
+                lines.line(
+                    &format!("  {name}"),
+                    [grouped(block.operations), percent(block.utilisation), percent(block.busy), percent(block.refused)],
+                );
+            }
+        }
+    }
     lines.line("alone needs", ["L1", "L2", "DRAM", "largest"]);
     let parts = [("l1", "L1", r.roofline.l1), ("l2", "L2", r.roofline.l2), ("dram", "DRAM", r.roofline.dram)];
     let largest = parts.iter().find(|part| part.0 == r.roofline.largest).map_or("", |part| part.1);

@@ -156,7 +156,7 @@ impl Jobs {
         let text = std::fs::read_to_string(path).with_context(|| format!("cannot read {}", path.display()))?;
         // The reader's messages are several lines, with a picture of the place.
         let file: File = toml::from_str(&text).map_err(|e| {
-            let at = e.span().map_or(1, |span| text[..span.start].lines().count().max(1));
+            let at = e.span().map_or(1, |span| text[..span.start].matches('\n').count() + 1);
             anyhow::anyhow!("{}: line {at}: {}", path.display(), e.message())
         })?;
         file.jobs(path.parent().unwrap_or(Path::new(""))).with_context(|| path.display().to_string())

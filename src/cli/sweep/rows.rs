@@ -94,7 +94,7 @@ impl Rows {
 }
 
 const HEAD: &str = "scene,distance,eye_x,eye_y,eye_z,width,height,method,delta,leaves,machine,set,compute,cycles,milliseconds,frames_per_second,rays,hits,\
-accesses_per_ray,l1_requests,l1_hit_rate,l2_requests,l2_hit_rate,dram_reads,dram_row_hits,dram_bandwidth_share,wait_l1,wait_l2,wait_dram,idle,\
+accesses_per_ray,l1_requests,l1_hit_rate,l2_requests,l2_hit_rate,dram_reads,dram_row_hits,dram_bandwidth_share,wait_l1,wait_l2,wait_dram,wait_memory,compute_share,idle,\
 energy_unit,energy,energy_l1,energy_l2,energy_dram,energy_compute,energy_leakage,average_watts,bytes_per_ray_l1,bytes_per_ray_l2,bytes_per_ray_dram,\
 l0_share_of_l1,roofline,rmse,psnr_db,geometry_pixels_mean,error,key\n";
 
@@ -131,7 +131,7 @@ fn result_cells(r: &SimResult) -> Vec<String> {
         cells.extend([cache.requests.to_string(), cache.hit_rate.to_string()]);
     }
     cells.extend([r.dram.reads.to_string(), r.dram.row_hits.to_string(), r.dram.bandwidth_share.to_string()]);
-    cells.extend([r.waits.l1, r.waits.l2, r.waits.dram, r.waits.idle].map(|v| v.to_string()));
+    cells.extend([r.waits.l1, r.waits.l2, r.waits.dram, r.waits.memory, r.waits.compute, r.waits.idle].map(|v| v.to_string()));
     cells.extend([energy.unit.clone(), energy.total.to_string()]);
     cells.extend(energy.split().map(|part| part.1.to_string()));
     cells.push(optional(energy.average_watts));

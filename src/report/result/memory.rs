@@ -4,6 +4,7 @@ use super::ratio;
 use crate::sim::dram::device::LINE_BYTES;
 use crate::sim::dram::{ChannelCounts, DramConfig};
 use crate::sim::replay::{CacheCounts, Waits};
+use crate::sim::unit::{State, UnitCounts};
 use serde::{Deserialize, Serialize};
 
 /// A level of cache.
@@ -145,20 +146,39 @@ impl DramResult {
 pub struct WaitShares {
     /// Contexts times cycles of the frame.
     pub context_cycles: u64,
-    /// Waited for lines, the last of which came from the L1.
+    /// Waited for lines, the last of which came from the L1. With traversal units only the sum of the three is known: see `memory`.
     pub l1: f64,
     /// The same from the L2.
     pub l2: f64,
     /// The same from memory.
     pub dram: f64,
-    /// The rest: without a ray, or computing where that takes time.
+    /// Waited for lines from anywhere.
+    pub memory: f64,
+    /// Computed, or waited for a block.
+    pub compute: f64,
+    /// Had no ray.
     pub idle: f64,
 }
 
 impl WaitShares {
-    pub(super) fn new(waits: &Waits, context_cycles: u64) -> Self {
+    /// Where compute takes no time, contexts only wait; a traversal unit's wait for lines in `FETCH` (and, for some of the bound data, in `CHILD`).
+    pub(super) fn new(waits: &Waits, units: Option<&UnitCounts>, context_cycles: u64) -> Self {
         let share = |cycles: u64| ratio(cycles as f64, context_cycles as f64);
-        let idle = context_cycles.saturating_sub(waits.l1 + waits.l2 + waits.dram);
-        Self { context_cycles, l1: share(waits.l1), l2: share(waits.l2), dram: share(waits.dram), idle: share(idle) }
+        let (memory, idle) = match units {
+            Some(counts) => (counts.states[State::Fetch as usize], counts.states[State::Idle as usize]),
+            None => {
+                let memory = waits.l1 + waits.l2 + waits.dram;
+                (memory, context_cycles.saturating_sub(memory))
+            }
+        };
+        Self {
+            context_cycles,
+            l1: share(waits.l1),
+            l2: share(waits.l2),
+            dram: share(waits.dram),
+            memory: share(memory),
+            compute: share(context_cycles.saturating_sub(memory + idle)),
+            idle: share(idle),
+        }
     }
 }

@@ -117,7 +117,7 @@ impl SimResult {
             l1: CacheResult::from(&counts.l1),
             l2: CacheResult::from(&counts.l2),
             crossbar: CrossbarResult { request_cycles: counts.crossbar_cycles, answer_cycles: counts.answer_cycles },
-            waits: WaitShares::new(&counts.waits, run.cycles * setup.contexts()),
+            waits: WaitShares::new(&counts.waits, run.units.as_ref(), run.cycles * setup.contexts()),
             energy: EnergyResult::new(&model.report(&energy_counts, &energy::dram_parts(&run.dram)), seconds),
             traffic: TrafficResult::new(&counts.traffic, counts.rays, setup.method.name == "lod"),
             roofline: Roofline::new(&setup, run, &dram),

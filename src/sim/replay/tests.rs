@@ -79,7 +79,7 @@ fn a_chase_in_memory_takes_the_way_and_the_memorys_own_time() {
         // Neighbours (rows hit), and jumps by a row of every bank (conflicts).
         for stride in [1, 1 << 13] {
             let lines: Vec<u32> = (0..200).map(|k| k * stride).collect();
-            let run = run(&machine, &[lines.clone()]);
+            let run = run(&machine, std::slice::from_ref(&lines));
             let config = dram_of(&machine).unwrap();
             let (there, back) = way(&machine);
             let mut dram = Dram::new(&config).unwrap();
@@ -113,7 +113,7 @@ fn two_lines_of_one_bank_take_a_cycle_longer_than_two_of_two() {
     let banks = machine.l1.banks;
     // Both rays have their line in the L1 before they meet.
     let meet = |other: u32| {
-        let warm = vec![0, other];
+        let warm = [0, other];
         let hits = |line: u32| warm.iter().copied().chain([line; 50]).collect::<Vec<_>>();
         run(&machine, &[hits(0), hits(other)])
     };

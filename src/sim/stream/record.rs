@@ -74,7 +74,7 @@ impl<'a> Recorder<'a> {
     }
 
     /// The steps so far.
-    pub fn len(&self) -> usize {
+    pub fn steps(&self) -> usize {
         self.events.len()
     }
 

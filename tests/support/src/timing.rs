@@ -23,7 +23,7 @@ pub fn steps_of(image: LodImage<'_>, rays: &[Ray]) -> Batch {
         let mut closest = ClosestHit::new(image.levels);
         traverser.trace(ray, &mut recorder, &mut closest);
         recorder.end(closest.record().is_some());
-        u32::try_from(recorder.len()).expect("few rays")
+        u32::try_from(recorder.steps()).expect("few rays")
     };
     let ends = rays.iter().map(end).collect();
     Batch::recorded(recorder, ends)
