@@ -1,7 +1,7 @@
 //! `simulate`: a frame on one or more machines.
 
 mod files;
-mod plots;
+pub(super) mod plots;
 mod table;
 
 use super::args::{CameraArgs, Change, LeafArgs, SimMethod, delta};

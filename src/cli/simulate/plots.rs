@@ -6,13 +6,13 @@ use plotters::coord::Shift;
 use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, Pos, VPos};
 
-type Area<'a> = DrawingArea<SVGBackend<'a>, Shift>;
+pub(in crate::cli) type Area<'a> = DrawingArea<SVGBackend<'a>, Shift>;
 
-const FONT: &str = "sans-serif";
-const TEXT: i32 = 14;
+pub(in crate::cli) const FONT: &str = "sans-serif";
+pub(in crate::cli) const TEXT: i32 = 14;
 const CAPTION: i32 = 17;
 /// Columns right of a plot for its legend.
-const LEGEND: u32 = 110;
+pub(in crate::cli) const LEGEND: u32 = 110;
 
 // Distinct without red and green side by side.
 const L1: RGBColor = RGBColor(68, 119, 170);
@@ -21,7 +21,7 @@ const DRAM: RGBColor = RGBColor(238, 153, 51);
 const COMPUTE: RGBColor = RGBColor(170, 51, 119);
 const LEAKAGE: RGBColor = RGBColor(170, 170, 170);
 /// In the order of the energy's parts.
-const COLOURS: [RGBColor; 5] = [L1, L2, DRAM, COMPUTE, LEAKAGE];
+pub(in crate::cli) const COLOURS: [RGBColor; 5] = [L1, L2, DRAM, COMPUTE, LEAKAGE];
 
 /// Name, colour and power of a part.
 type Part = (&'static str, RGBColor, fn(&IntervalPower) -> f64);
@@ -29,7 +29,11 @@ type Part = (&'static str, RGBColor, fn(&IntervalPower) -> f64);
 type Panel = (String, RGBColor, Box<dyn Fn(&IntervalResult) -> f64>);
 
 /// Draws a picture of `size` under a title of one or two lines.
-fn svg(size: (u32, u32), title: &[String], draw: impl FnOnce(&Area<'_>) -> anyhow::Result<()>) -> anyhow::Result<String> {
+pub(in crate::cli) fn svg(
+    size: (u32, u32),
+    title: &[String],
+    draw: impl FnOnce(&Area<'_>) -> anyhow::Result<()>,
+) -> anyhow::Result<String> {
     let mut text = String::new();
     {
         let area = SVGBackend::with_string(&mut text, size).into_drawing_area();
@@ -47,7 +51,7 @@ fn svg(size: (u32, u32), title: &[String], draw: impl FnOnce(&Area<'_>) -> anyho
 }
 
 /// Errors of the plotting library borrow their picture.
-fn wrong(error: impl std::fmt::Display) -> anyhow::Error {
+pub(in crate::cli) fn wrong(error: impl std::fmt::Display) -> anyhow::Error {
     anyhow!("cannot draw a plot: {error}")
 }
 
@@ -62,7 +66,7 @@ fn title(what: &str, r: &SimResult, machine: &str) -> Vec<String> {
 }
 
 /// Squares and names, from the top down.
-fn legend(area: &Area<'_>, entries: &[(&str, RGBColor)]) -> anyhow::Result<()> {
+pub(in crate::cli) fn legend(area: &Area<'_>, entries: &[(&str, RGBColor)]) -> anyhow::Result<()> {
     for (k, (name, colour)) in (0..).zip(entries) {
         let y = 24 + 24 * k;
         area.draw(&Rectangle::new([(4, y), (16, y + 12)], colour.filled())).map_err(wrong)?;
@@ -72,13 +76,13 @@ fn legend(area: &Area<'_>, entries: &[(&str, RGBColor)]) -> anyhow::Result<()> {
 }
 
 /// The largest of some values, with room above; 1 if all are 0.
-fn top(values: impl Iterator<Item = f64>) -> f64 {
+pub(in crate::cli) fn top(values: impl Iterator<Item = f64>) -> f64 {
     let largest = values.fold(0.0, f64::max);
     if largest > 0.0 { 1.06 * largest } else { 1.0 }
 }
 
 /// A tick's label without superfluous digits.
-fn tick(value: &f64) -> String {
+pub(in crate::cli) fn tick(value: &f64) -> String {
     let text = format!("{value:.3}");
     let text = text.trim_end_matches('0').trim_end_matches('.');
     if value.abs() >= 1e5 { format!("{value:.1e}") } else { text.to_owned() }

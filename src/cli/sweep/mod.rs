@@ -1,5 +1,6 @@
 //! `sweep`: scenes, views and methods on machines, from a list of jobs.
 
+mod charts;
 mod jobs;
 mod rows;
 
@@ -29,7 +30,7 @@ const TABLE: &str = "results.csv";
 pub struct Args {
     /// List of jobs (TOML): docs/jobs-example.toml shows every key
     jobs: PathBuf,
-    /// Folder for the results, one line of JSON for each job, and their table
+    /// Folder for the results, one line of JSON for each job, their table, and charts (SVG) of scenes with several views
     #[arg(short, long)]
     out: PathBuf,
 }
@@ -63,6 +64,10 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
     let table = csv(sweep.rows.of(&keys));
     let path = args.out.join(TABLE);
     write_and_rename(&path, |out| out.write_all(table.as_bytes())).with_context(|| format!("cannot write {}", path.display()))?;
+    for (name, chart) in charts::charts(sweep.rows.of(&keys))? {
+        let path = args.out.join(name);
+        write_and_rename(&path, |out| out.write_all(chart.as_bytes())).with_context(|| format!("cannot write {}", path.display()))?;
+    }
     let failed: Vec<_> = sweep.rows.of(&keys).filter(|row| row.error.is_some()).collect();
     let before = keys.iter().filter(|key| done.contains(*key)).count();
     print_line(&format!("{} jobs, {before} of them done before, {} failed; results in {}", keys.len(), failed.len(), args.out.display()))?;

@@ -99,7 +99,7 @@ energy_unit,energy,energy_l1,energy_l2,energy_dram,energy_compute,energy_leakage
 l0_share_of_l1,roofline,rmse,psnr_db,geometry_pixels_mean,error,key\n";
 
 /// Columns of a result, from `distance` to `roofline`.
-const RESULT_COLUMNS: usize = 42;
+const RESULT_COLUMNS: usize = 44;
 
 /// The table of some jobs.
 pub fn csv<'a>(rows: impl Iterator<Item = &'a Row>) -> String {
