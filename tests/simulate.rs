@@ -258,6 +258,14 @@ fn a_sweep_goes_on_where_it_was() {
     assert!(said.contains("36 jobs, 0 of them done before, 0 failed"), "{said}");
     let (lines, table) = (desk.text("out/results.jsonl"), desk.text("out/results.csv"));
     assert_eq!((lines.lines().count(), table.lines().count()), (36, 37));
+    // Energy and time of the scene of several views, on three machines.
+    let charts: Vec<_> = fs::read_dir(desk.path("out"))
+        .unwrap()
+        .map(|file| file.unwrap().path())
+        .filter(|file| file.extension() == Some("svg".as_ref()))
+        .collect();
+    assert_eq!(charts.len(), 2 * 2 * 3, "{charts:?}");
+    assert!(charts.iter().all(|chart| fs::read_to_string(chart).unwrap().contains("distance of the eye")));
     for line in lines.lines() {
         let row: Value = serde_json::from_str(line).unwrap();
         assert!(row["image"]["rmse"].is_f64() && row["result"]["intervals"].is_null(), "{line}");
