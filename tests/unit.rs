@@ -23,14 +23,14 @@ impl Probe for Lines<'_> {
         self.read.push(self.memory.address(kind, line));
         self.counts.line(kind, line);
     }
-    fn node(&mut self) {
-        self.counts.node();
+    fn node(&mut self, met: u32) {
+        self.counts.node(met);
     }
-    fn lod_test(&mut self) {
-        self.counts.lod_test();
+    fn lod_test(&mut self, refine: bool) {
+        self.counts.lod_test(refine);
     }
-    fn triangle(&mut self) {
-        self.counts.triangle();
+    fn triangle(&mut self, hit: bool) {
+        self.counts.triangle(hit);
     }
 }
 

@@ -52,6 +52,15 @@ wire_struct! {
     }
 }
 
+impl Out {
+    /// Number of children hit.
+    #[inline(always)]
+    #[expect(clippy::as_conversions, reason = "three bits")]
+    pub fn met(&self) -> u32 {
+        self.count.get() as u32
+    }
+}
+
 /// The block.
 pub struct ChildTest;
 

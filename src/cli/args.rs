@@ -5,8 +5,10 @@ use clap::ValueEnum;
 use clap::builder::RangedI64ValueParser;
 use lodray::bvh;
 use lodray::num::MAX_LEVELS;
-use lodray::render::{Camera, DEFAULT_VIEW_ANGLE_DEGREES, View};
+use lodray::render::{Camera, DEFAULT_DISTANCE, DEFAULT_VIEW_ANGLE_DEGREES, View};
 use lodray::traverse::ModelSpace;
+use serde::{Deserialize, Serialize};
+use std::fmt::{self, Display};
 use std::str::FromStr;
 
 /// Most pixels of a picture: traced pixels and their shading then stay below 8 GB.
@@ -80,6 +82,59 @@ impl CameraArgs {
         };
         Ok(Camera::new(&view, space, self.size.0, self.size.1)?)
     }
+
+    /// The distance at which [`CameraArgs::camera`] places the eye; none if it is at a position of its own.
+    pub fn radii(&self) -> Option<f64> {
+        self.distance.or_else(|| self.eye.is_none().then_some(DEFAULT_DISTANCE))
+    }
+}
+
+/// How rays find their hits on a simulated machine.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, ValueEnum, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum SimMethod {
+    /// Locally adaptive level of detail
+    Lod,
+    /// Quad-BVH of the full-resolution mesh, 16-bit boxes
+    Bvh,
+    /// The same with 32-bit boxes
+    Bvh32,
+}
+
+impl SimMethod {
+    /// Its name in options and reports.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Lod => "lod",
+            Self::Bvh => "bvh",
+            Self::Bvh32 => "bvh32",
+        }
+    }
+}
+
+/// A change of a machine, KEY=VALUE.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Change {
+    /// The key, dotted.
+    pub key: String,
+    /// Its value.
+    pub value: String,
+}
+
+impl FromStr for Change {
+    type Err = String;
+    fn from_str(s: &str) -> Result<Self, String> {
+        let parts = s.split_once('=').map(|(key, value)| (key.trim(), value.trim()));
+        let (key, value) =
+            parts.filter(|(key, _)| !key.is_empty()).ok_or_else(|| format!("'{s}' is not a change such as l1.bytes=32768"))?;
+        Ok(Self { key: key.to_owned(), value: value.to_owned() })
+    }
+}
+
+impl Display for Change {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{}={}", self.key, self.value)
+    }
 }
 
 /// A distance in bounding radii, within what a picture can show anything of.
@@ -112,7 +167,8 @@ pub fn levels() -> RangedI64ValueParser<u32> {
 }
 
 /// Leaf layouts by name.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
 pub enum LeafLayout {
     /// Index triples and shared vertices
     Indexed,
@@ -128,6 +184,17 @@ impl From<LeafLayout> for bvh::LeafLayout {
             LeafLayout::Indexed => Self::Indexed,
             LeafLayout::Packed => Self::Packed,
             LeafLayout::Line => Self::Line,
+        }
+    }
+}
+
+impl LeafLayout {
+    /// Its name in options and reports.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Indexed => "indexed",
+            Self::Packed => "packed",
+            Self::Line => "line",
         }
     }
 }

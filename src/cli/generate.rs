@@ -3,6 +3,7 @@
 use super::args::levels;
 use super::build::{build_scene, finish};
 use super::output::{busy, check_target};
+use lodray::format;
 use lodray::mesh::procedural::{MAX_TREES, Options, Scene, generate};
 use std::path::PathBuf;
 use std::process::ExitCode;
@@ -21,7 +22,7 @@ pub struct Args {
     /// Seed
     #[arg(long, default_value_t = 0, allow_negative_numbers = true)]
     seed: u64,
-    /// Terrain and sphere: amplitude of each octave relative to the one before; others: amount of fine detail. Between 0 and 1
+    /// Terrain, sphere and wall: amplitude of each octave relative to the one before; others: amount of fine detail. Between 0 and 1
     #[arg(long, value_parser = share, allow_hyphen_values = true)]
     roughness: Option<f64>,
     /// Scene file to write
@@ -35,13 +36,16 @@ pub struct Args {
 pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
     check_target(&args.out, None)?;
     let options = Options { scene: args.scene, levels: args.levels, base: args.base, seed: args.seed, roughness: args.roughness };
-    check_memory(&options)?;
-    let surface = busy("generating", || generate(&options))?;
+    finish(&make(&options)?, &args.out, args.json)
+}
+
+/// Generates a scene.
+pub fn make(options: &Options) -> anyhow::Result<format::Scene> {
+    check_memory(options)?;
+    let surface = busy("generating", || generate(options))?;
     let origin = serde_json::json!({ "generate": options });
-    let name = format!("{:?}", args.scene).to_lowercase();
-    let scene = build_scene(&surface, &name, origin)?;
-    drop(surface);
-    finish(&scene, &args.out, args.json)
+    let name = format!("{:?}", options.scene).to_lowercase();
+    build_scene(&surface, &name, origin)
 }
 
 fn base(s: &str) -> Result<u32, String> {

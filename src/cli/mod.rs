@@ -2,6 +2,7 @@
 
 mod args;
 mod build;
+mod compare;
 mod crack;
 mod demo;
 mod export;
@@ -9,8 +10,11 @@ mod generate;
 mod info;
 mod lines;
 mod output;
+mod pass;
 mod pictures;
 mod render;
+mod simulate;
+mod sweep;
 mod trace;
 mod verify;
 
@@ -39,6 +43,12 @@ enum Command {
     Verify(verify::Args),
     /// Render a scene
     Render(render::Args),
+    /// Simulate a frame on a machine: time, caches, memory and energy
+    Simulate(simulate::Args),
+    /// Simulate many frames on many machines, from a list of jobs; what was interrupted goes on where it was
+    Sweep(sweep::Args),
+    /// Put two results of simulations side by side
+    Compare(compare::Args),
     /// Follow one ray through the traversal unit: as a waveform, or as text
     Trace(trace::Args),
     /// Count the memory lines that a frame touches, LOD against every BVH layout, by distance
@@ -61,6 +71,9 @@ pub fn run(cli: Cli) -> anyhow::Result<ExitCode> {
         Command::Info(args) => info::run(&args),
         Command::Verify(args) => verify::run(&args),
         Command::Render(args) => render::run(&args),
+        Command::Simulate(args) => simulate::run(&args),
+        Command::Sweep(args) => sweep::run(&args),
+        Command::Compare(args) => compare::run(&args),
         Command::Trace(args) => trace::run(&args),
         Command::Lines(args) => lines::run(&args),
         Command::Crack(args) => crack::run(&args),

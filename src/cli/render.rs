@@ -88,7 +88,7 @@ struct KindPerRay {
     distinct_lines: f64,
 }
 
-#[derive(Serialize)]
+#[derive(Clone, Serialize)]
 pub struct Comparison {
     #[serde(flatten)]
     pub image: ImageError,
@@ -118,10 +118,15 @@ impl Built {
 
     /// Renders with it.
     pub fn shoot(&self, scene: &Scene, space: &ModelSpace, camera: &Camera, delta: f64, what: &str) -> Shot {
+        shoot(&self.method(scene), scene, space, camera, delta, what)
+    }
+
+    /// The method, on the scene that it was built for.
+    pub fn method<'a>(&'a self, scene: &'a Scene) -> Method<'a> {
         match self {
-            Self::Lod => shoot(&Method::Lod(LodImage::of(scene)), scene, space, camera, delta, what),
-            Self::Bvh(bvh) => shoot(&Method::Bvh(bvh), scene, space, camera, delta, what),
-            Self::Reference(reference) => shoot(&Method::Reference(reference), scene, space, camera, delta, what),
+            Self::Lod => Method::Lod(LodImage::of(scene)),
+            Self::Bvh(bvh) => Method::Bvh(bvh),
+            Self::Reference(reference) => Method::Reference(reference),
         }
     }
 }

@@ -7,6 +7,7 @@
 //! | `sphere` | 8 k^2 | 512, N = 5 | displaced sphere, closed |
 //! | `spikes` | 8 k^2 | 128, N = 4 | sphere with needles, closed |
 //! | `room` | 2 g^2 + 10 max(1, g/4)^2 | 2,688, N = 5 | a box with an open side around the cloth |
+//! | `wall` | 1,456 k^2 | 36,400, N = 4 | 182 displaced spheres side by side |
 //!
 //! g and k are whole numbers from 1; of the possible counts the least at or above the wanted one is taken.
 
@@ -17,6 +18,7 @@ mod room;
 mod sphere;
 mod spikes;
 mod terrain;
+mod wall;
 
 use super::Surface;
 use crate::num::MAX_LEVELS;
@@ -41,6 +43,8 @@ pub enum Scene {
     Spikes,
     /// Box with an open side around the cloth.
     Room,
+    /// 182 displaced spheres side by side.
+    Wall,
 }
 
 impl Scene {
@@ -49,7 +53,7 @@ impl Scene {
         match self {
             Self::Terrain => 7,
             Self::Cloth | Self::Sphere | Self::Room => 5,
-            Self::Spikes => 4,
+            Self::Spikes | Self::Wall => 4,
         }
     }
 
@@ -60,6 +64,7 @@ impl Scene {
             Self::Cloth => 2_048,
             Self::Spikes => 128,
             Self::Room => 2_688,
+            Self::Wall => 36_400,
         }
     }
 
@@ -67,7 +72,7 @@ impl Scene {
     pub const fn default_roughness(self) -> f64 {
         match self {
             Self::Terrain => 0.55,
-            Self::Sphere => 0.45,
+            Self::Sphere | Self::Wall => 0.45,
             Self::Cloth | Self::Spikes | Self::Room => 0.5,
         }
     }
@@ -78,6 +83,7 @@ impl Scene {
         match self {
             Self::Terrain | Self::Cloth => 2 * square,
             Self::Sphere | Self::Spikes => 8 * square,
+            Self::Wall => 8 * wall::MODELS as u64 * square,
             Self::Room => {
                 let wall = room::wall_quads(n) as u64;
                 2 * square + 10 * wall * wall
@@ -112,7 +118,7 @@ pub struct Options {
     pub base: Option<u32>,
     /// Any number; another seed gives another scene of the kind.
     pub seed: u64,
-    /// Between 0 and 1, both excluded. `terrain` and `sphere`: amplitude of an octave of noise relative to the one before. `cloth` and
+    /// Between 0 and 1, both excluded. `terrain`, `sphere` and `wall`: amplitude of an octave of noise relative to the one before. `cloth` and
     /// `room`: height of the weave, `spikes`: length of the needles, both relative to the default's 0.5.
     pub roughness: Option<f64>,
 }
@@ -182,6 +188,7 @@ pub fn generate(options: &Options) -> Result<Surface, GenerateError> {
         Scene::Sphere => sphere::generate(n, levels, seed, roughness),
         Scene::Spikes => spikes::generate(n, levels, seed, 2.0 * roughness),
         Scene::Room => room::generate(n, levels, seed, 2.0 * roughness),
+        Scene::Wall => wall::generate(n, levels, seed, roughness),
     }
 }
 

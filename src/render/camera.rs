@@ -7,6 +7,9 @@ use thiserror::Error;
 /// The paper's camera: focal length 35 on a sensor of height 24.
 pub const DEFAULT_VIEW_ANGLE_DEGREES: f64 = 37.849_288_832_102_47;
 
+/// Where the eye is if nothing says so, in bounding radii from the target.
+pub const DEFAULT_DISTANCE: f64 = 2.0;
+
 /// Most columns and rows of a picture.
 const MAX_SIDE: u32 = 1 << 16;
 /// Most pixels of a picture: what is kept of each takes about 50 bytes.
@@ -79,7 +82,7 @@ impl Camera {
         let eye = match (eye, view.distance) {
             (Some(eye), None) => eye,
             (eye, distance) => {
-                let distance = distance.unwrap_or(2.0);
+                let distance = distance.unwrap_or(DEFAULT_DISTANCE);
                 if !(distance > 0.0 && distance.is_finite()) {
                     return Err(CameraError::Field("--distance", "a positive number of bounding radii"));
                 }

@@ -4,7 +4,7 @@ use super::lines::LineProbe;
 use super::{Camera, LineSets};
 use crate::bvh::FullBvh;
 use crate::golden::reference::Reference;
-use crate::traverse::{BvhTraverser, ClosestHit, Hit, Kind, LodImage, LodTraverser, ModelRay, ModelSpace, RayCounts, Section};
+use crate::traverse::{BvhTraverser, ClosestHit, Hit, Kind, LodImage, LodTraverser, ModelRay, ModelSpace, Probe, RayCounts, Section};
 use rayon::prelude::*;
 use serde::Serialize;
 
@@ -159,14 +159,14 @@ fn mean(values: impl Iterator<Item = f64>) -> f64 {
 }
 
 /// One thread's traverser.
-enum Tracer<'a> {
+pub(super) enum Tracer<'a> {
     Lod(Box<LodTraverser<'a>>),
     Bvh(Box<BvhTraverser<'a>>),
     Reference(&'a Reference),
 }
 
 impl<'a> Tracer<'a> {
-    fn new(method: &Method<'a>) -> Self {
+    pub fn new(method: &Method<'a>) -> Self {
         match method {
             Method::Lod(image) => Self::Lod(Box::new(LodTraverser::new(*image))),
             Method::Bvh(bvh) => Self::Bvh(Box::new(BvhTraverser::new(bvh))),
@@ -174,7 +174,8 @@ impl<'a> Tracer<'a> {
         }
     }
 
-    fn pixel(&mut self, space: &ModelSpace, camera: &Camera, delta: f64, [x, y]: [u32; 2], probe: &mut LineProbe<'_>) -> Option<Pixel> {
+    /// What the ray of pixel (x, y) finds.
+    pub fn pixel<P: Probe>(&mut self, space: &ModelSpace, camera: &Camera, delta: f64, [x, y]: [u32; 2], probe: &mut P) -> Option<Pixel> {
         let world = camera.ray(x, y);
         match self {
             Self::Lod(traverser) => {

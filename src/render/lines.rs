@@ -45,16 +45,16 @@ impl Probe for LineProbe<'_> {
         self.sets.mark(kind, line);
     }
     #[inline(always)]
-    fn node(&mut self) {
-        self.counts.node();
+    fn node(&mut self, met: u32) {
+        self.counts.node(met);
     }
     #[inline(always)]
-    fn lod_test(&mut self) {
-        self.counts.lod_test();
+    fn lod_test(&mut self, refine: bool) {
+        self.counts.lod_test(refine);
     }
     #[inline(always)]
-    fn triangle(&mut self) {
-        self.counts.triangle();
+    fn triangle(&mut self, hit: bool) {
+        self.counts.triangle(hit);
     }
 }
 

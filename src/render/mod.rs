@@ -6,10 +6,12 @@ mod geometry;
 mod lines;
 mod picture;
 mod shade;
+mod steps;
 
-pub use camera::{Camera, CameraError, DEFAULT_VIEW_ANGLE_DEGREES, View};
+pub use camera::{Camera, CameraError, DEFAULT_DISTANCE, DEFAULT_VIEW_ANGLE_DEGREES, View};
 pub use frame::{Frame, FrameStats, KindCount, Method, Pixel, render};
 pub use geometry::{GeometricError, geometric_error};
 pub use lines::LineSets;
 pub use picture::{ImageError, compare, save_png};
 pub use shade::{error_map, level_map, normal_map, shaded, view_cosine};
+pub use steps::FrameRays;

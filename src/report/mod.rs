@@ -1,3 +1,7 @@
 //! Floor 5: measurements over whole scenes and frames.
 
 pub mod crack;
+pub mod result;
+mod simulate;
+
+pub use simulate::{Job, simulate};

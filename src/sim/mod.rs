@@ -1,4 +1,10 @@
 //! Floor 4: the cycle level: what happens in which cycle, with the functions of the floors below and none of its own.
 
+pub mod dram;
+pub mod energy;
+pub mod machine;
 pub mod ports;
+pub mod replay;
+pub mod stream;
+pub mod timing;
 pub mod unit;

@@ -99,7 +99,9 @@ impl<'a> LodTraverser<'a> {
                 next = journey.visit(&entry);
             }
             let Some(entry) = journey.stack.step(Op::Pop) else { return };
-            next = (!is_beyond(entry.t_near, journey.sink.t_max())).then_some(entry);
+            let dropped = is_beyond(entry.t_near, journey.sink.t_max());
+            journey.probe.pop(dropped);
+            next = (!dropped).then_some(entry);
         }
     }
 }
@@ -156,9 +158,9 @@ impl<P: Probe, H: HitSink> Journey<'_, P, H> {
     #[inline(always)]
     fn bvh_node(&mut self, index: usize) -> Option<Entry> {
         read_pair(self.probe, Kind::BvhNode, index);
-        self.probe.node();
         let group = &self.image.nodes[index];
         let tests = bvh_children(&self.setup, self.sink.t_max(), group);
+        self.probe.node(tests.met());
         push_sorted(self.stack, &tests, |k| {
             let BvhChild { child, .. } = quarter(group, k);
             // Inner nodes and leaves have the kinds of their entries one lower.
@@ -185,8 +187,8 @@ impl<P: Probe, H: HitSink> Journey<'_, P, H> {
             self.triangle(level, node, p);
             return None;
         }
-        self.probe.lod_test();
         let lod = LodTest::eval(&lod_test::In { ray: *self.ray, p0: p[0], p1: p[1], p2: p[2], e0, e1, e2, scale: self.image.scale });
+        self.probe.lod_test(lod.refine);
         if !lod.refine {
             self.triangle(level, node, p);
             return None;
@@ -214,10 +216,10 @@ impl<P: Probe, H: HitSink> Journey<'_, P, H> {
     #[inline(always)]
     fn tree_children(&mut self, level: u32, first: u32, group: usize) -> Option<Entry> {
         read_pair(self.probe, Kind::BoundData, group);
-        self.probe.node();
         let split = &self.splits[level as usize - 1];
         let group = &self.image.bounds[group];
         let tests = tree_children(&self.setup, self.sink.t_max(), group, split);
+        self.probe.node(tests.met());
         push_sorted(self.stack, &tests, |k| {
             let BoundData { e0, e1, e2, .. } = quarter(group, k);
             Entry {
@@ -234,8 +236,8 @@ impl<P: Probe, H: HitSink> Journey<'_, P, H> {
 
     #[inline(always)]
     fn triangle(&mut self, level: u32, node: u32, p: [Point; 3]) {
-        self.probe.triangle();
         let test = TriTest::eval(&tri_test::In { origin: self.ray.origin, direction: self.ray.direction, p0: p[0], p1: p[1], p2: p[2] });
+        self.probe.triangle(test.hit);
         if test.hit {
             self.sink.offer(TriangleId { tree: self.tree, level, node }, &test);
         }

@@ -47,12 +47,22 @@ pub struct Section {
 pub trait Probe {
     /// Line `line` of the section of `kind` is read.
     fn line(&mut self, kind: Kind, line: u64);
-    /// A box test of four children ran.
-    fn node(&mut self) {}
-    /// An LOD test ran.
-    fn lod_test(&mut self) {}
-    /// A triangle test ran.
-    fn triangle(&mut self) {}
+    /// A box test of four children ran, and `met` of them are met.
+    fn node(&mut self, met: u32) {
+        _ = met;
+    }
+    /// An LOD test ran, and decided to `refine` or not.
+    fn lod_test(&mut self, refine: bool) {
+        _ = refine;
+    }
+    /// A triangle test ran; `hit` if the ray meets it, closest or not.
+    fn triangle(&mut self, hit: bool) {
+        _ = hit;
+    }
+    /// A waiting node was taken from the stack, and `dropped` if it lies behind the closest hit.
+    fn pop(&mut self, dropped: bool) {
+        _ = dropped;
+    }
 }
 
 /// Hears nothing.
@@ -94,15 +104,15 @@ impl Probe for RayCounts {
         self.lines[kind as usize] += 1;
     }
     #[inline(always)]
-    fn node(&mut self) {
+    fn node(&mut self, _: u32) {
         self.nodes += 1;
     }
     #[inline(always)]
-    fn lod_test(&mut self) {
+    fn lod_test(&mut self, _: bool) {
         self.lod_tests += 1;
     }
     #[inline(always)]
-    fn triangle(&mut self) {
+    fn triangle(&mut self, _: bool) {
         self.triangles += 1;
     }
 }

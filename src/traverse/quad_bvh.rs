@@ -43,14 +43,13 @@ impl<'a> BvhTraverser<'a> {
         self.stack.clear();
         let mut next = Some(Entry::default());
         loop {
-            let entry = match next.or_else(|| self.stack.step(Op::Pop)) {
-                Some(entry) => entry,
-                None => return,
-            };
-            next = None;
-            if is_beyond(entry.t_near, sink.t_max()) {
+            // A child just tested is not beyond the closest hit; an entry that waited may be by now.
+            let Some(entry) = next.take().or_else(|| self.pop(probe, sink)) else {
+                if self.stack.is_empty() {
+                    return;
+                }
                 continue;
-            }
+            };
             let index = entry.index.get() as usize;
             if entry.kind.get() == Entry::BVH_NODE {
                 next = self.node(&setup, index, probe, sink);
@@ -65,9 +64,17 @@ impl<'a> BvhTraverser<'a> {
         }
     }
 
+    /// Takes the next entry from the stack; `None` if there is none, or it lies behind the closest hit.
+    #[inline(always)]
+    fn pop<P: Probe, H: HitSink>(&mut self, probe: &mut P, sink: &H) -> Option<Entry> {
+        let entry = self.stack.step(Op::Pop)?;
+        let dropped = is_beyond(entry.t_near, sink.t_max());
+        probe.pop(dropped);
+        (!dropped).then_some(entry)
+    }
+
     #[inline(always)]
     fn node<P: Probe, H: HitSink>(&mut self, setup: &ray_setup::Out, index: usize, probe: &mut P, sink: &H) -> Option<Entry> {
-        probe.node();
         let t_max = sink.t_max();
         // Inner nodes and leaves have the kinds of their entries one lower.
         let waiting = |child: ChildRef| Entry {
@@ -81,6 +88,7 @@ impl<'a> BvhTraverser<'a> {
                 read_pair(probe, Kind::BvhNode, index);
                 let child = |k| quarter::<BvhChild>(&nodes[index], k);
                 let tests = bvh_children(setup, t_max, &nodes[index]);
+                probe.node(tests.met());
                 push_sorted(&mut self.stack, &tests, |k| waiting(child(k).child))
             }
             FullNodes::Boxes32(nodes) => {
@@ -95,17 +103,19 @@ impl<'a> BvhTraverser<'a> {
                         (tests.hit[k], tests.t_near[k]) = (test.hit, test.t_near);
                     }
                 }
-                push_sorted(&mut self.stack, &sort(&tests), |k| waiting(child(k).child))
+                let tests = sort(&tests);
+                probe.node(tests.met());
+                push_sorted(&mut self.stack, &tests, |k| waiting(child(k).child))
             }
         }
     }
 
     #[inline(always)]
     fn triangle<P: Probe, H: HitSink>(&mut self, ray: &Ray, slot: usize, probe: &mut P, sink: &mut H) {
-        probe.triangle();
         let (points, id) = self.bvh.leaves.triangle(slot);
         let [p0, p1, p2] = points.map(Point::from_i32);
         let test = TriTest::eval(&tri_test::In { origin: ray.origin, direction: ray.direction, p0, p1, p2 });
+        probe.triangle(test.hit);
         if test.hit {
             let levels = self.bvh.levels;
             let (tree, node) = (id >> (2 * levels), id & ((1 << (2 * levels)) - 1));

@@ -2,7 +2,7 @@ use super::super::lattice::{self, LatticePoint};
 use super::*;
 use std::collections::HashMap;
 
-const ALL: [Scene; 5] = [Scene::Terrain, Scene::Cloth, Scene::Sphere, Scene::Spikes, Scene::Room];
+const ALL: [Scene; 6] = [Scene::Terrain, Scene::Cloth, Scene::Sphere, Scene::Spikes, Scene::Room, Scene::Wall];
 
 fn small(scene: Scene, base: u32, levels: u32) -> Surface {
     generate(&Options { base: Some(base), levels: Some(levels), ..Options::new(scene) }).expect("valid options")
@@ -89,6 +89,7 @@ fn defaults_have_their_sizes() {
         (Scene::Sphere, 512, 5, 524_288),
         (Scene::Spikes, 128, 4, 32_768),
         (Scene::Room, 2_688, 5, 2_752_512),
+        (Scene::Wall, 36_400, 4, 9_318_400),
     ] {
         let s = generate(&Options::new(scene)).expect("defaults are valid");
         assert_eq!((s.triangles.len(), s.levels, s.finest_triangles()), (trees, levels, triangles));
@@ -104,12 +105,13 @@ fn trees_meet_to_the_bit_for_any_base_and_levels() {
                 let s = small(scene, base, levels);
                 assert!(s.triangles.len() >= base as usize);
                 let (paired, open) = check(&s);
-                let closed = matches!(scene, Scene::Sphere | Scene::Spikes);
+                let closed = matches!(scene, Scene::Sphere | Scene::Spikes | Scene::Wall);
                 assert_eq!(open == 0, closed, "{scene:?}");
                 assert_eq!(2 * paired + open, 3 * s.triangles.len());
                 if closed {
-                    // Euler: V - E + F = 2.
-                    assert_eq!(s.base_vertices as usize + s.triangles.len(), paired + 2);
+                    // Euler: V - E + F = 2 for each body.
+                    let bodies = if scene == Scene::Wall { wall::MODELS as usize } else { 1 };
+                    assert_eq!(s.base_vertices as usize + s.triangles.len(), paired + 2 * bodies);
                 }
             }
         }

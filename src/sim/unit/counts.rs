@@ -29,6 +29,24 @@ pub struct UnitCounts {
     pub longest_queue: usize,
 }
 
+impl UnitCounts {
+    /// Adds what another unit did in the same cycles.
+    pub fn add(&mut self, other: &Self) {
+        self.cycles = self.cycles.max(other.cycles);
+        self.longest_queue = self.longest_queue.max(other.longest_queue);
+        self.states.iter_mut().zip(other.states).for_each(|(sum, more)| *sum += more);
+        if self.blocks.is_empty() {
+            self.blocks = other.blocks.iter().map(|&(name, _)| (name, BlockCounts::default())).collect();
+        }
+        for ((_, sum), (_, more)) in self.blocks.iter_mut().zip(&other.blocks) {
+            sum.taken += more.taken;
+            sum.refused += more.refused;
+            sum.busy += more.busy;
+            sum.occupancy += more.occupancy;
+        }
+    }
+}
+
 impl TraversalUnit {
     /// What it did so far.
     pub fn counts(&self) -> UnitCounts {

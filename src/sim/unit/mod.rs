@@ -21,9 +21,11 @@ mod traversal_unit;
 pub mod wave;
 mod wires;
 
+pub(super) use arbiter::Arbiter;
 pub use counts::UnitCounts;
 pub use error::UnitError;
 pub use memory::SceneMemory;
+pub(super) use operands::Resource;
 pub use register::BlockCounts;
 pub use state::{Fetch, State};
 pub use traffic::{Latency, Stall, Traffic};

@@ -26,6 +26,9 @@ pub enum Resource {
 }
 
 impl Resource {
+    /// All, by number.
+    pub const ALL: [Self; Self::COUNT] =
+        [Self::Setup, Self::Fetch, Self::Base, Self::Child, Self::Lod, Self::Morph, Self::Tri, Self::Divide, Self::Map, Self::Hit];
     /// How many there are.
     pub const COUNT: usize = Self::Hit as usize + 1;
 }

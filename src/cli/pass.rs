@@ -1,0 +1,112 @@
+//! One functional pass over a frame, replayed on machines: what `simulate` and `sweep` share.
+
+use super::args::{Change, LeafArgs, SimMethod};
+use super::output::progress;
+use super::render::{Built, MethodName};
+use anyhow::Context;
+use lodray::format::Scene;
+use lodray::render::{Camera, FrameRays};
+use lodray::report::result::{Compute, MachineFacts, MethodFacts, SceneFacts, Setup, SimResult, ViewFacts};
+use lodray::report::{Job, simulate};
+use lodray::sim::machine::{Machine, MachineError};
+use lodray::sim::replay::{ReplayError, Run, Window};
+use lodray::sim::stream::Layout;
+use lodray::traverse::ModelSpace;
+use std::path::Path;
+
+impl From<SimMethod> for MethodName {
+    fn from(method: SimMethod) -> Self {
+        match method {
+            SimMethod::Lod => Self::Lod,
+            SimMethod::Bvh => Self::Bvh,
+            SimMethod::Bvh32 => Self::Bvh32,
+        }
+    }
+}
+
+/// A frame to run.
+pub struct Pass<'a> {
+    pub scene: &'a Scene,
+    pub space: &'a ModelSpace,
+    pub method: SimMethod,
+    /// What the method needs.
+    pub built: &'a Built,
+    pub leaves: LeafArgs,
+    pub camera: Camera,
+    /// Where it was placed, if by distance.
+    pub distance: Option<f64>,
+    pub delta: f64,
+}
+
+/// A machine, and how compute is simulated on it.
+#[derive(Clone)]
+pub struct Target {
+    pub machine: MachineFacts,
+    pub compute: Compute,
+    /// The cycles of which a waveform is wanted.
+    pub window: Option<Window>,
+}
+
+/// The figures of a run, and its waveform if one was wanted.
+pub type Outcome = anyhow::Result<(SimResult, Option<Vec<u8>>)>;
+
+/// The machine of a shipped name or a description's path, changed.
+pub fn machine(name: &str, changes: &[Change]) -> anyhow::Result<MachineFacts> {
+    let path = Path::new(name);
+    let is_path = path.components().count() > 1 || path.extension().is_some_and(|e| e == "toml");
+    let mut description = if is_path { Machine::load(path) } else { Machine::shipped(name) }.map_err(in_one_line)?;
+    let pairs: Vec<_> = changes.iter().map(|change| (change.key.as_str(), change.value.as_str())).collect();
+    description.set_all(&pairs)?;
+    let label = if is_path { path.file_stem().unwrap_or_default().to_string_lossy().into_owned() } else { name.to_owned() };
+    Ok(MachineFacts { label, set: changes.iter().map(ToString::to_string).collect(), description })
+}
+
+/// An error of the TOML reader is several lines, with a picture of the place; the first and the last of it say all.
+fn in_one_line(error: MachineError) -> anyhow::Error {
+    match error {
+        MachineError::Toml { file, source } => {
+            let picture = source.to_string();
+            anyhow::anyhow!("{file}: {}: {}", picture.lines().next().unwrap_or_default(), source.message())
+        }
+        other => other.into(),
+    }
+}
+
+impl Pass<'_> {
+    /// Traces the rays once and replays them on every target.
+    pub fn run(&self, targets: &[Target]) -> anyhow::Result<Vec<Outcome>> {
+        let method = self.built.method(self.scene);
+        let sections = method.sections();
+        let layout = Layout::new(&sections).context("the scene is too large to simulate: its lines have no 32-bit numbers")?;
+        let frame = FrameRays { method: &method, space: self.space, camera: &self.camera, delta: self.delta, layout: &layout };
+        let job = |target: &Target| Job { machine: target.machine.description.clone(), compute: target.compute, window: target.window };
+        let jobs: Vec<_> = targets.iter().map(job).collect();
+        let bar = progress(frame.batches() as u64, "simulating");
+        let runs = simulate(&frame, &jobs, &|batches| bar.inc(batches));
+        bar.finish_and_clear();
+        let bytes = sections.iter().map(|section| section.lines * lodray::bvh::LINE_BYTES).sum();
+        let result = |(target, run): (&Target, Result<Run, ReplayError>)| {
+            let run = run?;
+            Ok((SimResult::new(self.setup(target, bytes), &run)?, run.wave))
+        };
+        Ok(targets.iter().zip(runs).map(result).collect())
+    }
+
+    fn setup(&self, target: &Target, bytes: u64) -> Setup {
+        let LeafArgs { leaf_layout, leaf_size } = self.leaves;
+        let lod = self.method == SimMethod::Lod;
+        let method = MethodFacts {
+            name: self.method.name().to_owned(),
+            delta: lod.then_some(self.delta),
+            leaves: (!lod).then(|| format!("{} {leaf_size}", leaf_layout.name())),
+            bytes,
+        };
+        Setup {
+            scene: SceneFacts::from(self.scene),
+            method,
+            view: ViewFacts::new(&self.camera, self.distance),
+            compute: target.compute,
+            machine: target.machine.clone(),
+        }
+    }
+}

@@ -1,0 +1,166 @@
+//! A result as text.
+
+use crate::cli::output::grouped;
+use lodray::report::result::{CacheResult, SimResult};
+
+/// Columns of the name and of each figure.
+const NAME: usize = 14;
+const CELL: usize = 14;
+
+/// A number with about four digits, or all before the point.
+pub fn amount(value: f64) -> String {
+    match value.abs() {
+        size if size >= 1e3 => grouped(value.round() as u64), // energies, times and bytes are not negative
+        size if size >= 100.0 => format!("{value:.1}"),
+        size if size >= 10.0 => format!("{value:.2}"),
+        _ => format!("{value:.3}"),
+    }
+}
+
+fn percent(share: f64) -> String {
+    format!("{:.1} %", 100.0 * share)
+}
+
+/// Lines of a name and figures.
+#[derive(Default)]
+struct Lines(String);
+
+impl Lines {
+    fn line<T: AsRef<str>>(&mut self, name: &str, cells: impl IntoIterator<Item = T>) {
+        let cells: String = cells.into_iter().map(|cell| format!("{:>CELL$}", cell.as_ref())).collect();
+        self.0 += &format!("{name:<NAME$}{cells}\n");
+    }
+
+    fn gap(&mut self) {
+        self.0.push('\n');
+    }
+}
+
+/// The table of one run.
+pub fn table(r: &SimResult) -> String {
+    let mut lines = Lines(head(r));
+    lines.line("frame", ["cycles", "ms", "frames/s", "rays", "hits", "accesses/ray"]);
+    let frame = [grouped(r.cycles), amount(r.milliseconds), amount(r.frames_per_second)];
+    lines.line("", frame.into_iter().chain([grouped(r.rays), grouped(r.hits), amount(r.accesses_per_ray)]));
+    lines.gap();
+    memory(&mut lines, r);
+    lines.gap();
+    times(&mut lines, r);
+    lines.gap();
+    energy(&mut lines, r);
+    lines.gap();
+    traffic(&mut lines, r);
+    lines.0.trim_end().to_owned()
+}
+
+fn head(r: &SimResult) -> String {
+    let setup = &r.setup;
+    let detail = match (setup.method.delta, &setup.method.leaves) {
+        (Some(delta), _) => format!(" at delta {delta}"),
+        (None, Some(leaves)) => format!(", leaves {leaves}"),
+        (None, None) => String::new(),
+    };
+    let [width, height] = setup.view.size;
+    let place = match setup.view.distance {
+        Some(distance) => format!("{distance} radii"),
+        None => format!("{:?}", setup.view.eye),
+    };
+    let machine = &setup.machine;
+    format!(
+        "{}, {} triangles; {}{detail}; {width}x{height} rays from {place}\n{} ({}), compute {}\n\n",
+        setup.scene.name,
+        grouped(setup.scene.finest_triangles),
+        setup.method.name,
+        machine.description.name,
+        machine.title(),
+        setup.compute.name(),
+    )
+}
+
+fn memory(lines: &mut Lines, r: &SimResult) {
+    let counts = |c: &CacheResult| [c.requests, c.hits, c.misses, c.merges].map(grouped);
+    lines.line("caches", ["requests", "hits", "misses", "merges", "hit rate", "conflicts"]);
+    for (name, cache) in [("  L1", &r.l1), ("  L2", &r.l2)] {
+        lines.line(name, counts(cache).into_iter().chain([percent(cache.hit_rate), grouped(cache.conflicts)]));
+    }
+    lines.line("waits, cycles", ["bank queue", "before it", "bank blocked", "crossbar"]);
+    // Each row with the crossbar's way to it.
+    for (name, cache, crossbar) in [("  L1", &r.l1, r.crossbar.answer_cycles), ("  L2", &r.l2, r.crossbar.request_cycles)] {
+        lines.line(name, [cache.queued_cycles, cache.refused_cycles, cache.blocked_cycles, crossbar].map(grouped));
+    }
+    let dram = &r.dram;
+    lines.gap();
+    lines.line("DRAM", ["reads", "row hits", "row misses", "row conflicts", "GB/s", "of peak", "queued, ns"]);
+    let counts = [dram.reads, dram.row_hits, dram.row_misses, dram.row_conflicts].map(grouped);
+    let rates = [amount(dram.bytes_per_second * 1e-9), percent(dram.bandwidth_share), amount(dram.mean_queue_nanoseconds)];
+    lines.line("", counts.into_iter().chain(rates));
+    lines.0 += &format!(
+        "              {}: {} channels, {} GB/s at most; the busiest has {:.2} of the mean; {} cycles of misses before full queues\n",
+        dram.device,
+        dram.channels.len(),
+        amount(dram.peak_bytes_per_second * 1e-9),
+        dram.busiest_over_mean,
+        grouped(dram.refused_cycles)
+    );
+}
+
+fn times(lines: &mut Lines, r: &SimResult) {
+    let w = &r.waits;
+    match &r.units {
+        None => {
+            lines.line("contexts", ["wait for L1", "for L2", "for DRAM", "idle"]);
+            lines.line("", [w.l1, w.l2, w.dram, w.idle].map(percent));
+        }
+        Some(units) => {
+            lines.line("contexts", ["wait for lines", "compute", "idle"]);
+            lines.line("", [w.memory, w.compute, w.idle].map(percent));
+            lines.line(&format!("{} units", grouped(units.units)), ["operations", "utilisation", "busy", "refused"]);
+            for (name, block) in &units.blocks {
+                lines.line(
+                    &format!("  {name}"),
+                    [grouped(block.operations), percent(block.utilisation), percent(block.busy), percent(block.refused)],
+                );
+            }
+        }
+    }
+    lines.line("alone needs", ["L1", "L2", "DRAM", "largest"]);
+    let parts = [("l1", "L1", r.roofline.l1), ("l2", "L2", r.roofline.l2), ("dram", "DRAM", r.roofline.dram)];
+    let largest = parts.iter().find(|part| part.0 == r.roofline.largest).map_or("", |part| part.1);
+    lines.line("  cycles", parts.iter().map(|part| grouped(part.2.cycles.round() as u64)).chain([largest.to_owned()]));
+    lines.line("  of frame", parts.iter().map(|part| percent(part.2.share)));
+}
+
+fn energy(lines: &mut Lines, r: &SimResult) {
+    let e = &r.energy;
+    let split = e.split();
+    lines.line("energy", split.iter().map(|part| part.0).chain(["all", if e.average_watts.is_some() { "mean W" } else { "" }]));
+    let unit = format!("  {}", e.unit);
+    let watts = e.average_watts.map_or_else(String::new, amount);
+    lines.line(&unit, split.iter().map(|part| amount(part.1)).chain([amount(e.total), watts]));
+    lines.line("  of all", split.iter().map(|part| percent(if e.total == 0.0 { 0.0 } else { part.1 / e.total })));
+    lines.line("  DRAM", e.dram.parts.keys());
+    lines.line("", e.dram.parts.values().map(|&part| amount(part)));
+}
+
+fn traffic(lines: &mut Lines, r: &SimResult) {
+    lines.line("lines of", ["L1", "L2", "DRAM", "bytes/ray, L1", "L2", "DRAM"]);
+    for k in &r.traffic.kinds {
+        let bytes = [k.bytes_per_ray.l1, k.bytes_per_ray.l2, k.bytes_per_ray.dram].map(amount);
+        lines.line(&format!("  {}", k.kind), [k.l1, k.l2, k.dram].map(grouped).into_iter().chain(bytes));
+    }
+    let all = r.traffic.bytes_per_ray;
+    let bytes = [all.l1, all.l2, all.dram].map(amount);
+    lines.line("  all", [r.l1.requests, r.l2.requests, r.dram.reads].map(grouped).into_iter().chain(bytes));
+    if let Some(share) = r.traffic.l0_share_of_l1 {
+        lines.0 +=
+            &format!("  {} of the L1s' requests read the L0 part: nodes over the base triangles, and their records\n", percent(share));
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    #[test]
+    fn amounts_have_four_digits() {
+        assert_eq!([0.0, 1.23456, 12.3456, 123.456, 12345.6].map(super::amount), ["0.000", "1.235", "12.35", "123.5", "12,346"]);
+    }
+}

@@ -1,0 +1,202 @@
+//! `sweep`: scenes, views and methods on machines, from a list of jobs.
+
+mod charts;
+mod jobs;
+mod rows;
+
+use super::args::SimMethod;
+use super::generate::make;
+use super::output::{check_target, folder, open, print_line};
+use super::pass::{Outcome, Pass, Target};
+use super::pictures::Shot;
+use super::render::{Built, MethodName, compare_shots};
+use anyhow::Context;
+use jobs::{Jobs, Origin, SceneJobs, ViewJob};
+use lodray::format::{Scene, write_and_rename};
+use lodray::render::{Camera, View};
+use lodray::traverse::ModelSpace;
+use rows::ImageFigures;
+use std::collections::{BTreeMap, HashSet};
+use std::path::PathBuf;
+use std::process::ExitCode;
+
+pub use rows::Row;
+use rows::{Rows, csv};
+
+const LINES: &str = "results.jsonl";
+const TABLE: &str = "results.csv";
+
+#[derive(clap::Args)]
+pub struct Args {
+    /// List of jobs (TOML): docs/jobs-example.toml shows every key
+    jobs: PathBuf,
+    /// Folder for the results, one line of JSON for each job, their table, and charts (SVG) of scenes with several views
+    #[arg(short, long)]
+    out: PathBuf,
+}
+
+/// Jobs that share a functional pass: their keys and targets.
+struct Group<'a> {
+    view: &'a ViewJob,
+    method: (SimMethod, f64),
+    jobs: Vec<(String, Target)>,
+}
+
+/// What is left to do.
+struct Sweep<'a> {
+    jobs: &'a Jobs,
+    rows: Rows,
+}
+
+pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
+    let jobs = Jobs::read(&args.jobs)?;
+    folder(&args.out, [TABLE], Some(&args.jobs))?;
+    let lines = args.out.join(LINES);
+    check_target(&lines, Some(&args.jobs))?;
+    let rows = Rows::open(&lines)?;
+    let done = rows.done();
+    let mut sweep = Sweep { jobs: &jobs, rows };
+    let mut keys = Vec::new();
+    for scene in &jobs.scenes {
+        let groups = sweep.groups(scene, &done, &mut keys)?;
+        sweep.scene(scene, &groups)?;
+    }
+    let table = csv(sweep.rows.of(&keys));
+    let path = args.out.join(TABLE);
+    write_and_rename(&path, |out| out.write_all(table.as_bytes())).with_context(|| format!("cannot write {}", path.display()))?;
+    for (name, chart) in charts::charts(sweep.rows.of(&keys))? {
+        let path = args.out.join(name);
+        write_and_rename(&path, |out| out.write_all(chart.as_bytes())).with_context(|| format!("cannot write {}", path.display()))?;
+    }
+    let failed: Vec<_> = sweep.rows.of(&keys).filter(|row| row.error.is_some()).collect();
+    let before = keys.iter().filter(|key| done.contains(*key)).count();
+    print_line(&format!("{} jobs, {before} of them done before, {} failed; results in {}", keys.len(), failed.len(), args.out.display()))?;
+    for row in &failed {
+        print_line(&format!("failed: {}: {}", row.key, row.error.as_deref().unwrap_or_default()))?;
+    }
+    Ok(if failed.is_empty() { ExitCode::SUCCESS } else { ExitCode::FAILURE })
+}
+
+impl<'a> Sweep<'a> {
+    /// What a scene's jobs are that are not done; all keys are added to `keys`.
+    fn groups(&self, scene: &'a SceneJobs, done: &HashSet<String>, keys: &mut Vec<String>) -> anyhow::Result<Vec<Group<'a>>> {
+        let mut groups = Vec::new();
+        for view in &scene.views {
+            for &method in &self.jobs.methods {
+                let mut jobs = Vec::new();
+                for target in &self.jobs.targets {
+                    let key = self.jobs.key(scene, view, method, target)?;
+                    if !done.contains(&key) {
+                        jobs.push((key.clone(), target.clone()));
+                    }
+                    keys.push(key);
+                }
+                if !jobs.is_empty() {
+                    groups.push(Group { view, method, jobs });
+                }
+            }
+        }
+        Ok(groups)
+    }
+
+    /// Runs a scene's jobs. What fails becomes a line; only lines that cannot be written end the sweep.
+    fn scene(&mut self, scene: &SceneJobs, groups: &[Group<'_>]) -> anyhow::Result<()> {
+        if groups.is_empty() {
+            return Ok(());
+        }
+        let made = match &scene.origin {
+            Origin::File(file) => open(file),
+            Origin::Generate(options) => make(options),
+        };
+        let made = match made {
+            Ok(made) => made,
+            Err(error) => return groups.iter().try_for_each(|group| self.failed(scene, group, &error)),
+        };
+        let mut workshop = Workshop { jobs: self.jobs, space: ModelSpace::of(&made), scene: &made, built: BTreeMap::new(), truth: None };
+        for group in groups {
+            match workshop.group(group) {
+                Err(error) => self.failed(scene, group, &error)?,
+                Ok(rows) => {
+                    for row in rows {
+                        self.rows.add(Row { scene: scene.name.clone(), ..row })?;
+                    }
+                }
+            }
+        }
+        Ok(())
+    }
+
+    fn failed(&mut self, scene: &SceneJobs, group: &Group<'_>, error: &anyhow::Error) -> anyhow::Result<()> {
+        for (key, _) in &group.jobs {
+            self.rows.add(Row { scene: scene.name.clone(), ..failure(key, error) })?;
+        }
+        Ok(())
+    }
+}
+
+fn failure(key: &str, error: &anyhow::Error) -> Row {
+    Row { key: key.to_owned(), scene: String::new(), result: None, image: None, error: Some(format!("{error:#}")) }
+}
+
+/// A scene and what was made of it.
+struct Workshop<'a> {
+    jobs: &'a Jobs,
+    scene: &'a Scene,
+    space: ModelSpace,
+    built: BTreeMap<SimMethod, Built>,
+    /// The reference, and its picture of the last view.
+    truth: Option<(Built, Option<(ViewJob, Shot)>)>,
+}
+
+impl Workshop<'_> {
+    fn group(&mut self, group: &Group<'_>) -> anyhow::Result<Vec<Row>> {
+        let (method, delta) = group.method;
+        let camera = self.camera(group.view)?;
+        if !self.built.contains_key(&method) {
+            self.built.insert(method, Built::new(method.into(), self.scene, self.jobs.leaves)?);
+        }
+        let image = if self.jobs.error { Some(self.image_error(group.view, method, delta, &camera)?) } else { None };
+        let pass = Pass {
+            scene: self.scene,
+            space: &self.space,
+            method,
+            built: &self.built[&method],
+            leaves: self.jobs.leaves,
+            camera,
+            distance: group.view.distance,
+            delta,
+        };
+        let targets: Vec<_> = group.jobs.iter().map(|(_, target)| target.clone()).collect();
+        let row = |(result, (key, _)): (Outcome, &(String, Target))| match result {
+            Err(error) => failure(key, &error),
+            Ok((mut result, _)) => {
+                if !self.jobs.intervals {
+                    result.intervals = Vec::new();
+                }
+                Row { key: key.clone(), scene: String::new(), result: Some(result), image, error: None }
+            }
+        };
+        Ok(pass.run(&targets)?.into_iter().zip(&group.jobs).map(row).collect())
+    }
+
+    fn camera(&self, view: &ViewJob) -> anyhow::Result<Camera> {
+        let target = view.target.unwrap_or_else(|| self.space.centre());
+        let toward = view.direction.map(|d| std::array::from_fn(|k| target[k] + d[k]));
+        let full = View { eye: view.eye.or(toward), target: view.target, up: view.up, distance: view.distance, fov: view.fov };
+        Ok(Camera::new(&full, &self.space, view.size[0], view.size[1])?)
+    }
+
+    fn image_error(&mut self, view: &ViewJob, method: SimMethod, delta: f64, camera: &Camera) -> anyhow::Result<ImageFigures> {
+        if self.truth.is_none() {
+            self.truth = Some((Built::new(MethodName::Reference, self.scene, self.jobs.leaves)?, None));
+        }
+        let (reference, last) = self.truth.as_mut().context("no reference")?;
+        if last.as_ref().is_none_or(|(of, _)| of != view) {
+            *last = Some((view.clone(), reference.shoot(self.scene, &self.space, camera, delta, "full resolution")));
+        }
+        let (_, truth) = last.as_ref().context("no picture of the reference")?;
+        let shot = self.built[&method].shoot(self.scene, &self.space, camera, delta, "picture");
+        let error = compare_shots(&shot, truth, self.scene, camera);
+        Ok(ImageFigures { rmse: error.image.rmse, psnr_db: error.image.psnr_db, geometry_pixels_mean: error.geometry_pixels.mean })
+    }
+}

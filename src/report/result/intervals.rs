@@ -1,0 +1,100 @@
+//! A run over time: what each stretch of cycles added.
+
+use super::energy::dram_parts;
+use crate::sim::dram::device::LINE_BYTES;
+use crate::sim::dram::{ChannelCounts, DramEnergy};
+use crate::sim::energy::{EnergyCounts, EnergyModel, EnergyUnit};
+use crate::sim::machine::Machine;
+use crate::sim::replay::{Counts, Interval};
+use serde::{Deserialize, Serialize};
+
+/// What happened in a stretch of cycles.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct IntervalResult {
+    /// The cycle in which it ended; it began where the one before ended.
+    pub end: u64,
+    /// Its length.
+    pub cycles: u64,
+    /// Rays done.
+    pub rays: u64,
+    /// Requests to the L1s.
+    pub l1_requests: u64,
+    /// Misses there.
+    pub l1_misses: u64,
+    /// Requests to the L2.
+    pub l2_requests: u64,
+    /// Misses there.
+    pub l2_misses: u64,
+    /// Bytes read and written in memory.
+    pub dram_bytes: u64,
+    /// Requests to memory that found their row open.
+    pub row_hits: u64,
+    /// Requests that did not.
+    pub row_misses: u64,
+    /// Power; none for relative energies.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub watts: Option<IntervalPower>,
+}
+
+/// Mean power of a stretch, in watts. Compute is not in it: its operations are counted for the whole frame only.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct IntervalPower {
+    /// The L1s, without leakage.
+    pub l1: f64,
+    /// The L2, without leakage.
+    pub l2: f64,
+    /// Memory.
+    pub dram: f64,
+    /// Leakage of what is on the chip.
+    pub leakage: f64,
+}
+
+/// The stretches of a run.
+pub(super) fn intervals(cumulative: &[Interval], model: &EnergyModel, machine: &Machine, units: bool) -> Vec<IntervalResult> {
+    let zero = Interval { end: 0, counts: Counts::default(), channels: ChannelCounts::default(), dram: DramEnergy::default() };
+    let begins = std::iter::once(&zero).chain(cumulative);
+    begins.zip(cumulative).map(|(begin, end)| between(begin, end, model, machine, units)).collect()
+}
+
+fn between(begin: &Interval, end: &Interval, model: &EnergyModel, machine: &Machine, units: bool) -> IntervalResult {
+    let added = |of: fn(&Interval) -> u64| of(end) - of(begin);
+    let cycles = added(|i| i.end);
+    let lines = added(|i| i.channels.reads + i.channels.writes);
+    let (l1_requests, l2_requests) = (added(|i| i.counts.l1.requests), added(|i| i.counts.l2.requests));
+    let counts = EnergyCounts {
+        cycles,
+        l1_reads: l1_requests,
+        l1_fills: added(|i| i.counts.l1.fills),
+        l2_reads: l2_requests,
+        l2_fills: added(|i| i.counts.l2.fills),
+        dram_lines: lines,
+        units,
+        ..EnergyCounts::default()
+    };
+    let [before, after] = [begin, end].map(|interval| dram_parts(&interval.dram));
+    let dram: Vec<_> = before.into_iter().zip(after).map(|((name, before), (_, after))| (name, after - before)).collect();
+    let energy = model.report(&counts, &dram);
+    // Picojoules in a time to watts.
+    let watts = |pj: f64| pj * 1e-12 * f64::from(machine.cores.clock_mhz) * 1e6 / cycles as f64;
+    let power = || IntervalPower {
+        l1: watts(energy.l1_read + energy.l1_fill),
+        l2: watts(energy.l2_read + energy.l2_fill),
+        dram: watts(energy.dram()),
+        leakage: watts(energy.l1_leakage + energy.l2_leakage + energy.unit_leakage),
+    };
+    IntervalResult {
+        end: end.end,
+        cycles,
+        rays: added(|i| i.counts.rays),
+        l1_requests,
+        l1_misses: added(|i| i.counts.l1.misses),
+        l2_requests,
+        l2_misses: added(|i| i.counts.l2.misses),
+        dram_bytes: lines * LINE_BYTES,
+        row_hits: added(|i| i.channels.row_hits),
+        row_misses: added(|i| i.channels.row_misses + i.channels.row_conflicts),
+        watts: (energy.unit == EnergyUnit::Picojoules && cycles > 0).then(power),
+    }
+}

@@ -1,0 +1,184 @@
+//! Caches, crossbar and DRAM, and what contexts waited for.
+
+use super::ratio;
+use crate::sim::dram::device::LINE_BYTES;
+use crate::sim::dram::{ChannelCounts, DramConfig};
+use crate::sim::replay::{CacheCounts, Waits};
+use crate::sim::unit::{State, UnitCounts};
+use serde::{Deserialize, Serialize};
+
+/// A level of cache.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct CacheResult {
+    /// Requests looked up: hits, misses and merges.
+    pub requests: u64,
+    /// Found.
+    pub hits: u64,
+    /// Not found: asked of the next level.
+    pub misses: u64,
+    /// Not found, but asked for already.
+    pub merges: u64,
+    /// Hits of all requests.
+    pub hit_rate: f64,
+    /// Lines written.
+    pub fills: u64,
+    /// Requests that waited for their bank.
+    pub conflicts: u64,
+    /// Their cycles.
+    pub queued_cycles: u64,
+    /// Cycles of banks that could not go on for want of a miss register.
+    pub blocked_cycles: u64,
+    /// Cycles of requesters whose bank's queue was full.
+    pub refused_cycles: u64,
+}
+
+impl From<&CacheCounts> for CacheResult {
+    fn from(counts: &CacheCounts) -> Self {
+        let CacheCounts { requests, hits, misses, merges, fills, conflicts, queued_cycles, refused_cycles, blocked_cycles } = *counts;
+        let hit_rate = ratio(hits as f64, requests as f64);
+        Self { requests, hits, misses, merges, hit_rate, fills, conflicts, queued_cycles, blocked_cycles, refused_cycles }
+    }
+}
+
+/// Waits for the crossbar's ports, in cycles summed over misses.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct CrossbarResult {
+    /// Of misses on their way to the L2.
+    pub request_cycles: u64,
+    /// Of answers on their way back.
+    pub answer_cycles: u64,
+}
+
+/// Memory.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct DramResult {
+    /// Name of the device.
+    pub device: String,
+    /// Lines read.
+    pub reads: u64,
+    /// Lines written.
+    pub writes: u64,
+    /// Requests that found their row open.
+    pub row_hits: u64,
+    /// Requests that found their bank closed.
+    pub row_misses: u64,
+    /// Requests for which another row had to be closed.
+    pub row_conflicts: u64,
+    /// Refreshes.
+    pub refreshes: u64,
+    /// Bytes read and written.
+    pub bytes: u64,
+    /// The same in a second.
+    pub bytes_per_second: f64,
+    /// Most bytes in a second, of all channels.
+    pub peak_bytes_per_second: f64,
+    /// How much of it was used.
+    pub bandwidth_share: f64,
+    /// Mean nanoseconds from a request's arrival to its command.
+    pub mean_queue_nanoseconds: f64,
+    /// Cycles of misses of the L2 that waited for room in a channel's queue.
+    pub refused_cycles: u64,
+    /// Bytes of the busiest channel over the mean of all; 1 is balanced.
+    pub busiest_over_mean: f64,
+    /// Channel by channel.
+    pub channels: Vec<ChannelResult>,
+}
+
+/// A channel of memory.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct ChannelResult {
+    /// Lines read.
+    pub reads: u64,
+    /// Requests that found their row open.
+    pub row_hits: u64,
+    /// Share of its peak that it used.
+    pub bandwidth_share: f64,
+    /// Most requests that waited at once.
+    pub longest_queue: u64,
+}
+
+impl DramResult {
+    /// What the channels of `config` did in `seconds`.
+    pub(super) fn new(channels: &[ChannelCounts], refused_cycles: u64, config: &DramConfig, seconds: f64) -> Self {
+        let mut sum = ChannelCounts::default();
+        channels.iter().for_each(|channel| sum.add(channel));
+        let device = &config.device;
+        let peak = device.peak_bytes_per_second();
+        let lines = |counts: &ChannelCounts| counts.reads + counts.writes;
+        let per_second = |counts: &ChannelCounts| ratio((lines(counts) * LINE_BYTES) as f64, seconds);
+        let all_peak = peak * channels.len() as f64;
+        let busiest = channels.iter().map(lines).max().unwrap_or(0);
+        Self {
+            device: device.name.clone(),
+            reads: sum.reads,
+            writes: sum.writes,
+            row_hits: sum.row_hits,
+            row_misses: sum.row_misses,
+            row_conflicts: sum.row_conflicts,
+            refreshes: sum.refreshes,
+            bytes: lines(&sum) * LINE_BYTES,
+            bytes_per_second: per_second(&sum),
+            peak_bytes_per_second: all_peak,
+            bandwidth_share: per_second(&sum) / all_peak,
+            mean_queue_nanoseconds: ratio((sum.queued_clocks * device.clock_ps) as f64 * 1e-3, lines(&sum) as f64),
+            refused_cycles,
+            busiest_over_mean: ratio((busiest * channels.len() as u64) as f64, lines(&sum) as f64),
+            channels: channels
+                .iter()
+                .map(|counts| ChannelResult {
+                    reads: counts.reads,
+                    row_hits: counts.row_hits,
+                    bandwidth_share: per_second(counts) / peak,
+                    longest_queue: counts.longest_queue,
+                })
+                .collect(),
+        }
+    }
+}
+
+/// What contexts did with their cycles, all contexts of the machine together, as shares.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct WaitShares {
+    /// Contexts times cycles of the frame.
+    pub context_cycles: u64,
+    /// Waited for lines, the last of which came from the L1. With traversal units only the sum of the three is known: see `memory`.
+    pub l1: f64,
+    /// The same from the L2.
+    pub l2: f64,
+    /// The same from memory.
+    pub dram: f64,
+    /// Waited for lines from anywhere.
+    pub memory: f64,
+    /// Computed, or waited for a block.
+    pub compute: f64,
+    /// Had no ray.
+    pub idle: f64,
+}
+
+impl WaitShares {
+    /// Where compute takes no time, contexts only wait; a traversal unit's wait for lines in `FETCH` (and, for some of the bound data, in `CHILD`).
+    pub(super) fn new(waits: &Waits, units: Option<&UnitCounts>, context_cycles: u64) -> Self {
+        let share = |cycles: u64| ratio(cycles as f64, context_cycles as f64);
+        let (memory, idle) = match units {
+            Some(counts) => (counts.states[State::Fetch as usize], counts.states[State::Idle as usize]),
+            None => {
+                let memory = waits.l1 + waits.l2 + waits.dram;
+                (memory, context_cycles.saturating_sub(memory))
+            }
+        };
+        Self {
+            context_cycles,
+            l1: share(waits.l1),
+            l2: share(waits.l2),
+            dram: share(waits.dram),
+            memory: share(memory),
+            compute: share(context_cycles.saturating_sub(memory + idle)),
+            idle: share(idle),
+        }
+    }
+}

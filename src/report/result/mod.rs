@@ -1,0 +1,139 @@
+//! A run on a machine as figures to read and to compare: everything in it follows from counts, nothing from wall time.
+//!
+//! - `memory`: caches, crossbar, DRAM and what contexts waited for.
+//! - `traffic`: lines by what they hold.
+//! - `energy`: the energy model's report, split.
+//! - `roofline`: what each part of the memory system would need alone.
+//! - `intervals`: the same over time.
+
+mod energy;
+mod intervals;
+mod memory;
+mod roofline;
+mod setup;
+mod traffic;
+mod units;
+
+pub use energy::{ComputeEnergy, DramParts, EnergyResult, LeakageEnergy, ReadFill};
+pub use intervals::{IntervalPower, IntervalResult};
+pub use memory::{CacheResult, ChannelResult, CrossbarResult, DramResult, WaitShares};
+pub use roofline::{Bound, Roofline};
+pub use setup::{Compute, MachineFacts, MethodFacts, SceneFacts, Setup, ViewFacts};
+pub use traffic::{KindResult, LevelBytes, TrafficResult};
+pub use units::{BlockResult, UnitsResult};
+
+use crate::sim::energy::{EnergyCounts, EnergyModel};
+use crate::sim::machine::MachineError;
+use crate::sim::replay::{ReplayError, Run, dram_of};
+use serde::{Deserialize, Serialize};
+use std::collections::BTreeMap;
+use thiserror::Error;
+
+/// Why a run has no figures.
+#[derive(Debug, Error)]
+pub enum ResultError {
+    /// The energy tables of the machine.
+    #[error(transparent)]
+    Energy(#[from] MachineError),
+    /// The memory of the machine.
+    #[error(transparent)]
+    Memory(#[from] ReplayError),
+}
+
+/// What a frame took on a machine.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct SimResult {
+    /// What was run, and on what.
+    pub setup: Setup,
+    /// Cycles of the cores from the first ray's start to the last one's end.
+    pub cycles: u64,
+    /// The same in milliseconds.
+    pub milliseconds: f64,
+    /// Frames in a second.
+    pub frames_per_second: f64,
+    /// Rays shot.
+    pub rays: u64,
+    /// Rays that hit.
+    pub hits: u64,
+    /// Lines asked of the L1s for each ray.
+    pub accesses_per_ray: f64,
+    /// The L1s, all together.
+    pub l1: CacheResult,
+    /// The L2.
+    pub l2: CacheResult,
+    /// Between them.
+    pub crossbar: CrossbarResult,
+    /// Memory.
+    pub dram: DramResult,
+    /// What contexts did with their cycles.
+    pub waits: WaitShares,
+    /// Energy of the frame.
+    pub energy: EnergyResult,
+    /// Lines and bytes by what they hold.
+    pub traffic: TrafficResult,
+    /// What the parts of the memory system would need alone.
+    pub roofline: Roofline,
+    /// The traversal units, if compute takes time.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub units: Option<UnitsResult>,
+    /// Operations of the hardware blocks, by block; those that occurred.
+    pub operations: BTreeMap<String, u64>,
+    /// Over time; may be left out of tables of many runs.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub intervals: Vec<IntervalResult>,
+}
+
+impl SimResult {
+    /// The figures of `run`.
+    ///
+    /// # Errors
+    /// The machine's energy tables or its memory cannot be read.
+    pub fn new(setup: Setup, run: &Run) -> Result<Self, ResultError> {
+        let machine = &setup.machine.description;
+        let model = EnergyModel::new(machine)?;
+        let dram = dram_of(machine)?;
+        let seconds = run.cycles as f64 / (f64::from(machine.cores.clock_mhz) * 1e6);
+        let counts = &run.counts;
+        let units = setup.compute == Compute::Units;
+        let dram = DramResult::new(&run.channels, counts.dram_refused_cycles, &dram, seconds);
+        let energy_counts = EnergyCounts {
+            cycles: run.cycles,
+            l1_reads: counts.l1.requests,
+            l1_fills: counts.l1.fills,
+            l2_reads: counts.l2.requests,
+            l2_fills: counts.l2.fills,
+            dram_lines: dram.reads + dram.writes,
+            operations: run.operations.clone(),
+            units,
+        };
+        Ok(Self {
+            cycles: run.cycles,
+            milliseconds: seconds * 1e3,
+            frames_per_second: ratio(1.0, seconds),
+            rays: counts.rays,
+            hits: counts.hits,
+            accesses_per_ray: ratio(counts.l1.requests as f64, counts.rays as f64),
+            l1: CacheResult::from(&counts.l1),
+            l2: CacheResult::from(&counts.l2),
+            crossbar: CrossbarResult { request_cycles: counts.crossbar_cycles, answer_cycles: counts.answer_cycles },
+            waits: WaitShares::new(&counts.waits, run.units.as_ref(), run.cycles * setup.contexts()),
+            energy: EnergyResult::new(&model.report(&energy_counts, &energy::dram_parts(&run.dram)), seconds),
+            traffic: TrafficResult::new(&counts.traffic, counts.rays, setup.method.name == "lod"),
+            roofline: Roofline::new(&setup, run, &dram),
+            units: run
+                .units
+                .as_ref()
+                .map(|counts| UnitsResult::new(counts, u64::from(machine.cores.groups) * u64::from(machine.units.per_group))),
+            operations: run.operations.iter().filter(|&(_, n)| n > 0).map(|(o, n)| (o.name().to_owned(), n)).collect(),
+            intervals: intervals::intervals(&run.intervals, &model, machine, units),
+            dram,
+            setup,
+        })
+    }
+}
+
+/// `a` of `b`; 0 if there is no `b`, as JSON has no infinities.
+fn ratio(a: f64, b: f64) -> f64 {
+    if b == 0.0 { 0.0 } else { a / b }
+}

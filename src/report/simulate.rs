@@ -1,0 +1,49 @@
+//! A frame on machines: one functional pass, and a replay on each machine beside it.
+
+use crate::render::FrameRays;
+use crate::report::result::Compute;
+use crate::sim::machine::Machine;
+use crate::sim::replay::{self, Chunk, ReplayError, Run, Window};
+use std::sync::mpsc::{Receiver, SyncSender, sync_channel};
+use std::thread;
+
+/// Chunks that wait for a replay: one, while the next is being traced.
+const AHEAD: usize = 1;
+
+/// A machine, and whether compute takes time on it.
+#[derive(Clone, Debug)]
+pub struct Job {
+    /// The machine.
+    pub machine: Machine,
+    /// What compute takes.
+    pub compute: Compute,
+    /// The cycles of which a waveform is wanted.
+    pub window: Option<Window>,
+}
+
+/// Runs the rays of `frame` for each of `jobs`. Rays are traced once; every replay has a thread of its own.
+/// `traced` is told how many batches of rays were handed over.
+pub fn simulate(frame: &FrameRays<'_>, jobs: &[Job], traced: &dyn Fn(u64)) -> Vec<Result<Run, ReplayError>> {
+    thread::scope(|scope| {
+        let (senders, runs): (Vec<SyncSender<Chunk>>, Vec<_>) = jobs
+            .iter()
+            .map(|Job { machine, compute, window }| {
+                let (sender, receiver): (_, Receiver<Chunk>) = sync_channel(AHEAD);
+                let run = move || match compute {
+                    Compute::Free => replay::run_free(machine, frame.layout, receiver.into_iter(), *window),
+                    Compute::Units => replay::run_units(machine, frame.layout, receiver.into_iter(), *window),
+                };
+                (sender, scope.spawn(run))
+            })
+            .unzip();
+        frame.produce(|batches| {
+            traced(batches.len() as u64);
+            let chunk = Chunk::from(batches);
+            // A replay that failed takes no more; the others go on.
+            senders.iter().filter(|sender| sender.send(Chunk::clone(&chunk)).is_ok()).count() > 0
+        });
+        drop(senders);
+        let join = |run: thread::ScopedJoinHandle<'_, _>| run.join().unwrap_or_else(|panic| std::panic::resume_unwind(panic));
+        runs.into_iter().map(join).collect()
+    })
+}

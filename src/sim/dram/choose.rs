@@ -1,0 +1,195 @@
+//! How a channel finds its next command.
+
+use super::channel::Channel;
+use super::config::PagePolicy;
+use super::queue::NONE;
+use super::ranks::{MOST_BANKS, NO_ROW};
+
+/// Steps towards a request.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Step {
+    Column,
+    Activate,
+    Precharge,
+}
+
+/// Limits are stored by bank group and step, a power of two per group.
+const STEPS: usize = 4;
+
+/// What a command is for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Act {
+    CloseAll { rank: usize },
+    Refresh { rank: usize },
+    Towards { bank: usize },
+    Close { bank: usize },
+}
+
+/// The next command and its clock.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Choice {
+    pub clock: u64,
+    pub act: Act,
+}
+
+// Within a clock the smallest order goes first: its kind of command, then the age of the request; the bank is in the low bits.
+const REFRESH_ORDER: u64 = 0;
+const COLUMN_ORDER: u64 = 1 << 60;
+const ROW_ORDER: u64 = 2 << 60;
+const CLOSE_ORDER: u64 = 3 << 60;
+
+/// Clock and order as one number: the smallest is given.
+fn key(clock: u64, order: u64) -> u128 {
+    u128::from(clock) << 64 | u128::from(order)
+}
+
+/// The clock of a key.
+fn clock_of(key: u128) -> u64 {
+    (key >> 64) as u64
+}
+
+/// The next step of each bank's queue, and what bank groups and ranks allow. Arrays side by side: this is what is searched for every
+/// command.
+#[derive(Clone, Debug)]
+pub(super) struct Candidates {
+    /// First clock that the bank itself allows.
+    ready: [u64; MOST_BANKS],
+    orders: [u64; MOST_BANKS],
+    /// Which of `limits` holds.
+    limit: [u8; MOST_BANKS],
+    pub slots: [u16; MOST_BANKS],
+    pub steps: [Step; MOST_BANKS],
+    /// First clock that a bank group and its rank allow, by group and step.
+    limits: [u64; MOST_BANKS * STEPS],
+}
+
+impl Candidates {
+    pub fn new() -> Self {
+        Self {
+            ready: [0; MOST_BANKS],
+            orders: [0; MOST_BANKS],
+            limit: [0; MOST_BANKS],
+            slots: [NONE; MOST_BANKS],
+            steps: [Step::Activate; MOST_BANKS],
+            limits: [0; MOST_BANKS * STEPS],
+        }
+    }
+
+    /// The smallest key of some banks, none before clock `free`.
+    fn first(&self, mut banks: u64, free: u64) -> u128 {
+        let mut best = u128::MAX;
+        while banks != 0 {
+            let bank = banks.trailing_zeros() as usize % MOST_BANKS;
+            banks &= banks - 1;
+            let clock = self.ready[bank].max(self.limits[usize::from(self.limit[bank])]).max(free);
+            let key = key(clock, self.orders[bank]);
+            best = std::hint::select_unpredictable(key < best, key, best);
+        }
+        best
+    }
+}
+
+impl Channel {
+    /// Finds the next command: the earliest, and in one clock the first in order.
+    pub(super) fn choose(&mut self) {
+        let mut best = u128::MAX;
+        let mut act = Act::Refresh { rank: 0 };
+        for rank in 0..self.ranks.ranks.len() {
+            let mask = u64::MAX >> (MOST_BANKS - self.ranks.banks_of(rank).len()) << self.ranks.banks_of(rank).start;
+            let towards = self.candidates.first(self.queues[self.kind].banks & mask, self.free);
+            let close = self.first_close(rank, mask);
+            let mut mine = towards.min(close);
+            let bank = mine as usize % MOST_BANKS; // the low bits of the order
+            let mut mine_act = if towards <= close { Act::Towards { bank } } else { Act::Close { bank } };
+            if clock_of(mine) >= self.ranks.ranks[rank].due {
+                let (ready, close) = self.ranks.refresh_step(rank);
+                mine = key(self.awake(rank, ready.max(self.free)), REFRESH_ORDER | rank as u64);
+                mine_act = if close { Act::CloseAll { rank } } else { Act::Refresh { rank } };
+            }
+            if mine < best {
+                (best, act) = (mine, mine_act);
+            }
+        }
+        self.next = Some(Choice { clock: clock_of(best), act });
+    }
+
+    /// Rows that nobody waits for, if the policy closes them.
+    fn first_close(&self, rank: usize, mask: u64) -> u128 {
+        let unused = match self.controller.page {
+            PagePolicy::Open => return u128::MAX,
+            PagePolicy::Closed => 0,
+            PagePolicy::Timeout(clocks) => clocks,
+        };
+        let mut best = u128::MAX;
+        let mut banks = self.open & mask & !self.queues[0].banks & !self.queues[1].banks;
+        while banks != 0 {
+            let bank = banks.trailing_zeros() as usize;
+            banks &= banks - 1;
+            let state = &self.ranks.banks[bank];
+            let ready = state.precharge.max(state.last_use + unused).max(self.ranks.precharge_of_rank(rank));
+            let clock = self.awake(rank, ready.max(self.free));
+            best = best.min(key(clock, CLOSE_ORDER | bank as u64));
+        }
+        best
+    }
+
+    /// Recomputes the next step of a bank's queue.
+    pub(super) fn update_candidate(&mut self, bank: usize) {
+        let queue = &self.queues[self.kind];
+        let (head, hit) = (queue.head(bank), self.hits[bank][self.kind]);
+        if head == NONE {
+            return;
+        }
+        let state = &self.ranks.banks[bank];
+        let (step, slot, ready, order) = if state.row == NO_ROW {
+            (Step::Activate, head, state.activate, ROW_ORDER)
+        } else if hit != NONE && (hit == head || self.overtaken[bank] < self.controller.hit_cap) {
+            (Step::Column, hit, state.column[self.kind], COLUMN_ORDER)
+        } else {
+            (Step::Precharge, head, state.precharge, ROW_ORDER)
+        };
+        let request = queue.get(slot);
+        let candidates = &mut self.candidates;
+        candidates.steps[bank] = step;
+        candidates.slots[bank] = slot;
+        candidates.limit[bank] = (self.ranks.group_of(bank) * STEPS + step as usize) as u8; // a group has a bank at least: below 256
+        candidates.ready[bank] = ready.max(request.arrival);
+        candidates.orders[bank] = order | request.age << 6 | bank as u64;
+    }
+
+    /// Recomputes the next steps of all banks.
+    pub(super) fn update_candidates(&mut self) {
+        for bank in 0..self.ranks.banks.len() {
+            self.update_candidate(bank);
+        }
+    }
+
+    /// Recomputes what groups and ranks allow after a step in `rank`.
+    pub(super) fn update_limits_of(&mut self, rank: usize, step: Step) {
+        if step == Step::Column && self.ranks.ranks.len() > 1 {
+            return self.update_limits(); // the data bus is shared
+        }
+        for group in self.ranks.groups_of(rank) {
+            self.update_limit(rank, group, step);
+        }
+    }
+
+    /// Recomputes what groups and ranks allow.
+    pub(super) fn update_limits(&mut self) {
+        for rank in 0..self.ranks.ranks.len() {
+            for group in self.ranks.groups_of(rank) {
+                for step in [Step::Column, Step::Activate, Step::Precharge] {
+                    self.update_limit(rank, group, step);
+                }
+            }
+        }
+    }
+
+    fn update_limit(&mut self, rank: usize, group: usize, step: Step) {
+        self.candidates.limits[group * STEPS + step as usize] = match step {
+            Step::Column => self.ranks.column_of_group(rank, group, self.kind),
+            Step::Activate => self.ranks.activate_of_group(rank, group),
+            Step::Precharge => self.ranks.precharge_of_rank(rank),
+        };
+    }
+}

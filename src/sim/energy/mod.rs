@@ -1,0 +1,119 @@
+//! Energy: what was counted, times tables, at report time. No part of the simulator holds joules.
+//!
+//! - [`caches`]: energies of L1 and L2 per read and fill, and their leakage; several tables, of which the machine names one.
+//! - [`blocks`]: energies of the hardware blocks, from what each is made of, and a traversal unit's leakage and clock.
+//! - DRAM is counted by its own model, in picojoules, and handed in; a relative table has a price per line instead.
+//!
+//! Leakage and clock run over the whole frame. `docs/energy.md` tells where the figures come from and what is not counted.
+
+pub mod blocks;
+pub mod caches;
+pub mod operation;
+mod report;
+
+#[cfg(test)]
+mod tests;
+
+pub use blocks::BlockTable;
+pub use caches::{CacheEnergy, CacheTable, EnergyUnit};
+pub use operation::{Operation, Operations};
+pub use report::EnergyReport;
+
+use crate::sim::machine::{Breach, Machine, MachineError};
+
+/// Picojoules of a milliwatt in a second.
+const PJ_PER_MW_S: f64 = 1e9;
+
+/// What a frame did.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct EnergyCounts {
+    /// Cycles of the cores from its first to its last.
+    pub cycles: u64,
+    /// Requests that the L1s looked up, hit or miss, all groups together.
+    pub l1_reads: u64,
+    /// Lines written into the L1s.
+    pub l1_fills: u64,
+    /// Requests that the L2 looked up.
+    pub l2_reads: u64,
+    /// Lines written into the L2.
+    pub l2_fills: u64,
+    /// Lines read from or written to memory; used by relative tables only.
+    pub dram_lines: u64,
+    /// Operations of the blocks.
+    pub operations: Operations,
+    /// There are traversal units, which leak and are clocked; false where compute takes no time.
+    pub units: bool,
+}
+
+/// The energies of a machine.
+#[derive(Clone, Debug, PartialEq)]
+pub struct EnergyModel {
+    caches: CacheTable,
+    blocks: Option<BlockTable>,
+    l1_banks: f64,
+    l2_banks: f64,
+    units: f64,
+    contexts: u32,
+    one_edge: bool,
+    cycles_per_second: f64,
+}
+
+impl EnergyModel {
+    /// The energies of `machine`, from the tables that it names.
+    ///
+    /// # Errors
+    /// A table cannot be read, is broken, or does not go with the other.
+    pub fn new(machine: &Machine) -> Result<Self, MachineError> {
+        let (text, file) = machine.read(&format!("energy/{}.toml", machine.energy.caches))?;
+        let caches = CacheTable::parse(&text, &file)?;
+        let blocks = match &machine.energy.blocks {
+            Some(name) => {
+                if caches.unit != EnergyUnit::Picojoules {
+                    return Err(Breach::new("energy.blocks", "must be absent where energies are relative", name).in_file(&machine.name));
+                }
+                let (text, file) = machine.read(&format!("energy/{name}.toml"))?;
+                Some(BlockTable::parse(&text, &file)?)
+            }
+            None => None,
+        };
+        let (cores, units) = (&machine.cores, &machine.units);
+        Ok(Self {
+            caches,
+            blocks,
+            l1_banks: f64::from(cores.groups) * f64::from(machine.l1.banks),
+            l2_banks: f64::from(machine.l2.banks),
+            units: f64::from(cores.groups) * f64::from(units.per_group),
+            contexts: units.contexts,
+            one_edge: units.edges_per_cycle == 1,
+            cycles_per_second: f64::from(cores.clock_mhz) * 1e6,
+        })
+    }
+
+    /// The energy of a frame. `dram_pj` is the memory's, by part, as its model has it; with relative energies it is not used.
+    pub fn report(&self, counts: &EnergyCounts, dram_pj: &[(&'static str, f64)]) -> EnergyReport {
+        let mw_to_pj = counts.cycles as f64 / self.cycles_per_second * PJ_PER_MW_S;
+        let (l1, l2) = (&self.caches.l1, &self.caches.l2);
+        let blocks = self.blocks.as_ref();
+        let compute = counts.operations.iter().filter(|&(_, count)| count > 0);
+        let priced = |(operation, count): (Operation, u64)| {
+            blocks.map(|table| (operation.name(), count as f64 * table.operation_pj(operation, self.one_edge)))
+        };
+        let units = blocks.filter(|_| counts.units);
+        EnergyReport {
+            unit: self.caches.unit,
+            l1_read: counts.l1_reads as f64 * l1.read,
+            l1_fill: counts.l1_fills as f64 * l1.fill,
+            l1_leakage: self.l1_banks * l1.leakage_mw_per_bank * mw_to_pj,
+            l2_read: counts.l2_reads as f64 * l2.read,
+            l2_fill: counts.l2_fills as f64 * l2.fill,
+            l2_leakage: self.l2_banks * l2.leakage_mw_per_bank * mw_to_pj,
+            compute: compute.filter_map(priced).collect(),
+            unit_leakage: units.map_or(0.0, |table| self.units * table.unit_leakage_mw(self.contexts, self.one_edge) * mw_to_pj),
+            unit_clock: units.map_or(0.0, |table| self.units * table.unit_clock_pj(self.contexts, self.one_edge) * counts.cycles as f64),
+            dram: match self.caches.dram_line {
+                Some(line) => vec![("lines", counts.dram_lines as f64 * line)],
+                None => dram_pj.to_vec(),
+            },
+        }
+    }
+}

@@ -1,0 +1,250 @@
+use super::{BlockTable, CacheTable, EnergyCounts, EnergyModel, EnergyReport, EnergyUnit, Operation};
+use crate::block::Block;
+use crate::block::hit_divide::HitDivide;
+use crate::block::ray_setup::RaySetup;
+use crate::block::tri_test::TriTest;
+use crate::sim::machine::Machine;
+
+const CACHES: &str = include_str!("../../../machines/energy/cacti22.toml");
+const RELATIVE: &str = include_str!("../../../machines/energy/relative.toml");
+const BLOCKS: &str = include_str!("../../../machines/energy/blocks22.toml");
+
+fn model(machine: &str) -> EnergyModel {
+    EnergyModel::new(&Machine::shipped(machine).unwrap()).unwrap()
+}
+
+/// Equal to within 1 / 10^9.
+fn close(a: f64, b: f64) -> bool {
+    (a - b).abs() <= 1e-9 * b.abs()
+}
+
+#[test]
+fn the_tables_have_the_published_figures() {
+    let table = |name: &str| {
+        let mut machine = Machine::shipped("haydel2023").unwrap();
+        machine.set("energy.caches", name).unwrap();
+        let t = EnergyModel::new(&machine).unwrap().caches;
+        [t.l1.read, t.l1.leakage_mw_per_bank, t.l2.read, t.l2.leakage_mw_per_bank]
+    };
+    assert_eq!(table("cacti22"), [26.7189, 3.18625, 94.0184, 29.0936]);
+    assert_eq!(table("cacti22-older"), [46.4909, 3.11185, 240.039, 30.6609]);
+    let relative = CacheTable::parse(RELATIVE, "relative").unwrap();
+    assert_eq!((relative.l1.read, relative.l2.read, relative.dram_line), (1.0, 1.5, Some(40.0)));
+}
+
+/// Four rows of a table in the authors' repository: accesses of L1 and L2, cycles, and the energies of L1 and L2 in microjoules.
+#[test]
+fn published_counts_give_the_published_energies() {
+    let rows = [
+        (306_906_451, 53_679_267, 9_458_528, 18_036.0, 17_525.0),
+        (242_085_316, 38_204_781, 6_894_094, 14_001.0, 12_553.0),
+        (60_148_586, 7_883_407, 1_952_160, 3_574.0, 2_850.0),
+        (6_876_151, 462_426, 347_750, 458.0, 282.0),
+    ];
+    let model = model("haydel2023-ddr3");
+    for (l1_reads, l2_reads, cycles, l1_uj, l2_uj) in rows {
+        let fills = l2_reads; // which that table does not count
+        let counts = EnergyCounts { cycles, l1_reads, l2_reads, l1_fills: fills, ..Default::default() };
+        let report = model.report(&counts, &[]);
+        assert!((report.l1() * 1e-6 - l1_uj).abs() < 1.0, "L1: {} against {l1_uj}", report.l1() * 1e-6);
+        assert!((report.l2() * 1e-6 - l2_uj).abs() < 1.0, "L2: {} against {l2_uj}", report.l2() * 1e-6);
+    }
+}
+
+#[test]
+fn caches_by_hand() {
+    let counts =
+        EnergyCounts { cycles: 2_000_000, l1_reads: 10, l1_fills: 3, l2_reads: 4, l2_fills: 1, dram_lines: 7, ..Default::default() };
+    let dram = [("background", 100.0), ("read", 23.0)];
+    let report = model("haydel2023").report(&counts, &dram);
+    // 2,000,000 cycles at 2 GHz are 1 ms: 1 mW is 10^6 pJ. 64 x 4 banks of L1, 32 of L2.
+    let expected = EnergyReport {
+        unit: EnergyUnit::Picojoules,
+        l1_read: 267.189,
+        l1_fill: 80.1567,
+        l1_leakage: 256.0 * 3.186_25 * 1e6,
+        l2_read: 376.0736,
+        l2_fill: 94.0184,
+        l2_leakage: 32.0 * 29.0936 * 1e6,
+        compute: vec![],
+        unit_leakage: 0.0,
+        unit_clock: 0.0,
+        dram: dram.to_vec(),
+    };
+    let parts = |r: &EnergyReport| [r.l1_read, r.l1_fill, r.l1_leakage, r.l2_read, r.l2_fill, r.l2_leakage];
+    assert!(parts(&report).into_iter().zip(parts(&expected)).all(|(a, b)| close(a, b)), "{report:?}");
+    assert_eq!((&report.compute, report.unit_leakage, report.unit_clock, &report.dram), (&vec![], 0.0, 0.0, &expected.dram));
+    assert!(close(report.l1(), parts(&expected)[..3].iter().sum()));
+    assert!(close(report.total_without_dram(), parts(&expected).iter().sum()));
+    assert_eq!(report.dram(), 123.0);
+    assert!(close(report.total(), report.total_without_dram() + 123.0));
+}
+
+#[test]
+fn relative_energies_price_lines_and_nothing_else() {
+    let mut counts =
+        EnergyCounts { cycles: 1000, l1_reads: 100, l1_fills: 9, l2_reads: 10, l2_fills: 5, dram_lines: 2, ..Default::default() };
+    counts.units = true;
+    counts.operations.add(Operation::LodTest, 5);
+    let report = model("packet").report(&counts, &[("background", 1e9)]);
+    assert_eq!(report.unit, EnergyUnit::L1Accesses);
+    assert_eq!((report.l1(), report.l2(), report.dram(), report.compute()), (100.0, 15.0, 80.0, 0.0));
+    assert_eq!(report.total(), 195.0);
+}
+
+#[test]
+fn operations_by_hand() {
+    let table = BlockTable::parse(BLOCKS, "blocks22").unwrap();
+    // tessellate: 9 products of 33 x 10 bits; 882 bits added; 288 selected; 3690 registers.
+    let tessellate = (9.0 * 330.0 * 3.1 / 1024.0 + 882.0 * 0.1 / 32.0) * 0.268 + (288.0 * 0.018 / 32.0 + 3690.0 * 0.0090) * 0.309;
+    assert!(close(table.operation_pj(Operation::Tessellate, false), tessellate));
+    // hit_divide: its 246 registers are written in each of 36 cycles.
+    let hit_divide = 3596.0 * 0.1 / 32.0 * 0.268 + (3465.0 * 0.018 / 32.0 + 246.0 * 36.0 * 0.0090) * 0.309;
+    assert!(close(table.operation_pj(Operation::HitDivide, false), hit_divide));
+    let mut counts = EnergyCounts::default();
+    counts.operations.add(Operation::Tessellate, 2);
+    counts.operations.add(Operation::Tessellate, 1);
+    counts.operations.add(Operation::HitDivide, 5);
+    let report = model("haydel2023").report(&counts, &[]);
+    assert_eq!(report.compute.iter().map(|part| part.0).collect::<Vec<_>>(), ["tessellate", "hit_divide"]);
+    assert!(close(report.compute[0].1, 3.0 * tessellate) && close(report.compute[1].1, 5.0 * hit_divide));
+    assert!(close(report.total(), 3.0 * tessellate + 5.0 * hit_divide));
+}
+
+#[test]
+fn units_leak_and_are_clocked_for_the_whole_frame_where_there_are_any() {
+    let mut counts = EnergyCounts { cycles: 2_000_000, ..Default::default() };
+    let none = model("haydel2023").report(&counts, &[]);
+    assert_eq!((none.unit_leakage, none.unit_clock), (0.0, 0.0));
+    counts.units = true;
+    let report = model("haydel2023").report(&counts, &[]);
+    let table = BlockTable::parse(BLOCKS, "blocks22").unwrap();
+    // 1 ms, 64 units of 16 contexts.
+    assert!(close(report.unit_leakage, 64.0 * table.unit_leakage_mw(16, false) * 1e6));
+    assert!(close(report.unit_clock, 64.0 * table.unit_clock_pj(16, false) * 2e6));
+    // Registers of the blocks of a unit, and 16 contexts: one bit in 32 is clocked, each leaks.
+    let registers: f64 = 1269.0 + 120.0 + 734.0 + 23173.0 + 11328.0 + 3690.0 + 24385.0 + 246.0 + 296.0 + 1286.0 + 16.0 * 16671.0;
+    assert!(close(table.unit_clock_pj(16, false), registers / 32.0 * 0.0079 * 0.309));
+    let logic = table.unit_leakage_mw(16, false) - registers * 0.000074;
+    assert!((2.0..8.0).contains(&logic), "{logic} mW");
+    assert!(close(table.unit_leakage_mw(17, false) - table.unit_leakage_mw(16, false), 16671.0 * 0.000074));
+    assert!(close(report.compute(), report.unit_leakage + report.unit_clock));
+}
+
+/// Products of 18 x 18 bits as the multipliers of `rtl/` cut them: limbs of 17 bits, the highest up to 18.
+#[test]
+fn products_are_those_of_the_rtl() {
+    let table = BlockTable::parse(BLOCKS, "blocks22").unwrap();
+    let limbs = |bits: u32| if bits <= 18 { 1 } else { (bits - 1).div_ceil(17) };
+    let multipliers = |operation| -> u32 { table.row(operation, false).products.iter().map(|&[n, a, b]| n * limbs(a) * limbs(b)).sum() };
+    assert_eq!(multipliers(Operation::BoxTest), 24 + 3);
+    assert_eq!(multipliers(Operation::BoxTest32), 48 + 3);
+    assert_eq!(multipliers(Operation::ChildTest), 4 * (24 + 3));
+    assert_eq!(multipliers(Operation::TriTest), 168);
+    assert_eq!(table.row(Operation::TriTest, true).products, table.row(Operation::TriTest, false).products);
+    assert_eq!(multipliers(Operation::LodTest), 9 * 4 + 3 * 2 + 3 * multipliers(Operation::BoundDecode));
+}
+
+#[test]
+fn cycles_of_a_blocks_hardware_are_its_interval() {
+    let table = BlockTable::parse(BLOCKS, "blocks22").unwrap();
+    for operation in Operation::ALL {
+        let interval = match operation {
+            Operation::RaySetup => RaySetup::TIMING.interval,
+            Operation::HitDivide => HitDivide::TIMING.interval,
+            _ => 1,
+        };
+        assert_eq!(table.row(operation, false).cycles, interval, "{}", operation.name());
+    }
+    assert_eq!(table.row(Operation::TriTest, false).cycles, TriTest::TIMING.interval);
+    assert_eq!(table.row(Operation::TriTest, true).cycles, TriTest::ONE_EDGE.interval);
+    let mut machine = Machine::shipped("haydel2023").unwrap();
+    let mut counts = EnergyCounts::default();
+    counts.operations.add(Operation::TriTest, 1);
+    for (edges, one_edge) in [("3", false), ("1", true)] {
+        machine.set("units.edges_per_cycle", edges).unwrap();
+        let report = EnergyModel::new(&machine).unwrap().report(&counts, &[]);
+        assert!(close(report.compute(), table.operation_pj(Operation::TriTest, one_edge)));
+    }
+}
+
+#[test]
+fn operations_are_counted_under_their_own_number() {
+    for (number, operation) in Operation::ALL.into_iter().enumerate() {
+        assert_eq!(operation as usize, number);
+        let mut counts = EnergyCounts::default();
+        counts.operations.add(operation, 1 + number as u64);
+        assert_eq!(counts.operations.get(operation), 1 + number as u64);
+        assert_eq!(counts.operations.iter().filter(|of| of.1 > 0).collect::<Vec<_>>(), [(operation, 1 + number as u64)]);
+    }
+    assert_eq!(Operation::of_unit().last(), Some(&Operation::BaryMap));
+}
+
+#[test]
+fn a_broken_cache_table_names_file_and_key() {
+    let cases = [
+        (CACHES, "read = 26.7189", "read = -1", "l1.read must be a number and not negative, but is -1"),
+        (CACHES, "read = 94.0184", "read = nan", "l2.read must be a number and not negative, but is NaN"),
+        (CACHES, "fill = 94.0184", "fill = inf", "l2.fill must be"),
+        (CACHES, "= 3.18625", "= -3.18625", "l1.leakage_mw_per_bank must be"),
+        (CACHES, "[l1]", "dram_line = 1\n[l1]", "dram_line must be absent where energies are in pJ"),
+        (CACHES, "\"pJ\"", "\"nJ\"", "nJ"),
+        (CACHES, "[l1]", "[l1]\nwrite = 1", "`write`"),
+        (RELATIVE, "dram_line = 40", "", "dram_line must be given where energies are relative"),
+        (RELATIVE, "dram_line = 40", "dram_line = -40", "dram_line must be a number"),
+        (RELATIVE, "leakage_mw_per_bank = 0", "leakage_mw_per_bank = 1", "l1.leakage_mw_per_bank must be 0 where"),
+    ];
+    for (text, from, to, expected) in cases {
+        assert!(text.contains(from), "{from}");
+        let error = CacheTable::parse(&text.replacen(from, to, 1), "broken.toml").expect_err(to).to_string();
+        assert!(error.starts_with("broken.toml: ") && error.contains(expected), "{to}: {error}");
+    }
+}
+
+#[test]
+fn a_broken_block_table_names_file_and_key() {
+    let cases = [
+        ("add_32_pj = 0.1", "add_32_pj = -0.1", "operations.add_32_pj must be a number and not negative, but is -0.1"),
+        ("leakage = 1.0", "leakage = nan", "scale.leakage must be"),
+        ("registers_per_clock_gate = 32", "registers_per_clock_gate = 0", "unit.registers_per_clock_gate must be at least 1"),
+        ("[blocks.lod_test]", "[blocks.lod]", "blocks.lod_test must be given"),
+        (
+            "[blocks.lod_test]",
+            "[blocks.new]\nproducts = []\nadd_bits = 0\nselect_bits = 0\nregisters = 0\ncycles = 1\n[blocks.lod_test]",
+            "blocks.new must be",
+        ),
+        ("cycles = 22", "cycles = 0", "blocks.ray_setup.cycles must be at least 1"),
+        ("[[6, 32, 31]]", "[[6, 32]]", "[6, 32]"),
+        ("registers = 1269", "register = 1269", "`register`"),
+    ];
+    for (from, to, expected) in cases {
+        assert!(BLOCKS.contains(from), "{from}");
+        let error = BlockTable::parse(&BLOCKS.replacen(from, to, 1), "broken.toml").expect_err(to).to_string();
+        assert!(error.starts_with("broken.toml: ") && error.contains(expected), "{to}: {error}");
+    }
+}
+
+#[test]
+fn tables_that_do_not_go_together_or_are_nowhere() {
+    let mut machine = Machine::shipped("haydel2023").unwrap();
+    machine.set("energy.caches", "relative").unwrap();
+    let error = EnergyModel::new(&machine).unwrap_err().to_string();
+    assert!(error.contains("energy.blocks must be absent where energies are relative"), "{error}");
+    machine.set("energy.caches", "cacti99").unwrap();
+    let error = EnergyModel::new(&machine).unwrap_err().to_string();
+    assert!(error.contains("energy/cacti99.toml") && error.contains("energy/cacti22-older.toml"), "{error}");
+}
+
+#[test]
+fn the_documented_energies_are_the_tables() {
+    let table = BlockTable::parse(BLOCKS, "blocks22").unwrap();
+    let documented = include_str!("../../../docs/energy.md");
+    let pj = |name: &str| {
+        let row = documented.lines().find(|line| line.starts_with(&format!("| `{name}` |"))).unwrap_or_else(|| panic!("no row for {name}"));
+        row.trim_end_matches(" |").rsplit(" | ").next().unwrap().to_owned()
+    };
+    for operation in Operation::ALL {
+        assert_eq!(pj(operation.name()), format!("{:.1}", table.operation_pj(operation, false)), "{}", operation.name());
+    }
+    assert_eq!(pj("tri_test_one_edge"), format!("{:.1}", table.operation_pj(Operation::TriTest, true)));
+}

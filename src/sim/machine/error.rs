@@ -1,0 +1,75 @@
+//! What a machine description, or a table that it names, can have wrong.
+
+use std::io;
+use thiserror::Error;
+
+/// Why a description was refused. `file` is its path, or its path below `machines` if it comes with the program.
+#[derive(Debug, Error)]
+pub enum MachineError {
+    /// The file cannot be read.
+    #[error("{file}: {source}")]
+    Read {
+        /// Which.
+        file: String,
+        /// Why.
+        source: io::Error,
+    },
+    /// Not TOML, a key missing or unknown, or a value of the wrong type.
+    #[error("{file}: {source}")]
+    Toml {
+        /// Which.
+        file: String,
+        /// Where and why.
+        source: Box<toml::de::Error>,
+    },
+    /// A value that no machine can have.
+    #[error("{file}: {key} {rule}, but is {value}")]
+    Invalid {
+        /// Which file.
+        file: String,
+        /// The key, dotted.
+        key: String,
+        /// What it must be.
+        rule: String,
+        /// What it is.
+        value: String,
+    },
+    /// No file of that name comes with the program.
+    #[error("no {name} comes with the program; there are: {known}")]
+    NotShipped {
+        /// The name.
+        name: String,
+        /// Those there are.
+        known: String,
+    },
+    /// An override that names no key, or has no value of its kind.
+    #[error("{key} = {value}: {why}")]
+    Override {
+        /// The key, dotted.
+        key: String,
+        /// The value.
+        value: String,
+        /// What is wrong with it.
+        why: String,
+    },
+}
+
+/// A value that breaks a rule, before the file is known.
+#[derive(Debug)]
+pub(in crate::sim) struct Breach {
+    key: String,
+    rule: String,
+    value: String,
+}
+
+impl Breach {
+    /// `key` breaks `rule` with `value`.
+    pub fn new(key: &str, rule: impl Into<String>, value: impl ToString) -> Self {
+        Self { key: key.to_owned(), rule: rule.into(), value: value.to_string() }
+    }
+
+    /// The breach in `file`.
+    pub fn in_file(self, file: &str) -> MachineError {
+        MachineError::Invalid { file: file.to_owned(), key: self.key, rule: self.rule, value: self.value }
+    }
+}

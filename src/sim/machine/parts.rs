@@ -1,0 +1,132 @@
+//! The parts of a machine, field by field as in its file.
+
+use crate::sim::unit::{EdgesPerCycle, UnitConfig};
+use serde::{Deserialize, Serialize};
+
+/// Picoseconds per cycle at 1 MHz.
+const PS_MHZ: u128 = 1_000_000;
+
+/// The cores, in groups that share an L1.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Cores {
+    /// Groups.
+    pub groups: u32,
+    /// Cores of a group.
+    pub per_group: u32,
+    /// Rays under way at once in a core.
+    pub rays_in_flight: u32,
+    /// Clock of cores, caches and crossbar, in MHz.
+    pub clock_mhz: u32,
+}
+
+impl Cores {
+    /// All cores.
+    pub fn total(&self) -> u32 {
+        self.groups * self.per_group
+    }
+
+    /// When `cycle` begins, in picoseconds, rounded down.
+    pub fn start_ps(&self, cycle: u64) -> u64 {
+        (u128::from(cycle) * PS_MHZ / u128::from(self.clock_mhz)) as u64
+    }
+
+    /// The first cycle that begins at or after `ps`. A cycle lasts at least 1 ps, so this gives back the cycle of [`Cores::start_ps`].
+    pub fn cycle_at(&self, ps: u64) -> u64 {
+        (u128::from(ps) * u128::from(self.clock_mhz)).div_ceil(PS_MHZ) as u64
+    }
+}
+
+/// A level of cache: what a group has of the first, the machine of the second. Lines go round the banks.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Cache {
+    /// Capacity of all banks.
+    pub bytes: u64,
+    /// Lines of a set.
+    pub ways: u32,
+    /// Banks, each of which takes a request per cycle.
+    pub banks: u32,
+    /// Bytes of a line.
+    pub line_bytes: u32,
+    /// Cycles of a hit, tags and data, from the request in the bank to its answer.
+    pub latency_cycles: u32,
+    /// Misses under way of a bank.
+    pub mshrs: u32,
+    /// Requests that one miss answers, the first included.
+    pub targets: u32,
+    /// Requests that may wait in front of a bank.
+    pub queue: u32,
+}
+
+impl Cache {
+    /// Lines of all banks.
+    pub fn lines(&self) -> u64 {
+        self.bytes / u64::from(self.line_bytes)
+    }
+
+    /// Sets of a bank.
+    pub fn sets_per_bank(&self) -> u64 {
+        self.lines() / u64::from(self.ways) / u64::from(self.banks)
+    }
+}
+
+/// What joins the L1s to the banks of the L2.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Crossbar {
+    /// Cycles from an L1's miss to the queue of the L2's bank.
+    pub request_cycles: u32,
+    /// Cycles from the bank's answer to the L1.
+    pub answer_cycles: u32,
+    /// Requests that a bank of the L2 may be handed in a cycle.
+    pub per_bank: u32,
+    /// Requests that a group may send, and answers that it may get, in a cycle.
+    pub per_group: u32,
+}
+
+/// The traversal units, where compute takes time.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Units {
+    /// Units of a group.
+    pub per_group: u32,
+    /// Rays under way at once in a unit.
+    pub contexts: u32,
+    /// Edge functions that the triangle test evaluates in a cycle: 3 or 1.
+    pub edges_per_cycle: u32,
+}
+
+impl Units {
+    /// A unit, as the cycle model takes it.
+    pub fn config(&self) -> UnitConfig {
+        let edges_per_cycle = if self.edges_per_cycle == 1 { EdgesPerCycle::One } else { EdgesPerCycle::Three };
+        UnitConfig { contexts: self.contexts as usize, edges_per_cycle }
+    }
+}
+
+/// The memory behind the L2.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Memory {
+    /// File of the device, relative to the machine's own.
+    pub device: String,
+    /// Channels.
+    pub channels: u32,
+    /// Reads that may wait in a channel.
+    pub queue: u32,
+    /// Bits of a line number that choose channel, bank, row and column, as the DRAM model writes them; its default if absent.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub mapping: Option<String>,
+}
+
+/// The energy tables, each `energy/NAME.toml`.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Tables {
+    /// Energies of the caches.
+    pub caches: String,
+    /// Energies of the hardware blocks; compute costs nothing if absent.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub blocks: Option<String>,
+}

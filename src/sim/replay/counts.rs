@@ -1,0 +1,101 @@
+//! What a run counts.
+
+use crate::traverse::Kind;
+use serde::Serialize;
+
+/// A level of cache.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
+pub struct CacheCounts {
+    /// Requests looked up.
+    pub requests: u64,
+    /// Found.
+    pub hits: u64,
+    /// Not found: asked of the next level.
+    pub misses: u64,
+    /// Not found, but asked for already.
+    pub merges: u64,
+    /// Lines written.
+    pub fills: u64,
+    /// Requests that waited for their bank, and their cycles in its queue.
+    pub conflicts: u64,
+    /// Their cycles.
+    pub queued_cycles: u64,
+    /// Cycles of requesters whose bank's queue was full.
+    pub refused_cycles: u64,
+    /// Cycles of banks that could not go on for want of an MSHR, or of a target in one.
+    pub blocked_cycles: u64,
+}
+
+/// Where a line came from.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+#[repr(u8)]
+pub enum Source {
+    /// The group's L1.
+    L1,
+    /// The L2.
+    L2,
+    /// Memory.
+    Dram,
+}
+
+impl Source {
+    /// All, nearest first.
+    pub const ALL: [Self; 3] = [Self::L1, Self::L2, Self::Dram];
+}
+
+/// Lines of one kind of data.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
+pub struct KindTraffic {
+    /// Requests to the L1s.
+    pub l1: u64,
+    /// Requests to the L2.
+    pub l2: u64,
+    /// Lines read from memory.
+    pub dram: u64,
+}
+
+/// Cycles of the contexts that hold rays, by what they wait for: from asking for the lines of a step to having the last of them, by where that came from.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
+pub struct Waits {
+    /// The L1.
+    pub l1: u64,
+    /// The L2.
+    pub l2: u64,
+    /// Memory.
+    pub dram: u64,
+}
+
+impl Waits {
+    /// Adds `cycles` of waiting for a line from `source`.
+    #[inline]
+    pub fn add(&mut self, source: Source, cycles: u64) {
+        match source {
+            Source::L1 => self.l1 += cycles,
+            Source::L2 => self.l2 += cycles,
+            Source::Dram => self.dram += cycles,
+        }
+    }
+}
+
+/// Everything that a run counts but the memory's own counts.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
+pub struct Counts {
+    /// Rays done.
+    pub rays: u64,
+    /// Of those, rays that hit.
+    pub hits: u64,
+    /// The L1s, all together.
+    pub l1: CacheCounts,
+    /// The L2.
+    pub l2: CacheCounts,
+    /// Cycles of misses that waited for the crossbar's ports.
+    pub crossbar_cycles: u64,
+    /// Cycles of answers that did.
+    pub answer_cycles: u64,
+    /// Cycles of misses that waited for room in a memory channel's queue.
+    pub dram_refused_cycles: u64,
+    /// What contexts waited for.
+    pub waits: Waits,
+    /// By kind of data, in the order of [`Kind::ALL`].
+    pub traffic: [KindTraffic; Kind::ALL.len()],
+}

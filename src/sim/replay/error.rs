@@ -1,0 +1,42 @@
+//! What can go wrong in a run.
+
+use crate::sim::dram::DramError;
+use crate::sim::machine::MachineError;
+use thiserror::Error;
+
+/// Why a run gave no result.
+#[derive(Debug, Error)]
+pub enum ReplayError {
+    /// The machine's description.
+    #[error(transparent)]
+    Machine(#[from] MachineError),
+    /// The description of its memory.
+    #[error("{file}: {source}")]
+    Dram {
+        /// Which.
+        file: String,
+        /// Why.
+        source: DramError,
+    },
+    /// More cores, contexts or banks than events can name.
+    #[error("{what} of the machine are more than {most}: {count}")]
+    TooLarge {
+        /// Of what.
+        what: &'static str,
+        /// How many there may be.
+        most: u64,
+        /// How many there are.
+        count: u64,
+    },
+    /// The waveform's writer.
+    #[error("waveform: {0}")]
+    Wave(#[from] std::io::Error),
+    /// Nothing happens any more, but rays are under way.
+    #[error("deadlock after cycle {cycle}:\n{state}")]
+    Deadlock {
+        /// The last cycle in which something happened.
+        cycle: u64,
+        /// What every unit does.
+        state: String,
+    },
+}

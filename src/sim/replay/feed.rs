@@ -1,0 +1,103 @@
+//! Where rays come from: batches of the functional layer, in order, taken by groups of cores as they need them.
+
+use crate::sim::stream::{Batch, Event};
+use std::sync::Arc;
+
+/// Batches that were traced together.
+pub type Chunk = Arc<[Batch]>;
+
+/// Gives the chunks of a frame in order.
+pub trait Source {
+    /// The next one; `None` after the last. May wait for it.
+    fn next(&mut self) -> Option<Chunk>;
+}
+
+impl<I: Iterator<Item = Chunk>> Source for I {
+    fn next(&mut self) -> Option<Chunk> {
+        Iterator::next(self)
+    }
+}
+
+/// A batch in its chunk, and its next ray.
+#[derive(Clone)]
+struct Current {
+    chunk: Chunk,
+    batch: u32,
+    ray: u32,
+}
+
+/// A ray: its place among its batch's steps.
+#[derive(Clone)]
+pub struct Ray {
+    chunk: Chunk,
+    batch: u32,
+    at: u32,
+}
+
+impl Ray {
+    /// Its next step; a ray ends with [`Step::End`](crate::sim::stream::Step::End), after which it has none.
+    #[inline(always)]
+    pub fn peek(&self) -> Event {
+        self.chunk[self.batch as usize].events()[self.at as usize]
+    }
+
+    /// Its steps from the next on, and those of the rays behind it.
+    #[inline(always)]
+    pub fn rest(&self) -> &[Event] {
+        &self.chunk[self.batch as usize].events()[self.at as usize..]
+    }
+
+    /// Goes on by `steps`.
+    #[inline(always)]
+    pub fn skip(&mut self, steps: u32) {
+        self.at += steps;
+    }
+}
+
+/// Hands out rays: a group takes a batch at a time, its cores the rays of it.
+pub struct Feed<S> {
+    source: S,
+    /// The chunk that batches come from, and its next.
+    open: Option<(Chunk, u32)>,
+    groups: Vec<Option<Current>>,
+    /// Rays that were taken.
+    pub taken: u64,
+}
+
+impl<S: Source> Feed<S> {
+    /// Nothing taken yet.
+    pub fn new(source: S, groups: u32) -> Self {
+        Self { source, open: None, groups: vec![None; groups as usize], taken: 0 }
+    }
+
+    /// The next ray of `group`; `None` when all are taken.
+    pub fn ray(&mut self, group: u32) -> Option<Ray> {
+        loop {
+            if let Some(current) = &mut self.groups[group as usize] {
+                let batch = &current.chunk[current.batch as usize];
+                if (current.ray as usize) < batch.rays() {
+                    let at = batch.start(current.ray as usize);
+                    current.ray += 1;
+                    self.taken += 1;
+                    return Some(Ray { chunk: Arc::clone(&current.chunk), batch: current.batch, at });
+                }
+            }
+            self.groups[group as usize] = None; // lets go of the chunk
+            self.groups[group as usize] = Some(self.batch()?);
+        }
+    }
+
+    fn batch(&mut self) -> Option<Current> {
+        loop {
+            if let Some((chunk, next)) = &mut self.open
+                && (*next as usize) < chunk.len()
+            {
+                let batch = *next;
+                *next += 1;
+                return Some(Current { chunk: Arc::clone(chunk), batch, ray: 0 });
+            }
+            self.open = None;
+            self.open = Some((self.source.next()?, 0));
+        }
+    }
+}

@@ -1,0 +1,443 @@
+//! L1s, crossbar, L2 and memory, driven by events.
+//!
+//! A request that misses everywhere: in its L1 bank at c (its turn in the queue), known as a miss at c + L1 latency, through the group's port of the crossbar and
+//! after `request_cycles` in the queue of its L2 bank; a miss there after the L2's latency; then memory. The line is written into the L2 when memory has it,
+//! goes through the group's answer port, and after `answer_cycles` is written into the L1, from which all its waiters have it in that cycle. So without others in
+//! the way an L1 hit takes the L1's latency; an L2 hit L1 + request + L2 + answer; a line from memory the same and memory's own time.
+//!
+//! Whoever cannot go on sleeps in a list and is woken by what makes room: nothing polls.
+
+use super::counts::{Counts, Source};
+use super::level::{Level, Request, Served};
+use super::slots::Slots;
+use super::wave::Shown;
+use super::wheel::Wheel;
+use crate::sim::dram::{Dram, DramConfig, DramError};
+use crate::sim::machine::{Cores, Crossbar, Machine};
+use crate::sim::stream::Layout;
+use crate::traverse::Kind as Data;
+use std::collections::VecDeque;
+
+/// Bits of an event's number; its kind stands above.
+const ID_BITS: u32 = 28;
+
+/// What happens.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[repr(u32)]
+enum Kind {
+    Wake,
+    AnswerL1,
+    AnswerL2,
+    AnswerDram,
+    ServeL1,
+    Crossbar,
+    ArriveL2,
+    ServeL2,
+    PushDram,
+    FillL2,
+    FillL1FromL2,
+    FillL1FromDram,
+}
+
+const KINDS: [Kind; 12] = [
+    Kind::Wake,
+    Kind::AnswerL1,
+    Kind::AnswerL2,
+    Kind::AnswerDram,
+    Kind::ServeL1,
+    Kind::Crossbar,
+    Kind::ArriveL2,
+    Kind::ServeL2,
+    Kind::PushDram,
+    Kind::FillL2,
+    Kind::FillL1FromL2,
+    Kind::FillL1FromDram,
+];
+
+/// What whoever uses the hierarchy is told.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Happening {
+    /// The cycle that was asked for with [`Hierarchy::wake_at`], or the port's request was taken that had been held.
+    Wake(u32),
+    /// The line that was asked for came.
+    Answer(u32, Source),
+}
+
+impl Shown for Hierarchy {
+    fn show(&self, show: &mut dyn FnMut(&str, &str, u64)) {
+        for (group, port) in self.ports.iter().enumerate() {
+            let (queued, misses) = self.l1.occupancy(group as u32);
+            let scope = format!("group_{group}");
+            for (name, value) in [("l1_queued", queued), ("l1_misses_under_way", misses), ("crossbar_queued", port.misses.len())] {
+                show(&scope, name, value as u64);
+            }
+        }
+        let (queued, misses) = self.l2.occupancy(0);
+        let asleep = self.doors.iter().map(|door| door.asleep.len()).sum();
+        for (name, value) in [("l2_queued", queued), ("l2_misses_under_way", misses), ("groups_held_back", asleep)] {
+            show("l2", name, value as u64);
+        }
+        for (name, value) in [("waiting", self.dram.waiting()), ("held_back", self.refused_count)] {
+            show("dram", name, value as u64);
+        }
+    }
+}
+
+/// A group's side of the crossbar: misses in order.
+#[derive(Clone, Debug, Default)]
+struct Port {
+    /// Registers of the L1, and since when they wait.
+    misses: VecDeque<(u32, u64)>,
+    /// An event for the head is entered, or it sleeps before a full bank.
+    awake: bool,
+    requests: Slots,
+    answers: Slots,
+}
+
+/// A request that no queue has room for: its port, and since when.
+#[derive(Clone, Copy, Debug)]
+struct Held {
+    port: u32,
+    request: Request,
+}
+
+/// A bank of the L2, seen from the crossbar.
+#[derive(Clone, Debug, Default)]
+struct Door {
+    /// Requests on their way to the bank's queue.
+    coming: usize,
+    handed: Slots,
+    /// Groups whose head found no room.
+    asleep: VecDeque<(u32, u64)>,
+}
+
+/// The memory system.
+pub struct Hierarchy {
+    /// Cycles and their events.
+    pub wheel: Wheel,
+    /// What was counted; caches count for themselves: see [`Hierarchy::counts`].
+    counts: Counts,
+    l1: Level,
+    l2: Level,
+    dram: Dram,
+    cores: Cores,
+    crossbar: Crossbar,
+    ports: Vec<Port>,
+    doors: Vec<Door>,
+    /// Requests before full banks of the L1s.
+    held: Vec<VecDeque<Held>>,
+    /// Registers of the L2 whose channel's queue is full, by channel, and since when.
+    refused: Vec<VecDeque<(u32, u64)>>,
+    refused_count: usize,
+    /// Room for the waiters of a line.
+    waiters: Vec<u32>,
+    /// The cycle in which memory is to be looked at again.
+    dram_next: Option<u64>,
+    layout: Layout,
+}
+
+impl Hierarchy {
+    /// An idle machine before a method's memory.
+    ///
+    /// # Errors
+    /// The memory's configuration is impossible.
+    pub fn new(machine: &Machine, dram: &DramConfig, layout: &Layout) -> Result<Self, DramError> {
+        let groups = machine.cores.groups;
+        let l1 = Level::new(&machine.l1, groups);
+        Ok(Self {
+            wheel: Wheel::new(),
+            counts: Counts::default(),
+            held: vec![VecDeque::new(); (groups * machine.l1.banks) as usize],
+            l1,
+            l2: Level::new(&machine.l2, 1),
+            dram: Dram::new(dram)?,
+            cores: machine.cores.clone(),
+            crossbar: machine.crossbar.clone(),
+            ports: vec![Port::default(); groups as usize],
+            doors: vec![Door::default(); machine.l2.banks as usize],
+            refused: vec![VecDeque::new(); dram.channels as usize],
+            refused_count: 0,
+            waiters: Vec::new(),
+            dram_next: None,
+            layout: *layout,
+        })
+    }
+
+    /// This cycle.
+    pub fn now(&self) -> u64 {
+        self.wheel.now()
+    }
+
+    /// What was counted so far.
+    pub fn counts(&self) -> Counts {
+        Counts { l1: self.l1.counts, l2: self.l2.counts, ..self.counts }
+    }
+
+    /// What whoever uses it counts.
+    pub fn counts_mut(&mut self) -> &mut Counts {
+        &mut self.counts
+    }
+
+    /// The memory, at this cycle.
+    pub fn dram(&mut self) -> &Dram {
+        self.advance_dram();
+        &self.dram
+    }
+
+    /// Tells [`Happening::Wake`] in `cycle`.
+    #[inline]
+    pub fn wake_at(&mut self, cycle: u64, id: u32) {
+        self.enter(cycle, Kind::Wake, id);
+    }
+
+    #[inline]
+    fn enter(&mut self, cycle: u64, kind: Kind, id: u32) {
+        debug_assert!(id < 1 << ID_BITS);
+        self.wheel.at(cycle, (kind as u32) << ID_BITS | id);
+    }
+
+    /// `port` of `group` asks for `line`, which holds `data` and of which `waiter` is told. False if the bank's queue is full: the request is held, and taken later,
+    /// of which `port` is woken; until then it may ask for nothing.
+    #[inline]
+    pub fn request(&mut self, group: u32, port: u32, waiter: u32, line: u32, data: Data) -> bool {
+        let now = self.now();
+        let bank = self.l1.bank(group, line);
+        self.counts.traffic[data as usize].l1 += 1;
+        let request = Request { waiter, line, since: now };
+        if !self.l1.has_room(bank, 0) || !self.held[bank as usize].is_empty() {
+            self.held[bank as usize].push_back(Held { port, request });
+            return false;
+        }
+        self.enqueue_l1(bank, request);
+        true
+    }
+
+    #[inline]
+    fn enqueue_l1(&mut self, bank: u32, request: Request) {
+        match self.l1.enqueue(bank, request) {
+            Some(cycle) if cycle <= self.now() => self.serve_l1(bank),
+            Some(cycle) => self.enter(cycle, Kind::ServeL1, bank),
+            None => (),
+        }
+    }
+
+    #[inline]
+    fn serve_l1(&mut self, bank: u32) {
+        let now = self.now();
+        let Some((request, served, again)) = self.l1.serve(bank, now) else { return };
+        if again {
+            self.enter(now + 1, Kind::ServeL1, bank);
+        }
+        let known = now + self.l1.latency;
+        match served {
+            Served::Hit => self.enter(known, Kind::AnswerL1, request.waiter),
+            Served::Merged => (),
+            Served::Miss(register) => {
+                let group = self.l1.copy(bank);
+                self.ports[group as usize].misses.push_back((register, known));
+                if !std::mem::replace(&mut self.ports[group as usize].awake, true) {
+                    self.enter(known, Kind::Crossbar, group);
+                }
+            }
+        }
+        if let Some(held) = self.held[bank as usize].pop_front() {
+            self.l1.counts.refused_cycles += now - held.request.since;
+            self.enter(now + 1, Kind::Wake, held.port);
+            self.enqueue_l1(bank, Request { since: now, ..held.request });
+        }
+    }
+
+    /// The head of a group's misses goes on, if its bank has room.
+    fn crossbar(&mut self, group: u32) {
+        let now = self.now();
+        let port = &mut self.ports[group as usize];
+        let Some(&(register, _)) = port.misses.front() else {
+            port.awake = false;
+            return;
+        };
+        let bank = self.l2.bank(0, self.l1.line(register));
+        let door = &mut self.doors[bank as usize];
+        if !door.asleep.is_empty() || !self.l2.has_room(bank, door.coming) {
+            door.asleep.push_back((group, now));
+            return;
+        }
+        self.send(group, bank);
+    }
+
+    fn send(&mut self, group: u32, bank: u32) {
+        let now = self.now();
+        let port = &mut self.ports[group as usize];
+        let Some((register, known)) = port.misses.pop_front() else { return };
+        let passes = port.requests.take(now, self.crossbar.per_group);
+        let next = port.misses.front().map(|&(_, known)| known);
+        // The next may pass in the same cycle if the port is that wide.
+        port.awake = next.is_some();
+        let door = &mut self.doors[bank as usize];
+        door.coming += 1;
+        let handed = door.handed.take(passes, self.crossbar.per_bank);
+        self.counts.crossbar_cycles += handed - known;
+        self.enter(handed + u64::from(self.crossbar.request_cycles), Kind::ArriveL2, register);
+        if let Some(known) = next {
+            let full = self.ports[group as usize].requests.is_full(now, self.crossbar.per_group);
+            self.enter(known.max(now + u64::from(full)), Kind::Crossbar, group);
+        }
+    }
+
+    fn arrive_l2(&mut self, register: u32) {
+        let line = self.l1.line(register);
+        let bank = self.l2.bank(0, line);
+        self.doors[bank as usize].coming -= 1;
+        self.counts.traffic[self.layout.kind(line) as usize].l2 += 1;
+        let request = Request { waiter: register, line, since: self.now() };
+        match self.l2.enqueue(bank, request) {
+            Some(cycle) if cycle <= self.now() => self.serve_l2(bank),
+            Some(cycle) => self.enter(cycle, Kind::ServeL2, bank),
+            None => (),
+        }
+    }
+
+    fn serve_l2(&mut self, bank: u32) {
+        let now = self.now();
+        let Some((request, served, again)) = self.l2.serve(bank, now) else { return };
+        if again {
+            self.enter(now + 1, Kind::ServeL2, bank);
+        }
+        let known = now + self.l2.latency;
+        match served {
+            Served::Hit => self.answer_l1(request.waiter, known, Source::L2),
+            Served::Merged => (),
+            Served::Miss(register) => self.enter(known, Kind::PushDram, register),
+        }
+        if let Some((group, since)) = self.doors[bank as usize].asleep.pop_front() {
+            self.l2.counts.refused_cycles += now - since;
+            self.send(group, bank);
+        }
+    }
+
+    /// The L2 has the line of an L1's register in cycle `ready`.
+    fn answer_l1(&mut self, register: u32, ready: u64, source: Source) {
+        let group = self.l1.copy(self.l1.bank_of(register));
+        let passes = self.ports[group as usize].answers.take(ready, self.crossbar.per_group);
+        self.counts.answer_cycles += passes - ready;
+        let kind = if source == Source::L2 { Kind::FillL1FromL2 } else { Kind::FillL1FromDram };
+        self.enter(passes + u64::from(self.crossbar.answer_cycles), kind, register);
+    }
+
+    fn fill_l1(&mut self, register: u32, kind: Kind) {
+        let now = self.now();
+        let wheel = &mut self.wheel;
+        if self.l1.fill(register, now, |waiter| wheel.at(now, (kind as u32) << ID_BITS | waiter)) {
+            self.serve_l1(self.l1.bank_of(register));
+        }
+    }
+
+    fn fill_l2(&mut self, register: u32) {
+        let now = self.now();
+        let mut waiters = std::mem::take(&mut self.waiters);
+        let serve = self.l2.fill(register, now, |waiter| waiters.push(waiter));
+        for waiter in waiters.drain(..) {
+            self.answer_l1(waiter, now, Source::Dram);
+        }
+        self.waiters = waiters;
+        if serve {
+            self.serve_l2(self.l2.bank_of(register));
+        }
+    }
+
+    fn push_dram(&mut self, register: u32) {
+        let line = u64::from(self.l2.line(register));
+        let channel = self.dram.channel(line) as usize;
+        if !self.refused[channel].is_empty() || !self.dram.accepts(line, false) {
+            let now = self.now();
+            self.refused[channel].push_back((register, now));
+            self.refused_count += 1;
+            return;
+        }
+        self.read_dram(register, line);
+    }
+
+    fn read_dram(&mut self, register: u32, line: u64) {
+        self.counts.traffic[self.layout.kind(line as u32) as usize].dram += 1;
+        self.dram.push(self.cores.start_ps(self.now()), line, u64::from(register), false);
+        self.dram_next = self.dram.next_event().map(|ps| self.cores.cycle_at(ps));
+    }
+
+    /// Lets memory do what it does up to this cycle.
+    fn advance_dram(&mut self) {
+        let now = self.now();
+        let (cores, wheel) = (&self.cores, &mut self.wheel);
+        self.dram.advance(cores.start_ps(now), &mut |register, ps| {
+            // Registers have ID_BITS.
+            wheel.at(cores.cycle_at(ps).max(now), (Kind::FillL2 as u32) << ID_BITS | register as u32);
+        });
+        if self.refused_count > 0 {
+            self.push_refused();
+        }
+        self.dram_next = self.dram.next_event().map(|ps| self.cores.cycle_at(ps));
+    }
+
+    fn push_refused(&mut self) {
+        let now = self.now();
+        for channel in 0..self.refused.len() {
+            while let Some(&(register, since)) = self.refused[channel].front() {
+                let line = u64::from(self.l2.line(register));
+                if !self.dram.accepts(line, false) {
+                    break;
+                }
+                self.refused[channel].pop_front();
+                self.refused_count -= 1;
+                self.counts.dram_refused_cycles += now - since;
+                self.read_dram(register, line);
+            }
+        }
+    }
+
+    /// The next happening of this cycle.
+    #[inline]
+    pub fn take(&mut self) -> Option<Happening> {
+        loop {
+            let event = self.wheel.take()?;
+            let id = event & ((1 << ID_BITS) - 1);
+            match KINDS[(event >> ID_BITS) as usize] {
+                Kind::Wake => return Some(Happening::Wake(id)),
+                Kind::AnswerL1 => return Some(Happening::Answer(id, Source::L1)),
+                Kind::AnswerL2 => return Some(Happening::Answer(id, Source::L2)),
+                Kind::AnswerDram => return Some(Happening::Answer(id, Source::Dram)),
+                Kind::ServeL1 => self.serve_l1(id),
+                Kind::Crossbar => self.crossbar(id),
+                Kind::ArriveL2 => self.arrive_l2(id),
+                Kind::ServeL2 => self.serve_l2(id),
+                Kind::PushDram => self.push_dram(id),
+                Kind::FillL2 => self.fill_l2(id),
+                Kind::FillL1FromL2 => self.fill_l1(id, Kind::AnswerL2),
+                Kind::FillL1FromDram => self.fill_l1(id, Kind::AnswerDram),
+            }
+        }
+    }
+
+    /// The next cycle in which something happens.
+    pub fn next(&self) -> Option<u64> {
+        self.wheel.next().into_iter().chain(self.dram_next).min()
+    }
+
+    /// Goes to `cycle`, which [`Hierarchy::next`] gave.
+    pub fn go(&mut self, cycle: u64) {
+        self.wheel.go(cycle);
+        if self.dram_next.is_some_and(|next| next <= cycle) {
+            self.advance_dram();
+        }
+    }
+
+    /// What is not at rest, for error messages.
+    pub fn describe(&self) -> String {
+        let misses: usize = self.ports.iter().map(|port| port.misses.len()).sum();
+        let asleep: usize = self.doors.iter().map(|door| door.asleep.len()).sum();
+        format!(
+            "{}\ncrossbar: {misses} misses queued, {asleep} groups before a full bank\n{}\nmemory: {} reads wait for room, {} in the channels",
+            self.l1.describe("L1"),
+            self.l2.describe("L2"),
+            self.refused_count,
+            self.dram.waiting()
+        )
+    }
+}

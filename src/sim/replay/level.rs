@@ -1,0 +1,175 @@
+//! A level of cache: banks that each take a request per cycle, with a queue in front, tags, and registers for misses.
+
+use super::counts::CacheCounts;
+use super::mshr::{Entered, Mshrs};
+use super::tags::Tags;
+use crate::sim::machine::Cache;
+use std::collections::VecDeque;
+
+/// A request in front of a bank.
+#[derive(Clone, Copy, Debug)]
+pub struct Request {
+    /// Who gets the answer.
+    pub waiter: u32,
+    /// The line.
+    pub line: u32,
+    /// The cycle since when it waits in the queue.
+    pub since: u64,
+}
+
+/// A bank.
+#[derive(Clone, Debug, Default)]
+struct Bank {
+    queue: VecDeque<Request>,
+    /// The first cycle in which it can look up again.
+    free: u64,
+    /// It will look up the queue's head in a cycle that is entered in the wheel.
+    awake: bool,
+    /// Since when its head has no room among the misses.
+    blocked: Option<u64>,
+}
+
+/// What a look-up gave.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Served {
+    /// Found.
+    Hit,
+    /// Not found; the register, through all banks, that keeps the miss, to be asked of the next level.
+    Miss(u32),
+    /// Not found, but asked for.
+    Merged,
+}
+
+/// A level: one cache, or one for each group.
+pub struct Level {
+    banks: Vec<Bank>,
+    per_copy: u32,
+    tags: Tags,
+    mshrs: Mshrs,
+    mshrs_per_bank: u32,
+    queue: usize,
+    /// Cycles of a look-up.
+    pub latency: u64,
+    /// What it did.
+    pub counts: CacheCounts,
+}
+
+impl Level {
+    /// `copies` empty caches.
+    pub fn new(cache: &Cache, copies: u32) -> Self {
+        let banks = cache.banks * copies;
+        Self {
+            banks: vec![Bank::default(); banks as usize],
+            per_copy: cache.banks,
+            tags: Tags::new(cache, copies),
+            mshrs: Mshrs::new(banks, cache.mshrs, cache.targets),
+            mshrs_per_bank: cache.mshrs,
+            queue: cache.queue as usize,
+            latency: u64::from(cache.latency_cycles),
+            counts: CacheCounts::default(),
+        }
+    }
+
+    /// The bank of `line` in cache `copy`, counted through all.
+    #[inline]
+    pub fn bank(&self, copy: u32, line: u32) -> u32 {
+        copy * self.per_copy + self.tags.bank(line)
+    }
+
+    /// The cache of a bank.
+    pub fn copy(&self, bank: u32) -> u32 {
+        bank / self.per_copy
+    }
+
+    /// The bank of a miss register.
+    pub fn bank_of(&self, register: u32) -> u32 {
+        register / self.mshrs_per_bank
+    }
+
+    /// The line of a miss register.
+    pub fn line(&self, register: u32) -> u32 {
+        self.mshrs.line(register)
+    }
+
+    /// Whether `bank` has room for `ahead` requests and one more.
+    #[inline]
+    pub fn has_room(&self, bank: u32, ahead: usize) -> bool {
+        self.banks[bank as usize].queue.len() + ahead < self.queue
+    }
+
+    /// Puts a request into the queue of `bank`. Gives the cycle in which to [`Level::serve`] the bank, if it slept.
+    #[inline]
+    pub fn enqueue(&mut self, bank: u32, request: Request) -> Option<u64> {
+        let bank = &mut self.banks[bank as usize];
+        bank.queue.push_back(request);
+        if bank.awake || bank.blocked.is_some() {
+            return None;
+        }
+        bank.awake = true;
+        Some(bank.free.max(request.since))
+    }
+
+    /// Looks up the head of the queue of `bank` in cycle `now`. Gives the request, what became of it, and whether to come back in the next cycle; `None`
+    /// if there is no room for its miss: the bank sleeps until [`Level::fill`].
+    #[inline]
+    pub fn serve(&mut self, bank: u32, now: u64) -> Option<(Request, Served, bool)> {
+        let state = &mut self.banks[bank as usize];
+        state.awake = false;
+        let request = *state.queue.front()?;
+        let served = if self.tags.look_up(bank, request.line) {
+            self.counts.hits += 1;
+            Served::Hit
+        } else {
+            match self.mshrs.enter(bank, request.line, request.waiter) {
+                Entered::New { slot } => {
+                    self.counts.misses += 1;
+                    Served::Miss(bank * self.mshrs_per_bank + slot)
+                }
+                Entered::Merged => {
+                    self.counts.merges += 1;
+                    Served::Merged
+                }
+                Entered::Full => {
+                    state.blocked = Some(now);
+                    return None;
+                }
+            }
+        };
+        state.queue.pop_front();
+        state.free = now + 1;
+        state.awake = !state.queue.is_empty();
+        self.counts.requests += 1;
+        self.counts.queued_cycles += now - request.since;
+        self.counts.conflicts += u64::from(now > request.since);
+        Some((request, served, state.awake))
+    }
+
+    /// The line of `register` has come in cycle `now`: it is written, its waiters are given to `answer`. True if the bank was blocked and is to be served now.
+    pub fn fill(&mut self, register: u32, now: u64, answer: impl FnMut(u32)) -> bool {
+        let bank = self.bank_of(register);
+        self.tags.fill(bank, self.mshrs.line(register));
+        self.mshrs.free(register, answer);
+        self.counts.fills += 1;
+        let bank = &mut self.banks[bank as usize];
+        let Some(since) = bank.blocked.take() else { return false };
+        self.counts.blocked_cycles += now - since;
+        bank.awake = true;
+        true
+    }
+
+    /// Requests queued and misses under way in cache `copy`.
+    pub fn occupancy(&self, copy: u32) -> (usize, usize) {
+        let banks = copy * self.per_copy..(copy + 1) * self.per_copy;
+        banks.fold((0, 0), |(queued, misses), bank| (queued + self.banks[bank as usize].queue.len(), misses + self.mshrs.in_use_of(bank)))
+    }
+
+    /// What is not at rest, for error messages.
+    pub fn describe(&self, name: &str) -> String {
+        let waiting: usize = self.banks.iter().map(|bank| bank.queue.len()).sum();
+        let blocked = self.banks.iter().filter(|bank| bank.blocked.is_some()).count();
+        format!(
+            "{name}: {waiting} requests queued, {blocked} banks blocked, {} misses under way",
+            (0..self.banks.len() as u32).map(|bank| self.mshrs.in_use_of(bank)).sum::<usize>()
+        )
+    }
+}

@@ -1,0 +1,177 @@
+//! The replay: the steps of a frame's rays on a machine, cycle by cycle, driven by events.
+//!
+//! - `wheel`: what happens when.
+//! - `feed`: rays, from the functional layer ([`stream`](super::stream)).
+//! - `cores`: who asks for lines when compute takes no time; `units`: traversal units, who do in the cycles of the RTL.
+//! - `hierarchy`: L1s, crossbar, L2 and memory; `level`, `tags`, `mshr` and `slots` are its parts.
+//! - `intervals`: everything counted, over time; `wave`: a window of cycles as a waveform.
+//!
+//! One thread runs a replay; frames on several machines are several replays, fed by one functional pass.
+
+mod cores;
+mod counts;
+mod error;
+mod feed;
+mod hierarchy;
+mod intervals;
+mod level;
+mod mshr;
+mod slots;
+mod tags;
+mod units;
+mod wave;
+mod wheel;
+mod work;
+
+#[cfg(test)]
+mod tests;
+
+pub use counts::{CacheCounts, Counts, KindTraffic, Waits};
+pub use error::ReplayError;
+pub use feed::{Chunk, Source};
+pub use intervals::Interval;
+pub use wave::Window;
+
+use super::dram::{ChannelCounts, Device, DramConfig, DramEnergy};
+use super::energy::Operations;
+use super::machine::Machine;
+use super::stream::Layout;
+use super::unit::UnitCounts;
+use cores::FreeCores;
+use hierarchy::{Happening, Hierarchy};
+use intervals::Intervals;
+use units::Units;
+use wave::Wave;
+
+/// What a run gave.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Run {
+    /// Cycles from the first ray's start to the last one's end.
+    pub cycles: u64,
+    /// What was counted.
+    pub counts: Counts,
+    /// Operations of the blocks.
+    pub operations: Operations,
+    /// What the traversal units did, all together; none if compute takes no time.
+    pub units: Option<UnitCounts>,
+    /// What each memory channel did.
+    pub channels: Vec<ChannelCounts>,
+    /// The memory's energy.
+    pub dram: DramEnergy,
+    /// The same over time.
+    pub intervals: Vec<Interval>,
+    /// The waveform of the window asked for.
+    pub wave: Option<Vec<u8>>,
+}
+
+/// The memory of a machine.
+///
+/// # Errors
+/// Its description cannot be read or is impossible.
+pub fn dram_of(machine: &Machine) -> Result<DramConfig, ReplayError> {
+    let (text, file) = machine.read(&machine.dram.device)?;
+    let device = Device::from_toml(&text).map_err(|source| ReplayError::Dram { file: file.clone(), source })?;
+    let mut config = DramConfig::new(device, machine.dram.channels);
+    if let Some(mapping) = &machine.dram.mapping {
+        config.mapping.clone_from(mapping);
+    }
+    config.controller.read_queue = u16::try_from(machine.dram.queue).unwrap_or(u16::MAX);
+    config.validate().map_err(|source| ReplayError::Dram { file, source })?;
+    Ok(config)
+}
+
+/// Runs the rays of `source`, which read the memory of `layout`, on `machine`; compute takes no time.
+///
+/// # Errors
+/// The machine is impossible or too large, or nothing happens any more while rays are under way.
+pub fn run_free(machine: &Machine, layout: &Layout, source: impl Source, window: Option<Window>) -> Result<Run, ReplayError> {
+    let mut cores = FreeCores::new(&machine.cores, source);
+    let run = drive(&mut cores, machine, layout, window)?;
+    Ok(Run { operations: cores.work.operations().clone(), ..run })
+}
+
+/// The same with traversal units that take the cycles of the RTL.
+///
+/// # Errors
+/// As [`run_free`].
+pub fn run_units(machine: &Machine, layout: &Layout, source: impl Source, window: Option<Window>) -> Result<Run, ReplayError> {
+    let mut units = Units::new(machine, source);
+    let run = drive(&mut units, machine, layout, window)?;
+    Ok(Run { operations: units.work.operations().clone(), units: Some(units.counts(run.cycles)), ..run })
+}
+
+/// Who asks the memory hierarchy for lines.
+trait FrontEnd {
+    /// Begins, in cycle 0.
+    fn start(&mut self, memory: &mut Hierarchy);
+    /// The cycle it asked for has come, or its held request was taken.
+    fn wake(&mut self, id: u32, memory: &mut Hierarchy);
+    /// A line came for `waiter`.
+    fn answer(&mut self, waiter: u32, from: counts::Source, memory: &mut Hierarchy);
+    /// Rays are under way.
+    fn is_busy(&self) -> bool;
+    /// What it does, for error messages.
+    fn describe(&self) -> String;
+}
+
+/// Lets `front` run on `machine` until it is done; the blocks' operations are not counted here.
+fn drive(front: &mut impl FrontEnd, machine: &Machine, layout: &Layout, window: Option<Window>) -> Result<Run, ReplayError> {
+    check_size(machine)?;
+    let dram = dram_of(machine)?;
+    let mut memory =
+        Hierarchy::new(machine, &dram, layout).map_err(|source| ReplayError::Dram { file: machine.dram.device.clone(), source })?;
+    let mut intervals = Intervals::new();
+    let mut wave = window.map(Wave::new);
+    front.start(&mut memory);
+    loop {
+        while let Some(happening) = memory.take() {
+            match happening {
+                Happening::Wake(id) => front.wake(id, &mut memory),
+                Happening::Answer(waiter, from) => front.answer(waiter, from, &mut memory),
+            }
+        }
+        if let Some(wave) = &mut wave {
+            wave.sample(&memory, &machine.cores)?;
+        }
+        if !front.is_busy() {
+            break;
+        }
+        let Some(next) = memory.next() else {
+            let state = format!("{}\n{}", front.describe(), memory.describe());
+            return Err(ReplayError::Deadlock { cycle: memory.now(), state });
+        };
+        intervals.up_to(next, &mut memory);
+        memory.go(next);
+    }
+    let cycles = memory.now();
+    let intervals = intervals.end(&mut memory);
+    let dram = memory.dram();
+    let (channels, dram) = (dram.counts(), dram.energy());
+    Ok(Run {
+        cycles,
+        channels,
+        dram,
+        counts: memory.counts(),
+        operations: Operations::default(),
+        units: None,
+        intervals,
+        wave: wave.map(Wave::into_bytes),
+    })
+}
+
+/// Events name contexts, cores and miss registers by 28 bits.
+fn check_size(machine: &Machine) -> Result<(), ReplayError> {
+    let product = |factors: &[u32]| factors.iter().map(|&f| u64::from(f)).product::<u64>();
+    let (cores, l1, l2) = (&machine.cores, &machine.l1, &machine.l2);
+    let sizes = [
+        ("rays in flight", product(&[cores.groups, cores.per_group, cores.rays_in_flight]), 1 << 22),
+        ("miss registers of the L1s", product(&[cores.groups, l1.banks, l1.mshrs]), 1 << 26),
+        ("lines of the L1s", cores.groups as u64 * l1.lines(), 1 << 30),
+        ("traversal units", product(&[cores.groups, machine.units.per_group]), units::MOST_UNITS),
+        ("miss registers of the L2", product(&[l2.banks, l2.mshrs]), 1 << 26),
+    ];
+    match sizes.into_iter().find(|&(_, count, most)| count > most) {
+        Some((what, count, most)) => Err(ReplayError::TooLarge { what, most, count }),
+        None => Ok(()),
+    }
+}

@@ -1,0 +1,106 @@
+//! Which lines a level of cache holds: sets of lines, the most recently used first.
+
+use crate::sim::machine::Cache;
+
+/// No line.
+const EMPTY: u32 = u32::MAX;
+
+/// The tags of all banks of a level. Lines go round the banks, then round the sets of a bank.
+#[derive(Clone, Debug)]
+pub struct Tags {
+    /// Lines of set after set.
+    lines: Vec<u32>,
+    ways: usize,
+    set_bits: u32,
+    bank_bits: u32,
+}
+
+impl Tags {
+    /// Empty; `copies` of the cache (one for each group that has its own).
+    pub fn new(cache: &Cache, copies: u32) -> Self {
+        let lines = vec![EMPTY; cache.lines() as usize * copies as usize];
+        // Banks and sets are powers of two: machine descriptions are checked.
+        Self { lines, ways: cache.ways as usize, set_bits: cache.sets_per_bank().trailing_zeros(), bank_bits: cache.banks.trailing_zeros() }
+    }
+
+    /// The bank of a line, among those of one copy.
+    #[inline]
+    pub fn bank(&self, line: u32) -> u32 {
+        line & ((1 << self.bank_bits) - 1)
+    }
+
+    #[inline]
+    fn set(&mut self, bank: u32, line: u32) -> &mut [u32] {
+        let set = line >> self.bank_bits & ((1 << self.set_bits) - 1);
+        let from = (((bank as usize) << self.set_bits) + set as usize) * self.ways;
+        &mut self.lines[from..from + self.ways]
+    }
+
+    /// Whether `bank`, counted through all copies, holds `line`, which becomes its set's most recently used.
+    #[inline]
+    pub fn look_up(&mut self, bank: u32, line: u32) -> bool {
+        let set = self.set(bank, line);
+        let Some(way) = set.iter().position(|&held| held == line) else { return false };
+        set[..=way].rotate_right(1);
+        true
+    }
+
+    /// Writes `line` in place of its set's least recently used.
+    #[inline]
+    pub fn fill(&mut self, bank: u32, line: u32) {
+        let set = self.set(bank, line);
+        set.rotate_right(1);
+        set[0] = line;
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn cache(bytes: u64, ways: u32, banks: u32) -> Cache {
+        Cache { bytes, ways, banks, line_bytes: 32, latency_cycles: 1, mshrs: 1, targets: 1, queue: 1 }
+    }
+
+    #[test]
+    fn the_least_recently_used_line_of_a_set_goes() {
+        let mut tags = Tags::new(&cache(4 * 32, 2, 2), 2);
+        // Two banks of one set of two ways: even lines in bank 0 of a copy.
+        assert_eq!((tags.bank(6), tags.bank(7)), (0, 1));
+        for line in [0, 2] {
+            assert!(!tags.look_up(2, line));
+            tags.fill(2, line);
+        }
+        assert!(tags.look_up(2, 0));
+        tags.fill(2, 4);
+        assert!(tags.look_up(2, 0) && !tags.look_up(2, 2) && tags.look_up(2, 4));
+        assert!(!tags.look_up(0, 0), "copies do not share");
+    }
+
+    #[test]
+    fn a_fully_associative_cache_hits_where_the_reuse_distance_is_below_its_lines() {
+        let lines = 64;
+        let mut tags = Tags::new(&cache(lines * 32, lines as u32, 1), 1);
+        let mut seed = 1u64;
+        let mut history: Vec<u32> = Vec::new();
+        let mut hits = [0; 2];
+        for _ in 0..20_000 {
+            seed = seed.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
+            let (a, b) = ((seed >> 33) % 40, (seed >> 40) % 200);
+            let line = if seed >> 62 == 0 { b as u32 } else { a as u32 };
+            // Distinct lines since the last use: counted from the history, not by a stack.
+            let since = history.iter().rev().take_while(|&&past| past != line).collect::<std::collections::HashSet<_>>().len();
+            let seen = history.contains(&line);
+            hits[0] += usize::from(seen && (since as u64) < lines);
+            let hit = tags.look_up(0, line);
+            hits[1] += usize::from(hit);
+            if !hit {
+                tags.fill(0, line);
+            }
+            history.push(line);
+            history.drain(..history.len().saturating_sub(4000));
+        }
+        assert_eq!(hits[0], hits[1]);
+        assert!(hits[0] > 1000, "{hits:?}");
+    }
+}

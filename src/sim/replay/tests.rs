@@ -1,0 +1,294 @@
+//! Machines small enough to be worked out by hand.
+
+use super::*;
+use crate::sim::dram::Dram;
+use crate::sim::stream::{Batch, Step};
+use crate::traverse::{Kind, Section};
+use std::collections::HashSet;
+
+/// One core, and the keys that are set.
+fn machine(sets: &[(&str, u32)]) -> Machine {
+    let mut machine = Machine::shipped("haydel2023").unwrap();
+    for (key, value) in [("cores.groups", 1), ("cores.per_group", 1)].iter().chain(sets) {
+        machine.set(key, &value.to_string()).unwrap();
+    }
+    machine
+}
+
+fn layout() -> Layout {
+    Layout::new(&[Section { kind: Kind::Leaf, lines: 1 << 22 }]).unwrap()
+}
+
+/// Rays in one batch; each reads its lines one after the other.
+fn rays(lines: &[Vec<u32>]) -> Chunk {
+    let ray = |lines: &Vec<u32>| {
+        // A triangle test between two lines keeps them from being asked for together.
+        let steps = lines.iter().flat_map(|&line| [Step::Leaf { line }, Step::Triangles { count: 1, hits: 0 }]);
+        steps.chain([Step::End { found: false }]).collect()
+    };
+    Chunk::from([Batch::new(&lines.iter().map(ray).collect::<Vec<_>>())])
+}
+
+fn run(machine: &Machine, lines: &[Vec<u32>]) -> Run {
+    run_free(machine, &layout(), std::iter::once(rays(lines)), None).unwrap()
+}
+
+/// Cycles on the way to the L2's miss, and back from memory.
+fn way(machine: &Machine) -> (u64, u64) {
+    let there = machine.l1.latency_cycles + machine.crossbar.request_cycles + machine.l2.latency_cycles;
+    (there.into(), machine.crossbar.answer_cycles.into())
+}
+
+#[test]
+fn a_chase_in_the_l1_takes_its_latency_each_time() {
+    for latency in [1, 3, 20] {
+        let machine = machine(&[("l1.latency_cycles", latency)]);
+        let cold = run(&machine, &[vec![5]]).cycles;
+        let chased = run(&machine, &[vec![5; 101]]);
+        assert_eq!(chased.cycles - cold, 100 * u64::from(latency));
+        assert_eq!((chased.counts.l1.hits, chased.counts.l1.misses), (100, 1));
+        assert_eq!(chased.counts.waits.l1, 100 * u64::from(latency));
+    }
+}
+
+#[test]
+fn a_chase_in_the_l2_takes_the_sum_of_the_table() {
+    for (l1, request, l2, answer) in [(1, 1, 4, 1), (2, 3, 5, 7)] {
+        let keys = [
+            ("l1.latency_cycles", l1),
+            ("crossbar.request_cycles", request),
+            ("l2.latency_cycles", l2),
+            ("crossbar.answer_cycles", answer),
+        ];
+        let machine = machine(&keys);
+        // Three lines of one set of two ways: each evicts the one that comes next.
+        let apart = machine.l1.sets_per_bank() as u32 * machine.l1.banks;
+        let lap = [0, apart, 2 * apart];
+        let laps = |count: usize| run(&machine, &[lap.repeat(count)]);
+        let (one, many) = (laps(1), laps(11));
+        assert_eq!(many.cycles - one.cycles, 30 * u64::from(l1 + request + l2 + answer));
+        assert_eq!((many.counts.l1.hits, many.counts.l2.hits, many.counts.l2.misses), (0, 30, 3));
+    }
+}
+
+#[test]
+fn a_chase_in_memory_takes_the_way_and_the_memorys_own_time() {
+    for device in ["dram/gddr5.toml", "dram/gddr6.toml", "dram/ddr3-scaled.toml"] {
+        let mut machine = machine(&[("dram.channels", 1)]);
+        machine.set("dram.device", device).unwrap();
+        // Neighbours (rows hit), and jumps by a row of every bank (conflicts).
+        for stride in [1, 1 << 13] {
+            let lines: Vec<u32> = (0..200).map(|k| k * stride).collect();
+            let run = run(&machine, std::slice::from_ref(&lines));
+            let config = dram_of(&machine).unwrap();
+            let (there, back) = way(&machine);
+            let mut dram = Dram::new(&config).unwrap();
+            let mut cycle = 0;
+            for (id, &line) in lines.iter().enumerate() {
+                let pushed = machine.cores.start_ps(cycle + there);
+                let mut end = None;
+                dram.advance(pushed, &mut |_, _| ());
+                dram.push(pushed, u64::from(line), id as u64, false);
+                while end.is_none() {
+                    let next = dram.next_event().unwrap();
+                    dram.advance(next, &mut |_, ps| end = Some(ps));
+                }
+                cycle = machine.cores.cycle_at(end.unwrap()) + back;
+            }
+            assert_eq!(run.cycles, cycle, "{device}, stride {stride}");
+            let channel = run.channels[0];
+            assert_eq!(channel.reads, 200);
+            if stride == 1 {
+                assert!(channel.row_hits > 180, "{channel:?}");
+            } else {
+                assert!(channel.row_hits < 20, "{channel:?}");
+            }
+        }
+    }
+}
+
+#[test]
+fn two_lines_of_one_bank_take_a_cycle_longer_than_two_of_two() {
+    let machine = machine(&[("cores.per_group", 2)]);
+    let banks = machine.l1.banks;
+    // Both rays have their line in the L1 before they meet.
+    let meet = |other: u32| {
+        let warm = [0, other];
+        let hits = |line: u32| warm.iter().copied().chain([line; 50]).collect::<Vec<_>>();
+        run(&machine, &[hits(0), hits(other)])
+    };
+    let (apart, together) = (meet(1), meet(banks));
+    assert!(apart.counts.l1.conflicts < 3, "{:?}", apart.counts.l1);
+    assert!(together.counts.l1.conflicts >= 1 && together.counts.l1.queued_cycles >= together.counts.l1.conflicts);
+}
+
+#[test]
+fn misses_of_one_line_merge_and_are_answered_together() {
+    let machine = machine(&[("cores.per_group", 8)]);
+    let run_of = |rays: usize| run(&machine, &vec![vec![7]; rays]);
+    let (one, all) = (run_of(1), run_of(8));
+    assert_eq!((all.counts.l1.misses, all.counts.l1.merges, all.counts.l2.requests), (1, 7, 1));
+    assert_eq!(one.cycles, all.cycles, "the last look-up is over long before the line comes");
+}
+
+#[test]
+fn a_full_miss_register_holds_the_bank_back() {
+    let lines: Vec<Vec<u32>> = (0..8).map(|ray| vec![ray * 64]).collect();
+    let with = |mshrs, targets| {
+        let machine = machine(&[("cores.per_group", 8), ("l1.mshrs", mshrs), ("l1.targets", targets)]);
+        (run(&machine, &lines), run(&machine, &vec![vec![7]; 8]))
+    };
+    let ((free, _), (one, _)) = (with(8, 8), with(1, 8));
+    assert_eq!(free.counts.l1.blocked_cycles, 0);
+    assert!(one.counts.l1.blocked_cycles > 0 && one.cycles > free.cycles, "{one:?}");
+    let (_, no_target) = with(8, 1);
+    assert!(no_target.counts.l1.blocked_cycles > 0);
+    assert_eq!((no_target.counts.l1.misses, no_target.counts.l1.hits), (1, 7));
+}
+
+/// Every request is found, a miss or merged; every miss is a request one level down, and a line filled.
+fn conserved(run: &Run) {
+    let (l1, l2) = (run.counts.l1, run.counts.l2);
+    let traffic = |of: fn(&KindTraffic) -> u64| run.counts.traffic.iter().map(of).sum::<u64>();
+    let reads: u64 = run.channels.iter().map(|channel| channel.reads).sum();
+    assert_eq!(l1.requests, l1.hits + l1.misses + l1.merges);
+    assert_eq!(l2.requests, l2.hits + l2.misses + l2.merges);
+    assert_eq!((l1.misses, l1.misses, l1.requests), (l2.requests, l1.fills, traffic(|t| t.l1)));
+    assert_eq!((l2.misses, l2.misses, l2.requests), (reads, l2.fills, traffic(|t| t.l2)));
+    assert_eq!(reads, traffic(|t| t.dram));
+    let last = run.intervals.last().unwrap();
+    assert_eq!((last.end, last.counts), (run.cycles, run.counts));
+    assert!(run.intervals.windows(2).all(|two| two[0].end < two[1].end && two[0].counts.l1.requests <= two[1].counts.l1.requests));
+}
+
+/// Lines with some locality, as a ray's.
+fn wandering(rays: usize, steps: usize) -> Vec<Vec<u32>> {
+    let mut seed = 3u64;
+    let mut draw = move |n: u64| {
+        seed = seed.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
+        ((seed >> 33) % n) as u32
+    };
+    (0..rays).map(|_| (0..steps).map(|_| if draw(3) == 0 { draw(40_000) } else { draw(600) }).collect()).collect()
+}
+
+#[test]
+fn nothing_is_lost_and_nothing_stands_still_however_little_room_there_is() {
+    let lines = wandering(200, 40);
+    let little: &[(&str, u32)] = &[
+        ("l1.mshrs", 1),
+        ("l1.targets", 1),
+        ("l1.queue", 1),
+        ("l2.mshrs", 1),
+        ("l2.targets", 1),
+        ("l2.queue", 1),
+        ("l2.banks", 1),
+        ("dram.queue", 1),
+        ("dram.channels", 1),
+    ];
+    for rays_in_flight in [1, 4] {
+        let shape = [("cores.groups", 4), ("cores.per_group", 4), ("cores.rays_in_flight", rays_in_flight)];
+        let roomy = run(&machine(&shape), &lines);
+        conserved(&roomy);
+        let tight = run(&machine(&[&shape, little].concat()), &lines);
+        conserved(&tight);
+        assert!(tight.cycles > 2 * roomy.cycles, "{} and {}", tight.cycles, roomy.cycles);
+        for counts in [tight.counts.l1, tight.counts.l2] {
+            assert!(counts.refused_cycles > 0 && counts.blocked_cycles > 0, "{counts:?}");
+        }
+        assert_eq!((roomy.counts.rays, tight.counts.rays), (200, 200));
+    }
+}
+
+#[test]
+fn an_independent_count_of_reuse_distances_predicts_every_hit() {
+    // Fully associative, one request at a time: a line is found if fewer others than the cache holds came since its last use.
+    let machine = machine(&[("l1.banks", 1), ("l1.ways", 64), ("l1.bytes", 64 * 32)]);
+    let lines = wandering(20, 300);
+    let run = run(&machine, &lines);
+    let all: Vec<u32> = lines.concat();
+    let found = |k: usize| {
+        let last = all[..k].iter().rposition(|&line| line == all[k])?;
+        (all[last + 1..k].iter().collect::<HashSet<_>>().len() < 64).then_some(())
+    };
+    let hits = (0..all.len()).filter(|&k| found(k).is_some()).count() as u64;
+    assert_eq!(run.counts.l1.hits, hits);
+    assert!(hits > 200 && hits < 5000, "{hits}");
+}
+
+#[test]
+fn a_stream_reaches_most_of_the_peak() {
+    for (device, share) in [("dram/gddr5.toml", 0.85), ("dram/gddr6.toml", 0.85)] {
+        let mut machine =
+            machine(&[("cores.groups", 64), ("cores.per_group", 16), ("cores.rays_in_flight", 8), ("l1.mshrs", 64), ("l2.mshrs", 64)]);
+        machine.set("dram.device", device).unwrap();
+        // Every ray reads its own stretch, all together one stream.
+        let lines: Vec<Vec<u32>> = (0..4096).map(|ray| (0..64).map(|k| k * 4096 + ray).collect()).collect();
+        let chunks: Vec<Chunk> = lines.chunks(64).map(rays).collect();
+        let run = run_free(&machine, &layout(), chunks.into_iter(), None).unwrap();
+        conserved(&run);
+        let config = dram_of(&machine).unwrap();
+        let peak = config.device.peak_bytes_per_second() * f64::from(config.channels);
+        let used = 32.0 * 4096.0 * 64.0 / (machine.cores.start_ps(run.cycles) as f64 * 1e-12) / peak;
+        assert!(used > share && used <= 1.0, "{device}: {used}");
+    }
+}
+
+#[test]
+fn silence_is_an_error_that_tells_what_everyone_does() {
+    struct Silent;
+    impl FrontEnd for Silent {
+        fn start(&mut self, memory: &mut Hierarchy) {
+            memory.wake_at(9, 0);
+        }
+        fn wake(&mut self, _: u32, _: &mut Hierarchy) {}
+        fn answer(&mut self, _: u32, _: counts::Source, _: &mut Hierarchy) {}
+        fn is_busy(&self) -> bool {
+            true
+        }
+        fn describe(&self) -> String {
+            "one context waits for ever".to_owned()
+        }
+    }
+    let error = drive(&mut Silent, &machine(&[]), &layout(), None).unwrap_err().to_string();
+    assert!(error.starts_with("deadlock after cycle 9:\none context waits for ever\nL1: 0 requests queued"), "{error}");
+}
+
+#[test]
+fn machines_that_events_cannot_name_are_refused() {
+    let machine = machine(&[("cores.groups", 4096), ("cores.per_group", 4096)]);
+    let error = run_free(&machine, &layout(), std::iter::empty(), None).unwrap_err().to_string();
+    assert_eq!(error, "rays in flight of the machine are more than 4194304: 16777216");
+}
+
+#[test]
+fn a_waveform_shows_the_events_of_its_window() {
+    let lines = wandering(50, 20);
+    let machine = machine(&[("cores.groups", 2), ("cores.per_group", 4)]);
+    let run_with = |window| run_free(&machine, &layout(), std::iter::once(rays(&lines)), Some(window)).unwrap();
+    let whole = run_with(Window { from: 0, to: u64::MAX });
+    let text = String::from_utf8(whole.wave.clone().unwrap()).unwrap();
+    let mut vcd = vcd::Parser::new(text.as_bytes());
+    let header = vcd.parse_header().unwrap();
+    let hits = header.find_var(&["machine", "events", "l1_hits"]).unwrap().code;
+    assert!(header.find_var(&["machine", "group_1", "l1_misses_under_way"]).is_some());
+    // A value stands until the next: sum it over cycles.
+    let (mut sum, mut value, mut cycle) = (0, 0, 0);
+    for command in vcd {
+        match command.unwrap() {
+            vcd::Command::Timestamp(ps) => {
+                let next = machine.cores.cycle_at(ps);
+                sum += value * (next - cycle);
+                cycle = next;
+            }
+            vcd::Command::ChangeVector(id, bits) if id == hits => {
+                value = bits.iter().fold(0, |v, bit| 2 * v + u64::from(bit == vcd::Value::V1));
+            }
+            _ => (),
+        }
+    }
+    assert_eq!(sum + value, whole.counts.l1.hits);
+    let window = run_with(Window { from: 200, to: 260 });
+    let part = window.wave.as_ref().unwrap().len();
+    assert!(part > 500 && part < text.len() / 2, "{part} of {}", text.len());
+    assert_eq!(Run { wave: None, ..window }, Run { wave: None, ..whole }, "to look changes nothing");
+}

@@ -1,0 +1,222 @@
+//! Traversal units that take the cycles of the RTL ([`timing`](crate::sim::timing)): each is a port of its group's L1, and holds as many rays as it has contexts.
+//!
+//! A unit's request that finds its bank's queue full is taken when there is room, which the unit sees in the cycle after; of lines that come in one cycle, a unit takes the
+//! first, and each other a cycle later.
+
+use super::FrontEnd;
+use super::counts::Source;
+use super::feed::{self, Feed, Ray};
+use super::hierarchy::Hierarchy;
+use super::slots::Slots;
+use super::work::Work;
+use crate::sim::machine::Machine;
+use crate::sim::stream::Step;
+use crate::sim::timing::{Ports, Request, Steps, UnitTiming};
+use crate::sim::unit::UnitCounts;
+use std::collections::VecDeque;
+
+/// Bits of a unit's tag in the number of who waits for a line.
+const TAG_BITS: u32 = 16;
+
+/// Most units: their numbers and tags are an event's number.
+pub const MOST_UNITS: u64 = 1 << 12;
+
+impl Steps for Ray {
+    #[inline(always)]
+    fn step(&self) -> Step {
+        self.peek().step()
+    }
+
+    #[inline(always)]
+    fn advance(&mut self) {
+        self.skip(1);
+    }
+}
+
+/// A unit and its port.
+struct Unit {
+    timing: UnitTiming<Ray>,
+    /// The cycle of its next wake, if one is entered.
+    wake: Option<u64>,
+    /// The first cycle without a tick.
+    free: u64,
+    port: Port,
+    /// Lines that came in the cycle of another, and when each is taken.
+    come: VecDeque<(u64, u16)>,
+    answers: Slots,
+}
+
+/// A unit's way to its L1.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Port {
+    /// Takes a request.
+    Free,
+    /// Holds one until its bank has room.
+    Held,
+    /// The request it held is taken, which the unit is to be told.
+    Taken,
+}
+
+/// All units.
+pub struct Units<S> {
+    feed: Feed<S>,
+    units: Vec<Unit>,
+    per_group: u32,
+    under_way: u64,
+    /// What the rays had blocks do.
+    pub work: Work,
+}
+
+impl<S: feed::Source> Units<S> {
+    /// Units that take rays from `source`.
+    pub fn new(machine: &Machine, source: S) -> Self {
+        let (groups, per_group) = (machine.cores.groups, machine.units.per_group);
+        let unit = |_| Unit {
+            timing: UnitTiming::new(machine.units.config()),
+            wake: None,
+            free: 0,
+            port: Port::Free,
+            come: VecDeque::new(),
+            answers: Slots::default(),
+        };
+        let units = (0..groups * per_group).map(unit).collect();
+        Self { feed: Feed::new(source, groups), units, per_group, under_way: 0, work: Work::default() }
+    }
+
+    /// What all units did in `cycles` cycles.
+    pub fn counts(&self, cycles: u64) -> UnitCounts {
+        let mut sum = UnitCounts::default();
+        self.units.iter().for_each(|unit| sum.add(&unit.timing.counts(cycles)));
+        sum
+    }
+
+    /// Does what unit `id` has to do in this cycle.
+    fn tick(&mut self, id: u32, memory: &mut Hierarchy) {
+        let now = memory.now();
+        let unit = &mut self.units[id as usize];
+        while let Some(&(_, tag)) = unit.come.front().filter(|come| come.0 <= now) {
+            unit.come.pop_front();
+            unit.timing.answer(now, tag);
+        }
+        if unit.free <= now {
+            let group = id / self.per_group;
+            let Self { feed, under_way, work, .. } = self;
+            let mut ports = Surroundings { id, group, port: &mut unit.port, feed, under_way, work, memory };
+            unit.timing.tick(now, &mut ports);
+            unit.free = now + 1;
+        }
+        self.sleep(id, memory);
+    }
+
+    /// Enters the unit's next wake.
+    #[inline]
+    fn sleep(&mut self, id: u32, memory: &mut Hierarchy) {
+        let now = memory.now();
+        let unit = &mut self.units[id as usize];
+        let come = unit.come.front().map(|come| come.0);
+        let told = (unit.port == Port::Taken).then_some(unit.free);
+        let next = unit.timing.next().into_iter().chain(come).chain(told).min().map(|next| next.max(unit.free).max(now));
+        if let Some(next) = next
+            && unit.wake.is_none_or(|wake| wake <= now || wake > next)
+        {
+            unit.wake = Some(next);
+            memory.wake_at(next, 2 * id);
+        }
+    }
+}
+
+impl<S: feed::Source> FrontEnd for Units<S> {
+    fn start(&mut self, memory: &mut Hierarchy) {
+        (0..self.units.len() as u32).for_each(|id| self.tick(id, memory));
+    }
+
+    fn wake(&mut self, id: u32, memory: &mut Hierarchy) {
+        let (id, is_port) = (id / 2, id % 2 == 1);
+        let unit = &mut self.units[id as usize];
+        if is_port {
+            unit.port = Port::Taken;
+            self.tick(id, memory);
+        } else if unit.wake == Some(memory.now()) {
+            unit.wake = None;
+            self.tick(id, memory);
+        }
+    }
+
+    fn answer(&mut self, waiter: u32, _: Source, memory: &mut Hierarchy) {
+        let (id, tag) = (waiter >> TAG_BITS, waiter as u16);
+        let now = memory.now();
+        let unit = &mut self.units[id as usize];
+        let at = unit.answers.take(now, 1);
+        if at == now {
+            unit.timing.answer(now, tag);
+        } else {
+            unit.come.push_back((at, tag));
+        }
+        self.sleep(id, memory);
+    }
+
+    fn is_busy(&self) -> bool {
+        self.under_way > 0
+    }
+
+    fn describe(&self) -> String {
+        let held = self.units.iter().filter(|unit| unit.port == Port::Held).count();
+        let waiting = self.units.iter().enumerate().filter(|(_, unit)| !unit.timing.is_idle());
+        let lines: Vec<String> = waiting.take(8).map(|(id, unit)| format!("unit {id}: {}", unit.timing.describe())).collect();
+        format!("{} rays under way, {held} units before a full bank\n{}", self.under_way, lines.join("\n"))
+    }
+}
+
+/// What surrounds a unit in one cycle.
+struct Surroundings<'a, S> {
+    id: u32,
+    group: u32,
+    port: &'a mut Port,
+    feed: &'a mut Feed<S>,
+    under_way: &'a mut u64,
+    work: &'a mut Work,
+    memory: &'a mut Hierarchy,
+}
+
+impl<S: feed::Source> Ports for Surroundings<'_, S> {
+    type Ray = Ray;
+
+    fn ray(&mut self) -> Option<Ray> {
+        let ray = self.feed.ray(self.group)?;
+        *self.under_way += 1;
+        self.work.ray();
+        for event in ray.rest() {
+            let step = event.step();
+            self.work.step(step);
+            if let Step::End { .. } = step {
+                break;
+            }
+        }
+        Some(ray)
+    }
+
+    fn request(&mut self, Request { tag, line, kind }: Request) -> bool {
+        match *self.port {
+            Port::Held => false,
+            Port::Taken => {
+                *self.port = Port::Free;
+                true
+            }
+            Port::Free => {
+                let taken = self.memory.request(self.group, 2 * self.id + 1, self.id << TAG_BITS | u32::from(tag), line, kind);
+                if !taken {
+                    *self.port = Port::Held;
+                }
+                taken
+            }
+        }
+    }
+
+    fn hit(&mut self, _: &Ray, found: bool) -> bool {
+        let counts = self.memory.counts_mut();
+        counts.rays += 1;
+        counts.hits += u64::from(found);
+        *self.under_way -= 1;
+        true
+    }
+}

@@ -1,0 +1,145 @@
+//! The machine as a waveform (VCD): queues, misses under way and cache events, for a window of cycles.
+//!
+//! Values are those at the end of a cycle and stand from the time at which it begins. Events (`hits`, `misses`, ...) are how many happened in that cycle.
+
+use super::hierarchy::Hierarchy;
+use crate::sim::machine::Cores;
+use std::io;
+use vcd::{IdCode, TimescaleUnit, Value, VarType};
+
+/// Bits of every value: no queue is longer.
+const BITS: u32 = 16;
+
+/// A stretch of cycles, both ends included.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Window {
+    /// Its first.
+    pub from: u64,
+    /// Its last.
+    pub to: u64,
+}
+
+/// What a hierarchy shows of itself: scope, name and value of every signal, always in the same order.
+pub(super) trait Shown {
+    /// Tells `show` each signal; a scope's signals follow each other.
+    fn show(&self, show: &mut dyn FnMut(&str, &str, u64));
+}
+
+/// The waveform of a window.
+pub(super) struct Wave {
+    writer: vcd::Writer<Vec<u8>>,
+    window: Window,
+    signals: Vec<(IdCode, Option<u64>)>,
+    /// The cycle of the last look, counts at its start, and counts then.
+    looked: u64,
+    before: Events,
+    latest: Events,
+    /// The last cycle that was written.
+    sampled: Option<u64>,
+}
+
+/// Counts whose growth in a cycle is shown.
+type Events = [u64; 8];
+
+/// Their names.
+const EVENTS: [&str; 8] = ["l1_hits", "l1_misses", "l1_merges", "l2_hits", "l2_misses", "l2_merges", "dram_reads", "rays_done"];
+
+fn events(memory: &Hierarchy) -> Events {
+    let c = memory.counts();
+    let reads = c.traffic.iter().map(|kind| kind.dram).sum();
+    [c.l1.hits, c.l1.misses, c.l1.merges, c.l2.hits, c.l2.misses, c.l2.merges, reads, c.rays]
+}
+
+impl Wave {
+    /// The waveform of `window`, not begun.
+    pub fn new(window: Window) -> Self {
+        Self {
+            writer: vcd::Writer::new(Vec::new()),
+            window,
+            signals: Vec::new(),
+            looked: 0,
+            before: Events::default(),
+            latest: Events::default(),
+            sampled: None,
+        }
+    }
+
+    /// The end of this cycle; it may have several, when memory answers at once.
+    ///
+    /// # Errors
+    /// Only what the writer of waveforms says; memory takes everything.
+    pub fn sample(&mut self, memory: &Hierarchy, cores: &Cores) -> io::Result<()> {
+        let (now, after) = (memory.now(), events(memory));
+        if now > self.looked {
+            (self.looked, self.before) = (now, self.latest);
+        }
+        self.latest = after;
+        if now < self.window.from || (now > self.window.to && self.sampled.is_none_or(|last| last >= self.window.to)) {
+            return Ok(());
+        }
+        if self.signals.is_empty() {
+            self.declare(memory)?;
+        }
+        // Nothing happened between two samples.
+        if let Some(quiet) = self.sampled.map(|last| last + 1).filter(|&next| next < now) {
+            self.writer.timestamp(cores.start_ps(quiet))?;
+            for k in 0..EVENTS.len() {
+                self.set(k, 0)?;
+            }
+        }
+        self.sampled = Some(now);
+        if now > self.window.to {
+            return Ok(());
+        }
+        self.writer.timestamp(cores.start_ps(now))?;
+        for (k, (after, before)) in after.into_iter().zip(self.before).enumerate() {
+            self.set(k, after - before)?;
+        }
+        let mut values = Vec::with_capacity(self.signals.len());
+        memory.show(&mut |_, _, value| values.push(value));
+        for (k, value) in values.into_iter().enumerate() {
+            self.set(EVENTS.len() + k, value)?;
+        }
+        Ok(())
+    }
+
+    fn declare(&mut self, memory: &Hierarchy) -> io::Result<()> {
+        let writer = &mut self.writer;
+        writer.version("lodray, replay")?;
+        writer.timescale(1, TimescaleUnit::PS)?;
+        writer.add_module("machine")?;
+        writer.add_module("events")?;
+        for name in EVENTS {
+            self.signals.push((writer.add_var(VarType::Wire, BITS, name, None)?, None));
+        }
+        let mut names: Vec<(String, String)> = Vec::new();
+        memory.show(&mut |scope, name, _| names.push((scope.to_owned(), name.to_owned())));
+        let mut open = "events".to_owned();
+        for (scope, name) in names {
+            if scope != open {
+                writer.upscope()?;
+                writer.add_module(&scope)?;
+                open = scope;
+            }
+            self.signals.push((writer.add_var(VarType::Wire, BITS, &name, None)?, None));
+        }
+        writer.upscope()?;
+        writer.upscope()?;
+        writer.enddefinitions()
+    }
+
+    fn set(&mut self, signal: usize, value: u64) -> io::Result<()> {
+        let (id, last) = &mut self.signals[signal];
+        if last.replace(value) == Some(value) {
+            return Ok(());
+        }
+        let shown = value.min((1 << BITS) - 1);
+        let bits = (0..BITS).rev().map(|bit| if shown >> bit & 1 == 1 { Value::V1 } else { Value::V0 });
+        self.writer.change_vector(*id, bits)
+    }
+
+    /// The file's bytes.
+    pub fn into_bytes(mut self) -> Vec<u8> {
+        std::mem::take(self.writer.writer())
+    }
+}

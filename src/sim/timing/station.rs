@@ -1,0 +1,71 @@
+//! The time of a block: what it takes when, and what is reported of it.
+
+use crate::block::Timing;
+use crate::sim::unit::BlockCounts;
+
+/// A block whose results always have a taker.
+#[derive(Clone, Debug)]
+pub struct Station {
+    timing: Timing,
+    /// The first cycle in which it takes an input again.
+    free: u64,
+    /// The cycle behind the last input.
+    behind: u64,
+    /// The last cycle with an item inside.
+    drained: u64,
+    counts: BlockCounts,
+}
+
+impl Station {
+    /// An empty block.
+    pub fn new(timing: Timing) -> Self {
+        Self { timing, free: 0, behind: 0, drained: 0, counts: BlockCounts::default() }
+    }
+
+    /// Cycles from an input to its result.
+    pub fn latency(&self) -> u64 {
+        u64::from(self.timing.latency)
+    }
+
+    /// The first cycle in which it takes an input.
+    pub fn free(&self) -> u64 {
+        self.free
+    }
+
+    /// Takes an input in cycle `now`; inputs were offered from `since` on, if not since before the last; gives the cycle of its result.
+    #[inline]
+    pub fn take(&mut self, since: u64, now: u64) -> u64 {
+        self.take_for(self.latency(), since, now)
+    }
+
+    /// The same with another latency.
+    #[inline]
+    pub fn take_for(&mut self, latency: u64, since: u64, now: u64) -> u64 {
+        self.enter(since, now);
+        self.inside(now, now + latency);
+        now + latency
+    }
+
+    /// Takes an input whose time inside is not known yet.
+    #[inline]
+    pub fn enter(&mut self, since: u64, now: u64) {
+        self.free = now + u64::from(self.timing.interval);
+        self.counts.taken += 1;
+        // Of what is offered it takes one as soon as it can.
+        self.counts.refused += now - since.max(self.behind);
+        self.behind = now + 1;
+    }
+
+    /// An item taken in cycle `taken` leaves in cycle `left`.
+    #[inline]
+    pub fn inside(&mut self, taken: u64, left: u64) {
+        self.counts.busy += left.saturating_sub(self.drained.max(taken));
+        self.counts.occupancy += left - taken;
+        self.drained = self.drained.max(left);
+    }
+
+    /// What it did so far, with what is inside counted to its end.
+    pub fn counts(&self) -> BlockCounts {
+        self.counts
+    }
+}

@@ -1,0 +1,192 @@
+//! The unit: its contexts, arbiters, blocks and ports.
+
+use super::context::Context;
+use super::hits::HitQueue;
+use super::ports::{Ports, Request, Steps, untag};
+use super::station::Station;
+use super::wheel::{Wheel, bits};
+use crate::block::bary_map::BaryMap;
+use crate::block::child_test::ChildTest;
+use crate::block::hit_divide::HitDivide;
+use crate::block::hit_select::HitSelect;
+use crate::block::lod_test::LodTest;
+use crate::block::node_address::NodeAddress;
+use crate::block::ray_setup::RaySetup;
+use crate::block::tessellate::Tessellate;
+use crate::block::tree_base::TreeBase;
+use crate::block::{Block, Timing};
+use crate::sim::unit::{Arbiter, MAX_CONTEXTS, Resource, State, UnitConfig};
+use std::collections::VecDeque;
+
+/// A unit that takes rays as their steps.
+///
+/// Who drives it calls [`tick`](Self::tick) in every cycle that [`next`](Self::next) names, and in those in which a port that the unit waits for may move again: the
+/// memory's or the hits' that refused, or the rays' that had none while [`is_ready`](Self::is_ready). A call in any other cycle does no harm. Cycles must come in order.
+pub struct UnitTiming<R> {
+    pub(super) contexts: Vec<Context<R>>,
+    pub(super) wheel: Wheel,
+    pub(super) arbiters: [Arbiter; Resource::COUNT],
+    /// Who asks for each resource, and since when anybody does; resources that somebody asks for.
+    pub(super) asking: [u64; Resource::COUNT],
+    pub(super) since: [u64; Resource::COUNT],
+    pub(super) asked: u32,
+    /// By resource.
+    pub(super) stations: [Station; Resource::COUNT],
+    pub(super) select: Station,
+    pub(super) idle: u64,
+    /// Requests on their way through `node_address`, and since when.
+    pub(super) requests: VecDeque<(u64, Request)>,
+    pub(super) hits: HitQueue,
+    /// The hit port's register.
+    pub(super) hit: Option<(R, bool)>,
+    /// The first cycle without a tick.
+    now: u64,
+    next: Option<u64>,
+    /// Cycles of contexts by state, but for `IDLE`.
+    pub(super) states: [u64; State::ALL.len()],
+}
+
+impl<R: Steps> UnitTiming<R> {
+    /// A unit behind its reset.
+    ///
+    /// # Panics
+    /// The number of contexts is not 1 to [`MAX_CONTEXTS`].
+    pub fn new(config: UnitConfig) -> Self {
+        assert!((1..=MAX_CONTEXTS).contains(&config.contexts), "a unit has 1 to {MAX_CONTEXTS} contexts, not {}", config.contexts);
+        let timing = |resource| match resource {
+            Resource::Setup => RaySetup::TIMING,
+            Resource::Fetch => NodeAddress::TIMING,
+            Resource::Base => TreeBase::TIMING,
+            Resource::Child => ChildTest::TIMING,
+            Resource::Lod => LodTest::TIMING,
+            Resource::Morph => Tessellate::TIMING,
+            Resource::Tri => config.edges_per_cycle.timing(),
+            Resource::Divide => HitDivide::TIMING,
+            Resource::Map => BaryMap::TIMING,
+            Resource::Hit => Timing::pipelined(1),
+        };
+        Self {
+            contexts: (0..config.contexts).map(|_| Context::idle()).collect(),
+            wheel: Wheel::new(),
+            arbiters: Default::default(),
+            asking: Default::default(),
+            since: Default::default(),
+            asked: 0,
+            stations: Resource::ALL.map(|resource| Station::new(timing(resource))),
+            select: Station::new(HitSelect::TIMING),
+            idle: u64::MAX >> (MAX_CONTEXTS - config.contexts),
+            requests: VecDeque::new(),
+            hits: HitQueue::default(),
+            hit: None,
+            now: 0,
+            next: None,
+            states: Default::default(),
+        }
+    }
+
+    /// A context is idle: a ray would be taken.
+    pub fn is_ready(&self) -> bool {
+        self.idle != 0
+    }
+
+    /// The request that the memory port offers in cycle `now`.
+    pub fn request(&self, now: u64) -> Option<Request> {
+        let latency = self.stations[Resource::Fetch as usize].latency();
+        self.requests.front().filter(|(taken, _)| taken + latency <= now).map(|request| request.1)
+    }
+
+    /// The ray whose hit the hit port offers in the next tick's cycle, and whether it met anything.
+    pub fn hit(&self) -> Option<(&R, bool)> {
+        self.hit.as_ref().map(|(ray, found)| (ray, *found))
+    }
+
+    /// The next cycle that needs a [`tick`](Self::tick) if nothing comes and no port that refused moves before; `None`: only then.
+    #[inline]
+    pub fn next(&self) -> Option<u64> {
+        self.next
+    }
+
+    /// The line of request `tag` comes in cycle `now`, before or behind that cycle's tick; no other does in this cycle. [`next`](Self::next) may be sooner then.
+    #[inline]
+    pub fn answer(&mut self, now: u64, tag: u16) {
+        debug_assert!(now + 1 >= self.now, "an answer of cycle {now} comes too late");
+        let (who, place) = untag(tag);
+        self.now = self.now.max(now);
+        self.answered(who, place, now);
+        self.next = self.next.into_iter().chain(self.wheel.next(self.now)).min();
+    }
+
+    /// Cycle `now`; gives the [`next`](Self::next).
+    ///
+    /// # Panics
+    /// A cycle that needed a tick was left out, or a ray's steps are none that a traversal takes.
+    pub fn tick<P: Ports<Ray = R>>(&mut self, now: u64, ports: &mut P) -> Option<u64> {
+        assert!(now >= self.now && self.next.is_none_or(|next| now <= next), "cycle {now}: was to be ticked in {:?}", self.next);
+        self.now = now + 1;
+        for who in bits(self.wheel.wake(now)) {
+            self.ask(who, now);
+        }
+
+        let latency = self.stations[Resource::Fetch as usize].latency();
+        let mut memory_waits = false;
+        if let Some(request) = self.request(now) {
+            memory_waits = !ports.request(request);
+            if !memory_waits && let Some((taken, _)) = self.requests.pop_front() {
+                self.stations[Resource::Fetch as usize].inside(taken, now);
+            }
+        }
+        let hit_waits = self.hit.as_ref().is_some_and(|(ray, found)| !ports.hit(ray, *found));
+        if !hit_waits {
+            self.hit = None;
+        }
+        let mut another = false;
+        if self.idle != 0
+            && let Some(ray) = ports.ray()
+        {
+            self.take(ray, now);
+            another = self.idle != 0;
+        }
+
+        for resource in bits(u64::from(self.asked)).map(|k| Resource::ALL[k]) {
+            let ready = match resource {
+                Resource::Fetch => self.requests.len() < latency as usize,
+                Resource::Hit => !hit_waits,
+                Resource::Divide if self.hits.head().is_some_and(|since| since <= now) => false,
+                _ => self.stations[resource as usize].free() <= now,
+            };
+            if ready {
+                self.grant(resource, now);
+            }
+        }
+        self.divide_hit(now);
+
+        self.next = if another { Some(now + 1) } else { self.goes_on(now, memory_waits, hit_waits) };
+        self.next
+    }
+
+    /// The next cycle behind `now` in which anything happens of itself.
+    fn goes_on(&self, now: u64, memory_waits: bool, hit_waits: bool) -> Option<u64> {
+        let soon = now + 1;
+        let mut next = self.wheel.next(soon);
+        if next == Some(soon) || self.hit.is_some() && !hit_waits {
+            return Some(soon);
+        }
+        let mut at = |cycle: u64| next = Some(next.map_or(cycle, |next| next.min(cycle)).max(soon));
+        let latency = self.stations[Resource::Fetch as usize].latency();
+        for resource in bits(u64::from(self.asked)).map(|k| Resource::ALL[k]) {
+            match resource {
+                // Full, it moves with its first request, below.
+                Resource::Fetch if self.requests.len() >= latency as usize => (),
+                Resource::Hit if hit_waits => (),
+                _ => at(self.stations[resource as usize].free()),
+            }
+        }
+        if let Some(since) = self.hits.head() {
+            at(since.max(self.stations[Resource::Divide as usize].free()));
+        }
+        if let Some((taken, _)) = self.requests.front().filter(|_| !memory_waits) {
+            at(taken + latency);
+        }
+        next
+    }
+}

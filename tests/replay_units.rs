@@ -1,0 +1,97 @@
+//! Traversal units on a machine: a unit whose lines are all in its L1 takes the cycles of the RTL, and many of them lose nothing.
+
+use lodray::num::Ray;
+use lodray::sim::machine::Machine;
+use lodray::sim::replay::{self, Chunk, Run};
+use lodray::sim::stream::{Batch, Event, Layout, Step};
+use lodray::sim::unit::environment::run;
+use lodray::sim::unit::{Latency, SceneMemory, Traffic, TraversalUnit};
+use lodray::traverse::LodImage;
+use lodray_test_support::models::{any_rays, ball, scene_of, terrain};
+use lodray_test_support::timing::steps_of;
+
+fn machine(sets: &[(&str, u32)]) -> Machine {
+    let mut machine = Machine::shipped("haydel2023").expect("a machine");
+    for (key, value) in sets {
+        machine.set(key, &value.to_string()).expect("a key and its value");
+    }
+    machine
+}
+
+/// The steps of each ray.
+fn steps(image: LodImage<'_>, rays: &[Ray]) -> Vec<Vec<Step>> {
+    let batch = steps_of(image, rays);
+    let ray = |ray| {
+        let mut steps: Vec<Step> = Vec::new();
+        for step in batch.events()[batch.start(ray) as usize..].iter().map(|event: &Event| event.step()) {
+            steps.push(step);
+            if let Step::End { .. } = step {
+                break;
+            }
+        }
+        steps
+    };
+    (0..batch.rays()).map(ray).collect()
+}
+
+fn units(machine: &Machine, image: LodImage<'_>, rays: &[Vec<Step>]) -> Run {
+    let layout = Layout::new(&image.sections()).expect("a small model");
+    let chunks: Vec<Chunk> = rays.chunks(64).map(|rays| Chunk::from([Batch::new(rays)])).collect();
+    replay::run_units(machine, &layout, chunks.into_iter(), None).expect("a run")
+}
+
+#[test]
+fn a_unit_before_a_full_cache_takes_the_cycles_of_the_cycle_model() {
+    let mut compared = 0;
+    for (h, seed) in [(ball(4, 0.4, 1), 1), (terrain(3, 5, 0.5, 2), 2), (ball(0, 0.4, 3), 3)] {
+        let scene = scene_of(&h);
+        let image = LodImage::of(&scene);
+        let memory = SceneMemory::new(image, 0);
+        let rays = any_rays(&h, 60, seed);
+        for latency in [1, 7] {
+            for edges in [1, 3] {
+                let machine = machine(&[
+                    ("cores.groups", 1),
+                    ("units.contexts", 1),
+                    ("units.edges_per_cycle", edges),
+                    ("l1.latency_cycles", latency),
+                    ("l1.bytes", 1 << 21),
+                ]);
+                for (ray, steps) in rays.iter().zip(steps(image, &rays)) {
+                    // The second time, every line is there.
+                    let [cold, both] = [1, 2].map(|times| units(&machine, image, &vec![steps.clone(); times]));
+                    assert_eq!(both.counts.l1.misses, cold.counts.l1.misses);
+                    let mut unit = TraversalUnit::new(machine.units.config(), memory.config());
+                    let report = run(&mut unit, &memory, &Traffic::smooth(Latency::Fixed(latency)), &[*ray, *ray]).expect("a run");
+                    assert_eq!(both.cycles - cold.cycles, report.rays[1].done - report.rays[0].done);
+                    compared += 1;
+                }
+            }
+        }
+    }
+    assert_eq!(compared, 3 * 60 * 4);
+}
+
+#[test]
+fn many_units_lose_nothing_however_little_room_there_is() {
+    let h = terrain(4, 5, 0.5, 2);
+    let scene = scene_of(&h);
+    let image = LodImage::of(&scene);
+    let rays = steps(image, &any_rays(&h, 1000, 4));
+    let shape = [("cores.groups", 4), ("units.per_group", 2), ("units.contexts", 16)];
+    let little =
+        [("l1.mshrs", 1), ("l1.targets", 1), ("l1.queue", 1), ("l2.mshrs", 1), ("l2.queue", 1), ("l2.banks", 1), ("dram.queue", 1)];
+    let roomy = units(&machine(&shape), image, &rays);
+    let tight = units(&machine(&[&shape[..], &little].concat()), image, &rays);
+    for run in [&roomy, &tight] {
+        let (l1, l2) = (run.counts.l1, run.counts.l2);
+        assert_eq!(run.counts.rays, 1000);
+        assert_eq!(l1.requests, l1.hits + l1.misses + l1.merges);
+        assert_eq!((l1.misses, l2.misses), (l2.requests, run.channels.iter().map(|channel| channel.reads).sum()));
+        let lines: u64 = rays.iter().flatten().filter_map(|step| step.lines()).map(|(.., lines)| u64::from(lines)).sum();
+        assert_eq!(l1.requests, lines);
+        let counts = run.units.as_ref().expect("units");
+        assert_eq!(counts.states.iter().sum::<u64>(), run.cycles * 8 * 16, "every context is in some state in every cycle");
+    }
+    assert!(tight.cycles > roomy.cycles && tight.counts.l1.refused_cycles > 0);
+}

@@ -1,0 +1,348 @@
+//! `simulate`, `sweep` and `compare` end to end, as a user types them.
+
+use serde_json::Value;
+use std::fs;
+use std::path::PathBuf;
+
+const FAILS: i32 = 1;
+const USAGE: i32 = 2;
+const SHOT: &str = "simulate a.lod --size 40x24 --distance 2.5";
+
+/// A folder with a scene, to run the program in.
+struct Desk(tempfile::TempDir);
+
+impl Desk {
+    fn new() -> Self {
+        let desk = Self(tempfile::tempdir().unwrap());
+        desk.run("generate terrain --levels 3 --base 32 --seed 2 -o a.lod");
+        desk
+    }
+
+    fn path(&self, name: &str) -> PathBuf {
+        self.0.path().join(name)
+    }
+
+    fn write(&self, name: &str, text: &str) {
+        fs::write(self.path(name), text).unwrap();
+    }
+
+    fn text(&self, name: &str) -> String {
+        fs::read_to_string(self.path(name)).unwrap()
+    }
+
+    /// Exit code, standard output and standard error.
+    fn run_on(&self, threads: u32, args: &str) -> (i32, String, String) {
+        let mut command = assert_cmd::cargo::cargo_bin_cmd!("lodray");
+        command.current_dir(self.0.path()).args(args.split_whitespace()).env("RAYON_NUM_THREADS", threads.to_string());
+        let output = command.output().unwrap();
+        let [out, err] = [output.stdout, output.stderr].map(|text| String::from_utf8(text).unwrap());
+        assert!(!err.contains("panicked"), "{args}: {err}");
+        (output.status.code().unwrap(), out, err)
+    }
+
+    fn run(&self, args: &str) -> String {
+        let (code, out, err) = self.run_on(0, args);
+        assert_eq!((code, err.as_str()), (0, ""), "{args}: {out}");
+        out
+    }
+
+    fn json(&self, args: &str) -> Value {
+        serde_json::from_str(&self.run(&format!("{args} --json"))).unwrap()
+    }
+
+    fn refused(&self, args: &str, code: i32, fragment: &str) {
+        let (got, out, err) = self.run_on(0, args);
+        assert_eq!(got, code, "{args}: {err}");
+        assert!(err.starts_with("error: ") && err.contains(fragment), "{args}: no '{fragment}' in: {err}");
+        assert!(out.is_empty() && (code == USAGE || err.lines().count() == 1), "{args}: {out}{err}");
+    }
+}
+
+/// The number at a path such as `/l1/hits`.
+fn at(value: &Value, pointer: &str) -> f64 {
+    value.pointer(pointer).and_then(Value::as_f64).unwrap_or_else(|| panic!("no number {pointer}"))
+}
+
+fn count(value: &Value, pointer: &str) -> u64 {
+    value.pointer(pointer).and_then(Value::as_u64).unwrap_or_else(|| panic!("no count {pointer}"))
+}
+
+fn sum<'a>(values: impl IntoIterator<Item = &'a Value>, key: &str) -> u64 {
+    values.into_iter().map(|value| value[key].as_u64().unwrap()).sum()
+}
+
+fn near(a: f64, b: f64, what: &str) {
+    assert!((a - b).abs() <= 1e-9 * a.abs().max(b.abs()), "{what}: {a} is not {b}");
+}
+
+/// What must hold in every result.
+fn conserved(r: &Value) {
+    for level in ["l1", "l2"] {
+        let of = |key: &str| count(r, &format!("/{level}/{key}"));
+        assert_eq!(of("requests"), of("hits") + of("misses") + of("merges"), "{level}");
+        assert_eq!(of("fills"), of("misses"), "{level}");
+        near(at(r, &format!("/{level}/hit_rate")), of("hits") as f64 / of("requests") as f64, level);
+    }
+    assert_eq!(count(r, "/l1/misses"), count(r, "/l2/requests"));
+    assert_eq!(count(r, "/l2/misses"), count(r, "/dram/reads"));
+    assert_eq!(count(r, "/dram/bytes"), 32 * count(r, "/dram/reads"));
+    assert_eq!(
+        count(r, "/dram/reads"),
+        ["row_hits", "row_misses", "row_conflicts"].iter().map(|k| count(r, &format!("/dram/{k}"))).sum::<u64>()
+    );
+    assert_eq!(count(r, "/dram/reads"), sum(r["dram"]["channels"].as_array().unwrap(), "reads"));
+    let kinds = r["traffic"]["kinds"].as_array().unwrap();
+    for (kind, whole) in [("l1", "/l1/requests"), ("l2", "/l2/requests"), ("dram", "/dram/reads")] {
+        assert_eq!(sum(kinds, kind), count(r, whole), "{whole}");
+    }
+    let waits: f64 = ["memory", "compute", "idle"].iter().map(|k| at(r, &format!("/waits/{k}"))).sum();
+    near(waits, 1.0, "shares of context cycles");
+    let parts: f64 = ["l1", "l2", "dram", "compute", "leakage"].iter().map(|k| at(r, &format!("/energy/{k}/total"))).sum();
+    near(parts, at(r, "/energy/total"), "energy");
+    let dram: f64 = r["energy"]["dram"]["parts"].as_object().unwrap().values().map(|v| v.as_f64().unwrap()).sum();
+    near(dram, at(r, "/energy/dram/total"), "DRAM energy");
+    for level in ["l1", "l2", "dram"] {
+        let share = at(r, &format!("/roofline/{level}/share"));
+        assert!(share > 0.0 && share <= 1.0, "{level} alone needs {share} of the frame");
+    }
+
+    let intervals = r["intervals"].as_array().unwrap();
+    for (key, whole) in [
+        ("cycles", "/cycles"),
+        ("rays", "/rays"),
+        ("l1_requests", "/l1/requests"),
+        ("l1_misses", "/l1/misses"),
+        ("l2_requests", "/l2/requests"),
+        ("l2_misses", "/l2/misses"),
+        ("dram_bytes", "/dram/bytes"),
+        ("row_hits", "/dram/row_hits"),
+    ] {
+        assert_eq!(sum(intervals, key), count(r, whole), "{key}");
+    }
+    if let Some(watts) = r["energy"]["average_watts"].as_f64() {
+        let energy =
+            |i: &Value| ["l1", "l2", "dram", "leakage"].iter().map(|k| i["watts"][k].as_f64().unwrap()).sum::<f64>() * at(i, "/cycles");
+        let cycles = at(r, "/cycles");
+        let compute = watts * at(r, "/energy/compute/total") / at(r, "/energy/total");
+        near(intervals.iter().map(energy).sum::<f64>() / cycles + compute, watts, "power");
+    }
+}
+
+#[test]
+fn a_run_has_consistent_figures() {
+    let desk = Desk::new();
+    for (method, machine) in [("lod", "haydel2023"), ("bvh", "turing2018"), ("bvh32", "haydel2023-public"), ("lod", "packet")] {
+        let r = desk.json(&format!("{SHOT} --method {method} --machine {machine}"));
+        assert_eq!(count(&r, "/rays"), 960);
+        assert!((100..960).contains(&count(&r, "/hits")));
+        assert_eq!((&r["setup"]["method"]["name"], &r["setup"]["machine"]["label"]), (&method.into(), &machine.into()));
+        assert_eq!((&r["setup"]["view"]["distance"], &r["setup"]["compute"]), (&2.5.into(), &"free".into()));
+        assert_eq!(r["traffic"]["l0_share_of_l1"].is_f64(), method == "lod");
+        assert_eq!(r["energy"]["unit"], if machine == "packet" { "L1 accesses" } else { "uJ" });
+        assert_eq!(r["energy"]["average_watts"].is_null(), machine == "packet");
+        near(at(&r, "/frames_per_second") * at(&r, "/milliseconds"), 1e3, "frames per second");
+        conserved(&r);
+    }
+    let text = desk.run(SHOT);
+    for word in ["accesses/ray", "hit rate", "row conflicts", "for DRAM", "mean W", "vertex_data", "read the L0 part"] {
+        assert!(text.contains(word), "no {word} in:\n{text}");
+    }
+    // A BVH shows all detail at any quality; the level of detail reads less at lower quality.
+    let requests = |delta: &str| count(&desk.json(&format!("{SHOT} --delta {delta}")), "/l1/requests");
+    assert!(requests("0") < requests("1") && requests("1") < requests("inf"));
+}
+
+#[test]
+fn files_are_the_same_at_any_number_of_threads() {
+    let desk = Desk::new();
+    let runs = [1, 2, 8].map(|threads| {
+        let out = format!("out{threads}");
+        let (code, json, err) = desk.run_on(threads, &format!("{SHOT} --machine haydel2023,turing2018 --json -o {out}"));
+        assert_eq!((code, err.as_str()), (0, ""));
+        let mut names: Vec<_> = fs::read_dir(desk.path(&out)).unwrap().map(|e| e.unwrap().file_name().into_string().unwrap()).collect();
+        names.sort();
+        let texts: Vec<_> = names.iter().map(|name| desk.text(&format!("{out}/{name}"))).collect();
+        assert!(texts.iter().all(|text| !text.is_empty()));
+        assert_eq!(names.iter().filter(|name| name.ends_with(".svg")).count(), 5, "{names:?}");
+        assert_eq!(json, desk.text(&format!("{out}/result.json")));
+        (json, names, texts)
+    });
+    assert!(runs[0] == runs[1] && runs[0] == runs[2], "runs differ");
+}
+
+#[test]
+fn several_machines_at_once_are_one_at_a_time() {
+    let desk = Desk::new();
+    let own = include_str!("../machines/haydel2023.toml").replace("name = \"Haydel 2023\"", "name = \"Mine\"");
+    desk.write("mine.toml", &own);
+    let together = desk.json(&format!("{SHOT} --machine haydel2023 --machine mine.toml,packet --set l1.bytes=32768"));
+    for (k, machine) in ["haydel2023", "mine.toml", "packet"].into_iter().enumerate() {
+        let alone = desk.json(&format!("{SHOT} --machine {machine} --set l1.bytes=32768"));
+        assert_eq!(together[k], alone, "{machine}");
+        assert_eq!(alone["setup"]["machine"]["description"]["l1"]["bytes"], 32768);
+        assert_eq!(alone["setup"]["machine"]["set"][0], "l1.bytes=32768");
+    }
+    assert_eq!((&together[0]["cycles"], &together[0]["energy"]), (&together[1]["cycles"], &together[1]["energy"]));
+    assert_eq!(together[1]["setup"]["machine"]["description"]["name"], "Mine");
+    // Only together are these possible.
+    let r = desk.json(&format!("{SHOT} --set l1.ways=3 --set l1.bytes=24576"));
+    assert_eq!(r["setup"]["machine"]["description"]["l1"]["ways"], 3);
+}
+
+#[test]
+fn wrong_words_are_one_clear_error() {
+    let desk = Desk::new();
+    desk.write("bad.toml", "name = \"x\"\n");
+    for (args, code, fragment) in [
+        ("--machine nope", FAILS, "nope.toml comes with the program; there are: haydel2023.toml"),
+        ("--machine none/nope.toml", FAILS, "none/nope.toml: No such file"),
+        ("--machine bad.toml", FAILS, "bad.toml: TOML parse error at line 1, column 1: missing field `cores`"),
+        ("--machine packet,packet", FAILS, "packet is given twice"),
+        ("--set l1.bites=3", FAILS, "l1.bites = 3: unknown field"),
+        ("--set l1.bytes=many", FAILS, "the value must be an integer"),
+        ("--set l1.bytes=3", FAILS, "l1.bytes = 3: l1.bytes must be"),
+        ("--set l1.bytes", USAGE, "'l1.bytes' is not a change such as"),
+        ("--set dram.device=dram/none.toml", FAILS, "none.toml"),
+        ("--method reference", USAGE, "'reference' for '--method"),
+        ("--compute soon", USAGE, "'soon' for '--compute"),
+        ("--vcd a.vcd", USAGE, "--window"),
+        ("--vcd a.vcd --window 9:3", USAGE, "'9:3' is not a stretch of cycles"),
+        ("--vcd a.lod --window 1:2", FAILS, "a.lod"),
+        ("--delta -1", USAGE, "'-1' for '--delta"),
+        ("-o a.lod", FAILS, "cannot make folder a.lod"),
+    ] {
+        desk.refused(&format!("{SHOT} {args}"), code, fragment);
+    }
+    desk.refused("simulate none.lod", FAILS, "none.lod: cannot open");
+    desk.refused("compare a.json b.json", FAILS, "cannot read a.json");
+    desk.refused("compare a.lod a.lod", FAILS, "a.lod");
+}
+
+#[test]
+fn units_take_their_time_and_nothing_else_changes() {
+    let desk = Desk::new();
+    for method in ["lod", "bvh", "bvh32"] {
+        let [free, units] = ["free", "units"].map(|compute| desk.json(&format!("{SHOT} --method {method} --compute {compute}")));
+        for same in ["/rays", "/hits", "/l1/requests", "/operations"] {
+            assert_eq!(free.pointer(same), units.pointer(same), "{method} {same}");
+        }
+        assert!(count(&units, "/cycles") > count(&free, "/cycles"), "{method}");
+        assert!(free["units"].is_null());
+        near(units["units"]["states"].as_object().unwrap().values().map(|v| v.as_f64().unwrap()).sum(), 1.0, "states");
+        let blocks = if method == "lod" { ["lod_test", "tessellate"] } else { ["child_test", "tri_test"] };
+        for block in blocks {
+            assert!(units["units"]["blocks"][block]["operations"].as_u64().unwrap() > 0, "{method} {block}");
+        }
+    }
+}
+
+#[test]
+fn a_waveform_of_the_machine_is_written() {
+    let desk = Desk::new();
+    desk.run(&format!("{SHOT} --vcd a.vcd --window 100:200"));
+    let text = desk.text("a.vcd");
+    for name in ["l1_hits", "dram_reads", "group_0", "l1_misses_under_way", "l2_queued"] {
+        assert!(text.contains(name), "{name}");
+    }
+}
+
+const SCENE: &str = "[[scene]]\nfile = \"a.lod\"\n";
+const HEAD: &str = "size = \"16x16\"\ndistances = [2]\nmethods = [\"lod\", \"bvh\"]\n";
+const MACHINE: &str = "[[machine]]\nname = \"packet\"\nset = { \"cores.rays_in_flight\" = [1, 2] }\n";
+
+#[test]
+fn a_sweep_goes_on_where_it_was() {
+    let desk = Desk::new();
+    desk.write("jobs.toml", include_str!("../docs/jobs-example.toml"));
+    let said = desk.run("sweep jobs.toml -o out");
+    assert!(said.contains("36 jobs, 0 of them done before, 0 failed"), "{said}");
+    let (lines, table) = (desk.text("out/results.jsonl"), desk.text("out/results.csv"));
+    assert_eq!((lines.lines().count(), table.lines().count()), (36, 37));
+    // Energy and time of the scene of several views, on three machines.
+    let charts: Vec<_> = fs::read_dir(desk.path("out"))
+        .unwrap()
+        .map(|file| file.unwrap().path())
+        .filter(|file| file.extension() == Some("svg".as_ref()))
+        .collect();
+    assert_eq!(charts.len(), 2 * 2 * 3, "{charts:?}");
+    assert!(charts.iter().all(|chart| fs::read_to_string(chart).unwrap().contains("distance of the eye")));
+    for line in lines.lines() {
+        let row: Value = serde_json::from_str(line).unwrap();
+        assert!(row["image"]["rmse"].is_f64() && row["result"]["intervals"].is_null(), "{line}");
+    }
+    // In the middle of a line, after a whole one, and with nothing lost.
+    let ends: Vec<usize> = lines.match_indices('\n').map(|(end, _)| end + 1).collect();
+    for (cut, done) in [(ends[10] + 57, 11), (ends[4] - 1, 4), (ends[20], 21), (lines.len(), 36)] {
+        fs::write(desk.path("out/results.jsonl"), &lines[..cut]).unwrap();
+        let said = desk.run("sweep jobs.toml -o out");
+        assert!(said.contains(&format!("36 jobs, {done} of them done before, 0 failed")), "{said}");
+        assert!(desk.text("out/results.jsonl") == lines && desk.text("out/results.csv") == table, "cut at {cut}");
+    }
+    // One simulation by hand gives the figures of its line.
+    desk.write("one.toml", &format!("{HEAD}intervals = true\n{SCENE}{MACHINE}"));
+    desk.run("sweep one.toml -o one");
+    let row: Value = serde_json::from_str(desk.text("one/results.jsonl").lines().next().unwrap()).unwrap();
+    assert_eq!(row["result"], desk.json("simulate a.lod --size 16x16 --distance 2 --machine packet --set cores.rays_in_flight=1"));
+}
+
+#[test]
+fn a_failed_job_leaves_the_others() {
+    let desk = Desk::new();
+    let broken = "[[machine]]\nname = \"haydel2023\"\nset = { \"dram.device\" = \"dram/none.toml\" }\n";
+    let missing = "[[scene]]\nfile = \"missing.lod\"\n";
+    desk.write("jobs.toml", &format!("{HEAD}compute = [\"free\", \"units\"]\n{missing}{SCENE}{broken}{MACHINE}"));
+    for _ in 0..2 {
+        let (code, out, err) = desk.run_on(0, "sweep jobs.toml -o out");
+        assert_eq!((code, err.as_str()), (FAILS, ""));
+        // Of two scenes, two methods, three machines and two ways to compute, eight have a result.
+        assert!(out.contains("24 jobs") && out.contains("16 failed"), "{out}");
+        let rows: Vec<Value> = desk.text("out/results.jsonl").lines().map(|line| serde_json::from_str(line).unwrap()).collect();
+        assert_eq!(rows.len(), 24);
+        assert_eq!(rows.iter().filter(|row| row["result"].is_object()).count(), 8);
+        let errors: String = rows.iter().filter_map(|row| row["error"].as_str()).collect();
+        for word in ["missing.lod: cannot open", "dram/none.toml"] {
+            assert!(errors.contains(word), "{errors}");
+        }
+    }
+}
+
+#[test]
+fn lists_with_mistakes_are_refused() {
+    let desk = Desk::new();
+    for (list, fragment) in [
+        (format!("{HEAD}speed = 3\n{SCENE}{MACHINE}"), "jobs.toml: line 4: unknown field `speed`"),
+        (format!("{HEAD}{SCENE}colour = 1\n{MACHINE}"), "unknown field `colour`"),
+        (format!("{HEAD}{SCENE}levels = 1\n{MACHINE}"), "jobs.toml: scene 1: levels goes with generate"),
+        (format!("{HEAD}[[scene]]\nname = \"x\"\n{MACHINE}"), "jobs.toml: scene 1: needs either file or generate"),
+        (format!("{HEAD}{SCENE}[[machine]]\nname = \"nope\"\n"), "jobs.toml: machine nope: no nope.toml"),
+        (format!("{HEAD}{SCENE}{MACHINE}[[machine]]\nname = \"packet\"\nset = {{ \"l9.x\" = 1 }}\n"), "l9.x = 1"),
+        (format!("{HEAD}{SCENE}distances = [-1]\n{MACHINE}"), "'-1' is not a distance"),
+        (format!("{HEAD}deltas = [\"fine\"]\n{SCENE}{MACHINE}"), "deltas: 'fine' is not a quality"),
+        (format!("{HEAD}leaf_size = 3\n{SCENE}{MACHINE}"), "leaf_size must be 1, 2 or 4"),
+    ] {
+        desk.write("jobs.toml", &list);
+        desk.refused("sweep jobs.toml -o out", FAILS, fragment);
+        assert!(!desk.path("out").exists(), "{list}");
+    }
+    desk.refused("sweep none.toml -o out", FAILS, "cannot read none.toml");
+}
+
+#[test]
+fn two_results_side_by_side() {
+    let desk = Desk::new();
+    desk.write("lod.json", &desk.run(&format!("{SHOT} --json")));
+    desk.write("both.json", &desk.run(&format!("{SHOT} --method bvh --machine turing2018,packet --json")));
+    let [lod, both] = ["lod.json", "both.json"].map(|name| serde_json::from_str::<Value>(&desk.text(name)).unwrap());
+    let report = desk.json("compare lod.json both.json:1");
+    for (name, pointer) in [("milliseconds", "/milliseconds"), ("DRAM accesses", "/dram/reads"), ("energy", "/energy/total")] {
+        let figure = report["figures"].as_array().unwrap().iter().find(|figure| figure["name"] == name).unwrap();
+        near(at(figure, "/ratio"), at(&both[0], pointer) / at(&lod, pointer), name);
+    }
+    assert!(desk.run("compare lod.json lod.json").contains("1.000"));
+    desk.refused("compare lod.json both.json", FAILS, "both.json: has 2 results; name one");
+    desk.refused("compare lod.json both.json:3", FAILS, "no number 3");
+    desk.refused("compare lod.json both.json:2", FAILS, "cannot be compared");
+    desk.write("jobs.toml", &format!("{HEAD}{SCENE}{MACHINE}"));
+    desk.run("sweep jobs.toml -o out");
+    assert!(desk.run("compare out/results.jsonl:1 out/results.jsonl:3").contains("B / A"));
+}

@@ -1,0 +1,230 @@
+//! The timing of the traversal unit against its cycle model: every ray's cycles, every request's cycle, tag and line, and all counts are equal.
+
+use lodray::mesh::Hierarchy;
+use lodray::num::Ray;
+use lodray::sim::stream::{Batch, Step};
+use lodray::sim::timing::UnitTiming;
+use lodray::sim::unit::environment::{RunReport, UnitPort, run};
+use lodray::sim::unit::{EdgesPerCycle, Inputs, Latency, Outputs, SceneMemory, Stall, Traffic, TraversalUnit, UnitConfig};
+use lodray::traverse::LodImage;
+use lodray_test_support::models::{Rng, any_rays, ball, model, octahedron, scene_of, terrain};
+use lodray_test_support::timing::{Smooth, Timed, steps_of};
+
+/// A unit, noting its requests: cycle, tag, address.
+struct Noting<U> {
+    unit: U,
+    cycle: u64,
+    requests: Vec<(u64, u64, u64)>,
+}
+
+impl<U: UnitPort> Noting<U> {
+    fn new(unit: U) -> Self {
+        Self { unit, cycle: 0, requests: Vec::new() }
+    }
+
+    fn run(&mut self, memory: &SceneMemory<'_>, traffic: &Traffic, rays: &[Ray]) -> RunReport {
+        let mut report = run(self, memory, traffic, rays).expect("a run without errors");
+        // What is met is the model's alone.
+        report.rays.iter_mut().for_each(|ray| ray.hit.hit = Default::default());
+        report
+    }
+}
+
+impl<U: UnitPort> UnitPort for Noting<U> {
+    fn outputs(&mut self) -> Outputs {
+        self.unit.outputs()
+    }
+    fn tick(&mut self, inputs: &Inputs) {
+        let request = self.unit.outputs().mem.filter(|_| inputs.mem_ready);
+        self.requests.extend(request.map(|request| (self.cycle, request.tag.get(), request.address.get())));
+        self.unit.tick(inputs);
+        self.cycle += 1;
+    }
+    fn describe(&mut self) -> String {
+        self.unit.describe()
+    }
+}
+
+fn stall(eighths: u8, stretch: u32, seed: u64) -> Stall {
+    Stall::Random { eighths, stretch, seed }
+}
+
+fn traffics() -> Vec<Traffic> {
+    let random = |max, seed| Latency::Random { min: 1, max, seed };
+    let smooth = [Latency::Fixed(1), Latency::Fixed(5), Latency::Fixed(40), random(100, 3)].map(Traffic::smooth);
+    let rough = [
+        Traffic { memory_stall: stall(4, 1, 12), ..Traffic::smooth(Latency::Fixed(1)) },
+        Traffic { hit_stall: stall(6, 40, 13), ..Traffic::smooth(Latency::Fixed(5)) },
+        Traffic { latency: random(300, 4), memory_stall: stall(4, 1, 5), hit_stall: stall(3, 1, 6), ray_gap: stall(4, 3, 7) },
+        Traffic { latency: random(20, 8), memory_stall: stall(6, 30, 9), hit_stall: stall(7, 200, 10), ray_gap: stall(6, 500, 11) },
+    ];
+    smooth.into_iter().chain(rough).collect()
+}
+
+fn configs() -> Vec<UnitConfig> {
+    use EdgesPerCycle::{One, Three};
+    let each = |contexts| [Three, One].map(|edges_per_cycle| UnitConfig { contexts, edges_per_cycle });
+    [1, 2, 4, 16, 64].into_iter().flat_map(each).collect()
+}
+
+fn models() -> Vec<(String, Hierarchy)> {
+    let mut all = Vec::new();
+    for levels in 0..=5u32 {
+        let roughness = [0.05, 0.4, 1.5][levels as usize % 3];
+        all.push((format!("ball {levels}"), ball(levels, roughness, u64::from(levels))));
+        all.push((format!("terrain {levels}"), terrain(3, levels, roughness, u64::from(levels))));
+    }
+    let (base, triangles) = octahedron();
+    let size = f64::from(1 << 22);
+    let deep = model(8, &base, triangles[..2].to_vec(), |p, level| {
+        std::array::from_fn(|k| p[k] as f64 * size + f64::from(level) * size * 3.0 * f64::from((p[k] % 5) as i32))
+    });
+    all.push(("deep octahedron".into(), deep));
+    all
+}
+
+#[test]
+fn equals_the_cycle_model_in_every_cycle() {
+    let [mut rays_compared, mut requests, mut cycles, mut ticks, mut found, mut refused] = [0u64; 6];
+    for (number, (name, h)) in models().iter().enumerate() {
+        let scene = scene_of(h);
+        let image = LodImage::of(&scene);
+        let memory = SceneMemory::new(image, 1000);
+        let rays = any_rays(h, 60, number as u64);
+        let batch = steps_of(image, &rays);
+        for config in configs() {
+            for traffic in traffics() {
+                let what = format!("{name}, {config:?}, {traffic:?}");
+                let mut model = Noting::new(TraversalUnit::new(config, memory.config()));
+                let expected = model.run(&memory, &traffic, &rays);
+                for skip in [false, true] {
+                    let mut timed = Noting::new(Timed::new(config, image, &memory, &batch, skip));
+                    let report = timed.run(&memory, &traffic, &rays);
+                    for (k, (ray, expected)) in report.rays.iter().zip(&expected.rays).enumerate() {
+                        assert_eq!((ray.taken, ray.done), (expected.taken, expected.done), "{what}, skip {skip}: ray {k}");
+                    }
+                    assert_eq!(report, expected, "{what}, skip {skip}");
+                    assert_eq!(timed.requests, model.requests, "{what}, skip {skip}");
+                    assert_eq!(timed.unit.unit.counts(report.cycles), model.unit.counts(), "{what}, skip {skip}");
+                    rays_compared += report.rays.len() as u64;
+                    requests += report.requests;
+                    if skip {
+                        cycles += report.cycles;
+                        ticks += timed.unit.ticks;
+                    }
+                }
+                found += expected.rays.iter().filter(|ray| ray.hit.found).count() as u64;
+                refused += expected.waited.iter().sum::<u64>();
+            }
+        }
+    }
+    println!("{rays_compared} rays and {requests} requests are equal; {found} hits; {ticks} ticks in {cycles} cycles");
+    assert!(rays_compared > 100_000 && requests > 1_000_000 && found > 10_000 && refused > 100_000 && ticks < cycles);
+}
+
+#[test]
+fn equals_the_cycle_model_from_event_to_event() {
+    let h = terrain(4, 5, 0.4, 7);
+    let scene = scene_of(&h);
+    let image = LodImage::of(&scene);
+    let memory = SceneMemory::new(image, 0);
+    let rays = any_rays(&h, 2000, 9);
+    let batch = steps_of(image, &rays);
+    let mut compared = 0;
+    for (contexts, latency) in [(1, 1), (4, 10), (16, 10), (16, 200), (64, 25)] {
+        let config = UnitConfig { contexts, ..UnitConfig::default() };
+        let mut model = TraversalUnit::new(config, memory.config());
+        let expected = run(&mut model, &memory, &Traffic::smooth(Latency::Fixed(latency)), &rays).expect("a run without errors");
+        let mut unit = UnitTiming::new(config);
+        let mut around = Smooth::new(&batch, u64::from(latency));
+        let cycles = around.run(&mut unit);
+        assert_eq!(around.rays, expected.rays.iter().map(|ray| (ray.taken, ray.done)).collect::<Vec<_>>());
+        assert_eq!([cycles, around.requests], [expected.cycles, expected.requests]);
+        assert_eq!(unit.counts(cycles), model.counts());
+        println!("{contexts} contexts, latency {latency}: {} ticks in {cycles} cycles", around.ticks);
+        compared += around.rays.len();
+    }
+    assert_eq!(compared, 10_000);
+}
+
+/// The cycles of one ray alone.
+fn alone(steps: Vec<Step>, latency: u64) -> u64 {
+    let batch = Batch::new(&[steps]);
+    let mut unit = UnitTiming::new(UnitConfig::one_context());
+    let mut around = Smooth::new(&batch, latency);
+    around.run(&mut unit);
+    around.rays[0].1 - around.rays[0].0
+}
+
+#[test]
+fn baseline_rays_take_the_cycles_of_their_blocks() {
+    use lodray::block::Block;
+    use lodray::block::{
+        box_test32::BoxTest32, child_sort::ChildSort, child_test::ChildTest, hit_divide::HitDivide, hit_select::HitSelect,
+        node_address::NodeAddress, ray_setup::RaySetup, tri_test::TriTest,
+    };
+    let cycles = |timing: lodray::block::Timing| u64::from(timing.latency);
+    let latency = 30;
+    // Each state that asks takes the cycle of its grant; a result shows in the cycle behind.
+    let setup = 1 + 1 + cycles(RaySetup::TIMING);
+    // VISIT; one grant for each line; address, memory; and the cycle in which all is seen to be there.
+    let fetch = |lines: u64| 1 + lines + cycles(NodeAddress::TIMING) + latency + 1;
+    let node = |wide: bool| {
+        let test = if wide { cycles(BoxTest32::TIMING) + cycles(ChildSort::TIMING) } else { cycles(ChildTest::TIMING) };
+        fetch(if wide { 4 } else { 2 }) + 1 + test
+    };
+    // SETUP and its wait, a node and one PUSH, POP, DONE and the hit's register.
+    let miss = |wide| alone(vec![Step::Node { line: 0, met: 0, wide }, Step::End { found: false }], latency);
+    assert_eq!(miss(false), setup + node(false) + 1 + 1 + 1 + 1 - 1);
+    assert_eq!(miss(true), setup + node(true) + 1 + 1 + 1 + 1 - 1);
+
+    let leaf = |hits| {
+        let lines = [40, 41, 57].map(|line| Step::Leaf { line });
+        let mut steps = vec![Step::Node { line: 0, met: 1, wide: true }];
+        steps.extend(lines);
+        steps.extend([Step::Triangles { count: 5, hits }, Step::End { found: hits != 0 }]);
+        alone(steps, latency)
+    };
+    let tests = 5 + cycles(TriTest::TIMING);
+    let to_leaf = setup + node(true) + 1 + fetch(3);
+    // PUSH and its leaf; five tests, the cycle in which all are seen through; POP, DONE, the register.
+    assert_eq!(leaf(0), to_leaf + tests + 1 + 1 + 1 + 1 - 1);
+    // The last test's hit: the queue, the division, the comparison; then v, w and SUM, and no map.
+    let hit = 1 + cycles(HitDivide::TIMING) + cycles(HitSelect::TIMING);
+    let divide = 2 * cycles(HitDivide::TIMING) + 1 + 1;
+    assert_eq!(leaf(1 << 4), to_leaf + tests + hit + 1 + 1 + divide + 1 + 1 - 1);
+    // Two hits one behind the other in the division.
+    assert_eq!(leaf(0b11000), leaf(1 << 4) + cycles(HitDivide::TIMING) - 1);
+}
+
+#[test]
+fn baseline_rays_share_a_unit() {
+    let mut rng = Rng(5);
+    let mut lines = 0;
+    let mut ray = |_| {
+        let mut steps = vec![Step::Node { line: 4, met: 1, wide: true }];
+        for _ in 0..20 {
+            lines += 4;
+            let leaves = rng.below(16) + 1;
+            lines += leaves;
+            steps.extend((0..leaves).map(|line| Step::Leaf { line: line as u32 }));
+            steps.push(Step::Triangles { count: rng.below(32) as u32 + 1, hits: (rng.draw() & rng.draw()) as u32 });
+            steps.extend([Step::Pop { dropped: true }; 90]);
+            steps.extend([Step::Pop { dropped: false }, Step::Node { line: 8, met: 1, wide: true }]);
+        }
+        lines += 4 + 1;
+        steps.extend([Step::Leaf { line: 3 }, Step::Triangles { count: 1, hits: 1 }, Step::End { found: true }]);
+        steps
+    };
+    let rays: Vec<_> = (0..300).map(&mut ray).collect();
+    let batch = Batch::new(&rays);
+    for (contexts, edges_per_cycle) in [(1, EdgesPerCycle::One), (16, EdgesPerCycle::Three), (64, EdgesPerCycle::One)] {
+        let mut unit = UnitTiming::new(UnitConfig { contexts, edges_per_cycle });
+        let mut around = Smooth::new(&batch, 17);
+        let cycles = around.run(&mut unit);
+        let counts = unit.counts(cycles);
+        assert_eq!([around.done as u64, around.requests], [300, lines]);
+        assert_eq!(counts.states.iter().sum::<u64>(), cycles * contexts as u64);
+        println!("{contexts} contexts: {cycles} cycles, {} ticks, longest queue {}", around.ticks, counts.longest_queue);
+    }
+}
