@@ -141,12 +141,12 @@ def sensitivity(data, values):
 
 def base_part(data, values):
     rows = []
-    for radii in data.each("radii"):
-        for scene in data.each("scene"):
-            r = data.find(scene=scene, radii=radii)["result"]
-            share = 100 * r["traffic"]["l0_share_of_l1"]
-            rows.append([f"{scene}, {radii:g} radii", f"{share:.0f} %", f"{r['accesses_per_ray']:.2f}", f"{r['cycles']:,}", f"{r['energy']['total']:,.0f}", f"{r['dram']['reads']:,}"])
-    values["l0"] = table(["scene", "L0 part of L1 requests", "requests per ray", "cycles", "energy, uJ", "DRAM lines"], rows)
+    for radii, scene, name in [(r, s, n) for r in data.each("radii") for s in data.each("scene") for n in data.each("set")]:
+        pinned = name.partition("=")[2] or "none"
+        r = data.find(scene=scene, radii=radii, set=name)["result"]
+        share = 100 * r["traffic"]["l0_share_of_l1"]
+        rows.append([f"{scene}, {radii:g} radii", pinned, f"{share:.0f} %", f"{r['accesses_per_ray']:.2f}", f"{r['cycles']:,}", f"{r['energy']['total']:,.0f}", f"{r['dram']['reads']:,}"])
+    values["l0"] = table(["scene", "nodes pinned", "L0 part of L1 requests", "requests per ray", "cycles", "energy, uJ", "DRAM lines"], rows)
 
 
 def main():

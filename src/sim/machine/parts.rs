@@ -16,6 +16,9 @@ pub struct Cores {
     pub per_group: u32,
     /// Rays under way at once in a core.
     pub rays_in_flight: u32,
+    /// Quad-BVH nodes, from the root on in memory order, that cores hold for good: nobody asks for their lines. Where compute takes no time only; 0 if absent.
+    #[serde(default)]
+    pub pinned_nodes: u32,
     /// Clock of cores, caches and crossbar, in MHz.
     pub clock_mhz: u32,
 }

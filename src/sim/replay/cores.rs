@@ -46,6 +46,7 @@ pub struct FreeCores<S> {
     ports: Vec<Port>,
     rays_in_flight: u32,
     per_group: u32,
+    pinned_nodes: u32,
     under_way: u64,
     /// What the rays had blocks do.
     pub work: Work,
@@ -62,6 +63,7 @@ impl<S: feed::Source> FreeCores<S> {
             ports: vec![Port::default(); cores.total() as usize],
             rays_in_flight: cores.rays_in_flight,
             per_group: cores.per_group,
+            pinned_nodes: cores.pinned_nodes,
             under_way: 0,
             work: Work::default(),
         }
@@ -94,7 +96,7 @@ impl<S: feed::Source> FreeCores<S> {
             let step = event.step();
             // Asked for together: inserted vertices with the children's bound data, and the lines of a leaf.
             let joins = matches!(step, Step::Bounds { .. } | Step::Leaf { .. });
-            let asks = step.lines();
+            let asks = step.lines().filter(|_| !is_pinned(step, self.pinned_nodes));
             if count > 0 && (!joins || count + asks.map_or(0, |(.., lines)| lines as usize) > MOST_LINES) {
                 break;
             }
@@ -155,6 +157,12 @@ impl<S: feed::Source> FreeCores<S> {
             memory.wake_at(state.free, port);
         }
     }
+}
+
+/// Whether a step's node is one of the first `nodes`; the nodes are a memory's first lines.
+#[inline(always)]
+fn is_pinned(step: Step, nodes: u32) -> bool {
+    matches!(step, Step::Node { line, wide, .. } if line >> (1 + u32::from(wide)) < nodes)
 }
 
 impl<S: feed::Source> FrontEnd for FreeCores<S> {

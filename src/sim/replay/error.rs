@@ -28,6 +28,9 @@ pub enum ReplayError {
         /// How many there are.
         count: u64,
     },
+    /// Traversal units hold no nodes.
+    #[error("cores.pinned_nodes = {0}: must be 0 where compute takes time; traversal units hold no nodes")]
+    PinnedNodes(u32),
     /// The waveform's writer.
     #[error("waveform: {0}")]
     Wave(#[from] std::io::Error),

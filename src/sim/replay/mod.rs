@@ -95,6 +95,9 @@ pub fn run_free(machine: &Machine, layout: &Layout, source: impl Source, window:
 /// # Errors
 /// As [`run_free`].
 pub fn run_units(machine: &Machine, layout: &Layout, source: impl Source, window: Option<Window>) -> Result<Run, ReplayError> {
+    if machine.cores.pinned_nodes > 0 {
+        return Err(ReplayError::PinnedNodes(machine.cores.pinned_nodes));
+    }
     let mut units = Units::new(machine, source);
     let run = drive(&mut units, machine, layout, window)?;
     Ok(Run { operations: units.work.operations().clone(), units: Some(units.counts(run.cycles)), ..run })

@@ -40,8 +40,12 @@ impl Tags {
     #[inline]
     pub fn look_up(&mut self, bank: u32, line: u32) -> bool {
         let set = self.set(bank, line);
+        // Mostly it is the one used last.
+        if set[0] == line {
+            return true;
+        }
         let Some(way) = set.iter().position(|&held| held == line) else { return false };
-        set[..=way].rotate_right(1);
+        push_front(&mut set[..=way], line);
         true
     }
 
@@ -49,8 +53,16 @@ impl Tags {
     #[inline]
     pub fn fill(&mut self, bank: u32, line: u32) {
         let set = self.set(bank, line);
-        set.rotate_right(1);
-        set[0] = line;
+        push_front(set, line);
+    }
+}
+
+/// Puts `line` in front of the others, of which the last goes. (Sets are small: a loop beats a copy.)
+#[inline(always)]
+fn push_front(set: &mut [u32], line: u32) {
+    let mut moved = line;
+    for held in set {
+        std::mem::swap(held, &mut moved);
     }
 }
 

@@ -108,6 +108,24 @@ fn a_chase_in_memory_takes_the_way_and_the_memorys_own_time() {
 }
 
 #[test]
+fn pinned_nodes_are_not_asked_for() {
+    let layout = Layout::new(&[Section { kind: Kind::BvhNode, lines: 64 }, Section { kind: Kind::Leaf, lines: 64 }]).unwrap();
+    for (wide, lines) in [(false, 2), (true, 4)] {
+        let node = |(number, met): (u32, u32)| Step::Node { line: number * lines, met, wide };
+        let nodes = [(0, 1), (1, 1), (2, 1), (3, 1), (0, 0)].map(node);
+        let steps = nodes.into_iter().chain([Step::End { found: false }]).collect();
+        let chunk = Chunk::from([Batch::new(&[steps])]);
+        for (pinned, asked) in [(0, 5), (1, 3), (3, 1), (9, 0)] {
+            let machine = machine(&[("cores.pinned_nodes", pinned)]);
+            let run = run_free(&machine, &layout, std::iter::once(chunk.clone()), None).unwrap();
+            assert_eq!(run.counts.l1.requests, u64::from(asked * lines), "{pinned} of {lines} lines");
+            let charged = run_units(&machine, &layout, std::iter::once(chunk.clone()), None);
+            assert_eq!(charged.is_ok(), pinned == 0);
+        }
+    }
+}
+
+#[test]
 fn two_lines_of_one_bank_take_a_cycle_longer_than_two_of_two() {
     let machine = machine(&[("cores.per_group", 2)]);
     let banks = machine.l1.banks;
