@@ -1,8 +1,8 @@
 /// Elastic cross product of two signed vectors: cross_o = p x q = (p.y q.z - p.z q.y, p.z q.x - p.x q.z, p.x q.y - p.y q.x).
 ///
 /// Vectors are {x, y, z}. Legal: components above -2^(W-1), so that each product is below 2^(2W-2) in magnitude and each difference of two fits 2 W
-/// bits. Latency: lod_pkg::cross_product_latency(W), which is that of the multipliers with one factor stage and two of products, and of the
-/// differences, a `pipe_skid`; interval 1.
+/// bits. Latency: lod_pkg::cross_product_latency(W), which is that of the multipliers with one factor stage and
+/// lod_pkg::EDGE_PRODUCT_STAGES of products, and of the differences, a `pipe_skid`; interval 1.
 module cross_product #(
   parameter int unsigned W = 33
 ) (
@@ -26,11 +26,11 @@ module cross_product #(
   for (genvar k = 0; k < 3; k++) begin : g_component
     localparam int unsigned NEXT = (k + 2) % 3;
     localparam int unsigned LAST = (k + 1) % 3;
-    multiplier #(.A_W(W), .B_W(W), .FACTOR_STAGES(1), .PRODUCT_STAGES(2)) u_minuend (
+    multiplier #(.A_W(W), .B_W(W), .FACTOR_STAGES(1), .PRODUCT_STAGES(lod_pkg::EDGE_PRODUCT_STAGES)) u_minuend (
       .clk_i, .rst_ni, .valid_i, .ready_o(ready_product[k]), .a_i(p_i[NEXT*W +: W]), .b_i(q_i[LAST*W +: W]),
       .valid_o(valid_product[k]), .ready_i(ready_products), .product_o(minuends[k*PRODUCT_W +: PRODUCT_W])
     );
-    multiplier #(.A_W(W), .B_W(W), .FACTOR_STAGES(1), .PRODUCT_STAGES(2)) u_subtrahend (
+    multiplier #(.A_W(W), .B_W(W), .FACTOR_STAGES(1), .PRODUCT_STAGES(lod_pkg::EDGE_PRODUCT_STAGES)) u_subtrahend (
       .clk_i, .rst_ni, .valid_i, .ready_o(), .a_i(p_i[LAST*W +: W]), .b_i(q_i[NEXT*W +: W]),
       .valid_o(), .ready_i(ready_products), .product_o(subtrahends[k*PRODUCT_W +: PRODUCT_W])
     );

@@ -1,8 +1,8 @@
 /// Elastic dot product of two signed vectors: sum_o = a.x b.x + a.y b.y + a.z b.z.
 ///
 /// Vectors are {x, y, z}. Legal: any for which the sum and its partial sums fit SUM_W bits, signed. Latency: PRODUCT_STAGES - 1 +
-/// lod_pkg::dot_product_latency(A_W, B_W), which is that of the multipliers with one factor stage and of two sums; interval 1. The last stage of the multipliers, the third from the end, is
-/// a `pipe_skid`.
+/// lod_pkg::dot_product_latency(A_W, B_W), which is that of the multipliers with one factor stage and of two sums; interval 1. The last stage of the
+/// multipliers, the third from the end, is a `pipe_skid`.
 module dot_product #(
   parameter int unsigned A_W = 33,
   parameter int unsigned B_W = 31,

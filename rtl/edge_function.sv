@@ -23,7 +23,7 @@ module edge_function (
   localparam int unsigned N_W = lod_pkg::NORMAL_W;
   localparam int unsigned D_W = lod_pkg::DIRECTION_W / 3;
   localparam int unsigned CROSS_LATENCY = lod_pkg::cross_product_latency(W);
-  localparam int unsigned PRODUCT_STAGES = 2;
+  localparam int unsigned PRODUCT_STAGES = lod_pkg::EDGE_PRODUCT_STAGES;
   localparam int unsigned DOT_LATENCY = PRODUCT_STAGES - 1 + lod_pkg::dot_product_latency(N_W, D_W);
   if (lod_pkg::EDGE_FUNCTION_LATENCY != CROSS_LATENCY + DOT_LATENCY) begin : g_illegal_latency
     $error("edge_function: lod_pkg::EDGE_FUNCTION_LATENCY must be %0d", CROSS_LATENCY + DOT_LATENCY);

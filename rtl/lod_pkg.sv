@@ -54,6 +54,7 @@ package lod_pkg;
   // Bit k: stage k of the box tests is a `pipe_skid`. Two registers follow it.
   localparam logic [63:0] BOX_TEST_SKIDS = 64'd1 << (BOX_TEST_LATENCY - 3);
   localparam logic [63:0] BOX_TEST32_SKIDS = 64'd1 << (BOX_TEST32_LATENCY - 3);
+  localparam int unsigned EDGE_PRODUCT_STAGES = 2;  // registers of the products of an edge function
   localparam int unsigned EDGE_FUNCTION_LATENCY = 14;  // parts of tri_test
   localparam int unsigned TRI_DECIDE_LATENCY = 3;
   localparam int unsigned CONE_TOLERANCE_LATENCY = 7;  // parts of lod_test
@@ -71,12 +72,12 @@ package lod_pkg;
     multiplier_latency = 1 + $clog2(multiplier_limbs(a_w)) + $clog2(multiplier_limbs(b_w));
   endfunction
 
-  // Cycles of `dot_product`: factors, products, two sums; of `cross_product`: factors, products in two stages, differences.
+  // Cycles of `dot_product`: factors, products, two sums; of `cross_product`: factors, products in EDGE_PRODUCT_STAGES, differences.
   function automatic int unsigned dot_product_latency(input int unsigned a_w, input int unsigned b_w);
     dot_product_latency = 1 + multiplier_latency(a_w, b_w) + 2;
   endfunction
   function automatic int unsigned cross_product_latency(input int unsigned w);
-    cross_product_latency = 1 + multiplier_latency(w, w) + 1 + 1;
+    cross_product_latency = 1 + EDGE_PRODUCT_STAGES - 1 + multiplier_latency(w, w) + 1;
   endfunction
 
   // Vertex position or ray origin in units.

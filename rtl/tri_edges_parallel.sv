@@ -30,7 +30,7 @@ module tri_edges_parallel #(
   localparam int unsigned N_W = lod_pkg::NORMAL_W;
   localparam int unsigned D_W = lod_pkg::DIRECTION_W;
   localparam int unsigned CROSS_LATENCY = lod_pkg::cross_product_latency(W);
-  localparam int unsigned PRODUCT_STAGES = 2;
+  localparam int unsigned PRODUCT_STAGES = lod_pkg::EDGE_PRODUCT_STAGES;
   // Where the cross products and the multipliers of the dot products end in a `pipe_skid`, so does what goes beside them.
   localparam logic [63:0] CROSS_SKIDS = 64'd1 << (CROSS_LATENCY - 1);
   localparam logic [63:0] EDGE_SKIDS = CROSS_SKIDS | 64'd1 << (lod_pkg::EDGE_FUNCTION_LATENCY - 3);

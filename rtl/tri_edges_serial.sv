@@ -33,7 +33,7 @@ module tri_edges_serial #(
   localparam int unsigned EDGE_W = lod_pkg::SIGNED_EDGE_W;
   localparam int unsigned PASS_W = 2;
   localparam int unsigned CROSS_LATENCY = lod_pkg::cross_product_latency(W);
-  localparam int unsigned PRODUCT_STAGES = 2;
+  localparam int unsigned PRODUCT_STAGES = lod_pkg::EDGE_PRODUCT_STAGES;
   localparam int unsigned PRODUCT_LATENCY = PRODUCT_STAGES - 1 + lod_pkg::multiplier_latency(N_W, W);
   if (lod_pkg::EDGE_FUNCTION_LATENCY != CROSS_LATENCY + 1 + PRODUCT_LATENCY + 2) begin : g_illegal_latency
     $error("tri_edges_serial: the path of t_num must have the latency of the edge function");
