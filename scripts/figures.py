@@ -104,26 +104,33 @@ def terrains(data, others, values):
 
 def units(free, charged, values):
     rows = []
-    base = {d: gains(*(free.find(radii=d, method=m, set="cores.rays_in_flight=1") for m in ["lod", "bvh"])) for d in free.each("radii")}
+    radii_of_all = free.each("radii")
+
+    def free_gains(radii, name):
+        return gains(*(free.find(radii=radii, method=m, set=name) for m in ["lod", "bvh"]))
+
     for name in charged.each("set"):
         keys = dict(part.split("=") for part in name.split())
         per_group, contexts = int(keys.get("units.per_group", 1)), int(keys["units.contexts"])
-        cells = [per_group, contexts, f"{per_group * contexts / 16:g}"]
-        for radii, whole in base.items():
+        rays = per_group * contexts / 16
+        cells = [per_group, contexts, f"{rays:g}"]
+        for radii in radii_of_all:
+            # With fewer rays than cores, some cores would have none: one ray each is what there is to compare with.
+            whole = free_gains(radii, f"cores.rays_in_flight={max(rays, 1):g}")
             gain = gains(*(charged.find(radii=radii, method=m, set=name) for m in ["lod", "bvh"]))
             cells += [times(gain[1]), f"{100 * gain[1] / whole[1]:.0f} %", times(gain[0]), f"{100 * gain[0] / whole[0]:.0f} %"]
         rows.append((per_group, contexts, cells))
     head = ["units per group", "contexts", "rays per core"]
-    for radii in base:
+    for radii in radii_of_all:
         head += [f"time at {radii:g} radii", "kept", "energy", "kept"]
     values["units"] = table(head, [cells for *_, cells in sorted(rows, key=lambda row: row[:2])])
     rows = []
     for name in free.each("set"):
         cells = [name.split("=")[1]]
-        for radii in base:
-            cells += [times(g) for g in gains(*(free.find(radii=radii, method=m, set=name) for m in ["lod", "bvh"]))]
+        for radii in radii_of_all:
+            cells += [times(g) for g in free_gains(radii, name)]
         rows.append(cells)
-    head = ["rays per core"] + [f"{what} at {radii:g} radii" for radii in base for what in ["energy", "time", "DRAM lines"]]
+    head = ["rays per core"] + [f"{what} at {radii:g} radii" for radii in radii_of_all for what in ["energy", "time", "DRAM lines"]]
     values["free"] = table(head, rows)
 
 
