@@ -109,6 +109,11 @@ impl Operations {
         self.0[operation as usize] += count;
     }
 
+    /// Counts all of `other` too.
+    pub fn join(&mut self, other: &Self) {
+        self.0.iter_mut().zip(other.0).for_each(|(count, more)| *count += more);
+    }
+
     /// How many of `operation`.
     pub fn get(&self, operation: Operation) -> u64 {
         self.0[operation as usize]

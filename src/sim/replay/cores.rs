@@ -5,77 +5,94 @@
 use super::FrontEnd;
 use super::counts::Source;
 use super::feed::{self, Feed, Ray};
-use super::hierarchy::Hierarchy;
-use super::work::Work;
+use super::hierarchy::{Asked, Happening, Hierarchy};
+use super::prefetch::prefetch;
 use crate::sim::machine::Cores;
-use crate::sim::stream::Step;
+use crate::sim::stream::{Asking, Step};
 use crate::traverse::Kind;
-use std::collections::VecDeque;
 
 /// Lines that a ray asks for at once; a leaf of more is read in parts.
 const MOST_LINES: usize = 16;
 
-/// What a core holds of a ray.
+/// No context.
+const NONE: u32 = u32::MAX;
+
+/// What a core holds of a ray. (What most steps need lies in one cache line.)
 #[derive(Clone)]
+#[repr(C, align(64))]
 struct Context {
     ray: Option<Ray>,
-    lines: [(u32, Kind); MOST_LINES],
-    count: u8,
-    sent: u8,
-    come: u8,
+    /// When all that came, or is known to come, is there.
+    ready: u64,
     /// Since when it waits for these lines, and where the one that came last was.
     since: u64,
     from: Source,
+    count: u8,
+    sent: u8,
+    come: u8,
+    /// The next with lines to ask for, of those of its port.
+    next: u32,
+    lines: [u32; MOST_LINES],
+}
+
+impl Context {
+    /// A line comes from the L1 in `cycle`: only of the last is the context told when it is there.
+    #[inline(always)]
+    fn comes(&mut self, context: u32, cycle: u64, memory: &mut Hierarchy) {
+        self.ready = self.ready.max(cycle);
+        if self.come + 1 == self.count {
+            memory.answer_at(self.ready, context, Source::L1);
+        } else {
+            self.come += 1;
+        }
+    }
 }
 
 /// A core's way to its L1.
-#[derive(Clone, Default)]
+#[derive(Clone)]
 struct Port {
-    /// Contexts with lines to ask for.
-    ready: VecDeque<u32>,
     /// The first cycle in which it may ask.
     free: u64,
-    /// It will, or its request is held.
+    /// First and last of the contexts with lines to ask for; the last counts only if there is a first.
+    first: u32,
+    last: u32,
+    /// It will ask, or its request is held.
     awake: bool,
 }
 
 /// All cores.
 pub struct FreeCores<S> {
-    feed: Feed<S>,
+    /// Where rays come from.
+    pub feed: Feed<S>,
     contexts: Vec<Context>,
     ports: Vec<Port>,
     rays_in_flight: u32,
     per_group: u32,
     pinned_nodes: u32,
     under_way: u64,
-    /// What the rays had blocks do.
-    pub work: Work,
 }
 
 impl<S: feed::Source> FreeCores<S> {
     /// Cores that take rays from `source`.
     pub fn new(cores: &Cores, source: S) -> Self {
-        let lines = [(0, Kind::BvhNode); MOST_LINES];
-        let context = Context { ray: None, lines, count: 0, sent: 0, come: 0, since: 0, from: Source::L1 };
+        let lines = [0; MOST_LINES];
+        let context = Context { ray: None, ready: 0, since: 0, from: Source::L1, count: 0, sent: 0, come: 0, next: NONE, lines };
+        let port = Port { free: 0, first: NONE, last: NONE, awake: false };
         Self {
             feed: Feed::new(source, cores.groups),
             contexts: vec![context; (cores.total() * cores.rays_in_flight) as usize],
-            ports: vec![Port::default(); cores.total() as usize],
+            ports: vec![port; cores.total() as usize],
             rays_in_flight: cores.rays_in_flight,
             per_group: cores.per_group,
             pinned_nodes: cores.pinned_nodes,
             under_way: 0,
-            work: Work::default(),
         }
     }
 
     fn next_ray(&mut self, context: u32) {
         let group = context / self.rays_in_flight / self.per_group;
         let ray = self.feed.ray(group);
-        if ray.is_some() {
-            self.under_way += 1;
-            self.work.ray();
-        }
+        self.under_way += u64::from(ray.is_some());
         self.contexts[context as usize].ray = ray;
     }
 
@@ -91,41 +108,43 @@ impl<S: feed::Source> FreeCores<S> {
     fn asks(&mut self, context: u32, memory: &mut Hierarchy) -> bool {
         let state = &mut self.contexts[context as usize];
         let Some(ray) = &mut state.ray else { return false };
-        let (mut count, mut steps, mut end) = (0, 0, None);
+        let counts = memory.counts_mut();
+        let (mut count, mut steps) = (0, 0);
         for event in ray.rest() {
-            let step = event.step();
-            // Asked for together: inserted vertices with the children's bound data, and the lines of a leaf.
-            let joins = matches!(step, Step::Bounds { .. } | Step::Leaf { .. });
-            let asks = step.lines().filter(|_| !is_pinned(step, self.pinned_nodes));
-            if count > 0 && (!joins || count + asks.map_or(0, |(.., lines)| lines as usize) > MOST_LINES) {
-                break;
-            }
-            self.work.step(step);
-            steps += 1;
-            if let Some((kind, first, lines)) = asks {
-                for line in first..first + lines {
-                    state.lines[count] = (line, kind);
-                    count += 1;
+            let Asking { first, mut lines, kind, joins, ends } = event.asking();
+            if ends {
+                if count > 0 {
+                    break;
                 }
+                counts.rays += 1;
+                counts.hits += u64::from(event.step() == Step::End { found: true });
+                self.under_way -= 1;
+                return false;
             }
-            if let Step::End { found } = step {
-                end = Some(found);
+            if self.pinned_nodes > 0 && kind == Kind::BvhNode && first >> lines.trailing_zeros() < self.pinned_nodes {
+                lines = 0; // nodes are a memory's first lines
+            }
+            if count > 0 && (!joins || count + lines as usize > MOST_LINES) {
                 break;
             }
+            steps += 1;
+            for line in first..first + lines {
+                state.lines[count] = line;
+                count += 1;
+            }
+            counts.traffic[kind as usize].l1 += u64::from(lines);
         }
         ray.skip(steps);
-        if let Some(found) = end {
-            let counts = memory.counts_mut();
-            counts.rays += 1;
-            counts.hits += u64::from(found);
-            self.under_way -= 1;
-            return false;
-        }
-        (state.count, state.sent, state.come) = (count as u8, 0, 0);
-        (state.since, state.from) = (memory.now(), Source::L1);
+        (state.count, state.sent, state.come, state.ready) = (count as u8, 0, 0, 0);
+        (state.since, state.from, state.next) = (memory.now(), Source::L1, NONE);
         let port = context / self.rays_in_flight;
         let state = &mut self.ports[port as usize];
-        state.ready.push_back(context);
+        let last = std::mem::replace(&mut state.last, context);
+        if state.first == NONE {
+            state.first = context;
+        } else {
+            self.contexts[last as usize].next = context;
+        }
         if !state.awake {
             if state.free <= memory.now() {
                 self.ask(port, memory);
@@ -142,27 +161,28 @@ impl<S: feed::Source> FreeCores<S> {
     fn ask(&mut self, port: u32, memory: &mut Hierarchy) {
         let state = &mut self.ports[port as usize];
         state.awake = false;
-        let Some(&context) = state.ready.front() else { return };
+        let context = state.first;
+        if context == NONE {
+            return;
+        }
         let asking = &mut self.contexts[context as usize];
-        let (line, kind) = asking.lines[asking.sent as usize];
+        let line = asking.lines[asking.sent as usize];
         asking.sent += 1;
         if asking.sent == asking.count {
-            state.ready.pop_front();
+            state.first = asking.next;
         }
         state.free = memory.now() + 1;
-        if !memory.request(port / self.per_group, port, context, line, kind) {
+        let asked = memory.request(port / self.per_group, port, context, line);
+        if let Asked::Comes(cycle) = asked {
+            asking.comes(context, cycle, memory);
+        }
+        if asked == Asked::Held {
             state.awake = true;
-        } else if !state.ready.is_empty() {
+        } else if state.first != NONE {
             state.awake = true;
             memory.wake_at(state.free, port);
         }
     }
-}
-
-/// Whether a step's node is one of the first `nodes`; the nodes are a memory's first lines.
-#[inline(always)]
-fn is_pinned(step: Step, nodes: u32) -> bool {
-    matches!(step, Step::Node { line, wide, .. } if line >> (1 + u32::from(wide)) < nodes)
 }
 
 impl<S: feed::Source> FrontEnd for FreeCores<S> {
@@ -178,10 +198,39 @@ impl<S: feed::Source> FrontEnd for FreeCores<S> {
     }
 
     #[inline]
+    fn comes(&mut self, context: u32, cycle: u64, memory: &mut Hierarchy) {
+        self.contexts[context as usize].comes(context, cycle, memory);
+    }
+
+    #[inline(always)]
+    fn prefetch(&self, happening: Happening, [far, near]: [Option<u32>; 2]) {
+        if let Happening::Wake(_) = happening {
+            if let Some(port) = far {
+                prefetch(&self.ports, port as usize);
+            }
+            if let Some(port) = near {
+                prefetch(&self.contexts, self.ports[port as usize].first as usize);
+            }
+            return;
+        }
+        if let Some(context) = far {
+            prefetch(&self.contexts, context as usize);
+        }
+        if let Some(ray) = near.and_then(|context| self.contexts[context as usize].ray.as_ref()) {
+            ray.prefetch();
+        }
+    }
+
+    #[inline]
     fn answer(&mut self, context: u32, from: Source, memory: &mut Hierarchy) {
         let state = &mut self.contexts[context as usize];
-        state.come += 1;
         state.from = state.from.max(from);
+        if state.come + 1 == state.count && state.ready > memory.now() {
+            // Another line, found at once, is not there yet.
+            let (ready, from) = (state.ready, state.from);
+            return memory.answer_at(ready, context, from);
+        }
+        state.come += 1;
         if state.come == state.count {
             let waited = memory.now() - state.since;
             memory.counts_mut().waits.add(state.from, waited);

@@ -1,5 +1,7 @@
 //! Where rays come from: batches of the functional layer, in order, taken by groups of cores as they need them.
 
+use super::prefetch::prefetch;
+use crate::sim::energy::Operations;
 use crate::sim::stream::{Batch, Event};
 use std::sync::Arc;
 
@@ -52,6 +54,12 @@ impl Ray {
     pub fn skip(&mut self, steps: u32) {
         self.at += steps;
     }
+
+    /// The steps behind the next are read soon.
+    #[inline(always)]
+    pub fn prefetch(&self) {
+        prefetch(self.chunk[self.batch as usize].events(), self.at as usize);
+    }
 }
 
 /// Hands out rays: a group takes a batch at a time, its cores the rays of it.
@@ -60,14 +68,14 @@ pub struct Feed<S> {
     /// The chunk that batches come from, and its next.
     open: Option<(Chunk, u32)>,
     groups: Vec<Option<Current>>,
-    /// Rays that were taken.
-    pub taken: u64,
+    /// What the rays of batches taken have the hardware blocks do.
+    pub operations: Operations,
 }
 
 impl<S: Source> Feed<S> {
     /// Nothing taken yet.
     pub fn new(source: S, groups: u32) -> Self {
-        Self { source, open: None, groups: vec![None; groups as usize], taken: 0 }
+        Self { source, open: None, groups: vec![None; groups as usize], operations: Operations::default() }
     }
 
     /// The next ray of `group`; `None` when all are taken.
@@ -76,9 +84,11 @@ impl<S: Source> Feed<S> {
             if let Some(current) = &mut self.groups[group as usize] {
                 let batch = &current.chunk[current.batch as usize];
                 if (current.ray as usize) < batch.rays() {
-                    let at = batch.start(current.ray as usize);
+                    let at_ray = current.ray as usize;
+                    let at = batch.start(at_ray);
                     current.ray += 1;
-                    self.taken += 1;
+                    // The next to be taken.
+                    prefetch(batch.events(), batch.end(at_ray) as usize);
                     return Some(Ray { chunk: Arc::clone(&current.chunk), batch: current.batch, at });
                 }
             }
@@ -94,6 +104,7 @@ impl<S: Source> Feed<S> {
             {
                 let batch = *next;
                 *next += 1;
+                self.operations.join(chunk[batch as usize].operations());
                 return Some(Current { chunk: Arc::clone(chunk), batch, ray: 0 });
             }
             self.open = None;

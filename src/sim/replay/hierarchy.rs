@@ -15,11 +15,20 @@ use super::wheel::Wheel;
 use crate::sim::dram::{Dram, DramConfig, DramError};
 use crate::sim::machine::{Cores, Crossbar, Machine};
 use crate::sim::stream::Layout;
-use crate::traverse::Kind as Data;
 use std::collections::VecDeque;
 
 /// Bits of an event's number; its kind stands above.
 const ID_BITS: u32 = 28;
+
+/// Classes of the wheel: within a cycle lines are moved and given first, then asked for.
+const MOVES: usize = 0;
+const SERVES: usize = 1;
+const ANSWERS: usize = 2;
+const WAKES: usize = 3;
+
+/// How many events ahead of it an event's own state is fetched, and how many what that leads to.
+const FAR: usize = 5;
+const NEAR: usize = 2;
 
 /// What happens.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -39,6 +48,17 @@ enum Kind {
     FillL1FromDram,
 }
 
+impl Kind {
+    const fn class(self) -> usize {
+        match self {
+            Self::Wake => WAKES,
+            Self::AnswerL1 | Self::AnswerL2 | Self::AnswerDram => ANSWERS,
+            Self::ServeL1 => SERVES,
+            _ => MOVES,
+        }
+    }
+}
+
 const KINDS: [Kind; 12] = [
     Kind::Wake,
     Kind::AnswerL1,
@@ -54,11 +74,24 @@ const KINDS: [Kind; 12] = [
     Kind::FillL1FromDram,
 ];
 
+/// What became of a request.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Asked {
+    /// The line comes in this cycle, which nobody will be told.
+    Comes(u64),
+    /// Its [`Happening::Answer`] will come.
+    Taken,
+    /// Its bank's queue is full: it is held, and taken later, of which the port is woken; until then the port may ask for nothing.
+    Held,
+}
+
 /// What whoever uses the hierarchy is told.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Happening {
     /// The cycle that was asked for with [`Hierarchy::wake_at`], or the port's request was taken that had been held.
     Wake(u32),
+    /// The line that was asked for comes in this cycle from the L1, which nobody will be told again.
+    Comes(u32, u64),
     /// The line that was asked for came.
     Answer(u32, Source),
 }
@@ -190,48 +223,66 @@ impl Hierarchy {
         self.enter(cycle, Kind::Wake, id);
     }
 
+    /// Tells [`Happening::Answer`] of `waiter` in `cycle`.
+    #[inline]
+    pub fn answer_at(&mut self, cycle: u64, waiter: u32, from: Source) {
+        let kind = match from {
+            Source::L1 => Kind::AnswerL1,
+            Source::L2 => Kind::AnswerL2,
+            Source::Dram => Kind::AnswerDram,
+        };
+        self.enter(cycle, kind, waiter);
+    }
+
     #[inline]
     fn enter(&mut self, cycle: u64, kind: Kind, id: u32) {
         debug_assert!(id < 1 << ID_BITS);
-        self.wheel.at(cycle, (kind as u32) << ID_BITS | id);
+        self.wheel.at(cycle, kind.class(), (kind as u32) << ID_BITS | id);
     }
 
-    /// `port` of `group` asks for `line`, which holds `data` and of which `waiter` is told. False if the bank's queue is full: the request is held, and taken later,
-    /// of which `port` is woken; until then it may ask for nothing.
+    /// `port` of `group` asks for `line`, of which `waiter` is told. (What it holds is counted by whoever asks.)
     #[inline]
-    pub fn request(&mut self, group: u32, port: u32, waiter: u32, line: u32, data: Data) -> bool {
+    pub fn request(&mut self, group: u32, port: u32, waiter: u32, line: u32) -> Asked {
         let now = self.now();
         let bank = self.l1.bank(group, line);
-        self.counts.traffic[data as usize].l1 += 1;
+        if self.l1.hit_now(bank, line, now) {
+            return Asked::Comes(now + self.l1.latency);
+        }
         let request = Request { waiter, line, since: now };
         if !self.l1.has_room(bank, 0) || !self.held[bank as usize].is_empty() {
             self.held[bank as usize].push_back(Held { port, request });
-            return false;
+            return Asked::Held;
         }
         self.enqueue_l1(bank, request);
-        true
+        Asked::Taken
     }
 
     #[inline]
     fn enqueue_l1(&mut self, bank: u32, request: Request) {
         match self.l1.enqueue(bank, request) {
-            Some(cycle) if cycle <= self.now() => self.serve_l1(bank),
+            Some(cycle) if cycle <= self.now() => self.serve_l1_and_tell(bank),
             Some(cycle) => self.enter(cycle, Kind::ServeL1, bank),
             None => (),
         }
     }
 
+    fn serve_l1_and_tell(&mut self, bank: u32) {
+        if let Some(waiter) = self.serve_l1(bank) {
+            self.enter(self.now() + self.l1.latency, Kind::AnswerL1, waiter);
+        }
+    }
+
+    /// Serves a bank of an L1: whose line it found, which comes after the L1's latency.
     #[inline]
-    fn serve_l1(&mut self, bank: u32) {
+    fn serve_l1(&mut self, bank: u32) -> Option<u32> {
         let now = self.now();
-        let Some((request, served, again)) = self.l1.serve(bank, now) else { return };
+        let (request, served, again) = self.l1.serve(bank, now)?;
         if again {
             self.enter(now + 1, Kind::ServeL1, bank);
         }
         let known = now + self.l1.latency;
         match served {
-            Served::Hit => self.enter(known, Kind::AnswerL1, request.waiter),
-            Served::Merged => (),
+            Served::Hit | Served::Merged => (),
             Served::Miss(register) => {
                 let group = self.l1.copy(bank);
                 self.ports[group as usize].misses.push_back((register, known));
@@ -245,6 +296,7 @@ impl Hierarchy {
             self.enter(now + 1, Kind::Wake, held.port);
             self.enqueue_l1(bank, Request { since: now, ..held.request });
         }
+        (served == Served::Hit).then_some(request.waiter)
     }
 
     /// The head of a group's misses goes on, if its bank has room.
@@ -326,8 +378,8 @@ impl Hierarchy {
     fn fill_l1(&mut self, register: u32, kind: Kind) {
         let now = self.now();
         let wheel = &mut self.wheel;
-        if self.l1.fill(register, now, |waiter| wheel.at(now, (kind as u32) << ID_BITS | waiter)) {
-            self.serve_l1(self.l1.bank_of(register));
+        if self.l1.fill(register, now, |waiter| wheel.at(now, kind.class(), (kind as u32) << ID_BITS | waiter)) {
+            self.serve_l1_and_tell(self.l1.bank_of(register));
         }
     }
 
@@ -368,7 +420,7 @@ impl Hierarchy {
         let (cores, wheel) = (&self.cores, &mut self.wheel);
         self.dram.advance(cores.start_ps(now), &mut |register, ps| {
             // Registers have ID_BITS.
-            wheel.at(cores.cycle_at(ps).max(now), (Kind::FillL2 as u32) << ID_BITS | register as u32);
+            wheel.at(cores.cycle_at(ps).max(now), MOVES, (Kind::FillL2 as u32) << ID_BITS | register as u32);
         });
         if self.refused_count > 0 {
             self.push_refused();
@@ -395,23 +447,53 @@ impl Hierarchy {
     /// The next happening of this cycle.
     #[inline]
     pub fn take(&mut self) -> Option<Happening> {
+        const ID: u32 = (1 << ID_BITS) - 1;
         loop {
-            let event = self.wheel.take()?;
-            let id = event & ((1 << ID_BITS) - 1);
-            match KINDS[(event >> ID_BITS) as usize] {
-                Kind::Wake => return Some(Happening::Wake(id)),
-                Kind::AnswerL1 => return Some(Happening::Answer(id, Source::L1)),
-                Kind::AnswerL2 => return Some(Happening::Answer(id, Source::L2)),
-                Kind::AnswerDram => return Some(Happening::Answer(id, Source::Dram)),
-                Kind::ServeL1 => self.serve_l1(id),
-                Kind::Crossbar => self.crossbar(id),
-                Kind::ArriveL2 => self.arrive_l2(id),
-                Kind::ServeL2 => self.serve_l2(id),
-                Kind::PushDram => self.push_dram(id),
-                Kind::FillL2 => self.fill_l2(id),
-                Kind::FillL1FromL2 => self.fill_l1(id, Kind::AnswerL2),
-                Kind::FillL1FromDram => self.fill_l1(id, Kind::AnswerDram),
+            if let Some(event) = self.wheel.take(MOVES) {
+                self.moves(KINDS[(event >> ID_BITS) as usize], event & ID);
+            } else if let Some(event) = self.wheel.take(SERVES) {
+                if let Some(next) = self.wheel.peek(SERVES, FAR) {
+                    self.l1.prefetch(next & ID);
+                }
+                if let Some(next) = self.wheel.peek(SERVES, NEAR) {
+                    self.l1.prefetch_tags(next & ID);
+                }
+                if let Some(waiter) = self.serve_l1(event & ID) {
+                    return Some(Happening::Comes(waiter, self.now() + self.l1.latency));
+                }
+            } else if let Some(event) = self.wheel.take(ANSWERS) {
+                return Some(match KINDS[(event >> ID_BITS) as usize] {
+                    Kind::AnswerL2 => Happening::Answer(event & ID, Source::L2),
+                    Kind::AnswerDram => Happening::Answer(event & ID, Source::Dram),
+                    _ => Happening::Answer(event & ID, Source::L1),
+                });
+            } else {
+                return self.wheel.take(WAKES).map(|event| Happening::Wake(event & ID));
             }
+        }
+    }
+
+    /// Who is told soon what is like `happening`, if anybody: first far ahead, then near.
+    #[inline(always)]
+    pub fn soon(&self, happening: Happening) -> [Option<u32>; 2] {
+        let class = match happening {
+            Happening::Answer(..) => ANSWERS,
+            Happening::Wake(_) => WAKES,
+            Happening::Comes(..) => return [None; 2],
+        };
+        [FAR, NEAR].map(|ahead| self.wheel.peek(class, ahead).map(|event| event & ((1 << ID_BITS) - 1)))
+    }
+
+    fn moves(&mut self, kind: Kind, id: u32) {
+        match kind {
+            Kind::Crossbar => self.crossbar(id),
+            Kind::ArriveL2 => self.arrive_l2(id),
+            Kind::ServeL2 => self.serve_l2(id),
+            Kind::PushDram => self.push_dram(id),
+            Kind::FillL2 => self.fill_l2(id),
+            Kind::FillL1FromL2 => self.fill_l1(id, Kind::AnswerL2),
+            Kind::FillL1FromDram => self.fill_l1(id, Kind::AnswerDram),
+            Kind::Wake | Kind::AnswerL1 | Kind::AnswerL2 | Kind::AnswerDram | Kind::ServeL1 => unreachable!("of another class"),
         }
     }
 

@@ -2,6 +2,7 @@
 
 use super::counts::CacheCounts;
 use super::mshr::{Entered, Mshrs};
+use super::prefetch::prefetch;
 use super::tags::Tags;
 use crate::sim::machine::Cache;
 use std::collections::VecDeque;
@@ -97,6 +98,19 @@ impl Level {
         self.banks[bank as usize].queue.len() + ahead < self.queue
     }
 
+    /// Looks up `line` in `bank` at once, if nobody is before it: true if it is found. Otherwise nothing has happened.
+    #[inline(always)]
+    pub fn hit_now(&mut self, bank: u32, line: u32, now: u64) -> bool {
+        let state = &mut self.banks[bank as usize];
+        if state.awake || state.free > now || !state.queue.is_empty() || !self.tags.look_up(bank, line) {
+            return false;
+        }
+        state.free = now + 1;
+        self.counts.hits += 1;
+        self.counts.requests += 1;
+        true
+    }
+
     /// Puts a request into the queue of `bank`. Gives the cycle in which to [`Level::serve`] the bank, if it slept.
     #[inline]
     pub fn enqueue(&mut self, bank: u32, request: Request) -> Option<u64> {
@@ -155,6 +169,20 @@ impl Level {
         self.counts.blocked_cycles += now - since;
         bank.awake = true;
         true
+    }
+
+    /// `bank` is served soon.
+    #[inline(always)]
+    pub fn prefetch(&self, bank: u32) {
+        prefetch(&self.banks, bank as usize);
+    }
+
+    /// The same, later: its state is there.
+    #[inline(always)]
+    pub fn prefetch_tags(&self, bank: u32) {
+        if let Some(request) = self.banks[bank as usize].queue.front() {
+            self.tags.prefetch(bank, request.line);
+        }
     }
 
     /// Requests queued and misses under way in cache `copy`.

@@ -3,6 +3,7 @@
 //! - `wheel`: what happens when.
 //! - `feed`: rays, from the functional layer ([`stream`](super::stream)).
 //! - `cores`: who asks for lines when compute takes no time; `units`: traversal units, who do in the cycles of the RTL.
+//! - `prefetch`: what is read soon.
 //! - `hierarchy`: L1s, crossbar, L2 and memory; `level`, `tags`, `mshr` and `slots` are its parts.
 //! - `intervals`: everything counted, over time; `wave`: a window of cycles as a waveform.
 //!
@@ -16,12 +17,12 @@ mod hierarchy;
 mod intervals;
 mod level;
 mod mshr;
+mod prefetch;
 mod slots;
 mod tags;
 mod units;
 mod wave;
 mod wheel;
-mod work;
 
 #[cfg(test)]
 mod tests;
@@ -87,7 +88,7 @@ pub fn dram_of(machine: &Machine) -> Result<DramConfig, ReplayError> {
 pub fn run_free(machine: &Machine, layout: &Layout, source: impl Source, window: Option<Window>) -> Result<Run, ReplayError> {
     let mut cores = FreeCores::new(&machine.cores, source);
     let run = drive(&mut cores, machine, layout, window)?;
-    Ok(Run { operations: cores.work.operations().clone(), ..run })
+    Ok(Run { operations: cores.feed.operations, ..run })
 }
 
 /// The same with traversal units that take the cycles of the RTL.
@@ -100,7 +101,7 @@ pub fn run_units(machine: &Machine, layout: &Layout, source: impl Source, window
     }
     let mut units = Units::new(machine, source);
     let run = drive(&mut units, machine, layout, window)?;
-    Ok(Run { operations: units.work.operations().clone(), units: Some(units.counts(run.cycles)), ..run })
+    Ok(Run { units: Some(units.counts(run.cycles)), operations: units.feed.operations, ..run })
 }
 
 /// Who asks the memory hierarchy for lines.
@@ -109,6 +110,12 @@ trait FrontEnd {
     fn start(&mut self, memory: &mut Hierarchy);
     /// The cycle it asked for has come, or its held request was taken.
     fn wake(&mut self, id: u32, memory: &mut Hierarchy);
+    /// `waiter`'s line comes from the L1 in `cycle`.
+    fn comes(&mut self, waiter: u32, cycle: u64, memory: &mut Hierarchy) {
+        memory.answer_at(cycle, waiter, counts::Source::L1);
+    }
+    /// What happens soon to those, far ahead and near, is like `happening`.
+    fn prefetch(&self, _happening: Happening, _soon: [Option<u32>; 2]) {}
     /// A line came for `waiter`.
     fn answer(&mut self, waiter: u32, from: counts::Source, memory: &mut Hierarchy);
     /// Rays are under way.
@@ -128,8 +135,10 @@ fn drive(front: &mut impl FrontEnd, machine: &Machine, layout: &Layout, window: 
     front.start(&mut memory);
     loop {
         while let Some(happening) = memory.take() {
+            front.prefetch(happening, memory.soon(happening));
             match happening {
                 Happening::Wake(id) => front.wake(id, &mut memory),
+                Happening::Comes(waiter, cycle) => front.comes(waiter, cycle, &mut memory),
                 Happening::Answer(waiter, from) => front.answer(waiter, from, &mut memory),
             }
         }

@@ -1,5 +1,6 @@
 //! Which lines a level of cache holds: sets of lines, the most recently used first.
 
+use super::prefetch::prefetch;
 use crate::sim::machine::Cache;
 
 /// No line.
@@ -29,11 +30,23 @@ impl Tags {
         line & ((1 << self.bank_bits) - 1)
     }
 
+    /// Where the set of `line` begins.
+    #[inline(always)]
+    fn from(&self, bank: u32, line: u32) -> usize {
+        let set = line >> self.bank_bits & ((1 << self.set_bits) - 1);
+        (((bank as usize) << self.set_bits) + set as usize) * self.ways
+    }
+
     #[inline]
     fn set(&mut self, bank: u32, line: u32) -> &mut [u32] {
-        let set = line >> self.bank_bits & ((1 << self.set_bits) - 1);
-        let from = (((bank as usize) << self.set_bits) + set as usize) * self.ways;
+        let from = self.from(bank, line);
         &mut self.lines[from..from + self.ways]
+    }
+
+    /// `line` is looked up soon.
+    #[inline(always)]
+    pub fn prefetch(&self, bank: u32, line: u32) {
+        prefetch(&self.lines, self.from(bank, line));
     }
 
     /// Whether `bank`, counted through all copies, holds `line`, which becomes its set's most recently used.

@@ -6,9 +6,8 @@
 use super::FrontEnd;
 use super::counts::Source;
 use super::feed::{self, Feed, Ray};
-use super::hierarchy::Hierarchy;
+use super::hierarchy::{Asked, Hierarchy};
 use super::slots::Slots;
-use super::work::Work;
 use crate::sim::machine::Machine;
 use crate::sim::stream::Step;
 use crate::sim::timing::{Ports, Request, Steps, UnitTiming};
@@ -59,12 +58,11 @@ enum Port {
 
 /// All units.
 pub struct Units<S> {
-    feed: Feed<S>,
+    /// Where rays come from.
+    pub feed: Feed<S>,
     units: Vec<Unit>,
     per_group: u32,
     under_way: u64,
-    /// What the rays had blocks do.
-    pub work: Work,
 }
 
 impl<S: feed::Source> Units<S> {
@@ -80,7 +78,7 @@ impl<S: feed::Source> Units<S> {
             answers: Slots::default(),
         };
         let units = (0..groups * per_group).map(unit).collect();
-        Self { feed: Feed::new(source, groups), units, per_group, under_way: 0, work: Work::default() }
+        Self { feed: Feed::new(source, groups), units, per_group, under_way: 0 }
     }
 
     /// What all units did in `cycles` cycles.
@@ -100,8 +98,8 @@ impl<S: feed::Source> Units<S> {
         }
         if unit.free <= now {
             let group = id / self.per_group;
-            let Self { feed, under_way, work, .. } = self;
-            let mut ports = Surroundings { id, group, port: &mut unit.port, feed, under_way, work, memory };
+            let Self { feed, under_way, .. } = self;
+            let mut ports = Surroundings { id, group, port: &mut unit.port, feed, under_way, memory };
             unit.timing.tick(now, &mut ports);
             unit.free = now + 1;
         }
@@ -174,7 +172,6 @@ struct Surroundings<'a, S> {
     port: &'a mut Port,
     feed: &'a mut Feed<S>,
     under_way: &'a mut u64,
-    work: &'a mut Work,
     memory: &'a mut Hierarchy,
 }
 
@@ -184,14 +181,6 @@ impl<S: feed::Source> Ports for Surroundings<'_, S> {
     fn ray(&mut self) -> Option<Ray> {
         let ray = self.feed.ray(self.group)?;
         *self.under_way += 1;
-        self.work.ray();
-        for event in ray.rest() {
-            let step = event.step();
-            self.work.step(step);
-            if let Step::End { .. } = step {
-                break;
-            }
-        }
         Some(ray)
     }
 
@@ -203,11 +192,14 @@ impl<S: feed::Source> Ports for Surroundings<'_, S> {
                 true
             }
             Port::Free => {
-                let taken = self.memory.request(self.group, 2 * self.id + 1, self.id << TAG_BITS | u32::from(tag), line, kind);
-                if !taken {
-                    *self.port = Port::Held;
+                let waiter = self.id << TAG_BITS | u32::from(tag);
+                self.memory.counts_mut().traffic[kind as usize].l1 += 1;
+                match self.memory.request(self.group, 2 * self.id + 1, waiter, line) {
+                    Asked::Comes(cycle) => self.memory.answer_at(cycle, waiter, Source::L1),
+                    Asked::Taken => (),
+                    Asked::Held => *self.port = Port::Held,
                 }
-                taken
+                *self.port == Port::Free
             }
         }
     }

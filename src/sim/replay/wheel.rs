@@ -1,67 +1,74 @@
 //! What happens when: a wheel of cycles, and a heap for what is too far ahead for it.
 //!
-//! Events of one cycle happen in the order in which they were entered, so a run depends on nothing else.
+//! Events are of some classes, and those of one class in one cycle happen in the order in which they were entered, so a run depends on nothing else.
 
 use std::cmp::Reverse;
 use std::collections::BinaryHeap;
 
-/// Cycles that the wheel sees ahead.
-const SLOTS: u64 = 4096;
+/// Cycles that the wheel sees ahead. (Few: that every slot is still in the caches of the machine we run on is worth more than that no event lies beyond.)
+const SLOTS: u64 = 64;
+
+/// Classes of events.
+pub const CLASSES: usize = 4;
+
+/// Events of a cycle, by class.
+type Lists = [Vec<u32>; CLASSES];
 
 /// Events by cycle; a `u32` each.
 pub struct Wheel {
-    slots: Vec<Vec<u32>>,
-    /// Bit k of word w: slot 64 w + k has events.
-    full: [u64; SLOTS as usize / 64],
+    slots: Vec<Lists>,
+    /// Bit k: slot k has events.
+    full: u64,
     now: u64,
     /// Events of this cycle, and how many of them have happened.
-    current: Vec<u32>,
-    happened: usize,
-    /// Beyond the wheel: by cycle, then in order of entry.
-    far: BinaryHeap<Reverse<(u64, u64, u32)>>,
+    current: Lists,
+    happened: [usize; CLASSES],
+    /// Beyond the wheel: by cycle, then in order of entry, with their classes.
+    far: BinaryHeap<Reverse<(u64, u64, usize, u32)>>,
     entered: u64,
 }
 
 impl Wheel {
     /// Cycle 0, and nothing to happen.
     pub fn new() -> Self {
-        let slots = vec![Vec::new(); SLOTS as usize];
-        let full = [0; SLOTS as usize / 64];
-        Self { slots, full, now: 0, current: Vec::new(), happened: 0, far: BinaryHeap::new(), entered: 0 }
+        let slots = vec![Lists::default(); SLOTS as usize];
+        Self { slots, full: 0, now: 0, current: Lists::default(), happened: [0; CLASSES], far: BinaryHeap::new(), entered: 0 }
     }
 
     /// This cycle.
+    #[inline(always)]
     pub fn now(&self) -> u64 {
         self.now
     }
 
     /// Enters an event of `cycle`, this one or a later one.
     #[inline]
-    pub fn at(&mut self, cycle: u64, event: u32) {
+    pub fn at(&mut self, cycle: u64, class: usize, event: u32) {
         debug_assert!(cycle >= self.now, "cycle {cycle} was before {}", self.now);
         if cycle == self.now {
-            self.current.push(event);
+            self.current[class].push(event);
         } else if cycle - self.now < SLOTS {
-            self.enter(cycle, event);
+            let slot = cycle % SLOTS;
+            self.slots[slot as usize][class].push(event);
+            self.full |= 1 << slot;
         } else {
-            self.far.push(Reverse((cycle, self.entered, event)));
+            self.far.push(Reverse((cycle, self.entered, class, event)));
             self.entered += 1;
         }
     }
 
-    #[inline]
-    fn enter(&mut self, cycle: u64, event: u32) {
-        let slot = (cycle % SLOTS) as usize;
-        self.slots[slot].push(event);
-        self.full[slot / 64] |= 1 << (slot % 64);
+    /// The next event of `class` in this cycle.
+    #[inline(always)]
+    pub fn take(&mut self, class: usize) -> Option<u32> {
+        let event = self.current[class].get(self.happened[class]).copied();
+        self.happened[class] += usize::from(event.is_some());
+        event
     }
 
-    /// The next event of this cycle.
-    #[inline]
-    pub fn take(&mut self) -> Option<u32> {
-        let event = self.current.get(self.happened).copied();
-        self.happened += usize::from(event.is_some());
-        event
+    /// The event of `class` that comes behind `ahead` others, if it is in this cycle.
+    #[inline(always)]
+    pub fn peek(&self, class: usize, ahead: usize) -> Option<u32> {
+        self.current[class].get(self.happened[class] + ahead).copied()
     }
 
     /// The next cycle with events, after this one.
@@ -72,36 +79,29 @@ impl Wheel {
     }
 
     fn next_near(&self) -> Option<u64> {
-        let first = ((self.now + 1) % SLOTS) as usize;
-        let words = self.full.len();
-        let ahead = |slot: usize| (slot + SLOTS as usize - first) as u64 % SLOTS;
-        // The word in which the search begins comes last again, for the slots before the first.
-        (0..=words).find_map(|step| {
-            let word = (first / 64 + step) % words;
-            let mask = match step {
-                0 => !0 << (first % 64),
-                s if s == words => !(!0 << (first % 64)),
-                _ => !0,
-            };
-            let bits = self.full[word] & mask;
-            (bits != 0).then(|| self.now + 1 + ahead(64 * word + bits.trailing_zeros() as usize))
-        })
+        let first = self.now + 1;
+        // Slots in the order of their cycles.
+        let ahead = self.full.rotate_right((first % SLOTS) as u32);
+        (ahead != 0).then(|| first + u64::from(ahead.trailing_zeros()))
     }
 
     /// Goes to `cycle`; no event may lie between.
     pub fn go(&mut self, cycle: u64) {
-        debug_assert!(self.happened == self.current.len() && self.next().is_none_or(|next| next >= cycle), "events are left behind");
+        debug_assert!((0..CLASSES).all(|class| self.peek(class, 0).is_none()), "events are left behind");
+        debug_assert!(self.next().is_none_or(|next| next >= cycle), "events are passed over");
         self.now = cycle;
-        self.current.clear();
-        self.happened = 0;
-        let slot = (cycle % SLOTS) as usize;
-        std::mem::swap(&mut self.current, &mut self.slots[slot]);
-        self.full[slot / 64] &= !(1 << (slot % 64));
-        while let Some(&Reverse((far, _, event))) = self.far.peek()
+        let slot = cycle % SLOTS;
+        for (current, later) in self.current.iter_mut().zip(&mut self.slots[slot as usize]) {
+            current.clear();
+            std::mem::swap(current, later);
+        }
+        self.happened = [0; CLASSES];
+        self.full &= !(1 << slot);
+        while let Some(&Reverse((far, _, class, event))) = self.far.peek()
             && far < cycle + SLOTS
         {
             self.far.pop();
-            self.at(far, event);
+            self.at(far, class, event);
         }
     }
 }
@@ -111,17 +111,17 @@ mod tests {
     use super::*;
 
     #[test]
-    fn events_come_by_cycle_and_in_the_order_of_entry() {
+    fn events_come_by_cycle_and_class_and_in_the_order_of_entry() {
         let mut wheel = Wheel::new();
         let mut expected: Vec<(u64, u32)> = Vec::new();
         for (event, cycle) in [5, 3, 5, 4095, 4096, 100_000, 0, 3, 4100, 100_000, 64, 63].into_iter().enumerate() {
-            wheel.at(cycle, event as u32);
+            wheel.at(cycle, event % 2, event as u32);
             expected.push((cycle, event as u32));
         }
-        expected.sort_by_key(|&(cycle, _)| cycle);
+        expected.sort_by_key(|&(cycle, event)| (cycle, event % 2));
         let mut happened = Vec::new();
         loop {
-            while let Some(event) = wheel.take() {
+            while let Some(event) = wheel.take(0).or_else(|| wheel.take(1)) {
                 happened.push((wheel.now(), event));
             }
             let Some(next) = wheel.next() else { break };
@@ -133,10 +133,11 @@ mod tests {
     #[test]
     fn an_event_may_enter_another_of_the_same_cycle() {
         let mut wheel = Wheel::new();
-        wheel.at(7, 1);
+        wheel.at(7, 0, 1);
         wheel.go(7);
-        assert_eq!(wheel.take(), Some(1));
-        wheel.at(7, 2);
-        assert_eq!((wheel.take(), wheel.take(), wheel.next()), (Some(2), None, None));
+        assert_eq!(wheel.take(0), Some(1));
+        wheel.at(7, 0, 2);
+        assert_eq!((wheel.take(1), wheel.peek(0, 0), wheel.peek(0, 1)), (None, Some(2), None));
+        assert_eq!((wheel.take(0), wheel.take(0), wheel.next()), (Some(2), None, None));
     }
 }

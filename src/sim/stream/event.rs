@@ -46,6 +46,34 @@ impl Step {
     }
 }
 
+/// The lines of a step, by its number; a node of wide boxes has twice as many.
+const LINES: [u32; 16] = [2, 2, 0, 1, 2, 1, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0];
+
+/// What they hold.
+const KINDS: [Kind; 16] = {
+    let mut kinds = [Kind::BvhNode; 16];
+    (kinds[1], kinds[3], kinds[4], kinds[5]) = (Kind::L0Record, Kind::VertexData, Kind::BoundData, Kind::Leaf);
+    kinds
+};
+
+/// Bit k: lines of step k are asked for together with those before: inserted vertices with the children's bound data, and the lines of a leaf.
+const JOINS: u16 = 1 << 4 | 1 << 5;
+
+/// A step, as whoever only reads its lines sees it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Asking {
+    /// The first line, and how many.
+    pub first: u32,
+    /// 0, 1, 2 or 4.
+    pub lines: u32,
+    /// What they hold.
+    pub kind: Kind,
+    /// They are asked for together with those before.
+    pub joins: bool,
+    /// The ray ends.
+    pub ends: bool,
+}
+
 /// A [`Step`] as a word.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub struct Event(u64);
@@ -68,6 +96,20 @@ impl Event {
             Step::Triangles { count, hits } => Self::new(6, count, false, hits),
             Step::Pop { dropped } => Self::new(7, 0, dropped, 0),
             Step::End { found } => Self::new(8, 0, found, 0),
+        }
+    }
+
+    /// What a ray does with its step towards its next lines. (Tables and no branches: of every step, that is all the replay without compute looks at.)
+    #[inline(always)]
+    pub fn asking(self) -> Asking {
+        let step = (self.0 & 15) as usize;
+        let wide = (self.0 >> 15 & 1) as u32;
+        Asking {
+            first: (self.0 >> 16) as u32,
+            lines: LINES[step] << (wide & u32::from(step == 0)),
+            kind: KINDS[step],
+            joins: JOINS >> step & 1 == 1,
+            ends: step == 8,
         }
     }
 
@@ -117,7 +159,12 @@ mod tests {
             Step::End { found: false },
         ];
         for step in steps {
-            assert_eq!(Event::pack(step).step(), step);
+            let event = Event::pack(step);
+            assert_eq!(event.step(), step);
+            let asking = event.asking();
+            assert_eq!((asking.lines > 0).then_some((asking.kind, asking.first, asking.lines)), step.lines());
+            assert_eq!(asking.joins, matches!(step, Step::Bounds { .. } | Step::Leaf { .. }));
+            assert_eq!(asking.ends, matches!(step, Step::End { .. }));
         }
     }
 }

@@ -5,9 +5,12 @@
 
 mod event;
 mod record;
+mod work;
 
-pub use event::{Event, Step};
+pub use event::{Asking, Event, Step};
 pub use record::{Layout, Recorder};
+
+use super::energy::Operations;
 
 /// Rays that a group of cores takes at once: a tile of the picture.
 #[derive(Clone, Debug, Default)]
@@ -15,12 +18,13 @@ pub struct Batch {
     events: Box<[Event]>,
     /// Where each ray's steps end.
     ends: Box<[u32]>,
+    operations: Operations,
 }
 
 impl Batch {
     /// The rays written to `recorder`, the steps of each ending where `ends` says.
     pub fn recorded(recorder: Recorder<'_>, ends: Vec<u32>) -> Self {
-        Self { events: recorder.into_events(), ends: ends.into() }
+        Self::of(recorder.into_events(), ends.into())
     }
 
     /// A batch of these rays.
@@ -29,7 +33,17 @@ impl Batch {
             *end += ray.len() as u32;
             Some(*end)
         });
-        Self { ends: ends.collect(), events: rays.iter().flatten().map(|&step| Event::pack(step)).collect() }
+        Self::of(rays.iter().flatten().map(|&step| Event::pack(step)).collect(), ends.collect())
+    }
+
+    fn of(events: Box<[Event]>, ends: Box<[u32]>) -> Self {
+        let operations = work::operations(ends.len(), &events);
+        Self { events, ends, operations }
+    }
+
+    /// What its rays have the hardware blocks do.
+    pub fn operations(&self) -> &Operations {
+        &self.operations
     }
 
     /// Number of rays.
@@ -41,6 +55,12 @@ impl Batch {
     #[inline(always)]
     pub fn events(&self) -> &[Event] {
         &self.events
+    }
+
+    /// Where the steps of ray `ray` end.
+    #[inline(always)]
+    pub fn end(&self, ray: usize) -> u32 {
+        self.ends[ray]
     }
 
     /// Where the steps of ray `ray` begin; they end with [`Step::End`].

@@ -1,32 +1,16 @@
 //! What rays have the hardware blocks do, whatever it takes.
 
+use super::event::{Event, Step};
 use crate::sim::energy::{Operation, Operations};
-use crate::sim::stream::Step;
 
-/// Operations of the blocks.
-#[derive(Clone, Debug, Default, PartialEq, Eq)]
-pub struct Work {
-    operations: Operations,
-    /// A full-resolution BVH: its hits are on the mesh already.
-    leaves: bool,
-}
-
-impl Work {
-    /// The operations.
-    pub fn operations(&self) -> &Operations {
-        &self.operations
-    }
-
-    /// A ray begins.
-    #[inline]
-    pub fn ray(&mut self) {
-        self.operations.add(Operation::RaySetup, 1);
-    }
-
-    /// A step of a ray.
-    #[inline]
-    pub fn step(&mut self, step: Step) {
-        let mut add = |operation, count| self.operations.add(operation, count);
+/// The operations of `rays` rays, whose steps are these.
+pub fn operations(rays: usize, steps: &[Event]) -> Operations {
+    let mut operations = Operations::default();
+    let mut add = |operation, count| operations.add(operation, count);
+    add(Operation::RaySetup, rays as u64);
+    // A full-resolution BVH: its hits are on the mesh already.
+    let mut leaves = false;
+    for step in steps.iter().map(|event| event.step()) {
         if let Some((.., lines)) = step.lines() {
             add(Operation::NodeAddress, u64::from(lines));
         }
@@ -39,7 +23,7 @@ impl Work {
             Step::Tree { .. } => add(Operation::TreeBase, 1),
             Step::Lod { .. } => add(Operation::LodTest, 1),
             Step::Split { .. } => add(Operation::Tessellate, 1),
-            Step::Leaf { .. } => self.leaves = true,
+            Step::Leaf { .. } => leaves = true,
             Step::Triangles { count, hits } => {
                 add(Operation::TriTest, u64::from(count));
                 let met = u64::from(hits.count_ones());
@@ -48,9 +32,10 @@ impl Work {
             }
             Step::End { found: true } => {
                 add(Operation::HitDivide, 2);
-                add(Operation::BaryMap, u64::from(!self.leaves));
+                add(Operation::BaryMap, u64::from(!leaves));
             }
             Step::Pop { .. } | Step::End { found: false } => (),
         }
     }
+    operations
 }
