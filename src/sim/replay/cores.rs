@@ -4,8 +4,9 @@
 
 use super::FrontEnd;
 use super::counts::Source;
+use super::event::{Asked, Happening};
 use super::feed::{self, Feed, Ray};
-use super::hierarchy::{Asked, Happening, Hierarchy};
+use super::hierarchy::Hierarchy;
 use super::prefetch::prefetch;
 use crate::sim::machine::Cores;
 use crate::sim::stream::{Asking, Step};

@@ -8,6 +8,7 @@
 //! Whoever cannot go on sleeps in a list and is woken by what makes room: nothing polls.
 
 use super::counts::{Counts, Source};
+use super::event::{ANSWERS, Asked, FAR, Happening, Kind, MOVES, NEAR, SERVES, WAKES, id};
 use super::level::{Level, Request, Served};
 use super::slots::Slots;
 use super::wave::Shown;
@@ -16,85 +17,6 @@ use crate::sim::dram::{Dram, DramConfig, DramError};
 use crate::sim::machine::{Cores, Crossbar, Machine};
 use crate::sim::stream::Layout;
 use std::collections::VecDeque;
-
-/// Bits of an event's number; its kind stands above.
-const ID_BITS: u32 = 28;
-
-/// Classes of the wheel: within a cycle lines are moved and given first, then asked for.
-const MOVES: usize = 0;
-const SERVES: usize = 1;
-const ANSWERS: usize = 2;
-const WAKES: usize = 3;
-
-/// How many events ahead of it an event's own state is fetched, and how many what that leads to.
-const FAR: usize = 5;
-const NEAR: usize = 2;
-
-/// What happens.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-#[repr(u32)]
-enum Kind {
-    Wake,
-    AnswerL1,
-    AnswerL2,
-    AnswerDram,
-    ServeL1,
-    Crossbar,
-    ArriveL2,
-    ServeL2,
-    PushDram,
-    FillL2,
-    FillL1FromL2,
-    FillL1FromDram,
-}
-
-impl Kind {
-    const fn class(self) -> usize {
-        match self {
-            Self::Wake => WAKES,
-            Self::AnswerL1 | Self::AnswerL2 | Self::AnswerDram => ANSWERS,
-            Self::ServeL1 => SERVES,
-            _ => MOVES,
-        }
-    }
-}
-
-const KINDS: [Kind; 12] = [
-    Kind::Wake,
-    Kind::AnswerL1,
-    Kind::AnswerL2,
-    Kind::AnswerDram,
-    Kind::ServeL1,
-    Kind::Crossbar,
-    Kind::ArriveL2,
-    Kind::ServeL2,
-    Kind::PushDram,
-    Kind::FillL2,
-    Kind::FillL1FromL2,
-    Kind::FillL1FromDram,
-];
-
-/// What became of a request.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Asked {
-    /// The line comes in this cycle, which nobody will be told.
-    Comes(u64),
-    /// Its [`Happening::Answer`] will come.
-    Taken,
-    /// Its bank's queue is full: it is held, and taken later, of which the port is woken; until then the port may ask for nothing.
-    Held,
-}
-
-/// What whoever uses the hierarchy is told.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Happening {
-    /// The cycle that was asked for with [`Hierarchy::wake_at`], or the port's request was taken that had been held.
-    Wake(u32),
-    /// The line that was asked for comes in this cycle from the L1, which nobody will be told again.
-    Comes(u32, u64),
-    /// The line that was asked for came.
-    Answer(u32, Source),
-}
 
 impl Shown for Hierarchy {
     fn show(&self, show: &mut dyn FnMut(&str, &str, u64)) {
@@ -236,8 +158,7 @@ impl Hierarchy {
 
     #[inline]
     fn enter(&mut self, cycle: u64, kind: Kind, id: u32) {
-        debug_assert!(id < 1 << ID_BITS);
-        self.wheel.at(cycle, kind.class(), (kind as u32) << ID_BITS | id);
+        self.wheel.at(cycle, kind.class(), kind.event(id));
     }
 
     /// `port` of `group` asks for `line`, of which `waiter` is told. (What it holds is counted by whoever asks.)
@@ -378,7 +299,7 @@ impl Hierarchy {
     fn fill_l1(&mut self, register: u32, kind: Kind) {
         let now = self.now();
         let wheel = &mut self.wheel;
-        if self.l1.fill(register, now, |waiter| wheel.at(now, kind.class(), (kind as u32) << ID_BITS | waiter)) {
+        if self.l1.fill(register, now, |waiter| wheel.at(now, kind.class(), kind.event(waiter))) {
             self.serve_l1_and_tell(self.l1.bank_of(register));
         }
     }
@@ -419,8 +340,8 @@ impl Hierarchy {
         let now = self.now();
         let (cores, wheel) = (&self.cores, &mut self.wheel);
         self.dram.advance(cores.start_ps(now), &mut |register, ps| {
-            // Registers have ID_BITS.
-            wheel.at(cores.cycle_at(ps).max(now), MOVES, (Kind::FillL2 as u32) << ID_BITS | register as u32);
+            // It was a register's 32 bits.
+            wheel.at(cores.cycle_at(ps).max(now), MOVES, Kind::FillL2.event(register as u32));
         });
         if self.refused_count > 0 {
             self.push_refused();
@@ -447,28 +368,27 @@ impl Hierarchy {
     /// The next happening of this cycle.
     #[inline]
     pub fn take(&mut self) -> Option<Happening> {
-        const ID: u32 = (1 << ID_BITS) - 1;
         loop {
             if let Some(event) = self.wheel.take(MOVES) {
-                self.moves(KINDS[(event >> ID_BITS) as usize], event & ID);
+                self.moves(Kind::of(event), id(event));
             } else if let Some(event) = self.wheel.take(SERVES) {
                 if let Some(next) = self.wheel.peek(SERVES, FAR) {
-                    self.l1.prefetch(next & ID);
+                    self.l1.prefetch(id(next));
                 }
                 if let Some(next) = self.wheel.peek(SERVES, NEAR) {
-                    self.l1.prefetch_tags(next & ID);
+                    self.l1.prefetch_tags(id(next));
                 }
-                if let Some(waiter) = self.serve_l1(event & ID) {
+                if let Some(waiter) = self.serve_l1(id(event)) {
                     return Some(Happening::Comes(waiter, self.now() + self.l1.latency));
                 }
             } else if let Some(event) = self.wheel.take(ANSWERS) {
-                return Some(match KINDS[(event >> ID_BITS) as usize] {
-                    Kind::AnswerL2 => Happening::Answer(event & ID, Source::L2),
-                    Kind::AnswerDram => Happening::Answer(event & ID, Source::Dram),
-                    _ => Happening::Answer(event & ID, Source::L1),
+                return Some(match Kind::of(event) {
+                    Kind::AnswerL2 => Happening::Answer(id(event), Source::L2),
+                    Kind::AnswerDram => Happening::Answer(id(event), Source::Dram),
+                    _ => Happening::Answer(id(event), Source::L1),
                 });
             } else {
-                return self.wheel.take(WAKES).map(|event| Happening::Wake(event & ID));
+                return self.wheel.take(WAKES).map(|event| Happening::Wake(id(event)));
             }
         }
     }
@@ -481,7 +401,7 @@ impl Hierarchy {
             Happening::Wake(_) => WAKES,
             Happening::Comes(..) => return [None; 2],
         };
-        [FAR, NEAR].map(|ahead| self.wheel.peek(class, ahead).map(|event| event & ((1 << ID_BITS) - 1)))
+        [FAR, NEAR].map(|ahead| self.wheel.peek(class, ahead).map(id))
     }
 
     fn moves(&mut self, kind: Kind, id: u32) {

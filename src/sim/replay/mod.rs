@@ -4,6 +4,7 @@
 //! - `feed`: rays, from the functional layer ([`stream`](super::stream)).
 //! - `cores`: who asks for lines when compute takes no time; `units`: traversal units, who do in the cycles of the RTL.
 //! - `prefetch`: what is read soon.
+//! - `event`: what happens, and what others are told of it.
 //! - `hierarchy`: L1s, crossbar, L2 and memory; `level`, `tags`, `mshr` and `slots` are its parts.
 //! - `intervals`: everything counted, over time; `wave`: a window of cycles as a waveform.
 //!
@@ -12,6 +13,7 @@
 mod cores;
 mod counts;
 mod error;
+mod event;
 mod feed;
 mod hierarchy;
 mod intervals;
@@ -39,7 +41,8 @@ use super::machine::Machine;
 use super::stream::Layout;
 use super::unit::UnitCounts;
 use cores::FreeCores;
-use hierarchy::{Happening, Hierarchy};
+use event::Happening;
+use hierarchy::Hierarchy;
 use intervals::Intervals;
 use units::Units;
 use wave::Wave;

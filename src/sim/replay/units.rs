@@ -5,8 +5,9 @@
 
 use super::FrontEnd;
 use super::counts::Source;
+use super::event::Asked;
 use super::feed::{self, Feed, Ray};
-use super::hierarchy::{Asked, Hierarchy};
+use super::hierarchy::Hierarchy;
 use super::slots::Slots;
 use crate::sim::machine::Machine;
 use crate::sim::stream::Step;

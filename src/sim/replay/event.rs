@@ -1,0 +1,103 @@
+//! What happens in the memory hierarchy, and what others are told of it.
+
+use super::counts::Source;
+
+/// Bits of the number of who has an event; its kind stands above.
+const ID_BITS: u32 = 28;
+
+/// Classes of the wheel: within a cycle lines are moved and given first, then asked for.
+pub const MOVES: usize = 0;
+pub const SERVES: usize = 1;
+pub const ANSWERS: usize = 2;
+pub const WAKES: usize = 3;
+
+/// How many events ahead of it an event's own state is fetched, and how many what that leads to.
+pub const FAR: usize = 5;
+pub const NEAR: usize = 2;
+
+/// What happens.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[repr(u32)]
+pub enum Kind {
+    Wake,
+    AnswerL1,
+    AnswerL2,
+    AnswerDram,
+    ServeL1,
+    Crossbar,
+    ArriveL2,
+    ServeL2,
+    PushDram,
+    FillL2,
+    FillL1FromL2,
+    FillL1FromDram,
+}
+
+impl Kind {
+    /// The kind of an event.
+    #[inline(always)]
+    pub fn of(event: u32) -> Self {
+        KINDS[(event >> ID_BITS) as usize]
+    }
+
+    /// The event of this kind that `id` has.
+    #[inline(always)]
+    pub fn event(self, id: u32) -> u32 {
+        debug_assert!(id < 1 << ID_BITS);
+        (self as u32) << ID_BITS | id
+    }
+
+    /// Its class.
+    #[inline(always)]
+    pub const fn class(self) -> usize {
+        match self {
+            Self::Wake => WAKES,
+            Self::AnswerL1 | Self::AnswerL2 | Self::AnswerDram => ANSWERS,
+            Self::ServeL1 => SERVES,
+            _ => MOVES,
+        }
+    }
+}
+
+/// Who has an event.
+#[inline(always)]
+pub fn id(event: u32) -> u32 {
+    event & ((1 << ID_BITS) - 1)
+}
+
+const KINDS: [Kind; 12] = [
+    Kind::Wake,
+    Kind::AnswerL1,
+    Kind::AnswerL2,
+    Kind::AnswerDram,
+    Kind::ServeL1,
+    Kind::Crossbar,
+    Kind::ArriveL2,
+    Kind::ServeL2,
+    Kind::PushDram,
+    Kind::FillL2,
+    Kind::FillL1FromL2,
+    Kind::FillL1FromDram,
+];
+
+/// What became of a request.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Asked {
+    /// The line comes in this cycle, which nobody will be told.
+    Comes(u64),
+    /// Its [`Happening::Answer`] will come.
+    Taken,
+    /// Its bank's queue is full: it is held, and taken later, of which the port is woken; until then the port may ask for nothing.
+    Held,
+}
+
+/// What whoever uses the hierarchy is told.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Happening {
+    /// The cycle that was asked for with [`Hierarchy::wake_at`](super::hierarchy::Hierarchy::wake_at), or the port's request was taken that had been held.
+    Wake(u32),
+    /// The line that was asked for comes in this cycle from the L1, which nobody will be told again.
+    Comes(u32, u64),
+    /// The line that was asked for came.
+    Answer(u32, Source),
+}
