@@ -64,15 +64,14 @@ module bary_step_child (
 
 endmodule
 
-/// All levels: the sum is kept, as many children are appended to the node as there are levels, and none leaves everything as it is.
-module bary_map_levels (
+/// All levels, on the node: one child number is appended for each, and none changes nothing.
+module bary_map_node (
   input logic                   clk_i,
   input logic                   rst_ni,
   input lod_pkg::bary_map_in_t  in_i,
   input logic [7:0]             tag_i
 );
 
-  localparam int unsigned WIDE = lod_pkg::BARY_W + 2;
   localparam int unsigned NODE_W = lod_pkg::NODE_INDEX_W;
 
   lod_pkg::bary_map_out_t out;
@@ -81,11 +80,10 @@ module bary_map_levels (
   bary_map u_map (.clk_i, .rst_ni, .valid_i(1'b1), .ready_o(ready), .in_i, .tag_i, .valid_o(valid), .ready_i(1'b1), .out_o(out), .tag_o(tag));
 
   always_comb begin
-    assume (WIDE'(in_i.b0) + WIDE'(in_i.b1) + WIDE'(in_i.b2) == WIDE'(1) << 31);
-    assume (in_i.levels <= lod_pkg::MAX_LEVELS);
-    assume (in_i.levels == '0 || (in_i.node >> (NODE_W - 2 * in_i.levels)) == '0);
-    assert (WIDE'(out.b0) + WIDE'(out.b1) + WIDE'(out.b2) == WIDE'(1) << 31);
-    assert ((out.node >> (2 * in_i.levels)) == in_i.node || in_i.levels == lod_pkg::MAX_LEVELS);
+    assume (in_i.levels <= 4'(lod_pkg::MAX_LEVELS));
+    // The node is below 4^(10 - levels).
+    assume ((in_i.node >> (NODE_W - 2 * in_i.levels)) == '0);
+    assert ((out.node >> (2 * in_i.levels)) == in_i.node);
     assert (in_i.levels != '0 || (out.node == in_i.node && out.b0 == in_i.b0 && out.b1 == in_i.b1 && out.b2 == in_i.b2));
     assert (tag == tag_i && valid && ready);
     cover (in_i.levels == 4'd10 && out.node[19:18] == 2'd2 && out.node[1:0] == 2'd1);

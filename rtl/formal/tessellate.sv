@@ -43,54 +43,52 @@ module morph_between (
 
 endmodule
 
-/// The edge of two triangles, seen from both: whichever corners the two triangles do not share, and from whichever end, the vertex inserted on it is the same.
+/// One edge in six triangles, at each place and from either end: whatever their other corners, vertices and states are, the vertex on that edge is the same.
 module tessellate_shared (
-  input logic                    clk_i,
-  input logic                    rst_ni,
-  input lod_pkg::tessellate_in_t in_i,
-  input lod_pkg::tessellate_in_t other_i,
-  input logic [1:0]              edge_i,
-  input logic [1:0]              other_edge_i,
-  input logic                    reversed_i
+  input logic                                  clk_i,
+  input logic                                  rst_ni,
+  input logic [3:0]                            grid_i,
+  input lod_pkg::point_t                       a_i,
+  input lod_pkg::point_t                       b_i,
+  input lod_pkg::point_t                       q_i,
+  input logic [lod_pkg::EDGE_STATE_W-1:0]      s_i,
+  // What the six do not share: their third corner, other vertices and states.
+  input logic [6*3*lod_pkg::POINT_W-1:0]       points_i,
+  input logic [6*2*lod_pkg::EDGE_STATE_W-1:0]  states_i
 );
 
-  localparam int unsigned W = lod_pkg::POINT_W;
+  localparam int unsigned P_W = lod_pkg::POINT_W;
+  localparam int unsigned S_W = lod_pkg::EDGE_STATE_W;
 
-  lod_pkg::tessellate_out_t out, other;
-  logic [3:0]               unused_handshake;
-  logic [15:0]              unused_tags;
-  tessellate u_one (
-    .clk_i, .rst_ni, .valid_i(1'b1), .ready_o(unused_handshake[0]), .in_i, .tag_i(8'd0),
-    .valid_o(unused_handshake[1]), .ready_i(1'b1), .out_o(out), .tag_o(unused_tags[7:0])
-  );
-  tessellate u_other (
-    .clk_i, .rst_ni, .valid_i(1'b1), .ready_o(unused_handshake[2]), .in_i(other_i), .tag_i(8'd0),
-    .valid_o(unused_handshake[3]), .ready_i(1'b1), .out_o(other), .tag_o(unused_tags[15:8])
-  );
+  logic [6*P_W-1:0] vertex;
+  for (genvar k = 0; k < 6; k++) begin : g_triangle
+    localparam int unsigned PLACE = k % 3;
+    logic [P_W-1:0] first, second, c, q1, q2;
+    logic [S_W-1:0] s1, s2;
+    assign {first, second} = k < 3 ? {a_i, b_i} : {b_i, a_i};
+    assign {c, q1, q2}     = points_i[k*3*P_W +: 3*P_W];
+    assign {s1, s2}        = states_i[k*2*S_W +: 2*S_W];
 
-  // {first end, second end, stored vertex, state} of an edge, and its morphed vertex.
-  localparam int unsigned EDGE_W = 3 * W + lod_pkg::EDGE_STATE_W;
-  logic [EDGE_W-1:0] here, there;
-  logic [W-1:0]      vertex_here, vertex_there;
-  always_comb begin
-    unique case (edge_i)
-      2'd0: {here, vertex_here} = {in_i.p1, in_i.p2, in_i.q0, in_i.s0, out.q0};
-      2'd1: {here, vertex_here} = {in_i.p2, in_i.p0, in_i.q1, in_i.s1, out.q1};
-      default: {here, vertex_here} = {in_i.p0, in_i.p1, in_i.q2, in_i.s2, out.q2};
-    endcase
-    unique case (other_edge_i)
-      2'd0: {there, vertex_there} = {other_i.p1, other_i.p2, other_i.q0, other_i.s0, other.q0};
-      2'd1: {there, vertex_there} = {other_i.p2, other_i.p0, other_i.q1, other_i.s1, other.q1};
-      default: {there, vertex_there} = {other_i.p0, other_i.p1, other_i.q2, other_i.s2, other.q2};
-    endcase
+    lod_pkg::tessellate_in_t  in;
+    lod_pkg::tessellate_out_t out;
+    if (PLACE == 0) begin : g_0
+      assign in = {grid_i, s_i, s1, s2, c, first, second, q_i, q1, q2};
+      assign vertex[k*P_W +: P_W] = out.q0;
+    end else if (PLACE == 1) begin : g_1
+      assign in = {grid_i, s1, s_i, s2, second, c, first, q1, q_i, q2};
+      assign vertex[k*P_W +: P_W] = out.q1;
+    end else begin : g_2
+      assign in = {grid_i, s1, s2, s_i, first, second, c, q1, q2, q_i};
+      assign vertex[k*P_W +: P_W] = out.q2;
+    end
+    tessellate #(.TAG_W(1)) u_tessellate (
+      .clk_i, .rst_ni, .valid_i(1'b1), .ready_o(), .in_i(in), .tag_i(1'b0), .valid_o(), .ready_i(1'b1), .out_o(out), .tag_o()
+    );
   end
 
   always_comb begin
-    assume (in_i.grid == other_i.grid);
-    assume (reversed_i ? here == {there[EDGE_W-W-1 -: W], there[EDGE_W-1 -: W], there[EDGE_W-2*W-1:0]} : here == there);
-    assert (vertex_here == vertex_there);
-    cover (reversed_i && edge_i == 2'd0 && other_edge_i == 2'd2 && in_i.p0 != other_i.p2);
-    cover (!reversed_i && edge_i == 2'd1 && other_edge_i == 2'd0 && in_i.s1 == 9'd77);
+    for (int unsigned k = 1; k < 6; k++) assert (vertex[k*P_W +: P_W] == vertex[0 +: P_W]);
+    cover (s_i == 9'd77 && vertex[P_W-1:0] != q_i);
   end
 
 endmodule

@@ -26,7 +26,7 @@ class Change:
 
 @dataclasses.dataclass(frozen=True)
 class Property:
-    """One property. `inside`: the module that the fragment is set into; without it the property is a module of its own, of the property's name."""
+    """One property. `inside`: the module that the fragment is set into; without it the property is a module of its own."""
 
     name: str
     says: str
@@ -34,15 +34,17 @@ class Property:
     width: str
     file: str
     mutants: tuple
+    module: str = ""  # the property's module, if not of its name
     inside: str = ""
     registers: bool = False  # keep the elastic registers; else they are wires
+    memory: bool = False  # has one: its state is a record with an array, else one long number
     induction: int = 0  # depth; 0: combinational
     reach: int = 8  # cycles in which covers and broken mutants must show
     stubs: tuple = ()  # modules of rtl/formal that take the place of those of rtl/
     cut: tuple = ()  # wires that become free variables
     parameters: tuple = ()
     narrow: tuple = ()  # changes that make a narrower version
-    limit: int = 300
+    limit: int = 100
     seconds: int = 1  # about how long it takes: the longest are started first
 
     @property
@@ -53,7 +55,7 @@ class Property:
     @property
     def top(self):
         """The module to prove."""
-        return self.inside or self.name
+        return self.inside or self.module or self.name
 
 
 def load():

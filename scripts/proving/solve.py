@@ -32,14 +32,23 @@ class Solver:
 
     def cases(self, one):
         """The cases of a property: functions that return verdict by verdict."""
-        yield lambda: self.proof(one)
-        yield lambda: self.cover(one)
+        yield lambda: self.timed("proof", "proved", self.proof, one)
+        yield lambda: self.timed("cover", "reached", self.cover, one)
         for number in range(len(one.mutants)):
-            yield lambda number=number: self.mutant(one, number)
+            yield lambda number=number: self.timed("mutant", "rejected", self.mutant, one, number)
+
+    @staticmethod
+    def timed(kind, wanted, case, *arguments):
+        """The verdict of a case; one that cannot be tried says why and leaves the others alone."""
+        started = time.monotonic()
+        try:
+            got, trace = case(*arguments)
+        except Failure as why:
+            got, trace = f"error: {why}", ""
+        return Verdict(kind, got, wanted, time.monotonic() - started, trace)
 
     def proof(self, one):
         """The asserts hold."""
-        started = time.monotonic()
         model = self.model(one, "proof")
         if not one.induction:
             queries = [model.one_state() + [f"(assert (not {model.holds(0)}))"]]
@@ -51,34 +60,32 @@ class Solver:
         for name, query in zip(("base", "step") if one.induction else ("proof",), queries):
             got, trace = self.ask(model, name, query, one.limit)
             if got != "unsat":
-                return Verdict("proof", {"sat": f"fails ({name})"}.get(got, got), "proved", time.monotonic() - started, trace)
-        return Verdict("proof", "proved", "proved", time.monotonic() - started)
+                return {"sat": f"fails ({name})"}.get(got, got), trace
+        return "proved", ""
 
     def cover(self, one):
         """Every cover is reached."""
-        started = time.monotonic()
         model = self.model(one, "cover")
         if not model.covers:
-            return Verdict("cover", "no cover statement", "reached", time.monotonic() - started)
+            return "no cover statement", ""
         steps = one.reach if one.induction else 1
         states = model.states(steps, True) if one.induction else model.one_state()
         for number in range(model.covers):
             somewhere = " ".join(f"({model.name('c', number)} s{k})" for k in range(steps))
             got, _ = self.ask(model, f"cover{number}", states + [f"(assert (or {somewhere}))"], one.limit)
             if got != "sat":
-                return Verdict("cover", {"unsat": f"never reached (cover {number})"}.get(got, got), "reached", time.monotonic() - started)
-        return Verdict("cover", "reached", "reached", time.monotonic() - started)
+                return {"unsat": f"never reached (cover {number})"}.get(got, got), ""
+        return "reached", ""
 
     def mutant(self, one, number):
         """The mutant breaks an assert, from the start on."""
-        started = time.monotonic()
         model = self.model(one, f"mutant{number}", one.mutants[number])
         if one.induction:
             query = model.states(one.reach, True) + [model.broken(one.reach)]
         else:
             query = model.one_state() + [f"(assert (not {model.holds(0)}))"]
         got, _ = self.ask(model, "mutant", query, one.limit)
-        return Verdict("mutant", {"sat": "rejected", "unsat": "lives"}.get(got, got), "rejected", time.monotonic() - started)
+        return {"sat": "rejected", "unsat": "lives"}.get(got, got), ""
 
     def model(self, one, variant, mutant=None):
         """Yosys' view of the property, with or without a mutant."""
@@ -93,7 +100,7 @@ class Solver:
             head, end, tail = texts[one.inside].rpartition("\nendmodule")
             texts[one.inside] = f"{head}\n{own}{end}{tail}"
         else:
-            texts[one.name] = own
+            texts[one.top] = own
         stubs = one.stubs if one.registers else (*one.stubs, "pipe_stage", "pipe_skid")
         for stub in stubs:
             texts[stub] = (FORMAL / f"{stub}_stub.sv").read_text(encoding="utf-8")
@@ -108,19 +115,19 @@ class Solver:
     def yosys(self, one, folder, files):
         """Writes model.smt2 into the folder."""
         lines = [
-            f"read_verilog -sv -formal {' '.join(files)}",
-            *(f"chparam -set {name} {value} {one.top}" for name, value in one.parameters),
-            f"hierarchy -check -top {one.top}",
+            f"read_verilog -sv -formal -defer {' '.join(files)}",
+            f"hierarchy -check -top {one.top}" + "".join(f" -chparam {name} {value}" for name, value in one.parameters),
             "proc",
             "flatten",
             *(f"select -assert-count 1 w:{wire}\ncutpoint w:{wire}" for wire in one.cut),
-            "memory -nordff -nomap" if one.registers else "check -assert -nocells" if False else "opt_clean",
+            "memory -nordff -nomap",
             "async2sync",
             "chformal -lower",
             "setundef -undriven -anyseq",
             "opt -keepdc -fast",
+            "dffunmap",
             "opt_clean",
-            f"write_smt2 -{'stdt' if one.registers else 'stbv'} {folder}/model.smt2",
+            f"write_smt2 -{'stdt' if one.memory else 'stbv'} {folder}/model.smt2",
         ]
         (ROOT / folder / "model.ys").write_text("\n".join(lines) + "\n", encoding="utf-8")
         command = [self.tools.yosys, "-q", "-l", f"{folder}/yosys.log", "-s", f"{folder}/model.ys"]
