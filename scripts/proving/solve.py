@@ -51,13 +51,14 @@ class Solver:
         """The asserts hold."""
         model = self.model(one, "proof")
         if not one.induction:
-            queries = [model.one_state() + [f"(assert (not {model.holds(0)}))"]]
+            queries = [("proof", model.one_state() + [f"(assert (not {model.holds(0)}))"])]
         else:
             last = one.induction
-            base = model.states(last, True) + [model.broken(last)]
-            step = model.states(last + 1, False) + [f"(assert {model.holds(k)})" for k in range(last)] + [f"(assert (not {model.holds(last)}))"]
-            queries = [base, step]
-        for name, query in zip(("base", "step") if one.induction else ("proof",), queries):
+            before = model.states(last + 1, False) + [f"(assert {model.holds(k)})" for k in range(last)]
+            goals = [f"({model.name('a', number)} s{last})" for number in range(model.asserts)] if one.apart else [model.holds(last)]
+            queries = [("base", model.states(last, True) + [model.broken(last)])]
+            queries += [("step", before + [f"(assert (not {goal}))"]) for goal in goals]
+        for name, query in queries:
             got, trace = self.ask(model, name, query, one.limit)
             if got != "unsat":
                 return {"sat": f"fails ({name})"}.get(got, got), trace
@@ -168,8 +169,9 @@ class Model:
         self.top = top.group(1)
         self.inputs = re.findall(r"^; yosys-smt2-input (\S+) \d+", text, re.M)
         self.covers = len(re.findall(r"^; yosys-smt2-cover ", text, re.M))
+        self.asserts = len(re.findall(r"^; yosys-smt2-assert ", text, re.M))
         self.asked = 1
-        if not re.search(r"^; yosys-smt2-assert ", text, re.M):
+        if not self.asserts:
             raise Failure(f"{one.name} asserts nothing")
         if not one.induction and re.search(r"^; yosys-smt2-register ", text, re.M):
             raise Failure(f"{one.name} has registers and must be proved by induction")
