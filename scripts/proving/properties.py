@@ -45,7 +45,7 @@ class Property:
     cut: tuple = ()  # wires that become free variables
     parameters: tuple = ()
     narrow: tuple = ()  # changes that make a narrower version
-    limit: int = 100
+    limit: int = 60
     seconds: int = 1  # about how long it takes: the longest are started first
 
     @property
