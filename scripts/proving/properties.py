@@ -38,14 +38,14 @@ class Property:
     inside: str = ""
     registers: bool = False  # keep the elastic registers; else they are wires
     memory: bool = False  # has one: its state is a record with an array, else one long number
-    apart: bool = False  # decide the asserts of the induction's step one by one
+    apart: bool = False  # decide the asserts one by one
     induction: int = 0  # depth; 0: combinational
     reach: int = 8  # cycles in which covers and broken mutants must show
     stubs: tuple = ()  # modules of rtl/formal that take the place of those of rtl/
     cut: tuple = ()  # wires that become free variables
     parameters: tuple = ()
     narrow: tuple = ()  # changes that make a narrower version
-    limit: int = 60
+    limit: int = 240  # seconds of one decision
     seconds: int = 1  # about how long it takes: the longest are started first
 
     @property

@@ -50,14 +50,14 @@ class Solver:
     def proof(self, one):
         """The asserts hold."""
         model = self.model(one, "proof")
-        if not one.induction:
-            queries = [("proof", model.one_state() + [f"(assert (not {model.holds(0)}))"])]
+        last = one.induction
+        goals = [f"({model.name('a', number)} s{last})" for number in range(model.asserts)] if one.apart else [model.holds(last)]
+        if not last:
+            before, step, queries = model.one_state(), "proof", []
         else:
-            last = one.induction
-            before = model.states(last + 1, False) + [f"(assert {model.holds(k)})" for k in range(last)]
-            goals = [f"({model.name('a', number)} s{last})" for number in range(model.asserts)] if one.apart else [model.holds(last)]
             queries = [("base", model.states(last, True) + [model.broken(last)])]
-            queries += [("step", before + [f"(assert (not {goal}))"]) for goal in goals]
+            before, step = model.states(last + 1, False) + [f"(assert {model.holds(k)})" for k in range(last)], "step"
+        queries += [(step, before + [f"(assert (not {goal}))"]) for goal in goals]
         for name, query in queries:
             got, trace = self.ask(model, name, query, one.limit)
             if got != "unsat":
