@@ -153,8 +153,8 @@ class Solver:
                 path.unlink()
         verdict, _, rest = got.stdout.partition("\n")
         if verdict == "sat":
-            found = re.findall(r"\(\(?\|\w+_n ([^|]+)\| (s\d+)\)\s+#([xb])([0-9a-f]+)\)", rest)
-            return verdict, "".join(f"\n  {state} {port} = {base}{digits}" for port, state, base, digits in found)
+            found = re.findall(r"\(\|\w+_n ([^|]+)\| (s\d+)\)\s+(#[xb][0-9a-f]+|true|false)\)", rest)
+            return verdict, "".join(f"\n  {state} {port} = {value}" for port, state, value in found)
         if verdict == "unsat":
             return verdict, ""
         raise Failure(f"{model.property.name}: z3 says {got.stdout.strip()[:200]!r}; see {model.folder}/{name}.smt2 (--keep)")
