@@ -21,4 +21,5 @@ pub mod num;
 pub mod render;
 pub mod report;
 pub mod sim;
+pub mod stability;
 pub mod traverse;

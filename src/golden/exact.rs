@@ -7,7 +7,8 @@
 use super::{
     cull::Boxes,
     hit_map, lod,
-    predicates::{self, Meeting, Vector},
+    predicates::{self, Fractions, Meeting, Vector},
+    ties::Ties,
 };
 use crate::{
     mesh::{
@@ -16,6 +17,7 @@ use crate::{
     },
     num::Ray,
 };
+use std::cell::RefCell;
 
 /// The closest hit.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -86,12 +88,25 @@ impl<'a> Exact<'a> {
 
     /// The closest hit on the surface that the ray's cone asks for.
     pub fn trace(&self, ray: &Ray) -> Option<ExactHit> {
+        self.closest(ray, true).map(|(hit, _)| hit)
+    }
+
+    /// The same with the hit's distance and barycentrics before they were rounded.
+    pub fn trace_exactly(&self, ray: &Ray) -> Option<(ExactHit, Fractions)> {
         self.closest(ray, true)
+    }
+
+    /// How near this ray comes to deciding otherwise anywhere (see [`Ties`]).
+    pub fn ties(&self, ray: &Ray) -> Ties {
+        let watch = RefCell::new(Ties::default());
+        let mut met = Vec::new();
+        Walk { watch: Some(&watch), ..self.walk(ray, true) }.run(&mut |_, hit| met.push(hit.fractions()));
+        watch.into_inner().with_hits(&met)
     }
 
     /// The closest hit on the full-resolution surface.
     pub fn trace_full(&self, ray: &Ray) -> Option<ExactHit> {
-        self.closest(ray, false)
+        self.closest(ray, false).map(|(hit, _)| hit)
     }
 
     /// All crossings of the surface that the ray's cone asks for.
@@ -111,21 +126,30 @@ impl<'a> Exact<'a> {
         surface
     }
 
-    fn walk(&self, ray: &Ray, lod: bool) -> Walk<'_> {
-        let viewer = lod::Viewer { origin: ray.origin.get(), direction: ray.direction.get(), cone: ray.cone };
-        Walk { model: self.model, boxes: self.boxes.as_ref(), viewer, lod }
+    /// The ray's origin lies on the surface that its cone asks for: in a triangle, on an edge or at a vertex.
+    pub fn starts_on_surface(&self, ray: &Ray) -> bool {
+        let x = ray.origin.get();
+        self.surface(ray).iter().any(|served| {
+            let [a, b, c] = served.corners.map(|p| predicates::sub(p, x));
+            predicates::holds_origin(a, b, c)
+        })
     }
 
-    fn closest(&self, ray: &Ray, lod: bool) -> Option<ExactHit> {
+    fn walk(&self, ray: &Ray, lod: bool) -> Walk<'_> {
+        let viewer = lod::Viewer { origin: ray.origin.get(), direction: ray.direction.get(), cone: ray.cone };
+        Walk { model: self.model, boxes: self.boxes.as_ref(), viewer, lod, watch: None }
+    }
+
+    fn closest(&self, ray: &Ray, lod: bool) -> Option<(ExactHit, Fractions)> {
         let levels = self.model.levels;
-        let mut best: Option<ExactHit> = None;
+        let mut best: Option<(ExactHit, Fractions)> = None;
         self.walk(ray, lod).run(&mut |at, met| {
             let bary = met.bary();
             let (full_node, full_bary) = hit_map::descend(at.node, bary, levels - at.level);
             let Served { tree, level, node, .. } = at;
             let hit = ExactHit { t: met.t(), tree, level, node, bary, full_node, full_bary, front: met.front };
-            if best.is_none_or(|b| hit.order(levels) < b.order(levels)) {
-                best = Some(hit);
+            if best.is_none_or(|(b, _)| hit.order(levels) < b.order(levels)) {
+                best = Some((hit, met.fractions()));
             }
         });
         best
@@ -139,6 +163,8 @@ struct Walk<'a> {
     viewer: lod::Viewer,
     /// False: full resolution everywhere.
     lod: bool,
+    /// Where near ties are noted.
+    watch: Option<&'a RefCell<Ties>>,
 }
 
 impl Walk<'_> {
@@ -147,6 +173,9 @@ impl Walk<'_> {
         let (x, d) = (self.viewer.origin, self.viewer.direction);
         let mut test = |at: Served| {
             let [a, b, c] = at.corners.map(|p| predicates::sub(p, x));
+            if let Some(watch) = self.watch {
+                watch.borrow_mut().note_edge(predicates::closest_edge(d, a, b, c));
+            }
             if let Some(met) = predicates::meet(d, a, b, c) {
                 hit(at, met);
             }
@@ -193,6 +222,9 @@ impl Walk<'_> {
         let codes = self.model.node_codes(at.tree as usize, at.level, places);
         std::array::from_fn(|i| {
             let bound = lod::displacement(self.model.bounds.scale, codes[i]);
+            if let Some(watch) = self.watch {
+                watch.borrow_mut().note_lod(lod::margin(&self.viewer, at.corners[(i + 1) % 3], at.corners[(i + 2) % 3], bound));
+            }
             lod::state(&self.viewer, at.corners[(i + 1) % 3], at.corners[(i + 2) % 3], bound)
         })
     }

@@ -26,12 +26,7 @@ fn power(exponent: u64) -> i128 {
 /// above every h and changes no state.) The two decisions are taken on X itself:
 /// h <= D iff h 2^shift <= X or h = 0; h >= 2D iff X < (floor(h / 2) + 1) 2^shift.
 pub(super) fn state(viewer: &Viewer, a: Vector, b: Vector, h: i128) -> i64 {
-    let along = |p| -> i128 {
-        let p = sub(p, viewer.origin);
-        (0..3).map(|k| i128::from(p[k]) * i128::from(viewer.direction[k])).sum()
-    };
-    let l = along(a).min(along(b)).div_euclid(power(30));
-    let x = i128::from(viewer.cone.offset.get()) + l * i128::from(viewer.cone.slope.get());
+    let x = tolerance(viewer, a, b);
     let one = power(viewer.cone.shift.get());
     if h == 0 || h * one <= x {
         0
@@ -42,6 +37,24 @@ pub(super) fn state(viewer: &Viewer, a: Vector, b: Vector, h: i128) -> i64 {
         let tolerated = x / one;
         (256 * h / tolerated - 256).max(1) as i64 // below 256
     }
+}
+
+/// How far the two decisions of [`state`] are from going the other way, in steps of 2^-shift units: the lesser of |h 2^shift - X| and
+/// |(floor(h / 2) + 1) 2^shift - X|. `None` for h = 0, which decides nothing.
+pub(super) fn margin(viewer: &Viewer, a: Vector, b: Vector, h: i128) -> Option<u128> {
+    let x = tolerance(viewer, a, b);
+    let one = power(viewer.cone.shift.get());
+    (h > 0).then(|| (h * one - x).unsigned_abs().min(((h / 2 + 1) * one - x).unsigned_abs()))
+}
+
+/// X = offset + l slope: the tolerated displacement in steps of 2^-shift units, not clamped.
+fn tolerance(viewer: &Viewer, a: Vector, b: Vector) -> i128 {
+    let along = |p| -> i128 {
+        let p = sub(p, viewer.origin);
+        (0..3).map(|k| i128::from(p[k]) * i128::from(viewer.direction[k])).sum()
+    };
+    let l = along(a).min(along(b)).div_euclid(power(30));
+    i128::from(viewer.cone.offset.get()) + l * i128::from(viewer.cone.slope.get())
 }
 
 /// The vertex q moved towards the midpoint m of (a, b): m + (q - m) s / 256, the product rounded down to a multiple of 2^grid.

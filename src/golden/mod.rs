@@ -11,7 +11,10 @@ mod lod;
 mod naive_bounds;
 mod predicates;
 pub mod reference;
+mod ties;
 
 pub use exact::{Crossings, Exact, ExactHit, Served};
+pub use predicates::Fractions;
 pub use naive_bounds::{TrueBounds, naive_bounds, true_bounds};
 pub use reference::{Reference, ReferenceHit};
+pub use ties::Ties;

@@ -20,6 +20,17 @@ pub(super) struct Meeting {
     pub front: bool,
 }
 
+/// Distance and barycentrics of a hit as they are before any rounding: fractions over one denominator.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Fractions {
+    /// t times `det`, t in lengths of the direction; not negative, below 2^99.
+    pub t_num: i128,
+    /// Weights of p0, p1, p2 times `det`; none negative, their sum is `det`.
+    pub weights: [i128; 3],
+    /// The denominator, positive, below 2^96.
+    pub det: i128,
+}
+
 pub(super) fn sub(p: Vector, q: Vector) -> Vector {
     std::array::from_fn(|k| p[k] - q[k])
 }
@@ -65,7 +76,33 @@ pub(super) fn meet(d: Vector, a: Vector, b: Vector, c: Vector) -> Option<Meeting
     (met.t_num >= 0).then_some(met)
 }
 
+/// The coordinates' origin lies in the closed triangle (a, b, c), which may be degenerate.
+pub(super) fn holds_origin(a: Vector, b: Vector, c: Vector) -> bool {
+    let edges = [(a, b), (b, c), (c, a)];
+    let on_edge = |&(p, q): &(Vector, Vector)| cross(p, q) == [0; 3] && (0..3).map(|k| i128::from(p[k]) * i128::from(q[k])).sum::<i128>() <= 0;
+    if edges.iter().any(on_edge) {
+        return true;
+    }
+    // In its plane, and strictly on the same side of the three edges seen along the axis that its normal is nearest to.
+    let n = cross(sub(b, a), sub(c, a));
+    let k = (0..3).max_by_key(|&k| n[k].unsigned_abs()).unwrap_or(0);
+    let sides = edges.map(|(p, q)| cross(p, q)[k].signum());
+    n[k] != 0 && dot(a, n) == 0 && sides[0] != 0 && sides == [sides[0]; 3]
+}
+
+/// The least |edge function| that decides: of those whose two companions have one sign. `None` if there is none.
+pub(super) fn closest_edge(d: Vector, a: Vector, b: Vector, c: Vector) -> Option<u128> {
+    let edges = [edge_function(d, b, c), edge_function(d, c, a), edge_function(d, a, b)];
+    let decides = |&k: &usize| edges[(k + 1) % 3].1 == edges[(k + 2) % 3].1;
+    (0..3).filter(decides).map(|k| edges[k].0.unsigned_abs()).min()
+}
+
 impl Meeting {
+    /// The quotients before they are rounded.
+    pub fn fractions(&self) -> Fractions {
+        Fractions { t_num: self.t_num, weights: [self.u, self.v, self.w], det: self.det }
+    }
+
     /// floor(t_num 2^32 / det), saturated at 35 bits.
     pub fn t(&self) -> u64 {
         // The product has up to 132 bits: a big integer, since both are positive and its division truncates.
@@ -172,6 +209,16 @@ mod tests {
         assert!(shoot([-8, 8, 64], [32, 0, 0]).is_none());
         assert!(meet([0, 0, 32], A, A, C).is_none());
         assert!(meet([0, 0, 32], A, A, A).is_none());
+    }
+
+    #[test]
+    fn the_origin_in_a_triangle() {
+        let at = |x: i64, y: i64, z: i64| [A, B, C].map(|p| sub(p, [x, y, z]));
+        let holds = |[a, b, c]: [Vector; 3]| holds_origin(a, b, c);
+        assert!([(16, 8), (0, 0), (64, 0), (32, 32), (0, 9)].iter().all(|&(x, y)| holds(at(x, y, 64))));
+        assert!(![(33, 32, 64), (-1, 0, 64), (16, 8, 63), (65, 0, 64)].iter().any(|&(x, y, z)| holds(at(x, y, z))));
+        assert!(holds_origin([-4, 2, 0], [4, -2, 0], [8, -4, 0]) && !holds_origin([4, -2, 0], [6, -3, 0], [8, -4, 0]));
+        assert!(holds_origin([0; 3], [0; 3], [0; 3]) && !holds_origin([1; 3], [1; 3], [1; 3]));
     }
 
     #[test]

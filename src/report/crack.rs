@@ -24,7 +24,7 @@ pub enum Target {
     NearEdge,
 }
 
-const TARGETS: [Target; 5] = [Target::Vertex, Target::Midpoint, Target::Edge, Target::NearVertex, Target::NearEdge];
+pub(crate) const TARGETS: [Target; 5] = [Target::Vertex, Target::Midpoint, Target::Edge, Target::NearVertex, Target::NearEdge];
 
 /// Counts of one kind of target.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
@@ -101,10 +101,17 @@ pub fn closedness(triangles: &[[u32; 3]]) -> Closedness {
 }
 
 /// A small counter-based generator: the n-th ray of a seed is the same whatever thread makes it.
-struct Random(u64);
+pub struct Random(u64);
 
 impl Random {
-    fn next(&mut self) -> u64 {
+    /// The generator of the `number`-th ray of `seed`.
+    pub fn of(seed: u64, number: u64) -> Self {
+        Self(seed ^ number.wrapping_mul(0xD6E8_FEB8_6659_FD93))
+    }
+
+    /// The next 64 bits.
+    #[expect(clippy::should_implement_trait, reason = "it never ends")]
+    pub fn next(&mut self) -> u64 {
         // SplitMix64.
         self.0 = self.0.wrapping_add(0x9E37_79B9_7F4A_7C15);
         let z = (self.0 ^ (self.0 >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
@@ -113,12 +120,17 @@ impl Random {
     }
 
     /// Below `n`.
-    fn below(&mut self, n: u64) -> u64 {
+    pub fn below(&mut self, n: u64) -> u64 {
         ((u128::from(self.next()) * u128::from(n)) >> 64) as u64 // the high half is below n
     }
 
+    /// From -1 to 1.
+    pub fn signed(&mut self) -> f64 {
+        (self.next() >> 11) as f64 / f64::from(1u32 << 31) / f64::from(1u32 << 21) - 1.0
+    }
+
     /// From `-n` to `n`.
-    fn within(&mut self, n: u64) -> i64 {
+    pub fn within(&mut self, n: u64) -> i64 {
         self.below(2 * n + 1).cast_signed() - n.cast_signed()
     }
 }
@@ -147,7 +159,7 @@ pub fn measure(
                 let (mut rows, mut first) = zero();
                 let end = rays.min((batch + 1) * BATCH);
                 for number in batch * BATCH..end {
-                    let mut random = Random(seed ^ number.wrapping_mul(0xD6E8_FEB8_6659_FD93));
+                    let mut random = Random::of(seed, number);
                     let target = random.below(TARGETS.len() as u64) as usize;
                     let ray = aim(hierarchy, space, TARGETS[target], &mut random);
                     let mut sink = LevelCrossings::default();
@@ -202,7 +214,7 @@ impl crate::traverse::HitSink for LevelCrossings {
 }
 
 /// A ray from outside the model's box through a target.
-fn aim(h: &Hierarchy, space: &ModelSpace, target: Target, random: &mut Random) -> Ray {
+pub(crate) fn aim(h: &Hierarchy, space: &ModelSpace, target: Target, random: &mut Random) -> Ray {
     let mut through = target_point(h, target, random);
     if matches!(target, Target::NearVertex | Target::NearEdge) {
         for c in &mut through {
@@ -210,6 +222,18 @@ fn aim(h: &Hierarchy, space: &ModelSpace, target: Target, random: &mut Random) -
         }
     }
     let step = direction(random);
+    let (origin, direction) = from_outside(space, through, step);
+    let away = (0..3).map(|k| (through[k] - origin[k]).abs()).max().unwrap_or(0).cast_unsigned();
+    Ray {
+        origin: Point::new(origin[0], origin[1], origin[2]),
+        direction: Vec3::new(direction[0], direction[1], direction[2]),
+        cone: cone(h, away.max(1), random),
+    }
+}
+
+/// Origin outside the model's box and direction of a ray along whole multiples of `step`, exactly through the point `through` of the box; `step` is
+/// not 0 and its components are below 2^16, so that the origin stays within 32 bits.
+pub(crate) fn from_outside(space: &ModelSpace, through: [i64; 3], step: [i64; 3]) -> ([i64; 3], [i64; 3]) {
     // Back along whole steps until outside the box: the ray passes through the point exactly.
     let margin = i64::from(crate::num::BOX_MARGIN) / 2;
     let steps = (0..3)
@@ -226,17 +250,11 @@ fn aim(h: &Hierarchy, space: &ModelSpace, target: Target, random: &mut Random) -
     // The longest multiple within the direction's length: rounding would bend the ray off its target.
     let length = step.map(|s| (s * s) as f64).iter().sum::<f64>().sqrt();
     let multiple = (f64::from(DIRECTION_SCALE) / length).floor() as i64; // at most 2^30
-    let ray_direction = step.map(|s| s * multiple);
-    let away = (0..3).map(|k| (through[k] - origin[k]).abs()).max().unwrap_or(0).cast_unsigned();
-    Ray {
-        origin: Point::new(origin[0], origin[1], origin[2]),
-        direction: Vec3::new(ray_direction[0], ray_direction[1], ray_direction[2]),
-        cone: cone(h, away.max(1), random),
-    }
+    (origin, step.map(|s| s * multiple))
 }
 
 /// A primitive direction of components below 2^9, a quarter of them with zeros.
-fn direction(random: &mut Random) -> [i64; 3] {
+pub(crate) fn direction(random: &mut Random) -> [i64; 3] {
     loop {
         let mut d: [i64; 3] = std::array::from_fn(|_| random.within(500));
         if random.below(4) == 0 {
@@ -252,7 +270,7 @@ fn direction(random: &mut Random) -> [i64; 3] {
 }
 
 /// A cone whose tolerance at the target is near the displacement bound of some level, so that edges around take different states.
-fn cone(h: &Hierarchy, distance: u64, random: &mut Random) -> Cone {
+pub(crate) fn cone(h: &Hierarchy, distance: u64, random: &mut Random) -> Cone {
     if h.bounds.codes.is_empty() || random.below(16) == 0 {
         return Cone::default();
     }

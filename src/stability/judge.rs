@@ -1,0 +1,247 @@
+//! What one ray shows: misses and double hits by balance, differences from the golden traverser, errors against exact arithmetic.
+//!
+//! **Balance** (closed models, every ray). Each crossing counts +1 inwards and -1 outwards (parity where triangles are not turned alike). A ray from outside the
+//! model's box has sum 0. From inside, the sum is the origin's winding number, whatever the direction: two directions must agree, if
+//! the tolerance does not depend on direction and the origin is not on the surface.
+//! **Golden** (a sample, or all): the closest hit in every field and the number of crossings equal those of the exact traverser, which
+//! shares no code with the blocks.
+
+use super::error::{bary_error, pixels_off, t_error};
+use super::model::Model;
+use super::rays::Shot;
+use crate::block::tri_test;
+use crate::golden::Exact;
+use crate::num::{Direction, Ray, RayT};
+use crate::report::crack::Closedness;
+use crate::traverse::{ClosestHit, Hit, HitSink, LodImage, LodTraverser, NoProbe, TriangleId};
+use serde::Serialize;
+use std::panic::{AssertUnwindSafe, catch_unwind};
+
+/// Stated widths and plain integers are checked at run time in this build, so that an overflow is seen where it happens.
+pub const WIDTHS_CHECKED: bool = cfg!(debug_assertions);
+
+/// What rays have shown.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
+pub struct Tally {
+    /// Rays tried.
+    pub rays: u64,
+    /// Rays whose crossings were balanced.
+    pub balanced: u64,
+    /// Rays compared with the golden traverser.
+    pub compared: u64,
+    /// Rays that crossed the surface.
+    pub crossing: u64,
+    /// Rays that crossed it on two or more levels.
+    pub mixed_levels: u64,
+    /// Crossings that are missing.
+    pub misses: u64,
+    /// Crossings that are too many.
+    pub doubles: u64,
+    /// Hits that differ from the golden traverser's in any field.
+    pub different: u64,
+    /// Rays on which a value did not fit its stated width; counted where [`WIDTHS_CHECKED`].
+    pub overflows: u64,
+    /// Closest hits at the end of t's range.
+    pub saturated: u64,
+    /// Worst error of t, in steps of 2^-32.
+    pub t_ulp: f64,
+    /// Worst error of a barycentric, in steps of 2^-31.
+    pub bary_ulp: f64,
+    /// The same on the full-resolution triangle: each level between doubles it.
+    pub full_bary_ulp: f64,
+    /// Worst displacement of a camera's hit, in pixels.
+    pub pixels: f64,
+    /// The first ray with a breach: its number within the case.
+    pub first_breach: Option<u64>,
+}
+
+impl Tally {
+    /// Misses, double hits, differences and overflows.
+    pub fn breaches(&self) -> u64 {
+        self.misses + self.doubles + self.different + self.overflows
+    }
+
+    /// Both together, in either order.
+    pub fn with(self, b: &Self) -> Self {
+        Self {
+            rays: self.rays + b.rays,
+            balanced: self.balanced + b.balanced,
+            compared: self.compared + b.compared,
+            crossing: self.crossing + b.crossing,
+            mixed_levels: self.mixed_levels + b.mixed_levels,
+            misses: self.misses + b.misses,
+            doubles: self.doubles + b.doubles,
+            different: self.different + b.different,
+            overflows: self.overflows + b.overflows,
+            saturated: self.saturated + b.saturated,
+            t_ulp: self.t_ulp.max(b.t_ulp),
+            bary_ulp: self.bary_ulp.max(b.bary_ulp),
+            full_bary_ulp: self.full_bary_ulp.max(b.full_bary_ulp),
+            pixels: self.pixels.max(b.pixels),
+            first_breach: self.first_breach.into_iter().chain(b.first_breach).min(),
+        }
+    }
+}
+
+/// All crossings of a ray.
+#[derive(Clone, Copy, Debug, Default)]
+struct Seen {
+    front: u32,
+    back: u32,
+    /// Set of the levels met.
+    levels: u32,
+    /// A crossing at the origin itself.
+    at_origin: bool,
+}
+
+impl HitSink for Seen {
+    #[inline(always)]
+    fn t_max(&self) -> RayT {
+        RayT::MAX
+    }
+    #[inline(always)]
+    fn offer(&mut self, id: TriangleId, test: &tri_test::Out) {
+        if test.front {
+            self.front += 1;
+        } else {
+            self.back += 1;
+        }
+        self.levels |= 1 << id.level;
+        self.at_origin |= test.t_num.get() == 0;
+    }
+}
+
+/// Judges the rays of one model; one for each thread.
+pub struct Judge<'a> {
+    model: &'a Model,
+    golden: &'a Exact<'a>,
+    traverser: LodTraverser<'a>,
+    /// Every how many rays the golden traverser is asked.
+    every: u64,
+}
+
+impl<'a> Judge<'a> {
+    /// A judge that compares every `every`-th ray with `golden`, the exact traverser of the same model.
+    pub fn new(model: &'a Model, golden: &'a Exact<'a>, every: u64) -> Self {
+        Self { model, golden, traverser: LodTraverser::new(LodImage::of(&model.scene)), every }
+    }
+
+    /// Shoots and judges ray `number`.
+    pub fn shoot(&mut self, number: u64, shot: &Shot) -> Tally {
+        let mut tally = Tally { rays: 1, ..Tally::default() };
+        if WIDTHS_CHECKED {
+            // A value outside its width panics; the traverser starts anew with each ray.
+            let judged = catch_unwind(AssertUnwindSafe(|| {
+                let mut judged = tally;
+                self.judge(number, shot, &mut judged);
+                judged
+            }));
+            match judged {
+                Ok(judged) => tally = judged,
+                Err(_) => tally.overflows = 1,
+            }
+        } else {
+            self.judge(number, shot, &mut tally);
+        }
+        if tally.breaches() > 0 {
+            tally.first_breach = Some(number);
+        }
+        tally
+    }
+
+    fn judge(&mut self, number: u64, shot: &Shot, tally: &mut Tally) {
+        let seen = self.seen(&shot.ray);
+        tally.crossing = u64::from(seen.front + seen.back > 0);
+        tally.mixed_levels = u64::from(seen.levels.count_ones() > 1);
+        let off = self.imbalance(shot, &seen);
+        tally.balanced = u64::from(off.is_some());
+        let unbalanced = off.unwrap_or(0) != 0;
+        if unbalanced || number.is_multiple_of(self.every) {
+            self.compare(shot, &seen, tally);
+            if unbalanced && tally.misses + tally.doubles == 0 {
+                // Both traversers agree on it: a breach of the method, not of the blocks. One crossing is missing at least.
+                tally.misses = 1;
+            }
+        }
+    }
+
+    fn seen(&mut self, ray: &Ray) -> Seen {
+        let mut seen = Seen::default();
+        self.traverser.trace(ray, &mut NoProbe, &mut seen);
+        seen
+    }
+
+    /// How far the crossings are from balance; `None` if they need not balance.
+    fn imbalance(&mut self, shot: &Shot, seen: &Seen) -> Option<u32> {
+        let oriented = match self.model.closed {
+            Closedness::Open => return None,
+            Closedness::Oriented => true,
+            Closedness::Even => false,
+        };
+        let winding = |s: &Seen| i64::from(s.front) - i64::from(s.back);
+        let origin = shot.ray.origin.get();
+        let (lo, hi) = (self.model.space.lo, self.model.space.hi);
+        let outside = (0..3).any(|k| origin[k] < i64::from(lo[k]) || origin[k] > i64::from(hi[k]));
+        let difference = if outside {
+            winding(seen)
+        } else {
+            let [x, y, z] = shot.other.filter(|_| shot.ray.cone.slope.get() == 0 && !seen.at_origin)?;
+            let other = self.seen(&Ray { direction: Direction::new(x, y, z), ..shot.ray });
+            if other.at_origin {
+                return None;
+            }
+            let difference = winding(seen) - winding(&other);
+            // On an edge or vertex a ray may meet none of the triangles around: only the exact surface can tell.
+            if difference != 0 && self.golden.starts_on_surface(&shot.ray) {
+                return None;
+            }
+            difference
+        };
+        let difference = difference.unsigned_abs() as u32; // counts of 32 bits
+        Some(if oriented { difference } else { difference % 2 })
+    }
+
+    fn compare(&mut self, shot: &Shot, seen: &Seen, tally: &mut Tally) {
+        tally.compared = 1;
+        let wanted = self.golden.crossings(&shot.ray);
+        let (found, wanted) = ([seen.front, seen.back], [wanted.front, wanted.back]);
+        for (found, wanted) in found.into_iter().zip(wanted) {
+            tally.misses += u64::from(wanted.saturating_sub(found));
+            tally.doubles += u64::from(found.saturating_sub(wanted));
+        }
+        let mut closest = ClosestHit::new(self.model.hierarchy.levels);
+        self.traverser.trace(&shot.ray, &mut NoProbe, &mut closest);
+        let hit = closest.record();
+        let exact = self.golden.trace_exactly(&shot.ray);
+        let (Some(hit), Some((golden, fractions))) = (hit, exact) else {
+            tally.different = u64::from(hit.is_some() || exact.is_some());
+            return;
+        };
+        tally.different = u64::from(plain(&hit) != golden);
+        tally.saturated = u64::from(hit.t == RayT::MAX);
+        if tally.saturated == 0 {
+            tally.t_ulp = t_error(&hit, &fractions);
+        }
+        tally.bary_ulp = bary_error(&hit, &fractions);
+        // Each level doubles weights exactly, and so their error.
+        tally.full_bary_ulp = tally.bary_ulp * f64::from(1u32 << (self.model.hierarchy.levels - golden.level));
+        if let Some((world, ray)) = &shot.view {
+            tally.pixels = pixels_off(self.model, world, ray, &hit).unwrap_or(0.0);
+        }
+    }
+}
+
+/// A hit record in the golden traverser's words.
+fn plain(hit: &Hit) -> crate::golden::ExactHit {
+    let narrow = |v: u64| v as u32; // fields of at most 32 bits
+    crate::golden::ExactHit {
+        t: hit.t.get(),
+        tree: narrow(hit.tree.get()),
+        level: narrow(hit.level.get()),
+        node: narrow(hit.node.get()),
+        bary: [hit.b0, hit.b1, hit.b2].map(|b| narrow(b.get())),
+        full_node: narrow(hit.full_node.get()),
+        full_bary: [hit.full_b0, hit.full_b1, hit.full_b2].map(|b| narrow(b.get())),
+        front: hit.front,
+    }
+}

@@ -1,0 +1,100 @@
+//! Runs cases: rays in parallel, tallies in order.
+
+use super::cases::{Case, Scale};
+use super::judge::{Judge, Tally, WIDTHS_CHECKED};
+use super::model::Model;
+use super::rays::shot;
+use crate::format::SceneError;
+use crate::golden::Exact;
+use crate::report::crack::{Closedness, Random};
+use rayon::prelude::*;
+use serde::Serialize;
+
+/// Rays of one batch: all of one model.
+const BATCH: u64 = 2048;
+/// A case that only the golden traverser can judge gets one ray in so many of what others get.
+const GOLDEN_SHARE: u64 = 32;
+
+/// One line of the table.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Row {
+    /// Name of the case.
+    pub case: String,
+    /// What is hard about it.
+    pub about: String,
+    /// Models.
+    pub models: u64,
+    /// What its rays have shown.
+    #[serde(flatten)]
+    pub tally: Tally,
+    /// Largest distance that rounding to units moved a vertex, in units.
+    pub vertex_loss: f64,
+}
+
+/// The whole table.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Report {
+    /// Seed of all rays.
+    pub seed: u64,
+    /// Overflows were looked for on every ray.
+    pub widths_checked: bool,
+    /// By case.
+    pub rows: Vec<Row>,
+}
+
+impl Report {
+    /// An empty report.
+    pub fn new(seed: u64) -> Self {
+        Self { seed, widths_checked: WIDTHS_CHECKED, rows: Vec::new() }
+    }
+
+    /// All rows together.
+    pub fn total(&self) -> Tally {
+        self.rows.iter().fold(Tally::default(), |sum, row| sum.with(&row.tally))
+    }
+}
+
+/// Rays of each case out of `rays` for all of them.
+pub fn shares(cases: &[&Case], rays: u64) -> Vec<u64> {
+    let weight = |case: &&Case| if case.every == 1 { 1 } else { GOLDEN_SHARE };
+    let all: u64 = cases.iter().map(weight).sum();
+    let share = |case: &&Case| u128::from(rays) * u128::from(weight(case)) / u128::from(all.max(1));
+    cases.iter().map(|case| (share(case) as u64).max(1)).collect() // at most `rays`
+}
+
+/// Builds a case's models and shoots `rays` rays at them. `progress` is told how many were shot since its last call, from any thread.
+///
+/// # Errors
+/// A model cannot be built.
+pub fn run(case: &Case, scale: Scale, rays: u64, seed: u64, progress: &(dyn Fn(u64) + Sync)) -> Result<Row, SceneError> {
+    let models = (case.models)(scale)?;
+    Ok(shoot(case, &models, rays, seed, progress))
+}
+
+/// Shoots `rays` rays of a case at these models, in turn.
+pub fn shoot(case: &Case, models: &[Model], rays: u64, seed: u64, progress: &(dyn Fn(u64) + Sync)) -> Row {
+    let golden: Vec<Exact<'_>> = models.par_iter().map(|m| Exact::new(&m.hierarchy)).collect();
+    // A case of its own stream: the same seed does not draw the same rays in all.
+    let seed = case.name.bytes().fold(seed, |seed, c| Random::of(seed, u64::from(c)).next());
+    let batch_of = |batch: u64| {
+        let at = (batch % models.len() as u64) as usize;
+        let model = &models[at];
+        let every = if model.closed == Closedness::Open { 1 } else { case.every };
+        let mut judge = Judge::new(model, &golden[at], every);
+        let end = rays.min((batch + 1) * BATCH);
+        let mut sum = Tally::default();
+        for number in batch * BATCH..end {
+            let mut random = Random::of(seed, number);
+            let aim = case.aims[random.below(case.aims.len() as u64) as usize];
+            match shot(model, aim, case.cones, &case.views, &mut random) {
+                Some(shot) => sum = sum.with(&judge.shoot(number, &shot)),
+                None => sum.rays += 1, // it misses the model's box, and so the model
+            }
+        }
+        progress(end - batch * BATCH);
+        sum
+    };
+    let tally = (0..rays.div_ceil(BATCH)).into_par_iter().map(batch_of).reduce(Tally::default, |a, b| a.with(&b));
+    let vertex_loss = models.iter().map(|m| m.vertex_loss().0).fold(0.0, f64::max);
+    Row { case: case.name.to_owned(), about: case.about.to_owned(), models: models.len() as u64, tally, vertex_loss }
+}

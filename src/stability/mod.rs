@@ -1,0 +1,17 @@
+//! Numerical stability on stiff and extreme cases: named cases, judged ray by ray, and a hunt for counterexamples.
+
+mod cases;
+mod dyadic;
+mod error;
+mod judge;
+pub mod lab;
+mod model;
+mod rays;
+mod shapes;
+
+pub use cases::{CASES, Case, FILE_CASES, SAMPLE, Scale};
+pub use dyadic::Dyadic;
+pub use judge::{Judge, Tally, WIDTHS_CHECKED};
+pub use lab::{Report, Row};
+pub use model::Model;
+pub use rays::{Aim, Cones, PIXEL, Shot, Views, shot};

@@ -1,0 +1,74 @@
+//! A model of the lab: its scene, its hierarchy, and the positions that it was made from.
+
+use crate::bvh::over_trees;
+use crate::format::{self, Scene, SceneError, SceneInfo};
+use crate::mesh::{Hierarchy, Surface, lattice};
+use crate::report::crack::{Closedness, closedness};
+use crate::traverse::ModelSpace;
+
+/// A model of the lab.
+pub struct Model {
+    /// Its name within its case.
+    pub name: String,
+    /// The memory images.
+    pub scene: Scene,
+    /// The same as integers, for the golden traverser.
+    pub hierarchy: Hierarchy,
+    /// World to units.
+    pub space: ModelSpace,
+    /// How its base triangles meet.
+    pub closed: Closedness,
+    /// World positions before they were rounded to units; empty if they are not known (scenes from files).
+    positions: Vec<[f64; 3]>,
+}
+
+impl Model {
+    /// Rounds and encodes a surface.
+    ///
+    /// # Errors
+    /// Those of [`format::build`].
+    pub fn of_surface(name: impl Into<String>, surface: Surface) -> Result<Self, SceneError> {
+        let scene = format::build(&surface, SceneInfo::default(), over_trees)?;
+        Ok(Self { positions: surface.positions, ..Self::of_scene(name, scene) })
+    }
+
+    /// Takes a scene as it is.
+    pub fn of_scene(name: impl Into<String>, scene: Scene) -> Self {
+        let hierarchy = scene.decode();
+        let (space, closed) = (ModelSpace::of(&scene), closedness(&hierarchy.triangles));
+        Self { name: name.into(), scene, hierarchy, space, closed, positions: Vec::new() }
+    }
+
+    /// How far rounding to units moved the point with barycentrics `bary` (2^31 = 1) of full-resolution triangle `node` of `tree`, in world units;
+    /// 0 if the positions before are not known.
+    pub fn moved(&self, tree: u32, node: u32, bary: [u32; 3]) -> f64 {
+        if self.positions.is_empty() {
+            return 0.0;
+        }
+        let levels = self.hierarchy.levels;
+        let corners = lattice::node(levels, levels, node).map(|p| tree as usize * lattice::len(levels) + lattice::index(levels, p));
+        let mut sum = [0.0; 3];
+        for (at, weight) in corners.into_iter().zip(bary) {
+            let by = self.rounding(at);
+            sum = std::array::from_fn(|k| sum[k] + by[k] * f64::from(weight) / f64::from(1u32 << 31));
+        }
+        sum.iter().map(|v| v * v).sum::<f64>().sqrt()
+    }
+
+    /// What rounding did to point `at`, in world units. The difference is taken in units, where it is small, so that an offset far from the
+    /// world's origin does not swallow it.
+    fn rounding(&self, at: usize) -> [f64; 3] {
+        let (before, after) = (self.space.to_units(self.positions[at]), self.hierarchy.points[at]);
+        std::array::from_fn(|k| (f64::from(after[k]) - before[k]) * self.space.placement.scale)
+    }
+
+    /// Largest and mean distance that rounding to units moved a vertex, in units.
+    pub fn vertex_loss(&self) -> (f64, f64) {
+        let lengths = (0..self.positions.len()).map(|at| {
+            let by = self.rounding(at).map(|v| v / self.space.placement.scale);
+            by.iter().map(|v| v * v).sum::<f64>().sqrt()
+        });
+        let (most, sum, count) = lengths.fold((0.0f64, 0.0, 0u64), |(most, sum, count), v| (most.max(v), sum + v, count + 1));
+        (most, sum / count.max(1) as f64)
+    }
+}
