@@ -14,6 +14,7 @@ mod pass;
 mod pictures;
 mod render;
 mod simulate;
+mod stability;
 mod sweep;
 mod trace;
 mod verify;
@@ -55,6 +56,8 @@ enum Command {
     Lines(lines::Args),
     /// Shoot rays at edges and vertices of a closed scene and count misses and double hits
     Crack(crack::Args),
+    /// Put stiff and extreme cases to the proof: misses, double hits, errors against exact arithmetic, overflows
+    Stability(stability::Args),
     /// Write one level of a scene as an OBJ mesh
     Export(export::Args),
 }
@@ -77,6 +80,7 @@ pub fn run(cli: Cli) -> anyhow::Result<ExitCode> {
         Command::Trace(args) => trace::run(&args),
         Command::Lines(args) => lines::run(&args),
         Command::Crack(args) => crack::run(&args),
+        Command::Stability(args) => stability::run(&args),
         Command::Export(args) => export::run(&args),
     }
 }

@@ -14,7 +14,7 @@ pub mod reference;
 mod ties;
 
 pub use exact::{Crossings, Exact, ExactHit, Served};
-pub use predicates::Fractions;
 pub use naive_bounds::{TrueBounds, naive_bounds, true_bounds};
+pub use predicates::Fractions;
 pub use reference::{Reference, ReferenceHit};
 pub use ties::Ties;

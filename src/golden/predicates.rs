@@ -79,7 +79,8 @@ pub(super) fn meet(d: Vector, a: Vector, b: Vector, c: Vector) -> Option<Meeting
 /// The coordinates' origin lies in the closed triangle (a, b, c), which may be degenerate.
 pub(super) fn holds_origin(a: Vector, b: Vector, c: Vector) -> bool {
     let edges = [(a, b), (b, c), (c, a)];
-    let on_edge = |&(p, q): &(Vector, Vector)| cross(p, q) == [0; 3] && (0..3).map(|k| i128::from(p[k]) * i128::from(q[k])).sum::<i128>() <= 0;
+    let on_edge =
+        |&(p, q): &(Vector, Vector)| cross(p, q) == [0; 3] && (0..3).map(|k| i128::from(p[k]) * i128::from(q[k])).sum::<i128>() <= 0;
     if edges.iter().any(on_edge) {
         return true;
     }

@@ -2,10 +2,11 @@
 
 use super::model::Model;
 use super::rays::{Aim, Cones, PIXEL, Views};
-use super::shapes::{self, Base, Place, bipyramid, bumpy, cube, fan, flat, octahedron, sheet, stretched, surface, tetrahedron, together};
+use super::shapes::{Base, Place, bipyramid, bumpy, cube, fan, flat, octahedron, sheet, stretched, surface, tetrahedron, together};
 use crate::format::SceneError;
 use crate::mesh::Surface;
 use crate::mesh::procedural::{self, Options, Scene};
+use crate::report::crack::Random;
 
 /// How large models may be.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -38,11 +39,13 @@ pub struct Case {
 /// Every how many rays of a closed model the golden traverser is asked.
 pub const SAMPLE: u64 = 256;
 
-const ALL: &[Aim] = &[Aim::Edges, Aim::View, Aim::Edges, Aim::Grazing, Aim::Inside, Aim::AlongEdge, Aim::Edges, Aim::AxisParallel, Aim::BoxFace];
+const ALL: &[Aim] =
+    &[Aim::Edges, Aim::View, Aim::Edges, Aim::Grazing, Aim::Inside, Aim::AlongEdge, Aim::Edges, Aim::AxisParallel, Aim::BoxFace];
 const LENS: &[f64] = &[PIXEL];
 const USUAL: Views = Views { distances: &[1.2, 2.5, 20.0], deltas: &[0.25, 1.0, 8.0], tangents: LENS };
-const CLOSED: Case =
-    Case { name: "", about: "", models: edges_exact, aims: ALL, cones: Cones::Mixed, views: USUAL, every: SAMPLE };
+/// Close enough to see single units.
+const CLOSE: Views = Views { distances: &[1e-5, 1e-3, 1e-1, 2.5], ..USUAL };
+const CLOSED: Case = Case { name: "", about: "", models: edges_exact, aims: ALL, cones: Cones::Mixed, views: USUAL, every: SAMPLE };
 const OPEN: Case = Case { every: 1, aims: OPEN_AIMS, ..CLOSED };
 const OPEN_AIMS: &[Aim] =
     &[Aim::Edges, Aim::View, Aim::Grazing, Aim::Inside, Aim::AlongEdge, Aim::AxisParallel, Aim::BoxFace, Aim::OnSurface];
@@ -53,7 +56,7 @@ pub const CASES: &[Case] = &[
     Case { name: "slivers", about: "triangles up to 1e6 times longer than high", models: slivers, ..CLOSED },
     Case { name: "zero-area", about: "base and inner triangles shrunk to segments and points", models: zero_area, ..CLOSED },
     Case { name: "coincident", about: "every triangle two and four times in one place", models: coincident, ..CLOSED },
-    Case { name: "scales", about: "parts of 1e-6, 1e-3, 1, 1e3 and 1e6 in one model", models: scales, ..CLOSED },
+    Case { name: "scales", about: "parts of 1e-6, 1e-3, 1, 1e3 and 1e6 in one model", models: scales, views: CLOSE, ..CLOSED },
     Case { name: "huge", about: "a model of 1e30 units", models: |_| scaled(1e30), ..CLOSED },
     Case { name: "tiny", about: "a model of 1e-30 units", models: |_| scaled(1e-30), ..CLOSED },
     Case { name: "offset", about: "models 1e3, 1e6 and 1e9 of their sizes from the origin", models: offset, ..CLOSED },
@@ -61,10 +64,23 @@ pub const CASES: &[Case] = &[
     Case { name: "flat", about: "perfectly flat parts, and all flat", models: flat_parts, ..CLOSED },
     Case { name: "one-triangle", about: "L0 of one triangle, N = 0 to 8", models: one_triangle, ..OPEN },
     Case { name: "million", about: "L0 of a million triangles", models: million, ..CLOSED },
-    Case { name: "levels-0-8", about: "N = 0 to 8", models: |s| levels(s, 0..=8), ..CLOSED },
-    Case { name: "levels-9-10", about: "N = 9 and 10, beyond 8: base vertices lose bits", models: |s| levels(s, 9..=10), ..CLOSED },
+    Case { name: "levels-0-8", about: "N = 0 to 8", models: |s| levels(s, 0..=8), views: CLOSE, ..CLOSED },
+    Case {
+        name: "levels-9-10",
+        about: "N = 9 and 10, beyond 8: base vertices lose bits",
+        models: |s| levels(s, 9..=10),
+        views: CLOSE,
+        ..CLOSED
+    },
     Case { name: "inside", about: "origins inside the model", models: balls, aims: &[Aim::Inside], ..CLOSED },
-    Case { name: "on-surface", about: "origins at vertices, on edges and on triangles", models: both, aims: &[Aim::OnSurface], every: 1, ..CLOSED },
+    Case {
+        name: "on-surface",
+        about: "origins at vertices, on edges and on triangles",
+        models: both,
+        aims: &[Aim::OnSurface],
+        every: 1,
+        ..CLOSED
+    },
     Case {
         name: "near-and-far",
         about: "cameras 1e-4 to 1e6 radii from what they see",
@@ -78,7 +94,14 @@ pub const CASES: &[Case] = &[
         about: "cone half angles 0, 1e-9, a pixel, 45 degrees, and 90 less 1e-6 and 1e-12",
         models: balls,
         views: Views { tangents: &[0.0, 1.7e-11, PIXEL, 1.0, 5.7e7, 5.7e13], ..USUAL },
-        cones: Cones::Listed(&[(1.0, 0.0, 0.0), (1.0, 1e3, 1.7e-11), (1.0, 0.0, PIXEL), (1.0, 5e6, 1.0), (1.0, 0.0, 5.7e7), (1.0, 0.0, 5.7e13)]),
+        cones: Cones::Listed(&[
+            (1.0, 0.0, 0.0),
+            (1.0, 1e3, 1.7e-11),
+            (1.0, 0.0, PIXEL),
+            (1.0, 5e6, 1.0),
+            (1.0, 0.0, 5.7e7),
+            (1.0, 0.0, 5.7e13),
+        ]),
         ..CLOSED
     },
     Case {
@@ -101,7 +124,13 @@ pub const CASES: &[Case] = &[
     },
     Case { name: "axis-parallel", about: "rays along axes through vertices", models: both, aims: &[Aim::AxisParallel], ..CLOSED },
     Case { name: "grazing", about: "rays in the planes of triangles and a unit off", models: both, aims: &[Aim::Grazing], ..CLOSED },
-    Case { name: "edges", about: "rays along edges, through points of edges and vertices", models: both, aims: &[Aim::AlongEdge, Aim::Edges], ..CLOSED },
+    Case {
+        name: "edges",
+        about: "rays along edges, through points of edges and vertices",
+        models: both,
+        aims: &[Aim::AlongEdge, Aim::Edges],
+        ..CLOSED
+    },
     Case { name: "box-faces", about: "rays in planes of box codes and hits on them", models: both, aims: &[Aim::BoxFace], ..CLOSED },
     Case { name: "turned", about: "closed, but some triangles turned: parity only", models: turned, ..CLOSED },
     Case { name: "open", about: "open sheets, also folded ones", models: open, ..OPEN },
@@ -114,11 +143,27 @@ const FILE: Case = Case { name: "", about: "", ..CLOSED };
 
 /// The families that run on a scene of one's own; the models are given, not made.
 pub const FILE_CASES: &[Case] = &[
-    Case { name: "edges", about: "edges and vertices, within one unit of them, and along them", aims: &[Aim::Edges, Aim::AlongEdge], ..FILE },
-    Case { name: "grazing", about: "in the planes of triangles, along axes, in planes of box codes", aims: &[Aim::Grazing, Aim::AxisParallel, Aim::BoxFace], ..FILE },
+    Case {
+        name: "edges",
+        about: "edges and vertices, within one unit of them, and along them",
+        aims: &[Aim::Edges, Aim::AlongEdge],
+        ..FILE
+    },
+    Case {
+        name: "grazing",
+        about: "in the planes of triangles, along axes, in planes of box codes",
+        aims: &[Aim::Grazing, Aim::AxisParallel, Aim::BoxFace],
+        ..FILE
+    },
     Case { name: "inside", about: "origins inside the model's box", aims: &[Aim::Inside], ..FILE },
     Case { name: "on-surface", about: "origins on the surface", aims: &[Aim::OnSurface], every: 1, ..FILE },
-    Case { name: "cameras", aims: &[Aim::View], about: "cameras 1e-3 to 1e6 radii from what they see", views: Views { distances: &[1e-3, 1e-1, 1.0, 2.5, 1e1, 1e3, 1e6], ..USUAL }, ..FILE },
+    Case {
+        name: "cameras",
+        aims: &[Aim::View],
+        about: "cameras 1e-3 to 1e6 radii from what they see",
+        views: Views { distances: &[1e-3, 1e-1, 1.0, 2.5, 1e1, 1e3, 1e6], ..USUAL },
+        ..FILE
+    },
     Case {
         name: "cone-angles",
         about: "cone half angles 0 to nearly 90 degrees",
@@ -141,12 +186,19 @@ fn list(models: impl IntoIterator<Item = (String, Surface)>) -> Result<Vec<Model
 }
 
 fn needles(_: Scale) -> Result<Vec<Model>, SceneError> {
-    let ball = |aspect: f64, levels| (format!("aspect {aspect:e}, N = {levels}"), surface(levels, &octahedron(), stretched([1.0 / aspect, 1.0, 1.0 / aspect], [0.0; 3], bumpy(0.3, 1))));
+    let ball = |aspect: f64, levels| {
+        (
+            format!("aspect {aspect:e}, N = {levels}"),
+            surface(levels, &octahedron(), stretched([1.0 / aspect, 1.0, 1.0 / aspect], [0.0; 3], bumpy(0.3, 1))),
+        )
+    };
     list([ball(1e2, 4), ball(1e4, 3), ball(1e6, 0), ball(1e6, 3)])
 }
 
 fn slivers(_: Scale) -> Result<Vec<Model>, SceneError> {
-    let rim = |count: u32, levels| (format!("{count} slivers, N = {levels}"), surface(levels, &bipyramid(count), stretched([1e-2, 1e-2, 1.0], [0.0; 3], flat)));
+    let rim = |count: u32, levels| {
+        (format!("{count} slivers, N = {levels}"), surface(levels, &bipyramid(count), stretched([1e-2, 1e-2, 1.0], [0.0; 3], flat)))
+    };
     // Flat triangles of height 1e-6 over edges of 2: a box pressed flat along a diagonal.
     let pressed = surface(3, &cube(), |p: Place| {
         let [x, y, z] = p.flat;
@@ -187,7 +239,13 @@ fn coincident(_: Scale) -> Result<Vec<Model>, SceneError> {
 
 fn scales(_: Scale) -> Result<Vec<Model>, SceneError> {
     let part = |size: f64, at: [f64; 3]| (octahedron(), size, at);
-    let base = together([part(1e6, [0.0; 3]), part(1e3, [1.5e6, 1e5, 3e5]), part(1.0, [1.2e6, 1.3e6, 0.0]), part(1e-3, [0.0, 1.5e6, 1.0]), part(1e-6, [-1.4e6; 3])]);
+    let base = together([
+        part(1e6, [0.0; 3]),
+        part(1e3, [1.5e6, 1e5, 3e5]),
+        part(1.0, [1.2e6, 1.3e6, 0.0]),
+        part(1e-3, [0.0, 1.5e6, 1.0]),
+        part(1e-6, [-1.4e6; 3]),
+    ]);
     let ripple = |p: Place| p.flat.map(|v| v * (1.0 + 0.05 * p.noise(5)[1] / f64::from(1u32 << p.level)));
     list([("five parts, N = 0".to_owned(), surface(0, &base, flat)), ("N = 3".to_owned(), surface(3, &base, ripple))])
 }
@@ -197,7 +255,8 @@ fn scaled(by: f64) -> Result<Vec<Model>, SceneError> {
 }
 
 fn offset(_: Scale) -> Result<Vec<Model>, SceneError> {
-    let at = |far: f64| (format!("{far:e} away"), surface(4, &octahedron(), stretched([1.0; 3], [far, -far / 3.0, far / 7.0], bumpy(0.4, 7))));
+    let at =
+        |far: f64| (format!("{far:e} away"), surface(4, &octahedron(), stretched([1.0; 3], [far, -far / 3.0, far / 7.0], bumpy(0.4, 7))));
     list([at(1e3), at(1e6), at(1e9)])
 }
 
@@ -212,7 +271,11 @@ fn spikes(_: Scale) -> Result<Vec<Model>, SceneError> {
         })
     };
     let options = Options { levels: Some(4), base: Some(128), ..Options::new(Scene::Spikes) };
-    list([("N = 2".to_owned(), spiky(2)), ("N = 4".to_owned(), spiky(4)), ("needles of the procedural scene".to_owned(), generated(&options)?)])
+    list([
+        ("N = 2".to_owned(), spiky(2)),
+        ("N = 4".to_owned(), spiky(4)),
+        ("needles of the procedural scene".to_owned(), generated(&options)?),
+    ])
 }
 
 fn generated(options: &Options) -> Result<Surface, SceneError> {
@@ -238,11 +301,22 @@ fn million(scale: Scale) -> Result<Vec<Model>, SceneError> {
 
 fn levels(scale: Scale, all: std::ops::RangeInclusive<u32>) -> Result<Vec<Model>, SceneError> {
     let enough = |&n: &u32| scale == Scale::Full || n <= 6 || n == 9;
-    list(all.filter(enough).map(|n| (format!("N = {n}"), surface(n, &tetrahedron(), bumpy(0.5, 11)))))
+    all.filter(enough).map(round_model).collect()
+}
+
+/// A bumpy closed model of `levels` splits.
+///
+/// # Errors
+/// Memory cannot be had.
+pub fn round_model(levels: u32) -> Result<Model, SceneError> {
+    Model::of_surface(format!("N = {levels}"), surface(levels, &tetrahedron(), bumpy(0.5, 11)))
 }
 
 fn balls(_: Scale) -> Result<Vec<Model>, SceneError> {
-    list([("smooth ball".to_owned(), surface(4, &octahedron(), bumpy(0.05, 12))), ("rough ball".to_owned(), surface(4, &octahedron(), bumpy(0.8, 13)))])
+    list([
+        ("smooth ball".to_owned(), surface(4, &octahedron(), bumpy(0.05, 12))),
+        ("rough ball".to_owned(), surface(4, &octahedron(), bumpy(0.8, 13))),
+    ])
 }
 
 /// Every point on a grid of 64 steps, so that many edges and planes have short exact directions.
@@ -283,7 +357,11 @@ fn open(_: Scale) -> Result<Vec<Model>, SceneError> {
 
 fn non_manifold(_: Scale) -> Result<Vec<Model>, SceneError> {
     let rough = |p: Place| [0, 1, 2].map(|k| p.flat[k] + 0.2 * p.noise(21)[k] / f64::from(1u32 << p.level));
-    list([("fan, N = 0".to_owned(), coarse(0, &fan(), 22)), ("fan, N = 3".to_owned(), surface(3, &fan(), rough)), ("coarse fan".to_owned(), coarse(2, &fan(), 23))])
+    list([
+        ("fan, N = 0".to_owned(), coarse(0, &fan(), 22)),
+        ("fan, N = 3".to_owned(), surface(3, &fan(), rough)),
+        ("coarse fan".to_owned(), coarse(2, &fan(), 23)),
+    ])
 }
 
 fn rebuilds(scale: Scale) -> Result<Vec<Model>, SceneError> {
@@ -292,13 +370,33 @@ fn rebuilds(scale: Scale) -> Result<Vec<Model>, SceneError> {
         surface(1 + n as u32 % 4, &octahedron(), move |p| {
             // To a corner of the box, or anywhere in it.
             let noise = p.noise(100 + n);
-            if n % 2 == 0 { noise.map(f64::signum) } else { noise }
+            if n.is_multiple_of(2) { noise.map(f64::signum) } else { noise }
         })
     };
-    list((0..count).map(|n| (format!("rebuild {n}"), shapes_jump(n, jump(n)))))
+    list((0..count).map(|n| (format!("rebuild {n}"), now_and_then_flat(n, jump(n)))))
 }
 
 /// A rebuild in ten leaves all points where they are: the next one jumps from there.
-fn shapes_jump(n: u64, surface: Surface) -> Surface {
-    if n % 10 == 9 { shapes::surface(surface.levels, &octahedron(), flat) } else { surface }
+fn now_and_then_flat(n: u64, jumped: Surface) -> Surface {
+    if n % 10 == 9 { surface(jumped.levels, &octahedron(), flat) } else { jumped }
+}
+
+/// The case that the hunt takes its first rays from.
+pub(super) fn hunting_case() -> Case {
+    const AIMS: &[Aim] = &[Aim::Edges, Aim::AlongEdge, Aim::Grazing, Aim::AxisParallel, Aim::BoxFace];
+    Case { name: "hunt", aims: AIMS, every: 1, ..CLOSED }
+}
+
+/// A small model for the hunt: on a coarse grid, so that ties are near, or bumpy; closed, or a fan.
+pub(super) fn adversary(random: &mut Random) -> Result<Model, SceneError> {
+    let levels = random.below(3) as u32;
+    let base = [octahedron, tetrahedron, cube, fan][random.below(4) as usize]();
+    let seed = random.next();
+    let surface = match random.below(3) {
+        0 => coarse(levels, &base, seed),
+        1 => surface(levels, &base, |p| [0, 1, 2].map(|k| p.flat[k] + 0.3 * p.noise(seed)[k] / f64::from(1u32 << p.level))),
+        // Nearly flat, with displacement of a few steps of the grid.
+        _ => surface(levels, &base, |p| [0, 1, 2].map(|k| p.flat[k] + (3.0 * p.noise(seed)[k]).round() * 2f64.powi(-26))),
+    };
+    Model::of_surface("hunted", surface)
 }

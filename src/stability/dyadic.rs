@@ -73,7 +73,10 @@ mod tests {
         let (big, small) = (Dyadic::of(1e30), Dyadic::of(1e-30));
         assert_eq!((&(&big + &small) - &big).to_f64(), 1e-30);
         assert_eq!((&big * &small).to_f64(), 1e30 * 1e-30);
-        assert_eq!([0.0, -0.0, f64::MIN_POSITIVE / 4.0, -f64::MAX].map(|v| Dyadic::of(v).to_f64()), [0.0, 0.0, f64::MIN_POSITIVE / 4.0, -f64::MAX]);
+        assert_eq!(
+            [0.0, -0.0, f64::MIN_POSITIVE / 4.0, -f64::MAX].map(|v| Dyadic::of(v).to_f64()),
+            [0.0, 0.0, f64::MIN_POSITIVE / 4.0, -f64::MAX]
+        );
     }
 
     proptest! {

@@ -3,6 +3,9 @@
 mod cases;
 mod dyadic;
 mod error;
+mod found;
+pub mod growth;
+pub mod hunt;
 mod judge;
 pub mod lab;
 mod model;
@@ -11,6 +14,8 @@ mod shapes;
 
 pub use cases::{CASES, Case, FILE_CASES, SAMPLE, Scale};
 pub use dyadic::Dyadic;
+pub use found::Found;
+pub use hunt::{Goal, Hunt};
 pub use judge::{Judge, Tally, WIDTHS_CHECKED};
 pub use lab::{Report, Row};
 pub use model::Model;

@@ -2,6 +2,7 @@
 
 use crate::bvh::over_trees;
 use crate::format::{self, Scene, SceneError, SceneInfo};
+use crate::golden::naive_bounds;
 use crate::mesh::{Hierarchy, Surface, lattice};
 use crate::report::crack::{Closedness, closedness};
 use crate::traverse::ModelSpace;
@@ -30,6 +31,23 @@ impl Model {
     pub fn of_surface(name: impl Into<String>, surface: Surface) -> Result<Self, SceneError> {
         let scene = format::build(&surface, SceneInfo::default(), over_trees)?;
         Ok(Self { positions: surface.positions, ..Self::of_scene(name, scene) })
+    }
+
+    /// Encodes integers as they are, with displacement bounds computed anew.
+    ///
+    /// # Errors
+    /// Those of [`format::encode`]: a point off its grid or beyond the limit.
+    pub fn of_hierarchy(name: impl Into<String>, mut hierarchy: Hierarchy) -> Result<Self, SceneError> {
+        naive_bounds(&mut hierarchy);
+        let surface = Surface {
+            levels: hierarchy.levels,
+            base_vertices: hierarchy.base_vertices,
+            triangles: hierarchy.triangles.clone(),
+            normals: vec![[0.0, 0.0, 1.0]; hierarchy.points.len()],
+            ..Surface::default()
+        };
+        let nodes = over_trees(&format::tree_boxes(&hierarchy)).map_err(|e| SceneError::Build(e.to_string()))?;
+        Ok(Self::of_scene(name, format::encode(&hierarchy, &surface, SceneInfo::default(), &nodes)?))
     }
 
     /// Takes a scene as it is.

@@ -139,9 +139,11 @@ pub fn shot(model: &Model, aim: Aim, cones: Cones, views: &Views, random: &mut R
         return Some(Shot { ray: ray.ray, view: Some((world, ray)), other: None });
     }
     let mut other = None;
+    let mut aimed = None;
     let (origin, direction) = match aim {
         Aim::Edges => {
             let ray = crack::aim(&model.hierarchy, &model.space, pick(&TARGETS, random), random);
+            aimed = Some(ray.cone);
             (ray.origin.get(), ray.direction.get())
         }
         Aim::AlongEdge => {
@@ -168,7 +170,11 @@ pub fn shot(model: &Model, aim: Aim, cones: Cones, views: &Views, random: &mut R
             let anywhere = random.below(2) == 0;
             let origin = std::array::from_fn(|k| {
                 let (lo, hi) = (i64::from(lo[k]), i64::from(hi[k]));
-                if anywhere { lo + random.below((hi - lo).cast_unsigned() + 1).cast_signed() } else { (near[k] + random.within(spread)).clamp(lo, hi) }
+                if anywhere {
+                    lo + random.below((hi - lo).cast_unsigned() + 1).cast_signed()
+                } else {
+                    (near[k] + random.within(spread)).clamp(lo, hi)
+                }
             });
             other = Some(scaled(crack::direction(random)));
             (origin, scaled(crack::direction(random)))
@@ -188,6 +194,7 @@ pub fn shot(model: &Model, aim: Aim, cones: Cones, views: &Views, random: &mut R
     let ray_cone = match cones {
         // A tolerance that does not grow: then the surface is one for all directions from the origin.
         Cones::Mixed if aim == Aim::Inside => constant(crack::cone(&model.hierarchy, 1, random)),
+        Cones::Mixed if aimed.is_some() => aimed.unwrap_or_default(),
         Cones::Mixed => {
             let away = (0..3).map(|k| i64::from(model.space.hi[k]) - i64::from(model.space.lo[k])).max().unwrap_or(0);
             crack::cone(&model.hierarchy, away.cast_unsigned().max(1), random)

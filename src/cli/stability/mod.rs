@@ -1,0 +1,152 @@
+//! `stability`: stiff and extreme cases, judged ray by ray.
+
+mod plots;
+mod table;
+
+use super::output::{busy, folder, open, print_json, print_line, progress};
+use anyhow::Context;
+use lodray::format::write_and_rename;
+use lodray::num::MAX_LEVELS;
+use lodray::stability::growth::{Growth, growth, rays as growth_rays};
+use lodray::stability::hunt::{Hunt, hunt};
+use lodray::stability::{CASES, Case, FILE_CASES, Model, Report, Scale, WIDTHS_CHECKED, lab};
+use serde::Serialize;
+use std::path::{Path, PathBuf};
+use std::process::ExitCode;
+
+/// Rays of the usual and of the long run.
+const USUAL: u64 = 100_000_000;
+const LONG: u64 = 1_000_000_000;
+/// Steps of the hunt for each so many rays.
+const RAYS_PER_STEP: u64 = 200;
+
+#[derive(clap::Args)]
+pub struct Args {
+    /// Scene file: runs the families of rays on it instead of the built-in cases
+    scene: Option<PathBuf>,
+    /// Rays over all cases (default 100 million)
+    #[arg(long, value_parser = clap::value_parser!(u64).range(1..), allow_negative_numbers = true, conflicts_with = "long")]
+    rays: Option<u64>,
+    /// 1,000 million rays
+    #[arg(long)]
+    long: bool,
+    /// Only this case; may be repeated
+    #[arg(long = "case", value_name = "NAME")]
+    cases: Vec<String>,
+    /// Steps of the hunt for counterexamples, 0 for none (default: one for each 200 rays; none with --case)
+    #[arg(long, value_name = "STEPS", allow_negative_numbers = true)]
+    hunt: Option<u64>,
+    /// Seed
+    #[arg(long, default_value_t = 1, allow_negative_numbers = true)]
+    seed: u64,
+    /// Print the figures as JSON
+    #[arg(long)]
+    json: bool,
+    /// Folder for the table, the figures, plots of error growth, and the rays that the hunt found
+    #[arg(short, long = "out", value_name = "FOLDER")]
+    out: Option<PathBuf>,
+}
+
+/// Everything measured.
+#[derive(Serialize)]
+struct Figures {
+    #[serde(flatten)]
+    report: Report,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    hunt: Option<Hunt>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    growth: Option<Growth>,
+}
+
+/// Files of `-o`.
+const TABLE: &str = "stability.md";
+const JSON: &str = "stability.json";
+const FOUND: &str = "found.json";
+
+pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
+    let all = if args.scene.is_some() { FILE_CASES } else { CASES };
+    let cases = chosen(all, &args.cases)?;
+    let given = args.scene.as_deref().map(model).transpose()?;
+    if let Some(out) = &args.out {
+        folder(out, [TABLE, JSON, FOUND, plots::LEVELS, plots::DISTANCE], args.scene.as_deref())?;
+    }
+    let rays = args.rays.unwrap_or(if args.long { LONG } else { USUAL });
+    let usual_steps = if args.cases.is_empty() { rays / RAYS_PER_STEP } else { 0 };
+    let steps = args.hunt.unwrap_or(usual_steps);
+
+    let figures = quietly(|| measure(args, &cases, given.as_slice(), rays, steps))?;
+    let breaches = figures.report.total().breaches() + figures.hunt.as_ref().map_or(0, Hunt::breaches);
+    if let Some(out) = &args.out {
+        write(out, &figures)?;
+    }
+    if args.json {
+        print_json(&figures)?;
+    } else {
+        print_line(&table::text(&figures.report, figures.hunt.as_ref(), args.seed))?;
+    }
+    Ok(if breaches == 0 { ExitCode::SUCCESS } else { ExitCode::FAILURE })
+}
+
+/// The cases of these names, or all.
+fn chosen<'a>(all: &'a [Case], names: &[String]) -> anyhow::Result<Vec<&'a Case>> {
+    for name in names {
+        let known = || all.iter().map(|case| case.name).collect::<Vec<_>>().join(", ");
+        anyhow::ensure!(all.iter().any(|case| case.name == name), "--case {name}: there is no such case; there are {}", known());
+    }
+    Ok(all.iter().filter(|case| names.is_empty() || names.iter().any(|name| name == case.name)).collect())
+}
+
+fn model(path: &Path) -> anyhow::Result<Model> {
+    let scene = open(path)?;
+    Ok(busy("decoding", || Model::of_scene(path.display().to_string(), scene)))
+}
+
+/// Does `work` without the messages of panics: a value that does not fit its width is one, and is counted.
+fn quietly<T>(work: impl FnOnce() -> T) -> T {
+    if !WIDTHS_CHECKED {
+        return work();
+    }
+    let usual = std::panic::take_hook();
+    std::panic::set_hook(Box::new(|_| ()));
+    let done = work();
+    std::panic::set_hook(usual);
+    done
+}
+
+fn measure(args: &Args, cases: &[&Case], given: &[Model], rays: u64, steps: u64) -> anyhow::Result<Figures> {
+    let shares = lab::shares(cases, rays);
+    // Curves are drawn of built-in models only.
+    let curves = args.out.is_some() && given.is_empty();
+    let bar = progress(shares.iter().sum::<u64>() + steps + if curves { growth_rays(MAX_LEVELS) } else { 0 }, "");
+    let mut report = Report::new(args.seed);
+    for (case, rays) in cases.iter().zip(shares) {
+        bar.set_message(case.name);
+        report.rows.push(match given {
+            [] => lab::run(case, Scale::Full, rays, args.seed, &|n| bar.inc(n))?,
+            models => lab::shoot(case, models, rays, args.seed, &|n| bar.inc(n)),
+        });
+    }
+    bar.set_message("hunt");
+    let hunt = if steps > 0 { Some(hunt(given.first(), steps, args.seed, &|n| bar.inc(n))?) } else { None };
+    bar.set_message("growth");
+    let growth = if curves { Some(growth(MAX_LEVELS, args.seed, &|n| bar.inc(n))?) } else { None };
+    bar.finish_and_clear();
+    Ok(Figures { report, hunt, growth })
+}
+
+fn write(out: &Path, figures: &Figures) -> anyhow::Result<()> {
+    let put = |name: &str, text: &str| {
+        let path = out.join(name);
+        write_and_rename(&path, |file| file.write_all(text.as_bytes())).with_context(|| format!("cannot write {}", path.display()))
+    };
+    put(TABLE, &table::markdown(&figures.report, figures.hunt.as_ref()))?;
+    put(JSON, &(serde_json::to_string_pretty(figures)? + "\n"))?;
+    if let Some(hunt) = &figures.hunt {
+        put(FOUND, &(serde_json::to_string(&hunt.found)? + "\n"))?;
+    }
+    if let Some(growth) = &figures.growth {
+        put(plots::LEVELS, &plots::by_levels(growth)?)?;
+        put(plots::DISTANCE, &plots::by_distance(growth)?)?;
+    }
+    Ok(())
+}
