@@ -34,6 +34,8 @@ pub struct Case {
     pub views: Views,
     /// Every how many rays the golden traverser is asked; 1 where nothing else can judge.
     pub every: u64,
+    /// Its part of all rays: 32, or less where a ray takes long.
+    pub share: u64,
 }
 
 /// Every how many rays of a closed model the golden traverser is asked.
@@ -45,22 +47,23 @@ const LENS: &[f64] = &[PIXEL];
 const USUAL: Views = Views { distances: &[1.2, 2.5, 20.0], deltas: &[0.25, 1.0, 8.0], tangents: LENS };
 /// Close enough to see single units.
 const CLOSE: Views = Views { distances: &[1e-5, 1e-3, 1e-1, 2.5], ..USUAL };
-const CLOSED: Case = Case { name: "", about: "", models: edges_exact, aims: ALL, cones: Cones::Mixed, views: USUAL, every: SAMPLE };
-const OPEN: Case = Case { every: 1, aims: OPEN_AIMS, ..CLOSED };
+const CLOSED: Case =
+    Case { name: "", about: "", models: edges_exact, aims: ALL, cones: Cones::Mixed, views: USUAL, every: SAMPLE, share: 32 };
+const OPEN: Case = Case { every: 1, share: 1, aims: OPEN_AIMS, ..CLOSED };
 const OPEN_AIMS: &[Aim] =
     &[Aim::Edges, Aim::View, Aim::Grazing, Aim::Inside, Aim::AlongEdge, Aim::AxisParallel, Aim::BoxFace, Aim::OnSurface];
 
 /// All cases, in the order of tables.
 pub const CASES: &[Case] = &[
     Case { name: "needles", about: "balls stretched 1e2, 1e4 and 1e6 times along one axis", models: needles, ..CLOSED },
-    Case { name: "slivers", about: "triangles up to 1e6 times longer than high", models: slivers, ..CLOSED },
+    Case { name: "slivers", about: "triangles up to 1e6 times longer than high", models: slivers, share: 8, ..CLOSED },
     Case { name: "zero-area", about: "base and inner triangles shrunk to segments and points", models: zero_area, ..CLOSED },
     Case { name: "coincident", about: "every triangle two and four times in one place", models: coincident, ..CLOSED },
     Case { name: "scales", about: "parts of 1e-6, 1e-3, 1, 1e3 and 1e6 in one model", models: scales, views: CLOSE, ..CLOSED },
     Case { name: "huge", about: "a model of 1e30 units", models: |_| scaled(1e30), ..CLOSED },
     Case { name: "tiny", about: "a model of 1e-30 units", models: |_| scaled(1e-30), ..CLOSED },
     Case { name: "offset", about: "models 1e3, 1e6 and 1e9 of their sizes from the origin", models: offset, ..CLOSED },
-    Case { name: "spikes", about: "displacement 1000 times the edge", models: spikes, ..CLOSED },
+    Case { name: "spikes", about: "displacement 1000 times the edge", models: spikes, share: 8, ..CLOSED },
     Case { name: "flat", about: "perfectly flat parts, and all flat", models: flat_parts, ..CLOSED },
     Case { name: "one-triangle", about: "L0 of one triangle, N = 0 to 8", models: one_triangle, ..OPEN },
     Case { name: "million", about: "L0 of a million triangles", models: million, ..CLOSED },
@@ -79,6 +82,7 @@ pub const CASES: &[Case] = &[
         models: both,
         aims: &[Aim::OnSurface],
         every: 1,
+        share: 1,
         ..CLOSED
     },
     Case {
@@ -135,7 +139,7 @@ pub const CASES: &[Case] = &[
     Case { name: "turned", about: "closed, but some triangles turned: parity only", models: turned, ..CLOSED },
     Case { name: "open", about: "open sheets, also folded ones", models: open, ..OPEN },
     Case { name: "non-manifold", about: "five triangles on an edge, loose and turned ones", models: non_manifold, ..OPEN },
-    Case { name: "rebuilds", about: "rebuilt again and again, points jump by the whole box", models: rebuilds, ..CLOSED },
+    Case { name: "rebuilds", about: "rebuilt again and again, points jump by the whole box", models: rebuilds, share: 8, ..CLOSED },
 ];
 
 /// A ray family of real scenes.
@@ -156,7 +160,7 @@ pub const FILE_CASES: &[Case] = &[
         ..FILE
     },
     Case { name: "inside", about: "origins inside the model's box", aims: &[Aim::Inside], ..FILE },
-    Case { name: "on-surface", about: "origins on the surface", aims: &[Aim::OnSurface], every: 1, ..FILE },
+    Case { name: "on-surface", about: "origins on the surface", aims: &[Aim::OnSurface], every: 1, share: 1, ..FILE },
     Case {
         name: "cameras",
         aims: &[Aim::View],
@@ -204,7 +208,7 @@ fn slivers(_: Scale) -> Result<Vec<Model>, SceneError> {
         let [x, y, z] = p.flat;
         [x, x + 1e-6 * y, z + 1e-6 * p.noise(2)[0]]
     });
-    list([rim(100, 1), rim(3000, 0), ("pressed cube".to_owned(), pressed)])
+    list([rim(100, 1), rim(400, 0), ("pressed cube".to_owned(), pressed)])
 }
 
 fn zero_area(_: Scale) -> Result<Vec<Model>, SceneError> {
@@ -384,7 +388,7 @@ fn now_and_then_flat(n: u64, jumped: Surface) -> Surface {
 /// The case that the hunt takes its first rays from.
 pub(super) fn hunting_case() -> Case {
     const AIMS: &[Aim] = &[Aim::Edges, Aim::AlongEdge, Aim::Grazing, Aim::AxisParallel, Aim::BoxFace];
-    Case { name: "hunt", aims: AIMS, every: 1, ..CLOSED }
+    Case { name: "hunt", aims: AIMS, every: 1, share: 1, ..CLOSED }
 }
 
 /// A small model for the hunt: on a coarse grid, so that ties are near, or bumpy; closed, or a fan.

@@ -2,6 +2,7 @@
 
 use super::dyadic::Dyadic;
 use super::model::Model;
+use super::rays::PIXEL;
 use crate::golden::Fractions;
 use crate::traverse::{Hit, ModelRay, WorldRay};
 use num_bigint::BigInt;
@@ -30,7 +31,7 @@ pub fn bary_error(hit: &Hit, exact: &Fractions) -> f64 {
 /// Hits nearer to the eye than so many units have no displacement in pixels: 2e-6 half widths of the model.
 pub const NEAREST: f64 = 4096.0;
 
-/// How far rounding moved the hit of a camera's ray, in pixels at its distance: the distance of the hit from the ray as it was in the world (its
+/// How far rounding moved the hit of a camera's ray, in pixels of a picture of 1024 rows at its distance: the distance of the hit from the ray as it was in the world (its
 /// origin, direction and t were rounded), and of the hit's place on the full-resolution surface from where it was before rounding to units.
 ///
 /// The first is computed without rounding from the `f64` numbers of ray and model. `None` for hits within
@@ -53,8 +54,8 @@ pub fn pixels_off(model: &Model, world: &WorldRay, ray: &ModelRay, hit: &Hit) ->
     let beside = length(cross) / length(world.direction);
     let full = [hit.full_b0, hit.full_b1, hit.full_b2].map(|b| b.get() as u32); // at most 2^31
     let moved = model.moved(hit.tree.get() as u32, hit.full_node.get() as u32, full); // 28 and 20 bits
-    let pixel = 2.0 * world.tan_theta * distance;
-    (pixel > 0.0 && distance >= NEAREST * placement.scale).then(|| (beside + moved) / pixel)
+    let pixel = 2.0 * PIXEL * distance;
+    (distance >= NEAREST * placement.scale).then(|| (beside + moved) / pixel)
 }
 
 /// Scaled first, so that squares stay within the range of `f64`.

@@ -153,6 +153,10 @@ pub fn hunt(given: Option<&Model>, steps: u64, seed: u64, progress: &(dyn Fn(u64
                 break;
             }
         }
+        if let Some(shot) = first.as_mut().filter(|_| matches!(goal, Goal::Edge | Goal::Zeros) && random.below(2) == 0) {
+            // Full detail: then what the ray was aimed at lies on the surface exactly.
+            shot.ray.cone = Cone::default();
+        }
         let mut climb = Climb {
             goal,
             random,

@@ -12,8 +12,6 @@ use serde::Serialize;
 
 /// Rays of one batch: all of one model.
 const BATCH: u64 = 2048;
-/// A case that only the golden traverser can judge gets one ray in so many of what others get.
-const GOLDEN_SHARE: u64 = 32;
 
 /// One line of the table.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -56,9 +54,8 @@ impl Report {
 
 /// Rays of each case out of `rays` for all of them.
 pub fn shares(cases: &[&Case], rays: u64) -> Vec<u64> {
-    let weight = |case: &&Case| if case.every == 1 { 1 } else { GOLDEN_SHARE };
-    let all: u64 = cases.iter().map(weight).sum();
-    let share = |case: &&Case| u128::from(rays) * u128::from(weight(case)) / u128::from(all.max(1));
+    let all: u64 = cases.iter().map(|case| case.share).sum();
+    let share = |case: &&Case| u128::from(rays) * u128::from(case.share) / u128::from(all.max(1));
     cases.iter().map(|case| (share(case) as u64).max(1)).collect() // at most `rays`
 }
 

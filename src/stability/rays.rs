@@ -225,12 +225,12 @@ fn grazing(model: &Model, random: &mut Random) -> ([i64; 3], [i64; 3]) {
     let (e, f) = (whole(sub(b, a)), whole(sub(c, a)));
     let d = std::array::from_fn(|k| i * e[k] + j * f[k]);
     let d = if d == [0; 3] { along_axis(random).1 } else { d };
-    let (origin, mut direction) = through(model, a, d);
-    if random.below(2) == 0 {
-        let k = random.below(3) as usize;
-        direction[k] = (direction[k] + random.within(1)).clamp(-i64::from(DIRECTION_SCALE), i64::from(DIRECTION_SCALE));
-    }
-    (origin, direction)
+    let (origin, direction) = through(model, a, d);
+    let mut off = direction;
+    off[random.below(3) as usize] += random.within(1);
+    // As long as it stays within the length that the blocks are made for.
+    let legal = off.iter().map(|c| c * c).sum::<i64>() < i64::from(DIRECTION_SCALE + 1).pow(2);
+    (origin, if legal && random.below(2) == 0 { off } else { direction })
 }
 
 /// A ray that moves within a plane of box codes, or crosses it at a vertex's other two coordinates.
