@@ -1,6 +1,6 @@
 //! Plots of error growth, as SVG.
 
-use crate::cli::simulate::plots::{COLOURS, FONT, TEXT, svg, wrong};
+use crate::cli::simulate::plots::{COLOURS, FONT, TEXT, svg, tick, wrong};
 use lodray::stability::growth::{Growth, Point};
 use plotters::coord::ranged1d::{AsRangedCoord, ValueFormatter};
 use plotters::prelude::*;
@@ -91,5 +91,5 @@ where
 
 /// A tick's label: plain near 1, else a power of ten.
 fn power(value: &f64) -> String {
-    if *value == 0.0 || (0.01..1e4).contains(value) { format!("{value}") } else { format!("{value:.0e}") }
+    if *value == 0.0 || (0.009..1e4).contains(value) { tick(value) } else { format!("{value:.0e}") }
 }
