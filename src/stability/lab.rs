@@ -52,11 +52,11 @@ impl Report {
     }
 }
 
-/// Rays of each case out of `rays` for all of them.
+/// Rays of each case: at least `rays` together, and at least one each.
 pub fn shares(cases: &[&Case], rays: u64) -> Vec<u64> {
     let all: u64 = cases.iter().map(|case| case.share).sum();
-    let share = |case: &&Case| u128::from(rays) * u128::from(case.share) / u128::from(all.max(1));
-    cases.iter().map(|case| (share(case) as u64).max(1)).collect() // at most `rays`
+    let share = |case: &&Case| (u128::from(rays) * u128::from(case.share)).div_ceil(u128::from(all.max(1)));
+    cases.iter().map(|case| share(case) as u64).collect() // at most `rays`
 }
 
 /// Builds a case's models and shoots `rays` rays at them. `progress` is told how many were shot since its last call, from any thread.
