@@ -58,7 +58,8 @@ where
         for (panel, (what, curves)) in area.split_evenly((all.len(), 1)).iter().zip(&all) {
             let values = || points.iter().flat_map(|p| curves.iter().map(move |curve| curve.1(p))).filter(|v| *v > 0.0);
             let (low, high) = (values().fold(f64::INFINITY, f64::min), values().fold(0.0, f64::max));
-            let range = if low <= high { low / 2.0..high * 2.0 } else { 0.5..2.0 };
+            // Above the curves there is room for the legend.
+            let range = if low <= high { low / 2.0..high * 12.0 } else { 0.5..2.0 };
             let mut chart = ChartBuilder::on(panel)
                 .margin(10)
                 .margin_right(24)
