@@ -159,11 +159,16 @@ fn last(r: &SimResult) -> f64 {
 
 /// Power over time, the parts on top of each other.
 pub fn power(r: &SimResult) -> anyhow::Result<String> {
-    let parts: [Part; 4] = [("leakage", LEAKAGE, |w| w.leakage), ("L1", L1, |w| w.l1), ("L2", L2, |w| w.l2), ("DRAM", DRAM, |w| w.dram)];
+    let parts: [Part; 5] = [
+        ("leakage", LEAKAGE, |w| w.leakage),
+        ("compute", COMPUTE, |w| w.compute),
+        ("L1", L1, |w| w.l1),
+        ("L2", L2, |w| w.l2),
+        ("DRAM", DRAM, |w| w.dram),
+    ];
     let sum = |i: &IntervalResult, count: usize| i.watts.map_or(0.0, |w| parts[..count].iter().map(|part| part.2(&w)).sum());
     let most = top(r.intervals.iter().map(|i| sum(i, parts.len())));
-    let what =
-        if r.energy.average_watts.is_some() { "Power over time, without compute" } else { "Power over time: none, energies are relative" };
+    let what = if r.energy.average_watts.is_some() { "Power over time" } else { "Power over time: none, energies are relative" };
     svg((900, 460), &title(what, r, &r.setup.machine.title()), |area| {
         let (plot, names) = area.split_horizontally(area.dim_in_pixel().0 - LEGEND);
         let mut chart = ChartBuilder::on(&plot)

@@ -3,7 +3,7 @@
 use super::energy::dram_parts;
 use crate::sim::dram::device::LINE_BYTES;
 use crate::sim::dram::{ChannelCounts, DramEnergy};
-use crate::sim::energy::{EnergyCounts, EnergyModel, EnergyUnit};
+use crate::sim::energy::{EnergyCounts, EnergyModel, EnergyUnit, Operations};
 use crate::sim::machine::Machine;
 use crate::sim::replay::{Counts, Interval};
 use serde::{Deserialize, Serialize};
@@ -37,7 +37,7 @@ pub struct IntervalResult {
     pub watts: Option<IntervalPower>,
 }
 
-/// Mean power of a stretch, in watts. Compute is not in it: its operations are counted for the whole frame only.
+/// Mean power of a stretch, in watts. Compute of a tile's rays counts from when the first of them begins.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct IntervalPower {
@@ -47,13 +47,21 @@ pub struct IntervalPower {
     pub l2: f64,
     /// Memory.
     pub dram: f64,
+    /// The blocks, and the units' clocks, without leakage.
+    pub compute: f64,
     /// Leakage of what is on the chip.
     pub leakage: f64,
 }
 
 /// The stretches of a run.
 pub(super) fn intervals(cumulative: &[Interval], model: &EnergyModel, machine: &Machine, units: bool) -> Vec<IntervalResult> {
-    let zero = Interval { end: 0, counts: Counts::default(), channels: ChannelCounts::default(), dram: DramEnergy::default() };
+    let zero = Interval {
+        end: 0,
+        counts: Counts::default(),
+        channels: ChannelCounts::default(),
+        dram: DramEnergy::default(),
+        operations: Operations::default(),
+    };
     let begins = std::iter::once(&zero).chain(cumulative);
     begins.zip(cumulative).map(|(begin, end)| between(begin, end, model, machine, units)).collect()
 }
@@ -70,8 +78,8 @@ fn between(begin: &Interval, end: &Interval, model: &EnergyModel, machine: &Mach
         l2_reads: l2_requests,
         l2_fills: added(|i| i.counts.l2.fills),
         dram_lines: lines,
+        operations: end.operations.since(&begin.operations),
         units,
-        ..EnergyCounts::default()
     };
     let [before, after] = [begin, end].map(|interval| dram_parts(&interval.dram));
     let dram: Vec<_> = before.into_iter().zip(after).map(|((name, before), (_, after))| (name, after - before)).collect();
@@ -82,6 +90,7 @@ fn between(begin: &Interval, end: &Interval, model: &EnergyModel, machine: &Mach
         l1: watts(energy.l1_read + energy.l1_fill),
         l2: watts(energy.l2_read + energy.l2_fill),
         dram: watts(energy.dram()),
+        compute: watts(energy.compute() - energy.unit_leakage),
         leakage: watts(energy.l1_leakage + energy.l2_leakage + energy.unit_leakage),
     };
     IntervalResult {

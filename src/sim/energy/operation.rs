@@ -114,6 +114,13 @@ impl Operations {
         self.0.iter_mut().zip(other.0).for_each(|(count, more)| *count += more);
     }
 
+    /// What was counted since `earlier`, which is part of it.
+    pub fn since(&self, earlier: &Self) -> Self {
+        let mut counts = self.0;
+        counts.iter_mut().zip(earlier.0).for_each(|(count, before)| *count -= before);
+        Self(counts)
+    }
+
     /// How many of `operation`.
     pub fn get(&self, operation: Operation) -> u64 {
         self.0[operation as usize]

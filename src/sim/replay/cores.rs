@@ -8,6 +8,7 @@ use super::event::{Asked, Happening};
 use super::feed::{self, Feed, Ray};
 use super::hierarchy::Hierarchy;
 use super::prefetch::prefetch;
+use crate::sim::energy::Operations;
 use crate::sim::machine::Cores;
 use crate::sim::stream::{Asking, Step};
 use crate::traverse::Kind;
@@ -63,8 +64,7 @@ struct Port {
 
 /// All cores.
 pub struct FreeCores<S> {
-    /// Where rays come from.
-    pub feed: Feed<S>,
+    feed: Feed<S>,
     contexts: Vec<Context>,
     ports: Vec<Port>,
     rays_in_flight: u32,
@@ -237,6 +237,10 @@ impl<S: feed::Source> FrontEnd for FreeCores<S> {
             memory.counts_mut().waits.add(state.from, waited);
             self.go_on(context, memory);
         }
+    }
+
+    fn operations(&self) -> &Operations {
+        &self.feed.operations
     }
 
     fn is_busy(&self) -> bool {

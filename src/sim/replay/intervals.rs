@@ -3,6 +3,7 @@
 use super::counts::Counts;
 use super::hierarchy::Hierarchy;
 use crate::sim::dram::{ChannelCounts, DramEnergy};
+use crate::sim::energy::Operations;
 
 /// Most stretches; when there are more, neighbours become one and stretches twice as long.
 const MOST: usize = 256;
@@ -21,6 +22,8 @@ pub struct Interval {
     pub channels: ChannelCounts,
     /// The memory's energy since the start of the run.
     pub dram: DramEnergy,
+    /// Operations of the blocks since the start of the run: those of a tile's rays count from when the first of them begins.
+    pub operations: Operations,
 }
 
 /// The stretches so far.
@@ -37,11 +40,11 @@ impl Intervals {
 
     /// Ends the stretches that end before `next`, the next cycle in which something happens. Those in which nothing did are left out.
     #[inline]
-    pub fn up_to(&mut self, next: u64, memory: &mut Hierarchy) {
+    pub fn up_to(&mut self, next: u64, memory: &mut Hierarchy, operations: &Operations) {
         let begun = self.done.last().map_or(0, |interval| interval.end);
         if next >= begun + self.length {
             let end = next / self.length * self.length;
-            self.note(end, memory);
+            self.note(end, memory, operations);
             if self.done.len() == MOST {
                 self.length *= 2;
                 let length = self.length;
@@ -50,20 +53,20 @@ impl Intervals {
         }
     }
 
-    fn note(&mut self, end: u64, memory: &mut Hierarchy) {
+    fn note(&mut self, end: u64, memory: &mut Hierarchy, operations: &Operations) {
         let counts = memory.counts();
         let dram = memory.dram();
         let mut channels = ChannelCounts::default();
         dram.counts().iter().for_each(|channel| channels.add(channel));
         let energy = dram.energy();
-        self.done.push(Interval { end, counts, channels, dram: energy });
+        self.done.push(Interval { end, counts, channels, dram: energy, operations: operations.clone() });
     }
 
     /// All of them, the last one ending now.
-    pub fn end(mut self, memory: &mut Hierarchy) -> Vec<Interval> {
+    pub fn end(mut self, memory: &mut Hierarchy, operations: &Operations) -> Vec<Interval> {
         let now = memory.now();
         if self.done.last().is_none_or(|interval| interval.end < now) {
-            self.note(now, memory);
+            self.note(now, memory, operations);
         }
         self.done
     }

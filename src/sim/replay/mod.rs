@@ -90,8 +90,7 @@ pub fn dram_of(machine: &Machine) -> Result<DramConfig, ReplayError> {
 /// The machine is impossible or too large, or nothing happens any more while rays are under way.
 pub fn run_free(machine: &Machine, layout: &Layout, source: impl Source, window: Option<Window>) -> Result<Run, ReplayError> {
     let mut cores = FreeCores::new(&machine.cores, source);
-    let run = drive(&mut cores, machine, layout, window)?;
-    Ok(Run { operations: cores.feed.operations, ..run })
+    drive(&mut cores, machine, layout, window)
 }
 
 /// The same with traversal units that take the cycles of the RTL.
@@ -104,7 +103,7 @@ pub fn run_units(machine: &Machine, layout: &Layout, source: impl Source, window
     }
     let mut units = Units::new(machine, source);
     let run = drive(&mut units, machine, layout, window)?;
-    Ok(Run { units: Some(units.counts(run.cycles)), operations: units.feed.operations, ..run })
+    Ok(Run { units: Some(units.counts(run.cycles)), ..run })
 }
 
 /// Who asks the memory hierarchy for lines.
@@ -121,13 +120,15 @@ trait FrontEnd {
     fn prefetch(&self, _happening: Happening, _soon: [Option<u32>; 2]) {}
     /// A line came for `waiter`.
     fn answer(&mut self, waiter: u32, from: counts::Source, memory: &mut Hierarchy);
+    /// What the rays of tiles begun have the hardware blocks do.
+    fn operations(&self) -> &Operations;
     /// Rays are under way.
     fn is_busy(&self) -> bool;
     /// What it does, for error messages.
     fn describe(&self) -> String;
 }
 
-/// Lets `front` run on `machine` until it is done; the blocks' operations are not counted here.
+/// Lets `front` run on `machine` until it is done.
 fn drive(front: &mut impl FrontEnd, machine: &Machine, layout: &Layout, window: Option<Window>) -> Result<Run, ReplayError> {
     check_size(machine)?;
     let dram = dram_of(machine)?;
@@ -155,11 +156,11 @@ fn drive(front: &mut impl FrontEnd, machine: &Machine, layout: &Layout, window: 
             let state = format!("{}\n{}", front.describe(), memory.describe());
             return Err(ReplayError::Deadlock { cycle: memory.now(), state });
         };
-        intervals.up_to(next, &mut memory);
+        intervals.up_to(next, &mut memory, front.operations());
         memory.go(next);
     }
     let cycles = memory.now();
-    let intervals = intervals.end(&mut memory);
+    let intervals = intervals.end(&mut memory, front.operations());
     let dram = memory.dram();
     let (channels, dram) = (dram.counts(), dram.energy());
     Ok(Run {
@@ -167,7 +168,7 @@ fn drive(front: &mut impl FrontEnd, machine: &Machine, layout: &Layout, window: 
         channels,
         dram,
         counts: memory.counts(),
-        operations: Operations::default(),
+        operations: front.operations().clone(),
         units: None,
         intervals,
         wave: wave.map(Wave::into_bytes),

@@ -253,8 +253,12 @@ fn a_stream_reaches_most_of_the_peak() {
 
 #[test]
 fn silence_is_an_error_that_tells_what_everyone_does() {
-    struct Silent;
+    #[derive(Default)]
+    struct Silent(Operations);
     impl FrontEnd for Silent {
+        fn operations(&self) -> &Operations {
+            &self.0
+        }
         fn start(&mut self, memory: &mut Hierarchy) {
             memory.wake_at(9, 0);
         }
@@ -267,7 +271,7 @@ fn silence_is_an_error_that_tells_what_everyone_does() {
             "one context waits for ever".to_owned()
         }
     }
-    let error = drive(&mut Silent, &machine(&[]), &layout(), None).unwrap_err().to_string();
+    let error = drive(&mut Silent::default(), &machine(&[]), &layout(), None).unwrap_err().to_string();
     assert!(error.starts_with("deadlock after cycle 9:\none context waits for ever\nL1: 0 requests queued"), "{error}");
 }
 

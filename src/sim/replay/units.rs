@@ -9,6 +9,7 @@ use super::event::Asked;
 use super::feed::{self, Feed, Ray};
 use super::hierarchy::Hierarchy;
 use super::slots::Slots;
+use crate::sim::energy::Operations;
 use crate::sim::machine::Machine;
 use crate::sim::stream::Step;
 use crate::sim::timing::{Ports, Request, Steps, UnitTiming};
@@ -59,8 +60,7 @@ enum Port {
 
 /// All units.
 pub struct Units<S> {
-    /// Where rays come from.
-    pub feed: Feed<S>,
+    feed: Feed<S>,
     units: Vec<Unit>,
     per_group: u32,
     under_way: u64,
@@ -152,6 +152,10 @@ impl<S: feed::Source> FrontEnd for Units<S> {
             unit.come.push_back((at, tag));
         }
         self.sleep(id, memory);
+    }
+
+    fn operations(&self) -> &Operations {
+        &self.feed.operations
     }
 
     fn is_busy(&self) -> bool {
