@@ -122,7 +122,7 @@ impl<S: feed::Source> FreeCores<S> {
                 self.under_way -= 1;
                 return false;
             }
-            if self.pinned_nodes > 0 && kind == Kind::BvhNode && first >> lines.trailing_zeros() < self.pinned_nodes {
+            if lines > 0 && self.pinned_nodes > 0 && kind == Kind::BvhNode && first >> lines.trailing_zeros() < self.pinned_nodes {
                 lines = 0; // nodes are a memory's first lines
             }
             if count > 0 && (!joins || count + lines as usize > MOST_LINES) {

@@ -113,12 +113,17 @@ fn pinned_nodes_are_not_asked_for() {
     for (wide, lines) in [(false, 2), (true, 4)] {
         let node = |(number, met): (u32, u32)| Step::Node { line: number * lines, met, wide };
         let nodes = [(0, 1), (1, 1), (2, 1), (3, 1), (0, 0)].map(node);
-        let steps = nodes.into_iter().chain([Step::End { found: false }]).collect();
-        let chunk = Chunk::from([Batch::new(&[steps])]);
+        let end = [Step::End { found: false }];
+        let chunk = Chunk::from([Batch::new(&[nodes.into_iter().chain(end).collect()])]);
+        // Steps without lines are no nodes.
+        let pops = nodes.into_iter().flat_map(|node| [node, Step::Pop { dropped: false }]).chain(end);
+        let with_pops = Chunk::from([Batch::new(&[pops.collect()])]);
         for (pinned, asked) in [(0, 5), (1, 3), (3, 1), (9, 0)] {
             let machine = machine(&[("cores.pinned_nodes", pinned)]);
-            let run = run_free(&machine, &layout, std::iter::once(chunk.clone()), None).unwrap();
-            assert_eq!(run.counts.l1.requests, u64::from(asked * lines), "{pinned} of {lines} lines");
+            for chunk in [&chunk, &with_pops] {
+                let run = run_free(&machine, &layout, std::iter::once(chunk.clone()), None).unwrap();
+                assert_eq!(run.counts.l1.requests, u64::from(asked * lines), "{pinned} of {lines} lines");
+            }
             let charged = run_units(&machine, &layout, std::iter::once(chunk.clone()), None);
             assert_eq!(charged.is_ok(), pinned == 0);
         }
