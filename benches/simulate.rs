@@ -1,4 +1,4 @@
-//! How fast frames are simulated on the paper's machine, in rays and accesses per second: tracing alone, replay alone, and both together.
+//! How fast frames are simulated on the paper's machine, in rays and accesses per second: tracing alone, replay alone (also with eight rays in flight per core), and both together.
 //!
 //! `cargo bench --bench simulate -- SCENE.lod...`: 1024 x 1024 rays at two bounding radii; without a scene, a terrain of 131,072 triangles. Each figure is the best of three.
 
@@ -52,6 +52,14 @@ fn measure(name: &str, method: &Method<'_>, scene: &Scene) {
         let run = replay::run_free(&machine, &layout, chunks.iter().cloned(), None).expect("a run");
         accesses = run.counts.l1.requests;
     });
+    let mut many = machine.clone();
+    many.cores.rays_in_flight = 8;
+    let mut many_accesses = 0;
+    let crowded = best(|| {
+        let run = replay::run_free(&many, &layout, chunks.iter().cloned(), None).expect("a run");
+        many_accesses = run.counts.l1.requests;
+    });
+    assert_eq!(accesses, many_accesses);
     let mut units_requests = 0;
     let units = best(|| {
         let run = replay::run_units(&machine, &layout, chunks.iter().cloned(), None).expect("a run");
@@ -62,10 +70,11 @@ fn measure(name: &str, method: &Method<'_>, scene: &Scene) {
     let together = best(|| simulate(&frame, std::slice::from_ref(&job), &|_| ()).pop().expect("a run").map(drop).expect("a run"));
     let rays = f64::from(SIDE * SIDE) / 1e3;
     println!(
-        "{name:<30} tracing {:8.0} k rays/s   replay {:8.0} k rays/s {:6.1} M accesses/s   with units {:8.0} k rays/s   together {:8.0} k rays/s   {:.1} accesses per ray",
+        "{name:<30} tracing {:8.0} k rays/s   replay {:8.0} k rays/s {:6.1} M accesses/s   of 8 rays a core {:6.1} M accesses/s   with units {:8.0} k rays/s   together {:8.0} k rays/s   {:.1} accesses per ray",
         rays / tracing,
         rays / replaying,
         accesses as f64 / 1e6 / replaying,
+        accesses as f64 / 1e6 / crowded,
         rays / units,
         rays / together,
         accesses as f64 / 1e3 / rays
