@@ -7,7 +7,8 @@ const HEAD: [&str; 11] = ["case", "rays", "balanced", "golden", "misses", "doubl
 
 fn cells(name: &str, t: &Tally, checked: bool) -> [String; 11] {
     let overflows = if checked { grouped(t.overflows + t.saturated) } else { "-".to_owned() };
-    let error = |v: f64, compared: u64| if compared == 0 { "-".to_owned() } else { format!("{v:.3}") };
+    // Rounded down: an error below a bound does not read as the bound.
+    let error = |v: f64, compared: u64| if compared == 0 { "-".to_owned() } else { format!("{:.4}", (v * 1e4).floor() / 1e4) };
     [
         name.to_owned(),
         grouped(t.rays),
@@ -39,7 +40,7 @@ fn rows(report: &Report, hunt: Option<&Hunt>) -> Vec<[String; 11]> {
 /// For the terminal.
 pub fn text(report: &Report, hunt: Option<&Hunt>, seed: u64) -> String {
     let line = |cells: &[String]| {
-        let widths = [14, 15, 15, 12, 7, 8, 7, 10, 7, 9, 8];
+        let widths = [14, 15, 15, 12, 7, 8, 7, 10, 8, 9, 8];
         let cells = cells.iter().zip(widths).enumerate();
         let text: String =
             cells.map(|(k, (cell, width))| if k == 0 { format!("{cell:<width$}") } else { format!("{cell:>width$}") }).collect();
