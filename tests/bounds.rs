@@ -1,8 +1,9 @@
-//! The displacement bounds that scenes store equal those of the plain definition, code by code.
+//! The displacement bounds that scenes store equal those of the plain definition, code by code; they cover what they must, and are one on both sides of an edge.
 
-use lodray::golden::naive_bounds;
+use lodray::golden::{Exact, naive_bounds, true_bounds};
 use lodray::mesh::procedural::{self, Options};
-use lodray::mesh::{Surface, quantise};
+use lodray::mesh::{Hierarchy, Surface, edge_index, lattice, quantise};
+use lodray_test_support::models::{Rng, any_cone, ball, direction, model, ray_through, terrain};
 use lodray_test_support::surfaces::{bumps, fan, grid, octahedron, surface};
 
 fn check(surface: &Surface, name: &str) -> usize {
@@ -31,4 +32,72 @@ fn stored_bounds_are_those_of_the_definition() {
     }
     println!("{edges} edges with a bound");
     assert!(edges > 50_000);
+}
+
+#[test]
+fn bounds_of_a_shared_edge_are_one_in_all_trees() {
+    // Three triangles on the base edge (0, 1), one of them running along it the other way, and a back to back pair.
+    let base = [[0, 0, 0], [4, 0, 0], [0, 4, 0], [0, 0, 4], [0, -4, -1]];
+    let triangles = vec![[0, 1, 2], [1, 0, 3], [4, 0, 1], [0, 2, 1]];
+    let mut rng = Rng(8);
+    for levels in 1..=4 {
+        let h = model(levels, &base, triangles.clone(), |p, level| {
+            let mut own = Rng(p.iter().fold(99, |k, &v| k.wrapping_mul(1000).wrapping_add(v.cast_unsigned())));
+            p.map(|v| ((v << 25) >> levels) as f64 + own.signed() * f64::from(1 << 24) / f64::from(1 << level))
+        });
+        let m = 1 << levels;
+        for level in 0..levels {
+            let step = m >> level;
+            let code = |tree, corners: [(u32, u32); 2]| {
+                let codes = h.codes(tree);
+                codes[edge_index(levels, level, corners[0], corners[1])]
+            };
+            for k in (0..m).step_by(step as usize) {
+                let n = k + step;
+                let one = code(0, [(k, 0), (n, 0)]);
+                assert_eq!(one, code(1, [(m - k, 0), (m - n, 0)]));
+                assert_eq!(one, code(2, [(m - k, k), (m - n, n)]));
+                assert_eq!(one, code(3, [(0, k), (0, n)]));
+            }
+        }
+        check_bounds(&h);
+        // Every tree sees the whole shared edge, whatever the cone.
+        let r = ray_through([0; 3], direction(&mut rng), any_cone(&mut rng));
+        assert!(!Exact::new(&h).surface(&r).is_empty());
+    }
+}
+
+/// A bound covers its own displacement and, by its code, the bounds of all edges below it.
+fn check_bounds(h: &Hierarchy) {
+    let bounds = true_bounds(h);
+    for tree in 0..h.triangles.len() {
+        let per_tree = h.codes(tree).len();
+        let at = |level, a, b| tree * per_tree + edge_index(h.levels, level, a, b);
+        for level in 0..h.levels {
+            for node in 0..1 << (2 * level) {
+                let p = lattice::node(h.levels, level, node);
+                let q = lattice::midpoints(p);
+                for i in 0..3 {
+                    let (a, b) = (p[(i + 1) % 3], p[(i + 2) % 3]);
+                    let own = at(level, a, b);
+                    let scale = h.bounds.scale;
+                    let c = u128::from(h.bounds.codes[own]);
+                    assert!((c * c * u128::from(scale.mantissa.get())) >> scale.shift.get() >= u128::from(bounds.edges[own]));
+                    if level + 1 < h.levels {
+                        for below in [at(level + 1, a, q[i]), at(level + 1, q[i], b), at(level + 1, q[i], q[(i + 1) % 3])] {
+                            assert!(bounds.edges[below] <= bounds.edges[own] && h.bounds.codes[below] <= h.bounds.codes[own]);
+                        }
+                    }
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn bounds_hold_on_closed_surfaces() {
+    for seed in 0..10 {
+        check_bounds(&ball(seed as u32 % 5, 0.4, seed));
+        check_bounds(&terrain(2, seed as u32 % 5, 0.4, seed));
+    }
 }

@@ -102,9 +102,12 @@ class Solver:
             texts[one.inside] = f"{head}\n{own}{end}{tail}"
         else:
             texts[one.top] = own
-        stubs = one.stubs if one.registers else (*one.stubs, "pipe_stage", "pipe_skid")
-        for stub in stubs:
+        for stub in one.stubs:
             texts[stub] = (FORMAL / f"{stub}_stub.sv").read_text(encoding="utf-8")
+        if not one.registers:
+            wire = (FORMAL / "elastic_stub.sv").read_text(encoding="utf-8")
+            for register in ("pipe_stage", "pipe_skid"):
+                texts[register] = wire.replace("module elastic ", f"module {register} ")
         files = ["lod_pkg", *(name for name in closure([one.top], texts) if name != "lod_pkg")]
         if mutant and mutant.file not in files:
             raise Failure(f"{one.name} does not contain {mutant.file}, the file of its mutant")

@@ -1,7 +1,7 @@
 /// An elastic register as the wire that it is for the function of a block: what goes in comes out, without time.
 ///
-/// Stands for rtl/pipe_stage.sv where a property is about values. That the register passes every item on, unchanged and in order, is a property of its own.
-module pipe_stage #(
+/// Stands, by their names, for rtl/pipe_stage.sv and rtl/pipe_skid.sv where a property is about values. That the register passes every item on, unchanged and in order, is a property of its own.
+module elastic #(
   parameter int unsigned W = 1
 ) (
   input  logic         clk_i,
