@@ -16,6 +16,8 @@ pub struct TriangleMesh {
     pub positions: Vec<[f64; 3]>,
     /// Counter-clockwise seen from outside.
     pub triangles: Vec<[u32; 3]>,
+    /// Shading normals of the file at the corners of each triangle, of length 1, or zero where a corner has none; empty if the file has none.
+    pub normals: Vec<[[f32; 3]; 3]>,
     /// Index into `colours` for each triangle; empty if there are no materials.
     pub materials: Vec<u16>,
     /// Material colours, linear RGB in 0..=1.
@@ -127,7 +129,7 @@ impl TriangleMesh {
         let positions = compact(positions, &mut kept);
         report.unreferenced_vertices = report.vertices_read - report.welded_vertices - positions.len();
         count_edges(&kept, &mut report);
-        Ok(TriangleMesh { positions, triangles: kept, materials: kept_materials, colours, report })
+        Ok(TriangleMesh { positions, triangles: kept, normals: Vec::new(), materials: kept_materials, colours, report })
     }
 }
 

@@ -1,7 +1,8 @@
 //! Edges of the base mesh, and the feature lines that they stand for.
 
 use super::super::distance::Vec3;
-use super::source::{Sets, Source};
+use super::super::sets::Sets;
+use super::source::Source;
 use std::collections::HashMap;
 
 /// The base mesh, its edges and where its pieces come from.
