@@ -30,7 +30,7 @@ pub struct Args {
 pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
     check_target(&args.out, Some(&args.mesh))?;
     let mesh = busy("reading", || read(&args.mesh))?;
-    let options = RemeshOptions { levels: args.levels, base_triangles: args.base.map(|n| n as usize) };
+    let options = RemeshOptions { levels: args.levels, base_triangles: args.base.map(|n| n as usize), ..RemeshOptions::default() };
     let bar = progress(1, "remeshing");
     let (surface, report) = remesh(&mesh, &options, &|what, done, of| {
         if bar.message() != what {

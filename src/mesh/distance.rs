@@ -1,5 +1,6 @@
 //! Closest points and line hits on a set of triangles, and from them the two-sided distance between two meshes.
 
+use super::clean::is_degenerate;
 use parry3d_f64::bounding_volume::Aabb;
 use parry3d_f64::partitioning::{Bvh, BvhBuildStrategy, BvhNode};
 use rayon::prelude::*;
@@ -8,24 +9,26 @@ use serde::{Deserialize, Serialize};
 /// The vector type of the geometry library, so that nothing has to be converted.
 pub(super) type Vec3 = parry3d_f64::math::Vector;
 
-/// At most this many samples of each kind (vertices, centroids, random points) are measured; more are thinned evenly.
-const MAX_SAMPLES: usize = 300_000;
+/// Means are taken over at most this many samples of each kind (vertices, centroids, random points); more are thinned evenly.
+const MAX_SAMPLES: usize = 60_000;
 
 /// Mean and largest distance, in percent of the diagonal of the original's bounding box.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Distance {
-    /// Mean over the samples.
+    /// Mean over samples.
     pub mean: f64,
-    /// Largest of the samples.
+    /// No point of the surface is further than this: a bound, narrowed down until it is little above what was found.
     pub max: f64,
+    /// The largest that was found, all vertices included.
+    pub found: f64,
 }
 
 /// Distances between a remeshed surface and its original, both ways.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct TwoSidedDistance {
-    /// From vertices and centroids of the new surface to the original.
+    /// From the new surface to the original.
     pub to_original: Distance,
-    /// From vertices, centroids and area-weighted points of the original to the new surface.
+    /// From the original to the new surface.
     pub from_original: Distance,
 }
 
@@ -39,7 +42,7 @@ pub(super) struct Hit {
 
 /// Triangles to project on.
 pub(super) struct Target {
-    corners: Vec<[Vec3; 3]>,
+    pub corners: Vec<[Vec3; 3]>,
     /// This many triangles in a row, which should lie together, make one leaf of the tree of boxes.
     group: usize,
     bvh: Bvh,
@@ -115,7 +118,18 @@ impl Target {
         Some(hit)
     }
 
-    fn distance(&self, p: Vec3) -> f64 {
+    /// Where the closest point of one triangle is on it.
+    pub fn closest_on(&self, triangle: u32, p: Vec3) -> Option<(u32, [f64; 3])> {
+        let [a, b, c] = *self.corners.get(triangle as usize)?;
+        Some((triangle, closest_barycentrics(p, a, b, c)))
+    }
+
+    /// How many triangles have no area.
+    pub fn degenerate(&self) -> u64 {
+        self.corners.par_iter().filter(|c| is_degenerate(c.map(|p| p.to_array()))).count() as u64
+    }
+
+    pub fn distance(&self, p: Vec3) -> f64 {
         self.closest(p, f64::MAX.sqrt(), |_| true).map_or(0.0, |hit| (hit.point - p).length())
     }
 }
@@ -137,7 +151,7 @@ fn line_hit(p: Vec3, direction: Vec3, [a, b, c]: [Vec3; 3]) -> Option<(f64, [f64
 }
 
 /// Barycentrics of the closest point of a triangle (Ericson, Real-Time Collision Detection, 5.1.5).
-fn closest_barycentrics(p: Vec3, a: Vec3, b: Vec3, c: Vec3) -> [f64; 3] {
+pub(super) fn closest_barycentrics(p: Vec3, a: Vec3, b: Vec3, c: Vec3) -> [f64; 3] {
     // 0 / 0 in a triangle without extent: any point of it will do.
     let ratio = |x: f64, y: f64| if y > 0.0 { x / (x + y) } else { 1.0 };
     let (ab, ac) = (b - a, c - a);
@@ -173,23 +187,26 @@ fn closest_barycentrics(p: Vec3, a: Vec3, b: Vec3, c: Vec3) -> [f64; 3] {
     [1.0 - v - w, v, w]
 }
 
-/// Measures `new` against `original` both ways, `diagonal` being 100 percent. The samples, and the order in which they are summed, do not
+/// Mean distances of `new` from `original` and back, `diagonal` being 100 percent. The samples, and the order in which they are summed, do not
 /// depend on the number of threads.
-pub(super) fn two_sided(original: &Target, new: &Target, diagonal: f64) -> TwoSidedDistance {
+pub(super) fn mean_distances(original: &Target, new: &Target, diagonal: f64) -> [f64; 2] {
     let mut to = corner_samples(&new.corners);
     to.extend(centroids(&new.corners));
     let mut from = corner_samples(&original.corners);
     from.extend(centroids(&original.corners));
     from.extend(area_samples(&original.corners, MAX_SAMPLES));
-    // Nothing can be said of a mesh too small to have a diagonal.
-    let percent = Some(100.0 / diagonal).filter(|p| p.is_finite()).unwrap_or(0.0);
-    TwoSidedDistance { to_original: measure(&to, original, percent), from_original: measure(&from, new, percent) }
+    let percent = percent(diagonal);
+    [mean(&to, original, percent), mean(&from, new, percent)]
 }
 
-fn measure(samples: &[Vec3], target: &Target, percent: f64) -> Distance {
+/// Percent in a unit of length; nothing can be said of a mesh too small to have a diagonal.
+pub(super) fn percent(diagonal: f64) -> f64 {
+    Some(100.0 / diagonal).filter(|p| p.is_finite()).unwrap_or(0.0)
+}
+
+fn mean(samples: &[Vec3], target: &Target, percent: f64) -> f64 {
     let distances: Vec<f64> = samples.par_iter().map(|&p| percent * target.distance(p)).collect();
-    let max = distances.iter().fold(0.0f64, |m, &d| m.max(d));
-    Distance { mean: distances.iter().sum::<f64>() / distances.len().max(1) as f64, max }
+    distances.iter().sum::<f64>() / distances.len().max(1) as f64
 }
 
 fn corner_samples(corners: &[[Vec3; 3]]) -> Vec<Vec3> {

@@ -4,6 +4,7 @@ mod borders;
 mod bounds;
 mod clean;
 mod distance;
+mod farthest;
 mod hierarchy;
 pub mod lattice;
 mod normals;
@@ -21,5 +22,5 @@ pub use hierarchy::{EdgeCodes, Hierarchy, Placement, edge_index, edges_of_level,
 pub use normals::{DEFAULT_CREASE_ANGLE, corner_normals};
 pub use quantise::{SurfaceError, quantise};
 pub use read::{ReadError, read};
-pub use remesh::{RemeshError, RemeshOptions, RemeshReport, remesh};
+pub use remesh::{DEFAULT_MAX_ERROR, RemeshError, RemeshOptions, RemeshReport, remesh};
 pub use surface::Surface;

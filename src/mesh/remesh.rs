@@ -1,14 +1,16 @@
 //! Any triangle mesh to a base mesh and N levels of 1-to-4 splits.
 //!
-//! 1. [`source`] puts the mesh into the unit box and finds its feature lines: borders, non-manifold edges and creases.
-//! 2. [`base`] collapses edges by their quadric error, feature lines only along themselves.
+//! 1. [`source`] puts the mesh into the unit box and finds its feature lines: borders, non-manifold edges, edges between materials and creases.
+//! 2. [`decimate`] removes vertices as long as the original still lies over what is left like a field of heights.
 //! 3. [`topology`] finds the base mesh's edges and, for those on a feature line, the piece of the line that each stands for.
 //! 4. [`split`] inserts vertices level by level: on feature lines by arc length, elsewhere by projection on the original surface.
 //! 5. [`settle`] moves vertices that were left beside the surface, or that fold it, to better places.
-//! 6. [`shading`] makes the normals and counts what went wrong.
+//! 6. [`refine`] judges the result, and goes back to 2 with more vertices to keep where it falls short.
+//! 7. [`shading`] gives every vertex the normal of the point of the original that it stands for.
 
-mod base;
+mod decimate;
 mod project;
+mod refine;
 mod settle;
 mod shading;
 mod source;
@@ -16,10 +18,12 @@ mod split;
 mod topology;
 
 use super::clean::TriangleMesh;
-use super::distance::{Target, TwoSidedDistance, Vec3, two_sided};
-use super::{Surface, lattice};
-use crate::num::MAX_LEVELS;
+use super::distance::{Distance, TwoSidedDistance, Vec3, mean_distances, percent};
+use super::farthest::Farthest;
+use super::{DEFAULT_CREASE_ANGLE, Surface, corner_normals, lattice};
+use crate::num::{MAX_LEVELS, PADDING_BITS};
 use rayon::prelude::*;
+use refine::{Fitted, Wanted};
 use serde::{Deserialize, Serialize};
 use source::Source;
 use topology::Topology;
@@ -27,59 +31,61 @@ use topology::Topology;
 /// Most finest triangles that are made: they need about 12 GB while they are.
 const MAX_TRIANGLES: u64 = 1 << 26;
 
-/// The default base mesh has one triangle for this many of the input, ...
-const REDUCTION: usize = 64;
-/// ... but at least this many.
-const MIN_BASE: usize = 512;
-
-/// Bends beyond these angles (degrees) are tried as creases, in this order.
-const CREASES: [f64; 4] = [40.0, 60.0, 85.0, 180.0];
-/// Splits that show whether a base mesh goes well.
-const TRIAL_LEVELS: u32 = 2;
-/// It does if no more than this part of the lattice points is beside the surface or in a triangle that faces away, ...
-const LITTLE_TROUBLE: f64 = 0.001;
-/// ... and creases are given up only to reduce that to this part of itself.
-const WORTH: f64 = 0.5;
-/// Up to this factor more base triangles than wanted will do.
-const ENOUGH: f64 = 1.25;
+/// How far result and original may be apart if nothing is said, in percent of the diagonal.
+pub const DEFAULT_MAX_ERROR: f64 = 0.3;
 
 /// What to make of a mesh.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RemeshOptions {
     /// Number of splits N, 0 to [`MAX_LEVELS`].
     pub levels: u32,
-    /// Wanted number of base triangles; by default 1/64 of the input, but at least 512 (fewer with nine or ten levels, which would make too many
-    /// triangles of them), and never more than the input.
+    /// Wanted number of base triangles (never more than the input); by default as few as keep within `max_error`.
     pub base_triangles: Option<usize>,
+    /// Largest distance between original and full-resolution result, both ways, in percent of the diagonal of the original's box.
+    pub max_error: f64,
+    /// Edges that bend by more than this, in degrees, are creases: they stay sharp lines, and where the mesh has no normals of its own they
+    /// are shaded so.
+    pub crease_angle: f64,
+}
+
+impl Default for RemeshOptions {
+    fn default() -> Self {
+        RemeshOptions { levels: 0, base_triangles: None, max_error: DEFAULT_MAX_ERROR, crease_angle: DEFAULT_CREASE_ANGLE }
+    }
 }
 
 /// What remeshing made, and how well it fits.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct RemeshReport {
     /// Base triangles reached; more than wanted if the topology or the feature lines did not allow it.
     pub base_triangles: usize,
-    /// Triangles that collapsed to degenerate ones or to ones already there, and were dropped from the base mesh.
-    pub dropped_base_triangles: usize,
+    /// Base triangles that are triangles of the original: they split flat.
+    pub own_base_triangles: usize,
     /// Triangles of the finest level.
     pub finest_triangles: u64,
     /// Inserted vertices put where a line along the interpolated normal meets the original surface.
     pub projected_by_ray: u64,
     /// Inserted vertices put at the closest point of the original surface.
     pub by_closest_point: u64,
+    /// Inserted vertices of base triangles that are triangles of the original.
+    pub on_own_triangles: u64,
     /// Inserted vertices put on a border or crease of the original, by arc length.
     pub on_feature_lines: u64,
     /// Inserted vertices kept at the middle of their edge, or between that and the surface, because anything else folds the surface.
     pub midpoints_kept: u64,
-    /// Finest triangles that face away from the original surface at their corners.
+    /// Finest triangles that face away from the original surface at their corners; base triangles that are the original's own have none.
     pub flipped_triangles: u64,
     /// Finest triangles without area.
     pub degenerate_triangles: u64,
-    /// Distances between the finest level and the original. At most about 600 thousand and 900 thousand samples are taken.
+    /// Distances between the finest level and the original.
     pub distance: TwoSidedDistance,
+    /// What was lost, in one line, if the result is further from the original than `max_error` or has flipped triangles.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub warning: Option<String>,
 }
 
 /// Why a mesh was not remeshed.
-#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum RemeshError {
     /// Too many splits.
     #[error("{levels} levels are more than the {MAX_LEVELS} there can be")]
@@ -99,6 +105,28 @@ pub enum RemeshError {
         levels: u32,
         /// What they would make.
         triangles: u64,
+    },
+    /// The base mesh that the original needs would not fit in memory with so many splits.
+    #[error(
+        "this mesh needs {base} base triangles, too many for {levels} levels: the most that fit ({MAX_TRIANGLES} triangles in all) are --levels {works}; or give a larger --max-error, or a --base"
+    )]
+    NeedsBase {
+        /// Base triangles needed.
+        base: u64,
+        /// Number of splits.
+        levels: u32,
+        /// The most that would work.
+        works: u32,
+    },
+    /// A limit that cannot be.
+    #[error("{name} is {value}, but must be {range}")]
+    Range {
+        /// Which option.
+        name: &'static str,
+        /// What was asked for.
+        value: f64,
+        /// What can be.
+        range: &'static str,
     },
     /// The mesh breaks a promise of [`TriangleMesh`].
     #[error("the mesh cannot be remeshed, it has {what}")]
@@ -126,80 +154,104 @@ pub fn remesh(
     if options.base_triangles == Some(0) {
         return Err(RemeshError::NoBase);
     }
+    let range = |name, value: f64, ok: bool, range| if ok { Ok(()) } else { Err(RemeshError::Range { name, value, range }) };
+    let error = options.max_error;
+    range("the largest error", error, error > 0.0 && error <= 100.0, "above 0 and at most 100 percent")?;
+    let angle = options.crease_angle;
+    range("the crease angle", angle, (0.0..=180.0).contains(&angle), "from 0 to 180 degrees")?;
     check(mesh)?;
-    let count = mesh.triangles.len();
-    // With many levels the default is what the size limit leaves room for.
-    let default = (count / REDUCTION).max(MIN_BASE).min((MAX_TRIANGLES >> (2 * levels)) as usize / 2);
-    let wanted = options.base_triangles.unwrap_or(default).min(count);
 
-    let (source, topology, dropped) = choose_base(mesh, wanted, progress);
-    let base = topology.triangles.len();
-    let triangles = (base as u64) << (2 * levels);
-    if triangles > MAX_TRIANGLES {
-        return Err(RemeshError::TooMany { base, levels, triangles });
-    }
-
-    let forest = split::split(&source, &topology, levels, progress);
+    let source = Source::new(mesh, angle.to_radians());
+    let limit = source.diagonal * error / 100.0;
+    let mut fitted = match options.base_triangles {
+        Some(wanted) => refine::force(&source, wanted.min(mesh.triangles.len()), levels, progress)?,
+        None => refine::fit(&source, &Wanted { levels, limit }, progress)?,
+    };
+    let Fitted { topology, forest, .. } = &fitted;
     progress("normals", 0, 1);
-    let (normals, flipped_triangles) = shading::shade(&topology, &forest);
-    progress("normals", 1, 1);
-
     let surface = Surface {
         levels,
         base_vertices: topology.vertices.len() as u32,
         triangles: topology.triangles.clone(),
-        positions: to_world(&source, &topology, &forest.positions, levels, mesh),
-        normals,
+        positions: to_world(&source, topology, &forest.positions, levels, mesh),
+        normals: shading::shade(&source, topology, forest, &corner_normals(mesh, angle)),
         materials: topology.faces.iter().filter_map(|&t| mesh.materials.get(t as usize).copied()).collect(),
         colours: mesh.colours.clone(),
     };
+    progress("normals", 1, 1);
 
     progress("distance", 0, 1);
-    let corners = shading::finest_corners(&forest);
+    let far = fitted.far.take().unwrap_or_else(|| refine::measure(&source, &fitted, limit));
     let mut report = RemeshReport {
-        base_triangles: topology.triangles.len(),
-        dropped_base_triangles: dropped,
+        base_triangles: fitted.topology.triangles.len(),
+        own_base_triangles: fitted.topology.own.iter().flatten().count(),
         finest_triangles: surface.finest_triangles(),
-        flipped_triangles,
-        degenerate_triangles: corners.par_iter().filter(|c| super::clean::is_degenerate(c.map(|p| p.to_array()))).count() as u64,
-        distance: two_sided(&source.target, &Target::grouped(corners, 1 << (2 * levels.min(2))), source.diagonal),
+        flipped_triangles: fitted.flips,
+        degenerate_triangles: fitted.target.degenerate(),
+        distance: distances(&source, &fitted, &far, levels),
         ..Default::default()
     };
-    forest.count_methods(&topology, &mut report);
+    fitted.forest.count_methods(&fitted.topology, &mut report);
+    report.warning = warning(&source, &fitted, &far, options, mesh, &report);
     progress("distance", 1, 1);
     Ok((surface, report))
 }
 
-/// Makes a base mesh for one crease angle after the other, splits it a little, and takes the first that goes well; else the best.
-///
-/// Creases kept are edges kept sharp, but on a rough or coarse surface they can be so many that they leave no room for anything else.
-fn choose_base(mesh: &TriangleMesh, wanted: usize, progress: &dyn Fn(&str, u64, u64)) -> (Source, Topology, usize) {
-    let attempt = |crease: f64| {
-        let (source, base, dropped) = base::simplify(mesh, wanted, crease.to_radians());
-        let topology = Topology::new(&source, base);
-        let forest = split::split(&source, &topology, TRIAL_LEVELS, &|_, _, _| {});
-        let mut report = RemeshReport::default();
-        forest.count_methods(&topology, &mut report);
-        let bad = report.midpoints_kept + shading::shade(&topology, &forest).1;
-        let trouble = bad as f64 / forest.positions.len() as f64;
-        let too_many = (topology.triangles.len() as f64 / wanted as f64 - ENOUGH).max(0.0);
-        ((source, topology, dropped), trouble + too_many)
+/// Distances in percent, with what rounding to the format's grid adds to the largest.
+fn distances(source: &Source, fitted: &Fitted, far: &[Farthest; 2], levels: u32) -> TwoSidedDistance {
+    let percent = percent(source.diagonal);
+    // Coordinates have 31 bits and a sign over the model's box, which is at most 2 units wide; half a step of the coarsest grid in each direction.
+    let snap = 3f64.sqrt() * f64::from(levels.max(PADDING_BITS)).exp2() * 2f64.powi(-31);
+    let [to, from] = mean_distances(&source.target, &fitted.target, source.diagonal);
+    let distance = |mean, far: &Farthest| Distance { mean, max: percent * (far.bound + snap), found: percent * far.found };
+    TwoSidedDistance { to_original: distance(to, &far[0]), from_original: distance(from, &far[1]) }
+}
+
+/// One line on what was lost, where, and what to try; none if nothing was.
+fn warning(
+    source: &Source,
+    fitted: &Fitted,
+    far: &[Farthest; 2],
+    options: &RemeshOptions,
+    mesh: &TriangleMesh,
+    report: &RemeshReport,
+) -> Option<String> {
+    let (to, from) = (&report.distance.to_original, &report.distance.from_original);
+    let place = |p: Vec3| {
+        let [x, y, z] =
+            source.to_world(p).map(|v| if v == 0.0 || (1e-3..1e6).contains(&v.abs()) { format!("{v:.4}") } else { format!("{v:.3e}") });
+        format!("at ({x}, {y}, {z})")
     };
-    let total = CREASES.len() as u64;
-    progress("base mesh", 0, total);
-    let (mut best, mut least) = attempt(CREASES[0]);
-    for (&crease, done) in CREASES[1..].iter().zip(1..) {
-        if least <= LITTLE_TROUBLE {
-            break;
-        }
-        progress("base mesh", done, total);
-        let (next, trouble) = attempt(crease);
-        if trouble < WORTH * least {
-            (best, least) = (next, trouble);
-        }
+    let mut lost = Vec::new();
+    if to.max.max(from.max) > options.max_error {
+        let (worst, at) = if from.max > to.max { (from.max, far[1].at) } else { (to.max, far[0].at) };
+        lost.push(format!(
+            "it is up to {worst:.3} % of the diagonal away from the original, {} (wanted: {} %)",
+            place(at),
+            options.max_error
+        ));
     }
-    progress("base mesh", total, total);
-    best
+    if let Some(at) = fitted.flip {
+        lost.push(format!(
+            "{} of its {} triangles face away from the original, such as {}",
+            fitted.flips,
+            report.finest_triangles,
+            place(at)
+        ));
+    }
+    if lost.is_empty() {
+        return None;
+    }
+    let seams = mesh.report.non_manifold_edges + mesh.report.inconsistent_edges;
+    let try_this = match options.base_triangles {
+        Some(base) if base < mesh.triangles.len() => "leave --base out, or try a larger one".to_owned(),
+        _ if seams > 0 => format!(
+            "its {seams} edges with more than two triangles, or with two that face different ways, are best repaired in the original"
+        ),
+        _ if report.base_triangles < mesh.triangles.len() / 2 => format!("try --base {}", 2 * report.base_triangles),
+        _ => "the original folds there".to_owned(),
+    };
+    Some(format!("{}; {try_this}", lost.join(", and ")))
 }
 
 fn check(mesh: &TriangleMesh) -> Result<(), RemeshError> {

@@ -1,6 +1,6 @@
 //! Where an inserted vertex goes.
 
-use super::super::distance::Vec3;
+use super::super::distance::{Hit, Vec3};
 use super::source::Source;
 
 /// How a lattice point got its place, in the order in which the ways are tried.
@@ -9,6 +9,8 @@ pub(super) enum Method {
     /// A vertex of the original.
     #[default]
     Corner,
+    /// In a triangle, or on an edge, that is the original's own.
+    Own,
     /// On a feature line, by arc length.
     Line,
     /// Along the interpolated normal.
@@ -27,6 +29,7 @@ impl Method {
         match self {
             Method::Ray => Method::Closest,
             Method::Closest | Method::Line => Method::Half,
+            Method::Own => Method::Own,
             Method::Corner | Method::Half | Method::Midpoint => Method::Midpoint,
         }
     }
@@ -39,6 +42,28 @@ pub(super) struct Point {
     /// Unit normal of the original surface, or zero on a feature line, where there is more than one.
     pub normal: Vec3,
     pub method: Method,
+    /// The triangle of the original that it stands for a point of, if that is known, ...
+    pub triangle: Option<u32>,
+    /// ... and that point's barycentrics.
+    pub barycentrics: [f32; 3],
+}
+
+impl Point {
+    /// Where `hit` is.
+    pub fn on(source: &Source, hit: &Hit, method: Method) -> Point {
+        let barycentrics = hit.barycentrics.map(|w| w as f32);
+        Point { position: hit.point, normal: source.normal(hit), method, triangle: Some(hit.triangle), barycentrics }
+    }
+
+    /// A point between this one and `other`, which stands for what this one stands for.
+    pub fn halfway(self, other: Vec3) -> Point {
+        Point { position: (self.position + other) / 2.0, method: Method::Half, ..self }
+    }
+
+    /// A place of no known origin.
+    pub fn plain(position: Vec3, method: Method) -> Point {
+        Point { position, method, ..Point::default() }
+    }
 }
 
 /// Cosine of the largest angle between the interpolated normal and the surface that it may meet.
@@ -54,7 +79,7 @@ const DOUBTFUL: f64 = 0.2;
 pub(super) fn insert(source: &Source, a: Point, b: Point, direction: Vec3, patch: Option<u32>, method: Method) -> Point {
     let middle = (a.position + b.position) / 2.0;
     let length = (b.position - a.position).length();
-    let midpoint = Point { position: middle, normal: (a.normal + b.normal).normalize_or_zero(), method: Method::Midpoint };
+    let midpoint = Point { normal: (a.normal + b.normal).normalize_or_zero(), ..Point::plain(middle, Method::Midpoint) };
     let Some(direction) = direction.try_normalize() else { return midpoint };
     if method >= Method::Midpoint {
         return midpoint;
@@ -65,17 +90,13 @@ pub(super) fn insert(source: &Source, a: Point, b: Point, direction: Vec3, patch
     if let Some(hit) = ray
         && far(hit.point) <= DOUBTFUL * length
     {
-        return Point { position: hit.point, normal: source.normal(&hit), method: Method::Ray };
+        return Point::on(source, &hit, Method::Ray);
     }
     let closest = source.target.closest(middle, REACH * length, accept);
     match (ray, closest) {
-        (Some(ray), Some(closest)) if far(ray.point) <= 2.0 * far(closest.point) => {
-            Point { position: ray.point, normal: source.normal(&ray), method: Method::Ray }
-        }
-        (_, Some(closest)) if method == Method::Half => {
-            Point { position: (closest.point + middle) / 2.0, normal: source.normal(&closest), method }
-        }
-        (_, Some(closest)) => Point { position: closest.point, normal: source.normal(&closest), method: Method::Closest },
+        (Some(ray), Some(closest)) if far(ray.point) <= 2.0 * far(closest.point) => Point::on(source, &ray, Method::Ray),
+        (_, Some(closest)) if method == Method::Half => Point::on(source, &closest, method).halfway(middle),
+        (_, Some(closest)) => Point::on(source, &closest, Method::Closest),
         _ => midpoint,
     }
 }

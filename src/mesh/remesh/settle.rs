@@ -2,7 +2,7 @@
 //!
 //! A vertex looks at the triangles around it and tries the surface near itself and near their middle. It moves only if that turns the
 //! triangles further towards the surface or, if none needs that, brings it onto the surface. One vertex moves at a time, in a fixed order.
-//! Vertices of the base mesh move too, but nothing on a feature line does.
+//! Vertices of the base mesh move too, but nothing on a feature line or on a triangle of the original's own does.
 
 use super::super::distance::Vec3;
 use super::super::lattice::{self, LatticePoint};
@@ -10,8 +10,8 @@ use super::project::{Method, Point};
 use super::split::{Splitter, side_point, triangles};
 use rayon::prelude::*;
 
-/// Passes over all vertices in question after each split.
-const PASSES: usize = 32;
+/// Passes over the vertices in question after each split, and as many with smoothing.
+const PASSES: usize = 16;
 
 /// A triangle faces the surface if the cosine between its normal and the sum of those at its corners is at least this.
 const FACING: f64 = 0.3;
@@ -35,22 +35,30 @@ type Wing = [Point; 2];
 
 impl Splitter<'_> {
     pub fn settle(&self, points: &mut [Point]) {
-        for pass in 0..PASSES {
-            // Smoothing away from the surface spreads to later levels, so it is left for the end.
-            let smooth = self.h == 1 && pass >= PASSES / 2;
-            let mut places: Vec<Place> = points
-                .par_chunks_exact(self.len)
-                .enumerate()
-                .flat_map_iter(|(t, tree)| self.unsettled(tree).into_iter().map(move |p| (t, p)))
+        self.settle_with(points, false);
+        // Smoothing away from the surface spreads to later levels, so it is left for the end.
+        if self.h == 1 {
+            self.settle_with(points, true);
+        }
+    }
+
+    fn settle_with(&self, points: &mut [Point], smooth: bool) {
+        let mut dirty = vec![true; self.topology.triangles.len()];
+        for _ in 0..PASSES {
+            let mut places: Vec<Place> = (points.par_chunks_exact(self.len).zip(&dirty).enumerate())
+                .filter(|(_, (_, dirty))| **dirty)
+                .flat_map_iter(|(t, (tree, _))| self.unsettled(tree).into_iter().map(move |p| (t, p)))
                 .filter_map(|(t, p)| self.place(t, p))
                 .collect();
             places.par_sort_unstable();
             places.dedup();
-            let mut moved = false;
+            dirty.fill(false);
             for place in places {
-                moved |= self.move_one(points, place, smooth);
+                for t in self.move_one(points, place, smooth) {
+                    dirty[t as usize] = true;
+                }
             }
-            if !moved && (smooth || self.h > 1) {
+            if !dirty.contains(&true) {
                 break;
             }
         }
@@ -75,17 +83,18 @@ impl Splitter<'_> {
 
     fn place(&self, t: usize, p: LatticePoint) -> Option<Place> {
         if self.is_inner(p) {
-            return Some(Place::Tree(t as u32, p));
+            return self.topology.own[t].is_none().then_some(Place::Tree(t as u32, p));
         }
         if let Some(k) = lattice::root(self.levels).iter().position(|&c| c == p) {
             let v = self.topology.triangles[t][k];
-            return self.topology.is_smooth[v as usize].then_some(Place::Vertex(v));
+            return self.topology.movable[v as usize].then_some(Place::Vertex(v));
         }
         let (edge, s) = self.edge_place(t, p);
-        Some(Place::Edge(edge, s))
+        (!self.topology.edges[edge as usize].own).then_some(Place::Edge(edge, s))
     }
 
-    fn move_one(&self, points: &mut [Point], place: Place, smooth: bool) -> bool {
+    /// The trees of a vertex that was moved; none if it was not.
+    fn move_one(&self, points: &mut [Point], place: Place, smooth: bool) -> Vec<u32> {
         let spots: Vec<(u32, LatticePoint)> = match place {
             Place::Vertex(v) => {
                 let around = &self.topology.around[v as usize];
@@ -102,16 +111,14 @@ impl Splitter<'_> {
         let wings: Vec<Wing> =
             spots.iter().flat_map(|&(t, p)| self.around(p).map(move |w| w.map(|q| seen[t as usize * self.len + self.index(q)]))).collect();
         let now = points[index(spots[0])];
-        let patch = self.topology.patches[spots[0].0 as usize];
+        let patch = Some(self.topology.patches[spots[0].0 as usize]);
         let choices = match place {
             Place::Edge(edge, s) if !self.topology.edges[edge as usize].smooth => self.along_line(points, edge, s),
             _ => self.choices(now, &wings, patch, smooth),
         };
-        let better = best(now, choices, &wings);
-        if let Some(point) = better {
-            spots.iter().for_each(|&spot| points[index(spot)] = point);
-        }
-        better.is_some()
+        let Some(point) = best(now, choices, &wings) else { return Vec::new() };
+        spots.iter().for_each(|&spot| points[index(spot)] = point);
+        spots.into_iter().map(|spot| spot.0).collect()
     }
 
     /// Pairs of neighbours that make triangles with `p`, inside the tree.
@@ -131,7 +138,7 @@ impl Splitter<'_> {
         let forward = self.topology.sides[t as usize][k].1;
         let at = |s: u32| points[t as usize * self.len + self.index(side_point(self.m, k, forward, s))].position;
         let position = (at(s - self.h) + at(s + self.h)) / 2.0;
-        vec![Point { position, normal: Vec3::ZERO, method: Method::Half }]
+        vec![Point::plain(position, Method::Half)]
     }
 
     /// Places on the surface near the vertex and near the middle of the triangles around, places half way there, and that middle.
@@ -145,11 +152,11 @@ impl Splitter<'_> {
             |t: u32| patch.is_none_or(|p| self.source.patch[t as usize] == p) && self.source.face_normal[t as usize].dot(direction) > 0.0;
         let on_surface = |p: Vec3| {
             let hit = self.source.target.closest(p, reach, accept)?;
-            Some(Point { position: hit.point, normal: self.source.normal(&hit), method: Method::Closest })
+            Some(Point::on(self.source, &hit, Method::Closest))
         };
         let (near, central) = (on_surface(now.position), on_surface(middle));
-        let between = |to: Point| Point { position: (now.position + to.position) / 2.0, method: Method::Half, ..to };
-        let off = Point { position: middle, normal: central.or(near).unwrap_or(now).normal, method: Method::Midpoint };
+        let between = |to: Point| to.halfway(now.position);
+        let off = Point { position: middle, method: Method::Midpoint, ..central.or(near).unwrap_or(now) };
         [near, central, near.map(between), central.map(between), smooth.then_some(off)].into_iter().flatten().collect()
     }
 }

@@ -1,54 +1,94 @@
-//! Normals of the finest level: smooth, but not across creases, borders and non-manifold edges.
+//! Normals of the finest level: those of the points of the original that its vertices stand for. And which triangles are folded.
 
 use super::super::distance::Vec3;
-use super::super::lattice;
-use super::split::{Forest, side_point, triangles};
+use super::super::lattice::{self, LatticePoint};
+use super::source::Source;
+use super::split::{Forest, triangles};
 use super::topology::Topology;
 use rayon::prelude::*;
 
-/// One unit normal for each lattice point, and the number of triangles that face away from the original at their corners.
-pub(super) fn shade(topology: &Topology, forest: &Forest) -> (Vec<[f32; 3]>, u64) {
-    let (m, levels, len) = (1u32 << forest.levels, forest.levels, lattice::len(forest.levels));
-    let index = |p| lattice::index(levels, p);
-    let mut normals = vec![Vec3::ZERO; forest.positions.len()];
-    let flipped = normals
-        .par_chunks_exact_mut(len)
-        .enumerate()
-        .map(|(t, normals)| {
-            let tree = &forest.positions[t * len..][..len];
-            let mut flipped = 0u64;
-            for corners in triangles(m, 1) {
-                let [a, b, c] = corners.map(index);
-                // Its length weighs by area.
-                let normal = (tree[b] - tree[a]).cross(tree[c] - tree[a]);
-                let surface: Vec3 = [a, b, c].into_iter().map(|i| forest.surface_normal(t * len + i)).sum();
-                flipped += u64::from(normal.dot(surface) < 0.0);
-                [a, b, c].into_iter().for_each(|i| normals[i] += normal);
-            }
-            flipped
-        })
-        .sum();
-
-    for edge in topology.edges.iter().filter(|e| e.smooth) {
-        for s in 1..m {
-            let places: Vec<usize> =
-                (edge.uses.iter()).map(|&(t, k)| t as usize * len + index(side_point(m, k, topology.sides[t as usize][k].1, s))).collect();
-            let sum = places.iter().map(|&i| normals[i]).sum();
-            places.iter().for_each(|&i| normals[i] = sum);
+/// One unit normal for each lattice point, interpolated from `corner_normals` of the original's triangles.
+///
+/// A point on a crease has one normal in each tree, that of the tree's side.
+pub(super) fn shade(source: &Source, topology: &Topology, forest: &Forest, corner_normals: &[[[f32; 3]; 3]]) -> Vec<[f32; 3]> {
+    let (levels, len) = (forest.levels, lattice::len(forest.levels));
+    let mut normals = vec![[0.0; 3]; forest.positions.len()];
+    normals.par_chunks_exact_mut(len).enumerate().for_each(|(t, normals)| {
+        let faces = faces(&forest.positions[t * len..][..len], levels);
+        for (i, normal) in normals.iter_mut().enumerate() {
+            let found = match topology.own[t] {
+                Some(own) => source.target.closest_on(own, forest.positions[t * len + i]),
+                None => {
+                    forest.origin(t * len + i).or_else(|| one_side(source, topology.patches[t], forest.positions[t * len + i], faces[i]))
+                }
+            };
+            let smooth = found.map(|(triangle, w)| {
+                let corners = corner_normals[triangle as usize];
+                (0..3).map(|k| Vec3::from(corners[k].map(f64::from)) * w[k]).sum::<Vec3>()
+            });
+            // Normals that cancel out leave the face's, or any.
+            let unit = smooth.and_then(Vec3::try_normalize).or(faces[i].try_normalize()).unwrap_or(Vec3::Z);
+            *normal = unit.to_array().map(|v| v as f32);
         }
-    }
-    let (sets, count) = topology.smooth_corners();
-    let mut sums = vec![Vec3::ZERO; count];
-    let place = |c: usize| (c / 3) * len + index(lattice::root(levels)[c % 3]);
-    sets.iter().enumerate().for_each(|(c, &set)| sums[set as usize] += normals[place(c)]);
-    sets.iter().enumerate().for_each(|(c, &set)| normals[place(c)] = sums[set as usize]);
+    });
+    normals
+}
 
-    let unit = |(i, n): (usize, &Vec3)| {
-        // Triangles that cancel out or have no area leave the original's normal, or any.
-        let n = n.try_normalize().or_else(|| forest.surface_normal(i).try_normalize()).unwrap_or(Vec3::Z);
-        n.to_array().map(|v| v as f32)
+/// For each point of a tree the sum of the normals of its finest triangles there, weighed by area.
+fn faces(tree: &[Vec3], levels: u32) -> Vec<Vec3> {
+    let mut sums = vec![Vec3::ZERO; tree.len()];
+    for corners in triangles(1 << levels, 1) {
+        let [a, b, c] = corners.map(|p| lattice::index(levels, p));
+        let normal = (tree[b] - tree[a]).cross(tree[c] - tree[a]);
+        [a, b, c].into_iter().for_each(|i| sums[i] += normal);
+    }
+    sums
+}
+
+/// The closest triangle of the patch that faces the same way, and where on it: on a feature line, that on the patch's side.
+fn one_side(source: &Source, patch: u32, p: Vec3, face: Vec3) -> Option<(u32, [f64; 3])> {
+    let ours = |t: u32| source.patch[t as usize] == patch;
+    let faces = |t: u32| ours(t) && source.face_normal[t as usize].dot(face) > 0.0;
+    // Far more than a vertex on a line is away, and little enough to be quick.
+    let near = 0.02 * source.diagonal;
+    let hit = source
+        .target
+        .closest(p, near, faces)
+        .or_else(|| source.target.closest(p, near, ours))
+        .or_else(|| source.target.closest(p, 1e9, ours))?;
+    Some((hit.triangle, hit.barycentrics))
+}
+
+/// Finest triangles of tree `t` that face away from the original at their corners. A tree that is a triangle of the original faces as that does.
+pub(super) fn flipped(topology: &Topology, forest: &Forest, t: usize) -> u64 {
+    if topology.own[t].is_some() {
+        return 0;
+    }
+    triangles(1 << forest.levels, 1).filter(|&corners| is_flipped(forest, t, corners)).count() as u64
+}
+
+/// A flipped triangle of tree `t`, for its place.
+pub(super) fn first_flipped(forest: &Forest, t: usize) -> Option<Vec3> {
+    let at = |p| forest.positions[t * lattice::len(forest.levels) + lattice::index(forest.levels, p)];
+    triangles(1 << forest.levels, 1).find(|&corners| is_flipped(forest, t, corners)).map(|[p, _, _]| at(p))
+}
+
+fn is_flipped(forest: &Forest, t: usize, corners: [LatticePoint; 3]) -> bool {
+    let [a, b, c] = corners.map(|p| t * lattice::len(forest.levels) + lattice::index(forest.levels, p));
+    let at = |i: usize| forest.positions[i];
+    let surface: Vec3 = [a, b, c].into_iter().map(|i| forest.surface_normal(i)).sum();
+    (at(b) - at(a)).cross(at(c) - at(a)).dot(surface) < 0.0
+}
+
+/// For each triangle of the finest level one of the original near it, in the order of [`finest_corners`]; `u32::MAX` where none is known.
+pub(super) fn finest_origins(forest: &Forest) -> Vec<u32> {
+    let (levels, len) = (forest.levels, lattice::len(forest.levels));
+    let origin = |t: usize, node| {
+        let corners = lattice::node(levels, levels, node);
+        corners.into_iter().find_map(|p| forest.origin(t * len + lattice::index(levels, p))).map_or(u32::MAX, |o| o.0)
     };
-    (normals.par_iter().enumerate().map(unit).collect(), flipped)
+    let trees = forest.positions.len() / len;
+    (0..trees).into_par_iter().flat_map_iter(|t| (0..1u32 << (2 * levels)).map(move |node| origin(t, node))).collect()
 }
 
 /// Corners of all triangles of the finest level, in the order of their nodes, so that neighbours stand together.

@@ -54,7 +54,7 @@ impl Source {
         }
         uses.sort_unstable();
 
-        let creases = find_creases(&uses, &positions, &face_normal, crease);
+        let creases = find_creases(&uses, &positions, &face_normal, &mesh.materials, crease);
         let mut feature = vec![Vec::new(); positions.len()];
         let mut corner_sets = Sets::new(3 * mesh.triangles.len());
         let mut patch_sets = Sets::new(mesh.triangles.len());
@@ -102,6 +102,15 @@ impl Source {
         }
     }
 
+    /// All vertices, each with one of its triangles.
+    pub fn vertices(&self) -> Vec<(u32, Vec3)> {
+        let mut triangle = vec![0; self.positions.len()];
+        for (wedges, t) in self.wedges.iter().zip(0u32..) {
+            wedges.iter().for_each(|&w| triangle[self.wedge_vertex[w as usize] as usize] = t);
+        }
+        triangle.into_iter().zip(self.positions.iter().copied()).collect()
+    }
+
     /// A point in the user's units.
     pub fn to_world(&self, p: Vec3) -> [f64; 3] {
         (self.centre + p * self.scale).to_array()
@@ -132,8 +141,8 @@ fn placement(mesh: &TriangleMesh) -> (Vec3, f64) {
     ((low + high) / 2.0, if scale.is_normal() { scale } else { 1.0 })
 }
 
-/// For each edge in order: whether it is on a feature line.
-fn find_creases(uses: &[EdgeUse], positions: &[Vec3], normals: &[Vec3], crease: f64) -> Vec<bool> {
+/// For each edge in order: whether it is on a feature line: a border, an edge that is not manifold, one between two materials, or a crease.
+fn find_creases(uses: &[EdgeUse], positions: &[Vec3], normals: &[Vec3], materials: &[u16], crease: f64) -> Vec<bool> {
     let runs: Vec<&[EdgeUse]> = uses.chunk_by(same_edge).collect();
     // The angle by which the surface bends at each edge; none at borders and where it cannot be told.
     let bend: Vec<Option<f64>> = (runs.iter())
@@ -153,7 +162,8 @@ fn find_creases(uses: &[EdgeUse], positions: &[Vec3], normals: &[Vec3], crease: 
         around.sort_unstable_by(f64::total_cmp);
         around.get(1).or(around.first()).copied().unwrap_or(0.0)
     };
-    let hard = |e: usize| bend[e].is_none();
+    let material = |u: &EdgeUse| materials.get(u.2 as usize);
+    let hard = |e: usize| bend[e].is_none() || runs[e].iter().any(|u| material(u) != material(&runs[e][0]));
     let sharp = |e: usize| bend[e].is_some_and(|b| b > crease && (b > ALWAYS.max(crease) || b > CONTRAST * second_around(e)));
     let marked: Vec<bool> = (0..runs.len()).map(|e| hard(e) || sharp(e)).collect();
 

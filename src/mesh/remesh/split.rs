@@ -50,6 +50,11 @@ fn stencil(m: u32, (i, j): LatticePoint, h: u32) -> (LatticePoint, LatticePoint,
     ((a.0 as u32, a.1 as u32), (b.0 as u32, b.1 as u32), [inside(c), inside(d)])
 }
 
+/// The middle of an edge of the original, or of one inside a triangle of it.
+fn own_point(a: Point, b: Point) -> Point {
+    Point { normal: (a.normal + b.normal).normalize_or_zero(), ..Point::plain((a.position + b.position) / 2.0, Method::Own) }
+}
+
 /// The point `s` steps along side `k` of a tree, counted from the edge's smaller end.
 pub(super) fn side_point(m: u32, k: usize, forward: bool, s: u32) -> LatticePoint {
     let s = if forward { s } else { m - s };
@@ -67,7 +72,7 @@ pub(super) fn split(source: &Source, topology: &Topology, levels: u32, progress:
         for (k, corner) in lattice::root(levels).into_iter().enumerate() {
             let wedge = topology.wedges[t][k] as usize;
             let position = source.positions[source.wedge_vertex[wedge] as usize];
-            tree[lattice::index(levels, corner)] = Point { position, normal: source.wedge_normal[wedge], method: Method::Corner };
+            tree[lattice::index(levels, corner)] = Point { normal: source.wedge_normal[wedge], ..Point::plain(position, Method::Corner) };
         }
     }
     let splitter = |h| Splitter { source, topology, levels, len, m: 1 << levels, h };
@@ -136,8 +141,11 @@ impl Splitter<'_> {
     fn inner_point(&self, t: usize, tree: &[Point], p: LatticePoint, method: Method) -> Point {
         let (a, b, _) = stencil(self.m, p, self.h);
         let (a, b) = (tree[self.index(a)], tree[self.index(b)]);
+        if self.topology.own[t].is_some() {
+            return own_point(a, b);
+        }
         let direction = self.face_normals(tree, p) + a.normal + b.normal;
-        insert(self.source, a, b, direction, self.topology.patches[t], method)
+        insert(self.source, a, b, direction, Some(self.topology.patches[t]), method)
     }
 
     /// Sum of the unit normals of the tree's triangles beside the edge that is split at `p`.
@@ -158,15 +166,16 @@ impl Splitter<'_> {
         let (tree, forward) = (self.tree(points, t), self.topology.sides[t as usize][k].1);
         let [a, b] = [s - self.h, s + self.h].map(|s| tree[self.index(side_point(self.m, k, forward, s))]);
         let middle = (a.position + b.position) / 2.0;
-        let plain = |position, method| Point { position, normal: Vec3::ZERO, method };
         match (&edge.line, method) {
-            (Some(_), Method::Midpoint) => plain(middle, method),
+            _ if edge.own && edge.smooth => own_point(a, b),
+            _ if edge.own => Point::plain(middle, Method::Own),
+            (Some(_), Method::Midpoint) => Point::plain(middle, method),
             (Some(line), _) => {
-                let position = line.at(f64::from(s) / f64::from(self.m));
-                if method == Method::Half { plain((position + middle) / 2.0, method) } else { plain(position, Method::Line) }
+                let point = Point::plain(line.at(f64::from(s) / f64::from(self.m)), Method::Line);
+                if method == Method::Half { point.halfway(middle) } else { point }
             }
-            _ if edge.smooth => insert(self.source, a, b, direction + a.normal + b.normal, self.topology.patches[t as usize], method),
-            _ => Point { normal: Vec3::ZERO, ..insert(self.source, a, b, direction, None, method) },
+            _ if edge.smooth => insert(self.source, a, b, direction + a.normal + b.normal, Some(self.topology.patches[t as usize]), method),
+            _ => Point { normal: Vec3::ZERO, triangle: None, ..insert(self.source, a, b, direction, None, method) },
         }
     }
 
@@ -231,7 +240,7 @@ impl Splitter<'_> {
             }
         }
         let movable = |p: &LatticePoint| match tree[self.index(*p)].method {
-            Method::Midpoint => false,
+            Method::Midpoint | Method::Own => false,
             Method::Line => lines,
             _ => true,
         };
@@ -261,11 +270,24 @@ impl Forest {
         self.points[i].normal
     }
 
+    /// The triangle of the original and the barycentrics of the point that a lattice point stands for, if they are known.
+    pub fn origin(&self, i: usize) -> Option<(u32, [f64; 3])> {
+        let point = &self.points[i];
+        Some((point.triangle?, point.barycentrics.map(f64::from)))
+    }
+
+    /// Points of tree `t` that were left beside the surface.
+    pub fn strays(&self, t: usize) -> impl Iterator<Item = Vec3> {
+        let len = lattice::len(self.levels);
+        self.points[t * len..][..len].iter().filter(|p| matches!(p.method, Method::Half | Method::Midpoint)).map(|p| p.position)
+    }
+
     /// Counts the ways in which points were placed, those on shared edges once.
     pub fn count_methods(&self, topology: &Topology, report: &mut RemeshReport) {
         let (m, len) = (1u32 << self.levels, lattice::len(self.levels));
         let mut count = |method| match method {
             Method::Corner => {}
+            Method::Own => report.on_own_triangles += 1,
             Method::Line => report.on_feature_lines += 1,
             Method::Ray => report.projected_by_ray += 1,
             Method::Closest => report.by_closest_point += 1,

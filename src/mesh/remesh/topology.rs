@@ -1,7 +1,6 @@
 //! Edges of the base mesh, and the feature lines that they stand for.
 
 use super::super::distance::Vec3;
-use super::super::sets::Sets;
 use super::source::Source;
 use std::collections::HashMap;
 
@@ -12,8 +11,8 @@ pub(super) struct Topology {
     pub triangles: Vec<[u32; 3]>,
     /// Wedges of the original at each triangle's corners.
     pub wedges: Vec<[u32; 3]>,
-    /// Patch of the original that each triangle stands for, if it stands for one.
-    pub patches: Vec<Option<u32>>,
+    /// Patch of the original that each triangle stands for.
+    pub patches: Vec<u32>,
     /// A triangle of the original near each one's middle.
     pub faces: Vec<u32>,
     pub edges: Vec<Edge>,
@@ -21,8 +20,10 @@ pub(super) struct Topology {
     pub sides: Vec<[(u32, bool); 3]>,
     /// For each base vertex its triangles and which of their corners it is.
     pub around: Vec<Vec<(u32, usize)>>,
-    /// True for base vertices with smooth edges only.
-    pub is_smooth: Vec<bool>,
+    /// True for base vertices with smooth edges only, and no triangle of the original's own around them.
+    pub movable: Vec<bool>,
+    /// For each triangle that of the original that it is, if it is one.
+    pub own: Vec<Option<u32>>,
 }
 
 /// An edge of the base mesh.
@@ -33,6 +34,8 @@ pub(super) struct Edge {
     pub uses: Vec<(u32, usize)>,
     /// Two triangles, wound alike, with no crease between them.
     pub smooth: bool,
+    /// It is an edge of a triangle of the original's own, and so of the original.
+    pub own: bool,
     /// The feature line from the smaller end to the larger, if there is one.
     pub line: Option<Polyline>,
 }
@@ -66,8 +69,9 @@ impl Polyline {
 }
 
 impl Topology {
-    /// `base` holds the triangles as wedges of the original.
-    pub fn new(source: &Source, base: Vec<[u32; 3]>) -> Topology {
+    /// Of base triangles as wedges of the original; `slots` gives for each a triangle of the original of the same patch, and the very one if
+    /// it is one.
+    pub fn new(source: &Source, base: Vec<[u32; 3]>, slots: &[u32]) -> Topology {
         let mut number = HashMap::new();
         let mut vertices = Vec::new();
         let mut id = |wedge: u32| {
@@ -78,6 +82,9 @@ impl Topology {
             })
         };
         let triangles: Vec<[u32; 3]> = base.iter().map(|t| t.map(&mut id)).collect();
+
+        let own: Vec<Option<u32>> =
+            base.iter().zip(slots).map(|(wedges, &t)| (source.wedges[t as usize] == *wedges).then_some(t)).collect();
 
         let mut uses = Vec::with_capacity(3 * triangles.len());
         for (tri, t) in triangles.iter().zip(0u32..) {
@@ -104,57 +111,40 @@ impl Topology {
             };
             let smooth = matches!(run, [s, t] if seen(s).0 == seen(t).0 && seen(s).1 != seen(t).1);
             let line = if smooth { None } else { walk(source, &in_base, ends.map(|v| vertices[v as usize])) };
-            edges.push(Edge { ends, uses: run.iter().map(|u| (u.2, u.3)).collect(), smooth, line });
+            let own = run.iter().any(|u| own[u.2 as usize].is_some());
+            edges.push(Edge { ends, uses: run.iter().map(|u| (u.2, u.3)).collect(), smooth, own, line });
         }
 
         let mut around = vec![Vec::new(); vertices.len()];
         for (tri, t) in triangles.iter().zip(0u32..) {
             (0..3).for_each(|k| around[tri[k] as usize].push((t, k)));
         }
-        let mut is_smooth: Vec<bool> = vertices.iter().map(|&v| source.feature[v as usize].is_empty()).collect();
-        for edge in edges.iter().filter(|e: &&Edge| !e.smooth) {
-            edge.ends.into_iter().for_each(|v| is_smooth[v as usize] = false);
+        let mut movable: Vec<bool> = vertices.iter().map(|&v| source.feature[v as usize].is_empty()).collect();
+        for edge in edges.iter().filter(|e: &&Edge| !e.smooth || e.own) {
+            edge.ends.into_iter().for_each(|v| movable[v as usize] = false);
         }
 
-        let patches = wedge_patches(source);
-        let patches: Vec<Option<u32>> = base
-            .iter()
-            .map(|t| {
-                let [a, b, c] = t.map(|w| patches[w as usize]);
-                (a == b && b == c).then_some(a)
-            })
-            .collect();
+        let patches: Vec<u32> = slots.iter().map(|&t| source.patch[t as usize]).collect();
         let faces = triangles
             .iter()
             .zip(&patches)
             .map(|(t, &patch)| {
                 let middle = t.iter().map(|&v| source.positions[vertices[v as usize] as usize]).sum::<Vec3>() / 3.0;
-                let accept = |f: u32| patch.is_none_or(|p| source.patch[f as usize] == p);
+                let accept = |f: u32| source.patch[f as usize] == patch;
                 source.target.closest(middle, 1e9, accept).map_or(0, |hit| hit.triangle)
             })
             .collect();
-        Topology { vertices, triangles, wedges: base, patches, faces, edges, sides, around, is_smooth }
+        Topology { vertices, triangles, wedges: base, patches, faces, edges, sides, around, movable, own }
     }
 
-    /// For each triangle corner the number of its set: corners of a vertex that smooth edges connect.
-    pub fn smooth_corners(&self) -> (Vec<u32>, usize) {
-        let mut sets = Sets::new(3 * self.triangles.len());
-        for edge in self.edges.iter().filter(|e| e.smooth) {
-            for v in edge.ends {
-                let corner = |&(t, _): &(u32, usize)| 3 * t + self.triangles[t as usize].iter().position(|&w| w == v).unwrap_or(0) as u32;
-                sets.join(corner(&edge.uses[0]), corner(&edge.uses[1]));
-            }
-        }
-        sets.numbers()
+    /// These triangles and all that share a vertex with one, in order.
+    pub fn with_neighbours(&self, triangles: &[usize]) -> Vec<usize> {
+        let around = |&t: &usize| self.triangles[t].into_iter().flat_map(|v| &self.around[v as usize]).map(|&(t, _)| t as usize);
+        let mut all: Vec<usize> = triangles.iter().flat_map(around).collect();
+        all.sort_unstable();
+        all.dedup();
+        all
     }
-}
-
-fn wedge_patches(source: &Source) -> Vec<u32> {
-    let mut patches = vec![0; source.wedge_vertex.len()];
-    for (wedges, &patch) in source.wedges.iter().zip(&source.patch) {
-        wedges.iter().for_each(|&w| patches[w as usize] = patch);
-    }
-    patches
 }
 
 /// Follows the original's feature lines from one vertex to the other, not through another base vertex; the shortest way if there are more.

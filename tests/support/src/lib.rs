@@ -5,6 +5,7 @@ pub mod models;
 pub mod plain;
 pub mod surfaces;
 pub mod sv;
+pub mod thin;
 pub mod timing;
 
 /// `count` cases; what ever failed is kept in a file of the same name beside the test's source, to be committed and tried first.

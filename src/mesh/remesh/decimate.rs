@@ -1,0 +1,524 @@
+//! The base mesh: vertices of the original are removed one after the other, least quadric error first, as long as the original still lies
+//! over what is left like a field of heights.
+//!
+//! A vertex is removed by pulling it along an edge into a neighbour, which stays where it is, so that base vertices are vertices of the
+//! original. Each triangle of the mesh in the making knows which triangles of the original lie over it. A removal is legal if
+//!
+//! - the surface stays as it is connected, and feature lines are shortened only along themselves;
+//! - no triangle turns away from the original at its corners;
+//! - every triangle of the original that changes hands faces the same way as the triangle that gets it, and is not far from it.
+//!
+//! So thin parts keep the vertices that hold them apart: a horn without its tip would have triangles of both its sides over one triangle.
+
+use super::super::distance::{Vec3, closest_barycentrics};
+use super::source::Source;
+use std::cmp::Reverse;
+use std::collections::BinaryHeap;
+
+/// How far removal goes.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Goal {
+    /// It stops at this many triangles.
+    pub triangles: usize,
+    /// Cosine of the largest angle between a triangle and those of the original over it.
+    pub facing: f64,
+    /// Largest distance between them, in lengths of the triangle's longest side.
+    pub distance: f64,
+}
+
+/// Least quality of a new triangle (1 is equilateral, 0 has no area), unless one is no better now.
+const LEAST_QUALITY: f64 = 0.3;
+
+/// Cosine of the largest angle between a triangle and the original's normals at its corners, in sum.
+const CORNERS: f64 = 0.2;
+
+/// Cosine of the largest bend of a feature line at a removed vertex, between its neighbours on the line.
+const LINE_BEND: f64 = 0.3;
+
+/// Triangles of the original known over each triangle, at most, ...
+const MOST_OVER: usize = 8;
+/// ... and over all, as soon as that is more: enough to tell how the original faces.
+const MOST_OVER_ALL: usize = 1 << 15;
+
+/// Half way to a base mesh, where its removals are remembered, it has this many triangles.
+const HALF_WAY: usize = 1 << 13;
+
+/// A triangle over which fewer middles lie is looked at from its own.
+const FEW: usize = 4;
+
+/// Weight of the square of the length of what a removal pulls, beside the quadric error: it decides where the surface is flat.
+const SHORT: f64 = 1e-4;
+
+/// Weight of planes through feature lines in the quadrics of their vertices.
+const LINE_WEIGHT: f64 = 1.0;
+
+/// What became of the original.
+pub(super) struct Decimated {
+    /// Base triangles as wedges of the original.
+    pub wedges: Vec<[u32; 3]>,
+    /// For each base triangle one of the original, of the same patch, and the very one if it is one.
+    pub slots: Vec<u32>,
+    /// For each base triangle those of the original that lie over it, or some of them.
+    pub over: Vec<Vec<u32>>,
+    /// When each vertex of the original was removed, counted from 1; 0 for those that are left.
+    pub removed: Vec<u32>,
+    /// Removals up to this one are remembered: to keep what they removed costs more.
+    pub half_way: u32,
+}
+
+/// Makes one base mesh after the other, each keeping more than the last.
+pub(super) struct Decimator<'a> {
+    source: &'a Source,
+    /// The mesh half way: removals up to here are the same as long as what they removed need not be kept.
+    half_way: Option<Mesh<'a>>,
+}
+
+impl<'a> Decimator<'a> {
+    pub fn new(source: &'a Source) -> Decimator<'a> {
+        Decimator { source, half_way: None }
+    }
+
+    /// Removes vertices, but none of `keep`, until one goal after the other is reached or allows no more.
+    pub fn run(&mut self, goals: &[Goal], keep: &[bool]) -> Decimated {
+        let kept = |mesh: &Mesh| mesh.removed.iter().zip(keep).all(|(&removed, &keep)| removed == 0 || !keep);
+        let mut mesh = match self.half_way.take().filter(kept) {
+            Some(mesh) => mesh,
+            None => {
+                let mut mesh = Mesh::new(self.source);
+                if let Some(first) = goals.first() {
+                    mesh.run(&Goal { triangles: first.triangles.max(HALF_WAY), ..*first }, keep);
+                }
+                mesh
+            }
+        };
+        self.half_way = Some(mesh.clone());
+        let half_way = mesh.removals;
+        goals.iter().for_each(|goal| mesh.run(goal, keep));
+        let left: Vec<usize> = (0..mesh.alive.len()).filter(|&t| mesh.alive[t]).collect();
+        Decimated {
+            wedges: left.iter().map(|&t| mesh.wedges[t]).collect(),
+            slots: left.iter().map(|&t| t as u32).collect(),
+            over: left.iter().map(|&t| std::mem::take(&mut mesh.over[t])).collect(),
+            removed: mesh.removed,
+            half_way,
+        }
+    }
+}
+
+/// Sum of squared distances from planes, weighed by area: x'Ax + 2b'x + c.
+#[derive(Clone, Copy, Default)]
+struct Quadric {
+    a: [f64; 6],
+    b: Vec3,
+    c: f64,
+}
+
+impl Quadric {
+    /// The plane through `p` with the unit normal `n`.
+    fn plane(p: Vec3, n: Vec3, weight: f64) -> Quadric {
+        let d = -n.dot(p);
+        let a = [n.x * n.x, n.x * n.y, n.x * n.z, n.y * n.y, n.y * n.z, n.z * n.z].map(|v| v * weight);
+        Quadric { a, b: n * (d * weight), c: d * d * weight }
+    }
+
+    fn add(&mut self, other: &Quadric) {
+        self.a.iter_mut().zip(other.a).for_each(|(a, b)| *a += b);
+        self.b += other.b;
+        self.c += other.c;
+    }
+
+    fn at(&self, p: Vec3) -> f64 {
+        let [xx, xy, xz, yy, yz, zz] = self.a;
+        let linear = Vec3::new(xx * p.x + xy * p.y + xz * p.z, xy * p.x + yy * p.y + yz * p.z, xz * p.x + yz * p.y + zz * p.z);
+        (linear.dot(p) + 2.0 * self.b.dot(p) + self.c).max(0.0)
+    }
+}
+
+/// Costs in order; none is NaN.
+#[derive(Clone, Copy, PartialEq)]
+struct Cost(f64);
+
+impl Eq for Cost {}
+
+impl PartialOrd for Cost {
+    fn partial_cmp(&self, other: &Cost) -> Option<std::cmp::Ordering> {
+        Some(self.cmp(other))
+    }
+}
+
+impl Ord for Cost {
+    fn cmp(&self, other: &Cost) -> std::cmp::Ordering {
+        self.0.total_cmp(&other.0)
+    }
+}
+
+/// Where a vertex may be pulled.
+enum Freedom {
+    /// It stays.
+    None,
+    /// Along its feature line.
+    Line,
+    /// Into any neighbour.
+    Any,
+}
+
+/// A triangle that a removal would change, with its new corners.
+struct Changed {
+    triangle: u32,
+    corners: [Vec3; 3],
+    normal: Vec3,
+    /// Square of the largest distance of what lies over it.
+    reach: f64,
+}
+
+/// The mesh in the making. A triangle keeps the number, and so the patch, of one of the original.
+#[derive(Clone)]
+struct Mesh<'a> {
+    source: &'a Source,
+    keep: Vec<bool>,
+    triangles: Vec<[u32; 3]>,
+    wedges: Vec<[u32; 3]>,
+    alive: Vec<bool>,
+    count: usize,
+    over: Vec<Vec<u32>>,
+    /// Triangles around each vertex.
+    around: Vec<Vec<u32>>,
+    /// Neighbours of each vertex along feature lines.
+    lines: Vec<Vec<u32>>,
+    quadrics: Vec<Quadric>,
+    /// What each vertex's quadric gives at the vertex.
+    own_cost: Vec<f64>,
+    /// Vertices by cost, with the number of their last change.
+    queue: BinaryHeap<Reverse<(Cost, u32, u32)>>,
+    changes: Vec<u32>,
+    removed: Vec<u32>,
+    removals: u32,
+    /// For each triangle of the original its middle.
+    middles: Vec<Vec3>,
+}
+
+impl<'a> Mesh<'a> {
+    fn new(source: &'a Source) -> Mesh<'a> {
+        let (vertices, count) = (source.positions.len(), source.wedges.len());
+        let triangles: Vec<[u32; 3]> = source.wedges.iter().map(|t| t.map(|w| source.wedge_vertex[w as usize])).collect();
+        let mut around = vec![Vec::with_capacity(6); vertices];
+        let mut quadrics = vec![Quadric::default(); vertices];
+        let mut middles = Vec::with_capacity(count);
+        for (tri, t) in triangles.iter().zip(0u32..) {
+            let [a, b, c] = tri.map(|v| source.positions[v as usize]);
+            let plane = Quadric::plane(a, source.face_normal[t as usize], (b - a).cross(c - a).length() / 2.0);
+            for &v in tri {
+                around[v as usize].push(t);
+                quadrics[v as usize].add(&plane);
+            }
+            middles.push((a + b + c) / 3.0);
+        }
+        let mut mesh = Mesh {
+            source,
+            keep: vec![false; vertices],
+            triangles,
+            wedges: source.wedges.clone(),
+            alive: vec![true; count],
+            count,
+            over: (0..count as u32).map(|t| vec![t]).collect(),
+            around,
+            lines: source.feature.clone(),
+            quadrics,
+            own_cost: Vec::new(),
+            queue: BinaryHeap::new(),
+            changes: vec![0; vertices],
+            removed: vec![0; vertices],
+            removals: 0,
+            middles,
+        };
+        mesh.add_line_quadrics();
+        mesh.own_cost = (0..vertices as u32).map(|v| mesh.quadrics[v as usize].at(mesh.at(v))).collect();
+        mesh
+    }
+
+    /// Planes through feature lines, upright on the triangles beside them.
+    fn add_line_quadrics(&mut self) {
+        for u in 0..self.lines.len() {
+            for &v in self.lines[u].iter().filter(|&&v| v as usize > u) {
+                let (a, b) = (self.at(u as u32), self.at(v));
+                for &t in self.around[u].iter().filter(|&&t| self.triangles[t as usize].contains(&v)) {
+                    let normal = (b - a).cross(self.source.face_normal[t as usize]).normalize_or_zero();
+                    let plane = Quadric::plane(a, normal, LINE_WEIGHT * (b - a).length_squared());
+                    self.quadrics[u].add(&plane);
+                    self.quadrics[v as usize].add(&plane);
+                }
+            }
+        }
+    }
+
+    fn at(&self, v: u32) -> Vec3 {
+        self.source.positions[v as usize]
+    }
+
+    fn run(&mut self, goal: &Goal, keep: &[bool]) {
+        self.queue.clear();
+        self.keep = keep.to_vec();
+        for v in 0..self.around.len() as u32 {
+            self.push(v);
+        }
+        while self.count > goal.triangles {
+            let Some(Reverse((_, u, change))) = self.queue.pop() else { break };
+            if self.changes[u as usize] != change {
+                continue;
+            }
+            for (_, v) in self.ways(u) {
+                if let Some((changed, shares)) = self.check(u, v, goal) {
+                    self.remove(u, v, &changed, shares);
+                    break;
+                }
+            }
+        }
+    }
+
+    fn push(&mut self, u: u32) {
+        let cost = |v: &u32| self.cost(u, *v);
+        let best = match self.freedom(u) {
+            Freedom::None => return,
+            Freedom::Line => self.lines[u as usize].iter().map(cost).fold(f64::INFINITY, f64::min),
+            // In each triangle the corner after it: on a border the last neighbour is left out, but then it is on a line.
+            Freedom::Any => {
+                self.around[u as usize].iter().map(|&t| cost(&other(self.triangles[t as usize], u)[0])).fold(f64::INFINITY, f64::min)
+            }
+        };
+        if best.is_finite() {
+            self.queue.push(Reverse((Cost(best), u, self.changes[u as usize])));
+        }
+    }
+
+    fn freedom(&self, u: u32) -> Freedom {
+        match self.source.feature[u as usize].len() {
+            _ if self.keep[u as usize] => Freedom::None,
+            0 => Freedom::Any,
+            2 => Freedom::Line,
+            // Where lines end or meet.
+            _ => Freedom::None,
+        }
+    }
+
+    /// Neighbours that `u` may be pulled into, as far as feature lines are concerned, with their costs, cheapest first.
+    fn ways(&self, u: u32) -> Vec<(f64, u32)> {
+        let to: Vec<u32> = match self.freedom(u) {
+            Freedom::None => return Vec::new(),
+            Freedom::Line => self.lines[u as usize].clone(),
+            Freedom::Any => self.neighbours(u),
+        };
+        let mut ways: Vec<(f64, u32)> = to.into_iter().map(|v| (self.cost(u, v), v)).collect();
+        ways.sort_unstable_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
+        ways
+    }
+
+    fn cost(&self, u: u32, v: u32) -> f64 {
+        let p = self.at(v);
+        let q = &self.quadrics[u as usize];
+        // Where the surface is flat, short edges go first, and long thin triangles last.
+        let length = (p - self.at(u)).length_squared();
+        q.at(p) + self.own_cost[v as usize] + SHORT * length * length
+    }
+
+    /// In order, each once.
+    fn neighbours(&self, u: u32) -> Vec<u32> {
+        let mut all: Vec<u32> = self.around[u as usize].iter().flat_map(|&t| self.triangles[t as usize]).filter(|&v| v != u).collect();
+        all.sort_unstable();
+        all.dedup();
+        all
+    }
+
+    /// What pulling `u` into `v` changes, and what of the original then lies over each triangle changed; none if it is not legal.
+    fn check(&self, u: u32, v: u32, goal: &Goal) -> Option<(Vec<Changed>, Vec<Vec<u32>>)> {
+        self.check_line(u, v)?;
+        self.check_connections(u, v)?;
+        let changed = self.check_shapes(u, v, goal)?;
+        let shares = self.check_over(u, &changed, goal)?;
+        Some((changed, shares))
+    }
+
+    fn check_line(&self, u: u32, v: u32) -> Option<()> {
+        let [a, b] = self.lines[u as usize][..] else { return Some(()) };
+        let other = if a == v { b } else { a };
+        // Two vertices have but one line between them.
+        let free = other != v && !self.lines[other as usize].contains(&v);
+        let (before, after) = (self.at(u) - self.at(other), self.at(v) - self.at(u));
+        (free && before.dot(after) >= LINE_BEND * before.length() * after.length()).then_some(())
+    }
+
+    /// The surface stays as it is connected: only the triangles at the edge go, no two become one, and every wedge finds its continuation.
+    fn check_connections(&self, u: u32, v: u32) -> Option<()> {
+        let (near, far) = (self.neighbours(u), self.neighbours(v));
+        let common = near.iter().filter(|w| far.binary_search(w).is_ok()).count();
+        let mut at_edge = 0;
+        for &t in &self.around[u as usize] {
+            let tri = self.triangles[t as usize];
+            if tri.contains(&v) {
+                at_edge += 1;
+            } else if far.binary_search(&other(tri, u)[0]).is_ok() && far.binary_search(&other(tri, u)[1]).is_ok() {
+                // The same three corners once more?
+                let [a, b] = other(tri, u);
+                let there = |&s: &u32| self.triangles[s as usize].contains(&a) && self.triangles[s as usize].contains(&b);
+                if self.around[v as usize].iter().any(there) {
+                    return None;
+                }
+            }
+            self.continuation(t, u, v)?;
+        }
+        (at_edge > 0 && common == at_edge).then_some(())
+    }
+
+    /// The wedge of `v` that continues the wedge that triangle `t` has at `u`.
+    fn continuation(&self, t: u32, u: u32, v: u32) -> Option<u32> {
+        let wedge = |t: u32, v: u32| {
+            let k = self.triangles[t as usize].iter().position(|&w| w == v)?;
+            Some(self.wedges[t as usize][k])
+        };
+        let own = wedge(t, u)?;
+        self.around[u as usize].iter().filter(|&&s| wedge(s, u) == Some(own)).find_map(|&s| wedge(s, v))
+    }
+
+    fn check_shapes(&self, u: u32, v: u32, goal: &Goal) -> Option<Vec<Changed>> {
+        let mut changed = Vec::with_capacity(6);
+        for &t in &self.around[u as usize] {
+            let tri = self.triangles[t as usize];
+            if tri.contains(&v) {
+                continue;
+            }
+            let old = tri.map(|w| self.at(w));
+            let corners = tri.map(|w| self.at(if w == u { v } else { w }));
+            let normal = (corners[1] - corners[0]).cross(corners[2] - corners[0]);
+            let (quality, side) = quality(corners, normal.length());
+            let before = (old[1] - old[0]).cross(old[2] - old[0]).length();
+            if quality < LEAST_QUALITY && quality <= self::quality(old, before).0 || normal == Vec3::ZERO {
+                return None;
+            }
+            let (reach, normal) = (goal.distance * goal.distance * side, normal.normalize_or_zero());
+            if self.faces_corners(t, u, v, normal) < goal.facing.min(CORNERS) {
+                return None;
+            }
+            changed.push(Changed { triangle: t, corners, normal, reach });
+        }
+        Some(changed)
+    }
+
+    /// Cosine between a normal and the sum of the original's normals at the corners of triangle `t`, once `u` is pulled into `v`.
+    fn faces_corners(&self, t: u32, u: u32, v: u32, normal: Vec3) -> f64 {
+        let wedge = |(w, wedge): (u32, u32)| if w == u { self.continuation(t, u, v).unwrap_or(wedge) } else { wedge };
+        let corners = self.triangles[t as usize].into_iter().zip(self.wedges[t as usize]);
+        let sum: Vec3 = corners.map(|c| self.source.wedge_normal[wedge(c) as usize]).sum();
+        // Where they cancel out there is no saying.
+        sum.try_normalize().map_or(1.0, |sum| sum.dot(normal))
+    }
+
+    /// Gives every triangle of the original over those around `u` to the closest of the new ones of its patch.
+    fn check_over(&self, u: u32, changed: &[Changed], goal: &Goal) -> Option<Vec<Vec<u32>>> {
+        let mut shares = vec![Vec::new(); changed.len()];
+        for &t in &self.around[u as usize] {
+            for &item in &self.over[t as usize] {
+                let (middle, normal) = (self.middles[item as usize], self.source.face_normal[item as usize]);
+                let mut best = (f64::INFINITY, usize::MAX);
+                for (k, c) in changed.iter().enumerate() {
+                    if self.source.patch[c.triangle as usize] != self.source.patch[item as usize] {
+                        continue;
+                    }
+                    let [p, q, r] = c.corners;
+                    let w = closest_barycentrics(middle, p, q, r);
+                    let far = (p * w[0] + q * w[1] + r * w[2] - middle).length_squared();
+                    if far < best.0 {
+                        best = (far, k);
+                    }
+                }
+                let to = changed.get(best.1)?;
+                let faces = normal == Vec3::ZERO || normal.dot(to.normal) >= goal.facing;
+                if !faces || best.0 > to.reach {
+                    return None;
+                }
+                shares[best.1].push(item);
+            }
+        }
+        let bare = changed.iter().zip(&shares).filter(|(_, share)| share.len() < FEW);
+        bare.into_iter().all(|(c, _)| self.lies_under(u, c, goal)).then_some(shares)
+    }
+
+    /// A triangle over which no middle lies may still have some of the original over it, or be a fold.
+    fn lies_under(&self, u: u32, c: &Changed, goal: &Goal) -> bool {
+        let middle = c.corners.iter().sum::<Vec3>() / 3.0;
+        let patch = self.source.patch[c.triangle as usize];
+        let mut best = (f64::INFINITY, Vec3::ZERO);
+        for &item in self.around[u as usize].iter().flat_map(|&t| &self.over[t as usize]) {
+            if self.source.patch[item as usize] != patch {
+                continue;
+            }
+            let [p, q, r] = self.source.wedges[item as usize].map(|w| self.at(self.source.wedge_vertex[w as usize]));
+            let w = closest_barycentrics(middle, p, q, r);
+            let far = (p * w[0] + q * w[1] + r * w[2] - middle).length_squared();
+            if far < best.0 {
+                best = (far, self.source.face_normal[item as usize]);
+            }
+        }
+        best.0 <= c.reach && (best.1 == Vec3::ZERO || best.1.dot(c.normal) >= goal.facing)
+    }
+
+    fn remove(&mut self, u: u32, v: u32, changed: &[Changed], shares: Vec<Vec<u32>>) {
+        let new_wedges: Vec<Option<u32>> = changed.iter().map(|c| self.continuation(c.triangle, u, v)).collect();
+        let around = std::mem::take(&mut self.around[u as usize]);
+        for &t in around.iter().filter(|&&t| self.triangles[t as usize].contains(&v)) {
+            self.alive[t as usize] = false;
+            self.count -= 1;
+            self.over[t as usize] = Vec::new();
+            for w in self.triangles[t as usize].into_iter().filter(|&w| w != u) {
+                self.around[w as usize].retain(|&s| s != t);
+            }
+        }
+        for ((c, share), wedge) in changed.iter().zip(shares).zip(new_wedges) {
+            let t = c.triangle as usize;
+            if let (Some(k), Some(wedge)) = (self.triangles[t].iter().position(|&w| w == u), wedge) {
+                self.triangles[t][k] = v;
+                self.wedges[t][k] = wedge;
+            }
+            self.over[t] = thinned(share, MOST_OVER.max(MOST_OVER_ALL / self.count.max(1)));
+            self.around[v as usize].push(c.triangle);
+        }
+        if let [a, b] = self.lines[u as usize][..] {
+            let other = if a == v { b } else { a };
+            for (at, new) in [(v, other), (other, v)] {
+                self.lines[at as usize].iter_mut().filter(|w| **w == u).for_each(|w| *w = new);
+            }
+            self.lines[u as usize].clear();
+        }
+        let quadric = self.quadrics[u as usize];
+        self.quadrics[v as usize].add(&quadric);
+        self.own_cost[v as usize] = self.quadrics[v as usize].at(self.at(v));
+        self.removals += 1;
+        self.removed[u as usize] = self.removals;
+        self.changes[u as usize] += 1;
+        for w in self.neighbours(v).into_iter().chain([v]) {
+            self.changes[w as usize] += 1;
+            self.push(w);
+        }
+    }
+}
+
+/// At most `most` of them, evenly.
+fn thinned(mut all: Vec<u32>, most: usize) -> Vec<u32> {
+    if all.len() > most {
+        let step = all.len() as f64 / most as f64;
+        all = (0..most).map(|k| all[(k as f64 * step) as usize]).collect();
+    }
+    all
+}
+
+/// The two corners that are not `v`.
+fn other(tri: [u32; 3], v: u32) -> [u32; 2] {
+    let k = tri.iter().position(|&w| w == v).unwrap_or(0);
+    [tri[(k + 1) % 3], tri[(k + 2) % 3]]
+}
+
+/// 1 for an equilateral triangle, 0 for one without area; and the square of the longest side.
+fn quality([a, b, c]: [Vec3; 3], twice_area: f64) -> (f64, f64) {
+    let sides = [(b - a).length_squared(), (c - b).length_squared(), (a - c).length_squared()];
+    let sum: f64 = sides.iter().sum();
+    let longest = sides.into_iter().fold(0.0, f64::max);
+    (if sum > 0.0 { 2.0 * 3f64.sqrt() * twice_area / sum } else { 0.0 }, longest)
+}

@@ -1,0 +1,210 @@
+//! The coarsest base mesh that the original can be split from: as few vertices as [`Decimator`] leaves, and more where the result falls short.
+//!
+//! What is judged is the result itself: none of its triangles may face away from the original, and neither surface may be further from the
+//! other than the limit. Where one is, the base mesh keeps the vertex that was missed and those that were removed last around it, the next
+//! time twice as many. In the end it is the original there, which splits without any fault.
+
+use super::super::distance::{Target, Vec3};
+use super::super::farthest::{Farthest, farthest};
+use super::decimate::{Decimated, Decimator, Goal};
+use super::shading::{finest_corners, finest_origins, first_flipped, flipped};
+use super::source::Source;
+use super::split::{Forest, split};
+use super::topology::Topology;
+use super::{MAX_TRIANGLES, RemeshError};
+use rayon::prelude::*;
+
+/// How far removal goes by itself: a little beyond where it goes well, as what goes wrong is mended.
+const FREE: Goal = Goal { triangles: 0, facing: 0.3, distance: 0.5 };
+/// How far it goes if a number of triangles is wanted, whatever becomes of the original.
+const FORCED: Goal = Goal { triangles: 0, facing: -1.0, distance: f64::INFINITY };
+
+/// Results of more levels than this are judged by their first so many, and in whole only when those have no fault.
+const TRIAL_LEVELS: u32 = 4;
+/// Times that a base mesh is mended, at most, ...
+const ROUNDS: u32 = 24;
+/// ... and by results of more than the trial's levels.
+const LAST_ROUNDS: u32 = 12;
+
+/// Largest distances are narrowed down to this part of the limit.
+const FINEST: f64 = 0.3;
+
+/// Vertices that the base mesh keeps for a tree at fault the first time, ...
+const FIRST_KEPT: usize = 3;
+/// ... and at most; each time twice as many.
+const MOST_KEPT: usize = 24;
+/// So many times only those that were not removed early.
+const PATIENCE: u32 = 2;
+/// Rings of trees around one at fault in which they are looked for, at most.
+const RINGS: u32 = 4;
+
+/// What is wanted of a base mesh.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Wanted {
+    pub levels: u32,
+    /// Largest distance between original and result, in units of the box.
+    pub limit: f64,
+}
+
+/// A base mesh and what was split from it.
+pub(super) struct Fitted {
+    pub topology: Topology,
+    pub forest: Forest,
+    /// The finest triangles.
+    pub target: Target,
+    /// How far the result is from the original at most, and the original from the result; not for trials.
+    pub far: Option<[Farthest; 2]>,
+    /// Triangles that face away from the original, and where there is one.
+    pub flips: u64,
+    pub flip: Option<Vec3>,
+}
+
+/// The base mesh with as few triangles as will do.
+///
+/// # Errors
+/// If with these levels it would make more than [`MAX_TRIANGLES`].
+pub(super) fn fit(source: &Source, wanted: &Wanted, progress: &dyn Fn(&str, u64, u64)) -> Result<Fitted, RemeshError> {
+    let mut keep = vec![false; source.positions.len()];
+    // How often each triangle of the original was at fault.
+    let mut strikes = vec![0u32; source.wedges.len()];
+    let mut decimator = Decimator::new(source);
+    let (mut at, mut left) = (wanted.levels.min(TRIAL_LEVELS), ROUNDS);
+    loop {
+        progress("base mesh", u64::from(ROUNDS.saturating_sub(left)), ROUNDS.into());
+        let base = decimator.run(&[FREE], &keep);
+        let count = base.wedges.len() as u64;
+        let made = |levels: u32| count << (2 * levels);
+        if made(wanted.levels) > MAX_TRIANGLES {
+            let works = (0..wanted.levels).rev().find(|&levels| made(levels) <= MAX_TRIANGLES).unwrap_or(0);
+            return Err(RemeshError::NeedsBase { base: count, levels: wanted.levels, works });
+        }
+        let topology = Topology::new(source, base.wedges.clone(), &base.slots);
+        let mut fitted = split_and_look(source, topology, at, &|_, _, _| ());
+        // Each level comes closer by a factor of about four.
+        let limit = if at < wanted.levels { 2.0 * wanted.limit } else { wanted.limit };
+        let (faults, far) = judge(source, &fitted, limit, at == wanted.levels);
+        fitted.far = far;
+        if faults.iter().all(Option::is_none) || left == 0 {
+            if at == wanted.levels {
+                progress("base mesh", ROUNDS.into(), ROUNDS.into());
+                return Ok(fitted);
+            }
+            (at, left) = (wanted.levels, LAST_ROUNDS.min(left));
+            strikes.fill(0);
+            continue;
+        }
+        left -= 1;
+        mend(source, &fitted.topology, &base, &faults, &mut keep, &mut strikes);
+    }
+}
+
+/// The base mesh with so many triangles, or a few more if the surface's connections allow no less.
+pub(super) fn force(source: &Source, triangles: usize, levels: u32, progress: &dyn Fn(&str, u64, u64)) -> Result<Fitted, RemeshError> {
+    progress("base mesh", 0, 1);
+    let goals = [FREE, FORCED].map(|goal| Goal { triangles, ..goal });
+    let base = Decimator::new(source).run(&goals, &vec![false; source.positions.len()]);
+    let count = base.wedges.len();
+    let made = (count as u64) << (2 * levels);
+    if made > MAX_TRIANGLES {
+        return Err(RemeshError::TooMany { base: count, levels, triangles: made });
+    }
+    progress("base mesh", 1, 1);
+    Ok(split_and_look(source, Topology::new(source, base.wedges, &base.slots), levels, progress))
+}
+
+fn split_and_look(source: &Source, topology: Topology, levels: u32, progress: &dyn Fn(&str, u64, u64)) -> Fitted {
+    let forest = split(source, &topology, levels, progress);
+    let target = Target::grouped(finest_corners(&forest), 1 << (2 * levels.min(2)));
+    let flips: Vec<u64> = (0..topology.triangles.len()).into_par_iter().map(|t| flipped(&topology, &forest, t)).collect();
+    let flip = flips.iter().position(|&n| n > 0).and_then(|t| first_flipped(&forest, t));
+    Fitted { topology, forest, target, far: None, flips: flips.iter().sum(), flip }
+}
+
+/// How far the result is from the original at most, and the original from the result.
+pub(super) fn measure(source: &Source, fitted: &Fitted, limit: f64) -> [Farthest; 2] {
+    let least = FINEST * limit;
+    let to_original = farthest(&fitted.target, &source.target, &finest_origins(&fitted.forest), &[], least);
+    [to_original, farthest(&source.target, &fitted.target, &[], &source.vertices(), least)]
+}
+
+/// For each tree the vertices of the original that are to be kept for it, if something is wrong with it.
+type Faults = Vec<Option<Vec<u32>>>;
+
+fn judge(source: &Source, fitted: &Fitted, limit: f64, whole: bool) -> (Faults, Option<[Farthest; 2]>) {
+    let Fitted { topology, forest, target, .. } = fitted;
+    let per_tree = 1usize << (2 * forest.levels);
+    let trees = topology.triangles.len();
+    let too_far = |p: Vec3| source.target.closest(p, limit, |_| true).is_none();
+    let is_bad = |t: usize| flipped(topology, forest, t) > 0 || forest.strays(t).any(too_far);
+    let mut faults: Faults = (0..trees).into_par_iter().map(|t| is_bad(t).then(Vec::new)).collect();
+
+    // The tree that is closest to a vertex that is missed is to blame.
+    let blame = |p: Vec3| target.closest(p, f64::MAX.sqrt(), |_| true).map(|hit| hit.triangle as usize / per_tree);
+    let missed: Vec<(usize, u32)> = (0..source.positions.len() as u32)
+        .into_par_iter()
+        .filter_map(|v| {
+            let p = source.positions[v as usize];
+            if target.closest(p, limit, |_| true).is_some() { None } else { Some((blame(p)?, v)) }
+        })
+        .collect();
+    for (tree, v) in missed {
+        faults[tree].get_or_insert_default().push(v);
+    }
+    let mut far = None;
+    // Points between the vertices, where nothing else is wrong.
+    if whole && faults.iter().all(Option::is_none) {
+        let [to, from] = measure(source, fitted, limit);
+        far = Some([to, from]);
+        if to.bound > limit {
+            faults[to.triangle as usize / per_tree].get_or_insert_default();
+        }
+        if from.bound > limit
+            && let Some(tree) = blame(from.at)
+        {
+            faults[tree].get_or_insert_default();
+        }
+    }
+    (faults, far)
+}
+
+/// Adds to `keep` what the trees at fault need.
+fn mend(source: &Source, topology: &Topology, base: &Decimated, faults: &Faults, keep: &mut [bool], strikes: &mut [u32]) {
+    for (tree, missed) in faults.iter().enumerate().filter_map(|(t, fault)| Some((t, fault.as_ref()?))) {
+        let strike = base.over[tree].iter().map(|&t| strikes[t as usize]).max().unwrap_or(0);
+        let most = (FIRST_KEPT << strike.min(16)).min(MOST_KEPT);
+        // First over the tree itself, then further around each time; what was removed early is dear to keep, and comes last.
+        let mut trees = (0..strike.min(RINGS)).fold(vec![tree], |trees, _| topology.with_neighbours(&trees));
+        let mut vertices = removed_over(source, base, &trees, strike < PATIENCE);
+        for _ in 0..RINGS {
+            vertices.retain(|&v| !keep[v as usize]);
+            if !vertices.is_empty() {
+                break;
+            }
+            trees = topology.with_neighbours(&trees);
+            vertices = removed_over(source, base, &trees, strike < PATIENCE);
+        }
+        // What was removed last matters most; but if a vertex is missed, or that did not help, what is nearest does.
+        let position = |v: u32| source.positions[v as usize];
+        let middle = || topology.triangles[tree].map(|v| position(topology.vertices[v as usize])).iter().sum::<Vec3>() / 3.0;
+        let centre = missed.iter().max_by_key(|&&v| base.removed[v as usize]).map(|&v| position(v)).or_else(|| (strike > 0).then(middle));
+        if let Some(centre) = centre {
+            vertices.sort_by(|&a, &b| (position(a) - centre).length_squared().total_cmp(&(position(b) - centre).length_squared()));
+        }
+        vertices.iter().take(most).for_each(|&v| keep[v as usize] = true);
+        base.over[tree].iter().for_each(|&t| strikes[t as usize] = strike + 1);
+    }
+}
+
+/// Vertices that were removed from the part of the original over some trees, the last removed first.
+fn removed_over(source: &Source, base: &Decimated, trees: &[usize], late: bool) -> Vec<u32> {
+    let over = trees.iter().flat_map(|&t| &base.over[t]).flat_map(|&t| source.wedges[t as usize]);
+    let least = if late { base.half_way } else { 0 };
+    let mut vertices: Vec<(u32, u32)> = over
+        .map(|w| source.wedge_vertex[w as usize])
+        .map(|v| (base.removed[v as usize], v))
+        .filter(|&(removed, _)| removed > least)
+        .collect();
+    vertices.sort_unstable();
+    vertices.dedup();
+    vertices.into_iter().rev().map(|(_, v)| v).collect()
+}
