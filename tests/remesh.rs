@@ -367,7 +367,7 @@ fn no_point_is_further_than_the_largest_distance_says() {
                 }
             }
             let worst = 100.0 * worst / diagonal;
-            assert!(worst <= d.max && worst >= 0.98 * d.found && d.found > 0.0, "{worst} found here, {d:?}");
+            assert!(worst <= d.max && worst >= 0.7 * d.found && d.found > 0.0, "{worst} found here, {d:?}");
         }
     }
 }

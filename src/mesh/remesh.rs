@@ -162,8 +162,8 @@ pub fn remesh(
     check(mesh)?;
 
     let source = Source::new(mesh, angle.to_radians());
-    let limit = source.diagonal * error / 100.0;
-    let mut fitted = match options.base_triangles {
+    let limit = (source.diagonal * error / 100.0 - rounding(levels)).max(0.0);
+    let fitted = match options.base_triangles {
         Some(wanted) => refine::force(&source, wanted.min(mesh.triangles.len()), levels, progress)?,
         None => refine::fit(&source, &Wanted { levels, limit }, progress)?,
     };
@@ -181,7 +181,7 @@ pub fn remesh(
     progress("normals", 1, 1);
 
     progress("distance", 0, 1);
-    let far = fitted.far.take().unwrap_or_else(|| refine::measure(&source, &fitted, limit));
+    let far = refine::measure(&source, &fitted, limit);
     let mut report = RemeshReport {
         base_triangles: fitted.topology.triangles.len(),
         own_base_triangles: fitted.topology.own.iter().flatten().count(),
@@ -197,13 +197,18 @@ pub fn remesh(
     Ok((surface, report))
 }
 
+/// How far a vertex moves at most when it is rounded to the format's grid, in units of the box.
+///
+/// Coordinates have 31 bits and a sign over the model, which is at most 2 units wide; half a step of the coarsest grid in each direction.
+fn rounding(levels: u32) -> f64 {
+    3f64.sqrt() * f64::from(levels.max(PADDING_BITS)).exp2() * 2f64.powi(-31)
+}
+
 /// Distances in percent, with what rounding to the format's grid adds to the largest.
 fn distances(source: &Source, fitted: &Fitted, far: &[Farthest; 2], levels: u32) -> TwoSidedDistance {
     let percent = percent(source.diagonal);
-    // Coordinates have 31 bits and a sign over the model's box, which is at most 2 units wide; half a step of the coarsest grid in each direction.
-    let snap = 3f64.sqrt() * f64::from(levels.max(PADDING_BITS)).exp2() * 2f64.powi(-31);
     let [to, from] = mean_distances(&source.target, &fitted.target, source.diagonal);
-    let distance = |mean, far: &Farthest| Distance { mean, max: percent * (far.bound + snap), found: percent * far.found };
+    let distance = |mean, far: &Farthest| Distance { mean, max: percent * (far.bound + rounding(levels)), found: percent * far.found };
     TwoSidedDistance { to_original: distance(to, &far[0]), from_original: distance(from, &far[1]) }
 }
 

@@ -26,8 +26,10 @@ const ROUNDS: u32 = 24;
 /// ... and by results of more than the trial's levels.
 const LAST_ROUNDS: u32 = 12;
 
-/// Largest distances are narrowed down to this part of the limit.
-const FINEST: f64 = 0.3;
+/// Largest distances are narrowed down to this part of the limit to judge a result, ...
+const ROUGHLY: f64 = 0.9;
+/// ... and to this part to report it.
+const FINELY: f64 = 0.3;
 
 /// Vertices that the base mesh keeps for a tree at fault the first time, ...
 const FIRST_KEPT: usize = 3;
@@ -52,8 +54,6 @@ pub(super) struct Fitted {
     pub forest: Forest,
     /// The finest triangles.
     pub target: Target,
-    /// How far the result is from the original at most, and the original from the result; not for trials.
-    pub far: Option<[Farthest; 2]>,
     /// Triangles that face away from the original, and where there is one.
     pub flips: u64,
     pub flip: Option<Vec3>,
@@ -79,11 +79,10 @@ pub(super) fn fit(source: &Source, wanted: &Wanted, progress: &dyn Fn(&str, u64,
             return Err(RemeshError::NeedsBase { base: count, levels: wanted.levels, works });
         }
         let topology = Topology::new(source, base.wedges.clone(), &base.slots);
-        let mut fitted = split_and_look(source, topology, at, &|_, _, _| ());
+        let fitted = split_and_look(source, topology, at, &|_, _, _| ());
         // Each level comes closer by a factor of about four.
         let limit = if at < wanted.levels { 2.0 * wanted.limit } else { wanted.limit };
-        let (faults, far) = judge(source, &fitted, limit, at == wanted.levels);
-        fitted.far = far;
+        let faults = judge(source, &fitted, limit, at == wanted.levels);
         if faults.iter().all(Option::is_none) || left == 0 {
             if at == wanted.levels {
                 progress("base mesh", ROUNDS.into(), ROUNDS.into());
@@ -117,12 +116,15 @@ fn split_and_look(source: &Source, topology: Topology, levels: u32, progress: &d
     let target = Target::grouped(finest_corners(&forest), 1 << (2 * levels.min(2)));
     let flips: Vec<u64> = (0..topology.triangles.len()).into_par_iter().map(|t| flipped(&topology, &forest, t)).collect();
     let flip = flips.iter().position(|&n| n > 0).and_then(|t| first_flipped(&forest, t));
-    Fitted { topology, forest, target, far: None, flips: flips.iter().sum(), flip }
+    Fitted { topology, forest, target, flips: flips.iter().sum(), flip }
 }
 
 /// How far the result is from the original at most, and the original from the result.
 pub(super) fn measure(source: &Source, fitted: &Fitted, limit: f64) -> [Farthest; 2] {
-    let least = FINEST * limit;
+    narrow(source, fitted, FINELY * limit)
+}
+
+fn narrow(source: &Source, fitted: &Fitted, least: f64) -> [Farthest; 2] {
     let to_original = farthest(&fitted.target, &source.target, &finest_origins(&fitted.forest), &[], least);
     [to_original, farthest(&source.target, &fitted.target, &[], &source.vertices(), least)]
 }
@@ -130,7 +132,7 @@ pub(super) fn measure(source: &Source, fitted: &Fitted, limit: f64) -> [Farthest
 /// For each tree the vertices of the original that are to be kept for it, if something is wrong with it.
 type Faults = Vec<Option<Vec<u32>>>;
 
-fn judge(source: &Source, fitted: &Fitted, limit: f64, whole: bool) -> (Faults, Option<[Farthest; 2]>) {
+fn judge(source: &Source, fitted: &Fitted, limit: f64, whole: bool) -> Faults {
     let Fitted { topology, forest, target, .. } = fitted;
     let per_tree = 1usize << (2 * forest.levels);
     let trees = topology.triangles.len();
@@ -150,11 +152,9 @@ fn judge(source: &Source, fitted: &Fitted, limit: f64, whole: bool) -> (Faults, 
     for (tree, v) in missed {
         faults[tree].get_or_insert_default().push(v);
     }
-    let mut far = None;
     // Points between the vertices, where nothing else is wrong.
     if whole && faults.iter().all(Option::is_none) {
-        let [to, from] = measure(source, fitted, limit);
-        far = Some([to, from]);
+        let [to, from] = narrow(source, fitted, ROUGHLY * limit);
         if to.bound > limit {
             faults[to.triangle as usize / per_tree].get_or_insert_default();
         }
@@ -164,7 +164,7 @@ fn judge(source: &Source, fitted: &Fitted, limit: f64, whole: bool) -> (Faults, 
             faults[tree].get_or_insert_default();
         }
     }
-    (faults, far)
+    faults
 }
 
 /// Adds to `keep` what the trees at fault need.
