@@ -146,13 +146,15 @@ fn drive(front: &mut impl FrontEnd, machine: &Machine, layout: &Layout, window: 
                 Happening::Answer(waiter, from) => front.answer(waiter, from, &mut memory),
             }
         }
+        let is_busy = front.is_busy();
+        let next = if is_busy { memory.next() } else { None };
         if let Some(wave) = &mut wave {
-            wave.sample(&memory, &machine.cores)?;
+            wave.sample(&memory, &machine.cores, next)?;
         }
-        if !front.is_busy() {
+        if !is_busy {
             break;
         }
-        let Some(next) = memory.next() else {
+        let Some(next) = next else {
             let state = format!("{}\n{}", front.describe(), memory.describe());
             return Err(ReplayError::Deadlock { cycle: memory.now(), state });
         };
