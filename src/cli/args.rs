@@ -2,13 +2,13 @@
 
 use clap::Args;
 use clap::ValueEnum;
-use clap::builder::RangedI64ValueParser;
 use lodray::bvh;
 use lodray::num::MAX_LEVELS;
 use lodray::render::{Camera, DEFAULT_DISTANCE, DEFAULT_VIEW_ANGLE_DEGREES, View};
 use lodray::traverse::ModelSpace;
 use serde::{Deserialize, Serialize};
 use std::fmt::{self, Display};
+use std::ops::RangeInclusive;
 use std::str::FromStr;
 
 /// Most pixels of a picture: traced pixels and their shading then stay below 8 GB.
@@ -161,9 +161,25 @@ pub fn delta(s: &str) -> Result<f64, String> {
     }
 }
 
+/// A whole number within limits, which the refusal names.
+pub fn whole<T: TryFrom<u64>>(limits: RangeInclusive<u64>) -> impl Fn(&str) -> Result<T, String> + Clone {
+    move |s| {
+        let value = s.parse().ok().filter(|value| limits.contains(value)).and_then(|value| T::try_from(value).ok());
+        value.ok_or_else(|| format!("'{s}' is not a whole number from {} to {}", limits.start(), limits.end()))
+    }
+}
+
+/// Most rays or steps of a command: years of work, and sums of them stay far within 64 bits.
+pub const MAX_RAYS: u64 = 1_000_000_000_000_000;
+
+/// Seeds: every 64-bit number is one.
+pub fn seed() -> impl Fn(&str) -> Result<u64, String> + Clone {
+    whole(0..=u64::MAX)
+}
+
 /// Numbers of splits.
-pub fn levels() -> RangedI64ValueParser<u32> {
-    clap::value_parser!(u32).range(0..=i64::from(MAX_LEVELS))
+pub fn levels() -> impl Fn(&str) -> Result<u32, String> + Clone {
+    whole(0..=u64::from(MAX_LEVELS))
 }
 
 /// Leaf layouts by name.
@@ -237,6 +253,13 @@ mod tests {
         );
         assert!(radii("0.5").is_ok() && radii("0").is_err() && radii("-1").is_err() && radii("nan").is_err() && radii("1e300").is_err());
         assert!(angle("40").is_ok() && angle("0").is_err() && angle("180").is_err() && angle("nan").is_err());
+        for good in ["1", "10"] {
+            assert!(whole::<u32>(1..=10)(good).is_ok(), "{good}");
+        }
+        for bad in ["0", "11", "-1", "1.5", "", "two", "99999999999999999999"] {
+            assert_eq!(whole::<u32>(1..=10)(bad), Err(format!("'{bad}' is not a whole number from 1 to 10")));
+        }
+        assert!(seed()("18446744073709551615").is_ok() && seed()("-1").is_err());
         assert!(delta("inf").is_ok() && delta("-1").is_err() && delta("nan").is_err());
     }
 }

@@ -1,8 +1,9 @@
 //! `build`: a scene from a mesh file.
 
-use super::args::levels;
+use super::args::{levels, whole};
+use super::common::is_quiet;
 use super::info;
-use super::output::{busy, check_target, print_line, progress};
+use super::output::{busy, check_target, print_line, progress, warn};
 use lodray::bvh::over_trees;
 use lodray::format::{self, Scene, SceneInfo};
 use lodray::mesh::{RemeshOptions, Surface, read, remesh};
@@ -17,7 +18,7 @@ pub struct Args {
     #[arg(long, default_value_t = 5, value_parser = levels(), allow_negative_numbers = true)]
     levels: u32,
     /// Wanted number of base triangles (default: 1/64 of the mesh, at least 512)
-    #[arg(long, value_name = "TRIANGLES", value_parser = clap::value_parser!(u32).range(1..), allow_negative_numbers = true)]
+    #[arg(long, value_name = "TRIANGLES", value_parser = whole::<u32>(1..=u64::from(u32::MAX)), allow_negative_numbers = true)]
     base: Option<u32>,
     /// Scene file to write
     #[arg(short, long)]
@@ -56,9 +57,10 @@ pub fn build_scene(surface: &Surface, name: &str, origin: serde_json::Value) -> 
 /// Saves a new scene and says what it holds.
 pub fn finish(scene: &Scene, out: &Path, json: bool) -> anyhow::Result<ExitCode> {
     busy("writing", || scene.save(out))?;
-    if !json {
-        print_line(&format!("{}:", out.display()))?;
+    match (json, is_quiet()) {
+        (true, _) => info::json(scene)?,
+        (false, true) => info::warnings(scene).iter().for_each(|lost| warn(&format!("warning: {}: {lost}", out.display()))),
+        (false, false) => print_line(&format!("{}:\n{}", out.display(), info::short(scene)))?,
     }
-    info::print(scene, json)?;
     Ok(ExitCode::SUCCESS)
 }

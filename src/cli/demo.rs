@@ -2,7 +2,8 @@
 
 use super::args::{LeafArgs, LeafLayout};
 use super::build::build_scene;
-use super::output::{busy, folder, grouped, print_json, print_line};
+use super::folder::{Overrule, RunFolder, one_run};
+use super::output::{busy, grouped, print_json, print_line, remark};
 use super::pictures::Shot;
 use super::render::{Built, Comparison, MethodName, compare_shots};
 use anyhow::Context;
@@ -19,12 +20,16 @@ const LEVELS: u32 = 5;
 const DISTANCES: [(&str, f64); 3] = [("near", 0.6), ("middle", 2.0), ("far", 8.0)];
 const SIDE: u32 = 512;
 const TABLE: &str = "table.txt";
+/// Pictures of each view.
+const PICTURES: [&str; 8] = ["lod-image", "lod-levels", "lod-error", "bvh-image", "bvh-levels", "bvh-error", "full-image", "full-levels"];
 
 #[derive(clap::Args)]
 pub struct Args {
     /// Folder for pictures and table
-    #[arg(short, long, default_value = "out/demo")]
+    #[arg(short, long, default_value = "out/demo", long_help = one_run("Folder for pictures and table"))]
     out: PathBuf,
+    #[command(flatten)]
+    overrule: Overrule,
     /// Print the table as JSON
     #[arg(long)]
     json: bool,
@@ -44,7 +49,10 @@ struct Row {
 }
 
 pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
-    folder(&args.out, [TABLE], None)?;
+    let pictures = DISTANCES.iter().flat_map(|(view, _)| PICTURES.map(|picture| format!("{view}-{picture}.png")));
+    let names: Vec<_> = pictures.chain([TABLE.to_owned()]).collect();
+    let folder = RunFolder::open(&args.out, names.iter().map(String::as_str), &[], &args.overrule)?;
+    let out = folder.staging();
     let options = Options { levels: Some(LEVELS), ..Options::new(Scene::Terrain) };
     let surface = busy("generating", || generate(&options))?;
     let scene = build_scene(&surface, "terrain", serde_json::json!({ "generate": options }))?;
@@ -58,23 +66,25 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
         let camera = Camera::new(&View { distance: Some(distance), ..View::default() }, &space, SIDE, SIDE)?;
         let shoot = |built: &Built, what: &str| built.shoot(&scene, &space, &camera, 1.0, what);
         let (lod, bvh, full) = (shoot(&Built::Lod, "LOD"), shoot(&bvh, "BVH"), shoot(&truth, "full resolution"));
-        lod.save(&scene, &args.out, &format!("{view}-lod-"), false)?;
-        lod.save_error(&full, &args.out, &format!("{view}-lod-"))?;
-        bvh.save(&scene, &args.out, &format!("{view}-bvh-"), false)?;
-        bvh.save_error(&full, &args.out, &format!("{view}-bvh-"))?;
-        full.save(&scene, &args.out, &format!("{view}-full-"), false)?;
+        lod.save(&scene, out, &format!("{view}-lod-"), false)?;
+        lod.save_error(&full, out, &format!("{view}-lod-"))?;
+        bvh.save(&scene, out, &format!("{view}-bvh-"), false)?;
+        bvh.save_error(&full, out, &format!("{view}-bvh-"))?;
+        full.save(&scene, out, &format!("{view}-full-"), false)?;
         for (method, shot) in [("lod", &lod), ("bvh", &bvh)] {
             rows.push(row(view, distance, method, shot, compare_shots(shot, &full, &scene, &camera)));
         }
     }
 
     let table = table(&rows, scene.finest_triangles());
-    let path = args.out.join(TABLE);
+    let path = out.join(TABLE);
     write_and_rename(&path, |out| writeln!(out, "{table}")).with_context(|| format!("cannot write {}", path.display()))?;
+    folder.finish()?;
     if args.json {
         print_json(&rows)?
     } else {
-        print_line(&format!("{table}\npictures in {}", args.out.display()))?
+        print_line(&table)?;
+        remark(&format!("pictures in {}", args.out.display()))?;
     }
     Ok(ExitCode::SUCCESS)
 }

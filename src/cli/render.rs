@@ -1,7 +1,8 @@
 //! `render`: one view of a scene through one method.
 
 use super::args::{CameraArgs, LeafArgs, delta};
-use super::output::{busy, folder, grouped, open, print_json, print_line};
+use super::folder::{Overrule, RunFolder, one_run};
+use super::output::{busy, grouped, open, print_json, print_line, remark};
 use super::pictures::{Shot, shoot};
 use clap::ValueEnum;
 use lodray::bvh::{FullBvh, FullOptions};
@@ -42,8 +43,10 @@ pub struct Args {
     #[command(flatten)]
     leaves: LeafArgs,
     /// Folder for the pictures
-    #[arg(short, long, default_value = "out")]
+    #[arg(short, long, default_value = "out", long_help = one_run("Folder for the pictures"))]
     out: PathBuf,
+    #[command(flatten)]
+    overrule: Overrule,
     /// Compare with full resolution: error map and figures
     #[arg(long)]
     compare: bool,
@@ -141,7 +144,8 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
     let space = ModelSpace::of(&scene);
     let camera = args.camera.camera(&space, None)?;
     let pictures = ["image.png", "levels.png", "normals.png", "error.png"];
-    folder(&args.out, pictures.into_iter().take(3 + usize::from(args.compare)), Some(&args.scene))?;
+    let names = pictures.into_iter().take(3 + usize::from(args.compare));
+    let folder = RunFolder::open(&args.out, names, &[&args.scene], &args.overrule)?;
 
     let built = Built::new(args.method, &scene, args.leaves)?;
     let begun = std::time::Instant::now();
@@ -151,12 +155,13 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
 
     let error = if args.compare {
         let truth = Built::new(MethodName::Reference, &scene, args.leaves)?.shoot(&scene, &space, &camera, args.delta, "full resolution");
-        shot.save_error(&truth, &args.out, "")?;
+        shot.save_error(&truth, folder.staging(), "")?;
         Some(compare_shots(&shot, &truth, &scene, &camera))
     } else {
         None
     };
-    shot.save(&scene, &args.out, "", true)?;
+    shot.save(&scene, folder.staging(), "", true)?;
+    folder.finish()?;
 
     let stats = shot.frame.stats;
     let mean = |n: u64| n as f64 / stats.rays as f64;
@@ -182,7 +187,8 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
     if args.json {
         print_json(&report)?
     } else {
-        print_line(&table(&report, &args.out))?
+        print_line(&table(&report))?;
+        remark(&format!("pictures in {}", args.out.display()))?;
     }
     Ok(ExitCode::SUCCESS)
 }
@@ -203,7 +209,7 @@ pub fn compare_shots(shot: &Shot, truth: &Shot, scene: &Scene, camera: &Camera) 
     }
 }
 
-fn table(r: &Report, out: &std::path::Path) -> String {
+fn table(r: &Report) -> String {
     let mut text = format!(
         "{} rays, {} hit, {:.2} s\nper ray: {:.2} nodes, {:.2} LOD tests, {:.2} triangles, {:.2} lines read ({:.0} bytes)\nmean level {:.3}\n",
         grouped(r.stats.rays),
@@ -242,5 +248,5 @@ fn table(r: &Report, out: &std::path::Path) -> String {
             e.geometry_pixels.percentile_99
         );
     }
-    text + &format!("pictures in {}", out.display())
+    text.trim_end().to_owned()
 }

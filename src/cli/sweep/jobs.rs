@@ -1,13 +1,13 @@
 //! The list of jobs, as a file and as jobs.
 
 use crate::cli::args::{Change, LeafArgs, LeafLayout, SimMethod, Size, delta, radii};
-use crate::cli::pass::{Target, machine};
+use crate::cli::pass::{Target, machine, machine_files};
 use anyhow::Context;
 use lodray::mesh::procedural;
 use lodray::render::DEFAULT_VIEW_ANGLE_DEGREES;
 use lodray::report::result::Compute;
 use serde::{Deserialize, Serialize};
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::fmt::{self, Display};
 use std::path::{Path, PathBuf};
 use xxhash_rust::xxh3::xxh3_64;
@@ -148,6 +148,8 @@ pub struct Jobs {
     pub leaves: LeafArgs,
     pub error: bool,
     pub intervals: bool,
+    /// Files that machines were read from.
+    machine_files: BTreeSet<PathBuf>,
 }
 
 impl Jobs {
@@ -160,6 +162,13 @@ impl Jobs {
             anyhow::anyhow!("{}: line {at}: {}", path.display(), e.message())
         })?;
         file.jobs(path.parent().unwrap_or(Path::new(""))).with_context(|| path.display().to_string())
+    }
+
+    /// The files that the jobs read, as far as they are there: of what is missing, the job fails.
+    pub fn files(&self) -> Vec<PathBuf> {
+        let scenes = self.scenes.iter().filter_map(|scene| if let Origin::File(file) = &scene.origin { Some(file) } else { None });
+        let all: BTreeSet<_> = scenes.filter(|file| file.is_file()).chain(&self.machine_files).cloned().collect();
+        all.into_iter().collect()
     }
 
     /// Name of a job that changes with everything that its result depends on.
@@ -210,13 +219,14 @@ impl File {
             deltas[..count].iter().map(move |&delta| (method, delta)).collect::<Vec<_>>()
         };
         let methods = self.methods.iter().flat_map(of_method).collect();
-        let mut targets = Vec::new();
+        let (mut targets, mut files) = (Vec::new(), BTreeSet::new());
         for entry in &self.machine {
             for variant in entry.variants() {
                 // A file is relative to the list.
                 let is_path = entry.name.ends_with(".toml");
                 let name = if is_path { folder.join(&entry.name).display().to_string() } else { entry.name.clone() };
-                let machine = machine(&name, &variant).with_context(|| format!("machine {}", entry.name))?;
+                let machine = machine(&name, &variant, "set").with_context(|| format!("machine {}", entry.name))?;
+                files.extend(machine_files(&name, &machine));
                 targets.extend(self.compute.iter().map(|&compute| Target { machine: machine.clone(), compute, window: None }));
             }
         }
@@ -229,6 +239,7 @@ impl File {
             leaves: LeafArgs { leaf_layout: self.leaf_layout, leaf_size: self.leaf_size },
             error: self.error,
             intervals: self.intervals,
+            machine_files: files,
         })
     }
 

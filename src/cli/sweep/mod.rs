@@ -5,8 +5,9 @@ mod jobs;
 mod rows;
 
 use super::args::SimMethod;
+use super::folder::{Overrule, RunFolder, one_run};
 use super::generate::make;
-use super::output::{check_target, folder, open, print_line};
+use super::output::{check_target, open, print_line, remark};
 use super::pass::{Outcome, Pass, Target};
 use super::pictures::Shot;
 use super::render::{Built, MethodName, compare_shots};
@@ -25,14 +26,18 @@ use rows::{Rows, csv};
 
 const LINES: &str = "results.jsonl";
 const TABLE: &str = "results.csv";
+const FOLDER: &str = "Folder for the results, one line of JSON for each job, their table, and charts (SVG) of scenes with several views; a sweep \
+started again goes on with the results that are there";
 
 #[derive(clap::Args)]
 pub struct Args {
     /// List of jobs (TOML): docs/jobs-example.toml shows every key
     jobs: PathBuf,
     /// Folder for the results, one line of JSON for each job, their table, and charts (SVG) of scenes with several views
-    #[arg(short, long)]
+    #[arg(short, long, long_help = one_run(FOLDER))]
     out: PathBuf,
+    #[command(flatten)]
+    overrule: Overrule,
 }
 
 /// Jobs that share a functional pass: their keys and targets.
@@ -50,10 +55,13 @@ struct Sweep<'a> {
 
 pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
     let jobs = Jobs::read(&args.jobs)?;
-    folder(&args.out, [TABLE], Some(&args.jobs))?;
+    let read = jobs.files();
+    let inputs: Vec<_> = std::iter::once(&args.jobs).chain(&read).map(PathBuf::as_path).collect();
+    let mut folder = RunFolder::open(&args.out, [TABLE], &inputs, &args.overrule)?;
     let lines = args.out.join(LINES);
     check_target(&lines, Some(&args.jobs))?;
     let rows = Rows::open(&lines)?;
+    folder.keep(LINES)?;
     let done = rows.done();
     let mut sweep = Sweep { jobs: &jobs, rows };
     let mut keys = Vec::new();
@@ -62,15 +70,16 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
         sweep.scene(scene, &groups)?;
     }
     let table = csv(sweep.rows.of(&keys));
-    let path = args.out.join(TABLE);
+    let path = folder.staging().join(TABLE);
     write_and_rename(&path, |out| out.write_all(table.as_bytes())).with_context(|| format!("cannot write {}", path.display()))?;
     for (name, chart) in charts::charts(sweep.rows.of(&keys))? {
-        let path = args.out.join(name);
+        let path = folder.staging().join(name);
         write_and_rename(&path, |out| out.write_all(chart.as_bytes())).with_context(|| format!("cannot write {}", path.display()))?;
     }
+    folder.finish()?;
     let failed: Vec<_> = sweep.rows.of(&keys).filter(|row| row.error.is_some()).collect();
     let before = keys.iter().filter(|key| done.contains(*key)).count();
-    print_line(&format!("{} jobs, {before} of them done before, {} failed; results in {}", keys.len(), failed.len(), args.out.display()))?;
+    remark(&format!("{} jobs, {before} of them done before, {} failed; results in {}", keys.len(), failed.len(), args.out.display()))?;
     for row in &failed {
         print_line(&format!("failed: {}: {}", row.key, row.error.as_deref().unwrap_or_default()))?;
     }
