@@ -141,6 +141,7 @@ fn a_run_of_another_command_is_refused_unless_forced() {
     assert_eq!(desk.names("out"), ["image.png", "levels.png", "normals.png", "notes.txt", "run.json"]);
     assert_eq!(desk.record("out")["command"], "render");
     desk.run("sweep jobs.toml -o out --force");
+    assert_eq!(desk.names("out"), ["notes.txt", "results.csv", "results.jsonl", "run.json"]);
     assert_eq!(desk.record("out")["files"], serde_json::json!(["results.csv", "results.jsonl"]));
     assert!(!desk.path("out/image.png").exists() && desk.path("out/notes.txt").exists());
 }

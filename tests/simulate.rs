@@ -315,11 +315,9 @@ fn a_sweep_goes_on_where_it_was() {
         assert!(desk.text("out/results.jsonl") == lines && desk.text("out/results.csv") == table, "cut at {cut}");
     }
     // Not while another sweep writes there.
-    let lock = fs::File::create(desk.path("out/results.lock")).unwrap();
-    lock.lock().unwrap();
-    let (code, _, err) = desk.run_on(0, "sweep jobs.toml -o out");
-    assert!(code == FAILS && err.contains("results.jsonl: another sweep writes to it"), "{err}");
-    drop(lock);
+    let other = lodray::format::Staging::open(&desk.path("out")).unwrap().unwrap();
+    desk.refused("sweep jobs.toml -o out", FAILS, "out: another run is writing to this folder");
+    drop(other);
     // One simulation by hand gives the figures of its line.
     desk.write("one.toml", &format!("{HEAD}intervals = true\n{SCENE}{MACHINE}"));
     desk.run("sweep one.toml -o one");

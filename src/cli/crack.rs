@@ -1,7 +1,7 @@
 //! `crack`: watertightness, measured.
 
 use super::args::{MAX_RAYS, seed, whole};
-use super::output::{busy, grouped, open, print_json, print_line, progress};
+use super::output::{busy, explain, grouped, open, print_json, print_line, progress};
 use lodray::report::crack::{Closedness, Row, closedness, measure};
 use lodray::traverse::{LodImage, ModelSpace};
 use std::path::PathBuf;
@@ -61,6 +61,7 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
             text += "\nnote: all triangles met were of one level (a flat model?), so edge states did not differ";
         }
         print_line(&text)?;
+        explain("crack")?;
     }
     Ok(if report.breaches() == 0 { ExitCode::SUCCESS } else { ExitCode::FAILURE })
 }

@@ -1,7 +1,7 @@
 //! `lines`: the distinct 32-byte lines that a frame touches, by distance, LOD against every full-resolution BVH layout.
 
 use super::args::{CameraArgs, delta, radii};
-use super::output::{grouped, open, print_json, print_line, progress};
+use super::output::{explain, grouped, open, print_json, print_line, progress};
 use lodray::bvh::{FullBvh, FullOptions, LeafLayout};
 use lodray::render::{Method, render};
 use lodray::traverse::{LodImage, ModelSpace};
@@ -111,7 +111,8 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
     if args.json {
         print_json(&report)?
     } else {
-        print_line(&table(&report))?
+        print_line(&table(&report))?;
+        explain("lines")?;
     }
     Ok(ExitCode::SUCCESS)
 }

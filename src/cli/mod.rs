@@ -56,6 +56,7 @@ enum Command {
     /// Simulate many frames on many machines, from a list of jobs; what was interrupted goes on where it was
     Sweep(sweep::Args),
     /// Put two results of simulations side by side
+    #[command(after_long_help = words::SIMULATE)]
     Compare(compare::Args),
     /// Follow one ray through the traversal unit: as a waveform, or as text
     Trace(trace::Args),

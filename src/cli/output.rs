@@ -50,6 +50,11 @@ pub fn remark(text: &str) -> anyhow::Result<()> {
     if is_quiet() { Ok(()) } else { print_line(text) }
 }
 
+/// Says where the words of a command's table are explained.
+pub fn explain(command: &str) -> anyhow::Result<()> {
+    remark(&format!("(lodray help {command} explains the words)"))
+}
+
 /// Says on standard error what a user should know of a run that went well.
 pub fn warn(text: &str) {
     use std::io::Write;

@@ -2,7 +2,7 @@
 
 use super::args::{CameraArgs, LeafArgs, delta};
 use super::folder::{Overrule, RunFolder, one_run};
-use super::output::{busy, grouped, open, print_json, print_line, remark};
+use super::output::{busy, explain, grouped, open, print_json, print_line, remark};
 use super::pictures::{Shot, shoot};
 use clap::ValueEnum;
 use lodray::bvh::{FullBvh, FullOptions};
@@ -188,6 +188,7 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
         print_json(&report)?
     } else {
         print_line(&table(&report))?;
+        explain("render")?;
         remark(&format!("pictures in {}", args.out.display()))?;
     }
     Ok(ExitCode::SUCCESS)

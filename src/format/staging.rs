@@ -44,9 +44,8 @@ impl Staging {
             match file.try_lock() {
                 Ok(()) => {}
                 Err(TryLockError::WouldBlock) => return Ok(None),
-                // Without locks two runs at once are not noticed.
-                Err(TryLockError::Error(error)) if error.kind() == ErrorKind::Unsupported => {}
-                Err(TryLockError::Error(error)) => return Err(error),
+                // Where files cannot be locked, as on some network drives, two runs at once are not noticed.
+                Err(TryLockError::Error(_)) => {}
             }
             let found = same_file::Handle::from_path(&lock).ok();
             if found == Some(same_file::Handle::from_file(file.try_clone()?)?) {

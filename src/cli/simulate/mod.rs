@@ -6,7 +6,7 @@ mod table;
 
 use super::args::{CameraArgs, Change, LeafArgs, SimMethod, delta};
 use super::folder::{Overrule, RunFolder, one_run};
-use super::output::{check_target, grouped, open, print_json, print_line, remark, warn};
+use super::output::{check_target, explain, grouped, open, print_json, print_line, remark, warn};
 use super::pass::{Pass, Target, machine, machine_files};
 use super::render::Built;
 use anyhow::Context;
@@ -132,8 +132,9 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
         (true, several) => print_json(&several)?,
         (false, several) => {
             print_line(&several.iter().map(table::table).collect::<Vec<_>>().join("\n\n"))?;
+            explain("simulate")?;
             if let Some(out) = &args.out {
-                remark(&format!("\nfigures and plots in {}", out.display()))?;
+                remark(&format!("figures and plots in {}", out.display()))?;
                 notes.iter().try_for_each(|note| remark(note))?;
             }
         }

@@ -5,7 +5,7 @@ mod table;
 
 use super::args::{MAX_RAYS, seed, whole};
 use super::folder::{Overrule, RunFolder, one_run};
-use super::output::{busy, open, print_json, print_line, progress, remark};
+use super::output::{busy, explain, open, print_json, print_line, progress, remark};
 use anyhow::Context;
 use lodray::format::write_and_rename;
 use lodray::num::MAX_LEVELS;
@@ -90,6 +90,7 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
         print_json(&figures)?;
     } else {
         print_line(&table::text(&figures.report, figures.hunt.as_ref(), args.seed))?;
+        explain("stability")?;
         if let Some(out) = &args.out {
             remark(&format!("table, figures and plots in {}", out.display()))?;
         }

@@ -45,17 +45,12 @@ pub struct Rows {
     path: PathBuf,
     file: File,
     rows: Vec<Row>,
-    /// Locked as long as this sweep runs; the system lets go of it however that ends.
-    _lock: File,
 }
 
 impl Rows {
     /// Opens the file, or makes it. A line cut off by an interruption is dropped, and so are those of failed jobs, which are tried again.
     pub fn open(path: &Path) -> anyhow::Result<Self> {
         let shown = path.display();
-        let beside = path.with_extension("lock");
-        let lock = File::create(&beside).with_context(|| format!("cannot write {}", beside.display()))?;
-        lock.try_lock().with_context(|| format!("{shown}: another sweep writes to it"))?;
         let bytes = if path.exists() { std::fs::read(path).with_context(|| format!("cannot read {shown}"))? } else { Vec::new() };
         let whole = bytes.iter().rposition(|&byte| byte == b'\n').map_or(0, |end| end + 1);
         let mut rows = Vec::new();
@@ -74,7 +69,7 @@ impl Rows {
                 .with_context(|| format!("cannot write {shown}"))?;
         }
         let file = OpenOptions::new().create(true).append(true).open(path).with_context(|| format!("cannot write {shown}"))?;
-        Ok(Self { path: path.to_owned(), file, rows, _lock: lock })
+        Ok(Self { path: path.to_owned(), file, rows })
     }
 
     /// The jobs that are done.
