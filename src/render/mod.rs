@@ -4,11 +4,12 @@ mod camera;
 mod frame;
 mod geometry;
 mod lines;
+mod orbit;
 mod picture;
 mod shade;
 mod steps;
 
-pub use camera::{Camera, CameraError, DEFAULT_DISTANCE, DEFAULT_VIEW_ANGLE_DEGREES, View};
+pub use camera::{Camera, CameraError, DEFAULT_DIRECTION, DEFAULT_VIEW_ANGLE_DEGREES, MAX_PIXELS, MAX_SIDE, View};
 pub use frame::{Frame, FrameStats, KindCount, Method, Pixel, render};
 pub use geometry::{GeometricError, geometric_error};
 pub use lines::LineSets;

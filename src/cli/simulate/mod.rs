@@ -90,8 +90,8 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
         method: args.method,
         built: &built,
         leaves: args.leaves,
+        distance: camera.placed,
         camera,
-        distance: args.camera.radii(),
         delta: args.delta,
     };
     let targets: Vec<_> = machines.into_iter().map(|machine| Target { machine, compute: args.compute, window: args.window }).collect();
