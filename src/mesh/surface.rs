@@ -1,6 +1,6 @@
 //! A surface as a base mesh and one lattice of positions per base triangle, in the user's own (world) units.
 
-use super::lattice;
+use super::{TriangleMesh, lattice};
 
 /// A hierarchy before it is rounded: what the remesher and the procedural scenes make.
 ///
@@ -24,6 +24,19 @@ pub struct Surface {
 }
 
 impl Surface {
+    /// A mesh as it is: each triangle a base triangle without splits, whose lattice is its three corners, shaded with `normals` (see [`super::corner_normals`]).
+    pub fn of_mesh(mesh: &TriangleMesh, normals: &[[[f32; 3]; 3]]) -> Self {
+        Self {
+            levels: 0,
+            base_vertices: mesh.positions.len() as u32, // triangles index them in 32 bits
+            triangles: mesh.triangles.clone(),
+            positions: mesh.triangles.iter().flatten().map(|&v| mesh.positions[v as usize]).collect(),
+            normals: normals.iter().flatten().copied().collect(),
+            materials: mesh.materials.clone(),
+            colours: mesh.colours.clone(),
+        }
+    }
+
     /// Positions of one tree.
     pub fn tree(&self, tree: usize) -> &[[f64; 3]] {
         let len = lattice::len(self.levels);

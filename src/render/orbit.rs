@@ -13,7 +13,9 @@ impl View {
         let direction = turned(up, DVec3::new(cp * sy, sp, cp * cy));
         // What is up in the picture, also where it looks straight down.
         let above = turned(up, DVec3::new(-sp * sy, cp, -sp * cy));
-        Self { eye: None, direction: Some(direction.to_array()), up: Some(above.to_array()), ..self }
+        // Adding 0 turns -0 into 0.
+        let plain = |v: DVec3| Some((v + 0.0).to_array());
+        Self { eye: None, direction: plain(direction), up: plain(above), ..self }
     }
 }
 
