@@ -48,3 +48,24 @@ impl Surface {
         (self.triangles.len() as u64) << (2 * self.levels)
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::mesh::{corner_normals, quantise};
+
+    #[test]
+    fn a_mesh_as_it_is() {
+        let positions = [[0.0, 0.0, 0.0], [2.0, 0.0, 0.0], [0.0, 3.0, 0.0], [0.0, 0.0, 4.0]];
+        let triangles = [[0, 2, 1], [0, 1, 3]];
+        let mesh = TriangleMesh::from_parts(&positions, &triangles, &[1, 0], vec![[1.0; 3], [0.5; 3]]).unwrap();
+        let surface = Surface::of_mesh(&mesh, &corner_normals(&mesh, 30.0));
+        assert_eq!(surface.tree(0), [positions[0], positions[2], positions[1]]);
+        assert_eq!((&surface.normals[..3], surface.normals[3]), (&[[0.0, 0.0, -1.0]; 3][..], [0.0, -1.0, 0.0]));
+        assert_eq!((surface.finest_triangles(), &surface.materials, surface.colours.len()), (2, &vec![1, 0], 2));
+        // The corners are where a lattice has them.
+        let corners = lattice::root(0).map(|p| lattice::index(0, p));
+        assert_eq!(corners, [0, 1, 2]);
+        assert!(quantise(&surface).is_ok());
+    }
+}

@@ -5,6 +5,8 @@ use noto_sans_mono_bitmap::{FontWeight, RasterHeight, get_raster, get_raster_wid
 
 /// Characters in a line across a picture.
 const PER_LINE: u32 = 48;
+/// Largest enlargement of the bitmaps: a wide and low picture gets no legend of its own weight.
+const MAX_SCALE: u32 = 4;
 
 /// A size of text.
 #[derive(Clone, Copy, Debug)]
@@ -18,8 +20,10 @@ impl Font {
     /// What suits a picture of that width; the smallest for small ones.
     pub fn of_width(width: u32) -> Self {
         let sizes = [RasterHeight::Size32, RasterHeight::Size24, RasterHeight::Size20, RasterHeight::Size16];
-        let all =
-            (2..=64).rev().map(|scale| Self { raster: RasterHeight::Size32, scale }).chain(sizes.map(|raster| Self { raster, scale: 1 }));
+        let all = (2..=MAX_SCALE)
+            .rev()
+            .map(|scale| Self { raster: RasterHeight::Size32, scale })
+            .chain(sizes.map(|raster| Self { raster, scale: 1 }));
         let fitting = all.into_iter().find(|font| font.width(PER_LINE) <= width);
         fitting.unwrap_or(Self { raster: RasterHeight::Size16, scale: 1 })
     }
@@ -73,7 +77,7 @@ mod tests {
     #[test]
     fn what_is_outside_is_cut_off() {
         let black = RgbImage::new(20, 10);
-        for at in [[0, 0], [15, 8], [30, 30]] {
+        for at in [[0, 0], [15, 0], [0, 3], [30, 30]] {
             let mut image = black.clone();
             Font::of_width(1).draw(&mut image, at, "W\u{e9}\u{4e16}", Rgb([200, 100, 0]));
             assert_eq!(image == black, at[0] == 30, "{at:?}");
