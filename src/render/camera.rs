@@ -134,7 +134,7 @@ impl Camera {
             up: up.unwrap_or(DVec3::Y),
             fov: view.fov,
             placed,
-            radii: (target - eye).length() / space.radius(),
+            radii: placed.unwrap_or_else(|| (target - eye).length() / space.radius()),
             forward,
             right: side * pixel,
             above: above * pixel,
