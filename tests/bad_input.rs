@@ -181,7 +181,7 @@ fn numbers() {
         ("render good.lod -o new --eye nan,0,0", USAGE, "'nan,0,0' for '--eye"),
         ("render good.lod -o new --target 1e300,0,0", USAGE, "'1e300,0,0' for '--target"),
         ("render good.lod -o new --eye 1,1,1 --target 1,1,1", FAILS, "--eye must be different from --target"),
-        ("render good.lod -o new --up 0,0,0", FAILS, "--up"),
+        ("render good.lod -o new --up 0,0,0", USAGE, "'0,0,0' for '--up"),
         ("render good.lod -o new --method magic", USAGE, "'magic' for '--method"),
         ("render good.lod -o new --leaf-size 3", USAGE, "'3' for '--leaf-size"),
         ("render good.lod -o new --leaf-layout flat", USAGE, "'flat' for '--leaf-layout"),

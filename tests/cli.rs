@@ -157,17 +157,15 @@ fn render_with_every_method() {
         assert!(report["error"]["maximum"].is_u64() && report["error"]["differing"].is_f64(), "{report}");
         assert_eq!(report["stats"]["lines"].as_array().unwrap().is_empty(), method == "reference");
         let names: Vec<String> = desk.files(method).into_keys().collect();
-        assert_eq!(names, ["error.png", "image.png", "levels.png", "normals.png", "run.json"]);
-        for name in &names[..4] {
-            assert_eq!(image::image_dimensions(desk.path(method).join(name)).unwrap(), (40, 24));
-        }
+        assert_eq!(names, ["error.png", "image.png", "levels.png", "normals.png", "run.json", "sheet.png"]);
+        assert_eq!(image::image_dimensions(desk.path(method).join("image.png")).unwrap(), (40, 24));
     }
     // The reference differs from itself nowhere, and its error map is black.
-    assert!(image::open(desk.path("reference/error.png")).unwrap().to_rgb8().pixels().all(|p| p.0 == [0; 3]));
+    assert!(image::open(desk.path("reference/error.png")).unwrap().crop(0, 0, 40, 24).to_rgb8().pixels().all(|p| p.0 == [0; 3]));
 
     let text = desk.run("render a.lod --eye 0,0,-4 --target 0,0,0 --up 0,1,0 --fov 30 --delta inf --size 8x8 -o far/away");
     assert!(text.contains("64 rays") && text.contains("pictures in far/away"), "{text}");
-    assert_eq!(desk.files("far/away").len(), 4);
+    assert_eq!(desk.files("far/away").len(), 5);
 }
 
 #[test]
@@ -222,6 +220,10 @@ fn demo_writes_pictures_and_a_table() {
     assert_eq!(names.iter().filter(|n| n.ends_with("-levels.png")).count(), 9);
     assert_eq!(names.iter().filter(|n| n.ends_with("-lod-error.png")).count(), 3);
     assert!(names.contains(&"table.txt".to_owned()));
+    // Maps have their legends below.
+    let size = |name: &str| image::image_dimensions(desk.path("new/demo").join(name)).unwrap();
+    assert_eq!(size("far-lod-image.png"), (512, 512));
+    assert!(["far-lod-levels.png", "far-lod-error.png"].iter().all(|name| size(name).0 == 512 && size(name).1 > 512));
 }
 
 #[test]

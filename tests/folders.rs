@@ -82,7 +82,7 @@ fn a_record_says_what_was_run() {
         "command": "render",
         "arguments": ["a.lod", "--size", "8x8", "--compare"],
         "inputs": [{ "name": "a.lod", "bytes": bytes.len(), "xxh3": format!("{:016x}", xxhash_rust::xxh3::xxh3_64(&bytes)) }],
-        "files": ["error.png", "image.png", "levels.png", "normals.png"],
+        "files": ["error.png", "image.png", "levels.png", "normals.png", "sheet.png"],
     });
     assert_eq!(record, expected);
     // The same bytes wherever the folder is, with any number of threads, and the second time.
@@ -96,6 +96,9 @@ fn a_record_says_what_was_run() {
     let inputs = desk.record("sim")["inputs"].clone();
     let names: Vec<_> = inputs.as_array().unwrap().iter().map(|input| input["name"].as_str().unwrap()).collect();
     assert_eq!(names, ["a.lod", "own/mine.toml", "own/energy/cacti22.toml"]);
+    desk.write("mesh.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
+    desk.run(&format!("{RENDER} --compare --mesh mesh.obj -o original"));
+    assert_eq!(desk.record("original")["inputs"][1]["name"], "mesh.obj");
     desk.run("stability a.lod --rays 500 --hunt 20 -o lab");
     assert_eq!(desk.record("lab")["files"], serde_json::json!(["found.json", "stability.json", "stability.md"]));
 }
@@ -106,9 +109,9 @@ fn a_later_run_replaces_an_earlier_one_and_nothing_else() {
     desk.write("out/notes.txt", "mine");
     desk.write("out/sub/image.png", "mine");
     desk.run(&format!("{RENDER} -o out --compare"));
-    assert_eq!(desk.names("out"), ["error.png", "image.png", "levels.png", "normals.png", "notes.txt", "run.json", "sub"]);
+    assert_eq!(desk.names("out"), ["error.png", "image.png", "levels.png", "normals.png", "notes.txt", "run.json", "sheet.png", "sub"]);
     desk.run(&format!("{RENDER} -o out --distance 3"));
-    assert_eq!(desk.names("out"), ["image.png", "levels.png", "normals.png", "notes.txt", "run.json", "sub"]);
+    assert_eq!(desk.names("out"), ["image.png", "levels.png", "normals.png", "notes.txt", "run.json", "sheet.png", "sub"]);
     desk.run(&format!("{RENDER} -o alone --distance 3"));
     let (both, alone) = (desk.files("out"), desk.files("alone"));
     assert!(alone.iter().all(|(name, bytes)| both[name] == *bytes));
@@ -136,9 +139,9 @@ fn a_run_of_another_command_is_refused_unless_forced() {
     }
     // Forced, and failed: the old run is still whole.
     desk.refused("simulate a.lod --size 8x8 --vcd a.vcd --window 900000:900001 -o out", "out", "begins beyond the frame's end");
-    desk.refused("render a.lod --size 8x8 --up 0,0,0 -o out --force", "out", "--up");
+    desk.refused("render a.lod --size 8x8 --eye 0,5,0 --target 0,0,0 --up y -o out --force", "out", "nor along the view direction");
     desk.run(&format!("{RENDER} -o out --force"));
-    assert_eq!(desk.names("out"), ["image.png", "levels.png", "normals.png", "notes.txt", "run.json"]);
+    assert_eq!(desk.names("out"), ["image.png", "levels.png", "normals.png", "notes.txt", "run.json", "sheet.png"]);
     assert_eq!(desk.record("out")["command"], "render");
     desk.run("sweep jobs.toml -o out --force");
     assert_eq!(desk.names("out"), ["notes.txt", "results.csv", "results.jsonl", "run.json"]);

@@ -29,7 +29,7 @@ pub struct Args {
 }
 
 pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
-    check_target(&args.out, Some(&args.mesh))?;
+    check_target(&args.out, &[&args.mesh])?;
     let mesh = busy("reading", || read(&args.mesh))?;
     let options = RemeshOptions { levels: args.levels, base_triangles: args.base.map(|n| n as usize) };
     let bar = progress(1, "remeshing");

@@ -2,10 +2,11 @@
 
 use super::args::{LeafArgs, LeafLayout};
 use super::build::build_scene;
+use super::facts::Facts;
 use super::folder::{Overrule, RunFolder, one_run};
 use super::output::{busy, grouped, print_json, print_line, remark};
 use super::pictures::Shot;
-use super::render::{Built, Comparison, MethodName, compare_shots};
+use super::render::{Against, Built, Comparison, MethodName, compare_shots};
 use anyhow::Context;
 use lodray::format::write_and_rename;
 use lodray::mesh::procedural::{Options, Scene, generate};
@@ -66,13 +67,23 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
         let camera = Camera::new(&View { distance: Some(distance), ..View::default() }, &space, SIDE, SIDE)?;
         let shoot = |built: &Built, what: &str| built.shoot(&scene, &space, &camera, 1.0, what);
         let (lod, bvh, full) = (shoot(&Built::Lod, "LOD"), shoot(&bvh, "BVH"), shoot(&truth, "full resolution"));
-        lod.save(&scene, out, &format!("{view}-lod-"), false)?;
-        lod.save_error(&full, out, &format!("{view}-lod-"))?;
-        bvh.save(&scene, out, &format!("{view}-bvh-"), false)?;
-        bvh.save_error(&full, out, &format!("{view}-bvh-"))?;
-        full.save(&scene, out, &format!("{view}-full-"), false)?;
-        for (method, shot) in [("lod", &lod), ("bvh", &bvh)] {
-            rows.push(row(view, distance, method, shot, compare_shots(shot, &full, &scene, &camera)));
+        for (method, shot) in [(MethodName::Lod, &lod), (MethodName::Bvh, &bvh), (MethodName::Reference, &full)] {
+            let error = (method != MethodName::Reference).then(|| compare_shots(shot, &full, &scene, &camera));
+            let facts = Facts {
+                scene: &scene.meta().name,
+                method,
+                delta: 1.0,
+                camera: &camera,
+                stats: &shot.frame.stats,
+                error: error.as_ref().map(|error| (Against::FullResolution, error)),
+            };
+            let prefix = format!("{view}-{}-", if method == MethodName::Reference { "full" } else { method.name() });
+            shot.save(out, &prefix, &facts)?;
+            shot.levels(&scene).save(out, &prefix, &facts)?;
+            if let Some(error) = &error {
+                shot.error(&full.image).save(out, &prefix, &facts)?;
+                rows.push(row(view, distance, method.name(), shot, error.clone()));
+            }
         }
     }
 

@@ -23,7 +23,7 @@ pub struct Args {
 }
 
 pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
-    check_target(&args.out, Some(&args.scene))?;
+    check_target(&args.out, &[&args.scene])?;
     let scene = open(&args.scene)?;
     let level = args.level.unwrap_or(scene.levels());
     anyhow::ensure!(level <= scene.levels(), "--level {level} is beyond {}'s finest level {}", args.scene.display(), scene.levels());

@@ -67,8 +67,8 @@ pub fn open(path: &Path) -> anyhow::Result<Scene> {
     Ok(busy("opening", || Scene::open(path))?)
 }
 
-/// Refuses an output file that cannot be written, or that is the input, before any work is done; what killed runs have left beside it is removed.
-pub fn check_target(path: &Path, input: Option<&Path>) -> anyhow::Result<()> {
+/// Refuses an output file that cannot be written, or that is one of the inputs, before any work is done; what killed runs have left beside it is removed.
+pub fn check_target(path: &Path, inputs: &[&Path]) -> anyhow::Result<()> {
     let shown = path.display();
     let parent = path.parent().filter(|p| !p.as_os_str().is_empty()).unwrap_or(Path::new("."));
     anyhow::ensure!(!path.is_dir(), "cannot write {shown}: it is a folder");
@@ -76,7 +76,7 @@ pub fn check_target(path: &Path, input: Option<&Path>) -> anyhow::Result<()> {
     // Renaming a file to the name of a device would take the device away.
     anyhow::ensure!(path.is_file() || !path.exists(), "cannot write {shown}: it is not an ordinary file");
     let same = |input: &Path| input.canonicalize().is_ok_and(|input| path.canonicalize().is_ok_and(|path| path == input));
-    anyhow::ensure!(!input.is_some_and(same), "cannot write {shown}: it is the input file");
+    anyhow::ensure!(!inputs.iter().any(|input| same(input)), "cannot write {shown}: it is the input file");
     remove_abandoned(parent);
     temporary_beside(path).with_context(|| format!("cannot write {shown}"))?;
     Ok(())

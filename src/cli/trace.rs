@@ -131,7 +131,7 @@ impl Files {
         let with = |extension| vcd.with_extension(extension);
         let files = Self { vcd: vcd.to_owned(), gtkw: with("gtkw"), states: with("states"), surfer: with("sucl") };
         for path in files.all() {
-            check_target(path, Some(input))?;
+            check_target(path, &[input])?;
         }
         let clash = files.all().iter().skip(1).any(|path| *path == vcd);
         anyhow::ensure!(!clash, "cannot write {}: the ending is that of a save file; use .vcd", vcd.display());

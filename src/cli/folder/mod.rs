@@ -52,13 +52,13 @@ pub struct RunFolder {
 }
 
 impl RunFolder {
-    /// Makes the folder, or takes it over, for a run that is about to write files of these names; refuses before any work is done. The first of
-    /// `inputs` must not be overwritten.
+    /// Makes the folder, or takes it over, for a run that is about to write files of these names; refuses before any work is done, and
+    /// none of `inputs` is overwritten.
     pub fn open<'a>(path: &Path, names: impl IntoIterator<Item = &'a str>, inputs: &[&Path], overrule: &Overrule) -> anyhow::Result<Self> {
         let (shown, force) = (path.display(), overrule.force);
         let made = Made::make(path)?;
         let names: Vec<_> = names.into_iter().collect();
-        names.iter().chain([&RECORD]).try_for_each(|name| check_target(&path.join(name), inputs.first().copied()))?;
+        names.iter().chain([&RECORD]).try_for_each(|name| check_target(&path.join(name), inputs))?;
         let staging = Staging::open(path).with_context(|| format!("cannot write to {shown}"))?;
         let staging = staging.with_context(|| format!("{shown}: another run is writing to this folder"))?;
         let record = Record::new(Invocation::of_process(), inputs.iter().map(|input| Input::read(input)).collect::<anyhow::Result<_>>()?);

@@ -87,7 +87,7 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
     }
     if let Some(vcd) = &args.vcd {
         anyhow::ensure!(machines.len() == 1, "--vcd: takes one machine, not {}", machines.len());
-        check_target(vcd, Some(&args.scene))?;
+        check_target(vcd, &[&args.scene])?;
     }
     let scene = open(&args.scene)?;
     let space = ModelSpace::of(&scene);
@@ -107,8 +107,8 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
         method: args.method,
         built: &built,
         leaves: args.leaves,
+        distance: camera.placed,
         camera,
-        distance: args.camera.radii(),
         delta: args.delta,
     };
     let targets: Vec<_> = machines.into_iter().map(|machine| Target { machine, compute: args.compute, window: args.window }).collect();

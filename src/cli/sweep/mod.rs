@@ -14,7 +14,7 @@ use super::render::{Built, MethodName, compare_shots};
 use anyhow::Context;
 use jobs::{Jobs, Origin, SceneJobs, ViewJob};
 use lodray::format::{Scene, write_and_rename};
-use lodray::render::{Camera, View};
+use lodray::render::{Camera, DEFAULT_DIRECTION, View};
 use lodray::traverse::ModelSpace;
 use rows::ImageFigures;
 use std::collections::{BTreeMap, HashSet};
@@ -59,7 +59,7 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
     let inputs: Vec<_> = std::iter::once(&args.jobs).chain(&read).map(PathBuf::as_path).collect();
     let mut folder = RunFolder::open(&args.out, [TABLE], &inputs, &args.overrule)?;
     let lines = args.out.join(LINES);
-    check_target(&lines, Some(&args.jobs))?;
+    check_target(&lines, &inputs)?;
     let rows = Rows::open(&lines)?;
     folder.keep(LINES)?;
     let done = rows.done();
@@ -191,7 +191,9 @@ impl Workshop<'_> {
     fn camera(&self, view: &ViewJob) -> anyhow::Result<Camera> {
         let target = view.target.unwrap_or_else(|| self.space.centre());
         let toward = view.direction.map(|d| std::array::from_fn(|k| target[k] + d[k]));
-        let full = View { eye: view.eye.or(toward), target: view.target, up: view.up, distance: view.distance, fov: view.fov };
+        // Whatever is up: a job's view is that of its keys alone.
+        let direction = Some(DEFAULT_DIRECTION);
+        let full = View { eye: view.eye.or(toward), direction, target: view.target, up: view.up, distance: view.distance, fov: view.fov };
         Ok(Camera::new(&full, &self.space, view.size[0], view.size[1])?)
     }
 
