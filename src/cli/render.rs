@@ -1,15 +1,17 @@
 //! `render`: one view of a scene through one method.
 
 use super::args::{CameraArgs, LeafArgs, delta};
+use super::cache::{Cache, CacheArgs};
 use super::output::{busy, folder, grouped, open, print_json, print_line};
 use super::pictures::{Shot, shoot};
 use clap::ValueEnum;
-use lodray::bvh::{FullBvh, FullOptions};
+use lodray::bvh::{BvhError, FullBuilder, FullBvh, FullOptions};
 use lodray::format::Scene;
 use lodray::golden::reference::Reference;
 use lodray::render::{Camera, FrameStats, GeometricError, ImageError, KindCount, Method, Pixel, compare, geometric_error, view_cosine};
 use lodray::traverse::{Kind, LodImage, ModelSpace};
 use serde::Serialize;
+use std::fmt::{self, Display};
 use std::path::PathBuf;
 use std::process::ExitCode;
 
@@ -41,6 +43,8 @@ pub struct Args {
     camera: CameraArgs,
     #[command(flatten)]
     leaves: LeafArgs,
+    #[command(flatten)]
+    cache: CacheArgs,
     /// Folder for the pictures
     #[arg(short, long, default_value = "out")]
     out: PathBuf,
@@ -58,9 +62,11 @@ struct Report {
     delta: f64,
     size: [u32; 2],
     eye: [f64; 3],
-    /// Not in the JSON, which is the same for every run.
+    /// Not in the JSON, which is the same for every run; nor is the next.
     #[serde(skip)]
     seconds: f64,
+    #[serde(skip)]
+    making: Option<Making>,
     stats: FrameStats,
     per_ray: PerRay,
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -101,17 +107,40 @@ pub struct Comparison {
 /// What a method needs besides the scene.
 pub enum Built {
     Lod,
-    Bvh(FullBvh),
+    Bvh { bvh: FullBvh, making: Making },
     Reference(Reference),
 }
 
+/// How a BVH was come by.
+#[derive(Clone, Copy, Debug)]
+pub struct Making {
+    /// From the cache instead of built.
+    pub read: bool,
+    pub seconds: f64,
+}
+
+impl Display for Making {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let how = if self.read { "BVH read from the cache" } else { "building the BVH" };
+        write!(f, "{how} {:.2} s", self.seconds)
+    }
+}
+
 impl Built {
-    /// Builds what `name` needs.
-    pub fn new(name: MethodName, scene: &Scene, leaves: LeafArgs) -> anyhow::Result<Self> {
+    /// How the BVH was come by, if it is one.
+    pub fn making(&self) -> Option<Making> {
+        match self {
+            Self::Bvh { making, .. } => Some(*making),
+            _ => None,
+        }
+    }
+
+    /// Builds what `name` needs, or takes it from the cache.
+    pub fn new(name: MethodName, scene: &Scene, leaves: LeafArgs, cache: &Cache) -> anyhow::Result<Self> {
         Ok(match name {
             MethodName::Lod => Self::Lod,
-            MethodName::Bvh => Self::Bvh(full_bvh(scene, leaves, false)?),
-            MethodName::Bvh32 => Self::Bvh(full_bvh(scene, leaves, true)?),
+            MethodName::Bvh => full_bvh(scene, leaves, false, cache)?,
+            MethodName::Bvh32 => full_bvh(scene, leaves, true, cache)?,
             MethodName::Reference => Self::Reference(busy("building the reference", || Reference::new(&scene.decode()))),
         })
     }
@@ -125,15 +154,22 @@ impl Built {
     pub fn method<'a>(&'a self, scene: &'a Scene) -> Method<'a> {
         match self {
             Self::Lod => Method::Lod(LodImage::of(scene)),
-            Self::Bvh(bvh) => Method::Bvh(bvh),
+            Self::Bvh { bvh, .. } => Method::Bvh(bvh),
             Self::Reference(reference) => Method::Reference(reference),
         }
     }
 }
 
-fn full_bvh(scene: &Scene, leaves: LeafArgs, wide_boxes: bool) -> anyhow::Result<FullBvh> {
+fn full_bvh(scene: &Scene, leaves: LeafArgs, wide_boxes: bool, cache: &Cache) -> anyhow::Result<Built> {
     let options = FullOptions::new(leaves.leaf_size, wide_boxes, leaves.leaf_layout.into());
-    Ok(busy("building the BVH", || FullBvh::build(&scene.decode(), &options))?)
+    let begun = std::time::Instant::now();
+    let made = busy("building the BVH", || {
+        let hierarchy = scene.decode();
+        let found = cache.tree(scene, &options.tree, wide_boxes, || FullBuilder::new(&hierarchy)?.tree(&options.tree, wide_boxes))?;
+        Ok::<_, BvhError>((found.tree.with_leaves(&hierarchy, options.layout)?, found.read))
+    });
+    let (bvh, read) = made?;
+    Ok(Built::Bvh { bvh, making: Making { read, seconds: begun.elapsed().as_secs_f64() } })
 }
 
 pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
@@ -143,14 +179,17 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
     let pictures = ["image.png", "levels.png", "normals.png", "error.png"];
     folder(&args.out, pictures.into_iter().take(3 + usize::from(args.compare)), Some(&args.scene))?;
 
-    let built = Built::new(args.method, &scene, args.leaves)?;
+    let cache = Cache::new(&args.cache)?;
+    let built = Built::new(args.method, &scene, args.leaves, &cache)?;
     let begun = std::time::Instant::now();
     let shot = built.shoot(&scene, &space, &camera, args.delta, "tracing");
     let seconds = begun.elapsed().as_secs_f64();
+    let making = built.making();
     drop(built);
 
     let error = if args.compare {
-        let truth = Built::new(MethodName::Reference, &scene, args.leaves)?.shoot(&scene, &space, &camera, args.delta, "full resolution");
+        let truth =
+            Built::new(MethodName::Reference, &scene, args.leaves, &cache)?.shoot(&scene, &space, &camera, args.delta, "full resolution");
         shot.save_error(&truth, &args.out, "")?;
         Some(compare_shots(&shot, &truth, &scene, &camera))
     } else {
@@ -175,6 +214,7 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
         size: [camera.width, camera.height],
         eye: camera.eye.to_array(),
         seconds,
+        making,
         stats,
         per_ray,
         error,
@@ -204,8 +244,9 @@ pub fn compare_shots(shot: &Shot, truth: &Shot, scene: &Scene, camera: &Camera) 
 }
 
 fn table(r: &Report, out: &std::path::Path) -> String {
+    let making = r.making.map_or_else(String::new, |making| format!("{making}, tracing "));
     let mut text = format!(
-        "{} rays, {} hit, {:.2} s\nper ray: {:.2} nodes, {:.2} LOD tests, {:.2} triangles, {:.2} lines read ({:.0} bytes)\nmean level {:.3}\n",
+        "{} rays, {} hit, {making}{:.2} s\nper ray: {:.2} nodes, {:.2} LOD tests, {:.2} triangles, {:.2} lines read ({:.0} bytes)\nmean level {:.3}\n",
         grouped(r.stats.rays),
         grouped(r.stats.hits),
         r.seconds,

@@ -51,8 +51,9 @@ impl Files {
         self.save(ENERGY, &plots::energy(results)?)?;
         for (prefix, result) in self.prefixes.iter().zip(results) {
             self.save(&format!("{prefix}{INTERVALS}"), &intervals_csv(&result.intervals))?;
-            self.save(&format!("{prefix}{POWER}"), &plots::power(result)?)?;
-            self.save(&format!("{prefix}{TRAFFIC}"), &plots::traffic(result)?)?;
+            for (name, plot) in [(POWER, plots::power(result)?), (TRAFFIC, plots::traffic(result)?)] {
+                plot.map_or(Ok(()), |plot| self.save(&format!("{prefix}{name}"), &plot))?;
+            }
         }
         Ok(())
     }

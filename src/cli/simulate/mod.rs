@@ -3,8 +3,10 @@
 mod files;
 pub(super) mod plots;
 mod table;
+mod units;
 
 use super::args::{CameraArgs, Change, LeafArgs, SimMethod, delta};
+use super::cache::{Cache, CacheArgs};
 use super::output::{check_target, folder, open, print_json, print_line};
 use super::pass::{Pass, Target, machine};
 use super::render::Built;
@@ -42,6 +44,8 @@ pub struct Args {
     camera: CameraArgs,
     #[command(flatten)]
     leaves: LeafArgs,
+    #[command(flatten)]
+    cache: CacheArgs,
     /// Folder for the figures as JSON, what happened over time as CSV, and plots as SVG
     #[arg(short, long)]
     out: Option<PathBuf>,
@@ -83,7 +87,7 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
         folder(files.folder(), files.names().iter().map(String::as_str), Some(&args.scene))?;
     }
 
-    let built = Built::new(args.method.into(), &scene, args.leaves)?;
+    let built = Built::new(args.method.into(), &scene, args.leaves, &Cache::new(&args.cache)?)?;
     let pass = Pass {
         scene: &scene,
         space: &space,

@@ -1,0 +1,159 @@
+//! The cache of full-resolution BVHs, which take seconds to build: a folder of files that may be deleted at any time.
+//!
+//! A file is named by all that its tree depends on, written under another name and renamed, and checked when read: one that is damaged, cut off or of
+//! another program is made again. Nothing but files of such names is ever removed.
+
+use anyhow::Context;
+use etcetera::BaseStrategy;
+use lodray::bvh::{BvhError, FullTree, Options, TreeKey};
+use lodray::format::{Scene, write_and_rename};
+use std::fs::{self, DirEntry, File};
+use std::io::Write;
+use std::path::{Path, PathBuf};
+use std::time::{Duration, SystemTime};
+
+/// Trees of fewer triangles are built about as fast as they are read: see `benches/bvh_build.rs` and docs/figures.md.
+const LEAST_TRIANGLES: u64 = 1 << 16;
+/// Bytes of all files together; beyond, those go that were not used for longest.
+const MOST_BYTES: u64 = 4_000_000_000;
+/// A file that is still unfinished after so long was left behind.
+const UNFINISHED: Duration = Duration::from_hours(24);
+const ENDING: &str = ".lodray-bvh";
+
+#[derive(clap::Args, Clone, Debug)]
+pub struct CacheArgs {
+    /// Folder that keeps full-resolution BVHs for later runs, safe to delete, up to 4 GB; "none" keeps nothing (default: lodray in the system's
+    /// folder for caches)
+    #[arg(long = "cache", id = "cache", env = "LODRAY_CACHE", value_name = "DIR", hide_env_values = true)]
+    folder: Option<PathBuf>,
+}
+
+/// Where full-resolution BVHs are kept, if they are.
+pub struct Cache {
+    folder: Option<PathBuf>,
+}
+
+/// A tree, and whether it came from the cache.
+pub struct Found {
+    pub tree: FullTree,
+    pub read: bool,
+}
+
+impl Cache {
+    /// No cache.
+    pub const NONE: Self = Self { folder: None };
+
+    /// The folder that was named, or the usual one; without a place for that, or if it cannot be made, none.
+    pub fn new(args: &CacheArgs) -> anyhow::Result<Self> {
+        let folder = match &args.folder {
+            Some(named) if named.as_os_str() == "none" => None,
+            Some(named) => {
+                fs::create_dir_all(named).with_context(|| format!("--cache: cannot make folder {}", named.display()))?;
+                Some(named.clone())
+            }
+            None => {
+                let usual = etcetera::base_strategy::choose_native_strategy().ok().map(|places| places.cache_dir().join("lodray"));
+                usual.filter(|folder| fs::create_dir_all(folder).is_ok())
+            }
+        };
+        Ok(Self { folder })
+    }
+
+    /// The tree of `options` over the full-resolution triangles of `scene`: from the cache if it is there, else built, and kept.
+    pub fn tree(
+        &self,
+        scene: &Scene,
+        options: &Options,
+        wide_boxes: bool,
+        build: impl FnOnce() -> Result<FullTree, BvhError>,
+    ) -> Result<Found, BvhError> {
+        let Some(folder) = self.folder.as_ref().filter(|_| scene.finest_triangles() >= LEAST_TRIANGLES) else {
+            return Ok(Found { tree: build()?, read: false });
+        };
+        let key = TreeKey::new(scene, options, wide_boxes);
+        let path = folder.join(format!("{key}{ENDING}"));
+        if let Some(tree) = read(&path, key, scene.finest_triangles()) {
+            return Ok(Found { tree, read: true });
+        }
+        let tree = build()?;
+        if let Err(error) = write_and_rename(&path, |out| tree.write(key, out)) {
+            // The run does not depend on it. If nobody reads standard error there is nobody to tell.
+            let _ = writeln!(std::io::stderr(), "warning: the BVH is not kept: cannot write {}: {error}", path.display());
+        }
+        prune(folder, MOST_BYTES, SystemTime::now());
+        Ok(Found { tree, read: false })
+    }
+}
+
+/// The tree of a file, which then counts as just used.
+fn read(path: &Path, key: TreeKey, triangles: u64) -> Option<FullTree> {
+    let mut file = File::open(path).ok()?;
+    let length = file.metadata().ok().filter(fs::Metadata::is_file)?.len();
+    let tree = FullTree::read(key, triangles, length, &mut file)?;
+    // A folder that cannot be written to serves as well; its files only grow old.
+    if let Ok(writable) = File::options().append(true).open(path) {
+        let _ = writable.set_modified(SystemTime::now());
+    }
+    Some(tree)
+}
+
+/// Removes files of trees, those first that were not used for longest, until at most `most` bytes are left, and what runs left unfinished.
+/// What cannot be read or removed is left: another run may be at it.
+fn prune(folder: &Path, most: u64, now: SystemTime) {
+    let Ok(entries) = fs::read_dir(folder) else { return };
+    let facts = |entry: DirEntry| {
+        let meta = entry.metadata().ok().filter(fs::Metadata::is_file)?;
+        Some((meta.modified().ok()?, entry.path(), meta.len(), entry.file_name().into_string().ok()?))
+    };
+    let all: Vec<_> = entries.filter_map(|entry| facts(entry.ok()?)).collect();
+    for (_, path, ..) in all.iter().filter(|(used, _, _, name)| is_unfinished(name) && *used + UNFINISHED < now) {
+        let _ = fs::remove_file(path);
+    }
+    let mut trees: Vec<_> = all.into_iter().filter(|(.., name)| is_tree(name)).collect();
+    trees.sort_unstable();
+    let mut bytes: u64 = trees.iter().map(|tree| tree.2).sum();
+    for (_, path, size, _) in trees {
+        if bytes <= most {
+            return;
+        }
+        if fs::remove_file(path).is_ok() {
+            bytes -= size;
+        }
+    }
+}
+
+/// Whether a file of this name is a tree's.
+fn is_tree(name: &str) -> bool {
+    name.strip_suffix(ENDING).is_some_and(|key| key.len() == 32 && key.bytes().all(|c| c.is_ascii_hexdigit()))
+}
+
+/// Whether a file of this name is one of [`write_and_rename`] before it is renamed.
+fn is_unfinished(name: &str) -> bool {
+    name.starts_with(".lodray-") && name.ends_with(".tmp")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_longest_unused_go_first_and_nothing_else_goes() {
+        let folder = tempfile::tempdir().unwrap();
+        let now = SystemTime::now();
+        let put = |name: &str, age: u64| {
+            fs::write(folder.path().join(name), [0; 100]).unwrap();
+            let file = File::options().append(true).open(folder.path().join(name)).unwrap();
+            file.set_modified(now - Duration::from_hours(age)).unwrap();
+        };
+        let tree = |k: u32| format!("{k:032x}{ENDING}");
+        (1..=4).for_each(|k| put(&tree(k), 50 - u64::from(k)));
+        let others = ["thesis.tex".to_owned(), format!("mine{ENDING}"), ".lodray-new.tmp".to_owned(), format!("{:032}.tmp", 1)];
+        others.iter().for_each(|name| put(name, if name.contains("new") { 1 } else { 1000 }));
+        put(".lodray-old.tmp", 25);
+        prune(folder.path(), 200, now);
+        let mut left: Vec<_> = fs::read_dir(folder.path()).unwrap().map(|e| e.unwrap().file_name().into_string().unwrap()).collect();
+        let mut wanted: Vec<_> = [tree(3), tree(4)].into_iter().chain(others).collect();
+        (left.sort(), wanted.sort());
+        assert_eq!(left, wanted);
+    }
+}
