@@ -43,7 +43,7 @@ impl Cache {
     /// No cache.
     pub const NONE: Self = Self { folder: None };
 
-    /// The folder that was named, or the usual one; without a place for that, or if it cannot be made, none.
+    /// The folder that was named, or the usual one, which is made when there is something to keep; without a place for that, none.
     pub fn new(args: &CacheArgs) -> anyhow::Result<Self> {
         let folder = match &args.folder {
             Some(named) if named.as_os_str() == "none" => None,
@@ -51,10 +51,7 @@ impl Cache {
                 fs::create_dir_all(named).with_context(|| format!("--cache: cannot make folder {}", named.display()))?;
                 Some(named.clone())
             }
-            None => {
-                let usual = etcetera::base_strategy::choose_native_strategy().ok().map(|places| places.cache_dir().join("lodray"));
-                usual.filter(|folder| fs::create_dir_all(folder).is_ok())
-            }
+            None => etcetera::base_strategy::choose_native_strategy().ok().map(|places| places.cache_dir().join("lodray")),
         };
         Ok(Self { folder })
     }
@@ -76,7 +73,8 @@ impl Cache {
             return Ok(Found { tree, read: true });
         }
         let tree = build()?;
-        if let Err(error) = write_and_rename(&path, |out| tree.write(key, out)) {
+        let kept = fs::create_dir_all(folder).and_then(|()| write_and_rename(&path, |out| tree.write(key, out)));
+        if let Err(error) = kept {
             // The run does not depend on it. If nobody reads standard error there is nobody to tell.
             let _ = writeln!(std::io::stderr(), "warning: the BVH is not kept: cannot write {}: {error}", path.display());
         }
