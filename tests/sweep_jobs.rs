@@ -177,8 +177,8 @@ fn bars_are_told_apart_and_every_chart_has_several() {
     let set = "set = { \"l1.bytes\" = [16384, 32768] }\n";
     desk.write("set.toml", &format!("size = \"16x16\"\ndistances = [2]\nmethods = [\"lod\"]\n{SCENE}{MACHINE}{set}{MACHINE}"));
     assert_eq!(desk.run("sweep set.toml -o set").0, 0);
-    assert_eq!(desk.charts("set"), ["energy-a-machines.svg", "time-a-machines.svg"]);
-    let chart = desk.text("set/time-a-machines.svg");
+    assert_eq!(desk.charts("set"), ["energy-a-packet.svg", "time-a-packet.svg"]);
+    let chart = desk.text("set/time-a-packet.svg");
     for label in ["l1.bytes=16384", "l1.bytes=32768", "unchanged"] {
         assert_eq!(chart.matches(&format!("\n{label}\n")).count(), 1, "{label}: {chart}");
     }

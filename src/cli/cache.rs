@@ -17,7 +17,7 @@ const LEAST_TRIANGLES: u64 = 1 << 16;
 /// Bytes of all files together; beyond, those go that were not used for longest.
 const MOST_BYTES: u64 = 4_000_000_000;
 /// A file that is still unfinished after so long was left behind.
-const UNFINISHED: Duration = Duration::from_hours(24);
+const UNFINISHED: Duration = Duration::from_secs(24 * 3600);
 const ENDING: &str = ".lodray-bvh";
 
 #[derive(clap::Args, Clone, Debug)]
@@ -141,7 +141,7 @@ mod tests {
         let put = |name: &str, age: u64| {
             fs::write(folder.path().join(name), [0; 100]).unwrap();
             let file = File::options().append(true).open(folder.path().join(name)).unwrap();
-            file.set_modified(now - Duration::from_hours(age)).unwrap();
+            file.set_modified(now - Duration::from_secs(3600 * age)).unwrap();
         };
         let tree = |k: u32| format!("{k:032x}{ENDING}");
         (1..=4).for_each(|k| put(&tree(k), 50 - u64::from(k)));

@@ -99,7 +99,8 @@ pub fn energy(results: &[SimResult]) -> anyhow::Result<String> {
     let what = if shares { "Energy of a frame, parts of all".to_owned() } else { "Energy of a frame".to_owned() };
     let scale = |r: &SimResult| if shares && r.energy.total > 0.0 { 100.0 / r.energy.total } else { 1.0 };
     let most = top(results.iter().map(|r| r.energy.total * scale(r)));
-    let unit = energy_unit(&first.energy.unit, if shares { 0.0 } else { most });
+    let unit = energy_unit(&first.energy.unit, most);
+    let unit = if shares { Unit { size: 1.0, ..unit } } else { unit };
     let most = most / unit.size;
     let name = if shares { "% of the frame's energy".to_owned() } else { format!("energy, {}", unit.name) };
     let bars = results.len() as u32;
@@ -230,7 +231,7 @@ pub fn traffic(r: &SimResult) -> anyhow::Result<Option<String>> {
                 mesh.x_desc(time_axis(r).1);
             }
             mesh.y_desc(unit.name.as_str()).label_style((FONT, TEXT)).draw().map_err(wrong)?;
-            chart.draw_series(AreaSeries::new(steps(r, &value), 0.0, colour.mix(0.4)).border_style(*colour)).map_err(wrong)?;
+            chart.draw_series(AreaSeries::new(steps(r, value), 0.0, colour.mix(0.4)).border_style(*colour)).map_err(wrong)?;
         }
         Ok(())
     })

@@ -6,7 +6,6 @@ use crate::cli::simulate::plots::{COLOURS, FONT, LEGEND, TEXT, energy_unit, lege
 use lodray::report::result::SimResult;
 use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, Pos, VPos};
-use std::collections::BTreeMap;
 
 /// Columns of a bar at least, of a character of its name, and of the gap between two groups.
 const BAR: u32 = 38;
@@ -29,31 +28,35 @@ struct Group {
 /// What a chart shows of a scene.
 struct Subject<'a> {
     scene: &'a str,
-    /// What is the same for all its bars.
+    /// What is the same for all its bars, for the file's name and for the title.
     common: String,
+    title: String,
     results: Vec<&'a SimResult>,
     /// What may tell its bars apart.
     settings: &'static [Setting],
 }
 
+/// A scene's results, by machine.
+type ByMachine<'a> = Vec<(String, Vec<&'a SimResult>)>;
+
 /// File name and contents of every chart. What has one bar only has no chart, and neither has what is 0 everywhere.
 pub fn charts<'a>(rows: impl Iterator<Item = &'a Row>) -> anyhow::Result<Vec<(String, String)>> {
-    // By scene, then by machine; rows come view by view.
-    let mut scenes: BTreeMap<&str, BTreeMap<String, Vec<&SimResult>>> = BTreeMap::new();
+    // By scene, then by machine, in the order of the list.
+    let mut scenes: Vec<(&str, ByMachine<'_>)> = Vec::new();
     for (row, result) in rows.filter_map(|row| Some((row, row.result.as_ref()?))) {
         let machine = format!("{}, compute {}", result.setup.machine.title(), result.setup.compute.name());
-        scenes.entry(&row.scene).or_default().entry(machine).or_default().push(result);
+        entry(entry(&mut scenes, row.scene.as_str()), machine).push(result);
     }
     let mut files: Vec<(String, String)> = Vec::new();
     for (scene, machines) in scenes {
-        let subjects: Vec<_> = if machines.values().all(|results| results.len() == 1) {
+        let subjects: Vec<_> = if machines.iter().all(|(_, results)| results.len() == 1) {
             // Energies in different units have no axis in common.
-            let mut by_unit: BTreeMap<&str, Vec<&SimResult>> = BTreeMap::new();
-            machines.values().flatten().for_each(|r| by_unit.entry(&r.energy.unit).or_default().push(r));
-            let of = |results| Subject { scene, common: "machines".to_owned(), results, settings: Setting::OF_MACHINES };
-            by_unit.into_values().map(of).collect()
+            let mut by_unit: Vec<(&str, Vec<&SimResult>)> = Vec::new();
+            machines.iter().flat_map(|(_, results)| results).for_each(|r| entry(&mut by_unit, r.energy.unit.as_str()).push(r));
+            by_unit.into_iter().map(|(_, results)| Subject::machines(scene, results)).collect()
         } else {
-            let of = |(common, results)| Subject { scene, common, results, settings: Setting::OF_METHODS };
+            let of =
+                |(common, results): (String, _)| Subject { scene, title: common.clone(), common, results, settings: Setting::OF_METHODS };
             machines.into_iter().map(of).collect()
         };
         for subject in subjects.iter().filter(|subject| subject.results.len() > 1) {
@@ -65,6 +68,15 @@ pub fn charts<'a>(rows: impl Iterator<Item = &'a Row>) -> anyhow::Result<Vec<(St
     Ok(files)
 }
 
+/// What stands under `key`, at the end if it is new.
+fn entry<K: PartialEq, V: Default>(entries: &mut Vec<(K, V)>, key: K) -> &mut V {
+    let at = entries.iter().position(|entry| entry.0 == key).unwrap_or_else(|| {
+        entries.push((key, V::default()));
+        entries.len() - 1
+    });
+    &mut entries[at].1
+}
+
 /// A file name that is not among `files`, from any text.
 fn unused(files: &[(String, String)], text: &str) -> String {
     let plain: String = text.chars().map(|c| if c.is_ascii_alphanumeric() || c == '.' { c } else { '-' }).collect();
@@ -73,7 +85,20 @@ fn unused(files: &[(String, String)], text: &str) -> String {
     names.into_iter().find(|name| files.iter().all(|file| file.0 != *name)).unwrap_or_default()
 }
 
-impl Subject<'_> {
+impl<'a> Subject<'a> {
+    /// Of one view with one method on several machines.
+    fn machines(scene: &'a str, results: Vec<&'a SimResult>) -> Self {
+        let same = |of: &dyn Fn(&SimResult) -> String| {
+            let first = of(results[0]);
+            results.iter().all(|r| of(r) == first).then_some(first)
+        };
+        let common = same(&|r| r.setup.machine.title()).or_else(|| same(&|r| r.setup.machine.label.clone()));
+        let common = common.unwrap_or_else(|| "machines".to_owned());
+        let method = labels(&results[..1], Setting::OF_METHODS).concat();
+        let quality = results[0].setup.method.delta.map_or_else(String::new, |delta| format!(" at delta {delta}"));
+        Self { scene, title: format!("{common}, {method}{quality}"), common, results, settings: Setting::OF_MACHINES }
+    }
+
     /// What is drawn, and the drawing.
     fn charts(&self) -> anyhow::Result<Vec<(&'static str, String)>> {
         let first = self.results[0];
@@ -105,7 +130,7 @@ impl Subject<'_> {
         }
         let places: Vec<_> = groups.iter().map(|(first, _)| place(first)).collect();
         let name = |(k, (first, bars)): (usize, (&SimResult, Vec<Bar>))| {
-            let eye = first.setup.view.eye.map(|v| short(v)).join(", ");
+            let eye = first.setup.view.eye.map(short).join(", ");
             let is_alone = places.iter().filter(|place| **place == places[k]).count() == 1;
             Group { name: std::iter::once(places[k].clone()).chain((!is_alone).then(|| format!("eye {eye}"))).collect(), bars }
         };
@@ -113,7 +138,7 @@ impl Subject<'_> {
     }
 
     fn chart(&self, what: &str, groups: &[Group], parts: &[(&str, RGBColor)], unit: &str) -> anyhow::Result<String> {
-        let title = [format!("{what} of a frame: {}", self.scene), self.common.clone()];
+        let title = [format!("{what} of a frame: {}", self.scene), self.title.clone()];
         let characters = |text: &str| text.chars().count() as u32; // short
         let bar = groups.iter().flat_map(|group| &group.bars).map(|bar| CHARACTER * characters(&bar.name)).max().unwrap_or(0).max(BAR);
         // A group is as wide as its bars or its name.
