@@ -81,6 +81,7 @@ fn a_mistake_is_named_with_its_place_before_anything_runs() {
         (format!("size = \"8x8\"\nmethods = [\"ray\"]\n{SCENE}{MACHINE}"), "line 2: unknown variant `ray`"),
         (format!("size = \"8x8\"\nmethods = []\n{SCENE}{MACHINE}"), "line 2: methods must not be empty"),
         (format!("size = 8\nmethods = [\"lod\"]\n{SCENE}{MACHINE}"), "line 1: invalid type"),
+        (format!("{HEAD}[scene]\nfile = \"a.lod\"\n{MACHINE}"), "line 4: invalid type: map, expected a sequence; [[scene]] and"),
         (format!("{HEAD}{SCENE}{MACHINE}x = = 3\n"), "line 8: "),
         // Values out of range.
         (format!("{HEAD}leaf_size = 3\n{SCENE}{MACHINE}"), "line 4: leaf_size must be 1, 2 or 4, but is 3"),
@@ -116,6 +117,7 @@ fn a_mistake_is_named_with_its_place_before_anything_runs() {
         desk.write("jobs.toml", &list);
         let (code, out, err) = desk.run("sweep jobs.toml -o out");
         assert!(code == 1 && err.starts_with("error: jobs.toml: ") && err.contains(wanted), "no '{wanted}' in: {err}");
+        assert_eq!(err.matches("os error").count().max(1), 1, "said twice: {err}");
         assert!(out.is_empty() && err.lines().count() == 1 && !desk.path("out").exists(), "{out}{err}");
     }
     let (code, _, err) = desk.run("sweep none.toml -o out");

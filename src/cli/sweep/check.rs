@@ -7,6 +7,7 @@ use crate::cli::args::{Change, LeafArgs, LeafLayout, SimMethod, Size, delta, rad
 use crate::cli::generate;
 use crate::cli::output::open;
 use crate::cli::pass::{Target, machine};
+use crate::one_line;
 use lodray::mesh::Placement;
 use lodray::mesh::procedural;
 use lodray::render::DEFAULT_VIEW_ANGLE_DEGREES;
@@ -115,7 +116,7 @@ fn machines(source: &Source<'_>, entry: &Spanned<MachineEntry>, folder: &Path, c
     let name = needed(source, name.as_ref(), "machine: name", entry.span())?;
     // A file is relative to the list.
     let path = if name.get_ref().ends_with(".toml") { folder.join(name.get_ref()).display().to_string() } else { name.get_ref().clone() };
-    machine(&path, &[]).map_err(|why| source.wrong(name.span(), format!("machine {}: {why:#}", name.get_ref())))?;
+    machine(&path, &[]).map_err(|why| source.wrong(name.span(), format!("machine {}: {}", name.get_ref(), one_line(&why))))?;
     // Every combination of the values, the last key's changing fastest.
     let mut variants = vec![Vec::new()];
     for (key, values) in set {
@@ -131,7 +132,7 @@ fn machines(source: &Source<'_>, entry: &Spanned<MachineEntry>, folder: &Path, c
     let place = set.values().next().map_or_else(|| name.span(), Spanned::span);
     let mut targets = Vec::new();
     for variant in &variants {
-        let wrong = |why: anyhow::Error| source.wrong(place.clone(), format!("machine {}: {why:#}", name.get_ref()));
+        let wrong = |why: anyhow::Error| source.wrong(place.clone(), format!("machine {}: {}", name.get_ref(), one_line(&why)));
         let machine = machine(&path, variant).map_err(wrong)?;
         for &compute in compute {
             report::check(&machine.description, compute).map_err(|why| wrong(why.into()))?;
@@ -163,7 +164,7 @@ fn scene(source: &Source<'_>, list: &List, spanned: &Spanned<SceneEntry>, folder
                 let why = format!("scene: {mesh} is a mesh, not a scene: make one with `lodray build {mesh} -o {}`", made.display());
                 return Err(source.wrong(file.span(), why));
             }
-            let scene = open(&path).map_err(|why| source.wrong(file.span(), format!("scene: {why:#}")))?;
+            let scene = open(&path).map_err(|why| source.wrong(file.span(), format!("scene: {}", one_line(&why))))?;
             let name = file.get_ref().file_stem().unwrap_or_default().to_string_lossy().into_owned();
             (Origin::File(path), name, xxh3_64(scene.bytes()), ModelSpace::of(&scene))
         }
@@ -176,7 +177,7 @@ fn scene(source: &Source<'_>, list: &List, spanned: &Spanned<SceneEntry>, folder
                 seed: entry.seed.as_ref().map_or(0, |seed| *seed.get_ref()),
                 roughness: entry.roughness.as_ref().map(|roughness| *roughness.get_ref()),
             };
-            generate::check(&options).map_err(|why| source.wrong(spanned.span(), format!("scene: {why:#}")))?;
+            generate::check(&options).map_err(|why| source.wrong(spanned.span(), format!("scene: {}", one_line(&why))))?;
             (Origin::Generate(options), format!("{:?}", kind.get_ref()).to_lowercase(), 0, stand_in())
         }
         (Some(file), Some(_)) => return Err(source.wrong(file.span(), "scene: has both file and generate")),

@@ -113,7 +113,11 @@ impl Source<'_> {
     /// What the file says.
     pub fn list(&self) -> anyhow::Result<List> {
         // The reader's own messages are several lines, with a picture of the place.
-        toml::from_str(self.text).map_err(|e| self.wrong(e.span().unwrap_or(0..0), e.message().lines().collect::<Vec<_>>().join(", ")))
+        toml::from_str(self.text).map_err(|e| {
+            let brackets =
+                if e.message() == "invalid type: map, expected a sequence" { "; [[scene]] and [[machine]] have two brackets" } else { "" };
+            self.wrong(e.span().unwrap_or(0..0), format!("{}{brackets}", e.message().lines().collect::<Vec<_>>().join(", ")))
+        })
     }
 
     /// The error for a mistake that stands there.

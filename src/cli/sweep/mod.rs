@@ -150,7 +150,7 @@ impl<'a> Sweep<'a> {
 }
 
 fn failure(key: &str, error: &anyhow::Error) -> Row {
-    Row { key: key.to_owned(), scene: String::new(), result: None, image: None, error: Some(format!("{error:#}")) }
+    Row { key: key.to_owned(), scene: String::new(), result: None, image: None, error: Some(crate::one_line(error)) }
 }
 
 /// A scene and what was made of it.
