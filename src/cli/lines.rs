@@ -6,7 +6,7 @@ use super::output::{grouped, open, print_json, print_line, progress};
 use lodray::bvh::{BvhError, FullBuilder, FullBvh, FullNodes, FullOptions, LeafLayout, Leaves, Options};
 use lodray::format::Scene;
 use lodray::mesh::Hierarchy;
-use lodray::render::{Method, render};
+use lodray::render::{Method, distinct_lines, render};
 use lodray::traverse::{LodImage, ModelSpace};
 use serde::Serialize;
 use std::path::PathBuf;
@@ -86,15 +86,26 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
     let mut best = vec![u64::MAX; cameras.len()];
     for &wide_boxes in formats {
         for size in [1, 2, 4] {
-            for layout in [LeafLayout::Indexed, LeafLayout::Packed, LeafLayout::Line] {
+            let options = |layout| FullOptions::new(size, wide_boxes, layout);
+            // Layouts of one tree are counted together.
+            let layouts = [LeafLayout::Indexed, LeafLayout::Packed, LeafLayout::Line];
+            for group in layouts.chunk_by(|&a, &b| options(a).tree == options(b).tree) {
                 bar.set_message("building the BVH");
-                let bvh = trees.bvh(&FullOptions::new(size, wide_boxes, layout))?;
-                let lines = distinct(&count(&Method::Bvh(&bvh), args.delta));
-                if !wide_boxes {
-                    best.iter_mut().zip(&lines).for_each(|(b, &n)| *b = n.min(*b));
+                let bvh = trees.bvh(&options(group[0]))?;
+                let others = group[1..].iter().map(|&layout| trees.leaves(layout)).collect::<Result<Vec<_>, _>>()?;
+                let others: Vec<_> = others.iter().map(AsRef::as_ref).collect();
+                bar.set_message("tracing");
+                let steps = group.len() as u64;
+                let frame = |camera| distinct_lines(&bvh, &others, &space, camera, &|rows| bar.inc(steps * rows));
+                let frames: Vec<_> = cameras.iter().map(frame).collect();
+                for (k, layout) in group.iter().enumerate() {
+                    let lines: Vec<u64> = frames.iter().map(|frame| frame[k]).collect();
+                    if !wide_boxes {
+                        best.iter_mut().zip(&lines).for_each(|(b, &n)| *b = n.min(*b));
+                    }
+                    let bits = if wide_boxes { 32 } else { 16 };
+                    rows.push(Row { structure: format!("BVH {bits}-bit, {layout:?}, {size} a leaf"), distinct_lines: lines });
                 }
-                let bits = if wide_boxes { 32 } else { 16 };
-                rows.push(Row { structure: format!("BVH {bits}-bit, {layout:?}, {size} a leaf"), distinct_lines: lines });
             }
         }
     }

@@ -3,6 +3,7 @@
 mod camera;
 mod frame;
 mod geometry;
+mod layouts;
 mod lines;
 mod picture;
 mod shade;
@@ -11,6 +12,7 @@ mod steps;
 pub use camera::{Camera, CameraError, DEFAULT_DISTANCE, DEFAULT_VIEW_ANGLE_DEGREES, View};
 pub use frame::{Frame, FrameStats, KindCount, Method, Pixel, render};
 pub use geometry::{GeometricError, geometric_error};
+pub use layouts::distinct_lines;
 pub use lines::LineSets;
 pub use picture::{ImageError, compare, save_png};
 pub use shade::{error_map, level_map, normal_map, shaded, view_cosine};

@@ -58,6 +58,7 @@ impl<'a> BvhTraverser<'a> {
             } else {
                 // Leaves keep their count in `level`, which trees need and leaves do not.
                 let slots = index..index + entry.level.get() as usize + 1;
+                probe.leaf(slots.clone());
                 self.leaves.lines(slots.clone(), |address| probe.line(Kind::Leaf, address / LINE_BYTES));
                 for slot in slots {
                     self.triangle(ray, slot, probe, sink);
