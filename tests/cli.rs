@@ -22,6 +22,7 @@ impl Desk {
     fn run_on(&self, threads: u32, args: &str) -> (i32, String) {
         let mut command = assert_cmd::cargo::cargo_bin_cmd!("lodray");
         command.current_dir(self.0.path()).args(args.split_whitespace()).env("RAYON_NUM_THREADS", threads.to_string());
+        command.env("LODRAY_CACHE", "none");
         let output = command.output().unwrap();
         let [out, err] = [output.stdout, output.stderr].map(|text| String::from_utf8(text).unwrap());
         assert!(!err.contains("panicked"), "{args}: {err}");
@@ -31,7 +32,9 @@ impl Desk {
 
     /// Exit code, and everything said.
     fn run_on_and_hear(&self, args: &str) -> (i32, String) {
-        let output = assert_cmd::cargo::cargo_bin_cmd!("lodray").current_dir(self.0.path()).args(args.split_whitespace()).output().unwrap();
+        let mut command = assert_cmd::cargo::cargo_bin_cmd!("lodray");
+        command.current_dir(self.0.path()).args(args.split_whitespace()).env("LODRAY_CACHE", "none");
+        let output = command.output().unwrap();
         (output.status.code().unwrap(), String::from_utf8([output.stdout, output.stderr].concat()).unwrap())
     }
 

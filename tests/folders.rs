@@ -35,7 +35,7 @@ impl Desk {
 
     fn command(&self, args: &str) -> Command {
         let mut command = Command::new(assert_cmd::cargo::cargo_bin!("lodray"));
-        command.current_dir(self.0.path()).args(args.split_whitespace());
+        command.current_dir(self.0.path()).args(args.split_whitespace()).env("LODRAY_CACHE", "none");
         command
     }
 

@@ -30,6 +30,7 @@ impl Desk {
     fn run_on(&self, threads: u32, args: &str) -> (i32, String) {
         let mut command = assert_cmd::cargo::cargo_bin_cmd!("lodray");
         command.current_dir(self.0.path()).args(args.split_whitespace()).env("RAYON_NUM_THREADS", threads.to_string());
+        command.env("LODRAY_CACHE", "none");
         let output = command.output().unwrap();
         let [out, err] = [output.stdout, output.stderr].map(|text| String::from_utf8(text).unwrap());
         assert!(!err.contains("panicked"), "{args}: {err}");

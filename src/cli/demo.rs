@@ -2,6 +2,7 @@
 
 use super::args::{LeafArgs, LeafLayout};
 use super::build::build_scene;
+use super::cache::Cache;
 use super::facts::Facts;
 use super::folder::{Overrule, RunFolder, one_run};
 use super::output::{busy, grouped, print_json, print_line, remark};
@@ -59,8 +60,8 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
     let scene = build_scene(&surface, "terrain", serde_json::json!({ "generate": options }))?;
     let space = ModelSpace::of(&scene);
     let leaves = LeafArgs { leaf_layout: LeafLayout::Line, leaf_size: 4 };
-    let bvh = Built::new(MethodName::Bvh, &scene, leaves)?;
-    let truth = Built::new(MethodName::Reference, &scene, leaves)?;
+    let bvh = Built::new(MethodName::Bvh, &scene, leaves, &Cache::NONE)?;
+    let truth = Built::new(MethodName::Reference, &scene, leaves, &Cache::NONE)?;
 
     let mut rows = Vec::new();
     for (view, distance) in DISTANCES {

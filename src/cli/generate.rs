@@ -41,11 +41,17 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
 
 /// Generates a scene.
 pub fn make(options: &Options) -> anyhow::Result<format::Scene> {
-    check_memory(options)?;
+    check(options)?;
     let surface = busy("generating", || generate(options))?;
     let origin = serde_json::json!({ "generate": options });
     let name = format!("{:?}", options.scene).to_lowercase();
     build_scene(&surface, &name, origin)
+}
+
+/// Refuses what cannot be generated, before any work is done.
+pub fn check(options: &Options) -> anyhow::Result<()> {
+    options.check()?;
+    check_memory(options)
 }
 
 fn share(s: &str) -> Result<f64, String> {

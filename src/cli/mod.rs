@@ -2,6 +2,7 @@
 
 mod args;
 mod build;
+mod cache;
 mod common;
 mod compare;
 mod crack;

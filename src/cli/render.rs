@@ -1,6 +1,7 @@
 //! `render`: one view of a scene through one method.
 
 use super::args::{CameraArgs, LeafArgs, delta};
+use super::cache::{Cache, CacheArgs};
 use super::facts::Facts;
 use super::folder::{Overrule, RunFolder, one_run};
 use super::original::original;
@@ -9,7 +10,7 @@ use super::pictures::{Shot, shoot};
 use anyhow::Context;
 use clap::ValueEnum;
 use image::RgbImage;
-use lodray::bvh::{FullBvh, FullOptions};
+use lodray::bvh::{BvhError, FullBuilder, FullBvh, FullOptions};
 use lodray::format::Scene;
 use lodray::golden::reference::Reference;
 use lodray::render::{
@@ -87,6 +88,8 @@ pub struct Args {
     camera: CameraArgs,
     #[command(flatten)]
     leaves: LeafArgs,
+    #[command(flatten)]
+    cache: CacheArgs,
     /// Folder for the pictures
     #[arg(short, long, default_value = "out", long_help = one_run("Folder for the pictures"))]
     out: PathBuf,
@@ -111,7 +114,10 @@ struct Report {
     eye: [f64; 3],
     /// Distance from the target in bounding radii.
     distance: f64,
-    /// Building what the method needs, and tracing; not in the JSON, which is the same for every run.
+    /// Whether what the method needs was read from the cache; not in the JSON, which is the same for every run, nor are the times.
+    #[serde(skip)]
+    cached: bool,
+    /// Building or reading what the method needs, and tracing.
     #[serde(skip)]
     seconds: [f64; 2],
     stats: FrameStats,
@@ -157,17 +163,22 @@ pub struct Comparison {
 /// What a method needs besides the scene.
 pub enum Built {
     Lod,
-    Bvh(FullBvh),
+    Bvh { bvh: FullBvh, cached: bool },
     Reference(Reference),
 }
 
 impl Built {
-    /// Builds what `name` needs.
-    pub fn new(name: MethodName, scene: &Scene, leaves: LeafArgs) -> anyhow::Result<Self> {
+    /// Whether it was read from the cache instead of built.
+    fn cached(&self) -> bool {
+        matches!(self, Self::Bvh { cached: true, .. })
+    }
+
+    /// Builds what `name` needs, or takes it from the cache.
+    pub fn new(name: MethodName, scene: &Scene, leaves: LeafArgs, cache: &Cache) -> anyhow::Result<Self> {
         Ok(match name {
             MethodName::Lod => Self::Lod,
-            MethodName::Bvh => Self::Bvh(full_bvh(scene, leaves, false)?),
-            MethodName::Bvh32 => Self::Bvh(full_bvh(scene, leaves, true)?),
+            MethodName::Bvh => full_bvh(scene, leaves, false, cache)?,
+            MethodName::Bvh32 => full_bvh(scene, leaves, true, cache)?,
             // The original is a scene whose full resolution is the mesh.
             MethodName::Reference | MethodName::Original => {
                 Self::Reference(busy("building the reference", || Reference::new(&scene.decode())))
@@ -184,15 +195,20 @@ impl Built {
     pub fn method<'a>(&'a self, scene: &'a Scene) -> Method<'a> {
         match self {
             Self::Lod => Method::Lod(LodImage::of(scene)),
-            Self::Bvh(bvh) => Method::Bvh(bvh),
+            Self::Bvh { bvh, .. } => Method::Bvh(bvh),
             Self::Reference(reference) => Method::Reference(reference),
         }
     }
 }
 
-fn full_bvh(scene: &Scene, leaves: LeafArgs, wide_boxes: bool) -> anyhow::Result<FullBvh> {
+fn full_bvh(scene: &Scene, leaves: LeafArgs, wide_boxes: bool, cache: &Cache) -> anyhow::Result<Built> {
     let options = FullOptions::new(leaves.leaf_size, wide_boxes, leaves.leaf_layout.into());
-    Ok(busy("building the BVH", || FullBvh::build(&scene.decode(), &options))?)
+    let made = busy("building the BVH", || {
+        let hierarchy = scene.decode();
+        let found = cache.tree(scene, &options.tree, wide_boxes, || FullBuilder::new(&hierarchy)?.tree(&options.tree, wide_boxes))?;
+        Ok::<_, BvhError>(Built::Bvh { bvh: found.tree.with_leaves(&hierarchy, options.layout)?, cached: found.read })
+    });
+    Ok(made?)
 }
 
 /// Geometry to trace.
@@ -230,19 +246,22 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
     let names = pictures.into_iter().take(4 + usize::from(args.compare));
     let inputs: Vec<_> = std::iter::once(&args.scene).chain(&args.mesh).map(PathBuf::as_path).collect();
     let folder = RunFolder::open(&args.out, names, &inputs, &args.overrule)?;
+    let cache = Cache::new(&args.cache)?;
 
     let shown = mesh.as_ref().filter(|_| args.method == MethodName::Original).unwrap_or(&seen);
     let begun = Instant::now();
-    let built = Built::new(args.method, &shown.scene, args.leaves)?;
+    let built = Built::new(args.method, &shown.scene, args.leaves, &cache)?;
     let building = begun.elapsed().as_secs_f64();
     let begun = Instant::now();
     let shot = shown.shoot(&built, &camera, args.delta, "tracing");
     let seconds = [building, begun.elapsed().as_secs_f64()];
+    let cached = built.cached();
     drop(built);
 
     let truth = if args.compare {
         let (against, of) = mesh.as_ref().map_or((Against::FullResolution, &seen), |mesh| (Against::Original, mesh));
-        let truth = of.shoot(&Built::new(MethodName::Reference, &of.scene, args.leaves)?, &camera, args.delta, against.name());
+        let reference = Built::new(MethodName::Reference, &of.scene, args.leaves, &cache)?;
+        let truth = of.shoot(&reference, &camera, args.delta, against.name());
         let error = compare_shots(&shot, &truth, &of.scene, &camera);
         Some((against, truth.image, error))
     } else {
@@ -278,6 +297,7 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
         size: [camera.width, camera.height],
         eye: camera.eye.to_array(),
         distance: camera.radii,
+        cached,
         seconds,
         stats,
         per_ray,
@@ -332,8 +352,9 @@ pub fn compare_shots(shot: &Shot, truth: &Shot, scene: &Scene, camera: &Camera) 
 }
 
 fn table(r: &Report) -> String {
+    let making = if r.cached { "BVH read from the cache" } else { "building" };
     let mut text = format!(
-        "{} rays, {} hit; building {:.2} s, tracing {:.2} s\nper ray: {:.2} nodes, {:.2} LOD tests, {:.2} triangles, {:.2} lines read ({:.0} bytes)\nmean level {:.3}\n",
+        "{} rays, {} hit; {making} {:.2} s, tracing {:.2} s\nper ray: {:.2} nodes, {:.2} LOD tests, {:.2} triangles, {:.2} lines read ({:.0} bytes)\nmean level {:.3}\n",
         grouped(r.stats.rays),
         grouped(r.stats.hits),
         r.seconds[0],

@@ -3,6 +3,7 @@
 mod camera;
 mod frame;
 mod geometry;
+mod layouts;
 mod legend;
 mod lines;
 mod orbit;
@@ -15,6 +16,7 @@ mod text;
 pub use camera::{Camera, CameraError, DEFAULT_DIRECTION, DEFAULT_VIEW_ANGLE_DEGREES, MAX_PIXELS, MAX_SIDE, View};
 pub use frame::{Frame, FrameStats, KindCount, Method, Pixel, render};
 pub use geometry::{GeometricError, geometric_error};
+pub use layouts::distinct_lines;
 pub use legend::Legend;
 pub use lines::LineSets;
 pub use picture::{ImageError, compare, save_png};

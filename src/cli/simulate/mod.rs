@@ -3,8 +3,10 @@
 mod files;
 pub(super) mod plots;
 mod table;
+mod units;
 
 use super::args::{CameraArgs, Change, LeafArgs, SimMethod, delta};
+use super::cache::{Cache, CacheArgs};
 use super::folder::{Overrule, RunFolder, one_run};
 use super::output::{check_target, explain, grouped, open, print_json, print_line, remark, warn};
 use super::pass::{Pass, Target, machine, machine_files};
@@ -43,6 +45,8 @@ pub struct Args {
     camera: CameraArgs,
     #[command(flatten)]
     leaves: LeafArgs,
+    #[command(flatten)]
+    cache: CacheArgs,
     /// Folder for the figures as JSON, what happened over time as CSV, and plots as SVG
     #[arg(short, long, long_help = one_run("Folder for the figures as JSON, what happened over time as CSV, and plots as SVG"))]
     out: Option<PathBuf>,
@@ -100,7 +104,7 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
     let open_folder = |out: &PathBuf| RunFolder::open(out, names.iter().map(String::as_str), &inputs, &args.overrule);
     let folder = args.out.as_ref().map(open_folder).transpose()?;
 
-    let built = Built::new(args.method.into(), &scene, args.leaves)?;
+    let built = Built::new(args.method.into(), &scene, args.leaves, &Cache::new(&args.cache)?)?;
     let pass = Pass {
         scene: &scene,
         space: &space,

@@ -1,10 +1,14 @@
 //! `sweep`: scenes, views and methods on machines, from a list of jobs.
 
 mod charts;
+mod check;
 mod jobs;
+mod labels;
+mod list;
 mod rows;
 
 use super::args::SimMethod;
+use super::cache::{Cache, CacheArgs};
 use super::folder::{Overrule, RunFolder, one_run};
 use super::generate::make;
 use super::output::{check_target, open, print_line, remark};
@@ -14,7 +18,7 @@ use super::render::{Built, MethodName, compare_shots};
 use anyhow::Context;
 use jobs::{Jobs, Origin, SceneJobs, ViewJob};
 use lodray::format::{Scene, write_and_rename};
-use lodray::render::{Camera, DEFAULT_DIRECTION, View};
+use lodray::render::Camera;
 use lodray::traverse::ModelSpace;
 use rows::ImageFigures;
 use std::collections::{BTreeMap, HashSet};
@@ -38,6 +42,8 @@ pub struct Args {
     out: PathBuf,
     #[command(flatten)]
     overrule: Overrule,
+    #[command(flatten)]
+    cache: CacheArgs,
 }
 
 /// Jobs that share a functional pass: their keys and targets.
@@ -50,20 +56,21 @@ struct Group<'a> {
 /// What is left to do.
 struct Sweep<'a> {
     jobs: &'a Jobs,
+    cache: &'a Cache,
     rows: Rows,
 }
 
 pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
     let jobs = Jobs::read(&args.jobs)?;
-    let read = jobs.files();
-    let inputs: Vec<_> = std::iter::once(&args.jobs).chain(&read).map(PathBuf::as_path).collect();
+    let inputs: Vec<_> = std::iter::once(&args.jobs).chain(&jobs.files).map(PathBuf::as_path).collect();
     let mut folder = RunFolder::open(&args.out, [TABLE], &inputs, &args.overrule)?;
+    let cache = Cache::new(&args.cache)?;
     let lines = args.out.join(LINES);
     check_target(&lines, &inputs)?;
     let rows = Rows::open(&lines)?;
     folder.keep(LINES)?;
     let done = rows.done();
-    let mut sweep = Sweep { jobs: &jobs, rows };
+    let mut sweep = Sweep { jobs: &jobs, cache: &cache, rows };
     let mut keys = Vec::new();
     for scene in &jobs.scenes {
         let groups = sweep.groups(scene, &done, &mut keys)?;
@@ -121,7 +128,14 @@ impl<'a> Sweep<'a> {
             Ok(made) => made,
             Err(error) => return groups.iter().try_for_each(|group| self.failed(scene, group, &error)),
         };
-        let mut workshop = Workshop { jobs: self.jobs, space: ModelSpace::of(&made), scene: &made, built: BTreeMap::new(), truth: None };
+        let mut workshop = Workshop {
+            jobs: self.jobs,
+            cache: self.cache,
+            space: ModelSpace::of(&made),
+            scene: &made,
+            built: BTreeMap::new(),
+            truth: None,
+        };
         for group in groups {
             match workshop.group(group) {
                 Err(error) => self.failed(scene, group, &error)?,
@@ -144,12 +158,13 @@ impl<'a> Sweep<'a> {
 }
 
 fn failure(key: &str, error: &anyhow::Error) -> Row {
-    Row { key: key.to_owned(), scene: String::new(), result: None, image: None, error: Some(format!("{error:#}")) }
+    Row { key: key.to_owned(), scene: String::new(), result: None, image: None, error: Some(crate::one_line(error)) }
 }
 
 /// A scene and what was made of it.
 struct Workshop<'a> {
     jobs: &'a Jobs,
+    cache: &'a Cache,
     scene: &'a Scene,
     space: ModelSpace,
     built: BTreeMap<SimMethod, Built>,
@@ -160,9 +175,9 @@ struct Workshop<'a> {
 impl Workshop<'_> {
     fn group(&mut self, group: &Group<'_>) -> anyhow::Result<Vec<Row>> {
         let (method, delta) = group.method;
-        let camera = self.camera(group.view)?;
+        let camera = group.view.camera(&self.space)?;
         if !self.built.contains_key(&method) {
-            self.built.insert(method, Built::new(method.into(), self.scene, self.jobs.leaves)?);
+            self.built.insert(method, Built::new(method.into(), self.scene, self.jobs.leaves, self.cache)?);
         }
         let image = if self.jobs.error { Some(self.image_error(group.view, method, delta, &camera)?) } else { None };
         let pass = Pass {
@@ -188,18 +203,9 @@ impl Workshop<'_> {
         Ok(pass.run(&targets)?.into_iter().zip(&group.jobs).map(row).collect())
     }
 
-    fn camera(&self, view: &ViewJob) -> anyhow::Result<Camera> {
-        let target = view.target.unwrap_or_else(|| self.space.centre());
-        let toward = view.direction.map(|d| std::array::from_fn(|k| target[k] + d[k]));
-        // Whatever is up: a job's view is that of its keys alone.
-        let direction = Some(DEFAULT_DIRECTION);
-        let full = View { eye: view.eye.or(toward), direction, target: view.target, up: view.up, distance: view.distance, fov: view.fov };
-        Ok(Camera::new(&full, &self.space, view.size[0], view.size[1])?)
-    }
-
     fn image_error(&mut self, view: &ViewJob, method: SimMethod, delta: f64, camera: &Camera) -> anyhow::Result<ImageFigures> {
         if self.truth.is_none() {
-            self.truth = Some((Built::new(MethodName::Reference, self.scene, self.jobs.leaves)?, None));
+            self.truth = Some((Built::new(MethodName::Reference, self.scene, self.jobs.leaves, self.cache)?, None));
         }
         let (reference, last) = self.truth.as_mut().context("no reference")?;
         if last.as_ref().is_none_or(|(of, _)| of != view) {
