@@ -3,6 +3,7 @@
 use anyhow::Context;
 use indicatif::{ProgressBar, ProgressStyle};
 use lodray::format::{Scene, temporary_beside};
+use lodray::mesh::MeshFormat;
 use serde::Serialize;
 use std::path::Path;
 use std::time::Duration;
@@ -39,9 +40,15 @@ pub fn print_line(text: &str) -> anyhow::Result<()> {
     }
 }
 
-/// Opens a scene file; the error names it.
+/// Opens a scene file; the error names it, and for a mesh says how to make a scene of it.
 pub fn open(path: &Path) -> anyhow::Result<Scene> {
-    Ok(busy("opening", || Scene::open(path))?)
+    busy("opening", || Scene::open(path)).or_else(|error| {
+        if path.is_file() && MeshFormat::of(path).is_some() {
+            let (mesh, scene) = (path.display(), path.with_extension("lod"));
+            anyhow::bail!("{mesh}: this is a mesh, not a scene: `lodray build {mesh} -o {}` makes one of it", scene.display());
+        }
+        Err(error.into())
+    })
 }
 
 /// Makes the output folder and refuses it if `names` cannot be written there, before any work is done.
