@@ -99,6 +99,12 @@ struct Fault {
     what: String,
 }
 
+/// What a file has at some place, for a message: its beginning, on one line; a file of another kind may hold anything.
+fn shown(text: &str) -> String {
+    let (begin, more) = text.trim().char_indices().nth(80).map_or((text.trim(), ""), |(at, _)| (&text.trim()[..at], "..."));
+    format!("{}{more}", begin.escape_debug())
+}
+
 fn fault<T>(place: impl Display, what: impl Display) -> Result<T, Fault> {
     Err(Fault { place: place.to_string(), what: what.to_string() })
 }

@@ -300,8 +300,8 @@ fn buffers_lie_within_the_file_or_beside_it() {
     let bad = |uri: &str, parts: &[&str]| {
         files.refuses("a.gltf", glb.with_uri(uri), &[&["mesh 0, primitive 0, POSITION: accessor 0: buffer 0: "], parts].concat())
     };
-    bad("none.bin", &["none.bin: No such file"]);
-    bad("folder.bin", &["folder.bin: it is not an ordinary file"]);
+    bad("none.bin", &["its file 'none.bin': No such file"]);
+    bad("folder.bin", &["folder.bin': it is not an ordinary file"]);
     bad("", &["it is not an ordinary file"]);
     bad("https://example.org/a.bin", &["'https://example.org/a.bin' is neither data nor a file beside the model"]);
     bad("file:///etc/passwd", &["neither data nor a file"]);

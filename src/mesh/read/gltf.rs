@@ -6,7 +6,7 @@ mod buffers;
 mod nodes;
 
 use super::super::clean::{is_coordinate, unit};
-use super::{Fault, Parts, fault};
+use super::{Fault, Parts, fault, shown};
 use ::gltf::json::mesh::{Mode, Primitive, Semantic};
 use ::gltf::json::validation::Checked;
 use ::gltf::json::{Index, Root};
@@ -65,7 +65,7 @@ fn build(json: &[u8], bin: Option<&[u8]>, folder: &Path) -> Result<Parts, Fault>
     let root: Root = ::gltf::json::deserialize::from_slice(json).or_else(|error| {
         let text = error.to_string();
         let what = text.rsplit_once(" at line ").map_or(text.as_str(), |(what, _)| what);
-        fault(format_args!("JSON, line {}, column {}", error.line(), error.column()), what)
+        fault(format_args!("JSON, line {}, column {}", error.line(), error.column()), shown(what))
     })?;
     check_asset(&root)?;
     let mut parts = Parts::default();
@@ -98,7 +98,7 @@ fn build(json: &[u8], bin: Option<&[u8]>, folder: &Path) -> Result<Parts, Fault>
 
 fn check_asset(root: &Root) -> Result<(), Fault> {
     if !root.asset.version.starts_with("2.") {
-        return fault("asset", format_args!("version '{}' is not known: 2.0 is", root.asset.version.escape_debug()));
+        return fault("asset", format_args!("version '{}' is not known: 2.0 is", shown(&root.asset.version)));
     }
     for name in &root.extensions_required {
         match name.as_str() {
@@ -107,7 +107,7 @@ fn check_asset(root: &Root) -> Result<(), Fault> {
             _ if ["KHR_materials_", "KHR_texture_", "EXT_texture_"].iter().any(|prefix| name.starts_with(prefix)) => {}
             _ => {
                 let compressed = if name.contains("compression") { " (the mesh is compressed)" } else { "" };
-                let what = format!("the file needs {}, which is not read{compressed}", name.escape_debug());
+                let what = format!("the file needs {}, which is not read{compressed}", shown(name));
                 return fault("extensionsRequired", what);
             }
         }

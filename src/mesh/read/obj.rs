@@ -1,7 +1,7 @@
 //! Wavefront OBJ. `tobj` parses; before it every line is checked here, because its errors name no line and it lets some faults pass.
 
 use super::super::clean::{is_coordinate, unit};
-use super::{Fault, Parts, fault, polygon};
+use super::{Fault, Parts, fault, polygon, shown};
 use std::fmt::Write;
 use std::path::Path;
 
@@ -154,7 +154,7 @@ impl Checker {
         let values: Vec<f64> = words.iter().map(|w| number("v", w)).collect::<Result<_, _>>()?;
         let weight = if words.len() == 4 { values[3] } else { 1.0 };
         if weight == 0.0 || !values[..3].iter().all(|v| is_coordinate(v / weight)) {
-            return Err(format!("v: {} is not a usable position", words.join(" ")));
+            return Err(format!("v: {} is not a usable position", shown(&words.join(" "))));
         }
         let kept = if words.len() == 4 { 4 } else { 3 };
         _ = writeln!(self.out, "v {}", words[..kept].join(" "));
@@ -196,7 +196,7 @@ impl Checker {
                 }
             }
             if parts.next().is_some() {
-                return Err(format!("f: {word} has more than three indices"));
+                return Err(format!("f: {} has more than three indices", shown(word)));
             }
             let [vertex, _, normal] = indices;
             // Behind the zero normal that comes first.
@@ -211,7 +211,7 @@ impl Checker {
     fn index(&mut self, kind: usize, part: &str, word: &str, line: usize) -> Result<i64, String> {
         let name = KINDS[kind];
         let Ok(index) = part.parse::<i64>() else {
-            return Err(format!("f: {word} has no valid {name} index"));
+            return Err(format!("f: {} has no valid {name} index", shown(word)));
         };
         if kind == TEXTURE {
             // Texture coordinates are not used: whether this one is there does not matter.
@@ -229,12 +229,12 @@ impl Checker {
 }
 
 fn number(key: &str, word: &str) -> Result<f64, String> {
-    any_number(key, word).and_then(|v| if v.is_finite() { Ok(v) } else { Err(format!("{key}: {word} is not finite")) })
+    any_number(key, word).and_then(|v| if v.is_finite() { Ok(v) } else { Err(format!("{key}: {} is not finite", shown(word))) })
 }
 
 /// Infinite and NaN are taken.
 fn any_number(key: &str, word: &str) -> Result<f64, String> {
-    word.parse().map_err(|_| format!("{key}: {word} is not a number"))
+    word.parse().map_err(|_| format!("{key}: {} is not a number", shown(word)))
 }
 
 /// Names and diffuse colours of a material library; what else it holds, right or wrong, is of no use here.

@@ -3,7 +3,7 @@
 mod header;
 
 use super::super::clean::unit;
-use super::{Fault, Parts, fault, polygon};
+use super::{Fault, Parts, fault, polygon, shown};
 use header::{is_index_list, is_scalar};
 use ply_rs_bw::parser::Parser;
 use ply_rs_bw::ply::{ElementDef, Encoding, Property, PropertyAccess, PropertyAccessResult, PropertyType, ScalarType};
@@ -41,7 +41,7 @@ impl Row {
             match &property.data_type {
                 PropertyType::Scalar(kind) => row.set_number(name, number(name, word, kind)?),
                 PropertyType::List(..) => {
-                    let count = word.parse().map_err(|_| format!("{name}: its length '{}' is not a whole number", word.escape_debug()))?;
+                    let count = word.parse().map_err(|_| format!("{name}: its length '{}' is not a whole number", shown(word)))?;
                     let values = list(name, &mut words, count)?;
                     if is_index_list(name) {
                         row.indices = Some(whole(name, &values)?);
@@ -59,7 +59,7 @@ impl Row {
 /// What the file's type can hold: a float is rounded to single precision.
 fn number(name: &str, word: &str, kind: &ScalarType) -> Result<f64, String> {
     let value = if matches!(kind, ScalarType::Float) { word.parse::<f32>().map(f64::from) } else { word.parse() };
-    value.map_err(|_| format!("{name}: '{}' is not a number", word.escape_debug()))
+    value.map_err(|_| format!("{name}: '{}' is not a number", shown(word)))
 }
 
 fn list<'a>(name: &str, words: &mut SplitWhitespace<'a>, count: usize) -> Result<Vec<&'a str>, String> {
@@ -71,7 +71,7 @@ fn list<'a>(name: &str, words: &mut SplitWhitespace<'a>, count: usize) -> Result
 }
 
 fn whole(name: &str, words: &[&str]) -> Result<Vec<i64>, String> {
-    words.iter().map(|w| w.parse().map_err(|_| format!("{name}: '{}' is not a whole number", w.escape_debug()))).collect()
+    words.iter().map(|w| w.parse().map_err(|_| format!("{name}: '{}' is not a whole number", shown(w)))).collect()
 }
 
 impl PropertyAccess for Row {

@@ -2,7 +2,7 @@
 //! begin with "solid" for text, or name no line.
 
 use super::super::clean::is_coordinate;
-use super::{Fault, Parts, fault};
+use super::{Fault, Parts, fault, shown};
 use std::path::Path;
 
 /// The lines of a facet, and which word of each is the first number.
@@ -96,7 +96,7 @@ fn vertex(words: &[String]) -> Result<Vec<f64>, String> {
     }
     let number = |w: &String| match w.parse::<f64>() {
         Ok(v) if is_coordinate(v) => Ok(v),
-        Ok(v) => Err(format!("vertex: {w} is {}", if v.is_finite() { "too large" } else { "not finite" })),
+        Ok(v) => Err(format!("vertex: {} is {}", shown(w), if v.is_finite() { "too large" } else { "not finite" })),
         Err(_) => Err(format!("vertex: '{}' is not a number", shown(w))),
     };
     words.iter().map(number).collect()
@@ -111,9 +111,4 @@ fn push(corners: &[f64], parts: &mut Parts) {
 
 fn not_empty(parts: Parts) -> Result<Parts, Fault> {
     if parts.triangles.is_empty() { fault("end of file", "there are no triangles") } else { Ok(parts) }
-}
-
-/// The beginning of a line, fit for a message.
-fn shown(line: &str) -> String {
-    line.trim().chars().take(40).flat_map(char::escape_debug).collect()
 }

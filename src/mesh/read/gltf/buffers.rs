@@ -1,5 +1,6 @@
 //! The bytes of a glTF file's buffers: within it or in files beside it, read when first asked for.
 
+use super::super::shown;
 use ::gltf::json::Root;
 use base64::Engine;
 use base64::alphabet::STANDARD;
@@ -39,8 +40,7 @@ impl<'a> Buffers<'a> {
             None => return Err("it has no data: neither a URI nor the binary chunk of a GLB file".into()),
             Some(uri) if uri.starts_with("data:") => embedded(&uri["data:".len()..])?,
             Some(uri) if uri.contains(':') => {
-                let shown: String = uri.chars().take(60).collect();
-                return Err(format!("its URI '{}' is neither data nor a file beside the model", shown.escape_debug()));
+                return Err(format!("its URI '{}' is neither data nor a file beside the model", shown(uri)));
             }
             Some(uri) => self.beside(uri, promised)?,
         };
@@ -62,7 +62,7 @@ impl<'a> Buffers<'a> {
             file.take(promised).read_to_end(&mut bytes)?;
             Ok(bytes)
         };
-        read().map_err(|error| format!("{}: {error}", path.display().to_string().escape_debug()))
+        read().map_err(|error| format!("its file '{}': {error}", shown(uri)))
     }
 }
 

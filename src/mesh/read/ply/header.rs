@@ -1,6 +1,6 @@
 //! The header of a PLY file. `ply-rs-bw` parses; before it every line is checked here, so that an error says in plain words what is wrong.
 
-use super::super::{Fault, fault};
+use super::super::{Fault, fault, shown};
 use super::Row;
 use ply_rs_bw::parser::{Parser, Reader};
 use ply_rs_bw::ply::{ElementDef, Header, PropertyDef, PropertyType, ScalarType};
@@ -116,11 +116,6 @@ impl Checker {
         }
         Ok(())
     }
-}
-
-/// The beginning of a word, fit for a message: a file of another kind may hold anything.
-fn shown(word: &str) -> String {
-    word.chars().take(40).flat_map(char::escape_debug).collect()
 }
 
 /// Refuses a header whose elements do not make a mesh.
