@@ -55,6 +55,7 @@ fn a_mistake_is_named_with_its_place_before_anything_runs() {
     let desk = Desk::new();
     desk.write("not.lod", "this is no scene");
     desk.write("empty.lod", "");
+    desk.write("ball.OBJ", "v 0 0 0\n");
     desk.write("slow.toml", "name = \"slow\"\n");
     let machine = |set: &str| format!("{HEAD}{SCENE}{MACHINE}set = {{ {set} }}\n");
     let scene = |text: &str| format!("{HEAD}{SCENE}{text}\n{MACHINE}");
@@ -101,7 +102,7 @@ fn a_mistake_is_named_with_its_place_before_anything_runs() {
         (file("missing.lod"), "line 5: scene: missing.lod: cannot open"),
         (file("not.lod"), "line 5: scene: not.lod: magic: not a lodray scene file"),
         (file("empty.lod"), "line 5: scene: empty.lod: magic: not a lodray scene file"),
-        (file("ball.OBJ"), "line 5: scene: ball.OBJ is a mesh, not a scene: make one with `lodray build ball.OBJ -o ball.lod`"),
+        (file("ball.OBJ"), "line 5: scene: ball.OBJ: this is a mesh, not a scene: `lodray build ball.OBJ -o ball.lod` makes one of it"),
         // Machines and what they name.
         (format!("{HEAD}{SCENE}[[machine]]\nname = \"nope\"\n"), "line 7: machine nope: no nope comes with the program"),
         (format!("{HEAD}{SCENE}[[machine]]\nname = \"none.toml\"\n"), "line 7: machine none.toml: none.toml: "),

@@ -1,19 +1,27 @@
-//! `build`: a scene from a mesh file.
+//! `build`: a scene from a mesh file or standard input.
 
 use super::args::{levels, whole};
 use super::common::is_quiet;
 use super::info;
 use super::output::{busy, check_target, print_line, progress, warn};
+use anyhow::Context;
 use lodray::bvh::over_trees;
 use lodray::format::{self, Scene, SceneInfo};
-use lodray::mesh::{RemeshOptions, Surface, read, remesh};
+use lodray::mesh::{MeshFormat, RemeshOptions, Surface, TriangleMesh, read, read_as, read_bytes, remesh};
+use std::io::Read;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
+/// What stands for standard input.
+const STDIN: &str = "-";
+
 #[derive(clap::Args)]
 pub struct Args {
-    /// Mesh file: OBJ or PLY
+    /// Mesh file: OBJ, PLY, glTF, GLB or STL; - for standard input
     mesh: PathBuf,
+    /// Format of the mesh, whatever the file's ending; files that it names are looked for beside it, for standard input in the current folder
+    #[arg(long, value_enum, required_if_eq("mesh", STDIN))]
+    format: Option<MeshFormat>,
     /// Number of 1-to-4 splits, 0 to 10
     #[arg(long, default_value_t = 5, value_parser = levels(), allow_negative_numbers = true)]
     levels: u32,
@@ -29,8 +37,14 @@ pub struct Args {
 }
 
 pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
-    check_target(&args.out, &[&args.mesh])?;
-    let mesh = busy("reading", || read(&args.mesh))?;
+    let stdin = args.mesh.as_os_str() == STDIN;
+    let source = if stdin { Path::new("stdin") } else { &args.mesh };
+    check_target(&args.out, (!stdin).then_some(source).as_slice())?;
+    let mesh = busy("reading", || match args.format {
+        Some(format) if stdin => read_stdin(format, source),
+        Some(format) => Ok(read_as(source, format)?),
+        None => Ok(read(source)?),
+    })?;
     let options = RemeshOptions { levels: args.levels, base_triangles: args.base.map(|n| n as usize) };
     let bar = progress(1, "remeshing");
     let (surface, report) = remesh(&mesh, &options, &|what, done, of| {
@@ -40,13 +54,19 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
         bar.set_length(of);
         bar.set_position(done);
     })
-    .map_err(|e| anyhow::anyhow!("{}: {e}", args.mesh.display()))?;
+    .map_err(|e| anyhow::anyhow!("{}: {e}", source.display()))?;
     bar.finish_and_clear();
-    let name = args.mesh.file_stem().map_or_else(String::new, |s| s.to_string_lossy().into_owned());
+    let name = source.file_stem().map_or_else(String::new, |s| s.to_string_lossy().into_owned());
     let origin = serde_json::json!({ "mesh": mesh.report, "remesh": report });
     let scene = build_scene(&surface, &name, origin)?;
     drop(surface);
     finish(&scene, &args.out, args.json)
+}
+
+fn read_stdin(format: MeshFormat, name: &Path) -> anyhow::Result<TriangleMesh> {
+    let mut bytes = Vec::new();
+    std::io::stdin().lock().read_to_end(&mut bytes).context("cannot read standard input")?;
+    Ok(read_bytes(&bytes, format, name, Path::new(""))?)
 }
 
 /// The scene of a surface; `origin` says how it was made.

@@ -44,7 +44,7 @@ enum Command {
     Demo(demo::Args),
     /// Make a procedural scene
     Generate(generate::Args),
-    /// Make a scene from a mesh file (OBJ or PLY)
+    /// Make a scene from a mesh (OBJ, PLY, glTF, GLB or STL)
     Build(build::Args),
     /// Print what a scene file holds
     Info(info::Args),

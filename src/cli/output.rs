@@ -4,6 +4,7 @@ use super::common::is_quiet;
 use anyhow::Context;
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use lodray::format::{Scene, remove_abandoned, temporary_beside};
+use lodray::mesh::MeshFormat;
 use serde::Serialize;
 use std::path::Path;
 use std::time::Duration;
@@ -62,9 +63,15 @@ pub fn warn(text: &str) {
     let _ = writeln!(std::io::stderr(), "{text}");
 }
 
-/// Opens a scene file; the error names it.
+/// Opens a scene file; the error names it, and for a mesh says how to make a scene of it.
 pub fn open(path: &Path) -> anyhow::Result<Scene> {
-    Ok(busy("opening", || Scene::open(path))?)
+    busy("opening", || Scene::open(path)).or_else(|error| {
+        if path.is_file() && MeshFormat::of(path).is_some() {
+            let (mesh, scene) = (path.display(), path.with_extension("lod"));
+            anyhow::bail!("{mesh}: this is a mesh, not a scene: `lodray build {mesh} -o {}` makes one of it", scene.display());
+        }
+        Err(error.into())
+    })
 }
 
 /// Refuses an output file that cannot be written, or that is one of the inputs, before any work is done; what killed runs have left beside it is removed.

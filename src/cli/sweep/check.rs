@@ -169,12 +169,6 @@ fn scene(source: &Source<'_>, list: &List, spanned: &Spanned<SceneEntry>, folder
                 return Err(source.wrong(place, format!("scene: {key} goes with generate, not with file")));
             }
             let path = folder.join(file.get_ref());
-            let ending = path.extension().unwrap_or_default().to_string_lossy().to_lowercase();
-            if ["obj", "ply"].contains(&ending.as_str()) {
-                let (mesh, made) = (path.display(), file.get_ref().with_extension("lod"));
-                let why = format!("scene: {mesh} is a mesh, not a scene: make one with `lodray build {mesh} -o {}`", made.display());
-                return Err(source.wrong(file.span(), why));
-            }
             let scene = open(&path).map_err(|why| source.wrong(file.span(), format!("scene: {}", one_line(&why))))?;
             let name = file.get_ref().file_stem().unwrap_or_default().to_string_lossy().into_owned();
             (Origin::File(path), name, xxh3_64(scene.bytes()), ModelSpace::of(&scene))
