@@ -5,11 +5,9 @@ use super::build::build_scene;
 use super::cache::Cache;
 use super::facts::Facts;
 use super::folder::{Overrule, RunFolder, one_run};
-use super::output::{busy, grouped, print_json, print_line, remark};
+use super::output::{busy, grouped, print_json, print_line, remark, write_file};
 use super::pictures::Shot;
 use super::render::{Against, Built, Comparison, MethodName, compare_shots};
-use anyhow::Context;
-use lodray::format::write_and_rename;
 use lodray::mesh::procedural::{Options, Scene, generate};
 use lodray::render::{Camera, View};
 use lodray::traverse::ModelSpace;
@@ -89,8 +87,7 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
     }
 
     let table = table(&rows, scene.finest_triangles());
-    let path = out.join(TABLE);
-    write_and_rename(&path, |out| writeln!(out, "{table}")).with_context(|| format!("cannot write {}", path.display()))?;
+    write_file(&out.join(TABLE), format!("{table}\n"))?;
     folder.finish()?;
     if args.json {
         print_json(&rows)?

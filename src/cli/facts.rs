@@ -1,6 +1,6 @@
 //! What a picture says of itself: in its file, and on the contact sheet.
 
-use super::output::grouped;
+use super::output::{grouped, plain};
 use super::render::{Against, Comparison, MethodName};
 use lodray::render::{Camera, FrameStats};
 
@@ -25,7 +25,7 @@ impl Facts<'_> {
     /// One line for all.
     pub fn heading(&self) -> String {
         let Camera { width, height, radii, .. } = self.camera;
-        format!("{}: {}, {width}x{height} from {} radii", self.scene, self.how(), short(*radii))
+        format!("{}: {}, {width}x{height} from {} radii", self.scene, self.how(), plain(*radii))
     }
 
     fn how(&self) -> String {
@@ -58,16 +58,16 @@ impl Facts<'_> {
     /// For the contact sheet: view and figures, rounded.
     pub fn lines(&self) -> Lines {
         let Camera { eye, target, up, fov, width, height, radii, .. } = *self.camera;
-        let vector = |v: [f64; 3]| v.map(short).join(" ");
+        let vector = |v: [f64; 3]| v.map(plain).join(" ");
         let mut lines = Lines::new();
         line(&mut lines, "scene", self.scene.to_owned());
         line(&mut lines, "method", self.how());
         line(&mut lines, "size", format!("{width} x {height}"));
-        line(&mut lines, "distance", format!("{} radii", short(radii)));
+        line(&mut lines, "distance", format!("{} radii", plain(radii)));
         line(&mut lines, "eye", vector(eye.to_array()));
         line(&mut lines, "target", vector(target.to_array()));
         line(&mut lines, "up", vector(up.to_array()));
-        line(&mut lines, "view angle", format!("{} degrees", short(fov)));
+        line(&mut lines, "view angle", format!("{} degrees", plain(fov)));
         lines.extend(self.figures());
         lines
     }
@@ -99,30 +99,7 @@ impl Facts<'_> {
     }
 }
 
-/// A number of about four digits.
-fn short(v: f64) -> String {
-    let size = v.abs();
-    let decimals = match size {
-        _ if size != 0.0 && !(1e-3..1e5).contains(&size) => return format!("{v:.2e}"),
-        _ if size < 10.0 => 3,
-        _ if size < 100.0 => 2,
-        _ => 1,
-    };
-    format!("{v:.decimals$}").trim_end_matches('0').trim_end_matches('.').to_owned()
-}
-
 fn capital(text: &str) -> String {
     let mut rest = text.chars();
     rest.next().map_or_else(String::new, |first| first.to_uppercase().chain(rest).collect())
-}
-
-#[cfg(test)]
-mod tests {
-    use super::short;
-
-    #[test]
-    fn numbers_are_short() {
-        let shown = [0.0, 3.15, -12.346, 123.456, 1e-9, 4.2e12, f64::INFINITY].map(short);
-        assert_eq!(shown, ["0", "3.15", "-12.35", "123.5", "1.00e-9", "4.20e12", "inf"]);
-    }
 }

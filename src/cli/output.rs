@@ -3,7 +3,7 @@
 use super::common::is_quiet;
 use anyhow::Context;
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
-use lodray::format::{Scene, remove_abandoned, temporary_beside};
+use lodray::format::{Scene, remove_abandoned, temporary_beside, write_and_rename};
 use lodray::mesh::MeshFormat;
 use serde::Serialize;
 use std::path::Path;
@@ -63,6 +63,11 @@ pub fn warn(text: &str) {
     let _ = writeln!(std::io::stderr(), "{text}");
 }
 
+/// Writes a whole file; the error names it.
+pub fn write_file(path: &Path, bytes: impl AsRef<[u8]>) -> anyhow::Result<()> {
+    write_and_rename(path, |out| out.write_all(bytes.as_ref())).with_context(|| format!("cannot write {}", path.display()))
+}
+
 /// Opens a scene file; the error names it, and for a mesh says how to make a scene of it.
 pub fn open(path: &Path) -> anyhow::Result<Scene> {
     busy("opening", || Scene::open(path)).or_else(|error| {
@@ -117,8 +122,8 @@ pub fn plain(value: f64) -> String {
 mod tests {
     #[test]
     fn numbers_have_four_digits() {
-        let shown = [0.0, 2.0, 0.5, -1.23456, 123.456, 98765.4, 0.000_123_456, 1e-9, 2.5e9].map(super::plain);
-        assert_eq!(shown, ["0", "2", "0.5", "-1.235", "123.5", "98765", "0.0001235", "1.000e-9", "2.500e9"]);
+        let shown = [0.0, 2.0, 0.5, -1.23456, 123.456, 98765.4, 0.000_123_456, 1e-9, 2.5e9, f64::INFINITY].map(super::plain);
+        assert_eq!(shown, ["0", "2", "0.5", "-1.235", "123.5", "98765", "0.0001235", "1.000e-9", "2.500e9", "inf"]);
     }
 
     #[test]

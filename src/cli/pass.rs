@@ -76,7 +76,7 @@ pub fn machine_files(name: &str, machine: &MachineFacts) -> Vec<PathBuf> {
 }
 
 /// Whether a machine's name is that of a file.
-fn is_path(name: &str) -> bool {
+pub fn is_path(name: &str) -> bool {
     let path = Path::new(name);
     path.components().count() > 1 || path.extension().is_some_and(|e| e == "toml")
 }

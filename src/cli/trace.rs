@@ -1,9 +1,8 @@
 //! `trace`: one ray through the traversal unit, cycle by cycle.
 
 use super::args::{CameraArgs, delta, whole};
-use super::output::{check_target, grouped, open, print_line, remark};
+use super::output::{check_target, grouped, open, print_line, remark, write_file};
 use anyhow::Context;
-use lodray::format::write_and_rename;
 use lodray::num::Ray;
 use lodray::sim::unit::environment::RunReport;
 use lodray::sim::unit::steps::Steps;
@@ -149,7 +148,7 @@ impl Files {
         let gtkw = gtkwave_save(&name(&self.vcd), &name(&self.states), waves.widths());
         let contents = [waves.finish()?, gtkw.into_bytes(), gtkwave_states().into_bytes(), surfer_commands().into_bytes()];
         for (path, content) in self.all().into_iter().zip(contents) {
-            write_and_rename(path, |out| out.write_all(&content)).with_context(|| format!("cannot write {}", path.display()))?;
+            write_file(path, &content)?;
         }
         Ok(report)
     }

@@ -1,8 +1,8 @@
 //! The record of a run: what was asked for, of what, and which files it made.
 
 use crate::cli::common::Invocation;
+use crate::cli::output::write_file;
 use anyhow::Context;
-use lodray::format::write_and_rename;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeSet;
 use std::fs::File;
@@ -81,9 +81,7 @@ impl Record {
 
     /// Puts it into `folder`.
     pub fn write(&self, folder: &Path) -> anyhow::Result<()> {
-        let path = folder.join(NAME);
-        let text = serde_json::to_string_pretty(self)? + "\n";
-        write_and_rename(&path, |out| out.write_all(text.as_bytes())).with_context(|| format!("cannot write {}", path.display()))
+        write_file(&folder.join(NAME), serde_json::to_string_pretty(self)? + "\n")
     }
 }
 

@@ -1,8 +1,7 @@
 //! The files of a simulation.
 
 use super::plots;
-use anyhow::Context;
-use lodray::format::write_and_rename;
+use crate::cli::output::write_file;
 use lodray::report::result::{IntervalResult, SimResult};
 use std::path::Path;
 
@@ -37,10 +36,7 @@ impl Files {
 
     /// Writes them into `folder`; says which plots there are not, and why.
     pub fn write(&self, folder: &Path, results: &[SimResult]) -> anyhow::Result<Vec<String>> {
-        let save = |name: &str, text: &str| {
-            let path = folder.join(name);
-            write_and_rename(&path, |out| out.write_all(text.as_bytes())).with_context(|| format!("cannot write {}", path.display()))
-        };
+        let save = |name: &str, text: &str| write_file(&folder.join(name), text);
         let mut notes = Vec::new();
         let mut plot = |name: &str, lacks: Option<&str>, draw: &dyn Fn() -> anyhow::Result<String>| match lacks {
             Some(why) => {

@@ -8,12 +8,11 @@ mod units;
 use super::args::{CameraArgs, Change, LeafArgs, SimMethod, delta};
 use super::cache::{Cache, CacheArgs};
 use super::folder::{Overrule, RunFolder, one_run};
-use super::output::{check_target, explain, grouped, open, print_json, print_line, remark, warn};
+use super::output::{check_target, explain, grouped, open, print_json, print_line, remark, warn, write_file};
 use super::pass::{Pass, Target, machine, machine_files};
 use super::render::Built;
 use anyhow::Context;
 use files::Files;
-use lodray::format::write_and_rename;
 use lodray::report::result::{Compute, SimResult};
 use lodray::sim::replay::Window;
 use lodray::traverse::ModelSpace;
@@ -122,7 +121,7 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
         check_window(*window, result.cycles)?;
     }
     if let (Some(vcd), Some(wave)) = (&args.vcd, waves.pop().flatten()) {
-        write_and_rename(vcd, |out| out.write_all(&wave)).with_context(|| format!("cannot write {}", vcd.display()))?;
+        write_file(vcd, &wave)?;
     }
 
     let mut notes = Vec::new();

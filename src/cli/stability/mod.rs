@@ -5,9 +5,7 @@ mod table;
 
 use super::args::{MAX_RAYS, seed, whole};
 use super::folder::{Overrule, RunFolder, one_run};
-use super::output::{busy, explain, open, print_json, print_line, progress, remark};
-use anyhow::Context;
-use lodray::format::write_and_rename;
+use super::output::{busy, explain, open, print_json, print_line, progress, remark, write_file};
 use lodray::num::MAX_LEVELS;
 use lodray::stability::growth::{Growth, growth, rays as growth_rays};
 use lodray::stability::hunt::{Hunt, hunt};
@@ -146,10 +144,7 @@ fn measure(args: &Args, cases: &[&Case], given: &[Model], rays: u64, steps: u64)
 }
 
 fn write(out: &Path, figures: &Figures) -> anyhow::Result<()> {
-    let put = |name: &str, text: &str| {
-        let path = out.join(name);
-        write_and_rename(&path, |file| file.write_all(text.as_bytes())).with_context(|| format!("cannot write {}", path.display()))
-    };
+    let put = |name: &str, text: &str| write_file(&out.join(name), text);
     put(TABLE, &table::markdown(&figures.report, figures.hunt.as_ref()))?;
     put(JSON, &(serde_json::to_string_pretty(figures)? + "\n"))?;
     if let Some(hunt) = &figures.hunt {

@@ -6,7 +6,7 @@ use super::list::{List, MachineEntry, Maybe, SceneEntry, Source, Spanned};
 use crate::cli::args::{Change, LeafArgs, LeafLayout, SimMethod, Size, delta, radii};
 use crate::cli::generate;
 use crate::cli::output::open;
-use crate::cli::pass::{Target, machine, machine_files};
+use crate::cli::pass::{Target, is_path, machine, machine_files};
 use crate::one_line;
 use lodray::mesh::Placement;
 use lodray::mesh::procedural;
@@ -125,7 +125,7 @@ fn machines(
     let MachineEntry { name, set } = entry.get_ref();
     let name = needed(source, name.as_ref(), "machine: name", entry.span())?;
     // A file is relative to the list.
-    let path = if name.get_ref().ends_with(".toml") { folder.join(name.get_ref()).display().to_string() } else { name.get_ref().clone() };
+    let path = if is_path(name.get_ref()) { folder.join(name.get_ref()).display().to_string() } else { name.get_ref().clone() };
     machine(&path, &[], "set").map_err(|why| source.wrong(name.span(), format!("machine {}: {}", name.get_ref(), one_line(&why))))?;
     // Every combination of the values, the last key's changing fastest.
     let mut variants = vec![Vec::new()];

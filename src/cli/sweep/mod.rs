@@ -11,13 +11,13 @@ use super::args::SimMethod;
 use super::cache::{Cache, CacheArgs};
 use super::folder::{Overrule, RunFolder, one_run};
 use super::generate::make;
-use super::output::{check_target, open, print_line, remark};
+use super::output::{check_target, open, print_line, remark, write_file};
 use super::pass::{Outcome, Pass, Target};
 use super::pictures::Shot;
 use super::render::{Built, MethodName, compare_shots};
 use anyhow::Context;
 use jobs::{Jobs, Origin, SceneJobs, ViewJob};
-use lodray::format::{Scene, write_and_rename};
+use lodray::format::Scene;
 use lodray::render::Camera;
 use lodray::traverse::ModelSpace;
 use rows::ImageFigures;
@@ -30,14 +30,14 @@ use rows::{Rows, csv};
 
 const LINES: &str = "results.jsonl";
 const TABLE: &str = "results.csv";
-const FOLDER: &str = "Folder for the results, one line of JSON for each job, their table, and charts (SVG) of scenes with several views; a sweep \
+const FOLDER: &str = "Folder for the results, one line of JSON for each job, their table, and charts (SVG) that set views, methods and machines side by side; a sweep \
 started again goes on with the results that are there";
 
 #[derive(clap::Args)]
 pub struct Args {
     /// List of jobs (TOML): docs/jobs-example.toml shows every key
     jobs: PathBuf,
-    /// Folder for the results, one line of JSON for each job, their table, and charts (SVG) of scenes with several views
+    /// Folder for the results, one line of JSON for each job, their table, and charts (SVG) that set views, methods and machines side by side
     #[arg(short, long, long_help = one_run(FOLDER))]
     out: PathBuf,
     #[command(flatten)]
@@ -76,12 +76,9 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
         let groups = sweep.groups(scene, &done, &mut keys)?;
         sweep.scene(scene, &groups)?;
     }
-    let table = csv(sweep.rows.of(&keys));
-    let path = folder.staging().join(TABLE);
-    write_and_rename(&path, |out| out.write_all(table.as_bytes())).with_context(|| format!("cannot write {}", path.display()))?;
+    write_file(&folder.staging().join(TABLE), csv(sweep.rows.of(&keys)))?;
     for (name, chart) in charts::charts(sweep.rows.of(&keys))? {
-        let path = folder.staging().join(name);
-        write_and_rename(&path, |out| out.write_all(chart.as_bytes())).with_context(|| format!("cannot write {}", path.display()))?;
+        write_file(&folder.staging().join(name), chart)?;
     }
     folder.finish()?;
     let failed: Vec<_> = sweep.rows.of(&keys).filter(|row| row.error.is_some()).collect();

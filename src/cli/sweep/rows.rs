@@ -1,8 +1,7 @@
 //! What was done: one line of JSON for each job, and a table of them at the end.
 
-use crate::cli::output::warn;
+use crate::cli::output::{warn, write_file};
 use anyhow::Context;
-use lodray::format::write_and_rename;
 use lodray::report::result::SimResult;
 use serde::{Deserialize, Serialize};
 use std::collections::{HashMap, HashSet};
@@ -68,9 +67,8 @@ impl Rows {
             set_aside(path, &bad)?;
         }
         if dropped || !bad.is_empty() {
-            let lines = rows.iter().map(serde_json::to_string).collect::<Result<Vec<_>, _>>()?;
-            write_and_rename(path, |out| lines.iter().try_for_each(|line| writeln!(out, "{line}")))
-                .with_context(|| format!("cannot write {shown}"))?;
+            let lines = rows.iter().map(|row| Ok(serde_json::to_string(row)? + "\n")).collect::<anyhow::Result<String>>()?;
+            write_file(path, lines)?;
         }
         let file = OpenOptions::new().create(true).append(true).open(path).with_context(|| format!("cannot write {shown}"))?;
         Ok(Self { path: path.to_owned(), file, rows })
@@ -106,7 +104,7 @@ fn set_aside(path: &Path, bad: &[(usize, &[u8], serde_json::Error)]) -> anyhow::
         bytes.extend_from_slice(line);
         bytes.push(b'\n');
     }
-    write_and_rename(&aside, |out| out.write_all(&bytes)).with_context(|| format!("cannot write {shown}"))?;
+    write_file(&aside, &bytes)?;
     let (number, _, why) = &bad[0];
     let others = match bad.len() {
         1 => String::new(),
