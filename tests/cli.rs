@@ -22,11 +22,20 @@ impl Desk {
     fn run_on(&self, threads: u32, args: &str) -> (i32, String) {
         let mut command = assert_cmd::cargo::cargo_bin_cmd!("lodray");
         command.current_dir(self.0.path()).args(args.split_whitespace()).env("RAYON_NUM_THREADS", threads.to_string());
+        command.env("LODRAY_CACHE", "none");
         let output = command.output().unwrap();
         let [out, err] = [output.stdout, output.stderr].map(|text| String::from_utf8(text).unwrap());
         assert!(!err.contains("panicked"), "{args}: {err}");
         assert!(!output.status.success() || err.is_empty(), "{args}: not silent: {err}");
         (output.status.code().unwrap(), out + &err)
+    }
+
+    /// Exit code, and everything said.
+    fn run_on_and_hear(&self, args: &str) -> (i32, String) {
+        let mut command = assert_cmd::cargo::cargo_bin_cmd!("lodray");
+        command.current_dir(self.0.path()).args(args.split_whitespace()).env("LODRAY_CACHE", "none");
+        let output = command.output().unwrap();
+        (output.status.code().unwrap(), String::from_utf8([output.stdout, output.stderr].concat()).unwrap())
     }
 
     /// Runs and expects success.
@@ -77,9 +86,21 @@ fn generate_and_info() {
     let bytes: u64 = info["parts"].as_array().unwrap().iter().map(|p| p["bytes"].as_u64().unwrap()).sum();
     let whole = fs::metadata(desk.path("sphere.lod")).unwrap().len();
     assert!(bytes < whole && bytes > whole / 2);
-    for word in ["32 base triangles", "bytes per finest triangle", "L0 records", "generate.seed: 3"] {
-        assert!(desk.run("info sphere.lod").contains(word), "{word}");
+    let (short, all) = (desk.run("info sphere.lod"), desk.run("info sphere.lod --verbose"));
+    for word in ["512 at full resolution: 32 base triangles, each split 2 times into 4", " MB, ", "width x height x depth"] {
+        assert!(short.contains(word) && all.contains(word), "{word} in {short}{all}");
     }
+    for word in ["per finest triangle", "L0 records", "generate.seed: 3"] {
+        assert!(all.contains(word) && !short.contains(word), "{word} in {short}{all}");
+    }
+    assert!(short.lines().count() <= 6 && !short.contains("warning"), "{short}");
+    assert_eq!(info["bytes"], whole);
+    // Nine levels leave base vertices fewer bits than single precision has; that is told even to those who want quiet.
+    let said = desk.run("generate sphere --levels 9 --base 8 -o deep.lod");
+    assert!(said.starts_with("deep.lod:\nscene ") && said.contains("\nwarning     base vertices are rounded to steps of"), "{said}");
+    let (code, said) = desk.run_on_and_hear("generate sphere --levels 9 --base 8 -o deep.lod --quiet");
+    assert!(code == 0 && said.starts_with("warning: deep.lod: base vertices") && said.lines().count() == 1, "{said}");
+    assert_eq!(desk.run("generate sphere --levels 2 --base 8 -o plain.lod --quiet"), "");
 }
 
 #[test]
@@ -93,8 +114,11 @@ fn build_tells_how_far_it_is_from_the_original() {
         assert!(0.0 < mean && mean < max && max < 5.0, "{way}: {mean} {max}");
     }
     assert_eq!(made["distance"], made["origin"]["remesh"]["distance"]);
+    let text = desk.run("info sheet.lod --verbose");
+    assert!(text.contains("distance to the original mesh: mean 0.") && text.contains("of the diagonal; from it back: mean 0."), "{text}");
     let text = desk.run("info sheet.lod");
-    assert!(text.contains("distance to the original: mean 0.") && text.contains("of the diagonal; back: mean 0."), "{text}");
+    assert!(text.contains("\naccuracy    0.") && text.contains("of the model's diagonal from the original mesh on average"), "{text}");
+    assert!(text.contains("\nmodel size  1 x 0.1"), "{text}");
     assert!(desk.run("verify sheet.lod").ends_with("passed\n"));
 }
 
@@ -136,17 +160,15 @@ fn render_with_every_method() {
         assert!(report["error"]["maximum"].is_u64() && report["error"]["differing"].is_f64(), "{report}");
         assert_eq!(report["stats"]["lines"].as_array().unwrap().is_empty(), method == "reference");
         let names: Vec<String> = desk.files(method).into_keys().collect();
-        assert_eq!(names, ["error.png", "image.png", "levels.png", "normals.png"]);
-        for name in names {
-            assert_eq!(image::image_dimensions(desk.path(method).join(name)).unwrap(), (40, 24));
-        }
+        assert_eq!(names, ["error.png", "image.png", "levels.png", "normals.png", "run.json", "sheet.png"]);
+        assert_eq!(image::image_dimensions(desk.path(method).join("image.png")).unwrap(), (40, 24));
     }
     // The reference differs from itself nowhere, and its error map is black.
-    assert!(image::open(desk.path("reference/error.png")).unwrap().to_rgb8().pixels().all(|p| p.0 == [0; 3]));
+    assert!(image::open(desk.path("reference/error.png")).unwrap().crop(0, 0, 40, 24).to_rgb8().pixels().all(|p| p.0 == [0; 3]));
 
     let text = desk.run("render a.lod --eye 0,0,-4 --target 0,0,0 --up 0,1,0 --fov 30 --delta inf --size 8x8 -o far/away");
     assert!(text.contains("64 rays") && text.contains("pictures in far/away"), "{text}");
-    assert_eq!(desk.files("far/away").len(), 3);
+    assert_eq!(desk.files("far/away").len(), 5);
 }
 
 #[test]
@@ -201,6 +223,10 @@ fn demo_writes_pictures_and_a_table() {
     assert_eq!(names.iter().filter(|n| n.ends_with("-levels.png")).count(), 9);
     assert_eq!(names.iter().filter(|n| n.ends_with("-lod-error.png")).count(), 3);
     assert!(names.contains(&"table.txt".to_owned()));
+    // Maps have their legends below.
+    let size = |name: &str| image::image_dimensions(desk.path("new/demo").join(name)).unwrap();
+    assert_eq!(size("far-lod-image.png"), (512, 512));
+    assert!(["far-lod-levels.png", "far-lod-error.png"].iter().all(|name| size(name).0 == 512 && size(name).1 > 512));
 }
 
 #[test]
@@ -232,6 +258,79 @@ fn any_number_of_threads_gives_the_same_bytes() {
         assert!(other.1 == outputs[0].1, "pictures differ");
         assert!(other.2 == outputs[0].2, "files differ");
     }
+}
+
+#[test]
+fn threads_and_quiet_go_with_every_command() {
+    let desk = Desk::new();
+    desk.run("generate sphere --levels 2 --base 32 -o a.lod");
+    fs::write(desk.path("sheet.obj"), sheet(8)).unwrap();
+    desk.run("simulate a.lod --size 8x8 -o sim --quiet");
+    fs::write(
+        desk.path("jobs.toml"),
+        "size = \"8x8\"\ndistances = [2]\nmethods = [\"lod\"]\n[[scene]]\nfile = \"a.lod\"\n[[machine]]\nname = \"packet\"\n",
+    )
+    .unwrap();
+    // Each with what is left of its output, if anything.
+    for (args, says) in [
+        ("generate sphere --levels 1 --base 8 -o b.lod", ""),
+        ("build sheet.obj -o sheet.lod --levels 1 --base 20", ""),
+        ("export a.lod -o a.obj", ""),
+        ("sweep jobs.toml -o sweep", ""),
+        ("trace a.lod --pixel 4,4 --size 8x8 -o a.vcd", ""),
+        ("info a.lod", "scene "),
+        ("verify a.lod", "passed"),
+        ("render a.lod --size 8x8 -o r", "64 rays"),
+        ("simulate a.lod --size 8x8 -o sim", "hit rate"),
+        ("compare sim/result.json sim/result.json", "1.000"),
+        ("lines a.lod --distances 2 --size 8x8", "mean level"),
+        ("crack a.lod --rays 100", "0 misses or double hits"),
+        ("stability --case flat --rays 1000", "0 breaches"),
+    ] {
+        let loud = desk.run(args);
+        let quiet = desk.run(&format!("{args} --quiet --threads 2"));
+        assert!(if says.is_empty() { quiet.is_empty() && !loud.is_empty() } else { quiet.contains(says) }, "{args}: {quiet}");
+        assert!(!quiet.contains(" in r") && !quiet.contains(" in sim"), "{args}: {quiet}");
+        for bad in ["0", "-1", "1025", "many"] {
+            let (code, text) = desk.run_on_and_hear(&format!("--threads {bad} {args}"));
+            assert!(code == 2 && text.contains(&format!("'{bad}' is not a whole number from 1 to 1024")), "{args}: {text}");
+        }
+    }
+}
+
+#[test]
+fn refusals_name_option_value_and_limit() {
+    let desk = Desk::new();
+    desk.run("generate sphere --levels 2 --base 32 -o a.lod");
+    let seeds = "'-1' is not a whole number from 0 to 18446744073709551615";
+    let rays = "'0' is not a whole number from 1 to 1000000000000000";
+    for (args, option, limit) in [
+        ("generate sphere -o b.lod --seed -1", "--seed", seeds),
+        ("crack a.lod --seed -1", "--seed", seeds),
+        ("stability --seed -1", "--seed", seeds),
+        ("crack a.lod --rays 0", "--rays", rays),
+        ("stability --rays 0", "--rays", rays),
+        ("stability --hunt -1", "--hunt", "'-1' is not a whole number from 0 to 1000000000000000"),
+        ("generate sphere -o b.lod --levels 11", "--levels", "'11' is not a whole number from 0 to 10"),
+        ("generate sphere -o b.lod --base 0", "--base", "'0' is not a whole number from 1 to 134217728"),
+        ("generate sphere -o b.lod --roughness 2", "--roughness", "'2' is not between 0 and 1"),
+        ("build a.obj -o b.lod --levels 11", "--levels", "'11' is not a whole number from 0 to 10"),
+        ("build a.obj -o b.lod --base 0", "--base", "'0' is not a whole number from 1 to"),
+        ("export a.lod -o b.obj --level 11", "--level", "'11' is not a whole number from 0 to 10"),
+        ("export a.lod -o b.obj --level 3", "--level 3", "finest level 2"),
+        ("trace a.lod --pixel 9,0 --size 8x8 --text", "--pixel 9,0", "the last of which is 7,7"),
+        ("trace a.lod --pixel -1,0 --text", "--pixel", "'-1,0' is not a pixel such as 320,200: two whole numbers from 0"),
+        ("trace a.lod --pixel 1,1 --text --memory-latency 0", "--memory-latency", "'0' is not a whole number from 1 to 100000"),
+        (
+            "simulate a.lod --machine none",
+            "--machine none",
+            "there are: haydel2023, haydel2023-ddr3, haydel2023-public, packet, turing2018",
+        ),
+    ] {
+        let (code, text) = desk.run_on_and_hear(args);
+        assert!(code != 0 && text.starts_with("error: ") && text.contains(option) && text.contains(limit), "{args}: {text}");
+    }
+    assert_eq!(desk.files(".").len(), 1, "a refusal has written something");
 }
 
 #[test]

@@ -92,7 +92,11 @@ fn steps_as_text() {
 fn what_cannot_be_traced_is_refused() {
     let folder = desk();
     let desk = folder.path();
-    fail(desk, "trace a.lod --pixel 48,3 --size 48x48 -o ray.vcd", "pixel 48,3 is outside of the picture of 48x48 pixels");
+    fail(
+        desk,
+        "trace a.lod --pixel 48,3 --size 48x48 -o ray.vcd",
+        "--pixel 48,3: outside of the picture of 48x48 pixels, the last of which is 47,47",
+    );
     fail(desk, "trace a.lod --pixel 0,0 --size 48x48 --distance 20 -o ray.vcd", "the ray of pixel 0,0 misses the model's box");
     fail(desk, "trace a.lod --pixel 1 --size 48x48 -o ray.vcd", "'1' is not a pixel such as 320,200");
     fail(desk, "trace a.lod --pixel 24,-1 -o ray.vcd", "'24,-1' is not a pixel");

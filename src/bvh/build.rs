@@ -1,4 +1,4 @@
-//! The binary tree: top-down splits by the surface area heuristic, then bottom-up the cheapest collapse.
+//! The binary tree: top-down splits by the surface area heuristic.
 //!
 //! A node splits its range of primitives at a position no other node splits at, so that position is its index: a tree over n primitives
 //! is an array of n - 1 nodes that halves recursively with the primitives, without locks or reallocation.
@@ -6,15 +6,15 @@
 //! Splits minimise area(left) * count(left) + area(right) * count(right), in `f32` over bins of doubled centroids (a heuristic; boxes are
 //! exact integers). Ties go to the lower axis, then the lower position. Equal centroids: the middle of the range.
 
-use super::{Box32, Options};
+use super::Box32;
 use rayon::prelude::*;
 
 /// Bins per axis.
 const BINS: usize = 16;
 /// Largest range whose splits are all tried.
 const SWEEP: usize = 6;
-/// Ranges above this size are split by two threads.
-const PARALLEL_BUILD: usize = 1 << 12;
+/// Subtrees above this size are worked on by two threads.
+pub(super) const PARALLEL: usize = 1 << 12;
 /// Ranges above this size are measured and binned by all threads.
 const PARALLEL_BINS: usize = 1 << 17;
 /// Primitives per thread and turn when measuring and binning.
@@ -94,7 +94,7 @@ impl Extent {
     }
 }
 
-/// A node of the binary tree and how it is best collapsed.
+/// A node of the binary tree.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Node {
     /// Box of everything below.
@@ -105,19 +105,6 @@ pub(super) struct Node {
     pub right: u32,
     /// Most binary nodes on a path down from here, this one included.
     pub height: u8,
-    /// The cheapest use of this subtree.
-    pub plan: Plan,
-}
-
-/// The cheapest way to put a subtree into a stated number of slots.
-#[derive(Clone, Copy, Debug, Default)]
-pub(super) struct Plan {
-    /// In one slot: 0 for a leaf; else it is a node, with this many of its four slots (1 to 3) for the lower half.
-    pub one: u8,
-    /// In three slots: those of the lower half (1 or 2), or 0 for as in two.
-    pub three: u8,
-    /// In two slots: one for each half; else as in one.
-    pub two: bool,
 }
 
 /// What a subtree tells its parent.
@@ -126,23 +113,26 @@ struct Below {
     /// Where it is split; unused for one primitive.
     split: u32,
     height: u8,
-    /// Least cost in 1, 2 and 3 slots, times area.
-    cost: [f64; 3],
 }
 
-/// Builds the tree over `prims` (not empty), which are put into leaf order; returns the nodes (one less) and the root's split position.
+/// The binary tree: nodes, one less than primitives, and the root's split position.
+pub(super) struct Binary {
+    pub nodes: Vec<Node>,
+    pub root: u32,
+}
+
+/// Builds the tree over `prims` (not empty), which are put into leaf order.
 /// Paths hold at most `2 * depth` binary nodes, which must suffice for a balanced tree.
-pub(super) fn binary_tree(prims: &mut [Prim], options: &Options, depth: u32) -> (Vec<Node>, u32) {
+pub(super) fn binary_tree(prims: &mut [Prim], depth: u32) -> Binary {
     let mut nodes = vec![Node::default(); prims.len() - 1];
-    let root = subtree(prims, &mut nodes, 0, 2 * depth, options).split;
-    (nodes, root)
+    let root = subtree(prims, &mut nodes, 0, 2 * depth).split;
+    Binary { nodes, root }
 }
 
 /// `begin`: position of the first of `prims` in the whole; `depth`: binary nodes allowed on a path from here.
-fn subtree(prims: &mut [Prim], nodes: &mut [Node], begin: u32, depth: u32, options: &Options) -> Below {
+fn subtree(prims: &mut [Prim], nodes: &mut [Node], begin: u32, depth: u32) -> Below {
     if let [p] = prims {
-        let bounds = p.bounds();
-        return Below { bounds, split: begin, height: 0, cost: [bounds.half_area() * options.costs.primitive; 3] };
+        return Below { bounds: p.bounds(), split: begin, height: 0 };
     }
     let count = prims.len();
     let mut mid = split(prims);
@@ -156,44 +146,14 @@ fn subtree(prims: &mut [Prim], nodes: &mut [Node], begin: u32, depth: u32, optio
     let (node, upper_nodes) = rest.split_at_mut(1);
     let below = depth.saturating_sub(1);
     let middle = begin + mid as u32; // positions are at most 2^28
-    let mut left = || subtree(lower, lower_nodes, begin, below, options);
-    let mut right = || subtree(upper, upper_nodes, middle, below, options);
-    let (l, r) = if count > PARALLEL_BUILD { rayon::join(left, right) } else { (left(), right()) };
+    let mut left = || subtree(lower, lower_nodes, begin, below);
+    let mut right = || subtree(upper, upper_nodes, middle, below);
+    let (l, r) = if count > PARALLEL { rayon::join(left, right) } else { (left(), right()) };
 
     let bounds = l.bounds.union(&r.bounds);
-    let area = bounds.half_area();
-    let (plan, cost) = plan(&l.cost, &r.cost, area, count, options);
     let height = l.height.max(r.height).saturating_add(1);
-    node[0] = Node { bounds, left: l.split, right: r.split, height, plan };
-    Below { bounds, split: middle, height, cost }
-}
-
-/// The cheapest use of two halves with these costs.
-#[inline]
-fn plan(l: &[f64; 3], r: &[f64; 3], area: f64, count: usize, options: &Options) -> (Plan, [f64; 3]) {
-    let mut four = (1, l[0] + r[2]);
-    for (slots, cost) in [(2, l[1] + r[1]), (3, l[2] + r[0])] {
-        if cost < four.1 {
-            four = (slots, cost);
-        }
-    }
-    let mut one = area * options.costs.node + four.1;
-    // A leaf of 1 to 4: exact in f64. Equal costs: the leaf, which saves a node.
-    let as_leaf = area * options.costs.primitive * count as f64;
-    let leaf = count <= options.max_leaf as usize && as_leaf <= one;
-    if leaf {
-        one = as_leaf;
-    }
-    let two = l[0] + r[0];
-    let split_two = two < one;
-    let two = if split_two { two } else { one };
-    let mut three = (0, two);
-    for (slots, cost) in [(1, l[0] + r[1]), (2, l[1] + r[0])] {
-        if cost < three.1 {
-            three = (slots, cost);
-        }
-    }
-    (Plan { one: if leaf { 0 } else { four.0 }, three: three.0, two: split_two }, [one, two, three.1])
+    node[0] = Node { bounds, left: l.split, right: r.split, height };
+    Below { bounds, split: middle, height }
 }
 
 /// Puts the primitives (at least two) into two parts and returns the size of the first, which is neither 0 nor all.

@@ -3,7 +3,8 @@
 //! Depth: a subtree of binary height h fits h / 2 quad nodes (rounded up) on a path, by opening both halves of every node. Any other
 //! choice of children is taken only if each child still fits what then remains, so the bound holds whatever the costs say.
 
-use super::build::{Node, Prim};
+use super::build::{Binary, Node, Prim};
+use super::plan::{Plan, plans};
 use super::{Box32, Child, Collapse, Options, QuadNode};
 use rayon::prelude::*;
 
@@ -13,8 +14,8 @@ const TASK: u32 = 1 << 16;
 /// The binary tree to read.
 pub(super) struct Source<'a> {
     prims: &'a [Prim],
-    nodes: &'a [Node],
-    root: u32,
+    tree: &'a Binary,
+    plans: Vec<Plan>,
     collapse: Collapse,
     max_leaf: u32,
 }
@@ -46,17 +47,22 @@ impl Parts {
 }
 
 impl<'a> Source<'a> {
-    pub fn new(prims: &'a [Prim], (nodes, root): &'a (Vec<Node>, u32), options: &Options) -> Self {
-        Self { prims, nodes, root: *root, collapse: options.collapse, max_leaf: options.max_leaf }
+    pub fn new(prims: &'a [Prim], tree: &'a Binary, options: &Options) -> Self {
+        Self { prims, tree, plans: plans(prims, tree, options), collapse: options.collapse, max_leaf: options.max_leaf }
     }
 
     fn whole(&self) -> Part {
-        Part { begin: 0, end: self.prims.len() as u32, split: self.root } // at most 2^28
+        Part { begin: 0, end: self.prims.len() as u32, split: self.tree.root } // at most 2^28
     }
 
     /// The node of a subtree of at least two primitives.
     fn node(&self, p: Part) -> &'a Node {
-        &self.nodes[p.split as usize - 1]
+        &self.tree.nodes[p.split as usize - 1]
+    }
+
+    /// How the subtree of a node is best collapsed.
+    fn plan(&self, p: Part) -> Plan {
+        self.plans[p.split as usize - 1]
     }
 
     fn halves(&self, p: Part) -> [Part; 2] {
@@ -68,7 +74,7 @@ impl<'a> Source<'a> {
         let count = p.end - p.begin;
         count == 1
             || match self.collapse {
-                Collapse::Optimal => self.node(p).plan.one == 0,
+                Collapse::Optimal => self.plan(p).one == 0,
                 Collapse::Greedy => count <= self.max_leaf,
             }
     }
@@ -87,7 +93,7 @@ impl<'a> Source<'a> {
         let [l, r] = self.halves(p);
         match self.collapse {
             Collapse::Optimal => {
-                let slots = self.node(p).plan.one;
+                let slots = self.plan(p).one;
                 self.open(l, slots, &mut out);
                 self.open(r, 4 - slots, &mut out);
             }
@@ -128,7 +134,7 @@ impl<'a> Source<'a> {
         if slots == 1 || p.end - p.begin == 1 {
             return out.push(p);
         }
-        let plan = self.node(p).plan;
+        let plan = self.plan(p);
         let [l, r] = self.halves(p);
         match (slots, plan.three) {
             (3, 1) => {

@@ -1,4 +1,4 @@
-//! The baseline: a quad-BVH over the full-resolution triangles of a hierarchy, and its leaf triangles in three layouts.
+//! The triangles of a full-resolution quad-BVH in three layouts.
 //!
 //! | layout | bytes | read per triangle |
 //! |---|---|---|
@@ -8,10 +8,11 @@
 //!
 //! The full-resolution triangle id of each slot is kept beside the layout and charged to none: a design would look it up once per final hit.
 
-use super::{Box32, BvhError, Costs, Node16, Node32, Options, build::Prim, build_nodes, check_count, encode16, encode32};
+use super::BvhError;
+use super::finest::Finest;
 use crate::format::VertexData;
 use crate::mesh::{Hierarchy, lattice};
-use crate::num::{COORD_LIMIT, MAX_LEVELS, Wire};
+use crate::num::Wire;
 use rayon::prelude::*;
 use std::ops::Range;
 
@@ -29,70 +30,6 @@ pub enum LeafLayout {
     Line,
 }
 
-/// How a [`FullBvh`] is built.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct FullOptions {
-    /// The tree.
-    pub tree: Options,
-    /// 32-bit instead of 16-bit boxes.
-    pub wide_boxes: bool,
-    /// The leaves.
-    pub layout: LeafLayout,
-}
-
-impl FullOptions {
-    /// Leaves of at most `max_leaf` triangles, with costs that suit the layout: measured on the terrain, cheap triangles save an indexed layout
-    /// 9 % of the lines near by, because neighbours share their vertices, and cost the others 3 % far away.
-    pub fn new(max_leaf: u32, wide_boxes: bool, layout: LeafLayout) -> Self {
-        let primitive = if layout == LeafLayout::Indexed { 0.25 } else { 0.5 };
-        let costs = Costs { primitive, ..Costs::default() };
-        Self { tree: Options { costs, ..Options::with_leaf(max_leaf) }, wide_boxes, layout }
-    }
-}
-
-/// Nodes in one of the two encodings; node 0 is the root.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub enum FullNodes {
-    /// 64 bytes each.
-    Boxes16(Vec<Node16>),
-    /// 128 bytes each.
-    Boxes32(Vec<Node32>),
-}
-
-impl FullNodes {
-    /// Number of nodes.
-    pub fn len(&self) -> usize {
-        match self {
-            Self::Boxes16(n) => n.len(),
-            Self::Boxes32(n) => n.len(),
-        }
-    }
-
-    /// Never: there is a root.
-    pub fn is_empty(&self) -> bool {
-        self.len() == 0
-    }
-
-    /// Memory in bytes.
-    pub fn bytes(&self) -> u64 {
-        match self {
-            Self::Boxes16(n) => size_of_val(n.as_slice()) as u64,
-            Self::Boxes32(n) => size_of_val(n.as_slice()) as u64,
-        }
-    }
-}
-
-/// Quad-BVH over the full-resolution triangles of a hierarchy; leaf references count slots of `leaves`.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct FullBvh {
-    /// Number of splits N of the hierarchy.
-    pub levels: u32,
-    /// The nodes.
-    pub nodes: FullNodes,
-    /// The triangles.
-    pub leaves: Leaves,
-}
-
 /// Triangles in the order of the tree's leaves, each with a slot.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Leaves {
@@ -108,33 +45,16 @@ enum Storage {
     Line(Vec<[u64; 4]>),
 }
 
-impl FullBvh {
-    /// Builds over `hierarchy`.
+impl Leaves {
+    /// Stores the full-resolution triangles `ids` of a hierarchy, each of them once, in this order.
     ///
     /// # Errors
-    /// No or too many triangles, too many levels, points missing or beyond the coordinate limit, or illegal options.
-    pub fn build(hierarchy: &Hierarchy, options: &FullOptions) -> Result<Self, BvhError> {
-        let mesh = Finest::new(hierarchy)?;
-        let depth = super::MAX_DEPTH;
-        let (nodes, ids) = if options.wide_boxes {
-            let (nodes, ids) = build_nodes(mesh.primitives(), &options.tree, depth, encode32)?;
-            (FullNodes::Boxes32(nodes), ids)
-        } else {
-            let (nodes, ids) = build_nodes(mesh.primitives(), &options.tree, depth, encode16)?;
-            (FullNodes::Boxes16(nodes), ids)
-        };
-        Ok(Self { levels: hierarchy.levels, nodes, leaves: Leaves::gather(&mesh, ids, options.layout) })
-    }
-
-    /// Memory of nodes and leaves in bytes.
-    pub fn bytes(&self) -> u64 {
-        self.nodes.bytes() + self.leaves.bytes()
-    }
-}
-
-impl Leaves {
-    /// Stores the triangles `ids` (all below the mesh's count) in this order.
-    fn gather(mesh: &Finest<'_>, ids: Vec<u32>, layout: LeafLayout) -> Self {
+    /// A hierarchy that does not add up, or of other triangles.
+    pub fn new(hierarchy: &Hierarchy, ids: Vec<u32>, layout: LeafLayout) -> Result<Self, BvhError> {
+        let mesh = &Finest::new(hierarchy)?;
+        if ids.len() != mesh.count() || ids.par_iter().any(|&id| id as usize >= mesh.count()) {
+            return Err(BvhError::OtherHierarchy);
+        }
         let storage = match layout {
             LeafLayout::Indexed => indexed(mesh, &ids),
             LeafLayout::Packed => Storage::Packed(ids.par_iter().map(|&id| flat(mesh.triangle(id))).collect()),
@@ -147,7 +67,7 @@ impl Leaves {
                 Storage::Line(ids.par_iter().map(line).collect())
             }
         };
-        Self { storage, ids }
+        Ok(Self { storage, ids })
     }
 
     /// The layout.
@@ -247,71 +167,6 @@ fn vertex_section(triples: usize) -> u64 {
 
 fn flat([a, b, c]: [[i32; 3]; 3]) -> [i32; 9] {
     [a[0], a[1], a[2], b[0], b[1], b[2], c[0], c[1], c[2]]
-}
-
-/// The full-resolution triangles of a hierarchy.
-struct Finest<'a> {
-    points: &'a [[i32; 3]],
-    trees: usize,
-    levels: u32,
-    /// Points per tree.
-    stride: usize,
-    /// Lattice indices of the corners of every triangle of one tree: the same for all.
-    corners: Vec<[u32; 3]>,
-}
-
-impl<'a> Finest<'a> {
-    fn new(hierarchy: &'a Hierarchy) -> Result<Self, BvhError> {
-        let levels = hierarchy.levels;
-        if levels > MAX_LEVELS {
-            return Err(BvhError::Levels(levels));
-        }
-        let trees = hierarchy.triangles.len();
-        let stride = lattice::len(levels);
-        check_count((trees as u64).saturating_mul(1 << (2 * levels)))?;
-        if hierarchy.points.len() != trees * stride {
-            return Err(BvhError::Points { points: hierarchy.points.len(), expected: (trees * stride) as u64 });
-        }
-        let too_far = |p: &[i32; 3]| p.iter().any(|c| c.unsigned_abs() > COORD_LIMIT.unsigned_abs());
-        if let Some(bad) = hierarchy.points.par_iter().position_first(too_far) {
-            return Err(BvhError::IllegalBox(bad / stride));
-        }
-        let mut corners = Vec::with_capacity(1 << (2 * levels));
-        list_corners(levels, levels, lattice::root(levels), &mut corners);
-        Ok(Self { points: &hierarchy.points, trees, levels, stride, corners })
-    }
-
-    /// Number of triangles, at most 2^28.
-    fn count(&self) -> usize {
-        self.trees << (2 * self.levels)
-    }
-
-    /// Indices of the corners of a triangle among all points, which number fewer than 2^30.
-    #[inline]
-    fn corners(&self, id: u32) -> [u32; 3] {
-        let per_tree = 2 * self.levels;
-        let first = (id >> per_tree) * self.stride as u32;
-        self.corners[(id & ((1 << per_tree) - 1)) as usize].map(|c| first + c)
-    }
-
-    #[inline]
-    fn triangle(&self, id: u32) -> [[i32; 3]; 3] {
-        self.corners(id).map(|c| self.points[c as usize])
-    }
-
-    fn primitives(&self) -> Vec<Prim> {
-        (0..self.count() as u32).into_par_iter().map(|id| Prim::new(&Box32::of_triangle(self.triangle(id)), id)).collect()
-    }
-}
-
-/// Appends the corners of the finest triangles below a triangle that `splits` splits remain to.
-fn list_corners(levels: u32, splits: u32, p: [lattice::LatticePoint; 3], out: &mut Vec<[u32; 3]>) {
-    if splits == 0 {
-        return out.push(p.map(|c| lattice::index(levels, c) as u32)); // below 2^20
-    }
-    for k in 0..4 {
-        list_corners(levels, splits - 1, lattice::child(p, k), out);
-    }
 }
 
 /// Shares the vertices: those inside a tree by their place in its lattice, those on the borders of trees by position.

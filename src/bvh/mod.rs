@@ -8,11 +8,17 @@ mod build;
 mod check;
 mod collapse;
 mod encode;
+mod file;
+mod finest;
+mod full;
 mod leaves;
+mod plan;
 
 pub use check::{Defect, check, sah_cost};
 pub use encode::{BvhChild32, Node16, Node32, encode16, encode32};
-pub use leaves::{FullBvh, FullNodes, FullOptions, LINE_BYTES, LeafLayout, Leaves};
+pub use file::TreeKey;
+pub use full::{FullBuilder, FullBvh, FullNodes, FullOptions, FullTree};
+pub use leaves::{LINE_BYTES, LeafLayout, Leaves};
 
 use crate::format::Box16;
 use crate::num::COORD_LIMIT;
@@ -139,6 +145,9 @@ pub enum BvhError {
         /// Number of points there should be.
         expected: u64,
     },
+    /// A tree over other triangles than those of the hierarchy.
+    #[error("the tree was built over another hierarchy")]
+    OtherHierarchy,
     /// A hierarchy with more splits than the format allows.
     #[error("{0} levels: a hierarchy has at most 10")]
     Levels(u32),
@@ -224,13 +233,8 @@ fn check_count(count: u64) -> Result<(), BvhError> {
     }
 }
 
-/// Builds over legal primitives (1 to [`MAX_PRIMITIVES`]) and turns each node into what `encode` makes of it, so that no second copy of the
-/// nodes is held. `depth` is the bound on the nodes of a path; at least half the logarithm of the count.
-fn build_nodes<T, F>(mut prims: Vec<build::Prim>, options: &Options, depth: u32, encode: F) -> Result<(Vec<T>, Vec<u32>), BvhError>
-where
-    T: Copy + Default + Send,
-    F: Fn(&QuadNode) -> T + Sync,
-{
+/// Refuses options that no tree can be built with.
+fn check_options(options: &Options) -> Result<(), BvhError> {
     if !(1..=4).contains(&options.max_leaf) {
         return Err(BvhError::LeafSize(options.max_leaf));
     }
@@ -238,7 +242,18 @@ where
     if !(node > 0.0 && node.is_finite() && primitive > 0.0 && primitive.is_finite()) {
         return Err(BvhError::Costs);
     }
-    let binary = build::binary_tree(&mut prims, options, depth);
+    Ok(())
+}
+
+/// Builds over legal primitives (1 to [`MAX_PRIMITIVES`]) and turns each node into what `encode` makes of it, so that no second copy of the
+/// nodes is held. `depth` is the bound on the nodes of a path; at least half the logarithm of the count.
+fn build_nodes<T, F>(mut prims: Vec<build::Prim>, options: &Options, depth: u32, encode: F) -> Result<(Vec<T>, Vec<u32>), BvhError>
+where
+    T: Copy + Default + Send,
+    F: Fn(&QuadNode) -> T + Sync,
+{
+    check_options(options)?;
+    let binary = build::binary_tree(&mut prims, depth);
     let nodes = collapse::nodes(&collapse::Source::new(&prims, &binary, options), depth, encode);
     drop(binary);
     Ok((nodes, prims.par_iter().map(|p| p.id).collect()))

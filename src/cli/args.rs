@@ -2,17 +2,14 @@
 
 use clap::Args;
 use clap::ValueEnum;
-use clap::builder::RangedI64ValueParser;
 use lodray::bvh;
 use lodray::num::MAX_LEVELS;
-use lodray::render::{Camera, DEFAULT_DISTANCE, DEFAULT_VIEW_ANGLE_DEGREES, View};
+use lodray::render::{Camera, DEFAULT_VIEW_ANGLE_DEGREES, MAX_PIXELS, MAX_SIDE, View};
 use lodray::traverse::ModelSpace;
 use serde::{Deserialize, Serialize};
 use std::fmt::{self, Display};
+use std::ops::RangeInclusive;
 use std::str::FromStr;
-
-/// Most pixels of a picture: traced pixels and their shading then stay below 8 GB.
-const MAX_PIXELS: u64 = 1 << 26;
 
 /// A picture size, WIDTHxHEIGHT.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -21,24 +18,50 @@ pub struct Size(pub u32, pub u32);
 impl FromStr for Size {
     type Err = String;
     fn from_str(s: &str) -> Result<Self, String> {
-        let wrong = || format!("'{s}' is not a size such as 1024x768");
-        let (w, h) = s.split_once(['x', 'X']).ok_or_else(wrong)?;
-        let side = |v: &str| v.parse::<u32>().ok().filter(|v| (1..=65536).contains(v)).ok_or_else(wrong);
-        let (w, h) = (side(w)?, side(h)?);
-        if u64::from(w) * u64::from(h) > MAX_PIXELS {
-            return Err(format!("'{s}' is more than {MAX_PIXELS} pixels"));
+        let sides = s.split_once(['x', 'X']).and_then(|(w, h)| Some([w.parse::<u64>().ok()?, h.parse().ok()?]));
+        let [w, h] = sides.ok_or_else(|| format!("'{s}' is not a size such as 1024x768"))?;
+        let side = |v: u64| u32::try_from(v).ok().filter(|v| (1..=MAX_SIDE).contains(v));
+        match (side(w), side(h)) {
+            (Some(w), Some(h)) if u64::from(w) * u64::from(h) <= MAX_PIXELS => Ok(Self(w, h)),
+            _ => Err(format!("width and height must be 1 to {MAX_SIDE}, and their product at most {MAX_PIXELS}")),
         }
-        Ok(Self(w, h))
     }
 }
+
+/// Largest coordinate: beyond, squared lengths overflow.
+const MAX_COORDINATE: f64 = 1e100;
 
 /// Three numbers, X,Y,Z.
 fn three(s: &str) -> Result<Triple, String> {
     let parts: Vec<f64> = s.split(',').map_while(|v| v.trim().parse().ok()).collect();
     match <[f64; 3]>::try_from(parts) {
-        // Beyond 1e100 squared lengths overflow; NaN fails the comparison too.
-        Ok(v) if s.split(',').count() == 3 && v.iter().all(|c| c.abs() <= 1e100) => Ok(Triple(v)),
-        _ => Err(format!("'{s}' is not three finite numbers such as 0,1.5,-2")),
+        Ok(v) if s.split(',').count() == 3 && !v.iter().any(|c| c.is_nan()) => {
+            if v.iter().all(|c| c.abs() <= MAX_COORDINATE) {
+                Ok(Triple(v))
+            } else {
+                Err(format!("each coordinate must be from -{MAX_COORDINATE:e} to {MAX_COORDINATE:e}"))
+            }
+        }
+        _ => Err(format!("'{s}' is not three numbers such as 0,1.5,-2")),
+    }
+}
+
+/// An up direction: the name of an axis, or three numbers.
+fn up(s: &str) -> Result<Triple, String> {
+    let (sign, axis) = match s.strip_prefix('-') {
+        Some(axis) => (-1.0, axis),
+        None => (1.0, s.strip_prefix('+').unwrap_or(s)),
+    };
+    if let Some(axis) = ["x", "y", "z"].iter().position(|name| axis.eq_ignore_ascii_case(name)) {
+        return Ok(Triple(std::array::from_fn(|k| if k == axis { sign } else { 0.0 })));
+    }
+    let Triple(v) =
+        three(s).map_err(|said| if s.contains(',') { said } else { format!("'{s}' is not x, y, z, -x, -y, -z or three numbers") })?;
+    // Below, squared lengths vanish.
+    if v.iter().any(|c| c.abs() >= 1.0 / MAX_COORDINATE) {
+        Ok(Triple(v))
+    } else {
+        Err(format!("a direction has a length: one coordinate must be {:e} or more, or -{0:e} or less", 1.0 / MAX_COORDINATE))
     }
 }
 
@@ -46,26 +69,71 @@ fn three(s: &str) -> Result<Triple, String> {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Triple(pub [f64; 3]);
 
+/// Views by name, as angles around the model.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+enum NamedView {
+    /// --yaw 0 --pitch 0
+    Front,
+    /// --yaw 180
+    Back,
+    /// The same as right
+    Side,
+    /// --yaw 90
+    Right,
+    /// --yaw -90
+    Left,
+    /// --pitch 90, the front at the lower border
+    Top,
+    /// --pitch -90, the front at the upper border
+    Bottom,
+    /// --yaw 35 --pitch 25
+    ThreeQuarter,
+}
+
+impl NamedView {
+    /// Yaw and pitch in degrees.
+    const fn angles(self) -> (f64, f64) {
+        match self {
+            Self::Front => (0.0, 0.0),
+            Self::Back => (180.0, 0.0),
+            Self::Side | Self::Right => (90.0, 0.0),
+            Self::Left => (-90.0, 0.0),
+            Self::Top => (0.0, 90.0),
+            Self::Bottom => (0.0, -90.0),
+            Self::ThreeQuarter => (35.0, 25.0),
+        }
+    }
+}
+
 /// Where the camera is.
 #[derive(Args, Clone, Debug)]
 pub struct CameraArgs {
     /// Picture size in pixels
     #[arg(long, value_name = "WxH", default_value = "1024x1024", allow_hyphen_values = true)]
     pub size: Size,
-    /// Distance from the target in bounding radii (default 2 unless --eye is given)
+    /// Distance from the target in bounding radii (default, unless --eye is given: the picture just holds the whole model)
     #[arg(long, value_name = "RADII", value_parser = radii, allow_hyphen_values = true)]
     pub distance: Option<f64>,
     /// Eye position (with --distance: only the direction from the target)
-    #[arg(long, value_name = "X,Y,Z", value_parser = three, allow_hyphen_values = true)]
+    #[arg(long, value_name = "X,Y,Z", value_parser = three, allow_hyphen_values = true, conflicts_with_all = ["view", "yaw", "pitch"])]
     eye: Option<Triple>,
     /// Point to look at (default: centre of the model's box)
     #[arg(long, value_name = "X,Y,Z", value_parser = three, allow_hyphen_values = true)]
     target: Option<Triple>,
-    /// Up direction (default 0,1,0)
-    #[arg(long, value_name = "X,Y,Z", value_parser = three, allow_hyphen_values = true)]
+    /// Up direction: an axis (x, y, z, -x, -y, -z) or three numbers (default: y)
+    #[arg(long, value_name = "AXIS|X,Y,Z", value_parser = up, allow_hyphen_values = true)]
     up: Option<Triple>,
+    /// View by name, relative to the up axis (default: from the direction 0.35,0.5,1, turned with --up)
+    #[arg(long, value_enum, conflicts_with_all = ["yaw", "pitch"])]
+    view: Option<NamedView>,
+    /// Degrees around the up axis, -360 to 360: 0 is the front (the side of +z; with --up z that of -y), 90 the side of +x (default: 0 if --pitch is given)
+    #[arg(long, value_name = "DEGREES", value_parser = yaw, allow_hyphen_values = true)]
+    yaw: Option<f64>,
+    /// Degrees above the model, -90 to 90: 90 looks straight down, the front at the lower border (default: 0 if --yaw is given)
+    #[arg(long, value_name = "DEGREES", value_parser = pitch, allow_hyphen_values = true)]
+    pitch: Option<f64>,
     /// Vertical view angle in degrees (default: focal length 35 on a sensor of height 24)
-    #[arg(long, value_name = "DEGREES", default_value_t = DEFAULT_VIEW_ANGLE_DEGREES, hide_default_value = true, value_parser = angle, allow_hyphen_values = true)]
+    #[arg(long, value_name = "DEGREES", default_value_t = DEFAULT_VIEW_ANGLE_DEGREES, hide_default_value = true, value_parser = fov, allow_hyphen_values = true)]
     fov: f64,
 }
 
@@ -73,19 +141,15 @@ impl CameraArgs {
     /// The camera on a model, `distance` overriding the argument.
     pub fn camera(&self, space: &ModelSpace, distance: Option<f64>) -> anyhow::Result<Camera> {
         let plain = |v: Option<Triple>| v.map(|v| v.0);
-        let view = View {
-            eye: plain(self.eye),
-            target: plain(self.target),
-            up: plain(self.up),
-            distance: distance.or(self.distance),
-            fov: self.fov,
+        let (eye, target, up) = (plain(self.eye), plain(self.target), plain(self.up));
+        let view = View { eye, direction: None, target, up, distance: distance.or(self.distance), fov: self.fov };
+        let angles = match (self.view, self.yaw, self.pitch) {
+            (None, None, None) => None,
+            (None, yaw, pitch) => Some((yaw.unwrap_or(0.0), pitch.unwrap_or(0.0))),
+            (Some(named), ..) => Some(named.angles()),
         };
+        let view = angles.map_or(view, |(yaw, pitch)| view.around(yaw, pitch));
         Ok(Camera::new(&view, space, self.size.0, self.size.1)?)
-    }
-
-    /// The distance at which [`CameraArgs::camera`] places the eye; none if it is at a position of its own.
-    pub fn radii(&self) -> Option<f64> {
-        self.distance.or_else(|| self.eye.is_none().then_some(DEFAULT_DISTANCE))
     }
 }
 
@@ -139,18 +203,24 @@ impl Display for Change {
 
 /// A distance in bounding radii, within what a picture can show anything of.
 pub fn radii(s: &str) -> Result<f64, String> {
-    match s.parse::<f64>() {
-        Ok(v) if (1e-6..=1e6).contains(&v) => Ok(v),
-        _ => Err(format!("'{s}' is not a distance between 1e-6 and 1e6 bounding radii")),
-    }
+    number(s, |v| (1e-6..=1e6).contains(&v), "a distance from 1e-6 to 1e6 bounding radii")
 }
 
-/// A view angle.
-fn angle(s: &str) -> Result<f64, String> {
-    match s.parse::<f64>() {
-        Ok(v) if v > 0.0 && v < 180.0 => Ok(v),
-        _ => Err(format!("'{s}' is not between 0 and 180 degrees")),
-    }
+fn fov(s: &str) -> Result<f64, String> {
+    number(s, |v| v > 0.0 && v < 180.0, "between 0 and 180 degrees")
+}
+
+fn yaw(s: &str) -> Result<f64, String> {
+    number(s, |v| v.abs() <= 360.0, "from -360 to 360 degrees")
+}
+
+fn pitch(s: &str) -> Result<f64, String> {
+    number(s, |v| v.abs() <= 90.0, "from -90 to 90 degrees")
+}
+
+/// A number for which `fits` holds, which `what` says in words.
+fn number(s: &str, fits: impl Fn(f64) -> bool, what: &str) -> Result<f64, String> {
+    s.parse().ok().filter(|&v| fits(v)).ok_or_else(|| format!("'{s}' is not {what}"))
 }
 
 /// LOD quality: a non-negative number or `inf`.
@@ -161,9 +231,25 @@ pub fn delta(s: &str) -> Result<f64, String> {
     }
 }
 
+/// A whole number within limits, which the refusal names.
+pub fn whole<T: TryFrom<u64>>(limits: RangeInclusive<u64>) -> impl Fn(&str) -> Result<T, String> + Clone {
+    move |s| {
+        let value = s.parse().ok().filter(|value| limits.contains(value)).and_then(|value| T::try_from(value).ok());
+        value.ok_or_else(|| format!("'{s}' is not a whole number from {} to {}", limits.start(), limits.end()))
+    }
+}
+
+/// Most rays or steps of a command: years of work, and sums of them stay far within 64 bits.
+pub const MAX_RAYS: u64 = 1_000_000_000_000_000;
+
+/// Seeds: every 64-bit number is one.
+pub fn seed() -> impl Fn(&str) -> Result<u64, String> + Clone {
+    whole(0..=u64::MAX)
+}
+
 /// Numbers of splits.
-pub fn levels() -> RangedI64ValueParser<u32> {
-    clap::value_parser!(u32).range(0..=i64::from(MAX_LEVELS))
+pub fn levels() -> impl Fn(&str) -> Result<u32, String> + Clone {
+    whole(0..=u64::from(MAX_LEVELS))
 }
 
 /// Leaf layouts by name.
@@ -222,6 +308,16 @@ mod tests {
     use super::*;
 
     #[test]
+    fn up_directions() {
+        for (text, axis) in [("y", [0.0, 1.0, 0.0]), ("-x", [-1.0, 0.0, 0.0]), ("+Z", [0.0, 0.0, 1.0]), ("1,2,-3", [1.0, 2.0, -3.0])] {
+            assert_eq!(up(text), Ok(Triple(axis)));
+        }
+        for bad in ["0,0,0", "1e-200,0,0", "w", "--z", "", "-", "1,2", "1,nan,2", "inf,0,0"] {
+            assert!(up(bad).is_err(), "{bad}");
+        }
+    }
+
+    #[test]
     fn sizes_and_triples() {
         assert_eq!("640x480".parse(), Ok(Size(640, 480)));
         for bad in ["640", "0x3", "ax3", "70000x2", "65536x65536", "-1x4", ""] {
@@ -236,7 +332,15 @@ mod tests {
                 && three("1,1e300,3").is_err()
         );
         assert!(radii("0.5").is_ok() && radii("0").is_err() && radii("-1").is_err() && radii("nan").is_err() && radii("1e300").is_err());
-        assert!(angle("40").is_ok() && angle("0").is_err() && angle("180").is_err() && angle("nan").is_err());
+        assert!(fov("40").is_ok() && fov("0").is_err() && fov("180").is_err() && fov("nan").is_err());
+        assert!(yaw("-360").is_ok() && yaw("361").is_err() && pitch("90").is_ok() && pitch("-91").is_err() && pitch("inf").is_err());
+        for good in ["1", "10"] {
+            assert!(whole::<u32>(1..=10)(good).is_ok(), "{good}");
+        }
+        for bad in ["0", "11", "-1", "1.5", "", "two", "99999999999999999999"] {
+            assert_eq!(whole::<u32>(1..=10)(bad), Err(format!("'{bad}' is not a whole number from 1 to 10")));
+        }
+        assert!(seed()("18446744073709551615").is_ok() && seed()("-1").is_err());
         assert!(delta("inf").is_ok() && delta("-1").is_err() && delta("nan").is_err());
     }
 }

@@ -1,24 +1,44 @@
-//! `build`: a scene from a mesh file.
+//! `build`: a scene from a mesh file or standard input.
 
-use super::args::levels;
+use super::args::{levels, whole};
+use super::common::is_quiet;
 use super::info;
-use super::output::{busy, check_target, print_line, progress};
+use super::output::{busy, check_target, print_line, progress, warn};
+use anyhow::Context;
 use lodray::bvh::over_trees;
 use lodray::format::{self, Scene, SceneInfo};
-use lodray::mesh::{RemeshOptions, Surface, read, remesh};
+use lodray::mesh::{
+    DEFAULT_CREASE_ANGLE, DEFAULT_MAX_ERROR, MeshFormat, RemeshOptions, Surface, TriangleMesh, read, read_as, read_bytes, remesh,
+};
+use std::io::Read;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
+/// What stands for standard input.
+const STDIN: &str = "-";
+
 #[derive(clap::Args)]
 pub struct Args {
-    /// Mesh file: OBJ or PLY
+    /// Mesh file: OBJ, PLY, glTF, GLB or STL; - for standard input
     mesh: PathBuf,
+    /// Format of the mesh, whatever the file's ending; files that it names are looked for beside it, for standard input in the current folder
+    #[arg(long, value_enum, required_if_eq("mesh", STDIN))]
+    format: Option<MeshFormat>,
     /// Number of 1-to-4 splits, 0 to 10
     #[arg(long, default_value_t = 5, value_parser = levels(), allow_negative_numbers = true)]
     levels: u32,
-    /// Wanted number of base triangles (default: 1/64 of the mesh, at least 512)
-    #[arg(long, value_name = "TRIANGLES", value_parser = clap::value_parser!(u32).range(1..), allow_negative_numbers = true)]
+    /// Largest distance between mesh and result, both ways, in percent of the diagonal of the mesh's box: decides how fine the base mesh is
+    #[arg(long, value_name = "PERCENT", default_value_t = DEFAULT_MAX_ERROR, value_parser = percent, allow_negative_numbers = true)]
+    max_error: f64,
+    /// A base mesh of so many triangles, whatever is lost
+    #[arg(long, value_name = "TRIANGLES", value_parser = whole::<u32>(1..=u64::from(u32::MAX)), allow_negative_numbers = true)]
     base: Option<u32>,
+    /// Edges that bend by more than this stay sharp lines, and are shaded so where the mesh has no normals of its own
+    #[arg(long, value_name = "DEGREES", default_value_t = DEFAULT_CREASE_ANGLE, value_parser = crease, allow_negative_numbers = true)]
+    crease_angle: f64,
+    /// Make it an error, and write nothing, if the result is further from the mesh than --max-error or has triangles that face away from it
+    #[arg(long)]
+    strict: bool,
     /// Scene file to write
     #[arg(short, long)]
     out: PathBuf,
@@ -28,9 +48,20 @@ pub struct Args {
 }
 
 pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
-    check_target(&args.out, Some(&args.mesh))?;
-    let mesh = busy("reading", || read(&args.mesh))?;
-    let options = RemeshOptions { levels: args.levels, base_triangles: args.base.map(|n| n as usize), ..RemeshOptions::default() };
+    let stdin = args.mesh.as_os_str() == STDIN;
+    let source = if stdin { Path::new("stdin") } else { &args.mesh };
+    check_target(&args.out, (!stdin).then_some(source).as_slice())?;
+    let mesh = busy("reading", || match args.format {
+        Some(format) if stdin => read_stdin(format, source),
+        Some(format) => Ok(read_as(source, format)?),
+        None => Ok(read(source)?),
+    })?;
+    let options = RemeshOptions {
+        levels: args.levels,
+        base_triangles: args.base.map(|n| n as usize),
+        max_error: args.max_error,
+        crease_angle: args.crease_angle,
+    };
     let bar = progress(1, "remeshing");
     let (surface, report) = remesh(&mesh, &options, &|what, done, of| {
         if bar.message() != what {
@@ -39,13 +70,38 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
         bar.set_length(of);
         bar.set_position(done);
     })
-    .map_err(|e| anyhow::anyhow!("{}: {e}", args.mesh.display()))?;
+    .map_err(|e| anyhow::anyhow!("{}: {e}", source.display()))?;
     bar.finish_and_clear();
-    let name = args.mesh.file_stem().map_or_else(String::new, |s| s.to_string_lossy().into_owned());
+    if let Some(lost) = report.warning.as_ref().filter(|_| args.strict) {
+        anyhow::bail!("{}: {lost}", source.display());
+    }
+    let name = source.file_stem().map_or_else(String::new, |s| s.to_string_lossy().into_owned());
     let origin = serde_json::json!({ "mesh": mesh.report, "remesh": report });
     let scene = build_scene(&surface, &name, origin)?;
     drop(surface);
     finish(&scene, &args.out, args.json)
+}
+
+/// A largest error.
+fn percent(s: &str) -> Result<f64, String> {
+    match s.trim_end_matches('%').parse::<f64>() {
+        Ok(v) if v > 0.0 && v <= 100.0 => Ok(v),
+        _ => Err(format!("'{s}' is not above 0 and at most 100 percent")),
+    }
+}
+
+/// A crease angle.
+fn crease(s: &str) -> Result<f64, String> {
+    match s.parse::<f64>() {
+        Ok(v) if (0.0..=180.0).contains(&v) => Ok(v),
+        _ => Err(format!("'{s}' is not from 0 to 180 degrees")),
+    }
+}
+
+fn read_stdin(format: MeshFormat, name: &Path) -> anyhow::Result<TriangleMesh> {
+    let mut bytes = Vec::new();
+    std::io::stdin().lock().read_to_end(&mut bytes).context("cannot read standard input")?;
+    Ok(read_bytes(&bytes, format, name, Path::new(""))?)
 }
 
 /// The scene of a surface; `origin` says how it was made.
@@ -56,9 +112,13 @@ pub fn build_scene(surface: &Surface, name: &str, origin: serde_json::Value) -> 
 /// Saves a new scene and says what it holds.
 pub fn finish(scene: &Scene, out: &Path, json: bool) -> anyhow::Result<ExitCode> {
     busy("writing", || scene.save(out))?;
-    if !json {
-        print_line(&format!("{}:", out.display()))?;
+    if !json && !is_quiet() {
+        return print_line(&format!("{}:\n{}", out.display(), info::short(scene))).map(|()| ExitCode::SUCCESS);
     }
-    info::print(scene, json)?;
+    // The short form says what was lost; otherwise it is said beside the results.
+    info::warnings(scene).iter().for_each(|lost| warn(&format!("warning: {}: {lost}", out.display())));
+    if json {
+        info::json(scene)?;
+    }
     Ok(ExitCode::SUCCESS)
 }

@@ -74,8 +74,9 @@ fn results(text: &str) -> anyhow::Result<Vec<Option<SimResult>>> {
     Ok(match text.trim_start().chars().next() {
         Some('[') => serde_json::from_str::<Vec<SimResult>>(text)?.into_iter().map(Some).collect(),
         _ if text.trim_start().starts_with("{\"key\"") => {
-            let lines = text.lines().filter(|line| !line.trim().is_empty());
-            lines.map(|line| serde_json::from_str(line).map(row)).collect::<Result<_, _>>()?
+            let lines = (1..).zip(text.lines()).filter(|(_, line)| !line.trim().is_empty());
+            let read = |(number, line): (usize, &str)| serde_json::from_str(line).map(row).with_context(|| format!("line {number}"));
+            lines.map(read).collect::<anyhow::Result<_>>()?
         }
         _ => vec![Some(serde_json::from_str(text)?)],
     })

@@ -1,6 +1,7 @@
 //! `crack`: watertightness, measured.
 
-use super::output::{busy, grouped, open, print_json, print_line, progress};
+use super::args::{MAX_RAYS, seed, whole};
+use super::output::{busy, explain, grouped, open, print_json, print_line, progress};
 use lodray::report::crack::{Closedness, Row, closedness, measure};
 use lodray::traverse::{LodImage, ModelSpace};
 use std::path::PathBuf;
@@ -11,10 +12,10 @@ pub struct Args {
     /// Scene file of a closed model
     scene: PathBuf,
     /// Number of rays
-    #[arg(long, default_value_t = 10_000_000, value_parser = clap::value_parser!(u64).range(1..), allow_negative_numbers = true)]
+    #[arg(long, default_value_t = 10_000_000, value_parser = whole::<u64>(1..=MAX_RAYS), allow_negative_numbers = true)]
     rays: u64,
     /// Seed
-    #[arg(long, default_value_t = 1, allow_negative_numbers = true)]
+    #[arg(long, default_value_t = 1, value_parser = seed(), allow_negative_numbers = true)]
     seed: u64,
     /// Print the figures as JSON
     #[arg(long)]
@@ -60,6 +61,7 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
             text += "\nnote: all triangles met were of one level (a flat model?), so edge states did not differ";
         }
         print_line(&text)?;
+        explain("crack")?;
     }
     Ok(if report.breaches() == 0 { ExitCode::SUCCESS } else { ExitCode::FAILURE })
 }

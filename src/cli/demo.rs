@@ -2,11 +2,12 @@
 
 use super::args::{LeafArgs, LeafLayout};
 use super::build::build_scene;
-use super::output::{busy, folder, grouped, print_json, print_line};
+use super::cache::Cache;
+use super::facts::Facts;
+use super::folder::{Overrule, RunFolder, one_run};
+use super::output::{busy, grouped, print_json, print_line, remark, write_file};
 use super::pictures::Shot;
-use super::render::{Built, Comparison, MethodName, compare_shots};
-use anyhow::Context;
-use lodray::format::write_and_rename;
+use super::render::{Against, Built, Comparison, MethodName, compare_shots};
 use lodray::mesh::procedural::{Options, Scene, generate};
 use lodray::render::{Camera, View};
 use lodray::traverse::ModelSpace;
@@ -19,12 +20,16 @@ const LEVELS: u32 = 5;
 const DISTANCES: [(&str, f64); 3] = [("near", 0.6), ("middle", 2.0), ("far", 8.0)];
 const SIDE: u32 = 512;
 const TABLE: &str = "table.txt";
+/// Pictures of each view.
+const PICTURES: [&str; 8] = ["lod-image", "lod-levels", "lod-error", "bvh-image", "bvh-levels", "bvh-error", "full-image", "full-levels"];
 
 #[derive(clap::Args)]
 pub struct Args {
     /// Folder for pictures and table
-    #[arg(short, long, default_value = "out/demo")]
+    #[arg(short, long, default_value = "out/demo", long_help = one_run("Folder for pictures and table"))]
     out: PathBuf,
+    #[command(flatten)]
+    overrule: Overrule,
     /// Print the table as JSON
     #[arg(long)]
     json: bool,
@@ -44,37 +49,51 @@ struct Row {
 }
 
 pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
-    folder(&args.out, [TABLE], None)?;
+    let pictures = DISTANCES.iter().flat_map(|(view, _)| PICTURES.map(|picture| format!("{view}-{picture}.png")));
+    let names: Vec<_> = pictures.chain([TABLE.to_owned()]).collect();
+    let folder = RunFolder::open(&args.out, names.iter().map(String::as_str), &[], &args.overrule)?;
+    let out = folder.staging();
     let options = Options { levels: Some(LEVELS), ..Options::new(Scene::Terrain) };
     let surface = busy("generating", || generate(&options))?;
     let scene = build_scene(&surface, "terrain", serde_json::json!({ "generate": options }))?;
     let space = ModelSpace::of(&scene);
     let leaves = LeafArgs { leaf_layout: LeafLayout::Line, leaf_size: 4 };
-    let bvh = Built::new(MethodName::Bvh, &scene, leaves)?;
-    let truth = Built::new(MethodName::Reference, &scene, leaves)?;
+    let bvh = Built::new(MethodName::Bvh, &scene, leaves, &Cache::NONE)?;
+    let truth = Built::new(MethodName::Reference, &scene, leaves, &Cache::NONE)?;
 
     let mut rows = Vec::new();
     for (view, distance) in DISTANCES {
         let camera = Camera::new(&View { distance: Some(distance), ..View::default() }, &space, SIDE, SIDE)?;
         let shoot = |built: &Built, what: &str| built.shoot(&scene, &space, &camera, 1.0, what);
         let (lod, bvh, full) = (shoot(&Built::Lod, "LOD"), shoot(&bvh, "BVH"), shoot(&truth, "full resolution"));
-        lod.save(&scene, &args.out, &format!("{view}-lod-"), false)?;
-        lod.save_error(&full, &args.out, &format!("{view}-lod-"))?;
-        bvh.save(&scene, &args.out, &format!("{view}-bvh-"), false)?;
-        bvh.save_error(&full, &args.out, &format!("{view}-bvh-"))?;
-        full.save(&scene, &args.out, &format!("{view}-full-"), false)?;
-        for (method, shot) in [("lod", &lod), ("bvh", &bvh)] {
-            rows.push(row(view, distance, method, shot, compare_shots(shot, &full, &scene, &camera)));
+        for (method, shot) in [(MethodName::Lod, &lod), (MethodName::Bvh, &bvh), (MethodName::Reference, &full)] {
+            let error = (method != MethodName::Reference).then(|| compare_shots(shot, &full, &scene, &camera));
+            let facts = Facts {
+                scene: &scene.meta().name,
+                method,
+                delta: 1.0,
+                camera: &camera,
+                stats: &shot.frame.stats,
+                error: error.as_ref().map(|error| (Against::FullResolution, error)),
+            };
+            let prefix = format!("{view}-{}-", if method == MethodName::Reference { "full" } else { method.name() });
+            shot.save(out, &prefix, &facts)?;
+            shot.levels(&scene).save(out, &prefix, &facts)?;
+            if let Some(error) = &error {
+                shot.error(&full.image).save(out, &prefix, &facts)?;
+                rows.push(row(view, distance, method.name(), shot, error.clone()));
+            }
         }
     }
 
     let table = table(&rows, scene.finest_triangles());
-    let path = args.out.join(TABLE);
-    write_and_rename(&path, |out| writeln!(out, "{table}")).with_context(|| format!("cannot write {}", path.display()))?;
+    write_file(&out.join(TABLE), format!("{table}\n"))?;
+    folder.finish()?;
     if args.json {
         print_json(&rows)?
     } else {
-        print_line(&format!("{table}\npictures in {}", args.out.display()))?
+        print_line(&table)?;
+        remark(&format!("pictures in {}", args.out.display()))?;
     }
     Ok(ExitCode::SUCCESS)
 }

@@ -1,6 +1,7 @@
 //! `export`: one level as a mesh.
 
-use super::output::{busy, check_target, grouped, open, print_json, print_line};
+use super::args::levels;
+use super::output::{busy, check_target, grouped, open, print_json, remark};
 use anyhow::Context;
 use lodray::format::{export_level, write_and_rename};
 use std::path::PathBuf;
@@ -11,7 +12,7 @@ pub struct Args {
     /// Scene file
     scene: PathBuf,
     /// Level, 0 (base mesh) to N (default: N)
-    #[arg(long, allow_negative_numbers = true)]
+    #[arg(long, value_parser = levels(), allow_negative_numbers = true)]
     level: Option<u32>,
     /// OBJ file to write
     #[arg(short, long)]
@@ -22,7 +23,7 @@ pub struct Args {
 }
 
 pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
-    check_target(&args.out, Some(&args.scene))?;
+    check_target(&args.out, &[&args.scene])?;
     let scene = open(&args.scene)?;
     let level = args.level.unwrap_or(scene.levels());
     anyhow::ensure!(level <= scene.levels(), "--level {level} is beyond {}'s finest level {}", args.scene.display(), scene.levels());
@@ -37,7 +38,7 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
             print_json(&serde_json::json!({ "level": level, "vertices": counts.vertices, "faces": counts.faces }))?;
             return Ok(ExitCode::SUCCESS);
         }
-        print_line(&format!("{}: {} vertices, {} triangles", args.out.display(), grouped(counts.vertices), grouped(counts.faces)))?;
+        remark(&format!("{}: {} vertices, {} triangles", args.out.display(), grouped(counts.vertices), grouped(counts.faces)))?;
     }
     Ok(ExitCode::SUCCESS)
 }

@@ -1,6 +1,6 @@
 //! `generate`: a procedural scene.
 
-use super::args::levels;
+use super::args::{levels, seed, whole};
 use super::build::{build_scene, finish};
 use super::output::{busy, check_target};
 use lodray::format;
@@ -17,10 +17,10 @@ pub struct Args {
     #[arg(long, value_parser = levels(), allow_negative_numbers = true)]
     levels: Option<u32>,
     /// Wanted number of base triangles; the next possible number is taken
-    #[arg(long, value_name = "TRIANGLES", value_parser = base, allow_negative_numbers = true)]
+    #[arg(long, value_name = "TRIANGLES", value_parser = whole::<u32>(1..=MAX_TREES), allow_negative_numbers = true)]
     base: Option<u32>,
     /// Seed
-    #[arg(long, default_value_t = 0, allow_negative_numbers = true)]
+    #[arg(long, default_value_t = 0, value_parser = seed(), allow_negative_numbers = true)]
     seed: u64,
     /// Terrain, sphere and wall: amplitude of each octave relative to the one before; others: amount of fine detail. Between 0 and 1
     #[arg(long, value_parser = share, allow_hyphen_values = true)]
@@ -34,25 +34,24 @@ pub struct Args {
 }
 
 pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
-    check_target(&args.out, None)?;
+    check_target(&args.out, &[])?;
     let options = Options { scene: args.scene, levels: args.levels, base: args.base, seed: args.seed, roughness: args.roughness };
     finish(&make(&options)?, &args.out, args.json)
 }
 
 /// Generates a scene.
 pub fn make(options: &Options) -> anyhow::Result<format::Scene> {
-    check_memory(options)?;
+    check(options)?;
     let surface = busy("generating", || generate(options))?;
     let origin = serde_json::json!({ "generate": options });
     let name = format!("{:?}", options.scene).to_lowercase();
     build_scene(&surface, &name, origin)
 }
 
-fn base(s: &str) -> Result<u32, String> {
-    match s.parse::<u32>() {
-        Ok(v) if (1..=MAX_TREES).contains(&v.into()) => Ok(v),
-        _ => Err(format!("'{s}' is not a number of triangles from 1 to {MAX_TREES}")),
-    }
+/// Refuses what cannot be generated, before any work is done.
+pub fn check(options: &Options) -> anyhow::Result<()> {
+    options.check()?;
+    check_memory(options)
 }
 
 fn share(s: &str) -> Result<f64, String> {

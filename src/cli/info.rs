@@ -1,6 +1,6 @@
 //! `info`: what a scene file holds.
 
-use super::output::{grouped, open, print_json, print_line};
+use super::output::{grouped, open, plain, print_json, print_line};
 use lodray::format::Scene;
 use lodray::mesh::TwoSidedDistance;
 use lodray::num::PADDING_BITS;
@@ -13,6 +13,9 @@ use std::process::ExitCode;
 pub struct Args {
     /// Scene file
     scene: PathBuf,
+    /// Print all: where the bytes are, how finely base vertices are rounded, and how the scene was made
+    #[arg(long)]
+    verbose: bool,
     /// Print the figures as JSON
     #[arg(long)]
     json: bool,
@@ -28,6 +31,11 @@ struct Part {
 #[derive(Serialize)]
 struct Info<'a> {
     name: &'a str,
+    /// Of the whole file.
+    bytes: u64,
+    bytes_per_finest_triangle: f64,
+    /// Width, height and depth of the model's box, in the units of its coordinates.
+    size: [f64; 3],
     levels: u32,
     base_triangles: u64,
     base_vertices: u64,
@@ -48,53 +56,121 @@ struct Info<'a> {
 }
 
 pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
-    print(&open(&args.scene)?, args.json)?;
+    let scene = open(&args.scene)?;
+    match (args.json, args.verbose) {
+        (true, _) => print_json(&Info::of(&scene))?,
+        (false, true) => print_line(&verbose(&Info::of(&scene)))?,
+        (false, false) => print_line(&short(&scene))?,
+    }
     Ok(ExitCode::SUCCESS)
 }
 
-/// Prints what `scene` holds.
-pub fn print(scene: &Scene, json: bool) -> anyhow::Result<()> {
-    let space = ModelSpace::of(scene);
-    let triangles = scene.finest_triangles();
-    let per = |bytes: u64| bytes as f64 / triangles as f64;
-    let part = |name, bytes: usize| Part { name, bytes: bytes as u64, per_finest_triangle: per(bytes as u64) };
-    let parts = vec![
-        part("quad-BVH nodes", size_of_val(scene.nodes())),
-        part("L0 records", size_of_val(scene.records())),
-        part("bound data", size_of_val(scene.bounds())),
-        part("vertex data", size_of_val(scene.vertices())),
-        part("normals", size_of_val(scene.normals())),
-        part("base indices", size_of_val(scene.triangles())),
-    ];
-    let hierarchy: u64 = parts[1..4].iter().map(|p| p.bytes).sum();
-    let meta = scene.meta();
-    let info = Info {
-        name: &meta.name,
-        levels: scene.levels(),
-        base_triangles: scene.trees() as u64,
-        base_vertices: u64::from(meta.base_vertices),
-        finest_triangles: triangles,
-        centre: space.centre(),
-        radius: space.radius(),
-        unit: space.placement.scale,
-        base_grid: space.placement.scale * f64::from(1u32 << scene.levels().max(PADDING_BITS)),
-        base_bits_lost: scene.levels().saturating_sub(PADDING_BITS),
-        hierarchy_bytes_per_triangle: per(hierarchy),
-        parts,
-        distance: serde_json::from_value(meta.origin["remesh"]["distance"].clone()).ok(),
-        origin: &meta.origin,
-    };
-    if json { print_json(&info) } else { print_line(&text(&info)) }
+/// Prints what `scene` holds, as JSON.
+pub fn json(scene: &Scene) -> anyhow::Result<()> {
+    print_json(&Info::of(scene))
 }
 
-fn text(i: &Info<'_>) -> String {
-    let mut text = format!(
-        "{}: {} base triangles ({} vertices), {} levels below them, {} triangles at full resolution\ncentre {:?}, bounding radius {}, one unit {:e}\n",
-        i.name,
-        grouped(i.base_triangles),
+/// What a newcomer wants to know of `scene`.
+pub fn short(scene: &Scene) -> String {
+    summary(&Info::of(scene))
+}
+
+/// What was lost when `scene` was made, if anything.
+pub fn warnings(scene: &Scene) -> Vec<String> {
+    losses(&Info::of(scene))
+}
+
+impl<'a> Info<'a> {
+    fn of(scene: &'a Scene) -> Self {
+        let space = ModelSpace::of(scene);
+        let triangles = scene.finest_triangles();
+        let per = |bytes: u64| bytes as f64 / triangles as f64;
+        let part = |name, bytes: usize| Part { name, bytes: bytes as u64, per_finest_triangle: per(bytes as u64) };
+        let parts = vec![
+            part("quad-BVH nodes", size_of_val(scene.nodes())),
+            part("L0 records", size_of_val(scene.records())),
+            part("bound data", size_of_val(scene.bounds())),
+            part("vertex data", size_of_val(scene.vertices())),
+            part("normals", size_of_val(scene.normals())),
+            part("base indices", size_of_val(scene.triangles())),
+        ];
+        let hierarchy: u64 = parts[1..4].iter().map(|p| p.bytes).sum();
+        let meta = scene.meta();
+        let bytes = scene.bytes().len() as u64;
+        Info {
+            name: &meta.name,
+            bytes,
+            bytes_per_finest_triangle: per(bytes),
+            size: std::array::from_fn(|k| space.placement.scale * (f64::from(space.hi[k]) - f64::from(space.lo[k]))),
+            levels: scene.levels(),
+            base_triangles: scene.trees() as u64,
+            base_vertices: u64::from(meta.base_vertices),
+            finest_triangles: triangles,
+            centre: space.centre(),
+            radius: space.radius(),
+            unit: space.placement.scale,
+            base_grid: space.placement.scale * f64::from(1u32 << scene.levels().max(PADDING_BITS)),
+            base_bits_lost: scene.levels().saturating_sub(PADDING_BITS),
+            hierarchy_bytes_per_triangle: per(hierarchy),
+            parts,
+            distance: serde_json::from_value(meta.origin["remesh"]["distance"].clone()).ok(),
+            origin: &meta.origin,
+        }
+    }
+}
+
+/// The few figures that tell what a scene is, each in words.
+fn summary(i: &Info<'_>) -> String {
+    let splits = match i.levels {
+        0 => "not split".to_owned(),
+        1 => "each split once into 4".to_owned(),
+        levels => format!("each split {levels} times into 4"),
+    };
+    let [width, height, depth] = i.size.map(plain);
+    let mut lines = vec![
+        ("scene", i.name.to_owned()),
+        (
+            "triangles",
+            format!("{} at full resolution: {} base triangles, {splits}", grouped(i.finest_triangles), grouped(i.base_triangles)),
+        ),
+        (
+            "file size",
+            format!(
+                "{} MB, {} bytes for each triangle at full resolution",
+                plain(i.bytes as f64 * 1e-6),
+                plain(i.bytes_per_finest_triangle)
+            ),
+        ),
+        ("model size", format!("{width} x {height} x {depth} (width x height x depth, in the units of its coordinates)")),
+    ];
+    if let Some(d) = &i.distance {
+        let mean = percent(d.to_original.mean.max(d.from_original.mean));
+        let max = at_most(d.to_original.max.max(d.from_original.max));
+        lines.push(("accuracy", format!("{mean} of the model's diagonal from the original mesh on average, {max} at most")));
+    }
+    lines.extend(losses(i).into_iter().map(|loss| ("warning", loss)));
+    lines.iter().map(|(name, value)| format!("{name:<12}{value}")).collect::<Vec<_>>().join("\n")
+}
+
+/// What was lost when the scene was made.
+fn losses(i: &Info<'_>) -> Vec<String> {
+    let remesh = i.origin["remesh"]["warning"].as_str().map(str::to_owned);
+    // Single precision, in which meshes come, has 24 bits.
+    let grid = (i.base_bits_lost > 4).then(|| {
+        format!(
+            "base vertices are rounded to steps of {}, coarser than single precision, as there are more than 8 levels",
+            plain(i.base_grid)
+        )
+    });
+    remesh.into_iter().chain(grid).collect()
+}
+
+/// All that is known.
+fn verbose(i: &Info<'_>) -> String {
+    let mut text = summary(i);
+    text += &format!(
+        "\n\n{} base vertices; centre {:?}, bounding radius {} (half the diagonal of the model's box), one step of its integer coordinates is {:e}\n",
         grouped(i.base_vertices),
-        i.levels,
-        grouped(i.finest_triangles),
         i.centre,
         i.radius,
         i.unit
@@ -109,11 +185,14 @@ fn text(i: &Info<'_>) -> String {
     for p in &i.parts {
         text += &format!("{:<16}{:>16}{:>22.3}\n", p.name, grouped(p.bytes), p.per_finest_triangle);
     }
-    text += &format!("bound and vertex data with L0 records: {:.3} bytes per finest triangle\n", i.hierarchy_bytes_per_triangle);
+    text += &format!(
+        "bound and vertex data with L0 records (those of base triangles): {:.3} bytes per finest triangle\n",
+        i.hierarchy_bytes_per_triangle
+    );
     if let Some(d) = &i.distance {
-        let there = format!("mean {}, maximum {}", percent(d.to_original.mean), percent(d.to_original.max));
-        let back = format!("mean {}, maximum {}", percent(d.from_original.mean), percent(d.from_original.max));
-        text += &format!("distance to the original: {there} of the diagonal; back: {back}\n");
+        let there = format!("mean {}, maximum {}", percent(d.to_original.mean), at_most(d.to_original.max));
+        let back = format!("mean {}, maximum {}", percent(d.from_original.mean), at_most(d.from_original.max));
+        text += &format!("distance to the original mesh: {there} of the diagonal; from it back: {back}\n");
     }
     text += &origin(i.origin, "");
     text.trim_end().to_owned()
@@ -126,6 +205,16 @@ fn percent(value: f64) -> String {
     }
     let decimals = if value > 0.0 { (2.0 - value.log10().floor()).clamp(0.0, 8.0) as usize } else { 0 };
     format!("{value:.decimals$} %")
+}
+
+/// A bound, rounded up.
+fn at_most(value: f64) -> String {
+    if value <= 0.0 {
+        return percent(value);
+    }
+    // The last of three digits.
+    let last = 10f64.powf(value.log10().floor() - 2.0);
+    percent((value / last).ceil() * last)
 }
 
 /// How the scene was made, one line for each leaf of the report.
@@ -145,6 +234,7 @@ mod tests {
     #[test]
     fn percentages_have_three_digits() {
         let shown = [0.0, 1e-17, 0.000_712, 0.25, 12.345, 1234.5].map(super::percent);
+        assert_eq!([0.2951, 0.295, 0.0, 12.34].map(super::at_most), ["0.296 %", "0.295 %", "0 %", "12.4 %"]);
         assert_eq!(shown, ["0 %", "below 0.000001 %", "0.000712 %", "0.250 %", "12.3 %", "1234 %"]);
     }
 }

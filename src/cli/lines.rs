@@ -1,13 +1,17 @@
 //! `lines`: the distinct 32-byte lines that a frame touches, by distance, LOD against every full-resolution BVH layout.
 
 use super::args::{CameraArgs, delta, radii};
-use super::output::{grouped, open, print_json, print_line, progress};
-use lodray::bvh::{FullBvh, FullOptions, LeafLayout};
-use lodray::render::{Method, render};
+use super::cache::{Cache, CacheArgs};
+use super::output::{explain, grouped, open, print_json, print_line, progress};
+use lodray::bvh::{BvhError, FullBuilder, FullBvh, FullNodes, FullOptions, LeafLayout, Leaves, Options};
+use lodray::format::Scene;
+use lodray::mesh::Hierarchy;
+use lodray::render::{Method, distinct_lines, render};
 use lodray::traverse::{LodImage, ModelSpace};
 use serde::Serialize;
 use std::path::PathBuf;
 use std::process::ExitCode;
+use std::sync::Arc;
 
 #[derive(clap::Args)]
 pub struct Args {
@@ -31,6 +35,8 @@ pub struct Args {
     bvh32: bool,
     #[command(flatten)]
     camera: CameraArgs,
+    #[command(flatten)]
+    cache: CacheArgs,
     /// Print the figures as JSON
     #[arg(long)]
     json: bool,
@@ -56,18 +62,17 @@ struct Report {
 }
 
 pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
+    let cache = Cache::new(&args.cache)?;
     let scene = open(&args.scene)?;
     let space = ModelSpace::of(&scene);
     let cameras = args.distances.iter().map(|&d| args.camera.camera(&space, Some(d))).collect::<Result<Vec<_>, _>>()?;
     let formats = if args.bvh32 { &[false, true][..] } else { &[false][..] };
-    let bar = progress((2 + formats.len() as u64 * 9) * cameras.len() as u64, "tracing");
+    let rows = cameras.iter().map(|camera| u64::from(camera.height)).sum::<u64>();
+    let bar = progress((2 + formats.len() as u64 * 9) * rows, "tracing");
 
     let count = |method: &Method<'_>, delta: f64| -> Vec<_> {
-        let frames = cameras.iter().map(|camera| {
-            bar.inc(1);
-            render(method, &space, camera, delta, &|| ()).stats
-        });
-        frames.collect()
+        bar.set_message("tracing");
+        cameras.iter().map(|camera| render(method, &space, camera, delta, &|| bar.inc(1)).stats).collect()
     };
     let distinct = |stats: &[lodray::render::FrameStats]| stats.iter().map(|s| s.distinct_lines()).collect::<Vec<u64>>();
 
@@ -77,18 +82,30 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
         Row { structure: "LOD".to_owned(), distinct_lines: distinct(&lod) },
         Row { structure: "LOD structure at full detail".to_owned(), distinct_lines: distinct(&count(&Method::Lod(image), f64::INFINITY)) },
     ];
-    let hierarchy = scene.decode();
+    let mut trees = Trees::new(&scene, &cache);
     let mut best = vec![u64::MAX; cameras.len()];
     for &wide_boxes in formats {
         for size in [1, 2, 4] {
-            for layout in [LeafLayout::Indexed, LeafLayout::Packed, LeafLayout::Line] {
-                let bvh = FullBvh::build(&hierarchy, &FullOptions::new(size, wide_boxes, layout))?;
-                let lines = distinct(&count(&Method::Bvh(&bvh), args.delta));
-                if !wide_boxes {
-                    best.iter_mut().zip(&lines).for_each(|(b, &n)| *b = n.min(*b));
+            let options = |layout| FullOptions::new(size, wide_boxes, layout);
+            // Layouts of one tree are counted together.
+            let layouts = [LeafLayout::Indexed, LeafLayout::Packed, LeafLayout::Line];
+            for group in layouts.chunk_by(|&a, &b| options(a).tree == options(b).tree) {
+                bar.set_message("building the BVH");
+                let bvh = trees.bvh(&options(group[0]))?;
+                let others = group[1..].iter().map(|&layout| trees.leaves(layout)).collect::<Result<Vec<_>, _>>()?;
+                let others: Vec<_> = others.iter().map(AsRef::as_ref).collect();
+                bar.set_message("tracing");
+                let steps = group.len() as u64;
+                let frame = |camera| distinct_lines(&bvh, &others, &space, camera, &|rows| bar.inc(steps * rows));
+                let frames: Vec<_> = cameras.iter().map(frame).collect();
+                for (k, layout) in group.iter().enumerate() {
+                    let lines: Vec<u64> = frames.iter().map(|frame| frame[k]).collect();
+                    if !wide_boxes {
+                        best.iter_mut().zip(&lines).for_each(|(b, &n)| *b = n.min(*b));
+                    }
+                    let bits = if wide_boxes { 32 } else { 16 };
+                    rows.push(Row { structure: format!("BVH {bits}-bit, {layout:?}, {size} a leaf"), distinct_lines: lines });
                 }
-                let bits = if wide_boxes { 32 } else { 16 };
-                rows.push(Row { structure: format!("BVH {bits}-bit, {layout:?}, {size} a leaf"), distinct_lines: lines });
             }
         }
     }
@@ -111,9 +128,64 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
     if args.json {
         print_json(&report)?
     } else {
-        print_line(&table(&report))?
+        print_line(&table(&report))?;
+        explain("lines")?;
     }
     Ok(ExitCode::SUCCESS)
+}
+
+/// BVHs over a scene that share what they can: the binary tree that all collapse, the nodes of layouts of equal cost, and the triangles.
+struct Trees<'a> {
+    scene: &'a Scene,
+    cache: &'a Cache,
+    hierarchy: Hierarchy,
+    /// Made when the cache lacks a tree.
+    builder: Option<FullBuilder>,
+    /// The last tree's options and nodes.
+    nodes: Option<((Options, bool), Arc<FullNodes>)>,
+    /// Triangles in leaf order, which is that of the binary tree: the same for all.
+    ids: Vec<u32>,
+    /// Those of each layout so far.
+    leaves: Vec<Arc<Leaves>>,
+}
+
+impl<'a> Trees<'a> {
+    fn new(scene: &'a Scene, cache: &'a Cache) -> Self {
+        Self { scene, cache, hierarchy: scene.decode(), builder: None, nodes: None, ids: Vec::new(), leaves: Vec::new() }
+    }
+
+    fn bvh(&mut self, options: &FullOptions) -> Result<FullBvh, BvhError> {
+        Ok(FullBvh { levels: self.hierarchy.levels, nodes: self.nodes(options)?, leaves: self.leaves(options.layout)? })
+    }
+
+    fn nodes(&mut self, options: &FullOptions) -> Result<Arc<FullNodes>, BvhError> {
+        let shape = (options.tree, options.wide_boxes);
+        if let Some((_, nodes)) = self.nodes.as_ref().filter(|(of, _)| *of == shape) {
+            return Ok(Arc::clone(nodes));
+        }
+        self.nodes = None;
+        let found = self.cache.tree(self.scene, &options.tree, options.wide_boxes, || {
+            let builder = match self.builder.take() {
+                Some(builder) => builder,
+                None => FullBuilder::new(&self.hierarchy)?,
+            };
+            self.builder.insert(builder).tree(&options.tree, options.wide_boxes)
+        })?;
+        let (nodes, ids) = found.tree.into_parts();
+        self.ids = ids;
+        let nodes = Arc::new(nodes);
+        self.nodes = Some((shape, Arc::clone(&nodes)));
+        Ok(nodes)
+    }
+
+    fn leaves(&mut self, layout: LeafLayout) -> Result<Arc<Leaves>, BvhError> {
+        if let Some(made) = self.leaves.iter().find(|leaves| leaves.layout() == layout) {
+            return Ok(Arc::clone(made));
+        }
+        let made = Arc::new(Leaves::new(&self.hierarchy, self.ids.clone(), layout)?);
+        self.leaves.push(Arc::clone(&made));
+        Ok(made)
+    }
 }
 
 fn table(r: &Report) -> String {

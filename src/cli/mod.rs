@@ -2,13 +2,18 @@
 
 mod args;
 mod build;
+mod cache;
+mod common;
 mod compare;
 mod crack;
 mod demo;
 mod export;
+mod facts;
+mod folder;
 mod generate;
 mod info;
 mod lines;
+mod original;
 mod output;
 mod pass;
 mod pictures;
@@ -18,6 +23,7 @@ mod stability;
 mod sweep;
 mod trace;
 mod verify;
+mod words;
 
 use clap::{Parser, Subcommand};
 use std::process::ExitCode;
@@ -28,6 +34,8 @@ use std::process::ExitCode;
 pub struct Cli {
     #[command(subcommand)]
     command: Command,
+    #[command(flatten)]
+    common: common::Common,
 }
 
 #[derive(Subcommand)]
@@ -36,27 +44,33 @@ enum Command {
     Demo(demo::Args),
     /// Make a procedural scene
     Generate(generate::Args),
-    /// Make a scene from a mesh file (OBJ or PLY)
+    /// Make a scene from a mesh (OBJ, PLY, glTF, GLB or STL)
     Build(build::Args),
     /// Print what a scene file holds
     Info(info::Args),
     /// Audit a scene file: recompute every promise from the vertices
     Verify(verify::Args),
     /// Render a scene
+    #[command(after_long_help = words::RENDER)]
     Render(render::Args),
     /// Simulate a frame on a machine: time, caches, memory and energy
+    #[command(after_long_help = words::SIMULATE)]
     Simulate(simulate::Args),
     /// Simulate many frames on many machines, from a list of jobs; what was interrupted goes on where it was
     Sweep(sweep::Args),
     /// Put two results of simulations side by side
+    #[command(after_long_help = words::SIMULATE)]
     Compare(compare::Args),
     /// Follow one ray through the traversal unit: as a waveform, or as text
     Trace(trace::Args),
     /// Count the memory lines that a frame touches, LOD against every BVH layout, by distance
+    #[command(after_long_help = words::LINES)]
     Lines(lines::Args),
     /// Shoot rays at edges and vertices of a closed scene and count misses and double hits
+    #[command(after_long_help = words::CRACK)]
     Crack(crack::Args),
     /// Put stiff and extreme cases to the proof: misses, double hits, errors against exact arithmetic, overflows
+    #[command(after_long_help = words::STABILITY)]
     Stability(stability::Args),
     /// Write one level of a scene as an OBJ mesh
     Export(export::Args),
@@ -67,6 +81,7 @@ enum Command {
 /// # Errors
 /// Whatever went wrong, one line.
 pub fn run(cli: Cli) -> anyhow::Result<ExitCode> {
+    cli.common.apply()?;
     match cli.command {
         Command::Demo(args) => demo::run(&args),
         Command::Generate(args) => generate::run(&args),

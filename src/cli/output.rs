@@ -1,22 +1,29 @@
 //! Output: progress on a terminal, JSON or text on standard output, folders.
 
+use super::common::is_quiet;
 use anyhow::Context;
-use indicatif::{ProgressBar, ProgressStyle};
-use lodray::format::{Scene, temporary_beside};
+use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
+use lodray::format::{Scene, remove_abandoned, temporary_beside, write_and_rename};
+use lodray::mesh::MeshFormat;
 use serde::Serialize;
 use std::path::Path;
 use std::time::Duration;
 
+/// Where progress is shown: standard error, if it is a terminal and nobody wants quiet.
+fn shown() -> ProgressDrawTarget {
+    // indicatif draws only on terminals.
+    if is_quiet() { ProgressDrawTarget::hidden() } else { ProgressDrawTarget::stderr() }
+}
+
 /// A progress bar on standard error; silent where that is not a terminal.
 pub fn progress(steps: u64, what: &str) -> ProgressBar {
-    // indicatif draws only on terminals.
     let style = ProgressStyle::with_template("{msg:24} {wide_bar} {percent:>3}% {eta:>4}").unwrap_or_else(|_| ProgressStyle::default_bar());
-    ProgressBar::new(steps).with_style(style).with_message(what.to_owned())
+    ProgressBar::with_draw_target(Some(steps), shown()).with_style(style).with_message(what.to_owned())
 }
 
 /// Does work of unknown length; a spinner says what on a terminal.
 pub fn busy<T>(what: &str, work: impl FnOnce() -> T) -> T {
-    let spinner = ProgressBar::new_spinner().with_message(what.to_owned());
+    let spinner = ProgressBar::with_draw_target(None, shown()).with_style(ProgressStyle::default_spinner()).with_message(what.to_owned());
     if !spinner.is_hidden() {
         spinner.enable_steady_tick(Duration::from_millis(100));
     }
@@ -39,19 +46,41 @@ pub fn print_line(text: &str) -> anyhow::Result<()> {
     }
 }
 
-/// Opens a scene file; the error names it.
+/// Prints a closing remark, such as where files went, unless nobody wants any.
+pub fn remark(text: &str) -> anyhow::Result<()> {
+    if is_quiet() { Ok(()) } else { print_line(text) }
+}
+
+/// Says where the words of a command's table are explained.
+pub fn explain(command: &str) -> anyhow::Result<()> {
+    remark(&format!("(lodray help {command} explains the words)"))
+}
+
+/// Says on standard error what a user should know of a run that went well.
+pub fn warn(text: &str) {
+    use std::io::Write;
+    // If nobody reads standard error there is nobody to tell.
+    let _ = writeln!(std::io::stderr(), "{text}");
+}
+
+/// Writes a whole file; the error names it.
+pub fn write_file(path: &Path, bytes: impl AsRef<[u8]>) -> anyhow::Result<()> {
+    write_and_rename(path, |out| out.write_all(bytes.as_ref())).with_context(|| format!("cannot write {}", path.display()))
+}
+
+/// Opens a scene file; the error names it, and for a mesh says how to make a scene of it.
 pub fn open(path: &Path) -> anyhow::Result<Scene> {
-    Ok(busy("opening", || Scene::open(path))?)
+    busy("opening", || Scene::open(path)).or_else(|error| {
+        if path.is_file() && MeshFormat::of(path).is_some() {
+            let (mesh, scene) = (path.display(), path.with_extension("lod"));
+            anyhow::bail!("{mesh}: this is a mesh, not a scene: `lodray build {mesh} -o {}` makes one of it", scene.display());
+        }
+        Err(error.into())
+    })
 }
 
-/// Makes the output folder and refuses it if `names` cannot be written there, before any work is done.
-pub fn folder<'a>(path: &Path, names: impl IntoIterator<Item = &'a str>, input: Option<&Path>) -> anyhow::Result<()> {
-    std::fs::create_dir_all(path).with_context(|| format!("cannot make folder {}", path.display()))?;
-    names.into_iter().try_for_each(|name| check_target(&path.join(name), input))
-}
-
-/// Refuses an output file that cannot be written, or that is the input, before any work is done.
-pub fn check_target(path: &Path, input: Option<&Path>) -> anyhow::Result<()> {
+/// Refuses an output file that cannot be written, or that is one of the inputs, before any work is done; what killed runs have left beside it is removed.
+pub fn check_target(path: &Path, inputs: &[&Path]) -> anyhow::Result<()> {
     let shown = path.display();
     let parent = path.parent().filter(|p| !p.as_os_str().is_empty()).unwrap_or(Path::new("."));
     anyhow::ensure!(!path.is_dir(), "cannot write {shown}: it is a folder");
@@ -59,7 +88,8 @@ pub fn check_target(path: &Path, input: Option<&Path>) -> anyhow::Result<()> {
     // Renaming a file to the name of a device would take the device away.
     anyhow::ensure!(path.is_file() || !path.exists(), "cannot write {shown}: it is not an ordinary file");
     let same = |input: &Path| input.canonicalize().is_ok_and(|input| path.canonicalize().is_ok_and(|path| path == input));
-    anyhow::ensure!(!input.is_some_and(same), "cannot write {shown}: it is the input file");
+    anyhow::ensure!(!inputs.iter().any(|input| same(input)), "cannot write {shown}: it is the input file");
+    remove_abandoned(parent);
     temporary_beside(path).with_context(|| format!("cannot write {shown}"))?;
     Ok(())
 }
@@ -77,8 +107,25 @@ pub fn grouped(n: u64) -> String {
     out
 }
 
+/// A number with four digits that count and no idle zeros.
+pub fn plain(value: f64) -> String {
+    let size = value.abs();
+    if value != 0.0 && !(1e-4..1e7).contains(&size) {
+        return format!("{value:.3e}");
+    }
+    let decimals = if size > 0.0 { (3.0 - size.log10().floor()).max(0.0) as usize } else { 0 };
+    let text = format!("{value:.decimals$}");
+    if text.contains('.') { text.trim_end_matches('0').trim_end_matches('.').to_owned() } else { text }
+}
+
 #[cfg(test)]
 mod tests {
+    #[test]
+    fn numbers_have_four_digits() {
+        let shown = [0.0, 2.0, 0.5, -1.23456, 123.456, 98765.4, 0.000_123_456, 1e-9, 2.5e9, f64::INFINITY].map(super::plain);
+        assert_eq!(shown, ["0", "2", "0.5", "-1.235", "123.5", "98765", "0.0001235", "1.000e-9", "2.500e9", "inf"]);
+    }
+
     #[test]
     fn digits_are_grouped() {
         assert_eq!([0, 999, 1000, 8_388_608].map(super::grouped), ["0", "999", "1,000", "8,388,608"]);

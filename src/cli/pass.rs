@@ -12,7 +12,7 @@ use lodray::sim::machine::{Machine, MachineError};
 use lodray::sim::replay::{ReplayError, Run, Window};
 use lodray::sim::stream::Layout;
 use lodray::traverse::ModelSpace;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 impl From<SimMethod> for MethodName {
     fn from(method: SimMethod) -> Self {
@@ -50,15 +50,35 @@ pub struct Target {
 /// The figures of a run, and its waveform if one was wanted.
 pub type Outcome = anyhow::Result<(SimResult, Option<Vec<u8>>)>;
 
-/// The machine of a shipped name or a description's path, changed.
-pub fn machine(name: &str, changes: &[Change]) -> anyhow::Result<MachineFacts> {
-    let path = Path::new(name);
-    let is_path = path.components().count() > 1 || path.extension().is_some_and(|e| e == "toml");
+/// The machine of a shipped name or a description's path, changed by what errors call `set`.
+pub fn machine(name: &str, changes: &[Change], set: &str) -> anyhow::Result<MachineFacts> {
+    let (path, is_path) = (Path::new(name), is_path(name));
     let mut description = if is_path { Machine::load(path) } else { Machine::shipped(name) }.map_err(in_one_line)?;
     let pairs: Vec<_> = changes.iter().map(|change| (change.key.as_str(), change.value.as_str())).collect();
-    description.set_all(&pairs)?;
+    description.set_all(&pairs).map_err(|error| anyhow::anyhow!("{set} {error}"))?;
     let label = if is_path { path.file_stem().unwrap_or_default().to_string_lossy().into_owned() } else { name.to_owned() };
     Ok(MachineFacts { label, set: changes.iter().map(ToString::to_string).collect(), description })
+}
+
+/// The files that a machine of this name was read from; none if it comes with the program.
+pub fn machine_files(name: &str, machine: &MachineFacts) -> Vec<PathBuf> {
+    if !is_path(name) {
+        return Vec::new();
+    }
+    let file = Path::new(name);
+    let description = &machine.description;
+    let energy = [Some(&description.energy.caches), description.energy.blocks.as_ref()];
+    let tables = energy.into_iter().flatten().map(|name| format!("energy/{name}.toml"));
+    let beside = |path: String| file.parent().unwrap_or(Path::new("")).join(path);
+    // Those that are not there come with the program.
+    let named = tables.chain([description.dram.device.clone()]).map(beside).filter(|path| path.exists());
+    std::iter::once(file.to_owned()).chain(named).collect()
+}
+
+/// Whether a machine's name is that of a file.
+pub fn is_path(name: &str) -> bool {
+    let path = Path::new(name);
+    path.components().count() > 1 || path.extension().is_some_and(|e| e == "toml")
 }
 
 /// An error of the TOML reader is several lines, with a picture of the place; the first and the last of it say all.
@@ -67,6 +87,13 @@ fn in_one_line(error: MachineError) -> anyhow::Error {
         MachineError::Toml { file, source } => {
             let picture = source.to_string();
             anyhow::anyhow!("{file}: {}: {}", picture.lines().next().unwrap_or_default(), source.message())
+        }
+        MachineError::NotShipped { name, .. } if !name.contains('/') => {
+            let name = name.trim_end_matches(".toml");
+            anyhow::anyhow!(
+                "no {name} comes with the program; there are: {}; a file's name ends in .toml",
+                Machine::all_shipped().join(", ")
+            )
         }
         other => other.into(),
     }

@@ -1,10 +1,11 @@
 //! Renders a view with one method and saves its pictures.
 
+use super::facts::Facts;
 use super::output::progress;
 use anyhow::Context;
 use image::RgbImage;
 use lodray::format::Scene;
-use lodray::render::{Camera, Frame, Method, error_map, level_map, normal_map, render, save_png, shaded};
+use lodray::render::{Camera, Frame, Legend, Method, error_map, level_map, normal_map, render, save_png, shaded};
 use lodray::traverse::ModelSpace;
 use std::path::Path;
 
@@ -23,24 +24,44 @@ pub fn shoot(method: &Method<'_>, scene: &Scene, space: &ModelSpace, camera: &Ca
     Shot { frame, image }
 }
 
+/// A map of a frame.
+pub struct Map {
+    /// Its file's name, without ending.
+    pub name: &'static str,
+    pub image: RgbImage,
+    /// What its colours mean.
+    pub legend: Legend,
+}
+
 impl Shot {
-    /// Saves the shaded picture and the level map, and the normals if wanted, as `PREFIXimage.png` and so on.
-    pub fn save(&self, scene: &Scene, folder: &Path, prefix: &str, normals: bool) -> anyhow::Result<()> {
-        save(&self.image, folder, &format!("{prefix}image.png"))?;
-        save(&level_map(&self.frame), folder, &format!("{prefix}levels.png"))?;
-        if normals {
-            save(&normal_map(&self.frame, scene), folder, &format!("{prefix}normals.png"))?;
-        }
-        Ok(())
+    pub fn levels(&self, scene: &Scene) -> Map {
+        Map { name: "levels", image: level_map(&self.frame), legend: Legend::Levels(scene.levels()) }
     }
 
-    /// Saves the error map against the true picture.
-    pub fn save_error(&self, truth: &Self, folder: &Path, prefix: &str) -> anyhow::Result<()> {
-        save(&error_map(&self.image, &truth.image), folder, &format!("{prefix}error.png"))
+    pub fn normals(&self, scene: &Scene) -> Map {
+        Map { name: "normals", image: normal_map(&self.frame, scene), legend: Legend::Normals }
+    }
+
+    /// The error map against the true picture.
+    pub fn error(&self, truth: &RgbImage) -> Map {
+        Map { name: "error", image: error_map(&self.image, truth), legend: Legend::Error }
+    }
+
+    /// Saves the shaded picture.
+    pub fn save(&self, folder: &Path, prefix: &str, facts: &Facts<'_>) -> anyhow::Result<()> {
+        save(&self.image, "image", folder, prefix, facts)
     }
 }
 
-fn save(image: &RgbImage, folder: &Path, name: &str) -> anyhow::Result<()> {
-    let path = folder.join(name);
-    save_png(image, &path).with_context(|| format!("cannot write {}", path.display()))
+impl Map {
+    /// Saves it with its legend below.
+    pub fn save(&self, folder: &Path, prefix: &str, facts: &Facts<'_>) -> anyhow::Result<()> {
+        save(&self.legend.below(&self.image), self.name, folder, prefix, facts)
+    }
+}
+
+/// Saves a picture as `PREFIXNAME.png`.
+fn save(image: &RgbImage, name: &str, folder: &Path, prefix: &str, facts: &Facts<'_>) -> anyhow::Result<()> {
+    let path = folder.join(format!("{prefix}{name}.png"));
+    save_png(image, &facts.notes(name), &path).with_context(|| format!("cannot write {}", path.display()))
 }

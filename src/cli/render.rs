@@ -1,17 +1,26 @@
 //! `render`: one view of a scene through one method.
 
 use super::args::{CameraArgs, LeafArgs, delta};
-use super::output::{busy, folder, grouped, open, print_json, print_line};
+use super::cache::{Cache, CacheArgs};
+use super::facts::Facts;
+use super::folder::{Overrule, RunFolder, one_run};
+use super::original::original;
+use super::output::{busy, explain, grouped, open, print_json, print_line, remark};
 use super::pictures::{Shot, shoot};
+use anyhow::Context;
 use clap::ValueEnum;
-use lodray::bvh::{FullBvh, FullOptions};
+use image::RgbImage;
+use lodray::bvh::{BvhError, FullBuilder, FullBvh, FullOptions};
 use lodray::format::Scene;
 use lodray::golden::reference::Reference;
-use lodray::render::{Camera, FrameStats, GeometricError, ImageError, KindCount, Method, Pixel, compare, geometric_error, view_cosine};
+use lodray::render::{
+    Camera, FrameStats, GeometricError, ImageError, KindCount, Method, Pixel, Sheet, compare, geometric_error, save_png, view_cosine,
+};
 use lodray::traverse::{Kind, LodImage, ModelSpace};
 use serde::Serialize;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::process::ExitCode;
+use std::time::Instant;
 
 /// How rays find their hits.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum, Serialize)]
@@ -25,11 +34,49 @@ pub enum MethodName {
     Bvh32,
     /// f64, full resolution: the truth
     Reference,
+    /// The mesh that scenes are made from, as it is, in f64: SCENE is then the mesh file, or the scene of the view with the mesh in --mesh
+    Original,
 }
+
+impl MethodName {
+    /// Its name in options and reports.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Lod => "lod",
+            Self::Bvh => "bvh",
+            Self::Bvh32 => "bvh32",
+            Self::Reference => "reference",
+            Self::Original => "original",
+        }
+    }
+}
+
+/// What a picture is compared with.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Against {
+    /// The scene's own finest triangles.
+    FullResolution,
+    /// The mesh that it was made from.
+    Original,
+}
+
+impl Against {
+    /// What to call it in text.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::FullResolution => "full resolution",
+            Self::Original => "the original",
+        }
+    }
+}
+
+/// The contact sheet.
+const SHEET: &str = "sheet.png";
 
 #[derive(clap::Args)]
 pub struct Args {
-    /// Scene file
+    /// Scene file (for --method original also a mesh file)
     scene: PathBuf,
     /// How rays find their hits
     #[arg(long, value_enum, default_value_t = MethodName::Lod)]
@@ -41,12 +88,19 @@ pub struct Args {
     camera: CameraArgs,
     #[command(flatten)]
     leaves: LeafArgs,
+    #[command(flatten)]
+    cache: CacheArgs,
     /// Folder for the pictures
-    #[arg(short, long, default_value = "out")]
+    #[arg(short, long, default_value = "out", long_help = one_run("Folder for the pictures"))]
     out: PathBuf,
-    /// Compare with full resolution: error map and figures
+    #[command(flatten)]
+    overrule: Overrule,
+    /// Compare with full resolution, or with the mesh in --mesh: error map and figures
     #[arg(long)]
     compare: bool,
+    /// The mesh that the scene was made from, for --compare or --method original
+    #[arg(long, value_name = "FILE")]
+    mesh: Option<PathBuf>,
     /// Print the figures as JSON
     #[arg(long)]
     json: bool,
@@ -58,11 +112,19 @@ struct Report {
     delta: f64,
     size: [u32; 2],
     eye: [f64; 3],
-    /// Not in the JSON, which is the same for every run.
+    /// Distance from the target in bounding radii.
+    distance: f64,
+    /// Whether what the method needs was read from the cache; not in the JSON, which is the same for every run, nor are the times.
     #[serde(skip)]
-    seconds: f64,
+    cached: bool,
+    /// Building or reading what the method needs, and tracing.
+    #[serde(skip)]
+    seconds: [f64; 2],
     stats: FrameStats,
     per_ray: PerRay,
+    /// What it was compared with.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    against: Option<Against>,
     #[serde(skip_serializing_if = "Option::is_none")]
     error: Option<Comparison>,
 }
@@ -101,18 +163,26 @@ pub struct Comparison {
 /// What a method needs besides the scene.
 pub enum Built {
     Lod,
-    Bvh(FullBvh),
+    Bvh { bvh: FullBvh, cached: bool },
     Reference(Reference),
 }
 
 impl Built {
-    /// Builds what `name` needs.
-    pub fn new(name: MethodName, scene: &Scene, leaves: LeafArgs) -> anyhow::Result<Self> {
+    /// Whether it was read from the cache instead of built.
+    fn cached(&self) -> bool {
+        matches!(self, Self::Bvh { cached: true, .. })
+    }
+
+    /// Builds what `name` needs, or takes it from the cache.
+    pub fn new(name: MethodName, scene: &Scene, leaves: LeafArgs, cache: &Cache) -> anyhow::Result<Self> {
         Ok(match name {
             MethodName::Lod => Self::Lod,
-            MethodName::Bvh => Self::Bvh(full_bvh(scene, leaves, false)?),
-            MethodName::Bvh32 => Self::Bvh(full_bvh(scene, leaves, true)?),
-            MethodName::Reference => Self::Reference(busy("building the reference", || Reference::new(&scene.decode()))),
+            MethodName::Bvh => full_bvh(scene, leaves, false, cache)?,
+            MethodName::Bvh32 => full_bvh(scene, leaves, true, cache)?,
+            // The original is a scene whose full resolution is the mesh.
+            MethodName::Reference | MethodName::Original => {
+                Self::Reference(busy("building the reference", || Reference::new(&scene.decode())))
+            }
         })
     }
 
@@ -125,39 +195,91 @@ impl Built {
     pub fn method<'a>(&'a self, scene: &'a Scene) -> Method<'a> {
         match self {
             Self::Lod => Method::Lod(LodImage::of(scene)),
-            Self::Bvh(bvh) => Method::Bvh(bvh),
+            Self::Bvh { bvh, .. } => Method::Bvh(bvh),
             Self::Reference(reference) => Method::Reference(reference),
         }
     }
 }
 
-fn full_bvh(scene: &Scene, leaves: LeafArgs, wide_boxes: bool) -> anyhow::Result<FullBvh> {
+fn full_bvh(scene: &Scene, leaves: LeafArgs, wide_boxes: bool, cache: &Cache) -> anyhow::Result<Built> {
     let options = FullOptions::new(leaves.leaf_size, wide_boxes, leaves.leaf_layout.into());
-    Ok(busy("building the BVH", || FullBvh::build(&scene.decode(), &options))?)
+    let made = busy("building the BVH", || {
+        let hierarchy = scene.decode();
+        let found = cache.tree(scene, &options.tree, wide_boxes, || FullBuilder::new(&hierarchy)?.tree(&options.tree, wide_boxes))?;
+        Ok::<_, BvhError>(Built::Bvh { bvh: found.tree.with_leaves(&hierarchy, options.layout)?, cached: found.read })
+    });
+    Ok(made?)
+}
+
+/// Geometry to trace.
+struct Subject {
+    scene: Scene,
+    space: ModelSpace,
+}
+
+impl Subject {
+    fn of(scene: Scene) -> Self {
+        Self { space: ModelSpace::of(&scene), scene }
+    }
+
+    fn shoot(&self, built: &Built, camera: &Camera, delta: f64, what: &str) -> Shot {
+        built.shoot(&self.scene, &self.space, camera, delta, what)
+    }
+}
+
+/// What the camera stands around, and the original if it is something else.
+fn subjects(args: &Args) -> anyhow::Result<(Subject, Option<Subject>)> {
+    let is_original = args.method == MethodName::Original;
+    anyhow::ensure!(!(is_original && args.compare), "--compare: the original is what the other methods are compared with");
+    match &args.mesh {
+        Some(_) if !is_original && !args.compare => anyhow::bail!("--mesh: goes with --compare or with --method original only"),
+        Some(mesh) => Ok((Subject::of(open(&args.scene)?), Some(Subject::of(original(mesh)?)))),
+        None if is_original => Ok((Subject::of(original(&args.scene)?), None)),
+        None => Ok((Subject::of(open(&args.scene)?), None)),
+    }
 }
 
 pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
-    let scene = open(&args.scene)?;
-    let space = ModelSpace::of(&scene);
-    let camera = args.camera.camera(&space, None)?;
-    let pictures = ["image.png", "levels.png", "normals.png", "error.png"];
-    folder(&args.out, pictures.into_iter().take(3 + usize::from(args.compare)), Some(&args.scene))?;
+    let (seen, mesh) = subjects(args)?;
+    let camera = args.camera.camera(&seen.space, None)?;
+    let pictures = ["image.png", "levels.png", "normals.png", SHEET, "error.png"];
+    let names = pictures.into_iter().take(4 + usize::from(args.compare));
+    let inputs: Vec<_> = std::iter::once(&args.scene).chain(&args.mesh).map(PathBuf::as_path).collect();
+    let folder = RunFolder::open(&args.out, names, &inputs, &args.overrule)?;
+    let cache = Cache::new(&args.cache)?;
 
-    let built = Built::new(args.method, &scene, args.leaves)?;
-    let begun = std::time::Instant::now();
-    let shot = built.shoot(&scene, &space, &camera, args.delta, "tracing");
-    let seconds = begun.elapsed().as_secs_f64();
+    let shown = mesh.as_ref().filter(|_| args.method == MethodName::Original).unwrap_or(&seen);
+    let begun = Instant::now();
+    let built = Built::new(args.method, &shown.scene, args.leaves, &cache)?;
+    let building = begun.elapsed().as_secs_f64();
+    let begun = Instant::now();
+    let shot = shown.shoot(&built, &camera, args.delta, "tracing");
+    let seconds = [building, begun.elapsed().as_secs_f64()];
+    let cached = built.cached();
     drop(built);
 
-    let error = if args.compare {
-        let truth = Built::new(MethodName::Reference, &scene, args.leaves)?.shoot(&scene, &space, &camera, args.delta, "full resolution");
-        shot.save_error(&truth, &args.out, "")?;
-        Some(compare_shots(&shot, &truth, &scene, &camera))
+    let truth = if args.compare {
+        let (against, of) = mesh.as_ref().map_or((Against::FullResolution, &seen), |mesh| (Against::Original, mesh));
+        let reference = Built::new(MethodName::Reference, &of.scene, args.leaves, &cache)?;
+        let truth = of.shoot(&reference, &camera, args.delta, against.name());
+        let error = compare_shots(&shot, &truth, &of.scene, &camera);
+        Some((against, truth.image, error))
     } else {
         None
     };
-    shot.save(&scene, &args.out, "", true)?;
+    let facts = Facts {
+        scene: &shown.scene.meta().name,
+        method: args.method,
+        delta: args.delta,
+        camera: &camera,
+        stats: &shot.frame.stats,
+        error: truth.as_ref().map(|(against, _, error)| (*against, error)),
+    };
+    let true_image = truth.as_ref().map(|(against, image, _)| (*against, image));
+    save(&shot, true_image, &shown.scene, &facts, folder.staging())?;
+    folder.finish()?;
 
+    let (against, error) = truth.map(|(against, _, error)| (against, error)).unzip();
     let stats = shot.frame.stats;
     let mean = |n: u64| n as f64 / stats.rays as f64;
     let per_ray = PerRay {
@@ -174,17 +296,43 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
         delta: args.delta,
         size: [camera.width, camera.height],
         eye: camera.eye.to_array(),
+        distance: camera.radii,
+        cached,
         seconds,
         stats,
         per_ray,
+        against,
         error,
     };
     if args.json {
         print_json(&report)?
     } else {
-        print_line(&table(&report, &args.out))?
+        print_line(&table(&report))?;
+        explain("render")?;
+        remark(&format!("pictures in {}", args.out.display()))?;
     }
     Ok(ExitCode::SUCCESS)
+}
+
+/// Saves all pictures and the contact sheet, one after the other: large ones take much memory.
+fn save(shot: &Shot, truth: Option<(Against, &RgbImage)>, scene: &Scene, facts: &Facts<'_>, out: &Path) -> anyhow::Result<()> {
+    let mut sheet = Sheet::default();
+    shot.save(out, "", facts)?;
+    sheet.add(facts.method.name(), &shot.image, None);
+    if let Some((against, truth)) = truth {
+        sheet.add(against.name(), truth, None);
+        let error = shot.error(truth);
+        error.save(out, "", facts)?;
+        sheet.add(&format!("difference to {}", against.name()), &error.image, Some(error.legend));
+    }
+    for map in [Shot::levels, Shot::normals] {
+        let map = map(shot, scene);
+        map.save(out, "", facts)?;
+        sheet.add(map.name, &map.image, Some(map.legend));
+    }
+    let path = out.join(SHEET);
+    let sheet = sheet.draw(&facts.heading(), &facts.lines());
+    save_png(&sheet, &facts.notes("contact sheet"), &path).with_context(|| format!("cannot write {}", path.display()))
 }
 
 fn kind_per_ray(k: &KindCount, rays: u64) -> KindPerRay {
@@ -203,12 +351,14 @@ pub fn compare_shots(shot: &Shot, truth: &Shot, scene: &Scene, camera: &Camera) 
     }
 }
 
-fn table(r: &Report, out: &std::path::Path) -> String {
+fn table(r: &Report) -> String {
+    let making = if r.cached { "BVH read from the cache" } else { "building" };
     let mut text = format!(
-        "{} rays, {} hit, {:.2} s\nper ray: {:.2} nodes, {:.2} LOD tests, {:.2} triangles, {:.2} lines read ({:.0} bytes)\nmean level {:.3}\n",
+        "{} rays, {} hit; {making} {:.2} s, tracing {:.2} s\nper ray: {:.2} nodes, {:.2} LOD tests, {:.2} triangles, {:.2} lines read ({:.0} bytes)\nmean level {:.3}\n",
         grouped(r.stats.rays),
         grouped(r.stats.hits),
-        r.seconds,
+        r.seconds[0],
+        r.seconds[1],
         r.per_ray.nodes,
         r.per_ray.lod_tests,
         r.per_ray.triangles,
@@ -230,10 +380,11 @@ fn table(r: &Report, out: &std::path::Path) -> String {
         let means = [r.per_ray.lines_read, r.per_ray.bytes_read, r.per_ray.distinct_lines].map(|v| format!("{v:.3}"));
         line(["all", &grouped(r.stats.lines_read()), &grouped(r.stats.distinct_lines()), &means[0], &means[1], &means[2]]);
     }
-    if let Some(e) = &r.error {
+    if let (Some(against), Some(e)) = (r.against, &r.error) {
         let psnr = e.image.psnr_db.map_or("infinite".to_owned(), |p| format!("{p:.2} dB"));
         text += &format!(
-            "against full resolution: RMSE {:.3}, PSNR {psnr}, maximum {}, {:.2} % of pixels differ, {} differ in coverage\nsurface off by {:.3} pixels in the mean, 99 of 100 below {:.3}\n",
+            "against {}: RMSE {:.3}, PSNR {psnr}, maximum {}, {:.2} % of pixels differ, {} differ in coverage\nsurface off by {:.3} pixels in the mean, 99 of 100 below {:.3}\n",
+            against.name(),
             e.image.rmse,
             e.image.maximum,
             100.0 * e.image.differing,
@@ -242,5 +393,5 @@ fn table(r: &Report, out: &std::path::Path) -> String {
             e.geometry_pixels.percentile_99
         );
     }
-    text + &format!("pictures in {}", out.display())
+    text.trim_end().to_owned()
 }

@@ -1,9 +1,8 @@
 //! `trace`: one ray through the traversal unit, cycle by cycle.
 
-use super::args::{CameraArgs, delta};
-use super::output::{check_target, grouped, open, print_line};
+use super::args::{CameraArgs, delta, whole};
+use super::output::{check_target, grouped, open, print_line, remark, write_file};
 use anyhow::Context;
-use lodray::format::write_and_rename;
 use lodray::num::Ray;
 use lodray::sim::unit::environment::RunReport;
 use lodray::sim::unit::steps::Steps;
@@ -27,7 +26,7 @@ pub struct Args {
     #[command(flatten)]
     camera: CameraArgs,
     /// Cycles from a memory request to its answer
-    #[arg(long, value_name = "CYCLES", default_value_t = 40, value_parser = clap::value_parser!(u32).range(1..=100_000), allow_negative_numbers = true)]
+    #[arg(long, value_name = "CYCLES", default_value_t = 40, value_parser = whole::<u32>(1..=100_000), allow_negative_numbers = true)]
     memory_latency: u32,
     /// Waveform (VCD); save files for GTKWave and Surfer are written beside it. "-": as --text
     #[arg(short, long, value_name = "FILE", required_unless_present = "text")]
@@ -45,7 +44,7 @@ impl FromStr for Place {
     type Err = String;
     fn from_str(s: &str) -> Result<Self, String> {
         let parts = s.split_once(',').and_then(|(x, y)| Some(Self(x.trim().parse().ok()?, y.trim().parse().ok()?)));
-        parts.ok_or_else(|| format!("'{s}' is not a pixel such as 320,200"))
+        parts.ok_or_else(|| format!("'{s}' is not a pixel such as 320,200: two whole numbers from 0"))
     }
 }
 
@@ -68,7 +67,12 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
     let camera = args.camera.camera(&space, None)?;
     let Place(x, y) = args.pixel;
     let (width, height) = (camera.width, camera.height);
-    anyhow::ensure!(x < width && y < height, "pixel {x},{y} is outside of the picture of {width}x{height} pixels (see --size)");
+    anyhow::ensure!(
+        x < width && y < height,
+        "--pixel {x},{y}: outside of the picture of {width}x{height} pixels, the last of which is {},{} (see --size)",
+        width - 1,
+        height - 1
+    );
     let file = args.out.as_deref().filter(|path| *path != Path::new("-"));
     let files = file.map(|vcd| Files::beside(vcd, &args.scene)).transpose()?;
     let entered = space.enter(&camera.ray(x, y), args.delta);
@@ -80,7 +84,7 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
         if !args.text {
             let (ray, requests) = (&report.rays[0], grouped(report.requests));
             let found = if ray.hit.found { "hit" } else { "miss" };
-            print_line(&format!(
+            remark(&format!(
                 "{found} after {} cycles, {requests} memory lines; waveform in {}",
                 grouped(ray.cycles()),
                 files.vcd.display()
@@ -126,7 +130,7 @@ impl Files {
         let with = |extension| vcd.with_extension(extension);
         let files = Self { vcd: vcd.to_owned(), gtkw: with("gtkw"), states: with("states"), surfer: with("sucl") };
         for path in files.all() {
-            check_target(path, Some(input))?;
+            check_target(path, &[input])?;
         }
         let clash = files.all().iter().skip(1).any(|path| *path == vcd);
         anyhow::ensure!(!clash, "cannot write {}: the ending is that of a save file; use .vcd", vcd.display());
@@ -144,7 +148,7 @@ impl Files {
         let gtkw = gtkwave_save(&name(&self.vcd), &name(&self.states), waves.widths());
         let contents = [waves.finish()?, gtkw.into_bytes(), gtkwave_states().into_bytes(), surfer_commands().into_bytes()];
         for (path, content) in self.all().into_iter().zip(contents) {
-            write_and_rename(path, |out| out.write_all(&content)).with_context(|| format!("cannot write {}", path.display()))?;
+            write_file(path, &content)?;
         }
         Ok(report)
     }

@@ -12,11 +12,13 @@ mod normal;
 mod replace;
 mod scene;
 mod sections;
+mod staging;
 
 pub use encode::{SceneInfo, build, encode, tree_boxes};
 pub use export::{ExportCounts, export_level};
 pub use lines::{BoundData, Box16, BvhChild, ChildRef, L0Record, VertexData};
 pub use normal::{decode_normal, encode_normal};
-pub use replace::{temporary_beside, write_and_rename};
+pub use replace::{remove_abandoned, temporary_beside, write_and_rename};
 pub use scene::{Meta, Scene, SceneError};
 pub use sections::{MAGIC, Section, VERSION};
+pub use staging::Staging;

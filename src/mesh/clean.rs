@@ -17,6 +17,7 @@ pub struct TriangleMesh {
     /// Counter-clockwise seen from outside.
     pub triangles: Vec<[u32; 3]>,
     /// Shading normals of the file at the corners of each triangle, of length 1, or zero where a corner has none; empty if the file has none.
+    /// The normals in an STL file are those of its flat facets, which the triangles give as well: they are not kept.
     pub normals: Vec<[[f32; 3]; 3]>,
     /// Index into `colours` for each triangle; empty if there are no materials.
     pub materials: Vec<u16>,
@@ -63,7 +64,7 @@ pub enum MeshError {
         vertices: usize,
     },
     /// A coordinate is NaN, infinite or too large to compute with.
-    #[error("vertex {vertex}: coordinate {value} is not a finite number below {MAX_COORDINATE:e}")]
+    #[error("vertex {vertex}: coordinate {value:e} is not a finite number below {MAX_COORDINATE:e}")]
     Coordinate {
         /// Which vertex, from 0.
         vertex: usize,
@@ -75,6 +76,14 @@ pub enum MeshError {
     Material {
         /// Which triangle, from 0.
         triangle: usize,
+    },
+    /// There is not one triple of normals for each triangle.
+    #[error("there are normals for {normals} triangles, not for {triangles}")]
+    Normals {
+        /// Triples of corner normals.
+        normals: usize,
+        /// Triangles before cleaning.
+        triangles: usize,
     },
     /// Nothing is left.
     #[error("no triangle is left of {triangles} after dropping {degenerate} degenerate ones")]
@@ -91,6 +100,18 @@ pub(super) fn is_coordinate(v: f64) -> bool {
     v.abs() <= MAX_COORDINATE
 }
 
+/// A normal at length 1; zero, which is none, if it has no direction.
+pub(super) fn unit(n: [f64; 3]) -> [f32; 3] {
+    // Scaled first: squares of very long and very short ones stay within the range of numbers.
+    let size = n.iter().fold(0.0f64, |m, v| m.max(v.abs()));
+    if !n.iter().all(|v| v.is_finite()) || size == 0.0 {
+        return [0.0; 3];
+    }
+    let n = n.map(|v| v / size);
+    let length = n.iter().map(|v| v * v).sum::<f64>().sqrt();
+    n.map(|v| (v / length) as f32)
+}
+
 impl TriangleMesh {
     /// Cleans vertices and triangles into a mesh; `materials` is empty or has one index into `colours` for each triangle.
     ///
@@ -102,13 +123,31 @@ impl TriangleMesh {
         materials: &[u16],
         colours: Vec<[f32; 3]>,
     ) -> Result<TriangleMesh, MeshError> {
+        Self::with_normals(positions, triangles, &[], materials, colours)
+    }
+
+    /// The same with shading normals: `normals` is empty or has three for each triangle, one for each corner. They are brought to length 1,
+    /// and one that is zero or not finite is none. Vertices that are welded keep the normals that their corners came with.
+    ///
+    /// # Errors
+    /// Those of [`Self::from_parts`], or if there are normals for another number of triangles.
+    pub fn with_normals(
+        positions: &[[f64; 3]],
+        triangles: &[[u32; 3]],
+        normals: &[[[f32; 3]; 3]],
+        materials: &[u16],
+        colours: Vec<[f32; 3]>,
+    ) -> Result<TriangleMesh, MeshError> {
         check(positions, triangles, materials, &colours)?;
+        if !normals.is_empty() && normals.len() != triangles.len() {
+            return Err(MeshError::Normals { normals: normals.len(), triangles: triangles.len() });
+        }
         let mut report = CleanReport { vertices_read: positions.len(), triangles_read: triangles.len(), ..Default::default() };
         let first = weld(positions);
         report.welded_vertices = first.iter().enumerate().filter(|&(i, &f)| i != f as usize).count();
 
         let mut seen = HashSet::with_capacity(triangles.len());
-        let (mut kept, mut kept_materials) = (Vec::with_capacity(triangles.len()), Vec::new());
+        let (mut kept, mut kept_normals, mut kept_materials) = (Vec::with_capacity(triangles.len()), Vec::new(), Vec::new());
         for (t, corners) in triangles.iter().enumerate() {
             let tri = corners.map(|v| first[v as usize]);
             let mut key = tri;
@@ -119,6 +158,7 @@ impl TriangleMesh {
                 report.duplicate_triangles += 1;
             } else {
                 kept.push(tri);
+                kept_normals.extend(normals.get(t).map(|n| n.map(|n| unit(n.map(f64::from)))));
                 kept_materials.extend(materials.get(t));
             }
         }
@@ -129,7 +169,10 @@ impl TriangleMesh {
         let positions = compact(positions, &mut kept);
         report.unreferenced_vertices = report.vertices_read - report.welded_vertices - positions.len();
         count_edges(&kept, &mut report);
-        Ok(TriangleMesh { positions, triangles: kept, normals: Vec::new(), materials: kept_materials, colours, report })
+        if kept_normals.iter().all(|n| *n == [[0.0; 3]; 3]) {
+            kept_normals = Vec::new();
+        }
+        Ok(TriangleMesh { positions, triangles: kept, normals: kept_normals, materials: kept_materials, colours, report })
     }
 }
 

@@ -20,6 +20,7 @@ pub struct Distance {
     /// No point of the surface is further than this: a bound, narrowed down until it is little above what was found.
     pub max: f64,
     /// The largest that was found, all vertices included.
+    #[serde(default)]
     pub found: f64,
 }
 

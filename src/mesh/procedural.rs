@@ -128,6 +128,46 @@ impl Options {
     pub const fn new(scene: Scene) -> Self {
         Self { scene, levels: None, base: None, seed: 0, roughness: None }
     }
+
+    /// What these options come to.
+    ///
+    /// # Errors
+    /// A value is out of its range, or the scene would be too large.
+    pub fn check(&self) -> Result<Shape, GenerateError> {
+        let scene = self.scene;
+        let levels = self.levels.unwrap_or(scene.default_levels());
+        if levels > MAX_LEVELS {
+            return Err(GenerateError::Levels(levels));
+        }
+        let wanted = self.base.unwrap_or(scene.default_base());
+        if wanted == 0 || u64::from(wanted) > MAX_TREES {
+            return Err(GenerateError::Base(wanted.into()));
+        }
+        let roughness = self.roughness.unwrap_or(scene.default_roughness());
+        if !(roughness > 0.0 && roughness < 1.0) {
+            return Err(GenerateError::Roughness(roughness));
+        }
+        let n = scene.grid(wanted);
+        let trees = scene.trees(n);
+        if trees > MAX_TREES {
+            return Err(GenerateError::Base(trees));
+        }
+        if trees << (2 * levels) > MAX_TRIANGLES {
+            return Err(GenerateError::Triangles { trees, levels });
+        }
+        Ok(Shape { n, levels, roughness })
+    }
+}
+
+/// A scene's numbers, defaults filled in.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Shape {
+    /// g or k of the module's table.
+    n: u32,
+    /// Splits N.
+    levels: u32,
+    /// Between 0 and 1.
+    roughness: f64,
 }
 
 /// Why a scene cannot be generated.
@@ -159,28 +199,12 @@ pub enum GenerateError {
 }
 
 /// Makes a scene.
+///
+/// # Errors
+/// As [`Options::check`], or the machine has too little memory.
 pub fn generate(options: &Options) -> Result<Surface, GenerateError> {
+    let Shape { n, levels, roughness } = options.check()?;
     let scene = options.scene;
-    let levels = options.levels.unwrap_or(scene.default_levels());
-    if levels > MAX_LEVELS {
-        return Err(GenerateError::Levels(levels));
-    }
-    let wanted = options.base.unwrap_or(scene.default_base());
-    if wanted == 0 || u64::from(wanted) > MAX_TREES {
-        return Err(GenerateError::Base(wanted.into()));
-    }
-    let roughness = options.roughness.unwrap_or(scene.default_roughness());
-    if !(roughness > 0.0 && roughness < 1.0) {
-        return Err(GenerateError::Roughness(roughness));
-    }
-    let n = scene.grid(wanted);
-    let trees = scene.trees(n);
-    if trees > MAX_TREES {
-        return Err(GenerateError::Base(trees));
-    }
-    if trees << (2 * levels) > MAX_TRIANGLES {
-        return Err(GenerateError::Triangles { trees, levels });
-    }
     let seed = options.seed;
     match scene {
         Scene::Terrain => terrain::generate(n, levels, seed, roughness),

@@ -1,12 +1,48 @@
-//! Mesh files in: OBJ and PLY, checked so that a bad file gives one error that names the place.
+//! Mesh files in: OBJ, PLY, glTF and STL, checked so that a bad file gives one error that names the place.
 
+mod gltf;
 mod obj;
 mod ply;
 mod polygon;
+mod stl;
 
 use super::clean::{MeshError, TriangleMesh};
+use serde::{Deserialize, Serialize};
 use std::fmt::Display;
 use std::path::{Path, PathBuf};
+
+/// Kinds of mesh files.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum MeshFormat {
+    /// Wavefront OBJ.
+    Obj,
+    /// Stanford PLY, ASCII or binary.
+    Ply,
+    /// glTF 2.0, JSON.
+    Gltf,
+    /// glTF 2.0, binary.
+    Glb,
+    /// STL, ASCII or binary.
+    Stl,
+}
+
+/// The endings of the names of mesh files, for messages.
+pub const MESH_ENDINGS: &str = ".obj, .ply, .gltf, .glb or .stl";
+
+impl MeshFormat {
+    /// By the ending of the file's name, in upper or lower case.
+    pub fn of(path: &Path) -> Option<MeshFormat> {
+        match path.extension()?.to_string_lossy().to_lowercase().as_str() {
+            "obj" => Some(Self::Obj),
+            "ply" => Some(Self::Ply),
+            "gltf" => Some(Self::Gltf),
+            "glb" => Some(Self::Glb),
+            "stl" => Some(Self::Stl),
+            _ => None,
+        }
+    }
+}
 
 /// Why a mesh file was not read. Every message begins with the file's name.
 #[derive(Debug, thiserror::Error)]
@@ -19,8 +55,8 @@ pub enum ReadError {
         /// What the system said.
         source: std::io::Error,
     },
-    /// The name does not end in `.obj` or `.ply`.
-    #[error("{}: unknown kind of mesh file, the name must end in .obj or .ply", path.display())]
+    /// The name does not end like that of a mesh file.
+    #[error("{}: unknown kind of mesh file, the name must end in {MESH_ENDINGS}", path.display())]
     Extension {
         /// The file.
         path: PathBuf,
@@ -50,6 +86,8 @@ pub enum ReadError {
 struct Parts {
     positions: Vec<[f64; 3]>,
     triangles: Vec<[u32; 3]>,
+    /// For each triangle; empty if there are none.
+    normals: Vec<[[f32; 3]; 3]>,
     materials: Vec<u16>,
     colours: Vec<[f32; 3]>,
 }
@@ -61,34 +99,62 @@ struct Fault {
     what: String,
 }
 
+/// What a file has at some place, for a message: its beginning, on one line; a file of another kind may hold anything.
+fn shown(text: &str) -> String {
+    let (begin, more) = text.trim().char_indices().nth(80).map_or((text.trim(), ""), |(at, _)| (&text.trim()[..at], "..."));
+    format!("{}{more}", begin.escape_debug())
+}
+
 fn fault<T>(place: impl Display, what: impl Display) -> Result<T, Fault> {
     Err(Fault { place: place.to_string(), what: what.to_string() })
 }
 
-/// Reads and cleans a triangle mesh from an `.obj` or `.ply` file, in the file's own units.
+/// Reads and cleans a triangle mesh from a file, in the file's own units; its ending says which format it has: see [`MeshFormat`].
 ///
-/// OBJ: polygons are cut into triangles; diffuse colours are taken from the material library if it can be read. PLY: ASCII or binary,
-/// faces or triangle strips.
+/// OBJ: polygons are cut into triangles; diffuse colours are taken from the material library if it can be read. PLY: faces or triangle
+/// strips. glTF: all triangles of the default scene, as its nodes place them; meshes with skins or morph targets in their rest pose; base
+/// colour factors. STL: vertices at the same place become one. Normals at corners are kept where the format has them (not STL: its normals
+/// are those of the flat facets); textures and vertex colours are not.
 ///
 /// # Errors
 /// One error that names the file and the line, element or field: see [`ReadError`].
 pub fn read(path: &Path) -> Result<TriangleMesh, ReadError> {
+    // Whatever a folder is called: its name is not what is wrong with it.
+    let format = MeshFormat::of(path).or(path.is_dir().then_some(MeshFormat::Obj));
+    read_as(path, format.ok_or_else(|| ReadError::Extension { path: path.into() })?)
+}
+
+/// The same for a file of a known format, whatever its name.
+///
+/// # Errors
+/// As for [`read`].
+pub fn read_as(path: &Path, format: MeshFormat) -> Result<TriangleMesh, ReadError> {
+    let io = |source| ReadError::Io { path: path.into(), source };
     if path.is_dir() {
-        // Whatever it is called: its name is not what is wrong with it.
-        return Err(ReadError::Io { path: path.into(), source: std::io::ErrorKind::IsADirectory.into() });
+        return Err(io(std::io::ErrorKind::IsADirectory.into()));
     }
-    let extension = path.extension().map(|e| e.to_string_lossy().to_lowercase());
-    let parse = match extension.as_deref() {
-        Some("obj") => obj::parse,
-        Some("ply") => ply::parse,
-        _ => return Err(ReadError::Extension { path: path.into() }),
-    };
-    let bytes = std::fs::read(path).map_err(|source| ReadError::Io { path: path.into(), source })?;
-    let content = |Fault { place, what }| ReadError::Content { path: path.into(), place, what };
+    let bytes = std::fs::read(path).map_err(io)?;
+    read_bytes(&bytes, format, path, path.parent().unwrap_or(Path::new("")))
+}
+
+/// The same for the bytes of a file. `name` is what errors begin with; material libraries and buffers that the file names are looked for in
+/// `folder`.
+///
+/// # Errors
+/// As for [`read`].
+pub fn read_bytes(bytes: &[u8], format: MeshFormat, name: &Path, folder: &Path) -> Result<TriangleMesh, ReadError> {
+    let content = |Fault { place, what }| ReadError::Content { path: name.into(), place, what };
     if bytes.is_empty() {
         return Err(content(Fault { place: "line 1".into(), what: "the file is empty".into() }));
     }
-    let parts = parse(&bytes, path.parent().unwrap_or(Path::new(""))).map_err(content)?;
-    TriangleMesh::from_parts(&parts.positions, &parts.triangles, &parts.materials, parts.colours)
-        .map_err(|source| ReadError::Mesh { path: path.into(), source })
+    let parse = match format {
+        MeshFormat::Obj => obj::parse,
+        MeshFormat::Ply => ply::parse,
+        MeshFormat::Gltf => gltf::parse,
+        MeshFormat::Glb => gltf::parse_binary,
+        MeshFormat::Stl => stl::parse,
+    };
+    let parts = parse(bytes, folder).map_err(content)?;
+    TriangleMesh::with_normals(&parts.positions, &parts.triangles, &parts.normals, &parts.materials, parts.colours)
+        .map_err(|source| ReadError::Mesh { path: name.into(), source })
 }

@@ -1,6 +1,6 @@
 //! A surface as a base mesh and one lattice of positions per base triangle, in the user's own (world) units.
 
-use super::lattice;
+use super::{TriangleMesh, lattice};
 
 /// A hierarchy before it is rounded: what the remesher and the procedural scenes make.
 ///
@@ -24,6 +24,19 @@ pub struct Surface {
 }
 
 impl Surface {
+    /// A mesh as it is: each triangle a base triangle without splits, whose lattice is its three corners, shaded with `normals` (see [`super::corner_normals`]).
+    pub fn of_mesh(mesh: &TriangleMesh, normals: &[[[f32; 3]; 3]]) -> Self {
+        Self {
+            levels: 0,
+            base_vertices: mesh.positions.len() as u32, // triangles index them in 32 bits
+            triangles: mesh.triangles.clone(),
+            positions: mesh.triangles.iter().flatten().map(|&v| mesh.positions[v as usize]).collect(),
+            normals: normals.iter().flatten().copied().collect(),
+            materials: mesh.materials.clone(),
+            colours: mesh.colours.clone(),
+        }
+    }
+
     /// Positions of one tree.
     pub fn tree(&self, tree: usize) -> &[[f64; 3]] {
         let len = lattice::len(self.levels);
@@ -33,5 +46,26 @@ impl Surface {
     /// Number of full-resolution triangles.
     pub fn finest_triangles(&self) -> u64 {
         (self.triangles.len() as u64) << (2 * self.levels)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::mesh::{corner_normals, quantise};
+
+    #[test]
+    fn a_mesh_as_it_is() {
+        let positions = [[0.0, 0.0, 0.0], [2.0, 0.0, 0.0], [0.0, 3.0, 0.0], [0.0, 0.0, 4.0]];
+        let triangles = [[0, 2, 1], [0, 1, 3]];
+        let mesh = TriangleMesh::from_parts(&positions, &triangles, &[1, 0], vec![[1.0; 3], [0.5; 3]]).unwrap();
+        let surface = Surface::of_mesh(&mesh, &corner_normals(&mesh, 30.0));
+        assert_eq!(surface.tree(0), [positions[0], positions[2], positions[1]]);
+        assert_eq!((&surface.normals[..3], surface.normals[3]), (&[[0.0, 0.0, -1.0]; 3][..], [0.0, -1.0, 0.0]));
+        assert_eq!((surface.finest_triangles(), &surface.materials, surface.colours.len()), (2, &vec![1, 0], 2));
+        // The corners are where a lattice has them.
+        let corners = lattice::root(0).map(|p| lattice::index(0, p));
+        assert_eq!(corners, [0, 1, 2]);
+        assert!(quantise(&surface).is_ok());
     }
 }

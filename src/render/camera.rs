@@ -1,5 +1,6 @@
 //! The pinhole camera.
 
+use super::orbit;
 use crate::traverse::{ModelSpace, WorldRay};
 use glam::DVec3;
 use thiserror::Error;
@@ -7,24 +8,33 @@ use thiserror::Error;
 /// The paper's camera: focal length 35 on a sensor of height 24.
 pub const DEFAULT_VIEW_ANGLE_DEGREES: f64 = 37.849_288_832_102_47;
 
-/// Where the eye is if nothing says so, in bounding radii from the target.
-pub const DEFAULT_DISTANCE: f64 = 2.0;
+/// From the target to the eye if nothing says so, where up is +y.
+pub const DEFAULT_DIRECTION: [f64; 3] = [0.35, 0.5, 1.0];
+
+/// Room around the model's bounding sphere where the eye is placed so that all of it is seen, in radii.
+const MARGIN: f64 = 0.02;
+
+/// Farthest that the eye is placed so, in bounding radii.
+const FARTHEST: f64 = 1e6;
 
 /// Most columns and rows of a picture.
-const MAX_SIDE: u32 = 1 << 16;
-/// Most pixels of a picture: what is kept of each takes about 50 bytes.
-const MAX_PIXELS: u64 = 1 << 26;
+pub const MAX_SIDE: u32 = 1 << 16;
+/// Most pixels of a picture: traced pixels and their shading then stay below 8 GB.
+pub const MAX_PIXELS: u64 = 1 << 26;
 
 /// Where to look from; what is `None` is chosen to suit the model.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct View {
-    /// Eye; by default in the direction (0.35, 0.5, 1) from the target.
+    /// Eye; by default in `direction` from the target.
     pub eye: Option<[f64; 3]>,
+    /// From the target to the eye, any length, where `eye` is `None`; by default [`DEFAULT_DIRECTION`], turned with `up`.
+    pub direction: Option<[f64; 3]>,
     /// Target; by default the centre of the model's box.
     pub target: Option<[f64; 3]>,
     /// Up; (0, 1, 0) by default.
     pub up: Option<[f64; 3]>,
-    /// Distance from target to eye in bounding radii, where `eye` is `None` or only gives the direction.
+    /// Distance from target to eye in bounding radii, where `eye` is `None` or only gives the direction; by default the smallest (rounded up to
+    /// hundredths) at which the picture holds the whole bounding sphere.
     pub distance: Option<f64>,
     /// Vertical view angle in degrees.
     pub fov: f64,
@@ -32,7 +42,7 @@ pub struct View {
 
 impl Default for View {
     fn default() -> Self {
-        Self { eye: None, target: None, up: None, distance: None, fov: DEFAULT_VIEW_ANGLE_DEGREES }
+        Self { eye: None, direction: None, target: None, up: None, distance: None, fov: DEFAULT_VIEW_ANGLE_DEGREES }
     }
 }
 
@@ -41,7 +51,11 @@ impl Default for View {
 pub enum CameraError {
     /// Not a number a camera can use.
     #[error("{0} must be {1}")]
-    Field(&'static str, &'static str),
+    Field(&'static str, String),
+}
+
+fn field<T>(name: &'static str, must_be: impl Into<String>) -> Result<T, CameraError> {
+    Err(CameraError::Field(name, must_be.into()))
 }
 
 /// A camera with its image size.
@@ -49,6 +63,16 @@ pub enum CameraError {
 pub struct Camera {
     /// Eye in world space.
     pub eye: DVec3,
+    /// Where it looks.
+    pub target: DVec3,
+    /// What was asked to be up.
+    pub up: DVec3,
+    /// Vertical view angle in degrees.
+    pub fov: f64,
+    /// Distance from the target in bounding radii, if the eye was placed by it.
+    pub placed: Option<f64>,
+    /// Distance from the target in bounding radii.
+    pub radii: f64,
     forward: DVec3,
     /// To the next pixel on the right, and up, for a picture plane at distance 1.
     right: DVec3,
@@ -68,41 +92,56 @@ impl Camera {
     /// Names the field that is not finite, not positive, or leaves no direction.
     pub fn new(view: &View, space: &ModelSpace, width: u32, height: u32) -> Result<Self, CameraError> {
         let finite = |v: Option<[f64; 3]>, name| match v {
-            Some(v) if !v.iter().all(|c| c.is_finite()) => Err(CameraError::Field(name, "three finite numbers")),
+            Some(v) if !v.iter().all(|c| c.is_finite()) => field(name, "three finite numbers"),
             v => Ok(v.map(DVec3::from_array)),
         };
         let (eye, target, up) = (finite(view.eye, "--eye")?, finite(view.target, "--target")?, finite(view.up, "--up")?);
+        let direction = finite(view.direction, "the direction of the eye")?;
         if !(view.fov > 0.0 && view.fov < 180.0) {
-            return Err(CameraError::Field("--fov", "between 0 and 180 degrees"));
+            return field("--fov", "between 0 and 180 degrees");
         }
         if width == 0 || height == 0 || width > MAX_SIDE || height > MAX_SIDE || u64::from(width) * u64::from(height) > MAX_PIXELS {
-            return Err(CameraError::Field("--size", "at most 65536 pixels wide and high, and 67108864 in all"));
+            return field("--size", format!("at most {MAX_SIDE} pixels wide and high, and {MAX_PIXELS} in all"));
         }
+        let half_height = (0.5 * view.fov.to_radians()).tan();
+        let half_width = half_height * f64::from(width) / f64::from(height);
         let target = target.unwrap_or_else(|| DVec3::from_array(space.centre()));
-        let eye = match (eye, view.distance) {
-            (Some(eye), None) => eye,
+        let (eye, placed) = match (eye, view.distance) {
+            (Some(eye), None) => (eye, None),
             (eye, distance) => {
-                let distance = distance.unwrap_or(DEFAULT_DISTANCE);
-                if !(distance > 0.0 && distance.is_finite()) {
-                    return Err(CameraError::Field("--distance", "a positive number of bounding radii"));
-                }
-                let direction = eye.map_or(DVec3::new(0.35, 0.5, 1.0), |e| e - target);
-                let direction = direction.try_normalize().ok_or(CameraError::Field("--eye", "different from --target"))?;
-                target + direction * (distance * space.radius())
+                let default = || direction.unwrap_or_else(|| orbit::turned(up, DVec3::from_array(DEFAULT_DIRECTION)));
+                let Some(direction) = eye.map_or_else(default, |e| e - target).try_normalize() else {
+                    return field("--eye", "different from --target");
+                };
+                let distance = match distance {
+                    Some(distance) if distance > 0.0 && distance.is_finite() => distance,
+                    Some(_) => return field("--distance", "a positive number of bounding radii"),
+                    None => {
+                        let (side, above) = across(-direction, up)?;
+                        let centre = DVec3::from_array(space.centre()) - target;
+                        fit([(side, half_width), (above, half_height)], -direction, centre / space.radius())?
+                    }
+                };
+                (target + direction * (distance * space.radius()), Some(distance))
             }
         };
-        let forward = (target - eye).try_normalize().ok_or(CameraError::Field("--eye", "different from --target"))?;
-        let up = up.unwrap_or(DVec3::Y);
-        // Looking straight up or down: any other axis serves.
-        let side = forward.cross(up).try_normalize();
-        let side = match side {
-            Some(side) => side,
-            None if view.up.is_none() => forward.cross(DVec3::NEG_Z).normalize(),
-            None => return Err(CameraError::Field("--up", "not along the view direction")),
-        };
-        let pixel = 2.0 * (0.5 * view.fov.to_radians()).tan() / f64::from(height);
-        let above = side.cross(forward) * pixel;
-        Ok(Self { eye, forward, right: side * pixel, above, width, height, tan_theta: 0.5 * pixel })
+        let Some(forward) = (target - eye).try_normalize() else { return field("--eye", "different from --target") };
+        let (side, above) = across(forward, up)?;
+        let pixel = 2.0 * half_height / f64::from(height);
+        Ok(Self {
+            eye,
+            target,
+            up: up.unwrap_or(DVec3::Y),
+            fov: view.fov,
+            placed,
+            radii: placed.unwrap_or_else(|| (target - eye).length() / space.radius()),
+            forward,
+            right: side * pixel,
+            above: above * pixel,
+            width,
+            height,
+            tan_theta: 0.5 * pixel,
+        })
     }
 
     /// The ray through the centre of pixel (`x`, `y`), row 0 at the top.
@@ -115,6 +154,45 @@ impl Camera {
         let direction = self.forward + self.right * (x - 0.5 * f64::from(self.width)) - self.above * (y - 0.5 * f64::from(self.height));
         WorldRay { origin: self.eye.to_array(), direction: direction.normalize().to_array(), radius: 0.0, tan_theta: self.tan_theta }
     }
+}
+
+/// Unit vectors to the right and up in the picture of an eye that looks along `forward`.
+fn across(forward: DVec3, up: Option<DVec3>) -> Result<(DVec3, DVec3), CameraError> {
+    let side = forward.cross(up.unwrap_or(DVec3::Y));
+    // Nearly along the view direction, rounding would decide what is up.
+    let clear = side.length() > 1e-9 * up.unwrap_or(DVec3::Y).length();
+    let side = match side.try_normalize().filter(|_| clear) {
+        Some(side) => side,
+        // Looking straight up or down: any other axis serves.
+        None if up.is_none() => forward.cross(DVec3::NEG_Z).normalize(),
+        None => return field("--up", format!("neither 0 nor along the view direction {}", shown(forward))),
+    };
+    Ok((side, side.cross(forward)))
+}
+
+/// Distance from the target, in bounding radii, at which a picture holds the bounding sphere and its margin. `half` are the picture's axes with the
+/// tangents of their half angles; `centre` is that of the sphere as seen from the target, in radii.
+fn fit(half: [(DVec3, f64); 2], forward: DVec3, centre: DVec3) -> Result<f64, CameraError> {
+    let radius = 1.0 + MARGIN;
+    let mut distance = radius;
+    for (axis, tangent) in half {
+        for axis in [axis, -axis] {
+            // The plane through the eye and that border of the picture; its normal points inwards.
+            let inwards = (axis + forward * tangent).normalize();
+            distance = distance.max((radius - centre.dot(inwards)) / forward.dot(inwards));
+        }
+    }
+    let distance = (distance * 100.0).ceil() / 100.0;
+    if distance <= FARTHEST {
+        Ok(distance)
+    } else {
+        field("--distance", format!("given: at this --fov the whole model is seen from beyond {FARTHEST} bounding radii only"))
+    }
+}
+
+/// A vector as an option takes it.
+fn shown(v: DVec3) -> String {
+    format!("{},{},{}", v.x, v.y, v.z)
 }
 
 #[cfg(test)]
@@ -141,12 +219,72 @@ mod tests {
         assert!((DVec3::from_array(middle.direction) - camera.forward).length() < 1e-12);
     }
 
+    /// Where a point is in a picture, in pixels; the inverse of [`Camera::ray_at`].
+    fn project(camera: &Camera, p: DVec3) -> [f64; 2] {
+        let v = (p - camera.eye) / (p - camera.eye).dot(camera.forward);
+        let along = |axis: DVec3| v.dot(axis) / axis.length_squared();
+        [0.5 * f64::from(camera.width) + along(camera.right), 0.5 * f64::from(camera.height) - along(camera.above)]
+    }
+
+    #[test]
+    fn the_default_view_holds_the_bounding_sphere_tightly() {
+        let space = ModelSpace { lo: [-(1 << 20), -300_000, 5], ..space() };
+        let (centre, radius) = (DVec3::from_array(space.centre()), space.radius());
+        let sphere: Vec<DVec3> = (0..200)
+            .flat_map(|i| {
+                (0..400).map(move |j| (f64::from(i) / 199.0 * std::f64::consts::PI, f64::from(j) / 400.0 * std::f64::consts::TAU))
+            })
+            .map(|(a, b)| centre + radius * DVec3::new(a.sin() * b.cos(), a.cos(), a.sin() * b.sin()))
+            .collect();
+        for (width, height) in [(64, 64), (300, 200), (50, 700), (1, 1)] {
+            for fov in [1.0, DEFAULT_VIEW_ANGLE_DEGREES, 100.0, 170.0] {
+                for target in [None, Some([0.3, 0.1, -0.2])] {
+                    let view = View { fov, target, ..View::default() };
+                    let camera = Camera::new(&view, &space, width, height).unwrap();
+                    // How far towards a border the sphere reaches, 1 being the border.
+                    let reach = sphere.iter().map(|&p| {
+                        let [x, y] = project(&camera, p);
+                        (2.0 * x / f64::from(width) - 1.0).abs().max((2.0 * y / f64::from(height) - 1.0).abs())
+                    });
+                    let reach = reach.fold(0.0, f64::max);
+                    assert!(reach < 1.0, "{width}x{height} {fov} {target:?}: {reach}");
+                    let closer = View { distance: Some(0.95 * camera.placed.unwrap()), ..view };
+                    let closer = Camera::new(&closer, &space, width, height).unwrap();
+                    // Below about 0.95 of the distance and its margin of 0.02 a sphere is cut; at wide angles the eye would be within it.
+                    let cut = sphere.iter().any(|&p| {
+                        let [x, y] = project(&closer, p);
+                        let behind = (p - closer.eye).dot(closer.forward) <= 0.0;
+                        behind || x < 0.0 || y < 0.0 || x > f64::from(width) || y > f64::from(height)
+                    });
+                    assert!(cut, "{width}x{height} {fov} {target:?}: not tight");
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn the_default_distance_can_be_given_as_a_number() {
+        let camera = Camera::new(&View::default(), &space(), 64, 64).unwrap();
+        assert_eq!(camera.placed, Some(3.15));
+        assert_eq!(Camera::new(&View { distance: Some(3.15), ..View::default() }, &space(), 64, 64), Ok(camera));
+        assert!((camera.radii - 3.15).abs() < 1e-12);
+        let eye = View { eye: Some([0.0, 0.0, 9.0]), ..View::default() };
+        let camera = Camera::new(&eye, &space(), 64, 64).unwrap();
+        assert_eq!((camera.placed, camera.radii), (None, 9.0 / space().radius()));
+    }
+
     #[test]
     fn views_that_cannot_be_name_their_field() {
         let refuse = |view: View| Camera::new(&view, &space(), 8, 8).unwrap_err().to_string();
         assert!(refuse(View { fov: 180.0, ..View::default() }).contains("--fov"));
+        assert!(refuse(View { fov: 1e-7, ..View::default() }).contains("--distance"));
         assert!(refuse(View { distance: Some(-1.0), ..View::default() }).contains("--distance"));
         assert!(refuse(View { eye: Some([0.0; 3]), target: Some([0.0; 3]), ..View::default() }).contains("--eye"));
         assert!(refuse(View { eye: Some([f64::NAN; 3]), ..View::default() }).contains("--eye"));
+        for up in [[0.0; 3], [0.0, 0.0, 7.0], [1e-12, 0.0, 1.0]] {
+            let said = refuse(View { eye: Some([0.0, 0.0, 4.0]), up: Some(up), ..View::default() });
+            assert_eq!(said, "--up must be neither 0 nor along the view direction 0,0,-1");
+        }
+        assert!(Camera::new(&View { eye: Some([0.0, 4.0, 0.0]), ..View::default() }, &space(), 8, 8).is_ok(), "straight down");
     }
 }

@@ -16,7 +16,7 @@ impl LineSets {
     }
 
     #[inline(always)]
-    fn mark(&self, kind: Kind, line: u64) {
+    pub(super) fn mark(&self, kind: Kind, line: u64) {
         let word = &self.sets[kind as usize][(line / 64) as usize];
         let bit = 1 << (line % 64);
         // Most lines are marked already: reading first keeps the cache line shared.

@@ -47,9 +47,14 @@ pub fn view_cosine(scene: &Scene, camera: &Camera, index: usize, pixel: &Pixel) 
 /// Full-resolution normals as colours, (n + 1) / 2.
 pub fn normal_map(frame: &Frame, scene: &Scene) -> RgbImage {
     map(frame, |_, pixel| match pixel {
-        Some(pixel) => bytes((normal(scene, pixel) + 1.0) * 0.5),
+        Some(pixel) => normal_colour(normal(scene, pixel)),
         None => Rgb([0, 0, 0]),
     })
+}
+
+/// Colour of a unit normal.
+pub(super) fn normal_colour(normal: Vec3) -> Rgb<u8> {
+    bytes((normal + 1.0) * 0.5)
 }
 
 /// Level of each pixel's triangle as a colour, the triangles told apart by brightness.
@@ -58,20 +63,37 @@ pub fn level_map(frame: &Frame) -> RgbImage {
         let Some(pixel) = pixel else { return BACKGROUND };
         let mixed =
             (u64::from(pixel.tree) << 24 ^ u64::from(pixel.level) << 20 ^ u64::from(pixel.node)).wrapping_mul(0x9E37_79B9_7F4A_7C15);
-        let brightness = 0.55 + 0.45 * ((mixed >> 40) as f32 / (1u32 << 24) as f32);
-        Vec3::from_array(LEVELS[pixel.level as usize % LEVELS.len()]) * brightness
+        level(pixel.level, (mixed >> 40) as f32 / (1u32 << 24) as f32)
     })
 }
 
-/// Largest difference of a pixel's channels as heat: black 0, through red and yellow, white 64 of 255 and more.
+/// Linear colour of a level, `shade` of 0 to 1 being its darkest to its brightest.
+fn level(level: u32, shade: f32) -> Vec3 {
+    Vec3::from_array(LEVELS[level as usize % LEVELS.len()]) * (0.55 + 0.45 * shade)
+}
+
+/// The same as the map has it.
+pub(super) fn level_colour(of: u32, shade: f32) -> Rgb<u8> {
+    encoded(level(of, shade))
+}
+
+/// Largest difference of a pixel's channels as heat.
 pub fn error_map(a: &RgbImage, b: &RgbImage) -> RgbImage {
     let mut out = RgbImage::new(a.width(), a.height());
     for ((out, a), b) in out.pixels_mut().zip(a.pixels()).zip(b.pixels()) {
         let difference = (0..3).map(|k| a.0[k].abs_diff(b.0[k])).max().unwrap_or(0);
-        let heat = 3.0 * (f32::from(difference) / 64.0).min(1.0);
-        *out = bytes(Vec3::new(heat, heat - 1.0, heat - 2.0));
+        *out = heat(f32::from(difference));
     }
     out
+}
+
+/// The difference that is white; larger ones are, too.
+pub(super) const HOTTEST: u32 = 64;
+
+/// Colour of a difference: black 0, through red and yellow, white [`HOTTEST`] of 255 and more.
+pub(super) fn heat(difference: f32) -> Rgb<u8> {
+    let heat = 3.0 * (difference / HOTTEST as f32).min(1.0);
+    bytes(Vec3::new(heat, heat - 1.0, heat - 2.0))
 }
 
 /// The shading normal of a pixel: full-resolution normals, interpolated.
@@ -89,11 +111,14 @@ fn map(frame: &Frame, colour: impl Fn(usize, &Option<Pixel>) -> Rgb<u8> + Sync) 
 
 /// Like [`map`] with linear colours.
 fn paint(frame: &Frame, colour: impl Fn(usize, &Option<Pixel>) -> Vec3 + Sync) -> RgbImage {
+    map(frame, |i, p| encoded(colour(i, p)))
+}
+
+/// A linear colour in sRGB.
+fn encoded(colour: Vec3) -> Rgb<u8> {
     let to_srgb = |c: f32| if c <= 0.003_130_8 { 12.92 * c } else { 1.055 * c.powf(1.0 / 2.4) - 0.055 };
-    map(frame, |i, p| {
-        let c = colour(i, p).clamp(Vec3::ZERO, Vec3::ONE);
-        bytes(Vec3::new(to_srgb(c.x), to_srgb(c.y), to_srgb(c.z)))
-    })
+    let c = colour.clamp(Vec3::ZERO, Vec3::ONE);
+    bytes(Vec3::new(to_srgb(c.x), to_srgb(c.y), to_srgb(c.z)))
 }
 
 fn bytes(c: Vec3) -> Rgb<u8> {

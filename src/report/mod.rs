@@ -4,4 +4,4 @@ pub mod crack;
 pub mod result;
 mod simulate;
 
-pub use simulate::{Job, simulate};
+pub use simulate::{Job, check, simulate};

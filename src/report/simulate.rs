@@ -1,7 +1,8 @@
 //! A frame on machines: one functional pass, and a replay on each machine beside it.
 
 use crate::render::FrameRays;
-use crate::report::result::Compute;
+use crate::report::result::{Compute, ResultError};
+use crate::sim::energy::EnergyModel;
 use crate::sim::machine::Machine;
 use crate::sim::replay::{self, Chunk, ReplayError, Run, Window};
 use std::sync::mpsc::{Receiver, SyncSender, sync_channel};
@@ -19,6 +20,15 @@ pub struct Job {
     pub compute: Compute,
     /// The cycles of which a waveform is wanted.
     pub window: Option<Window>,
+}
+
+/// Refuses a machine that no frame can run on: its energy tables or its memory cannot be read or be, or it is too large.
+///
+/// # Errors
+/// The first of these.
+pub fn check(machine: &Machine, compute: Compute) -> Result<(), ResultError> {
+    EnergyModel::new(machine)?;
+    Ok(replay::check(machine, compute == Compute::Units)?)
 }
 
 /// Runs the rays of `frame` for each of `jobs`. Rays are traced once; every replay has a thread of its own.

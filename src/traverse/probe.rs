@@ -1,6 +1,7 @@
 //! What a traversal tells about itself while it runs.
 
 use serde::Serialize;
+use std::ops::Range;
 
 /// What a memory line holds.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize)]
@@ -47,6 +48,10 @@ pub struct Section {
 pub trait Probe {
     /// Line `line` of the section of `kind` is read.
     fn line(&mut self, kind: Kind, line: u64);
+    /// A leaf of the full-resolution BVH is read, with the triangles in these slots.
+    fn leaf(&mut self, slots: Range<usize>) {
+        _ = slots;
+    }
     /// A box test of four children ran, and `met` of them are met.
     fn node(&mut self, met: u32) {
         _ = met;

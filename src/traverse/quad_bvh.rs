@@ -10,13 +10,15 @@ use crate::block::child_sort;
 use crate::block::child_test::sort;
 use crate::block::ray_setup::{self, RaySetup};
 use crate::block::tri_test::{self, TriTest};
-use crate::bvh::{BvhChild32, FullBvh, FullNodes, LINE_BYTES};
+use crate::bvh::{BvhChild32, FullBvh, FullNodes, LINE_BYTES, Leaves};
 use crate::format::{BvhChild, ChildRef};
 use crate::num::{Point, Ray, U, Wire};
 
 /// Traces rays through a full-resolution quad-BVH; keeps its stack from ray to ray.
 pub struct BvhTraverser<'a> {
-    bvh: &'a FullBvh,
+    levels: u32,
+    nodes: &'a FullNodes,
+    leaves: &'a Leaves,
     stack: TraversalStack,
 }
 
@@ -29,12 +31,12 @@ pub fn bvh_sections(bvh: &FullBvh) -> Vec<Section> {
 impl<'a> BvhTraverser<'a> {
     /// A traverser of `bvh`.
     pub fn new(bvh: &'a FullBvh) -> Self {
-        Self { bvh, stack: TraversalStack::default() }
+        Self { levels: bvh.levels, nodes: &bvh.nodes, leaves: &bvh.leaves, stack: TraversalStack::default() }
     }
 
     /// Number of splits N of the hierarchy below which the mesh lies.
     pub fn levels(&self) -> u32 {
-        self.bvh.levels
+        self.levels
     }
 
     /// Traces `ray`: every triangle met goes to `sink`, every line read to `probe`.
@@ -56,7 +58,8 @@ impl<'a> BvhTraverser<'a> {
             } else {
                 // Leaves keep their count in `level`, which trees need and leaves do not.
                 let slots = index..index + entry.level.get() as usize + 1;
-                self.bvh.leaves.lines(slots.clone(), |address| probe.line(Kind::Leaf, address / LINE_BYTES));
+                probe.leaf(slots.clone());
+                self.leaves.lines(slots.clone(), |address| probe.line(Kind::Leaf, address / LINE_BYTES));
                 for slot in slots {
                     self.triangle(ray, slot, probe, sink);
                 }
@@ -83,7 +86,7 @@ impl<'a> BvhTraverser<'a> {
             index: child.index,
             ..Entry::default()
         };
-        match &self.bvh.nodes {
+        match self.nodes {
             FullNodes::Boxes16(nodes) => {
                 read_pair(probe, Kind::BvhNode, index);
                 let child = |k| quarter::<BvhChild>(&nodes[index], k);
@@ -112,12 +115,12 @@ impl<'a> BvhTraverser<'a> {
 
     #[inline(always)]
     fn triangle<P: Probe, H: HitSink>(&mut self, ray: &Ray, slot: usize, probe: &mut P, sink: &mut H) {
-        let (points, id) = self.bvh.leaves.triangle(slot);
+        let (points, id) = self.leaves.triangle(slot);
         let [p0, p1, p2] = points.map(Point::from_i32);
         let test = TriTest::eval(&tri_test::In { origin: ray.origin, direction: ray.direction, p0, p1, p2 });
         probe.triangle(test.hit);
         if test.hit {
-            let levels = self.bvh.levels;
+            let levels = self.levels;
             let (tree, node) = (id >> (2 * levels), id & ((1 << (2 * levels)) - 1));
             sink.offer(TriangleId { tree, level: levels, node }, &test);
         }

@@ -1,5 +1,6 @@
 use super::*;
 use crate::bvh::check::synthetic_terrain;
+use crate::bvh::{BvhError, FullBvh, FullNodes, FullOptions};
 use crate::format::{BvhChild, ChildRef};
 use std::collections::BTreeSet;
 
@@ -74,11 +75,13 @@ fn lines_are_those_of_the_records() {
 #[test]
 fn both_box_widths_refer_to_the_same_and_16_bits_contain_32() {
     let h = synthetic_terrain(4, 4);
-    let FullNodes::Boxes16(narrow) = FullBvh::build(&h, &FullOptions::new(4, false, LeafLayout::Line)).unwrap().nodes else { panic!("16") };
-    let FullNodes::Boxes32(wide) = FullBvh::build(&h, &FullOptions::new(4, true, LeafLayout::Line)).unwrap().nodes else { panic!("32") };
+    let nodes = |wide| FullBvh::build(&h, &FullOptions::new(4, wide, LeafLayout::Line)).unwrap().nodes;
+    let (narrow, wide) = (nodes(false), nodes(true));
+    let FullNodes::Boxes16(narrow) = narrow.as_ref() else { panic!("16") };
+    let FullNodes::Boxes32(wide) = wide.as_ref() else { panic!("32") };
     assert_eq!(narrow.len(), wide.len());
     let mut children = 0;
-    for (n, w) in narrow.iter().zip(&wide) {
+    for (n, w) in narrow.iter().zip(wide) {
         for k in 0..4 {
             let n = BvhChild::from_words(&n[2 * k..]);
             let w = super::super::BvhChild32::from_words(&w[4 * k..]);

@@ -1,10 +1,9 @@
 //! The files of a simulation.
 
 use super::plots;
-use anyhow::Context;
-use lodray::format::write_and_rename;
+use crate::cli::output::write_file;
 use lodray::report::result::{IntervalResult, SimResult};
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 const RESULT: &str = "result.json";
 const ENERGY: &str = "energy.svg";
@@ -13,26 +12,20 @@ const INTERVALS: &str = "intervals.csv";
 const POWER: &str = "power.svg";
 const TRAFFIC: &str = "traffic.svg";
 
-/// Where they go.
+/// Their names.
 pub struct Files {
-    folder: PathBuf,
     /// Before the names of each machine's files.
     prefixes: Vec<String>,
 }
 
 impl Files {
-    /// The files in `folder` of runs on machines of these labels; with one machine names have no label.
-    pub fn new(folder: &Path, labels: &[&str]) -> Self {
+    /// The files of runs on machines of these labels; with one machine names have no label.
+    pub fn new(labels: &[&str]) -> Self {
         let prefixes = match labels {
             [_] => vec![String::new()],
             several => several.iter().map(|label| format!("{label}-")).collect(),
         };
-        Self { folder: folder.to_owned(), prefixes }
-    }
-
-    /// The folder.
-    pub fn folder(&self) -> &Path {
-        &self.folder
+        Self { prefixes }
     }
 
     /// All names.
@@ -41,25 +34,51 @@ impl Files {
         own.chain([RESULT, ENERGY].map(str::to_owned)).collect()
     }
 
-    /// Writes them all.
-    pub fn write(&self, results: &[SimResult]) -> anyhow::Result<()> {
+    /// Writes them into `folder`; says which plots there are not, and why.
+    pub fn write(&self, folder: &Path, results: &[SimResult]) -> anyhow::Result<Vec<String>> {
+        let save = |name: &str, text: &str| write_file(&folder.join(name), text);
+        let mut notes = Vec::new();
+        let mut plot = |name: &str, lacks: Option<&str>, draw: &dyn Fn() -> anyhow::Result<String>| match lacks {
+            Some(why) => {
+                notes.push(format!("no {name}: {why}"));
+                Ok(())
+            }
+            None => save(name, &draw()?),
+        };
         let json = match results {
             [one] => serde_json::to_string_pretty(one),
             several => serde_json::to_string_pretty(several),
         };
-        self.save(RESULT, &(json? + "\n"))?;
-        self.save(ENERGY, &plots::energy(results)?)?;
+        save(RESULT, &(json? + "\n"))?;
+        plot(ENERGY, no_energy(results), &|| plots::energy(results))?;
         for (prefix, result) in self.prefixes.iter().zip(results) {
-            self.save(&format!("{prefix}{INTERVALS}"), &intervals_csv(&result.intervals))?;
-            self.save(&format!("{prefix}{POWER}"), &plots::power(result)?)?;
-            self.save(&format!("{prefix}{TRAFFIC}"), &plots::traffic(result)?)?;
+            save(&format!("{prefix}{INTERVALS}"), &intervals_csv(&result.intervals))?;
+            plot(&format!("{prefix}{POWER}"), no_power(result), &|| plots::power(result))?;
+            plot(&format!("{prefix}{TRAFFIC}"), no_traffic(result), &|| plots::traffic(result))?;
         }
-        Ok(())
+        Ok(notes)
     }
+}
 
-    fn save(&self, name: &str, text: &str) -> anyhow::Result<()> {
-        let path = self.folder.join(name);
-        write_and_rename(&path, |out| out.write_all(text.as_bytes())).with_context(|| format!("cannot write {}", path.display()))
+const NOTHING_READ: &str = "the frame reads nothing, as no ray meets the model's box";
+
+/// Why there is no plot of energies, if so.
+fn no_energy(results: &[SimResult]) -> Option<&'static str> {
+    results.iter().all(|r| r.l1.requests == 0).then_some(NOTHING_READ)
+}
+
+/// Why there is no plot of power over time, if so.
+fn no_power(r: &SimResult) -> Option<&'static str> {
+    let relative = r.energy.average_watts.is_none().then_some("the machine's energies are relative, so it has no power in watts");
+    no_traffic(r).or(relative)
+}
+
+/// Why there is no plot of anything over time, if so.
+fn no_traffic(r: &SimResult) -> Option<&'static str> {
+    match r.intervals.len() {
+        _ if r.l1.requests == 0 => Some(NOTHING_READ),
+        0 | 1 => Some("the frame is too short to show anything over time: it is one interval"),
+        _ => None,
     }
 }
 

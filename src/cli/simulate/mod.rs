@@ -3,14 +3,16 @@
 mod files;
 pub(super) mod plots;
 mod table;
+mod units;
 
 use super::args::{CameraArgs, Change, LeafArgs, SimMethod, delta};
-use super::output::{check_target, folder, open, print_json, print_line};
-use super::pass::{Pass, Target, machine};
+use super::cache::{Cache, CacheArgs};
+use super::folder::{Overrule, RunFolder, one_run};
+use super::output::{check_target, explain, grouped, open, print_json, print_line, remark, warn, write_file};
+use super::pass::{Pass, Target, machine, machine_files};
 use super::render::Built;
 use anyhow::Context;
 use files::Files;
-use lodray::format::write_and_rename;
 use lodray::report::result::{Compute, SimResult};
 use lodray::sim::replay::Window;
 use lodray::traverse::ModelSpace;
@@ -42,13 +44,17 @@ pub struct Args {
     camera: CameraArgs,
     #[command(flatten)]
     leaves: LeafArgs,
+    #[command(flatten)]
+    cache: CacheArgs,
     /// Folder for the figures as JSON, what happened over time as CSV, and plots as SVG
-    #[arg(short, long)]
+    #[arg(short, long, long_help = one_run("Folder for the figures as JSON, what happened over time as CSV, and plots as SVG"))]
     out: Option<PathBuf>,
+    #[command(flatten)]
+    overrule: Overrule,
     /// File for a waveform (VCD) of the machine: queues, misses under way and cache events; needs --window
     #[arg(long, value_name = "FILE", requires = "window")]
     vcd: Option<PathBuf>,
-    /// Cycles of the waveform, first and last
+    /// Cycles of the waveform, first and last, counted from 0; the frame must have the first
     #[arg(long, value_name = "FROM:TO", requires = "vcd", value_parser = window)]
     window: Option<Window>,
     /// Print the figures as JSON; of several machines as an array
@@ -61,56 +67,78 @@ fn window(s: &str) -> Result<Window, String> {
     let ends = s.split_once(':').and_then(|(from, to)| Some((from.parse().ok()?, to.parse().ok()?)));
     match ends {
         Some((from, to)) if from <= to => Ok(Window { from, to }),
-        _ => Err(format!("'{s}' is not a stretch of cycles such as 1000:2000")),
+        _ => Err(format!("'{s}' is not a stretch of cycles such as 1000:2000: two whole numbers, the first not above the second")),
     }
 }
 
+/// Refuses a window that begins after the frame's last cycle, and says if it ends there.
+fn check_window(window: Window, last: u64) -> anyhow::Result<()> {
+    let Window { from, to } = window;
+    let last_shown = grouped(last);
+    anyhow::ensure!(from <= last, "--window {from}:{to}: begins beyond the frame's end; its cycles are 0 to {last_shown}");
+    if to > last {
+        warn(&format!("note: --window {from}:{to} ends beyond the frame's end; the waveform has cycles {from} to {last_shown}"));
+    }
+    Ok(())
+}
+
 pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
-    let machines = args.machine.iter().map(|name| machine(name, &args.set)).collect::<anyhow::Result<Vec<_>>>()?;
+    let read = |name: &String| machine(name, &args.set, "--set").with_context(|| format!("--machine {name}"));
+    let machines = args.machine.iter().map(read).collect::<anyhow::Result<Vec<_>>>()?;
     for (k, machine) in machines.iter().enumerate() {
         anyhow::ensure!(machines[..k].iter().all(|before| before.label != machine.label), "--machine: {} is given twice", machine.label);
     }
     if let Some(vcd) = &args.vcd {
         anyhow::ensure!(machines.len() == 1, "--vcd: takes one machine, not {}", machines.len());
-        check_target(vcd, Some(&args.scene))?;
+        check_target(vcd, &[&args.scene])?;
     }
     let scene = open(&args.scene)?;
     let space = ModelSpace::of(&scene);
     let camera = args.camera.camera(&space, None)?;
     let labels: Vec<_> = machines.iter().map(|machine| machine.label.as_str()).collect();
-    let files = args.out.as_ref().map(|folder| Files::new(folder, &labels));
-    if let Some(files) = &files {
-        folder(files.folder(), files.names().iter().map(String::as_str), Some(&args.scene))?;
-    }
+    let files = Files::new(&labels);
+    let read: Vec<_> = args.machine.iter().zip(&machines).flat_map(|(name, machine)| machine_files(name, machine)).collect();
+    let inputs: Vec<_> = std::iter::once(&args.scene).chain(&read).map(PathBuf::as_path).collect();
+    let names = files.names();
+    let open_folder = |out: &PathBuf| RunFolder::open(out, names.iter().map(String::as_str), &inputs, &args.overrule);
+    let folder = args.out.as_ref().map(open_folder).transpose()?;
 
-    let built = Built::new(args.method.into(), &scene, args.leaves)?;
+    let built = Built::new(args.method.into(), &scene, args.leaves, &Cache::new(&args.cache)?)?;
     let pass = Pass {
         scene: &scene,
         space: &space,
         method: args.method,
         built: &built,
         leaves: args.leaves,
+        distance: camera.placed,
         camera,
-        distance: args.camera.radii(),
         delta: args.delta,
     };
     let targets: Vec<_> = machines.into_iter().map(|machine| Target { machine, compute: args.compute, window: args.window }).collect();
     let outcomes = pass.run(&targets)?.into_iter().collect::<anyhow::Result<Vec<_>>>()?;
     let (results, mut waves): (Vec<SimResult>, Vec<_>) = outcomes.into_iter().unzip();
+    if let (Some(window), Some(result)) = (&args.window, results.first()) {
+        check_window(*window, result.cycles)?;
+    }
     if let (Some(vcd), Some(wave)) = (&args.vcd, waves.pop().flatten()) {
-        write_and_rename(vcd, |out| out.write_all(&wave)).with_context(|| format!("cannot write {}", vcd.display()))?;
+        write_file(vcd, &wave)?;
     }
 
-    if let Some(files) = &files {
-        files.write(&results)?;
+    let mut notes = Vec::new();
+    if let Some(mut folder) = folder {
+        notes = files.write(folder.staging(), &results)?;
+        notes.iter().for_each(|note| folder.note(note.clone()));
+        folder.finish()?;
     }
     match (args.json, results.as_slice()) {
         (true, [one]) => print_json(one)?,
         (true, several) => print_json(&several)?,
         (false, several) => {
             print_line(&several.iter().map(table::table).collect::<Vec<_>>().join("\n\n"))?;
-            if let Some(files) = &files {
-                print_line(&format!("\nfigures and plots in {}", files.folder().display()))?;
+            explain("simulate")?;
+            if let Some(out) = &args.out {
+                remark(&format!("figures and plots in {}", out.display()))?;
+                notes.iter().try_for_each(|note| remark(note))?;
             }
         }
     }

@@ -1,5 +1,6 @@
 //! Plots of simulations, as SVG: no fonts are needed to make them, and the same figures give the same bytes.
 
+pub(in crate::cli) use super::units::{Unit, energy_unit, time_unit};
 use anyhow::anyhow;
 use lodray::report::result::{IntervalPower, IntervalResult, SimResult};
 use plotters::coord::Shift;
@@ -98,7 +99,10 @@ pub fn energy(results: &[SimResult]) -> anyhow::Result<String> {
     let what = if shares { "Energy of a frame, parts of all".to_owned() } else { "Energy of a frame".to_owned() };
     let scale = |r: &SimResult| if shares && r.energy.total > 0.0 { 100.0 / r.energy.total } else { 1.0 };
     let most = top(results.iter().map(|r| r.energy.total * scale(r)));
-    let unit = if shares { "% of the frame's energy".to_owned() } else { format!("energy, {}", axis_unit(&first.energy.unit)) };
+    let unit = energy_unit(&first.energy.unit, most);
+    let unit = if shares { Unit { size: 1.0, ..unit } } else { unit };
+    let most = most / unit.size;
+    let name = if shares { "% of the frame's energy".to_owned() } else { format!("energy, {}", unit.name) };
     let bars = results.len() as u32;
     svg((LEGEND + 140 + (170 * bars).max(320), 460), title(&what, first, &machine).as_slice(), |area| {
         let (plot, names) = area.split_horizontally(area.dim_in_pixel().0 - LEGEND);
@@ -114,7 +118,7 @@ pub fn energy(results: &[SimResult]) -> anyhow::Result<String> {
             .light_line_style(TRANSPARENT)
             .x_labels(0)
             .y_label_formatter(&tick)
-            .y_desc(unit.as_str())
+            .y_desc(name.as_str())
             .label_style((FONT, TEXT))
             .draw()
             .map_err(wrong)?;
@@ -122,7 +126,7 @@ pub fn energy(results: &[SimResult]) -> anyhow::Result<String> {
         for (k, result) in (0..bars).map(f64::from).zip(results) {
             let mut base = 0.0;
             for ((_, part), colour) in result.energy.split().into_iter().zip(COLOURS) {
-                let part = part * scale(result);
+                let part = part * scale(result) / unit.size;
                 let bar = Rectangle::new([(k + 0.2, base), (k + 0.8, base + part)], colour.filled());
                 chart.plotting_area().draw(&bar).map_err(wrong)?;
                 base += part;
@@ -135,14 +139,11 @@ pub fn energy(results: &[SimResult]) -> anyhow::Result<String> {
     })
 }
 
-fn axis_unit(unit: &str) -> &str {
-    if unit == "uJ" { "µJ" } else { unit }
-}
-
 /// Time as plots show it: how much of its unit is a cycle, and the axis's name.
-fn time_axis(r: &SimResult) -> (f64, &'static str) {
+fn time_axis(r: &SimResult) -> (f64, String) {
     let ms = if r.cycles == 0 { 1.0 } else { r.milliseconds / r.cycles as f64 };
-    if r.milliseconds < 1.0 { (1e3 * ms, "time, µs") } else { (ms, "time, ms") }
+    let unit = time_unit(r.milliseconds);
+    (ms / unit.size, format!("time, {}", unit.name))
 }
 
 /// A value that stays the same within each stretch, as points.
@@ -167,9 +168,11 @@ pub fn power(r: &SimResult) -> anyhow::Result<String> {
         ("DRAM", DRAM, |w| w.dram),
     ];
     let sum = |i: &IntervalResult, count: usize| i.watts.map_or(0.0, |w| parts[..count].iter().map(|part| part.2(&w)).sum());
-    let most = top(r.intervals.iter().map(|i| sum(i, parts.len())));
-    let what = if r.energy.average_watts.is_some() { "Power over time" } else { "Power over time: none, energies are relative" };
-    svg((900, 460), &title(what, r, &r.setup.machine.title()), |area| {
+    let most = r.intervals.iter().map(|i| sum(i, parts.len())).fold(0.0, f64::max);
+    let unit = Unit::of(most, "W");
+    let sum = |i: &IntervalResult, count: usize| sum(i, count) / unit.size;
+    let most = top(std::iter::once(most / unit.size));
+    svg((900, 460), &title("Power over time", r, &r.setup.machine.title()), |area| {
         let (plot, names) = area.split_horizontally(area.dim_in_pixel().0 - LEGEND);
         let mut chart = ChartBuilder::on(&plot)
             .margin(10)
@@ -179,7 +182,7 @@ pub fn power(r: &SimResult) -> anyhow::Result<String> {
             .map_err(wrong)?;
         let mut mesh = chart.configure_mesh();
         mesh.light_line_style(TRANSPARENT).x_label_formatter(&tick).y_label_formatter(&tick);
-        mesh.x_desc(time_axis(r).1).y_desc("power, W").label_style((FONT, TEXT)).draw().map_err(wrong)?;
+        mesh.x_desc(time_axis(r).1).y_desc(format!("power, {}", unit.name)).label_style((FONT, TEXT)).draw().map_err(wrong)?;
         // The whole first, then what is below its topmost part, and so on.
         for count in (1..=parts.len()).rev() {
             let colour = parts[count - 1].1;
@@ -193,16 +196,19 @@ pub fn power(r: &SimResult) -> anyhow::Result<String> {
 /// What goes through L1s, L2 and memory over time, each on its own scale.
 pub fn traffic(r: &SimResult) -> anyhow::Result<String> {
     let seconds = if r.cycles == 0 { 1.0 } else { r.milliseconds * 1e-3 / r.cycles as f64 };
-    let rate = move |bytes: u64, cycles: u64| bytes as f64 / (cycles as f64 * seconds) * 1e-9;
+    let rate = move |bytes: u64, cycles: u64| bytes as f64 / (cycles as f64 * seconds);
     let line = lodray::bvh::LINE_BYTES;
     let values: [Panel; 3] = [
         ("L1s, asked of".to_owned(), L1, Box::new(move |i| rate(i.l1_requests * line, i.cycles))),
         ("L2, asked of".to_owned(), L2, Box::new(move |i| rate(i.l2_requests * line, i.cycles))),
         (format!("DRAM, at most {:.0} GB/s", r.dram.peak_bytes_per_second * 1e-9), DRAM, Box::new(move |i| rate(i.dram_bytes, i.cycles))),
     ];
+    let largest = |value: &dyn Fn(&IntervalResult) -> f64| r.intervals.iter().map(value).fold(0.0, f64::max);
     svg((900, 760), &title("Traffic over time", r, &r.setup.machine.title()), |area| {
         let panels = area.split_evenly((values.len(), 1));
         for (panel, (name, colour, value)) in panels.iter().zip(&values) {
+            let unit = Unit::of(largest(value), "B/s");
+            let value = |i: &IntervalResult| value(i) / unit.size;
             let is_last = *name == values[values.len() - 1].0;
             let mut chart = ChartBuilder::on(panel)
                 .margin(10)
@@ -210,14 +216,14 @@ pub fn traffic(r: &SimResult) -> anyhow::Result<String> {
                 .caption(name, (FONT, TEXT))
                 .x_label_area_size(if is_last { 44 } else { 24 })
                 .y_label_area_size(70)
-                .build_cartesian_2d(0.0..last(r), 0.0..top(r.intervals.iter().map(value)))
+                .build_cartesian_2d(0.0..last(r), 0.0..top(r.intervals.iter().map(&value)))
                 .map_err(wrong)?;
             let mut mesh = chart.configure_mesh();
             mesh.light_line_style(TRANSPARENT).x_label_formatter(&tick).y_label_formatter(&tick).y_labels(6);
             if is_last {
                 mesh.x_desc(time_axis(r).1);
             }
-            mesh.y_desc("GB/s").label_style((FONT, TEXT)).draw().map_err(wrong)?;
+            mesh.y_desc(unit.name.as_str()).label_style((FONT, TEXT)).draw().map_err(wrong)?;
             chart.draw_series(AreaSeries::new(steps(r, value), 0.0, colour.mix(0.4)).border_style(*colour)).map_err(wrong)?;
         }
         Ok(())

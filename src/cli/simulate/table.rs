@@ -50,6 +50,9 @@ pub fn table(r: &SimResult) -> String {
     energy(&mut lines, r);
     lines.gap();
     traffic(&mut lines, r);
+    if r.l1.requests == 0 {
+        lines.0 += "note: no ray meets the model's box, so nothing is read\n";
+    }
     lines.0.trim_end().to_owned()
 }
 
@@ -62,7 +65,7 @@ fn head(r: &SimResult) -> String {
     };
     let [width, height] = setup.view.size;
     let place = match setup.view.distance {
-        Some(distance) => format!("{distance} radii"),
+        Some(distance) => format!("{distance} bounding radii"),
         None => format!("{:?}", setup.view.eye),
     };
     let machine = &setup.machine;

@@ -3,9 +3,9 @@
 mod plots;
 mod table;
 
-use super::output::{busy, folder, open, print_json, print_line, progress};
-use anyhow::Context;
-use lodray::format::write_and_rename;
+use super::args::{MAX_RAYS, seed, whole};
+use super::folder::{Overrule, RunFolder, one_run};
+use super::output::{busy, explain, open, print_json, print_line, progress, remark, write_file};
 use lodray::num::MAX_LEVELS;
 use lodray::stability::growth::{Growth, growth, rays as growth_rays};
 use lodray::stability::hunt::{Hunt, hunt};
@@ -25,7 +25,7 @@ pub struct Args {
     /// Scene file: runs the families of rays on it instead of the built-in cases
     scene: Option<PathBuf>,
     /// Rays over all cases (default 100 million)
-    #[arg(long, value_parser = clap::value_parser!(u64).range(1..), allow_negative_numbers = true, conflicts_with = "long")]
+    #[arg(long, value_parser = whole::<u64>(1..=MAX_RAYS), allow_negative_numbers = true, conflicts_with = "long")]
     rays: Option<u64>,
     /// 1,000 million rays
     #[arg(long)]
@@ -34,17 +34,19 @@ pub struct Args {
     #[arg(long = "case", value_name = "NAME")]
     cases: Vec<String>,
     /// Steps of the hunt for counterexamples, 0 for none (default: one for each 200 rays; none with --case)
-    #[arg(long, value_name = "STEPS", allow_negative_numbers = true)]
+    #[arg(long, value_name = "STEPS", value_parser = whole::<u64>(0..=MAX_RAYS), allow_negative_numbers = true)]
     hunt: Option<u64>,
     /// Seed
-    #[arg(long, default_value_t = 1, allow_negative_numbers = true)]
+    #[arg(long, default_value_t = 1, value_parser = seed(), allow_negative_numbers = true)]
     seed: u64,
     /// Print the figures as JSON
     #[arg(long)]
     json: bool,
     /// Folder for the table, the figures, plots of error growth, and the rays that the hunt found
-    #[arg(short, long = "out", value_name = "FOLDER")]
+    #[arg(short, long, value_name = "FOLDER", long_help = one_run("Folder for the table, the figures, plots of error growth, and the rays that the hunt found"))]
     out: Option<PathBuf>,
+    #[command(flatten)]
+    overrule: Overrule,
 }
 
 /// Everything measured.
@@ -67,22 +69,29 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
     let all = if args.scene.is_some() { FILE_CASES } else { CASES };
     let cases = chosen(all, &args.cases)?;
     let given = args.scene.as_deref().map(model).transpose()?;
-    if let Some(out) = &args.out {
-        folder(out, [TABLE, JSON, FOUND, plots::LEVELS, plots::DISTANCE], args.scene.as_deref())?;
-    }
+    // Curves are drawn of built-in models only.
+    let charts = if args.scene.is_none() { &[plots::LEVELS, plots::DISTANCE][..] } else { &[] };
+    let names = [TABLE, JSON, FOUND].into_iter().chain(charts.iter().copied());
+    let inputs: Vec<_> = args.scene.as_deref().into_iter().collect();
+    let folder = args.out.as_ref().map(|out| RunFolder::open(out, names, &inputs, &args.overrule)).transpose()?;
     let rays = args.rays.unwrap_or(if args.long { LONG } else { USUAL });
     let usual_steps = if args.cases.is_empty() { rays / RAYS_PER_STEP } else { 0 };
     let steps = args.hunt.unwrap_or(usual_steps);
 
     let figures = quietly(|| measure(args, &cases, given.as_slice(), rays, steps))?;
     let breaches = figures.report.total().breaches() + figures.hunt.as_ref().map_or(0, Hunt::breaches);
-    if let Some(out) = &args.out {
-        write(out, &figures)?;
+    if let Some(folder) = folder {
+        write(folder.staging(), &figures)?;
+        folder.finish()?;
     }
     if args.json {
         print_json(&figures)?;
     } else {
         print_line(&table::text(&figures.report, figures.hunt.as_ref(), args.seed))?;
+        explain("stability")?;
+        if let Some(out) = &args.out {
+            remark(&format!("table, figures and plots in {}", out.display()))?;
+        }
     }
     Ok(if breaches == 0 { ExitCode::SUCCESS } else { ExitCode::FAILURE })
 }
@@ -135,10 +144,7 @@ fn measure(args: &Args, cases: &[&Case], given: &[Model], rays: u64, steps: u64)
 }
 
 fn write(out: &Path, figures: &Figures) -> anyhow::Result<()> {
-    let put = |name: &str, text: &str| {
-        let path = out.join(name);
-        write_and_rename(&path, |file| file.write_all(text.as_bytes())).with_context(|| format!("cannot write {}", path.display()))
-    };
+    let put = |name: &str, text: &str| write_file(&out.join(name), text);
     put(TABLE, &table::markdown(&figures.report, figures.hunt.as_ref()))?;
     put(JSON, &(serde_json::to_string_pretty(figures)? + "\n"))?;
     if let Some(hunt) = &figures.hunt {

@@ -1,14 +1,15 @@
-//! Charts of a sweep: energy and time of a scene's views on a machine, its methods side by side.
+//! Charts of a sweep: energy and time of a scene's views on a machine, its methods side by side; or, of one view with one method, its machines.
 
+use super::labels::{Setting, labels};
 use super::rows::Row;
-use crate::cli::simulate::plots::{COLOURS, FONT, LEGEND, TEXT, legend, svg, tick, top, wrong};
+use crate::cli::simulate::plots::{COLOURS, FONT, LEGEND, TEXT, energy_unit, legend, svg, tick, time_unit, top, wrong};
 use lodray::report::result::SimResult;
 use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, Pos, VPos};
-use std::collections::BTreeMap;
 
-/// Columns of a bar and of the gap between two views.
+/// Columns of a bar at least, of a character of its name, and of the gap between two groups.
 const BAR: u32 = 38;
+const CHARACTER: u32 = 7;
 const GAP: u32 = 26;
 const TIME: RGBColor = RGBColor(68, 119, 170);
 
@@ -18,98 +19,189 @@ struct Bar {
     parts: Vec<f64>,
 }
 
-/// The bars of a view.
+/// The bars of a view, and its name in lines.
 struct Group {
-    name: String,
+    name: Vec<String>,
     bars: Vec<Bar>,
 }
 
-/// File name and contents of every chart; a scene and machine with one view only have none.
+/// What a chart shows of a scene.
+struct Subject<'a> {
+    scene: &'a str,
+    /// What is the same for all its bars, for the file's name and for the title.
+    common: String,
+    title: String,
+    results: Vec<&'a SimResult>,
+    /// What may tell its bars apart.
+    settings: &'static [Setting],
+}
+
+/// A scene's results, by machine.
+type ByMachine<'a> = Vec<(String, Vec<&'a SimResult>)>;
+
+/// File name and contents of every chart. What has one bar only has no chart, and neither has what is 0 everywhere.
 pub fn charts<'a>(rows: impl Iterator<Item = &'a Row>) -> anyhow::Result<Vec<(String, String)>> {
-    // Rows come scene by scene, view by view.
-    let mut sets: BTreeMap<(String, String), Vec<&SimResult>> = BTreeMap::new();
+    // By scene, then by machine, in the order of the list.
+    let mut scenes: Vec<(&str, ByMachine<'_>)> = Vec::new();
     for (row, result) in rows.filter_map(|row| Some((row, row.result.as_ref()?))) {
         let machine = format!("{}, compute {}", result.setup.machine.title(), result.setup.compute.name());
-        sets.entry((row.scene.clone(), machine)).or_default().push(result);
+        entry(entry(&mut scenes, row.scene.as_str()), machine).push(result);
     }
-    let mut files = Vec::new();
-    for ((scene, machine), results) in sets {
-        let mut names: Vec<(&SimResult, Vec<&SimResult>)> = Vec::new();
-        for result in results {
-            match names.last_mut().filter(|(first, _)| first.setup.view == result.setup.view) {
-                Some((_, others)) => others.push(result),
-                None => names.push((result, vec![result])),
+    let mut files: Vec<(String, String)> = Vec::new();
+    for (scene, machines) in scenes {
+        let subjects: Vec<_> = if machines.iter().all(|(_, results)| results.len() == 1) {
+            // Energies in different units have no axis in common.
+            let mut by_unit: Vec<(&str, Vec<&SimResult>)> = Vec::new();
+            machines.iter().flat_map(|(_, results)| results).for_each(|r| entry(&mut by_unit, r.energy.unit.as_str()).push(r));
+            by_unit.into_iter().map(|(_, results)| Subject::machines(scene, results)).collect()
+        } else {
+            let of =
+                |(common, results): (String, _)| Subject { scene, title: common.clone(), common, results, settings: Setting::OF_METHODS };
+            machines.into_iter().map(of).collect()
+        };
+        for subject in subjects.iter().filter(|subject| subject.results.len() > 1) {
+            for (what, chart) in subject.charts()? {
+                files.push((unused(&files, &format!("{what}-{scene}-{}", subject.common)), chart));
             }
         }
-        if names.len() < 2 {
-            continue;
-        }
-        let unit = names[0].0.energy.unit.replace("uJ", "µJ");
-        let groups = |parts: &dyn Fn(&SimResult) -> Vec<f64>| -> Vec<Group> {
-            let bar = |r: &&SimResult| Bar { name: r.setup.method.name.clone(), parts: parts(r) };
-            names.iter().map(|(first, all)| Group { name: place(first), bars: all.iter().map(bar).collect() }).collect()
-        };
-        let energies = groups(&|r| r.energy.split().map(|part| part.1).to_vec());
-        let times = groups(&|r| vec![r.milliseconds]);
-        let parts: Vec<_> = names[0].0.energy.split().into_iter().zip(COLOURS).map(|((name, _), colour)| (name, colour)).collect();
-        let file = |what: &str| {
-            let plain = |c: char| if c.is_ascii_alphanumeric() || c == '.' { c } else { '-' };
-            let name: String = format!("{what}-{scene}-{machine}").chars().map(plain).collect();
-            name.split('-').filter(|part| !part.is_empty()).collect::<Vec<_>>().join("-") + ".svg"
-        };
-        let title = |what: &str| vec![format!("{what} of a frame: {scene}"), machine.clone()];
-        files.push((file("energy"), chart(&title("Energy"), &energies, &parts, &format!("energy, {unit}"))?));
-        files.push((file("time"), chart(&title("Time"), &times, &[("time", TIME)], "time, ms")?));
     }
     Ok(files)
+}
+
+/// What stands under `key`, at the end if it is new.
+fn entry<K: PartialEq, V: Default>(entries: &mut Vec<(K, V)>, key: K) -> &mut V {
+    let at = entries.iter().position(|entry| entry.0 == key).unwrap_or_else(|| {
+        entries.push((key, V::default()));
+        entries.len() - 1
+    });
+    &mut entries[at].1
+}
+
+/// A file name that is not among `files`, from any text.
+fn unused(files: &[(String, String)], text: &str) -> String {
+    let plain: String = text.chars().map(|c| if c.is_ascii_alphanumeric() || c == '.' { c } else { '-' }).collect();
+    let plain = plain.split('-').filter(|part| !part.is_empty()).collect::<Vec<_>>().join("-");
+    let names = std::iter::once(format!("{plain}.svg")).chain((2..).map(|k| format!("{plain}-{k}.svg")));
+    names.into_iter().find(|name| files.iter().all(|file| file.0 != *name)).unwrap_or_default()
+}
+
+impl<'a> Subject<'a> {
+    /// Of one view with one method on several machines.
+    fn machines(scene: &'a str, results: Vec<&'a SimResult>) -> Self {
+        let same = |of: &dyn Fn(&SimResult) -> String| {
+            let first = of(results[0]);
+            results.iter().all(|r| of(r) == first).then_some(first)
+        };
+        let common = same(&|r| r.setup.machine.title()).or_else(|| same(&|r| r.setup.machine.label.clone()));
+        let common = common.unwrap_or_else(|| "machines".to_owned());
+        let method = labels(&results[..1], Setting::OF_METHODS).concat();
+        let quality = results[0].setup.method.delta.map_or_else(String::new, |delta| format!(" at delta {delta}"));
+        Self { scene, title: format!("{common}, {method}{quality}"), common, results, settings: Setting::OF_MACHINES }
+    }
+
+    /// What is drawn, and the drawing.
+    fn charts(&self) -> anyhow::Result<Vec<(&'static str, String)>> {
+        let first = self.results[0];
+        let (energy, time) = (|r: &SimResult| r.energy.total, |r: &SimResult| r.milliseconds);
+        let most = |of: fn(&SimResult) -> f64| self.results.iter().map(|r| of(r)).fold(0.0, f64::max);
+        let mut charts = Vec::new();
+        if most(energy) > 0.0 {
+            let unit = energy_unit(&first.energy.unit, most(energy));
+            let parts: Vec<_> = first.energy.split().into_iter().zip(COLOURS).map(|((name, _), colour)| (name, colour)).collect();
+            let groups = self.groups(|r| r.energy.split().map(|part| part.1 / unit.size).to_vec());
+            charts.push(("energy", self.chart("Energy", &groups, &parts, &format!("energy, {}", unit.name))?));
+        }
+        if most(time) > 0.0 {
+            let unit = time_unit(most(time));
+            let groups = self.groups(|r| vec![r.milliseconds / unit.size]);
+            charts.push(("time", self.chart("Time", &groups, &[("time", TIME)], &format!("time, {}", unit.name))?));
+        }
+        Ok(charts)
+    }
+
+    fn groups(&self, parts: impl Fn(&SimResult) -> Vec<f64>) -> Vec<Group> {
+        let mut groups: Vec<(&SimResult, Vec<Bar>)> = Vec::new();
+        for (result, name) in self.results.iter().zip(labels(&self.results, self.settings)) {
+            let bar = Bar { name, parts: parts(result) };
+            match groups.last_mut().filter(|(first, _)| first.setup.view == result.setup.view) {
+                Some((_, others)) => others.push(bar),
+                None => groups.push((result, vec![bar])),
+            }
+        }
+        let places: Vec<_> = groups.iter().map(|(first, _)| place(first)).collect();
+        let name = |(k, (first, bars)): (usize, (&SimResult, Vec<Bar>))| {
+            let eye = first.setup.view.eye.map(short).join(", ");
+            let is_alone = places.iter().filter(|place| **place == places[k]).count() == 1;
+            Group { name: std::iter::once(places[k].clone()).chain((!is_alone).then(|| format!("eye {eye}"))).collect(), bars }
+        };
+        groups.into_iter().enumerate().map(name).collect()
+    }
+
+    fn chart(&self, what: &str, groups: &[Group], parts: &[(&str, RGBColor)], unit: &str) -> anyhow::Result<String> {
+        let title = [format!("{what} of a frame: {}", self.scene), self.title.clone()];
+        let characters = |text: &str| text.chars().count() as u32; // short
+        let bar = groups.iter().flat_map(|group| &group.bars).map(|bar| CHARACTER * characters(&bar.name)).max().unwrap_or(0).max(BAR);
+        // A group is as wide as its bars or its name.
+        let widths = groups.iter().map(|group| {
+            let name = group.name.iter().map(|line| characters(line)).max().unwrap_or(0);
+            (bar * group.bars.len() as u32).max((CHARACTER + 1) * name)
+        });
+        let widths: Vec<u32> = widths.collect();
+        let width = widths.iter().sum::<u32>() + GAP * groups.len() as u32;
+        let lines = groups.iter().map(|group| group.name.len()).max().unwrap_or(1) as u32;
+        let most = top(groups.iter().flat_map(|group| &group.bars).map(|bar| bar.parts.iter().sum()));
+        svg((LEGEND + 110 + width.max(320), 460 + 18 * lines), &title, |area| {
+            let (plot, names) = area.split_horizontally(area.dim_in_pixel().0 - LEGEND);
+            let mut chart = ChartBuilder::on(&plot)
+                .margin(10)
+                .x_label_area_size(52 + 18 * lines)
+                .y_label_area_size(84)
+                .build_cartesian_2d(0.0..f64::from(width), 0.0..most)
+                .map_err(wrong)?;
+            let mut mesh = chart.configure_mesh();
+            mesh.disable_x_mesh().light_line_style(TRANSPARENT).x_labels(0).y_label_formatter(&tick);
+            mesh.y_desc(unit).x_desc("distance of the eye").label_style((FONT, TEXT)).draw().map_err(wrong)?;
+            let small = (FONT, TEXT - 3).into_text_style(&plot).pos(Pos::new(HPos::Center, VPos::Top));
+            let large = (FONT, TEXT).into_text_style(&plot).pos(Pos::new(HPos::Center, VPos::Top));
+            let mut begin = f64::from(GAP) / 2.0;
+            for (group, width) in groups.iter().zip(&widths) {
+                let middle = begin + f64::from(*width) / 2.0;
+                let mut left = middle - f64::from(bar * group.bars.len() as u32) / 2.0;
+                for Bar { name, parts: values } in &group.bars {
+                    let mut base = 0.0;
+                    for (part, (_, colour)) in values.iter().zip(parts) {
+                        let corners = [(left + 3.0, base), (left + f64::from(bar) - 3.0, base + part)];
+                        chart.plotting_area().draw(&Rectangle::new(corners, colour.filled())).map_err(wrong)?;
+                        base += part;
+                    }
+                    let name = Text::new(name.clone(), (0, 6), small.clone());
+                    chart.plotting_area().draw(&(EmptyElement::at((left + f64::from(bar) / 2.0, 0.0)) + name)).map_err(wrong)?;
+                    left += f64::from(bar);
+                }
+                for (line, below) in group.name.iter().zip((22..).step_by(18)) {
+                    let name = Text::new(line.clone(), (0, below), large.clone());
+                    chart.plotting_area().draw(&(EmptyElement::at((middle, 0.0)) + name)).map_err(wrong)?;
+                }
+                begin += f64::from(*width + GAP);
+            }
+            if parts.len() > 1 {
+                legend(&names, &parts.iter().rev().copied().collect::<Vec<_>>())?;
+            }
+            Ok(())
+        })
+    }
 }
 
 /// Where a view is from.
 fn place(r: &SimResult) -> String {
     let view = &r.setup.view;
     let to_origin = || view.eye.iter().map(|v| v * v).sum::<f64>().sqrt();
-    view.distance.map_or_else(|| format!("{:.2}", to_origin()), |distance| format!("{distance} radii"))
+    view.distance.map_or_else(|| short(to_origin()), |distance| format!("{distance} radii"))
 }
 
-fn chart(title: &[String], groups: &[Group], parts: &[(&str, RGBColor)], unit: &str) -> anyhow::Result<String> {
-    let bars: usize = groups.iter().map(|group| group.bars.len()).sum();
-    // Few: a sweep's views and methods.
-    let width = BAR * bars as u32 + GAP * groups.len() as u32;
-    let most = top(groups.iter().flat_map(|group| &group.bars).map(|bar| bar.parts.iter().sum()));
-    svg((LEGEND + 110 + width.max(320), 480), title, |area| {
-        let (plot, names) = area.split_horizontally(area.dim_in_pixel().0 - LEGEND);
-        let mut chart = ChartBuilder::on(&plot)
-            .margin(10)
-            .x_label_area_size(70)
-            .y_label_area_size(84)
-            .build_cartesian_2d(0.0..f64::from(width), 0.0..most)
-            .map_err(wrong)?;
-        let mut mesh = chart.configure_mesh();
-        mesh.disable_x_mesh().light_line_style(TRANSPARENT).x_labels(0).y_label_formatter(&tick);
-        mesh.y_desc(unit).x_desc("distance of the eye").label_style((FONT, TEXT)).draw().map_err(wrong)?;
-        let small = (FONT, TEXT - 3).into_text_style(&plot).pos(Pos::new(HPos::Center, VPos::Top));
-        let large = (FONT, TEXT).into_text_style(&plot).pos(Pos::new(HPos::Center, VPos::Top));
-        let mut left = f64::from(GAP) / 2.0;
-        for group in groups {
-            let begin = left;
-            for bar in &group.bars {
-                let mut base = 0.0;
-                for (part, (_, colour)) in bar.parts.iter().zip(parts) {
-                    let corners = [(left + 3.0, base), (left + f64::from(BAR) - 3.0, base + part)];
-                    chart.plotting_area().draw(&Rectangle::new(corners, colour.filled())).map_err(wrong)?;
-                    base += part;
-                }
-                let name = Text::new(bar.name.clone(), (0, 6), small.clone());
-                chart.plotting_area().draw(&(EmptyElement::at((left + f64::from(BAR) / 2.0, 0.0)) + name)).map_err(wrong)?;
-                left += f64::from(BAR);
-            }
-            let name = Text::new(group.name.clone(), (0, 22), large.clone());
-            chart.plotting_area().draw(&(EmptyElement::at(((begin + left) / 2.0, 0.0)) + name)).map_err(wrong)?;
-            left += f64::from(GAP);
-        }
-        if parts.len() > 1 {
-            legend(&names, &parts.iter().rev().copied().collect::<Vec<_>>())?;
-        }
-        Ok(())
-    })
+/// Two decimals at most.
+fn short(value: f64) -> String {
+    let text = format!("{value:.2}");
+    let text = text.trim_end_matches('0').trim_end_matches('.');
+    if text == "-0" { "0".to_owned() } else { text.to_owned() }
 }

@@ -1,19 +1,24 @@
 //! `sweep`: scenes, views and methods on machines, from a list of jobs.
 
 mod charts;
+mod check;
 mod jobs;
+mod labels;
+mod list;
 mod rows;
 
 use super::args::SimMethod;
+use super::cache::{Cache, CacheArgs};
+use super::folder::{Overrule, RunFolder, one_run};
 use super::generate::make;
-use super::output::{check_target, folder, open, print_line};
+use super::output::{check_target, open, print_line, remark, write_file};
 use super::pass::{Outcome, Pass, Target};
 use super::pictures::Shot;
 use super::render::{Built, MethodName, compare_shots};
 use anyhow::Context;
 use jobs::{Jobs, Origin, SceneJobs, ViewJob};
-use lodray::format::{Scene, write_and_rename};
-use lodray::render::{Camera, View};
+use lodray::format::Scene;
+use lodray::render::Camera;
 use lodray::traverse::ModelSpace;
 use rows::ImageFigures;
 use std::collections::{BTreeMap, HashSet};
@@ -25,14 +30,20 @@ use rows::{Rows, csv};
 
 const LINES: &str = "results.jsonl";
 const TABLE: &str = "results.csv";
+const FOLDER: &str = "Folder for the results, one line of JSON for each job, their table, and charts (SVG) that set views, methods and machines side by side; a sweep \
+started again goes on with the results that are there";
 
 #[derive(clap::Args)]
 pub struct Args {
     /// List of jobs (TOML): docs/jobs-example.toml shows every key
     jobs: PathBuf,
-    /// Folder for the results, one line of JSON for each job, their table, and charts (SVG) of scenes with several views
-    #[arg(short, long)]
+    /// Folder for the results, one line of JSON for each job, their table, and charts (SVG) that set views, methods and machines side by side
+    #[arg(short, long, long_help = one_run(FOLDER))]
     out: PathBuf,
+    #[command(flatten)]
+    overrule: Overrule,
+    #[command(flatten)]
+    cache: CacheArgs,
 }
 
 /// Jobs that share a functional pass: their keys and targets.
@@ -45,32 +56,34 @@ struct Group<'a> {
 /// What is left to do.
 struct Sweep<'a> {
     jobs: &'a Jobs,
+    cache: &'a Cache,
     rows: Rows,
 }
 
 pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
     let jobs = Jobs::read(&args.jobs)?;
-    folder(&args.out, [TABLE], Some(&args.jobs))?;
+    let inputs: Vec<_> = std::iter::once(&args.jobs).chain(&jobs.files).map(PathBuf::as_path).collect();
+    let mut folder = RunFolder::open(&args.out, [TABLE], &inputs, &args.overrule)?;
+    let cache = Cache::new(&args.cache)?;
     let lines = args.out.join(LINES);
-    check_target(&lines, Some(&args.jobs))?;
+    check_target(&lines, &inputs)?;
     let rows = Rows::open(&lines)?;
+    folder.keep(LINES)?;
     let done = rows.done();
-    let mut sweep = Sweep { jobs: &jobs, rows };
+    let mut sweep = Sweep { jobs: &jobs, cache: &cache, rows };
     let mut keys = Vec::new();
     for scene in &jobs.scenes {
         let groups = sweep.groups(scene, &done, &mut keys)?;
         sweep.scene(scene, &groups)?;
     }
-    let table = csv(sweep.rows.of(&keys));
-    let path = args.out.join(TABLE);
-    write_and_rename(&path, |out| out.write_all(table.as_bytes())).with_context(|| format!("cannot write {}", path.display()))?;
+    write_file(&folder.staging().join(TABLE), csv(sweep.rows.of(&keys)))?;
     for (name, chart) in charts::charts(sweep.rows.of(&keys))? {
-        let path = args.out.join(name);
-        write_and_rename(&path, |out| out.write_all(chart.as_bytes())).with_context(|| format!("cannot write {}", path.display()))?;
+        write_file(&folder.staging().join(name), chart)?;
     }
+    folder.finish()?;
     let failed: Vec<_> = sweep.rows.of(&keys).filter(|row| row.error.is_some()).collect();
     let before = keys.iter().filter(|key| done.contains(*key)).count();
-    print_line(&format!("{} jobs, {before} of them done before, {} failed; results in {}", keys.len(), failed.len(), args.out.display()))?;
+    remark(&format!("{} jobs, {before} of them done before, {} failed; results in {}", keys.len(), failed.len(), args.out.display()))?;
     for row in &failed {
         print_line(&format!("failed: {}: {}", row.key, row.error.as_deref().unwrap_or_default()))?;
     }
@@ -112,7 +125,14 @@ impl<'a> Sweep<'a> {
             Ok(made) => made,
             Err(error) => return groups.iter().try_for_each(|group| self.failed(scene, group, &error)),
         };
-        let mut workshop = Workshop { jobs: self.jobs, space: ModelSpace::of(&made), scene: &made, built: BTreeMap::new(), truth: None };
+        let mut workshop = Workshop {
+            jobs: self.jobs,
+            cache: self.cache,
+            space: ModelSpace::of(&made),
+            scene: &made,
+            built: BTreeMap::new(),
+            truth: None,
+        };
         for group in groups {
             match workshop.group(group) {
                 Err(error) => self.failed(scene, group, &error)?,
@@ -135,12 +155,13 @@ impl<'a> Sweep<'a> {
 }
 
 fn failure(key: &str, error: &anyhow::Error) -> Row {
-    Row { key: key.to_owned(), scene: String::new(), result: None, image: None, error: Some(format!("{error:#}")) }
+    Row { key: key.to_owned(), scene: String::new(), result: None, image: None, error: Some(crate::one_line(error)) }
 }
 
 /// A scene and what was made of it.
 struct Workshop<'a> {
     jobs: &'a Jobs,
+    cache: &'a Cache,
     scene: &'a Scene,
     space: ModelSpace,
     built: BTreeMap<SimMethod, Built>,
@@ -151,9 +172,9 @@ struct Workshop<'a> {
 impl Workshop<'_> {
     fn group(&mut self, group: &Group<'_>) -> anyhow::Result<Vec<Row>> {
         let (method, delta) = group.method;
-        let camera = self.camera(group.view)?;
+        let camera = group.view.camera(&self.space)?;
         if !self.built.contains_key(&method) {
-            self.built.insert(method, Built::new(method.into(), self.scene, self.jobs.leaves)?);
+            self.built.insert(method, Built::new(method.into(), self.scene, self.jobs.leaves, self.cache)?);
         }
         let image = if self.jobs.error { Some(self.image_error(group.view, method, delta, &camera)?) } else { None };
         let pass = Pass {
@@ -179,16 +200,9 @@ impl Workshop<'_> {
         Ok(pass.run(&targets)?.into_iter().zip(&group.jobs).map(row).collect())
     }
 
-    fn camera(&self, view: &ViewJob) -> anyhow::Result<Camera> {
-        let target = view.target.unwrap_or_else(|| self.space.centre());
-        let toward = view.direction.map(|d| std::array::from_fn(|k| target[k] + d[k]));
-        let full = View { eye: view.eye.or(toward), target: view.target, up: view.up, distance: view.distance, fov: view.fov };
-        Ok(Camera::new(&full, &self.space, view.size[0], view.size[1])?)
-    }
-
     fn image_error(&mut self, view: &ViewJob, method: SimMethod, delta: f64, camera: &Camera) -> anyhow::Result<ImageFigures> {
         if self.truth.is_none() {
-            self.truth = Some((Built::new(MethodName::Reference, self.scene, self.jobs.leaves)?, None));
+            self.truth = Some((Built::new(MethodName::Reference, self.scene, self.jobs.leaves, self.cache)?, None));
         }
         let (reference, last) = self.truth.as_mut().context("no reference")?;
         if last.as_ref().is_none_or(|(of, _)| of != view) {

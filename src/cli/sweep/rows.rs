@@ -1,7 +1,7 @@
 //! What was done: one line of JSON for each job, and a table of them at the end.
 
+use crate::cli::output::{warn, write_file};
 use anyhow::Context;
-use lodray::format::write_and_rename;
 use lodray::report::result::SimResult;
 use serde::{Deserialize, Serialize};
 use std::collections::{HashMap, HashSet};
@@ -45,36 +45,33 @@ pub struct Rows {
     path: PathBuf,
     file: File,
     rows: Vec<Row>,
-    /// Locked as long as this sweep runs; the system lets go of it however that ends.
-    _lock: File,
 }
 
 impl Rows {
-    /// Opens the file, or makes it. A line cut off by an interruption is dropped, and so are those of failed jobs, which are tried again.
+    /// Opens the file, or makes it. Lines that are none of a job's, whole, are set aside in a file beside it; what they stood for is done again, and
+    /// so are jobs that failed.
     pub fn open(path: &Path) -> anyhow::Result<Self> {
         let shown = path.display();
-        let beside = path.with_extension("lock");
-        let lock = File::create(&beside).with_context(|| format!("cannot write {}", beside.display()))?;
-        lock.try_lock().with_context(|| format!("{shown}: another sweep writes to it"))?;
         let bytes = if path.exists() { std::fs::read(path).with_context(|| format!("cannot read {shown}"))? } else { Vec::new() };
-        let whole = bytes.iter().rposition(|&byte| byte == b'\n').map_or(0, |end| end + 1);
         let mut rows = Vec::new();
-        let mut dropped = whole < bytes.len();
-        for (k, line) in bytes[..whole].split(|&byte| byte == b'\n').enumerate().filter(|(_, line)| !line.is_empty()) {
-            let row: Row = serde_json::from_slice(line).map_err(|e| anyhow::anyhow!("{shown}: line {}: {e}", k + 1))?;
-            if row.result.is_some() {
-                rows.push(row);
-            } else {
-                dropped = true;
+        let mut bad = Vec::new();
+        let mut dropped = !bytes.is_empty() && !bytes.ends_with(b"\n");
+        for (number, line) in (1..).zip(bytes.split(|&byte| byte == b'\n')).filter(|(_, line)| !line.trim_ascii().is_empty()) {
+            match serde_json::from_slice::<Row>(line) {
+                Ok(row) if row.result.is_some() => rows.push(row),
+                Ok(_) => dropped = true,
+                Err(why) => bad.push((number, line, why)),
             }
         }
-        if dropped {
-            let lines = rows.iter().map(serde_json::to_string).collect::<Result<Vec<_>, _>>()?;
-            write_and_rename(path, |out| lines.iter().try_for_each(|line| writeln!(out, "{line}")))
-                .with_context(|| format!("cannot write {shown}"))?;
+        if !bad.is_empty() {
+            set_aside(path, &bad)?;
+        }
+        if dropped || !bad.is_empty() {
+            let lines = rows.iter().map(|row| Ok(serde_json::to_string(row)? + "\n")).collect::<anyhow::Result<String>>()?;
+            write_file(path, lines)?;
         }
         let file = OpenOptions::new().create(true).append(true).open(path).with_context(|| format!("cannot write {shown}"))?;
-        Ok(Self { path: path.to_owned(), file, rows, _lock: lock })
+        Ok(Self { path: path.to_owned(), file, rows })
     }
 
     /// The jobs that are done.
@@ -96,6 +93,36 @@ impl Rows {
         let by_key: HashMap<_, _> = self.rows.iter().map(|row| (row.key.as_str(), row)).collect();
         keys.iter().filter_map(move |key| by_key.get(key.as_str()).copied())
     }
+}
+
+/// Keeps lines that are no results in a file beside `path`, behind those of before, and says so.
+fn set_aside(path: &Path, bad: &[(usize, &[u8], serde_json::Error)]) -> anyhow::Result<()> {
+    let aside = path.with_extension("bad.jsonl");
+    let shown = aside.display();
+    let mut bytes = if aside.exists() { std::fs::read(&aside).with_context(|| format!("cannot read {shown}"))? } else { Vec::new() };
+    for (_, line, _) in bad {
+        bytes.extend_from_slice(line);
+        bytes.push(b'\n');
+    }
+    write_file(&aside, &bytes)?;
+    let (number, _, why) = &bad[0];
+    let others = match bad.len() {
+        1 => String::new(),
+        n => format!(" (and {} more)", n - 1),
+    };
+    warn(&format!(
+        "warning: {}: line {number}{others} is no result: {}; set aside in {shown}, its job is done again",
+        path.display(),
+        plain(why)
+    ));
+    Ok(())
+}
+
+/// What is wrong with a line, without the reader's own count of lines.
+fn plain(why: &serde_json::Error) -> String {
+    let text = why.to_string();
+    let what = text.split(" at line ").next().unwrap_or(&text);
+    format!("{what} at column {}", why.column())
 }
 
 const HEAD: &str = "scene,distance,eye_x,eye_y,eye_z,width,height,method,delta,leaves,machine,set,compute,cycles,milliseconds,frames_per_second,rays,hits,\

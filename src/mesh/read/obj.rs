@@ -1,12 +1,18 @@
 //! Wavefront OBJ. `tobj` parses; before it every line is checked here, because its errors name no line and it lets some faults pass.
 
-use super::super::clean::is_coordinate;
-use super::{Fault, Parts, fault, polygon};
+use super::super::clean::{is_coordinate, unit};
+use super::{Fault, Parts, fault, polygon, shown};
 use std::fmt::Write;
 use std::path::Path;
 
 /// Colour of what has no material, if anything else in the file has one.
 const NO_MATERIAL: [f32; 3] = [0.8; 3];
+
+/// What a face's corner may name, in the order of its indices.
+const KINDS: [&str; 3] = ["vertex", "texture coordinate", "normal"];
+const VERTEX: usize = 0;
+const TEXTURE: usize = 1;
+const NORMAL: usize = 2;
 
 pub(super) fn parse(bytes: &[u8], directory: &Path) -> Result<Parts, Fault> {
     let text = Checker::default().check(bytes)?;
@@ -17,6 +23,9 @@ pub(super) fn parse(bytes: &[u8], directory: &Path) -> Result<Parts, Fault> {
     };
     let (models, materials) = match tobj::load_obj_buf(&mut text.as_bytes(), &options, library) {
         Ok(loaded) => loaded,
+        Err(tobj::LoadError::FaceVertexOutOfBounds | tobj::LoadError::FaceNormalOutOfBounds) => {
+            return fault("faces", "a vertex or normal index is out of range where its object ends: what it names comes later");
+        }
         Err(error) => return fault("faces", error),
     };
 
@@ -39,12 +48,21 @@ fn append(mesh: &tobj::Mesh, parts: &mut Parts) {
     let base = parts.positions.len() as u32;
     parts.positions.extend(mesh.positions.chunks_exact(3).map(|p| [p[0], p[1], p[2]]));
     let arities = if mesh.face_arities.is_empty() { &vec![3; mesh.indices.len() / 3] } else { &mesh.face_arities };
-    let mut rest = &mesh.indices[..];
+    let normal = |corner: usize| {
+        let at = mesh.normal_indices.get(corner).map_or(0, |&n| 3 * n as usize);
+        mesh.normals.get(at..at + 3).map_or([0.0; 3], |n| unit([n[0], n[1], n[2]]))
+    };
+    let mut first = 0;
     for &arity in arities {
-        let Some((face, tail)) = rest.split_at_checked(arity as usize) else { break };
+        let Some(face) = mesh.indices.get(first..first + arity as usize) else { break };
         let corners: Vec<u32> = face.iter().map(|&i| base + i).collect();
-        polygon::triangulate(&parts.positions, &corners, &mut parts.triangles);
-        rest = tail;
+        polygon::triangulate(&parts.positions, &corners, |tri| {
+            parts.triangles.push(tri.map(|k| corners[k]));
+            if !mesh.normals.is_empty() {
+                parts.normals.push(tri.map(|k| normal(first + k)));
+            }
+        });
+        first += face.len();
     }
     if !parts.colours.is_empty() {
         let none = parts.colours.len() - 1;
@@ -52,11 +70,13 @@ fn append(mesh: &tobj::Mesh, parts: &mut Parts) {
     }
 }
 
-/// Checks all lines and writes out those that a mesh needs, one for one, in a form that `tobj` reads the same way.
+/// Checks all lines and writes out those that a mesh needs in a form that `tobj` reads the same way: indices counted from the beginning,
+/// no texture coordinates, and, if the file has normals at all, one for every corner, the first (zero) where there is none.
 #[derive(Default)]
 struct Checker {
     out: String,
-    /// Positions, texture coordinates and normals so far.
+    has_normals: bool,
+    /// Positions and normals so far, at their places in [`KINDS`].
     counts: [i64; 3],
     faces: usize,
     /// The largest index ahead of its vertex so far, and its line: legal as long as the vertex comes before the object ends.
@@ -71,6 +91,10 @@ impl Checker {
         }
         let text = String::from_utf8_lossy(bytes);
         let text = text.strip_prefix('\u{feff}').unwrap_or(&text);
+        self.has_normals = text.lines().any(|line| line.trim_start().starts_with("vn"));
+        if self.has_normals {
+            self.out.push_str("vn 0 0 0\n");
+        }
         let mut joined = String::new();
         let mut last = 0;
         for (line, number) in text.lines().zip(1usize..) {
@@ -91,7 +115,7 @@ impl Checker {
         if self.faces == 0 {
             return fault(format_args!("line {last}"), "the file ends without a face (no line begins with f)");
         }
-        for (kind, name) in ["vertex", "texture coordinate", "normal"].iter().enumerate() {
+        for (kind, name) in KINDS.iter().enumerate() {
             let (index, line) = self.ahead[kind];
             if index > self.counts[kind] {
                 let what = format_args!("{name} index {index} is out of range, the file has {}", self.counts[kind]).to_string();
@@ -107,8 +131,8 @@ impl Checker {
         let words: Vec<&str> = words.take_while(|w| !w.starts_with('#')).collect();
         match key {
             "v" => self.position(&words),
-            "vt" => self.numbers(1, key, &words, 1..=3),
-            "vn" => self.numbers(2, key, &words, 3..=3),
+            "vt" => self.texture(&words),
+            "vn" => self.normal(&words),
             "f" => self.face(&words, number),
             "o" | "g" | "usemtl" | "mtllib" => {
                 // Names may hold spaces, and `tobj` looks for them after exactly one.
@@ -130,7 +154,7 @@ impl Checker {
         let values: Vec<f64> = words.iter().map(|w| number("v", w)).collect::<Result<_, _>>()?;
         let weight = if words.len() == 4 { values[3] } else { 1.0 };
         if weight == 0.0 || !values[..3].iter().all(|v| is_coordinate(v / weight)) {
-            return Err(format!("v: {} is not a usable position", words.join(" ")));
+            return Err(format!("v: {} is not a usable position", shown(&words.join(" "))));
         }
         let kept = if words.len() == 4 { 4 } else { 3 };
         _ = writeln!(self.out, "v {}", words[..kept].join(" "));
@@ -138,15 +162,22 @@ impl Checker {
         Ok(())
     }
 
-    fn numbers(&mut self, kind: usize, key: &str, words: &[&str], range: std::ops::RangeInclusive<usize>) -> Result<(), String> {
-        if !range.contains(&words.len()) {
-            return Err(format!("{key} needs {} numbers, found {}", range.start(), words.len()));
+    fn texture(&mut self, words: &[&str]) -> Result<(), String> {
+        if !(1..=3).contains(&words.len()) {
+            return Err(format!("vt needs 1 to 3 numbers, found {}", words.len()));
         }
-        words.iter().try_for_each(|w| number(key, w).map(|_| ()))?;
-        // `tobj` wants two texture coordinates where the format allows one.
-        let padding = if words.len() == 1 { " 0" } else { "" };
-        _ = writeln!(self.out, "{key} {}{padding}", words.join(" "));
-        self.counts[kind] += 1;
+        words.iter().try_for_each(|w| any_number("vt", w).map(|_| ()))
+    }
+
+    fn normal(&mut self, words: &[&str]) -> Result<(), String> {
+        if words.len() != 3 {
+            return Err(format!("vn needs 3 numbers, found {}", words.len()));
+        }
+        let values: Vec<f64> = words.iter().map(|w| any_number("vn", w)).collect::<Result<_, _>>()?;
+        // A normal without a direction is none; `tobj` need not see what it was.
+        let usable = values.iter().all(|v| v.is_finite());
+        _ = if usable { writeln!(self.out, "vn {}", words.join(" ")) } else { writeln!(self.out, "vn 0 0 0") };
+        self.counts[NORMAL] += 1;
         Ok(())
     }
 
@@ -157,27 +188,35 @@ impl Checker {
         self.out.push('f');
         for word in words {
             let mut parts = word.split('/');
-            for kind in 0..3 {
+            let mut indices = [0; 3];
+            for (kind, index) in indices.iter_mut().enumerate() {
                 let Some(part) = parts.next() else { break };
-                if kind == 0 || !part.is_empty() {
-                    self.index(kind, part, word, line)?;
+                if kind == VERTEX || !part.is_empty() {
+                    *index = self.index(kind, part, word, line)?;
                 }
             }
             if parts.next().is_some() {
-                return Err(format!("f: {word} has more than three indices"));
+                return Err(format!("f: {} has more than three indices", shown(word)));
             }
-            _ = write!(self.out, " {word}");
+            let [vertex, _, normal] = indices;
+            // Behind the zero normal that comes first.
+            _ = if self.has_normals { write!(self.out, " {vertex}//{}", normal + 1) } else { write!(self.out, " {vertex}") };
         }
         self.out.push('\n');
         self.faces += 1;
         Ok(())
     }
 
-    fn index(&mut self, kind: usize, part: &str, word: &str, line: usize) -> Result<(), String> {
-        let name = ["vertex", "texture coordinate", "normal"][kind];
+    /// The index counted from 1.
+    fn index(&mut self, kind: usize, part: &str, word: &str, line: usize) -> Result<i64, String> {
+        let name = KINDS[kind];
         let Ok(index) = part.parse::<i64>() else {
-            return Err(format!("f: {word} has no valid {name} index"));
+            return Err(format!("f: {} has no valid {name} index", shown(word)));
         };
+        if kind == TEXTURE {
+            // Texture coordinates are not used: whether this one is there does not matter.
+            return Ok(index);
+        }
         let count = self.counts[kind];
         if index == 0 || index < -count || index > i64::from(u32::MAX) {
             return Err(format!("f: {name} index {index} is out of range, {count} came before it"));
@@ -185,16 +224,17 @@ impl Checker {
         if index > count && index > self.ahead[kind].0 {
             self.ahead[kind] = (index, line);
         }
-        Ok(())
+        Ok(if index < 0 { count + 1 + index } else { index })
     }
 }
 
 fn number(key: &str, word: &str) -> Result<f64, String> {
-    match word.parse::<f64>() {
-        Ok(v) if v.is_finite() => Ok(v),
-        Ok(_) => Err(format!("{key}: {word} is not finite")),
-        Err(_) => Err(format!("{key}: {word} is not a number")),
-    }
+    any_number(key, word).and_then(|v| if v.is_finite() { Ok(v) } else { Err(format!("{key}: {} is not finite", shown(word))) })
+}
+
+/// Infinite and NaN are taken.
+fn any_number(key: &str, word: &str) -> Result<f64, String> {
+    word.parse().map_err(|_| format!("{key}: {} is not a number", shown(word)))
 }
 
 /// Names and diffuse colours of a material library; what else it holds, right or wrong, is of no use here.

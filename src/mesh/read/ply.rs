@@ -1,16 +1,77 @@
 //! Stanford PLY through `ply-rs-bw`, element by element, so that an error can name the element and its number.
 
-use super::{Fault, Parts, fault, polygon};
-use ply_rs_bw::parser::{Parser, Reader};
-use ply_rs_bw::ply::{ElementDef, Encoding, Property, PropertyAccess, PropertyAccessResult, PropertyType};
-use std::io::BufRead;
+mod header;
+
+use super::super::clean::unit;
+use super::{Fault, Parts, fault, polygon, shown};
+use header::{is_index_list, is_scalar};
+use ply_rs_bw::parser::Parser;
+use ply_rs_bw::ply::{ElementDef, Encoding, Property, PropertyAccess, PropertyAccessResult, PropertyType, ScalarType};
+use std::io::{BufRead, ErrorKind};
 use std::path::Path;
+use std::str::SplitWhitespace;
 
 /// One element of any kind: the fields that a mesh needs.
 #[derive(Default)]
 struct Row {
     position: [f64; 3],
+    normal: [f64; 3],
     indices: Option<Vec<i64>>,
+}
+
+impl Row {
+    fn set_number(&mut self, name: &str, value: f64) {
+        match name {
+            "x" => self.position[0] = value,
+            "y" => self.position[1] = value,
+            "z" => self.position[2] = value,
+            "nx" => self.normal[0] = value,
+            "ny" => self.normal[1] = value,
+            "nz" => self.normal[2] = value,
+            _ => {}
+        }
+    }
+
+    /// An element of an ASCII file, or what is wrong with its line.
+    fn from_text(text: &str, element: &ElementDef) -> Result<Row, String> {
+        let mut row = Row::default();
+        let mut words = text.split_whitespace();
+        for (name, property) in &element.properties {
+            let word = words.next().ok_or_else(|| format!("{name}: the line ends before it"))?;
+            match &property.data_type {
+                PropertyType::Scalar(kind) => row.set_number(name, number(name, word, kind)?),
+                PropertyType::List(..) => {
+                    let count = word.parse().map_err(|_| format!("{name}: its length '{}' is not a whole number", shown(word)))?;
+                    let values = list(name, &mut words, count)?;
+                    if is_index_list(name) {
+                        row.indices = Some(whole(name, &values)?);
+                    }
+                }
+            }
+        }
+        match words.count() {
+            0 => Ok(row),
+            more => Err(format!("the line goes on after the element's last value: {more} more")),
+        }
+    }
+}
+
+/// What the file's type can hold: a float is rounded to single precision.
+fn number(name: &str, word: &str, kind: &ScalarType) -> Result<f64, String> {
+    let value = if matches!(kind, ScalarType::Float) { word.parse::<f32>().map(f64::from) } else { word.parse() };
+    value.map_err(|_| format!("{name}: '{}' is not a number", shown(word)))
+}
+
+fn list<'a>(name: &str, words: &mut SplitWhitespace<'a>, count: usize) -> Result<Vec<&'a str>, String> {
+    let values: Vec<&str> = words.by_ref().take(count).collect();
+    if values.len() < count {
+        return Err(format!("{name}: its length is {count}, but the line has {}", values.len()));
+    }
+    Ok(values)
+}
+
+fn whole(name: &str, words: &[&str]) -> Result<Vec<i64>, String> {
+    words.iter().map(|w| w.parse().map_err(|_| format!("{name}: '{}' is not a whole number", shown(w)))).collect()
 }
 
 impl PropertyAccess for Row {
@@ -19,21 +80,13 @@ impl PropertyAccess for Row {
     }
 
     fn set_property(&mut self, name: &str, property: Property) -> PropertyAccessResult {
-        if let Some(axis) = ["x", "y", "z"].iter().position(|&a| a == name) {
-            let Some(value) = scalar(&property) else { return PropertyAccessResult::UnsupportedType };
-            self.position[axis] = value;
+        if let Some(value) = scalar(&property) {
+            self.set_number(name, value);
         } else if is_index_list(name) {
-            let Some(values) = integers(property) else { return PropertyAccessResult::UnsupportedType };
-            self.indices = Some(values);
-        } else {
-            return PropertyAccessResult::Ignored;
+            self.indices = integers(property);
         }
         PropertyAccessResult::Set
     }
-}
-
-fn is_index_list(name: &str) -> bool {
-    matches!(name, "vertex_indices" | "vertex_index")
 }
 
 fn scalar(property: &Property) -> Option<f64> {
@@ -66,19 +119,12 @@ fn integers(property: Property) -> Option<Vec<i64>> {
 }
 
 pub(super) fn parse(bytes: &[u8], _directory: &Path) -> Result<Parts, Fault> {
-    let parser = Parser::<Row>::new();
-    let mut reader = Reader::new(bytes);
-    let header = match parser.read_header(&mut reader) {
-        Ok(header) => header,
-        Err(error) => return fault("header", first_line(&error)),
-    };
-    check_header(header.elements.values())?;
-    // The reader counts the line that it would read next.
-    let line = reader.line().saturating_sub(1);
-    let mut payload = Payload { parser, encoding: header.encoding, rest: reader.into_inner(), line };
+    let (header, rest, line) = header::parse(bytes)?;
+    let mut payload = Payload { parser: Parser::new(), encoding: header.encoding, rest, line };
+    let has_normals = header.elements.get("vertex").is_some_and(|e| ["nx", "ny", "nz"].iter().all(|n| is_scalar(e, n)));
 
     let mut parts = Parts::default();
-    let mut faces = Vec::new();
+    let (mut normals, mut faces) = (Vec::new(), Vec::new());
     for element in header.elements.values() {
         for i in 0..element.count {
             let row = payload.next(element, i)?;
@@ -89,6 +135,9 @@ pub(super) fn parse(bytes: &[u8], _directory: &Path) -> Result<Parts, Fault> {
                         return fault(format_args!("element vertex {i}"), what);
                     }
                     parts.positions.push(row.position);
+                    if has_normals {
+                        normals.push(unit(row.normal));
+                    }
                 }
                 // Faces may come before the vertices.
                 "face" | "tristrips" => faces.push((element, i, row.indices.unwrap_or_default())),
@@ -107,32 +156,10 @@ pub(super) fn parse(bytes: &[u8], _directory: &Path) -> Result<Parts, Fault> {
     if parts.triangles.is_empty() {
         return fault("element face", "there are no faces");
     }
+    if has_normals {
+        parts.normals = parts.triangles.iter().map(|t| t.map(|v| normals[v as usize])).collect();
+    }
     Ok(parts)
-}
-
-fn check_header<'a>(elements: impl Iterator<Item = &'a ElementDef> + Clone) -> Result<(), Fault> {
-    if let Some(empty) = elements.clone().find(|e| e.properties.is_empty() && e.count > 0) {
-        return fault(format_args!("header: element {}", empty.name), "it has no properties");
-    }
-    let Some(vertex) = elements.clone().find(|e| e.name == "vertex") else {
-        return fault("header", "there is no element vertex");
-    };
-    for axis in ["x", "y", "z"] {
-        if !matches!(vertex.properties.get(axis).map(|p| &p.data_type), Some(PropertyType::Scalar(_))) {
-            return fault("header: element vertex", format_args!("there is no number property {axis}"));
-        }
-    }
-    let mut faces = elements.filter(|e| matches!(e.name.as_str(), "face" | "tristrips")).peekable();
-    if faces.peek().is_none() {
-        return fault("header", "there are no faces: neither an element face nor tristrips");
-    }
-    for element in faces {
-        let list = |p: &ply_rs_bw::ply::PropertyDef| is_index_list(&p.name) && matches!(p.data_type, PropertyType::List(..));
-        if !element.properties.values().any(list) {
-            return fault(format_args!("header: element {}", element.name), "there is no list property vertex_indices");
-        }
-    }
-    Ok(())
 }
 
 /// The part of the file after the header.
@@ -140,7 +167,7 @@ struct Payload<'a> {
     parser: Parser<Row>,
     encoding: Encoding,
     rest: &'a [u8],
-    /// Line of the file, counted from 1; of use in ASCII files only.
+    /// Line of the file that was read last, counted from 1; of use in ASCII files only.
     line: usize,
 }
 
@@ -153,12 +180,15 @@ impl<'a> Payload<'a> {
                 let Some(line) = self.next_line() else { return fault(place(), truncated()) };
                 let place = format_args!("line {}, element {} {i}", self.line, element.name).to_string();
                 let Ok(text) = std::str::from_utf8(line) else { return fault(place, "this is not text") };
-                return self.parser.read_ascii_element(text, element).or_else(|e| fault(place, first_line(&e)));
+                return Row::from_text(text, element).or_else(|what| fault(place, what));
             }
             Encoding::BinaryLittleEndian => self.parser.read_little_endian_element(&mut self.rest, element),
             Encoding::BinaryBigEndian => self.parser.read_big_endian_element(&mut self.rest, element),
         };
-        read.or_else(|e| fault(place(), if self.rest.is_empty() { truncated() } else { first_line(&e) }))
+        read.or_else(|error| match error.kind() {
+            ErrorKind::UnexpectedEof => fault(place(), truncated()),
+            _ => fault(place(), "the length of a list is negative"),
+        })
     }
 
     /// The next line that is not blank.
@@ -193,7 +223,7 @@ fn append(element: &str, indices: &[i64], parts: &mut Parts) -> Result<(), Strin
             return Err(format!("a face needs 3 vertices or more, found {}", indices.len()));
         }
         let corners: Vec<u32> = indices.iter().map(vertex).collect();
-        polygon::triangulate(&parts.positions, &corners, &mut parts.triangles);
+        polygon::triangulate(&parts.positions, &corners, |tri| parts.triangles.push(tri.map(|k| corners[k])));
         return Ok(());
     }
     // -1 ends a strip; every other triangle of a strip is wound the other way.
@@ -204,9 +234,4 @@ fn append(element: &str, indices: &[i64], parts: &mut Parts) -> Result<(), Strin
         }
     }
     Ok(())
-}
-
-/// The parser's message on one line.
-fn first_line(error: &impl ToString) -> String {
-    error.to_string().split_whitespace().collect::<Vec<_>>().join(" ")
 }

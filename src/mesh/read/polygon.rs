@@ -3,24 +3,24 @@
 /// Beyond this many corners ear cutting, which is quadratic, gives way to a plain fan.
 const MAX_EARS: usize = 4096;
 
-/// Appends the triangles of the polygon with these corners, three or more, to `out`.
-pub(super) fn triangulate(positions: &[[f64; 3]], corners: &[u32], out: &mut Vec<[u32; 3]>) {
-    let fan = |out: &mut Vec<[u32; 3]>| out.extend(corners[1..].windows(2).map(|w| [corners[0], w[0], w[1]]));
+/// Gives the triangles of the polygon with these vertices, three or more, one by one to `out`: as places in `corners`.
+pub(super) fn triangulate(positions: &[[f64; 3]], corners: &[u32], mut out: impl FnMut([usize; 3])) {
+    let fan = |out: &mut dyn FnMut([usize; 3])| (1..corners.len() - 1).for_each(|k| out([0, k, k + 1]));
     if corners.len() <= 3 || corners.len() > MAX_EARS {
-        return fan(out);
+        return fan(&mut out);
     }
     let flat = project(positions, corners);
     if (1..corners.len() - 1).all(|k| area(flat[0], flat[k], flat[k + 1]) > 0.0) {
-        return fan(out);
+        return fan(&mut out);
     }
     let mut left: Vec<usize> = (0..corners.len()).collect();
     while left.len() > 3 {
         // A polygon that crosses itself may have no ear: then any corner goes.
         let ear = (0..left.len()).find(|&k| is_ear(&flat, &left, k)).unwrap_or(1);
-        out.push(neighbours(&left, ear).map(|i| corners[i]));
+        out(neighbours(&left, ear));
         left.remove(ear);
     }
-    out.push([corners[left[0]], corners[left[1]], corners[left[2]]]);
+    out([left[0], left[1], left[2]]);
 }
 
 fn neighbours(left: &[usize], k: usize) -> [usize; 3] {

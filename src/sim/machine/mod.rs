@@ -103,15 +103,21 @@ impl Machine {
         let wrong = |why: String| MachineError::Override { key: key.to_owned(), value: value.to_owned(), why };
         let mut root = Table::try_from(&*self).map_err(|error| wrong(error.to_string()))?;
         let (path, leaf) = key.rsplit_once('.').unwrap_or(("", key));
+        let parts = names(root.iter().filter(|(_, value)| value.is_table()));
         let mut table = &mut root;
         for part in path.split('.').filter(|part| !part.is_empty()) {
             let inner = table.get_mut(part).and_then(Value::as_table_mut);
-            table = inner.ok_or_else(|| wrong(format!("the machine has no [{path}]")))?;
+            table = inner.ok_or_else(|| wrong(format!("the machine has no [{path}]; it has {parts}")))?;
         }
         // A key that is not there is optional, of which all are strings, or unknown, which reading it back tells.
         let parsed = match table.get(leaf) {
-            Some(Value::Integer(_)) => Value::Integer(value.parse().map_err(|_| wrong("the value must be an integer".to_owned()))?),
-            Some(Value::Table(_)) => return Err(wrong("a table, not a value".to_owned())),
+            Some(Value::Integer(_)) => {
+                let whole = value.parse().ok().filter(|value| *value >= 0);
+                Value::Integer(whole.ok_or_else(|| wrong("the value must be an integer, 0 or more".to_owned()))?)
+            }
+            Some(Value::Table(inner)) => {
+                return Err(wrong(format!("a table, not a value; its values are {}", names(inner.iter()))));
+            }
             _ => Value::String(value.to_owned()),
         };
         table.insert(leaf.to_owned(), parsed);
@@ -125,6 +131,11 @@ impl Machine {
         machine.validate().map_err(|breach| breach.in_file(file))?;
         Ok(Self { folder, ..machine })
     }
+}
+
+/// Some of a table's keys.
+fn names<'a>(entries: impl Iterator<Item = (&'a String, &'a Value)>) -> String {
+    entries.map(|(key, _)| key.as_str()).collect::<Vec<_>>().join(", ")
 }
 
 /// The contents of a TOML file.

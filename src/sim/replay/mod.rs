@@ -35,7 +35,7 @@ pub use feed::{Chunk, Source};
 pub use intervals::Interval;
 pub use wave::Window;
 
-use super::dram::{ChannelCounts, Device, DramConfig, DramEnergy};
+use super::dram::{ChannelCounts, Device, Dram, DramConfig, DramEnergy};
 use super::energy::Operations;
 use super::machine::Machine;
 use super::stream::Layout;
@@ -84,6 +84,19 @@ pub fn dram_of(machine: &Machine) -> Result<DramConfig, ReplayError> {
     Ok(config)
 }
 
+/// Refuses what [`run_free`], or [`run_units`] if there are `units`, would refuse of a machine before the first ray.
+///
+/// # Errors
+/// The machine is impossible or too large.
+pub fn check(machine: &Machine, units: bool) -> Result<(), ReplayError> {
+    if units && machine.cores.pinned_nodes > 0 {
+        return Err(ReplayError::PinnedNodes(machine.cores.pinned_nodes));
+    }
+    check_size(machine)?;
+    let dram = Dram::new(&dram_of(machine)?);
+    dram.map(|_| ()).map_err(|source| ReplayError::Dram { file: machine.dram.device.clone(), source })
+}
+
 /// Runs the rays of `source`, which read the memory of `layout`, on `machine`; compute takes no time.
 ///
 /// # Errors
@@ -98,9 +111,7 @@ pub fn run_free(machine: &Machine, layout: &Layout, source: impl Source, window:
 /// # Errors
 /// As [`run_free`].
 pub fn run_units(machine: &Machine, layout: &Layout, source: impl Source, window: Option<Window>) -> Result<Run, ReplayError> {
-    if machine.cores.pinned_nodes > 0 {
-        return Err(ReplayError::PinnedNodes(machine.cores.pinned_nodes));
-    }
+    check(machine, true)?;
     let mut units = Units::new(machine, source);
     let run = drive(&mut units, machine, layout, window)?;
     Ok(Run { units: Some(units.counts(run.cycles)), ..run })
@@ -146,13 +157,15 @@ fn drive(front: &mut impl FrontEnd, machine: &Machine, layout: &Layout, window: 
                 Happening::Answer(waiter, from) => front.answer(waiter, from, &mut memory),
             }
         }
+        let is_busy = front.is_busy();
+        let next = if is_busy { memory.next() } else { None };
         if let Some(wave) = &mut wave {
-            wave.sample(&memory, &machine.cores)?;
+            wave.sample(&memory, &machine.cores, next)?;
         }
-        if !front.is_busy() {
+        if !is_busy {
             break;
         }
-        let Some(next) = memory.next() else {
+        let Some(next) = next else {
             let state = format!("{}\n{}", front.describe(), memory.describe());
             return Err(ReplayError::Deadlock { cycle: memory.now(), state });
         };

@@ -318,4 +318,13 @@ fn a_waveform_shows_the_events_of_its_window() {
     let part = window.wave.as_ref().unwrap().len();
     assert!(part > 500 && part < text.len() / 2, "{part} of {}", text.len());
     assert_eq!(Run { wave: None, ..window }, Run { wave: None, ..whole }, "to look changes nothing");
+    // A window of any one cycle of the frame has that cycle's values, also where nothing happens.
+    for from in [0, 7, 8, 9, whole.cycles - 1, whole.cycles] {
+        let one = run_with(Window { from, to: from }).wave.unwrap();
+        let mut vcd = vcd::Parser::new(&one[..]);
+        vcd.parse_header().unwrap();
+        let times: Vec<_> =
+            vcd.filter_map(|command| if let vcd::Command::Timestamp(ps) = command.unwrap() { Some(ps) } else { None }).collect();
+        assert_eq!(times.first(), Some(&machine.cores.start_ps(from)), "{from}");
+    }
 }

@@ -64,21 +64,27 @@ impl Wave {
         }
     }
 
-    /// The end of this cycle; it may have several, when memory answers at once.
+    /// The end of this cycle, after which nothing happens until `next`, if anything does; a cycle may have several ends, when memory answers
+    /// at once.
     ///
     /// # Errors
     /// Only what the writer of waveforms says; memory takes everything.
-    pub fn sample(&mut self, memory: &Hierarchy, cores: &Cores) -> io::Result<()> {
+    pub fn sample(&mut self, memory: &Hierarchy, cores: &Cores, next: Option<u64>) -> io::Result<()> {
         let (now, after) = (memory.now(), events(memory));
         if now > self.looked {
             (self.looked, self.before) = (now, self.latest);
         }
         self.latest = after;
-        if now < self.window.from || (now > self.window.to && self.sampled.is_none_or(|last| last >= self.window.to)) {
+        if now < self.window.from {
+            // The window may begin, and end, where nothing happens.
+            if next.is_some_and(|next| next > self.window.from) {
+                self.sampled = Some(self.window.from);
+                self.show(self.window.from, Events::default(), memory, cores)?;
+            }
             return Ok(());
         }
-        if self.signals.is_empty() {
-            self.declare(memory)?;
+        if now > self.window.to && self.sampled.is_none_or(|last| last >= self.window.to) {
+            return Ok(());
         }
         // Nothing happened between two samples.
         if let Some(quiet) = self.sampled.map(|last| last + 1).filter(|&next| next < now) {
@@ -91,9 +97,18 @@ impl Wave {
         if now > self.window.to {
             return Ok(());
         }
-        self.writer.timestamp(cores.start_ps(now))?;
-        for (k, (after, before)) in after.into_iter().zip(self.before).enumerate() {
-            self.set(k, after - before)?;
+        let events = std::array::from_fn(|k| after[k] - self.before[k]);
+        self.show(now, events, memory, cores)
+    }
+
+    /// Writes what is so in a cycle.
+    fn show(&mut self, cycle: u64, events: Events, memory: &Hierarchy, cores: &Cores) -> io::Result<()> {
+        if self.signals.is_empty() {
+            self.declare(memory)?;
+        }
+        self.writer.timestamp(cores.start_ps(cycle))?;
+        for (k, count) in events.into_iter().enumerate() {
+            self.set(k, count)?;
         }
         let mut values = Vec::with_capacity(self.signals.len());
         memory.show(&mut |_, _, value| values.push(value));

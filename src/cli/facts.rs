@@ -1,0 +1,105 @@
+//! What a picture says of itself: in its file, and on the contact sheet.
+
+use super::output::{grouped, plain};
+use super::render::{Against, Comparison, MethodName};
+use lodray::render::{Camera, FrameStats};
+
+/// A picture's origin and figures.
+pub struct Facts<'a> {
+    pub scene: &'a str,
+    pub method: MethodName,
+    /// Quality; other methods than LOD have none.
+    pub delta: f64,
+    pub camera: &'a Camera,
+    pub stats: &'a FrameStats,
+    pub error: Option<(Against, &'a Comparison)>,
+}
+
+type Lines = Vec<(String, String)>;
+
+fn line(lines: &mut Lines, label: &str, value: String) {
+    lines.push((label.to_owned(), value));
+}
+
+impl Facts<'_> {
+    /// One line for all.
+    pub fn heading(&self) -> String {
+        let Camera { width, height, radii, .. } = self.camera;
+        format!("{}: {}, {width}x{height} from {} radii", self.scene, self.how(), plain(*radii))
+    }
+
+    fn how(&self) -> String {
+        let quality = if self.method == MethodName::Lod { format!(" at delta {}", self.delta) } else { String::new() };
+        format!("{}{quality}", self.method.name())
+    }
+
+    /// For a picture's file: what it is, where from (as options take it, in full), and the figures.
+    pub fn notes(&self, picture: &str) -> Lines {
+        let Camera { eye, target, up, fov, width, height, radii, .. } = *self.camera;
+        let vector = |v: [f64; 3]| v.map(|c| c.to_string()).join(",");
+        let mut notes = Lines::new();
+        line(&mut notes, "Title", format!("{}: {picture}", self.heading()));
+        line(&mut notes, "Software", format!("lodray {}", env!("CARGO_PKG_VERSION")));
+        line(&mut notes, "Scene", self.scene.to_owned());
+        line(&mut notes, "Method", self.method.name().to_owned());
+        if self.method == MethodName::Lod {
+            line(&mut notes, "Delta", self.delta.to_string());
+        }
+        line(&mut notes, "Size", format!("{width}x{height}"));
+        line(&mut notes, "Eye", vector(eye.to_array()));
+        line(&mut notes, "Target", vector(target.to_array()));
+        line(&mut notes, "Up", vector(up.to_array()));
+        line(&mut notes, "View angle", format!("{fov} degrees"));
+        line(&mut notes, "Distance", format!("{radii} bounding radii"));
+        notes.extend(self.figures().into_iter().map(|(label, value)| (capital(&label), value)));
+        notes
+    }
+
+    /// For the contact sheet: view and figures, rounded.
+    pub fn lines(&self) -> Lines {
+        let Camera { eye, target, up, fov, width, height, radii, .. } = *self.camera;
+        let vector = |v: [f64; 3]| v.map(plain).join(" ");
+        let mut lines = Lines::new();
+        line(&mut lines, "scene", self.scene.to_owned());
+        line(&mut lines, "method", self.how());
+        line(&mut lines, "size", format!("{width} x {height}"));
+        line(&mut lines, "distance", format!("{} radii", plain(radii)));
+        line(&mut lines, "eye", vector(eye.to_array()));
+        line(&mut lines, "target", vector(target.to_array()));
+        line(&mut lines, "up", vector(up.to_array()));
+        line(&mut lines, "view angle", format!("{} degrees", plain(fov)));
+        lines.extend(self.figures());
+        lines
+    }
+
+    fn figures(&self) -> Lines {
+        let stats = self.stats;
+        let per_ray = |n: u64| format!("{:.2}", n as f64 / stats.rays as f64);
+        let mut lines = Lines::new();
+        line(&mut lines, "rays", grouped(stats.rays));
+        line(&mut lines, "hits", grouped(stats.hits));
+        line(&mut lines, "mean level", format!("{:.3}", stats.mean_level));
+        if !stats.lines.is_empty() {
+            line(&mut lines, "lines per ray", per_ray(stats.lines_read()));
+            line(&mut lines, "distinct lines", grouped(stats.distinct_lines()));
+            line(&mut lines, "nodes per ray", per_ray(stats.nodes));
+            line(&mut lines, "LOD tests/ray", per_ray(stats.lod_tests));
+            line(&mut lines, "triangles/ray", per_ray(stats.triangles));
+        }
+        if let Some((against, error)) = self.error {
+            line(&mut lines, "compared with", against.name().to_owned());
+            line(&mut lines, "RMSE", format!("{:.3} of 255", error.image.rmse));
+            line(&mut lines, "PSNR", error.image.psnr_db.map_or("infinite".to_owned(), |p| format!("{p:.2} dB")));
+            line(&mut lines, "pixels differing", format!("{:.2} %", 100.0 * error.image.differing));
+            line(&mut lines, "coverage differs", format!("{} pixels", grouped(error.coverage_differs)));
+            line(&mut lines, "surface off by", format!("{:.3} pixels", error.geometry_pixels.mean));
+            line(&mut lines, "99 of 100 below", format!("{:.3} pixels", error.geometry_pixels.percentile_99));
+        }
+        lines
+    }
+}
+
+fn capital(text: &str) -> String {
+    let mut rest = text.chars();
+    rest.next().map_or_else(String::new, |first| first.to_uppercase().chain(rest).collect())
+}

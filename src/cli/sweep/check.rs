@@ -1,0 +1,230 @@
+//! From the list to jobs. Everything is looked at before the first job runs, so that a mistake in the last line does not cost the hours before it:
+//! values and their ranges, scene files, machines with their tables, and cameras.
+
+use super::jobs::{Jobs, Origin, SceneJobs, ViewJob};
+use super::list::{List, MachineEntry, Maybe, SceneEntry, Source, Spanned};
+use crate::cli::args::{Change, LeafArgs, LeafLayout, SimMethod, Size, delta, radii};
+use crate::cli::generate;
+use crate::cli::output::open;
+use crate::cli::pass::{Target, is_path, machine, machine_files};
+use crate::one_line;
+use lodray::mesh::Placement;
+use lodray::mesh::procedural;
+use lodray::render::DEFAULT_VIEW_ANGLE_DEGREES;
+use lodray::report;
+use lodray::report::result::Compute;
+use lodray::traverse::ModelSpace;
+use std::collections::{BTreeSet, HashSet};
+use std::ops::Range;
+use std::path::{Path, PathBuf};
+use xxhash_rust::xxh3::xxh3_64;
+
+/// The jobs of a list.
+pub fn jobs(source: &Source<'_>) -> anyhow::Result<Jobs> {
+    let list = source.list()?;
+    // Before the first table, where the list's own keys stand.
+    let top = || 0..0;
+    let methods = needed(source, list.methods.as_ref(), "methods", top())?;
+    let (place, methods) = (methods.span(), filled(source, methods, "methods")?);
+    each_once(source, place, "methods", methods.iter().map(|method| method.name()))?;
+    let methods = methods.iter().flat_map(|&method| qualities(&list, method)).collect::<Vec<_>>();
+    for (text, place) in methods.iter().filter_map(|(_, quality)| quality.clone()) {
+        delta(&text).map_err(|why| source.wrong(place, format!("deltas: {why}")))?;
+    }
+    let parsed = |(method, quality): (SimMethod, Quality)| (method, quality.and_then(|(text, _)| delta(&text).ok()).unwrap_or(1.0));
+    let methods: Vec<_> = methods.into_iter().map(parsed).collect();
+    if let Some(deltas) = &list.deltas {
+        filled(source, deltas, "deltas")?;
+        each_once(source, deltas.span(), "deltas", deltas.get_ref().iter().map(ToString::to_string))?;
+    }
+    let compute = match &list.compute {
+        Some(compute) => {
+            each_once(source, compute.span(), "compute", compute.get_ref().iter().map(|compute| compute.name()))?;
+            filled(source, compute, "compute")?.clone()
+        }
+        None => vec![Compute::Free],
+    };
+    let leaf_size = list.leaf_size.as_ref().map_or(4, |size| *size.get_ref());
+    if let Some(size) = list.leaf_size.as_ref().filter(|_| ![1, 2, 4].contains(&leaf_size)) {
+        return Err(source.wrong(size.span(), format!("leaf_size must be 1, 2 or 4, but is {leaf_size}")));
+    }
+    for (key, is_there) in [("[[scene]]", !list.scene.is_empty()), ("[[machine]]", !list.machine.is_empty())] {
+        anyhow::ensure!(is_there, "{}: {key} is missing: at least one is needed", source.path.display());
+    }
+    let folder = source.path.parent().unwrap_or(Path::new(""));
+    let (mut targets, mut files) = (Vec::new(), BTreeSet::new());
+    for entry in &list.machine {
+        let (variants, read) = machines(source, entry, folder, &compute)?;
+        targets.extend(variants);
+        files.extend(read);
+    }
+    let mut scenes: Vec<SceneJobs> = Vec::new();
+    for entry in &list.scene {
+        let jobs = scene(source, &list, entry, folder)?;
+        if scenes.iter().any(|before| before.name == jobs.name) {
+            let why = format!("scene: there is another of the name {:?}; give them names of their own", jobs.name);
+            return Err(source.wrong(entry.span(), why));
+        }
+        if let Origin::File(file) = &jobs.origin {
+            files.insert(file.clone());
+        }
+        scenes.push(jobs);
+    }
+    let leaves = LeafArgs { leaf_layout: list.leaf_layout.unwrap_or(LeafLayout::Line), leaf_size };
+    let jobs = Jobs { scenes, methods, targets, leaves, error: list.error, intervals: list.intervals, files };
+    let mut seen = HashSet::new();
+    for key in jobs.keys()? {
+        anyhow::ensure!(seen.insert(key.clone()), "{}: a job is there twice: {key}", source.path.display());
+    }
+    Ok(jobs)
+}
+
+/// A quality as it is written, and where; none for what has none, or by default.
+type Quality = Option<(String, Range<usize>)>;
+
+/// A method with each of its qualities.
+fn qualities(list: &List, method: SimMethod) -> Vec<(SimMethod, Quality)> {
+    match list.deltas.as_ref().filter(|_| method == SimMethod::Lod) {
+        Some(deltas) => deltas.get_ref().iter().map(|delta| (method, Some((delta.to_string(), deltas.span())))).collect(),
+        None => vec![(method, None)],
+    }
+}
+
+/// A value that must be there; `place` is where it is missed.
+fn needed<'a, T>(source: &Source<'_>, value: Option<&'a Spanned<T>>, key: &str, place: Range<usize>) -> anyhow::Result<&'a Spanned<T>> {
+    value.ok_or_else(|| source.wrong(place, format!("{key} is missing")))
+}
+
+/// A list that must not be empty.
+fn filled<'a, T>(source: &Source<'_>, values: &'a Spanned<Vec<T>>, key: &str) -> anyhow::Result<&'a Vec<T>> {
+    if values.get_ref().is_empty() {
+        return Err(source.wrong(values.span(), format!("{key} must not be empty")));
+    }
+    Ok(values.get_ref())
+}
+
+/// Refuses what is in a list twice.
+fn each_once(source: &Source<'_>, place: Range<usize>, key: &str, values: impl Iterator<Item = impl ToString>) -> anyhow::Result<()> {
+    let mut seen = HashSet::new();
+    for value in values.map(|value| value.to_string()) {
+        if seen.contains(&value) {
+            return Err(source.wrong(place, format!("{key}: {value} is there twice")));
+        }
+        seen.insert(value);
+    }
+    Ok(())
+}
+
+/// Every variant of a machine, with each way to compute, and the files that they were read from.
+fn machines(
+    source: &Source<'_>,
+    entry: &Spanned<MachineEntry>,
+    folder: &Path,
+    compute: &[Compute],
+) -> anyhow::Result<(Vec<Target>, BTreeSet<PathBuf>)> {
+    let MachineEntry { name, set } = entry.get_ref();
+    let name = needed(source, name.as_ref(), "machine: name", entry.span())?;
+    // A file is relative to the list.
+    let path = if is_path(name.get_ref()) { folder.join(name.get_ref()).display().to_string() } else { name.get_ref().clone() };
+    machine(&path, &[], "set").map_err(|why| source.wrong(name.span(), format!("machine {}: {}", name.get_ref(), one_line(&why))))?;
+    // Every combination of the values, the last key's changing fastest.
+    let mut variants = vec![Vec::new()];
+    for (key, values) in set {
+        if values.get_ref().all().is_empty() {
+            return Err(source.wrong(values.span(), format!("machine {}: set: {key} has no value", name.get_ref())));
+        }
+        let with = |variant: &Vec<Change>| -> Vec<Vec<Change>> {
+            let change = |value: &super::list::Value| Change { key: key.clone(), value: value.to_string() };
+            values.get_ref().all().iter().map(|value| variant.iter().cloned().chain([change(value)]).collect()).collect()
+        };
+        variants = variants.iter().flat_map(with).collect();
+    }
+    let place = set.values().next().map_or_else(|| name.span(), Spanned::span);
+    let (mut targets, mut files) = (Vec::new(), BTreeSet::new());
+    for variant in &variants {
+        let wrong = |why: anyhow::Error| source.wrong(place.clone(), format!("machine {}: {}", name.get_ref(), one_line(&why)));
+        let machine = machine(&path, variant, "set").map_err(wrong)?;
+        files.extend(machine_files(&path, &machine));
+        for &compute in compute {
+            report::check(&machine.description, compute).map_err(|why| wrong(why.into()))?;
+            targets.push(Target { machine: machine.clone(), compute, window: None });
+        }
+    }
+    Ok((targets, files))
+}
+
+/// A scene and what to see of it.
+fn scene(source: &Source<'_>, list: &List, spanned: &Spanned<SceneEntry>, folder: &Path) -> anyhow::Result<SceneJobs> {
+    let entry = spanned.get_ref();
+    let (origin, name, content, space) = match (&entry.file, &entry.generate) {
+        (Some(file), None) => {
+            let place = |value: Option<Range<usize>>, key: &'static str| value.map(|place| (key, place));
+            let own = [
+                place(entry.levels.as_ref().map(Spanned::span), "levels"),
+                place(entry.base.as_ref().map(Spanned::span), "base"),
+                place(entry.seed.as_ref().map(Spanned::span), "seed"),
+                place(entry.roughness.as_ref().map(Spanned::span), "roughness"),
+            ];
+            if let Some((key, place)) = own.into_iter().flatten().next() {
+                return Err(source.wrong(place, format!("scene: {key} goes with generate, not with file")));
+            }
+            let path = folder.join(file.get_ref());
+            let scene = open(&path).map_err(|why| source.wrong(file.span(), format!("scene: {}", one_line(&why))))?;
+            let name = file.get_ref().file_stem().unwrap_or_default().to_string_lossy().into_owned();
+            (Origin::File(path), name, xxh3_64(scene.bytes()), ModelSpace::of(&scene))
+        }
+        (None, Some(kind)) => {
+            let value = |value: &Maybe<u32>| value.as_ref().map(|value| *value.get_ref());
+            let options = procedural::Options {
+                scene: *kind.get_ref(),
+                levels: value(&entry.levels),
+                base: value(&entry.base),
+                seed: entry.seed.as_ref().map_or(0, |seed| *seed.get_ref()),
+                roughness: entry.roughness.as_ref().map(|roughness| *roughness.get_ref()),
+            };
+            generate::check(&options).map_err(|why| source.wrong(spanned.span(), format!("scene: {}", one_line(&why))))?;
+            (Origin::Generate(options), format!("{:?}", kind.get_ref()).to_lowercase(), 0, stand_in())
+        }
+        (Some(file), Some(_)) => return Err(source.wrong(file.span(), "scene: has both file and generate")),
+        (None, None) => return Err(source.wrong(spanned.span(), "scene: needs either file or generate")),
+    };
+    let name = entry.name.as_ref().map_or(name, |name| name.get_ref().clone());
+    let views = views(source, list, spanned)?;
+    for view in &views {
+        let wrong = |why: anyhow::Error| source.wrong(spanned.span(), format!("scene {name}: {}", one_line(&why)));
+        view.camera(&space).map_err(wrong)?;
+    }
+    Ok(SceneJobs { name, origin, content, views })
+}
+
+/// A place for a model that is not there yet. Its centre is nowhere in particular, so that a camera that is impossible here is so for every model.
+fn stand_in() -> ModelSpace {
+    let placement = Placement { offset: [0.312, 0.417, 0.523], scale: 2f64.powi(-31) };
+    ModelSpace { placement, lo: [-1 << 30; 3], hi: [1 << 30; 3] }
+}
+
+fn views(source: &Source<'_>, list: &List, spanned: &Spanned<SceneEntry>) -> anyhow::Result<Vec<ViewJob>> {
+    let entry = spanned.get_ref();
+    let size = needed(source, entry.size.as_ref().or(list.size.as_ref()), "size", 0..0)?;
+    let Size(width, height) = size.get_ref().parse().map_err(|why| source.wrong(size.span(), format!("size: {why}")))?;
+    let (target, up, fov) = (entry.target, entry.up, entry.fov.unwrap_or(DEFAULT_VIEW_ANGLE_DEGREES));
+    let base = ViewJob { size: [width, height], distance: None, direction: None, eye: None, target, up, fov };
+    if let Some(eyes) = &entry.eyes {
+        if let Some(other) = entry.distances.as_ref().map(Spanned::span).or(entry.directions.as_ref().map(Spanned::span)) {
+            return Err(source.wrong(other, "scene: eyes are in place of distances and directions"));
+        }
+        return Ok(filled(source, eyes, "eyes")?.iter().map(|&eye| ViewJob { eye: Some(eye), ..base.clone() }).collect());
+    }
+    let distances = needed(source, entry.distances.as_ref().or(list.distances.as_ref()), "scene: distances or eyes", spanned.span())?;
+    let place = distances.span();
+    let distances = filled(source, distances, "distances")?;
+    for distance in distances {
+        radii(&distance.to_string()).map_err(|why| source.wrong(place.clone(), format!("distances: {why}")))?;
+    }
+    let directions = match &entry.directions {
+        Some(directions) => filled(source, directions, "directions")?.iter().copied().map(Some).collect(),
+        None => vec![None],
+    };
+    let view = |direction, &distance: &f64| ViewJob { distance: Some(distance), direction, ..base.clone() };
+    Ok(directions.iter().flat_map(|&direction| distances.iter().map(move |d| view(direction, d)).collect::<Vec<_>>()).collect())
+}

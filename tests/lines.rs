@@ -1,0 +1,36 @@
+//! `lines` counts many layouts at once: each must be what a frame through it alone gives.
+
+use serde_json::Value;
+use std::path::Path;
+
+fn json(folder: &Path, args: &str) -> Value {
+    let mut command = assert_cmd::cargo::cargo_bin_cmd!("lodray");
+    let output = command.current_dir(folder).args(args.split_whitespace()).env("LODRAY_CACHE", "none").output().unwrap();
+    assert!(output.status.success(), "{args}: {}", String::from_utf8_lossy(&output.stderr));
+    serde_json::from_slice(&output.stdout).unwrap()
+}
+
+#[test]
+fn every_layout_has_the_lines_of_its_own_frame() {
+    let folder = tempfile::tempdir().unwrap();
+    json(folder.path(), "generate terrain --levels 3 --base 128 --json -o a.lod");
+    let report = json(folder.path(), "lines a.lod --distances 1.5,5 --size 45x37 --bvh32 --json");
+    let rows = report["rows"].as_array().unwrap();
+    assert_eq!(rows.len(), 2 + 18);
+    for (method, bits) in [("bvh", 16), ("bvh32", 32)] {
+        for size in [1, 2, 4] {
+            for layout in ["Indexed", "Packed", "Line"] {
+                let name = format!("BVH {bits}-bit, {layout}, {size} a leaf");
+                let row = rows.iter().find(|row| row["structure"] == name.as_str()).unwrap_or_else(|| panic!("no {name}"));
+                for (k, distance) in ["1.5", "5"].iter().enumerate() {
+                    let layout = layout.to_lowercase();
+                    let shot = format!("--leaf-layout {layout} --leaf-size {size} --distance {distance} --size 45x37 -o out --json");
+                    let frame = json(folder.path(), &format!("render a.lod --method {method} {shot}"));
+                    let kinds = frame["stats"]["lines"].as_array().unwrap();
+                    let distinct: u64 = kinds.iter().map(|kind| kind["distinct"].as_u64().unwrap()).sum();
+                    assert_eq!(row["distinct_lines"][k], distinct, "{name} from {distance}");
+                }
+            }
+        }
+    }
+}
