@@ -1,4 +1,4 @@
-//! Output: progress on a terminal, JSON or text on standard output, folders.
+//! Output: progress on a terminal, JSON or text on standard output, files; and the opening of scenes.
 
 use super::common::is_quiet;
 use anyhow::Context;
