@@ -52,8 +52,7 @@ fn tube(steps: u32, around: u32, is_ring: bool, path: impl Fn(f64) -> [f64; 3], 
         }
     }
     let at = |i: u32, j: u32| (i % count) * around + j % around;
-    let sides = (0..if is_ring { steps } else { steps })
-        .flat_map(|i| (0..around).map(move |j| [at(i, j), at(i + 1, j), at(i + 1, j + 1), at(i, j + 1)]));
+    let sides = (0..steps).flat_map(|i| (0..around).map(move |j| [at(i, j), at(i + 1, j), at(i + 1, j + 1), at(i, j + 1)]));
     let mut triangles: Vec<[u32; 3]> = sides.flat_map(|[a, b, c, d]| [[a, b, c], [a, c, d]]).collect();
     if !is_ring {
         let tip = positions.len() as u32;
