@@ -10,7 +10,7 @@ use serde::{Deserialize, Serialize};
 pub(super) type Vec3 = parry3d_f64::math::Vector;
 
 /// Means are taken over at most this many samples of each kind (vertices, centroids, random points); more are thinned evenly.
-const MAX_SAMPLES: usize = 60_000;
+const MAX_SAMPLES: usize = 30_000;
 
 /// Mean and largest distance, in percent of the diagonal of the original's bounding box.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]

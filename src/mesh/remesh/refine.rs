@@ -29,7 +29,7 @@ const LAST_ROUNDS: u32 = 12;
 /// Largest distances are narrowed down to this part of the limit to judge a result, ...
 const ROUGHLY: f64 = 0.9;
 /// ... and to this part to report it.
-const FINELY: f64 = 0.3;
+const FINELY: f64 = 0.4;
 
 /// Vertices that the base mesh keeps for a tree at fault the first time, ...
 const FIRST_KEPT: usize = 3;
