@@ -237,7 +237,7 @@ fn any_number_of_threads_gives_the_same_bytes() {
         let commands = [
             "generate sphere --levels 3 --base 32 -o sphere.lod --json",
             "generate spikes --levels 2 --base 32 -o spikes.lod",
-            "build sheet.obj -o sheet.lod --levels 2 --base 60 --json",
+            "build sheet.obj -o sheet.lod --levels 2 --max-error 1 --json",
             "verify sheet.lod",
             "verify sphere.lod --json",
             "render sphere.lod --size 48x48 --compare -o a --json",
@@ -274,7 +274,7 @@ fn threads_and_quiet_go_with_every_command() {
     // Each with what is left of its output, if anything.
     for (args, says) in [
         ("generate sphere --levels 1 --base 8 -o b.lod", ""),
-        ("build sheet.obj -o sheet.lod --levels 1 --base 20", ""),
+        ("build sheet.obj -o sheet.lod --levels 1 --max-error 2", ""),
         ("export a.lod -o a.obj", ""),
         ("sweep jobs.toml -o sweep", ""),
         ("trace a.lod --pixel 4,4 --size 8x8 -o a.vcd", ""),
@@ -316,6 +316,8 @@ fn refusals_name_option_value_and_limit() {
         ("generate sphere -o b.lod --roughness 2", "--roughness", "'2' is not between 0 and 1"),
         ("build a.obj -o b.lod --levels 11", "--levels", "'11' is not a whole number from 0 to 10"),
         ("build a.obj -o b.lod --base 0", "--base", "'0' is not a whole number from 1 to"),
+        ("build a.obj -o b.lod --max-error 0", "--max-error", "'0' is not above 0 and at most 100 percent"),
+        ("build a.obj -o b.lod --crease-angle 181", "--crease-angle", "'181' is not from 0 to 180 degrees"),
         ("export a.lod -o b.obj --level 11", "--level", "'11' is not a whole number from 0 to 10"),
         ("export a.lod -o b.obj --level 3", "--level 3", "finest level 2"),
         ("trace a.lod --pixel 9,0 --size 8x8 --text", "--pixel 9,0", "the last of which is 7,7"),
@@ -331,6 +333,22 @@ fn refusals_name_option_value_and_limit() {
         assert!(code != 0 && text.starts_with("error: ") && text.contains(option) && text.contains(limit), "{args}: {text}");
     }
     assert_eq!(desk.files(".").len(), 1, "a refusal has written something");
+}
+
+#[test]
+fn what_a_base_loses_is_said_and_refused_if_strict() {
+    let desk = Desk::new();
+    fs::write(desk.path("sheet.obj"), sheet(24)).unwrap();
+    let (code, text) = desk.run_on_and_hear("build sheet.obj -o sheet.lod --levels 1 --base 20 --quiet");
+    assert!(
+        code == 0 && text.starts_with("warning: sheet.lod: it is up to ") && text.contains(" at (") && text.lines().count() == 1,
+        "{text}"
+    );
+    assert!(desk.run("info sheet.lod").contains("\nwarning     it is up to "));
+    let (code, text) = desk.run_on_and_hear("build sheet.obj -o strict.lod --levels 1 --base 20 --strict");
+    assert!(code == 1 && text.starts_with("error: sheet.obj: it is up to ") && !desk.path("strict.lod").exists(), "{text}");
+    desk.run("build sheet.obj -o strict.lod --levels 3 --strict");
+    assert!(!desk.run("info strict.lod").contains("warning"));
 }
 
 #[test]
