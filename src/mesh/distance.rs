@@ -47,7 +47,12 @@ pub(super) struct Target {
     /// This many triangles in a row, which should lie together, make one leaf of the tree of boxes.
     group: usize,
     bvh: Bvh,
+    /// Boxes of [`BLOCK`] triangles in a row, if leaves are larger than that.
+    blocks: Vec<Aabb>,
 }
+
+/// Triangles of a leaf that are left out together if their box is too far away.
+const BLOCK: usize = 4;
 
 impl Target {
     pub fn new(corners: Vec<[Vec3; 3]>) -> Target {
@@ -60,18 +65,38 @@ impl Target {
             Aabb::new(points().fold(Vec3::INFINITY, Vec3::min), points().fold(Vec3::NEG_INFINITY, Vec3::max))
         };
         let boxes: Vec<Aabb> = corners.par_chunks(group).map(bounds).collect();
-        Target { bvh: Bvh::from_leaves(BvhBuildStrategy::Binned, &boxes), corners, group }
+        let blocks = if group > BLOCK { corners.par_chunks(BLOCK).map(bounds).collect() } else { Vec::new() };
+        Target { bvh: Bvh::from_leaves(BvhBuildStrategy::Binned, &boxes), corners, group, blocks }
     }
 
-    /// The triangles of a leaf.
-    fn leaf(&self, leaf: u32) -> impl Iterator<Item = u32> {
+    /// What is best in a leaf by `one`, leaving out blocks that are `far` beyond that or `most`.
+    fn best_of(
+        &self,
+        leaf: u32,
+        most: f64,
+        far: impl Fn(Vec3, Vec3) -> f64,
+        one: impl Fn(u32) -> Option<(f64, Hit)>,
+    ) -> Option<(f64, Hit)> {
         let first = leaf as usize * self.group;
-        first as u32..(first + self.group).min(self.corners.len()) as u32
+        let end = (first + self.group).min(self.corners.len());
+        let mut best: Option<(f64, Hit)> = None;
+        for block in (first..end).step_by(BLOCK) {
+            let most = best.as_ref().map_or(most, |b| b.0);
+            if self.blocks.get(block / BLOCK).is_some_and(|b| far(b.mins, b.maxs) > most) {
+                continue;
+            }
+            for found in (block..end.min(block + BLOCK)).filter_map(|t| one(t as u32)) {
+                if best.as_ref().is_none_or(|b| found.0 < b.0) {
+                    best = Some(found);
+                }
+            }
+        }
+        best
     }
 
     /// The closest point within `reach` on a triangle that `accept` takes.
     pub fn closest(&self, p: Vec3, reach: f64, accept: impl Fn(u32) -> bool) -> Option<Hit> {
-        let far = |node: &BvhNode, _| (node.mins() - p).max(p - node.maxs()).max(Vec3::ZERO).length_squared();
+        let far = |low: Vec3, high: Vec3| (low - p).max(p - high).max(Vec3::ZERO).length_squared();
         let one = |triangle: u32| {
             if !accept(triangle) {
                 return None;
@@ -81,9 +106,9 @@ impl Target {
             let point = a * w[0] + b * w[1] + c * w[2];
             Some(((point - p).length_squared(), Hit { triangle, barycentrics: w, point }))
         };
-        let leaf = |leaf: u32, _| self.leaf(leaf).filter_map(one).min_by(|a, b| a.0.total_cmp(&b.0));
+        let node = |node: &BvhNode, _| far(node.mins(), node.maxs());
         // Squared, and a point exactly at the limit counts.
-        let (_, (_, hit)) = self.bvh.find_best((reach * reach).next_up(), far, leaf)?;
+        let (_, (_, hit)) = self.bvh.find_best((reach * reach).next_up(), node, |leaf, most| self.best_of(leaf, most, far, one))?;
         Some(hit)
     }
 
@@ -91,8 +116,8 @@ impl Target {
     /// takes, no further than `reach`.
     pub fn line(&self, p: Vec3, direction: Vec3, reach: f64, accept: impl Fn(u32) -> bool) -> Option<Hit> {
         let inverse = direction.recip();
-        let far = |node: &BvhNode, _| {
-            let (low, high) = (node.mins() - p, node.maxs() - p);
+        let far = |low: Vec3, high: Vec3| {
+            let (low, high) = (low - p, high - p);
             let (mut enter, mut leave) = (f64::NEG_INFINITY, f64::INFINITY);
             for k in 0..3 {
                 if direction[k].abs() > f64::MIN_POSITIVE.sqrt() {
@@ -114,8 +139,8 @@ impl Target {
             }
             Some((t.abs(), Hit { triangle, barycentrics: w, point: p + direction * t }))
         };
-        let leaf = |leaf: u32, _| self.leaf(leaf).filter_map(one).min_by(|a, b| a.0.total_cmp(&b.0));
-        let (_, (_, hit)) = self.bvh.find_best(reach, far, leaf)?;
+        let node = |node: &BvhNode, _| far(node.mins(), node.maxs());
+        let (_, (_, hit)) = self.bvh.find_best(reach, node, |leaf, most| self.best_of(leaf, most, far, one))?;
         Some(hit)
     }
 
@@ -130,8 +155,16 @@ impl Target {
         self.corners.par_iter().filter(|c| is_degenerate(c.map(|p| p.to_array()))).count() as u64
     }
 
-    pub fn distance(&self, p: Vec3) -> f64 {
-        self.closest(p, f64::MAX.sqrt(), |_| true).map_or(0.0, |hit| (hit.point - p).length())
+    /// The closest point, which is looked for within `guess` first: quicker if that is close.
+    pub fn near(&self, p: Vec3, guess: f64) -> Option<Hit> {
+        const ANYWHERE: f64 = 1e150;
+        let near = if guess < ANYWHERE { self.closest(p, guess, |_| true) } else { None };
+        near.or_else(|| self.closest(p, ANYWHERE, |_| true))
+    }
+
+    /// How far the closest point is; looked for as in [`Self::near`].
+    pub fn distance(&self, p: Vec3, guess: f64) -> f64 {
+        self.near(p, guess).map_or(0.0, |hit| (hit.point - p).length())
     }
 }
 
@@ -189,15 +222,15 @@ pub(super) fn closest_barycentrics(p: Vec3, a: Vec3, b: Vec3, c: Vec3) -> [f64; 
 }
 
 /// Mean distances of `new` from `original` and back, `diagonal` being 100 percent. The samples, and the order in which they are summed, do not
-/// depend on the number of threads.
-pub(super) fn mean_distances(original: &Target, new: &Target, diagonal: f64) -> [f64; 2] {
+/// depend on the number of threads. `largest` is the largest distance of each, or a bound of it.
+pub(super) fn mean_distances(original: &Target, new: &Target, diagonal: f64, largest: [f64; 2]) -> [f64; 2] {
     let mut to = corner_samples(&new.corners);
     to.extend(centroids(&new.corners));
     let mut from = corner_samples(&original.corners);
     from.extend(centroids(&original.corners));
     from.extend(area_samples(&original.corners, MAX_SAMPLES));
     let percent = percent(diagonal);
-    [mean(&to, original, percent), mean(&from, new, percent)]
+    [mean(&to, original, percent, largest[0]), mean(&from, new, percent, largest[1])]
 }
 
 /// Percent in a unit of length; nothing can be said of a mesh too small to have a diagonal.
@@ -205,8 +238,8 @@ pub(super) fn percent(diagonal: f64) -> f64 {
     Some(100.0 / diagonal).filter(|p| p.is_finite()).unwrap_or(0.0)
 }
 
-fn mean(samples: &[Vec3], target: &Target, percent: f64) -> f64 {
-    let distances: Vec<f64> = samples.par_iter().map(|&p| percent * target.distance(p)).collect();
+fn mean(samples: &[Vec3], target: &Target, percent: f64, largest: f64) -> f64 {
+    let distances: Vec<f64> = samples.par_iter().map(|&p| percent * target.distance(p, largest)).collect();
     distances.iter().sum::<f64>() / distances.len().max(1) as f64
 }
 
@@ -259,7 +292,7 @@ mod tests {
         let target = Target::new(sheet());
         for (k, p) in area_samples(&sheet(), 50).into_iter().enumerate() {
             let p = p + Vec3::new(0.3, -0.4, (k % 7) as f64 - 3.0);
-            let best = target.distance(p);
+            let best = target.distance(p, f64::INFINITY);
             let sampled = area_samples(&sheet(), 5000).into_iter().map(|q| (q - p).length()).fold(f64::MAX, f64::min);
             assert!(best <= sampled && sampled - best < 0.2, "{best} {sampled}");
         }
@@ -270,7 +303,7 @@ mod tests {
         let (one, many) = (Target::new(sheet()), Target::grouped(sheet(), 16));
         for k in 0..200 {
             let p = Vec3::new(f64::from(k % 19) * 0.9, f64::from(k % 17), f64::from(k % 5) - 2.0);
-            assert_eq!(one.distance(p), many.distance(p));
+            assert_eq!(one.distance(p, f64::INFINITY), many.distance(p, 0.1 * f64::from(k % 50)));
             let direction = Vec3::new(0.1, f64::from(k % 3) * 0.2, 1.0).normalize();
             let line = |t: &Target| t.line(p, direction, 9.0, |_| true).map(|hit| (hit.point - p).length());
             assert_eq!(line(&one), line(&many));

@@ -207,7 +207,7 @@ fn rounding(levels: u32) -> f64 {
 /// Distances in percent, with what rounding to the format's grid adds to the largest.
 fn distances(source: &Source, fitted: &Fitted, far: &[Farthest; 2], levels: u32) -> TwoSidedDistance {
     let percent = percent(source.diagonal);
-    let [to, from] = mean_distances(&source.target, &fitted.target, source.diagonal);
+    let [to, from] = mean_distances(&source.target, &fitted.target, source.diagonal, far.each_ref().map(|far| far.bound));
     let distance = |mean, far: &Farthest| Distance { mean, max: percent * (far.bound + rounding(levels)), found: percent * far.found };
     TwoSidedDistance { to_original: distance(to, &far[0]), from_original: distance(from, &far[1]) }
 }

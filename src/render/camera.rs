@@ -3,6 +3,7 @@
 use super::orbit;
 use crate::traverse::{ModelSpace, WorldRay};
 use glam::DVec3;
+use std::ops::Range;
 use thiserror::Error;
 
 /// The paper's camera: focal length 35 on a sensor of height 24.
@@ -154,6 +155,32 @@ impl Camera {
         let direction = self.forward + self.right * (x - 0.5 * f64::from(self.width)) - self.above * (y - 0.5 * f64::from(self.height));
         WorldRay { origin: self.eye.to_array(), direction: direction.normalize().to_array(), radius: 0.0, tan_theta: self.tan_theta }
     }
+
+    /// Where a point before the eye is in the picture, in pixels; the inverse of [`Self::ray_at`].
+    fn project(&self, p: DVec3) -> [f64; 2] {
+        let v = (p - self.eye) / (p - self.eye).dot(self.forward);
+        let along = |axis: DVec3| v.dot(axis) / axis.length_squared();
+        [0.5 * f64::from(self.width) + along(self.right), 0.5 * f64::from(self.height) - along(self.above)]
+    }
+
+    /// Columns and rows outside which no ray meets the model's enlarged box.
+    pub fn window(&self, space: &ModelSpace) -> [Range<u32>; 2] {
+        let corners = space.enlarged().map(DVec3::from_array);
+        let sizes = [self.width, self.height];
+        let radius = space.radius();
+        if corners.iter().any(|&c| (c - self.eye).dot(self.forward) < 1e-3 * radius) {
+            // Beside or behind the eye: anywhere.
+            return sizes.map(|n| 0..n);
+        }
+        let points = corners.map(|c| self.project(c));
+        std::array::from_fn(|k| {
+            let least = points.iter().map(|p| p[k]).fold(f64::INFINITY, f64::min);
+            let most = points.iter().map(|p| p[k]).fold(f64::NEG_INFINITY, f64::max);
+            // A pixel more, for rounding.
+            let pixel = |v: f64| v.clamp(0.0, f64::from(sizes[k])) as u32; // at most MAX_SIDE
+            pixel(least.floor() - 1.0)..pixel(most.ceil() + 1.0)
+        })
+    }
 }
 
 /// Unit vectors to the right and up in the picture of an eye that looks along `forward`.
@@ -219,13 +246,6 @@ mod tests {
         assert!((DVec3::from_array(middle.direction) - camera.forward).length() < 1e-12);
     }
 
-    /// Where a point is in a picture, in pixels; the inverse of [`Camera::ray_at`].
-    fn project(camera: &Camera, p: DVec3) -> [f64; 2] {
-        let v = (p - camera.eye) / (p - camera.eye).dot(camera.forward);
-        let along = |axis: DVec3| v.dot(axis) / axis.length_squared();
-        [0.5 * f64::from(camera.width) + along(camera.right), 0.5 * f64::from(camera.height) - along(camera.above)]
-    }
-
     #[test]
     fn the_default_view_holds_the_bounding_sphere_tightly() {
         let space = ModelSpace { lo: [-(1 << 20), -300_000, 5], ..space() };
@@ -243,7 +263,7 @@ mod tests {
                     let camera = Camera::new(&view, &space, width, height).unwrap();
                     // How far towards a border the sphere reaches, 1 being the border.
                     let reach = sphere.iter().map(|&p| {
-                        let [x, y] = project(&camera, p);
+                        let [x, y] = camera.project(p);
                         (2.0 * x / f64::from(width) - 1.0).abs().max((2.0 * y / f64::from(height) - 1.0).abs())
                     });
                     let reach = reach.fold(0.0, f64::max);
@@ -252,7 +272,7 @@ mod tests {
                     let closer = Camera::new(&closer, &space, width, height).unwrap();
                     // Below about 0.95 of the distance and its margin of 0.02 a sphere is cut; at wide angles the eye would be within it.
                     let cut = sphere.iter().any(|&p| {
-                        let [x, y] = project(&closer, p);
+                        let [x, y] = closer.project(p);
                         let behind = (p - closer.eye).dot(closer.forward) <= 0.0;
                         behind || x < 0.0 || y < 0.0 || x > f64::from(width) || y > f64::from(height)
                     });
@@ -260,6 +280,29 @@ mod tests {
                 }
             }
         }
+    }
+
+    #[test]
+    fn rays_outside_the_window_miss_and_the_window_is_tight() {
+        let space = ModelSpace { lo: [-(1 << 20), -300_000, 5], ..space() };
+        let mut narrow = 0;
+        for k in 0..60 {
+            let (a, b) = (f64::from(k) * 0.7, f64::from(k % 7) - 3.0);
+            let direction = Some([a.cos(), 0.4 * b, a.sin()]);
+            let distance = Some([0.1, 0.6, 1.0, 1.5, 4.0, 30.0][k as usize % 6]);
+            let target = (k % 3 == 0).then_some([0.9, -0.2, 0.8]);
+            let camera = Camera::new(&View { direction, distance, target, fov: 60.0, ..View::default() }, &space, 90, 70).unwrap();
+            let [columns, rows] = camera.window(&space);
+            let hit = |x, y| space.enter(&camera.ray(x, y), 1.0).is_some();
+            for (x, y) in (0..90).flat_map(|x| (0..70).map(move |y| (x, y))) {
+                assert!(columns.contains(&x) && rows.contains(&y) || !hit(x, y), "{k}: ({x}, {y}) outside {columns:?} {rows:?}");
+            }
+            if rows != (0..70) && !rows.is_empty() && !columns.is_empty() {
+                narrow += 1;
+                assert!(rows.clone().take(4).any(|y| (0..90).any(|x| hit(x, y))) || rows.start == 0, "{k}: {rows:?}");
+            }
+        }
+        assert!(narrow > 20, "{narrow}");
     }
 
     #[test]

@@ -109,6 +109,7 @@ const TILE_ROWS: usize = 8;
 pub fn render(method: &Method<'_>, space: &ModelSpace, camera: &Camera, delta: f64, row_done: &(dyn Fn() + Sync)) -> Frame {
     let sets = LineSets::new(&method.sections());
     let width = camera.width as usize;
+    let [columns, window_rows] = camera.window(space);
     let mut pixels = vec![None; width * camera.height as usize];
     let counts = pixels
         .par_chunks_mut(width * TILE_ROWS)
@@ -117,13 +118,14 @@ pub fn render(method: &Method<'_>, space: &ModelSpace, camera: &Camera, delta: f
             || Tracer::new(method),
             |tracer, (band, rows)| {
                 let mut probe = LineProbe { counts: RayCounts::default(), sets: &sets };
-                for left in (0..width).step_by(TILE_COLUMNS) {
-                    for (row, pixels) in rows.chunks_mut(width).enumerate() {
-                        let right = width.min(left + TILE_COLUMNS);
-                        for (x, pixel) in (left..right).zip(&mut pixels[left..right]) {
-                            // Rows and columns are below 2^16.
-                            let at = [x as u32, (band * TILE_ROWS + row) as u32];
-                            *pixel = tracer.pixel(space, camera, delta, at, &mut probe);
+                // Rows and columns are below 2^16.
+                let seen = |row: usize| window_rows.contains(&((band * TILE_ROWS + row) as u32));
+                for left in columns.clone().step_by(TILE_COLUMNS) {
+                    let tile = left..columns.end.min(left + TILE_COLUMNS as u32);
+                    for (row, pixels) in rows.chunks_mut(width).enumerate().filter(|(row, _)| seen(*row)) {
+                        for x in tile.clone() {
+                            let at = [x, (band * TILE_ROWS + row) as u32];
+                            pixels[x as usize] = tracer.pixel(space, camera, delta, at, &mut probe);
                         }
                     }
                 }

@@ -1,9 +1,8 @@
 //! Distinct lines of leaf layouts that share a tree, counted in one go: rays take the same way through all of them.
 
-use super::frame::Tracer;
-use super::{Camera, LineSets, Method};
+use super::{Camera, LineSets};
 use crate::bvh::{FullBvh, LINE_BYTES, Leaves};
-use crate::traverse::{Kind, ModelSpace, Probe, Section, bvh_sections};
+use crate::traverse::{BvhTraverser, ClosestHit, Kind, ModelSpace, Probe, Section, bvh_sections};
 use rayon::prelude::*;
 use std::ops::Range;
 
@@ -43,18 +42,20 @@ pub fn distinct_lines(
     let section = |leaves: &Leaves| Section { kind: Kind::Leaf, lines: leaves.bytes().div_ceil(LINE_BYTES) };
     let sets = LineSets::new(&bvh_sections(bvh));
     let others: Vec<_> = others.iter().map(|&leaves| (leaves, LineSets::new(&[section(leaves)]))).collect();
-    let method = Method::Bvh(bvh);
-    let Camera { width, height, .. } = *camera;
+    let height = camera.height;
+    let [columns, window_rows] = camera.window(space);
     (0..height.div_ceil(ROWS)).into_par_iter().for_each_init(
-        || Tracer::new(&method),
-        |tracer, band| {
+        || BvhTraverser::new(bvh),
+        |traverser, band| {
             let rows = band * ROWS..height.min((band + 1) * ROWS);
             let mut probe = LayoutProbe { sets: &sets, others: &others };
-            for left in (0..width).step_by(COLUMNS as usize) {
-                for y in rows.clone() {
-                    for x in left..width.min(left + COLUMNS) {
+            for left in columns.clone().step_by(COLUMNS as usize) {
+                for y in rows.clone().filter(|y| window_rows.contains(y)) {
+                    for x in left..columns.end.min(left + COLUMNS) {
                         // A BVH is at full resolution whatever the quality.
-                        tracer.pixel(space, camera, 1.0, [x, y], &mut probe);
+                        if let Some(ray) = space.enter(&camera.ray(x, y), 1.0) {
+                            traverser.trace(&ray.ray, &mut probe, &mut ClosestHit::new(traverser.levels()));
+                        }
                     }
                 }
             }

@@ -40,8 +40,11 @@ const MOST_OVER: usize = 8;
 /// ... and over all, as soon as that is more: enough to tell how the original faces.
 const MOST_OVER_ALL: usize = 1 << 15;
 
-/// Half way to a base mesh, where its removals are remembered, it has this many triangles.
+/// On the way to a base mesh it is remembered where it has this many triangles, and each time that it has half as many: the first time counts
+/// as half way.
 const HALF_WAY: usize = 1 << 13;
+/// So many times.
+const STAGES: usize = 4;
 
 /// A triangle over which fewer middles lie is looked at from its own.
 const FEW: usize = 4;
@@ -59,40 +62,51 @@ pub(super) struct Decimated {
     /// For each base triangle one of the original, of the same patch, and the very one if it is one.
     pub slots: Vec<u32>,
     /// For each base triangle those of the original that lie over it, or some of them.
-    pub over: Vec<Vec<u32>>,
+    over: Vec<Vec<u32>>,
     /// When each vertex of the original was removed, counted from 1; 0 for those that are left.
     pub removed: Vec<u32>,
     /// Removals up to this one are remembered: to keep what they removed costs more.
     pub half_way: u32,
 }
 
+impl Decimated {
+    /// Triangles of the original that lie over a base triangle, or some of them, and its slot.
+    pub fn over(&self, triangle: usize) -> impl Iterator<Item = u32> {
+        self.over[triangle].iter().copied().chain([self.slots[triangle]])
+    }
+}
+
 /// Makes one base mesh after the other, each keeping more than the last.
 pub(super) struct Decimator<'a> {
     source: &'a Source,
-    /// The mesh half way: removals up to here are the same as long as what they removed need not be kept.
-    half_way: Option<Mesh<'a>>,
+    /// The mesh on its way, at [`HALF_WAY`] and at each half of that: removals up to there are the same as long as what they removed need not be
+    /// kept.
+    stages: Vec<Mesh<'a>>,
 }
 
 impl<'a> Decimator<'a> {
     pub fn new(source: &'a Source) -> Decimator<'a> {
-        Decimator { source, half_way: None }
+        Decimator { source, stages: Vec::new() }
     }
 
     /// Removes vertices, but none of `keep`, until one goal after the other is reached or allows no more.
     pub fn run(&mut self, goals: &[Goal], keep: &[bool]) -> Decimated {
         let kept = |mesh: &Mesh| mesh.removed.iter().zip(keep).all(|(&removed, &keep)| removed == 0 || !keep);
-        let mut mesh = match self.half_way.take().filter(kept) {
-            Some(mesh) => mesh,
-            None => {
-                let mut mesh = Mesh::new(self.source);
-                if let Some(first) = goals.first() {
-                    mesh.run(&Goal { triangles: first.triangles.max(HALF_WAY), ..*first }, keep);
+        let valid = self.stages.iter().take_while(|mesh| kept(mesh)).count();
+        self.stages.truncate(valid);
+        let mut mesh = self.stages.last().cloned().unwrap_or_else(|| Mesh::new(self.source));
+        if let Some(first) = goals.first() {
+            for stage in self.stages.len()..STAGES {
+                let triangles = first.triangles.max(HALF_WAY >> stage);
+                mesh.run(&Goal { triangles, ..*first }, keep);
+                self.stages.push(mesh.clone());
+                if mesh.count > triangles {
+                    break;
                 }
-                mesh
             }
-        };
-        self.half_way = Some(mesh.clone());
-        let half_way = mesh.removals;
+        }
+        // If it does not even come that far, none is dearer than another.
+        let half_way = self.stages.first().filter(|mesh| mesh.count <= HALF_WAY).map_or(0, |mesh| mesh.removals);
         goals.iter().for_each(|goal| mesh.run(goal, keep));
         let left: Vec<usize> = (0..mesh.alive.len()).filter(|&t| mesh.alive[t]).collect();
         Decimated {
@@ -152,6 +166,17 @@ impl Ord for Cost {
     }
 }
 
+/// What the queue knows of a vertex.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Known {
+    /// It is not in there.
+    Nothing,
+    /// Its cost.
+    Cost,
+    /// What was its cost before something changed around it: found out again when it is its turn.
+    Stale,
+}
+
 /// Where a vertex may be pulled.
 enum Freedom {
     /// It stays.
@@ -188,9 +213,10 @@ struct Mesh<'a> {
     quadrics: Vec<Quadric>,
     /// What each vertex's quadric gives at the vertex.
     own_cost: Vec<f64>,
-    /// Vertices by cost, with the number of their last change.
-    queue: BinaryHeap<Reverse<(Cost, u32, u32)>>,
-    changes: Vec<u32>,
+    /// Vertices by cost, each once at most.
+    queue: BinaryHeap<Reverse<(Cost, u32)>>,
+    /// What is known of each vertex's cost.
+    known: Vec<Known>,
     removed: Vec<u32>,
     removals: u32,
     /// For each triangle of the original its middle.
@@ -200,7 +226,7 @@ struct Mesh<'a> {
 impl<'a> Mesh<'a> {
     fn new(source: &'a Source) -> Mesh<'a> {
         let (vertices, count) = (source.positions.len(), source.wedges.len());
-        let triangles: Vec<[u32; 3]> = source.wedges.iter().map(|t| t.map(|w| source.wedge_vertex[w as usize])).collect();
+        let triangles: Vec<[u32; 3]> = source.triangles();
         let mut around = vec![Vec::with_capacity(6); vertices];
         let mut quadrics = vec![Quadric::default(); vertices];
         let mut middles = Vec::with_capacity(count);
@@ -226,7 +252,7 @@ impl<'a> Mesh<'a> {
             quadrics,
             own_cost: Vec::new(),
             queue: BinaryHeap::new(),
-            changes: vec![0; vertices],
+            known: vec![Known::Nothing; vertices],
             removed: vec![0; vertices],
             removals: 0,
             middles,
@@ -257,13 +283,15 @@ impl<'a> Mesh<'a> {
 
     fn run(&mut self, goal: &Goal, keep: &[bool]) {
         self.queue.clear();
+        self.known.fill(Known::Nothing);
         self.keep = keep.to_vec();
         for v in 0..self.around.len() as u32 {
             self.push(v);
         }
         while self.count > goal.triangles {
-            let Some(Reverse((_, u, change))) = self.queue.pop() else { break };
-            if self.changes[u as usize] != change {
+            let Some(Reverse((_, u))) = self.queue.pop() else { break };
+            if std::mem::replace(&mut self.known[u as usize], Known::Nothing) == Known::Stale {
+                self.push(u);
                 continue;
             }
             for (_, v) in self.ways(u) {
@@ -286,7 +314,8 @@ impl<'a> Mesh<'a> {
             }
         };
         if best.is_finite() {
-            self.queue.push(Reverse((Cost(best), u, self.changes[u as usize])));
+            self.queue.push(Reverse((Cost(best), u)));
+            self.known[u as usize] = Known::Cost;
         }
     }
 
@@ -415,10 +444,14 @@ impl<'a> Mesh<'a> {
     fn check_over(&self, u: u32, changed: &[Changed], goal: &Goal) -> Option<Vec<Vec<u32>>> {
         let mut shares = vec![Vec::new(); changed.len()];
         for &t in &self.around[u as usize] {
+            // Most stay where they are.
+            let first = changed.iter().position(|c| c.triangle == t).unwrap_or(0);
             for &item in &self.over[t as usize] {
                 let (middle, normal) = (self.middles[item as usize], self.source.face_normal[item as usize]);
+                let fits = |c: &Changed, far: f64| far <= c.reach && (normal == Vec3::ZERO || normal.dot(c.normal) >= goal.facing);
                 let mut best = (f64::INFINITY, usize::MAX);
-                for (k, c) in changed.iter().enumerate() {
+                for k in (first..changed.len()).chain(0..first) {
+                    let c = &changed[k];
                     if self.source.patch[c.triangle as usize] != self.source.patch[item as usize] {
                         continue;
                     }
@@ -427,11 +460,13 @@ impl<'a> Mesh<'a> {
                     let far = (p * w[0] + q * w[1] + r * w[2] - middle).length_squared();
                     if far < best.0 {
                         best = (far, k);
+                        // Right over this one, so not over another.
+                        if w[0] > 0.0 && w[1] > 0.0 && w[2] > 0.0 && fits(c, far) {
+                            break;
+                        }
                     }
                 }
-                let to = changed.get(best.1)?;
-                let faces = normal == Vec3::ZERO || normal.dot(to.normal) >= goal.facing;
-                if !faces || best.0 > to.reach {
+                if !fits(changed.get(best.1)?, best.0) {
                     return None;
                 }
                 shares[best.1].push(item);
@@ -492,10 +527,11 @@ impl<'a> Mesh<'a> {
         self.own_cost[v as usize] = self.quadrics[v as usize].at(self.at(v));
         self.removals += 1;
         self.removed[u as usize] = self.removals;
-        self.changes[u as usize] += 1;
         for w in self.neighbours(v).into_iter().chain([v]) {
-            self.changes[w as usize] += 1;
-            self.push(w);
+            match self.known[w as usize] {
+                Known::Nothing => self.push(w),
+                Known::Cost | Known::Stale => self.known[w as usize] = Known::Stale,
+            }
         }
     }
 }

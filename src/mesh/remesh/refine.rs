@@ -5,7 +5,7 @@
 //! time twice as many. In the end it is the original there, which splits without any fault.
 
 use super::super::distance::{Target, Vec3};
-use super::super::farthest::{Farthest, farthest};
+use super::super::farthest::{Farthest, Vertices, farthest};
 use super::decimate::{Decimated, Decimator, Goal};
 use super::shading::{finest_corners, finest_origins, first_flipped, flipped};
 use super::source::Source;
@@ -26,10 +26,8 @@ const ROUNDS: u32 = 24;
 /// ... and by results of more than the trial's levels.
 const LAST_ROUNDS: u32 = 12;
 
-/// Largest distances are narrowed down to this part of the limit to judge a result, ...
-const ROUGHLY: f64 = 0.9;
-/// ... and to this part to report it.
-const FINELY: f64 = 0.4;
+/// Largest distances are narrowed down to this part of the limit.
+const NARROW: f64 = 0.4;
 
 /// Vertices that the base mesh keeps for a tree at fault the first time, ...
 const FIRST_KEPT: usize = 3;
@@ -57,6 +55,8 @@ pub(super) struct Fitted {
     /// Triangles that face away from the original, and where there is one.
     pub flips: u64,
     pub flip: Option<Vec3>,
+    /// How far the result is from the original at most, and the original from the result, if that was looked for.
+    pub farthest: Option<[Farthest; 2]>,
 }
 
 /// The base mesh with as few triangles as will do.
@@ -79,10 +79,10 @@ pub(super) fn fit(source: &Source, wanted: &Wanted, progress: &dyn Fn(&str, u64,
             return Err(RemeshError::NeedsBase { base: count, levels: wanted.levels, works });
         }
         let topology = Topology::new(source, base.wedges.clone(), &base.slots);
-        let fitted = split_and_look(source, topology, at, &|_, _, _| ());
+        let mut fitted = split_and_look(source, topology, at, &|_, _, _| ());
         // Each level comes closer by a factor of about four.
         let limit = if at < wanted.levels { 2.0 * wanted.limit } else { wanted.limit };
-        let faults = judge(source, &fitted, limit, at == wanted.levels);
+        let faults = judge(source, &mut fitted, limit, at == wanted.levels);
         if faults.iter().all(Option::is_none) || left == 0 {
             if at == wanted.levels {
                 progress("base mesh", ROUNDS.into(), ROUNDS.into());
@@ -92,8 +92,9 @@ pub(super) fn fit(source: &Source, wanted: &Wanted, progress: &dyn Fn(&str, u64,
             strikes.fill(0);
             continue;
         }
-        left -= 1;
-        mend(source, &fitted.topology, &base, &faults, &mut keep, &mut strikes);
+        // The same base mesh would have the same faults. What cannot be mended is left.
+        let mended = (0..PATIENCE + RINGS + 1).any(|_| mend(source, &fitted.topology, &base, &faults, &mut keep, &mut strikes));
+        left = if mended { left - 1 } else { 0 };
     }
 }
 
@@ -116,24 +117,28 @@ fn split_and_look(source: &Source, topology: Topology, levels: u32, progress: &d
     let target = Target::grouped(finest_corners(&forest), 1 << (2 * levels.min(2)));
     let flips: Vec<u64> = (0..topology.triangles.len()).into_par_iter().map(|t| flipped(&topology, &forest, t)).collect();
     let flip = flips.iter().position(|&n| n > 0).and_then(|t| first_flipped(&forest, t));
-    Fitted { topology, forest, target, flips: flips.iter().sum(), flip }
+    Fitted { topology, forest, target, flips: flips.iter().sum(), flip, farthest: None }
 }
 
 /// How far the result is from the original at most, and the original from the result.
 pub(super) fn measure(source: &Source, fitted: &Fitted, limit: f64) -> [Farthest; 2] {
-    narrow(source, fitted, FINELY * limit)
+    fitted.farthest.clone().unwrap_or_else(|| narrow(source, fitted, limit, f64::INFINITY))
 }
 
-fn narrow(source: &Source, fitted: &Fitted, least: f64) -> [Farthest; 2] {
-    let to_original = farthest(&fitted.target, &source.target, &finest_origins(&fitted.forest), &[], least);
-    [to_original, farthest(&source.target, &fitted.target, &[], &source.vertices(), least)]
+fn narrow(source: &Source, fitted: &Fitted, limit: f64, most: f64) -> [Farthest; 2] {
+    let vertices = Vertices { positions: &source.positions, triangles: source.triangles() };
+    let least = NARROW * limit;
+    let from_original = farthest(&source.target, &fitted.target, &[], Some(&vertices), [least, most]);
+    // What is less than the other way round matters to nobody.
+    let least = least.max(from_original.found);
+    [farthest(&fitted.target, &source.target, &finest_origins(&fitted.topology, &fitted.forest), None, [least, most]), from_original]
 }
 
 /// For each tree the vertices of the original that are to be kept for it, if something is wrong with it.
 type Faults = Vec<Option<Vec<u32>>>;
 
-fn judge(source: &Source, fitted: &Fitted, limit: f64, whole: bool) -> Faults {
-    let Fitted { topology, forest, target, .. } = fitted;
+fn judge(source: &Source, fitted: &mut Fitted, limit: f64, whole: bool) -> Faults {
+    let Fitted { topology, forest, target, .. } = &*fitted;
     let per_tree = 1usize << (2 * forest.levels);
     let trees = topology.triangles.len();
     let too_far = |p: Vec3| source.target.closest(p, limit, |_| true).is_none();
@@ -141,7 +146,7 @@ fn judge(source: &Source, fitted: &Fitted, limit: f64, whole: bool) -> Faults {
     let mut faults: Faults = (0..trees).into_par_iter().map(|t| is_bad(t).then(Vec::new)).collect();
 
     // The tree that is closest to a vertex that is missed is to blame.
-    let blame = |p: Vec3| target.closest(p, f64::MAX.sqrt(), |_| true).map(|hit| hit.triangle as usize / per_tree);
+    let blame = |p: Vec3| target.near(p, f64::INFINITY).map(|hit| hit.triangle as usize / per_tree);
     let missed: Vec<(usize, u32)> = (0..source.positions.len() as u32)
         .into_par_iter()
         .filter_map(|v| {
@@ -154,23 +159,31 @@ fn judge(source: &Source, fitted: &Fitted, limit: f64, whole: bool) -> Faults {
     }
     // Points between the vertices, where nothing else is wrong.
     if whole && faults.iter().all(Option::is_none) {
-        let [to, from] = narrow(source, fitted, ROUGHLY * limit);
-        if to.bound > limit {
-            faults[to.triangle as usize / per_tree].get_or_insert_default();
+        let [to, from] = narrow(source, fitted, limit, limit);
+        // Where too much was found, or where the bound is that could not be brought below.
+        let places = |far: &Farthest| {
+            let worst = (far.found.max(far.bound) > limit).then_some((far.triangle, far.at));
+            if far.beyond.is_empty() { Vec::from_iter(worst) } else { far.beyond.clone() }
+        };
+        for (triangle, _) in places(&to) {
+            faults[triangle as usize / per_tree].get_or_insert_default();
         }
-        if from.bound > limit
-            && let Some(tree) = blame(from.at)
-        {
+        for tree in places(&from).into_iter().filter_map(|(_, at)| blame(at)) {
             faults[tree].get_or_insert_default();
+        }
+        if faults.iter().all(Option::is_none) {
+            fitted.farthest = Some([to, from]);
         }
     }
     faults
 }
 
-/// Adds to `keep` what the trees at fault need.
-fn mend(source: &Source, topology: &Topology, base: &Decimated, faults: &Faults, keep: &mut [bool], strikes: &mut [u32]) {
+/// Adds to `keep` what the trees at fault need; whether there was anything.
+fn mend(source: &Source, topology: &Topology, base: &Decimated, faults: &Faults, keep: &mut [bool], strikes: &mut [u32]) -> bool {
+    let mut mended = false;
     for (tree, missed) in faults.iter().enumerate().filter_map(|(t, fault)| Some((t, fault.as_ref()?))) {
-        let strike = base.over[tree].iter().map(|&t| strikes[t as usize]).max().unwrap_or(0);
+        let over = || base.over(tree);
+        let strike = over().map(|t| strikes[t as usize]).max().unwrap_or(0);
         let most = (FIRST_KEPT << strike.min(16)).min(MOST_KEPT);
         // First over the tree itself, then further around each time; what was removed early is dear to keep, and comes last.
         let mut trees = (0..strike.min(RINGS)).fold(vec![tree], |trees, _| topology.with_neighbours(&trees));
@@ -191,13 +204,15 @@ fn mend(source: &Source, topology: &Topology, base: &Decimated, faults: &Faults,
             vertices.sort_by(|&a, &b| (position(a) - centre).length_squared().total_cmp(&(position(b) - centre).length_squared()));
         }
         vertices.iter().take(most).for_each(|&v| keep[v as usize] = true);
-        base.over[tree].iter().for_each(|&t| strikes[t as usize] = strike + 1);
+        mended |= !vertices.is_empty();
+        over().for_each(|t| strikes[t as usize] = strike + 1);
     }
+    mended
 }
 
 /// Vertices that were removed from the part of the original over some trees, the last removed first.
 fn removed_over(source: &Source, base: &Decimated, trees: &[usize], late: bool) -> Vec<u32> {
-    let over = trees.iter().flat_map(|&t| &base.over[t]).flat_map(|&t| source.wedges[t as usize]);
+    let over = trees.iter().flat_map(|&t| base.over(t)).flat_map(|t| source.wedges[t as usize]);
     let least = if late { base.half_way } else { 0 };
     let mut vertices: Vec<(u32, u32)> = over
         .map(|w| source.wedge_vertex[w as usize])

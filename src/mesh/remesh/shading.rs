@@ -81,9 +81,12 @@ fn is_flipped(forest: &Forest, t: usize, corners: [LatticePoint; 3]) -> bool {
 }
 
 /// For each triangle of the finest level one of the original near it, in the order of [`finest_corners`]; `u32::MAX` where none is known.
-pub(super) fn finest_origins(forest: &Forest) -> Vec<u32> {
+pub(super) fn finest_origins(topology: &Topology, forest: &Forest) -> Vec<u32> {
     let (levels, len) = (forest.levels, lattice::len(forest.levels));
     let origin = |t: usize, node| {
+        if let Some(own) = topology.own[t] {
+            return own;
+        }
         let corners = lattice::node(levels, levels, node);
         corners.into_iter().find_map(|p| forest.origin(t * len + lattice::index(levels, p))).map_or(u32::MAX, |o| o.0)
     };

@@ -102,13 +102,9 @@ impl Source {
         }
     }
 
-    /// All vertices, each with one of its triangles.
-    pub fn vertices(&self) -> Vec<(u32, Vec3)> {
-        let mut triangle = vec![0; self.positions.len()];
-        for (wedges, t) in self.wedges.iter().zip(0u32..) {
-            wedges.iter().for_each(|&w| triangle[self.wedge_vertex[w as usize] as usize] = t);
-        }
-        triangle.into_iter().zip(self.positions.iter().copied()).collect()
+    /// Vertices of all triangles.
+    pub fn triangles(&self) -> Vec<[u32; 3]> {
+        self.wedges.iter().map(|t| t.map(|w| self.wedge_vertex[w as usize])).collect()
     }
 
     /// A point in the user's units.
