@@ -1,3 +1,5 @@
+`default_nettype none
+
 /// Round-robin choice among `N` requests.
 ///
 /// The winner is the first request at or after the place behind the last one taken, cyclically; place 0 after reset. `take_i` says that the resource takes
@@ -40,3 +42,5 @@ module arbiter #(
   end
 
 endmodule
+
+`default_nettype wire

@@ -1,3 +1,5 @@
+`default_nettype none
+
 /// Hit mapping: a point of a coarse triangle to the full-resolution triangle and barycentrics. Twin of src/block/bary_map.rs (paper sections 3.6 and 5, figures 7 and 10).
 ///
 /// `bary_step` as many times as `levels` says, one a stage; the sum of the barycentrics stays 1 exactly and no memory is read.
@@ -60,3 +62,5 @@ module bary_map #(
   assign out_o = {node, b[0], b[1], b[2]};
 
 endmodule
+
+`default_nettype wire

@@ -1,3 +1,5 @@
+`default_nettype none
+
 /// One level of the hit mapping: child number and barycentrics in it (paper figure 10).
 ///
 /// If b_k > 1/2 for one k (at most one can be, as they add up to 1): child k, b_k' = 2 b_k - 1 and the others doubled; else child 3 and each b' = 1 - 2b. Exactly 1/2 goes
@@ -29,3 +31,5 @@ module bary_step (
   end
 
 endmodule
+
+`default_nettype wire

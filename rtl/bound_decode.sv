@@ -1,3 +1,5 @@
+`default_nettype none
+
 /// Displacement bound from its 10-bit code. Twin of src/block/bound_decode.rs (paper section 4.3).
 ///
 /// h = floor(code^2 mantissa / 2^shift) units. Monotone in the code; code 0 gives 0.
@@ -74,3 +76,5 @@ module bound_decode #(
   assign unused_upper = ^{product[PRODUCT_W+1:PRODUCT_W], fine[PRODUCT_W-1:H_W]};
 
 endmodule
+
+`default_nettype wire

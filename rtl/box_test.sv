@@ -1,3 +1,5 @@
+`default_nettype none
+
 /// Ray against one 16-bit box: exact, division-free, closed. Twin of src/block/box_test.rs (paper section 3.4, docs/numbers.md "Box test").
 ///
 /// With axes mirrored so that d >= 0: hit iff lo_i d_j - hi_j d_i <= floor(c_ij / 2^16) for all i != j and hi_j >= ceil(x_j / 2^16); c_ji = -c_ij.
@@ -172,3 +174,5 @@ module box_test #(
                     valid_low[5:1], ready_low[5:1], valid_high, ready_high};
 
 endmodule
+
+`default_nettype wire

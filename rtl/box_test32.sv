@@ -1,3 +1,5 @@
+`default_nettype none
+
 /// Ray against one box of 32-bit coordinates: the full-precision variant of `box_test`. Twin of src/block/box_test32.rs (paper section 6.1).
 ///
 /// With axes mirrored so that d >= 0 and sides relative to the origin: hit iff near_i d_j <= far_j d_i for all i != j and far_j >= 0.
@@ -141,3 +143,5 @@ module box_test32 #(
                     valid_low[5:1], ready_low, valid_high, ready_high};
 
 endmodule
+
+`default_nettype wire

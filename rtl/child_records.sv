@@ -1,3 +1,5 @@
+`default_nettype none
+
 /// The four children in two memory lines: boxes for `child_test`, and one of them as a stack entry.
 ///
 /// The lines are a quad-BVH node (`tree_i` low) or a sibling group of bound data of node `node_i` on `level_i` (`tree_i` high). The entry is that of the child at
@@ -53,3 +55,5 @@ module child_records (
   end
 
 endmodule
+
+`default_nettype wire

@@ -1,3 +1,5 @@
+`default_nettype none
+
 /// Order of four children by entry distance. Twin of src/block/child_sort.rs (paper figure 9, "sort child nodes").
 ///
 /// Hit children first, nearer before farther, equal distances by child number; missed ones follow by number. A network of five comparators on the keys
@@ -66,3 +68,5 @@ module child_sort #(
   assign unused_keys = ^{third_q[3][KEY_W-1:2], third_q[2][KEY_W-1:2], third_q[1][KEY_W-1:2], third_q[0][KEY_W-1:2]};
 
 endmodule
+
+`default_nettype wire

@@ -1,3 +1,5 @@
+`default_nettype none
+
 /// The four children of a node against a ray: boxes widened by their morphed triangles, tested, and sorted. Twin of src/block/child_test.rs (paper figure 9).
 ///
 /// Four `widen_box`, four `box_test` and one `child_sort` in a row. Where `widen` is low a box is widened by its own corner, which changes nothing. A child
@@ -98,3 +100,5 @@ module child_test #(
   assign unused_lockstep = ^{valid_widen, ready_widen, ready_box[3:1], valid_box[3:1]};
 
 endmodule
+
+`default_nettype wire

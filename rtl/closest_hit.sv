@@ -1,3 +1,5 @@
+`default_nettype none
+
 /// The closest hit of one ray so far, and the way from its numerators to the hit record.
 ///
 /// A result of `hit_select` that is closer takes the place of the hit before; without one `t_max_o` is the largest t. At the end b1 and b2 come from two divisions,
@@ -81,3 +83,5 @@ module closest_hit (
   assign hit_o = {t_max_q, front_q, tree_q, level_q, node_q, b0_q, b1_q, b2_q, full_q};
 
 endmodule
+
+`default_nettype wire

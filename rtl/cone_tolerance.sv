@@ -1,3 +1,5 @@
+`default_nettype none
+
 /// The displacement that a ray cone tolerates at distance l along the ray: D = clamp(floor((offset + l slope) / 2^shift), 0, 2^34 - 1).
 ///
 /// slope - 2^17 is a signed number of 18 bits, one limb of a multiplier: offset + l slope = (offset + l 2^17) + l (slope - 2^17).
@@ -75,3 +77,5 @@ module cone_tolerance (
   );
 
 endmodule
+
+`default_nettype wire

@@ -1,3 +1,5 @@
+`default_nettype none
+
 /// Elastic cross product of two signed vectors: cross_o = p x q = (p.y q.z - p.z q.y, p.z q.x - p.x q.z, p.x q.y - p.y q.x).
 ///
 /// Vectors are {x, y, z}. Legal: components above -2^(W-1), so that each product is below 2^(2W-2) in magnitude and each difference of two fits 2 W
@@ -48,3 +50,5 @@ module cross_product #(
   );
 
 endmodule
+
+`default_nettype wire

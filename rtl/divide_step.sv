@@ -1,3 +1,5 @@
+`default_nettype none
+
 /// One step of a restoring division: the next quotient bit and remainder of remainder_i / divisor_i.
 ///
 /// quotient_bit_o = (2 remainder_i >= divisor_i), remainder_o = 2 remainder_i - quotient_bit_o * divisor_i.
@@ -20,3 +22,5 @@ module divide_step #(
   assign remainder_o = quotient_bit_o ? difference[W-1:0] : {remainder_i[W-2:0], 1'b0};
 
 endmodule
+
+`default_nettype wire

@@ -1,3 +1,5 @@
+`default_nettype none
+
 /// Elastic dot product of two signed vectors: sum_o = a.x b.x + a.y b.y + a.z b.z.
 ///
 /// Vectors are {x, y, z}. Legal: any for which the sum and its partial sums fit SUM_W bits, signed. Latency: PRODUCT_STAGES - 1 +
@@ -57,3 +59,5 @@ module dot_product #(
   );
 
 endmodule
+
+`default_nettype wire

@@ -1,3 +1,5 @@
+`default_nettype none
+
 /// Edge function of a ray and an edge (p, q) seen from the ray's origin: value_o = d.(p x q), exact, and the sign it counts with if it is 0.
 ///
 /// tie_o: the first non-zero component of p x q (x, y, z) is positive; if p x q = 0, that of q - p is; if p = q, true. normal_o is p x q, offered
@@ -65,3 +67,5 @@ module edge_function (
   );
 
 endmodule
+
+`default_nettype wire

@@ -1,3 +1,5 @@
+`default_nettype none
+
 /// State of an edge with displacement bound h of which the ray tolerates D: how far it opens, 256 = 1.
 ///
 /// s = 0 iff h <= D, s = 256 iff h >= 2 D (and h > D), else clamp(floor((h - D) 256 / D), 1, 255): there 0 < h - D < D, so that the quotient is the
@@ -65,3 +67,5 @@ module edge_opening (
   assign s_o         = !open ? '0 : full ? S_W'(lod_pkg::S_ONE) : quotient == 0 ? S_W'(1) : S_W'(quotient);
 
 endmodule
+
+`default_nettype wire

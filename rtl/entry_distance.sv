@@ -1,3 +1,5 @@
+`default_nettype none
+
 /// The t_near of a box: the largest of the three axes' entry distances (docs/numbers.md, "Box test").
 ///
 /// Per axis floor(near mantissa / 2^shift), in steps of 2^16 units, held at 2^17 - 1; near is the distance to the box's near side, 0 if the side is behind.
@@ -69,3 +71,5 @@ module entry_distance (
   );
 
 endmodule
+
+`default_nettype wire

@@ -1,3 +1,5 @@
+`default_nettype none
+
 /// The division of hits: quotient = floor(numerator * 2^32 / denominator), saturating at 35 bits. Twin of src/block/hit_divide.rs.
 ///
 /// The quotient fits iff numerator < 8 denominator; it is then floor(2^35 numerator / (8 denominator)): one restoring step for each of 35 bits, from
@@ -74,3 +76,5 @@ module hit_divide #(
   end
 
 endmodule
+
+`default_nettype wire

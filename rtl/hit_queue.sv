@@ -1,3 +1,5 @@
+`default_nettype none
+
 /// First in, first out: hits on their way from the triangle test to the division.
 ///
 /// `data_o` is the oldest item, valid while `empty_o` is low; a pop drops it at the end of the cycle. An item pushed is seen from the next cycle on. The caller never has
@@ -57,3 +59,5 @@ module hit_queue #(
   end
 
 endmodule
+
+`default_nettype wire

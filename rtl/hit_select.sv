@@ -1,3 +1,5 @@
+`default_nettype none
+
 /// Is a new hit closer than the closest so far? Twin of src/block/hit_select.rs.
 ///
 /// Smaller t first, then smaller id: the first full-resolution triangle below, tree 4^N + node 4^(N - level). Equal t and id: the same triangle, not closer.
@@ -65,3 +67,5 @@ module hit_select #(
   );
 
 endmodule
+
+`default_nettype wire

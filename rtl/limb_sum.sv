@@ -1,3 +1,5 @@
+`default_nettype none
+
 /// Elastic adder tree over the limbs of a sum: `sum_o` = sum over k of data_i[k] * 2^(k STEP), each data_i[k] a signed number of W bits.
 ///
 /// One level per stage: neighbours are added, of which the lower STEP bits pass by the adder; the rest of the tree is this module again, over half
@@ -75,3 +77,5 @@ module limb_sum #(
   end
 
 endmodule
+
+`default_nettype wire

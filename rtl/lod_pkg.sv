@@ -1,3 +1,5 @@
+`default_nettype none
+
 /// Every width and packed struct of the design: the twins of `src/num`, of the blocks' `In` and `Out` and of the unit's ports.
 ///
 /// A struct `foo::In` in Rust is `foo_in_t` here, field for field, the first field most significant; `[T; N]` is `logic [N-1:0][W-1:0]`, element
@@ -592,3 +594,5 @@ package lod_pkg;
   localparam int unsigned QUEUED_HIT_W = CONTEXT_W + 2 + TRI_TEST_OUT_W;
 
 endpackage
+
+`default_nettype wire

@@ -1,3 +1,5 @@
+`default_nettype none
+
 /// Does a node's triangle serve this ray, and if not, how far do its edges open? (paper section 3.7) Twin of src/block/lod_test.rs.
 ///
 /// Per edge (a, b) with bound h: l = floor(min((a-x).d, (b-x).d) / 2^30), D = clamp(floor((offset + l slope) / 2^shift), 0, 2^34 - 1);
@@ -104,6 +106,7 @@ module lod_test #(
 
   logic [2:0]          ready_tolerance, valid_tolerance, ready_decode, ready_opening, valid_opening, open;
   logic [2:0][S_W-1:0] s;
+  logic                ready_out;
   for (genvar k = 0; k < 3; k++) begin : g_edge
     logic [D_W-1:0]             d;
     lod_pkg::bound_decode_in_t  code;
@@ -128,7 +131,6 @@ module lod_test #(
   assign ready_codes  = ready_decode[0];
 
   logic [TAG_W-1:0] tag;
-  logic             ready_out;
   pipe_delay #(.W(TAG_W), .STAGES(LATENCY - 1), .SKIDS(SKIDS)) u_tag (
     .clk_i, .rst_ni, .valid_i, .ready_o(), .data_i(tag_i), .valid_o(), .ready_i(ready_out), .data_o(tag)
   );
@@ -142,3 +144,5 @@ module lod_test #(
                              ready_opening[2:1], valid_opening[2:1]};
 
 endmodule
+
+`default_nettype wire

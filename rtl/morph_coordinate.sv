@@ -1,3 +1,5 @@
+`default_nettype none
+
 /// One coordinate of an inserted vertex, morphed between edge midpoint and stored position (paper section 3.4).
 ///
 /// m = (a + b) / 2, exact; result m + (floor((q - m) s / 256) with its low `grid` bits cleared). s = 0 gives m, s = 256 gives q; the result lies between
@@ -91,3 +93,5 @@ module morph_coordinate (
   );
 
 endmodule
+
+`default_nettype wire

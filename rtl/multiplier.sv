@@ -1,3 +1,5 @@
+`default_nettype none
+
 /// Elastic signed x signed multiplier of any widths: product_o = a_i * b_i, exact.
 ///
 /// The factors are cut into limbs of 17 bits, unsigned but for the highest, which is signed and has up to 18 bits; each product of two limbs is one
@@ -104,3 +106,5 @@ module multiplier #(
   end
 
 endmodule
+
+`default_nettype wire

@@ -1,3 +1,5 @@
+`default_nettype none
+
 /// Address of a memory line of a record. Twin of src/block/node_address.rs.
 ///
 /// With i = (4^level - 1) / 3 + index: base + i for one-line records, base + 2i + half for two-line ones. Records outside of trees have level 0.
@@ -53,3 +55,5 @@ module node_address #(
   );
 
 endmodule
+
+`default_nettype wire

@@ -1,3 +1,5 @@
+`default_nettype none
+
 /// `STAGES` elastic registers in a row: keeps a value in step with a pipeline of that latency beside it.
 ///
 /// Pipelines of equal latency that see the same `valid_i` and `ready_i` move in lockstep, so one of them may speak for all. 0 stages are a wire.
@@ -51,3 +53,5 @@ module pipe_delay #(
   assign ready[STAGES] = ready_i;
 
 endmodule
+
+`default_nettype wire

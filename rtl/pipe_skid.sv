@@ -1,3 +1,5 @@
+`default_nettype none
+
 /// An elastic register that cuts the chain of readies: `ready_o` is a register, so no path leads from `ready_i` to it.
 ///
 /// What `pipe_stage` does, at the price of a second register, which takes the item that arrives in the cycle in which the receiver stops. Holds at most
@@ -40,3 +42,5 @@ module pipe_skid #(
   end
 
 endmodule
+
+`default_nettype wire

@@ -1,3 +1,5 @@
+`default_nettype none
+
 /// The one elastic register: holds at most one item, takes the next in the cycle in which its own leaves.
 ///
 /// A chain of them is a pipeline that squeezes its bubbles out under back-pressure. `ready_o` depends on `ready_i` without a register, so the chain's enables
@@ -33,3 +35,5 @@ module pipe_stage #(
   end
 
 endmodule
+
+`default_nettype wire

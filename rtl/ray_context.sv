@@ -1,3 +1,5 @@
+`default_nettype none
+
 /// One ray under way: the state machine of the paper's figure 9, with its stack, its split triangles, its line buffers and its closest hit.
 ///
 /// States, conditions and registers are those of docs/traversal-unit.md. A context asks for a block with `*_request_o`, holding the operands until
@@ -444,3 +446,5 @@ module ray_context (
   end
 
 endmodule
+
+`default_nettype wire

@@ -1,3 +1,5 @@
+`default_nettype none
+
 /// Per-ray constants of the box tests. Twin of src/block/ray_setup.rs.
 ///
 /// Axes are mirrored so that d >= 0. `moment` holds x_i d_j - x_j d_i for yz, zx, xy; `ceil` = ceil(x / 2^16); mantissa / 2^shift = 2^30 / d rounded down. With e the
@@ -170,3 +172,5 @@ module ray_setup #(
   assign out_o = {axis[0], axis[1], axis[2], moment_q[0], moment_q[1], moment_q[2]};
 
 endmodule
+
+`default_nettype wire

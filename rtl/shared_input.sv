@@ -1,3 +1,5 @@
+`default_nettype none
+
 /// The way of `N` requesters into one block: a round-robin arbiter and the winner's operands.
 ///
 /// `valid_o` and `data_o` go to the block, all zero if nobody requests (the operands are gated, not only chosen); `grant_o` tells the winner that the
@@ -34,3 +36,5 @@ module shared_input #(
   end
 
 endmodule
+
+`default_nettype wire

@@ -1,3 +1,5 @@
+`default_nettype none
+
 /// Inserted vertices of a node's triangle for this ray: morphed between edge midpoint and stored position. Twin of src/block/tessellate.rs (paper section 3.4).
 ///
 /// Nine `morph_coordinate` in lockstep: q_i lies on the edge between the two corners that are not p_i, and opens by s_i.
@@ -47,3 +49,5 @@ module tessellate #(
   assign unused_lockstep = ^{valid, ready};
 
 endmodule
+
+`default_nettype wire

@@ -1,3 +1,5 @@
+`default_nettype none
+
 /// The traversal stack of one ray (paper figure 9): what is still to be visited, nearest on top.
 ///
 /// `entry_o` is the top entry, valid while `empty_o` is low; a pop drops it at the end of the cycle. Push, pop and clear exclude each other. Depth: `STACK_ENTRIES`, which a quad-BVH of
@@ -46,3 +48,5 @@ module traversal_stack (
   end
 
 endmodule
+
+`default_nettype wire

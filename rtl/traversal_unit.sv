@@ -1,3 +1,5 @@
+`default_nettype none
+
 /// The traversal loop of the paper's figure 9 for several rays at once: rays in, memory lines in, closest hits out.
 ///
 /// `CONTEXTS` ray contexts (state machines) share one of each block; docs/traversal-unit.md gives every state, arbitration and port rule, and
@@ -340,3 +342,5 @@ module traversal_unit #(
   end
 
 endmodule
+
+`default_nettype wire

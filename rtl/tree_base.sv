@@ -1,3 +1,5 @@
+`default_nettype none
+
 /// Where a tree's vertex lines and sibling groups begin. Twin of src/block/tree_base.rs.
 ///
 /// With V = (4^N - 1) / 3 = binary 0101..01 of N ones and G = (V - 1) / 4 (0 if N = 0): vertices + tree V and bounds + 2 tree G. So one product serves both:
@@ -74,3 +76,5 @@ module tree_base #(
   );
 
 endmodule
+
+`default_nettype wire

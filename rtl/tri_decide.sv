@@ -1,3 +1,5 @@
+`default_nettype none
+
 /// The end of the triangle test: from u, v, w with their tie signs and t_num to hit, face and positive numbers.
 ///
 /// An edge function counts as positive if it is above 0, or if it is 0 and its tie sign says so. Hit iff all three agree, det = u + v + w != 0 and
@@ -91,3 +93,5 @@ module tri_decide #(
   );
 
 endmodule
+
+`default_nettype wire

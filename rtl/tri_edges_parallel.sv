@@ -1,3 +1,5 @@
+`default_nettype none
+
 /// The edge functions and the t numerator of a triangle at one triangle per cycle: three edge functions, and b x c shared by u and t_num.
 ///
 /// u = d.(b x c), v = d.(c x a), w = d.(a x b), each with its tie sign, t_num = a.(b x c); a, b, c relative to the ray's origin.
@@ -78,3 +80,5 @@ module tri_edges_parallel #(
   );
 
 endmodule
+
+`default_nettype wire

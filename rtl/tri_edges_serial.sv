@@ -1,3 +1,5 @@
+`default_nettype none
+
 /// The edge functions and the t numerator of a triangle at one edge per cycle: one edge function that u, v and w pass through in turn.
 ///
 /// The corners rotate, so that each pass takes (b, c): pass 0 gives u = d.(b x c), pass 1 v = d.(c x a), pass 2 w = d.(a x b), each with its tie
@@ -150,3 +152,5 @@ module tri_edges_serial #(
   assign tie_w_o = tie;
 
 endmodule
+
+`default_nettype wire

@@ -1,3 +1,5 @@
+`default_nettype none
+
 /// Ray against one triangle: exact Plücker test with a tie rule (paper appendix A). Twin of src/block/tri_test.rs.
 ///
 /// With a, b, c relative to the origin: u = d.(b x c), v = d.(c x a), w = d.(a x b), det = u + v + w, t_num = a.(b x c), all exact.
@@ -68,3 +70,5 @@ module tri_test #(
   );
 
 endmodule
+
+`default_nettype wire

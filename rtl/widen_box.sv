@@ -1,3 +1,5 @@
+`default_nettype none
+
 /// The box of a child for this ray: its stored box and its morphed triangle. Twin of src/block/widen_box.rs (paper section 3.4).
 ///
 /// lo' = min(lo, floor(p / 2^16)), hi' = max(hi, ceil(p / 2^16)) over the three corners, in box codes from the start: floor and ceil are monotone.
@@ -67,3 +69,5 @@ module widen_box #(
   );
 
 endmodule
+
+`default_nettype wire

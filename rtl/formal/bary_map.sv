@@ -1,3 +1,5 @@
+`default_nettype none
+
 /// The hit mapping. Barycentrics are weights of the corners, 2^31 = 1.
 
 /// One level down: the point stays where it is, and its new weights are weights.
@@ -91,3 +93,5 @@ module bary_map_node (
   end
 
 endmodule
+
+`default_nettype wire

@@ -1,3 +1,5 @@
+`default_nettype none
+
 /// The displacement bound from its code.
 
 /// The bound is floor(code^2 mantissa / 2^shift); code 0 gives 0. The product is the operator, in one piece.
@@ -28,3 +30,5 @@ module bound_decode_exact (
   end
 
 endmodule
+
+`default_nettype wire

@@ -1,3 +1,5 @@
+`default_nettype none
+
 /// The bound shown as the code that it is made from.
 ///
 /// Stands for rtl/bound_decode.sv where a property holds for every bound that depends on the code and the model's scale alone.
@@ -20,3 +22,5 @@ module bound_decode #(
   assign out_o = lod_pkg::BOUND_DECODE_OUT_W'(in_i.code);
 
 endmodule
+
+`default_nettype wire

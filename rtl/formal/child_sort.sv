@@ -1,3 +1,5 @@
+`default_nettype none
+
 /// The order of the children.
 
 /// The numbers are a permutation; hit children first, nearer before farther, equal ones by number; missed ones follow by number; the count is that of the hits.
@@ -42,3 +44,5 @@ module child_sort_order (
   end
 
 endmodule
+
+`default_nettype wire

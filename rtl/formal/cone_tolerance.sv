@@ -1,3 +1,5 @@
+`default_nettype none
+
 /// The tolerated displacement, with its product.
 
 /// D is clamp(floor((offset + l slope) / 2^shift)), narrow in l.
@@ -30,3 +32,5 @@ module cone_tolerance_exact (
   end
 
 endmodule
+
+`default_nettype wire

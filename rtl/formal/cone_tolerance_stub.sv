@@ -1,3 +1,5 @@
+`default_nettype none
+
 /// The tolerance shown as the distance that it is made from.
 ///
 /// Stands for rtl/cone_tolerance.sv where a property holds for every tolerance that depends on the distance and the ray's cone alone.
@@ -16,3 +18,5 @@ module cone_tolerance (
   assign {ready_o, valid_o, d_o} = {ready_i, valid_i, lod_pkg::TOLERANCE_W'(l_i)};
 
 endmodule
+
+`default_nettype wire

@@ -1,3 +1,5 @@
+`default_nettype none
+
 /// Restoring division, step by step.
 
 /// One step: the remainder stays below the divisor, and twice the old one is the quotient's bit times the divisor and the new one.
@@ -46,3 +48,5 @@ module divide_step_order #(
   end
 
 endmodule
+
+`default_nettype wire

@@ -1,3 +1,5 @@
+`default_nettype none
+
 /// A dot product as a free variable: it shows the low halves of x and y of its first vector, which take any values however the vectors are differences.
 ///
 /// Stands for rtl/dot_product.sv where a property holds for whatever the dots of the corners are, the same for the same corner.
@@ -22,3 +24,5 @@ module dot_product #(
   assign sum_o = SUM_W'({a_i[2*A_W +: 32], a_i[A_W +: 32]});
 
 endmodule
+
+`default_nettype wire

@@ -1,3 +1,5 @@
+`default_nettype none
+
 /// The normal of an edge, seen from both ends.
 
 /// q x p is -(p x q), for products that do not depend on the order of their factors.
@@ -24,3 +26,5 @@ module cross_product_opposite (
   end
 
 endmodule
+
+`default_nettype wire

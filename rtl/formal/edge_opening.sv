@@ -1,3 +1,5 @@
+`default_nettype none
+
 /// The state of an edge from its bound h and the tolerated displacement D.
 
 /// The cases at full width: closed, fully open, between.
@@ -84,3 +86,5 @@ module edge_opening_exact (
   end
 
 endmodule
+
+`default_nettype wire

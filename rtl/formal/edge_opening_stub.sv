@@ -1,3 +1,5 @@
+`default_nettype none
+
 /// The opening shown as what it is made from: any bit of the tolerance or of the bound, chosen by the bound's low bits.
 ///
 /// Stands for rtl/edge_opening.sv where a property holds for every opening that depends on bound and tolerance alone: if this one is the same for every bound,
@@ -20,3 +22,5 @@ module edge_opening (
   assign open_o = s_o != '0;
 
 endmodule
+
+`default_nettype wire

@@ -1,3 +1,5 @@
+`default_nettype none
+
 /// An elastic register as the wire that it is for the function of a block: what goes in comes out, without time.
 ///
 /// Stands, by their names, for rtl/pipe_stage.sv and rtl/pipe_skid.sv where a property is about values. That the register passes every item on, unchanged and in order, is a property of its own.
@@ -20,3 +22,5 @@ module elastic #(
   assign unused_clock = clk_i ^ rst_ni;
 
 endmodule
+
+`default_nettype wire

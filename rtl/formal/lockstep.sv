@@ -1,3 +1,5 @@
+`default_nettype none
+
 /// Registers side by side.
 
 /// Two elastic registers of one kind with the same offers and the same receiver keep the same valid and ready: one may speak for the other. So do
@@ -39,3 +41,5 @@ module lockstep (
   end
 
 endmodule
+
+`default_nettype wire

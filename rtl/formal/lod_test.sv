@@ -1,3 +1,5 @@
+`default_nettype none
+
 /// The LOD test as a whole.
 
 /// One edge in six triangles, at each place and from either end: whatever their third corners and other bounds are, the edge's state is the same. The dots of
@@ -55,3 +57,5 @@ module lod_edge_shared (
   end
 
 endmodule
+
+`default_nettype wire

@@ -1,3 +1,5 @@
+`default_nettype none
+
 /// The multiplier and its adder tree.
 
 /// The adder tree over limb products is exact: no level wraps. A product of two limbs is at most 2^34 in magnitude, one of a factor of n limbs and a limb 2^(17 n + 17).
@@ -66,3 +68,5 @@ module multiplier_exact #(
   end
 
 endmodule
+
+`default_nettype wire

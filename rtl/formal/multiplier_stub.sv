@@ -1,3 +1,5 @@
+`default_nettype none
+
 /// A product as the operator, in one piece.
 ///
 /// Stands for rtl/multiplier.sv where a property is about what is done with products; that the multiplier is exact is a property of its own.
@@ -26,3 +28,5 @@ module multiplier #(
   assign product_o = a * b;
 
 endmodule
+
+`default_nettype wire

@@ -1,3 +1,5 @@
+`default_nettype none
+
 /// The inserted vertices. Coordinates in units; a vertex of grid g has its low g bits zero.
 
 /// One coordinate, full width: the midpoint is exact, the morphed vertex lies between it and the stored one, on the grid, and nothing overflows.
@@ -92,3 +94,5 @@ module tessellate_shared (
   end
 
 endmodule
+
+`default_nettype wire

@@ -1,3 +1,5 @@
+`default_nettype none
+
 /// The end of the triangle test.
 
 /// Hit iff the three signs agree, some function is not 0 and the triangle lies ahead; then the numbers are the magnitudes, and no sum wraps.
@@ -54,3 +56,5 @@ module tri_decide_exact (
   end
 
 endmodule
+
+`default_nettype wire

@@ -1,3 +1,5 @@
+`default_nettype none
+
 /// The widened box of a child.
 
 /// It is the smallest box of codes that holds the stored box and the three corners: rounded outwards, and nothing wraps.
@@ -50,3 +52,5 @@ module widen_box_outwards (
   end
 
 endmodule
+
+`default_nettype wire

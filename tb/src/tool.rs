@@ -1,4 +1,4 @@
-//! Verilator itself: where it is, which one it is, and a run of it.
+//! Verilator itself: where it is, which one it is, and a run of it; and slang, a second reader of the RTL.
 
 use crate::Error;
 use crate::sources::{self, Sources};
@@ -72,6 +72,27 @@ pub fn lint(top: &str, parameters: &[(&str, u64)]) -> Result<(), Error> {
     arguments.extend(parameters.iter().map(|(name, value)| format!("-G{name}={value}")));
     arguments.extend(sources.arguments());
     Verilator::find()?.run(top, &arguments)
+}
+
+/// Elaborates all of `rtl/` with slang, which takes the standard by its word; `options` are slang's. A warning is an error.
+pub fn elaborate(options: &[&str]) -> Result<(), Error> {
+    let python = sources::root().join("target/tools/slang/bin/python3");
+    if !python.is_file() {
+        return Err(Error::ToolMissing(format!("no file {}", python.display())));
+    }
+    let folder = sources::rtl();
+    let entries = std::fs::read_dir(&folder).map_err(Error::file(&folder))?;
+    let mut files: Vec<PathBuf> = entries.flatten().map(|e| e.path()).filter(|p| p.extension().is_some_and(|e| e == "sv")).collect();
+    // The package comes before its users.
+    files.sort_by_key(|path| (!path.ends_with("lod_pkg.sv"), path.clone()));
+    let mut command = Command::new(&python);
+    let out = command.arg("scripts/elaborate.py").args(options).args(&files).current_dir(sources::root()).output();
+    let out = out.map_err(Error::file(&python))?;
+    if out.status.success() {
+        return Ok(());
+    }
+    let output = format!("{}{}", String::from_utf8_lossy(&out.stdout), String::from_utf8_lossy(&out.stderr)).trim().to_owned();
+    Err(Error::Refused { top: "rtl".to_owned(), output })
 }
 
 /// Where `scripts/tools` puts it.

@@ -1,3 +1,5 @@
+`default_nettype none
+
 /// A block for the testbench's own tests: {x, y, z} becomes {y, z, ~x}, three cycles later. FAULT breaks one rule each, so that the tests can
 /// show that it is noticed; 0 breaks none.
 module rotate #(
@@ -61,3 +63,5 @@ module rotate #(
   always_ff @(posedge clk_i) assert (!rst_ni || FAULT != 9 || count_q != 10'd700);
 
 endmodule
+
+`default_nettype wire

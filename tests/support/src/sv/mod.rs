@@ -13,7 +13,8 @@ pub use package::{Package, Shape, StructField};
 /// What is wrong, with the place it is at.
 pub type Result<T> = std::result::Result<T, String>;
 
-/// A text without its comments.
+/// A text without its comments and its directives on nets.
 pub fn code(text: &str) -> String {
-    text.lines().map(|line| line.split("//").next().unwrap_or(line)).collect::<Vec<_>>().join("\n")
+    let lines = text.lines().filter(|line| !line.starts_with("`default_nettype"));
+    lines.map(|line| line.split("//").next().unwrap_or(line)).collect::<Vec<_>>().join("\n")
 }
