@@ -355,7 +355,7 @@ fn table(r: &Report) -> String {
     let making = if r.cached { "BVH read from the cache" } else { "building" };
     let (rays, hits, [build, trace]) = (grouped(r.stats.rays), grouped(r.stats.hits), r.seconds);
     let mut text = format!("{rays} rays, {hits} hit; {making} {build:.2} s, tracing {trace:.2} s\n");
-    // The reference reads no lines: it is no hardware.
+    // The reference is no hardware, and reads none.
     if !r.stats.lines.is_empty() {
         text += &format!(
             "per ray: {:.2} nodes, {:.2} LOD tests, {:.2} triangles, {:.2} lines read ({:.0} bytes)\nmean level {:.3}\n",

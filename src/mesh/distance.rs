@@ -17,9 +17,10 @@ const MAX_SAMPLES: usize = 30_000;
 pub struct Distance {
     /// Mean over samples.
     pub mean: f64,
-    /// No point of the surface is further than this: a bound, narrowed down until it is little above what was found.
+    /// No point of the surface is further than this: a bound, narrowed down until it is little above what was found in either direction, but not
+    /// below four tenths of the limit.
     pub max: f64,
-    /// The largest that was found, all vertices included.
+    /// The largest that was looked at, of the original all vertices included. What is within the bound for sure is not looked at.
     #[serde(default)]
     pub found: f64,
 }
@@ -59,11 +60,13 @@ impl Target {
         Target::grouped(corners, 1)
     }
 
+    /// Leaves of `group` triangles: some, or a multiple of [`BLOCK`].
     pub fn grouped(corners: Vec<[Vec3; 3]>, group: usize) -> Target {
         let bounds = |c: &[[Vec3; 3]]| {
             let points = || c.iter().flatten().copied();
             Aabb::new(points().fold(Vec3::INFINITY, Vec3::min), points().fold(Vec3::NEG_INFINITY, Vec3::max))
         };
+        debug_assert!(group <= BLOCK || group.is_multiple_of(BLOCK));
         let boxes: Vec<Aabb> = corners.par_chunks(group).map(bounds).collect();
         let blocks = if group > BLOCK { corners.par_chunks(BLOCK).map(bounds).collect() } else { Vec::new() };
         Target { bvh: Bvh::from_leaves(BvhBuildStrategy::Binned, &boxes), corners, group, blocks }
@@ -158,7 +161,8 @@ impl Target {
     /// The closest point, which is looked for within `guess` first: quicker if that is close.
     pub fn near(&self, p: Vec3, guess: f64) -> Option<Hit> {
         const ANYWHERE: f64 = 1e150;
-        let near = if guess < ANYWHERE { self.closest(p, guess, |_| true) } else { None };
+        // A little further, as it comes rounded.
+        let near = if guess < ANYWHERE { self.closest(p, guess * (1.0 + 1e-12), |_| true) } else { None };
         near.or_else(|| self.closest(p, ANYWHERE, |_| true))
     }
 

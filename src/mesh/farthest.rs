@@ -9,7 +9,7 @@ use rayon::prelude::*;
 
 /// The largest distance is narrowed down to this part of itself, ...
 const TOLERANCE: f64 = 0.02;
-/// ... or as far as this many closest points go.
+/// ... or until this many closest points were looked for.
 const MOST_PARTS: usize = 1 << 22;
 
 /// The point of a surface that is furthest from another.
@@ -39,12 +39,12 @@ pub(super) struct Vertices<'a> {
 /// of `own`, `u32::MAX` where none is known, or is empty. `vertices` are those of `own`: they are looked at whatever happens.
 pub(super) fn farthest(own: &Target, other: &Target, hints: &[u32], vertices: Option<&Vertices>, [least, most]: [f64; 2]) -> Farthest {
     let mut far = Farthest::default();
-    let mut known = vec![[f64::INFINITY; 3]; own.corners.len()];
+    let mut known = Vec::new();
     if let Some(vertices) = vertices {
         let distances: Vec<f64> = vertices.positions.par_iter().map(|&p| other.distance(p, most)).collect();
-        for (t, (triangle, known)) in vertices.triangles.iter().zip(&mut known).enumerate() {
-            *known = triangle.map(|v| distances[v as usize]);
-            for (&v, &found) in triangle.iter().zip(&*known) {
+        known = vertices.triangles.iter().map(|triangle| triangle.map(|v| distances[v as usize])).collect();
+        for (t, (triangle, known)) in vertices.triangles.iter().zip(&known).enumerate() {
+            for (&v, &found) in triangle.iter().zip(known) {
                 if found > far.found {
                     far = Farthest { found, at: vertices.positions[v as usize], triangle: t as u32, ..far };
                 }
@@ -53,7 +53,7 @@ pub(super) fn farthest(own: &Target, other: &Target, hints: &[u32], vertices: Op
     }
     let whole = |t: usize| {
         let hint = hints.get(t).copied().unwrap_or(u32::MAX);
-        Part { triangle: t as u32, corners: own.corners[t], known: known[t], hint }
+        Part { triangle: t as u32, corners: own.corners[t], known: known.get(t).copied().unwrap_or([f64::INFINITY; 3]), hint }
     };
     let mut enough = ((1.0 + TOLERANCE) * far.found).max(least);
     let mut looked = 0;
@@ -69,6 +69,9 @@ pub(super) fn farthest(own: &Target, other: &Target, hints: &[u32], vertices: Op
             if seen.distance > most {
                 far.beyond.push((part.triangle, seen.at));
             }
+        }
+        if far.found > most {
+            return far;
         }
         enough = ((1.0 + TOLERANCE) * far.found).max(least);
         let done = |bound: f64| bound <= enough || looked >= MOST_PARTS;
@@ -135,7 +138,7 @@ impl Part {
         let at_corners = self.corners.iter().zip(self.known).map(|(&p, near)| near + (p - at).length());
         let no_further = at_corners.fold(other.corners.get(self.hint as usize).map_or(f64::INFINITY, |&t| distance_from(at, t)), f64::min);
         let Some(hit) = other.near(at, no_further) else {
-            return Seen { distance: 0.0, at, bound: 0.0, hint: self.hint, asked: true };
+            return Seen { distance: 0.0, at, bound: f64::INFINITY, hint: self.hint, asked: true };
         };
         let distance = (hit.point - at).length();
         let radius = self.corners.iter().map(|&p| (p - at).length_squared()).fold(0.0, f64::max).sqrt();

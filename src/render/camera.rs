@@ -156,19 +156,21 @@ impl Camera {
         WorldRay { origin: self.eye.to_array(), direction: direction.normalize().to_array(), radius: 0.0, tan_theta: self.tan_theta }
     }
 
-    /// Where a point before the eye is in the picture, in pixels; the inverse of [`Self::ray_at`].
-    fn project(&self, p: DVec3) -> [f64; 2] {
-        let v = (p - self.eye) / (p - self.eye).dot(self.forward);
+    /// Where a direction forwards from the eye is in the picture, in pixels; the inverse of [`Self::ray_at`].
+    fn project(&self, v: DVec3) -> [f64; 2] {
+        let v = v / v.dot(self.forward);
         let along = |axis: DVec3| v.dot(axis) / axis.length_squared();
         [0.5 * f64::from(self.width) + along(self.right), 0.5 * f64::from(self.height) - along(self.above)]
     }
 
     /// Columns and rows outside which no ray meets the model's enlarged box.
     pub fn window(&self, space: &ModelSpace) -> [Range<u32>; 2] {
-        let corners = space.enlarged().map(DVec3::from_array);
+        // In units, as rays enter the box, and from the eye.
+        let eye = DVec3::from_array(space.to_units(self.eye.to_array()));
+        let corners = space.enlarged().map(|c| DVec3::from_array(c) - eye);
         let sizes = [self.width, self.height];
-        let radius = space.radius();
-        if corners.iter().any(|&c| (c - self.eye).dot(self.forward) < 1e-3 * radius) {
+        let near = 1e-3 * space.radius() / space.placement.scale;
+        if !corners.iter().all(|c| c.dot(self.forward) >= near) {
             // Beside or behind the eye: anywhere.
             return sizes.map(|n| 0..n);
         }
@@ -263,7 +265,7 @@ mod tests {
                     let camera = Camera::new(&view, &space, width, height).unwrap();
                     // How far towards a border the sphere reaches, 1 being the border.
                     let reach = sphere.iter().map(|&p| {
-                        let [x, y] = camera.project(p);
+                        let [x, y] = camera.project(p - camera.eye);
                         (2.0 * x / f64::from(width) - 1.0).abs().max((2.0 * y / f64::from(height) - 1.0).abs())
                     });
                     let reach = reach.fold(0.0, f64::max);
@@ -272,7 +274,7 @@ mod tests {
                     let closer = Camera::new(&closer, &space, width, height).unwrap();
                     // Below about 0.95 of the distance and its margin of 0.02 a sphere is cut; at wide angles the eye would be within it.
                     let cut = sphere.iter().any(|&p| {
-                        let [x, y] = closer.project(p);
+                        let [x, y] = closer.project(p - closer.eye);
                         let behind = (p - closer.eye).dot(closer.forward) <= 0.0;
                         behind || x < 0.0 || y < 0.0 || x > f64::from(width) || y > f64::from(height)
                     });

@@ -65,12 +65,11 @@ impl ModelSpace {
         0.5 * self.placement.scale * sides.iter().map(|s| s * s).sum::<f64>().sqrt()
     }
 
-    /// Corners in world space of the box outside which [`Self::enter`] finds nothing.
+    /// Corners, in units, of the box outside which [`Self::enter`] finds nothing.
     pub fn enlarged(&self) -> [[f64; 3]; 8] {
         let margin = f64::from(BOX_MARGIN);
         let side = |k: usize, upper| if upper { f64::from(self.hi[k]) + margin } else { f64::from(self.lo[k]) - margin };
-        let world = |k: usize, upper| self.placement.offset[k] + self.placement.scale * side(k, upper);
-        std::array::from_fn(|corner| std::array::from_fn(|k| world(k, corner >> k & 1 == 1)))
+        std::array::from_fn(|corner| std::array::from_fn(|k| side(k, corner >> k & 1 == 1)))
     }
 
     /// A world position in units, not rounded.

@@ -1,4 +1,4 @@
-//! The base mesh: vertices of the original are removed one after the other, least quadric error first, as long as the original still lies
+//! The base mesh: vertices of the original are removed one after the other, about in the order of their quadric errors, as long as the original still lies
 //! over what is left like a field of heights.
 //!
 //! A vertex is removed by pulling it along an edge into a neighbour, which stays where it is, so that base vertices are vertices of the
@@ -14,6 +14,7 @@ use super::super::distance::{Vec3, closest_barycentrics};
 use super::source::Source;
 use std::cmp::Reverse;
 use std::collections::BinaryHeap;
+use std::sync::Arc;
 
 /// How far removal goes.
 #[derive(Clone, Copy, Debug)]
@@ -97,8 +98,12 @@ impl<'a> Decimator<'a> {
         let mut mesh = self.stages.last().cloned().unwrap_or_else(|| Mesh::new(self.source));
         if let Some(first) = goals.first() {
             for stage in self.stages.len()..STAGES {
-                let triangles = first.triangles.max(HALF_WAY >> stage);
+                let triangles = HALF_WAY >> stage;
+                if triangles <= first.triangles {
+                    break;
+                }
                 mesh.run(&Goal { triangles, ..*first }, keep);
+                mesh.queue = BinaryHeap::new();
                 self.stages.push(mesh.clone());
                 if mesh.count > triangles {
                     break;
@@ -220,7 +225,7 @@ struct Mesh<'a> {
     removed: Vec<u32>,
     removals: u32,
     /// For each triangle of the original its middle.
-    middles: Vec<Vec3>,
+    middles: Arc<Vec<Vec3>>,
 }
 
 impl<'a> Mesh<'a> {
@@ -255,7 +260,7 @@ impl<'a> Mesh<'a> {
             known: vec![Known::Nothing; vertices],
             removed: vec![0; vertices],
             removals: 0,
-            middles,
+            middles: Arc::new(middles),
         };
         mesh.add_line_quadrics();
         mesh.own_cost = (0..vertices as u32).map(|v| mesh.quadrics[v as usize].at(mesh.at(v))).collect();
@@ -460,7 +465,7 @@ impl<'a> Mesh<'a> {
                     let far = (p * w[0] + q * w[1] + r * w[2] - middle).length_squared();
                     if far < best.0 {
                         best = (far, k);
-                        // Right over this one, so not over another.
+                        // Right over this one: hardly over another, and that would not be closer but in a fold.
                         if w[0] > 0.0 && w[1] > 0.0 && w[2] > 0.0 && fits(c, far) {
                             break;
                         }

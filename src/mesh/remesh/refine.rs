@@ -68,9 +68,10 @@ pub(super) fn fit(source: &Source, wanted: &Wanted, progress: &dyn Fn(&str, u64,
     // How often each triangle of the original was at fault.
     let mut strikes = vec![0u32; source.wedges.len()];
     let mut decimator = Decimator::new(source);
-    let (mut at, mut left) = (wanted.levels.min(TRIAL_LEVELS), ROUNDS);
+    let (mut at, mut left, mut rounds) = (wanted.levels.min(TRIAL_LEVELS), ROUNDS, 0);
     loop {
-        progress("base mesh", u64::from(ROUNDS.saturating_sub(left)), ROUNDS.into());
+        rounds += 1;
+        progress("base mesh", rounds.min(ROUNDS - 1).into(), ROUNDS.into());
         let base = decimator.run(&[FREE], &keep);
         let count = base.wedges.len() as u64;
         let made = |levels: u32| count << (2 * levels);
@@ -83,18 +84,19 @@ pub(super) fn fit(source: &Source, wanted: &Wanted, progress: &dyn Fn(&str, u64,
         // Each level comes closer by a factor of about four.
         let limit = if at < wanted.levels { 2.0 * wanted.limit } else { wanted.limit };
         let faults = judge(source, &mut fitted, limit, at == wanted.levels);
-        if faults.iter().all(Option::is_none) || left == 0 {
-            if at == wanted.levels {
-                progress("base mesh", ROUNDS.into(), ROUNDS.into());
-                return Ok(fitted);
-            }
-            (at, left) = (wanted.levels, LAST_ROUNDS.min(left));
-            strikes.fill(0);
+        let faultless = faults.iter().all(Option::is_none);
+        // The same base mesh would have the same faults: what cannot be mended is left.
+        let mut mend = || (0..PATIENCE + RINGS + 1).any(|_| mend(source, &fitted.topology, &base, &faults, &mut keep, &mut strikes));
+        if !faultless && left > 0 && mend() {
+            left -= 1;
             continue;
         }
-        // The same base mesh would have the same faults. What cannot be mended is left.
-        let mended = (0..PATIENCE + RINGS + 1).any(|_| mend(source, &fitted.topology, &base, &faults, &mut keep, &mut strikes));
-        left = if mended { left - 1 } else { 0 };
+        if at == wanted.levels {
+            progress("base mesh", ROUNDS.into(), ROUNDS.into());
+            return Ok(fitted);
+        }
+        (at, left) = (wanted.levels, LAST_ROUNDS);
+        strikes.fill(0);
     }
 }
 
@@ -130,7 +132,7 @@ fn narrow(source: &Source, fitted: &Fitted, limit: f64, most: f64) -> [Farthest;
     let least = NARROW * limit;
     let from_original = farthest(&source.target, &fitted.target, &[], Some(&vertices), [least, most]);
     // What is less than the other way round matters to nobody.
-    let least = least.max(from_original.found);
+    let least = least.max(from_original.found.min(most));
     [farthest(&fitted.target, &source.target, &finest_origins(&fitted.topology, &fitted.forest), None, [least, most]), from_original]
 }
 
@@ -160,7 +162,7 @@ fn judge(source: &Source, fitted: &mut Fitted, limit: f64, whole: bool) -> Fault
     // Points between the vertices, where nothing else is wrong.
     if whole && faults.iter().all(Option::is_none) {
         let [to, from] = narrow(source, fitted, limit, limit);
-        // Where too much was found, or where the bound is that could not be brought below.
+        // Where too much was found; if no point was, but the bound is too large, where most was found.
         let places = |far: &Farthest| {
             let worst = (far.found.max(far.bound) > limit).then_some((far.triangle, far.at));
             if far.beyond.is_empty() { Vec::from_iter(worst) } else { far.beyond.clone() }
