@@ -1,0 +1,167 @@
+//! Frames whose every count, cycle, DRAM command and picojoule is written down in `tests/pinned/frames`: nothing of them drifts unseen.
+//!
+//! `scripts/pin` writes them again; a commit that does so does nothing else, and says why the figures moved.
+
+use lodray::bvh::{FullBvh, FullOptions, LeafLayout};
+use lodray::format::Scene;
+use lodray::render::{Camera, FrameRays, Method, View};
+use lodray::report::result::{Compute, MachineFacts, MethodFacts, SceneFacts, Setup, SimResult, ViewFacts};
+use lodray::report::{Job, simulate};
+use lodray::sim::dram::{ChannelCounts, DramEnergy};
+use lodray::sim::machine::Machine;
+use lodray::sim::replay::Run;
+use lodray::sim::stream::Layout;
+use lodray::sim::unit::UnitCounts;
+use lodray::traverse::{LodImage, ModelSpace};
+use lodray_test_support::models::{scene_of, terrain};
+use serde_json::{Value, json};
+use std::path::{Path, PathBuf};
+
+/// Set by `scripts/pin`.
+const REWRITE: &str = "LODRAY_REWRITE_PINS";
+const SIDE: u32 = 160;
+
+/// A frame of the terrain.
+struct Pin {
+    name: &'static str,
+    /// The full-resolution BVH: 32-bit boxes, leaf layout, triangles of a leaf; none for the LOD method.
+    bvh: Option<(bool, LeafLayout, u32)>,
+    machine: &'static str,
+    compute: Compute,
+    distance: f64,
+}
+
+const PINS: [Pin; 7] = [
+    Pin { name: "lod-free", bvh: None, machine: "haydel2023", compute: Compute::Free, distance: 1.2 },
+    Pin { name: "lod-units", bvh: None, machine: "haydel2023", compute: Compute::Units, distance: 2.0 },
+    Pin { name: "lod-units-gpu", bvh: None, machine: "turing2018", compute: Compute::Units, distance: 0.7 },
+    Pin { name: "lod-packet", bvh: None, machine: "packet", compute: Compute::Free, distance: 4.0 },
+    Pin { name: "bvh-free", bvh: Some((false, LeafLayout::Line, 4)), machine: "haydel2023-ddr3", compute: Compute::Free, distance: 1.2 },
+    Pin { name: "bvh-units", bvh: Some((false, LeafLayout::Packed, 2)), machine: "haydel2023", compute: Compute::Units, distance: 2.0 },
+    Pin { name: "bvh32-units", bvh: Some((true, LeafLayout::Indexed, 4)), machine: "turing2018", compute: Compute::Units, distance: 1.2 },
+];
+
+impl Pin {
+    fn file(&self) -> PathBuf {
+        Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/pinned/frames").join(format!("{}.json", self.name))
+    }
+
+    /// Everything that the frame gives.
+    fn figures(&self, scene: &Scene) -> Value {
+        let bvh =
+            self.bvh.map(|(wide, layout, size)| FullBvh::build(&scene.decode(), &FullOptions::new(size, wide, layout)).expect("a BVH"));
+        let method = bvh.as_ref().map_or_else(|| Method::Lod(LodImage::of(scene)), Method::Bvh);
+        let name = if bvh.is_some() { "bvh" } else { "lod" };
+        let space = ModelSpace::of(scene);
+        let view =
+            View { distance: Some(self.distance), direction: Some([0.35, -0.5, 0.6].into()), up: Some([0.0, 0.0, 1.0]), ..View::default() };
+        let camera = Camera::new(&view, &space, SIDE, SIDE).expect("a camera");
+        let layout = Layout::new(&method.sections()).expect("a layout");
+        let frame = FrameRays { method: &method, space: &space, camera: &camera, delta: 1.0, layout: &layout };
+        let machine = Machine::shipped(self.machine).expect("a machine");
+        let job = Job { machine: machine.clone(), compute: self.compute, window: None };
+        let run = simulate(&frame, &[job], &|_| ()).pop().expect("a run").expect("a result");
+        let setup = Setup {
+            scene: SceneFacts::from(scene),
+            method: MethodFacts { name: name.to_owned(), delta: None, leaves: None, bytes: 0 },
+            view: ViewFacts::new(&camera, None),
+            compute: self.compute,
+            machine: MachineFacts { label: self.machine.to_owned(), set: Vec::new(), description: machine },
+        };
+        let result = SimResult::new(setup, &run).expect("figures");
+        let mut figures = serde_json::to_value(&result).expect("JSON");
+        // What was run is above.
+        figures.as_object_mut().expect("a table").remove("setup");
+        json!({ "result": figures, "run": raw(&run) })
+    }
+}
+
+/// What the result does not say, as counted.
+fn raw(run: &Run) -> Value {
+    json!({
+        "counts": run.counts,
+        "dram_pj": dram(&run.dram),
+        "channels": run.channels.iter().map(channel).collect::<Vec<_>>(),
+        "units": run.units.as_ref().map(units),
+    })
+}
+
+fn dram(energy: &DramEnergy) -> Value {
+    let DramEnergy { background_pj, activate_pj, read_pj, write_pj, refresh_pj, io_pj } = *energy;
+    json!({ "background": background_pj, "activate": activate_pj, "read": read_pj, "write": write_pj, "refresh": refresh_pj, "io": io_pj })
+}
+
+fn channel(counts: &ChannelCounts) -> Value {
+    json!({
+        "activates": counts.activates,
+        "precharges": counts.precharges,
+        "reads": counts.reads,
+        "writes": counts.writes,
+        "refreshes": counts.refreshes,
+        "row_hits": counts.row_hits,
+        "row_misses": counts.row_misses,
+        "row_conflicts": counts.row_conflicts,
+        "bus_clocks": counts.bus_clocks,
+        "active_clocks": counts.active_clocks,
+        "active_down_clocks": counts.active_down_clocks,
+        "precharged_down_clocks": counts.precharged_down_clocks,
+        "queued_clocks": counts.queued_clocks,
+        "longest_queue": counts.longest_queue,
+    })
+}
+
+fn units(counts: &UnitCounts) -> Value {
+    let blocks = counts.blocks.iter().map(|(name, block)| {
+        let counts = json!({ "taken": block.taken, "refused": block.refused, "busy": block.busy, "occupancy": block.occupancy });
+        ((*name).to_owned(), counts)
+    });
+    json!({
+        "cycles": counts.cycles,
+        "states": counts.states,
+        "blocks": blocks.collect::<serde_json::Map<_, _>>(),
+        "longest_queue": counts.longest_queue,
+    })
+}
+
+/// Adds where `now` differs from `pinned` to `found`.
+fn differences(place: &str, pinned: &Value, now: &Value, found: &mut Vec<String>) {
+    match (pinned, now) {
+        (Value::Object(a), Value::Object(b)) => {
+            let keys = a.keys().chain(b.keys().filter(|key| !a.contains_key(*key)));
+            keys.for_each(|key| differences(&format!("{place}/{key}"), &pinned[key], &now[key], found));
+        }
+        (Value::Array(a), Value::Array(b)) if a.len() == b.len() => {
+            a.iter().zip(b).enumerate().for_each(|(k, (a, b))| differences(&format!("{place}/{k}"), a, b, found));
+        }
+        _ if pinned != now => found.push(format!("{place}: pinned {pinned}, now {now}")),
+        _ => (),
+    }
+}
+
+#[test]
+fn frames_are_as_they_were() {
+    let scene = scene_of(&terrain(8, 5, 0.6, 11));
+    let rewrite = std::env::var_os(REWRITE).is_some();
+    for pin in &PINS {
+        let now = pin.figures(&scene);
+        let file = pin.file();
+        if rewrite {
+            let text = serde_json::to_string_pretty(&now).expect("JSON") + "\n";
+            std::fs::write(&file, text).expect("a file that can be written");
+            continue;
+        }
+        let text = std::fs::read_to_string(&file).unwrap_or_else(|why| panic!("{}: {why}", file.display()));
+        let mut found = Vec::new();
+        differences("", &serde_json::from_str(&text).expect("JSON"), &now, &mut found);
+        let first = found.iter().take(8).map(String::as_str).collect::<Vec<_>>().join("\n");
+        assert!(found.is_empty(), "{}: {} figures moved; scripts/pin writes them again\n{first}", file.display(), found.len());
+    }
+}
+
+#[test]
+fn a_figure_that_moved_is_named() {
+    let mut found = Vec::new();
+    let pinned = json!({ "a": 1, "b": [1.5, { "c": 2 }], "d": 7 });
+    differences("", &pinned, &json!({ "a": 1, "b": [1.5, { "c": 3 }], "e": 0 }), &mut found);
+    assert_eq!(found, ["/b/1/c: pinned 2, now 3", "/d: pinned 7, now null", "/e: pinned null, now 0"]);
+}
