@@ -53,8 +53,7 @@ impl Pin {
         let method = bvh.as_ref().map_or_else(|| Method::Lod(LodImage::of(scene)), Method::Bvh);
         let name = if bvh.is_some() { "bvh" } else { "lod" };
         let space = ModelSpace::of(scene);
-        let view =
-            View { distance: Some(self.distance), direction: Some([0.35, -0.5, 0.6].into()), up: Some([0.0, 0.0, 1.0]), ..View::default() };
+        let view = View { distance: Some(self.distance), direction: Some([0.35, -0.5, 0.6]), up: Some([0.0, 0.0, 1.0]), ..View::default() };
         let camera = Camera::new(&view, &space, SIDE, SIDE).expect("a camera");
         let layout = Layout::new(&method.sections()).expect("a layout");
         let frame = FrameRays { method: &method, space: &space, camera: &camera, delta: 1.0, layout: &layout };
