@@ -8,7 +8,8 @@ use lodray::format::{self, SceneInfo};
 use lodray::mesh::procedural::{self, Options};
 use lodray::num::Ray;
 use lodray::render::{Camera, View};
-use lodray::traverse::{BvhTraverser, ClosestHit, LodImage, LodTraverser, ModelSpace, NoProbe};
+use lodray::step::NoSteps;
+use lodray::traverse::{BvhTraverser, ClosestHit, LodImage, LodTraverser, ModelSpace};
 use std::hint::black_box;
 
 /// Tiles of the frame as the renderer traces them.
@@ -37,7 +38,7 @@ fn benches(c: &mut Criterion) {
         let mut lod = LodTraverser::new(image);
         let mut hit_by = |ray: &Ray| {
             let mut closest = ClosestHit::new(image.levels);
-            lod.trace(ray, &mut NoProbe, &mut closest);
+            lod.trace(ray, &mut NoSteps, &mut closest);
             closest.record()
         };
         // Only rays that hit are counted and timed.
@@ -50,7 +51,7 @@ fn benches(c: &mut Criterion) {
         let mut traverser = BvhTraverser::new(&bvh);
         let mut hit_by = |ray: &Ray| {
             let mut closest = ClosestHit::new(image.levels);
-            traverser.trace(ray, &mut NoProbe, &mut closest);
+            traverser.trace(ray, &mut NoSteps, &mut closest);
             closest.record()
         };
         group

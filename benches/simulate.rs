@@ -9,7 +9,6 @@ use lodray::report::result::Compute;
 use lodray::report::{Job, simulate};
 use lodray::sim::machine::Machine;
 use lodray::sim::replay::{self, Chunk};
-use lodray::sim::stream::Layout;
 use lodray::traverse::{LodImage, ModelSpace};
 use lodray_test_support::models::{scene_of, terrain};
 use std::path::PathBuf;
@@ -35,9 +34,9 @@ fn main() {
 fn measure(name: &str, method: &Method<'_>, scene: &Scene) {
     let space = ModelSpace::of(scene);
     let camera = Camera::new(&View { distance: Some(2.0), ..View::default() }, &space, SIDE, SIDE).expect("a camera");
-    let layout = Layout::new(&method.sections()).expect("a layout");
-    let frame = FrameRays { method, space: &space, camera: &camera, delta: 1.0, layout: &layout };
+    let frame = FrameRays { method, space: &space, camera: &camera, delta: 1.0 };
     let machine = Machine::shipped("haydel2023").expect("a machine");
+    let nodes = method.map().nodes();
 
     let mut chunks: Vec<Chunk> = Vec::new();
     let tracing = best(|| {
@@ -49,20 +48,20 @@ fn measure(name: &str, method: &Method<'_>, scene: &Scene) {
     });
     let mut accesses = 0;
     let replaying = best(|| {
-        let run = replay::run_free(&machine, &layout, chunks.iter().cloned(), None).expect("a run");
+        let run = replay::run_free(&machine, nodes, chunks.iter().cloned(), None).expect("a run");
         accesses = run.counts.l1.requests;
     });
     let mut many = machine.clone();
     many.cores.rays_in_flight = 8;
     let mut many_accesses = 0;
     let crowded = best(|| {
-        let run = replay::run_free(&many, &layout, chunks.iter().cloned(), None).expect("a run");
+        let run = replay::run_free(&many, nodes, chunks.iter().cloned(), None).expect("a run");
         many_accesses = run.counts.l1.requests;
     });
     assert_eq!(accesses, many_accesses);
     let mut units_requests = 0;
     let units = best(|| {
-        let run = replay::run_units(&machine, &layout, chunks.iter().cloned(), None).expect("a run");
+        let run = replay::run_units(&machine, chunks.iter().cloned(), None).expect("a run");
         units_requests = run.counts.l1.requests;
     });
     assert_eq!(accesses, units_requests);

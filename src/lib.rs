@@ -22,4 +22,5 @@ pub mod render;
 pub mod report;
 pub mod sim;
 pub mod stability;
+pub mod step;
 pub mod traverse;

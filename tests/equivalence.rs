@@ -7,7 +7,8 @@ use lodray::mesh::Hierarchy;
 use lodray::mesh::procedural::{self, Options};
 use lodray::num::{Cone, Point, Ray, Vec3};
 use lodray::render::{Camera, View};
-use lodray::traverse::{BvhTraverser, ClosestHit, Crossings, LodImage, LodTraverser, ModelSpace, NoProbe};
+use lodray::step::NoSteps;
+use lodray::traverse::{BvhTraverser, ClosestHit, Crossings, LodImage, LodTraverser, ModelSpace};
 use lodray_test_support::cases;
 use lodray_test_support::models::{Rng, ball, build, cone, model, octahedron, scene_of, terrain};
 use lodray_test_support::plain::plain;
@@ -25,24 +26,24 @@ impl Bench<'_> {
     fn check(&mut self, ray: &Ray) -> Option<ExactHit> {
         let golden = self.golden.trace(ray);
         let mut closest = ClosestHit::new(self.levels);
-        self.lod.trace(ray, &mut NoProbe, &mut closest);
+        self.lod.trace(ray, &mut NoSteps, &mut closest);
         assert_eq!(closest.record().as_ref().map(plain), golden, "LOD, {ray:?}");
 
         let crossings = self.golden.crossings(ray);
         let mut counted = Crossings::default();
-        self.lod.trace(ray, &mut NoProbe, &mut counted);
+        self.lod.trace(ray, &mut NoSteps, &mut counted);
         assert_eq!((counted.front, counted.back), (crossings.front, crossings.back), "crossings, {ray:?}");
 
         if !self.bvhs.is_empty() {
             let full = self.golden.trace_full(ray);
             for bvh in &mut self.bvhs {
                 let mut closest = ClosestHit::new(self.levels);
-                bvh.trace(ray, &mut NoProbe, &mut closest);
+                bvh.trace(ray, &mut NoSteps, &mut closest);
                 assert_eq!(closest.record().as_ref().map(plain), full, "BVH, {ray:?}");
             }
             // A flat node serves even at full detail: the same point on a larger triangle.
             let mut closest = ClosestHit::new(self.levels);
-            self.lod.trace(&Ray { cone: Cone::default(), ..*ray }, &mut NoProbe, &mut closest);
+            self.lod.trace(&Ray { cone: Cone::default(), ..*ray }, &mut NoSteps, &mut closest);
             assert_eq!(closest.record().map(|hit| hit.t.get()), full.map(|hit| hit.t), "full detail, {ray:?}");
         }
         golden

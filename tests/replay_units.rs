@@ -3,9 +3,9 @@
 use lodray::num::Ray;
 use lodray::sim::machine::Machine;
 use lodray::sim::replay::{self, Chunk, Run};
-use lodray::sim::stream::{Batch, Event, Layout, Step};
 use lodray::sim::unit::environment::run;
 use lodray::sim::unit::{Latency, SceneMemory, Traffic, TraversalUnit};
+use lodray::step::{Batch, Step};
 use lodray::traverse::LodImage;
 use lodray_test_support::models::{any_rays, ball, scene_of, terrain};
 use lodray_test_support::timing::steps_of;
@@ -21,23 +21,13 @@ fn machine(sets: &[(&str, u32)]) -> Machine {
 /// The steps of each ray.
 fn steps(image: LodImage<'_>, rays: &[Ray]) -> Vec<Vec<Step>> {
     let batch = steps_of(image, rays);
-    let ray = |ray| {
-        let mut steps: Vec<Step> = Vec::new();
-        for step in batch.events()[batch.start(ray) as usize..].iter().map(|event: &Event| event.step()) {
-            steps.push(step);
-            if let Step::End { .. } = step {
-                break;
-            }
-        }
-        steps
-    };
+    let ray = |ray| batch.words()[batch.start(ray) as usize..batch.end(ray) as usize].iter().map(|word| word.step()).collect();
     (0..batch.rays()).map(ray).collect()
 }
 
-fn units(machine: &Machine, image: LodImage<'_>, rays: &[Vec<Step>]) -> Run {
-    let layout = Layout::new(&image.sections()).expect("a small model");
+fn units(machine: &Machine, rays: &[Vec<Step>]) -> Run {
     let chunks: Vec<Chunk> = rays.chunks(64).map(|rays| Chunk::from([Batch::new(rays)])).collect();
-    replay::run_units(machine, &layout, chunks.into_iter(), None).expect("a run")
+    replay::run_units(machine, chunks.into_iter(), None).expect("a run")
 }
 
 #[test]
@@ -59,7 +49,7 @@ fn a_unit_before_a_full_cache_takes_the_cycles_of_the_cycle_model() {
                 ]);
                 for (ray, steps) in rays.iter().zip(steps(image, &rays)) {
                     // The second time, every line is there.
-                    let [cold, both] = [1, 2].map(|times| units(&machine, image, &vec![steps.clone(); times]));
+                    let [cold, both] = [1, 2].map(|times| units(&machine, &vec![steps.clone(); times]));
                     assert_eq!(both.counts.l1.misses, cold.counts.l1.misses);
                     let mut unit = TraversalUnit::new(machine.units.config(), memory.config());
                     let report = run(&mut unit, &memory, &Traffic::smooth(Latency::Fixed(latency)), &[*ray, *ray]).expect("a run");
@@ -81,14 +71,14 @@ fn many_units_lose_nothing_however_little_room_there_is() {
     let shape = [("cores.groups", 4), ("units.per_group", 2), ("units.contexts", 16)];
     let little =
         [("l1.mshrs", 1), ("l1.targets", 1), ("l1.queue", 1), ("l2.mshrs", 1), ("l2.queue", 1), ("l2.banks", 1), ("dram.queue", 1)];
-    let roomy = units(&machine(&shape), image, &rays);
-    let tight = units(&machine(&[&shape[..], &little].concat()), image, &rays);
+    let roomy = units(&machine(&shape), &rays);
+    let tight = units(&machine(&[&shape[..], &little].concat()), &rays);
     for run in [&roomy, &tight] {
         let (l1, l2) = (run.counts.l1, run.counts.l2);
         assert_eq!(run.counts.rays, 1000);
         assert_eq!(l1.requests, l1.hits + l1.misses + l1.merges);
         assert_eq!((l1.misses, l2.misses), (l2.requests, run.channels.iter().map(|channel| channel.reads).sum()));
-        let lines: u64 = rays.iter().flatten().filter_map(|step| step.lines()).map(|(.., lines)| u64::from(lines)).sum();
+        let lines: u64 = rays.iter().flatten().filter_map(|step| step.fetch).map(|fetch| u64::from(fetch.lines)).sum();
         assert_eq!(l1.requests, lines);
         let counts = run.units.as_ref().expect("units");
         assert_eq!(counts.states.iter().sum::<u64>(), run.cycles * 8 * 16, "every context is in some state in every cycle");

@@ -7,7 +7,8 @@ use lodray::sim::unit::environment::{RunReport, UnitPort, run};
 use lodray::sim::unit::{
     EdgesPerCycle, Inputs, Latency, Outputs, SceneMemory, Stall, Traffic, TraversalUnit, UnitConfig, UnitCounts, UnitError,
 };
-use lodray::traverse::{ClosestHit, Hit, Kind, LodImage, LodTraverser, Probe, RayCounts};
+use lodray::step::{Step, StepCounts, StepSink};
+use lodray::traverse::{ClosestHit, Hit, LodImage, LodTraverser};
 use lodray_test_support::models::{any_rays, ball, model, octahedron, scene_of, terrain};
 use lodray_test_support::plain::plain;
 
@@ -15,22 +16,14 @@ use lodray_test_support::plain::plain;
 struct Lines<'a> {
     memory: &'a SceneMemory<'a>,
     read: Vec<LineAddress>,
-    counts: RayCounts,
+    counts: StepCounts,
 }
 
-impl Probe for Lines<'_> {
-    fn line(&mut self, kind: Kind, line: u64) {
-        self.read.push(self.memory.address(kind, line));
-        self.counts.line(kind, line);
-    }
-    fn node(&mut self, met: u32) {
-        self.counts.node(met);
-    }
-    fn lod_test(&mut self, refine: bool) {
-        self.counts.lod_test(refine);
-    }
-    fn triangle(&mut self, hit: bool) {
-        self.counts.triangle(hit);
+impl StepSink for Lines<'_> {
+    fn step(&mut self, step: Step) {
+        let lines = step.fetch.map_or(0..0, |fetch| fetch.line..fetch.line + fetch.lines);
+        self.read.extend(lines.map(|line| self.memory.address(line)));
+        self.counts.step(step);
     }
 }
 
@@ -127,7 +120,7 @@ fn equals_the_functional_and_the_golden_traverser() {
         let golden = Exact::new(h);
         let mut lod = LodTraverser::new(image);
         let mut expected: Vec<(Option<Hit>, Vec<LineAddress>)> = Vec::new();
-        let mut counts = RayCounts::default();
+        let mut counts = StepCounts::default();
         for ray in &rays {
             let mut closest = ClosestHit::new(h.levels);
             let mut lines = Lines { memory: &memory, read: Vec::new(), counts };

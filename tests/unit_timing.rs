@@ -2,10 +2,10 @@
 
 use lodray::mesh::Hierarchy;
 use lodray::num::Ray;
-use lodray::sim::stream::{Batch, Step};
 use lodray::sim::timing::UnitTiming;
 use lodray::sim::unit::environment::{RunReport, UnitPort, run};
 use lodray::sim::unit::{EdgesPerCycle, Inputs, Latency, Outputs, SceneMemory, Stall, Traffic, TraversalUnit, UnitConfig};
+use lodray::step::{Act, Batch, Fetch, SectionId, Step};
 use lodray::traverse::LodImage;
 use lodray_test_support::models::{Rng, any_rays, ball, model, octahedron, scene_of, terrain};
 use lodray_test_support::timing::{Smooth, Timed, steps_of};
@@ -98,7 +98,7 @@ fn equals_the_cycle_model_in_every_cycle() {
                 let mut model = Noting::new(TraversalUnit::new(config, memory.config()));
                 let expected = model.run(&memory, &traffic, &rays);
                 for skip in [false, true] {
-                    let mut timed = Noting::new(Timed::new(config, image, &memory, &batch, skip));
+                    let mut timed = Noting::new(Timed::new(config, &memory, &batch, skip));
                     let report = timed.run(&memory, &traffic, &rays);
                     for (k, (ray, expected)) in report.rays.iter().zip(&expected.rays).enumerate() {
                         assert_eq!((ray.taken, ray.done), (expected.taken, expected.done), "{what}, skip {skip}: ray {k}");
@@ -147,6 +147,36 @@ fn equals_the_cycle_model_from_event_to_event() {
     assert_eq!(compared, 10_000);
 }
 
+const NODES: SectionId = SectionId::new(0);
+const LEAVES: SectionId = SectionId::new(1);
+
+/// A visit of a node with boxes of 16 or, `wide`, 32 bits.
+fn node(line: u32, met: u32, wide: bool) -> Step {
+    let act = if wide { Act::WideChildren { met } } else { Act::Children { met } };
+    Step::on(Fetch::new(NODES, line, if wide { 4 } else { 2 }), act).visiting()
+}
+
+/// The lines of a leaf.
+fn leaf(lines: impl IntoIterator<Item = u32>) -> impl Iterator<Item = Step> {
+    (0..).zip(lines).map(|(place, line)| {
+        let fetch = Fetch::new(LEAVES, line, 1).at(place);
+        if place == 0 { Step::on(fetch, Act::Fetch).visiting() } else { Step::on(fetch.joining(), Act::Fetch) }
+    })
+}
+
+fn triangles(count: u32, hits: u32) -> Step {
+    Step::of(Act::Triangles { count, hits })
+}
+
+fn pop(dropped: bool) -> Step {
+    Step::of(Act::Pop { dropped })
+}
+
+/// The end of a ray whose hit is on the full resolution.
+fn end(found: bool) -> Step {
+    Step::end(found, false)
+}
+
 /// The cycles of one ray alone.
 fn alone(steps: Vec<Step>, latency: u64) -> u64 {
     let batch = Batch::new(&[steps]);
@@ -169,32 +199,31 @@ fn baseline_rays_take_the_cycles_of_their_blocks() {
     let setup = 1 + 1 + cycles(RaySetup::TIMING);
     // VISIT; one grant for each line; address, memory; and the cycle in which all is seen to be there.
     let fetch = |lines: u64| 1 + lines + cycles(NodeAddress::TIMING) + latency + 1;
-    let node = |wide: bool| {
+    let node_cycles = |wide: bool| {
         let test = if wide { cycles(BoxTest32::TIMING) + cycles(ChildSort::TIMING) } else { cycles(ChildTest::TIMING) };
         fetch(if wide { 4 } else { 2 }) + 1 + test
     };
     // SETUP and its wait, a node and one PUSH, POP, DONE and the hit's register.
-    let miss = |wide| alone(vec![Step::Node { line: 0, met: 0, wide }, Step::End { found: false }], latency);
-    assert_eq!(miss(false), setup + node(false) + 1 + 1 + 1 + 1 - 1);
-    assert_eq!(miss(true), setup + node(true) + 1 + 1 + 1 + 1 - 1);
+    let miss = |wide| alone(vec![node(0, 0, wide), end(false)], latency);
+    assert_eq!(miss(false), setup + node_cycles(false) + 1 + 1 + 1 + 1 - 1);
+    assert_eq!(miss(true), setup + node_cycles(true) + 1 + 1 + 1 + 1 - 1);
 
-    let leaf = |hits| {
-        let lines = [40, 41, 57].map(|line| Step::Leaf { line });
-        let mut steps = vec![Step::Node { line: 0, met: 1, wide: true }];
-        steps.extend(lines);
-        steps.extend([Step::Triangles { count: 5, hits }, Step::End { found: hits != 0 }]);
+    let of_leaf = |hits| {
+        let mut steps = vec![node(0, 1, true)];
+        steps.extend(leaf([40, 41, 57]));
+        steps.extend([triangles(5, hits), end(hits != 0)]);
         alone(steps, latency)
     };
     let tests = 5 + cycles(TriTest::TIMING);
-    let to_leaf = setup + node(true) + 1 + fetch(3);
+    let to_leaf = setup + node_cycles(true) + 1 + fetch(3);
     // PUSH and its leaf; five tests, the cycle in which all are seen through; POP, DONE, the register.
-    assert_eq!(leaf(0), to_leaf + tests + 1 + 1 + 1 + 1 - 1);
+    assert_eq!(of_leaf(0), to_leaf + tests + 1 + 1 + 1 + 1 - 1);
     // The last test's hit: the queue, the division, the comparison; then v, w and SUM, and no map.
     let hit = 1 + cycles(HitDivide::TIMING) + cycles(HitSelect::TIMING);
     let divide = 2 * cycles(HitDivide::TIMING) + 1 + 1;
-    assert_eq!(leaf(1 << 4), to_leaf + tests + hit + 1 + 1 + divide + 1 + 1 - 1);
+    assert_eq!(of_leaf(1 << 4), to_leaf + tests + hit + 1 + 1 + divide + 1 + 1 - 1);
     // Two hits one behind the other in the division.
-    assert_eq!(leaf(0b11000), leaf(1 << 4) + cycles(HitDivide::TIMING) - 1);
+    assert_eq!(of_leaf(0b11000), of_leaf(1 << 4) + cycles(HitDivide::TIMING) - 1);
 }
 
 #[test]
@@ -202,18 +231,19 @@ fn baseline_rays_share_a_unit() {
     let mut rng = Rng(5);
     let mut lines = 0;
     let mut ray = |_| {
-        let mut steps = vec![Step::Node { line: 4, met: 1, wide: true }];
+        let mut steps = vec![node(4, 1, true)];
         for _ in 0..20 {
             lines += 4;
             let leaves = rng.below(16) + 1;
             lines += leaves;
-            steps.extend((0..leaves).map(|line| Step::Leaf { line: line as u32 }));
-            steps.push(Step::Triangles { count: rng.below(32) as u32 + 1, hits: (rng.draw() & rng.draw()) as u32 });
-            steps.extend([Step::Pop { dropped: true }; 90]);
-            steps.extend([Step::Pop { dropped: false }, Step::Node { line: 8, met: 1, wide: true }]);
+            steps.extend(leaf(0..leaves as u32));
+            steps.push(triangles(rng.below(32) as u32 + 1, (rng.draw() & rng.draw()) as u32));
+            steps.extend([pop(true); 90]);
+            steps.extend([pop(false), node(8, 1, true)]);
         }
         lines += 4 + 1;
-        steps.extend([Step::Leaf { line: 3 }, Step::Triangles { count: 1, hits: 1 }, Step::End { found: true }]);
+        steps.extend(leaf([3]));
+        steps.extend([triangles(1, 1), end(true)]);
         steps
     };
     let rays: Vec<_> = (0..300).map(&mut ray).collect();

@@ -113,8 +113,8 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
 
     let ratio = best.iter().zip(&rows[0].distinct_lines).map(|(&b, &l)| b as f64 / l.max(1) as f64).collect();
     let base = |s: &lodray::render::FrameStats| {
-        use lodray::traverse::Kind;
-        let of = s.lines.iter().filter(|k| matches!(k.kind, Kind::BvhNode | Kind::L0Record)).map(|k| k.distinct).sum::<u64>();
+        let is_base = |kind: &str| image.map.sections().any(|(_, section)| section.base && section.name == kind);
+        let of = s.lines.iter().filter(|k| is_base(k.kind)).map(|k| k.distinct).sum::<u64>();
         of as f64 / s.distinct_lines().max(1) as f64
     };
     let report = Report {

@@ -3,14 +3,12 @@
 use super::args::{Change, LeafArgs, SimMethod};
 use super::output::progress;
 use super::render::{Built, MethodName};
-use anyhow::Context;
 use lodray::format::Scene;
 use lodray::render::{Camera, FrameRays};
 use lodray::report::result::{Compute, MachineFacts, MethodFacts, SceneFacts, Setup, SimResult, ViewFacts};
 use lodray::report::{Job, simulate};
 use lodray::sim::machine::{Machine, MachineError};
 use lodray::sim::replay::{ReplayError, Run, Window};
-use lodray::sim::stream::Layout;
 use lodray::traverse::ModelSpace;
 use std::path::{Path, PathBuf};
 
@@ -103,18 +101,16 @@ impl Pass<'_> {
     /// Traces the rays once and replays them on every target.
     pub fn run(&self, targets: &[Target]) -> anyhow::Result<Vec<Outcome>> {
         let method = self.built.method(self.scene);
-        let sections = method.sections();
-        let layout = Layout::new(&sections).context("the scene is too large to simulate: its lines have no 32-bit numbers")?;
-        let frame = FrameRays { method: &method, space: self.space, camera: &self.camera, delta: self.delta, layout: &layout };
+        let map = method.map();
+        let frame = FrameRays { method: &method, space: self.space, camera: &self.camera, delta: self.delta };
         let job = |target: &Target| Job { machine: target.machine.description.clone(), compute: target.compute, window: target.window };
         let jobs: Vec<_> = targets.iter().map(job).collect();
         let bar = progress(frame.batches() as u64, "simulating");
         let runs = simulate(&frame, &jobs, &|batches| bar.inc(batches));
         bar.finish_and_clear();
-        let bytes = sections.iter().map(|section| section.lines * lodray::bvh::LINE_BYTES).sum();
         let result = |(target, run): (&Target, Result<Run, ReplayError>)| {
             let run = run?;
-            Ok((SimResult::new(self.setup(target, bytes), &run)?, run.wave))
+            Ok((SimResult::new(self.setup(target, map.bytes()), &map, &run)?, run.wave))
         };
         Ok(targets.iter().zip(runs).map(result).collect())
     }

@@ -16,7 +16,7 @@ use lodray::golden::reference::Reference;
 use lodray::render::{
     Camera, FrameStats, GeometricError, ImageError, KindCount, Method, Pixel, Sheet, compare, geometric_error, save_png, view_cosine,
 };
-use lodray::traverse::{Kind, LodImage, ModelSpace};
+use lodray::traverse::{LodImage, ModelSpace};
 use serde::Serialize;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
@@ -144,7 +144,7 @@ struct PerRay {
 /// Means over all rays of the frame, of one kind of data.
 #[derive(Serialize)]
 struct KindPerRay {
-    kind: Kind,
+    kind: &'static str,
     lines_read: f64,
     bytes_read: f64,
     distinct_lines: f64,
@@ -369,7 +369,7 @@ fn table(r: &Report) -> String {
         line(["lines of", "read", "distinct", "read/ray", "bytes/ray", "distinct/ray"]);
         for (k, per) in r.stats.lines.iter().zip(&r.per_ray.by_kind) {
             let means = [per.lines_read, per.bytes_read, per.distinct_lines].map(|v| format!("{v:.3}"));
-            line([k.kind.name(), &grouped(k.read), &grouped(k.distinct), &means[0], &means[1], &means[2]]);
+            line([k.kind, &grouped(k.read), &grouped(k.distinct), &means[0], &means[1], &means[2]]);
         }
         let means = [r.per_ray.lines_read, r.per_ray.bytes_read, r.per_ray.distinct_lines].map(|v| format!("{v:.3}"));
         line(["all", &grouped(r.stats.lines_read()), &grouped(r.stats.distinct_lines()), &means[0], &means[1], &means[2]]);

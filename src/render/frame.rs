@@ -1,15 +1,17 @@
 //! One ray per pixel through a method.
 
-use super::lines::LineProbe;
+use super::lines::LineCounter;
 use super::{Camera, LineSets};
 use crate::bvh::FullBvh;
 use crate::golden::reference::Reference;
-use crate::traverse::{BvhTraverser, ClosestHit, Hit, Kind, LodImage, LodTraverser, ModelRay, ModelSpace, Probe, RayCounts, Section};
+use crate::step::{MemoryMap, Section, SectionId, Step, StepCounts, StepSink};
+use crate::traverse::{BvhTraverser, ClosestHit, Hit, LodImage, LodTraverser, ModelRay, ModelSpace, bvh_map};
 use rayon::prelude::*;
 use serde::Serialize;
 
 /// How rays find their hits.
 #[derive(Clone, Copy)]
+#[expect(clippy::large_enum_variant, reason = "there is one")]
 pub enum Method<'a> {
     /// Locally adaptive level of detail.
     Lod(LodImage<'a>),
@@ -20,12 +22,12 @@ pub enum Method<'a> {
 }
 
 impl Method<'_> {
-    /// The sections of its memory; empty for the reference, which has none in hardware.
-    pub fn sections(&self) -> Vec<Section> {
+    /// Its memory; empty for the reference, which has none in hardware.
+    pub fn map(&self) -> MemoryMap {
         match self {
-            Self::Lod(image) => image.sections(),
-            Self::Bvh(bvh) => crate::traverse::bvh_sections(bvh),
-            Self::Reference(_) => Vec::new(),
+            Self::Lod(image) => image.map,
+            Self::Bvh(bvh) => bvh_map(bvh),
+            Self::Reference(_) => MemoryMap::new(&[], 1).unwrap_or_else(|error| unreachable!("{error}")),
         }
     }
 }
@@ -82,7 +84,7 @@ pub struct FrameStats {
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct KindCount {
     /// What they hold.
-    pub kind: Kind,
+    pub kind: &'static str,
     /// Lines read, counted each time.
     pub read: u64,
     /// Distinct 32-byte lines touched in the frame.
@@ -107,7 +109,8 @@ const TILE_ROWS: usize = 8;
 
 /// Traces one ray per pixel. `row_done` is called once for each finished row, from any thread.
 pub fn render(method: &Method<'_>, space: &ModelSpace, camera: &Camera, delta: f64, row_done: &(dyn Fn() + Sync)) -> Frame {
-    let sets = LineSets::new(&method.sections());
+    let map = method.map();
+    let sets = LineSets::new(&map);
     let width = camera.width as usize;
     let [columns, window_rows] = camera.window(space);
     let mut pixels = vec![None; width * camera.height as usize];
@@ -117,7 +120,7 @@ pub fn render(method: &Method<'_>, space: &ModelSpace, camera: &Camera, delta: f
         .map_init(
             || Tracer::new(method),
             |tracer, (band, rows)| {
-                let mut probe = LineProbe { counts: RayCounts::default(), sets: &sets };
+                let mut probe = LineCounter { counts: StepCounts::default(), sets: &sets };
                 // Rows and columns are below 2^16.
                 let seen = |row: usize| window_rows.contains(&((band * TILE_ROWS + row) as u32));
                 for left in columns.clone().step_by(TILE_COLUMNS) {
@@ -133,7 +136,7 @@ pub fn render(method: &Method<'_>, space: &ModelSpace, camera: &Camera, delta: f
                 probe.counts
             },
         )
-        .reduce(RayCounts::default, |mut a, b| {
+        .reduce(StepCounts::default, |mut a, b| {
             a.add(&b);
             a
         });
@@ -143,15 +146,16 @@ pub fn render(method: &Method<'_>, space: &ModelSpace, camera: &Camera, delta: f
         nodes: counts.nodes,
         lod_tests: counts.lod_tests,
         triangles: counts.triangles,
-        lines: kind_counts(&counts, &sets),
+        lines: kind_counts(&map, &counts, &sets),
         mean_level: mean(pixels.iter().flatten().map(|p| f64::from(p.level))),
     };
     Frame { width: camera.width, height: camera.height, pixels, stats }
 }
 
-fn kind_counts(counts: &RayCounts, sets: &LineSets) -> Vec<KindCount> {
+fn kind_counts(map: &MemoryMap, counts: &StepCounts, sets: &LineSets) -> Vec<KindCount> {
     let distinct = sets.counts();
-    let all = Kind::ALL.iter().map(|&kind| KindCount { kind, read: counts.lines[kind as usize], distinct: distinct[kind as usize] });
+    let count = |(id, section): (SectionId, Section)| (section.name, counts.lines[id.place()], distinct[id.place()]);
+    let all = map.sections().map(count).map(|(kind, read, distinct)| KindCount { kind, read, distinct });
     all.filter(|k| k.read > 0).collect()
 }
 
@@ -177,19 +181,32 @@ impl<'a> Tracer<'a> {
     }
 
     /// What the ray of pixel (x, y) finds.
-    pub fn pixel<P: Probe>(&mut self, space: &ModelSpace, camera: &Camera, delta: f64, [x, y]: [u32; 2], probe: &mut P) -> Option<Pixel> {
+    pub fn pixel<S: StepSink>(
+        &mut self,
+        space: &ModelSpace,
+        camera: &Camera,
+        delta: f64,
+        [x, y]: [u32; 2],
+        steps: &mut S,
+    ) -> Option<Pixel> {
         let world = camera.ray(x, y);
         match self {
             Self::Lod(traverser) => {
-                let ray = space.enter(&world, delta)?;
+                let Some(ray) = space.enter(&world, delta) else {
+                    steps.step(Step::end(false, false));
+                    return None;
+                };
                 let mut hit = ClosestHit::new(traverser.levels());
-                traverser.trace(&ray.ray, probe, &mut hit);
+                traverser.trace(&ray.ray, steps, &mut hit);
                 hit.record().map(|hit| pixel(&ray, &hit))
             }
             Self::Bvh(traverser) => {
-                let ray = space.enter(&world, delta)?;
+                let Some(ray) = space.enter(&world, delta) else {
+                    steps.step(Step::end(false, false));
+                    return None;
+                };
                 let mut hit = ClosestHit::new(traverser.levels());
-                traverser.trace(&ray.ray, probe, &mut hit);
+                traverser.trace(&ray.ray, steps, &mut hit);
                 hit.record().map(|hit| pixel(&ray, &hit))
             }
             Self::Reference(reference) => {

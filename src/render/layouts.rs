@@ -2,7 +2,9 @@
 
 use super::{Camera, LineSets};
 use crate::bvh::{FullBvh, LINE_BYTES, Leaves};
-use crate::traverse::{BvhTraverser, ClosestHit, Kind, ModelSpace, Probe, Section, bvh_sections};
+use crate::step::{MemoryMap, Section, Step, StepSink};
+use crate::traverse::quad_bvh::{LEAVES, NODES};
+use crate::traverse::{BvhTraverser, ClosestHit, ModelSpace, bvh_map};
 use rayon::prelude::*;
 use std::ops::Range;
 
@@ -10,23 +12,13 @@ use std::ops::Range;
 const ROWS: u32 = 8;
 const COLUMNS: u32 = 32;
 
-/// Marks the lines of a BVH, and of the leaves that could be in place of its own.
-struct LayoutProbe<'a> {
-    sets: &'a LineSets,
-    others: &'a [(&'a Leaves, LineSets)],
-}
+/// Marks the lines of a BVH.
+struct Marker<'a>(&'a LineSets);
 
-impl Probe for LayoutProbe<'_> {
+impl StepSink for Marker<'_> {
     #[inline(always)]
-    fn line(&mut self, kind: Kind, line: u64) {
-        self.sets.mark(kind, line);
-    }
-
-    #[inline(always)]
-    fn leaf(&mut self, slots: Range<usize>) {
-        for (leaves, set) in self.others {
-            leaves.lines(slots.clone(), |address| set.mark(Kind::Leaf, address / LINE_BYTES));
-        }
+    fn step(&mut self, step: Step) {
+        self.0.mark_step(&step);
     }
 }
 
@@ -39,22 +31,29 @@ pub fn distinct_lines(
     camera: &Camera,
     rows_done: &(dyn Fn(u64) + Sync),
 ) -> Vec<u64> {
-    let section = |leaves: &Leaves| Section { kind: Kind::Leaf, lines: leaves.bytes().div_ceil(LINE_BYTES) };
-    let sets = LineSets::new(&bvh_sections(bvh));
-    let others: Vec<_> = others.iter().map(|&leaves| (leaves, LineSets::new(&[section(leaves)]))).collect();
+    // Leaves that could be in place of its own: a memory of theirs alone.
+    let alone = |leaves: &Leaves| MemoryMap::new(&[Section::of_bytes("leaf", leaves.bytes())], 1).map(|map| LineSets::new(&map));
+    let sets = LineSets::new(&bvh_map(bvh));
+    let others: Vec<_> = others.iter().map(|&leaves| (leaves, alone(leaves).expect("at most 2^28 triangles"))).collect();
     let height = camera.height;
     let [columns, window_rows] = camera.window(space);
     (0..height.div_ceil(ROWS)).into_par_iter().for_each_init(
         || BvhTraverser::new(bvh),
         |traverser, band| {
             let rows = band * ROWS..height.min((band + 1) * ROWS);
-            let mut probe = LayoutProbe { sets: &sets, others: &others };
+            let others = |slots: Range<usize>| {
+                for (leaves, set) in &others {
+                    // Below 2^32 lines.
+                    leaves.lines(slots.clone(), |address| set.mark((address / LINE_BYTES) as u32));
+                }
+            };
             for left in columns.clone().step_by(COLUMNS as usize) {
                 for y in rows.clone().filter(|y| window_rows.contains(y)) {
                     for x in left..columns.end.min(left + COLUMNS) {
                         // A BVH is at full resolution whatever the quality.
                         if let Some(ray) = space.enter(&camera.ray(x, y), 1.0) {
-                            traverser.trace(&ray.ray, &mut probe, &mut ClosestHit::new(traverser.levels()));
+                            let mut closest = ClosestHit::new(traverser.levels());
+                            traverser.trace_with(&ray.ray, &mut Marker(&sets), &mut closest, others);
                         }
                     }
                 }
@@ -63,7 +62,7 @@ pub fn distinct_lines(
         },
     );
     let counts = sets.counts();
-    let nodes = counts[Kind::BvhNode as usize];
-    let leaves = std::iter::once(counts[Kind::Leaf as usize]).chain(others.iter().map(|(_, set)| set.counts()[Kind::Leaf as usize]));
+    let nodes = counts[NODES.place()];
+    let leaves = std::iter::once(counts[LEAVES.place()]).chain(others.iter().map(|(_, set)| set.counts()[0]));
     leaves.map(|lines| nodes + lines).collect()
 }

@@ -1,23 +1,24 @@
 //! Which memory lines a frame touched.
 
-use crate::traverse::{Kind, Probe, RayCounts, Section};
+use crate::step::{MAX_SECTIONS, MemoryMap, Step, StepCounts, StepSink};
 use std::sync::atomic::{AtomicU64, Ordering};
 
-/// One bit per 32-byte line of each section of a method's memory; may be marked from many threads.
+/// One bit per line of a method's memory; may be marked from many threads.
 pub struct LineSets {
-    sets: [Vec<AtomicU64>; Kind::ALL.len()],
+    map: MemoryMap,
+    words: Vec<AtomicU64>,
 }
 
 impl LineSets {
     /// Nothing touched yet.
-    pub fn new(sections: &[Section]) -> Self {
-        let lines = |kind| sections.iter().filter(|s| s.kind == kind).map(|s| s.lines).sum::<u64>();
-        Self { sets: Kind::ALL.map(|kind| (0..lines(kind).div_ceil(64)).map(|_| AtomicU64::new(0)).collect()) }
+    pub fn new(map: &MemoryMap) -> Self {
+        Self { map: *map, words: (0..map.lines().div_ceil(64)).map(|_| AtomicU64::new(0)).collect() }
     }
 
+    /// Line `line` was read.
     #[inline(always)]
-    pub(super) fn mark(&self, kind: Kind, line: u64) {
-        let word = &self.sets[kind as usize][(line / 64) as usize];
+    pub(super) fn mark(&self, line: u32) {
+        let word = &self.words[(line / 64) as usize];
         let bit = 1 << (line % 64);
         // Most lines are marked already: reading first keeps the cache line shared.
         if word.load(Ordering::Relaxed) & bit == 0 {
@@ -25,52 +26,62 @@ impl LineSets {
         }
     }
 
-    /// Distinct lines touched, by kind.
-    pub fn counts(&self) -> [u64; Kind::ALL.len()] {
-        let ones = |set: &Vec<AtomicU64>| set.iter().map(|w| u64::from(w.load(Ordering::Relaxed).count_ones())).sum();
-        std::array::from_fn(|k| ones(&self.sets[k]))
+    /// The lines of a step were read.
+    #[inline(always)]
+    pub(super) fn mark_step(&self, step: &Step) {
+        if let Some(fetch) = step.fetch {
+            (fetch.line..fetch.line + fetch.lines).for_each(|line| self.mark(line));
+        }
+    }
+
+    /// Distinct lines touched, by the place of their section.
+    pub fn counts(&self) -> [u64; MAX_SECTIONS] {
+        let mut counts = [0; MAX_SECTIONS];
+        for (id, section) in self.map.sections() {
+            let first = u64::from(self.map.first(id));
+            let words = (first / 64..(first + section.lines).div_ceil(64)).map(|at| {
+                // Sections share a word where one ends and the next begins.
+                let (from, to) = (first.saturating_sub(64 * at), (first + section.lines - 64 * at).min(64));
+                let inside = u64::MAX >> (64 - (to - from)) << from;
+                u64::from((self.words[at as usize].load(Ordering::Relaxed) & inside).count_ones())
+            });
+            counts[id.place()] = words.sum();
+        }
+        counts
     }
 }
 
 /// Counts and marks.
-pub(super) struct LineProbe<'a> {
-    pub counts: RayCounts,
+pub(super) struct LineCounter<'a> {
+    pub counts: StepCounts,
     pub sets: &'a LineSets,
 }
 
-impl Probe for LineProbe<'_> {
+impl StepSink for LineCounter<'_> {
     #[inline(always)]
-    fn line(&mut self, kind: Kind, line: u64) {
-        self.counts.line(kind, line);
-        self.sets.mark(kind, line);
-    }
-    #[inline(always)]
-    fn node(&mut self, met: u32) {
-        self.counts.node(met);
-    }
-    #[inline(always)]
-    fn lod_test(&mut self, refine: bool) {
-        self.counts.lod_test(refine);
-    }
-    #[inline(always)]
-    fn triangle(&mut self, hit: bool) {
-        self.counts.triangle(hit);
+    fn step(&mut self, step: Step) {
+        self.sets.mark_step(&step);
+        self.counts.step(step);
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::step::{Act, Fetch, Section, SectionId};
 
     #[test]
     fn a_line_counts_once_in_the_set_and_each_time_in_the_total() {
-        let sets = LineSets::new(&[Section { kind: Kind::BoundData, lines: 70 }, Section { kind: Kind::VertexData, lines: 1 }]);
-        let mut probe = LineProbe { counts: RayCounts::default(), sets: &sets };
-        for line in [0, 69, 69, 3, 0] {
-            probe.line(Kind::BoundData, line);
-        }
-        probe.line(Kind::VertexData, 0);
-        assert_eq!(sets.counts(), [0, 0, 3, 1, 0]);
-        assert_eq!(probe.counts.lines, [0, 0, 5, 1, 0]);
+        let map = MemoryMap::new(&[("a", 70), ("b", 1), ("c", 200)].map(|(name, lines)| Section::of_bytes(name, 32 * lines)), 2);
+        let map = map.unwrap();
+        let sets = LineSets::new(&map);
+        let mut counter = LineCounter { counts: StepCounts::default(), sets: &sets };
+        let [a, b, c] = [0, 1, 2].map(SectionId::new);
+        let mut read = |section, line, lines| counter.step(Step::on(Fetch::new(section, map.line(section, line), lines), Act::Fetch));
+        [0, 69, 69, 3, 0].into_iter().for_each(|line| read(a, line, 1));
+        read(b, 0, 1);
+        (0..28).for_each(|k| read(c, 7 * k, 7));
+        assert_eq!(sets.counts()[..4], [3, 1, 196, 0]);
+        assert_eq!(counter.counts.lines[..4], [5, 1, 196, 0]);
     }
 }

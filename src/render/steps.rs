@@ -5,7 +5,7 @@
 
 use super::Camera;
 use super::frame::{Method, Tracer};
-use crate::sim::stream::{Batch, Layout, Recorder};
+use crate::step::{Batch, Recorder};
 use crate::traverse::ModelSpace;
 use rayon::prelude::*;
 
@@ -26,8 +26,6 @@ pub struct FrameRays<'a> {
     pub camera: &'a Camera,
     /// Quality of the level of detail.
     pub delta: f64,
-    /// The method's memory.
-    pub layout: &'a Layout,
 }
 
 impl FrameRays<'_> {
@@ -53,15 +51,12 @@ impl FrameRays<'_> {
         let columns = width.div_ceil(TILE) as usize;
         // Tiles of a picture of at most 2^16 columns and rows.
         let [left, top] = [tile % columns, tile / columns].map(|at| at as u32 * TILE);
-        let mut recorder = Recorder::new(self.layout);
-        let mut ends = Vec::with_capacity((TILE * TILE) as usize);
+        let mut recorder = Recorder::default();
         for y in top..height.min(top + TILE) {
             for x in left..width.min(left + TILE) {
-                let found = tracer.pixel(self.space, self.camera, self.delta, [x, y], &mut recorder).is_some();
-                recorder.end(found);
-                ends.push(recorder.steps() as u32); // 64 rays
+                tracer.pixel(self.space, self.camera, self.delta, [x, y], &mut recorder);
             }
         }
-        Batch::recorded(recorder, ends)
+        recorder.batch()
     }
 }

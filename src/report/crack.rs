@@ -4,7 +4,8 @@
 
 use crate::mesh::{Hierarchy, lattice};
 use crate::num::{Cone, DIRECTION_SCALE, Point, Ray, Vec3};
-use crate::traverse::{Crossings, LodImage, LodTraverser, ModelSpace, NoProbe};
+use crate::step::NoSteps;
+use crate::traverse::{Crossings, LodImage, LodTraverser, ModelSpace};
 use rayon::prelude::*;
 use serde::Serialize;
 
@@ -163,7 +164,7 @@ pub fn measure(
                     let target = random.below(TARGETS.len() as u64) as usize;
                     let ray = aim(hierarchy, space, TARGETS[target], &mut random);
                     let mut sink = LevelCrossings::default();
-                    traverser.trace(&ray, &mut NoProbe, &mut sink);
+                    traverser.trace(&ray, &mut NoSteps, &mut sink);
                     let row = &mut rows[target];
                     let Crossings { front, back } = sink.crossings;
                     row.rays += 1;
@@ -210,6 +211,9 @@ impl crate::traverse::HitSink for LevelCrossings {
     fn offer(&mut self, id: crate::traverse::TriangleId, test: &crate::block::tri_test::Out) {
         self.crossings.offer(id, test);
         self.levels |= 1 << id.level;
+    }
+    fn found(&self) -> bool {
+        self.crossings.found()
     }
 }
 

@@ -35,13 +35,14 @@ pub fn check(machine: &Machine, compute: Compute) -> Result<(), ResultError> {
 /// `traced` is told how many batches of rays were handed over.
 pub fn simulate(frame: &FrameRays<'_>, jobs: &[Job], traced: &dyn Fn(u64)) -> Vec<Result<Run, ReplayError>> {
     thread::scope(|scope| {
+        let nodes = frame.method.map().nodes();
         let (senders, runs): (Vec<SyncSender<Chunk>>, Vec<_>) = jobs
             .iter()
             .map(|Job { machine, compute, window }| {
                 let (sender, receiver): (_, Receiver<Chunk>) = sync_channel(AHEAD);
                 let run = move || match compute {
-                    Compute::Free => replay::run_free(machine, frame.layout, receiver.into_iter(), *window),
-                    Compute::Units => replay::run_units(machine, frame.layout, receiver.into_iter(), *window),
+                    Compute::Free => replay::run_free(machine, nodes, receiver.into_iter(), *window),
+                    Compute::Units => replay::run_units(machine, receiver.into_iter(), *window),
                 };
                 (sender, scope.spawn(run))
             })

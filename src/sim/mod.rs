@@ -5,6 +5,5 @@ pub mod energy;
 pub mod machine;
 pub mod ports;
 pub mod replay;
-pub mod stream;
 pub mod timing;
 pub mod unit;

@@ -8,7 +8,8 @@ use crate::format::SceneError;
 use crate::golden::Exact;
 use crate::num::MAX_LEVELS;
 use crate::report::crack::Random;
-use crate::traverse::{ClosestHit, LodImage, LodTraverser, NoProbe};
+use crate::step::NoSteps;
+use crate::traverse::{ClosestHit, LodImage, LodTraverser};
 use rayon::prelude::*;
 use serde::Serialize;
 
@@ -83,7 +84,7 @@ fn point(model: &Model, distance: f64, seed: u64, progress: &(dyn Fn(u64) + Sync
                 continue;
             };
             let mut closest = ClosestHit::new(model.hierarchy.levels);
-            traverser.trace(&ray, &mut NoProbe, &mut closest);
+            traverser.trace(&ray, &mut NoSteps, &mut closest);
             let Some(hit) = closest.record() else { continue };
             // The ray may meet something nearer than what it was aimed at: that is another distance.
             if moved.distance(hit.t.get()) < 0.5 * distance * model.space.radius() {

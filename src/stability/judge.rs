@@ -13,7 +13,8 @@ use crate::block::tri_test;
 use crate::golden::Exact;
 use crate::num::{Direction, Ray, RayT};
 use crate::report::crack::Closedness;
-use crate::traverse::{ClosestHit, Hit, HitSink, LodImage, LodTraverser, NoProbe, TriangleId};
+use crate::step::NoSteps;
+use crate::traverse::{ClosestHit, Hit, HitSink, LodImage, LodTraverser, TriangleId};
 use serde::Serialize;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 
@@ -109,6 +110,10 @@ impl HitSink for Seen {
         self.levels |= 1 << id.level;
         self.at_origin |= test.t_num.get() == 0;
     }
+    #[inline(always)]
+    fn found(&self) -> bool {
+        self.front + self.back > 0
+    }
 }
 
 /// Judges the rays of one model; one for each thread.
@@ -167,7 +172,7 @@ impl<'a> Judge<'a> {
 
     fn seen(&mut self, ray: &Ray) -> Seen {
         let mut seen = Seen::default();
-        self.traverser.trace(ray, &mut NoProbe, &mut seen);
+        self.traverser.trace(ray, &mut NoSteps, &mut seen);
         seen
     }
 
@@ -210,7 +215,7 @@ impl<'a> Judge<'a> {
             tally.doubles += u64::from(found.saturating_sub(wanted));
         }
         let mut closest = ClosestHit::new(self.model.hierarchy.levels);
-        self.traverser.trace(&shot.ray, &mut NoProbe, &mut closest);
+        self.traverser.trace(&shot.ray, &mut NoSteps, &mut closest);
         let hit = closest.record();
         let exact = self.golden.trace_exactly(&shot.ray);
         let (Some(hit), Some((golden, fractions))) = (hit, exact) else {

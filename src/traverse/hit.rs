@@ -54,6 +54,8 @@ pub trait HitSink {
     fn t_max(&self) -> RayT;
     /// Triangle `id` was met; `test.hit` is true.
     fn offer(&mut self, id: TriangleId, test: &tri_test::Out);
+    /// Something was met that counts.
+    fn found(&self) -> bool;
 }
 
 /// Keeps the closest hit: smaller t, then smaller id.
@@ -125,6 +127,10 @@ impl HitSink for ClosestHit {
             self.best = Some((id, *test));
         }
     }
+
+    fn found(&self) -> bool {
+        self.best.is_some()
+    }
 }
 
 /// Counts all crossings of the surface: for a closed surface and a ray that starts outside, `front` equals `back`.
@@ -149,5 +155,9 @@ impl HitSink for Crossings {
         } else {
             self.back += 1;
         }
+    }
+
+    fn found(&self) -> bool {
+        self.front + self.back > 0
     }
 }

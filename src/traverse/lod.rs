@@ -2,7 +2,7 @@
 
 use super::children::{Split, bvh_children, tree_children};
 use super::stack::{Entry, Op, TraversalStack};
-use super::{HitSink, Kind, Probe, Section, TriangleId};
+use super::{HitSink, TriangleId};
 use crate::block::Block;
 use crate::block::child_test;
 use crate::block::lod_test::{self, LodTest};
@@ -11,6 +11,21 @@ use crate::block::tessellate::{self, Tessellate, child_triangle};
 use crate::block::tri_test::{self, TriTest};
 use crate::format::{BoundData, BvhChild, L0Record, Scene, VertexData, layout};
 use crate::num::{BoundCode, BoundScale, MAX_LEVELS, Point, Ray, RayT, T_NEAR_TO_T_SHIFT, TNear, U, Wire};
+use crate::step::{Act, Fetch, MemoryMap, Section, SectionId, Step, StepSink, TriangleRun};
+
+/// Quad-BVH nodes over base triangles.
+pub const NODES: SectionId = SectionId::new(0);
+/// L0 records: base triangle and root bound data.
+pub const RECORDS: SectionId = SectionId::new(1);
+/// Sibling groups of bound data.
+pub const BOUNDS: SectionId = SectionId::new(2);
+/// Inserted vertices.
+pub const VERTICES: SectionId = SectionId::new(3);
+
+/// Lines of a node, of an L0 record and of a group of bound data.
+const PAIR: u32 = 2;
+/// Place of the inserted vertices among the lines of a split, behind the bound data.
+const VERTEX_PLACE: u32 = 2;
 
 /// The memory images of one model, as the hardware sees them.
 #[derive(Clone, Copy, Debug)]
@@ -27,30 +42,29 @@ pub struct LodImage<'a> {
     pub bounds: &'a [[u64; 8]],
     /// Inserted vertices.
     pub vertices: &'a [[u64; 4]],
+    /// Where their lines lie.
+    pub map: MemoryMap,
 }
 
 impl<'a> LodImage<'a> {
     /// The images of a scene.
     pub fn of(scene: &'a Scene) -> Self {
-        Self {
-            levels: scene.levels(),
-            scale: scene.meta().bound_scale(),
-            nodes: scene.nodes(),
-            records: scene.records(),
-            bounds: scene.bounds(),
-            vertices: scene.vertices(),
-        }
+        let (nodes, records, bounds, vertices) = (scene.nodes(), scene.records(), scene.bounds(), scene.vertices());
+        let section = |name, bytes: usize| Section::of_bytes(name, bytes as u64);
+        let sections = [
+            section("bvh_node", size_of_val(nodes)).of_base(),
+            section("l0_record", size_of_val(records)).of_base(),
+            section("bound_data", size_of_val(bounds)),
+            section("vertex_data", size_of_val(vertices)),
+        ];
+        let map = MemoryMap::new(&sections, PAIR).expect("at most 2^28 triangles, of at most four lines each in all sections together");
+        Self { levels: scene.levels(), scale: scene.meta().bound_scale(), nodes, records, bounds, vertices, map }
     }
 
-    /// Its sections.
-    pub fn sections(&self) -> Vec<Section> {
-        let section = |kind, bytes: usize| Section { kind, lines: bytes as u64 / 32 };
-        vec![
-            section(Kind::BvhNode, size_of_val(self.nodes)),
-            section(Kind::L0Record, size_of_val(self.records)),
-            section(Kind::BoundData, size_of_val(self.bounds)),
-            section(Kind::VertexData, size_of_val(self.vertices)),
-        ]
+    /// Both lines of 64-byte record `index` of a section.
+    #[inline(always)]
+    fn pair(&self, section: SectionId, index: usize) -> Fetch {
+        Fetch::new(section, self.map.line(section, 2 * index as u64), PAIR)
     }
 }
 
@@ -63,7 +77,7 @@ pub struct LodTraverser<'a> {
 }
 
 /// One ray under way.
-struct Journey<'a, P, H> {
+struct Journey<'a, S, H> {
     image: &'a LodImage<'a>,
     stack: &'a mut TraversalStack,
     splits: &'a mut [Split; MAX_LEVELS as usize],
@@ -71,7 +85,7 @@ struct Journey<'a, P, H> {
     setup: ray_setup::Out,
     /// The current tree.
     tree: u32,
-    probe: &'a mut P,
+    steps: &'a mut S,
     sink: &'a mut H,
 }
 
@@ -86,23 +100,26 @@ impl<'a> LodTraverser<'a> {
         self.image.levels
     }
 
-    /// Traces `ray`: every triangle that serves the ray and is met goes to `sink`, every line read to `probe`.
-    pub fn trace<P: Probe, H: HitSink>(&mut self, ray: &Ray, probe: &mut P, sink: &mut H) {
+    /// Traces `ray`: every triangle that serves the ray and is met goes to `sink`, every step to `steps`.
+    pub fn trace<S: StepSink, H: HitSink>(&mut self, ray: &Ray, steps: &mut S, sink: &mut H) {
         let setup = RaySetup::eval(&ray_setup::In { origin: ray.origin, direction: ray.direction });
         self.stack.clear();
         let Self { image, stack, splits } = self;
-        let mut journey = Journey { image, stack, splits, ray, setup, tree: 0, probe, sink };
+        let mut journey = Journey { image, stack, splits, ray, setup, tree: 0, steps, sink };
         let mut next = Some(Entry::default());
         loop {
             // A child just tested is not beyond the closest hit; an entry that waited may be by now.
             while let Some(entry) = next {
                 next = journey.visit(&entry);
             }
-            let Some(entry) = journey.stack.step(Op::Pop) else { return };
+            let Some(entry) = journey.stack.step(Op::Pop) else { break };
             let dropped = is_beyond(entry.t_near, journey.sink.t_max());
-            journey.probe.pop(dropped);
+            journey.steps.step(Step::of(Act::Pop { dropped }));
             next = (!dropped).then_some(entry);
         }
+        // A hit on a coarse triangle is mapped to the full resolution.
+        let found = journey.sink.found();
+        journey.steps.step(Step::end(found, true));
     }
 }
 
@@ -116,13 +133,6 @@ pub(crate) fn is_beyond(t_near: TNear, t: RayT) -> bool {
 #[inline(always)]
 pub(crate) fn quarter<T: Wire>(group: &[u64; 8], k: usize) -> T {
     T::from_words(&group[2 * k..2 * k + 2])
-}
-
-/// Tells the probe that both lines of 64-byte record `index` are read.
-#[inline(always)]
-pub(super) fn read_pair<P: Probe>(probe: &mut P, kind: Kind, index: usize) {
-    probe.line(kind, 2 * index as u64);
-    probe.line(kind, 2 * index as u64 + 1);
 }
 
 /// Gives the nearest hit child, to go on with, and pushes the others, farthest first; `entry` makes the entry of child k but for its `t_near`.
@@ -139,7 +149,7 @@ pub(super) fn push_sorted(stack: &mut TraversalStack, sorted: &child_test::Out, 
     (count > 0).then(|| at(0))
 }
 
-impl<P: Probe, H: HitSink> Journey<'_, P, H> {
+impl<S: StepSink, H: HitSink> Journey<'_, S, H> {
     #[inline(always)]
     fn visit(&mut self, entry: &Entry) -> Option<Entry> {
         match entry.kind.get() {
@@ -157,10 +167,9 @@ impl<P: Probe, H: HitSink> Journey<'_, P, H> {
     /// Tests the four children of a quad-BVH node.
     #[inline(always)]
     fn bvh_node(&mut self, index: usize) -> Option<Entry> {
-        read_pair(self.probe, Kind::BvhNode, index);
         let group = &self.image.nodes[index];
         let tests = bvh_children(&self.setup, self.sink.t_max(), group);
-        self.probe.node(tests.met());
+        self.steps.step(Step::on(self.image.pair(NODES, index), Act::Children { met: tests.met() }).visiting());
         push_sorted(self.stack, &tests, |k| {
             let BvhChild { child, .. } = quarter(group, k);
             // Inner nodes and leaves have the kinds of their entries one lower.
@@ -171,7 +180,7 @@ impl<P: Probe, H: HitSink> Journey<'_, P, H> {
     /// Enters a tree.
     #[inline(always)]
     fn root(&mut self, tree: usize) -> Option<Entry> {
-        read_pair(self.probe, Kind::L0Record, tree);
+        self.steps.step(Step::on(self.image.pair(RECORDS, tree), Act::TreeBase).visiting());
         let record = &self.image.records[tree];
         self.tree = tree as u32; // an index of 28 bits
         let p = VertexData::from_words(&record[..4]).points();
@@ -184,27 +193,27 @@ impl<P: Probe, H: HitSink> Journey<'_, P, H> {
     fn tree_node(&mut self, level: u32, node: u32, p: [Point; 3], [e0, e1, e2]: [BoundCode; 3]) -> Option<Entry> {
         let levels = self.image.levels;
         if level == levels {
-            self.triangle(level, node, p);
+            self.triangles(level, node, [p]);
             return None;
         }
         let lod = LodTest::eval(&lod_test::In { ray: *self.ray, p0: p[0], p1: p[1], p2: p[2], e0, e1, e2, scale: self.image.scale });
-        self.probe.lod_test(lod.refine);
+        // A tree's root was visited for its record.
+        self.steps.step(Step { visits: level > 0, ..Step::of(Act::LodTest { refine: lod.refine }) });
         if !lod.refine {
-            self.triangle(level, node, p);
+            self.triangles(level, node, [p]);
             return None;
         }
 
         let line = layout::vertex_line(levels, self.tree as usize, level, node as usize);
-        self.probe.line(Kind::VertexData, line as u64);
+        let fetch = Fetch::new(VERTICES, self.image.map.line(VERTICES, line as u64), 1).at(VERTEX_PLACE);
+        self.steps.step(Step::on(fetch, Act::Tessellate));
         let [q0, q1, q2] = VertexData::from_words(&self.image.vertices[line]).points();
         let grid = U::new(u64::from(levels - level - 1));
         let t = Tessellate::eval(&tessellate::In { grid, s0: lod.s0, s1: lod.s1, s2: lod.s2, p0: p[0], p1: p[1], p2: p[2], q0, q1, q2 });
         let q = [t.q0, t.q1, t.q2];
 
         if level + 1 == levels {
-            for k in 0..4 {
-                self.triangle(levels, 4 * node + k, child_triangle(p, q, k as usize));
-            }
+            self.triangles(levels, 4 * node, std::array::from_fn::<_, 4, _>(|k| child_triangle(p, q, k)));
             return None;
         }
         let group = layout::child_group(levels, self.tree as usize, level, node as usize);
@@ -215,11 +224,11 @@ impl<P: Probe, H: HitSink> Journey<'_, P, H> {
     /// Tests the boxes of the four children, widened by their morphed triangles.
     #[inline(always)]
     fn tree_children(&mut self, level: u32, first: u32, group: usize) -> Option<Entry> {
-        read_pair(self.probe, Kind::BoundData, group);
+        let fetch = self.image.pair(BOUNDS, group).joining();
         let split = &self.splits[level as usize - 1];
         let group = &self.image.bounds[group];
         let tests = tree_children(&self.setup, self.sink.t_max(), group, split);
-        self.probe.node(tests.met());
+        self.steps.step(Step::on(fetch, Act::Children { met: tests.met() }));
         push_sorted(self.stack, &tests, |k| {
             let BoundData { e0, e1, e2, .. } = quarter(group, k);
             Entry {
@@ -234,12 +243,17 @@ impl<P: Probe, H: HitSink> Journey<'_, P, H> {
         })
     }
 
+    /// Tests triangles of one level, the first of them of node `first`.
     #[inline(always)]
-    fn triangle(&mut self, level: u32, node: u32, p: [Point; 3]) {
-        let test = TriTest::eval(&tri_test::In { origin: self.ray.origin, direction: self.ray.direction, p0: p[0], p1: p[1], p2: p[2] });
-        self.probe.triangle(test.hit);
-        if test.hit {
-            self.sink.offer(TriangleId { tree: self.tree, level, node }, &test);
+    fn triangles<const COUNT: usize>(&mut self, level: u32, first: u32, triangles: [[Point; 3]; COUNT]) {
+        let mut run = TriangleRun::default();
+        for (node, [p0, p1, p2]) in (first..).zip(triangles) {
+            let test = TriTest::eval(&tri_test::In { origin: self.ray.origin, direction: self.ray.direction, p0, p1, p2 });
+            run.add(test.hit, self.steps);
+            if test.hit {
+                self.sink.offer(TriangleId { tree: self.tree, level, node }, &test);
+            }
         }
+        run.state(self.steps);
     }
 }

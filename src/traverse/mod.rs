@@ -1,13 +1,12 @@
-//! Floor 3: methods built from blocks. A method takes an integer ray, walks its memory images and gives a hit; every line it reads is told to a
-//! [`Probe`], and nothing above needs to know which method ran.
+//! Floor 3: methods built from blocks. A method takes an integer ray, walks its memory images and gives a hit; every step is told to a
+//! [`StepSink`](crate::step::StepSink), and nothing above needs to know which method ran.
 
 mod children;
 mod cone;
 mod hit;
-mod lod;
+pub mod lod;
 mod model_space;
-mod probe;
-mod quad_bvh;
+pub mod quad_bvh;
 mod stack;
 
 pub(crate) use children::Split;
@@ -16,6 +15,5 @@ pub use hit::{ClosestHit, Crossings, Hit, HitSink, TriangleId};
 pub use lod::{LodImage, LodTraverser};
 pub(crate) use lod::{is_beyond, quarter};
 pub use model_space::{ModelRay, ModelSpace, WorldRay};
-pub use probe::{Kind, NoProbe, Probe, RayCounts, Section};
-pub use quad_bvh::{BvhTraverser, bvh_sections};
+pub use quad_bvh::{BvhTraverser, bvh_map};
 pub use stack::{Entry, Op, STACK_ENTRIES, TraversalStack};

@@ -25,6 +25,7 @@ pub use units::{BlockResult, UnitsResult};
 use crate::sim::energy::{EnergyCounts, EnergyModel};
 use crate::sim::machine::MachineError;
 use crate::sim::replay::{ReplayError, Run, dram_of};
+use crate::step::MemoryMap;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 use thiserror::Error;
@@ -85,11 +86,11 @@ pub struct SimResult {
 }
 
 impl SimResult {
-    /// The figures of `run`.
+    /// The figures of `run`, of a method whose memory is `map`.
     ///
     /// # Errors
     /// The machine's energy tables or its memory cannot be read.
-    pub fn new(setup: Setup, run: &Run) -> Result<Self, ResultError> {
+    pub fn new(setup: Setup, map: &MemoryMap, run: &Run) -> Result<Self, ResultError> {
         let machine = &setup.machine.description;
         let model = EnergyModel::new(machine)?;
         let dram = dram_of(machine)?;
@@ -119,7 +120,7 @@ impl SimResult {
             crossbar: CrossbarResult { request_cycles: counts.crossbar_cycles, answer_cycles: counts.answer_cycles },
             waits: WaitShares::new(&counts.waits, run.units.as_ref(), run.cycles * setup.contexts()),
             energy: EnergyResult::new(&model.report(&energy_counts, &energy::dram_parts(&run.dram)), seconds),
-            traffic: TrafficResult::new(&counts.traffic, counts.rays, setup.method.name == "lod"),
+            traffic: TrafficResult::new(map, &counts.traffic, counts.rays),
             roofline: Roofline::new(&setup, run, &dram),
             units: run
                 .units

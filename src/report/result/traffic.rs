@@ -3,7 +3,7 @@
 use super::ratio;
 use crate::bvh::LINE_BYTES;
 use crate::sim::replay::KindTraffic;
-use crate::traverse::Kind;
+use crate::step::{MAX_SECTIONS, MemoryMap};
 use serde::{Deserialize, Serialize};
 
 /// Lines and bytes of a frame.
@@ -12,7 +12,7 @@ use serde::{Deserialize, Serialize};
 pub struct TrafficResult {
     /// Bytes for each ray, of all kinds of data together.
     pub bytes_per_ray: LevelBytes,
-    /// Share of the L1s' requests that read the L0 part: the quad-BVH over the base triangles, and their records. Of the LOD method only.
+    /// Share of the L1s' requests that read the L0 part: the quad-BVH over the base triangles, and their records. Of methods that have one.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub l0_share_of_l1: Option<f64>,
     /// By kind of data; those that were read.
@@ -48,20 +48,17 @@ pub struct KindResult {
 }
 
 impl TrafficResult {
-    pub(super) fn new(traffic: &[KindTraffic; Kind::ALL.len()], rays: u64, lod: bool) -> Self {
+    /// Of a method with this memory.
+    pub(super) fn new(map: &MemoryMap, traffic: &[KindTraffic; MAX_SECTIONS], rays: u64) -> Self {
         let bytes = |lines: u64| ratio((lines * LINE_BYTES) as f64, rays as f64);
         let level_bytes = |t: &KindTraffic| LevelBytes { l1: bytes(t.l1), l2: bytes(t.l2), dram: bytes(t.dram) };
         let sum =
             traffic.iter().fold(KindTraffic::default(), |a, b| KindTraffic { l1: a.l1 + b.l1, l2: a.l2 + b.l2, dram: a.dram + b.dram });
-        let base = traffic[Kind::BvhNode as usize].l1 + traffic[Kind::L0Record as usize].l1;
-        let kinds = Kind::ALL.into_iter().zip(traffic).filter(|(_, t)| t.l1 > 0);
-        let kinds = kinds.map(|(kind, t)| KindResult {
-            kind: kind.name().to_owned(),
-            l1: t.l1,
-            l2: t.l2,
-            dram: t.dram,
-            bytes_per_ray: level_bytes(t),
-        });
-        Self { bytes_per_ray: level_bytes(&sum), l0_share_of_l1: lod.then(|| ratio(base as f64, sum.l1 as f64)), kinds: kinds.collect() }
+        let base = map.sections().filter(|(_, section)| section.base).map(|(id, _)| traffic[id.place()].l1);
+        let l0_share_of_l1 = base.reduce(|a, b| a + b).map(|lines| ratio(lines as f64, sum.l1 as f64));
+        let kinds = map.sections().map(|(id, section)| (section.name, &traffic[id.place()])).filter(|(_, t)| t.l1 > 0);
+        let kinds =
+            kinds.map(|(name, t)| KindResult { kind: name.to_owned(), l1: t.l1, l2: t.l2, dram: t.dram, bytes_per_ray: level_bytes(t) });
+        Self { bytes_per_ray: level_bytes(&sum), l0_share_of_l1, kinds: kinds.collect() }
     }
 }

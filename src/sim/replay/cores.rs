@@ -10,8 +10,8 @@ use super::hierarchy::Hierarchy;
 use super::prefetch::prefetch;
 use crate::sim::energy::Operations;
 use crate::sim::machine::Cores;
-use crate::sim::stream::{Asking, Step};
-use crate::traverse::Kind;
+use crate::step::{Act, Asking, Nodes, SectionId};
+use std::ops::Range;
 
 /// Lines that a ray asks for at once; a leaf of more is read in parts.
 const MOST_LINES: usize = 16;
@@ -35,6 +35,7 @@ struct Context {
     /// The next with lines to ask for, of those of its port.
     next: u32,
     lines: [u32; MOST_LINES],
+    sections: [SectionId; MOST_LINES],
 }
 
 impl Context {
@@ -69,15 +70,16 @@ pub struct FreeCores<S> {
     ports: Vec<Port>,
     rays_in_flight: u32,
     per_group: u32,
-    pinned_nodes: u32,
+    /// Lines of nodes that cores hold for good.
+    pinned: Range<u32>,
     under_way: u64,
 }
 
 impl<S: feed::Source> FreeCores<S> {
-    /// Cores that take rays from `source`.
-    pub fn new(cores: &Cores, source: S) -> Self {
-        let lines = [0; MOST_LINES];
-        let context = Context { ray: None, ready: 0, since: 0, from: Source::L1, count: 0, sent: 0, come: 0, next: NONE, lines };
+    /// Cores that take rays from `source`, and hold the first of `nodes`.
+    pub fn new(cores: &Cores, nodes: Nodes, source: S) -> Self {
+        let (lines, sections) = ([0; MOST_LINES], [SectionId::default(); MOST_LINES]);
+        let context = Context { ray: None, ready: 0, since: 0, from: Source::L1, count: 0, sent: 0, come: 0, next: NONE, lines, sections };
         let port = Port { free: 0, first: NONE, last: NONE, awake: false };
         Self {
             feed: Feed::new(source, cores.groups),
@@ -85,7 +87,7 @@ impl<S: feed::Source> FreeCores<S> {
             ports: vec![port; cores.total() as usize],
             rays_in_flight: cores.rays_in_flight,
             per_group: cores.per_group,
-            pinned_nodes: cores.pinned_nodes,
+            pinned: nodes.lines_of(cores.pinned_nodes),
             under_way: 0,
         }
     }
@@ -111,29 +113,29 @@ impl<S: feed::Source> FreeCores<S> {
         let Some(ray) = &mut state.ray else { return false };
         let counts = memory.counts_mut();
         let (mut count, mut steps) = (0, 0);
-        for event in ray.rest() {
-            let Asking { first, mut lines, kind, joins, ends } = event.asking();
+        for word in ray.rest() {
+            let Asking { first, mut lines, section, joins, ends } = word.asking();
             if ends {
                 if count > 0 {
                     break;
                 }
                 counts.rays += 1;
-                counts.hits += u64::from(event.step() == Step::End { found: true });
+                counts.hits += u64::from(matches!(word.step().act, Act::End { found: true, .. }));
                 self.under_way -= 1;
                 return false;
             }
-            if lines > 0 && self.pinned_nodes > 0 && kind == Kind::BvhNode && first >> lines.trailing_zeros() < self.pinned_nodes {
-                lines = 0; // nodes are a memory's first lines
+            if self.pinned.contains(&first) {
+                lines = 0;
             }
             if count > 0 && (!joins || count + lines as usize > MOST_LINES) {
                 break;
             }
             steps += 1;
             for line in first..first + lines {
-                state.lines[count] = line;
+                (state.lines[count], state.sections[count]) = (line, section);
                 count += 1;
             }
-            counts.traffic[kind as usize].l1 += u64::from(lines);
+            counts.traffic[section.place()].l1 += u64::from(lines);
         }
         ray.skip(steps);
         (state.count, state.sent, state.come, state.ready) = (count as u8, 0, 0, 0);
@@ -167,13 +169,14 @@ impl<S: feed::Source> FreeCores<S> {
             return;
         }
         let asking = &mut self.contexts[context as usize];
-        let line = asking.lines[asking.sent as usize];
+        let sent = asking.sent as usize;
+        let (line, section) = (asking.lines[sent], asking.sections[sent]);
         asking.sent += 1;
         if asking.sent == asking.count {
             state.first = asking.next;
         }
         state.free = memory.now() + 1;
-        let asked = memory.request(port / self.per_group, port, context, line);
+        let asked = memory.request(port / self.per_group, port, context, line, section);
         if let Asked::Comes(cycle) = asked {
             asking.comes(context, cycle, memory);
         }

@@ -1,6 +1,6 @@
 //! What a run counts.
 
-use crate::traverse::Kind;
+use crate::step::MAX_SECTIONS;
 use serde::Serialize;
 
 /// A level of cache.
@@ -43,7 +43,7 @@ impl Source {
     pub const ALL: [Self; 3] = [Self::L1, Self::L2, Self::Dram];
 }
 
-/// Lines of one kind of data.
+/// Lines of one section.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
 pub struct KindTraffic {
     /// Requests to the L1s.
@@ -96,6 +96,6 @@ pub struct Counts {
     pub dram_refused_cycles: u64,
     /// What contexts waited for.
     pub waits: Waits,
-    /// By kind of data, in the order of [`Kind::ALL`].
-    pub traffic: [KindTraffic; Kind::ALL.len()],
+    /// By the place of their section.
+    pub traffic: [KindTraffic; MAX_SECTIONS],
 }

@@ -2,7 +2,7 @@
 
 use super::prefetch::prefetch;
 use crate::sim::energy::Operations;
-use crate::sim::stream::{Batch, Event};
+use crate::step::{Batch, StepWord};
 use std::sync::Arc;
 
 /// Batches that were traced together.
@@ -37,16 +37,16 @@ pub struct Ray {
 }
 
 impl Ray {
-    /// Its next step; a ray ends with [`Step::End`](crate::sim::stream::Step::End), after which it has none.
+    /// Its next step; a ray ends with [`Act::End`](crate::step::Act::End), after which it has none.
     #[inline(always)]
-    pub fn peek(&self) -> Event {
-        self.chunk[self.batch as usize].events()[self.at as usize]
+    pub fn peek(&self) -> StepWord {
+        self.chunk[self.batch as usize].words()[self.at as usize]
     }
 
     /// Its steps from the next on, and those of the rays behind it.
     #[inline(always)]
-    pub fn rest(&self) -> &[Event] {
-        &self.chunk[self.batch as usize].events()[self.at as usize..]
+    pub fn rest(&self) -> &[StepWord] {
+        &self.chunk[self.batch as usize].words()[self.at as usize..]
     }
 
     /// Goes on by `steps`.
@@ -58,7 +58,7 @@ impl Ray {
     /// The steps behind the next are read soon.
     #[inline(always)]
     pub fn prefetch(&self) {
-        prefetch(self.chunk[self.batch as usize].events(), self.at as usize);
+        prefetch(self.chunk[self.batch as usize].words(), self.at as usize);
     }
 }
 
@@ -88,7 +88,7 @@ impl<S: Source> Feed<S> {
                     let at = batch.start(at_ray);
                     current.ray += 1;
                     // The next to be taken.
-                    prefetch(batch.events(), batch.end(at_ray) as usize);
+                    prefetch(batch.words(), batch.end(at_ray) as usize);
                     return Some(Ray { chunk: Arc::clone(&current.chunk), batch: current.batch, at });
                 }
             }

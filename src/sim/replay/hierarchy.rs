@@ -15,7 +15,7 @@ use super::wave::Shown;
 use super::wheel::Wheel;
 use crate::sim::dram::{Dram, DramConfig, DramError};
 use crate::sim::machine::{Cores, Crossbar, Machine};
-use crate::sim::stream::Layout;
+use crate::step::SectionId;
 use std::collections::VecDeque;
 
 impl Shown for Hierarchy {
@@ -88,15 +88,14 @@ pub struct Hierarchy {
     waiters: Vec<u32>,
     /// The cycle in which memory is to be looked at again.
     dram_next: Option<u64>,
-    layout: Layout,
 }
 
 impl Hierarchy {
-    /// An idle machine before a method's memory.
+    /// An idle machine.
     ///
     /// # Errors
     /// The memory's configuration is impossible.
-    pub fn new(machine: &Machine, dram: &DramConfig, layout: &Layout) -> Result<Self, DramError> {
+    pub fn new(machine: &Machine, dram: &DramConfig) -> Result<Self, DramError> {
         let groups = machine.cores.groups;
         let l1 = Level::new(&machine.l1, groups);
         Ok(Self {
@@ -114,7 +113,6 @@ impl Hierarchy {
             refused_count: 0,
             waiters: Vec::new(),
             dram_next: None,
-            layout: *layout,
         })
     }
 
@@ -161,15 +159,15 @@ impl Hierarchy {
         self.wheel.at(cycle, kind.class(), kind.event(id));
     }
 
-    /// `port` of `group` asks for `line`, of which `waiter` is told. (What it holds is counted by whoever asks.)
+    /// `port` of `group` asks for `line` of `section`, of which `waiter` is told; it is counted by whoever asks.
     #[inline]
-    pub fn request(&mut self, group: u32, port: u32, waiter: u32, line: u32) -> Asked {
+    pub fn request(&mut self, group: u32, port: u32, waiter: u32, line: u32, section: SectionId) -> Asked {
         let now = self.now();
         let bank = self.l1.bank(group, line);
         if self.l1.hit_now(bank, line, now) {
             return Asked::Comes(now + self.l1.latency);
         }
-        let request = Request { waiter, line, since: now };
+        let request = Request { waiter, line, section, since: now };
         if !self.l1.has_room(bank, 0) || !self.held[bank as usize].is_empty() {
             self.held[bank as usize].push_back(Held { port, request });
             return Asked::Held;
@@ -257,11 +255,11 @@ impl Hierarchy {
     }
 
     fn arrive_l2(&mut self, register: u32) {
-        let line = self.l1.line(register);
+        let (line, section) = (self.l1.line(register), self.l1.section(register));
         let bank = self.l2.bank(0, line);
         self.doors[bank as usize].coming -= 1;
-        self.counts.traffic[self.layout.kind(line) as usize].l2 += 1;
-        let request = Request { waiter: register, line, since: self.now() };
+        self.counts.traffic[section.place()].l2 += 1;
+        let request = Request { waiter: register, line, section, since: self.now() };
         match self.l2.enqueue(bank, request) {
             Some(cycle) if cycle <= self.now() => self.serve_l2(bank),
             Some(cycle) => self.enter(cycle, Kind::ServeL2, bank),
@@ -330,7 +328,7 @@ impl Hierarchy {
     }
 
     fn read_dram(&mut self, register: u32, line: u64) {
-        self.counts.traffic[self.layout.kind(line as u32) as usize].dram += 1;
+        self.counts.traffic[self.l2.section(register).place()].dram += 1;
         self.dram.push(self.cores.start_ps(self.now()), line, u64::from(register), false);
         self.dram_next = self.dram.next_event().map(|ps| self.cores.cycle_at(ps));
     }

@@ -5,6 +5,7 @@ use super::mshr::{Entered, Mshrs};
 use super::prefetch::prefetch;
 use super::tags::Tags;
 use crate::sim::machine::Cache;
+use crate::step::SectionId;
 use std::collections::VecDeque;
 
 /// A request in front of a bank.
@@ -14,6 +15,8 @@ pub struct Request {
     pub waiter: u32,
     /// The line.
     pub line: u32,
+    /// What it holds.
+    pub section: SectionId,
     /// The cycle since when it waits in the queue.
     pub since: u64,
 }
@@ -92,6 +95,11 @@ impl Level {
         self.mshrs.line(register)
     }
 
+    /// What the line of a miss register holds.
+    pub fn section(&self, register: u32) -> SectionId {
+        self.mshrs.section(register)
+    }
+
     /// Whether `bank` has room for `ahead` requests and one more.
     #[inline]
     pub fn has_room(&self, bank: u32, ahead: usize) -> bool {
@@ -134,7 +142,7 @@ impl Level {
             self.counts.hits += 1;
             Served::Hit
         } else {
-            match self.mshrs.enter(bank, request.line, request.waiter) {
+            match self.mshrs.enter(bank, request.line, request.section, request.waiter) {
                 Entered::New { slot } => {
                     self.counts.misses += 1;
                     Served::Miss(bank * self.mshrs_per_bank + slot)

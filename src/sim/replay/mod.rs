@@ -1,7 +1,7 @@
 //! The replay: the steps of a frame's rays on a machine, cycle by cycle, driven by events.
 //!
 //! - `wheel`: what happens when.
-//! - `feed`: rays, from the functional layer ([`stream`](super::stream)).
+//! - `feed`: rays, from the functional layer ([`step`](crate::step)).
 //! - `cores`: who asks for lines when compute takes no time; `units`: traversal units, who do in the cycles of the RTL.
 //! - `prefetch`: what is read soon.
 //! - `event`: what happens, and what others are told of it.
@@ -38,8 +38,8 @@ pub use wave::Window;
 use super::dram::{ChannelCounts, Device, Dram, DramConfig, DramEnergy};
 use super::energy::Operations;
 use super::machine::Machine;
-use super::stream::Layout;
 use super::unit::UnitCounts;
+use crate::step::Nodes;
 use cores::FreeCores;
 use event::Happening;
 use hierarchy::Hierarchy;
@@ -97,23 +97,23 @@ pub fn check(machine: &Machine, units: bool) -> Result<(), ReplayError> {
     dram.map(|_| ()).map_err(|source| ReplayError::Dram { file: machine.dram.device.clone(), source })
 }
 
-/// Runs the rays of `source`, which read the memory of `layout`, on `machine`; compute takes no time.
+/// Runs the rays of `source`, which begin with `nodes`, on `machine`; compute takes no time.
 ///
 /// # Errors
 /// The machine is impossible or too large, or nothing happens any more while rays are under way.
-pub fn run_free(machine: &Machine, layout: &Layout, source: impl Source, window: Option<Window>) -> Result<Run, ReplayError> {
-    let mut cores = FreeCores::new(&machine.cores, source);
-    drive(&mut cores, machine, layout, window)
+pub fn run_free(machine: &Machine, nodes: Nodes, source: impl Source, window: Option<Window>) -> Result<Run, ReplayError> {
+    let mut cores = FreeCores::new(&machine.cores, nodes, source);
+    drive(&mut cores, machine, window)
 }
 
 /// The same with traversal units that take the cycles of the RTL.
 ///
 /// # Errors
 /// As [`run_free`].
-pub fn run_units(machine: &Machine, layout: &Layout, source: impl Source, window: Option<Window>) -> Result<Run, ReplayError> {
+pub fn run_units(machine: &Machine, source: impl Source, window: Option<Window>) -> Result<Run, ReplayError> {
     check(machine, true)?;
     let mut units = Units::new(machine, source);
-    let run = drive(&mut units, machine, layout, window)?;
+    let run = drive(&mut units, machine, window)?;
     Ok(Run { units: Some(units.counts(run.cycles)), ..run })
 }
 
@@ -140,11 +140,10 @@ trait FrontEnd {
 }
 
 /// Lets `front` run on `machine` until it is done.
-fn drive(front: &mut impl FrontEnd, machine: &Machine, layout: &Layout, window: Option<Window>) -> Result<Run, ReplayError> {
+fn drive(front: &mut impl FrontEnd, machine: &Machine, window: Option<Window>) -> Result<Run, ReplayError> {
     check_size(machine)?;
     let dram = dram_of(machine)?;
-    let mut memory =
-        Hierarchy::new(machine, &dram, layout).map_err(|source| ReplayError::Dram { file: machine.dram.device.clone(), source })?;
+    let mut memory = Hierarchy::new(machine, &dram).map_err(|source| ReplayError::Dram { file: machine.dram.device.clone(), source })?;
     let mut intervals = Intervals::new();
     let mut wave = window.map(Wave::new);
     front.start(&mut memory);

@@ -1,5 +1,7 @@
 //! The misses under way of a bank, and who waits for each.
 
+use crate::step::SectionId;
+
 /// No waiter.
 const NONE: u32 = u32::MAX;
 
@@ -7,6 +9,7 @@ const NONE: u32 = u32::MAX;
 #[derive(Clone, Copy, Debug)]
 struct Miss {
     line: u32,
+    section: SectionId,
     /// First and last waiter; [`NONE`] if the register is free.
     first: u32,
     last: u32,
@@ -48,13 +51,14 @@ pub struct Mshrs {
 impl Mshrs {
     /// `per_bank` registers in each of `banks`, with room for `targets` waiters.
     pub fn new(banks: u32, per_bank: u32, targets: u32) -> Self {
-        let misses = vec![Miss { line: 0, first: NONE, last: NONE, waiting: 0 }; banks as usize * per_bank as usize];
+        let misses =
+            vec![Miss { line: 0, section: SectionId::default(), first: NONE, last: NONE, waiting: 0 }; banks as usize * per_bank as usize];
         Self { misses, per_bank: per_bank as usize, targets, links: Vec::new(), spare: NONE }
     }
 
-    /// `waiter` of `bank` misses `line`.
+    /// `waiter` of `bank` misses `line` of `section`.
     #[inline]
-    pub fn enter(&mut self, bank: u32, line: u32, waiter: u32) -> Entered {
+    pub fn enter(&mut self, bank: u32, line: u32, section: SectionId, waiter: u32) -> Entered {
         let from = bank as usize * self.per_bank;
         let misses = &self.misses[from..from + self.per_bank];
         if let Some(slot) = misses.iter().position(|miss| miss.first != NONE && miss.line == line) {
@@ -70,7 +74,7 @@ impl Mshrs {
         }
         let Some(slot) = misses.iter().position(|miss| miss.first == NONE) else { return Entered::Full };
         let link = self.link(waiter);
-        self.misses[from + slot] = Miss { line, first: link, last: link, waiting: 1 };
+        self.misses[from + slot] = Miss { line, section, first: link, last: link, waiting: 1 };
         Entered::New { slot: slot as u32 }
     }
 
@@ -88,6 +92,11 @@ impl Mshrs {
     /// The line of register `register`, counted through all banks.
     pub fn line(&self, register: u32) -> u32 {
         self.misses[register as usize].line
+    }
+
+    /// What that line holds.
+    pub fn section(&self, register: u32) -> SectionId {
+        self.misses[register as usize].section
     }
 
     /// The line has come: frees the register and gives its waiters to `answer`, first come first.
@@ -115,26 +124,30 @@ impl Mshrs {
 mod tests {
     use super::*;
 
+    fn enter(mshrs: &mut Mshrs, bank: u32, line: u32, waiter: u32) -> Entered {
+        mshrs.enter(bank, line, SectionId::new(line as usize % 8), waiter)
+    }
+
     #[test]
     fn misses_merge_up_to_the_targets_and_are_answered_in_order() {
         let mut mshrs = Mshrs::new(2, 2, 3);
-        assert_eq!(mshrs.enter(1, 9, 10), Entered::New { slot: 0 });
-        assert_eq!(mshrs.enter(1, 8, 20), Entered::New { slot: 1 });
-        assert_eq!(mshrs.enter(1, 9, 11), Entered::Merged);
-        assert_eq!(mshrs.enter(1, 9, 12), Entered::Merged);
-        assert_eq!(mshrs.enter(1, 9, 13), Entered::Full, "no target");
-        assert_eq!(mshrs.enter(1, 7, 30), Entered::Full, "no register");
-        assert_eq!(mshrs.enter(0, 9, 40), Entered::New { slot: 0 }, "banks do not share");
+        assert_eq!(enter(&mut mshrs, 1, 9, 10), Entered::New { slot: 0 });
+        assert_eq!(enter(&mut mshrs, 1, 8, 20), Entered::New { slot: 1 });
+        assert_eq!(enter(&mut mshrs, 1, 9, 11), Entered::Merged);
+        assert_eq!(enter(&mut mshrs, 1, 9, 12), Entered::Merged);
+        assert_eq!(enter(&mut mshrs, 1, 9, 13), Entered::Full, "no target");
+        assert_eq!(enter(&mut mshrs, 1, 7, 30), Entered::Full, "no register");
+        assert_eq!(enter(&mut mshrs, 0, 9, 40), Entered::New { slot: 0 }, "banks do not share");
         let mut answered = Vec::new();
         mshrs.free(2, |waiter| answered.push(waiter));
         assert_eq!((answered, mshrs.in_use_of(0), mshrs.in_use_of(1)), (vec![10, 11, 12], 1, 1));
-        assert_eq!(mshrs.enter(1, 7, 30), Entered::New { slot: 0 });
-        assert_eq!(mshrs.line(2), 7);
+        assert_eq!(enter(&mut mshrs, 1, 7, 30), Entered::New { slot: 0 });
+        assert_eq!((mshrs.line(2), mshrs.section(2)), (7, SectionId::new(7)));
         let links = mshrs.links.len();
         for round in 0..100 {
-            assert_eq!(mshrs.enter(1, 7, round), Entered::Merged);
+            assert_eq!(enter(&mut mshrs, 1, 7, round), Entered::Merged);
             mshrs.free(2, |_| ());
-            assert_eq!(mshrs.enter(1, 7, round), Entered::New { slot: 0 });
+            assert_eq!(enter(&mut mshrs, 1, 7, round), Entered::New { slot: 0 });
         }
         assert_eq!(mshrs.links.len(), links, "links are used again");
     }

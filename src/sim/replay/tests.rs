@@ -2,8 +2,7 @@
 
 use super::*;
 use crate::sim::dram::Dram;
-use crate::sim::stream::{Batch, Step};
-use crate::traverse::{Kind, Section};
+use crate::step::{Act, Batch, Fetch, MemoryMap, Section, SectionId, Step};
 use std::collections::HashSet;
 
 /// One core, and the keys that are set.
@@ -15,22 +14,25 @@ fn machine(sets: &[(&str, u32)]) -> Machine {
     machine
 }
 
-fn layout() -> Layout {
-    Layout::new(&[Section { kind: Kind::Leaf, lines: 1 << 22 }]).unwrap()
+const LEAVES: SectionId = SectionId::new(0);
+
+/// No node is pinned.
+fn nodes() -> Nodes {
+    Nodes::default()
 }
 
 /// Rays in one batch; each reads its lines one after the other.
 fn rays(lines: &[Vec<u32>]) -> Chunk {
     let ray = |lines: &Vec<u32>| {
         // A triangle test between two lines keeps them from being asked for together.
-        let steps = lines.iter().flat_map(|&line| [Step::Leaf { line }, Step::Triangles { count: 1, hits: 0 }]);
-        steps.chain([Step::End { found: false }]).collect()
+        let line = |&line: &u32| [Step::on(Fetch::new(LEAVES, line, 1), Act::Fetch), Step::of(Act::Triangles { count: 1, hits: 0 })];
+        lines.iter().flat_map(line).chain([Step::end(false, false)]).collect()
     };
     Chunk::from([Batch::new(&lines.iter().map(ray).collect::<Vec<_>>())])
 }
 
 fn run(machine: &Machine, lines: &[Vec<u32>]) -> Run {
-    run_free(machine, &layout(), std::iter::once(rays(lines)), None).unwrap()
+    run_free(machine, nodes(), std::iter::once(rays(lines)), None).unwrap()
 }
 
 /// Cycles on the way to the L2's miss, and back from memory.
@@ -109,22 +111,28 @@ fn a_chase_in_memory_takes_the_way_and_the_memorys_own_time() {
 
 #[test]
 fn pinned_nodes_are_not_asked_for() {
-    let layout = Layout::new(&[Section { kind: Kind::BvhNode, lines: 64 }, Section { kind: Kind::Leaf, lines: 64 }]).unwrap();
     for (wide, lines) in [(false, 2), (true, 4)] {
-        let node = |(number, met): (u32, u32)| Step::Node { line: number * lines, met, wide };
+        let sections = ["node", "leaf"].map(|name| Section::of_bytes(name, 64 * 32));
+        let layout = MemoryMap::new(&sections, lines).unwrap().nodes();
+        let node = |(number, met): (u32, u32)| {
+            let act = if wide { Act::WideChildren { met } } else { Act::Children { met } };
+            Step::on(Fetch::new(SectionId::new(0), number * lines, lines), act).visiting()
+        };
         let nodes = [(0, 1), (1, 1), (2, 1), (3, 1), (0, 0)].map(node);
-        let end = [Step::End { found: false }];
+        // Lines of other data are asked for, however many nodes there could be.
+        let other = Step::on(Fetch::new(SectionId::new(1), 64, 1), Act::Fetch);
+        let end = [other, Step::end(false, false)];
         let chunk = Chunk::from([Batch::new(&[nodes.into_iter().chain(end).collect()])]);
         // Steps without lines are no nodes.
-        let pops = nodes.into_iter().flat_map(|node| [node, Step::Pop { dropped: false }]).chain(end);
+        let pops = nodes.into_iter().flat_map(|node| [node, Step::of(Act::Pop { dropped: false })]).chain(end);
         let with_pops = Chunk::from([Batch::new(&[pops.collect()])]);
-        for (pinned, asked) in [(0, 5), (1, 3), (3, 1), (9, 0)] {
+        for (pinned, asked) in [(0, 5), (1, 3), (3, 1), (9, 0), (4000, 0)] {
             let machine = machine(&[("cores.pinned_nodes", pinned)]);
             for chunk in [&chunk, &with_pops] {
-                let run = run_free(&machine, &layout, std::iter::once(chunk.clone()), None).unwrap();
-                assert_eq!(run.counts.l1.requests, u64::from(asked * lines), "{pinned} of {lines} lines");
+                let run = run_free(&machine, layout, std::iter::once(chunk.clone()), None).unwrap();
+                assert_eq!(run.counts.l1.requests, u64::from(asked * lines + 1), "{pinned} of {lines} lines");
             }
-            let charged = run_units(&machine, &layout, std::iter::once(chunk.clone()), None);
+            let charged = run_units(&machine, std::iter::once(chunk.clone()), None);
             assert_eq!(charged.is_ok(), pinned == 0);
         }
     }
@@ -247,7 +255,7 @@ fn a_stream_reaches_most_of_the_peak() {
         // Every ray reads its own stretch, all together one stream.
         let lines: Vec<Vec<u32>> = (0..4096).map(|ray| (0..64).map(|k| k * 4096 + ray).collect()).collect();
         let chunks: Vec<Chunk> = lines.chunks(64).map(rays).collect();
-        let run = run_free(&machine, &layout(), chunks.into_iter(), None).unwrap();
+        let run = run_free(&machine, nodes(), chunks.into_iter(), None).unwrap();
         conserved(&run);
         let config = dram_of(&machine).unwrap();
         let peak = config.device.peak_bytes_per_second() * f64::from(config.channels);
@@ -276,14 +284,14 @@ fn silence_is_an_error_that_tells_what_everyone_does() {
             "one context waits for ever".to_owned()
         }
     }
-    let error = drive(&mut Silent::default(), &machine(&[]), &layout(), None).unwrap_err().to_string();
+    let error = drive(&mut Silent::default(), &machine(&[]), None).unwrap_err().to_string();
     assert!(error.starts_with("deadlock after cycle 9:\none context waits for ever\nL1: 0 requests queued"), "{error}");
 }
 
 #[test]
 fn machines_that_events_cannot_name_are_refused() {
     let machine = machine(&[("cores.groups", 4096), ("cores.per_group", 4096)]);
-    let error = run_free(&machine, &layout(), std::iter::empty(), None).unwrap_err().to_string();
+    let error = run_free(&machine, nodes(), std::iter::empty(), None).unwrap_err().to_string();
     assert_eq!(error, "rays in flight of the machine are more than 4194304: 16777216");
 }
 
@@ -291,7 +299,7 @@ fn machines_that_events_cannot_name_are_refused() {
 fn a_waveform_shows_the_events_of_its_window() {
     let lines = wandering(50, 20);
     let machine = machine(&[("cores.groups", 2), ("cores.per_group", 4)]);
-    let run_with = |window| run_free(&machine, &layout(), std::iter::once(rays(&lines)), Some(window)).unwrap();
+    let run_with = |window| run_free(&machine, nodes(), std::iter::once(rays(&lines)), Some(window)).unwrap();
     let whole = run_with(Window { from: 0, to: u64::MAX });
     let text = String::from_utf8(whole.wave.clone().unwrap()).unwrap();
     let mut vcd = vcd::Parser::new(text.as_bytes());

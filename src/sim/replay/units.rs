@@ -11,9 +11,9 @@ use super::hierarchy::Hierarchy;
 use super::slots::Slots;
 use crate::sim::energy::Operations;
 use crate::sim::machine::Machine;
-use crate::sim::stream::Step;
 use crate::sim::timing::{Ports, Request, Steps, UnitTiming};
 use crate::sim::unit::UnitCounts;
+use crate::step::Step;
 use std::collections::VecDeque;
 
 /// Bits of a unit's tag in the number of who waits for a line.
@@ -189,7 +189,7 @@ impl<S: feed::Source> Ports for Surroundings<'_, S> {
         Some(ray)
     }
 
-    fn request(&mut self, Request { tag, line, kind }: Request) -> bool {
+    fn request(&mut self, Request { tag, line, section }: Request) -> bool {
         match *self.port {
             Port::Held => false,
             Port::Taken => {
@@ -198,8 +198,8 @@ impl<S: feed::Source> Ports for Surroundings<'_, S> {
             }
             Port::Free => {
                 let waiter = self.id << TAG_BITS | u32::from(tag);
-                self.memory.counts_mut().traffic[kind as usize].l1 += 1;
-                match self.memory.request(self.group, 2 * self.id + 1, waiter, line) {
+                self.memory.counts_mut().traffic[section.place()].l1 += 1;
+                match self.memory.request(self.group, 2 * self.id + 1, waiter, line, section) {
                     Asked::Comes(cycle) => self.memory.answer_at(cycle, waiter, Source::L1),
                     Asked::Taken => (),
                     Asked::Held => *self.port = Port::Held,

@@ -1,15 +1,16 @@
 //! What follows when a resource takes a request or a line comes: the states up to the next in which the context asks for something.
 //!
-//! States are those of `docs/traversal-unit.md`. A result of cycle c, a grant or an answer in it, shows in registers from cycle c + 1 on.
+//! States are those of `docs/traversal-unit.md`. A result of cycle c, a grant or an answer in it, shows in registers from cycle c + 1 on. Every sequence of steps has
+//! its cycles: which states a ray goes through is what its steps say, and no order is taken for granted.
 
-use super::context::{Context, Fetch};
+use super::context::Context;
 use super::ports::{Request, Steps};
 use super::unit::UnitTiming;
 use crate::block::Block;
 use crate::block::box_test32::BoxTest32;
 use crate::block::child_sort::ChildSort;
-use crate::sim::stream::Step;
 use crate::sim::unit::{Resource, State};
+use crate::step::Act;
 
 /// Cycles of the test of a node with 32-bit boxes.
 const WIDE_NODE: u64 = (BoxTest32::TIMING.latency + ChildSort::TIMING.latency) as u64;
@@ -48,12 +49,10 @@ impl<R: Steps> UnitTiming<R> {
     pub(super) fn granted(&mut self, resource: Resource, who: usize, since: u64, now: u64) -> bool {
         let station = &mut self.stations[resource as usize];
         let context = &mut self.contexts[who];
-        if let (Resource::Child, Step::Node { wide: true, .. }) = (resource, context.step()) {
-            let result = station.take_for(WIDE_NODE, since, now);
-            self.tested(who, result, now);
-            return false;
-        }
-        let result = station.take(since, now);
+        let result = match (resource, context.act) {
+            (Resource::Child, Act::WideChildren { .. }) => station.take_for(WIDE_NODE, since, now),
+            _ => station.take(since, now),
+        };
         match resource {
             Resource::Setup => {
                 self.left(State::Setup, who, now + 1);
@@ -66,33 +65,26 @@ impl<R: Steps> UnitTiming<R> {
                     self.fetched(who, now);
                 }
             }
-            Resource::Child => self.tested(who, result, now),
+            Resource::Child => {
+                let (Act::Children { met } | Act::WideChildren { met }) = context.act else {
+                    unreachable!("asks for its act's block only")
+                };
+                self.left(State::Child, who, now + 1);
+                self.states[State::ChildWait as usize] += result - now;
+                // One child a cycle, and none takes one too.
+                let push = u64::from(met.max(1));
+                self.states[State::Push as usize] += push;
+                self.onward(who, result + 1 + push, now);
+            }
             Resource::Lod => {
                 self.left(State::Lod, who, now + 1);
                 self.states[State::LodWait as usize] += result - now;
-                let context = &mut self.contexts[who];
-                let Step::Lod { refine } = context.step() else { panic!("an LOD test here, not {:?}", context.step()) };
-                context.advance();
-                if refine {
-                    context.enter_split(result + 1)
-                } else {
-                    context.enter_triangles(result + 1)
-                }
-                self.sleep(who, now);
+                self.onward(who, result + 1, now);
             }
             Resource::Morph => {
                 self.left(State::Morph, who, now + 1);
                 self.states[State::MorphWait as usize] += result - now;
-                let context = &mut self.contexts[who];
-                if let Step::Bounds { .. } = context.step() {
-                    context.enter(State::Child, result + 1);
-                    if context.bounds_owed == 0 {
-                        self.sleep_for_bounds(who, now);
-                    }
-                } else {
-                    context.enter_triangles(result + 1);
-                    self.sleep(who, now);
-                }
+                self.onward(who, result + 1, now);
             }
             Resource::Tri => {
                 context.left -= 1;
@@ -102,7 +94,10 @@ impl<R: Steps> UnitTiming<R> {
                     context.settle(result + 1);
                 }
                 context.hits >>= 1;
-                let more = context.left > 0;
+                if context.left == 0 {
+                    self.more_triangles(who);
+                }
+                let more = self.contexts[who].left > 0;
                 self.tried(who, now);
                 return more;
             }
@@ -116,7 +111,7 @@ impl<R: Steps> UnitTiming<R> {
                 self.states[State::DivideWait as usize] += result - now;
                 self.states[State::Sum as usize] += 1;
                 let context = &mut self.contexts[who];
-                context.enter(if context.map { State::Map } else { State::Done }, result + 2);
+                context.enter(if context.mapped { State::Map } else { State::Done }, result + 2);
                 self.sleep(who, now);
             }
             Resource::Map => {
@@ -130,29 +125,12 @@ impl<R: Steps> UnitTiming<R> {
         false
     }
 
-    /// The children of context `who` are tested in cycle `result`.
-    fn tested(&mut self, who: usize, result: u64, now: u64) {
-        self.left(State::Child, who, now + 1);
-        self.states[State::ChildWait as usize] += result - now;
-        let context = &mut self.contexts[who];
-        let (Step::Node { met, .. } | Step::Bounds { met, .. }) = context.step() else {
-            panic!("children are tested, not {:?}", context.step())
-        };
-        context.advance();
-        // One child a cycle, and none takes one too.
-        let push = u64::from(met.max(1));
-        self.states[State::Push as usize] += push;
-        self.onward(who, result + 1 + push, now);
-    }
-
     /// The line at `place` comes for context `who`.
     pub(super) fn answered(&mut self, who: usize, place: u16, now: u64) {
         let context = &mut self.contexts[who];
-        if context.fetch == Fetch::Vertex && place < 2 {
-            context.bounds_owed -= 1;
-            context.bounds_ready = now + 1;
-            if context.bounds_owed == 0 && context.state == State::Child {
-                self.sleep_for_bounds(who, now);
+        if context.later.comes(place.into(), now) {
+            if context.later.owed == 0 && std::mem::take(&mut context.later.waits) {
+                self.sleep(who, now);
             }
         } else {
             context.settle(now + 1);
@@ -166,14 +144,9 @@ impl<R: Steps> UnitTiming<R> {
     fn fetched(&mut self, who: usize, now: u64) {
         let at = self.contexts[who].ready + 1;
         self.left(State::Fetch, who, at);
-        let context = &mut self.contexts[who];
-        match (context.fetch, context.step()) {
-            (Fetch::Node, _) => context.enter(State::Child, at),
-            (Fetch::Record, Step::Lod { .. }) => context.enter(State::Lod, at),
-            (Fetch::Record | Fetch::Leaf, _) => context.enter_triangles(at),
-            (Fetch::Vertex, _) => context.enter(State::Morph, at),
+        if let Some(at) = self.act(who, at, now) {
+            self.onward(who, at, now);
         }
-        self.sleep(who, now);
     }
 
     /// The comparison of a hit of context `who` ends in cycle `result`.
@@ -192,42 +165,63 @@ impl<R: Steps> UnitTiming<R> {
         }
     }
 
-    /// From cycle `at` on context `who` is in `POP`, or in `VISIT` of the node that its next step is about.
-    fn onward(&mut self, who: usize, mut at: u64, now: u64) {
+    /// Triangles of the next step follow those of context `who` at once: they are of one leaf.
+    fn more_triangles(&mut self, who: usize) {
         let context = &mut self.contexts[who];
+        if let Act::Triangles { count, hits } = context.step().act {
+            context.advance();
+            (context.left, context.hits) = (count, hits);
+            context.owed += count;
+        }
+    }
+
+    /// Context `who` takes its next steps from cycle `at` on, up to one that asks for something.
+    fn onward(&mut self, who: usize, mut at: u64, now: u64) {
         loop {
-            match context.step() {
-                Step::Pop { dropped } => {
-                    context.advance();
-                    self.states[State::Pop as usize] += 1;
-                    at += 1;
-                    if !dropped {
-                        break;
-                    }
-                }
-                Step::End { found } => {
-                    self.states[State::Pop as usize] += 1;
-                    context.found = found;
-                    context.enter(if found { State::DivideV } else { State::Done }, at + 1);
-                    return self.sleep(who, now);
-                }
-                _ => break,
+            let context = &mut self.contexts[who];
+            let step = context.step();
+            context.advance();
+            context.act = step.act;
+            if step.visits {
+                self.states[State::Visit as usize] += 1;
+                at += 1;
             }
-        }
-        self.states[State::Visit as usize] += 1;
-        at += 1;
-        match context.step() {
-            Step::Node { line, wide, .. } => context.enter_fetch(Fetch::Node, line, if wide { 4 } else { 2 }, at),
-            Step::Tree { line } => {
-                context.advance();
-                context.map = true;
-                context.enter_fetch(Fetch::Record, line, 2, at);
+            let asked = std::mem::take(&mut context.later.asked);
+            if !asked && (step.fetch.is_some() || step.act == Act::TreeBase) {
+                context.enter_fetch(step.fetch, at);
+                return self.sleep(who, now);
             }
-            Step::Leaf { .. } => context.enter_fetch(Fetch::Leaf, 0, 1, at),
-            Step::Lod { .. } => context.enter(State::Lod, at),
-            step => panic!("a node is visited here, not {step:?}"),
+            let Some(next) = self.act(who, at, now) else { return };
+            at = next;
         }
-        self.sleep(who, now);
+    }
+
+    /// The act of context `who` begins in cycle `at`: the cycle of its next step, or `None` if it asks for something first.
+    fn act(&mut self, who: usize, at: u64, now: u64) -> Option<u64> {
+        let context = &mut self.contexts[who];
+        match context.act {
+            Act::Fetch | Act::TreeBase => return Some(at),
+            Act::Pop { .. } => {
+                self.states[State::Pop as usize] += 1;
+                return Some(at + 1);
+            }
+            Act::End { found, mapped } => {
+                // It finds the stack empty.
+                self.states[State::Pop as usize] += 1;
+                (context.found, context.mapped) = (found, mapped);
+                context.enter(if found { State::DivideV } else { State::Done }, at + 1);
+            }
+            Act::Children { .. } | Act::WideChildren { .. } => context.enter(State::Child, at),
+            Act::LodTest { .. } => context.enter(State::Lod, at),
+            Act::Tessellate => context.enter(State::Morph, at),
+            Act::Triangles { count, hits } => context.enter_triangles(count, hits, at),
+        }
+        if context.later.owed > 0 && !context.later.asked {
+            context.later.waits = true;
+        } else {
+            self.sleep(who, now);
+        }
+        None
     }
 
     /// Context `who` was in `state` and is in the next from cycle `at` on.
@@ -237,16 +231,12 @@ impl<R: Steps> UnitTiming<R> {
         self.states[state as usize] += at - self.contexts[who].entered;
     }
 
-    /// Context `who` sleeps until it enters its state.
+    /// Context `who` sleeps until it is in its state and what its act waited for is there.
     #[inline(always)]
     fn sleep(&mut self, who: usize, now: u64) {
-        self.wheel.sleep(now, self.contexts[who].entered, who);
-    }
-
-    /// Context `who` sleeps until it may ask for the test of its children.
-    #[inline(always)]
-    fn sleep_for_bounds(&mut self, who: usize, now: u64) {
         let context = &self.contexts[who];
-        self.wheel.sleep(now, context.entered.max(context.bounds_ready), who);
+        // Lines that the next step will wait for do not hold this one back.
+        let at = if context.later.asked { context.entered } else { context.entered.max(context.later.ready) };
+        self.wheel.sleep(now, at, who);
     }
 }

@@ -1,23 +1,8 @@
 //! A ray under way.
 
 use super::ports::{Request, Steps, tag};
-use crate::sim::stream::Step;
 use crate::sim::unit::State;
-use crate::traverse::Kind;
-
-/// What a context fetches.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum Fetch {
-    /// Quad-BVH node.
-    #[default]
-    Node,
-    /// L0 record.
-    Record,
-    /// Inserted vertices and, but on the last split, the children's bound data.
-    Vertex,
-    /// A leaf's triangles.
-    Leaf,
-}
+use crate::step::{Act, Fetch, SectionId, Step};
 
 /// A context. Cycles are those in which registers show something, from the start of the cycle on.
 pub struct Context<R> {
@@ -26,25 +11,57 @@ pub struct Context<R> {
     /// The state it is in, or sleeps until, and since or from when.
     pub state: State,
     pub entered: u64,
+    /// What it does, or does when its lines are there.
+    pub act: Act,
     /// What it waits for in `FETCH` or `TRI` without knowing the cycle, and the last known cycle.
     pub owed: u32,
     pub ready: u64,
-    /// The same for the bound data, which `CHILD` waits for.
-    pub bounds_owed: u32,
-    pub bounds_ready: u64,
-    pub fetch: Fetch,
-    /// The line of inserted vertices, until it is asked for.
-    pub split: Option<u32>,
-    /// Line 0, lines still to be asked for, and the place of the next; a leaf's lines are its steps.
-    pub line: u32,
+    /// Lines still to be asked for: how many, the next, its place in the record, and what it holds.
     pub want: u32,
-    pub place: u16,
+    pub line: u32,
+    pub place: u32,
+    pub section: SectionId,
+    /// Lines of the next step, asked for with those of this one.
+    pub later: Later,
     /// Triangles still to be tested, and which of them are met.
     pub left: u32,
     pub hits: u32,
-    /// It was in a tree: a hit is mapped to the full resolution.
-    pub map: bool,
+    /// What the ray ends with.
     pub found: bool,
+    pub mapped: bool,
+}
+
+/// Lines that were asked for together with those of the step before the one that needs them.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Later {
+    /// They are the next step's, which asks for no others.
+    pub asked: bool,
+    /// The step has begun, and waits for them.
+    pub waits: bool,
+    /// How many have not come, and the cycle from which the last that came is there.
+    pub owed: u32,
+    pub ready: u64,
+    /// Places of their record, from the first on.
+    first: u32,
+    lines: u32,
+}
+
+impl Later {
+    /// The line at `place` is one of them.
+    fn has(&self, place: u32) -> bool {
+        self.owed > 0 && (self.first..self.first + self.lines).contains(&place)
+    }
+
+    /// One of them comes in cycle `now`, if `place` is one's; whether it was.
+    #[inline(always)]
+    pub fn comes(&mut self, place: u32, now: u64) -> bool {
+        let has = self.has(place);
+        if has {
+            self.owed -= 1;
+            self.ready = now + 1;
+        }
+        has
+    }
 }
 
 impl<R: Steps> Context<R> {
@@ -54,19 +71,18 @@ impl<R: Steps> Context<R> {
             ray: None,
             state: State::Idle,
             entered: 0,
+            act: Act::Fetch,
             owed: 0,
             ready: 0,
-            bounds_owed: 0,
-            bounds_ready: 0,
-            fetch: Fetch::Node,
-            split: None,
-            line: 0,
             want: 0,
+            line: 0,
             place: 0,
+            section: SectionId::default(),
+            later: Later::default(),
             left: 0,
             hits: 0,
-            map: false,
             found: false,
+            mapped: false,
         }
     }
 
@@ -76,7 +92,7 @@ impl<R: Steps> Context<R> {
         self.ray.as_ref().expect("only contexts with a ray are under way").step()
     }
 
-    /// That step is over.
+    /// That step is begun.
     #[inline(always)]
     pub fn advance(&mut self) {
         self.ray.as_mut().expect("only contexts with a ray are under way").advance();
@@ -88,72 +104,61 @@ impl<R: Steps> Context<R> {
         (self.state, self.entered) = (state, at);
     }
 
-    /// Fetches `want` lines, the first of them `line`.
+    /// Asks for the lines of a step, and whatever else its act needs in `FETCH`, from cycle `at` on.
     #[inline(always)]
-    pub fn enter_fetch(&mut self, fetch: Fetch, line: u32, want: u32, at: u64) {
+    pub fn enter_fetch(&mut self, fetch: Option<Fetch>, at: u64) {
         self.enter(State::Fetch, at);
-        (self.fetch, self.line, self.want, self.place) = (fetch, line, want, 0);
-        // A tree also for its bases.
-        self.owed = want + u32::from(fetch == Fetch::Record);
-        self.ready = at;
+        // A tree's bases are found meanwhile.
+        (self.owed, self.ready) = (u32::from(self.act == Act::TreeBase), at);
+        if let Some(fetch) = fetch {
+            self.want(fetch);
+            self.owed += fetch.lines;
+        }
     }
 
-    /// Fetches inserted vertices, which the next step is about, and the bound data of the step behind it if there is any.
+    /// Tests triangles from cycle `at` on.
     #[inline(always)]
-    pub fn enter_split(&mut self, at: u64) {
-        let Step::Split { line: vertices } = self.step() else { panic!("a triangle to be refined is split, not {:?}", self.step()) };
-        self.advance();
-        let (line, want) = if let Step::Bounds { line, .. } = self.step() { (line, 2) } else { (0, 0) };
-        self.enter_fetch(Fetch::Vertex, line, want, at);
-        self.split = Some(vertices);
-        // The vertices must be there, but the bound data only be asked for.
-        self.owed += 1;
-        (self.bounds_owed, self.bounds_ready) = (want, at);
-    }
-
-    /// Tests the triangles that the next step is about.
-    #[inline(always)]
-    pub fn enter_triangles(&mut self, at: u64) {
-        let Step::Triangles { count, hits } = self.step() else { panic!("triangles are tested here, not {:?}", self.step()) };
-        self.advance();
+    pub fn enter_triangles(&mut self, count: u32, hits: u32, at: u64) {
         self.enter(State::Tri, at);
         (self.left, self.hits, self.owed, self.ready) = (count, hits, count, at);
     }
 
-    /// It fetches an L0 record, and asks for its tree's bases too.
-    pub fn fetches_tree(&self) -> bool {
-        self.fetch == Fetch::Record
+    #[inline(always)]
+    fn want(&mut self, fetch: Fetch) {
+        (self.section, self.line, self.want, self.place) = (fetch.section, fetch.line, fetch.lines, fetch.place);
     }
 
     /// The line to ask for next, by context number `me`, which is granted in cycle `now`; and whether more are wanted.
     #[inline]
     pub fn ask_line(&mut self, me: usize, now: u64) -> (Request, bool) {
-        if let Some(line) = self.split.take() {
-            return (Request { tag: tag(me, 2), line, kind: Kind::VertexData }, self.want > 0);
-        }
-        let place = self.place;
-        let mut line = self.line + u32::from(place);
+        let request = Request { tag: tag(me, self.place as u16), line: self.line, section: self.section }; // places have ten bits
+        self.line += 1;
         self.place += 1;
         self.want -= 1;
-        let kind = match self.fetch {
-            Fetch::Node => Kind::BvhNode,
-            Fetch::Record => Kind::L0Record,
-            Fetch::Vertex => {
-                self.settle(now + 1);
-                Kind::BoundData
-            }
-            Fetch::Leaf => {
-                if let Step::Leaf { line: own } = self.step() {
-                    line = own;
-                    self.advance();
-                }
-                if let Step::Leaf { .. } = self.step() {
-                    (self.want, self.owed) = (1, self.owed + 1);
-                }
-                Kind::Leaf
-            }
-        };
-        (Request { tag: tag(me, place), line, kind }, self.want > 0)
+        if self.later.asked {
+            // They must only be asked for.
+            self.settle(now + 1);
+        } else if self.want == 0 {
+            self.join();
+        }
+        (request, self.want > 0)
+    }
+
+    /// Goes on with the lines that are asked for together with those so far, if there are any.
+    #[inline(always)]
+    fn join(&mut self) {
+        let step = self.step();
+        let Some(fetch) = step.fetch.filter(|fetch| fetch.joins) else { return };
+        self.want(fetch);
+        self.owed += fetch.lines;
+        if self.act == Act::Fetch {
+            // What follows needs all of them.
+            self.advance();
+            self.act = step.act;
+        } else {
+            self.later =
+                Later { asked: true, waits: false, owed: fetch.lines, ready: self.entered, first: fetch.place, lines: fetch.lines };
+        }
     }
 
     /// One thing less that it waits for: it is there from cycle `at` on.

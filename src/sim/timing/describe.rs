@@ -13,7 +13,7 @@ impl<R> UnitTiming<R> {
     pub fn describe(&self) -> String {
         let busy = self.contexts.iter().enumerate().filter(|(_, context)| context.ray.is_some());
         let line = |(k, context): (usize, &Context<R>)| {
-            let [state, owed] = [context.state.name().to_owned(), (context.owed + context.bounds_owed).to_string()];
+            let [state, owed] = [context.state.name().to_owned(), (context.owed + context.later.owed).to_string()];
             format!("context {k}: {state} since {}, {owed} results or lines owed", context.entered)
         };
         busy.map(line).collect::<Vec<_>>().join("; ")

@@ -1,7 +1,7 @@
 //! The traversal unit's time without its data: which cycle a ray is taken in, its lines are asked for in, and its hit leaves in.
 //!
 //! [`UnitTiming`] does in every cycle what the cycle model [`unit`](super::unit) does, and so the RTL, but is told by a ray's
-//! [`Step`](super::stream::Step)s what the blocks would find. Blocks always have takers, so once one takes an input, the cycle of its result is known, and so are the
+//! [`Step`](crate::step::Step)s what the blocks would find. Blocks always have takers, so once one takes an input, the cycle of its result is known, and so are the
 //! states that follow of themselves: a context sleeps until the cycle in which it next asks for something. Cycles in which nobody asks and no port moves need no work.
 //!
 //! What the RTL does not have, the full-resolution BVH of the baseline, runs through the same unit:

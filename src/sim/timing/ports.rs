@@ -1,12 +1,11 @@
 //! What surrounds a unit: its rays' steps, and the three ports that can wait.
 
-use crate::sim::stream::{Batch, Step};
-use crate::traverse::Kind;
+use crate::step::{Batch, SectionId, Step};
 use std::ops::Deref;
 
 /// A ray and how far it is.
 pub trait Steps {
-    /// The step that it takes next; behind the last, [`Step::End`], nobody asks.
+    /// The step that it takes next; behind the last, [`Act::End`](crate::step::Act::End), nobody asks.
     fn step(&self) -> Step;
     /// That step is over.
     fn advance(&mut self);
@@ -41,7 +40,7 @@ impl<B: Deref<Target = Batch>> RayCursor<B> {
 impl<B: Deref<Target = Batch>> Steps for RayCursor<B> {
     #[inline(always)]
     fn step(&self) -> Step {
-        self.batch.events()[self.at as usize].step()
+        self.batch.words()[self.at as usize].step()
     }
 
     #[inline(always)]
@@ -59,7 +58,7 @@ pub struct Request {
     /// The line, as the step has it.
     pub line: u32,
     /// What it holds.
-    pub kind: Kind,
+    pub section: SectionId,
 }
 
 /// The tag of the line at `place`, below 1024, of a record that `context` asks for.

@@ -1,16 +1,21 @@
-//! A scene's sections as one memory of 32-byte lines.
+//! A scene's sections as the unit's memory, from some address on.
 
 use crate::num::{BoundScale, LineAddress, U};
 use crate::sim::ports::SceneConfig;
-use crate::traverse::{Kind, LodImage};
+use crate::step::{MemoryMap, SectionId};
+use crate::traverse::LodImage;
+use crate::traverse::lod::{BOUNDS, NODES, RECORDS, VERTICES};
 
-/// The sections of a model, one behind the other.
+/// The lines of a model, as its [`MemoryMap`] has them.
 #[derive(Clone, Copy, Debug)]
 pub struct SceneMemory<'a> {
     levels: u32,
     scale: BoundScale,
-    /// Quad-BVH nodes, L0 records, bound data and vertex data: words and first line.
-    sections: [(Kind, &'a [u64], u64); 4],
+    /// Words of each section, by its place.
+    sections: [&'a [u64]; 4],
+    map: MemoryMap,
+    /// Address of the map's first line.
+    first: u64,
 }
 
 impl<'a> SceneMemory<'a> {
@@ -19,47 +24,40 @@ impl<'a> SceneMemory<'a> {
     /// # Panics
     /// The last line would not have an address.
     pub fn new(image: LodImage<'a>, first: u64) -> Self {
-        let words = [
-            (Kind::BvhNode, image.nodes.as_flattened()),
-            (Kind::L0Record, image.records.as_flattened()),
-            (Kind::BoundData, image.bounds.as_flattened()),
-            (Kind::VertexData, image.vertices.as_flattened()),
-        ];
-        let mut end = first;
-        let sections = words.map(|(kind, words)| {
-            let start = end;
-            end += words.len() as u64 / 4;
-            (kind, words, start)
-        });
-        assert!(end <= LineAddress::MAX.get(), "the model does not fit the address space");
-        Self { levels: image.levels, scale: image.scale, sections }
+        let mut sections: [&[u64]; 4] = [&[]; 4];
+        sections[NODES.place()] = image.nodes.as_flattened();
+        sections[RECORDS.place()] = image.records.as_flattened();
+        sections[BOUNDS.place()] = image.bounds.as_flattened();
+        sections[VERTICES.place()] = image.vertices.as_flattened();
+        assert!(first + image.map.lines() <= LineAddress::MAX.get(), "the model does not fit the address space");
+        Self { levels: image.levels, scale: image.scale, sections, map: image.map, first }
     }
 
     /// What the unit is told of the model.
     pub fn config(&self) -> SceneConfig {
-        let [nodes, records, bounds, vertices] = self.sections.map(|(_, _, start)| U::new(start));
+        let [nodes, records, bounds, vertices] = [NODES, RECORDS, BOUNDS, VERTICES].map(|section| self.address(self.map.first(section)));
         SceneConfig { levels: U::new(u64::from(self.levels)), scale: self.scale, nodes, records, bounds, vertices }
     }
 
     /// Section and line within it of an address; `None` outside of all.
-    pub fn locate(&self, address: LineAddress) -> Option<(Kind, u64)> {
-        let place = |&(kind, words, start): &(Kind, &[u64], u64)| {
-            let line = address.get().checked_sub(start)?;
-            (line < words.len() as u64 / 4).then_some((kind, line))
-        };
-        self.sections.iter().find_map(place)
+    pub fn locate(&self, address: LineAddress) -> Option<(SectionId, u64)> {
+        self.map.locate(address.get().checked_sub(self.first)?)
     }
 
-    /// The address of a line of a section.
-    pub fn address(&self, kind: Kind, line: u64) -> LineAddress {
-        let start = self.sections.iter().find(|section| section.0 == kind).map_or(0, |section| section.2);
-        U::new(start + line)
+    /// The name of a section.
+    pub fn name(&self, section: SectionId) -> &'static str {
+        self.map.sections().find(|(id, _)| *id == section).map_or("", |(_, section)| section.name)
+    }
+
+    /// The address of a line of the map.
+    pub fn address(&self, line: u32) -> LineAddress {
+        U::new(self.first + u64::from(line))
     }
 
     /// The line at an address; `None` outside of all sections.
     pub fn line(&self, address: LineAddress) -> Option<[U<64>; 4]> {
-        let (kind, line) = self.locate(address)?;
-        let words = self.sections.iter().find(|section| section.0 == kind)?.1;
+        let (section, line) = self.locate(address)?;
+        let words = self.sections[section.place()];
         let at = 4 * line as usize; // within a slice
         Some(std::array::from_fn(|k| U::new(words[at + k])))
     }

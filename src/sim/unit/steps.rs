@@ -7,7 +7,7 @@ use super::{Inputs, Outputs, SceneMemory, TraversalUnit};
 use crate::block::{lod_test, tri_test};
 use crate::num::{LineAddress, U};
 use crate::sim::ports::HitOut;
-use crate::traverse::{Entry, Kind, Op, is_beyond};
+use crate::traverse::{Entry, Op, is_beyond};
 use std::fmt;
 
 /// One thing that happened.
@@ -16,7 +16,7 @@ pub enum Step {
     /// An entry is visited.
     Visit(Entry),
     /// A memory line was asked for: its address, what it holds, and its number within its section.
-    Line(LineAddress, Kind, u64),
+    Line(LineAddress, &'static str, u64),
     /// The LOD test of a node: level, node, edge states, and whether it goes down.
     Edges {
         /// Level.
@@ -84,7 +84,7 @@ impl fmt::Display for Step {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::Visit(entry) => write!(f, "visit {}", Named(*entry)),
-            Self::Line(address, kind, line) => write!(f, "  read line {:#x} ({} {line})", address.get(), kind.name()),
+            Self::Line(address, section, line) => write!(f, "  read line {:#x} ({section} {line})", address.get()),
             Self::Edges { level, node, s: [s0, s1, s2], refine } => {
                 let decision = if *refine { "refine" } else { "serves" };
                 write!(f, "  level {level} node {node}: edge states {s0} {s1} {s2} of 256: {decision}")
@@ -140,9 +140,9 @@ impl<'a> Steps<'a> {
     fn before(&mut self, inputs: &Inputs) {
         let outputs = self.unit.outputs();
         if let Some(request) = outputs.mem.filter(|_| inputs.mem_ready)
-            && let Some((kind, line)) = self.memory.locate(request.address)
+            && let Some((section, line)) = self.memory.locate(request.address)
         {
-            self.note(Step::Line(request.address, kind, line));
+            self.note(Step::Line(request.address, self.memory.name(section), line));
         }
         let context = &self.unit.contexts[0];
         let (state, entry) = (context.state, context.entry.get());

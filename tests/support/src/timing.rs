@@ -2,31 +2,19 @@
 
 use lodray::num::{Ray, U};
 use lodray::sim::ports::{HitOut, MemoryRequest};
-use lodray::sim::stream::{Batch, Layout, Recorder};
 use lodray::sim::timing::{Ports, RayCursor, Request, UnitTiming};
 use lodray::sim::unit::environment::UnitPort;
 use lodray::sim::unit::{Inputs, Outputs, SceneMemory, UnitConfig};
-use lodray::traverse::{ClosestHit, Kind, LodImage, LodTraverser, Section};
+use lodray::step::{Batch, Recorder};
+use lodray::traverse::{ClosestHit, LodImage, LodTraverser};
 use std::collections::VecDeque;
-
-/// The layout of a memory.
-pub fn layout_of(sections: &[Section]) -> Layout {
-    Layout::new(sections).expect("a small memory")
-}
 
 /// What `rays` do in `image`.
 pub fn steps_of(image: LodImage<'_>, rays: &[Ray]) -> Batch {
-    let layout = layout_of(&image.sections());
-    let mut recorder = Recorder::new(&layout);
+    let mut recorder = Recorder::default();
     let mut traverser = LodTraverser::new(image);
-    let end = |ray: &Ray| {
-        let mut closest = ClosestHit::new(image.levels);
-        traverser.trace(ray, &mut recorder, &mut closest);
-        recorder.end(closest.record().is_some());
-        u32::try_from(recorder.steps()).expect("few rays")
-    };
-    let ends = rays.iter().map(end).collect();
-    Batch::recorded(recorder, ends)
+    rays.iter().for_each(|ray| traverser.trace(ray, &mut recorder, &mut ClosestHit::new(image.levels)));
+    recorder.batch()
 }
 
 /// A unit's timing at the ports of the cycle model.
@@ -35,23 +23,18 @@ pub struct Timed<'a> {
     pub ticks: u64,
     batch: &'a Batch,
     memory: &'a SceneMemory<'a>,
-    /// First lines as the steps number them.
-    first: Vec<(Kind, u64)>,
     cycle: u64,
     /// Only cycles that need it are ticked.
     skip: bool,
 }
 
 impl<'a> Timed<'a> {
-    pub fn new(config: UnitConfig, image: LodImage<'_>, memory: &'a SceneMemory<'a>, batch: &'a Batch, skip: bool) -> Self {
-        let sections = image.sections();
-        let first = sections.iter().enumerate().map(|(k, section)| (section.kind, layout_of(&sections[..k]).lines())).collect();
-        Self { unit: UnitTiming::new(config), ticks: 0, batch, memory, first, cycle: 0, skip }
+    pub fn new(config: UnitConfig, memory: &'a SceneMemory<'a>, batch: &'a Batch, skip: bool) -> Self {
+        Self { unit: UnitTiming::new(config), ticks: 0, batch, memory, cycle: 0, skip }
     }
 
     fn memory_request(&self, request: Request) -> MemoryRequest {
-        let first = self.first.iter().find(|first| first.0 == request.kind).expect("a section of the scene").1;
-        MemoryRequest { tag: U::new(request.tag.into()), address: self.memory.address(request.kind, u64::from(request.line) - first) }
+        MemoryRequest { tag: U::new(request.tag.into()), address: self.memory.address(request.line) }
     }
 }
 

@@ -1,0 +1,235 @@
+//! A step of a ray: lines that are asked for, and what the hardware does.
+//!
+//! | act | what it stands for | operations |
+//! |---|---|---|
+//! | `Fetch` | nothing but the lines | |
+//! | `Children` | four children of a node with 16-bit boxes are tested, and `met` of them met | `child_test` |
+//! | `WideChildren` | the same with 32-bit boxes | four `box_test32`, `child_sort` |
+//! | `TreeBase` | where a tree's groups and vertices begin | `tree_base` |
+//! | `LodTest` | does a triangle serve | `lod_test` |
+//! | `Tessellate` | the inserted vertices of a triangle are morphed | `tessellate` |
+//! | `Triangles` | triangle tests; bit k of `hits`: the k-th is met | `tri_test`, and of those met `hit_divide` and `hit_select` |
+//! | `Pop` | a node is taken from the stack, and `dropped` if it lies behind the closest hit | |
+//! | `End` | the ray is done; a hit was `found` or not, and is `mapped` to the full resolution | two `hit_divide`, `bary_map` if mapped |
+//!
+//! Each line asked for takes a `node_address`, and each ray begins with a `ray_setup`.
+
+use super::{SectionId, StepSink};
+use crate::sim::energy::{Operation, Operations};
+
+/// Most lines of a fetch: three bits count them.
+pub const MAX_FETCH_LINES: u32 = 7;
+
+/// Most triangle tests of a step: bits of `hits`.
+pub const MAX_RUN: u32 = 32;
+
+/// Places of lines in a record: ten bits of a unit's tag.
+pub const MAX_PLACES: u32 = 1 << 10;
+
+/// Lines that follow each other, asked for by a ray.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Fetch {
+    /// What they hold.
+    pub section: SectionId,
+    /// The first, in the numbers of the method's [`MemoryMap`](super::MemoryMap).
+    pub line: u32,
+    /// How many, 1 to [`MAX_FETCH_LINES`].
+    pub lines: u32,
+    /// Place of the first in the record that the ray reads, below [`MAX_PLACES`]: what the unit's tag says of it.
+    pub place: u32,
+    /// They are asked for together with those of the step before: nothing of that step need be there.
+    pub joins: bool,
+}
+
+impl Fetch {
+    /// `lines` lines of `section` from `line` on, the first of their record, and not asked for with any others.
+    #[inline(always)]
+    pub const fn new(section: SectionId, line: u32, lines: u32) -> Self {
+        Self { section, line, lines, place: 0, joins: false }
+    }
+
+    /// The same at another place of the record.
+    #[inline(always)]
+    #[must_use]
+    pub const fn at(self, place: u32) -> Self {
+        Self { place, ..self }
+    }
+
+    /// The same, asked for together with those of the step before.
+    #[inline(always)]
+    #[must_use]
+    pub const fn joining(self) -> Self {
+        Self { joins: true, ..self }
+    }
+}
+
+/// What the hardware does.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[expect(missing_docs, reason = "the table above")]
+pub enum Act {
+    Fetch,
+    Children { met: u32 },
+    WideChildren { met: u32 },
+    TreeBase,
+    LodTest { refine: bool },
+    Tessellate,
+    Triangles { count: u32, hits: u32 },
+    Pop { dropped: bool },
+    End { found: bool, mapped: bool },
+}
+
+/// A step: the lines it asks for, if any, and the act that follows when they and those of the steps before are there.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Step {
+    /// With this step the ray visits a node: the one that it kept from its last test, or took from the stack.
+    pub visits: bool,
+    /// The lines; `Triangles` and `End` have none.
+    pub fetch: Option<Fetch>,
+    /// The act.
+    pub act: Act,
+}
+
+impl Step {
+    /// An act that needs no lines of its own.
+    #[inline(always)]
+    pub const fn of(act: Act) -> Self {
+        Self { visits: false, fetch: None, act }
+    }
+
+    /// An act on lines.
+    #[inline(always)]
+    pub const fn on(fetch: Fetch, act: Act) -> Self {
+        Self { visits: false, fetch: Some(fetch), act }
+    }
+
+    /// The same as the first step of a node's visit.
+    #[inline(always)]
+    #[must_use]
+    pub const fn visiting(self) -> Self {
+        Self { visits: true, ..self }
+    }
+
+    /// The end of a ray.
+    #[inline(always)]
+    pub const fn end(found: bool, mapped: bool) -> Self {
+        Self::of(Act::End { found, mapped })
+    }
+
+    /// Adds what it has the blocks do.
+    pub fn count(&self, operations: &mut Operations) {
+        let mut add = |operation, count: u32| operations.add(operation, u64::from(count));
+        if let Some(fetch) = self.fetch {
+            add(Operation::NodeAddress, fetch.lines);
+        }
+        match self.act {
+            Act::Fetch | Act::Pop { .. } | Act::End { found: false, .. } => (),
+            Act::Children { .. } => add(Operation::ChildTest, 1),
+            Act::WideChildren { .. } => {
+                add(Operation::BoxTest32, 4);
+                add(Operation::ChildSort, 1);
+            }
+            Act::TreeBase => add(Operation::TreeBase, 1),
+            Act::LodTest { .. } => add(Operation::LodTest, 1),
+            Act::Tessellate => add(Operation::Tessellate, 1),
+            Act::Triangles { count, hits } => {
+                add(Operation::TriTest, count);
+                add(Operation::HitDivide, hits.count_ones());
+                add(Operation::HitSelect, hits.count_ones());
+            }
+            Act::End { found: true, mapped } => {
+                add(Operation::HitDivide, 2);
+                add(Operation::BaryMap, u32::from(mapped));
+            }
+        }
+    }
+}
+
+/// Triangle tests that follow each other, stated in runs of as many as a step can hold.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct TriangleRun {
+    count: u32,
+    hits: u32,
+}
+
+impl TriangleRun {
+    /// Another test, and whether the triangle was met.
+    #[inline(always)]
+    pub fn add(&mut self, hit: bool, steps: &mut impl StepSink) {
+        if self.count == MAX_RUN {
+            self.state(steps);
+        }
+        self.hits |= u32::from(hit) << self.count;
+        self.count += 1;
+    }
+
+    /// States the tests so far, if there are any.
+    #[inline(always)]
+    pub fn state(&mut self, steps: &mut impl StepSink) {
+        let Self { count, hits } = std::mem::take(self);
+        if count > 0 {
+            steps.step(Step::of(Act::Triangles { count, hits }));
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn runs_of_any_length_are_stated_whole() {
+        struct Kept(Vec<Step>);
+        impl StepSink for Kept {
+            fn step(&mut self, step: Step) {
+                self.0.push(step);
+            }
+        }
+        for tests in [0, 1, 4, 31, 32, 33, 64, 128, 200] {
+            let mut kept = Kept(Vec::new());
+            let mut run = TriangleRun::default();
+            (0..tests).for_each(|k| run.add(k % 3 == 0, &mut kept));
+            run.state(&mut kept);
+            let hits = kept.0.iter().flat_map(|step| {
+                let Act::Triangles { count, hits } = step.act else { panic!("{step:?}") };
+                assert!((1..=MAX_RUN).contains(&count));
+                (0..count).map(move |k| hits >> k & 1 == 1)
+            });
+            assert_eq!(hits.collect::<Vec<_>>(), (0..tests).map(|k| k % 3 == 0).collect::<Vec<_>>());
+        }
+    }
+
+    #[test]
+    fn operations_are_those_of_the_table() {
+        let fetch = Fetch::new(SectionId::new(0), 0, 4);
+        let mut operations = Operations::default();
+        let steps = [
+            Step::on(fetch, Act::WideChildren { met: 1 }),
+            Step::on(fetch, Act::Children { met: 1 }),
+            Step::on(fetch, Act::TreeBase),
+            Step::of(Act::LodTest { refine: true }),
+            Step::on(fetch, Act::Tessellate),
+            Step::of(Act::Triangles { count: 5, hits: 0b10110 }),
+            Step::of(Act::Pop { dropped: true }),
+            Step::on(fetch, Act::Fetch),
+            Step::end(true, true),
+            Step::end(true, false),
+            Step::end(false, true),
+        ];
+        steps.iter().for_each(|step| step.count(&mut operations));
+        let some: Vec<_> = operations.iter().filter(|&(_, n)| n > 0).map(|(operation, n)| (operation.name(), n)).collect();
+        let wanted = [
+            ("node_address", 20),
+            ("tree_base", 1),
+            ("child_test", 1),
+            ("lod_test", 1),
+            ("tessellate", 1),
+            ("tri_test", 5),
+            ("hit_divide", 7),
+            ("hit_select", 3),
+            ("bary_map", 1),
+            ("box_test32", 4),
+            ("child_sort", 1),
+        ];
+        assert_eq!(some, wanted);
+    }
+}

@@ -1,0 +1,107 @@
+//! Rays as their steps. Which lines a ray reads does not depend on when they come, so rays are traced once, in parallel, and their steps replayed on any number
+//! of machines.
+
+use super::{Act, Step, StepSink, StepWord};
+use crate::sim::energy::{Operation, Operations};
+
+/// Rays that a group of cores takes at once: a tile of the picture.
+#[derive(Clone, Debug, Default)]
+pub struct Batch {
+    words: Box<[StepWord]>,
+    /// Where each ray's steps end.
+    ends: Box<[u32]>,
+    operations: Operations,
+}
+
+impl Batch {
+    /// A batch of these rays.
+    pub fn new(rays: &[Vec<Step>]) -> Self {
+        let mut recorder = Recorder::default();
+        rays.iter().flatten().for_each(|&step| recorder.step(step));
+        recorder.batch()
+    }
+
+    /// What its rays have the hardware blocks do.
+    pub fn operations(&self) -> &Operations {
+        &self.operations
+    }
+
+    /// Number of rays.
+    pub fn rays(&self) -> usize {
+        self.ends.len()
+    }
+
+    /// The steps of all rays.
+    #[inline(always)]
+    pub fn words(&self) -> &[StepWord] {
+        &self.words
+    }
+
+    /// Where the steps of ray `ray` end.
+    #[inline(always)]
+    pub fn end(&self, ray: usize) -> u32 {
+        self.ends[ray]
+    }
+
+    /// Where the steps of ray `ray` begin; they end with [`Act::End`].
+    #[inline(always)]
+    pub fn start(&self, ray: usize) -> u32 {
+        ray.checked_sub(1).map_or(0, |before| self.ends[before])
+    }
+}
+
+/// Keeps the steps of rays, one ray after the other.
+#[derive(Debug, Default)]
+pub struct Recorder {
+    words: Vec<StepWord>,
+    ends: Vec<u32>,
+}
+
+impl Recorder {
+    /// The rays so far, in as little memory as they take.
+    ///
+    /// # Panics
+    /// The last ray has no [`Act::End`].
+    pub fn batch(self) -> Batch {
+        assert_eq!(self.ends.last().map_or(0, |&end| end as usize), self.words.len(), "a ray without its end");
+        let mut operations = Operations::default();
+        operations.add(Operation::RaySetup, self.ends.len() as u64);
+        self.words.iter().for_each(|word| word.step().count(&mut operations));
+        Batch { words: self.words.into(), ends: self.ends.into(), operations }
+    }
+}
+
+impl StepSink for Recorder {
+    #[inline(always)]
+    fn step(&mut self, step: Step) {
+        self.words.push(StepWord::pack(step));
+        if let Act::End { .. } = step.act {
+            self.ends.push(u32::try_from(self.words.len()).expect("a batch has fewer than 2^32 steps"));
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn rays_are_told_apart_by_their_ends() {
+        let pop = Step::of(Act::Pop { dropped: true });
+        let rays = [vec![pop, pop, Step::end(true, false)], vec![Step::end(false, false)], vec![pop, Step::end(false, true)]];
+        let batch = Batch::new(&rays);
+        assert_eq!((batch.rays(), batch.words().len()), (3, 6));
+        for (k, ray) in rays.iter().enumerate() {
+            let words = &batch.words()[batch.start(k) as usize..batch.end(k) as usize];
+            assert_eq!(words.iter().map(|word| word.step()).collect::<Vec<_>>(), *ray);
+        }
+        let operations = [Operation::RaySetup, Operation::HitDivide, Operation::BaryMap].map(|operation| batch.operations().get(operation));
+        assert_eq!(operations, [3, 2, 0]);
+    }
+
+    #[test]
+    #[should_panic(expected = "a ray without its end")]
+    fn a_ray_without_an_end_is_refused() {
+        Batch::new(&[vec![Step::of(Act::Pop { dropped: false })]]);
+    }
+}

@@ -1,0 +1,205 @@
+//! A step in 64 bits.
+//!
+//! | bits | what |
+//! |---|---|
+//! | 63:32 | the first line, or `hits` |
+//! | 31:28 | act |
+//! | 27:22 | `met` or `count` |
+//! | 21 | `refine`, `dropped` or `found` |
+//! | 20 | `mapped` |
+//! | 19:17 | section |
+//! | 16:14 | lines; 0 if none are asked for |
+//! | 11 | joins |
+//! | 10 | visits |
+//! | 9:0 | place |
+
+use super::{Act, Fetch, MAX_FETCH_LINES, MAX_PLACES, MAX_RUN, SectionId, Step};
+
+const UPPER: u32 = 32;
+const ACT: u32 = 28;
+const NUMBER: u32 = 22;
+const FLAG: u32 = 21;
+const MAPPED: u32 = 20;
+const SECTION: u32 = 17;
+const LINES: u32 = 14;
+const JOINS: u32 = 11;
+const VISITS: u32 = 10;
+const PLACE: u32 = 0;
+
+const FETCH: u64 = 0;
+const CHILDREN: u64 = 1;
+const WIDE_CHILDREN: u64 = 2;
+const TREE_BASE: u64 = 3;
+const LOD_TEST: u64 = 4;
+const TESSELLATE: u64 = 5;
+const TRIANGLES: u64 = 6;
+const POP: u64 = 7;
+const END: u64 = 8;
+
+/// A step, as whoever only reads its lines sees it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Asking {
+    /// The first line.
+    pub first: u32,
+    /// How many, 0 to [`MAX_FETCH_LINES`].
+    pub lines: u32,
+    /// What they hold.
+    pub section: SectionId,
+    /// They are asked for together with those before.
+    pub joins: bool,
+    /// The ray ends.
+    pub ends: bool,
+}
+
+/// A [`Step`] as a word.
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub struct StepWord(u64);
+
+impl StepWord {
+    /// The word.
+    ///
+    /// # Panics
+    /// More lines than [`MAX_FETCH_LINES`] or none, more tests than [`MAX_RUN`], a place beyond [`MAX_PLACES`], or tests of triangles or the end together with lines.
+    #[inline(always)]
+    pub fn pack(step: Step) -> Self {
+        let (act, number, flag, mapped, hits) = match step.act {
+            Act::Fetch => (FETCH, 0, false, false, 0),
+            Act::Children { met } => (CHILDREN, met, false, false, 0),
+            Act::WideChildren { met } => (WIDE_CHILDREN, met, false, false, 0),
+            Act::TreeBase => (TREE_BASE, 0, false, false, 0),
+            Act::LodTest { refine } => (LOD_TEST, 0, refine, false, 0),
+            Act::Tessellate => (TESSELLATE, 0, false, false, 0),
+            Act::Triangles { count, hits } => (TRIANGLES, count, false, false, hits),
+            Act::Pop { dropped } => (POP, 0, dropped, false, 0),
+            Act::End { found, mapped } => (END, 0, found, mapped, 0),
+        };
+        assert!(number <= MAX_RUN, "{step:?}: more than a step holds");
+        let mut word = act << ACT | u64::from(number) << NUMBER | u64::from(flag) << FLAG | u64::from(mapped) << MAPPED;
+        word |= u64::from(step.visits) << VISITS | u64::from(hits) << UPPER;
+        if let Some(fetch) = step.fetch {
+            let fits = (1..=MAX_FETCH_LINES).contains(&fetch.lines) && fetch.place < MAX_PLACES && act != TRIANGLES && act != END;
+            assert!(fits, "{step:?}: more than a step holds");
+            word |= u64::from(fetch.line) << UPPER
+                | (fetch.section.place() as u64) << SECTION
+                | u64::from(fetch.lines) << LINES
+                | u64::from(fetch.place) << PLACE
+                | u64::from(fetch.joins) << JOINS;
+        }
+        Self(word)
+    }
+
+    #[inline(always)]
+    fn bits(self, from: u32, mask: u64) -> u32 {
+        (self.0 >> from & mask) as u32 // masks have at most ten bits
+    }
+
+    /// What a ray does with its step towards its next lines. (Of every step, that is all the replay without compute looks at.)
+    #[inline(always)]
+    pub fn asking(self) -> Asking {
+        Asking {
+            first: (self.0 >> UPPER) as u32,
+            lines: self.bits(LINES, 7),
+            section: SectionId::new(self.bits(SECTION, 7) as usize),
+            joins: self.bits(JOINS, 1) == 1,
+            ends: self.0 >> ACT & 15 == END,
+        }
+    }
+
+    /// The step.
+    #[inline(always)]
+    pub fn step(self) -> Step {
+        let (number, flag, upper) = (self.bits(NUMBER, 63), self.bits(FLAG, 1) == 1, (self.0 >> UPPER) as u32);
+        let act = match self.0 >> ACT & 15 {
+            FETCH => Act::Fetch,
+            CHILDREN => Act::Children { met: number },
+            WIDE_CHILDREN => Act::WideChildren { met: number },
+            TREE_BASE => Act::TreeBase,
+            LOD_TEST => Act::LodTest { refine: flag },
+            TESSELLATE => Act::Tessellate,
+            TRIANGLES => Act::Triangles { count: number, hits: upper },
+            POP => Act::Pop { dropped: flag },
+            _ => Act::End { found: flag, mapped: self.bits(MAPPED, 1) == 1 },
+        };
+        let fetch = Fetch {
+            section: SectionId::new(self.bits(SECTION, 7) as usize),
+            line: upper,
+            lines: self.bits(LINES, 7),
+            place: self.bits(PLACE, u64::from(MAX_PLACES) - 1),
+            joins: self.bits(JOINS, 1) == 1,
+        };
+        Step { visits: self.bits(VISITS, 1) == 1, fetch: (fetch.lines > 0).then_some(fetch), act }
+    }
+}
+
+impl std::fmt::Debug for StepWord {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        self.step().fmt(f)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn same(step: Step) {
+        let word = StepWord::pack(step);
+        assert_eq!(word.step(), step);
+        let asking = word.asking();
+        let fetch = step.fetch.map(|f| (f.line, f.lines, f.section, f.joins));
+        assert_eq!((asking.lines > 0).then_some((asking.first, asking.lines, asking.section, asking.joins)), fetch);
+        assert_eq!(asking.ends, matches!(step.act, Act::End { .. }));
+    }
+
+    #[test]
+    fn words_give_back_their_steps() {
+        let acts = [
+            Act::Fetch,
+            Act::Children { met: 4 },
+            Act::WideChildren { met: 0 },
+            Act::TreeBase,
+            Act::LodTest { refine: true },
+            Act::LodTest { refine: false },
+            Act::Tessellate,
+            Act::Pop { dropped: true },
+            Act::Pop { dropped: false },
+            Act::End { found: true, mapped: false },
+            Act::End { found: true, mapped: true },
+            Act::End { found: false, mapped: true },
+        ];
+        for (k, act) in acts.into_iter().enumerate() {
+            let fetch = Fetch {
+                section: SectionId::new(k % 8),
+                line: u32::MAX - k as u32,
+                lines: 1 + k as u32 % MAX_FETCH_LINES,
+                place: k as u32 * 93 % MAX_PLACES,
+                joins: k % 2 == 0,
+            };
+            same(Step::of(act));
+            same(Step::of(act).visiting());
+            if !matches!(act, Act::End { .. }) {
+                same(Step::on(fetch, act));
+                same(Step::on(fetch, act).visiting());
+            }
+        }
+        for (count, hits) in [(1, 1), (4, 0), (32, u32::MAX), (32, 1 << 31)] {
+            same(Step::of(Act::Triangles { count, hits }));
+        }
+    }
+
+    #[test]
+    fn what_does_not_fit_is_refused_in_every_build() {
+        let fetch = Fetch::new(SectionId::new(1), 3, 1);
+        let bad = [
+            Step::of(Act::Triangles { count: MAX_RUN + 1, hits: 0 }),
+            Step::of(Act::Children { met: 33 }),
+            Step::on(Fetch { lines: MAX_FETCH_LINES + 1, ..fetch }, Act::Fetch),
+            Step::on(Fetch { lines: 0, ..fetch }, Act::Fetch),
+            Step::on(Fetch { place: MAX_PLACES, ..fetch }, Act::Fetch),
+            Step::on(fetch, Act::Triangles { count: 1, hits: 1 }),
+            Step::on(fetch, Act::End { found: true, mapped: true }),
+        ];
+        for step in bad {
+            assert!(std::panic::catch_unwind(|| StepWord::pack(step)).is_err(), "{step:?}");
+        }
+    }
+}
