@@ -3,9 +3,9 @@
 //! `LODRAY_TERRAIN_LEVELS` makes the scene smaller for a quick look.
 
 use criterion::{BenchmarkId, Criterion, SamplingMode, Throughput, criterion_group, criterion_main};
-use lodray::bvh::{FullBvh, FullOptions, LeafLayout};
 use lodray::mesh::procedural::{self, generate};
 use lodray::mesh::quantise;
+use lodray::method::bvh::{FullBvh, FullOptions, LeafLayout};
 use std::hint::black_box;
 
 fn benches(c: &mut Criterion) {

@@ -3,13 +3,17 @@
 //! `LODRAY_TERRAIN_LEVELS` makes the scene smaller for a quick look.
 
 use criterion::{Criterion, SamplingMode, Throughput, criterion_group, criterion_main};
-use lodray::bvh::{FullBvh, FullOptions, LeafLayout, over_trees};
+use lodray::bvh::over_trees;
 use lodray::format::{self, SceneInfo};
 use lodray::mesh::procedural::{self, Options};
+use lodray::method::ClosestHit;
+use lodray::method::bvh::BvhTraverser;
+use lodray::method::bvh::{FullBvh, FullOptions, LeafLayout};
+use lodray::method::lod::{LodImage, LodTraverser};
 use lodray::num::Ray;
-use lodray::render::{Camera, View};
+use lodray::rays::ModelSpace;
+use lodray::rays::{Camera, View};
 use lodray::step::NoSteps;
-use lodray::traverse::{BvhTraverser, ClosestHit, LodImage, LodTraverser, ModelSpace};
 use std::hint::black_box;
 
 /// Tiles of the frame as the renderer traces them.

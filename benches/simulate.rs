@@ -2,14 +2,13 @@
 //!
 //! `cargo bench --bench simulate -- SCENE.lod...`: 1024 x 1024 rays at two bounding radii; without a scene, a terrain of 131,072 triangles. Each figure is the best of three.
 
-use lodray::bvh::{FullBvh, FullOptions, LeafLayout};
 use lodray::format::Scene;
-use lodray::render::{Camera, FrameRays, Method, View};
-use lodray::report::result::Compute;
-use lodray::report::{Job, simulate};
+use lodray::method::bvh::NoStore;
+use lodray::method::{Knobs, Method, bvh, lod};
+use lodray::rays::{Camera, ModelSpace, Sight, View};
+use lodray::run::{Compute, FrameRays, Job, simulate};
 use lodray::sim::machine::Machine;
 use lodray::sim::replay::{self, Chunk};
-use lodray::traverse::{LodImage, ModelSpace};
 use lodray_test_support::models::{scene_of, terrain};
 use std::path::PathBuf;
 use std::time::Instant;
@@ -25,18 +24,20 @@ fn main() {
         scenes.push(("terrain".to_owned(), scene_of(&terrain(16, 4, 0.5, 1))));
     }
     for (name, scene) in &scenes {
-        let full = FullBvh::build(&scene.decode(), &FullOptions::new(4, false, LeafLayout::Line)).expect("a BVH");
-        measure(&format!("{name} lod"), &Method::Lod(LodImage::of(scene)), scene);
-        measure(&format!("{name} bvh"), &Method::Bvh(&full), scene);
+        for method in [&lod::METHOD, &bvh::METHOD] {
+            let made = (method.make)(scene, &Knobs::default(), &NoStore).expect("a method on a scene");
+            measure(&format!("{name} {}", method.name), &*made, scene);
+        }
     }
 }
 
-fn measure(name: &str, method: &Method<'_>, scene: &Scene) {
+fn measure(name: &str, method: &dyn Method, scene: &Scene) {
     let space = ModelSpace::of(scene);
     let camera = Camera::new(&View { distance: Some(2.0), ..View::default() }, &space, SIDE, SIDE).expect("a camera");
-    let frame = FrameRays { method, space: &space, camera: &camera, delta: 1.0 };
+    let sight = Sight::new(&camera, &space, 1.0);
+    let frame = FrameRays { method, rays: &camera, sight: &sight };
     let machine = Machine::shipped("haydel2023").expect("a machine");
-    let nodes = method.map().nodes();
+    let nodes = method.map(&sight).nodes();
 
     let mut chunks: Vec<Chunk> = Vec::new();
     let tracing = best(|| {

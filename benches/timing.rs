@@ -1,10 +1,10 @@
 //! Rays per second through one traversal unit of 16 contexts: its timing alone, from event to event, and the cycle model.
 
 use criterion::{Criterion, Throughput, criterion_group, criterion_main};
+use lodray::method::lod::LodImage;
 use lodray::sim::timing::UnitTiming;
 use lodray::sim::unit::environment::run;
 use lodray::sim::unit::{Latency, SceneMemory, Traffic, TraversalUnit, UnitConfig};
-use lodray::traverse::LodImage;
 use lodray_test_support::models::{any_rays, scene_of, terrain};
 use lodray_test_support::timing::{Smooth, steps_of};
 use std::hint::black_box;

@@ -1,14 +1,17 @@
 //! The blocks' traversal equals the exact golden traverser in every field of every hit.
 
-use lodray::bvh::{FullBvh, FullOptions, LeafLayout};
 use lodray::format::Scene;
 use lodray::golden::exact::{Exact, ExactHit};
 use lodray::mesh::Hierarchy;
 use lodray::mesh::procedural::{self, Options};
+use lodray::method::bvh::BvhTraverser;
+use lodray::method::bvh::{FullBvh, FullOptions, LeafLayout};
+use lodray::method::lod::{LodImage, LodTraverser};
+use lodray::method::{ClosestHit, Crossings};
 use lodray::num::{Cone, Point, Ray, Vec3};
-use lodray::render::{Camera, View};
+use lodray::rays::ModelSpace;
+use lodray::rays::{Camera, View};
 use lodray::step::NoSteps;
-use lodray::traverse::{BvhTraverser, ClosestHit, Crossings, LodImage, LodTraverser, ModelSpace};
 use lodray_test_support::cases;
 use lodray_test_support::models::{Rng, ball, build, cone, model, octahedron, scene_of, terrain};
 use lodray_test_support::plain::plain;

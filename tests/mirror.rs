@@ -3,10 +3,11 @@
 use lodray::block::tri_test::{EdgeFunction, TNumerator, TriTest};
 use lodray::block::{self, Block, Timing};
 use lodray::format::{BoundData, BvhChild, ChildRef, L0Record, VertexData};
+use lodray::method;
+use lodray::method::{Entry, Hit};
 use lodray::num::{self, Box16, Field, Layout, Wire};
 use lodray::sim::ports::{HitOut, MemoryAnswer, MemoryRequest, RayIn, SceneConfig};
 use lodray::sim::unit::{Fetch, MAX_CONTEXTS, State};
-use lodray::traverse::{self, Entry, Hit};
 use lodray_test_support::sv::{Module, Package, Shape};
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::PathBuf;
@@ -111,7 +112,7 @@ fn numbers() -> Vec<(&'static str, u64)> {
         width("TRI_TEST_1_LATENCY", TriTest::ONE_EDGE.latency),
         width("TRI_TEST_1_INTERVAL", TriTest::ONE_EDGE.interval),
         ("S_ONE", num::S_ONE),
-        ("STACK_ENTRIES", traverse::STACK_ENTRIES as u64),
+        ("STACK_ENTRIES", method::STACK_ENTRIES as u64),
         ("MAX_CONTEXTS", MAX_CONTEXTS as u64),
         ("ENTRY_BVH_NODE", Entry::BVH_NODE),
         ("ENTRY_TREE", Entry::TREE),

@@ -2,8 +2,11 @@
 
 use image::RgbImage;
 use lodray::format::Scene;
-use lodray::render::{Camera, Method, View, level_map, normal_map, render};
-use lodray::traverse::{LodImage, ModelSpace};
+use lodray::method::bvh::NoStore;
+use lodray::method::{Knobs, lod};
+use lodray::picture::{level_map, normal_map, render};
+use lodray::rays::ModelSpace;
+use lodray::rays::{Camera, View};
 use serde_json::Value;
 use std::collections::BTreeMap;
 use std::fs;
@@ -179,7 +182,8 @@ fn legends_stand_below_and_leave_the_picture_alone() {
     for (width, height) in [(1, 1), (70, 41), (640, 20)] {
         desk.run(&format!("render a.lod --size {width}x{height} --compare -o out"));
         let camera = Camera::new(&View::default(), &space, width, height).unwrap();
-        let frame = render(&Method::Lod(LodImage::of(&scene)), &space, &camera, 1.0, &|| ());
+        let method = (lod::METHOD.make)(&scene, &Knobs::default(), &NoStore).unwrap();
+        let frame = render(&*method, &space, &camera, 1.0, &|| ());
         let crop = |name: &str| {
             let picture = desk.picture(name);
             assert!(picture.height() > height, "{name}: no legend");

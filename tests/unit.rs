@@ -2,13 +2,14 @@
 
 use lodray::golden::exact::Exact;
 use lodray::mesh::Hierarchy;
+use lodray::method::lod::{LodImage, LodTraverser};
+use lodray::method::{ClosestHit, Hit};
 use lodray::num::{LineAddress, Ray};
 use lodray::sim::unit::environment::{RunReport, UnitPort, run};
 use lodray::sim::unit::{
     EdgesPerCycle, Inputs, Latency, Outputs, SceneMemory, Stall, Traffic, TraversalUnit, UnitConfig, UnitCounts, UnitError,
 };
 use lodray::step::{Step, StepCounts, StepSink};
-use lodray::traverse::{ClosestHit, Hit, LodImage, LodTraverser};
 use lodray_test_support::models::{any_rays, ball, model, octahedron, scene_of, terrain};
 use lodray_test_support::plain::plain;
 

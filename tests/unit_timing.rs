@@ -1,12 +1,12 @@
 //! The timing of the traversal unit against its cycle model: every ray's cycles, every request's cycle, tag and line, and all counts are equal.
 
 use lodray::mesh::Hierarchy;
+use lodray::method::lod::LodImage;
 use lodray::num::Ray;
 use lodray::sim::timing::UnitTiming;
 use lodray::sim::unit::environment::{RunReport, UnitPort, run};
 use lodray::sim::unit::{EdgesPerCycle, Inputs, Latency, Outputs, SceneMemory, Stall, Traffic, TraversalUnit, UnitConfig};
 use lodray::step::{Act, Batch, Fetch, SectionId, Step};
-use lodray::traverse::LodImage;
 use lodray_test_support::models::{Rng, any_rays, ball, model, octahedron, scene_of, terrain};
 use lodray_test_support::timing::{Smooth, Timed, steps_of};
 

@@ -3,9 +3,10 @@
 use lodray::format::Scene;
 use lodray::mesh::procedural::{self, Options};
 use lodray::mesh::{Hierarchy, RemeshOptions, TriangleMesh, remesh};
+use lodray::method::lod::LodImage;
 use lodray::num::COORD_LIMIT;
+use lodray::rays::ModelSpace;
 use lodray::report::crack::{Closedness, CrackReport, closedness, measure};
-use lodray::traverse::{LodImage, ModelSpace};
 use lodray_test_support::models::{ball, build, model, octahedron, scene_of};
 
 /// Rays over all models; `LODRAY_RAYS` asks for more.

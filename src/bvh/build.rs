@@ -14,7 +14,7 @@ const BINS: usize = 16;
 /// Largest range whose splits are all tried.
 const SWEEP: usize = 6;
 /// Subtrees above this size are worked on by two threads.
-pub(super) const PARALLEL: usize = 1 << 12;
+pub(crate) const PARALLEL: usize = 1 << 12;
 /// Ranges above this size are measured and binned by all threads.
 const PARALLEL_BINS: usize = 1 << 17;
 /// Primitives per thread and turn when measuring and binning.
@@ -23,7 +23,7 @@ const CHUNK: usize = 1 << 14;
 /// A primitive: box and index, in two vectors of four lanes.
 #[derive(Clone, Copy, Debug, Default)]
 #[repr(C, align(16))]
-pub(super) struct Prim {
+pub(crate) struct Prim {
     lo: [i32; 3],
     /// Index of the primitive.
     pub id: u32,
@@ -96,7 +96,7 @@ impl Extent {
 
 /// A node of the binary tree.
 #[derive(Clone, Copy, Debug, Default)]
-pub(super) struct Node {
+pub(crate) struct Node {
     /// Box of everything below.
     pub bounds: Box32,
     /// Position where the lower range is split; unused if that is one primitive.
@@ -116,14 +116,14 @@ struct Below {
 }
 
 /// The binary tree: nodes, one less than primitives, and the root's split position.
-pub(super) struct Binary {
+pub(crate) struct Binary {
     pub nodes: Vec<Node>,
     pub root: u32,
 }
 
 /// Builds the tree over `prims` (not empty), which are put into leaf order.
 /// Paths hold at most `2 * depth` binary nodes, which must suffice for a balanced tree.
-pub(super) fn binary_tree(prims: &mut [Prim], depth: u32) -> Binary {
+pub(crate) fn binary_tree(prims: &mut [Prim], depth: u32) -> Binary {
     let mut nodes = vec![Node::default(); prims.len() - 1];
     let root = subtree(prims, &mut nodes, 0, 2 * depth).split;
     Binary { nodes, root }

@@ -105,7 +105,7 @@ pub fn sah_cost(tree: &QuadTree, costs: &Costs) -> f64 {
 
 /// A terrain of `quads`^2 base quads (two trees each) with `levels` splits: smooth hills with hashed roughness.
 #[cfg(test)]
-pub(super) fn synthetic_terrain(quads: u32, levels: u32) -> crate::mesh::Hierarchy {
+pub(crate) fn synthetic_terrain(quads: u32, levels: u32) -> crate::mesh::Hierarchy {
     use crate::mesh::{EdgeCodes, Hierarchy, Placement, lattice};
     let m = 1u32 << levels;
     let side = (quads * m) as f64;

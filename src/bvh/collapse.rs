@@ -12,7 +12,7 @@ use rayon::prelude::*;
 const TASK: u32 = 1 << 16;
 
 /// The binary tree to read.
-pub(super) struct Source<'a> {
+pub(crate) struct Source<'a> {
     prims: &'a [Prim],
     tree: &'a Binary,
     plans: Vec<Plan>,
@@ -211,7 +211,7 @@ struct Task {
 }
 
 /// All nodes, encoded, root first.
-pub(super) fn nodes<T, F>(source: &Source<'_>, depth: u32, encode: F) -> Vec<T>
+pub(crate) fn nodes<T, F>(source: &Source<'_>, depth: u32, encode: F) -> Vec<T>
 where
     T: Copy + Default + Send,
     F: Fn(&QuadNode) -> T + Sync,

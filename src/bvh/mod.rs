@@ -1,24 +1,17 @@
-//! Floor 2: the quad-BVH over base triangles, and over full-resolution triangles for the baseline.
+//! The quad-BVH over any boxes: those of base triangles, or of the triangles of a level.
 //!
 //! A binary tree by the surface area heuristic (binned, exact for small ranges) down to single primitives; collapsed to four children per
 //! node by dynamic programming, which also chooses the leaves; written as 64-byte nodes (16-bit boxes) or 128-byte nodes (32-bit boxes).
 //! The result depends on the input alone: not on the number of threads, nor on the machine.
 
-mod build;
-mod check;
-mod collapse;
+pub(crate) mod build;
+pub(crate) mod check;
+pub(crate) mod collapse;
 mod encode;
-mod file;
-mod finest;
-mod full;
-mod leaves;
 mod plan;
 
 pub use check::{Defect, check, sah_cost};
 pub use encode::{BvhChild32, Node16, Node32, encode16, encode32};
-pub use file::TreeKey;
-pub use full::{FullBuilder, FullBvh, FullNodes, FullOptions, FullTree};
-pub use leaves::{LINE_BYTES, LeafLayout, Leaves};
 
 use crate::format::Box16;
 use crate::num::COORD_LIMIT;
@@ -225,7 +218,7 @@ pub fn over_trees(boxes: &[Box16]) -> Result<Vec<Node16>, BvhError> {
     Ok(tree.nodes.par_iter().map(by_tree).collect())
 }
 
-fn check_count(count: u64) -> Result<(), BvhError> {
+pub(crate) fn check_count(count: u64) -> Result<(), BvhError> {
     match count {
         0 => Err(BvhError::Empty),
         n if n > MAX_PRIMITIVES as u64 => Err(BvhError::TooMany(n)),
@@ -234,7 +227,7 @@ fn check_count(count: u64) -> Result<(), BvhError> {
 }
 
 /// Refuses options that no tree can be built with.
-fn check_options(options: &Options) -> Result<(), BvhError> {
+pub(crate) fn check_options(options: &Options) -> Result<(), BvhError> {
     if !(1..=4).contains(&options.max_leaf) {
         return Err(BvhError::LeafSize(options.max_leaf));
     }

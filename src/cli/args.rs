@@ -2,11 +2,8 @@
 
 use clap::Args;
 use clap::ValueEnum;
-use lodray::bvh;
 use lodray::num::MAX_LEVELS;
-use lodray::render::{Camera, DEFAULT_VIEW_ANGLE_DEGREES, MAX_PIXELS, MAX_SIDE, View};
-use lodray::traverse::ModelSpace;
-use serde::{Deserialize, Serialize};
+use lodray::rays::{Camera, DEFAULT_VIEW_ANGLE_DEGREES, MAX_PIXELS, MAX_SIDE, ModelSpace, View};
 use std::fmt::{self, Display};
 use std::ops::RangeInclusive;
 use std::str::FromStr;
@@ -153,29 +150,6 @@ impl CameraArgs {
     }
 }
 
-/// How rays find their hits on a simulated machine.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, ValueEnum, Serialize, Deserialize)]
-#[serde(rename_all = "lowercase")]
-pub enum SimMethod {
-    /// Locally adaptive level of detail
-    Lod,
-    /// Quad-BVH of the full-resolution mesh, 16-bit boxes
-    Bvh,
-    /// The same with 32-bit boxes
-    Bvh32,
-}
-
-impl SimMethod {
-    /// Its name in options and reports.
-    pub const fn name(self) -> &'static str {
-        match self {
-            Self::Lod => "lod",
-            Self::Bvh => "bvh",
-            Self::Bvh32 => "bvh32",
-        }
-    }
-}
-
 /// A change of a machine, KEY=VALUE.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Change {
@@ -223,14 +197,6 @@ fn number(s: &str, fits: impl Fn(f64) -> bool, what: &str) -> Result<f64, String
     s.parse().ok().filter(|&v| fits(v)).ok_or_else(|| format!("'{s}' is not {what}"))
 }
 
-/// LOD quality: a non-negative number or `inf`.
-pub fn delta(s: &str) -> Result<f64, String> {
-    match s.parse::<f64>() {
-        Ok(v) if v >= 0.0 => Ok(v),
-        _ => Err(format!("'{s}' is not a quality: 0 (base mesh) to inf (full detail), 1 is one pixel")),
-    }
-}
-
 /// A whole number within limits, which the refusal names.
 pub fn whole<T: TryFrom<u64>>(limits: RangeInclusive<u64>) -> impl Fn(&str) -> Result<T, String> + Clone {
     move |s| {
@@ -250,57 +216,6 @@ pub fn seed() -> impl Fn(&str) -> Result<u64, String> + Clone {
 /// Numbers of splits.
 pub fn levels() -> impl Fn(&str) -> Result<u32, String> + Clone {
     whole(0..=u64::from(MAX_LEVELS))
-}
-
-/// Leaf layouts by name.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum, Serialize, Deserialize)]
-#[serde(rename_all = "lowercase")]
-pub enum LeafLayout {
-    /// Index triples and shared vertices
-    Indexed,
-    /// Nine 32-bit coordinates, 36 bytes
-    Packed,
-    /// One 32-byte line of 28-bit coordinates
-    Line,
-}
-
-impl From<LeafLayout> for bvh::LeafLayout {
-    fn from(layout: LeafLayout) -> Self {
-        match layout {
-            LeafLayout::Indexed => Self::Indexed,
-            LeafLayout::Packed => Self::Packed,
-            LeafLayout::Line => Self::Line,
-        }
-    }
-}
-
-impl LeafLayout {
-    /// Its name in options and reports.
-    pub const fn name(self) -> &'static str {
-        match self {
-            Self::Indexed => "indexed",
-            Self::Packed => "packed",
-            Self::Line => "line",
-        }
-    }
-}
-
-/// How the triangles of a full-resolution BVH lie in memory.
-#[derive(Args, Clone, Copy, Debug)]
-pub struct LeafArgs {
-    /// Leaf layout of the full-resolution BVH
-    #[arg(long, value_enum, default_value_t = LeafLayout::Line)]
-    pub leaf_layout: LeafLayout,
-    /// Largest number of triangles in a leaf: 1, 2 or 4
-    #[arg(long, default_value_t = 4, value_parser = leaf_size)]
-    pub leaf_size: u32,
-}
-
-fn leaf_size(s: &str) -> Result<u32, String> {
-    match s {
-        "1" | "2" | "4" => Ok(u32::from(s.as_bytes()[0] - b'0')),
-        _ => Err(format!("'{s}' is not 1, 2 or 4")),
-    }
 }
 
 #[cfg(test)]
@@ -341,6 +256,5 @@ mod tests {
             assert_eq!(whole::<u32>(1..=10)(bad), Err(format!("'{bad}' is not a whole number from 1 to 10")));
         }
         assert!(seed()("18446744073709551615").is_ok() && seed()("-1").is_err());
-        assert!(delta("inf").is_ok() && delta("-1").is_err() && delta("nan").is_err());
     }
 }

@@ -6,8 +6,10 @@
 use super::output::warn;
 use anyhow::Context;
 use etcetera::BaseStrategy;
-use lodray::bvh::{BvhError, FullTree, Options, TreeKey};
-use lodray::format::{Scene, remove_abandoned, write_and_rename};
+use lodray::bvh::BvhError;
+use lodray::format::{remove_abandoned, write_and_rename};
+use lodray::method::bvh::{FullTree, TreeKey, TreeStore};
+use std::cell::Cell;
 use std::fs::{self, DirEntry, File};
 use std::path::{Path, PathBuf};
 use std::time::SystemTime;
@@ -32,9 +34,42 @@ pub struct Cache {
 }
 
 /// A tree, and whether it came from the cache.
-pub struct Found {
-    pub tree: FullTree,
-    pub read: bool,
+struct Found {
+    tree: FullTree,
+    read: bool,
+}
+
+/// The cache, and whether everything that was wanted of it was there.
+pub struct Lookup<'a> {
+    cache: &'a Cache,
+    wanted: Cell<u32>,
+    read: Cell<u32>,
+}
+
+impl<'a> Lookup<'a> {
+    /// Nothing wanted yet.
+    pub fn new(cache: &'a Cache) -> Self {
+        Self { cache, wanted: Cell::new(0), read: Cell::new(0) }
+    }
+
+    /// Something was wanted, and all of it was there.
+    pub fn was_read(&self) -> bool {
+        self.wanted.get() > 0 && self.wanted == self.read
+    }
+}
+
+impl TreeStore for Lookup<'_> {
+    fn tree(
+        &self,
+        key: &dyn Fn() -> TreeKey,
+        triangles: u64,
+        build: &mut dyn FnMut() -> Result<FullTree, BvhError>,
+    ) -> Result<FullTree, BvhError> {
+        let Found { tree, read } = self.cache.tree(key, triangles, build)?;
+        self.wanted.set(self.wanted.get() + 1);
+        self.read.set(self.read.get() + u32::from(read));
+        Ok(tree)
+    }
 }
 
 impl Cache {
@@ -54,20 +89,19 @@ impl Cache {
         Ok(Self { folder })
     }
 
-    /// The tree of `options` over the full-resolution triangles of `scene`: from the cache if it is there, else built, and kept.
-    pub fn tree(
+    /// The tree of `key` over so many triangles: from the cache if it is there, else built, and kept.
+    fn tree(
         &self,
-        scene: &Scene,
-        options: &Options,
-        wide_boxes: bool,
-        build: impl FnOnce() -> Result<FullTree, BvhError>,
+        key: &dyn Fn() -> TreeKey,
+        triangles: u64,
+        build: &mut dyn FnMut() -> Result<FullTree, BvhError>,
     ) -> Result<Found, BvhError> {
-        let Some(folder) = self.folder.as_ref().filter(|_| scene.finest_triangles() >= LEAST_TRIANGLES) else {
+        let Some(folder) = self.folder.as_ref().filter(|_| triangles >= LEAST_TRIANGLES) else {
             return Ok(Found { tree: build()?, read: false });
         };
-        let key = TreeKey::new(scene, options, wide_boxes);
+        let key = key();
         let path = folder.join(format!("{key}{ENDING}"));
-        if let Some(tree) = read(&path, key, scene.finest_triangles()) {
+        if let Some(tree) = read(&path, key, triangles) {
             return Ok(Found { tree, read: true });
         }
         let tree = build()?;

@@ -1,16 +1,17 @@
 //! `demo`: a built-in scene from three distances, LOD beside BVH and full resolution.
 
-use super::args::{LeafArgs, LeafLayout};
 use super::build::build_scene;
 use super::cache::Cache;
 use super::facts::Facts;
 use super::folder::{Overrule, RunFolder, one_run};
+use super::method::Chosen;
 use super::output::{busy, grouped, print_json, print_line, remark, write_file};
-use super::pictures::Shot;
-use super::render::{Against, Built, Comparison, MethodName, compare_shots};
+use super::pictures::{Shot, shoot};
+use super::render::{Against, Comparison, compare_shots};
 use lodray::mesh::procedural::{Options, Scene, generate};
-use lodray::render::{Camera, View};
-use lodray::traverse::ModelSpace;
+use lodray::method::knob::DELTA;
+use lodray::method::{Registered, bvh, lod, reference};
+use lodray::rays::{Camera, ModelSpace, View};
 use serde::Serialize;
 use std::path::PathBuf;
 use std::process::ExitCode;
@@ -57,31 +58,33 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
     let surface = busy("generating", || generate(&options))?;
     let scene = build_scene(&surface, "terrain", serde_json::json!({ "generate": options }))?;
     let space = ModelSpace::of(&scene);
-    let leaves = LeafArgs { leaf_layout: LeafLayout::Line, leaf_size: 4 };
-    let bvh = Built::new(MethodName::Bvh, &scene, leaves, &Cache::NONE)?;
-    let truth = Built::new(MethodName::Reference, &scene, leaves, &Cache::NONE)?;
+    let methods: [&Registered; 3] = [&lod::METHOD, &bvh::METHOD, &reference::METHOD];
+    let made = methods.iter().map(|method| Chosen::plain(method).make(&scene, &Cache::NONE)).collect::<anyhow::Result<Vec<_>>>()?;
 
     let mut rows = Vec::new();
     for (view, distance) in DISTANCES {
         let camera = Camera::new(&View { distance: Some(distance), ..View::default() }, &space, SIDE, SIDE)?;
-        let shoot = |built: &Built, what: &str| built.shoot(&scene, &space, &camera, 1.0, what);
-        let (lod, bvh, full) = (shoot(&Built::Lod, "LOD"), shoot(&bvh, "BVH"), shoot(&truth, "full resolution"));
-        for (method, shot) in [(MethodName::Lod, &lod), (MethodName::Bvh, &bvh), (MethodName::Reference, &full)] {
-            let error = (method != MethodName::Reference).then(|| compare_shots(shot, &full, &scene, &camera));
+        let shots: Vec<_> =
+            methods.iter().zip(&made).map(|(method, (made, _))| shoot(&**made, &scene, &space, &camera, 1.0, method.name)).collect();
+        let full = &shots[2];
+        for (method, shot) in methods.iter().zip(&shots) {
+            let is_truth = *method == &reference::METHOD;
+            let error = (!is_truth).then(|| compare_shots(shot, full, &scene, &camera));
             let facts = Facts {
                 scene: &scene.meta().name,
-                method,
-                delta: 1.0,
+                method: method.name,
+                delta: method.has(DELTA.name).then_some(1.0),
+                choices: &[],
                 camera: &camera,
                 stats: &shot.frame.stats,
                 error: error.as_ref().map(|error| (Against::FullResolution, error)),
             };
-            let prefix = format!("{view}-{}-", if method == MethodName::Reference { "full" } else { method.name() });
+            let prefix = format!("{view}-{}-", if is_truth { "full" } else { method.name });
             shot.save(out, &prefix, &facts)?;
             shot.levels(&scene).save(out, &prefix, &facts)?;
             if let Some(error) = &error {
                 shot.error(&full.image).save(out, &prefix, &facts)?;
-                rows.push(row(view, distance, method.name(), shot, error.clone()));
+                rows.push(row(view, distance, method.name, shot, error.clone()));
             }
         }
     }

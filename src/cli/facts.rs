@@ -1,15 +1,19 @@
 //! What a picture says of itself: in its file, and on the contact sheet.
 
 use super::output::{grouped, plain};
-use super::render::{Against, Comparison, MethodName};
-use lodray::render::{Camera, FrameStats};
+use super::render::{Against, Comparison};
+use lodray::picture::FrameStats;
+use lodray::rays::Camera;
 
 /// A picture's origin and figures.
 pub struct Facts<'a> {
     pub scene: &'a str,
-    pub method: MethodName,
-    /// Quality; other methods than LOD have none.
-    pub delta: f64,
+    /// Name of the method.
+    pub method: &'static str,
+    /// Quality, if the method has any.
+    pub delta: Option<f64>,
+    /// What the method chose for the frame.
+    pub choices: &'a [(&'static str, String)],
     pub camera: &'a Camera,
     pub stats: &'a FrameStats,
     pub error: Option<(Against, &'a Comparison)>,
@@ -29,8 +33,9 @@ impl Facts<'_> {
     }
 
     fn how(&self) -> String {
-        let quality = if self.method == MethodName::Lod { format!(" at delta {}", self.delta) } else { String::new() };
-        format!("{}{quality}", self.method.name())
+        let quality = self.delta.map_or_else(String::new, |delta| format!(" at delta {delta}"));
+        let choices: String = self.choices.iter().map(|(name, value)| format!(", {name} {value}")).collect();
+        format!("{}{quality}{choices}", self.method)
     }
 
     /// For a picture's file: what it is, where from (as options take it, in full), and the figures.
@@ -41,10 +46,11 @@ impl Facts<'_> {
         line(&mut notes, "Title", format!("{}: {picture}", self.heading()));
         line(&mut notes, "Software", format!("lodray {}", env!("CARGO_PKG_VERSION")));
         line(&mut notes, "Scene", self.scene.to_owned());
-        line(&mut notes, "Method", self.method.name().to_owned());
-        if self.method == MethodName::Lod {
-            line(&mut notes, "Delta", self.delta.to_string());
+        line(&mut notes, "Method", self.method.to_owned());
+        if let Some(delta) = self.delta {
+            line(&mut notes, "Delta", delta.to_string());
         }
+        self.choices.iter().for_each(|(name, value)| line(&mut notes, &capital(name), value.clone()));
         line(&mut notes, "Size", format!("{width}x{height}"));
         line(&mut notes, "Eye", vector(eye.to_array()));
         line(&mut notes, "Target", vector(target.to_array()));

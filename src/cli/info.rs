@@ -4,7 +4,7 @@ use super::output::{grouped, open, plain, print_json, print_line};
 use lodray::format::Scene;
 use lodray::mesh::TwoSidedDistance;
 use lodray::num::PADDING_BITS;
-use lodray::traverse::ModelSpace;
+use lodray::rays::ModelSpace;
 use serde::Serialize;
 use std::path::PathBuf;
 use std::process::ExitCode;

@@ -1,13 +1,15 @@
 //! `lines`: the distinct 32-byte lines that a frame touches, by distance, LOD against every full-resolution BVH layout.
 
-use super::args::{CameraArgs, delta, radii};
-use super::cache::{Cache, CacheArgs};
+use super::args::{CameraArgs, radii};
+use super::cache::{Cache, CacheArgs, Lookup};
 use super::output::{explain, grouped, open, print_json, print_line, progress};
-use lodray::bvh::{BvhError, FullBuilder, FullBvh, FullNodes, FullOptions, LeafLayout, Leaves, Options};
+use lodray::bvh::{BvhError, Options};
 use lodray::format::Scene;
 use lodray::mesh::Hierarchy;
-use lodray::render::{Method, distinct_lines, render};
-use lodray::traverse::{LodImage, ModelSpace};
+use lodray::method::bvh::{FullBuilder, FullBvh, FullNodes, FullOptions, LeafLayout, Leaves, NoStore, TreeKey, TreeStore};
+use lodray::method::{Knobs, knob, lod};
+use lodray::picture::{FrameStats, distinct_lines, render};
+use lodray::rays::{ModelSpace, Sight};
 use serde::Serialize;
 use std::path::PathBuf;
 use std::process::ExitCode;
@@ -28,7 +30,7 @@ pub struct Args {
     )]
     distances: Vec<f64>,
     /// Quality
-    #[arg(long, default_value = "1", value_parser = delta, allow_hyphen_values = true)]
+    #[arg(long, default_value = "1", value_parser = knob::quality, allow_hyphen_values = true)]
     delta: f64,
     /// Count the 32-bit-box BVH too
     #[arg(long)]
@@ -70,17 +72,17 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
     let rows = cameras.iter().map(|camera| u64::from(camera.height)).sum::<u64>();
     let bar = progress((2 + formats.len() as u64 * 9) * rows, "tracing");
 
-    let count = |method: &Method<'_>, delta: f64| -> Vec<_> {
+    let method = (lod::METHOD.make)(&scene, &Knobs::default(), &NoStore)?;
+    let count = |delta: f64| -> Vec<_> {
         bar.set_message("tracing");
-        cameras.iter().map(|camera| render(method, &space, camera, delta, &|| bar.inc(1)).stats).collect()
+        cameras.iter().map(|camera| render(&*method, &space, camera, delta, &|| bar.inc(1)).stats).collect()
     };
-    let distinct = |stats: &[lodray::render::FrameStats]| stats.iter().map(|s| s.distinct_lines()).collect::<Vec<u64>>();
+    let distinct = |stats: &[FrameStats]| stats.iter().map(|s| s.distinct_lines()).collect::<Vec<u64>>();
 
-    let image = LodImage::of(&scene);
-    let lod = count(&Method::Lod(image), args.delta);
+    let lod = count(args.delta);
     let mut rows = vec![
         Row { structure: "LOD".to_owned(), distinct_lines: distinct(&lod) },
-        Row { structure: "LOD structure at full detail".to_owned(), distinct_lines: distinct(&count(&Method::Lod(image), f64::INFINITY)) },
+        Row { structure: "LOD structure at full detail".to_owned(), distinct_lines: distinct(&count(f64::INFINITY)) },
     ];
     let mut trees = Trees::new(&scene, &cache);
     let mut best = vec![u64::MAX; cameras.len()];
@@ -112,8 +114,9 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
     bar.finish_and_clear();
 
     let ratio = best.iter().zip(&rows[0].distinct_lines).map(|(&b, &l)| b as f64 / l.max(1) as f64).collect();
-    let base = |s: &lodray::render::FrameStats| {
-        let is_base = |kind: &str| image.map.sections().any(|(_, section)| section.base && section.name == kind);
+    let map = cameras.first().map(|camera| method.map(&Sight::new(camera, &space, args.delta))).unwrap_or_default();
+    let base = |s: &FrameStats| {
+        let is_base = |kind: &str| map.sections().any(|(_, section)| section.base && section.name == kind);
         let of = s.lines.iter().filter(|k| is_base(k.kind)).map(|k| k.distinct).sum::<u64>();
         of as f64 / s.distinct_lines().max(1) as f64
     };
@@ -164,14 +167,15 @@ impl<'a> Trees<'a> {
             return Ok(Arc::clone(nodes));
         }
         self.nodes = None;
-        let found = self.cache.tree(self.scene, &options.tree, options.wide_boxes, || {
+        let key = || TreeKey::new(self.scene, &options.tree, options.wide_boxes, self.scene.levels());
+        let tree = Lookup::new(self.cache).tree(&key, self.scene.finest_triangles(), &mut || {
             let builder = match self.builder.take() {
                 Some(builder) => builder,
                 None => FullBuilder::new(&self.hierarchy)?,
             };
             self.builder.insert(builder).tree(&options.tree, options.wide_boxes)
         })?;
-        let (nodes, ids) = found.tree.into_parts();
+        let (nodes, ids) = tree.into_parts();
         self.ids = ids;
         let nodes = Arc::new(nodes);
         self.nodes = Some((shape, Arc::clone(&nodes)));

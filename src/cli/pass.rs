@@ -1,39 +1,27 @@
 //! One functional pass over a frame, replayed on machines: what `simulate` and `sweep` share.
 
-use super::args::{Change, LeafArgs, SimMethod};
+use super::args::Change;
+use super::method::Chosen;
 use super::output::progress;
-use super::render::{Built, MethodName};
 use lodray::format::Scene;
-use lodray::render::{Camera, FrameRays};
-use lodray::report::result::{Compute, MachineFacts, MethodFacts, SceneFacts, Setup, SimResult, ViewFacts};
-use lodray::report::{Job, simulate};
+use lodray::method::Method;
+use lodray::rays::{Camera, ModelSpace, RaySource, Sight};
+use lodray::report::result::{MachineFacts, MethodFacts, SceneFacts, Setup, SimResult, ViewFacts};
+use lodray::run::{Compute, FrameRays, Job, simulate};
 use lodray::sim::machine::{Machine, MachineError};
 use lodray::sim::replay::{ReplayError, Run, Window};
-use lodray::traverse::ModelSpace;
 use std::path::{Path, PathBuf};
-
-impl From<SimMethod> for MethodName {
-    fn from(method: SimMethod) -> Self {
-        match method {
-            SimMethod::Lod => Self::Lod,
-            SimMethod::Bvh => Self::Bvh,
-            SimMethod::Bvh32 => Self::Bvh32,
-        }
-    }
-}
 
 /// A frame to run.
 pub struct Pass<'a> {
     pub scene: &'a Scene,
     pub space: &'a ModelSpace,
-    pub method: SimMethod,
-    /// What the method needs.
-    pub built: &'a Built,
-    pub leaves: LeafArgs,
+    pub chosen: &'a Chosen,
+    /// The method as it was made for the scene.
+    pub method: &'a dyn Method,
     pub camera: Camera,
     /// Where it was placed, if by distance.
     pub distance: Option<f64>,
-    pub delta: f64,
 }
 
 /// A machine, and how compute is simulated on it.
@@ -100,30 +88,24 @@ fn in_one_line(error: MachineError) -> anyhow::Error {
 impl Pass<'_> {
     /// Traces the rays once and replays them on every target.
     pub fn run(&self, targets: &[Target]) -> anyhow::Result<Vec<Outcome>> {
-        let method = self.built.method(self.scene);
-        let map = method.map();
-        let frame = FrameRays { method: &method, space: self.space, camera: &self.camera, delta: self.delta };
+        let sight = Sight::new(&self.camera, self.space, self.chosen.delta());
+        let map = self.method.map(&sight);
+        let frame = FrameRays { method: self.method, rays: &self.camera, sight: &sight };
         let job = |target: &Target| Job { machine: target.machine.description.clone(), compute: target.compute, window: target.window };
         let jobs: Vec<_> = targets.iter().map(job).collect();
-        let bar = progress(frame.batches() as u64, "simulating");
+        let bar = progress(self.camera.batches() as u64, "simulating");
         let runs = simulate(&frame, &jobs, &|batches| bar.inc(batches));
         bar.finish_and_clear();
         let result = |(target, run): (&Target, Result<Run, ReplayError>)| {
             let run = run?;
-            Ok((SimResult::new(self.setup(target, map.bytes()), &map, &run)?, run.wave))
+            Ok((SimResult::new(self.setup(target, &sight, map.bytes()), &map, &run)?, run.wave))
         };
         Ok(targets.iter().zip(runs).map(result).collect())
     }
 
-    fn setup(&self, target: &Target, bytes: u64) -> Setup {
-        let LeafArgs { leaf_layout, leaf_size } = self.leaves;
-        let lod = self.method == SimMethod::Lod;
-        let method = MethodFacts {
-            name: self.method.name().to_owned(),
-            delta: lod.then_some(self.delta),
-            leaves: (!lod).then(|| format!("{} {leaf_size}", leaf_layout.name())),
-            bytes,
-        };
+    fn setup(&self, target: &Target, sight: &Sight, bytes: u64) -> Setup {
+        let Chosen { method, knobs } = self.chosen;
+        let method = MethodFacts::new(method, knobs, &self.method.choices(sight), bytes);
         Setup {
             scene: SceneFacts::from(self.scene),
             method,

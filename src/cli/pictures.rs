@@ -5,8 +5,9 @@ use super::output::progress;
 use anyhow::Context;
 use image::RgbImage;
 use lodray::format::Scene;
-use lodray::render::{Camera, Frame, Legend, Method, error_map, level_map, normal_map, render, save_png, shaded};
-use lodray::traverse::ModelSpace;
+use lodray::method::Method;
+use lodray::picture::{Frame, Legend, error_map, level_map, normal_map, render, save_png, shaded};
+use lodray::rays::{Camera, ModelSpace};
 use std::path::Path;
 
 /// A frame and its shaded picture.
@@ -16,7 +17,7 @@ pub struct Shot {
 }
 
 /// Traces and shades one view.
-pub fn shoot(method: &Method<'_>, scene: &Scene, space: &ModelSpace, camera: &Camera, delta: f64, what: &str) -> Shot {
+pub fn shoot(method: &dyn Method, scene: &Scene, space: &ModelSpace, camera: &Camera, delta: f64, what: &str) -> Shot {
     let bar = progress(u64::from(camera.height), what);
     let frame = render(method, space, camera, delta, &|| bar.inc(1));
     bar.finish_and_clear();

@@ -1,55 +1,25 @@
 //! `render`: one view of a scene through one method.
 
-use super::args::{CameraArgs, LeafArgs, delta};
+use super::args::CameraArgs;
 use super::cache::{Cache, CacheArgs};
 use super::facts::Facts;
 use super::folder::{Overrule, RunFolder, one_run};
+use super::method::{Chosen, PictureMethod};
 use super::original::original;
-use super::output::{busy, explain, grouped, open, print_json, print_line, remark};
+use super::output::{explain, grouped, open, print_json, print_line, remark};
 use super::pictures::{Shot, shoot};
 use anyhow::Context;
-use clap::ValueEnum;
 use image::RgbImage;
-use lodray::bvh::{BvhError, FullBuilder, FullBvh, FullOptions};
 use lodray::format::Scene;
-use lodray::golden::reference::Reference;
-use lodray::render::{
-    Camera, FrameStats, GeometricError, ImageError, KindCount, Method, Pixel, Sheet, compare, geometric_error, save_png, view_cosine,
-};
-use lodray::traverse::{LodImage, ModelSpace};
+use lodray::method::knob::DELTA;
+use lodray::method::{Method, SurfaceHit, reference};
+use lodray::picture::{FrameStats, GeometricError, ImageError, KindCount, Sheet, compare, geometric_error, save_png, view_cosine};
+use lodray::rays::{Camera, ModelSpace, Sight};
 use serde::Serialize;
+use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use std::time::Instant;
-
-/// How rays find their hits.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum, Serialize)]
-#[serde(rename_all = "snake_case")]
-pub enum MethodName {
-    /// Locally adaptive level of detail
-    Lod,
-    /// Quad-BVH of the full-resolution mesh, 16-bit boxes
-    Bvh,
-    /// The same with 32-bit boxes
-    Bvh32,
-    /// f64, full resolution: the truth
-    Reference,
-    /// The mesh that scenes are made from, as it is, in f64: SCENE is then the mesh file, or the scene of the view with the mesh in --mesh
-    Original,
-}
-
-impl MethodName {
-    /// Its name in options and reports.
-    pub const fn name(self) -> &'static str {
-        match self {
-            Self::Lod => "lod",
-            Self::Bvh => "bvh",
-            Self::Bvh32 => "bvh32",
-            Self::Reference => "reference",
-            Self::Original => "original",
-        }
-    }
-}
 
 /// What a picture is compared with.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
@@ -78,16 +48,10 @@ const SHEET: &str = "sheet.png";
 pub struct Args {
     /// Scene file (for --method original also a mesh file)
     scene: PathBuf,
-    /// How rays find their hits
-    #[arg(long, value_enum, default_value_t = MethodName::Lod)]
-    method: MethodName,
-    /// Quality: 1 keeps a level's displacement under a pixel, 0 is the base mesh, inf full detail
-    #[arg(long, default_value = "1", value_parser = delta, allow_hyphen_values = true)]
-    delta: f64,
+    #[command(flatten)]
+    method: PictureMethod,
     #[command(flatten)]
     camera: CameraArgs,
-    #[command(flatten)]
-    leaves: LeafArgs,
     #[command(flatten)]
     cache: CacheArgs,
     /// Folder for the pictures
@@ -108,8 +72,11 @@ pub struct Args {
 
 #[derive(Serialize)]
 struct Report {
-    method: MethodName,
+    method: &'static str,
     delta: f64,
+    /// What the method chose for the frame.
+    #[serde(skip_serializing_if = "BTreeMap::is_empty")]
+    choices: BTreeMap<&'static str, String>,
     size: [u32; 2],
     eye: [f64; 3],
     /// Distance from the target in bounding radii.
@@ -160,57 +127,6 @@ pub struct Comparison {
     pub geometry_pixels: GeometricError,
 }
 
-/// What a method needs besides the scene.
-pub enum Built {
-    Lod,
-    Bvh { bvh: FullBvh, cached: bool },
-    Reference(Reference),
-}
-
-impl Built {
-    /// Whether it was read from the cache instead of built.
-    fn cached(&self) -> bool {
-        matches!(self, Self::Bvh { cached: true, .. })
-    }
-
-    /// Builds what `name` needs, or takes it from the cache.
-    pub fn new(name: MethodName, scene: &Scene, leaves: LeafArgs, cache: &Cache) -> anyhow::Result<Self> {
-        Ok(match name {
-            MethodName::Lod => Self::Lod,
-            MethodName::Bvh => full_bvh(scene, leaves, false, cache)?,
-            MethodName::Bvh32 => full_bvh(scene, leaves, true, cache)?,
-            // The original is a scene whose full resolution is the mesh.
-            MethodName::Reference | MethodName::Original => {
-                Self::Reference(busy("building the reference", || Reference::new(&scene.decode())))
-            }
-        })
-    }
-
-    /// Renders with it.
-    pub fn shoot(&self, scene: &Scene, space: &ModelSpace, camera: &Camera, delta: f64, what: &str) -> Shot {
-        shoot(&self.method(scene), scene, space, camera, delta, what)
-    }
-
-    /// The method, on the scene that it was built for.
-    pub fn method<'a>(&'a self, scene: &'a Scene) -> Method<'a> {
-        match self {
-            Self::Lod => Method::Lod(LodImage::of(scene)),
-            Self::Bvh { bvh, .. } => Method::Bvh(bvh),
-            Self::Reference(reference) => Method::Reference(reference),
-        }
-    }
-}
-
-fn full_bvh(scene: &Scene, leaves: LeafArgs, wide_boxes: bool, cache: &Cache) -> anyhow::Result<Built> {
-    let options = FullOptions::new(leaves.leaf_size, wide_boxes, leaves.leaf_layout.into());
-    let made = busy("building the BVH", || {
-        let hierarchy = scene.decode();
-        let found = cache.tree(scene, &options.tree, wide_boxes, || FullBuilder::new(&hierarchy)?.tree(&options.tree, wide_boxes))?;
-        Ok::<_, BvhError>(Built::Bvh { bvh: found.tree.with_leaves(&hierarchy, options.layout)?, cached: found.read })
-    });
-    Ok(made?)
-}
-
 /// Geometry to trace.
 struct Subject {
     scene: Scene,
@@ -222,14 +138,14 @@ impl Subject {
         Self { space: ModelSpace::of(&scene), scene }
     }
 
-    fn shoot(&self, built: &Built, camera: &Camera, delta: f64, what: &str) -> Shot {
-        built.shoot(&self.scene, &self.space, camera, delta, what)
+    fn shoot(&self, method: &dyn Method, camera: &Camera, delta: f64, what: &str) -> Shot {
+        shoot(method, &self.scene, &self.space, camera, delta, what)
     }
 }
 
 /// What the camera stands around, and the original if it is something else.
 fn subjects(args: &Args) -> anyhow::Result<(Subject, Option<Subject>)> {
-    let is_original = args.method == MethodName::Original;
+    let is_original = args.method.original;
     anyhow::ensure!(!(is_original && args.compare), "--compare: the original is what the other methods are compared with");
     match &args.mesh {
         Some(_) if !is_original && !args.compare => anyhow::bail!("--mesh: goes with --compare or with --method original only"),
@@ -248,20 +164,21 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
     let folder = RunFolder::open(&args.out, names, &inputs, &args.overrule)?;
     let cache = Cache::new(&args.cache)?;
 
-    let shown = mesh.as_ref().filter(|_| args.method == MethodName::Original).unwrap_or(&seen);
+    let shown = mesh.as_ref().filter(|_| args.method.original).unwrap_or(&seen);
     let begun = Instant::now();
-    let built = Built::new(args.method, &shown.scene, args.leaves, &cache)?;
+    let (chosen, delta) = (&args.method.chosen, args.method.chosen.delta());
+    let (method, cached) = chosen.make(&shown.scene, &cache)?;
     let building = begun.elapsed().as_secs_f64();
     let begun = Instant::now();
-    let shot = shown.shoot(&built, &camera, args.delta, "tracing");
+    let shot = shown.shoot(&*method, &camera, delta, "tracing");
     let seconds = [building, begun.elapsed().as_secs_f64()];
-    let cached = built.cached();
-    drop(built);
+    let choices = method.choices(&Sight::new(&camera, &shown.space, delta));
+    drop(method);
 
     let truth = if args.compare {
         let (against, of) = mesh.as_ref().map_or((Against::FullResolution, &seen), |mesh| (Against::Original, mesh));
-        let reference = Built::new(MethodName::Reference, &of.scene, args.leaves, &cache)?;
-        let truth = of.shoot(&reference, &camera, args.delta, against.name());
+        let (reference, _) = Chosen::plain(&reference::METHOD).make(&of.scene, &cache)?;
+        let truth = of.shoot(&*reference, &camera, delta, against.name());
         let error = compare_shots(&shot, &truth, &of.scene, &camera);
         Some((against, truth.image, error))
     } else {
@@ -269,8 +186,9 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
     };
     let facts = Facts {
         scene: &shown.scene.meta().name,
-        method: args.method,
-        delta: args.delta,
+        method: args.method.name(),
+        delta: chosen.method.has(DELTA.name).then_some(delta),
+        choices: &choices,
         camera: &camera,
         stats: &shot.frame.stats,
         error: truth.as_ref().map(|(against, _, error)| (*against, error)),
@@ -292,8 +210,9 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
         by_kind: stats.lines.iter().map(|k| kind_per_ray(k, stats.rays)).collect(),
     };
     let report = Report {
-        method: args.method,
-        delta: args.delta,
+        method: args.method.name(),
+        delta,
+        choices: choices.into_iter().collect(),
         size: [camera.width, camera.height],
         eye: camera.eye.to_array(),
         distance: camera.radii,
@@ -318,7 +237,7 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
 fn save(shot: &Shot, truth: Option<(Against, &RgbImage)>, scene: &Scene, facts: &Facts<'_>, out: &Path) -> anyhow::Result<()> {
     let mut sheet = Sheet::default();
     shot.save(out, "", facts)?;
-    sheet.add(facts.method.name(), &shot.image, None);
+    sheet.add(facts.method, &shot.image, None);
     if let Some((against, truth)) = truth {
         sheet.add(against.name(), truth, None);
         let error = shot.error(truth);
@@ -343,7 +262,7 @@ fn kind_per_ray(k: &KindCount, rays: u64) -> KindPerRay {
 /// Compares a picture with the true one.
 pub fn compare_shots(shot: &Shot, truth: &Shot, scene: &Scene, camera: &Camera) -> Comparison {
     let differs = shot.frame.pixels.iter().zip(&truth.frame.pixels).filter(|(a, b)| a.is_some() != b.is_some()).count();
-    let cosine = |index, pixel: &Pixel| f64::from(view_cosine(scene, camera, index, pixel));
+    let cosine = |index, pixel: &SurfaceHit| f64::from(view_cosine(scene, camera, index, pixel));
     Comparison {
         image: compare(&shot.image, &truth.image),
         coverage_differs: differs as u64,

@@ -1,14 +1,16 @@
 //! `trace`: one ray through the traversal unit, cycle by cycle.
 
-use super::args::{CameraArgs, delta, whole};
+use super::args::{CameraArgs, whole};
 use super::output::{check_target, grouped, open, print_line, remark, write_file};
 use anyhow::Context;
+use lodray::method::knob::quality;
+use lodray::method::lod::LodImage;
 use lodray::num::Ray;
+use lodray::rays::ModelSpace;
 use lodray::sim::unit::environment::RunReport;
 use lodray::sim::unit::steps::Steps;
 use lodray::sim::unit::wave::{Waves, gtkwave_save, gtkwave_states, one_ray, surfer_commands};
 use lodray::sim::unit::{SceneMemory, TraversalUnit, UnitConfig};
-use lodray::traverse::{LodImage, ModelSpace};
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use std::str::FromStr;
@@ -21,7 +23,7 @@ pub struct Args {
     #[arg(long, value_name = "X,Y", allow_hyphen_values = true)]
     pixel: Place,
     /// Quality: 1 keeps a level's displacement under a pixel, 0 is the base mesh, inf full detail
-    #[arg(long, default_value = "1", value_parser = delta, allow_hyphen_values = true)]
+    #[arg(long, default_value = "1", value_parser = quality, allow_hyphen_values = true)]
     delta: f64,
     #[command(flatten)]
     camera: CameraArgs,

@@ -111,12 +111,17 @@ impl Reference {
 
     /// The closest hit of the ray from `origin` along `direction` (any length but 0), in units.
     pub fn trace(&self, origin: [f64; 3], direction: [f64; 3]) -> Option<ReferenceHit> {
+        self.trace_between(origin, direction, [0.0, f64::INFINITY])
+    }
+
+    /// The same among hits at distances from the first to the second of `range`.
+    pub fn trace_between(&self, origin: [f64; 3], direction: [f64; 3], range: [f64; 2]) -> Option<ReferenceHit> {
         let ray = self.moved(origin, direction)?;
         let single = |v: [f64; 3], scale: f64| Vec3A::from_array(v.map(|x| (x / scale) as f32)); // rounding covered by PAD
         let search = Ray::new(single(ray.origin, HALF_WIDTH), single(ray.direction, 1.0), 0.0, f32::MAX);
         let mut best = None;
         self.bvh.ray_traverse(search, &mut RayHit::none(), |_, at| {
-            self.test_patch(self.bvh.primitive_indices[at], &ray, &mut best);
+            self.test_patch(self.bvh.primitive_indices[at], &ray, range, &mut best);
             // How far to search on: a little beyond the best hit, so that rounding cannot hide an equal one.
             best.map_or(f32::INFINITY, |b: ReferenceHit| ((b.t - ray.advance) / HALF_WIDTH) as f32 + PAD)
         });
@@ -128,7 +133,7 @@ impl Reference {
         let ray = self.moved(origin, direction)?;
         let mut best = None;
         for patch in 0..self.trees << (2 * self.patch_level()) {
-            self.test_patch(patch, &ray, &mut best);
+            self.test_patch(patch, &ray, [0.0, f64::INFINITY], &mut best);
         }
         best
     }
@@ -203,7 +208,7 @@ impl Reference {
         Some(Moved { origin, direction, advance: enter, axes, shear })
     }
 
-    fn test_patch(&self, patch: u32, ray: &Moved, best: &mut Option<ReferenceHit>) {
+    fn test_patch(&self, patch: u32, ray: &Moved, [near, far]: [f64; 2], best: &mut Option<ReferenceHit>) {
         let (tree, node, at) = self.patch(patch);
         let splits = self.levels.min(PATCH_SPLITS);
         let m = 1 << splits;
@@ -216,7 +221,7 @@ impl Reference {
             let corners = lattice::node(splits, splits, below).map(|p| sheared[lattice::index(splits, p)]);
             if let Some((t, bary, front)) = ray.meet(corners) {
                 let hit = ReferenceHit { t: ray.advance + t, tree, full_node: (node << (2 * splits)) + below, bary, front };
-                if best.is_none_or(|b| hit.before(&b)) {
+                if near <= hit.t && hit.t <= far && best.is_none_or(|b| hit.before(&b)) {
                     *best = Some(hit);
                 }
             }

@@ -3,9 +3,11 @@
 //! miss or a double hit breaks that balance.
 
 use crate::mesh::{Hierarchy, lattice};
+use crate::method::Crossings;
+use crate::method::lod::{LodImage, LodTraverser};
 use crate::num::{Cone, DIRECTION_SCALE, Point, Ray, Vec3};
+use crate::rays::ModelSpace;
 use crate::step::NoSteps;
-use crate::traverse::{Crossings, LodImage, LodTraverser, ModelSpace};
 use rayon::prelude::*;
 use serde::Serialize;
 
@@ -204,11 +206,11 @@ struct LevelCrossings {
     levels: u32,
 }
 
-impl crate::traverse::HitSink for LevelCrossings {
+impl crate::method::HitSink for LevelCrossings {
     fn t_max(&self) -> crate::num::RayT {
         self.crossings.t_max()
     }
-    fn offer(&mut self, id: crate::traverse::TriangleId, test: &crate::block::tri_test::Out) {
+    fn offer(&mut self, id: crate::method::TriangleId, test: &crate::block::tri_test::Out) {
         self.crossings.offer(id, test);
         self.levels |= 1 << id.level;
     }
@@ -283,7 +285,7 @@ pub(crate) fn cone(h: &Hierarchy, distance: u64, random: &mut Random) -> Cone {
     let wanted = bound * 2f64.powf(random.within(1 << 20) as f64 / f64::from(1 << 20));
     // Part of it at the origin, part from the slope.
     let part = random.below(1 << 20) as f64 / f64::from(1 << 20) * if random.below(2) == 0 { 0.0 } else { 1.0 };
-    crate::traverse::cone(2.0, wanted * part, wanted * (1.0 - part) / distance as f64)
+    crate::rays::cone(2.0, wanted * part, wanted * (1.0 - part) / distance as f64)
 }
 
 fn target_point(h: &Hierarchy, target: Target, random: &mut Random) -> [i64; 3] {

@@ -2,6 +2,3 @@
 
 pub mod crack;
 pub mod result;
-mod simulate;
-
-pub use simulate::{Job, check, simulate};

@@ -1,7 +1,7 @@
 //! What goes in and out of the traversal unit, as bits.
 
+use crate::method::Hit;
 use crate::num::{BoundScale, LineAddress, Ray, U, wire_struct};
-use crate::traverse::Hit;
 
 wire_struct! {
     /// The model that the rays meet; held still while rays are under way.

@@ -4,7 +4,8 @@ use super::dyadic::Dyadic;
 use super::model::Model;
 use super::rays::PIXEL;
 use crate::golden::Fractions;
-use crate::traverse::{Hit, ModelRay, WorldRay};
+use crate::method::Hit;
+use crate::rays::{ModelRay, Query};
 use num_bigint::BigInt;
 use num_traits::ToPrimitive;
 
@@ -36,7 +37,7 @@ pub const NEAREST: f64 = 4096.0;
 ///
 /// The first is computed without rounding from the `f64` numbers of ray and model. `None` for hits within
 /// [`NEAREST`] units of the eye: a pixel's size goes to 0 there.
-pub fn pixels_off(model: &Model, world: &WorldRay, ray: &ModelRay, hit: &Hit) -> Option<f64> {
+pub fn pixels_off(model: &Model, world: &Query, ray: &ModelRay, hit: &Hit) -> Option<f64> {
     let placement = model.space.placement;
     let (x, d) = (ray.ray.origin.get(), ray.ray.direction.get());
     // From the eye to the hit: scale (x + d t / 2^32) + offset - origin.

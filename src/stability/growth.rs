@@ -6,10 +6,11 @@ use super::model::Model;
 use super::rays::{Aim, Cones, PIXEL, Shot, Views, shot};
 use crate::format::SceneError;
 use crate::golden::Exact;
+use crate::method::ClosestHit;
+use crate::method::lod::{LodImage, LodTraverser};
 use crate::num::MAX_LEVELS;
 use crate::report::crack::Random;
 use crate::step::NoSteps;
-use crate::traverse::{ClosestHit, LodImage, LodTraverser};
 use rayon::prelude::*;
 use serde::Serialize;
 

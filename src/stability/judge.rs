@@ -11,10 +11,11 @@ use super::model::Model;
 use super::rays::Shot;
 use crate::block::tri_test;
 use crate::golden::Exact;
+use crate::method::lod::{LodImage, LodTraverser};
+use crate::method::{ClosestHit, Hit, HitSink, TriangleId};
 use crate::num::{Direction, Ray, RayT};
 use crate::report::crack::Closedness;
 use crate::step::NoSteps;
-use crate::traverse::{ClosestHit, Hit, HitSink, LodImage, LodTraverser, TriangleId};
 use serde::Serialize;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 

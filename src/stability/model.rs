@@ -4,8 +4,8 @@ use crate::bvh::over_trees;
 use crate::format::{self, Scene, SceneError, SceneInfo};
 use crate::golden::naive_bounds;
 use crate::mesh::{Hierarchy, Surface, lattice};
+use crate::rays::ModelSpace;
 use crate::report::crack::{Closedness, closedness};
-use crate::traverse::ModelSpace;
 
 /// A model of the lab.
 pub struct Model {

@@ -3,8 +3,8 @@
 use super::model::Model;
 use crate::mesh::lattice;
 use crate::num::{BOX_SHIFT, Cone, DIRECTION_SCALE, Point, Ray, Vec3};
+use crate::rays::{ModelRay, Query, cone};
 use crate::report::crack::{self, Random, TARGETS};
-use crate::traverse::{ModelRay, WorldRay, cone};
 use serde::Serialize;
 
 /// A family of rays.
@@ -64,7 +64,7 @@ pub struct Shot {
     /// The integer ray.
     pub ray: Ray,
     /// What it was in the world, for a ray of a camera.
-    pub view: Option<(WorldRay, ModelRay)>,
+    pub view: Option<(Query, ModelRay)>,
     /// Another direction from the same origin, for a ray from inside.
     pub other: Option<[i64; 3]>,
 }
@@ -254,7 +254,7 @@ fn box_face(model: &Model, random: &mut Random) -> ([i64; 3], [i64; 3]) {
 }
 
 /// A ray of a camera at one of the case's distances from a vertex, towards that vertex and a few pixels beside it.
-fn view(model: &Model, views: &Views, random: &mut Random) -> Option<(WorldRay, ModelRay)> {
+fn view(model: &Model, views: &Views, random: &mut Random) -> Option<(Query, ModelRay)> {
     let h = &model.hierarchy;
     let target = h.to_world(h.points[random.below(h.points.len() as u64) as usize]);
     let away = pick(views.distances, random) * model.space.radius();
@@ -264,7 +264,7 @@ fn view(model: &Model, views: &Views, random: &mut Random) -> Option<(WorldRay, 
     // Beyond a few radii a pixel is larger than the model.
     let aside = (8.0 * PIXEL * away).min(0.1 * model.space.radius());
     let direction = std::array::from_fn(|k| target[k] - origin[k] + aside * random.signed());
-    let world = WorldRay { origin, direction, radius: 0.0, tan_theta: pick(views.tangents, random) };
+    let world = Query::new(origin, direction).with_cone(0.0, pick(views.tangents, random));
     let ray = model.space.enter(&world, pick(views.deltas, random))?;
     Some((world, ray))
 }

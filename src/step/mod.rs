@@ -4,18 +4,21 @@
 //! - `act`: a step: lines asked for, and what the hardware does with them.
 //! - `word`: a step in 64 bits.
 //! - `sink`: who is told: nobody, counters, or
+//! - `lines`: which lines were touched.
 //! - `batch`: whoever keeps the steps of rays for the simulator.
 //!
 //! Whatever time or energy depends on is stated here by the traversal itself; nothing later guesses it from the order of steps or from the kind of data.
 
 mod act;
 mod batch;
+mod lines;
 mod section;
 mod sink;
 mod word;
 
 pub use act::{Act, Fetch, MAX_FETCH_LINES, MAX_PLACES, MAX_RUN, Step, TriangleRun};
 pub use batch::{Batch, Recorder};
+pub use lines::{LineCounter, LineSets};
 pub use section::{MAX_SECTIONS, MapError, MemoryMap, Nodes, Section, SectionId};
 pub use sink::{NoSteps, StepCounts, StepSink};
 pub use word::{Asking, StepWord};

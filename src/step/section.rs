@@ -44,7 +44,7 @@ pub struct Section {
 impl Section {
     /// A section of `bytes` bytes.
     pub fn of_bytes(name: &'static str, bytes: u64) -> Self {
-        Self { name, lines: bytes.div_ceil(crate::bvh::LINE_BYTES), base: false }
+        Self { name, lines: bytes.div_ceil(crate::num::LINE_BYTES), base: false }
     }
 
     /// The same of the L0 part.
@@ -78,7 +78,7 @@ impl Nodes {
 pub struct MapError(u64);
 
 /// Where the lines of a method's memory lie: its sections in order, each from a multiple of four lines on.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct MemoryMap {
     sections: [Section; MAX_SECTIONS],
     first: [u32; MAX_SECTIONS],
@@ -137,7 +137,7 @@ impl MemoryMap {
 
     /// Bytes of all sections.
     pub fn bytes(&self) -> u64 {
-        self.sections().map(|(_, section)| section.lines * crate::bvh::LINE_BYTES).sum()
+        self.sections().map(|(_, section)| section.lines * crate::num::LINE_BYTES).sum()
     }
 
     /// The first line of a section.

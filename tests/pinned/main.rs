@@ -2,16 +2,16 @@
 //!
 //! `scripts/pin` writes them again; a commit that does so does nothing else, and says why the figures moved.
 
-use lodray::bvh::{FullBvh, FullOptions, LeafLayout};
 use lodray::format::Scene;
-use lodray::render::{Camera, FrameRays, Method, View};
-use lodray::report::result::{Compute, MachineFacts, MethodFacts, SceneFacts, Setup, SimResult, ViewFacts};
-use lodray::report::{Job, simulate};
+use lodray::method::bvh::NoStore;
+use lodray::method::{Knobs, METHODS, find};
+use lodray::rays::{Camera, ModelSpace, Sight, View};
+use lodray::report::result::{MachineFacts, MethodFacts, SceneFacts, Setup, SimResult, ViewFacts};
+use lodray::run::{Compute, FrameRays, Job, simulate};
 use lodray::sim::dram::{ChannelCounts, DramEnergy};
 use lodray::sim::machine::Machine;
 use lodray::sim::replay::Run;
 use lodray::sim::unit::UnitCounts;
-use lodray::traverse::{LodImage, ModelSpace};
 use lodray_test_support::models::{scene_of, terrain};
 use serde_json::{Value, json};
 use std::path::{Path, PathBuf};
@@ -23,21 +23,32 @@ const SIDE: u32 = 160;
 /// A frame of the terrain.
 struct Pin {
     name: &'static str,
-    /// The full-resolution BVH: 32-bit boxes, leaf layout, triangles of a leaf; none for the LOD method.
-    bvh: Option<(bool, LeafLayout, u32)>,
+    method: &'static str,
+    /// Knobs that are not as by default.
+    knobs: &'static [(&'static str, &'static str)],
     machine: &'static str,
     compute: Compute,
     distance: f64,
 }
 
+impl Pin {
+    const fn new(name: &'static str, method: &'static str, machine: &'static str, compute: Compute, distance: f64) -> Self {
+        Self { name, method, knobs: &[], machine, compute, distance }
+    }
+
+    const fn with(self, knobs: &'static [(&'static str, &'static str)]) -> Self {
+        Self { knobs, ..self }
+    }
+}
+
 const PINS: [Pin; 7] = [
-    Pin { name: "lod-free", bvh: None, machine: "haydel2023", compute: Compute::Free, distance: 1.2 },
-    Pin { name: "lod-units", bvh: None, machine: "haydel2023", compute: Compute::Units, distance: 2.0 },
-    Pin { name: "lod-units-gpu", bvh: None, machine: "turing2018", compute: Compute::Units, distance: 0.7 },
-    Pin { name: "lod-packet", bvh: None, machine: "packet", compute: Compute::Free, distance: 4.0 },
-    Pin { name: "bvh-free", bvh: Some((false, LeafLayout::Line, 4)), machine: "haydel2023-ddr3", compute: Compute::Free, distance: 1.2 },
-    Pin { name: "bvh-units", bvh: Some((false, LeafLayout::Packed, 2)), machine: "haydel2023", compute: Compute::Units, distance: 2.0 },
-    Pin { name: "bvh32-units", bvh: Some((true, LeafLayout::Indexed, 4)), machine: "turing2018", compute: Compute::Units, distance: 1.2 },
+    Pin::new("lod-free", "lod", "haydel2023", Compute::Free, 1.2),
+    Pin::new("lod-units", "lod", "haydel2023", Compute::Units, 2.0),
+    Pin::new("lod-units-gpu", "lod", "turing2018", Compute::Units, 0.7),
+    Pin::new("lod-packet", "lod", "packet", Compute::Free, 4.0),
+    Pin::new("bvh-free", "bvh", "haydel2023-ddr3", Compute::Free, 1.2),
+    Pin::new("bvh-units", "bvh", "haydel2023", Compute::Units, 2.0).with(&[("leaf-layout", "packed"), ("leaf-size", "2")]),
+    Pin::new("bvh32-units", "bvh32", "turing2018", Compute::Units, 1.2).with(&[("leaf-layout", "indexed")]),
 ];
 
 impl Pin {
@@ -47,25 +58,29 @@ impl Pin {
 
     /// Everything that the frame gives.
     fn figures(&self, scene: &Scene) -> Value {
-        let bvh =
-            self.bvh.map(|(wide, layout, size)| FullBvh::build(&scene.decode(), &FullOptions::new(size, wide, layout)).expect("a BVH"));
-        let method = bvh.as_ref().map_or_else(|| Method::Lod(LodImage::of(scene)), Method::Bvh);
-        let name = if bvh.is_some() { "bvh" } else { "lod" };
+        let entry = find(self.method).expect("a method");
+        let mut knobs = Knobs::default();
+        for (name, value) in self.knobs {
+            let knob = METHODS.iter().flat_map(|method| method.knobs).find(|knob| knob.name == *name).expect("a knob");
+            knobs.set(knob, value).expect("one of its values");
+        }
+        let method = (entry.make)(scene, &knobs, &NoStore).expect("a method on a scene");
         let space = ModelSpace::of(scene);
         let view = View { distance: Some(self.distance), direction: Some([0.35, -0.5, 0.6]), up: Some([0.0, 0.0, 1.0]), ..View::default() };
         let camera = Camera::new(&view, &space, SIDE, SIDE).expect("a camera");
-        let frame = FrameRays { method: &method, space: &space, camera: &camera, delta: 1.0 };
+        let sight = Sight::new(&camera, &space, knobs.delta());
+        let frame = FrameRays { method: &*method, rays: &camera, sight: &sight };
         let machine = Machine::shipped(self.machine).expect("a machine");
         let job = Job { machine: machine.clone(), compute: self.compute, window: None };
         let run = simulate(&frame, &[job], &|_| ()).pop().expect("a run").expect("a result");
         let setup = Setup {
             scene: SceneFacts::from(scene),
-            method: MethodFacts { name: name.to_owned(), delta: None, leaves: None, bytes: 0 },
+            method: MethodFacts::new(entry, &knobs, &method.choices(&sight), 0),
             view: ViewFacts::new(&camera, None),
             compute: self.compute,
             machine: MachineFacts { label: self.machine.to_owned(), set: Vec::new(), description: machine },
         };
-        let result = SimResult::new(setup, &method.map(), &run).expect("figures");
+        let result = SimResult::new(setup, &method.map(&sight), &run).expect("figures");
         let mut figures = serde_json::to_value(&result).expect("JSON");
         // What was run is above.
         figures.as_object_mut().expect("a table").remove("setup");

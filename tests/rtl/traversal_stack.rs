@@ -2,8 +2,8 @@
 
 use crate::draw::Draw;
 use crate::suite::{fail, transactions};
+use lodray::method::{Entry, Op, STACK_ENTRIES, TraversalStack};
 use lodray::num::{U, Wire};
-use lodray::traverse::{Entry, Op, STACK_ENTRIES, TraversalStack};
 use tb::{Build, Direction, Sim};
 
 fn entry(draw: &mut Draw) -> Entry {

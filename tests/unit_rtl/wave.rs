@@ -1,10 +1,10 @@
 //! One ray's waveform from the model and from the RTL: equal in every signal of the model's, in every cycle.
 
 use crate::port::{RESET, Rtl};
+use lodray::method::lod::LodImage;
 use lodray::num::Ray;
 use lodray::sim::unit::wave::{PERIOD, Waves, one_ray};
 use lodray::sim::unit::{SceneMemory, TraversalUnit, UnitConfig};
-use lodray::traverse::LodImage;
 use lodray_test_support::models::{any_rays, ball, scene_of, terrain};
 use std::collections::BTreeMap;
 use std::io::BufReader;

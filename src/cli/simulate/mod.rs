@@ -5,17 +5,18 @@ pub(super) mod plots;
 mod table;
 mod units;
 
-use super::args::{CameraArgs, Change, LeafArgs, SimMethod, delta};
+use super::args::{CameraArgs, Change};
 use super::cache::{Cache, CacheArgs};
 use super::folder::{Overrule, RunFolder, one_run};
+use super::method::MachineMethod;
 use super::output::{check_target, explain, grouped, open, print_json, print_line, remark, warn, write_file};
 use super::pass::{Pass, Target, machine, machine_files};
-use super::render::Built;
 use anyhow::Context;
 use files::Files;
-use lodray::report::result::{Compute, SimResult};
+use lodray::rays::ModelSpace;
+use lodray::report::result::SimResult;
+use lodray::run::Compute;
 use lodray::sim::replay::Window;
-use lodray::traverse::ModelSpace;
 use std::path::PathBuf;
 use std::process::ExitCode;
 
@@ -25,9 +26,8 @@ pub use table::amount;
 pub struct Args {
     /// Scene file
     scene: PathBuf,
-    /// How rays find their hits
-    #[arg(long, value_enum, default_value_t = SimMethod::Lod)]
-    method: SimMethod,
+    #[command(flatten)]
+    method: MachineMethod,
     /// Machine: the name of one that comes with the program, or a file; several, repeated or with commas, share the tracing
     #[arg(long, value_name = "NAME|FILE", value_delimiter = ',', default_value = "haydel2023")]
     machine: Vec<String>,
@@ -37,13 +37,8 @@ pub struct Args {
     /// How compute is simulated
     #[arg(long, value_enum, default_value_t = Compute::Free)]
     compute: Compute,
-    /// Quality of the LOD method: 1 keeps a level's displacement under a pixel, 0 is the base mesh, inf full detail
-    #[arg(long, default_value = "1", value_parser = delta, allow_hyphen_values = true)]
-    delta: f64,
     #[command(flatten)]
     camera: CameraArgs,
-    #[command(flatten)]
-    leaves: LeafArgs,
     #[command(flatten)]
     cache: CacheArgs,
     /// Folder for the figures as JSON, what happened over time as CSV, and plots as SVG
@@ -103,17 +98,9 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
     let open_folder = |out: &PathBuf| RunFolder::open(out, names.iter().map(String::as_str), &inputs, &args.overrule);
     let folder = args.out.as_ref().map(open_folder).transpose()?;
 
-    let built = Built::new(args.method.into(), &scene, args.leaves, &Cache::new(&args.cache)?)?;
-    let pass = Pass {
-        scene: &scene,
-        space: &space,
-        method: args.method,
-        built: &built,
-        leaves: args.leaves,
-        distance: camera.placed,
-        camera,
-        delta: args.delta,
-    };
+    let chosen = &args.method.0;
+    let (method, _) = chosen.make(&scene, &Cache::new(&args.cache)?)?;
+    let pass = Pass { scene: &scene, space: &space, chosen, method: &*method, distance: camera.placed, camera };
     let targets: Vec<_> = machines.into_iter().map(|machine| Target { machine, compute: args.compute, window: args.window }).collect();
     let outcomes = pass.run(&targets)?.into_iter().collect::<anyhow::Result<Vec<_>>>()?;
     let (results, mut waves): (Vec<SimResult>, Vec<_>) = outcomes.into_iter().unzip();

@@ -197,7 +197,7 @@ pub fn power(r: &SimResult) -> anyhow::Result<String> {
 pub fn traffic(r: &SimResult) -> anyhow::Result<String> {
     let seconds = if r.cycles == 0 { 1.0 } else { r.milliseconds * 1e-3 / r.cycles as f64 };
     let rate = move |bytes: u64, cycles: u64| bytes as f64 / (cycles as f64 * seconds);
-    let line = lodray::bvh::LINE_BYTES;
+    let line = lodray::num::LINE_BYTES;
     let values: [Panel; 3] = [
         ("L1s, asked of".to_owned(), L1, Box::new(move |i| rate(i.l1_requests * line, i.cycles))),
         ("L2, asked of".to_owned(), L2, Box::new(move |i| rate(i.l2_requests * line, i.cycles))),

@@ -58,11 +58,9 @@ pub fn table(r: &SimResult) -> String {
 
 fn head(r: &SimResult) -> String {
     let setup = &r.setup;
-    let detail = match (setup.method.delta, &setup.method.leaves) {
-        (Some(delta), _) => format!(" at delta {delta}"),
-        (None, Some(leaves)) => format!(", leaves {leaves}"),
-        (None, None) => String::new(),
-    };
+    // `lod at delta 1`, `bvh, leaves line 4`.
+    let details = setup.method.details();
+    let detail: String = details.iter().map(|d| if d.starts_with("delta") { format!(" at {d}") } else { format!(", {d}") }).collect();
     let [width, height] = setup.view.size;
     let place = match setup.view.distance {
         Some(distance) => format!("{distance} bounding radii"),

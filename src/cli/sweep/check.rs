@@ -3,17 +3,19 @@
 
 use super::jobs::{Jobs, Origin, SceneJobs, ViewJob};
 use super::list::{List, MachineEntry, Maybe, SceneEntry, Source, Spanned};
-use crate::cli::args::{Change, LeafArgs, LeafLayout, SimMethod, Size, delta, radii};
+use crate::cli::args::{Change, Size, radii};
 use crate::cli::generate;
+use crate::cli::method::{Chosen, Listed, machine_methods};
 use crate::cli::output::open;
 use crate::cli::pass::{Target, is_path, machine, machine_files};
 use crate::one_line;
 use lodray::mesh::Placement;
 use lodray::mesh::procedural;
-use lodray::render::DEFAULT_VIEW_ANGLE_DEGREES;
-use lodray::report;
-use lodray::report::result::Compute;
-use lodray::traverse::ModelSpace;
+use lodray::method::bvh::{LEAF_LAYOUT, LEAF_SIZE};
+use lodray::method::knob::DELTA;
+use lodray::method::{Knob, KnobError, Knobs};
+use lodray::rays::{DEFAULT_VIEW_ANGLE_DEGREES, ModelSpace};
+use lodray::run::{self, Compute};
 use std::collections::{BTreeSet, HashSet};
 use std::ops::Range;
 use std::path::{Path, PathBuf};
@@ -26,13 +28,13 @@ pub fn jobs(source: &Source<'_>) -> anyhow::Result<Jobs> {
     let top = || 0..0;
     let methods = needed(source, list.methods.as_ref(), "methods", top())?;
     let (place, methods) = (methods.span(), filled(source, methods, "methods")?);
-    each_once(source, place, "methods", methods.iter().map(|method| method.name()))?;
-    let methods = methods.iter().flat_map(|&method| qualities(&list, method)).collect::<Vec<_>>();
-    for (text, place) in methods.iter().filter_map(|(_, quality)| quality.clone()) {
-        delta(&text).map_err(|why| source.wrong(place, format!("deltas: {why}")))?;
+    each_once(source, place, "methods", methods.iter().map(|method| method.0.name))?;
+    let knobs = knobs(source, &list)?;
+    let mut chosen = Vec::new();
+    for &Listed(method) in methods {
+        chosen.extend(qualities(source, &list, &Chosen { method, knobs: knobs.clone() })?);
     }
-    let parsed = |(method, quality): (SimMethod, Quality)| (method, quality.and_then(|(text, _)| delta(&text).ok()).unwrap_or(1.0));
-    let methods: Vec<_> = methods.into_iter().map(parsed).collect();
+    let methods = chosen;
     if let Some(deltas) = &list.deltas {
         filled(source, deltas, "deltas")?;
         each_once(source, deltas.span(), "deltas", deltas.get_ref().iter().map(ToString::to_string))?;
@@ -44,10 +46,6 @@ pub fn jobs(source: &Source<'_>) -> anyhow::Result<Jobs> {
         }
         None => vec![Compute::Free],
     };
-    let leaf_size = list.leaf_size.as_ref().map_or(4, |size| *size.get_ref());
-    if let Some(size) = list.leaf_size.as_ref().filter(|_| ![1, 2, 4].contains(&leaf_size)) {
-        return Err(source.wrong(size.span(), format!("leaf_size must be 1, 2 or 4, but is {leaf_size}")));
-    }
     for (key, is_there) in [("[[scene]]", !list.scene.is_empty()), ("[[machine]]", !list.machine.is_empty())] {
         anyhow::ensure!(is_there, "{}: {key} is missing: at least one is needed", source.path.display());
     }
@@ -70,8 +68,7 @@ pub fn jobs(source: &Source<'_>) -> anyhow::Result<Jobs> {
         }
         scenes.push(jobs);
     }
-    let leaves = LeafArgs { leaf_layout: list.leaf_layout.unwrap_or(LeafLayout::Line), leaf_size };
-    let jobs = Jobs { scenes, methods, targets, leaves, error: list.error, intervals: list.intervals, files };
+    let jobs = Jobs { scenes, methods, targets, error: list.error, intervals: list.intervals, files };
     let mut seen = HashSet::new();
     for key in jobs.keys()? {
         anyhow::ensure!(seen.insert(key.clone()), "{}: a job is there twice: {key}", source.path.display());
@@ -79,15 +76,44 @@ pub fn jobs(source: &Source<'_>) -> anyhow::Result<Jobs> {
     Ok(jobs)
 }
 
-/// A quality as it is written, and where; none for what has none, or by default.
-type Quality = Option<(String, Range<usize>)>;
+/// The knobs that are the same for all methods: leaves, and those of the list's table.
+fn knobs(source: &Source<'_>, list: &List) -> anyhow::Result<Knobs> {
+    let mut knobs = Knobs::default();
+    if let Some(layout) = &list.leaf_layout {
+        let why = |why: KnobError| source.wrong(layout.span(), format!("leaf_layout: {}", why.why));
+        knobs.set(&LEAF_LAYOUT, layout.get_ref()).map_err(why)?;
+    }
+    if let Some(size) = &list.leaf_size {
+        let why = |_| source.wrong(size.span(), format!("leaf_size must be 1, 2 or 4, but is {}", size.get_ref()));
+        knobs.set(&LEAF_SIZE, &size.get_ref().to_string()).map_err(why)?;
+    }
+    for (name, value) in &list.knobs {
+        let own: Vec<&Knob> =
+            machine_methods().flat_map(|method| method.knobs.iter().copied()).filter(|knob| list_key(knob).is_none()).collect();
+        let names = || own.iter().map(|knob| knob.name).collect::<Vec<_>>().join(", ");
+        let wrong = |what: String| source.wrong(value.span(), format!("knobs: {what}"));
+        let knob = own.iter().find(|knob| knob.name == name).ok_or_else(|| wrong(format!("there is no {name}; there are: {}", names())))?;
+        knobs.set(knob, &value.get_ref().to_string()).map_err(|why| wrong(why.to_string()))?;
+    }
+    Ok(knobs)
+}
+
+/// The key of the list that stands for a knob, if it is not one of its table.
+fn list_key(knob: &Knob) -> Option<&'static str> {
+    [(&DELTA, "deltas"), (&LEAF_LAYOUT, "leaf_layout"), (&LEAF_SIZE, "leaf_size")]
+        .into_iter()
+        .find(|(own, _)| own.name == knob.name)
+        .map(|(_, key)| key)
+}
 
 /// A method with each of its qualities.
-fn qualities(list: &List, method: SimMethod) -> Vec<(SimMethod, Quality)> {
-    match list.deltas.as_ref().filter(|_| method == SimMethod::Lod) {
-        Some(deltas) => deltas.get_ref().iter().map(|delta| (method, Some((delta.to_string(), deltas.span())))).collect(),
-        None => vec![(method, None)],
-    }
+fn qualities(source: &Source<'_>, list: &List, chosen: &Chosen) -> anyhow::Result<Vec<Chosen>> {
+    let Some(deltas) = list.deltas.as_ref().filter(|_| chosen.method.has(DELTA.name)) else { return Ok(vec![chosen.clone()]) };
+    let with = |delta: &super::list::Value| {
+        let wrong = |why: KnobError| source.wrong(deltas.span(), format!("deltas: {}", why.why));
+        Ok(Chosen { method: chosen.method, knobs: chosen.knobs.clone().with(&DELTA, &delta.to_string()).map_err(wrong)? })
+    };
+    deltas.get_ref().iter().map(with).collect()
 }
 
 /// A value that must be there; `place` is where it is missed.
@@ -146,7 +172,7 @@ fn machines(
         let machine = machine(&path, variant, "set").map_err(wrong)?;
         files.extend(machine_files(&path, &machine));
         for &compute in compute {
-            report::check(&machine.description, compute).map_err(|why| wrong(why.into()))?;
+            run::check(&machine.description, compute).map_err(|why| wrong(why.into()))?;
             targets.push(Target { machine: machine.clone(), compute, window: None });
         }
     }

@@ -2,12 +2,14 @@
 
 use super::check;
 use super::list::Source;
-use crate::cli::args::{LeafArgs, SimMethod};
+use crate::cli::method::Chosen;
 use crate::cli::pass::Target;
 use anyhow::Context;
 use lodray::mesh::procedural;
-use lodray::render::{Camera, DEFAULT_DIRECTION, View};
-use lodray::traverse::ModelSpace;
+use lodray::method::Knob;
+use lodray::method::bvh::{LEAF_LAYOUT, LEAF_SIZE};
+use lodray::method::knob::DELTA;
+use lodray::rays::{Camera, DEFAULT_DIRECTION, ModelSpace, View};
 use serde::Serialize;
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
@@ -59,10 +61,9 @@ impl ViewJob {
 /// All jobs: each view of each scene, with each method, on each target.
 pub struct Jobs {
     pub scenes: Vec<SceneJobs>,
-    /// Methods with their qualities; a BVH has but one.
-    pub methods: Vec<(SimMethod, f64)>,
+    /// Methods, with each of their qualities; a BVH has but one.
+    pub methods: Vec<Chosen>,
     pub targets: Vec<Target>,
-    pub leaves: LeafArgs,
     pub error: bool,
     pub intervals: bool,
     /// Files of scenes and machines.
@@ -81,7 +82,7 @@ impl Jobs {
         let mut keys = Vec::new();
         for scene in &self.scenes {
             for view in &scene.views {
-                for &method in &self.methods {
+                for method in &self.methods {
                     for target in &self.targets {
                         keys.push(self.key(scene, view, method, target)?);
                     }
@@ -92,7 +93,7 @@ impl Jobs {
     }
 
     /// Name of a job that changes with everything that its result depends on.
-    pub fn key(&self, scene: &SceneJobs, view: &ViewJob, (method, quality): (SimMethod, f64), target: &Target) -> anyhow::Result<String> {
+    pub fn key(&self, scene: &SceneJobs, view: &ViewJob, chosen: &Chosen, target: &Target) -> anyhow::Result<String> {
         let machine = &target.machine.description;
         let mut inputs = serde_json::to_vec(&(view, &scene.origin, &machine, self.error, self.intervals))?;
         let caches = format!("energy/{}.toml", machine.energy.caches);
@@ -107,13 +108,8 @@ impl Jobs {
             (Some(distance), _) => format!("{distance} radii"),
             (None, eye) => format!("{:?}", eye.unwrap_or_default()),
         };
-        let quality = if method == SimMethod::Lod {
-            format!("delta {quality}")
-        } else {
-            format!("{} {}", self.leaves.leaf_layout.name(), self.leaves.leaf_size)
-        };
         let [width, height] = view.size;
-        let (name, compute) = (method.name(), target.compute.name());
+        let (name, quality, compute) = (chosen.method.name, quality(chosen), target.compute.name());
         Ok(format!(
             "{}, {place}, {width}x{height}, {name}, {quality}, {}, {compute} #{:016x}",
             scene.name,
@@ -121,4 +117,16 @@ impl Jobs {
             xxh3_64(&inputs)
         ))
     }
+}
+
+/// A method's knobs, as a job's name says them.
+fn quality(chosen: &Chosen) -> String {
+    let said = |knob: &&'static Knob| {
+        let value = chosen.knobs.get(knob)?;
+        // Leaves need no name: `line 4`.
+        let is_leaf = [LEAF_LAYOUT.name, LEAF_SIZE.name].contains(&knob.name);
+        let value = if knob.name == DELTA.name { chosen.delta().to_string() } else { value.to_owned() };
+        Some(if is_leaf { value } else { format!("{} {value}", knob.name) })
+    };
+    chosen.method.knobs.iter().filter_map(said).collect::<Vec<_>>().join(" ")
 }

@@ -15,6 +15,7 @@ impl Setting {
     pub const OF_METHODS: &'static [Self] = &[
         Self { text: |r| r.setup.method.name.clone(), always: true },
         Self { text: |r| r.setup.method.delta.map_or_else(String::new, quality), always: false },
+        Self { text: |r| r.setup.method.choices.values().cloned().collect::<Vec<_>>().join(" "), always: false },
         Self { text: |r| r.setup.method.leaves.clone().unwrap_or_default(), always: false },
     ];
     /// Of results on several.

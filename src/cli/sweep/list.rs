@@ -1,8 +1,8 @@
 //! The list of jobs as it stands in its file; every value knows where.
 
-use crate::cli::args::{LeafLayout, SimMethod};
+use crate::cli::method::Listed;
 use lodray::mesh::procedural;
-use lodray::report::result::Compute;
+use lodray::run::Compute;
 use serde::Deserialize;
 use std::collections::BTreeMap;
 use std::fmt::{self, Display};
@@ -19,11 +19,14 @@ pub type Maybe<T> = Option<Spanned<T>>;
 pub struct List {
     pub size: Maybe<String>,
     pub distances: Maybe<Vec<f64>>,
-    pub methods: Maybe<Vec<SimMethod>>,
+    pub methods: Maybe<Vec<Listed>>,
     pub deltas: Maybe<Vec<Value>>,
     pub compute: Maybe<Vec<Compute>>,
-    pub leaf_layout: Option<LeafLayout>,
+    pub leaf_layout: Maybe<String>,
     pub leaf_size: Maybe<u32>,
+    /// Other knobs of methods, by name.
+    #[serde(default)]
+    pub knobs: BTreeMap<String, Spanned<Value>>,
     /// Measure the error of each picture against full resolution.
     #[serde(default)]
     pub error: bool,

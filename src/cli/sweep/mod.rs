@@ -7,21 +7,22 @@ mod labels;
 mod list;
 mod rows;
 
-use super::args::SimMethod;
 use super::cache::{Cache, CacheArgs};
 use super::folder::{Overrule, RunFolder, one_run};
 use super::generate::make;
+use super::method::Chosen;
 use super::output::{check_target, open, print_line, remark, write_file};
 use super::pass::{Outcome, Pass, Target};
-use super::pictures::Shot;
-use super::render::{Built, MethodName, compare_shots};
+use super::pictures::{Shot, shoot};
+use super::render::compare_shots;
 use anyhow::Context;
 use jobs::{Jobs, Origin, SceneJobs, ViewJob};
 use lodray::format::Scene;
-use lodray::render::Camera;
-use lodray::traverse::ModelSpace;
+use lodray::method::knob::DELTA;
+use lodray::method::{Method, reference};
+use lodray::rays::{Camera, ModelSpace};
 use rows::ImageFigures;
-use std::collections::{BTreeMap, HashSet};
+use std::collections::HashSet;
 use std::path::PathBuf;
 use std::process::ExitCode;
 
@@ -49,7 +50,7 @@ pub struct Args {
 /// Jobs that share a functional pass: their keys and targets.
 struct Group<'a> {
     view: &'a ViewJob,
-    method: (SimMethod, f64),
+    chosen: &'a Chosen,
     jobs: Vec<(String, Target)>,
 }
 
@@ -95,17 +96,17 @@ impl<'a> Sweep<'a> {
     fn groups(&self, scene: &'a SceneJobs, done: &HashSet<String>, keys: &mut Vec<String>) -> anyhow::Result<Vec<Group<'a>>> {
         let mut groups = Vec::new();
         for view in &scene.views {
-            for &method in &self.jobs.methods {
+            for chosen in &self.jobs.methods {
                 let mut jobs = Vec::new();
                 for target in &self.jobs.targets {
-                    let key = self.jobs.key(scene, view, method, target)?;
+                    let key = self.jobs.key(scene, view, chosen, target)?;
                     if !done.contains(&key) {
                         jobs.push((key.clone(), target.clone()));
                     }
                     keys.push(key);
                 }
                 if !jobs.is_empty() {
-                    groups.push(Group { view, method, jobs });
+                    groups.push(Group { view, chosen, jobs });
                 }
             }
         }
@@ -125,14 +126,8 @@ impl<'a> Sweep<'a> {
             Ok(made) => made,
             Err(error) => return groups.iter().try_for_each(|group| self.failed(scene, group, &error)),
         };
-        let mut workshop = Workshop {
-            jobs: self.jobs,
-            cache: self.cache,
-            space: ModelSpace::of(&made),
-            scene: &made,
-            built: BTreeMap::new(),
-            truth: None,
-        };
+        let mut workshop =
+            Workshop { jobs: self.jobs, cache: self.cache, space: ModelSpace::of(&made), scene: &made, built: Vec::new(), truth: None };
         for group in groups {
             match workshop.group(group) {
                 Err(error) => self.failed(scene, group, &error)?,
@@ -164,28 +159,24 @@ struct Workshop<'a> {
     cache: &'a Cache,
     scene: &'a Scene,
     space: ModelSpace,
-    built: BTreeMap<SimMethod, Built>,
+    /// Methods by all that what they need depends on, which is not their quality.
+    built: Vec<(Chosen, Box<dyn Method + 'a>)>,
     /// The reference, and its picture of the last view.
-    truth: Option<(Built, Option<(ViewJob, Shot)>)>,
+    truth: Option<(Box<dyn Method + 'a>, Option<(ViewJob, Shot)>)>,
 }
 
 impl Workshop<'_> {
     fn group(&mut self, group: &Group<'_>) -> anyhow::Result<Vec<Row>> {
-        let (method, delta) = group.method;
         let camera = group.view.camera(&self.space)?;
-        if !self.built.contains_key(&method) {
-            self.built.insert(method, Built::new(method.into(), self.scene, self.jobs.leaves, self.cache)?);
-        }
-        let image = if self.jobs.error { Some(self.image_error(group.view, method, delta, &camera)?) } else { None };
+        let at = self.made(group.chosen)?;
+        let image = if self.jobs.error { Some(self.image_error(group.view, at, group.chosen.delta(), &camera)?) } else { None };
         let pass = Pass {
             scene: self.scene,
             space: &self.space,
-            method,
-            built: &self.built[&method],
-            leaves: self.jobs.leaves,
+            chosen: group.chosen,
+            method: &*self.built[at].1,
             camera,
             distance: group.view.distance,
-            delta,
         };
         let targets: Vec<_> = group.jobs.iter().map(|(_, target)| target.clone()).collect();
         let row = |(result, (key, _)): (Outcome, &(String, Target))| match result {
@@ -200,16 +191,27 @@ impl Workshop<'_> {
         Ok(pass.run(&targets)?.into_iter().zip(&group.jobs).map(row).collect())
     }
 
-    fn image_error(&mut self, view: &ViewJob, method: SimMethod, delta: f64, camera: &Camera) -> anyhow::Result<ImageFigures> {
+    /// Where the method is that was made for these choices, now or before.
+    fn made(&mut self, chosen: &Chosen) -> anyhow::Result<usize> {
+        let key = Chosen { knobs: chosen.knobs.clone().without(&DELTA), ..*chosen };
+        if let Some(at) = self.built.iter().position(|(of, _)| *of == key) {
+            return Ok(at);
+        }
+        let (method, _) = chosen.make(self.scene, self.cache)?;
+        self.built.push((key, method));
+        Ok(self.built.len() - 1)
+    }
+
+    fn image_error(&mut self, view: &ViewJob, at: usize, delta: f64, camera: &Camera) -> anyhow::Result<ImageFigures> {
         if self.truth.is_none() {
-            self.truth = Some((Built::new(MethodName::Reference, self.scene, self.jobs.leaves, self.cache)?, None));
+            self.truth = Some((Chosen::plain(&reference::METHOD).make(self.scene, self.cache)?.0, None));
         }
         let (reference, last) = self.truth.as_mut().context("no reference")?;
         if last.as_ref().is_none_or(|(of, _)| of != view) {
-            *last = Some((view.clone(), reference.shoot(self.scene, &self.space, camera, delta, "full resolution")));
+            *last = Some((view.clone(), shoot(&**reference, self.scene, &self.space, camera, delta, "full resolution")));
         }
         let (_, truth) = last.as_ref().context("no picture of the reference")?;
-        let shot = self.built[&method].shoot(self.scene, &self.space, camera, delta, "picture");
+        let shot = shoot(&*self.built[at].1, self.scene, &self.space, camera, delta, "picture");
         let error = compare_shots(&shot, truth, self.scene, camera);
         Ok(ImageFigures { rmse: error.image.rmse, psnr_db: error.image.psnr_db, geometry_pixels_mean: error.geometry_pixels.mean })
     }

@@ -18,10 +18,11 @@ pub use energy::{ComputeEnergy, DramParts, EnergyResult, LeakageEnergy, ReadFill
 pub use intervals::{IntervalPower, IntervalResult};
 pub use memory::{CacheResult, ChannelResult, CrossbarResult, DramResult, WaitShares};
 pub use roofline::{Bound, Roofline};
-pub use setup::{Compute, MachineFacts, MethodFacts, SceneFacts, Setup, ViewFacts};
+pub use setup::{MachineFacts, MethodFacts, SceneFacts, Setup, ViewFacts};
 pub use traffic::{KindResult, LevelBytes, TrafficResult};
 pub use units::{BlockResult, UnitsResult};
 
+use crate::run::Compute;
 use crate::sim::energy::{EnergyCounts, EnergyModel};
 use crate::sim::machine::MachineError;
 use crate::sim::replay::{ReplayError, Run, dram_of};

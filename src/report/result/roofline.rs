@@ -2,7 +2,8 @@
 
 use super::memory::DramResult;
 use super::ratio;
-use super::setup::{Compute, Setup};
+use super::setup::Setup;
+use crate::run::Compute;
 use crate::sim::replay::Run;
 use serde::{Deserialize, Serialize};
 

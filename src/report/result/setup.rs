@@ -1,9 +1,14 @@
 //! What was run, and on what.
 
 use crate::format::Scene;
-use crate::render::Camera;
+use crate::method::bvh::{LEAF_LAYOUT, LEAF_SIZE};
+use crate::method::knob::DELTA;
+use crate::method::{Knobs, Registered};
+use crate::rays::Camera;
+use crate::run::Compute;
 use crate::sim::machine::Machine;
 use serde::{Deserialize, Serialize};
+use std::collections::BTreeMap;
 
 /// Everything that a run depends on.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -33,26 +38,6 @@ impl Setup {
     }
 }
 
-/// How compute is simulated.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize, clap::ValueEnum)]
-#[serde(rename_all = "lowercase")]
-pub enum Compute {
-    /// It takes no time, as in the paper
-    Free,
-    /// Traversal units, cycle by cycle
-    Units,
-}
-
-impl Compute {
-    /// Its name in options and reports.
-    pub const fn name(self) -> &'static str {
-        match self {
-            Self::Free => "free",
-            Self::Units => "units",
-        }
-    }
-}
-
 /// What a scene is.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -78,7 +63,7 @@ impl From<&Scene> for SceneFacts {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct MethodFacts {
-    /// `lod`, `bvh` or `bvh32`.
+    /// Its name in the registry, such as `lod`.
     pub name: String,
     /// Quality of the level of detail; a BVH is always at full resolution.
     #[serde(with = "quality", default, skip_serializing_if = "Option::is_none")]
@@ -86,8 +71,33 @@ pub struct MethodFacts {
     /// Leaves of a BVH, such as `line 4`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub leaves: Option<String>,
+    /// What else was chosen for the frame, such as the `level` of discrete level of detail.
+    #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
+    pub choices: BTreeMap<String, String>,
     /// Size of its memory in bytes.
     pub bytes: u64,
+}
+
+impl MethodFacts {
+    /// A method with its knobs, what it chose for the frame, and the size of its memory.
+    pub fn new(method: &Registered, knobs: &Knobs, choices: &[(&'static str, String)], bytes: u64) -> Self {
+        let leaves = [&LEAF_LAYOUT, &LEAF_SIZE].map(|knob| knobs.get(knob).filter(|_| method.has(knob.name)));
+        Self {
+            name: method.name.to_owned(),
+            delta: method.has(DELTA.name).then(|| knobs.delta()),
+            leaves: if let [Some(layout), Some(size)] = leaves { Some(format!("{layout} {size}")) } else { None },
+            choices: choices.iter().map(|(name, value)| ((*name).to_owned(), value.clone())).collect(),
+            bytes,
+        }
+    }
+
+    /// What tells it from the same method with other knobs, each as text.
+    pub fn details(&self) -> Vec<String> {
+        let delta = self.delta.map(|delta| format!("delta {delta}"));
+        let leaves = self.leaves.as_ref().map(|leaves| format!("leaves {leaves}"));
+        let choices = self.choices.iter().map(|(name, value)| format!("{name} {value}"));
+        delta.into_iter().chain(choices).chain(leaves).collect()
+    }
 }
 
 /// Where the camera is.

@@ -5,8 +5,8 @@ use crate::block::bary_map::{self, NodeIndex};
 use crate::block::hit_divide;
 use crate::block::hit_select::{self, FullId};
 use crate::block::tri_test::{self, EdgeFunction, TNumerator};
+use crate::method::Hit;
 use crate::num::{BARY_ONE, Bary, RayT, U};
-use crate::traverse::Hit;
 
 /// A triangle that was met.
 #[derive(Clone, Copy, Debug, Default)]

@@ -11,9 +11,9 @@ use super::wires::{Cycle, DIVIDE_FOR_T, DIVIDE_FOR_V, DIVIDE_FOR_W};
 use crate::block::bary_map::NodeIndex;
 use crate::block::{child_test, lod_test, ray_setup, tessellate::child_triangle, tree_base};
 use crate::format::{L0Record, VertexData};
+use crate::method::{Entry, Op, Split, TraversalStack, is_beyond};
 use crate::num::{BoundCode, MAX_LEVELS, Point, Ray, U, Wire};
 use crate::sim::ports::SceneConfig;
-use crate::traverse::{Entry, Op, Split, TraversalStack, is_beyond};
 
 /// The registers of a context; those with names of the RTL's `*_q`.
 #[derive(Clone, Default)]

@@ -1,10 +1,9 @@
 //! A scene's sections as the unit's memory, from some address on.
 
+use crate::method::lod::{BOUNDS, LodImage, NODES, RECORDS, VERTICES};
 use crate::num::{BoundScale, LineAddress, U};
 use crate::sim::ports::SceneConfig;
 use crate::step::{MemoryMap, SectionId};
-use crate::traverse::LodImage;
-use crate::traverse::lod::{BOUNDS, NODES, RECORDS, VERTICES};
 
 /// The lines of a model, as its [`MemoryMap`] has them.
 #[derive(Clone, Copy, Debug)]

@@ -4,8 +4,8 @@ use super::context::Context;
 use super::state::Fetch;
 use crate::block::child_test;
 use crate::format::{BoundData, BvhChild, ChildRef};
+use crate::method::{Entry, quarter};
 use crate::num::{TNear, U};
-use crate::traverse::{Entry, quarter};
 
 /// Operands of the test of a node's children.
 pub fn children_in(context: &Context) -> child_test::In {

@@ -5,9 +5,9 @@ use super::records::child_entry;
 use super::state::State;
 use super::{Inputs, Outputs, SceneMemory, TraversalUnit};
 use crate::block::{lod_test, tri_test};
+use crate::method::{Entry, Op, is_beyond};
 use crate::num::{LineAddress, U};
 use crate::sim::ports::HitOut;
-use crate::traverse::{Entry, Op, is_beyond};
 use std::fmt;
 
 /// One thing that happened.

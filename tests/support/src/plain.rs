@@ -1,7 +1,7 @@
 //! Hits of the blocks in the words of the golden traverser.
 
 use lodray::golden::exact::ExactHit;
-use lodray::traverse::Hit;
+use lodray::method::Hit;
 
 /// The fields of a hit as the golden traverser names them.
 pub fn plain(hit: &Hit) -> ExactHit {

@@ -1,12 +1,13 @@
 //! Rays as steps, and what drives the timing of a unit with them: the environment of the cycle model, or events alone.
 
+use lodray::method::ClosestHit;
+use lodray::method::lod::{LodImage, LodTraverser};
 use lodray::num::{Ray, U};
 use lodray::sim::ports::{HitOut, MemoryRequest};
 use lodray::sim::timing::{Ports, RayCursor, Request, UnitTiming};
 use lodray::sim::unit::environment::UnitPort;
 use lodray::sim::unit::{Inputs, Outputs, SceneMemory, UnitConfig};
 use lodray::step::{Batch, Recorder};
-use lodray::traverse::{ClosestHit, LodImage, LodTraverser};
 use std::collections::VecDeque;
 
 /// What `rays` do in `image`.

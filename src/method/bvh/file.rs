@@ -1,0 +1,258 @@
+//! A full-resolution quad-BVH's tree as a file, for whoever wants to build it once only.
+//!
+//! | bytes | what |
+//! |---|---|
+//! | 0..8 | magic |
+//! | 8..12 | version |
+//! | 12..16 | number of splits N |
+//! | 16..32 | key: of what the tree was built |
+//! | 32..40 | bytes of a node: 64 or 128 |
+//! | 40..48 | number of nodes |
+//! | 48..56 | number of triangles |
+//! | 56..72 | checksum of the first 56 bytes and all from 72 on |
+//! | from 72 on | the nodes, then the triangles' ids in leaf order, 4 bytes each |
+//!
+//! All numbers are little-endian. A file is a shortcut, not a source: whatever is not as it should be makes it none.
+
+use super::{FullNodes, FullTree};
+use crate::bvh::{BvhChild32, MAX_DEPTH, Node16, Node32, Options};
+use crate::format::{BvhChild, ChildRef, Scene, Section};
+use crate::num::Wire;
+use rayon::prelude::*;
+use std::io::{self, Read, Write};
+use xxhash_rust::xxh3::Xxh3Default;
+
+const MAGIC: [u8; 8] = *b"LODRAYBV";
+/// Of the file, and of what is built: a test fails when trees change and this does not.
+const VERSION: u32 = 1;
+const HEADER: usize = 72;
+/// Where the checksum stands, behind all that it covers of the header.
+const SUM: usize = 56;
+
+/// What a tree depends on, as a name: equal keys, equal trees.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct TreeKey(u128);
+
+impl TreeKey {
+    /// The key of the tree of `options` over the triangles of a level of `scene`.
+    pub fn new(scene: &Scene, options: &Options, wide_boxes: bool, level: u32) -> Self {
+        let Options { max_leaf, collapse, costs } = options;
+        let mut hash = Xxh3Default::new();
+        for number in [VERSION, scene.levels(), level, *max_leaf, *collapse as u32, u32::from(wide_boxes)] {
+            hash.update(&number.to_le_bytes());
+        }
+        for cost in [costs.node, costs.primitive] {
+            hash.update(&cost.to_bits().to_le_bytes());
+        }
+        for section in [Section::Records, Section::Vertices] {
+            let bytes = scene.section(section);
+            hash.update(&(bytes.len() as u64).to_le_bytes());
+            hash.update(bytes);
+        }
+        Self(hash.digest128())
+    }
+}
+
+impl std::fmt::Display for TreeKey {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        write!(f, "{:032x}", self.0)
+    }
+}
+
+impl FullTree {
+    /// Writes it.
+    ///
+    /// # Errors
+    /// What `out` says.
+    pub fn write(&self, key: TreeKey, out: &mut dyn Write) -> io::Result<()> {
+        let (size, nodes): (u64, &[u8]) = match &self.nodes {
+            FullNodes::Boxes16(nodes) => (64, bytemuck::cast_slice(nodes)),
+            FullNodes::Boxes32(nodes) => (128, bytemuck::cast_slice(nodes)),
+        };
+        let ids = bytemuck::cast_slice(&self.ids);
+        let mut header = Vec::with_capacity(HEADER);
+        header.extend(MAGIC);
+        header.extend(VERSION.to_le_bytes());
+        header.extend(self.levels.to_le_bytes());
+        header.extend(key.0.to_le_bytes());
+        for number in [size, self.nodes.len() as u64, self.ids.len() as u64] {
+            header.extend(number.to_le_bytes());
+        }
+        header.extend(checksum(&header, nodes, ids).to_le_bytes());
+        [&header, nodes, ids].into_iter().try_for_each(|part| out.write_all(part))
+    }
+
+    /// Reads the tree of `key`, which has `triangles`, from a file of `length` bytes; none if that is not what the file holds, whole and sound.
+    pub fn read(key: TreeKey, triangles: u64, length: u64, file: &mut dyn Read) -> Option<Self> {
+        let mut header = [0; HEADER];
+        file.read_exact(&mut header).ok()?;
+        let word = |at: usize| header[at..].first_chunk().map(|bytes| u64::from_le_bytes(*bytes));
+        let half = |at: usize| header[at..].first_chunk().map(|bytes| u32::from_le_bytes(*bytes));
+        let (size, nodes, ids) = (word(32)?, word(40)?, word(48)?);
+        let fits = size.checked_mul(nodes)?.checked_add(ids.checked_mul(4)?)?.checked_add(HEADER as u64)? == length;
+        if header[..8] != MAGIC || half(8)? != VERSION || header[16..32] != key.0.to_le_bytes() || ids != triangles || !fits {
+            return None;
+        }
+        // Both fit into a file of this length.
+        let nodes = match size {
+            64 => FullNodes::Boxes16(filled::<Node16>(nodes as usize, file)?),
+            128 => FullNodes::Boxes32(filled::<Node32>(nodes as usize, file)?),
+            _ => return None,
+        };
+        let tree = Self { levels: half(12)?, nodes, ids: filled(ids as usize, file)? };
+        let sum = checksum(&header[..SUM], tree.nodes.raw(), bytemuck::cast_slice(&tree.ids));
+        (header[SUM..] == sum.to_le_bytes() && tree.is_sound()).then_some(tree)
+    }
+
+    /// Whether traversal stays inside: every reference leads somewhere, inner nodes behind their parents and not too deep.
+    fn is_sound(&self) -> bool {
+        let triangles = self.ids.len() as u64;
+        let count = self.nodes.len();
+        if count == 0 || !self.ids.par_iter().all(|&id| u64::from(id) < triangles) {
+            return false;
+        }
+        let mut depths = vec![0u8; count];
+        depths[0] = 1;
+        (0..count).all(|at| {
+            let below = depths[at] + 1;
+            self.nodes.children(at).into_iter().all(|child| {
+                let index = child.index.get();
+                match child.kind.get() {
+                    ChildRef::EMPTY => true,
+                    ChildRef::INNER => {
+                        let place = index as usize; // 28 bits
+                        let ahead = place > at && place < count && u32::from(below) <= MAX_DEPTH;
+                        if ahead {
+                            depths[place] = depths[place].max(below);
+                        }
+                        ahead
+                    }
+                    ChildRef::LEAF => index + child.count.get() < triangles,
+                    _ => false,
+                }
+            })
+        })
+    }
+}
+
+impl FullNodes {
+    fn raw(&self) -> &[u8] {
+        match self {
+            Self::Boxes16(nodes) => bytemuck::cast_slice(nodes),
+            Self::Boxes32(nodes) => bytemuck::cast_slice(nodes),
+        }
+    }
+
+    fn children(&self, at: usize) -> [ChildRef; 4] {
+        match self {
+            Self::Boxes16(nodes) => std::array::from_fn(|k| BvhChild::from_words(&nodes[at][2 * k..]).child),
+            Self::Boxes32(nodes) => std::array::from_fn(|k| BvhChild32::from_words(&nodes[at][4 * k..]).child),
+        }
+    }
+}
+
+/// `count` values from a file.
+fn filled<T: bytemuck::Pod>(count: usize, file: &mut dyn Read) -> Option<Vec<T>> {
+    let mut values = vec![T::zeroed(); count];
+    file.read_exact(bytemuck::cast_slice_mut(&mut values)).ok()?;
+    Some(values)
+}
+
+fn checksum(header: &[u8], nodes: &[u8], ids: &[u8]) -> u128 {
+    let mut hash = Xxh3Default::new();
+    [header, nodes, ids].into_iter().for_each(|part| hash.update(part));
+    hash.digest128()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::bvh::check::synthetic_terrain;
+    use crate::method::bvh::{FullBuilder, FullOptions, LeafLayout};
+    use proptest::prelude::*;
+    use xxhash_rust::xxh3::xxh3_64;
+
+    const KEY: TreeKey = TreeKey(7 << 100 | 3);
+
+    fn tree(wide: bool) -> FullTree {
+        FullBuilder::new(&synthetic_terrain(3, 2)).unwrap().tree(&Options::with_leaf(2), wide).unwrap()
+    }
+
+    fn file(tree: &FullTree) -> Vec<u8> {
+        let mut bytes = Vec::new();
+        tree.write(KEY, &mut bytes).unwrap();
+        bytes
+    }
+
+    fn read(bytes: &[u8]) -> Option<FullTree> {
+        FullTree::read(KEY, tree(false).ids.len() as u64, bytes.len() as u64, &mut &*bytes)
+    }
+
+    #[test]
+    fn what_was_written_is_read() {
+        for wide in [false, true] {
+            let tree = tree(wide);
+            assert!(read(&file(&tree)).is_some_and(|read| read == tree), "{wide}");
+        }
+    }
+
+    #[test]
+    fn a_file_of_another_key_or_scene_is_none() {
+        let bytes = file(&tree(false));
+        let of = |key, triangles| FullTree::read(key, triangles, bytes.len() as u64, &mut &*bytes);
+        assert!(of(KEY, 288).is_some() && of(TreeKey(8), 288).is_none() && of(KEY, 287).is_none());
+    }
+
+    #[test]
+    fn references_that_lead_nowhere_make_no_tree_even_with_the_right_sum() {
+        let sound = tree(false);
+        let with = |kind: u64, index: u64, count: u64| {
+            let mut tree = sound.clone();
+            let FullNodes::Boxes16(nodes) = &mut tree.nodes else { panic!("16") };
+            let child = match kind {
+                ChildRef::INNER => ChildRef::inner(index as u32),
+                _ => ChildRef::leaf(index as u32, count as u32),
+            };
+            let mut words = [0; 1];
+            child.to_words(&mut words);
+            // The first field of a child: its uppermost 32 bits.
+            nodes[5][1] = nodes[5][1] & u64::from(u32::MAX) | words[0] << 32;
+            read(&file(&tree))
+        };
+        assert!(with(ChildRef::LEAF, 0, 2).is_some());
+        for (kind, index, count) in
+            [(ChildRef::INNER, 5, 0), (ChildRef::INNER, 0, 0), (ChildRef::INNER, 1 << 27, 0), (ChildRef::LEAF, 286, 4)]
+        {
+            assert!(with(kind, index, count).is_none(), "{kind} {index}");
+        }
+        let mut tree = sound.clone();
+        tree.ids[7] = 288;
+        assert!(read(&file(&tree)).is_none());
+    }
+
+    /// Whoever changes what is built must raise [`VERSION`], so that trees of before are not taken for those of now.
+    #[test]
+    fn the_version_names_what_is_built() {
+        let builder = FullBuilder::new(&synthetic_terrain(5, 3)).unwrap();
+        let of = |(size, layout)| {
+            let options = FullOptions::new(size, false, layout);
+            xxh3_64(&file(&builder.tree(&options.tree, options.wide_boxes).unwrap()))
+        };
+        let sums = [(1, LeafLayout::Indexed), (2, LeafLayout::Line), (4, LeafLayout::Line)].map(of);
+        assert_eq!((VERSION, sums), (1, [0x4eded08308a4b0ba, 0xcd864ee52c07bd6e, 0xe98b34fbeb910107]));
+    }
+
+    proptest! {
+        #[test]
+        fn damage_is_noticed(at in any::<prop::sample::Index>(), bit in 0u32..8, wide: bool) {
+            let mut bytes = file(&tree(wide));
+            let at = at.index(bytes.len());
+            bytes[at] ^= 1u8 << bit;
+            prop_assert!(read(&bytes).is_none());
+            bytes[at] ^= 1u8 << bit;
+            prop_assert!(read(&bytes[..at]).is_none());
+            bytes.push(0);
+            prop_assert!(read(&bytes).is_none());
+        }
+    }
+}

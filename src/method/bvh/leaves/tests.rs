@@ -1,0 +1,121 @@
+use super::*;
+use crate::bvh::check::synthetic_terrain;
+use crate::bvh::{BvhChild32, BvhError};
+use crate::format::{BvhChild, ChildRef};
+use crate::method::bvh::{FullBvh, FullNodes, FullOptions};
+use std::collections::BTreeSet;
+
+const LAYOUTS: [LeafLayout; 3] = [LeafLayout::Indexed, LeafLayout::Packed, LeafLayout::Line];
+
+#[test]
+fn every_layout_gives_every_triangle_once() {
+    for levels in [0, 1, 4] {
+        let h = synthetic_terrain(3, levels);
+        for max_leaf in [1, 2, 4] {
+            for layout in LAYOUTS {
+                let leaves = FullBvh::build(&h, &FullOptions::new(max_leaf, false, layout)).unwrap().leaves;
+                assert_eq!(leaves.layout(), layout);
+                let mut seen = BTreeSet::new();
+                for slot in 0..leaves.len() {
+                    let (corners, id) = leaves.triangle(slot);
+                    let (tree, i) = (id >> (2 * levels), id & ((1 << (2 * levels)) - 1));
+                    let want = lattice::node(levels, levels, i).map(|c| h.tree(tree as usize)[lattice::index(levels, c)]);
+                    assert_eq!(corners, want);
+                    assert!(seen.insert(id));
+                }
+                assert_eq!(seen.len() as u64, h.finest_triangles());
+            }
+        }
+    }
+}
+
+#[test]
+fn indexed_vertices_are_shared_and_in_order_of_first_use() {
+    let (quads, levels) = (3, 3);
+    let h = synthetic_terrain(quads, levels);
+    let full = FullBvh::build(&h, &FullOptions::new(2, false, LeafLayout::Indexed)).unwrap();
+    let side = (quads as usize) << levels;
+    assert_eq!(full.leaves.vertices(), (side + 1) * (side + 1));
+    let Storage::Indexed { triples, vertices } = &full.leaves.storage else { panic!("wrong layout") };
+    let mut next = 0;
+    for &v in triples.iter().flatten() {
+        assert!(v <= next);
+        next = next.max(v + 1);
+    }
+    assert_eq!(next as usize, vertices.len());
+}
+
+#[test]
+fn lines_are_those_of_the_records() {
+    let h = synthetic_terrain(2, 3);
+    for layout in LAYOUTS {
+        let leaves = FullBvh::build(&h, &FullOptions::new(4, false, layout)).unwrap().leaves;
+        for slots in (0..leaves.len()).map(|first| first..leaves.len().min(first + 1 + first % 4)) {
+            let mut lines = Vec::new();
+            leaves.lines(slots.clone(), |l| lines.push(l));
+            let mut bytes = BTreeSet::new();
+            let mut record = |from: u64, len: u64| bytes.extend((from..from + len).map(|b| b / 32 * 32));
+            for slot in slots {
+                match &leaves.storage {
+                    Storage::Indexed { triples, .. } => {
+                        record(12 * slot as u64, 12);
+                        let first = (12 * triples.len() as u64).div_ceil(32) * 32;
+                        triples[slot].iter().for_each(|v| record(first + 12 * u64::from(*v), 12));
+                    }
+                    Storage::Packed(_) => record(36 * slot as u64, 36),
+                    Storage::Line(_) => record(32 * slot as u64, 32),
+                }
+            }
+            assert_eq!(lines.len(), bytes.len());
+            assert_eq!(lines.into_iter().collect::<BTreeSet<_>>(), bytes);
+            assert!(bytes.iter().all(|l| *l < leaves.bytes()));
+        }
+    }
+}
+
+#[test]
+fn both_box_widths_refer_to_the_same_and_16_bits_contain_32() {
+    let h = synthetic_terrain(4, 4);
+    let nodes = |wide| FullBvh::build(&h, &FullOptions::new(4, wide, LeafLayout::Line)).unwrap().nodes;
+    let (narrow, wide) = (nodes(false), nodes(true));
+    let FullNodes::Boxes16(narrow) = narrow.as_ref() else { panic!("16") };
+    let FullNodes::Boxes32(wide) = wide.as_ref() else { panic!("32") };
+    assert_eq!(narrow.len(), wide.len());
+    let mut children = 0;
+    for (n, w) in narrow.iter().zip(wide) {
+        for k in 0..4 {
+            let n = BvhChild::from_words(&n[2 * k..]);
+            let w = BvhChild32::from_words(&w[4 * k..]);
+            assert_eq!(n.child, w.child);
+            if n.child.kind.get() == ChildRef::EMPTY {
+                assert_eq!((n, w), Default::default());
+                continue;
+            }
+            children += 1;
+            let (lo, hi, wide_lo, wide_hi) = (n.bounds.lo.get(), n.bounds.hi.get(), w.lo.get(), w.hi.get());
+            for a in 0..3 {
+                assert!(lo[a] << 16 <= wide_lo[a] && wide_lo[a] - (lo[a] << 16) < 65_536);
+                assert!(hi[a] << 16 >= wide_hi[a] && (hi[a] << 16) - wide_hi[a] < 65_536);
+            }
+        }
+    }
+    assert!(children > 2000, "only {children} children");
+}
+
+#[test]
+fn hierarchies_that_do_not_add_up_are_refused() {
+    let good = synthetic_terrain(2, 2);
+    let o = FullOptions::new(4, false, LeafLayout::Line);
+    let mut h = good.clone();
+    h.points.pop();
+    assert!(matches!(FullBvh::build(&h, &o), Err(BvhError::Points { .. })));
+    let mut h = good.clone();
+    (h.triangles, h.points) = (vec![], vec![]);
+    assert_eq!(FullBvh::build(&h, &o), Err(BvhError::Empty));
+    let mut h = good.clone();
+    h.levels = 11;
+    assert_eq!(FullBvh::build(&h, &o), Err(BvhError::Levels(11)));
+    let mut h = good.clone();
+    h.points[20][1] = i32::MIN;
+    assert_eq!(FullBvh::build(&h, &o), Err(BvhError::IllegalBox(1)));
+}

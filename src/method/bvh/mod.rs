@@ -1,0 +1,162 @@
+//! Quad-BVH over the full-resolution mesh, with 16-bit or 32-bit boxes: the baseline (paper section 6.1).
+
+mod file;
+mod finest;
+mod full;
+mod leaves;
+mod store;
+mod trace;
+
+pub use file::TreeKey;
+pub use full::{FullBuilder, FullBvh, FullNodes, FullOptions, FullTree};
+pub use leaves::{LeafLayout, Leaves};
+pub use store::{NoStore, TreeStore};
+pub use trace::BvhTraverser;
+
+use super::{ClosestHit, Knob, Knobs, Method, Registered, SurfaceHit, Trace, Tracer};
+use crate::bvh::BvhError;
+use crate::format::Scene;
+use crate::rays::{ModelSpace, Query, Sight};
+use crate::sim::energy::Operation;
+use crate::step::{MemoryMap, Section, SectionId, Step, StepSink};
+
+/// Nodes.
+pub const NODES: SectionId = SectionId::new(0);
+/// Triangles: index triples and vertices, packed triangles or triangle lines.
+pub const LEAVES: SectionId = SectionId::new(1);
+
+/// How leaf triangles lie in memory.
+pub static LEAF_LAYOUT: Knob = Knob {
+    name: "leaf-layout",
+    value_name: "LEAF_LAYOUT",
+    help: "Leaf layout of a BVH",
+    default: Some("line"),
+    words: &[
+        ("indexed", "Index triples and shared vertices"),
+        ("packed", "Nine 32-bit coordinates, 36 bytes"),
+        ("line", "One 32-byte line of 28-bit coordinates"),
+    ],
+    allows: |value| LeafLayout::named(value).map(drop).ok_or_else(|| format!("'{value}' is not indexed, packed or line")),
+};
+
+/// Largest number of triangles in a leaf.
+pub static LEAF_SIZE: Knob = Knob {
+    name: "leaf-size",
+    value_name: "LEAF_SIZE",
+    help: "Largest number of triangles in a leaf of a BVH: 1, 2 or 4",
+    default: Some("4"),
+    words: &[],
+    allows: |value| if ["1", "2", "4"].contains(&value) { Ok(()) } else { Err(format!("'{value}' is not 1, 2 or 4")) },
+};
+
+/// Operations of a unit for nodes with 16-bit boxes.
+pub(super) const UNIT: &[Operation] =
+    &[Operation::RaySetup, Operation::NodeAddress, Operation::ChildTest, Operation::TriTest, Operation::HitDivide, Operation::HitSelect];
+
+/// The method with 16-bit boxes.
+pub static METHOD: Registered = Registered {
+    name: "bvh",
+    help: "Quad-BVH of the full-resolution mesh, 16-bit boxes",
+    knobs: &[&LEAF_LAYOUT, &LEAF_SIZE],
+    unit: Some(UNIT),
+    make: |scene, knobs, store| Bvh::of(scene, knobs, false, store),
+};
+
+/// The method with 32-bit boxes.
+pub static METHOD_WIDE: Registered = Registered {
+    name: "bvh32",
+    help: "The same with 32-bit boxes",
+    knobs: &[&LEAF_LAYOUT, &LEAF_SIZE],
+    unit: Some(&[
+        Operation::RaySetup,
+        Operation::NodeAddress,
+        Operation::BoxTest32,
+        Operation::ChildSort,
+        Operation::TriTest,
+        Operation::HitDivide,
+        Operation::HitSelect,
+    ]),
+    make: |scene, knobs, store| Bvh::of(scene, knobs, true, store),
+};
+
+impl FullOptions {
+    /// Those that were chosen.
+    pub fn chosen(knobs: &Knobs, wide_boxes: bool) -> Self {
+        // Checked when they were chosen.
+        let layout = knobs.get(&LEAF_LAYOUT).and_then(LeafLayout::named).unwrap_or(LeafLayout::Line);
+        let size = knobs.get(&LEAF_SIZE).and_then(|size| size.parse().ok()).unwrap_or(4);
+        Self::new(size, wide_boxes, layout)
+    }
+}
+
+/// The method on a scene.
+struct Bvh {
+    bvh: FullBvh,
+    space: ModelSpace,
+}
+
+impl Bvh {
+    fn of<'a>(scene: &Scene, knobs: &Knobs, wide_boxes: bool, store: &dyn TreeStore) -> Result<Box<dyn Method + 'a>, BvhError> {
+        let options = FullOptions::chosen(knobs, wide_boxes);
+        let hierarchy = scene.decode();
+        let key = || TreeKey::new(scene, &options.tree, wide_boxes, scene.levels());
+        let tree = store.tree(&key, scene.finest_triangles(), &mut || FullBuilder::new(&hierarchy)?.tree(&options.tree, wide_boxes))?;
+        Ok(Box::new(Self { bvh: tree.with_leaves(&hierarchy, options.layout)?, space: ModelSpace::of(scene) }))
+    }
+}
+
+impl Method for Bvh {
+    fn map(&self, _: &Sight) -> MemoryMap {
+        bvh_map(&[&self.bvh])
+    }
+
+    fn tracer(&self, _: &Sight) -> Box<dyn Tracer + '_> {
+        Box::new(BvhTracer::new(BvhTraverser::new(&self.bvh), self.space, self.bvh.levels))
+    }
+}
+
+/// Rays through a BVH of the triangles of one level.
+pub(super) struct BvhTracer<'a> {
+    traverser: BvhTraverser<'a>,
+    space: ModelSpace,
+    /// Number of splits N of the scene.
+    levels: u32,
+}
+
+impl<'a> BvhTracer<'a> {
+    pub fn new(traverser: BvhTraverser<'a>, space: ModelSpace, levels: u32) -> Self {
+        Self { traverser, space, levels }
+    }
+}
+
+impl Trace for BvhTracer<'_> {
+    fn trace<S: StepSink>(&mut self, query: &Query, steps: &mut S) -> Option<SurfaceHit> {
+        // Its triangles are what they are, whatever the quality.
+        let Some(ray) = self.space.enter(query, 1.0) else {
+            steps.step(Step::end(false, false));
+            return None;
+        };
+        let mut hit = ClosestHit::of(self.levels, &ray, query.any);
+        self.traverser.trace(&ray.ray, steps, &mut hit);
+        hit.record().map(|hit| SurfaceHit::new(&ray, &hit))
+    }
+}
+
+/// The memory of some BVHs with boxes of one kind: the nodes of all, then the leaves of all.
+///
+/// # Panics
+/// They have more lines than can be numbered: more than 2^28 triangles.
+pub fn bvh_map(bvhs: &[&FullBvh]) -> MemoryMap {
+    let sum = |bytes: fn(&FullBvh) -> u64| bvhs.iter().map(|bvh| bytes(bvh).next_multiple_of(crate::num::LINE_BYTES)).sum();
+    let sections = [Section::of_bytes("bvh_node", sum(|bvh| bvh.nodes.bytes())), Section::of_bytes("leaf", sum(|bvh| bvh.leaves.bytes()))];
+    let lines = bvhs.first().map_or(1, |bvh| node_lines(&bvh.nodes));
+    MemoryMap::new(&sections, lines).expect("at most 2^28 triangles, of at most eight lines each with their nodes")
+}
+
+/// Lines of a node.
+fn node_lines(nodes: &FullNodes) -> u32 {
+    match nodes {
+        FullNodes::Boxes16(_) => 2,
+        FullNodes::Boxes32(_) => 4,
+    }
+}

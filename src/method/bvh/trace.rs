@@ -1,0 +1,163 @@
+//! The baseline: the full-resolution mesh under a quad-BVH with 16-bit or 32-bit boxes, built from the same blocks (paper section 6.1).
+
+use super::{FullBvh, FullNodes, LEAVES, Leaves, NODES, bvh_map, node_lines};
+use crate::block::Block;
+use crate::block::box_test32::{self, BoxTest32};
+use crate::block::child_sort;
+use crate::block::child_test::sort;
+use crate::block::ray_setup::{self, RaySetup};
+use crate::block::tri_test::{self, TriTest};
+use crate::bvh::BvhChild32;
+use crate::format::{BvhChild, ChildRef};
+use crate::method::children::{bvh_children, quarter};
+use crate::method::stack::{Entry, Op, TraversalStack, push_sorted};
+use crate::method::{HitSink, TriangleId, is_beyond};
+use crate::num::{LINE_BYTES, Point, Ray, U, Wire};
+use crate::step::{Act, Fetch, MemoryMap, Step, StepSink, TriangleRun};
+use std::ops::Range;
+
+/// Traces rays through a full-resolution quad-BVH; keeps its stack from ray to ray.
+pub struct BvhTraverser<'a> {
+    levels: u32,
+    nodes: &'a FullNodes,
+    leaves: &'a Leaves,
+    map: MemoryMap,
+    /// Lines of other BVHs before its own, in each section.
+    before: [u64; 2],
+    /// Its hits are on triangles of this level alone, which are those of the full resolution if nothing is finer.
+    mapped: bool,
+    stack: TraversalStack,
+}
+
+impl<'a> BvhTraverser<'a> {
+    /// A traverser of `bvh`.
+    pub fn new(bvh: &'a FullBvh) -> Self {
+        let map = bvh_map(&[bvh]);
+        Self {
+            levels: bvh.levels,
+            nodes: &bvh.nodes,
+            leaves: &bvh.leaves,
+            map,
+            before: [0; 2],
+            mapped: false,
+            stack: TraversalStack::default(),
+        }
+    }
+
+    /// A traverser of a level's `bvh` in the memory `all` of the BVHs of all levels, behind those of `before`; hits are mapped to the finest.
+    pub(in crate::method) fn behind(bvh: &'a FullBvh, all: MemoryMap, before: &MemoryMap) -> Self {
+        let mut lines = [0; 2];
+        before.sections().zip(&mut lines).for_each(|((_, section), lines)| *lines = section.lines);
+        Self { map: all, before: lines, mapped: true, ..Self::new(bvh) }
+    }
+
+    /// Number of splits N of the hierarchy below which the mesh lies.
+    pub fn levels(&self) -> u32 {
+        self.levels
+    }
+
+    /// Traces `ray`: every triangle met goes to `sink`, every step to `steps`.
+    pub fn trace<S: StepSink, H: HitSink>(&mut self, ray: &Ray, steps: &mut S, sink: &mut H) {
+        self.trace_with(ray, steps, sink, |_| ());
+    }
+
+    /// The same; the slots of every leaf read go to `leaf` too.
+    pub fn trace_with<S: StepSink, H: HitSink>(&mut self, ray: &Ray, steps: &mut S, sink: &mut H, mut leaf: impl FnMut(Range<usize>)) {
+        let setup = RaySetup::eval(&ray_setup::In { origin: ray.origin, direction: ray.direction });
+        self.stack.clear();
+        let mut next = Some(Entry::default());
+        loop {
+            if sink.is_done() {
+                break;
+            }
+            // A child just tested is not beyond the closest hit; an entry that waited may be by now.
+            let Some(entry) = next.take().or_else(|| self.pop(steps, sink)) else {
+                if self.stack.is_empty() {
+                    break;
+                }
+                continue;
+            };
+            let index = entry.index.get() as usize;
+            if entry.kind.get() == Entry::BVH_NODE {
+                next = self.node(&setup, index, steps, sink);
+            } else {
+                // Leaves keep their count in `level`, which trees need and leaves do not.
+                let slots = index..index + entry.level.get() as usize + 1;
+                leaf(slots.clone());
+                self.leaf(ray, slots, steps, sink);
+            }
+        }
+        steps.step(Step::end(sink.found(), self.mapped));
+    }
+
+    /// Takes the next entry from the stack; `None` if there is none, or it lies behind the closest hit.
+    #[inline(always)]
+    fn pop<S: StepSink, H: HitSink>(&mut self, steps: &mut S, sink: &H) -> Option<Entry> {
+        let entry = self.stack.step(Op::Pop)?;
+        let dropped = is_beyond(entry.t_near, sink.t_max());
+        steps.step(Step::of(Act::Pop { dropped }));
+        (!dropped).then_some(entry)
+    }
+
+    #[inline(always)]
+    fn node<S: StepSink, H: HitSink>(&mut self, setup: &ray_setup::Out, index: usize, steps: &mut S, sink: &H) -> Option<Entry> {
+        let t_max = sink.t_max();
+        // Inner nodes and leaves have the kinds of their entries one lower.
+        let waiting = |child: ChildRef| Entry {
+            kind: U::new(child.kind.get() - 1),
+            level: U::new(child.count.get()),
+            index: child.index,
+            ..Entry::default()
+        };
+        let lines = node_lines(self.nodes);
+        let fetch = Fetch::new(NODES, self.map.line(NODES, self.before[NODES.place()] + u64::from(lines) * index as u64), lines);
+        match self.nodes {
+            FullNodes::Boxes16(nodes) => {
+                let child = |k| quarter::<BvhChild>(&nodes[index], k);
+                let tests = bvh_children(setup, t_max, &nodes[index]);
+                steps.step(Step::on(fetch, Act::Children { met: tests.met() }).visiting());
+                push_sorted(&mut self.stack, &tests, |k| waiting(child(k).child))
+            }
+            FullNodes::Boxes32(nodes) => {
+                let child = |k| BvhChild32::from_words(&nodes[index][4 * k..4 * k + 4]);
+                let mut tests = child_sort::In::default();
+                for k in 0..4 {
+                    let BvhChild32 { child, lo, hi } = child(k);
+                    if child.kind.get() != ChildRef::EMPTY {
+                        let test = BoxTest32::eval(&box_test32::In { ray: *setup, t_max, lo, hi });
+                        (tests.hit[k], tests.t_near[k]) = (test.hit, test.t_near);
+                    }
+                }
+                let tests = sort(&tests);
+                steps.step(Step::on(fetch, Act::WideChildren { met: tests.met() }).visiting());
+                push_sorted(&mut self.stack, &tests, |k| waiting(child(k).child))
+            }
+        }
+    }
+
+    /// Reads the leaf of the triangles in `slots` and tests them.
+    #[inline(always)]
+    fn leaf<S: StepSink, H: HitSink>(&mut self, ray: &Ray, slots: Range<usize>, steps: &mut S, sink: &mut H) {
+        let mut place = 0;
+        self.leaves.lines(slots.clone(), |address| {
+            let fetch = Fetch::new(LEAVES, self.map.line(LEAVES, self.before[LEAVES.place()] + address / LINE_BYTES), 1).at(place);
+            let first = place == 0;
+            let fetch = if first { fetch } else { fetch.joining() };
+            steps.step(Step { visits: first, ..Step::on(fetch, Act::Fetch) });
+            place += 1;
+        });
+        let mut run = TriangleRun::default();
+        for slot in slots {
+            let (points, id) = self.leaves.triangle(slot);
+            let [p0, p1, p2] = points.map(Point::from_i32);
+            let test = TriTest::eval(&tri_test::In { origin: ray.origin, direction: ray.direction, p0, p1, p2 });
+            run.add(test.hit, steps);
+            if test.hit {
+                let levels = self.levels;
+                let (tree, node) = (id >> (2 * levels), id & ((1 << (2 * levels)) - 1));
+                sink.offer(TriangleId { tree, level: levels, node }, &test);
+            }
+        }
+        run.state(steps);
+    }
+}

@@ -1,0 +1,102 @@
+//! Discrete level of detail: a quad-BVH with 16-bit boxes over each whole level of the hierarchy, of which all rays of a frame use one.
+//!
+//! The level is the coarsest whose displacement is tolerated where the model is nearest: with h the largest displacement bound of the level's edges, r the
+//! smallest radius of any ray's cone at the model, h <= 2 r / delta, as the LOD test has it of each edge (paper section 4.1); or the one that is chosen.
+
+mod levels;
+
+use super::bvh::{BvhTracer, BvhTraverser, FullBuilder, FullBvh, FullOptions, LEAF_LAYOUT, LEAF_SIZE, TreeKey, TreeStore, UNIT, bvh_map};
+use super::knob::DELTA;
+use super::{Knob, Knobs, Method, Registered, Tracer};
+use crate::bvh::BvhError;
+use crate::format::Scene;
+use crate::num::MAX_LEVELS;
+use crate::rays::{ModelSpace, Sight};
+use crate::sim::energy::Operation;
+use crate::step::MemoryMap;
+use levels::{at_level, largest_bounds};
+
+/// The level for all rays.
+pub static LEVEL: Knob = Knob {
+    name: "level",
+    value_name: "LEVEL",
+    help: "Level of the discrete method, 0 the base mesh; the finest if the scene has fewer (default: chosen for the frame by --delta)",
+    default: None,
+    words: &[],
+    allows: |value| {
+        let level = value.parse().ok().filter(|level| (0..=MAX_LEVELS).contains(level));
+        level.map(|_: u32| ()).ok_or_else(|| format!("'{value}' is not a level from 0 to {MAX_LEVELS}"))
+    },
+};
+
+/// The method.
+pub static METHOD: Registered = Registered {
+    name: "discrete",
+    help: "Discrete levels of detail: a quad-BVH of each level, one level for the whole frame",
+    knobs: &[&DELTA, &LEVEL, &LEAF_LAYOUT, &LEAF_SIZE],
+    unit: Some(&{
+        // As for a BVH, and a hit on a coarse triangle is mapped to the full resolution.
+        let mut operations = [Operation::BaryMap; UNIT.len() + 1];
+        operations.split_at_mut(UNIT.len()).0.copy_from_slice(UNIT);
+        operations
+    }),
+    make: |scene, knobs, store| Discrete::of(scene, knobs, store),
+};
+
+/// The method on a scene.
+struct Discrete {
+    /// By level.
+    bvhs: Vec<FullBvh>,
+    /// Largest displacement bound of each level's edges, in units; 0 for the finest.
+    bounds: Vec<u64>,
+    chosen: Option<u32>,
+    space: ModelSpace,
+}
+
+impl Discrete {
+    fn of<'a>(scene: &Scene, knobs: &Knobs, store: &dyn TreeStore) -> Result<Box<dyn Method + 'a>, BvhError> {
+        let options = FullOptions::chosen(knobs, false);
+        let hierarchy = scene.decode();
+        let bvh = |level| {
+            let own = at_level(&hierarchy, level);
+            let key = || TreeKey::new(scene, &options.tree, false, level);
+            let tree = store.tree(&key, own.finest_triangles(), &mut || FullBuilder::new(&own)?.tree(&options.tree, false))?;
+            tree.with_leaves(&own, options.layout)
+        };
+        let levels = scene.levels();
+        Ok(Box::new(Self {
+            bvhs: (0..=levels).map(bvh).collect::<Result<_, _>>()?,
+            bounds: largest_bounds(&hierarchy),
+            chosen: knobs.get(&LEVEL).and_then(|level| level.parse().ok()).map(|level: u32| level.min(levels)),
+            space: ModelSpace::of(scene),
+        }))
+    }
+
+    fn level(&self, sight: &Sight) -> usize {
+        let finest = self.bounds.len() - 1;
+        let tolerance = if sight.delta > 0.0 { 2.0 * sight.least_radius / sight.delta } else { f64::INFINITY };
+        let serves = || self.bounds.iter().position(|&bound| bound as f64 <= tolerance);
+        self.chosen.map(|level| level as usize).or_else(serves).unwrap_or(finest)
+    }
+}
+
+impl Method for Discrete {
+    fn map(&self, sight: &Sight) -> MemoryMap {
+        let level = self.level(sight);
+        let nodes = |bvh: &FullBvh| bvh.nodes.len() as u32; // below 2^28
+        let before = self.bvhs[..level].iter().map(nodes).sum();
+        bvh_map(&self.bvhs.iter().collect::<Vec<_>>()).from_node(before, nodes(&self.bvhs[level]))
+    }
+
+    fn tracer(&self, sight: &Sight) -> Box<dyn Tracer + '_> {
+        let level = self.level(sight);
+        let before = bvh_map(&self.bvhs[..level].iter().collect::<Vec<_>>());
+        let all = bvh_map(&self.bvhs.iter().collect::<Vec<_>>());
+        let traverser = BvhTraverser::behind(&self.bvhs[level], all, &before);
+        Box::new(BvhTracer::new(traverser, self.space, self.bvhs.len() as u32 - 1)) // at most 10
+    }
+
+    fn choices(&self, sight: &Sight) -> Vec<(&'static str, String)> {
+        vec![("level", self.level(sight).to_string())]
+    }
+}

@@ -1,0 +1,231 @@
+//! Hits: what a traversal returns, and what it does with each triangle that the ray meets.
+
+use crate::block::Block;
+use crate::block::bary_map::{self, BaryMap, NodeIndex};
+use crate::block::hit_divide::{self, HitDivide};
+use crate::block::hit_select::{self, FullId, HitSelect};
+use crate::block::tri_test::{self, EdgeFunction, TNumerator};
+use crate::num::{BARY_ONE, Bary, RayT, T_NEAR_TO_T_SHIFT, TNear, U, wire_struct};
+use crate::rays::ModelRay;
+
+wire_struct! {
+    /// The hit record.
+    pub struct Hit {
+        /// Ray parameter in steps of 2^-32 of the direction.
+        t: RayT,
+        /// The front face was met.
+        front: bool,
+        /// Base triangle.
+        tree: U<28>,
+        /// Level of the triangle that was met, 0 to N.
+        level: U<4>,
+        /// Its node on that level.
+        node: NodeIndex,
+        /// Weight of its p0, 2^31 = 1.
+        b0: Bary,
+        /// Weight of its p1.
+        b1: Bary,
+        /// Weight of its p2.
+        b2: Bary,
+        /// Node on level N: the full-resolution triangle is `tree * 4^N + full_node`.
+        full_node: NodeIndex,
+        /// Weight of the full-resolution triangle's corner 0.
+        full_b0: Bary,
+        /// Weight of corner 1.
+        full_b1: Bary,
+        /// Weight of corner 2.
+        full_b2: Bary,
+    }
+}
+
+/// Which triangle of a hierarchy.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
+pub struct TriangleId {
+    /// Base triangle.
+    pub tree: u32,
+    /// Level.
+    pub level: u32,
+    /// Node on that level.
+    pub node: u32,
+}
+
+/// Receives every triangle that a ray meets.
+pub trait HitSink {
+    /// Nothing beyond this t is wanted.
+    fn t_max(&self) -> RayT;
+    /// Triangle `id` was met; `test.hit` is true.
+    fn offer(&mut self, id: TriangleId, test: &tri_test::Out);
+    /// Something was met that counts.
+    fn found(&self) -> bool;
+    /// Nothing more is wanted.
+    #[inline(always)]
+    fn is_done(&self) -> bool {
+        false
+    }
+}
+
+/// True if a box entered at `t_near` cannot hold a hit that beats one at `t`.
+#[inline(always)]
+pub fn is_beyond(t_near: TNear, t: RayT) -> bool {
+    t_near.get() << T_NEAR_TO_T_SHIFT > t.get()
+}
+
+/// Keeps the closest hit: smaller t, then smaller id; or, if any serves, the first that it is offered.
+#[derive(Clone, Debug)]
+pub struct ClosestHit {
+    levels: u32,
+    /// Steps of t that count.
+    range: [RayT; 2],
+    any: bool,
+    t: RayT,
+    id: FullId,
+    best: Option<(TriangleId, tri_test::Out)>,
+}
+
+impl ClosestHit {
+    /// Nothing yet, in a hierarchy of `levels` splits.
+    pub fn new(levels: u32) -> Self {
+        Self { levels, range: [RayT::ZERO, RayT::MAX], any: false, t: RayT::MAX, id: FullId::ZERO, best: None }
+    }
+
+    /// The same where only the steps of t of `ray` count; any hit serves if `any`.
+    pub fn of(levels: u32, ray: &ModelRay, any: bool) -> Self {
+        Self { range: ray.range, any, t: ray.range[1], ..Self::new(levels) }
+    }
+
+    /// The hit record: divides and maps.
+    pub fn record(&self) -> Option<Hit> {
+        let (id, test) = self.best.as_ref()?;
+        let weight = |edge: EdgeFunction| {
+            // An edge function is at most det: the quotient is at most 2^32 before its last bit is dropped.
+            let numerator = TNumerator::new(edge.get());
+            HitDivide::eval(&hit_divide::In { numerator, denominator: test.det }).quotient.get() >> 1
+        };
+        let (b1, b2) = (weight(test.v), weight(test.w));
+        // Both were rounded down and v + w <= det.
+        let [b0, b1, b2] = [BARY_ONE - b1 - b2, b1, b2].map(Bary::new);
+        let node = U::new(u64::from(id.node));
+        let full = BaryMap::eval(&bary_map::In { levels: U::new(u64::from(self.levels - id.level)), node, b0, b1, b2 });
+        Some(Hit {
+            t: self.t,
+            front: test.front,
+            tree: U::new(u64::from(id.tree)),
+            level: U::new(u64::from(id.level)),
+            node,
+            b0,
+            b1,
+            b2,
+            full_node: full.node,
+            full_b0: full.b0,
+            full_b1: full.b1,
+            full_b2: full.b2,
+        })
+    }
+}
+
+impl HitSink for ClosestHit {
+    #[inline(always)]
+    fn t_max(&self) -> RayT {
+        self.t
+    }
+
+    #[inline(always)]
+    fn offer(&mut self, id: TriangleId, test: &tri_test::Out) {
+        let t = HitDivide::eval(&hit_divide::In { numerator: test.t_num, denominator: test.det }).quotient;
+        if t < self.range[0] || t > self.range[1] {
+            return;
+        }
+        let select = HitSelect::eval(&hit_select::In {
+            levels: U::new(u64::from(self.levels)),
+            known: self.best.is_some(),
+            best_t: self.t,
+            best_id: self.id,
+            t,
+            tree: U::new(u64::from(id.tree)),
+            level: U::new(u64::from(id.level)),
+            node: U::new(u64::from(id.node)),
+        });
+        if select.closer {
+            (self.t, self.id) = (t, select.id);
+            self.best = Some((id, *test));
+        }
+    }
+
+    fn found(&self) -> bool {
+        self.best.is_some()
+    }
+
+    #[inline(always)]
+    fn is_done(&self) -> bool {
+        self.any && self.best.is_some()
+    }
+}
+
+/// Counts all crossings of the surface: for a closed surface and a ray that starts outside, `front` equals `back`.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Crossings {
+    /// Front faces met.
+    pub front: u32,
+    /// Back faces met.
+    pub back: u32,
+}
+
+impl HitSink for Crossings {
+    #[inline(always)]
+    fn t_max(&self) -> RayT {
+        RayT::MAX
+    }
+
+    #[inline(always)]
+    fn offer(&mut self, _: TriangleId, test: &tri_test::Out) {
+        if test.front {
+            self.front += 1;
+        } else {
+            self.back += 1;
+        }
+    }
+
+    fn found(&self) -> bool {
+        self.front + self.back > 0
+    }
+}
+
+/// Where a ray meets the surface, in the world.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct SurfaceHit {
+    /// Distance from the ray's origin in world units.
+    pub distance: f64,
+    /// Base triangle.
+    pub tree: u32,
+    /// Full-resolution triangle within its tree.
+    pub full_node: u32,
+    /// Barycentrics on the full-resolution triangle.
+    pub full_bary: [f32; 3],
+    /// Level of the triangle that was met.
+    pub level: u32,
+    /// Its node on that level.
+    pub node: u32,
+    /// Barycentrics on that triangle.
+    pub bary: [f32; 3],
+    /// The front face was met.
+    pub front: bool,
+}
+
+impl SurfaceHit {
+    /// A hit of the integer ray of a query.
+    pub fn new(ray: &ModelRay, hit: &Hit) -> Self {
+        let weight = |b: Bary| (b.get() as f64 / BARY_ONE as f64) as f32;
+        // Field widths are below 32 bits.
+        let [tree, full_node, level, node] = [hit.tree.get(), hit.full_node.get(), hit.level.get(), hit.node.get()].map(|v| v as u32);
+        Self {
+            distance: ray.distance(hit.t.get()),
+            tree,
+            full_node,
+            full_bary: [hit.full_b0, hit.full_b1, hit.full_b2].map(weight),
+            level,
+            node,
+            bary: [hit.b0, hit.b1, hit.b2].map(weight),
+            front: hit.front,
+        }
+    }
+}

@@ -1,0 +1,126 @@
+//! What may be chosen of methods, by name.
+
+use std::collections::BTreeMap;
+use thiserror::Error;
+
+/// Something that may be chosen.
+pub struct Knob {
+    /// Its name: that of the option, without dashes.
+    pub name: &'static str,
+    /// What stands for its value in help.
+    pub value_name: &'static str,
+    /// One line about it.
+    pub help: &'static str,
+    /// Its value if nothing is chosen; none if the method then chooses.
+    pub default: Option<&'static str>,
+    /// Its values with a line about each, if they are words.
+    pub words: &'static [(&'static str, &'static str)],
+    /// Refuses other values than its own, and says why.
+    pub allows: fn(&str) -> Result<(), String>,
+}
+
+/// A value that is none of a knob's.
+#[derive(Clone, Debug, PartialEq, Eq, Error)]
+#[error("{name}: {why}")]
+pub struct KnobError {
+    /// The knob's name.
+    pub name: &'static str,
+    /// What is wrong.
+    pub why: String,
+}
+
+impl Knob {
+    /// Refuses a value that is none of its own.
+    ///
+    /// # Errors
+    /// What its values are.
+    pub fn check(&self, value: &str) -> Result<(), KnobError> {
+        (self.allows)(value).map_err(|why| KnobError { name: self.name, why })
+    }
+}
+
+/// Chosen values, by name; knobs that are not among them have their defaults.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Knobs(BTreeMap<&'static str, String>);
+
+impl Knobs {
+    /// Chooses a value.
+    ///
+    /// # Errors
+    /// It is none of the knob's.
+    pub fn set(&mut self, knob: &'static Knob, value: &str) -> Result<(), KnobError> {
+        knob.check(value)?;
+        self.0.insert(knob.name, value.to_owned());
+        Ok(())
+    }
+
+    /// The same in one go.
+    ///
+    /// # Errors
+    /// As [`Self::set`].
+    pub fn with(mut self, knob: &'static Knob, value: &str) -> Result<Self, KnobError> {
+        self.set(knob, value)?;
+        Ok(self)
+    }
+
+    /// The same without a choice of this knob.
+    #[must_use]
+    pub fn without(mut self, knob: &Knob) -> Self {
+        self.0.remove(knob.name);
+        self
+    }
+
+    /// The chosen value of a knob, if it was chosen.
+    pub fn chosen(&self, knob: &Knob) -> Option<&str> {
+        self.0.get(knob.name).map(String::as_str)
+    }
+
+    /// The value of a knob: the chosen one, or its default.
+    pub fn get(&self, knob: &Knob) -> Option<&str> {
+        self.0.get(knob.name).map(String::as_str).or(knob.default)
+    }
+}
+
+/// Quality of the level of detail.
+pub static DELTA: Knob = Knob {
+    name: "delta",
+    value_name: "DELTA",
+    help: "Quality of methods with level of detail: 1 keeps a level's displacement under a pixel, 0 is the base mesh, inf full detail",
+    default: Some("1"),
+    words: &[],
+    allows: |value| quality(value).map(drop),
+};
+
+/// A quality: a number that is not negative, or `inf`.
+///
+/// # Errors
+/// What a quality is.
+pub fn quality(value: &str) -> Result<f64, String> {
+    match value.parse::<f64>() {
+        Ok(v) if v >= 0.0 => Ok(v),
+        _ => Err(format!("'{value}' is not a quality: 0 (base mesh) to inf (full detail), 1 is one pixel")),
+    }
+}
+
+impl Knobs {
+    /// The chosen quality.
+    pub fn delta(&self) -> f64 {
+        // Checked when it was chosen.
+        self.get(&DELTA).and_then(|value| quality(value).ok()).unwrap_or(1.0)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn values_are_checked_when_chosen() {
+        let knobs = Knobs::default();
+        assert_eq!((knobs.get(&DELTA), knobs.delta()), (Some("1"), 1.0));
+        assert_eq!(knobs.clone().with(&DELTA, "inf").unwrap().delta(), f64::INFINITY);
+        let refused = knobs.with(&DELTA, "-1").unwrap_err().to_string();
+        assert!(refused.starts_with("delta: '-1' is not a quality"), "{refused}");
+        assert!(quality("inf").is_ok() && quality("-1").is_err() && quality("nan").is_err());
+    }
+}

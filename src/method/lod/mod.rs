@@ -1,0 +1,74 @@
+//! Locally adaptive level of detail: a level chosen for each ray and each edge while it is traced (the paper's method).
+
+mod image;
+mod trace;
+
+pub use image::{BOUNDS, LodImage, NODES, RECORDS, VERTICES};
+pub use trace::LodTraverser;
+
+use super::knob::DELTA;
+use super::{ClosestHit, Method, Registered, SurfaceHit, Trace, Tracer};
+use crate::format::Scene;
+use crate::rays::{ModelSpace, Query, Sight};
+use crate::sim::energy::Operation;
+use crate::step::{MemoryMap, Step, StepSink};
+
+/// The method.
+pub static METHOD: Registered = Registered {
+    name: "lod",
+    help: "Locally adaptive level of detail",
+    knobs: &[&DELTA],
+    unit: Some(&[
+        Operation::RaySetup,
+        Operation::NodeAddress,
+        Operation::TreeBase,
+        Operation::ChildTest,
+        Operation::LodTest,
+        Operation::Tessellate,
+        Operation::TriTest,
+        Operation::HitDivide,
+        Operation::HitSelect,
+        Operation::BaryMap,
+    ]),
+    make: |scene, _, _| Ok(Box::new(Lod::of(scene))),
+};
+
+/// The method on a scene.
+struct Lod<'a> {
+    image: LodImage<'a>,
+    space: ModelSpace,
+}
+
+impl<'a> Lod<'a> {
+    fn of(scene: &'a Scene) -> Self {
+        Self { image: LodImage::of(scene), space: ModelSpace::of(scene) }
+    }
+}
+
+impl Method for Lod<'_> {
+    fn map(&self, _: &Sight) -> MemoryMap {
+        self.image.map
+    }
+
+    fn tracer(&self, sight: &Sight) -> Box<dyn Tracer + '_> {
+        Box::new(LodTracer { traverser: LodTraverser::new(self.image), space: self.space, delta: sight.delta })
+    }
+}
+
+struct LodTracer<'a> {
+    traverser: LodTraverser<'a>,
+    space: ModelSpace,
+    delta: f64,
+}
+
+impl Trace for LodTracer<'_> {
+    fn trace<S: StepSink>(&mut self, query: &Query, steps: &mut S) -> Option<SurfaceHit> {
+        let Some(ray) = self.space.enter(query, self.delta) else {
+            steps.step(Step::end(false, false));
+            return None;
+        };
+        let mut hit = ClosestHit::of(self.traverser.levels(), &ray, query.any);
+        self.traverser.trace(&ray.ray, steps, &mut hit);
+        hit.record().map(|hit| SurfaceHit::new(&ray, &hit))
+    }
+}

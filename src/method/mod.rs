@@ -1,0 +1,81 @@
+//! Ways to find hits, each in a folder of its own: its structure and sections, knobs, trace, and the unit that its rays need.
+//!
+//! Whatever runs a method knows it by the traits here and by its entry in [`METHODS`]; adding one touches its folder and that line. What methods share lies
+//! beside the folders: children of a node tested and sorted, hits kept, the stack.
+
+pub mod bvh;
+mod children;
+pub mod discrete;
+mod hit;
+pub mod knob;
+pub mod lod;
+pub mod reference;
+mod registry;
+mod stack;
+mod tracer;
+
+pub(crate) use children::{Split, quarter};
+pub use hit::{ClosestHit, Crossings, Hit, HitSink, SurfaceHit, TriangleId, is_beyond};
+pub use knob::{Knob, KnobError, Knobs};
+pub use registry::{METHODS, find};
+pub use stack::{Entry, Op, STACK_ENTRIES, TraversalStack};
+pub use tracer::{Trace, Tracer};
+
+use crate::bvh::BvhError;
+use crate::format::Scene;
+use crate::rays::Sight;
+use crate::sim::energy::Operation;
+use crate::step::MemoryMap;
+use bvh::TreeStore;
+use std::fmt;
+
+/// A method in the registry.
+pub struct Registered {
+    /// Its name in options and reports.
+    pub name: &'static str,
+    /// One line about it.
+    pub help: &'static str,
+    /// What may be chosen.
+    pub knobs: &'static [&'static Knob],
+    /// Operations whose blocks a unit for its rays has; none if it is no hardware.
+    pub unit: Option<&'static [Operation]>,
+    /// Builds what it needs for a scene.
+    pub make: Make,
+}
+
+/// Builds what a method needs for a scene.
+pub type Make = for<'a> fn(&'a Scene, &Knobs, &dyn TreeStore) -> Result<Box<dyn Method + 'a>, BvhError>;
+
+/// A method with what it needs for one scene.
+pub trait Method: Send + Sync {
+    /// Its memory, for rays that see `sight`; empty if it has none in hardware.
+    fn map(&self, sight: &Sight) -> MemoryMap;
+
+    /// Traces one ray after the other; one for each thread.
+    fn tracer(&self, sight: &Sight) -> Box<dyn Tracer + '_>;
+
+    /// What it chose for these rays, beyond its knobs: name and value.
+    fn choices(&self, _sight: &Sight) -> Vec<(&'static str, String)> {
+        Vec::new()
+    }
+}
+
+impl Registered {
+    /// It has a knob of this name.
+    pub fn has(&self, knob: &str) -> bool {
+        self.knobs.iter().any(|own| own.name == knob)
+    }
+}
+
+impl fmt::Debug for Registered {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(self.name)
+    }
+}
+
+/// Names are told apart by the registry's test.
+impl PartialEq for Registered {
+    fn eq(&self, other: &Self) -> bool {
+        self.name == other.name
+    }
+}

@@ -1,0 +1,50 @@
+//! The full-resolution mesh in `f64`: the truth that pictures are compared with. It is no hardware, and reads no memory.
+
+use super::{Method, Registered, SurfaceHit, Trace, Tracer};
+use crate::golden::reference::Reference;
+use crate::rays::{ModelSpace, Query, Sight};
+use crate::step::{MemoryMap, Step, StepSink};
+
+/// The method.
+pub static METHOD: Registered = Registered {
+    name: "reference",
+    help: "f64, full resolution: the truth",
+    knobs: &[],
+    unit: None,
+    make: |scene, _, _| Ok(Box::new(Truth { reference: Reference::new(&scene.decode()), space: ModelSpace::of(scene) })),
+};
+
+struct Truth {
+    reference: Reference,
+    space: ModelSpace,
+}
+
+impl Method for Truth {
+    fn map(&self, _: &Sight) -> MemoryMap {
+        MemoryMap::default()
+    }
+
+    fn tracer(&self, _: &Sight) -> Box<dyn Tracer + '_> {
+        Box::new(self)
+    }
+}
+
+impl Trace for &Truth {
+    fn trace<S: StepSink>(&mut self, query: &Query, steps: &mut S) -> Option<SurfaceHit> {
+        let scale = self.space.placement.scale;
+        let [near, far] = [query.t_min, query.t_max].map(|t| t / scale);
+        let hit = self.reference.trace_between(self.space.to_units(query.origin), query.direction, [near, far]);
+        steps.step(Step::end(hit.is_some(), false));
+        let hit = hit?;
+        Some(SurfaceHit {
+            distance: hit.t * scale,
+            tree: hit.tree,
+            full_node: hit.full_node,
+            full_bary: hit.bary.map(|b| b as f32),
+            level: self.reference.levels(),
+            node: hit.full_node,
+            bary: hit.bary.map(|b| b as f32),
+            front: hit.front,
+        })
+    }
+}

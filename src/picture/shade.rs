@@ -1,0 +1,129 @@
+//! Pictures from frames: headlight shading, normals, level-of-detail map, error map.
+
+use super::Frame;
+use crate::format::Scene;
+use crate::mesh::lattice;
+use crate::method::SurfaceHit;
+use crate::rays::Camera;
+use glam::{DVec3, Vec3};
+use image::{Rgb, RgbImage};
+use rayon::prelude::*;
+
+/// Base colour of a scene without materials.
+const GREY: Vec3 = Vec3::splat(0.8);
+/// Background, linear.
+const BACKGROUND: Vec3 = Vec3::new(0.012, 0.016, 0.024);
+
+/// Colours of levels 0 to 10, coarse to fine, linear: blue, green, yellow, red, white.
+const LEVELS: [[f32; 3]; 11] = [
+    [0.03, 0.05, 0.35],
+    [0.03, 0.15, 0.65],
+    [0.02, 0.40, 0.70],
+    [0.02, 0.50, 0.35],
+    [0.10, 0.55, 0.08],
+    [0.45, 0.60, 0.03],
+    [0.85, 0.55, 0.03],
+    [0.90, 0.25, 0.03],
+    [0.80, 0.06, 0.08],
+    [0.75, 0.10, 0.45],
+    [0.85, 0.75, 0.85],
+];
+
+/// Headlight shading with the full-resolution normals and the material's colour, sRGB.
+pub fn shaded(frame: &Frame, scene: &Scene, camera: &Camera) -> RgbImage {
+    paint(frame, |index, pixel| {
+        let Some(pixel) = pixel else { return BACKGROUND };
+        let material = scene.record(pixel.tree as usize).material.get() as u16;
+        let cosine = view_cosine(scene, camera, index, pixel);
+        scene.colour(material).map_or(GREY, Vec3::from_array) * (0.06 + 0.94 * cosine)
+    })
+}
+
+/// |n.d| at pixel number `index` of a frame: full-resolution shading normal against the view direction.
+pub fn view_cosine(scene: &Scene, camera: &Camera, index: usize, pixel: &SurfaceHit) -> f32 {
+    let (x, y) = (index as u32 % camera.width, index as u32 / camera.width); // below 2^16 each
+    let view = DVec3::from_array(camera.ray(x, y).direction).as_vec3();
+    normal(scene, pixel).dot(view).abs()
+}
+
+/// Full-resolution normals as colours, (n + 1) / 2.
+pub fn normal_map(frame: &Frame, scene: &Scene) -> RgbImage {
+    map(frame, |_, pixel| match pixel {
+        Some(pixel) => normal_colour(normal(scene, pixel)),
+        None => Rgb([0, 0, 0]),
+    })
+}
+
+/// Colour of a unit normal.
+pub(super) fn normal_colour(normal: Vec3) -> Rgb<u8> {
+    bytes((normal + 1.0) * 0.5)
+}
+
+/// Level of each pixel's triangle as a colour, the triangles told apart by brightness.
+pub fn level_map(frame: &Frame) -> RgbImage {
+    paint(frame, |_, pixel| {
+        let Some(pixel) = pixel else { return BACKGROUND };
+        let mixed =
+            (u64::from(pixel.tree) << 24 ^ u64::from(pixel.level) << 20 ^ u64::from(pixel.node)).wrapping_mul(0x9E37_79B9_7F4A_7C15);
+        level(pixel.level, (mixed >> 40) as f32 / (1u32 << 24) as f32)
+    })
+}
+
+/// Linear colour of a level, `shade` of 0 to 1 being its darkest to its brightest.
+fn level(level: u32, shade: f32) -> Vec3 {
+    Vec3::from_array(LEVELS[level as usize % LEVELS.len()]) * (0.55 + 0.45 * shade)
+}
+
+/// The same as the map has it.
+pub(super) fn level_colour(of: u32, shade: f32) -> Rgb<u8> {
+    encoded(level(of, shade))
+}
+
+/// Largest difference of a pixel's channels as heat.
+pub fn error_map(a: &RgbImage, b: &RgbImage) -> RgbImage {
+    let mut out = RgbImage::new(a.width(), a.height());
+    for ((out, a), b) in out.pixels_mut().zip(a.pixels()).zip(b.pixels()) {
+        let difference = (0..3).map(|k| a.0[k].abs_diff(b.0[k])).max().unwrap_or(0);
+        *out = heat(f32::from(difference));
+    }
+    out
+}
+
+/// The difference that is white; larger ones are, too.
+pub(super) const HOTTEST: u32 = 64;
+
+/// Colour of a difference: black 0, through red and yellow, white [`HOTTEST`] of 255 and more.
+pub(super) fn heat(difference: f32) -> Rgb<u8> {
+    let heat = 3.0 * (difference / HOTTEST as f32).min(1.0);
+    bytes(Vec3::new(heat, heat - 1.0, heat - 2.0))
+}
+
+/// The shading normal of a pixel: full-resolution normals, interpolated.
+fn normal(scene: &Scene, pixel: &SurfaceHit) -> Vec3 {
+    let levels = scene.levels();
+    let corners = lattice::node(levels, levels, pixel.full_node);
+    let sum: Vec3 = (0..3).map(|k| Vec3::from_array(scene.normal_at(pixel.tree as usize, corners[k])) * pixel.full_bary[k]).sum();
+    sum.normalize_or_zero()
+}
+
+fn map(frame: &Frame, colour: impl Fn(usize, &Option<SurfaceHit>) -> Rgb<u8> + Sync) -> RgbImage {
+    let bytes: Vec<u8> = frame.pixels.par_iter().enumerate().flat_map_iter(|(i, p)| colour(i, p).0).collect();
+    RgbImage::from_raw(frame.width, frame.height, bytes).expect("three bytes for each pixel")
+}
+
+/// Like [`map`] with linear colours.
+fn paint(frame: &Frame, colour: impl Fn(usize, &Option<SurfaceHit>) -> Vec3 + Sync) -> RgbImage {
+    map(frame, |i, p| encoded(colour(i, p)))
+}
+
+/// A linear colour in sRGB.
+fn encoded(colour: Vec3) -> Rgb<u8> {
+    let to_srgb = |c: f32| if c <= 0.003_130_8 { 12.92 * c } else { 1.055 * c.powf(1.0 / 2.4) - 0.055 };
+    let c = colour.clamp(Vec3::ZERO, Vec3::ONE);
+    bytes(Vec3::new(to_srgb(c.x), to_srgb(c.y), to_srgb(c.z)))
+}
+
+fn bytes(c: Vec3) -> Rgb<u8> {
+    // Clamped to a byte before the cast.
+    Rgb((c.clamp(Vec3::ZERO, Vec3::ONE) * 255.0).round().to_array().map(|v| v as u8))
+}

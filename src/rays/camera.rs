@@ -1,0 +1,334 @@
+//! The pinhole camera.
+
+use super::{ModelSpace, Query, orbit};
+use glam::DVec3;
+use std::ops::Range;
+use thiserror::Error;
+
+/// The paper's camera: focal length 35 on a sensor of height 24.
+pub const DEFAULT_VIEW_ANGLE_DEGREES: f64 = 37.849_288_832_102_47;
+
+/// From the target to the eye if nothing says so, where up is +y.
+pub const DEFAULT_DIRECTION: [f64; 3] = [0.35, 0.5, 1.0];
+
+/// Room around the model's bounding sphere where the eye is placed so that all of it is seen, in radii.
+const MARGIN: f64 = 0.02;
+
+/// Farthest that the eye is placed so, in bounding radii.
+const FARTHEST: f64 = 1e6;
+
+/// Most columns and rows of a picture.
+pub const MAX_SIDE: u32 = 1 << 16;
+/// Most pixels of a picture: traced pixels and their shading then stay below 8 GB.
+pub const MAX_PIXELS: u64 = 1 << 26;
+
+/// Where to look from; what is `None` is chosen to suit the model.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct View {
+    /// Eye; by default in `direction` from the target.
+    pub eye: Option<[f64; 3]>,
+    /// From the target to the eye, any length, where `eye` is `None`; by default [`DEFAULT_DIRECTION`], turned with `up`.
+    pub direction: Option<[f64; 3]>,
+    /// Target; by default the centre of the model's box.
+    pub target: Option<[f64; 3]>,
+    /// Up; (0, 1, 0) by default.
+    pub up: Option<[f64; 3]>,
+    /// Distance from target to eye in bounding radii, where `eye` is `None` or only gives the direction; by default the smallest (rounded up to
+    /// hundredths) at which the picture holds the whole bounding sphere.
+    pub distance: Option<f64>,
+    /// Vertical view angle in degrees.
+    pub fov: f64,
+}
+
+impl Default for View {
+    fn default() -> Self {
+        Self { eye: None, direction: None, target: None, up: None, distance: None, fov: DEFAULT_VIEW_ANGLE_DEGREES }
+    }
+}
+
+/// A view that cannot be.
+#[derive(Clone, Debug, Error, PartialEq)]
+pub enum CameraError {
+    /// Not a number a camera can use.
+    #[error("{0} must be {1}")]
+    Field(&'static str, String),
+}
+
+fn field<T>(name: &'static str, must_be: impl Into<String>) -> Result<T, CameraError> {
+    Err(CameraError::Field(name, must_be.into()))
+}
+
+/// A camera with its image size.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Camera {
+    /// Eye in world space.
+    pub eye: DVec3,
+    /// Where it looks.
+    pub target: DVec3,
+    /// What was asked to be up.
+    pub up: DVec3,
+    /// Vertical view angle in degrees.
+    pub fov: f64,
+    /// Distance from the target in bounding radii, if the eye was placed by it.
+    pub placed: Option<f64>,
+    /// Distance from the target in bounding radii.
+    pub radii: f64,
+    forward: DVec3,
+    /// To the next pixel on the right, and up, for a picture plane at distance 1.
+    right: DVec3,
+    above: DVec3,
+    /// Columns.
+    pub width: u32,
+    /// Rows.
+    pub height: u32,
+    /// Tangent of the half angle of every pixel's cone: half a pixel at the picture's centre.
+    pub tan_theta: f64,
+}
+
+impl Camera {
+    /// The camera of `view` on a model, for a picture of `width` x `height` pixels.
+    ///
+    /// # Errors
+    /// Names the field that is not finite, not positive, or leaves no direction.
+    pub fn new(view: &View, space: &ModelSpace, width: u32, height: u32) -> Result<Self, CameraError> {
+        let finite = |v: Option<[f64; 3]>, name| match v {
+            Some(v) if !v.iter().all(|c| c.is_finite()) => field(name, "three finite numbers"),
+            v => Ok(v.map(DVec3::from_array)),
+        };
+        let (eye, target, up) = (finite(view.eye, "--eye")?, finite(view.target, "--target")?, finite(view.up, "--up")?);
+        let direction = finite(view.direction, "the direction of the eye")?;
+        if !(view.fov > 0.0 && view.fov < 180.0) {
+            return field("--fov", "between 0 and 180 degrees");
+        }
+        if width == 0 || height == 0 || width > MAX_SIDE || height > MAX_SIDE || u64::from(width) * u64::from(height) > MAX_PIXELS {
+            return field("--size", format!("at most {MAX_SIDE} pixels wide and high, and {MAX_PIXELS} in all"));
+        }
+        let half_height = (0.5 * view.fov.to_radians()).tan();
+        let half_width = half_height * f64::from(width) / f64::from(height);
+        let target = target.unwrap_or_else(|| DVec3::from_array(space.centre()));
+        let (eye, placed) = match (eye, view.distance) {
+            (Some(eye), None) => (eye, None),
+            (eye, distance) => {
+                let default = || direction.unwrap_or_else(|| orbit::turned(up, DVec3::from_array(DEFAULT_DIRECTION)));
+                let Some(direction) = eye.map_or_else(default, |e| e - target).try_normalize() else {
+                    return field("--eye", "different from --target");
+                };
+                let distance = match distance {
+                    Some(distance) if distance > 0.0 && distance.is_finite() => distance,
+                    Some(_) => return field("--distance", "a positive number of bounding radii"),
+                    None => {
+                        let (side, above) = across(-direction, up)?;
+                        let centre = DVec3::from_array(space.centre()) - target;
+                        fit([(side, half_width), (above, half_height)], -direction, centre / space.radius())?
+                    }
+                };
+                (target + direction * (distance * space.radius()), Some(distance))
+            }
+        };
+        let Some(forward) = (target - eye).try_normalize() else { return field("--eye", "different from --target") };
+        let (side, above) = across(forward, up)?;
+        let pixel = 2.0 * half_height / f64::from(height);
+        Ok(Self {
+            eye,
+            target,
+            up: up.unwrap_or(DVec3::Y),
+            fov: view.fov,
+            placed,
+            radii: placed.unwrap_or_else(|| (target - eye).length() / space.radius()),
+            forward,
+            right: side * pixel,
+            above: above * pixel,
+            width,
+            height,
+            tan_theta: 0.5 * pixel,
+        })
+    }
+
+    /// The ray through the centre of pixel (`x`, `y`), row 0 at the top.
+    pub fn ray(&self, x: u32, y: u32) -> Query {
+        self.ray_at(f64::from(x) + 0.5, f64::from(y) + 0.5)
+    }
+
+    /// The ray through picture position (`x`, `y`) in pixels.
+    pub fn ray_at(&self, x: f64, y: f64) -> Query {
+        let direction = self.forward + self.right * (x - 0.5 * f64::from(self.width)) - self.above * (y - 0.5 * f64::from(self.height));
+        Query::new(self.eye.to_array(), direction.normalize().to_array()).with_cone(0.0, self.tan_theta)
+    }
+
+    /// Where a direction forwards from the eye is in the picture, in pixels; the inverse of [`Self::ray_at`].
+    fn project(&self, v: DVec3) -> [f64; 2] {
+        let v = v / v.dot(self.forward);
+        let along = |axis: DVec3| v.dot(axis) / axis.length_squared();
+        [0.5 * f64::from(self.width) + along(self.right), 0.5 * f64::from(self.height) - along(self.above)]
+    }
+
+    /// Columns and rows outside which no ray meets the model's enlarged box.
+    pub fn window(&self, space: &ModelSpace) -> [Range<u32>; 2] {
+        // In units, as rays enter the box, and from the eye.
+        let eye = DVec3::from_array(space.to_units(self.eye.to_array()));
+        let corners = space.enlarged().map(|c| DVec3::from_array(c) - eye);
+        let sizes = [self.width, self.height];
+        let near = 1e-3 * space.radius() / space.placement.scale;
+        if !corners.iter().all(|c| c.dot(self.forward) >= near) {
+            // Beside or behind the eye: anywhere.
+            return sizes.map(|n| 0..n);
+        }
+        let points = corners.map(|c| self.project(c));
+        std::array::from_fn(|k| {
+            let least = points.iter().map(|p| p[k]).fold(f64::INFINITY, f64::min);
+            let most = points.iter().map(|p| p[k]).fold(f64::NEG_INFINITY, f64::max);
+            // A pixel more, for rounding.
+            let pixel = |v: f64| v.clamp(0.0, f64::from(sizes[k])) as u32; // at most MAX_SIDE
+            pixel(least.floor() - 1.0)..pixel(most.ceil() + 1.0)
+        })
+    }
+}
+
+/// Unit vectors to the right and up in the picture of an eye that looks along `forward`.
+fn across(forward: DVec3, up: Option<DVec3>) -> Result<(DVec3, DVec3), CameraError> {
+    let side = forward.cross(up.unwrap_or(DVec3::Y));
+    // Nearly along the view direction, rounding would decide what is up.
+    let clear = side.length() > 1e-9 * up.unwrap_or(DVec3::Y).length();
+    let side = match side.try_normalize().filter(|_| clear) {
+        Some(side) => side,
+        // Looking straight up or down: any other axis serves.
+        None if up.is_none() => forward.cross(DVec3::NEG_Z).normalize(),
+        None => return field("--up", format!("neither 0 nor along the view direction {}", shown(forward))),
+    };
+    Ok((side, side.cross(forward)))
+}
+
+/// Distance from the target, in bounding radii, at which a picture holds the bounding sphere and its margin. `half` are the picture's axes with the
+/// tangents of their half angles; `centre` is that of the sphere as seen from the target, in radii.
+fn fit(half: [(DVec3, f64); 2], forward: DVec3, centre: DVec3) -> Result<f64, CameraError> {
+    let radius = 1.0 + MARGIN;
+    let mut distance = radius;
+    for (axis, tangent) in half {
+        for axis in [axis, -axis] {
+            // The plane through the eye and that border of the picture; its normal points inwards.
+            let inwards = (axis + forward * tangent).normalize();
+            distance = distance.max((radius - centre.dot(inwards)) / forward.dot(inwards));
+        }
+    }
+    let distance = (distance * 100.0).ceil() / 100.0;
+    if distance <= FARTHEST {
+        Ok(distance)
+    } else {
+        field("--distance", format!("given: at this --fov the whole model is seen from beyond {FARTHEST} bounding radii only"))
+    }
+}
+
+/// A vector as an option takes it.
+fn shown(v: DVec3) -> String {
+    format!("{},{},{}", v.x, v.y, v.z)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::mesh::Placement;
+
+    fn space() -> ModelSpace {
+        let side = 1 << 20;
+        ModelSpace { placement: Placement { offset: [0.0; 3], scale: 1.0 / f64::from(side) }, lo: [-side; 3], hi: [side; 3] }
+    }
+
+    #[test]
+    fn the_default_angle_is_that_of_a_35_mm_lens() {
+        assert!((DEFAULT_VIEW_ANGLE_DEGREES - 2.0 * (12.0f64 / 35.0).atan().to_degrees()).abs() < 1e-9);
+    }
+
+    #[test]
+    fn distance_is_in_bounding_radii_and_the_cone_is_half_a_pixel() {
+        let camera = Camera::new(&View { distance: Some(4.0), ..View::default() }, &space(), 64, 32).unwrap();
+        assert!((camera.eye.length() - 4.0 * 3f64.sqrt()).abs() < 1e-9);
+        assert!((camera.tan_theta - 12.0 / 35.0 / 32.0).abs() < 1e-12);
+        let middle = camera.ray_at(32.0, 16.0);
+        assert!((DVec3::from_array(middle.direction) - camera.forward).length() < 1e-12);
+    }
+
+    #[test]
+    fn the_default_view_holds_the_bounding_sphere_tightly() {
+        let space = ModelSpace { lo: [-(1 << 20), -300_000, 5], ..space() };
+        let (centre, radius) = (DVec3::from_array(space.centre()), space.radius());
+        let sphere: Vec<DVec3> = (0..200)
+            .flat_map(|i| {
+                (0..400).map(move |j| (f64::from(i) / 199.0 * std::f64::consts::PI, f64::from(j) / 400.0 * std::f64::consts::TAU))
+            })
+            .map(|(a, b)| centre + radius * DVec3::new(a.sin() * b.cos(), a.cos(), a.sin() * b.sin()))
+            .collect();
+        for (width, height) in [(64, 64), (300, 200), (50, 700), (1, 1)] {
+            for fov in [1.0, DEFAULT_VIEW_ANGLE_DEGREES, 100.0, 170.0] {
+                for target in [None, Some([0.3, 0.1, -0.2])] {
+                    let view = View { fov, target, ..View::default() };
+                    let camera = Camera::new(&view, &space, width, height).unwrap();
+                    // How far towards a border the sphere reaches, 1 being the border.
+                    let reach = sphere.iter().map(|&p| {
+                        let [x, y] = camera.project(p - camera.eye);
+                        (2.0 * x / f64::from(width) - 1.0).abs().max((2.0 * y / f64::from(height) - 1.0).abs())
+                    });
+                    let reach = reach.fold(0.0, f64::max);
+                    assert!(reach < 1.0, "{width}x{height} {fov} {target:?}: {reach}");
+                    let closer = View { distance: Some(0.95 * camera.placed.unwrap()), ..view };
+                    let closer = Camera::new(&closer, &space, width, height).unwrap();
+                    // Below about 0.95 of the distance and its margin of 0.02 a sphere is cut; at wide angles the eye would be within it.
+                    let cut = sphere.iter().any(|&p| {
+                        let [x, y] = closer.project(p - closer.eye);
+                        let behind = (p - closer.eye).dot(closer.forward) <= 0.0;
+                        behind || x < 0.0 || y < 0.0 || x > f64::from(width) || y > f64::from(height)
+                    });
+                    assert!(cut, "{width}x{height} {fov} {target:?}: not tight");
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn rays_outside_the_window_miss_and_the_window_is_tight() {
+        let space = ModelSpace { lo: [-(1 << 20), -300_000, 5], ..space() };
+        let mut narrow = 0;
+        for k in 0..60 {
+            let (a, b) = (f64::from(k) * 0.7, f64::from(k % 7) - 3.0);
+            let direction = Some([a.cos(), 0.4 * b, a.sin()]);
+            let distance = Some([0.1, 0.6, 1.0, 1.5, 4.0, 30.0][k as usize % 6]);
+            let target = (k % 3 == 0).then_some([0.9, -0.2, 0.8]);
+            let camera = Camera::new(&View { direction, distance, target, fov: 60.0, ..View::default() }, &space, 90, 70).unwrap();
+            let [columns, rows] = camera.window(&space);
+            let hit = |x, y| space.enter(&camera.ray(x, y), 1.0).is_some();
+            for (x, y) in (0..90).flat_map(|x| (0..70).map(move |y| (x, y))) {
+                assert!(columns.contains(&x) && rows.contains(&y) || !hit(x, y), "{k}: ({x}, {y}) outside {columns:?} {rows:?}");
+            }
+            if rows != (0..70) && !rows.is_empty() && !columns.is_empty() {
+                narrow += 1;
+                assert!(rows.clone().take(4).any(|y| (0..90).any(|x| hit(x, y))) || rows.start == 0, "{k}: {rows:?}");
+            }
+        }
+        assert!(narrow > 20, "{narrow}");
+    }
+
+    #[test]
+    fn the_default_distance_can_be_given_as_a_number() {
+        let camera = Camera::new(&View::default(), &space(), 64, 64).unwrap();
+        assert_eq!(camera.placed, Some(3.15));
+        assert_eq!(Camera::new(&View { distance: Some(3.15), ..View::default() }, &space(), 64, 64), Ok(camera));
+        assert!((camera.radii - 3.15).abs() < 1e-12);
+        let eye = View { eye: Some([0.0, 0.0, 9.0]), ..View::default() };
+        let camera = Camera::new(&eye, &space(), 64, 64).unwrap();
+        assert_eq!((camera.placed, camera.radii), (None, 9.0 / space().radius()));
+    }
+
+    #[test]
+    fn views_that_cannot_be_name_their_field() {
+        let refuse = |view: View| Camera::new(&view, &space(), 8, 8).unwrap_err().to_string();
+        assert!(refuse(View { fov: 180.0, ..View::default() }).contains("--fov"));
+        assert!(refuse(View { fov: 1e-7, ..View::default() }).contains("--distance"));
+        assert!(refuse(View { distance: Some(-1.0), ..View::default() }).contains("--distance"));
+        assert!(refuse(View { eye: Some([0.0; 3]), target: Some([0.0; 3]), ..View::default() }).contains("--eye"));
+        assert!(refuse(View { eye: Some([f64::NAN; 3]), ..View::default() }).contains("--eye"));
+        for up in [[0.0; 3], [0.0, 0.0, 7.0], [1e-12, 0.0, 1.0]] {
+            let said = refuse(View { eye: Some([0.0, 0.0, 4.0]), up: Some(up), ..View::default() });
+            assert_eq!(said, "--up must be neither 0 nor along the view direction 0,0,-1");
+        }
+        assert!(Camera::new(&View { eye: Some([0.0, 4.0, 0.0]), ..View::default() }, &space(), 8, 8).is_ok(), "straight down");
+    }
+}

@@ -1,0 +1,14 @@
+//! Rays as they are asked for: a [`Query`] in the world, from a camera or a file, and its way into the model's integers.
+
+mod camera;
+mod cone;
+mod orbit;
+mod query;
+mod source;
+mod space;
+
+pub use camera::{Camera, CameraError, DEFAULT_DIRECTION, DEFAULT_VIEW_ANGLE_DEGREES, MAX_PIXELS, MAX_SIDE, View};
+pub use cone::cone;
+pub use query::Query;
+pub use source::{RaySource, Sight};
+pub use space::{ModelRay, ModelSpace};

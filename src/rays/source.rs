@@ -1,0 +1,92 @@
+//! Where rays come from.
+
+use super::{Camera, ModelSpace, Query};
+
+/// Columns and rows of a camera's tile.
+const TILE: u32 = 8;
+
+/// Rays in batches; a group of cores takes a batch at a time.
+pub trait RaySource: Sync {
+    /// Rays in all.
+    fn rays(&self) -> u64;
+
+    /// How many batches there are.
+    fn batches(&self) -> usize;
+
+    /// Tells `each` the number and the query of every ray of a batch, in their order.
+    fn batch(&self, batch: usize, each: &mut dyn FnMut(u64, &Query));
+
+    /// The smallest radius, in world units, that the cone of any ray has where it is nearest to the model.
+    fn least_radius(&self, space: &ModelSpace) -> f64;
+}
+
+/// What a method may choose by once for all rays of a frame.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Sight {
+    /// Quality of the level of detail: 0 the base mesh, infinite full detail, 1 one pixel.
+    pub delta: f64,
+    /// The smallest radius of any ray's cone where it is nearest to the model, in units of the model.
+    pub least_radius: f64,
+}
+
+impl Sight {
+    /// What the rays of `source` see of a model at this quality.
+    pub fn new(source: &dyn RaySource, space: &ModelSpace, delta: f64) -> Self {
+        Self { delta, least_radius: source.least_radius(space) / space.placement.scale }
+    }
+}
+
+impl RaySource for Camera {
+    fn rays(&self) -> u64 {
+        u64::from(self.width) * u64::from(self.height)
+    }
+
+    /// Tiles of 8 x 8 pixels, row by row from the top left.
+    fn batches(&self) -> usize {
+        self.width.div_ceil(TILE) as usize * self.height.div_ceil(TILE) as usize
+    }
+
+    fn batch(&self, batch: usize, each: &mut dyn FnMut(u64, &Query)) {
+        let columns = self.width.div_ceil(TILE) as usize;
+        // Tiles of a picture of at most 2^16 columns and rows.
+        let [left, top] = [batch % columns, batch / columns].map(|at| at as u32 * TILE);
+        for y in top..self.height.min(top + TILE) {
+            for x in left..self.width.min(left + TILE) {
+                each(u64::from(y) * u64::from(self.width) + u64::from(x), &self.ray(x, y));
+            }
+        }
+    }
+
+    fn least_radius(&self, space: &ModelSpace) -> f64 {
+        self.tan_theta * space.distance_to(self.eye.to_array())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::mesh::Placement;
+    use crate::rays::View;
+
+    #[test]
+    fn a_camera_gives_each_pixel_once_and_knows_how_near_the_model_is() {
+        let space = ModelSpace { placement: Placement { offset: [1.0, 0.0, 0.0], scale: 0.5 }, lo: [-10, -20, -30], hi: [10, 20, 30] };
+        let view = View { eye: Some([1.0, 0.0, 115.0]), target: Some([1.0, 0.0, 0.0]), ..View::default() };
+        let camera = Camera::new(&view, &space, 19, 13).unwrap();
+        let mut seen = vec![0; 19 * 13];
+        for batch in 0..camera.batches() {
+            let mut rays = 0;
+            camera.batch(batch, &mut |number, query| {
+                seen[number as usize] += 1;
+                assert_eq!(*query, camera.ray(number as u32 % 19, number as u32 / 19));
+                rays += 1;
+            });
+            assert!((1..=64).contains(&rays));
+        }
+        assert_eq!((seen, camera.rays()), (vec![1; 19 * 13], 19 * 13));
+        let sight = Sight::new(&camera, &space, 2.0);
+        assert!((sight.least_radius - camera.tan_theta * 200.0).abs() < 1e-9, "{sight:?}");
+        let inside = Camera::new(&View { eye: Some([2.0, 1.0, 3.0]), ..view }, &space, 4, 4).unwrap();
+        assert_eq!(Sight::new(&inside, &space, 2.0).least_radius, 0.0);
+    }
+}

@@ -1,0 +1,44 @@
+//! A frame as the steps of its rays, for the simulator.
+//!
+//! Batches are given in order, in chunks, and whoever takes them holds the next chunks back: memory is bounded by what waits, not by the frame.
+
+use crate::method::{Method, Tracer};
+use crate::rays::{RaySource, Sight};
+use crate::step::{Batch, Recorder};
+use rayon::prelude::*;
+
+/// Batches traced at once: enough for many threads, and small beside a frame.
+const CHUNK: usize = 256;
+
+/// A frame to trace.
+#[derive(Clone, Copy)]
+pub struct FrameRays<'a> {
+    /// How rays find their hits; one that is hardware.
+    pub method: &'a dyn Method,
+    /// The rays.
+    pub rays: &'a dyn RaySource,
+    /// What they see.
+    pub sight: &'a Sight,
+}
+
+impl FrameRays<'_> {
+    /// Traces all rays; gives the batches to `take`, in order, until it wants no more.
+    pub fn produce(&self, mut take: impl FnMut(Vec<Batch>) -> bool) {
+        let batches = self.rays.batches();
+        for first in (0..batches).step_by(CHUNK) {
+            let chunk = (first..batches.min(first + CHUNK)).into_par_iter();
+            let chunk = chunk.map_init(|| self.method.tracer(self.sight), |tracer, batch| self.batch(&mut **tracer, batch)).collect();
+            if !take(chunk) {
+                return;
+            }
+        }
+    }
+
+    fn batch(&self, tracer: &mut dyn Tracer, batch: usize) -> Batch {
+        let mut recorder = Recorder::default();
+        self.rays.batch(batch, &mut |_, query| {
+            tracer.recorded(query, &mut recorder);
+        });
+        recorder.batch()
+    }
+}

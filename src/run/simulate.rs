@@ -1,0 +1,80 @@
+//! A frame on machines: one functional pass, and a replay on each machine beside it.
+
+use super::FrameRays;
+use crate::sim::energy::EnergyModel;
+use crate::sim::machine::Machine;
+use crate::sim::replay::{self, Chunk, ReplayError, Run, Window};
+use serde::{Deserialize, Serialize};
+use std::sync::mpsc::{Receiver, SyncSender, sync_channel};
+use std::thread;
+
+/// Chunks that wait for a replay: one, while the next is being traced.
+const AHEAD: usize = 1;
+
+/// How compute is simulated.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize, clap::ValueEnum)]
+#[serde(rename_all = "lowercase")]
+pub enum Compute {
+    /// It takes no time, as in the paper
+    Free,
+    /// Traversal units, cycle by cycle
+    Units,
+}
+
+impl Compute {
+    /// Its name in options and reports.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Free => "free",
+            Self::Units => "units",
+        }
+    }
+}
+
+/// A machine, and whether compute takes time on it.
+#[derive(Clone, Debug)]
+pub struct Job {
+    /// The machine.
+    pub machine: Machine,
+    /// What compute takes.
+    pub compute: Compute,
+    /// The cycles of which a waveform is wanted.
+    pub window: Option<Window>,
+}
+
+/// Refuses a machine that no frame can run on: its energy tables or its memory cannot be read or be, or it is too large.
+///
+/// # Errors
+/// The first of these.
+pub fn check(machine: &Machine, compute: Compute) -> Result<(), ReplayError> {
+    EnergyModel::new(machine)?;
+    replay::check(machine, compute == Compute::Units)
+}
+
+/// Runs the rays of `frame` for each of `jobs`. Rays are traced once; every replay has a thread of its own.
+/// `traced` is told how many batches of rays were handed over.
+pub fn simulate(frame: &FrameRays<'_>, jobs: &[Job], traced: &dyn Fn(u64)) -> Vec<Result<Run, ReplayError>> {
+    thread::scope(|scope| {
+        let nodes = frame.method.map(frame.sight).nodes();
+        let (senders, runs): (Vec<SyncSender<Chunk>>, Vec<_>) = jobs
+            .iter()
+            .map(|Job { machine, compute, window }| {
+                let (sender, receiver): (_, Receiver<Chunk>) = sync_channel(AHEAD);
+                let run = move || match compute {
+                    Compute::Free => replay::run_free(machine, nodes, receiver.into_iter(), *window),
+                    Compute::Units => replay::run_units(machine, receiver.into_iter(), *window),
+                };
+                (sender, scope.spawn(run))
+            })
+            .unzip();
+        frame.produce(|batches| {
+            traced(batches.len() as u64);
+            let chunk = Chunk::from(batches);
+            // A replay that failed takes no more; the others go on.
+            senders.iter().filter(|sender| sender.send(Chunk::clone(&chunk)).is_ok()).count() > 0
+        });
+        drop(senders);
+        let join = |run: thread::ScopedJoinHandle<'_, _>| run.join().unwrap_or_else(|panic| std::panic::resume_unwind(panic));
+        runs.into_iter().map(join).collect()
+    })
+}
