@@ -254,7 +254,13 @@ fn wrong_requests_are_refused() {
     let big = remesh_quietly(&sphere(20), RemeshOptions { levels: 10, base_triangles: Some(4000), ..RemeshOptions::default() })
         .map(|_| ())
         .unwrap_err();
-    assert!(matches!(big, RemeshError::TooMany { levels: 10, .. }), "{big}");
+    let RemeshError::TooMany { levels: 10, base, works, .. } = big.clone() else { panic!("{big}") };
+    assert_eq!((works.levels, works.base, works.error), (Some(7), Some(64), false), "{base} base triangles");
+    assert!(base << 14 <= 1 << 26 && base << 16 > 1 << 26, "{base}");
+    assert!(
+        big.to_string().contains("--levels 7") && big.to_string().contains("--base 64") && !big.to_string().contains("max-error"),
+        "{big}"
+    );
     let options = RemeshOptions { levels: 0, ..RemeshOptions::default() };
     let refuse = |mesh: &TriangleMesh| assert!(matches!(remesh_quietly(mesh, options), Err(RemeshError::BadMesh { .. })));
     refuse(&TriangleMesh::default());
@@ -432,10 +438,30 @@ fn a_border_between_materials_stays_where_it_is() {
 fn levels_that_leave_no_room_for_the_base_are_refused_with_those_that_do() {
     let (_, original) = thin::shapes().into_iter().find(|s| s.0 == "claw").unwrap();
     let ask = |levels| remesh_quietly(&original, RemeshOptions { levels, ..RemeshOptions::default() }).map(|r| r.1);
-    let Err(RemeshError::NeedsBase { base, levels: 10, works }) = ask(10) else { panic!("no refusal") };
-    assert!((4u64..10).contains(&works.into()) && base << (2 * works) <= 1 << 26 && base << (2 * works + 2) > 1 << 26, "{base} {works}");
-    let message = RemeshError::NeedsBase { base, levels: 10, works }.to_string();
-    assert!(message.contains(&format!("--levels {works}")), "{message}");
+    let Err(refusal @ RemeshError::NeedsBase { base, levels: 10, works }) = ask(10) else { panic!("no refusal") };
+    let levels = works.levels.unwrap();
+    assert!(
+        (4u64..10).contains(&levels.into()) && base << (2 * levels) <= 1 << 26 && base << (2 * levels + 2) > 1 << 26,
+        "{base} {levels}"
+    );
+    let message = refusal.to_string();
+    assert!(message.contains(&format!("--levels {levels}")), "{message}");
+}
+
+#[test]
+fn a_base_is_advised_only_where_removal_comes_that_far() {
+    // Fifty tetrahedra, of which none can go: at ten levels there is room for 64 triangles.
+    let corner = |k: usize, c: usize| std::array::from_fn(|a| (3 * k) as f64 + f64::from(u8::from(a + 1 == c)));
+    let positions: Vec<[f64; 3]> = (0..50).flat_map(|k| (0..4).map(move |c| corner(k, c))).collect();
+    let faces = |k: u32| [[0, 2, 1], [0, 1, 3], [1, 2, 3], [2, 0, 3]].map(|t| t.map(|v| 4 * k + v));
+    let original = mesh(&positions, &(0..50).flat_map(faces).collect::<Vec<_>>());
+    for base_triangles in [None, Some(10)] {
+        let options = RemeshOptions { levels: 10, base_triangles, ..RemeshOptions::default() };
+        let refusal = remesh_quietly(&original, options).map(|_| ()).unwrap_err();
+        let (RemeshError::TooMany { works, .. } | RemeshError::NeedsBase { works, .. }) = &refusal else { panic!("{refusal}") };
+        assert_eq!((works.levels, works.base, works.error), (Some(9), None, false), "{refusal}");
+        assert!(refusal.to_string().ends_with("; what works is --levels 9 at most"), "{refusal}");
+    }
 }
 
 #[test]

@@ -22,5 +22,5 @@ pub use hierarchy::{EdgeCodes, Hierarchy, Placement, edge_index, edges_of_level,
 pub use normals::{DEFAULT_CREASE_ANGLE, corner_normals};
 pub use quantise::{SurfaceError, quantise};
 pub use read::{MESH_ENDINGS, MeshFormat, ReadError, read, read_as, read_bytes};
-pub use remesh::{DEFAULT_MAX_ERROR, RemeshError, RemeshOptions, RemeshReport, remesh};
+pub use remesh::{DEFAULT_MAX_ERROR, RemeshError, RemeshOptions, RemeshReport, Works, remesh};
 pub use surface::Surface;

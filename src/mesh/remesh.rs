@@ -26,6 +26,7 @@ use rayon::prelude::*;
 use refine::{Fitted, Wanted};
 use serde::{Deserialize, Serialize};
 use source::Source;
+use std::fmt;
 use topology::Topology;
 
 /// Most finest triangles that are made: they need about 12 GB while they are.
@@ -97,26 +98,26 @@ pub enum RemeshError {
     #[error("a base mesh needs at least one triangle")]
     NoBase,
     /// The result would not fit in memory.
-    #[error("{base} base triangles and {levels} levels make {triangles} triangles, more than {MAX_TRIANGLES}; ask for fewer")]
+    #[error("{base} base triangles and {levels} levels make {triangles} triangles, more than the {MAX_TRIANGLES} there can be{works}")]
     TooMany {
         /// Base triangles reached.
-        base: usize,
+        base: u64,
         /// Number of splits.
         levels: u32,
         /// What they would make.
         triangles: u64,
+        /// What would do.
+        works: Works,
     },
     /// The base mesh that the original needs would not fit in memory with so many splits.
-    #[error(
-        "this mesh needs {base} base triangles, too many for {levels} levels: the most that fit ({MAX_TRIANGLES} triangles in all) are --levels {works}; or give a larger --max-error, or a --base"
-    )]
+    #[error("this mesh needs {base} base triangles, too many for {levels} levels: {MAX_TRIANGLES} triangles in all fit{works}")]
     NeedsBase {
         /// Base triangles needed.
         base: u64,
         /// Number of splits.
         levels: u32,
-        /// The most that would work.
-        works: u32,
+        /// What would do.
+        works: Works,
     },
     /// A limit that cannot be.
     #[error("{name} is {value}, but must be {range}")]
@@ -134,6 +135,29 @@ pub enum RemeshError {
         /// What is wrong with it.
         what: &'static str,
     },
+}
+
+/// What does not make too many triangles; shown as advice.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Works {
+    /// The most splits of the same base mesh, if it fits at all.
+    pub levels: Option<u32>,
+    /// Base triangles to ask for with the same splits, if removal comes that far.
+    pub base: Option<u64>,
+    /// Whether the base mesh is what the largest error asks for: a larger one may need less.
+    pub error: bool,
+}
+
+impl fmt::Display for Works {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let ways = [
+            self.levels.map(|levels| format!("--levels {levels} at most")),
+            self.base.map(|base| format!("--base {base}, whatever is lost")),
+            self.error.then(|| "maybe a larger --max-error".to_owned()),
+        ];
+        let ways: Vec<String> = ways.into_iter().flatten().collect();
+        if ways.is_empty() { Ok(()) } else { write!(f, "; what works is {}", ways.join(", or ")) }
+    }
 }
 
 /// Remeshes `mesh` as `options` say; `progress` is called with a stage's name, what is done of it and its total.
