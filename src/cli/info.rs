@@ -146,7 +146,10 @@ fn summary(i: &Info<'_>) -> String {
     if let Some(d) = &i.distance {
         let mean = percent(d.to_original.mean.max(d.from_original.mean));
         let max = at_most(d.to_original.max.max(d.from_original.max));
-        lines.push(("accuracy", format!("{mean} of the model's diagonal from the original mesh on average, {max} at most")));
+        lines.push((
+            "accuracy",
+            format!("{mean} of the model's diagonal from the original mesh on average; no point is further than {max} (a bound: the largest distance may be less)"),
+        ));
     }
     lines.extend(losses(i).into_iter().map(|loss| ("warning", loss)));
     lines.iter().map(|(name, value)| format!("{name:<12}{value}")).collect::<Vec<_>>().join("\n")
@@ -190,9 +193,9 @@ fn verbose(i: &Info<'_>) -> String {
         i.hierarchy_bytes_per_triangle
     );
     if let Some(d) = &i.distance {
-        let there = format!("mean {}, maximum {}", percent(d.to_original.mean), at_most(d.to_original.max));
-        let back = format!("mean {}, maximum {}", percent(d.from_original.mean), at_most(d.from_original.max));
-        text += &format!("distance to the original mesh: {there} of the diagonal; from it back: {back}\n");
+        let there = format!("mean {}, bound {}", percent(d.to_original.mean), at_most(d.to_original.max));
+        let back = format!("mean {}, bound {}", percent(d.from_original.mean), at_most(d.from_original.max));
+        text += &format!("distance to the original mesh: {there} of the diagonal; from it back: {back} (no point is further than the bound)\n");
     }
     text += &origin(i.origin, "");
     text.trim_end().to_owned()

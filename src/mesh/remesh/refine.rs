@@ -11,7 +11,7 @@ use super::shading::{finest_corners, finest_origins, first_flipped, flipped};
 use super::source::Source;
 use super::split::{Forest, split};
 use super::topology::Topology;
-use super::{MAX_TRIANGLES, RemeshError, Works};
+use super::{DEFAULT_MAX_ERROR, MAX_TRIANGLES, RemeshError, Works};
 use rayon::prelude::*;
 
 /// How far removal goes by itself: a little beyond where it goes well, as what goes wrong is mended.
@@ -26,7 +26,7 @@ const ROUNDS: u32 = 24;
 /// ... and by results of more than the trial's levels.
 const LAST_ROUNDS: u32 = 12;
 
-/// Largest distances are narrowed down to this part of the limit.
+/// Largest distances are narrowed down to this part of the limit, or of what it is by default if that is less.
 const NARROW: f64 = 0.4;
 
 /// Vertices that the base mesh keeps for a tree at fault the first time, ...
@@ -145,7 +145,7 @@ pub(super) fn measure(source: &Source, fitted: &Fitted, limit: f64) -> [Farthest
 
 fn narrow(source: &Source, fitted: &Fitted, limit: f64, most: f64) -> [Farthest; 2] {
     let vertices = Vertices { positions: &source.positions, triangles: source.triangles() };
-    let least = NARROW * limit;
+    let least = NARROW * limit.min(source.diagonal * DEFAULT_MAX_ERROR / 100.0);
     let from_original = farthest(&source.target, &fitted.target, &[], Some(&vertices), [least, most]);
     // What is less than the other way round matters to nobody.
     let least = least.max(from_original.found.min(most));
