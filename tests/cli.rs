@@ -344,11 +344,37 @@ fn what_a_base_loses_is_said_and_refused_if_strict() {
         code == 0 && text.starts_with("warning: sheet.lod: it is up to ") && text.contains(" at (") && text.lines().count() == 1,
         "{text}"
     );
-    assert!(desk.run("info sheet.lod").contains("\nwarning     it is up to "));
+    let info = desk.run("info sheet.lod");
+    assert!(info.contains("\nwarning     it is up to ") && !info.contains("\nnote "), "{info}");
     let (code, text) = desk.run_on_and_hear("build sheet.obj -o strict.lod --levels 1 --base 20 --strict");
     assert!(code == 1 && text.starts_with("error: sheet.obj: it is up to ") && !desk.path("strict.lod").exists(), "{text}");
     desk.run("build sheet.obj -o strict.lod --levels 3 --strict");
     assert!(!desk.run("info strict.lod").contains("warning"));
+}
+
+#[test]
+fn a_base_that_cannot_be_met_and_an_error_that_cannot_be_met_are_said() {
+    let desk = Desk::new();
+    // Two tetrahedra: no triangle of them can go.
+    let corners = |x: u32| format!("v {x} 0 0\nv {} 0 0\nv {x} 1 0\nv {x} 0 1\n", x + 1);
+    fs::write(
+        desk.path("two.obj"),
+        format!("{}{}f 1 3 2\nf 1 2 4\nf 2 3 4\nf 3 1 4\nf 5 7 6\nf 5 6 8\nf 6 7 8\nf 7 5 8\n", corners(0), corners(5)),
+    )
+    .unwrap();
+    let note =
+        "\nnote        a base of 3 triangles was asked for; how the mesh is connected and its borders and creases allow no fewer than 8";
+    assert!(desk.run("build two.obj -o two.lod --levels 1 --base 3").contains(note));
+    assert!(desk.run("info two.lod").contains(note));
+    let (code, text) = desk.run_on_and_hear("build two.obj -o two.lod --levels 1 --max-error 1e-9 --strict");
+    let least = text.trim_end().strip_suffix(" or more").and_then(|text| text.rsplit_once(' ')).map_or("", |text| text.1);
+    assert!(
+        code == 1 && text.starts_with("error: two.obj: no result is sure to be within 0.000000001 % ") && text.lines().count() == 1,
+        "{text}"
+    );
+    desk.run(&format!("build two.obj -o two.lod --levels 1 --max-error {least} --strict"));
+    let (code, text) = desk.run_on_and_hear("build two.obj -o two.lod --levels 1 --base 8 --max-error 1e-9 --strict");
+    assert!(code == 1 && text.contains(&format!("a --max-error of {least} or more")), "{text}");
 }
 
 #[test]

@@ -465,6 +465,33 @@ fn a_base_is_advised_only_where_removal_comes_that_far() {
 }
 
 #[test]
+fn what_rounding_to_the_grid_takes_is_refused_and_no_more() {
+    let original = cube(2);
+    for levels in [0, 3, 8, 10] {
+        let ask =
+            |max_error| remesh_quietly(&original, RemeshOptions { levels, max_error, base_triangles: Some(48), ..Default::default() });
+        let Err(refusal @ RemeshError::Grid { wanted, least, .. }) = ask(1e-7) else { panic!("no refusal") };
+        assert!(wanted < least && least < 1e-4 && refusal.to_string().contains(&format!("--max-error of {least} or more")), "{refusal}");
+        assert!(ask(0.99 * least).is_err());
+        if levels < 10 {
+            // All of its triangles are kept.
+            assert_eq!(ask(least).unwrap().1.warning, None, "{levels} levels");
+        }
+    }
+}
+
+#[test]
+fn a_bound_does_not_loosen_with_a_larger_error_than_the_default() {
+    let original = sphere(12);
+    let bounds = [0.3, 5.0, 100.0].map(|max_error| {
+        let d = fit(&original, RemeshOptions { levels: 3, base_triangles: Some(200), max_error, ..Default::default() }).1.distance;
+        assert!(d.to_original.found <= d.to_original.max && d.from_original.found <= d.from_original.max, "{d:?}");
+        [d.to_original.max, d.from_original.max]
+    });
+    assert!(bounds[0] == bounds[1] && bounds[1] == bounds[2], "{bounds:?}");
+}
+
+#[test]
 fn what_was_lost_is_said_in_one_line() {
     let (_, original) = thin::shapes().into_iter().find(|s| s.0 == "urchin").unwrap();
     let (_, report) = run(&original, 2, 100);

@@ -151,6 +151,10 @@ fn summary(i: &Info<'_>) -> String {
             format!("{mean} of the model's diagonal from the original mesh on average; no point is further than {max} (a bound: the largest distance may be less)"),
         ));
     }
+    if let Some(wanted) = i.origin["remesh"]["wanted_base_triangles"].as_u64() {
+        let (wanted, made) = (grouped(wanted), grouped(i.base_triangles));
+        lines.push(("note", format!("a base of {wanted} triangles was asked for; how the mesh is connected and its borders and creases allow no fewer than {made}")));
+    }
     lines.extend(losses(i).into_iter().map(|loss| ("warning", loss)));
     lines.iter().map(|(name, value)| format!("{name:<12}{value}")).collect::<Vec<_>>().join("\n")
 }
@@ -195,7 +199,8 @@ fn verbose(i: &Info<'_>) -> String {
     if let Some(d) = &i.distance {
         let there = format!("mean {}, bound {}", percent(d.to_original.mean), at_most(d.to_original.max));
         let back = format!("mean {}, bound {}", percent(d.from_original.mean), at_most(d.from_original.max));
-        text += &format!("distance to the original mesh: {there} of the diagonal; from it back: {back} (no point is further than the bound)\n");
+        text +=
+            &format!("distance to the original mesh: {there} of the diagonal; from it back: {back} (no point is further than the bound)\n");
     }
     text += &origin(i.origin, "");
     text.trim_end().to_owned()
