@@ -262,6 +262,11 @@ fn a_waveform_of_the_machine_is_written() {
     assert_eq!((code, err.lines().count()), (0, 1), "{err}");
     assert!(err.starts_with("note: --window 100:9000000 ends beyond the frame's end; the waveform has cycles 100 to "), "{err}");
     assert!(desk.text("a.vcd").len() > text.len());
+    assert_eq!(desk.run(&format!("{SHOT} --vcd a.vcd --window 100:9000000 --json --quiet")), desk.run(&format!("{SHOT} --json")));
+    // Cycles are counted from 0: the last is one less than there are.
+    let cycles = count(&desk.json(SHOT), "/cycles");
+    desk.run(&format!("{SHOT} --vcd a.vcd --window {}:{}", cycles - 1, cycles - 1));
+    desk.refused(&format!("{SHOT} --vcd a.vcd --window {cycles}:{cycles}"), FAILS, "begins beyond the frame's end; its cycles are 0 to ");
 }
 
 #[test]
