@@ -182,9 +182,15 @@ fn a_record_that_is_none_removes_nothing() {
             fs::remove_file(desk.path("out").join(file)).unwrap();
         }
     }
-    for text in ["", "{}", "[1]", "no JSON", "{\"lodray\": 1}"] {
+    for (text, why) in [
+        ("", "line 1, column 0: it ends too early"),
+        ("{}", "line 1, column 2: the field lodray is missing"),
+        ("[1]", "line 1, column 2: a value is not of the kind"),
+        ("no JSON", "line 1, column 2: it is not JSON"),
+        ("{\"lodray\": 1}", "line 1, column 12: a value is not of the kind"),
+    ] {
         desk.write("out/run.json", text);
-        desk.refused(&format!("{RENDER} -o out"), "out", "out/run.json is not the record of a run: ");
+        desk.refused(&format!("{RENDER} -o out"), "out", &format!("out/run.json is not the record of a run: {why}"));
     }
 }
 

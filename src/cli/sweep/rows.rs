@@ -1,5 +1,6 @@
 //! What was done: one line of JSON for each job, and a table of them at the end.
 
+use crate::cli::json::fault;
 use crate::cli::output::{warn, write_file};
 use anyhow::Context;
 use lodray::report::result::SimResult;
@@ -8,6 +9,9 @@ use std::collections::{HashMap, HashSet};
 use std::fs::{File, OpenOptions};
 use std::io::Write;
 use std::path::{Path, PathBuf};
+
+/// The file beside the lines that has what were none.
+pub const ASIDE: &str = "results.bad.jsonl";
 
 /// One job's line.
 #[derive(Clone, Debug, Serialize, Deserialize)]
@@ -97,7 +101,7 @@ impl Rows {
 
 /// Keeps lines that are no results in a file beside `path`, behind those of before, and says so.
 fn set_aside(path: &Path, bad: &[(usize, &[u8], serde_json::Error)]) -> anyhow::Result<()> {
-    let aside = path.with_extension("bad.jsonl");
+    let aside = path.with_file_name(ASIDE);
     let shown = aside.display();
     let mut bytes = if aside.exists() { std::fs::read(&aside).with_context(|| format!("cannot read {shown}"))? } else { Vec::new() };
     for (_, line, _) in bad {
@@ -111,18 +115,12 @@ fn set_aside(path: &Path, bad: &[(usize, &[u8], serde_json::Error)]) -> anyhow::
         n => format!(" (and {} more)", n - 1),
     };
     warn(&format!(
-        "warning: {}: line {number}{others} is no result: {}; set aside in {shown}, its job is done again",
+        "warning: {}: line {number}{others} is no result: {} (column {}); set aside in {shown}, its job is done again",
         path.display(),
-        plain(why)
+        fault(why),
+        why.column()
     ));
     Ok(())
-}
-
-/// What is wrong with a line, without the reader's own count of lines.
-fn plain(why: &serde_json::Error) -> String {
-    let text = why.to_string();
-    let what = text.split(" at line ").next().unwrap_or(&text);
-    format!("{what} at column {}", why.column())
 }
 
 const HEAD: &str = "scene,distance,eye_x,eye_y,eye_z,width,height,method,delta,leaves,machine,set,compute,cycles,milliseconds,frames_per_second,rays,hits,\
