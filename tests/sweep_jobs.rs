@@ -147,17 +147,24 @@ fn lines_that_are_no_results_are_set_aside_and_their_jobs_done_again() {
     let lines = desk.text("out/results.jsonl");
     let [a, b, c, d]: [&str; 4] = lines.lines().collect::<Vec<_>>().try_into().unwrap();
     let cut = &c[..c.len() / 2];
-    for (damaged, done, bad) in [
-        (format!("{a}\nrubbish\n{b}\n{d}\n"), 3, "rubbish\n".to_owned()),
-        (format!("{a}\n{cut}{d}\n{b}\n"), 2, format!("{cut}{d}\n")),
-        (format!("{a}\n{b}\n{cut}"), 2, format!("{cut}\n")),
-        (format!("{a}\n\0\0\0\0\n[1]\n{{}}\n"), 1, "\0\0\0\0\n[1]\n{}\n".to_owned()),
+    for (damaged, done, bad, why) in [
+        (format!("{a}\nrubbish\n{b}\n{d}\n"), 3, "rubbish\n".to_owned(), "line 2 is no result: it is not JSON (column 1)"),
+        (format!("{a}\n{cut}{d}\n{b}\n"), 2, format!("{cut}{d}\n"), "line 2 is no result: "),
+        (format!("{a}\n{b}\n{cut}"), 2, format!("{cut}\n"), "line 3 is no result: it ends too early"),
+        (format!("{a}\n\0\0\0\0\n[1]\n{{}}\n"), 1, "\0\0\0\0\n[1]\n{}\n".to_owned(), "line 2 (and 2 more) is no result: it is not JSON"),
+        (
+            format!("{a}\n{{\"key\": 1}}\n{b}\n"),
+            2,
+            "{\"key\": 1}\n".to_owned(),
+            "line 2 is no result: a value is not of the kind or in the range",
+        ),
     ] {
         desk.write("out/results.jsonl", &damaged);
         let _ = fs::remove_file(desk.path("out/results.bad.jsonl"));
         let (code, out, err) = desk.run("sweep jobs.toml -o out");
         assert_eq!((code, err.lines().count()), (0, 1), "{out}{err}");
-        assert!(err.starts_with("warning: out/results.jsonl: line ") && err.contains("set aside in out/results.bad.jsonl"), "{err}");
+        assert!(err.starts_with("warning: out/results.jsonl: line ") && err.contains(why) && !err.contains("expected"), "{err}");
+        assert!(err.contains("set aside in out/results.bad.jsonl"), "{err}");
         assert!(out.contains(&format!("4 jobs, {done} of them done before, 0 failed")), "{out}");
         assert_eq!(desk.text("out/results.bad.jsonl"), bad);
         let sorted = |text: &str| {
@@ -166,13 +173,32 @@ fn lines_that_are_no_results_are_set_aside_and_their_jobs_done_again() {
             lines
         };
         assert_eq!(sorted(&desk.text("out/results.jsonl")), sorted(&lines));
+        assert!(desk.text("out/run.json").contains("\"results.bad.jsonl\""), "not in the record");
         // Told once.
         assert_eq!(desk.run("sweep jobs.toml -o out").2, "");
+        assert!(desk.text("out/run.json").contains("\"results.bad.jsonl\""), "no longer in the record");
     }
     // What is set aside later stands behind what was before.
     desk.write("out/results.jsonl", &format!("{a}\nmore\n"));
     assert_eq!(desk.run("sweep jobs.toml -o out").0, 0);
-    assert!(desk.text("out/results.bad.jsonl").ends_with("{}\nmore\n"));
+    assert!(desk.text("out/results.bad.jsonl").ends_with("}\nmore\n"));
+    // Another run that takes the folder removes it.
+    let (code, _, err) = desk.run("render a.lod --size 8x8 -o out --force");
+    assert!(code == 0 && !desk.path("out/results.bad.jsonl").exists(), "{err}");
+}
+
+#[test]
+fn jobs_that_are_no_longer_listed_stay_in_the_lines_only() {
+    let desk = Desk::new();
+    desk.write("jobs.toml", &format!("{HEAD}{SCENE}{MACHINE}"));
+    assert_eq!(desk.run("sweep jobs.toml -o out").0, 0);
+    desk.write("jobs.toml", &format!("size = \"16x16\"\ndistances = [2]\nmethods = [\"bvh\"]\n{SCENE}{MACHINE}"));
+    let (code, out, err) = desk.run("sweep jobs.toml -o out");
+    assert_eq!((code, err.as_str()), (0, ""), "{out}");
+    let said =
+        "1 job, 1 of them done before, 0 failed; results in out\nresults.jsonl has results of 1 job more, which are not in the list\n";
+    assert_eq!(out, said);
+    assert_eq!((desk.text("out/results.jsonl").lines().count(), desk.text("out/results.csv").lines().count()), (2, 2));
 }
 
 #[test]
