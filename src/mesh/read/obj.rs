@@ -213,8 +213,8 @@ impl Checker {
         let Ok(index) = part.parse::<i64>() else {
             return Err(format!("f: {} has no valid {name} index", shown(word)));
         };
-        if kind == TEXTURE {
-            // Texture coordinates are not used: whether this one is there does not matter.
+        if kind == TEXTURE || kind == NORMAL && !self.has_normals {
+            // Texture coordinates are not used: whether this one is there does not matter, nor what is named in a file without normals.
             return Ok(index);
         }
         let count = self.counts[kind];
