@@ -153,7 +153,8 @@ fn summary(i: &Info<'_>) -> String {
     }
     if let Some(wanted) = i.origin["remesh"]["wanted_base_triangles"].as_u64() {
         let (wanted, made) = (grouped(wanted), grouped(i.base_triangles));
-        lines.push(("note", format!("a base of {wanted} triangles was asked for; how the mesh is connected and its borders and creases allow no fewer than {made}")));
+        let why = "how the mesh is connected, and its borders and creases, allow no fewer triangles";
+        lines.push(("note", format!("--base {wanted} was not met, the base has {made}: {why}")));
     }
     lines.extend(losses(i).into_iter().map(|loss| ("warning", loss)));
     lines.iter().map(|(name, value)| format!("{name:<12}{value}")).collect::<Vec<_>>().join("\n")
