@@ -213,6 +213,15 @@ fn the_original_beside_the_scene_of_it() {
     assert_eq!(notes_of(&desk, "both/sheet.png")["Compared with"], "the original");
     assert_eq!(desk.json("render a.lod --compare --size 8x8 -o both")["against"], "full_resolution");
 
+    // A mesh that is elsewhere is off by no number of pixels.
+    desk.write("far.obj", "v 90 90 90\nv 91 90 90\nv 90 91 90\nf 1 2 3\n");
+    let apart = "render a.lod --compare --mesh far.obj --size 80x60 -o apart";
+    let error = desk.json(apart);
+    assert!(error["error"]["geometry_pixels"].is_null() && error["error"]["coverage_differs"].as_u64().unwrap() > 100, "{error}");
+    let said = desk.run(apart);
+    assert!(said.contains("\nno pixel sees the surface in both: nothing overlaps\n") && !said.contains("surface off by"), "{said}");
+    assert_eq!(notes_of(&desk, "apart/sheet.png")["Surfaces"], "do not overlap");
+
     // Alone, it is its own model.
     let alone = desk.json("render a.obj --method original --size 80x60 -o alone");
     assert_eq!(notes_of(&desk, "alone/image.png")["Scene"], "a");

@@ -220,6 +220,10 @@ impl Workshop<'_> {
         let (_, truth) = last.as_ref().context("no picture of the reference")?;
         let shot = self.built[&method].shoot(self.scene, &self.space, camera, delta, "picture");
         let error = compare_shots(&shot, truth, self.scene, camera);
-        Ok(ImageFigures { rmse: error.image.rmse, psnr_db: error.image.psnr_db, geometry_pixels_mean: error.geometry_pixels.mean })
+        Ok(ImageFigures {
+            rmse: error.image.rmse,
+            psnr_db: error.image.psnr_db,
+            geometry_pixels_mean: error.geometry_pixels.map(|off| off.mean),
+        })
     }
 }

@@ -40,8 +40,8 @@ pub struct ImageFigures {
     pub rmse: f64,
     /// Peak signal to noise ratio in dB; none for equal pictures.
     pub psnr_db: Option<f64>,
-    /// Mean distance between the surfaces in pixels.
-    pub geometry_pixels_mean: f64,
+    /// Mean distance between the surfaces in pixels; none if no pixel hits in both pictures.
+    pub geometry_pixels_mean: Option<f64>,
 }
 
 /// The file of lines.
@@ -139,7 +139,7 @@ pub fn csv<'a>(rows: impl Iterator<Item = &'a Row>) -> String {
         let mut cells = vec![row.scene.clone()];
         cells.extend(row.result.as_ref().map_or_else(|| vec![String::new(); RESULT_COLUMNS], result_cells));
         cells.extend(
-            [row.image.map(|i| i.rmse), row.image.and_then(|i| i.psnr_db), row.image.map(|i| i.geometry_pixels_mean)].map(optional),
+            [row.image.map(|i| i.rmse), row.image.and_then(|i| i.psnr_db), row.image.and_then(|i| i.geometry_pixels_mean)].map(optional),
         );
         cells.extend([row.error.clone().unwrap_or_default(), row.key.clone()]);
         text += &(cells.iter().map(|cell| quoted(cell)).collect::<Vec<_>>().join(",") + "\n");
