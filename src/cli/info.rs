@@ -221,6 +221,9 @@ fn at_most(value: f64) -> String {
     if value <= 0.0 {
         return percent(value);
     }
+    if value < 1e-6 {
+        return "0.000001 %".to_owned();
+    }
     // The last of three digits.
     let last = 10f64.powf(value.log10().floor() - 2.0);
     percent((value / last).ceil() * last)
@@ -243,7 +246,7 @@ mod tests {
     #[test]
     fn percentages_have_three_digits() {
         let shown = [0.0, 1e-17, 0.000_712, 0.25, 12.345, 1234.5].map(super::percent);
-        assert_eq!([0.2951, 0.295, 0.0, 12.34].map(super::at_most), ["0.296 %", "0.295 %", "0 %", "12.4 %"]);
+        assert_eq!([0.2951, 0.295, 0.0, 12.34, 1e-17].map(super::at_most), ["0.296 %", "0.295 %", "0 %", "12.4 %", "0.000001 %"]);
         assert_eq!(shown, ["0 %", "below 0.000001 %", "0.000712 %", "0.250 %", "12.3 %", "1234 %"]);
     }
 }
