@@ -113,7 +113,7 @@ pub enum RemeshError {
         works: Works,
     },
     /// The base mesh that the original needs would not fit in memory with so many splits.
-    #[error("this mesh needs {base} base triangles, too many for {levels} levels: {MAX_TRIANGLES} triangles in all fit{works}")]
+    #[error("this mesh needs {base} base triangles or more, too many for {levels} levels: {MAX_TRIANGLES} triangles in all fit{works}")]
     NeedsBase {
         /// Base triangles needed.
         base: u64,
@@ -153,7 +153,7 @@ pub enum RemeshError {
 }
 
 /// What does not make too many triangles; shown as advice.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Works {
     /// The most splits of the same base mesh, if it fits at all.
     pub levels: Option<u32>,
@@ -166,12 +166,12 @@ pub struct Works {
 impl fmt::Display for Works {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let ways = [
-            self.levels.map(|levels| format!("--levels {levels} at most")),
-            self.base.map(|base| format!("--base {base}, whatever is lost")),
-            self.error.then(|| "maybe a larger --max-error".to_owned()),
+            self.levels.map(|levels| format!("with --levels {levels} at most")),
+            self.base.map(|base| format!("with --base {base}, whatever is lost")),
+            self.error.then(|| "maybe with a larger --max-error".to_owned()),
         ];
         let ways: Vec<String> = ways.into_iter().flatten().collect();
-        if ways.is_empty() { Ok(()) } else { write!(f, "; what works is {}", ways.join(", or ")) }
+        if ways.is_empty() { Ok(()) } else { write!(f, "; there is room {}", ways.join(", or ")) }
     }
 }
 

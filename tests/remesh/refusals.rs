@@ -62,7 +62,7 @@ fn a_base_is_advised_only_where_removal_comes_that_far() {
         let refusal = remesh_quietly(&original, options).map(|_| ()).unwrap_err();
         let (RemeshError::TooMany { works, .. } | RemeshError::NeedsBase { works, .. }) = &refusal else { panic!("{refusal}") };
         assert_eq!((works.levels, works.base, works.error), (Some(9), None, false), "{refusal}");
-        assert!(refusal.to_string().ends_with("; what works is --levels 9 at most"), "{refusal}");
+        assert!(refusal.to_string().ends_with("; there is room with --levels 9 at most"), "{refusal}");
     }
 }
 
