@@ -1,60 +1,12 @@
 //! Every subcommand end to end, as a user types it.
 
+use lodray_test_support::program::Desk;
 use serde_json::Value;
-use std::collections::BTreeMap;
 use std::fs;
-use std::path::PathBuf;
 
-/// A folder of its own to run the program in.
-struct Desk(tempfile::TempDir);
-
-impl Desk {
-    fn new() -> Self {
-        Self(tempfile::tempdir().unwrap())
-    }
-
-    fn path(&self, name: &str) -> PathBuf {
-        self.0.path().join(name)
-    }
-
-    /// Runs `lodray` with `args`, `threads` of 0 being as many as there are cores; gives exit code and standard output, and expects silence on
-    /// standard error unless it fails.
-    fn run_on(&self, threads: u32, args: &str) -> (i32, String) {
-        let mut command = assert_cmd::cargo::cargo_bin_cmd!("lodray");
-        command.current_dir(self.0.path()).args(args.split_whitespace()).env("RAYON_NUM_THREADS", threads.to_string());
-        command.env("LODRAY_CACHE", "none");
-        let output = command.output().unwrap();
-        let [out, err] = [output.stdout, output.stderr].map(|text| String::from_utf8(text).unwrap());
-        assert!(!err.contains("panicked"), "{args}: {err}");
-        assert!(!output.status.success() || err.is_empty(), "{args}: not silent: {err}");
-        (output.status.code().unwrap(), out + &err)
-    }
-
-    /// Exit code, and everything said.
-    fn run_on_and_hear(&self, args: &str) -> (i32, String) {
-        let mut command = assert_cmd::cargo::cargo_bin_cmd!("lodray");
-        command.current_dir(self.0.path()).args(args.split_whitespace()).env("LODRAY_CACHE", "none");
-        let output = command.output().unwrap();
-        (output.status.code().unwrap(), String::from_utf8([output.stdout, output.stderr].concat()).unwrap())
-    }
-
-    /// Runs and expects success.
-    fn run(&self, args: &str) -> String {
-        let (code, text) = self.run_on(0, args);
-        assert_eq!(code, 0, "{args}: {text}");
-        text
-    }
-
-    /// Runs with `--json`, expects success and one JSON document.
-    fn json(&self, args: &str) -> Value {
-        serde_json::from_str(&self.run(&format!("{args} --json"))).unwrap()
-    }
-
-    /// All files below `folder` with their contents.
-    fn files(&self, folder: &str) -> BTreeMap<String, Vec<u8>> {
-        let entries = fs::read_dir(self.path(folder)).unwrap().map(|e| e.unwrap());
-        entries.map(|e| (e.file_name().into_string().unwrap(), fs::read(e.path()).unwrap())).collect()
-    }
+/// An empty folder to run the program in.
+fn empty() -> Desk {
+    Desk::new(assert_cmd::cargo::cargo_bin!("lodray"))
 }
 
 /// A bumpy square of 2 n^2 triangles.
@@ -74,7 +26,7 @@ fn sheet(n: u32) -> String {
 
 #[test]
 fn generate_and_info() {
-    let desk = Desk::new();
+    let desk = empty();
     for (name, base) in [("terrain", 32), ("cloth", 32), ("sphere", 32), ("spikes", 32), ("room", 42)] {
         let made = desk.json(&format!("generate {name} --levels 2 --base {base} --seed 3 -o {name}.lod"));
         assert_eq!(made["name"], name);
@@ -98,14 +50,14 @@ fn generate_and_info() {
     // Nine levels leave base vertices fewer bits than single precision has; that is told even to those who want quiet.
     let said = desk.run("generate sphere --levels 9 --base 8 -o deep.lod");
     assert!(said.starts_with("deep.lod:\nscene ") && said.contains("\nwarning     base vertices are rounded to steps of"), "{said}");
-    let (code, said) = desk.run_on_and_hear("generate sphere --levels 9 --base 8 -o deep.lod --quiet");
+    let (code, said) = desk.hear("generate sphere --levels 9 --base 8 -o deep.lod --quiet");
     assert!(code == 0 && said.starts_with("warning: deep.lod: base vertices") && said.lines().count() == 1, "{said}");
     assert_eq!(desk.run("generate sphere --levels 2 --base 8 -o plain.lod --quiet"), "");
 }
 
 #[test]
 fn build_tells_how_far_it_is_from_the_original() {
-    let desk = Desk::new();
+    let desk = empty();
     fs::write(desk.path("sheet.obj"), sheet(24)).unwrap();
     let made = desk.json("build sheet.obj -o sheet.lod --levels 3 --base 40");
     assert_eq!((&made["name"], &made["levels"]), (&"sheet".into(), &3.into()));
@@ -124,7 +76,7 @@ fn build_tells_how_far_it_is_from_the_original() {
 
 #[test]
 fn verify_counts_and_fails() {
-    let desk = Desk::new();
+    let desk = empty();
     desk.run("generate terrain --levels 3 --base 32 -o a.lod");
     let text = desk.run("verify a.lod");
     assert!(text.contains("checked") && text.contains("expected") && text.ends_with("passed\n"));
@@ -140,7 +92,7 @@ fn verify_counts_and_fails() {
         let mut bad = good.clone();
         bad[place] ^= 4;
         fs::write(desk.path("bad.lod"), bad).unwrap();
-        let (code, text) = desk.run_on(0, "verify bad.lod");
+        let (code, text) = desk.hear("verify bad.lod");
         assert_eq!(code, 1, "byte {place}: {text}");
         assert!(text.starts_with("error: bad.lod: ") && text.lines().count() == 1, "{text}");
     }
@@ -148,7 +100,7 @@ fn verify_counts_and_fails() {
 
 #[test]
 fn render_with_every_method() {
-    let desk = Desk::new();
+    let desk = empty();
     desk.run("generate sphere --levels 3 --base 32 -o a.lod");
     for method in ["lod", "bvh", "bvh32", "reference"] {
         let report = desk.json(&format!("render a.lod --method {method} --size 40x24 --distance 3 --compare -o {method}"));
@@ -173,7 +125,7 @@ fn render_with_every_method() {
 
 #[test]
 fn lines_by_distance() {
-    let desk = Desk::new();
+    let desk = empty();
     desk.run("generate terrain --levels 3 --base 32 -o a.lod");
     let report = desk.json("lines a.lod --distances 1.5,6 --size 32x32 --bvh32");
     assert_eq!(report["distances"], serde_json::json!([1.5, 6.0]));
@@ -186,20 +138,20 @@ fn lines_by_distance() {
 
 #[test]
 fn crack_needs_a_closed_model() {
-    let desk = Desk::new();
+    let desk = empty();
     desk.run("generate sphere --levels 2 --base 32 -o closed.lod");
     desk.run("generate terrain --levels 2 --base 32 -o open.lod");
     let report = desk.json("crack closed.lod --rays 3000 --seed 5");
     assert_eq!(report["rows"].as_array().unwrap().iter().map(|r| r["rays"].as_u64().unwrap()).sum::<u64>(), 3000);
     assert!(desk.run("crack closed.lod --rays 300").contains("0 misses or double hits in 300 rays"));
-    let (code, text) = desk.run_on(0, "crack open.lod --rays 300");
+    let (code, text) = desk.hear("crack open.lod --rays 300");
     assert_eq!(code, 1);
     assert!(text.starts_with("error: open.lod: ") && text.contains("open borders"), "{text}");
 }
 
 #[test]
 fn export_is_read_again() {
-    let desk = Desk::new();
+    let desk = empty();
     desk.run("generate sphere --levels 3 --base 32 -o a.lod");
     for (level, option) in [(0u32, "--level 0"), (2, "--level 2"), (3, "")] {
         // A closed surface without handles: V = F / 2 + 2.
@@ -214,7 +166,7 @@ fn export_is_read_again() {
 
 #[test]
 fn demo_writes_pictures_and_a_table() {
-    let desk = Desk::new();
+    let desk = empty();
     let rows: Value = desk.json("demo --out new/demo");
     let views: Vec<_> = rows.as_array().unwrap().iter().map(|r| (r["view"].as_str().unwrap(), r["method"].as_str().unwrap())).collect();
     assert_eq!(views, ["near", "middle", "far"].map(|v| [(v, "lod"), (v, "bvh")]).concat());
@@ -232,7 +184,7 @@ fn demo_writes_pictures_and_a_table() {
 #[test]
 fn any_number_of_threads_gives_the_same_bytes() {
     let outputs = [0, 1, 3].map(|threads| {
-        let desk = Desk::new();
+        let desk = empty();
         fs::write(desk.path("sheet.obj"), sheet(20)).unwrap();
         let commands = [
             "generate sphere --levels 3 --base 32 -o sphere.lod --json",
@@ -252,7 +204,7 @@ fn any_number_of_threads_gives_the_same_bytes() {
         fs::remove_dir_all(desk.path("b")).unwrap();
         (said, pictures, desk.files("."))
     });
-    assert!(outputs[0].0.iter().all(|(code, _)| *code == 0));
+    assert!(outputs[0].0.iter().all(|(code, _, err)| *code == 0 && err.is_empty()));
     for other in &outputs[1..] {
         assert_eq!(other.0, outputs[0].0);
         assert!(other.1 == outputs[0].1, "pictures differ");
@@ -262,7 +214,7 @@ fn any_number_of_threads_gives_the_same_bytes() {
 
 #[test]
 fn threads_and_quiet_go_with_every_command() {
-    let desk = Desk::new();
+    let desk = empty();
     desk.run("generate sphere --levels 2 --base 32 -o a.lod");
     fs::write(desk.path("sheet.obj"), sheet(8)).unwrap();
     desk.run("simulate a.lod --size 8x8 -o sim --quiet");
@@ -292,7 +244,7 @@ fn threads_and_quiet_go_with_every_command() {
         assert!(if says.is_empty() { quiet.is_empty() && !loud.is_empty() } else { quiet.contains(says) }, "{args}: {quiet}");
         assert!(!quiet.contains(" in r") && !quiet.contains(" in sim"), "{args}: {quiet}");
         for bad in ["0", "-1", "1025", "many"] {
-            let (code, text) = desk.run_on_and_hear(&format!("--threads {bad} {args}"));
+            let (code, text) = desk.hear(&format!("--threads {bad} {args}"));
             assert!(code == 2 && text.contains(&format!("'{bad}' is not a whole number from 1 to 1024")), "{args}: {text}");
         }
     }
@@ -300,7 +252,7 @@ fn threads_and_quiet_go_with_every_command() {
 
 #[test]
 fn refusals_name_option_value_and_limit() {
-    let desk = Desk::new();
+    let desk = empty();
     desk.run("generate sphere --levels 2 --base 32 -o a.lod");
     let seeds = "'-1' is not a whole number from 0 to 18446744073709551615";
     let rays = "'0' is not a whole number from 1 to 1000000000000000";
@@ -329,7 +281,7 @@ fn refusals_name_option_value_and_limit() {
             "there are: haydel2023, haydel2023-ddr3, haydel2023-public, packet, turing2018",
         ),
     ] {
-        let (code, text) = desk.run_on_and_hear(args);
+        let (code, text) = desk.hear(args);
         assert!(code != 0 && text.starts_with("error: ") && text.contains(option) && text.contains(limit), "{args}: {text}");
     }
     assert_eq!(desk.files(".").len(), 1, "a refusal has written something");
@@ -337,29 +289,55 @@ fn refusals_name_option_value_and_limit() {
 
 #[test]
 fn what_a_base_loses_is_said_and_refused_if_strict() {
-    let desk = Desk::new();
+    let desk = empty();
     fs::write(desk.path("sheet.obj"), sheet(24)).unwrap();
-    let (code, text) = desk.run_on_and_hear("build sheet.obj -o sheet.lod --levels 1 --base 20 --quiet");
+    let (code, text) = desk.hear("build sheet.obj -o sheet.lod --levels 1 --base 20 --quiet");
     assert!(
         code == 0 && text.starts_with("warning: sheet.lod: it is up to ") && text.contains(" at (") && text.lines().count() == 1,
         "{text}"
     );
-    assert!(desk.run("info sheet.lod").contains("\nwarning     it is up to "));
-    let (code, text) = desk.run_on_and_hear("build sheet.obj -o strict.lod --levels 1 --base 20 --strict");
+    let info = desk.run("info sheet.lod");
+    assert!(info.contains("\nwarning     it is up to ") && !info.contains("\nnote "), "{info}");
+    let (code, text) = desk.hear("build sheet.obj -o strict.lod --levels 1 --base 20 --strict");
     assert!(code == 1 && text.starts_with("error: sheet.obj: it is up to ") && !desk.path("strict.lod").exists(), "{text}");
     desk.run("build sheet.obj -o strict.lod --levels 3 --strict");
     assert!(!desk.run("info strict.lod").contains("warning"));
 }
 
 #[test]
+fn a_base_that_cannot_be_met_and_an_error_that_cannot_be_met_are_said() {
+    let desk = empty();
+    // Two tetrahedra: no triangle of them can go.
+    let corners = |x: u32| format!("v {x} 0 0\nv {} 0 0\nv {x} 1 0\nv {x} 0 1\n", x + 1);
+    fs::write(
+        desk.path("two.obj"),
+        format!("{}{}f 1 3 2\nf 1 2 4\nf 2 3 4\nf 3 1 4\nf 5 7 6\nf 5 6 8\nf 6 7 8\nf 7 5 8\n", corners(0), corners(5)),
+    )
+    .unwrap();
+    let note = "\nnote        --base 3 was not met, the base has 8: how the mesh is connected, and its borders and creases, allow no fewer triangles\n";
+    assert!(desk.run("build two.obj -o two.lod --levels 1 --base 3").contains(note));
+    let info = desk.run("info two.lod") + "\n";
+    assert!(info.contains(note) && !info.contains("\nwarning"), "{info}");
+    let (code, text) = desk.hear("build two.obj -o two.lod --levels 1 --max-error 1e-9 --strict");
+    let least = text.trim_end().strip_suffix(" or more").and_then(|text| text.rsplit_once(' ')).map_or("", |text| text.1);
+    assert!(
+        code == 1 && text.starts_with("error: two.obj: no result is sure to be within 0.000000001 % ") && text.lines().count() == 1,
+        "{text}"
+    );
+    desk.run(&format!("build two.obj -o two.lod --levels 1 --max-error {least} --strict"));
+    let (code, text) = desk.hear("build two.obj -o two.lod --levels 1 --base 8 --max-error 1e-9 --strict");
+    assert!(code == 1 && text.contains(&format!("a --max-error of {least} or more")), "{text}");
+}
+
+#[test]
 fn a_reader_that_leaves_early_is_no_error() {
-    let desk = Desk::new();
+    let desk = empty();
     desk.run("generate sphere --levels 1 --base 8 -o a.lod");
     for args in [&["info", "a.lod"][..], &["verify", "a.lod"], &["help"]] {
         let (reader, writer) = std::io::pipe().unwrap();
         drop(reader);
         let mut command = std::process::Command::new(assert_cmd::cargo::cargo_bin!("lodray"));
-        let output = command.current_dir(desk.0.path()).args(args).stdout(writer).output().unwrap();
+        let output = command.current_dir(desk.folder()).args(args).stdout(writer).output().unwrap();
         assert!(output.status.success() && output.stderr.is_empty(), "{args:?}: {output:?}");
     }
 }

@@ -164,6 +164,26 @@ fn files_that_no_record_lists_are_not_overwritten() {
 }
 
 #[test]
+fn what_a_mesh_names_is_an_input_too() {
+    let desk = Desk::new();
+    desk.write("my stone.mtl", "newmtl red\nKd 1 0 0\n");
+    desk.write("a.obj", "mtllib my stone.mtl\nmtllib none.mtl\nusemtl red\nv 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
+    let numbers = [0.0f32, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0, 0.0];
+    fs::write(desk.path("the points.bin"), numbers.iter().flat_map(|v| v.to_le_bytes()).collect::<Vec<u8>>()).unwrap();
+    let gltf = serde_json::json!({
+        "asset": {"version": "2.0"}, "nodes": [{"mesh": 0}], "meshes": [{"primitives": [{"attributes": {"POSITION": 0}}]}],
+        "accessors": [{"bufferView": 0, "componentType": 5126, "type": "VEC3", "count": 3}],
+        "bufferViews": [{"buffer": 0, "byteLength": 36}], "buffers": [{"byteLength": 36, "uri": "the%20points.bin"}],
+    });
+    desk.write("a.gltf", &gltf.to_string());
+    for (mesh, named) in [("a.obj", "my stone.mtl"), ("a.gltf", "the points.bin")] {
+        desk.run(&format!("render {mesh} --method original --size 8x8 -o out --force"));
+        let inputs: Vec<_> = desk.record("out")["inputs"].as_array().unwrap().iter().map(|input| input["name"].clone()).collect();
+        assert_eq!(inputs, [mesh, named]);
+    }
+}
+
+#[test]
 fn a_record_that_is_none_removes_nothing() {
     let desk = Desk::new();
     desk.write("out/keep.txt", "mine");
@@ -182,9 +202,15 @@ fn a_record_that_is_none_removes_nothing() {
             fs::remove_file(desk.path("out").join(file)).unwrap();
         }
     }
-    for text in ["", "{}", "[1]", "no JSON", "{\"lodray\": 1}"] {
+    for (text, why) in [
+        ("", "line 1, column 0: it ends too early"),
+        ("{}", "line 1, column 2: the field lodray is missing"),
+        ("[1]", "line 1, column 2: a value is not of the kind"),
+        ("no JSON", "line 1, column 2: it is not JSON"),
+        ("{\"lodray\": 1}", "line 1, column 12: a value is not of the kind"),
+    ] {
         desk.write("out/run.json", text);
-        desk.refused(&format!("{RENDER} -o out"), "out", "out/run.json is not the record of a run: ");
+        desk.refused(&format!("{RENDER} -o out"), "out", &format!("out/run.json is not the record of a run: {why}"));
     }
 }
 
@@ -280,7 +306,7 @@ fn a_sweep_goes_on_in_its_folder() {
     assert!(desk.files("out") == files);
     // One view has no chart; the results of the other stay for later.
     desk.write("jobs.toml", &jobs("2"));
-    assert!(desk.run("sweep jobs.toml -o out").contains("1 jobs, 1 of them done before"));
+    assert!(desk.run("sweep jobs.toml -o out").contains("1 job, 1 of them done before"));
     assert_eq!(charts(&desk.record("out")), 0);
     assert!(!desk.names("out").iter().any(|name| name.ends_with(".svg")), "{:?}", desk.names("out"));
     desk.refused(&format!("{RENDER} -o out"), "out", "out holds a run of `sweep`, and `render` does not mix with it");

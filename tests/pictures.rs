@@ -5,73 +5,34 @@ use lodray::format::Scene;
 use lodray::method::bvh::NoStore;
 use lodray::method::{Knobs, lod};
 use lodray::picture::{level_map, normal_map, render};
-use lodray::rays::ModelSpace;
-use lodray::rays::{Camera, View};
+use lodray::rays::{Camera, ModelSpace, View};
+use lodray_test_support::program::{Desk, FAILS, USAGE};
 use serde_json::Value;
 use std::collections::BTreeMap;
 use std::fs;
-use std::path::PathBuf;
-
-const FAILS: i32 = 1;
-const USAGE: i32 = 2;
 
 /// A folder with a scene, to run the program in.
-struct Desk(tempfile::TempDir);
+fn with(scene: &str) -> Desk {
+    let desk = Desk::new(assert_cmd::cargo::cargo_bin!("lodray"));
+    desk.run(&format!("generate {scene} -o a.lod"));
+    desk
+}
 
-impl Desk {
-    fn new(scene: &str) -> Self {
-        let desk = Self(tempfile::tempdir().unwrap());
-        desk.run(&format!("generate {scene} -o a.lod"));
-        desk
-    }
+/// Expects an error, and no folder.
+fn refused(desk: &Desk, args: &str, code: i32, words: &[&str]) {
+    desk.refused(args, code, words);
+    assert!(!desk.path("new").exists(), "{args}: made its folder");
+}
 
-    fn path(&self, name: &str) -> PathBuf {
-        self.0.path().join(name)
-    }
+fn picture(desk: &Desk, name: &str) -> RgbImage {
+    image::open(desk.path(name)).unwrap().to_rgb8()
+}
 
-    /// Exit code and what was said; no output but on standard error if it fails.
-    fn run_on(&self, threads: u32, args: &str) -> (i32, String) {
-        let mut command = assert_cmd::cargo::cargo_bin_cmd!("lodray");
-        command.current_dir(self.0.path()).args(args.split_whitespace()).env("RAYON_NUM_THREADS", threads.to_string());
-        command.env("LODRAY_CACHE", "none");
-        let output = command.output().unwrap();
-        let [out, err] = [output.stdout, output.stderr].map(|text| String::from_utf8(text).unwrap());
-        assert!(!err.contains("panicked"), "{args}: {err}");
-        assert!(output.status.success() == err.is_empty() && (err.is_empty() || out.is_empty()), "{args}: {out}{err}");
-        (output.status.code().unwrap(), out + &err)
-    }
-
-    fn run(&self, args: &str) -> String {
-        let (code, text) = self.run_on(0, args);
-        assert_eq!(code, 0, "{args}: {text}");
-        text
-    }
-
-    fn json(&self, args: &str) -> Value {
-        serde_json::from_str(&self.run(&format!("{args} --json"))).unwrap()
-    }
-
-    fn refused(&self, args: &str, code: i32, words: &[&str]) {
-        let (got, said) = self.run_on(0, args);
-        assert_eq!(got, code, "{args}: {said}");
-        assert!(said.starts_with("error: ") && words.iter().all(|word| said.contains(word)), "{args}: {said}");
-        assert!(!self.path("new").exists(), "{args}: made its folder");
-    }
-
-    fn picture(&self, name: &str) -> RgbImage {
-        image::open(self.path(name)).unwrap().to_rgb8()
-    }
-
-    fn bytes(&self, name: &str) -> Vec<u8> {
-        fs::read(self.path(name)).unwrap()
-    }
-
-    /// What a picture says of itself.
-    fn notes(&self, name: &str) -> BTreeMap<String, String> {
-        let file = std::io::BufReader::new(fs::File::open(self.path(name)).unwrap());
-        let reader = png::Decoder::new(file).read_info().unwrap();
-        reader.info().uncompressed_latin1_text.iter().map(|t| (t.keyword.clone(), t.text.clone())).collect()
-    }
+/// What a picture says of itself.
+fn notes_of(desk: &Desk, name: &str) -> BTreeMap<String, String> {
+    let file = std::io::BufReader::new(fs::File::open(desk.path(name)).unwrap());
+    let reader = png::Decoder::new(file).read_info().unwrap();
+    reader.info().uncompressed_latin1_text.iter().map(|t| (t.keyword.clone(), t.text.clone())).collect()
 }
 
 fn vector(value: &Value) -> [f64; 3] {
@@ -80,10 +41,10 @@ fn vector(value: &Value) -> [f64; 3] {
 
 #[test]
 fn the_default_view_holds_the_whole_model() {
-    let desk = Desk::new("spikes --levels 2 --base 32");
+    let desk = with("spikes --levels 2 --base 32");
     for size in ["64x64", "90x40", "24x80"] {
         let made = desk.json(&format!("render a.lod --size {size} -o out"));
-        let image = desk.picture("out/image.png");
+        let image = picture(&desk, "out/image.png");
         let (width, height) = image.dimensions();
         let background = *image.get_pixel(0, 0);
         let border = |x, y| x == 0 || y == 0 || x + 1 == width || y + 1 == height;
@@ -105,7 +66,7 @@ fn the_default_view_holds_the_whole_model() {
 
 #[test]
 fn views_go_around_the_model() {
-    let desk = Desk::new("terrain --levels 2 --base 32");
+    let desk = with("terrain --levels 2 --base 32");
     let space = ModelSpace::of(&Scene::open(&desk.path("a.lod")).unwrap());
     // From the target to the eye, in radii.
     let seen_from = |options: &str| {
@@ -150,7 +111,7 @@ fn views_go_around_the_model() {
 
 #[test]
 fn limits_are_named() {
-    let desk = Desk::new("sphere --levels 1 --base 8");
+    let desk = with("sphere --levels 1 --base 8");
     for (options, code, words) in [
         ("--size 100000x100000", USAGE, &["--size", "'100000x100000'", "1 to 65536", "67108864"][..]),
         ("--size 65536x65536", USAGE, &["--size", "'65536x65536'", "67108864"]),
@@ -170,13 +131,13 @@ fn limits_are_named() {
         ("--eye 1,2,3 --view top", USAGE, &["--eye", "--view"]),
         ("--view above", USAGE, &["'above'", "three-quarter"]),
     ] {
-        desk.refused(&format!("render a.lod -o new {options}"), code, words);
+        refused(&desk, &format!("render a.lod -o new {options}"), code, words);
     }
 }
 
 #[test]
 fn legends_stand_below_and_leave_the_picture_alone() {
-    let desk = Desk::new("terrain --levels 3 --base 32");
+    let desk = with("terrain --levels 3 --base 32");
     let scene = Scene::open(&desk.path("a.lod")).unwrap();
     let space = ModelSpace::of(&scene);
     for (width, height) in [(1, 1), (70, 41), (640, 20)] {
@@ -185,23 +146,23 @@ fn legends_stand_below_and_leave_the_picture_alone() {
         let method = (lod::METHOD.make)(&scene, &Knobs::default(), &NoStore).unwrap();
         let frame = render(&*method, &space, &camera, 1.0, &|| ());
         let crop = |name: &str| {
-            let picture = desk.picture(name);
+            let picture = picture(&desk, name);
             assert!(picture.height() > height, "{name}: no legend");
             image::imageops::crop_imm(&picture, 0, 0, width, height).to_image()
         };
         assert!(crop("out/levels.png") == level_map(&frame), "{width}x{height}");
         assert!(crop("out/normals.png") == normal_map(&frame, &scene), "{width}x{height}");
         crop("out/error.png");
-        assert_eq!(desk.picture("out/image.png").dimensions(), (width, height));
+        assert_eq!(picture(&desk, "out/image.png").dimensions(), (width, height));
     }
 }
 
 #[test]
 fn pictures_say_what_they_are() {
-    let desk = Desk::new("sphere --levels 2 --base 32");
+    let desk = with("sphere --levels 2 --base 32");
     let made = desk.json("render a.lod --size 30x20 --view three-quarter --delta 2 --compare -o out");
     for name in ["image", "levels", "normals", "error", "sheet"] {
-        let notes = desk.notes(&format!("out/{name}.png"));
+        let notes = notes_of(&desk, &format!("out/{name}.png"));
         let title = notes["Title"].replace("contact ", "");
         assert!(title.starts_with("sphere: lod at delta 2, 30x20 from ") && title.ends_with(name), "{title}");
         assert_eq!([&notes["Scene"], &notes["Method"], &notes["Delta"], &notes["Size"]], ["sphere", "lod", "2", "30x20"]);
@@ -214,19 +175,19 @@ fn pictures_say_what_they_are() {
         assert!(!notes.values().any(|text| text.contains("a.lod") || text.contains("out")), "{notes:?}");
     }
     // The options that it names give the same picture.
-    let notes = desk.notes("out/image.png");
+    let notes = notes_of(&desk, "out/image.png");
     let [eye, target, up] = ["Eye", "Target", "Up"].map(|key| &notes[key]);
     desk.run(&format!("render a.lod --size 30x20 --delta 2 --eye {eye} --target {target} --up {up} -o again"));
-    assert!(desk.picture("again/image.png") == desk.picture("out/image.png"));
-    assert!(!desk.notes("again/image.png").contains_key("RMSE"));
+    assert!(picture(&desk, "again/image.png") == picture(&desk, "out/image.png"));
+    assert!(!notes_of(&desk, "again/image.png").contains_key("RMSE"));
 }
 
 #[test]
 fn the_contact_sheet_is_the_same_at_any_number_of_threads() {
     let sheets = [1, 2].map(|threads| {
-        let desk = Desk::new("spikes --levels 2 --base 32");
-        let (code, said) = desk.run_on(threads, "render a.lod --size 60x40 --compare -o out");
-        assert_eq!(code, 0, "{said}");
+        let desk = with("spikes --levels 2 --base 32");
+        let (code, said, err) = desk.run_on(threads, "render a.lod --size 60x40 --compare -o out");
+        assert_eq!((code, err.as_str()), (0, ""), "{said}");
         assert!(said.contains("building ") && said.contains("tracing "), "{said}");
         desk.bytes("out/sheet.png")
     });
@@ -238,7 +199,7 @@ fn the_contact_sheet_is_the_same_at_any_number_of_threads() {
 
 #[test]
 fn the_original_beside_the_scene_of_it() {
-    let desk = Desk::new("sphere --levels 0 --base 512");
+    let desk = with("sphere --levels 0 --base 512");
     desk.run("export a.lod -o a.obj");
     let full = desk.json("render a.lod --method reference --size 80x60 -o full");
     let original = desk.json("render a.lod --method original --mesh a.obj --size 80x60 -o over");
@@ -252,25 +213,35 @@ fn the_original_beside_the_scene_of_it() {
     assert!(error["error"]["coverage_differs"].as_u64().unwrap() <= 4, "{error}");
     assert!(error["error"]["geometry_pixels"]["maximum"].as_f64().unwrap() < 0.01, "{error}");
     assert!(error["error"]["rmse"].as_f64().unwrap() < 5.0, "{error}");
-    assert_eq!(desk.notes("both/sheet.png")["Compared with"], "the original");
+    assert_eq!(notes_of(&desk, "both/sheet.png")["Compared with"], "the original");
     assert_eq!(desk.json("render a.lod --compare --size 8x8 -o both")["against"], "full_resolution");
+
+    // A mesh that is elsewhere is off by no number of pixels.
+    desk.write("far.obj", "v 90 90 90\nv 91 90 90\nv 90 91 90\nf 1 2 3\n");
+    let apart = "render a.lod --compare --mesh far.obj --size 80x60 -o apart";
+    let error = desk.json(apart);
+    assert!(error["error"]["geometry_pixels"].is_null() && error["error"]["coverage_differs"].as_u64().unwrap() > 100, "{error}");
+    let said = desk.run(apart);
+    assert!(said.contains("\nno pixel sees the surface in both: nothing overlaps\n") && !said.contains("surface off by"), "{said}");
+    assert_eq!(notes_of(&desk, "apart/sheet.png")["Surfaces"], "do not overlap");
 
     // Alone, it is its own model.
     let alone = desk.json("render a.obj --method original --size 80x60 -o alone");
-    assert_eq!(desk.notes("alone/image.png")["Scene"], "a");
+    assert_eq!(notes_of(&desk, "alone/image.png")["Scene"], "a");
     assert!(alone["stats"]["lines"].as_array().unwrap().is_empty() && alone["stats"]["mean_level"] == 0.0);
-    let differing = desk.picture("alone/image.png").pixels().zip(desk.picture("over/image.png").pixels()).filter(|(a, b)| a != b).count();
+    let differing =
+        picture(&desk, "alone/image.png").pixels().zip(picture(&desk, "over/image.png").pixels()).filter(|(a, b)| a != b).count();
     assert!(differing < 80, "{differing}");
 }
 
 #[test]
 fn the_original_keeps_its_colours() {
-    let desk = Desk::new("sphere --levels 0 --base 8");
+    let desk = with("sphere --levels 0 --base 8");
     fs::write(desk.path("c.mtl"), "newmtl red\nKd 1 0 0\nnewmtl blue\nKd 0 0 1\n").unwrap();
     let mesh = "mtllib c.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nv 1 1 0\nusemtl red\nf 1 2 3\nusemtl blue\nf 2 4 3\n";
     fs::write(desk.path("c.obj"), mesh).unwrap();
     desk.run("render c.obj --method original --view front --size 40x40 -o out");
-    let image = desk.picture("out/image.png");
+    let image = picture(&desk, "out/image.png");
     for bright in [0, 2] {
         let pure = image.pixels().filter(|p| (0..3).all(|k| (p.0[k] > 200) == (k == bright))).count();
         assert!(pure > 50, "channel {bright}: {pure}");
@@ -279,7 +250,7 @@ fn the_original_keeps_its_colours() {
 
 #[test]
 fn what_the_original_does_not_go_with() {
-    let desk = Desk::new("sphere --levels 1 --base 8");
+    let desk = with("sphere --levels 1 --base 8");
     fs::write(desk.path("bad.obj"), "v 0 0 0\nf 1 2 3\n").unwrap();
     fs::write(desk.path("empty.obj"), "").unwrap();
     fs::write(desk.path("notes.txt"), "hello").unwrap();
@@ -294,6 +265,6 @@ fn what_the_original_does_not_go_with() {
         ("render notes.txt -o new --method original", "notes.txt: "),
         ("render a.lod -o new --compare --mesh bad.obj", "bad.obj: "),
     ] {
-        desk.refused(args, FAILS, &[words]);
+        refused(&desk, args, FAILS, &[words]);
     }
 }

@@ -1,65 +1,16 @@
 //! `simulate`, `sweep` and `compare` end to end, as a user types them.
 
+use lodray_test_support::program::{Desk, FAILS, USAGE};
 use serde_json::Value;
 use std::fs;
-use std::path::PathBuf;
 
-const FAILS: i32 = 1;
-const USAGE: i32 = 2;
 const SHOT: &str = "simulate a.lod --size 40x24 --distance 2.5";
 
 /// A folder with a scene, to run the program in.
-struct Desk(tempfile::TempDir);
-
-impl Desk {
-    fn new() -> Self {
-        let desk = Self(tempfile::tempdir().unwrap());
-        desk.run("generate terrain --levels 3 --base 32 --seed 2 -o a.lod");
-        desk
-    }
-
-    fn path(&self, name: &str) -> PathBuf {
-        self.0.path().join(name)
-    }
-
-    fn write(&self, name: &str, text: &str) {
-        fs::write(self.path(name), text).unwrap();
-    }
-
-    fn text(&self, name: &str) -> String {
-        fs::read_to_string(self.path(name)).unwrap()
-    }
-
-    /// Exit code, standard output and standard error.
-    fn run_on(&self, threads: u32, args: &str) -> (i32, String, String) {
-        let mut command = assert_cmd::cargo::cargo_bin_cmd!("lodray");
-        command
-            .current_dir(self.0.path())
-            .args(args.split_whitespace())
-            .env("RAYON_NUM_THREADS", threads.to_string())
-            .env("LODRAY_CACHE", "none");
-        let output = command.output().unwrap();
-        let [out, err] = [output.stdout, output.stderr].map(|text| String::from_utf8(text).unwrap());
-        assert!(!err.contains("panicked"), "{args}: {err}");
-        (output.status.code().unwrap(), out, err)
-    }
-
-    fn run(&self, args: &str) -> String {
-        let (code, out, err) = self.run_on(0, args);
-        assert_eq!((code, err.as_str()), (0, ""), "{args}: {out}");
-        out
-    }
-
-    fn json(&self, args: &str) -> Value {
-        serde_json::from_str(&self.run(&format!("{args} --json"))).unwrap()
-    }
-
-    fn refused(&self, args: &str, code: i32, fragment: &str) {
-        let (got, out, err) = self.run_on(0, args);
-        assert_eq!(got, code, "{args}: {err}");
-        assert!(err.starts_with("error: ") && err.contains(fragment), "{args}: no '{fragment}' in: {err}");
-        assert!(out.is_empty() && (code == USAGE || err.lines().count() == 1), "{args}: {out}{err}");
-    }
+fn with_scene() -> Desk {
+    let desk = Desk::new(assert_cmd::cargo::cargo_bin!("lodray"));
+    desk.run("generate terrain --levels 3 --base 32 --seed 2 -o a.lod");
+    desk
 }
 
 /// The number at a path such as `/l1/hits`.
@@ -133,7 +84,7 @@ fn conserved(r: &Value) {
 
 #[test]
 fn a_run_has_consistent_figures() {
-    let desk = Desk::new();
+    let desk = with_scene();
     for (method, machine) in [("lod", "haydel2023"), ("bvh", "turing2018"), ("bvh32", "haydel2023-public"), ("lod", "packet")] {
         let r = desk.json(&format!("{SHOT} --method {method} --machine {machine}"));
         assert_eq!(count(&r, "/rays"), 960);
@@ -157,7 +108,7 @@ fn a_run_has_consistent_figures() {
 
 #[test]
 fn files_are_the_same_at_any_number_of_threads() {
-    let desk = Desk::new();
+    let desk = with_scene();
     let runs = [1, 2, 8].map(|threads| {
         let out = format!("out{threads}");
         let (code, json, err) = desk.run_on(threads, &format!("{SHOT} --machine haydel2023,turing2018 --json -o {out}"));
@@ -178,7 +129,7 @@ fn files_are_the_same_at_any_number_of_threads() {
 
 #[test]
 fn several_machines_at_once_are_one_at_a_time() {
-    let desk = Desk::new();
+    let desk = with_scene();
     let own = include_str!("../machines/haydel2023.toml").replace("name = \"Haydel 2023\"", "name = \"Mine\"");
     desk.write("mine.toml", &own);
     let together = desk.json(&format!("{SHOT} --machine haydel2023 --machine mine.toml,packet --set l1.bytes=32768"));
@@ -197,7 +148,7 @@ fn several_machines_at_once_are_one_at_a_time() {
 
 #[test]
 fn wrong_words_are_one_clear_error() {
-    let desk = Desk::new();
+    let desk = with_scene();
     desk.write("bad.toml", "name = \"x\"\n");
     for (args, code, fragment) in [
         ("--machine nope", FAILS, "--machine nope: no nope comes with the program; there are: haydel2023, haydel2023-ddr3,"),
@@ -223,17 +174,17 @@ fn wrong_words_are_one_clear_error() {
         ("--delta -1", USAGE, "'-1' for '--delta"),
         ("-o a.lod", FAILS, "cannot make folder a.lod"),
     ] {
-        desk.refused(&format!("{SHOT} {args}"), code, fragment);
+        desk.refused(&format!("{SHOT} {args}"), code, &[fragment]);
     }
     assert!(!desk.path("a.vcd").exists() && !desk.path("new").exists(), "written in spite of the refusal");
-    desk.refused("simulate none.lod", FAILS, "none.lod: cannot open");
-    desk.refused("compare a.json b.json", FAILS, "cannot read a.json");
-    desk.refused("compare a.lod a.lod", FAILS, "a.lod");
+    desk.refused("simulate none.lod", FAILS, &["none.lod: cannot open"]);
+    desk.refused("compare a.json b.json", FAILS, &["cannot read a.json"]);
+    desk.refused("compare a.lod a.lod", FAILS, &["a.lod"]);
 }
 
 #[test]
 fn units_take_their_time_and_nothing_else_changes() {
-    let desk = Desk::new();
+    let desk = with_scene();
     for method in ["lod", "bvh", "bvh32"] {
         let [free, units] = ["free", "units"].map(|compute| desk.json(&format!("{SHOT} --method {method} --compute {compute}")));
         for same in ["/rays", "/hits", "/l1/requests", "/operations"] {
@@ -251,7 +202,7 @@ fn units_take_their_time_and_nothing_else_changes() {
 
 #[test]
 fn a_waveform_of_the_machine_is_written() {
-    let desk = Desk::new();
+    let desk = with_scene();
     desk.run(&format!("{SHOT} --vcd a.vcd --window 100:200"));
     let text = desk.text("a.vcd");
     for name in ["l1_hits", "dram_reads", "group_0", "l1_misses_under_way", "l2_queued"] {
@@ -262,11 +213,20 @@ fn a_waveform_of_the_machine_is_written() {
     assert_eq!((code, err.lines().count()), (0, 1), "{err}");
     assert!(err.starts_with("note: --window 100:9000000 ends beyond the frame's end; the waveform has cycles 100 to "), "{err}");
     assert!(desk.text("a.vcd").len() > text.len());
+    assert_eq!(desk.run(&format!("{SHOT} --vcd a.vcd --window 100:9000000 --json --quiet")), desk.run(&format!("{SHOT} --json")));
+    // Cycles are counted from 0: the last is one less than there are.
+    let cycles = count(&desk.json(SHOT), "/cycles");
+    desk.run(&format!("{SHOT} --vcd a.vcd --window {}:{}", cycles - 1, cycles - 1));
+    desk.refused(
+        &format!("{SHOT} --vcd a.vcd --window {cycles}:{cycles}"),
+        FAILS,
+        &["begins beyond the frame's end; its cycles are 0 to "],
+    );
 }
 
 #[test]
 fn charts_that_would_be_empty_are_not_drawn() {
-    let desk = Desk::new();
+    let desk = with_scene();
     let names = |folder: &str| {
         let mut names: Vec<_> =
             fs::read_dir(desk.path(folder)).unwrap().map(|file| file.unwrap().file_name().into_string().unwrap()).collect();
@@ -292,7 +252,7 @@ const MACHINE: &str = "[[machine]]\nname = \"packet\"\nset = { \"cores.rays_in_f
 
 #[test]
 fn a_sweep_goes_on_where_it_was() {
-    let desk = Desk::new();
+    let desk = with_scene();
     desk.write("jobs.toml", include_str!("../docs/jobs-example.toml"));
     let said = desk.run("sweep jobs.toml -o out");
     assert!(said.contains("36 jobs, 0 of them done before, 0 failed"), "{said}");
@@ -322,7 +282,7 @@ fn a_sweep_goes_on_where_it_was() {
     }
     // Not while another sweep writes there.
     let other = lodray::format::Staging::open(&desk.path("out")).unwrap().unwrap();
-    desk.refused("sweep jobs.toml -o out", FAILS, "out: another run is writing to this folder");
+    desk.refused("sweep jobs.toml -o out", FAILS, &["out: another run is writing to this folder"]);
     drop(other);
     // One simulation by hand gives the figures of its line.
     desk.write("one.toml", &format!("{HEAD}intervals = true\n{SCENE}{MACHINE}"));
@@ -333,7 +293,7 @@ fn a_sweep_goes_on_where_it_was() {
 
 #[test]
 fn a_failed_job_leaves_the_others() {
-    let desk = Desk::new();
+    let desk = with_scene();
     // Straight down on a terrain's centre, which is known when it is there: no direction is up.
     let down = "[[scene]]\ngenerate = \"terrain\"\nlevels = 2\nbase = 8\neyes = [[0, 5, 0]]\nup = [0, 1, 0]\n";
     desk.write("jobs.toml", &format!("{HEAD}compute = [\"free\", \"units\"]\n{down}{SCENE}{MACHINE}"));
@@ -353,7 +313,7 @@ fn a_failed_job_leaves_the_others() {
 
 #[test]
 fn two_results_side_by_side() {
-    let desk = Desk::new();
+    let desk = with_scene();
     desk.write("lod.json", &desk.run(&format!("{SHOT} --json")));
     desk.write("both.json", &desk.run(&format!("{SHOT} --method bvh --machine turing2018,packet --json")));
     let [lod, both] = ["lod.json", "both.json"].map(|name| serde_json::from_str::<Value>(&desk.text(name)).unwrap());
@@ -363,9 +323,9 @@ fn two_results_side_by_side() {
         near(at(figure, "/ratio"), at(&both[0], pointer) / at(&lod, pointer), name);
     }
     assert!(desk.run("compare lod.json lod.json").contains("1.000"));
-    desk.refused("compare lod.json both.json", FAILS, "both.json: has 2 results; name one");
-    desk.refused("compare lod.json both.json:3", FAILS, "no number 3");
-    desk.refused("compare lod.json both.json:2", FAILS, "cannot be compared");
+    desk.refused("compare lod.json both.json", FAILS, &["both.json: has 2 results; name one"]);
+    desk.refused("compare lod.json both.json:3", FAILS, &["no number 3"]);
+    desk.refused("compare lod.json both.json:2", FAILS, &["cannot be compared"]);
     desk.write("jobs.toml", &format!("{HEAD}{SCENE}{MACHINE}"));
     desk.run("sweep jobs.toml -o out");
     assert!(desk.run("compare out/results.jsonl:1 out/results.jsonl:3").contains("B / A"));

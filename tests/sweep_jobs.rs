@@ -1,47 +1,18 @@
 //! Lists of jobs with mistakes, results that were damaged, and charts, as a user meets them.
 
+use lodray_test_support::program::Desk;
 use std::fs;
-use std::path::PathBuf;
 
 /// A folder with a scene, to run the program in.
-struct Desk(tempfile::TempDir);
+fn with_scene() -> Desk {
+    let desk = Desk::new(assert_cmd::cargo::cargo_bin!("lodray"));
+    desk.run("generate terrain --levels 2 --base 8 --seed 2 -o a.lod");
+    desk
+}
 
-impl Desk {
-    fn new() -> Self {
-        let desk = Self(tempfile::tempdir().unwrap());
-        assert_eq!(desk.run("generate terrain --levels 2 --base 8 --seed 2 -o a.lod").0, 0);
-        desk
-    }
-
-    fn path(&self, name: &str) -> PathBuf {
-        self.0.path().join(name)
-    }
-
-    fn write(&self, name: &str, text: &str) {
-        fs::write(self.path(name), text).unwrap();
-    }
-
-    fn text(&self, name: &str) -> String {
-        fs::read_to_string(self.path(name)).unwrap()
-    }
-
-    /// Exit code, standard output and standard error.
-    fn run(&self, args: &str) -> (i32, String, String) {
-        let mut command = assert_cmd::cargo::cargo_bin_cmd!("lodray");
-        command.current_dir(self.0.path()).args(args.split_whitespace()).env("LODRAY_CACHE", "none");
-        let output = command.output().unwrap();
-        let [out, err] = [output.stdout, output.stderr].map(|text| String::from_utf8(text).unwrap());
-        assert!(!err.contains("panicked"), "{args}: {err}");
-        (output.status.code().unwrap(), out, err)
-    }
-
-    /// Names of the charts of a sweep.
-    fn charts(&self, folder: &str) -> Vec<String> {
-        let names = fs::read_dir(self.path(folder)).unwrap().map(|file| file.unwrap().file_name().into_string().unwrap());
-        let mut charts: Vec<_> = names.filter(|name| name.ends_with(".svg")).collect();
-        charts.sort();
-        charts
-    }
+/// Names of the charts of a sweep, in order.
+fn charts(desk: &Desk, folder: &str) -> Vec<String> {
+    desk.files(folder).into_keys().filter(|name| name.ends_with(".svg")).collect()
 }
 
 /// Three lines.
@@ -52,7 +23,7 @@ const MACHINE: &str = "[[machine]]\nname = \"packet\"\n";
 
 #[test]
 fn a_mistake_is_named_with_its_place_before_anything_runs() {
-    let desk = Desk::new();
+    let desk = with_scene();
     desk.write("not.lod", "this is no scene");
     desk.write("empty.lod", "");
     desk.write("ball.OBJ", "v 0 0 0\n");
@@ -94,7 +65,20 @@ fn a_mistake_is_named_with_its_place_before_anything_runs() {
         (scene("size = \"wide\""), "line 6: size: 'wide' is not a size"),
         (scene("eyes = []"), "line 6: eyes must not be empty"),
         (scene("fov = 180"), "line 4: scene a: fov must be between 0 and 180 degrees"),
-        (scene("eyes = [[0, 1, nan]]"), "line 4: scene a: eye must be three finite numbers"),
+        (scene("eyes = [[0, 1, nan]]"), "line 6: eyes: '0,1,NaN' is not three numbers"),
+        (scene("eyes = [[0, 1, 2], [0, 1, 1e300]]"), "line 6: eyes: each coordinate must be from -1e100 to 1e100"),
+        (scene("directions = [[-1e300, 0, 0]]"), "line 6: directions: each coordinate must be from -1e100 to 1e100"),
+        (scene("target = [0, inf, 0]"), "line 6: target: each coordinate must be from -1e100 to 1e100"),
+        (scene("up = [0, 0, 0]"), "line 6: up: a direction has a length: one coordinate must be 1e-100 or more, or -1e-100 or less"),
+        (scene("up = [0, 0, -1e300]"), "line 6: up: each coordinate must be from -1e100 to 1e100"),
+        (
+            format!("{HEAD}[[scene]]\ngenerate = \"wall\"\nseed = -1\n{MACHINE}"),
+            "line 6: invalid value: integer `-1`, expected a whole number from 0 to 18446744073709551615",
+        ),
+        (
+            format!("{HEAD}[[scene]]\ngenerate = \"wall\"\nbase = -1\n{MACHINE}"),
+            "line 6: invalid value: integer `-1`, expected a whole number from 0 to 4294967295",
+        ),
         (scene("target = [1, 2, 3]\neyes = [[1, 2, 3]]"), "line 4: scene a: eye must be different from target"),
         (format!("{HEAD}[[scene]]\ngenerate = \"terrain\"\nlevels = 11\n{MACHINE}"), "line 4: scene: 11 levels are too many"),
         (format!("{HEAD}[[scene]]\ngenerate = \"sphere\"\nroughness = 2\n{MACHINE}"), "line 4: scene: roughness 2 is not between"),
@@ -117,34 +101,41 @@ fn a_mistake_is_named_with_its_place_before_anything_runs() {
         (machine("\"cores.groups\" = 4096, \"cores.per_group\" = 4096"), "rays in flight of the machine are more than"),
     ] {
         desk.write("jobs.toml", &list);
-        let (code, out, err) = desk.run("sweep jobs.toml -o out");
+        let (code, out, err) = desk.run_on(0, "sweep jobs.toml -o out");
         assert!(code == 1 && err.starts_with("error: jobs.toml: ") && err.contains(wanted), "no '{wanted}' in: {err}");
         assert_eq!(err.matches("os error").count().max(1), 1, "said twice: {err}");
         assert!(out.is_empty() && err.lines().count() == 1 && !desk.path("out").exists(), "{out}{err}");
     }
-    let (code, _, err) = desk.run("sweep none.toml -o out");
+    let (code, _, err) = desk.run_on(0, "sweep none.toml -o out");
     assert!(code == 1 && err.contains("cannot read none.toml"), "{err}");
 }
 
 #[test]
 fn lines_that_are_no_results_are_set_aside_and_their_jobs_done_again() {
-    let desk = Desk::new();
+    let desk = with_scene();
     desk.write("jobs.toml", &format!("{HEAD}{SCENE}{MACHINE}set = {{ \"l1.bytes\" = [16384, 32768] }}\n"));
-    assert_eq!(desk.run("sweep jobs.toml -o out").0, 0);
+    assert_eq!(desk.run_on(0, "sweep jobs.toml -o out").0, 0);
     let lines = desk.text("out/results.jsonl");
     let [a, b, c, d]: [&str; 4] = lines.lines().collect::<Vec<_>>().try_into().unwrap();
     let cut = &c[..c.len() / 2];
-    for (damaged, done, bad) in [
-        (format!("{a}\nrubbish\n{b}\n{d}\n"), 3, "rubbish\n".to_owned()),
-        (format!("{a}\n{cut}{d}\n{b}\n"), 2, format!("{cut}{d}\n")),
-        (format!("{a}\n{b}\n{cut}"), 2, format!("{cut}\n")),
-        (format!("{a}\n\0\0\0\0\n[1]\n{{}}\n"), 1, "\0\0\0\0\n[1]\n{}\n".to_owned()),
+    for (damaged, done, bad, why) in [
+        (format!("{a}\nrubbish\n{b}\n{d}\n"), 3, "rubbish\n".to_owned(), "line 2 is no result: it is not JSON (column 1)"),
+        (format!("{a}\n{cut}{d}\n{b}\n"), 2, format!("{cut}{d}\n"), "line 2 is no result: "),
+        (format!("{a}\n{b}\n{cut}"), 2, format!("{cut}\n"), "line 3 is no result: it ends too early"),
+        (format!("{a}\n\0\0\0\0\n[1]\n{{}}\n"), 1, "\0\0\0\0\n[1]\n{}\n".to_owned(), "line 2 (and 2 more) is no result: it is not JSON"),
+        (
+            format!("{a}\n{{\"key\": 1}}\n{b}\n"),
+            2,
+            "{\"key\": 1}\n".to_owned(),
+            "line 2 is no result: a value is not of the kind or in the range",
+        ),
     ] {
         desk.write("out/results.jsonl", &damaged);
         let _ = fs::remove_file(desk.path("out/results.bad.jsonl"));
-        let (code, out, err) = desk.run("sweep jobs.toml -o out");
+        let (code, out, err) = desk.run_on(0, "sweep jobs.toml -o out");
         assert_eq!((code, err.lines().count()), (0, 1), "{out}{err}");
-        assert!(err.starts_with("warning: out/results.jsonl: line ") && err.contains("set aside in out/results.bad.jsonl"), "{err}");
+        assert!(err.starts_with("warning: out/results.jsonl: line ") && err.contains(why) && !err.contains("expected"), "{err}");
+        assert!(err.contains("set aside in out/results.bad.jsonl"), "{err}");
         assert!(out.contains(&format!("4 jobs, {done} of them done before, 0 failed")), "{out}");
         assert_eq!(desk.text("out/results.bad.jsonl"), bad);
         let sorted = |text: &str| {
@@ -153,26 +144,45 @@ fn lines_that_are_no_results_are_set_aside_and_their_jobs_done_again() {
             lines
         };
         assert_eq!(sorted(&desk.text("out/results.jsonl")), sorted(&lines));
+        assert!(desk.text("out/run.json").contains("\"results.bad.jsonl\""), "not in the record");
         // Told once.
-        assert_eq!(desk.run("sweep jobs.toml -o out").2, "");
+        assert_eq!(desk.run_on(0, "sweep jobs.toml -o out").2, "");
+        assert!(desk.text("out/run.json").contains("\"results.bad.jsonl\""), "no longer in the record");
     }
     // What is set aside later stands behind what was before.
     desk.write("out/results.jsonl", &format!("{a}\nmore\n"));
-    assert_eq!(desk.run("sweep jobs.toml -o out").0, 0);
-    assert!(desk.text("out/results.bad.jsonl").ends_with("{}\nmore\n"));
+    assert_eq!(desk.run_on(0, "sweep jobs.toml -o out").0, 0);
+    assert!(desk.text("out/results.bad.jsonl").ends_with("}\nmore\n"));
+    // Another run that takes the folder removes it.
+    let (code, _, err) = desk.run_on(0, "render a.lod --size 8x8 -o out --force");
+    assert!(code == 0 && !desk.path("out/results.bad.jsonl").exists(), "{err}");
+}
+
+#[test]
+fn jobs_that_are_no_longer_listed_stay_in_the_lines_only() {
+    let desk = with_scene();
+    desk.write("jobs.toml", &format!("{HEAD}{SCENE}{MACHINE}"));
+    assert_eq!(desk.run_on(0, "sweep jobs.toml -o out").0, 0);
+    desk.write("jobs.toml", &format!("size = \"16x16\"\ndistances = [2]\nmethods = [\"bvh\"]\n{SCENE}{MACHINE}"));
+    let (code, out, err) = desk.run_on(0, "sweep jobs.toml -o out");
+    assert_eq!((code, err.as_str()), (0, ""), "{out}");
+    let said =
+        "1 job, 1 of them done before, 0 failed; results in out\nresults.jsonl has results of 1 job more, which are not in the list\n";
+    assert_eq!(out, said);
+    assert_eq!((desk.text("out/results.jsonl").lines().count(), desk.text("out/results.csv").lines().count()), (2, 2));
 }
 
 #[test]
 fn bars_are_told_apart_and_every_chart_has_several() {
-    let desk = Desk::new();
+    let desk = with_scene();
     // One bar: no chart.
     desk.write("one.toml", &format!("size = \"16x16\"\ndistances = [2]\nmethods = [\"lod\"]\n{SCENE}{MACHINE}"));
-    assert_eq!(desk.run("sweep one.toml -o one").0, 0);
-    assert_eq!(desk.charts("one"), Vec::<String>::new());
+    assert_eq!(desk.run_on(0, "sweep one.toml -o one").0, 0);
+    assert_eq!(charts(&desk, "one"), Vec::<String>::new());
     // Qualities.
     desk.write("deltas.toml", &format!("{HEAD}deltas = [1, 4, \"inf\"]\n{SCENE}{MACHINE}"));
-    assert_eq!(desk.run("sweep deltas.toml -o deltas").0, 0);
-    assert_eq!(desk.charts("deltas"), ["energy-a-packet-compute-free.svg", "time-a-packet-compute-free.svg"]);
+    assert_eq!(desk.run_on(0, "sweep deltas.toml -o deltas").0, 0);
+    assert_eq!(charts(&desk, "deltas"), ["energy-a-packet-compute-free.svg", "time-a-packet-compute-free.svg"]);
     let chart = desk.text("deltas/time-a-packet-compute-free.svg");
     for label in ["lod δ1", "lod δ4", "lod δ∞", "bvh", "2 radii", "time, µs"] {
         assert_eq!(chart.matches(&format!("\n{label}\n")).count(), 1, "{label}: {chart}");
@@ -180,8 +190,8 @@ fn bars_are_told_apart_and_every_chart_has_several() {
     // Machines: only what was changed.
     let set = "set = { \"l1.bytes\" = [16384, 32768] }\n";
     desk.write("set.toml", &format!("size = \"16x16\"\ndistances = [2]\nmethods = [\"lod\"]\n{SCENE}{MACHINE}{set}{MACHINE}"));
-    assert_eq!(desk.run("sweep set.toml -o set").0, 0);
-    assert_eq!(desk.charts("set"), ["energy-a-packet.svg", "time-a-packet.svg"]);
+    assert_eq!(desk.run_on(0, "sweep set.toml -o set").0, 0);
+    assert_eq!(charts(&desk, "set"), ["energy-a-packet.svg", "time-a-packet.svg"]);
     let chart = desk.text("set/time-a-packet.svg");
     for label in ["l1.bytes=16384", "l1.bytes=32768", "unchanged"] {
         assert_eq!(chart.matches(&format!("\n{label}\n")).count(), 1, "{label}: {chart}");
@@ -189,7 +199,7 @@ fn bars_are_told_apart_and_every_chart_has_several() {
     // Views of the same distance.
     let views = "directions = [[1, 0, 0], [0, 0, 1]]\n";
     desk.write("views.toml", &format!("{HEAD}{SCENE}{views}{MACHINE}"));
-    assert_eq!(desk.run("sweep views.toml -o views").0, 0);
+    assert_eq!(desk.run_on(0, "sweep views.toml -o views").0, 0);
     let chart = desk.text("views/time-a-packet-compute-free.svg");
     let eyes: Vec<_> = chart.lines().filter(|line| line.starts_with("eye ")).collect();
     assert!(eyes.len() == 2 && eyes[0] != eyes[1], "{eyes:?}");
@@ -198,10 +208,10 @@ fn bars_are_told_apart_and_every_chart_has_several() {
 /// No two ticks of an axis read the same, and none has lost all its digits.
 #[test]
 fn ticks_differ() {
-    let desk = Desk::new();
+    let desk = with_scene();
     desk.write("jobs.toml", &format!("{HEAD}deltas = [0, 1]\n{SCENE}{MACHINE}[[machine]]\nname = \"turing2018\"\n"));
-    assert_eq!(desk.run("sweep jobs.toml -o out").0, 0);
-    let charts = desk.charts("out");
+    assert_eq!(desk.run_on(0, "sweep jobs.toml -o out").0, 0);
+    let charts = charts(&desk, "out");
     assert_eq!(charts.len(), 4);
     for chart in charts {
         let text = desk.text(&format!("out/{chart}"));

@@ -22,8 +22,8 @@ const ENDING: &str = ".lodray-bvh";
 
 #[derive(clap::Args, Clone, Debug)]
 pub struct CacheArgs {
-    /// Folder that keeps full-resolution BVHs for later runs, safe to delete, up to 4 GB; "none" keeps nothing (default: lodray in the system's
-    /// folder for caches)
+    /// Folder that keeps full-resolution BVHs of 65,536 triangles or more for later runs, safe to delete, up to 4 GB; "none" keeps nothing (default:
+    /// lodray in the system's folder for caches)
     #[arg(long = "cache", id = "cache", env = "LODRAY_CACHE", value_name = "DIR", hide_env_values = true)]
     folder: Option<PathBuf>,
 }
@@ -157,7 +157,15 @@ fn is_tree(name: &str) -> bool {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::cli::output::grouped;
     use std::time::Duration;
+
+    #[test]
+    fn the_help_names_what_is_too_small_to_keep() {
+        let command = <CacheArgs as clap::Args>::augment_args(clap::Command::new("any"));
+        let help = command.get_arguments().find(|argument| argument.get_id() == "cache").and_then(clap::Arg::get_help).unwrap().to_string();
+        assert!(help.contains(&format!("of {} triangles or more", grouped(LEAST_TRIANGLES))), "{help}");
+    }
 
     #[test]
     fn the_longest_unused_go_first_and_nothing_else_goes() {

@@ -135,7 +135,7 @@ fn table(rows: &[Row], triangles: u64) -> String {
     );
     for r in rows {
         text += &format!(
-            "{:<8}{:>9}{:>8}{:>16}{:>11.2}{:>11.2}{:>15.2}{:>12.2}{:>9.3}{:>10}{:>12.3}\n",
+            "{:<8}{:>9}{:>8}{:>16}{:>11.2}{:>11.2}{:>15.2}{:>12.2}{:>9.3}{:>10}{:>12}\n",
             r.view,
             r.distance,
             r.method,
@@ -146,7 +146,7 @@ fn table(rows: &[Row], triangles: u64) -> String {
             r.mean_level,
             r.error.image.rmse,
             r.error.image.psnr_db.map_or("inf".to_owned(), |p| format!("{p:.1} dB")),
-            r.error.geometry_pixels.mean
+            r.error.geometry_pixels.map_or("-".to_owned(), |g| format!("{:.3}", g.mean))
         );
     }
     text.trim_end().to_owned()

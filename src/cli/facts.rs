@@ -98,8 +98,12 @@ impl Facts<'_> {
             line(&mut lines, "PSNR", error.image.psnr_db.map_or("infinite".to_owned(), |p| format!("{p:.2} dB")));
             line(&mut lines, "pixels differing", format!("{:.2} %", 100.0 * error.image.differing));
             line(&mut lines, "coverage differs", format!("{} pixels", grouped(error.coverage_differs)));
-            line(&mut lines, "surface off by", format!("{:.3} pixels", error.geometry_pixels.mean));
-            line(&mut lines, "99 of 100 below", format!("{:.3} pixels", error.geometry_pixels.percentile_99));
+            if let Some(off) = error.geometry_pixels {
+                line(&mut lines, "surface off by", format!("{:.3} pixels", off.mean));
+                line(&mut lines, "99 of 100 below", format!("{:.3} pixels", off.percentile_99));
+            } else {
+                line(&mut lines, "surfaces", "do not overlap".to_owned());
+            }
         }
         lines
     }

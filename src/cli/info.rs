@@ -146,7 +146,15 @@ fn summary(i: &Info<'_>) -> String {
     if let Some(d) = &i.distance {
         let mean = percent(d.to_original.mean.max(d.from_original.mean));
         let max = at_most(d.to_original.max.max(d.from_original.max));
-        lines.push(("accuracy", format!("{mean} of the model's diagonal from the original mesh on average, {max} at most")));
+        lines.push((
+            "accuracy",
+            format!("{mean} of the model's diagonal from the original mesh on average; no point is further than {max} (a bound: the largest distance may be less)"),
+        ));
+    }
+    if let Some(wanted) = i.origin["remesh"]["wanted_base_triangles"].as_u64() {
+        let (wanted, made) = (grouped(wanted), grouped(i.base_triangles));
+        let why = "how the mesh is connected, and its borders and creases, allow no fewer triangles";
+        lines.push(("note", format!("--base {wanted} was not met, the base has {made}: {why}")));
     }
     lines.extend(losses(i).into_iter().map(|loss| ("warning", loss)));
     lines.iter().map(|(name, value)| format!("{name:<12}{value}")).collect::<Vec<_>>().join("\n")
@@ -190,9 +198,10 @@ fn verbose(i: &Info<'_>) -> String {
         i.hierarchy_bytes_per_triangle
     );
     if let Some(d) = &i.distance {
-        let there = format!("mean {}, maximum {}", percent(d.to_original.mean), at_most(d.to_original.max));
-        let back = format!("mean {}, maximum {}", percent(d.from_original.mean), at_most(d.from_original.max));
-        text += &format!("distance to the original mesh: {there} of the diagonal; from it back: {back}\n");
+        let there = format!("mean {}, bound {}", percent(d.to_original.mean), at_most(d.to_original.max));
+        let back = format!("mean {}, bound {}", percent(d.from_original.mean), at_most(d.from_original.max));
+        text +=
+            &format!("distance to the original mesh: {there} of the diagonal; from it back: {back} (no point is further than the bound)\n");
     }
     text += &origin(i.origin, "");
     text.trim_end().to_owned()
@@ -211,6 +220,9 @@ fn percent(value: f64) -> String {
 fn at_most(value: f64) -> String {
     if value <= 0.0 {
         return percent(value);
+    }
+    if value < 1e-6 {
+        return "0.000001 %".to_owned();
     }
     // The last of three digits.
     let last = 10f64.powf(value.log10().floor() - 2.0);
@@ -234,7 +246,7 @@ mod tests {
     #[test]
     fn percentages_have_three_digits() {
         let shown = [0.0, 1e-17, 0.000_712, 0.25, 12.345, 1234.5].map(super::percent);
-        assert_eq!([0.2951, 0.295, 0.0, 12.34].map(super::at_most), ["0.296 %", "0.295 %", "0 %", "12.4 %"]);
+        assert_eq!([0.2951, 0.295, 0.0, 12.34, 1e-17].map(super::at_most), ["0.296 %", "0.295 %", "0 %", "12.4 %", "0.000001 %"]);
         assert_eq!(shown, ["0 %", "below 0.000001 %", "0.000712 %", "0.250 %", "12.3 %", "1234 %"]);
     }
 }

@@ -12,6 +12,7 @@ mod facts;
 mod folder;
 mod generate;
 mod info;
+mod json;
 mod lines;
 mod method;
 mod original;

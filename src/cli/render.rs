@@ -123,8 +123,8 @@ pub struct Comparison {
     pub image: ImageError,
     /// Pixels that hit in one picture only.
     pub coverage_differs: u64,
-    /// Distance between the surfaces in pixels.
-    pub geometry_pixels: GeometricError,
+    /// Distance between the surfaces in pixels; null in JSON if no pixel hits in both pictures.
+    pub geometry_pixels: Option<GeometricError>,
 }
 
 /// Geometry to trace.
@@ -295,15 +295,16 @@ fn table(r: &Report) -> String {
     }
     if let (Some(against), Some(e)) = (r.against, &r.error) {
         let psnr = e.image.psnr_db.map_or("infinite".to_owned(), |p| format!("{p:.2} dB"));
+        let off = e.geometry_pixels.map_or("no pixel sees the surface in both: nothing overlaps".to_owned(), |g| {
+            format!("surface off by {:.3} pixels in the mean, 99 of 100 below {:.3}", g.mean, g.percentile_99)
+        });
         text += &format!(
-            "against {}: RMSE {:.3}, PSNR {psnr}, maximum {}, {:.2} % of pixels differ, {} differ in coverage\nsurface off by {:.3} pixels in the mean, 99 of 100 below {:.3}\n",
+            "against {}: RMSE {:.3}, PSNR {psnr}, maximum {}, {:.2} % of pixels differ, {} differ in coverage\n{off}\n",
             against.name(),
             e.image.rmse,
             e.image.maximum,
             100.0 * e.image.differing,
-            grouped(e.coverage_differs),
-            e.geometry_pixels.mean,
-            e.geometry_pixels.percentile_99
+            grouped(e.coverage_differs)
         );
     }
     text.trim_end().to_owned()

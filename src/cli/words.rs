@@ -12,7 +12,9 @@ Words of the table:
                       what a line holds: boxes over triangles, a base triangle, how far the surface
                       is from a triangle, vertices of finer levels, triangles of the BVH
   RMSE, maximum       differences of the pictures, from 0 to 255; PSNR is the same in dB, more is better
-  coverage            pixels that see the model in one picture only";
+  coverage            pixels that see the model in one picture only
+  surface off         distance between the surfaces in pixels, where both pictures see one;
+                      null with --json if they do so nowhere";
 
 /// Of `simulate`.
 pub const SIMULATE: &str = "\

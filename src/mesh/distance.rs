@@ -18,7 +18,7 @@ pub struct Distance {
     /// Mean over samples.
     pub mean: f64,
     /// No point of the surface is further than this: a bound, narrowed down until it is little above what was found in either direction, but not
-    /// below four tenths of the limit.
+    /// below four tenths of the limit, or of the default limit if that is less.
     pub max: f64,
     /// The largest that was looked at, of the original all vertices included. What is within the bound for sure is not looked at.
     #[serde(default)]

@@ -21,6 +21,6 @@ pub use distance::{Distance, TwoSidedDistance};
 pub use hierarchy::{EdgeCodes, Hierarchy, Placement, edge_index, edges_of_level, edges_of_tree};
 pub use normals::{DEFAULT_CREASE_ANGLE, corner_normals};
 pub use quantise::{SurfaceError, quantise};
-pub use read::{MESH_ENDINGS, MeshFormat, ReadError, read, read_as, read_bytes};
-pub use remesh::{DEFAULT_MAX_ERROR, RemeshError, RemeshOptions, RemeshReport, remesh};
+pub use read::{MESH_ENDINGS, MeshFormat, ReadError, named_files, read, read_as, read_bytes};
+pub use remesh::{DEFAULT_MAX_ERROR, RemeshError, RemeshOptions, RemeshReport, Works, remesh};
 pub use surface::Surface;

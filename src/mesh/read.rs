@@ -109,6 +109,22 @@ fn fault<T>(place: impl Display, what: impl Display) -> Result<T, Fault> {
     Err(Fault { place: place.to_string(), what: what.to_string() })
 }
 
+/// The files beside a mesh file that are read with it, as far as they are there: material libraries of OBJ, buffers of glTF. None of a file
+/// that is no mesh, or a damaged one: to read it says what is wrong with it.
+pub fn named_files(path: &Path) -> Vec<PathBuf> {
+    let named = match MeshFormat::of(path) {
+        Some(MeshFormat::Obj) => obj::libraries,
+        Some(MeshFormat::Gltf | MeshFormat::Glb) => gltf::files,
+        _ => return Vec::new(),
+    };
+    let names = std::fs::read(path).map_or_else(|_| Vec::new(), |bytes| named(&bytes));
+    let folder = path.parent().unwrap_or(Path::new(""));
+    let mut files: Vec<PathBuf> = names.into_iter().map(|name| folder.join(name)).filter(|file| file.is_file()).collect();
+    files.sort();
+    files.dedup();
+    files
+}
+
 /// Reads and cleans a triangle mesh from a file, in the file's own units; its ending says which format it has: see [`MeshFormat`].
 ///
 /// OBJ: polygons are cut into triangles; diffuse colours are taken from the material library if it can be read. PLY: faces or triangle

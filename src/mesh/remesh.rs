@@ -26,6 +26,7 @@ use rayon::prelude::*;
 use refine::{Fitted, Wanted};
 use serde::{Deserialize, Serialize};
 use source::Source;
+use std::fmt;
 use topology::Topology;
 
 /// Most finest triangles that are made: they need about 12 GB while they are.
@@ -57,8 +58,11 @@ impl Default for RemeshOptions {
 /// What remeshing made, and how well it fits.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct RemeshReport {
-    /// Base triangles reached; more than wanted if the topology or the feature lines did not allow it.
+    /// Base triangles reached.
     pub base_triangles: usize,
+    /// Base triangles wanted, if the surface's connections and feature lines did not allow so few.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub wanted_base_triangles: Option<usize>,
     /// Base triangles that are triangles of the original: they split flat.
     pub own_base_triangles: usize,
     /// Triangles of the finest level.
@@ -97,26 +101,26 @@ pub enum RemeshError {
     #[error("a base mesh needs at least one triangle")]
     NoBase,
     /// The result would not fit in memory.
-    #[error("{base} base triangles and {levels} levels make {triangles} triangles, more than {MAX_TRIANGLES}; ask for fewer")]
+    #[error("{base} base triangles and {levels} levels make {triangles} triangles, more than the {MAX_TRIANGLES} there can be{works}")]
     TooMany {
         /// Base triangles reached.
-        base: usize,
+        base: u64,
         /// Number of splits.
         levels: u32,
         /// What they would make.
         triangles: u64,
+        /// What would do.
+        works: Works,
     },
     /// The base mesh that the original needs would not fit in memory with so many splits.
-    #[error(
-        "this mesh needs {base} base triangles, too many for {levels} levels: the most that fit ({MAX_TRIANGLES} triangles in all) are --levels {works}; or give a larger --max-error, or a --base"
-    )]
+    #[error("this mesh needs {base} base triangles or more, too many for {levels} levels: {MAX_TRIANGLES} triangles in all fit{works}")]
     NeedsBase {
         /// Base triangles needed.
         base: u64,
         /// Number of splits.
         levels: u32,
-        /// The most that would work.
-        works: u32,
+        /// What would do.
+        works: Works,
     },
     /// A limit that cannot be.
     #[error("{name} is {value}, but must be {range}")]
@@ -128,12 +132,47 @@ pub enum RemeshError {
         /// What can be.
         range: &'static str,
     },
+    /// A largest error that rounding to the format's grid alone may take.
+    #[error(
+        "no result is sure to be within {wanted} % of the diagonal, as rounding to the grid of {levels} levels alone may take more: give a --max-error of {least} or more"
+    )]
+    Grid {
+        /// What was asked for, in percent of the diagonal.
+        wanted: f64,
+        /// Number of splits.
+        levels: u32,
+        /// What can be met.
+        least: f64,
+    },
     /// The mesh breaks a promise of [`TriangleMesh`].
     #[error("the mesh cannot be remeshed, it has {what}")]
     BadMesh {
         /// What is wrong with it.
         what: &'static str,
     },
+}
+
+/// What does not make too many triangles; shown as advice.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Works {
+    /// The most splits of the same base mesh, if it fits at all.
+    pub levels: Option<u32>,
+    /// Base triangles to ask for with the same splits, if removal comes that far.
+    pub base: Option<u64>,
+    /// Whether the base mesh is what the largest error asks for: a larger one may need less.
+    pub error: bool,
+}
+
+impl fmt::Display for Works {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let ways = [
+            self.levels.map(|levels| format!("with --levels {levels} at most")),
+            self.base.map(|base| format!("with --base {base}, whatever is lost")),
+            self.error.then(|| "maybe with a larger --max-error".to_owned()),
+        ];
+        let ways: Vec<String> = ways.into_iter().flatten().collect();
+        if ways.is_empty() { Ok(()) } else { write!(f, "; there is room {}", ways.join(", or ")) }
+    }
 }
 
 /// Remeshes `mesh` as `options` say; `progress` is called with a stage's name, what is done of it and its total.
@@ -162,6 +201,10 @@ pub fn remesh(
     check(mesh)?;
 
     let source = Source::new(mesh, angle.to_radians());
+    let least = percent(source.diagonal) * (rounding(levels) + EXACT);
+    if error < least {
+        return Err(RemeshError::Grid { wanted: error, levels, least: rounded_up(least) });
+    }
     let limit = (source.diagonal * error / 100.0 - rounding(levels)).max(0.0);
     let fitted = match options.base_triangles {
         Some(wanted) => refine::force(&source, wanted.min(mesh.triangles.len()), levels, progress)?,
@@ -182,8 +225,10 @@ pub fn remesh(
 
     progress("distance", 0, 1);
     let far = refine::measure(&source, &fitted, limit);
+    let base_triangles = fitted.topology.triangles.len();
     let mut report = RemeshReport {
-        base_triangles: fitted.topology.triangles.len(),
+        base_triangles,
+        wanted_base_triangles: options.base_triangles.filter(|&wanted| wanted < base_triangles),
         own_base_triangles: fitted.topology.own.iter().flatten().count(),
         finest_triangles: surface.finest_triangles(),
         flipped_triangles: fitted.flips,
@@ -195,6 +240,14 @@ pub fn remesh(
     report.warning = warning(&source, &fitted, &far, options, mesh, &report);
     progress("distance", 1, 1);
     Ok((surface, report))
+}
+
+/// What is left of rounding in `f64` where the result is the original, in units of the box, and more.
+const EXACT: f64 = 1e-12;
+
+/// A number with four digits that is a little larger, by less than two thousandths.
+fn rounded_up(value: f64) -> f64 {
+    format!("{:.3e}", 1.001 * value).parse().unwrap_or(value)
 }
 
 /// How far a vertex moves at most when it is rounded to the format's grid, in units of the box.
@@ -230,11 +283,8 @@ fn warning(
     let mut lost = Vec::new();
     if to.max.max(from.max) > options.max_error {
         let (worst, at) = if from.max > to.max { (from.max, far[1].at) } else { (to.max, far[0].at) };
-        lost.push(format!(
-            "it is up to {worst:.3} % of the diagonal away from the original, {} (wanted: {} %)",
-            place(at),
-            options.max_error
-        ));
+        let worst = if worst < 0.01 { format!("{worst:.2e}") } else { format!("{worst:.3}") };
+        lost.push(format!("it is up to {worst} % of the diagonal away from the original, {} (wanted: {} %)", place(at), options.max_error));
     }
     if let Some(at) = fitted.flip {
         lost.push(format!(
@@ -248,13 +298,19 @@ fn warning(
         return None;
     }
     let seams = mesh.report.non_manifold_edges + mesh.report.inconsistent_edges;
+    let all = mesh.triangles.len();
+    let fits = |base: usize| base as u64 <= refine::most_base(options.levels);
     let try_this = match options.base_triangles {
-        Some(base) if base < mesh.triangles.len() => "leave --base out, or try a larger one".to_owned(),
+        Some(base) if base < all => "leave --base out, or try a larger one".to_owned(),
         _ if seams > 0 => format!(
-            "its {seams} edges with more than two triangles, or with two that face different ways, are best repaired in the original"
+            "its {seams} {} with more than two triangles, or with two that face different ways, are best repaired in the original",
+            if seams == 1 { "edge" } else { "edges" }
         ),
-        _ if report.base_triangles < mesh.triangles.len() / 2 => format!("try --base {}", 2 * report.base_triangles),
-        _ => "the original folds there".to_owned(),
+        _ if report.base_triangles < all / 2 && fits(2 * report.base_triangles) => format!("try --base {}", 2 * report.base_triangles),
+        _ if fitted.flip.is_some() => "the original folds there".to_owned(),
+        // The original's own triangles split flat.
+        _ if fits(all) => format!("try --base {all}, the mesh itself"),
+        _ => "try fewer --levels".to_owned(),
     };
     Some(format!("{}; {try_this}", lost.join(", and ")))
 }

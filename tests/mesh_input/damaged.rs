@@ -1,6 +1,6 @@
 //! Damaged and random files: a mesh, or one line that says why not; never a panic.
 
-use super::{gltf, obj, ply, stl};
+use super::{glb, obj, ply, stl};
 use lodray::mesh::{MeshFormat, read_bytes};
 use proptest::prelude::*;
 use proptest::sample::Index;
@@ -9,7 +9,7 @@ use std::path::Path;
 
 /// Good files to damage.
 fn originals() -> Vec<(MeshFormat, Vec<u8>)> {
-    let square = gltf::square();
+    let square = glb::square();
     vec![
         (MeshFormat::Obj, format!("mtllib a.mtl\nvt 0 1\nvn 0 0 1\n{}usemtl x\nf 1/1/1 2//1 -1/-1 -2\n", obj::TETRAHEDRON).into_bytes()),
         (MeshFormat::Ply, ply::ascii(ply::FACES, &format!("{}3 0 1 2\n4 0 2 3 1\n", ply::CORNERS)).into_bytes()),
@@ -80,7 +80,7 @@ proptest! {
     /// Another value at any place of a glTF file's JSON.
     #[test]
     fn wrong_values_in_json_never_panic(edits in prop::collection::vec((any::<Index>(), value()), 1..4)) {
-        let mut glb = gltf::square();
+        let mut glb = glb::square();
         for (at, value) in edits {
             let mut places = Vec::new();
             leaves(&mut glb.json, &mut places);

@@ -3,6 +3,7 @@
 mod clean;
 mod damaged;
 mod files;
+mod glb;
 mod gltf;
 mod obj;
 mod ply;

@@ -132,6 +132,16 @@ fn obj_texture_indices_need_not_be_there() {
 }
 
 #[test]
+fn obj_normals_may_be_named_where_there_are_none() {
+    let files = Files::new();
+    for face in ["f 1/1/1 2/2/2 3/3/3", "f 1//0 2//-1 3//99"] {
+        let mesh = files.read("a.obj", format!("v 0 0 0\nv 1 0 0\nv 0 1 0\n{face}\n"));
+        assert_eq!((mesh.triangles.len(), mesh.normals.len()), (1, 0), "{face}");
+    }
+    files.refuses("word.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1//1 2//x 3//1\n", &["line 4", "2//x has no valid normal index"]);
+}
+
+#[test]
 fn obj_normals_are_kept_for_each_corner() {
     let square = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\n";
     let (x, y, z, none) = ([1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0], [0.0; 3]);

@@ -69,15 +69,15 @@ fn ply_binary_of_both_byte_orders() {
 fn bad_ply_files_are_named_with_the_element() {
     let files = Files::new();
     let bad = |name: &str, data: &str, parts: &[&str]| files.refuses(&format!("{name}.ply"), ascii(FACES, data), parts);
-    bad("range", &format!("{CORNERS}3 0 1 2\n3 0 1 4\n"), &["element face 1", "index 4"]);
-    bad("negative", &format!("{CORNERS}3 0 1 -2\n3 0 1 2\n"), &["element face 0", "-2"]);
-    bad("two", &format!("{CORNERS}3 0 1 2\n2 0 1\n"), &["element face 1", "3 vertices or more"]);
+    bad("range", &format!("{CORNERS}3 0 1 2\n3 0 1 4\n"), &["line 17, element face 1: ", "index 4"]);
+    bad("negative", &format!("{CORNERS}3 0 1 -2\n3 0 1 2\n"), &["line 16, element face 0: ", "-2"]);
+    bad("two", &format!("{CORNERS}3 0 1 2\n2 0 1\n"), &["line 17, element face 1: ", "3 vertices or more"]);
     bad("missing", &format!("{CORNERS}3 0 1 2\n3 0 1\n"), &["line 17", "element face 1"]);
-    bad("truncated", &format!("{CORNERS}3 0 1 2\n"), &["element face 1", "counts 2"]);
-    bad("truncated_vertices", "0 0 0 9\n1 0 0 9\n", &["element vertex 2", "counts 4"]);
-    bad("more", &format!("{CORNERS}3 0 1 2\n3 0 2 3\n3 1 2 3\n"), &["follow the last element"]);
-    bad("nan", "0 0 0 9\n1 nan 0 9\n1 1 0 9\n0 1 0 9\n3 0 1 2\n3 0 2 3\n", &["vertex 1"]);
-    bad("infinite", "0 0 0 9\n1 1e999 0 9\n1 1 0 9\n0 1 0 9\n3 0 1 2\n3 0 2 3\n", &["element vertex 1", "y", "inf"]);
+    bad("truncated", &format!("{CORNERS}3 0 1 2\n"), &["line 16, element face 1: ", "counts 2"]);
+    bad("truncated_vertices", "0 0 0 9\n1 0 0 9\n", &["line 13, element vertex 2: ", "counts 4"]);
+    bad("more", &format!("{CORNERS}3 0 1 2\n3 0 2 3\n3 1 2 3\n"), &["after line 17: ", "follow the last element"]);
+    bad("nan", "0 0 0 9\n1 nan 0 9\n1 1 0 9\n0 1 0 9\n3 0 1 2\n3 0 2 3\n", &["line 13, element vertex 1: "]);
+    bad("infinite", "0 0 0 9\n1 1e999 0 9\n1 1 0 9\n0 1 0 9\n3 0 1 2\n3 0 2 3\n", &["line 13, element vertex 1: ", "y", "inf"]);
     bad("words", "0 0 0 9\nhello world\n", &["line 13", "element vertex 1"]);
     bad("degenerate", &format!("{CORNERS}3 0 1 1\n3 0 2 0\n"), &["no triangle is left"]);
     let header = |name: &str, text: &str, parts: &[&str]| files.refuses(&format!("{name}.ply"), text, parts);

@@ -1,7 +1,7 @@
 //! `lodray build` from files and standard input.
 
 use super::files::Files;
-use super::{gltf, obj, stl};
+use super::{glb, obj, stl};
 use serde_json::Value;
 
 /// The figures that the program prints, or its error.
@@ -21,8 +21,8 @@ fn standard_input_is_read_in_every_format() {
         ("obj", obj::TETRAHEDRON.as_bytes().to_vec()),
         ("stl", stl::ASCII.into()),
         ("stl", stl::binary("solid", &stl::TRIANGLES)),
-        ("glb", gltf::square().bytes()),
-        ("gltf", gltf::square().embedded().into()),
+        ("glb", glb::square().bytes()),
+        ("gltf", glb::square().embedded().into()),
     ];
     for (format, bytes) in inputs {
         let made = build(&files, &format!("build - --format {format} -o a.lod --levels 1 --json"), &bytes).unwrap();

@@ -1,7 +1,7 @@
 //! One model in every format: the same triangles at the same places.
 
 use super::files::Files;
-use super::gltf::Glb;
+use super::glb::Glb;
 use super::stl;
 use lodray::mesh::TriangleMesh;
 use std::fmt::Write;

@@ -9,6 +9,7 @@ use super::common::Invocation;
 use super::output::check_target;
 use anyhow::{Context, anyhow, ensure};
 use lodray::format::Staging;
+use lodray::mesh::named_files;
 use std::collections::BTreeSet;
 use std::fs;
 use std::io::ErrorKind;
@@ -57,8 +58,10 @@ impl RunFolder {
     pub fn open<'a>(path: &Path, names: impl IntoIterator<Item = &'a str>, inputs: &[&Path], overrule: &Overrule) -> anyhow::Result<Self> {
         let (shown, force) = (path.display(), overrule.force);
         let made = Made::make(path)?;
+        let inputs = with_named(inputs);
+        let inputs: Vec<_> = inputs.iter().map(PathBuf::as_path).collect();
         let names: Vec<_> = names.into_iter().collect();
-        names.iter().chain([&RECORD]).try_for_each(|name| check_target(&path.join(name), inputs))?;
+        names.iter().chain([&RECORD]).try_for_each(|name| check_target(&path.join(name), &inputs))?;
         let staging = Staging::open(path).with_context(|| format!("cannot write to {shown}"))?;
         let staging = staging.with_context(|| format!("{shown}: another run is writing to this folder"))?;
         let record = Record::new(Invocation::of_process(), inputs.iter().map(|input| Input::read(input)).collect::<anyhow::Result<_>>()?);
@@ -136,6 +139,11 @@ impl RunFolder {
         }
         self.record.write(&self.path)
     }
+}
+
+/// Inputs, each with the files that are read with it.
+fn with_named(inputs: &[&Path]) -> Vec<PathBuf> {
+    inputs.iter().flat_map(|input| std::iter::once(input.to_path_buf()).chain(named_files(input))).collect()
 }
 
 /// Folders that were made for a run, the innermost first; they go again if nothing is in them.

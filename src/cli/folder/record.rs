@@ -1,8 +1,9 @@
 //! The record of a run: what was asked for, of what, and which files it made.
 
 use crate::cli::common::Invocation;
+use crate::cli::json::fault_at;
 use crate::cli::output::write_file;
-use anyhow::Context;
+use anyhow::{Context, anyhow};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeSet;
 use std::fs::File;
@@ -71,7 +72,8 @@ impl Record {
             Err(error) if error.kind() == ErrorKind::NotFound => return Ok(None),
             other => other.with_context(|| format!("cannot read {}", path.display()))?,
         };
-        let record: Self = serde_json::from_str(&text).with_context(|| format!("{} is not the record of a run", path.display()))?;
+        let record: Self =
+            serde_json::from_str(&text).map_err(|error| anyhow!("{} is not the record of a run: {}", path.display(), fault_at(&error)))?;
         // Files are removed by these names.
         if let Some(name) = record.files.iter().find(|name| !is_plain(name)) {
             anyhow::bail!("{} is not the record of a run: '{name}' is not the name of a file in its folder", path.display());

@@ -7,6 +7,7 @@ mod units;
 
 use super::args::{CameraArgs, Change};
 use super::cache::{Cache, CacheArgs};
+use super::common::is_quiet;
 use super::folder::{Overrule, RunFolder, one_run};
 use super::method::MachineMethod;
 use super::output::{check_target, explain, grouped, open, print_json, print_line, remark, warn, write_file};
@@ -66,12 +67,12 @@ fn window(s: &str) -> Result<Window, String> {
     }
 }
 
-/// Refuses a window that begins after the frame's last cycle, and says if it ends there.
+/// Refuses a window that begins after the frame's last cycle, and says if it ends there, unless nobody wants remarks.
 fn check_window(window: Window, last: u64) -> anyhow::Result<()> {
     let Window { from, to } = window;
     let last_shown = grouped(last);
     anyhow::ensure!(from <= last, "--window {from}:{to}: begins beyond the frame's end; its cycles are 0 to {last_shown}");
-    if to > last {
+    if to > last && !is_quiet() {
         warn(&format!("note: --window {from}:{to} ends beyond the frame's end; the waveform has cycles {from} to {last_shown}"));
     }
     Ok(())
@@ -105,7 +106,7 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
     let outcomes = pass.run(&targets)?.into_iter().collect::<anyhow::Result<Vec<_>>>()?;
     let (results, mut waves): (Vec<SimResult>, Vec<_>) = outcomes.into_iter().unzip();
     if let (Some(window), Some(result)) = (&args.window, results.first()) {
-        check_window(*window, result.cycles)?;
+        check_window(*window, result.cycles.saturating_sub(1))?;
     }
     if let (Some(vcd), Some(wave)) = (&args.vcd, waves.pop().flatten()) {
         write_file(vcd, &wave)?;

@@ -3,12 +3,13 @@
 
 use super::jobs::{Jobs, Origin, SceneJobs, ViewJob};
 use super::list::{List, MachineEntry, Maybe, SceneEntry, Source, Spanned};
-use crate::cli::args::{Change, Size, radii};
+use crate::cli::args::{CameraArgs, Change, Size, radii};
 use crate::cli::generate;
 use crate::cli::method::{Chosen, Listed, machine_methods};
 use crate::cli::output::open;
 use crate::cli::pass::{Target, is_path, machine, machine_files};
 use crate::one_line;
+use clap::Args as _;
 use lodray::mesh::Placement;
 use lodray::mesh::procedural;
 use lodray::method::bvh::{LEAF_LAYOUT, LEAF_SIZE};
@@ -17,6 +18,7 @@ use lodray::method::{Knob, KnobError, Knobs};
 use lodray::rays::{DEFAULT_VIEW_ANGLE_DEGREES, ModelSpace};
 use lodray::run::{self, Compute};
 use std::collections::{BTreeSet, HashSet};
+use std::error::Error as _;
 use std::ops::Range;
 use std::path::{Path, PathBuf};
 use xxhash_rust::xxh3::xxh3_64;
@@ -233,13 +235,18 @@ fn views(source: &Source<'_>, list: &List, spanned: &Spanned<SceneEntry>) -> any
     let entry = spanned.get_ref();
     let size = needed(source, entry.size.as_ref().or(list.size.as_ref()), "size", 0..0)?;
     let Size(width, height) = size.get_ref().parse().map_err(|why| source.wrong(size.span(), format!("size: {why}")))?;
-    let (target, up, fov) = (entry.target, entry.up, entry.fov.unwrap_or(DEFAULT_VIEW_ANGLE_DEGREES));
+    let triple = |value: &Maybe<[f64; 3]>, key: &str| match value {
+        Some(value) => option(source, value.span(), key, key, value.get_ref()).map(|()| Some(*value.get_ref())),
+        None => Ok(None),
+    };
+    let (target, up, fov) = (triple(&entry.target, "target")?, triple(&entry.up, "up")?, entry.fov.unwrap_or(DEFAULT_VIEW_ANGLE_DEGREES));
     let base = ViewJob { size: [width, height], distance: None, direction: None, eye: None, target, up, fov };
     if let Some(eyes) = &entry.eyes {
         if let Some(other) = entry.distances.as_ref().map(Spanned::span).or(entry.directions.as_ref().map(Spanned::span)) {
             return Err(source.wrong(other, "scene: eyes are in place of distances and directions"));
         }
-        return Ok(filled(source, eyes, "eyes")?.iter().map(|&eye| ViewJob { eye: Some(eye), ..base.clone() }).collect());
+        filled(source, eyes, "eyes")?.iter().try_for_each(|eye| option(source, eyes.span(), "eyes", "eye", eye))?;
+        return Ok(eyes.get_ref().iter().map(|&eye| ViewJob { eye: Some(eye), ..base.clone() }).collect());
     }
     let distances = needed(source, entry.distances.as_ref().or(list.distances.as_ref()), "scene: distances or eyes", spanned.span())?;
     let place = distances.span();
@@ -248,9 +255,22 @@ fn views(source: &Source<'_>, list: &List, spanned: &Spanned<SceneEntry>) -> any
         radii(&distance.to_string()).map_err(|why| source.wrong(place.clone(), format!("distances: {why}")))?;
     }
     let directions = match &entry.directions {
-        Some(directions) => filled(source, directions, "directions")?.iter().copied().map(Some).collect(),
+        Some(directions) => {
+            filled(source, directions, "directions")?.iter().try_for_each(|d| option(source, directions.span(), "directions", "eye", d))?;
+            directions.get_ref().iter().copied().map(Some).collect()
+        }
         None => vec![None],
     };
     let view = |direction, &distance: &f64| ViewJob { distance: Some(distance), direction, ..base.clone() };
     Ok(directions.iter().flat_map(|&direction| distances.iter().map(move |d| view(direction, d)).collect::<Vec<_>>()).collect())
+}
+
+/// Refuses three numbers that the command line's `option` refuses, in its words.
+fn option(source: &Source<'_>, place: Range<usize>, key: &str, option: &str, value: &[f64; 3]) -> anyhow::Result<()> {
+    let word = format!("--{option}={}", value.map(|v| v.to_string()).join(","));
+    let command = CameraArgs::augment_args(clap::Command::new("list").no_binary_name(true));
+    command.try_get_matches_from([word]).map(drop).map_err(|error| {
+        let why = error.source().map_or_else(|| error.to_string(), ToString::to_string);
+        source.wrong(place, format!("{key}: {why}"))
+    })
 }

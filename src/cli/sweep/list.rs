@@ -56,8 +56,8 @@ pub struct SceneEntry {
     pub directions: Maybe<Vec<[f64; 3]>>,
     /// Positions, in place of distances.
     pub eyes: Maybe<Vec<[f64; 3]>>,
-    pub target: Option<[f64; 3]>,
-    pub up: Option<[f64; 3]>,
+    pub target: Maybe<[f64; 3]>,
+    pub up: Maybe<[f64; 3]>,
     pub fov: Option<f64>,
 }
 
@@ -119,7 +119,8 @@ impl Source<'_> {
         toml::from_str(self.text).map_err(|e| {
             let brackets =
                 if e.message() == "invalid type: map, expected a sequence" { "; [[scene]] and [[machine]] have two brackets" } else { "" };
-            self.wrong(e.span().unwrap_or(0..0), format!("{}{brackets}", e.message().lines().collect::<Vec<_>>().join(", ")))
+            let message = with_limits(&e.message().lines().collect::<Vec<_>>().join(", "));
+            self.wrong(e.span().unwrap_or(0..0), format!("{message}{brackets}"))
         })
     }
 
@@ -128,4 +129,11 @@ impl Source<'_> {
         let line = self.text.as_bytes().iter().take(place.start).filter(|&&byte| byte == b'\n').count() + 1;
         anyhow::anyhow!("{}: line {line}: {what}", self.path.display())
     }
+}
+
+/// The reader's message with the limits of whole numbers in place of Rust's names for them.
+fn with_limits(message: &str) -> String {
+    let limits = [("u32", u64::from(u32::MAX)), ("u64", u64::MAX)];
+    let found = limits.iter().find_map(|(name, most)| Some((message.strip_suffix(&format!("expected {name}"))?, most)));
+    found.map_or_else(|| message.to_owned(), |(start, most)| format!("{start}expected a whole number from 0 to {most}"))
 }

@@ -27,12 +27,13 @@ use std::path::PathBuf;
 use std::process::ExitCode;
 
 pub use rows::Row;
-use rows::{Rows, csv};
+use rows::{ASIDE, Rows, csv};
 
 const LINES: &str = "results.jsonl";
 const TABLE: &str = "results.csv";
 const FOLDER: &str = "Folder for the results, one line of JSON for each job, their table, and charts (SVG) that set views, methods and machines side by side; a sweep \
-started again goes on with the results that are there";
+started again goes on with the results that are there. Lines of jobs that are no longer in the list stay, for when they are again, but are in neither table nor charts; lines that are no \
+results are set aside in results.bad.jsonl";
 
 #[derive(clap::Args)]
 pub struct Args {
@@ -70,6 +71,9 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
     check_target(&lines, &inputs)?;
     let rows = Rows::open(&lines)?;
     folder.keep(LINES)?;
+    if args.out.join(ASIDE).exists() {
+        folder.keep(ASIDE)?;
+    }
     let done = rows.done();
     let mut sweep = Sweep { jobs: &jobs, cache: &cache, rows };
     let mut keys = Vec::new();
@@ -84,7 +88,12 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
     folder.finish()?;
     let failed: Vec<_> = sweep.rows.of(&keys).filter(|row| row.error.is_some()).collect();
     let before = keys.iter().filter(|key| done.contains(*key)).count();
-    remark(&format!("{} jobs, {before} of them done before, {} failed; results in {}", keys.len(), failed.len(), args.out.display()))?;
+    let jobs = |n: usize| format!("{n} {}", if n == 1 { "job" } else { "jobs" });
+    remark(&format!("{}, {before} of them done before, {} failed; results in {}", jobs(keys.len()), failed.len(), args.out.display()))?;
+    let others = done.len() - before;
+    if others > 0 {
+        remark(&format!("{LINES} has results of {} more, which are not in the list", jobs(others)))?;
+    }
     for row in &failed {
         print_line(&format!("failed: {}: {}", row.key, row.error.as_deref().unwrap_or_default()))?;
     }
@@ -213,6 +222,10 @@ impl Workshop<'_> {
         let (_, truth) = last.as_ref().context("no picture of the reference")?;
         let shot = shoot(&*self.built[at].1, self.scene, &self.space, camera, delta, "picture");
         let error = compare_shots(&shot, truth, self.scene, camera);
-        Ok(ImageFigures { rmse: error.image.rmse, psnr_db: error.image.psnr_db, geometry_pixels_mean: error.geometry_pixels.mean })
+        Ok(ImageFigures {
+            rmse: error.image.rmse,
+            psnr_db: error.image.psnr_db,
+            geometry_pixels_mean: error.geometry_pixels.map(|off| off.mean),
+        })
     }
 }

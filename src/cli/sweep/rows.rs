@@ -1,5 +1,6 @@
 //! What was done: one line of JSON for each job, and a table of them at the end.
 
+use crate::cli::json::fault;
 use crate::cli::output::{warn, write_file};
 use anyhow::Context;
 use lodray::report::result::SimResult;
@@ -8,6 +9,9 @@ use std::collections::{HashMap, HashSet};
 use std::fs::{File, OpenOptions};
 use std::io::Write;
 use std::path::{Path, PathBuf};
+
+/// The file beside the lines that has what were none.
+pub const ASIDE: &str = "results.bad.jsonl";
 
 /// One job's line.
 #[derive(Clone, Debug, Serialize, Deserialize)]
@@ -36,8 +40,8 @@ pub struct ImageFigures {
     pub rmse: f64,
     /// Peak signal to noise ratio in dB; none for equal pictures.
     pub psnr_db: Option<f64>,
-    /// Mean distance between the surfaces in pixels.
-    pub geometry_pixels_mean: f64,
+    /// Mean distance between the surfaces in pixels; none if no pixel hits in both pictures.
+    pub geometry_pixels_mean: Option<f64>,
 }
 
 /// The file of lines.
@@ -97,7 +101,7 @@ impl Rows {
 
 /// Keeps lines that are no results in a file beside `path`, behind those of before, and says so.
 fn set_aside(path: &Path, bad: &[(usize, &[u8], serde_json::Error)]) -> anyhow::Result<()> {
-    let aside = path.with_extension("bad.jsonl");
+    let aside = path.with_file_name(ASIDE);
     let shown = aside.display();
     let mut bytes = if aside.exists() { std::fs::read(&aside).with_context(|| format!("cannot read {shown}"))? } else { Vec::new() };
     for (_, line, _) in bad {
@@ -111,18 +115,12 @@ fn set_aside(path: &Path, bad: &[(usize, &[u8], serde_json::Error)]) -> anyhow::
         n => format!(" (and {} more)", n - 1),
     };
     warn(&format!(
-        "warning: {}: line {number}{others} is no result: {}; set aside in {shown}, its job is done again",
+        "warning: {}: line {number}{others} is no result: {} (column {}); set aside in {shown}, its job is done again",
         path.display(),
-        plain(why)
+        fault(why),
+        why.column()
     ));
     Ok(())
-}
-
-/// What is wrong with a line, without the reader's own count of lines.
-fn plain(why: &serde_json::Error) -> String {
-    let text = why.to_string();
-    let what = text.split(" at line ").next().unwrap_or(&text);
-    format!("{what} at column {}", why.column())
 }
 
 const HEAD: &str = "scene,distance,eye_x,eye_y,eye_z,width,height,method,delta,leaves,machine,set,compute,cycles,milliseconds,frames_per_second,rays,hits,\
@@ -141,7 +139,7 @@ pub fn csv<'a>(rows: impl Iterator<Item = &'a Row>) -> String {
         let mut cells = vec![row.scene.clone()];
         cells.extend(row.result.as_ref().map_or_else(|| vec![String::new(); RESULT_COLUMNS], result_cells));
         cells.extend(
-            [row.image.map(|i| i.rmse), row.image.and_then(|i| i.psnr_db), row.image.map(|i| i.geometry_pixels_mean)].map(optional),
+            [row.image.map(|i| i.rmse), row.image.and_then(|i| i.psnr_db), row.image.and_then(|i| i.geometry_pixels_mean)].map(optional),
         );
         cells.extend([row.error.clone().unwrap_or_default(), row.key.clone()]);
         text += &(cells.iter().map(|cell| quoted(cell)).collect::<Vec<_>>().join(",") + "\n");

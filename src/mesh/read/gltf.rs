@@ -43,6 +43,16 @@ pub(super) fn parse_binary(bytes: &[u8], folder: &Path) -> Result<Parts, Fault> 
     }
 }
 
+/// Names of the files that hold its buffers.
+pub(super) fn files(bytes: &[u8]) -> Vec<String> {
+    // Its head is checked when it is read.
+    let json = if bytes.starts_with(MAGIC) { bytes.get(20..).unwrap_or_default() } else { bytes };
+    // What follows the JSON in a GLB file is of no concern.
+    let root = serde_json::Deserializer::from_slice(json).into_iter::<Root>().next().and_then(Result::ok);
+    let buffers = root.map_or_else(Vec::new, |root| root.buffers);
+    buffers.iter().filter_map(|buffer| buffers::file_name(buffer.uri.as_deref()?)).collect()
+}
+
 fn glb_fault(error: &::gltf::binary::Error) -> String {
     use ::gltf::binary::{ChunkType, Error};
     let chunk = |ty: &ChunkType| if matches!(ty, ChunkType::Json) { "JSON" } else { "binary" };

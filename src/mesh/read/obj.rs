@@ -44,6 +44,14 @@ pub(super) fn parse(bytes: &[u8], directory: &Path) -> Result<Parts, Fault> {
     Ok(parts)
 }
 
+/// Names of the material libraries.
+pub(super) fn libraries(bytes: &[u8]) -> Vec<String> {
+    let text = String::from_utf8_lossy(bytes);
+    let names =
+        text.lines().filter_map(|line| line.trim_start().strip_prefix("mtllib")).filter(|rest| rest.starts_with(char::is_whitespace));
+    names.map(|name| name.trim().to_owned()).filter(|name| !name.is_empty()).collect()
+}
+
 fn append(mesh: &tobj::Mesh, parts: &mut Parts) {
     let base = parts.positions.len() as u32;
     parts.positions.extend(mesh.positions.chunks_exact(3).map(|p| [p[0], p[1], p[2]]));
@@ -213,8 +221,8 @@ impl Checker {
         let Ok(index) = part.parse::<i64>() else {
             return Err(format!("f: {} has no valid {name} index", shown(word)));
         };
-        if kind == TEXTURE {
-            // Texture coordinates are not used: whether this one is there does not matter.
+        if kind == TEXTURE || kind == NORMAL && !self.has_normals {
+            // Texture coordinates are not used: whether this one is there does not matter, nor what is named in a file without normals.
             return Ok(index);
         }
         let count = self.counts[kind];

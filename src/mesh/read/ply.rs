@@ -1,4 +1,4 @@
-//! Stanford PLY through `ply-rs-bw`, element by element, so that an error can name the element and its number.
+//! Stanford PLY through `ply-rs-bw`, element by element, so that an error can name the element and its number, and in an ASCII file the line.
 
 mod header;
 
@@ -132,7 +132,7 @@ pub(super) fn parse(bytes: &[u8], _directory: &Path) -> Result<Parts, Fault> {
                 "vertex" => {
                     if let Some(axis) = row.position.iter().position(|v| !v.is_finite()) {
                         let what = format_args!("{} is {}, not a finite number", ["x", "y", "z"][axis], row.position[axis]).to_string();
-                        return fault(format_args!("element vertex {i}"), what);
+                        return fault(payload.place(element, i, payload.line), what);
                     }
                     parts.positions.push(row.position);
                     if has_normals {
@@ -140,18 +140,18 @@ pub(super) fn parse(bytes: &[u8], _directory: &Path) -> Result<Parts, Fault> {
                     }
                 }
                 // Faces may come before the vertices.
-                "face" | "tristrips" => faces.push((element, i, row.indices.unwrap_or_default())),
+                "face" | "tristrips" => faces.push((element, i, payload.line, row.indices.unwrap_or_default())),
                 _ => {}
             }
         }
     }
     if payload.rest.iter().any(|b| !b.is_ascii_whitespace()) {
         let what = format_args!("{} bytes follow the last element that the header counts", payload.rest.len()).to_string();
-        return fault("end of file", what);
+        let place = if payload.is_text() { format!("after line {}", payload.line) } else { "end of file".to_owned() };
+        return fault(place, what);
     }
-    for (element, i, indices) in faces {
-        let place = format_args!("element {} {i}", element.name).to_string();
-        append(&element.name, &indices, &mut parts).or_else(|what| fault(place, what))?;
+    for (element, i, line, indices) in faces {
+        append(&element.name, &indices, &mut parts).or_else(|what| fault(payload.place(element, i, line), what))?;
     }
     if parts.triangles.is_empty() {
         return fault("element face", "there are no faces");
@@ -173,22 +173,33 @@ struct Payload<'a> {
 
 impl<'a> Payload<'a> {
     fn next(&mut self, element: &ElementDef, i: usize) -> Result<Row, Fault> {
-        let place = || format!("element {} {i}", element.name);
         let truncated = || format!("the file ends here, the header counts {} of them", element.count);
         let read = match self.encoding {
             Encoding::Ascii => {
-                let Some(line) = self.next_line() else { return fault(place(), truncated()) };
-                let place = format_args!("line {}, element {} {i}", self.line, element.name).to_string();
-                let Ok(text) = std::str::from_utf8(line) else { return fault(place, "this is not text") };
-                return Row::from_text(text, element).or_else(|what| fault(place, what));
+                let line = self.next_line();
+                let place = || self.place(element, i, self.line);
+                let Some(line) = line else { return fault(place(), truncated()) };
+                let Ok(text) = std::str::from_utf8(line) else { return fault(place(), "this is not text") };
+                return Row::from_text(text, element).or_else(|what| fault(place(), what));
             }
             Encoding::BinaryLittleEndian => self.parser.read_little_endian_element(&mut self.rest, element),
             Encoding::BinaryBigEndian => self.parser.read_big_endian_element(&mut self.rest, element),
         };
+        let place = || self.place(element, i, self.line);
         read.or_else(|error| match error.kind() {
             ErrorKind::UnexpectedEof => fault(place(), truncated()),
             _ => fault(place(), "the length of a list is negative"),
         })
+    }
+
+    fn is_text(&self) -> bool {
+        matches!(self.encoding, Encoding::Ascii)
+    }
+
+    /// Where an element stands, for a message: it is on that line of an ASCII file.
+    fn place(&self, element: &ElementDef, i: usize, line: usize) -> String {
+        let line = if self.is_text() { format!("line {line}, ") } else { String::new() };
+        format!("{line}element {} {i}", element.name)
     }
 
     /// The next line that is not blank.

@@ -11,7 +11,7 @@ use super::shading::{finest_corners, finest_origins, first_flipped, flipped};
 use super::source::Source;
 use super::split::{Forest, split};
 use super::topology::Topology;
-use super::{MAX_TRIANGLES, RemeshError};
+use super::{DEFAULT_MAX_ERROR, MAX_TRIANGLES, RemeshError, Works};
 use rayon::prelude::*;
 
 /// How far removal goes by itself: a little beyond where it goes well, as what goes wrong is mended.
@@ -26,7 +26,7 @@ const ROUNDS: u32 = 24;
 /// ... and by results of more than the trial's levels.
 const LAST_ROUNDS: u32 = 12;
 
-/// Largest distances are narrowed down to this part of the limit.
+/// Largest distances are narrowed down to this part of the limit, or of what it is by default if that is less.
 const NARROW: f64 = 0.4;
 
 /// Vertices that the base mesh keeps for a tree at fault the first time, ...
@@ -74,9 +74,9 @@ pub(super) fn fit(source: &Source, wanted: &Wanted, progress: &dyn Fn(&str, u64,
         progress("base mesh", rounds.min(ROUNDS - 1).into(), ROUNDS.into());
         let base = decimator.run(&[FREE], &keep);
         let count = base.wedges.len() as u64;
-        let made = |levels: u32| count << (2 * levels);
-        if made(wanted.levels) > MAX_TRIANGLES {
-            let works = (0..wanted.levels).rev().find(|&levels| made(levels) <= MAX_TRIANGLES).unwrap_or(0);
+        if count > most_base(wanted.levels) {
+            // The first base mesh has as few as there can be without a loss of shape, whatever the largest error.
+            let works = Works { error: rounds > 1, ..works(source, count, wanted.levels) };
             return Err(RemeshError::NeedsBase { base: count, levels: wanted.levels, works });
         }
         let topology = Topology::new(source, base.wedges.clone(), &base.slots);
@@ -103,15 +103,31 @@ pub(super) fn fit(source: &Source, wanted: &Wanted, progress: &dyn Fn(&str, u64,
 /// The base mesh with so many triangles, or a few more if the surface's connections allow no less.
 pub(super) fn force(source: &Source, triangles: usize, levels: u32, progress: &dyn Fn(&str, u64, u64)) -> Result<Fitted, RemeshError> {
     progress("base mesh", 0, 1);
-    let goals = [FREE, FORCED].map(|goal| Goal { triangles, ..goal });
-    let base = Decimator::new(source).run(&goals, &vec![false; source.positions.len()]);
-    let count = base.wedges.len();
-    let made = (count as u64) << (2 * levels);
-    if made > MAX_TRIANGLES {
-        return Err(RemeshError::TooMany { base: count, levels, triangles: made });
+    let base = forced(source, triangles);
+    let count = base.wedges.len() as u64;
+    if count > most_base(levels) {
+        return Err(RemeshError::TooMany { base: count, levels, triangles: count << (2 * levels), works: works(source, count, levels) });
     }
     progress("base mesh", 1, 1);
     Ok(split_and_look(source, Topology::new(source, base.wedges, &base.slots), levels, progress))
+}
+
+/// Removes vertices down to so many triangles, or as far as the surface's connections allow.
+fn forced(source: &Source, triangles: usize) -> Decimated {
+    let goals = [FREE, FORCED].map(|goal| Goal { triangles, ..goal });
+    Decimator::new(source).run(&goals, &vec![false; source.positions.len()])
+}
+
+/// Base triangles that there may be with so many splits.
+pub(super) const fn most_base(levels: u32) -> u64 {
+    MAX_TRIANGLES >> (2 * levels)
+}
+
+/// What would do where `base` triangles are too many for `levels` splits; a number of base triangles is tried before it is advised.
+fn works(source: &Source, base: u64, levels: u32) -> Works {
+    let most = most_base(levels);
+    let reached = forced(source, most as usize).wedges.len() as u64;
+    Works { levels: (0..levels).rev().find(|&levels| base <= most_base(levels)), base: (reached <= most).then_some(most), error: false }
 }
 
 fn split_and_look(source: &Source, topology: Topology, levels: u32, progress: &dyn Fn(&str, u64, u64)) -> Fitted {
@@ -129,7 +145,7 @@ pub(super) fn measure(source: &Source, fitted: &Fitted, limit: f64) -> [Farthest
 
 fn narrow(source: &Source, fitted: &Fitted, limit: f64, most: f64) -> [Farthest; 2] {
     let vertices = Vertices { positions: &source.positions, triangles: source.triangles() };
-    let least = NARROW * limit;
+    let least = NARROW * limit.min(source.diagonal * DEFAULT_MAX_ERROR / 100.0);
     let from_original = farthest(&source.target, &fitted.target, &[], Some(&vertices), [least, most]);
     // What is less than the other way round matters to nobody.
     let least = least.max(from_original.found.min(most));

@@ -1,8 +1,9 @@
-//! Small models, surfaces and rays for the tests and benchmarks of lodray, and a reader of the RTL's declarations.
+//! Small models, surfaces and rays for the tests and benchmarks of lodray, a reader of the RTL's declarations, and the program as tests run it.
 #![allow(missing_docs)] // the names say what is made
 
 pub mod models;
 pub mod plain;
+pub mod program;
 pub mod surfaces;
 pub mod sv;
 pub mod thin;

@@ -10,6 +10,9 @@ use std::cell::OnceCell;
 use std::io::Read;
 use std::path::Path;
 
+/// What a URI begins with that holds the bytes themselves.
+const DATA: &str = "data:";
+
 pub(super) struct Buffers<'a> {
     root: &'a Root,
     bin: Option<&'a [u8]>,
@@ -38,11 +41,11 @@ impl<'a> Buffers<'a> {
         let mut bytes = match buffer.uri.as_deref() {
             None if number == 0 && self.bin.is_some() => self.bin.unwrap_or_default().to_vec(),
             None => return Err("it has no data: neither a URI nor the binary chunk of a GLB file".into()),
-            Some(uri) if uri.starts_with("data:") => embedded(&uri["data:".len()..])?,
-            Some(uri) if uri.contains(':') => {
-                return Err(format!("its URI '{}' is neither data nor a file beside the model", shown(uri)));
-            }
-            Some(uri) => self.beside(uri, promised)?,
+            Some(uri) if uri.starts_with(DATA) => embedded(&uri[DATA.len()..])?,
+            Some(uri) => match file_name(uri) {
+                Some(name) => self.beside(uri, &name, promised)?,
+                None => return Err(format!("its URI '{}' is neither data nor a file beside the model", shown(uri))),
+            },
         };
         if (bytes.len() as u64) < promised {
             return Err(format!("it has {} bytes, {promised} are promised", bytes.len()));
@@ -51,8 +54,8 @@ impl<'a> Buffers<'a> {
         Ok(bytes)
     }
 
-    fn beside(&self, uri: &str, promised: u64) -> Result<Vec<u8>, String> {
-        let path = self.folder.join(&*percent_decode_str(uri).decode_utf8_lossy());
+    fn beside(&self, uri: &str, name: &str, promised: u64) -> Result<Vec<u8>, String> {
+        let path = self.folder.join(name);
         let read = || {
             let file = std::fs::File::open(&path)?;
             if !file.metadata()?.is_file() {
@@ -64,6 +67,11 @@ impl<'a> Buffers<'a> {
         };
         read().map_err(|error| format!("its file '{}': {error}", shown(uri)))
     }
+}
+
+/// The file that a URI names, if it is one beside the model.
+pub(super) fn file_name(uri: &str) -> Option<String> {
+    (!uri.contains(':')).then(|| percent_decode_str(uri).decode_utf8_lossy().into_owned())
 }
 
 /// What follows `data:`.
