@@ -12,12 +12,9 @@ use super::BvhError;
 use super::finest::Finest;
 use crate::format::VertexData;
 use crate::mesh::{Hierarchy, lattice};
-use crate::num::Wire;
+use crate::num::{LINE_BYTES, Wire};
 use rayon::prelude::*;
 use std::ops::Range;
-
-/// Bytes of a memory line.
-pub const LINE_BYTES: u64 = 32;
 
 /// How leaf triangles lie in memory.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -14,11 +14,12 @@ mod full;
 mod leaves;
 mod plan;
 
+pub use crate::num::LINE_BYTES;
 pub use check::{Defect, check, sah_cost};
 pub use encode::{BvhChild32, Node16, Node32, encode16, encode32};
 pub use file::TreeKey;
 pub use full::{FullBuilder, FullBvh, FullNodes, FullOptions, FullTree};
-pub use leaves::{LINE_BYTES, LeafLayout, Leaves};
+pub use leaves::{LeafLayout, Leaves};
 
 use crate::format::Box16;
 use crate::num::COORD_LIMIT;

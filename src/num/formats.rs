@@ -23,6 +23,9 @@ pub const BARY_ONE: u64 = 1 << 31;
 /// t_near (2^16 units) to t (2^-32 of the direction), as a shift.
 pub const T_NEAR_TO_T_SHIFT: u32 = 18;
 
+/// Bytes of a memory line.
+pub const LINE_BYTES: u64 = 32;
+
 /// Vertex position in units.
 pub type Point = Vec3<32>;
 /// Ray direction: each component below 2^30 in magnitude.

@@ -2,8 +2,8 @@
 
 use super::model::Model;
 use crate::mesh::lattice;
-use crate::num::{BOX_SHIFT, Cone, DIRECTION_SCALE, Point, Ray, Vec3};
-use crate::report::crack::{self, Random, TARGETS};
+use crate::num::{BOX_SHIFT, Cone, DIRECTION_SCALE, Point, Random, Ray, Vec3};
+use crate::report::crack::{self, TARGETS};
 use crate::traverse::{ModelRay, WorldRay, cone};
 use serde::Serialize;
 

@@ -1,7 +1,7 @@
 //! Lines by what they hold.
 
 use super::ratio;
-use crate::bvh::LINE_BYTES;
+use crate::num::LINE_BYTES;
 use crate::sim::replay::KindTraffic;
 use crate::traverse::Kind;
 use serde::{Deserialize, Serialize};

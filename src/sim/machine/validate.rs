@@ -3,7 +3,7 @@
 use super::Machine;
 use super::error::Breach;
 use super::parts::{Cache, Memory, Tables};
-use crate::bvh::LINE_BYTES;
+use crate::num::LINE_BYTES;
 use crate::sim::unit::MAX_CONTEXTS;
 
 /// Groups, and cores of a group.

@@ -103,15 +103,3 @@ fn drive(dram: &mut Dram, wishes: &[Wish]) -> Vec<(u64, u64)> {
     assert_eq!(dram.waiting(), 0);
     times
 }
-
-/// SplitMix64, for traffic.
-struct Random(u64);
-
-impl Random {
-    fn below(&mut self, limit: u64) -> u64 {
-        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
-        let z = (self.0 ^ (self.0 >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-        let z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-        (z ^ (z >> 31)) % limit
-    }
-}

@@ -1,7 +1,8 @@
 //! Every timing rule, on random traffic: never broken, and kept to the clock.
 
 use super::checker::{Findings, check};
-use super::{Random, Wish, drive, made, odd_device};
+use super::{Wish, drive, made, odd_device};
+use crate::num::Random;
 use crate::sim::dram::trace::Given;
 use crate::sim::dram::{Controller, Device, DramConfig, PagePolicy};
 use std::collections::BTreeSet;
@@ -28,7 +29,7 @@ const SHAPES: [Shape; 8] = [
 ];
 
 fn traffic(shape: Shape, device: &Device, seed: u64, count: usize) -> Vec<Wish> {
-    let mut random = Random(seed);
+    let mut random = Random::new(seed);
     let (mut time, mut line) = (0, 0);
     let mut wish = || {
         time += random.below(2 * shape.gap + 1) * device.clock_ps;
