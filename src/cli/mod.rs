@@ -13,6 +13,7 @@ mod folder;
 mod generate;
 mod info;
 mod lines;
+mod names;
 mod original;
 mod output;
 mod pass;

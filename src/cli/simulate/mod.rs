@@ -8,6 +8,7 @@ mod units;
 use super::args::{CameraArgs, Change, LeafArgs, SimMethod, delta};
 use super::cache::{Cache, CacheArgs};
 use super::folder::{Overrule, RunFolder, one_run};
+use super::names::named;
 use super::output::{check_target, explain, grouped, open, print_json, print_line, remark, warn, write_file};
 use super::pass::{Pass, Target, machine, machine_files};
 use super::render::Built;
@@ -35,7 +36,7 @@ pub struct Args {
     #[arg(long, value_name = "KEY=VALUE")]
     set: Vec<Change>,
     /// How compute is simulated
-    #[arg(long, value_enum, default_value_t = Compute::Free)]
+    #[arg(long, value_parser = named::<Compute>(), default_value = Compute::Free.name())]
     compute: Compute,
     /// Quality of the LOD method: 1 keeps a level's displacement under a pixel, 0 is the base mesh, inf full detail
     #[arg(long, default_value = "1", value_parser = delta, allow_hyphen_values = true)]
