@@ -3,6 +3,7 @@
 
 pub mod models;
 pub mod plain;
+pub mod rust;
 pub mod surfaces;
 pub mod sv;
 pub mod thin;
