@@ -103,3 +103,16 @@ fn drive(dram: &mut Dram, wishes: &[Wish]) -> Vec<(u64, u64)> {
     assert_eq!(dram.waiting(), 0);
     times
 }
+
+/// Numbers for traffic.
+struct Random(crate::num::Random);
+
+impl Random {
+    fn new(seed: u64) -> Self {
+        Self(crate::num::Random::new(seed))
+    }
+
+    fn below(&mut self, limit: u64) -> u64 {
+        self.0.next() % limit
+    }
+}

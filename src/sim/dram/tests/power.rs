@@ -1,7 +1,6 @@
 //! Counts and energies against hand-computed values.
 
-use super::{Wish, drive, odd_device, single};
-use crate::num::Random;
+use super::{Random, Wish, drive, odd_device, single};
 use crate::sim::dram::trace::Given;
 use crate::sim::dram::{ChannelCounts, Controller, Device, Dram, DramConfig, PagePolicy, energy};
 

@@ -3,8 +3,7 @@
 
 use super::checker::Kind::{self, Act, Pre, Rd, Ref, Wr};
 use super::checker::{Event, Rule, banks_per_rank, events, rules};
-use super::{Wish, made, odd_device};
-use crate::num::Random;
+use super::{Random, Wish, made, odd_device};
 use crate::sim::dram::mapping::{DEFAULT_MAPPING, Mapping};
 use crate::sim::dram::trace::{Command, Given};
 use crate::sim::dram::{Controller, Device, DramConfig};

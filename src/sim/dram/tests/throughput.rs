@@ -1,8 +1,7 @@
 //! What a channel delivers, and what bounds it.
 
-use super::{Wish, drive, line, made, odd_device, single};
+use super::{Random, Wish, drive, line, made, odd_device, single};
 use crate::num::LINE_BYTES;
-use crate::num::Random;
 use crate::sim::dram::{ChannelCounts, Device, Dram, DramConfig};
 
 /// Clocks until the last data of reads of `lines`, pushed as fast as they are taken.

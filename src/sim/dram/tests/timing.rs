@@ -1,8 +1,7 @@
 //! Every timing rule, on random traffic: never broken, and kept to the clock.
 
 use super::checker::{Findings, check};
-use super::{Wish, drive, made, odd_device};
-use crate::num::Random;
+use super::{Random, Wish, drive, made, odd_device};
 use crate::sim::dram::trace::Given;
 use crate::sim::dram::{Controller, Device, DramConfig, PagePolicy};
 use std::collections::BTreeSet;
