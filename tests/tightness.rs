@@ -176,7 +176,7 @@ impl<'a> Lod<'a> {
             return (0..4).for_each(|k| walk.triangle(below(k), corners[k]));
         }
         walk.reads(Kind::BoundData, 2);
-        let first = (tree as usize) << (2 * (level + 1)) | 4 * node as usize;
+        let first = ((tree as usize) << (2 * (level + 1))) + 4 * node as usize;
         let stored = &self.trees[level as usize + 1][first..first + 4];
         let boxes = std::array::from_fn(|k| Some(stored[k].with(Bounds::around(corners[k].map(|p| p.get()))).at_codes()));
         let group = &self.image.bounds[layout::child_group(levels, tree as usize, level, node as usize)];

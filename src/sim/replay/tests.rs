@@ -172,7 +172,7 @@ fn a_latency_longer_by_a_cycle_costs_a_cycle_wherever_it_is_waited_for() {
     let warm = |sets: &[(&str, u32)]| {
         let machine = machine(sets);
         let lap = lap(&machine, 0);
-        let cold = run(&machine, &[lap.clone()]);
+        let cold = run(&machine, std::slice::from_ref(&lap));
         let all = run(&machine, &[[lap.repeat(1 + LAPS), vec![lap[2]; HITS]].concat()]);
         assert_eq!((all.counts.l1.hits, all.counts.l2.hits, all.counts.l2.misses), (HITS as u64, 3 * LAPS as u64, 3));
         all.cycles - cold.cycles
