@@ -6,37 +6,9 @@ use lodray::block::box_test32::{self, BoxTest32};
 use lodray::block::ray_setup::{self, RaySetup};
 use lodray::num::{Box16, Direction, Point, RayT};
 use lodray_test_support::cases;
+use lodray_test_support::slabs::slabs;
 use proptest::prelude::*;
 use std::sync::atomic::{AtomicU64, Ordering::Relaxed};
-
-/// Exact: is there a real t >= 0 with x + t d in the closed box? Gives the entry t as a fraction (numerator, denominator > 0).
-fn slabs(x: [i64; 3], d: [i64; 3], lo: [i64; 3], hi: [i64; 3]) -> Option<(i128, i128)> {
-    let (mut near, mut far) = ((0i128, 1i128), None::<(i128, i128)>);
-    let less = |a: (i128, i128), b: (i128, i128)| a.0 * b.1 < b.0 * a.1;
-    for k in 0..3 {
-        if d[k] == 0 {
-            if x[k] < lo[k] || x[k] > hi[k] {
-                return None;
-            }
-            continue;
-        }
-        let fraction = |wall: i64| {
-            let (n, m) = (i128::from(wall - x[k]), i128::from(d[k]));
-            if m < 0 { (-n, -m) } else { (n, m) }
-        };
-        let (a, b) = if d[k] > 0 { (fraction(lo[k]), fraction(hi[k])) } else { (fraction(hi[k]), fraction(lo[k])) };
-        if less(near, a) {
-            near = a;
-        }
-        if far.is_none_or(|f| less(b, f)) {
-            far = Some(b);
-        }
-    }
-    match far {
-        Some(far) if less(far, near) => None,
-        _ => Some(near),
-    }
-}
 
 fn ray(x: [i64; 3], d: [i64; 3]) -> ray_setup::In {
     ray_setup::In { origin: Point::new(x[0], x[1], x[2]), direction: Direction::new(d[0], d[1], d[2]) }

@@ -1,5 +1,7 @@
-//! docs/exactness.md names what checks each of its lemmas: all of it exists, and no lemma goes without.
+//! docs/exactness.md names what checks each of its lemmas: all of it exists and asserts something, and no lemma goes without. Each rounding of the numbers
+//! is called by a test that asserts.
 
+use lodray_test_support::rust::{body, calls, code, without_tests};
 use std::collections::BTreeSet;
 use std::fs;
 use std::path::Path;
@@ -37,10 +39,82 @@ fn every_lemma_names_checks_that_exist() {
             if place == "prove" {
                 assert!(properties.contains(name), "{title}: there is no property {name}");
             } else {
-                assert!(read(place).contains(&format!("fn {name}(")), "{title}: {place} has no test {name}");
+                let text = code(&read(place));
+                assert!(body(&text, name).is_some(), "{title}: {place} has no test {name}");
+                assert!(asserts(&text, name), "{title}: {place}: {name} asserts nothing");
             }
         }
     }
+}
+
+/// Whether function `name` of `text` asserts: itself, or in a function of the same text that it calls, however deep.
+fn asserts(text: &str, name: &str) -> bool {
+    fn reach<'a>(text: &'a str, name: &'a str, seen: &mut BTreeSet<&'a str>) -> bool {
+        let Some(body) = body(text, name).filter(|_| seen.insert(name)) else { return false };
+        let is_assertion = |call: &str| {
+            let name = call.strip_prefix("prop_").unwrap_or(call);
+            ["assert!", "assert_eq!", "assert_ne!", "panic!"].contains(&name)
+        };
+        calls(body).any(|call| is_assertion(call) || reach(text, call, seen))
+    }
+    reach(text, name, &mut BTreeSet::new())
+}
+
+#[test]
+fn each_rounding_is_called_by_a_test_that_asserts() {
+    let text = code(&read("src/num/round.rs"));
+    let program = without_tests(&text);
+    let names = |text: &str, before: &str| -> BTreeSet<String> {
+        text.match_indices(before)
+            .map(|(at, _)| text[at + before.len()..].chars().take_while(|&c| c == '_' || c.is_alphanumeric()).collect())
+            .collect()
+    };
+    let roundings: BTreeSet<String> = names(&program, "pub fn ").union(&names(&program, "pub const fn ")).cloned().collect();
+    assert!(roundings.len() >= 9, "{roundings:?}");
+    let tests: Vec<String> = names(&text, "fn ").difference(&names(&program, "fn ")).filter(|name| asserts(&text, name)).cloned().collect();
+    let called: BTreeSet<&str> = tests.iter().flat_map(|test| calls(body(&text, test).unwrap_or_default())).collect();
+    let left: Vec<_> = roundings.iter().filter(|name| !called.contains(name.as_str())).collect();
+    assert!(left.is_empty(), "no test of src/num/round.rs that asserts calls {left:?}");
+}
+
+#[test]
+fn a_test_that_asserts_nothing_is_seen() {
+    let text = code(
+        r#"
+        fn empty() {}
+        fn silent() { let wrong = 1 + 1; helper_without(wrong); println!("assert!(true)"); }
+        fn commented() { /* assert!(false); */ // assert_eq!(1, 2)
+        }
+        fn direct(x in 0u32..4) { prop_assert_eq!(x, x); }
+        fn indirect() { for _ in 0..3 { Bench::new().outer::<u8>(1); } }
+        fn by_helper<'a, T: Fn(&'a str)>(f: T) -> Vec<[u8; 2]> { (0..4).map(|k| middle(k)).collect() }
+        fn middle(k: u32) { inner(k, '}') }
+        fn inner(k: u32, _: char) { assert_ne!(k, 7, "{}", '{'); }
+        fn helper_without(_: u32) { helper_without(1) }
+        fn panics() { let Some(_) = None::<u8> else { panic!("none") }; }
+        fn assert_like() { let assert = 3; assertion(assert); }
+        fn declared(k: u32);
+        "#,
+    );
+    for (name, wanted) in [
+        ("empty", false),
+        ("silent", false),
+        ("commented", false),
+        ("direct", true),
+        ("indirect", false),
+        ("by_helper", true),
+        ("middle", true),
+        ("inner", true),
+        ("helper_without", false),
+        ("panics", true),
+        ("assert_like", false),
+        ("declared", false),
+        ("missing", false),
+    ] {
+        assert_eq!(asserts(&text, name), wanted, "{name}");
+    }
+    assert_eq!(body(&text, "empty"), Some("{}"));
+    assert!(body(&text, "declared").is_none() && body(&text, "missing").is_none());
 }
 
 #[test]

@@ -3,6 +3,7 @@
 use super::args::{levels, whole};
 use super::common::is_quiet;
 use super::info;
+use super::names::named;
 use super::output::{busy, check_target, print_line, progress, warn};
 use anyhow::Context;
 use lodray::bvh::over_trees;
@@ -22,7 +23,7 @@ pub struct Args {
     /// Mesh file: OBJ, PLY, glTF, GLB or STL; - for standard input
     mesh: PathBuf,
     /// Format of the mesh, whatever the file's ending; files that it names are looked for beside it, for standard input in the current folder
-    #[arg(long, value_enum, required_if_eq("mesh", STDIN))]
+    #[arg(long, value_parser = named::<MeshFormat>(), required_if_eq("mesh", STDIN))]
     format: Option<MeshFormat>,
     /// Number of 1-to-4 splits, 0 to 10
     #[arg(long, default_value_t = 5, value_parser = levels(), allow_negative_numbers = true)]

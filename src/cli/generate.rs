@@ -2,6 +2,7 @@
 
 use super::args::{levels, seed, whole};
 use super::build::{build_scene, finish};
+use super::names::named;
 use super::output::{busy, check_target};
 use lodray::format;
 use lodray::mesh::procedural::{MAX_TREES, Options, Scene, generate};
@@ -11,7 +12,7 @@ use std::process::ExitCode;
 #[derive(clap::Args)]
 pub struct Args {
     /// What to generate
-    #[arg(value_enum)]
+    #[arg(value_parser = named::<Scene>())]
     scene: Scene,
     /// Number of 1-to-4 splits, 0 to 10
     #[arg(long, value_parser = levels(), allow_negative_numbers = true)]
@@ -44,8 +45,7 @@ pub fn make(options: &Options) -> anyhow::Result<format::Scene> {
     check(options)?;
     let surface = busy("generating", || generate(options))?;
     let origin = serde_json::json!({ "generate": options });
-    let name = format!("{:?}", options.scene).to_lowercase();
-    build_scene(&surface, &name, origin)
+    build_scene(&surface, options.scene.name(), origin)
 }
 
 /// Refuses what cannot be generated, before any work is done.

@@ -15,6 +15,7 @@ mod info;
 mod json;
 mod lines;
 mod method;
+mod names;
 mod original;
 mod output;
 mod pass;

@@ -30,7 +30,7 @@ pub const MAX_TREES: u64 = 1 << 27;
 pub const MAX_TRIANGLES: u64 = 1 << 32;
 
 /// A procedural scene.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, clap::ValueEnum, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Scene {
     /// Fractal heightfield.
@@ -48,6 +48,21 @@ pub enum Scene {
 }
 
 impl Scene {
+    /// All scenes.
+    pub const ALL: [Self; 6] = [Self::Terrain, Self::Cloth, Self::Sphere, Self::Spikes, Self::Room, Self::Wall];
+
+    /// Its name in options and files.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Terrain => "terrain",
+            Self::Cloth => "cloth",
+            Self::Sphere => "sphere",
+            Self::Spikes => "spikes",
+            Self::Room => "room",
+            Self::Wall => "wall",
+        }
+    }
+
     /// Splits if none are asked for.
     pub const fn default_levels(self) -> u32 {
         match self {

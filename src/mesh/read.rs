@@ -12,7 +12,7 @@ use std::fmt::Display;
 use std::path::{Path, PathBuf};
 
 /// Kinds of mesh files.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum MeshFormat {
     /// Wavefront OBJ.
@@ -31,16 +31,24 @@ pub enum MeshFormat {
 pub const MESH_ENDINGS: &str = ".obj, .ply, .gltf, .glb or .stl";
 
 impl MeshFormat {
+    /// All kinds.
+    pub const ALL: [Self; 5] = [Self::Obj, Self::Ply, Self::Gltf, Self::Glb, Self::Stl];
+
+    /// Its name, which is the ending of its files' names.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Obj => "obj",
+            Self::Ply => "ply",
+            Self::Gltf => "gltf",
+            Self::Glb => "glb",
+            Self::Stl => "stl",
+        }
+    }
+
     /// By the ending of the file's name, in upper or lower case.
     pub fn of(path: &Path) -> Option<MeshFormat> {
-        match path.extension()?.to_string_lossy().to_lowercase().as_str() {
-            "obj" => Some(Self::Obj),
-            "ply" => Some(Self::Ply),
-            "gltf" => Some(Self::Gltf),
-            "glb" => Some(Self::Glb),
-            "stl" => Some(Self::Stl),
-            _ => None,
-        }
+        let ending = path.extension()?.to_string_lossy().to_lowercase();
+        Self::ALL.into_iter().find(|format| format.name() == ending)
     }
 }
 

@@ -5,7 +5,7 @@
 use crate::mesh::{Hierarchy, lattice};
 use crate::method::Crossings;
 use crate::method::lod::{LodImage, LodTraverser};
-use crate::num::{Cone, DIRECTION_SCALE, Point, Ray, Vec3};
+use crate::num::{Cone, DIRECTION_SCALE, Point, Random, Ray, Vec3};
 use crate::rays::ModelSpace;
 use crate::step::NoSteps;
 use rayon::prelude::*;
@@ -100,41 +100,6 @@ pub fn closedness(triangles: &[[u32; 3]]) -> Closedness {
         (true, true) => Closedness::Oriented,
         (true, false) => Closedness::Even,
         (false, _) => Closedness::Open,
-    }
-}
-
-/// A small counter-based generator: the n-th ray of a seed is the same whatever thread makes it.
-pub struct Random(u64);
-
-impl Random {
-    /// The generator of the `number`-th ray of `seed`.
-    pub fn of(seed: u64, number: u64) -> Self {
-        Self(seed ^ number.wrapping_mul(0xD6E8_FEB8_6659_FD93))
-    }
-
-    /// The next 64 bits.
-    #[expect(clippy::should_implement_trait, reason = "it never ends")]
-    pub fn next(&mut self) -> u64 {
-        // SplitMix64.
-        self.0 = self.0.wrapping_add(0x9E37_79B9_7F4A_7C15);
-        let z = (self.0 ^ (self.0 >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
-        let z = (z ^ (z >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
-        z ^ (z >> 31)
-    }
-
-    /// Below `n`.
-    pub fn below(&mut self, n: u64) -> u64 {
-        ((u128::from(self.next()) * u128::from(n)) >> 64) as u64 // the high half is below n
-    }
-
-    /// From -1 to 1.
-    pub fn signed(&mut self) -> f64 {
-        (self.next() >> 11) as f64 / f64::from(1u32 << 31) / f64::from(1u32 << 21) - 1.0
-    }
-
-    /// From `-n` to `n`.
-    pub fn within(&mut self, n: u64) -> i64 {
-        self.below(2 * n + 1).cast_signed() - n.cast_signed()
     }
 }
 

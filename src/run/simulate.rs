@@ -12,16 +12,19 @@ use std::thread;
 const AHEAD: usize = 1;
 
 /// How compute is simulated.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize, clap::ValueEnum)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Compute {
-    /// It takes no time, as in the paper
+    /// It takes no time, as in the paper.
     Free,
-    /// Traversal units, cycle by cycle
+    /// Traversal units, cycle by cycle.
     Units,
 }
 
 impl Compute {
+    /// Both.
+    pub const ALL: [Self; 2] = [Self::Free, Self::Units];
+
     /// Its name in options and reports.
     pub const fn name(self) -> &'static str {
         match self {

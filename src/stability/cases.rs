@@ -6,7 +6,7 @@ use super::shapes::{Base, Place, bipyramid, bumpy, cube, fan, flat, octahedron, 
 use crate::format::SceneError;
 use crate::mesh::Surface;
 use crate::mesh::procedural::{self, Options, Scene};
-use crate::report::crack::Random;
+use crate::num::Random;
 
 /// How large models may be.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

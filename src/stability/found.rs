@@ -1,6 +1,6 @@
 //! Rays worth keeping, each with its model: breaches, and the nearest approaches of a hunt. Complete in themselves, so that they can be shot again.
 
-use super::hunt::Goal;
+use super::goal::Goal;
 use super::model::Model;
 use crate::format::SceneError;
 use crate::mesh::{EdgeCodes, Hierarchy, Placement, lattice};

@@ -6,64 +6,20 @@
 
 use super::cases::{adversary, hunting_case};
 use super::found::Found;
+use super::goal::{GOALS, Goal};
 use super::judge::{Judge, Tally};
 use super::model::Model;
 use super::rays::{Aim, Shot, shot};
 use crate::format::SceneError;
-use crate::golden::{Exact, Ties};
+use crate::golden::Exact;
 use crate::mesh::{Hierarchy, lattice};
-use crate::num::{COORD_LIMIT, Cone, DIRECTION_SCALE, PADDING_BITS, Point, Ray, U, Vec3};
-use crate::report::crack::Random;
+use crate::num::{COORD_LIMIT, Cone, DIRECTION_SCALE, PADDING_BITS, Point, Random, Ray, U, Vec3};
 use rayon::prelude::*;
-use serde::{Deserialize, Serialize};
+use serde::Serialize;
 
 /// Steps of a climb, and of these with one model.
 const CLIMB: u64 = 1024;
 const SAME_MODEL: u64 = 256;
-
-/// What a climb goes for.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "snake_case")]
-pub enum Goal {
-    /// The smallest edge function that is not 0.
-    Edge,
-    /// Many edge functions that are exactly 0.
-    Zeros,
-    /// An LOD decision on its border.
-    Lod,
-    /// Two hits at one distance.
-    Gap,
-    /// A division without remainder, or with all but one.
-    Remainder,
-}
-
-/// All goals.
-pub const GOALS: [Goal; 5] = [Goal::Edge, Goal::Zeros, Goal::Lod, Goal::Gap, Goal::Remainder];
-
-impl Goal {
-    /// Name in reports.
-    pub const fn name(self) -> &'static str {
-        match self {
-            Self::Edge => "smallest edge function but 0",
-            Self::Zeros => "edge functions that are 0 at once",
-            Self::Lod => "LOD decision from its border (2^-shift units)",
-            Self::Gap => "two hits' t apart (2^-32)",
-            Self::Remainder => "quotient from a whole step",
-        }
-    }
-
-    /// How far the ray is from the goal; less is nearer, infinite where there is nothing to go by.
-    fn distance(self, ties: &Ties) -> f64 {
-        let integer = |v: Option<u128>| v.map_or(f64::INFINITY, |v| v as f64);
-        match self {
-            Self::Edge => integer(ties.edge),
-            Self::Zeros => -f64::from(ties.edge_zeros),
-            Self::Lod => integer(ties.lod),
-            Self::Gap => ties.t_gap.unwrap_or(f64::INFINITY),
-            Self::Remainder => ties.remainder.unwrap_or(f64::INFINITY),
-        }
-    }
-}
 
 /// What a hunt came to.
 #[derive(Clone, Debug, PartialEq, Serialize)]

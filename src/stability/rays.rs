@@ -2,9 +2,9 @@
 
 use super::model::Model;
 use crate::mesh::lattice;
-use crate::num::{BOX_SHIFT, Cone, DIRECTION_SCALE, Point, Ray, Vec3};
+use crate::num::{BOX_SHIFT, Cone, DIRECTION_SCALE, Point, Random, Ray, Vec3};
 use crate::rays::{ModelRay, Query, cone};
-use crate::report::crack::{self, Random, TARGETS};
+use crate::report::crack::{self, TARGETS};
 use serde::Serialize;
 
 /// A family of rays.

@@ -1,7 +1,7 @@
 //! Small base meshes and their displacement: what the lab's models are made of.
 
 use crate::mesh::{Surface, lattice};
-use crate::report::crack::Random;
+use crate::num::Random;
 
 /// An indexed base mesh.
 pub type Base = (Vec<[f64; 3]>, Vec<[u32; 3]>);

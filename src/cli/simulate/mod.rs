@@ -10,6 +10,7 @@ use super::cache::{Cache, CacheArgs};
 use super::common::is_quiet;
 use super::folder::{Overrule, RunFolder, one_run};
 use super::method::MachineMethod;
+use super::names::named;
 use super::output::{check_target, explain, grouped, open, print_json, print_line, remark, warn, write_file};
 use super::pass::{Pass, Target, machine, machine_files};
 use anyhow::Context;
@@ -36,7 +37,7 @@ pub struct Args {
     #[arg(long, value_name = "KEY=VALUE")]
     set: Vec<Change>,
     /// How compute is simulated
-    #[arg(long, value_enum, default_value_t = Compute::Free)]
+    #[arg(long, value_parser = named::<Compute>(), default_value = Compute::Free.name())]
     compute: Compute,
     #[command(flatten)]
     camera: CameraArgs,

@@ -93,7 +93,7 @@ pub fn audit(scene: &Scene) -> AuditReport {
     let edges = Edges::new(scene.triangles(), levels);
     let corners = edges.check_corners(scene.triangles(), &lattices, &mut found);
     edges.check_shared(&lattices, &mut found);
-    lattices.largest_displacements(levels, &edges);
+    lattices.largest_displacements(levels, |level, displacements| edges.raise_shared(level, displacements));
     found = found.join(lattices.check_codes(levels, &allowed(scene)));
     bvh::check(scene, &mut found);
     found = found.join(check_shading(scene));

@@ -2,7 +2,6 @@
 //!
 //! An inserted vertex stands for the edge that it splits: the edge's code and its true displacement are kept at the vertex's place.
 
-use super::edges::Edges;
 use super::tally::{Kind, Tallies};
 use crate::format::{BoundData, L0Record, Scene, VertexData};
 use crate::mesh::lattice;
@@ -43,8 +42,9 @@ impl Lattices {
             .map(|((points, codes), displacements)| Lattice { points, codes, displacements })
     }
 
-    /// Raises each displacement to the largest of those below it, finest level first, over all trees.
-    pub fn largest_displacements(&mut self, levels: u32, edges: &Edges) {
+    /// Raises each displacement to the largest of those below it, finest level first, over all trees; `raise_shared` does so for vertices inserted at a
+    /// level that trees share.
+    pub fn largest_displacements(&mut self, levels: u32, raise_shared: impl Fn(u32, &mut [u64])) {
         // Vertices of level `levels` stand for the finest edges with a bound: nothing is below them.
         for level in (1..=levels).rev() {
             if level < levels {
@@ -56,7 +56,7 @@ impl Lattices {
                     });
                 });
             }
-            edges.raise_shared(level, &mut self.displacements);
+            raise_shared(level, &mut self.displacements);
         }
     }
 

@@ -1,7 +1,7 @@
 //! A run over time: what each stretch of cycles added.
 
 use super::energy::dram_parts;
-use crate::sim::dram::device::LINE_BYTES;
+use crate::num::LINE_BYTES;
 use crate::sim::dram::{ChannelCounts, DramEnergy};
 use crate::sim::energy::{EnergyCounts, EnergyModel, EnergyUnit, Operations};
 use crate::sim::machine::Machine;

@@ -1,7 +1,7 @@
 //! Caches, crossbar and DRAM, and what contexts waited for.
 
 use super::ratio;
-use crate::sim::dram::device::LINE_BYTES;
+use crate::num::LINE_BYTES;
 use crate::sim::dram::{ChannelCounts, DramConfig};
 use crate::sim::replay::{CacheCounts, Waits};
 use crate::sim::unit::{State, UnitCounts};

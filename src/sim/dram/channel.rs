@@ -4,7 +4,7 @@
 //! oldest request's. One command per clock. A due refresh goes before everything of its rank. Requests of a bank may overtake its oldest
 //! one `hit_cap` times per activate, so that none waits forever.
 
-use super::choose::{Act, Candidates, Choice, Step};
+use super::candidates::{Act, Candidates, Choice, Step};
 use super::config::{Controller, PagePolicy};
 use super::counts::ChannelCounts;
 use super::device::Device;

@@ -1,93 +1,10 @@
 //! How a channel finds its next command.
 
+use super::candidates::{Act, CLOSE_ORDER, COLUMN_ORDER, Choice, REFRESH_ORDER, ROW_ORDER, STEPS, Step, clock_of, key};
 use super::channel::Channel;
 use super::config::PagePolicy;
 use super::queue::NONE;
 use super::ranks::{MOST_BANKS, NO_ROW};
-
-/// Steps towards a request.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Step {
-    Column,
-    Activate,
-    Precharge,
-}
-
-/// Limits are stored by bank group and step, a power of two per group.
-const STEPS: usize = 4;
-
-/// What a command is for.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Act {
-    CloseAll { rank: usize },
-    Refresh { rank: usize },
-    Towards { bank: usize },
-    Close { bank: usize },
-}
-
-/// The next command and its clock.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Choice {
-    pub clock: u64,
-    pub act: Act,
-}
-
-// Within a clock the smallest order goes first: its kind of command, then the age of the request; the bank is in the low bits.
-const REFRESH_ORDER: u64 = 0;
-const COLUMN_ORDER: u64 = 1 << 60;
-const ROW_ORDER: u64 = 2 << 60;
-const CLOSE_ORDER: u64 = 3 << 60;
-
-/// Clock and order as one number: the smallest is given.
-fn key(clock: u64, order: u64) -> u128 {
-    u128::from(clock) << 64 | u128::from(order)
-}
-
-/// The clock of a key.
-fn clock_of(key: u128) -> u64 {
-    (key >> 64) as u64
-}
-
-/// The next step of each bank's queue, and what bank groups and ranks allow. Arrays side by side: this is what is searched for every
-/// command.
-#[derive(Clone, Debug)]
-pub(super) struct Candidates {
-    /// First clock that the bank itself allows.
-    ready: [u64; MOST_BANKS],
-    orders: [u64; MOST_BANKS],
-    /// Which of `limits` holds.
-    limit: [u8; MOST_BANKS],
-    pub slots: [u16; MOST_BANKS],
-    pub steps: [Step; MOST_BANKS],
-    /// First clock that a bank group and its rank allow, by group and step.
-    limits: [u64; MOST_BANKS * STEPS],
-}
-
-impl Candidates {
-    pub fn new() -> Self {
-        Self {
-            ready: [0; MOST_BANKS],
-            orders: [0; MOST_BANKS],
-            limit: [0; MOST_BANKS],
-            slots: [NONE; MOST_BANKS],
-            steps: [Step::Activate; MOST_BANKS],
-            limits: [0; MOST_BANKS * STEPS],
-        }
-    }
-
-    /// The smallest key of some banks, none before clock `free`.
-    fn first(&self, mut banks: u64, free: u64) -> u128 {
-        let mut best = u128::MAX;
-        while banks != 0 {
-            let bank = banks.trailing_zeros() as usize % MOST_BANKS;
-            banks &= banks - 1;
-            let clock = self.ready[bank].max(self.limits[usize::from(self.limit[bank])]).max(free);
-            let key = key(clock, self.orders[bank]);
-            best = std::hint::select_unpredictable(key < best, key, best);
-        }
-        best
-    }
-}
 
 impl Channel {
     /// Finds the next command: the earliest, and in one clock the first in order.

@@ -4,10 +4,8 @@
 //! one line of 32 bytes, the burst of one read or write.
 
 use super::error::{DramError, invalid};
+use crate::num::LINE_BYTES;
 use serde::Deserialize;
-
-/// Bytes of a line: what one read or write moves.
-pub const LINE_BYTES: u64 = 32;
 
 /// The devices that come with the program: name and description (`machines/dram`).
 pub const PRESETS: [(&str, &str); 3] = [

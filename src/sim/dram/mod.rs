@@ -2,7 +2,7 @@
 //!
 //! - [`device`]: what a device is, read from `machines/dram/*.toml`; every figure there bears its source.
 //! - [`mapping`]: which bits of a line number choose channel, rank, bank group, bank, row and column.
-//! - `channel`, `choose`, `queue`, `power_down`: a channel's controller. Reads and writes wait in queues of fixed depth, a list per bank.
+//! - `channel`, `candidates`, `choose`, `queue`, `power_down`: a channel's controller. Reads and writes wait in queues of fixed depth, a list per bank.
 //!   The next command is known at any time (its clock is the largest of a few earliest clocks), so nothing is looked at in the clocks
 //!   between; it is found anew when a command was given or a request came.
 //! - `ranks`: the devices' rules. Every command moves the earliest clocks of later ones: of its bank (nRCD, nRAS, nRP, nRC, nRTP, nWR), its
@@ -15,6 +15,7 @@
 //! Time is in picoseconds, a command clock a whole number of them, so nothing drifts. A request that comes at time t is first considered in
 //! the first clock at or after t.
 
+mod candidates;
 mod channel;
 mod choose;
 pub mod config;

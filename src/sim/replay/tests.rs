@@ -140,17 +140,99 @@ fn pinned_nodes_are_not_asked_for() {
 
 #[test]
 fn two_lines_of_one_bank_take_a_cycle_longer_than_two_of_two() {
-    let machine = machine(&[("cores.per_group", 2)]);
-    let banks = machine.l1.banks;
-    // Both rays have their line in the L1 before they meet.
-    let meet = |other: u32| {
-        let warm = [0, other];
-        let hits = |line: u32| warm.iter().copied().chain([line; 50]).collect::<Vec<_>>();
-        run(&machine, &[hits(0), hits(other)])
+    const HITS: usize = 50;
+    for latency in [1, 2, 3, 20] {
+        let machine = machine(&[("cores.per_group", 2), ("l1.latency_cycles", latency)]);
+        let banks = machine.l1.banks;
+        // Both rays have their line in the L1 before they meet; what they ask for before is one line for both, so that they start in one cycle.
+        let meet = |other: u32| {
+            let warm = [0, other];
+            let hits = |line: u32| warm.iter().copied().chain([line; HITS]).collect::<Vec<_>>();
+            run(&machine, &[hits(0), hits(other)])
+        };
+        let (apart, together) = (meet(1), meet(banks));
+        let alone = run(&machine, &[[0, 1].into_iter().chain([0; HITS]).collect::<Vec<_>>()]);
+        assert_eq!(apart.cycles, alone.cycles, "two banks: nobody waits");
+        assert!(apart.counts.l1.conflicts < 3, "{:?}", apart.counts.l1);
+        assert!(together.counts.l1.conflicts >= 1 && together.counts.l1.queued_cycles >= together.counts.l1.conflicts);
+        // One that has waited a cycle comes a cycle behind the other ever after; only a bank whose answer takes one cycle has both in every cycle, one of whom waits.
+        let hits = HITS as u64;
+        let longer = if latency == 1 { hits } else { 1 };
+        assert_eq!(together.cycles - apart.cycles, longer, "latency {latency}");
+        // The two requests for each of the warm lines are of one bank too, in both runs.
+        let more = if latency == 1 { 2 * hits - 1 } else { 1 };
+        assert_eq!(together.counts.l1.conflicts - apart.counts.l1.conflicts, more);
+        assert_eq!(together.counts.l1.queued_cycles - apart.counts.l1.queued_cycles, more);
+    }
+}
+
+/// Lines of one set of bank `bank` of the L1, one more than its ways: read in turn, each evicts the one that comes next.
+fn lap(machine: &Machine, bank: u32) -> Vec<u32> {
+    let apart = machine.l1.sets_per_bank() as u32 * machine.l1.banks;
+    (0..=machine.l1.ways).map(|k| bank + k * apart).collect()
+}
+
+#[test]
+fn a_latency_longer_by_a_cycle_costs_a_cycle_wherever_it_is_waited_for() {
+    const LAPS: usize = 10;
+    const HITS: usize = 100;
+    // What a frame takes beyond its lines' first coming from memory: laps in the L2, then hits in the L1.
+    let warm = |sets: &[(&str, u32)]| {
+        let machine = machine(sets);
+        let lap = lap(&machine, 0);
+        let cold = run(&machine, std::slice::from_ref(&lap));
+        let all = run(&machine, &[[lap.repeat(1 + LAPS), vec![lap[2]; HITS]].concat()]);
+        assert_eq!((all.counts.l1.hits, all.counts.l2.hits, all.counts.l2.misses), (HITS as u64, 3 * LAPS as u64, 3));
+        all.cycles - cold.cycles
     };
-    let (apart, together) = (meet(1), meet(banks));
-    assert!(apart.counts.l1.conflicts < 3, "{:?}", apart.counts.l1);
-    assert!(together.counts.l1.conflicts >= 1 && together.counts.l1.queued_cycles >= together.counts.l1.conflicts);
+    let (laps, hits) = (3 * LAPS as u64, HITS as u64);
+    let plain = machine(&[]);
+    for (key, now, uses) in [
+        ("l1.latency_cycles", plain.l1.latency_cycles, laps + hits),
+        ("crossbar.request_cycles", plain.crossbar.request_cycles, laps),
+        ("l2.latency_cycles", plain.l2.latency_cycles, laps),
+        ("crossbar.answer_cycles", plain.crossbar.answer_cycles, laps),
+    ] {
+        for more in [1, 2] {
+            assert_eq!(warm(&[(key, now + more)]) - warm(&[]), u64::from(more) * uses, "{key} longer by {more}");
+        }
+    }
+    // Room and width that nobody asks for cost nothing.
+    for key in [
+        "l1.mshrs",
+        "l1.targets",
+        "l1.queue",
+        "l2.mshrs",
+        "l2.targets",
+        "l2.queue",
+        "crossbar.per_group",
+        "crossbar.per_bank",
+        "dram.queue",
+    ] {
+        assert_eq!(warm(&[(key, 1)]), warm(&[(key, 2)]), "{key}");
+    }
+}
+
+#[test]
+fn a_group_sends_as_many_misses_a_cycle_as_its_port_is_wide() {
+    // Four rays of one group, each in a bank of its own, miss in the same cycle, round after round; the L2 has all lines.
+    let cycles = |rays: u32, per_group| {
+        let machine = machine(&[("cores.per_group", 4), ("crossbar.per_group", per_group)]);
+        let laps: Vec<Vec<u32>> = (0..rays).map(|bank| lap(&machine, bank)).collect();
+        // All read all lines first, together.
+        let warm = (0..4).flat_map(|bank| lap(&machine, bank)).collect::<Vec<_>>();
+        let lines: Vec<_> = laps.iter().map(|lap| [warm.clone(), lap.repeat(5)].concat()).collect();
+        let run = run(&machine, &lines);
+        assert_eq!(run.counts.l2.hits, u64::from(rays) * 15);
+        (run.cycles, run.counts.crossbar_cycles)
+    };
+    let alone = cycles(1, 1);
+    // The last goes so many cycles behind the first, and stays there: the first is back before it is sent.
+    for (per_group, behind, waited) in [(4, 0, 0), (3, 1, 1), (2, 1, 2), (1, 3, 6)] {
+        let together = cycles(4, per_group);
+        assert_eq!(together.0 - alone.0, behind, "{per_group} a cycle");
+        assert_eq!(together.1 - alone.1, waited, "{per_group} a cycle");
+    }
 }
 
 #[test]

@@ -1,5 +1,7 @@
 //! What surrounds a unit, as functions of a seed and of the number of a request or cycle alone, so that a model and its RTL meet the same.
 
+use crate::num::random::mix_two;
+
 /// Cycles from the one in which memory takes a request to the one in which it has the answer.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Latency {
@@ -23,7 +25,7 @@ impl Latency {
             Self::Fixed(cycles) => u64::from(cycles.max(1)),
             Self::Random { min, max, seed } => {
                 let (min, max) = (u64::from(min.max(1)), u64::from(max));
-                min + mix(seed, index) % (max.max(min) - min + 1)
+                min + mix_two(seed, index) % (max.max(min) - min + 1)
             }
         }
     }
@@ -59,17 +61,9 @@ impl Stall {
     pub fn at(&self, cycle: u64) -> bool {
         match *self {
             Self::Never => false,
-            Self::Random { eighths, stretch, seed } => mix(seed, cycle / u64::from(stretch.max(1))) % 8 < u64::from(eighths.min(7)),
+            Self::Random { eighths, stretch, seed } => mix_two(seed, cycle / u64::from(stretch.max(1))) % 8 < u64::from(eighths.min(7)),
         }
     }
-}
-
-/// A hash of two numbers (splitmix64's mixer).
-fn mix(seed: u64, index: u64) -> u64 {
-    let mut v = seed.wrapping_mul(0x9e37_79b9_7f4a_7c15) ^ index.wrapping_add(1).wrapping_mul(0xd1b5_4a32_d192_ed03);
-    v = (v ^ (v >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-    v = (v ^ (v >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-    v ^ (v >> 31)
 }
 
 /// Everything that surrounds a unit.

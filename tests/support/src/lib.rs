@@ -4,6 +4,8 @@
 pub mod models;
 pub mod plain;
 pub mod program;
+pub mod rust;
+pub mod slabs;
 pub mod surfaces;
 pub mod sv;
 pub mod thin;

@@ -5,7 +5,7 @@ use lodray::{
     format::{self, Scene, SceneInfo},
     golden::naive_bounds,
     mesh::{EdgeCodes, Hierarchy, Placement, Surface, lattice},
-    num::{Cone, Ray, U, Vec3, snap},
+    num::{Cone, Ray, U, Vec3, random, snap},
 };
 
 /// A plain 64-bit generator (splitmix64): the same numbers everywhere.
@@ -14,8 +14,8 @@ pub struct Rng(pub u64);
 
 impl Rng {
     pub fn draw(&mut self) -> u64 {
-        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
-        mix(self.0)
+        self.0 = self.0.wrapping_add(random::STEP);
+        random::mix(self.0)
     }
 
     /// Uniform in 0..1.
@@ -33,15 +33,9 @@ impl Rng {
     }
 }
 
-fn mix(mut v: u64) -> u64 {
-    v = (v ^ (v >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-    v = (v ^ (v >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-    v ^ (v >> 31)
-}
-
 /// Three numbers in -1..1 that depend on an integer point only.
 fn noise(p: [i64; 3], seed: u64) -> [f64; 3] {
-    let key = p.iter().fold(seed, |h, &v| mix(h ^ v.cast_unsigned()));
+    let key = p.iter().fold(seed, |h, &v| random::mix(h ^ v.cast_unsigned()));
     let mut rng = Rng(key);
     [rng.signed(), rng.signed(), rng.signed()]
 }

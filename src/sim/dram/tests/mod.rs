@@ -104,14 +104,15 @@ fn drive(dram: &mut Dram, wishes: &[Wish]) -> Vec<(u64, u64)> {
     times
 }
 
-/// SplitMix64, for traffic.
-struct Random(u64);
+/// Numbers for traffic.
+struct Random(crate::num::Random);
 
 impl Random {
+    fn new(seed: u64) -> Self {
+        Self(crate::num::Random::new(seed))
+    }
+
     fn below(&mut self, limit: u64) -> u64 {
-        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
-        let z = (self.0 ^ (self.0 >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-        let z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-        (z ^ (z >> 31)) % limit
+        self.0.next() % limit
     }
 }

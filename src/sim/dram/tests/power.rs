@@ -148,7 +148,7 @@ fn counts_are_those_of_the_commands() {
     for (page, seed) in [(PagePolicy::Open, 5), (PagePolicy::Timeout(30), 6)] {
         let controller = Controller { page, ..Controller::default() };
         let mut dram = super::made(&DramConfig { controller, ..DramConfig::new(device.clone(), 1) });
-        let mut random = Random(seed);
+        let mut random = Random::new(seed);
         let wishes: Vec<Wish> = (0..3000).map(|k| (k * 20 * 7, random.below(1 << 11), random.below(3) == 0)).collect();
         drive(&mut dram, &wishes);
         // Also in the middle of a refresh.

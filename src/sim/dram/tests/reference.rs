@@ -168,7 +168,7 @@ fn commands_are_those_of_a_search_clock_by_clock() {
     for ranks in [1, 2] {
         device.organisation.ranks = ranks;
         for seed in 0..6 {
-            let mut random = Random(seed);
+            let mut random = Random::new(seed);
             let (gap, writes, runs) = (random.below(16), random.below(3), random.below(4));
             // The queues hold all: no request waits outside.
             let hit_cap = random.below(5) as u32;

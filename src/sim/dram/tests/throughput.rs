@@ -1,7 +1,7 @@
 //! What a channel delivers, and what bounds it.
 
 use super::{Random, Wish, drive, line, made, odd_device, single};
-use crate::sim::dram::device::LINE_BYTES;
+use crate::num::LINE_BYTES;
 use crate::sim::dram::{ChannelCounts, Device, Dram, DramConfig};
 
 /// Clocks until the last data of reads of `lines`, pushed as fast as they are taken.
@@ -47,7 +47,7 @@ fn reads_within_a_bank_group_are_paced_by_n_ccd_l() {
 #[test]
 fn random_rows_of_a_bank_are_paced_by_n_rc() {
     let device = Device::preset("gddr5").unwrap();
-    let mut random = Random(1);
+    let mut random = Random::new(1);
     // The row changes with every read.
     let mut row = 0;
     let mut rows = || {
@@ -66,7 +66,7 @@ fn random_rows_of_a_bank_are_paced_by_n_rc() {
 #[test]
 fn random_rows_of_all_banks_are_paced_by_n_faw() {
     let device = Device::preset("gddr5").unwrap();
-    let mut random = Random(2);
+    let mut random = Random::new(2);
     let lines: Vec<_> = (0..20_000).map(|_| random.below(1 << 22)).collect();
     let mut dram = single(&device);
     let took = clocks(&mut dram, &device, lines.into_iter());
@@ -79,7 +79,7 @@ fn random_rows_of_all_banks_are_paced_by_n_faw() {
     wide.timing.n_faw = device.timing.n_rrd_s;
     wide.timing.n_rrd_s = 3;
     wide.timing.n_rrd_l = 3;
-    let mut random = Random(2);
+    let mut random = Random::new(2);
     let unbound = clocks(&mut single(&wide), &wide, (0..20_000).map(|_| random.below(1 << 22)));
     assert!(unbound < took * 9 / 10, "{unbound}");
 }
@@ -121,7 +121,7 @@ fn refreshes_cost_a_stream_their_time_and_their_rows() {
 #[test]
 fn channels_do_not_disturb_each_other() {
     let device = Device::preset("gddr5").unwrap();
-    let mut random = Random(3);
+    let mut random = Random::new(3);
     let wishes: Vec<Wish> = (0..5000).map(|k| (k * 900, random.below(1 << 25), random.below(4) == 0)).collect();
     let mut all = made(&DramConfig::new(device.clone(), 8));
     let together = drive(&mut all, &wishes);

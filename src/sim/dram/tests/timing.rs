@@ -28,7 +28,7 @@ const SHAPES: [Shape; 8] = [
 ];
 
 fn traffic(shape: Shape, device: &Device, seed: u64, count: usize) -> Vec<Wish> {
-    let mut random = Random(seed);
+    let mut random = Random::new(seed);
     let (mut time, mut line) = (0, 0);
     let mut wish = || {
         time += random.below(2 * shape.gap + 1) * device.clock_ps;

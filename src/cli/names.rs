@@ -1,0 +1,75 @@
+//! Values of the library's that options take by name: the library has the names, and what `--help` says of each stands here.
+
+use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
+use lodray::mesh::MeshFormat;
+use lodray::mesh::procedural::Scene;
+use lodray::run::Compute;
+
+/// A value with a name.
+pub trait Named: Copy + Send + Sync + 'static {
+    /// All of them, in the order of `--help`.
+    const ALL: &'static [Self];
+    /// What it is called.
+    fn name(self) -> &'static str;
+    /// What `--help` says of it.
+    fn about(self) -> &'static str;
+}
+
+/// Reads a value's name.
+pub fn named<T: Named>() -> impl TypedValueParser<Value = T> {
+    let values = T::ALL.iter().map(|value| PossibleValue::new(value.name()).help(value.about()));
+    PossibleValuesParser::new(values)
+        .try_map(|name| T::ALL.iter().copied().find(|value| value.name() == name).ok_or("there is no such value"))
+}
+
+impl Named for Compute {
+    const ALL: &'static [Self] = &Self::ALL;
+
+    fn name(self) -> &'static str {
+        self.name()
+    }
+
+    fn about(self) -> &'static str {
+        match self {
+            Self::Free => "It takes no time, as in the paper",
+            Self::Units => "Traversal units, cycle by cycle",
+        }
+    }
+}
+
+impl Named for MeshFormat {
+    const ALL: &'static [Self] = &Self::ALL;
+
+    fn name(self) -> &'static str {
+        self.name()
+    }
+
+    fn about(self) -> &'static str {
+        match self {
+            Self::Obj => "Wavefront OBJ",
+            Self::Ply => "Stanford PLY, ASCII or binary",
+            Self::Gltf => "glTF 2.0, JSON",
+            Self::Glb => "glTF 2.0, binary",
+            Self::Stl => "STL, ASCII or binary",
+        }
+    }
+}
+
+impl Named for Scene {
+    const ALL: &'static [Self] = &Self::ALL;
+
+    fn name(self) -> &'static str {
+        self.name()
+    }
+
+    fn about(self) -> &'static str {
+        match self {
+            Self::Terrain => "Fractal heightfield",
+            Self::Cloth => "Draped sheet with folds, flat parts and a fine weave",
+            Self::Sphere => "Displaced sphere, closed",
+            Self::Spikes => "Sphere with needles far longer than its edges, closed",
+            Self::Room => "Box with an open side around the cloth",
+            Self::Wall => "182 displaced spheres side by side",
+        }
+    }
+}
