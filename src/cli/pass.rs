@@ -8,6 +8,7 @@ use lodray::format::Scene;
 use lodray::render::{Camera, FrameRays};
 use lodray::report::result::{Compute, MachineFacts, MethodFacts, SceneFacts, Setup, SimResult, ViewFacts};
 use lodray::report::{Job, simulate};
+use lodray::sim::energy;
 use lodray::sim::machine::{Machine, MachineError};
 use lodray::sim::replay::{ReplayError, Run, Window};
 use lodray::sim::stream::Layout;
@@ -61,18 +62,17 @@ pub fn machine(name: &str, changes: &[Change], set: &str) -> anyhow::Result<Mach
 }
 
 /// The files that a machine of this name was read from; none if it comes with the program.
-pub fn machine_files(name: &str, machine: &MachineFacts) -> Vec<PathBuf> {
+pub fn machine_files(name: &str, machine: &MachineFacts) -> Result<Vec<PathBuf>, MachineError> {
     if !is_path(name) {
-        return Vec::new();
+        return Ok(Vec::new());
     }
     let file = Path::new(name);
     let description = &machine.description;
-    let energy = [Some(&description.energy.caches), description.energy.blocks.as_ref()];
-    let tables = energy.into_iter().flatten().map(|name| format!("energy/{name}.toml"));
+    let tables = energy::files(description)?.into_iter();
     let beside = |path: String| file.parent().unwrap_or(Path::new("")).join(path);
     // Those that are not there come with the program.
     let named = tables.chain([description.dram.device.clone()]).map(beside).filter(|path| path.exists());
-    std::iter::once(file.to_owned()).chain(named).collect()
+    Ok(std::iter::once(file.to_owned()).chain(named).collect())
 }
 
 /// Whether a machine's name is that of a file.

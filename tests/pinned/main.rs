@@ -51,7 +51,11 @@ impl Pin {
         let bvh =
             self.bvh.map(|(wide, layout, size)| FullBvh::build(&scene.decode(), &FullOptions::new(size, wide, layout)).expect("a BVH"));
         let method = bvh.as_ref().map_or_else(|| Method::Lod(LodImage::of(scene)), Method::Bvh);
-        let name = if bvh.is_some() { "bvh" } else { "lod" };
+        let name = match self.bvh {
+            None => "lod",
+            Some((false, ..)) => "bvh",
+            Some((true, ..)) => "bvh32",
+        };
         let space = ModelSpace::of(scene);
         let view = View { distance: Some(self.distance), direction: Some([0.35, -0.5, 0.6]), up: Some([0.0, 0.0, 1.0]), ..View::default() };
         let camera = Camera::new(&view, &space, SIDE, SIDE).expect("a camera");

@@ -13,6 +13,7 @@ use super::pass::{Pass, Target, machine, machine_files};
 use super::render::Built;
 use anyhow::Context;
 use files::Files;
+use lodray::report;
 use lodray::report::result::{Compute, SimResult};
 use lodray::sim::replay::Window;
 use lodray::traverse::ModelSpace;
@@ -86,6 +87,7 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
     let read = |name: &String| machine(name, &args.set, "--set").with_context(|| format!("--machine {name}"));
     let machines = args.machine.iter().map(read).collect::<anyhow::Result<Vec<_>>>()?;
     for (k, machine) in machines.iter().enumerate() {
+        report::check(&machine.description, args.compute).with_context(|| format!("--machine {}", args.machine[k]))?;
         anyhow::ensure!(machines[..k].iter().all(|before| before.label != machine.label), "--machine: {} is given twice", machine.label);
     }
     if let Some(vcd) = &args.vcd {
@@ -97,7 +99,8 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
     let camera = args.camera.camera(&space, None)?;
     let labels: Vec<_> = machines.iter().map(|machine| machine.label.as_str()).collect();
     let files = Files::new(&labels);
-    let read: Vec<_> = args.machine.iter().zip(&machines).flat_map(|(name, machine)| machine_files(name, machine)).collect();
+    let read =
+        args.machine.iter().zip(&machines).map(|(name, machine)| machine_files(name, machine)).collect::<Result<Vec<_>, _>>()?.concat();
     let inputs: Vec<_> = std::iter::once(&args.scene).chain(&read).map(PathBuf::as_path).collect();
     let names = files.names();
     let open_folder = |out: &PathBuf| RunFolder::open(out, names.iter().map(String::as_str), &inputs, &args.overrule);

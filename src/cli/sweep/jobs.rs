@@ -7,6 +7,7 @@ use crate::cli::pass::Target;
 use anyhow::Context;
 use lodray::mesh::procedural;
 use lodray::render::{Camera, DEFAULT_DIRECTION, View};
+use lodray::sim::energy;
 use lodray::traverse::ModelSpace;
 use serde::Serialize;
 use std::collections::BTreeSet;
@@ -95,9 +96,8 @@ impl Jobs {
     pub fn key(&self, scene: &SceneJobs, view: &ViewJob, (method, quality): (SimMethod, f64), target: &Target) -> anyhow::Result<String> {
         let machine = &target.machine.description;
         let mut inputs = serde_json::to_vec(&(view, &scene.origin, &machine, self.error, self.intervals))?;
-        let caches = format!("energy/{}.toml", machine.energy.caches);
-        let blocks = machine.energy.blocks.as_ref().map(|name| format!("energy/{name}.toml"));
-        for file in [&machine.dram.device, &caches].into_iter().chain(&blocks) {
+        let tables = energy::files(machine)?;
+        for file in std::iter::once(&machine.dram.device).chain(&tables) {
             inputs.extend(machine.read(file)?.0.into_bytes());
         }
         if let Origin::File(_) = &scene.origin {

@@ -22,7 +22,8 @@ pub use setup::{Compute, MachineFacts, MethodFacts, SceneFacts, Setup, ViewFacts
 pub use traffic::{KindResult, LevelBytes, TrafficResult};
 pub use units::{BlockResult, UnitsResult};
 
-use crate::sim::energy::{EnergyCounts, EnergyModel};
+use crate::sim::energy::operation::{BVH_UNIT, BVH32_UNIT, LOD_UNIT};
+use crate::sim::energy::{EnergyCounts, EnergyModel, Operation};
 use crate::sim::machine::MachineError;
 use crate::sim::replay::{ReplayError, Run, dram_of};
 use serde::{Deserialize, Serialize};
@@ -95,7 +96,7 @@ impl SimResult {
         let dram = dram_of(machine)?;
         let seconds = run.cycles as f64 / (f64::from(machine.cores.clock_mhz) * 1e6);
         let counts = &run.counts;
-        let units = setup.compute == Compute::Units;
+        let unit = blocks_of_unit(&setup);
         let dram = DramResult::new(&run.channels, counts.dram_refused_cycles, &dram, seconds);
         let energy_counts = EnergyCounts {
             cycles: run.cycles,
@@ -105,7 +106,7 @@ impl SimResult {
             l2_fills: counts.l2.fills,
             dram_lines: dram.reads + dram.writes,
             operations: run.operations.clone(),
-            units,
+            unit,
         };
         Ok(Self {
             cycles: run.cycles,
@@ -126,10 +127,20 @@ impl SimResult {
                 .as_ref()
                 .map(|counts| UnitsResult::new(counts, u64::from(machine.cores.groups) * u64::from(machine.units.per_group))),
             operations: run.operations.iter().filter(|&(_, n)| n > 0).map(|(o, n)| (o.name().to_owned(), n)).collect(),
-            intervals: intervals::intervals(&run.intervals, &model, machine, units),
+            intervals: intervals::intervals(&run.intervals, &model, machine, unit),
             dram,
             setup,
         })
+    }
+}
+
+/// The blocks of a traversal unit of the frame's method; none where compute takes no time.
+fn blocks_of_unit(setup: &Setup) -> &'static [Operation] {
+    match (setup.compute, setup.method.name.as_str()) {
+        (Compute::Free, _) => &[],
+        (Compute::Units, "lod") => LOD_UNIT,
+        (Compute::Units, "bvh32") => BVH32_UNIT,
+        (Compute::Units, _) => BVH_UNIT,
     }
 }
 

@@ -53,7 +53,7 @@ pub enum Operation {
 }
 
 impl Operation {
-    /// Every operation; first those whose blocks a traversal unit has.
+    /// Every operation.
     pub const ALL: [Self; 15] = [
         Self::RaySetup,
         Self::NodeAddress,
@@ -71,11 +71,6 @@ impl Operation {
         Self::ChildSort,
         Self::BoundDecode,
     ];
-
-    /// Those whose blocks a traversal unit has, one of each.
-    pub fn of_unit() -> &'static [Self] {
-        &Self::ALL[..=Self::BaryMap as usize]
-    }
 
     /// Name of the block.
     pub fn name(self) -> &'static str {
@@ -98,6 +93,39 @@ impl Operation {
         }
     }
 }
+
+/// The blocks of the unit of `rtl/`, which traces with level of detail: one of each.
+pub const LOD_UNIT: &[Operation] = &[
+    Operation::RaySetup,
+    Operation::NodeAddress,
+    Operation::TreeBase,
+    Operation::ChildTest,
+    Operation::LodTest,
+    Operation::Tessellate,
+    Operation::TriTest,
+    Operation::HitDivide,
+    Operation::HitSelect,
+    Operation::BaryMap,
+];
+
+/// The blocks of a unit for a BVH with 16-bit boxes: no trees, no levels, and hits on the mesh itself. The test of a node is the LOD unit's, as it is counted;
+/// `docs/energy.md` says what its widening of boxes costs the baseline.
+pub const BVH_UNIT: &[Operation] =
+    &[Operation::RaySetup, Operation::NodeAddress, Operation::ChildTest, Operation::TriTest, Operation::HitDivide, Operation::HitSelect];
+
+/// The blocks of a unit for a BVH with 32-bit boxes: four boxes at once, then their order.
+pub const BVH32_UNIT: &[Operation] = &[
+    Operation::RaySetup,
+    Operation::NodeAddress,
+    Operation::BoxTest32,
+    Operation::BoxTest32,
+    Operation::BoxTest32,
+    Operation::BoxTest32,
+    Operation::ChildSort,
+    Operation::TriTest,
+    Operation::HitDivide,
+    Operation::HitSelect,
+];
 
 /// How many of each.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
