@@ -170,6 +170,36 @@ fn lines_that_are_no_results_are_set_aside_and_their_jobs_done_again() {
     assert!(desk.text("out/results.bad.jsonl").ends_with("{}\nmore\n"));
 }
 
+/// Figures of two versions never stand in one table.
+#[test]
+fn results_of_another_version_are_set_aside_and_their_jobs_done_again() {
+    let desk = Desk::new();
+    desk.write("jobs.toml", &format!("{HEAD}{SCENE}{MACHINE}"));
+    assert_eq!(desk.run("sweep jobs.toml -o out").0, 0);
+    let (lines, table) = (desk.text("out/results.jsonl"), desk.text("out/results.csv"));
+    let [a, b]: [&str; 2] = lines.lines().collect::<Vec<_>>().try_into().unwrap();
+    let version = format!(" {}\",\"scene\"", lodray::report::results_version());
+    assert!(a.contains(&version) && b.contains(&version), "{version}: {a}");
+    for (old, said) in [(" 0.0.1-00000000\",\"scene\"", "1 result is"), ("\",\"scene\"", "1 result is")] {
+        let other = a.replace(&version, old).replace("\"cycles\":", "\"cycles\":9");
+        desk.write("out/results.jsonl", &format!("{other}\n{b}\n"));
+        let _ = fs::remove_file(desk.path("out/results.old.jsonl"));
+        let (code, out, err) = desk.run("sweep jobs.toml -o out");
+        assert_eq!((code, err.lines().count()), (0, 1), "{out}{err}");
+        let note = format!("note: out/results.jsonl: {said} another version's of the program; set aside in out/results.old.jsonl, ");
+        assert!(err.starts_with(&note), "{err}");
+        assert!(out.contains("2 jobs, 1 of them done before, 0 failed"), "{out}");
+        assert_eq!(desk.text("out/results.old.jsonl"), format!("{other}\n"));
+        assert_eq!((desk.text("out/results.jsonl"), desk.text("out/results.csv")), (format!("{b}\n{a}\n"), table.clone()));
+        assert_eq!(desk.run("sweep jobs.toml -o out").2, "");
+    }
+    let both = lines.replace(&version, " 0.0.1-00000000\",\"scene\"");
+    desk.write("out/results.jsonl", &both);
+    let (code, out, err) = desk.run("sweep jobs.toml -o out");
+    assert!(code == 0 && err.starts_with("note: out/results.jsonl: 2 results are another version's"), "{err}");
+    assert!(out.contains("2 jobs, 0 of them done before, 0 failed"), "{out}");
+}
+
 #[test]
 fn bars_are_told_apart_and_every_chart_has_several() {
     let desk = Desk::new();

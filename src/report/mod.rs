@@ -3,5 +3,7 @@
 pub mod crack;
 pub mod result;
 mod simulate;
+mod version;
 
 pub use simulate::{Job, check, simulate};
+pub use version::results_version;

@@ -6,7 +6,7 @@ use lodray::bvh::{FullBvh, FullOptions, LeafLayout};
 use lodray::format::Scene;
 use lodray::render::{Camera, FrameRays, Method, View};
 use lodray::report::result::{Compute, MachineFacts, MethodFacts, SceneFacts, Setup, SimResult, ViewFacts};
-use lodray::report::{Job, simulate};
+use lodray::report::{Job, results_version, simulate};
 use lodray::sim::dram::{ChannelCounts, DramEnergy};
 use lodray::sim::machine::Machine;
 use lodray::sim::replay::Run;
@@ -16,6 +16,7 @@ use lodray::traverse::{LodImage, ModelSpace};
 use lodray_test_support::models::{scene_of, terrain};
 use serde_json::{Value, json};
 use std::path::{Path, PathBuf};
+use xxhash_rust::xxh3::xxh3_64;
 
 /// Set by `scripts/pin`.
 const REWRITE: &str = "LODRAY_REWRITE_PINS";
@@ -41,9 +42,20 @@ const PINS: [Pin; 7] = [
     Pin { name: "bvh32-units", bvh: Some((true, LeafLayout::Indexed, 4)), machine: "turing2018", compute: Compute::Units, distance: 1.2 },
 ];
 
+/// A file of this test.
+fn pinned(name: &str) -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/pinned").join(name)
+}
+
+/// Of all pinned frames.
+fn checksum() -> String {
+    let frames = PINS.iter().flat_map(|pin| std::fs::read(pin.file()).expect("a pinned frame"));
+    format!("{:08x}", xxh3_64(&frames.collect::<Vec<_>>()) >> 32)
+}
+
 impl Pin {
     fn file(&self) -> PathBuf {
-        Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/pinned/frames").join(format!("{}.json", self.name))
+        pinned("frames").join(format!("{}.json", self.name))
     }
 
     /// Everything that the frame gives.
@@ -159,6 +171,16 @@ fn frames_are_as_they_were() {
         let first = found.iter().take(8).map(String::as_str).collect::<Vec<_>>().join("\n");
         assert!(found.is_empty(), "{}: {} figures moved; scripts/pin writes them again\n{first}", file.display(), found.len());
     }
+    if rewrite {
+        std::fs::write(pinned("checksum"), checksum() + "\n").expect("a file that can be written");
+    }
+}
+
+/// Results of sweeps are of another version of the program once a pin has moved.
+#[test]
+fn the_version_of_results_is_that_of_the_pins() {
+    let version = results_version();
+    assert_eq!(version.rsplit_once('-').expect("a checksum").1, checksum(), "scripts/pin writes the checksum again");
 }
 
 #[test]

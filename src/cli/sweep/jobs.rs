@@ -7,6 +7,7 @@ use crate::cli::pass::Target;
 use anyhow::Context;
 use lodray::mesh::procedural;
 use lodray::render::{Camera, DEFAULT_DIRECTION, View};
+use lodray::report::results_version;
 use lodray::sim::energy;
 use lodray::traverse::ModelSpace;
 use serde::Serialize;
@@ -92,7 +93,7 @@ impl Jobs {
         Ok(keys)
     }
 
-    /// Name of a job that changes with everything that its result depends on.
+    /// Name of a job that changes with everything that its result depends on, the program's own version at its end.
     pub fn key(&self, scene: &SceneJobs, view: &ViewJob, (method, quality): (SimMethod, f64), target: &Target) -> anyhow::Result<String> {
         let machine = &target.machine.description;
         let mut inputs = serde_json::to_vec(&(view, &scene.origin, &machine, self.error, self.intervals))?;
@@ -115,10 +116,16 @@ impl Jobs {
         let [width, height] = view.size;
         let (name, compute) = (method.name(), target.compute.name());
         Ok(format!(
-            "{}, {place}, {width}x{height}, {name}, {quality}, {}, {compute} #{:016x}",
+            "{}, {place}, {width}x{height}, {name}, {quality}, {}, {compute} #{:016x} {}",
             scene.name,
             target.machine.title(),
-            xxh3_64(&inputs)
+            xxh3_64(&inputs),
+            results_version()
         ))
     }
+}
+
+/// Whether a job's result, by the job's name, is this version's of the program.
+pub fn is_of_this_version(key: &str) -> bool {
+    key.rsplit_once(' ').is_some_and(|(_, version)| version == results_version())
 }

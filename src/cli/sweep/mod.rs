@@ -31,7 +31,7 @@ use rows::{Rows, csv};
 const LINES: &str = "results.jsonl";
 const TABLE: &str = "results.csv";
 const FOLDER: &str = "Folder for the results, one line of JSON for each job, their table, and charts (SVG) that set views, methods and machines side by side; a sweep \
-started again goes on with the results that are there";
+started again goes on with the results that are there, if they are of the same version of the program";
 
 #[derive(clap::Args)]
 pub struct Args {
