@@ -92,10 +92,11 @@ fn a_record_says_what_was_run() {
 
     desk.write("own/mine.toml", include_str!("../machines/haydel2023.toml"));
     desk.write("own/energy/cacti22.toml", include_str!("../machines/energy/cacti22.toml"));
+    desk.write("own/energy/cacti22.csv", include_str!("../machines/energy/cacti22.csv"));
     desk.run("simulate a.lod --size 8x8 --machine own/mine.toml,packet -o sim");
     let inputs = desk.record("sim")["inputs"].clone();
     let names: Vec<_> = inputs.as_array().unwrap().iter().map(|input| input["name"].as_str().unwrap()).collect();
-    assert_eq!(names, ["a.lod", "own/mine.toml", "own/energy/cacti22.toml"]);
+    assert_eq!(names, ["a.lod", "own/mine.toml", "own/energy/cacti22.toml", "own/energy/cacti22.csv"]);
     desk.write("mesh.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
     desk.run(&format!("{RENDER} --compare --mesh mesh.obj -o original"));
     assert_eq!(desk.record("original")["inputs"][1]["name"], "mesh.obj");

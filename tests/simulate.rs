@@ -141,9 +141,17 @@ fn several_machines_at_once_are_one_at_a_time() {
     }
     assert_eq!((&together[0]["cycles"], &together[0]["energy"]), (&together[1]["cycles"], &together[1]["energy"]));
     assert_eq!(together[1]["setup"]["machine"]["description"]["name"], "Mine");
-    // Only together are these possible.
-    let r = desk.json(&format!("{SHOT} --set l1.ways=3 --set l1.bytes=24576"));
+    // Only together are these possible, with energies of their own.
+    let geometry = "geometry = { bytes = 24576, ways = 3, banks = 4, line_bytes = 32 }\nread = 1\nfill = 1\nleakage_mw_per_bank = 1\n";
+    fs::create_dir(desk.path("energy")).unwrap();
+    desk.write("energy/three.toml", &format!("name = \"three\"\nunit = \"pJ\"\nrows = \"cacti22.csv\"\n[[l1]]\n{geometry}"));
+    let three = format!("{SHOT} --machine mine.toml --set l1.ways=3 --set l1.bytes=24576");
+    let r = desk.json(&format!("{three} --set energy.caches=three"));
     assert_eq!(r["setup"]["machine"]["description"]["l1"]["ways"], 3);
+    let none =
+        "--machine mine.toml: Mine: energy/cacti22.toml has no energies for l1 of 24576 bytes, 3-way, 4 banks, 32-byte lines; nearest: ";
+    desk.refused(&format!("{three} -o three"), FAILS, &[none]);
+    assert!(!desk.path("three").exists());
 }
 
 #[test]

@@ -20,6 +20,8 @@ const HEAD: &str = "size = \"16x16\"\ndistances = [2]\nmethods = [\"lod\", \"bvh
 /// Two lines each.
 const SCENE: &str = "[[scene]]\nfile = \"a.lod\"\n";
 const MACHINE: &str = "[[machine]]\nname = \"packet\"\n";
+/// Two lines, for changes of its caches: one with energies for many.
+const CACHES: &str = "[[machine]]\nname = \"haydel2023\"\n";
 
 #[test]
 fn a_mistake_is_named_with_its_place_before_anything_runs() {
@@ -92,12 +94,18 @@ fn a_mistake_is_named_with_its_place_before_anything_runs() {
         (format!("{HEAD}{SCENE}[[machine]]\nname = \"none.toml\"\n"), "line 7: machine none.toml: none.toml: "),
         (format!("{HEAD}{SCENE}[[machine]]\nname = \"slow.toml\"\n"), "line 7: machine slow.toml: slow.toml: "),
         (machine("\"l9.x\" = 1"), "line 8: machine packet: set l9.x = 1"),
-        (machine("\"l1.bytes\" = [16384, 5]"), "line 8: machine packet: set l1.bytes = 5: l1.bytes must be"),
+        (machine("\"l1.bytes\" = [32768, 5]"), "line 8: machine packet: set l1.bytes = 5: l1.bytes must be"),
         (machine("\"l1.bytes\" = []"), "line 8: machine packet: set: l1.bytes has no value"),
         (machine("\"l1.bytes\" = true"), "must be a number, a text, or a list of such"),
         (machine("\"dram.device\" = \"dram/none.toml\""), "line 8: machine packet: no dram/none.toml"),
         (machine("\"dram.mapping\" = \"row\""), "line 8: machine packet: "),
         (machine("\"energy.caches\" = \"none\""), "line 8: machine packet: no energy/none.toml"),
+        // The last job's machine is looked at before the first job runs.
+        (
+            machine("\"l1.bytes\" = [32768, 16384]"),
+            "line 8: machine packet: Haydel 2023, packets: energy/relative.toml has no energies for l1 of 16384 bytes, 4-way, 1 bank, 32-byte lines; \
+             nearest: 32768 bytes, 4-way, 1 bank, 32-byte lines",
+        ),
         (machine("\"cores.groups\" = 4096, \"cores.per_group\" = 4096"), "rays in flight of the machine are more than"),
     ] {
         desk.write("jobs.toml", &list);
@@ -113,7 +121,7 @@ fn a_mistake_is_named_with_its_place_before_anything_runs() {
 #[test]
 fn lines_that_are_no_results_are_set_aside_and_their_jobs_done_again() {
     let desk = with_scene();
-    desk.write("jobs.toml", &format!("{HEAD}{SCENE}{MACHINE}set = {{ \"l1.bytes\" = [16384, 32768] }}\n"));
+    desk.write("jobs.toml", &format!("{HEAD}{SCENE}{CACHES}set = {{ \"l1.bytes\" = [16384, 32768] }}\n"));
     assert_eq!(desk.run_on(0, "sweep jobs.toml -o out").0, 0);
     let lines = desk.text("out/results.jsonl");
     let [a, b, c, d]: [&str; 4] = lines.lines().collect::<Vec<_>>().try_into().unwrap();
@@ -172,6 +180,36 @@ fn jobs_that_are_no_longer_listed_stay_in_the_lines_only() {
     assert_eq!((desk.text("out/results.jsonl").lines().count(), desk.text("out/results.csv").lines().count()), (2, 2));
 }
 
+/// Figures of two versions never stand in one table.
+#[test]
+fn results_of_another_version_are_set_aside_and_their_jobs_done_again() {
+    let desk = with_scene();
+    desk.write("jobs.toml", &format!("{HEAD}{SCENE}{MACHINE}"));
+    assert_eq!(desk.run_on(0, "sweep jobs.toml -o out").0, 0);
+    let (lines, table) = (desk.text("out/results.jsonl"), desk.text("out/results.csv"));
+    let [a, b]: [&str; 2] = lines.lines().collect::<Vec<_>>().try_into().unwrap();
+    let version = format!(" {}\",\"scene\"", lodray::report::results_version());
+    assert!(a.contains(&version) && b.contains(&version), "{version}: {a}");
+    for (old, said) in [(" 0.0.1-00000000\",\"scene\"", "1 result is"), ("\",\"scene\"", "1 result is")] {
+        let other = a.replace(&version, old).replace("\"cycles\":", "\"cycles\":9");
+        desk.write("out/results.jsonl", &format!("{other}\n{b}\n"));
+        let _ = fs::remove_file(desk.path("out/results.old.jsonl"));
+        let (code, out, err) = desk.run_on(0, "sweep jobs.toml -o out");
+        assert_eq!((code, err.lines().count()), (0, 1), "{out}{err}");
+        let note = format!("note: out/results.jsonl: {said} another version's of the program; set aside in out/results.old.jsonl, ");
+        assert!(err.starts_with(&note), "{err}");
+        assert!(out.contains("2 jobs, 1 of them done before, 0 failed"), "{out}");
+        assert_eq!(desk.text("out/results.old.jsonl"), format!("{other}\n"));
+        assert_eq!((desk.text("out/results.jsonl"), desk.text("out/results.csv")), (format!("{b}\n{a}\n"), table.clone()));
+        assert_eq!(desk.run_on(0, "sweep jobs.toml -o out").2, "");
+    }
+    let both = lines.replace(&version, " 0.0.1-00000000\",\"scene\"");
+    desk.write("out/results.jsonl", &both);
+    let (code, out, err) = desk.run_on(0, "sweep jobs.toml -o out");
+    assert!(code == 0 && err.starts_with("note: out/results.jsonl: 2 results are another version's"), "{err}");
+    assert!(out.contains("2 jobs, 0 of them done before, 0 failed"), "{out}");
+}
+
 #[test]
 fn bars_are_told_apart_and_every_chart_has_several() {
     let desk = with_scene();
@@ -189,10 +227,10 @@ fn bars_are_told_apart_and_every_chart_has_several() {
     }
     // Machines: only what was changed.
     let set = "set = { \"l1.bytes\" = [16384, 32768] }\n";
-    desk.write("set.toml", &format!("size = \"16x16\"\ndistances = [2]\nmethods = [\"lod\"]\n{SCENE}{MACHINE}{set}{MACHINE}"));
+    desk.write("set.toml", &format!("size = \"16x16\"\ndistances = [2]\nmethods = [\"lod\"]\n{SCENE}{CACHES}{set}{CACHES}"));
     assert_eq!(desk.run_on(0, "sweep set.toml -o set").0, 0);
-    assert_eq!(charts(&desk, "set"), ["energy-a-packet.svg", "time-a-packet.svg"]);
-    let chart = desk.text("set/time-a-packet.svg");
+    assert_eq!(charts(&desk, "set"), ["energy-a-haydel2023.svg", "time-a-haydel2023.svg"]);
+    let chart = desk.text("set/time-a-haydel2023.svg");
     for label in ["l1.bytes=16384", "l1.bytes=32768", "unchanged"] {
         assert_eq!(chart.matches(&format!("\n{label}\n")).count(), 1, "{label}: {chart}");
     }

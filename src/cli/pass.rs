@@ -8,6 +8,7 @@ use lodray::method::Method;
 use lodray::rays::{Camera, ModelSpace, RaySource, Sight};
 use lodray::report::result::{MachineFacts, MethodFacts, SceneFacts, Setup, SimResult, ViewFacts};
 use lodray::run::{Compute, FrameRays, Job, simulate};
+use lodray::sim::energy;
 use lodray::sim::machine::{Machine, MachineError};
 use lodray::sim::replay::{ReplayError, Run, Window};
 use std::path::{Path, PathBuf};
@@ -47,18 +48,17 @@ pub fn machine(name: &str, changes: &[Change], set: &str) -> anyhow::Result<Mach
 }
 
 /// The files that a machine of this name was read from; none if it comes with the program.
-pub fn machine_files(name: &str, machine: &MachineFacts) -> Vec<PathBuf> {
+pub fn machine_files(name: &str, machine: &MachineFacts) -> Result<Vec<PathBuf>, MachineError> {
     if !is_path(name) {
-        return Vec::new();
+        return Ok(Vec::new());
     }
     let file = Path::new(name);
     let description = &machine.description;
-    let energy = [Some(&description.energy.caches), description.energy.blocks.as_ref()];
-    let tables = energy.into_iter().flatten().map(|name| format!("energy/{name}.toml"));
+    let tables = energy::files(description)?.into_iter();
     let beside = |path: String| file.parent().unwrap_or(Path::new("")).join(path);
     // Those that are not there come with the program.
     let named = tables.chain([description.dram.device.clone()]).map(beside).filter(|path| path.exists());
-    std::iter::once(file.to_owned()).chain(named).collect()
+    Ok(std::iter::once(file.to_owned()).chain(named).collect())
 }
 
 /// Whether a machine's name is that of a file.
@@ -98,7 +98,7 @@ impl Pass<'_> {
         bar.finish_and_clear();
         let result = |(target, run): (&Target, Result<Run, ReplayError>)| {
             let run = run?;
-            Ok((SimResult::new(self.setup(target, &sight, map.bytes()), &map, &run)?, run.wave))
+            Ok((SimResult::new(self.setup(target, &sight, map.bytes()), self.chosen.method, &map, &run)?, run.wave))
         };
         Ok(targets.iter().zip(runs).map(result).collect())
     }

@@ -37,7 +37,7 @@ pub struct Registered {
     pub help: &'static str,
     /// What may be chosen.
     pub knobs: &'static [&'static Knob],
-    /// Operations whose blocks a unit for its rays has; none if it is no hardware.
+    /// The blocks of a unit for its rays, each as often as there is one; none if it is no hardware.
     pub unit: Option<&'static [Operation]>,
     /// Builds what it needs for a scene.
     pub make: Make,

@@ -2,3 +2,6 @@
 
 pub mod crack;
 pub mod result;
+mod version;
+
+pub use version::results_version;

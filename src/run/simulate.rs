@@ -45,7 +45,7 @@ pub struct Job {
     pub window: Option<Window>,
 }
 
-/// Refuses a machine that no frame can run on: its energy tables or its memory cannot be read or be, or it is too large.
+/// Refuses a machine that no frame can run on: its energy tables or its memory cannot be read or be, the tables have no energies for its caches, or it is too large.
 ///
 /// # Errors
 /// The first of these.

@@ -7,6 +7,7 @@ use lodray::method::bvh::NoStore;
 use lodray::method::{Knobs, METHODS, find};
 use lodray::rays::{Camera, ModelSpace, Sight, View};
 use lodray::report::result::{MachineFacts, MethodFacts, SceneFacts, Setup, SimResult, ViewFacts};
+use lodray::report::results_version;
 use lodray::run::{Compute, FrameRays, Job, simulate};
 use lodray::sim::dram::{ChannelCounts, DramEnergy};
 use lodray::sim::machine::Machine;
@@ -15,6 +16,7 @@ use lodray::sim::unit::UnitCounts;
 use lodray_test_support::models::{scene_of, terrain};
 use serde_json::{Value, json};
 use std::path::{Path, PathBuf};
+use xxhash_rust::xxh3::xxh3_64;
 
 /// Set by `scripts/pin`.
 const REWRITE: &str = "LODRAY_REWRITE_PINS";
@@ -51,9 +53,20 @@ const PINS: [Pin; 7] = [
     Pin::new("bvh32-units", "bvh32", "turing2018", Compute::Units, 1.2).with(&[("leaf-layout", "indexed")]),
 ];
 
+/// A file of this test.
+fn pinned(name: &str) -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/pinned").join(name)
+}
+
+/// Of all pinned frames.
+fn checksum() -> String {
+    let frames = PINS.iter().flat_map(|pin| std::fs::read(pin.file()).expect("a pinned frame"));
+    format!("{:08x}", xxh3_64(&frames.collect::<Vec<_>>()) >> 32)
+}
+
 impl Pin {
     fn file(&self) -> PathBuf {
-        Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/pinned/frames").join(format!("{}.json", self.name))
+        pinned("frames").join(format!("{}.json", self.name))
     }
 
     /// Everything that the frame gives.
@@ -80,7 +93,7 @@ impl Pin {
             compute: self.compute,
             machine: MachineFacts { label: self.machine.to_owned(), set: Vec::new(), description: machine },
         };
-        let result = SimResult::new(setup, &method.map(&sight), &run).expect("figures");
+        let result = SimResult::new(setup, entry, &method.map(&sight), &run).expect("figures");
         let mut figures = serde_json::to_value(&result).expect("JSON");
         // What was run is above.
         figures.as_object_mut().expect("a table").remove("setup");
@@ -175,6 +188,16 @@ fn frames_are_as_they_were() {
         }
     }
     assert!(moved.is_empty(), "figures moved; scripts/pin writes them again\n{}", moved.join("\n"));
+    if rewrite {
+        std::fs::write(pinned("checksum"), checksum() + "\n").expect("a file that can be written");
+    }
+}
+
+/// Results of sweeps are of another version of the program once a pin has moved.
+#[test]
+fn the_version_of_results_is_that_of_the_pins() {
+    let version = results_version();
+    assert_eq!(version.rsplit_once('-').expect("a checksum").1, checksum(), "scripts/pin writes the checksum again");
 }
 
 #[test]

@@ -17,7 +17,7 @@ use anyhow::Context;
 use files::Files;
 use lodray::rays::ModelSpace;
 use lodray::report::result::SimResult;
-use lodray::run::Compute;
+use lodray::run::{self, Compute};
 use lodray::sim::replay::Window;
 use std::path::PathBuf;
 use std::process::ExitCode;
@@ -83,6 +83,7 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
     let read = |name: &String| machine(name, &args.set, "--set").with_context(|| format!("--machine {name}"));
     let machines = args.machine.iter().map(read).collect::<anyhow::Result<Vec<_>>>()?;
     for (k, machine) in machines.iter().enumerate() {
+        run::check(&machine.description, args.compute).with_context(|| format!("--machine {}", args.machine[k]))?;
         anyhow::ensure!(machines[..k].iter().all(|before| before.label != machine.label), "--machine: {} is given twice", machine.label);
     }
     if let Some(vcd) = &args.vcd {
@@ -94,7 +95,8 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
     let camera = args.camera.camera(&space, None)?;
     let labels: Vec<_> = machines.iter().map(|machine| machine.label.as_str()).collect();
     let files = Files::new(&labels);
-    let read: Vec<_> = args.machine.iter().zip(&machines).flat_map(|(name, machine)| machine_files(name, machine)).collect();
+    let read =
+        args.machine.iter().zip(&machines).map(|(name, machine)| machine_files(name, machine)).collect::<Result<Vec<_>, _>>()?.concat();
     let inputs: Vec<_> = std::iter::once(&args.scene).chain(&read).map(PathBuf::as_path).collect();
     let names = files.names();
     let open_folder = |out: &PathBuf| RunFolder::open(out, names.iter().map(String::as_str), &inputs, &args.overrule);

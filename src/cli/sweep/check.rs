@@ -172,11 +172,11 @@ fn machines(
     for variant in &variants {
         let wrong = |why: anyhow::Error| source.wrong(place.clone(), format!("machine {}: {}", name.get_ref(), one_line(&why)));
         let machine = machine(&path, variant, "set").map_err(wrong)?;
-        files.extend(machine_files(&path, &machine));
         for &compute in compute {
             run::check(&machine.description, compute).map_err(|why| wrong(why.into()))?;
             targets.push(Target { machine: machine.clone(), compute, window: None });
         }
+        files.extend(machine_files(&path, &machine).map_err(|why| wrong(why.into()))?);
     }
     Ok((targets, files))
 }

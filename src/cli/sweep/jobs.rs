@@ -10,6 +10,8 @@ use lodray::method::Knob;
 use lodray::method::bvh::{LEAF_LAYOUT, LEAF_SIZE};
 use lodray::method::knob::DELTA;
 use lodray::rays::{Camera, DEFAULT_DIRECTION, ModelSpace, View};
+use lodray::report::results_version;
+use lodray::sim::energy;
 use serde::Serialize;
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
@@ -92,13 +94,12 @@ impl Jobs {
         Ok(keys)
     }
 
-    /// Name of a job that changes with everything that its result depends on.
+    /// Name of a job that changes with everything that its result depends on, the program's own version at its end.
     pub fn key(&self, scene: &SceneJobs, view: &ViewJob, chosen: &Chosen, target: &Target) -> anyhow::Result<String> {
         let machine = &target.machine.description;
         let mut inputs = serde_json::to_vec(&(view, &scene.origin, &machine, self.error, self.intervals))?;
-        let caches = format!("energy/{}.toml", machine.energy.caches);
-        let blocks = machine.energy.blocks.as_ref().map(|name| format!("energy/{name}.toml"));
-        for file in [&machine.dram.device, &caches].into_iter().chain(&blocks) {
+        let tables = energy::files(machine)?;
+        for file in std::iter::once(&machine.dram.device).chain(&tables) {
             inputs.extend(machine.read(file)?.0.into_bytes());
         }
         if let Origin::File(_) = &scene.origin {
@@ -111,10 +112,11 @@ impl Jobs {
         let [width, height] = view.size;
         let (name, quality, compute) = (chosen.method.name, quality(chosen), target.compute.name());
         Ok(format!(
-            "{}, {place}, {width}x{height}, {name}, {quality}, {}, {compute} #{:016x}",
+            "{}, {place}, {width}x{height}, {name}, {quality}, {}, {compute} #{:016x} {}",
             scene.name,
             target.machine.title(),
-            xxh3_64(&inputs)
+            xxh3_64(&inputs),
+            results_version()
         ))
     }
 }
@@ -129,4 +131,9 @@ fn quality(chosen: &Chosen) -> String {
         Some(if is_leaf { value } else { format!("{} {value}", knob.name) })
     };
     chosen.method.knobs.iter().filter_map(said).collect::<Vec<_>>().join(" ")
+}
+
+/// Whether a job's result, by the job's name, is this version's of the program.
+pub fn is_of_this_version(key: &str) -> bool {
+    key.rsplit_once(' ').is_some_and(|(_, version)| version == results_version())
 }

@@ -32,8 +32,8 @@ use rows::{ASIDE, Rows, csv};
 const LINES: &str = "results.jsonl";
 const TABLE: &str = "results.csv";
 const FOLDER: &str = "Folder for the results, one line of JSON for each job, their table, and charts (SVG) that set views, methods and machines side by side; a sweep \
-started again goes on with the results that are there. Lines of jobs that are no longer in the list stay, for when they are again, but are in neither table nor charts; lines that are no \
-results are set aside in results.bad.jsonl";
+started again goes on with the results that are there, if they are of the same version of the program (others are set aside in results.old.jsonl). Lines of jobs that are no longer in the list stay, \
+for when they are again, but are in neither table nor charts; lines that are no results are set aside in results.bad.jsonl";
 
 #[derive(clap::Args)]
 pub struct Args {
@@ -71,8 +71,8 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
     check_target(&lines, &inputs)?;
     let rows = Rows::open(&lines)?;
     folder.keep(LINES)?;
-    if args.out.join(ASIDE).exists() {
-        folder.keep(ASIDE)?;
+    for name in ASIDE.into_iter().filter(|name| args.out.join(name).exists()) {
+        folder.keep(name)?;
     }
     let done = rows.done();
     let mut sweep = Sweep { jobs: &jobs, cache: &cache, rows };

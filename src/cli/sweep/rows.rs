@@ -1,5 +1,6 @@
 //! What was done: one line of JSON for each job, and a table of them at the end.
 
+use super::jobs::is_of_this_version;
 use crate::cli::json::fault;
 use crate::cli::output::{warn, write_file};
 use anyhow::Context;
@@ -10,8 +11,8 @@ use std::fs::{File, OpenOptions};
 use std::io::Write;
 use std::path::{Path, PathBuf};
 
-/// The file beside the lines that has what were none.
-pub const ASIDE: &str = "results.bad.jsonl";
+/// The files beside the lines that have what were none, and those of other versions of the program.
+pub const ASIDE: [&str; 2] = ["results.bad.jsonl", "results.old.jsonl"];
 
 /// One job's line.
 #[derive(Clone, Debug, Serialize, Deserialize)]
@@ -52,25 +53,41 @@ pub struct Rows {
 }
 
 impl Rows {
-    /// Opens the file, or makes it. Lines that are none of a job's, whole, are set aside in a file beside it; what they stood for is done again, and
-    /// so are jobs that failed.
+    /// Opens the file, or makes it. Lines that are none of a job's, whole, or results of another version of the program, are set aside in files beside it;
+    /// what they stood for is done again, and so are jobs that failed.
     pub fn open(path: &Path) -> anyhow::Result<Self> {
         let shown = path.display();
         let bytes = if path.exists() { std::fs::read(path).with_context(|| format!("cannot read {shown}"))? } else { Vec::new() };
         let mut rows = Vec::new();
-        let mut bad = Vec::new();
+        let (mut bad, mut old) = (Vec::new(), Vec::new());
         let mut dropped = !bytes.is_empty() && !bytes.ends_with(b"\n");
         for (number, line) in (1..).zip(bytes.split(|&byte| byte == b'\n')).filter(|(_, line)| !line.trim_ascii().is_empty()) {
             match serde_json::from_slice::<Row>(line) {
-                Ok(row) if row.result.is_some() => rows.push(row),
+                Ok(row) if row.result.is_some() && is_of_this_version(&row.key) => rows.push(row),
+                Ok(row) if row.result.is_some() => old.push(line),
                 Ok(_) => dropped = true,
                 Err(why) => bad.push((number, line, why)),
             }
         }
-        if !bad.is_empty() {
-            set_aside(path, &bad)?;
+        if let Some((number, _, why)) = bad.first() {
+            let others = if bad.len() > 1 { format!(" (and {} more)", bad.len() - 1) } else { String::new() };
+            let aside = set_aside(path, ASIDE[0], bad.iter().map(|of| of.1))?;
+            warn(&format!(
+                "warning: {shown}: line {number}{others} is no result: {} (column {}); set aside in {}, its job is done again",
+                fault(why),
+                why.column(),
+                aside.display()
+            ));
         }
-        if dropped || !bad.is_empty() {
+        if !old.is_empty() {
+            let count = if old.len() > 1 { format!("{} results are", old.len()) } else { "1 result is".to_owned() };
+            let aside = set_aside(path, ASIDE[1], old.iter().copied())?;
+            warn(&format!(
+                "note: {shown}: {count} another version's of the program; set aside in {}, their jobs are done again",
+                aside.display()
+            ));
+        }
+        if dropped || !bad.is_empty() || !old.is_empty() {
             let lines = rows.iter().map(|row| Ok(serde_json::to_string(row)? + "\n")).collect::<anyhow::Result<String>>()?;
             write_file(path, lines)?;
         }
@@ -99,28 +116,17 @@ impl Rows {
     }
 }
 
-/// Keeps lines that are no results in a file beside `path`, behind those of before, and says so.
-fn set_aside(path: &Path, bad: &[(usize, &[u8], serde_json::Error)]) -> anyhow::Result<()> {
-    let aside = path.with_file_name(ASIDE);
-    let shown = aside.display();
-    let mut bytes = if aside.exists() { std::fs::read(&aside).with_context(|| format!("cannot read {shown}"))? } else { Vec::new() };
-    for (_, line, _) in bad {
+/// Keeps lines in a file of this name beside `path`, behind those of before.
+fn set_aside<'a>(path: &Path, name: &str, lines: impl Iterator<Item = &'a [u8]>) -> anyhow::Result<PathBuf> {
+    let aside = path.with_file_name(name);
+    let mut bytes =
+        if aside.exists() { std::fs::read(&aside).with_context(|| format!("cannot read {}", aside.display()))? } else { Vec::new() };
+    for line in lines {
         bytes.extend_from_slice(line);
         bytes.push(b'\n');
     }
     write_file(&aside, &bytes)?;
-    let (number, _, why) = &bad[0];
-    let others = match bad.len() {
-        1 => String::new(),
-        n => format!(" (and {} more)", n - 1),
-    };
-    warn(&format!(
-        "warning: {}: line {number}{others} is no result: {} (column {}); set aside in {shown}, its job is done again",
-        path.display(),
-        fault(why),
-        why.column()
-    ));
-    Ok(())
+    Ok(aside)
 }
 
 const HEAD: &str = "scene,distance,eye_x,eye_y,eye_z,width,height,method,delta,leaves,machine,set,compute,cycles,milliseconds,frames_per_second,rays,hits,\

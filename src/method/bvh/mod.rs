@@ -70,6 +70,10 @@ pub static METHOD_WIDE: Registered = Registered {
     unit: Some(&[
         Operation::RaySetup,
         Operation::NodeAddress,
+        // Four boxes at once, then their order.
+        Operation::BoxTest32,
+        Operation::BoxTest32,
+        Operation::BoxTest32,
         Operation::BoxTest32,
         Operation::ChildSort,
         Operation::TriTest,

@@ -3,7 +3,7 @@
 use super::energy::dram_parts;
 use crate::num::LINE_BYTES;
 use crate::sim::dram::{ChannelCounts, DramEnergy};
-use crate::sim::energy::{EnergyCounts, EnergyModel, EnergyUnit, Operations};
+use crate::sim::energy::{EnergyCounts, EnergyModel, EnergyUnit, Operation, Operations};
 use crate::sim::machine::Machine;
 use crate::sim::replay::{Counts, Interval};
 use serde::{Deserialize, Serialize};
@@ -53,8 +53,13 @@ pub struct IntervalPower {
     pub leakage: f64,
 }
 
-/// The stretches of a run.
-pub(super) fn intervals(cumulative: &[Interval], model: &EnergyModel, machine: &Machine, units: bool) -> Vec<IntervalResult> {
+/// The stretches of a run whose traversal units have the blocks `unit`.
+pub(super) fn intervals(
+    cumulative: &[Interval],
+    model: &EnergyModel,
+    machine: &Machine,
+    unit: &'static [Operation],
+) -> Vec<IntervalResult> {
     let zero = Interval {
         end: 0,
         counts: Counts::default(),
@@ -63,10 +68,10 @@ pub(super) fn intervals(cumulative: &[Interval], model: &EnergyModel, machine: &
         operations: Operations::default(),
     };
     let begins = std::iter::once(&zero).chain(cumulative);
-    begins.zip(cumulative).map(|(begin, end)| between(begin, end, model, machine, units)).collect()
+    begins.zip(cumulative).map(|(begin, end)| between(begin, end, model, machine, unit)).collect()
 }
 
-fn between(begin: &Interval, end: &Interval, model: &EnergyModel, machine: &Machine, units: bool) -> IntervalResult {
+fn between(begin: &Interval, end: &Interval, model: &EnergyModel, machine: &Machine, unit: &'static [Operation]) -> IntervalResult {
     let added = |of: fn(&Interval) -> u64| of(end) - of(begin);
     let cycles = added(|i| i.end);
     let lines = added(|i| i.channels.reads + i.channels.writes);
@@ -79,7 +84,7 @@ fn between(begin: &Interval, end: &Interval, model: &EnergyModel, machine: &Mach
         l2_fills: added(|i| i.counts.l2.fills),
         dram_lines: lines,
         operations: end.operations.since(&begin.operations),
-        units,
+        unit,
     };
     let [before, after] = [begin, end].map(|interval| dram_parts(&interval.dram));
     let dram: Vec<_> = before.into_iter().zip(after).map(|((name, before), (_, after))| (name, after - before)).collect();

@@ -22,6 +22,7 @@ pub use setup::{MachineFacts, MethodFacts, SceneFacts, Setup, ViewFacts};
 pub use traffic::{KindResult, LevelBytes, TrafficResult};
 pub use units::{BlockResult, UnitsResult};
 
+use crate::method::Registered;
 use crate::run::Compute;
 use crate::sim::energy::{EnergyCounts, EnergyModel};
 use crate::sim::machine::MachineError;
@@ -87,17 +88,18 @@ pub struct SimResult {
 }
 
 impl SimResult {
-    /// The figures of `run`, of a method whose memory is `map`.
+    /// The figures of `run`, of `method`, whose memory is `map`.
     ///
     /// # Errors
     /// The machine's energy tables or its memory cannot be read.
-    pub fn new(setup: Setup, map: &MemoryMap, run: &Run) -> Result<Self, ResultError> {
+    pub fn new(setup: Setup, method: &Registered, map: &MemoryMap, run: &Run) -> Result<Self, ResultError> {
         let machine = &setup.machine.description;
         let model = EnergyModel::new(machine)?;
         let dram = dram_of(machine)?;
         let seconds = run.cycles as f64 / (f64::from(machine.cores.clock_mhz) * 1e6);
         let counts = &run.counts;
-        let units = setup.compute == Compute::Units;
+        // Where compute takes no time there are no units.
+        let unit = if setup.compute == Compute::Units { method.unit.unwrap_or_default() } else { &[] };
         let dram = DramResult::new(&run.channels, counts.dram_refused_cycles, &dram, seconds);
         let energy_counts = EnergyCounts {
             cycles: run.cycles,
@@ -107,7 +109,7 @@ impl SimResult {
             l2_fills: counts.l2.fills,
             dram_lines: dram.reads + dram.writes,
             operations: run.operations.clone(),
-            units,
+            unit,
         };
         Ok(Self {
             cycles: run.cycles,
@@ -128,7 +130,7 @@ impl SimResult {
                 .as_ref()
                 .map(|counts| UnitsResult::new(counts, u64::from(machine.cores.groups) * u64::from(machine.units.per_group))),
             operations: run.operations.iter().filter(|&(_, n)| n > 0).map(|(o, n)| (o.name().to_owned(), n)).collect(),
-            intervals: intervals::intervals(&run.intervals, &model, machine, units),
+            intervals: intervals::intervals(&run.intervals, &model, machine, unit),
             dram,
             setup,
         })

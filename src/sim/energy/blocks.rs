@@ -57,6 +57,7 @@ struct Scale {
 #[serde(deny_unknown_fields)]
 struct UnitHardware {
     context_registers: u32,
+    context_level_registers: u32,
     registers_per_clock_gate: u32,
 }
 
@@ -96,8 +97,8 @@ impl BlockTable {
         logic * self.scale.from_45 + cells * self.scale.from_40
     }
 
-    /// Leakage of a traversal unit, in mW.
-    pub fn unit_leakage_mw(&self, contexts: u32, one_edge: bool) -> f64 {
+    /// Leakage of a traversal unit with `blocks`, one for each entry, in mW.
+    pub fn unit_leakage_mw(&self, blocks: &[Operation], contexts: u32, one_edge: bool) -> f64 {
         let prices = &self.operations;
         let of_block = |&operation: &Operation| {
             let row = self.row(operation, one_edge);
@@ -106,20 +107,26 @@ impl BlockTable {
                 + f64::from(row.select_bits) * prices.select_32_mw / WORD;
             logic / f64::from(row.cycles)
         };
-        let logic: f64 = Operation::of_unit().iter().map(of_block).sum();
-        (logic + self.unit_registers(contexts, one_edge) * prices.register_mw) * self.scale.leakage
+        let logic: f64 = blocks.iter().map(of_block).sum();
+        (logic + self.unit_registers(blocks, contexts, one_edge) * prices.register_mw) * self.scale.leakage
     }
 
-    /// Energy of a traversal unit's clock in a cycle in which nothing is written, in pJ.
-    pub fn unit_clock_pj(&self, contexts: u32, one_edge: bool) -> f64 {
-        let gates = self.unit_registers(contexts, one_edge) / f64::from(self.unit.registers_per_clock_gate);
+    /// Energy of the clock of a traversal unit with `blocks`, one for each entry, in a cycle in which nothing is written, in pJ.
+    pub fn unit_clock_pj(&self, blocks: &[Operation], contexts: u32, one_edge: bool) -> f64 {
+        let gates = self.unit_registers(blocks, contexts, one_edge) / f64::from(self.unit.registers_per_clock_gate);
         gates * self.operations.clock_pj * self.scale.from_40
     }
 
-    /// Registers of a traversal unit.
-    fn unit_registers(&self, contexts: u32, one_edge: bool) -> f64 {
-        let blocks = Operation::of_unit().iter().map(|&operation| f64::from(self.row(operation, one_edge).registers));
-        blocks.sum::<f64>() + f64::from(contexts) * f64::from(self.unit.context_registers)
+    /// Registers of a traversal unit with `blocks`, one for each entry.
+    fn unit_registers(&self, blocks: &[Operation], contexts: u32, one_edge: bool) -> f64 {
+        let of_blocks: f64 = blocks.iter().map(|&operation| f64::from(self.row(operation, one_edge).registers)).sum();
+        of_blocks + f64::from(contexts) * f64::from(self.context_registers(blocks))
+    }
+
+    /// Registers of a ray context of a unit with `blocks`: split triangles, and the levels and codes of the stack's entries, only where it tessellates.
+    fn context_registers(&self, blocks: &[Operation]) -> u32 {
+        let levels = if blocks.contains(&Operation::Tessellate) { self.unit.context_level_registers } else { 0 };
+        self.unit.context_registers + levels
     }
 
     /// The row of a block; the table was checked to have it.

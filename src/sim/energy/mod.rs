@@ -1,6 +1,7 @@
 //! Energy: what was counted, times tables, at report time. No part of the simulator holds joules.
 //!
-//! - [`caches`]: energies of L1 and L2 per read and fill, and their leakage; several tables, of which the machine names one.
+//! - [`caches`]: energies of L1 and L2 per read and fill, and their leakage, by geometry ([`geometry`]); several tables, of which the machine names one, with
+//!   rows of their own and those of CACTI ([`cacti`]). A machine takes the rows of its own geometry, or is refused.
 //! - [`blocks`]: energies of the hardware blocks, from what each is made of, and a traversal unit's leakage and clock.
 //! - DRAM is counted by its own model, in picojoules, and handed in; a relative table has a price per line instead.
 //!
@@ -8,6 +9,8 @@
 
 pub mod blocks;
 pub mod caches;
+pub mod cacti;
+pub mod geometry;
 pub mod operation;
 mod report;
 
@@ -16,6 +19,7 @@ mod tests;
 
 pub use blocks::BlockTable;
 pub use caches::{CacheEnergy, CacheTable, EnergyUnit};
+pub use geometry::{Geometry, Level};
 pub use operation::{Operation, Operations};
 pub use report::EnergyReport;
 
@@ -41,47 +45,65 @@ pub struct EnergyCounts {
     pub dram_lines: u64,
     /// Operations of the blocks.
     pub operations: Operations,
-    /// There are traversal units, which leak and are clocked; false where compute takes no time.
-    pub units: bool,
+    /// The blocks of a traversal unit, one for each entry: they leak and are clocked for the whole frame. None where compute takes no time.
+    pub unit: &'static [Operation],
 }
 
 /// The energies of a machine.
 #[derive(Clone, Debug, PartialEq)]
 pub struct EnergyModel {
-    caches: CacheTable,
+    unit: EnergyUnit,
+    l1: CacheEnergy,
+    l2: CacheEnergy,
+    dram_line: Option<f64>,
     blocks: Option<BlockTable>,
-    l1_banks: f64,
-    l2_banks: f64,
+    groups: f64,
     units: f64,
     contexts: u32,
     one_edge: bool,
     cycles_per_second: f64,
 }
 
+/// Paths of the tables that `machine`'s energies come from, relative to its own file.
+///
+/// # Errors
+/// The table of its caches cannot be read or is broken.
+pub fn files(machine: &Machine) -> Result<Vec<String>, MachineError> {
+    let mut files = CacheTable::files(machine)?;
+    files.extend(machine.energy.blocks.as_deref().map(block_path));
+    Ok(files)
+}
+
+/// Where a table of blocks lies, relative to the machine's own file.
+fn block_path(name: &str) -> String {
+    format!("energy/{name}.toml")
+}
+
 impl EnergyModel {
     /// The energies of `machine`, from the tables that it names.
     ///
     /// # Errors
-    /// A table cannot be read, is broken, or does not go with the other.
+    /// A table cannot be read, is broken, does not go with the other, or has no energies for the geometry of the machine's caches.
     pub fn new(machine: &Machine) -> Result<Self, MachineError> {
-        let (text, file) = machine.read(&format!("energy/{}.toml", machine.energy.caches))?;
-        let caches = CacheTable::parse(&text, &file)?;
+        let caches = CacheTable::of(machine)?;
         let blocks = match &machine.energy.blocks {
             Some(name) => {
                 if caches.unit != EnergyUnit::Picojoules {
                     return Err(Breach::new("energy.blocks", "must be absent where energies are relative", name).in_file(&machine.name));
                 }
-                let (text, file) = machine.read(&format!("energy/{name}.toml"))?;
+                let (text, file) = machine.read(&block_path(name))?;
                 Some(BlockTable::parse(&text, &file)?)
             }
             None => None,
         };
         let (cores, units) = (&machine.cores, &machine.units);
         Ok(Self {
-            caches,
+            unit: caches.unit,
+            l1: caches.energies(machine, Level::L1)?,
+            l2: caches.energies(machine, Level::L2)?,
+            dram_line: caches.dram_line,
             blocks,
-            l1_banks: f64::from(cores.groups) * f64::from(machine.l1.banks),
-            l2_banks: f64::from(machine.l2.banks),
+            groups: f64::from(cores.groups),
             units: f64::from(cores.groups) * f64::from(units.per_group),
             contexts: units.contexts,
             one_edge: units.edges_per_cycle == 1,
@@ -92,25 +114,27 @@ impl EnergyModel {
     /// The energy of a frame. `dram_pj` is the memory's, by part, as its model has it; with relative energies it is not used.
     pub fn report(&self, counts: &EnergyCounts, dram_pj: &[(&'static str, f64)]) -> EnergyReport {
         let mw_to_pj = counts.cycles as f64 / self.cycles_per_second * PJ_PER_MW_S;
-        let (l1, l2) = (&self.caches.l1, &self.caches.l2);
+        let (l1, l2) = (&self.l1, &self.l2);
         let blocks = self.blocks.as_ref();
         let compute = counts.operations.iter().filter(|&(_, count)| count > 0);
         let priced = |(operation, count): (Operation, u64)| {
             blocks.map(|table| (operation.name(), count as f64 * table.operation_pj(operation, self.one_edge)))
         };
-        let units = blocks.filter(|_| counts.units);
+        let units = blocks.filter(|_| !counts.unit.is_empty());
         EnergyReport {
-            unit: self.caches.unit,
+            unit: self.unit,
             l1_read: counts.l1_reads as f64 * l1.read,
             l1_fill: counts.l1_fills as f64 * l1.fill,
-            l1_leakage: self.l1_banks * l1.leakage_mw_per_bank * mw_to_pj,
+            l1_leakage: self.groups * l1.leakage_mw() * mw_to_pj,
             l2_read: counts.l2_reads as f64 * l2.read,
             l2_fill: counts.l2_fills as f64 * l2.fill,
-            l2_leakage: self.l2_banks * l2.leakage_mw_per_bank * mw_to_pj,
+            l2_leakage: l2.leakage_mw() * mw_to_pj,
             compute: compute.filter_map(priced).collect(),
-            unit_leakage: units.map_or(0.0, |table| self.units * table.unit_leakage_mw(self.contexts, self.one_edge) * mw_to_pj),
-            unit_clock: units.map_or(0.0, |table| self.units * table.unit_clock_pj(self.contexts, self.one_edge) * counts.cycles as f64),
-            dram: match self.caches.dram_line {
+            unit_leakage: units
+                .map_or(0.0, |table| self.units * table.unit_leakage_mw(counts.unit, self.contexts, self.one_edge) * mw_to_pj),
+            unit_clock: units
+                .map_or(0.0, |table| self.units * table.unit_clock_pj(counts.unit, self.contexts, self.one_edge) * counts.cycles as f64),
+            dram: match self.dram_line {
                 Some(line) => vec![("lines", counts.dram_lines as f64 * line)],
                 None => dram_pj.to_vec(),
             },

@@ -53,7 +53,7 @@ pub enum Operation {
 }
 
 impl Operation {
-    /// Every operation; first those whose blocks a traversal unit has.
+    /// Every operation.
     pub const ALL: [Self; 15] = [
         Self::RaySetup,
         Self::NodeAddress,
@@ -71,11 +71,6 @@ impl Operation {
         Self::ChildSort,
         Self::BoundDecode,
     ];
-
-    /// Those whose blocks a traversal unit has, one of each.
-    pub fn of_unit() -> &'static [Self] {
-        &Self::ALL[..=Self::BaryMap as usize]
-    }
 
     /// Name of the block.
     pub fn name(self) -> &'static str {

@@ -34,6 +34,34 @@ pub enum MachineError {
         /// What it is.
         value: String,
     },
+    /// A line of a table of comma-separated values.
+    #[error("{file}: line {line}: {field} {rule}, but is {value}")]
+    Line {
+        /// Which file.
+        file: String,
+        /// Which line, from 1.
+        line: usize,
+        /// Which of its values.
+        field: String,
+        /// What it must be.
+        rule: String,
+        /// What it is.
+        value: String,
+    },
+    /// A cache of a geometry for which a table has no energies.
+    #[error("{machine}: {table} has no energies for {level} of {geometry}; nearest: {nearest}")]
+    NoEnergies {
+        /// The machine's name.
+        machine: String,
+        /// Which cache.
+        level: String,
+        /// Its size and shape.
+        geometry: String,
+        /// The table.
+        table: String,
+        /// The most alike of those that it has.
+        nearest: String,
+    },
     /// No file of that name comes with the program.
     #[error("no {name} comes with the program; there are: {known}")]
     NotShipped {
@@ -71,5 +99,25 @@ impl Breach {
     /// The breach in `file`.
     pub fn in_file(self, file: &str) -> MachineError {
         MachineError::Invalid { file: file.to_owned(), key: self.key, rule: self.rule, value: self.value }
+    }
+}
+
+/// A value of a line that breaks a rule, before file and line are known.
+#[derive(Debug)]
+pub(in crate::sim) struct LineFault {
+    field: String,
+    rule: String,
+    value: String,
+}
+
+impl LineFault {
+    /// `field` breaks `rule` with `value`.
+    pub fn new(field: &str, rule: impl Into<String>, value: impl ToString) -> Self {
+        Self { field: field.to_owned(), rule: rule.into(), value: value.to_string() }
+    }
+
+    /// The fault in a line of `file`, counted from 1.
+    pub fn in_line(self, file: &str, line: usize) -> MachineError {
+        MachineError::Line { file: file.to_owned(), line, field: self.field, rule: self.rule, value: self.value }
     }
 }

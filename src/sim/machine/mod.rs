@@ -14,7 +14,7 @@ mod tests;
 pub use error::MachineError;
 pub use parts::{Cache, Cores, Crossbar, Memory, Tables, Units};
 
-pub(in crate::sim) use error::Breach;
+pub(in crate::sim) use error::{Breach, LineFault};
 
 use files::Folder;
 use serde::{Deserialize, Serialize};

@@ -1,4 +1,5 @@
 use super::{Machine, MachineError};
+use crate::sim::energy;
 use crate::sim::unit::EdgesPerCycle;
 use std::fs;
 use std::path::Path;
@@ -60,8 +61,7 @@ fn all_machines_of_the_folder_are_shipped_and_load_alike() {
             let name = path.file_stem().unwrap().to_str().unwrap().to_owned();
             let (from_file, from_program) = (Machine::load(&path).unwrap(), shipped(&name));
             assert_eq!((&from_file.cores, &from_file.l1, &from_file.l2), (&from_program.cores, &from_program.l1, &from_program.l2));
-            for table in [Some(&from_file.energy.caches), from_file.energy.blocks.as_ref()].into_iter().flatten() {
-                let path = format!("energy/{table}.toml");
+            for path in energy::files(&from_file).unwrap() {
                 assert_eq!(from_file.read(&path).unwrap().0, from_program.read(&path).unwrap().0);
             }
             names.push(name);
@@ -88,7 +88,7 @@ fn every_number_bears_its_source() {
         let legend: Vec<&str> = text.lines().filter_map(|line| line.strip_prefix("# [")?.split_once(']')).map(|(mark, _)| mark).collect();
         for line in text.lines().filter(|line| !line.starts_with('#')) {
             let Some((_, value)) = line.split_once(" = ") else { continue };
-            if value.starts_with(|c: char| c.is_ascii_digit() || c == '[') {
+            if value.starts_with(|c: char| c.is_ascii_digit() || "[{".contains(c)) {
                 let comment = value.split_once("# ").unwrap_or_else(|| panic!("{file}: no source: {line}")).1;
                 let mark = comment.strip_prefix('[').and_then(|rest| rest.split_once(']')).map(|(mark, _)| mark);
                 assert!(comment.starts_with("own") || mark.is_some_and(|mark| legend.contains(&mark)), "{file}: no source: {line}");
