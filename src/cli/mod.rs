@@ -3,6 +3,7 @@
 mod args;
 mod build;
 mod cache;
+mod cast;
 mod common;
 mod compare;
 mod crack;
@@ -69,6 +70,9 @@ enum Command {
     /// Count the memory lines that a frame touches, LOD against every BVH layout, by distance
     #[command(after_long_help = words::LINES)]
     Lines(lines::Args),
+    /// Cast the rays of a file (NumPy) at a scene, with any method, and write what they meet (NumPy)
+    #[command(after_long_help = words::CAST)]
+    Cast(cast::Args),
     /// Shoot rays at edges and vertices of a closed scene and count misses and double hits
     #[command(after_long_help = words::CRACK)]
     Crack(crack::Args),
@@ -76,6 +80,7 @@ enum Command {
     #[command(after_long_help = words::STABILITY)]
     Stability(stability::Args),
     /// Write one level of a scene as an OBJ mesh
+    #[command(after_long_help = words::EXPORT)]
     Export(export::Args),
 }
 
@@ -97,6 +102,7 @@ pub fn run(cli: Cli) -> anyhow::Result<ExitCode> {
         Command::Compare(args) => compare::run(&args),
         Command::Trace(args) => trace::run(&args),
         Command::Lines(args) => lines::run(&args),
+        Command::Cast(args) => cast::run(&args),
         Command::Crack(args) => crack::run(&args),
         Command::Stability(args) => stability::run(&args),
         Command::Export(args) => export::run(&args),

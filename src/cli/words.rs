@@ -65,3 +65,29 @@ Words of the table:
   t ulp, bary ulp     worst rounding of a hit's distance (steps of 2^-32) and barycentrics (2^-31)
   pixels              worst shift of a hit on the picture of a camera
   breaches            misses, doubles, differences and overflows together: there should be none";
+
+/// Of `cast`.
+pub const CAST: &str = "\
+Columns of the rays (an array of float32 or float64, 6, 8, 10, 11 or 12 columns):
+  0 to 2              origin, in world units
+  3 to 5              direction, of any length but 0
+  6, 7                radius of the cone at the origin, and its growth per unit of length (0, 0);
+                      a pixel's cone has half a pixel's width: its level of detail follows from it
+  8, 9                nearest and farthest distance that counts (0, inf)
+  10                  1: any hit serves; 0: the closest (0)
+  11                  number of the earlier ray behind whose end this one starts, -1: none (-1);
+                      hits do not depend on it, the time on a machine does
+
+Fields of the hits (a structured array; numpy.load(FILE)['t']):
+  t                   distance from the origin in world units; inf if nothing is met
+  tree, level, node   the triangle that is met; -1 if none
+  triangle            the finest triangle there: face number of `lodray export`, counted from 0
+  barycentrics, finest_barycentrics
+                      weights of the corners of either triangle
+  point, normal       in world space; the normal is interpolated at full resolution
+  front               1: the front face is met, 0: the back";
+
+/// Of `export`.
+pub const EXPORT: &str = "\
+Faces are in the order of the scene's triangles: counted from 0, face number tree * 4^level + node is
+node `node` of base triangle `tree`. At full resolution that number is the `triangle` of `lodray cast`.";

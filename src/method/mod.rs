@@ -9,6 +9,7 @@ pub mod discrete;
 mod hit;
 pub mod knob;
 pub mod lod;
+mod normal;
 pub mod reference;
 mod registry;
 mod stack;

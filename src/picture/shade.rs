@@ -2,7 +2,6 @@
 
 use super::Frame;
 use crate::format::Scene;
-use crate::mesh::lattice;
 use crate::method::SurfaceHit;
 use crate::rays::Camera;
 use glam::{DVec3, Vec3};
@@ -43,13 +42,13 @@ pub fn shaded(frame: &Frame, scene: &Scene, camera: &Camera) -> RgbImage {
 pub fn view_cosine(scene: &Scene, camera: &Camera, index: usize, pixel: &SurfaceHit) -> f32 {
     let (x, y) = (index as u32 % camera.width, index as u32 / camera.width); // below 2^16 each
     let view = DVec3::from_array(camera.ray(x, y).direction).as_vec3();
-    normal(scene, pixel).dot(view).abs()
+    pixel.normal(scene).dot(view).abs()
 }
 
 /// Full-resolution normals as colours, (n + 1) / 2.
 pub fn normal_map(frame: &Frame, scene: &Scene) -> RgbImage {
     map(frame, |_, pixel| match pixel {
-        Some(pixel) => normal_colour(normal(scene, pixel)),
+        Some(pixel) => normal_colour(pixel.normal(scene)),
         None => Rgb([0, 0, 0]),
     })
 }
@@ -96,14 +95,6 @@ pub(super) const HOTTEST: u32 = 64;
 pub(super) fn heat(difference: f32) -> Rgb<u8> {
     let heat = 3.0 * (difference / HOTTEST as f32).min(1.0);
     bytes(Vec3::new(heat, heat - 1.0, heat - 2.0))
-}
-
-/// The shading normal of a pixel: full-resolution normals, interpolated.
-fn normal(scene: &Scene, pixel: &SurfaceHit) -> Vec3 {
-    let levels = scene.levels();
-    let corners = lattice::node(levels, levels, pixel.full_node);
-    let sum: Vec3 = (0..3).map(|k| Vec3::from_array(scene.normal_at(pixel.tree as usize, corners[k])) * pixel.full_bary[k]).sum();
-    sum.normalize_or_zero()
 }
 
 fn map(frame: &Frame, colour: impl Fn(usize, &Option<SurfaceHit>) -> Rgb<u8> + Sync) -> RgbImage {

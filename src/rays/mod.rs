@@ -2,6 +2,7 @@
 
 mod camera;
 mod cone;
+mod file;
 mod orbit;
 mod query;
 mod source;
@@ -9,6 +10,7 @@ mod space;
 
 pub use camera::{Camera, CameraError, DEFAULT_DIRECTION, DEFAULT_VIEW_ANGLE_DEGREES, MAX_PIXELS, MAX_SIDE, View};
 pub use cone::cone;
+pub use file::{RayFile, RayFileError};
 pub use query::Query;
 pub use source::{RaySource, Sight};
 pub use space::{ModelRay, ModelSpace};

@@ -16,6 +16,11 @@ pub trait RaySource: Sync {
     /// Tells `each` the number and the query of every ray of a batch, in their order.
     fn batch(&self, batch: usize, each: &mut dyn FnMut(u64, &Query));
 
+    /// Some ray starts behind the end of another.
+    fn is_ordered(&self) -> bool {
+        false
+    }
+
     /// The smallest radius, in world units, that the cone of any ray has where it is nearest to the model.
     fn least_radius(&self, space: &ModelSpace) -> f64;
 }

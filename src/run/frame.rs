@@ -4,7 +4,7 @@
 
 use crate::method::{Method, Tracer};
 use crate::rays::{RaySource, Sight};
-use crate::step::{Batch, Recorder};
+use crate::step::{Batch, Link, Recorder};
 use rayon::prelude::*;
 
 /// Batches traced at once: enough for many threads, and small beside a frame.
@@ -36,7 +36,11 @@ impl FrameRays<'_> {
 
     fn batch(&self, tracer: &mut dyn Tracer, batch: usize) -> Batch {
         let mut recorder = Recorder::default();
-        self.rays.batch(batch, &mut |_, query| {
+        let is_ordered = self.rays.is_ordered();
+        self.rays.batch(batch, &mut |number, query| {
+            if is_ordered {
+                recorder.link(Link { number, after: query.after });
+            }
             tracer.recorded(query, &mut recorder);
         });
         recorder.batch()

@@ -1,7 +1,9 @@
-//! A frame on machines: its rays traced once, their steps replayed on each.
+//! Rays run: their hits as they are, or a frame on machines: traced once, its steps replayed on each.
 
+mod cast;
 mod frame;
 mod simulate;
 
+pub use cast::{HitRow, cast, write_hits};
 pub use frame::FrameRays;
 pub use simulate::{Compute, Job, check, simulate};

@@ -10,7 +10,18 @@ pub struct Batch {
     words: Box<[StepWord]>,
     /// Where each ray's steps end.
     ends: Box<[u32]>,
+    /// Number of each ray and of the one behind whose end it starts; empty if no ray of the frame waits for another.
+    links: Box<[Link]>,
     operations: Operations,
+}
+
+/// A ray's place among all rays of a frame.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Link {
+    /// Its number.
+    pub number: u64,
+    /// The earlier ray behind whose end it starts, by its number.
+    pub after: Option<u64>,
 }
 
 impl Batch {
@@ -24,6 +35,12 @@ impl Batch {
     /// What its rays have the hardware blocks do.
     pub fn operations(&self) -> &Operations {
         &self.operations
+    }
+
+    /// Number of ray `ray`, and what it starts behind; `None` if no ray of the frame waits for another.
+    #[inline(always)]
+    pub fn link(&self, ray: usize) -> Option<Link> {
+        self.links.get(ray).copied()
     }
 
     /// Number of rays.
@@ -55,19 +72,26 @@ impl Batch {
 pub struct Recorder {
     words: Vec<StepWord>,
     ends: Vec<u32>,
+    links: Vec<Link>,
 }
 
 impl Recorder {
+    /// The next ray is `link`; told of every ray of a frame in which some wait for others, or of none.
+    pub fn link(&mut self, link: Link) {
+        self.links.push(link);
+    }
+
     /// The rays so far, in as little memory as they take.
     ///
     /// # Panics
-    /// The last ray has no [`Act::End`].
+    /// The last ray has no [`Act::End`], or some have links and others none.
     pub fn batch(self) -> Batch {
         assert_eq!(self.ends.last().map_or(0, |&end| end as usize), self.words.len(), "a ray without its end");
+        assert!(self.links.is_empty() || self.links.len() == self.ends.len(), "a ray without its link");
         let mut operations = Operations::default();
         operations.add(Operation::RaySetup, self.ends.len() as u64);
         self.words.iter().for_each(|word| word.step().count(&mut operations));
-        Batch { words: self.words.into(), ends: self.ends.into(), operations }
+        Batch { words: self.words.into(), ends: self.ends.into(), links: self.links.into(), operations }
     }
 }
 

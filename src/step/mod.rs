@@ -17,7 +17,7 @@ mod sink;
 mod word;
 
 pub use act::{Act, Fetch, MAX_FETCH_LINES, MAX_PLACES, MAX_RUN, Step, TriangleRun};
-pub use batch::{Batch, Recorder};
+pub use batch::{Batch, Link, Recorder};
 pub use lines::{LineCounter, LineSets};
 pub use section::{MAX_SECTIONS, MapError, MemoryMap, Nodes, Section, SectionId};
 pub use sink::{NoSteps, StepCounts, StepSink};

@@ -99,9 +99,23 @@ impl<S: feed::Source> FreeCores<S> {
         self.contexts[context as usize].ray = ray;
     }
 
-    /// Takes ray after ray up to the first lines that one asks for.
+    /// Takes ray after ray up to the first lines that one asks for; so do idle contexts whose rays waited for one of these.
     #[inline]
     fn go_on(&mut self, context: u32, memory: &mut Hierarchy) {
+        self.take_rays(context, memory);
+        while let Some(group) = self.feed.released() {
+            let own = self.rays_in_flight * self.per_group;
+            for context in group * own..(group + 1) * own {
+                if self.contexts[context as usize].ray.is_none() {
+                    self.next_ray(context);
+                    self.take_rays(context, memory);
+                }
+            }
+        }
+    }
+
+    #[inline]
+    fn take_rays(&mut self, context: u32, memory: &mut Hierarchy) {
         while self.contexts[context as usize].ray.is_some() && !self.asks(context, memory) {
             self.next_ray(context);
         }
@@ -122,6 +136,7 @@ impl<S: feed::Source> FreeCores<S> {
                 counts.rays += 1;
                 counts.hits += u64::from(matches!(word.step().act, Act::End { found: true, .. }));
                 self.under_way -= 1;
+                self.feed.ended(ray);
                 return false;
             }
             if self.pinned.contains(&first) {

@@ -1,8 +1,12 @@
 //! Where rays come from: batches of the functional layer, in order, taken by groups of cores as they need them.
+//!
+//! A ray that starts behind the end of another is put aside until then by the group that took it, which goes on with the next; when the other has ended, it is the
+//! first that its group takes.
 
 use super::prefetch::prefetch;
 use crate::sim::energy::Operations;
-use crate::step::{Batch, StepWord};
+use crate::step::{Batch, Link, StepWord};
+use std::collections::{HashMap, HashSet, VecDeque};
 use std::sync::Arc;
 
 /// Batches that were traced together.
@@ -34,6 +38,8 @@ pub struct Ray {
     chunk: Chunk,
     batch: u32,
     at: u32,
+    /// Its number in the batch.
+    ray: u32,
 }
 
 impl Ray {
@@ -62,12 +68,49 @@ impl Ray {
     }
 }
 
+impl Ray {
+    fn link(&self) -> Option<Link> {
+        self.chunk[self.batch as usize].link(self.ray as usize)
+    }
+}
+
+/// Rays that wait for others.
+struct Order {
+    /// Rays that have ended, where any wait for others.
+    ended: HashSet<u64>,
+    /// By the ray that they wait for: rays, and the groups that took them.
+    waiting: HashMap<u64, Vec<(u32, Ray)>>,
+    /// Rays that wait no more, by group.
+    ready: Vec<VecDeque<Ray>>,
+    released: Vec<u32>,
+}
+
+impl Order {
+    fn new(groups: u32) -> Self {
+        Self { ended: HashSet::new(), waiting: HashMap::new(), ready: vec![VecDeque::new(); groups as usize], released: Vec::new() }
+    }
+
+    /// The ray behind whose end `ray` starts, if that is still to come.
+    fn waits_for(&self, ray: &Ray) -> Option<u64> {
+        ray.link()?.after.filter(|after| !self.ended.contains(after))
+    }
+
+    fn ended(&mut self, number: u64) {
+        self.ended.insert(number);
+        for (group, ray) in self.waiting.remove(&number).unwrap_or_default() {
+            self.ready[group as usize].push_back(ray);
+            self.released.push(group);
+        }
+    }
+}
+
 /// Hands out rays: a group takes a batch at a time, its cores the rays of it.
 pub struct Feed<S> {
     source: S,
     /// The chunk that batches come from, and its next.
     open: Option<(Chunk, u32)>,
     groups: Vec<Option<Current>>,
+    order: Order,
     /// What the rays of batches taken have the hardware blocks do.
     pub operations: Operations,
 }
@@ -75,11 +118,14 @@ pub struct Feed<S> {
 impl<S: Source> Feed<S> {
     /// Nothing taken yet.
     pub fn new(source: S, groups: u32) -> Self {
-        Self { source, open: None, groups: vec![None; groups as usize], operations: Operations::default() }
+        Self { source, open: None, groups: vec![None; groups as usize], order: Order::new(groups), operations: Operations::default() }
     }
 
-    /// The next ray of `group`; `None` when all are taken.
+    /// The next ray of `group`; `None` when all are taken or wait for others.
     pub fn ray(&mut self, group: u32) -> Option<Ray> {
+        if let Some(ray) = self.order.ready[group as usize].pop_front() {
+            return Some(ray);
+        }
         loop {
             if let Some(current) = &mut self.groups[group as usize] {
                 let batch = &current.chunk[current.batch as usize];
@@ -89,12 +135,29 @@ impl<S: Source> Feed<S> {
                     current.ray += 1;
                     // The next to be taken.
                     prefetch(batch.words(), batch.end(at_ray) as usize);
-                    return Some(Ray { chunk: Arc::clone(&current.chunk), batch: current.batch, at });
+                    let ray = Ray { chunk: Arc::clone(&current.chunk), batch: current.batch, at, ray: at_ray as u32 };
+                    let Some(waits_for) = self.order.waits_for(&ray) else { return Some(ray) };
+                    self.order.waiting.entry(waits_for).or_default().push((group, ray));
+                    continue;
                 }
             }
             self.groups[group as usize] = None; // lets go of the chunk
             self.groups[group as usize] = Some(self.batch()?);
         }
+    }
+
+    /// `ray` has ended: rays that waited for it are ready. Their groups are added to [`Feed::released`].
+    #[inline(always)]
+    pub fn ended(&mut self, ray: &Ray) {
+        if let Some(link) = ray.link() {
+            self.order.ended(link.number);
+        }
+    }
+
+    /// A group that has rays again since it was last asked for, if there is one.
+    #[inline(always)]
+    pub fn released(&mut self) -> Option<u32> {
+        self.order.released.pop()
     }
 
     fn batch(&mut self) -> Option<Current> {

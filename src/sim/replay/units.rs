@@ -105,6 +105,19 @@ impl<S: feed::Source> Units<S> {
             unit.free = now + 1;
         }
         self.sleep(id, memory);
+        while let Some(group) = self.feed.released() {
+            (group * self.per_group..(group + 1) * self.per_group).for_each(|id| self.wake_at(now + 1, id, memory));
+        }
+    }
+
+    /// Enters a wake of unit `id` in cycle `next`, if none is entered before.
+    #[inline]
+    fn wake_at(&mut self, next: u64, id: u32, memory: &mut Hierarchy) {
+        let unit = &mut self.units[id as usize];
+        if unit.wake.is_none_or(|wake| wake <= memory.now() || wake > next) {
+            unit.wake = Some(next);
+            memory.wake_at(next, 2 * id);
+        }
     }
 
     /// Enters the unit's next wake.
@@ -115,11 +128,8 @@ impl<S: feed::Source> Units<S> {
         let come = unit.come.front().map(|come| come.0);
         let told = (unit.port == Port::Taken).then_some(unit.free);
         let next = unit.timing.next().into_iter().chain(come).chain(told).min().map(|next| next.max(unit.free).max(now));
-        if let Some(next) = next
-            && unit.wake.is_none_or(|wake| wake <= now || wake > next)
-        {
-            unit.wake = Some(next);
-            memory.wake_at(next, 2 * id);
+        if let Some(next) = next {
+            self.wake_at(next, id, memory);
         }
     }
 }
@@ -209,11 +219,12 @@ impl<S: feed::Source> Ports for Surroundings<'_, S> {
         }
     }
 
-    fn hit(&mut self, _: &Ray, found: bool) -> bool {
+    fn hit(&mut self, ray: &Ray, found: bool) -> bool {
         let counts = self.memory.counts_mut();
         counts.rays += 1;
         counts.hits += u64::from(found);
         *self.under_way -= 1;
+        self.feed.ended(ray);
         true
     }
 }

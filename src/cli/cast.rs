@@ -1,0 +1,53 @@
+//! `cast`: what the rays of a file meet.
+
+use super::cache::{Cache, CacheArgs};
+use super::method::PictureMethod;
+use super::output::{check_target, grouped, open, print_json, progress, remark};
+use anyhow::Context;
+use lodray::format::write_and_rename;
+use lodray::rays::{ModelSpace, RayFile, RaySource, Sight};
+use lodray::run::{cast, write_hits};
+use serde_json::json;
+use std::collections::BTreeMap;
+use std::path::PathBuf;
+use std::process::ExitCode;
+
+#[derive(clap::Args)]
+pub struct Args {
+    /// Scene file
+    scene: PathBuf,
+    /// Rays: an array of NumPy's (.npy), a row for each; the long help (--help) has the columns
+    rays: PathBuf,
+    #[command(flatten)]
+    method: PictureMethod,
+    #[command(flatten)]
+    cache: CacheArgs,
+    /// File for the hits (.npy)
+    #[arg(short, long)]
+    out: PathBuf,
+    /// Print the figures as JSON
+    #[arg(long)]
+    json: bool,
+}
+
+pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
+    anyhow::ensure!(!args.method.original, "--method original: cast rays at a scene made of it, with --method reference");
+    check_target(&args.out, &[&args.scene, &args.rays])?;
+    let scene = open(&args.scene)?;
+    let rays = RayFile::read(&args.rays)?;
+    let chosen = &args.method.chosen;
+    let (method, _) = chosen.make(&scene, &Cache::new(&args.cache)?)?;
+    let sight = Sight::new(&rays, &ModelSpace::of(&scene), chosen.delta());
+    let bar = progress(rays.batches() as u64, "casting");
+    let hits = cast(&*method, &scene, &rays, &sight, &|batches| bar.inc(batches));
+    bar.finish_and_clear();
+    write_and_rename(&args.out, |out| write_hits(&hits, out)).with_context(|| format!("cannot write {}", args.out.display()))?;
+    let found = hits.iter().filter(|hit| hit.tree >= 0).count() as u64;
+    if args.json {
+        let choices: BTreeMap<_, _> = method.choices(&sight).into_iter().collect();
+        print_json(&json!({ "method": chosen.method.name, "choices": choices, "rays": rays.rays(), "hits": found }))?;
+    } else {
+        remark(&format!("{}: {} rays, {} hit", args.out.display(), grouped(rays.rays()), grouped(found)))?;
+    }
+    Ok(ExitCode::SUCCESS)
+}

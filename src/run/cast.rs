@@ -1,0 +1,102 @@
+//! Hits of rays, as they are, for programs outside.
+
+use crate::format::Scene;
+use crate::method::{Method, SurfaceHit};
+use crate::rays::{Query, RaySource, Sight};
+use glam::DVec3;
+use npyz::WriterBuilder;
+use rayon::prelude::*;
+use std::io::{self, Write};
+
+/// Where one ray met the surface: a row of [`write_hits`].
+#[derive(Clone, Copy, Debug, PartialEq, npyz::Serialize, npyz::AutoSerialize)]
+pub struct HitRow {
+    /// Distance from the origin in world units; infinite if nothing was met. What follows is then -1, or no number.
+    pub t: f64,
+    /// Base triangle.
+    pub tree: i32,
+    /// Level of the triangle that was met.
+    pub level: i32,
+    /// Its node on that level: face `tree * 4^level + node` of `export --level`, counted from 0.
+    pub node: i32,
+    /// Finest triangle there: face `triangle` of `export`, counted from 0.
+    pub triangle: i64,
+    /// Barycentrics on the triangle that was met, weights of its corners.
+    pub barycentrics: [f32; 3],
+    /// Barycentrics on the finest triangle.
+    pub finest_barycentrics: [f32; 3],
+    /// Point in world space: origin + t * direction of length 1.
+    pub point: [f64; 3],
+    /// Shading normal, interpolated at full resolution, of length 1.
+    pub normal: [f32; 3],
+    /// 1 if the front face was met, 0 if the back.
+    pub front: i32,
+}
+
+impl HitRow {
+    /// Nothing was met.
+    const NONE: Self = Self {
+        t: f64::INFINITY,
+        tree: -1,
+        level: -1,
+        node: -1,
+        triangle: -1,
+        barycentrics: [f32::NAN; 3],
+        finest_barycentrics: [f32::NAN; 3],
+        point: [f64::NAN; 3],
+        normal: [f32::NAN; 3],
+        front: -1,
+    };
+
+    fn new(scene: &Scene, query: &Query, hit: &SurfaceHit) -> Self {
+        let direction = DVec3::from_array(query.direction);
+        // Scaled first, so that squares neither overflow nor vanish.
+        let direction = (direction / direction.abs().max_element()).normalize();
+        let point = DVec3::from_array(query.origin) + hit.distance * direction;
+        // Widths are below 31 bits.
+        let [tree, level, node] = [hit.tree, hit.level, hit.node].map(u32::cast_signed);
+        Self {
+            t: hit.distance,
+            tree,
+            level,
+            node,
+            triangle: (i64::from(hit.tree) << (2 * scene.levels())) + i64::from(hit.full_node),
+            barycentrics: hit.bary,
+            finest_barycentrics: hit.full_bary,
+            point: point.to_array(),
+            normal: hit.normal(scene).to_array(),
+            front: i32::from(hit.front),
+        }
+    }
+}
+
+/// What every ray of `source` meets, in their order, whatever the number of threads. `done` is told how many batches are done, from any thread.
+pub fn cast(method: &dyn Method, scene: &Scene, source: &dyn RaySource, sight: &Sight, done: &(dyn Fn(u64) + Sync)) -> Vec<HitRow> {
+    let rows = (0..source.batches()).into_par_iter().map_init(
+        || method.tracer(sight),
+        |tracer, batch| {
+            let mut rows = Vec::new();
+            source.batch(batch, &mut |number, query| {
+                let row = tracer.hit(query).map_or(HitRow::NONE, |hit| HitRow::new(scene, query, &hit));
+                rows.push((number, row));
+            });
+            done(1);
+            rows
+        },
+    );
+    let mut hits = vec![HitRow::NONE; source.rays() as usize]; // it has as many
+    for (number, row) in rows.collect::<Vec<_>>().into_iter().flatten() {
+        hits[number as usize] = row;
+    }
+    hits
+}
+
+/// Writes hits as a structured array of NumPy's (`.npy`), with the fields of [`HitRow`].
+///
+/// # Errors
+/// What `out` says.
+pub fn write_hits(hits: &[HitRow], out: &mut dyn Write) -> io::Result<()> {
+    let mut writer = npyz::WriteOptions::<HitRow>::new().default_dtype().shape(&[hits.len() as u64]).writer(out).begin_nd()?;
+    writer.extend(hits.iter().copied())?;
+    writer.finish()
+}
