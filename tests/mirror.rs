@@ -3,9 +3,9 @@
 use lodray::block::tri_test::{EdgeFunction, TNumerator, TriTest};
 use lodray::block::{self, Block, Timing};
 use lodray::format::{BoundData, BvhChild, ChildRef, L0Record, VertexData};
+use lodray::hardware::ports::{HitOut, MemoryAnswer, MemoryRequest, RayIn, SceneConfig};
+use lodray::hardware::{Fetch, MAX_CONTEXTS, State};
 use lodray::num::{self, Box16, Field, Layout, Wire};
-use lodray::sim::ports::{HitOut, MemoryAnswer, MemoryRequest, RayIn, SceneConfig};
-use lodray::sim::unit::{Fetch, MAX_CONTEXTS, State};
 use lodray::traverse::{self, Entry, Hit};
 use lodray_test_support::sv::{Module, Package, Shape};
 use std::collections::{BTreeMap, BTreeSet};

@@ -3,11 +3,12 @@
 use super::args::{CameraArgs, delta, whole};
 use super::output::{check_target, grouped, open, print_line, remark, write_file};
 use anyhow::Context;
+use lodray::hardware::Hardware;
 use lodray::num::Ray;
 use lodray::sim::unit::environment::RunReport;
 use lodray::sim::unit::steps::Steps;
 use lodray::sim::unit::wave::{Waves, gtkwave_save, gtkwave_states, one_ray, surfer_commands};
-use lodray::sim::unit::{SceneMemory, TraversalUnit, UnitConfig};
+use lodray::sim::unit::{SceneMemory, TraversalUnit};
 use lodray::traverse::{LodImage, ModelSpace};
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
@@ -57,7 +58,7 @@ struct Bench<'a> {
 
 impl Bench<'_> {
     fn unit(&self) -> TraversalUnit {
-        TraversalUnit::new(UnitConfig::one_context(), self.memory.config())
+        TraversalUnit::new(Hardware::one_context(), self.memory.config())
     }
 }
 

@@ -4,7 +4,7 @@ use super::Machine;
 use super::error::Breach;
 use super::parts::{Cache, Memory, Tables};
 use crate::bvh::LINE_BYTES;
-use crate::sim::unit::MAX_CONTEXTS;
+use crate::hardware::MAX_CONTEXTS;
 
 /// Groups, and cores of a group.
 const MOST_CORES: u32 = 1 << 12;

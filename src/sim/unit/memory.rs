@@ -1,7 +1,7 @@
 //! A scene's sections as one memory of 32-byte lines.
 
+use crate::hardware::ports::SceneConfig;
 use crate::num::{BoundScale, LineAddress, U};
-use crate::sim::ports::SceneConfig;
 use crate::traverse::{Kind, LodImage};
 
 /// The sections of a model, one behind the other.

@@ -1,6 +1,7 @@
 //! Small models, surfaces and rays for the tests and benchmarks of lodray, and a reader of the RTL's declarations.
 #![allow(missing_docs)] // the names say what is made
 
+pub mod hardware;
 pub mod models;
 pub mod plain;
 pub mod surfaces;

@@ -1,11 +1,12 @@
 //! Rays as steps, and what drives the timing of a unit with them: the environment of the cycle model, or events alone.
 
+use lodray::hardware::Hardware;
+use lodray::hardware::ports::{HitOut, MemoryRequest};
 use lodray::num::{Ray, U};
-use lodray::sim::ports::{HitOut, MemoryRequest};
 use lodray::sim::stream::{Batch, Layout, Recorder};
 use lodray::sim::timing::{Ports, RayCursor, Request, UnitTiming};
 use lodray::sim::unit::environment::UnitPort;
-use lodray::sim::unit::{Inputs, Outputs, SceneMemory, UnitConfig};
+use lodray::sim::unit::{Inputs, Outputs, SceneMemory};
 use lodray::traverse::{ClosestHit, Kind, LodImage, LodTraverser, Section};
 use std::collections::VecDeque;
 
@@ -43,7 +44,7 @@ pub struct Timed<'a> {
 }
 
 impl<'a> Timed<'a> {
-    pub fn new(config: UnitConfig, image: LodImage<'_>, memory: &'a SceneMemory<'a>, batch: &'a Batch, skip: bool) -> Self {
+    pub fn new(config: Hardware, image: LodImage<'_>, memory: &'a SceneMemory<'a>, batch: &'a Batch, skip: bool) -> Self {
         let sections = image.sections();
         let first = sections.iter().enumerate().map(|(k, section)| (section.kind, layout_of(&sections[..k]).lines())).collect();
         Self { unit: UnitTiming::new(config), ticks: 0, batch, memory, first, cycle: 0, skip }
