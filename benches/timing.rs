@@ -1,10 +1,11 @@
 //! Rays per second through one traversal unit of 16 contexts: its timing alone, from event to event, and the cycle model.
 
 use criterion::{Criterion, Throughput, criterion_group, criterion_main};
+use lodray::hardware::Hardware;
 use lodray::method::lod::LodImage;
 use lodray::sim::timing::UnitTiming;
 use lodray::sim::unit::environment::run;
-use lodray::sim::unit::{Latency, SceneMemory, Traffic, TraversalUnit, UnitConfig};
+use lodray::sim::unit::{Latency, SceneMemory, Traffic, TraversalUnit};
 use lodray_test_support::models::{any_rays, scene_of, terrain};
 use lodray_test_support::timing::{Smooth, steps_of};
 use std::hint::black_box;
@@ -19,7 +20,7 @@ fn rays(c: &mut Criterion) {
     let memory = SceneMemory::new(image, 0);
     let rays = any_rays(&h, RAYS, 9);
     let batch = steps_of(image, &rays);
-    let config = UnitConfig { contexts: 16, ..UnitConfig::default() };
+    let config = Hardware { contexts: 16, ..Hardware::default() };
 
     let mut group = c.benchmark_group("unit");
     group.throughput(Throughput::Elements(RAYS as u64)).sample_size(10);

@@ -5,7 +5,7 @@
 /// The winner is the first request at or after the place behind the last one taken, cyclically; place 0 after reset. `take_i` says that the resource takes
 /// the winner in this cycle; without it the choice is made anew in the next. `grant_o` is one-hot, or zero if nobody requests. Combinational.
 module arbiter #(
-  parameter int unsigned N = 4
+  parameter int unsigned N = lod_pkg::CONTEXTS
 ) (
   input  logic                          clk_i,
   input  logic                          rst_ni,
@@ -16,7 +16,7 @@ module arbiter #(
 );
 
   if (N < 1 || N > lod_pkg::MAX_CONTEXTS) begin : g_illegal
-    $error("arbiter: N must be 1 to 64");
+    $error("arbiter: N = %0d, must be 1 to %0d", N, lod_pkg::MAX_CONTEXTS);
   end
 
   // The places behind the last winner, up to the top. None of them stands for all of them.

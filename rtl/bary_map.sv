@@ -3,7 +3,7 @@
 /// Hit mapping: a point of a coarse triangle to the full-resolution triangle and barycentrics. Twin of src/block/bary_map.rs (paper sections 3.6 and 5, figures 7 and 10).
 ///
 /// `bary_step` as many times as `levels` says, one a stage; the sum of the barycentrics stays 1 exactly and no memory is read.
-/// Legal: b0 + b1 + b2 = 2^31, levels 0 to 10, node below 4^(10 - levels). Latency BARY_MAP_LATENCY = MAX_LEVELS, interval 1.
+/// Legal: b0 + b1 + b2 = 2^31, levels 0 to MAX_LEVELS, node below 4^(MAX_LEVELS - levels). Latency BARY_MAP_LATENCY = MAX_LEVELS, interval 1.
 module bary_map #(
   parameter int unsigned TAG_W = 8
 ) (
@@ -20,7 +20,7 @@ module bary_map #(
 );
 
   localparam int unsigned LEVELS = lod_pkg::MAX_LEVELS;
-  localparam int unsigned NODE_W = lod_pkg::NODE_INDEX_W;
+  localparam int unsigned NODE_W = lod_pkg::NODE_W;
   localparam int unsigned B_W = lod_pkg::BARY_W;
   localparam int unsigned STATE_W = 4 + NODE_W + 3 * B_W + TAG_W;
   if (lod_pkg::BARY_MAP_LATENCY != LEVELS) begin : g_illegal_latency
@@ -32,7 +32,7 @@ module bary_map #(
   logic [LEVELS:0][STATE_W-1:0] state;
   assign valid[0]      = valid_i;
   assign ready_o       = ready[0];
-  assign state[0]      = {in_i.levels, in_i.node, in_i.b2, in_i.b1, in_i.b0, tag_i};
+  assign state[0]      = {in_i.levels, in_i.node[NODE_W-1:0], in_i.b2, in_i.b1, in_i.b0, tag_i};
   assign valid_o       = valid[LEVELS];
   assign ready[LEVELS] = ready_i;
 
@@ -59,7 +59,12 @@ module bary_map #(
   logic [NODE_W-1:0]   node;
   logic [2:0][B_W-1:0] b;
   assign {unused_left, node, b, tag_o} = state[LEVELS];
-  assign out_o = {node, b[0], b[1], b[2]};
+  assign out_o = {lod_pkg::NODE_INDEX_W'(node), b[0], b[1], b[2]};
+
+  if (lod_pkg::NODE_INDEX_W > NODE_W) begin : g_room
+    logic unused_node;
+    assign unused_node = ^in_i.node[lod_pkg::NODE_INDEX_W-1:NODE_W];
+  end
 
 endmodule
 

@@ -9,7 +9,7 @@ module child_records (
   input  logic [255:0]                        line0_i,
   input  logic [255:0]                        line1_i,
   input  logic [3:0]                          level_i,
-  input  logic [lod_pkg::NODE_INDEX_W-1:0]    node_i,
+  input  logic [lod_pkg::NODE_W-1:0]          node_i,
   input  logic [2:0]                          count_i,
   input  logic [3:0][1:0]                     order_i,
   input  logic [3:0][lod_pkg::T_NEAR_W-1:0]   t_near_i,
@@ -43,7 +43,7 @@ module child_records (
     entry_o.t_near = t_near_i[child];
     if (tree_i) begin
       entry_o.kind  = lod_pkg::ENTRY_TREE_NODE;
-      // Level 9 at most has boxes: children of level 8 at most, node_i below 4^8.
+      // Level N - 1 at most has boxes: children of level N - 2 at most, node_i below 4^(N - 2).
       entry_o.level = level_i + 4'd1;
       entry_o.index = 28'({node_i, child});
       {entry_o.e0, entry_o.e1, entry_o.e2} = {child_bounds.e0, child_bounds.e1, child_bounds.e2};

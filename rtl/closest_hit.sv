@@ -17,7 +17,7 @@ module closest_hit (
   input  logic [lod_pkg::RAY_T_W-1:0]        t_i,
   input  logic [27:0]                        tree_i,
   input  logic [3:0]                         level_i,
-  input  logic [lod_pkg::NODE_INDEX_W-1:0]   node_i,
+  input  logic [lod_pkg::NODE_W-1:0]         node_i,
   input  logic                               front_i,
   input  logic [lod_pkg::EDGE_FUNCTION_W-1:0] v_i,
   input  logic [lod_pkg::EDGE_FUNCTION_W-1:0] w_i,
@@ -40,7 +40,7 @@ module closest_hit (
   logic [lod_pkg::FULL_ID_W-1:0]       id_q;
   logic [27:0]                         tree_q;
   logic [3:0]                          level_q;
-  logic [lod_pkg::NODE_INDEX_W-1:0]    node_q;
+  logic [lod_pkg::NODE_W-1:0]          node_q;
   logic                                front_q;
   logic [lod_pkg::EDGE_FUNCTION_W-1:0] v_q, w_q, det_q;
   logic [lod_pkg::BARY_W-1:0]          b0_q, b1_q, b2_q;
@@ -79,8 +79,8 @@ module closest_hit (
   end
 
   // The hit's level is at most N.
-  assign map_o = {levels_i - level_q, node_q, b0_q, b1_q, b2_q};
-  assign hit_o = {t_max_q, front_q, tree_q, level_q, node_q, b0_q, b1_q, b2_q, full_q};
+  assign map_o = {levels_i - level_q, lod_pkg::NODE_INDEX_W'(node_q), b0_q, b1_q, b2_q};
+  assign hit_o = {t_max_q, front_q, tree_q, level_q, lod_pkg::NODE_INDEX_W'(node_q), b0_q, b1_q, b2_q, full_q};
 
 endmodule
 

@@ -3,7 +3,7 @@
 /// Is a new hit closer than the closest so far? Twin of src/block/hit_select.rs.
 ///
 /// Smaller t first, then smaller id: the first full-resolution triangle below, tree 4^N + node 4^(N - level). Equal t and id: the same triangle, not closer.
-/// Legal: level <= levels <= 10, node below 4^level. Latency HIT_SELECT_LATENCY = 3, interval 1.
+/// Legal: level <= levels <= MAX_LEVELS, node below 4^level, best_id below 2^28 4^MAX_LEVELS. Latency HIT_SELECT_LATENCY = 3, interval 1.
 module hit_select #(
   parameter int unsigned TAG_W = 8
 ) (
@@ -19,13 +19,14 @@ module hit_select #(
   output logic [TAG_W-1:0]         tag_o
 );
 
-  localparam int unsigned ID_W = lod_pkg::FULL_ID_W;
-  localparam int unsigned NODE_W = lod_pkg::NODE_INDEX_W;
+  localparam int unsigned TREE_W = 28;
+  localparam int unsigned NODE_W = lod_pkg::NODE_W;
+  localparam int unsigned ID_W = TREE_W + NODE_W;
   if (lod_pkg::HIT_SELECT_LATENCY != 3) begin : g_illegal_latency
     $error("hit_select: lod_pkg::HIT_SELECT_LATENCY must be 3");
   end
 
-  // Stage 1: distances compared, the tree at its place: 28 + 20 bits.
+  // Stage 1: distances compared, the tree at its place.
   logic              nearer, level_with;
   logic [ID_W-1:0]   tree;
   logic [3:0]        below;
@@ -40,7 +41,7 @@ module hit_select #(
   logic [NODE_W-1:0] node_q;
   logic [TAG_W-1:0]  tag_tree;
   pipe_stage #(.W(2 + 2 * ID_W + 4 + NODE_W + TAG_W)) u_tree (
-    .clk_i, .rst_ni, .valid_i, .ready_o, .data_i({nearer, level_with, tree, in_i.best_id, below, in_i.node, tag_i}),
+    .clk_i, .rst_ni, .valid_i, .ready_o, .data_i({nearer, level_with, tree, in_i.best_id[ID_W-1:0], below, in_i.node[NODE_W-1:0], tag_i}),
     .valid_o(valid_tree), .ready_i(ready_tree), .data_o({nearer_tree, level_tree, tree_q, best_tree, below_q, node_q, tag_tree})
   );
 
@@ -59,12 +60,19 @@ module hit_select #(
   );
 
   // Stage 3: the verdict.
-  logic closer;
+  logic            closer, closer_out;
+  logic [ID_W-1:0] id_out;
   assign closer = nearer_id || (level_id && id_q < best_id);
   pipe_stage #(.W(1 + ID_W + TAG_W)) u_out (
     .clk_i, .rst_ni, .valid_i(valid_id), .ready_o(ready_id), .data_i({closer, id_q, tag_id}),
-    .valid_o, .ready_i, .data_o({out_o, tag_o})
+    .valid_o, .ready_i, .data_o({closer_out, id_out, tag_o})
   );
+  assign out_o = {closer_out, lod_pkg::FULL_ID_W'(id_out)};
+
+  if (lod_pkg::NODE_INDEX_W > NODE_W) begin : g_room
+    logic unused_room;
+    assign unused_room = ^{in_i.best_id[lod_pkg::FULL_ID_W-1:ID_W], in_i.node[lod_pkg::NODE_INDEX_W-1:NODE_W]};
+  end
 
 endmodule
 

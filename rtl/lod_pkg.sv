@@ -1,10 +1,17 @@
 `default_nettype none
 
-/// Every width and packed struct of the design: the twins of `src/num`, of the blocks' `In` and `Out` and of the unit's ports.
+/// Every width, size and packed struct of the design. Printed by `Hardware::package` in Rust (src/hardware) and never edited: `scripts/package` writes it again.
 ///
 /// A struct `foo::In` in Rust is `foo_in_t` here, field for field, the first field most significant; `[T; N]` is `logic [N-1:0][W-1:0]`, element
-/// 0 least significant (arrays of structs are kept flat, because free synthesis tools mistake them). `tests/rtl` compares the two.
+/// 0 least significant (arrays of structs are kept flat, because free synthesis tools mistake them). `tests/mirror` reads it back and compares the two.
 package lod_pkg;
+
+  // This hardware: `Hardware` in Rust, which prints this file. All that follows from these is made smaller or larger with them.
+  localparam int unsigned MAX_LEVELS = 10;      // splits N of a model
+  localparam int unsigned MAX_BVH_DEPTH = 24;   // quad-BVH nodes on a path from the root to a tree
+  localparam int unsigned CONTEXTS = 4;         // rays under way in a traversal unit, if its parameter does not say otherwise
+  localparam int unsigned CONTEXT_W = 6;        // bits of a context's number
+  localparam int unsigned EDGES_PER_CYCLE = 3;  // edge functions that tri_test evaluates in a cycle, if its parameter does not say otherwise
 
   // Widths (docs/numbers.md).
   localparam int unsigned RAY_T_W = 35;          // t in steps of 2^-32
@@ -16,7 +23,7 @@ package lod_pkg;
   localparam int unsigned BOUND_CODE_W = 10;
   localparam int unsigned BOUND_W = 33;          // |q - m| < 2^32.8
   localparam int unsigned LINE_ADDRESS_W = 36;   // 2 TiB of 32-byte lines
-  localparam int unsigned NODE_INDEX_W = 20;     // 4^10 nodes on the last level
+  localparam int unsigned NODE_INDEX_W = 20;     // of a node at the ports: 4^10 nodes on the last level that there can be
   localparam int unsigned FULL_ID_W = 48;        // 28 bits of tree, 2 of each of ten levels
   localparam int unsigned RELATIVE_W = 33;       // difference of two 32-bit coordinates
   localparam int unsigned NORMAL_W = 66;         // component of p x q: |p_i q_j| < 2^64, two of them
@@ -25,15 +32,19 @@ package lod_pkg;
   localparam int unsigned T_NUMERATOR_W = 99;    // |a| |b| |c| < 2^98.4
   localparam int unsigned SIGNED_T_NUMERATOR_W = T_NUMERATOR_W + 1;
 
-  // Limits and scales.
-  localparam int unsigned MAX_LEVELS = 10;
-  localparam int unsigned MAX_BVH_DEPTH = 24;
-  localparam int unsigned STACK_ENTRIES = 3 * (MAX_BVH_DEPTH + MAX_LEVELS) + 1;
+  // Sizes.
+  localparam int unsigned MAX_CONTEXTS = 64;    // that CONTEXT_W can number
+  localparam int unsigned STACK_ENTRIES = 103;  // 3 (MAX_BVH_DEPTH + MAX_LEVELS) + 1: each level leaves at most three siblings waiting
+  localparam int unsigned SPLIT_TRIANGLES = 9;  // of a context: one of each level that splits into nodes
+  localparam int unsigned NODE_W = 20;          // of a node within its level, where it is kept: two bits of each level
+  localparam int unsigned TREE_LINES_W = 19;    // of a tree's number of vertex lines, (4^N - 1) / 3
+
+  // Scales.
   localparam int unsigned BOX_SHIFT = 16;
   localparam int unsigned T_NEAR_TO_T_SHIFT = 18;
   localparam int unsigned S_ONE = 256;
 
-  // Cycles from an input taken to its output offered, and (where not 1) from one input taken to the next: `Block::TIMING` in Rust.
+  // Cycles from an input taken to its output offered, and (where not 1) from one input taken to the next: `Block::timing` in Rust.
   localparam int unsigned BARY_MAP_LATENCY = 10;
   localparam int unsigned BOUND_DECODE_LATENCY = 6;
   localparam int unsigned BOX_TEST_LATENCY = 8;
@@ -48,23 +59,26 @@ package lod_pkg;
   localparam int unsigned RAY_SETUP_INTERVAL = 22;
   localparam int unsigned TESSELLATE_LATENCY = 6;
   localparam int unsigned TREE_BASE_LATENCY = 5;
-  localparam int unsigned TRI_TEST_LATENCY = 18;
+  localparam int unsigned TRI_TEST_LATENCY = 18;    // with EDGES_PER_CYCLE = 3
   localparam int unsigned TRI_TEST_1_LATENCY = 20;  // with EDGES_PER_CYCLE = 1
   localparam int unsigned TRI_TEST_1_INTERVAL = 3;
   localparam int unsigned WIDEN_BOX_LATENCY = 3;
-  localparam int unsigned ENTRY_DISTANCE_LATENCY = 5;  // part of the box tests
+  localparam int unsigned CHILD_TEST_LATENCY = WIDEN_BOX_LATENCY + BOX_TEST_LATENCY + CHILD_SORT_LATENCY;
+
+  // Cycles of parts of blocks.
+  localparam int unsigned ENTRY_DISTANCE_LATENCY = 5;  // of the box tests
+  localparam int unsigned EDGE_PRODUCT_STAGES = 2;     // registers of the products of an edge function
+  localparam int unsigned EDGE_FUNCTION_LATENCY = 14;  // of tri_test
+  localparam int unsigned TRI_DECIDE_LATENCY = 3;      // of tri_test
+  localparam int unsigned CONE_TOLERANCE_LATENCY = 7;  // of lod_test
+  localparam int unsigned EDGE_OPENING_LATENCY = 9;    // of lod_test
+  localparam int unsigned MULTIPLIER_LIMB_W = 17;      // a factor of multiplier is cut into limbs of so many bits, the highest signed with up to one more
+
   // Bit k: stage k of the box tests is a `pipe_skid`. Two registers follow it.
   localparam logic [63:0] BOX_TEST_SKIDS = 64'd1 << (BOX_TEST_LATENCY - 3);
   localparam logic [63:0] BOX_TEST32_SKIDS = 64'd1 << (BOX_TEST32_LATENCY - 3);
-  localparam int unsigned EDGE_PRODUCT_STAGES = 2;  // registers of the products of an edge function
-  localparam int unsigned EDGE_FUNCTION_LATENCY = 14;  // parts of tri_test
-  localparam int unsigned TRI_DECIDE_LATENCY = 3;
-  localparam int unsigned CONE_TOLERANCE_LATENCY = 7;  // parts of lod_test
-  localparam int unsigned EDGE_OPENING_LATENCY = 9;
-  localparam int unsigned CHILD_TEST_LATENCY = WIDEN_BOX_LATENCY + BOX_TEST_LATENCY + CHILD_SORT_LATENCY;
 
-  // A factor of `multiplier` is cut into limbs of 17 bits, the highest signed with up to 18.
-  localparam int unsigned MULTIPLIER_LIMB_W = 17;
+  // Limbs of a factor of `multiplier`.
   function automatic int unsigned multiplier_limbs(input int unsigned w);
     multiplier_limbs = w <= MULTIPLIER_LIMB_W + 1 ? 1 : (w - 1 + MULTIPLIER_LIMB_W - 1) / MULTIPLIER_LIMB_W;
   endfunction
@@ -537,13 +551,7 @@ package lod_pkg;
   } memory_answer_t;
   localparam int unsigned MEMORY_ANSWER_W = 8 + 4 * 64;
 
-  // Inside the traversal unit (docs/traversal-unit.md).
-  localparam int unsigned MAX_CONTEXTS = 64;
-  localparam int unsigned CONTEXT_W = 6;
-  localparam int unsigned TRI_TAG_W = CONTEXT_W + 2;
-  localparam int unsigned DIVIDE_TAG_W = 2 + CONTEXT_W + 2;
-
-  // State of a ray context.
+  // State of a context.
   typedef enum logic [4:0] {
     IDLE        = 5'd0,
     SETUP       = 5'd1,
@@ -584,6 +592,10 @@ package lod_pkg;
   localparam logic [1:0] DIVIDE_FOR_T = 2'd0;
   localparam logic [1:0] DIVIDE_FOR_V = 2'd1;
   localparam logic [1:0] DIVIDE_FOR_W = 2'd2;
+
+  // Tags within the unit: a context's number, and two bits of a triangle's number or of a line's place; a division's has what it is for in front.
+  localparam int unsigned PLACE_TAG_W = CONTEXT_W + 2;
+  localparam int unsigned DIVIDE_TAG_W = 2 + PLACE_TAG_W;
 
   // A hit on its way to the closest.
   typedef struct packed {

@@ -3,7 +3,7 @@
 /// Address of a memory line of a record. Twin of src/block/node_address.rs.
 ///
 /// With i = (4^level - 1) / 3 + index: base + i for one-line records, base + 2i + half for two-line ones. Records outside of trees have level 0.
-/// Legal: level <= 9; result below 2^36, which the size of the sections keeps. Latency NODE_ADDRESS_LATENCY = 2, interval 1.
+/// Legal: level < MAX_LEVELS; result below 2^36, which the size of the sections keeps. Latency NODE_ADDRESS_LATENCY = 2, interval 1.
 module node_address #(
   parameter int unsigned TAG_W = 8
 ) (
@@ -20,8 +20,8 @@ module node_address #(
 );
 
   localparam int unsigned ADDRESS_W = lod_pkg::LINE_ADDRESS_W;
-  // (4^9 - 1) / 3 < 2^17, with a 28-bit index: 29 bits; doubled: 30.
-  localparam int unsigned START_W = 18;
+  // (4^(MAX_LEVELS - 1) - 1) / 3: two bits a level, the last of them 0. With a 28-bit index: 29 bits; doubled: 30.
+  localparam int unsigned START_W = 2 * (lod_pkg::MAX_LEVELS - 1);
   localparam int unsigned RECORD_W = 29;
   localparam int unsigned LINE_W = RECORD_W + 1;
   if (lod_pkg::NODE_ADDRESS_LATENCY != 2) begin : g_illegal_latency

@@ -84,8 +84,10 @@ module ray_context (
   input  logic                             hit_grant_i
 );
 
-  localparam int unsigned NODE_W = lod_pkg::NODE_INDEX_W;
+  localparam int unsigned NODE_W = lod_pkg::NODE_W;
   localparam int unsigned SPLIT_W = 6 * lod_pkg::POINT_W;
+  localparam int unsigned SPLITS = lod_pkg::SPLIT_TRIANGLES;
+  localparam int unsigned SPLIT_INDEX_W = SPLITS > 1 ? $clog2(SPLITS) : 1;
 
   // ---- Registers ----
 
@@ -131,7 +133,7 @@ module ray_context (
   assign inserted = line2_q;
 
   logic last_split;
-  // levels <= 10 and level_q < levels where this is used.
+  // levels <= MAX_LEVELS and level_q < levels where this is used.
   assign last_split = level_q + 4'd1 == scene_i.levels;
 
   // ---- Closest hit ----
@@ -140,7 +142,7 @@ module ray_context (
   logic [3:0]        hit_level;
   logic [NODE_W-1:0] hit_node, chosen_node;
 
-  // Children of level N - 1 <= 9: their nodes are below 4^10.
+  // Children of level N - 1 at most: their nodes are below 4^N.
   assign hit_level   = four_q ? level_q + 4'd1 : level_q;
   assign hit_node    = four_q ? {node_q[NODE_W-3:0], hit_number_i} : node_q;
   assign chosen_node = four_q ? {node_q[NODE_W-3:0], chosen_i.number} : node_q;
@@ -182,17 +184,17 @@ module ray_context (
   // 17 + 18 bits against 35.
   assign drop = {top.t_near, lod_pkg::T_NEAR_TO_T_SHIFT'(0)} > t_max;
 
-  // One triangle with its inserted vertices per level that splits into nodes: levels 0 to 8.
-  logic [SPLIT_W-1:0] splits_q [9];
-  logic [3:0]         parent_level;
-  lod_pkg::point_t    a0, a1, a2, m0, m1, m2;
+  // One triangle with its inserted vertices per level that splits into nodes: levels 0 to MAX_LEVELS - 2.
+  logic [SPLIT_W-1:0]       splits_q [SPLITS];
+  logic [SPLIT_INDEX_W-1:0] parent_level;
+  lod_pkg::point_t          a0, a1, a2, m0, m1, m2;
 
-  assign parent_level = entry_q.level - 4'd1;
+  assign parent_level = SPLIT_INDEX_W'(entry_q.level - 4'd1);
   assign {a0, a1, a2, m0, m1, m2} = splits_q[parent_level];
 
   always_ff @(posedge clk_i) begin
     if (morph_valid_i && !last_split) begin
-      splits_q[level_q] <= {p0_q, p1_q, p2_q, morph_i.q0, morph_i.q1, morph_i.q2};
+      splits_q[SPLIT_INDEX_W'(level_q)] <= {p0_q, p1_q, p2_q, morph_i.q0, morph_i.q1, morph_i.q2};
     end
   end
 
@@ -249,7 +251,7 @@ module ray_context (
 
   always_comb begin
     morph_o      = '0;
-    // level_q < levels here: 0 to 9.
+    // level_q < levels here.
     morph_o.grid = scene_i.levels - level_q - 4'd1;
     {morph_o.s0, morph_o.s1, morph_o.s2} = {lod_q.s0, lod_q.s1, lod_q.s2};
     {morph_o.p0, morph_o.p1, morph_o.p2} = {p0_q, p1_q, p2_q};
@@ -276,7 +278,7 @@ module ray_context (
     end
   end
 
-  assign select_o    = {scene_i.levels, known, t_max, best_id, hit_t_i, tree_q, hit_level, hit_node};
+  assign select_o    = {scene_i.levels, known, t_max, best_id, hit_t_i, tree_q, hit_level, lod_pkg::NODE_INDEX_W'(hit_node)};
 
   assign divide_request_o = state_q == lod_pkg::DIVIDE_V || state_q == lod_pkg::DIVIDE_W;
   assign divide_what_o    = (state_q == lod_pkg::DIVIDE_V) ? lod_pkg::DIVIDE_FOR_V : lod_pkg::DIVIDE_FOR_W;
@@ -362,7 +364,7 @@ module ray_context (
       if (entry_q.kind == lod_pkg::ENTRY_TREE) tree_q <= entry_q.index;
       if (entry_q.kind == lod_pkg::ENTRY_TREE_NODE) begin
         level_q <= entry_q.level;
-        // Nodes of a tree are below 4^10.
+        // Nodes of a tree are below 4^N.
         node_q  <= entry_q.index[NODE_W-1:0];
         {e0_q, e1_q, e2_q} <= {entry_q.e0, entry_q.e1, entry_q.e2};
         unique case (entry_q.index[1:0])

@@ -5,7 +5,7 @@
 /// `valid_o` and `data_o` go to the block, all zero if nobody requests (the operands are gated, not only chosen); `grant_o` tells the winner that the
 /// block takes it in this cycle. Combinational but for the arbiter's memory.
 module shared_input #(
-  parameter int unsigned N = 4,
+  parameter int unsigned N = lod_pkg::CONTEXTS,
   parameter int unsigned W = 1
 ) (
   input  logic                          clk_i,

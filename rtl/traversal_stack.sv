@@ -18,6 +18,7 @@ module traversal_stack (
   localparam int unsigned DEPTH = lod_pkg::STACK_ENTRIES;
   // 0 to DEPTH.
   localparam int unsigned LEN_W = $clog2(DEPTH + 1);
+  localparam int unsigned INDEX_W = $clog2(DEPTH);
 
   logic [lod_pkg::STACK_ENTRY_W-1:0] entries_q [DEPTH];
   logic [LEN_W-1:0] len_q;
@@ -25,7 +26,7 @@ module traversal_stack (
 
   // Never read while empty, when this wraps.
   assign top     = len_q - LEN_W'(1);
-  assign entry_o = entries_q[top];
+  assign entry_o = entries_q[INDEX_W'(top)];
   assign empty_o = len_q == '0;
 
   always_ff @(posedge clk_i) begin
@@ -36,7 +37,7 @@ module traversal_stack (
   end
 
   always_ff @(posedge clk_i) begin
-    if (push_i) entries_q[len_q] <= entry_i;
+    if (push_i) entries_q[INDEX_W'(len_q)] <= entry_i;
   end
 
   always_ff @(posedge clk_i) begin

@@ -7,8 +7,8 @@
 /// Memory: one 32-byte line a request, any latency and order of answers, at most three outstanding a context; answers are always taken.
 /// Hits: smaller t first, then smaller triangle; every field as at full resolution (paper section 3.6).
 module traversal_unit #(
-  parameter int unsigned CONTEXTS = 4,
-  parameter int unsigned EDGES_PER_CYCLE = 3
+  parameter int unsigned CONTEXTS = lod_pkg::CONTEXTS,
+  parameter int unsigned EDGES_PER_CYCLE = lod_pkg::EDGES_PER_CYCLE
 ) (
   input  logic                     clk_i,
   input  logic                     rst_ni,
@@ -31,7 +31,7 @@ module traversal_unit #(
   localparam int unsigned CONTEXT_W = lod_pkg::CONTEXT_W;
 
   if (CONTEXTS < 1 || CONTEXTS > lod_pkg::MAX_CONTEXTS) begin : g_illegal_contexts
-    $error("traversal_unit: CONTEXTS must be 1 to 64");
+    $error("traversal_unit: CONTEXTS = %0d, must be 1 to %0d", CONTEXTS, lod_pkg::MAX_CONTEXTS);
   end
   if (lod_pkg::HIT_DIVIDE_LATENCY <= lod_pkg::HIT_SELECT_LATENCY) begin : g_illegal_latency
     $error("traversal_unit: two hits would meet in hit_select");
@@ -171,7 +171,7 @@ module traversal_unit #(
   lod_pkg::node_address_in_t fetch_in;
   lod_pkg::node_address_out_t fetch_out;
   logic [CONTEXT_W-1:0] fetch_in_tag;
-  logic [7:0] fetch_tag;
+  logic [lod_pkg::PLACE_TAG_W-1:0] fetch_tag;
 
   shared_input #(.N(N), .W(FETCH_W)) u_fetch_input (
     .clk_i, .rst_ni,
@@ -179,13 +179,14 @@ module traversal_unit #(
     .valid_o(fetch_in_valid), .ready_i(fetch_in_ready), .data_o({fetch_place, fetch_in}), .index_o(fetch_in_tag)
   );
 
-  node_address #(.TAG_W(8)) u_node_address (
+  node_address #(.TAG_W(lod_pkg::PLACE_TAG_W)) u_node_address (
     .clk_i, .rst_ni,
     .valid_i(fetch_in_valid), .ready_o(fetch_in_ready), .in_i(fetch_in), .tag_i({fetch_in_tag, fetch_place}),
     .valid_o(mem_valid_o), .ready_i(mem_ready_i), .out_o(fetch_out), .tag_o(fetch_tag)
   );
 
-  assign mem_o       = {fetch_tag, fetch_out.address};
+  // The port has room for the number of any context that there can be.
+  assign mem_o       = {8'(fetch_tag), fetch_out.address};
   assign mem_ready_o = 1'b1;
 
   // ---- Triangles: the tag carries the triangle's number too ----
@@ -206,7 +207,7 @@ module traversal_unit #(
     .valid_o(tri_in_valid), .ready_i(tri_in_ready), .data_o({tri_in_number, tri_in}), .index_o(tri_in_tag)
   );
 
-  tri_test #(.TAG_W(lod_pkg::TRI_TAG_W), .EDGES_PER_CYCLE(EDGES_PER_CYCLE)) u_tri_test (
+  tri_test #(.TAG_W(lod_pkg::PLACE_TAG_W), .EDGES_PER_CYCLE(EDGES_PER_CYCLE)) u_tri_test (
     .clk_i, .rst_ni,
     .valid_i(tri_in_valid), .ready_o(tri_in_ready), .in_i(tri_in), .tag_i({tri_in_tag, tri_in_number}),
     .valid_o(tri_valid), .ready_i(1'b1), .out_o(tri_out), .tag_o({tri_owner, tri_number})
@@ -327,7 +328,7 @@ module traversal_unit #(
       .map_valid_i(map_valid && map_tag == ME), .map_i(map_out),
       .fetch_request_o(fetch_request[k]), .fetch_place_o(fetch_data[k][FETCH_W-1:FETCH_W-2]),
       .fetch_o(fetch_data[k][FETCH_W-3:0]), .fetch_grant_i(fetch_grant[k]),
-      .line_valid_i(mem_valid_i && mem_i.tag[7:2] == ME), .line_i(mem_i),
+      .line_valid_i(mem_valid_i && mem_i.tag[7:2] == 6'(ME)), .line_i(mem_i),
       .tri_request_o(tri_request[k]), .tri_number_o(tri_data[k][TRI_W-1:TRI_W-2]),
       .tri_o(tri_data[k][TRI_W-3:0]), .tri_grant_i(tri_grant[k]),
       .tri_miss_i(tri_valid && !tri_out.hit && tri_owner == ME),

@@ -4,7 +4,7 @@
 ///
 /// With V = (4^N - 1) / 3 = binary 0101..01 of N ones and G = (V - 1) / 4 (0 if N = 0): vertices + tree V and bounds + 2 tree G. So one product serves both:
 /// 2 tree G = (tree V - tree) / 2, and 0 if N = 0, where tree V is 0.
-/// Legal: levels <= 10; both results below 2^36, which the size of the sections keeps. Latency TREE_BASE_LATENCY; interval 1.
+/// Legal: levels <= MAX_LEVELS; both results below 2^36, which the size of the sections keeps. Latency TREE_BASE_LATENCY; interval 1.
 module tree_base #(
   parameter int unsigned TAG_W = 8
 ) (
@@ -22,9 +22,11 @@ module tree_base #(
 
   localparam int unsigned ADDRESS_W = lod_pkg::LINE_ADDRESS_W;
   localparam int unsigned TREE_W = 28;
-  // (4^10 - 1) / 3 < 2^19. Both factors are unsigned: one bit more as signed numbers.
-  localparam int unsigned LINES_W = 19;
+  // Both factors are unsigned: one bit more as signed numbers.
+  localparam int unsigned LINES_W = lod_pkg::TREE_LINES_W;
   localparam int unsigned PRODUCT_W = TREE_W + LINES_W;
+  // Legal results fit an address, so the upper bits of a wider product are 0.
+  localparam int unsigned OFFSET_W = PRODUCT_W < ADDRESS_W ? PRODUCT_W : ADDRESS_W;
   localparam int unsigned PRODUCT_LATENCY = lod_pkg::multiplier_latency(TREE_W + 1, LINES_W + 1);
   if (lod_pkg::TREE_BASE_LATENCY != PRODUCT_LATENCY + 2) begin : g_illegal_latency
     $error("tree_base: lod_pkg::TREE_BASE_LATENCY must be %0d", PRODUCT_LATENCY + 2);
@@ -51,25 +53,30 @@ module tree_base #(
     .valid_o(), .ready_i(ready_product), .data_o({split_q, tree_q, vertices_q, bounds_q, tag_q})
   );
 
-  // The difference is a multiple of 4; legal results fit an address, so its upper bits are 0.
+  // The difference is a multiple of 4.
   logic [PRODUCT_W-1:0] groups_twice;
   assign groups_twice = split_q ? (product[PRODUCT_W-1:0] - PRODUCT_W'(tree_q)) >> 1 : '0;
-  logic unused_upper;
-  assign unused_upper = ^{product[PRODUCT_W+1:ADDRESS_W], groups_twice[PRODUCT_W-1:ADDRESS_W]};
+  logic unused_sign;
+  assign unused_sign = ^product[PRODUCT_W+1:PRODUCT_W];
+  if (PRODUCT_W > OFFSET_W) begin : g_room
+    logic unused_upper;
+    assign unused_upper = ^{product[PRODUCT_W-1:OFFSET_W], groups_twice[PRODUCT_W-1:OFFSET_W]};
+  end
 
   logic                 valid_offset, ready_offset;
-  logic [ADDRESS_W-1:0] vertices_offset, bounds_offset, vertices_base, bounds_base;
+  logic [OFFSET_W-1:0]  vertices_offset, bounds_offset;
+  logic [ADDRESS_W-1:0] vertices_base, bounds_base;
   logic [TAG_W-1:0]     tag_offset;
-  pipe_stage #(.W(4 * ADDRESS_W + TAG_W)) u_offset (
+  pipe_stage #(.W(2 * OFFSET_W + 2 * ADDRESS_W + TAG_W)) u_offset (
     .clk_i, .rst_ni, .valid_i(valid_product), .ready_o(ready_product),
-    .data_i({product[ADDRESS_W-1:0], groups_twice[ADDRESS_W-1:0], vertices_q, bounds_q, tag_q}),
+    .data_i({product[OFFSET_W-1:0], groups_twice[OFFSET_W-1:0], vertices_q, bounds_q, tag_q}),
     .valid_o(valid_offset), .ready_i(ready_offset),
     .data_o({vertices_offset, bounds_offset, vertices_base, bounds_base, tag_offset})
   );
 
   logic [ADDRESS_W-1:0] vertices, bounds;
-  assign vertices = vertices_base + vertices_offset;
-  assign bounds   = bounds_base + bounds_offset;
+  assign vertices = vertices_base + ADDRESS_W'(vertices_offset);
+  assign bounds   = bounds_base + ADDRESS_W'(bounds_offset);
   pipe_stage #(.W(2 * ADDRESS_W + TAG_W)) u_out (
     .clk_i, .rst_ni, .valid_i(valid_offset), .ready_o(ready_offset), .data_i({vertices, bounds, tag_offset}),
     .valid_o, .ready_i, .data_o({out_o, tag_o})

@@ -11,7 +11,7 @@
 /// 56 multipliers.
 module tri_test #(
   parameter int unsigned TAG_W = 8,
-  parameter int unsigned EDGES_PER_CYCLE = 3
+  parameter int unsigned EDGES_PER_CYCLE = lod_pkg::EDGES_PER_CYCLE
 ) (
   input  logic                   clk_i,
   input  logic                   rst_ni,

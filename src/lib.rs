@@ -2,8 +2,9 @@
 //!
 //! The floors, lowest first; data runs up and never back:
 //! [`num`] (fixed point, roundings, bits), [`block`] (the hardware's combinational blocks), [`mesh`] (triangle meshes to hierarchies),
-//! [`mod@format`] (memory images and the scene file), [`bvh`] (the quad-BVH), [`traverse`] (methods built from blocks), [`render`] (frames and
-//! pictures), [`report`] (measurements), [`stability`] (stiff cases, and a hunt for counterexamples).
+//! [`mod@format`] (memory images and the scene file), [`bvh`] (the quad-BVH), [`traverse`] (methods built from blocks), [`hardware`] (its
+//! sizes as one value), [`sim`] (the cycle level), [`render`] (frames and pictures), [`report`] (measurements), [`stability`] (stiff cases,
+//! and a hunt for counterexamples).
 //! Apart from them stands [`golden`]: the plain exact traverser and the `f64` reference that everything is checked against.
 //!
 //! One ray's journey: a camera makes it in `f64`; [`traverse::ModelSpace`] moves it to the model's box and rounds it once to a
@@ -16,6 +17,7 @@ pub mod block;
 pub mod bvh;
 pub mod format;
 pub mod golden;
+pub mod hardware;
 pub mod mesh;
 pub mod method;
 pub mod num;

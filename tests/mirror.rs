@@ -3,11 +3,10 @@
 use lodray::block::tri_test::{EdgeFunction, TNumerator, TriTest};
 use lodray::block::{self, Block, Timing};
 use lodray::format::{BoundData, BvhChild, ChildRef, L0Record, VertexData};
-use lodray::method;
-use lodray::method::{Entry, Hit};
+use lodray::hardware::ports::{HitOut, MemoryAnswer, MemoryRequest, RayIn, SceneConfig};
+use lodray::hardware::{Fetch, MAX_CONTEXTS, State};
+use lodray::method::{self, Entry, Hit};
 use lodray::num::{self, Box16, Field, Layout, Wire};
-use lodray::sim::ports::{HitOut, MemoryAnswer, MemoryRequest, RayIn, SceneConfig};
-use lodray::sim::unit::{Fetch, MAX_CONTEXTS, State};
 use lodray_test_support::sv::{Module, Package, Shape};
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::PathBuf;

@@ -1,6 +1,8 @@
 //! Every module of `rtl/` is clean under Verilator's lint with all warnings on and for slang, which is stricter about names; declares all its nets;
 //! and is free of what the free synthesis tools get wrong.
 
+use lodray::hardware::Hardware;
+use lodray_test_support::hardware::OTHERS;
 use lodray_test_support::sv::donts;
 
 /// Names of the files of `rtl/`.
@@ -31,8 +33,34 @@ fn every_module_is_clean_by_itself() {
     {
         tops.push((top.to_owned(), vec![(parameter, value)]));
     }
-    let wrong: Vec<String> = tops.iter().filter_map(|(top, parameters)| tb::lint(top, parameters).err()).map(|e| e.to_string()).collect();
+    let wrong: Vec<String> =
+        tops.iter().filter_map(|(top, parameters)| tb::lint(top, parameters, &Hardware::default()).err()).map(|e| e.to_string()).collect();
     println!("{} tops linted", tops.len());
+    assert!(wrong.is_empty(), "{}", wrong.join("\n"));
+}
+
+/// Hardware at the ends of what there can be, and the others that tests build.
+fn hardwares() -> Vec<Hardware> {
+    let smallest = Hardware { levels: 2, bvh_depth: 1, contexts: 1, context_bits: 1, ..Hardware::default() };
+    // A stack of a power of two: its length has one bit more than its places.
+    let even = Hardware { levels: 5, bvh_depth: 16, contexts: 16, context_bits: 4, ..Hardware::default() };
+    OTHERS.into_iter().chain([smallest, even]).collect()
+}
+
+#[test]
+fn every_module_is_clean_in_other_hardware() {
+    let mut wrong = Vec::new();
+    let mut linted = 0;
+    for hardware in hardwares() {
+        hardware.validate().unwrap_or_else(|error| panic!("{error}"));
+        // With everything in them: all of `rtl/`.
+        for top in ["traversal_unit", "box_test32"] {
+            wrong.extend(tb::lint(top, &[], &hardware).err().map(|error| format!("{hardware:?}: {error}")));
+            linted += 1;
+        }
+        tb::elaborate(&[], &hardware).unwrap_or_else(|error| panic!("{hardware:?}: {error}"));
+    }
+    println!("{linted} tops linted");
     assert!(wrong.is_empty(), "{}", wrong.join("\n"));
 }
 
@@ -69,6 +97,6 @@ fn no_net_is_implicit() {
 fn a_strict_front_end_takes_every_module() {
     // Slang refuses what Verilator lets pass: a name before its declaration, from which other tools make a net of their own that nothing drives.
     for options in [&[][..], &["--top", "traversal_unit", "-GEDGES_PER_CYCLE=1"], &["--top", "traversal_unit", "-GCONTEXTS=1"]] {
-        tb::elaborate(options).unwrap_or_else(|error| panic!("{options:?}: {error}"));
+        tb::elaborate(options, &Hardware::default()).unwrap_or_else(|error| panic!("{options:?}: {error}"));
     }
 }

@@ -1,14 +1,14 @@
 //! The cycle model of the traversal unit against the functional traverser (same lines, same counts) and the golden one (same hits).
 
+use lodray::block::EdgesPerCycle;
 use lodray::golden::exact::Exact;
+use lodray::hardware::Hardware;
 use lodray::mesh::Hierarchy;
 use lodray::method::lod::{LodImage, LodTraverser};
 use lodray::method::{ClosestHit, Hit};
 use lodray::num::{LineAddress, Ray};
 use lodray::sim::unit::environment::{RunReport, UnitPort, run};
-use lodray::sim::unit::{
-    EdgesPerCycle, Inputs, Latency, Outputs, SceneMemory, Stall, Traffic, TraversalUnit, UnitConfig, UnitCounts, UnitError,
-};
+use lodray::sim::unit::{Inputs, Latency, Outputs, SceneMemory, Stall, Traffic, TraversalUnit, UnitCounts, UnitError};
 use lodray::step::{Step, StepCounts, StepSink};
 use lodray_test_support::models::{any_rays, ball, model, octahedron, scene_of, terrain};
 use lodray_test_support::plain::plain;
@@ -67,10 +67,10 @@ fn traffics() -> [Traffic; 5] {
     ]
 }
 
-fn configs() -> Vec<UnitConfig> {
+fn configs() -> Vec<Hardware> {
     use EdgesPerCycle::{One, Three};
     [(1, Three), (1, One), (3, One), (4, Three), (8, One), (8, Three), (64, Three)]
-        .map(|(contexts, edges_per_cycle)| UnitConfig { contexts, edges_per_cycle })
+        .map(|(contexts, edges_per_cycle)| Hardware { contexts, edges_per_cycle, ..Hardware::default() })
         .into()
 }
 
@@ -98,12 +98,7 @@ fn models() -> Vec<Model> {
 }
 
 /// Runs `rays` through the model and gives every ray's lines with the report.
-fn simulate(
-    memory: &SceneMemory<'_>,
-    config: UnitConfig,
-    traffic: &Traffic,
-    rays: &[Ray],
-) -> (RunReport, Vec<Vec<LineAddress>>, UnitCounts) {
+fn simulate(memory: &SceneMemory<'_>, config: Hardware, traffic: &Traffic, rays: &[Ray]) -> (RunReport, Vec<Vec<LineAddress>>, UnitCounts) {
     let mut unit = Noting { unit: TraversalUnit::new(config, memory.config()), lines: vec![Vec::new(); rays.len()] };
     let report = run(&mut unit, memory, traffic, rays).expect("a run without errors");
     (report, unit.lines, unit.unit.counts())
@@ -166,7 +161,7 @@ fn one_context_takes_each_ray_the_same_cycles_whatever_came_before() {
     let memory = SceneMemory::new(LodImage::of(&scene), 0);
     let rays = any_rays(&h, 50, 2);
     let traffic = Traffic::smooth(Latency::Fixed(20));
-    let config = UnitConfig { contexts: 1, ..UnitConfig::default() };
+    let config = Hardware { contexts: 1, ..Hardware::default() };
     let (together, ..) = simulate(&memory, config, &traffic, &rays);
     for (k, ray) in rays.iter().enumerate() {
         let (alone, ..) = simulate(&memory, config, &traffic, &[*ray]);
@@ -181,8 +176,7 @@ fn contexts_hide_latency() {
     let memory = SceneMemory::new(LodImage::of(&scene), 0);
     let rays = any_rays(&h, 400, 3);
     let traffic = Traffic::smooth(Latency::Fixed(100));
-    let cycles =
-        [1, 4, 16, 64].map(|contexts| simulate(&memory, UnitConfig { contexts, ..UnitConfig::default() }, &traffic, &rays).0.cycles);
+    let cycles = [1, 4, 16, 64].map(|contexts| simulate(&memory, Hardware { contexts, ..Hardware::default() }, &traffic, &rays).0.cycles);
     println!("{} rays on 1, 4, 16, 64 contexts: {cycles:?} cycles", rays.len());
     assert!(cycles[1] * 3 < cycles[0] && cycles[2] * 2 < cycles[1] && cycles[3] <= cycles[2]);
 }
@@ -210,7 +204,7 @@ fn misbehaviour_is_an_error() {
     let asleep = try_out(Outputs::default());
     assert!(matches!(&asleep, UnitError::Deadlock { contexts, .. } if contexts.contains("asleep")), "{asleep}");
     let request = |address: u64| {
-        let mem = lodray::sim::ports::MemoryRequest { tag: lodray::num::U::new(6), address: LineAddress::new(address) };
+        let mem = lodray::hardware::ports::MemoryRequest { tag: lodray::num::U::new(6), address: LineAddress::new(address) };
         Outputs { mem: Some(mem), ..Outputs::default() }
     };
     assert_eq!(try_out(request(99)), UnitError::Address { cycle: 0, address: 99, tag: 6 });

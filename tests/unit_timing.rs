@@ -1,12 +1,15 @@
 //! The timing of the traversal unit against its cycle model: every ray's cycles, every request's cycle, tag and line, and all counts are equal.
 
+use lodray::block::EdgesPerCycle;
+use lodray::hardware::Hardware;
 use lodray::mesh::Hierarchy;
 use lodray::method::lod::LodImage;
 use lodray::num::Ray;
 use lodray::sim::timing::UnitTiming;
 use lodray::sim::unit::environment::{RunReport, UnitPort, run};
-use lodray::sim::unit::{EdgesPerCycle, Inputs, Latency, Outputs, SceneMemory, Stall, Traffic, TraversalUnit, UnitConfig};
+use lodray::sim::unit::{Inputs, Latency, Outputs, SceneMemory, Stall, Traffic, TraversalUnit};
 use lodray::step::{Act, Batch, Fetch, SectionId, Step};
+use lodray_test_support::hardware::OTHERS;
 use lodray_test_support::models::{Rng, any_rays, ball, model, octahedron, scene_of, terrain};
 use lodray_test_support::timing::{Smooth, Timed, steps_of};
 
@@ -61,9 +64,9 @@ fn traffics() -> Vec<Traffic> {
     smooth.into_iter().chain(rough).collect()
 }
 
-fn configs() -> Vec<UnitConfig> {
+fn configs() -> Vec<Hardware> {
     use EdgesPerCycle::{One, Three};
-    let each = |contexts| [Three, One].map(|edges_per_cycle| UnitConfig { contexts, edges_per_cycle });
+    let each = |contexts| [Three, One].map(|edges_per_cycle| Hardware { contexts, edges_per_cycle, ..Hardware::default() });
     [1, 2, 4, 16, 64].into_iter().flat_map(each).collect()
 }
 
@@ -92,7 +95,7 @@ fn equals_the_cycle_model_in_every_cycle() {
         let memory = SceneMemory::new(image, 1000);
         let rays = any_rays(h, 60, number as u64);
         let batch = steps_of(image, &rays);
-        for config in configs() {
+        for config in configs().into_iter().chain(OTHERS).filter(|config| h.levels <= config.levels) {
             for traffic in traffics() {
                 let what = format!("{name}, {config:?}, {traffic:?}");
                 let mut model = Noting::new(TraversalUnit::new(config, memory.config()));
@@ -132,7 +135,7 @@ fn equals_the_cycle_model_from_event_to_event() {
     let batch = steps_of(image, &rays);
     let mut compared = 0;
     for (contexts, latency) in [(1, 1), (4, 10), (16, 10), (16, 200), (64, 25)] {
-        let config = UnitConfig { contexts, ..UnitConfig::default() };
+        let config = Hardware { contexts, ..Hardware::default() };
         let mut model = TraversalUnit::new(config, memory.config());
         let expected = run(&mut model, &memory, &Traffic::smooth(Latency::Fixed(latency)), &rays).expect("a run without errors");
         let mut unit = UnitTiming::new(config);
@@ -180,7 +183,7 @@ fn end(found: bool) -> Step {
 /// The cycles of one ray alone.
 fn alone(steps: Vec<Step>, latency: u64) -> u64 {
     let batch = Batch::new(&[steps]);
-    let mut unit = UnitTiming::new(UnitConfig::one_context());
+    let mut unit = UnitTiming::new(Hardware::one_context());
     let mut around = Smooth::new(&batch, latency);
     around.run(&mut unit);
     around.rays[0].1 - around.rays[0].0
@@ -249,7 +252,7 @@ fn baseline_rays_share_a_unit() {
     let rays: Vec<_> = (0..300).map(&mut ray).collect();
     let batch = Batch::new(&rays);
     for (contexts, edges_per_cycle) in [(1, EdgesPerCycle::One), (16, EdgesPerCycle::Three), (64, EdgesPerCycle::One)] {
-        let mut unit = UnitTiming::new(UnitConfig { contexts, edges_per_cycle });
+        let mut unit = UnitTiming::new(Hardware { contexts, edges_per_cycle, ..Hardware::default() });
         let mut around = Smooth::new(&batch, 17);
         let cycles = around.run(&mut unit);
         let counts = unit.counts(cycles);

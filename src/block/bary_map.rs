@@ -4,8 +4,9 @@
 //! 1/2 goes to the centre. The sum stays 1 exactly and no memory is read.
 //! Legal: b0 + b1 + b2 = 2^31, levels 0 to 10, node below 4^(10 - levels).
 
-use super::{Block, Timing};
-use crate::num::{BARY_ONE, Bary, U, wire_struct};
+use super::parts::{Parts, Registers, TAG};
+use super::{Block, Form, Timing};
+use crate::num::{BARY_ONE, Bary, MAX_LEVELS, U, Wire, wire_struct};
 
 /// Number of a node within its level: 4^10 at most.
 pub type NodeIndex = U<20>;
@@ -60,9 +61,25 @@ fn step(b: [u64; 3]) -> (u64, [u64; 3]) {
 
 impl Block for BaryMap {
     const NAME: &'static str = "bary_map";
-    const TIMING: Timing = Timing::pipelined(10);
+    const TIMING: Timing = Timing::pipelined(MAX_LEVELS);
     type In = In;
     type Out = Out;
+    /// A stage a level.
+    fn timing(form: &Form) -> Timing {
+        Timing::pipelined(form.levels)
+    }
+    fn parts(form: &Form) -> Parts {
+        let (levels, left) = (form.levels, 4);
+        let stage = Registers::stage(left + 2 * levels + 3 * Bary::WIDTH + TAG);
+        Parts {
+            products: vec![],
+            // Of each level: above a half, 1 - 2b; and one of three.
+            add_bits: levels * (3 * (Bary::WIDTH - 1) + 3 * Bary::WIDTH),
+            select_bits: levels * 2 * 3 * Bary::WIDTH,
+            // Behind the last no level is left.
+            registers: (levels * stage).without(left),
+        }
+    }
     #[inline]
     fn eval(input: &In) -> Out {
         let mut b = [input.b0.get(), input.b1.get(), input.b2.get()];

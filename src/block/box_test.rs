@@ -6,9 +6,10 @@
 //! if t_near * 2^18 > t_max (early termination). A miss gives t_near = 0.
 //! Legal: box codes in +-32767, lo <= hi; constants from [`super::ray_setup`].
 
-use super::ray_setup::{self, Axis};
-use super::{Block, Timing};
-use crate::num::{BOX_SHIFT, Box16, RayT, S, T_NEAR_TO_T_SHIFT, TNear, wire_struct};
+use super::parts::{ENTRY_DISTANCE_LATENCY, Multiplier, Parts, Registers, TAG, multiplier_latency};
+use super::ray_setup::{self, Axis, Reciprocal};
+use super::{Block, Form, Timing};
+use crate::num::{BOX_SHIFT, Box16, RayT, S, T_NEAR_TO_T_SHIFT, TNear, Wire, wire_struct};
 
 wire_struct! {
     /// Input of [`BoxTest`].
@@ -70,11 +71,66 @@ pub(super) fn finish(slabs: bool, t_near: i64, t_max: RayT) -> Out {
     Out { hit, t_near: TNear::new(if hit { t_near } else { 0 }) }
 }
 
+/// Bits of a magnitude |d|, of ceil(x / 2^16), of a distance to a near side, and of a moment.
+pub(super) const MAGNITUDE: u32 = 30;
+const CEIL: u32 = 17;
+pub(super) const NEAR: u32 = 16;
+const MOMENT: u32 = 63;
+const CODE: u32 = 16;
+/// Mantissa and shift of a reciprocal.
+pub(super) const MANTISSA: u32 = 18;
+pub(super) const RECIPROCAL: u32 = Reciprocal::WIDTH;
+/// `near` times a mantissa, shifted in five steps.
+pub(super) const ENTRY: u32 = NEAR + MANTISSA;
+pub(super) const ENTRY_STEPS: u32 = RECIPROCAL - MANTISSA;
+
+impl BoxTest {
+    /// Registers with a tag of so many bits.
+    pub(super) fn registers(tag: u32) -> Registers {
+        let limit = MOMENT - BOX_SHIFT;
+        let mirrored = Registers::stage(3 * (2 * CODE + MAGNITUDE + CEIL + RECIPROCAL + limit + 1));
+        let near = Registers::stage(3 * (NEAR + RECIPROCAL + 2 * limit) + 1);
+        let pair = Multiplier { unsigned: 1, ..Multiplier::new(CODE, MAGNITUDE + 1).near() };
+        let differences = Registers::stage(6 * (CODE + MAGNITUDE + 1));
+        let limits = Registers::line(6 * limit + 1, 1 + multiplier_latency(CODE, MAGNITUDE + 1), 0);
+        mirrored + near + entry_distance() + 12 * pair.registers() + differences + limits + verdict() + last(Self::TIMING, tag)
+    }
+}
+
+/// `entry_distance`: factors, products, shifted, the larger of two, of three.
+pub(super) fn entry_distance() -> Registers {
+    let factors = Registers::stage(3 * (NEAR + RECIPROCAL)) + Registers::stage(3 * (ENTRY + ENTRY_STEPS));
+    factors + Registers::stage(3 * TNear::WIDTH) + Registers::skid(2 * TNear::WIDTH) + Registers::stage(TNear::WIDTH)
+}
+
+/// The six planes and what lies ahead, then all of them.
+pub(super) fn verdict() -> Registers {
+    Registers::skid(6 + 1) + Registers::stage(1)
+}
+
+/// `t_max` in steps of `t_near`, and the tag, beside all stages but the last; and the last.
+pub(super) fn last(timing: Timing, tag: u32) -> Registers {
+    Registers::line(TNear::WIDTH + tag, timing.latency - 1, 1) + Registers::stage(Out::WIDTH + tag)
+}
+
 impl Block for BoxTest {
     const NAME: &'static str = "box_test";
-    const TIMING: Timing = Timing::pipelined(8);
+    const TIMING: Timing = Timing::pipelined(2 + ENTRY_DISTANCE_LATENCY + 1);
     type In = In;
     type Out = Out;
+    fn parts(_: &Form) -> Parts {
+        let limit = MOMENT - BOX_SHIFT;
+        let (mirror, ends) = (6 * CODE, TNear::WIDTH);
+        let entry = 3 * ENTRY * ENTRY_STEPS + 5 * TNear::WIDTH;
+        Parts {
+            // Planes, entry distances.
+            products: vec![[12, CODE, MAGNITUDE + 1], [3, NEAR, MANTISSA]],
+            // Mirror, near and far sides, limits turned, planes, the largest of three, the end.
+            add_bits: mirror + 3 * (CEIL + 1) + 3 * CEIL + 3 * limit + 6 * 2 * (CODE + MAGNITUDE + 1) + 2 * TNear::WIDTH + ends,
+            select_bits: mirror + 3 * NEAR + 3 * limit + entry + ends,
+            registers: Self::registers(TAG),
+        }
+    }
     #[inline(always)]
     fn eval(input: &In) -> Out {
         let (r, b) = (&input.ray, &input.bounds);

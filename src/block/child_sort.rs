@@ -3,8 +3,9 @@
 //! Hit children first, nearer before farther, equal distances by child number; `count` of them are hit. The rest of `order` holds the missed
 //! children, by number. Legal: anything.
 
-use super::{Block, Timing};
-use crate::num::{TNear, U, wire_struct};
+use super::parts::{Parts, Registers, TAG};
+use super::{Block, Form, Timing};
+use crate::num::{TNear, U, Wire, wire_struct};
 
 wire_struct! {
     /// Input of [`ChildSort`].
@@ -29,11 +30,27 @@ wire_struct! {
 /// The block.
 pub struct ChildSort;
 
+/// Missed or not, distance, number.
+const KEY: u32 = 1 + TNear::WIDTH + 2;
+
+impl ChildSort {
+    /// Registers with a tag of so many bits: three steps of the network, each with the count.
+    pub(super) fn registers(tag: u32) -> Registers {
+        let step = Registers::stage(3 + 4 * KEY + tag);
+        // The first step knows a bit of each number; the second compares the middle two, so that the others are numbers alone; the last gives numbers.
+        step.without(4) + step.without(2 * (KEY - 2)) + step.without(4 * (KEY - 2))
+    }
+}
+
 impl Block for ChildSort {
     const NAME: &'static str = "child_sort";
     const TIMING: Timing = Timing::pipelined(3);
     type In = In;
     type Out = Out;
+    fn parts(_: &Form) -> Parts {
+        // Five comparators, and the count.
+        Parts { products: vec![], add_bits: 5 * KEY + 9, select_bits: 5 * 2 * KEY, registers: Self::registers(TAG) }
+    }
     #[inline(always)]
     fn eval(input: &In) -> Out {
         // Key: missed, t_near (17 bits), number (2): all different.

@@ -6,11 +6,12 @@
 
 use super::box_test::{self, BoxTest};
 use super::child_sort::{self, ChildSort};
+use super::parts::{Parts, Registers, TAG};
 use super::ray_setup;
 use super::tessellate::child_triangle;
 use super::widen_box::{self, WidenBox};
-use super::{Block, Timing};
-use crate::num::{Box16, Point, RayT, TNear, U, wire_struct};
+use super::{Block, Form, Timing};
+use crate::num::{Box16, Point, RayT, T_NEAR_TO_T_SHIFT, TNear, U, Wire, wire_struct};
 
 wire_struct! {
     /// Input of [`ChildTest`].
@@ -69,6 +70,24 @@ impl Block for ChildTest {
     const TIMING: Timing = Timing::pipelined(WidenBox::TIMING.latency + BoxTest::TIMING.latency + ChildSort::TIMING.latency);
     type In = In;
     type Out = Out;
+    fn parts(form: &Form) -> Parts {
+        let (widen, test, sort) = (WidenBox::parts(form), BoxTest::parts(form), ChildSort::parts(form));
+        let (widened, tested) = (WidenBox::TIMING.latency, BoxTest::TIMING.latency);
+        // The ray beside the widening: 16-bit boxes need neither the origins nor what t_near leaves of t_max.
+        let unread = 3 * (Point::WIDTH / 3) + T_NEAR_TO_T_SHIFT;
+        let ray = Registers::line(ray_setup::Out::WIDTH + RayT::WIDTH + 4, widened, 1).without((widened + 1) * unread);
+        // A tag of one bit for which there is no use, in each of their registers.
+        let child = WidenBox::registers(1).without(widened + 1) + BoxTest::registers(1).without(tested + 1);
+        let present = Registers::line(4, tested, 1);
+        let tag = Registers::line(TAG, Self::TIMING.latency, 2);
+        Parts {
+            products: test.products.iter().map(|&[count, a, b]| [4 * count, a, b]).collect(),
+            add_bits: 4 * (widen.add_bits + test.add_bits) + sort.add_bits,
+            select_bits: 4 * (widen.select_bits + test.select_bits) + sort.select_bits,
+            // The distances pass through the sort as its tag.
+            registers: ray + 4 * child + present + ChildSort::registers(4 * TNear::WIDTH) + tag,
+        }
+    }
     #[inline(always)]
     fn eval(i: &In) -> Out {
         let mut tests = child_sort::In::default();

@@ -3,9 +3,10 @@
 //! With numerator t_num and denominator det it gives t; with v or w it gives a barycentric coordinate in steps of 2^-32, of which the
 //! last bit is dropped (floor of a floor). Legal: denominator > 0.
 
+use super::parts::{Parts, Registers, TAG};
 use super::tri_test::{EdgeFunction, TNumerator};
-use super::{Block, Timing};
-use crate::num::{RayT, wire_struct};
+use super::{Block, Form, Timing};
+use crate::num::{RayT, Wire, wire_struct};
 
 wire_struct! {
     /// Input of [`HitDivide`].
@@ -33,6 +34,12 @@ impl Block for HitDivide {
     const TIMING: Timing = Timing { latency: 36, interval: 36 };
     type In = In;
     type Out = Out;
+    fn parts(_: &Form) -> Parts {
+        let (bits, remainder) = (RayT::WIDTH, EdgeFunction::WIDTH + 3);
+        // Busy, saturated, the count of steps; the divisor is 8 times the denominator.
+        let registers = Registers::bits(2 + (bits + 1).next_power_of_two().ilog2() + 2 * remainder + bits + TAG).without(3);
+        Parts { products: vec![], add_bits: bits * (remainder + 1) + EdgeFunction::WIDTH, select_bits: bits * remainder, registers }
+    }
     #[inline(always)]
     fn eval(input: &In) -> Out {
         let (n, d) = (input.numerator.get(), input.denominator.get());

@@ -5,8 +5,9 @@
 //! Legal: level <= levels <= 10, node below 4^level.
 
 use super::bary_map::NodeIndex;
-use super::{Block, Timing};
-use crate::num::{RayT, U, wire_struct};
+use super::parts::{Parts, Registers, TAG};
+use super::{Block, Form, Timing};
+use crate::num::{RayT, U, Wire, wire_struct};
 
 /// Number of a full-resolution triangle: 28 bits of tree, 2 of each of ten levels.
 pub type FullId = U<48>;
@@ -51,6 +52,14 @@ impl Block for HitSelect {
     const TIMING: Timing = Timing::pipelined(3);
     type In = In;
     type Out = Out;
+    fn parts(form: &Form) -> Parts {
+        let node = 2 * form.levels;
+        let (id, level) = (28 + node, 4);
+        let tree = Registers::stage(2 + 2 * id + level + node + TAG);
+        let registers = tree + Registers::stage(2 + 2 * id + TAG) + Registers::stage(1 + id + TAG);
+        // t twice, levels, ids; tree and node at their places.
+        Parts { products: vec![], add_bits: 2 * RayT::WIDTH + level + id, select_bits: level * (id + node), registers }
+    }
     #[inline(always)]
     fn eval(i: &In) -> Out {
         let levels = i.levels.get();

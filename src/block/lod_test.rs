@@ -7,8 +7,12 @@
 //! Legal: points and origin with |v| < 2^31, |d| <= 2^30 and each |d_i| < 2^30.
 
 use super::bound_decode::{self, Bound, BoundDecode};
-use super::{Block, Timing, dot};
-use crate::num::{BoundCode, BoundScale, Cone, EdgeState, Point, Ray, S, S_ONE, U, wire_struct};
+use super::parts::{
+    COMPONENT, CONE_TOLERANCE_LATENCY, DISTANCE, EDGE_OPENING_LATENCY, Multiplier, Parts, RELATIVE, Registers, TAG, TOLERANCE, dot_product,
+    dot_product_latency, multiplier_latency,
+};
+use super::{Block, Form, Timing, dot};
+use crate::num::{BoundCode, BoundScale, Cone, Direction, EdgeState, Point, Ray, S, S_ONE, U, Wire, wire_struct};
 
 wire_struct! {
     /// Input of [`LodTest`].
@@ -88,11 +92,61 @@ fn limits(input: &In, code: BoundCode, a: S<64>, b: S<64>) -> (Bound, U<34>) {
     (h, tolerated(&input.ray.cone, a.min(b).get()))
 }
 
+/// Distances along the ray, and behind how many stages the nearer ends and the limits of the edges stand.
+const ALONG: u32 = RELATIVE + COMPONENT;
+const NEARER: u32 = 1 + dot_product_latency(RELATIVE, COMPONENT) + 1;
+const LIMITS: u32 = NEARER + CONE_TOLERANCE_LATENCY;
+/// Bits of a cone's slope and shift, and of offset + l slope.
+const SLOPE: u32 = 18;
+const SHIFT: u32 = 6;
+const SUM: u32 = 55;
+/// Bits of s below 1: steps of a division.
+const BITS: u32 = EdgeState::WIDTH - 1;
+
+/// `cone_tolerance`: the product with the rest beside it, the sum, the shift in two steps, the clamp.
+fn cone_tolerance() -> Registers {
+    let product = Multiplier::new(DISTANCE, SLOPE).near();
+    let beside = Registers::line(SUM + SHIFT, 1 + multiplier_latency(DISTANCE, SLOPE), 0);
+    let shift = Registers::stage(SUM + SHIFT) + Registers::stage(SUM + 4) + Registers::stage(SUM);
+    product.registers() + beside + shift + Registers::stage(TOLERANCE)
+}
+
+/// `edge_opening`: the comparison, and the steps.
+fn edge_opening() -> Registers {
+    let state = 2 + 2 * TOLERANCE + BITS;
+    // Quotient bits to come are 0; behind the last step divisor and remainder have no use.
+    let to_come = 2 * BITS + BITS * (BITS - 1) / 2;
+    (Registers::skid(state) + Registers::line(state, BITS, 0)).without(to_come + 2 * TOLERANCE)
+}
+
 impl Block for LodTest {
     const NAME: &'static str = "lod_test";
-    const TIMING: Timing = Timing::pipelined(25);
+    const TIMING: Timing = Timing::pipelined(LIMITS + EDGE_OPENING_LATENCY + 1);
     type In = In;
     type Out = Out;
+    fn parts(_: &Form) -> Parts {
+        let (decode, decode_selects) = BoundDecode::arithmetic();
+        let mut products = vec![[9, RELATIVE, COMPONENT], [3, DISTANCE, SLOPE]];
+        products.extend(decode.iter().map(|&[count, a, b]| [3 * count, a, b]));
+        let corners = Registers::stage(9 * RELATIVE + Direction::WIDTH);
+        // The fraction of a distance is dropped.
+        let along = dot_product(RELATIVE, COMPONENT, ALONG, 1, ALONG - DISTANCE);
+        let nearer = Registers::skid(3 * DISTANCE);
+        let cone = Registers::line(Cone::WIDTH, NEARER, 2);
+        let codes = Registers::line(3 * BoundCode::WIDTH + BoundScale::WIDTH, LIMITS - BoundDecode::TIMING.latency, 2);
+        // A tag of one bit for which there is no use, in each of its registers.
+        let bound = BoundDecode::registers(1).without(BoundDecode::TIMING.latency);
+        let edges = 3 * (cone_tolerance() + bound + edge_opening());
+        let ends = Registers::line(TAG, Self::TIMING.latency - 1, 3) + Registers::stage(Out::WIDTH + TAG);
+        Parts {
+            products,
+            // Corners, sums along the ray, nearer ends, sums of the cone, openings, divisions.
+            add_bits: 9 * RELATIVE + 6 * ALONG + 3 * DISTANCE + 6 * SUM + 9 * TOLERANCE + 3 * BITS * (TOLERANCE + 1),
+            // Nearer ends, shifts of cone and bound, clamps, divisions, ends of s.
+            select_bits: 3 * (DISTANCE + SUM * SHIFT + decode_selects + TOLERANCE + BITS * TOLERANCE + EdgeState::WIDTH),
+            registers: corners + 3 * along + nearer + cone + codes + edges + ends,
+        }
+    }
     #[inline(always)]
     fn eval(input: &In) -> Out {
         let (l0, l1, l2) = (along(&input.ray, input.p0), along(&input.ray, input.p1), along(&input.ray, input.p2));

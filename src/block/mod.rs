@@ -15,6 +15,7 @@ pub mod hit_divide;
 pub mod hit_select;
 pub mod lod_test;
 pub mod node_address;
+pub mod parts;
 pub mod ray_setup;
 pub mod tessellate;
 pub mod tree_base;
@@ -22,6 +23,7 @@ pub mod tri_test;
 pub mod widen_box;
 
 use crate::num::Wire;
+use parts::Parts;
 
 /// Cycles of a block's pipeline in `rtl/`, with nothing in its way.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -39,16 +41,41 @@ impl Timing {
     }
 }
 
+/// Edge functions that the triangle test evaluates in a cycle.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum EdgesPerCycle {
+    /// All three of a triangle.
+    #[default]
+    Three,
+    /// One.
+    One,
+}
+
+/// What blocks depend on of the hardware that they are built for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Form {
+    /// The most 1-to-4 splits of a model.
+    pub levels: u32,
+    /// Edge functions of the triangle test.
+    pub edges_per_cycle: EdgesPerCycle,
+}
+
 /// A combinational block: what it computes, and the cycles its pipeline takes for it.
 pub trait Block {
     /// Its name: the file here, the file and module in `rtl/`.
     const NAME: &'static str;
-    /// Cycles of its RTL; where the RTL has a parameter that changes them, for its default.
+    /// Cycles of its RTL as it stands in `rtl/`: for [`MAX_LEVELS`](crate::num::MAX_LEVELS), and three edges per cycle.
     const TIMING: Timing;
     /// What goes in.
     type In: Wire;
     /// What comes out.
     type Out: Wire;
+    /// Cycles of its RTL in hardware of another form.
+    fn timing(_form: &Form) -> Timing {
+        Self::TIMING
+    }
+    /// What its RTL is made of in hardware of this form, with a tag of [`TAG`](parts::TAG) bits.
+    fn parts(form: &Form) -> Parts;
     /// The function, exact and total over the legal inputs stated at the head of the block's file.
     fn eval(input: &Self::In) -> Self::Out;
 }

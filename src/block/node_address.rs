@@ -3,8 +3,9 @@
 //! With i = (4^level - 1) / 3 + index: base + i for one-line records, base + 2i + half for two-line ones. Records outside of trees have level 0.
 //! Legal: level <= 9; result below 2^36, which the size of the sections keeps.
 
-use super::{Block, Timing};
-use crate::num::{LineAddress, U, wire_struct};
+use super::parts::{Parts, Registers, TAG};
+use super::{Block, Form, Timing};
+use crate::num::{LineAddress, U, Wire, wire_struct};
 
 wire_struct! {
     /// Input of [`NodeAddress`].
@@ -38,6 +39,13 @@ impl Block for NodeAddress {
     const TIMING: Timing = Timing::pipelined(2);
     type In = In;
     type Out = Out;
+    fn parts(_: &Form) -> Parts {
+        // A record's number: a level's start below 2^18 and 28 bits of index; of two-line records twice that.
+        const RECORD: u32 = 29;
+        let (line, address) = (RECORD + 1, LineAddress::WIDTH);
+        let registers = Registers::stage(line + address + TAG) + Registers::stage(address + TAG);
+        Parts { products: vec![], add_bits: RECORD + address, select_bits: line, registers }
+    }
     #[inline(always)]
     fn eval(i: &In) -> Out {
         // (4^n - 1) / 3 = binary 0101..01 with n ones: below 2^17 for n <= 9.

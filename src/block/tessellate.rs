@@ -5,8 +5,9 @@
 //! rounding depends on which triangle asks.
 //! Legal: corners multiples of 2^(grid+1), q of 2^grid, grid = N - level - 1 (0 to 9), |v| < 2^31, s from 0 to 256.
 
-use super::{Block, Timing};
-use crate::num::{EdgeState, Point, S, U, Vec3, wire_struct};
+use super::parts::{Multiplier, Parts, RELATIVE, Registers, TAG, multiplier_latency};
+use super::{Block, Form, Timing};
+use crate::num::{EdgeState, Point, S, U, Vec3, Wire, wire_struct};
 
 wire_struct! {
     /// Input of [`Tessellate`].
@@ -74,6 +75,21 @@ impl Block for Tessellate {
     const TIMING: Timing = Timing::pipelined(6);
     type In = In;
     type Out = Out;
+    fn parts(_: &Form) -> Parts {
+        // A coordinate, its difference from the midpoint, s as a signed number, and the fraction of the product that is dropped.
+        let (w, s, grid, fraction) = (RELATIVE - 1, EdgeState::WIDTH + 1, 4, 8);
+        let product = Multiplier { low: fraction, high: fraction + w, ..Multiplier::new(RELATIVE, s) };
+        let ahead = Registers::stage(2 * w + s - 1 + grid) + Registers::stage(RELATIVE + w + s - 1 + grid);
+        let beside = Registers::line(w + grid, multiplier_latency(RELATIVE, s), 0);
+        let coordinate = ahead + product.registers() + beside + Registers::stage(2 * w) + Registers::stage(w);
+        Parts {
+            products: vec![[9, RELATIVE, s]],
+            // Midpoint, difference, sum; the grid.
+            add_bits: 9 * (RELATIVE + RELATIVE + w),
+            select_bits: 9 * w,
+            registers: 9 * coordinate + Registers::line(TAG, Self::TIMING.latency, 0),
+        }
+    }
     #[inline(always)]
     fn eval(i: &In) -> Out {
         Out {

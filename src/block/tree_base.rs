@@ -4,8 +4,9 @@
 //! vertices + tree V and bounds + 2 tree G.
 //! Legal: levels <= 10; both results below 2^36, which the size of the sections keeps.
 
-use super::{Block, Timing};
-use crate::num::{LineAddress, U, wire_struct};
+use super::parts::{Multiplier, Parts, Registers, TAG, multiplier_latency};
+use super::{Block, Form, Timing};
+use crate::num::{LineAddress, MAX_LEVELS, U, Wire, wire_struct};
 
 wire_struct! {
     /// Input of [`TreeBase`].
@@ -34,11 +35,45 @@ wire_struct! {
 /// The block.
 pub struct TreeBase;
 
+/// Bits of a tree's number.
+const TREE: u32 = 28;
+
+impl TreeBase {
+    /// Bits of (4^N - 1) / 3.
+    const fn lines(levels: u32) -> u32 {
+        2 * levels - 1
+    }
+
+    /// Cycles of the product of tree and lines, both one bit wider as signed numbers.
+    const fn product_latency(levels: u32) -> u32 {
+        multiplier_latency(TREE + 1, Self::lines(levels) + 1)
+    }
+
+    /// The product, the difference and the sums.
+    const fn of(levels: u32) -> Timing {
+        Timing::pipelined(Self::product_latency(levels) + 2)
+    }
+}
+
 impl Block for TreeBase {
     const NAME: &'static str = "tree_base";
-    const TIMING: Timing = Timing::pipelined(5);
+    const TIMING: Timing = Self::of(MAX_LEVELS);
     type In = In;
     type Out = Out;
+    fn timing(form: &Form) -> Timing {
+        Self::of(form.levels)
+    }
+    fn parts(form: &Form) -> Parts {
+        let (lines, address) = (Self::lines(form.levels), LineAddress::WIDTH);
+        let product = TREE + lines;
+        let offset = product.min(address);
+        // Half the difference is read as far as the product itself.
+        let multiplier = Multiplier { high: product.min(address + 1), ..Multiplier::new(TREE + 1, lines + 1) };
+        let beside = Registers::line(1 + TREE + 2 * address + TAG, Self::product_latency(form.levels), 0);
+        let ends = Registers::stage(2 * offset + 2 * address + TAG) + Registers::stage(2 * address + TAG);
+        let registers = multiplier.registers() + beside + ends;
+        Parts { products: vec![[1, TREE + 1, lines + 1]], add_bits: product + 2 * address, select_bits: product, registers }
+    }
     #[inline(always)]
     fn eval(i: &In) -> Out {
         // (4^N - 1) / 3 = binary 0101..01 with N ones; 4^(N-1) - 1 over 3 is the same number without its lowest one, over 4.

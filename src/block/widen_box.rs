@@ -4,7 +4,8 @@
 //! convex combination of the morphed corners and of stored vertices, which lie in the stored box. Without morphing it changes nothing.
 //! Legal: |p| <= `COORD_LIMIT`, so that the ceiling fits 16 bits.
 
-use super::{Block, Timing};
+use super::parts::{Parts, Registers, TAG};
+use super::{Block, Form, Timing};
 use crate::num::{BOX_SHIFT, Box16, Point, S, Vec3, wire_struct};
 
 wire_struct! {
@@ -45,11 +46,25 @@ fn upper(hi: S<16>, a: S<32>, b: S<32>, c: S<32>) -> S<16> {
     S::new(i64::from(hi.narrow().max((a.narrow().max(b.narrow()).max(c.narrow()) + round_up) >> BOX_SHIFT)))
 }
 
+/// Bits of a box code.
+const CODE: u32 = 16;
+
+impl WidenBox {
+    /// Registers with a tag of so many bits: codes of both sides and of three corners, pairs of them, the union.
+    pub(super) fn registers(tag: u32) -> Registers {
+        Registers::stage(3 * 8 * CODE + tag) + Registers::stage(3 * 4 * CODE + tag) + Registers::skid(3 * 2 * CODE + tag)
+    }
+}
+
 impl Block for WidenBox {
     const NAME: &'static str = "widen_box";
     const TIMING: Timing = Timing::pipelined(3);
     type In = In;
     type Out = Out;
+    fn parts(_: &Form) -> Parts {
+        // Of each axis three ceilings, and six minima or maxima.
+        Parts { products: vec![], add_bits: 3 * (3 + 6) * CODE, select_bits: 3 * 6 * CODE, registers: Self::registers(TAG) }
+    }
     #[inline(always)]
     fn eval(i: &In) -> Out {
         let (lo, hi, a, b, c) = (i.bounds.lo, i.bounds.hi, i.p0, i.p1, i.p2);

@@ -3,6 +3,7 @@
 use super::args::{CameraArgs, whole};
 use super::output::{check_target, grouped, open, print_line, remark, write_file};
 use anyhow::Context;
+use lodray::hardware::Hardware;
 use lodray::method::knob::quality;
 use lodray::method::lod::LodImage;
 use lodray::num::Ray;
@@ -10,7 +11,7 @@ use lodray::rays::ModelSpace;
 use lodray::sim::unit::environment::RunReport;
 use lodray::sim::unit::steps::Steps;
 use lodray::sim::unit::wave::{Waves, gtkwave_save, gtkwave_states, one_ray, surfer_commands};
-use lodray::sim::unit::{SceneMemory, TraversalUnit, UnitConfig};
+use lodray::sim::unit::{SceneMemory, TraversalUnit};
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use std::str::FromStr;
@@ -59,7 +60,7 @@ struct Bench<'a> {
 
 impl Bench<'_> {
     fn unit(&self) -> TraversalUnit {
-        TraversalUnit::new(UnitConfig::one_context(), self.memory.config())
+        TraversalUnit::new(Hardware::one_context(), self.memory.config())
     }
 }
 

@@ -21,7 +21,7 @@ impl<const W: u32> Vec3<W> {
     }
 
     const fn component(name: &'static str) -> Field {
-        Field { name, width: W, layout: Layout::Signed }
+        Field { name, width: W, layout: Layout::Signed, kind: "S<W>", doc: &[] }
     }
 
     /// The components as plain integers, x first.

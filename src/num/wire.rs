@@ -11,6 +11,10 @@ pub struct Field {
     pub width: u32,
     /// What its bits are.
     pub layout: Layout,
+    /// Its type as the source has it: a struct, a named format, or a plain number of bits.
+    pub kind: &'static str,
+    /// Its description, one text a line.
+    pub doc: &'static [&'static str],
 }
 
 /// What the bits of a [`Wire`] value are.
@@ -33,6 +37,8 @@ pub trait Wire: Sized {
     const WIDTH: u32;
     /// The fields of a struct, most significant first; empty for plain integers and arrays.
     const FIELDS: &'static [Field] = &[];
+    /// The description of a struct, one text a line.
+    const DOC: &'static [&'static str] = &[];
     /// What the bits are.
     const LAYOUT: Layout = Layout::Struct(Self::FIELDS);
 
@@ -160,18 +166,21 @@ impl<T: Wire + Copy + Default, const N: usize> Wire for [T; N] {
 
 /// Declares a struct and its [`Wire`] layout, most significant field first.
 macro_rules! wire_struct {
-    ($(#[$meta:meta])* $vis:vis struct $name:ident { $($(#[$fmeta:meta])* $field:ident : $ty:ty),+ $(,)? }) => {
-        $(#[$meta])*
+    ($(#[doc = $doc:literal])* $vis:vis struct $name:ident { $($(#[doc = $fdoc:literal])* $field:ident : $ty:ty),+ $(,)? }) => {
+        $(#[doc = $doc])*
         #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
-        $vis struct $name { $($(#[$fmeta])* pub $field: $ty),+ }
+        $vis struct $name { $($(#[doc = $fdoc])* pub $field: $ty),+ }
 
         impl $crate::num::Wire for $name {
             const WIDTH: u32 = 0 $(+ <$ty as $crate::num::Wire>::WIDTH)+;
+            const DOC: &'static [&'static str] = &[$($doc),*];
             const FIELDS: &'static [$crate::num::Field] = &[
                 $($crate::num::Field {
                     name: stringify!($field),
                     width: <$ty as $crate::num::Wire>::WIDTH,
                     layout: <$ty as $crate::num::Wire>::LAYOUT,
+                    kind: stringify!($ty),
+                    doc: &[$($fdoc),*],
                 }),+
             ];
             #[inline(always)]
@@ -204,7 +213,7 @@ mod tests {
         let v = Small { a: U::new(0xa), b: S::new(-1), l: [U::new(1), U::new(2)] };
         assert_eq!(v.to_bits().words(), &[0xaf21]);
         assert_eq!(Small::WIDTH, 16);
-        assert_eq!(Small::FIELDS[2], Field { name: "l", width: 8, layout: Layout::Array(2) });
+        assert_eq!(Small::FIELDS[2], Field { name: "l", width: 8, layout: Layout::Array(2), kind: "[U<4>; 2]", doc: &[] });
     }
 
     proptest! {

@@ -3,7 +3,6 @@
 pub mod dram;
 pub mod energy;
 pub mod machine;
-pub mod ports;
 pub mod replay;
 pub mod timing;
 pub mod unit;

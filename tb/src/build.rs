@@ -1,8 +1,9 @@
 //! What to build: a top, its sources, parameters and options.
 
-use crate::sources::{Sources, root};
+use crate::sources::{self, Sources, root};
 use crate::{Error, Model, compile};
 use lodray::block::Block;
+use lodray::hardware::Hardware;
 use std::fmt::Display;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -49,6 +50,14 @@ impl Build {
     fn of(top: &str, files: Files) -> Self {
         let coverage = std::env::var_os("LODRAY_COVERAGE").is_some();
         Self { top: top.to_owned(), parameters: Vec::new(), trace: false, coverage, files }
+    }
+
+    /// With the sizes of this hardware: the package that it prints in place of that of `rtl/`.
+    pub fn hardware(mut self, hardware: &Hardware) -> Result<Self, Error> {
+        if let Files::Rtl(extra) = &mut self.files {
+            extra.extend(sources::package(hardware)?);
+        }
+        Ok(self)
     }
 
     /// Sets a parameter of the top.

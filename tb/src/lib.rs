@@ -41,4 +41,4 @@ pub use model::Model;
 pub use ports::{Direction, Port};
 pub use sim::{PortId, Sim};
 pub use sources::{root, rtl};
-pub use tool::{Verilator, elaborate, lint};
+pub use tool::{Verilator, elaborate, lint, registers};

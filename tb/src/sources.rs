@@ -4,8 +4,10 @@
 //! then rebuilds only the tops above it.
 
 use crate::Error;
+use lodray::hardware::Hardware;
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
+use xxhash_rust::xxh3::xxh3_128;
 
 const PACKAGE: &str = "lod_pkg";
 const WAIVERS: &str = "lint.vlt";
@@ -20,6 +22,24 @@ pub fn rtl() -> PathBuf {
     std::env::var_os("LODRAY_RTL").map_or_else(|| root().join("rtl"), |given| root().join(given))
 }
 
+/// The package of this hardware as a file below `target/hardware`; none if it is that of the default, which is the one of [`rtl`].
+pub(crate) fn package(hardware: &Hardware) -> Result<Option<PathBuf>, Error> {
+    let text = hardware.package();
+    if text == Hardware::default().package() {
+        return Ok(None);
+    }
+    let folder = root().join("target/hardware").join(format!("{:032x}", xxh3_128(text.as_bytes())));
+    let path = folder.join(format!("{PACKAGE}.sv"));
+    if !path.is_file() {
+        std::fs::create_dir_all(&folder).map_err(Error::file(&folder))?;
+        // Whole or not there: other processes read it.
+        let whole = tempfile::NamedTempFile::new_in(&folder).map_err(Error::file(&folder))?;
+        std::fs::write(whole.path(), &text).map_err(Error::file(&path))?;
+        whole.persist(&path).map_err(|error| Error::File { path: path.clone(), source: error.error })?;
+    }
+    Ok(Some(path))
+}
+
 /// Source files in the order of the command line, with their content.
 #[derive(Clone, Debug)]
 pub(crate) struct Sources {
@@ -27,11 +47,6 @@ pub(crate) struct Sources {
 }
 
 impl Sources {
-    /// Those of a top in [`rtl`].
-    pub fn of_top(top: &str) -> Result<Self, Error> {
-        Self::within(&rtl(), &[], top)
-    }
-
     /// Those of a top in one of the given files or in [`rtl`].
     pub fn with(extra: &[PathBuf], top: &str) -> Result<Self, Error> {
         Self::within(&rtl(), extra, top)

@@ -1,6 +1,7 @@
 //! The checks of the testbench notice what they are there for: a right block passes, and each way to be wrong fails with its own words.
 
-use lodray::block::{Block, Timing};
+use lodray::block::parts::Parts;
+use lodray::block::{Block, Form, Timing};
 use lodray::num::{S, Vec3};
 use tb::{Build, Error, Fault, Mode, Plan, Report, check_block, root, seed};
 
@@ -12,6 +13,9 @@ impl Block for Rotate {
     const TIMING: Timing = Timing::pipelined(3);
     type In = Vec3<32>;
     type Out = Vec3<32>;
+    fn parts(_: &Form) -> Parts {
+        Parts::default()
+    }
     fn eval(i: &Self::In) -> Self::Out {
         Vec3 { x: i.y, y: i.z, z: S::new(!i.x.get()) }
     }
@@ -91,6 +95,9 @@ fn ports_of_other_widths_are_refused() {
         const TIMING: Timing = Timing::pipelined(3);
         type In = Vec3<31>;
         type Out = Vec3<32>;
+        fn parts(_: &Form) -> Parts {
+            Parts::default()
+        }
         fn eval(_: &Self::In) -> Self::Out {
             Vec3::default()
         }

@@ -4,21 +4,21 @@ use crate::draw::Draw;
 use crate::suite::{Category, Suite};
 use lodray::block::Block;
 use lodray::block::bary_map::{BaryMap, In, Out};
-use lodray::num::{BARY_ONE, U};
+use lodray::num::{BARY_ONE, MAX_LEVELS, U};
 use tb::Mode;
 
 const HALF: u64 = BARY_ONE / 2;
 
 /// A hit with these weights in any order, on any node of any level, any levels above the last.
 fn at(draw: &mut Draw, b: [u64; 3]) -> In {
-    let levels = draw.below(11);
+    let levels = draw.below(draw.levels + 1);
     let mut b = b.map(U::new);
     b.rotate_left(draw.below(3) as usize);
     if draw.once_in(2) {
         b.swap(0, 1);
     }
     let [b0, b1, b2] = b;
-    let nodes = 1 << (2 * (10 - levels));
+    let nodes = 1 << (2 * (draw.levels - levels));
     let node = match draw.below(4) {
         0 => nodes - 1,
         1 => 0,
@@ -85,7 +85,8 @@ fn legal(i: &In) -> bool {
 
 type Is = Category<BaryMap>;
 
-fn suite() -> Suite<BaryMap> {
+/// For hardware of so many levels.
+pub fn suite(levels: u64) -> Suite<BaryMap> {
     Suite::new(
         legal,
         vec![
@@ -100,19 +101,19 @@ fn suite() -> Suite<BaryMap> {
             Is::some("one half on the way down", lattice, |i, _| meets_half(i)),
         ],
         vec![
-            ("the last node", |_, o| o.node == U::MAX),
+            ("the last node of all levels", |i, o| (i.node.get() + 1) << (2 * i.levels.get()) == o.node.get() + 1 && i.levels.get() > 0),
             ("one half on a level below the first", |i, _| !weights(i).contains(&HALF) && i.levels.get() > 1 && meets_half(i)),
         ],
-        vec![("N - n", 0..=10, |i, _| i.levels.get()), ("last child", 0..=3, |_, o| o.node.get() & 3)],
+        vec![("N - n", 0..=levels, |i, _| i.levels.get()), ("last child", 0..=3, |_, o| o.node.get() & 3)],
     )
 }
 
 #[test]
 fn free_running() {
-    suite().run(Mode::Free);
+    suite(u64::from(MAX_LEVELS)).run(Mode::Free);
 }
 
 #[test]
 fn stalled() {
-    suite().run(Mode::Stalled);
+    suite(u64::from(MAX_LEVELS)).run(Mode::Stalled);
 }

@@ -44,7 +44,7 @@ fn legal(i: &In) -> bool {
 
 type Is = Category<BoundDecode>;
 
-fn suite() -> Suite<BoundDecode> {
+pub fn suite() -> Suite<BoundDecode> {
     Suite::new(
         legal,
         vec![

@@ -42,7 +42,7 @@ fn legal(i: &In) -> bool {
 
 type Is = Category<BoxTest>;
 
-fn suite() -> Suite<BoxTest> {
+pub fn suite() -> Suite<BoxTest> {
     Suite::new(
         legal,
         vec![

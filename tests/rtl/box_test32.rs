@@ -37,7 +37,7 @@ fn legal(i: &In) -> bool {
 
 type Is = Category<BoxTest32>;
 
-fn suite() -> Suite<BoxTest32> {
+pub fn suite() -> Suite<BoxTest32> {
     Suite::new(
         legal,
         vec![

@@ -50,7 +50,7 @@ fn rank(o: &Out) -> u64 {
 
 type Is = Category<ChildSort>;
 
-fn suite() -> Suite<ChildSort> {
+pub fn suite() -> Suite<ChildSort> {
     Suite::new(
         |_| true,
         vec![

@@ -138,7 +138,7 @@ fn legal(i: &In) -> bool {
 
 type Is = Category<ChildTest>;
 
-fn suite() -> Suite<ChildTest> {
+pub fn suite() -> Suite<ChildTest> {
     Suite::new(
         legal,
         vec![

@@ -1,6 +1,6 @@
 //! Random integers as blocks like them least: all magnitudes, zeros, extremes.
 
-use lodray::num::{BoundScale, Box16, COORD_LIMIT, Cone, LARGEST_BOUND, Point, Ray, RayT, U, bound_scale};
+use lodray::num::{BoundScale, Box16, COORD_LIMIT, Cone, LARGEST_BOUND, MAX_LEVELS, Point, Ray, RayT, U, bound_scale};
 use lodray_test_support::models::Rng;
 
 /// Largest magnitude of a point's coordinate.
@@ -11,6 +11,8 @@ pub const DIRECTION_MAX: i64 = (1 << 30) - 1;
 /// The source of a test's inputs.
 pub struct Draw {
     pub(crate) rng: Rng,
+    /// The most levels that the hardware under test is for.
+    pub levels: u64,
     /// Scales take long to make: one in sixteen that are drawn is new.
     scales: Vec<BoundScale>,
 }
@@ -18,7 +20,7 @@ pub struct Draw {
 impl Draw {
     pub fn new(seed: u64) -> Self {
         let scales = [0, 1, 2, 1 << 20, (1 << 32) - 1, 1 << 32, LARGEST_BOUND].map(bound_scale).to_vec();
-        Self { rng: Rng(seed), scales }
+        Self { rng: Rng(seed), levels: u64::from(MAX_LEVELS), scales }
     }
 
     /// 0 to `n` - 1.

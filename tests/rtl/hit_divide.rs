@@ -70,7 +70,7 @@ fn is_around(i: &In, q: RayT, by: i128) -> bool {
 
 type Is = Category<HitDivide>;
 
-fn suite() -> Suite<HitDivide> {
+pub fn suite() -> Suite<HitDivide> {
     Suite::new(
         |i| i.denominator.get() > 0,
         vec![

@@ -3,18 +3,24 @@
 use crate::draw::Draw;
 use crate::suite::{Category, Suite};
 use lodray::block::hit_select::{HitSelect, In};
-use lodray::num::U;
+use lodray::num::{MAX_LEVELS, U};
 use tb::Mode;
 
+/// Bits of the ids that the hardware has: 28 of the tree and two of each level.
+fn id_bits(draw: &Draw) -> u64 {
+    28 + 2 * draw.levels
+}
+
 fn random(draw: &mut Draw) -> In {
-    let levels = draw.below(11);
+    let best_id = draw.bits::<48>().get() & ((1 << id_bits(draw)) - 1);
+    let levels = draw.below(draw.levels + 1);
     let level = draw.below(levels + 1);
     let node = if draw.once_in(4) { (1 << (2 * level)) - 1 } else { draw.below(1 << (2 * level)) };
     In {
         levels: U::new(levels),
         known: !draw.once_in(4),
         best_t: draw.bits(),
-        best_id: draw.bits(),
+        best_id: U::new(best_id),
         t: draw.bits(),
         tree: draw.bits(),
         level: U::new(level),
@@ -31,7 +37,7 @@ fn near(draw: &mut Draw, t: i64, by: i64) -> In {
     let input = random(draw);
     let (levels, level) = (input.levels.get(), input.level.get());
     let id = input.tree.get() << (2 * levels) | input.node.get() << (2 * (levels - level));
-    let best_id = id.saturating_add_signed(by).min(U::<48>::MAX.get());
+    let best_id = id.saturating_add_signed(by).min((1 << id_bits(draw)) - 1);
     // Away from both ends, so that one more and one less exist.
     let t_new = input.t.get().clamp(1, U::<35>::MAX.get() - 1);
     In { known: true, t: U::new(t_new), best_t: U::new(t_new.saturating_add_signed(t)), best_id: U::new(best_id), ..input }
@@ -46,7 +52,8 @@ fn relative(draw: &mut Draw) -> In {
 
 /// The last triangle of all.
 fn last(draw: &mut Draw) -> In {
-    In { levels: U::new(10), level: U::new(10), tree: U::MAX, node: U::MAX, ..random(draw) }
+    let levels = U::new(draw.levels);
+    In { levels, level: levels, tree: U::MAX, node: U::new((1 << (2 * draw.levels)) - 1), ..random(draw) }
 }
 
 fn legal(i: &In) -> bool {
@@ -55,7 +62,8 @@ fn legal(i: &In) -> bool {
 
 type Is = Category<HitSelect>;
 
-fn suite() -> Suite<HitSelect> {
+/// For hardware of so many levels.
+pub fn suite(levels: u64) -> Suite<HitSelect> {
     Suite::new(
         legal,
         vec![
@@ -66,23 +74,27 @@ fn suite() -> Suite<HitSelect> {
             Is::all("equal t, smaller id so far", |d| near(d, 0, -1), |_, o| !o.closer),
             Is::all("t one step smaller, smaller id so far", |d| near(d, 1, -1), |_, o| o.closer),
             Is::all("t one step larger, larger id so far", |d| near(d, -1, 1), |_, o| !o.closer),
-            Is::all("the largest id", last, |_, o| o.id == U::MAX),
+            Is::all("the largest id", last, |i, o| o.id.get() + 1 == 1 << (28 + 2 * i.levels.get())),
             Is::all("the same triangle on another level", relative, |i, o| i.best_id == o.id && !o.closer),
         ],
         vec![
             ("smaller id at equal t", |i, o| i.known && i.t == i.best_t && o.closer),
             ("the largest t", |i, o| i.t == U::MAX && !o.closer),
         ],
-        vec![("N", 0..=10, |i, _| i.levels.get()), ("level", 0..=10, |i, _| i.level.get()), ("closer", 0..=1, |_, o| o.closer.into())],
+        vec![
+            ("N", 0..=levels, |i, _| i.levels.get()),
+            ("level", 0..=levels, |i, _| i.level.get()),
+            ("closer", 0..=1, |_, o| o.closer.into()),
+        ],
     )
 }
 
 #[test]
 fn free_running() {
-    suite().run(Mode::Free);
+    suite(u64::from(MAX_LEVELS)).run(Mode::Free);
 }
 
 #[test]
 fn stalled() {
-    suite().run(Mode::Stalled);
+    suite(u64::from(MAX_LEVELS)).run(Mode::Stalled);
 }

@@ -183,7 +183,7 @@ fn has(o: &Out, s: u64) -> bool {
 
 type Is = Category<LodTest>;
 
-fn suite() -> Suite<LodTest> {
+pub fn suite() -> Suite<LodTest> {
     Suite::new(
         legal,
         vec![

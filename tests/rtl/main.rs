@@ -15,6 +15,7 @@ mod hit_divide;
 mod hit_select;
 mod lod_test;
 mod node_address;
+mod other_hardware;
 mod queues;
 mod ray_setup;
 mod rays;

@@ -3,7 +3,7 @@
 use crate::draw::Draw;
 use crate::suite::{Category, Suite};
 use lodray::block::node_address::{In, NodeAddress};
-use lodray::num::U;
+use lodray::num::{MAX_LEVELS, U};
 use tb::Mode;
 
 /// Line of a record, from its section's first.
@@ -25,14 +25,14 @@ fn record(draw: &mut Draw) -> In {
 }
 
 fn node(draw: &mut Draw) -> In {
-    let level = draw.below(10);
+    let level = draw.below(draw.levels);
     let index = if draw.once_in(4) { (1 << (2 * level)) - 1 } else { draw.below(1 << (2 * level)) };
     let node = In { level: U::new(level), index: U::new(index), ..record(draw) };
     based(draw, node)
 }
 
 fn any_level(draw: &mut Draw) -> In {
-    let node = In { level: U::new(draw.below(10)), ..record(draw) };
+    let node = In { level: U::new(draw.below(draw.levels)), ..record(draw) };
     based(draw, node)
 }
 
@@ -51,7 +51,8 @@ fn legal(i: &In) -> bool {
 
 type Is = Category<NodeAddress>;
 
-fn suite() -> Suite<NodeAddress> {
+/// For hardware of so many levels.
+pub fn suite(levels: u64) -> Suite<NodeAddress> {
     Suite::new(
         legal,
         vec![
@@ -63,7 +64,7 @@ fn suite() -> Suite<NodeAddress> {
         ],
         vec![("largest index", |i, _| i.index == U::MAX), ("address 0", |_, o| o.address == U::ZERO)],
         vec![
-            ("level", 0..=9, |i, _| i.level.get()),
+            ("level", 0..=levels - 1, |i, _| i.level.get()),
             ("one line, first and second of two", 0..=2, |i, _| u64::from(i.pair) + u64::from(i.half)),
         ],
     )
@@ -71,10 +72,10 @@ fn suite() -> Suite<NodeAddress> {
 
 #[test]
 fn free_running() {
-    suite().run(Mode::Free);
+    suite(u64::from(MAX_LEVELS)).run(Mode::Free);
 }
 
 #[test]
 fn stalled() {
-    suite().run(Mode::Stalled);
+    suite(u64::from(MAX_LEVELS)).run(Mode::Stalled);
 }

@@ -66,7 +66,7 @@ fn extreme(draw: &mut Draw) -> In {
 
 type Is = Category<RaySetup>;
 
-fn suite() -> Suite<RaySetup> {
+pub fn suite() -> Suite<RaySetup> {
     Suite::new(
         |i| is_point(i.origin) && has_components(i.direction),
         vec![

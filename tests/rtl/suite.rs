@@ -2,6 +2,7 @@
 
 use crate::draw::Draw;
 use lodray::block::{Block, Timing};
+use lodray::hardware::Hardware;
 use std::fmt::{Debug, Display};
 use std::ops::RangeInclusive;
 use std::time::Instant;
@@ -58,6 +59,7 @@ pub struct Suite<B: Block> {
     pub build: Build,
     /// Where a parameter gives another than the block's own.
     pub timing: Timing,
+    pub hardware: Hardware,
     /// The legal inputs, as the head of the block's file states them.
     pub legal: fn(&B::In) -> bool,
     pub categories: Vec<Category<B>>,
@@ -86,13 +88,22 @@ where
 {
     /// The block as it stands, with its own timing.
     pub fn new(legal: fn(&B::In) -> bool, categories: Vec<Category<B>>, events: Vec<Event<B>>, spreads: Vec<Spread<B>>) -> Self {
-        Self { build: Build::block::<B>(), timing: B::TIMING, legal, categories, events, spreads }
+        Self { build: Build::block::<B>(), timing: B::TIMING, hardware: Hardware::default(), legal, categories, events, spreads }
+    }
+
+    /// The same for other hardware.
+    pub fn of(self, hardware: Hardware) -> Self {
+        Self { build: self.build.hardware(&hardware).unwrap_or_else(fail), timing: hardware.timing::<B>(), hardware, ..self }
     }
 
     /// Plays the block's transactions at the ports, each of them drawn from a random category, and holds the categories to their promises.
     pub fn run(&self, mode: Mode) {
+        self.run_some(mode, transactions());
+    }
+
+    /// [`Suite::run`] with so many transactions.
+    pub fn run_some(&self, mode: Mode, count: u64) {
         let seed = tb::seed(0x10d_4a75).unwrap_or_else(fail);
-        let count = transactions();
         let Timing { latency, interval } = self.timing;
         let name = format!("{} (latency {latency}, interval {interval}) {mode:?}", self.build.top());
         self.build.model().unwrap_or_else(fail);
@@ -140,7 +151,9 @@ impl<'a, B: Block> Inputs<'a, B> {
     fn new(suite: &'a Suite<B>, seed: u64, count: u64) -> Self {
         let spread = suite.spreads.iter().map(|(_, range, _)| vec![0; (range.end() - range.start() + 1) as usize]).collect();
         let (drawn, seen) = (vec![(0, 0); suite.categories.len()], vec![0; suite.events.len()]);
-        Self { suite, draw: Draw::new(seed), left: count, made: 0, drawn, seen, spread, fault: None }
+        let mut draw = Draw::new(seed);
+        draw.levels = u64::from(suite.hardware.levels);
+        Self { suite, draw, left: count, made: 0, drawn, seen, spread, fault: None }
     }
 
     /// Looks for the events and notes the spreads; true if one is outside of its range.

@@ -4,7 +4,7 @@ use crate::draw::{Draw, POINT_MAX};
 use crate::rays::{is_point, point};
 use crate::suite::{Category, Suite};
 use lodray::block::tessellate::{In, Tessellate};
-use lodray::num::{EdgeState, Point, S_ONE, U};
+use lodray::num::{EdgeState, MAX_LEVELS, Point, S_ONE, U};
 use tb::Mode;
 
 /// A point of which each coordinate has its low `zeros` bits zero.
@@ -13,7 +13,7 @@ fn on_grid(draw: &mut Draw, zeros: u64) -> Point {
 }
 
 fn triangle(draw: &mut Draw, mut state: impl FnMut(&mut Draw) -> EdgeState) -> In {
-    let grid = draw.below(10);
+    let grid = draw.below(draw.levels);
     let [s0, s1, s2] = [0; 3].map(|_| state(draw));
     let [p0, p1, p2] = [0; 3].map(|_| on_grid(draw, grid + 1));
     let [q0, q1, q2] = [0; 3].map(|_| on_grid(draw, grid));
@@ -70,7 +70,8 @@ fn legal(i: &In) -> bool {
 
 type Is = Category<Tessellate>;
 
-fn suite() -> Suite<Tessellate> {
+/// For hardware of so many levels.
+pub fn suite(levels: u64) -> Suite<Tessellate> {
     Suite::new(
         legal,
         vec![
@@ -93,16 +94,16 @@ fn suite() -> Suite<Tessellate> {
             let (m, q, got) = (midpoint(i.p1, i.p2)[0], i.q0.get()[0], o.q0.get()[0]);
             q < m && (m - q) >> i.grid.get() == 1 && got == q && i.s0.get() < S_ONE
         })],
-        vec![("grid: N - n - 1", 0..=9, |i, _| i.grid.get()), ("s", 0..=256, |i, _| i.s1.get())],
+        vec![("grid: N - n - 1", 0..=levels - 1, |i, _| i.grid.get()), ("s", 0..=256, |i, _| i.s1.get())],
     )
 }
 
 #[test]
 fn free_running() {
-    suite().run(Mode::Free);
+    suite(u64::from(MAX_LEVELS)).run(Mode::Free);
 }
 
 #[test]
 fn stalled() {
-    suite().run(Mode::Stalled);
+    suite(u64::from(MAX_LEVELS)).run(Mode::Stalled);
 }

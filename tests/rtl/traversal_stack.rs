@@ -2,7 +2,8 @@
 
 use crate::draw::Draw;
 use crate::suite::{fail, transactions};
-use lodray::method::{Entry, Op, STACK_ENTRIES, TraversalStack};
+use lodray::hardware::Hardware;
+use lodray::method::{Entry, Op, TraversalStack};
 use lodray::num::{U, Wire};
 use tb::{Build, Direction, Sim};
 
@@ -20,8 +21,14 @@ fn entry(draw: &mut Draw) -> Entry {
 
 #[test]
 fn rtl_equals_rust() {
+    play(&Hardware::default(), transactions());
+}
+
+/// As deep as the hardware's, for `count` cycles.
+pub fn play(hardware: &Hardware, count: u64) {
+    let room = hardware.stack_entries() as usize;
     let seed = tb::seed(0x57ac).unwrap_or_else(fail);
-    let model = Build::rtl("traversal_stack").model().unwrap_or_else(fail);
+    let model = Build::rtl("traversal_stack").hardware(hardware).and_then(|build| build.model()).unwrap_or_else(fail);
     let mut sim = Sim::new(&model, seed);
     let port = |name, width, direction| sim.port(name, width, direction).unwrap_or_else(fail);
     let (clear, push, pop) = (port("clear_i", 1, Direction::In), port("push_i", 1, Direction::In), port("pop_i", 1, Direction::In));
@@ -38,11 +45,11 @@ fn rtl_equals_rust() {
     sim.poke(reset, &true);
     // Long climbs and long falls, so that both ends are met.
     let mut climbing = true;
-    for _ in 0..transactions() {
+    for _ in 0..count {
         climbing ^= draw.once_in(300);
         let wants_push = draw.below(8) < if climbing { 6 } else { 2 };
         let does_clear = draw.once_in(5000);
-        let does_push = !does_clear && wants_push && stack.len() < STACK_ENTRIES;
+        let does_push = !does_clear && wants_push && stack.len() < room;
         let does_pop = !does_clear && !does_push && !stack.is_empty() && draw.below(8) < 7;
         let item = entry(&mut draw);
         sim.poke(clear, &does_clear);
@@ -65,10 +72,10 @@ fn rtl_equals_rust() {
             drained += u64::from(stack.is_empty());
         }
         (pushes, pops, clears) = (pushes + u64::from(does_push), pops + u64::from(does_pop), clears + u64::from(does_clear));
-        full += u64::from(does_push && stack.len() == STACK_ENTRIES);
+        full += u64::from(does_push && stack.len() == room);
         sim.clock();
     }
     assert!(!sim.failed());
-    println!("traversal_stack: {pushes} pushes, {pops} pops, {clears} clears, {full} times full, {drained} times emptied");
+    println!("traversal_stack of {room}: {pushes} pushes, {pops} pops, {clears} clears, {full} times full, {drained} times emptied");
     assert!([pushes, pops, clears, full, drained].iter().all(|&n| n > 0));
 }

@@ -3,7 +3,7 @@
 use crate::draw::Draw;
 use crate::suite::{Category, Suite};
 use lodray::block::tree_base::{In, TreeBase};
-use lodray::num::U;
+use lodray::num::{MAX_LEVELS, U};
 use tb::Mode;
 
 const LAST: u64 = U::<36>::MAX.get();
@@ -21,7 +21,7 @@ fn before(i: &In) -> (u64, u64) {
 
 /// As many trees as memory holds, or fewer, or one.
 fn random(draw: &mut Draw) -> In {
-    let levels = draw.below(11);
+    let levels = draw.below(draw.levels + 1);
     let most = (LAST / triangles(levels).max(1)).min((1 << 28) - 1);
     let tree = match draw.below(4) {
         0 => most,
@@ -52,7 +52,8 @@ fn legal(i: &In) -> bool {
 
 type Is = Category<TreeBase>;
 
-fn suite() -> Suite<TreeBase> {
+/// For hardware of so many levels.
+pub fn suite(levels: u64) -> Suite<TreeBase> {
     Suite::new(
         legal,
         vec![
@@ -65,16 +66,16 @@ fn suite() -> Suite<TreeBase> {
             ("N = 1: no bounds", |i, o| i.levels.get() == 1 && i.tree.get() > 0 && o.vertices != i.vertices && o.bounds == i.bounds),
             ("the largest tree", |i, _| i.tree == U::MAX),
         ],
-        vec![("N", 0..=10, |i, _| i.levels.get())],
+        vec![("N", 0..=levels, |i, _| i.levels.get())],
     )
 }
 
 #[test]
 fn free_running() {
-    suite().run(Mode::Free);
+    suite(u64::from(MAX_LEVELS)).run(Mode::Free);
 }
 
 #[test]
 fn stalled() {
-    suite().run(Mode::Stalled);
+    suite(u64::from(MAX_LEVELS)).run(Mode::Stalled);
 }

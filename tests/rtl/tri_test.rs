@@ -239,7 +239,7 @@ fn legal(i: &In) -> bool {
 
 type Is = Category<TriTest>;
 
-fn suite() -> Suite<TriTest> {
+pub fn suite() -> Suite<TriTest> {
     Suite::new(
         legal,
         vec![

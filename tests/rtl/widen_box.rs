@@ -61,7 +61,7 @@ fn legal(i: &In) -> bool {
 
 type Is = Category<WidenBox>;
 
-fn suite() -> Suite<WidenBox> {
+pub fn suite() -> Suite<WidenBox> {
     Suite::new(
         legal,
         vec![

@@ -4,17 +4,19 @@
 mod port;
 mod wave;
 
+use lodray::block::EdgesPerCycle;
 use lodray::format::Scene;
 use lodray::golden::exact::Exact;
+use lodray::hardware::Hardware;
+use lodray::hardware::ports::HitOut;
 use lodray::mesh::Hierarchy;
 use lodray::mesh::procedural::{self, Options};
 use lodray::method::lod::LodImage;
 use lodray::num::Ray;
-use lodray::rays::ModelSpace;
-use lodray::rays::{Camera, View};
-use lodray::sim::ports::HitOut;
+use lodray::rays::{Camera, ModelSpace, View};
 use lodray::sim::unit::environment::{RunReport, UnitPort, run};
-use lodray::sim::unit::{EdgesPerCycle, Inputs, Latency, Outputs, SceneMemory, Stall, Traffic, TraversalUnit, UnitConfig};
+use lodray::sim::unit::{Inputs, Latency, Outputs, SceneMemory, Stall, Traffic, TraversalUnit};
+use lodray_test_support::hardware::OTHERS;
 use lodray_test_support::models::{Rng, any_rays, ball, build, scene_of, terrain};
 use lodray_test_support::plain::plain;
 use port::Rtl;
@@ -54,7 +56,7 @@ impl UnitPort for SideBySide {
 }
 
 /// Runs `rays` through both and compares every hit with the golden traverser's; gives the report and the number of hits.
-fn compare(scene: &Scene, h: &Hierarchy, config: UnitConfig, traffic: &Traffic, rays: &[Ray], seed: u64) -> (RunReport, u64) {
+fn compare(scene: &Scene, h: &Hierarchy, config: Hardware, traffic: &Traffic, rays: &[Ray], seed: u64) -> (RunReport, u64) {
     let memory = SceneMemory::new(LodImage::of(scene), seed % (1 << 35));
     let what = format!("seed {seed}, {config:?}, {traffic:?}");
     let mut both = SideBySide {
@@ -80,10 +82,10 @@ fn cycles_wanted() -> u64 {
     std::env::var("LODRAY_CYCLES").map_or(1_000_000, parse)
 }
 
-fn configs() -> [UnitConfig; 3] {
-    let eight = UnitConfig { contexts: 8, edges_per_cycle: EdgesPerCycle::Three };
-    let four = UnitConfig { contexts: 4, edges_per_cycle: EdgesPerCycle::One };
-    [UnitConfig::one_context(), four, eight]
+fn configs() -> [Hardware; 3] {
+    let eight = Hardware { contexts: 8, ..Hardware::default() };
+    let four = Hardware { contexts: 4, edges_per_cycle: EdgesPerCycle::One, ..Hardware::default() };
+    [Hardware::one_context(), four, eight]
 }
 
 /// Any traffic: fixed and random latency, ports that stall never, in single cycles, or for long.
@@ -102,16 +104,26 @@ fn any_traffic(rng: &mut Rng) -> Traffic {
 
 #[test]
 fn random_rays_under_random_traffic() {
-    let wanted = cycles_wanted();
+    random_rays(&configs(), cycles_wanted());
+}
+
+#[test]
+fn other_hardware_under_random_traffic() {
+    random_rays(&OTHERS, cycles_wanted() / 8);
+}
+
+/// Random models, of each number of levels that all of the hardware is for, for so many cycles; the hardware by turns.
+fn random_rays(hardware: &[Hardware], wanted: u64) {
+    let most = hardware.iter().map(|hardware| hardware.levels).min().map_or(0, |levels| levels.min(6));
     let seed = tb::seed(1).unwrap_or_else(|error| panic!("{error}"));
     let (mut cycles, mut traced, mut hits) = (0, 0, 0);
     for round in 0.. {
         let seed = seed + round;
         let mut rng = Rng(seed);
-        let levels = (round % 7) as u32;
+        let levels = (round % u64::from(most + 1)) as u32;
         let roughness = [0.05, 0.4, 1.5][rng.below(3) as usize];
         let h = if rng.below(2) == 0 { ball(levels, roughness, seed) } else { terrain(2, levels, roughness, seed) };
-        let config = configs()[(round % 3) as usize];
+        let config = hardware[round as usize % hardware.len()];
         let rays = any_rays(&h, 20 * config.contexts, seed);
         let (report, met) = compare(&scene_of(&h), &h, config, &any_traffic(&mut rng), &rays, seed);
         cycles += report.cycles;
@@ -126,7 +138,7 @@ fn random_rays_under_random_traffic() {
 }
 
 /// A frame of a procedural scene on model and RTL.
-fn frame(kind: procedural::Scene, config: UnitConfig, latency: Latency) {
+fn frame(kind: procedural::Scene, config: Hardware, latency: Latency) {
     const SIDE: u32 = 96;
     let options = Options { levels: Some(3), base: Some(32), ..Options::new(kind) };
     let scene = build(&procedural::generate(&options).expect("options"));

@@ -1,24 +1,32 @@
 //! The RTL of the unit behind the ports of the model.
 
+use lodray::block::EdgesPerCycle;
+use lodray::hardware::Hardware;
+use lodray::hardware::ports::{HitOut, MemoryAnswer, MemoryRequest, RayIn, SceneConfig};
 use lodray::num::Wire;
-use lodray::sim::ports::{HitOut, MemoryAnswer, MemoryRequest, RayIn, SceneConfig};
 use lodray::sim::unit::environment::UnitPort;
-use lodray::sim::unit::{EdgesPerCycle, Inputs, Outputs, UnitConfig};
+use lodray::sim::unit::{Inputs, Outputs};
 use std::sync::Arc;
 use tb::{Build, Direction, Model, PortId, Sim};
 
 /// Cycles of reset.
 pub const RESET: u64 = 2;
 
-/// The RTL with these parameters; `cargo test` compiles each once.
-fn model(config: UnitConfig) -> Arc<Model> {
+/// The RTL of this hardware; `cargo test` compiles each once. That of the default's sizes takes contexts and edges as parameters.
+fn model(config: Hardware) -> Arc<Model> {
     let edges = match config.edges_per_cycle {
         EdgesPerCycle::One => 1,
         EdgesPerCycle::Three => 3,
     };
-    let build = Build::rtl("traversal_unit").parameter("CONTEXTS", config.contexts).parameter("EDGES_PER_CYCLE", edges);
+    let sizes = Hardware { contexts: Hardware::DEFAULT.contexts, edges_per_cycle: EdgesPerCycle::Three, ..config };
+    let build = Build::rtl("traversal_unit");
+    let build = if sizes == Hardware::default() {
+        build.parameter("CONTEXTS", config.contexts).parameter("EDGES_PER_CYCLE", edges)
+    } else {
+        build.hardware(&config).unwrap_or_else(|error| panic!("{error}"))
+    };
     // The waveform's test needs the unit of one context too.
-    let build = if config == UnitConfig::one_context() { build.trace() } else { build };
+    let build = if config == Hardware::one_context() { build.trace() } else { build };
     build.model().unwrap_or_else(|error| panic!("{error}"))
 }
 
@@ -36,7 +44,7 @@ pub struct Rtl {
 
 impl Rtl {
     /// A simulation behind its reset.
-    pub fn new(config: UnitConfig, scene: &SceneConfig, seed: u64) -> Self {
+    pub fn new(config: Hardware, scene: &SceneConfig, seed: u64) -> Self {
         let mut sim = Sim::new(&model(config), seed);
         let port = |sim: &Sim, name, width, direction| sim.port(name, width, direction).unwrap_or_else(|error| panic!("{error}"));
         let input = |sim: &Sim, name, width| port(sim, name, width, Direction::In);

@@ -1,10 +1,11 @@
 //! One ray's waveform from the model and from the RTL: equal in every signal of the model's, in every cycle.
 
 use crate::port::{RESET, Rtl};
+use lodray::hardware::Hardware;
 use lodray::method::lod::LodImage;
 use lodray::num::Ray;
 use lodray::sim::unit::wave::{PERIOD, Waves, one_ray};
-use lodray::sim::unit::{SceneMemory, TraversalUnit, UnitConfig};
+use lodray::sim::unit::{SceneMemory, TraversalUnit};
 use lodray_test_support::models::{any_rays, ball, scene_of, terrain};
 use std::collections::BTreeMap;
 use std::io::BufReader;
@@ -64,7 +65,7 @@ impl Waveform {
 
 /// Compares the waveforms of one ray; gives signals, cycles and bits compared.
 fn compare(memory: &SceneMemory<'_>, latency: u32, ray: &Ray, seed: u64) -> (usize, u64, u64) {
-    let config = UnitConfig::one_context();
+    let config = Hardware::one_context();
     let mut model = Waves::new(TraversalUnit::new(config, memory.config())).expect("a waveform");
     let expected = one_ray(&mut model, memory, latency, ray).expect("a ray");
     let cycles = model.cycles();

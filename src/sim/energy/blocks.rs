@@ -1,14 +1,15 @@
 //! Energies of the hardware blocks, from what each is made of and published energies per operation (`machines/energy/blocks22.toml`).
 //!
-//! With P the sum of a x b over the products of a x b bits, A the bits added, S the bits selected and R the registers of a block whose operation takes
-//! c cycles: one operation costs P multiply / 32^2 + A add / 32 + S select / 32 + R c register. The block leaks as much hardware as
-//! it has: P / c, A / c, S / c and R.
+//! With P the sum of a x b over the products of a x b bits, A the bits added, S the bits selected and R the registers of a block ([`Parts`]) whose
+//! operation takes c cycles, its interval: one operation costs P multiply / 32^2 + A add / 32 + S select / 32 + R c register. The block leaks as much
+//! hardware as it has: P / c, A / c, S / c and R.
 
 use super::caches::not_negative;
 use super::operation::Operation;
+use crate::block::parts::Parts;
+use crate::hardware::Hardware;
 use crate::sim::machine::{Breach, MachineError, from_toml};
 use serde::Deserialize;
-use std::collections::BTreeMap;
 
 /// Bits of the operations that the table is for.
 const WORD: f64 = 32.0;
@@ -21,8 +22,7 @@ pub struct BlockTable {
     pub name: String,
     operations: Prices,
     scale: Scale,
-    unit: UnitHardware,
-    blocks: BTreeMap<String, Row>,
+    unit: Clock,
 }
 
 /// Energies and leakage of operations of 32 bits and of a register of one, at the node of their source.
@@ -52,29 +52,11 @@ struct Scale {
     leakage: f64,
 }
 
-/// What a traversal unit has besides its blocks.
+/// The clock of a traversal unit.
 #[derive(Clone, Debug, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
-struct UnitHardware {
-    context_registers: u32,
-    context_level_registers: u32,
+struct Clock {
     registers_per_clock_gate: u32,
-}
-
-/// What a block is made of.
-#[derive(Clone, Debug, PartialEq, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub(super) struct Row {
-    /// Products of an operation: how many, bits of one factor, bits of the other.
-    pub products: Vec<[u32; 3]>,
-    /// Bits added in an operation.
-    pub add_bits: u32,
-    /// Bits selected in an operation.
-    pub select_bits: u32,
-    /// Registers.
-    pub registers: u32,
-    /// Cycles that an operation takes of the hardware.
-    pub cycles: u32,
 }
 
 impl BlockTable {
@@ -88,50 +70,34 @@ impl BlockTable {
         Ok(table)
     }
 
-    /// Energy of one operation of a block, in pJ; `one_edge`: of the triangle test with one edge function.
-    pub fn operation_pj(&self, operation: Operation, one_edge: bool) -> f64 {
-        let (row, prices) = (self.row(operation, one_edge), &self.operations);
-        let logic = row.products() * prices.multiply_32_pj / (WORD * WORD) + f64::from(row.add_bits) * prices.add_32_pj / WORD;
-        let written = f64::from(row.registers) * f64::from(row.cycles);
-        let cells = f64::from(row.select_bits) * prices.select_32_pj / WORD + written * prices.register_pj;
+    /// Energy of one operation of a block of this hardware, in pJ.
+    pub fn operation_pj(&self, operation: Operation, hardware: &Hardware) -> f64 {
+        let (parts, cycles) = built(operation, hardware);
+        let prices = &self.operations;
+        let logic = products(&parts) * prices.multiply_32_pj / (WORD * WORD) + f64::from(parts.add_bits) * prices.add_32_pj / WORD;
+        let written = f64::from(parts.registers.kept) * cycles;
+        let cells = f64::from(parts.select_bits) * prices.select_32_pj / WORD + written * prices.register_pj;
         logic * self.scale.from_45 + cells * self.scale.from_40
     }
 
     /// Leakage of a traversal unit with `blocks`, one for each entry, in mW.
-    pub fn unit_leakage_mw(&self, blocks: &[Operation], contexts: u32, one_edge: bool) -> f64 {
+    pub fn unit_leakage_mw(&self, blocks: &[Operation], hardware: &Hardware) -> f64 {
         let prices = &self.operations;
         let of_block = |&operation: &Operation| {
-            let row = self.row(operation, one_edge);
-            let logic = row.products() * prices.multiply_32_mw / (WORD * WORD)
-                + f64::from(row.add_bits) * prices.add_32_mw / WORD
-                + f64::from(row.select_bits) * prices.select_32_mw / WORD;
-            logic / f64::from(row.cycles)
+            let (parts, cycles) = built(operation, hardware);
+            let logic = products(&parts) * prices.multiply_32_mw / (WORD * WORD)
+                + f64::from(parts.add_bits) * prices.add_32_mw / WORD
+                + f64::from(parts.select_bits) * prices.select_32_mw / WORD;
+            logic / cycles
         };
         let logic: f64 = blocks.iter().map(of_block).sum();
-        (logic + self.unit_registers(blocks, contexts, one_edge) * prices.register_mw) * self.scale.leakage
+        (logic + unit_registers(blocks, hardware) * prices.register_mw) * self.scale.leakage
     }
 
     /// Energy of the clock of a traversal unit with `blocks`, one for each entry, in a cycle in which nothing is written, in pJ.
-    pub fn unit_clock_pj(&self, blocks: &[Operation], contexts: u32, one_edge: bool) -> f64 {
-        let gates = self.unit_registers(blocks, contexts, one_edge) / f64::from(self.unit.registers_per_clock_gate);
+    pub fn unit_clock_pj(&self, blocks: &[Operation], hardware: &Hardware) -> f64 {
+        let gates = unit_registers(blocks, hardware) / f64::from(self.unit.registers_per_clock_gate);
         gates * self.operations.clock_pj * self.scale.from_40
-    }
-
-    /// Registers of a traversal unit with `blocks`, one for each entry.
-    fn unit_registers(&self, blocks: &[Operation], contexts: u32, one_edge: bool) -> f64 {
-        let of_blocks: f64 = blocks.iter().map(|&operation| f64::from(self.row(operation, one_edge).registers)).sum();
-        of_blocks + f64::from(contexts) * f64::from(self.context_registers(blocks))
-    }
-
-    /// Registers of a ray context of a unit with `blocks`: split triangles, and the levels and codes of the stack's entries, only where it tessellates.
-    fn context_registers(&self, blocks: &[Operation]) -> u32 {
-        let levels = if blocks.contains(&Operation::Tessellate) { self.unit.context_level_registers } else { 0 };
-        self.unit.context_registers + levels
-    }
-
-    /// The row of a block; the table was checked to have it.
-    pub(super) fn row(&self, operation: Operation, one_edge: bool) -> &Row {
-        &self.blocks[row_name(operation, one_edge)]
     }
 
     fn validate(&self) -> Result<(), Breach> {
@@ -154,30 +120,24 @@ impl BlockTable {
         if self.unit.registers_per_clock_gate == 0 {
             return Err(Breach::new("unit.registers_per_clock_gate", "must be at least 1", 0));
         }
-        let known: Vec<&str> = [false, true].iter().flat_map(|&one| Operation::ALL.map(|operation| row_name(operation, one))).collect();
-        if let Some(missing) = known.iter().find(|name| !self.blocks.contains_key(**name)) {
-            return Err(Breach::new(&format!("blocks.{missing}"), "must be given", "absent"));
-        }
-        for (name, row) in &self.blocks {
-            if !known.contains(&name.as_str()) {
-                return Err(Breach::new(&format!("blocks.{name}"), format!("must be one of {}", known[..].join(", ")), "another"));
-            }
-            if row.cycles == 0 {
-                return Err(Breach::new(&format!("blocks.{name}.cycles"), "must be at least 1", 0));
-            }
-        }
         Ok(())
     }
 }
 
-impl Row {
-    /// Sum over the products of bits times bits.
-    fn products(&self) -> f64 {
-        self.products.iter().map(|of| of.iter().map(|&n| f64::from(n)).product::<f64>()).sum()
-    }
+/// What a block is made of, and the cycles that an operation takes of it.
+fn built(operation: Operation, hardware: &Hardware) -> (Parts, f64) {
+    let form = hardware.form();
+    (operation.parts(&form), f64::from(operation.timing(&form).interval))
 }
 
-/// The row that holds an operation.
-fn row_name(operation: Operation, one_edge: bool) -> &'static str {
-    if one_edge && operation == Operation::TriTest { "tri_test_one_edge" } else { operation.name() }
+/// Sum over the products of bits times bits.
+fn products(parts: &Parts) -> f64 {
+    parts.products.iter().map(|of| of.iter().map(|&n| f64::from(n)).product::<f64>()).sum()
+}
+
+/// Registers of a traversal unit with `blocks`, one for each entry. Its contexts hold split triangles, and its stack levels and codes, only where it tessellates.
+fn unit_registers(blocks: &[Operation], hardware: &Hardware) -> f64 {
+    let of_blocks: f64 = blocks.iter().map(|operation| f64::from(operation.parts(&hardware.form()).registers.kept)).sum();
+    let context = hardware.context_registers(blocks.contains(&Operation::Tessellate));
+    of_blocks + hardware.contexts as f64 * f64::from(context.kept)
 }

@@ -23,6 +23,7 @@ pub use geometry::{Geometry, Level};
 pub use operation::{Operation, Operations};
 pub use report::EnergyReport;
 
+use crate::hardware::Hardware;
 use crate::sim::machine::{Breach, Machine, MachineError};
 
 /// Picojoules of a milliwatt in a second.
@@ -59,8 +60,7 @@ pub struct EnergyModel {
     blocks: Option<BlockTable>,
     groups: f64,
     units: f64,
-    contexts: u32,
-    one_edge: bool,
+    hardware: Hardware,
     cycles_per_second: f64,
 }
 
@@ -105,8 +105,7 @@ impl EnergyModel {
             blocks,
             groups: f64::from(cores.groups),
             units: f64::from(cores.groups) * f64::from(units.per_group),
-            contexts: units.contexts,
-            one_edge: units.edges_per_cycle == 1,
+            hardware: units.config(),
             cycles_per_second: f64::from(cores.clock_mhz) * 1e6,
         })
     }
@@ -118,7 +117,7 @@ impl EnergyModel {
         let blocks = self.blocks.as_ref();
         let compute = counts.operations.iter().filter(|&(_, count)| count > 0);
         let priced = |(operation, count): (Operation, u64)| {
-            blocks.map(|table| (operation.name(), count as f64 * table.operation_pj(operation, self.one_edge)))
+            blocks.map(|table| (operation.name(), count as f64 * table.operation_pj(operation, &self.hardware)))
         };
         let units = blocks.filter(|_| !counts.unit.is_empty());
         EnergyReport {
@@ -130,10 +129,8 @@ impl EnergyModel {
             l2_fill: counts.l2_fills as f64 * l2.fill,
             l2_leakage: l2.leakage_mw() * mw_to_pj,
             compute: compute.filter_map(priced).collect(),
-            unit_leakage: units
-                .map_or(0.0, |table| self.units * table.unit_leakage_mw(counts.unit, self.contexts, self.one_edge) * mw_to_pj),
-            unit_clock: units
-                .map_or(0.0, |table| self.units * table.unit_clock_pj(counts.unit, self.contexts, self.one_edge) * counts.cycles as f64),
+            unit_leakage: units.map_or(0.0, |table| self.units * table.unit_leakage_mw(counts.unit, &self.hardware) * mw_to_pj),
+            unit_clock: units.map_or(0.0, |table| self.units * table.unit_clock_pj(counts.unit, &self.hardware) * counts.cycles as f64),
             dram: match self.dram_line {
                 Some(line) => vec![("lines", counts.dram_lines as f64 * line)],
                 None => dram_pj.to_vec(),

@@ -16,6 +16,23 @@ use crate::block::tessellate::Tessellate;
 use crate::block::tree_base::TreeBase;
 use crate::block::tri_test::TriTest;
 use crate::block::widen_box::WidenBox;
+use crate::block::{Form, Timing, parts::Parts};
+
+/// Something of the block of an operation, whose type is `$block`.
+macro_rules! of_block {
+    ($operation:expr, $block:ident => $value:expr) => {
+        of_block!($operation, $block => $value; RaySetup, NodeAddress, TreeBase, ChildTest, LodTest, Tessellate, TriTest, HitDivide, HitSelect,
+            BaryMap, WidenBox, BoxTest, BoxTest32, ChildSort, BoundDecode)
+    };
+    ($operation:expr, $block:ident => $value:expr; $($name:ident),+) => {
+        match $operation {
+            $(Operation::$name => {
+                type $block = $name;
+                $value
+            })+
+        }
+    };
+}
 
 /// An operation of a block. Those of a block's parts are counted only where the part stands alone: `child_test` and `lod_test` contain theirs.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -74,23 +91,17 @@ impl Operation {
 
     /// Name of the block.
     pub fn name(self) -> &'static str {
-        match self {
-            Self::RaySetup => RaySetup::NAME,
-            Self::NodeAddress => NodeAddress::NAME,
-            Self::TreeBase => TreeBase::NAME,
-            Self::ChildTest => ChildTest::NAME,
-            Self::LodTest => LodTest::NAME,
-            Self::Tessellate => Tessellate::NAME,
-            Self::TriTest => TriTest::NAME,
-            Self::HitDivide => HitDivide::NAME,
-            Self::HitSelect => HitSelect::NAME,
-            Self::BaryMap => BaryMap::NAME,
-            Self::WidenBox => WidenBox::NAME,
-            Self::BoxTest => BoxTest::NAME,
-            Self::BoxTest32 => BoxTest32::NAME,
-            Self::ChildSort => ChildSort::NAME,
-            Self::BoundDecode => BoundDecode::NAME,
-        }
+        of_block!(self, B => B::NAME)
+    }
+
+    /// Timing of the block in hardware of this form.
+    pub fn timing(self, form: &Form) -> Timing {
+        of_block!(self, B => B::timing(form))
+    }
+
+    /// What the block is made of in hardware of this form.
+    pub fn parts(self, form: &Form) -> Parts {
+        of_block!(self, B => B::parts(form))
     }
 }
 

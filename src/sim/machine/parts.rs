@@ -1,6 +1,7 @@
 //! The parts of a machine, field by field as in its file.
 
-use crate::sim::unit::{EdgesPerCycle, UnitConfig};
+use crate::block::EdgesPerCycle;
+use crate::hardware::Hardware;
 use serde::{Deserialize, Serialize};
 
 /// Picoseconds per cycle at 1 MHz.
@@ -101,10 +102,10 @@ pub struct Units {
 }
 
 impl Units {
-    /// A unit, as the cycle model takes it.
-    pub fn config(&self) -> UnitConfig {
+    /// The hardware of a unit: what the machine does not say is as in `rtl/`.
+    pub fn config(&self) -> Hardware {
         let edges_per_cycle = if self.edges_per_cycle == 1 { EdgesPerCycle::One } else { EdgesPerCycle::Three };
-        UnitConfig { contexts: self.contexts as usize, edges_per_cycle }
+        Hardware { contexts: self.contexts as usize, edges_per_cycle, ..Hardware::default() }
     }
 }
 

@@ -3,8 +3,8 @@
 use super::Machine;
 use super::error::Breach;
 use super::parts::{Cache, Memory, Tables};
+use crate::hardware::MAX_CONTEXTS;
 use crate::num::LINE_BYTES;
-use crate::sim::unit::MAX_CONTEXTS;
 
 /// Groups, and cores of a group.
 const MOST_CORES: u32 = 1 << 12;

@@ -5,6 +5,7 @@ use super::hits::HitQueue;
 use super::ports::{Ports, Request, Steps, untag};
 use super::station::Station;
 use super::wheel::{Wheel, bits};
+use crate::block::Timing;
 use crate::block::bary_map::BaryMap;
 use crate::block::child_test::ChildTest;
 use crate::block::hit_divide::HitDivide;
@@ -14,8 +15,9 @@ use crate::block::node_address::NodeAddress;
 use crate::block::ray_setup::RaySetup;
 use crate::block::tessellate::Tessellate;
 use crate::block::tree_base::TreeBase;
-use crate::block::{Block, Timing};
-use crate::sim::unit::{Arbiter, MAX_CONTEXTS, Resource, State, UnitConfig};
+use crate::block::tri_test::TriTest;
+use crate::hardware::{Hardware, MAX_CONTEXTS};
+use crate::sim::unit::{Arbiter, Resource, State};
 use std::collections::VecDeque;
 
 /// A unit that takes rays as their steps.
@@ -50,19 +52,19 @@ impl<R: Steps> UnitTiming<R> {
     /// A unit behind its reset.
     ///
     /// # Panics
-    /// The number of contexts is not 1 to [`MAX_CONTEXTS`].
-    pub fn new(config: UnitConfig) -> Self {
-        assert!((1..=MAX_CONTEXTS).contains(&config.contexts), "a unit has 1 to {MAX_CONTEXTS} contexts, not {}", config.contexts);
+    /// There is no such hardware ([`Hardware::validate`]).
+    pub fn new(config: Hardware) -> Self {
+        config.validate().unwrap_or_else(|error| panic!("{error}"));
         let timing = |resource| match resource {
-            Resource::Setup => RaySetup::TIMING,
-            Resource::Fetch => NodeAddress::TIMING,
-            Resource::Base => TreeBase::TIMING,
-            Resource::Child => ChildTest::TIMING,
-            Resource::Lod => LodTest::TIMING,
-            Resource::Morph => Tessellate::TIMING,
-            Resource::Tri => config.edges_per_cycle.timing(),
-            Resource::Divide => HitDivide::TIMING,
-            Resource::Map => BaryMap::TIMING,
+            Resource::Setup => config.timing::<RaySetup>(),
+            Resource::Fetch => config.timing::<NodeAddress>(),
+            Resource::Base => config.timing::<TreeBase>(),
+            Resource::Child => config.timing::<ChildTest>(),
+            Resource::Lod => config.timing::<LodTest>(),
+            Resource::Morph => config.timing::<Tessellate>(),
+            Resource::Tri => config.timing::<TriTest>(),
+            Resource::Divide => config.timing::<HitDivide>(),
+            Resource::Map => config.timing::<BaryMap>(),
             Resource::Hit => Timing::pipelined(1),
         };
         Self {
@@ -73,7 +75,7 @@ impl<R: Steps> UnitTiming<R> {
             since: Default::default(),
             asked: 0,
             stations: Resource::ALL.map(|resource| Station::new(timing(resource))),
-            select: Station::new(HitSelect::TIMING),
+            select: Station::new(config.timing::<HitSelect>()),
             idle: u64::MAX >> (MAX_CONTEXTS - config.contexts),
             requests: VecDeque::new(),
             hits: HitQueue::default(),

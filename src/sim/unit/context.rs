@@ -6,14 +6,14 @@
 use super::closest::{Closest, Met};
 use super::records::child_entry;
 use super::register::Register;
-use super::state::{Fetch, State};
 use super::wires::{Cycle, DIVIDE_FOR_T, DIVIDE_FOR_V, DIVIDE_FOR_W};
 use crate::block::bary_map::NodeIndex;
 use crate::block::{child_test, lod_test, ray_setup, tessellate::child_triangle, tree_base};
 use crate::format::{L0Record, VertexData};
+use crate::hardware::ports::SceneConfig;
+use crate::hardware::{Fetch, Hardware, State};
 use crate::method::{Entry, Op, Split, TraversalStack, is_beyond};
-use crate::num::{BoundCode, MAX_LEVELS, Point, Ray, U, Wire};
-use crate::sim::ports::SceneConfig;
+use crate::num::{BoundCode, Point, Ray, U, Wire};
 
 /// The registers of a context; those with names of the RTL's `*_q`.
 #[derive(Clone, Default)]
@@ -51,10 +51,18 @@ pub struct Context {
     pub pending: Register<U<3>>,
     pub stack: TraversalStack,
     pub closest: Closest,
-    pub splits: [Split; MAX_LEVELS as usize - 1],
+    pub splits: Box<[Split]>,
+    /// Entries that the stack has room for.
+    pub room: usize,
 }
 
 impl Context {
+    /// An idle context of this hardware.
+    pub fn new(hardware: &Hardware) -> Self {
+        let splits = vec![Split::default(); hardware.split_triangles() as usize].into();
+        Self { splits, room: hardware.stack_entries() as usize, ..Self::default() }
+    }
+
     /// The node's children are of level N: triangles, not nodes.
     pub fn last_split(&self, scene: &SceneConfig) -> bool {
         self.level.get().get() + 1 == scene.levels.get()
@@ -219,6 +227,8 @@ impl Context {
                 State::Visit
             }
             _ => {
+                // The depths of a checked quad-BVH and of its trees, which are the hardware's at most, keep it from overflowing.
+                debug_assert!(self.stack.len() < self.room, "a quad-BVH deeper than the hardware's");
                 self.stack.step(Op::Push(child_entry(self, count as usize - 1)));
                 self.count.set(U::new(count - 1));
                 State::Push

@@ -3,7 +3,6 @@
 use super::TraversalUnit;
 use super::context::Context;
 use super::register::BlockCounts;
-use super::state::State;
 use crate::block::Block;
 use crate::block::bary_map::BaryMap;
 use crate::block::child_test::ChildTest;
@@ -15,6 +14,7 @@ use crate::block::ray_setup::RaySetup;
 use crate::block::tessellate::Tessellate;
 use crate::block::tree_base::TreeBase;
 use crate::block::tri_test::TriTest;
+use crate::hardware::State;
 
 /// What a unit did.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]

@@ -8,8 +8,8 @@ use super::error::UnitError;
 use super::memory::SceneMemory;
 use super::traffic::Traffic;
 use super::{Inputs, Outputs, TraversalUnit};
+use crate::hardware::ports::{HitOut, MemoryAnswer, MemoryRequest, RayIn};
 use crate::num::{Ray, U};
-use crate::sim::ports::{HitOut, MemoryAnswer, MemoryRequest, RayIn};
 use std::cmp::Reverse;
 use std::collections::BinaryHeap;
 

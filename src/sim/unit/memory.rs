@@ -1,8 +1,8 @@
 //! A scene's sections as the unit's memory, from some address on.
 
+use crate::hardware::ports::SceneConfig;
 use crate::method::lod::{BOUNDS, LodImage, NODES, RECORDS, VERTICES};
 use crate::num::{BoundScale, LineAddress, U};
-use crate::sim::ports::SceneConfig;
 use crate::step::{MemoryMap, SectionId};
 
 /// The lines of a model, as its [`MemoryMap`] has them.

@@ -2,13 +2,13 @@
 
 use super::context::Context;
 use super::records::children_in;
-use super::state::{Fetch, State};
 use super::wires::{DIVIDE_FOR_V, DIVIDE_FOR_W};
 use crate::block::tessellate::child_triangle;
 use crate::block::{bary_map, child_test, hit_divide, hit_select, lod_test, node_address, ray_setup, tessellate, tree_base, tri_test};
 use crate::format::VertexData;
+use crate::hardware::ports::{HitOut, SceneConfig};
+use crate::hardware::{Fetch, State};
 use crate::num::{LineAddress, RayT, U, Wire};
-use crate::sim::ports::{HitOut, SceneConfig};
 
 /// What contexts share, one arbiter each.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -1,9 +1,9 @@
 //! The four children in two memory lines (`rtl/child_records.sv`): boxes for [`child_test`], and one of them as a stack entry.
 
 use super::context::Context;
-use super::state::Fetch;
 use crate::block::child_test;
 use crate::format::{BoundData, BvhChild, ChildRef};
+use crate::hardware::Fetch;
 use crate::method::{Entry, quarter};
 use crate::num::{TNear, U};
 

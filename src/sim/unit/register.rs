@@ -1,6 +1,7 @@
 //! Registers without reset, elastic registers and pipelines: what `rtl/` is made of, around the functions of [`crate::block`].
 
 use crate::block::{Block, Timing};
+use crate::hardware::Hardware;
 use std::collections::VecDeque;
 
 /// A register without reset: unknown until it is first written, and then it keeps what it holds.
@@ -77,14 +78,9 @@ impl<B: Block> Pipeline<B>
 where
     B::Out: Copy,
 {
-    /// An empty pipeline of the block's own timing.
-    pub fn new() -> Self {
-        Self::with(B::TIMING)
-    }
-
-    /// An empty pipeline of another timing.
-    pub fn with(timing: Timing) -> Self {
-        Self { timing, items: VecDeque::new(), wait: 0, counts: BlockCounts::default() }
+    /// An empty pipeline of the block's timing in this hardware.
+    pub fn new(hardware: &Hardware) -> Self {
+        Self { timing: hardware.timing::<B>(), items: VecDeque::new(), wait: 0, counts: BlockCounts::default() }
     }
 
     /// Whether it would take an input in this cycle.

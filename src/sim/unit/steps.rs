@@ -2,12 +2,12 @@
 
 use super::environment::UnitPort;
 use super::records::child_entry;
-use super::state::State;
 use super::{Inputs, Outputs, SceneMemory, TraversalUnit};
 use crate::block::{lod_test, tri_test};
+use crate::hardware::State;
+use crate::hardware::ports::HitOut;
 use crate::method::{Entry, Op, is_beyond};
 use crate::num::{LineAddress, U};
-use crate::sim::ports::HitOut;
 use std::fmt;
 
 /// One thing that happened.

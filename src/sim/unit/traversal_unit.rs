@@ -5,9 +5,7 @@ use super::closest::Met;
 use super::context::Context;
 use super::operands::Resource;
 use super::register::{Pipeline, Register, Stage};
-use super::state::State;
 use super::wires::{Cycle, DIVIDE_FOR_T, Link, Quotient, Served, Wires};
-use super::{MAX_CONTEXTS, UnitConfig};
 use crate::block::bary_map::BaryMap;
 use crate::block::child_test::ChildTest;
 use crate::block::hit_divide::{self, HitDivide};
@@ -18,8 +16,9 @@ use crate::block::ray_setup::RaySetup;
 use crate::block::tessellate::Tessellate;
 use crate::block::tree_base::TreeBase;
 use crate::block::tri_test::TriTest;
+use crate::hardware::ports::{HitOut, MemoryAnswer, MemoryRequest, RayIn, SceneConfig};
+use crate::hardware::{Hardware, State};
 use crate::num::{RayT, U};
-use crate::sim::ports::{HitOut, MemoryAnswer, MemoryRequest, RayIn, SceneConfig};
 use std::collections::VecDeque;
 
 /// Output ports in a cycle.
@@ -77,23 +76,24 @@ impl TraversalUnit {
     /// A unit behind its reset.
     ///
     /// # Panics
-    /// The number of contexts is not 1 to [`MAX_CONTEXTS`].
-    pub fn new(config: UnitConfig, scene: SceneConfig) -> Self {
-        assert!((1..=MAX_CONTEXTS).contains(&config.contexts), "a unit has 1 to {MAX_CONTEXTS} contexts, not {}", config.contexts);
+    /// There is no such hardware ([`Hardware::validate`]), or the scene has more levels than it.
+    pub fn new(config: Hardware, scene: SceneConfig) -> Self {
+        config.validate().unwrap_or_else(|error| panic!("{error}"));
+        assert!(scene.levels.get() <= u64::from(config.levels), "{} levels, but the hardware is for {}", scene.levels.get(), config.levels);
         Self {
             scene,
-            contexts: vec![Context::default(); config.contexts],
+            contexts: vec![Context::new(&config); config.contexts],
             arbiters: Default::default(),
-            ray_setup: Pipeline::new(),
-            node_address: Pipeline::new(),
-            tree_base: Pipeline::new(),
-            child_test: Pipeline::new(),
-            lod_test: Pipeline::new(),
-            tessellate: Pipeline::new(),
-            tri_test: Pipeline::with(config.edges_per_cycle.timing()),
-            hit_divide: Pipeline::new(),
-            hit_select: Pipeline::new(),
-            bary_map: Pipeline::new(),
+            ray_setup: Pipeline::new(&config),
+            node_address: Pipeline::new(&config),
+            tree_base: Pipeline::new(&config),
+            child_test: Pipeline::new(&config),
+            lod_test: Pipeline::new(&config),
+            tessellate: Pipeline::new(&config),
+            tri_test: Pipeline::new(&config),
+            hit_divide: Pipeline::new(&config),
+            hit_select: Pipeline::new(&config),
+            bary_map: Pipeline::new(&config),
             queue: VecDeque::new(),
             candidate: Register::default(),
             chosen: Register::default(),

@@ -2,8 +2,8 @@
 
 use super::closest::Met;
 use crate::block::{bary_map, child_test, hit_divide, hit_select, lod_test, node_address, ray_setup, tessellate, tree_base, tri_test};
+use crate::hardware::ports::{HitOut, MemoryAnswer, RayIn};
 use crate::num::RayT;
-use crate::sim::ports::{HitOut, MemoryAnswer, RayIn};
 
 /// What a division is for: the upper two bits of its tag.
 pub const DIVIDE_FOR_T: u16 = 0;

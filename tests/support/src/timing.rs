@@ -1,12 +1,13 @@
 //! Rays as steps, and what drives the timing of a unit with them: the environment of the cycle model, or events alone.
 
+use lodray::hardware::Hardware;
+use lodray::hardware::ports::{HitOut, MemoryRequest};
 use lodray::method::ClosestHit;
 use lodray::method::lod::{LodImage, LodTraverser};
 use lodray::num::{Ray, U};
-use lodray::sim::ports::{HitOut, MemoryRequest};
 use lodray::sim::timing::{Ports, RayCursor, Request, UnitTiming};
 use lodray::sim::unit::environment::UnitPort;
-use lodray::sim::unit::{Inputs, Outputs, SceneMemory, UnitConfig};
+use lodray::sim::unit::{Inputs, Outputs, SceneMemory};
 use lodray::step::{Batch, Recorder};
 use std::collections::VecDeque;
 
@@ -30,7 +31,7 @@ pub struct Timed<'a> {
 }
 
 impl<'a> Timed<'a> {
-    pub fn new(config: UnitConfig, memory: &'a SceneMemory<'a>, batch: &'a Batch, skip: bool) -> Self {
+    pub fn new(config: Hardware, memory: &'a SceneMemory<'a>, batch: &'a Batch, skip: bool) -> Self {
         Self { unit: UnitTiming::new(config), ticks: 0, batch, memory, cycle: 0, skip }
     }
 

@@ -171,13 +171,14 @@ pub fn surfer_commands() -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::sim::ports::SceneConfig;
+    use crate::hardware::Hardware;
+    use crate::hardware::ports::SceneConfig;
+    use crate::sim::unit::TraversalUnit;
     use crate::sim::unit::wave::Waves;
-    use crate::sim::unit::{TraversalUnit, UnitConfig};
 
     #[test]
     fn every_signal_shown_is_in_the_waveform() {
-        let unit = TraversalUnit::new(UnitConfig::one_context(), SceneConfig::default());
+        let unit = TraversalUnit::new(Hardware::one_context(), SceneConfig::default());
         let waves = Waves::new(unit).unwrap();
         let shown: Vec<String> = GROUPS.iter().flat_map(|(_, rows)| signals(rows)).map(|(path, _)| path).collect();
         assert!(shown.len() > 50);

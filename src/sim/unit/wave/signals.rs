@@ -1,9 +1,9 @@
 //! The signals of the waveform: names, widths and values, in one walk over the unit.
 
 use crate::block::{Block, child_test, hit_select, lod_test, tessellate};
+use crate::hardware::ports::{HitOut, MemoryAnswer, MemoryRequest, RayIn, SceneConfig};
 use crate::method::{Entry, STACK_ENTRIES};
 use crate::num::{BitVec, Layout, Point, Wire};
-use crate::sim::ports::{HitOut, MemoryAnswer, MemoryRequest, RayIn, SceneConfig};
 use crate::sim::unit::context::Context;
 use crate::sim::unit::register::Pipeline;
 use crate::sim::unit::wires::{Link, Wires};

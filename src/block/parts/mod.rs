@@ -1,0 +1,53 @@
+//! What blocks are made of: their arithmetic, their registers, and what they share in `rtl/` (multipliers, widths between stages, cycles of parts).
+//!
+//! The counts stand beside each block ([`Block::parts`](super::Block::parts)), as formulas in the widths of its types; `tests/registers.rs` holds the registers
+//! against those that the RTL declares, and against the netlists of `docs/hardware.md`.
+
+mod multiplier;
+mod registers;
+
+pub use multiplier::{LIMB, cross_product_latency, dot_product_latency, multiplier_latency};
+pub(super) use multiplier::{Multiplier, cross_product, dot_product};
+pub use registers::Registers;
+
+use crate::num::{Direction, EdgeState, Point, Wire};
+
+/// What a block is made of and an operation of it does: each comparison is a sum, each step of a shifter a selection.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Parts {
+    /// Products of an operation: how many, bits of one factor, bits of the other.
+    pub products: Vec<[u32; 3]>,
+    /// Bits added or compared in an operation.
+    pub add_bits: u32,
+    /// Bits selected, one of two, in an operation.
+    pub select_bits: u32,
+    /// Registers.
+    pub registers: Registers,
+}
+
+/// Bits of the tag of a block that stands alone, as in `docs/hardware.md` and in the tests: the RTL's default.
+pub const TAG: u32 = 8;
+
+/// Difference of two coordinates.
+pub const RELATIVE: u32 = Point::WIDTH / 3 + 1;
+/// Component of p x q: |p_i q_j| < 2^64, and two of them.
+pub const NORMAL: u32 = 2 * RELATIVE;
+/// A component of a direction.
+pub const COMPONENT: u32 = Direction::WIDTH / 3;
+/// l = (p - x).d / 2^30 of the LOD test, signed: below 2^62.8 and its fraction dropped.
+pub const DISTANCE: u32 = RELATIVE + COMPONENT - 30;
+/// D of the LOD test, clamped to this width.
+pub const TOLERANCE: u32 = 34;
+
+/// Registers of the products of an edge function.
+pub const EDGE_PRODUCT_STAGES: u32 = 2;
+/// Cycles of `entry_distance`: factors, products, the shift, and the largest of three.
+pub const ENTRY_DISTANCE_LATENCY: u32 = 5;
+/// Cycles of `edge_function`: p x q, and its product with d.
+pub const EDGE_FUNCTION_LATENCY: u32 = cross_product_latency(RELATIVE) + EDGE_PRODUCT_STAGES - 1 + dot_product_latency(NORMAL, COMPONENT);
+/// Cycles of `tri_decide`: signs, decision, numbers.
+pub const TRI_DECIDE_LATENCY: u32 = 3;
+/// Cycles of `cone_tolerance`: factors, l slope, the sum, a shift in two steps, the clamp.
+pub const CONE_TOLERANCE_LATENCY: u32 = 1 + multiplier_latency(DISTANCE, 18) + 4;
+/// Cycles of `edge_opening`: the comparison, and a step of division for each bit of s below 1.
+pub const EDGE_OPENING_LATENCY: u32 = 1 + EdgeState::WIDTH - 1;

@@ -1,0 +1,68 @@
+//! The registers of a ray context (`rtl/ray_context.sv`), one by one.
+
+use super::Hardware;
+use super::ports::{MemoryAnswer, RayIn};
+use crate::block::{bary_map, child_test, hit_select, lod_test, parts::Registers, ray_setup, tree_base, tri_test};
+use crate::method::Entry;
+use crate::num::{Bary, BoundCode, Point, RayT, Wire};
+
+/// Bits of a tree's number, of a level, and of a count up to four.
+const TREE: u32 = 28;
+const LEVEL: u32 = 4;
+const COUNT: u32 = 3;
+/// Bits of the numbers of states, of what is fetched, and of a child.
+const STATE: u32 = 5;
+const FETCH: u32 = 2;
+const CHILD: u32 = 2;
+/// Lines that a context waits for at most.
+const LINES: u32 = 3;
+
+impl Hardware {
+    /// Bits of the registers of a ray context: `rtl/`'s if it `has_levels`. Without them it has no split triangles, and its stack is as deep as the quad-BVH and
+    /// holds neither levels nor bound codes.
+    pub fn context_registers(&self, has_levels: bool) -> Registers {
+        let splits = if has_levels { self.splits() } else { 0 };
+        Registers::bits(self.place() + self.stack(has_levels) + splits + self.lines() + self.closest())
+    }
+
+    /// Bits of a node's number within its level.
+    const fn node(&self) -> u32 {
+        2 * self.levels
+    }
+
+    /// State, ray, constants; the entry under visit, the node, its triangle and what was found out about it; children and triangles to come.
+    fn place(&self) -> u32 {
+        let ray = RayIn::WIDTH + ray_setup::Out::WIDTH;
+        let node = TREE + LEVEL + self.node() + 6 * Point::WIDTH + 3 * BoundCode::WIDTH + lod_test::Out::WIDTH + tree_base::Out::WIDTH;
+        let children = child_test::Out::WIDTH + COUNT;
+        // Whether it is four triangles; how many are left and pending, and the next.
+        let triangles = 1 + 2 * COUNT + CHILD;
+        STATE + FETCH + ray + Entry::WIDTH + node + children + triangles
+    }
+
+    /// Entries and length.
+    fn stack(&self, has_levels: bool) -> u32 {
+        let levels = Self { levels: if has_levels { self.levels } else { 0 }, ..*self };
+        let entries = levels.stack_entries();
+        let width = if has_levels { Entry::WIDTH } else { Entry::WIDTH - LEVEL - 3 * BoundCode::WIDTH };
+        entries * width + (entries + 1).next_power_of_two().ilog2()
+    }
+
+    /// A triangle with its inserted vertices for each level that splits into nodes.
+    fn splits(&self) -> u32 {
+        self.split_triangles() * 6 * Point::WIDTH
+    }
+
+    /// The lines, which of them are wanted and waited for, and the same of the tree's base.
+    fn lines(&self) -> u32 {
+        LINES * MemoryAnswer::FIELDS[1].width + 2 * LINES + 2
+    }
+
+    /// The closest hit: whether there is one, t, id, numerators, weights, and the full-resolution triangle.
+    fn closest(&self) -> u32 {
+        let triangle = TREE + LEVEL + self.node();
+        let numerators = 3 * tri_test::EdgeFunction::WIDTH;
+        let front = 1;
+        1 + RayT::WIDTH + hit_select::FullId::WIDTH + triangle + front + numerators + 3 * Bary::WIDTH + bary_map::Out::WIDTH
+    }
+}

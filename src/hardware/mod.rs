@@ -1,0 +1,134 @@
+//! A hardware as one value: how deep its hierarchies are, how many rays it has under way, how many edges it tests in a cycle.
+//!
+//! Everything that depends on such a choice follows from [`Hardware`]: the timing and the parts of each block ([`Block::timing`],
+//! [`Block::parts`]), the sizes of the cycle model, the registers of a ray context ([`Hardware::context_registers`]), and `rtl/lod_pkg.sv`
+//! ([`Hardware::package`]), from which the RTL takes all its sizes. What goes in and out of a traversal unit ([`ports`]) is the same for
+//! every value, so that one memory image, one testbench and one cycle model serve them all: a hardware for fewer levels takes the same bits
+//! and has fewer registers inside.
+
+mod context;
+mod package;
+pub mod ports;
+mod state;
+
+pub use state::{Fetch, State};
+
+use crate::block::{Block, EdgesPerCycle, Form, Timing};
+use crate::num::{MAX_BVH_DEPTH, MAX_LEVELS};
+
+/// The widest number of a context: it and two bits of place make the tag of a memory request ([`ports::MemoryRequest`]).
+const MAX_CONTEXT_BITS: u32 = 6;
+/// The most contexts that a unit can have.
+pub const MAX_CONTEXTS: usize = 1 << MAX_CONTEXT_BITS;
+/// The fewest levels: a tree of one split has no nodes below its root, and no register for its triangles.
+const MIN_LEVELS: u32 = 2;
+
+/// A hardware: `rtl/lod_pkg.sv` as it stands is that of the default.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Hardware {
+    /// The most 1-to-4 splits N that a model may have, 2 to [`MAX_LEVELS`].
+    pub levels: u32,
+    /// The most quad-BVH nodes on a path from the root to a tree, 1 to [`MAX_BVH_DEPTH`].
+    pub bvh_depth: u32,
+    /// Ray contexts of a traversal unit, 1 to 2^`context_bits`.
+    pub contexts: usize,
+    /// Bits of a context's number, 1 to 6.
+    pub context_bits: u32,
+    /// Edge functions that the triangle test evaluates in a cycle.
+    pub edges_per_cycle: EdgesPerCycle,
+}
+
+impl Default for Hardware {
+    fn default() -> Self {
+        Self::DEFAULT
+    }
+}
+
+/// A field of a hardware that cannot be.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("hardware: {field} must be {least} to {most}, but is {value}")]
+pub struct HardwareError {
+    field: &'static str,
+    least: u64,
+    most: u64,
+    value: u64,
+}
+
+impl Hardware {
+    /// The default as a constant.
+    pub const DEFAULT: Self = Self {
+        levels: MAX_LEVELS,
+        bvh_depth: MAX_BVH_DEPTH,
+        contexts: 4,
+        context_bits: MAX_CONTEXT_BITS,
+        edges_per_cycle: EdgesPerCycle::Three,
+    };
+
+    /// A unit for one ray at a time, the default in all else.
+    pub const fn one_context() -> Self {
+        Self { contexts: 1, ..Self::DEFAULT }
+    }
+
+    /// Checks every field.
+    ///
+    /// # Errors
+    /// The first field that is out of its range.
+    pub fn validate(&self) -> Result<(), HardwareError> {
+        let fields = [
+            ("levels", u64::from(self.levels), u64::from(MIN_LEVELS), u64::from(MAX_LEVELS)),
+            ("bvh_depth", u64::from(self.bvh_depth), 1, u64::from(MAX_BVH_DEPTH)),
+            ("context_bits", u64::from(self.context_bits), 1, u64::from(MAX_CONTEXT_BITS)),
+            ("contexts", self.contexts as u64, 1, 1 << self.context_bits.min(MAX_CONTEXT_BITS)),
+        ];
+        match fields.into_iter().find(|(_, value, least, most)| !(least..=most).contains(&value)) {
+            Some((field, value, least, most)) => Err(HardwareError { field, least, most, value }),
+            None => Ok(()),
+        }
+    }
+
+    /// What the blocks of this hardware depend on.
+    pub const fn form(&self) -> Form {
+        Form { levels: self.levels, edges_per_cycle: self.edges_per_cycle }
+    }
+
+    /// Timing of a block.
+    pub fn timing<B: Block>(&self) -> Timing {
+        B::timing(&self.form())
+    }
+
+    /// Entries of a traversal stack: each level of the quad-BVH and of a tree leaves at most three siblings waiting.
+    pub const fn stack_entries(&self) -> u32 {
+        3 * (self.bvh_depth + self.levels) + 1
+    }
+
+    /// Split triangles that a context keeps: one of each level but the last, whose children are no nodes.
+    pub const fn split_triangles(&self) -> u32 {
+        self.levels - 1
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::num::Wire;
+
+    #[test]
+    fn a_value_out_of_range_is_named() {
+        let wrong = |hardware: Hardware| hardware.validate().expect_err("an error").to_string();
+        let default = Hardware::default();
+        assert_eq!(default.validate(), Ok(()));
+        assert_eq!(wrong(Hardware { levels: 11, ..default }), "hardware: levels must be 2 to 10, but is 11");
+        assert_eq!(wrong(Hardware { levels: 1, ..default }), "hardware: levels must be 2 to 10, but is 1");
+        assert_eq!(wrong(Hardware { bvh_depth: 25, ..default }), "hardware: bvh_depth must be 1 to 24, but is 25");
+        assert_eq!(wrong(Hardware { context_bits: 7, ..default }), "hardware: context_bits must be 1 to 6, but is 7");
+        assert_eq!(wrong(Hardware { contexts: 0, ..default }), "hardware: contexts must be 1 to 64, but is 0");
+        assert_eq!(wrong(Hardware { contexts: 5, context_bits: 2, ..default }), "hardware: contexts must be 1 to 4, but is 5");
+    }
+
+    #[test]
+    fn the_most_is_what_the_functional_traverser_has_room_for() {
+        assert_eq!(Hardware::default().stack_entries() as usize, crate::method::STACK_ENTRIES);
+        assert_eq!(ports::MemoryRequest::default().tag.get(), 0);
+        assert_eq!(MAX_CONTEXT_BITS + 2, ports::MemoryRequest::FIELDS[0].width);
+    }
+}

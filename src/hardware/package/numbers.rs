@@ -1,0 +1,138 @@
+//! The numbers of the package, each with what it is.
+
+use crate::block::bary_map::{BaryMap, NodeIndex};
+use crate::block::bound_decode::{Bound, BoundDecode};
+use crate::block::box_test::BoxTest;
+use crate::block::box_test32::BoxTest32;
+use crate::block::child_sort::ChildSort;
+use crate::block::hit_divide::HitDivide;
+use crate::block::hit_select::{FullId, HitSelect};
+use crate::block::lod_test::LodTest;
+use crate::block::node_address::NodeAddress;
+use crate::block::ray_setup::RaySetup;
+use crate::block::tessellate::Tessellate;
+use crate::block::tree_base::TreeBase;
+use crate::block::tri_test::{EdgeFunction, TNumerator, TriTest};
+use crate::block::widen_box::WidenBox;
+use crate::block::{Block, EdgesPerCycle, parts};
+use crate::hardware::Hardware;
+use crate::num::{BOX_SHIFT, Bary, BoundCode, EdgeState, LineAddress, RayT, S_ONE, T_NEAR_TO_T_SHIFT, TNear, Wire};
+use std::fmt::Write;
+
+/// A group of numbers under a heading; their comments stand in one column.
+struct Group {
+    heading: &'static str,
+    numbers: Vec<(String, String, &'static str)>,
+}
+
+impl Group {
+    fn new(heading: &'static str) -> Self {
+        Self { heading, numbers: Vec::new() }
+    }
+
+    /// A number, or a formula in numbers before it.
+    fn put(mut self, name: &str, value: impl ToString, comment: &'static str) -> Self {
+        self.numbers.push((name.to_owned(), value.to_string(), comment));
+        self
+    }
+
+    /// Latency and, where it is not 1, interval of a block.
+    fn timing<B: Block>(self, hardware: &Hardware) -> Self {
+        let (name, timing) = (B::NAME.to_uppercase(), hardware.timing::<B>());
+        let group = self.put(&format!("{name}_LATENCY"), timing.latency, "");
+        if timing.interval == 1 { group } else { group.put(&format!("{name}_INTERVAL"), timing.interval, "") }
+    }
+
+    fn print(&self, out: &mut String) {
+        let line = |(name, value, _): &(String, String, &str)| format!("  localparam int unsigned {name} = {value};");
+        let longest = self.numbers.iter().filter(|number| !number.2.is_empty()).map(|number| line(number).len()).max().unwrap_or(0);
+        let _ = write!(out, "\n  // {}\n", self.heading);
+        for number in &self.numbers {
+            let _ = match number.2 {
+                "" => writeln!(out, "{}", line(number)),
+                comment => writeln!(out, "{:longest$}  // {comment}", line(number)),
+            };
+        }
+    }
+}
+
+/// Prints all numbers but the structs' widths.
+pub(super) fn print(hardware: &Hardware, out: &mut String) {
+    let edges = match hardware.edges_per_cycle {
+        EdgesPerCycle::One => 1,
+        EdgesPerCycle::Three => 3,
+    };
+    let of_hardware = Group::new(
+        "This hardware: `Hardware` in Rust, which prints this file. All that follows from these is made smaller or larger with them.",
+    )
+    .put("MAX_LEVELS", hardware.levels, "splits N of a model")
+    .put("MAX_BVH_DEPTH", hardware.bvh_depth, "quad-BVH nodes on a path from the root to a tree")
+    .put("CONTEXTS", hardware.contexts, "rays under way in a traversal unit, if its parameter does not say otherwise")
+    .put("CONTEXT_W", hardware.context_bits, "bits of a context's number")
+    .put("EDGES_PER_CYCLE", edges, "edge functions that tri_test evaluates in a cycle, if its parameter does not say otherwise");
+    let widths = Group::new("Widths (docs/numbers.md).")
+        .put("RAY_T_W", RayT::WIDTH, "t in steps of 2^-32")
+        .put("T_NEAR_W", TNear::WIDTH, "t_near in steps of 2^16 units")
+        .put("BARY_W", Bary::WIDTH, "2^31 = 1")
+        .put("EDGE_STATE_W", EdgeState::WIDTH, "256 = 1")
+        .put("DISTANCE_W", parts::DISTANCE, "l = (p - x).d / 2^30, signed: 64 - 30 bits")
+        .put("TOLERANCE_W", parts::TOLERANCE, "D, clamped to this width")
+        .put("BOUND_CODE_W", BoundCode::WIDTH, "")
+        .put("BOUND_W", Bound::WIDTH, "|q - m| < 2^32.8")
+        .put("LINE_ADDRESS_W", LineAddress::WIDTH, "2 TiB of 32-byte lines")
+        .put("NODE_INDEX_W", NodeIndex::WIDTH, "of a node at the ports: 4^10 nodes on the last level that there can be")
+        .put("FULL_ID_W", FullId::WIDTH, "28 bits of tree, 2 of each of ten levels")
+        .put("RELATIVE_W", parts::RELATIVE, "difference of two 32-bit coordinates")
+        .put("NORMAL_W", parts::NORMAL, "component of p x q: |p_i q_j| < 2^64, two of them")
+        .put("EDGE_FUNCTION_W", EdgeFunction::WIDTH, "|p x q| |d| < 2^96")
+        .put("SIGNED_EDGE_W", "EDGE_FUNCTION_W + 1", "")
+        .put("T_NUMERATOR_W", TNumerator::WIDTH, "|a| |b| |c| < 2^98.4")
+        .put("SIGNED_T_NUMERATOR_W", "T_NUMERATOR_W + 1", "");
+    let sizes = Group::new("Sizes.")
+        .put("MAX_CONTEXTS", 1u32 << hardware.context_bits, "that CONTEXT_W can number")
+        .put(
+            "STACK_ENTRIES",
+            hardware.stack_entries(),
+            "3 (MAX_BVH_DEPTH + MAX_LEVELS) + 1: each level leaves at most three siblings waiting",
+        )
+        .put("SPLIT_TRIANGLES", hardware.split_triangles(), "of a context: one of each level that splits into nodes")
+        .put("NODE_W", 2 * hardware.levels, "of a node within its level, where it is kept: two bits of each level")
+        .put("TREE_LINES_W", 2 * hardware.levels - 1, "of a tree's number of vertex lines, (4^N - 1) / 3");
+    let scales =
+        Group::new("Scales.").put("BOX_SHIFT", BOX_SHIFT, "").put("T_NEAR_TO_T_SHIFT", T_NEAR_TO_T_SHIFT, "").put("S_ONE", S_ONE, "");
+    let cycles = Group::new(
+        "Cycles from an input taken to its output offered, and (where not 1) from one input taken to the next: `Block::timing` in Rust.",
+    )
+    .timing::<BaryMap>(hardware)
+    .timing::<BoundDecode>(hardware)
+    .timing::<BoxTest>(hardware)
+    .timing::<BoxTest32>(hardware)
+    .timing::<ChildSort>(hardware)
+    .timing::<HitDivide>(hardware)
+    .timing::<HitSelect>(hardware)
+    .timing::<LodTest>(hardware)
+    .timing::<NodeAddress>(hardware)
+    .timing::<RaySetup>(hardware)
+    .timing::<Tessellate>(hardware)
+    .timing::<TreeBase>(hardware)
+    .put("TRI_TEST_LATENCY", TriTest::TIMING.latency, "with EDGES_PER_CYCLE = 3")
+    .put("TRI_TEST_1_LATENCY", TriTest::ONE_EDGE.latency, "with EDGES_PER_CYCLE = 1")
+    .put("TRI_TEST_1_INTERVAL", TriTest::ONE_EDGE.interval, "")
+    .timing::<WidenBox>(hardware)
+    .put("CHILD_TEST_LATENCY", "WIDEN_BOX_LATENCY + BOX_TEST_LATENCY + CHILD_SORT_LATENCY", "");
+    let parts = Group::new("Cycles of parts of blocks.")
+        .put("ENTRY_DISTANCE_LATENCY", parts::ENTRY_DISTANCE_LATENCY, "of the box tests")
+        .put("EDGE_PRODUCT_STAGES", parts::EDGE_PRODUCT_STAGES, "registers of the products of an edge function")
+        .put("EDGE_FUNCTION_LATENCY", parts::EDGE_FUNCTION_LATENCY, "of tri_test")
+        .put("TRI_DECIDE_LATENCY", parts::TRI_DECIDE_LATENCY, "of tri_test")
+        .put("CONE_TOLERANCE_LATENCY", parts::CONE_TOLERANCE_LATENCY, "of lod_test")
+        .put("EDGE_OPENING_LATENCY", parts::EDGE_OPENING_LATENCY, "of lod_test")
+        .put(
+            "MULTIPLIER_LIMB_W",
+            parts::LIMB,
+            "a factor of multiplier is cut into limbs of so many bits, the highest signed with up to one more",
+        );
+    for group in [of_hardware, widths, sizes, scales, cycles, parts] {
+        group.print(out);
+    }
+}

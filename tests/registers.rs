@@ -1,0 +1,89 @@
+//! The registers that blocks and contexts are counted to have: those that the RTL declares, as slang finds them, and those that synthesis leaves, as
+//! `docs/hardware.md` has them.
+
+use lodray::block::EdgesPerCycle;
+use lodray::block::parts::Registers;
+use lodray::hardware::Hardware;
+use lodray::sim::energy::Operation;
+use lodray_test_support::hardware::{MIDDLE, OTHERS, SMALL};
+
+/// Blocks whose registers depend on the levels.
+const BY_LEVEL: [Operation; 3] = [Operation::BaryMap, Operation::HitSelect, Operation::TreeBase];
+
+fn counted(operation: Operation, hardware: &Hardware) -> Registers {
+    operation.parts(&hardware.form()).registers
+}
+
+fn declared(top: &str, hardware: &Hardware) -> u32 {
+    tb::registers(top, &[], hardware).unwrap_or_else(|error| panic!("{top}: {error}"))
+}
+
+#[test]
+fn blocks_and_contexts_declare_the_registers_that_are_counted() {
+    let default = Hardware::default();
+    let one_edge = Hardware { edges_per_cycle: EdgesPerCycle::One, ..default };
+    let mut all: Vec<(Operation, Hardware)> = Operation::ALL.map(|operation| (operation, default)).to_vec();
+    all.push((Operation::TriTest, one_edge));
+    all.extend(OTHERS.iter().flat_map(|&hardware| BY_LEVEL.map(|operation| (operation, hardware))));
+    let mut wrong = Vec::new();
+    for (operation, hardware) in &all {
+        let (rtl, rust) = (declared(operation.name(), hardware), counted(*operation, hardware));
+        println!("{}: {rtl} bits declared, {} kept; {hardware:?}", operation.name(), rust.kept);
+        if rtl != rust.declared {
+            wrong.push(format!("{}: {rtl} bits in the RTL, {} counted; {hardware:?}", operation.name(), rust.declared));
+        }
+    }
+    for hardware in [default, SMALL, MIDDLE] {
+        let (rtl, rust) = (declared("ray_context", &hardware), hardware.context_registers(true));
+        println!("ray_context: {rtl} bits; {hardware:?}");
+        if rtl != rust.declared {
+            wrong.push(format!("ray_context: {rtl} bits in the RTL, {} counted; {hardware:?}", rust.declared));
+        }
+    }
+    assert!(wrong.is_empty(), "{}", wrong.join("\n"));
+}
+
+/// Flip-flops of the generic netlist of a block, as `scripts/synth --doc` wrote them.
+fn flip_flops(block: &str) -> u32 {
+    let table = include_str!("../docs/hardware.md");
+    let row = table.lines().find(|line| line.starts_with(&format!("| `{block}` |"))).unwrap_or_else(|| panic!("no row for {block}"));
+    row.split('|').nth(3).and_then(|cell| cell.trim().replace(',', "").parse().ok()).unwrap_or_else(|| panic!("no number in {row}"))
+}
+
+#[test]
+fn what_is_kept_are_the_flip_flops_of_the_netlists() {
+    // Bits that synthesis drops besides: products with a limb of one bit are no multiplications, and some signs repeat. At most 1 in 180.
+    let bound_decode = 2;
+    let edge_function = 22;
+    let besides = |block: &str| match block {
+        "bound_decode" => bound_decode,
+        "lod_test" => 3 * bound_decode,
+        "tree_base" => 2,
+        "tri_test" => 3 * edge_function,
+        "tri_test-EDGES_PER_CYCLE=1" => edge_function,
+        _ => 0,
+    };
+    let default = Hardware::default();
+    let one_edge = Hardware { edges_per_cycle: EdgesPerCycle::One, ..default };
+    let mut wrong = Vec::new();
+    let named = Operation::ALL.map(|operation| (operation.name(), counted(operation, &default)));
+    for (name, registers) in named.into_iter().chain([("tri_test-EDGES_PER_CYCLE=1", counted(Operation::TriTest, &one_edge))]) {
+        println!("{name}: {} declared, {} kept, {} in the netlist", registers.declared, registers.kept, flip_flops(name));
+        if registers.kept != flip_flops(name) + besides(name) {
+            wrong.push(format!("{name}: {} counted, {} in the netlist", registers.kept, flip_flops(name)));
+        }
+    }
+    assert!(wrong.is_empty(), "{}", wrong.join("\n"));
+}
+
+#[test]
+fn hardware_for_less_is_smaller() {
+    let [default, small] = [Hardware::default(), SMALL].map(|hardware| hardware.context_registers(true).kept);
+    println!("a context: {default} bits for 10 levels below 24, {small} for {} below {}", SMALL.levels, SMALL.bvh_depth);
+    assert!(small * 10 < default * 7);
+    for operation in BY_LEVEL {
+        let [default, small] = [Hardware::default(), SMALL].map(|hardware| counted(operation, &hardware).kept);
+        println!("{}: {default} and {small} bits", operation.name());
+        assert!(small < default);
+    }
+}

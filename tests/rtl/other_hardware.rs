@@ -1,0 +1,53 @@
+//! The blocks of other hardware than the default: from the package that it prints, with its timings.
+
+use crate::suite::Suite;
+use crate::{
+    bary_map, bound_decode, box_test, box_test32, child_sort, child_test, hit_divide, hit_select, lod_test, node_address, ray_setup,
+    tessellate, traversal_stack, tree_base, tri_test, widen_box,
+};
+use lodray::block::Block;
+use lodray::hardware::Hardware;
+use lodray_test_support::hardware::{OTHERS, SMALL};
+use std::fmt::Debug;
+use tb::Mode;
+
+/// Enough for every event and spread.
+const TRANSACTIONS: u64 = 100_000;
+
+/// The block of each of these, its suite made for so many levels.
+fn play<B: Block>(hardware: &[Hardware], suite: impl Fn(u64) -> Suite<B>)
+where
+    B::In: Debug,
+    B::Out: Debug,
+{
+    for &hardware in hardware {
+        let suite = suite(u64::from(hardware.levels)).of(hardware);
+        suite.run_some(Mode::Free, TRANSACTIONS);
+        suite.run_some(Mode::Stalled, TRANSACTIONS);
+    }
+}
+
+#[test]
+fn blocks_that_depend_on_the_levels() {
+    play(&OTHERS, bary_map::suite);
+    play(&OTHERS, hit_select::suite);
+    play(&OTHERS, node_address::suite);
+    play(&OTHERS, tessellate::suite);
+    play(&OTHERS, tree_base::suite);
+    OTHERS.iter().for_each(|hardware| traversal_stack::play(hardware, TRANSACTIONS));
+}
+
+#[test]
+fn blocks_that_do_not() {
+    // Of one of the others: the text of these is the same for all but for the edges of `tri_test`.
+    play(&[SMALL], |_| bound_decode::suite());
+    play(&[SMALL], |_| box_test::suite());
+    play(&[SMALL], |_| box_test32::suite());
+    play(&[SMALL], |_| child_sort::suite());
+    play(&[SMALL], |_| child_test::suite());
+    play(&[SMALL], |_| hit_divide::suite());
+    play(&[SMALL], |_| lod_test::suite());
+    play(&[SMALL], |_| ray_setup::suite());
+    play(&[SMALL], |_| tri_test::suite());
+    play(&[SMALL], |_| widen_box::suite());
+}
