@@ -3,11 +3,11 @@
 //! `cargo bench --bench simulate -- SCENE.lod...`: 1024 x 1024 rays at two bounding radii; without a scene, a terrain of 131,072 triangles. Each figure is the best of three.
 
 use lodray::format::Scene;
+use lodray::machine::Machine;
 use lodray::method::bvh::NoStore;
 use lodray::method::{Knobs, Method, bvh, lod};
 use lodray::rays::{Camera, ModelSpace, Sight, View};
 use lodray::run::{Compute, FrameRays, Job, simulate};
-use lodray::sim::machine::Machine;
 use lodray::sim::replay::{self, Chunk};
 use lodray_test_support::models::{scene_of, terrain};
 use std::path::PathBuf;

@@ -2,9 +2,9 @@
 //! `docs/hardware.md` has them.
 
 use lodray::block::EdgesPerCycle;
+use lodray::block::Operation;
 use lodray::block::parts::Registers;
 use lodray::hardware::Hardware;
-use lodray::sim::energy::Operation;
 use lodray_test_support::hardware::{MIDDLE, OTHERS, SMALL};
 
 /// Blocks whose registers depend on the levels.

@@ -1,8 +1,8 @@
 //! Traversal units on a machine: a unit whose lines are all in its L1 takes the cycles of the RTL, and many of them lose nothing.
 
+use lodray::machine::Machine;
 use lodray::method::lod::LodImage;
 use lodray::num::Ray;
-use lodray::sim::machine::Machine;
 use lodray::sim::replay::{self, Chunk, Run};
 use lodray::sim::unit::environment::run;
 use lodray::sim::unit::{Latency, SceneMemory, Traffic, TraversalUnit};

@@ -2,12 +2,12 @@
 //! check widths), errors within what one rounding allows; and what the hunt came nearest to, shot again.
 
 use lodray::golden::Exact;
+use lodray::lab::crack::Closedness;
+use lodray::lab::growth::growth;
+use lodray::lab::hunt::hunt;
+use lodray::lab::{CASES, Case, FILE_CASES, Found, GOALS, Goal, Judge, Model, Scale, Shot, Tally, lab};
 use lodray::mesh::lattice;
 use lodray::num::MAX_LEVELS;
-use lodray::report::crack::Closedness;
-use lodray::stability::growth::growth;
-use lodray::stability::hunt::hunt;
-use lodray::stability::{CASES, Case, FILE_CASES, Found, GOALS, Goal, Judge, Model, Scale, Shot, Tally, lab};
 use lodray_test_support::models::{ball, scene_of};
 use std::fs;
 use std::path::Path;

@@ -1,12 +1,12 @@
 //! Watertight, measured: no miss and no double hit on closed models, aimed at vertices and edges and within one unit of them.
 
 use lodray::format::Scene;
+use lodray::lab::crack::{Closedness, CrackReport, closedness, measure};
 use lodray::mesh::procedural::{self, Options};
 use lodray::mesh::{Hierarchy, RemeshOptions, TriangleMesh, remesh};
 use lodray::method::lod::LodImage;
 use lodray::num::COORD_LIMIT;
 use lodray::rays::ModelSpace;
-use lodray::report::crack::{Closedness, CrackReport, closedness, measure};
 use lodray_test_support::models::{ball, build, model, octahedron, scene_of};
 
 /// Rays over all models; `LODRAY_RAYS` asks for more.

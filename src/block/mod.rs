@@ -15,12 +15,15 @@ pub mod hit_divide;
 pub mod hit_select;
 pub mod lod_test;
 pub mod node_address;
+mod operation;
 pub mod parts;
 pub mod ray_setup;
 pub mod tessellate;
 pub mod tree_base;
 pub mod tri_test;
 pub mod widen_box;
+
+pub use operation::{Operation, Operations};
 
 use crate::num::Wire;
 use parts::Parts;

@@ -2,9 +2,9 @@
 
 use super::args::{MAX_RAYS, seed, whole};
 use super::output::{busy, explain, grouped, open, print_json, print_line, progress};
+use lodray::lab::crack::{Closedness, Row, closedness, measure};
 use lodray::method::lod::LodImage;
 use lodray::rays::ModelSpace;
-use lodray::report::crack::{Closedness, Row, closedness, measure};
 use std::path::PathBuf;
 use std::process::ExitCode;
 

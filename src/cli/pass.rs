@@ -4,12 +4,12 @@ use super::args::Change;
 use super::method::Chosen;
 use super::output::progress;
 use lodray::format::Scene;
+use lodray::machine::{Machine, MachineError};
 use lodray::method::Method;
 use lodray::rays::{Camera, ModelSpace, RaySource, Sight};
 use lodray::report::result::{MachineFacts, MethodFacts, SceneFacts, Setup, SimResult, ViewFacts};
 use lodray::run::{Compute, FrameRays, Job, simulate};
 use lodray::sim::energy;
-use lodray::sim::machine::{Machine, MachineError};
 use lodray::sim::replay::{ReplayError, Run, Window};
 use std::path::{Path, PathBuf};
 

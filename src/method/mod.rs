@@ -22,10 +22,10 @@ pub use registry::{METHODS, find};
 pub use stack::{Entry, Op, STACK_ENTRIES, TraversalStack};
 pub use tracer::{Trace, Tracer};
 
+use crate::block::Operation;
 use crate::bvh::BvhError;
 use crate::format::Scene;
 use crate::rays::Sight;
-use crate::sim::energy::Operation;
 use crate::step::MemoryMap;
 use bvh::TreeStore;
 use std::fmt;

@@ -1,6 +1,5 @@
 //! Floor 5: measurements over whole scenes and frames.
 
-pub mod crack;
 pub mod result;
 mod version;
 

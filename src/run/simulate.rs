@@ -1,8 +1,8 @@
 //! A frame on machines: one functional pass, and a replay on each machine beside it.
 
 use super::FrameRays;
+use crate::machine::Machine;
 use crate::sim::energy::EnergyModel;
-use crate::sim::machine::Machine;
 use crate::sim::replay::{self, Chunk, ReplayError, Run, Window};
 use serde::{Deserialize, Serialize};
 use std::sync::mpsc::{Receiver, SyncSender, sync_channel};

@@ -2,7 +2,6 @@
 
 pub mod dram;
 pub mod energy;
-pub mod machine;
 pub mod replay;
 pub mod timing;
 pub mod unit;

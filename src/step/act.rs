@@ -15,7 +15,7 @@
 //! Each line asked for takes a `node_address`, and each ray begins with a `ray_setup`.
 
 use super::{SectionId, StepSink};
-use crate::sim::energy::{Operation, Operations};
+use crate::block::{Operation, Operations};
 
 /// Most lines of a fetch: three bits count them.
 pub const MAX_FETCH_LINES: u32 = 7;

@@ -2,7 +2,7 @@
 //! of machines.
 
 use super::{Act, Step, StepSink, StepWord};
-use crate::sim::energy::{Operation, Operations};
+use crate::block::{Operation, Operations};
 
 /// Rays that a group of cores takes at once: a tile of the picture.
 #[derive(Clone, Debug, Default)]

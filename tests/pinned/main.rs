@@ -3,6 +3,7 @@
 //! `scripts/pin` writes them again; a commit that does so does nothing else, and says why the figures moved.
 
 use lodray::format::Scene;
+use lodray::machine::Machine;
 use lodray::method::bvh::NoStore;
 use lodray::method::{Knobs, METHODS, find};
 use lodray::rays::{Camera, ModelSpace, Sight, View};
@@ -10,7 +11,6 @@ use lodray::report::result::{MachineFacts, MethodFacts, SceneFacts, Setup, SimRe
 use lodray::report::results_version;
 use lodray::run::{Compute, FrameRays, Job, simulate};
 use lodray::sim::dram::{ChannelCounts, DramEnergy};
-use lodray::sim::machine::Machine;
 use lodray::sim::replay::Run;
 use lodray::sim::unit::UnitCounts;
 use lodray_test_support::models::{scene_of, terrain};

@@ -1,7 +1,7 @@
 //! Plots of error growth, as SVG.
 
 use crate::cli::simulate::plots::{COLOURS, FONT, TEXT, svg, tick, wrong};
-use lodray::stability::growth::{Growth, Point};
+use lodray::lab::growth::{Growth, Point};
 use plotters::coord::ranged1d::{AsRangedCoord, ValueFormatter};
 use plotters::prelude::*;
 

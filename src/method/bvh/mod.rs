@@ -14,10 +14,10 @@ pub use store::{NoStore, TreeStore};
 pub use trace::BvhTraverser;
 
 use super::{ClosestHit, Knob, Knobs, Method, Registered, SurfaceHit, Trace, Tracer};
+use crate::block::Operation;
 use crate::bvh::BvhError;
 use crate::format::Scene;
 use crate::rays::{ModelSpace, Query, Sight};
-use crate::sim::energy::Operation;
 use crate::step::{MemoryMap, Section, SectionId, Step, StepSink};
 
 /// Nodes.

@@ -8,11 +8,11 @@ mod levels;
 use super::bvh::{BvhTracer, BvhTraverser, FullBuilder, FullBvh, FullOptions, LEAF_LAYOUT, LEAF_SIZE, TreeKey, TreeStore, UNIT, bvh_map};
 use super::knob::DELTA;
 use super::{Knob, Knobs, Method, Registered, Tracer};
+use crate::block::Operation;
 use crate::bvh::BvhError;
 use crate::format::Scene;
 use crate::num::MAX_LEVELS;
 use crate::rays::{ModelSpace, Sight};
-use crate::sim::energy::Operation;
 use crate::step::MemoryMap;
 use levels::{at_level, largest_bounds};
 

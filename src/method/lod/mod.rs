@@ -8,9 +8,9 @@ pub use trace::LodTraverser;
 
 use super::knob::DELTA;
 use super::{ClosestHit, Method, Registered, SurfaceHit, Trace, Tracer};
+use crate::block::Operation;
 use crate::format::Scene;
 use crate::rays::{ModelSpace, Query, Sight};
-use crate::sim::energy::Operation;
 use crate::step::{MemoryMap, Step, StepSink};
 
 /// The method.

@@ -1,10 +1,11 @@
 //! A run over time: what each stretch of cycles added.
 
 use super::energy::dram_parts;
+use crate::block::{Operation, Operations};
+use crate::machine::Machine;
 use crate::num::LINE_BYTES;
 use crate::sim::dram::{ChannelCounts, DramEnergy};
-use crate::sim::energy::{EnergyCounts, EnergyModel, EnergyUnit, Operation, Operations};
-use crate::sim::machine::Machine;
+use crate::sim::energy::{EnergyCounts, EnergyModel, EnergyUnit};
 use crate::sim::replay::{Counts, Interval};
 use serde::{Deserialize, Serialize};
 

@@ -22,10 +22,10 @@ pub use setup::{MachineFacts, MethodFacts, SceneFacts, Setup, ViewFacts};
 pub use traffic::{KindResult, LevelBytes, TrafficResult};
 pub use units::{BlockResult, UnitsResult};
 
+use crate::machine::MachineError;
 use crate::method::Registered;
 use crate::run::Compute;
 use crate::sim::energy::{EnergyCounts, EnergyModel};
-use crate::sim::machine::MachineError;
 use crate::sim::replay::{ReplayError, Run, dram_of};
 use crate::step::MemoryMap;
 use serde::{Deserialize, Serialize};

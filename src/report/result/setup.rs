@@ -1,12 +1,12 @@
 //! What was run, and on what.
 
 use crate::format::Scene;
+use crate::machine::Machine;
 use crate::method::bvh::{LEAF_LAYOUT, LEAF_SIZE};
 use crate::method::knob::DELTA;
 use crate::method::{Knobs, Registered};
 use crate::rays::Camera;
 use crate::run::Compute;
-use crate::sim::machine::Machine;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 

@@ -5,10 +5,10 @@
 //! hardware as it has: P / c, A / c, S / c and R.
 
 use super::caches::not_negative;
-use super::operation::Operation;
+use crate::block::Operation;
 use crate::block::parts::Parts;
 use crate::hardware::Hardware;
-use crate::sim::machine::{Breach, MachineError, from_toml};
+use crate::machine::{Breach, MachineError, from_toml};
 use serde::Deserialize;
 
 /// Bits of the operations that the table is for.

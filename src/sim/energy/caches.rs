@@ -2,7 +2,7 @@
 
 use super::cacti::{self, CactiRow};
 use super::geometry::{Geometry, Level};
-use crate::sim::machine::{Breach, Machine, MachineError, from_toml};
+use crate::machine::{Breach, Machine, MachineError, from_toml};
 use serde::{Deserialize, Serialize};
 
 /// Rows that an error lists where the right one is not there.

@@ -2,7 +2,7 @@
 //! and tags, one line in or out), leakage of one of its banks, and timing.
 
 use super::geometry::{Geometry, Level};
-use crate::sim::machine::{LineFault, MachineError};
+use crate::machine::{LineFault, MachineError};
 
 /// The columns, as the first line names them.
 const COLUMNS: [&str; 10] =

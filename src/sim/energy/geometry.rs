@@ -1,6 +1,6 @@
 //! Which cache: its level, and its geometry, on which its energies depend.
 
-use crate::sim::machine::{Cache, Machine};
+use crate::machine::{Cache, Machine};
 use serde::Deserialize;
 use std::fmt;
 

@@ -11,7 +11,6 @@ pub mod blocks;
 pub mod caches;
 pub mod cacti;
 pub mod geometry;
-pub mod operation;
 mod report;
 
 #[cfg(test)]
@@ -20,11 +19,12 @@ mod tests;
 pub use blocks::BlockTable;
 pub use caches::{CacheEnergy, CacheTable, EnergyUnit};
 pub use geometry::{Geometry, Level};
-pub use operation::{Operation, Operations};
+
 pub use report::EnergyReport;
 
+use crate::block::{Operation, Operations};
 use crate::hardware::Hardware;
-use crate::sim::machine::{Breach, Machine, MachineError};
+use crate::machine::{Breach, Machine, MachineError};
 
 /// Picojoules of a milliwatt in a second.
 const PJ_PER_MW_S: f64 = 1e9;

@@ -8,8 +8,8 @@ use super::event::{Asked, Happening};
 use super::feed::{self, Feed, Ray};
 use super::hierarchy::Hierarchy;
 use super::prefetch::prefetch;
-use crate::sim::energy::Operations;
-use crate::sim::machine::Cores;
+use crate::block::Operations;
+use crate::machine::Cores;
 use crate::step::{Act, Asking, Nodes, SectionId};
 use std::ops::Range;
 

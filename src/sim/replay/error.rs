@@ -1,7 +1,7 @@
 //! What can go wrong in a run.
 
+use crate::machine::MachineError;
 use crate::sim::dram::DramError;
-use crate::sim::machine::MachineError;
 use thiserror::Error;
 
 /// Why a run gave no result.

@@ -4,7 +4,7 @@
 //! first that its group takes.
 
 use super::prefetch::prefetch;
-use crate::sim::energy::Operations;
+use crate::block::Operations;
 use crate::step::{Batch, Link, StepWord};
 use std::collections::{HashMap, HashSet, VecDeque};
 use std::sync::Arc;

@@ -13,8 +13,8 @@ use super::level::{Level, Request, Served};
 use super::slots::Slots;
 use super::wave::Shown;
 use super::wheel::Wheel;
+use crate::machine::{Cores, Crossbar, Machine};
 use crate::sim::dram::{Dram, DramConfig, DramError};
-use crate::sim::machine::{Cores, Crossbar, Machine};
 use crate::step::SectionId;
 use std::collections::VecDeque;
 

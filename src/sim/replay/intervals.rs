@@ -2,8 +2,8 @@
 
 use super::counts::Counts;
 use super::hierarchy::Hierarchy;
+use crate::block::Operations;
 use crate::sim::dram::{ChannelCounts, DramEnergy};
-use crate::sim::energy::Operations;
 
 /// Most stretches; when there are more, neighbours become one and stretches twice as long.
 const MOST: usize = 256;

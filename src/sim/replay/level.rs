@@ -4,7 +4,7 @@ use super::counts::CacheCounts;
 use super::mshr::{Entered, Mshrs};
 use super::prefetch::prefetch;
 use super::tags::Tags;
-use crate::sim::machine::Cache;
+use crate::machine::Cache;
 use crate::step::SectionId;
 use std::collections::VecDeque;
 

@@ -36,9 +36,9 @@ pub use intervals::Interval;
 pub use wave::Window;
 
 use super::dram::{ChannelCounts, Device, Dram, DramConfig, DramEnergy};
-use super::energy::Operations;
-use super::machine::Machine;
 use super::unit::UnitCounts;
+use crate::block::Operations;
+use crate::machine::Machine;
 use crate::step::Nodes;
 use cores::FreeCores;
 use event::Happening;

@@ -1,7 +1,7 @@
 //! Which lines a level of cache holds: sets of lines, the most recently used first.
 
 use super::prefetch::prefetch;
-use crate::sim::machine::Cache;
+use crate::machine::Cache;
 
 /// No line.
 const EMPTY: u32 = u32::MAX;

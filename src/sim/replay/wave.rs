@@ -3,7 +3,7 @@
 //! Values are those at the end of a cycle and stand from the time at which it begins. Events (`hits`, `misses`, ...) are how many happened in that cycle.
 
 use super::hierarchy::Hierarchy;
-use crate::sim::machine::Cores;
+use crate::machine::Cores;
 use std::io;
 use vcd::{IdCode, TimescaleUnit, Value, VarType};
 

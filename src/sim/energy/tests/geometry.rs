@@ -1,9 +1,9 @@
 //! Energies by geometry: the rows of CACTI, which of them a machine takes, and what is said where there is none.
 
 use super::model;
+use crate::machine::Machine;
 use crate::sim::energy::cacti::{self, CactiRow};
 use crate::sim::energy::{CacheTable, EnergyCounts, EnergyModel, EnergyUnit, Geometry, Level, files};
-use crate::sim::machine::Machine;
 use std::fs;
 use std::path::Path;
 

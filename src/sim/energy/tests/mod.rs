@@ -7,8 +7,8 @@ use crate::block::hit_divide::HitDivide;
 use crate::block::ray_setup::RaySetup;
 use crate::block::tri_test::TriTest;
 use crate::hardware::Hardware;
+use crate::machine::Machine;
 use crate::method::{bvh, lod};
-use crate::sim::machine::Machine;
 
 const CACHES: &str = include_str!("../../../../machines/energy/cacti22-older.toml");
 const RELATIVE: &str = include_str!("../../../../machines/energy/relative.toml");

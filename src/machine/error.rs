@@ -84,7 +84,7 @@ pub enum MachineError {
 
 /// A value that breaks a rule, before the file is known.
 #[derive(Debug)]
-pub(in crate::sim) struct Breach {
+pub(crate) struct Breach {
     key: String,
     rule: String,
     value: String,
@@ -104,7 +104,7 @@ impl Breach {
 
 /// A value of a line that breaks a rule, before file and line are known.
 #[derive(Debug)]
-pub(in crate::sim) struct LineFault {
+pub(crate) struct LineFault {
     field: String,
     rule: String,
     value: String,

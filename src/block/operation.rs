@@ -1,22 +1,22 @@
 //! What is counted of the hardware blocks.
 
-use crate::block::Block;
-use crate::block::bary_map::BaryMap;
-use crate::block::bound_decode::BoundDecode;
-use crate::block::box_test::BoxTest;
-use crate::block::box_test32::BoxTest32;
-use crate::block::child_sort::ChildSort;
-use crate::block::child_test::ChildTest;
-use crate::block::hit_divide::HitDivide;
-use crate::block::hit_select::HitSelect;
-use crate::block::lod_test::LodTest;
-use crate::block::node_address::NodeAddress;
-use crate::block::ray_setup::RaySetup;
-use crate::block::tessellate::Tessellate;
-use crate::block::tree_base::TreeBase;
-use crate::block::tri_test::TriTest;
-use crate::block::widen_box::WidenBox;
-use crate::block::{Form, Timing, parts::Parts};
+use super::Block;
+use super::bary_map::BaryMap;
+use super::bound_decode::BoundDecode;
+use super::box_test::BoxTest;
+use super::box_test32::BoxTest32;
+use super::child_sort::ChildSort;
+use super::child_test::ChildTest;
+use super::hit_divide::HitDivide;
+use super::hit_select::HitSelect;
+use super::lod_test::LodTest;
+use super::node_address::NodeAddress;
+use super::ray_setup::RaySetup;
+use super::tessellate::Tessellate;
+use super::tree_base::TreeBase;
+use super::tri_test::TriTest;
+use super::widen_box::WidenBox;
+use super::{Form, Timing, parts::Parts};
 
 /// Something of the block of an operation, whose type is `$block`.
 macro_rules! of_block {

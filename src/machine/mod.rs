@@ -14,7 +14,7 @@ mod tests;
 pub use error::MachineError;
 pub use parts::{Cache, Cores, Crossbar, Memory, Tables, Units};
 
-pub(in crate::sim) use error::{Breach, LineFault};
+pub(crate) use error::{Breach, LineFault};
 
 use files::Folder;
 use serde::{Deserialize, Serialize};
@@ -139,6 +139,6 @@ fn names<'a>(entries: impl Iterator<Item = (&'a String, &'a Value)>) -> String {
 }
 
 /// The contents of a TOML file.
-pub(in crate::sim) fn from_toml<T: for<'a> Deserialize<'a>>(text: &str, file: &str) -> Result<T, MachineError> {
+pub(crate) fn from_toml<T: for<'a> Deserialize<'a>>(text: &str, file: &str) -> Result<T, MachineError> {
     toml::from_str(text).map_err(|source| MachineError::Toml { file: file.to_owned(), source: Box::new(source) })
 }

@@ -10,7 +10,7 @@ fn shipped(name: &str) -> Machine {
 
 /// The shipped text of Haydel 2023, the last occurrence of `from` in it replaced.
 fn broken(from: &str, to: &str) -> Result<Machine, MachineError> {
-    let text = include_str!("../../../machines/haydel2023.toml");
+    let text = include_str!("../../machines/haydel2023.toml");
     let place = text.rfind(from).unwrap_or_else(|| panic!("{from:?} is not in the file"));
     let text = format!("{}{to}{}", &text[..place], &text[place + from.len()..]);
     Machine::parse(&text, "broken.toml", Default::default())
@@ -175,7 +175,7 @@ fn what_is_not_there_is_named() {
 fn files_beside_the_machine_go_before_those_of_the_program() {
     let folder = tempfile::tempdir().unwrap();
     let file = folder.path().join("mine.toml");
-    fs::write(&file, include_str!("../../../machines/packet.toml")).unwrap();
+    fs::write(&file, include_str!("../../machines/packet.toml")).unwrap();
     let machine = Machine::load(&file).unwrap();
     assert!(machine.read("energy/relative.toml").unwrap().0.contains("dram_line = 40"));
     fs::create_dir(folder.path().join("energy")).unwrap();

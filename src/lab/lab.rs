@@ -6,8 +6,8 @@ use super::model::Model;
 use super::rays::shot;
 use crate::format::SceneError;
 use crate::golden::Exact;
+use crate::lab::crack::Closedness;
 use crate::num::Random;
-use crate::report::crack::Closedness;
 use rayon::prelude::*;
 use serde::Serialize;
 

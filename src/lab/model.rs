@@ -3,9 +3,9 @@
 use crate::bvh::over_trees;
 use crate::format::{self, Scene, SceneError, SceneInfo};
 use crate::golden::naive_bounds;
+use crate::lab::crack::{Closedness, closedness};
 use crate::mesh::{Hierarchy, Surface, lattice};
 use crate::rays::ModelSpace;
-use crate::report::crack::{Closedness, closedness};
 
 /// A model of the lab.
 pub struct Model {

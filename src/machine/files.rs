@@ -7,17 +7,17 @@ use std::path::{Path, PathBuf};
 
 /// What comes with the program: path below `machines`, and text; the devices of `machines/dram` are the DRAM model's own.
 const SHIPPED: [(&str, &str); 11] = [
-    ("haydel2023.toml", include_str!("../../../machines/haydel2023.toml")),
-    ("haydel2023-ddr3.toml", include_str!("../../../machines/haydel2023-ddr3.toml")),
-    ("haydel2023-public.toml", include_str!("../../../machines/haydel2023-public.toml")),
-    ("packet.toml", include_str!("../../../machines/packet.toml")),
-    ("turing2018.toml", include_str!("../../../machines/turing2018.toml")),
-    ("energy/cacti22.toml", include_str!("../../../machines/energy/cacti22.toml")),
-    ("energy/cacti22.csv", include_str!("../../../machines/energy/cacti22.csv")),
-    ("energy/cacti22-older.toml", include_str!("../../../machines/energy/cacti22-older.toml")),
-    ("energy/cacti22-large.toml", include_str!("../../../machines/energy/cacti22-large.toml")),
-    ("energy/relative.toml", include_str!("../../../machines/energy/relative.toml")),
-    ("energy/blocks22.toml", include_str!("../../../machines/energy/blocks22.toml")),
+    ("haydel2023.toml", include_str!("../../machines/haydel2023.toml")),
+    ("haydel2023-ddr3.toml", include_str!("../../machines/haydel2023-ddr3.toml")),
+    ("haydel2023-public.toml", include_str!("../../machines/haydel2023-public.toml")),
+    ("packet.toml", include_str!("../../machines/packet.toml")),
+    ("turing2018.toml", include_str!("../../machines/turing2018.toml")),
+    ("energy/cacti22.toml", include_str!("../../machines/energy/cacti22.toml")),
+    ("energy/cacti22.csv", include_str!("../../machines/energy/cacti22.csv")),
+    ("energy/cacti22-older.toml", include_str!("../../machines/energy/cacti22-older.toml")),
+    ("energy/cacti22-large.toml", include_str!("../../machines/energy/cacti22-large.toml")),
+    ("energy/relative.toml", include_str!("../../machines/energy/relative.toml")),
+    ("energy/blocks22.toml", include_str!("../../machines/energy/blocks22.toml")),
 ];
 
 /// Where a machine's files lie.

@@ -1,6 +1,7 @@
 //! Numerical stability on stiff and extreme cases: named cases, judged ray by ray, and a hunt for counterexamples.
 
 mod cases;
+pub mod crack;
 mod dyadic;
 mod error;
 mod found;

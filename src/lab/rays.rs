@@ -1,10 +1,10 @@
 //! Families of rays: where a ray of the lab starts and what it is aimed at. The n-th ray of a seed is the same on any number of threads.
 
 use super::model::Model;
+use crate::lab::crack::{self, TARGETS};
 use crate::mesh::lattice;
 use crate::num::{BOX_SHIFT, Cone, DIRECTION_SCALE, Point, Random, Ray, Vec3};
 use crate::rays::{ModelRay, Query, cone};
-use crate::report::crack::{self, TARGETS};
 use serde::Serialize;
 
 /// A family of rays.
