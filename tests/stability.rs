@@ -5,7 +5,7 @@ use lodray::golden::Exact;
 use lodray::lab::crack::Closedness;
 use lodray::lab::growth::growth;
 use lodray::lab::hunt::hunt;
-use lodray::lab::{CASES, Case, FILE_CASES, Found, GOALS, Goal, Judge, Model, Scale, Shot, Tally, lab};
+use lodray::lab::{CASES, Case, FILE_CASES, Found, GOALS, Goal, Judge, Model, Scale, Shot, Tally, suite};
 use lodray::mesh::lattice;
 use lodray::num::MAX_LEVELS;
 use lodray_test_support::models::{ball, scene_of};
@@ -30,8 +30,8 @@ fn sound(name: &str, t: &Tally) {
 fn every_case_is_sound() {
     let all: Vec<&Case> = CASES.iter().collect();
     let mut rays = 0;
-    for (case, share) in all.iter().zip(lab::shares(&all, total())) {
-        let row = lab::run(case, Scale::Small, share, 1, &|_| ()).expect("a case");
+    for (case, share) in all.iter().zip(suite::shares(&all, total())) {
+        let row = suite::run(case, Scale::Small, share, 1, &|_| ()).expect("a case");
         println!("{:<14} {:?}", case.name, row.tally);
         sound(case.name, &row.tally);
         assert_eq!(row.tally.rays, share);
@@ -52,7 +52,7 @@ fn files_run_through_all_families() {
     let h = ball(3, 0.6, 5);
     let models = [Model::of_scene("ball", scene_of(&h))];
     for case in FILE_CASES {
-        let row = lab::shoot(case, &models, 20_000, 2, &|_| ());
+        let row = suite::shoot(case, &models, 20_000, 2, &|_| ());
         sound(case.name, &row.tally);
         assert!(row.tally.crossing > 1_000, "{}: {:?}", case.name, row.tally);
     }
@@ -63,7 +63,7 @@ fn the_same_on_any_number_of_threads() {
     let case = CASES.iter().find(|case| case.name == "coincident").unwrap();
     let run = |threads| {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
-        let row = pool.install(|| lab::run(case, Scale::Small, 30_000, 3, &|_| ()).unwrap());
+        let row = pool.install(|| suite::run(case, Scale::Small, 30_000, 3, &|_| ()).unwrap());
         let hunt = pool.install(|| hunt(None, 6_000, 3, &|_| ()).unwrap());
         (row, hunt)
     };
@@ -79,7 +79,7 @@ fn a_hole_and_a_doubled_triangle_are_noticed() {
         let mut model = Model::of_hierarchy("changed", h).unwrap();
         assert_eq!(model.closed, Closedness::Open);
         model.closed = Closedness::Oriented;
-        lab::shoot(case, &[model], 20_000, 1, &|_| ()).tally
+        suite::shoot(case, &[model], 20_000, 1, &|_| ()).tally
     };
     let h = ball(2, 0.3, 1);
     let (mut triangles, mut points) = (h.triangles.clone(), h.points.clone());

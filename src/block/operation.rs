@@ -89,6 +89,12 @@ impl Operation {
         Self::BoundDecode,
     ];
 
+    /// Its number in [`Operation::ALL`].
+    #[expect(clippy::as_conversions, reason = "the number of a variant")]
+    const fn number(self) -> usize {
+        self as usize
+    }
+
     /// Name of the block.
     pub fn name(self) -> &'static str {
         of_block!(self, B => B::NAME)
@@ -112,7 +118,7 @@ pub struct Operations([u64; Operation::ALL.len()]);
 impl Operations {
     /// Counts `count` more of `operation`.
     pub fn add(&mut self, operation: Operation, count: u64) {
-        self.0[operation as usize] += count;
+        self.0[operation.number()] += count;
     }
 
     /// Counts all of `other` too.
@@ -129,7 +135,7 @@ impl Operations {
 
     /// How many of `operation`.
     pub fn get(&self, operation: Operation) -> u64 {
-        self.0[operation as usize]
+        self.0[operation.number()]
     }
 
     /// Each with its count.

@@ -2,17 +2,17 @@
 
 mod frame;
 mod geometry;
+mod image;
 mod layouts;
 mod legend;
-mod picture;
 mod shade;
 mod sheet;
 mod text;
 
 pub use frame::{Frame, FrameStats, KindCount, render};
 pub use geometry::{GeometricError, geometric_error};
+pub use image::{ImageError, compare, save_png};
 pub use layouts::distinct_lines;
 pub use legend::Legend;
-pub use picture::{ImageError, compare, save_png};
 pub use shade::{error_map, level_map, normal_map, shaded, view_cosine};
 pub use sheet::Sheet;

@@ -129,7 +129,7 @@ fn query(row: u64, cells: &[f64]) -> Result<Query, String> {
     }
     if let Some(&[near, far]) = cells.get(8..10) {
         // Not a number fails too.
-        if !(near <= far) {
+        if near.partial_cmp(&far).is_none_or(std::cmp::Ordering::is_gt) {
             return Err(format!("the nearest distance must be at most the farthest, not {near} and {far}"));
         }
         query = query.between(near, far);

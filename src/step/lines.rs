@@ -37,7 +37,8 @@ impl LineSets {
     /// Distinct lines touched, by the place of their section.
     pub fn counts(&self) -> [u64; MAX_SECTIONS] {
         let mut counts = [0; MAX_SECTIONS];
-        for (id, section) in self.map.sections() {
+        // A section may be empty: a scene without splits has no bound data.
+        for (id, section) in self.map.sections().filter(|(_, section)| section.lines > 0) {
             let first = u64::from(self.map.first(id));
             let words = (first / 64..(first + section.lines).div_ceil(64)).map(|at| {
                 // Sections share a word where one ends and the next begins.
@@ -74,7 +75,7 @@ mod tests {
 
     #[test]
     fn a_line_counts_once_in_the_set_and_each_time_in_the_total() {
-        let map = MemoryMap::new(&[("a", 70), ("b", 1), ("c", 200)].map(|(name, lines)| Section::of_bytes(name, 32 * lines)), 2);
+        let map = MemoryMap::new(&[("a", 70), ("b", 1), ("c", 200), ("d", 0)].map(|(name, lines)| Section::of_bytes(name, 32 * lines)), 2);
         let map = map.unwrap();
         let sets = LineSets::new(&map);
         let mut counter = LineCounter { counts: StepCounts::default(), sets: &sets };

@@ -8,7 +8,7 @@ use super::folder::{Overrule, RunFolder, one_run};
 use super::output::{busy, explain, open, print_json, print_line, progress, remark, write_file};
 use lodray::lab::growth::{Growth, growth, rays as growth_rays};
 use lodray::lab::hunt::{Hunt, hunt};
-use lodray::lab::{CASES, Case, FILE_CASES, Model, Report, Scale, WIDTHS_CHECKED, lab};
+use lodray::lab::{CASES, Case, FILE_CASES, Model, Report, Scale, WIDTHS_CHECKED, suite};
 use lodray::num::MAX_LEVELS;
 use serde::Serialize;
 use std::path::{Path, PathBuf};
@@ -123,7 +123,7 @@ fn quietly<T>(work: impl FnOnce() -> T) -> T {
 }
 
 fn measure(args: &Args, cases: &[&Case], given: &[Model], rays: u64, steps: u64) -> anyhow::Result<Figures> {
-    let shares = lab::shares(cases, rays);
+    let shares = suite::shares(cases, rays);
     // Curves are drawn of built-in models only.
     let curves = args.out.is_some() && given.is_empty();
     let bar = progress(shares.iter().sum::<u64>() + steps + if curves { growth_rays(MAX_LEVELS) } else { 0 }, "");
@@ -131,8 +131,8 @@ fn measure(args: &Args, cases: &[&Case], given: &[Model], rays: u64, steps: u64)
     for (case, rays) in cases.iter().zip(shares) {
         bar.set_message(case.name);
         report.rows.push(match given {
-            [] => lab::run(case, Scale::Full, rays, args.seed, &|n| bar.inc(n))?,
-            models => lab::shoot(case, models, rays, args.seed, &|n| bar.inc(n)),
+            [] => suite::run(case, Scale::Full, rays, args.seed, &|n| bar.inc(n))?,
+            models => suite::shoot(case, models, rays, args.seed, &|n| bar.inc(n)),
         });
     }
     bar.set_message("hunt");

@@ -162,6 +162,9 @@ fn failure(key: &str, error: &anyhow::Error) -> Row {
     Row { key: key.to_owned(), scene: String::new(), result: None, image: None, error: Some(crate::one_line(error)) }
 }
 
+/// A view, and its picture.
+type LastShot = Option<(ViewJob, Shot)>;
+
 /// A scene and what was made of it.
 struct Workshop<'a> {
     jobs: &'a Jobs,
@@ -171,7 +174,7 @@ struct Workshop<'a> {
     /// Methods by all that what they need depends on, which is not their quality.
     built: Vec<(Chosen, Box<dyn Method + 'a>)>,
     /// The reference, and its picture of the last view.
-    truth: Option<(Box<dyn Method + 'a>, Option<(ViewJob, Shot)>)>,
+    truth: Option<(Box<dyn Method + 'a>, LastShot)>,
 }
 
 impl Workshop<'_> {

@@ -439,10 +439,9 @@ fn ordered(after: &[Option<u64>]) -> Chunk {
 fn a_ray_starts_behind_the_end_of_the_one_that_it_waits_for() {
     let free = |machine: &Machine, after: &[Option<u64>]| run_free(machine, nodes(), std::iter::once(ordered(after)), None).unwrap();
     let units = |machine: &Machine, after: &[Option<u64>]| run_units(machine, std::iter::once(ordered(after)), None).unwrap();
-    let runs: [&dyn Fn(&Machine, &[Option<u64>]) -> Run; 2] = [&free, &units];
     for groups in [1, 2] {
         let machine = machine(&[("cores.groups", groups), ("cores.per_group", 8), ("units.contexts", 8)]);
-        for run in runs {
+        for run in [&free as &dyn Fn(&Machine, &[Option<u64>]) -> Run, &units] {
             let alone = run(&machine, &[None, None]);
             let none = run(&machine, &[None; 8]);
             // One behind the other, across batches and groups, in whatever order they are taken.
@@ -453,8 +452,8 @@ fn a_ray_starts_behind_the_end_of_the_one_that_it_waits_for() {
                 conserved(whole);
                 assert_eq!(whole.counts.rays, 8);
             }
-            assert!(none.cycles < 2 * alone.cycles, "rays that wait for nobody run side by side");
-            assert!(chain.cycles > 4 * alone.cycles, "{} of {}", chain.cycles, alone.cycles);
+            assert!(2 * none.cycles < chain.cycles, "rays that wait for nobody run side by side: {} of {}", none.cycles, chain.cycles);
+            assert!(chain.cycles > 3 * alone.cycles, "{} of {}", chain.cycles, alone.cycles);
             assert!(star.cycles > none.cycles && star.cycles < chain.cycles, "{} of {}", star.cycles, chain.cycles);
         }
         // Where compute takes no time, a chain is one ray that reads the lines one after the other.
