@@ -154,6 +154,11 @@ impl<S: Source> Feed<S> {
         }
     }
 
+    /// Rays wait for nobody any more, and have not been taken.
+    pub fn has_ready(&self) -> bool {
+        self.order.ready.iter().any(|rays| !rays.is_empty())
+    }
+
     /// A group that has rays again since it was last asked for, if there is one.
     #[inline(always)]
     pub fn released(&mut self) -> Option<u32> {

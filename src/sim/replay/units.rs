@@ -169,7 +169,8 @@ impl<S: feed::Source> FrontEnd for Units<S> {
     }
 
     fn is_busy(&self) -> bool {
-        self.under_way > 0
+        // The last ray under way may have been what others waited for.
+        self.under_way > 0 || self.feed.has_ready()
     }
 
     fn describe(&self) -> String {
