@@ -1,4 +1,4 @@
-//! Statistics of one's own: how deep the levels go that rays test, from the steps that the traversal states. `cargo run --release --example statistics`.
+//! Statistics of one's own, from the steps that a traversal states: how many entries of their stacks rays drop, method by method. `cargo run --release --example statistics`.
 
 use lodray::bvh::over_trees;
 use lodray::format::{self, SceneInfo};
@@ -9,7 +9,7 @@ use lodray::rays::{Camera, ModelSpace, Sight, View};
 use lodray::step::{Act, Step, StepSink};
 use std::error::Error;
 
-/// What a ray does between two looks at its stack.
+/// What rays did.
 #[derive(Default)]
 struct Runs {
     steps: u64,

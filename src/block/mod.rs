@@ -1,4 +1,4 @@
-//! Floor 1: the hardware's blocks as pure functions, one file each, without float or clock.
+//! The hardware's blocks as pure functions, one file each, without float or clock.
 //!
 //! A block's `In` and `Out` are [`Wire`] structs with the field names of the SystemVerilog; its mathematics stands at the head of its
 //! file, every width beside the line that needs it. `docs/numbers.md` states the formats.

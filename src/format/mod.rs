@@ -1,4 +1,4 @@
-//! Floor 2: memory images: the lines that the hardware reads, bit for bit, and the scene file that holds them.
+//! Memory images: the lines that the hardware reads, bit for bit, and the scene file that holds them.
 
 pub mod audit;
 mod colour;

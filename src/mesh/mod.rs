@@ -1,4 +1,4 @@
-//! Floor 2: triangle meshes in, hierarchies of 1-to-4 splits out.
+//! Triangle meshes in, hierarchies of 1-to-4 splits out.
 
 mod borders;
 mod bounds;

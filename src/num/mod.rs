@@ -1,4 +1,4 @@
-//! Floor 0: fixed point with stated widths, exact vectors, the roundings, and [`Wire`] (structs as bits).
+//! Fixed point with stated widths, exact vectors, the roundings, and [`Wire`] (structs as bits).
 //!
 //! `docs/numbers.md` states every format and rounding once; the names there are the names here.
 

@@ -1,4 +1,4 @@
-//! Floor 5: measurements over whole scenes and frames.
+//! Measurements over whole scenes and frames.
 
 pub mod result;
 mod version;

@@ -1,4 +1,4 @@
-//! Floor 4: the cycle level: what happens in which cycle, with the functions of the floors below and none of its own.
+//! The cycle level: what happens in which cycle, with the functions of the floors below and none of its own.
 
 pub mod dram;
 pub mod energy;
