@@ -43,7 +43,7 @@ impl Pin {
     }
 }
 
-const PINS: [Pin; 7] = [
+const PINS: [Pin; 9] = [
     Pin::new("lod-free", "lod", "haydel2023", Compute::Free, 1.2),
     Pin::new("lod-units", "lod", "haydel2023", Compute::Units, 2.0),
     Pin::new("lod-units-gpu", "lod", "turing2018", Compute::Units, 0.7),
@@ -51,6 +51,8 @@ const PINS: [Pin; 7] = [
     Pin::new("bvh-free", "bvh", "haydel2023-ddr3", Compute::Free, 1.2),
     Pin::new("bvh-units", "bvh", "haydel2023", Compute::Units, 2.0).with(&[("leaf-layout", "packed"), ("leaf-size", "2")]),
     Pin::new("bvh32-units", "bvh32", "turing2018", Compute::Units, 1.2).with(&[("leaf-layout", "indexed")]),
+    Pin::new("discrete-free", "discrete", "haydel2023-public", Compute::Free, 1.2).with(&[("level", "2")]),
+    Pin::new("discrete-units", "discrete", "haydel2023", Compute::Units, 4.0),
 ];
 
 /// A file of this test.
