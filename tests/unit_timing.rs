@@ -155,7 +155,7 @@ const LEAVES: SectionId = SectionId::new(1);
 
 /// A visit of a node with boxes of 16 or, `wide`, 32 bits.
 fn node(line: u32, met: u32, wide: bool) -> Step {
-    let act = if wide { Act::WideChildren { met } } else { Act::Children { met } };
+    let act = if wide { Act::WideChildren { met } } else { Act::PlainChildren { met } };
     Step::on(Fetch::new(NODES, line, if wide { 4 } else { 2 }), act).visiting()
 }
 
@@ -193,7 +193,7 @@ fn alone(steps: Vec<Step>, latency: u64) -> u64 {
 fn baseline_rays_take_the_cycles_of_their_blocks() {
     use lodray::block::Block;
     use lodray::block::{
-        box_test32::BoxTest32, child_sort::ChildSort, child_test::ChildTest, hit_divide::HitDivide, hit_select::HitSelect,
+        box_test::BoxTest, box_test32::BoxTest32, child_sort::ChildSort, hit_divide::HitDivide, hit_select::HitSelect,
         node_address::NodeAddress, ray_setup::RaySetup, tri_test::TriTest,
     };
     let cycles = |timing: lodray::block::Timing| u64::from(timing.latency);
@@ -203,8 +203,8 @@ fn baseline_rays_take_the_cycles_of_their_blocks() {
     // VISIT; one grant for each line; address, memory; and the cycle in which all is seen to be there.
     let fetch = |lines: u64| 1 + lines + cycles(NodeAddress::TIMING) + latency + 1;
     let node_cycles = |wide: bool| {
-        let test = if wide { cycles(BoxTest32::TIMING) + cycles(ChildSort::TIMING) } else { cycles(ChildTest::TIMING) };
-        fetch(if wide { 4 } else { 2 }) + 1 + test
+        let test = if wide { BoxTest32::TIMING } else { BoxTest::TIMING };
+        fetch(if wide { 4 } else { 2 }) + 1 + cycles(test) + cycles(ChildSort::TIMING)
     };
     // SETUP and its wait, a node and one PUSH, POP, DONE and the hit's register.
     let miss = |wide| alone(vec![node(0, 0, wide), end(false)], latency);

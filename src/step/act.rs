@@ -3,7 +3,8 @@
 //! | act | what it stands for | operations |
 //! |---|---|---|
 //! | `Fetch` | nothing but the lines | |
-//! | `Children` | four children of a node with 16-bit boxes are tested, and `met` of them met | `child_test` |
+//! | `Children` | four children of a node with 16-bit boxes, widened where need be, are tested, and `met` of them met | `child_test` |
+//! | `PlainChildren` | the same, and the boxes never need to be widened | four `box_test`, `child_sort` |
 //! | `WideChildren` | the same with 32-bit boxes | four `box_test32`, `child_sort` |
 //! | `TreeBase` | where a tree's groups and vertices begin | `tree_base` |
 //! | `LodTest` | does a triangle serve | `lod_test` |
@@ -69,6 +70,7 @@ impl Fetch {
 pub enum Act {
     Fetch,
     Children { met: u32 },
+    PlainChildren { met: u32 },
     WideChildren { met: u32 },
     TreeBase,
     LodTest { refine: bool },
@@ -124,6 +126,10 @@ impl Step {
         match self.act {
             Act::Fetch | Act::Pop { .. } | Act::End { found: false, .. } => (),
             Act::Children { .. } => add(Operation::ChildTest, 1),
+            Act::PlainChildren { .. } => {
+                add(Operation::BoxTest, 4);
+                add(Operation::ChildSort, 1);
+            }
             Act::WideChildren { .. } => {
                 add(Operation::BoxTest32, 4);
                 add(Operation::ChildSort, 1);
@@ -204,6 +210,7 @@ mod tests {
         let mut operations = Operations::default();
         let steps = [
             Step::on(fetch, Act::WideChildren { met: 1 }),
+            Step::on(fetch, Act::PlainChildren { met: 1 }),
             Step::on(fetch, Act::Children { met: 1 }),
             Step::on(fetch, Act::TreeBase),
             Step::of(Act::LodTest { refine: true }),
@@ -218,7 +225,7 @@ mod tests {
         steps.iter().for_each(|step| step.count(&mut operations));
         let some: Vec<_> = operations.iter().filter(|&(_, n)| n > 0).map(|(operation, n)| (operation.name(), n)).collect();
         let wanted = [
-            ("node_address", 20),
+            ("node_address", 24),
             ("tree_base", 1),
             ("child_test", 1),
             ("lod_test", 1),
@@ -227,8 +234,9 @@ mod tests {
             ("hit_divide", 7),
             ("hit_select", 3),
             ("bary_map", 1),
+            ("box_test", 4),
             ("box_test32", 4),
-            ("child_sort", 1),
+            ("child_sort", 2),
         ];
         assert_eq!(some, wanted);
     }

@@ -35,6 +35,7 @@ const TESSELLATE: u64 = 5;
 const TRIANGLES: u64 = 6;
 const POP: u64 = 7;
 const END: u64 = 8;
+const PLAIN_CHILDREN: u64 = 9;
 
 /// A step, as whoever only reads its lines sees it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -65,6 +66,7 @@ impl StepWord {
         let (act, number, flag, mapped, hits) = match step.act {
             Act::Fetch => (FETCH, 0, false, false, 0),
             Act::Children { met } => (CHILDREN, met, false, false, 0),
+            Act::PlainChildren { met } => (PLAIN_CHILDREN, met, false, false, 0),
             Act::WideChildren { met } => (WIDE_CHILDREN, met, false, false, 0),
             Act::TreeBase => (TREE_BASE, 0, false, false, 0),
             Act::LodTest { refine } => (LOD_TEST, 0, refine, false, 0),
@@ -112,6 +114,7 @@ impl StepWord {
         let act = match self.0 >> ACT & 15 {
             FETCH => Act::Fetch,
             CHILDREN => Act::Children { met: number },
+            PLAIN_CHILDREN => Act::PlainChildren { met: number },
             WIDE_CHILDREN => Act::WideChildren { met: number },
             TREE_BASE => Act::TreeBase,
             LOD_TEST => Act::LodTest { refine: flag },
@@ -155,6 +158,7 @@ mod tests {
         let acts = [
             Act::Fetch,
             Act::Children { met: 4 },
+            Act::PlainChildren { met: 3 },
             Act::WideChildren { met: 0 },
             Act::TreeBase,
             Act::LodTest { refine: true },

@@ -49,9 +49,24 @@ pub static LEAF_SIZE: Knob = Knob {
     allows: |value| if ["1", "2", "4"].contains(&value) { Ok(()) } else { Err(format!("'{value}' is not 1, 2 or 4")) },
 };
 
+/// Operations of a unit with these tests of boxes: four at once, then their order.
+const fn unit(boxes: Operation) -> [Operation; 10] {
+    [
+        Operation::RaySetup,
+        Operation::NodeAddress,
+        boxes,
+        boxes,
+        boxes,
+        boxes,
+        Operation::ChildSort,
+        Operation::TriTest,
+        Operation::HitDivide,
+        Operation::HitSelect,
+    ]
+}
+
 /// Operations of a unit for nodes with 16-bit boxes.
-pub(super) const UNIT: &[Operation] =
-    &[Operation::RaySetup, Operation::NodeAddress, Operation::ChildTest, Operation::TriTest, Operation::HitDivide, Operation::HitSelect];
+pub(super) const UNIT: &[Operation] = &unit(Operation::BoxTest);
 
 /// The method with 16-bit boxes.
 pub static METHOD: Registered = Registered {
@@ -67,19 +82,7 @@ pub static METHOD_WIDE: Registered = Registered {
     name: "bvh32",
     help: "The same with 32-bit boxes",
     knobs: &[&LEAF_LAYOUT, &LEAF_SIZE],
-    unit: Some(&[
-        Operation::RaySetup,
-        Operation::NodeAddress,
-        // Four boxes at once, then their order.
-        Operation::BoxTest32,
-        Operation::BoxTest32,
-        Operation::BoxTest32,
-        Operation::BoxTest32,
-        Operation::ChildSort,
-        Operation::TriTest,
-        Operation::HitDivide,
-        Operation::HitSelect,
-    ]),
+    unit: Some(&unit(Operation::BoxTest32)),
     make: |scene, knobs, store| Bvh::of(scene, knobs, true, store),
 };
 

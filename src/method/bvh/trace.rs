@@ -115,7 +115,7 @@ impl<'a> BvhTraverser<'a> {
             FullNodes::Boxes16(nodes) => {
                 let child = |k| quarter::<BvhChild>(&nodes[index], k);
                 let tests = bvh_children(setup, t_max, &nodes[index]);
-                steps.step(Step::on(fetch, Act::Children { met: tests.met() }).visiting());
+                steps.step(Step::on(fetch, Act::PlainChildren { met: tests.met() }).visiting());
                 push_sorted(&mut self.stack, &tests, |k| waiting(child(k).child))
             }
             FullNodes::Boxes32(nodes) => {

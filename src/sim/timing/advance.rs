@@ -7,10 +7,14 @@ use super::context::Context;
 use super::ports::{Request, Steps};
 use super::unit::UnitTiming;
 use crate::block::Block;
+use crate::block::box_test::BoxTest;
 use crate::block::box_test32::BoxTest32;
 use crate::block::child_sort::ChildSort;
 use crate::sim::unit::{Resource, State};
 use crate::step::Act;
+
+/// Cycles of the test of a node whose 16-bit boxes are as they are.
+const PLAIN_NODE: u64 = (BoxTest::TIMING.latency + ChildSort::TIMING.latency) as u64;
 
 /// Cycles of the test of a node with 32-bit boxes.
 const WIDE_NODE: u64 = (BoxTest32::TIMING.latency + ChildSort::TIMING.latency) as u64;
@@ -50,6 +54,7 @@ impl<R: Steps> UnitTiming<R> {
         let station = &mut self.stations[resource as usize];
         let context = &mut self.contexts[who];
         let result = match (resource, context.act) {
+            (Resource::Child, Act::PlainChildren { .. }) => station.take_for(PLAIN_NODE, since, now),
             (Resource::Child, Act::WideChildren { .. }) => station.take_for(WIDE_NODE, since, now),
             _ => station.take(since, now),
         };
@@ -66,7 +71,7 @@ impl<R: Steps> UnitTiming<R> {
                 }
             }
             Resource::Child => {
-                let (Act::Children { met } | Act::WideChildren { met }) = context.act else {
+                let (Act::Children { met } | Act::PlainChildren { met } | Act::WideChildren { met }) = context.act else {
                     unreachable!("asks for its act's block only")
                 };
                 self.left(State::Child, who, now + 1);
@@ -211,7 +216,7 @@ impl<R: Steps> UnitTiming<R> {
                 (context.found, context.mapped) = (found, mapped);
                 context.enter(if found { State::DivideV } else { State::Done }, at + 1);
             }
-            Act::Children { .. } | Act::WideChildren { .. } => context.enter(State::Child, at),
+            Act::Children { .. } | Act::PlainChildren { .. } | Act::WideChildren { .. } => context.enter(State::Child, at),
             Act::LodTest { .. } => context.enter(State::Lod, at),
             Act::Tessellate => context.enter(State::Morph, at),
             Act::Triangles { count, hits } => context.enter_triangles(count, hits, at),
