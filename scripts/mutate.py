@@ -135,7 +135,7 @@ def main():
     if unknown:
         sys.exit(f"mutate: no such module in rtl/: {', '.join(unknown)}")
     tops = {p.stem for p in (ROOT / "tests" / "rtl").glob("*.rs")} & set(sources)
-    tests = binaries(["rtl", "unit_rtl"])
+    tests = binaries(["rtl", "rtl_unit"])
     reasons = tomllib.loads(REASONS.read_text()).get("lives", []) if REASONS.exists() else []
 
     # The tests of a file are those of the tops that contain it; what only moves items has tests of its own.
@@ -145,7 +145,7 @@ def main():
     for name in args.files or sources:
         holders = sorted((t for t in tops if name in closure(t, sources)), key=cost)
         tops_of = [own[name]] if name in own else holders
-        commands = {top: [tests["rtl"], f"{top}::"] for top in tops_of} or {"unit": [tests["unit_rtl"]]}
+        commands = {top: [tests["rtl"], f"{top}::"] for top in tops_of} or {"unit": [tests["rtl_unit"]]}
         drawn = sites(sources[name])
         random.Random(f"{args.seed} {name}").shuffle(drawn)
         plans.append((name, drawn, commands))

@@ -39,7 +39,7 @@ const UPWARD: [(&str, &str); 0] = [];
 const APART: (&str, [&str; 2]) = ("golden", ["num", "mesh"]);
 
 /// Files that use each other.
-const CIRCLES: [(&str, &str); 2] = [("sim::replay::hierarchy", "sim::replay::wave"), ("sim::unit::context", "sim::unit::records")];
+const CIRCLES: [(&str, &str); 0] = [];
 
 fn source() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("src")
@@ -158,6 +158,28 @@ fn what_stands_apart_uses_little() {
 #[test]
 fn no_two_files_use_each_other() {
     assert_eq!(House::read().circles(), BTreeSet::from(CIRCLES));
+}
+
+#[test]
+fn a_module_with_parts_is_a_folder_with_its_mod_rs() {
+    let mut all = Vec::new();
+    ["src", "tb", "tests"].iter().for_each(|folder| files(&Path::new(env!("CARGO_MANIFEST_DIR")).join(folder), &mut all));
+    let split: Vec<_> = all.iter().filter(|file| file.with_extension("").is_dir()).collect();
+    assert!(split.is_empty() && all.len() > 300, "{split:?} of {}", all.len());
+}
+
+#[test]
+fn the_key_names_every_test_target() {
+    let tests = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests");
+    let target = |path: PathBuf| {
+        let name = path.file_stem().expect("a name").to_string_lossy().into_owned();
+        (path.join("main.rs").is_file() || path.extension().is_some_and(|ending| ending == "rs")).then_some(name)
+    };
+    let targets: BTreeSet<String> =
+        fs::read_dir(&tests).expect("a folder").filter_map(|entry| target(entry.expect("an entry").path())).collect();
+    let key = fs::read_to_string(tests.join("README.md")).expect("the key");
+    let rows = key.lines().filter_map(|line| line.strip_prefix("| `")?.split_once("` | ")).map(|(name, _)| name.to_owned());
+    assert_eq!(rows.collect::<BTreeSet<_>>(), targets);
 }
 
 #[test]

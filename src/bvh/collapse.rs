@@ -12,7 +12,7 @@ use rayon::prelude::*;
 const TASK: u32 = 1 << 16;
 
 /// The binary tree to read.
-pub(crate) struct Source<'a> {
+pub(crate) struct BinaryTree<'a> {
     prims: &'a [Prim],
     tree: &'a Binary,
     plans: Vec<Plan>,
@@ -46,7 +46,7 @@ impl Parts {
     }
 }
 
-impl<'a> Source<'a> {
+impl<'a> BinaryTree<'a> {
     pub fn new(prims: &'a [Prim], tree: &'a Binary, options: &Options) -> Self {
         Self { prims, tree, plans: plans(prims, tree, options), collapse: options.collapse, max_leaf: options.max_leaf }
     }
@@ -211,7 +211,7 @@ struct Task {
 }
 
 /// All nodes, encoded, root first.
-pub(crate) fn nodes<T, F>(source: &Source<'_>, depth: u32, encode: F) -> Vec<T>
+pub(crate) fn nodes<T, F>(source: &BinaryTree<'_>, depth: u32, encode: F) -> Vec<T>
 where
     T: Copy + Default + Send,
     F: Fn(&QuadNode) -> T + Sync,
@@ -251,7 +251,7 @@ where
 }
 
 /// Lists the largest subtrees that are small enough for one thread, in memory order.
-fn cut(source: &Source<'_>, p: Part, depth: u32, tasks: &mut Vec<Task>) {
+fn cut(source: &BinaryTree<'_>, p: Part, depth: u32, tasks: &mut Vec<Task>) {
     if p.end - p.begin <= TASK {
         return tasks.push(Task { part: p, depth, at: 0, below: 0, first: 0 });
     }
@@ -262,7 +262,7 @@ fn cut(source: &Source<'_>, p: Part, depth: u32, tasks: &mut Vec<Task>) {
 
 /// Gives every task its indices, and lists the nodes above the tasks.
 fn place<'t>(
-    source: &Source<'_>,
+    source: &BinaryTree<'_>,
     p: Part,
     depth: u32,
     at: u32,

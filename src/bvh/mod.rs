@@ -247,7 +247,7 @@ where
 {
     check_options(options)?;
     let binary = build::binary_tree(&mut prims, depth);
-    let nodes = collapse::nodes(&collapse::Source::new(&prims, &binary, options), depth, encode);
+    let nodes = collapse::nodes(&collapse::BinaryTree::new(&prims, &binary, options), depth, encode);
     drop(binary);
     Ok((nodes, prims.par_iter().map(|p| p.id).collect()))
 }

@@ -9,7 +9,7 @@ use lodray::method::lod::LodImage;
 use lodray::num::Ray;
 use lodray::rays::ModelSpace;
 use lodray::sim::unit::environment::RunReport;
-use lodray::sim::unit::steps::Steps;
+use lodray::sim::unit::ray_trace::RayTrace;
 use lodray::sim::unit::wave::{Waves, gtkwave_save, gtkwave_states, one_ray, surfer_commands};
 use lodray::sim::unit::{SceneMemory, TraversalUnit};
 use std::path::{Path, PathBuf};
@@ -102,8 +102,8 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
 
 /// The ray's steps.
 fn text(bench: &Bench<'_>) -> anyhow::Result<String> {
-    let mut steps = Steps::new(bench.unit(), &bench.memory);
-    let report = one_ray(&mut steps, &bench.memory, bench.latency, &bench.ray)?;
+    let mut trace = RayTrace::new(bench.unit(), &bench.memory);
+    let report = one_ray(&mut trace, &bench.memory, bench.latency, &bench.ray)?;
     let Ray { origin, direction, cone } = bench.ray;
     let mut text = format!(
         "ray from {:?} along {:?}, cone ({} + l {}) / 2^{}\n   cycle  step\n",
@@ -113,7 +113,7 @@ fn text(bench: &Bench<'_>) -> anyhow::Result<String> {
         cone.slope,
         cone.shift
     );
-    for (cycle, step) in steps.steps() {
+    for (cycle, step) in trace.events() {
         text += &format!("{cycle:>8}  {step}\n");
     }
     Ok(text + &format!("{} cycles, {} memory lines", grouped(report.rays[0].cycles()), grouped(report.requests)))

@@ -2,7 +2,7 @@
 //! values and their ranges, scene files, machines with their tables, and cameras.
 
 use super::jobs::{Jobs, Origin, SceneJobs, ViewJob};
-use super::list::{List, MachineEntry, Maybe, SceneEntry, Source, Spanned};
+use super::list::{List, ListText, MachineEntry, Maybe, SceneEntry, Spanned};
 use crate::cli::args::{CameraArgs, Change, Size, radii};
 use crate::cli::generate;
 use crate::cli::method::{Chosen, Listed, machine_methods};
@@ -24,7 +24,7 @@ use std::path::{Path, PathBuf};
 use xxhash_rust::xxh3::xxh3_64;
 
 /// The jobs of a list.
-pub fn jobs(source: &Source<'_>) -> anyhow::Result<Jobs> {
+pub fn jobs(source: &ListText<'_>) -> anyhow::Result<Jobs> {
     let list = source.list()?;
     // Before the first table, where the list's own keys stand.
     let top = || 0..0;
@@ -79,7 +79,7 @@ pub fn jobs(source: &Source<'_>) -> anyhow::Result<Jobs> {
 }
 
 /// The knobs that are the same for all methods: leaves, and those of the list's table.
-fn knobs(source: &Source<'_>, list: &List) -> anyhow::Result<Knobs> {
+fn knobs(source: &ListText<'_>, list: &List) -> anyhow::Result<Knobs> {
     let mut knobs = Knobs::default();
     if let Some(layout) = &list.leaf_layout {
         let why = |why: KnobError| source.wrong(layout.span(), format!("leaf_layout: {}", why.why));
@@ -109,7 +109,7 @@ fn list_key(knob: &Knob) -> Option<&'static str> {
 }
 
 /// A method with each of its qualities.
-fn qualities(source: &Source<'_>, list: &List, chosen: &Chosen) -> anyhow::Result<Vec<Chosen>> {
+fn qualities(source: &ListText<'_>, list: &List, chosen: &Chosen) -> anyhow::Result<Vec<Chosen>> {
     let Some(deltas) = list.deltas.as_ref().filter(|_| chosen.method.has(DELTA.name)) else { return Ok(vec![chosen.clone()]) };
     let with = |delta: &super::list::Value| {
         let wrong = |why: KnobError| source.wrong(deltas.span(), format!("deltas: {}", why.why));
@@ -119,12 +119,12 @@ fn qualities(source: &Source<'_>, list: &List, chosen: &Chosen) -> anyhow::Resul
 }
 
 /// A value that must be there; `place` is where it is missed.
-fn needed<'a, T>(source: &Source<'_>, value: Option<&'a Spanned<T>>, key: &str, place: Range<usize>) -> anyhow::Result<&'a Spanned<T>> {
+fn needed<'a, T>(source: &ListText<'_>, value: Option<&'a Spanned<T>>, key: &str, place: Range<usize>) -> anyhow::Result<&'a Spanned<T>> {
     value.ok_or_else(|| source.wrong(place, format!("{key} is missing")))
 }
 
 /// A list that must not be empty.
-fn filled<'a, T>(source: &Source<'_>, values: &'a Spanned<Vec<T>>, key: &str) -> anyhow::Result<&'a Vec<T>> {
+fn filled<'a, T>(source: &ListText<'_>, values: &'a Spanned<Vec<T>>, key: &str) -> anyhow::Result<&'a Vec<T>> {
     if values.get_ref().is_empty() {
         return Err(source.wrong(values.span(), format!("{key} must not be empty")));
     }
@@ -132,7 +132,7 @@ fn filled<'a, T>(source: &Source<'_>, values: &'a Spanned<Vec<T>>, key: &str) ->
 }
 
 /// Refuses what is in a list twice.
-fn each_once(source: &Source<'_>, place: Range<usize>, key: &str, values: impl Iterator<Item = impl ToString>) -> anyhow::Result<()> {
+fn each_once(source: &ListText<'_>, place: Range<usize>, key: &str, values: impl Iterator<Item = impl ToString>) -> anyhow::Result<()> {
     let mut seen = HashSet::new();
     for value in values.map(|value| value.to_string()) {
         if seen.contains(&value) {
@@ -145,7 +145,7 @@ fn each_once(source: &Source<'_>, place: Range<usize>, key: &str, values: impl I
 
 /// Every variant of a machine, with each way to compute, and the files that they were read from.
 fn machines(
-    source: &Source<'_>,
+    source: &ListText<'_>,
     entry: &Spanned<MachineEntry>,
     folder: &Path,
     compute: &[Compute],
@@ -182,7 +182,7 @@ fn machines(
 }
 
 /// A scene and what to see of it.
-fn scene(source: &Source<'_>, list: &List, spanned: &Spanned<SceneEntry>, folder: &Path) -> anyhow::Result<SceneJobs> {
+fn scene(source: &ListText<'_>, list: &List, spanned: &Spanned<SceneEntry>, folder: &Path) -> anyhow::Result<SceneJobs> {
     let entry = spanned.get_ref();
     let (origin, name, content, space) = match (&entry.file, &entry.generate) {
         (Some(file), None) => {
@@ -231,7 +231,7 @@ fn stand_in() -> ModelSpace {
     ModelSpace { placement, lo: [-1 << 30; 3], hi: [1 << 30; 3] }
 }
 
-fn views(source: &Source<'_>, list: &List, spanned: &Spanned<SceneEntry>) -> anyhow::Result<Vec<ViewJob>> {
+fn views(source: &ListText<'_>, list: &List, spanned: &Spanned<SceneEntry>) -> anyhow::Result<Vec<ViewJob>> {
     let entry = spanned.get_ref();
     let size = needed(source, entry.size.as_ref().or(list.size.as_ref()), "size", 0..0)?;
     let Size(width, height) = size.get_ref().parse().map_err(|why| source.wrong(size.span(), format!("size: {why}")))?;
@@ -266,7 +266,7 @@ fn views(source: &Source<'_>, list: &List, spanned: &Spanned<SceneEntry>) -> any
 }
 
 /// Refuses three numbers that the command line's `option` refuses, in its words.
-fn option(source: &Source<'_>, place: Range<usize>, key: &str, option: &str, value: &[f64; 3]) -> anyhow::Result<()> {
+fn option(source: &ListText<'_>, place: Range<usize>, key: &str, option: &str, value: &[f64; 3]) -> anyhow::Result<()> {
     let word = format!("--{option}={}", value.map(|v| v.to_string()).join(","));
     let command = CameraArgs::augment_args(clap::Command::new("list").no_binary_name(true));
     command.try_get_matches_from([word]).map(drop).map_err(|error| {

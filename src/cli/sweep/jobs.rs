@@ -1,7 +1,7 @@
 //! The jobs of a list.
 
 use super::check;
-use super::list::Source;
+use super::list::ListText;
 use crate::cli::method::Chosen;
 use crate::cli::pass::Target;
 use anyhow::Context;
@@ -76,7 +76,7 @@ impl Jobs {
     /// Reads and checks a list; every error names the file.
     pub fn read(path: &Path) -> anyhow::Result<Self> {
         let text = std::fs::read_to_string(path).with_context(|| format!("cannot read {}", path.display()))?;
-        check::jobs(&Source { path, text: &text })
+        check::jobs(&ListText { path, text: &text })
     }
 
     /// The names of all jobs, in order.

@@ -107,12 +107,12 @@ impl Display for Value {
 }
 
 /// The file's text, to say where a mistake is.
-pub struct Source<'a> {
+pub struct ListText<'a> {
     pub path: &'a Path,
     pub text: &'a str,
 }
 
-impl Source<'_> {
+impl ListText<'_> {
     /// What the file says.
     pub fn list(&self) -> anyhow::Result<List> {
         // The reader's own messages are several lines, with a picture of the place.

@@ -1,6 +1,6 @@
 //! The quad-BVH over the trees.
 
-use super::tally::{Kind, Tallies};
+use super::tally::{CheckKind, Tallies};
 use crate::format::{Box16, BvhChild, ChildRef, Scene};
 use crate::num::Wire;
 
@@ -19,7 +19,7 @@ pub(super) fn check(scene: &Scene, found: &mut Tallies) {
             let (kind, index, more) = (slot.child.kind.get(), slot.child.index.get() as usize, slot.child.count.get() as usize);
             let zero = kind != ChildRef::EMPTY || nodes[node][2 * k..2 * k + 2] == [0, 0];
             let legal = kind <= ChildRef::LEAF && (kind != ChildRef::INNER || more == 0);
-            found.check(Kind::Reserved, zero && legal, || {
+            found.check(CheckKind::Reserved, zero && legal, || {
                 format!("quad-BVH node {node}: slot {k} is {:x?}", &nodes[node][2 * k..2 * k + 2])
             });
             match kind {
@@ -30,10 +30,12 @@ pub(super) fn check(scene: &Scene, found: &mut Tallies) {
                             open.push(index);
                             let inside = children(index).into_iter().filter(|c| c.child.kind.get() != ChildRef::EMPTY);
                             let holds = inside.into_iter().all(|c| contains(slot.bounds, c.bounds));
-                            found.check(Kind::BvhInnerBoxes, holds, || format!("quad-BVH node {node}: box of child {k} (node {index})"));
+                            found.check(CheckKind::BvhInnerBoxes, holds, || {
+                                format!("quad-BVH node {node}: box of child {k} (node {index})")
+                            });
                         }
                     }
-                    None => found.check(Kind::BvhNodes, false, || format!("quad-BVH node {node} refers to node {index}")),
+                    None => found.check(CheckKind::BvhNodes, false, || format!("quad-BVH node {node} refers to node {index}")),
                 },
                 ChildRef::LEAF => {
                     for tree in index..=index + more {
@@ -41,9 +43,11 @@ pub(super) fn check(scene: &Scene, found: &mut Tallies) {
                             Some(uses) => {
                                 *uses += 1;
                                 let holds = contains(slot.bounds, scene.record(tree).root.bounds);
-                                found.check(Kind::BvhLeafBoxes, holds, || format!("quad-BVH node {node}: box of child {k} (tree {tree})"));
+                                found.check(CheckKind::BvhLeafBoxes, holds, || {
+                                    format!("quad-BVH node {node}: box of child {k} (tree {tree})")
+                                });
                             }
-                            None => found.check(Kind::BvhTrees, false, || format!("quad-BVH node {node} refers to tree {tree}")),
+                            None => found.check(CheckKind::BvhTrees, false, || format!("quad-BVH node {node} refers to tree {tree}")),
                         }
                     }
                 }
@@ -52,10 +56,10 @@ pub(super) fn check(scene: &Scene, found: &mut Tallies) {
         }
     }
     for (node, &uses) in node_uses.iter().enumerate() {
-        found.check(Kind::BvhNodes, uses == 1, || format!("quad-BVH node {node} is referred to {uses} times"));
+        found.check(CheckKind::BvhNodes, uses == 1, || format!("quad-BVH node {node} is referred to {uses} times"));
     }
     for (tree, &uses) in tree_uses.iter().enumerate() {
-        found.check(Kind::BvhTrees, uses == 1, || format!("tree {tree} is referred to {uses} times"));
+        found.check(CheckKind::BvhTrees, uses == 1, || format!("tree {tree} is referred to {uses} times"));
     }
 }
 

@@ -1,6 +1,6 @@
 //! Base edges that several trees share, found from the base indices, and the checks across trees.
 
-use super::tally::{Kind, Tallies};
+use super::tally::{CheckKind, Tallies};
 use super::tree::Lattices;
 use crate::mesh::lattice;
 
@@ -50,9 +50,9 @@ impl Edges {
                 for place in 1..1 << self.levels {
                     let (a, b) = (self.index(&uses[0], place), self.index(other, place));
                     let (p, q) = (lattices.points[a], lattices.points[b]);
-                    found.check(Kind::VerticesAcross, p == q, || format!("{}: {p:?} and {q:?}", name(place)));
+                    found.check(CheckKind::VerticesAcross, p == q, || format!("{}: {p:?} and {q:?}", name(place)));
                     let (c, d) = (lattices.codes[a], lattices.codes[b]);
-                    found.check(Kind::CodesAcross, c == d, || format!("{}: codes {c} and {d}", name(place)));
+                    found.check(CheckKind::CodesAcross, c == d, || format!("{}: codes {c} and {d}", name(place)));
                 }
             }
         }
@@ -74,7 +74,7 @@ impl Edges {
             let (v, first, at) = uses[0];
             for &(_, tree, other) in &uses[1..] {
                 let (p, q) = (lattices.points[at], lattices.points[other]);
-                found.check(Kind::VerticesAcross, p == q, || format!("base vertex {v}: {p:?} in tree {first}, {q:?} in tree {tree}"));
+                found.check(CheckKind::VerticesAcross, p == q, || format!("base vertex {v}: {p:?} in tree {first}, {q:?} in tree {tree}"));
             }
         }
         corners.len() as u64 - vertices

@@ -16,7 +16,7 @@ use edges::Edges;
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 use std::fmt;
-use tally::{CHECKS, Kind, Tallies};
+use tally::{CHECKS, CheckKind, Tallies};
 
 /// What one check found.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
@@ -86,7 +86,7 @@ pub fn audit(scene: &Scene) -> AuditReport {
     let (lo, hi) = (scene.meta().lo, scene.meta().hi);
     for k in 0..3 {
         for (which, stored, truth) in [("lo", lo[k], found.lo[k]), ("hi", hi[k], found.hi[k])] {
-            found.check(Kind::ModelBox, stored == truth, || format!("META {which}[{k}] is {stored}, the vertices give {truth}"));
+            found.check(CheckKind::ModelBox, stored == truth, || format!("META {which}[{k}] is {stored}, the vertices give {truth}"));
         }
     }
 
@@ -122,17 +122,17 @@ fn check_shading(scene: &Scene) -> Tallies {
         let mut found = Tallies::default();
         for (point, &code) in normals.iter().enumerate() {
             let ok = (code & 0xFFFF) != 0x8000 && (code >> 16) != 0x8000;
-            found.check(Kind::Normals, ok, || format!("tree {t}: normal {point} is {code:#010x}"));
+            found.check(CheckKind::Normals, ok, || format!("tree {t}: normal {point} is {code:#010x}"));
         }
         let material = scene.record(t).material.get();
-        found.check(Kind::Materials, material < colours, || format!("tree {t}: material {material} of {colours}"));
+        found.check(CheckKind::Materials, material < colours, || format!("tree {t}: material {material} of {colours}"));
         found
     });
     checked.reduce(Tallies::default, Tallies::join)
 }
 
 /// How many things each check must look at, from the counts alone.
-fn expected(scene: &Scene, edges: &Edges, shared_corners: u64) -> [(Kind, u64); CHECKS.len()] {
+fn expected(scene: &Scene, edges: &Edges, shared_corners: u64) -> [(CheckKind, u64); CHECKS.len()] {
     let n = scene.levels();
     let trees = scene.trees() as u64;
     let [len, edge_count] = [lattice::len(n), edges_of_tree(n)].map(|c| c as u64);
@@ -143,23 +143,23 @@ fn expected(scene: &Scene, edges: &Edges, shared_corners: u64) -> [(Kind, u64); 
     let meeting: u64 = (0..n.saturating_sub(1)).map(|level| 6 * edges_of_level(level) as u64 - 6 * (1 << level)).sum();
     let nodes = scene.nodes().len() as u64;
     [
-        (Kind::Reserved, trees * (2 + grouped + inner) + 4 * nodes),
-        (Kind::Limit, trees * 3 * (1 + inner)),
-        (Kind::LowBits, trees * 3 * (1 + inner)),
-        (Kind::VerticesInTree, trees * (3 * inner - (len - 3))),
-        (Kind::VerticesAcross, edges.extra_uses * ((1 << n) - 1) + shared_corners),
-        (Kind::CodesInTree, trees * (3 * inner - edge_count)),
-        (Kind::CodesAcross, edges.extra_uses * ((1 << n) - 1)),
-        (Kind::Bounds, trees * edge_count),
-        (Kind::Monotone, trees * meeting),
-        (Kind::Boxes, trees * inner.max(1)),
-        (Kind::ModelBox, 6),
-        (Kind::BaseTriangles, trees),
-        (Kind::BvhNodes, nodes),
-        (Kind::BvhTrees, trees),
-        (Kind::BvhLeafBoxes, trees),
-        (Kind::BvhInnerBoxes, nodes - 1),
-        (Kind::Normals, trees * len),
-        (Kind::Materials, trees),
+        (CheckKind::Reserved, trees * (2 + grouped + inner) + 4 * nodes),
+        (CheckKind::Limit, trees * 3 * (1 + inner)),
+        (CheckKind::LowBits, trees * 3 * (1 + inner)),
+        (CheckKind::VerticesInTree, trees * (3 * inner - (len - 3))),
+        (CheckKind::VerticesAcross, edges.extra_uses * ((1 << n) - 1) + shared_corners),
+        (CheckKind::CodesInTree, trees * (3 * inner - edge_count)),
+        (CheckKind::CodesAcross, edges.extra_uses * ((1 << n) - 1)),
+        (CheckKind::Bounds, trees * edge_count),
+        (CheckKind::Monotone, trees * meeting),
+        (CheckKind::Boxes, trees * inner.max(1)),
+        (CheckKind::ModelBox, 6),
+        (CheckKind::BaseTriangles, trees),
+        (CheckKind::BvhNodes, nodes),
+        (CheckKind::BvhTrees, trees),
+        (CheckKind::BvhLeafBoxes, trees),
+        (CheckKind::BvhInnerBoxes, nodes - 1),
+        (CheckKind::Normals, trees * len),
+        (CheckKind::Materials, trees),
     ]
 }

@@ -2,7 +2,7 @@
 
 /// The checks.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Kind {
+pub(super) enum CheckKind {
     Reserved,
     Limit,
     LowBits,
@@ -23,26 +23,26 @@ pub(super) enum Kind {
     Materials,
 }
 
-/// All checks in the order of [`Kind`], with their names.
-pub(super) const CHECKS: [(Kind, &str); 18] = [
-    (Kind::Reserved, "reserved bits and empty slots are zero"),
-    (Kind::Limit, "coordinates keep to the limit"),
-    (Kind::LowBits, "low bits of the level's grid are zero"),
-    (Kind::VerticesInTree, "inserted vertices are equal on both sides of an edge"),
-    (Kind::VerticesAcross, "vertices are equal in all trees that share them"),
-    (Kind::CodesInTree, "both sides of an edge hold the same code"),
-    (Kind::CodesAcross, "all trees that share an edge hold the same code"),
-    (Kind::Bounds, "bounds cover the true displacement"),
-    (Kind::Monotone, "codes do not grow towards finer levels"),
-    (Kind::Boxes, "boxes contain all full-resolution vertices below"),
-    (Kind::ModelBox, "the model's box is that of its vertices"),
-    (Kind::BaseTriangles, "base triangles have three different vertices"),
-    (Kind::BvhNodes, "quad-BVH nodes are referred to exactly once"),
-    (Kind::BvhTrees, "trees are referred to exactly once"),
-    (Kind::BvhLeafBoxes, "quad-BVH leaf boxes contain their trees' boxes"),
-    (Kind::BvhInnerBoxes, "quad-BVH inner boxes contain their children's boxes"),
-    (Kind::Normals, "normals are present"),
-    (Kind::Materials, "materials have colours"),
+/// All checks in the order of [`CheckKind`], with their names.
+pub(super) const CHECKS: [(CheckKind, &str); 18] = [
+    (CheckKind::Reserved, "reserved bits and empty slots are zero"),
+    (CheckKind::Limit, "coordinates keep to the limit"),
+    (CheckKind::LowBits, "low bits of the level's grid are zero"),
+    (CheckKind::VerticesInTree, "inserted vertices are equal on both sides of an edge"),
+    (CheckKind::VerticesAcross, "vertices are equal in all trees that share them"),
+    (CheckKind::CodesInTree, "both sides of an edge hold the same code"),
+    (CheckKind::CodesAcross, "all trees that share an edge hold the same code"),
+    (CheckKind::Bounds, "bounds cover the true displacement"),
+    (CheckKind::Monotone, "codes do not grow towards finer levels"),
+    (CheckKind::Boxes, "boxes contain all full-resolution vertices below"),
+    (CheckKind::ModelBox, "the model's box is that of its vertices"),
+    (CheckKind::BaseTriangles, "base triangles have three different vertices"),
+    (CheckKind::BvhNodes, "quad-BVH nodes are referred to exactly once"),
+    (CheckKind::BvhTrees, "trees are referred to exactly once"),
+    (CheckKind::BvhLeafBoxes, "quad-BVH leaf boxes contain their trees' boxes"),
+    (CheckKind::BvhInnerBoxes, "quad-BVH inner boxes contain their children's boxes"),
+    (CheckKind::Normals, "normals are present"),
+    (CheckKind::Materials, "materials have colours"),
 ];
 
 /// One check's counts.
@@ -70,7 +70,7 @@ impl Default for Tallies {
 impl Tallies {
     /// Counts one thing looked at; `describe` names it if it does not hold and is the first.
     #[inline(always)]
-    pub fn check(&mut self, kind: Kind, holds: bool, describe: impl FnOnce() -> String) {
+    pub fn check(&mut self, kind: CheckKind, holds: bool, describe: impl FnOnce() -> String) {
         let tally = &mut self.tallies[kind as usize];
         tally.checked += 1;
         if !holds {

@@ -2,7 +2,7 @@
 //!
 //! An inserted vertex stands for the edge that it splits: the edge's code and its true displacement are kept at the vertex's place.
 
-use super::tally::{Kind, Tallies};
+use super::tally::{CheckKind, Tallies};
 use crate::format::{BoundData, L0Record, Scene, VertexData};
 use crate::mesh::lattice;
 use crate::num::{COORD_LIMIT, Wire};
@@ -69,12 +69,12 @@ impl Lattices {
                 each_inserted(levels, level, |at, meeting| {
                     let code = codes[at];
                     let covers = allowed.get(usize::from(code)).is_some_and(|&most| truths[at] <= most);
-                    found.check(Kind::Bounds, covers, || {
+                    found.check(CheckKind::Bounds, covers, || {
                         let truth = 8.0 * (truths[at] as f64).sqrt();
                         format!("tree {t}: edge of level {} split at lattice point {at} has code {code}, displacement {truth}", level - 1)
                     });
                     for &finer in meeting {
-                        found.check(Kind::Monotone, codes[finer] <= code, || {
+                        found.check(CheckKind::Monotone, codes[finer] <= code, || {
                             format!(
                                 "tree {t}: edge of level {} at lattice point {at} has code {code}, a finer one {}",
                                 level - 1,
@@ -129,15 +129,15 @@ pub(super) fn read(scene: &Scene, tree: usize, record: &[u64; 8], lattice: Latti
         found: Tallies::default(),
     };
     let [a, b, c] = scene.triangles()[tree];
-    reader.found.check(Kind::BaseTriangles, a != b && b != c && c != a, || format!("tree {tree}: vertices {a}, {b}, {c}"));
+    reader.found.check(CheckKind::BaseTriangles, a != b && b != c && c != a, || format!("tree {tree}: vertices {a}, {b}, {c}"));
 
     let corners = VertexData::from_words(&record[..4]);
     let second = L0Record::from_words(&record[4..]);
-    reader.found.check(Kind::Reserved, corners.reserved.get() == 0, || format!("tree {tree}: first line of the L0 record"));
+    reader.found.check(CheckKind::Reserved, corners.reserved.get() == 0, || format!("tree {tree}: first line of the L0 record"));
     let codes = [second.root.e0, second.root.e1, second.root.e2];
     let zero = [second.reserved_high.get(), second.reserved.get(), second.root.reserved.get()] == [0; 3]
         && (levels > 0 || codes.iter().all(|c| c.get() == 0));
-    reader.found.check(Kind::Reserved, zero, || format!("tree {tree}: second line of the L0 record"));
+    reader.found.check(CheckKind::Reserved, zero, || format!("tree {tree}: second line of the L0 record"));
 
     let points = corners.points().map(|p| p.get().map(|c| c as i32)); // 32 bits by their type
     let places = [(0, 0), (1 << levels, 0), (0, 1 << levels)];
@@ -184,7 +184,7 @@ impl Reader<'_> {
                     let child = corners.map(|(new, i)| if new == 1 { q[i] } else { p[i] });
                     let data = BoundData::from_words(&group[2 * k..]);
                     let (tree, below) = (self.tree, 4 * node + k);
-                    self.found.check(Kind::Reserved, data.reserved.get() == 0, || {
+                    self.found.check(CheckKind::Reserved, data.reserved.get() == 0, || {
                         format!("tree {tree}: bound data of node {below} of level {}", level + 1)
                     });
                     let (a, b) = self.node(level + 1, below, child_places, child, data);
@@ -197,7 +197,7 @@ impl Reader<'_> {
             let (stored_lo, stored_hi) = (data.bounds.lo.get(), data.bounds.hi.get());
             let holds = (0..3).all(|k| stored_lo[k] << 16 <= i64::from(lo[k]) && stored_hi[k] << 16 >= i64::from(hi[k]));
             let tree = self.tree;
-            self.found.check(Kind::Boxes, holds, || {
+            self.found.check(CheckKind::Boxes, holds, || {
                 format!(
                     "tree {tree}: node {node} of level {level} spans {lo:?} to {hi:?}, its box {stored_lo:?} to {stored_hi:?} (times 2^16)"
                 )
@@ -211,7 +211,8 @@ impl Reader<'_> {
     fn inserted(&mut self, level: u32, node: usize, places: [Place; 3], p: [[i32; 3]; 3], data: BoundData) -> ([Place; 3], [[i32; 3]; 3]) {
         let (tree, levels) = (self.tree, self.levels);
         let line = VertexData::from_words(&self.lines[first(level) + node]);
-        self.found.check(Kind::Reserved, line.reserved.get() == 0, || format!("tree {tree}: vertex line of node {node} of level {level}"));
+        self.found
+            .check(CheckKind::Reserved, line.reserved.get() == 0, || format!("tree {tree}: vertex line of node {node} of level {level}"));
         let q = line.points().map(|v| v.get().map(|c| c as i32)); // 32 bits by their type
         let codes = [data.e0, data.e1, data.e2].map(|c| c.get() as u16); // 10 bits
         let mut q_places = places;
@@ -230,8 +231,10 @@ impl Reader<'_> {
                 self.lattice.displacements[at] = (0..3).map(|c| twice(c).unsigned_abs().pow(2)).sum();
             } else {
                 let (code, point) = (self.lattice.codes[at], self.lattice.points[at]);
-                self.found.check(Kind::VerticesInTree, point == q[k], || format!("{} is {:?}, its other side {point:?}", name(), q[k]));
-                self.found.check(Kind::CodesInTree, code == codes[k], || format!("{}: code {}, its other side {code}", name(), codes[k]));
+                self.found
+                    .check(CheckKind::VerticesInTree, point == q[k], || format!("{} is {:?}, its other side {point:?}", name(), q[k]));
+                self.found
+                    .check(CheckKind::CodesInTree, code == codes[k], || format!("{}: code {}, its other side {code}", name(), codes[k]));
             }
         }
         (q_places, q)
@@ -241,9 +244,9 @@ impl Reader<'_> {
     #[inline]
     fn coordinates(&mut self, level: u32, v: [i32; 3], name: impl Fn() -> String) {
         let within = v.iter().all(|c| (-COORD_LIMIT..=COORD_LIMIT).contains(c));
-        self.found.check(Kind::Limit, within, || format!("{} is {v:?}", name()));
+        self.found.check(CheckKind::Limit, within, || format!("{} is {v:?}", name()));
         let low = (1i32 << (self.levels - level)) - 1;
-        self.found.check(Kind::LowBits, v.iter().all(|c| c & low == 0), || format!("{} is {v:?}", name()));
+        self.found.check(CheckKind::LowBits, v.iter().all(|c| c & low == 0), || format!("{} is {v:?}", name()));
     }
 }
 

@@ -115,7 +115,7 @@ impl FullBuilder {
     /// Illegal options.
     pub fn tree(&self, options: &Options, wide_boxes: bool) -> Result<FullTree, BvhError> {
         check_options(options)?;
-        let source = collapse::Source::new(&self.prims, &self.binary, options);
+        let source = collapse::BinaryTree::new(&self.prims, &self.binary, options);
         let nodes = if wide_boxes {
             FullNodes::Boxes32(collapse::nodes(&source, MAX_DEPTH, encode32))
         } else {

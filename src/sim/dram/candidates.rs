@@ -5,7 +5,7 @@ use super::ranks::MOST_BANKS;
 
 /// Steps towards a request.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Step {
+pub(super) enum BankCommand {
     Column,
     Activate,
     Precharge,
@@ -16,7 +16,7 @@ pub(super) const STEPS: usize = 4;
 
 /// What a command is for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Act {
+pub(super) enum Purpose {
     CloseAll { rank: usize },
     Refresh { rank: usize },
     Towards { bank: usize },
@@ -27,7 +27,7 @@ pub(super) enum Act {
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Choice {
     pub clock: u64,
-    pub act: Act,
+    pub purpose: Purpose,
 }
 
 // Within a clock the smallest order goes first: its kind of command, then the age of the request; the bank is in the low bits.
@@ -56,7 +56,7 @@ pub(super) struct Candidates {
     /// Which of `limits` holds.
     pub limit: [u8; MOST_BANKS],
     pub slots: [u16; MOST_BANKS],
-    pub steps: [Step; MOST_BANKS],
+    pub steps: [BankCommand; MOST_BANKS],
     /// First clock that a bank group and its rank allow, by group and step.
     pub limits: [u64; MOST_BANKS * STEPS],
 }
@@ -68,7 +68,7 @@ impl Candidates {
             orders: [0; MOST_BANKS],
             limit: [0; MOST_BANKS],
             slots: [NONE; MOST_BANKS],
-            steps: [Step::Activate; MOST_BANKS],
+            steps: [BankCommand::Activate; MOST_BANKS],
             limits: [0; MOST_BANKS * STEPS],
         }
     }

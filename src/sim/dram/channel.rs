@@ -4,7 +4,7 @@
 //! oldest request's. One command per clock. A due refresh goes before everything of its rank. Requests of a bank may overtake its oldest
 //! one `hit_cap` times per activate, so that none waits forever.
 
-use super::candidates::{Act, Candidates, Choice, Step};
+use super::candidates::{BankCommand, Candidates, Choice, Purpose};
 use super::config::{Controller, PagePolicy};
 use super::counts::ChannelCounts;
 use super::device::Device;
@@ -121,8 +121,8 @@ impl Channel {
     fn give(&mut self, choice: Choice, done: &mut impl FnMut(u64, u64)) {
         let t = choice.clock;
         self.free = t + 1;
-        match choice.act {
-            Act::Towards { bank } => {
+        match choice.purpose {
+            Purpose::Towards { bank } => {
                 let step = self.candidates.steps[bank];
                 if self.step(bank, t, done) {
                     self.update_limits();
@@ -132,13 +132,13 @@ impl Channel {
                     self.update_candidate(bank);
                 }
             }
-            Act::Close { bank } => {
+            Purpose::Close { bank } => {
                 self.leave_power_down(self.ranks.rank_of(bank), t);
                 self.close(bank, t);
                 self.note(t, Given::Precharge { bank });
-                self.update_limits_of(self.ranks.rank_of(bank), Step::Precharge);
+                self.update_limits_of(self.ranks.rank_of(bank), BankCommand::Precharge);
             }
-            Act::CloseAll { rank } => {
+            Purpose::CloseAll { rank } => {
                 self.leave_power_down(rank, t);
                 for bank in self.ranks.banks_of(rank) {
                     if self.ranks.banks[bank].row != NO_ROW {
@@ -149,7 +149,7 @@ impl Channel {
                 self.update_limits();
                 self.update_candidates();
             }
-            Act::Refresh { rank } => {
+            Purpose::Refresh { rank } => {
                 self.leave_power_down(rank, t);
                 self.ranks.refresh(rank, t, &mut self.counts);
                 self.note(t, Given::Refresh { rank });
@@ -164,7 +164,7 @@ impl Channel {
     fn step(&mut self, bank: usize, t: u64, done: &mut impl FnMut(u64, u64)) -> bool {
         let (slot, kind) = (self.candidates.slots[bank], self.kind);
         match self.candidates.steps[bank] {
-            Step::Activate => {
+            BankCommand::Activate => {
                 let request = self.queues[kind].get_mut(slot);
                 let row = request.row;
                 if request.opened == Opened::Already {
@@ -178,13 +178,13 @@ impl Channel {
                 self.note(t, Given::Activate { bank, row });
                 false
             }
-            Step::Precharge => {
+            BankCommand::Precharge => {
                 self.queues[kind].get_mut(slot).opened = Opened::ClosedFirst;
                 self.close(bank, t);
                 self.note(t, Given::Precharge { bank });
                 false
             }
-            Step::Column => {
+            BankCommand::Column => {
                 if slot != self.queues[kind].head(bank) {
                     self.overtaken[bank] += 1;
                 }

@@ -1,6 +1,6 @@
 //! How a channel finds its next command.
 
-use super::candidates::{Act, CLOSE_ORDER, COLUMN_ORDER, Choice, REFRESH_ORDER, ROW_ORDER, STEPS, Step, clock_of, key};
+use super::candidates::{BankCommand, CLOSE_ORDER, COLUMN_ORDER, Choice, Purpose, REFRESH_ORDER, ROW_ORDER, STEPS, clock_of, key};
 use super::channel::Channel;
 use super::config::PagePolicy;
 use super::queue::NONE;
@@ -10,24 +10,24 @@ impl Channel {
     /// Finds the next command: the earliest, and in one clock the first in order.
     pub(super) fn choose(&mut self) {
         let mut best = u128::MAX;
-        let mut act = Act::Refresh { rank: 0 };
+        let mut purpose = Purpose::Refresh { rank: 0 };
         for rank in 0..self.ranks.ranks.len() {
             let mask = u64::MAX >> (MOST_BANKS - self.ranks.banks_of(rank).len()) << self.ranks.banks_of(rank).start;
             let towards = self.candidates.first(self.queues[self.kind].banks & mask, self.free);
             let close = self.first_close(rank, mask);
             let mut mine = towards.min(close);
             let bank = mine as usize % MOST_BANKS; // the low bits of the order
-            let mut mine_act = if towards <= close { Act::Towards { bank } } else { Act::Close { bank } };
+            let mut mine_purpose = if towards <= close { Purpose::Towards { bank } } else { Purpose::Close { bank } };
             if clock_of(mine) >= self.ranks.ranks[rank].due {
                 let (ready, close) = self.ranks.refresh_step(rank);
                 mine = key(self.awake(rank, ready.max(self.free)), REFRESH_ORDER | rank as u64);
-                mine_act = if close { Act::CloseAll { rank } } else { Act::Refresh { rank } };
+                mine_purpose = if close { Purpose::CloseAll { rank } } else { Purpose::Refresh { rank } };
             }
             if mine < best {
-                (best, act) = (mine, mine_act);
+                (best, purpose) = (mine, mine_purpose);
             }
         }
-        self.next = Some(Choice { clock: clock_of(best), act });
+        self.next = Some(Choice { clock: clock_of(best), purpose });
     }
 
     /// Rows that nobody waits for, if the policy closes them.
@@ -59,11 +59,11 @@ impl Channel {
         }
         let state = &self.ranks.banks[bank];
         let (step, slot, ready, order) = if state.row == NO_ROW {
-            (Step::Activate, head, state.activate, ROW_ORDER)
+            (BankCommand::Activate, head, state.activate, ROW_ORDER)
         } else if hit != NONE && (hit == head || self.overtaken[bank] < self.controller.hit_cap) {
-            (Step::Column, hit, state.column[self.kind], COLUMN_ORDER)
+            (BankCommand::Column, hit, state.column[self.kind], COLUMN_ORDER)
         } else {
-            (Step::Precharge, head, state.precharge, ROW_ORDER)
+            (BankCommand::Precharge, head, state.precharge, ROW_ORDER)
         };
         let request = queue.get(slot);
         let candidates = &mut self.candidates;
@@ -82,8 +82,8 @@ impl Channel {
     }
 
     /// Recomputes what groups and ranks allow after a step in `rank`.
-    pub(super) fn update_limits_of(&mut self, rank: usize, step: Step) {
-        if step == Step::Column && self.ranks.ranks.len() > 1 {
+    pub(super) fn update_limits_of(&mut self, rank: usize, step: BankCommand) {
+        if step == BankCommand::Column && self.ranks.ranks.len() > 1 {
             return self.update_limits(); // the data bus is shared
         }
         for group in self.ranks.groups_of(rank) {
@@ -95,18 +95,18 @@ impl Channel {
     pub(super) fn update_limits(&mut self) {
         for rank in 0..self.ranks.ranks.len() {
             for group in self.ranks.groups_of(rank) {
-                for step in [Step::Column, Step::Activate, Step::Precharge] {
+                for step in [BankCommand::Column, BankCommand::Activate, BankCommand::Precharge] {
                     self.update_limit(rank, group, step);
                 }
             }
         }
     }
 
-    fn update_limit(&mut self, rank: usize, group: usize, step: Step) {
+    fn update_limit(&mut self, rank: usize, group: usize, step: BankCommand) {
         self.candidates.limits[group * STEPS + step as usize] = match step {
-            Step::Column => self.ranks.column_of_group(rank, group, self.kind),
-            Step::Activate => self.ranks.activate_of_group(rank, group),
-            Step::Precharge => self.ranks.precharge_of_rank(rank),
+            BankCommand::Column => self.ranks.column_of_group(rank, group, self.kind),
+            BankCommand::Activate => self.ranks.activate_of_group(rank, group),
+            BankCommand::Precharge => self.ranks.precharge_of_rank(rank),
         };
     }
 }

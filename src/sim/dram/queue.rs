@@ -18,7 +18,7 @@ pub(super) enum Opened {
 
 /// A request that waits.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Request {
+pub(super) struct DramRequest {
     pub id: u64,
     /// First clock in which a command for it may be given.
     pub arrival: u64,
@@ -41,7 +41,7 @@ pub(super) struct List {
 /// The slots and lists of one kind, reads or writes.
 #[derive(Clone, Debug)]
 pub(super) struct Queue {
-    slots: Vec<Request>,
+    slots: Vec<DramRequest>,
     free: Vec<u16>,
     lists: Vec<List>,
     /// Banks with a request, one bit each.
@@ -51,7 +51,7 @@ pub(super) struct Queue {
 impl Queue {
     /// Room for `depth` requests (less than 2^16 - 1) to `banks` banks (at most 64).
     pub fn new(depth: u16, banks: u32) -> Self {
-        let empty = Request { id: 0, arrival: 0, age: 0, row: 0, opened: Opened::Already, before: NONE, after: NONE };
+        let empty = DramRequest { id: 0, arrival: 0, age: 0, row: 0, opened: Opened::Already, before: NONE, after: NONE };
         Self {
             slots: vec![empty; usize::from(depth)],
             free: (0..depth).rev().collect(),
@@ -71,12 +71,12 @@ impl Queue {
     }
 
     /// The request in a slot.
-    pub fn get(&self, slot: u16) -> &Request {
+    pub fn get(&self, slot: u16) -> &DramRequest {
         &self.slots[usize::from(slot)]
     }
 
     /// The request in a slot.
-    pub fn get_mut(&mut self, slot: u16) -> &mut Request {
+    pub fn get_mut(&mut self, slot: u16) -> &mut DramRequest {
         &mut self.slots[usize::from(slot)]
     }
 
@@ -92,7 +92,7 @@ impl Queue {
     pub fn push(&mut self, bank: usize, id: u64, arrival: u64, age: u64, row: u32) -> u16 {
         let slot = self.free.pop().expect("a request was pushed to a full DRAM queue");
         let list = &mut self.lists[bank];
-        self.slots[usize::from(slot)] = Request { id, arrival, age, row, opened: Opened::Already, before: list.tail, after: NONE };
+        self.slots[usize::from(slot)] = DramRequest { id, arrival, age, row, opened: Opened::Already, before: list.tail, after: NONE };
         match list.tail {
             NONE => list.head = slot,
             tail => self.slots[usize::from(tail)].after = slot,
@@ -103,7 +103,7 @@ impl Queue {
     }
 
     /// Takes a request out of a bank's list.
-    pub fn remove(&mut self, bank: usize, slot: u16) -> Request {
+    pub fn remove(&mut self, bank: usize, slot: u16) -> DramRequest {
         let request = self.slots[usize::from(slot)];
         let list = &mut self.lists[bank];
         match request.before {
@@ -130,7 +130,7 @@ impl Queue {
     }
 
     /// The slot behind a request that was taken out, if nothing changed since.
-    pub fn after(request: &Request) -> u16 {
+    pub fn after(request: &DramRequest) -> u16 {
         request.after
     }
 }

@@ -3,9 +3,9 @@
 //! A core holds some rays and asks for one line a cycle, for the rays in the order in which they became ready.
 
 use super::FrontEnd;
-use super::counts::Source;
+use super::counts::Supplier;
 use super::event::{Asked, Happening};
-use super::feed::{self, Feed, Ray};
+use super::feed::{self, FedRay, Feed};
 use super::hierarchy::Hierarchy;
 use super::prefetch::prefetch;
 use crate::block::Operations;
@@ -22,13 +22,13 @@ const NONE: u32 = u32::MAX;
 /// What a core holds of a ray. (What most steps need lies in one cache line.)
 #[derive(Clone)]
 #[repr(C, align(64))]
-struct Context {
-    ray: Option<Ray>,
+struct CoreContext {
+    ray: Option<FedRay>,
     /// When all that came, or is known to come, is there.
     ready: u64,
     /// Since when it waits for these lines, and where the one that came last was.
     since: u64,
-    from: Source,
+    from: Supplier,
     count: u8,
     sent: u8,
     come: u8,
@@ -38,13 +38,13 @@ struct Context {
     sections: [SectionId; MOST_LINES],
 }
 
-impl Context {
+impl CoreContext {
     /// A line comes from the L1 in `cycle`: only of the last is the context told when it is there.
     #[inline(always)]
     fn comes(&mut self, context: u32, cycle: u64, memory: &mut Hierarchy) {
         self.ready = self.ready.max(cycle);
         if self.come + 1 == self.count {
-            memory.answer_at(self.ready, context, Source::L1);
+            memory.answer_at(self.ready, context, Supplier::L1);
         } else {
             self.come += 1;
         }
@@ -53,7 +53,7 @@ impl Context {
 
 /// A core's way to its L1.
 #[derive(Clone)]
-struct Port {
+struct CorePort {
     /// The first cycle in which it may ask.
     free: u64,
     /// First and last of the contexts with lines to ask for; the last counts only if there is a first.
@@ -66,8 +66,8 @@ struct Port {
 /// All cores.
 pub struct FreeCores<S> {
     feed: Feed<S>,
-    contexts: Vec<Context>,
-    ports: Vec<Port>,
+    contexts: Vec<CoreContext>,
+    ports: Vec<CorePort>,
     rays_in_flight: u32,
     per_group: u32,
     /// Lines of nodes that cores hold for good.
@@ -75,12 +75,13 @@ pub struct FreeCores<S> {
     under_way: u64,
 }
 
-impl<S: feed::Source> FreeCores<S> {
+impl<S: feed::ChunkSource> FreeCores<S> {
     /// Cores that take rays from `source`, and hold the first of `nodes`.
     pub fn new(cores: &Cores, nodes: Nodes, source: S) -> Self {
         let (lines, sections) = ([0; MOST_LINES], [SectionId::default(); MOST_LINES]);
-        let context = Context { ray: None, ready: 0, since: 0, from: Source::L1, count: 0, sent: 0, come: 0, next: NONE, lines, sections };
-        let port = Port { free: 0, first: NONE, last: NONE, awake: false };
+        let context =
+            CoreContext { ray: None, ready: 0, since: 0, from: Supplier::L1, count: 0, sent: 0, come: 0, next: NONE, lines, sections };
+        let port = CorePort { free: 0, first: NONE, last: NONE, awake: false };
         Self {
             feed: Feed::new(source, cores.groups),
             contexts: vec![context; (cores.total() * cores.rays_in_flight) as usize],
@@ -154,7 +155,7 @@ impl<S: feed::Source> FreeCores<S> {
         }
         ray.skip(steps);
         (state.count, state.sent, state.come, state.ready) = (count as u8, 0, 0, 0);
-        (state.since, state.from, state.next) = (memory.now(), Source::L1, NONE);
+        (state.since, state.from, state.next) = (memory.now(), Supplier::L1, NONE);
         let port = context / self.rays_in_flight;
         let state = &mut self.ports[port as usize];
         let last = std::mem::replace(&mut state.last, context);
@@ -204,7 +205,7 @@ impl<S: feed::Source> FreeCores<S> {
     }
 }
 
-impl<S: feed::Source> FrontEnd for FreeCores<S> {
+impl<S: feed::ChunkSource> FrontEnd for FreeCores<S> {
     fn start(&mut self, memory: &mut Hierarchy) {
         for context in 0..self.contexts.len() as u32 {
             self.next_ray(context);
@@ -241,7 +242,7 @@ impl<S: feed::Source> FrontEnd for FreeCores<S> {
     }
 
     #[inline]
-    fn answer(&mut self, context: u32, from: Source, memory: &mut Hierarchy) {
+    fn answer(&mut self, context: u32, from: Supplier, memory: &mut Hierarchy) {
         let state = &mut self.contexts[context as usize];
         state.from = state.from.max(from);
         if state.come + 1 == state.count && state.ready > memory.now() {

@@ -29,7 +29,7 @@ pub struct CacheCounts {
 /// Where a line came from.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 #[repr(u8)]
-pub enum Source {
+pub enum Supplier {
     /// The group's L1.
     L1,
     /// The L2.
@@ -38,7 +38,7 @@ pub enum Source {
     Dram,
 }
 
-impl Source {
+impl Supplier {
     /// All, nearest first.
     pub const ALL: [Self; 3] = [Self::L1, Self::L2, Self::Dram];
 }
@@ -68,11 +68,11 @@ pub struct Waits {
 impl Waits {
     /// Adds `cycles` of waiting for a line from `source`.
     #[inline]
-    pub fn add(&mut self, source: Source, cycles: u64) {
+    pub fn add(&mut self, source: Supplier, cycles: u64) {
         match source {
-            Source::L1 => self.l1 += cycles,
-            Source::L2 => self.l2 += cycles,
-            Source::Dram => self.dram += cycles,
+            Supplier::L1 => self.l1 += cycles,
+            Supplier::L2 => self.l2 += cycles,
+            Supplier::Dram => self.dram += cycles,
         }
     }
 }

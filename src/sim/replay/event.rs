@@ -1,6 +1,6 @@
 //! What happens in the memory hierarchy, and what others are told of it.
 
-use super::counts::Source;
+use super::counts::Supplier;
 
 /// Bits of the number of who has an event; its kind stands above.
 const ID_BITS: u32 = 28;
@@ -18,7 +18,7 @@ pub const NEAR: usize = 2;
 /// What happens.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[repr(u32)]
-pub enum Kind {
+pub enum EventKind {
     Wake,
     AnswerL1,
     AnswerL2,
@@ -33,7 +33,7 @@ pub enum Kind {
     FillL1FromDram,
 }
 
-impl Kind {
+impl EventKind {
     /// The kind of an event.
     #[inline(always)]
     pub fn of(event: u32) -> Self {
@@ -65,19 +65,19 @@ pub fn id(event: u32) -> u32 {
     event & ((1 << ID_BITS) - 1)
 }
 
-const KINDS: [Kind; 12] = [
-    Kind::Wake,
-    Kind::AnswerL1,
-    Kind::AnswerL2,
-    Kind::AnswerDram,
-    Kind::ServeL1,
-    Kind::Crossbar,
-    Kind::ArriveL2,
-    Kind::ServeL2,
-    Kind::PushDram,
-    Kind::FillL2,
-    Kind::FillL1FromL2,
-    Kind::FillL1FromDram,
+const KINDS: [EventKind; 12] = [
+    EventKind::Wake,
+    EventKind::AnswerL1,
+    EventKind::AnswerL2,
+    EventKind::AnswerDram,
+    EventKind::ServeL1,
+    EventKind::Crossbar,
+    EventKind::ArriveL2,
+    EventKind::ServeL2,
+    EventKind::PushDram,
+    EventKind::FillL2,
+    EventKind::FillL1FromL2,
+    EventKind::FillL1FromDram,
 ];
 
 /// What became of a request.
@@ -99,5 +99,5 @@ pub enum Happening {
     /// The line that was asked for comes in this cycle from the L1, which nobody will be told again.
     Comes(u32, u64),
     /// The line that was asked for came.
-    Answer(u32, Source),
+    Answer(u32, Supplier),
 }

@@ -13,12 +13,12 @@ use std::sync::Arc;
 pub type Chunk = Arc<[Batch]>;
 
 /// Gives the chunks of a frame in order.
-pub trait Source {
+pub trait ChunkSource {
     /// The next one; `None` after the last. May wait for it.
     fn next(&mut self) -> Option<Chunk>;
 }
 
-impl<I: Iterator<Item = Chunk>> Source for I {
+impl<I: Iterator<Item = Chunk>> ChunkSource for I {
     fn next(&mut self) -> Option<Chunk> {
         Iterator::next(self)
     }
@@ -34,7 +34,7 @@ struct Current {
 
 /// A ray: its place among its batch's steps.
 #[derive(Clone)]
-pub struct Ray {
+pub struct FedRay {
     chunk: Chunk,
     batch: u32,
     at: u32,
@@ -42,7 +42,7 @@ pub struct Ray {
     ray: u32,
 }
 
-impl Ray {
+impl FedRay {
     /// Its next step; a ray ends with [`Act::End`](crate::step::Act::End), after which it has none.
     #[inline(always)]
     pub fn peek(&self) -> StepWord {
@@ -68,7 +68,7 @@ impl Ray {
     }
 }
 
-impl Ray {
+impl FedRay {
     fn link(&self) -> Option<Link> {
         self.chunk[self.batch as usize].link(self.ray as usize)
     }
@@ -79,9 +79,9 @@ struct Order {
     /// Rays that have ended, where any wait for others.
     ended: HashSet<u64>,
     /// By the ray that they wait for: rays, and the groups that took them.
-    waiting: HashMap<u64, Vec<(u32, Ray)>>,
+    waiting: HashMap<u64, Vec<(u32, FedRay)>>,
     /// Rays that wait no more, by group.
-    ready: Vec<VecDeque<Ray>>,
+    ready: Vec<VecDeque<FedRay>>,
     released: Vec<u32>,
 }
 
@@ -91,7 +91,7 @@ impl Order {
     }
 
     /// The ray behind whose end `ray` starts, if that is still to come.
-    fn waits_for(&self, ray: &Ray) -> Option<u64> {
+    fn waits_for(&self, ray: &FedRay) -> Option<u64> {
         ray.link()?.after.filter(|after| !self.ended.contains(after))
     }
 
@@ -115,14 +115,14 @@ pub struct Feed<S> {
     pub operations: Operations,
 }
 
-impl<S: Source> Feed<S> {
+impl<S: ChunkSource> Feed<S> {
     /// Nothing taken yet.
     pub fn new(source: S, groups: u32) -> Self {
         Self { source, open: None, groups: vec![None; groups as usize], order: Order::new(groups), operations: Operations::default() }
     }
 
     /// The next ray of `group`; `None` when all are taken or wait for others.
-    pub fn ray(&mut self, group: u32) -> Option<Ray> {
+    pub fn ray(&mut self, group: u32) -> Option<FedRay> {
         if let Some(ray) = self.order.ready[group as usize].pop_front() {
             return Some(ray);
         }
@@ -135,7 +135,7 @@ impl<S: Source> Feed<S> {
                     current.ray += 1;
                     // The next to be taken.
                     prefetch(batch.words(), batch.end(at_ray) as usize);
-                    let ray = Ray { chunk: Arc::clone(&current.chunk), batch: current.batch, at, ray: at_ray as u32 };
+                    let ray = FedRay { chunk: Arc::clone(&current.chunk), batch: current.batch, at, ray: at_ray as u32 };
                     let Some(waits_for) = self.order.waits_for(&ray) else { return Some(ray) };
                     self.order.waiting.entry(waits_for).or_default().push((group, ray));
                     continue;
@@ -148,7 +148,7 @@ impl<S: Source> Feed<S> {
 
     /// `ray` has ended: rays that waited for it are ready. Their groups are added to [`Feed::released`].
     #[inline(always)]
-    pub fn ended(&mut self, ray: &Ray) {
+    pub fn ended(&mut self, ray: &FedRay) {
         if let Some(link) = ray.link() {
             self.order.ended(link.number);
         }

@@ -7,40 +7,19 @@
 //!
 //! Whoever cannot go on sleeps in a list and is woken by what makes room: nothing polls.
 
-use super::counts::{Counts, Source};
-use super::event::{ANSWERS, Asked, FAR, Happening, Kind, MOVES, NEAR, SERVES, WAKES, id};
-use super::level::{Level, Request, Served};
+use super::counts::{Counts, Supplier};
+use super::event::{ANSWERS, Asked, EventKind, FAR, Happening, MOVES, NEAR, SERVES, WAKES, id};
+use super::level::{CacheRequest, Level, Served};
 use super::slots::Slots;
-use super::wave::Shown;
 use super::wheel::Wheel;
 use crate::machine::{Cores, Crossbar, Machine};
 use crate::sim::dram::{Dram, DramConfig, DramError};
 use crate::step::SectionId;
 use std::collections::VecDeque;
 
-impl Shown for Hierarchy {
-    fn show(&self, show: &mut dyn FnMut(&str, &str, u64)) {
-        for (group, port) in self.ports.iter().enumerate() {
-            let (queued, misses) = self.l1.occupancy(group as u32);
-            let scope = format!("group_{group}");
-            for (name, value) in [("l1_queued", queued), ("l1_misses_under_way", misses), ("crossbar_queued", port.misses.len())] {
-                show(&scope, name, value as u64);
-            }
-        }
-        let (queued, misses) = self.l2.occupancy(0);
-        let asleep = self.doors.iter().map(|door| door.asleep.len()).sum();
-        for (name, value) in [("l2_queued", queued), ("l2_misses_under_way", misses), ("groups_held_back", asleep)] {
-            show("l2", name, value as u64);
-        }
-        for (name, value) in [("waiting", self.dram.waiting()), ("held_back", self.refused_count)] {
-            show("dram", name, value as u64);
-        }
-    }
-}
-
 /// A group's side of the crossbar: misses in order.
 #[derive(Clone, Debug, Default)]
-struct Port {
+struct CrossbarPort {
     /// Registers of the L1, and since when they wait.
     misses: VecDeque<(u32, u64)>,
     /// An event for the head is entered, or it sleeps before a full bank.
@@ -53,7 +32,7 @@ struct Port {
 #[derive(Clone, Copy, Debug)]
 struct Held {
     port: u32,
-    request: Request,
+    request: CacheRequest,
 }
 
 /// A bank of the L2, seen from the crossbar.
@@ -77,7 +56,7 @@ pub struct Hierarchy {
     dram: Dram,
     cores: Cores,
     crossbar: Crossbar,
-    ports: Vec<Port>,
+    ports: Vec<CrossbarPort>,
     doors: Vec<Door>,
     /// Requests before full banks of the L1s.
     held: Vec<VecDeque<Held>>,
@@ -107,7 +86,7 @@ impl Hierarchy {
             dram: Dram::new(dram)?,
             cores: machine.cores.clone(),
             crossbar: machine.crossbar.clone(),
-            ports: vec![Port::default(); groups as usize],
+            ports: vec![CrossbarPort::default(); groups as usize],
             doors: vec![Door::default(); machine.l2.banks as usize],
             refused: vec![VecDeque::new(); dram.channels as usize],
             refused_count: 0,
@@ -140,22 +119,22 @@ impl Hierarchy {
     /// Tells [`Happening::Wake`] in `cycle`.
     #[inline]
     pub fn wake_at(&mut self, cycle: u64, id: u32) {
-        self.enter(cycle, Kind::Wake, id);
+        self.enter(cycle, EventKind::Wake, id);
     }
 
     /// Tells [`Happening::Answer`] of `waiter` in `cycle`.
     #[inline]
-    pub fn answer_at(&mut self, cycle: u64, waiter: u32, from: Source) {
+    pub fn answer_at(&mut self, cycle: u64, waiter: u32, from: Supplier) {
         let kind = match from {
-            Source::L1 => Kind::AnswerL1,
-            Source::L2 => Kind::AnswerL2,
-            Source::Dram => Kind::AnswerDram,
+            Supplier::L1 => EventKind::AnswerL1,
+            Supplier::L2 => EventKind::AnswerL2,
+            Supplier::Dram => EventKind::AnswerDram,
         };
         self.enter(cycle, kind, waiter);
     }
 
     #[inline]
-    fn enter(&mut self, cycle: u64, kind: Kind, id: u32) {
+    fn enter(&mut self, cycle: u64, kind: EventKind, id: u32) {
         self.wheel.at(cycle, kind.class(), kind.event(id));
     }
 
@@ -167,7 +146,7 @@ impl Hierarchy {
         if self.l1.hit_now(bank, line, now) {
             return Asked::Comes(now + self.l1.latency);
         }
-        let request = Request { waiter, line, section, since: now };
+        let request = CacheRequest { waiter, line, section, since: now };
         if !self.l1.has_room(bank, 0) || !self.held[bank as usize].is_empty() {
             self.held[bank as usize].push_back(Held { port, request });
             return Asked::Held;
@@ -177,17 +156,17 @@ impl Hierarchy {
     }
 
     #[inline]
-    fn enqueue_l1(&mut self, bank: u32, request: Request) {
+    fn enqueue_l1(&mut self, bank: u32, request: CacheRequest) {
         match self.l1.enqueue(bank, request) {
             Some(cycle) if cycle <= self.now() => self.serve_l1_and_tell(bank),
-            Some(cycle) => self.enter(cycle, Kind::ServeL1, bank),
+            Some(cycle) => self.enter(cycle, EventKind::ServeL1, bank),
             None => (),
         }
     }
 
     fn serve_l1_and_tell(&mut self, bank: u32) {
         if let Some(waiter) = self.serve_l1(bank) {
-            self.enter(self.now() + self.l1.latency, Kind::AnswerL1, waiter);
+            self.enter(self.now() + self.l1.latency, EventKind::AnswerL1, waiter);
         }
     }
 
@@ -197,7 +176,7 @@ impl Hierarchy {
         let now = self.now();
         let (request, served, again) = self.l1.serve(bank, now)?;
         if again {
-            self.enter(now + 1, Kind::ServeL1, bank);
+            self.enter(now + 1, EventKind::ServeL1, bank);
         }
         let known = now + self.l1.latency;
         match served {
@@ -206,14 +185,14 @@ impl Hierarchy {
                 let group = self.l1.copy(bank);
                 self.ports[group as usize].misses.push_back((register, known));
                 if !std::mem::replace(&mut self.ports[group as usize].awake, true) {
-                    self.enter(known, Kind::Crossbar, group);
+                    self.enter(known, EventKind::Crossbar, group);
                 }
             }
         }
         if let Some(held) = self.held[bank as usize].pop_front() {
             self.l1.counts.refused_cycles += now - held.request.since;
-            self.enter(now + 1, Kind::Wake, held.port);
-            self.enqueue_l1(bank, Request { since: now, ..held.request });
+            self.enter(now + 1, EventKind::Wake, held.port);
+            self.enqueue_l1(bank, CacheRequest { since: now, ..held.request });
         }
         (served == Served::Hit).then_some(request.waiter)
     }
@@ -247,10 +226,10 @@ impl Hierarchy {
         door.coming += 1;
         let handed = door.handed.take(passes, self.crossbar.per_bank);
         self.counts.crossbar_cycles += handed - known;
-        self.enter(handed + u64::from(self.crossbar.request_cycles), Kind::ArriveL2, register);
+        self.enter(handed + u64::from(self.crossbar.request_cycles), EventKind::ArriveL2, register);
         if let Some(known) = next {
             let full = self.ports[group as usize].requests.is_full(now, self.crossbar.per_group);
-            self.enter(known.max(now + u64::from(full)), Kind::Crossbar, group);
+            self.enter(known.max(now + u64::from(full)), EventKind::Crossbar, group);
         }
     }
 
@@ -259,10 +238,10 @@ impl Hierarchy {
         let bank = self.l2.bank(0, line);
         self.doors[bank as usize].coming -= 1;
         self.counts.traffic[section.place()].l2 += 1;
-        let request = Request { waiter: register, line, section, since: self.now() };
+        let request = CacheRequest { waiter: register, line, section, since: self.now() };
         match self.l2.enqueue(bank, request) {
             Some(cycle) if cycle <= self.now() => self.serve_l2(bank),
-            Some(cycle) => self.enter(cycle, Kind::ServeL2, bank),
+            Some(cycle) => self.enter(cycle, EventKind::ServeL2, bank),
             None => (),
         }
     }
@@ -271,13 +250,13 @@ impl Hierarchy {
         let now = self.now();
         let Some((request, served, again)) = self.l2.serve(bank, now) else { return };
         if again {
-            self.enter(now + 1, Kind::ServeL2, bank);
+            self.enter(now + 1, EventKind::ServeL2, bank);
         }
         let known = now + self.l2.latency;
         match served {
-            Served::Hit => self.answer_l1(request.waiter, known, Source::L2),
+            Served::Hit => self.answer_l1(request.waiter, known, Supplier::L2),
             Served::Merged => (),
-            Served::Miss(register) => self.enter(known, Kind::PushDram, register),
+            Served::Miss(register) => self.enter(known, EventKind::PushDram, register),
         }
         if let Some((group, since)) = self.doors[bank as usize].asleep.pop_front() {
             self.l2.counts.refused_cycles += now - since;
@@ -286,15 +265,15 @@ impl Hierarchy {
     }
 
     /// The L2 has the line of an L1's register in cycle `ready`.
-    fn answer_l1(&mut self, register: u32, ready: u64, source: Source) {
+    fn answer_l1(&mut self, register: u32, ready: u64, source: Supplier) {
         let group = self.l1.copy(self.l1.bank_of(register));
         let passes = self.ports[group as usize].answers.take(ready, self.crossbar.per_group);
         self.counts.answer_cycles += passes - ready;
-        let kind = if source == Source::L2 { Kind::FillL1FromL2 } else { Kind::FillL1FromDram };
+        let kind = if source == Supplier::L2 { EventKind::FillL1FromL2 } else { EventKind::FillL1FromDram };
         self.enter(passes + u64::from(self.crossbar.answer_cycles), kind, register);
     }
 
-    fn fill_l1(&mut self, register: u32, kind: Kind) {
+    fn fill_l1(&mut self, register: u32, kind: EventKind) {
         let now = self.now();
         let wheel = &mut self.wheel;
         if self.l1.fill(register, now, |waiter| wheel.at(now, kind.class(), kind.event(waiter))) {
@@ -307,7 +286,7 @@ impl Hierarchy {
         let mut waiters = std::mem::take(&mut self.waiters);
         let serve = self.l2.fill(register, now, |waiter| waiters.push(waiter));
         for waiter in waiters.drain(..) {
-            self.answer_l1(waiter, now, Source::Dram);
+            self.answer_l1(waiter, now, Supplier::Dram);
         }
         self.waiters = waiters;
         if serve {
@@ -339,7 +318,7 @@ impl Hierarchy {
         let (cores, wheel) = (&self.cores, &mut self.wheel);
         self.dram.advance(cores.start_ps(now), &mut |register, ps| {
             // It was a register's 32 bits.
-            wheel.at(cores.cycle_at(ps).max(now), MOVES, Kind::FillL2.event(register as u32));
+            wheel.at(cores.cycle_at(ps).max(now), MOVES, EventKind::FillL2.event(register as u32));
         });
         if self.refused_count > 0 {
             self.push_refused();
@@ -368,7 +347,7 @@ impl Hierarchy {
     pub fn take(&mut self) -> Option<Happening> {
         loop {
             if let Some(event) = self.wheel.take(MOVES) {
-                self.moves(Kind::of(event), id(event));
+                self.moves(EventKind::of(event), id(event));
             } else if let Some(event) = self.wheel.take(SERVES) {
                 if let Some(next) = self.wheel.peek(SERVES, FAR) {
                     self.l1.prefetch(id(next));
@@ -380,10 +359,10 @@ impl Hierarchy {
                     return Some(Happening::Comes(waiter, self.now() + self.l1.latency));
                 }
             } else if let Some(event) = self.wheel.take(ANSWERS) {
-                return Some(match Kind::of(event) {
-                    Kind::AnswerL2 => Happening::Answer(id(event), Source::L2),
-                    Kind::AnswerDram => Happening::Answer(id(event), Source::Dram),
-                    _ => Happening::Answer(id(event), Source::L1),
+                return Some(match EventKind::of(event) {
+                    EventKind::AnswerL2 => Happening::Answer(id(event), Supplier::L2),
+                    EventKind::AnswerDram => Happening::Answer(id(event), Supplier::Dram),
+                    _ => Happening::Answer(id(event), Supplier::L1),
                 });
             } else {
                 return self.wheel.take(WAKES).map(|event| Happening::Wake(id(event)));
@@ -402,16 +381,18 @@ impl Hierarchy {
         [FAR, NEAR].map(|ahead| self.wheel.peek(class, ahead).map(id))
     }
 
-    fn moves(&mut self, kind: Kind, id: u32) {
+    fn moves(&mut self, kind: EventKind, id: u32) {
         match kind {
-            Kind::Crossbar => self.crossbar(id),
-            Kind::ArriveL2 => self.arrive_l2(id),
-            Kind::ServeL2 => self.serve_l2(id),
-            Kind::PushDram => self.push_dram(id),
-            Kind::FillL2 => self.fill_l2(id),
-            Kind::FillL1FromL2 => self.fill_l1(id, Kind::AnswerL2),
-            Kind::FillL1FromDram => self.fill_l1(id, Kind::AnswerDram),
-            Kind::Wake | Kind::AnswerL1 | Kind::AnswerL2 | Kind::AnswerDram | Kind::ServeL1 => unreachable!("of another class"),
+            EventKind::Crossbar => self.crossbar(id),
+            EventKind::ArriveL2 => self.arrive_l2(id),
+            EventKind::ServeL2 => self.serve_l2(id),
+            EventKind::PushDram => self.push_dram(id),
+            EventKind::FillL2 => self.fill_l2(id),
+            EventKind::FillL1FromL2 => self.fill_l1(id, EventKind::AnswerL2),
+            EventKind::FillL1FromDram => self.fill_l1(id, EventKind::AnswerDram),
+            EventKind::Wake | EventKind::AnswerL1 | EventKind::AnswerL2 | EventKind::AnswerDram | EventKind::ServeL1 => {
+                unreachable!("of another class")
+            }
         }
     }
 
@@ -425,6 +406,25 @@ impl Hierarchy {
         self.wheel.go(cycle);
         if self.dram_next.is_some_and(|next| next <= cycle) {
             self.advance_dram();
+        }
+    }
+
+    /// What a waveform shows of it: scope, name and value of every signal, always in the same order; a scope's signals follow each other.
+    pub fn show(&self, show: &mut dyn FnMut(&str, &str, u64)) {
+        for (group, port) in self.ports.iter().enumerate() {
+            let (queued, misses) = self.l1.occupancy(group as u32);
+            let scope = format!("group_{group}");
+            for (name, value) in [("l1_queued", queued), ("l1_misses_under_way", misses), ("crossbar_queued", port.misses.len())] {
+                show(&scope, name, value as u64);
+            }
+        }
+        let (queued, misses) = self.l2.occupancy(0);
+        let asleep = self.doors.iter().map(|door| door.asleep.len()).sum();
+        for (name, value) in [("l2_queued", queued), ("l2_misses_under_way", misses), ("groups_held_back", asleep)] {
+            show("l2", name, value as u64);
+        }
+        for (name, value) in [("waiting", self.dram.waiting()), ("held_back", self.refused_count)] {
+            show("dram", name, value as u64);
         }
     }
 

@@ -10,7 +10,7 @@ use std::collections::VecDeque;
 
 /// A request in front of a bank.
 #[derive(Clone, Copy, Debug)]
-pub struct Request {
+pub struct CacheRequest {
     /// Who gets the answer.
     pub waiter: u32,
     /// The line.
@@ -24,7 +24,7 @@ pub struct Request {
 /// A bank.
 #[derive(Clone, Debug, Default)]
 struct Bank {
-    queue: VecDeque<Request>,
+    queue: VecDeque<CacheRequest>,
     /// The first cycle in which it can look up again.
     free: u64,
     /// It will look up the queue's head in a cycle that is entered in the wheel.
@@ -121,7 +121,7 @@ impl Level {
 
     /// Puts a request into the queue of `bank`. Gives the cycle in which to [`Level::serve`] the bank, if it slept.
     #[inline]
-    pub fn enqueue(&mut self, bank: u32, request: Request) -> Option<u64> {
+    pub fn enqueue(&mut self, bank: u32, request: CacheRequest) -> Option<u64> {
         let bank = &mut self.banks[bank as usize];
         bank.queue.push_back(request);
         if bank.awake || bank.blocked.is_some() {
@@ -134,7 +134,7 @@ impl Level {
     /// Looks up the head of the queue of `bank` in cycle `now`. Gives the request, what became of it, and whether to come back in the next cycle; `None`
     /// if there is no room for its miss: the bank sleeps until [`Level::fill`].
     #[inline]
-    pub fn serve(&mut self, bank: u32, now: u64) -> Option<(Request, Served, bool)> {
+    pub fn serve(&mut self, bank: u32, now: u64) -> Option<(CacheRequest, Served, bool)> {
         let state = &mut self.banks[bank as usize];
         state.awake = false;
         let request = *state.queue.front()?;

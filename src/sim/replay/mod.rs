@@ -31,7 +31,7 @@ mod tests;
 
 pub use counts::{CacheCounts, Counts, KindTraffic, Waits};
 pub use error::ReplayError;
-pub use feed::{Chunk, Source};
+pub use feed::{Chunk, ChunkSource};
 pub use intervals::Interval;
 pub use wave::Window;
 
@@ -101,7 +101,7 @@ pub fn check(machine: &Machine, units: bool) -> Result<(), ReplayError> {
 ///
 /// # Errors
 /// The machine is impossible or too large, or nothing happens any more while rays are under way.
-pub fn run_free(machine: &Machine, nodes: Nodes, source: impl Source, window: Option<Window>) -> Result<Run, ReplayError> {
+pub fn run_free(machine: &Machine, nodes: Nodes, source: impl ChunkSource, window: Option<Window>) -> Result<Run, ReplayError> {
     let mut cores = FreeCores::new(&machine.cores, nodes, source);
     drive(&mut cores, machine, window)
 }
@@ -110,7 +110,7 @@ pub fn run_free(machine: &Machine, nodes: Nodes, source: impl Source, window: Op
 ///
 /// # Errors
 /// As [`run_free`].
-pub fn run_units(machine: &Machine, source: impl Source, window: Option<Window>) -> Result<Run, ReplayError> {
+pub fn run_units(machine: &Machine, source: impl ChunkSource, window: Option<Window>) -> Result<Run, ReplayError> {
     check(machine, true)?;
     let mut units = Units::new(machine, source);
     let run = drive(&mut units, machine, window)?;
@@ -125,12 +125,12 @@ trait FrontEnd {
     fn wake(&mut self, id: u32, memory: &mut Hierarchy);
     /// `waiter`'s line comes from the L1 in `cycle`.
     fn comes(&mut self, waiter: u32, cycle: u64, memory: &mut Hierarchy) {
-        memory.answer_at(cycle, waiter, counts::Source::L1);
+        memory.answer_at(cycle, waiter, counts::Supplier::L1);
     }
     /// What happens soon to those, far ahead and near, is like `happening`.
     fn prefetch(&self, _happening: Happening, _soon: [Option<u32>; 2]) {}
     /// A line came for `waiter`.
-    fn answer(&mut self, waiter: u32, from: counts::Source, memory: &mut Hierarchy);
+    fn answer(&mut self, waiter: u32, from: counts::Supplier, memory: &mut Hierarchy);
     /// What the rays of tiles begun have the hardware blocks do.
     fn operations(&self) -> &Operations;
     /// Rays are under way.

@@ -4,14 +4,14 @@
 //! first, and each other a cycle later.
 
 use super::FrontEnd;
-use super::counts::Source;
+use super::counts::Supplier;
 use super::event::Asked;
-use super::feed::{self, Feed, Ray};
+use super::feed::{self, FedRay, Feed};
 use super::hierarchy::Hierarchy;
 use super::slots::Slots;
 use crate::block::Operations;
 use crate::machine::Machine;
-use crate::sim::timing::{Ports, Request, Steps, UnitTiming};
+use crate::sim::timing::{LineRequest, Ports, Steps, UnitTiming};
 use crate::sim::unit::UnitCounts;
 use crate::step::Step;
 use std::collections::VecDeque;
@@ -22,7 +22,7 @@ const TAG_BITS: u32 = 16;
 /// Most units: their numbers and tags are an event's number.
 pub const MOST_UNITS: u64 = 1 << 12;
 
-impl Steps for Ray {
+impl Steps for FedRay {
     #[inline(always)]
     fn step(&self) -> Step {
         self.peek().step()
@@ -36,12 +36,12 @@ impl Steps for Ray {
 
 /// A unit and its port.
 struct Unit {
-    timing: UnitTiming<Ray>,
+    timing: UnitTiming<FedRay>,
     /// The cycle of its next wake, if one is entered.
     wake: Option<u64>,
     /// The first cycle without a tick.
     free: u64,
-    port: Port,
+    port: RequestPort,
     /// Lines that came in the cycle of another, and when each is taken.
     come: VecDeque<(u64, u16)>,
     answers: Slots,
@@ -49,7 +49,7 @@ struct Unit {
 
 /// A unit's way to its L1.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Port {
+enum RequestPort {
     /// Takes a request.
     Free,
     /// Holds one until its bank has room.
@@ -66,7 +66,7 @@ pub struct Units<S> {
     under_way: u64,
 }
 
-impl<S: feed::Source> Units<S> {
+impl<S: feed::ChunkSource> Units<S> {
     /// Units that take rays from `source`.
     pub fn new(machine: &Machine, source: S) -> Self {
         let (groups, per_group) = (machine.cores.groups, machine.units.per_group);
@@ -74,7 +74,7 @@ impl<S: feed::Source> Units<S> {
             timing: UnitTiming::new(machine.units.config()),
             wake: None,
             free: 0,
-            port: Port::Free,
+            port: RequestPort::Free,
             come: VecDeque::new(),
             answers: Slots::default(),
         };
@@ -126,7 +126,7 @@ impl<S: feed::Source> Units<S> {
         let now = memory.now();
         let unit = &mut self.units[id as usize];
         let come = unit.come.front().map(|come| come.0);
-        let told = (unit.port == Port::Taken).then_some(unit.free);
+        let told = (unit.port == RequestPort::Taken).then_some(unit.free);
         let next = unit.timing.next().into_iter().chain(come).chain(told).min().map(|next| next.max(unit.free).max(now));
         if let Some(next) = next {
             self.wake_at(next, id, memory);
@@ -134,7 +134,7 @@ impl<S: feed::Source> Units<S> {
     }
 }
 
-impl<S: feed::Source> FrontEnd for Units<S> {
+impl<S: feed::ChunkSource> FrontEnd for Units<S> {
     fn start(&mut self, memory: &mut Hierarchy) {
         (0..self.units.len() as u32).for_each(|id| self.tick(id, memory));
     }
@@ -143,7 +143,7 @@ impl<S: feed::Source> FrontEnd for Units<S> {
         let (id, is_port) = (id / 2, id % 2 == 1);
         let unit = &mut self.units[id as usize];
         if is_port {
-            unit.port = Port::Taken;
+            unit.port = RequestPort::Taken;
             self.tick(id, memory);
         } else if unit.wake == Some(memory.now()) {
             unit.wake = None;
@@ -151,7 +151,7 @@ impl<S: feed::Source> FrontEnd for Units<S> {
         }
     }
 
-    fn answer(&mut self, waiter: u32, _: Source, memory: &mut Hierarchy) {
+    fn answer(&mut self, waiter: u32, _: Supplier, memory: &mut Hierarchy) {
         let (id, tag) = (waiter >> TAG_BITS, waiter as u16);
         let now = memory.now();
         let unit = &mut self.units[id as usize];
@@ -174,7 +174,7 @@ impl<S: feed::Source> FrontEnd for Units<S> {
     }
 
     fn describe(&self) -> String {
-        let held = self.units.iter().filter(|unit| unit.port == Port::Held).count();
+        let held = self.units.iter().filter(|unit| unit.port == RequestPort::Held).count();
         let waiting = self.units.iter().enumerate().filter(|(_, unit)| !unit.timing.is_idle());
         let lines: Vec<String> = waiting.take(8).map(|(id, unit)| format!("unit {id}: {}", unit.timing.describe())).collect();
         format!("{} rays under way, {held} units before a full bank\n{}", self.under_way, lines.join("\n"))
@@ -185,42 +185,42 @@ impl<S: feed::Source> FrontEnd for Units<S> {
 struct Surroundings<'a, S> {
     id: u32,
     group: u32,
-    port: &'a mut Port,
+    port: &'a mut RequestPort,
     feed: &'a mut Feed<S>,
     under_way: &'a mut u64,
     memory: &'a mut Hierarchy,
 }
 
-impl<S: feed::Source> Ports for Surroundings<'_, S> {
-    type Ray = Ray;
+impl<S: feed::ChunkSource> Ports for Surroundings<'_, S> {
+    type Ray = FedRay;
 
-    fn ray(&mut self) -> Option<Ray> {
+    fn ray(&mut self) -> Option<FedRay> {
         let ray = self.feed.ray(self.group)?;
         *self.under_way += 1;
         Some(ray)
     }
 
-    fn request(&mut self, Request { tag, line, section }: Request) -> bool {
+    fn request(&mut self, LineRequest { tag, line, section }: LineRequest) -> bool {
         match *self.port {
-            Port::Held => false,
-            Port::Taken => {
-                *self.port = Port::Free;
+            RequestPort::Held => false,
+            RequestPort::Taken => {
+                *self.port = RequestPort::Free;
                 true
             }
-            Port::Free => {
+            RequestPort::Free => {
                 let waiter = self.id << TAG_BITS | u32::from(tag);
                 self.memory.counts_mut().traffic[section.place()].l1 += 1;
                 match self.memory.request(self.group, 2 * self.id + 1, waiter, line, section) {
-                    Asked::Comes(cycle) => self.memory.answer_at(cycle, waiter, Source::L1),
+                    Asked::Comes(cycle) => self.memory.answer_at(cycle, waiter, Supplier::L1),
                     Asked::Taken => (),
-                    Asked::Held => *self.port = Port::Held,
+                    Asked::Held => *self.port = RequestPort::Held,
                 }
-                *self.port == Port::Free
+                *self.port == RequestPort::Free
             }
         }
     }
 
-    fn hit(&mut self, ray: &Ray, found: bool) -> bool {
+    fn hit(&mut self, ray: &FedRay, found: bool) -> bool {
         let counts = self.memory.counts_mut();
         counts.rays += 1;
         counts.hits += u64::from(found);

@@ -19,12 +19,6 @@ pub struct Window {
     pub to: u64,
 }
 
-/// What a hierarchy shows of itself: scope, name and value of every signal, always in the same order.
-pub(super) trait Shown {
-    /// Tells `show` each signal; a scope's signals follow each other.
-    fn show(&self, show: &mut dyn FnMut(&str, &str, u64));
-}
-
 /// The waveform of a window.
 pub(super) struct Wave {
     writer: vcd::Writer<Vec<u8>>,

@@ -3,8 +3,8 @@
 //! States are those of `docs/traversal-unit.md`. A result of cycle c, a grant or an answer in it, shows in registers from cycle c + 1 on. Every sequence of steps has
 //! its cycles: which states a ray goes through is what its steps say, and no order is taken for granted.
 
-use super::context::Context;
-use super::ports::{Request, Steps};
+use super::context::ContextTiming;
+use super::ports::{LineRequest, Steps};
 use super::unit::UnitTiming;
 use crate::block::Block;
 use crate::block::box_test::BoxTest;
@@ -25,7 +25,7 @@ impl<R: Steps> UnitTiming<R> {
         let who = self.idle.trailing_zeros() as usize;
         self.idle &= self.idle - 1;
         let context = &mut self.contexts[who];
-        *context = Context { ray: Some(ray), ..Context::idle() };
+        *context = ContextTiming { ray: Some(ray), ..ContextTiming::idle() };
         context.enter(State::Setup, now + 1);
         self.sleep(who, now);
     }
@@ -39,7 +39,7 @@ impl<R: Steps> UnitTiming<R> {
     }
 
     /// `node_address` takes a line of context `who`; whether it wants more.
-    pub(super) fn fetch(&mut self, who: usize, now: u64) -> (Request, bool) {
+    pub(super) fn fetch(&mut self, who: usize, now: u64) -> (LineRequest, bool) {
         let context = &mut self.contexts[who];
         let request = context.ask_line(who, now);
         if context.owed == 0 {

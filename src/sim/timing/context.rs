@@ -1,11 +1,11 @@
 //! A ray under way.
 
-use super::ports::{Request, Steps, tag};
+use super::ports::{LineRequest, Steps, tag};
 use crate::sim::unit::State;
 use crate::step::{Act, Fetch, SectionId, Step};
 
 /// A context. Cycles are those in which registers show something, from the start of the cycle on.
-pub struct Context<R> {
+pub struct ContextTiming<R> {
     /// The ray; none if it is idle.
     pub ray: Option<R>,
     /// The state it is in, or sleeps until, and since or from when.
@@ -64,7 +64,7 @@ impl Later {
     }
 }
 
-impl<R: Steps> Context<R> {
+impl<R: Steps> ContextTiming<R> {
     /// An idle context.
     pub fn idle() -> Self {
         Self {
@@ -130,8 +130,8 @@ impl<R: Steps> Context<R> {
 
     /// The line to ask for next, by context number `me`, which is granted in cycle `now`; and whether more are wanted.
     #[inline]
-    pub fn ask_line(&mut self, me: usize, now: u64) -> (Request, bool) {
-        let request = Request { tag: tag(me, self.place as u16), line: self.line, section: self.section }; // places have ten bits
+    pub fn ask_line(&mut self, me: usize, now: u64) -> (LineRequest, bool) {
+        let request = LineRequest { tag: tag(me, self.place as u16), line: self.line, section: self.section }; // places have ten bits
         self.line += 1;
         self.place += 1;
         self.want -= 1;

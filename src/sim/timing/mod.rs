@@ -23,5 +23,5 @@ mod station;
 mod unit;
 mod wheel;
 
-pub use ports::{Ports, RayCursor, Request, Steps, tag};
+pub use ports::{LineRequest, Ports, RayCursor, Steps, tag};
 pub use unit::UnitTiming;

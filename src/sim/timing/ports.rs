@@ -51,7 +51,7 @@ impl<B: Deref<Target = Batch>> Steps for RayCursor<B> {
 
 /// A memory line asked for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Request {
+pub struct LineRequest {
     /// Comes back with the answer. The context is in bits 7:2; the place of the line in its record in bits 1:0 and, above the third, in 15:8: the RTL's tag wherever the
     /// RTL has one.
     pub tag: u16,
@@ -80,7 +80,7 @@ pub trait Ports {
     fn ray(&mut self) -> Option<Self::Ray>;
 
     /// The memory port's request; false if it is not taken in this cycle.
-    fn request(&mut self, request: Request) -> bool;
+    fn request(&mut self, request: LineRequest) -> bool;
 
     /// The hit port's ray, and whether it met anything; false if it is not taken in this cycle.
     fn hit(&mut self, ray: &Self::Ray, found: bool) -> bool;

@@ -1,8 +1,8 @@
 //! The unit: its contexts, arbiters, blocks and ports.
 
-use super::context::Context;
+use super::context::ContextTiming;
 use super::hits::HitQueue;
-use super::ports::{Ports, Request, Steps, untag};
+use super::ports::{LineRequest, Ports, Steps, untag};
 use super::station::Station;
 use super::wheel::{Wheel, bits};
 use crate::block::Timing;
@@ -25,7 +25,7 @@ use std::collections::VecDeque;
 /// Who drives it calls [`tick`](Self::tick) in every cycle that [`next`](Self::next) names, and in those in which a port that the unit waits for may move again: the
 /// memory's or the hits' that refused, or the rays' that had none while [`is_ready`](Self::is_ready). A call in any other cycle does no harm. Cycles must come in order.
 pub struct UnitTiming<R> {
-    pub(super) contexts: Vec<Context<R>>,
+    pub(super) contexts: Vec<ContextTiming<R>>,
     pub(super) wheel: Wheel,
     pub(super) arbiters: [Arbiter; Resource::COUNT],
     /// Who asks for each resource, and since when anybody does; resources that somebody asks for.
@@ -37,7 +37,7 @@ pub struct UnitTiming<R> {
     pub(super) select: Station,
     pub(super) idle: u64,
     /// Requests on their way through `node_address`, and since when.
-    pub(super) requests: VecDeque<(u64, Request)>,
+    pub(super) requests: VecDeque<(u64, LineRequest)>,
     pub(super) hits: HitQueue,
     /// The hit port's register.
     pub(super) hit: Option<(R, bool)>,
@@ -68,7 +68,7 @@ impl<R: Steps> UnitTiming<R> {
             Resource::Hit => Timing::pipelined(1),
         };
         Self {
-            contexts: (0..config.contexts).map(|_| Context::idle()).collect(),
+            contexts: (0..config.contexts).map(|_| ContextTiming::idle()).collect(),
             wheel: Wheel::new(),
             arbiters: Default::default(),
             asking: Default::default(),
@@ -92,7 +92,7 @@ impl<R: Steps> UnitTiming<R> {
     }
 
     /// The request that the memory port offers in cycle `now`.
-    pub fn request(&self, now: u64) -> Option<Request> {
+    pub fn request(&self, now: u64) -> Option<LineRequest> {
         let latency = self.stations[Resource::Fetch as usize].latency();
         self.requests.front().filter(|(taken, _)| taken + latency <= now).map(|request| request.1)
     }

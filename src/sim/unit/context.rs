@@ -4,7 +4,6 @@
 //! of the same cycle. What a context asks for, and with which operands, is in `operands`.
 
 use super::closest::{Closest, Met};
-use super::records::child_entry;
 use super::register::Register;
 use super::wires::{Cycle, DIVIDE_FOR_T, DIVIDE_FOR_V, DIVIDE_FOR_W};
 use crate::block::bary_map::NodeIndex;
@@ -223,13 +222,13 @@ impl Context {
         match count {
             0 => State::Pop,
             1 => {
-                self.entry.set(child_entry(self, 0));
+                self.entry.set(self.child_entry(0));
                 State::Visit
             }
             _ => {
                 // The depths of a checked quad-BVH and of its trees, which are the hardware's at most, keep it from overflowing.
                 debug_assert!(self.stack.len() < self.room, "a quad-BVH deeper than the hardware's");
-                self.stack.step(Op::Push(child_entry(self, count as usize - 1)));
+                self.stack.step(Op::Push(self.child_entry(count as usize - 1)));
                 self.count.set(U::new(count - 1));
                 State::Push
             }

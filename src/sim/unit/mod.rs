@@ -2,7 +2,7 @@
 //!
 //! All ports are Moore: [`TraversalUnit::outputs`] comes from registers, and [`TraversalUnit::tick`] is the end of a cycle with the given inputs.
 //! Blocks run the functions of [`crate::block`], each behind as many elastic registers as it has cycles of latency. [`environment`] drives the
-//! model or the RTL with rays and a memory; [`wave`] writes what happens as a waveform, [`steps`] as text.
+//! model or the RTL with rays and a memory; [`wave`] writes what happens as a waveform, [`ray_trace`] as text.
 
 mod arbiter;
 mod closest;
@@ -12,9 +12,9 @@ pub mod environment;
 mod error;
 mod memory;
 mod operands;
+pub mod ray_trace;
 mod records;
 mod register;
-pub mod steps;
 mod traffic;
 mod traversal_unit;
 pub mod wave;

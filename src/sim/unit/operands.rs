@@ -1,7 +1,6 @@
 //! What a context asks for in a cycle, and with which operands.
 
 use super::context::Context;
-use super::records::children_in;
 use super::wires::{DIVIDE_FOR_V, DIVIDE_FOR_W};
 use crate::block::tessellate::child_triangle;
 use crate::block::{bary_map, child_test, hit_divide, hit_select, lod_test, node_address, ray_setup, tessellate, tree_base, tri_test};
@@ -93,7 +92,7 @@ impl Context {
 
     /// Operands of `child_test`.
     pub fn child_in(&self) -> child_test::In {
-        children_in(self)
+        self.children_in()
     }
 
     /// Operands of `lod_test`.

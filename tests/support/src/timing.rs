@@ -5,7 +5,7 @@ use lodray::hardware::ports::{HitOut, MemoryRequest};
 use lodray::method::ClosestHit;
 use lodray::method::lod::{LodImage, LodTraverser};
 use lodray::num::{Ray, U};
-use lodray::sim::timing::{Ports, RayCursor, Request, UnitTiming};
+use lodray::sim::timing::{LineRequest, Ports, RayCursor, UnitTiming};
 use lodray::sim::unit::environment::UnitPort;
 use lodray::sim::unit::{Inputs, Outputs, SceneMemory};
 use lodray::step::{Batch, Recorder};
@@ -35,7 +35,7 @@ impl<'a> Timed<'a> {
         Self { unit: UnitTiming::new(config), ticks: 0, batch, memory, cycle: 0, skip }
     }
 
-    fn memory_request(&self, request: Request) -> MemoryRequest {
+    fn memory_request(&self, request: LineRequest) -> MemoryRequest {
         MemoryRequest { tag: U::new(request.tag.into()), address: self.memory.address(request.line) }
     }
 }
@@ -51,7 +51,7 @@ impl<'a> Ports for Given<'a, '_> {
     fn ray(&mut self) -> Option<Self::Ray> {
         self.inputs.ray.map(|ray| RayCursor::new(self.batch, ray.tag.get() as u32))
     }
-    fn request(&mut self, _: Request) -> bool {
+    fn request(&mut self, _: LineRequest) -> bool {
         self.inputs.mem_ready
     }
     fn hit(&mut self, _: &Self::Ray, _: bool) -> bool {
@@ -113,7 +113,7 @@ impl<'a> Ports for Smooth<'a> {
         self.next += 1;
         Some(ray)
     }
-    fn request(&mut self, request: Request) -> bool {
+    fn request(&mut self, request: LineRequest) -> bool {
         self.due.push_back((self.cycle + self.latency, request.tag));
         self.requests += 1;
         true

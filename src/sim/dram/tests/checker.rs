@@ -5,14 +5,14 @@ use crate::sim::dram::trace::{Command, Given};
 
 /// A command without its operands.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Kind {
+pub enum CommandKind {
     Act,
     Pre,
     Rd,
     Wr,
     Ref,
 }
-use Kind::{Act, Pre, Rd, Ref, Wr};
+use CommandKind::{Act, Pre, Rd, Ref, Wr};
 
 /// Between which banks a rule holds.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -38,7 +38,7 @@ impl Scope {
 #[derive(Clone, Copy, Debug)]
 pub struct Event {
     pub clock: u64,
-    pub kind: Kind,
+    pub kind: CommandKind,
     pub bank: usize,
     pub row: u32,
     /// Place of its command in the trace.
@@ -46,7 +46,7 @@ pub struct Event {
 }
 
 /// From, to, scope, least clocks, the keys that make it.
-pub type Rule = (Kind, Kind, Scope, u64, &'static str);
+pub type Rule = (CommandKind, CommandKind, Scope, u64, &'static str);
 
 pub fn rules(device: &Device) -> Vec<Rule> {
     let t = &device.timing;

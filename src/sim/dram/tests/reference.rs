@@ -1,7 +1,7 @@
 //! The controller anew, clock by clock and by searching the whole past: its commands must be the model's, none earlier, none later, none in
 //! another order.
 
-use super::checker::Kind::{self, Act, Pre, Rd, Ref, Wr};
+use super::checker::CommandKind::{self, Act, Pre, Rd, Ref, Wr};
 use super::checker::{Event, Rule, banks_per_rank, events, rules};
 use super::{Random, Wish, made, odd_device};
 use crate::sim::dram::mapping::{DEFAULT_MAPPING, Mapping};
@@ -35,7 +35,7 @@ impl Reference<'_> {
     }
 
     /// Whether a command keeps every rule with respect to all before it.
-    fn allowed(&self, clock: u64, kind: Kind, bank: usize) -> bool {
+    fn allowed(&self, clock: u64, kind: CommandKind, bank: usize) -> bool {
         let t = &self.device.timing;
         let pairs = self.past.iter().all(|from| {
             let broken = |&(first, second, scope, least, _): &Rule| {
@@ -65,7 +65,7 @@ impl Reference<'_> {
     }
 
     /// The next command towards a bank's requests: what, and the request's age.
-    fn next_of(&self, bank: usize) -> Option<(Given, Kind, usize)> {
+    fn next_of(&self, bank: usize) -> Option<(Given, CommandKind, usize)> {
         let mine: Vec<_> = self.queues[usize::from(self.writing)].iter().filter(|w| w.bank == bank).collect();
         let oldest = mine.first()?;
         let Some(open) = self.rows[bank] else { return Some((Given::Activate { bank, row: oldest.row }, Act, oldest.age)) };

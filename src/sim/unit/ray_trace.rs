@@ -1,7 +1,6 @@
 //! One ray as text: what the unit does with it, step by step, from the cycle model.
 
 use super::environment::UnitPort;
-use super::records::child_entry;
 use super::{Inputs, Outputs, SceneMemory, TraversalUnit};
 use crate::block::{lod_test, tri_test};
 use crate::hardware::State;
@@ -12,7 +11,7 @@ use std::fmt;
 
 /// One thing that happened.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Step {
+pub enum TraceEvent {
     /// An entry is visited.
     Visit(Entry),
     /// A memory line was asked for: its address, what it holds, and its number within its section.
@@ -80,7 +79,7 @@ impl fmt::Display for Named {
     }
 }
 
-impl fmt::Display for Step {
+impl fmt::Display for TraceEvent {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::Visit(entry) => write!(f, "visit {}", Named(*entry)),
@@ -114,26 +113,26 @@ impl fmt::Display for Step {
 }
 
 /// A unit of one context that writes down what it does.
-pub struct Steps<'a> {
+pub struct RayTrace<'a> {
     unit: TraversalUnit,
     memory: &'a SceneMemory<'a>,
     cycle: u64,
-    steps: Vec<(u64, Step)>,
+    events: Vec<(u64, TraceEvent)>,
 }
 
-impl<'a> Steps<'a> {
+impl<'a> RayTrace<'a> {
     /// Watches `unit`, which has one context, at `memory`.
     pub fn new(unit: TraversalUnit, memory: &'a SceneMemory<'a>) -> Self {
-        Self { unit, memory, cycle: 0, steps: Vec::new() }
+        Self { unit, memory, cycle: 0, events: Vec::new() }
     }
 
     /// What happened, with the cycle at whose end it did.
-    pub fn steps(&self) -> &[(u64, Step)] {
-        &self.steps
+    pub fn events(&self) -> &[(u64, TraceEvent)] {
+        &self.events
     }
 
-    fn note(&mut self, step: Step) {
-        self.steps.push((self.cycle, step));
+    fn note(&mut self, event: TraceEvent) {
+        self.events.push((self.cycle, event));
     }
 
     /// What is decided in this cycle, before its end.
@@ -142,7 +141,7 @@ impl<'a> Steps<'a> {
         if let Some(request) = outputs.mem.filter(|_| inputs.mem_ready)
             && let Some((section, line)) = self.memory.locate(request.address)
         {
-            self.note(Step::Line(request.address, self.memory.name(section), line));
+            self.note(TraceEvent::Line(request.address, self.memory.name(section), line));
         }
         let context = &self.unit.contexts[0];
         let (state, entry) = (context.state, context.entry.get());
@@ -150,22 +149,23 @@ impl<'a> Steps<'a> {
         let popped = context.stack.clone().step(Op::Pop);
         let triangle = |(test, tag): (tri_test::Out, u16)| {
             let [_, level, node] = context.triangle_id(tag & 3);
-            Step::Triangle { level, node, met: test.hit }
+            TraceEvent::Triangle { level, node, met: test.hit }
         };
         let triangle = self.unit.tri_test.offered().map(triangle);
         let compared =
-            self.unit.hit_select.offered().map(|(out, _)| Step::Compared { t: self.unit.chosen.get().1.get(), closer: out.closer });
+            self.unit.hit_select.offered().map(|(out, _)| TraceEvent::Compared { t: self.unit.chosen.get().1.get(), closer: out.closer });
         let edges =
-            |(out, _): (lod_test::Out, u16)| Step::Edges { level, node, s: [out.s0, out.s1, out.s2].map(U::get), refine: out.refine };
+            |(out, _): (lod_test::Out, u16)| TraceEvent::Edges { level, node, s: [out.s0, out.s1, out.s2].map(U::get), refine: out.refine };
         let edges = self.unit.lod_test.offered().map(edges);
         let dropped = |entry: Entry| is_beyond(entry.t_near, context.closest.t_max.get());
         let step = match state {
-            State::Visit => Some(Step::Visit(entry)),
-            State::Pop => popped.map(|entry| Step::Popped { entry, dropped: dropped(entry) }),
+            State::Visit => Some(TraceEvent::Visit(entry)),
+            State::Pop => popped.map(|entry| TraceEvent::Popped { entry, dropped: dropped(entry) }),
             _ => None,
         };
-        for step in [step, edges, triangle, compared, outputs.hit.filter(|_| inputs.hit_ready).map(Step::Hit)].into_iter().flatten() {
-            self.note(step);
+        for event in [step, edges, triangle, compared, outputs.hit.filter(|_| inputs.hit_ready).map(TraceEvent::Hit)].into_iter().flatten()
+        {
+            self.note(event);
         }
     }
 
@@ -173,15 +173,15 @@ impl<'a> Steps<'a> {
     fn children(&mut self) {
         let context = &self.unit.contexts[0];
         let of = context.count.get().get() as usize; // three bits
-        let children: Vec<Step> = (0..of).map(|place| Step::Child { place, of, entry: child_entry(context, place) }).collect();
+        let children: Vec<TraceEvent> = (0..of).map(|place| TraceEvent::Child { place, of, entry: context.child_entry(place) }).collect();
         if of == 0 {
-            self.note(Step::NoChild);
+            self.note(TraceEvent::NoChild);
         }
-        children.into_iter().for_each(|step| self.note(step));
+        children.into_iter().for_each(|event| self.note(event));
     }
 }
 
-impl UnitPort for Steps<'_> {
+impl UnitPort for RayTrace<'_> {
     fn outputs(&mut self) -> Outputs {
         self.unit.outputs()
     }

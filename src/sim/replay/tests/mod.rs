@@ -360,7 +360,7 @@ fn silence_is_an_error_that_tells_what_everyone_does() {
             memory.wake_at(9, 0);
         }
         fn wake(&mut self, _: u32, _: &mut Hierarchy) {}
-        fn answer(&mut self, _: u32, _: counts::Source, _: &mut Hierarchy) {}
+        fn answer(&mut self, _: u32, _: counts::Supplier, _: &mut Hierarchy) {}
         fn is_busy(&self) -> bool {
             true
         }
