@@ -1,7 +1,7 @@
 //! Hierarchy to memory images, in parallel, straight into the image of the file.
 
 use super::scene::Image;
-use super::sections::{COUNT, HEADER, Section, checksum, place, write_header};
+use super::sections::{COUNT, FileSection, HEADER, checksum, place, write_header};
 use super::{BoundData, Box16, L0Record, Meta, Scene, SceneError, VertexData, colour, layout, normal};
 use crate::mesh::lattice::{self, LatticePoint};
 use crate::mesh::{Hierarchy, Surface, SurfaceError, quantise};
@@ -66,10 +66,10 @@ pub fn encode(hierarchy: &Hierarchy, surface: &Surface, info: SceneInfo, nodes: 
     }
     let meta = meta(hierarchy, info);
     let json = serde_json::to_vec(&meta).map_err(|e| SceneError::Build(format!("META: {e}")))?;
-    let lengths = Section::ALL.map(|section| match section {
-        Section::Meta => json.len(),
-        Section::Nodes => size_of_val(nodes),
-        Section::Colours => 4 * surface.colours.len(),
+    let lengths = FileSection::ALL.map(|section| match section {
+        FileSection::Meta => json.len(),
+        FileSection::Nodes => size_of_val(nodes),
+        FileSection::Colours => 4 * surface.colours.len(),
         _ => Scene::section_lengths(&meta, section).unwrap_or(usize::MAX / 16), // too large to be had
     });
     let (ranges, total) = place(lengths);

@@ -1,7 +1,7 @@
 //! Scene files: written under a temporary name and renamed, mapped when read, everything checked before it is used.
 
 use super::scene::Image;
-use super::sections::{Section, checksum, read_header};
+use super::sections::{FileSection, checksum, read_header};
 use super::{BoundData, Box16, BvhChild, ChildRef, L0Record, Meta, Scene, SceneError, VertexData, write_and_rename};
 use crate::num::{COORD_LIMIT, MAX_BVH_DEPTH, MAX_LEVELS, PADDING_BITS, Wire, bound_decode};
 use memmap2::Mmap;
@@ -48,20 +48,21 @@ impl Scene {
         };
         let (ranges, sums) = read_header(bytes)?;
         let bad =
-            Section::ALL.par_iter().zip(&ranges).zip(&sums).find_first(|((_, range), sum)| checksum(&bytes[(*range).clone()]) != **sum);
+            FileSection::ALL.par_iter().zip(&ranges).zip(&sums).find_first(|((_, range), sum)| checksum(&bytes[(*range).clone()]) != **sum);
         if let Some(((section, _), _)) = bad {
             return Err(format!("section {}: checksum does not match, the data are corrupt", section.name()));
         }
-        let meta: Meta = serde_json::from_slice(&bytes[ranges[Section::Meta.slot()].clone()]).map_err(|e| format!("section META: {e}"))?;
+        let meta: Meta =
+            serde_json::from_slice(&bytes[ranges[FileSection::Meta.slot()].clone()]).map_err(|e| format!("section META: {e}"))?;
         check_meta(&meta)?;
-        for section in [Section::Records, Section::Bounds, Section::Vertices, Section::Normals, Section::Triangles] {
+        for section in [FileSection::Records, FileSection::Bounds, FileSection::Vertices, FileSection::Normals, FileSection::Triangles] {
             let found = ranges[section.slot()].len();
             if Self::section_lengths(&meta, section) != Some(found) {
                 let (name, trees, levels) = (section.name(), meta.trees, meta.levels);
                 return Err(format!("section {name}: length {found} does not fit {trees} trees of {levels} splits"));
             }
         }
-        for (section, size) in [(Section::Nodes, 64), (Section::Colours, 4)] {
+        for (section, size) in [(FileSection::Nodes, 64), (FileSection::Colours, 4)] {
             let length = ranges[section.slot()].len();
             if length % size != 0 {
                 return Err(format!("section {}: length {length} is not a multiple of {size}", section.name()));

@@ -20,5 +20,5 @@ pub use lines::{BoundData, Box16, BvhChild, ChildRef, L0Record, VertexData};
 pub use normal::{decode_normal, encode_normal};
 pub use replace::{remove_abandoned, temporary_beside, write_and_rename};
 pub use scene::{Meta, Scene, SceneError};
-pub use sections::{MAGIC, Section, VERSION};
+pub use sections::{FileSection, MAGIC, VERSION};
 pub use staging::Staging;

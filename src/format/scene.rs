@@ -1,6 +1,6 @@
 //! A scene: one byte image, owned or mapped from its file, read through typed slices.
 
-use super::sections::{COUNT, Section};
+use super::sections::{COUNT, FileSection};
 use super::{layout, normal};
 use crate::mesh::{Placement, SurfaceError, lattice};
 use crate::num::{BoundScale, U};
@@ -107,43 +107,43 @@ impl Scene {
     }
 
     /// Bytes of a section.
-    pub fn section(&self, section: Section) -> &[u8] {
+    pub fn section(&self, section: FileSection) -> &[u8] {
         &self.bytes()[self.ranges[section.slot()].clone()]
     }
 
     /// L0 quad-BVH nodes, the root first; four [`super::BvhChild`] each, child 0 in the lowest words.
     pub fn nodes(&self) -> &[[u64; 8]] {
-        bytemuck::cast_slice(self.section(Section::Nodes))
+        bytemuck::cast_slice(self.section(FileSection::Nodes))
     }
 
     /// L0 records, one per tree: a [`super::VertexData`] line (p0, p1, p2), then a [`super::L0Record`] line.
     pub fn records(&self) -> &[[u64; 8]] {
-        bytemuck::cast_slice(self.section(Section::Records))
+        bytemuck::cast_slice(self.section(FileSection::Records))
     }
 
     /// Sibling groups of four [`super::BoundData`], where [`layout::child_group`] says.
     pub fn bounds(&self) -> &[[u64; 8]] {
-        bytemuck::cast_slice(self.section(Section::Bounds))
+        bytemuck::cast_slice(self.section(FileSection::Bounds))
     }
 
     /// Vertex lines ([`super::VertexData`]: q0, q1, q2), where [`layout::vertex_line`] says.
     pub fn vertices(&self) -> &[[u64; 4]] {
-        bytemuck::cast_slice(self.section(Section::Vertices))
+        bytemuck::cast_slice(self.section(FileSection::Vertices))
     }
 
     /// Octahedral normals, `lattice::len(levels)` per tree.
     pub fn normals(&self) -> &[u32] {
-        bytemuck::cast_slice(self.section(Section::Normals))
+        bytemuck::cast_slice(self.section(FileSection::Normals))
     }
 
     /// Base vertex indices of each tree.
     pub fn triangles(&self) -> &[[u32; 3]] {
-        bytemuck::cast_slice(self.section(Section::Triangles))
+        bytemuck::cast_slice(self.section(FileSection::Triangles))
     }
 
     /// Material colours: sRGB-encoded red, green, blue, and 255; may be empty.
     pub fn colours(&self) -> &[[u8; 4]] {
-        bytemuck::cast_slice(self.section(Section::Colours))
+        bytemuck::cast_slice(self.section(FileSection::Colours))
     }
 
     /// Number of splits N.
@@ -163,7 +163,7 @@ impl Scene {
 
     /// Bytes of bound and vertex data, L0 records included, per full-resolution triangle.
     pub fn bytes_per_triangle(&self) -> f64 {
-        let bytes: usize = [Section::Records, Section::Bounds, Section::Vertices].map(|s| self.section(s).len()).iter().sum();
+        let bytes: usize = [FileSection::Records, FileSection::Bounds, FileSection::Vertices].map(|s| self.section(s).len()).iter().sum();
         bytes as f64 / self.finest_triangles() as f64
     }
 
@@ -179,14 +179,14 @@ impl Scene {
     }
 
     /// Lengths that all sections but META have, from META's counts; `None` if they overflow.
-    pub(super) fn section_lengths(meta: &Meta, section: Section) -> Option<usize> {
+    pub(super) fn section_lengths(meta: &Meta, section: FileSection) -> Option<usize> {
         let per_tree = match section {
-            Section::Records => 64,
-            Section::Bounds => 64 * layout::sibling_groups(meta.levels),
-            Section::Vertices => 32 * layout::vertex_lines(meta.levels),
-            Section::Normals => 4 * lattice::len(meta.levels),
-            Section::Triangles => 12,
-            Section::Meta | Section::Nodes | Section::Colours => return None,
+            FileSection::Records => 64,
+            FileSection::Bounds => 64 * layout::sibling_groups(meta.levels),
+            FileSection::Vertices => 32 * layout::vertex_lines(meta.levels),
+            FileSection::Normals => 4 * lattice::len(meta.levels),
+            FileSection::Triangles => 12,
+            FileSection::Meta | FileSection::Nodes | FileSection::Colours => return None,
         };
         per_tree.checked_mul(meta.trees as usize)
     }

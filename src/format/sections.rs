@@ -13,7 +13,7 @@ pub const ALIGN: usize = 64;
 /// The sections, in file order.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[repr(u32)]
-pub enum Section {
+pub enum FileSection {
     /// JSON: [`super::Meta`].
     Meta = 1,
     /// L0 quad-BVH nodes, 64 bytes each.
@@ -32,7 +32,7 @@ pub enum Section {
     Colours = 8,
 }
 
-impl Section {
+impl FileSection {
     /// All sections in file order.
     pub const ALL: [Self; 8] =
         [Self::Meta, Self::Nodes, Self::Records, Self::Bounds, Self::Vertices, Self::Normals, Self::Triangles, Self::Colours];
@@ -58,7 +58,7 @@ impl Section {
 }
 
 /// Number of sections.
-pub(super) const COUNT: usize = Section::ALL.len();
+pub(super) const COUNT: usize = FileSection::ALL.len();
 /// Bytes before the section table.
 const TABLE: usize = 64;
 /// Bytes of a table entry.
@@ -92,7 +92,7 @@ pub(super) fn write_header(header: &mut [u8], file_length: usize, ranges: &[Rang
     header[12..16].copy_from_slice(&(COUNT as u32).to_le_bytes()); // 8
     header[16..24].copy_from_slice(&(file_length as u64).to_le_bytes());
     for ((section, range), (entry, sum)) in
-        Section::ALL.iter().zip(ranges).zip(header[TABLE..].as_chunks_mut::<ENTRY>().0.iter_mut().zip(sums))
+        FileSection::ALL.iter().zip(ranges).zip(header[TABLE..].as_chunks_mut::<ENTRY>().0.iter_mut().zip(sums))
     {
         entry[..4].copy_from_slice(&(*section as u32).to_le_bytes());
         entry[8..16].copy_from_slice(&(range.start as u64).to_le_bytes());
@@ -148,7 +148,7 @@ pub(super) fn read_header(bytes: &[u8]) -> Result<([Range<usize>; COUNT], [u64; 
     }
     let (mut ranges, mut sums) = ([const { 0..0 }; COUNT], [0; COUNT]);
     let mut end = HEADER;
-    for (k, section) in Section::ALL.into_iter().enumerate() {
+    for (k, section) in FileSection::ALL.into_iter().enumerate() {
         let entry = TABLE + k * ENTRY;
         let (name, kind) = (section.name(), word(bytes, entry));
         if kind != section as u64 {

@@ -16,7 +16,7 @@
 
 use super::{FullNodes, FullTree};
 use crate::bvh::{BvhChild32, MAX_DEPTH, Node16, Node32, Options};
-use crate::format::{BvhChild, ChildRef, Scene, Section};
+use crate::format::{BvhChild, ChildRef, FileSection, Scene};
 use crate::num::Wire;
 use rayon::prelude::*;
 use std::io::{self, Read, Write};
@@ -44,7 +44,7 @@ impl TreeKey {
         for cost in [costs.node, costs.primitive] {
             hash.update(&cost.to_bits().to_le_bytes());
         }
-        for section in [Section::Records, Section::Vertices] {
+        for section in [FileSection::Records, FileSection::Vertices] {
             let bytes = scene.section(section);
             hash.update(&(bytes.len() as u64).to_le_bytes());
             hash.update(bytes);
