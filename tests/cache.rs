@@ -162,3 +162,26 @@ fn a_folder_that_cannot_be_is_refused() {
         assert!(code == 1 && err.starts_with("error: --cache: cannot make folder file/below: "), "{command}: {err}");
     }
 }
+
+#[test]
+fn a_cache_within_the_runs_own_folder_is_refused() {
+    let desk = Desk::new();
+    fs::create_dir(desk.path("there")).unwrap();
+    #[cfg(unix)]
+    std::os::unix::fs::symlink("there", desk.path("link")).unwrap();
+    let list = "size = \"8x8\"\ndistances = [2]\nmethods = [\"bvh\"]\n[[scene]]\nfile = \"a.lod\"\n[[machine]]\nname = \"packet\"\n";
+    fs::write(desk.path("jobs.toml"), list).unwrap();
+    for command in ["render a.lod --method bvh --size 8x8", "simulate a.lod --method bvh --size 8x8", "sweep jobs.toml"] {
+        for (cache, out) in [("out", "out"), ("./out/deep/er", "out"), ("there/../out", "./out"), ("link/cache", "there")] {
+            if cfg!(not(unix)) && cache.starts_with("link") {
+                continue;
+            }
+            let (code, _, err) = desk.try_run("none", &format!("{command} -o {out} --cache {cache}"));
+            let says = format!("error: --cache: {cache} is within {out}, which holds what this run makes\n");
+            assert_eq!((code, err), (1, says), "{command}");
+            assert!(!desk.path("out").exists() && fs::read_dir(desk.path("there")).unwrap().next().is_none(), "{command}");
+        }
+    }
+    // Beside it, or around it, is well.
+    desk.run("none", "render a.lod --method bvh --size 8x8 -o kept/out --cache kept");
+}

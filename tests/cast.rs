@@ -8,7 +8,7 @@ use lodray::method::{Knobs, knob, lod};
 use lodray::rays::{ModelSpace, Query, RayFile, Sight};
 use lodray::run::{HitRow, cast};
 use lodray_test_support::models::{Rng, scene_of, terrain};
-use lodray_test_support::program::{Desk, FAILS};
+use lodray_test_support::program::{Desk, FAILS, USAGE};
 use npyz::WriterBuilder;
 use std::path::Path;
 
@@ -170,4 +170,45 @@ fn files_are_numpys_and_wrong_ones_are_one_clear_error() {
     desk.refused("cast a.lod late.npy -o out.npy", FAILS, &["late.npy: ray 1: column 11 must be the number of an earlier ray"]);
     desk.refused("cast a.lod none.npy -o out.npy", FAILS, &["none.npy: "]);
     desk.refused("cast a.lod rays.npy -o rays.npy", FAILS, &["rays.npy"]);
+}
+
+#[test]
+fn files_of_rays_run_on_machines_and_wait_for_each_other_there() {
+    let desk = Desk::new(assert_cmd::cargo::cargo_bin!("lodray"));
+    desk.run("generate terrain --levels 3 --base 32 --seed 2 -o a.lod");
+    let scene = Scene::open(&desk.path("a.lod")).unwrap();
+    let row = |after: f64, q: &Query| {
+        let tail = [q.radius, q.tan_theta, q.t_min, q.t_max, 0.0, after];
+        q.origin.into_iter().chain(q.direction).chain(tail).collect::<Vec<f64>>()
+    };
+    let all = queries(&ModelSpace::of(&scene), 300, 4);
+    let free: Vec<f64> = all.iter().flat_map(|query| row(-1.0, query)).collect();
+    let chain: Vec<f64> = all.iter().enumerate().flat_map(|(k, query)| row(k as f64 - 1.0, query)).collect();
+    write_rays(&desk.path("free.npy"), 12, &free);
+    write_rays(&desk.path("chain.npy"), 12, &chain);
+    for method in ["lod", "bvh", "bvh32", "discrete"] {
+        let cast = desk.json(&format!("cast a.lod free.npy --method {method} -o hits.npy"));
+        for compute in ["free", "units"] {
+            let [together, one_by_one] =
+                ["free", "chain"].map(|rays| desk.json(&format!("simulate a.lod --rays {rays}.npy --method {method} --compute {compute}")));
+            assert_eq!((&together["rays"], &together["hits"]), (&300.into(), &cast["hits"]), "{method}");
+            assert_eq!(together["setup"]["rays"], serde_json::json!({ "file": "free.npy", "count": 300 }));
+            assert!(together["setup"].get("view").is_none());
+            for same in ["hits", "operations", "traffic"] {
+                let (a, b) = (&together[same], &one_by_one[same]);
+                // Lines that two rays ask for at once are asked of the L2 once.
+                let (a, b) = if same == "traffic" { (&a["bytes_per_ray"]["l1"], &b["bytes_per_ray"]["l1"]) } else { (a, b) };
+                assert_eq!(a, b, "{method} {compute} {same}");
+            }
+            let [together, one_by_one] = [together, one_by_one].map(|result| result["cycles"].as_u64().unwrap());
+            assert!(one_by_one > 10 * together, "{method} {compute}: {one_by_one} cycles one by one, {together} together");
+        }
+    }
+    let said = desk.run("simulate a.lod --rays chain.npy -o out");
+    assert!(said.contains("300 rays of chain.npy"), "{said}");
+    assert!(desk.text("out/run.json").contains("chain.npy"));
+    desk.refused("simulate a.lod --rays none.npy", FAILS, &["none.npy: "]);
+    for camera in ["--size 8x8", "--distance 2", "--view front", "--fov 20"] {
+        desk.refused(&format!("simulate a.lod --rays free.npy {camera}"), USAGE, &["--rays"]);
+    }
 }

@@ -135,6 +135,11 @@ pub struct CameraArgs {
 }
 
 impl CameraArgs {
+    /// The names of all of them.
+    pub fn ids() -> impl IntoIterator<Item = clap::Id> {
+        <Self as Args>::augment_args(clap::Command::new("any")).get_arguments().map(|arg| arg.get_id().clone()).collect::<Vec<_>>()
+    }
+
     /// The camera on a model, `distance` overriding the argument.
     pub fn camera(&self, space: &ModelSpace, distance: Option<f64>) -> anyhow::Result<Camera> {
         let plain = |v: Option<Triple>| v.map(|v| v.0);

@@ -4,7 +4,7 @@
 //! another program is made again. Nothing but files of such names is ever removed.
 
 use super::output::warn;
-use anyhow::Context;
+use anyhow::{Context, ensure};
 use etcetera::BaseStrategy;
 use lodray::bvh::BvhError;
 use lodray::format::{remove_abandoned, write_and_rename};
@@ -72,15 +72,28 @@ impl TreeStore for Lookup<'_> {
     }
 }
 
+/// An absolute path without links, as far as it exists.
+fn real(path: &Path) -> PathBuf {
+    let path = std::path::absolute(path).unwrap_or_else(|_| path.to_owned());
+    let mut parents = path.ancestors().filter_map(|parent| Some((parent, parent.canonicalize().ok()?)));
+    let below = |(parent, real): (&Path, PathBuf)| path.strip_prefix(parent).map(|rest| real.join(rest)).ok();
+    parents.next().and_then(below).unwrap_or_else(|| path.clone())
+}
+
 impl Cache {
     /// No cache.
     pub const NONE: Self = Self { folder: None };
 
-    /// The folder that was named, or the usual one, which is made when there is something to keep; without a place for that, none.
-    pub fn new(args: &CacheArgs) -> anyhow::Result<Self> {
+    /// The folder that was named, or the usual one, which is made when there is something to keep; without a place for that, none. It is not within `out`, the
+    /// run's own folder.
+    pub fn new(args: &CacheArgs, out: Option<&Path>) -> anyhow::Result<Self> {
         let folder = match &args.folder {
             Some(named) if named.as_os_str() == "none" => None,
             Some(named) => {
+                if let Some(out) = out {
+                    let is_within = real(named).starts_with(real(out));
+                    ensure!(!is_within, "--cache: {} is within {}, which holds what this run makes", named.display(), out.display());
+                }
                 fs::create_dir_all(named).with_context(|| format!("--cache: cannot make folder {}", named.display()))?;
                 Some(named.clone())
             }

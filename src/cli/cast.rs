@@ -36,7 +36,7 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
     let scene = open(&args.scene)?;
     let rays = RayFile::read(&args.rays)?;
     let chosen = &args.method.chosen;
-    let (method, _) = chosen.make(&scene, &Cache::new(&args.cache)?)?;
+    let (method, _) = chosen.make(&scene, &Cache::new(&args.cache, None)?)?;
     let sight = Sight::new(&rays, &ModelSpace::of(&scene), chosen.delta());
     let bar = progress(rays.batches() as u64, "casting");
     let hits = cast(&*method, &scene, &rays, &sight, &|batches| bar.inc(batches));

@@ -88,10 +88,8 @@ fn results(text: &str) -> anyhow::Result<Vec<Option<SimResult>>> {
 fn title(r: &SimResult) -> String {
     let setup = &r.setup;
     let delta = setup.method.delta.map_or_else(String::new, |delta| format!(" at delta {delta}"));
-    let place = setup.view.distance.map_or_else(|| format!("{:?}", setup.view.eye), |distance| format!("{distance} radii"));
-    let [width, height] = setup.view.size;
     let (method, compute) = (&setup.method.name, setup.compute.name());
-    format!("{}, {method}{delta}, {width}x{height} from {place}, {}, compute {compute}", setup.scene.name, setup.machine.title())
+    format!("{}, {method}{delta}, {}, {}, compute {compute}", setup.scene.name, setup.rays_in_words(), setup.machine.title())
 }
 
 fn figures(a: &SimResult, b: &SimResult) -> Vec<Figure> {

@@ -64,7 +64,7 @@ struct Report {
 }
 
 pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
-    let cache = Cache::new(&args.cache)?;
+    let cache = Cache::new(&args.cache, None)?;
     let scene = open(&args.scene)?;
     let space = ModelSpace::of(&scene);
     let cameras = args.distances.iter().map(|&d| args.camera.camera(&space, Some(d))).collect::<Result<Vec<_>, _>>()?;

@@ -6,8 +6,8 @@ use super::output::progress;
 use lodray::format::Scene;
 use lodray::machine::{Machine, MachineError};
 use lodray::method::Method;
-use lodray::rays::{Camera, ModelSpace, RaySource, Sight};
-use lodray::report::result::{MachineFacts, MethodFacts, SceneFacts, Setup, SimResult, ViewFacts};
+use lodray::rays::{Camera, ModelSpace, RayFile, RaySource, Sight};
+use lodray::report::result::{MachineFacts, MethodFacts, RayFileFacts, SceneFacts, Setup, SimResult, ViewFacts};
 use lodray::run::{Compute, FrameRays, Job, simulate};
 use lodray::sim::energy;
 use lodray::sim::replay::{ReplayError, Run, Window};
@@ -20,9 +20,24 @@ pub struct Pass<'a> {
     pub chosen: &'a Chosen,
     /// The method as it was made for the scene.
     pub method: &'a dyn Method,
-    pub camera: Camera,
-    /// Where it was placed, if by distance.
-    pub distance: Option<f64>,
+    pub rays: PassRays,
+}
+
+/// The rays.
+pub enum PassRays {
+    /// A camera's, and how far it was placed, if by distance.
+    Camera(Camera, Option<f64>),
+    /// A file's, and its path.
+    File(RayFile, PathBuf),
+}
+
+impl PassRays {
+    fn source(&self) -> &dyn RaySource {
+        match self {
+            Self::Camera(camera, _) => camera,
+            Self::File(rays, _) => rays,
+        }
+    }
 }
 
 /// A machine, and how compute is simulated on it.
@@ -88,12 +103,13 @@ fn in_one_line(error: MachineError) -> anyhow::Error {
 impl Pass<'_> {
     /// Traces the rays once and replays them on every target.
     pub fn run(&self, targets: &[Target]) -> anyhow::Result<Vec<Outcome>> {
-        let sight = Sight::new(&self.camera, self.space, self.chosen.delta());
+        let rays = self.rays.source();
+        let sight = Sight::new(rays, self.space, self.chosen.delta());
         let map = self.method.map(&sight);
-        let frame = FrameRays { method: self.method, rays: &self.camera, sight: &sight };
+        let frame = FrameRays { method: self.method, rays, sight: &sight };
         let job = |target: &Target| Job { machine: target.machine.description.clone(), compute: target.compute, window: target.window };
         let jobs: Vec<_> = targets.iter().map(job).collect();
-        let bar = progress(self.camera.batches() as u64, "simulating");
+        let bar = progress(rays.batches() as u64, "simulating");
         let runs = simulate(&frame, &jobs, &|batches| bar.inc(batches));
         bar.finish_and_clear();
         let result = |(target, run): (&Target, Result<Run, ReplayError>)| {
@@ -106,12 +122,13 @@ impl Pass<'_> {
     fn setup(&self, target: &Target, sight: &Sight, bytes: u64) -> Setup {
         let Chosen { method, knobs } = self.chosen;
         let method = MethodFacts::new(method, knobs, &self.method.choices(sight), bytes);
-        Setup {
-            scene: SceneFacts::from(self.scene),
-            method,
-            view: ViewFacts::new(&self.camera, self.distance),
-            compute: target.compute,
-            machine: target.machine.clone(),
-        }
+        let (view, rays) = match &self.rays {
+            PassRays::Camera(camera, distance) => (Some(ViewFacts::new(camera, *distance)), None),
+            PassRays::File(rays, path) => {
+                let file = path.file_name().unwrap_or_default().to_string_lossy().into_owned();
+                (None, Some(RayFileFacts { file, count: rays.rays() }))
+            }
+        };
+        Setup { scene: SceneFacts::from(self.scene), method, view, rays, compute: target.compute, machine: target.machine.clone() }
     }
 }

@@ -162,7 +162,7 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
     let names = pictures.into_iter().take(4 + usize::from(args.compare));
     let inputs: Vec<_> = std::iter::once(&args.scene).chain(&args.mesh).map(PathBuf::as_path).collect();
     let folder = RunFolder::open(&args.out, names, &inputs, &args.overrule)?;
-    let cache = Cache::new(&args.cache)?;
+    let cache = Cache::new(&args.cache, Some(&args.out))?;
 
     let shown = mesh.as_ref().filter(|_| args.method.original).unwrap_or(&seen);
     let begun = Instant::now();

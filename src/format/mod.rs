@@ -14,6 +14,7 @@ mod scene;
 mod sections;
 mod staging;
 
+pub use colour::to_srgb;
 pub use encode::{SceneInfo, build, encode, tree_boxes};
 pub use export::{ExportCounts, export_level};
 pub use lines::{BoundData, Box16, BvhChild, ChildRef, L0Record, VertexData};

@@ -201,8 +201,8 @@ pub struct SurfaceHit {
     pub full_node: u32,
     /// Barycentrics on the full-resolution triangle.
     pub full_bary: [f32; 3],
-    /// Level of the triangle that was met.
-    pub level: u32,
+    /// Level of the triangle that was met. (With its byte a pixel that may be empty has 48.)
+    pub level: u8,
     /// Its node on that level.
     pub node: u32,
     /// Barycentrics on that triangle.
@@ -216,16 +216,19 @@ impl SurfaceHit {
     pub fn new(ray: &ModelRay, hit: &Hit) -> Self {
         let weight = |b: Bary| (b.get() as f64 / BARY_ONE as f64) as f32;
         // Field widths are below 32 bits.
-        let [tree, full_node, level, node] = [hit.tree.get(), hit.full_node.get(), hit.level.get(), hit.node.get()].map(|v| v as u32);
+        let [tree, full_node, node] = [hit.tree.get(), hit.full_node.get(), hit.node.get()].map(|v| v as u32);
         Self {
             distance: ray.distance(hit.t.get()),
             tree,
             full_node,
             full_bary: [hit.full_b0, hit.full_b1, hit.full_b2].map(weight),
-            level,
+            level: hit.level.get() as u8, // four bits
             node,
             bary: [hit.b0, hit.b1, hit.b2].map(weight),
             front: hit.front,
         }
     }
 }
+
+/// Frames keep one for each pixel.
+const _: () = assert!(size_of::<Option<SurfaceHit>>() == 48);

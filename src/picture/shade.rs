@@ -1,7 +1,7 @@
 //! Pictures from frames: headlight shading, normals, level-of-detail map, error map.
 
 use super::Frame;
-use crate::format::Scene;
+use crate::format::{Scene, to_srgb};
 use crate::method::SurfaceHit;
 use crate::rays::Camera;
 use glam::{DVec3, Vec3};
@@ -64,7 +64,7 @@ pub fn level_map(frame: &Frame) -> RgbImage {
         let Some(pixel) = pixel else { return BACKGROUND };
         let mixed =
             (u64::from(pixel.tree) << 24 ^ u64::from(pixel.level) << 20 ^ u64::from(pixel.node)).wrapping_mul(0x9E37_79B9_7F4A_7C15);
-        level(pixel.level, (mixed >> 40) as f32 / (1u32 << 24) as f32)
+        level(u32::from(pixel.level), (mixed >> 40) as f32 / (1u32 << 24) as f32)
     })
 }
 
@@ -109,9 +109,7 @@ fn paint(frame: &Frame, colour: impl Fn(usize, &Option<SurfaceHit>) -> Vec3 + Sy
 
 /// A linear colour in sRGB.
 fn encoded(colour: Vec3) -> Rgb<u8> {
-    let to_srgb = |c: f32| if c <= 0.003_130_8 { 12.92 * c } else { 1.055 * c.powf(1.0 / 2.4) - 0.055 };
-    let c = colour.clamp(Vec3::ZERO, Vec3::ONE);
-    bytes(Vec3::new(to_srgb(c.x), to_srgb(c.y), to_srgb(c.z)))
+    Rgb(colour.to_array().map(to_srgb))
 }
 
 fn bytes(c: Vec3) -> Rgb<u8> {

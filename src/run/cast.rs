@@ -54,7 +54,7 @@ impl HitRow {
         let direction = (direction / direction.abs().max_element()).normalize();
         let point = DVec3::from_array(query.origin) + hit.distance * direction;
         // Widths are below 31 bits.
-        let [tree, level, node] = [hit.tree, hit.level, hit.node].map(u32::cast_signed);
+        let [tree, level, node] = [hit.tree, u32::from(hit.level), hit.node].map(u32::cast_signed);
         Self {
             t: hit.distance,
             tree,

@@ -4,21 +4,17 @@
 
 use criterion::{BenchmarkId, Criterion, SamplingMode, Throughput, criterion_group, criterion_main};
 use lodray::block::{Block, Timing, bary_map, bound_decode, box_test, child_sort, hit_divide, lod_test, ray_setup, tri_test};
-use lodray::num::{Box16, Cone, Direction, Point, Ray, U, Vec3, WU, bound_scale};
+use lodray::num::{Box16, Cone, Direction, Point, Random, Ray, U, Vec3, WU, bound_scale};
 use std::fmt::Debug;
 use tb::{Build, Mode, Plan, check_block};
 
 const TRANSACTIONS: u64 = 1 << 18;
 
-/// SplitMix64.
-struct Rng(u64);
+struct Rng(Random);
 
 impl Rng {
     fn draw(&mut self, bits: u32) -> u64 {
-        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
-        let mut z = (self.0 ^ (self.0 >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-        z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-        (z ^ (z >> 31)) >> (64 - bits)
+        self.0.next() >> (64 - bits)
     }
 
     fn signed(&mut self, bits: u32) -> i64 {
@@ -42,7 +38,7 @@ where
     B::Out: Debug,
 {
     let count = TRANSACTIONS / u64::from(timing.interval);
-    let mut rng = Rng(1);
+    let mut rng = Rng(Random::new(1));
     let inputs: Vec<B::In> = (0..count).map(|_| make(&mut rng)).collect();
     let mut group = c.benchmark_group(name);
     group.throughput(Throughput::Elements(count)).sample_size(10).sampling_mode(SamplingMode::Flat);

@@ -4,7 +4,7 @@ use crate::batch::{Batch, Shape};
 use crate::failure::difference;
 use crate::{Build, Error, Failure, Fault, Model, Sim};
 use lodray::block::{Block, Timing};
-use lodray::num::Wire;
+use lodray::num::{Random, Wire};
 use std::fmt::Debug;
 use std::path::PathBuf;
 use std::sync::{Arc, mpsc};
@@ -251,10 +251,7 @@ fn words(width: u32) -> usize {
     width.div_ceil(64) as usize // at most 2^26
 }
 
-/// SplitMix64's mixing: another number for each number.
+/// Another number for each number.
 fn mix(x: u64) -> u64 {
-    let mut z = x.wrapping_add(0x9e37_79b9_7f4a_7c15);
-    z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-    z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-    z ^ (z >> 31)
+    Random::new(x).next()
 }

@@ -12,10 +12,10 @@ use super::folder::{Overrule, RunFolder, one_run};
 use super::method::MachineMethod;
 use super::names::named;
 use super::output::{check_target, explain, grouped, open, print_json, print_line, remark, warn, write_file};
-use super::pass::{Pass, Target, machine, machine_files};
+use super::pass::{Pass, PassRays, Target, machine, machine_files};
 use anyhow::Context;
 use files::Files;
-use lodray::rays::ModelSpace;
+use lodray::rays::{ModelSpace, RayFile};
 use lodray::report::result::SimResult;
 use lodray::run::{self, Compute};
 use lodray::sim::replay::Window;
@@ -41,6 +41,9 @@ pub struct Args {
     compute: Compute,
     #[command(flatten)]
     camera: CameraArgs,
+    /// File of rays in place of a camera's (.npy); `cast --help` has the columns
+    #[arg(long, value_name = "FILE", conflicts_with_all = CameraArgs::ids())]
+    rays: Option<PathBuf>,
     #[command(flatten)]
     cache: CacheArgs,
     /// Folder for the figures as JSON, what happened over time as CSV, and plots as SVG
@@ -88,23 +91,31 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
     }
     if let Some(vcd) = &args.vcd {
         anyhow::ensure!(machines.len() == 1, "--vcd: takes one machine, not {}", machines.len());
-        check_target(vcd, &[&args.scene])?;
+        let inputs: Vec<_> = std::iter::once(&args.scene).chain(&args.rays).map(PathBuf::as_path).collect();
+        check_target(vcd, &inputs)?;
     }
     let scene = open(&args.scene)?;
     let space = ModelSpace::of(&scene);
-    let camera = args.camera.camera(&space, None)?;
+    let rays = match &args.rays {
+        Some(path) => PassRays::File(RayFile::read(path)?, path.clone()),
+        None => {
+            let camera = args.camera.camera(&space, None)?;
+            let placed = camera.placed;
+            PassRays::Camera(camera, placed)
+        }
+    };
     let labels: Vec<_> = machines.iter().map(|machine| machine.label.as_str()).collect();
     let files = Files::new(&labels);
     let read =
         args.machine.iter().zip(&machines).map(|(name, machine)| machine_files(name, machine)).collect::<Result<Vec<_>, _>>()?.concat();
-    let inputs: Vec<_> = std::iter::once(&args.scene).chain(&read).map(PathBuf::as_path).collect();
+    let inputs: Vec<_> = std::iter::once(&args.scene).chain(&args.rays).chain(&read).map(PathBuf::as_path).collect();
     let names = files.names();
     let open_folder = |out: &PathBuf| RunFolder::open(out, names.iter().map(String::as_str), &inputs, &args.overrule);
     let folder = args.out.as_ref().map(open_folder).transpose()?;
 
     let chosen = &args.method.0;
-    let (method, _) = chosen.make(&scene, &Cache::new(&args.cache)?)?;
-    let pass = Pass { scene: &scene, space: &space, chosen, method: &*method, distance: camera.placed, camera };
+    let (method, _) = chosen.make(&scene, &Cache::new(&args.cache, args.out.as_deref())?)?;
+    let pass = Pass { scene: &scene, space: &space, chosen, method: &*method, rays };
     let targets: Vec<_> = machines.into_iter().map(|machine| Target { machine, compute: args.compute, window: args.window }).collect();
     let outcomes = pass.run(&targets)?.into_iter().collect::<anyhow::Result<Vec<_>>>()?;
     let (results, mut waves): (Vec<SimResult>, Vec<_>) = outcomes.into_iter().unzip();

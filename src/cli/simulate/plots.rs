@@ -60,10 +60,8 @@ pub(in crate::cli) fn wrong(error: impl std::fmt::Display) -> anyhow::Error {
 fn title(what: &str, r: &SimResult, machine: &str) -> Vec<String> {
     let setup = &r.setup;
     let delta = setup.method.delta.map_or_else(String::new, |delta| format!(" at delta {delta}"));
-    let [width, height] = setup.view.size;
     let machine = if machine.is_empty() { String::new() } else { format!("; {machine}") };
-    let place = setup.view.distance.map_or_else(String::new, |distance| format!(" from {distance} radii"));
-    vec![what.to_owned(), format!("{}, {}{delta}, {width}x{height} rays{place}{machine}", setup.scene.name, setup.method.name)]
+    vec![what.to_owned(), format!("{}, {}{delta}, {}{machine}", setup.scene.name, setup.method.name, setup.rays_in_words())]
 }
 
 /// Squares and names, from the top down.

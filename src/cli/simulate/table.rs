@@ -61,17 +61,13 @@ fn head(r: &SimResult) -> String {
     // `lod at delta 1`, `bvh, leaves line 4`.
     let details = setup.method.details();
     let detail: String = details.iter().map(|d| if d.starts_with("delta") { format!(" at {d}") } else { format!(", {d}") }).collect();
-    let [width, height] = setup.view.size;
-    let place = match setup.view.distance {
-        Some(distance) => format!("{distance} bounding radii"),
-        None => format!("{:?}", setup.view.eye),
-    };
     let machine = &setup.machine;
     format!(
-        "{}, {} triangles; {}{detail}; {width}x{height} rays from {place}\n{} ({}), compute {}\n\n",
+        "{}, {} triangles; {}{detail}; {}\n{} ({}), compute {}\n\n",
         setup.scene.name,
         grouped(setup.scene.finest_triangles),
         setup.method.name,
+        setup.rays_in_words(),
         machine.description.name,
         machine.title(),
         setup.compute.name(),

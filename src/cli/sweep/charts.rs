@@ -130,7 +130,7 @@ impl<'a> Subject<'a> {
         }
         let places: Vec<_> = groups.iter().map(|(first, _)| place(first)).collect();
         let name = |(k, (first, bars)): (usize, (&SimResult, Vec<Bar>))| {
-            let eye = first.setup.view.eye.map(short).join(", ");
+            let eye = eye(first).map(short).join(", ");
             let is_alone = places.iter().filter(|place| **place == places[k]).count() == 1;
             Group { name: std::iter::once(places[k].clone()).chain((!is_alone).then(|| format!("eye {eye}"))).collect(), bars }
         };
@@ -192,11 +192,15 @@ impl<'a> Subject<'a> {
     }
 }
 
+/// The eye; a sweep's rays are cameras'.
+fn eye(r: &SimResult) -> [f64; 3] {
+    r.setup.view.as_ref().map_or([0.0; 3], |view| view.eye)
+}
+
 /// Where a view is from.
 fn place(r: &SimResult) -> String {
-    let view = &r.setup.view;
-    let to_origin = || view.eye.iter().map(|v| v * v).sum::<f64>().sqrt();
-    view.distance.map_or_else(|| short(to_origin()), |distance| format!("{distance} radii"))
+    let to_origin = || eye(r).iter().map(|v| v * v).sum::<f64>().sqrt();
+    r.setup.view.as_ref().and_then(|view| view.distance).map_or_else(|| short(to_origin()), |distance| format!("{distance} radii"))
 }
 
 /// Two decimals at most.

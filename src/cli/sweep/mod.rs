@@ -12,7 +12,7 @@ use super::folder::{Overrule, RunFolder, one_run};
 use super::generate::make;
 use super::method::Chosen;
 use super::output::{check_target, open, print_line, remark, write_file};
-use super::pass::{Outcome, Pass, Target};
+use super::pass::{Outcome, Pass, PassRays, Target};
 use super::pictures::{Shot, shoot};
 use super::render::compare_shots;
 use anyhow::Context;
@@ -66,7 +66,7 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
     let jobs = Jobs::read(&args.jobs)?;
     let inputs: Vec<_> = std::iter::once(&args.jobs).chain(&jobs.files).map(PathBuf::as_path).collect();
     let mut folder = RunFolder::open(&args.out, [TABLE], &inputs, &args.overrule)?;
-    let cache = Cache::new(&args.cache)?;
+    let cache = Cache::new(&args.cache, Some(&args.out))?;
     let lines = args.out.join(LINES);
     check_target(&lines, &inputs)?;
     let rows = Rows::open(&lines)?;
@@ -187,8 +187,7 @@ impl Workshop<'_> {
             space: &self.space,
             chosen: group.chosen,
             method: &*self.built[at].1,
-            camera,
-            distance: group.view.distance,
+            rays: PassRays::Camera(camera, group.view.distance),
         };
         let targets: Vec<_> = group.jobs.iter().map(|(_, target)| target.clone()).collect();
         let row = |(result, (key, _)): (Outcome, &(String, Target))| match result {

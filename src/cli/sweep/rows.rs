@@ -156,9 +156,10 @@ pub fn csv<'a>(rows: impl Iterator<Item = &'a Row>) -> String {
 fn result_cells(r: &SimResult) -> Vec<String> {
     let optional = |value: Option<f64>| value.map_or_else(String::new, |v| v.to_string());
     let (setup, energy, bytes) = (&r.setup, &r.energy, &r.traffic.bytes_per_ray);
-    let mut cells = vec![optional(setup.view.distance)];
-    cells.extend(setup.view.eye.map(|v| v.to_string()));
-    cells.extend(setup.view.size.map(|v| v.to_string()));
+    let view = setup.view.as_ref();
+    let mut cells = vec![optional(view.and_then(|view| view.distance))];
+    cells.extend(view.map_or_else(Default::default, |view| view.eye.map(|v| v.to_string())));
+    cells.extend(view.map_or_else(Default::default, |view| view.size.map(|v| v.to_string())));
     cells.extend([setup.method.name.clone(), optional(setup.method.delta), setup.method.leaves.clone().unwrap_or_default()]);
     cells.extend([setup.machine.label.clone(), setup.machine.set.join(" "), setup.compute.name().to_owned()]);
     cells.extend([r.cycles.to_string(), r.milliseconds.to_string(), r.frames_per_second.to_string()]);

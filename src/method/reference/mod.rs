@@ -41,7 +41,7 @@ impl Trace for &Truth {
             tree: hit.tree,
             full_node: hit.full_node,
             full_bary: hit.bary.map(|b| b as f32),
-            level: self.reference.levels(),
+            level: self.reference.levels() as u8, // at most 10
             node: hit.full_node,
             bary: hit.bary.map(|b| b as f32),
             front: hit.front,

@@ -18,7 +18,7 @@ pub use energy::{ComputeEnergy, DramParts, EnergyResult, LeakageEnergy, ReadFill
 pub use intervals::{IntervalPower, IntervalResult};
 pub use memory::{CacheResult, ChannelResult, CrossbarResult, DramResult, WaitShares};
 pub use roofline::{Bound, Roofline};
-pub use setup::{MachineFacts, MethodFacts, SceneFacts, Setup, ViewFacts};
+pub use setup::{MachineFacts, MethodFacts, RayFileFacts, SceneFacts, Setup, ViewFacts};
 pub use traffic::{KindResult, LevelBytes, TrafficResult};
 pub use units::{BlockResult, UnitsResult};
 

@@ -18,8 +18,12 @@ pub struct Setup {
     pub scene: SceneFacts,
     /// The method.
     pub method: MethodFacts,
-    /// The camera.
-    pub view: ViewFacts,
+    /// The camera; absent if the rays are a file's.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub view: Option<ViewFacts>,
+    /// The file of rays, if they are of one.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub rays: Option<RayFileFacts>,
     /// How compute is simulated.
     pub compute: Compute,
     /// The machine.
@@ -27,6 +31,16 @@ pub struct Setup {
 }
 
 impl Setup {
+    /// Which rays, in words: `64x48 rays from 2 bounding radii`.
+    pub fn rays_in_words(&self) -> String {
+        let of_view = |view: &ViewFacts| {
+            let place = view.distance.map_or_else(|| format!("{:?}", view.eye), |distance| format!("{distance} bounding radii"));
+            format!("{}x{} rays from {place}", view.size[0], view.size[1])
+        };
+        let of_file = |rays: &RayFileFacts| format!("{} rays of {}", rays.count, rays.file);
+        self.view.as_ref().map(of_view).or_else(|| self.rays.as_ref().map(of_file)).unwrap_or_default()
+    }
+
     /// Rays that the machine holds at once.
     pub fn contexts(&self) -> u64 {
         let Machine { cores, units, .. } = &self.machine.description;
@@ -117,6 +131,16 @@ impl ViewFacts {
     pub fn new(camera: &Camera, distance: Option<f64>) -> Self {
         Self { size: [camera.width, camera.height], eye: camera.eye.to_array(), distance }
     }
+}
+
+/// A file of rays.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct RayFileFacts {
+    /// Its name, without folders.
+    pub file: String,
+    /// How many rays it has.
+    pub count: u64,
 }
 
 /// What a machine is.

@@ -82,6 +82,7 @@ fn push_front(set: &mut [u32], line: u32) {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::num::Random;
 
     fn cache(bytes: u64, ways: u32, banks: u32) -> Cache {
         Cache { bytes, ways, banks, line_bytes: 32, latency_cycles: 1, mshrs: 1, targets: 1, queue: 1 }
@@ -106,13 +107,11 @@ mod tests {
     fn a_fully_associative_cache_hits_where_the_reuse_distance_is_below_its_lines() {
         let lines = 64;
         let mut tags = Tags::new(&cache(lines * 32, lines as u32, 1), 1);
-        let mut seed = 1u64;
+        let mut random = Random::new(1);
         let mut history: Vec<u32> = Vec::new();
         let mut hits = [0; 2];
         for _ in 0..20_000 {
-            seed = seed.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
-            let (a, b) = ((seed >> 33) % 40, (seed >> 40) % 200);
-            let line = if seed >> 62 == 0 { b as u32 } else { a as u32 };
+            let line = if random.below(4) == 0 { random.below(200) } else { random.below(40) } as u32;
             // Distinct lines since the last use: counted from the history, not by a stack.
             let since = history.iter().rev().take_while(|&&past| past != line).collect::<std::collections::HashSet<_>>().len();
             let seen = history.contains(&line);

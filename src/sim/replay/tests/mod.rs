@@ -3,6 +3,7 @@
 mod order;
 
 use super::*;
+use crate::num::Random;
 use crate::sim::dram::Dram;
 use crate::step::{Act, Batch, Fetch, MemoryMap, Section, SectionId, Step};
 use std::collections::HashSet;
@@ -278,11 +279,8 @@ fn conserved(run: &Run) {
 
 /// Lines with some locality, as a ray's.
 fn wandering(rays: usize, steps: usize) -> Vec<Vec<u32>> {
-    let mut seed = 3u64;
-    let mut draw = move |n: u64| {
-        seed = seed.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
-        ((seed >> 33) % n) as u32
-    };
+    let mut random = Random::new(3);
+    let mut draw = move |n: u64| random.below(n) as u32;
     (0..rays).map(|_| (0..steps).map(|_| if draw(3) == 0 { draw(40_000) } else { draw(600) }).collect()).collect()
 }
 
