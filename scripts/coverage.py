@@ -1,7 +1,8 @@
 """Merges Verilator's coverage data: lines and toggles of rtl/, by file.
 
-Every point of a source line counts once, however many instances, parameters and tests saw it: it is covered if any did. Gaps must be explained in
-scripts/coverage.toml (file, the code of the line or the name of the signal, why); an unexplained uncovered line, or toggles under the limit, make the script fail.
+Every point of a source line counts once, however many instances, parameters and tests saw it: it is covered if any did. Gaps are explained in
+scripts/coverage.toml, if there is one (file, the code of the line or the name of the signal, why); an unexplained uncovered line, or toggles under
+the limit, make the script fail.
 """
 
 import argparse

@@ -338,3 +338,13 @@ fn two_results_side_by_side() {
     desk.run("sweep jobs.toml -o out");
     assert!(desk.run("compare out/results.jsonl:1 out/results.jsonl:3").contains("B / A"));
 }
+
+#[test]
+fn a_waveform_replaces_no_input() {
+    let desk = with_scene();
+    let machine = include_str!("../machines/packet.toml");
+    desk.write("m.toml", machine);
+    desk.refused("simulate a.lod --size 8x8 --machine m.toml --vcd m.toml --window 0:5", FAILS, &["m.toml"]);
+    desk.refused("simulate a.lod --size 8x8 --machine m.toml --vcd a.lod --window 0:5", FAILS, &["a.lod"]);
+    assert_eq!(desk.text("m.toml"), machine);
+}

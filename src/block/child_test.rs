@@ -1,7 +1,7 @@
 //! The four children of a node against a ray: boxes widened by their morphed triangles, tested, and sorted (paper figure 9).
 //!
 //! Four [`WidenBox`], four [`BoxTest`] and one [`ChildSort`] in a row. Children of a quad-BVH node have no triangles: `widen` is false and their
-//! boxes stay as they are. A child that is not present is never hit. (Software runs the same parts lane by lane: `src/traverse/children.rs`.)
+//! boxes stay as they are. A child that is not present is never hit. (Software runs the same parts lane by lane: `src/method/children.rs`.)
 //! Legal: what the parts ask for.
 
 use super::box_test::{self, BoxTest};

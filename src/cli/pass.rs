@@ -25,8 +25,8 @@ pub struct Pass<'a> {
 
 /// The rays.
 pub enum PassRays {
-    /// A camera's, and how far it was placed, if by distance.
-    Camera(Camera, Option<f64>),
+    /// A camera's.
+    Camera(Camera),
     /// A file's, and its path.
     File(RayFile, PathBuf),
 }
@@ -34,7 +34,7 @@ pub enum PassRays {
 impl PassRays {
     fn source(&self) -> &dyn RaySource {
         match self {
-            Self::Camera(camera, _) => camera,
+            Self::Camera(camera) => camera,
             Self::File(rays, _) => rays,
         }
     }
@@ -123,7 +123,7 @@ impl Pass<'_> {
         let Chosen { method, knobs } = self.chosen;
         let method = MethodFacts::new(method, knobs, &self.method.choices(sight), bytes);
         let (view, rays) = match &self.rays {
-            PassRays::Camera(camera, distance) => (Some(ViewFacts::new(camera, *distance)), None),
+            PassRays::Camera(camera) => (Some(ViewFacts::new(camera)), None),
             PassRays::File(rays, path) => {
                 let file = path.file_name().unwrap_or_default().to_string_lossy().into_owned();
                 (None, Some(RayFileFacts { file, count: rays.rays() }))

@@ -72,15 +72,17 @@ Columns of the rays (an array of float32 or float64, 6, 8, 10, 11 or 12 columns)
   0 to 2              origin, in world units
   3 to 5              direction, of any length but 0
   6, 7                radius of the cone at the origin, and its growth per unit of length (0, 0);
-                      a pixel's cone has half a pixel's width: its level of detail follows from it
+                      a pixel's cone starts at 0 and grows by half the pixel's width at distance 1:
+                      the level of detail follows from the cone
   8, 9                nearest and farthest distance that counts (0, inf)
   10                  1: any hit serves; 0: the closest (0)
   11                  number of the earlier ray behind whose end this one starts, -1: none (-1);
                       hits do not depend on it, the time on a machine does
 
-Fields of the hits (a structured array; numpy.load(FILE)['t']):
-  t                   distance from the origin in world units; inf if nothing is met
-  tree, level, node   the triangle that is met; -1 if none
+Fields of the hits (a structured array; numpy.load(FILE)['t']); where nothing is met, t is inf,
+whole numbers are -1 and all others nan:
+  t                   distance from the origin in world units
+  tree, level, node   the triangle that is met
   triangle            the finest triangle there: face number of `lodray export`, counted from 0
   barycentrics, finest_barycentrics
                       weights of the corners of either triangle

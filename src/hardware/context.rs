@@ -10,6 +10,8 @@ use crate::num::{Bary, BoundCode, Point, RayT, Wire};
 const TREE: u32 = 28;
 const LEVEL: u32 = 4;
 const COUNT: u32 = 3;
+/// Bits of the number of a leaf's triangles, 1 to 4, which a BVH keeps where others have levels.
+const LEAF: u32 = 2;
 /// Bits of the numbers of states, of what is fetched, and of a child.
 const STATE: u32 = 5;
 const FETCH: u32 = 2;
@@ -19,7 +21,7 @@ const LINES: u32 = 3;
 
 impl Hardware {
     /// Bits of the registers of a ray context: `rtl/`'s if it `has_levels`. Without them it has no split triangles, and its stack is as deep as the quad-BVH and
-    /// holds neither levels nor bound codes.
+    /// holds no bound codes, and of levels only what counts the triangles of a leaf.
     pub fn context_registers(&self, has_levels: bool) -> Registers {
         let splits = if has_levels { self.splits() } else { 0 };
         Registers::bits(self.place() + self.stack(has_levels) + splits + self.lines() + self.closest())
@@ -44,7 +46,7 @@ impl Hardware {
     fn stack(&self, has_levels: bool) -> u32 {
         let levels = Self { levels: if has_levels { self.levels } else { 0 }, ..*self };
         let entries = levels.stack_entries();
-        let width = if has_levels { Entry::WIDTH } else { Entry::WIDTH - LEVEL - 3 * BoundCode::WIDTH };
+        let width = if has_levels { Entry::WIDTH } else { Entry::WIDTH - LEVEL + LEAF - 3 * BoundCode::WIDTH };
         entries * width + (entries + 1).next_power_of_two().ilog2()
     }
 

@@ -14,6 +14,8 @@ const MOST_BYTES: u64 = 1 << 30;
 const MOST_MHZ: u32 = 100_000;
 /// Latencies, queues and other counts.
 const MOST: u32 = 1 << 16;
+/// Most requests that wait in a channel.
+const MOST_QUEUED: u32 = 1 << 12;
 
 impl Machine {
     pub(super) fn validate(&self) -> Result<(), Breach> {
@@ -31,7 +33,7 @@ impl Machine {
             ("crossbar.per_group", self.crossbar.per_group, MOST),
             ("units.per_group", self.units.per_group, MOST),
             ("units.contexts", self.units.contexts, MAX_CONTEXTS as u32),
-            ("dram.queue", self.dram.queue, MOST),
+            ("dram.queue", self.dram.queue, MOST_QUEUED),
         ];
         counts.iter().try_for_each(|&(key, value, most)| count(key, value, most))?;
         if ![1, 3].contains(&self.units.edges_per_cycle) {

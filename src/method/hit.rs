@@ -70,7 +70,7 @@ pub fn is_beyond(t_near: TNear, t: RayT) -> bool {
     t_near.get() << T_NEAR_TO_T_SHIFT > t.get()
 }
 
-/// Keeps the closest hit: smaller t, then smaller id; or, if any serves, the first that it is offered.
+/// Keeps the closest hit: smaller t, then smaller id; or, if any serves, the closest of the first triangles tested together of which one is met.
 #[derive(Clone, Debug)]
 pub struct ClosestHit {
     levels: u32,

@@ -15,6 +15,8 @@ pub struct Knob {
     pub default: Option<&'static str>,
     /// Its values with a line about each, if they are words.
     pub words: &'static [(&'static str, &'static str)],
+    /// It is asked for with the rays of a frame only: what is made for a scene does not depend on it.
+    pub of_frame: bool,
     /// Refuses other values than its own, and says why.
     pub allows: fn(&str) -> Result<(), String>,
 }
@@ -63,16 +65,12 @@ impl Knobs {
         Ok(self)
     }
 
-    /// The same without a choice of this knob.
+    /// Those that what is made for a scene depends on, of a method's.
     #[must_use]
-    pub fn without(mut self, knob: &Knob) -> Self {
-        self.0.remove(knob.name);
+    pub fn of_scene(mut self, of: &[&Knob]) -> Self {
+        let of_frame = |name: &str| of.iter().any(|knob| knob.name == name && knob.of_frame);
+        self.0.retain(|name, _| !of_frame(name));
         self
-    }
-
-    /// The chosen value of a knob, if it was chosen.
-    pub fn chosen(&self, knob: &Knob) -> Option<&str> {
-        self.0.get(knob.name).map(String::as_str)
     }
 
     /// The value of a knob: the chosen one, or its default.
@@ -88,6 +86,7 @@ pub static DELTA: Knob = Knob {
     help: "Quality of methods with level of detail: 1 keeps a level's displacement under a pixel, 0 is the base mesh, inf full detail",
     default: Some("1"),
     words: &[],
+    of_frame: true,
     allows: |value| quality(value).map(drop),
 };
 

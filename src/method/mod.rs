@@ -30,6 +30,15 @@ use crate::step::MemoryMap;
 use bvh::TreeStore;
 use std::fmt;
 
+/// What a traversal unit for a method's rays is made of.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct MethodUnit {
+    /// Its blocks, each as often as there is one.
+    pub blocks: &'static [Operation],
+    /// A context keeps split triangles, and its stack levels and bound codes.
+    pub has_levels: bool,
+}
+
 /// A method in the registry.
 pub struct Registered {
     /// Its name in options and reports.
@@ -38,8 +47,8 @@ pub struct Registered {
     pub help: &'static str,
     /// What may be chosen.
     pub knobs: &'static [&'static Knob],
-    /// The blocks of a unit for its rays, each as often as there is one; none if it is no hardware.
-    pub unit: Option<&'static [Operation]>,
+    /// A unit for its rays; none if it is no hardware.
+    pub unit: Option<MethodUnit>,
     /// Builds what it needs for a scene.
     pub make: Make,
 }

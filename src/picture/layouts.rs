@@ -32,7 +32,7 @@ pub fn distinct_lines(
     rows_done: &(dyn Fn(u64) + Sync),
 ) -> Vec<u64> {
     // Leaves that could be in place of its own: a memory of theirs alone.
-    let alone = |leaves: &Leaves| MemoryMap::new(&[Section::of_bytes("leaf", leaves.bytes())], 1).map(|map| LineSets::new(&map));
+    let alone = |leaves: &Leaves| MemoryMap::new(&[Section::of_bytes("leaf", leaves.bytes())], None).map(|map| LineSets::new(&map));
     let sets = LineSets::new(&bvh_map(&[bvh]));
     let others: Vec<_> = others.iter().map(|&leaves| (leaves, alone(leaves).expect("at most 2^28 triangles"))).collect();
     let height = camera.height;

@@ -9,10 +9,11 @@
 //! | 6, 7 | radius of the cone at the origin, and how much it grows per unit of length | 0, 0 |
 //! | 8, 9 | nearest and farthest distance that counts | 0, infinite |
 //! | 10 | 1 if any hit serves, 0 if it must be the closest | 0 |
-//! | 11 | number of the earlier row behind whose end the ray starts, -1 if none | -1 |
+//! | 11 | number of the earlier row behind whose end the ray starts, -1 if none; 32-bit floats number 2^24 rows | -1 |
 
 use super::{ModelSpace, Query, RaySource};
 use npyz::{DType, NpyFile, Order, TypeChar};
+use rayon::prelude::*;
 use std::fs::File;
 use std::io::{self, BufReader, Read};
 use std::path::{Path, PathBuf};
@@ -40,6 +41,8 @@ enum Why {
     Shape(String),
     #[error("{0} rays: at most 2^28")]
     TooMany(u64),
+    #[error("{0} rays of 12 columns of float32, which cannot number rays beyond 2^24: take float64")]
+    Numbers(u64),
     #[error("ray {0}: {1}")]
     Ray(u64, String),
 }
@@ -76,6 +79,9 @@ impl RayFile {
         };
         if rows > MOST {
             return Err(Why::TooMany(rows));
+        }
+        if columns == 12 && size == 4 && rows > 1 << 24 {
+            return Err(Why::Numbers(rows));
         }
         let values: Vec<f64> = match size {
             4 => file.into_vec::<f32>().map_err(Why::Io)?.into_iter().map(f64::from).collect(),
@@ -170,8 +176,9 @@ impl RaySource for RayFile {
 
     fn least_radius(&self, space: &ModelSpace) -> f64 {
         // Rays that pass beside the model have no say.
-        let radius = |query: &Query| space.enter(query, 1.0).map(|ray| query.radius + query.tan_theta * ray.start);
-        self.queries.iter().filter_map(radius).fold(f64::INFINITY, f64::min)
+        let meets = |query: &&Query| space.enter(query, 1.0).is_some();
+        let radius = |query: &Query| query.radius + query.tan_theta * space.distance_to(query.origin);
+        self.queries.par_iter().filter(meets).map(radius).reduce(|| f64::INFINITY, f64::min)
     }
 }
 

@@ -15,7 +15,7 @@ pub struct Query {
     pub t_min: f64,
     /// Nothing farther counts.
     pub t_max: f64,
-    /// Any hit serves, not only the closest: the ray ends with the first that it finds.
+    /// Any hit serves, not only the closest: the ray ends with the first triangles tested together of which it meets one, and has the closest of these.
     pub any: bool,
     /// The earlier ray, by its number in its source, behind whose end this one starts.
     pub after: Option<u64>,

@@ -21,7 +21,7 @@ pub trait RaySource: Sync {
         false
     }
 
-    /// The smallest radius, in world units, that the cone of any ray has where it is nearest to the model.
+    /// A radius, in world units, that no ray's cone falls below within the model's box: the cone's at the box's distance from the ray's origin.
     fn least_radius(&self, space: &ModelSpace) -> f64;
 }
 
@@ -30,7 +30,7 @@ pub trait RaySource: Sync {
 pub struct Sight {
     /// Quality of the level of detail: 0 the base mesh, infinite full detail, 1 one pixel.
     pub delta: f64,
-    /// The smallest radius of any ray's cone where it is nearest to the model, in units of the model.
+    /// A radius that no ray's cone falls below within the model's box, in units of the model.
     pub least_radius: f64,
 }
 

@@ -38,7 +38,8 @@ pub struct Fetch {
     pub lines: u32,
     /// Place of the first in the record that the ray reads, below [`MAX_PLACES`]: what the unit's tag says of it.
     pub place: u32,
-    /// They are asked for together with those of the step before: nothing of that step need be there.
+    /// They are asked for together with those of the step before: nothing of that step need be there. Behind any act but `Fetch`, a unit asks for one such step
+    /// together with that act's, as it has one register for it.
     pub joins: bool,
 }
 

@@ -4,7 +4,7 @@
 use super::{Act, Step, StepSink, StepWord};
 use crate::block::{Operation, Operations};
 
-/// Rays that a group of cores takes at once: a tile of the picture.
+/// Rays that a group of cores takes at once: a tile of the picture, or 64 of a file.
 #[derive(Clone, Debug, Default)]
 pub struct Batch {
     words: Box<[StepWord]>,

@@ -75,7 +75,8 @@ mod tests {
 
     #[test]
     fn a_line_counts_once_in_the_set_and_each_time_in_the_total() {
-        let map = MemoryMap::new(&[("a", 70), ("b", 1), ("c", 200), ("d", 0)].map(|(name, lines)| Section::of_bytes(name, 32 * lines)), 2);
+        let map =
+            MemoryMap::new(&[("a", 70), ("b", 1), ("c", 200), ("d", 0)].map(|(name, lines)| Section::of_bytes(name, 32 * lines)), None);
         let map = map.unwrap();
         let sets = LineSets::new(&map);
         let mut counter = LineCounter { counts: StepCounts::default(), sets: &sets };

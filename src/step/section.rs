@@ -88,11 +88,11 @@ pub struct MemoryMap {
 }
 
 impl MemoryMap {
-    /// The memory of these sections, at most [`MAX_SECTIONS`]; rays begin with the first node of section 0, whose nodes have `node_lines` lines each.
+    /// The memory of these sections, at most [`MAX_SECTIONS`]; rays begin with the first node of a section whose nodes have so many lines each, if there is one.
     ///
     /// # Errors
     /// There are more lines than 32 bits can number.
-    pub fn new(sections: &[Section], node_lines: u32) -> Result<Self, MapError> {
+    pub fn new(sections: &[Section], nodes: Option<(SectionId, u32)>) -> Result<Self, MapError> {
         let mut map =
             Self { sections: Default::default(), first: Default::default(), count: sections.len(), lines: 0, nodes: Nodes::default() };
         for (k, section) in sections.iter().enumerate() {
@@ -103,16 +103,19 @@ impl MemoryMap {
         if map.lines >= 1 << 32 {
             return Err(MapError(map.lines));
         }
-        // Below 2^32 lines.
-        let nodes = sections.first().map_or(0, |section| section.lines as u32 / node_lines);
-        Ok(Self { nodes: Nodes { first: 0, lines: node_lines, count: nodes }, ..map })
+        if let Some((section, lines)) = nodes {
+            let (first, of_section) = (map.first[section.place()], map.sections[section.place()].lines);
+            // Below 2^32 lines.
+            map.nodes = Nodes { first, lines, count: of_section as u32 / lines.max(1) };
+        }
+        Ok(map)
     }
 
-    /// The same memory, for rays that begin with node `root` of section 0, of which `count` follow it.
+    /// The same memory, for rays that begin with node `root` of the nodes' section, of which `count` follow it.
     #[must_use]
     pub fn from_node(self, root: u32, count: u32) -> Self {
-        let Nodes { lines, .. } = self.nodes;
-        Self { nodes: Nodes { first: root * lines, lines, count }, ..self }
+        let Nodes { first, lines, .. } = self.nodes;
+        Self { nodes: Nodes { first: first + root * lines, lines, count }, ..self }
     }
 
     /// The nodes that rays begin with.
@@ -172,7 +175,7 @@ mod tests {
 
     #[test]
     fn sections_lie_one_behind_the_other() {
-        let map = MemoryMap::new(&[section("a", 6), section("b", 4), section("c", 9)], 2).unwrap();
+        let map = MemoryMap::new(&[section("a", 6), section("b", 4), section("c", 9)], Some((SectionId::new(0), 2))).unwrap();
         assert_eq!(map.lines(), 8 + 4 + 12);
         let [a, b, c] = [0, 1, 2].map(SectionId::new);
         assert_eq!([a, b, c].map(|id| map.first(id)), [0, 8, 12]);
@@ -187,7 +190,7 @@ mod tests {
 
     #[test]
     fn more_lines_than_numbers_are_refused() {
-        let map = |lines| MemoryMap::new(&[section("a", lines), section("b", 1)], 2);
+        let map = |lines| MemoryMap::new(&[section("a", lines), section("b", 1)], Some((SectionId::new(0), 2)));
         assert!(map((1 << 32) - 8).is_ok());
         assert_eq!(map((1 << 32) - 7), Err(MapError(1 << 32)));
         assert!(map(u64::MAX).is_err() && map(u64::MAX - 8).is_err());

@@ -91,7 +91,7 @@ impl Pin {
         let setup = Setup {
             scene: SceneFacts::from(scene),
             method: MethodFacts::new(entry, &knobs, &method.choices(&sight), 0),
-            view: Some(ViewFacts::new(&camera, None)),
+            view: Some(ViewFacts::new(&camera)),
             rays: None,
             compute: self.compute,
             machine: MachineFacts { label: self.machine.to_owned(), set: Vec::new(), description: machine },

@@ -89,26 +89,21 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
         run::check(&machine.description, args.compute).with_context(|| format!("--machine {}", args.machine[k]))?;
         anyhow::ensure!(machines[..k].iter().all(|before| before.label != machine.label), "--machine: {} is given twice", machine.label);
     }
+    let read =
+        args.machine.iter().zip(&machines).map(|(name, machine)| machine_files(name, machine)).collect::<Result<Vec<_>, _>>()?.concat();
+    let inputs: Vec<_> = std::iter::once(&args.scene).chain(&args.rays).chain(&read).map(PathBuf::as_path).collect();
     if let Some(vcd) = &args.vcd {
         anyhow::ensure!(machines.len() == 1, "--vcd: takes one machine, not {}", machines.len());
-        let inputs: Vec<_> = std::iter::once(&args.scene).chain(&args.rays).map(PathBuf::as_path).collect();
         check_target(vcd, &inputs)?;
     }
     let scene = open(&args.scene)?;
     let space = ModelSpace::of(&scene);
     let rays = match &args.rays {
         Some(path) => PassRays::File(RayFile::read(path)?, path.clone()),
-        None => {
-            let camera = args.camera.camera(&space, None)?;
-            let placed = camera.placed;
-            PassRays::Camera(camera, placed)
-        }
+        None => PassRays::Camera(args.camera.camera(&space, None)?),
     };
     let labels: Vec<_> = machines.iter().map(|machine| machine.label.as_str()).collect();
     let files = Files::new(&labels);
-    let read =
-        args.machine.iter().zip(&machines).map(|(name, machine)| machine_files(name, machine)).collect::<Result<Vec<_>, _>>()?.concat();
-    let inputs: Vec<_> = std::iter::once(&args.scene).chain(&args.rays).chain(&read).map(PathBuf::as_path).collect();
     let names = files.names();
     let open_folder = |out: &PathBuf| RunFolder::open(out, names.iter().map(String::as_str), &inputs, &args.overrule);
     let folder = args.out.as_ref().map(open_folder).transpose()?;

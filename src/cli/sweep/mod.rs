@@ -18,7 +18,6 @@ use super::render::compare_shots;
 use anyhow::Context;
 use jobs::{Jobs, Origin, SceneJobs, ViewJob};
 use lodray::format::Scene;
-use lodray::method::knob::DELTA;
 use lodray::method::{Method, reference};
 use lodray::rays::{Camera, ModelSpace};
 use rows::ImageFigures;
@@ -187,7 +186,7 @@ impl Workshop<'_> {
             space: &self.space,
             chosen: group.chosen,
             method: &*self.built[at].1,
-            rays: PassRays::Camera(camera, group.view.distance),
+            rays: PassRays::Camera(camera),
         };
         let targets: Vec<_> = group.jobs.iter().map(|(_, target)| target.clone()).collect();
         let row = |(result, (key, _)): (Outcome, &(String, Target))| match result {
@@ -204,7 +203,7 @@ impl Workshop<'_> {
 
     /// Where the method is that was made for these choices, now or before.
     fn made(&mut self, chosen: &Chosen) -> anyhow::Result<usize> {
-        let key = Chosen { knobs: chosen.knobs.clone().without(&DELTA), ..*chosen };
+        let key = Chosen { knobs: chosen.knobs.clone().of_scene(chosen.method.knobs), ..*chosen };
         if let Some(at) = self.built.iter().position(|(of, _)| *of == key) {
             return Ok(at);
         }

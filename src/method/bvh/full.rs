@@ -146,9 +146,4 @@ impl FullBvh {
         let tree = FullBuilder::new(hierarchy)?.tree(&options.tree, options.wide_boxes)?;
         tree.with_leaves(hierarchy, options.layout)
     }
-
-    /// Memory of nodes and leaves in bytes.
-    pub fn bytes(&self) -> u64 {
-        self.nodes.bytes() + self.leaves.bytes()
-    }
 }

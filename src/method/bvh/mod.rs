@@ -13,7 +13,7 @@ pub use leaves::{LeafLayout, Leaves};
 pub use store::{NoStore, TreeStore};
 pub use trace::BvhTraverser;
 
-use super::{ClosestHit, Knob, Knobs, Method, Registered, SurfaceHit, Trace, Tracer};
+use super::{ClosestHit, Knob, Knobs, Method, MethodUnit, Registered, SurfaceHit, Trace, Tracer};
 use crate::block::Operation;
 use crate::bvh::BvhError;
 use crate::format::Scene;
@@ -36,6 +36,7 @@ pub static LEAF_LAYOUT: Knob = Knob {
         ("packed", "Nine 32-bit coordinates, 36 bytes"),
         ("line", "One 32-byte line of 28-bit coordinates"),
     ],
+    of_frame: false,
     allows: |value| LeafLayout::named(value).map(drop).ok_or_else(|| format!("'{value}' is not indexed, packed or line")),
 };
 
@@ -46,6 +47,7 @@ pub static LEAF_SIZE: Knob = Knob {
     help: "Largest number of triangles in a leaf of a BVH: 1, 2 or 4",
     default: Some("4"),
     words: &[],
+    of_frame: false,
     allows: |value| if ["1", "2", "4"].contains(&value) { Ok(()) } else { Err(format!("'{value}' is not 1, 2 or 4")) },
 };
 
@@ -73,7 +75,7 @@ pub static METHOD: Registered = Registered {
     name: "bvh",
     help: "Quad-BVH of the full-resolution mesh, 16-bit boxes",
     knobs: &[&LEAF_LAYOUT, &LEAF_SIZE],
-    unit: Some(UNIT),
+    unit: Some(MethodUnit { blocks: UNIT, has_levels: false }),
     make: |scene, knobs, store| Bvh::of(scene, knobs, false, store),
 };
 
@@ -82,7 +84,7 @@ pub static METHOD_WIDE: Registered = Registered {
     name: "bvh32",
     help: "The same with 32-bit boxes",
     knobs: &[&LEAF_LAYOUT, &LEAF_SIZE],
-    unit: Some(&unit(Operation::BoxTest32)),
+    unit: Some(MethodUnit { blocks: &unit(Operation::BoxTest32), has_levels: false }),
     make: |scene, knobs, store| Bvh::of(scene, knobs, true, store),
 };
 
@@ -157,7 +159,7 @@ pub fn bvh_map(bvhs: &[&FullBvh]) -> MemoryMap {
     let sum = |bytes: fn(&FullBvh) -> u64| bvhs.iter().map(|bvh| bytes(bvh).next_multiple_of(crate::num::LINE_BYTES)).sum();
     let sections = [Section::of_bytes("bvh_node", sum(|bvh| bvh.nodes.bytes())), Section::of_bytes("leaf", sum(|bvh| bvh.leaves.bytes()))];
     let lines = bvhs.first().map_or(1, |bvh| node_lines(&bvh.nodes));
-    MemoryMap::new(&sections, lines).expect("at most 2^28 triangles, of at most eight lines each with their nodes")
+    MemoryMap::new(&sections, Some((NODES, lines))).expect("at most 2^28 triangles, of at most eight lines each with their nodes")
 }
 
 /// Lines of a node.

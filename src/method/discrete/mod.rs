@@ -7,7 +7,7 @@ mod levels;
 
 use super::bvh::{BvhTracer, BvhTraverser, FullBuilder, FullBvh, FullOptions, LEAF_LAYOUT, LEAF_SIZE, TreeKey, TreeStore, UNIT, bvh_map};
 use super::knob::DELTA;
-use super::{Knob, Knobs, Method, Registered, Tracer};
+use super::{Knob, Knobs, Method, MethodUnit, Registered, Tracer};
 use crate::block::Operation;
 use crate::bvh::BvhError;
 use crate::format::Scene;
@@ -23,6 +23,7 @@ pub static LEVEL: Knob = Knob {
     help: "Level of the discrete method, 0 the base mesh; the finest if the scene has fewer (default: chosen for the frame by --delta)",
     default: None,
     words: &[],
+    of_frame: false,
     allows: |value| {
         let level = value.parse().ok().filter(|level| (0..=MAX_LEVELS).contains(level));
         level.map(|_: u32| ()).ok_or_else(|| format!("'{value}' is not a level from 0 to {MAX_LEVELS}"))
@@ -34,11 +35,14 @@ pub static METHOD: Registered = Registered {
     name: "discrete",
     help: "Discrete levels of detail: a quad-BVH of each level, one level for the whole frame",
     knobs: &[&DELTA, &LEVEL, &LEAF_LAYOUT, &LEAF_SIZE],
-    unit: Some(&{
-        // As for a BVH, and a hit on a coarse triangle is mapped to the full resolution.
-        let mut operations = [Operation::BaryMap; UNIT.len() + 1];
-        operations.split_at_mut(UNIT.len()).0.copy_from_slice(UNIT);
-        operations
+    unit: Some(MethodUnit {
+        blocks: &{
+            // As for a BVH, and a hit on a coarse triangle is mapped to the full resolution.
+            let mut operations = [Operation::BaryMap; UNIT.len() + 1];
+            operations.split_at_mut(UNIT.len()).0.copy_from_slice(UNIT);
+            operations
+        },
+        has_levels: false,
     }),
     make: |scene, knobs, store| Discrete::of(scene, knobs, store),
 };

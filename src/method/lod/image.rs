@@ -48,7 +48,8 @@ impl<'a> LodImage<'a> {
             section("bound_data", size_of_val(bounds)),
             section("vertex_data", size_of_val(vertices)),
         ];
-        let map = MemoryMap::new(&sections, PAIR).expect("at most 2^28 triangles, of at most four lines each in all sections together");
+        let map = MemoryMap::new(&sections, Some((NODES, PAIR)))
+            .expect("at most 2^28 triangles, of at most four lines each in all sections together");
         Self { levels: scene.levels(), scale: scene.meta().bound_scale(), nodes, records, bounds, vertices, map }
     }
 

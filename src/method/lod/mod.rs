@@ -7,7 +7,7 @@ pub use image::{BOUNDS, LodImage, NODES, RECORDS, VERTICES};
 pub use trace::LodTraverser;
 
 use super::knob::DELTA;
-use super::{ClosestHit, Method, Registered, SurfaceHit, Trace, Tracer};
+use super::{ClosestHit, Method, MethodUnit, Registered, SurfaceHit, Trace, Tracer};
 use crate::block::Operation;
 use crate::format::Scene;
 use crate::rays::{ModelSpace, Query, Sight};
@@ -18,18 +18,21 @@ pub static METHOD: Registered = Registered {
     name: "lod",
     help: "Locally adaptive level of detail",
     knobs: &[&DELTA],
-    unit: Some(&[
-        Operation::RaySetup,
-        Operation::NodeAddress,
-        Operation::TreeBase,
-        Operation::ChildTest,
-        Operation::LodTest,
-        Operation::Tessellate,
-        Operation::TriTest,
-        Operation::HitDivide,
-        Operation::HitSelect,
-        Operation::BaryMap,
-    ]),
+    unit: Some(MethodUnit {
+        blocks: &[
+            Operation::RaySetup,
+            Operation::NodeAddress,
+            Operation::TreeBase,
+            Operation::ChildTest,
+            Operation::LodTest,
+            Operation::Tessellate,
+            Operation::TriTest,
+            Operation::HitDivide,
+            Operation::HitSelect,
+            Operation::BaryMap,
+        ],
+        has_levels: true,
+    }),
     make: |scene, _, _| Ok(Box::new(Lod::of(scene))),
 };
 

@@ -1,8 +1,9 @@
 //! A run over time: what each stretch of cycles added.
 
 use super::energy::dram_parts;
-use crate::block::{Operation, Operations};
+use crate::block::Operations;
 use crate::machine::Machine;
+use crate::method::MethodUnit;
 use crate::num::LINE_BYTES;
 use crate::sim::dram::{ChannelCounts, DramEnergy};
 use crate::sim::energy::{EnergyCounts, EnergyModel, EnergyUnit};
@@ -55,12 +56,7 @@ pub struct IntervalPower {
 }
 
 /// The stretches of a run whose traversal units have the blocks `unit`.
-pub(super) fn intervals(
-    cumulative: &[Interval],
-    model: &EnergyModel,
-    machine: &Machine,
-    unit: &'static [Operation],
-) -> Vec<IntervalResult> {
+pub(super) fn intervals(cumulative: &[Interval], model: &EnergyModel, machine: &Machine, unit: Option<MethodUnit>) -> Vec<IntervalResult> {
     let zero = Interval {
         end: 0,
         counts: Counts::default(),
@@ -72,7 +68,7 @@ pub(super) fn intervals(
     begins.zip(cumulative).map(|(begin, end)| between(begin, end, model, machine, unit)).collect()
 }
 
-fn between(begin: &Interval, end: &Interval, model: &EnergyModel, machine: &Machine, unit: &'static [Operation]) -> IntervalResult {
+fn between(begin: &Interval, end: &Interval, model: &EnergyModel, machine: &Machine, unit: Option<MethodUnit>) -> IntervalResult {
     let added = |of: fn(&Interval) -> u64| of(end) - of(begin);
     let cycles = added(|i| i.end);
     let lines = added(|i| i.channels.reads + i.channels.writes);

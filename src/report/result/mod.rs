@@ -99,7 +99,7 @@ impl SimResult {
         let seconds = run.cycles as f64 / (f64::from(machine.cores.clock_mhz) * 1e6);
         let counts = &run.counts;
         // Where compute takes no time there are no units.
-        let unit = if setup.compute == Compute::Units { method.unit.unwrap_or_default() } else { &[] };
+        let unit = method.unit.filter(|_| setup.compute == Compute::Units);
         let dram = DramResult::new(&run.channels, counts.dram_refused_cycles, &dram, seconds);
         let energy_counts = EnergyCounts {
             cycles: run.cycles,

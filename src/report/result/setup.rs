@@ -88,6 +88,9 @@ pub struct MethodFacts {
     /// What else was chosen for the frame, such as the `level` of discrete level of detail.
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
     pub choices: BTreeMap<String, String>,
+    /// Its knobs, by name: the chosen values, or those by default.
+    #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
+    pub knobs: BTreeMap<String, String>,
     /// Size of its memory in bytes.
     pub bytes: u64,
 }
@@ -100,6 +103,7 @@ impl MethodFacts {
             name: method.name.to_owned(),
             delta: method.has(DELTA.name).then(|| knobs.delta()),
             leaves: if let [Some(layout), Some(size)] = leaves { Some(format!("{layout} {size}")) } else { None },
+            knobs: method.knobs.iter().filter_map(|knob| Some((knob.name.to_owned(), knobs.get(knob)?.to_owned()))).collect(),
             choices: choices.iter().map(|(name, value)| ((*name).to_owned(), value.clone())).collect(),
             bytes,
         }
@@ -110,7 +114,9 @@ impl MethodFacts {
         let delta = self.delta.map(|delta| format!("delta {delta}"));
         let leaves = self.leaves.as_ref().map(|leaves| format!("leaves {leaves}"));
         let choices = self.choices.iter().map(|(name, value)| format!("{name} {value}"));
-        delta.into_iter().chain(choices).chain(leaves).collect()
+        let said = |name: &str| [DELTA.name, LEAF_LAYOUT.name, LEAF_SIZE.name].contains(&name) || self.choices.contains_key(name);
+        let others = self.knobs.iter().filter(|(name, _)| !said(name)).map(|(name, value)| format!("{name} {value}"));
+        delta.into_iter().chain(choices).chain(others).chain(leaves).collect()
     }
 }
 
@@ -127,9 +133,9 @@ pub struct ViewFacts {
 }
 
 impl ViewFacts {
-    /// A camera, placed at `distance` if it was.
-    pub fn new(camera: &Camera, distance: Option<f64>) -> Self {
-        Self { size: [camera.width, camera.height], eye: camera.eye.to_array(), distance }
+    /// A camera.
+    pub fn new(camera: &Camera) -> Self {
+        Self { size: [camera.width, camera.height], eye: camera.eye.to_array(), distance: camera.placed }
     }
 }
 

@@ -72,11 +72,6 @@ impl Dram {
         Ok(Self { device: config.device.clone(), mapping, channels: vec![channel; next_ps.len()], next_ps, events_ps, now_ps: 0 })
     }
 
-    /// Which lines it holds: 0 up to this; others wrap around.
-    pub fn lines(&self) -> u64 {
-        self.mapping.lines()
-    }
-
     /// The channel of `line`.
     pub fn channel(&self, line: u64) -> u32 {
         self.mapping.channel(line)

@@ -9,6 +9,7 @@ use crate::block::Operation;
 use crate::block::parts::Parts;
 use crate::hardware::Hardware;
 use crate::machine::{Breach, MachineError, from_toml};
+use crate::method::MethodUnit;
 use serde::Deserialize;
 
 /// Bits of the operations that the table is for.
@@ -80,8 +81,8 @@ impl BlockTable {
         logic * self.scale.from_45 + cells * self.scale.from_40
     }
 
-    /// Leakage of a traversal unit with `blocks`, one for each entry, in mW.
-    pub fn unit_leakage_mw(&self, blocks: &[Operation], hardware: &Hardware) -> f64 {
+    /// Leakage of a traversal unit, in mW.
+    pub fn unit_leakage_mw(&self, unit: MethodUnit, hardware: &Hardware) -> f64 {
         let prices = &self.operations;
         let of_block = |&operation: &Operation| {
             let (parts, cycles) = built(operation, hardware);
@@ -90,13 +91,13 @@ impl BlockTable {
                 + f64::from(parts.select_bits) * prices.select_32_mw / WORD;
             logic / cycles
         };
-        let logic: f64 = blocks.iter().map(of_block).sum();
-        (logic + unit_registers(blocks, hardware) * prices.register_mw) * self.scale.leakage
+        let logic: f64 = unit.blocks.iter().map(of_block).sum();
+        (logic + unit_registers(unit, hardware) * prices.register_mw) * self.scale.leakage
     }
 
-    /// Energy of the clock of a traversal unit with `blocks`, one for each entry, in a cycle in which nothing is written, in pJ.
-    pub fn unit_clock_pj(&self, blocks: &[Operation], hardware: &Hardware) -> f64 {
-        let gates = unit_registers(blocks, hardware) / f64::from(self.unit.registers_per_clock_gate);
+    /// Energy of the clock of a traversal unit, in a cycle in which nothing is written, in pJ.
+    pub fn unit_clock_pj(&self, unit: MethodUnit, hardware: &Hardware) -> f64 {
+        let gates = unit_registers(unit, hardware) / f64::from(self.unit.registers_per_clock_gate);
         gates * self.operations.clock_pj * self.scale.from_40
     }
 
@@ -135,9 +136,9 @@ fn products(parts: &Parts) -> f64 {
     parts.products.iter().map(|of| of.iter().map(|&n| f64::from(n)).product::<f64>()).sum()
 }
 
-/// Registers of a traversal unit with `blocks`, one for each entry. Its contexts hold split triangles, and its stack levels and codes, only where it tessellates.
-fn unit_registers(blocks: &[Operation], hardware: &Hardware) -> f64 {
-    let of_blocks: f64 = blocks.iter().map(|operation| f64::from(operation.parts(&hardware.form()).registers.kept)).sum();
-    let context = hardware.context_registers(blocks.contains(&Operation::Tessellate));
+/// Registers of a traversal unit.
+fn unit_registers(unit: MethodUnit, hardware: &Hardware) -> f64 {
+    let of_blocks: f64 = unit.blocks.iter().map(|operation| f64::from(operation.parts(&hardware.form()).registers.kept)).sum();
+    let context = hardware.context_registers(unit.has_levels);
     of_blocks + hardware.contexts as f64 * f64::from(context.kept)
 }

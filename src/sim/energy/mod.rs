@@ -25,6 +25,7 @@ pub use report::EnergyReport;
 use crate::block::{Operation, Operations};
 use crate::hardware::Hardware;
 use crate::machine::{Breach, Machine, MachineError};
+use crate::method::MethodUnit;
 
 /// Picojoules of a milliwatt in a second.
 const PJ_PER_MW_S: f64 = 1e9;
@@ -46,8 +47,8 @@ pub struct EnergyCounts {
     pub dram_lines: u64,
     /// Operations of the blocks.
     pub operations: Operations,
-    /// The blocks of a traversal unit, one for each entry: they leak and are clocked for the whole frame. None where compute takes no time.
-    pub unit: &'static [Operation],
+    /// A traversal unit, which leaks and is clocked for the whole frame. None where compute takes no time.
+    pub unit: Option<MethodUnit>,
 }
 
 /// The energies of a machine.
@@ -119,7 +120,7 @@ impl EnergyModel {
         let priced = |(operation, count): (Operation, u64)| {
             blocks.map(|table| (operation.name(), count as f64 * table.operation_pj(operation, &self.hardware)))
         };
-        let units = blocks.filter(|_| !counts.unit.is_empty());
+        let units = blocks.zip(counts.unit);
         EnergyReport {
             unit: self.unit,
             l1_read: counts.l1_reads as f64 * l1.read,
@@ -129,8 +130,8 @@ impl EnergyModel {
             l2_fill: counts.l2_fills as f64 * l2.fill,
             l2_leakage: l2.leakage_mw() * mw_to_pj,
             compute: compute.filter_map(priced).collect(),
-            unit_leakage: units.map_or(0.0, |table| self.units * table.unit_leakage_mw(counts.unit, &self.hardware) * mw_to_pj),
-            unit_clock: units.map_or(0.0, |table| self.units * table.unit_clock_pj(counts.unit, &self.hardware) * counts.cycles as f64),
+            unit_leakage: units.map_or(0.0, |(table, unit)| self.units * table.unit_leakage_mw(unit, &self.hardware) * mw_to_pj),
+            unit_clock: units.map_or(0.0, |(table, unit)| self.units * table.unit_clock_pj(unit, &self.hardware) * counts.cycles as f64),
             dram: match self.dram_line {
                 Some(line) => vec![("lines", counts.dram_lines as f64 * line)],
                 None => dram_pj.to_vec(),

@@ -137,7 +137,7 @@ impl<S: feed::ChunkSource> FreeCores<S> {
                 counts.rays += 1;
                 counts.hits += u64::from(matches!(word.step().act, Act::End { found: true, .. }));
                 self.under_way -= 1;
-                self.feed.ended(ray);
+                self.feed.ended(ray, context / self.rays_in_flight / self.per_group);
                 return false;
             }
             if self.pinned.contains(&first) {

@@ -16,9 +16,9 @@ pub struct CacheCounts {
     pub merges: u64,
     /// Lines written.
     pub fills: u64,
-    /// Requests that waited for their bank, and their cycles in its queue.
+    /// Requests that waited for their bank.
     pub conflicts: u64,
-    /// Their cycles.
+    /// Their cycles in its queue.
     pub queued_cycles: u64,
     /// Cycles of requesters whose bank's queue was full.
     pub refused_cycles: u64,
@@ -36,11 +36,6 @@ pub enum Supplier {
     L2,
     /// Memory.
     Dram,
-}
-
-impl Supplier {
-    /// All, nearest first.
-    pub const ALL: [Self; 3] = [Self::L1, Self::L2, Self::Dram];
 }
 
 /// Lines of one section.

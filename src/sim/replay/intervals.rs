@@ -65,9 +65,9 @@ impl Intervals {
     /// All of them, the last one ending now.
     pub fn end(mut self, memory: &mut Hierarchy, operations: &Operations) -> Vec<Interval> {
         let now = memory.now();
-        if self.done.last().is_none_or(|interval| interval.end < now) {
-            self.note(now, memory, operations);
-        }
+        // A stretch that ended with this cycle has not seen it.
+        self.done.pop_if(|last| last.end == now);
+        self.note(now, memory, operations);
         self.done
     }
 }

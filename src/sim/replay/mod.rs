@@ -79,7 +79,7 @@ pub fn dram_of(machine: &Machine) -> Result<DramConfig, ReplayError> {
     if let Some(mapping) = &machine.dram.mapping {
         config.mapping.clone_from(mapping);
     }
-    config.controller.read_queue = u16::try_from(machine.dram.queue).unwrap_or(u16::MAX);
+    config.controller.read_queue = machine.dram.queue as u16; // at most 4096;
     config.validate().map_err(|source| ReplayError::Dram { file, source })?;
     Ok(config)
 }
@@ -92,7 +92,7 @@ pub fn check(machine: &Machine, units: bool) -> Result<(), ReplayError> {
     if units && machine.cores.pinned_nodes > 0 {
         return Err(ReplayError::PinnedNodes(machine.cores.pinned_nodes));
     }
-    check_size(machine)?;
+    check_size(machine, units)?;
     let dram = Dram::new(&dram_of(machine)?);
     dram.map(|_| ()).map_err(|source| ReplayError::Dram { file: machine.dram.device.clone(), source })
 }
@@ -102,6 +102,7 @@ pub fn check(machine: &Machine, units: bool) -> Result<(), ReplayError> {
 /// # Errors
 /// The machine is impossible or too large, or nothing happens any more while rays are under way.
 pub fn run_free(machine: &Machine, nodes: Nodes, source: impl ChunkSource, window: Option<Window>) -> Result<Run, ReplayError> {
+    check(machine, false)?;
     let mut cores = FreeCores::new(&machine.cores, nodes, source);
     drive(&mut cores, machine, window)
 }
@@ -141,7 +142,6 @@ trait FrontEnd {
 
 /// Lets `front` run on `machine` until it is done.
 fn drive(front: &mut impl FrontEnd, machine: &Machine, window: Option<Window>) -> Result<Run, ReplayError> {
-    check_size(machine)?;
     let dram = dram_of(machine)?;
     let mut memory = Hierarchy::new(machine, &dram).map_err(|source| ReplayError::Dram { file: machine.dram.device.clone(), source })?;
     let mut intervals = Intervals::new();
@@ -188,14 +188,17 @@ fn drive(front: &mut impl FrontEnd, machine: &Machine, window: Option<Window>) -
 }
 
 /// Events name contexts, cores and miss registers by 28 bits.
-fn check_size(machine: &Machine) -> Result<(), ReplayError> {
+fn check_size(machine: &Machine, units: bool) -> Result<(), ReplayError> {
     let product = |factors: &[u32]| factors.iter().map(|&f| u64::from(f)).product::<u64>();
     let (cores, l1, l2) = (&machine.cores, &machine.l1, &machine.l2);
     let sizes = [
-        ("rays in flight", product(&[cores.groups, cores.per_group, cores.rays_in_flight]), 1 << 22),
+        if units {
+            ("traversal units", product(&[cores.groups, machine.units.per_group]), units::MOST_UNITS)
+        } else {
+            ("rays in flight", product(&[cores.groups, cores.per_group, cores.rays_in_flight]), 1 << 22)
+        },
         ("miss registers of the L1s", product(&[cores.groups, l1.banks, l1.mshrs]), 1 << 26),
         ("lines of the L1s", cores.groups as u64 * l1.lines(), 1 << 30),
-        ("traversal units", product(&[cores.groups, machine.units.per_group]), units::MOST_UNITS),
         ("miss registers of the L2", product(&[l2.banks, l2.mshrs]), 1 << 26),
     ];
     match sizes.into_iter().find(|&(_, count, most)| count > most) {

@@ -114,7 +114,8 @@ impl<S: feed::ChunkSource> Units<S> {
     #[inline]
     fn wake_at(&mut self, next: u64, id: u32, memory: &mut Hierarchy) {
         let unit = &mut self.units[id as usize];
-        if unit.wake.is_none_or(|wake| wake <= memory.now() || wake > next) {
+        // One of this cycle is still to come, and enters the next.
+        if unit.wake.is_none_or(|wake| wake > next) {
             unit.wake = Some(next);
             memory.wake_at(next, 2 * id);
         }
@@ -225,7 +226,7 @@ impl<S: feed::ChunkSource> Ports for Surroundings<'_, S> {
         counts.rays += 1;
         counts.hits += u64::from(found);
         *self.under_way -= 1;
-        self.feed.ended(ray);
+        self.feed.ended(ray, self.group);
         true
     }
 }

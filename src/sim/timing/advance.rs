@@ -1,23 +1,13 @@
 //! What follows when a resource takes a request or a line comes: the states up to the next in which the context asks for something.
 //!
 //! States are those of `docs/traversal-unit.md`. A result of cycle c, a grant or an answer in it, shows in registers from cycle c + 1 on. Every sequence of steps has
-//! its cycles: which states a ray goes through is what its steps say, and no order is taken for granted.
+//! its cycles: which states a ray goes through is what its steps say. Runs of triangles that follow each other are of one leaf.
 
 use super::context::ContextTiming;
 use super::ports::{LineRequest, Steps};
 use super::unit::UnitTiming;
-use crate::block::Block;
-use crate::block::box_test::BoxTest;
-use crate::block::box_test32::BoxTest32;
-use crate::block::child_sort::ChildSort;
 use crate::sim::unit::{Resource, State};
 use crate::step::Act;
-
-/// Cycles of the test of a node whose 16-bit boxes are as they are.
-const PLAIN_NODE: u64 = (BoxTest::TIMING.latency + ChildSort::TIMING.latency) as u64;
-
-/// Cycles of the test of a node with 32-bit boxes.
-const WIDE_NODE: u64 = (BoxTest32::TIMING.latency + ChildSort::TIMING.latency) as u64;
 
 impl<R: Steps> UnitTiming<R> {
     /// The idle context of the lowest number takes `ray`.
@@ -54,8 +44,8 @@ impl<R: Steps> UnitTiming<R> {
         let station = &mut self.stations[resource as usize];
         let context = &mut self.contexts[who];
         let result = match (resource, context.act) {
-            (Resource::Child, Act::PlainChildren { .. }) => station.take_for(PLAIN_NODE, since, now),
-            (Resource::Child, Act::WideChildren { .. }) => station.take_for(WIDE_NODE, since, now),
+            (Resource::Child, Act::PlainChildren { .. }) => station.take_for(self.plain_node, since, now),
+            (Resource::Child, Act::WideChildren { .. }) => station.take_for(self.wide_node, since, now),
             _ => station.take(since, now),
         };
         match resource {
@@ -211,7 +201,7 @@ impl<R: Steps> UnitTiming<R> {
                 return Some(at + 1);
             }
             Act::End { found, mapped } => {
-                // It finds the stack empty.
+                // It finds the stack empty, or wants nothing more of it.
                 self.states[State::Pop as usize] += 1;
                 (context.found, context.mapped) = (found, mapped);
                 context.enter(if found { State::DivideV } else { State::Done }, at + 1);

@@ -7,6 +7,9 @@ use super::station::Station;
 use super::wheel::{Wheel, bits};
 use crate::block::Timing;
 use crate::block::bary_map::BaryMap;
+use crate::block::box_test::BoxTest;
+use crate::block::box_test32::BoxTest32;
+use crate::block::child_sort::ChildSort;
 use crate::block::child_test::ChildTest;
 use crate::block::hit_divide::HitDivide;
 use crate::block::hit_select::HitSelect;
@@ -35,6 +38,9 @@ pub struct UnitTiming<R> {
     /// By resource.
     pub(super) stations: [Station; Resource::COUNT],
     pub(super) select: Station,
+    /// Cycles of the test of a node whose 16-bit boxes are as they are, and of one with 32-bit boxes.
+    pub(super) plain_node: u64,
+    pub(super) wide_node: u64,
     pub(super) idle: u64,
     /// Requests on their way through `node_address`, and since when.
     pub(super) requests: VecDeque<(u64, LineRequest)>,
@@ -55,6 +61,7 @@ impl<R: Steps> UnitTiming<R> {
     /// There is no such hardware ([`Hardware::validate`]).
     pub fn new(config: Hardware) -> Self {
         config.validate().unwrap_or_else(|error| panic!("{error}"));
+        let sort = config.timing::<ChildSort>().latency;
         let timing = |resource| match resource {
             Resource::Setup => config.timing::<RaySetup>(),
             Resource::Fetch => config.timing::<NodeAddress>(),
@@ -76,6 +83,8 @@ impl<R: Steps> UnitTiming<R> {
             asked: 0,
             stations: Resource::ALL.map(|resource| Station::new(timing(resource))),
             select: Station::new(config.timing::<HitSelect>()),
+            plain_node: u64::from(config.timing::<BoxTest>().latency + sort),
+            wide_node: u64::from(config.timing::<BoxTest32>().latency + sort),
             idle: u64::MAX >> (MAX_CONTEXTS - config.contexts),
             requests: VecDeque::new(),
             hits: HitQueue::default(),

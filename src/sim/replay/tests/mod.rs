@@ -116,7 +116,7 @@ fn a_chase_in_memory_takes_the_way_and_the_memorys_own_time() {
 fn pinned_nodes_are_not_asked_for() {
     for (wide, lines) in [(false, 2), (true, 4)] {
         let sections = ["node", "leaf"].map(|name| Section::of_bytes(name, 64 * 32));
-        let layout = MemoryMap::new(&sections, lines).unwrap().nodes();
+        let layout = MemoryMap::new(&sections, Some((SectionId::new(0), lines))).unwrap().nodes();
         let node = |(number, met): (u32, u32)| {
             let act = if wide { Act::WideChildren { met } } else { Act::Children { met } };
             Step::on(Fetch::new(SectionId::new(0), number * lines, lines), act).visiting()
@@ -417,4 +417,18 @@ fn a_waveform_shows_the_events_of_its_window() {
             vcd.filter_map(|command| if let vcd::Command::Timestamp(ps) = command.unwrap() { Some(ps) } else { None }).collect();
         assert_eq!(times.first(), Some(&machine.cores.start_ps(from)), "{from}");
     }
+}
+
+#[test]
+fn the_last_stretch_has_the_last_cycle() {
+    // Runs that end with a stretch, one cycle before and one behind.
+    let mut ends = HashSet::new();
+    for cycles in 1..1100 {
+        let machine = machine(&[("crossbar.answer_cycles", cycles)]);
+        let run = run_free(&machine, nodes(), std::iter::once(rays(&[vec![0]])), None).unwrap();
+        let last = run.intervals.last().unwrap();
+        assert_eq!((last.end, last.counts, last.counts.rays), (run.cycles, run.counts, 1));
+        ends.insert(run.cycles % 1024);
+    }
+    assert!([1023, 0, 1].iter().all(|end| ends.contains(end)), "{} ends", ends.len());
 }

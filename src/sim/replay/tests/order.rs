@@ -3,7 +3,7 @@
 use super::*;
 use crate::step::{Link, Recorder, StepSink};
 
-/// Rays of one chunk of two batches, each of which reads a line of its own; `after` tells what each starts behind.
+/// Rays of one chunk of two batches or more, each of which reads a line of its own; `after` tells what each starts behind.
 fn ordered(after: &[Option<u64>]) -> Chunk {
     let batch = |numbers: std::ops::Range<usize>| {
         let mut recorder = Recorder::default();
@@ -15,8 +15,9 @@ fn ordered(after: &[Option<u64>]) -> Chunk {
         }
         recorder.batch()
     };
-    let half = after.len() / 2;
-    Chunk::from([batch(0..half), batch(half..after.len())])
+    // Two batches, of many rays or of few: groups take one at a time.
+    let size = if after.len() == 1024 { 16 } else { after.len().div_ceil(2) };
+    (0..after.len()).step_by(size).map(|first| batch(first..after.len().min(first + size))).collect()
 }
 
 #[test]
@@ -44,5 +45,61 @@ fn a_ray_starts_behind_the_end_of_the_one_that_it_waits_for() {
         let chain: Vec<_> = (0..8).map(|number: u64| number.checked_sub(1)).collect();
         let chase = run(&machine, &[(0..8).map(|number| 64 * number).collect()]);
         assert!(groups > 1 || free(&machine, &chain).cycles == chase.cycles);
+    }
+}
+
+/// Pixels whose rays bounce: the next of a pixel starts behind the end of the one before; rays in the order of their bounces.
+fn bounces(pixels: u64, bounces: u64) -> Vec<Option<u64>> {
+    (0..pixels * bounces).map(|number: u64| number.checked_sub(pixels)).collect()
+}
+
+#[test]
+fn rays_that_wait_are_shared_by_all_groups() {
+    // The same 1024 rays, bounce by bounce and pixel by pixel; groups take 16 at once.
+    let breadth = bounces(128, 8);
+    let depth: Vec<_> = (0..1024u64).map(|number| if number % 8 == 0 { None } else { Some(number - 1) }).collect();
+    let cycles = |after: &[Option<u64>], groups, is_free: bool| {
+        let machine = machine(&[("cores.groups", groups), ("cores.per_group", 1), ("units.contexts", 1)]);
+        let chunk = std::iter::once(ordered(after));
+        let run = if is_free { run_free(&machine, nodes(), chunk, None) } else { run_units(&machine, chunk, None) }.unwrap();
+        conserved(&run);
+        assert_eq!(run.counts.rays, 1024);
+        run.cycles
+    };
+    for is_free in [true, false] {
+        let [breadth, depth] = [&breadth, &depth].map(|after| [1, 2, 4, 8].map(|groups| cycles(after, groups, is_free)));
+        println!("{breadth:?} cycles bounce by bounce, {depth:?} pixel by pixel");
+        // Eight are as fast as the memory.
+        assert!(breadth[..3].windows(2).all(|two| 3 * two[1] < 2 * two[0]), "{breadth:?}");
+        assert!(
+            breadth.iter().zip(&depth).all(|(&breadth, &depth)| 4 * breadth < 5 * depth && 4 * depth < 5 * breadth),
+            "{breadth:?} {depth:?}"
+        );
+    }
+    // One ray, and all others behind its end: whoever is idle takes some.
+    let star: Vec<_> = (0..256u64).map(|number| (number > 0).then_some(0)).collect();
+    for contexts in [1, 16] {
+        let machine = machine(&[("cores.groups", 8), ("cores.per_group", 2), ("units.contexts", contexts)]);
+        let [free, units] = [
+            run_free(&machine, nodes(), std::iter::once(ordered(&star)), None).unwrap(),
+            run_units(&machine, std::iter::once(ordered(&star)), None).unwrap(),
+        ];
+        assert_eq!([free.counts.rays, units.counts.rays], [256, 256]);
+    }
+}
+
+#[test]
+fn more_rays_wait_than_are_put_aside() {
+    // The first and all others behind it, of which most cannot be taken before it ends; and chains that cross the border.
+    let count = 3 * feed::MOST_WAITING as u64;
+    let star: Vec<_> = (0..count).map(|number| (number > 0).then_some(0)).collect();
+    let far = bounces(count / 3, 3);
+    for after in [star, far] {
+        let machine = machine(&[("cores.groups", 2), ("cores.per_group", 8)]);
+        let [free, units] = [
+            run_free(&machine, nodes(), std::iter::once(ordered(&after)), None).unwrap(),
+            run_units(&machine, std::iter::once(ordered(&after)), None).unwrap(),
+        ];
+        assert_eq!([free.counts.rays, units.counts.rays], [count, count]);
     }
 }
