@@ -4,14 +4,14 @@
 
 use criterion::{BenchmarkId, Criterion, SamplingMode, Throughput, criterion_group, criterion_main};
 use lodray::mesh::procedural::{self, generate};
-use lodray::mesh::quantise;
+use lodray::mesh::{BoundKind, quantise};
 use lodray::method::bvh::{FullBvh, FullOptions, LeafLayout};
 use std::hint::black_box;
 
 fn benches(c: &mut Criterion) {
     let levels = std::env::var("LODRAY_TERRAIN_LEVELS").ok().and_then(|v| v.parse().ok());
     let surface = generate(&procedural::Options { levels, ..procedural::Options::new(procedural::Scene::Terrain) }).expect("options");
-    let hierarchy = quantise(&surface).expect("a valid surface");
+    let hierarchy = quantise(&surface, BoundKind::Largest).expect("a valid surface");
     drop(surface);
     let mut group = c.benchmark_group("full-resolution quad-BVH of the terrain");
     group.throughput(Throughput::Elements(hierarchy.finest_triangles())).sample_size(10).sampling_mode(SamplingMode::Flat);

@@ -2,7 +2,7 @@
 
 use lodray::format::audit::{AuditReport, audit};
 use lodray::format::{BoundData, BvhChild, Scene, SceneError, VertexData, export_level, layout};
-use lodray::mesh::{Surface, edge_index, lattice, quantise};
+use lodray::mesh::{BoundKind, Surface, edge_index, lattice, quantise};
 use lodray::num::{U, Vec3, Wire, bound_decode};
 use lodray_test_support::cases;
 use lodray_test_support::surfaces::{fan, grid, octahedron, scene, surface};
@@ -238,7 +238,7 @@ fn a_deep_displacement_lifts_its_ancestors_across_the_border() {
     let lifted = |p: [f64; 3]| if p == [1.0, 6.0, 0.0] { [1.0, 6.0, 0.5] } else { p };
     for (second, shared, half) in [([3, 2, 1], 0, [(8, 0), (4, 4)]), ([1, 2, 3], 2, [(4, 0), (8, 0)]), ([2, 1, 3], 2, [(0, 0), (4, 0)])] {
         let s = surface(levels, &v, &[[0, 1, 2], second], lifted);
-        let h = quantise(&s).unwrap();
+        let h = quantise(&s, BoundKind::Largest).unwrap();
         let top = |tree: usize, mut edges: Vec<usize>| {
             edges.sort_unstable();
             let lifted: Vec<_> = (0..h.codes(tree).len()).filter(|&e| h.codes(tree)[e] != 0).collect();

@@ -2,12 +2,18 @@
 
 use lodray::golden::{Exact, naive_bounds, true_bounds};
 use lodray::mesh::procedural::{self, Options};
-use lodray::mesh::{Hierarchy, Surface, edge_index, lattice, quantise};
+use lodray::mesh::{BoundKind, Hierarchy, Surface, edge_index, lattice, quantise};
 use lodray_test_support::models::{Rng, any_cone, ball, direction, model, ray_through, terrain};
 use lodray_test_support::surfaces::{bumps, fan, grid, octahedron, surface};
 
+/// Edges with a bound, both kinds together.
 fn check(surface: &Surface, name: &str) -> usize {
-    let built = quantise(surface).expect("a valid surface");
+    BoundKind::ALL.map(|kind| check_kind(surface, kind, &format!("{name}, {}", kind.name()))).iter().sum()
+}
+
+fn check_kind(surface: &Surface, kind: BoundKind, name: &str) -> usize {
+    let built = quantise(surface, kind).expect("a valid surface");
+    assert_eq!(built.bounds.kind, kind);
     let mut plain = built.clone();
     naive_bounds(&mut plain);
     assert_eq!(built.bounds.scale, plain.bounds.scale, "{name}");

@@ -1,7 +1,7 @@
 //! Scene files: what is written comes back, and what is broken is refused.
 
 use lodray::format::{Scene, export_level};
-use lodray::mesh::{lattice, quantise};
+use lodray::mesh::{BoundKind, lattice, quantise};
 use lodray_test_support::surfaces::{fan, grid, octahedron, scene};
 
 #[test]
@@ -24,7 +24,7 @@ fn a_saved_scene_opens_with_the_same_bytes() {
 fn images_decode_to_the_hierarchy_that_they_were_made_from() {
     for levels in [0, 1, 2, 5] {
         for surface in [grid(levels, 3), octahedron(levels), fan(levels)] {
-            let hierarchy = quantise(&surface).unwrap();
+            let hierarchy = quantise(&surface, BoundKind::Largest).unwrap();
             let scene = scene(&surface);
             let back = scene.decode();
             assert_eq!((back.levels, back.base_vertices, back.placement), (levels, surface.base_vertices, hierarchy.placement));

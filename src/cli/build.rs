@@ -9,7 +9,7 @@ use anyhow::Context;
 use lodray::bvh::over_trees;
 use lodray::format::{self, Scene, SceneInfo};
 use lodray::mesh::{
-    DEFAULT_CREASE_ANGLE, DEFAULT_MAX_ERROR, MeshFormat, RemeshOptions, Surface, TriangleMesh, read, read_as, read_bytes, remesh,
+    BoundKind, DEFAULT_CREASE_ANGLE, DEFAULT_MAX_ERROR, MeshFormat, RemeshOptions, Surface, TriangleMesh, read, read_as, read_bytes, remesh,
 };
 use std::io::Read;
 use std::path::{Path, PathBuf};
@@ -17,6 +17,13 @@ use std::process::ExitCode;
 
 /// What stands for standard input.
 const STDIN: &str = "-";
+
+#[derive(clap::Args, Clone, Copy)]
+pub struct BoundsArg {
+    /// What displacement bounds cover
+    #[arg(long = "bounds", value_name = "KIND", value_parser = named::<BoundKind>(), default_value = BoundKind::Largest.name())]
+    pub kind: BoundKind,
+}
 
 #[derive(clap::Args)]
 pub struct Args {
@@ -37,6 +44,8 @@ pub struct Args {
     /// Edges that bend by more than this stay sharp lines, and are shaded so where the mesh has no normals of its own
     #[arg(long, value_name = "DEGREES", default_value_t = DEFAULT_CREASE_ANGLE, value_parser = crease, allow_negative_numbers = true)]
     crease_angle: f64,
+    #[command(flatten)]
+    bounds: BoundsArg,
     /// Make it an error, and write nothing, if the result is further from the mesh than --max-error or has triangles that face away from it
     #[arg(long)]
     strict: bool,
@@ -78,7 +87,7 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
     }
     let name = source.file_stem().map_or_else(String::new, |s| s.to_string_lossy().into_owned());
     let origin = serde_json::json!({ "mesh": mesh.report, "remesh": report });
-    let scene = build_scene(&surface, &name, origin)?;
+    let scene = build_scene(&surface, &name, origin, args.bounds.kind)?;
     drop(surface);
     finish(&scene, &args.out, args.json)
 }
@@ -106,8 +115,8 @@ fn read_stdin(format: MeshFormat, name: &Path) -> anyhow::Result<TriangleMesh> {
 }
 
 /// The scene of a surface; `origin` says how it was made.
-pub fn build_scene(surface: &Surface, name: &str, origin: serde_json::Value) -> anyhow::Result<Scene> {
-    Ok(busy("encoding", || format::build(surface, SceneInfo { name: name.to_owned(), origin }, over_trees))?)
+pub fn build_scene(surface: &Surface, name: &str, origin: serde_json::Value, bounds: BoundKind) -> anyhow::Result<Scene> {
+    Ok(busy("encoding", || format::build(surface, SceneInfo { name: name.to_owned(), origin, bounds }, over_trees))?)
 }
 
 /// Saves a new scene and says what it holds.

@@ -1,7 +1,7 @@
 //! Values of the library's that options take by name: the library has the names, and what `--help` says of each stands here.
 
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
-use lodray::mesh::MeshFormat;
+use lodray::mesh::{BoundKind, MeshFormat};
 use lodray::mesh::procedural::Scene;
 use lodray::run::Compute;
 
@@ -51,6 +51,21 @@ impl Named for MeshFormat {
             Self::Gltf => "glTF 2.0, JSON",
             Self::Glb => "glTF 2.0, binary",
             Self::Stl => "STL, ASCII or binary",
+        }
+    }
+}
+
+impl Named for BoundKind {
+    const ALL: &'static [Self] = &Self::ALL;
+
+    fn name(self) -> &'static str {
+        self.name()
+    }
+
+    fn about(self) -> &'static str {
+        match self {
+            Self::Largest => "The largest displacement of one split at or below an edge, as in the paper",
+            Self::Total => "The displacements of all splits at and below it, one upon the other: --delta is then a promise (1.5 keeps what is seen within a pixel of the surface)",
         }
     }
 }

@@ -76,7 +76,7 @@ impl Scene {
             base_vertices: self.meta.base_vertices,
             triangles: self.triangles().to_vec(),
             points,
-            bounds: EdgeCodes { scale: self.meta.bound_scale(), codes },
+            bounds: EdgeCodes { kind: self.meta.bounds, scale: self.meta.bound_scale(), codes },
         }
     }
 

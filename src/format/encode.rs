@@ -4,7 +4,7 @@ use super::scene::Image;
 use super::sections::{COUNT, FileSection, HEADER, checksum, place, write_header};
 use super::{BoundData, Box16, L0Record, Meta, Scene, SceneError, VertexData, colour, layout, normal};
 use crate::mesh::lattice::{self, LatticePoint};
-use crate::mesh::{Hierarchy, Surface, SurfaceError, quantise};
+use crate::mesh::{BoundKind, Hierarchy, Surface, SurfaceError, quantise};
 use crate::num::{COORD_LIMIT, PADDING_BITS, U, Wire, box_code_ceil, box_code_floor};
 use memmap2::MmapMut;
 use rayon::prelude::*;
@@ -16,6 +16,8 @@ pub struct SceneInfo {
     pub name: String,
     /// How it was made: generator options, distances of a remesh; null if there is nothing to say.
     pub origin: serde_json::Value,
+    /// What its displacement bounds cover.
+    pub bounds: BoundKind,
 }
 
 /// The scene of a surface. `build_l0` makes the quad-BVH nodes, the root first, over the trees' boxes (leaf index = tree).
@@ -27,7 +29,7 @@ pub fn build<E: std::fmt::Display>(
     info: SceneInfo,
     build_l0: impl FnOnce(&[Box16]) -> Result<Vec<[u64; 8]>, E>,
 ) -> Result<Scene, SceneError> {
-    let hierarchy = quantise(surface)?;
+    let hierarchy = quantise(surface, info.bounds)?;
     let nodes = build_l0(&tree_boxes(&hierarchy)).map_err(|e| SceneError::Build(format!("quad-BVH: {e}")))?;
     encode(&hierarchy, surface, info, &nodes)
 }
@@ -119,6 +121,7 @@ fn meta(h: &Hierarchy, info: SceneInfo) -> Meta {
         trees: h.triangles.len() as u32, // quantise keeps it below 2^28
         base_vertices: h.base_vertices,
         placement: h.placement,
+        bounds: h.bounds.kind,
         bound_mantissa: h.bounds.scale.mantissa.get() as u32, // 18 bits
         bound_shift: h.bounds.scale.shift.get() as u32,       // 6 bits
         lo,

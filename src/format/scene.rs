@@ -2,7 +2,7 @@
 
 use super::sections::{COUNT, FileSection};
 use super::{layout, normal};
-use crate::mesh::{Placement, SurfaceError, lattice};
+use crate::mesh::{BoundKind, Placement, SurfaceError, lattice};
 use crate::num::{BoundScale, U};
 use memmap2::{Mmap, MmapMut};
 use serde::{Deserialize, Serialize};
@@ -57,6 +57,9 @@ pub struct Meta {
     pub base_vertices: u32,
     /// Units to world.
     pub placement: Placement,
+    /// What displacement bounds cover; `largest` is not written.
+    #[serde(default, skip_serializing_if = "is_largest")]
+    pub bounds: BoundKind,
     /// Bound scale: mantissa, 18 bits.
     pub bound_mantissa: u32,
     /// Bound scale: shift, 6 bits.
@@ -68,6 +71,11 @@ pub struct Meta {
     /// How the model was made.
     #[serde(default, skip_serializing_if = "serde_json::Value::is_null")]
     pub origin: serde_json::Value,
+}
+
+#[expect(clippy::trivially_copy_pass_by_ref, reason = "the signature that serde calls")]
+fn is_largest(kind: &BoundKind) -> bool {
+    *kind == BoundKind::Largest
 }
 
 impl Meta {

@@ -5,12 +5,19 @@
 
 use crate::{
     mesh::{
-        EdgeCodes, Hierarchy, edge_index, edges_of_tree,
+        BoundKind, EdgeCodes, Hierarchy, edge_index, edges_of_tree,
         lattice::{self, LatticePoint},
     },
-    num::{BoundScale, U},
+    num::{BoundScale, COORD_LIMIT, U},
 };
 use std::collections::HashMap;
+
+/// No bound is larger: the diagonal of the cube of all coordinates, rounded up.
+const MOST: u64 = {
+    let side = 2 * COORD_LIMIT as u128;
+    // (side sqrt 3)^2 is no square.
+    (3 * side * side).isqrt() as u64 + 1
+};
 
 /// An inserted vertex, the same for all trees that share it.
 #[derive(Clone, Copy, PartialEq, Eq, Hash, Debug)]
@@ -37,32 +44,38 @@ pub fn naive_bounds(h: &mut Hierarchy) {
     let table: Vec<u128> = (0..1024).map(|c| decode(scale, c)).collect();
     // The smallest code that decodes to the bound or more; decode does not decrease.
     let encode = |&b: &u64| table.partition_point(|&h| h < u128::from(b)).min(1023) as u16; // 10 bits
-    h.bounds = EdgeCodes { scale, codes: bounds.edges.iter().map(encode).collect() };
+    h.bounds = EdgeCodes { kind: h.bounds.kind, scale, codes: bounds.edges.iter().map(encode).collect() };
 }
 
 /// The true bounds by definition.
 pub fn true_bounds(h: &Hierarchy) -> TrueBounds {
     let mut bounds: HashMap<Inserted, u64> = HashMap::new();
     for level in (0..h.levels).rev() {
-        // The distance of each inserted vertex from the midpoint of its edge ...
-        for_each_edge(h, level, |tree, a, b, q| {
-            let at = |p| h.tree(tree as usize)[lattice::index(h.levels, p)];
-            let distance = distance_to_midpoint(at(a), at(b), at(q));
-            let bound = bounds.entry(identify(h, tree, q)).or_default();
-            *bound = (*bound).max(distance);
-        });
-        // ... and the bounds of all edges that meet at it on the next level, complete by now.
+        // The bounds of all edges that meet at an inserted vertex on the next level ...
+        let mut below: HashMap<Inserted, u64> = HashMap::new();
         if level + 1 < h.levels {
             for_each_edge(h, level + 1, |tree, a, b, q| {
-                let own = bounds[&identify(h, tree, q)];
+                let finer = bounds[&identify(h, tree, q)];
                 for end in [a, b] {
                     if lattice::level_of(h.levels, end) == level + 1 {
-                        let bound = bounds.entry(identify(h, tree, end)).or_default();
-                        *bound = (*bound).max(own);
+                        let largest = below.entry(identify(h, tree, end)).or_default();
+                        *largest = (*largest).max(finer);
                     }
                 }
             });
         }
+        // ... and its distance from the midpoint of its edge.
+        for_each_edge(h, level, |tree, a, b, q| {
+            let at = |p| h.tree(tree as usize)[lattice::index(h.levels, p)];
+            let vertex = identify(h, tree, q);
+            let (own, finer) = (distance_to_midpoint(at(a), at(b), at(q)), below.get(&vertex).copied().unwrap_or(0));
+            let covered = match h.bounds.kind {
+                BoundKind::Largest => own.max(finer),
+                BoundKind::Total => (own + finer).min(MOST),
+            };
+            let bound = bounds.entry(vertex).or_default();
+            *bound = (*bound).max(covered);
+        });
     }
     let per_tree = edges_of_tree(h.levels);
     let mut edges = vec![0; per_tree * h.triangles.len()];

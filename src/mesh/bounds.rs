@@ -4,34 +4,34 @@
 //! largest value of all sides before level n-1 begins.
 
 use super::borders::SharedEdges;
-use super::{EdgeCodes, edges_of_tree, lattice};
+use super::{BoundKind, EdgeCodes, edges_of_tree, lattice};
 use crate::num::{BoundEncoder, bound_scale, length_ceil};
 use rayon::prelude::*;
 
 /// The codes for these points (snapped, `lattice::len(levels)` per tree, equal on both sides of shared base edges).
-pub fn edge_codes(levels: u32, points: &[[i32; 3]], shared: &SharedEdges) -> EdgeCodes {
-    let bounds = true_bounds(levels, points, shared);
+pub fn edge_codes(kind: BoundKind, levels: u32, points: &[[i32; 3]], shared: &SharedEdges) -> EdgeCodes {
+    let bounds = true_bounds(kind, levels, points, shared);
     let scale = bound_scale(bounds.par_iter().copied().max().unwrap_or(0));
     let encoder = BoundEncoder::new(scale);
-    EdgeCodes { scale, codes: bounds.par_iter().map(|&b| encoder.encode(b)).collect() }
+    EdgeCodes { kind, scale, codes: bounds.par_iter().map(|&b| encoder.encode(b)).collect() }
 }
 
 /// True bounds in units, stored as [`EdgeCodes`] says.
-fn true_bounds(levels: u32, points: &[[i32; 3]], shared: &SharedEdges) -> Vec<u64> {
+fn true_bounds(kind: BoundKind, levels: u32, points: &[[i32; 3]], shared: &SharedEdges) -> Vec<u64> {
     let (per_tree, edges) = (lattice::len(levels), edges_of_tree(levels));
     if levels == 0 {
         return Vec::new();
     }
     let mut bounds = vec![0; points.len() / per_tree * edges];
     for level in (0..levels).rev() {
-        bounds.par_chunks_mut(edges).zip(points.par_chunks(per_tree)).for_each(|(b, p)| level_bounds(levels, level, p, b));
+        bounds.par_chunks_mut(edges).zip(points.par_chunks(per_tree)).for_each(|(b, p)| level_bounds(kind, levels, level, p, b));
         merge_borders(level, edges, shared, &mut bounds);
     }
     bounds
 }
 
 /// Bounds of one level of one tree from the next finer level's.
-fn level_bounds(levels: u32, level: u32, points: &[[i32; 3]], bounds: &mut [u64]) {
+fn level_bounds(kind: BoundKind, levels: u32, level: u32, points: &[[i32; 3]], bounds: &mut [u64]) {
     let (own, finer) = bounds[edges_of_tree(level)..].split_at_mut(super::edges_of_level(level));
     let k = 1u32 << level;
     let half = 1u32 << (levels - level - 1);
@@ -50,7 +50,7 @@ fn level_bounds(levels: u32, level: u32, points: &[[i32; 3]], bounds: &mut [u64]
             }
             for (length, around) in lengths.into_iter().zip(around) {
                 if let Some(bound) = next.next() {
-                    *bound = length.max(around);
+                    *bound = kind.of(length, around);
                 }
             }
         }

@@ -1,7 +1,7 @@
 //! A hierarchy in integers: what the memory images are encoded from and what the golden traverser reads.
 
 use super::lattice::{self, LatticePoint};
-use crate::num::BoundScale;
+use crate::num::{BoundScale, LARGEST_BOUND};
 use serde::{Deserialize, Serialize};
 
 /// Where the model's integer space lies: `world = offset + scale * units`.
@@ -13,12 +13,47 @@ pub struct Placement {
     pub scale: f64,
 }
 
+/// What a displacement bound covers.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum BoundKind {
+    /// The largest displacement of one split, at the edge or below it (paper section 3.3).
+    #[default]
+    Largest,
+    /// The displacements of all splits at and below the edge, one upon the other: what is seen is within 1.5 tolerances of the surface (docs/exactness.md).
+    Total,
+}
+
+impl BoundKind {
+    /// Both.
+    pub const ALL: [Self; 2] = [Self::Largest, Self::Total];
+
+    /// Its name in options and files.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Largest => "largest",
+            Self::Total => "total",
+        }
+    }
+
+    /// The bound of an edge whose own displacement is `own` and below which the largest bound is `below`, in units. (Displacements that go to and fro could add
+    /// up to more than can be stored; the model is smaller than that.)
+    pub fn of(self, own: u64, below: u64) -> u64 {
+        match self {
+            Self::Largest => own.max(below),
+            Self::Total => (own + below).min(LARGEST_BOUND),
+        }
+    }
+}
+
 /// Displacement bound codes of all edges of levels 0..N-1 of all trees.
 ///
 /// Edges of level n of a tree: each upward triangle (i, j), i + j < 2^n, of the level's own lattice owns three: 0 = (i+1, j)-(i, j+1), 1 = (i, j+1)-(i, j),
 /// 2 = (i, j)-(i+1, j); stored row by row like lattice points, level after level, tree after tree.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct EdgeCodes {
+    /// What they cover.
+    pub kind: BoundKind,
     /// Scale of the model.
     pub scale: BoundScale,
     /// One 10-bit code per edge.

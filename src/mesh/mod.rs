@@ -18,7 +18,7 @@ mod surface;
 pub use borders::{EdgeUse, SharedEdges};
 pub use clean::{CleanReport, MeshError, TriangleMesh};
 pub use distance::{Distance, TwoSidedDistance};
-pub use hierarchy::{EdgeCodes, Hierarchy, Placement, edge_index, edges_of_level, edges_of_tree};
+pub use hierarchy::{BoundKind, EdgeCodes, Hierarchy, Placement, edge_index, edges_of_level, edges_of_tree};
 pub use normals::{DEFAULT_CREASE_ANGLE, corner_normals};
 pub use quantise::{SurfaceError, quantise};
 pub use read::{MESH_ENDINGS, MeshFormat, ReadError, named_files, read, read_as, read_bytes};

@@ -2,7 +2,7 @@
 
 use super::borders::SharedEdges;
 use super::bounds::edge_codes;
-use super::{Hierarchy, Placement, Surface, lattice};
+use super::{BoundKind, Hierarchy, Placement, Surface, lattice};
 use crate::num::{COORD_LIMIT, MAX_LEVELS, snap};
 use rayon::prelude::*;
 use thiserror::Error;
@@ -86,17 +86,17 @@ pub enum SurfaceError {
     },
 }
 
-/// The hierarchy of a surface: points snapped to the grids of their levels, and the bounds of all edges.
+/// The hierarchy of a surface: points snapped to the grids of their levels, and the bounds of all edges, of this kind.
 ///
 /// # Errors
 /// Whatever [`SurfaceError`] names: lengths, indices or values that [`Surface`] does not allow.
-pub fn quantise(surface: &Surface) -> Result<Hierarchy, SurfaceError> {
+pub fn quantise(surface: &Surface, kind: BoundKind) -> Result<Hierarchy, SurfaceError> {
     check_shape(surface)?;
     let placement = placement(&surface.positions, lattice::len(surface.levels))?;
     let points = snap_points(surface, placement);
     let shared = SharedEdges::new(&surface.triangles);
     check_shared_points(surface, &points, &shared)?;
-    let bounds = edge_codes(surface.levels, &points, &shared);
+    let bounds = edge_codes(kind, surface.levels, &points, &shared);
     let Surface { levels, base_vertices, .. } = *surface;
     Ok(Hierarchy { levels, placement, base_vertices, triangles: surface.triangles.clone(), points, bounds })
 }

@@ -52,7 +52,7 @@ impl Surface {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::mesh::{corner_normals, quantise};
+    use crate::mesh::{BoundKind, corner_normals, quantise};
 
     #[test]
     fn a_mesh_as_it_is() {
@@ -66,6 +66,6 @@ mod tests {
         // The corners are where a lattice has them.
         let corners = lattice::root(0).map(|p| lattice::index(0, p));
         assert_eq!(corners, [0, 1, 2]);
-        assert!(quantise(&surface).is_ok());
+        assert!(quantise(&surface, BoundKind::Largest).is_ok());
     }
 }

@@ -18,6 +18,7 @@ use super::render::compare_shots;
 use anyhow::Context;
 use jobs::{Jobs, Origin, SceneJobs, ViewJob};
 use lodray::format::Scene;
+use lodray::mesh::BoundKind;
 use lodray::method::{Method, reference};
 use lodray::rays::{Camera, ModelSpace};
 use rows::ImageFigures;
@@ -128,7 +129,7 @@ impl<'a> Sweep<'a> {
         }
         let made = match &scene.origin {
             Origin::File(file) => open(file),
-            Origin::Generate(options) => make(options),
+            Origin::Generate(options) => make(options, BoundKind::default()),
         };
         let made = match made {
             Ok(made) => made,

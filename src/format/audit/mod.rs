@@ -93,7 +93,7 @@ pub fn audit(scene: &Scene) -> AuditReport {
     let edges = Edges::new(scene.triangles(), levels);
     let corners = edges.check_corners(scene.triangles(), &lattices, &mut found);
     edges.check_shared(&lattices, &mut found);
-    lattices.largest_displacements(levels, |level, displacements| edges.raise_shared(level, displacements));
+    lattices.cover(scene.meta().bounds, levels, |level, displacements| edges.raise_shared(level, displacements));
     found = found.join(lattices.check_codes(levels, &allowed(scene)));
     bvh::check(scene, &mut found);
     found = found.join(check_shading(scene));
@@ -106,11 +106,10 @@ pub fn audit(scene: &Scene) -> AuditReport {
     AuditReport { checks: checks.collect() }
 }
 
-/// For each code the largest squared displacement, in squares of 8 units, that it covers.
+/// For each code the length in units that it covers.
 fn allowed(scene: &Scene) -> Vec<u64> {
     let scale = scene.meta().bound_scale();
-    let square = |code| u128::from(bound_decode(scale, code)).pow(2) / 64;
-    (0..1024).map(|code| u64::try_from(square(code)).unwrap_or(u64::MAX)).collect()
+    (0..1024).map(|code| bound_decode(scale, code)).collect()
 }
 
 /// Normals and materials.

@@ -4,8 +4,8 @@
 
 use super::tally::{CheckKind, Tallies};
 use crate::format::{BoundData, L0Record, Scene, VertexData};
-use crate::mesh::lattice;
-use crate::num::{COORD_LIMIT, Wire};
+use crate::mesh::{BoundKind, lattice};
+use crate::num::{COORD_LIMIT, LARGEST_BOUND, Wire, sqrt_ceil};
 use rayon::prelude::*;
 
 /// Code of a lattice point at which no edge has been seen.
@@ -17,7 +17,7 @@ pub(super) struct Lattices {
     pub points: Vec<[i32; 3]>,
     /// Code of the edge that the point splits.
     pub codes: Vec<u16>,
-    /// Displacement in squares of 8 units: at first the point's own, then the largest that the edge's bound must cover.
+    /// Displacement in squares of 8 units, the point's own.
     pub displacements: Vec<u64>,
 }
 
@@ -42,17 +42,20 @@ impl Lattices {
             .map(|((points, codes), displacements)| Lattice { points, codes, displacements })
     }
 
-    /// Raises each displacement to the largest of those below it, finest level first, over all trees; `raise_shared` does so for vertices inserted at a
-    /// level that trees share.
-    pub fn largest_displacements(&mut self, levels: u32, raise_shared: impl Fn(u32, &mut [u64])) {
+    /// Makes of each displacement the length in units, rounded up, that the edge's bound must cover, by those below it, finest level first, over all trees;
+    /// `raise_shared` makes vertices inserted at a level that trees share equal to their largest.
+    pub fn cover(&mut self, kind: BoundKind, levels: u32, raise_shared: impl Fn(u32, &mut [u64])) {
+        self.displacements.par_iter_mut().for_each(|d| *d = sqrt_ceil(64 * u128::from(*d)));
         // Vertices of level `levels` stand for the finest edges with a bound: nothing is below them.
         for level in (1..=levels).rev() {
             if level < levels {
                 self.displacements.par_chunks_mut(lattice::len(levels)).for_each(|d| {
                     each_inserted(levels, level, |at, meeting| {
-                        for &finer in meeting {
-                            d[at] = d[at].max(d[finer]);
-                        }
+                        let below = meeting.iter().map(|&finer| d[finer]).max().unwrap_or(0);
+                        d[at] = match kind {
+                            BoundKind::Largest => d[at].max(below),
+                            BoundKind::Total => (d[at] + below).min(LARGEST_BOUND),
+                        };
                     });
                 });
             }
@@ -70,7 +73,7 @@ impl Lattices {
                     let code = codes[at];
                     let covers = allowed.get(usize::from(code)).is_some_and(|&most| truths[at] <= most);
                     found.check(CheckKind::Bounds, covers, || {
-                        let truth = 8.0 * (truths[at] as f64).sqrt();
+                        let truth = truths[at];
                         format!("tree {t}: edge of level {} split at lattice point {at} has code {code}, displacement {truth}", level - 1)
                     });
                     for &finer in meeting {

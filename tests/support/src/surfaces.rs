@@ -1,7 +1,7 @@
 //! Small surfaces and a plain quad-BVH for tests and benchmarks.
 
 use lodray::format::{Box16, BvhChild, ChildRef, SceneInfo};
-use lodray::mesh::{Surface, lattice};
+use lodray::mesh::{BoundKind, Surface, lattice};
 use lodray::num::Wire;
 
 /// A surface over a base mesh: each lattice point is the weighted mean of the base vertices (summed in the order of their indices, so that
@@ -105,7 +105,7 @@ fn union(a: Box16, b: Box16) -> Box16 {
 }
 
 pub fn info(name: &str) -> SceneInfo {
-    SceneInfo { name: name.into(), origin: serde_json::json!({ "made": "test" }) }
+    SceneInfo { name: name.into(), origin: serde_json::json!({ "made": "test" }), bounds: BoundKind::Largest }
 }
 
 /// The scene of a surface with a plain quad-BVH.
