@@ -74,13 +74,17 @@ pub struct Camera {
     /// Distance from the target in bounding radii.
     pub radii: f64,
     forward: DVec3,
-    /// To the next pixel on the right, and up, for a picture plane at distance 1.
+    /// To the next sample on the right, and up, for a picture plane at distance 1.
     right: DVec3,
     above: DVec3,
-    /// Columns.
+    /// Where the picture's rays begin, in samples to the right and down.
+    shift: [f64; 2],
+    /// Columns of samples: of pixels, where a pixel has one.
     pub width: u32,
-    /// Rows.
+    /// Rows of samples.
     pub height: u32,
+    /// Samples along a side of a pixel.
+    pub samples: u32,
     /// Tangent of the half angle of every pixel's cone: half a pixel at the picture's centre.
     pub tan_theta: f64,
 }
@@ -138,10 +142,49 @@ impl Camera {
             forward,
             right: side * pixel,
             above: above * pixel,
+            shift: [0.0; 2],
             width,
             height,
+            samples: 1,
             tan_theta: 0.5 * pixel,
         })
+    }
+
+    /// The same picture with `side` x `side` samples in each pixel, on a regular grid, each with the cone of the whole pixel: what level of detail
+    /// leaves out is what a pixel does not show, however often it is sampled.
+    ///
+    /// # Errors
+    /// There are none, or too many in all.
+    pub fn with_samples(self, side: u32) -> Result<Self, CameraError> {
+        let [width, height] = self.pixels().map(|n| u64::from(n) * u64::from(side));
+        if side == 0 || width.max(height) > u64::from(MAX_SIDE) || width * height > MAX_PIXELS {
+            return field(
+                "samples",
+                format!("at least one, and with the picture's size at most {MAX_PIXELS} in all and {MAX_SIDE} along a side"),
+            );
+        }
+        let scale = f64::from(side) / f64::from(self.samples);
+        Ok(Self {
+            right: self.right / scale,
+            above: self.above / scale,
+            shift: self.shift.map(|s| s * scale),
+            width: width as u32, // at most MAX_SIDE
+            height: height as u32,
+            samples: side,
+            ..self
+        })
+    }
+
+    /// The same with all rays moved by so many pixels to the right and down.
+    #[must_use]
+    pub fn shifted(self, pixels: [f64; 2]) -> Self {
+        let shift = std::array::from_fn(|k| self.shift[k] + pixels[k] * f64::from(self.samples));
+        Self { shift, ..self }
+    }
+
+    /// Columns and rows of pixels.
+    pub fn pixels(&self) -> [u32; 2] {
+        [self.width, self.height].map(|n| n / self.samples)
     }
 
     /// The ray through the centre of pixel (`x`, `y`), row 0 at the top.
@@ -151,7 +194,8 @@ impl Camera {
 
     /// The ray through picture position (`x`, `y`) in pixels.
     pub fn ray_at(&self, x: f64, y: f64) -> Query {
-        let direction = self.forward + self.right * (x - 0.5 * f64::from(self.width)) - self.above * (y - 0.5 * f64::from(self.height));
+        let [x, y] = [x + self.shift[0] - 0.5 * f64::from(self.width), y + self.shift[1] - 0.5 * f64::from(self.height)];
+        let direction = self.forward + self.right * x - self.above * y;
         Query::new(self.eye.to_array(), direction.normalize().to_array()).with_cone(0.0, self.tan_theta)
     }
 
@@ -159,7 +203,8 @@ impl Camera {
     fn project(&self, v: DVec3) -> [f64; 2] {
         let v = v / v.dot(self.forward);
         let along = |axis: DVec3| v.dot(axis) / axis.length_squared();
-        [0.5 * f64::from(self.width) + along(self.right), 0.5 * f64::from(self.height) - along(self.above)]
+        let [x, y] = [0.5 * f64::from(self.width) + along(self.right), 0.5 * f64::from(self.height) - along(self.above)];
+        [x - self.shift[0], y - self.shift[1]]
     }
 
     /// Columns and rows outside which no ray meets the model's enlarged box.
@@ -239,6 +284,26 @@ mod tests {
     }
 
     #[test]
+    fn samples_fill_their_pixel_with_its_cone_and_shifts_are_in_pixels() {
+        let one = Camera::new(&View::default(), &space(), 30, 20).unwrap();
+        let four = one.with_samples(4).unwrap();
+        assert_eq!((four.pixels(), four.width, four.height, four.tan_theta), ([30, 20], 120, 80, one.tan_theta));
+        let near = |a: Query, b: Query| (DVec3::from_array(a.direction) - DVec3::from_array(b.direction)).length() < 1e-12;
+        for (x, y) in [(0, 0), (17, 3), (29, 19)] {
+            for (i, j) in [(0, 0), (3, 1)] {
+                let [u, v] = [(x, i), (y, j)].map(|(pixel, k)| f64::from(pixel) + (f64::from(k) + 0.5) / 4.0);
+                assert!(near(four.ray(4 * x + i, 4 * y + j), one.ray_at(u, v)));
+                let moved = one.shifted([0.5, -1.0]);
+                assert!(near(moved.with_samples(4).unwrap().ray(4 * x + i, 4 * y + j), one.ray_at(u + 0.5, v - 1.0)));
+                assert!(near(four.shifted([0.5, -1.0]).ray(4 * x + i, 4 * y + j), one.ray_at(u + 0.5, v - 1.0)));
+            }
+            assert!(near(four.with_samples(1).unwrap().ray(x, y), one.ray(x, y)));
+        }
+        assert_eq!(one.with_samples(1), Ok(one));
+        assert!(one.with_samples(0).is_err() && one.with_samples(1 << 12).is_err() && one.with_samples(1 << 31).is_err());
+    }
+
+    #[test]
     fn distance_is_in_bounding_radii_and_the_cone_is_half_a_pixel() {
         let camera = Camera::new(&View { distance: Some(4.0), ..View::default() }, &space(), 64, 32).unwrap();
         assert!((camera.eye.length() - 4.0 * 3f64.sqrt()).abs() < 1e-9);
@@ -292,7 +357,8 @@ mod tests {
             let direction = Some([a.cos(), 0.4 * b, a.sin()]);
             let distance = Some([0.1, 0.6, 1.0, 1.5, 4.0, 30.0][k as usize % 6]);
             let target = (k % 3 == 0).then_some([0.9, -0.2, 0.8]);
-            let camera = Camera::new(&View { direction, distance, target, fov: 60.0, ..View::default() }, &space, 90, 70).unwrap();
+            let camera = Camera::new(&View { direction, distance, target, fov: 60.0, ..View::default() }, &space, 45, 35).unwrap();
+            let camera = camera.with_samples(2).unwrap().shifted([f64::from(k % 3), -0.5 * f64::from(k % 4)]);
             let [columns, rows] = camera.window(&space);
             let hit = |x, y| space.enter(&camera.ray(x, y), 1.0).is_some();
             for (x, y) in (0..90).flat_map(|x| (0..70).map(move |y| (x, y))) {
