@@ -1,8 +1,8 @@
 //! Values of the library's that options take by name: the library has the names, and what `--help` says of each stands here.
 
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
-use lodray::mesh::{BoundKind, MeshFormat};
 use lodray::mesh::procedural::Scene;
+use lodray::mesh::{BoundKind, MeshFormat};
 use lodray::run::Compute;
 
 /// A value with a name.
@@ -65,7 +65,9 @@ impl Named for BoundKind {
     fn about(self) -> &'static str {
         match self {
             Self::Largest => "The largest displacement of one split at or below an edge, as in the paper",
-            Self::Total => "The displacements of all splits at and below it, one upon the other: --delta is then a promise (1.5 keeps what is seen within a pixel of the surface)",
+            Self::Total => {
+                "The displacements of all splits at and below it, one upon the other: --delta is then a promise (1.5 keeps what is seen within a pixel of the surface)"
+            }
         }
     }
 }

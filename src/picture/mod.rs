@@ -7,6 +7,8 @@ mod layouts;
 mod legend;
 mod shade;
 mod sheet;
+mod spread;
+mod surface_error;
 mod text;
 
 pub use frame::{Frame, FrameStats, KindCount, render};
@@ -16,3 +18,5 @@ pub use layouts::distinct_lines;
 pub use legend::Legend;
 pub use shade::{error_map, level_map, normal_map, shaded, view_cosine};
 pub use sheet::Sheet;
+pub use spread::ErrorSpread;
+pub use surface_error::{FullResolution, Silhouette, SurfaceError};

@@ -1,5 +1,6 @@
 //! Measurements over whole scenes and frames.
 
+pub mod error_time;
 pub mod result;
 mod version;
 
