@@ -13,6 +13,7 @@ mod facts;
 mod folder;
 mod generate;
 mod info;
+mod job_lines;
 mod json;
 mod lines;
 mod method;

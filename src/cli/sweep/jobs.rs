@@ -132,8 +132,3 @@ fn quality(chosen: &Chosen) -> String {
     };
     chosen.method.knobs.iter().filter_map(said).collect::<Vec<_>>().join(" ")
 }
-
-/// Whether a job's result, by the job's name, is this version's of the program.
-pub fn is_of_this_version(key: &str) -> bool {
-    key.rsplit_once(' ').is_some_and(|(_, version)| version == results_version())
-}

@@ -10,6 +10,7 @@ mod rows;
 use super::cache::{Cache, CacheArgs};
 use super::folder::{Overrule, RunFolder, one_run};
 use super::generate::make;
+use super::job_lines::{JobLines, keep_aside};
 use super::method::Chosen;
 use super::output::{check_target, open, print_line, remark, write_file};
 use super::pass::{Outcome, Pass, PassRays, Target};
@@ -27,7 +28,7 @@ use std::path::PathBuf;
 use std::process::ExitCode;
 
 pub use rows::Row;
-use rows::{ASIDE, Rows, csv};
+use rows::csv;
 
 const LINES: &str = "results.jsonl";
 const TABLE: &str = "results.csv";
@@ -59,7 +60,7 @@ struct Group<'a> {
 struct Sweep<'a> {
     jobs: &'a Jobs,
     cache: &'a Cache,
-    rows: Rows,
+    rows: JobLines<Row>,
 }
 
 pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
@@ -69,11 +70,9 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
     let cache = Cache::new(&args.cache, Some(&args.out))?;
     let lines = args.out.join(LINES);
     check_target(&lines, &inputs)?;
-    let rows = Rows::open(&lines)?;
+    let rows = JobLines::open(&lines)?;
     folder.keep(LINES)?;
-    for name in ASIDE.into_iter().filter(|name| args.out.join(name).exists()) {
-        folder.keep(name)?;
-    }
+    keep_aside(&mut folder, &lines)?;
     let done = rows.done();
     let mut sweep = Sweep { jobs: &jobs, cache: &cache, rows };
     let mut keys = Vec::new();

@@ -1,18 +1,8 @@
-//! What was done: one line of JSON for each job, and a table of them at the end.
+//! A job's line, and the table of all at the end.
 
-use super::jobs::is_of_this_version;
-use crate::cli::json::fault;
-use crate::cli::output::{warn, write_file};
-use anyhow::Context;
+use crate::cli::job_lines::JobLine;
 use lodray::report::result::SimResult;
 use serde::{Deserialize, Serialize};
-use std::collections::{HashMap, HashSet};
-use std::fs::{File, OpenOptions};
-use std::io::Write;
-use std::path::{Path, PathBuf};
-
-/// The files beside the lines that have what were none, and those of other versions of the program.
-pub const ASIDE: [&str; 2] = ["results.bad.jsonl", "results.old.jsonl"];
 
 /// One job's line.
 #[derive(Clone, Debug, Serialize, Deserialize)]
@@ -45,88 +35,14 @@ pub struct ImageFigures {
     pub geometry_pixels_mean: Option<f64>,
 }
 
-/// The file of lines.
-pub struct Rows {
-    path: PathBuf,
-    file: File,
-    rows: Vec<Row>,
-}
-
-impl Rows {
-    /// Opens the file, or makes it. Lines that are none of a job's, whole, or results of another version of the program, are set aside in files beside it;
-    /// what they stood for is done again, and so are jobs that failed.
-    pub fn open(path: &Path) -> anyhow::Result<Self> {
-        let shown = path.display();
-        let bytes = if path.exists() { std::fs::read(path).with_context(|| format!("cannot read {shown}"))? } else { Vec::new() };
-        let mut rows = Vec::new();
-        let (mut bad, mut old) = (Vec::new(), Vec::new());
-        let mut dropped = !bytes.is_empty() && !bytes.ends_with(b"\n");
-        for (number, line) in (1..).zip(bytes.split(|&byte| byte == b'\n')).filter(|(_, line)| !line.trim_ascii().is_empty()) {
-            match serde_json::from_slice::<Row>(line) {
-                Ok(row) if row.result.is_some() && is_of_this_version(&row.key) => rows.push(row),
-                Ok(row) if row.result.is_some() => old.push(line),
-                Ok(_) => dropped = true,
-                Err(why) => bad.push((number, line, why)),
-            }
-        }
-        if let Some((number, _, why)) = bad.first() {
-            let others = if bad.len() > 1 { format!(" (and {} more)", bad.len() - 1) } else { String::new() };
-            let aside = set_aside(path, ASIDE[0], bad.iter().map(|of| of.1))?;
-            warn(&format!(
-                "warning: {shown}: line {number}{others} is no result: {} (column {}); set aside in {}, its job is done again",
-                fault(why),
-                why.column(),
-                aside.display()
-            ));
-        }
-        if !old.is_empty() {
-            let count = if old.len() > 1 { format!("{} results are", old.len()) } else { "1 result is".to_owned() };
-            let aside = set_aside(path, ASIDE[1], old.iter().copied())?;
-            warn(&format!(
-                "note: {shown}: {count} another version's of the program; set aside in {}, their jobs are done again",
-                aside.display()
-            ));
-        }
-        if dropped || !bad.is_empty() || !old.is_empty() {
-            let lines = rows.iter().map(|row| Ok(serde_json::to_string(row)? + "\n")).collect::<anyhow::Result<String>>()?;
-            write_file(path, lines)?;
-        }
-        let file = OpenOptions::new().create(true).append(true).open(path).with_context(|| format!("cannot write {shown}"))?;
-        Ok(Self { path: path.to_owned(), file, rows })
+impl JobLine for Row {
+    fn key(&self) -> &str {
+        &self.key
     }
 
-    /// The jobs that are done.
-    pub fn done(&self) -> HashSet<String> {
-        self.rows.iter().map(|row| row.key.clone()).collect()
+    fn has_result(&self) -> bool {
+        self.result.is_some()
     }
-
-    /// Adds a line, whole, in one write.
-    pub fn add(&mut self, row: Row) -> anyhow::Result<()> {
-        let line = serde_json::to_string(&row)? + "\n";
-        let write = self.file.write_all(line.as_bytes()).and_then(|()| self.file.sync_data());
-        write.with_context(|| format!("cannot write {}", self.path.display()))?;
-        self.rows.push(row);
-        Ok(())
-    }
-
-    /// Those of `keys`, in their order.
-    pub fn of<'a>(&'a self, keys: &'a [String]) -> impl Iterator<Item = &'a Row> {
-        let by_key: HashMap<_, _> = self.rows.iter().map(|row| (row.key.as_str(), row)).collect();
-        keys.iter().filter_map(move |key| by_key.get(key.as_str()).copied())
-    }
-}
-
-/// Keeps lines in a file of this name beside `path`, behind those of before.
-fn set_aside<'a>(path: &Path, name: &str, lines: impl Iterator<Item = &'a [u8]>) -> anyhow::Result<PathBuf> {
-    let aside = path.with_file_name(name);
-    let mut bytes =
-        if aside.exists() { std::fs::read(&aside).with_context(|| format!("cannot read {}", aside.display()))? } else { Vec::new() };
-    for line in lines {
-        bytes.extend_from_slice(line);
-        bytes.push(b'\n');
-    }
-    write_file(&aside, &bytes)?;
-    Ok(aside)
 }
 
 const HEAD: &str = "scene,distance,eye_x,eye_y,eye_z,width,height,method,delta,leaves,machine,set,compute,cycles,milliseconds,frames_per_second,rays,hits,\

@@ -3,6 +3,6 @@
 mod document;
 
 pub use document::{
-    Converged, Costs, Energy, EqualCost, EqualError, ErrorTime, KIND, MethodEntry, Options, PictureEntry,
-    PictureError, Point, SceneEntry, Shift, TraceGrid, TracedHit, TracedRay, VERSION, ViewEntry,
+    Converged, Costs, Energy, EqualCost, EqualError, ErrorTime, KIND, MethodEntry, Options, PictureEntry, PictureError, Point, SceneEntry,
+    Shift, TraceGrid, TracedHit, TracedRay, VERSION, ViewEntry,
 };
