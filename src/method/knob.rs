@@ -41,6 +41,20 @@ impl Knob {
     }
 }
 
+/// A knob by which a method trades error for cost.
+#[derive(Clone, Copy)]
+pub struct ErrorKnob {
+    /// The knob.
+    pub knob: &'static Knob,
+    /// Values that show the whole of it, from coarse to fine.
+    pub values: fn() -> Vec<f64>,
+}
+
+/// The sweep of a quality that a method follows gradually: octaves from 1/16 to 64.
+pub fn octaves() -> Vec<f64> {
+    (-4..=6).map(f64::from).map(f64::exp2).collect()
+}
+
 /// Chosen values, by name; knobs that are not among them have their defaults.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Knobs(BTreeMap<&'static str, String>);

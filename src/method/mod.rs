@@ -17,7 +17,7 @@ mod tracer;
 
 pub(crate) use children::{Split, quarter};
 pub use hit::{ClosestHit, Crossings, Hit, HitSink, SurfaceHit, TriangleId, is_beyond};
-pub use knob::{Knob, KnobError, Knobs};
+pub use knob::{ErrorKnob, Knob, KnobError, Knobs};
 pub use registry::{METHODS, find};
 pub use stack::{Entry, Op, STACK_ENTRIES, TraversalStack};
 pub use tracer::{Trace, Tracer};
@@ -47,6 +47,8 @@ pub struct Registered {
     pub help: &'static str,
     /// What may be chosen.
     pub knobs: &'static [&'static Knob],
+    /// The knob by which error is traded for cost; none if there is no error to trade.
+    pub error: Option<ErrorKnob>,
     /// A unit for its rays; none if it is no hardware.
     pub unit: Option<MethodUnit>,
     /// Builds what it needs for a scene.

@@ -75,6 +75,7 @@ pub static METHOD: Registered = Registered {
     name: "bvh",
     help: "Quad-BVH of the full-resolution mesh, 16-bit boxes",
     knobs: &[&LEAF_LAYOUT, &LEAF_SIZE],
+    error: None,
     unit: Some(MethodUnit { blocks: UNIT, has_levels: false }),
     make: |scene, knobs, store| Bvh::of(scene, knobs, false, store),
 };
@@ -84,6 +85,7 @@ pub static METHOD_WIDE: Registered = Registered {
     name: "bvh32",
     help: "The same with 32-bit boxes",
     knobs: &[&LEAF_LAYOUT, &LEAF_SIZE],
+    error: None,
     unit: Some(MethodUnit { blocks: &unit(Operation::BoxTest32), has_levels: false }),
     make: |scene, knobs, store| Bvh::of(scene, knobs, true, store),
 };

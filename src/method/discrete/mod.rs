@@ -6,7 +6,7 @@
 mod levels;
 
 use super::bvh::{BvhTracer, BvhTraverser, FullBuilder, FullBvh, FullOptions, LEAF_LAYOUT, LEAF_SIZE, TreeKey, TreeStore, UNIT, bvh_map};
-use super::knob::DELTA;
+use super::knob::{DELTA, ErrorKnob};
 use super::{Knob, Knobs, Method, MethodUnit, Registered, Tracer};
 use crate::block::Operation;
 use crate::bvh::BvhError;
@@ -35,6 +35,8 @@ pub static METHOD: Registered = Registered {
     name: "discrete",
     help: "Discrete levels of detail: a quad-BVH of each level, one level for the whole frame",
     knobs: &[&DELTA, &LEVEL, &LEAF_LAYOUT, &LEAF_SIZE],
+    // Fine enough to meet every level that any quality chooses: bounds of a level and the next differ by more than half an octave.
+    error: Some(ErrorKnob { knob: &DELTA, values: || (-16..=24).map(|half| f64::exp2(0.5 * f64::from(half))).collect() }),
     unit: Some(MethodUnit {
         blocks: &{
             // As for a BVH, and a hit on a coarse triangle is mapped to the full resolution.

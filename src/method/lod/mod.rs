@@ -6,7 +6,7 @@ mod trace;
 pub use image::{BOUNDS, LodImage, NODES, RECORDS, VERTICES};
 pub use trace::LodTraverser;
 
-use super::knob::DELTA;
+use super::knob::{DELTA, ErrorKnob, octaves};
 use super::{ClosestHit, Method, MethodUnit, Registered, SurfaceHit, Trace, Tracer};
 use crate::block::Operation;
 use crate::format::Scene;
@@ -18,6 +18,7 @@ pub static METHOD: Registered = Registered {
     name: "lod",
     help: "Locally adaptive level of detail",
     knobs: &[&DELTA],
+    error: Some(ErrorKnob { knob: &DELTA, values: octaves }),
     unit: Some(MethodUnit {
         blocks: &[
             Operation::RaySetup,

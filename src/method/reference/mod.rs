@@ -10,6 +10,7 @@ pub static METHOD: Registered = Registered {
     name: "reference",
     help: "f64, full resolution: the truth",
     knobs: &[],
+    error: None,
     unit: None,
     make: |scene, _, _| Ok(Box::new(Truth { reference: Reference::new(&scene.decode()), space: ModelSpace::of(scene) })),
 };

@@ -231,6 +231,9 @@ pub struct EqualError {
     pub compute: String,
     /// Our cost, interpolated along the knob; absent if that would be outside of what was measured.
     pub ours: Option<f64>,
+    /// What is to be said of it.
+    #[serde(default)]
+    pub why: Option<String>,
     /// The others.
     pub methods: Vec<EqualCost>,
 }
@@ -244,7 +247,7 @@ pub struct EqualCost {
     pub cost: Option<f64>,
     /// Its cost over ours.
     pub ratio: Option<f64>,
-    /// Why there is none.
+    /// Why there is none, or what else is to be said of it.
     #[serde(default)]
     pub why: Option<String>,
 }
