@@ -8,6 +8,7 @@ mod common;
 mod compare;
 mod crack;
 mod demo;
+mod error_time;
 mod export;
 mod facts;
 mod folder;
@@ -66,6 +67,8 @@ enum Command {
     /// Put two results of simulations side by side
     #[command(after_long_help = words::SIMULATE)]
     Compare(compare::Args),
+    /// Measure what an error costs: every method's error against time, energy and traffic
+    ErrorTime(error_time::Args),
     /// Follow one ray through the traversal unit: as a waveform, or as text
     Trace(trace::Args),
     /// Count the memory lines that a frame touches, LOD against every BVH layout, by distance
@@ -101,6 +104,7 @@ pub fn run(cli: Cli) -> anyhow::Result<ExitCode> {
         Command::Simulate(args) => simulate::run(&args),
         Command::Sweep(args) => sweep::run(&args),
         Command::Compare(args) => compare::run(&args),
+        Command::ErrorTime(args) => error_time::run(&args),
         Command::Trace(args) => trace::run(&args),
         Command::Lines(args) => lines::run(&args),
         Command::Cast(args) => cast::run(&args),

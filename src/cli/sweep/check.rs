@@ -70,7 +70,8 @@ pub fn jobs(source: &ListText<'_>) -> anyhow::Result<Jobs> {
         }
         scenes.push(jobs);
     }
-    let jobs = Jobs { scenes, methods, targets, error: list.error, intervals: list.intervals, files };
+    let deltas = list.deltas.as_ref().map_or_else(Vec::new, |deltas| deltas.get_ref().iter().map(ToString::to_string).collect());
+    let jobs = Jobs { scenes, methods, targets, deltas, error: list.error, intervals: list.intervals, files };
     let mut seen = HashSet::new();
     for key in jobs.keys()? {
         anyhow::ensure!(seen.insert(key.clone()), "{}: a job is there twice: {key}", source.path.display());

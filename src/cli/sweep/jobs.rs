@@ -2,9 +2,13 @@
 
 use super::check;
 use super::list::ListText;
+use crate::cli::generate::make;
 use crate::cli::method::Chosen;
+use crate::cli::output::open;
 use crate::cli::pass::Target;
 use anyhow::Context;
+use lodray::format::Scene;
+use lodray::mesh::BoundKind;
 use lodray::mesh::procedural;
 use lodray::method::Knob;
 use lodray::method::bvh::{LEAF_LAYOUT, LEAF_SIZE};
@@ -47,6 +51,24 @@ pub struct ViewJob {
     pub fov: f64,
 }
 
+impl SceneJobs {
+    /// Opens or generates it.
+    pub fn open(&self) -> anyhow::Result<Scene> {
+        match &self.origin {
+            Origin::File(file) => open(file),
+            Origin::Generate(options) => make(options, BoundKind::default()),
+        }
+    }
+
+    /// Its file, without folders; nothing if it is generated.
+    pub fn file_name(&self) -> String {
+        match &self.origin {
+            Origin::File(file) => file.file_name().unwrap_or_default().to_string_lossy().into_owned(),
+            Origin::Generate(_) => String::new(),
+        }
+    }
+}
+
 impl ViewJob {
     /// The camera on a model.
     pub fn camera(&self, space: &ModelSpace) -> anyhow::Result<Camera> {
@@ -66,6 +88,8 @@ pub struct Jobs {
     /// Methods, with each of their qualities; a BVH has but one.
     pub methods: Vec<Chosen>,
     pub targets: Vec<Target>,
+    /// The qualities of the list, if it has some.
+    pub deltas: Vec<String>,
     pub error: bool,
     pub intervals: bool,
     /// Files of scenes and machines.
@@ -77,6 +101,12 @@ impl Jobs {
     pub fn read(path: &Path) -> anyhow::Result<Self> {
         let text = std::fs::read_to_string(path).with_context(|| format!("cannot read {}", path.display()))?;
         check::jobs(&ListText { path, text: &text })
+    }
+
+    /// Leaves one of each method's qualities.
+    pub fn each_method_once(&mut self) {
+        let mut seen = BTreeSet::new();
+        self.methods.retain(|chosen| seen.insert(chosen.method.name));
     }
 
     /// The names of all jobs, in order.

@@ -9,17 +9,14 @@ mod rows;
 
 use super::cache::{Cache, CacheArgs};
 use super::folder::{Overrule, RunFolder, one_run};
-use super::generate::make;
 use super::job_lines::{JobLines, keep_aside};
 use super::method::Chosen;
-use super::output::{check_target, open, print_line, remark, write_file};
+use super::output::{check_target, print_line, remark, write_file};
 use super::pass::{Outcome, Pass, PassRays, Target};
 use super::pictures::{Shot, shoot};
 use super::render::compare_shots;
 use anyhow::Context;
-use jobs::{Jobs, Origin, SceneJobs, ViewJob};
 use lodray::format::Scene;
-use lodray::mesh::BoundKind;
 use lodray::method::{Method, reference};
 use lodray::rays::{Camera, ModelSpace};
 use rows::ImageFigures;
@@ -27,6 +24,7 @@ use std::collections::HashSet;
 use std::path::PathBuf;
 use std::process::ExitCode;
 
+pub use jobs::{Jobs, Origin, SceneJobs, ViewJob};
 pub use rows::Row;
 use rows::csv;
 
@@ -126,11 +124,7 @@ impl<'a> Sweep<'a> {
         if groups.is_empty() {
             return Ok(());
         }
-        let made = match &scene.origin {
-            Origin::File(file) => open(file),
-            Origin::Generate(options) => make(options, BoundKind::default()),
-        };
-        let made = match made {
+        let made = match scene.open() {
             Ok(made) => made,
             Err(error) => return groups.iter().try_for_each(|group| self.failed(scene, group, &error)),
         };

@@ -1,6 +1,6 @@
 //! `error-time.json` as it is written and read: nothing in it depends on the host, and every number is finite or absent.
 
-use crate::picture::{ErrorSpread, SurfaceError};
+use crate::picture::{PictureError, SurfaceError};
 use crate::report::result::MachineFacts;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
@@ -155,21 +155,6 @@ pub struct Point {
     pub viewed: Option<PictureError>,
     /// What it costs, by machine and kind of compute.
     pub costs: Vec<Costs>,
-}
-
-/// How far a picture is from another.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-pub struct PictureError {
-    /// Root mean square difference, channels from 0 to 255.
-    pub rmse: f64,
-    /// Peak signal to noise ratio in dB; absent for equal pictures.
-    pub psnr_db: Option<f64>,
-    /// Structural similarity.
-    pub ssim: Option<f64>,
-    /// FLIP.
-    pub flip: ErrorSpread,
-    /// Share of pixels that differ.
-    pub off: f64,
 }
 
 /// What a frame costs on a machine.

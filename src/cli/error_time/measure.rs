@@ -1,0 +1,241 @@
+//! A view, measured: every setting of every method against full resolution, with each number of samples, on every machine.
+
+use super::draw::{Converging, Subject, difference};
+use super::host::{Timed, host_times};
+use super::plan::{Plan, Setting};
+use super::row::Measured;
+use crate::cli::cache::Cache;
+use crate::cli::method::Chosen;
+use crate::cli::output::busy;
+use crate::cli::pass::{Pass, PassRays, Target};
+use crate::cli::pictures::shoot;
+use crate::cli::sweep::ViewJob;
+use anyhow::Context;
+use image::RgbImage;
+use lodray::format::Scene;
+use lodray::mesh::FinestSurface;
+use lodray::method::{Method, reference};
+use lodray::picture::{Frame, FullResolution, PictureError, SurfaceError, error_map, level_map, save_png};
+use lodray::rays::{Camera, ModelSpace, Sight};
+use lodray::report::error_time::{Converged, Costs, Energy, PictureEntry, Point, SceneEntry, Shift, ViewEntry};
+use lodray::report::result::SimResult;
+use std::path::Path;
+
+/// The name of full resolution among pictures.
+const FULL: &str = "full";
+/// Pictures are kept with at most so many samples along a side of a pixel.
+const MOST_KEPT: u32 = 4;
+
+/// A scene with everything that measuring it needs.
+pub struct Bench<'a> {
+    plan: &'a Plan,
+    scene: &'a Scene,
+    space: ModelSpace,
+    facts: SceneEntry,
+    methods: Vec<(Chosen, Box<dyn Method + 'a>)>,
+    reference: Box<dyn Method + 'a>,
+    surface: FinestSurface,
+}
+
+/// A setting with its picture's errors still to be compared with the converged picture.
+struct Unseen {
+    point: usize,
+    picture: RgbImage,
+}
+
+impl<'a> Bench<'a> {
+    /// Builds what the methods need.
+    pub fn new(plan: &'a Plan, scene: &'a Scene, facts: SceneEntry, cache: &Cache) -> anyhow::Result<Self> {
+        let make = |chosen: &Chosen| Ok((chosen.clone(), chosen.make(scene, cache)?.0));
+        Ok(Self {
+            plan,
+            scene,
+            space: ModelSpace::of(scene),
+            facts,
+            methods: plan.jobs.methods.iter().map(make).collect::<anyhow::Result<_>>()?,
+            reference: Chosen::plain(&reference::METHOD).make(scene, cache)?.0,
+            surface: busy("full-resolution surface", || FinestSurface::new(&scene.decode())),
+        })
+    }
+
+    /// Measures a view; pictures go to `folder`, their names begin with `prefix`.
+    pub fn view(&self, view: &ViewJob, folder: &Path, prefix: &str) -> anyhow::Result<Measured> {
+        let camera = view.camera(&self.space)?;
+        let truth = shoot(&*self.reference, self.scene, &self.space, &camera, 1.0, "full resolution").frame;
+        let settings = self.settings(&camera)?;
+        let geometry = self.geometry(&camera, &truth, &settings);
+        let mut book = PictureBook { folder, prefix, entries: Vec::new() };
+        let (mut points, mut shift, mut unseen) = (Vec::new(), Vec::new(), Vec::new());
+        let subject = Subject { scene: self.scene, space: &self.space };
+        let ppd = self.plan.measure.pixels_per_degree;
+        let kept = self.plan.sides.iter().copied().filter(|&side| side <= MOST_KEPT).max();
+        for &side in &self.plan.sides {
+            let camera = camera.with_samples(side)?;
+            let samples = side * side;
+            let full = subject.draw(&*self.reference, &camera, 1.0, "full resolution");
+            let shifted = subject.draw(&*self.reference, &camera.shifted([0.5, 0.5]), 1.0, "shifted by half a pixel");
+            shift.push(Shift { samples, picture: PictureError::of(&shifted, &full, ppd) });
+            if kept == Some(side) {
+                book.add(&full, FULL, "full resolution", samples, "image")?;
+            }
+            for ((at, setting), (geometry, frame)) in settings.iter().zip(&geometry) {
+                let (_, method) = &self.methods[*at];
+                let words = format!("{} {}", setting.chosen.method.name, setting.words);
+                let picture = subject.draw(&**method, &camera, setting.chosen.delta(), &words);
+                if kept == Some(side) && setting.is_default {
+                    let name = setting.chosen.method.name;
+                    book.add(&picture, name, &setting.words, samples, "image")?;
+                    book.add(&error_map(&picture, &full), name, &setting.words, samples, "error")?;
+                    if let Some(frame) = frame {
+                        book.add(&level_map(frame), name, &setting.words, 1, "levels")?;
+                    }
+                }
+                let errors = PictureError::of(&picture, &full, ppd);
+                let results = self.simulate(setting, &**method, &camera)?;
+                let facts = &results.first().context("no machine")?.setup.method;
+                points.push(Point {
+                    view: 0,
+                    method: facts.name.clone(),
+                    setting: setting.words.clone(),
+                    knobs: facts.knobs.clone(),
+                    choices: facts.choices.clone(),
+                    samples,
+                    bytes: facts.bytes,
+                    bytes_per_triangle: facts.bytes as f64 / self.facts.finest_triangles as f64,
+                    geometry: *geometry,
+                    picture: errors,
+                    viewed: None,
+                    costs: results.iter().enumerate().map(|(machine, result)| costs(machine, result)).collect(),
+                });
+                unseen.push(Unseen { point: points.len() - 1, picture });
+            }
+        }
+        let converged = self.converged(&camera, &mut points, &unseen)?;
+        Ok(Measured {
+            scene: self.facts.clone(),
+            view: ViewEntry {
+                scene: 0,
+                distance: camera.radii,
+                eye: camera.eye.to_array(),
+                size: [camera.width, camera.height],
+                converged,
+                shift,
+            },
+            points,
+            pictures: book.entries,
+            host: self.host(&camera, &settings),
+        })
+    }
+
+    /// All settings, with the number of their method.
+    fn settings(&self, camera: &Camera) -> anyhow::Result<Vec<(usize, Setting)>> {
+        let of = |(at, (base, method)): (usize, &(Chosen, Box<dyn Method + 'a>))| {
+            let settings = self.plan.settings(base, &**method, |delta| Sight::new(camera, &self.space, delta))?;
+            Ok(settings.into_iter().map(|setting| (at, setting)).collect::<Vec<_>>())
+        };
+        Ok(self.methods.iter().enumerate().map(of).collect::<anyhow::Result<Vec<_>>>()?.into_iter().flatten().collect())
+    }
+
+    /// Errors of each setting's surface, by one ray a pixel: more would see the same. Of settings by default the frame, too.
+    fn geometry(&self, camera: &Camera, truth: &Frame, settings: &[(usize, Setting)]) -> Vec<(SurfaceError, Option<Frame>)> {
+        let full = FullResolution { scene: self.scene, space: &self.space, surface: &self.surface, frame: truth };
+        let of = |(at, setting): &(usize, Setting)| {
+            let shot = shoot(&*self.methods[*at].1, self.scene, &self.space, camera, setting.chosen.delta(), "surface");
+            let errors = SurfaceError::of(&shot.frame, &full, camera, self.plan.measure.stride);
+            // Without a knob every triangle is of the finest level.
+            let has_levels = setting.is_default && setting.chosen.method.error.is_some();
+            (errors, has_levels.then_some(shot.frame))
+        };
+        settings.iter().map(of).collect()
+    }
+
+    fn simulate(&self, setting: &Setting, method: &dyn Method, camera: &Camera) -> anyhow::Result<Vec<SimResult>> {
+        let rays = PassRays::Camera(*camera);
+        let pass = Pass { scene: self.scene, space: &self.space, chosen: &setting.chosen, method, rays };
+        pass.run(&self.targets())?.into_iter().map(|outcome| Ok(outcome?.0)).collect()
+    }
+
+    fn targets(&self) -> Vec<Target> {
+        self.plan.jobs.targets.clone()
+    }
+
+    /// Draws full resolution with more and more samples until its standard error is a quarter of the smallest error, or there are no more; then says how
+    /// far every picture is from it. None if none is wanted.
+    fn converged(&self, camera: &Camera, points: &mut [Point], unseen: &[Unseen]) -> anyhow::Result<Option<Converged>> {
+        let most = self.plan.measure.most_samples;
+        let subject = Subject { scene: self.scene, space: &self.space };
+        let mut side = 2 * self.plan.sides.iter().copied().max().unwrap_or(1).max(2);
+        if side > most {
+            return Ok(None);
+        }
+        loop {
+            let Converging { picture, standard_error } = subject.converging(&*self.reference, &camera.with_samples(side)?);
+            let errors = unseen.iter().map(|unseen| difference(&unseen.picture, &picture));
+            let smallest = errors.filter(|&error| error > 0.0).fold(f64::INFINITY, f64::min);
+            // Twice as many along a side, if the picture's size allows that.
+            if standard_error > 0.25 * smallest && 2 * side <= most && camera.with_samples(2 * side).is_ok() {
+                side *= 2;
+                continue;
+            }
+            for unseen in unseen {
+                points[unseen.point].viewed = Some(PictureError::of(&unseen.picture, &picture, self.plan.measure.pixels_per_degree));
+            }
+            return Ok(Some(Converged { samples: side * side, standard_error }));
+        }
+    }
+
+    fn host(&self, camera: &Camera, settings: &[(usize, Setting)]) -> Vec<super::row::HostTime> {
+        let most = self.plan.measure.host_rays;
+        if most == 0 {
+            return Vec::new();
+        }
+        let timed = |(at, setting): &'_ (usize, Setting)| {
+            let method = &*self.methods[*at].1;
+            (setting.chosen.method.name, setting.words.clone(), method, setting.chosen.delta())
+        };
+        let timed: Vec<_> = settings.iter().map(timed).collect();
+        let timed: Vec<_> =
+            timed.iter().map(|(name, words, method, delta)| Timed { name, words, method: *method, delta: *delta }).collect();
+        busy("host times", || host_times(&timed, camera, &self.space, most))
+    }
+}
+
+fn costs(machine: usize, result: &SimResult) -> Costs {
+    let energy = &result.energy;
+    Costs {
+        machine,
+        compute: result.setup.compute.name().to_owned(),
+        cycles: result.cycles,
+        milliseconds: result.milliseconds,
+        energy: Energy {
+            unit: energy.unit.clone(),
+            total: energy.total,
+            l1: energy.l1.total,
+            l2: energy.l2.total,
+            dram: energy.dram.total,
+            compute: energy.compute.total,
+            leakage: energy.leakage.total,
+        },
+        dram_lines: result.dram.reads + result.dram.writes,
+        dram_bytes: (result.traffic.bytes_per_ray.dram * result.rays as f64).round() as u64,
+        l1_requests_per_ray: result.accesses_per_ray,
+    }
+}
+
+/// The pictures of a view.
+struct PictureBook<'a> {
+    folder: &'a Path,
+    prefix: &'a str,
+    entries: Vec<PictureEntry>,
+}
+
+impl PictureBook<'_> {
+    fn add(&mut self, picture: &RgbImage, method: &str, setting: &str, samples: u32, kind: &str) -> anyhow::Result<()> {
+        let file = format!("{}-{method}-{kind}.png", self.prefix);
+        let path = self.folder.join(&file);
+        save_png(picture, &[], &path).with_context(|| format!("cannot write {}", path.display()))?;
+        let [method, setting, kind] = [method, setting, kind].map(str::to_owned);
+        self.entries.push(PictureEntry { view: 0, method, setting, samples, kind, file });
+        Ok(())
+    }
+}

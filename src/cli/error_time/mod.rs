@@ -1,0 +1,180 @@
+//! `error-time`: what an error costs, for every method: errors against simulated time, energy and traffic.
+
+mod draw;
+mod host;
+mod measure;
+mod options;
+mod plan;
+mod row;
+
+use super::cache::Cache;
+use super::folder::RunFolder;
+use super::job_lines::{JobLines, keep_aside};
+use super::output::{check_target, print_line, progress, remark, write_file};
+use super::sweep::SceneJobs;
+use lodray::format::Scene;
+use lodray::method::lod;
+use lodray::report::error_time::{ErrorTime, KIND, MethodEntry, Options, SceneEntry, VERSION, csv, equal_errors};
+use lodray::report::results_version;
+use measure::Bench;
+use plan::Plan;
+use row::{Measured, ViewRow};
+use serde::Serialize;
+use std::path::{Path, PathBuf};
+use std::process::ExitCode;
+use xxhash_rust::xxh3::xxh3_64;
+
+pub use options::Args;
+
+/// Views that are done, for a run that goes on.
+const LINES: &str = "views.jsonl";
+const DOCUMENT: &str = "error-time.json";
+const TABLE: &str = "error-time.csv";
+const HOST: &str = "host-times.json";
+
+/// Times on the host, by view.
+#[derive(Serialize)]
+struct HostTimes<'a> {
+    scene: &'a str,
+    distance: f64,
+    settings: &'a [row::HostTime],
+}
+
+pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
+    let plan = args.plan()?;
+    let inputs: Vec<_> = plan.jobs.files.iter().map(PathBuf::as_path).collect();
+    let mut folder = RunFolder::open(&args.out, [DOCUMENT, TABLE, HOST], &inputs, &args.overrule)?;
+    let cache = Cache::new(&args.cache, Some(&args.out))?;
+    let lines = args.out.join(LINES);
+    check_target(&lines, &inputs)?;
+    let mut rows = JobLines::open(&lines)?;
+    folder.keep(LINES)?;
+    keep_aside(&mut folder, &lines)?;
+    let done = rows.done();
+    let mut keys = Vec::new();
+    let bar = progress(plan.views() as u64, "views");
+    for scene in &plan.jobs.scenes {
+        let views = scene.views.iter().enumerate();
+        let views: Vec<_> = views.map(|(k, view)| Ok((k, view, plan.key(scene, view)?))).collect::<anyhow::Result<_>>()?;
+        keys.extend(views.iter().map(|(_, _, key)| key.clone()));
+        let left: Vec<_> = views.into_iter().filter(|(_, _, key)| !done.contains(key)).collect();
+        if left.is_empty() {
+            continue;
+        }
+        let failure =
+            |key: &String, error: &anyhow::Error| ViewRow { key: key.clone(), measured: None, error: Some(crate::one_line(error)) };
+        let made = match scene.open() {
+            Ok(made) => made,
+            Err(error) => {
+                left.iter().try_for_each(|(_, _, key)| rows.add(failure(key, &error)))?;
+                continue;
+            }
+        };
+        let bench = Bench::new(&plan, &made, entry(scene, &made), &cache)?;
+        for (k, view, key) in &left {
+            let prefix = format!("{}-{k}", plain(&scene.name));
+            let row = match bench.view(view, &args.out, &prefix) {
+                Ok(measured) => ViewRow { key: key.clone(), measured: Some(measured), error: None },
+                Err(error) => failure(key, &error),
+            };
+            rows.add(row)?;
+            bar.inc(1);
+            bar.println(format!("{}: view {} of {} is done", scene.name, k + 1, scene.views.len()));
+        }
+    }
+    bar.finish_and_clear();
+    let measured: Vec<&Measured> = rows.of(&keys).filter_map(|row| row.measured.as_ref()).collect();
+    for picture in measured.iter().flat_map(|measured| &measured.pictures) {
+        folder.keep(&picture.file)?;
+    }
+    let document = document(&plan, &measured);
+    write(folder.staging(), &document, &measured)?;
+    folder.finish()?;
+    let failed: Vec<_> = rows.of(&keys).filter_map(|row| Some((&row.key, row.error.as_ref()?))).collect();
+    remark(&format!("{} views, {} failed; figures in {}", keys.len(), failed.len(), args.out.display()))?;
+    for (key, why) in &failed {
+        print_line(&format!("failed: {key}: {why}"))?;
+    }
+    Ok(if failed.is_empty() { ExitCode::SUCCESS } else { ExitCode::FAILURE })
+}
+
+/// Letters, digits and single dashes: a part of a file's name.
+fn plain(name: &str) -> String {
+    let plain: String = name.chars().map(|c| if c.is_ascii_alphanumeric() || c == '.' { c } else { '-' }).collect();
+    plain.split('-').filter(|part| !part.is_empty()).collect::<Vec<_>>().join("-")
+}
+
+fn entry(jobs: &SceneJobs, scene: &Scene) -> SceneEntry {
+    SceneEntry {
+        name: jobs.name.clone(),
+        file: jobs.file_name(),
+        hash: format!("{:016x}", xxh3_64(scene.bytes())),
+        levels: scene.levels(),
+        base_triangles: scene.trees() as u64,
+        finest_triangles: scene.finest_triangles(),
+        bounds: scene.meta().bounds.name().to_owned(),
+    }
+}
+
+/// All views in one document, their scenes and machines numbered.
+fn document(plan: &Plan, measured: &[&Measured]) -> ErrorTime {
+    let mut scenes: Vec<SceneEntry> = Vec::new();
+    let (mut views, mut points, mut pictures) = (Vec::new(), Vec::new(), Vec::new());
+    for (number, of) in measured.iter().enumerate() {
+        let scene = scenes.iter().position(|scene| *scene == of.scene).unwrap_or_else(|| {
+            scenes.push(of.scene.clone());
+            scenes.len() - 1
+        });
+        let mut view = of.view.clone();
+        view.scene = scene;
+        views.push(view);
+        points.extend(of.points.iter().cloned().map(|mut point| {
+            point.view = number;
+            point
+        }));
+        pictures.extend(of.pictures.iter().cloned().map(|mut picture| {
+            picture.view = number;
+            picture
+        }));
+    }
+    let machines = plan.machines();
+    // A target is a machine with a way to compute; the same machine is listed once.
+    for costs in points.iter_mut().flat_map(|point| &mut point.costs) {
+        costs.machine = plan.machine_of(costs.machine, &machines);
+    }
+    let method = |chosen: &super::method::Chosen| MethodEntry {
+        name: chosen.method.name.to_owned(),
+        knob: chosen.method.error.map(|error| error.knob.name.to_owned()),
+        help: chosen.method.help.to_owned(),
+    };
+    let mut document = ErrorTime {
+        kind: KIND.to_owned(),
+        version: VERSION,
+        program: format!("lodray {}", results_version()),
+        options: Options {
+            size: plan.jobs.scenes.first().and_then(|scene| scene.views.first()).map_or([0; 2], |view| view.size),
+            samples: plan.sides.iter().map(|side| side * side).collect(),
+            shading: "full".to_owned(),
+            pixels_per_degree: plan.measure.pixels_per_degree,
+            nearest_stride: plan.measure.stride,
+        },
+        scenes,
+        machines,
+        methods: plan.jobs.methods.iter().map(method).collect(),
+        views,
+        points,
+        equal_error: Vec::new(),
+        pictures,
+        traces: Vec::new(),
+    };
+    document.equal_error = equal_errors(&document, lod::METHOD.name);
+    document
+}
+
+fn write(folder: &Path, document: &ErrorTime, measured: &[&Measured]) -> anyhow::Result<()> {
+    write_file(&folder.join(DOCUMENT), serde_json::to_string(document)? + "\n")?;
+    write_file(&folder.join(TABLE), csv(document))?;
+    let times = measured.iter().filter(|of| !of.host.is_empty());
+    let times: Vec<_> = times.map(|of| HostTimes { scene: &of.scene.name, distance: of.view.distance, settings: &of.host }).collect();
+    write_file(&folder.join(HOST), serde_json::to_string_pretty(&times)? + "\n")
+}

@@ -1,0 +1,134 @@
+//! What is to be measured: scenes, views, methods with the values of their knobs, machines, samples.
+
+use crate::cli::method::Chosen;
+use crate::cli::sweep::{Jobs, SceneJobs, ViewJob};
+use lodray::method::{ErrorKnob, Method};
+use lodray::rays::{MAX_PIXELS, MAX_SIDE, Sight};
+use lodray::report::result::{MachineFacts, MethodFacts};
+use std::collections::{BTreeMap, HashSet};
+use xxhash_rust::xxh3::xxh3_64;
+
+/// Everything that is asked for.
+pub struct Plan {
+    /// Scenes, views and machines; each method once, with the knobs that are not swept.
+    pub jobs: Jobs,
+    /// Values of error knobs, by name of the knob; others have the method's own.
+    pub values: BTreeMap<String, Vec<String>>,
+    /// Samples along a side of a pixel.
+    pub sides: Vec<u32>,
+    pub measure: Measure,
+}
+
+/// How errors are measured.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Measure {
+    /// Of the display that FLIP assumes.
+    pub pixels_per_degree: f64,
+    /// One of so many columns and rows is held against the nearest point of the surface.
+    pub stride: u32,
+    /// Most samples along a side of a converged picture's pixel; 0 for no such picture.
+    pub most_samples: u32,
+    /// Rays whose time on the host is taken; 0 for none.
+    pub host_rays: u32,
+}
+
+/// A method with one value of its knob.
+pub struct Setting {
+    pub chosen: Chosen,
+    /// In words.
+    pub words: String,
+    /// It is what the method does if nothing is chosen.
+    pub is_default: bool,
+}
+
+impl Plan {
+    /// The settings of a method for a view, from coarse to fine; those that choose the same for the frame once.
+    pub fn settings(&self, base: &Chosen, method: &dyn Method, sight: impl Fn(f64) -> Sight) -> anyhow::Result<Vec<Setting>> {
+        let of = |chosen: Chosen| {
+            let choices = method.choices(&sight(chosen.delta()));
+            let facts = MethodFacts::new(chosen.method, &chosen.knobs, &choices, 0);
+            let chose: Vec<_> = choices.iter().map(|(name, value)| format!("{name} {value}")).collect();
+            let words = match chosen.method.error.filter(|_| chose.is_empty()) {
+                Some(ErrorKnob { knob, .. }) => format!("{} {}", knob.name, facts.knobs.get(knob.name).map_or("", String::as_str)),
+                None if chose.is_empty() => "full resolution".to_owned(),
+                None => chose.join(", "),
+            };
+            (chosen, words)
+        };
+        let default = of(base.clone()).1;
+        let all = match base.method.error {
+            None => vec![of(base.clone())],
+            Some(ErrorKnob { knob, .. }) => {
+                let with = |value: &String| Ok(of(Chosen { method: base.method, knobs: base.knobs.clone().with(knob, value)? }));
+                self.values(base).iter().map(with).collect::<anyhow::Result<Vec<_>>>()?
+            }
+        };
+        let mut seen = HashSet::new();
+        let new =
+            |(chosen, words): (Chosen, String)| seen.insert(words.clone()).then(|| Setting { chosen, is_default: words == default, words });
+        Ok(all.into_iter().filter_map(new).collect())
+    }
+
+    /// Refuses more samples than there can be, before anything is traced.
+    pub fn check(&self) -> anyhow::Result<()> {
+        let most = u64::from(self.sides.iter().copied().max().unwrap_or(1));
+        for view in self.jobs.scenes.iter().flat_map(|scene| &scene.views) {
+            let [width, height] = view.size.map(|n| u64::from(n) * most);
+            anyhow::ensure!(
+                width.max(height) <= u64::from(MAX_SIDE) && width * height <= MAX_PIXELS,
+                "--samples {}: too many for pictures of {}x{}: {MAX_PIXELS} in all, {MAX_SIDE} along a side",
+                most * most,
+                view.size[0],
+                view.size[1]
+            );
+        }
+        Ok(())
+    }
+
+    /// How many views there are.
+    pub fn views(&self) -> usize {
+        self.jobs.scenes.iter().map(|scene| scene.views.len()).sum()
+    }
+
+    /// The machines, each once.
+    pub fn machines(&self) -> Vec<MachineFacts> {
+        let mut machines: Vec<MachineFacts> = Vec::new();
+        for target in &self.jobs.targets {
+            if !machines.contains(&target.machine) {
+                machines.push(target.machine.clone());
+            }
+        }
+        machines
+    }
+
+    /// The number of a target's machine among `machines`.
+    pub fn machine_of(&self, target: usize, machines: &[MachineFacts]) -> usize {
+        let machine = self.jobs.targets.get(target).map(|target| &target.machine);
+        machines.iter().position(|of| Some(of) == machine).unwrap_or(0)
+    }
+
+    /// The values of a method's error knob.
+    fn values(&self, base: &Chosen) -> Vec<String> {
+        let Some(error) = base.method.error else { return Vec::new() };
+        let own = || (error.values)().iter().map(ToString::to_string).collect();
+        self.values.get(error.knob.name).cloned().unwrap_or_else(own)
+    }
+
+    /// The name of a view's job, which changes with everything that its figures depend on, the program's own version at its end.
+    pub fn key(&self, scene: &SceneJobs, view: &ViewJob) -> anyhow::Result<String> {
+        let mut inputs = String::new();
+        let mut name = String::new();
+        for chosen in &self.jobs.methods {
+            for target in &self.jobs.targets {
+                name = self.jobs.key(scene, view, chosen, target)?;
+                inputs += &name;
+            }
+            inputs += &format!("{:?}", self.values(chosen));
+        }
+        inputs += &format!("{:?} {:?}", self.sides, self.measure);
+        // As in a sweep: scene, place and size, and the version at the end.
+        let place: Vec<_> = name.split(", ").take(3).collect();
+        let version = name.rsplit(' ').next().unwrap_or_default();
+        Ok(format!("{} #{:016x} {version}", place.join(", "), xxh3_64(inputs.as_bytes())))
+    }
+}

@@ -1,0 +1,60 @@
+//! A view's line: all that was measured of it.
+
+use crate::cli::job_lines::JobLine;
+use lodray::report::error_time::{PictureEntry, Point, SceneEntry, ViewEntry};
+use serde::{Deserialize, Serialize};
+
+/// A view. Numbers of scene, view and machine are those of this line alone: 0, 0, and the place among the machines.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct ViewRow {
+    /// Which job.
+    pub key: String,
+    /// What was measured.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub measured: Option<Measured>,
+    /// Why it failed.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub error: Option<String>,
+}
+
+/// What was measured of a view.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Measured {
+    pub scene: SceneEntry,
+    pub view: ViewEntry,
+    pub points: Vec<Point>,
+    pub pictures: Vec<PictureEntry>,
+    /// Times on the host, which differ from run to run.
+    #[serde(default)]
+    pub host: Vec<HostTime>,
+}
+
+/// Time of a setting's rays on the host: one thread, no simulation.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct HostTime {
+    /// Name of the method.
+    pub method: String,
+    /// Its setting in words.
+    pub setting: String,
+    /// Rays of each turn.
+    pub rays: u64,
+    /// Nanoseconds of a ray in each turn, methods and settings taking turns.
+    pub nanoseconds: Vec<f64>,
+    /// Their median.
+    pub median: f64,
+    /// Half the distance between the first and the third quarter of them.
+    pub spread: f64,
+}
+
+impl JobLine for ViewRow {
+    fn key(&self) -> &str {
+        &self.key
+    }
+
+    fn has_result(&self) -> bool {
+        self.measured.is_some()
+    }
+}

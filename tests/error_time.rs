@@ -1,0 +1,157 @@
+//! `error-time`: figures that follow from one another, runs that go on, and input that is refused.
+
+use lodray_test_support::program::Desk;
+use serde_json::Value;
+
+const QUICK: &str = "--size 48x48 --distances 2,6 --samples 1,4 --values delta=0.5,1,4,inf --most-samples 64 --no-host";
+
+fn desk() -> Desk {
+    let desk = Desk::new(env!("CARGO_BIN_EXE_lodray"));
+    desk.run("generate terrain --levels 4 --base 32 --roughness 0.7 -o a.lod");
+    desk
+}
+
+fn points<'a>(document: &'a Value, method: &'a str) -> impl Iterator<Item = &'a Value> {
+    document["points"].as_array().unwrap().iter().filter(move |point| point["method"] == method)
+}
+
+fn number(value: &Value, path: &str) -> f64 {
+    value.pointer(path).and_then(Value::as_f64).unwrap_or_else(|| panic!("{path} in {value}"))
+}
+
+#[test]
+fn errors_fall_along_the_knob_and_what_is_full_resolution_has_none() {
+    let desk = desk();
+    desk.run(&format!("error-time a.lod -o d {QUICK}"));
+    let document: Value = serde_json::from_str(&desk.text("d/error-time.json")).unwrap();
+    assert_eq!(document["views"].as_array().unwrap().len(), 2);
+    // Two views, two numbers of samples, at four qualities.
+    assert_eq!(points(&document, "lod").count(), 2 * 2 * 4);
+    for errors in ["/geometry/hit", "/geometry/surface", "/geometry/normal_degrees", "/picture/flip", "/viewed/flip"] {
+        let all: Vec<&Value> = points(&document, "lod").collect();
+        for point in &all {
+            let [mean, median, most, maximum] =
+                ["mean", "median", "percentile_99", "maximum"].map(|of| number(point, &format!("{errors}/{of}")));
+            assert!(median <= most && most <= maximum && mean <= maximum, "{errors} {point}");
+        }
+        if !errors.starts_with("/viewed") {
+            for sweep in all.chunks(4) {
+                let means: Vec<_> = sweep.iter().map(|point| number(point, &format!("{errors}/mean"))).collect();
+                assert!(means[0] > means[1] && means[1] > means[2] && means[2] > means[3] && means[3] == 0.0, "{errors}: {means:?}");
+            }
+        }
+    }
+    for point in points(&document, "bvh").chain(points(&document, "bvh32")) {
+        assert_eq!((number(point, "/geometry/hit/maximum"), number(point, "/geometry/surface/maximum")), (0.0, 0.0));
+        assert_eq!((number(point, "/picture/rmse"), number(point, "/picture/flip/mean"), number(point, "/picture/ssim")), (0.0, 0.0, 1.0));
+        assert_eq!(number(point, "/geometry/silhouette/pixels"), 0.0);
+    }
+    // The nearest point is no further than the hit of the same ray, as every ray hits here or misses in both.
+    for point in points(&document, "lod").filter(|point| number(point, "/geometry/silhouette/pixels") == 0.0) {
+        assert!(number(point, "/geometry/surface/maximum") <= number(point, "/geometry/hit/maximum") + 1e-9);
+    }
+    // A frame is the one that `simulate` runs.
+    let view = &document["views"][0];
+    let alone = desk.json("simulate a.lod --size 48x48 --distance 2 --delta 4 --compute units");
+    let point = points(&document, "lod").find(|p| p["view"] == 0 && p["samples"] == 1 && p["setting"] == "delta 4").unwrap();
+    let costs = point["costs"].as_array().unwrap().iter().find(|costs| costs["compute"] == "units").unwrap();
+    assert_eq!((&costs["cycles"], &costs["energy"]["total"]), (&alone["cycles"], &alone["energy"]["total"]), "{view}");
+    // Four samples are four rays of each pixel.
+    let four = points(&document, "lod").find(|p| p["view"] == 0 && p["samples"] == 4 && p["setting"] == "delta 4").unwrap();
+    assert!(number(four, "/costs/0/cycles") > number(point, "/costs/0/cycles"));
+    // More samples are nearer to the converged picture, if nothing else is wrong.
+    let viewed = |samples: u32| {
+        let of = points(&document, "bvh").filter(|point| point["samples"] == samples);
+        of.map(|point| number(point, "/viewed/rmse")).sum::<f64>()
+    };
+    assert!(viewed(4) < viewed(1));
+}
+
+#[test]
+fn costs_at_equal_error_lie_between_the_settings_around_it() {
+    let desk = desk();
+    desk.run(&format!("error-time a.lod -o d {QUICK} --compute free"));
+    let document: Value = serde_json::from_str(&desk.text("d/error-time.json")).unwrap();
+    let mut inside = 0;
+    for equal in
+        document["equal_error"].as_array().unwrap().iter().filter(|e| e["error"] == "surface_percentile_99" && e["cost"] == "milliseconds")
+    {
+        let level = number(equal, "/level");
+        let sweep = points(&document, "lod").filter(|p| p["view"] == equal["view"] && p["samples"] == equal["samples"]);
+        let sweep: Vec<[f64; 2]> =
+            sweep.map(|p| [number(p, "/geometry/surface/percentile_99"), number(p, "/costs/0/milliseconds")]).collect();
+        let Some(ours) = equal["ours"].as_f64() else {
+            assert!(sweep.iter().all(|pair| pair[0] > level));
+            continue;
+        };
+        let below = sweep.iter().filter(|pair| pair[0] <= level).map(|pair| pair[1]).fold(f64::INFINITY, f64::min);
+        let above = sweep.iter().filter(|pair| pair[0] > level).map(|pair| pair[1]).fold(0.0, f64::max);
+        assert!(ours <= below && (above == 0.0 || ours >= above.min(below)), "{equal}: {sweep:?}");
+        inside += u32::from(above > 0.0 && ours < below);
+        let bvh = equal["methods"].as_array().unwrap().iter().find(|m| m["method"] == "bvh").unwrap();
+        assert!((number(bvh, "/ratio") - number(bvh, "/cost") / ours).abs() < 1e-12);
+    }
+    assert!(inside > 0, "nothing was interpolated");
+}
+
+#[test]
+fn the_same_bytes_at_any_number_of_threads_and_after_an_interruption() {
+    let desk = desk();
+    let whole = |threads, folder: &str| {
+        let (code, _, said) = desk.run_on(threads, &format!("error-time a.lod -o {folder} {QUICK} --compute free --methods lod,discrete"));
+        assert_eq!(code, 0, "{said}");
+        let mut files = desk.files(folder);
+        // What the run was called with, and the lines it went on from.
+        files.remove("run.json");
+        files.remove("views.jsonl");
+        files
+    };
+    let first = whole(1, "a");
+    assert!(first.contains_key("error-time.json") && first.contains_key("error-time.csv"));
+    assert!(first == whole(3, "b"), "threads");
+    // One view lost, and half of another line: both are done again.
+    let lines = desk.text("a/views.jsonl");
+    let second = lines.lines().nth(1).unwrap();
+    desk.write("a/views.jsonl", &second[..second.len() / 2]);
+    assert!(first == whole(2, "a"), "after an interruption");
+}
+
+#[test]
+fn a_list_of_jobs_says_what_options_say() {
+    let desk = desk();
+    desk.write(
+        "list.toml",
+        "size = \"32x32\"\ndistances = [3]\nmethods = [\"lod\", \"bvh\"]\ndeltas = [1, 2]\n[[scene]]\nfile = \"a.lod\"\n[[machine]]\nname = \"haydel2023\"\n",
+    );
+    let more = "--samples 1 --most-samples 0 --no-host";
+    desk.run(&format!("error-time --jobs list.toml -o a {more}"));
+    desk.run(&format!("error-time a.lod --size 32x32 --distances 3 --methods lod,bvh --values delta=1,2 --compute free -o b {more}"));
+    assert!(desk.bytes("a/error-time.json") == desk.bytes("b/error-time.json"));
+    let document: Value = serde_json::from_str(&desk.text("a/error-time.json")).unwrap();
+    assert!(points(&document, "lod").all(|point| point["viewed"].is_null()) && document["views"][0]["converged"].is_null());
+}
+
+#[test]
+fn what_is_wrong_is_refused_before_anything_is_traced() {
+    let desk = desk();
+    for (args, words) in [
+        ("", &["SCENE"][..]),
+        ("a.lod --samples 3", &["--samples", "square"]),
+        ("a.lod --values roughness=1", &["no method trades error by 'roughness'", "delta"]),
+        ("a.lod --values delta=-1", &["delta", "not a quality"]),
+        ("a.lod --methods lod,quick", &["'quick' is none of", "discrete"]),
+        ("a.lod --pixels-per-degree 0", &["1 to 1000"]),
+        ("a.lod --size 8192x8192 --samples 4", &["--samples 4", "too many"]),
+        ("a.lod --distances 0", &["distances"]),
+        ("a.lod --jobs a.lod", &["--jobs"]),
+        ("a.lod a.lod", &["a.lod", "another scene of the name a"]),
+        ("none.lod", &["none.lod"]),
+    ] {
+        desk.refused(
+            &format!("error-time {args} -o d"),
+            if words[0] == "a.lod" || words[0] == "none.lod" || words[0] == "--samples 4" { 1 } else { 2 },
+            words,
+        );
+    }
+    assert!(!desk.path("d").exists());
+}
