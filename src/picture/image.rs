@@ -2,12 +2,12 @@
 
 use crate::format::write_and_rename;
 use image::RgbImage;
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 use std::io;
 use std::path::Path;
 
 /// How far a picture is from the true one, channels from 0 to 255.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct ImageError {
     /// Root mean square difference.
     pub rmse: f64,

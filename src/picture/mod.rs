@@ -1,16 +1,22 @@
-//! Pictures: one ray per pixel through any method, shading, and the maps that show what was done.
+//! Pictures: one ray per pixel through any method, shading, the maps that show what was done, and how far one picture is from another.
 
+mod error;
+mod flip;
 mod frame;
 mod geometry;
 mod image;
+mod kernel;
 mod layouts;
 mod legend;
 mod shade;
 mod sheet;
 mod spread;
+mod ssim;
 mod surface_error;
 mod text;
 
+pub use error::PictureError;
+pub use flip::{PIXELS_PER_DEGREE, flip};
 pub use frame::{Frame, FrameStats, KindCount, render};
 pub use geometry::{GeometricError, geometric_error};
 pub use image::{ImageError, compare, save_png};
@@ -19,4 +25,5 @@ pub use legend::Legend;
 pub use shade::{error_map, level_map, normal_map, shaded, view_cosine};
 pub use sheet::Sheet;
 pub use spread::ErrorSpread;
+pub use ssim::structural_similarity;
 pub use surface_error::{FullResolution, Silhouette, SurfaceError};

@@ -1,8 +1,10 @@
-"""Makes the pairs of pictures and the figures that other programs give for them: venv/bin/python pairs/make.py, from the folder of the crate."""
+"""Makes the pairs of pictures and the figures that other programs give for them: python make.py FOLDER, where FOLDER holds the pictures that `lodray` below
+names. Needs flip-evaluator, scikit-image, scipy, numpy and pillow; figures.json says which versions made it."""
 
 import json
 import math
 import platform
+import sys
 from importlib.metadata import version
 from pathlib import Path
 
@@ -13,7 +15,7 @@ from scipy import ndimage
 from skimage.metrics import structural_similarity
 
 HERE = Path(__file__).parent
-LOD = HERE.parent / "lod"
+LOD = Path(sys.argv[1])
 DEFAULT = 3840 * math.pi / 180  # 0.7 m from a monitor of 3840 columns and 0.7 m
 COARSE = 30.0
 
@@ -103,7 +105,7 @@ def rendered():
 
 
 def lodray(other):
-    """A terrain at full resolution against `other` level of detail, from the project's renderer, in lod/:
+    """A terrain at full resolution against `other` level of detail, from the project's renderer, in FOLDER:
     lodray generate terrain --levels 3 --base 128 -o a.lod
     lodray render a.lod --size 200x150 --view three-quarter --distance 1.7 --method reference -o truth
     (--method lod --delta 0.2 -o coarse, and --method lod --delta 1 -o fine)"""
@@ -215,10 +217,8 @@ def main():
         for picture, side in ((a, "a"), (b, "b")):
             Image.fromarray(picture).save(HERE / f"{name}_{side}.png", optimize=True)
         values, own_mean = perceived(a, b, None)
-        values.astype("<f4").tofile(HERE.parent / "lod" / f"{name}.f4")
         coarse, _ = perceived(a, b, COARSE)
         definition = by_definition(a.astype(float), b.astype(float), DEFAULT)
-        definition.astype("<f4").tofile(HERE.parent / "lod" / f"{name}.definition.f4")
         figure = lambda v: None if v is None else round(float(v), 9)
         rows.append({
             "pair": name, "flip_own_mean": figure(own_mean), "flip_mean": figure(values.mean()), "flip_maximum": figure(values.max()),
@@ -228,7 +228,7 @@ def main():
         })
     packages = {name: version(name) for name in ("flip-evaluator", "scikit-image", "scipy", "numpy", "pillow")}
     packages["python"] = platform.python_version()
-    # One pair a line, so that a test without a JSON reader can read it.
+    # One pair a line, so that a change shows where it is.
     lines = ",\n".join("    " + json.dumps(row) for row in rows)
     about = {
         "flip_own_mean": "mean that flip-evaluator itself returns, at its default pixels per degree",
