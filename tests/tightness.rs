@@ -78,11 +78,12 @@ impl<'a, H: HitSink> Walk<'a, H> {
         }
     }
 
-    fn triangle(&mut self, id: TriangleId, [p0, p1, p2]: [Point; 3]) {
+    fn triangle(&mut self, id: TriangleId, corners: [Point; 3]) {
+        let [p0, p1, p2] = corners;
         let test = TriTest::eval(&tri_test::In { origin: self.ray.origin, direction: self.ray.direction, p0, p1, p2 });
         self.counts.triangles += 1;
         if test.hit {
-            self.sink.offer(id, &test);
+            self.sink.offer(id, &corners, &test);
         }
     }
 

@@ -12,6 +12,7 @@ use lodray::mesh::BoundKind;
 use lodray::mesh::procedural::{Options, Scene, generate};
 use lodray::method::knob::DELTA;
 use lodray::method::{Registered, bvh, lod, reference};
+use lodray::picture::Shading;
 use lodray::rays::{Camera, ModelSpace, View};
 use serde::Serialize;
 use std::path::PathBuf;
@@ -76,6 +77,7 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
                 method: method.name,
                 delta: method.has(DELTA.name).then_some(1.0),
                 choices: &[],
+                shading: (Shading::Full, 1),
                 camera: &camera,
                 stats: &shot.frame.stats,
                 error: error.as_ref().map(|error| (Against::FullResolution, error)),

@@ -2,7 +2,7 @@
 
 use super::output::{grouped, plain};
 use super::render::{Against, Comparison};
-use lodray::picture::FrameStats;
+use lodray::picture::{FrameStats, Shading};
 use lodray::rays::Camera;
 
 /// A picture's origin and figures.
@@ -14,6 +14,8 @@ pub struct Facts<'a> {
     pub delta: Option<f64>,
     /// What the method chose for the frame.
     pub choices: &'a [(&'static str, String)],
+    /// Of the picture, and samples in each of its pixels.
+    pub shading: (Shading, u32),
     pub camera: &'a Camera,
     pub stats: &'a FrameStats,
     pub error: Option<(Against, &'a Comparison)>,
@@ -51,6 +53,8 @@ impl Facts<'_> {
             line(&mut notes, "Delta", delta.to_string());
         }
         self.choices.iter().for_each(|(name, value)| line(&mut notes, &capital(name), value.clone()));
+        line(&mut notes, "Shading", self.shading.0.name().to_owned());
+        line(&mut notes, "Samples", self.shading.1.to_string());
         line(&mut notes, "Size", format!("{width}x{height}"));
         line(&mut notes, "Eye", vector(eye.to_array()));
         line(&mut notes, "Target", vector(target.to_array()));
@@ -69,6 +73,7 @@ impl Facts<'_> {
         line(&mut lines, "scene", self.scene.to_owned());
         line(&mut lines, "method", self.how());
         line(&mut lines, "size", format!("{width} x {height}"));
+        line(&mut lines, "shading", format!("{}, samples: {}", self.shading.0.name(), self.shading.1));
         line(&mut lines, "distance", format!("{} radii", plain(radii)));
         line(&mut lines, "eye", vector(eye.to_array()));
         line(&mut lines, "target", vector(target.to_array()));

@@ -6,7 +6,7 @@ use anyhow::Context;
 use image::RgbImage;
 use lodray::format::Scene;
 use lodray::method::Method;
-use lodray::picture::{Frame, Legend, error_map, level_map, normal_map, render, save_png, shaded};
+use lodray::picture::{Frame, Legend, Shader, Shading, error_map, level_map, normal_map, render, sampled, save_png, shaded};
 use lodray::rays::{Camera, ModelSpace};
 use std::path::Path;
 
@@ -16,12 +16,26 @@ pub struct Shot {
     pub image: RgbImage,
 }
 
-/// Traces and shades one view.
+/// Traces and shades one view with one sample in each pixel, by full-resolution normals: pictures of all methods, and of all reports, compare.
 pub fn shoot(method: &dyn Method, scene: &Scene, space: &ModelSpace, camera: &Camera, delta: f64, what: &str) -> Shot {
-    let bar = progress(u64::from(camera.height), what);
+    shoot_with(method, &Shader::new(scene, space, Shading::Full), space, [camera; 2], delta, what)
+}
+
+/// Traces one view: the frame with one ray in each pixel of the first camera, and the picture with the samples of the other.
+pub fn shoot_with(
+    method: &dyn Method,
+    shader: &Shader<'_>,
+    space: &ModelSpace,
+    [camera, samples]: [&Camera; 2],
+    delta: f64,
+    what: &str,
+) -> Shot {
+    let is_one = samples.samples == camera.samples;
+    let bar = progress(u64::from(camera.height) * (1 + u64::from(!is_one)), what);
     let frame = render(method, space, camera, delta, &|| bar.inc(1));
+    let image =
+        if is_one { shaded(&frame, shader, camera) } else { sampled(method, shader, space, samples, delta, &|| bar.inc(1)).image() };
     bar.finish_and_clear();
-    let image = shaded(&frame, scene, camera);
     Shot { frame, image }
 }
 

@@ -7,13 +7,16 @@ use super::folder::{Overrule, RunFolder, one_run};
 use super::method::{Chosen, PictureMethod};
 use super::original::original;
 use super::output::{explain, grouped, open, print_json, print_line, remark};
-use super::pictures::{Shot, shoot};
+use super::pictures::{Shot, shoot_with};
 use anyhow::Context;
+use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use image::RgbImage;
 use lodray::format::Scene;
 use lodray::method::knob::DELTA;
 use lodray::method::{Method, SurfaceHit, reference};
-use lodray::picture::{FrameStats, GeometricError, ImageError, KindCount, Sheet, compare, geometric_error, save_png, view_cosine};
+use lodray::picture::{
+    FrameStats, GeometricError, ImageError, KindCount, Shader, Shading, Sheet, compare, geometric_error, save_png, view_cosine,
+};
 use lodray::rays::{Camera, ModelSpace, Sight};
 use serde::Serialize;
 use std::collections::BTreeMap;
@@ -65,9 +68,26 @@ pub struct Args {
     /// The mesh that the scene was made from, for --compare or --method original
     #[arg(long, value_name = "FILE")]
     mesh: Option<PathBuf>,
+    /// Normals that the picture is shaded with
+    #[arg(long, value_parser = shading(), default_value = Shading::default().name())]
+    shading: Shading,
+    /// Samples in each pixel of the picture, on a regular grid; maps and figures are those of one ray through its centre
+    #[arg(long, value_parser = samples(), default_value = "1")]
+    samples: u32,
     /// Print the figures as JSON
     #[arg(long)]
     json: bool,
+}
+
+/// Shadings by name.
+fn shading() -> impl TypedValueParser<Value = Shading> {
+    let named = |name: String| Shading::ALL.into_iter().find(|shading| shading.name() == name).unwrap_or_default();
+    PossibleValuesParser::new(Shading::ALL.map(|shading| PossibleValue::new(shading.name()).help(shading.help()))).map(named)
+}
+
+/// Sides of the grid of samples, by how many they are.
+fn samples() -> impl TypedValueParser<Value = u32> {
+    PossibleValuesParser::new(["1", "4", "16", "64"]).map(|count| count.parse::<u32>().map_or(1, u32::isqrt))
 }
 
 #[derive(Serialize)]
@@ -77,6 +97,9 @@ struct Report {
     /// What the method chose for the frame.
     #[serde(skip_serializing_if = "BTreeMap::is_empty")]
     choices: BTreeMap<&'static str, String>,
+    shading: Shading,
+    /// In each pixel of the picture; `stats` are those of one.
+    samples: u32,
     size: [u32; 2],
     eye: [f64; 3],
     /// Distance from the target in bounding radii.
@@ -138,8 +161,9 @@ impl Subject {
         Self { space: ModelSpace::of(&scene), scene }
     }
 
-    fn shoot(&self, method: &dyn Method, camera: &Camera, delta: f64, what: &str) -> Shot {
-        shoot(method, &self.scene, &self.space, camera, delta, what)
+    /// The frame of the first camera, the picture of the other.
+    fn shoot(&self, method: &dyn Method, shading: Shading, cameras: [&Camera; 2], delta: f64, what: &str) -> Shot {
+        shoot_with(method, &Shader::new(&self.scene, &self.space, shading), &self.space, cameras, delta, what)
     }
 }
 
@@ -158,6 +182,8 @@ fn subjects(args: &Args) -> anyhow::Result<(Subject, Option<Subject>)> {
 pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
     let (seen, mesh) = subjects(args)?;
     let camera = args.camera.camera(&seen.space, None)?;
+    let samples = camera.with_samples(args.samples).context("--samples")?;
+    let cameras = [&camera, &samples];
     let pictures = ["image.png", "levels.png", "normals.png", SHEET, "error.png"];
     let names = pictures.into_iter().take(4 + usize::from(args.compare));
     let inputs: Vec<_> = std::iter::once(&args.scene).chain(&args.mesh).map(PathBuf::as_path).collect();
@@ -170,7 +196,7 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
     let (method, cached) = chosen.make(&shown.scene, &cache)?;
     let building = begun.elapsed().as_secs_f64();
     let begun = Instant::now();
-    let shot = shown.shoot(&*method, &camera, delta, "tracing");
+    let shot = shown.shoot(&*method, args.shading, cameras, delta, "tracing");
     let seconds = [building, begun.elapsed().as_secs_f64()];
     let choices = method.choices(&Sight::new(&camera, &shown.space, delta));
     drop(method);
@@ -178,7 +204,7 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
     let truth = if args.compare {
         let (against, of) = mesh.as_ref().map_or((Against::FullResolution, &seen), |mesh| (Against::Original, mesh));
         let (reference, _) = Chosen::plain(&reference::METHOD).make(&of.scene, &cache)?;
-        let truth = of.shoot(&*reference, &camera, delta, against.name());
+        let truth = of.shoot(&*reference, args.shading, cameras, delta, against.name());
         let error = compare_shots(&shot, &truth, &of.scene, &camera);
         Some((against, truth.image, error))
     } else {
@@ -189,6 +215,7 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
         method: args.method.name(),
         delta: chosen.method.has(DELTA.name).then_some(delta),
         choices: &choices,
+        shading: (args.shading, args.samples * args.samples),
         camera: &camera,
         stats: &shot.frame.stats,
         error: truth.as_ref().map(|(against, _, error)| (*against, error)),
@@ -213,6 +240,8 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
         method: args.method.name(),
         delta,
         choices: choices.into_iter().collect(),
+        shading: args.shading,
+        samples: args.samples * args.samples,
         size: [camera.width, camera.height],
         eye: camera.eye.to_array(),
         distance: camera.radii,

@@ -128,6 +128,12 @@ impl Reference {
         best
     }
 
+    /// Corners of a full-resolution triangle in units.
+    pub fn corners(&self, tree: u32, full_node: u32) -> [[i32; 3]; 3] {
+        let first = tree as usize * lattice::len(self.levels);
+        lattice::node(self.levels, self.levels, full_node).map(|p| self.points[first + lattice::index(self.levels, p)])
+    }
+
     /// The same, testing every triangle.
     pub fn trace_brute_force(&self, origin: [f64; 3], direction: [f64; 3]) -> Option<ReferenceHit> {
         let ray = self.moved(origin, direction)?;

@@ -14,7 +14,7 @@ use crate::golden::Exact;
 use crate::lab::crack::Closedness;
 use crate::method::lod::{LodImage, LodTraverser};
 use crate::method::{ClosestHit, Hit, HitSink, TriangleId};
-use crate::num::{Direction, Ray, RayT};
+use crate::num::{Direction, Point, Ray, RayT};
 use crate::step::NoSteps;
 use serde::Serialize;
 use std::panic::{AssertUnwindSafe, catch_unwind};
@@ -102,7 +102,7 @@ impl HitSink for Seen {
         RayT::MAX
     }
     #[inline(always)]
-    fn offer(&mut self, id: TriangleId, test: &tri_test::Out) {
+    fn offer(&mut self, id: TriangleId, _: &[Point; 3], test: &tri_test::Out) {
         if test.front {
             self.front += 1;
         } else {

@@ -5,8 +5,10 @@ use crate::block::bary_map::{self, BaryMap, NodeIndex};
 use crate::block::hit_divide::{self, HitDivide};
 use crate::block::hit_select::{self, FullId, HitSelect};
 use crate::block::tri_test::{self, EdgeFunction, TNumerator};
-use crate::num::{BARY_ONE, Bary, RayT, T_NEAR_TO_T_SHIFT, TNear, U, wire_struct};
+use crate::format::encode_normal;
+use crate::num::{BARY_ONE, Bary, Point, RayT, T_NEAR_TO_T_SHIFT, TNear, U, wire_struct};
 use crate::rays::ModelRay;
+use glam::DVec3;
 
 wire_struct! {
     /// The hit record.
@@ -53,8 +55,8 @@ pub struct TriangleId {
 pub trait HitSink {
     /// Nothing beyond this t is wanted.
     fn t_max(&self) -> RayT;
-    /// Triangle `id` was met; `test.hit` is true.
-    fn offer(&mut self, id: TriangleId, test: &tri_test::Out);
+    /// Triangle `id` with these corners, as they were tested, was met; `test.hit` is true.
+    fn offer(&mut self, id: TriangleId, corners: &[Point; 3], test: &tri_test::Out);
     /// Something was met that counts.
     fn found(&self) -> bool;
     /// Nothing more is wanted.
@@ -79,7 +81,7 @@ pub struct ClosestHit {
     any: bool,
     t: RayT,
     id: FullId,
-    best: Option<(TriangleId, tri_test::Out)>,
+    best: Option<(TriangleId, [Point; 3], tri_test::Out)>,
 }
 
 impl ClosestHit {
@@ -95,7 +97,7 @@ impl ClosestHit {
 
     /// The hit record: divides and maps.
     pub fn record(&self) -> Option<Hit> {
-        let (id, test) = self.best.as_ref()?;
+        let (id, _, test) = self.best.as_ref()?;
         let weight = |edge: EdgeFunction| {
             // An edge function is at most det: the quotient is at most 2^32 before its last bit is dropped.
             let numerator = TNumerator::new(edge.get());
@@ -121,6 +123,19 @@ impl ClosestHit {
             full_b2: full.b2,
         })
     }
+
+    /// The same in the world, with what pictures need beyond it. `ray` is the one that was traced.
+    pub fn surface(&self, ray: &ModelRay) -> Option<SurfaceHit> {
+        let (_, corners, _) = self.best.as_ref()?;
+        Some(SurfaceHit::new(ray, &self.record()?, plane(corners.map(|p| p.get().map(|c| c as f64)))))
+    }
+}
+
+/// Code of the normal of a triangle with these corners, as [`SurfaceHit::plane`].
+pub(super) fn plane(corners: [[f64; 3]; 3]) -> u32 {
+    let [p0, p1, p2] = corners.map(DVec3::from_array);
+    // Products of coordinates of 32 bits are far below the largest f32.
+    encode_normal((p1 - p0).cross(p2 - p0).as_vec3().to_array()).unwrap_or(SurfaceHit::NO_PLANE)
 }
 
 impl HitSink for ClosestHit {
@@ -130,7 +145,7 @@ impl HitSink for ClosestHit {
     }
 
     #[inline(always)]
-    fn offer(&mut self, id: TriangleId, test: &tri_test::Out) {
+    fn offer(&mut self, id: TriangleId, corners: &[Point; 3], test: &tri_test::Out) {
         let t = HitDivide::eval(&hit_divide::In { numerator: test.t_num, denominator: test.det }).quotient;
         if t < self.range[0] || t > self.range[1] {
             return;
@@ -147,7 +162,7 @@ impl HitSink for ClosestHit {
         });
         if select.closer {
             (self.t, self.id) = (t, select.id);
-            self.best = Some((id, *test));
+            self.best = Some((id, *corners, *test));
         }
     }
 
@@ -177,7 +192,7 @@ impl HitSink for Crossings {
     }
 
     #[inline(always)]
-    fn offer(&mut self, _: TriangleId, test: &tri_test::Out) {
+    fn offer(&mut self, _: TriangleId, _: &[Point; 3], test: &tri_test::Out) {
         if test.front {
             self.front += 1;
         } else {
@@ -201,7 +216,7 @@ pub struct SurfaceHit {
     pub full_node: u32,
     /// Barycentrics on the full-resolution triangle.
     pub full_bary: [f32; 3],
-    /// Level of the triangle that was met. (With its byte a pixel that may be empty has 48.)
+    /// Level of the triangle that was met. (With its byte a pixel that may be empty has 56.)
     pub level: u8,
     /// Its node on that level.
     pub node: u32,
@@ -209,11 +224,17 @@ pub struct SurfaceHit {
     pub bary: [f32; 3],
     /// The front face was met.
     pub front: bool,
+    /// Normal (p1 - p0) x (p2 - p0) of the triangle that was met, as it was morphed: a code of [`crate::format::decode_normal`], or
+    /// [`Self::NO_PLANE`]. A side product for pictures: the hit record of the hardware has none.
+    pub plane: u32,
 }
 
 impl SurfaceHit {
-    /// A hit of the integer ray of a query.
-    pub fn new(ray: &ModelRay, hit: &Hit) -> Self {
+    /// No normal: a triangle without area. No code has such halves.
+    pub const NO_PLANE: u32 = 0x8000_8000;
+
+    /// A hit of the integer ray of a query on a triangle of that `plane`.
+    fn new(ray: &ModelRay, hit: &Hit, plane: u32) -> Self {
         let weight = |b: Bary| (b.get() as f64 / BARY_ONE as f64) as f32;
         // Field widths are below 32 bits.
         let [tree, full_node, node] = [hit.tree.get(), hit.full_node.get(), hit.node.get()].map(|v| v as u32);
@@ -226,9 +247,10 @@ impl SurfaceHit {
             node,
             bary: [hit.b0, hit.b1, hit.b2].map(weight),
             front: hit.front,
+            plane,
         }
     }
 }
 
 /// Frames keep one for each pixel.
-const _: () = assert!(size_of::<Option<SurfaceHit>>() == 48);
+const _: () = assert!(size_of::<Option<SurfaceHit>>() == 56);

@@ -1,17 +1,13 @@
-//! Pictures from frames: headlight shading, normals, level-of-detail map, error map.
+//! Pictures from frames: shaded, normals, level-of-detail map, error map.
 
 use super::Frame;
+use super::shading::{BACKGROUND, Light, Shader};
 use crate::format::{Scene, to_srgb};
 use crate::method::SurfaceHit;
 use crate::rays::Camera;
 use glam::{DVec3, Vec3};
 use image::{Rgb, RgbImage};
 use rayon::prelude::*;
-
-/// Base colour of a scene without materials.
-const GREY: Vec3 = Vec3::splat(0.8);
-/// Background, linear.
-const BACKGROUND: Vec3 = Vec3::new(0.012, 0.016, 0.024);
 
 /// Colours of levels 0 to 10, coarse to fine, linear: blue, green, yellow, red, white.
 const LEVELS: [[f32; 3]; 11] = [
@@ -28,13 +24,13 @@ const LEVELS: [[f32; 3]; 11] = [
     [0.85, 0.75, 0.85],
 ];
 
-/// Headlight shading with the full-resolution normals and the material's colour, sRGB.
-pub fn shaded(frame: &Frame, scene: &Scene, camera: &Camera) -> RgbImage {
+/// Headlight shading with the material's colour, sRGB; the picture is as large as the frame, every ray being a pixel's only one.
+pub fn shaded(frame: &Frame, shader: &Shader<'_>, camera: &Camera) -> RgbImage {
     paint(frame, |index, pixel| {
-        let Some(pixel) = pixel else { return BACKGROUND };
-        let material = scene.record(pixel.tree as usize).material.get() as u16;
-        let cosine = view_cosine(scene, camera, index, pixel);
-        scene.colour(material).map_or(GREY, Vec3::from_array) * (0.06 + 0.94 * cosine)
+        let (x, y) = (index as u32 % camera.width, index as u32 / camera.width); // below 2^16 each
+        let mut light = Light::default();
+        shader.add(&mut light, &camera.ray(x, y), pixel.as_ref());
+        light.mean()
     })
 }
 
@@ -108,7 +104,7 @@ fn paint(frame: &Frame, colour: impl Fn(usize, &Option<SurfaceHit>) -> Vec3 + Sy
 }
 
 /// A linear colour in sRGB.
-fn encoded(colour: Vec3) -> Rgb<u8> {
+pub(super) fn encoded(colour: Vec3) -> Rgb<u8> {
     Rgb(colour.to_array().map(to_srgb))
 }
 

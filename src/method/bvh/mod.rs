@@ -149,7 +149,7 @@ impl Trace for BvhTracer<'_> {
         };
         let mut hit = ClosestHit::of(self.levels, &ray, query.any);
         self.traverser.trace(&ray.ray, steps, &mut hit);
-        hit.record().map(|hit| SurfaceHit::new(&ray, &hit))
+        hit.surface(&ray)
     }
 }
 

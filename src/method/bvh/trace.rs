@@ -149,13 +149,14 @@ impl<'a> BvhTraverser<'a> {
         let mut run = TriangleRun::default();
         for slot in slots {
             let (points, id) = self.leaves.triangle(slot);
-            let [p0, p1, p2] = points.map(Point::from_i32);
+            let corners = points.map(Point::from_i32);
+            let [p0, p1, p2] = corners;
             let test = TriTest::eval(&tri_test::In { origin: ray.origin, direction: ray.direction, p0, p1, p2 });
             run.add(test.hit, steps);
             if test.hit {
                 let levels = self.levels;
                 let (tree, node) = (id >> (2 * levels), id & ((1 << (2 * levels)) - 1));
-                sink.offer(TriangleId { tree, level: levels, node }, &test);
+                sink.offer(TriangleId { tree, level: levels, node }, &corners, &test);
             }
         }
         run.state(steps);

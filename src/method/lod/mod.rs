@@ -73,6 +73,6 @@ impl Trace for LodTracer<'_> {
         };
         let mut hit = ClosestHit::of(self.traverser.levels(), &ray, query.any);
         self.traverser.trace(&ray.ray, steps, &mut hit);
-        hit.record().map(|hit| SurfaceHit::new(&ray, &hit))
+        hit.surface(&ray)
     }
 }

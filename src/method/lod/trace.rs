@@ -169,11 +169,12 @@ impl<S: StepSink, H: HitSink> Journey<'_, S, H> {
     #[inline(always)]
     fn triangles<const COUNT: usize>(&mut self, level: u32, first: u32, triangles: [[Point; 3]; COUNT]) {
         let mut run = TriangleRun::default();
-        for (node, [p0, p1, p2]) in (first..).zip(triangles) {
+        for (node, corners) in (first..).zip(triangles) {
+            let [p0, p1, p2] = corners;
             let test = TriTest::eval(&tri_test::In { origin: self.ray.origin, direction: self.ray.direction, p0, p1, p2 });
             run.add(test.hit, self.steps);
             if test.hit {
-                self.sink.offer(TriangleId { tree: self.tree, level, node }, &test);
+                self.sink.offer(TriangleId { tree: self.tree, level, node }, &corners, &test);
             }
         }
         run.state(self.steps);

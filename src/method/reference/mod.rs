@@ -1,5 +1,6 @@
 //! The full-resolution mesh in `f64`: the truth that pictures are compared with. It is no hardware, and reads no memory.
 
+use super::hit::plane;
 use super::{Method, Registered, SurfaceHit, Trace, Tracer};
 use crate::golden::reference::Reference;
 use crate::rays::{ModelSpace, Query, Sight};
@@ -46,6 +47,7 @@ impl Trace for &Truth {
             node: hit.full_node,
             bary: hit.bary.map(|b| b as f32),
             front: hit.front,
+            plane: plane(self.reference.corners(hit.tree, hit.full_node).map(|p| p.map(f64::from))),
         })
     }
 }
