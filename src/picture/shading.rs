@@ -10,6 +10,7 @@ use crate::method::SurfaceHit;
 use crate::rays::{ModelSpace, Query};
 use glam::{DVec3, Vec3};
 use serde::{Deserialize, Serialize};
+use std::ops::AddAssign;
 
 /// Base colour of a scene without materials.
 const GREY: Vec3 = Vec3::splat(0.8);
@@ -96,6 +97,17 @@ impl Light {
     /// Samples that hit, of all.
     pub fn coverage(&self) -> f32 {
         self.hits as f32 / self.samples.max(1) as f32
+    }
+}
+
+impl AddAssign for Light {
+    /// More samples of the same pixel.
+    fn add_assign(&mut self, other: Self) {
+        self.sum += other.sum;
+        self.weight += other.weight;
+        self.plain += other.plain;
+        self.hits += other.hits;
+        self.samples += other.samples;
     }
 }
 

@@ -1,39 +1,49 @@
 //! Pictures of any number of samples, and when more would change nothing.
 
-use crate::cli::pictures::shoot;
+use crate::cli::output::progress;
 use image::RgbImage;
-use lodray::format::{Scene, to_srgb};
 use lodray::method::Method;
-use lodray::picture::compare;
+use lodray::picture::{Sampled, Shader, compare, sampled};
 use lodray::rays::{Camera, ModelSpace};
 
 /// What is drawn.
 pub struct Subject<'a> {
-    pub scene: &'a Scene,
+    pub shader: Shader<'a>,
     pub space: &'a ModelSpace,
 }
 
 /// A picture, and how far another with other samples would be from it.
 pub struct Converging {
-    pub picture: RgbImage,
+    pub picture: Sampled,
     /// Root mean square over all channels, from 0 to 255.
     pub standard_error: f64,
 }
 
 impl Subject<'_> {
-    /// The picture of a camera with samples: their mean in linear light.
-    pub fn draw(&self, method: &dyn Method, camera: &Camera, delta: f64, what: &str) -> RgbImage {
-        let shot = shoot(method, self.scene, self.space, camera, delta, what).image;
-        mean(&shot, camera, |_, _| true)
+    /// The picture of a camera with samples.
+    pub fn draw(&self, method: &dyn Method, camera: &Camera, delta: f64, what: &str) -> Sampled {
+        let bar = progress(u64::from(camera.pixels()[1]), what);
+        let picture = sampled(method, &self.shader, self.space, camera, delta, &|| bar.inc(1));
+        bar.finish_and_clear();
+        picture
     }
 
-    /// Full resolution, and its standard error by four pictures of a quarter of the samples each, which lie between one another.
-    pub fn converging(&self, reference: &dyn Method, camera: &Camera) -> Converging {
-        let shot = shoot(reference, self.scene, self.space, camera, 1.0, "converged picture").image;
-        let picture = mean(&shot, camera, |_, _| true);
-        let quarters = [(0, 0), (1, 0), (0, 1), (1, 1)].map(|of| mean(&shot, camera, move |x, y| (x % 2, y % 2) == of));
-        let mean_square = quarters.iter().map(|quarter| difference(quarter, &picture).powi(2)).sum::<f64>() / 3.0;
-        Converging { picture, standard_error: (mean_square / 4.0).sqrt() }
+    /// Full resolution with an even number of samples along a side of each pixel: four pictures of a quarter of them each, which lie between one another,
+    /// and whose mean it is. The standard error is that of a mean of four, as if they were drawn by chance: samples in even rows do better than that.
+    pub fn converging(&self, reference: &dyn Method, camera: &Camera, side: u32) -> anyhow::Result<Converging> {
+        let quarter = |of: u32| {
+            let shift = [of % 2, of / 2].map(|k| (f64::from(k) - 0.5) / f64::from(side));
+            let camera = camera.with_samples(side / 2)?.shifted(shift);
+            anyhow::Ok(self.draw(reference, &camera, f64::INFINITY, "converged picture"))
+        };
+        let quarters = (0..4).map(quarter).collect::<anyhow::Result<Vec<_>>>()?;
+        let mut picture = quarters[0].clone();
+        for other in &quarters[1..] {
+            picture.pixels.iter_mut().zip(&other.pixels).for_each(|(sum, light)| *sum += *light);
+        }
+        let all = picture.image();
+        let squares: f64 = quarters.iter().map(|quarter| difference(&quarter.image(), &all).powi(2)).sum();
+        Ok(Converging { picture, standard_error: (squares / 3.0 / 4.0).sqrt() })
     }
 }
 
@@ -42,25 +52,11 @@ pub fn difference(a: &RgbImage, b: &RgbImage) -> f64 {
     compare(a, b).rmse
 }
 
-fn mean(shot: &RgbImage, camera: &Camera, counts: impl Fn(u32, u32) -> bool) -> RgbImage {
-    let side = camera.samples;
-    if side == 1 {
-        return shot.clone();
-    }
-    let [width, height] = camera.pixels();
-    let table: Vec<f32> = (0..=255u8).map(linear).collect();
-    RgbImage::from_fn(width, height, |x, y| {
-        let (mut sum, mut count) = ([0.0f32; 3], 0.0f32);
-        for (i, j) in (0..side).flat_map(|j| (0..side).map(move |i| (i, j))).filter(|&(i, j)| counts(i, j)) {
-            let colour = shot.get_pixel(x * side + i, y * side + j).0;
-            (0..3).for_each(|k| sum[k] += table[usize::from(colour[k])]);
-            count += 1.0;
-        }
-        image::Rgb(sum.map(|s| to_srgb(s / count)))
-    })
-}
-
-fn linear(byte: u8) -> f32 {
-    let v = f32::from(byte) / 255.0;
-    if v <= 0.04045 { v / 12.92 } else { ((v + 0.055) / 1.055).powf(2.4) }
+/// Luminance of the pixels that are wholly surface, linear (Rec. 709); not a number elsewhere.
+pub fn luminance(picture: &Sampled) -> Vec<f32> {
+    let of = |light: &lodray::picture::Light| {
+        let mean = light.mean();
+        if light.coverage() < 1.0 { f32::NAN } else { 0.2126 * mean.x + 0.7152 * mean.y + 0.0722 * mean.z }
+    };
+    picture.pixels.iter().map(of).collect()
 }

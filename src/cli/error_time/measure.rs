@@ -1,6 +1,6 @@
 //! A view, measured: every setting of every method against full resolution, with each number of samples, on every machine.
 
-use super::draw::{Converging, Subject, difference};
+use super::draw::{Converging, Subject, difference, luminance};
 use super::host::{Timed, host_times};
 use super::plan::{Plan, Setting};
 use super::row::Measured;
@@ -15,9 +15,9 @@ use image::RgbImage;
 use lodray::format::Scene;
 use lodray::mesh::FinestSurface;
 use lodray::method::{Method, reference};
-use lodray::picture::{Frame, FullResolution, PictureError, SurfaceError, error_map, level_map, save_png};
+use lodray::picture::{Frame, FullResolution, PictureError, Shader, SurfaceError, error_map, level_map, save_png};
 use lodray::rays::{Camera, ModelSpace, Sight};
-use lodray::report::error_time::{Converged, Costs, Energy, PictureEntry, Point, SceneEntry, Shift, ViewEntry};
+use lodray::report::error_time::{Appearance, Converged, Costs, Energy, PictureEntry, Point, SceneEntry, Shift, ViewEntry};
 use lodray::report::result::SimResult;
 use std::path::Path;
 
@@ -41,6 +41,7 @@ pub struct Bench<'a> {
 struct Unseen {
     point: usize,
     picture: RgbImage,
+    luminance: Vec<f32>,
 }
 
 impl<'a> Bench<'a> {
@@ -66,14 +67,14 @@ impl<'a> Bench<'a> {
         let geometry = self.geometry(&camera, &truth, &settings);
         let mut book = PictureBook { folder, prefix, entries: Vec::new() };
         let (mut points, mut shift, mut unseen) = (Vec::new(), Vec::new(), Vec::new());
-        let subject = Subject { scene: self.scene, space: &self.space };
+        let subject = self.subject();
         let ppd = self.plan.measure.pixels_per_degree;
         let kept = self.plan.sides.iter().copied().filter(|&side| side <= MOST_KEPT).max();
         for &side in &self.plan.sides {
             let camera = camera.with_samples(side)?;
             let samples = side * side;
-            let full = subject.draw(&*self.reference, &camera, 1.0, "full resolution");
-            let shifted = subject.draw(&*self.reference, &camera.shifted([0.5, 0.5]), 1.0, "shifted by half a pixel");
+            let full = subject.draw(&*self.reference, &camera, f64::INFINITY, "full resolution").image();
+            let shifted = subject.draw(&*self.reference, &camera.shifted([0.5, 0.5]), f64::INFINITY, "shifted by half a pixel").image();
             shift.push(Shift { samples, picture: PictureError::of(&shifted, &full, ppd) });
             if kept == Some(side) {
                 book.add(&full, FULL, "full resolution", samples, "image")?;
@@ -81,7 +82,8 @@ impl<'a> Bench<'a> {
             for ((at, setting), (geometry, frame)) in settings.iter().zip(&geometry) {
                 let (_, method) = &self.methods[*at];
                 let words = format!("{} {}", setting.chosen.method.name, setting.words);
-                let picture = subject.draw(&**method, &camera, setting.chosen.delta(), &words);
+                let drawn = subject.draw(&**method, &camera, setting.chosen.delta(), &words);
+                let picture = drawn.image();
                 if kept == Some(side) && setting.is_default {
                     let name = setting.chosen.method.name;
                     book.add(&picture, name, &setting.words, samples, "image")?;
@@ -105,9 +107,12 @@ impl<'a> Bench<'a> {
                     geometry: *geometry,
                     picture: errors,
                     viewed: None,
+                    appearance: None,
                     costs: results.iter().enumerate().map(|(machine, result)| costs(machine, result)).collect(),
                 });
-                unseen.push(Unseen { point: points.len() - 1, picture });
+                if self.plan.measure.most_samples > 0 {
+                    unseen.push(Unseen { point: points.len() - 1, picture, luminance: luminance(&drawn) });
+                }
             }
         }
         let converged = self.converged(&camera, &mut points, &unseen)?;
@@ -125,6 +130,10 @@ impl<'a> Bench<'a> {
             pictures: book.entries,
             host: self.host(&camera, &settings),
         })
+    }
+
+    fn subject(&self) -> Subject<'_> {
+        Subject { shader: Shader::new(self.scene, &self.space, self.plan.measure.shading), space: &self.space }
     }
 
     /// All settings, with the number of their method.
@@ -163,21 +172,24 @@ impl<'a> Bench<'a> {
     /// far every picture is from it. None if none is wanted.
     fn converged(&self, camera: &Camera, points: &mut [Point], unseen: &[Unseen]) -> anyhow::Result<Option<Converged>> {
         let most = self.plan.measure.most_samples;
-        let subject = Subject { scene: self.scene, space: &self.space };
+        let subject = self.subject();
         let mut side = 2 * self.plan.sides.iter().copied().max().unwrap_or(1).max(2);
         if side > most {
             return Ok(None);
         }
         loop {
-            let Converging { picture, standard_error } = subject.converging(&*self.reference, &camera.with_samples(side)?);
+            let Converging { picture: drawn, standard_error } = subject.converging(&*self.reference, camera, side)?;
+            let picture = drawn.image();
             let errors = unseen.iter().map(|unseen| difference(&unseen.picture, &picture));
             let smallest = errors.filter(|&error| error > 0.0).fold(f64::INFINITY, f64::min);
             // Twice as many along a side, if the picture's size allows that.
-            if standard_error > 0.25 * smallest && 2 * side <= most && camera.with_samples(2 * side).is_ok() {
+            if standard_error > 0.25 * smallest && 2 * side <= most && camera.with_samples(side).is_ok() {
                 side *= 2;
                 continue;
             }
+            let bright = luminance(&drawn);
             for unseen in unseen {
+                points[unseen.point].appearance = Appearance::of(&unseen.luminance, &bright);
                 points[unseen.point].viewed = Some(PictureError::of(&unseen.picture, &picture, self.plan.measure.pixels_per_degree));
             }
             return Ok(Some(Converged { samples: side * side, standard_error }));

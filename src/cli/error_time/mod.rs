@@ -154,7 +154,7 @@ fn document(plan: &Plan, measured: &[&Measured]) -> ErrorTime {
         options: Options {
             size: plan.jobs.scenes.first().and_then(|scene| scene.views.first()).map_or([0; 2], |view| view.size),
             samples: plan.sides.iter().map(|side| side * side).collect(),
-            shading: "full".to_owned(),
+            shading: plan.measure.shading.name().to_owned(),
             pixels_per_degree: plan.measure.pixels_per_degree,
             nearest_stride: plan.measure.stride,
         },

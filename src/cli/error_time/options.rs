@@ -8,10 +8,11 @@ use crate::cli::method::{Chosen, Listed, machine_methods};
 use crate::cli::names::named;
 use crate::cli::output::open;
 use crate::cli::pass::{Target, machine, machine_files};
+use crate::cli::render::shading;
 use crate::cli::sweep::{Jobs, Origin, SceneJobs, ViewJob};
 use anyhow::{Context, ensure};
 use lodray::method::METHODS;
-use lodray::picture::PIXELS_PER_DEGREE;
+use lodray::picture::{PIXELS_PER_DEGREE, Shading};
 use lodray::rays::{DEFAULT_VIEW_ANGLE_DEGREES, ModelSpace};
 use lodray::run::{self, Compute};
 use std::collections::{BTreeMap, BTreeSet};
@@ -61,6 +62,9 @@ pub struct Args {
     /// Samples of a pixel, squares, with commas (default: 1,4,16,64; 1,4 with --quick)
     #[arg(long, value_name = "N", value_delimiter = ',', value_parser = samples)]
     samples: Vec<u32>,
+    /// Normals that pictures are shaded with
+    #[arg(long, value_parser = shading(), default_value = Shading::default().name())]
+    shading: Shading,
     /// Pixels of a degree of sight, as FLIP has it: 67 is a screen of 0.7 m and 3840 pixels from 0.7 m
     #[arg(long, value_name = "N", default_value_t = PIXELS_PER_DEGREE, value_parser = pixels_per_degree)]
     pixels_per_degree: f64,
@@ -144,6 +148,7 @@ impl Args {
         let size =
             jobs.scenes.iter().flat_map(|scene| &scene.views).map(|view| view.size.into_iter().max().unwrap_or(1)).max().unwrap_or(1);
         let measure = Measure {
+            shading: self.shading,
             pixels_per_degree: self.pixels_per_degree,
             // About 65,536 rays at most.
             stride: size.div_ceil(256).max(1),

@@ -3,6 +3,7 @@
 use crate::cli::method::Chosen;
 use crate::cli::sweep::{Jobs, SceneJobs, ViewJob};
 use lodray::method::{ErrorKnob, Method};
+use lodray::picture::Shading;
 use lodray::rays::{MAX_PIXELS, MAX_SIDE, Sight};
 use lodray::report::result::{MachineFacts, MethodFacts};
 use std::collections::{BTreeMap, HashSet};
@@ -22,6 +23,8 @@ pub struct Plan {
 /// How errors are measured.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Measure {
+    /// How pictures are shaded.
+    pub shading: Shading,
     /// Of the display that FLIP assumes.
     pub pixels_per_degree: f64,
     /// One of so many columns and rows is held against the nearest point of the surface.

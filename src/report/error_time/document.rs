@@ -153,8 +153,38 @@ pub struct Point {
     /// How far its picture is from the converged one.
     #[serde(default)]
     pub viewed: Option<PictureError>,
+    /// How bright it is for the converged one.
+    #[serde(default)]
+    pub appearance: Option<Appearance>,
     /// What it costs, by machine and kind of compute.
     pub costs: Vec<Costs>,
+}
+
+/// Luminance against that of the converged picture, linear, over the pixels that are wholly surface in both: what is left of an error if the surface is where it
+/// should be.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Appearance {
+    /// Mean luminance of the converged picture, 0 to 1.
+    pub converged: f64,
+    /// Mean luminance over that, 1 for the same.
+    pub mean_ratio: f64,
+    /// Root mean square difference.
+    pub rmse: f64,
+}
+
+impl Appearance {
+    /// Of two pictures' luminances, not a number where a pixel does not count; none if none does.
+    pub fn of(picture: &[f32], converged: &[f32]) -> Option<Self> {
+        let (mut count, mut sum, mut own, mut squares) = (0.0, 0.0, 0.0, 0.0);
+        for (&a, &b) in picture.iter().zip(converged).filter(|(a, b)| !a.is_nan() && !b.is_nan()) {
+            let (a, b) = (f64::from(a), f64::from(b));
+            count += 1.0;
+            own += a;
+            sum += b;
+            squares += (a - b) * (a - b);
+        }
+        (sum > 0.0).then(|| Self { converged: sum / count, mean_ratio: own / sum, rmse: (squares / count).sqrt() })
+    }
 }
 
 /// What a frame costs on a machine.

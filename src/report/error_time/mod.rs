@@ -6,8 +6,8 @@ mod figure;
 mod table;
 
 pub use document::{
-    Converged, Costs, Energy, EqualCost, EqualError, ErrorTime, KIND, MethodEntry, Options, PictureEntry, Point, SceneEntry, Shift,
-    TraceGrid, TracedHit, TracedRay, VERSION, ViewEntry,
+    Appearance, Converged, Costs, Energy, EqualCost, EqualError, ErrorTime, KIND, MethodEntry, Options, PictureEntry, Point, SceneEntry,
+    Shift, TraceGrid, TracedHit, TracedRay, VERSION, ViewEntry,
 };
 pub use equal::{ALWAYS_BELOW, NOT_REACHED, Pair, cost_at, equal_errors, front};
 pub use figure::{COSTS, CostFigure, ERRORS, ErrorFigure};
