@@ -18,7 +18,6 @@ use super::render::compare_shots;
 use anyhow::Context;
 use jobs::{Jobs, Origin, SceneJobs, ViewJob};
 use lodray::format::Scene;
-use lodray::mesh::BoundKind;
 use lodray::method::{Method, reference};
 use lodray::rays::{Camera, ModelSpace};
 use rows::ImageFigures;
@@ -129,7 +128,7 @@ impl<'a> Sweep<'a> {
         }
         let made = match &scene.origin {
             Origin::File(file) => open(file),
-            Origin::Generate(options) => make(options, BoundKind::default()),
+            Origin::Generate(made) => make(&made.options, made.bounds),
         };
         let made = match made {
             Ok(made) => made,
