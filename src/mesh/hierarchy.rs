@@ -18,9 +18,9 @@ pub struct Placement {
 #[serde(rename_all = "lowercase")]
 pub enum BoundKind {
     /// The largest displacement of one split, at the edge or below it (paper section 3.3).
-    #[default]
     Largest,
     /// The displacements of all splits at and below the edge, one upon the other: what is seen is within 1.5 tolerances of the surface (docs/error-bound.md).
+    #[default]
     Total,
 }
 
