@@ -12,7 +12,7 @@ fn terrain(c: &mut Criterion) {
     let surface = procedural::generate(&options).expect("default options");
     let directory = tempfile::tempdir().expect("a temporary directory");
     let path = directory.path().join("bench.lod");
-    let built = || build(&surface, SceneInfo::default(), over_trees).expect("a valid surface");
+    let built = || build(&surface, SceneInfo { bounds: BoundKind::Largest, ..SceneInfo::default() }, over_trees).expect("a valid surface");
     let mut group = c.benchmark_group("terrain");
     group.sample_size(10).throughput(Throughput::Elements(surface.finest_triangles()));
     group.bench_function("generate", |b| b.iter(|| procedural::generate(&options).expect("default options")));

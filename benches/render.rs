@@ -5,6 +5,7 @@
 use criterion::{Criterion, SamplingMode, Throughput, criterion_group, criterion_main};
 use lodray::bvh::over_trees;
 use lodray::format::{self, SceneInfo};
+use lodray::mesh::BoundKind;
 use lodray::mesh::procedural::{self, Options};
 use lodray::method::ClosestHit;
 use lodray::method::bvh::BvhTraverser;
@@ -36,7 +37,7 @@ fn benches(c: &mut Criterion) {
     for roughness in [0.45, 0.55] {
         let options = Options { levels, roughness: Some(roughness), ..Options::new(procedural::Scene::Terrain) };
         let surface = procedural::generate(&options).expect("options");
-        let scene = format::build(&surface, SceneInfo::default(), over_trees).expect("a scene");
+        let scene = format::build(&surface, SceneInfo { bounds: BoundKind::Largest, ..SceneInfo::default() }, over_trees).expect("a scene");
         drop(surface);
         let image = LodImage::of(&scene);
         let mut lod = LodTraverser::new(image);

@@ -1,11 +1,12 @@
 //! The audit: sound scenes pass with nothing left out, and each kind of damage under right checksums is found by the check that is meant for it.
 
+use lodray::bvh::over_trees;
 use lodray::format::audit::{AuditReport, audit};
-use lodray::format::{BoundData, BvhChild, Scene, SceneError, VertexData, export_level, layout};
+use lodray::format::{BoundData, BvhChild, Scene, SceneError, VertexData, encode, export_level, layout, tree_boxes};
 use lodray::mesh::{BoundKind, Surface, edge_index, lattice, quantise};
 use lodray::num::{U, Vec3, Wire, bound_decode};
 use lodray_test_support::cases;
-use lodray_test_support::surfaces::{fan, grid, octahedron, scene, surface};
+use lodray_test_support::surfaces::{fan, grid, info, octahedron, scene, scene_with, surface};
 use proptest::prelude::*;
 
 #[test]
@@ -86,7 +87,12 @@ const NORMALS: usize = 6;
 
 #[test]
 fn one_lowered_code_is_found_wherever_it_stands() {
-    let good = scene(&octahedron(2));
+    BoundKind::ALL.into_iter().for_each(one_lowered_code_is_found);
+}
+
+fn one_lowered_code_is_found(kind: BoundKind) {
+    let good = scene_with(&octahedron(2), kind);
+    assert_eq!((audit(&good).passed(), audit(&good).bounds), (true, kind));
     let (mut lowered, one) = (0, U::<10>::new(1));
     let lower = |code: &mut U<10>| *code = U::new(code.get().saturating_sub(one.get()));
     for tree in 0..good.trees() {
@@ -105,6 +111,19 @@ fn one_lowered_code_is_found_wherever_it_stands() {
         }
     }
     assert_eq!(lowered, 8 * 7);
+}
+
+#[test]
+fn the_papers_bounds_do_not_pass_for_total_ones() {
+    for s in [octahedron(2), octahedron(5), grid(3, 3), fan(4)] {
+        let mut h = quantise(&s, BoundKind::Largest).unwrap();
+        h.bounds.kind = BoundKind::Total;
+        let nodes = over_trees(&tree_boxes(&h)).unwrap();
+        let report = audit(&encode(&h, &s, info("said to be total"), &nodes).unwrap());
+        assert_eq!(report.bounds, BoundKind::Total);
+        found_by(&report, "bounds cover the true displacement");
+        assert!(report.checks.iter().filter(|check| !check.passed()).count() == 1, "{report}");
+    }
 }
 
 #[test]
@@ -280,8 +299,10 @@ proptest! {
 
     #[test]
     fn any_surface_passes(s in any_surface()) {
-        let report = audit(&scene(&s));
-        prop_assert!(report.passed(), "{}", report);
+        for kind in BoundKind::ALL {
+            let report = audit(&scene_with(&s, kind));
+            prop_assert!(report.passed(), "{}", report);
+        }
     }
 
     #[test]

@@ -3,8 +3,11 @@
 use lodray::golden::{Exact, naive_bounds, true_bounds};
 use lodray::mesh::procedural::{self, Options};
 use lodray::mesh::{BoundKind, Hierarchy, Surface, edge_index, lattice, quantise};
+use lodray::num::BoundEncoder;
+use lodray_test_support::cases;
 use lodray_test_support::models::{Rng, any_cone, ball, direction, model, ray_through, terrain};
 use lodray_test_support::surfaces::{bumps, fan, grid, octahedron, surface};
+use proptest::prelude::*;
 
 /// Edges with a bound, both kinds together.
 fn check(surface: &Surface, name: &str) -> usize {
@@ -100,10 +103,41 @@ fn check_bounds(h: &Hierarchy) {
     }
 }
 
+/// The same model with bounds of this kind.
+fn with(kind: BoundKind, h: &Hierarchy) -> Hierarchy {
+    let mut other = h.clone();
+    other.bounds.kind = kind;
+    naive_bounds(&mut other);
+    other
+}
+
 #[test]
 fn bounds_hold_on_closed_surfaces() {
     for seed in 0..10 {
-        check_bounds(&ball(seed as u32 % 5, 0.4, seed));
-        check_bounds(&terrain(2, seed as u32 % 5, 0.4, seed));
+        for kind in BoundKind::ALL {
+            check_bounds(&with(kind, &ball(seed as u32 % 5, 0.4, seed)));
+            check_bounds(&with(kind, &terrain(2, seed as u32 % 5, 0.4, seed)));
+        }
+    }
+}
+
+proptest! {
+    #![proptest_config(cases(60))]
+
+    #[test]
+    fn total_bounds_are_between_the_largest_and_as_many_of_them_as_there_are_levels(levels in 0u32..5, roughness in 0.0..3.0f64, seed: u64) {
+        for h in [ball(levels, roughness, seed), terrain(2, levels, roughness, seed)] {
+            let [largest, total] = BoundKind::ALL.map(|kind| with(kind, &h));
+            let [truths, totals] = [&largest, &total].map(|h| true_bounds(h).edges);
+            let encoder = BoundEncoder::new(total.bounds.scale);
+            for (at, (&least, &sum)) in truths.iter().zip(&totals).enumerate() {
+                prop_assert!(least <= sum && sum <= u64::from(levels) * least, "edge {at}: {least} and {sum}");
+                // At equal scale the codes are in the same order.
+                prop_assert!(encoder.encode(least) <= total.bounds.codes[at]);
+            }
+            // Displacements of several levels lie one upon the other, so it is not the same in other words.
+            prop_assert!(levels < 2 || roughness < 0.1 || truths != totals);
+            check_bounds(&total);
+        }
     }
 }

@@ -56,6 +56,23 @@ fn generate_and_info() {
 }
 
 #[test]
+fn displacement_bounds_are_named_wherever_a_scene_is_told_of() {
+    let desk = empty();
+    for kind in ["largest", "total"] {
+        let made = desk.json(&format!("generate terrain --levels 3 --base 8 --bounds {kind} -o {kind}.lod"));
+        assert_eq!((&made["bounds"], &desk.json(&format!("verify {kind}.lod"))["bounds"]), (&kind.into(), &kind.into()));
+        assert!(desk.run(&format!("info {kind}.lod")).contains(&format!("\nbounds      {kind}: delta 1")));
+        let said = desk.run(&format!("verify {kind}.lod"));
+        assert!(said.starts_with(&format!("displacement bounds: {kind}\n")) && said.ends_with("passed\n"), "{said}");
+    }
+    // Without a word the default, which the help names.
+    let plain = desk.json("generate terrain --levels 3 --base 8 -o plain.lod");
+    let default = plain["bounds"].as_str().unwrap();
+    assert!(desk.run("generate --help").contains(&format!("[default: {default}]")));
+    assert_eq!(fs::read(desk.path("plain.lod")).unwrap(), fs::read(desk.path(&format!("{default}.lod"))).unwrap());
+}
+
+#[test]
 fn build_tells_how_far_it_is_from_the_original() {
     let desk = empty();
     fs::write(desk.path("sheet.obj"), sheet(24)).unwrap();

@@ -47,6 +47,8 @@ fn a_mistake_is_named_with_its_place_before_anything_runs() {
         (format!("{HEAD}speed = 3\n{SCENE}{MACHINE}"), "line 4: unknown field `speed`"),
         (scene("colour = 1"), "line 6: unknown field `colour`"),
         (scene("levels = 1"), "line 6: scene: levels goes with generate"),
+        (scene("bounds = \"total\""), "line 6: scene: bounds goes with generate"),
+        (format!("{HEAD}bounds = \"sum\"\n{SCENE}{MACHINE}"), "line 4: unknown variant `sum`, expected `largest` or `total`"),
         (scene("generate = \"wall\""), "line 5: scene: has both file and generate"),
         (scene("eyes = [[0, 1, 2]]\ndistances = [3]"), "line 7: scene: eyes are in place of distances"),
         (format!("{HEAD}{SCENE}{SCENE}{MACHINE}"), "line 6: scene: there is another of the name \"a\""),
@@ -257,4 +259,26 @@ fn ticks_differ() {
         assert!(ticks.len() > 3 && ticks.windows(2).all(|pair| pair[0] < pair[1]), "{chart}: {ticks:?}");
         assert!(ticks.iter().all(|tick| *tick < 1100.0), "{chart}: {ticks:?}");
     }
+}
+
+#[test]
+fn jobs_of_different_bounds_are_different_jobs() {
+    let desk = with_scene();
+    let generated =
+        |name: &str, bounds: &str| format!("[[scene]]\nname = \"{name}\"\ngenerate = \"terrain\"\nlevels = 3\nbase = 8\n{bounds}\n");
+    let head = "size = \"16x16\"\ndistances = [2]\nmethods = [\"lod\"]\n";
+    let run = |head: String| {
+        let scenes = generated("a", "") + &generated("b", "bounds = \"total\"");
+        desk.write("jobs.toml", &format!("{head}{scenes}{MACHINE}"));
+        desk.run("sweep jobs.toml -o out")
+    };
+    assert!(run(format!("{head}bounds = \"largest\"\n")).contains("2 jobs, 0 of them done before"));
+    // A scene's own word counts before the list's.
+    assert!(run(format!("{head}bounds = \"total\"\n")).contains("2 jobs, 1 of them done before"));
+    let text = fs::read_to_string(desk.path("out/results.jsonl")).unwrap();
+    let rows: Vec<serde_json::Value> = text.lines().map(|line| serde_json::from_str(line).unwrap()).collect();
+    let said: Vec<_> = rows.iter().map(|row| (row["scene"].as_str(), row["result"]["setup"]["scene"]["bounds"].as_str())).collect();
+    assert_eq!(said, [(Some("a"), None), (Some("b"), Some("total")), (Some("a"), Some("total"))]);
+    let cycles: Vec<_> = rows.iter().map(|row| row["result"]["cycles"].as_u64()).collect();
+    assert!(cycles[1] == cycles[2] && cycles[0] != cycles[1], "{cycles:?}");
 }

@@ -21,7 +21,7 @@ const STDIN: &str = "-";
 #[derive(clap::Args, Clone, Copy)]
 pub struct BoundsArg {
     /// What displacement bounds cover
-    #[arg(long = "bounds", value_name = "KIND", value_parser = named::<BoundKind>(), default_value = BoundKind::Largest.name())]
+    #[arg(long = "bounds", value_name = "KIND", value_parser = named::<BoundKind>(), default_value = BoundKind::default().name())]
     pub kind: BoundKind,
 }
 

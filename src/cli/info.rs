@@ -2,7 +2,7 @@
 
 use super::output::{grouped, open, plain, print_json, print_line};
 use lodray::format::Scene;
-use lodray::mesh::TwoSidedDistance;
+use lodray::mesh::{BoundKind, TwoSidedDistance};
 use lodray::num::PADDING_BITS;
 use lodray::rays::ModelSpace;
 use serde::Serialize;
@@ -40,6 +40,8 @@ struct Info<'a> {
     base_triangles: u64,
     base_vertices: u64,
     finest_triangles: u64,
+    /// What displacement bounds cover.
+    bounds: BoundKind,
     centre: [f64; 3],
     radius: f64,
     unit: f64,
@@ -106,6 +108,7 @@ impl<'a> Info<'a> {
             base_triangles: scene.trees() as u64,
             base_vertices: u64::from(meta.base_vertices),
             finest_triangles: triangles,
+            bounds: meta.bounds,
             centre: space.centre(),
             radius: space.radius(),
             unit: space.placement.scale,
@@ -142,6 +145,7 @@ fn summary(i: &Info<'_>) -> String {
             ),
         ),
         ("model size", format!("{width} x {height} x {depth} (width x height x depth, in the units of its coordinates)")),
+        ("bounds", format!("{}: {}", i.bounds.name(), promise(i.bounds))),
     ];
     if let Some(d) = &i.distance {
         let mean = percent(d.to_original.mean.max(d.from_original.mean));
@@ -158,6 +162,14 @@ fn summary(i: &Info<'_>) -> String {
     }
     lines.extend(losses(i).into_iter().map(|loss| ("warning", loss)));
     lines.iter().map(|(name, value)| format!("{name:<12}{value}")).collect::<Vec<_>>().join("\n")
+}
+
+/// What displacement bounds mean for who chooses a delta.
+fn promise(bounds: BoundKind) -> &'static str {
+    match bounds {
+        BoundKind::Largest => "delta 1 keeps each level's displacement under a pixel; levels add up",
+        BoundKind::Total => "delta 1.5 keeps what is seen within a pixel of its place on the surface",
+    }
 }
 
 /// What was lost when the scene was made.

@@ -20,7 +20,14 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
     if args.json {
         print_json(&report)?;
     } else {
-        let mut text = format!("{:<60}{:>16}{:>16}{:>12}\n", "check", "checked", "expected", "breaches");
+        let mut text = format!(
+            "displacement bounds: {}\n{:<60}{:>16}{:>16}{:>12}\n",
+            report.bounds.name(),
+            "check",
+            "checked",
+            "expected",
+            "breaches"
+        );
         for check in &report.checks {
             let [checked, expected, breaches] = [check.checked, check.expected, check.breaches].map(grouped);
             text += &format!("{:<60}{checked:>16}{expected:>16}{breaches:>12}\n", check.name);

@@ -58,7 +58,7 @@ pub struct Meta {
     /// Units to world.
     pub placement: Placement,
     /// What displacement bounds cover; `largest` is not written.
-    #[serde(default, skip_serializing_if = "is_largest")]
+    #[serde(default = "BoundKind::unnamed", skip_serializing_if = "BoundKind::is_unnamed")]
     pub bounds: BoundKind,
     /// Bound scale: mantissa, 18 bits.
     pub bound_mantissa: u32,
@@ -71,11 +71,6 @@ pub struct Meta {
     /// How the model was made.
     #[serde(default, skip_serializing_if = "serde_json::Value::is_null")]
     pub origin: serde_json::Value,
-}
-
-#[expect(clippy::trivially_copy_pass_by_ref, reason = "the signature that serde calls")]
-fn is_largest(kind: &BoundKind) -> bool {
-    *kind == BoundKind::Largest
 }
 
 impl Meta {

@@ -3,7 +3,7 @@
 use super::goal::Goal;
 use super::model::Model;
 use crate::format::SceneError;
-use crate::mesh::{EdgeCodes, Hierarchy, Placement, lattice};
+use crate::mesh::{BoundKind, EdgeCodes, Hierarchy, Placement, lattice};
 use crate::num::{Cone, Direction, Point, Ray, S, U};
 use serde::{Deserialize, Serialize};
 
@@ -81,7 +81,7 @@ impl Found {
             base_vertices: vertices,
             triangles: self.triangles.clone(),
             points: self.points.clone(),
-            bounds: EdgeCodes::default(),
+            bounds: EdgeCodes { kind: BoundKind::Largest, ..EdgeCodes::default() },
         };
         Model::of_hierarchy("found", hierarchy)
     }

@@ -4,7 +4,7 @@ use crate::bvh::over_trees;
 use crate::format::{self, Scene, SceneError, SceneInfo};
 use crate::golden::naive_bounds;
 use crate::lab::crack::{Closedness, closedness};
-use crate::mesh::{Hierarchy, Surface, lattice};
+use crate::mesh::{BoundKind, Hierarchy, Surface, lattice};
 use crate::rays::ModelSpace;
 
 /// A model of the lab.
@@ -24,12 +24,12 @@ pub struct Model {
 }
 
 impl Model {
-    /// Rounds and encodes a surface.
+    /// Rounds and encodes a surface, with the paper's bounds, on which the figures of docs/stability.md rest.
     ///
     /// # Errors
     /// Those of [`format::build`].
     pub fn of_surface(name: impl Into<String>, surface: Surface) -> Result<Self, SceneError> {
-        let scene = format::build(&surface, SceneInfo::default(), over_trees)?;
+        let scene = format::build(&surface, SceneInfo { bounds: BoundKind::Largest, ..SceneInfo::default() }, over_trees)?;
         Ok(Self { positions: surface.positions, ..Self::of_scene(name, scene) })
     }
 

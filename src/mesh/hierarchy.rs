@@ -13,20 +13,31 @@ pub struct Placement {
     pub scale: f64,
 }
 
-/// What a displacement bound covers.
+/// What a displacement bound covers. The default is what scenes are made with where nobody asks; what rests on the paper's bounds asks for `Largest`.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum BoundKind {
     /// The largest displacement of one split, at the edge or below it (paper section 3.3).
-    #[default]
     Largest,
-    /// The displacements of all splits at and below the edge, one upon the other: what is seen is within 1.5 tolerances of the surface (docs/exactness.md).
+    /// The displacements of all splits at and below the edge, one upon the other: what is seen is within 1.5 tolerances of the surface (docs/error-bound.md).
+    #[default]
     Total,
 }
 
 impl BoundKind {
     /// Both.
     pub const ALL: [Self; 2] = [Self::Largest, Self::Total];
+
+    /// What files mean that name none: those from before there was a choice, whatever the default is.
+    pub const fn unnamed() -> Self {
+        Self::Largest
+    }
+
+    /// Whether files need not name it.
+    #[expect(clippy::trivially_copy_pass_by_ref, reason = "the signature that serde calls")]
+    pub fn is_unnamed(&self) -> bool {
+        *self == Self::unnamed()
+    }
 
     /// Its name in options and files.
     pub const fn name(self) -> &'static str {

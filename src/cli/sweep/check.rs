@@ -1,7 +1,7 @@
 //! From the list to jobs. Everything is looked at before the first job runs, so that a mistake in the last line does not cost the hours before it:
 //! values and their ranges, scene files, machines with their tables, and cameras.
 
-use super::jobs::{Jobs, Origin, SceneJobs, ViewJob};
+use super::jobs::{Generated, Jobs, Origin, SceneJobs, ViewJob};
 use super::list::{List, ListText, MachineEntry, Maybe, SceneEntry, Spanned};
 use crate::cli::args::{CameraArgs, Change, Size, radii};
 use crate::cli::generate;
@@ -10,8 +10,7 @@ use crate::cli::output::open;
 use crate::cli::pass::{Target, is_path, machine, machine_files};
 use crate::one_line;
 use clap::Args as _;
-use lodray::mesh::Placement;
-use lodray::mesh::procedural;
+use lodray::mesh::{BoundKind, Placement, procedural};
 use lodray::method::bvh::{LEAF_LAYOUT, LEAF_SIZE};
 use lodray::method::knob::DELTA;
 use lodray::method::{Knob, KnobError, Knobs};
@@ -193,6 +192,7 @@ fn scene(source: &ListText<'_>, list: &List, spanned: &Spanned<SceneEntry>, fold
                 place(entry.base.as_ref().map(Spanned::span), "base"),
                 place(entry.seed.as_ref().map(Spanned::span), "seed"),
                 place(entry.roughness.as_ref().map(Spanned::span), "roughness"),
+                place(entry.bounds.as_ref().map(Spanned::span), "bounds"),
             ];
             if let Some((key, place)) = own.into_iter().flatten().next() {
                 return Err(source.wrong(place, format!("scene: {key} goes with generate, not with file")));
@@ -212,7 +212,8 @@ fn scene(source: &ListText<'_>, list: &List, spanned: &Spanned<SceneEntry>, fold
                 roughness: entry.roughness.as_ref().map(|roughness| *roughness.get_ref()),
             };
             generate::check(&options).map_err(|why| source.wrong(spanned.span(), format!("scene: {}", one_line(&why))))?;
-            (Origin::Generate(options), format!("{:?}", kind.get_ref()).to_lowercase(), 0, stand_in())
+            let bounds = entry.bounds.as_ref().or(list.bounds.as_ref()).map_or_else(BoundKind::default, |bounds| *bounds.get_ref());
+            (Origin::Generate(Generated { options, bounds }), format!("{:?}", kind.get_ref()).to_lowercase(), 0, stand_in())
         }
         (Some(file), Some(_)) => return Err(source.wrong(file.span(), "scene: has both file and generate")),
         (None, None) => return Err(source.wrong(spanned.span(), "scene: needs either file or generate")),

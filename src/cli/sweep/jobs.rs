@@ -8,8 +8,7 @@ use crate::cli::output::open;
 use crate::cli::pass::Target;
 use anyhow::Context;
 use lodray::format::Scene;
-use lodray::mesh::BoundKind;
-use lodray::mesh::procedural;
+use lodray::mesh::{BoundKind, procedural};
 use lodray::method::Knob;
 use lodray::method::bvh::{LEAF_LAYOUT, LEAF_SIZE};
 use lodray::method::knob::DELTA;
@@ -26,7 +25,17 @@ use xxhash_rust::xxh3::xxh3_64;
 #[serde(rename_all = "lowercase")]
 pub enum Origin {
     File(PathBuf),
-    Generate(procedural::Options),
+    Generate(Generated),
+}
+
+/// What is generated, with which displacement bounds.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Generated {
+    #[serde(flatten)]
+    pub options: procedural::Options,
+    /// A job of the paper's bounds is the same as when there were no others.
+    #[serde(skip_serializing_if = "BoundKind::is_unnamed")]
+    pub bounds: BoundKind,
 }
 
 /// A scene and what to see of it.
@@ -56,7 +65,7 @@ impl SceneJobs {
     pub fn open(&self) -> anyhow::Result<Scene> {
         match &self.origin {
             Origin::File(file) => open(file),
-            Origin::Generate(options) => make(options, BoundKind::default()),
+            Origin::Generate(made) => make(&made.options, made.bounds),
         }
     }
 

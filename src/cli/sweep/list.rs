@@ -1,7 +1,7 @@
 //! The list of jobs as it stands in its file; every value knows where.
 
 use crate::cli::method::Listed;
-use lodray::mesh::procedural;
+use lodray::mesh::{BoundKind, procedural};
 use lodray::run::Compute;
 use serde::Deserialize;
 use std::collections::BTreeMap;
@@ -24,6 +24,8 @@ pub struct List {
     pub compute: Maybe<Vec<Compute>>,
     pub leaf_layout: Maybe<String>,
     pub leaf_size: Maybe<u32>,
+    /// Of generated scenes.
+    pub bounds: Maybe<BoundKind>,
     /// Other knobs of methods, by name.
     #[serde(default)]
     pub knobs: BTreeMap<String, Spanned<Value>>,
@@ -50,6 +52,7 @@ pub struct SceneEntry {
     pub base: Maybe<u32>,
     pub seed: Maybe<u64>,
     pub roughness: Maybe<f64>,
+    pub bounds: Maybe<BoundKind>,
     pub size: Maybe<String>,
     pub distances: Maybe<Vec<f64>>,
     /// From the target to the eye, for distances.

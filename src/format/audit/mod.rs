@@ -10,7 +10,7 @@ mod tally;
 mod tree;
 
 use super::Scene;
-use crate::mesh::{edges_of_level, edges_of_tree, lattice};
+use crate::mesh::{BoundKind, edges_of_level, edges_of_tree, lattice};
 use crate::num::bound_decode;
 use edges::Edges;
 use rayon::prelude::*;
@@ -43,6 +43,9 @@ impl Check {
 /// What an audit found.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct AuditReport {
+    /// What the scene says its displacement bounds cover: that is what they were held to.
+    #[serde(default = "BoundKind::unnamed")]
+    pub bounds: BoundKind,
     /// All checks.
     pub checks: Vec<Check>,
 }
@@ -60,8 +63,9 @@ impl AuditReport {
 }
 
 impl fmt::Display for AuditReport {
-    /// A line per check: verdict, count, name, and the first breach.
+    /// The kind of bounds, then a line per check: verdict, count, name, and the first breach.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        writeln!(f, "displacement bounds: {}", self.bounds.name())?;
         for c in &self.checks {
             let verdict = if c.passed() { "ok" } else { "FAILED" };
             writeln!(f, "{verdict:>6} {:>12} checked: {}", c.checked, c.name)?;
@@ -103,7 +107,7 @@ pub fn audit(scene: &Scene) -> AuditReport {
         debug_assert_eq!(kind, for_kind);
         Check { name: name.into(), checked: tally.checked, expected, breaches: tally.breaches, first: tally.first }
     });
-    AuditReport { checks: checks.collect() }
+    AuditReport { bounds: scene.meta().bounds, checks: checks.collect() }
 }
 
 /// For each code the length in units that it covers.

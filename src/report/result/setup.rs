@@ -2,6 +2,7 @@
 
 use crate::format::Scene;
 use crate::machine::Machine;
+use crate::mesh::BoundKind;
 use crate::method::bvh::{LEAF_LAYOUT, LEAF_SIZE};
 use crate::method::knob::DELTA;
 use crate::method::{Knobs, Registered};
@@ -64,12 +65,16 @@ pub struct SceneFacts {
     pub base_triangles: u64,
     /// Triangles at full resolution.
     pub finest_triangles: u64,
+    /// What its displacement bounds cover; `largest` is not written.
+    #[serde(default = "BoundKind::unnamed", skip_serializing_if = "BoundKind::is_unnamed")]
+    pub bounds: BoundKind,
 }
 
 impl From<&Scene> for SceneFacts {
     fn from(scene: &Scene) -> Self {
         let name = scene.meta().name.clone();
-        Self { name, levels: scene.levels(), base_triangles: scene.trees() as u64, finest_triangles: scene.finest_triangles() }
+        let (base_triangles, finest_triangles) = (scene.trees() as u64, scene.finest_triangles());
+        Self { name, levels: scene.levels(), base_triangles, finest_triangles, bounds: scene.meta().bounds }
     }
 }
 

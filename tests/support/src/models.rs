@@ -4,7 +4,7 @@ use lodray::{
     bvh::over_trees,
     format::{self, Scene, SceneInfo},
     golden::naive_bounds,
-    mesh::{EdgeCodes, Hierarchy, Placement, Surface, lattice},
+    mesh::{BoundKind, EdgeCodes, Hierarchy, Placement, Surface, lattice},
     num::{Cone, Ray, U, Vec3, random, snap},
 };
 
@@ -41,7 +41,7 @@ fn noise(p: [i64; 3], seed: u64) -> [f64; 3] {
 }
 
 /// A hierarchy over base vertices with small integer coordinates; `place` maps M times the interpolated base position and the
-/// vertex's level to a position in units, so vertices that trees share get one position.
+/// vertex's level to a position in units, so vertices that trees share get one position. Its bounds are the paper's.
 pub fn model(levels: u32, base: &[[i64; 3]], triangles: Vec<[u32; 3]>, place: impl Fn([i64; 3], u32) -> [f64; 3]) -> Hierarchy {
     let m = 1i64 << levels;
     let mut points = Vec::new();
@@ -61,7 +61,7 @@ pub fn model(levels: u32, base: &[[i64; 3]], triangles: Vec<[u32; 3]>, place: im
         base_vertices: base.len() as u32,
         triangles,
         points,
-        bounds: EdgeCodes::default(),
+        bounds: EdgeCodes { kind: BoundKind::Largest, ..EdgeCodes::default() },
     };
     naive_bounds(&mut h);
     h
@@ -164,9 +164,9 @@ pub fn any_rays(h: &Hierarchy, count: usize, seed: u64) -> Vec<Ray> {
     (0..count).map(|_| random()).collect()
 }
 
-/// The scene of a surface.
+/// The scene of a surface, with the paper's bounds.
 pub fn build(surface: &Surface) -> Scene {
-    format::build(surface, SceneInfo::default(), over_trees).expect("a valid surface")
+    format::build(surface, SceneInfo { bounds: BoundKind::Largest, ..SceneInfo::default() }, over_trees).expect("a valid surface")
 }
 
 /// The scene of a hierarchy, all normals up.

@@ -108,9 +108,15 @@ pub fn info(name: &str) -> SceneInfo {
     SceneInfo { name: name.into(), origin: serde_json::json!({ "made": "test" }), bounds: BoundKind::Largest }
 }
 
-/// The scene of a surface with a plain quad-BVH.
+/// The scene of a surface with a plain quad-BVH and the paper's bounds.
 pub fn scene(surface: &Surface) -> lodray::format::Scene {
-    lodray::format::build(surface, info("test"), |boxes| Ok::<_, String>(quad_tree(boxes))).expect("a valid surface")
+    scene_with(surface, BoundKind::Largest)
+}
+
+/// The scene of a surface with a plain quad-BVH.
+pub fn scene_with(surface: &Surface, bounds: BoundKind) -> lodray::format::Scene {
+    lodray::format::build(surface, SceneInfo { bounds, ..info("test") }, |boxes| Ok::<_, String>(quad_tree(boxes)))
+        .expect("a valid surface")
 }
 
 /// Offset and length of section `kind` (1 to 8) in a scene file, as `docs/scene-format.md` says.
