@@ -14,5 +14,5 @@ pub use geometry::{GeometricError, geometric_error};
 pub use image::{ImageError, compare, save_png};
 pub use layouts::distinct_lines;
 pub use legend::Legend;
-pub use shade::{error_map, level_map, normal_map, shaded, view_cosine};
+pub use shade::{HOTTEST, error_map, level_colour, level_map, normal_map, shaded, view_cosine};
 pub use sheet::Sheet;

@@ -1,0 +1,348 @@
+//! `error-time.json` as it is written and read: nothing in it depends on the host, and every number is finite or absent.
+
+use crate::report::result::MachineFacts;
+use serde::{Deserialize, Serialize};
+use std::collections::BTreeMap;
+
+/// What `kind` says of such a document.
+pub const KIND: &str = "error-time";
+/// Its version.
+pub const VERSION: u32 = 1;
+
+/// Error against cost, of scenes, views, methods and machines.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct ErrorTime {
+    /// [`KIND`].
+    pub kind: String,
+    /// [`VERSION`].
+    pub version: u32,
+    /// Name and version of the program that made it.
+    pub program: String,
+    /// What was asked for.
+    pub options: Options,
+    /// Scenes.
+    pub scenes: Vec<SceneEntry>,
+    /// Machines.
+    pub machines: Vec<MachineFacts>,
+    /// Methods.
+    pub methods: Vec<MethodEntry>,
+    /// Views.
+    pub views: Vec<ViewEntry>,
+    /// What was measured: one for each view, method, setting and number of samples.
+    pub points: Vec<Point>,
+    /// What methods cost at an error that all reach.
+    #[serde(default)]
+    pub equal_error: Vec<EqualError>,
+    /// Pictures, in files beside the document.
+    #[serde(default)]
+    pub pictures: Vec<PictureEntry>,
+    /// The steps of a coarse grid of rays.
+    #[serde(default)]
+    pub traces: Vec<TraceGrid>,
+}
+
+/// What was asked for.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Options {
+    /// Columns and rows.
+    pub size: [u32; 2],
+    /// Samples per pixel.
+    pub samples: Vec<u32>,
+    /// How pictures are shaded.
+    pub shading: String,
+    /// Of the display that FLIP assumes.
+    pub pixels_per_degree: f64,
+    /// One in so many rays is held against the nearest point of the full-resolution surface.
+    pub nearest_stride: u32,
+}
+
+/// A scene.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct SceneEntry {
+    /// Its name.
+    pub name: String,
+    /// Its file, without folders.
+    pub file: String,
+    /// Checksum of the file.
+    pub hash: String,
+    /// Number of splits N.
+    pub levels: u32,
+    /// Triangles of the base mesh.
+    pub base_triangles: u64,
+    /// Triangles at full resolution.
+    pub finest_triangles: u64,
+    /// What its displacement bounds cover.
+    pub bounds: String,
+}
+
+/// A method.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct MethodEntry {
+    /// Its name in the registry.
+    pub name: String,
+    /// The knob that was swept; absent if it has none.
+    #[serde(default)]
+    pub knob: Option<String>,
+    /// One line about it.
+    pub help: String,
+}
+
+/// A view of a scene.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct ViewEntry {
+    /// Number of the scene.
+    pub scene: usize,
+    /// Distance of the eye from the target in bounding radii.
+    pub distance: f64,
+    /// The eye.
+    pub eye: [f64; 3],
+    /// Columns and rows.
+    pub size: [u32; 2],
+    /// The picture that stands for the truth of what a viewer sees, if there is one.
+    #[serde(default)]
+    pub converged: Option<Converged>,
+    /// Full resolution with the camera shifted by half a pixel: an error that no level of detail makes.
+    #[serde(default)]
+    pub shift: Vec<Shift>,
+}
+
+/// A picture with so many samples that more change little.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Converged {
+    /// Samples per pixel.
+    pub samples: u32,
+    /// Its standard error, channels from 0 to 255.
+    pub standard_error: f64,
+}
+
+/// The error of a shift by half a pixel.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Shift {
+    /// Samples per pixel.
+    pub samples: u32,
+    /// How far the shifted picture is from the other.
+    pub picture: PictureError,
+}
+
+/// A method with a setting, of a view.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Point {
+    /// Number of the view.
+    pub view: usize,
+    /// Name of the method.
+    pub method: String,
+    /// Its setting in words.
+    pub setting: String,
+    /// Its knobs.
+    #[serde(default)]
+    pub knobs: BTreeMap<String, String>,
+    /// What it chose once for the frame.
+    #[serde(default)]
+    pub choices: BTreeMap<String, String>,
+    /// Samples per pixel.
+    pub samples: u32,
+    /// Size of its memory in bytes.
+    pub bytes: u64,
+    /// The same for each finest triangle.
+    pub bytes_per_triangle: f64,
+    /// How far its surface is from that of full resolution.
+    pub geometry: GeometryErrors,
+    /// How far its picture is from full resolution with the same samples.
+    pub picture: PictureError,
+    /// How far its picture is from the converged one.
+    #[serde(default)]
+    pub viewed: Option<PictureError>,
+    /// What it costs, by machine and kind of compute.
+    pub costs: Vec<Costs>,
+}
+
+/// Mean, median, 99th percentile and largest of an error.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct ErrorSpread {
+    /// Mean.
+    pub mean: f64,
+    /// Median.
+    pub median: f64,
+    /// 99 of 100 are below.
+    pub percentile_99: f64,
+    /// Largest.
+    pub maximum: f64,
+}
+
+/// Errors of the surface, ray by ray.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct GeometryErrors {
+    /// From the full-resolution hit, in pixels.
+    pub hit: Option<ErrorSpread>,
+    /// From the nearest point of the full-resolution surface, in pixels.
+    pub surface: Option<ErrorSpread>,
+    /// Between the normals, in degrees.
+    pub normal_degrees: Option<ErrorSpread>,
+    /// Pixels that one of them alone hits.
+    pub silhouette: Silhouette,
+}
+
+/// Pixels hit by one only.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Silhouette {
+    /// How many.
+    pub pixels: u64,
+    /// Of all pixels.
+    pub share: f64,
+}
+
+/// How far a picture is from another.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct PictureError {
+    /// Root mean square difference, channels from 0 to 255.
+    pub rmse: f64,
+    /// Peak signal to noise ratio in dB; absent for equal pictures.
+    pub psnr_db: Option<f64>,
+    /// Structural similarity.
+    pub ssim: Option<f64>,
+    /// FLIP.
+    pub flip: ErrorSpread,
+    /// Share of pixels that differ.
+    pub off: f64,
+}
+
+/// What a frame costs on a machine.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Costs {
+    /// Number of the machine.
+    pub machine: usize,
+    /// How compute is simulated.
+    pub compute: String,
+    /// Cycles.
+    pub cycles: u64,
+    /// The same in milliseconds.
+    pub milliseconds: f64,
+    /// Energy by part.
+    pub energy: Energy,
+    /// Lines of memory read and written.
+    pub dram_lines: u64,
+    /// The same in bytes.
+    pub dram_bytes: u64,
+    /// Lines asked of the L1s for each ray.
+    pub l1_requests_per_ray: f64,
+}
+
+/// Energy by part, all of it in `unit`.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Energy {
+    /// Of all figures here.
+    pub unit: String,
+    /// Sum of the parts.
+    pub total: f64,
+    /// The L1s, without leakage.
+    pub l1: f64,
+    /// The L2, without leakage.
+    pub l2: f64,
+    /// Memory.
+    pub dram: f64,
+    /// All that computes, without leakage.
+    pub compute: f64,
+    /// Leakage of what is on the chip.
+    pub leakage: f64,
+}
+
+/// What methods cost where their error is the same.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct EqualError {
+    /// Number of the view.
+    pub view: usize,
+    /// Samples per pixel.
+    pub samples: u32,
+    /// Which error.
+    pub error: String,
+    /// Its level.
+    pub level: f64,
+    /// Which cost.
+    pub cost: String,
+    /// Number of the machine.
+    pub machine: usize,
+    /// How compute is simulated.
+    pub compute: String,
+    /// Our cost, interpolated along the knob; absent if that would be outside of what was measured.
+    pub ours: Option<f64>,
+    /// The others.
+    pub methods: Vec<EqualCost>,
+}
+
+/// What one method costs there.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct EqualCost {
+    /// Name of the method.
+    pub method: String,
+    /// Its cost.
+    pub cost: Option<f64>,
+    /// Its cost over ours.
+    pub ratio: Option<f64>,
+    /// Why there is none.
+    #[serde(default)]
+    pub why: Option<String>,
+}
+
+/// A picture in a file.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct PictureEntry {
+    /// Number of the view.
+    pub view: usize,
+    /// Name of the method, or `full`.
+    pub method: String,
+    /// Its setting in words.
+    pub setting: String,
+    /// Samples per pixel.
+    pub samples: u32,
+    /// `image`, `error` or `levels`.
+    pub kind: String,
+    /// Where it is, relative to the document.
+    pub file: String,
+}
+
+/// The steps of a coarse grid of rays: one in the middle of each of `grid` cells of the picture, row by row from the top.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct TraceGrid {
+    /// Number of the view.
+    pub view: usize,
+    /// Name of the method.
+    pub method: String,
+    /// Its setting in words.
+    pub setting: String,
+    /// Columns and rows of the picture.
+    pub size: [u32; 2],
+    /// Columns and rows of the grid.
+    pub grid: [u32; 2],
+    /// What lines hold, by the number that steps give.
+    pub sections: Vec<String>,
+    /// The command that follows a ray of it, but for the pixel; absent for methods that `trace` does not know.
+    #[serde(default)]
+    pub command: Option<String>,
+    /// The rays.
+    pub rays: Vec<TracedRay>,
+}
+
+/// A ray of a [`TraceGrid`].
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct TracedRay {
+    /// Its pixel, column and row.
+    pub pixel: [u32; 2],
+    /// What it hit.
+    #[serde(default)]
+    pub hit: Option<TracedHit>,
+    /// Its steps: [`crate::report::inspect`] says how they are written.
+    pub steps: String,
+}
+
+/// What a ray hit.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct TracedHit {
+    /// Base triangle.
+    pub tree: u32,
+    /// Level of the triangle that was met.
+    pub level: u32,
+    /// Its node.
+    pub node: u32,
+    /// Distance from the origin in world units.
+    pub distance: f64,
+}
