@@ -103,7 +103,15 @@ function dataTable(name, columns, rows) {
 function choice(label, options, chosen, change) {
   const option = ([value, text]) => h("option", { value, selected: String(value) === String(chosen) }, text);
   const select = h("select", { onchange: (event) => change(event.target.value) }, options.map((o) => (Array.isArray(o) ? option(o) : h("optgroup", { label: o.group }, o.options.map(option)))));
-  return h("label", {}, h("span", {}, label), select);
+  return control(label, select);
+}
+
+let controls = 0;
+
+/** A field with its label. */
+function control(label, field) {
+  field.id = `control-${(controls += 1)}`;
+  return h("div", { class: "control" }, h("label", { for: field.id }, label), field);
 }
 
 const unique = (values) => [...new Set(values)];

@@ -35,18 +35,34 @@ function domain(values, linear, room = 1.25) {
   return low === high ? [low / 3, high * 3] : [low / room, high * room];
 }
 
-/** Ticks of a logarithmic axis: powers of ten, with 2 and 5 between where there are few. */
-function logTicks([low, high], room) {
-  const decades = Math.log10(high / low);
-  const factors = decades > 3.2 ? [1] : decades > 1.4 && room < 420 ? [1] : decades > 0.7 ? [1, 2, 5] : [1, 1.5, 2, 3, 4, 5, 7];
-  const all = [];
-  for (let e = Math.floor(Math.log10(low)); e <= Math.ceil(Math.log10(high)); e++) for (const f of factors) all.push(f * 10 ** e);
-  const inside = all.filter((v) => v >= low * 0.999 && v <= high * 1.001).map((v) => Number(v.toPrecision(3)));
-  const step = Math.ceil(inside.length / Math.max(2, Math.floor(room / 46)));
-  return inside.filter((v, k) => k % step === 0);
+/** Ticks of a logarithmic axis, at most one for each `each` pixels: powers of ten, with 2 and 5 or more between where there is room, fewer powers where there is none. */
+function logTicks([low, high], room, each) {
+  const most = Math.max(2, Math.floor(room / each));
+  const of = (factors, step = 1) => {
+    const all = [];
+    for (let e = Math.floor(Math.log10(low)); e <= Math.ceil(Math.log10(high)); e++) if (e % step === 0) for (const f of factors) all.push(Number((f * 10 ** e).toPrecision(3)));
+    return all.filter((v) => v >= low * 0.999 && v <= high * 1.001);
+  };
+  const choices = [of([1, 1.5, 2, 3, 4, 5, 7]), of([1, 2, 3, 5]), of([1, 2, 5]), of([1, 3]), of([1]), of([1], 2), of([1], 3), of([1], 4)];
+  return choices.find((ticks) => ticks.length <= most) ?? [];
 }
 
-const axis = (scale, values, room) => (scale.linear ? { type: "linear", domain: values, reverse: scale.reverse } : { type: "log", domain: values, ticks: logTicks(values, room), tickFormat: tick });
+/** Both axes of a diagram: scales and marks. d3 hides labels of logarithmic axes as it likes, so these are their own. */
+function axes({ width, height, x, y, margins }) {
+  const rooms = [width - margins.marginLeft - margins.marginRight, height - margins.marginTop - margins.marginBottom];
+  const scale = (a) => (a.linear ? { type: "linear", domain: a.domain, reverse: a.reverse, axis: null } : { type: "log", domain: a.domain, axis: null });
+  const ticks = (a, room, each) => a.ticks ?? (a.linear ? d3.ticks(...a.domain, Math.max(2, Math.floor(room / each))) : logTicks(a.domain, room, each));
+  const [xs, ys] = [ticks(x, rooms[0], 44), ticks(y, rooms[1], 24)];
+  const text = (a) => (v) => (a.linear || a.ticks ? num(v) : tick(v));
+  return {
+    scales: { ...margins, width, height, x: scale(x), y: scale(y) },
+    marks: [
+      Plot.gridX(xs, { strokeOpacity: 0.12 }), Plot.gridY(ys, { strokeOpacity: 0.12 }), Plot.frame({ strokeOpacity: 0.25 }),
+      Plot.axisX(xs, { text: text(x), label: x.label ?? null, labelAnchor: "center", labelArrow: "none", tickSize: 4 }),
+      Plot.axisY(ys, { text: text(y), label: y.label ?? null, labelArrow: "none", tickSize: 4 }),
+    ],
+  };
+}
 
 /** Draws again whenever there is another width. */
 function responsive(figure, draw) {

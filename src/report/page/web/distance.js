@@ -5,10 +5,24 @@ function settingsOf(points, chosen) {
   const methods = unique(points.map((p) => p.method));
   return new Map(methods.map((method) => {
     const settings = unique(points.filter((p) => p.method === method).map((p) => p.setting));
-    // By default quality 1, as in the paper.
-    const usual = settings.find((s) => /(^|\W)delta 1(\D|$)/.test(s)) ?? settings[0];
+    // By default quality 1, as in the paper, or what comes nearest to its error.
+    const usual = settings.find((s) => QUALITY_1.test(s)) ?? nearestSetting(points, method) ?? settings[0];
     return [method, { settings, setting: settings.includes(chosen[method]) ? chosen[method] : usual }];
   }));
+}
+
+const QUALITY_1 = /(^|\W)delta 1($|[^\d.])/;
+
+/** The setting of a method whose error is the nearest to ours at quality 1, over all views. */
+function nearestSetting(points, method) {
+  const measure = errorMeasures().find((m) => points.some((p) => isOurs(p.method) && errorOf(p, m) > 0));
+  const ours = points.filter((p) => isOurs(p.method) && QUALITY_1.test(p.setting));
+  const off = (p) => {
+    const same = measure && ours.find((q) => place(q) === place(p) && q.samples === p.samples);
+    return same && errorOf(p, measure) > 0 && errorOf(same, measure) > 0 ? Math.abs(Math.log(errorOf(p, measure) / errorOf(same, measure))) : null;
+  };
+  const settings = d3.rollups(points.filter((p) => p.method === method && off(p) != null), (of) => [of.length, d3.mean(of, off)], (p) => p.setting);
+  return settings.sort(([, [n, a]], [, [m, b]]) => m - n || a - b)[0]?.[0];
 }
 
 /** The full-resolution BVH of the same view. */
@@ -70,22 +84,46 @@ function lineDiagram(rows, { title, small, x, linear, state }) {
   const [xDomain, yDomain] = [domain(positive.map((r) => r.x), false, 1.25), domain(positive.map((r) => r.y), linear, 1.9)];
   const figure = diagram({
     title, small, rows: positive, label: `${title} by distance, ${state.scene}`, open: state.showPicture && ((row) => row.point.view != null && state.showPicture(row.point)),
-    options: (width) => ({
-      height: Math.min(430, Math.max(300, width * 0.68)), marginLeft: 56, marginBottom: 42, marginRight: 26, marginTop: 20,
-      x: { ...axis({}, xDomain, width - 80), ticks: unique(positive.map((r) => Number(r.x.toPrecision(3)))).filter((v, k, all) => all.length < width / 48 || k % 2 === 0), tickFormat: num, label: x, labelAnchor: "center", labelArrow: "none" },
-      y: { ...axis({ linear }, yDomain, 300), label: null, grid: true },
+    options: (width) => {
+      const height = Math.min(430, Math.max(300, width * 0.68));
+      const placed = withRoom(positive, (r) => [Math.log(r.x / xDomain[0]) / Math.log(xDomain[1] / xDomain[0]) * (width - 82), linear ? 0 : (1 - Math.log(r.y / yDomain[0]) / Math.log(yDomain[1] / yDomain[0])) * (height - 62)]);
+      const ticks = unique(positive.map((r) => Number(r.x.toPrecision(3)))).filter((v, k, all) => all.length < width / 44 || k % 2 === 0);
+      const { scales, marks } = axes({ width, height, margins: { marginLeft: 56, marginBottom: 42, marginRight: 26, marginTop: 20 }, x: { domain: xDomain, ticks, label: x }, y: { domain: yDomain, linear } });
+      return {
+      ...scales,
       color: { domain: methods, range: methods.map(colour) },
       symbol: { domain: methods, range: methods.map(symbol) },
       marks: [
-        Plot.frame({ strokeOpacity: 0.25 }),
+        ...marks,
         Plot.line(positive, { x: "x", y: "y", z: (r) => `${r.method} ${r.point.samples}`, stroke: "method", strokeWidth: 1.8, sort: "x" }),
         Plot.dot(positive, { x: "x", y: "y", symbol: "method", stroke: "method", fill: "method", r: 4.6, className: "points", sort: null }),
-        Plot.text(positive.filter((r) => r.gain != null), { x: "x", y: "y", text: (r) => times(r.gain), dy: (r) => 0, lineAnchor: "top", dx: 0, fontSize: 11, fontWeight: 600, fill: "method", stroke: "var(--ground)", strokeWidth: 3.5, transform: undefined, textAnchor: "middle", className: "gains" }),
+        ...[-13, 14].map((dy) => Plot.text(placed.filter((r) => r.dy === dy), { x: "x", y: "y", text: (r) => times(r.gain), dy, fontSize: 11.5, fontWeight: 600, fill: "method", stroke: "var(--ground)", strokeWidth: 3.5 })),
       ],
-    }),
+      };
+    },
   });
   if (exact.length) figure.append(h("p", { class: "note" }, `No error at all: ${exact.join(", ")}.`));
   return figure;
+}
+
+/** Where gains have room: above their points or below them, ours first; a gain that has none is in the tip and in the table only. */
+function withRoom(rows, at) {
+  const taken = rows.map((r) => at(r)).map(([x, y]) => [x - 6, y - 6, x + 6, y + 6]);
+  const own = new Map(rows.map((r, k) => [r, taken[k]]));
+  const placed = [];
+  for (const row of [...rows].filter((r) => r.gain != null).sort(by((r) => (isOurs(r.method) ? 0 : 1)))) {
+    const [x, y] = at(row);
+    const half = 3.6 * times(row.gain).length;
+    for (const dy of [-13, 14]) {
+      const box = [x - half, y + dy - 7, x + half, y + dy + 7];
+      const meets = (other) => other !== own.get(row) && box[0] < other[2] && other[0] < box[2] && box[1] < other[3] && other[1] < box[3];
+      if (taken.some(meets)) continue;
+      taken.push(box);
+      placed.push({ ...row, dy });
+      break;
+    }
+  }
+  return placed;
 }
 
 /** The parts of the energy and of the traffic of one setting of each method. */
@@ -110,7 +148,7 @@ function partsSection(section, state) {
         title: `from ${where}`.replace("from rays", "rays"), small: unit, rows: bars, label: `Energy by part from ${where}, ${state.scene}`,
         options: (width) => ({
           height: 34 + 27 * labels.length, marginLeft: 78, marginRight: 58, marginTop: 4, marginBottom: 26,
-          x: { label: null, domain: [0, Math.max(...totals.map((t) => t.total)) || 1], ticks: Math.max(2, Math.floor(width / 110)), tickFormat: num },
+          x: { label: null, domain: [0, Math.max(...totals.map((t) => t.total)) || 1], ticks: Math.max(2, Math.floor(width / 110)), tickFormat: (v) => num(v) },
           y: { label: null, domain: labels, padding: 0.28 },
           color: { domain: parts, range: partColours },
           marks: [

@@ -96,7 +96,7 @@ function picturesSection(section, state) {
       h(
         "div", { class: "stage" },
         h("div", {}, frame, range, pictureLegend(a, view.scene), b.kind === a.kind ? "" : pictureLegend(b, view.scene), scaled),
-        hasTraces ? h("div", {}, h("h3", {}, "Pixel inspector"), h("p", { class: "note" }, "Click the picture, or move with the arrow keys when it has the focus. Rays were followed on a grid; the nearest is shown."), h("div", { class: "controls" }, h("label", {}, h("span", {}, "Column"), column), h("label", {}, h("span", {}, "Row"), row)), result) : "",
+        hasTraces ? h("div", {}, h("h3", {}, "Pixel inspector"), h("p", { class: "note" }, "Click the picture, or move with the arrow keys when it has the focus. Rays were followed on a grid; the nearest is shown."), h("div", { class: "controls" }, control("Column", column), control("Row", row)), result) : "",
       ),
     );
     if (!hasTraces) spot.remove();

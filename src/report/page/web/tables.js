@@ -48,11 +48,11 @@ function stabilitySection(section) {
     const n = (name, key) => ({ name, value: (r) => r[key] });
     const breaches = d3.sum(rows, (r) => r.misses + r.doubles + r.different + r.overflows + r.saturated);
     const columns = [
-      { name: "case", value: (r) => r.name }, { name: "what is hard about it", value: (r) => r.about ?? "counterexamples hunted for" }, n("rays", "rays"), n("balanced", "balanced"), n("compared with exact arithmetic", "compared"), n("misses", "misses"), n("double hits", "doubles"), n("different", "different"),
-      { name: "overflows", value: (r) => (report.widths_checked ? r.overflows + r.saturated : null) }, n("t, ulp", "t_ulp"), n("barycentrics, ulp", "bary_ulp"), n("pixels", "pixels"),
+      { name: "case", value: (r) => r.name }, { name: "what is hard about it", value: (r) => r.about ?? "counterexamples hunted for" }, n("rays", "rays"), n("balanced", "balanced"), n("compared", "compared"), n("misses", "misses"), n("double hits", "doubles"), n("different", "different"),
+      { name: "overflows", value: (r) => (report.widths_checked ? r.overflows + r.saturated : null) }, n("t, ulp", "t_ulp"), n("barycentric, ulp", "bary_ulp"), n("pixels", "pixels"),
     ];
     section.append(
-      h("p", {}, `${count(d3.sum(rows, (r) => r.rays), "ray")} of seed ${report.seed}: `, h("strong", {}, breaches === 0 ? "no breach" : count(breaches, "breach", "breaches")), report.widths_checked ? "." : "; this build did not look for overflows."),
+      h("p", {}, `${count(d3.sum(rows, (r) => r.rays), "ray")} of seed ${report.seed}: `, h("strong", {}, breaches === 0 ? "no breach" : count(breaches, "breach", "breaches")), report.widths_checked ? "." : "; this build did not look for overflows.", " Compared: against exact arithmetic."),
       scrolled("Stability", table("Stability by case", columns, rows)),
       h("div", { class: "data" }, h("button", { type: "button", "aria-label": "CSV of: stability", onclick: () => save("stability.csv", "text/csv", csv(columns, rows)) }, "CSV")),
     );

@@ -46,7 +46,8 @@ function workSection(section, state) {
     const shown = rows.filter((r) => chosen.includes(place(r.point)));
     const more = [lineKey("", "front: nothing is better at less", 8, 0.22)];
     if (shown.some((r) => shiftOf(r.point, error) != null)) more.push(lineKey("7 4", "full resolution, camera shifted by half a pixel", 1.6));
-    body.replaceChildren(controls, keys(methods, more), h("div", { class: chosen.length === 1 ? "" : "grid" }, charts), dataTable(`${error.name} against ${cost.name}, ${state.scene}`, columns, shown));
+    const axes = charts.length > 1 ? h("p", { class: "note" }, h("b", {}, "Upward: "), titled(error.name, error.unit), h("b", {}, "; rightward: "), titled(cost.name, costUnit(cost, points, state.machine)), error.linear ? "." : "; both logarithmic, the upward axis the same everywhere.") : "";
+    body.replaceChildren(controls, keys(methods, more), axes, h("div", { class: chosen.length === 1 ? "" : "grid" }, charts), dataTable(`${error.name} against ${cost.name}, ${state.scene}`, columns, shown));
   };
   section.append(
     h("p", {}, "Each mark is a method with one setting of its knob; further down is more exact, further left is cheaper. Filled marks lie on the front of all methods together, hollow ones are beaten by another. The number beside a mark is its delta."),
@@ -77,22 +78,22 @@ function workDiagram(rows, { error, cost, distance, shared, large, state, unit }
     title: `from ${distance}`.replace("from rays", "rays"), small: large ? state.scene : "", rows, open,
     label: `${error.name} against ${cost.name}, ${state.scene} from ${distance}`,
     options: (width) => {
-      const height = large ? Math.min(560, Math.max(340, width * 0.52)) : 250;
+      const height = large ? Math.min(560, Math.max(340, width * 0.52)) : 232;
+      const margins = { marginLeft: large ? 54 : 44, marginBottom: large ? 40 : 24, marginTop: large ? 22 : 8, marginRight: 18 };
+      const { scales, marks } = axes({ width, height, margins, x: { domain: xDomain, label: large && titled(cost.name, unit) }, y: { domain: yDomain, linear: error.linear, reverse: error.larger, label: large && titled(error.name, error.unit) } });
       return {
-        height, marginLeft: 54, marginBottom: 40, marginTop: 16, marginRight: 18,
-        x: { ...axis({}, xDomain, width - 70), label: titled(cost.name, unit), labelAnchor: "center", labelArrow: "none", grid: true },
-        y: { ...axis({ linear: error.linear, reverse: error.larger }, yDomain, height - 60), label: titled(error.name, error.unit), labelArrow: "none", grid: true },
+        ...scales,
         color: { domain: unique(rows.map((r) => r.method)), range: unique(rows.map((r) => r.method)).map(colour) },
         symbol: { domain: unique(rows.map((r) => r.method)), range: unique(rows.map((r) => r.method)).map(symbol) },
         marks: [
-          Plot.frame({ strokeOpacity: 0.25 }),
+          ...marks,
           steps.length > 1 ? Plot.line(steps, { x: "x", y: "at", stroke: "currentColor", strokeOpacity: 0.17, strokeWidth: large ? 10 : 8, strokeLinejoin: "round", strokeLinecap: "round" }) : null,
           exact ? Plot.ruleY([floor], { strokeOpacity: 0.35, strokeDasharray: "1 3" }) : null,
-          exact ? Plot.text([0], { frameAnchor: "right", x: null, y: () => floor, text: () => "no error", dy: -7, dx: -3, fill: "currentColor", fillOpacity: 0.75, fontSize: 10.5 }) : null,
+          exact ? Plot.text([floor], { frameAnchor: "left", y: (v) => v, text: () => "no error", dy: -7, dx: 4, fill: "currentColor", fillOpacity: 0.85, fontSize: 10.5 }) : null,
           shift ? Plot.ruleY([shift], { strokeDasharray: "7 4", strokeWidth: 1.6, strokeOpacity: 0.8 }) : null,
-          shift && large ? Plot.text([0], { frameAnchor: "right", y: () => shift, text: () => "shift by half a pixel", dy: -7, dx: -3, fontSize: 11, fill: "currentColor" }) : null,
+          shift && large ? Plot.text([shift], { frameAnchor: "right", y: (v) => v, text: () => "shift by half a pixel", dy: -7, dx: -4, fontSize: 11, fill: "currentColor" }) : null,
           ...chains.map((chain) => Plot.line(chain, { x: "x", y: "at", stroke: "method", strokeWidth: 1.4, strokeOpacity: 0.75 })),
-          Plot.dot(rows, { x: "x", y: "at", symbol: "method", stroke: "method", fill: (r) => (r.onFront || STROKED.has(symbol(r.method)) ? r.method : null), r: large ? 5 : 4, strokeWidth: 1.7, className: "points", sort: null }),
+          ...[false, true].map((filled) => Plot.dot(rows, { x: "x", y: "at", filter: (r) => r.onFront === filled, symbol: "method", stroke: "method", fill: filled ? "method" : "var(--ground)", r: large ? 5 : 4, strokeWidth: 1.7, className: "points", sort: null })),
           large ? Plot.text(rows.filter((r) => isOurs(r.method)), { x: "x", y: "at", text: (r) => knobOf(r.point), dy: -12, fontSize: 11, fill: "currentColor", stroke: "var(--ground)", strokeWidth: 3 }) : null,
         ].filter(Boolean),
       };
