@@ -22,6 +22,8 @@ mod output;
 mod pass;
 mod pictures;
 mod render;
+mod report;
+mod results;
 mod simulate;
 mod stability;
 mod sweep;
@@ -65,6 +67,8 @@ enum Command {
     /// Put two results of simulations side by side
     #[command(after_long_help = words::SIMULATE)]
     Compare(compare::Args),
+    /// Show results as one page, with nothing to fetch: diagrams, tables, pictures, and how they were made
+    Report(report::Args),
     /// Follow one ray through the traversal unit: as a waveform, or as text
     Trace(trace::Args),
     /// Count the memory lines that a frame touches, LOD against every BVH layout, by distance
@@ -100,6 +104,7 @@ pub fn run(cli: Cli) -> anyhow::Result<ExitCode> {
         Command::Simulate(args) => simulate::run(&args),
         Command::Sweep(args) => sweep::run(&args),
         Command::Compare(args) => compare::run(&args),
+        Command::Report(args) => report::run(&args),
         Command::Trace(args) => trace::run(&args),
         Command::Lines(args) => lines::run(&args),
         Command::Cast(args) => cast::run(&args),

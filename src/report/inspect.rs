@@ -157,7 +157,9 @@ fn command(subject: &Subject<'_>) -> String {
     let vector = |v: [f64; 3]| v.map(|c| c.to_string()).join(",");
     let [eye, target, up] = [eye, target, up].map(|v| vector(v.to_array()));
     let (file, delta) = (quoted(subject.file), subject.delta);
-    format!("lodray trace {file} --delta {delta} --size {width}x{height} --eye {eye} --target {target} --up {up} --fov {fov} --text --pixel")
+    format!(
+        "lodray trace {file} --delta {delta} --size {width}x{height} --eye {eye} --target {target} --up {up} --fov {fov} --text --pixel"
+    )
 }
 
 /// A word of a shell.

@@ -4,6 +4,7 @@ use super::jobs::is_of_this_version;
 use crate::cli::json::fault;
 use crate::cli::output::{warn, write_file};
 use anyhow::Context;
+use lodray::report::page::ImageFigures;
 use lodray::report::result::SimResult;
 use serde::{Deserialize, Serialize};
 use std::collections::{HashMap, HashSet};
@@ -31,18 +32,6 @@ pub struct Row {
     /// Why it failed.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub error: Option<String>,
-}
-
-/// How far a picture is from full resolution.
-#[derive(Clone, Copy, Debug, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct ImageFigures {
-    /// Root mean square difference, channels from 0 to 255.
-    pub rmse: f64,
-    /// Peak signal to noise ratio in dB; none for equal pictures.
-    pub psnr_db: Option<f64>,
-    /// Mean distance between the surfaces in pixels; none if no pixel hits in both pictures.
-    pub geometry_pixels_mean: Option<f64>,
 }
 
 /// The file of lines.

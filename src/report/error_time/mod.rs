@@ -1,5 +1,6 @@
 //! Error against cost: what each method's picture is off by, and what it costs.
 
+mod check;
 mod document;
 
 pub use document::{

@@ -94,7 +94,8 @@ fn program() -> String {
 
 /// What the scripts read.
 fn data(documents: &Documents) -> io::Result<Value> {
-    let error_time = documents.error_time.as_ref().map(|document| ErrorTime { traces: Vec::new(), pictures: Vec::new(), ..document.clone() });
+    let error_time =
+        documents.error_time.as_ref().map(|document| ErrorTime { traces: Vec::new(), pictures: Vec::new(), ..document.clone() });
     let mut names: BTreeSet<&str> = METHODS.iter().map(|method| method.name).chain(["full"]).collect();
     names.extend(error_time.iter().flat_map(|document| document.points.iter().map(|point| point.method.as_str())));
     names.extend(documents.simulations.iter().map(|simulation| simulation.result.setup.method.name.as_str()));
