@@ -102,7 +102,13 @@ function dataTable(name, columns, rows) {
 /** A labelled choice; options are [value, text] or {group, options}. */
 function choice(label, options, chosen, change) {
   const option = ([value, text]) => h("option", { value, selected: String(value) === String(chosen) }, text);
-  const select = h("select", { onchange: (event) => change(event.target.value) }, options.map((o) => (Array.isArray(o) ? option(o) : h("optgroup", { label: o.group }, o.options.map(option)))));
+  // Sections are drawn again: the focus goes on to the new field of the same name.
+  const changed = ({ target }) => {
+    const place = target.closest("section, .global");
+    change(target.value);
+    if (!target.isConnected) [...place.querySelectorAll("select")].find((other) => other.dataset.name === label)?.focus();
+  };
+  const select = h("select", { "data-name": label, onchange: changed }, options.map((o) => (Array.isArray(o) ? option(o) : h("optgroup", { label: o.group }, o.options.map(option)))));
   return control(label, select);
 }
 

@@ -58,8 +58,8 @@ function axes({ width, height, x, y, margins }) {
     scales: { ...margins, width, height, x: scale(x), y: scale(y) },
     marks: [
       Plot.gridX(xs, { strokeOpacity: 0.12 }), Plot.gridY(ys, { strokeOpacity: 0.12 }), Plot.frame({ strokeOpacity: 0.25 }),
-      Plot.axisX(xs, { text: text(x), label: x.label ?? null, labelAnchor: "center", labelArrow: "none", tickSize: 4 }),
-      Plot.axisY(ys, { text: text(y), label: y.label ?? null, labelArrow: "none", tickSize: 4 }),
+      Plot.axisX(xs, { text: text(x), label: x.label || null, labelAnchor: "center", labelArrow: "none", tickSize: 4 }),
+      Plot.axisY(ys, { text: text(y), label: y.label || null, labelArrow: "none", tickSize: 4 }),
     ],
   };
 }

@@ -63,7 +63,7 @@ function glance(state) {
       const gains = gain(COSTS.find((c) => c.id === id));
       if (!gains.length) return [];
       const [least, most] = [d3.least(gains, (g) => g.gain), d3.greatest(gains, (g) => g.gain)];
-      return [[gains.length === 1 ? times(most.gain) : `${times(least.gain)} to ${times(most.gain)}`, `less ${what} than the full-resolution BVH at ${most.p.setting}${gains.length > 1 ? `: least from ${place(least.p)}, most from ${place(most.p)}` : ` from ${place(most.p)}`}`]];
+      return [[gains.length === 1 ? times(most.gain) : `${times(least.gain)} to ${times(most.gain)}`, `${what} of the full-resolution BVH over ours at ${most.p.setting}${gains.length > 1 ? `: least from ${place(least.p)}, most from ${place(most.p)}` : ` from ${place(most.p)}`}`]];
     });
     const surface = errorMeasures().find((m) => m.id === "geometry.surface.percentile_99");
     const errors = points.filter((p) => isOurs(p.method) && p.setting === chosen.get(p.method).setting).map((p) => errorOf(p, surface)).filter((v) => v != null);
@@ -93,7 +93,7 @@ function theme() {
   const apply = () => {
     root.dataset.theme = mode === "auto" ? (dark.matches ? "dark" : "light") : mode;
     button.querySelector("span").textContent = { auto: "Auto", light: "Light", dark: "Dark" }[mode];
-    button.setAttribute("aria-label", `Colours: ${{ auto: "as the system says", light: "light", dark: "dark" }[mode]}`);
+    button.setAttribute("aria-label", { auto: "Auto: colours as the system says", light: "Light colours", dark: "Dark colours" }[mode]);
   };
   button.addEventListener("click", () => {
     mode = modes[(modes.indexOf(mode) + 1) % 3];

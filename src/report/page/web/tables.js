@@ -53,7 +53,7 @@ function stabilitySection(section) {
     ];
     section.append(
       h("p", {}, `${count(d3.sum(rows, (r) => r.rays), "ray")} of seed ${report.seed}: `, h("strong", {}, breaches === 0 ? "no breach" : count(breaches, "breach", "breaches")), report.widths_checked ? "." : "; this build did not look for overflows.", " Compared: against exact arithmetic."),
-      scrolled("Stability", table("Stability by case", columns, rows)),
+      scrolled("Stability by case", table("Stability by case", columns, rows)),
       h("div", { class: "data" }, h("button", { type: "button", "aria-label": "CSV of: stability", onclick: () => save("stability.csv", "text/csv", csv(columns, rows)) }, "CSV")),
     );
   }
@@ -64,7 +64,7 @@ const inline = (text) => text.split("`").map((part, k) => (k % 2 ? h("code", {},
 
 function ledgerSection(section) {
   for (const { title, head, rows } of page.ledger) {
-    section.append(h("h3", {}, title), scrolled(title, h("table", {}, h("caption", { class: "visually-hidden" }, title), h("thead", {}, h("tr", {}, head.map((c) => h("th", { scope: "col" }, inline(c))))), h("tbody", {}, rows.map((row) => h("tr", {}, row.map((c) => h("td", {}, inline(c)))))))));
+    section.append(h("h3", {}, title), scrolled(`Claims: ${title}`, h("table", {}, h("caption", { class: "visually-hidden" }, title), h("thead", {}, h("tr", {}, head.map((c) => h("th", { scope: "col" }, inline(c))))), h("tbody", {}, rows.map((row) => h("tr", {}, row.map((c) => h("td", {}, inline(c)))))))));
   }
 }
 

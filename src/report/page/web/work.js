@@ -79,7 +79,7 @@ function workDiagram(rows, { error, cost, distance, shared, large, state, unit }
     label: `${error.name} against ${cost.name}, ${state.scene} from ${distance}`,
     options: (width) => {
       const height = large ? Math.min(560, Math.max(340, width * 0.52)) : 232;
-      const margins = { marginLeft: large ? 54 : 44, marginBottom: large ? 40 : 24, marginTop: large ? 22 : 8, marginRight: 18 };
+      const margins = { marginLeft: large ? 54 : 44, marginBottom: large ? 44 : 24, marginTop: large ? 22 : 8, marginRight: 18 };
       const { scales, marks } = axes({ width, height, margins, x: { domain: xDomain, label: large && titled(cost.name, unit) }, y: { domain: yDomain, linear: error.linear, reverse: error.larger, label: large && titled(error.name, error.unit) } });
       return {
         ...scales,
