@@ -89,7 +89,7 @@ fn filled(shell: &str, parts: &[(&str, String)]) -> String {
 
 /// Name and version of the program.
 fn program() -> String {
-    format!("lodray {}", super::results_version())
+    format!("lodray {}", super::version::results_version())
 }
 
 /// What the scripts read.
