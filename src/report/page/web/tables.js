@@ -64,7 +64,7 @@ const inline = (text) => text.split("`").map((part, k) => (k % 2 ? h("code", {},
 
 function ledgerSection(section) {
   for (const { title, head, rows } of page.ledger) {
-    section.append(h("h3", {}, title), scrolled(`Claims: ${title}`, h("table", {}, h("caption", { class: "visually-hidden" }, title), h("thead", {}, h("tr", {}, head.map((c) => h("th", { scope: "col" }, inline(c))))), h("tbody", {}, rows.map((row) => h("tr", {}, row.map((c) => h("td", {}, inline(c)))))))));
+    section.append(h("h3", {}, title), scrolled(`Claims: ${title}`, h("table", { class: "words" }, h("caption", { class: "visually-hidden" }, title), h("thead", {}, h("tr", {}, head.map((c) => h("th", { scope: "col" }, inline(c))))), h("tbody", {}, rows.map((row) => h("tr", {}, row.map((c) => h("td", {}, inline(c)))))))));
   }
 }
 
