@@ -44,7 +44,9 @@ fn errors_fall_along_the_knob_and_what_is_full_resolution_has_none() {
     for point in points(&document, "bvh").chain(points(&document, "bvh32")) {
         // The reference is in f64, a BVH in fixed point.
         assert!(number(point, "/geometry/hit/maximum") < 1e-2 && number(point, "/geometry/surface/maximum") < 1e-3, "{point}");
-        assert!(number(point, "/picture/rmse") < 0.1 && number(point, "/picture/flip/mean") < 1e-3 && number(point, "/picture/ssim") > 0.999);
+        assert!(
+            number(point, "/picture/rmse") < 0.1 && number(point, "/picture/flip/mean") < 1e-3 && number(point, "/picture/ssim") > 0.999
+        );
         assert_eq!(number(point, "/geometry/silhouette/pixels"), 0.0);
     }
     // The nearest point is no further than the hit of the same ray, as every ray hits here or misses in both.

@@ -245,6 +245,25 @@ fn bars_are_told_apart_and_every_chart_has_several() {
     assert!(eyes.len() == 2 && eyes[0] != eyes[1], "{eyes:?}");
 }
 
+#[test]
+fn distances_are_lines_with_the_gain_at_each_point() {
+    let desk = with_scene();
+    desk.write("jobs.toml", &format!("size = \"16x16\"\ndistances = [0.5, 4, 32]\nmethods = [\"lod\", \"bvh\"]\n{SCENE}{CACHES}"));
+    assert_eq!(desk.run_on(0, "sweep jobs.toml -o out").0, 0);
+    assert_eq!(charts(&desk, "out"), ["energy-a-haydel2023-compute-free.svg", "time-a-haydel2023-compute-free.svg"]);
+    let lines = desk.text("out/results.jsonl");
+    let cycles: Vec<f64> =
+        lines.lines().map(|line| serde_json::from_str::<serde_json::Value>(line).unwrap()["result"]["cycles"].as_f64().unwrap()).collect();
+    let chart = desk.text("out/time-a-haydel2023-compute-free.svg");
+    for pair in cycles.chunks(2) {
+        let gain = lodray::report::diagram::gain(pair[1] / pair[0]);
+        assert!(chart.lines().any(|line| line == gain), "{gain}: {chart}");
+    }
+    for words in ["lod", "bvh", "0.5", "32", "distance of the eye, bounding radii"] {
+        assert!(chart.lines().any(|line| line == words), "{words}");
+    }
+}
+
 /// No two ticks of an axis read the same, and none has lost all its digits.
 #[test]
 fn ticks_differ() {

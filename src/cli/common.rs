@@ -50,7 +50,7 @@ impl Invocation {
         Self::new(std::env::args_os().skip(1).map(|word| word.to_string_lossy().into_owned()))
     }
 
-    /// Leaves out the folder (the record is in it), how many threads there are, where BVHs are kept, what is printed, and what may be replaced.
+    /// Leaves out the folder (the record is in it), how many threads there are, where BVHs and a page go, what is printed, and what may be replaced.
     fn new(words: impl IntoIterator<Item = String>) -> Self {
         let mut words = words.into_iter();
         let mut kept = Vec::new();
@@ -59,8 +59,8 @@ impl Invocation {
                 "--" => kept.extend(std::iter::once(word).chain(words.by_ref())),
                 "--quiet" | "--json" | "--force" => {}
                 // Their value is the next word.
-                "-o" | "--out" | "--threads" | "--cache" => drop(words.next()),
-                one if ["-o", "--out=", "--threads=", "--cache="].iter().any(|option| one.starts_with(option)) => {}
+                "-o" | "--out" | "--threads" | "--cache" | "--report" => drop(words.next()),
+                one if ["-o", "--out=", "--threads=", "--cache=", "--report="].iter().any(|option| one.starts_with(option)) => {}
                 _ => kept.push(word),
             }
         }

@@ -1,9 +1,8 @@
 //! `compare`: two results of simulations side by side.
 
-use super::json::{fault, fault_at};
 use super::output::{grouped, print_json, print_line};
+use super::results::results;
 use super::simulate::amount;
-use super::sweep::Row;
 use anyhow::Context;
 use lodray::report::result::SimResult;
 use serde::Serialize;
@@ -66,23 +65,7 @@ fn read(what: &str) -> anyhow::Result<SimResult> {
         (None, _) => anyhow::bail!("{path}: has {count} results; name one, such as {path}:1"),
     };
     anyhow::ensure!((1..=count).contains(&number), "{path}: has {count} results, no number {number}");
-    results.swap_remove(number - 1).with_context(|| format!("{path}: job {number} failed, it has no result"))
-}
-
-/// All results of a file; none for jobs that failed.
-fn results(text: &str) -> anyhow::Result<Vec<Option<SimResult>>> {
-    let row = |row: Row| row.result;
-    let plain = |error: serde_json::Error| anyhow::anyhow!(fault_at(&error));
-    Ok(match text.trim_start().chars().next() {
-        Some('[') => serde_json::from_str::<Vec<SimResult>>(text).map_err(plain)?.into_iter().map(Some).collect(),
-        _ if text.trim_start().starts_with("{\"key\"") => {
-            let lines = (1..).zip(text.lines()).filter(|(_, line)| !line.trim().is_empty());
-            let wrong = |number, e: serde_json::Error| anyhow::anyhow!("line {number}, column {}: {}", e.column(), fault(&e));
-            let read = |(number, line): (usize, &str)| serde_json::from_str(line).map(row).map_err(|e| wrong(number, e));
-            lines.map(read).collect::<anyhow::Result<_>>()?
-        }
-        _ => vec![Some(serde_json::from_str(text).map_err(plain)?)],
-    })
+    results.swap_remove(number - 1).map(|found| found.result).with_context(|| format!("{path}: job {number} failed, it has no result"))
 }
 
 fn title(r: &SimResult) -> String {

@@ -24,6 +24,8 @@ mod output;
 mod pass;
 mod pictures;
 mod render;
+mod report;
+mod results;
 mod simulate;
 mod stability;
 mod sweep;
@@ -69,6 +71,8 @@ enum Command {
     Compare(compare::Args),
     /// Measure what an error costs: every method's error against time, energy and traffic
     ErrorTime(error_time::Args),
+    /// Show results as one page, with nothing to fetch: diagrams, tables, pictures, and how they were made
+    Report(report::Args),
     /// Follow one ray through the traversal unit: as a waveform, or as text
     Trace(trace::Args),
     /// Count the memory lines that a frame touches, LOD against every BVH layout, by distance
@@ -105,6 +109,7 @@ pub fn run(cli: Cli) -> anyhow::Result<ExitCode> {
         Command::Sweep(args) => sweep::run(&args),
         Command::Compare(args) => compare::run(&args),
         Command::ErrorTime(args) => error_time::run(&args),
+        Command::Report(args) => report::run(&args),
         Command::Trace(args) => trace::run(&args),
         Command::Lines(args) => lines::run(&args),
         Command::Cast(args) => cast::run(&args),

@@ -69,8 +69,8 @@ fn level(level: u32, shade: f32) -> Vec3 {
     Vec3::from_array(LEVELS[level as usize % LEVELS.len()]) * (0.55 + 0.45 * shade)
 }
 
-/// The same as the map has it.
-pub(super) fn level_colour(of: u32, shade: f32) -> Rgb<u8> {
+/// The colour of a level in [`level_map`], `shade` of 0 to 1 being its darkest to its brightest.
+pub fn level_colour(of: u32, shade: f32) -> Rgb<u8> {
     encoded(level(of, shade))
 }
 
@@ -85,7 +85,7 @@ pub fn error_map(a: &RgbImage, b: &RgbImage) -> RgbImage {
 }
 
 /// The difference that is white; larger ones are, too.
-pub(super) const HOTTEST: u32 = 64;
+pub const HOTTEST: u32 = 64;
 
 /// Colour of a difference: black 0, through red and yellow, white [`HOTTEST`] of 255 and more.
 pub(super) fn heat(difference: f32) -> Rgb<u8> {

@@ -1,7 +1,12 @@
-//! Measurements over whole scenes and frames.
+//! Measurements over whole scenes and frames, and the page that shows them.
 
+pub mod diagram;
 pub mod error_time;
+pub mod inspect;
+pub mod page;
+pub mod palette;
 pub mod result;
 mod version;
 
+pub use page::page;
 pub use version::results_version;

@@ -16,7 +16,8 @@ use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
 
 pub use record::Input;
-use record::{NAME as RECORD, Record};
+use record::NAME as RECORD;
+pub use record::Record;
 
 /// What may be replaced.
 #[derive(clap::Args)]

@@ -4,6 +4,7 @@ use crate::cli::common::Invocation;
 use crate::cli::json::fault_at;
 use crate::cli::output::write_file;
 use anyhow::{Context, anyhow};
+use lodray::report::page::{RunFacts, RunInput};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeSet;
 use std::fs::File;
@@ -51,6 +52,19 @@ impl Input {
         let copied = File::open(path).and_then(|mut file| std::io::copy(&mut file, &mut hash));
         let bytes = copied.with_context(|| format!("cannot read {}", path.display()))?;
         Ok(Self { name: path.display().to_string(), bytes, xxh3: format!("{:016x}", hash.digest()) })
+    }
+}
+
+impl From<Input> for RunInput {
+    fn from(Input { name, bytes, xxh3 }: Input) -> Self {
+        Self { name, bytes, xxh3 }
+    }
+}
+
+impl From<Record> for RunFacts {
+    fn from(record: Record) -> Self {
+        let Record { lodray, command, arguments, inputs, notes, .. } = record;
+        Self { lodray, command, arguments, inputs: inputs.into_iter().map(RunInput::from).collect(), notes }
     }
 }
 

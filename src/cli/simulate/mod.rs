@@ -13,9 +13,11 @@ use super::method::MachineMethod;
 use super::names::named;
 use super::output::{check_target, explain, grouped, open, print_json, print_line, remark, warn, write_file};
 use super::pass::{Pass, PassRays, Target, machine, machine_files};
+use super::report::PageArgs;
 use anyhow::Context;
 use files::Files;
 use lodray::rays::{ModelSpace, RayFile};
+use lodray::report::page::{Documents, Simulation};
 use lodray::report::result::SimResult;
 use lodray::run::{self, Compute};
 use lodray::sim::replay::Window;
@@ -57,6 +59,8 @@ pub struct Args {
     /// Cycles of the waveform, first and last, counted from 0; the frame must have the first
     #[arg(long, value_name = "FROM:TO", requires = "vcd", value_parser = window)]
     window: Option<Window>,
+    #[command(flatten)]
+    page: PageArgs,
     /// Print the figures as JSON; of several machines as an array
     #[arg(long)]
     json: bool,
@@ -96,6 +100,7 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
         anyhow::ensure!(machines.len() == 1, "--vcd: takes one machine, not {}", machines.len());
         check_target(vcd, &inputs)?;
     }
+    args.page.check(&inputs)?;
     let scene = open(&args.scene)?;
     let space = ModelSpace::of(&scene);
     let rays = match &args.rays {
@@ -127,6 +132,8 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
         notes.iter().for_each(|note| folder.note(note.clone()));
         folder.finish()?;
     }
+    let simulation = |result: &SimResult| Simulation { scene: None, result: result.clone(), image: None };
+    let page = Documents { simulations: results.iter().map(simulation).collect(), ..Documents::default() };
     match (args.json, results.as_slice()) {
         (true, [one]) => print_json(one)?,
         (true, several) => print_json(&several)?,
@@ -139,5 +146,6 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
             }
         }
     }
+    args.page.write(page, &inputs)?;
     Ok(ExitCode::SUCCESS)
 }

@@ -6,10 +6,12 @@ mod table;
 use super::args::{MAX_RAYS, seed, whole};
 use super::folder::{Overrule, RunFolder, one_run};
 use super::output::{busy, explain, open, print_json, print_line, progress, remark, write_file};
+use super::report::PageArgs;
 use lodray::lab::growth::{Growth, growth, rays as growth_rays};
 use lodray::lab::hunt::{Hunt, hunt};
 use lodray::lab::{CASES, Case, FILE_CASES, Model, Report, Scale, WIDTHS_CHECKED, suite};
 use lodray::num::MAX_LEVELS;
+use lodray::report::page::Documents;
 use serde::Serialize;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
@@ -47,6 +49,8 @@ pub struct Args {
     out: Option<PathBuf>,
     #[command(flatten)]
     overrule: Overrule,
+    #[command(flatten)]
+    page: PageArgs,
 }
 
 /// Everything measured.
@@ -73,6 +77,7 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
     let charts = if args.scene.is_none() { &[plots::LEVELS, plots::DISTANCE][..] } else { &[] };
     let names = [TABLE, JSON, FOUND].into_iter().chain(charts.iter().copied());
     let inputs: Vec<_> = args.scene.as_deref().into_iter().collect();
+    args.page.check(&inputs)?;
     let folder = args.out.as_ref().map(|out| RunFolder::open(out, names, &inputs, &args.overrule)).transpose()?;
     let rays = args.rays.unwrap_or(if args.long { LONG } else { USUAL });
     let usual_steps = if args.cases.is_empty() { rays / RAYS_PER_STEP } else { 0 };
@@ -93,6 +98,8 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
             remark(&format!("table, figures and plots in {}", out.display()))?;
         }
     }
+    let page = Documents { stability: vec![serde_json::from_value(serde_json::to_value(&figures)?)?], ..Documents::default() };
+    args.page.write(page, &inputs)?;
     Ok(if breaches == 0 { ExitCode::SUCCESS } else { ExitCode::FAILURE })
 }
 

@@ -1,8 +1,11 @@
-//! Charts of a sweep: energy and time of a scene's views on a machine, its methods side by side; or, of one view with one method, its machines.
+//! Charts of a sweep: energy and time of a scene on a machine. Of several distances they are lines on logarithmic axes, with the gain over the full-resolution BVH
+//! written at each point; of one, bars of its methods side by side; of one view with one method, bars of its machines.
 
 use super::labels::{Setting, labels};
 use super::rows::Row;
 use crate::cli::simulate::plots::{COLOURS, FONT, LEGEND, TEXT, energy_unit, legend, svg, tick, time_unit, top, wrong};
+use lodray::method::bvh;
+use lodray::report::diagram::{DistanceChart, Line, Spot};
 use lodray::report::result::SimResult;
 use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, Pos, VPos};
@@ -107,16 +110,55 @@ impl<'a> Subject<'a> {
         let mut charts = Vec::new();
         if most(energy) > 0.0 {
             let unit = energy_unit(&first.energy.unit, most(energy));
-            let parts: Vec<_> = first.energy.split().into_iter().zip(COLOURS).map(|((name, _), colour)| (name, colour)).collect();
-            let groups = self.groups(|r| r.energy.split().map(|part| part.1 / unit.size).to_vec());
-            charts.push(("energy", self.chart("Energy", &groups, &parts, &format!("energy, {}", unit.name))?));
+            if let Some(lines) = self.lines("Energy", &format!("energy, {}", unit.name), &|r| energy(r) / unit.size)? {
+                charts.push(("energy", lines));
+            } else {
+                let parts: Vec<_> = first.energy.split().into_iter().zip(COLOURS).map(|((name, _), colour)| (name, colour)).collect();
+                let groups = self.groups(|r| r.energy.split().map(|part| part.1 / unit.size).to_vec());
+                charts.push(("energy", self.chart("Energy", &groups, &parts, &format!("energy, {}", unit.name))?));
+            }
         }
         if most(time) > 0.0 {
             let unit = time_unit(most(time));
-            let groups = self.groups(|r| vec![r.milliseconds / unit.size]);
-            charts.push(("time", self.chart("Time", &groups, &[("time", TIME)], &format!("time, {}", unit.name))?));
+            if let Some(lines) = self.lines("Time", &format!("time, {}", unit.name), &|r| time(r) / unit.size)? {
+                charts.push(("time", lines));
+            } else {
+                let groups = self.groups(|r| vec![r.milliseconds / unit.size]);
+                charts.push(("time", self.chart("Time", &groups, &[("time", TIME)], &format!("time, {}", unit.name))?));
+            }
         }
         Ok(charts)
+    }
+
+    /// Lines by distance, if there are several distances, and one result of each method and setting at each.
+    fn lines(&self, what: &str, value_name: &str, value: &dyn Fn(&SimResult) -> f64) -> anyhow::Result<Option<String>> {
+        let mut lines: Vec<Line> = Vec::new();
+        for (result, name) in self.results.iter().zip(labels(&self.results, self.settings)) {
+            let at = lines.iter().position(|line| line.name == name).unwrap_or_else(|| {
+                lines.push(Line { method: result.setup.method.name.clone(), name, spots: Vec::new() });
+                lines.len() - 1
+            });
+            let spots = &mut lines[at].spots;
+            let x = distance(result);
+            if spots.iter().any(|spot| spot.x == x) || !(x > 0.0) {
+                return Ok(None);
+            }
+            spots.push(Spot { x, y: value(result), gain: None });
+        }
+        if lines.iter().all(|line| line.spots.len() < 2) {
+            return Ok(None);
+        }
+        lines.iter_mut().for_each(|line| line.spots.sort_by(|a, b| a.x.total_cmp(&b.x)));
+        let is_base = |line: &Line| line.method == bvh::METHOD.name;
+        let base = lines.iter().find(|line| is_base(line)).map(|line| line.spots.clone()).unwrap_or_default();
+        for spot in lines.iter_mut().filter(|line| !is_base(line)).flat_map(|line| &mut line.spots) {
+            spot.gain = base.iter().find(|other| other.x == spot.x && spot.y > 0.0).map(|other| other.y / spot.y);
+        }
+        let in_radii = self.results.iter().all(|r| r.setup.view.as_ref().is_some_and(|view| view.distance.is_some()));
+        let x = if in_radii { "distance of the eye, bounding radii" } else { "distance of the eye" };
+        let title = format!("{what} of a frame: {}", self.scene);
+        let subtitle = if base.is_empty() { self.title.clone() } else { format!("{}; at each point the gain over bvh", self.title) };
+        Ok(DistanceChart { title, subtitle, x: x.to_owned(), y: value_name.to_owned(), lines }.svg()?)
     }
 
     fn groups(&self, parts: impl Fn(&SimResult) -> Vec<f64>) -> Vec<Group> {
@@ -197,10 +239,16 @@ fn eye(r: &SimResult) -> [f64; 3] {
     r.setup.view.as_ref().map_or([0.0; 3], |view| view.eye)
 }
 
+/// How far the eye is: in bounding radii from the target, if it was placed so, or from the origin.
+fn distance(r: &SimResult) -> f64 {
+    let to_origin = || eye(r).iter().map(|v| v * v).sum::<f64>().sqrt();
+    r.setup.view.as_ref().and_then(|view| view.distance).unwrap_or_else(to_origin)
+}
+
 /// Where a view is from.
 fn place(r: &SimResult) -> String {
-    let to_origin = || eye(r).iter().map(|v| v * v).sum::<f64>().sqrt();
-    r.setup.view.as_ref().and_then(|view| view.distance).map_or_else(|| short(to_origin()), |distance| format!("{distance} radii"))
+    let in_radii = r.setup.view.as_ref().and_then(|view| view.distance);
+    in_radii.map_or_else(|| short(distance(r)), |distance| format!("{distance} radii"))
 }
 
 /// Two decimals at most.

@@ -15,11 +15,12 @@ use super::output::{check_target, print_line, remark, write_file};
 use super::pass::{Outcome, Pass, PassRays, Target};
 use super::pictures::{Shot, shoot};
 use super::render::compare_shots;
+use super::report::PageArgs;
 use anyhow::Context;
 use lodray::format::Scene;
 use lodray::method::{Method, reference};
 use lodray::rays::{Camera, ModelSpace};
-use rows::ImageFigures;
+use lodray::report::page::{Documents, ImageFigures, Simulation};
 use std::collections::HashSet;
 use std::path::PathBuf;
 use std::process::ExitCode;
@@ -45,6 +46,8 @@ pub struct Args {
     overrule: Overrule,
     #[command(flatten)]
     cache: CacheArgs,
+    #[command(flatten)]
+    page: PageArgs,
 }
 
 /// Jobs that share a functional pass: their keys and targets.
@@ -64,6 +67,7 @@ struct Sweep<'a> {
 pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
     let jobs = Jobs::read(&args.jobs)?;
     let inputs: Vec<_> = std::iter::once(&args.jobs).chain(&jobs.files).map(PathBuf::as_path).collect();
+    args.page.check(&inputs)?;
     let mut folder = RunFolder::open(&args.out, [TABLE], &inputs, &args.overrule)?;
     let cache = Cache::new(&args.cache, Some(&args.out))?;
     let lines = args.out.join(LINES);
@@ -83,6 +87,12 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
         write_file(&folder.staging().join(name), chart)?;
     }
     folder.finish()?;
+    let simulation = |row: &Row| {
+        let (scene, image) = (Some(row.scene.clone()), row.image);
+        row.result.clone().map(|result| Simulation { scene, result, image })
+    };
+    let simulations = sweep.rows.of(&keys).filter_map(simulation).collect();
+    args.page.write(Documents { simulations, ..Documents::default() }, &inputs)?;
     let failed: Vec<_> = sweep.rows.of(&keys).filter(|row| row.error.is_some()).collect();
     let before = keys.iter().filter(|key| done.contains(*key)).count();
     let jobs = |n: usize| format!("{n} {}", if n == 1 { "job" } else { "jobs" });

@@ -1,6 +1,7 @@
 //! A job's line, and the table of all at the end.
 
 use crate::cli::job_lines::JobLine;
+use lodray::report::page::ImageFigures;
 use lodray::report::result::SimResult;
 use serde::{Deserialize, Serialize};
 
@@ -21,18 +22,6 @@ pub struct Row {
     /// Why it failed.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub error: Option<String>,
-}
-
-/// How far a picture is from full resolution.
-#[derive(Clone, Copy, Debug, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct ImageFigures {
-    /// Root mean square difference, channels from 0 to 255.
-    pub rmse: f64,
-    /// Peak signal to noise ratio in dB; none for equal pictures.
-    pub psnr_db: Option<f64>,
-    /// Mean distance between the surfaces in pixels; none if no pixel hits in both pictures.
-    pub geometry_pixels_mean: Option<f64>,
 }
 
 impl JobLine for Row {

@@ -1,12 +1,21 @@
 //! What methods cost where their error is the same, and the front of what no other setting beats in both.
 
-use super::figure::{COSTS, CostFigure, ERRORS, ErrorFigure};
-use super::{EqualCost, EqualError, ErrorTime, Point};
+use super::document::{EqualCost, EqualError, ErrorTime, Point};
+use super::measure::{COSTS, CostMeasure, ERRORS, ErrorMeasure};
 
 /// Why a method has no cost at an error: all its settings are further off.
 pub const NOT_REACHED: &str = "not reached";
 /// Why its cost is that of its coarsest setting: all that were measured are nearer than the error asked for.
 pub const ALWAYS_BELOW: &str = "always below";
+
+/// Errors at which methods are compared, and the levels: pixels, and FLIP.
+const LEVELS: [(&str, [f64; 4]); 5] =
+    [("surface-p99", PIXELS), ("surface-mean", PIXELS), ("hit-p99", PIXELS), ("flip-mean", FLIP), ("viewed-flip-mean", FLIP)];
+const PIXELS: [f64; 4] = [0.25, 0.5, 1.0, 2.0];
+const FLIP: [f64; 4] = [0.01, 0.02, 0.05, 0.1];
+
+/// Costs by which they are.
+const COMPARED: [&str; 4] = ["time", "energy", "dram-lines", "l1-requests"];
 
 /// A setting of a method: error and cost.
 pub type Pair = [f64; 2];
@@ -43,6 +52,8 @@ pub fn front(points: &[Pair]) -> Vec<bool> {
 
 /// Equal-error comparisons of all views, for every error with levels and every cost; `ours` names the method that the others are compared with.
 pub fn equal_errors(document: &ErrorTime, ours: &str) -> Vec<EqualError> {
+    let with_levels = |(id, levels): &(&str, [f64; 4])| Some((*ERRORS.iter().find(|error| error.id == *id)?, *levels));
+    let errors: Vec<(ErrorMeasure, [f64; 4])> = LEVELS.iter().filter_map(with_levels).collect();
     let mut all = Vec::new();
     for view in 0..document.views.len() {
         let of_view: Vec<&Point> = document.points.iter().filter(|point| point.view == view).collect();
@@ -53,10 +64,10 @@ pub fn equal_errors(document: &ErrorTime, ours: &str) -> Vec<EqualError> {
             let points: Vec<&Point> = of_view.iter().copied().filter(|point| point.samples == samples).collect();
             // Every point has the same machines.
             for (at, costs) in points.first().map_or(&[][..], |first| &first.costs).iter().enumerate() {
-                for error in ERRORS {
-                    for cost in COSTS.iter().filter(|cost| cost.is_compared) {
+                for (error, levels) in &errors {
+                    for cost in COSTS.iter().filter(|cost| COMPARED.contains(&cost.id)) {
                         let key = Key { view, samples, machine: costs.machine, compute: &costs.compute };
-                        all.extend(compared(document, ours, &points, at, &key, error, cost));
+                        all.extend(compared(document, ours, &points, at, &key, error, levels, cost));
                     }
                 }
             }
@@ -79,12 +90,13 @@ fn compared(
     points: &[&Point],
     at: usize,
     key: &Key<'_>,
-    error: &ErrorFigure,
-    cost: &CostFigure,
+    error: &ErrorMeasure,
+    levels: &[f64],
+    cost: &CostMeasure,
 ) -> Vec<EqualError> {
     let sweep = |method: &str| -> Vec<Pair> {
         let of = points.iter().filter(|point| point.method == method);
-        of.filter_map(|point| Some([(error.of)(point)?, (cost.of)(point.costs.get(at)?)])).collect()
+        of.filter_map(|point| Some([(error.of)(point)?, (cost.of)(point, point.costs.get(at)?)])).collect()
     };
     let own = sweep(ours);
     let others: Vec<_> = document.methods.iter().filter(|m| m.name != ours).map(|m| (&m.name, sweep(&m.name))).collect();
@@ -98,9 +110,9 @@ fn compared(
         EqualError {
             view: key.view,
             samples: key.samples,
-            error: error.name.to_owned(),
+            error: error.id.to_owned(),
             level,
-            cost: cost.name.to_owned(),
+            cost: cost.id.to_owned(),
             machine: key.machine,
             compute: key.compute.to_owned(),
             ours: mine,
@@ -108,7 +120,7 @@ fn compared(
             methods: others.iter().map(other).collect(),
         }
     };
-    if own.is_empty() { Vec::new() } else { error.levels.iter().map(at_level).collect() }
+    if own.is_empty() { Vec::new() } else { levels.iter().map(at_level).collect() }
 }
 
 #[cfg(test)]

@@ -1,0 +1,89 @@
+//! Results of every kind, read from their files.
+
+use crate::cli::folder::{Input, Record};
+use crate::cli::json::fault_at;
+use crate::cli::output::busy;
+use crate::cli::results::results;
+use anyhow::{Context, ensure};
+use lodray::report::error_time::{ErrorTime, KIND};
+use lodray::report::page::{DocumentFacts, Documents, PICTURE_BYTES, RunInput, embed, ledger};
+use serde::de::DeserializeOwned;
+use std::path::Path;
+
+/// What the files hold, with the records of the runs that made them.
+pub fn documents(paths: &[&Path]) -> anyhow::Result<Documents> {
+    let mut all = Documents::default();
+    for path in paths {
+        add(&mut all, path)?;
+        let Some(name) = path.file_name().map(|name| name.to_string_lossy().into_owned()) else { continue };
+        let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
+        // A record that is none is no reason to have no page.
+        if let Some(record) = Record::read(folder).ok().flatten().filter(|record| record.files.contains(&name)) {
+            let run = record.into();
+            if !all.runs.contains(&run) {
+                all.runs.push(run);
+            }
+        }
+    }
+    Ok(all)
+}
+
+fn add(all: &mut Documents, path: &Path) -> anyhow::Result<()> {
+    let shown = path.display();
+    let text = std::fs::read_to_string(path).with_context(|| format!("cannot read {shown}"))?;
+    let kind = if path.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("md")) {
+        let tables = ledger(&text);
+        ensure!(!tables.is_empty(), "{shown}: there is no table in it");
+        all.ledger.extend(tables);
+        "claims"
+    } else {
+        match Kind::of(&text) {
+            Kind::ErrorTime => {
+                ensure!(all.error_time.is_none(), "{shown}: a page shows one result of error-time, and there is one before it");
+                let document: ErrorTime = parsed(&text, path, "no result of error-time")?;
+                document.check().map_err(|why| anyhow::anyhow!("{shown}: {why}"))?;
+                let folder = path.parent().unwrap_or(Path::new(""));
+                all.pictures =
+                    busy("pictures", || embed(&document.pictures, folder, PICTURE_BYTES)).with_context(|| format!("{shown}: pictures"))?;
+                all.error_time = Some(document);
+                "error against cost"
+            }
+            Kind::Stability => {
+                all.stability.push(parsed(&text, path, "no report of stability")?);
+                "stability"
+            }
+            Kind::Results => {
+                let found = results(&text).with_context(|| format!("{shown}: not results of a simulation"))?;
+                all.simulations.extend(found.into_iter().flatten());
+                "simulations"
+            }
+        }
+    };
+    let RunInput { name, bytes, xxh3 } = Input::read(path)?.into();
+    let name = Path::new(&name).file_name().map_or(name.clone(), |name| name.to_string_lossy().into_owned());
+    all.documents.push(DocumentFacts { kind: kind.to_owned(), name, bytes, xxh3 });
+    Ok(())
+}
+
+fn parsed<T: DeserializeOwned>(text: &str, path: &Path, not: &str) -> anyhow::Result<T> {
+    serde_json::from_str(text).map_err(|error| anyhow::anyhow!("{}: {not}: {}", path.display(), fault_at(&error)))
+}
+
+/// What a JSON file holds.
+enum Kind {
+    ErrorTime,
+    Stability,
+    /// Of simulations; what is none of these is refused as such.
+    Results,
+}
+
+impl Kind {
+    fn of(text: &str) -> Self {
+        let value: serde_json::Value = serde_json::from_str(text).unwrap_or_default();
+        match value.get("kind").and_then(|kind| kind.as_str()) {
+            Some(KIND) => Self::ErrorTime,
+            _ if value.get("widths_checked").is_some() => Self::Stability,
+            _ => Self::Results,
+        }
+    }
+}

@@ -1,0 +1,70 @@
+//! Diagrams as files, SVG and PNG, and tables as CSV and LaTeX: what the page shows, for documents.
+//!
+//! The same figures give the same bytes: SVG needs no fonts to be made, and PNG is drawn with one that is here.
+
+mod canvas;
+mod distance;
+mod marks;
+mod raster;
+mod table;
+mod work;
+
+pub use canvas::DiagramFault;
+pub use distance::{DistanceChart, Line, Spot, gain};
+pub use raster::png;
+pub use table::{csv, latex};
+
+use super::error_time::{CostMeasure, ErrorMeasure, ErrorTime};
+use rayon::prelude::*;
+
+/// File name and contents.
+pub type Files = Vec<(String, Vec<u8>)>;
+
+/// Diagrams of a document: for each scene and machine every error of `errors` against every cost of `costs`, small multiples by distance, and costs and errors by
+/// distance, each as SVG and as PNG. What nobody measured has no diagram.
+///
+/// # Errors
+/// A diagram that cannot be drawn.
+pub fn diagrams(document: &ErrorTime, errors: &[ErrorMeasure], costs: &[CostMeasure]) -> Result<Files, DiagramFault> {
+    let mut drawings: Vec<(String, String)> = Vec::new();
+    for (scene, entry) in document.scenes.iter().enumerate() {
+        for (machine, compute) in machines(document) {
+            let of = work::Of { document, scene, machine, compute: &compute };
+            let alone = document.machines.len() == 1 && machines(document).len() == 1;
+            let suffix = if alone { String::new() } else { format!("-{}-{compute}", document.machines[machine].label) };
+            let mut add = |name: String, svg: Option<String>| drawings.extend(svg.map(|svg| (plain(&format!("{name}{suffix}")), svg)));
+            for error in errors {
+                for cost in costs {
+                    add(format!("{}-{}-{}", entry.name, error.id, cost.id), of.work(error, cost)?);
+                }
+                add(format!("{}-distance-{}", entry.name, error.id), of.errors_by_distance(error)?);
+            }
+            for cost in costs {
+                add(format!("{}-distance-{}", entry.name, cost.id), of.costs_by_distance(cost)?);
+            }
+        }
+    }
+    let files = drawings.into_par_iter().map(|(name, svg)| {
+        let raster = png(&svg, 2.0)?;
+        Ok([(format!("{name}.svg"), svg.into_bytes()), (format!("{name}.png"), raster)])
+    });
+    Ok(files.collect::<Result<Vec<_>, DiagramFault>>()?.into_iter().flatten().collect())
+}
+
+/// Machines and kinds of compute that costs are of, in order.
+pub(super) fn machines(document: &ErrorTime) -> Vec<(usize, String)> {
+    let mut all: Vec<(usize, String)> = Vec::new();
+    for costs in document.points.iter().flat_map(|point| &point.costs) {
+        if !all.iter().any(|(machine, compute)| *machine == costs.machine && *compute == costs.compute) {
+            all.push((costs.machine, costs.compute.clone()));
+        }
+    }
+    all.sort();
+    all
+}
+
+/// A file's name of any text.
+fn plain(text: &str) -> String {
+    let text: String = text.chars().map(|c| if c.is_ascii_alphanumeric() || c == '.' { c } else { '-' }).collect();
+    text.split('-').filter(|part| !part.is_empty()).collect::<Vec<_>>().join("-")
+}

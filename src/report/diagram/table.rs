@@ -1,0 +1,112 @@
+//! Tables of a document: all points as CSV, and what methods cost at equal error as LaTeX.
+
+use super::canvas::short;
+use crate::report::error_time::{COSTS, ERRORS, EqualError, ErrorTime};
+use std::collections::BTreeMap;
+
+/// All points, a line for each machine that they have costs of.
+pub fn csv(document: &ErrorTime) -> String {
+    let head = ["scene", "distance", "method", "setting", "samples", "machine", "compute", "energy_unit"].map(str::to_owned).into_iter();
+    let measures = ERRORS.iter().map(|error| error.id).chain(COSTS.iter().map(|cost| cost.id)).map(|id| id.replace('-', "_"));
+    let mut text = head.chain(measures).collect::<Vec<_>>().join(",") + "\n";
+    for point in &document.points {
+        let view = &document.views[point.view];
+        for costs in &point.costs {
+            let mut cells = vec![document.scenes[view.scene].name.clone(), view.distance.to_string(), point.method.clone()];
+            cells.extend([point.setting.clone(), point.samples.to_string(), document.machines[costs.machine].title()]);
+            cells.extend([costs.compute.clone(), costs.energy.unit.clone()]);
+            cells.extend(ERRORS.iter().map(|error| (error.of)(point).map_or_else(String::new, |v| v.to_string())));
+            cells.extend(COSTS.iter().map(|cost| (cost.of)(point, costs).to_string()));
+            text += &(cells.iter().map(|cell| quoted(cell)).collect::<Vec<_>>().join(",") + "\n");
+        }
+    }
+    text
+}
+
+/// A cell of a CSV file.
+fn quoted(cell: &str) -> String {
+    if cell.contains([',', '"', '\n', '\r']) { format!("\"{}\"", cell.replace('"', "\"\"")) } else { cell.to_owned() }
+}
+
+/// What tells a table from the others: scene, samples, error, cost, machine, compute.
+type Key = (usize, u32, String, String, usize, String);
+
+/// Costs at equal error, a table (booktabs) for each scene, error, cost and machine: a row for each distance and level.
+pub fn latex(document: &ErrorTime) -> String {
+    let mut tables: BTreeMap<Key, Vec<&EqualError>> = BTreeMap::new();
+    for equal in &document.equal_error {
+        let scene = document.views[equal.view].scene;
+        let key = (scene, equal.samples, equal.error.clone(), equal.cost.clone(), equal.machine, equal.compute.clone());
+        tables.entry(key).or_default().push(equal);
+    }
+    let mut text = "% \\usepackage{booktabs}\n".to_owned();
+    for ((scene, samples, error, cost, machine, compute), mut rows) in tables {
+        rows.sort_by(|a, b| document.views[a.view].distance.total_cmp(&document.views[b.view].distance).then(a.level.total_cmp(&b.level)));
+        let mut methods: Vec<&str> = Vec::new();
+        for method in rows.iter().flat_map(|row| &row.methods) {
+            if !methods.contains(&method.method.as_str()) {
+                methods.push(&method.method);
+            }
+        }
+        let words = |text: &str| escaped(&text.replace('_', " "));
+        let caption = format!(
+            "{}: {} where the {} is the same; samples per pixel: {samples}; {}, compute {}. In brackets the cost over ours.",
+            escaped(&document.scenes[scene].name),
+            words(&cost),
+            words(&error),
+            escaped(&document.machines[machine].title()),
+            escaped(&compute)
+        );
+        let head = methods.iter().map(|method| format!(" & {}", escaped(method))).collect::<String>();
+        text += &format!(
+            "\\begin{{table}}\n\\centering\n\\caption{{{caption}}}\n\\begin{{tabular}}{{rrr{}}}\n\\toprule\n",
+            "r".repeat(methods.len())
+        );
+        text += &format!("distance & level & ours{head} \\\\\n\\midrule\n");
+        for row in rows {
+            let others = methods.iter().map(|name| {
+                let found = row.methods.iter().find(|method| method.method == *name);
+                match found.and_then(|method| Some((method.cost?, method.ratio))) {
+                    Some((cost, Some(ratio))) => format!(" & {} ({})", short(cost), short(ratio)),
+                    Some((cost, None)) => format!(" & {}", short(cost)),
+                    None => format!(" & {}", found.and_then(|method| method.why.as_deref()).map_or_else(|| "--".to_owned(), escaped)),
+                }
+            });
+            let ours = row.ours.map_or_else(|| "--".to_owned(), short);
+            text += &format!(
+                "{} & {} & {ours}{} \\\\\n",
+                short(document.views[row.view].distance),
+                short(row.level),
+                others.collect::<String>()
+            );
+        }
+        text += "\\bottomrule\n\\end{tabular}\n\\end{table}\n\n";
+    }
+    text
+}
+
+/// Text in LaTeX.
+fn escaped(text: &str) -> String {
+    let mut out = String::new();
+    for c in text.chars() {
+        match c {
+            '&' | '%' | '$' | '#' | '_' | '{' | '}' => out.extend(['\\', c]),
+            '~' => out += "\\textasciitilde{}",
+            '^' => out += "\\textasciicircum{}",
+            '\\' => out += "\\textbackslash{}",
+            c => out.push(c),
+        }
+    }
+    out
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn text_is_safe_in_its_format() {
+        assert_eq!(escaped("a_b & 5% \\x"), "a\\_b \\& 5\\% \\textbackslash{}x");
+        assert_eq!([quoted("a"), quoted("a,\"b\"")], ["a", "\"a,\"\"b\"\"\""]);
+    }
+}

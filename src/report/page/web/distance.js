@@ -1,0 +1,219 @@
+// Cost and error by distance, and the energy's and the traffic's parts.
+
+/** The setting of each method that these sections show. */
+function settingsOf(points, chosen) {
+  const methods = unique(points.map((p) => p.method));
+  return new Map(methods.map((method) => {
+    const settings = unique(points.filter((p) => p.method === method).map((p) => p.setting));
+    // By default quality 1, as in the paper, or what comes nearest to its error.
+    const usual = settings.find((s) => QUALITY_1.test(s)) ?? nearestSetting(points, method) ?? settings[0];
+    return [method, { settings, setting: settings.includes(chosen[method]) ? chosen[method] : usual }];
+  }));
+}
+
+const QUALITY_1 = /(^|\W)delta 1($|[^\d.])/;
+
+/** The setting of a method whose error is the nearest to ours at quality 1, over all views. */
+function nearestSetting(points, method) {
+  const measure = errorMeasures().find((m) => points.some((p) => isOurs(p.method) && errorOf(p, m) > 0));
+  const ours = points.filter((p) => isOurs(p.method) && QUALITY_1.test(p.setting));
+  const off = (p) => {
+    const same = measure && ours.find((q) => place(q) === place(p) && q.samples === p.samples);
+    return same && errorOf(p, measure) > 0 && errorOf(same, measure) > 0 ? Math.abs(Math.log(errorOf(p, measure) / errorOf(same, measure))) : null;
+  };
+  const settings = d3.rollups(points.filter((p) => p.method === method && off(p) != null), (of) => [of.length, d3.mean(of, off)], (p) => p.setting);
+  return settings.sort(([, [n, a]], [, [m, b]]) => m - n || a - b)[0]?.[0];
+}
+
+/** The full-resolution BVH of the same view. */
+const baseOf = (rows, row) => rows.find((other) => other.method === "bvh" && other.place === row.place);
+
+function distanceSection(section, state) {
+  const body = h("div", {});
+  const own = { cost: "milliseconds", error: null };
+  const draw = () => {
+    const points = state.points();
+    const chosen = settingsOf(points, state.settings);
+    const costs = COSTS.filter((c) => points.some((p) => c.of(p, costAt(p, state.machine)) != null));
+    const cost = costs.find((c) => c.id === own.cost) ?? costs[0];
+    const errors = errorMeasures().filter((m) => points.some((p) => errorOf(p, m) != null));
+    const error = errors.find((m) => m.id === own.error) ?? errors[0];
+    const shown = points.filter((p) => p.setting === chosen.get(p.method).setting && p.distance != null);
+    const unit = costUnit(cost, points, state.machine);
+    const set = (key) => (value) => ((own[key] = value), draw());
+    const controls = h(
+      "div", { class: "controls" },
+      choice("Cost", costs.map((c) => [c.id, titled(c.name, costUnit(c, points, state.machine))]), cost.id, set("cost")),
+      error ? choice("Error", errors.map((m) => [m.id, titled(m.name, m.unit)]), error.id, set("error")) : null,
+      [...chosen].filter(([, { settings }]) => settings.length > 1).map(([method, { settings, setting }]) => choice(`${method} at`, settings.map((s) => [s, s]), setting, (value) => ((state.settings[method] = value), state.changed()))),
+    );
+    const row = (p, y, more) => ({ x: p.distance, y, place: place(p), point: p, method: p.method, ...tipOf(p, more) });
+    const costRows = shown.flatMap((p) => {
+      const y = cost.of(p, costAt(p, state.machine));
+      return y > 0 ? [row(p, y, [[cost.name, `${num(y)} ${unit}`]])] : [];
+    });
+    costRows.forEach((r) => {
+      const base = baseOf(costRows, r);
+      r.gain = base && base !== r ? base.y / r.y : null;
+      if (r.gain != null) r.lines.push(["gain over bvh", times(r.gain)]);
+    });
+    const errorRows = error ? shown.flatMap((p) => (errorOf(p, error) == null ? [] : [row(p, errorOf(p, error), [[error.name, `${num(errorOf(p, error))} ${error.unit ?? ""}`]])])) : [];
+    const methods = unique(costRows.map((r) => r.method));
+    const label = shown.some((p) => p.byRadii === false) ? "distance of the eye from the origin" : "distance of the eye, bounding radii";
+    const columns = (name) => [
+      { name: "scene", value: (r) => r.point.scene }, { name: "distance", value: (r) => r.x }, { name: "method", value: (r) => r.method }, { name: "setting", value: (r) => r.point.setting }, { name, value: (r) => r.y },
+    ];
+    const few = unique(costRows.map((r) => r.x)).length < 2;
+    body.replaceChildren(
+      controls, keys(methods), few ? h("p", { class: "note" }, "All of these results are from one distance.") : "",
+      h(
+        "div", { class: "pair" },
+        h("div", {}, lineDiagram(costRows, { title: `${titled(cost.name, unit)}`, small: `${state.scene}; beside each point the gain over the full-resolution BVH`, x: label, state }), dataTable(`${cost.name} by distance, ${state.scene}`, [...columns(titled(cost.name, unit)), { name: "gain over bvh", value: (r) => r.gain, show: (r) => times(r.gain) }], costRows)),
+        errorRows.length ? h("div", {}, lineDiagram(errorRows, { title: titled(error.name, error.unit), small: state.scene, x: label, linear: error.linear, state }), dataTable(`${error.name} by distance, ${state.scene}`, columns(titled(error.name, error.unit)), errorRows)) : "",
+      ),
+    );
+  };
+  section.append(h("p", {}, "One setting of each method, all distances. A gain above 1 says by how much the method is cheaper than the quad-BVH over the full-resolution mesh."), body);
+  state.onChange(draw);
+}
+
+function lineDiagram(rows, { title, small, x, linear, state }) {
+  const positive = linear ? rows : rows.filter((r) => r.y > 0);
+  const methods = unique(rows.map((r) => r.method));
+  const exact = unique(rows.filter((r) => !linear && !(r.y > 0)).map((r) => r.method));
+  const [xDomain, yDomain] = [domain(positive.map((r) => r.x), false, 1.25), domain(positive.map((r) => r.y), linear, 1.9)];
+  const figure = diagram({
+    title, small, rows: positive, label: `${title} by distance, ${state.scene}`, open: state.showPicture && ((row) => row.point.view != null && state.showPicture(row.point)),
+    options: (width) => {
+      const height = Math.min(430, Math.max(300, width * 0.68));
+      const placed = withRoom(positive, (r) => [Math.log(r.x / xDomain[0]) / Math.log(xDomain[1] / xDomain[0]) * (width - 82), linear ? 0 : (1 - Math.log(r.y / yDomain[0]) / Math.log(yDomain[1] / yDomain[0])) * (height - 62)]);
+      const ticks = unique(positive.map((r) => Number(r.x.toPrecision(3)))).filter((v, k, all) => all.length < width / 44 || k % 2 === 0);
+      const { scales, marks } = axes({ width, height, margins: { marginLeft: 56, marginBottom: 42, marginRight: 26, marginTop: 20 }, x: { domain: xDomain, ticks, label: x }, y: { domain: yDomain, linear } });
+      return {
+      ...scales,
+      color: { domain: methods, range: methods.map(colour) },
+      symbol: { domain: methods, range: methods.map(symbol) },
+      marks: [
+        ...marks,
+        Plot.line(positive, { x: "x", y: "y", z: (r) => `${r.method} ${r.point.samples}`, stroke: "method", strokeWidth: 1.8, sort: "x" }),
+        Plot.dot(positive, { x: "x", y: "y", symbol: "method", stroke: "method", fill: "method", r: 4.6, className: "points", sort: null }),
+        ...[-13, 14].map((dy) => Plot.text(placed.filter((r) => r.dy === dy), { x: "x", y: "y", text: (r) => times(r.gain), dy, fontSize: 11.5, fontWeight: 600, fill: "method", stroke: "var(--ground)", strokeWidth: 3.5 })),
+      ],
+      };
+    },
+  });
+  if (exact.length) figure.append(h("p", { class: "note" }, `No error at all: ${exact.join(", ")}.`));
+  return figure;
+}
+
+/** Where gains have room: above their points or below them, ours first; a gain that has none is in the tip and in the table only. */
+function withRoom(rows, at) {
+  const taken = rows.map((r) => at(r)).map(([x, y]) => [x - 6, y - 6, x + 6, y + 6]);
+  const own = new Map(rows.map((r, k) => [r, taken[k]]));
+  const placed = [];
+  for (const row of [...rows].filter((r) => r.gain != null).sort(by((r) => (isOurs(r.method) ? 0 : 1)))) {
+    const [x, y] = at(row);
+    const half = 3.6 * times(row.gain).length;
+    for (const dy of [-13, 14]) {
+      const box = [x - half, y + dy - 7, x + half, y + dy + 7];
+      const meets = (other) => other !== own.get(row) && box[0] < other[2] && other[0] < box[2] && box[1] < other[3] && other[1] < box[3];
+      if (taken.some(meets)) continue;
+      taken.push(box);
+      placed.push({ ...row, dy });
+      break;
+    }
+  }
+  return placed;
+}
+
+/** The parts of the energy and of the traffic of one setting of each method. */
+function partsSection(section, state) {
+  const body = h("div", {});
+  const draw = () => {
+    const points = state.points();
+    const chosen = settingsOf(points, state.settings);
+    const shown = points.filter((p) => p.setting === chosen.get(p.method).setting && costAt(p, state.machine));
+    const unit = shown.map((p) => costAt(p, state.machine).energy.unit)[0] ?? "";
+    const places = unique(shown.map(place));
+    const parts = page.palette.parts.map((p) => p.name);
+    const partColours = parts.map((p) => `var(--part-${p})`);
+    const rowsOf = (points) => points.flatMap((p) => ENERGY_PARTS.map((part, k) => ({ point: p, label: p.samples > 1 ? `${p.method} ×${p.samples}` : p.method, part: parts[k], value: costAt(p, state.machine).energy[part], total: costAt(p, state.machine).energy.total })));
+    const charts = places.map((where) => {
+      const here = shown.filter((p) => place(p) === where);
+      const rows = rowsOf(here);
+      const bars = rows.map((r) => ({ ...r, x: r.value, y: 0, method: r.point.method, ...tipOf(r.point, [[`energy, ${r.part}`, `${num(r.value)} ${unit}`], ["of all", `${num((100 * r.value) / (r.total || 1))} %`], ["all", `${num(r.total)} ${unit}`]]) }));
+      const totals = here.map((p) => ({ label: rowsOf([p])[0].label, total: costAt(p, state.machine).energy.total }));
+      const labels = unique(rows.map((r) => r.label));
+      return diagram({
+        title: `from ${where}`.replace("from rays", "rays"), small: unit, rows: bars, label: `Energy by part from ${where}, ${state.scene}`,
+        options: (width) => ({
+          height: 34 + 27 * labels.length, marginLeft: 78, marginRight: 58, marginTop: 4, marginBottom: 26,
+          x: { label: null, domain: [0, Math.max(...totals.map((t) => t.total)) || 1], ticks: Math.max(2, Math.floor(width / 110)), tickFormat: (v) => num(v) },
+          y: { label: null, domain: labels, padding: 0.28 },
+          color: { domain: parts, range: partColours },
+          marks: [
+            Plot.barX(bars, { x: "value", y: "label", fill: "part", className: "points", sort: null }),
+            Plot.text(totals, { x: "total", y: "label", text: (t) => num(t.total), textAnchor: "start", dx: 5, fontSize: 11.5, fill: "currentColor" }),
+            Plot.ruleX([0], { strokeOpacity: 0.5 }),
+          ],
+        }),
+      });
+    });
+    const partKeys = h("ul", { class: "keys", "aria-label": "Parts" }, parts.map((part) => h("li", {}, h("span", { style: `width:.85rem;height:.85rem;border-radius:3px;background:var(--part-${part})`, "aria-hidden": "true" }), part)));
+    const columns = [
+      { name: "from", value: (p) => place(p) }, { name: "method", value: (p) => p.method }, { name: "setting", value: (p) => p.setting }, { name: `energy (${unit})`, value: (p) => costAt(p, state.machine).energy.total },
+      ...ENERGY_PARTS.map((part, k) => ({ name: parts[k], value: (p) => costAt(p, state.machine).energy[part] })),
+      { name: "DRAM lines", value: (p) => costAt(p, state.machine).dram_lines }, { name: "DRAM bytes", value: (p) => costAt(p, state.machine).dram_bytes }, { name: "L1 requests for each ray", value: (p) => costAt(p, state.machine).l1_requests_per_ray },
+    ];
+    const kinds = shown.flatMap((p) => (costAt(p, state.machine).traffic?.kinds ?? []).map((kind) => ({ point: p, ...kind })));
+    body.replaceChildren(h("h3", {}, "Energy"), partKeys, h("div", { class: "grid" }, charts), dataTable(`Energy and traffic, ${state.scene}`, columns, shown), traffic(kinds, state), overTime(shown, state));
+  };
+  section.append(h("p", {}, "The settings chosen above. Every distance has an axis of its own, as far views take a small part of what near ones take."), body);
+  state.onChange(draw);
+}
+
+/** Bytes by what lines hold, of results of simulations. */
+function traffic(kinds, state) {
+  if (!kinds.length) return "";
+  const names = unique(kinds.map((k) => k.kind));
+  const levels = [["l1", "L1s"], ["l2", "L2"], ["dram", "DRAM"]];
+  const rows = kinds.flatMap((k) => levels.map(([id, level]) => ({ level, kind: k.kind, value: k.bytes_per_ray[id], point: k.point, place: place(k.point), method: k.point.method })));
+  const hatch = (kind) => `var(--kind-${names.indexOf(kind) % 8})`;
+  const charts = unique(rows.map((r) => r.place)).map((where) => {
+    const here = rows.filter((r) => r.place === where).map((r) => ({ ...r, label: `${r.method}, ${r.level}`, x: r.value, y: 0, ...tipOf(r.point, [[`${r.kind}, ${r.level}`, `${num(r.value)} bytes for each ray`]]) }));
+    const labels = unique(here.map((r) => r.label));
+    return diagram({
+      title: `from ${where}`.replace("from rays", "rays"), small: "bytes for each ray", rows: here, label: `Traffic by what lines hold from ${where}, ${state.scene}`,
+      options: () => ({
+        height: 34 + 21 * labels.length, marginLeft: 100, marginRight: 20, marginTop: 4, marginBottom: 26, x: { label: null, ticks: 4 }, y: { label: null, domain: labels, padding: 0.25 }, color: { domain: names, range: names.map(hatch) },
+        marks: [Plot.barX(here, { x: "value", y: "label", fill: "kind", className: "points", sort: null }), Plot.ruleX([0], { strokeOpacity: 0.5 })],
+      }),
+    });
+  });
+  const kindKeys = h("ul", { class: "keys", "aria-label": "What lines hold" }, names.map((kind) => h("li", {}, h("span", { style: `width:.85rem;height:.85rem;border-radius:3px;background:${hatch(kind)}`, "aria-hidden": "true" }), kind)));
+  const columns = [
+    { name: "from", value: (k) => place(k.point) }, { name: "method", value: (k) => k.point.method }, { name: "setting", value: (k) => k.point.setting }, { name: "lines hold", value: (k) => k.kind },
+    { name: "L1 requests", value: (k) => k.l1 }, { name: "L2 requests", value: (k) => k.l2 }, { name: "DRAM lines", value: (k) => k.dram },
+    ...levels.map(([id, level]) => ({ name: `bytes for each ray, ${level}`, value: (k) => k.bytes_per_ray[id] })),
+  ];
+  return h("div", {}, h("h3", {}, "Traffic by what lines hold"), kindKeys, h("div", { class: "grid" }, charts), dataTable(`Traffic by what lines hold, ${state.scene}`, columns, kinds));
+}
+
+/** Power over time, where results have it. */
+function overTime(shown, state) {
+  const runs = shown.filter((p) => costAt(p, state.machine).intervals?.some((i) => i.watts)).slice(0, 6);
+  if (!runs.length) return "";
+  const charts = runs.map((p) => {
+    const c = costAt(p, state.machine);
+    const ms = c.milliseconds / c.cycles;
+    const rows = c.intervals.flatMap((i) => ENERGY_PARTS.map((part, k) => ({ from: (i.end - i.cycles) * ms, to: i.end * ms, x: i.end * ms, y: i.watts?.[part] ?? 0, part: page.palette.parts[k].name, ...tipOf(p, [[`power, ${page.palette.parts[k].name}`, `${num(i.watts?.[part] ?? 0)} W`], ["until", `${num(i.end * ms)} ms`]]) })));
+    return diagram({
+      title: `${p.method}, ${p.setting}`, small: `from ${place(p)}, W`, rows, label: `Power over time, ${p.method} ${p.setting}`,
+      options: () => ({
+        height: 220, marginLeft: 46, marginBottom: 38, x: { label: "time (ms)", labelAnchor: "center", labelArrow: "none", ticks: 4 }, y: { label: null, grid: true, ticks: 4 }, color: { domain: page.palette.parts.map((q) => q.name), range: page.palette.parts.map((q) => `var(--part-${q.name})`) },
+        marks: [Plot.rectY(rows, Plot.stackY({ x1: "from", x2: "to", y: "y", fill: "part", inset: 0, className: "points" })), Plot.ruleY([0])],
+      }),
+    });
+  });
+  return h("div", {}, h("h3", {}, "Power over time"), h("div", { class: "grid" }, charts));
+}

@@ -1,0 +1,154 @@
+// The page: what there is becomes sections.
+
+let page;
+
+/** What is chosen for all sections, and who is told of changes. */
+class State {
+  constructor(points) {
+    this.all = points;
+    this.settings = {};
+    this.listeners = [];
+    this.scenes = unique(points.map((p) => p.scene));
+    this.scene = this.scenes[0];
+    this.samples = "all";
+    this.fit();
+  }
+  /** Keeps what is chosen among what there is. */
+  fit() {
+    const here = this.all.filter((p) => p.scene === this.scene);
+    this.machines = unique(here.flatMap((p) => p.costs.map((c) => c.target)));
+    if (!this.machines.includes(this.machine)) this.machine = this.machines[0];
+    this.sampleCounts = unique(here.map((p) => p.samples)).sort((a, b) => a - b);
+    if (!this.sampleCounts.includes(Number(this.samples))) this.samples = this.sampleCounts.length > 1 ? String(this.sampleCounts[0]) : "all";
+  }
+  points() {
+    return this.all.filter((p) => p.scene === this.scene && costAt(p, this.machine) && (this.samples === "all" || p.samples === Number(this.samples))).sort(by((p) => p.distance ?? 0));
+  }
+  onChange(listener) {
+    this.listeners.push(listener);
+    listener();
+  }
+  changed() {
+    this.fit();
+    this.listeners.forEach((listener) => listener());
+  }
+}
+
+function globalControls(state) {
+  const bar = h("div", { class: "controls global" });
+  const draw = () => {
+    const set = (key) => (value) => ((state[key] = value), state.changed());
+    bar.replaceChildren(
+      choice("Scene", state.scenes.map((s) => [s, s]), state.scene, set("scene")),
+      choice("Machine", state.machines.map((m) => [m, m]), state.machine, set("machine")),
+      state.sampleCounts.length > 1 ? choice("Samples per pixel", [...state.sampleCounts.map((n) => [String(n), num(n)]), ["all", "all"]], state.samples, set("samples")) : "",
+    );
+  };
+  state.onChange(draw);
+  return bar;
+}
+
+/** The figures that one would tell first. */
+function glance(state) {
+  const list = h("ul", { class: "glance" });
+  const draw = () => {
+    const points = state.points();
+    const chosen = settingsOf(points, {});
+    const gain = (cost) => points.filter((p) => isOurs(p.method) && p.setting === chosen.get(p.method).setting).flatMap((p) => {
+      const base = points.find((q) => q.method === "bvh" && q.samples === p.samples && place(q) === place(p) && q.setting === chosen.get("bvh").setting);
+      const [ours, theirs] = [cost.of(p, costAt(p, state.machine)), base && cost.of(base, costAt(base, state.machine))];
+      return ours > 0 && theirs > 0 ? [{ p, gain: theirs / ours }] : [];
+    });
+    const cards = [["milliseconds", "time"], ["energy.total", "energy"], ["dram_lines", "DRAM lines"]].flatMap(([id, what]) => {
+      const gains = gain(COSTS.find((c) => c.id === id));
+      if (!gains.length) return [];
+      const [least, most] = [d3.least(gains, (g) => g.gain), d3.greatest(gains, (g) => g.gain)];
+      return [[gains.length === 1 ? times(most.gain) : `${times(least.gain)} to ${times(most.gain)}`, `${what} of the full-resolution BVH over ours at ${most.p.setting}${gains.length > 1 ? `: least from ${place(least.p)}, most from ${place(most.p)}` : ` from ${place(most.p)}`}`]];
+    });
+    const surface = errorMeasures().find((m) => m.id === "geometry.surface.percentile_99");
+    const errors = points.filter((p) => isOurs(p.method) && p.setting === chosen.get(p.method).setting).map((p) => errorOf(p, surface)).filter((v) => v != null);
+    if (errors.length) cards.push([`${num(d3.max(errors), 2)} pixels`, `off the surface at the 99th percentile, the most of ${count(errors.length, "view")}`]);
+    if (page.error_time?.equal_error.length) {
+      const doc = page.error_time;
+      const half = doc.equal_error.filter((e) => doc.scenes[doc.views[e.view].scene].name === state.scene && e.error.startsWith("surface") && e.level === 0.5 && e.cost === "milliseconds");
+      const ratios = half.flatMap((e) => e.methods.filter((m) => m.method === "bvh" && m.ratio != null).map((m) => m.ratio));
+      if (ratios.length) cards.push([`${ratios.filter((r) => r > 1).length} of ${ratios.length}`, "views in which ours takes less time than the full-resolution BVH, at half a pixel of error"]);
+    }
+    list.replaceChildren(...cards.map(([figure, words]) => h("li", {}, h("strong", {}, figure), h("span", {}, words))));
+  };
+  state.onChange(draw);
+  return list;
+}
+
+/** Light, dark, or as the system says. */
+function theme() {
+  const root = document.documentElement;
+  const button = document.getElementById("theme");
+  const dark = matchMedia("(prefers-color-scheme: dark)");
+  const modes = ["auto", "light", "dark"];
+  let mode = "auto";
+  try {
+    mode = modes.includes(localStorage.getItem("lodray-theme")) ? localStorage.getItem("lodray-theme") : "auto";
+  } catch {} // a page from a file may have no storage
+  const apply = () => {
+    root.dataset.theme = mode === "auto" ? (dark.matches ? "dark" : "light") : mode;
+    button.querySelector("span").textContent = { auto: "Auto", light: "Light", dark: "Dark" }[mode];
+    button.setAttribute("aria-label", { auto: "Auto: colours as the system says", light: "Light colours", dark: "Dark colours" }[mode]);
+  };
+  button.addEventListener("click", () => {
+    mode = modes[(modes.indexOf(mode) + 1) % 3];
+    try {
+      localStorage.setItem("lodray-theme", mode);
+    } catch {}
+    apply();
+  });
+  dark.addEventListener("change", apply);
+  apply();
+}
+
+/** Colours of the palette as custom properties, for both grounds. */
+function colours() {
+  const rgb = (c) => `rgb(${c.join(",")})`;
+  const { kinds } = page.palette;
+  const rules = (ground) => [
+    ...Object.entries(page.palette.methods).map(([name, style]) => `--method-${CSS.escape(name)}:${rgb(style[ground])};`),
+    ...page.palette.parts.map((p) => `--part-${p.name}:${rgb(p[ground])};`),
+    ...kinds.map((kind, k) => `--kind-${k}:${rgb(kind[ground])};`),
+  ].join("");
+  document.head.append(h("style", {}, `:root{${rules("light")}}:root[data-theme="dark"]{${rules("dark")}}`));
+}
+
+async function start() {
+  theme();
+  page = await block("data");
+  colours();
+  const main = document.getElementById("main");
+  const contents = h("ul", {});
+  const state = new State([...(page.error_time ? errorTimePoints(page.error_time) : []), ...simulationPoints(page.simulations)]);
+  const hasPoints = state.all.length > 0;
+  const several = unique(state.all.map((p) => p.distance)).length > 1;
+  const sections = [
+    ["work", "Error against cost", workSection, hasPoints && errorMeasures().some((m) => state.all.some((p) => errorOf(p, m) != null))],
+    ["distance", "By distance", distanceSection, hasPoints && several],
+    ["parts", "Energy and traffic", partsSection, hasPoints],
+    ["pictures", "Pictures and rays", picturesSection, page.pictures.length > 0],
+    ["equal", "At equal error", equalSection, page.error_time?.equal_error.length > 0],
+    ["stability", "Stability", stabilitySection, page.stability.length > 0],
+    ["claims", "The paper’s claims", ledgerSection, page.ledger.length > 0],
+    ["run", "How it was run", runSection, true],
+  ].filter(([, , , is]) => is);
+  // Pictures are asked for from the diagrams before their own section is there.
+  if (!page.pictures.length) state.showPicture = null;
+  else state.showPicture = () => {};
+  const made = sections.map(([id, title, fill]) => [h("section", { id, "aria-labelledby": `${id}-title` }, h("h2", { id: `${id}-title` }, title)), fill]);
+  contents.append(...sections.map(([id, title]) => h("li", {}, h("a", { href: `#${id}` }, title))));
+  document.getElementById("contents").replaceChildren(contents);
+  main.replaceChildren(...(hasPoints ? [glance(state), globalControls(state)] : []), ...made.map(([section]) => section));
+  made.forEach(([section, fill]) => fill(section, state));
+  document.documentElement.dataset.ready = String(Math.round(performance.now()));
+}
+
+start().catch((error) => {
+  document.getElementById("main").replaceChildren(h("p", { role: "alert" }, `This page could not be drawn: ${error.message}. It needs a browser of 2023 or later.`));
+  throw error;
+});

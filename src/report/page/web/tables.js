@@ -1,0 +1,88 @@
+// The sections that are tables.
+
+function equalSection(section, state) {
+  const doc = page.error_time;
+  const body = h("div", {});
+  const own = { error: null, level: null, cost: null };
+  const words = (id) => {
+    const [, what, stat] = /^(.*?)_(percentile_99|mean|median|maximum)$/.exec(id) ?? [null, id, null];
+    const name = { surface: "to the nearest point of the surface, pixels", hit: "to the full-resolution hit, pixels", flip: "FLIP", normal_degrees: "angle between normals, degrees" }[what] ?? what.replaceAll("_", " ");
+    return stat ? `${name}, ${{ percentile_99: "99th percentile" }[stat] ?? stat}` : name;
+  };
+  const draw = () => {
+    const all = doc.equal_error.map((e) => ({ ...e, v: doc.views[e.view], target: target([doc.machines[e.machine].label, ...doc.machines[e.machine].set].join(" "), e.compute) })).filter((e) => doc.scenes[e.v.scene].name === state.scene && e.target === state.machine && (state.samples === "all" || e.samples === Number(state.samples)));
+    if (!all.length) return body.replaceChildren(h("p", { class: "note" }, "None for this scene and machine."));
+    const pick = (key, values) => (own[key] = values.map(String).includes(String(own[key])) ? own[key] : values[0]);
+    const errors = unique(all.map((e) => e.error));
+    pick("error", errors);
+    const levels = unique(all.filter((e) => e.error === own.error).map((e) => e.level)).sort(by(Number));
+    pick("level", levels);
+    const costs = unique(all.map((e) => e.cost));
+    pick("cost", costs);
+    const rows = all.filter((e) => e.error === own.error && e.level === Number(own.level) && e.cost === own.cost).sort(by((e) => e.v.distance));
+    const methods = unique(rows.flatMap((e) => e.methods.map((m) => m.method)));
+    const of = (e, method) => e.methods.find((m) => m.method === method);
+    const set = (key) => (value) => ((own[key] = value), draw());
+    const costName = COSTS.find((c) => c.id === own.cost || c.id.startsWith(`${own.cost}.`))?.name ?? own.cost.replaceAll("_", " ");
+    const columns = [
+      { name: "from (radii)", value: (e) => e.v.distance }, { name: "samples", value: (e) => e.samples }, { name: `lod: ${costName}`, value: (e) => e.ours },
+      ...methods.flatMap((method) => [
+        { name: `${method}: ${costName}`, value: (e) => of(e, method)?.cost ?? null, show: (e) => (of(e, method)?.cost == null ? h("span", { class: "why" }, of(e, method)?.why ?? "–") : num(of(e, method).cost, 4)) },
+        { name: `${method} over lod`, value: (e) => of(e, method)?.ratio ?? null, show: (e) => (of(e, method)?.ratio == null ? "–" : h("span", { class: of(e, method).ratio > 1 ? "better" : "" }, times(of(e, method).ratio))) },
+      ]),
+    ];
+    const name = `At equal error, ${words(own.error)} ${own.level}, ${state.scene}`;
+    body.replaceChildren(
+      h("div", { class: "controls" }, choice("Error", errors.map((e) => [e, words(e)]), own.error, set("error")), choice("Level", levels.map((l) => [l, num(l)]), own.level, set("level")), choice("Cost", costs.map((c) => [c, COSTS.find((k) => k.id === c || k.id.startsWith(`${c}.`))?.name ?? c]), own.cost, set("cost"))),
+      scrolled(name, table(name, columns, rows)),
+      h("div", { class: "data" }, h("button", { type: "button", "aria-label": `CSV of: ${name}`, onclick: () => save("equal-error.csv", "text/csv", csv(columns, rows)) }, "CSV")),
+    );
+  };
+  section.append(h("p", {}, "What each method costs where its error is the same as ours, interpolated along its knob inside what was measured, never outside. A ratio above 1, in bold, is how many times as much as ours it costs."), body);
+  state.onChange(draw);
+}
+
+function stabilitySection(section) {
+  for (const report of page.stability) {
+    const rows = [...report.rows.map((r) => ({ name: r.case, ...r })), ...(report.hunt ? [{ name: "hunt", ...report.hunt }] : [])];
+    const n = (name, key) => ({ name, value: (r) => r[key] });
+    const breaches = d3.sum(rows, (r) => r.misses + r.doubles + r.different + r.overflows + r.saturated);
+    const columns = [
+      { name: "case", value: (r) => r.name }, { name: "what is hard about it", value: (r) => r.about ?? "counterexamples hunted for" }, n("rays", "rays"), n("balanced", "balanced"), n("compared", "compared"), n("misses", "misses"), n("double hits", "doubles"), n("different", "different"),
+      { name: "overflows", value: (r) => (report.widths_checked ? r.overflows + r.saturated : null) }, n("t, ulp", "t_ulp"), n("barycentric, ulp", "bary_ulp"), n("pixels", "pixels"),
+    ];
+    section.append(
+      h("p", {}, `${count(d3.sum(rows, (r) => r.rays), "ray")} of seed ${report.seed}: `, h("strong", {}, breaches === 0 ? "no breach" : count(breaches, "breach", "breaches")), report.widths_checked ? "." : "; this build did not look for overflows.", " Compared: against exact arithmetic."),
+      scrolled("Stability by case", table("Stability by case", columns, rows)),
+      h("div", { class: "data" }, h("button", { type: "button", "aria-label": "CSV of: stability", onclick: () => save("stability.csv", "text/csv", csv(columns, rows)) }, "CSV")),
+    );
+  }
+}
+
+/** Code between backticks, and the rest as it is. */
+const inline = (text) => text.split("`").map((part, k) => (k % 2 ? h("code", {}, part) : part));
+
+function ledgerSection(section) {
+  for (const { title, head, rows } of page.ledger) {
+    section.append(h("h3", {}, title), scrolled(`Claims: ${title}`, h("table", { class: "words" }, h("caption", { class: "visually-hidden" }, title), h("thead", {}, h("tr", {}, head.map((c) => h("th", { scope: "col" }, inline(c))))), h("tbody", {}, rows.map((row) => h("tr", {}, row.map((c) => h("td", {}, inline(c)))))))));
+  }
+}
+
+function runSection(section) {
+  const facts = (pairs) => h("dl", { class: "facts" }, pairs.filter(([, b]) => b != null && b !== "").map(([a, b]) => [h("dt", {}, a), h("dd", {}, b)]));
+  const quote = (word) => (/^[\w.,:=\/+-]+$/.test(word) ? word : `'${word.replaceAll("'", "'\\''")}'`);
+  for (const run of page.runs) {
+    const inputs = run.inputs.map((i) => h("div", {}, h("code", {}, i.name), `, ${num(i.bytes)} bytes, XXH3 `, h("code", {}, i.xxh3)));
+    section.append(h("div", { class: "card" }, facts([["command", h("code", {}, ["lodray", run.command, ...run.arguments].map(quote).join(" "))], ["version", run.lodray], ["inputs", inputs.length ? inputs : null], ["notes", run.notes?.length ? run.notes.map((n) => h("div", {}, n)) : null]])));
+  }
+  if (page.documents.length) section.append(h("h3", {}, "What this page shows"), h("div", { class: "card" }, facts(page.documents.map((d) => [d.kind, [h("code", {}, d.name), `, ${num(d.bytes)} bytes, XXH3 `, h("code", {}, d.xxh3)]]))));
+  const doc = page.error_time;
+  if (doc) {
+    const o = doc.options;
+    section.append(h("h3", {}, "Error against cost"), h("div", { class: "card" }, facts([["program", doc.program], ["size", o.size.join(" × ")], ["samples per pixel", o.samples.join(", ")], ["shading", o.shading], ["FLIP", `${num(o.pixels_per_degree, 4)} pixels per degree`], ["nearest surface", `one ray in ${o.nearest_stride}`]])));
+    section.append(scrolled("Scenes", table("Scenes", [["scene", "name"], ["file", "file"], ["hash", "hash"], ["splits", "levels"], ["base triangles", "base_triangles"], ["finest triangles", "finest_triangles"], ["bounds", "bounds"]].map(([name, key]) => ({ name, value: (s) => s[key] })), doc.scenes)));
+    section.append(scrolled("Methods", table("Methods", [["method", "name"], ["knob", "knob"], ["what it is", "help"]].map(([name, key]) => ({ name, value: (m) => m[key] })), doc.methods)));
+  }
+  const machines = new Map([...(doc?.machines ?? []), ...page.simulations.map((s) => s.result.setup.machine)].map((m) => [[m.label, ...m.set].join(" "), m.description]));
+  for (const [name, description] of machines) section.append(h("details", {}, h("summary", {}, `Machine ${name}`), h("pre", { class: "scroll", tabindex: "0", role: "region", "aria-label": `Machine ${name}`, style: "padding:.7rem" }, JSON.stringify(description, null, 2))));
+}

@@ -1,0 +1,181 @@
+//! `report`: a page from results of every kind, driven in Chromium; diagrams and tables as files; mistakes.
+
+mod browser;
+mod document;
+
+use lodray::report::diagram::{COSTS, ERRORS, USUAL_COSTS, USUAL_ERRORS, csv, diagrams, latex};
+use lodray::report::error_time::ErrorTime;
+use lodray::report::page::{Documents, PICTURE_BYTES, embed, page};
+use lodray_test_support::program::{Desk, FAILS, USAGE};
+use std::collections::HashSet;
+
+const DISTANCES: [f64; 3] = [0.7, 2.0, 6.0];
+const SIDE: u32 = 96;
+
+/// A folder with a scene and its document.
+fn desk() -> (Desk, ErrorTime) {
+    let desk = Desk::new(assert_cmd::cargo::cargo_bin!("lodray"));
+    desk.run("generate terrain --levels 3 --base 8 --seed 2 -o a.lod");
+    let document = document::of(desk.folder(), "a.lod", &DISTANCES, SIDE);
+    desk.write("error-time.json", &serde_json::to_string_pretty(&document).unwrap());
+    (desk, document)
+}
+
+#[test]
+fn a_page_of_everything_works_in_a_browser() {
+    let (desk, _) = desk();
+    desk.write("jobs.toml", "size = \"16x16\"\ndistances = [1, 4]\nmethods = [\"lod\", \"bvh\"]\n[[scene]]\nfile = \"a.lod\"\n[[machine]]\nname = \"haydel2023\"\n");
+    assert_eq!(desk.run_on(0, "sweep jobs.toml -o sweep").0, 0);
+    desk.run("stability --case needles --rays 2000 --hunt 0 -o stability --quiet");
+    desk.write("claims.md", "# Claims\n## Ledger\n| paper | measured |\n|---|---|\n| up to `20` times | 3 |\n");
+    let said = desk.run("report error-time.json stability/stability.json claims.md -o page.html");
+    assert!(said.starts_with("page in page.html, "), "{said}");
+    let text = desk.text("page.html");
+    // Nothing that a browser would fetch.
+    assert!(!["src=\"http", "href=\"http", "url(http", "@import"].iter().any(|word| text.contains(word)));
+    if let Some(found) = browser::drive(&desk.path("page.html"), Some(&desk.path("error-time.json"))) {
+        println!("{:?}, ready after {} ms, {} bytes", found.counts, found.ready_ms, text.len());
+        assert!(found.faults.is_empty(), "{:#?}", found.faults);
+        for (what, least) in [("points", 300), ("diagrams", 20), ("cells", 30), ("axe_rules", 60), ("steps", 20)] {
+            assert!(found.counts[what] >= least, "{what}: {}", found.counts[what]);
+        }
+    }
+    // Simulations have fewer sections, and work as well.
+    desk.run("report sweep/results.jsonl -o sweep.html --title plain");
+    assert!(desk.text("sweep.html").contains("<title>plain</title>"));
+    if let Some(found) = browser::drive(&desk.path("sweep.html"), None) {
+        assert!(found.faults.is_empty(), "{:#?}", found.faults);
+    }
+}
+
+#[test]
+fn a_large_page_is_light_and_opens_soon() {
+    let (desk, document) = desk();
+    let large = document::enlarged(&document, desk.folder(), 3, 8, 512);
+    let pictures = embed(&large.pictures, desk.folder(), PICTURE_BYTES).unwrap();
+    assert_eq!(pictures.len(), 3 * 8 * 13);
+    let text = page(&Documents { title: "large".to_owned(), error_time: Some(large), pictures, ..Documents::default() }).unwrap();
+    assert!(text.len() < 10_000_000, "{} bytes", text.len());
+    desk.write("large.html", &text);
+    if let Some(found) = browser::drive(&desk.path("large.html"), None) {
+        println!("{} bytes, ready after {} ms", text.len(), found.ready_ms);
+        assert!(found.faults.is_empty(), "{:#?}", found.faults);
+        assert!(found.ready_ms < 2000.0, "ready after {} ms", found.ready_ms);
+    }
+}
+
+#[test]
+fn the_same_results_give_the_same_page_and_other_commands_write_theirs() {
+    let (desk, document) = desk();
+    let again = document::of(desk.folder(), "a.lod", &DISTANCES, SIDE);
+    assert_eq!(document, again);
+    for name in ["a.html", "b.html"] {
+        desk.run(&format!("report error-time.json -o {name} --quiet"));
+    }
+    assert!(desk.bytes("a.html") == desk.bytes("b.html"));
+    desk.run("simulate a.lod --size 16x16 --report simulate.html -o run --quiet");
+    assert!(
+        desk.text("simulate.html").contains("<title>Simulations: a</title>")
+            || desk.text("simulate.html").contains("<title>Simulations: terrain</title>")
+    );
+    // The page is beside the run: its folder does not know of it.
+    assert!(!desk.text("run/run.json").contains("html"));
+    desk.run("report run/result.json -o result.html --quiet");
+    desk.run("stability --case needles --rays 500 --hunt 0 --report stability.html --quiet");
+    assert!(desk.text("stability.html").contains("<title>Stability</title>"));
+}
+
+#[test]
+fn a_command_of_the_inspector_follows_its_ray() {
+    let (desk, document) = desk();
+    let grid = document.traces.iter().find(|grid| grid.method == "lod" && grid.view == 1).unwrap();
+    let command = grid.command.as_ref().unwrap().strip_prefix("lodray ").unwrap();
+    let mut followed = 0;
+    for ray in grid.rays.iter().filter(|ray| ray.hit.is_some()).step_by(4) {
+        let [x, y] = ray.pixel;
+        let text = desk.run(&format!("{command} {x},{y}"));
+        // Edge states in their order, lines, triangles tested.
+        let edges = |line: &str| {
+            let (node, rest) = line.split_once("level ")?.1.split_once(": edge states ")?;
+            let (level, node) = node.split_once(" node ")?;
+            let (states, decision) = rest.split_once(" of 256: ")?;
+            Some(if decision == "refine" { format!("r{level}.{node}:{}", states.replace(' ', ".")) } else { format!("s{level}.{node}") })
+        };
+        let told: Vec<_> = text.lines().filter_map(edges).collect();
+        let words: Vec<_> = ray.steps.split(' ').map(|word| word.trim_start_matches('*')).collect();
+        let kept: Vec<_> =
+            words.iter().filter(|word| word.starts_with(['r', 's'])).map(|word| word.split('@').next().unwrap().to_owned()).collect();
+        assert_eq!(told, kept, "pixel {x},{y}");
+        let lines: u64 = words.iter().filter_map(|word| word.split_once('@')?.1.rsplit('.').next()?.parse::<u64>().ok()).sum();
+        assert_eq!(lines, text.matches("  read line ").count() as u64, "pixel {x},{y}");
+        let triangles: u64 = words.iter().filter_map(|word| word.strip_prefix('x')?.split(':').next()?.parse::<u64>().ok()).sum();
+        assert_eq!(triangles, text.lines().filter(|line| line.contains("  triangle level ")).count() as u64, "pixel {x},{y}");
+        followed += told.len();
+    }
+    println!("{followed} LOD tests");
+    assert!(followed > 10);
+}
+
+#[test]
+fn diagrams_and_tables_are_files_that_others_read() {
+    let (_, document) = desk();
+    let files = diagrams(&document, &USUAL_ERRORS[..1], &USUAL_COSTS[..1]).unwrap();
+    assert_eq!(files, diagrams(&document, &USUAL_ERRORS[..1], &USUAL_COSTS[..1]).unwrap());
+    let names: HashSet<_> = files.iter().map(|file| file.0.as_str()).collect();
+    assert_eq!(names.len(), files.len());
+    for (name, bytes) in &files {
+        if name.ends_with(".png") {
+            let picture = image::load_from_memory(bytes).unwrap().to_rgb8();
+            assert!(picture.width() > 500 && picture.pixels().collect::<HashSet<_>>().len() > 20, "{name}");
+        } else {
+            assert!(name.ends_with(".svg") && bytes.starts_with(b"<svg") && bytes.ends_with(b"</svg>\n"), "{name}");
+        }
+    }
+    let time = files.iter().find(|file| file.0.ends_with("distance-time-haydel2023-free.svg")).unwrap();
+    assert!(std::str::from_utf8(&time.1).unwrap().contains('\u{d7}'));
+    if let Some(folder) = std::env::var_os("LODRAY_SCREENSHOTS") {
+        for (name, bytes) in diagrams(&document, &USUAL_ERRORS, &USUAL_COSTS).unwrap() {
+            std::fs::write(std::path::Path::new(&folder).join(name), bytes).unwrap();
+        }
+    }
+    let table = csv(&document);
+    assert_eq!(table.lines().count(), 1 + document.points.iter().map(|p| p.costs.len()).sum::<usize>());
+    assert_eq!(table.lines().next().unwrap().split(',').count(), 8 + ERRORS.len() + COSTS.len());
+    let tex = latex(&document);
+    assert!(
+        tex.contains("\\toprule")
+            && tex.contains("not reached")
+            && tex.matches("\\begin{tabular}").count() == tex.matches("\\end{tabular}").count()
+    );
+}
+
+#[test]
+fn mistakes_are_named_with_file_and_field() {
+    let (desk, document) = desk();
+    let whole = desk.text("error-time.json");
+    desk.refused("report gone.json -o p.html", FAILS, &["cannot read gone.json"]);
+    desk.write("words.json", "rubbish");
+    desk.refused("report words.json -o p.html", FAILS, &["words.json", "it is not JSON"]);
+    desk.write("short.json", &whole.replacen("\"views\"", "\"wiews\"", 1));
+    desk.refused("report short.json -o p.html", FAILS, &["short.json", "the field views is missing"]);
+    let other = |change: &dyn Fn(&mut ErrorTime)| {
+        let mut changed = document.clone();
+        change(&mut changed);
+        desk.write("other.json", &serde_json::to_string(&changed).unwrap());
+    };
+    other(&|d| d.points[2].view = 99);
+    desk.refused("report other.json -o p.html", FAILS, &["other.json", "points[2].view is 99, and there are 3 views"]);
+    other(&|d| d.version = 9);
+    desk.refused("report other.json -o p.html", FAILS, &["other.json", "version is 9"]);
+    other(&|d| d.pictures[0].file = "pictures/none.png".to_owned());
+    desk.refused("report other.json -o p.html", FAILS, &["other.json", "pictures/none.png"]);
+    desk.write("empty.md", "nothing\n");
+    desk.refused("report empty.md -o p.html", FAILS, &["empty.md: there is no table in it"]);
+    desk.write("stable.json", "{\"widths_checked\": true}");
+    desk.refused("report stable.json -o p.html", FAILS, &["stable.json", "the field seed is missing"]);
+    desk.refused("report error-time.json error-time.json -o p.html", FAILS, &["one result of error-time"]);
+    desk.refused("report error-time.json -o error-time.json", FAILS, &["error-time.json"]);
+    desk.refused("report -o p.html", USAGE, &["RESULT"]);
+    assert!(!desk.path("p.html").exists());
+    assert_eq!(desk.text("error-time.json"), whole);
+}
