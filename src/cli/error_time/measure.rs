@@ -17,7 +17,8 @@ use lodray::mesh::FinestSurface;
 use lodray::method::{Method, reference};
 use lodray::picture::{Frame, FullResolution, PictureError, Shader, SurfaceError, error_map, level_map, save_png};
 use lodray::rays::{Camera, ModelSpace, Sight};
-use lodray::report::error_time::{Appearance, Converged, Costs, Energy, PictureEntry, Point, SceneEntry, Shift, ViewEntry};
+use lodray::report::error_time::{Appearance, Converged, Costs, Energy, PictureEntry, Point, SceneEntry, Shift, TraceGrid, ViewEntry};
+use lodray::report::inspect;
 use lodray::report::result::SimResult;
 use std::path::Path;
 
@@ -128,6 +129,7 @@ impl<'a> Bench<'a> {
             },
             points,
             pictures: book.entries,
+            traces: self.traces(&camera, &settings),
             host: self.host(&camera, &settings),
         })
     }
@@ -194,6 +196,22 @@ impl<'a> Bench<'a> {
             }
             return Ok(Some(Converged { samples: side * side, standard_error }));
         }
+    }
+
+    /// The steps of a grid of rays of each method, with the setting that it has by default.
+    fn traces(&self, camera: &Camera, settings: &[(usize, Setting)]) -> Vec<TraceGrid> {
+        let grid = |(at, setting): &(usize, Setting)| {
+            let subject = inspect::Subject {
+                scene: self.scene,
+                file: &self.facts.file,
+                registered: setting.chosen.method,
+                method: &*self.methods[*at].1,
+                delta: setting.chosen.delta(),
+                camera,
+            };
+            TraceGrid { setting: setting.words.clone(), ..inspect::rays(&subject, [self.plan.trace_grid(); 2]) }
+        };
+        settings.iter().filter(|(_, setting)| setting.is_default).map(grid).collect()
     }
 
     fn host(&self, camera: &Camera, settings: &[(usize, Setting)]) -> Vec<super::row::HostTime> {

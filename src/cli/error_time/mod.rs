@@ -10,12 +10,14 @@ mod row;
 use super::cache::Cache;
 use super::folder::RunFolder;
 use super::job_lines::{JobLines, keep_aside};
-use super::output::{check_target, print_line, progress, remark, write_file};
+use super::output::{busy, check_target, print_line, progress, remark, write_file};
+use super::report::{save, this_run, titled};
 use super::sweep::SceneJobs;
 use lodray::format::Scene;
 use lodray::method::lod;
-use lodray::report::diagram::csv;
-use lodray::report::error_time::{ErrorTime, KIND, MethodEntry, Options, SceneEntry, VERSION, equal_errors};
+use lodray::report::diagram::{csv, diagrams, latex};
+use lodray::report::error_time::{ErrorTime, KIND, MethodEntry, Options, SceneEntry, USUAL_COSTS, USUAL_ERRORS, VERSION, equal_errors};
+use lodray::report::page::{Documents, PICTURE_BYTES, embed};
 use lodray::report::results_version;
 use measure::Bench;
 use plan::Plan;
@@ -31,7 +33,9 @@ pub use options::Args;
 const LINES: &str = "views.jsonl";
 const DOCUMENT: &str = "error-time.json";
 const TABLE: &str = "error-time.csv";
+const LATEX: &str = "error-time.tex";
 const HOST: &str = "host-times.json";
+const PAGE: &str = "report.html";
 
 /// Times on the host, by view.
 #[derive(Serialize)]
@@ -44,7 +48,7 @@ struct HostTimes<'a> {
 pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
     let plan = args.plan()?;
     let inputs: Vec<_> = plan.jobs.files.iter().map(PathBuf::as_path).collect();
-    let mut folder = RunFolder::open(&args.out, [DOCUMENT, TABLE, HOST], &inputs, &args.overrule)?;
+    let mut folder = RunFolder::open(&args.out, [DOCUMENT, TABLE, LATEX, HOST, PAGE], &inputs, &args.overrule)?;
     let cache = Cache::new(&args.cache, Some(&args.out))?;
     let lines = args.out.join(LINES);
     check_target(&lines, &inputs)?;
@@ -90,6 +94,7 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
     }
     let document = document(&plan, &measured);
     write(folder.staging(), &document, &measured)?;
+    page(&folder.staging().join(PAGE), document, &args.out, &inputs)?;
     folder.finish()?;
     let failed: Vec<_> = rows.of(&keys).filter_map(|row| Some((&row.key, row.error.as_ref()?))).collect();
     remark(&format!("{} views, {} failed; figures in {}", keys.len(), failed.len(), args.out.display()))?;
@@ -120,7 +125,7 @@ fn entry(jobs: &SceneJobs, scene: &Scene) -> SceneEntry {
 /// All views in one document, their scenes and machines numbered.
 fn document(plan: &Plan, measured: &[&Measured]) -> ErrorTime {
     let mut scenes: Vec<SceneEntry> = Vec::new();
-    let (mut views, mut points, mut pictures) = (Vec::new(), Vec::new(), Vec::new());
+    let (mut views, mut points, mut pictures, mut traces) = (Vec::new(), Vec::new(), Vec::new(), Vec::new());
     for (number, of) in measured.iter().enumerate() {
         let scene = scenes.iter().position(|scene| *scene == of.scene).unwrap_or_else(|| {
             scenes.push(of.scene.clone());
@@ -136,6 +141,10 @@ fn document(plan: &Plan, measured: &[&Measured]) -> ErrorTime {
         pictures.extend(of.pictures.iter().cloned().map(|mut picture| {
             picture.view = number;
             picture
+        }));
+        traces.extend(of.traces.iter().cloned().map(|mut grid| {
+            grid.view = number;
+            grid
         }));
     }
     let machines = plan.machines();
@@ -166,7 +175,7 @@ fn document(plan: &Plan, measured: &[&Measured]) -> ErrorTime {
         points,
         equal_error: Vec::new(),
         pictures,
-        traces: Vec::new(),
+        traces,
     };
     document.equal_error = equal_errors(&document, lod::METHOD.name);
     document
@@ -175,7 +184,17 @@ fn document(plan: &Plan, measured: &[&Measured]) -> ErrorTime {
 fn write(folder: &Path, document: &ErrorTime, measured: &[&Measured]) -> anyhow::Result<()> {
     write_file(&folder.join(DOCUMENT), serde_json::to_string(document)? + "\n")?;
     write_file(&folder.join(TABLE), csv(document))?;
+    write_file(&folder.join(LATEX), latex(document))?;
+    let drawn = busy("diagrams", || diagrams(document, &USUAL_ERRORS, &USUAL_COSTS))?;
+    drawn.iter().try_for_each(|(name, bytes)| write_file(&folder.join(name), bytes))?;
     let times = measured.iter().filter(|of| !of.host.is_empty());
     let times: Vec<_> = times.map(|of| HostTimes { scene: &of.scene.name, distance: of.view.distance, settings: &of.host }).collect();
     write_file(&folder.join(HOST), serde_json::to_string_pretty(&times)? + "\n")
+}
+
+/// The page, with the pictures in `folder`.
+fn page(path: &Path, document: ErrorTime, folder: &Path, inputs: &[&Path]) -> anyhow::Result<()> {
+    let pictures = busy("pictures of the page", || embed(&document.pictures, folder, PICTURE_BYTES))?;
+    let documents = Documents { error_time: Some(document), pictures, runs: vec![this_run(inputs)?], ..Documents::default() };
+    save(path, &titled(documents)).map(drop)
 }

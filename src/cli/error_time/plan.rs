@@ -20,6 +20,9 @@ pub struct Plan {
     pub measure: Measure,
 }
 
+/// Rays whose steps a page has, of all views and methods together.
+const MOST_TRACES: usize = 16_384;
+
 /// How errors are measured.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Measure {
@@ -93,6 +96,12 @@ impl Plan {
         self.jobs.scenes.iter().map(|scene| scene.views.len()).sum()
     }
 
+    /// Columns and rows of the grid of rays whose steps a page has: fewer where there are many views.
+    pub fn trace_grid(&self) -> u32 {
+        let each = MOST_TRACES / (self.views() * self.jobs.methods.len()).max(1);
+        u32::try_from(each.isqrt()).unwrap_or(u32::MAX).clamp(4, 16)
+    }
+
     /// The machines, each once.
     pub fn machines(&self) -> Vec<MachineFacts> {
         let mut machines: Vec<MachineFacts> = Vec::new();
@@ -128,7 +137,7 @@ impl Plan {
             }
             inputs += &format!("{:?}", self.values(chosen));
         }
-        inputs += &format!("{:?} {:?}", self.sides, self.measure);
+        inputs += &format!("{:?} {:?} {}", self.sides, self.measure, self.trace_grid());
         // As in a sweep: scene, place and size, and the version at the end.
         let place: Vec<_> = name.split(", ").take(3).collect();
         let version = name.rsplit(' ').next().unwrap_or_default();

@@ -1,7 +1,7 @@
 //! A view's line: all that was measured of it.
 
 use crate::cli::job_lines::JobLine;
-use lodray::report::error_time::{PictureEntry, Point, SceneEntry, ViewEntry};
+use lodray::report::error_time::{PictureEntry, Point, SceneEntry, TraceGrid, ViewEntry};
 use serde::{Deserialize, Serialize};
 
 /// A view. Numbers of scene, view and machine are those of this line alone: 0, 0, and the place among the machines.
@@ -26,6 +26,7 @@ pub struct Measured {
     pub view: ViewEntry,
     pub points: Vec<Point>,
     pub pictures: Vec<PictureEntry>,
+    pub traces: Vec<TraceGrid>,
     /// Times on the host, which differ from run to run.
     #[serde(default)]
     pub host: Vec<HostTime>,
