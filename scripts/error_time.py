@@ -52,7 +52,7 @@ def ratios(entry):
 
 def at_level(run, error, level, compute):
     """One row a view: cost of the others over ours."""
-    costs = ["milliseconds", "energy", "dram_bytes"]
+    costs = ["time", "energy", "dram-lines"]
     rows = []
     for view in range(len(run.views)):
         cells = [run.scene(view), run.place(view)]
@@ -66,7 +66,7 @@ def at_level(run, error, level, compute):
                 cells.append(shown(ratios(entry)[method]["ratio"]) + mark)
         else:
             rows.append(cells)
-    names = {"milliseconds": "time", "energy": "energy", "dram_bytes": "DRAM"}
+    names = {"time": "time", "energy": "energy", "dram-lines": "DRAM"}
     return table(["scene", "radii"] + [f"{names[c]}, {m}" for c in costs for m in run.others], rows)
 
 
@@ -118,12 +118,12 @@ def brightness(run):
 def main():
     folder = Path(sys.argv[1])
     knobs, units, samples = (Run(folder, name) for name in ["knobs", "units", "samples"])
-    error = "surface_percentile_99"
+    error = "surface-p99"
     values = {
         "half": at_level(knobs, error, 0.5, "free"),
-        "summary_time": summary(knobs, error, [0.25, 0.5, 1.0, 2.0], "free", "milliseconds"),
+        "summary_time": summary(knobs, error, [0.25, 0.5, 1.0, 2.0], "free", "time"),
         "summary_energy": summary(knobs, error, [0.25, 0.5, 1.0, 2.0], "free", "energy"),
-        "summary_flip": summary(knobs, "picture_flip", [0.01, 0.02, 0.05, 0.1], "free", "milliseconds"),
+        "summary_flip": summary(knobs, "flip-mean", [0.01, 0.02, 0.05, 0.1], "free", "time"),
         "half_units": at_level(units, error, 0.5, "units"),
         "viewed": viewed(samples),
         "brightness": brightness(samples),
