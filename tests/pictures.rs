@@ -198,6 +198,30 @@ fn the_contact_sheet_is_the_same_at_any_number_of_threads() {
 }
 
 #[test]
+fn shadings_and_samples() {
+    let desk = with("terrain --levels 3 --base 32");
+    let image = |options: &str| {
+        let made = desk.json(&format!("render a.lod --size 40x30 {options} -o out"));
+        (picture(&desk, "out/image.png"), made)
+    };
+    let (default, made) = image("");
+    assert_eq!((&made["shading"], &made["samples"]), (&"facets".into(), &1.into()));
+    assert!(default == image("--shading facets --samples 1").0);
+    let pictures = ["full", "level", "weighted", "facets"].map(|shading| image(&format!("--shading {shading} --delta 0.25 --samples 4")));
+    for (at, (picture, made)) in pictures.iter().enumerate() {
+        assert_eq!((&made["samples"], &made["stats"]["rays"]), (&4.into(), &1200.into()));
+        assert!(pictures[..at].iter().all(|(other, _)| other != picture), "{}", made["shading"]);
+    }
+    let notes = notes_of(&desk, "out/image.png");
+    assert_eq!([&notes["Shading"], &notes["Samples"]], ["facets", "4"]);
+    // A difference to itself: full resolution has the same samples.
+    assert_eq!(image("--method reference --samples 16 --compare").1["error"]["rmse"], 0.0);
+    refused(&desk, "render a.lod -o new --samples 3", USAGE, &["--samples", "'3'", "16"]);
+    refused(&desk, "render a.lod -o new --shading none", USAGE, &["--shading", "'none'", "weighted"]);
+    refused(&desk, "render a.lod -o new --samples 64 --size 8192x8192", FAILS, &["--samples", "65536"]);
+}
+
+#[test]
 fn the_original_beside_the_scene_of_it() {
     let desk = with("sphere --levels 0 --base 512");
     desk.run("export a.lod -o a.obj");
