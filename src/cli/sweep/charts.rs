@@ -140,7 +140,7 @@ impl<'a> Subject<'a> {
             });
             let spots = &mut lines[at].spots;
             let x = distance(result);
-            if spots.iter().any(|spot| spot.x == x) || !(x > 0.0) {
+            if spots.iter().any(|spot| spot.x == x) || x <= 0.0 {
                 return Ok(None);
             }
             spots.push(Spot { x, y: value(result), gain: None });

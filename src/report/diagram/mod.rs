@@ -4,14 +4,15 @@
 
 mod canvas;
 mod distance;
+mod fault;
 mod marks;
 mod measure;
 mod raster;
 mod table;
 mod work;
 
-pub use canvas::DiagramFault;
 pub use distance::{DistanceChart, Line, Spot, gain};
+pub use fault::DiagramFault;
 pub use measure::{COSTS, CostMeasure, ERRORS, ErrorMeasure, USUAL_COSTS, USUAL_ERRORS};
 pub use raster::png;
 pub use table::{csv, latex};

@@ -1,7 +1,8 @@
 //! Work-precision diagrams: an error against a cost, small multiples by distance; and both by distance.
 
-use super::canvas::{Axis, DiagramFault, Plane, TEXT, centred, range, short, svg, wrong};
+use super::canvas::{Axis, FONT, Plane, TEXT, centred, range, short, svg};
 use super::distance::{DistanceChart, Line, Spot};
+use super::fault::{DiagramFault, wrong};
 use super::marks::{Shape, colour};
 use super::measure::{CostMeasure, ErrorMeasure};
 use crate::report::error_time::{Costs, ErrorTime, Point, ViewEntry};
@@ -77,7 +78,7 @@ impl<'a> Of<'a> {
             }
         }
         let size = (PANEL.0 * columns as u32, 54 + KEYS + PANEL.1 * rows as u32); // a few panels
-        let title = format!("{} against {}", capital(error.name), self.cost_name(cost));
+        let title = format!("{}, against {}", capital(error.name), without_unit(cost.name));
         let shifts = dots.iter().filter_map(|dot| error.of_shift(dot.view, dot.point.samples));
         // The same for all panels: they are compared.
         let shared = range(dots.iter().map(|dot| dot.y).chain(shifts), 1.6);
@@ -87,18 +88,12 @@ impl<'a> Of<'a> {
             for method in &methods {
                 let style = palette::of(method);
                 let (colour, shape) = (colour(&style), Shape::of(style.mark, MARK));
-                let moved = |points: &[(i32, i32)]| points.iter().map(|(x, y)| (left + 6 + x, 12 + y)).collect::<Vec<_>>();
-                if !shape.outline.is_empty() {
-                    keys.draw(&Polygon::new(moved(&shape.outline), colour.filled())).map_err(wrong)?;
-                }
-                for stroke in &shape.strokes {
-                    keys.draw(&PathElement::new(moved(stroke), colour.stroke_width(2))).map_err(wrong)?;
-                }
-                keys.draw(&Text::new((*method).to_owned(), (left + 18, 5), (super::canvas::FONT, TEXT))).map_err(wrong)?;
+                shape.draw(&keys, (left + 6, 12), (0, 0), colour, true)?;
+                keys.draw(&Text::new((*method).to_owned(), (left + 18, 5), (FONT, TEXT))).map_err(wrong)?;
                 left += 46 + 8 * method.chars().count() as i32; // a short name
             }
             let more = "filled: on the front (grey); number: delta; dashed: camera shifted by half a pixel";
-            keys.draw(&Text::new(more.to_owned(), (left, 6), (super::canvas::FONT, TEXT - 2))).map_err(wrong)?;
+            keys.draw(&Text::new(more.to_owned(), (left, 6), (FONT, TEXT - 2))).map_err(wrong)?;
             for (panel, &distance) in panels.split_evenly((rows, columns)).iter().zip(&distances) {
                 let here: Vec<_> = dots.iter().filter(|dot| dot.view.distance == distance).collect();
                 let x = Axis { range: range(here.iter().map(|dot| dot.x), 1.5), name: &self.cost_name(cost), ticks: None };
@@ -106,7 +101,7 @@ impl<'a> Of<'a> {
                 let has_exact = dots.iter().any(|dot| dot.y <= 0.0);
                 let y = Axis { range: if has_exact { floor / 1.4..shared.end } else { shared.clone() }, name: error.name, ticks: None };
                 let (caption, plot) = panel.split_vertically(20);
-                caption.draw(&Text::new(format!("from {} radii", short(distance)), (58, 2), (super::canvas::FONT, TEXT))).map_err(wrong)?;
+                caption.draw(&Text::new(format!("from {} radii", short(distance)), (58, 2), (FONT, TEXT))).map_err(wrong)?;
                 let plane = Plane::new(&plot, &x, &y)?;
                 let shift = here.iter().find_map(|dot| error.of_shift(dot.view, dot.point.samples)).filter(|shift| *shift > 0.0);
                 self.panel(&plane, &here, &methods, &x, floor, shift)?;
@@ -181,7 +176,14 @@ impl<'a> Of<'a> {
         let lines = one_of_each(lines);
         let lines = if gains { with_gains(lines) } else { lines };
         let x = "distance of the eye, bounding radii".to_owned();
-        DistanceChart { title: format!("{} by distance", capital(name)), subtitle: self.subtitle(), x, y: name.to_owned(), lines }.svg()
+        DistanceChart {
+            title: format!("{}, by distance", capital(if gains { without_unit(name) } else { name })),
+            subtitle: self.subtitle(),
+            x,
+            y: name.to_owned(),
+            lines,
+        }
+        .svg()
     }
 }
 
@@ -232,6 +234,11 @@ fn knob(delta: &str) -> String {
         Ok(v) if v > 0.0 && v < 1.0 && (1.0 / v).fract() == 0.0 => format!("1/{}", 1.0 / v),
         _ => delta.to_owned(),
     }
+}
+
+/// A cost's name without what it is in.
+fn without_unit(name: &str) -> &str {
+    name.split(", ").next().unwrap_or(name)
 }
 
 fn capital(text: &str) -> String {
