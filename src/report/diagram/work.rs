@@ -30,6 +30,8 @@ const PANEL: (u32, u32) = (320, 270);
 const COLUMNS: usize = 4;
 const KEYS: u32 = 30;
 const MARK: i32 = 4;
+/// Errors so small beside the largest are rounding, and stand with those that are none.
+const ROUNDING: f64 = 1e-5;
 
 impl<'a> Of<'a> {
     fn costs(&self, point: &'a Point) -> Option<&'a Costs> {
@@ -80,8 +82,9 @@ impl<'a> Of<'a> {
         let size = (PANEL.0 * columns as u32, 54 + KEYS + PANEL.1 * rows as u32); // a few panels
         let title = format!("{}, against {}", capital(error.name), without_unit(cost.name));
         let shifts = dots.iter().filter_map(|dot| error.of_shift(dot.view, dot.point.samples));
+        let least = ROUNDING * dots.iter().map(|dot| dot.y).fold(0.0, f64::max);
         // The same for all panels: they are compared.
-        let shared = range(dots.iter().map(|dot| dot.y).chain(shifts), 1.6);
+        let shared = range(dots.iter().map(|dot| dot.y).filter(|y| *y > least).chain(shifts), 1.6);
         let drawing = svg(size, [&title, &self.subtitle()], |area| {
             let (keys, panels) = area.split_vertically(KEYS);
             let mut left = 14;
@@ -98,13 +101,13 @@ impl<'a> Of<'a> {
                 let here: Vec<_> = dots.iter().filter(|dot| dot.view.distance == distance).collect();
                 let x = Axis { range: range(here.iter().map(|dot| dot.x), 1.5), name: &self.cost_name(cost), ticks: None };
                 let floor = shared.start / 1.5;
-                let has_exact = dots.iter().any(|dot| dot.y <= 0.0);
+                let has_exact = dots.iter().any(|dot| dot.y <= least);
                 let y = Axis { range: if has_exact { floor / 1.4..shared.end } else { shared.clone() }, name: error.name, ticks: None };
                 let (caption, plot) = panel.split_vertically(20);
                 caption.draw(&Text::new(format!("from {} radii", short(distance)), (58, 2), (FONT, TEXT))).map_err(wrong)?;
                 let plane = Plane::new(&plot, &x, &y)?;
                 let shift = here.iter().find_map(|dot| error.of_shift(dot.view, dot.point.samples)).filter(|shift| *shift > 0.0);
-                self.panel(&plane, &here, &methods, &x, floor, shift)?;
+                self.panel(&plane, &here, &methods, &x, [least, floor], shift)?;
             }
             Ok(())
         })?;
@@ -117,10 +120,10 @@ impl<'a> Of<'a> {
         here: &[&Dot<'_>],
         methods: &[&str],
         x: &Axis<'_>,
-        floor: f64,
+        [least, floor]: [f64; 2],
         shift: Option<f64>,
     ) -> Result<(), DiagramFault> {
-        let at = |dot: &Dot<'_>| (dot.x, if dot.y > 0.0 { dot.y } else { floor });
+        let at = |dot: &Dot<'_>| (dot.x, if dot.y > least { dot.y } else { floor });
         let front = front(here);
         let mut steps: Vec<(f64, f64)> = Vec::new();
         for &k in &front {
@@ -132,7 +135,7 @@ impl<'a> Of<'a> {
         if let Some(shift) = shift {
             plane.dashes(&x.range, shift, BLACK.mix(0.6).stroke_width(1))?;
         }
-        if here.iter().any(|dot| dot.y <= 0.0) {
+        if here.iter().any(|dot| dot.y <= least) {
             plane.words("no error", (x.range.start, floor), (26, -9), centred(TEXT - 3, &RGBColor(90, 96, 106)))?;
         }
         for method in methods {
