@@ -133,14 +133,14 @@ impl<'a> Subject<'a> {
     /// Lines by distance, if there are several distances, and one result of each method and setting at each.
     fn lines(&self, what: &str, value_name: &str, value: &dyn Fn(&SimResult) -> f64) -> anyhow::Result<Option<String>> {
         let mut lines: Vec<Line> = Vec::new();
-        for (result, name) in self.results.iter().zip(labels(&self.results, self.settings)) {
+        for (result, name) in self.results.iter().zip(labels(&self.results, Setting::OF_LINES)) {
             let at = lines.iter().position(|line| line.name == name).unwrap_or_else(|| {
                 lines.push(Line { method: result.setup.method.name.clone(), name, spots: Vec::new() });
                 lines.len() - 1
             });
             let spots = &mut lines[at].spots;
             let x = distance(result);
-            if spots.iter().any(|spot| spot.x == x) || !(x > 0.0) {
+            if spots.iter().any(|spot| spot.x == x) || x <= 0.0 {
                 return Ok(None);
             }
             spots.push(Spot { x, y: value(result), gain: None });

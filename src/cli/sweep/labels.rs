@@ -1,5 +1,7 @@
 //! Labels of bars: what tells a chart's results apart, and nothing else.
 
+use lodray::method::bvh::{LEAF_LAYOUT, LEAF_SIZE};
+use lodray::method::knob::DELTA;
 use lodray::report::result::SimResult;
 use std::collections::HashMap;
 
@@ -18,12 +20,26 @@ impl Setting {
         Self { text: |r| r.setup.method.choices.values().cloned().collect::<Vec<_>>().join(" "), always: false },
         Self { text: |r| r.setup.method.leaves.clone().unwrap_or_default(), always: false },
     ];
+    /// Of lines through views: what a method chooses by itself, another from view to view, is no setting.
+    pub const OF_LINES: &'static [Self] = &[
+        Self { text: |r| r.setup.method.name.clone(), always: true },
+        Self { text: |r| r.setup.method.delta.map_or_else(String::new, quality), always: false },
+        Self { text: others, always: false },
+        Self { text: |r| r.setup.method.leaves.clone().unwrap_or_default(), always: false },
+    ];
     /// Of results on several.
     pub const OF_MACHINES: &'static [Self] = &[
         Self { text: |r| r.setup.machine.label.clone(), always: false },
         Self { text: |r| r.setup.machine.set.join(" "), always: false },
         Self { text: |r| r.setup.compute.name().to_owned(), always: false },
     ];
+}
+
+/// Knobs that have no field of their own.
+fn others(r: &SimResult) -> String {
+    let said = [DELTA.name, LEAF_LAYOUT.name, LEAF_SIZE.name];
+    let knobs = r.setup.method.knobs.iter().filter(|(name, _)| !said.contains(&name.as_str()));
+    knobs.map(|(name, value)| format!("{name} {value}")).collect::<Vec<_>>().join(" ")
 }
 
 fn quality(delta: f64) -> String {

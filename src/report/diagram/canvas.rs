@@ -1,22 +1,12 @@
 //! Logarithmic axes on a drawing area, and what all diagrams share.
 
+use super::fault::{DiagramFault, wrong};
 use super::marks::Shape;
 use plotters::coord::Shift;
 use plotters::coord::combinators::LogCoord;
 use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, Pos, VPos};
 use std::ops::Range;
-use thiserror::Error;
-
-/// A diagram that cannot be drawn.
-#[derive(Debug, Error)]
-#[error("cannot draw a diagram: {0}")]
-pub struct DiagramFault(String);
-
-/// Errors of the plotting library borrow their picture.
-pub(super) fn wrong(error: impl std::fmt::Display) -> DiagramFault {
-    DiagramFault(error.to_string())
-}
 
 pub(super) type Drawing = Result<(), DiagramFault>;
 pub(super) type Area<'a> = DrawingArea<SVGBackend<'a>, Shift>;
@@ -68,7 +58,7 @@ pub(super) fn ticks(range: &Range<f64>, most: usize) -> Vec<f64> {
 /// A tick's label.
 pub(super) fn label(value: f64) -> String {
     if !(1e-3..1e5).contains(&value) {
-        return format!("{value:.0e}");
+        return format!("{value:.1e}").replace(".0e", "e");
     }
     let text = format!("{value:.4}");
     text.trim_end_matches('0').trim_end_matches('.').to_owned()
@@ -154,15 +144,7 @@ impl<'a> Plane<'a> {
 
     /// A mark: filled, or with paper inside.
     pub fn mark(&self, at: (f64, f64), shape: &Shape, colour: RGBColor, filled: bool) -> Drawing {
-        let inside = if filled { colour } else { WHITE };
-        let closed: Vec<_> = shape.outline.iter().chain(shape.outline.first()).copied().collect();
-        if !shape.outline.is_empty() {
-            self.area.draw(&(EmptyElement::at(at) + Polygon::new(shape.outline.clone(), inside.filled()))).map_err(wrong)?;
-        }
-        for line in shape.strokes.iter().chain((!closed.is_empty()).then_some(&closed)) {
-            self.area.draw(&(EmptyElement::at(at) + PathElement::new(line.clone(), colour.stroke_width(2)))).map_err(wrong)?;
-        }
-        Ok(())
+        shape.draw(&self.area, at, (0, 0), colour, filled)
     }
 
     /// Text beside a value.
@@ -187,7 +169,7 @@ mod tests {
             assert!(ticks.len() <= 8 && ticks.windows(2).all(|pair| pair[0] < pair[1]), "{range:?}: {ticks:?}");
         }
         assert_eq!(ticks(&(0.5..64.0), 8), [0.5, 1.0, 2.0, 5.0, 10.0, 20.0, 50.0]);
-        assert_eq!([1.0, 0.25, 1e-4, 2e5, 12.5].map(label), ["1", "0.25", "1e-4", "2e5", "12.5"]);
+        assert_eq!([1.0, 0.25, 1e-4, 1.5e5, 12.5].map(label), ["1", "0.25", "1e-4", "1.5e5", "12.5"]);
         assert_eq!([0.0, 1234.5, 0.012_345, 9.99].map(short), ["0", "1234", "0.0123", "9.99"]);
         assert_eq!(range([0.0, 2.0].into_iter(), 2.0), 2.0 / 3.0..6.0);
     }

@@ -1,6 +1,7 @@
 //! A cost or an error by distance: lines on logarithmic axes, one colour and mark a method, and the gain over the full-resolution BVH at each point.
 
-use super::canvas::{Axis, DiagramFault, Plane, TEXT, centred, range, svg};
+use super::canvas::{Axis, FONT, Plane, TEXT, centred, range, svg};
+use super::fault::{DiagramFault, wrong};
 use super::marks::{Shape, colour};
 use crate::report::palette;
 use plotters::prelude::*;
@@ -98,21 +99,10 @@ impl DistanceChart {
                 }
                 let row = 22 * k as i32; // a few lines
                 let middle = (12, 14 + row);
-                let drawn = |points: Vec<(i32, i32)>| points.into_iter().map(|(dx, dy)| (middle.0 + dx, middle.1 + dy)).collect::<Vec<_>>();
-                legend
-                    .draw(&PathElement::new(vec![(2, middle.1), (22, middle.1)], colour.stroke_width(2)))
-                    .map_err(super::canvas::wrong)?;
-                let inside = if again == 0 { colour } else { WHITE };
-                if !shape.outline.is_empty() {
-                    legend.draw(&Polygon::new(drawn(shape.outline.clone()), inside.filled())).map_err(super::canvas::wrong)?;
-                    let closed = shape.outline.iter().chain(shape.outline.first()).copied().collect();
-                    legend.draw(&PathElement::new(drawn(closed), colour.stroke_width(2))).map_err(super::canvas::wrong)?;
-                }
-                for stroke in shape.strokes {
-                    legend.draw(&PathElement::new(drawn(stroke), colour.stroke_width(2))).map_err(super::canvas::wrong)?;
-                }
-                let name = Text::new(line.name.clone(), (28, middle.1 - 7), (super::canvas::FONT, TEXT));
-                legend.draw(&name).map_err(super::canvas::wrong)?;
+                legend.draw(&PathElement::new(vec![(2, middle.1), (22, middle.1)], colour.stroke_width(2))).map_err(wrong)?;
+                shape.draw(&legend, middle, (0, 0), colour, again == 0)?;
+                let name = Text::new(line.name.clone(), (28, middle.1 - 7), (FONT, TEXT));
+                legend.draw(&name).map_err(wrong)?;
             }
             // Behind all marks; where there is no room above a point or below it, its gain is left out. In the order of the lines.
             for line in &self.lines {

@@ -1,27 +1,26 @@
 //! The shapes of marks, in pixels around their middle.
 
+use super::fault::{DiagramFault, wrong};
 use crate::report::palette::{Mark, Style};
-use plotters::style::RGBColor;
+use plotters::coord::CoordTranslate;
+use plotters::prelude::*;
 
-/// What is drawn of a mark: an outline that can be filled, and lines.
+/// What is drawn of a mark: a circle, or an outline that can be filled, or lines.
 pub(super) struct Shape {
-    pub outline: Vec<(i32, i32)>,
-    pub strokes: Vec<Vec<(i32, i32)>>,
+    radius: i32,
+    outline: Vec<(i32, i32)>,
+    strokes: Vec<Vec<(i32, i32)>>,
 }
-
-/// Steps around a circle.
-const AROUND: u32 = 20;
 
 impl Shape {
     /// The shape of a mark, `r` being its size.
     pub fn of(mark: Mark, r: i32) -> Self {
-        let outline = |points: &[(i32, i32)]| Self { outline: points.to_vec(), strokes: Vec::new() };
-        let lines = |lines: &[[(i32, i32); 2]]| Self { outline: Vec::new(), strokes: lines.iter().map(|line| line.to_vec()).collect() };
+        let outline = |points: &[(i32, i32)]| Self { radius: 0, outline: points.to_vec(), strokes: Vec::new() };
+        let lines =
+            |lines: &[[(i32, i32); 2]]| Self { radius: 0, outline: Vec::new(), strokes: lines.iter().map(|line| line.to_vec()).collect() };
         let s = r * 9 / 10;
-        let turn = |k: u32| f64::from(k) * std::f64::consts::TAU / f64::from(AROUND);
-        let at = |angle: f64| ((f64::from(r) * angle.cos()).round() as i32, (f64::from(r) * angle.sin()).round() as i32);
         match mark {
-            Mark::Circle => outline(&(0..AROUND).map(|k| at(turn(k))).collect::<Vec<_>>()),
+            Mark::Circle => Self { radius: r, outline: Vec::new(), strokes: Vec::new() },
             Mark::Square => outline(&[(-s, -s), (s, -s), (s, s), (-s, s)]),
             Mark::Triangle => outline(&[(0, -r - 1), (r, s), (-r, s)]),
             Mark::Diamond => outline(&[(0, -r - 2), (r, 0), (0, r + 2), (-r, 0)]),
@@ -30,6 +29,35 @@ impl Shape {
             Mark::Times => lines(&[[(-s, -s), (s, s)], [(-s, s), (s, -s)]]),
             Mark::Star => lines(&[[(-r, 0), (r, 0)], [(-s, -s), (s, s)], [(-s, s), (s, -s)], [(0, -r), (0, r)]]),
         }
+    }
+
+    /// Draws it at a place of `area`, moved by pixels: filled, or with paper inside.
+    pub fn draw<C: CoordTranslate>(
+        &self,
+        area: &DrawingArea<SVGBackend<'_>, C>,
+        at: C::From,
+        by: (i32, i32),
+        colour: RGBColor,
+        filled: bool,
+    ) -> Result<(), DiagramFault>
+    where
+        C::From: Clone,
+    {
+        let inside = if filled { colour } else { WHITE };
+        let moved = |points: &[(i32, i32)]| points.iter().map(|(x, y)| (x + by.0, y + by.1)).collect::<Vec<_>>();
+        if self.radius > 0 {
+            for style in [inside.filled(), colour.stroke_width(2)] {
+                area.draw(&(EmptyElement::at(at.clone()) + Circle::new(by, self.radius, style))).map_err(wrong)?;
+            }
+        }
+        let closed: Vec<_> = self.outline.iter().chain(self.outline.first()).copied().collect();
+        if !closed.is_empty() {
+            area.draw(&(EmptyElement::at(at.clone()) + Polygon::new(moved(&self.outline), inside.filled()))).map_err(wrong)?;
+        }
+        for line in self.strokes.iter().chain((!closed.is_empty()).then_some(&closed)) {
+            area.draw(&(EmptyElement::at(at.clone()) + PathElement::new(moved(line), colour.stroke_width(2)))).map_err(wrong)?;
+        }
+        Ok(())
     }
 }
 

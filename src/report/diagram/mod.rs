@@ -4,13 +4,14 @@
 
 mod canvas;
 mod distance;
+mod fault;
 mod marks;
 mod raster;
 mod table;
 mod work;
 
-pub use canvas::DiagramFault;
 pub use distance::{DistanceChart, Line, Spot, gain};
+pub use fault::DiagramFault;
 pub use raster::png;
 pub use table::{csv, latex};
 

@@ -1,6 +1,6 @@
 //! SVG as PNG.
 
-use super::canvas::{DiagramFault, wrong};
+use super::fault::{DiagramFault, wrong};
 use resvg::tiny_skia::{Pixmap, Transform};
 use resvg::usvg::{Options, Tree, fontdb};
 use std::sync::Arc;

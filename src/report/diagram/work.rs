@@ -1,7 +1,8 @@
 //! Work-precision diagrams: an error against a cost, small multiples by distance; and both by distance.
 
-use super::canvas::{Axis, DiagramFault, Plane, TEXT, centred, range, short, svg, wrong};
+use super::canvas::{Axis, FONT, Plane, TEXT, centred, range, short, svg};
 use super::distance::{DistanceChart, Line, Spot};
+use super::fault::{DiagramFault, wrong};
 use super::marks::{Shape, colour};
 use crate::report::error_time::{CostMeasure, ErrorMeasure};
 use crate::report::error_time::{Costs, ErrorTime, Point, ViewEntry};
@@ -29,6 +30,8 @@ const PANEL: (u32, u32) = (320, 270);
 const COLUMNS: usize = 4;
 const KEYS: u32 = 30;
 const MARK: i32 = 4;
+/// Errors so small beside the largest are rounding, and stand with those that are none.
+const ROUNDING: f64 = 1e-5;
 
 impl<'a> Of<'a> {
     fn costs(&self, point: &'a Point) -> Option<&'a Costs> {
@@ -77,39 +80,34 @@ impl<'a> Of<'a> {
             }
         }
         let size = (PANEL.0 * columns as u32, 54 + KEYS + PANEL.1 * rows as u32); // a few panels
-        let title = format!("{} against {}", capital(error.name), self.cost_name(cost));
+        let title = format!("{}, against {}", capital(error.name), without_unit(cost.name));
         let shifts = dots.iter().filter_map(|dot| error.of_shift(dot.view, dot.point.samples));
+        let least = ROUNDING * dots.iter().map(|dot| dot.y).fold(0.0, f64::max);
         // The same for all panels: they are compared.
-        let shared = range(dots.iter().map(|dot| dot.y).chain(shifts), 1.6);
+        let shared = range(dots.iter().map(|dot| dot.y).filter(|y| *y > least).chain(shifts), 1.6);
         let drawing = svg(size, [&title, &self.subtitle()], |area| {
             let (keys, panels) = area.split_vertically(KEYS);
             let mut left = 14;
             for method in &methods {
                 let style = palette::of(method);
                 let (colour, shape) = (colour(&style), Shape::of(style.mark, MARK));
-                let moved = |points: &[(i32, i32)]| points.iter().map(|(x, y)| (left + 6 + x, 12 + y)).collect::<Vec<_>>();
-                if !shape.outline.is_empty() {
-                    keys.draw(&Polygon::new(moved(&shape.outline), colour.filled())).map_err(wrong)?;
-                }
-                for stroke in &shape.strokes {
-                    keys.draw(&PathElement::new(moved(stroke), colour.stroke_width(2))).map_err(wrong)?;
-                }
-                keys.draw(&Text::new((*method).to_owned(), (left + 18, 5), (super::canvas::FONT, TEXT))).map_err(wrong)?;
+                shape.draw(&keys, (left + 6, 12), (0, 0), colour, true)?;
+                keys.draw(&Text::new((*method).to_owned(), (left + 18, 5), (FONT, TEXT))).map_err(wrong)?;
                 left += 46 + 8 * method.chars().count() as i32; // a short name
             }
             let more = "filled: on the front (grey); number: delta; dashed: camera shifted by half a pixel";
-            keys.draw(&Text::new(more.to_owned(), (left, 6), (super::canvas::FONT, TEXT - 2))).map_err(wrong)?;
+            keys.draw(&Text::new(more.to_owned(), (left, 6), (FONT, TEXT - 2))).map_err(wrong)?;
             for (panel, &distance) in panels.split_evenly((rows, columns)).iter().zip(&distances) {
                 let here: Vec<_> = dots.iter().filter(|dot| dot.view.distance == distance).collect();
                 let x = Axis { range: range(here.iter().map(|dot| dot.x), 1.5), name: &self.cost_name(cost), ticks: None };
                 let floor = shared.start / 1.5;
-                let has_exact = dots.iter().any(|dot| dot.y <= 0.0);
+                let has_exact = dots.iter().any(|dot| dot.y <= least);
                 let y = Axis { range: if has_exact { floor / 1.4..shared.end } else { shared.clone() }, name: error.name, ticks: None };
                 let (caption, plot) = panel.split_vertically(20);
-                caption.draw(&Text::new(format!("from {} radii", short(distance)), (58, 2), (super::canvas::FONT, TEXT))).map_err(wrong)?;
+                caption.draw(&Text::new(format!("from {} radii", short(distance)), (58, 2), (FONT, TEXT))).map_err(wrong)?;
                 let plane = Plane::new(&plot, &x, &y)?;
                 let shift = here.iter().find_map(|dot| error.of_shift(dot.view, dot.point.samples)).filter(|shift| *shift > 0.0);
-                self.panel(&plane, &here, &methods, &x, floor, shift)?;
+                self.panel(&plane, &here, &methods, &x, [least, floor], shift)?;
             }
             Ok(())
         })?;
@@ -122,10 +120,10 @@ impl<'a> Of<'a> {
         here: &[&Dot<'_>],
         methods: &[&str],
         x: &Axis<'_>,
-        floor: f64,
+        [least, floor]: [f64; 2],
         shift: Option<f64>,
     ) -> Result<(), DiagramFault> {
-        let at = |dot: &Dot<'_>| (dot.x, if dot.y > 0.0 { dot.y } else { floor });
+        let at = |dot: &Dot<'_>| (dot.x, if dot.y > least { dot.y } else { floor });
         let front = front(here);
         let mut steps: Vec<(f64, f64)> = Vec::new();
         for &k in &front {
@@ -137,7 +135,7 @@ impl<'a> Of<'a> {
         if let Some(shift) = shift {
             plane.dashes(&x.range, shift, BLACK.mix(0.6).stroke_width(1))?;
         }
-        if here.iter().any(|dot| dot.y <= 0.0) {
+        if here.iter().any(|dot| dot.y <= least) {
             plane.words("no error", (x.range.start, floor), (26, -9), centred(TEXT - 3, &RGBColor(90, 96, 106)))?;
         }
         for method in methods {
@@ -181,7 +179,14 @@ impl<'a> Of<'a> {
         let lines = one_of_each(lines);
         let lines = if gains { with_gains(lines) } else { lines };
         let x = "distance of the eye, bounding radii".to_owned();
-        DistanceChart { title: format!("{} by distance", capital(name)), subtitle: self.subtitle(), x, y: name.to_owned(), lines }.svg()
+        DistanceChart {
+            title: format!("{}, by distance", capital(if gains { without_unit(name) } else { name })),
+            subtitle: self.subtitle(),
+            x,
+            y: name.to_owned(),
+            lines,
+        }
+        .svg()
     }
 }
 
@@ -232,6 +237,11 @@ fn knob(delta: &str) -> String {
         Ok(v) if v > 0.0 && v < 1.0 && (1.0 / v).fract() == 0.0 => format!("1/{}", 1.0 / v),
         _ => delta.to_owned(),
     }
+}
+
+/// A cost's name without what it is in.
+fn without_unit(name: &str) -> &str {
+    name.split(", ").next().unwrap_or(name)
 }
 
 fn capital(text: &str) -> String {

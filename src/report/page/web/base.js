@@ -34,7 +34,7 @@ const times = (value) => (value == null ? "–" : `${value >= 9.95 ? num(Math.ro
 const count = (n, one, many = `${one}s`) => `${num(n)} ${n === 1 ? one : many}`;
 
 /** A tick of a logarithmic axis. */
-const tick = (v) => (v >= 1e5 || v < 1e-3 ? v.toExponential(0).replace("e+", "e") : num(v));
+const tick = (v) => (v >= 1e5 || v < 1e-3 ? Number(v.toPrecision(2)).toExponential().replace("e+", "e") : num(v));
 
 /** Bytes from base64. */
 function bytes(text) {

@@ -44,7 +44,8 @@ function logTicks([low, high], room, each) {
     return all.filter((v) => v >= low * 0.999 && v <= high * 1.001);
   };
   const choices = [of([1, 1.5, 2, 3, 4, 5, 7]), of([1, 2, 3, 5]), of([1, 2, 5]), of([1, 3]), of([1]), of([1], 2), of([1], 3), of([1], 4)];
-  return choices.find((ticks) => ticks.length <= most) ?? [];
+  const gap = (ticks) => d3.min(d3.pairs(ticks, (a, b) => (Math.log(b / a) / Math.log(high / low)) * room)) ?? room;
+  return choices.find((ticks) => ticks.length <= most && gap(ticks) >= 0.75 * each) ?? [];
 }
 
 /** Both axes of a diagram: scales and marks. d3 hides labels of logarithmic axes as it likes, so these are their own. */

@@ -69,7 +69,7 @@ function distanceSection(section, state) {
       h(
         "div", { class: "pair" },
         h("div", {}, lineDiagram(costRows, { title: `${titled(cost.name, unit)}`, small: `${state.scene}; beside each point the gain over the full-resolution BVH`, x: label, state }), dataTable(`${cost.name} by distance, ${state.scene}`, [...columns(titled(cost.name, unit)), { name: "gain over bvh", value: (r) => r.gain, show: (r) => times(r.gain) }], costRows)),
-        errorRows.length ? h("div", {}, lineDiagram(errorRows, { title: titled(error.name, error.unit), small: state.scene, x: label, linear: error.linear, state }), dataTable(`${error.name} by distance, ${state.scene}`, columns(titled(error.name, error.unit)), errorRows)) : "",
+        errorRows.length ? h("div", {}, lineDiagram(errorRows, { title: titled(error.name, error.unit), small: state.scene, x: label, linear: error.linear, isError: true, state }), dataTable(`${error.name} by distance, ${state.scene}`, columns(titled(error.name, error.unit)), errorRows)) : "",
       ),
     );
   };
@@ -77,10 +77,11 @@ function distanceSection(section, state) {
   state.onChange(draw);
 }
 
-function lineDiagram(rows, { title, small, x, linear, state }) {
-  const positive = linear ? rows : rows.filter((r) => r.y > 0);
+function lineDiagram(rows, { title, small, x, linear, isError, state }) {
+  const least = isError && !linear ? rounding(rows.map((r) => r.y)) : 0;
+  const positive = linear ? rows : rows.filter((r) => r.y > least);
   const methods = unique(rows.map((r) => r.method));
-  const exact = unique(rows.filter((r) => !linear && !(r.y > 0)).map((r) => r.method));
+  const exact = unique(rows.filter((r) => !linear && r.y <= least).map((r) => r.method));
   const [xDomain, yDomain] = [domain(positive.map((r) => r.x), false, 1.25), domain(positive.map((r) => r.y), linear, 1.9)];
   const figure = diagram({
     title, small, rows: positive, label: `${title} by distance, ${state.scene}`, open: state.showPicture && ((row) => row.point.view != null && state.showPicture(row.point)),
@@ -102,7 +103,7 @@ function lineDiagram(rows, { title, small, x, linear, state }) {
       };
     },
   });
-  if (exact.length) figure.append(h("p", { class: "note" }, `No error at all: ${exact.join(", ")}.`));
+  if (exact.length) figure.append(h("p", { class: "note" }, `${least > 0 && rows.some((r) => r.y > 0 && r.y <= least) ? `No error, or below ${tick(Number(least.toPrecision(1)))}` : "No error"}, at some distance: ${exact.join(", ")}.`));
   return figure;
 }
 
@@ -185,7 +186,7 @@ function traffic(kinds, state) {
     return diagram({
       title: `from ${where}`.replace("from rays", "rays"), small: "bytes for each ray", rows: here, label: `Traffic by what lines hold from ${where}, ${state.scene}`,
       options: () => ({
-        height: 34 + 21 * labels.length, marginLeft: 100, marginRight: 20, marginTop: 4, marginBottom: 26, x: { label: null, ticks: 4 }, y: { label: null, domain: labels, padding: 0.25 }, color: { domain: names, range: names.map(hatch) },
+        height: 34 + 21 * labels.length, marginLeft: 100, marginRight: 20, marginTop: 4, marginBottom: 26, x: { label: null, ticks: 3, tickFormat: (v) => num(v) }, y: { label: null, domain: labels, padding: 0.25 }, color: { domain: names, range: names.map(hatch) },
         marks: [Plot.barX(here, { x: "value", y: "label", fill: "kind", className: "points", sort: null }), Plot.ruleX([0], { strokeOpacity: 0.5 })],
       }),
     });
@@ -210,7 +211,7 @@ function overTime(shown, state) {
     return diagram({
       title: `${p.method}, ${p.setting}`, small: `from ${place(p)}, W`, rows, label: `Power over time, ${p.method} ${p.setting}`,
       options: () => ({
-        height: 220, marginLeft: 46, marginBottom: 38, x: { label: "time (ms)", labelAnchor: "center", labelArrow: "none", ticks: 4 }, y: { label: null, grid: true, ticks: 4 }, color: { domain: page.palette.parts.map((q) => q.name), range: page.palette.parts.map((q) => `var(--part-${q.name})`) },
+        height: 220, marginLeft: 46, marginBottom: 38, x: { label: "time (ms)", labelAnchor: "center", labelArrow: "none", ticks: 3, tickFormat: (v) => num(v) }, y: { label: null, grid: true, ticks: 4 }, color: { domain: page.palette.parts.map((q) => q.name), range: page.palette.parts.map((q) => `var(--part-${q.name})`) },
         marks: [Plot.rectY(rows, Plot.stackY({ x1: "from", x2: "to", y: "y", fill: "part", inset: 0, className: "points" })), Plot.ruleY([0])],
       }),
     });

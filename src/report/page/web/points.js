@@ -43,7 +43,8 @@ function simulationPoints(simulations) {
 function settingOf(method) {
   const words = [];
   if (method.delta != null) words.push(`delta ${method.delta}`);
-  for (const [name, value] of Object.entries(method.choices ?? {})) words.push(`${name} ${value}`);
+  // What it chose by itself is another from view to view, and no setting.
+  for (const [name, value] of Object.entries(method.knobs ?? {})) if (name !== "delta" && !name.startsWith("leaf")) words.push(`${name} ${value}`);
   if (method.leaves) words.push(`leaves ${method.leaves}`);
   return words.join(", ") || "full resolution";
 }
@@ -101,6 +102,9 @@ function shiftOf(point, measure) {
 const costAt = (point, machine) => point.costs.find((c) => c.target === machine);
 const costUnit = (cost, points, machine) => (cost.energy ? points.map((p) => costAt(p, machine)?.energy.unit).find(Boolean) ?? "" : cost.unit);
 const titled = (name, unit) => (unit ? `${name} (${unit})` : name);
+
+/** Errors below this are rounding beside the largest of `values`: nothing on a logarithmic axis. */
+const rounding = (values) => 1e-5 * (d3.max(values) ?? 0);
 
 /** The points that no other beats: not dearer and not worse, and one of both better. */
 function front(rows) {

@@ -36,7 +36,8 @@ function workSection(section, state) {
     });
     const methods = unique(rows.map((r) => r.method));
     const chosen = distances.filter((d) => own.distance === "all" || d === own.distance);
-    const shared = own.distance === "all" ? { y: domain(rows.filter((r) => error.linear || r.y > 0).map((r) => r.y), error.linear) } : {};
+    const least = rounding(rows.map((r) => r.y));
+    const shared = own.distance === "all" ? { least, y: domain(rows.filter((r) => error.linear || r.y > least).map((r) => r.y), error.linear) } : {};
     const charts = chosen.map((distance) => workDiagram(rows.filter((r) => place(r.point) === distance), { error, cost, distance, shared, large: chosen.length === 1, state, unit: costUnit(cost, points, state.machine) }));
     const columns = [
       { name: "scene", value: (r) => r.point.scene }, { name: "from", value: (r) => place(r.point) }, { name: "method", value: (r) => r.method }, { name: "setting", value: (r) => r.point.setting },
@@ -59,7 +60,8 @@ function workSection(section, state) {
 function workDiagram(rows, { error, cost, distance, shared, large, state, unit }) {
   const best = front(rows);
   rows.forEach((row) => (row.onFront = best.includes(row)));
-  const isExact = (row) => !error.linear && !(row.y > 0);
+  const least = shared.least ?? rounding(rows.map((r) => r.y));
+  const isExact = (row) => !error.linear && row.y <= least;
   const seen = rows.filter((row) => !isExact(row));
   const shift = rows.map((r) => shiftOf(r.point, error)).find((v) => v != null && (error.linear || v > 0));
   const values = shared.y ?? domain([...seen.map((r) => r.y), ...(shift ? [shift] : [])], error.linear, 1.5);
@@ -89,7 +91,7 @@ function workDiagram(rows, { error, cost, distance, shared, large, state, unit }
           ...marks,
           steps.length > 1 ? Plot.line(steps, { x: "x", y: "at", stroke: "currentColor", strokeOpacity: 0.17, strokeWidth: large ? 10 : 8, strokeLinejoin: "round", strokeLinecap: "round" }) : null,
           exact ? Plot.ruleY([floor], { strokeOpacity: 0.35, strokeDasharray: "1 3" }) : null,
-          exact ? Plot.text([floor], { frameAnchor: "left", y: (v) => v, text: () => "no error", dy: -7, dx: 4, fill: "currentColor", fillOpacity: 0.85, fontSize: 10.5 }) : null,
+          exact ? Plot.text([floor], { frameAnchor: "left", y: (v) => v, text: () => (rows.some((r) => isExact(r) && r.y > 0) ? `no error, or below ${tick(Number(least.toPrecision(1)))}` : "no error"), dy: -7, dx: 4, fill: "currentColor", fillOpacity: 0.85, fontSize: 10.5 }) : null,
           shift ? Plot.ruleY([shift], { strokeDasharray: "7 4", strokeWidth: 1.6, strokeOpacity: 0.8 }) : null,
           shift && large ? Plot.text([shift], { frameAnchor: "right", y: (v) => v, text: () => "shift by half a pixel", dy: -7, dx: -4, fontSize: 11, fill: "currentColor" }) : null,
           ...chains.map((chain) => Plot.line(chain, { x: "x", y: "at", stroke: "method", strokeWidth: 1.4, strokeOpacity: 0.75 })),
