@@ -76,9 +76,7 @@ fn costs_at_equal_error_lie_between_the_settings_around_it() {
     desk.run(&format!("error-time a.lod -o d {QUICK} --compute free"));
     let document: Value = serde_json::from_str(&desk.text("d/error-time.json")).unwrap();
     let mut inside = 0;
-    for equal in
-        document["equal_error"].as_array().unwrap().iter().filter(|e| e["error"] == "surface-p99" && e["cost"] == "time")
-    {
+    for equal in document["equal_error"].as_array().unwrap().iter().filter(|e| e["error"] == "surface-p99" && e["cost"] == "time") {
         let level = number(equal, "/level");
         let sweep = points(&document, "lod").filter(|p| p["view"] == equal["view"] && p["samples"] == equal["samples"]);
         let sweep: Vec<[f64; 2]> =
