@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Fills scripts/error-time/document.md with what error-time measured: writes docs/error-time.md. Argument: the folder with the runs `knobs`, `units` and `samples`."""
+"""Fills scripts/errors/document.md with what error-time measured: writes docs/error-time.md. Argument: the folder with the runs `knobs`, `units` and `samples`."""
 
 import json
 import re
@@ -7,7 +7,7 @@ import sys
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parent.parent
-TEMPLATE = ROOT / "scripts" / "error-time" / "document.md"
+TEMPLATE = ROOT / "scripts" / "errors" / "document.md"
 OURS = "lod"
 
 
