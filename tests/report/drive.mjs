@@ -144,8 +144,8 @@ if (doc) {
     await left.selectOption(value);
     check((await page.locator(`#pictures .legend ${legend}`).count()) > 0, `no legend of ${option}`);
   }
-  await left.selectOption((await left.locator("option").evaluateAll((all) => all.map((o) => o.value))).find((v) => v.startsWith("lod") && v.endsWith("picture")));
-  await page.locator("#pictures").getByLabel("Right picture", { exact: true }).selectOption((await left.locator("option").evaluateAll((all) => all.map((o) => o.value))).find((v) => v.startsWith("bvh,") && v.endsWith("picture")));
+  await left.selectOption((await left.locator("option").evaluateAll((all) => all.map((o) => o.value))).find((v) => v.startsWith("lod") && v.includes(": picture")));
+  await page.locator("#pictures").getByLabel("Right picture", { exact: true }).selectOption((await left.locator("option").evaluateAll((all) => all.map((o) => o.value))).find((v) => v.startsWith("bvh,") && v.includes(": picture")));
 
   // Inspector: every ray of a grid says what the document says.
   const frame = page.locator("#pictures .slider");
