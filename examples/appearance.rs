@@ -1,11 +1,12 @@
 //! How near pictures with level of detail come to the converged one, by shading: a table in Markdown (`docs/appearance.md` has one).
 //!
-//! `cargo run --release --example appearance`: terrains of roughness 0.45 and 0.60 and of 8.4 M triangles from 2 and 8 radii, 256x256, delta 1. Converged is the
+//! `cargo run --release --example appearance -- largest` (or `total`, the default bounds): terrains of roughness 0.45 and 0.60 and of 8.4 M triangles from 2 and 8 radii, 256x256, delta 1. Converged is the
 //! full resolution with 144 samples in each pixel; figures are mean and RMSE of the cosine that headlight shading sees, in linear light, over pixels that are
 //! wholly surface. `LODRAY_TERRAIN_LEVELS` makes the scenes smaller for a quick look.
 
 use lodray::bvh::over_trees;
 use lodray::format::{self, Scene, SceneInfo};
+use lodray::mesh::BoundKind;
 use lodray::mesh::procedural::{self, Options};
 use lodray::method::bvh::NoStore;
 use lodray::method::{Knobs, lod};
@@ -20,12 +21,16 @@ const CONVERGED: u32 = 12;
 const GRIDS: [u32; 3] = [1, 2, 4];
 
 fn main() -> Result<(), Box<dyn Error>> {
+    let bounds = match std::env::args().nth(1).as_deref() {
+        None => BoundKind::default(),
+        Some(name) => *BoundKind::ALL.iter().find(|kind| kind.name() == name).ok_or("bounds are 'largest' or 'total'")?,
+    };
     println!("| roughness, radii, samples | converged | {} |", header().join(" | "));
     println!("|---|---:|{}", "---:|".repeat(header().len()));
     let levels = std::env::var("LODRAY_TERRAIN_LEVELS").ok().and_then(|v| v.parse().ok());
     for roughness in [0.45, 0.60] {
         let surface = procedural::generate(&Options { levels, roughness: Some(roughness), ..Options::new(procedural::Scene::Terrain) })?;
-        let scene = format::build(&surface, SceneInfo::default(), over_trees)?;
+        let scene = format::build(&surface, SceneInfo { bounds, ..SceneInfo::default() }, over_trees)?;
         for distance in [2.0, 8.0] {
             rows(&scene, &format!("{roughness}, {distance}"), distance)?;
         }

@@ -85,7 +85,7 @@ fn on_a_roof_each_shading_sees_what_it_says() {
             // Where nothing is hidden by others, what is seen.
             (Shading::Weighted, by(1.0)),
             // What is flat to the eye is taken to be hidden in part.
-            (Shading::Facets, by(1.75)),
+            (Shading::Facets, by(1.5)),
         ] {
             let found = seen(&scene, shading, degrees, 8.0);
             // Ridges and valleys are shaded round, two facets of sixteen.

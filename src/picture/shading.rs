@@ -216,9 +216,8 @@ impl Facets<'_> {
         if seen <= 0.0 {
             return;
         }
-        // Of a facet the area seen is its own times the cosine; of that, others hide the more the flatter it is seen: cosine^(3/4) is left.
-        let root = (seen / area.length()).sqrt();
-        let weight = seen * root * root.sqrt();
+        // Of a facet the area seen is its own times the cosine; of that, others hide the more the flatter it is seen: cosine^(1/2) is left.
+        let weight = seen * (seen / area.length()).sqrt();
         let levels = self.scene.levels();
         let points = lattice::node(levels, levels, node);
         let normal: Vec3 = points.into_iter().map(|p| Vec3::from_array(self.scene.normal_at(self.tree, p))).sum();
