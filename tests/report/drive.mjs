@@ -105,8 +105,15 @@ if (doc) {
 
   // At equal error.
   const ratios = await page.locator("#equal td[data-value]").evaluateAll((all) => all.map((e) => Number(e.dataset.value)));
-  check(doc.equal_error.filter((e) => doc.views[e.view].scene === 0 && ["error", "level", "cost", "compute"].every((key) => e[key] === doc.equal_error[0][key])).every((e) => ratios.includes(e.ours) && ratios.includes(e.methods[0].ratio)), "equal errors are not the document's");
-  check((await page.locator("#equal").textContent()).includes("not reached"), "no reason where there is no cost");
+  const level = 0.5;
+  await page.locator("#equal").getByLabel("Level", { exact: true }).selectOption(String(level));
+  await rendered();
+  const shownNow = await page.locator("#equal td[data-value]").evaluateAll((all) => all.map((e) => Number(e.dataset.value)));
+  check(ratios.length > 0 && shownNow.length > 0, "no equal errors");
+  const equal = doc.equal_error.filter((e) => doc.views[e.view].scene === 0 && e.samples === fewest && e.level === level && ["error", "cost", "compute"].every((key) => e[key] === doc.equal_error[0][key]));
+  check(equal.length > 0 && equal.every((e) => [e.ours, ...e.methods.flatMap((m) => [m.cost, m.ratio])].every((value) => value == null || shownNow.includes(value))), "equal errors are not the document's");
+  const missing = equal.filter((e) => e.ours == null).length;
+  check((await page.locator("#equal .why").count()) >= missing, "no reason where there is no cost");
 
   // Pointer and keys on a diagram.
   const tip = page.locator("#work .tip:not([hidden])");

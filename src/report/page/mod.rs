@@ -13,7 +13,7 @@ pub use ledger::{Ledger, ledger};
 pub use pictures::{Embedded, PICTURE_BYTES, PictureFault, embed};
 pub use stability::{Hunted, StabilityCase, StabilityReport, StabilityTally};
 
-use super::error_time::ErrorTime;
+use super::error_time::{COSTS, ERRORS, ErrorTime};
 use super::palette;
 use crate::method::METHODS;
 use crate::picture::{HOTTEST, level_colour};
@@ -107,6 +107,7 @@ fn data(documents: &Documents) -> io::Result<Value> {
         "title": documents.title,
         "program": program(),
         "palette": { "methods": methods, "parts": parts, "kinds": kinds, "levels": levels, "hottest": HOTTEST },
+        "measures": measures(),
         "error_time": serde_json::to_value(&error_time)?,
         "simulations": serde_json::to_value(&documents.simulations)?,
         "stability": serde_json::to_value(&documents.stability)?,
@@ -115,6 +116,11 @@ fn data(documents: &Documents) -> io::Result<Value> {
         "documents": serde_json::to_value(&documents.documents)?,
         "pictures": serde_json::to_value(&documents.pictures)?,
     }))
+}
+
+/// What errors and costs of equal-error tables are called.
+fn measures() -> BTreeMap<&'static str, &'static str> {
+    ERRORS.iter().map(|error| (error.id, error.name)).chain(COSTS.iter().map(|cost| (cost.id, cost.name))).collect()
 }
 
 /// A block of the page that no browser runs: JSON, deflated, in base64.

@@ -4,11 +4,7 @@ function equalSection(section, state) {
   const doc = page.error_time;
   const body = h("div", {});
   const own = { error: null, level: null, cost: null };
-  const words = (id) => {
-    const [, what, stat] = /^(.*?)_(percentile_99|mean|median|maximum)$/.exec(id) ?? [null, id, null];
-    const name = { surface: "to the nearest point of the surface, pixels", hit: "to the full-resolution hit, pixels", flip: "FLIP", normal_degrees: "angle between normals, degrees" }[what] ?? what.replaceAll("_", " ");
-    return stat ? `${name}, ${{ percentile_99: "99th percentile" }[stat] ?? stat}` : name;
-  };
+  const words = (id) => page.measures[id] ?? id;
   const draw = () => {
     const all = doc.equal_error.map((e) => ({ ...e, v: doc.views[e.view], target: target([doc.machines[e.machine].label, ...doc.machines[e.machine].set].join(" "), e.compute) })).filter((e) => doc.scenes[e.v.scene].name === state.scene && e.target === state.machine && (state.samples === "all" || e.samples === Number(state.samples)));
     if (!all.length) return body.replaceChildren(h("p", { class: "note" }, "None for this scene and machine."));
@@ -23,9 +19,9 @@ function equalSection(section, state) {
     const methods = unique(rows.flatMap((e) => e.methods.map((m) => m.method)));
     const of = (e, method) => e.methods.find((m) => m.method === method);
     const set = (key) => (value) => ((own[key] = value), draw());
-    const costName = COSTS.find((c) => c.id === own.cost || c.id.startsWith(`${own.cost}.`))?.name ?? own.cost.replaceAll("_", " ");
+    const costName = words(own.cost);
     const columns = [
-      { name: "from (radii)", value: (e) => e.v.distance }, { name: "samples", value: (e) => e.samples }, { name: `lod: ${costName}`, value: (e) => e.ours },
+      { name: "from (radii)", value: (e) => e.v.distance }, { name: "samples", value: (e) => e.samples }, { name: `lod: ${costName}`, value: (e) => e.ours, show: (e) => (e.ours == null ? h("span", { class: "why" }, e.why ?? "–") : num(e.ours, 4)) },
       ...methods.flatMap((method) => [
         { name: `${method}: ${costName}`, value: (e) => of(e, method)?.cost ?? null, show: (e) => (of(e, method)?.cost == null ? h("span", { class: "why" }, of(e, method)?.why ?? "–") : num(of(e, method).cost, 4)) },
         { name: `${method} over lod`, value: (e) => of(e, method)?.ratio ?? null, show: (e) => (of(e, method)?.ratio == null ? "–" : h("span", { class: of(e, method).ratio > 1 ? "better" : "" }, times(of(e, method).ratio))) },
@@ -33,12 +29,12 @@ function equalSection(section, state) {
     ];
     const name = `At equal error, ${words(own.error)} ${own.level}, ${state.scene}`;
     body.replaceChildren(
-      h("div", { class: "controls" }, choice("Error", errors.map((e) => [e, words(e)]), own.error, set("error")), choice("Level", levels.map((l) => [l, num(l)]), own.level, set("level")), choice("Cost", costs.map((c) => [c, COSTS.find((k) => k.id === c || k.id.startsWith(`${c}.`))?.name ?? c]), own.cost, set("cost"))),
+      h("div", { class: "controls" }, choice("Error", errors.map((e) => [e, words(e)]), own.error, set("error")), choice("Level", levels.map((l) => [l, num(l)]), own.level, set("level")), choice("Cost", costs.map((c) => [c, words(c)]), own.cost, set("cost"))),
       scrolled(name, table(name, columns, rows)),
       h("div", { class: "data" }, h("button", { type: "button", "aria-label": `CSV of: ${name}`, onclick: () => save("equal-error.csv", "text/csv", csv(columns, rows)) }, "CSV")),
     );
   };
-  section.append(h("p", {}, "What each method costs where its error is the same as ours, interpolated along its knob inside what was measured, never outside. A ratio above 1, in bold, is how many times as much as ours it costs."), body);
+  section.append(h("p", {}, "What each method costs where its error is the same as ours, interpolated along its knob inside what was measured, never outside (a method whose coarsest setting is nearer than that has that setting's cost). A ratio above 1, in bold, is how many times as much as ours it costs."), body);
   state.onChange(draw);
 }
 
