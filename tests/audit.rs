@@ -87,7 +87,9 @@ const NORMALS: usize = 6;
 
 #[test]
 fn one_lowered_code_is_found_wherever_it_stands() {
-    BoundKind::ALL.into_iter().for_each(one_lowered_code_is_found);
+    for kind in BoundKind::ALL {
+        one_lowered_code_is_found(kind);
+    }
 }
 
 fn one_lowered_code_is_found(kind: BoundKind) {

@@ -34,7 +34,6 @@ impl BoundKind {
     }
 
     /// Whether files need not name it.
-    #[expect(clippy::trivially_copy_pass_by_ref, reason = "the signature that serde calls")]
     pub fn is_unnamed(&self) -> bool {
         *self == Self::unnamed()
     }

@@ -67,7 +67,7 @@ pub fn equal_errors(document: &ErrorTime, ours: &str) -> Vec<EqualError> {
                 for (error, levels) in &errors {
                     for cost in COSTS.iter().filter(|cost| COMPARED.contains(&cost.id)) {
                         let key = Key { view, samples, machine: costs.machine, compute: &costs.compute };
-                        all.extend(compared(document, ours, &points, at, &key, error, levels, cost));
+                        all.extend(compared(document, ours, &points, at, &key, (error, levels), cost));
                     }
                 }
             }
@@ -90,8 +90,7 @@ fn compared(
     points: &[&Point],
     at: usize,
     key: &Key<'_>,
-    error: &ErrorMeasure,
-    levels: &[f64],
+    (error, levels): (&ErrorMeasure, &[f64]),
     cost: &CostMeasure,
 ) -> Vec<EqualError> {
     let sweep = |method: &str| -> Vec<Pair> {
@@ -130,7 +129,7 @@ mod tests {
     #[test]
     fn costs_are_interpolated_on_logarithmic_scales_and_only_inside() {
         let sweep = [[4.0, 1.0], [1.0, 4.0], [0.25, 16.0]];
-        let near = |(cost, said): (Option<f64>, _), of: f64| (cost.unwrap() - of).abs() < 1e-12 && said == None;
+        let near = |(cost, said): (Option<f64>, Option<&str>), of: f64| (cost.unwrap() - of).abs() < 1e-12 && said.is_none();
         assert!(near(cost_at(&sweep, 2.0), 2.0) && near(cost_at(&sweep, 0.5), 8.0) && near(cost_at(&sweep, 1.0), 4.0));
         assert!(near(cost_at(&sweep, 0.25), 16.0));
         assert_eq!(cost_at(&sweep, 0.2), (None, Some(NOT_REACHED)));
