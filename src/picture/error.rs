@@ -20,7 +20,7 @@ pub struct PictureError {
 }
 
 impl PictureError {
-    /// Of two sRGB pictures; `pixels_per_degree` of sight as [`flip`] takes it. The same with any number of threads.
+    /// Of two sRGB pictures; `pixels_per_degree` of sight as [`flip()`] takes it. The same with any number of threads.
     ///
     /// # Panics
     /// If the sizes differ.
