@@ -7,7 +7,7 @@ use super::row::Measured;
 use crate::cli::cache::Cache;
 use crate::cli::method::Chosen;
 use crate::cli::output::busy;
-use crate::cli::pass::{Pass, PassRays, Target};
+use crate::cli::pass::{Pass, PassRays};
 use crate::cli::pictures::shoot;
 use crate::cli::sweep::ViewJob;
 use anyhow::Context;
@@ -163,11 +163,7 @@ impl<'a> Bench<'a> {
     fn simulate(&self, setting: &Setting, method: &dyn Method, camera: &Camera) -> anyhow::Result<Vec<SimResult>> {
         let rays = PassRays::Camera(*camera);
         let pass = Pass { scene: self.scene, space: &self.space, chosen: &setting.chosen, method, rays };
-        pass.run(&self.targets())?.into_iter().map(|outcome| Ok(outcome?.0)).collect()
-    }
-
-    fn targets(&self) -> Vec<Target> {
-        self.plan.jobs.targets.clone()
+        pass.run(&self.plan.jobs.targets)?.into_iter().map(|outcome| Ok(outcome?.0)).collect()
     }
 
     /// Draws full resolution with more and more samples until its standard error is a quarter of the smallest error, or there are no more; then says how
