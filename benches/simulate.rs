@@ -42,8 +42,8 @@ fn measure(name: &str, method: &dyn Method, scene: &Scene) {
     let mut chunks: Vec<Chunk> = Vec::new();
     let tracing = best(|| {
         chunks.clear();
-        frame.produce(|batches| {
-            chunks.push(batches.into());
+        frame.produce(|traced| {
+            chunks.push(traced.batches.into());
             true
         });
     });
@@ -67,7 +67,7 @@ fn measure(name: &str, method: &dyn Method, scene: &Scene) {
     });
     assert_eq!(accesses, units_requests);
     let job = Job { machine: machine.clone(), compute: Compute::Free, window: None };
-    let together = best(|| simulate(&frame, std::slice::from_ref(&job), &|_| ()).pop().expect("a run").map(drop).expect("a run"));
+    let together = best(|| simulate(&frame, std::slice::from_ref(&job), &mut |_| ()).pop().expect("a run").map(drop).expect("a run"));
     let rays = f64::from(SIDE * SIDE) / 1e3;
     println!(
         "{name:<30} tracing {:8.0} k rays/s   replay {:8.0} k rays/s {:6.1} M accesses/s   of 8 rays a core {:6.1} M accesses/s   with units {:8.0} k rays/s   together {:8.0} k rays/s   {:.1} accesses per ray",

@@ -28,7 +28,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         check(machine, Compute::Units)?;
     }
     let jobs = machines.each_ref().map(|(_, machine)| job(machine));
-    for ((name, _), run) in machines.iter().zip(simulate(&frame, &jobs, &|_| ())) {
+    for ((name, _), run) in machines.iter().zip(simulate(&frame, &jobs, &mut |_| ())) {
         let run = run?;
         println!("{name}: {} cycles, {} of {} requests found in the L1s", run.cycles, run.counts.l1.hits, run.counts.l1.requests);
     }

@@ -105,7 +105,7 @@ fn one_sample_is_the_frame_and_full_is_what_it_always_was() {
     let space = ModelSpace::of(&scene);
     let camera = Camera::new(&View::default(), &space, 61, 43).unwrap();
     let method = (lod::METHOD.make)(&scene, &Knobs::default(), &NoStore).unwrap();
-    let frame = render(&*method, &space, &camera, 1.0, &|| ());
+    let (frame, _) = render(&*method, &space, &camera, 1.0, &|| ());
     for shading in Shading::ALL {
         let shader = Shader::new(&scene, &space, shading);
         let image = shaded(&frame, &shader, &camera);
@@ -163,7 +163,7 @@ fn planes_hold_what_was_met() {
     let camera = Camera::new(&View::default(), &space, 300, 300).unwrap();
     for (registered, delta) in [(&lod::METHOD, 0.25), (&lod::METHOD, 1.0), (&reference::METHOD, 1.0)] {
         let method = (registered.make)(&scene, &Knobs::default(), &NoStore).unwrap();
-        let frame = render(&*method, &space, &camera, delta, &|| ());
+        let (frame, _) = render(&*method, &space, &camera, delta, &|| ());
         let point = |at: usize, distance: f64| {
             let ray = camera.ray(at as u32 % 300, at as u32 / 300);
             glam::DVec3::from_array(ray.origin) + glam::DVec3::from_array(ray.direction) * distance

@@ -144,7 +144,7 @@ fn legends_stand_below_and_leave_the_picture_alone() {
         desk.run(&format!("render a.lod --size {width}x{height} --compare -o out"));
         let camera = Camera::new(&View::default(), &space, width, height).unwrap();
         let method = (lod::METHOD.make)(&scene, &Knobs::default(), &NoStore).unwrap();
-        let frame = render(&*method, &space, &camera, 1.0, &|| ());
+        let (frame, _) = render(&*method, &space, &camera, 1.0, &|| ());
         let crop = |name: &str| {
             let picture = picture(&desk, name);
             assert!(picture.height() > height, "{name}: no legend");

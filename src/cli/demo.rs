@@ -79,7 +79,7 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
                 choices: &[],
                 shading: (Shading::Full, 1),
                 camera: &camera,
-                stats: &shot.frame.stats,
+                stats: &shot.stats,
                 error: error.as_ref().map(|error| (Against::FullResolution, error)),
             };
             let prefix = format!("{view}-{}-", if is_truth { "full" } else { method.name });
@@ -105,7 +105,7 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
 }
 
 fn row(view: &'static str, distance: f64, method: &'static str, shot: &Shot, error: Comparison) -> Row {
-    let stats = &shot.frame.stats;
+    let stats = &shot.stats;
     let mean = |n: u64| n as f64 / stats.rays as f64;
     Row {
         view,

@@ -75,7 +75,7 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
     let method = (lod::METHOD.make)(&scene, &Knobs::default(), &NoStore)?;
     let count = |delta: f64| -> Vec<_> {
         bar.set_message("tracing");
-        cameras.iter().map(|camera| render(&*method, &space, camera, delta, &|| bar.inc(1)).stats).collect()
+        cameras.iter().map(|camera| render(&*method, &space, camera, delta, &|| bar.inc(1)).1).collect()
     };
     let distinct = |stats: &[FrameStats]| stats.iter().map(|s| s.distinct_lines()).collect::<Vec<u64>>();
 

@@ -8,7 +8,7 @@ use lodray::machine::{Machine, MachineError};
 use lodray::method::Method;
 use lodray::rays::{Camera, ModelSpace, RayFile, RaySource, Sight};
 use lodray::report::result::{MachineFacts, MethodFacts, RayFileFacts, SceneFacts, Setup, SimResult, ViewFacts};
-use lodray::run::{Compute, FrameRays, Job, simulate};
+use lodray::run::{Compute, FrameRays, Job, Traced, simulate};
 use lodray::sim::energy;
 use lodray::sim::replay::{ReplayError, Run, Window};
 use std::path::{Path, PathBuf};
@@ -101,17 +101,23 @@ fn in_one_line(error: MachineError) -> anyhow::Error {
 }
 
 impl Pass<'_> {
-    /// Traces the rays once and replays them on every target.
+    /// Traces the rays once and replays them on every target; a bar shows how far it is.
     pub fn run(&self, targets: &[Target]) -> anyhow::Result<Vec<Outcome>> {
+        let bar = progress(self.rays.source().batches() as u64, "simulating");
+        let outcomes = self.watched(targets, &mut |traced| bar.inc(traced.batches.len() as u64));
+        bar.finish_and_clear();
+        outcomes
+    }
+
+    /// The same without a bar; `look` sees the rays, in order.
+    pub fn watched(&self, targets: &[Target], look: &mut dyn FnMut(&Traced)) -> anyhow::Result<Vec<Outcome>> {
         let rays = self.rays.source();
         let sight = Sight::new(rays, self.space, self.chosen.delta());
         let map = self.method.map(&sight);
         let frame = FrameRays { method: self.method, rays, sight: &sight };
         let job = |target: &Target| Job { machine: target.machine.description.clone(), compute: target.compute, window: target.window };
         let jobs: Vec<_> = targets.iter().map(job).collect();
-        let bar = progress(rays.batches() as u64, "simulating");
-        let runs = simulate(&frame, &jobs, &|batches| bar.inc(batches));
-        bar.finish_and_clear();
+        let runs = simulate(&frame, &jobs, look);
         let result = |(target, run): (&Target, Result<Run, ReplayError>)| {
             let run = run?;
             Ok((SimResult::new(self.setup(target, &sight, map.bytes()), self.chosen.method, &map, &run)?, run.wave))

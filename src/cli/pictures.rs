@@ -6,13 +6,14 @@ use anyhow::Context;
 use image::RgbImage;
 use lodray::format::Scene;
 use lodray::method::Method;
-use lodray::picture::{Frame, Legend, Shader, Shading, error_map, level_map, normal_map, render, sampled, save_png, shaded};
+use lodray::picture::{Frame, FrameStats, Legend, Shader, Shading, error_map, level_map, normal_map, render, sampled, save_png, shaded};
 use lodray::rays::{Camera, ModelSpace};
 use std::path::Path;
 
-/// A frame and its shaded picture.
+/// A frame, what it took, and its shaded picture.
 pub struct Shot {
     pub frame: Frame,
+    pub stats: FrameStats,
     pub image: RgbImage,
 }
 
@@ -32,11 +33,11 @@ pub fn shoot_with(
 ) -> Shot {
     let is_one = samples.samples == camera.samples;
     let bar = progress(u64::from(camera.height) * (1 + u64::from(!is_one)), what);
-    let frame = render(method, space, camera, delta, &|| bar.inc(1));
+    let (frame, stats) = render(method, space, camera, delta, &|| bar.inc(1));
     let image =
         if is_one { shaded(&frame, shader, camera) } else { sampled(method, shader, space, samples, delta, &|| bar.inc(1)).image() };
     bar.finish_and_clear();
-    Shot { frame, image }
+    Shot { frame, stats, image }
 }
 
 /// A map of a frame.

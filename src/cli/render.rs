@@ -217,7 +217,7 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
         choices: &choices,
         shading: (args.shading, args.samples * args.samples),
         camera: &camera,
-        stats: &shot.frame.stats,
+        stats: &shot.stats,
         error: truth.as_ref().map(|(against, _, error)| (*against, error)),
     };
     let true_image = truth.as_ref().map(|(against, image, _)| (*against, image));
@@ -225,7 +225,7 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
     folder.finish()?;
 
     let (against, error) = truth.map(|(against, _, error)| (against, error)).unzip();
-    let stats = shot.frame.stats;
+    let stats = shot.stats;
     let mean = |n: u64| n as f64 / stats.rays as f64;
     let per_ray = PerRay {
         nodes: mean(stats.nodes),

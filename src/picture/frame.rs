@@ -7,6 +7,7 @@ use rayon::prelude::*;
 use serde::Serialize;
 
 /// A traced frame, row by row from the top.
+#[derive(Clone)]
 pub struct Frame {
     /// Columns.
     pub width: u32,
@@ -14,8 +15,6 @@ pub struct Frame {
     pub height: u32,
     /// What each pixel found.
     pub pixels: Vec<Option<SurfaceHit>>,
-    /// What it took.
-    pub stats: FrameStats,
 }
 
 /// What a frame took.
@@ -64,8 +63,8 @@ impl FrameStats {
 const TILE_COLUMNS: usize = 32;
 const TILE_ROWS: usize = 8;
 
-/// Traces one ray per pixel at quality `delta`. `row_done` is called once for each finished row, from any thread.
-pub fn render(method: &dyn Method, space: &ModelSpace, camera: &Camera, delta: f64, row_done: &(dyn Fn() + Sync)) -> Frame {
+/// Traces one ray per pixel at quality `delta`; the frame, and what it took. `row_done` is called once for each finished row, from any thread.
+pub fn render(method: &dyn Method, space: &ModelSpace, camera: &Camera, delta: f64, row_done: &(dyn Fn() + Sync)) -> (Frame, FrameStats) {
     let sight = Sight::new(camera, space, delta);
     let map = method.map(&sight);
     let sets = LineSets::new(&map);
@@ -107,7 +106,7 @@ pub fn render(method: &dyn Method, space: &ModelSpace, camera: &Camera, delta: f
         lines: kind_counts(&map, &counts, &sets),
         mean_level: mean(pixels.iter().flatten().map(|p| f64::from(p.level))),
     };
-    Frame { width: camera.width, height: camera.height, pixels, stats }
+    (Frame { width: camera.width, height: camera.height, pixels }, stats)
 }
 
 fn kind_counts(map: &MemoryMap, counts: &StepCounts, sets: &LineSets) -> Vec<KindCount> {

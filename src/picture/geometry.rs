@@ -39,7 +39,6 @@ pub fn geometric_error(
 mod tests {
     use super::*;
     use crate::mesh::Placement;
-    use crate::picture::FrameStats;
     use crate::rays::{ModelSpace, View};
 
     #[test]
@@ -47,7 +46,7 @@ mod tests {
         let space = ModelSpace { placement: Placement { offset: [0.0; 3], scale: 1e-9 }, lo: [-1 << 30; 3], hi: [1 << 30; 3] };
         let camera = Camera::new(&View::default(), &space, 2, 2).unwrap();
         let at = |distance| Some(SurfaceHit { distance, ..SurfaceHit::default() });
-        let frame = |pixels: Vec<Option<SurfaceHit>>| Frame { width: 2, height: 2, pixels, stats: FrameStats::default() };
+        let frame = |pixels: Vec<Option<SurfaceHit>>| Frame { width: 2, height: 2, pixels };
         let pixel = 2.0 * camera.tan_theta * 10.0;
         let truth = frame(vec![at(10.0), at(10.0), None, at(5.0)]);
         let traced = frame(vec![at(10.0 + 3.0 * pixel), at(10.0 - pixel), at(1.0), None]);

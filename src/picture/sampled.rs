@@ -4,6 +4,7 @@ use super::shade::encoded;
 use super::shading::{Light, Shader};
 use crate::method::Method;
 use crate::rays::{Camera, ModelSpace, Sight};
+use crate::run::RayHit;
 use image::RgbImage;
 use rayon::prelude::*;
 
@@ -19,11 +20,41 @@ pub struct Sampled {
 }
 
 impl Sampled {
+    /// Before any sample of `camera`.
+    pub fn new(camera: &Camera) -> Self {
+        let [width, height] = camera.pixels();
+        Self { width, height, pixels: vec![Light::default(); width as usize * height as usize] }
+    }
+
+    /// Shades samples of `camera` and adds them to their pixels. As [`sampled`], if every sample is added once, and those of each pixel row by row.
+    pub fn add(&mut self, shader: &Shader<'_>, camera: &Camera, hits: &[RayHit]) {
+        let lights: Vec<Light> = hits
+            .par_iter()
+            .map(|of| {
+                let [x, y] = at(camera, of.ray);
+                let mut light = Light::default();
+                shader.add(&mut light, &camera.ray(x, y), of.hit.as_ref());
+                light
+            })
+            .collect();
+        for (of, light) in hits.iter().zip(lights) {
+            let [x, y] = at(camera, of.ray).map(|n| (n / camera.samples) as usize);
+            self.pixels[y * self.width as usize + x] += light;
+        }
+    }
+
     /// The picture in sRGB.
     pub fn image(&self) -> RgbImage {
         let bytes: Vec<u8> = self.pixels.par_iter().flat_map_iter(|light| encoded(light.mean()).0).collect();
         RgbImage::from_raw(self.width, self.height, bytes).expect("three bytes for each pixel")
     }
+}
+
+/// Column and row of a camera's ray.
+fn at(camera: &Camera, ray: u64) -> [u32; 2] {
+    let width = u64::from(camera.width);
+    // Below 2^16 each.
+    [ray % width, ray / width].map(|n| n as u32)
 }
 
 /// Traces and shades all samples of `camera` ([`Camera::with_samples`]) at quality `delta`. Samples are done with as soon as their pixel is: no frame of
@@ -37,11 +68,10 @@ pub fn sampled(
     row_done: &(dyn Fn() + Sync),
 ) -> Sampled {
     let sight = Sight::new(camera, space, delta);
-    let [width, height] = camera.pixels();
     let [columns, rows] = camera.window(space);
     let side = camera.samples;
-    let mut pixels = vec![Light::default(); width as usize * height as usize];
-    pixels.par_chunks_mut(width as usize).enumerate().for_each_init(
+    let mut picture = Sampled::new(camera);
+    picture.pixels.par_chunks_mut(picture.width as usize).enumerate().for_each_init(
         || method.tracer(&sight),
         |tracer, (y, pixels)| {
             for (x, light) in (0..).zip(pixels) {
@@ -57,5 +87,5 @@ pub fn sampled(
             row_done();
         },
     );
-    Sampled { width, height, pixels }
+    picture
 }

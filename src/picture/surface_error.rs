@@ -1,8 +1,9 @@
 //! How far what rays hit is from the full-resolution surface, ray by ray.
 
-use super::{ErrorSpread, Frame};
+use super::ErrorSpread;
 use crate::format::Scene;
 use crate::mesh::FinestSurface;
+use crate::method::SurfaceHit;
 use crate::rays::{Camera, ModelSpace};
 use glam::DVec3;
 use rayon::prelude::*;
@@ -38,43 +39,43 @@ pub struct FullResolution<'a> {
     pub space: &'a ModelSpace,
     /// Its full-resolution surface.
     pub surface: &'a FinestSurface,
-    /// Its frame.
-    pub frame: &'a Frame,
+    /// What each pixel's ray met of it.
+    pub pixels: &'a [Option<SurfaceHit>],
 }
 
 impl SurfaceError {
-    /// The errors of `frame`, which `camera` saw; one of `stride` columns and rows is held against the nearest point of the surface.
-    pub fn of(frame: &Frame, truth: &FullResolution<'_>, camera: &Camera, stride: u32) -> Self {
+    /// The errors of what the rays of `camera`, one for each of its pixels, met; one of `stride` columns and rows is held against the nearest point of the surface.
+    pub fn of(pixels: &[Option<SurfaceHit>], truth: &FullResolution<'_>, camera: &Camera, stride: u32) -> Self {
         let width = camera.width as usize;
-        let both = || frame.pixels.iter().zip(&truth.frame.pixels).filter_map(|(a, b)| Some(((*a)?, (*b)?)));
+        let both = || pixels.iter().zip(truth.pixels).filter_map(|(a, b)| Some(((*a)?, (*b)?)));
         let hit = both().map(|(a, b)| (a.distance - b.distance).abs() / (2.0 * camera.tan_theta * b.distance));
-        let degrees: Vec<f64> = (frame.pixels.par_iter().zip(&truth.frame.pixels))
+        let degrees: Vec<f64> = (pixels.par_iter().zip(truth.pixels))
             .filter_map(|(a, b)| {
                 let [a, b] = [(*a)?, (*b)?].map(|hit| hit.normal(truth.scene).as_dvec3());
                 // Of nearly equal directions the cosine says little.
                 Some(2.0 * (0.5 * (a - b).length()).min(1.0).asin().to_degrees())
             })
             .collect();
-        let surface: Vec<f64> = (0..frame.pixels.len())
+        let surface: Vec<f64> = (0..pixels.len())
             .into_par_iter()
             .filter(|at| (at % width).is_multiple_of(stride as usize) && (at / width).is_multiple_of(stride as usize))
             .filter_map(|at| {
-                let hit = frame.pixels[at]?;
+                let hit = pixels[at]?;
                 let scale = truth.space.placement.scale;
                 // Below 2^16 each.
                 let ray = camera.ray((at % width) as u32, (at / width) as u32);
                 let p = DVec3::from_array(ray.origin) + DVec3::from_array(ray.direction) * hit.distance;
-                let guess = truth.frame.pixels[at].map_or(f64::INFINITY, |full| (full.distance - hit.distance).abs() / scale + 1.0);
+                let guess = truth.pixels[at].map_or(f64::INFINITY, |full| (full.distance - hit.distance).abs() / scale + 1.0);
                 let apart = truth.surface.distance(truth.space.to_units(p.to_array()), guess);
                 Some(apart * scale / (2.0 * camera.tan_theta * hit.distance))
             })
             .collect();
-        let alone = frame.pixels.iter().zip(&truth.frame.pixels).filter(|(a, b)| a.is_some() != b.is_some()).count() as u64;
+        let alone = pixels.iter().zip(truth.pixels).filter(|(a, b)| a.is_some() != b.is_some()).count() as u64;
         Self {
             hit: ErrorSpread::of(hit),
             surface: ErrorSpread::of(surface),
             normal_degrees: ErrorSpread::of(degrees),
-            silhouette: Silhouette { pixels: alone, share: alone as f64 / frame.pixels.len().max(1) as f64 },
+            silhouette: Silhouette { pixels: alone, share: alone as f64 / pixels.len().max(1) as f64 },
         }
     }
 }

@@ -2,7 +2,7 @@
 //!
 //! Batches are given in order, in chunks, and whoever takes them holds the next chunks back: memory is bounded by what waits, not by the frame.
 
-use crate::method::{Method, Tracer};
+use crate::method::{Method, SurfaceHit, Tracer};
 use crate::rays::{RaySource, Sight};
 use crate::step::{Batch, Link, Recorder};
 use rayon::prelude::*;
@@ -21,28 +21,47 @@ pub struct FrameRays<'a> {
     pub sight: &'a Sight,
 }
 
+/// What a ray met.
+#[derive(Clone, Copy, Debug)]
+pub struct RayHit {
+    /// The ray's number: a pixel's, row by row from the top, or its place in a file.
+    pub ray: u64,
+    /// None if it met nothing.
+    pub hit: Option<SurfaceHit>,
+}
+
+/// Some of a frame's batches, traced.
+pub struct Traced {
+    /// The steps of their rays.
+    pub batches: Vec<Batch>,
+    /// What the rays met, in the same order.
+    pub hits: Vec<RayHit>,
+}
+
 impl FrameRays<'_> {
-    /// Traces all rays; gives the batches to `take`, in order, until it wants no more.
-    pub fn produce(&self, mut take: impl FnMut(Vec<Batch>) -> bool) {
+    /// Traces all rays; gives them to `take`, in order, until it wants no more.
+    pub fn produce(&self, mut take: impl FnMut(Traced) -> bool) {
         let batches = self.rays.batches();
         for first in (0..batches).step_by(CHUNK) {
             let chunk = (first..batches.min(first + CHUNK)).into_par_iter();
-            let chunk = chunk.map_init(|| self.method.tracer(self.sight), |tracer, batch| self.batch(&mut **tracer, batch)).collect();
-            if !take(chunk) {
+            let traced = chunk.map_init(|| self.method.tracer(self.sight), |tracer, batch| self.batch(&mut **tracer, batch));
+            let (batches, hits): (Vec<_>, Vec<_>) = traced.unzip();
+            if !take(Traced { batches, hits: hits.concat() }) {
                 return;
             }
         }
     }
 
-    fn batch(&self, tracer: &mut dyn Tracer, batch: usize) -> Batch {
+    fn batch(&self, tracer: &mut dyn Tracer, batch: usize) -> (Batch, Vec<RayHit>) {
+        let mut hits = Vec::new();
         let mut recorder = Recorder::default();
         let is_ordered = self.rays.is_ordered();
         self.rays.batch(batch, &mut |number, query| {
             if is_ordered {
                 recorder.link(Link { number, after: query.after });
             }
-            tracer.recorded(query, &mut recorder);
+            hits.push(RayHit { ray: number, hit: tracer.recorded(query, &mut recorder) });
         });
-        recorder.batch()
+        (recorder.batch(), hits)
     }
 }

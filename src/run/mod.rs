@@ -5,5 +5,5 @@ mod frame;
 mod simulate;
 
 pub use cast::{HitRow, cast, write_hits};
-pub use frame::FrameRays;
+pub use frame::{FrameRays, RayHit, Traced};
 pub use simulate::{Compute, Job, check, simulate};

@@ -1,6 +1,6 @@
 //! A frame on machines: one functional pass, and a replay on each machine beside it.
 
-use super::FrameRays;
+use super::{FrameRays, Traced};
 use crate::machine::Machine;
 use crate::sim::energy::EnergyModel;
 use crate::sim::replay::{self, Chunk, ReplayError, Run, Window};
@@ -55,8 +55,8 @@ pub fn check(machine: &Machine, compute: Compute) -> Result<(), ReplayError> {
 }
 
 /// Runs the rays of `frame` for each of `jobs`. Rays are traced once; every replay has a thread of its own.
-/// `traced` is told how many batches of rays were handed over.
-pub fn simulate(frame: &FrameRays<'_>, jobs: &[Job], traced: &dyn Fn(u64)) -> Vec<Result<Run, ReplayError>> {
+/// `look` sees the rays, in order, before they go to the machines.
+pub fn simulate(frame: &FrameRays<'_>, jobs: &[Job], look: &mut dyn FnMut(&Traced)) -> Vec<Result<Run, ReplayError>> {
     thread::scope(|scope| {
         let nodes = frame.method.map(frame.sight).nodes();
         let (senders, runs): (Vec<SyncSender<Chunk>>, Vec<_>) = jobs
@@ -70,9 +70,9 @@ pub fn simulate(frame: &FrameRays<'_>, jobs: &[Job], traced: &dyn Fn(u64)) -> Ve
                 (sender, scope.spawn(run))
             })
             .unzip();
-        frame.produce(|batches| {
-            traced(batches.len() as u64);
-            let chunk = Chunk::from(batches);
+        frame.produce(|traced| {
+            look(&traced);
+            let chunk = Chunk::from(traced.batches);
             // A replay that failed takes no more; the others go on.
             senders.iter().filter(|sender| sender.send(Chunk::clone(&chunk)).is_ok()).count() > 0
         });

@@ -87,7 +87,7 @@ impl Pin {
         let frame = FrameRays { method: &*method, rays: &camera, sight: &sight };
         let machine = Machine::shipped(self.machine).expect("a machine");
         let job = Job { machine: machine.clone(), compute: self.compute, window: None };
-        let run = simulate(&frame, &[job], &|_| ()).pop().expect("a run").expect("a result");
+        let run = simulate(&frame, &[job], &mut |_| ()).pop().expect("a run").expect("a result");
         let setup = Setup {
             scene: SceneFacts::from(scene),
             method: MethodFacts::new(entry, &knobs, &method.choices(&sight), 0),

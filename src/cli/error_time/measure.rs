@@ -4,18 +4,19 @@ use super::draw::{Converging, Subject, difference, luminance};
 use super::host::{Timed, host_times};
 use super::plan::{Plan, Setting};
 use super::row::Measured;
+use super::workers::at_once;
 use crate::cli::cache::Cache;
 use crate::cli::method::Chosen;
-use crate::cli::output::busy;
+use crate::cli::output::{busy, progress};
 use crate::cli::pass::{Pass, PassRays};
-use crate::cli::pictures::shoot;
+use crate::cli::pictures::shoot_with;
 use crate::cli::sweep::ViewJob;
 use anyhow::Context;
 use image::RgbImage;
 use lodray::format::Scene;
 use lodray::mesh::FinestSurface;
-use lodray::method::{Method, reference};
-use lodray::picture::{Frame, FullResolution, PictureError, Shader, SurfaceError, error_map, level_map, save_png};
+use lodray::method::{Method, SurfaceHit, reference};
+use lodray::picture::{Frame, FullResolution, PictureError, Sampled, Shader, SurfaceError, error_map, level_map, render, save_png};
 use lodray::rays::{Camera, ModelSpace, Sight};
 use lodray::report::error_time::{Appearance, Converged, Costs, Energy, PictureEntry, Point, SceneEntry, Shift, TraceGrid, ViewEntry};
 use lodray::report::inspect;
@@ -36,6 +37,26 @@ pub struct Bench<'a> {
     methods: Vec<(Chosen, Box<dyn Method + 'a>)>,
     reference: Box<dyn Method + 'a>,
     surface: FinestSurface,
+}
+
+/// A setting's picture, and what it cost.
+struct Seen {
+    picture: RgbImage,
+    luminance: Vec<f32>,
+    /// Against full resolution with the same samples.
+    errors: PictureError,
+    /// On every machine.
+    results: Vec<SimResult>,
+    /// If there was one sample a pixel.
+    surface: Option<Surface>,
+}
+
+/// A setting's surface.
+#[derive(Clone)]
+struct Surface {
+    errors: SurfaceError,
+    /// Of the setting by default, if it has levels.
+    frame: Option<Frame>,
 }
 
 /// A setting with its picture's errors still to be compared with the converged picture.
@@ -63,38 +84,46 @@ impl<'a> Bench<'a> {
     /// Measures a view; pictures go to `folder`, their names begin with `prefix`.
     pub fn view(&self, view: &ViewJob, folder: &Path, prefix: &str) -> anyhow::Result<Measured> {
         let camera = view.camera(&self.space)?;
-        let truth = shoot(&*self.reference, self.scene, &self.space, &camera, 1.0, "full resolution").frame;
+        let subject = self.subject();
+        let truth = shoot_with(&*self.reference, &subject.shader, &self.space, [&camera; 2], f64::INFINITY, "full resolution");
         let settings = self.settings(&camera)?;
-        let geometry = self.geometry(&camera, &truth, &settings);
+        let mut surfaces = Vec::new();
         let mut book = PictureBook { folder, prefix, entries: Vec::new() };
         let (mut points, mut shift, mut unseen) = (Vec::new(), Vec::new(), Vec::new());
-        let subject = self.subject();
         let ppd = self.plan.measure.pixels_per_degree;
         let kept = self.plan.sides.iter().copied().filter(|&side| side <= MOST_KEPT).max();
         for &side in &self.plan.sides {
             let camera = camera.with_samples(side)?;
             let samples = side * side;
-            let full = subject.draw(&*self.reference, &camera, f64::INFINITY, "full resolution").image();
+            let full = match side {
+                1 => truth.image.clone(),
+                _ => subject.draw(&*self.reference, &camera, f64::INFINITY, "full resolution").image(),
+            };
             let shifted = subject.draw(&*self.reference, &camera.shifted([0.5, 0.5]), f64::INFINITY, "shifted by half a pixel").image();
             shift.push(Shift { samples, picture: PictureError::of(&shifted, &full, ppd) });
             if kept == Some(side) {
                 book.add(&full, FULL, "full resolution", samples, "image")?;
             }
-            for ((at, setting), (geometry, frame)) in settings.iter().zip(&geometry) {
-                let (_, method) = &self.methods[*at];
-                let words = format!("{} {}", setting.chosen.method.name, setting.words);
-                let drawn = subject.draw(&**method, &camera, setting.chosen.delta(), &words);
-                let picture = drawn.image();
+            let bar = progress(settings.len() as u64, "settings");
+            let seen = at_once(&settings, |setting| {
+                let seen = self.see(setting, &camera, &full, &truth.frame);
+                bar.inc(1);
+                seen
+            });
+            bar.finish_and_clear();
+            let seen = seen.into_iter().collect::<anyhow::Result<Vec<_>>>()?;
+            if surfaces.is_empty() {
+                surfaces = self.surfaces(&settings, &seen, &camera.with_samples(1)?, &truth.frame);
+            }
+            for (((_, setting), surface), Seen { picture, luminance, errors, results, .. }) in settings.iter().zip(&surfaces).zip(seen) {
                 if kept == Some(side) && setting.is_default {
                     let name = setting.chosen.method.name;
                     book.add(&picture, name, &setting.words, samples, "image")?;
                     book.add(&error_map(&picture, &full), name, &setting.words, samples, "error")?;
-                    if let Some(frame) = frame {
+                    if let Some(frame) = &surface.frame {
                         book.add(&level_map(frame), name, &setting.words, 1, "levels")?;
                     }
                 }
-                let errors = PictureError::of(&picture, &full, ppd);
-                let results = self.simulate(setting, &**method, &camera)?;
                 let facts = &results.first().context("no machine")?.setup.method;
                 points.push(Point {
                     view: 0,
@@ -105,14 +134,14 @@ impl<'a> Bench<'a> {
                     samples,
                     bytes: facts.bytes,
                     bytes_per_triangle: facts.bytes as f64 / self.facts.finest_triangles as f64,
-                    geometry: *geometry,
+                    geometry: surface.errors,
                     picture: errors,
                     viewed: None,
                     appearance: None,
                     costs: results.iter().enumerate().map(|(machine, result)| costs(machine, result)).collect(),
                 });
                 if self.plan.measure.most_samples > 0 {
-                    unseen.push(Unseen { point: points.len() - 1, picture, luminance: luminance(&drawn) });
+                    unseen.push(Unseen { point: points.len() - 1, picture, luminance });
                 }
             }
         }
@@ -147,23 +176,52 @@ impl<'a> Bench<'a> {
         Ok(self.methods.iter().enumerate().map(of).collect::<anyhow::Result<Vec<_>>>()?.into_iter().flatten().collect())
     }
 
-    /// Errors of each setting's surface, by one ray a pixel: more would see the same. Of settings by default the frame, too.
-    fn geometry(&self, camera: &Camera, truth: &Frame, settings: &[(usize, Setting)]) -> Vec<(SurfaceError, Option<Frame>)> {
-        let full = FullResolution { scene: self.scene, space: &self.space, surface: &self.surface, frame: truth };
+    /// Traces a setting once: its steps go to the machines, and what its rays meet makes the picture, whose errors are against `full`; with one ray a pixel,
+    /// also the surface, whose errors are against `truth`.
+    fn see(&self, of: &(usize, Setting), camera: &Camera, full: &RgbImage, truth: &Frame) -> anyhow::Result<Seen> {
+        let (at, setting) = of;
+        let method = &*self.methods[*at].1;
+        let pass = Pass { scene: self.scene, space: &self.space, chosen: &setting.chosen, method, rays: PassRays::Camera(*camera) };
+        let shader = self.subject().shader;
+        let mut drawn = Sampled::new(camera);
+        let mut pixels = if camera.samples == 1 { vec![None; drawn.pixels.len()] } else { Vec::new() };
+        let outcomes = pass.watched(&self.plan.jobs.targets, &mut |traced| {
+            drawn.add(&shader, camera, &traced.hits);
+            if camera.samples == 1 {
+                traced.hits.iter().for_each(|of| pixels[of.ray as usize] = of.hit); // a pixel of the picture
+            }
+        })?;
+        let picture = drawn.image();
+        Ok(Seen {
+            luminance: if self.plan.measure.most_samples > 0 { luminance(&drawn) } else { Vec::new() },
+            errors: PictureError::of(&picture, full, self.plan.measure.pixels_per_degree),
+            picture,
+            results: outcomes.into_iter().map(|outcome| Ok(outcome?.0)).collect::<anyhow::Result<_>>()?,
+            surface: (camera.samples == 1).then(|| self.surface(setting, pixels, camera, truth)),
+        })
+    }
+
+    /// The surfaces of all settings, by one ray a pixel, as more would see the same: those that were seen with one, or traced for it.
+    fn surfaces(&self, settings: &[(usize, Setting)], seen: &[Seen], camera: &Camera, truth: &Frame) -> Vec<Surface> {
+        let seen: Vec<_> = seen.iter().filter_map(|seen| seen.surface.clone()).collect();
+        if seen.len() == settings.len() {
+            return seen;
+        }
         let of = |(at, setting): &(usize, Setting)| {
-            let shot = shoot(&*self.methods[*at].1, self.scene, &self.space, camera, setting.chosen.delta(), "surface");
-            let errors = SurfaceError::of(&shot.frame, &full, camera, self.plan.measure.stride);
-            // Without a knob every triangle is of the finest level.
-            let has_levels = setting.is_default && setting.chosen.method.error.is_some();
-            (errors, has_levels.then_some(shot.frame))
+            let bar = progress(u64::from(camera.height), "surface");
+            let frame = render(&*self.methods[*at].1, &self.space, camera, setting.chosen.delta(), &|| bar.inc(1)).0;
+            bar.finish_and_clear();
+            self.surface(setting, frame.pixels, camera, truth)
         };
         settings.iter().map(of).collect()
     }
 
-    fn simulate(&self, setting: &Setting, method: &dyn Method, camera: &Camera) -> anyhow::Result<Vec<SimResult>> {
-        let rays = PassRays::Camera(*camera);
-        let pass = Pass { scene: self.scene, space: &self.space, chosen: &setting.chosen, method, rays };
-        pass.run(&self.plan.jobs.targets)?.into_iter().map(|outcome| Ok(outcome?.0)).collect()
+    fn surface(&self, setting: &Setting, pixels: Vec<Option<SurfaceHit>>, camera: &Camera, truth: &Frame) -> Surface {
+        let full = FullResolution { scene: self.scene, space: &self.space, surface: &self.surface, pixels: &truth.pixels };
+        let errors = SurfaceError::of(&pixels, &full, camera, self.plan.measure.stride);
+        // Without a knob every triangle is of the finest level.
+        let has_levels = setting.is_default && setting.chosen.method.error.is_some();
+        Surface { errors, frame: has_levels.then_some(Frame { width: camera.width, height: camera.height, pixels }) }
     }
 
     /// Draws full resolution with more and more samples until its standard error is a quarter of the smallest error, or there are no more; then says how
