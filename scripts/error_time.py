@@ -2,20 +2,24 @@
 """Fills scripts/errors/document.md with what error-time measured: writes docs/error-time.md. Argument: the folder with the runs `knobs`, `units` and `samples`."""
 
 import json
+import math
 import re
+import shutil
 import sys
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parent.parent
 TEMPLATE = ROOT / "scripts" / "errors" / "document.md"
 OURS = "lod"
+DIAGRAM = "surface-p99-time"
 
 
 class Run:
     """A document of error-time."""
 
     def __init__(self, folder, name):
-        path = folder / name / "error-time.json"
+        self.folder = folder / name
+        path = self.folder / "error-time.json"
         if not path.is_file():
             sys.exit(f"error_time: no {path}")
         self.data = json.loads(path.read_text())
@@ -83,36 +87,97 @@ def summary(run, error, levels, compute, cost):
     return table(["error", "method", "ours is cheaper in", "least ratio", "median", "largest"], rows)
 
 
-def viewed(run):
-    """FLIP against the converged picture: full resolution, and ours at delta 1, by samples."""
+def near(run, view, method, samples):
+    """The setting of a method that is nearest to ours at delta 1 in its surface's error."""
+    def off(point):
+        surface = point["geometry"]["surface"]
+        return surface["percentile_99"] if surface else 0.0
+
+    ours = run.points(view=view, method=OURS, setting="delta 1", samples=samples)
+    own = off(ours[0]) if ours else 0.0
+    found = run.points(view=view, method=method, samples=samples)
+    return min(found, key=lambda p: abs(math.log((off(p) + 1e-6) / (own + 1e-6))), default=None)
+
+
+def compared(run, samples, view):
+    """Full resolution, ours at delta 1 and at delta 4, and the discrete level that is as far off as ours at delta 1."""
+    one = lambda method, setting: next(iter(run.points(view=view, method=method, setting=setting, samples=samples)), None)
+    return [one("bvh", "full resolution"), one(OURS, "delta 1"), one(OURS, "delta 4"), near(run, view, "discrete", samples)]
+
+
+COMPARED = ["full", "delta 1", "delta 4", "discrete"]
+
+
+def by_samples(run, value):
+    """One row a view: `value` of what is compared, for all numbers of samples."""
     counts = run.data["options"]["samples"]
     rows = []
     for view in range(len(run.views)):
-        cells = [run.scene(view), run.place(view)]
-        for method, setting in [("bvh", "full resolution"), (OURS, "delta 1"), (OURS, "delta 4")]:
-            for samples in counts:
-                found = run.points(view=view, method=method, setting=setting, samples=samples)
-                cells.append(f"{found[0]['viewed']['flip']['mean']:.4f}" if found and found[0].get("viewed") else "-")
-        rows.append(cells)
-    head = [f"{name}, {n}" for name in ["full", "delta 1", "delta 4"] for n in counts]
-    return table(["scene", "radii"] + head, rows)
+        points = [compared(run, samples, view) for samples in counts]
+        rows.append([run.scene(view), run.place(view)] + [value(of[k]) if of[k] else "-" for k in range(len(COMPARED)) for of in points])
+    return table(["scene", "radii"] + [f"{name}, {n}" for name in COMPARED for n in counts], rows)
 
 
-def brightness(run):
-    """Mean luminance over the converged picture's, by samples."""
-    counts = run.data["options"]["samples"]
+def flip(point):
+    return f"{point['viewed']['flip']['mean']:.3f}" if point.get("viewed") else "-"
+
+
+def brightness(point):
+    return f"{100 * (point['appearance']['mean_ratio'] - 1):+.1f} %" if point.get("appearance") else "-"
+
+
+def few(run):
+    """Whether ours is nearer to the converged picture than full resolution with as many samples, by samples and delta."""
     rows = []
-    for view in range(len(run.views)):
-        cells = [run.scene(view), run.place(view)]
-        for method, setting in [("bvh", "full resolution"), (OURS, "delta 1"), ("discrete", None)]:
-            for samples in counts:
-                found = run.points(view=view, method=method, samples=samples)
-                found = [p for p in found if setting in (None, p["setting"]) and p.get("appearance")]
-                # Of discrete levels the one that is nearest in geometry to ours at delta 1.
-                cells.append(f"{100 * (found[0]['appearance']['mean_ratio'] - 1):+.1f} %" if found else "-")
-        rows.append(cells)
-    head = [f"{name}, {n}" for name in ["full", "delta 1", "coarsest level"] for n in counts]
-    return table(["scene", "radii"] + head, rows)
+    deltas = sorted({p["setting"] for p in run.points(method=OURS)}, key=lambda s: float(s.split()[1]))
+    for samples in run.data["options"]["samples"]:
+        for setting in deltas:
+            pairs = []
+            for view in range(len(run.views)):
+                ours = run.points(view=view, method=OURS, setting=setting, samples=samples)
+                full = run.points(view=view, method="bvh", samples=samples)
+                if ours and full and ours[0].get("viewed"):
+                    pairs.append((ours[0], full[0]))
+            errors = sorted(o["viewed"]["flip"]["mean"] / f["viewed"]["flip"]["mean"] for o, f in pairs if f["viewed"]["flip"]["mean"] > 0)
+            times = sorted(f["costs"][0]["milliseconds"] / o["costs"][0]["milliseconds"] for o, f in pairs)
+            if errors:
+                rows.append([samples, setting, f"{sum(e < 1 for e in errors)} of {len(errors)}"] + [f"{e:.2f}" for e in (errors[0], errors[len(errors) // 2], errors[-1])] + [shown(times[len(times) // 2])])
+    return table(["samples", "setting", "nearer than full resolution in", "least FLIP over its", "median", "largest", "its time over ours, median"], rows)
+
+
+def converged(run):
+    """Samples and standard error of the converged pictures."""
+    of = [v["converged"] for v in run.views if v.get("converged")]
+    if not of:
+        return "none"
+    counts = sorted({c["samples"] for c in of})
+    return f"{' or '.join(map(str, counts))} samples a pixel, standard error {min(c['standard_error'] for c in of):.2f} to {max(c['standard_error'] for c in of):.2f} of 255"
+
+
+def structures(run, units):
+    """Memory and area of each method."""
+    rows = []
+    for method in [m["name"] for m in run.data["methods"]]:
+        of = run.points(method=method)
+        bytes_each = sorted(p["bytes_per_triangle"] for p in of)
+        gates = next((c["unit_gates"] for p in units.points(method=method) for c in p["costs"] if c.get("unit_gates")), None)
+        rows.append([method, f"{bytes_each[0]:.0f} to {bytes_each[-1]:.0f}" if f"{bytes_each[0]:.0f}" != f"{bytes_each[-1]:.0f}" else f"{bytes_each[0]:.0f}", f"{gates / 1e6:.2f}" if gates else "-"])
+    contexts = units.data["machines"][0]["description"]["units"]["contexts"]
+    return table(["method", "bytes for each finest triangle", f"unit with {contexts} contexts, million gate equivalents"], rows)
+
+
+def plain(name):
+    return "-".join(part for part in re.sub(r"[^A-Za-z0-9.]", "-", name).split("-") if part)
+
+
+def pictures(run):
+    """The diagrams of all scenes, copied into docs/images."""
+    words = []
+    for scene in run.data["scenes"]:
+        name = plain(scene["name"])
+        shutil.copy(run.folder / f"{name}-{DIAGRAM}.svg", ROOT / "docs" / "images" / f"error-time-{name}.svg")
+        words.append(f"![{scene['name']}: error against time](images/error-time-{name}.svg)")
+    return "\n\n".join(words)
 
 
 def main():
@@ -120,13 +185,22 @@ def main():
     knobs, units, samples = (Run(folder, name) for name in ["knobs", "units", "samples"])
     error = "surface-p99"
     values = {
+        "pictures": pictures(knobs),
         "half": at_level(knobs, error, 0.5, "free"),
         "summary_time": summary(knobs, error, [0.25, 0.5, 1.0, 2.0], "free", "time"),
         "summary_energy": summary(knobs, error, [0.25, 0.5, 1.0, 2.0], "free", "energy"),
+        "summary_lines": summary(knobs, error, [0.25, 0.5, 1.0, 2.0], "free", "dram-lines"),
+        "summary_requests": summary(knobs, error, [0.25, 0.5, 1.0, 2.0], "free", "l1-requests"),
         "summary_flip": summary(knobs, "flip-mean", [0.01, 0.02, 0.05, 0.1], "free", "time"),
         "half_units": at_level(units, error, 0.5, "units"),
-        "viewed": viewed(samples),
-        "brightness": brightness(samples),
+        "structures": structures(knobs, units),
+        "viewed": by_samples(samples, flip),
+        "few": few(samples),
+        "brightness": by_samples(samples, brightness),
+        "converged": converged(samples),
+        "size_knobs": "x".join(map(str, knobs.data["options"]["size"])),
+        "size_units": "x".join(map(str, units.data["options"]["size"])),
+        "size_samples": "x".join(map(str, samples.data["options"]["size"])),
         "program": knobs.data["program"],
     }
     text = TEMPLATE.read_text()

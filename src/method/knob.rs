@@ -111,7 +111,7 @@ pub static DELTA: Knob = Knob {
 pub fn quality(value: &str) -> Result<f64, String> {
     match value.parse::<f64>() {
         Ok(v) if v >= 0.0 => Ok(v),
-        _ => Err(format!("'{value}' is not a quality: 0 (base mesh) to inf (full detail), 1 is one pixel")),
+        _ => Err(format!("'{value}' is not a quality: 0 (base mesh) to inf (full detail), 1 the usual")),
     }
 }
 

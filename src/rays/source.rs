@@ -28,7 +28,7 @@ pub trait RaySource: Sync {
 /// What a method may choose by once for all rays of a frame.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Sight {
-    /// Quality of the level of detail: 0 the base mesh, infinite full detail, 1 one pixel.
+    /// Quality of the level of detail: 0 the base mesh, infinite full detail; what it promises: `docs/error-bound.md`.
     pub delta: f64,
     /// A radius that no ray's cone falls below within the model's box, in units of the model.
     pub least_radius: f64,

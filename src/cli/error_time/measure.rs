@@ -3,7 +3,7 @@
 use super::draw::{Converging, Subject, difference, luminance};
 use super::host::{Timed, host_times};
 use super::plan::{Plan, Setting};
-use super::row::Measured;
+use super::row::{BuildTime, Measured};
 use super::workers::at_once;
 use crate::cli::cache::Cache;
 use crate::cli::method::Chosen;
@@ -22,6 +22,7 @@ use lodray::report::error_time::{Appearance, Converged, Costs, Energy, PictureEn
 use lodray::report::inspect;
 use lodray::report::result::SimResult;
 use std::path::Path;
+use std::time::Instant;
 
 /// The name of full resolution among pictures.
 const FULL: &str = "full";
@@ -35,6 +36,7 @@ pub struct Bench<'a> {
     space: ModelSpace,
     facts: SceneEntry,
     methods: Vec<(Chosen, Box<dyn Method + 'a>)>,
+    builds: Vec<BuildTime>,
     reference: Box<dyn Method + 'a>,
     surface: FinestSurface,
 }
@@ -69,13 +71,21 @@ struct Unseen {
 impl<'a> Bench<'a> {
     /// Builds what the methods need.
     pub fn new(plan: &'a Plan, scene: &'a Scene, facts: SceneEntry, cache: &Cache) -> anyhow::Result<Self> {
-        let make = |chosen: &Chosen| Ok((chosen.clone(), chosen.make(scene, cache)?.0));
+        let (mut methods, mut builds) = (Vec::new(), Vec::new());
+        for chosen in &plan.jobs.methods {
+            let begun = Instant::now();
+            let (method, from_cache) = chosen.make(scene, cache)?;
+            let seconds = begun.elapsed().as_secs_f64();
+            builds.push(BuildTime { method: chosen.method.name.to_owned(), seconds, from_cache });
+            methods.push((chosen.clone(), method));
+        }
         Ok(Self {
             plan,
             scene,
             space: ModelSpace::of(scene),
             facts,
-            methods: plan.jobs.methods.iter().map(make).collect::<anyhow::Result<_>>()?,
+            methods,
+            builds,
             reference: Chosen::plain(&reference::METHOD).make(scene, cache)?.0,
             surface: busy("full-resolution surface", || FinestSurface::new(&scene.decode())),
         })
@@ -160,6 +170,7 @@ impl<'a> Bench<'a> {
             pictures: book.entries,
             traces: self.traces(&camera, &settings),
             host: self.host(&camera, &settings),
+            builds: self.builds.clone(),
         })
     }
 
@@ -303,6 +314,7 @@ fn costs(machine: usize, result: &SimResult) -> Costs {
         dram_lines: result.dram.reads + result.dram.writes,
         dram_bytes: (result.traffic.bytes_per_ray.dram * result.rays as f64).round() as u64,
         l1_requests_per_ray: result.accesses_per_ray,
+        unit_gates: None,
     }
 }
 

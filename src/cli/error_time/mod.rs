@@ -15,9 +15,9 @@ use super::output::{busy, check_target, print_line, progress, remark, write_file
 use super::report::{save, this_run, titled};
 use super::sweep::SceneJobs;
 use lodray::format::Scene;
-use lodray::method::lod;
+use lodray::method::{find, lod};
 use lodray::report::diagram::{csv, diagrams, latex};
-use lodray::report::error_time::{ErrorTime, KIND, MethodEntry, Options, SceneEntry, USUAL_COSTS, USUAL_ERRORS, VERSION, equal_errors};
+use lodray::report::error_time::{ErrorTime, KIND, MethodEntry, Options, SceneEntry, USUAL_COSTS, USUAL_ERRORS, VERSION, equal_errors, unit_gates};
 use lodray::report::page::{Documents, PICTURE_BYTES, embed};
 use lodray::report::results_version;
 use measure::Bench;
@@ -43,6 +43,7 @@ const PAGE: &str = "report.html";
 struct HostTimes<'a> {
     scene: &'a str,
     distance: f64,
+    builds: &'a [row::BuildTime],
     settings: &'a [row::HostTime],
 }
 
@@ -150,8 +151,12 @@ fn document(plan: &Plan, measured: &[&Measured]) -> ErrorTime {
     }
     let machines = plan.machines();
     // A target is a machine with a way to compute; the same machine is listed once.
-    for costs in points.iter_mut().flat_map(|point| &mut point.costs) {
-        costs.machine = plan.machine_of(costs.machine, &machines);
+    for point in &mut points {
+        let unit = find(&point.method).and_then(|method| method.unit);
+        for costs in &mut point.costs {
+            costs.machine = plan.machine_of(costs.machine, &machines);
+            costs.unit_gates = unit.zip(machines.get(costs.machine)).and_then(|(unit, machine)| unit_gates(unit, &machine.description.units.config()));
+        }
     }
     let method = |chosen: &super::method::Chosen| MethodEntry {
         name: chosen.method.name.to_owned(),
@@ -189,7 +194,8 @@ fn write(folder: &Path, document: &ErrorTime, measured: &[&Measured]) -> anyhow:
     let drawn = busy("diagrams", || diagrams(document, &USUAL_ERRORS, &USUAL_COSTS))?;
     drawn.iter().try_for_each(|(name, bytes)| write_file(&folder.join(name), bytes))?;
     let times = measured.iter().filter(|of| !of.host.is_empty());
-    let times: Vec<_> = times.map(|of| HostTimes { scene: &of.scene.name, distance: of.view.distance, settings: &of.host }).collect();
+    let times = times.map(|of| HostTimes { scene: &of.scene.name, distance: of.view.distance, builds: &of.builds, settings: &of.host });
+    let times: Vec<_> = times.collect();
     write_file(&folder.join(HOST), serde_json::to_string_pretty(&times)? + "\n")
 }
 

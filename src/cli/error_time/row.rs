@@ -30,6 +30,21 @@ pub struct Measured {
     /// Times on the host, which differ from run to run.
     #[serde(default)]
     pub host: Vec<HostTime>,
+    /// The same of what methods build.
+    #[serde(default)]
+    pub builds: Vec<BuildTime>,
+}
+
+/// Time to build what a method needs beyond the scene's file, on all threads.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct BuildTime {
+    /// Name of the method.
+    pub method: String,
+    /// How long it took.
+    pub seconds: f64,
+    /// It was read from the cache.
+    pub from_cache: bool,
 }
 
 /// Time of a setting's rays on the host: one thread, no simulation.

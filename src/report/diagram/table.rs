@@ -16,7 +16,7 @@ pub fn csv(document: &ErrorTime) -> String {
             cells.extend([point.setting.clone(), point.samples.to_string(), document.machines[costs.machine].title()]);
             cells.extend([costs.compute.clone(), costs.energy.unit.clone()]);
             cells.extend(ERRORS.iter().map(|error| (error.of)(point).map_or_else(String::new, |v| v.to_string())));
-            cells.extend(COSTS.iter().map(|cost| (cost.of)(point, costs).to_string()));
+            cells.extend(COSTS.iter().map(|cost| (cost.of)(point, costs).map_or_else(String::new, |v| v.to_string())));
             text += &(cells.iter().map(|cell| quoted(cell)).collect::<Vec<_>>().join(",") + "\n");
         }
     }

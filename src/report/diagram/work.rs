@@ -62,7 +62,7 @@ impl<'a> Of<'a> {
     /// An error against a cost, a panel for each distance; none where it was not measured.
     pub fn work(&self, error: &ErrorMeasure, cost: &CostMeasure) -> Result<Option<String>, DiagramFault> {
         let dot = |(point, view, costs): (&'a Point, &'a ViewEntry, &'a Costs)| {
-            Some(Dot { point, view, x: (cost.of)(point, costs), y: (error.of)(point)? }).filter(|dot| dot.x > 0.0)
+            Some(Dot { point, view, x: (cost.of)(point, costs)?, y: (error.of)(point)? }).filter(|dot| dot.x > 0.0)
         };
         let dots: Vec<_> = self.points().into_iter().filter_map(dot).collect();
         let mut distances: Vec<f64> = dots.iter().map(|dot| dot.view.distance).collect();
@@ -79,7 +79,7 @@ impl<'a> Of<'a> {
                 methods.push(&dot.point.method);
             }
         }
-        let size = (PANEL.0 * columns as u32, 54 + KEYS + PANEL.1 * rows as u32); // a few panels
+        let size = (PANEL.0 * columns.max(2) as u32, 54 + KEYS + PANEL.1 * rows as u32); // a few panels
         let title = format!("{}, against {}", capital(error.name), without_unit(cost.name));
         let shifts = dots.iter().filter_map(|dot| error.of_shift(dot.view, dot.point.samples));
         let least = ROUNDING * dots.iter().map(|dot| dot.y).fold(0.0, f64::max);
@@ -156,7 +156,7 @@ impl<'a> Of<'a> {
 
     /// A cost by distance, with the gain over the full-resolution BVH.
     pub fn costs_by_distance(&self, cost: &CostMeasure) -> Result<Option<String>, DiagramFault> {
-        let value = |point: &Point, costs: &Costs| Some((cost.of)(point, costs));
+        let value = |point: &Point, costs: &Costs| (cost.of)(point, costs);
         self.by_distance(&self.cost_name(cost), &value, true)
     }
 

@@ -206,6 +206,9 @@ pub struct Costs {
     pub dram_bytes: u64,
     /// Lines asked of the L1s for each ray.
     pub l1_requests_per_ray: f64,
+    /// Area of a traversal unit for the method, in gate equivalents; absent where no area is known.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub unit_gates: Option<f64>,
 }
 
 /// Energy by part, all of it in `unit`.

@@ -95,7 +95,7 @@ fn compared(
 ) -> Vec<EqualError> {
     let sweep = |method: &str| -> Vec<Pair> {
         let of = points.iter().filter(|point| point.method == method);
-        of.filter_map(|point| Some([(error.of)(point)?, (cost.of)(point, point.costs.get(at)?)])).collect()
+        of.filter_map(|point| Some([(error.of)(point)?, (cost.of)(point, point.costs.get(at)?)?])).collect()
     };
     let own = sweep(ours);
     let others: Vec<_> = document.methods.iter().filter(|m| m.name != ours).map(|m| (&m.name, sweep(&m.name))).collect();

@@ -23,8 +23,8 @@ pub struct CostMeasure {
     pub id: &'static str,
     /// Its name on axes; energies have their unit from the figures.
     pub name: &'static str,
-    /// Its value.
-    pub of: fn(&Point, &Costs) -> f64,
+    /// Its value, if there is one.
+    pub of: fn(&Point, &Costs) -> Option<f64>,
     /// It is an energy.
     pub is_energy: bool,
 }
@@ -101,22 +101,23 @@ pub const ERRORS: [ErrorMeasure; 21] = [
 /// One of each kind.
 pub const USUAL_ERRORS: [ErrorMeasure; 6] = [SURFACE[0], SURFACE[1], NORMAL[1], RMSE, FLIP, VIEWED_FLIP];
 
-const fn cost(id: &'static str, name: &'static str, of: fn(&Point, &Costs) -> f64) -> CostMeasure {
+const fn cost(id: &'static str, name: &'static str, of: fn(&Point, &Costs) -> Option<f64>) -> CostMeasure {
     CostMeasure { id, name, of, is_energy: false }
 }
 
-const TIME: CostMeasure = cost("time", "time, ms", |_, c| c.milliseconds);
-const ENERGY: CostMeasure = CostMeasure { id: "energy", name: "energy", of: |_, c| c.energy.total, is_energy: true };
-const LINES: CostMeasure = cost("dram-lines", "DRAM lines", |_, c| c.dram_lines as f64);
+const TIME: CostMeasure = cost("time", "time, ms", |_, c| Some(c.milliseconds));
+const ENERGY: CostMeasure = CostMeasure { id: "energy", name: "energy", of: |_, c| Some(c.energy.total), is_energy: true };
+const LINES: CostMeasure = cost("dram-lines", "DRAM lines", |_, c| Some(c.dram_lines as f64));
 
 /// All costs.
-pub const COSTS: [CostMeasure; 6] = [
+pub const COSTS: [CostMeasure; 7] = [
     TIME,
     ENERGY,
     LINES,
-    cost("cycles", "cycles", |_, c| c.cycles as f64),
-    cost("l1-requests", "L1 requests for each ray", |_, c| c.l1_requests_per_ray),
-    cost("bytes-per-triangle", "bytes for each finest triangle", |p, _| p.bytes_per_triangle),
+    cost("cycles", "cycles", |_, c| Some(c.cycles as f64)),
+    cost("l1-requests", "L1 requests for each ray", |_, c| Some(c.l1_requests_per_ray)),
+    cost("bytes-per-triangle", "bytes for each finest triangle", |p, _| Some(p.bytes_per_triangle)),
+    cost("unit-gates", "area of a traversal unit, gate equivalents", |_, c| c.unit_gates),
 ];
 
 /// Those that one asks for first.

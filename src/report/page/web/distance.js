@@ -1,28 +1,36 @@
 // Cost and error by distance, and the energy's and the traffic's parts.
 
+const QUALITY_1 = /(^|\W)delta 1($|[^\d.])/;
+/** At each place the setting whose error is the nearest to that of ours there: one of all places would compare other errors at each. */
+const NEAREST = "nearest to ours in error";
+
 /** The setting of each method that these sections show. */
 function settingsOf(points, chosen) {
-  const methods = unique(points.map((p) => p.method));
-  return new Map(methods.map((method) => {
-    const settings = unique(points.filter((p) => p.method === method).map((p) => p.setting));
-    // By default quality 1, as in the paper, or what comes nearest to its error.
-    const usual = settings.find((s) => QUALITY_1.test(s)) ?? nearestSetting(points, method) ?? settings[0];
+  return new Map(unique(points.map((p) => p.method)).map((method) => {
+    const own = unique(points.filter((p) => p.method === method).map((p) => p.setting));
+    const settings = own.length > 1 && !isOurs(method) && pairedError(points) ? [NEAREST, ...own] : own;
+    // By default quality 1, as in the paper.
+    const usual = settings[0] === NEAREST ? NEAREST : settings.find((s) => QUALITY_1.test(s)) ?? settings[0];
     return [method, { settings, setting: settings.includes(chosen[method]) ? chosen[method] : usual }];
   }));
 }
 
-const QUALITY_1 = /(^|\W)delta 1($|[^\d.])/;
+/** The error by which settings are paired: the first that ours has. */
+const pairedError = (points) => errorMeasures().find((m) => points.some((p) => isOurs(p.method) && errorOf(p, m) > 0));
 
-/** The setting of a method whose error is the nearest to ours at quality 1, over all views. */
-function nearestSetting(points, method) {
-  const measure = errorMeasures().find((m) => points.some((p) => isOurs(p.method) && errorOf(p, m) > 0));
-  const ours = points.filter((p) => isOurs(p.method) && QUALITY_1.test(p.setting));
+/** The points of the chosen settings. */
+function shownOf(points, settings) {
+  const error = pairedError(points);
+  const isShown = (p) => p.setting === settings.get(p.method).setting;
+  const ours = points.filter((p) => isOurs(p.method) && isShown(p));
   const off = (p) => {
-    const same = measure && ours.find((q) => place(q) === place(p) && q.samples === p.samples);
-    return same && errorOf(p, measure) > 0 && errorOf(same, measure) > 0 ? Math.abs(Math.log(errorOf(p, measure) / errorOf(same, measure))) : null;
+    const same = ours.find((q) => place(q) === place(p) && q.samples === p.samples);
+    const pair = same && [p, same].map((q) => errorOf(q, error));
+    return pair?.every((v) => v > 0) ? Math.abs(Math.log(pair[0] / pair[1])) : Infinity;
   };
-  const settings = d3.rollups(points.filter((p) => p.method === method && off(p) != null), (of) => [of.length, d3.mean(of, off)], (p) => p.setting);
-  return settings.sort(([, [n, a]], [, [m, b]]) => m - n || a - b)[0]?.[0];
+  const paired = points.filter((p) => settings.get(p.method).setting === NEAREST);
+  const nearest = d3.rollups(paired, (of) => d3.least(of, off), (p) => p.method, (p) => place(p), (p) => p.samples).flatMap(([, of]) => of.flatMap(([, of]) => of.map(([, p]) => p)));
+  return [...points.filter(isShown), ...nearest];
 }
 
 /** The full-resolution BVH of the same view. */
@@ -38,7 +46,7 @@ function distanceSection(section, state) {
     const cost = costs.find((c) => c.id === own.cost) ?? costs[0];
     const errors = errorMeasures().filter((m) => points.some((p) => errorOf(p, m) != null));
     const error = errors.find((m) => m.id === own.error) ?? errors[0];
-    const shown = points.filter((p) => p.setting === chosen.get(p.method).setting && p.distance != null);
+    const shown = shownOf(points, chosen).filter((p) => p.distance != null);
     const unit = costUnit(cost, points, state.machine);
     const set = (key) => (value) => ((own[key] = value), draw());
     const controls = h(
@@ -73,7 +81,7 @@ function distanceSection(section, state) {
       ),
     );
   };
-  section.append(h("p", {}, "One setting of each method, all distances. A gain above 1 says by how much the method is cheaper than the quad-BVH over the full-resolution mesh."), body);
+  section.append(h("p", {}, "One setting of each method, all distances; where a method chooses its setting by itself, the one whose error is the nearest to ours (the tip names it). A gain above 1 says by how much the method is cheaper than the quad-BVH over the full-resolution mesh."), body);
   state.onChange(draw);
 }
 
@@ -133,7 +141,7 @@ function partsSection(section, state) {
   const draw = () => {
     const points = state.points();
     const chosen = settingsOf(points, state.settings);
-    const shown = points.filter((p) => p.setting === chosen.get(p.method).setting && costAt(p, state.machine));
+    const shown = shownOf(points, chosen).filter((p) => costAt(p, state.machine));
     const unit = shown.map((p) => costAt(p, state.machine).energy.unit)[0] ?? "";
     const places = unique(shown.map(place));
     const parts = page.palette.parts.map((p) => p.name);

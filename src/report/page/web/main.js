@@ -70,7 +70,7 @@ function glance(state) {
     if (errors.length) cards.push([`${num(d3.max(errors), 2)} pixels`, `off the surface at the 99th percentile, the most of ${count(errors.length, "view")}`]);
     if (page.error_time?.equal_error.length) {
       const doc = page.error_time;
-      const half = doc.equal_error.filter((e) => doc.scenes[doc.views[e.view].scene].name === state.scene && e.error.startsWith("surface") && e.level === 0.5 && e.cost === "milliseconds");
+      const half = doc.equal_error.filter((e) => doc.scenes[doc.views[e.view].scene].name === state.scene && e.error === "surface-p99" && e.level === 0.5 && e.cost === "time" && state.machine === target([doc.machines[e.machine].label, ...doc.machines[e.machine].set].join(" "), e.compute));
       const ratios = half.flatMap((e) => e.methods.filter((m) => m.method === "bvh" && m.ratio != null).map((m) => m.ratio));
       if (ratios.length) cards.push([`${ratios.filter((r) => r > 1).length} of ${ratios.length}`, "views in which ours takes less time than the full-resolution BVH, at half a pixel of error"]);
     }

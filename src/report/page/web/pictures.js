@@ -42,7 +42,8 @@ function picturesSection(section, state) {
       choice("Left picture", options, own.a, (value) => ((own.a = value), draw())),
       choice("Right picture", options, own.b, (value) => ((own.b = value), draw())),
     );
-    own.pixel ??= [Math.floor(view.size[0] / 2), Math.floor(view.size[1] / 2)];
+    const middle = [Math.floor(view.size[0] / 2), Math.floor(view.size[1] / 2)];
+    own.pixel ??= middle;
     own.pixel = own.pixel.map((v, k) => Math.min(v, view.size[k] - 1));
     const [under, over] = [h("img", { src: urlOf(b), alt: `${pictureName(b)}, ${view.scene.name} from ${num(view.distance)} radii`, draggable: "false" }), h("img", { src: urlOf(a), alt: `${pictureName(a)}, ${view.scene.name} from ${num(view.distance)} radii`, draggable: "false" })];
     const rule = h("div", { class: "rule" });
@@ -103,7 +104,9 @@ function picturesSection(section, state) {
     else if (traces) go(own.pixel);
     else {
       go(own.pixel);
-      block("traces").then((all) => ((traces = all), go(own.pixel)));
+      // First a ray near the middle that hits something, if one does.
+      const first = (all) => d3.least(all.filter((t) => t.view === view.k)[0]?.rays.filter((r) => r.hit) ?? [], (r) => d3.sum(r.pixel, (v, k) => (v - middle[k]) ** 2))?.pixel;
+      block("traces").then((all) => ((traces = all), go(first(all) ?? own.pixel)));
     }
   };
   state.showPicture = (point) => {

@@ -82,6 +82,7 @@ const COSTS = [
   { id: "dram_lines", name: "DRAM lines", unit: "", of: (p, c) => c?.dram_lines },
   { id: "dram_bytes", name: "DRAM bytes", unit: "", of: (p, c) => c?.dram_bytes },
   { id: "l1_requests_per_ray", name: "L1 requests for each ray", unit: "", of: (p, c) => c?.l1_requests_per_ray },
+  { id: "unit_gates", name: "area of a traversal unit", unit: "gate equivalents", of: (p, c) => c?.unit_gates },
   { id: "bytes", name: "memory of the method", unit: "bytes", of: (p) => p.bytes },
   { id: "bytes_per_triangle", name: "memory for each finest triangle", unit: "bytes", of: (p) => p.bytes_per_triangle },
 ];

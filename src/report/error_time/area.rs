@@ -1,0 +1,42 @@
+//! Area of a traversal unit, from what `scripts/synth` measured of its blocks (`docs/hardware.md`).
+
+use crate::block::{EdgesPerCycle, Operation};
+use crate::hardware::Hardware;
+use crate::method::MethodUnit;
+
+const MEASURED: &str = include_str!("../../../docs/hardware.md");
+
+/// A flip-flop with enable, in gate equivalents: what a context's state is made of. As in the table of `docs/hardware.md`.
+const FLIP_FLOP: f64 = 7.67;
+
+/// Gate equivalents of one unit: its blocks, of the default sizes, and the registers of its contexts. None if a block was not measured.
+pub fn unit_gates(unit: MethodUnit, hardware: &Hardware) -> Option<f64> {
+    let blocks: f64 = unit.blocks.iter().map(|&operation| block_gates(operation, hardware.edges_per_cycle)).sum::<Option<f64>>()?;
+    let context = f64::from(hardware.context_registers(unit.has_levels).kept);
+    Some(blocks + hardware.contexts as f64 * context * FLIP_FLOP)
+}
+
+fn block_gates(operation: Operation, edges: EdgesPerCycle) -> Option<f64> {
+    let is_narrow = operation == Operation::TriTest && edges == EdgesPerCycle::One;
+    let row = format!("| `{}{}` | ", operation.name(), if is_narrow { "-EDGES_PER_CYCLE=1" } else { "" });
+    let cells = MEASURED.lines().find_map(|line| line.strip_prefix(&row))?;
+    cells.split(" | ").next()?.replace(',', "").parse().ok()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::method::METHODS;
+
+    #[test]
+    fn every_method_with_a_unit_has_an_area() {
+        for method in METHODS.iter().filter(|method| method.unit.is_some()) {
+            let unit = method.unit.unwrap();
+            let [one, two] = [1, 2].map(|contexts| unit_gates(unit, &Hardware { contexts, ..Hardware::default() }).unwrap());
+            let context = f64::from(Hardware::default().context_registers(unit.has_levels).kept) * FLIP_FLOP;
+            assert!(one > 1e6 && (two - one - context).abs() < 1e-3, "{}: {one}, {two}", method.name);
+            let narrow = Hardware { contexts: 1, edges_per_cycle: EdgesPerCycle::One, ..Hardware::default() };
+            assert!(unit_gates(unit, &narrow).unwrap() < one - 4e5);
+        }
+    }
+}
