@@ -66,6 +66,11 @@ pub trait Method: Send + Sync {
     /// Traces one ray after the other; one for each thread.
     fn tracer(&self, sight: &Sight) -> Box<dyn Tracer + '_>;
 
+    /// The same structures with other choices of its error knob, where that is not the quality, which rays bring along.
+    fn again(&self, _knobs: &Knobs) -> Option<Box<dyn Method>> {
+        None
+    }
+
     /// What it chose for these rays, beyond its knobs: name and value.
     fn choices(&self, _sight: &Sight) -> Vec<(&'static str, String)> {
         Vec::new()

@@ -174,6 +174,11 @@ impl<'a> Bench<'a> {
         })
     }
 
+    /// The method of a setting.
+    fn method<'b>(&'b self, at: usize, setting: &'b Setting) -> &'b dyn Method {
+        setting.method.as_deref().unwrap_or(&*self.methods[at].1)
+    }
+
     fn subject(&self) -> Subject<'_> {
         Subject { shader: Shader::new(self.scene, &self.space, self.plan.measure.shading), space: &self.space }
     }
@@ -191,7 +196,7 @@ impl<'a> Bench<'a> {
     /// also the surface, whose errors are against `truth`.
     fn see(&self, of: &(usize, Setting), camera: &Camera, full: &RgbImage, truth: &Frame) -> anyhow::Result<Seen> {
         let (at, setting) = of;
-        let method = &*self.methods[*at].1;
+        let method = self.method(*at, setting);
         let pass = Pass { scene: self.scene, space: &self.space, chosen: &setting.chosen, method, rays: PassRays::Camera(*camera) };
         let shader = self.subject().shader;
         let mut drawn = Sampled::new(camera);
@@ -220,7 +225,7 @@ impl<'a> Bench<'a> {
         }
         let of = |(at, setting): &(usize, Setting)| {
             let bar = progress(u64::from(camera.height), "surface");
-            let frame = render(&*self.methods[*at].1, &self.space, camera, setting.chosen.delta(), &|| bar.inc(1)).0;
+            let frame = render(self.method(*at, setting), &self.space, camera, setting.chosen.delta(), &|| bar.inc(1)).0;
             bar.finish_and_clear();
             self.surface(setting, frame.pixels, camera, truth)
         };
@@ -270,7 +275,7 @@ impl<'a> Bench<'a> {
                 scene: self.scene,
                 file: &self.facts.file,
                 registered: setting.chosen.method,
-                method: &*self.methods[*at].1,
+                method: self.method(*at, setting),
                 delta: setting.chosen.delta(),
                 camera,
             };
@@ -284,13 +289,13 @@ impl<'a> Bench<'a> {
         if most == 0 {
             return Vec::new();
         }
-        let timed = |(at, setting): &'_ (usize, Setting)| {
-            let method = &*self.methods[*at].1;
-            (setting.chosen.method.name, setting.words.clone(), method, setting.chosen.delta())
-        };
-        let timed: Vec<_> = settings.iter().map(timed).collect();
-        let timed: Vec<_> =
-            timed.iter().map(|(name, words, method, delta)| Timed { name, words, method: *method, delta: *delta }).collect();
+        let timed = settings.iter().map(|(at, setting)| Timed {
+            name: setting.chosen.method.name,
+            words: &setting.words,
+            method: self.method(*at, setting),
+            delta: setting.chosen.delta(),
+        });
+        let timed: Vec<_> = timed.collect();
         busy("host times", || host_times(&timed, camera, &self.space, most))
     }
 }

@@ -17,7 +17,9 @@ use super::sweep::SceneJobs;
 use lodray::format::Scene;
 use lodray::method::{find, lod};
 use lodray::report::diagram::{csv, diagrams, latex};
-use lodray::report::error_time::{ErrorTime, KIND, MethodEntry, Options, SceneEntry, USUAL_COSTS, USUAL_ERRORS, VERSION, equal_errors, unit_gates};
+use lodray::report::error_time::{
+    ErrorTime, KIND, MethodEntry, Options, SceneEntry, USUAL_COSTS, USUAL_ERRORS, VERSION, equal_errors, unit_gates,
+};
 use lodray::report::page::{Documents, PICTURE_BYTES, embed};
 use lodray::report::results_version;
 use measure::Bench;
@@ -155,7 +157,8 @@ fn document(plan: &Plan, measured: &[&Measured]) -> ErrorTime {
         let unit = find(&point.method).and_then(|method| method.unit);
         for costs in &mut point.costs {
             costs.machine = plan.machine_of(costs.machine, &machines);
-            costs.unit_gates = unit.zip(machines.get(costs.machine)).and_then(|(unit, machine)| unit_gates(unit, &machine.description.units.config()));
+            costs.unit_gates =
+                unit.zip(machines.get(costs.machine)).and_then(|(unit, machine)| unit_gates(unit, &machine.description.units.config()));
         }
     }
     let method = |chosen: &super::method::Chosen| MethodEntry {

@@ -41,6 +41,8 @@ pub struct Measure {
 /// A method with one value of its knob.
 pub struct Setting {
     pub chosen: Chosen,
+    /// The method with it, if another than the one that was made for the scene.
+    pub method: Option<Box<dyn Method>>,
     /// In words.
     pub words: String,
     /// It is what the method does if nothing is chosen.
@@ -51,7 +53,8 @@ impl Plan {
     /// The settings of a method for a view, from coarse to fine; those that choose the same for the frame once.
     pub fn settings(&self, base: &Chosen, method: &dyn Method, sight: impl Fn(f64) -> Sight) -> anyhow::Result<Vec<Setting>> {
         let of = |chosen: Chosen| {
-            let choices = method.choices(&sight(chosen.delta()));
+            let again = method.again(&chosen.knobs);
+            let choices = again.as_deref().unwrap_or(method).choices(&sight(chosen.delta()));
             let facts = MethodFacts::new(chosen.method, &chosen.knobs, &choices, 0);
             let chose: Vec<_> = choices.iter().map(|(name, value)| format!("{name} {value}")).collect();
             let words = match chosen.method.error.filter(|_| chose.is_empty()) {
@@ -59,7 +62,7 @@ impl Plan {
                 None if chose.is_empty() => "full resolution".to_owned(),
                 None => chose.join(", "),
             };
-            (chosen, words)
+            (chosen, words, again)
         };
         let default = of(base.clone()).1;
         let all = match base.method.error {
@@ -70,8 +73,9 @@ impl Plan {
             }
         };
         let mut seen = HashSet::new();
-        let new =
-            |(chosen, words): (Chosen, String)| seen.insert(words.clone()).then(|| Setting { chosen, is_default: words == default, words });
+        let new = |(chosen, words, method): (Chosen, String, Option<Box<dyn Method>>)| {
+            seen.insert(words.clone()).then(|| Setting { chosen, method, is_default: words == default, words })
+        };
         Ok(all.into_iter().filter_map(new).collect())
     }
 

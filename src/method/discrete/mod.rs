@@ -15,6 +15,7 @@ use crate::num::MAX_LEVELS;
 use crate::rays::{ModelSpace, Sight};
 use crate::step::MemoryMap;
 use levels::{at_level, largest_bounds};
+use std::sync::Arc;
 
 /// The level for all rays.
 pub static LEVEL: Knob = Knob {
@@ -35,8 +36,8 @@ pub static METHOD: Registered = Registered {
     name: "discrete",
     help: "Discrete levels of detail: a quad-BVH of each level, one level for the whole frame",
     knobs: &[&DELTA, &LEVEL, &LEAF_LAYOUT, &LEAF_SIZE],
-    // Fine enough to meet every level that any quality chooses: bounds of a level and the next differ by more than half an octave.
-    error: Some(ErrorKnob { knob: &DELTA, values: || (-16..=24).map(|half| f64::exp2(0.5 * f64::from(half))).collect() }),
+    // Every level: by quality it has the finest alone where the eye is within the model's box.
+    error: Some(ErrorKnob { knob: &LEVEL, values: || (0..=MAX_LEVELS).map(f64::from).collect() }),
     unit: Some(MethodUnit {
         blocks: &{
             // As for a BVH, and a hit on a coarse triangle is mapped to the full resolution.
@@ -51,12 +52,22 @@ pub static METHOD: Registered = Registered {
 
 /// The method on a scene.
 struct Discrete {
-    /// By level.
+    levels: Arc<Levels>,
+    chosen: Option<usize>,
+    space: ModelSpace,
+}
+
+/// All levels.
+struct Levels {
     bvhs: Vec<FullBvh>,
     /// Largest displacement bound of each level's edges, in units; 0 for the finest.
     bounds: Vec<u64>,
-    chosen: Option<u32>,
-    space: ModelSpace,
+}
+
+/// The level that was chosen, of this many and a finest.
+fn chosen(knobs: &Knobs, finest: u32) -> Option<usize> {
+    let level: u32 = knobs.get(&LEVEL)?.parse().ok()?;
+    Some(level.min(finest) as usize)
 }
 
 impl Discrete {
@@ -71,18 +82,17 @@ impl Discrete {
         };
         let levels = scene.levels();
         Ok(Box::new(Self {
-            bvhs: (0..=levels).map(bvh).collect::<Result<_, _>>()?,
-            bounds: largest_bounds(&hierarchy),
-            chosen: knobs.get(&LEVEL).and_then(|level| level.parse().ok()).map(|level: u32| level.min(levels)),
+            levels: Arc::new(Levels { bvhs: (0..=levels).map(bvh).collect::<Result<_, _>>()?, bounds: largest_bounds(&hierarchy) }),
+            chosen: chosen(knobs, levels),
             space: ModelSpace::of(scene),
         }))
     }
 
     fn level(&self, sight: &Sight) -> usize {
-        let finest = self.bounds.len() - 1;
+        let bounds = &self.levels.bounds;
         let tolerance = if sight.delta > 0.0 { 2.0 * sight.least_radius / sight.delta } else { f64::INFINITY };
-        let serves = || self.bounds.iter().position(|&bound| bound as f64 <= tolerance);
-        self.chosen.map(|level| level as usize).or_else(serves).unwrap_or(finest)
+        let serves = || bounds.iter().position(|&bound| bound as f64 <= tolerance);
+        self.chosen.or_else(serves).unwrap_or(bounds.len() - 1)
     }
 }
 
@@ -90,16 +100,21 @@ impl Method for Discrete {
     fn map(&self, sight: &Sight) -> MemoryMap {
         let level = self.level(sight);
         let nodes = |bvh: &FullBvh| bvh.nodes.len() as u32; // below 2^28
-        let before = self.bvhs[..level].iter().map(nodes).sum();
-        bvh_map(&self.bvhs.iter().collect::<Vec<_>>()).from_node(before, nodes(&self.bvhs[level]))
+        let before = self.levels.bvhs[..level].iter().map(nodes).sum();
+        bvh_map(&self.levels.bvhs.iter().collect::<Vec<_>>()).from_node(before, nodes(&self.levels.bvhs[level]))
     }
 
     fn tracer(&self, sight: &Sight) -> Box<dyn Tracer + '_> {
         let level = self.level(sight);
-        let before = bvh_map(&self.bvhs[..level].iter().collect::<Vec<_>>());
-        let all = bvh_map(&self.bvhs.iter().collect::<Vec<_>>());
-        let traverser = BvhTraverser::behind(&self.bvhs[level], all, &before);
-        Box::new(BvhTracer::new(traverser, self.space, self.bvhs.len() as u32 - 1)) // at most 10
+        let before = bvh_map(&self.levels.bvhs[..level].iter().collect::<Vec<_>>());
+        let all = bvh_map(&self.levels.bvhs.iter().collect::<Vec<_>>());
+        let traverser = BvhTraverser::behind(&self.levels.bvhs[level], all, &before);
+        Box::new(BvhTracer::new(traverser, self.space, self.levels.bvhs.len() as u32 - 1)) // at most 10
+    }
+
+    fn again(&self, knobs: &Knobs) -> Option<Box<dyn Method>> {
+        let finest = self.levels.bvhs.len() as u32 - 1; // at most 10
+        Some(Box::new(Self { levels: Arc::clone(&self.levels), chosen: chosen(knobs, finest), space: self.space }))
     }
 
     fn choices(&self, sight: &Sight) -> Vec<(&'static str, String)> {
