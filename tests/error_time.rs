@@ -27,6 +27,8 @@ fn errors_fall_along_the_knob_and_what_is_full_resolution_has_none() {
     assert_eq!(document["views"].as_array().unwrap().len(), 2);
     // Two views, two numbers of samples, at four qualities.
     assert_eq!(points(&document, "lod").count(), 2 * 2 * 4);
+    // Discrete LOD has all its levels in every view: four splits.
+    assert_eq!(points(&document, "discrete").count(), 2 * 2 * 5);
     for errors in ["/geometry/hit", "/geometry/surface", "/geometry/normal_degrees", "/picture/flip", "/viewed/flip"] {
         let all: Vec<&Value> = points(&document, "lod").collect();
         for point in &all {

@@ -4,6 +4,7 @@ use super::canvas::{Axis, FONT, Plane, TEXT, centred, range, short, svg};
 use super::distance::{DistanceChart, Line, Spot};
 use super::fault::{DiagramFault, wrong};
 use super::marks::{Shape, colour};
+use crate::method::lod;
 use crate::report::error_time::{CostMeasure, ErrorMeasure};
 use crate::report::error_time::{Costs, ErrorTime, Point, ViewEntry};
 use crate::report::palette;
@@ -25,6 +26,9 @@ struct Dot<'a> {
     y: f64,
 }
 
+/// A point with its view, and what it costs on the machine.
+type Measured<'a> = (&'a Point, &'a ViewEntry, &'a Costs);
+
 /// Size of a panel, and panels beside each other at most.
 const PANEL: (u32, u32) = (320, 270);
 const COLUMNS: usize = 4;
@@ -39,7 +43,7 @@ impl<'a> Of<'a> {
     }
 
     /// Points of the scene on the machine, with the fewest samples.
-    fn points(&self) -> Vec<(&'a Point, &'a ViewEntry, &'a Costs)> {
+    fn points(&self) -> Vec<Measured<'a>> {
         let views = &self.document.views;
         let of_scene = self.document.points.iter().filter(|point| views[point.view].scene == self.scene);
         let all: Vec<_> = of_scene.filter_map(|point| Some((point, &views[point.view], self.costs(point)?))).collect();
@@ -146,7 +150,7 @@ impl<'a> Of<'a> {
             plane.path(&own.iter().map(|(_, dot)| at(dot)).collect::<Vec<_>>(), colour.mix(0.7).stroke_width(1))?;
             for (k, dot) in own {
                 plane.mark(at(dot), &shape, colour, front.contains(&k))?;
-                if let Some(delta) = dot.point.knobs.get("delta").filter(|_| *method == crate::method::lod::METHOD.name) {
+                if let Some(delta) = dot.point.knobs.get("delta").filter(|_| *method == lod::METHOD.name) {
                     plane.words(&knob(delta), at(dot), (0, -11), centred(TEXT - 4, &RGBColor(60, 66, 76)))?;
                 }
             }
@@ -167,16 +171,22 @@ impl<'a> Of<'a> {
 
     fn by_distance(&self, name: &str, value: &dyn Fn(&Point, &Costs) -> Option<f64>, gains: bool) -> Result<Option<String>, DiagramFault> {
         let mut lines: Vec<Line> = Vec::new();
-        for (point, view, costs) in self.points() {
+        for (point, view, costs) in one_of_each(self.points()) {
             let Some(y) = value(point, costs) else { continue };
-            let name = format!("{} {}", point.method, point.setting);
-            let at = lines.iter().position(|line| line.name == name).unwrap_or_else(|| {
-                lines.push(Line { method: point.method.clone(), name, spots: Vec::new() });
+            let at = lines.iter().position(|line| line.method == point.method).unwrap_or_else(|| {
+                lines.push(Line { method: point.method.clone(), name: point.method.clone(), spots: Vec::new() });
                 lines.len() - 1
             });
             lines[at].spots.push(Spot { x: view.distance, y, gain: None });
         }
-        let lines = one_of_each(lines);
+        for line in &mut lines {
+            line.spots.sort_by(|a, b| a.x.total_cmp(&b.x));
+            if line.method == lod::METHOD.name {
+                line.name += ", delta 1";
+            } else if self.document.methods.iter().any(|method| method.name == line.method && method.knob.is_some()) {
+                line.name += ", as far off";
+            }
+        }
         let lines = if gains { with_gains(lines) } else { lines };
         let x = "distance of the eye, bounding radii".to_owned();
         DistanceChart {
@@ -190,19 +200,25 @@ impl<'a> Of<'a> {
     }
 }
 
-/// The first setting of each method, but quality 1 of those that have it.
-fn one_of_each(lines: Vec<Line>) -> Vec<Line> {
-    let mut chosen: Vec<Line> = Vec::new();
-    let usual = |line: &Line| line.name.split([' ', ',']).collect::<Vec<_>>().windows(2).any(|words| words == ["delta", "1"]);
-    for line in lines {
-        match chosen.iter_mut().find(|before| before.method == line.method) {
-            None => chosen.push(line),
-            Some(before) if usual(&line) && !usual(before) => *before = line,
+/// Of each view one setting of each method: ours at quality 1, and the one of any other whose surface is as far off as that, as nearly as it can be.
+fn one_of_each(points: Vec<Measured<'_>>) -> Vec<Measured<'_>> {
+    let off = |point: &Point| point.geometry.surface.map_or(0.0, |surface| surface.percentile_99);
+    let is_ours = |point: &Point| point.method == lod::METHOD.name;
+    let ours = |view: usize| points.iter().find(|(p, ..)| p.view == view && is_ours(p) && p.setting == "delta 1").map(|(p, ..)| off(p));
+    let apart = |point: &Point| match ours(point.view) {
+        Some(_) if is_ours(point) => f64::from(u8::from(point.setting != "delta 1")),
+        // Full resolution has no error.
+        Some(own) => (off(point).max(1e-6) / own.max(1e-6)).ln().abs(),
+        None => 0.0,
+    };
+    let mut chosen: Vec<Measured<'_>> = Vec::new();
+    for &measured in &points {
+        let (point, ..) = measured;
+        match chosen.iter_mut().find(|(before, ..)| before.view == point.view && before.method == point.method) {
+            None => chosen.push(measured),
+            Some(before) if apart(point) < apart(before.0) => *before = measured,
             Some(_) => {}
         }
-    }
-    for line in &mut chosen {
-        line.spots.sort_by(|a, b| a.x.total_cmp(&b.x));
     }
     chosen
 }
