@@ -5,6 +5,7 @@ import json
 import math
 import re
 import shutil
+import subprocess
 import sys
 from pathlib import Path
 
@@ -166,6 +167,34 @@ def structures(run, units):
     return table(["method", "bytes for each finest triangle", f"unit with {contexts} contexts, million gate equivalents"], rows)
 
 
+def lodray(*words):
+    """What a command of the program says as JSON."""
+    out = subprocess.run([ROOT / "target" / "release" / "lodray", *words, "--quiet"], check=True, capture_output=True, text=True).stdout
+    return json.loads(out)
+
+
+def why(run, folder):
+    """Ours at delta 1 beside the discrete level that is as far off: what their rays do, and their times on the machine and on one with twice the banks in its L1s."""
+    rows = []
+    size = "x".join(map(str, run.data["options"]["size"]))
+    for scene, roughness in [("terrain 0.45", "0.45"), ("terrain 0.6", "0.6")]:
+        file = folder / f"{plain(scene)}.lod"
+        if not file.is_file():
+            subprocess.run([ROOT / "target" / "release" / "lodray", "generate", "terrain", "--roughness", roughness, "-o", file, "--quiet"], check=True)
+        views = [view for view in range(len(run.views)) if run.scene(view) == scene]
+        for view in (views[2], views[-2]):
+            eye = ",".join(map(str, run.views[view]["eye"]))
+            camera = [str(file), "--eye", eye, "--target", "0,0,0", "--size", size]
+            level = near(run, view, "discrete", 1)["choices"]["level"]
+            for words, setting in [(["--method", OURS, "--delta", "1"], "ours, delta 1"), (["--method", "discrete", "--level", level], f"discrete, level {level}")]:
+                shot = lodray("render", *camera, *words, "--shading", "full", "--json", "-o", str(folder / "why"), "--force")["stats"]
+                times = [lodray("simulate", *camera, *words, *more, "--json")["milliseconds"] for more in ([], ["--set", "l1.banks=8"])]
+                each = lambda count: f"{count / shot['hits']:.1f}"
+                lines = sum(kind["read"] for kind in shot["lines"])
+                rows.append([scene, run.place(view), setting, f"{shot['mean_level']:.2f}", each(shot["nodes"]), each(shot["lod_tests"]), each(lines)] + [f"{1000 * t:.1f}" for t in times])
+    return table(["scene", "radii", "setting", "mean level", "nodes a hit", "LOD tests a hit", "lines a hit", "time, us", "twice the banks"], rows)
+
+
 def plain(name):
     return "-".join(part for part in re.sub(r"[^A-Za-z0-9.]", "-", name).split("-") if part)
 
@@ -192,6 +221,7 @@ def main():
         "summary_lines": summary(knobs, error, [0.25, 0.5, 1.0, 2.0], "free", "dram-lines"),
         "summary_requests": summary(knobs, error, [0.25, 0.5, 1.0, 2.0], "free", "l1-requests"),
         "summary_flip": summary(knobs, "flip-mean", [0.01, 0.02, 0.05, 0.1], "free", "time"),
+        "why": why(knobs, folder),
         "half_units": at_level(units, error, 0.5, "units"),
         "structures": structures(knobs, units),
         "viewed": by_samples(samples, flip),

@@ -79,6 +79,13 @@ impl Knobs {
         Ok(self)
     }
 
+    /// All but this knob's.
+    #[must_use]
+    pub fn without(mut self, knob: &Knob) -> Self {
+        self.0.remove(knob.name);
+        self
+    }
+
     /// Those that what is made for a scene depends on, of a method's.
     #[must_use]
     pub fn of_scene(mut self, of: &[&Knob]) -> Self {

@@ -2,6 +2,7 @@
 
 use super::draw::{Converging, Subject, difference, luminance};
 use super::host::{Timed, host_times};
+use super::plain;
 use super::plan::{Plan, Setting};
 use super::row::{BuildTime, Measured};
 use super::workers::at_once;
@@ -270,10 +271,12 @@ impl<'a> Bench<'a> {
 
     /// The steps of a grid of rays of each method, with the setting that it has by default.
     fn traces(&self, camera: &Camera, settings: &[(usize, Setting)]) -> Vec<TraceGrid> {
+        // A scene that was generated has no file: commands name the one that it would be written to.
+        let file = if self.facts.file.is_empty() { format!("{}.lod", plain(&self.facts.name)) } else { self.facts.file.clone() };
         let grid = |(at, setting): &(usize, Setting)| {
             let subject = inspect::Subject {
                 scene: self.scene,
-                file: &self.facts.file,
+                file: &file,
                 registered: setting.chosen.method,
                 method: self.method(*at, setting),
                 delta: setting.chosen.delta(),

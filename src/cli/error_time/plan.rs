@@ -64,7 +64,8 @@ impl Plan {
             };
             (chosen, words, again)
         };
-        let default = of(base.clone()).1;
+        let usual = base.method.error.map_or_else(|| base.knobs.clone(), |error| base.knobs.clone().without(error.knob));
+        let default = of(Chosen { method: base.method, knobs: usual }).1;
         let all = match base.method.error {
             None => vec![of(base.clone())],
             Some(ErrorKnob { knob, .. }) => {
