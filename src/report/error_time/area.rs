@@ -30,6 +30,7 @@ mod tests {
 
     #[test]
     fn every_method_with_a_unit_has_an_area() {
+        assert!(MEASURED.contains(&format!("| {FLIP_FLOP} |")), "the table of cells has another");
         for method in METHODS.iter().filter(|method| method.unit.is_some()) {
             let unit = method.unit.unwrap();
             let [one, two] = [1, 2].map(|contexts| unit_gates(unit, &Hardware { contexts, ..Hardware::default() }).unwrap());

@@ -81,7 +81,7 @@ function distanceSection(section, state) {
       ),
     );
   };
-  section.append(h("p", {}, "One setting of each method, all distances; where a method chooses its setting by itself, the one whose error is the nearest to ours (the tip names it). A gain above 1 says by how much the method is cheaper than the quad-BVH over the full-resolution mesh."), body);
+  section.append(h("p", {}, "One setting of each method, all distances; where a method has several, at each the one whose error is the nearest to ours (the tip names it). A gain above 1 says by how much the method is cheaper than the quad-BVH over the full-resolution mesh."), body);
   state.onChange(draw);
 }
 

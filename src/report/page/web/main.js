@@ -53,9 +53,10 @@ function glance(state) {
   const list = h("ul", { class: "glance" });
   const draw = () => {
     const points = state.points();
-    const chosen = settingsOf(points, {});
-    const gain = (cost) => points.filter((p) => isOurs(p.method) && p.setting === chosen.get(p.method).setting).flatMap((p) => {
-      const base = points.find((q) => q.method === "bvh" && q.samples === p.samples && place(q) === place(p) && q.setting === chosen.get("bvh").setting);
+    const shown = shownOf(points, settingsOf(points, {}));
+    const ours = shown.filter((p) => isOurs(p.method));
+    const gain = (cost) => ours.flatMap((p) => {
+      const base = shown.find((q) => q.method === "bvh" && q.samples === p.samples && place(q) === place(p));
       const [ours, theirs] = [cost.of(p, costAt(p, state.machine)), base && cost.of(base, costAt(base, state.machine))];
       return ours > 0 && theirs > 0 ? [{ p, gain: theirs / ours }] : [];
     });
@@ -66,7 +67,7 @@ function glance(state) {
       return [[gains.length === 1 ? times(most.gain) : `${times(least.gain)} to ${times(most.gain)}`, `${what} of the full-resolution BVH over ours at ${most.p.setting}${gains.length > 1 ? `: least from ${place(least.p)}, most from ${place(most.p)}` : ` from ${place(most.p)}`}`]];
     });
     const surface = errorMeasures().find((m) => m.id === "geometry.surface.percentile_99");
-    const errors = points.filter((p) => isOurs(p.method) && p.setting === chosen.get(p.method).setting).map((p) => errorOf(p, surface)).filter((v) => v != null);
+    const errors = ours.map((p) => errorOf(p, surface)).filter((v) => v != null);
     if (errors.length) cards.push([`${num(d3.max(errors), 2)} pixels`, `off the surface at the 99th percentile, the most of ${count(errors.length, "view")}`]);
     if (page.error_time?.equal_error.length) {
       const doc = page.error_time;
