@@ -188,7 +188,10 @@ def why(run, folder):
             level = near(run, view, "discrete", 1)["choices"]["level"]
             for words, setting in [(["--method", OURS, "--delta", "1"], "ours, delta 1"), (["--method", "discrete", "--level", level], f"discrete, level {level}")]:
                 shot = lodray("render", *camera, *words, "--shading", "full", "--json", "-o", str(folder / "why"), "--force")["stats"]
-                times = [lodray("simulate", *camera, *words, *more, "--json")["milliseconds"] for more in ([], ["--set", "l1.banks=8"])]
+                as_it_is = lodray("simulate", *camera, *words, "--json")
+                banks = as_it_is["setup"]["machine"]["description"]["l1"]["banks"]
+                wider = lodray("simulate", *camera, *words, "--set", f"l1.banks={2 * banks}", "--json")
+                times = [frame["milliseconds"] for frame in (as_it_is, wider)]
                 each = lambda count: f"{count / shot['hits']:.1f}"
                 lines = sum(kind["read"] for kind in shot["lines"])
                 rows.append([scene, run.place(view), setting, f"{shot['mean_level']:.2f}", each(shot["nodes"]), each(shot["lod_tests"]), each(lines)] + [f"{1000 * t:.1f}" for t in times])
