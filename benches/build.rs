@@ -6,6 +6,7 @@ use lodray::format::audit::audit;
 use lodray::format::{Scene, SceneInfo, build};
 use lodray::mesh::procedural::{self, Options};
 use lodray::mesh::{BoundKind, quantise};
+use lodray::num::VertexForm;
 
 fn terrain(c: &mut Criterion) {
     let options = Options::new(procedural::Scene::Terrain);
@@ -16,7 +17,7 @@ fn terrain(c: &mut Criterion) {
     let mut group = c.benchmark_group("terrain");
     group.sample_size(10).throughput(Throughput::Elements(surface.finest_triangles()));
     group.bench_function("generate", |b| b.iter(|| procedural::generate(&options).expect("default options")));
-    group.bench_function("quantise and bounds", |b| b.iter(|| quantise(&surface, BoundKind::Largest).expect("a valid surface")));
+    group.bench_function("quantise and bounds", |b| b.iter(|| quantise(&surface, BoundKind::Largest, VertexForm::Exact).expect("a valid surface")));
     group.bench_function("build and write", |b| b.iter(|| built().save(&path).expect("written")));
     group.bench_function("open", |b| b.iter(|| Scene::open(&path).expect("valid")));
     let scene = Scene::open(&path).expect("valid");

@@ -9,7 +9,7 @@ use lodray::mesh::BoundKind;
 use lodray::mesh::procedural::{self, Options};
 use lodray::method::ClosestHit;
 use lodray::method::bvh::BvhTraverser;
-use lodray::method::bvh::{FullBvh, FullOptions, LeafLayout};
+use lodray::method::bvh::{FullBvh, FullOptions, LeafLayout, NodeBoxes};
 use lodray::method::lod::{LodImage, LodTraverser};
 use lodray::num::Ray;
 use lodray::rays::ModelSpace;
@@ -52,7 +52,7 @@ fn benches(c: &mut Criterion) {
         group.throughput(Throughput::Elements(rays.len() as u64)).sample_size(10).sampling_mode(SamplingMode::Flat);
         group.bench_function("LOD, hitting rays", |b| b.iter(|| rays.iter().filter(|r| black_box(hit_by(r)).is_some()).count()));
 
-        let bvh = FullBvh::build(&scene.decode(), &FullOptions::new(4, false, LeafLayout::Line)).expect("a valid model");
+        let bvh = FullBvh::build(&scene.decode(), &FullOptions::new(4, NodeBoxes::Local, LeafLayout::Line)).expect("a valid model");
         let mut traverser = BvhTraverser::new(&bvh);
         let mut hit_by = |ray: &Ray| {
             let mut closest = ClosestHit::new(image.levels);

@@ -1,9 +1,9 @@
 `default_nettype none
 
-/// Displacement bound from its 10-bit code. Twin of src/block/bound_decode.rs (paper section 4.3).
+/// Displacement bound from its 8-bit code on a logarithmic scale. Twin of src/block/bound_decode.rs (paper section 4.3).
 ///
-/// h = floor(code^2 mantissa / 2^shift) units. Monotone in the code; code 0 gives 0.
-/// Legal: any code; scales for which h is below 2^33. Latency BOUND_DECODE_LATENCY; interval 1.
+/// Code 0 gives 0; else, with k = code + offset, h = floor(M[k mod 16] 2^floor(k / 16) / 256) units and M[i] = 2^(i / 16) in steps of 1/256, rounded up.
+/// Monotone in the code. Legal: any code; scales for which h is below 2^33. Latency BOUND_DECODE_LATENCY = 3; interval 1.
 module bound_decode #(
   parameter int unsigned TAG_W = 8
 ) (
@@ -20,60 +20,55 @@ module bound_decode #(
 );
 
   localparam int unsigned H_W = lod_pkg::BOUND_W;
-  localparam int unsigned CODE_W = lod_pkg::BOUND_CODE_W;
-  localparam int unsigned SQUARE_W = 2 * CODE_W;
-  localparam int unsigned MANTISSA_W = 18;
-  localparam int unsigned SHIFT_W = 6;
-  // 20 bits of square times 18 of mantissa. Both are unsigned: one bit more as signed numbers.
-  localparam int unsigned PRODUCT_W = SQUARE_W + MANTISSA_W;
-  localparam int unsigned PRODUCT_LATENCY = lod_pkg::multiplier_latency(SQUARE_W + 1, MANTISSA_W + 1);
-  if (lod_pkg::BOUND_DECODE_LATENCY != 1 + PRODUCT_LATENCY + 2) begin : g_illegal_latency
-    $error("bound_decode: lod_pkg::BOUND_DECODE_LATENCY must be %0d", 1 + PRODUCT_LATENCY + 2);
+  // 8 and 9 bits added.
+  localparam int unsigned K_W = lod_pkg::BOUND_SCALE_W + 1;
+  localparam int unsigned MANTISSA_W = 9;
+  localparam logic [16*MANTISSA_W-1:0] MANTISSAS = {
+    9'd491, 9'd470, 9'd450, 9'd431, 9'd413, 9'd395, 9'd379, 9'd363, 9'd347, 9'd332, 9'd318, 9'd305, 9'd292, 9'd280, 9'd268, 9'd256
+  };
+  localparam int unsigned FRACTION_W = 8;
+  // The shift to the left, up to 32: fine by up to 7, coarse by as many bytes as the other bits say, legally four.
+  localparam int unsigned FINE_W = MANTISSA_W + 7;
+  localparam int unsigned COARSE_W = H_W + FRACTION_W;
+  if (lod_pkg::BOUND_DECODE_LATENCY != 3) begin : g_illegal_latency
+    $error("bound_decode: lod_pkg::BOUND_DECODE_LATENCY must be 3");
   end
 
-  logic                  valid_square, ready_square;
-  logic [SQUARE_W-1:0]   square, square_q;
-  logic [MANTISSA_W-1:0] mantissa_q;
-  logic [SHIFT_W-1:0]    shift_square;
-  logic [TAG_W-1:0]      tag_square;
-  assign square = SQUARE_W'(in_i.code) * SQUARE_W'(in_i.code);
-  pipe_stage #(.W(SQUARE_W + lod_pkg::BOUND_SCALE_W + TAG_W)) u_square (
-    .clk_i, .rst_ni, .valid_i, .ready_o, .data_i({square, in_i.scale, tag_i}),
-    .valid_o(valid_square), .ready_i(ready_square), .data_o({square_q, mantissa_q, shift_square, tag_square})
+  logic             valid_k, ready_k, some_q;
+  logic [K_W-1:0]   k, k_q;
+  logic [TAG_W-1:0] tag_k;
+  assign k = K_W'(in_i.code) + K_W'(in_i.scale.offset);
+  pipe_stage #(.W(1 + K_W + TAG_W)) u_k (
+    .clk_i, .rst_ni, .valid_i, .ready_o, .data_i({in_i.code != '0, k, tag_i}),
+    .valid_o(valid_k), .ready_i(ready_k), .data_o({some_q, k_q, tag_k})
   );
 
-  logic                 valid_product, ready_product;
-  logic [PRODUCT_W+1:0] product;
-  multiplier #(.A_W(SQUARE_W + 1), .B_W(MANTISSA_W + 1)) u_product (
-    .clk_i, .rst_ni, .valid_i(valid_square), .ready_o(ready_square), .a_i({1'b0, square_q}), .b_i({1'b0, mantissa_q}),
-    .valid_o(valid_product), .ready_i(ready_product), .product_o(product)
-  );
-  logic [SHIFT_W-1:0] shift_product;
-  logic [TAG_W-1:0]   tag_product;
-  pipe_delay #(.W(SHIFT_W + TAG_W), .STAGES(PRODUCT_LATENCY)) u_beside (
-    .clk_i, .rst_ni, .valid_i(valid_square), .ready_o(), .data_i({shift_square, tag_square}),
-    .valid_o(), .ready_i(ready_product), .data_o({shift_product, tag_product})
-  );
+  logic [MANTISSA_W-1:0] mantissa;
+  always_comb begin
+    mantissa = '0;
+    for (int unsigned i = 0; i < 16; i++) if (k_q[3:0] == 4'(i)) mantissa = MANTISSAS[MANTISSA_W*i +: MANTISSA_W];
+  end
 
-  // The shift, coarse then fine.
-  logic                 valid_coarse, ready_coarse;
-  logic [PRODUCT_W-1:0] coarse, coarse_q, fine;
-  logic [2:0]           shift_fine;
-  logic [TAG_W-1:0]     tag_coarse;
-  assign coarse = product[PRODUCT_W-1:0] >> {shift_product[5:3], 3'd0};
-  pipe_stage #(.W(PRODUCT_W + 3 + TAG_W)) u_coarse (
-    .clk_i, .rst_ni, .valid_i(valid_product), .ready_o(ready_product), .data_i({coarse, shift_product[2:0], tag_product}),
-    .valid_o(valid_coarse), .ready_i(ready_coarse), .data_o({coarse_q, shift_fine, tag_coarse})
-  );
-  assign fine = coarse_q >> shift_fine;
-  pipe_stage #(.W(H_W + TAG_W)) u_out (
-    .clk_i, .rst_ni, .valid_i(valid_coarse), .ready_o(ready_coarse), .data_i({fine[H_W-1:0], tag_coarse}),
-    .valid_o, .ready_i, .data_o({out_o, tag_o})
+  logic              valid_fine, ready_fine;
+  logic [FINE_W-1:0] fine, fine_q;
+  logic [K_W-8:0]    bytes_q;
+  logic [TAG_W-1:0]  tag_fine;
+  assign fine = some_q ? FINE_W'(mantissa) << k_q[6:4] : '0;
+  pipe_stage #(.W(FINE_W + K_W - 7 + TAG_W)) u_fine (
+    .clk_i, .rst_ni, .valid_i(valid_k), .ready_o(ready_k), .data_i({fine, k_q[K_W-1:7], tag_k}),
+    .valid_o(valid_fine), .ready_i(ready_fine), .data_o({fine_q, bytes_q, tag_fine})
   );
 
   // Legal scales keep h below 2^33.
-  logic unused_upper;
-  assign unused_upper = ^{product[PRODUCT_W+1:PRODUCT_W], fine[PRODUCT_W-1:H_W]};
+  logic [COARSE_W-1:0] coarse;
+  assign coarse = COARSE_W'(fine_q) << {bytes_q, 3'd0};
+  pipe_stage #(.W(H_W + TAG_W)) u_out (
+    .clk_i, .rst_ni, .valid_i(valid_fine), .ready_o(ready_fine), .data_i({coarse[COARSE_W-1:FRACTION_W], tag_fine}),
+    .valid_o, .ready_i, .data_o({out_o, tag_o})
+  );
+
+  logic unused_fraction;
+  assign unused_fraction = ^coarse[FRACTION_W-1:0];
 
 endmodule
 

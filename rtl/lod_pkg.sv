@@ -20,7 +20,7 @@ package lod_pkg;
   localparam int unsigned EDGE_STATE_W = 9;      // 256 = 1
   localparam int unsigned DISTANCE_W = 34;       // l = (p - x).d / 2^30, signed: 64 - 30 bits
   localparam int unsigned TOLERANCE_W = 34;      // D, clamped to this width
-  localparam int unsigned BOUND_CODE_W = 10;
+  localparam int unsigned BOUND_CODE_W = 8;
   localparam int unsigned BOUND_W = 33;          // |q - m| < 2^32.8
   localparam int unsigned LINE_ADDRESS_W = 36;   // 2 TiB of 32-byte lines
   localparam int unsigned NODE_INDEX_W = 20;     // of a node at the ports: 4^10 nodes on the last level that there can be
@@ -37,7 +37,7 @@ package lod_pkg;
   localparam int unsigned STACK_ENTRIES = 103;  // 3 (MAX_BVH_DEPTH + MAX_LEVELS) + 1: each level leaves at most three siblings waiting
   localparam int unsigned SPLIT_TRIANGLES = 9;  // of a context: one of each level that splits into nodes
   localparam int unsigned NODE_W = 20;          // of a node within its level, where it is kept: two bits of each level
-  localparam int unsigned TREE_LINES_W = 19;    // of a tree's number of vertex lines, (4^N - 1) / 3
+  localparam int unsigned TREE_LINES_W = 19;    // of a tree's number of splits, (4^N - 1) / 3
 
   // Scales.
   localparam int unsigned BOX_SHIFT = 16;
@@ -46,9 +46,11 @@ package lod_pkg;
 
   // Cycles from an input taken to its output offered, and (where not 1) from one input taken to the next: `Block::timing` in Rust.
   localparam int unsigned BARY_MAP_LATENCY = 10;
-  localparam int unsigned BOUND_DECODE_LATENCY = 6;
+  localparam int unsigned BOUND_DECODE_LATENCY = 3;
+  localparam int unsigned BOX_DECODE_LATENCY = 2;
   localparam int unsigned BOX_TEST_LATENCY = 8;
   localparam int unsigned BOX_TEST32_LATENCY = 9;
+  localparam int unsigned CHILD_BOXES_LATENCY = 3;
   localparam int unsigned CHILD_SORT_LATENCY = 3;
   localparam int unsigned HIT_DIVIDE_LATENCY = 36;
   localparam int unsigned HIT_DIVIDE_INTERVAL = 36;
@@ -57,13 +59,12 @@ package lod_pkg;
   localparam int unsigned NODE_ADDRESS_LATENCY = 2;
   localparam int unsigned RAY_SETUP_LATENCY = 22;
   localparam int unsigned RAY_SETUP_INTERVAL = 22;
-  localparam int unsigned TESSELLATE_LATENCY = 6;
+  localparam int unsigned TESSELLATE_LATENCY = 7;
   localparam int unsigned TREE_BASE_LATENCY = 5;
   localparam int unsigned TRI_TEST_LATENCY = 18;    // with EDGES_PER_CYCLE = 3
   localparam int unsigned TRI_TEST_1_LATENCY = 20;  // with EDGES_PER_CYCLE = 1
   localparam int unsigned TRI_TEST_1_INTERVAL = 3;
-  localparam int unsigned WIDEN_BOX_LATENCY = 3;
-  localparam int unsigned CHILD_TEST_LATENCY = WIDEN_BOX_LATENCY + BOX_TEST_LATENCY + CHILD_SORT_LATENCY;
+  localparam int unsigned CHILD_TEST_LATENCY = CHILD_BOXES_LATENCY + BOX_TEST_LATENCY + CHILD_SORT_LATENCY;
 
   // Cycles of parts of blocks.
   localparam int unsigned ENTRY_DISTANCE_LATENCY = 5;  // of the box tests
@@ -120,6 +121,14 @@ package lod_pkg;
   } stored_point_t;
   localparam int unsigned STORED_POINT_W = 3 * 28;
 
+  // Displacement of a compact vertex from the midpoint of its edge, in steps.
+  typedef struct packed {
+    logic signed [12:0] x;
+    logic signed [12:0] y;
+    logic signed [12:0] z;
+  } displacement_t;
+  localparam int unsigned DISPLACEMENT_W = 3 * 13;
+
   // Corner of a box in steps of 2^16 units.
   typedef struct packed {
     logic signed [15:0] x;
@@ -136,12 +145,11 @@ package lod_pkg;
   } moment_t;
   localparam int unsigned MOMENT_W = 3 * 63;
 
-  // Scale of the displacement bounds of one model: `h = floor(code^2 * mantissa / 2^shift)` units.
+  // Scale of the displacement bounds of one model: a code other than 0 stands for `2^((code + offset) / 16)` units, rounded (`bound_decode`).
   typedef struct packed {
-    logic [17:0] mantissa;  // 18-bit mantissa.
-    logic [5:0] shift;      // Right shift.
+    logic [8:0] offset;  // Added to every code but 0, at most MAX_BOUND_OFFSET.
   } bound_scale_t;
-  localparam int unsigned BOUND_SCALE_W = 18 + 6;
+  localparam int unsigned BOUND_SCALE_W = 9;
 
   // Ray cone: tolerated displacement at distance l is `floor((offset + l * slope) / 2^shift)` units, clamped to 0 ..= 2^34-1.
   typedef struct packed {
@@ -236,41 +244,81 @@ package lod_pkg;
 
   // Input of tessellate.
   typedef struct packed {
+    logic compact;                // Inserted vertices are displacements.
     logic [3:0] grid;             // Zero bits at the bottom of an inserted vertex.
+    bound_scale_t scale;          // The model's bound scale.
+    logic [BOUND_CODE_W-1:0] e0;  // Bound code of edge (p1, p2).
+    logic [BOUND_CODE_W-1:0] e1;  // Bound code of edge (p2, p0).
+    logic [BOUND_CODE_W-1:0] e2;  // Bound code of edge (p0, p1).
     logic [EDGE_STATE_W-1:0] s0;  // State of edge (p1, p2).
     logic [EDGE_STATE_W-1:0] s1;  // State of edge (p2, p0).
     logic [EDGE_STATE_W-1:0] s2;  // State of edge (p0, p1).
+    point_t f0;                   // Corner p0 at full resolution.
+    point_t f1;                   // Corner p1.
+    point_t f2;                   // Corner p2.
     point_t p0;                   // Corner p0.
     point_t p1;                   // Corner p1.
     point_t p2;                   // Corner p2.
-    point_t q0;                   // Stored vertex on (p1, p2).
-    point_t q1;                   // Stored vertex on (p2, p0).
-    point_t q2;                   // Stored vertex on (p0, p1).
+    point_t v0;                   // Vertex or displacement on (p1, p2).
+    point_t v1;                   // On (p2, p0).
+    point_t v2;                   // On (p0, p1).
   } tessellate_in_t;
-  localparam int unsigned TESSELLATE_IN_W = 4 + EDGE_STATE_W + EDGE_STATE_W + EDGE_STATE_W + POINT_W + POINT_W + POINT_W + POINT_W + POINT_W + POINT_W;
+  localparam int unsigned TESSELLATE_IN_W = 1 + 4 + BOUND_SCALE_W + BOUND_CODE_W + BOUND_CODE_W + BOUND_CODE_W + EDGE_STATE_W + EDGE_STATE_W + EDGE_STATE_W + POINT_W + POINT_W + POINT_W + POINT_W + POINT_W + POINT_W + POINT_W + POINT_W + POINT_W;
 
-  // Output of tessellate: the morphed vertices.
+  // Output of tessellate.
   typedef struct packed {
-    point_t q0;  // On (p1, p2).
+    point_t g0;  // Inserted vertex on (p1, p2) at full resolution.
+    point_t g1;  // On (p2, p0).
+    point_t g2;  // On (p0, p1).
+    point_t q0;  // The same as morphed.
     point_t q1;  // On (p2, p0).
     point_t q2;  // On (p0, p1).
   } tessellate_out_t;
-  localparam int unsigned TESSELLATE_OUT_W = POINT_W + POINT_W + POINT_W;
+  localparam int unsigned TESSELLATE_OUT_W = POINT_W + POINT_W + POINT_W + POINT_W + POINT_W + POINT_W;
 
-  // Input of widen_box.
+  // Input of child_boxes.
   typedef struct packed {
-    box16_t bounds;  // Stored box.
-    point_t p0;      // Corner of the morphed child triangle.
-    point_t p1;      // Corner.
-    point_t p2;      // Corner.
-  } widen_box_in_t;
-  localparam int unsigned WIDEN_BOX_IN_W = BOX16_W + POINT_W + POINT_W + POINT_W;
+    logic tree;                  // Children of a tree's node.
+    code3_t origin;              // Lower corner of the frame.
+    logic [2:0] halves;          // Steps along x, y, z are half as long again.
+    logic [2:0][3:0] exponents;  // Powers of two of these steps.
+    logic [23:0][6:0] planes;    // Planes.
+    point_t f0;                  // Corner p0 at full resolution.
+    point_t f1;                  // Corner p1.
+    point_t f2;                  // Corner p2.
+    point_t g0;                  // Inserted vertex on (p1, p2) at full resolution.
+    point_t g1;                  // On (p2, p0).
+    point_t g2;                  // On (p0, p1).
+    point_t p0;                  // Corner p0 as morphed.
+    point_t p1;                  // Corner p1.
+    point_t p2;                  // Corner p2.
+    point_t q0;                  // Inserted vertex on (p1, p2) as morphed.
+    point_t q1;                  // On (p2, p0).
+    point_t q2;                  // On (p0, p1).
+  } child_boxes_in_t;
+  localparam int unsigned CHILD_BOXES_IN_W = 1 + CODE3_W + 3 + 3 * 4 + 24 * 7 + POINT_W + POINT_W + POINT_W + POINT_W + POINT_W + POINT_W + POINT_W + POINT_W + POINT_W + POINT_W + POINT_W + POINT_W;
 
-  // Output of widen_box.
+  // Output of child_boxes.
   typedef struct packed {
-    box16_t bounds;  // The union.
-  } widen_box_out_t;
-  localparam int unsigned WIDEN_BOX_OUT_W = BOX16_W;
+    logic [3:0][BOX16_W-1:0] bounds;  // Box of child k.
+  } child_boxes_out_t;
+  localparam int unsigned CHILD_BOXES_OUT_W = 4 * BOX16_W;
+
+  // Input of box_decode.
+  typedef struct packed {
+    code3_t origin;              // Lower corner of the frame.
+    logic [2:0] halves;          // Steps along x, y, z are half as long again.
+    logic [2:0][3:0] exponents;  // Powers of two of these steps.
+    logic [2:0][4:0] lo;         // Lower planes.
+    logic [2:0][4:0] hi;         // Upper planes.
+  } box_decode_in_t;
+  localparam int unsigned BOX_DECODE_IN_W = CODE3_W + 3 + 3 * 4 + 3 * 5 + 3 * 5;
+
+  // Output of box_decode.
+  typedef struct packed {
+    box16_t bounds;  // The box.
+  } box_decode_out_t;
+  localparam int unsigned BOX_DECODE_OUT_W = BOX16_W;
 
   // Input of box_test.
   typedef struct packed {
@@ -312,19 +360,28 @@ package lod_pkg;
 
   // Input of child_test.
   typedef struct packed {
-    ray_setup_out_t ray;              // The ray's constants.
-    logic [RAY_T_W-1:0] t_max;        // t of the closest hit so far.
-    logic [3:0] present;              // Child k exists.
-    logic [3:0][BOX16_W-1:0] bounds;  // Box of child k.
-    logic widen;                      // Widen the boxes by the children of the triangle below.
-    point_t p0;                       // Corner p0 of the parent.
-    point_t p1;                       // Corner p1.
-    point_t p2;                       // Corner p2.
-    point_t q0;                       // Its inserted vertex on (p1, p2), as morphed for this ray.
-    point_t q1;                       // On (p2, p0).
-    point_t q2;                       // On (p0, p1).
+    ray_setup_out_t ray;         // The ray's constants.
+    logic [RAY_T_W-1:0] t_max;   // t of the closest hit so far.
+    logic [3:0] present;         // Child k exists.
+    logic tree;                  // Children of a tree's node.
+    code3_t origin;              // Lower corner of the frame.
+    logic [2:0] halves;          // Steps along x, y, z are half as long again.
+    logic [2:0][3:0] exponents;  // Powers of two of these steps.
+    logic [23:0][6:0] planes;    // Planes.
+    point_t f0;                  // Corner p0 at full resolution.
+    point_t f1;                  // Corner p1.
+    point_t f2;                  // Corner p2.
+    point_t g0;                  // Inserted vertex on (p1, p2) at full resolution.
+    point_t g1;                  // On (p2, p0).
+    point_t g2;                  // On (p0, p1).
+    point_t p0;                  // Corner p0 as morphed.
+    point_t p1;                  // Corner p1.
+    point_t p2;                  // Corner p2.
+    point_t q0;                  // Inserted vertex on (p1, p2) as morphed.
+    point_t q1;                  // On (p2, p0).
+    point_t q2;                  // On (p0, p1).
   } child_test_in_t;
-  localparam int unsigned CHILD_TEST_IN_W = RAY_SETUP_OUT_W + RAY_T_W + 4 + 4 * BOX16_W + 1 + POINT_W + POINT_W + POINT_W + POINT_W + POINT_W + POINT_W;
+  localparam int unsigned CHILD_TEST_IN_W = RAY_SETUP_OUT_W + RAY_T_W + 4 + 1 + CODE3_W + 3 + 3 * 4 + 24 * 7 + POINT_W + POINT_W + POINT_W + POINT_W + POINT_W + POINT_W + POINT_W + POINT_W + POINT_W + POINT_W + POINT_W + POINT_W;
 
   // Output of child_test.
   typedef struct packed {
@@ -409,12 +466,13 @@ package lod_pkg;
 
   // Input of tree_base.
   typedef struct packed {
+    logic compact;                        // Inserted vertices are compact.
     logic [3:0] levels;                   // Number of splits N.
     logic [27:0] tree;                    // The tree.
     logic [LINE_ADDRESS_W-1:0] vertices;  // First line of the vertex data.
     logic [LINE_ADDRESS_W-1:0] bounds;    // First line of the bound data.
   } tree_base_in_t;
-  localparam int unsigned TREE_BASE_IN_W = 4 + 28 + LINE_ADDRESS_W + LINE_ADDRESS_W;
+  localparam int unsigned TREE_BASE_IN_W = 1 + 4 + 28 + LINE_ADDRESS_W + LINE_ADDRESS_W;
 
   // Output of tree_base.
   typedef struct packed {
@@ -429,9 +487,10 @@ package lod_pkg;
     logic [3:0] level;                // Level of the node within its tree; 0 outside of trees.
     logic [27:0] index;               // Number of the record on its level.
     logic pair;                       // Records have two lines.
-    logic half;                       // The second of them; 0 for one-line records.
+    logic halves;                     // Records are halves of lines.
+    logic half;                       // The second of two lines.
   } node_address_in_t;
-  localparam int unsigned NODE_ADDRESS_IN_W = LINE_ADDRESS_W + 4 + 28 + 1 + 1;
+  localparam int unsigned NODE_ADDRESS_IN_W = LINE_ADDRESS_W + 4 + 28 + 1 + 1 + 1;
 
   // Output of node_address.
   typedef struct packed {
@@ -439,15 +498,29 @@ package lod_pkg;
   } node_address_out_t;
   localparam int unsigned NODE_ADDRESS_OUT_W = LINE_ADDRESS_W;
 
-  // Bound data of one node: 16 bytes.
+  // What traversal needs of the four children of a tree's node: 32 bytes.
   typedef struct packed {
-    logic [1:0] reserved;         // Zero.
-    logic [BOUND_CODE_W-1:0] e0;  // Code of edge (p1, p2).
-    logic [BOUND_CODE_W-1:0] e1;  // Code of edge (p2, p0).
-    logic [BOUND_CODE_W-1:0] e2;  // Code of edge (p0, p1).
-    box16_t bounds;               // Box of the full-resolution triangles below the node.
-  } bound_data_t;
-  localparam int unsigned BOUND_DATA_W = 2 + BOUND_CODE_W + BOUND_CODE_W + BOUND_CODE_W + BOX16_W;
+    logic reserved;                       // Zero.
+    logic [8:0][BOUND_CODE_W-1:0] codes;  // Codes of the nine different edges.
+    logic [2:0] halves;                   // Steps along x, y, z are half as long again.
+    logic [2:0][3:0] exponents;           // Powers of two of these steps.
+    logic [23:0][6:0] planes;             // Child k: below in x, y, z and above in x, y, z at 6k to 6k + 5.
+  } sibling_group_t;
+  localparam int unsigned SIBLING_GROUP_W = 1 + 9 * BOUND_CODE_W + 3 + 3 * 4 + 24 * 7;
+
+  // A quad-BVH node: 32 bytes.
+  typedef struct packed {
+    logic reserved;              // Zero.
+    logic [3:0][1:0] kinds;      // Kind of each child: 0 empty, 1 inner node, 2 leaf.
+    logic [3:0][1:0] counts;     // Leaf: number of triangles or trees minus one; else 0.
+    logic [27:0] first_node;     // The first inner child.
+    logic [27:0] first_leaf;     // The first triangle slot or tree of the first leaf.
+    code3_t origin;              // Lower corner of the frame.
+    logic [2:0] halves;          // Steps along x, y, z are half as long again.
+    logic [2:0][3:0] exponents;  // Powers of two of these steps.
+    logic [23:0][4:0] planes;    // Child k: lower corner x, y, z and upper corner x, y, z at 6k to 6k + 5; zero in an empty slot.
+  } bvh_node_t;
+  localparam int unsigned BVH_NODE_W = 1 + 4 * 2 + 4 * 2 + 28 + 28 + CODE3_W + 3 + 3 * 4 + 24 * 5;
 
   // Three points of 28-bit coordinates (the stored part: units / 16): one 32-byte line.
   typedef struct packed {
@@ -458,29 +531,26 @@ package lod_pkg;
   } vertex_data_t;
   localparam int unsigned VERTEX_DATA_W = 4 + STORED_POINT_W + STORED_POINT_W + STORED_POINT_W;
 
+  // Inserted vertices of a node, compact.
+  typedef struct packed {
+    logic [10:0] reserved;  // Zero.
+    displacement_t v0;      // Of q0.
+    displacement_t v1;      // Of q1.
+    displacement_t v2;      // Of q2.
+  } displacements_t;
+  localparam int unsigned DISPLACEMENTS_W = 11 + DISPLACEMENT_W + DISPLACEMENT_W + DISPLACEMENT_W;
+
   // Second line of an L0 record.
   typedef struct packed {
-    logic [63:0] reserved_high;  // Zero.
-    logic [47:0] reserved;       // Zero.
-    logic [15:0] material;       // Material index.
-    bound_data_t root;           // Bound data of the root (codes zero if N = 0).
+    logic [59:0] reserved;        // Zero.
+    logic [27:0] source;          // Number of the base triangle in the mesh that the scene was made of.
+    logic [15:0] material;        // Material index.
+    logic [BOUND_CODE_W-1:0] e0;  // Code of edge (p1, p2) of the root; zero if N = 0, like the others.
+    logic [BOUND_CODE_W-1:0] e1;  // Code of edge (p2, p0).
+    logic [BOUND_CODE_W-1:0] e2;  // Code of edge (p0, p1).
+    displacements_t split;        // Inserted vertices of the root, if the scene's are compact; else zero.
   } l0_record_t;
-  localparam int unsigned L0_RECORD_W = 64 + 48 + 16 + BOUND_DATA_W;
-
-  // What a quad-BVH slot refers to.
-  typedef struct packed {
-    logic [1:0] kind;    // 0 empty, 1 inner node, 2 leaf.
-    logic [1:0] count;   // Leaf: number of triangles or trees minus one.
-    logic [27:0] index;  // Node index, or index of the leaf's first triangle slot or tree.
-  } child_ref_t;
-  localparam int unsigned CHILD_REF_W = 2 + 2 + 28;
-
-  // One of the four children of a quad-BVH node: 16 bytes.
-  typedef struct packed {
-    child_ref_t child;  // What it refers to.
-    box16_t bounds;     // Its box; all zero in an empty slot.
-  } bvh_child_t;
-  localparam int unsigned BVH_CHILD_W = CHILD_REF_W + BOX16_W;
+  localparam int unsigned L0_RECORD_W = 60 + 28 + 16 + BOUND_CODE_W + BOUND_CODE_W + BOUND_CODE_W + DISPLACEMENTS_W;
 
   // One waiting node.
   typedef struct packed {
@@ -514,13 +584,14 @@ package lod_pkg;
   // The model that the rays meet; held still while rays are under way.
   typedef struct packed {
     logic [3:0] levels;                   // Number of splits N.
+    logic compact;                        // Inserted vertices are stored as displacements from the midpoints of their edges.
     bound_scale_t scale;                  // Scale of the displacement bounds.
     logic [LINE_ADDRESS_W-1:0] nodes;     // First line of the quad-BVH's nodes.
     logic [LINE_ADDRESS_W-1:0] records;   // First line of the L0 records.
     logic [LINE_ADDRESS_W-1:0] bounds;    // First line of the bound data.
     logic [LINE_ADDRESS_W-1:0] vertices;  // First line of the vertex data.
   } scene_config_t;
-  localparam int unsigned SCENE_CONFIG_W = 4 + BOUND_SCALE_W + LINE_ADDRESS_W + LINE_ADDRESS_W + LINE_ADDRESS_W + LINE_ADDRESS_W;
+  localparam int unsigned SCENE_CONFIG_W = 4 + 1 + BOUND_SCALE_W + LINE_ADDRESS_W + LINE_ADDRESS_W + LINE_ADDRESS_W + LINE_ADDRESS_W;
 
   // A ray to trace.
   typedef struct packed {
@@ -580,7 +651,8 @@ package lod_pkg;
   typedef enum logic [1:0] {
     NODE   = 2'd0,  // quad-BVH node
     RECORD = 2'd1,  // L0 record
-    VERTEX = 2'd2   // inserted vertices and, but on the last split, the children's bound data
+    VERTEX = 2'd2,  // inserted vertices and, but on the last split, the children's sibling group
+    GROUP  = 2'd3   // the sibling group alone: the inserted vertices came with the L0 record
   } fetch_t;
 
   // Kinds of stack entries.

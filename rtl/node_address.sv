@@ -2,8 +2,8 @@
 
 /// Address of a memory line of a record. Twin of src/block/node_address.rs.
 ///
-/// With i = (4^level - 1) / 3 + index: base + i for one-line records, base + 2i + half for two-line ones. Records outside of trees have level 0.
-/// Legal: level < MAX_LEVELS; result below 2^36, which the size of the sections keeps. Latency NODE_ADDRESS_LATENCY = 2, interval 1.
+/// With i = (4^level - 1) / 3 + index: base + i for one-line records, base + 2i + half for two-line ones, base + floor((i - 1) / 2) for halves of lines, which
+/// begin at level 1. Records outside of trees have level 0. Legal: level < MAX_LEVELS; result below 2^36, which the size of the sections keeps. Latency NODE_ADDRESS_LATENCY = 2, interval 1.
 module node_address #(
   parameter int unsigned TAG_W = 8
 ) (
@@ -30,13 +30,17 @@ module node_address #(
 
   // (4^level - 1) / 3 in binary: 01 for each level below.
   logic [START_W-1:0]  start;
+  logic [27:0]         index;
   logic [RECORD_W-1:0] record;
   logic [LINE_W-1:0]   line;
   always_comb begin
     start = '0;
     for (int unsigned k = 0; k < START_W / 2; k++) start[2*k] = in_i.level > 4'(k);
+    // That number is odd: without its lowest one, and halved, the sum rounds down as the index does.
+    if (in_i.halves) start = start >> 1;
   end
-  assign record = RECORD_W'(start) + RECORD_W'(in_i.index);
+  assign index  = in_i.halves ? in_i.index >> 1 : in_i.index;
+  assign record = RECORD_W'(start) + RECORD_W'(index);
   assign line   = in_i.pair ? {record, in_i.half} : {1'b0, record};
 
   logic                 valid_line, ready_line;

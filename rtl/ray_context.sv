@@ -19,9 +19,9 @@ module ray_context (
   input  logic                             setup_grant_i,
   input  logic                             setup_valid_i,
   input  lod_pkg::ray_setup_out_t          setup_i,
-  // node_address and the memory behind it; `place_o` is the line's place in its record.
+  // node_address and the memory behind it; `place_o` is the line's place: the line buffer that it goes to.
   output logic                             fetch_request_o,
-  output logic [1:0]                       fetch_place_o,
+  output logic                             fetch_place_o,
   output lod_pkg::node_address_in_t        fetch_o,
   input  logic                             fetch_grant_i,
   input  logic                             line_valid_i,
@@ -85,7 +85,7 @@ module ray_context (
 );
 
   localparam int unsigned NODE_W = lod_pkg::NODE_W;
-  localparam int unsigned SPLIT_W = 6 * lod_pkg::POINT_W;
+  localparam int unsigned SPLIT_W = 12 * lod_pkg::POINT_W;
   localparam int unsigned SPLITS = lod_pkg::SPLIT_TRIANGLES;
   localparam int unsigned SPLIT_INDEX_W = SPLITS > 1 ? $clog2(SPLITS) : 1;
 
@@ -99,20 +99,20 @@ module ray_context (
   lod_pkg::ray_t           ray_q;
   lod_pkg::ray_setup_out_t setup_q;
 
-  // Where it is: entry under visit, tree, node, its triangle with inserted vertices, bound codes and edge states.
+  // Where it is: entry under visit, tree, node; its triangle with inserted vertices, at full resolution (f, g) and as morphed (p, q); bound codes and edge states.
   lod_pkg::stack_entry_t            entry_q;
   logic [27:0]                      tree_q;
   logic [3:0]                       level_q;
   logic [NODE_W-1:0]                node_q;
-  lod_pkg::point_t                  p0_q, p1_q, p2_q, q0_q, q1_q, q2_q;
+  lod_pkg::point_t                  f0_q, f1_q, f2_q, g0_q, g1_q, g2_q, p0_q, p1_q, p2_q, q0_q, q1_q, q2_q;
   logic [lod_pkg::BOUND_CODE_W-1:0] e0_q, e1_q, e2_q;
   lod_pkg::lod_test_out_t           lod_q;
   lod_pkg::tree_base_out_t          base_q;
 
-  // Lines asked for and not yet sent, sent and not yet there, and there.
-  logic [2:0]   want_q, waiting_q;
+  // Lines asked for and not yet sent, sent and not yet there, and there: a node, a sibling group or the corners of a record; the rest of the record or vertices.
+  logic [1:0]   want_q, waiting_q;
   logic         base_want_q, base_ready_q;
-  logic [255:0] line0_q, line1_q, line2_q;
+  logic [255:0] line0_q, line1_q;
 
   // Children still to be pushed.
   lod_pkg::child_test_out_t sorted_q;
@@ -125,12 +125,21 @@ module ray_context (
 
   // ---- Records in the line buffers ----
 
-  lod_pkg::vertex_data_t corners, inserted;
-  lod_pkg::l0_record_t   record;
+  lod_pkg::vertex_data_t   corners, inserted;
+  lod_pkg::l0_record_t     record;
+  lod_pkg::displacements_t displacements;
 
-  assign corners  = line0_q;
-  assign record   = line1_q;
-  assign inserted = line2_q;
+  assign corners       = line0_q;
+  assign record        = line1_q;
+  assign inserted      = line1_q;
+  // Two siblings share a line; the root's are in the lower half of its record's.
+  assign displacements = node_q[0] ? line1_q[255:128] : line1_q[127:0];
+
+  logic group_there, compact_root;
+  // Line 0 is a sibling group.
+  assign group_there  = fetch_q == lod_pkg::VERTEX || fetch_q == lod_pkg::GROUP;
+  // Its vertices come with its record: only the group is fetched, later.
+  assign compact_root = scene_i.compact && level_q == '0;
 
   logic last_split;
   // levels <= MAX_LEVELS and level_q < levels where this is used.
@@ -187,28 +196,31 @@ module ray_context (
   // One triangle with its inserted vertices per level that splits into nodes: levels 0 to MAX_LEVELS - 2.
   logic [SPLIT_W-1:0]       splits_q [SPLITS];
   logic [SPLIT_INDEX_W-1:0] parent_level;
-  lod_pkg::point_t          a0, a1, a2, m0, m1, m2;
+  lod_pkg::point_t          b0, b1, b2, a0, a1, a2, n0, n1, n2, m0, m1, m2;
 
   assign parent_level = SPLIT_INDEX_W'(entry_q.level - 4'd1);
-  assign {a0, a1, a2, m0, m1, m2} = splits_q[parent_level];
+  assign {b0, b1, b2, a0, a1, a2, n0, n1, n2, m0, m1, m2} = splits_q[parent_level];
 
   always_ff @(posedge clk_i) begin
     if (morph_valid_i && !last_split) begin
-      splits_q[SPLIT_INDEX_W'(level_q)] <= {p0_q, p1_q, p2_q, morph_i.q0, morph_i.q1, morph_i.q2};
+      splits_q[SPLIT_INDEX_W'(level_q)] <= {f0_q, f1_q, f2_q, p0_q, p1_q, p2_q, morph_i};
     end
   end
 
   // ---- Children ----
 
-  logic [3:0]                       present;
-  logic [3:0][lod_pkg::BOX16_W-1:0] bounds;
+  logic [3:0]       present;
+  lod_pkg::code3_t  origin;
+  logic [2:0]       halves;
+  logic [2:0][3:0]  exponents;
+  logic [23:0][6:0] planes;
 
   child_records u_children (
-    .tree_i(fetch_q == lod_pkg::VERTEX),
-    .line0_i(line0_q), .line1_i(line1_q),
+    .tree_i(group_there),
+    .line_i(line0_q),
     .level_i(level_q), .node_i(node_q),
     .count_i(count_q), .order_i(sorted_q.order), .t_near_i(sorted_q.t_near),
-    .present_o(present), .bounds_o(bounds), .entry_o(child_entry)
+    .present_o(present), .origin_o(origin), .halves_o(halves), .exponents_o(exponents), .planes_o(planes), .entry_o(child_entry)
   );
 
   // ---- Requests ----
@@ -219,30 +231,35 @@ module ray_context (
   assign setup_o         = {ray_q.origin, ray_q.direction};
 
   assign fetch_request_o = state_q == lod_pkg::FETCH && want_q != '0;
-  assign fetch_place_o   = want_q[2] ? 2'd2 : want_q[0] ? 2'd0 : 2'd1;
+  // Vertices before the group.
+  assign fetch_place_o   = want_q[1] && (fetch_q == lod_pkg::VERTEX || !want_q[0]);
 
   always_comb begin
     fetch_o       = '0;
-    fetch_o.pair  = !want_q[2];
-    fetch_o.half  = !want_q[2] && !want_q[0];
     fetch_o.index = entry_q.index;
     case (fetch_q)
-      lod_pkg::NODE:   fetch_o.base = scene_i.nodes;
-      lod_pkg::RECORD: fetch_o.base = scene_i.records;
+      lod_pkg::NODE: fetch_o.base = scene_i.nodes;
+      lod_pkg::RECORD: begin
+        fetch_o.base = scene_i.records;
+        fetch_o.pair = 1'b1;
+        fetch_o.half = fetch_place_o;
+      end
       default: begin
-        fetch_o.base  = want_q[2] ? base_q.vertices : base_q.bounds;
-        fetch_o.level = level_q;
-        fetch_o.index = 28'(node_q);
+        fetch_o.base   = fetch_place_o ? base_q.vertices : base_q.bounds;
+        fetch_o.level  = level_q;
+        fetch_o.index  = 28'(node_q);
+        fetch_o.halves = fetch_place_o && scene_i.compact;
       end
     endcase
   end
 
   assign base_request_o = state_q == lod_pkg::FETCH && base_want_q;
-  assign base_o         = {scene_i.levels, tree_q, scene_i.vertices, scene_i.bounds};
+  assign base_o         = {scene_i.compact, scene_i.levels, tree_q, scene_i.vertices, scene_i.bounds};
 
-  assign child_request_o = state_q == lod_pkg::CHILD && waiting_q[1:0] == '0;
+  assign child_request_o = state_q == lod_pkg::CHILD && !waiting_q[0];
 
-  assign child_o = {setup_q, t_max, present, bounds, fetch_q == lod_pkg::VERTEX, p0_q, p1_q, p2_q, q0_q, q1_q, q2_q};
+  assign child_o = {setup_q, t_max, present, group_there, origin, halves, exponents, planes,
+                    f0_q, f1_q, f2_q, g0_q, g1_q, g2_q, p0_q, p1_q, p2_q, q0_q, q1_q, q2_q};
 
   assign lod_request_o = state_q == lod_pkg::LOD;
   assign lod_o         = {ray_q, p0_q, p1_q, p2_q, e0_q, e1_q, e2_q, scene_i.scale};
@@ -250,14 +267,24 @@ module ray_context (
   assign morph_request_o = state_q == lod_pkg::MORPH;
 
   always_comb begin
-    morph_o      = '0;
+    morph_o         = '0;
+    morph_o.compact = scene_i.compact;
     // level_q < levels here.
-    morph_o.grid = scene_i.levels - level_q - 4'd1;
+    morph_o.grid    = scene_i.levels - level_q - 4'd1;
+    morph_o.scale   = scene_i.scale;
+    {morph_o.e0, morph_o.e1, morph_o.e2} = {e0_q, e1_q, e2_q};
     {morph_o.s0, morph_o.s1, morph_o.s2} = {lod_q.s0, lod_q.s1, lod_q.s2};
+    {morph_o.f0, morph_o.f1, morph_o.f2} = {f0_q, f1_q, f2_q};
     {morph_o.p0, morph_o.p1, morph_o.p2} = {p0_q, p1_q, p2_q};
-    morph_o.q0 = {inserted.v0.x, 4'd0, inserted.v0.y, 4'd0, inserted.v0.z, 4'd0};
-    morph_o.q1 = {inserted.v1.x, 4'd0, inserted.v1.y, 4'd0, inserted.v1.z, 4'd0};
-    morph_o.q2 = {inserted.v2.x, 4'd0, inserted.v2.y, 4'd0, inserted.v2.z, 4'd0};
+    if (scene_i.compact) begin
+      morph_o.v0 = {32'(displacements.v0.x), 32'(displacements.v0.y), 32'(displacements.v0.z)};
+      morph_o.v1 = {32'(displacements.v1.x), 32'(displacements.v1.y), 32'(displacements.v1.z)};
+      morph_o.v2 = {32'(displacements.v2.x), 32'(displacements.v2.y), 32'(displacements.v2.z)};
+    end else begin
+      morph_o.v0 = {inserted.v0.x, 4'd0, inserted.v0.y, 4'd0, inserted.v0.z, 4'd0};
+      morph_o.v1 = {inserted.v1.x, 4'd0, inserted.v1.y, 4'd0, inserted.v1.z, 4'd0};
+      morph_o.v2 = {inserted.v2.x, 4'd0, inserted.v2.y, 4'd0, inserted.v2.z, 4'd0};
+    end
   end
 
   assign tri_request_o = state_q == lod_pkg::TRI && left_q != '0;
@@ -310,7 +337,9 @@ module ray_context (
         case (fetch_q)
           lod_pkg::NODE:   if (record_there) state_d = lod_pkg::CHILD;
           lod_pkg::RECORD: if (record_there && base_ready_q) state_d = (scene_i.levels == '0) ? lod_pkg::TRI : lod_pkg::LOD;
-          default:         if (want_q == '0 && !waiting_q[2]) state_d = lod_pkg::MORPH;
+          // The group may still be under way.
+          lod_pkg::VERTEX: if (want_q == '0 && !waiting_q[1]) state_d = lod_pkg::MORPH;
+          lod_pkg::GROUP:  if (record_there) state_d = lod_pkg::CHILD;
         endcase
       end
       lod_pkg::CHILD:      if (child_grant_i) state_d = lod_pkg::CHILD_WAIT;
@@ -324,9 +353,9 @@ module ray_context (
         else if (!drop) state_d = lod_pkg::VISIT;
       end
       lod_pkg::LOD:         if (lod_grant_i) state_d = lod_pkg::LOD_WAIT;
-      lod_pkg::LOD_WAIT:    if (lod_valid_i) state_d = lod_i.refine ? lod_pkg::FETCH : lod_pkg::TRI;
+      lod_pkg::LOD_WAIT:    if (lod_valid_i) state_d = !lod_i.refine ? lod_pkg::TRI : compact_root ? lod_pkg::MORPH : lod_pkg::FETCH;
       lod_pkg::MORPH:       if (morph_grant_i) state_d = lod_pkg::MORPH_WAIT;
-      lod_pkg::MORPH_WAIT:  if (morph_valid_i) state_d = last_split ? lod_pkg::TRI : lod_pkg::CHILD;
+      lod_pkg::MORPH_WAIT:  if (morph_valid_i) state_d = last_split ? lod_pkg::TRI : compact_root ? lod_pkg::FETCH : lod_pkg::CHILD;
       lod_pkg::TRI:         if (left_q == '0 && pending_q == '0) state_d = lod_pkg::POP;
       lod_pkg::DIVIDE_V:    if (divide_grant_i) state_d = lod_pkg::DIVIDE_W;
       lod_pkg::DIVIDE_W:    if (divide_grant_i) state_d = lod_pkg::DIVIDE_WAIT;
@@ -353,6 +382,11 @@ module ray_context (
 
   // ---- Entry, node and triangle ----
 
+  lod_pkg::point_t root0, root1, root2;
+  assign root0 = {corners.v0.x, 4'd0, corners.v0.y, 4'd0, corners.v0.z, 4'd0};
+  assign root1 = {corners.v1.x, 4'd0, corners.v1.y, 4'd0, corners.v1.z, 4'd0};
+  assign root2 = {corners.v2.x, 4'd0, corners.v2.y, 4'd0, corners.v2.z, 4'd0};
+
   always_ff @(posedge clk_i) begin
     if (setup_valid_i) entry_q <= '0;
     else if (state_q == lod_pkg::PUSH && count_q == 3'd1) entry_q <= child_entry;
@@ -368,30 +402,31 @@ module ray_context (
         node_q  <= entry_q.index[NODE_W-1:0];
         {e0_q, e1_q, e2_q} <= {entry_q.e0, entry_q.e1, entry_q.e2};
         unique case (entry_q.index[1:0])
-          2'd0: {p0_q, p1_q, p2_q} <= {a0, m2, m1};
-          2'd1: {p0_q, p1_q, p2_q} <= {m2, a1, m0};
-          2'd2: {p0_q, p1_q, p2_q} <= {m1, m0, a2};
-          2'd3: {p0_q, p1_q, p2_q} <= {m0, m1, m2};
+          2'd0: {f0_q, f1_q, f2_q, p0_q, p1_q, p2_q} <= {b0, n2, n1, a0, m2, m1};
+          2'd1: {f0_q, f1_q, f2_q, p0_q, p1_q, p2_q} <= {n2, b1, n0, m2, a1, m0};
+          2'd2: {f0_q, f1_q, f2_q, p0_q, p1_q, p2_q} <= {n1, n0, b2, m1, m0, a2};
+          2'd3: {f0_q, f1_q, f2_q, p0_q, p1_q, p2_q} <= {n0, n1, n2, m0, m1, m2};
         endcase
       end
     end else if (state_q == lod_pkg::FETCH && fetch_q == lod_pkg::RECORD && record_there && base_ready_q) begin
       level_q <= '0;
       node_q  <= '0;
-      {e0_q, e1_q, e2_q} <= {record.root.e0, record.root.e1, record.root.e2};
-      p0_q <= {corners.v0.x, 4'd0, corners.v0.y, 4'd0, corners.v0.z, 4'd0};
-      p1_q <= {corners.v1.x, 4'd0, corners.v1.y, 4'd0, corners.v1.z, 4'd0};
-      p2_q <= {corners.v2.x, 4'd0, corners.v2.y, 4'd0, corners.v2.z, 4'd0};
+      {e0_q, e1_q, e2_q} <= {record.e0, record.e1, record.e2};
+      {f0_q, f1_q, f2_q} <= {root0, root1, root2};
+      {p0_q, p1_q, p2_q} <= {root0, root1, root2};
     end
     if (lod_valid_i) lod_q <= lod_i;
-    if (morph_valid_i) {q0_q, q1_q, q2_q} <= morph_i;
+    if (morph_valid_i) {g0_q, g1_q, g2_q, q0_q, q1_q, q2_q} <= morph_i;
   end
 
   // ---- Lines ----
 
-  logic [2:0] granted, arrived;
+  logic [1:0] granted, arrived;
+  logic       fetch_group;
 
-  assign granted = fetch_grant_i ? 3'b001 << fetch_place_o : 3'b000;
-  assign arrived = line_valid_i ? 3'b001 << line_i.tag[1:0] : 3'b000;
+  assign granted     = fetch_grant_i ? 2'b01 << fetch_place_o : 2'b00;
+  assign arrived     = line_valid_i ? 2'b01 << line_i.tag[0] : 2'b00;
+  assign fetch_group = morph_valid_i && compact_root && !last_split;
 
   always_ff @(posedge clk_i) begin
     if (!rst_ni) begin
@@ -400,8 +435,10 @@ module ray_context (
       base_want_q <= 1'b0;
     end else begin
       waiting_q <= (waiting_q | granted) & ~arrived;
-      if (state_q == lod_pkg::VISIT && entry_q.kind != lod_pkg::ENTRY_TREE_NODE) want_q <= 3'b011;
-      else if (lod_valid_i && lod_i.refine) want_q <= last_split ? 3'b100 : 3'b111;
+      if (state_q == lod_pkg::VISIT && entry_q.kind == lod_pkg::ENTRY_BVH_NODE) want_q <= 2'b01;
+      else if (state_q == lod_pkg::VISIT && entry_q.kind == lod_pkg::ENTRY_TREE) want_q <= 2'b11;
+      else if (lod_valid_i && lod_i.refine && !compact_root) want_q <= last_split ? 2'b10 : 2'b11;
+      else if (fetch_group) want_q <= 2'b01;
       else want_q <= want_q & ~granted;
       if (state_q == lod_pkg::VISIT && entry_q.kind == lod_pkg::ENTRY_TREE) base_want_q <= 1'b1;
       else if (base_grant_i) base_want_q <= 1'b0;
@@ -411,13 +448,13 @@ module ray_context (
   always_ff @(posedge clk_i) begin
     if (arrived[0]) line0_q <= line_i.line;
     if (arrived[1]) line1_q <= line_i.line;
-    if (arrived[2]) line2_q <= line_i.line;
     if (base_valid_i) base_q <= base_i;
     if (state_q == lod_pkg::VISIT && entry_q.kind == lod_pkg::ENTRY_TREE) base_ready_q <= 1'b0;
     else if (base_valid_i) base_ready_q <= 1'b1;
     if (state_q == lod_pkg::VISIT && entry_q.kind == lod_pkg::ENTRY_BVH_NODE) fetch_q <= lod_pkg::NODE;
     else if (state_q == lod_pkg::VISIT && entry_q.kind == lod_pkg::ENTRY_TREE) fetch_q <= lod_pkg::RECORD;
-    else if (lod_valid_i && lod_i.refine) fetch_q <= lod_pkg::VERTEX;
+    else if (lod_valid_i && lod_i.refine && !compact_root) fetch_q <= lod_pkg::VERTEX;
+    else if (fetch_group) fetch_q <= lod_pkg::GROUP;
   end
 
   // ---- Children and triangles ----

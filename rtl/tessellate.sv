@@ -1,9 +1,12 @@
 `default_nettype none
 
-/// Inserted vertices of a node's triangle for this ray: morphed between edge midpoint and stored position. Twin of src/block/tessellate.rs (paper section 3.4).
+/// Inserted vertices of a node's triangle: at full resolution, and morphed for this ray between the midpoints of its morphed edges and there. Twin of
+/// src/block/tessellate.rs (paper section 3.4).
 ///
-/// Nine `morph_coordinate` in lockstep: q_i lies on the edge between the two corners that are not p_i, and opens by s_i.
-/// Legal: corners multiples of 2^(grid+1), q of 2^grid, grid 0 to 9, |v| < 2^31, s 0 to 256. Latency TESSELLATE_LATENCY; interval 1.
+/// Three `morph_vertex` in lockstep: vertex i lies on the edge between the two corners that are not p_i, and opens by s_i. A displacement counts steps of 2^e
+/// units, e = max(grid + 4, floor(k / 16) - 11) with k = code + offset of its edge.
+/// Legal: corners multiples of 2^(grid+1), vertices of 2^grid, grid 0 to 9, |v| <= 0x7FFE_0000, s 0 to 256; displacements of 13 bits, e at most 21.
+/// Latency TESSELLATE_LATENCY; interval 1.
 module tessellate #(
   parameter int unsigned TAG_W = 8
 ) (
@@ -19,31 +22,48 @@ module tessellate #(
   output logic [TAG_W-1:0]         tag_o
 );
 
-  localparam int unsigned W = lod_pkg::POINT_W / 3;
+  localparam int unsigned P_W = lod_pkg::POINT_W;
+  // 8 and 9 bits added; the fraction of an octave.
+  localparam int unsigned K_W = lod_pkg::BOUND_SCALE_W + 1;
+  localparam int unsigned PART_W = 4;
+  localparam int unsigned OCTAVE_W = K_W - PART_W;
+  localparam int unsigned SHIFT_W = 5;
 
-  // Per vertex: the ends of its edge, its stored place and its state.
-  logic [2:0][lod_pkg::POINT_W-1:0]      a, b, q, morphed;
+  // Per vertex: the ends of its edge at full resolution and as morphed, what is stored of it, its code and its state.
+  logic [2:0][P_W-1:0]                   fa, fb, pa, pb, v, full, morphed;
+  logic [2:0][lod_pkg::BOUND_CODE_W-1:0] code;
   logic [2:0][lod_pkg::EDGE_STATE_W-1:0] s;
-  logic [8:0]                            valid, ready;
-  assign a = {in_i.p0, in_i.p2, in_i.p1};
-  assign b = {in_i.p1, in_i.p0, in_i.p2};
-  assign q = {in_i.q2, in_i.q1, in_i.q0};
-  assign s = {in_i.s2, in_i.s1, in_i.s0};
+  logic [2:0]                            valid, ready;
+  assign fa   = {in_i.f0, in_i.f2, in_i.f1};
+  assign fb   = {in_i.f1, in_i.f0, in_i.f2};
+  assign pa   = {in_i.p0, in_i.p2, in_i.p1};
+  assign pb   = {in_i.p1, in_i.p0, in_i.p2};
+  assign v    = {in_i.v2, in_i.v1, in_i.v0};
+  assign code = {in_i.e2, in_i.e1, in_i.e0};
+  assign s    = {in_i.s2, in_i.s1, in_i.s0};
 
   for (genvar i = 0; i < 3; i++) begin : g_vertex
-    for (genvar k = 0; k < 3; k++) begin : g_coordinate
-      morph_coordinate u_morph (
-        .clk_i, .rst_ni, .valid_i, .ready_o(ready[3*i+k]),
-        .a_i(a[i][k*W +: W]), .b_i(b[i][k*W +: W]), .q_i(q[i][k*W +: W]), .s_i(s[i]), .grid_i(in_i.grid),
-        .valid_o(valid[3*i+k]), .ready_i, .morphed_o(morphed[i][k*W +: W])
-      );
-    end
+    logic [K_W-1:0]      k;
+    logic [OCTAVE_W-1:0] octave;
+    logic [SHIFT_W-1:0]  shift;
+    logic                unused_part;
+    assign k           = K_W'(code[i]) + K_W'(in_i.scale.offset);
+    assign octave      = k[K_W-1:PART_W];
+    assign unused_part = ^k[PART_W-1:0];
+    // octave - 11 above grid + 4. At most 32 - 11.
+    assign shift       = octave > OCTAVE_W'(in_i.grid) + OCTAVE_W'(15) ? SHIFT_W'(octave) - SHIFT_W'(11) : SHIFT_W'(in_i.grid) + SHIFT_W'(4);
+    morph_vertex u_morph (
+      .clk_i, .rst_ni, .valid_i, .ready_o(ready[i]),
+      .compact_i(in_i.compact), .shift_i(shift), .grid_i(in_i.grid), .s_i(s[i]),
+      .fa_i(fa[i]), .fb_i(fb[i]), .pa_i(pa[i]), .pb_i(pb[i]), .v_i(v[i]),
+      .valid_o(valid[i]), .ready_i, .full_o(full[i]), .morphed_o(morphed[i])
+    );
   end
 
   pipe_delay #(.W(TAG_W), .STAGES(lod_pkg::TESSELLATE_LATENCY)) u_tag (
     .clk_i, .rst_ni, .valid_i, .ready_o, .data_i(tag_i), .valid_o, .ready_i, .data_o(tag_o)
   );
-  assign out_o = {morphed[0], morphed[1], morphed[2]};
+  assign out_o = {full[0], full[1], full[2], morphed[0], morphed[1], morphed[2]};
 
   logic unused_lockstep;
   assign unused_lockstep = ^{valid, ready};

@@ -4,7 +4,7 @@
 ///
 /// `CONTEXTS` ray contexts (state machines) share one of each block; docs/traversal-unit.md gives every state, arbitration and port rule, and
 /// `src/sim/unit` is the cycle model. A result always has a place, so no block ever waits for its consumer; only the memory and hit ports stall.
-/// Memory: one 32-byte line a request, any latency and order of answers, at most three outstanding a context; answers are always taken.
+/// Memory: one 32-byte line a request, any latency and order of answers, at most two outstanding a context; answers are always taken.
 /// Hits: smaller t first, then smaller triangle; every field as at full resolution (paper section 3.6).
 module traversal_unit #(
   parameter int unsigned CONTEXTS = lod_pkg::CONTEXTS,
@@ -160,14 +160,13 @@ module traversal_unit #(
     .valid_o(map_valid), .ready_i(1'b1), .out_o(map_out), .tag_o(map_tag)
   );
 
-  // ---- Memory: requests carry their place in the record besides the operands ----
+  // ---- Memory: requests carry the place of their line besides the operands ----
 
-  localparam int unsigned FETCH_W = 2 + lod_pkg::NODE_ADDRESS_IN_W;
+  localparam int unsigned FETCH_W = 1 + lod_pkg::NODE_ADDRESS_IN_W;
 
   logic [N-1:0] fetch_request, fetch_grant;
   logic [N-1:0][FETCH_W-1:0] fetch_data;
-  logic fetch_in_valid, fetch_in_ready;
-  logic [1:0] fetch_place;
+  logic fetch_in_valid, fetch_in_ready, fetch_place;
   lod_pkg::node_address_in_t fetch_in;
   lod_pkg::node_address_out_t fetch_out;
   logic [CONTEXT_W-1:0] fetch_in_tag;
@@ -181,7 +180,7 @@ module traversal_unit #(
 
   node_address #(.TAG_W(lod_pkg::PLACE_TAG_W)) u_node_address (
     .clk_i, .rst_ni,
-    .valid_i(fetch_in_valid), .ready_o(fetch_in_ready), .in_i(fetch_in), .tag_i({fetch_in_tag, fetch_place}),
+    .valid_i(fetch_in_valid), .ready_o(fetch_in_ready), .in_i(fetch_in), .tag_i({fetch_in_tag, 1'b0, fetch_place}),
     .valid_o(mem_valid_o), .ready_i(mem_ready_i), .out_o(fetch_out), .tag_o(fetch_tag)
   );
 
@@ -326,8 +325,8 @@ module traversal_unit #(
       .morph_valid_i(morph_valid && morph_tag == ME), .morph_i(morph_out),
       .map_request_o(map_request[k]), .map_o(map_data[k]), .map_grant_i(map_grant[k]),
       .map_valid_i(map_valid && map_tag == ME), .map_i(map_out),
-      .fetch_request_o(fetch_request[k]), .fetch_place_o(fetch_data[k][FETCH_W-1:FETCH_W-2]),
-      .fetch_o(fetch_data[k][FETCH_W-3:0]), .fetch_grant_i(fetch_grant[k]),
+      .fetch_request_o(fetch_request[k]), .fetch_place_o(fetch_data[k][FETCH_W-1]),
+      .fetch_o(fetch_data[k][FETCH_W-2:0]), .fetch_grant_i(fetch_grant[k]),
       .line_valid_i(mem_valid_i && mem_i.tag[7:2] == 6'(ME)), .line_i(mem_i),
       .tri_request_o(tri_request[k]), .tri_number_o(tri_data[k][TRI_W-1:TRI_W-2]),
       .tri_o(tri_data[k][TRI_W-3:0]), .tri_grant_i(tri_grant[k]),

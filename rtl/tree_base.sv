@@ -2,8 +2,8 @@
 
 /// Where a tree's vertex lines and sibling groups begin. Twin of src/block/tree_base.rs.
 ///
-/// With V = (4^N - 1) / 3 = binary 0101..01 of N ones and G = (V - 1) / 4 (0 if N = 0): vertices + tree V and bounds + 2 tree G. So one product serves both:
-/// 2 tree G = (tree V - tree) / 2, and 0 if N = 0, where tree V is 0.
+/// With V = (4^N - 1) / 3 = binary 0101..01 of N ones and G = (V - 1) / 4 (0 if N = 0): vertices + tree V, or vertices + 2 tree G if they are compact, and
+/// bounds + tree G. So one product serves all: tree G = (tree V - tree) / 4, and 0 if N = 0, where tree V is 0.
 /// Legal: levels <= MAX_LEVELS; both results below 2^36, which the size of the sections keeps. Latency TREE_BASE_LATENCY; interval 1.
 module tree_base #(
   parameter int unsigned TAG_W = 8
@@ -47,20 +47,21 @@ module tree_base #(
   logic [TREE_W-1:0]    tree_q;
   logic [ADDRESS_W-1:0] vertices_q, bounds_q;
   logic [TAG_W-1:0]     tag_q;
-  logic                 split_q;
-  pipe_delay #(.W(1 + TREE_W + 2 * ADDRESS_W + TAG_W), .STAGES(PRODUCT_LATENCY)) u_beside (
-    .clk_i, .rst_ni, .valid_i, .ready_o(), .data_i({in_i.levels != '0, in_i.tree, in_i.vertices, in_i.bounds, tag_i}),
-    .valid_o(), .ready_i(ready_product), .data_o({split_q, tree_q, vertices_q, bounds_q, tag_q})
+  logic                 compact_q, split_q;
+  pipe_delay #(.W(2 + TREE_W + 2 * ADDRESS_W + TAG_W), .STAGES(PRODUCT_LATENCY)) u_beside (
+    .clk_i, .rst_ni, .valid_i, .ready_o(), .data_i({in_i.compact, in_i.levels != '0, in_i.tree, in_i.vertices, in_i.bounds, tag_i}),
+    .valid_o(), .ready_i(ready_product), .data_o({compact_q, split_q, tree_q, vertices_q, bounds_q, tag_q})
   );
 
   // The difference is a multiple of 4.
-  logic [PRODUCT_W-1:0] groups_twice;
-  assign groups_twice = split_q ? (product[PRODUCT_W-1:0] - PRODUCT_W'(tree_q)) >> 1 : '0;
+  logic [PRODUCT_W-1:0] groups, lines_before;
+  assign groups       = split_q ? (product[PRODUCT_W-1:0] - PRODUCT_W'(tree_q)) >> 2 : '0;
+  assign lines_before = compact_q ? groups << 1 : product[PRODUCT_W-1:0];
   logic unused_sign;
   assign unused_sign = ^product[PRODUCT_W+1:PRODUCT_W];
   if (PRODUCT_W > OFFSET_W) begin : g_room
     logic unused_upper;
-    assign unused_upper = ^{product[PRODUCT_W-1:OFFSET_W], groups_twice[PRODUCT_W-1:OFFSET_W]};
+    assign unused_upper = ^{lines_before[PRODUCT_W-1:OFFSET_W], groups[PRODUCT_W-1:OFFSET_W]};
   end
 
   logic                 valid_offset, ready_offset;
@@ -69,7 +70,7 @@ module tree_base #(
   logic [TAG_W-1:0]     tag_offset;
   pipe_stage #(.W(2 * OFFSET_W + 2 * ADDRESS_W + TAG_W)) u_offset (
     .clk_i, .rst_ni, .valid_i(valid_product), .ready_o(ready_product),
-    .data_i({product[OFFSET_W-1:0], groups_twice[OFFSET_W-1:0], vertices_q, bounds_q, tag_q}),
+    .data_i({lines_before[OFFSET_W-1:0], groups[OFFSET_W-1:0], vertices_q, bounds_q, tag_q}),
     .valid_o(valid_offset), .ready_i(ready_offset),
     .data_o({vertices_offset, bounds_offset, vertices_base, bounds_base, tag_offset})
   );

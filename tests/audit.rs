@@ -2,9 +2,11 @@
 
 use lodray::bvh::over_trees;
 use lodray::format::audit::{AuditReport, audit};
-use lodray::format::{BoundData, BvhChild, Scene, SceneError, VertexData, encode, export_level, layout, tree_boxes};
+use lodray::format::{
+    BvhNode, Displacements, L0Record, Scene, SceneError, SiblingGroup, VertexData, encode, export_level, layout, tree_boxes,
+};
 use lodray::mesh::{BoundKind, Surface, edge_index, lattice, quantise};
-use lodray::num::{U, Vec3, Wire, bound_decode};
+use lodray::num::{BoundCode, U, Vec3, VertexForm, Wire, bound_decode};
 use lodray_test_support::cases;
 use lodray_test_support::surfaces::{fan, grid, info, octahedron, scene, scene_with, surface};
 use proptest::prelude::*;
@@ -18,10 +20,12 @@ fn sound_scenes_pass_and_nothing_is_left_out() {
             surface(levels, &[[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]], &[[0, 1, 2], [2, 1, 0]], lodray_test_support::surfaces::bumps);
         let flat = surface(levels, &[[5.0; 3]; 3], &[[0, 1, 2]], |p| p);
         for s in [one, twice, flat, grid(levels, 3), octahedron(levels), fan(levels)] {
-            let report = audit(&scene(&s));
-            assert!(report.passed(), "{report}");
-            let bounds = report.check("bounds cover the true displacement").unwrap();
-            assert_eq!(bounds.checked == 0, levels == 0);
+            for form in VertexForm::ALL {
+                let report = audit(&scene_with(&s, BoundKind::Largest, form));
+                assert!(report.passed(), "{form:?}: {report}");
+                let bounds = report.check("bounds cover the true displacement").unwrap();
+                assert_eq!(bounds.checked == 0, levels == 0);
+            }
         }
     }
 }
@@ -30,16 +34,22 @@ fn sound_scenes_pass_and_nothing_is_left_out() {
 fn ten_levels_and_unused_base_vertices_work() {
     let mut s = surface(10, &[[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]], &[[0, 1, 2]], lodray_test_support::surfaces::bumps);
     s.base_vertices = u32::MAX;
-    let scene = scene(&s);
-    let report = audit(&scene);
-    assert!(report.passed(), "{report}");
-    assert!(!report.to_string().contains("FAILED"));
-    assert_eq!(scene.finest_triangles(), 1 << 20);
+    for form in VertexForm::ALL {
+        let scene = scene_with(&s, BoundKind::Largest, form);
+        let report = audit(&scene);
+        assert!(report.passed(), "{report}");
+        assert!(!report.to_string().contains("FAILED"));
+        assert_eq!(scene.finest_triangles(), 1 << 20);
+    }
 }
 
 #[test]
 fn bytes_per_triangle_keep_to_the_promise() {
-    assert!(scene(&grid(7, 1)).bytes_per_triangle() <= 16.1);
+    // A vertex line for three triangles, or half a line, and a group's line for twelve.
+    for (form, most) in VertexForm::ALL.into_iter().zip([13.4, 8.05]) {
+        let bytes = scene_with(&grid(7, 1), BoundKind::Largest, form).bytes_per_triangle();
+        assert!(bytes <= most, "{form:?}: {bytes}");
+    }
 }
 
 /// Applies `f` to the bytes of section `kind`, reseals, opens, audits.
@@ -93,35 +103,35 @@ fn one_lowered_code_is_found_wherever_it_stands() {
 }
 
 fn one_lowered_code_is_found(kind: BoundKind) {
-    let good = scene_with(&octahedron(2), kind);
+    let good = scene_with(&octahedron(2), kind, VertexForm::Exact);
     assert_eq!((audit(&good).passed(), audit(&good).bounds), (true, kind));
-    let (mut lowered, one) = (0, U::<10>::new(1));
-    let lower = |code: &mut U<10>| *code = U::new(code.get().saturating_sub(one.get()));
+    let mut lowered = 0;
+    let lower = |code: &mut BoundCode| *code = U::new(code.get() - 1);
     for tree in 0..good.trees() {
         for side in 0..3 {
             let report = damaged(&good, RECORDS, |b| {
-                change(b, 64 * tree + 32, |r: &mut BoundData| lower([&mut r.e0, &mut r.e1, &mut r.e2][side]));
+                change(b, 64 * tree + 32, |r: &mut L0Record| lower([&mut r.e0, &mut r.e1, &mut r.e2][side]));
             });
             found_by(&report, "bounds cover the true displacement");
             lowered += 1;
         }
-        for child in 0..4 {
-            let at = 64 * layout::child_group(2, tree, 0, 0) + 16 * child;
-            let report = damaged(&good, BOUNDS, |b| change(b, at, |r: &mut BoundData| lower(&mut r.e1)));
-            assert!(!report.passed());
+        for place in 0..9 {
+            let at = 32 * layout::child_group(2, tree, 0, 0);
+            let report = damaged(&good, BOUNDS, |b| change(b, at, |r: &mut SiblingGroup| lower(&mut r.codes[place])));
+            found_by(&report, "bounds cover the true displacement");
             lowered += 1;
         }
     }
-    assert_eq!(lowered, 8 * 7);
+    assert_eq!(lowered, 8 * 12);
 }
 
 #[test]
 fn the_papers_bounds_do_not_pass_for_total_ones() {
     for s in [octahedron(2), octahedron(5), grid(3, 3), fan(4)] {
-        let mut h = quantise(&s, BoundKind::Largest).unwrap();
+        let mut h = quantise(&s, BoundKind::Largest, VertexForm::Exact).unwrap();
         h.bounds.kind = BoundKind::Total;
-        let nodes = over_trees(&tree_boxes(&h)).unwrap();
-        let report = audit(&encode(&h, &s, info("said to be total"), &nodes).unwrap());
+        let bvh = over_trees(&tree_boxes(&h)).unwrap();
+        let report = audit(&encode(&h, &s, info("said to be total"), &bvh).unwrap());
         assert_eq!(report.bounds, BoundKind::Total);
         found_by(&report, "bounds cover the true displacement");
         assert!(report.checks.iter().filter(|check| !check.passed()).count() == 1, "{report}");
@@ -132,13 +142,62 @@ fn the_papers_bounds_do_not_pass_for_total_ones() {
 fn a_smaller_scale_is_found() {
     let good = scene(&octahedron(3));
     let report = damaged(&good, META, |b| {
-        let at = b.windows(16).position(|w| w == b"\"bound_mantissa\"").unwrap() + 17;
-        b[at] -= 1; // the leading digit: at least 1 because the mantissa has 17 bits or more
-        if b[at] == b'0' {
-            b[at] = b' ';
-        }
+        let at = b.windows(14).position(|w| w == b"\"bound_offset\"").unwrap() + 15;
+        let digits = b[at..].iter().take_while(|c| c.is_ascii_digit()).count();
+        let offset: u32 = std::str::from_utf8(&b[at..at + digits]).unwrap().parse().unwrap();
+        b[at..at + digits].copy_from_slice(format!("{:>digits$}", offset - 1).as_bytes());
     });
     found_by(&report, "bounds cover the true displacement");
+}
+
+/// Where the first record of a section is in which `pick` finds something, and what.
+fn first<T: Wire, P>(bytes: &[u8], pick: impl Fn(&T) -> Option<P>) -> (usize, P) {
+    let size = T::WIDTH as usize / 8;
+    let words = |b: &[u8]| b.as_chunks::<8>().0.iter().map(|b| u64::from_le_bytes(*b)).collect::<Vec<_>>();
+    let mut all = bytes.chunks_exact(size).enumerate().map(|(at, record)| (size * at, pick(&T::from_words(&words(record)))));
+    all.find_map(|(at, found)| Some((at, found?))).expect("one of them has it")
+}
+
+const LEAF_BOXES: &str = "quad-BVH leaf boxes contain all vertices of their trees";
+const INNER_BOXES: &str = "quad-BVH inner boxes contain all vertices of the trees below";
+
+#[test]
+fn a_box_one_step_too_small_is_found() {
+    for form in VertexForm::ALL {
+        let good = scene_with(&octahedron(4), BoundKind::Largest, form);
+        let section = |kind: usize| {
+            let (offset, length) = lodray_test_support::surfaces::section(good.bytes(), kind);
+            &good.bytes()[offset..offset + length]
+        };
+        // Whichever plane it is.
+        for plane in 0..24 {
+            let (at, ()) = first(section(BOUNDS), |r: &SiblingGroup| (r.planes[plane].get() > 0).then_some(()));
+            let report =
+                damaged(&good, BOUNDS, |b| change(b, at, |r: &mut SiblingGroup| r.planes[plane] = U::new(r.planes[plane].get() - 1)));
+            found_by(&report, "boxes contain all full-resolution vertices below");
+        }
+        for axis in 0..3 {
+            let long = |r: &SiblingGroup| (r.exponents[axis].get() > 0).then_some(());
+            let (at, ()) = first(section(BOUNDS), long);
+            let shorten = |r: &mut SiblingGroup| r.exponents[axis] = U::new(r.exponents[axis].get() - 1);
+            found_by(&damaged(&good, BOUNDS, |b| change(b, at, shorten)), "boxes contain all full-resolution vertices below");
+            // Node 0 has four nodes, node 1 two leaves.
+            for (at, name) in [(0, INNER_BOXES), (32, LEAF_BOXES)] {
+                let up = |r: &mut BvhNode, plane: usize| r.planes[plane] = U::new(r.planes[plane].get() + 1);
+                let down = |r: &mut BvhNode, plane: usize| r.planes[plane] = U::new(r.planes[plane].get() - 1);
+                for slot in 0..2 {
+                    found_by(&damaged(&good, NODES, |b| change(b, at, |r| up(r, 6 * slot + axis))), name);
+                    found_by(&damaged(&good, NODES, |b| change(b, at, |r| down(r, 6 * slot + axis + 3))), name);
+                }
+                let shift = |r: &mut BvhNode| {
+                    let mut origin = r.origin.get();
+                    origin[axis] += 1;
+                    r.origin = Vec3::new(origin[0], origin[1], origin[2]);
+                };
+                found_by(&damaged(&good, NODES, |b| change(b, at, shift)), name);
+            }
+        }
+    }
 }
 
 #[test]
@@ -146,24 +205,8 @@ fn each_damage_is_found_by_its_check() {
     let levels = 6;
     let good = scene(&octahedron(levels));
     assert!(audit(&good).passed());
-    let group = 64 * layout::child_group(levels, 3, 1, 2);
-    let line = |level, node| 32 * layout::vertex_line(levels, 5, level, node);
-
-    for axis in 0..3 {
-        let shrink = |v: &mut Vec3<16>, by: i64| {
-            let mut c = v.get();
-            c[axis] += by;
-            *v = Vec3::new(c[0], c[1], c[2]);
-        };
-        let boxes = "boxes contain all full-resolution vertices below";
-        found_by(&damaged(&good, BOUNDS, |b| change(b, group, |r: &mut BoundData| shrink(&mut r.bounds.hi, -1))), boxes);
-        found_by(&damaged(&good, BOUNDS, |b| change(b, group, |r: &mut BoundData| shrink(&mut r.bounds.lo, 1))), boxes);
-        found_by(&damaged(&good, RECORDS, |b| change(b, 32, |r: &mut BoundData| shrink(&mut r.bounds.hi, -1))), boxes);
-        let leaf = |b: &mut [u8]| change(b, 80, |r: &mut BvhChild| shrink(&mut r.bounds.hi, -1)); // slot 0 is empty
-        found_by(&damaged(&good, NODES, leaf), "quad-BVH leaf boxes contain their trees' boxes");
-        let root = |b: &mut [u8]| change(b, 0, |r: &mut BvhChild| shrink(&mut r.bounds.lo, 1));
-        found_by(&damaged(&good, NODES, root), "quad-BVH inner boxes contain their children's boxes");
-    }
+    let group = 32 * layout::child_group(levels, 3, 1, 2);
+    let line = |level, node| 32 * layout::vertex_line(VertexForm::Exact, levels, 5, level, node);
 
     // Bit 4 of a coordinate, the lowest that is stored: no vertex of level 1 of 6 may have it.
     let nudge = |r: &mut VertexData| r.v1 = Vec3::new(r.v1.x.get() ^ 1, r.v1.y.get(), r.v1.z.get());
@@ -178,21 +221,32 @@ fn each_damage_is_found_by_its_check() {
     let refused = |kind, f: &dyn Fn(&mut [u8])| reopened(&good, kind, f).expect_err("refused").to_string();
     assert!(refused(VERTICES, &|b| change(b, line(1, 3), outside)).contains("coordinate beyond"));
     assert!(refused(RECORDS, &|b| change(b, 64, outside)).contains("coordinate beyond"));
-    let least = |r: &mut BoundData| r.bounds.lo = Vec3::new(0, -32_768, 0);
-    assert!(refused(BOUNDS, &|b| change(b, group, least)).contains("box inside out"));
+    let least = |r: &mut BvhNode| r.origin = Vec3::new(0, -32_768, 0);
+    assert!(refused(NODES, &|b| change(b, 0, least)).contains("box inside out"));
 
     let reserved = "reserved bits and empty slots are zero";
     found_by(&damaged(&good, VERTICES, |b| change(b, line(2, 1), |r: &mut VertexData| r.reserved = U::new(1))), reserved);
-    found_by(&damaged(&good, BOUNDS, |b| change(b, group, |r: &mut BoundData| r.reserved = U::new(1))), reserved);
+    found_by(&damaged(&good, BOUNDS, |b| change(b, group, |r: &mut SiblingGroup| r.reserved = U::new(1))), reserved);
     found_by(&damaged(&good, RECORDS, |b| b[64 + 63] = 0x80), reserved);
     found_by(&damaged(&good, RECORDS, |b| b[31] |= 0x80), reserved);
+    // Exact vertices leave no displacements in the records.
+    found_by(&damaged(&good, RECORDS, |b| b[64 + 32] = 1), reserved);
+    found_by(&damaged(&good, NODES, |b| change(b, 0, |r: &mut BvhNode| r.reserved = U::new(1))), reserved);
+    // Node 1 has two empty slots and no nodes, node 0 no leaves.
+    found_by(&damaged(&good, NODES, |b| change(b, 32, |r: &mut BvhNode| r.planes[23] = U::new(1))), reserved);
+    found_by(&damaged(&good, NODES, |b| change(b, 32, |r: &mut BvhNode| r.counts[3] = U::new(1))), reserved);
+    found_by(&damaged(&good, NODES, |b| change(b, 32, |r: &mut BvhNode| r.first_node = U::new(1))), reserved);
+    found_by(&damaged(&good, NODES, |b| change(b, 0, |r: &mut BvhNode| r.first_leaf = U::new(1))), reserved);
 
     // Raised codes still cover: only equality and order break.
-    let raise = |b: &mut [u8]| change(b, 32, |r: &mut BoundData| r.e0 = U::new(1023));
+    let raise = |b: &mut [u8]| change(b, 32, |r: &mut L0Record| r.e0 = U::new(255));
     found_by(&damaged(&good, RECORDS, raise), "all trees that share an edge hold the same code");
-    let centre = group + 48;
-    let raise = |b: &mut [u8]| change(b, centre, |r: &mut BoundData| r.e2 = U::new(1023));
+    // Half of the edge that the node shares with its centre sibling.
+    let raise = |b: &mut [u8]| change(b, group, |r: &mut SiblingGroup| r.codes[2] = U::new(255));
     found_by(&damaged(&good, BOUNDS, raise), "both sides of an edge hold the same code");
+
+    let again = |r: &mut L0Record| r.source = U::new((r.source.get() + 1) % 8);
+    found_by(&damaged(&good, RECORDS, |b| change(b, 32, again)), "trees are the given base triangles, each once");
 
     found_by(&damaged(&good, NORMALS, |b| b[100..104].copy_from_slice(&[0, 0x80, 0, 0])), "normals are present");
     let report = damaged(&good, META, |b| {
@@ -203,48 +257,89 @@ fn each_damage_is_found_by_its_check() {
 }
 
 #[test]
+fn each_damage_to_compact_vertices_is_found() {
+    let levels = 4;
+    let good = scene_with(&octahedron(levels), BoundKind::Largest, VertexForm::Compact);
+    assert!(audit(&good).passed());
+    let half = |level, node| 32 * layout::vertex_line(VertexForm::Compact, levels, 5, level, node) + 16 * (node % 2);
+    let record = 64 * 5 + 32;
+    let nudge = |r: &mut Displacements| r.v1 = Vec3::new(r.v1.x.get() ^ 1, r.v1.y.get(), r.v1.z.get());
+
+    // A root's vertices lie on three base edges, the centre child's inside its tree.
+    let across = "vertices are equal in all trees that share them";
+    found_by(&damaged(&good, RECORDS, |b| change(b, record, |r: &mut L0Record| nudge(&mut r.split))), across);
+    let inside = "inserted vertices are equal on both sides of an edge";
+    found_by(&damaged(&good, VERTICES, |b| change(b, half(1, 3), nudge)), inside);
+    // What lies below a moved vertex is put on it: it is another one too.
+    let report = damaged(&good, VERTICES, |b| change(b, half(1, 3), nudge));
+    assert!(report.check(inside).unwrap().breaches > 1, "{report}");
+    for (level, node) in [(1, 0), (2, 5), (3, 62), (3, 63)] {
+        assert!(!damaged(&good, VERTICES, |b| change(b, half(level, node), nudge)).passed(), "{level} {node}");
+    }
+
+    let reserved = "reserved bits and empty slots are zero";
+    found_by(&damaged(&good, VERTICES, |b| change(b, half(2, 6), |r: &mut Displacements| r.reserved = U::new(1))), reserved);
+    found_by(&damaged(&good, VERTICES, |b| change(b, half(2, 7), |r: &mut Displacements| r.reserved = U::new(1024))), reserved);
+    found_by(&damaged(&good, RECORDS, |b| change(b, record, |r: &mut L0Record| r.split.reserved = U::new(1))), reserved);
+
+    // A code of the next octave has longer steps.
+    let raise = |r: &mut L0Record| r.e0 = U::new((r.e0.get() + 16).min(255));
+    let report = damaged(&good, RECORDS, |b| change(b, record, raise));
+    found_by(&report, "all trees that share an edge hold the same code");
+    let raise = |r: &mut SiblingGroup| r.codes[2] = U::new(r.codes[2].get() + 16);
+    let group = 32 * layout::child_group(levels, 5, 1, 2);
+    found_by(&damaged(&good, BOUNDS, |b| change(b, group, raise)), inside);
+    // A displacement beyond what its code says, of a vertex that lies near the middle of all.
+    let longest = |r: &mut Displacements| r.v2 = Vec3::new(-4096, r.v2.y.get(), r.v2.z.get());
+    found_by(&damaged(&good, VERTICES, |b| change(b, half(3, 63), longest)), "bounds cover the true displacement");
+
+    let refused = |kind, f: &dyn Fn(&mut [u8])| reopened(&good, kind, f).expect_err("refused").to_string();
+    let far = |r: &mut L0Record| r.split.v0 = Vec3::new(-4096, 4095, -4096);
+    let message = refused(RECORDS, &|b| (0..8).for_each(|tree| change(b, 64 * tree + 32, far)));
+    assert!(message.contains("leads beyond"), "{message}");
+    let nudge = |r: &mut VertexData| r.v0 = Vec3::new(r.v0.x.get() ^ 1, r.v0.y.get(), r.v0.z.get());
+    assert!(refused(RECORDS, &|b| change(b, 64 * 5, nudge)).contains("off the grid"));
+}
+
+#[test]
 fn swapped_and_doubled_tree_references_are_found() {
     let good = scene(&octahedron(3));
-    let slots = |b: &mut [u8], f: &dyn Fn(&mut [[u8; 16]])| f(b[64..128].as_chunks_mut::<16>().0);
-    // Node 1 holds two leaves. Their references stand in the last four bytes.
+    // Nodes 1 to 4 hold two leaves each.
+    let leaf = |b: &[u8], at: usize| BvhNode::from_words(&[0, 1, 2, 3].map(|k| u64::from_le_bytes(b[at + 8 * k..][..8].try_into().unwrap()))).first_leaf;
     let swapped = damaged(&good, NODES, |b| {
-        slots(b, &|s| {
-            let (used, other) = (s.iter().position(|s| s[15] != 0).unwrap(), s.iter().rposition(|s| s[15] != 0).unwrap());
-            assert_ne!(used, other);
-            let kept: [u8; 4] = s[used][12..].try_into().unwrap();
-            let moved: [u8; 4] = s[other][12..].try_into().unwrap();
-            s[used][12..].copy_from_slice(&moved);
-            s[other][12..].copy_from_slice(&kept);
-        });
+        let leaves = [leaf(b, 32), leaf(b, 128)];
+        assert_ne!(leaves[0], leaves[1]);
+        change(b, 32, |r: &mut BvhNode| r.first_leaf = leaves[1]);
+        change(b, 128, |r: &mut BvhNode| r.first_leaf = leaves[0]);
     });
-    found_by(&swapped, "quad-BVH leaf boxes contain their trees' boxes");
+    found_by(&swapped, LEAF_BOXES);
     let doubled = damaged(&good, NODES, |b| {
-        slots(b, &|s| {
-            let (used, other) = (s.iter().position(|s| s[15] != 0).unwrap(), s.iter().rposition(|s| s[15] != 0).unwrap());
-            s[other] = s[used];
-        });
+        let other = leaf(b, 64);
+        change(b, 32, |r: &mut BvhNode| r.first_leaf = other);
     });
     found_by(&doubled, "trees are referred to exactly once");
-    let lost = damaged(&good, NODES, |b| b[..16].fill(0));
+    let lost = damaged(&good, NODES, |b| {
+        change(b, 0, |r: &mut BvhNode| {
+            r.kinds[0] = U::ZERO;
+            r.planes[..6].fill(U::ZERO);
+        });
+    });
     found_by(&lost, "trees are referred to exactly once");
     found_by(&lost, "quad-BVH nodes are referred to exactly once");
 }
 
 #[test]
 fn finer_codes_above_coarser_are_found() {
-    // Both sides of an inner edge of level 1 raised: equal and covering, but above the codes of the base edges.
+    // An inner edge of level 1 raised for both of its sides: equal and covering, but above the codes of the base edges.
     let levels = 3;
     let v = [[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [1.0, 1.0, 0.0]];
     // Two trees, a bump in the second alone: the first's codes are small.
     let s = surface(levels, &v, &[[0, 1, 2], [3, 2, 1]], |p| [p[0], p[1], if p[0] + p[1] > 1.6 { 0.1 } else { 0.0 }]);
     let good = scene(&s);
     assert!(audit(&good).passed());
-    // e_k of the centre child is e_k of corner child k.
-    let group = 64 * layout::child_group(levels, 0, 0, 0);
-    let report = damaged(&good, BOUNDS, |b| {
-        change(b, group, |r: &mut BoundData| r.e0 = U::new(1023));
-        change(b, group + 48, |r: &mut BoundData| r.e0 = U::new(1023));
-    });
+    // e_0 of child 0 and of the centre child.
+    let group = 32 * layout::child_group(levels, 0, 0, 0);
+    let report = damaged(&good, BOUNDS, |b| change(b, group, |r: &mut SiblingGroup| r.codes[0] = U::new(255)));
     found_by(&report, "codes do not grow towards finer levels");
     assert_eq!(report.check("both sides of an edge hold the same code").unwrap().breaches, 0);
     assert_eq!(report.check("bounds cover the true displacement").unwrap().breaches, 0);
@@ -259,12 +354,12 @@ fn a_deep_displacement_lifts_its_ancestors_across_the_border() {
     let lifted = |p: [f64; 3]| if p == [1.0, 6.0, 0.0] { [1.0, 6.0, 0.5] } else { p };
     for (second, shared, half) in [([3, 2, 1], 0, [(8, 0), (4, 4)]), ([1, 2, 3], 2, [(4, 0), (8, 0)]), ([2, 1, 3], 2, [(0, 0), (4, 0)])] {
         let s = surface(levels, &v, &[[0, 1, 2], second], lifted);
-        let h = quantise(&s, BoundKind::Largest).unwrap();
+        let h = quantise(&s, BoundKind::Largest, VertexForm::Exact).unwrap();
         let top = |tree: usize, mut edges: Vec<usize>| {
             edges.sort_unstable();
             let lifted: Vec<_> = (0..h.codes(tree).len()).filter(|&e| h.codes(tree)[e] != 0).collect();
             assert_eq!(lifted, edges, "tree {tree} of {second:?}");
-            assert!(lifted.iter().all(|&e| h.codes(tree)[e] == 1023));
+            assert!(lifted.iter().all(|&e| h.codes(tree)[e] == 255));
         };
         let edge = |level, a, b| edge_index(levels, level, a, b);
         let (e0, e1) = (edge(0, (8, 0), (0, 8)), edge(0, (0, 8), (0, 0)));
@@ -274,8 +369,9 @@ fn a_deep_displacement_lifts_its_ancestors_across_the_border() {
         let corners = lattice::root(levels);
         top(1, vec![edge(0, corners[(shared + 1) % 3], corners[(shared + 2) % 3]), edge(1, half[0], half[1])]);
         let truth = h.points.iter().map(|p| i64::from(p[2])).max().unwrap() - h.points.iter().map(|p| i64::from(p[2])).min().unwrap();
-        let decoded = bound_decode(h.bounds.scale, 1023);
-        assert!(decoded >= truth as u64 && decoded as f64 <= truth as f64 * 1.0001);
+        let decoded = bound_decode(h.bounds.scale, 255);
+        // A sixteenth of an octave, and the mantissa's rounding.
+        assert!(decoded >= truth as u64 && decoded as f64 <= truth as f64 * 1.05);
         assert!(audit(&scene(&s)).passed());
     }
 }
@@ -300,16 +396,19 @@ proptest! {
     #![proptest_config(cases(200))]
 
     #[test]
-    fn any_surface_passes(s in any_surface()) {
+    fn any_surface_passes(s in any_surface(), form in prop::sample::select(&VertexForm::ALL[..])) {
         for kind in BoundKind::ALL {
-            let report = audit(&scene_with(&s, kind));
+            let report = audit(&scene_with(&s, kind, form));
             prop_assert!(report.passed(), "{}", report);
         }
     }
 
     #[test]
-    fn no_damage_makes_anything_panic(kind in 2usize..9, places in prop::collection::vec((any::<prop::sample::Index>(), any::<u8>()), 1..20)) {
-        let good = scene(&octahedron(3));
+    fn no_damage_makes_anything_panic(
+        kind in 2usize..9, places in prop::collection::vec((any::<prop::sample::Index>(), any::<u8>()), 1..20),
+        form in prop::sample::select(&VertexForm::ALL[..])
+    ) {
+        let good = scene_with(&octahedron(3), BoundKind::Largest, form);
         let mut bytes = good.bytes().to_vec();
         let (offset, length) = lodray_test_support::surfaces::section(&bytes, kind);
         for (place, value) in places {

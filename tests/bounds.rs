@@ -1,29 +1,57 @@
-//! The displacement bounds that scenes store equal those of the plain definition, code by code; they cover what they must, and are one on both sides of an edge.
+//! The displacement bounds that scenes store equal those of the plain definition, code by code, and so do compact vertices, point by point; bounds cover what they
+//! must, and are one on both sides of an edge.
 
-use lodray::golden::{Exact, naive_bounds, true_bounds};
+use lodray::golden::{Exact, naive_bounds, naive_compact, true_bounds};
 use lodray::mesh::procedural::{self, Options};
 use lodray::mesh::{BoundKind, Hierarchy, Surface, edge_index, lattice, quantise};
-use lodray::num::BoundEncoder;
+use lodray::num::{BoundScale, VertexForm, bound_encode, snap};
 use lodray_test_support::cases;
-use lodray_test_support::models::{Rng, any_cone, ball, direction, model, ray_through, terrain};
+use lodray_test_support::models::{Rng, any_cone, ball, direction, model, ray_through, terrain, with_vertices};
 use lodray_test_support::surfaces::{bumps, fan, grid, octahedron, surface};
 use proptest::prelude::*;
 
-/// Edges with a bound, both kinds together.
+/// Edges with a bound, of both kinds and both forms together.
 fn check(surface: &Surface, name: &str) -> usize {
-    BoundKind::ALL.map(|kind| check_kind(surface, kind, &format!("{name}, {}", kind.name()))).iter().sum()
+    let all = BoundKind::ALL.iter().flat_map(|&kind| VertexForm::ALL.map(|form| (kind, form)));
+    all.map(|(kind, form)| check_kind(surface, kind, form, &format!("{name}, {}, {}", kind.name(), form.name()))).sum()
 }
 
-fn check_kind(surface: &Surface, kind: BoundKind, name: &str) -> usize {
-    let built = quantise(surface, kind).expect("a valid surface");
-    assert_eq!(built.bounds.kind, kind);
-    let mut plain = built.clone();
+fn check_kind(surface: &Surface, kind: BoundKind, form: VertexForm, name: &str) -> usize {
+    let built = quantise(surface, kind, form).expect("a valid surface");
+    assert_eq!((built.bounds.kind, built.vertices), (kind, form));
+    // From points on their grids, with nothing else done to them.
+    let m = 1 << surface.levels;
+    let places = (0..=m).flat_map(|j| (0..=m - j).map(move |i| (i, j)));
+    let bits: Vec<u32> = places.map(|place| form.zero_bits(surface.levels - lattice::level_of(surface.levels, place))).collect();
+    let on_grid = |(p, &bits): (&[f64; 3], &u32)| -> [i32; 3] {
+        std::array::from_fn(|k| snap((p[k] - built.placement.offset[k]) / built.placement.scale, bits))
+    };
+    let points = surface.positions.iter().zip(bits.iter().cycle()).map(on_grid).collect();
+    let mut plain = Hierarchy { points, ..built.clone() };
     naive_bounds(&mut plain);
+    if form == VertexForm::Compact {
+        naive_compact(&mut plain);
+    }
     assert_eq!(built.bounds.scale, plain.bounds.scale, "{name}");
     let differing = built.bounds.codes.iter().zip(&plain.bounds.codes).position(|(a, b)| a != b);
     assert_eq!(differing, None, "{name}: first differing edge");
     assert_eq!(built.bounds.codes.len(), plain.bounds.codes.len(), "{name}");
+    let differing = built.points.iter().zip(&plain.points).position(|(a, b)| a != b);
+    assert_eq!((differing, built.points.len()), (None, plain.points.len()), "{name}: first differing point");
+    // The codes of compact vertices cover what is left of their displacements, and that needs no more of them.
+    let mut left = built.clone();
+    naive_bounds(&mut left);
+    assert!(left.bounds.scale.offset <= built.bounds.scale.offset, "{name}");
+    let decoded = |h: &Hierarchy| h.bounds.codes.iter().map(|&code| decode(h.bounds.scale, code)).collect::<Vec<_>>();
+    assert!(decoded(&left).iter().zip(decoded(&built)).all(|(&left, own)| left <= own), "{name}");
     built.bounds.codes.iter().filter(|&&c| c > 0).count()
+}
+
+/// What a code stands for, by docs/numbers.md: 2^(k / 16) for k = code + offset, with a mantissa of 9 bits rounded up and the whole rounded down.
+fn decode(scale: BoundScale, code: u8) -> u64 {
+    let k = u64::from(code) + scale.offset.get();
+    let mantissa = (256.0 * ((k % 16) as f64 / 16.0).exp2()).ceil() as u64;
+    if code == 0 { 0 } else { (mantissa << (k / 16)) / 256 }
 }
 
 #[test]
@@ -89,9 +117,7 @@ fn check_bounds(h: &Hierarchy) {
                 for i in 0..3 {
                     let (a, b) = (p[(i + 1) % 3], p[(i + 2) % 3]);
                     let own = at(level, a, b);
-                    let scale = h.bounds.scale;
-                    let c = u128::from(h.bounds.codes[own]);
-                    assert!((c * c * u128::from(scale.mantissa.get())) >> scale.shift.get() >= u128::from(bounds.edges[own]));
+                    assert!(decode(h.bounds.scale, h.bounds.codes[own]) >= bounds.edges[own]);
                     if level + 1 < h.levels {
                         for below in [at(level + 1, a, q[i]), at(level + 1, q[i], b), at(level + 1, q[i], q[(i + 1) % 3])] {
                             assert!(bounds.edges[below] <= bounds.edges[own] && h.bounds.codes[below] <= h.bounds.codes[own]);
@@ -115,8 +141,10 @@ fn with(kind: BoundKind, h: &Hierarchy) -> Hierarchy {
 fn bounds_hold_on_closed_surfaces() {
     for seed in 0..10 {
         for kind in BoundKind::ALL {
-            check_bounds(&with(kind, &ball(seed as u32 % 5, 0.4, seed)));
-            check_bounds(&with(kind, &terrain(2, seed as u32 % 5, 0.4, seed)));
+            for form in VertexForm::ALL {
+                check_bounds(&with_vertices(form, with(kind, &ball(seed as u32 % 5, 0.4, seed))));
+                check_bounds(&with_vertices(form, with(kind, &terrain(2, seed as u32 % 5, 0.4, seed))));
+            }
         }
     }
 }
@@ -129,11 +157,10 @@ proptest! {
         for h in [ball(levels, roughness, seed), terrain(2, levels, roughness, seed)] {
             let [largest, total] = BoundKind::ALL.map(|kind| with(kind, &h));
             let [truths, totals] = [&largest, &total].map(|h| true_bounds(h).edges);
-            let encoder = BoundEncoder::new(total.bounds.scale);
             for (at, (&least, &sum)) in truths.iter().zip(&totals).enumerate() {
                 prop_assert!(least <= sum && sum <= u64::from(levels) * least, "edge {at}: {least} and {sum}");
                 // At equal scale the codes are in the same order.
-                prop_assert!(encoder.encode(least) <= total.bounds.codes[at]);
+                prop_assert!(bound_encode(total.bounds.scale, least) <= total.bounds.codes[at]);
             }
             // Displacements of several levels lie one upon the other, so it is not the same in other words.
             prop_assert!(levels < 2 || roughness < 0.1 || truths != totals);

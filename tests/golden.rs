@@ -3,11 +3,16 @@
 use lodray::{
     golden::{Crossings, Exact, ExactHit, Reference, true_bounds},
     mesh::{EdgeCodes, Hierarchy, Placement},
-    num::{Cone, Ray, U},
+    num::{Cone, Ray, U, VertexForm},
 };
 use lodray_test_support::models::*;
 
 const HALF: u32 = 1 << 30;
+
+/// Two models in four have compact vertices.
+fn any_form(seed: u64, h: Hierarchy) -> Hierarchy {
+    with_vertices(VertexForm::ALL[(seed / 2 % 2) as usize], h)
+}
 
 fn length(d: [i64; 3]) -> f64 {
     d.iter().map(|&v| (v as f64).powi(2)).sum::<f64>().sqrt()
@@ -21,6 +26,7 @@ fn single_triangle() -> Hierarchy {
         triangles: vec![[0, 1, 2]],
         points: vec![[0, 0, 0], [1 << 20, 0, 0], [0, 1 << 20, 0]],
         bounds: EdgeCodes::default(),
+        vertices: VertexForm::Exact,
     }
 }
 
@@ -45,9 +51,9 @@ fn a_single_triangle_by_hand() {
     assert_eq!(Exact::new(&h).trace(&ray([5, 5, 5], [0, 0, 1 << 29], Cone::default())), None);
 }
 
-/// One split of a right triangle; all inserted vertices lifted by 1023^2 * 16 units, which code 1023 means exactly.
+/// One split of a right triangle; all inserted vertices lifted by 2^24 units, which code 255 means exactly.
 fn lifted() -> (Hierarchy, i64) {
-    let lift = 1023 * 1023 * 16;
+    let lift = 1 << 24;
     let h = model(1, &[[0, 0, 0], [1, 0, 0], [0, 1, 0]], vec![[0, 1, 2]], |p, level| {
         [(p[0] << 27) as f64, (p[1] << 27) as f64, f64::from(lift) * f64::from(level)]
     });
@@ -58,14 +64,14 @@ fn lifted() -> (Hierarchy, i64) {
 fn half_way_between_two_levels_by_hand() {
     let (h, lift) = lifted();
     assert_eq!(true_bounds(&h).edges, vec![lift as u64; 3]);
-    assert!(h.bounds.codes.iter().all(|&c| c == 1023));
+    assert!(h.bounds.codes.iter().all(|&c| c == 255));
     let exact = Exact::new(&h);
     let down = |tolerated: i64| {
         let cone = Cone { offset: U::new(tolerated as u64), slope: U::ZERO, shift: U::ZERO };
         ray([90_000_000, 90_000_000, lift * 2], [0, 0, -lift], cone)
     };
     let height = |tolerated| (2 << 32) - exact.trace(&down(tolerated)).unwrap().t;
-    // s = (h - D) 256 / D: 0 at D = h, 128 at D = 2h / 3, 256 at D = h / 2.
+    // s = (h - D) 256 / D: 0 at D = h, 128 at D = 2h / 3 (rounded down), 256 at D = h / 2.
     assert_eq!(height(lift), 0);
     assert_eq!(height(lift / 3 * 2), 1 << 31);
     assert_eq!(height(lift / 2), 1 << 32);
@@ -132,6 +138,7 @@ fn culling_changes_nothing() {
             2 => terrain(3, seed as u32 / 4 % 4, 0.5, seed),
             _ => terrain(1, 4, 1.0, seed),
         };
+        let h = any_form(seed / 2, h);
         let (fast, slow) = (Exact::new(&h), Exact::without_culling(&h));
         for _ in 0..150 {
             let r = ball_ray(&h, &mut rng).to_small_if_terrain(&h, &mut rng);
@@ -169,7 +176,7 @@ fn rays_from_outside_cross_a_closed_surface_as_often_inwards_as_outwards() {
     let mut rng = Rng(2);
     let (mut rays, mut crossed) = (0, 0);
     for seed in 0..40 {
-        let h = ball(seed as u32 % 5, [0.05, 0.3, 1.0][seed as usize % 3], seed);
+        let h = any_form(seed, ball(seed as u32 % 5, [0.05, 0.3, 1.0][seed as usize % 3], seed));
         let exact = Exact::new(&h);
         for _ in 0..100 {
             let r = ball_ray(&h, &mut rng);
@@ -192,7 +199,7 @@ fn rays_through_vertices_edges_and_midpoints_of_the_morphed_surface_cross_it_eve
     let mut rng = Rng(3);
     let (mut rays, mut crossed, mut morphed) = (0, 0, 0);
     for seed in 0..30u64 {
-        let h = ball(1 + seed as u32 % 4, [0.1, 0.5][seed as usize % 2], seed);
+        let h = any_form(seed, ball(1 + seed as u32 % 4, [0.1, 0.5][seed as usize % 2], seed));
         let exact = Exact::new(&h);
         // A cone that does not widen: the surface is the same for all rays.
         let cone = cone(2f64.powf(22.0 + 5.0 * rng.unit()), 0.0);
@@ -248,7 +255,7 @@ fn the_vector_area_of_a_closed_morphed_surface_is_zero() {
     let mut rng = Rng(4);
     let mut mixed = 0;
     for seed in 0..200 {
-        let h = ball(seed as u32 % 5, 0.4, seed);
+        let h = any_form(seed, ball(seed as u32 % 5, 0.4, seed));
         let surface = Exact::new(&h).surface(&ball_ray(&h, &mut rng));
         let mut area = [0i128; 3];
         for [a, b, c] in surface.iter().map(|s| s.corners) {
@@ -270,7 +277,7 @@ fn full_detail_is_the_full_resolution_mesh() {
     let mut rng = Rng(5);
     let mut hits = 0;
     for seed in 0..8 {
-        let h = ball(1 + seed as u32 % 4, 0.3, seed);
+        let h = any_form(seed, ball(1 + seed as u32 % 4, 0.3, seed));
         let exact = Exact::new(&h);
         for _ in 0..100 {
             let r = Ray { cone: Cone::default(), ..ball_ray(&h, &mut rng) };
@@ -293,6 +300,7 @@ fn full_resolution_hits_agree_with_the_reference() {
     let (mut rays, mut hits, mut apart) = (0, 0, 0.0f64);
     for seed in 0..20 {
         let h = if seed % 2 == 0 { ball(seed as u32 % 5, 0.3, seed) } else { terrain(4, seed as u32 % 4, 0.5, seed) };
+        let h = any_form(seed, h);
         let (exact, reference) = (Exact::new(&h), Reference::new(&h));
         for _ in 0..500 {
             // Rounded directions through no vertex in particular: the reference counts a shared edge for both sides.
@@ -335,6 +343,7 @@ fn the_reference_finds_what_brute_force_finds() {
     let (mut rays, mut hits) = (0, 0);
     for seed in 0..12 {
         let h = if seed % 2 == 0 { ball(seed as u32 % 5, 0.5, seed) } else { terrain(3, seed as u32 % 5, 1.0, seed) };
+        let h = any_form(seed, h);
         let reference = Reference::new(&h);
         for _ in 0..400 {
             let target: [f64; 3] = match rng.below(2) {

@@ -2,7 +2,7 @@
 
 use lodray::block::tri_test::{EdgeFunction, TNumerator, TriTest};
 use lodray::block::{self, Block, Timing};
-use lodray::format::{BoundData, BvhChild, ChildRef, L0Record, VertexData};
+use lodray::format::{BvhNode, Displacements, L0Record, SiblingGroup, VertexData};
 use lodray::hardware::ports::{HitOut, MemoryAnswer, MemoryRequest, RayIn, SceneConfig};
 use lodray::hardware::{Fetch, MAX_CONTEXTS, State};
 use lodray::method::{self, Entry, Hit};
@@ -44,6 +44,7 @@ fn rust_side() -> (Vec<BlockTwin>, Vec<StructTwin>) {
         twin::<num::Point>("point_t"),
         twin::<num::Direction>("direction_t"),
         twin::<num::Vec3<28>>("stored_point_t"),
+        twin::<num::Displacement>("displacement_t"),
         twin::<num::Vec3<16>>("code3_t"),
         twin::<num::Vec3<63>>("moment_t"),
         twin::<num::BoundScale>("bound_scale_t"),
@@ -52,11 +53,11 @@ fn rust_side() -> (Vec<BlockTwin>, Vec<StructTwin>) {
         twin::<Box16>("box16_t"),
         twin::<block::ray_setup::Reciprocal>("reciprocal_t"),
         twin::<block::ray_setup::Axis>("axis_t"),
-        twin::<BoundData>("bound_data_t"),
+        twin::<SiblingGroup>("sibling_group_t"),
+        twin::<BvhNode>("bvh_node_t"),
         twin::<VertexData>("vertex_data_t"),
+        twin::<Displacements>("displacements_t"),
         twin::<L0Record>("l0_record_t"),
-        twin::<ChildRef>("child_ref_t"),
-        twin::<BvhChild>("bvh_child_t"),
         twin::<Entry>("stack_entry_t"),
         twin::<Hit>("hit_t"),
         twin::<SceneConfig>("scene_config_t"),
@@ -72,8 +73,10 @@ fn rust_side() -> (Vec<BlockTwin>, Vec<StructTwin>) {
     blocks!(
         block::bary_map::BaryMap,
         block::bound_decode::BoundDecode,
+        block::box_decode::BoxDecode,
         block::box_test::BoxTest,
         block::box_test32::BoxTest32,
+        block::child_boxes::ChildBoxes,
         block::child_sort::ChildSort,
         block::child_test::ChildTest,
         block::hit_divide::HitDivide,
@@ -84,7 +87,6 @@ fn rust_side() -> (Vec<BlockTwin>, Vec<StructTwin>) {
         block::tessellate::Tessellate,
         block::tree_base::TreeBase,
         TriTest,
-        block::widen_box::WidenBox,
     );
     (blocks, structs)
 }
@@ -240,7 +242,7 @@ fn widths_limits_and_timings_are_the_same() {
 fn states_have_the_same_names_and_numbers() {
     let package = package();
     let states: Vec<(String, u64)> = State::ALL.iter().map(|&state| (state.name().to_owned(), state as u64)).collect();
-    let fetches = [Fetch::Node, Fetch::Record, Fetch::Vertex].map(|fetch| (format!("{fetch:?}").to_uppercase(), fetch as u64));
+    let fetches = [Fetch::Node, Fetch::Record, Fetch::Vertex, Fetch::Group].map(|fetch| (format!("{fetch:?}").to_uppercase(), fetch as u64));
     assert_eq!(package.enums["context_state_t"].1, states);
     assert_eq!(package.enums["fetch_t"].1, fetches);
     assert_eq!(package.enums.len(), 2, "an enum without a twin");

@@ -1,8 +1,11 @@
 //! Scene files: what is written comes back, and what is broken is refused.
 
+use lodray::format::audit::reading;
 use lodray::format::{Scene, export_level};
-use lodray::mesh::{BoundKind, lattice, quantise};
-use lodray_test_support::surfaces::{fan, grid, octahedron, scene};
+use lodray::mesh::{BoundKind, Hierarchy, edge_index, edges_of_tree, lattice, quantise};
+use lodray::num::VertexForm;
+use lodray_test_support::models::build_with;
+use lodray_test_support::surfaces::{fan, grid, octahedron, scene, scene_with};
 
 #[test]
 fn a_saved_scene_opens_with_the_same_bytes() {
@@ -10,11 +13,13 @@ fn a_saved_scene_opens_with_the_same_bytes() {
     let path = directory.path().join("a.lod");
     for levels in [0, 1, 2, 5] {
         for surface in [grid(levels, 3), octahedron(levels), fan(levels)] {
-            let built = scene(&surface);
-            built.save(&path).unwrap();
-            let opened = Scene::open(&path).unwrap();
-            assert_eq!(opened.meta(), built.meta());
-            assert!(opened.bytes() == built.bytes());
+            for form in VertexForm::ALL {
+                let built = scene_with(&surface, BoundKind::Largest, form);
+                built.save(&path).unwrap();
+                let opened = Scene::open(&path).unwrap();
+                assert_eq!(opened.meta(), built.meta());
+                assert!(opened.bytes() == built.bytes());
+            }
         }
     }
     assert_eq!(std::fs::read_dir(directory.path()).unwrap().count(), 1, "temporary files stay behind");
@@ -24,28 +29,189 @@ fn a_saved_scene_opens_with_the_same_bytes() {
 fn images_decode_to_the_hierarchy_that_they_were_made_from() {
     for levels in [0, 1, 2, 5] {
         for surface in [grid(levels, 3), octahedron(levels), fan(levels)] {
-            let hierarchy = quantise(&surface, BoundKind::Largest).unwrap();
-            let scene = scene(&surface);
-            let back = scene.decode();
-            assert_eq!((back.levels, back.base_vertices, back.placement), (levels, surface.base_vertices, hierarchy.placement));
-            assert_eq!(back.triangles, surface.triangles);
-            assert!(back.points == hierarchy.points && back.bounds == hierarchy.bounds);
-            for tree in 0..scene.trees() {
-                assert_eq!(scene.record(tree).material.get(), tree as u64 % 2);
-                for i in 0..1usize << (2 * levels) {
-                    let places = lattice::node(levels, levels, i as u32);
-                    let expected = places.map(|p| hierarchy.tree(tree)[lattice::index(levels, p)]);
-                    assert_eq!(scene.full_resolution_triangle(tree, i), expected);
-                    let given = surface.normals[tree * lattice::len(levels) + lattice::index(levels, places[0])];
-                    let length = given.iter().map(|c| c * c).sum::<f32>().sqrt();
-                    let normal = scene.normal_at(tree, places[0]);
-                    assert!((0..3).all(|k| (normal[k] - given[k] / length).abs() < 1e-4));
+            for form in VertexForm::ALL {
+                // Once with leaves in the order of the trees, once in an order that a quad-BVH makes.
+                let hierarchy = quantise(&surface, BoundKind::Largest, form).unwrap();
+                for scene in [scene_with(&surface, BoundKind::Largest, form), build_with(&surface, form)] {
+                    assert_eq!(scene.meta().vertices, form);
+                    is_decoded(&scene, &hierarchy);
+                    let back = scene.decode();
+                    for tree in 0..scene.trees() {
+                        let source = scene.record(tree).source.get() as usize;
+                        assert_eq!(scene.record(tree).material.get(), source as u64 % 2);
+                        for i in 0..1usize << (2 * levels) {
+                            let places = lattice::node(levels, levels, i as u32);
+                            let expected = places.map(|p| back.tree(tree)[lattice::index(levels, p)]);
+                            assert_eq!(scene.full_resolution_triangle(tree, i), expected);
+                            let given = surface.normals[source * lattice::len(levels) + lattice::index(levels, places[0])];
+                            let length = given.iter().map(|c| c * c).sum::<f32>().sqrt();
+                            let normal = scene.normal_at(tree, places[0]);
+                            assert!((0..3).all(|k| (normal[k] - given[k] / length).abs() < 1e-4));
+                        }
+                    }
+                    // What META says of how far vertices were moved: nothing was moved farther, and something so far.
+                    let size = surface.positions.iter().flatten().fold(0f64, |a, b| a.max(b.abs()));
+                    let most = hierarchy.points.iter().zip(&surface.positions).fold(0f64, |most, (point, position)| {
+                        let world = hierarchy.to_world(*point);
+                        most.max((0..3).map(|k| (world[k] - position[k]).powi(2)).sum::<f64>().sqrt())
+                    });
+                    let moved = scene.meta().moved;
+                    assert!((moved - most).abs() <= 1e-12 * size, "{form:?}: {moved}, {most}");
+                    assert!(moved < if form == VertexForm::Exact { 1e-6 } else { 1e-3 } * size, "{form:?}: {moved} of {size}");
                 }
             }
-            let size = surface.positions.iter().flatten().fold(0f64, |a, b| a.max(b.abs()));
-            for (point, position) in back.points.iter().zip(&surface.positions) {
-                let world = back.to_world(*point);
-                assert!((0..3).all(|k| (world[k] - position[k]).abs() < 1e-6 * size));
+        }
+    }
+}
+
+/// The scene decodes to this hierarchy but for the order of its trees.
+fn is_decoded(scene: &Scene, hierarchy: &Hierarchy) {
+    let back = scene.decode();
+    assert_eq!((back.levels, back.base_vertices, back.placement), (hierarchy.levels, hierarchy.base_vertices, hierarchy.placement));
+    assert_eq!((back.vertices, back.bounds.kind, back.bounds.scale), (hierarchy.vertices, hierarchy.bounds.kind, hierarchy.bounds.scale));
+    let mut seen = vec![false; scene.trees()];
+    for tree in 0..scene.trees() {
+        let source = scene.record(tree).source.get() as usize;
+        assert!(!std::mem::replace(&mut seen[source], true));
+        assert_eq!(back.triangles[tree], hierarchy.triangles[source]);
+        assert!(back.tree(tree) == hierarchy.tree(source) && back.codes(tree) == hierarchy.codes(source), "tree {tree}");
+    }
+    assert_eq!(seen.len(), hierarchy.triangles.len());
+}
+
+#[test]
+fn what_the_audit_reads_is_what_is_decoded() {
+    let mut vertices = 0;
+    for levels in [0, 1, 2, 5] {
+        for surface in [grid(levels, 3), octahedron(levels), fan(levels)] {
+            for form in VertexForm::ALL {
+                let scene = build_with(&surface, form);
+                let (back, read) = (scene.decode(), reading(&scene));
+                assert!(read.points == back.points, "{form:?}, N = {levels}");
+                let mut codes = vec![None; read.codes.len()];
+                for tree in 0..scene.trees() {
+                    for level in 0..levels {
+                        for node in 0..1 << (2 * level) {
+                            let p = lattice::node(levels, level, node);
+                            for (q, [a, b]) in lattice::midpoints(p).into_iter().zip([[p[1], p[2]], [p[2], p[0]], [p[0], p[1]]]) {
+                                let code = back.bounds.codes[tree * edges_of_tree(levels) + edge_index(levels, level, a, b)];
+                                codes[tree * lattice::len(levels) + lattice::index(levels, q)] = Some(code);
+                            }
+                        }
+                    }
+                }
+                assert!(read.codes == codes, "{form:?}, N = {levels}");
+                vertices += read.points.len();
+            }
+        }
+    }
+    assert!(vertices > 10_000, "{vertices}");
+}
+
+/// Bits `high` to `low` of record `at` of so many bytes, as docs/scene-format.md numbers them.
+fn bits(bytes: &[u8], size: usize, at: usize, [high, low]: [usize; 2]) -> u64 {
+    let bit = |k: usize| u64::from(bytes[size * at + k / 8] >> (k % 8) & 1);
+    (low..=high).rev().fold(0, |v, k| v << 1 | bit(k))
+}
+
+/// The same of a signed field.
+fn signed(bytes: &[u8], size: usize, at: usize, field: [usize; 2]) -> i64 {
+    let (v, width) = (bits(bytes, size, at, field), field[0] - field[1] + 1);
+    (v << (64 - width)).cast_signed() >> (64 - width)
+}
+
+/// Full-resolution triangles by the words of docs/scene-format.md and nothing else.
+struct Words<'a> {
+    sections: [&'a [u8]; 8],
+    levels: usize,
+    compact: bool,
+    offset: u64,
+}
+
+impl Words<'_> {
+    fn corners(&self, tree: usize) -> [[i64; 3]; 3] {
+        let field = |v: usize, c: usize| signed(self.sections[2], 64, tree, [251 - 84 * v - 28 * c, 224 - 84 * v - 28 * c]);
+        std::array::from_fn(|v| std::array::from_fn(|c| 16 * field(v, c)))
+    }
+
+    /// Codes of e0, e1, e2.
+    fn codes(&self, tree: usize, level: usize, node: usize) -> [u64; 3] {
+        if level == 0 {
+            return [151, 143, 135].map(|high| bits(self.sections[2], 64, tree, [256 + high, 256 + high - 7]));
+        }
+        let groups = (4usize.pow(self.levels as u32 - 1) - 1) / 3;
+        let group = tree * groups + (4usize.pow(level as u32 - 1) - 1) / 3 + node / 4;
+        let places = [[0, 1, 2], [3, 4, 5], [6, 7, 8], [0, 4, 8]][node % 4];
+        places.map(|place| bits(self.sections[3], 32, group, [190 + 8 * place, 183 + 8 * place]))
+    }
+
+    fn inserted(&self, tree: usize, level: usize, node: usize, p: [[i64; 3]; 3]) -> [[i64; 3]; 3] {
+        let before = (4usize.pow(level as u32) - 1) / 3 + node;
+        if !self.compact {
+            let line = tree * (4usize.pow(self.levels as u32) - 1) / 3 + before;
+            let field = |v: usize, c: usize| signed(self.sections[4], 32, line, [251 - 84 * v - 28 * c, 224 - 84 * v - 28 * c]);
+            return std::array::from_fn(|v| std::array::from_fn(|c| 16 * field(v, c)));
+        }
+        let codes = self.codes(tree, level, node);
+        std::array::from_fn(|v| {
+            let exponent = (self.levels - level + 3).max((((codes[v] + self.offset) / 16) as usize).saturating_sub(11));
+            std::array::from_fn(|c| {
+                let at = [116 - 39 * v - 13 * c, 104 - 39 * v - 13 * c];
+                let d = if level == 0 {
+                    signed(self.sections[2], 64, tree, at.map(|bit| 256 + bit))
+                } else {
+                    let halves = 4 * (4usize.pow(self.levels as u32 - 1) - 1) / 3;
+                    signed(self.sections[4], 16, tree * halves + before - 1, at)
+                };
+                (p[(v + 1) % 3][c] + p[(v + 2) % 3][c]) / 2 + d * (1 << exponent)
+            })
+        })
+    }
+
+    /// Calls `visit` with level, node, corners and codes of every node, on level N without codes.
+    fn each(&self, tree: usize, level: usize, node: usize, p: [[i64; 3]; 3], visit: &mut impl FnMut(usize, usize, [[i64; 3]; 3], [u64; 3])) {
+        if level == self.levels {
+            return visit(level, node, p, [0; 3]);
+        }
+        visit(level, node, p, self.codes(tree, level, node));
+        let q = self.inserted(tree, level, node, p);
+        for (k, child) in [[p[0], q[2], q[1]], [q[2], p[1], q[0]], [q[1], q[0], p[2]], q].into_iter().enumerate() {
+            self.each(tree, level + 1, 4 * node + k, child, visit);
+        }
+    }
+}
+
+#[test]
+fn the_words_of_the_document_are_enough_to_read_a_scene() {
+    for levels in [0, 1, 2, 4] {
+        for surface in [grid(levels, 2), octahedron(levels)] {
+            for form in VertexForm::ALL {
+                let scene = build_with(&surface, form);
+                let bytes = scene.bytes();
+                let sections: [&[u8]; 8] = std::array::from_fn(|k| {
+                    let (offset, length) = lodray_test_support::surfaces::section(bytes, k + 1);
+                    &bytes[offset..offset + length]
+                });
+                let meta: serde_json::Value = serde_json::from_slice(sections[0]).unwrap();
+                let words = Words {
+                    sections,
+                    levels: meta["levels"].as_u64().unwrap() as usize,
+                    compact: meta["vertices"] == "compact",
+                    offset: meta["bound_offset"].as_u64().unwrap(),
+                };
+                let mut nodes = 0;
+                for tree in 0..meta["trees"].as_u64().unwrap() as usize {
+                    assert_eq!(bits(words.sections[2], 64, tree, [256 + 195, 256 + 168]), scene.record(tree).source.get());
+                    assert_eq!(bits(words.sections[2], 64, tree, [256 + 167, 256 + 152]), scene.record(tree).material.get());
+                    words.each(tree, 0, 0, words.corners(tree), &mut |level, node, p, codes| {
+                        nodes += 1;
+                        assert_eq!(scene.triangle(tree, level as u32, node).map(|p| p.map(i64::from)), p);
+                        if level < words.levels {
+                            assert_eq!(scene.node_codes(tree, level as u32, node).map(u64::from), codes);
+                        }
+                    });
+                }
+                assert_eq!(nodes, scene.trees() * (4usize.pow(levels + 1) - 1) / 3);
             }
         }
     }
@@ -54,8 +220,10 @@ fn images_decode_to_the_hierarchy_that_they_were_made_from() {
 #[test]
 fn bytes_do_not_depend_on_the_number_of_threads() {
     let surface = grid(5, 4);
-    let with = |threads| rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap().install(|| scene(&surface));
-    assert!(with(1).bytes() == with(3).bytes());
+    for form in VertexForm::ALL {
+        let with = |threads| rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap().install(|| build_with(&surface, form));
+        assert!(with(1).bytes() == with(3).bytes());
+    }
 }
 
 /// What opening these bytes says.
@@ -99,9 +267,13 @@ fn truncated_long_foreign_and_newer_files_are_refused() {
     assert!(open(b"").unwrap_err().contains("magic"));
     assert!(open(b"solid ascii\nfacet normal 0 0 1").unwrap_err().contains("magic"));
     let mut newer = good.clone();
-    newer[8] = 2;
+    newer[8] = 3;
     lodray_test_support::surfaces::reseal(&mut newer);
     assert!(open(&newer).unwrap_err().contains("newer"));
+    let mut older = good.clone();
+    older[8] = 1;
+    lodray_test_support::surfaces::reseal(&mut older);
+    assert!(open(&older).unwrap_err().contains("make the scene again with build or generate"));
     assert!(Scene::open(std::path::Path::new("/nonexistent/x.lod")).unwrap_err().to_string().contains("x.lod"));
     assert!(Scene::open(&std::env::temp_dir()).is_err());
 }
@@ -142,17 +314,31 @@ fn resealed_nonsense_is_refused_with_section_and_field() {
         (with_meta(&good, "\"trees\":8", "\"trees\":7").unwrap_err(), ["RECORDS", "length"]),
         (with_meta(&good, "\"base_vertices\":6", "\"base_vertices\":5").unwrap_err(), ["TRIANGLES", "below 5"]),
         (with_meta(&good, "\"levels\":2", "\"levels\":x").unwrap_err(), ["META", "line"]),
+        (with_meta(&good, "\"exact\"", "\"round\"").unwrap_err(), ["META", "round"]),
+        (with_meta(&good, "\"moved\":", "\"moved\":-").unwrap_err(), ["META", "moved"]),
         (with_meta(&good, "\"scale\":", "\"scale\":-").map(|_| ()).unwrap_err(), ["META", ""]),
     ] {
         assert!(parts.iter().any(|p| message.contains(p)), "{message}");
     }
-    // A quad-BVH that leads in a circle or nowhere.
+    // A quad-BVH that leads in a circle or nowhere: the root's first inner child, node 1's first leaf, kinds and counts.
     let (nodes, _) = lodray_test_support::surfaces::section(&good, 2);
-    for reference in [1u64 << 30, 1 << 30 | 999, 2 << 30 | 8, 2 << 30 | 3 << 28 | 6, 3 << 30] {
+    for (node, [high, low], value) in [
+        (0, [238, 211], 0),
+        (0, [238, 211], 999),
+        (1, [210, 183], 8),
+        (1, [210, 183], (1 << 28) - 1),
+        (1, [240, 239], 3),
+        (0, [248, 247], 3),
+        (1, [248, 247], 1),
+    ] {
         let mut bytes = good.clone();
-        bytes[nodes + 12..nodes + 16].copy_from_slice(&(reference as u32).to_le_bytes());
+        for k in low..=high {
+            let byte = &mut bytes[nodes + 32 * node + k / 8];
+            *byte = *byte & !(1 << (k % 8)) | ((value >> (k - low) & 1) as u8) << (k % 8);
+        }
         lodray_test_support::surfaces::reseal(&mut bytes);
-        assert!(open(&bytes).unwrap_err().contains("NODES"));
+        let message = open(&bytes).unwrap_err();
+        assert!(message.contains("NODES"), "{message}");
     }
 }
 

@@ -1,6 +1,6 @@
 `default_nettype none
 
-/// The opening shown as what it is made from: any bit of the tolerance or of the bound, chosen by the bound's low bits.
+/// The opening shown as what it is made from: the low bits of the bound, and the bit of the tolerance that they choose.
 ///
 /// Stands for rtl/edge_opening.sv where a property holds for every opening that depends on bound and tolerance alone: if this one is the same for every bound,
 /// the tolerances are the same in every bit.
@@ -18,7 +18,7 @@ module edge_opening (
 );
 
   assign {ready_o, valid_o} = {ready_i, valid_i};
-  assign s_o    = {h_i[9:2], d_i[h_i[5:0] < 6'(lod_pkg::TOLERANCE_W) ? h_i[5:0] : 6'd0]};
+  assign s_o    = {h_i[7:0], d_i[h_i[5:0] < 6'(lod_pkg::TOLERANCE_W) ? h_i[5:0] : 6'd0]};
   assign open_o = s_o != '0;
 
 endmodule

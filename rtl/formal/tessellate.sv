@@ -2,86 +2,180 @@
 
 /// The inserted vertices. Coordinates in units; a vertex of grid g has its low g bits zero.
 
-/// One coordinate, full width: the midpoint is exact, the morphed vertex lies between it and the stored one, on the grid, and nothing overflows.
+/// One vertex, full width: midpoints are exact, the full-resolution vertex is the stored one or its displacement from the midpoint of the full-resolution edge, the morphed
+/// vertex lies between the midpoint of the morphed edge and it, on the grid, and nothing overflows.
 module morph_between (
   input logic                             clk_i,
   input logic                             rst_ni,
-  input logic signed [31:0]               a_i,
-  input logic signed [31:0]               b_i,
-  input logic signed [31:0]               q_i,
+  input logic                             compact_i,
+  input logic [4:0]                       shift_i,
+  input logic [lod_pkg::POINT_W-1:0]      fa_i,
+  input logic [lod_pkg::POINT_W-1:0]      fb_i,
+  input logic [lod_pkg::POINT_W-1:0]      pa_i,
+  input logic [lod_pkg::POINT_W-1:0]      pb_i,
+  input logic [lod_pkg::POINT_W-1:0]      v_i,
   input logic [lod_pkg::EDGE_STATE_W-1:0] s_i,
   input logic [3:0]                       grid_i
 );
 
-  logic signed [31:0] morphed, low, high;
-  logic               valid, ready;
-  morph_coordinate u_morph (
-    .clk_i, .rst_ni, .valid_i(1'b1), .ready_o(ready), .a_i, .b_i, .q_i, .s_i, .grid_i, .valid_o(valid), .ready_i(1'b1), .morphed_o(morphed)
+  localparam logic signed [39:0] LIMIT = 40'sh00_7ffe_0000;
+
+  logic [lod_pkg::POINT_W-1:0] full, morphed;
+  logic                        valid, ready;
+  morph_vertex u_morph (
+    .clk_i, .rst_ni, .valid_i(1'b1), .ready_o(ready), .compact_i, .shift_i, .grid_i, .s_i, .fa_i, .fb_i, .pa_i, .pb_i, .v_i,
+    .valid_o(valid), .ready_i(1'b1), .full_o(full), .morphed_o(morphed)
   );
 
-  logic signed [32:0] sum;
-  logic signed [31:0] m;
-  logic        [31:0] corner_grid, vertex_grid;
-  assign sum         = 33'(a_i) + 33'(b_i);
-  assign m           = sum[32:1];
+  logic [31:0] corner_grid, vertex_grid;
   assign vertex_grid = (32'd1 << grid_i) - 32'd1;
   assign corner_grid = {vertex_grid[30:0], 1'b1};
-  assign low         = m < q_i ? m : q_i;
-  assign high        = m < q_i ? q_i : m;
 
-  always_comb begin
-    assume (grid_i <= 4'(lod_pkg::MAX_LEVELS - 1) && s_i <= lod_pkg::EDGE_STATE_W'(lod_pkg::S_ONE));
-    assume ((a_i & corner_grid) == '0 && (b_i & corner_grid) == '0 && (q_i & vertex_grid) == '0);
+  logic [2:0] legal, middle, whole, between, ends, further;
+  for (genvar k = 0; k < 3; k++) begin : g_coordinate
+    logic signed [31:0] fa, fb, pa, pb, v, got, q;
+    // With room for displacements of 13 bits, shifted by 21.
+    logic signed [39:0] full_middle, morphed_middle, g, wide_q, low, high;
+    logic signed [32:0] full_sum, morphed_sum;
+    assign {fa, fb, pa, pb} = {fa_i[32*k +: 32], fb_i[32*k +: 32], pa_i[32*k +: 32], pb_i[32*k +: 32]};
+    assign {v, got, q}      = {v_i[32*k +: 32], full[32*k +: 32], morphed[32*k +: 32]};
+    assign full_sum         = 33'(fa) + 33'(fb);
+    assign morphed_sum      = 33'(pa) + 33'(pb);
+    assign full_middle      = 40'(full_sum) >>> 1;
+    assign morphed_middle   = 40'(morphed_sum) >>> 1;
+    assign g                = compact_i ? full_middle + (40'(v) <<< shift_i) : 40'(v);
+    assign wide_q           = 40'(q);
+    assign low              = morphed_middle < g ? morphed_middle : g;
+    assign high             = morphed_middle < g ? g : morphed_middle;
+    assign legal[k] = ((fa | fb | pa | pb) & corner_grid) == '0 && (g[31:0] & vertex_grid) == '0 && g <= LIMIT && g >= -LIMIT
+      && (!compact_i || (v >= -32'sd4096 && v <= 32'sd4095))
+      && 40'(fa) <= LIMIT && 40'(fa) >= -LIMIT && 40'(fb) <= LIMIT && 40'(fb) >= -LIMIT && 40'(pa) <= LIMIT && 40'(pa) >= -LIMIT && 40'(pb) <= LIMIT && 40'(pb) >= -LIMIT;
     // Parity: the midpoint of two corners is whole, and on the grid of the vertex.
-    assert (!sum[0] && (m & vertex_grid) == '0);
-    assert (low <= morphed && morphed <= high);
-    assert ((morphed & vertex_grid) == '0);
-    assert (s_i != '0 || morphed == m);
-    assert (s_i != lod_pkg::EDGE_STATE_W'(lod_pkg::S_ONE) || morphed == q_i);
+    assign middle[k]  = !full_sum[0] && !morphed_sum[0] && (morphed_middle[31:0] & vertex_grid) == '0 && (full_middle[31:0] & vertex_grid) == '0;
+    assign whole[k]   = 40'(got) == g;
+    assign between[k] = low <= wide_q && wide_q <= high && (q & vertex_grid) == '0;
+    assign ends[k]    = (s_i != '0 || wide_q == morphed_middle) && (s_i != lod_pkg::EDGE_STATE_W'(lod_pkg::S_ONE) || wide_q == g);
+    assign further[k] = wide_q != morphed_middle && wide_q != g;
+  end
+
+  for (genvar k = 0; k < 3; k++) begin : g_proved
+    always_comb begin
+      assert (middle[k]);
+      assert (whole[k]);
+      assert (between[k]);
+      assert (ends[k]);
+    end
+  end
+  always_comb begin
+    assume (grid_i <= 4'(lod_pkg::MAX_LEVELS - 1) && s_i <= lod_pkg::EDGE_STATE_W'(lod_pkg::S_ONE) && shift_i <= 5'd21);
+    assume (legal == '1);
     assert (valid && ready);
-    cover (grid_i == 4'd9 && s_i == 9'd128 && morphed != m && morphed != q_i && q_i < m);
-    cover (grid_i == 4'd0 && m < -32'sd2000000000 && q_i > 32'sd2000000000 && s_i == 9'd255);
+    cover (compact_i && shift_i == 5'd21 && s_i == 9'd128 && further == '1 && v_i[31]);
+    cover (!compact_i && grid_i == 4'd9 && s_i == 9'd128 && further == '1);
+    cover (!compact_i && grid_i == 4'd0 && pa_i[31:0] == 32'h8002_0000 && pb_i[31:0] == 32'h8002_0000 && v_i[31:0] == 32'h7ffe_0000 && s_i == 9'd255);
   end
 
 endmodule
 
-/// One edge in six triangles, at each place and from either end: whatever their other corners, vertices and states are, the vertex on that edge is the same.
+/// The steps of a displacement: 2^e units, e = max(grid + 4, floor((code + offset) / 16) - 11), from the midpoint of the edge's own ends.
+module tessellate_displacement (
+  input logic                    clk_i,
+  input logic                    rst_ni,
+  input lod_pkg::tessellate_in_t in_i,
+  input logic [7:0]              tag_i
+);
+
+  localparam int unsigned P_W = lod_pkg::POINT_W;
+
+  lod_pkg::tessellate_out_t out;
+  logic [7:0]               tag;
+  logic                     valid, ready;
+  tessellate u_tessellate (.clk_i, .rst_ni, .valid_i(1'b1), .ready_o(ready), .in_i, .tag_i, .valid_o(valid), .ready_i(1'b1), .out_o(out), .tag_o(tag));
+
+  logic [2:0][P_W-1:0] f, v, g;
+  logic [2:0][7:0]     code;
+  assign f    = {in_i.f2, in_i.f1, in_i.f0};
+  assign v    = {in_i.v2, in_i.v1, in_i.v0};
+  assign g    = {out.g2, out.g1, out.g0};
+  assign code = {in_i.e2, in_i.e1, in_i.e0};
+
+  logic [8:0] exact;
+  logic [2:0] coarser;
+  for (genvar i = 0; i < 3; i++) begin : g_vertex
+    logic signed [15:0] octave, zero, e;
+    assign octave     = (16'(code[i]) + 16'(in_i.scale.offset)) >> 4;
+    assign zero       = 16'(in_i.grid) + 16'sd4;
+    assign e          = octave - 16'sd11 > zero ? octave - 16'sd11 : zero;
+    assign coarser[i] = e > zero;
+    for (genvar k = 0; k < 3; k++) begin : g_coordinate
+      logic signed [31:0] a, b, d;
+      logic signed [32:0] sum;
+      assign a   = f[(i+1)%3][32*k +: 32];
+      assign b   = f[(i+2)%3][32*k +: 32];
+      assign d   = v[i][32*k +: 32];
+      assign sum = 33'(a) + 33'(b);
+      assign exact[3*i+k] = g[i][32*k +: 32] == (in_i.compact ? sum[32:1] + (d << e[4:0]) : d);
+    end
+  end
+
+  always_comb begin
+    assume (in_i.scale.offset <= 9'd272 && in_i.grid <= 4'(lod_pkg::MAX_LEVELS - 1));
+    assert (exact == '1);
+    assert (tag == tag_i && valid && ready);
+    cover (in_i.compact && coarser == 3'b101 && in_i.grid == 4'd9);
+    cover (in_i.compact && coarser == '0 && in_i.grid == 4'd0 && in_i.e1 == '1);
+  end
+
+endmodule
+
+/// One edge in six triangles, at each place and from either end, in either form: whatever their other corners, vertices, codes and states are, the vertex on that
+/// edge is the same, at full resolution and as morphed.
 module tessellate_shared (
   input logic                                  clk_i,
   input logic                                  rst_ni,
+  input logic                                  compact_i,
   input logic [3:0]                            grid_i,
+  input lod_pkg::bound_scale_t                 scale_i,
+  input lod_pkg::point_t                       full_a_i,
+  input lod_pkg::point_t                       full_b_i,
   input lod_pkg::point_t                       a_i,
   input lod_pkg::point_t                       b_i,
-  input lod_pkg::point_t                       q_i,
+  input lod_pkg::point_t                       v_i,
+  input logic [lod_pkg::BOUND_CODE_W-1:0]      code_i,
   input logic [lod_pkg::EDGE_STATE_W-1:0]      s_i,
-  // What the six do not share: their third corner, other vertices and states.
-  input logic [6*3*lod_pkg::POINT_W-1:0]       points_i,
+  // What the six do not share: their third corner in both forms, other vertices, codes and states.
+  input logic [6*4*lod_pkg::POINT_W-1:0]       points_i,
+  input logic [6*2*lod_pkg::BOUND_CODE_W-1:0]  codes_i,
   input logic [6*2*lod_pkg::EDGE_STATE_W-1:0]  states_i
 );
 
   localparam int unsigned P_W = lod_pkg::POINT_W;
+  localparam int unsigned C_W = lod_pkg::BOUND_CODE_W;
   localparam int unsigned S_W = lod_pkg::EDGE_STATE_W;
 
-  logic [6*P_W-1:0] vertex;
+  logic [6*2*P_W-1:0] vertex;
   for (genvar k = 0; k < 6; k++) begin : g_triangle
     localparam int unsigned PLACE = k % 3;
-    logic [P_W-1:0] first, second, c, q1, q2;
+    logic [P_W-1:0] full_first, full_second, first, second, full_c, c, v1, v2;
+    logic [C_W-1:0] e1, e2;
     logic [S_W-1:0] s1, s2;
-    assign {first, second} = k < 3 ? {a_i, b_i} : {b_i, a_i};
-    assign {c, q1, q2}     = points_i[k*3*P_W +: 3*P_W];
-    assign {s1, s2}        = states_i[k*2*S_W +: 2*S_W];
+    assign {full_first, full_second} = k < 3 ? {full_a_i, full_b_i} : {full_b_i, full_a_i};
+    assign {first, second}           = k < 3 ? {a_i, b_i} : {b_i, a_i};
+    assign {full_c, c, v1, v2}       = points_i[k*4*P_W +: 4*P_W];
+    assign {e1, e2}                  = codes_i[k*2*C_W +: 2*C_W];
+    assign {s1, s2}                  = states_i[k*2*S_W +: 2*S_W];
 
     lod_pkg::tessellate_in_t  in;
     lod_pkg::tessellate_out_t out;
     if (PLACE == 0) begin : g_0
-      assign in = {grid_i, s_i, s1, s2, c, first, second, q_i, q1, q2};
-      assign vertex[k*P_W +: P_W] = out.q0;
+      assign in = {compact_i, grid_i, scale_i, code_i, e1, e2, s_i, s1, s2, full_c, full_first, full_second, c, first, second, v_i, v1, v2};
+      assign vertex[k*2*P_W +: 2*P_W] = {out.g0, out.q0};
     end else if (PLACE == 1) begin : g_1
-      assign in = {grid_i, s1, s_i, s2, second, c, first, q1, q_i, q2};
-      assign vertex[k*P_W +: P_W] = out.q1;
+      assign in = {compact_i, grid_i, scale_i, e1, code_i, e2, s1, s_i, s2, full_second, full_c, full_first, second, c, first, v1, v_i, v2};
+      assign vertex[k*2*P_W +: 2*P_W] = {out.g1, out.q1};
     end else begin : g_2
-      assign in = {grid_i, s1, s2, s_i, first, second, c, q1, q2, q_i};
-      assign vertex[k*P_W +: P_W] = out.q2;
+      assign in = {compact_i, grid_i, scale_i, e1, e2, code_i, s1, s2, s_i, full_first, full_second, full_c, first, second, c, v1, v2, v_i};
+      assign vertex[k*2*P_W +: 2*P_W] = {out.g2, out.q2};
     end
     tessellate #(.TAG_W(1)) u_tessellate (
       .clk_i, .rst_ni, .valid_i(1'b1), .ready_o(), .in_i(in), .tag_i(1'b0), .valid_o(), .ready_i(1'b1), .out_o(out), .tag_o()
@@ -89,8 +183,9 @@ module tessellate_shared (
   end
 
   always_comb begin
-    for (int unsigned k = 1; k < 6; k++) assert (vertex[k*P_W +: P_W] == vertex[0 +: P_W]);
-    cover (s_i == 9'd77 && vertex[P_W-1:0] != q_i);
+    for (int unsigned k = 1; k < 6; k++) assert (vertex[k*2*P_W +: 2*P_W] == vertex[0 +: 2*P_W]);
+    cover (s_i == 9'd77 && compact_i && vertex[P_W-1:0] != vertex[P_W +: P_W]);
+    cover (s_i == 9'd77 && !compact_i && vertex[P_W-1:0] != v_i);
   end
 
 endmodule

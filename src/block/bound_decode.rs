@@ -1,12 +1,12 @@
-//! Displacement bound from its 10-bit code (paper section 4.3).
+//! Displacement bound from its 8-bit code (paper section 4.3 has the square of a 10-bit one).
 //!
-//! h = floor(code^2 * mantissa / 2^shift) units. The square undoes the square root taken before quantising; encoding rounds up, so h is
-//! never below the true bound. Monotone in the code; code 0 gives 0.
-//! Legal: any code; scales made by [`crate::num::bound_scale`] (h below 2^33).
+//! h = 0 for code 0, else floor(M[k mod 16] 2^(k / 16) / 256) units with k = code + offset, k / 16 rounded down: 16 steps an octave, no multiplier.
+//! Encoding rounds up, so h is never below the true bound. Monotone in the code.
+//! Legal: any code; offset at most [`MAX_BOUND_OFFSET`](crate::num::MAX_BOUND_OFFSET) (h below 2^33).
 
-use super::parts::{Multiplier, Parts, Registers, TAG, multiplier_latency};
+use super::parts::{Parts, Registers, TAG};
 use super::{Block, Form, Timing};
-use crate::num::{BoundCode, BoundScale, U, Wire, wire_struct};
+use crate::num::{BOUND_MANTISSAS, BoundCode, BoundScale, U, Wire, wire_struct};
 
 /// Width of a decoded bound: |q - m| < 2^32.8 for coordinates in +-2^31.
 pub type Bound = U<33>;
@@ -32,41 +32,41 @@ wire_struct! {
 /// The block.
 pub struct BoundDecode;
 
-const SQUARE: u32 = 2 * BoundCode::WIDTH;
-const SHIFT: u32 = 6;
-const MANTISSA: u32 = BoundScale::WIDTH - SHIFT;
-const PRODUCT: u32 = SQUARE + MANTISSA;
+/// Bits of code + offset, of them those of the octave, and of a mantissa.
+const SUM: u32 = BoundScale::WIDTH + 1;
+const OCTAVE: u32 = SUM - 4;
+const MANTISSA: u32 = 9;
 
 impl BoundDecode {
-    /// Registers with a tag of so many bits: the square, the product with the shift beside it, the shift in two steps.
+    /// Registers with a tag of so many bits: the sum with whether the code is 0, the mantissa shifted coarsely, h.
     pub(super) fn registers(tag: u32) -> Registers {
-        // As signed numbers the factors have one bit more.
-        let product = Multiplier { high: PRODUCT, ..Multiplier::new(SQUARE + 1, MANTISSA + 1) };
-        let beside = Registers::line(SHIFT + tag, multiplier_latency(SQUARE + 1, MANTISSA + 1), 0);
-        let ends = Registers::stage(PRODUCT + SHIFT / 2 + tag) + Registers::stage(Bound::WIDTH + tag);
-        Registers::stage(SQUARE + BoundScale::WIDTH + tag) + product.registers() + beside + ends
+        let coarse = Bound::WIDTH + 8;
+        Registers::stage(SUM + 1 + tag) + Registers::stage(coarse + 3 + tag) + Registers::stage(Bound::WIDTH + tag)
     }
 
-    /// Its products and selections.
-    pub(super) fn arithmetic() -> (Vec<[u32; 3]>, u32) {
-        (vec![[1, BoundCode::WIDTH, BoundCode::WIDTH], [1, SQUARE + 1, MANTISSA + 1]], PRODUCT * SHIFT)
+    /// Its sums and selections: the table of sixteen, and a shift of up to six steps.
+    pub(super) fn arithmetic() -> (u32, u32) {
+        (SUM, 15 * MANTISSA + OCTAVE * (Bound::WIDTH + 8))
     }
 }
 
 impl Block for BoundDecode {
     const NAME: &'static str = "bound_decode";
-    const TIMING: Timing = Timing::pipelined(6);
+    const TIMING: Timing = Timing::pipelined(3);
     type In = In;
     type Out = Out;
     fn parts(_: &Form) -> Parts {
-        let (products, select_bits) = Self::arithmetic();
-        Parts { products, add_bits: 0, select_bits, registers: Self::registers(TAG) }
+        let (add_bits, select_bits) = Self::arithmetic();
+        Parts { products: vec![], add_bits, select_bits, registers: Self::registers(TAG) }
     }
     #[inline(always)]
+    #[expect(clippy::as_conversions, reason = "four bits as an index")]
     fn eval(input: &In) -> Out {
-        // 20 bits of square, 18 of mantissa: 38.
-        let square = input.code.get() * input.code.get();
-        Out { h: Bound::new((square * input.scale.mantissa.get()) >> input.scale.shift.get()) }
+        // 8 and 9 bits: 10.
+        let k = input.code.get() + input.scale.offset.get();
+        // Nine bits and up to 32 more, of which eight are dropped.
+        let h = (u64::from(BOUND_MANTISSAS[(k & 15) as usize]) << (k >> 4)) >> 8;
+        Out { h: if input.code == BoundCode::ZERO { Bound::ZERO } else { Bound::new(h) } }
     }
 }
 
@@ -79,7 +79,7 @@ mod tests {
     fn agrees_with_the_encoder_for_every_code() {
         for largest in [0, 1, 5, 1023, 123_456, 1 << 32] {
             let scale = bound_scale(largest);
-            for code in 0..1024u16 {
+            for code in 0..=255u8 {
                 let out = BoundDecode::eval(&In { code: U::new(u64::from(code)), scale });
                 assert_eq!(out.h.get(), bound_decode(scale, code));
             }

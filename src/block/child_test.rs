@@ -1,17 +1,16 @@
-//! The four children of a node against a ray: boxes widened by their morphed triangles, tested, and sorted (paper figure 9).
+//! The four children of a node against a ray: their boxes, tested and sorted (paper figure 9).
 //!
-//! Four [`WidenBox`], four [`BoxTest`] and one [`ChildSort`] in a row. Children of a quad-BVH node have no triangles: `widen` is false and their
-//! boxes stay as they are. A child that is not present is never hit. (Software runs the same parts lane by lane: `src/method/children.rs`.)
+//! [`ChildBoxes`], four [`BoxTest`] and one [`ChildSort`] in a row. A child that is not present is never hit. (Software runs the same parts lane by lane:
+//! `src/method/children.rs`.)
 //! Legal: what the parts ask for.
 
 use super::box_test::{self, BoxTest};
+use super::child_boxes::{self, ChildBoxes};
 use super::child_sort::{self, ChildSort};
 use super::parts::{Parts, Registers, TAG};
 use super::ray_setup;
-use super::tessellate::child_triangle;
-use super::widen_box::{self, WidenBox};
 use super::{Block, Form, Timing};
-use crate::num::{Box16, Point, RayT, T_NEAR_TO_T_SHIFT, TNear, U, Wire, wire_struct};
+use crate::num::{Point, RayT, T_NEAR_TO_T_SHIFT, TNear, U, Vec3, Wire, wire_struct};
 
 wire_struct! {
     /// Input of [`ChildTest`].
@@ -22,11 +21,29 @@ wire_struct! {
         t_max: RayT,
         /// Child k exists.
         present: [bool; 4],
-        /// Box of child k.
-        bounds: [Box16; 4],
-        /// Widen the boxes by the children of the triangle below.
-        widen: bool,
-        /// Corner p0 of the parent.
+        /// Children of a tree's node; else of a quad-BVH node.
+        tree: bool,
+        /// Lower corner of a quad-BVH node's frame.
+        origin: Vec3<16>,
+        /// Steps along x, y, z are half as long again.
+        halves: [bool; 3],
+        /// Powers of two of these steps.
+        exponents: [U<4>; 3],
+        /// Steps of child k: lower x, y, z and upper x, y, z at 6k to 6k + 5.
+        planes: [U<7>; 24],
+        /// Corner p0 of full resolution of the parent.
+        f0: Point,
+        /// Corner p1 of full resolution.
+        f1: Point,
+        /// Corner p2 of full resolution.
+        f2: Point,
+        /// Its inserted vertex of full resolution on (p1, p2).
+        g0: Point,
+        /// On (p2, p0).
+        g1: Point,
+        /// On (p0, p1).
+        g2: Point,
+        /// Corner p0 of the parent as morphed for this ray.
         p0: Point,
         /// Corner p1.
         p1: Point,
@@ -67,35 +84,37 @@ pub struct ChildTest;
 
 impl Block for ChildTest {
     const NAME: &'static str = "child_test";
-    const TIMING: Timing = Timing::pipelined(WidenBox::TIMING.latency + BoxTest::TIMING.latency + ChildSort::TIMING.latency);
+    const TIMING: Timing = Timing::pipelined(ChildBoxes::TIMING.latency + BoxTest::TIMING.latency + ChildSort::TIMING.latency);
     type In = In;
     type Out = Out;
     fn parts(form: &Form) -> Parts {
-        let (widen, test, sort) = (WidenBox::parts(form), BoxTest::parts(form), ChildSort::parts(form));
-        let (widened, tested) = (WidenBox::TIMING.latency, BoxTest::TIMING.latency);
-        // The ray beside the widening: 16-bit boxes need neither the origins nor what t_near leaves of t_max.
+        let (boxes, test, sort) = (ChildBoxes::parts(form), BoxTest::parts(form), ChildSort::parts(form));
+        let (boxed, tested) = (ChildBoxes::TIMING.latency, BoxTest::TIMING.latency);
+        // The ray beside the boxes: 16-bit boxes need neither the origins nor what t_near leaves of t_max.
         let unread = 3 * (Point::WIDTH / 3) + T_NEAR_TO_T_SHIFT;
-        let ray = Registers::line(ray_setup::Out::WIDTH + RayT::WIDTH + 4, widened, 1).without((widened + 1) * unread);
+        let ray = Registers::line(ray_setup::Out::WIDTH + RayT::WIDTH + 4, boxed, 1).without((boxed + 1) * unread);
         // A tag of one bit for which there is no use, in each of their registers.
-        let child = WidenBox::registers(1).without(widened + 1) + BoxTest::registers(1).without(tested + 1);
+        let bounds = ChildBoxes::registers(1).without(boxed + 1);
+        let child = BoxTest::registers(1).without(tested + 1);
         let present = Registers::line(4, tested, 1);
         let tag = Registers::line(TAG, Self::TIMING.latency, 2);
         Parts {
             products: test.products.iter().map(|&[count, a, b]| [4 * count, a, b]).collect(),
-            add_bits: 4 * (widen.add_bits + test.add_bits) + sort.add_bits,
-            select_bits: 4 * (widen.select_bits + test.select_bits) + sort.select_bits,
+            add_bits: boxes.add_bits + 4 * test.add_bits + sort.add_bits,
+            select_bits: boxes.select_bits + 4 * test.select_bits + sort.select_bits,
             // The distances pass through the sort as its tag.
-            registers: ray + 4 * child + present + ChildSort::registers(4 * TNear::WIDTH) + tag,
+            registers: ray + bounds + 4 * child + present + ChildSort::registers(4 * TNear::WIDTH) + tag,
         }
     }
     #[inline(always)]
     fn eval(i: &In) -> Out {
+        let &In { tree, origin, halves, exponents, planes, .. } = i;
+        let &In { f0, f1, f2, g0, g1, g2, p0, p1, p2, q0, q1, q2, .. } = i;
+        let boxes = child_boxes::In { tree, origin, halves, exponents, planes, f0, f1, f2, g0, g1, g2, p0, p1, p2, q0, q1, q2 };
+        let bounds = ChildBoxes::eval(&boxes).bounds;
         let mut tests = child_sort::In::default();
         for k in 0..4 {
-            let [p0, p1, p2] = child_triangle([i.p0, i.p1, i.p2], [i.q0, i.q1, i.q2], k);
-            let stored = i.bounds[k];
-            let bounds = if i.widen { WidenBox::eval(&widen_box::In { bounds: stored, p0, p1, p2 }).bounds } else { stored };
-            let test = BoxTest::eval(&box_test::In { ray: i.ray, t_max: i.t_max, bounds });
+            let test = BoxTest::eval(&box_test::In { ray: i.ray, t_max: i.t_max, bounds: bounds[k] });
             tests.hit[k] = test.hit & i.present[k];
             tests.t_near[k] = if i.present[k] { test.t_near } else { TNear::ZERO };
         }

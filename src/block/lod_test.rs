@@ -125,9 +125,8 @@ impl Block for LodTest {
     type In = In;
     type Out = Out;
     fn parts(_: &Form) -> Parts {
-        let (decode, decode_selects) = BoundDecode::arithmetic();
-        let mut products = vec![[9, RELATIVE, COMPONENT], [3, DISTANCE, SLOPE]];
-        products.extend(decode.iter().map(|&[count, a, b]| [3 * count, a, b]));
+        let (decode_adds, decode_selects) = BoundDecode::arithmetic();
+        let products = vec![[9, RELATIVE, COMPONENT], [3, DISTANCE, SLOPE]];
         let corners = Registers::stage(9 * RELATIVE + Direction::WIDTH);
         // The fraction of a distance is dropped.
         let along = dot_product(RELATIVE, COMPONENT, ALONG, 1, ALONG - DISTANCE);
@@ -140,8 +139,14 @@ impl Block for LodTest {
         let ends = Registers::line(TAG, Self::TIMING.latency - 1, 3) + Registers::stage(Out::WIDTH + TAG);
         Parts {
             products,
-            // Corners, sums along the ray, nearer ends, sums of the cone, openings, divisions.
-            add_bits: 9 * RELATIVE + 6 * ALONG + 3 * DISTANCE + 6 * SUM + 9 * TOLERANCE + 3 * BITS * (TOLERANCE + 1),
+            // Corners, sums along the ray, nearer ends, sums of the cone, bounds, openings, divisions.
+            add_bits: 9 * RELATIVE
+                + 6 * ALONG
+                + 3 * DISTANCE
+                + 6 * SUM
+                + 3 * decode_adds
+                + 9 * TOLERANCE
+                + 3 * BITS * (TOLERANCE + 1),
             // Nearer ends, shifts of cone and bound, clamps, divisions, ends of s.
             select_bits: 3 * (DISTANCE + SUM * SHIFT + decode_selects + TOLERANCE + BITS * TOLERANCE + EdgeState::WIDTH),
             registers: corners + 3 * along + nearer + cone + codes + edges + ends,

@@ -7,8 +7,10 @@
 
 pub mod bary_map;
 pub mod bound_decode;
+pub mod box_decode;
 pub mod box_test;
 pub mod box_test32;
+pub mod child_boxes;
 pub mod child_sort;
 pub mod child_test;
 pub mod hit_divide;
@@ -21,7 +23,6 @@ pub mod ray_setup;
 pub mod tessellate;
 pub mod tree_base;
 pub mod tri_test;
-pub mod widen_box;
 
 pub use operation::{Operation, Operations};
 

@@ -1,7 +1,8 @@
 //! Address of a memory line of a record (`docs/scene-format.md`).
 //!
-//! With i = (4^level - 1) / 3 + index: base + i for one-line records, base + 2i + half for two-line ones. Records outside of trees have level 0.
-//! Legal: level <= 9; result below 2^36, which the size of the sections keeps.
+//! With i = (4^level - 1) / 3 + index: base + i for one-line records, base + 2i + half for two-line ones, base + (i - 1) / 2, rounded down, for records of half a
+//! line, of which the first level has none. Records outside of trees have level 0.
+//! Legal: level <= 9, above 0 for records of half a line; result below 2^36, which the size of the sections keeps.
 
 use super::parts::{Parts, Registers, TAG};
 use super::{Block, Form, Timing};
@@ -18,7 +19,9 @@ wire_struct! {
         index: U<28>,
         /// Records have two lines.
         pair: bool,
-        /// The second of them; 0 for one-line records.
+        /// Records have half a line.
+        halves: bool,
+        /// The second line of a pair; else 0.
         half: bool,
     }
 }
@@ -44,14 +47,20 @@ impl Block for NodeAddress {
         const RECORD: u32 = 29;
         let (line, address) = (RECORD + 1, LineAddress::WIDTH);
         let registers = Registers::stage(line + address + TAG) + Registers::stage(address + TAG);
-        Parts { products: vec![], add_bits: RECORD + address, select_bits: line, registers }
+        Parts { products: vec![], add_bits: RECORD + address, select_bits: 2 * line, registers }
     }
     #[inline(always)]
     fn eval(i: &In) -> Out {
         // (4^n - 1) / 3 = binary 0101..01 with n ones: below 2^17 for n <= 9.
         let start = 0x5_5555 & ((1 << (2 * i.level.get())) - 1);
         let record = start + i.index.get();
-        let line = if i.pair { 2 * record + u64::from(i.half) } else { record };
+        let line = if i.pair {
+            2 * record + u64::from(i.half)
+        } else if i.halves {
+            (record - 1) >> 1
+        } else {
+            record
+        };
         Out { address: LineAddress::new(i.base.get() + line) }
     }
 }
@@ -60,15 +69,21 @@ impl Block for NodeAddress {
 mod tests {
     use super::*;
     use crate::format::layout;
+    use crate::num::VertexForm;
 
     #[test]
     fn agrees_with_the_layout() {
         for level in 0..=9u32 {
-            for node in [0, 1, (1usize << (2 * level)) - 1] {
-                let input = In { base: U::new(100), level: U::new(u64::from(level)), index: U::new(node as u64), pair: false, half: false };
-                assert_eq!(NodeAddress::eval(&input).address.get() as usize, 100 + layout::vertex_line(10, 0, level, node));
-                let second = NodeAddress::eval(&In { pair: true, half: true, ..input });
-                assert_eq!(second.address.get() as usize, 101 + 2 * layout::child_group(10, 0, level, node));
+            for node in [0, 1, (1usize << (2 * level)) - 1].into_iter().filter(|&node| node < 1 << (2 * level)) {
+                let (level_in, index) = (U::new(u64::from(level)), U::new(node as u64));
+                let input = In { base: U::new(100), level: level_in, index, pair: false, halves: false, half: false };
+                let line = |input: &In| NodeAddress::eval(input).address.get() as usize;
+                assert_eq!(line(&input), 100 + layout::vertex_line(VertexForm::Exact, 10, 0, level, node));
+                assert_eq!(line(&input), 100 + layout::child_group(10, 0, level, node));
+                assert_eq!(line(&In { pair: true, half: true, ..input }), 101 + 2 * layout::child_group(10, 0, level, node));
+                if level > 0 {
+                    assert_eq!(line(&In { halves: true, ..input }), 100 + layout::vertex_line(VertexForm::Compact, 10, 0, level, node));
+                }
             }
         }
     }

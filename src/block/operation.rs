@@ -3,8 +3,10 @@
 use super::Block;
 use super::bary_map::BaryMap;
 use super::bound_decode::BoundDecode;
+use super::box_decode::BoxDecode;
 use super::box_test::BoxTest;
 use super::box_test32::BoxTest32;
+use super::child_boxes::ChildBoxes;
 use super::child_sort::ChildSort;
 use super::child_test::ChildTest;
 use super::hit_divide::HitDivide;
@@ -15,14 +17,13 @@ use super::ray_setup::RaySetup;
 use super::tessellate::Tessellate;
 use super::tree_base::TreeBase;
 use super::tri_test::TriTest;
-use super::widen_box::WidenBox;
 use super::{Form, Timing, parts::Parts};
 
 /// Something of the block of an operation, whose type is `$block`.
 macro_rules! of_block {
     ($operation:expr, $block:ident => $value:expr) => {
         of_block!($operation, $block => $value; RaySetup, NodeAddress, TreeBase, ChildTest, LodTest, Tessellate, TriTest, HitDivide, HitSelect,
-            BaryMap, WidenBox, BoxTest, BoxTest32, ChildSort, BoundDecode)
+            BaryMap, ChildBoxes, BoxDecode, BoxTest, BoxTest32, ChildSort, BoundDecode)
     };
     ($operation:expr, $block:ident => $value:expr; $($name:ident),+) => {
         match $operation {
@@ -43,7 +44,7 @@ pub enum Operation {
     NodeAddress,
     /// A tree's place.
     TreeBase,
-    /// Four children of a node with 16-bit boxes.
+    /// Four children of a node.
     ChildTest,
     /// Does a triangle serve.
     LodTest,
@@ -57,8 +58,10 @@ pub enum Operation {
     HitSelect,
     /// A hit mapped to the full-resolution mesh.
     BaryMap,
-    /// A box of a child widened.
-    WidenBox,
+    /// The boxes of four children.
+    ChildBoxes,
+    /// A box in its node's frame.
+    BoxDecode,
     /// A box of 16-bit codes.
     BoxTest,
     /// A box of 32-bit coordinates.
@@ -71,7 +74,7 @@ pub enum Operation {
 
 impl Operation {
     /// Every operation.
-    pub const ALL: [Self; 15] = [
+    pub const ALL: [Self; 16] = [
         Self::RaySetup,
         Self::NodeAddress,
         Self::TreeBase,
@@ -82,7 +85,8 @@ impl Operation {
         Self::HitDivide,
         Self::HitSelect,
         Self::BaryMap,
-        Self::WidenBox,
+        Self::ChildBoxes,
+        Self::BoxDecode,
         Self::BoxTest,
         Self::BoxTest32,
         Self::ChildSort,

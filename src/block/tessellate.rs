@@ -1,44 +1,70 @@
-//! Inserted vertices of a node's triangle for this ray: morphed between edge midpoint and stored position (paper section 3.4).
+//! Inserted vertices of a node's triangle for this ray: put together, and morphed between edge midpoint and their stored position (paper section 3.4).
 //!
-//! m = (a + b) / 2, exact; q' = m + (floor((q - m) s / 256) with its low `grid` bits cleared). s = 0 gives m, s = 256 gives q; q - m is
-//! a multiple of 2^grid and so is what is added, hence q' lies between m and q in each coordinate and on the level's grid. Neither m nor the
+//! The stored vertex g is given as it is, or as its displacement from the midpoint of the full-resolution ends of its edge: g = (fa + fb) / 2 + v 2^e,
+//! e = max(grid + 4, (code + offset) / 16 - 11), so that the edge's bound is below 4096 steps (docs/numbers.md). All of that is the edge's own: whichever triangle
+//! asks, in whatever tree, g is the same.
+//!
+//! m = (pa + pb) / 2, exact; q = m + (floor((g - m) s / 256) with its low `grid` bits cleared). s = 0 gives m, s = 256 gives g; g - m is
+//! a multiple of 2^grid and so is what is added, hence q lies between m and g in each coordinate and on the level's grid. Neither m nor the
 //! rounding depends on which triangle asks.
-//! Legal: corners multiples of 2^(grid+1), q of 2^grid, grid = N - level - 1 (0 to 9), |v| < 2^31, s from 0 to 256.
+//! Legal: all corners multiples of 2^(grid+1), g of 2^grid, grid = N - level - 1 (0 to 9), |corners| and |g| at most `COORD_LIMIT`, s from 0 to 256; v of 13 bits where it is a displacement.
 
 use super::parts::{Multiplier, Parts, RELATIVE, Registers, TAG, multiplier_latency};
 use super::{Block, Form, Timing};
-use crate::num::{EdgeState, Point, S, U, Vec3, Wire, wire_struct};
+use crate::num::{BoundCode, BoundScale, EdgeState, MAX_DISPLACEMENT_SHIFT, Point, S, U, Vec3, Wire, wire_struct};
 
 wire_struct! {
     /// Input of [`Tessellate`].
     pub struct In {
+        /// Stored vertices are displacements.
+        compact: bool,
         /// Zero bits at the bottom of an inserted vertex.
         grid: U<4>,
+        /// The model's bound scale.
+        scale: BoundScale,
+        /// Bound code of edge (p1, p2).
+        e0: BoundCode,
+        /// Bound code of edge (p2, p0).
+        e1: BoundCode,
+        /// Bound code of edge (p0, p1).
+        e2: BoundCode,
         /// State of edge (p1, p2).
         s0: EdgeState,
         /// State of edge (p2, p0).
         s1: EdgeState,
         /// State of edge (p0, p1).
         s2: EdgeState,
-        /// Corner p0.
+        /// Corner p0 of full resolution.
+        f0: Point,
+        /// Corner p1 of full resolution.
+        f1: Point,
+        /// Corner p2 of full resolution.
+        f2: Point,
+        /// Corner p0 as morphed for this ray.
         p0: Point,
         /// Corner p1.
         p1: Point,
         /// Corner p2.
         p2: Point,
-        /// Stored vertex on (p1, p2).
-        q0: Point,
-        /// Stored vertex on (p2, p0).
-        q1: Point,
-        /// Stored vertex on (p0, p1).
-        q2: Point,
+        /// Stored vertex on (p1, p2), or its displacement.
+        v0: Point,
+        /// On (p2, p0).
+        v1: Point,
+        /// On (p0, p1).
+        v2: Point,
     }
 }
 
 wire_struct! {
-    /// Output of [`Tessellate`]: the morphed vertices.
+    /// Output of [`Tessellate`]: the inserted vertices of full resolution, and as morphed.
     pub struct Out {
-        /// On (p1, p2).
+        /// Full resolution, on (p1, p2).
+        g0: Point,
+        /// On (p2, p0).
+        g1: Point,
+        /// On (p0, p1).
+        g2: Point,
+        /// Morphed, on (p1, p2).
         q0: Point,
         /// On (p2, p0).
         q1: Point,
@@ -50,53 +76,93 @@ wire_struct! {
 /// The block.
 pub struct Tessellate;
 
+/// What the vertices of a triangle share.
+#[derive(Clone, Copy)]
+struct Split {
+    compact: bool,
+    grid: U<4>,
+    scale: BoundScale,
+}
+
+/// Shift of a displacement: its edge's bound has fewer than 13 bits beyond it.
 #[inline(always)]
-fn morph_coordinate(a: S<32>, b: S<32>, q: S<32>, s: EdgeState, grid: U<4>) -> S<32> {
-    // 33-bit sum, even: the midpoint is exact and fits 32 bits again.
-    let m = (a.get() + b.get()) >> 1;
-    // 33-bit difference times 9 bits: 42.
-    let product = S::<42>::new((q.get() - m) * s.get().cast_signed());
-    let step = (product.get() >> 8) & (-1 << grid.get());
-    // Between m and q, so 32 bits.
-    S::new(m + step)
+fn displacement_shift(split: Split, code: BoundCode) -> U<5> {
+    // 8 and 9 bits: k / 16 is below 48 (below 33 in a legal scale), less 11.
+    let octave = (code.get() + split.scale.offset.get()) >> 4;
+    let shift = octave.saturating_sub(11).max(split.grid.get() + 4);
+    // Legal scales and grids keep it to this.
+    U::new(shift.min(u64::from(MAX_DISPLACEMENT_SHIFT)))
+}
+
+/// The full-resolution vertex between `a` and `b`.
+#[inline(always)]
+fn stored_coordinate(a: S<32>, b: S<32>, v: S<32>, compact: bool, shift: U<5>) -> S<32> {
+    // 33-bit sum, even: the midpoint is exact and fits 32 bits again. 13 bits and 21 more: legal vertices fit 32.
+    let displaced = ((a.get() + b.get()) >> 1) + (v.get() << shift.get());
+    S::new(if compact { displaced } else { v.get() })
 }
 
 #[inline(always)]
-fn morph(a: Point, b: Point, q: Point, s: EdgeState, grid: U<4>) -> Point {
-    Vec3 {
-        x: morph_coordinate(a.x, b.x, q.x, s, grid),
-        y: morph_coordinate(a.y, b.y, q.y, s, grid),
-        z: morph_coordinate(a.z, b.z, q.z, s, grid),
-    }
+fn morph_coordinate(a: S<32>, b: S<32>, g: S<32>, s: EdgeState, grid: U<4>) -> S<32> {
+    // 33-bit sum, even: the midpoint is exact and fits 32 bits again.
+    let m = (a.get() + b.get()) >> 1;
+    // 33-bit difference times 9 bits: 42.
+    let product = S::<42>::new((g.get() - m) * s.get().cast_signed());
+    let step = (product.get() >> 8) & (-1 << grid.get());
+    // Between m and g, so 32 bits.
+    S::new(m + step)
+}
+
+/// An edge: its ends of full resolution and as morphed, its code and its state.
+#[derive(Clone, Copy)]
+struct Edge {
+    f: [Point; 2],
+    p: [Point; 2],
+    code: BoundCode,
+    s: EdgeState,
+}
+
+/// The vertex `v` on an edge, of full resolution and as morphed.
+#[inline(always)]
+fn vertex(split: Split, edge: Edge, v: Point) -> (Point, Point) {
+    let ([fa, fb], [pa, pb], shift) = (edge.f, edge.p, displacement_shift(split, edge.code));
+    let stored = |a, b, v| stored_coordinate(a, b, v, split.compact, shift);
+    let g = Vec3 { x: stored(fa.x, fb.x, v.x), y: stored(fa.y, fb.y, v.y), z: stored(fa.z, fb.z, v.z) };
+    let morph = |a, b, g| morph_coordinate(a, b, g, edge.s, split.grid);
+    (g, Vec3 { x: morph(pa.x, pb.x, g.x), y: morph(pa.y, pb.y, g.y), z: morph(pa.z, pb.z, g.z) })
 }
 
 impl Block for Tessellate {
     const NAME: &'static str = "tessellate";
-    const TIMING: Timing = Timing::pipelined(6);
+    const TIMING: Timing = Timing::pipelined(7);
     type In = In;
     type Out = Out;
     fn parts(_: &Form) -> Parts {
         // A coordinate, its difference from the midpoint, s as a signed number, and the fraction of the product that is dropped.
         let (w, s, grid, fraction) = (RELATIVE - 1, EdgeState::WIDTH + 1, 4, 8);
         let product = Multiplier { low: fraction, high: fraction + w, ..Multiplier::new(RELATIVE, s) };
-        let ahead = Registers::stage(2 * w + s - 1 + grid) + Registers::stage(RELATIVE + w + s - 1 + grid);
-        let beside = Registers::line(w + grid, multiplier_latency(RELATIVE, s), 0);
-        let coordinate = ahead + product.registers() + beside + Registers::stage(2 * w) + Registers::stage(w);
+        // Both midpoints and the displacement; the vertex; the difference. The vertex goes along to the end.
+        let ahead = Registers::stage(3 * w + s - 1 + grid)
+            + Registers::stage(2 * w + s - 1 + grid)
+            + Registers::stage(RELATIVE + 2 * w + s - 1 + grid);
+        let beside = Registers::line(2 * w + grid, multiplier_latency(RELATIVE, s), 0);
+        let coordinate = ahead + product.registers() + beside + Registers::stage(3 * w) + Registers::stage(2 * w);
         Parts {
             products: vec![[9, RELATIVE, s]],
-            // Midpoint, difference, sum; the grid.
-            add_bits: 9 * (RELATIVE + RELATIVE + w),
-            select_bits: 9 * w,
+            // Shifts of three edges; midpoints, vertex, difference, sum.
+            add_bits: 3 * (BoundScale::WIDTH + 1 + 6) + 9 * (2 * RELATIVE + w + RELATIVE + w),
+            // Shifts; the displacement's in five steps, or the vertex as it is; the grid.
+            select_bits: 3 * 5 + 9 * (5 * w + w + w),
             registers: 9 * coordinate + Registers::line(TAG, Self::TIMING.latency, 0),
         }
     }
     #[inline(always)]
     fn eval(i: &In) -> Out {
-        Out {
-            q0: morph(i.p1, i.p2, i.q0, i.s0, i.grid),
-            q1: morph(i.p2, i.p0, i.q1, i.s1, i.grid),
-            q2: morph(i.p0, i.p1, i.q2, i.s2, i.grid),
-        }
+        let split = Split { compact: i.compact, grid: i.grid, scale: i.scale };
+        let (g0, q0) = vertex(split, Edge { f: [i.f1, i.f2], p: [i.p1, i.p2], code: i.e0, s: i.s0 }, i.v0);
+        let (g1, q1) = vertex(split, Edge { f: [i.f2, i.f0], p: [i.p2, i.p0], code: i.e1, s: i.s1 }, i.v1);
+        let (g2, q2) = vertex(split, Edge { f: [i.f0, i.f1], p: [i.p0, i.p1], code: i.e2, s: i.s2 }, i.v2);
+        Out { g0, g1, g2, q0, q1, q2 }
     }
 }
 
@@ -114,9 +180,25 @@ pub fn child_triangle(p: [Point; 3], q: [Point; 3], k: usize) -> [Point; 3] {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::num;
     use proptest::prelude::*;
 
     proptest! {
+        #[test]
+        fn stored_vertices_are_those_of_the_format(
+            grid in 0u64..=9, offset in 0u64..=num::MAX_BOUND_OFFSET, code in 0u8..=255, v in prop::array::uniform2(-(1i32 << 30)..1 << 30), part in -4096i32..4096
+        ) {
+            let split = Split { compact: true, grid: U::new(grid), scale: BoundScale { offset: U::new(offset) } };
+            let shift = displacement_shift(split, BoundCode::new(u64::from(code)));
+            prop_assert_eq!(shift.get(), u64::from(num::displacement_shift(split.scale, code, grid as u32 + 4)));
+            let [a, b] = v.map(|v| (v >> (grid + 5)) << (grid + 5));
+            // Within the coordinates' limit, as in every scene.
+            let steps = part >> shift.get().saturating_sub(17);
+            let g = stored_coordinate(S::new(a.into()), S::new(b.into()), S::new(steps.into()), true, shift);
+            prop_assert_eq!(g.get(), i64::from(num::displaced(a, b, steps, shift.get() as u32)));
+            prop_assert_eq!(stored_coordinate(S::new(a.into()), S::new(b.into()), S::new(7), false, shift).get(), 7);
+        }
+
         #[test]
         fn morphed_vertices_stay_between_and_on_the_grid(
             grid in 0u64..=9, s in 0u64..=256, v in prop::array::uniform3(-(1i64 << 31) + 1024..(1 << 31) - 1024)

@@ -1,8 +1,8 @@
-//! Nodes as memory lines: 16-bit boxes in two 32-byte lines, 32-bit boxes in four.
+//! Nodes as memory lines: boxes in a frame of their own in one 32-byte line, 16-bit boxes in two, 32-bit boxes in four.
 
 use super::{Box32, Child, QuadNode};
-use crate::format::{Box16, BvhChild, ChildRef};
-use crate::num::{COORD_LIMIT, Vec3, Wire, box_code_ceil, box_code_floor, wire_struct};
+use crate::format::{Box16, BvhChild, BvhNode, ChildRef, Line};
+use crate::num::{BoxStep, COORD_LIMIT, U, Vec3, Wire, box_code_ceil, box_code_floor, wire_struct};
 
 /// A node with 16-bit boxes: four [`BvhChild`] of 16 bytes, child k in words 2k and 2k + 1.
 pub type Node16 = [u64; 8];
@@ -44,6 +44,40 @@ pub fn encode16(node: &QuadNode) -> Node16 {
     words
 }
 
+/// The node in one line: its boxes rounded outwards to 16-bit codes and then to 31 steps of the node's frame. The same limits as for [`encode16`], and children of
+/// a kind stand side by side ([`super::QuadTree::side_by_side`]).
+pub fn encode_line(node: &QuadNode) -> Line {
+    let mut out = BvhNode::default();
+    let used = node.children.iter().take_while(|c| **c != Child::Empty).count();
+    let boxes = node.boxes.each_ref().map(box16);
+    let corners = || boxes[..used].iter().map(|b| (b.lo.get(), b.hi.get()));
+    let origin: [i64; 3] = std::array::from_fn(|axis| corners().map(|(lo, _)| lo[axis]).min().unwrap_or(0));
+    out.origin = Vec3::new(origin[0], origin[1], origin[2]);
+    for axis in 0..3 {
+        let from = |code: i64| (code - origin[axis]) as u32; // not below it, and 17 bits
+        let step = BoxStep::reaching(corners().map(|(_, hi)| from(hi[axis])).max().unwrap_or(0), BvhNode::MOST);
+        (out.halves[axis], out.exponents[axis]) = (step.half, U::new(u64::from(step.exponent)));
+        for (k, (lo, hi)) in corners().enumerate() {
+            out.planes[6 * k + axis] = U::new(u64::from(step.below(from(lo[axis]))));
+            out.planes[6 * k + axis + 3] = U::new(u64::from(step.above(from(hi[axis]))));
+        }
+    }
+    for (k, &child) in node.children.iter().enumerate() {
+        let ChildRef { kind, count, index } = reference(child);
+        (out.kinds[k], out.counts[k]) = (kind, count);
+        let first = |of| node.children[..k].iter().all(|&c| reference(c).kind.get() != of);
+        match child {
+            Child::Inner(_) if first(ChildRef::INNER) => out.first_node = index,
+            Child::Leaf { .. } if first(ChildRef::LEAF) => out.first_leaf = index,
+            _ => (),
+        }
+    }
+    debug_assert!((0..4).all(|k| out.child(k) == reference(node.children[k])), "children of a kind stand side by side");
+    let mut line = [0; 4];
+    out.to_words(&mut line);
+    line
+}
+
 /// The node with its boxes in units; the same limits as for [`encode16`].
 pub fn encode32(node: &QuadNode) -> Node32 {
     let mut words = [0; 16];
@@ -51,4 +85,55 @@ pub fn encode32(node: &QuadNode) -> Node32 {
         BvhChild32 { child: reference(c), lo: Vec3::from_i32(b.lo), hi: Vec3::from_i32(b.hi) }.to_words(line);
     }
     words
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    fn node(corners: Vec<([i32; 3], [i32; 3])>) -> QuadNode {
+        let mut node = QuadNode::default();
+        let (mut inner, mut slot) = (40, 900);
+        for (k, (a, b)) in corners.into_iter().enumerate() {
+            let pick = |f: fn(i32, i32) -> i32| std::array::from_fn(|c| f(a[c], b[c]));
+            node.boxes[k] = Box32 { lo: pick(i32::min), hi: pick(i32::max) };
+            node.children[k] = if a[0] & 1 == 0 {
+                inner += 1;
+                Child::Inner(inner)
+            } else {
+                let count = (b[0] & 3) as u8 + 1; // 1 to 4
+                slot += u32::from(count);
+                Child::Leaf { first: slot - u32::from(count), count }
+            };
+        }
+        node
+    }
+
+    proptest! {
+        #[test]
+        fn a_line_holds_the_children_and_boxes_around_theirs(
+            corners in prop::collection::vec((prop::array::uniform3(-COORD_LIMIT..=COORD_LIMIT), prop::array::uniform3(-COORD_LIMIT..=COORD_LIMIT)), 1..=4), bits in 0u32..20
+        ) {
+            let node = node(corners.into_iter().map(|(a, b)| (a.map(|c| c >> bits), b.map(|c| c >> bits))).collect());
+            let line = BvhNode::from_words(&encode_line(&node));
+            let used = node.children.iter().take_while(|c| **c != Child::Empty).count();
+            let all: Vec<_> = node.boxes[..used].iter().map(box16).collect();
+            for k in 0..4 {
+                prop_assert_eq!(line.child(k), reference(node.children[k]));
+                if k >= used {
+                    prop_assert!((0..6).all(|j| line.planes[6 * k + j] == U::ZERO));
+                    continue;
+                }
+                let (stored, own) = (line.bounds(k), all[k]);
+                for c in 0..3 {
+                    prop_assert!(stored.lo.get()[c] <= own.lo.get()[c] && stored.hi.get()[c] >= own.hi.get()[c]);
+                    let extent = all.iter().map(|b| b.hi.get()[c]).max().unwrap_or(0) - all.iter().map(|b| b.lo.get()[c]).min().unwrap_or(0);
+                    // A step is at most half as long again as a 31st of the extent, and a code more for its rounding.
+                    let most = extent * 3 / 62 + 2;
+                    prop_assert!(own.lo.get()[c] - stored.lo.get()[c] <= most && stored.hi.get()[c] - own.hi.get()[c] <= most);
+                }
+            }
+        }
+    }
 }

@@ -1,7 +1,7 @@
 //! The quad-BVH over any boxes: those of base triangles, or of the triangles of a level.
 //!
 //! A binary tree by the surface area heuristic (binned, exact for small ranges) down to single primitives; collapsed to four children per
-//! node by dynamic programming, which also chooses the leaves; written as 64-byte nodes (16-bit boxes) or 128-byte nodes (32-bit boxes).
+//! node by dynamic programming, which also chooses the leaves; written as nodes of 32 bytes (boxes in the node's frame), 64 (16-bit boxes) or 128 (32-bit boxes).
 //! The result depends on the input alone: not on the number of threads, nor on the machine.
 
 pub(crate) mod build;
@@ -11,9 +11,9 @@ mod encode;
 mod plan;
 
 pub use check::{Defect, check, sah_cost};
-pub use encode::{BvhChild32, Node16, Node32, encode16, encode32};
+pub use encode::{BvhChild32, Node16, Node32, encode_line, encode16, encode32};
 
-use crate::format::Box16;
+use crate::format::{Box16, TreeBvh};
 use crate::num::COORD_LIMIT;
 use rayon::prelude::*;
 use thiserror::Error;
@@ -81,7 +81,7 @@ pub enum Collapse {
 /// What the surface area heuristic counts, relative to each other.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Costs {
-    /// One visit of a node: two 32-byte lines, four box tests.
+    /// One visit of a node: up to two 32-byte lines, four box tests.
     pub node: f64,
     /// One triangle of a leaf: one line or a little more, one triangle test.
     pub primitive: f64,
@@ -199,23 +199,38 @@ pub fn build(boxes: &[Box32], options: &Options) -> Result<QuadTree, BvhError> {
     Ok(QuadTree { nodes, order })
 }
 
-/// Nodes over the trees of a scene: leaf index = tree index, one tree per leaf, boxes as given.
+impl QuadTree {
+    /// The same with the leaves of each node side by side: their primitives follow each other in the order of its slots, nodes in their own order.
+    #[must_use]
+    pub fn side_by_side(mut self) -> Self {
+        let order = side_by_side(&mut self.nodes, &self.order);
+        Self { order, ..self }
+    }
+}
+
+/// Moves the leaves of each of `nodes` side by side in the order that is returned.
+pub(crate) fn side_by_side(nodes: &mut [QuadNode], order: &[u32]) -> Vec<u32> {
+    let mut out = Vec::with_capacity(order.len());
+    for child in nodes.iter_mut().flat_map(|node| &mut node.children) {
+        if let Child::Leaf { first, count } = child {
+            let own = *first as usize..*first as usize + usize::from(*count);
+            *first = out.len() as u32; // at most 2^28
+            out.extend_from_slice(&order[own]);
+        }
+    }
+    out
+}
+
+/// Nodes over the trees of a scene, one tree per leaf, boxes as given, and the order of the trees in which leaves of a node stand side by side.
 ///
 /// # Errors
 /// No trees, too many, or a box that is inside out or uses the codes beyond +-32766.
-pub fn over_trees(boxes: &[Box16]) -> Result<Vec<Node16>, BvhError> {
+pub fn over_trees(boxes: &[Box16]) -> Result<TreeBvh, BvhError> {
     // Codes have 16 bits, so code << 16 fits 32.
     let wide = |b: &Box16| Box32 { lo: b.lo.get().map(|c| (c << 16) as i32), hi: b.hi.get().map(|c| (c << 16) as i32) };
     let boxes: Vec<Box32> = boxes.par_iter().map(wide).collect();
-    let tree = build(&boxes, &Options::with_leaf(1))?;
-    let by_tree = |n: &QuadNode| {
-        let name = |c: Child| match c {
-            Child::Leaf { first, count } => Child::Leaf { first: tree.order[first as usize], count },
-            other => other,
-        };
-        encode16(&QuadNode { boxes: n.boxes, children: n.children.map(name) })
-    };
-    Ok(tree.nodes.par_iter().map(by_tree).collect())
+    let tree = build(&boxes, &Options::with_leaf(1))?.side_by_side();
+    Ok(TreeBvh { nodes: tree.nodes.par_iter().map(encode_line).collect(), order: tree.order })
 }
 
 pub(crate) fn check_count(count: u64) -> Result<(), BvhError> {

@@ -11,6 +11,7 @@ use lodray::format::{self, Scene, SceneInfo};
 use lodray::mesh::{
     BoundKind, DEFAULT_CREASE_ANGLE, DEFAULT_MAX_ERROR, MeshFormat, RemeshOptions, Surface, TriangleMesh, read, read_as, read_bytes, remesh,
 };
+use lodray::num::VertexForm;
 use std::io::Read;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
@@ -18,11 +19,15 @@ use std::process::ExitCode;
 /// What stands for standard input.
 const STDIN: &str = "-";
 
-#[derive(clap::Args, Clone, Copy)]
-pub struct BoundsArg {
+/// How a scene is stored.
+#[derive(clap::Args, Clone, Copy, Default)]
+pub struct FormArgs {
     /// What displacement bounds cover
-    #[arg(long = "bounds", value_name = "KIND", value_parser = named::<BoundKind>(), default_value = BoundKind::default().name())]
-    pub kind: BoundKind,
+    #[arg(long, value_name = "KIND", value_parser = named::<BoundKind>(), default_value = BoundKind::default().name())]
+    pub bounds: BoundKind,
+    /// How inserted vertices are stored
+    #[arg(long, value_name = "FORM", value_parser = named::<VertexForm>(), default_value = VertexForm::default().name())]
+    pub vertices: VertexForm,
 }
 
 #[derive(clap::Args)]
@@ -45,7 +50,7 @@ pub struct Args {
     #[arg(long, value_name = "DEGREES", default_value_t = DEFAULT_CREASE_ANGLE, value_parser = crease, allow_negative_numbers = true)]
     crease_angle: f64,
     #[command(flatten)]
-    bounds: BoundsArg,
+    form: FormArgs,
     /// Make it an error, and write nothing, if the result is further from the mesh than --max-error or has triangles that face away from it
     #[arg(long)]
     strict: bool,
@@ -87,7 +92,7 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
     }
     let name = source.file_stem().map_or_else(String::new, |s| s.to_string_lossy().into_owned());
     let origin = serde_json::json!({ "mesh": mesh.report, "remesh": report });
-    let scene = build_scene(&surface, &name, origin, args.bounds.kind)?;
+    let scene = build_scene(&surface, &name, origin, args.form)?;
     drop(surface);
     finish(&scene, &args.out, args.json)
 }
@@ -115,8 +120,9 @@ fn read_stdin(format: MeshFormat, name: &Path) -> anyhow::Result<TriangleMesh> {
 }
 
 /// The scene of a surface; `origin` says how it was made.
-pub fn build_scene(surface: &Surface, name: &str, origin: serde_json::Value, bounds: BoundKind) -> anyhow::Result<Scene> {
-    Ok(busy("encoding", || format::build(surface, SceneInfo { name: name.to_owned(), origin, bounds }, over_trees))?)
+pub fn build_scene(surface: &Surface, name: &str, origin: serde_json::Value, form: FormArgs) -> anyhow::Result<Scene> {
+    let FormArgs { bounds, vertices } = form;
+    Ok(busy("encoding", || format::build(surface, SceneInfo { name: name.to_owned(), origin, bounds, vertices }, over_trees))?)
 }
 
 /// Saves a new scene and says what it holds.

@@ -1,6 +1,6 @@
 //! `demo`: a built-in scene from three distances, LOD beside BVH and full resolution.
 
-use super::build::build_scene;
+use super::build::{FormArgs, build_scene};
 use super::cache::Cache;
 use super::facts::Facts;
 use super::folder::{Overrule, RunFolder, one_run};
@@ -8,7 +8,6 @@ use super::method::Chosen;
 use super::output::{busy, grouped, print_json, print_line, remark, write_file};
 use super::pictures::{Shot, shoot};
 use super::render::{Against, Comparison, compare_shots};
-use lodray::mesh::BoundKind;
 use lodray::mesh::procedural::{Options, Scene, generate};
 use lodray::method::knob::DELTA;
 use lodray::method::{Registered, bvh, lod, reference};
@@ -58,7 +57,7 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
     let out = folder.staging();
     let options = Options { levels: Some(LEVELS), ..Options::new(Scene::Terrain) };
     let surface = busy("generating", || generate(&options))?;
-    let scene = build_scene(&surface, "terrain", serde_json::json!({ "generate": options }), BoundKind::default())?;
+    let scene = build_scene(&surface, "terrain", serde_json::json!({ "generate": options }), FormArgs::default())?;
     let space = ModelSpace::of(&scene);
     let methods: [&Registered; 3] = [&lod::METHOD, &bvh::METHOD, &reference::METHOD];
     let made = methods.iter().map(|method| Chosen::plain(method).make(&scene, &Cache::NONE)).collect::<anyhow::Result<Vec<_>>>()?;

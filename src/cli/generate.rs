@@ -1,11 +1,10 @@
 //! `generate`: a procedural scene.
 
 use super::args::{levels, seed, whole};
-use super::build::{BoundsArg, build_scene, finish};
+use super::build::{FormArgs, build_scene, finish};
 use super::names::named;
 use super::output::{busy, check_target};
 use lodray::format;
-use lodray::mesh::BoundKind;
 use lodray::mesh::procedural::{MAX_TREES, Options, Scene, generate};
 use std::path::PathBuf;
 use std::process::ExitCode;
@@ -28,7 +27,7 @@ pub struct Args {
     #[arg(long, value_parser = share, allow_hyphen_values = true)]
     roughness: Option<f64>,
     #[command(flatten)]
-    bounds: BoundsArg,
+    form: FormArgs,
     /// Scene file to write
     #[arg(short, long)]
     out: PathBuf,
@@ -40,15 +39,15 @@ pub struct Args {
 pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
     check_target(&args.out, &[])?;
     let options = Options { scene: args.scene, levels: args.levels, base: args.base, seed: args.seed, roughness: args.roughness };
-    finish(&make(&options, args.bounds.kind)?, &args.out, args.json)
+    finish(&make(&options, args.form)?, &args.out, args.json)
 }
 
 /// Generates a scene.
-pub fn make(options: &Options, bounds: BoundKind) -> anyhow::Result<format::Scene> {
+pub fn make(options: &Options, form: FormArgs) -> anyhow::Result<format::Scene> {
     check(options)?;
     let surface = busy("generating", || generate(options))?;
     let origin = serde_json::json!({ "generate": options });
-    build_scene(&surface, options.scene.name(), origin, bounds)
+    build_scene(&surface, options.scene.name(), origin, form)
 }
 
 /// Refuses what cannot be generated, before any work is done.

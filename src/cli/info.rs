@@ -3,7 +3,7 @@
 use super::output::{grouped, open, plain, print_json, print_line};
 use lodray::format::Scene;
 use lodray::mesh::{BoundKind, TwoSidedDistance};
-use lodray::num::PADDING_BITS;
+use lodray::num::{PADDING_BITS, VertexForm};
 use lodray::rays::ModelSpace;
 use serde::Serialize;
 use std::path::PathBuf;
@@ -42,6 +42,9 @@ struct Info<'a> {
     finest_triangles: u64,
     /// What displacement bounds cover.
     bounds: BoundKind,
+    /// How inserted vertices are stored, and the largest distance of a stored vertex from where the surface had it.
+    vertices: VertexForm,
+    moved: f64,
     centre: [f64; 3],
     radius: f64,
     unit: f64,
@@ -109,11 +112,13 @@ impl<'a> Info<'a> {
             base_vertices: u64::from(meta.base_vertices),
             finest_triangles: triangles,
             bounds: meta.bounds,
+            vertices: meta.vertices,
+            moved: meta.moved,
             centre: space.centre(),
             radius: space.radius(),
             unit: space.placement.scale,
-            base_grid: space.placement.scale * f64::from(1u32 << scene.levels().max(PADDING_BITS)),
-            base_bits_lost: scene.levels().saturating_sub(PADDING_BITS),
+            base_grid: space.placement.scale * f64::from(1u32 << meta.vertices.zero_bits(scene.levels())),
+            base_bits_lost: meta.vertices.zero_bits(scene.levels()) - PADDING_BITS,
             hierarchy_bytes_per_triangle: per(hierarchy),
             parts,
             distance: serde_json::from_value(meta.origin["remesh"]["distance"].clone()).ok(),
@@ -146,6 +151,7 @@ fn summary(i: &Info<'_>) -> String {
         ),
         ("model size", format!("{width} x {height} x {depth} (width x height x depth, in the units of its coordinates)")),
         ("bounds", format!("{}: {}", i.bounds.name(), promise(i.bounds))),
+        ("vertices", format!("{}: none is further than {} from its place on the surface", i.vertices.name(), plain(i.moved))),
     ];
     if let Some(d) = &i.distance {
         let mean = percent(d.to_original.mean.max(d.from_original.mean));
@@ -176,7 +182,7 @@ fn promise(bounds: BoundKind) -> &'static str {
 fn losses(i: &Info<'_>) -> Vec<String> {
     let remesh = i.origin["remesh"]["warning"].as_str().map(str::to_owned);
     // Single precision, in which meshes come, has 24 bits.
-    let grid = (i.base_bits_lost > 4).then(|| {
+    let grid = (i.levels > 8).then(|| {
         format!(
             "base vertices are rounded to steps of {}, coarser than single precision, as there are more than 8 levels",
             plain(i.base_grid)
@@ -199,7 +205,7 @@ fn verbose(i: &Info<'_>) -> String {
         "base vertices are rounded to {:e}: {} of 28 bits{}\n",
         i.base_grid,
         28 - i.base_bits_lost,
-        if i.levels > 8 { ", fewer than single precision's 24 (N above 8)" } else { "" }
+        if i.base_bits_lost > 4 { ", fewer than single precision's 24" } else { "" }
     );
     text += &format!("{:<16}{:>16}{:>22}\n", "part", "bytes", "per finest triangle");
     for p in &i.parts {

@@ -6,7 +6,7 @@ use super::output::{explain, grouped, open, print_json, print_line, progress};
 use lodray::bvh::{BvhError, Options};
 use lodray::format::Scene;
 use lodray::mesh::Hierarchy;
-use lodray::method::bvh::{FullBuilder, FullBvh, FullNodes, FullOptions, LeafLayout, Leaves, NoStore, TreeKey, TreeStore};
+use lodray::method::bvh::{FullBuilder, FullBvh, FullNodes, FullOptions, LeafLayout, Leaves, NoStore, NodeBoxes, TreeKey, TreeStore};
 use lodray::method::{Knobs, knob, lod};
 use lodray::picture::{FrameStats, distinct_lines, render};
 use lodray::rays::{ModelSpace, Sight};
@@ -59,7 +59,7 @@ struct Report {
     base_share: Vec<f64>,
     mean_level: Vec<f64>,
     rows: Vec<Row>,
-    /// Best BVH with 16-bit boxes over LOD.
+    /// Best BVH with boxes of up to 16 bits over LOD.
     ratio: Vec<f64>,
 }
 
@@ -68,7 +68,8 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
     let scene = open(&args.scene)?;
     let space = ModelSpace::of(&scene);
     let cameras = args.distances.iter().map(|&d| args.camera.camera(&space, Some(d))).collect::<Result<Vec<_>, _>>()?;
-    let formats = if args.bvh32 { &[false, true][..] } else { &[false][..] };
+    let formats = [NodeBoxes::Local, NodeBoxes::Codes, NodeBoxes::Wide];
+    let formats = if args.bvh32 { &formats[..] } else { &formats[..2] };
     let rows = cameras.iter().map(|camera| u64::from(camera.height)).sum::<u64>();
     let bar = progress((2 + formats.len() as u64 * 9) * rows, "tracing");
 
@@ -86,9 +87,9 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
     ];
     let mut trees = Trees::new(&scene, &cache);
     let mut best = vec![u64::MAX; cameras.len()];
-    for &wide_boxes in formats {
+    for &boxes in formats {
         for size in [1, 2, 4] {
-            let options = |layout| FullOptions::new(size, wide_boxes, layout);
+            let options = |layout| FullOptions::new(size, boxes, layout);
             // Layouts of one tree are counted together.
             let layouts = [LeafLayout::Indexed, LeafLayout::Packed, LeafLayout::Line];
             for group in layouts.chunk_by(|&a, &b| options(a).tree == options(b).tree) {
@@ -102,11 +103,15 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
                 let frames: Vec<_> = cameras.iter().map(frame).collect();
                 for (k, layout) in group.iter().enumerate() {
                     let lines: Vec<u64> = frames.iter().map(|frame| frame[k]).collect();
-                    if !wide_boxes {
+                    if boxes != NodeBoxes::Wide {
                         best.iter_mut().zip(&lines).for_each(|(b, &n)| *b = n.min(*b));
                     }
-                    let bits = if wide_boxes { 32 } else { 16 };
-                    rows.push(Row { structure: format!("BVH {bits}-bit, {layout:?}, {size} a leaf"), distinct_lines: lines });
+                    let bits = match boxes {
+                        NodeBoxes::Local => "5-bit",
+                        NodeBoxes::Codes => "16-bit",
+                        NodeBoxes::Wide => "32-bit",
+                    };
+                    rows.push(Row { structure: format!("BVH {bits}, {layout:?}, {size} a leaf"), distinct_lines: lines });
                 }
             }
         }
@@ -145,8 +150,8 @@ struct Trees<'a> {
     /// Made when the cache lacks a tree.
     builder: Option<FullBuilder>,
     /// The last tree's options and nodes.
-    nodes: Option<((Options, bool), Arc<FullNodes>)>,
-    /// Triangles in leaf order, which is that of the binary tree: the same for all.
+    nodes: Option<((Options, NodeBoxes), Arc<FullNodes>)>,
+    /// Triangles in leaf order: that of the binary tree, the same for all but those with local boxes.
     ids: Vec<u32>,
     /// Those of each layout so far.
     leaves: Vec<Arc<Leaves>>,
@@ -162,21 +167,23 @@ impl<'a> Trees<'a> {
     }
 
     fn nodes(&mut self, options: &FullOptions) -> Result<Arc<FullNodes>, BvhError> {
-        let shape = (options.tree, options.wide_boxes);
+        let shape = (options.tree, options.boxes);
         if let Some((_, nodes)) = self.nodes.as_ref().filter(|(of, _)| *of == shape) {
             return Ok(Arc::clone(nodes));
         }
         self.nodes = None;
-        let key = || TreeKey::new(self.scene, &options.tree, options.wide_boxes, self.scene.levels());
+        let key = || TreeKey::new(self.scene, options, self.scene.levels());
         let tree = Lookup::new(self.cache).tree(&key, self.scene.finest_triangles(), &mut || {
             let builder = match self.builder.take() {
                 Some(builder) => builder,
                 None => FullBuilder::new(&self.hierarchy)?,
             };
-            self.builder.insert(builder).tree(&options.tree, options.wide_boxes)
+            self.builder.insert(builder).tree(&options.tree, options.boxes)
         })?;
         let (nodes, ids) = tree.into_parts();
-        self.ids = ids;
+        if self.ids != ids {
+            (self.ids, self.leaves) = (ids, Vec::new());
+        }
         let nodes = Arc::new(nodes);
         self.nodes = Some((shape, Arc::clone(&nodes)));
         Ok(nodes)
@@ -202,7 +209,7 @@ fn table(r: &Report) -> String {
     for row in &r.rows {
         text += &line(&row.structure, row.distinct_lines.iter().map(|&n| grouped(n)).collect());
     }
-    text += &line("best 16-bit BVH / LOD", decimals(&r.ratio));
+    text += &line("best BVH / LOD", decimals(&r.ratio));
     text += &line("share of L0 in LOD's lines", decimals(&r.base_share));
     text += &line("mean level", decimals(&r.mean_level));
     text.trim_end().to_owned()

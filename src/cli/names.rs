@@ -3,6 +3,7 @@
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use lodray::mesh::procedural::Scene;
 use lodray::mesh::{BoundKind, MeshFormat};
+use lodray::num::VertexForm;
 use lodray::run::Compute;
 
 /// A value with a name.
@@ -68,6 +69,21 @@ impl Named for BoundKind {
             Self::Total => {
                 "The displacements of all splits at and below it, one upon the other: --delta is then a promise (1.5 keeps what is seen within a pixel of the surface)"
             }
+        }
+    }
+}
+
+impl Named for VertexForm {
+    const ALL: &'static [Self] = &Self::ALL;
+
+    fn name(self) -> &'static str {
+        self.name()
+    }
+
+    fn about(self) -> &'static str {
+        match self {
+            Self::Exact => "28 bits a coordinate: a line of 32 bytes for the three vertices of a split",
+            Self::Compact => "13 bits of the displacement from the edge's midpoint: half a line, and each vertex moved by up to 1/2048 of its edge's bound",
         }
     }
 }

@@ -1,9 +1,10 @@
 //! Memory images back to a hierarchy, and single triangles of full resolution.
 
-use super::{BoundData, L0Record, Scene, VertexData, layout};
+use super::{Displacements, L0Record, Scene, SiblingGroup, VertexData, layout};
+use crate::mesh::compact::inserted_zero_bits;
 use crate::mesh::lattice::{self, LatticePoint};
 use crate::mesh::{EdgeCodes, Hierarchy, edge_index, edges_of_tree};
-use crate::num::{Point, Wire};
+use crate::num::{Point, VertexForm, Wire, displaced, displacement_shift};
 use rayon::prelude::*;
 
 /// A point in units as 32-bit integers.
@@ -19,39 +20,47 @@ impl Scene {
         VertexData::from_words(&self.records()[tree][..4]).points().map(units)
     }
 
-    /// Second line of a tree's L0 record: material and root bound data.
+    /// Second line of a tree's L0 record.
     #[inline]
     pub fn record(&self, tree: usize) -> L0Record {
         L0Record::from_words(&self.records()[tree][4..])
     }
 
-    /// Bound data of node (`level`, `node`) of a tree; `level` below N, or 0.
+    /// Codes of edges e0, e1, e2 of node (`level`, `node`) of a tree; `level` below N, or 0.
     #[inline]
-    pub fn bound_data(&self, tree: usize, level: u32, node: usize) -> BoundData {
-        if level == 0 {
-            return self.record(tree).root;
-        }
-        let group = layout::child_group(self.levels(), tree, level - 1, node >> 2);
-        BoundData::from_words(&self.bounds()[group][2 * (node & 3)..])
+    pub fn node_codes(&self, tree: usize, level: u32, node: usize) -> [u8; 3] {
+        let codes = if level == 0 {
+            let L0Record { e0, e1, e2, .. } = self.record(tree);
+            [e0, e1, e2]
+        } else {
+            SiblingGroup::line_codes(&self.bounds()[layout::child_group(self.levels(), tree, level - 1, node >> 2)], node & 3)
+        };
+        codes.map(|code| code.get() as u8) // 8 bits
     }
 
-    /// Inserted vertices q0, q1, q2 of node (`level`, `node`) of a tree in units; `level` below N.
+    /// Inserted vertices q0, q1, q2 in units of node (`level`, `node`) of a tree with full-resolution corners `p`; `level` below N.
     #[inline]
-    pub fn inserted(&self, tree: usize, level: u32, node: usize) -> [[i32; 3]; 3] {
-        VertexData::from_words(&self.vertices()[layout::vertex_line(self.levels(), tree, level, node)]).points().map(units)
+    pub fn inserted(&self, tree: usize, level: u32, node: usize, p: [[i32; 3]; 3]) -> [[i32; 3]; 3] {
+        let meta = self.meta();
+        let line = |level| &self.vertices()[layout::vertex_line(meta.vertices, meta.levels, tree, level, node)];
+        let steps = match (meta.vertices, level) {
+            (VertexForm::Exact, _) => return VertexData::from_words(line(level)).points().map(units),
+            (VertexForm::Compact, 0) => self.record(tree).split,
+            (VertexForm::Compact, _) => Displacements::half(line(level), node),
+        };
+        let (steps, codes) = (steps.steps().map(units), self.node_codes(tree, level, node));
+        std::array::from_fn(|k| {
+            let shift = displacement_shift(meta.bound_scale(), codes[k], inserted_zero_bits(meta.levels, level));
+            std::array::from_fn(|c| displaced(p[(k + 1) % 3][c], p[(k + 2) % 3][c], steps[k][c], shift))
+        })
     }
 
-    /// Corners in units of node (`level`, `node`) of a tree, `level` at most N: reads one vertex line per level above it.
+    /// Corners in units of node (`level`, `node`) of a tree, `level` at most N: reads the inserted vertices of each level above it.
     pub fn triangle(&self, tree: usize, level: u32, node: usize) -> [[i32; 3]; 3] {
         (0..level).fold(self.corners(tree), |p, n| {
             let below = node >> (2 * (level - n));
-            let q = self.inserted(tree, n, below);
-            match (node >> (2 * (level - n - 1))) & 3 {
-                0 => [p[0], q[2], q[1]],
-                1 => [q[2], p[1], q[0]],
-                2 => [q[1], q[0], p[2]],
-                _ => q,
-            }
+            let q = self.inserted(tree, n, below, p);
+            child(p, q, (node >> (2 * (level - n - 1))) & 3)
         })
     }
 
@@ -77,42 +86,68 @@ impl Scene {
             triangles: self.triangles().to_vec(),
             points,
             bounds: EdgeCodes { kind: self.meta.bounds, scale: self.meta.bound_scale(), codes },
+            vertices: self.meta.vertices,
         }
     }
 
     /// Writes a tree's points of levels 0 to `finest` into its full lattice.
     pub(super) fn decode_points(&self, tree: usize, finest: u32, points: &mut [[i32; 3]]) {
         let levels = self.levels();
-        for (corner, at) in self.corners(tree).into_iter().zip(lattice::root(levels)) {
+        let corners = self.corners(tree);
+        for (corner, at) in corners.into_iter().zip(lattice::root(levels)) {
             points[lattice::index(levels, at)] = corner;
         }
-        self.each_node(finest, &mut |level, node, p| {
-            for (q, at) in self.inserted(tree, level, node).into_iter().zip(lattice::midpoints(p)) {
+        self.each_node(tree, finest, &mut |_, places, q| {
+            for (q, at) in q.into_iter().zip(lattice::midpoints(places)) {
                 points[lattice::index(levels, at)] = q;
             }
         });
     }
 
-    fn decode_codes(&self, tree: usize, codes: &mut [u16]) {
+    fn decode_codes(&self, tree: usize, codes: &mut [u8]) {
         let levels = self.levels();
-        self.each_node(levels, &mut |level, node, p| {
-            let data = self.bound_data(tree, level, node);
-            for (code, [a, b]) in [data.e0, data.e1, data.e2].into_iter().zip([[p[1], p[2]], [p[2], p[0]], [p[0], p[1]]]) {
-                codes[edge_index(levels, level, a, b)] = code.get() as u16; // 10 bits
-            }
-        });
-    }
-
-    /// Calls `f` with level, node and corners of every node of levels 0 to `finest` - 1 of a tree, depth first.
-    fn each_node(&self, finest: u32, f: &mut impl FnMut(u32, usize, [LatticePoint; 3])) {
-        fn below(finest: u32, level: u32, node: usize, p: [LatticePoint; 3], f: &mut impl FnMut(u32, usize, [LatticePoint; 3])) {
-            if level < finest {
-                f(level, node, p);
-                for k in 0..4 {
-                    below(finest, level + 1, 4 * node + k as usize, lattice::child(p, k), f);
+        for level in 0..levels {
+            for node in 0..1 << (2 * level) {
+                let p = lattice::node(levels, level, node);
+                let own = self.node_codes(tree, level, node as usize); // below 4^10
+                for (code, [a, b]) in own.into_iter().zip([[p[1], p[2]], [p[2], p[0]], [p[0], p[1]]]) {
+                    codes[edge_index(levels, level, a, b)] = code;
                 }
             }
         }
-        below(finest, 0, 0, lattice::root(self.levels()), f);
+    }
+
+    /// Calls `f` with level and number, corners' places and inserted vertices of every node of levels 0 to `finest` - 1 of a tree, depth first.
+    pub(super) fn each_node(&self, tree: usize, finest: u32, f: &mut impl FnMut((u32, usize), [LatticePoint; 3], [[i32; 3]; 3])) {
+        self.below(tree, finest, (0, 0), lattice::root(self.levels()), self.corners(tree), f);
+    }
+
+    fn below(
+        &self,
+        tree: usize,
+        finest: u32,
+        (level, node): (u32, usize),
+        places: [LatticePoint; 3],
+        p: [[i32; 3]; 3],
+        f: &mut impl FnMut((u32, usize), [LatticePoint; 3], [[i32; 3]; 3]),
+    ) {
+        if level < finest {
+            let q = self.inserted(tree, level, node, p);
+            f((level, node), places, q);
+            for k in 0..4 {
+                self.below(tree, finest, (level + 1, 4 * node + k), lattice::child(places, k as u32), child(p, q, k), f); // k < 4
+            }
+        }
+    }
+}
+
+/// The corners of child `k` of a triangle `p` with inserted vertices `q`.
+#[inline]
+fn child(p: [[i32; 3]; 3], q: [[i32; 3]; 3], k: usize) -> [[i32; 3]; 3] {
+    match k {
+        0 => [p[0], q[2], q[1]],
+        1 => [q[2], p[1], q[0]],
+        2 => [q[1], q[0], p[2]],
+        _ => q,
     }
 }

@@ -2,10 +2,11 @@
 
 use super::scene::Image;
 use super::sections::{COUNT, FileSection, HEADER, checksum, place, write_header};
-use super::{BoundData, Box16, L0Record, Meta, Scene, SceneError, VertexData, colour, layout, normal};
+use super::{Box16, Displacements, L0Record, Line, Meta, Scene, SceneError, SiblingGroup, VertexData, colour, layout, normal};
+use crate::mesh::compact::{inserted_zero_bits, steps_of};
 use crate::mesh::lattice::{self, LatticePoint};
 use crate::mesh::{BoundKind, Hierarchy, Surface, SurfaceError, quantise};
-use crate::num::{COORD_LIMIT, PADDING_BITS, U, Wire, box_code_ceil, box_code_floor};
+use crate::num::{BoxStep, COORD_LIMIT, U, VertexForm, Wire, box_code_ceil, box_code_floor, displaced, displacement_shift};
 use memmap2::MmapMut;
 use rayon::prelude::*;
 
@@ -18,27 +19,38 @@ pub struct SceneInfo {
     pub origin: serde_json::Value,
     /// What its displacement bounds cover.
     pub bounds: BoundKind,
+    /// How its inserted vertices are stored.
+    pub vertices: VertexForm,
 }
 
-/// The scene of a surface. `build_l0` makes the quad-BVH nodes, the root first, over the trees' boxes (leaf index = tree).
+/// The quad-BVH over a scene's trees.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct TreeBvh {
+    /// Its nodes, the root first; a leaf is a place in `order`.
+    pub nodes: Vec<Line>,
+    /// The trees in the order in which the scene has them.
+    pub order: Vec<u32>,
+}
+
+/// The scene of a surface. `build_l0` makes the quad-BVH over the trees' boxes, and with it their order.
 ///
 /// # Errors
 /// The surface is not fit, or `build_l0` failed or returned no nodes.
 pub fn build<E: std::fmt::Display>(
     surface: &Surface,
     info: SceneInfo,
-    build_l0: impl FnOnce(&[Box16]) -> Result<Vec<[u64; 8]>, E>,
+    build_l0: impl FnOnce(&[Box16]) -> Result<TreeBvh, E>,
 ) -> Result<Scene, SceneError> {
-    let hierarchy = quantise(surface, info.bounds)?;
-    let nodes = build_l0(&tree_boxes(&hierarchy)).map_err(|e| SceneError::Build(format!("quad-BVH: {e}")))?;
-    encode(&hierarchy, surface, info, &nodes)
+    let hierarchy = quantise(surface, info.bounds, info.vertices)?;
+    let bvh = build_l0(&tree_boxes(&hierarchy)).map_err(|e| SceneError::Build(format!("quad-BVH: {e}")))?;
+    encode(&hierarchy, surface, info, &bvh)
 }
 
 /// Every point keeps to the limit and to its level's grid: what the formats store and the blocks take for granted.
 fn check_points(h: &Hierarchy) -> Result<(), SceneError> {
     let m = 1u32 << h.levels;
     let places: Vec<LatticePoint> = (0..=m).flat_map(|j| (0..=m - j).map(move |i| (i, j))).collect();
-    let zero_bits = |place| (h.levels - lattice::level_of(h.levels, place)).max(PADDING_BITS);
+    let zero_bits = |place| h.vertices.zero_bits(h.levels - lattice::level_of(h.levels, place));
     let masks: Vec<i32> = places.iter().map(|&place| (1 << zero_bits(place)) - 1).collect();
     let fits = |p: &[i32; 3], mask: i32| p.iter().all(|c| c & mask == 0 && c.unsigned_abs() <= COORD_LIMIT.unsigned_abs());
     let bad = |points: &[[i32; 3]]| points.iter().zip(&masks).any(|(p, &mask)| !fits(p, mask));
@@ -48,16 +60,18 @@ fn check_points(h: &Hierarchy) -> Result<(), SceneError> {
     }
 }
 
-/// Box of each tree's full-resolution triangles, as in its L0 record.
+/// Box of each tree's full-resolution triangles.
 pub fn tree_boxes(hierarchy: &Hierarchy) -> Vec<Box16> {
     hierarchy.points.par_chunks(lattice::len(hierarchy.levels)).map(Box16::of_points).collect()
 }
 
-/// The scene of a hierarchy made from `surface` (for its normals and materials) with these quad-BVH nodes.
+/// The scene of a hierarchy made from `surface` (for its normals and materials) with this quad-BVH.
 ///
 /// # Errors
-/// The hierarchy is not of this surface, a normal has no direction, there are no nodes, or memory cannot be had.
-pub fn encode(hierarchy: &Hierarchy, surface: &Surface, info: SceneInfo, nodes: &[[u64; 8]]) -> Result<Scene, SceneError> {
+/// The hierarchy is not of this surface, vertices are not what their form can hold, a normal has no direction, there are no nodes or not each tree once, or
+/// memory cannot be had.
+pub fn encode(hierarchy: &Hierarchy, surface: &Surface, info: SceneInfo, bvh: &TreeBvh) -> Result<Scene, SceneError> {
+    let TreeBvh { nodes, order } = bvh;
     let trees = hierarchy.triangles.len();
     if (surface.levels, &surface.triangles, surface.normals.len()) != (hierarchy.levels, &hierarchy.triangles, hierarchy.points.len()) {
         return Err(SceneError::Build("hierarchy and surface differ in levels, triangles or normals".into()));
@@ -66,11 +80,16 @@ pub fn encode(hierarchy: &Hierarchy, surface: &Surface, info: SceneInfo, nodes: 
     if nodes.is_empty() {
         return Err(SceneError::Build("quad-BVH has no nodes".into()));
     }
-    let meta = meta(hierarchy, info);
+    let mut seen = vec![false; trees];
+    let once = |&tree: &u32| seen.get_mut(tree as usize).is_some_and(|seen| !std::mem::replace(seen, true));
+    if order.len() != trees || !order.iter().all(once) {
+        return Err(SceneError::Build("quad-BVH does not hold every tree once".into()));
+    }
+    let meta = meta(hierarchy, surface, info);
     let json = serde_json::to_vec(&meta).map_err(|e| SceneError::Build(format!("META: {e}")))?;
     let lengths = FileSection::ALL.map(|section| match section {
         FileSection::Meta => json.len(),
-        FileSection::Nodes => size_of_val(nodes),
+        FileSection::Nodes => size_of_val(nodes.as_slice()),
         FileSection::Colours => 4 * surface.colours.len(),
         _ => Scene::section_lengths(&meta, section).unwrap_or(usize::MAX / 16), // too large to be had
     });
@@ -89,19 +108,19 @@ pub fn encode(hierarchy: &Hierarchy, surface: &Surface, info: SceneInfo, nodes: 
     let [meta_out, nodes_out, records, bounds, vertices, normals, triangles, colours] = slices;
     meta_out.copy_from_slice(&json);
     nodes_out.copy_from_slice(bytemuck::cast_slice(nodes));
-    triangles.copy_from_slice(bytemuck::cast_slice(&hierarchy.triangles));
+    let triangles: &mut [[u32; 3]] = bytemuck::cast_slice_mut(triangles);
+    triangles.iter_mut().zip(order).for_each(|(out, &tree)| *out = hierarchy.triangles[tree as usize]);
     for (out, colour) in bytemuck::cast_slice_mut::<u8, [u8; 4]>(colours).iter_mut().zip(&surface.colours) {
         let [r, g, b] = colour.map(colour::to_srgb);
         *out = [r, g, b, 255];
     }
-    write_normals(surface, bytemuck::cast_slice_mut(normals))?;
-    write_trees(
-        hierarchy,
-        &surface.materials,
-        bytemuck::cast_slice_mut(records),
-        bytemuck::cast_slice_mut(bounds),
-        bytemuck::cast_slice_mut(vertices),
-    );
+    write_normals(surface, order, bytemuck::cast_slice_mut(normals))?;
+    let images = Images {
+        records: bytemuck::cast_slice_mut(records),
+        groups: bytemuck::cast_slice_mut(bounds),
+        vertices: bytemuck::cast_slice_mut(vertices),
+    };
+    images.write(hierarchy, &surface.materials, order)?;
 
     let mut sums = [0; COUNT];
     sums.par_iter_mut().zip(&ranges).for_each(|(sum, range)| *sum = checksum(&image[range.clone()]));
@@ -110,10 +129,11 @@ pub fn encode(hierarchy: &Hierarchy, surface: &Surface, info: SceneInfo, nodes: 
     Ok(Scene { image: Image::Owned(image), ranges, meta })
 }
 
-fn meta(h: &Hierarchy, info: SceneInfo) -> Meta {
+fn meta(h: &Hierarchy, surface: &Surface, info: SceneInfo) -> Meta {
     type Corners = [[i32; 3]; 2];
     let none: Corners = [[i32::MAX; 3], [i32::MIN; 3]];
     let [lo, hi] = h.points.par_iter().fold(|| none, |b, &p| join(b, [p, p])).reduce(|| none, join);
+    let distance = |(&p, q): (&[i32; 3], &[f64; 3])| (0..3).map(|k| (h.to_world(p)[k] - q[k]).powi(2)).sum::<f64>().sqrt();
     Meta {
         name: info.name,
         program: env!("CARGO_PKG_VERSION").into(),
@@ -122,8 +142,9 @@ fn meta(h: &Hierarchy, info: SceneInfo) -> Meta {
         base_vertices: h.base_vertices,
         placement: h.placement,
         bounds: h.bounds.kind,
-        bound_mantissa: h.bounds.scale.mantissa.get() as u32, // 18 bits
-        bound_shift: h.bounds.scale.shift.get() as u32,       // 6 bits
+        bound_offset: h.bounds.scale.offset.get() as u32, // 9 bits
+        vertices: h.vertices,
+        moved: h.points.par_iter().zip(&surface.positions).map(distance).reduce(|| 0.0, f64::max),
         lo,
         hi,
         origin: info.origin,
@@ -135,32 +156,51 @@ fn join([a, b]: [[i32; 3]; 2], [c, d]: [[i32; 3]; 2]) -> [[i32; 3]; 2] {
     [std::array::from_fn(|k| a[k].min(c[k])), std::array::from_fn(|k| b[k].max(d[k]))]
 }
 
-fn write_normals(surface: &Surface, out: &mut [u32]) -> Result<(), SceneError> {
-    let bad = out.par_iter_mut().zip(&surface.normals).position_first(|(out, &n)| match normal::encode_normal(n) {
-        Some(code) => {
-            *out = code;
-            false
-        }
-        None => true,
+/// The normals of all trees, in this order.
+fn write_normals(surface: &Surface, order: &[u32], out: &mut [u32]) -> Result<(), SceneError> {
+    let len = lattice::len(surface.levels);
+    let bad = out.par_chunks_mut(len).zip(order).find_map_first(|(out, &tree)| {
+        let first = tree as usize * len;
+        let own = surface.normals[first..][..len].iter().enumerate();
+        out.iter_mut().zip(own).find_map(|(out, (k, &n))| match normal::encode_normal(n) {
+            Some(code) => {
+                *out = code;
+                None
+            }
+            None => Some(first + k),
+        })
     });
     bad.map_or(Ok(()), |index| {
-        let (tree, value) = (index / lattice::len(surface.levels), surface.normals[index].map(f64::from));
+        let (tree, value) = (index / len, surface.normals[index].map(f64::from));
         Err(SurfaceError::BadVector { field: "normals", index, tree, value }.into())
     })
 }
 
-/// Fills the record, sibling groups and vertex lines of every tree.
-fn write_trees(h: &Hierarchy, materials: &[u16], records: &mut [[u64; 8]], bounds: &mut [[u64; 8]], vertices: &mut [[u64; 4]]) {
-    let (groups, lines) = (layout::sibling_groups(h.levels), layout::vertex_lines(h.levels));
-    let write = |tree: usize, record: &mut [u64; 8], groups: &mut [[u64; 8]], lines: &mut [[u64; 4]]| {
-        let material = materials.get(tree).copied().unwrap_or(0);
-        TreeWriter { h, points: h.tree(tree), tree, groups, lines }.record(material, record);
-    };
-    let records = records.par_iter_mut().enumerate();
-    match (groups, lines) {
-        (0, 0) => records.for_each(|(t, r)| write(t, r, &mut [], &mut [])),
-        (0, _) => records.zip(vertices.par_chunks_mut(lines)).for_each(|((t, r), v)| write(t, r, &mut [], v)),
-        _ => records.zip(bounds.par_chunks_mut(groups)).zip(vertices.par_chunks_mut(lines)).for_each(|(((t, r), b), v)| write(t, r, b, v)),
+/// The images of all trees.
+struct Images<'a> {
+    records: &'a mut [[u64; 8]],
+    groups: &'a mut [Line],
+    vertices: &'a mut [Line],
+}
+
+impl Images<'_> {
+    /// Fills the record, sibling groups and vertices of every tree; the first is tree `order[0]` of the hierarchy.
+    fn write(self, h: &Hierarchy, materials: &[u16], order: &[u32]) -> Result<(), SceneError> {
+        // Empty parts have no chunks.
+        let (groups, lines) = (layout::sibling_groups(h.levels), layout::vertex_lines(h.vertices, h.levels));
+        let mut groups: Vec<&mut [Line]> = if groups > 0 { self.groups.chunks_mut(groups).collect() } else { Vec::new() };
+        let mut lines: Vec<&mut [Line]> = if lines > 0 { self.vertices.chunks_mut(lines).collect() } else { Vec::new() };
+        groups.resize_with(order.len(), Default::default);
+        lines.resize_with(order.len(), Default::default);
+        let trees = self.records.par_iter_mut().zip(order).zip(groups).zip(lines);
+        let bad = trees.find_map_first(|(((record, &tree), groups), lines)| {
+            let index = tree as usize;
+            let mut writer = TreeWriter { h, points: h.tree(index), tree: index, groups, lines, fits: true };
+            let material = materials.get(index).copied().unwrap_or(0);
+            writer.record(tree, material, record);
+            (!writer.fits).then_some(tree)
+        });
+        bad.map_or(Ok(()), |tree| Err(SceneError::Build(format!("tree {tree} has a vertex that its compact form cannot hold"))))
     }
 }
 
@@ -169,18 +209,32 @@ struct TreeWriter<'a> {
     h: &'a Hierarchy,
     points: &'a [[i32; 3]],
     tree: usize,
-    groups: &'a mut [[u64; 8]],
-    lines: &'a mut [[u64; 4]],
+    groups: &'a mut [Line],
+    lines: &'a mut [Line],
+    /// Compact vertices are what the hierarchy has.
+    fits: bool,
+}
+
+/// The box of full-resolution triangles: lower and upper corner in units.
+type Span = [[i32; 3]; 2];
+
+fn span(points: [[i32; 3]; 3]) -> Span {
+    points.iter().fold([points[0]; 2], |b, &p| join(b, [p, p]))
 }
 
 impl TreeWriter<'_> {
-    fn record(&mut self, material: u16, out: &mut [u64; 8]) {
+    fn record(&mut self, source: u32, material: u16, out: &mut [u64; 8]) {
         let p = lattice::root(self.h.levels);
-        let corners = self.node(0, 0, p);
-        let root = self.bound_data(0, p, corners);
         VertexData::from_points(p.map(|c| self.at(c))).to_words(&mut out[..4]);
-        let record = L0Record { reserved_high: U::ZERO, reserved: U::ZERO, material: U::new(u64::from(material)), root };
+        let mut record = L0Record { source: U::new(u64::from(source)), material: U::new(u64::from(material)), ..L0Record::default() };
+        if self.h.levels > 0 {
+            [record.e0, record.e1, record.e2] = self.h.node_codes(self.tree, 0, p).map(|c| U::new(u64::from(c)));
+            if self.h.vertices.is_compact() {
+                record.split = self.displacements(0, p);
+            }
+        }
         record.to_words(&mut out[4..]);
+        self.node(0, 0, p);
     }
 
     fn at(&self, p: LatticePoint) -> [i32; 3] {
@@ -188,33 +242,69 @@ impl TreeWriter<'_> {
     }
 
     /// Writes everything below node (`level`, `node`) with corners `p` and gives the box of its full-resolution triangles.
-    fn node(&mut self, level: u32, node: usize, p: [LatticePoint; 3]) -> [[i32; 3]; 2] {
+    fn node(&mut self, level: u32, node: usize, p: [LatticePoint; 3]) -> Span {
         let levels = self.h.levels;
-        let span = |v: [[i32; 3]; 3]| v.iter().fold([v[0], v[0]], |b, &c| join(b, [c, c]));
         if level == levels {
             return span(p.map(|c| self.at(c)));
         }
         let q = lattice::midpoints(p).map(|c| self.at(c));
-        VertexData::from_points(q).to_words(&mut self.lines[layout::level_start(level) + node]);
+        let number = layout::level_start(level) + node;
+        match self.h.vertices {
+            VertexForm::Exact => VertexData::from_points(q).to_words(&mut self.lines[number]),
+            // The root's are in its record.
+            VertexForm::Compact if level == 0 => (),
+            VertexForm::Compact => {
+                let half = self.displacements(level, p);
+                half.to_words(&mut self.lines[(number - 1) / 2][2 * (node & 1)..][..2]);
+            }
+        }
         if level + 1 == levels {
             return join(span(p.map(|c| self.at(c))), span(q));
         }
-        let mut all = [[i32::MAX; 3], [i32::MIN; 3]];
-        for k in 0..4 {
-            let child = lattice::child(p, k as u32); // k < 4
-            let corners = self.node(level + 1, 4 * node + k, child);
-            let data = self.bound_data(level + 1, child, corners);
-            data.to_words(&mut self.groups[layout::level_start(level) + node][2 * k..2 * k + 2]);
-            all = join(all, corners);
-        }
-        all
+        let children: [_; 4] = std::array::from_fn(|k| lattice::child(p, k as u32)); // k < 4
+        let spans: [Span; 4] = std::array::from_fn(|k| self.node(level + 1, 4 * node + k, children[k]));
+        self.group(level + 1, children, &spans).to_words(&mut self.groups[number]);
+        spans.into_iter().fold(spans[0], join)
     }
 
-    fn bound_data(&self, level: u32, p: [LatticePoint; 3], [lo, hi]: [[i32; 3]; 2]) -> BoundData {
-        // N = 0: the base triangle has no edges to bound.
-        let codes = if level < self.h.levels { self.h.node_codes(self.tree, level, p) } else { [0; 3] };
-        let [e0, e1, e2] = codes.map(|c| U::new(u64::from(c)));
-        let bounds = Box16::from_codes(lo.map(box_code_floor), hi.map(box_code_ceil));
-        BoundData { reserved: U::ZERO, e0, e1, e2, bounds }
+    /// The group of the nodes of `level` with these corners, the boxes of whose full-resolution triangles are `spans`.
+    fn group(&self, level: u32, children: [[LatticePoint; 3]; 4], spans: &[Span; 4]) -> SiblingGroup {
+        let mut group = SiblingGroup::default();
+        let excess: [[u32; 6]; 4] = std::array::from_fn(|k| {
+            let codes = |[lo, hi]: Span| (lo.map(box_code_floor).map(i32::from), hi.map(box_code_ceil).map(i32::from));
+            let ((lo, hi), (all_lo, all_hi)) = (codes(span(children[k].map(|c| self.at(c)))), codes(spans[k]));
+            // The triangle's corners are among the vertices below it.
+            std::array::from_fn(|j| (if j < 3 { lo[j] - all_lo[j] } else { all_hi[j - 3] - hi[j - 3] }).unsigned_abs())
+        });
+        for axis in 0..3 {
+            let most = excess.iter().map(|child| child[axis].max(child[axis + 3])).max().unwrap_or(0);
+            let step = BoxStep::reaching(most, SiblingGroup::MOST);
+            (group.halves[axis], group.exponents[axis]) = (step.half, U::new(u64::from(step.exponent)));
+            for (k, child) in excess.iter().enumerate() {
+                for j in [axis, axis + 3] {
+                    group.planes[6 * k + j] = U::new(u64::from(step.above(child[j])));
+                }
+            }
+        }
+        for (k, &child) in children.iter().enumerate() {
+            for (place, code) in SiblingGroup::places_of(k).into_iter().zip(self.h.node_codes(self.tree, level, child)) {
+                group.codes[place] = U::new(u64::from(code));
+            }
+        }
+        group
+    }
+
+    /// The inserted vertices of a node of `level` with corners `p` as displacements.
+    fn displacements(&mut self, level: u32, p: [LatticePoint; 3]) -> Displacements {
+        let codes = self.h.node_codes(self.tree, level, p);
+        let (points, q) = (p.map(|c| self.at(c)), lattice::midpoints(p).map(|c| self.at(c)));
+        let steps = std::array::from_fn(|k| {
+            let (a, b) = (points[(k + 1) % 3], points[(k + 2) % 3]);
+            let shift = displacement_shift(self.h.bounds.scale, codes[k], inserted_zero_bits(self.h.levels, level));
+            let steps = steps_of(q[k], a, b, shift);
+            self.fits &= (0..3).all(|c| (-4096..4096).contains(&steps[c]) && displaced(a[c], b[c], steps[c], shift) == q[k][c]);
+            steps.map(|c| c.clamp(-4096, 4095))
+        });
+        Displacements::from_steps(steps)
     }
 }

@@ -2,8 +2,8 @@
 
 use super::scene::Image;
 use super::sections::{FileSection, checksum, read_header};
-use super::{BoundData, Box16, BvhChild, ChildRef, L0Record, Meta, Scene, SceneError, VertexData, write_and_rename};
-use crate::num::{COORD_LIMIT, MAX_BVH_DEPTH, MAX_LEVELS, PADDING_BITS, Wire, bound_decode};
+use super::{BvhNode, ChildRef, L0Record, Meta, Scene, SceneError, VertexData, write_and_rename};
+use crate::num::{COORD_LIMIT, LINE_BYTES, MAX_BOUND_OFFSET, MAX_BVH_DEPTH, MAX_LEVELS, PADDING_BITS, VertexForm, Wire};
 use memmap2::Mmap;
 use rayon::prelude::*;
 use std::fs::File;
@@ -62,7 +62,7 @@ impl Scene {
                 return Err(format!("section {name}: length {found} does not fit {trees} trees of {levels} splits"));
             }
         }
-        for (section, size) in [(FileSection::Nodes, 64), (FileSection::Colours, 4)] {
+        for (section, size) in [(FileSection::Nodes, LINE_BYTES as usize), (FileSection::Colours, 4)] {
             let length = ranges[section.slot()].len();
             if length % size != 0 {
                 return Err(format!("section {}: length {length} is not a multiple of {size}", section.name()));
@@ -74,30 +74,58 @@ impl Scene {
         Ok(scene)
     }
 
-    /// Coordinates and box codes are what the blocks take for granted, so that no width overflows.
+    /// Coordinates and frames are what the blocks take for granted, so that no width overflows.
     fn check_values(&self) -> Result<(), String> {
         let limit = i64::from(COORD_LIMIT >> PADDING_BITS);
         let beyond = |line: &[u64]| {
             let VertexData { v0, v1, v2, .. } = VertexData::from_words(line);
             [v0, v1, v2].iter().any(|v| v.get().iter().any(|c| c.abs() > limit))
         };
-        if let Some(line) = self.vertices().par_iter().position_first(|line| beyond(line)) {
-            return Err(format!("section VERTICES: line {line} has a coordinate beyond +-{COORD_LIMIT}"));
+        if let Some(tree) = self.records().par_iter().position_first(|r| beyond(&r[..4])) {
+            return Err(format!("section RECORDS: tree {tree} has a coordinate beyond +-{COORD_LIMIT}"));
         }
-        let inverted = |b: Box16| (0..3).any(|k| b.lo.get()[k] > b.hi.get()[k] || b.lo.get()[k] < -32_767);
-        let bad = |r: &[u64; 8]| beyond(&r[..4]) || inverted(L0Record::from_words(&r[4..]).root.bounds);
-        if let Some(tree) = self.records().par_iter().position_first(bad) {
-            return Err(format!("section RECORDS: tree {tree} has a coordinate beyond +-{COORD_LIMIT} or a box inside out"));
+        match self.meta.vertices {
+            VertexForm::Exact => {
+                if let Some(line) = self.vertices().par_iter().position_first(|line| beyond(line)) {
+                    return Err(format!("section VERTICES: line {line} has a coordinate beyond +-{COORD_LIMIT}"));
+                }
+            }
+            VertexForm::Compact => {
+                let bad = (0..self.trees()).into_par_iter().find_map_first(|tree| self.beyond_limit(tree).map(|at| (tree, at)));
+                if let Some((tree, (level, node))) = bad {
+                    return Err(format!(
+                        "section VERTICES: tree {tree}: a displacement of node {node} of level {level} leads beyond +-{COORD_LIMIT} or off the grid"
+                    ));
+                }
+            }
         }
-        let bad = |group: &[u64; 8]| group.as_chunks::<2>().0.iter().any(|words| inverted(BoundData::from_words(words).bounds));
-        if let Some(group) = self.bounds().par_iter().position_first(bad) {
-            return Err(format!("section BOUNDS: group {group} has a box inside out"));
-        }
-        let bad = |node: &[u64; 8]| node.as_chunks::<2>().0.iter().any(|words| inverted(BvhChild::from_words(words).bounds));
+        let bad = |line: &[u64; 4]| {
+            let node = BvhNode::from_words(line);
+            let origin = node.origin.get().into_iter().any(|c| c < -32_767);
+            let inverted = |k: usize| {
+                let bounds = node.bounds(k);
+                (0..3).any(|c| bounds.lo.get()[c] > bounds.hi.get()[c])
+            };
+            origin || (0..4).any(inverted)
+        };
         match self.nodes().par_iter().position_first(bad) {
-            Some(node) => Err(format!("section NODES: node {node} has a box inside out")),
+            Some(node) => Err(format!("section NODES: node {node} has a box inside out, or a frame that begins below -32767")),
             None => Ok(()),
         }
+    }
+
+    /// The first node of a tree with compact vertices whose inserted vertices exceed the limit. Base corners that are not on their grid make midpoints that are no
+    /// integers: those count too, as the root's.
+    fn beyond_limit(&self, tree: usize) -> Option<(u32, usize)> {
+        let mask = (1 << VertexForm::Compact.zero_bits(self.levels())) - 1;
+        let mut found = self.corners(tree).iter().flatten().any(|c| c & mask != 0).then_some((0, 0));
+        // A tree whose vertices wrap at one node is not read any further below by anyone: the first is reported.
+        self.each_node(tree, self.levels(), &mut |at, _, q| {
+            if found.is_none() && q.iter().flatten().any(|c| c.unsigned_abs() > COORD_LIMIT.unsigned_abs()) {
+                found = Some(at);
+            }
+        });
+        found
     }
 
     /// Every index that traversal or shading follows leads somewhere, and the quad-BVH is a tree.
@@ -124,8 +152,8 @@ impl Scene {
                 Some(_) => return Err(format!("section NODES: node {index} is referred to twice")),
                 None => return Err(format!("section NODES: there is no node {index} of {}", nodes.len())),
             }
-            for words in nodes[index].as_chunks::<2>().0 {
-                let child = BvhChild::from_words(words).child;
+            let node = BvhNode::from_words(&nodes[index]);
+            for child in (0..4).map(|k| node.child(k)) {
                 let at = child.index.get() as usize; // 28 bits
                 match child.kind.get() {
                     ChildRef::EMPTY => {}
@@ -155,11 +183,11 @@ fn check_meta(meta: &Meta) -> Result<(), String> {
     if meta.trees == 0 || meta.trees >= 1 << 28 {
         return fail("trees", format!("{} is not in 1 to 2^28 - 1", meta.trees));
     }
-    if meta.bound_mantissa >= 1 << 18 || meta.bound_shift >= 1 << 6 {
-        return fail("bound_mantissa, bound_shift", format!("{}, {} exceed 18 and 6 bits", meta.bound_mantissa, meta.bound_shift));
+    if u64::from(meta.bound_offset) > MAX_BOUND_OFFSET {
+        return fail("bound_offset", format!("{} is above {MAX_BOUND_OFFSET}", meta.bound_offset));
     }
-    if bound_decode(meta.bound_scale(), 1023) >= 1 << 33 {
-        return fail("bound_mantissa, bound_shift", "the largest bound exceeds 33 bits".into());
+    if !(meta.moved.is_finite() && meta.moved >= 0.0) {
+        return fail("moved", format!("{} is no distance", meta.moved));
     }
     let placement = meta.placement;
     if !(placement.scale.is_normal() && placement.scale > 0.0 && placement.offset.iter().all(|c| c.is_finite())) {

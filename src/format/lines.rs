@@ -2,27 +2,62 @@
 //!
 //! | record | size | at |
 //! |---|---|---|
-//! | quad-BVH node, 16-bit boxes | 64 bytes: four [`BvhChild`], child 0 first | `nodes` |
-//! | L0 record | 64 bytes: [`VertexData`] line holding p0, p1, p2; then [`L0Record`] | `records` |
-//! | sibling group | 64 bytes: four [`BoundData`], child 0 first | `bounds` |
-//! | inserted vertices q0, q1, q2 | 32 bytes: [`VertexData`] | `vertices` |
+//! | quad-BVH node | a line: [`BvhNode`] | `nodes` |
+//! | L0 record | two lines: [`VertexData`] with p0, p1, p2; then [`L0Record`] | `records` |
+//! | sibling group | a line: [`SiblingGroup`] | `bounds` |
+//! | inserted vertices q0, q1, q2, exact | a line: [`VertexData`] | `vertices` |
+//! | the same, compact | half a line: [`Displacements`], an even sibling's in the lower half; a root's in its L0 record | `vertices` |
+//!
+//! The full-resolution BVHs with 16-bit boxes have nodes of four [`BvhChild`], 64 bytes.
 
 pub use crate::num::Box16;
-use crate::num::{BoundCode, PADDING_BITS, Point, S, U, Vec3, wire_struct};
+use crate::num::{BoundCode, BoxStep, Displacement, PADDING_BITS, Point, S, U, Vec3, Wire, box_steps, wire_struct};
+
+/// A memory line.
+pub type Line = [u64; 4];
 
 wire_struct! {
-    /// Bound data of one node: 16 bytes.
-    pub struct BoundData {
+    /// What traversal needs of the four children of a tree's node: 32 bytes.
+    ///
+    /// A plane is how far the box of the full-resolution triangles below a child reaches beyond the box of its own full-resolution triangle, which whoever
+    /// reads the group has: [`box_steps`] of its axis.
+    pub struct SiblingGroup {
         /// Zero.
-        reserved: U<2>,
-        /// Code of edge (p1, p2).
-        e0: BoundCode,
-        /// Code of edge (p2, p0).
-        e1: BoundCode,
-        /// Code of edge (p0, p1).
-        e2: BoundCode,
-        /// Box of the full-resolution triangles below the node.
-        bounds: Box16,
+        reserved: U<1>,
+        /// Codes of the nine different edges: 3k, 3k + 1, 3k + 2 of e0, e1, e2 of child k < 3; child 3 has 0, 4 and 8 ([`SiblingGroup::codes_of`]).
+        codes: [BoundCode; 9],
+        /// Steps along x, y, z are half as long again.
+        halves: [bool; 3],
+        /// Powers of two of these steps.
+        exponents: [U<4>; 3],
+        /// Child k: below in x, y, z and above in x, y, z at 6k to 6k + 5.
+        planes: [U<7>; 24],
+    }
+}
+
+wire_struct! {
+    /// A quad-BVH node: 32 bytes. Its boxes lie in a frame of its own: [`box_steps`] of their axis from its origin.
+    ///
+    /// Children of a kind stand side by side: inner ones are consecutive nodes, leaves consecutive things, both in the order of their slots.
+    pub struct BvhNode {
+        /// Zero.
+        reserved: U<1>,
+        /// Kind of each child: 0 empty, 1 inner node, 2 leaf.
+        kinds: [U<2>; 4],
+        /// Leaf: number of triangles or trees minus one; else 0.
+        counts: [U<2>; 4],
+        /// The first inner child.
+        first_node: U<28>,
+        /// The first triangle slot or tree of the first leaf.
+        first_leaf: U<28>,
+        /// Lower corner of the frame.
+        origin: Vec3<16>,
+        /// Steps along x, y, z are half as long again.
+        halves: [bool; 3],
+        /// Powers of two of these steps.
+        exponents: [U<4>; 3],
+        /// Child k: lower corner x, y, z and upper corner x, y, z at 6k to 6k + 5; zero in an empty slot.
+        planes: [U<5>; 24],
     }
 }
 
@@ -41,16 +76,37 @@ wire_struct! {
 }
 
 wire_struct! {
+    /// Inserted vertices of a node, compact: displacements from the midpoints of the edges between its full-resolution corners, in steps of
+    /// [`displacement_shift`](crate::num::displacement_shift). 16 bytes.
+    pub struct Displacements {
+        /// Zero.
+        reserved: U<11>,
+        /// Of q0.
+        v0: Displacement,
+        /// Of q1.
+        v1: Displacement,
+        /// Of q2.
+        v2: Displacement,
+    }
+}
+
+wire_struct! {
     /// Second line of an L0 record.
     pub struct L0Record {
         /// Zero.
-        reserved_high: U<64>,
-        /// Zero.
-        reserved: U<48>,
+        reserved: U<60>,
+        /// Number of the base triangle in the mesh that the scene was made of.
+        source: U<28>,
         /// Material index.
         material: U<16>,
-        /// Bound data of the root (codes zero if N = 0).
-        root: BoundData,
+        /// Code of edge (p1, p2) of the root; zero if N = 0, like the others.
+        e0: BoundCode,
+        /// Code of edge (p2, p0).
+        e1: BoundCode,
+        /// Code of edge (p0, p1).
+        e2: BoundCode,
+        /// Inserted vertices of the root, if the scene's are compact; else zero.
+        split: Displacements,
     }
 }
 
@@ -67,7 +123,7 @@ wire_struct! {
 }
 
 wire_struct! {
-    /// One of the four children of a quad-BVH node: 16 bytes.
+    /// One of the four children of a full-resolution BVH's node with 16-bit boxes: 16 bytes.
     pub struct BvhChild {
         /// What it refers to.
         child: ChildRef,
@@ -95,6 +151,157 @@ impl ChildRef {
     }
 }
 
+/// Bits of a plane of a group and of a node: those of all planes lie at the bottom of their records.
+const GROUP_PLANE: u32 = 7;
+const NODE_PLANE: u32 = 5;
+
+/// The bits of a line from bit `at` on.
+#[inline(always)]
+fn bits(line: &Line, at: u32) -> u64 {
+    let (word, bit) = ((at / 64) as usize, at % 64);
+    let above = if word < 3 { line[word + 1] } else { 0 };
+    line[word] >> bit | (above << 1) << (63 - bit)
+}
+
+/// The six planes of a child, of `BITS` bits each.
+#[inline(always)]
+fn planes<const BITS: u32>(line: &Line, child: usize) -> [u32; 6] {
+    let all = bits(line, 6 * BITS * child as u32); // child 0 to 3; at most 42 bits
+    std::array::from_fn(|j| (all >> (BITS * j as u32)) as u32 & ((1 << BITS) - 1))
+}
+
+/// Steps at bit `from`, behind the planes: exponents of x, y, z, then their halves.
+#[inline(always)]
+fn steps(line: &Line, from: u32) -> [BoxStep; 3] {
+    let all = bits(line, from) as u32; // 15 bits
+    std::array::from_fn(|axis| BoxStep { half: all >> (12 + axis) & 1 == 1, exponent: all >> (4 * axis) & 15 })
+}
+
+impl SiblingGroup {
+    /// Most steps of a plane.
+    pub const MOST: u32 = (1 << GROUP_PLANE) - 1;
+
+    /// Where the codes of e0, e1, e2 of child `k` stand: those of child 3 are e0 of child 0, e1 of child 1 and e2 of child 2.
+    #[inline(always)]
+    pub const fn places_of(k: usize) -> [usize; 3] {
+        if k < 3 { [3 * k, 3 * k + 1, 3 * k + 2] } else { [0, 4, 8] }
+    }
+
+    /// Codes of e0, e1, e2 of child `k`.
+    #[inline(always)]
+    pub fn codes_of(&self, k: usize) -> [BoundCode; 3] {
+        Self::places_of(k).map(|place| self.codes[place])
+    }
+
+    /// The same from the group's line.
+    #[inline(always)]
+    pub fn line_codes(line: &Line, k: usize) -> [BoundCode; 3] {
+        // Behind the planes and their steps.
+        const FIRST: u32 = 24 * GROUP_PLANE + 15;
+        Self::places_of(k).map(|place| U::new(bits(line, FIRST + 8 * place as u32) & 0xFF)) // place 0 to 8
+    }
+
+    /// The six planes of child `k` of the group's line.
+    #[inline(always)]
+    pub fn line_planes(line: &Line, k: usize) -> [u32; 6] {
+        planes::<GROUP_PLANE>(line, k)
+    }
+
+    /// Steps along x, y, z of the group's line.
+    #[inline(always)]
+    pub fn line_steps(line: &Line) -> [BoxStep; 3] {
+        steps(line, 24 * GROUP_PLANE)
+    }
+}
+
+impl BvhNode {
+    /// Most steps of a plane.
+    pub const MOST: u32 = (1 << NODE_PLANE) - 1;
+
+    /// What child `k` is.
+    #[inline(always)]
+    pub fn child(&self, k: usize) -> ChildRef {
+        let (kind, count) = (self.kinds[k], self.counts[k]);
+        let before = |of: u64| (0..k).filter(move |&j| self.kinds[j].get() == of);
+        let index = match kind.get() {
+            ChildRef::INNER => self.first_node.get() + before(ChildRef::INNER).count() as u64,
+            ChildRef::LEAF => self.first_leaf.get() + before(ChildRef::LEAF).map(|j| self.counts[j].get() + 1).sum::<u64>(),
+            _ => 0,
+        };
+        // Whatever the file says: 28 bits, as in hardware.
+        ChildRef { kind, count, index: U::new(index & U::<28>::MAX.get()) }
+    }
+
+    /// The same from the node's line.
+    #[inline(always)]
+    pub fn line_child(line: &Line, k: usize) -> ChildRef {
+        Self::from_words(line).child(k)
+    }
+
+    /// Kind of child `k` of the node's line.
+    #[inline(always)]
+    pub fn line_kind(line: &Line, k: usize) -> u64 {
+        line[3] >> (55 + 2 * k) & 3 // kinds end below the reserved bit
+    }
+
+    /// Lower corner of the frame of the node's line.
+    #[inline(always)]
+    pub fn line_origin(line: &Line) -> [i32; 3] {
+        // Bits 135 to 182, x highest.
+        let bits = line[2] >> 7;
+        [bits >> 32, bits >> 16, bits].map(|code| i32::from(code as i16))
+    }
+
+    /// The six planes of child `k` of the node's line.
+    #[inline(always)]
+    pub fn line_planes(line: &Line, k: usize) -> [u32; 6] {
+        planes::<NODE_PLANE>(line, k)
+    }
+
+    /// Steps along x, y, z of the node's line.
+    #[inline(always)]
+    pub fn line_steps(line: &Line) -> [BoxStep; 3] {
+        steps(line, 24 * NODE_PLANE)
+    }
+
+    /// Box of child `k`.
+    pub fn bounds(&self, k: usize) -> Box16 {
+        let corner = |from: usize| {
+            let origin = self.origin.get();
+            std::array::from_fn(|axis| {
+                let steps = self.planes[6 * k + from + axis].get() as u32; // 5 bits
+                let up = box_steps(self.halves[axis], self.exponents[axis].get() as u32, steps); // 4 bits
+                (origin[axis] + i64::from(up)).min(32_767) as i16
+            })
+        };
+        Box16::from_codes(corner(0), corner(3))
+    }
+}
+
+impl Displacements {
+    /// From steps of each vertex's coordinates, 13 bits each.
+    pub fn from_steps(steps: [[i32; 3]; 3]) -> Self {
+        let [v0, v1, v2] = steps.map(|v| {
+            let [x, y, z] = v.map(i64::from);
+            Vec3::new(x, y, z)
+        });
+        Self { reserved: U::ZERO, v0, v1, v2 }
+    }
+
+    /// Those of node `number` of a level, in the line that it shares with a sibling.
+    #[inline(always)]
+    pub fn half(line: &Line, number: usize) -> Self {
+        Self::from_words(&line[2 * (number & 1)..][..2])
+    }
+
+    /// Steps of each vertex's coordinates.
+    #[inline(always)]
+    pub fn steps(&self) -> [Point; 3] {
+        let wide = |v: Displacement| Point { x: S::new(v.x.get()), y: S::new(v.y.get()), z: S::new(v.z.get()) };
+        [wide(self.v0), wide(self.v1), wide(self.v2)]
+    }
+}
+
 impl VertexData {
     /// From three stored points (their low 4 bits zero).
     pub fn from_points(p: [[i32; 3]; 3]) -> Self {
@@ -117,12 +324,14 @@ impl VertexData {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::num::Wire;
+    use proptest::prelude::*;
 
     #[test]
     fn records_have_their_stated_sizes() {
-        assert_eq!(BoundData::WIDTH, 128);
+        assert_eq!(SiblingGroup::WIDTH, 256);
+        assert_eq!(BvhNode::WIDTH, 256);
         assert_eq!(VertexData::WIDTH, 256);
+        assert_eq!(Displacements::WIDTH, 128);
         assert_eq!(L0Record::WIDTH, 256);
         assert_eq!(BvhChild::WIDTH, 128);
     }
@@ -133,5 +342,36 @@ mod tests {
         let mut line = [0u64; 4];
         VertexData::from_points(p).to_words(&mut line);
         assert_eq!(VertexData::from_words(&line).points(), p.map(Point::from_i32));
+    }
+
+    #[test]
+    fn halves_of_a_line_are_told_apart() {
+        let steps = [[[1, -2, 4095], [-4096, 5, 6], [7, 8, -9]], [[-1, 2, -4095], [0, 0, 0], [11, -12, 13]]];
+        let mut line = [0u64; 4];
+        for (steps, half) in steps.iter().zip(line.chunks_exact_mut(2)) {
+            Displacements::from_steps(*steps).to_words(half);
+        }
+        for (k, steps) in steps.iter().enumerate() {
+            assert_eq!(Displacements::half(&line, k + 4).steps(), steps.map(Point::from_i32));
+        }
+    }
+
+    proptest! {
+        #[test]
+        fn parts_of_lines_are_the_fields(line in prop::array::uniform4(any::<u64>())) {
+            let (group, node) = (SiblingGroup::from_words(&line), BvhNode::from_words(&line));
+            for axis in 0..3 {
+                let step = |half: [bool; 3], exponents: [U<4>; 3]| BoxStep { half: half[axis], exponent: exponents[axis].get() as u32 };
+                prop_assert_eq!(SiblingGroup::line_steps(&line)[axis], step(group.halves, group.exponents));
+                prop_assert_eq!(BvhNode::line_steps(&line)[axis], step(node.halves, node.exponents));
+            }
+            prop_assert_eq!(BvhNode::line_origin(&line).map(i64::from), node.origin.get());
+            for k in 0..4 {
+                let own = |j: usize| (u64::from(SiblingGroup::line_planes(&line, k)[j]), u64::from(BvhNode::line_planes(&line, k)[j]));
+                prop_assert!((0..6).all(|j| own(j) == (group.planes[6 * k + j].get(), node.planes[6 * k + j].get())));
+                prop_assert_eq!(SiblingGroup::line_codes(&line, k), group.codes_of(k));
+                prop_assert_eq!(BvhNode::line_kind(&line, k), node.kinds[k].get());
+            }
+        }
     }
 }

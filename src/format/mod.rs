@@ -15,9 +15,9 @@ mod sections;
 mod staging;
 
 pub use colour::to_srgb;
-pub use encode::{SceneInfo, build, encode, tree_boxes};
+pub use encode::{SceneInfo, TreeBvh, build, encode, tree_boxes};
 pub use export::{ExportCounts, export_level};
-pub use lines::{BoundData, Box16, BvhChild, ChildRef, L0Record, VertexData};
+pub use lines::{Box16, BvhChild, BvhNode, ChildRef, Displacements, L0Record, Line, SiblingGroup, VertexData};
 pub use normal::{decode_normal, encode_normal};
 pub use replace::{remove_abandoned, temporary_beside, write_and_rename};
 pub use scene::{Meta, Scene, SceneError};

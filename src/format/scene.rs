@@ -1,9 +1,9 @@
 //! A scene: one byte image, owned or mapped from its file, read through typed slices.
 
 use super::sections::{COUNT, FileSection};
-use super::{layout, normal};
+use super::{Line, layout, normal};
 use crate::mesh::{BoundKind, Placement, SurfaceError, lattice};
-use crate::num::{BoundScale, U};
+use crate::num::{BoundScale, LINE_BYTES, U, VertexForm};
 use memmap2::{Mmap, MmapMut};
 use serde::{Deserialize, Serialize};
 use std::ops::Range;
@@ -60,10 +60,12 @@ pub struct Meta {
     /// What displacement bounds cover; `largest` is not written.
     #[serde(default = "BoundKind::unnamed", skip_serializing_if = "BoundKind::is_unnamed")]
     pub bounds: BoundKind,
-    /// Bound scale: mantissa, 18 bits.
-    pub bound_mantissa: u32,
-    /// Bound scale: shift, 6 bits.
-    pub bound_shift: u32,
+    /// Bound scale: offset, at most [`MAX_BOUND_OFFSET`](crate::num::MAX_BOUND_OFFSET).
+    pub bound_offset: u32,
+    /// How inserted vertices are stored.
+    pub vertices: VertexForm,
+    /// Largest distance of a stored vertex from where the surface had it, in world units.
+    pub moved: f64,
     /// Lower corner of the box of all vertices in units.
     pub lo: [i32; 3],
     /// Upper corner of the box of all vertices in units.
@@ -77,7 +79,7 @@ impl Meta {
     /// Scale of the displacement bounds.
     pub fn bound_scale(&self) -> BoundScale {
         // Widths are checked when a file is opened.
-        BoundScale { mantissa: U::saturating(self.bound_mantissa.into()), shift: U::saturating(self.bound_shift.into()) }
+        BoundScale { offset: U::saturating(self.bound_offset.into()) }
     }
 }
 
@@ -114,8 +116,8 @@ impl Scene {
         &self.bytes()[self.ranges[section.slot()].clone()]
     }
 
-    /// L0 quad-BVH nodes, the root first; four [`super::BvhChild`] each, child 0 in the lowest words.
-    pub fn nodes(&self) -> &[[u64; 8]] {
+    /// L0 quad-BVH nodes ([`super::BvhNode`]), the root first.
+    pub fn nodes(&self) -> &[Line] {
         bytemuck::cast_slice(self.section(FileSection::Nodes))
     }
 
@@ -124,13 +126,13 @@ impl Scene {
         bytemuck::cast_slice(self.section(FileSection::Records))
     }
 
-    /// Sibling groups of four [`super::BoundData`], where [`layout::child_group`] says.
-    pub fn bounds(&self) -> &[[u64; 8]] {
+    /// Sibling groups ([`super::SiblingGroup`]), where [`layout::child_group`] says.
+    pub fn bounds(&self) -> &[Line] {
         bytemuck::cast_slice(self.section(FileSection::Bounds))
     }
 
-    /// Vertex lines ([`super::VertexData`]: q0, q1, q2), where [`layout::vertex_line`] says.
-    pub fn vertices(&self) -> &[[u64; 4]] {
+    /// Inserted vertices ([`super::VertexData`] or two [`super::Displacements`]), where [`layout::vertex_line`] says.
+    pub fn vertices(&self) -> &[Line] {
         bytemuck::cast_slice(self.section(FileSection::Vertices))
     }
 
@@ -183,10 +185,11 @@ impl Scene {
 
     /// Lengths that all sections but META have, from META's counts; `None` if they overflow.
     pub(super) fn section_lengths(meta: &Meta, section: FileSection) -> Option<usize> {
+        const LINE: usize = LINE_BYTES as usize;
         let per_tree = match section {
-            FileSection::Records => 64,
-            FileSection::Bounds => 64 * layout::sibling_groups(meta.levels),
-            FileSection::Vertices => 32 * layout::vertex_lines(meta.levels),
+            FileSection::Records => 2 * LINE,
+            FileSection::Bounds => LINE * layout::sibling_groups(meta.levels),
+            FileSection::Vertices => LINE * layout::vertex_lines(meta.vertices, meta.levels),
             FileSection::Normals => 4 * lattice::len(meta.levels),
             FileSection::Triangles => 12,
             FileSection::Meta | FileSection::Nodes | FileSection::Colours => return None,

@@ -5,8 +5,8 @@ use xxhash_rust::xxh3::xxh3_64;
 
 /// First bytes of every scene file; the line ends show a transfer as text.
 pub const MAGIC: [u8; 8] = *b"LODRAY\r\n";
-/// Version that this program writes, and the newest that it reads.
-pub const VERSION: u32 = 1;
+/// Version that this program writes, and the only one that it reads.
+pub const VERSION: u32 = 2;
 /// Alignment of sections in bytes.
 pub const ALIGN: usize = 64;
 
@@ -16,13 +16,13 @@ pub const ALIGN: usize = 64;
 pub enum FileSection {
     /// JSON: [`super::Meta`].
     Meta = 1,
-    /// L0 quad-BVH nodes, 64 bytes each.
+    /// L0 quad-BVH nodes, a line each.
     Nodes = 2,
     /// L0 records, 64 bytes per tree.
     Records = 3,
-    /// Sibling groups, 64 bytes each.
+    /// Sibling groups, a line each.
     Bounds = 4,
-    /// Vertex lines, 32 bytes each.
+    /// Inserted vertices: lines, or lines of two halves.
     Vertices = 5,
     /// Octahedral normals, 4 bytes per lattice point.
     Normals = 6,
@@ -131,6 +131,10 @@ pub(super) fn read_header(bytes: &[u8]) -> Result<([Range<usize>; COUNT], [u64; 
     let [version, count] = [word(bytes, 8) as u32, (word(bytes, 8) >> 32) as u32]; // the two halves
     if version > VERSION {
         return Err(format!("version: {version} is newer than {VERSION}, the newest that this program reads"));
+    }
+    if version != 0 && version < VERSION {
+        let remedy = "make the scene again with build or generate";
+        return Err(format!("version: {version} is older than {VERSION}, the only one that this program reads; {remedy}"));
     }
     if version == 0 || count as usize != COUNT {
         return Err(format!("header: version {version} with {count} sections; version {VERSION} has {COUNT}"));

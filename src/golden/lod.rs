@@ -2,6 +2,8 @@
 
 use super::predicates::{Vector, sub};
 use crate::num::{BoundScale, Cone};
+use num_bigint::BigUint;
+use std::sync::LazyLock;
 
 /// What of a ray the level of detail depends on.
 pub(super) struct Viewer {
@@ -10,11 +12,24 @@ pub(super) struct Viewer {
     pub cone: Cone,
 }
 
-/// The displacement that a code stands for: the largest h with h 2^shift <= code^2 mantissa.
-pub(super) fn displacement(scale: BoundScale, code: u16) -> i128 {
-    let c = i128::from(code);
-    (c * c * i128::from(scale.mantissa.get())).div_euclid(power(scale.shift.get()))
+/// The displacement that a code stands for: none for code 0, else the largest h with 256 h <= M 2^(k div 16) for k = code + offset and M = [`ROOTS`] of k mod 16.
+pub(super) fn displacement(scale: BoundScale, code: u8) -> i128 {
+    let k = u64::from(code) + scale.offset.get();
+    let root = i128::from(ROOTS[(k % 16) as usize]); // below 16
+    if code == 0 { 0 } else { (root * power(k / 16)).div_euclid(256) }
 }
+
+/// For i = 0 to 15 the least M with M^16 >= 2^128 2^i: 2^(i / 16) in 256ths, rounded up.
+static ROOTS: LazyLock<[u32; 16]> = LazyLock::new(|| {
+    std::array::from_fn(|i| {
+        let least = BigUint::from(1u32) << (128 + i);
+        let mut m = 0u32;
+        while BigUint::from(m).pow(16) < least {
+            m += 1;
+        }
+        m
+    })
+});
 
 fn power(exponent: u64) -> i128 {
     2i128.pow(exponent as u32) // a shift of 6 bits
@@ -77,6 +92,26 @@ mod tests {
             origin: [0; 3],
             direction: [0, 0, 1 << 30],
             cone: Cone { offset: U::new(offset), slope: U::new(slope), shift: U::new(shift) },
+        }
+    }
+
+    #[test]
+    fn displacements_by_hand() {
+        let h = |offset, code| displacement(BoundScale { offset: U::new(offset) }, code);
+        // Whole octaves are powers of two; half an octave is 362.04 of 256.
+        assert_eq!([0, 1, 15, 16, 17, 32, 160, 168].map(|code| h(0, code)), [0, 1, 1, 2, 2, 4, 1024, 1452]);
+        assert_eq!([0, 1, 15, 255].map(|code| h(145, code)), [0, 560, 1024, 1 << 25]);
+        assert_eq!(h(272, 255), 491 << 24);
+    }
+
+    #[test]
+    fn displacements_are_those_of_the_blocks_table() {
+        // The production decode must say the same; here only as a second opinion.
+        for offset in 0..=crate::num::MAX_BOUND_OFFSET {
+            let scale = BoundScale { offset: U::new(offset) };
+            for code in 0..=u8::MAX {
+                assert_eq!(displacement(scale, code), i128::from(crate::num::bound_decode(scale, code)), "{offset} {code}");
+            }
         }
     }
 

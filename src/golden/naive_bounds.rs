@@ -3,12 +3,13 @@
 //! A vertex that a split inserts stands for the edge it splits. Vertices on a base edge belong to all trees with that edge, in whatever
 //! direction and however many; all others belong to one tree.
 
+use super::lod::displacement;
 use crate::{
     mesh::{
         BoundKind, EdgeCodes, Hierarchy, edge_index, edges_of_tree,
         lattice::{self, LatticePoint},
     },
-    num::{BoundScale, COORD_LIMIT, U},
+    num::{BoundScale, COORD_LIMIT, MAX_BOUND_OFFSET, U},
 };
 use std::collections::HashMap;
 
@@ -41,9 +42,9 @@ pub struct TrueBounds {
 pub fn naive_bounds(h: &mut Hierarchy) {
     let bounds = true_bounds(h);
     let scale = scale_for(bounds.largest);
-    let table: Vec<u128> = (0..1024).map(|c| decode(scale, c)).collect();
+    let table: Vec<i128> = (0..=u8::MAX).map(|c| displacement(scale, c)).collect();
     // The smallest code that decodes to the bound or more; decode does not decrease.
-    let encode = |&b: &u64| table.partition_point(|&h| h < u128::from(b)).min(1023) as u16; // 10 bits
+    let encode = |&b: &u64| table.partition_point(|&h| h < i128::from(b)).min(255) as u8; // 8 bits
     h.bounds = EdgeCodes { kind: h.bounds.kind, scale, codes: bounds.edges.iter().map(encode).collect() };
 }
 
@@ -89,7 +90,7 @@ pub fn true_bounds(h: &Hierarchy) -> TrueBounds {
 }
 
 /// Calls `visit(tree, a, b, q)` for each edge (a, b) of each node of a level below N; q is inserted on it. Inner edges come twice.
-fn for_each_edge(h: &Hierarchy, level: u32, mut visit: impl FnMut(u32, LatticePoint, LatticePoint, LatticePoint)) {
+pub(super) fn for_each_edge(h: &Hierarchy, level: u32, mut visit: impl FnMut(u32, LatticePoint, LatticePoint, LatticePoint)) {
     for tree in 0..h.triangles.len() as u32 {
         for node in 0..1u32 << (2 * level) {
             let p = lattice::node(h.levels, level, node);
@@ -125,18 +126,11 @@ fn distance_to_midpoint(a: [i32; 3], b: [i32; 3], q: [i32; 3]) -> u64 {
     k as u64 // |2q - a - b| < 2^35
 }
 
-fn decode(scale: BoundScale, code: u128) -> u128 {
-    code * code * u128::from(scale.mantissa.get()) / (1u128 << scale.shift.get())
-}
-
-/// Largest shift up to 63 whose mantissa, rounded up, has 18 bits.
+/// The least offset with which the last code covers `largest`.
 fn scale_for(largest: u64) -> BoundScale {
-    if largest == 0 {
-        return BoundScale::default();
-    }
-    let mantissa = |shift: u64| (u128::from(largest) * 2u128.pow(shift as u32)).div_ceil(1023 * 1023); // shift <= 63
-    let shift = (0..64).rev().find(|&shift| mantissa(shift) < 1 << 18).unwrap_or(0);
-    BoundScale { mantissa: U::saturating(mantissa(shift) as u64), shift: U::saturating(shift) } // below 2^18 unless out of range
+    let scale = |offset| BoundScale { offset: U::saturating(offset) };
+    let covers = |&offset: &u64| displacement(scale(offset), u8::MAX) >= i128::from(largest);
+    scale((0..MAX_BOUND_OFFSET).find(covers).unwrap_or(MAX_BOUND_OFFSET))
 }
 
 #[cfg(test)]
@@ -157,8 +151,8 @@ mod tests {
 
     proptest! {
         #[test]
-        fn scales_are_those_of_the_plain_definition(largest in 1..=num::LARGEST_BOUND, bits in 0u32..33) {
-            let largest = (largest >> bits).max(1);
+        fn scales_are_those_of_the_plain_definition(largest in 0..=num::LARGEST_BOUND, bits in 0u32..33) {
+            let largest = largest >> bits;
             // The production rounding must say the same; here only as a second opinion.
             prop_assert_eq!(scale_for(largest), num::bound_scale(largest));
         }

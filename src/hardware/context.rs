@@ -17,14 +17,16 @@ const STATE: u32 = 5;
 const FETCH: u32 = 2;
 const CHILD: u32 = 2;
 /// Lines that a context waits for at most.
-const LINES: u32 = 3;
+const LINES: u32 = 2;
+/// A triangle with its inserted vertices.
+const SPLIT: u32 = 6 * Point::WIDTH;
 
 impl Hardware {
-    /// Bits of the registers of a ray context: `rtl/`'s if it `has_levels`. Without them it has no split triangles, and its stack is as deep as the quad-BVH and
-    /// holds no bound codes, and of levels only what counts the triangles of a leaf.
+    /// Bits of the registers of a ray context: `rtl/`'s if it `has_levels`. Without them it has no split triangles and no second triangle at full resolution,
+    /// and its stack is as deep as the quad-BVH and holds no bound codes, and of levels only what counts the triangles of a leaf.
     pub fn context_registers(&self, has_levels: bool) -> Registers {
-        let splits = if has_levels { self.splits() } else { 0 };
-        Registers::bits(self.place() + self.stack(has_levels) + splits + self.lines() + self.closest())
+        let levels = if has_levels { SPLIT + self.splits() } else { 0 };
+        Registers::bits(self.place() + self.stack(has_levels) + levels + self.lines() + self.closest())
     }
 
     /// Bits of a node's number within its level.
@@ -32,10 +34,10 @@ impl Hardware {
         2 * self.levels
     }
 
-    /// State, ray, constants; the entry under visit, the node, its triangle and what was found out about it; children and triangles to come.
+    /// State, ray, constants; the entry under visit, the node, its triangle as morphed and what was found out about it; children and triangles to come.
     fn place(&self) -> u32 {
         let ray = RayIn::WIDTH + ray_setup::Out::WIDTH;
-        let node = TREE + LEVEL + self.node() + 6 * Point::WIDTH + 3 * BoundCode::WIDTH + lod_test::Out::WIDTH + tree_base::Out::WIDTH;
+        let node = TREE + LEVEL + self.node() + SPLIT + 3 * BoundCode::WIDTH + lod_test::Out::WIDTH + tree_base::Out::WIDTH;
         let children = child_test::Out::WIDTH + COUNT;
         // Whether it is four triangles; how many are left and pending, and the next.
         let triangles = 1 + 2 * COUNT + CHILD;
@@ -50,9 +52,9 @@ impl Hardware {
         entries * width + (entries + 1).next_power_of_two().ilog2()
     }
 
-    /// A triangle with its inserted vertices for each level that splits into nodes.
+    /// A triangle with its inserted vertices, at full resolution and as morphed, for each level that splits into nodes.
     fn splits(&self) -> u32 {
-        self.split_triangles() * 6 * Point::WIDTH
+        self.split_triangles() * 2 * SPLIT
     }
 
     /// The lines, which of them are wanted and waited for, and the same of the tree's base.

@@ -8,6 +8,8 @@ wire_struct! {
     pub struct SceneConfig {
         /// Number of splits N.
         levels: U<4>,
+        /// Inserted vertices are stored as displacements from the midpoints of their edges.
+        compact: bool,
         /// Scale of the displacement bounds.
         scale: BoundScale,
         /// First line of the quad-BVH's nodes.

@@ -59,6 +59,8 @@ pub enum Fetch {
     Node = 0,
     /// L0 record.
     Record = 1,
-    /// Inserted vertices and, but on the last split, the children's bound data.
+    /// Inserted vertices and, but on the last split, the children's sibling group.
     Vertex = 2,
+    /// The sibling group alone: the inserted vertices came with the L0 record.
+    Group = 3,
 }

@@ -4,9 +4,9 @@ use super::model::Model;
 use super::rays::{Aim, Cones, PIXEL, Views};
 use super::shapes::{Base, Place, bipyramid, bumpy, cube, fan, flat, octahedron, sheet, stretched, surface, tetrahedron, together};
 use crate::format::SceneError;
-use crate::mesh::Surface;
 use crate::mesh::procedural::{self, Options, Scene};
-use crate::num::Random;
+use crate::mesh::{BoundKind, Surface, quantise};
+use crate::num::{Random, VertexForm};
 
 /// How large models may be.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -185,8 +185,12 @@ pub const FILE_CASES: &[Case] = &[
     },
 ];
 
+/// Each of these with exact and with compact vertices.
 fn list(models: impl IntoIterator<Item = (String, Surface)>) -> Result<Vec<Model>, SceneError> {
-    models.into_iter().map(|(name, surface)| Model::of_surface(name, surface)).collect()
+    let both = |(name, surface): (String, Surface)| {
+        VertexForm::ALL.map(|form| Model::of_surface(format!("{name}, {} vertices", form.name()), &surface, form))
+    };
+    models.into_iter().flat_map(both).collect()
 }
 
 fn needles(_: Scale) -> Result<Vec<Model>, SceneError> {
@@ -305,15 +309,19 @@ fn million(scale: Scale) -> Result<Vec<Model>, SceneError> {
 
 fn levels(scale: Scale, all: std::ops::RangeInclusive<u32>) -> Result<Vec<Model>, SceneError> {
     let enough = |&n: &u32| scale == Scale::Full || n <= 6 || n == 9;
-    all.filter(enough).map(round_model).collect()
+    list(all.filter(enough).map(|levels| (format!("N = {levels}"), round_surface(levels))))
 }
 
-/// A bumpy closed model of `levels` splits.
+fn round_surface(levels: u32) -> Surface {
+    surface(levels, &tetrahedron(), bumpy(0.5, 11))
+}
+
+/// A bumpy closed model of `levels` splits with exact vertices.
 ///
 /// # Errors
 /// Memory cannot be had.
 pub fn round_model(levels: u32) -> Result<Model, SceneError> {
-    Model::of_surface(format!("N = {levels}"), surface(levels, &tetrahedron(), bumpy(0.5, 11)))
+    Model::of_surface(format!("N = {levels}"), &round_surface(levels), VertexForm::Exact)
 }
 
 fn balls(_: Scale) -> Result<Vec<Model>, SceneError> {
@@ -391,7 +399,7 @@ pub(super) fn hunting_case() -> Case {
     Case { name: "hunt", aims: AIMS, every: 1, share: 1, ..CLOSED }
 }
 
-/// A small model for the hunt: on a coarse grid, so that ties are near, or bumpy; closed, or a fan.
+/// A small model for the hunt: on a coarse grid, so that ties are near, or bumpy; closed, or a fan; of either form.
 pub(super) fn adversary(random: &mut Random) -> Result<Model, SceneError> {
     let levels = random.below(3) as u32;
     let base = [octahedron, tetrahedron, cube, fan][random.below(4) as usize]();
@@ -402,5 +410,7 @@ pub(super) fn adversary(random: &mut Random) -> Result<Model, SceneError> {
         // Nearly flat, with displacement of a few steps of the grid.
         _ => surface(levels, &base, |p| [0, 1, 2].map(|k| p.flat[k] + (3.0 * p.noise(seed)[k]).round() * 2f64.powi(-26))),
     };
-    Model::of_surface("hunted", surface)
+    let form = VertexForm::ALL[random.below(2) as usize];
+    // By way of its integers, as a kept ray's model is made again.
+    Model::of_hierarchy("hunted", quantise(&surface, BoundKind::Largest, form)?)
 }

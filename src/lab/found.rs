@@ -4,7 +4,7 @@ use super::goal::Goal;
 use super::model::Model;
 use crate::format::SceneError;
 use crate::mesh::{BoundKind, EdgeCodes, Hierarchy, Placement, lattice};
-use crate::num::{Cone, Direction, Point, Ray, S, U};
+use crate::num::{Cone, Direction, Point, Ray, S, U, VertexForm};
 use serde::{Deserialize, Serialize};
 
 /// A ray and its model.
@@ -22,10 +22,22 @@ pub struct Found {
     pub cone: [u64; 3],
     /// Splits of the model.
     pub levels: u32,
+    /// How its inserted vertices are stored; `exact` is not written.
+    #[serde(default = "unnamed", skip_serializing_if = "is_unnamed")]
+    pub vertices: VertexForm,
     /// Base triangles.
     pub triangles: Vec<[u32; 3]>,
     /// Points of all trees in units, tree by tree.
     pub points: Vec<[i32; 3]>,
+}
+
+/// What records mean that name no form: those from before there was a choice.
+fn unnamed() -> VertexForm {
+    VertexForm::Exact
+}
+
+fn is_unnamed(form: &VertexForm) -> bool {
+    *form == unnamed()
 }
 
 /// Models with more points than this are not repeated with every ray: such a ray names its scene by the file that it was found in.
@@ -42,6 +54,7 @@ impl Found {
             direction: ray.direction.get(),
             cone: [ray.cone.offset.get(), ray.cone.slope.get(), ray.cone.shift.get()],
             levels: h.levels,
+            vertices: h.vertices,
             triangles: if small { h.triangles.clone() } else { Vec::new() },
             points: if small { h.points.clone() } else { Vec::new() },
         }
@@ -82,6 +95,7 @@ impl Found {
             triangles: self.triangles.clone(),
             points: self.points.clone(),
             bounds: EdgeCodes { kind: BoundKind::Largest, ..EdgeCodes::default() },
+            vertices: self.vertices,
         };
         Model::of_hierarchy("found", hierarchy)
     }

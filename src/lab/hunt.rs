@@ -13,7 +13,7 @@ use super::rays::{Aim, Shot, shot};
 use crate::format::SceneError;
 use crate::golden::Exact;
 use crate::mesh::{Hierarchy, lattice};
-use crate::num::{COORD_LIMIT, Cone, DIRECTION_SCALE, PADDING_BITS, Point, Random, Ray, U, Vec3};
+use crate::num::{COORD_LIMIT, Cone, DIRECTION_SCALE, Point, Random, Ray, U, Vec3};
 use rayon::prelude::*;
 use serde::Serialize;
 
@@ -208,7 +208,8 @@ fn onto_border(ray: &Ray, by: u128, random: &mut Random) -> Option<Ray> {
     Some(Ray { cone: Cone { offset, ..ray.cone }, ..*ray })
 }
 
-/// One vertex, wherever it is stored, moved by a step of its grid in one coordinate.
+/// One vertex, wherever it is stored, moved by a step of its grid in one coordinate. (Where a compact one's displacement has longer steps, that moves it by one of
+/// them or not at all.)
 fn vertex_moved(h: &Hierarchy, random: &mut Random) -> Hierarchy {
     let mut h = h.clone();
     let per_tree = lattice::len(h.levels);
@@ -217,7 +218,7 @@ fn vertex_moved(h: &Hierarchy, random: &mut Random) -> Hierarchy {
     let levels: Vec<u32> = (0..=m).flat_map(|j| (0..=m - j).map(move |i| (i, j))).map(|p| lattice::level_of(h.levels, p)).collect();
     // All points in that place move, by the grid of the coarsest of them: then shared ones stay shared.
     let coarsest = h.points.iter().enumerate().filter(|(_, p)| **p == from).map(|(at, _)| levels[at % per_tree]).min().unwrap_or(0);
-    let step = 1i32 << (h.levels - coarsest).max(PADDING_BITS);
+    let step = 1i32 << h.vertices.zero_bits(h.levels - coarsest);
     let k = random.below(3) as usize;
     let to = from[k] + if random.below(2) == 0 { step } else { -step };
     if to.abs() <= COORD_LIMIT {

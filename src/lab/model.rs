@@ -2,9 +2,10 @@
 
 use crate::bvh::over_trees;
 use crate::format::{self, Scene, SceneError, SceneInfo};
-use crate::golden::naive_bounds;
+use crate::golden::{naive_bounds, naive_compact};
 use crate::lab::crack::{Closedness, closedness};
 use crate::mesh::{BoundKind, Hierarchy, Surface, lattice};
+use crate::num::VertexForm;
 use crate::rays::ModelSpace;
 
 /// A model of the lab.
@@ -19,7 +20,7 @@ pub struct Model {
     pub space: ModelSpace,
     /// How its base triangles meet.
     pub closed: Closedness,
-    /// World positions before they were rounded to units; empty if they are not known (scenes from files).
+    /// World positions before they were rounded to units; empty if they are not known (scenes from files) or vertices are compact, which rounds more than that.
     positions: Vec<[f64; 3]>,
 }
 
@@ -28,17 +29,29 @@ impl Model {
     ///
     /// # Errors
     /// Those of [`format::build`].
-    pub fn of_surface(name: impl Into<String>, surface: Surface) -> Result<Self, SceneError> {
-        let scene = format::build(&surface, SceneInfo { bounds: BoundKind::Largest, ..SceneInfo::default() }, over_trees)?;
-        Ok(Self { positions: surface.positions, ..Self::of_scene(name, scene) })
+    pub fn of_surface(name: impl Into<String>, surface: &Surface, vertices: VertexForm) -> Result<Self, SceneError> {
+        let scene = format::build(surface, SceneInfo { bounds: BoundKind::Largest, vertices, ..SceneInfo::default() }, over_trees)?;
+        let mut model = Self::of_scene(name, scene);
+        if vertices == VertexForm::Exact {
+            // Trees have the order of the scene.
+            let len = lattice::len(surface.levels);
+            let source = |tree: usize| model.scene.record(tree).source.get() as usize; // 28 bits
+            model.positions = (0..model.scene.trees()).flat_map(|tree| surface.positions[source(tree) * len..][..len].iter().copied()).collect();
+        }
+        Ok(model)
     }
 
-    /// Encodes integers as they are, with displacement bounds computed anew.
+    /// Encodes integers, with displacement bounds computed anew: exact ones as they are, compact ones as that leaves them.
     ///
     /// # Errors
     /// Those of [`format::encode`]: a point off its grid or beyond the limit.
     pub fn of_hierarchy(name: impl Into<String>, mut hierarchy: Hierarchy) -> Result<Self, SceneError> {
         naive_bounds(&mut hierarchy);
+        if hierarchy.vertices == VertexForm::Compact {
+            naive_compact(&mut hierarchy);
+            // Of the points as they are now, so that the same points give the same model: no displacement has grown, so they stay where they are.
+            naive_bounds(&mut hierarchy);
+        }
         let surface = Surface {
             levels: hierarchy.levels,
             base_vertices: hierarchy.base_vertices,
@@ -46,8 +59,8 @@ impl Model {
             normals: vec![[0.0, 0.0, 1.0]; hierarchy.points.len()],
             ..Surface::default()
         };
-        let nodes = over_trees(&format::tree_boxes(&hierarchy)).map_err(|e| SceneError::Build(e.to_string()))?;
-        Ok(Self::of_scene(name, format::encode(&hierarchy, &surface, SceneInfo::default(), &nodes)?))
+        let bvh = over_trees(&format::tree_boxes(&hierarchy)).map_err(|e| SceneError::Build(e.to_string()))?;
+        Ok(Self::of_scene(name, format::encode(&hierarchy, &surface, SceneInfo::default(), &bvh)?))
     }
 
     /// Takes a scene as it is.
@@ -80,7 +93,7 @@ impl Model {
         std::array::from_fn(|k| (f64::from(after[k]) - before[k]) * self.space.placement.scale)
     }
 
-    /// Largest and mean distance that rounding to units moved a vertex, in units.
+    /// Largest and mean distance that rounding to units moved a vertex, in units; 0 if the positions before are not known.
     pub fn vertex_loss(&self) -> (f64, f64) {
         let lengths = (0..self.positions.len()).map(|at| {
             let by = self.rounding(at).map(|v| v / self.space.placement.scale);

@@ -5,15 +5,14 @@
 
 use super::borders::SharedEdges;
 use super::{BoundKind, EdgeCodes, edges_of_tree, lattice};
-use crate::num::{BoundEncoder, bound_scale, length_ceil};
+use crate::num::{bound_encode, bound_scale, length_ceil};
 use rayon::prelude::*;
 
 /// The codes for these points (snapped, `lattice::len(levels)` per tree, equal on both sides of shared base edges).
 pub fn edge_codes(kind: BoundKind, levels: u32, points: &[[i32; 3]], shared: &SharedEdges) -> EdgeCodes {
     let bounds = true_bounds(kind, levels, points, shared);
     let scale = bound_scale(bounds.par_iter().copied().max().unwrap_or(0));
-    let encoder = BoundEncoder::new(scale);
-    EdgeCodes { kind, scale, codes: bounds.par_iter().map(|&b| encoder.encode(b)).collect() }
+    EdgeCodes { kind, scale, codes: bounds.par_iter().map(|&b| bound_encode(scale, b)).collect() }
 }
 
 /// True bounds in units, stored as [`EdgeCodes`] says.

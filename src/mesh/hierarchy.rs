@@ -1,7 +1,7 @@
 //! A hierarchy in integers: what the memory images are encoded from and what the golden traverser reads.
 
 use super::lattice::{self, LatticePoint};
-use crate::num::{BoundScale, LARGEST_BOUND};
+use crate::num::{BoundScale, LARGEST_BOUND, VertexForm};
 use serde::{Deserialize, Serialize};
 
 /// Where the model's integer space lies: `world = offset + scale * units`.
@@ -66,8 +66,8 @@ pub struct EdgeCodes {
     pub kind: BoundKind,
     /// Scale of the model.
     pub scale: BoundScale,
-    /// One 10-bit code per edge.
-    pub codes: Vec<u16>,
+    /// One code per edge.
+    pub codes: Vec<u8>,
 }
 
 /// A hierarchy of `levels` splits over an indexed base mesh.
@@ -85,6 +85,8 @@ pub struct Hierarchy {
     pub points: Vec<[i32; 3]>,
     /// Displacement bounds.
     pub bounds: EdgeCodes,
+    /// How inserted vertices are stored; the points are what that leaves of them.
+    pub vertices: VertexForm,
 }
 
 /// Number of edges of level `level` of one tree.
@@ -131,14 +133,14 @@ impl Hierarchy {
 
     /// Bound codes of one tree.
     #[inline]
-    pub fn codes(&self, tree: usize) -> &[u16] {
+    pub fn codes(&self, tree: usize) -> &[u8] {
         let len = edges_of_tree(self.levels);
         &self.bounds.codes[tree * len..][..len]
     }
 
     /// Codes of the edges (e0, e1, e2) of a node of `level` with these corners; `level` below N.
     #[inline]
-    pub fn node_codes(&self, tree: usize, level: u32, p: [LatticePoint; 3]) -> [u16; 3] {
+    pub fn node_codes(&self, tree: usize, level: u32, p: [LatticePoint; 3]) -> [u8; 3] {
         let codes = self.codes(tree);
         [[p[1], p[2]], [p[2], p[0]], [p[0], p[1]]].map(|[a, b]| codes[edge_index(self.levels, level, a, b)])
     }

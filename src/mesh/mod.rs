@@ -3,6 +3,7 @@
 mod borders;
 mod bounds;
 mod clean;
+pub(crate) mod compact;
 mod distance;
 mod farthest;
 mod hierarchy;

@@ -2,8 +2,9 @@
 
 use super::borders::SharedEdges;
 use super::bounds::edge_codes;
+use super::compact::compact;
 use super::{BoundKind, Hierarchy, Placement, Surface, lattice};
-use crate::num::{COORD_LIMIT, MAX_LEVELS, snap};
+use crate::num::{COORD_LIMIT, MAX_LEVELS, VertexForm, snap};
 use rayon::prelude::*;
 use thiserror::Error;
 
@@ -86,19 +87,22 @@ pub enum SurfaceError {
     },
 }
 
-/// The hierarchy of a surface: points snapped to the grids of their levels, and the bounds of all edges, of this kind.
+/// The hierarchy of a surface: points snapped to the grids of their levels and to what vertices of this form can hold, and the bounds of all edges, of this kind.
 ///
 /// # Errors
 /// Whatever [`SurfaceError`] names: lengths, indices or values that [`Surface`] does not allow.
-pub fn quantise(surface: &Surface, kind: BoundKind) -> Result<Hierarchy, SurfaceError> {
+pub fn quantise(surface: &Surface, kind: BoundKind, vertices: VertexForm) -> Result<Hierarchy, SurfaceError> {
     check_shape(surface)?;
     let placement = placement(&surface.positions, lattice::len(surface.levels))?;
-    let points = snap_points(surface, placement);
+    let mut points = snap_points(surface, placement, vertices);
     let shared = SharedEdges::new(&surface.triangles);
     check_shared_points(surface, &points, &shared)?;
     let bounds = edge_codes(kind, surface.levels, &points, &shared);
+    if vertices.is_compact() {
+        compact(surface.levels, &mut points, &bounds);
+    }
     let Surface { levels, base_vertices, .. } = *surface;
-    Ok(Hierarchy { levels, placement, base_vertices, triangles: surface.triangles.clone(), points, bounds })
+    Ok(Hierarchy { levels, placement, base_vertices, triangles: surface.triangles.clone(), points, bounds, vertices })
 }
 
 /// Lengths, indices and materials.
@@ -157,13 +161,13 @@ fn placement(positions: &[[f64; 3]], per_tree: usize) -> Result<Placement, Surfa
 }
 
 /// Every point to its level's grid.
-fn snap_points(surface: &Surface, placement: Placement) -> Vec<[i32; 3]> {
+fn snap_points(surface: &Surface, placement: Placement, vertices: VertexForm) -> Vec<[i32; 3]> {
     let levels = surface.levels;
     let len = lattice::len(levels);
     let Placement { offset, scale } = placement;
     // The zero bits of each lattice point are the same for all trees.
     let m = 1 << levels;
-    let zero_bits: Vec<u32> = (0..=m).flat_map(|j| (0..=m - j).map(move |i| levels - lattice::level_of(levels, (i, j)))).collect();
+    let zero_bits: Vec<u32> = (0..=m).flat_map(|j| (0..=m - j).map(move |i| vertices.zero_bits(levels - lattice::level_of(levels, (i, j))))).collect();
     let mut points = vec![[0; 3]; surface.positions.len()];
     points.par_chunks_mut(len).zip(surface.positions.par_chunks(len)).for_each(|(points, positions)| {
         for ((point, position), &bits) in points.iter_mut().zip(positions).zip(&zero_bits) {

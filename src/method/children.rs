@@ -5,20 +5,24 @@
 
 use crate::block::Block;
 use crate::block::box_test::{self, BoxTest};
+use crate::block::child_boxes::{Reach, framed, widened};
 use crate::block::child_sort;
 use crate::block::child_test::{self, sort};
 use crate::block::ray_setup;
 use crate::block::tessellate::child_triangle;
-use crate::block::widen_box::{self, WidenBox};
-use crate::format::{BoundData, BvhChild, ChildRef};
-use crate::num::{Point, RayT, Wire};
+use crate::format::{BvhChild, BvhNode, ChildRef, Line, SiblingGroup};
+use crate::num::{BoxStep, Point, RayT, Wire};
 
-/// Triangle of a node: corners, and its inserted vertices as morphed for this ray.
+/// Triangle of a node: corners and inserted vertices, of full resolution and as morphed for this ray.
 #[derive(Clone, Copy, Default)]
 pub(crate) struct Split {
-    /// Corners.
+    /// Corners of full resolution.
+    pub f: [Point; 3],
+    /// Corners as morphed.
     pub p: [Point; 3],
-    /// Inserted vertices.
+    /// Inserted vertices of full resolution.
+    pub g: [Point; 3],
+    /// Inserted vertices as morphed.
     pub q: [Point; 3],
 }
 
@@ -28,9 +32,30 @@ pub(crate) fn quarter<T: Wire>(group: &[u64; 8], k: usize) -> T {
     T::from_words(&group[2 * k..2 * k + 2])
 }
 
-/// Children of a quad-BVH node; an empty slot is never hit.
+/// Planes of a child in codes.
 #[inline(always)]
-fn bvh(ray: &ray_setup::Out, t_max: RayT, group: &[u64; 8], out: &mut child_test::Out) {
+fn reach(steps: &[BoxStep; 3], planes: [u32; 6]) -> Reach {
+    let codes = |axis: usize, at: usize| steps[axis].codes(planes[at]) as i32; // below 2^24
+    Reach { lo: [codes(0, 0), codes(1, 1), codes(2, 2)], hi: [codes(0, 3), codes(1, 4), codes(2, 5)] }
+}
+
+/// Children of a quad-BVH node in its own frame; an empty slot is never hit.
+#[inline(always)]
+fn bvh(ray: &ray_setup::Out, t_max: RayT, line: &Line, out: &mut child_test::Out) {
+    let mut tests = child_sort::In::default();
+    let (origin, steps) = (BvhNode::line_origin(line), BvhNode::line_steps(line));
+    for k in 0..4 {
+        let bounds = framed(origin, reach(&steps, BvhNode::line_planes(line, k)));
+        let test = BoxTest::eval(&box_test::In { ray: *ray, t_max, bounds });
+        tests.hit[k] = test.hit & (BvhNode::line_kind(line, k) != ChildRef::EMPTY);
+        tests.t_near[k] = test.t_near;
+    }
+    *out = sort(&tests);
+}
+
+/// Children of a quad-BVH node with boxes of 16-bit codes; an empty slot is never hit.
+#[inline(always)]
+fn coded(ray: &ray_setup::Out, t_max: RayT, group: &[u64; 8], out: &mut child_test::Out) {
     let mut tests = child_sort::In::default();
     for k in 0..4 {
         let BvhChild { child, bounds } = quarter(group, k);
@@ -41,14 +66,14 @@ fn bvh(ray: &ray_setup::Out, t_max: RayT, group: &[u64; 8], out: &mut child_test
     *out = sort(&tests);
 }
 
-/// Children of a tree's node (where nothing was morphed, widening changes nothing).
+/// Children of a tree's node.
 #[inline(always)]
-fn tree(ray: &ray_setup::Out, t_max: RayT, group: &[u64; 8], split: &Split, out: &mut child_test::Out) {
+fn tree(ray: &ray_setup::Out, t_max: RayT, line: &Line, split: &Split, out: &mut child_test::Out) {
     let mut tests = child_sort::In::default();
+    let steps = SiblingGroup::line_steps(line);
     for k in 0..4 {
-        let BoundData { bounds, .. } = quarter(group, k);
-        let [p0, p1, p2] = child_triangle(split.p, split.q, k);
-        let bounds = WidenBox::eval(&widen_box::In { bounds, p0, p1, p2 }).bounds;
+        let reach = reach(&steps, SiblingGroup::line_planes(line, k));
+        let bounds = widened(reach, child_triangle(split.f, split.g, k), child_triangle(split.p, split.q, k));
         let test = BoxTest::eval(&box_test::In { ray: *ray, t_max, bounds });
         tests.hit[k] = test.hit;
         tests.t_near[k] = test.t_near;
@@ -83,13 +108,18 @@ macro_rules! side_by_side {
 }
 
 side_by_side! {
-    /// Tests and sorts the children of the quad-BVH node `group`.
-    bvh_children = bvh(ray: &ray_setup::Out, t_max: RayT, group: &[u64; 8])
+    /// Tests and sorts the children of the quad-BVH node `line`, whose boxes lie in its frame.
+    bvh_children = bvh(ray: &ray_setup::Out, t_max: RayT, line: &Line)
 }
 
 side_by_side! {
-    /// Tests and sorts the children of the tree's node with bound data `group` and triangle `split`.
-    tree_children = tree(ray: &ray_setup::Out, t_max: RayT, group: &[u64; 8], split: &Split)
+    /// Tests and sorts the children of the quad-BVH node `group` with boxes of 16-bit codes.
+    coded_children = coded(ray: &ray_setup::Out, t_max: RayT, group: &[u64; 8])
+}
+
+side_by_side! {
+    /// Tests and sorts the children of the tree's node with sibling group `line` and triangle `split`.
+    tree_children = tree(ray: &ray_setup::Out, t_max: RayT, line: &Line, split: &Split)
 }
 
 #[cfg(test)]
@@ -97,20 +127,12 @@ mod tests {
     use super::*;
     use crate::block::child_test::ChildTest;
     use crate::block::ray_setup::RaySetup;
-    use crate::num::{BOX_SHIFT, Box16, COORD_LIMIT, Direction, Random, S, U, Vec3, Wire};
+    use crate::num::{COORD_LIMIT, Direction, Random, U, Vec3};
 
     const LIMIT: u64 = COORD_LIMIT as u64;
 
     fn point(random: &mut Random, most: u64) -> Point {
         Point::from_i32([(); 3].map(|()| random.within(most) as i32))
-    }
-
-    /// A box of up to `2^bits` codes a side around the middle.
-    fn bounds(random: &mut Random, bits: u64) -> Box16 {
-        let a = [(); 3].map(|()| random.within(0x3FFF) as i32);
-        let b = a.map(|v| v + random.within(1 << bits) as i32);
-        let at = |pick: fn(i32, i32) -> i32| std::array::from_fn(|k| pick(a[k], b[k]).clamp(-32_766, 32_766) as i16);
-        Box16::from_codes(at(i32::min), at(i32::max))
     }
 
     fn ray(random: &mut Random) -> ray_setup::Out {
@@ -121,10 +143,13 @@ mod tests {
         RaySetup::eval(&ray_setup::In { origin: point(random, LIMIT), direction: Direction::new(d[0], d[1], d[2]) })
     }
 
-    fn group<T: Wire>(children: [T; 4]) -> [u64; 8] {
-        let mut group = [0; 8];
-        children.iter().zip(group.chunks_exact_mut(2)).for_each(|(child, words)| child.to_words(words));
-        group
+    /// A line of a record with exponents that leave boxes of use.
+    fn line<T: Wire>(random: &mut Random, change: impl FnOnce(&mut T, &mut Random)) -> Line {
+        let mut record = T::from_words(&[(); 4].map(|()| random.next()));
+        change(&mut record, random);
+        let mut line = [0; 4];
+        record.to_words(&mut line);
+        line
     }
 
     /// The scalar bodies, which a processor with AVX2 never runs otherwise, and what it does run, against the hardware's block.
@@ -134,50 +159,98 @@ mod tests {
         let mut early = 0u64;
         for number in 0..200_000 {
             let mut random = Random::of(9, number);
-            let (ray, bits) = (ray(&mut random), random.below(16));
+            let ray = ray(&mut random);
             let t_max = if random.below(2) == 0 { RayT::MAX } else { RayT::new(RayT::MAX.get() >> random.below(8)) };
-            let boxes: [Box16; 4] = std::array::from_fn(|_| bounds(&mut random, bits));
-            let kinds = [(); 4].map(|()| random.below(3));
-            let children = std::array::from_fn(|k| BvhChild {
-                child: ChildRef { kind: U::new(kinds[k]), ..ChildRef::inner(k as u32) },
-                bounds: boxes[k],
+            let exponents = [(); 3].map(|()| U::new(random.below(13)));
+
+            let node = line(&mut random, |node: &mut BvhNode, random| {
+                node.exponents = exponents;
+                node.origin = Vec3::new(random.within(32_767), random.within(32_767), random.within(32_767));
+                node.kinds = [(); 4].map(|()| U::new(random.below(3)));
+                // Inside in.
+                for at in (0..24).filter(|at| at % 6 < 3) {
+                    let [a, b] = [node.planes[at], node.planes[at + 3]];
+                    (node.planes[at], node.planes[at + 3]) = (a.min(b), a.max(b));
+                }
             });
-            let nodes = group(children);
-            let none = [Point::default(); 3];
-            let block = |present, widen, p: [Point; 3], q: [Point; 3], t_max| {
-                let ([p0, p1, p2], [q0, q1, q2]) = (p, q);
-                ChildTest::eval(&child_test::In { ray, t_max, present, bounds: boxes, widen, p0, p1, p2, q0, q1, q2 })
+            let record = BvhNode::from_words(&node);
+            let BvhNode { origin, halves, exponents, .. } = record;
+            let of_node = child_test::In {
+                ray,
+                t_max,
+                present: record.kinds.map(|kind| kind.get() != ChildRef::EMPTY),
+                origin,
+                halves,
+                exponents,
+                planes: record.planes.map(|plane| U::new(plane.get())),
+                ..child_test::In::default()
             };
-            let wanted = block(kinds.map(|kind| kind != ChildRef::EMPTY), false, none, none, t_max);
+            let wanted = ChildTest::eval(&of_node);
             let mut scalar = child_test::Out::default();
-            bvh(&ray, t_max, &nodes, &mut scalar);
+            bvh(&ray, t_max, &node, &mut scalar);
             // Of a child that is not there no distance is read.
             let seen = |out: &child_test::Out| {
                 (out.count, out.order, (0..out.met() as usize).map(|k| out.t_near[out.order[k].get() as usize]).collect::<Vec<_>>())
             };
             assert_eq!(seen(&scalar), seen(&wanted), "{number}");
-            assert_eq!(bvh_children(&ray, t_max, &nodes), scalar, "{number}");
+            assert_eq!(bvh_children(&ray, t_max, &node), scalar, "{number}");
             met[wanted.met() as usize] += 1;
 
-            let split = Split { p: [(); 3].map(|()| point(&mut random, LIMIT)), q: [(); 3].map(|()| point(&mut random, LIMIT)) };
-            // Nothing morphed beyond the box, or nearly so, in half of the cases.
-            let split = if random.below(2) == 0 { split } else { Split { p: [corner(&boxes[0]); 3], q: [corner(&boxes[0]); 3] } };
-            let nodes = group(boxes.map(|bounds| BoundData { bounds, ..BoundData::default() }));
-            let wanted = block([true; 4], true, split.p, split.q, t_max);
+            let mut group = [0; 8];
+            for (k, words) in group.chunks_exact_mut(2).enumerate() {
+                let child = ChildRef { kind: record.kinds[k], ..ChildRef::inner(k as u32) };
+                BvhChild { child, bounds: record.bounds(k) }.to_words(words);
+            }
+            assert_eq!(coded_children(&ray, t_max, &group), scalar, "{number}");
+            let mut one = child_test::Out::default();
+            coded(&ray, t_max, &group, &mut one);
+            assert_eq!(one, scalar, "{number}");
+
+            // Triangles of all sizes, morphed a little or beyond the box.
+            let (middle, bits) = (point(&mut random, LIMIT / 2), random.below(30));
+            let mut near = || {
+                let by = point(&mut random, LIMIT / 2).get().map(|c| c >> bits);
+                Point::from_i32(std::array::from_fn(|c| (middle.get()[c] + by[c]) as i32))
+            };
+            let mut three = || [(); 3].map(|()| near());
+            let split = Split { f: three(), p: three(), g: three(), q: three() };
+            let split = if number % 2 == 0 { split } else { Split { p: split.f, q: split.g, ..split } };
+            let siblings = line(&mut random, |group: &mut SiblingGroup, _| group.exponents = exponents);
+            let SiblingGroup { halves, exponents, planes, .. } = SiblingGroup::from_words(&siblings);
+            let Split { f: [f0, f1, f2], p: [p0, p1, p2], g: [g0, g1, g2], q: [q0, q1, q2] } = split;
+            let present = [true; 4];
+            let of_tree = child_test::In {
+                ray,
+                t_max,
+                present,
+                tree: true,
+                origin: Vec3::default(),
+                halves,
+                exponents,
+                planes,
+                f0,
+                f1,
+                f2,
+                g0,
+                g1,
+                g2,
+                p0,
+                p1,
+                p2,
+                q0,
+                q1,
+                q2,
+            };
+            let wanted = ChildTest::eval(&of_tree);
             let mut scalar = child_test::Out::default();
-            tree(&ray, t_max, &nodes, &split, &mut scalar);
+            tree(&ray, t_max, &siblings, &split, &mut scalar);
             assert_eq!(scalar, wanted, "{number}");
-            assert_eq!(tree_children(&ray, t_max, &nodes, &split), scalar, "{number}");
+            assert_eq!(tree_children(&ray, t_max, &siblings, &split), scalar, "{number}");
             met[wanted.met() as usize] += 1;
-            early += u64::from(wanted != block([true; 4], true, split.p, split.q, RayT::MAX));
+            early += u64::from(wanted != ChildTest::eval(&child_test::In { t_max: RayT::MAX, ..of_tree }));
         }
         assert!(met.iter().all(|&count| count > 2_000) && early > 2_000, "{met:?}, {early} ended early");
         #[cfg(target_arch = "x86_64")]
         println!("{met:?}, {early} ended early; AVX2: {}", std::arch::is_x86_feature_detected!("avx2"));
-    }
-
-    fn corner(bounds: &Box16) -> Point {
-        let units = |code: S<16>| S::new(code.get() << BOX_SHIFT);
-        Vec3 { x: units(bounds.lo.x), y: units(bounds.lo.y), z: units(bounds.lo.z) }
     }
 }

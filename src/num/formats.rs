@@ -23,6 +23,11 @@ pub const BARY_ONE: u64 = 1 << 31;
 /// t_near (2^16 units) to t (2^-32 of the direction), as a shift.
 pub const T_NEAR_TO_T_SHIFT: u32 = 18;
 
+/// Largest offset of a bound scale: code 255 then stands for less than 2^33 units.
+pub const MAX_BOUND_OFFSET: u64 = 272;
+/// Largest shift of a compact vertex's displacement: that of the largest bound, or the zero bits of the coarsest inserted vertex.
+pub const MAX_DISPLACEMENT_SHIFT: u32 = 21;
+
 /// Bytes of a memory line.
 pub const LINE_BYTES: u64 = 32;
 
@@ -33,7 +38,9 @@ pub type Direction = Vec3<31>;
 /// Address of a 32-byte memory line: 2 TiB.
 pub type LineAddress = U<36>;
 /// Displacement bound code.
-pub type BoundCode = U<10>;
+pub type BoundCode = U<8>;
+/// Component of a compact vertex: its displacement from the midpoint of its edge, in steps that follow from the edge's code.
+pub type Displacement = Vec3<13>;
 /// Edge state s, 0 to 256.
 pub type EdgeState = U<9>;
 /// Ray parameter in steps of 2^-32.
@@ -44,12 +51,10 @@ pub type Bary = U<32>;
 pub type TNear = U<17>;
 
 wire_struct! {
-    /// Scale of the displacement bounds of one model: `h = floor(code^2 * mantissa / 2^shift)` units.
+    /// Scale of the displacement bounds of one model: a code other than 0 stands for `2^((code + offset) / 16)` units, rounded (`bound_decode`).
     pub struct BoundScale {
-        /// 18-bit mantissa.
-        mantissa: U<18>,
-        /// Right shift.
-        shift: U<6>,
+        /// Added to every code but 0, at most [`MAX_BOUND_OFFSET`](super::MAX_BOUND_OFFSET).
+        offset: U<9>,
     }
 }
 

@@ -4,19 +4,23 @@
 
 mod bits;
 mod box16;
+mod displacement;
 mod fixed;
 mod formats;
 pub mod random;
 mod round;
+mod step;
 mod vec3;
 mod wire;
 
 pub use bits::{BitReader, BitVec, BitWriter};
 pub use box16::Box16;
+pub use displacement::{VertexForm, displacement_shift, displacement_steps, displaced};
 pub use fixed::{S, U, WS, WU};
 pub use formats::*;
 pub use random::Random;
 pub use round::*;
+pub use step::{BoxStep, box_steps};
 pub use vec3::Vec3;
 pub(crate) use wire::wire_struct;
 pub use wire::{Field, Layout, Wire};

@@ -204,7 +204,7 @@ impl Facets<'_> {
             self.facet(node as u32, p); // at most 2^20
             return;
         }
-        let q = self.scene.inserted(self.tree, level, node);
+        let q = self.scene.inserted(self.tree, level, node, p);
         for (k, corners) in [[p[0], q[2], q[1]], [q[2], p[1], q[0]], [q[1], q[0], p[2]], q].into_iter().enumerate() {
             self.down(level + 1, 4 * node + k, corners);
         }

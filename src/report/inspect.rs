@@ -6,7 +6,7 @@
 //! | word | act |
 //! |---|---|
 //! | `f` | lines alone |
-//! | `c2`, `p2`, `w2` | four children tested, 2 of them met: boxes of 16 bits, of 16 bits that never widen, of 32 bits |
+//! | `c2`, `p2`, `l2`, `w2` | four children tested, 2 of them met: boxes of levels of detail, stored boxes of 16 bits, the same in steps from their node's corner, stored boxes of 32 bits |
 //! | `b` | where a tree's groups and vertices begin |
 //! | `r2.17:0.128.256` | LOD test of level 2 node 17 with these edge states of 256: refine |
 //! | `s2.17` | the same: its triangle serves |
@@ -83,6 +83,7 @@ fn act(text: &mut String, act: Act, edges: Option<&Edges>) -> std::fmt::Result {
         Act::Fetch => write!(text, "f"),
         Act::Children { met } => write!(text, "c{met}"),
         Act::PlainChildren { met } => write!(text, "p{met}"),
+        Act::LocalChildren { met } => write!(text, "l{met}"),
         Act::WideChildren { met } => write!(text, "w{met}"),
         Act::TreeBase => write!(text, "b"),
         Act::LodTest { refine } => {
@@ -190,13 +191,14 @@ mod tests {
             Step::of(Act::Pop { dropped: true }),
             Step::on(fetch, Act::Fetch),
             Step::of(Act::PlainChildren { met: 0 }),
+            Step::of(Act::LocalChildren { met: 1 }),
             Step::of(Act::WideChildren { met: 4 }),
             Step::end(true, true),
             Step::end(true, false),
             Step::end(false, true),
         ];
         steps.into_iter().for_each(|step| words.step(step));
-        assert_eq!(words.text, "*c2@1.40.2 b@+1.40.2 r2.17:0.128.256 t s3.4 s x4:5 o d f@1.40.2 p0 w4 m h n");
+        assert_eq!(words.text, "*c2@1.40.2 b@+1.40.2 r2.17:0.128.256 t s3.4 s x4:5 o d f@1.40.2 p0 l1 w4 m h n");
     }
 
     #[test]

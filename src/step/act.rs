@@ -3,8 +3,9 @@
 //! | act | what it stands for | operations |
 //! |---|---|---|
 //! | `Fetch` | nothing but the lines | |
-//! | `Children` | four children of a node with 16-bit boxes, widened where need be, are tested, and `met` of them met | `child_test` |
-//! | `PlainChildren` | the same, and the boxes never need to be widened | four `box_test`, `child_sort` |
+//! | `Children` | four children of a node whose boxes follow from those of its lines and, in trees, from its triangle, are tested, and `met` of them met | `child_test` |
+//! | `PlainChildren` | the same with 16-bit boxes that are stored as they are | four `box_test`, `child_sort` |
+//! | `LocalChildren` | the same with 16-bit boxes that are stored in steps from their node's corner | four `box_decode`, four `box_test`, `child_sort` |
 //! | `WideChildren` | the same with 32-bit boxes | four `box_test32`, `child_sort` |
 //! | `TreeBase` | where a tree's groups and vertices begin | `tree_base` |
 //! | `LodTest` | does a triangle serve | `lod_test` |
@@ -72,6 +73,7 @@ pub enum Act {
     Fetch,
     Children { met: u32 },
     PlainChildren { met: u32 },
+    LocalChildren { met: u32 },
     WideChildren { met: u32 },
     TreeBase,
     LodTest { refine: bool },
@@ -128,6 +130,11 @@ impl Step {
             Act::Fetch | Act::Pop { .. } | Act::End { found: false, .. } => (),
             Act::Children { .. } => add(Operation::ChildTest, 1),
             Act::PlainChildren { .. } => {
+                add(Operation::BoxTest, 4);
+                add(Operation::ChildSort, 1);
+            }
+            Act::LocalChildren { .. } => {
+                add(Operation::BoxDecode, 4);
                 add(Operation::BoxTest, 4);
                 add(Operation::ChildSort, 1);
             }
@@ -212,6 +219,7 @@ mod tests {
         let steps = [
             Step::on(fetch, Act::WideChildren { met: 1 }),
             Step::on(fetch, Act::PlainChildren { met: 1 }),
+            Step::on(fetch, Act::LocalChildren { met: 1 }),
             Step::on(fetch, Act::Children { met: 1 }),
             Step::on(fetch, Act::TreeBase),
             Step::of(Act::LodTest { refine: true }),
@@ -226,7 +234,7 @@ mod tests {
         steps.iter().for_each(|step| step.count(&mut operations));
         let some: Vec<_> = operations.iter().filter(|&(_, n)| n > 0).map(|(operation, n)| (operation.name(), n)).collect();
         let wanted = [
-            ("node_address", 24),
+            ("node_address", 28),
             ("tree_base", 1),
             ("child_test", 1),
             ("lod_test", 1),

@@ -48,7 +48,7 @@ impl StepSink for StepCounts {
             self.lines[fetch.section.place()] += u64::from(fetch.lines);
         }
         match step.act {
-            Act::Children { .. } | Act::PlainChildren { .. } | Act::WideChildren { .. } => self.nodes += 1,
+            Act::Children { .. } | Act::PlainChildren { .. } | Act::LocalChildren { .. } | Act::WideChildren { .. } => self.nodes += 1,
             Act::LodTest { .. } => self.lod_tests += 1,
             Act::Triangles { count, .. } => self.triangles += u64::from(count),
             Act::Fetch | Act::TreeBase | Act::Tessellate | Act::Pop { .. } | Act::End { .. } => (),

@@ -36,6 +36,7 @@ const TRIANGLES: u64 = 6;
 const POP: u64 = 7;
 const END: u64 = 8;
 const PLAIN_CHILDREN: u64 = 9;
+const LOCAL_CHILDREN: u64 = 10;
 
 /// A step, as whoever only reads its lines sees it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -67,6 +68,7 @@ impl StepWord {
             Act::Fetch => (FETCH, 0, false, false, 0),
             Act::Children { met } => (CHILDREN, met, false, false, 0),
             Act::PlainChildren { met } => (PLAIN_CHILDREN, met, false, false, 0),
+            Act::LocalChildren { met } => (LOCAL_CHILDREN, met, false, false, 0),
             Act::WideChildren { met } => (WIDE_CHILDREN, met, false, false, 0),
             Act::TreeBase => (TREE_BASE, 0, false, false, 0),
             Act::LodTest { refine } => (LOD_TEST, 0, refine, false, 0),
@@ -115,6 +117,7 @@ impl StepWord {
             FETCH => Act::Fetch,
             CHILDREN => Act::Children { met: number },
             PLAIN_CHILDREN => Act::PlainChildren { met: number },
+            LOCAL_CHILDREN => Act::LocalChildren { met: number },
             WIDE_CHILDREN => Act::WideChildren { met: number },
             TREE_BASE => Act::TreeBase,
             LOD_TEST => Act::LodTest { refine: flag },
@@ -159,6 +162,7 @@ mod tests {
             Act::Fetch,
             Act::Children { met: 4 },
             Act::PlainChildren { met: 3 },
+            Act::LocalChildren { met: 2 },
             Act::WideChildren { met: 0 },
             Act::TreeBase,
             Act::LodTest { refine: true },

@@ -9,15 +9,14 @@ use lodray::format::Scene;
 use lodray::golden::exact::Exact;
 use lodray::hardware::Hardware;
 use lodray::hardware::ports::HitOut;
-use lodray::mesh::Hierarchy;
 use lodray::mesh::procedural::{self, Options};
 use lodray::method::lod::LodImage;
-use lodray::num::Ray;
+use lodray::num::{Ray, VertexForm};
 use lodray::rays::{Camera, ModelSpace, View};
 use lodray::sim::unit::environment::{RunReport, UnitPort, run};
 use lodray::sim::unit::{Inputs, Latency, Outputs, SceneMemory, Stall, Traffic, TraversalUnit};
 use lodray_test_support::hardware::OTHERS;
-use lodray_test_support::models::{Rng, any_rays, ball, build, scene_of, terrain};
+use lodray_test_support::models::{Rng, any_rays, ball, build_with, scene_of, terrain, with_vertices};
 use lodray_test_support::plain::plain;
 use port::Rtl;
 
@@ -56,7 +55,7 @@ impl UnitPort for SideBySide {
 }
 
 /// Runs `rays` through both and compares every hit with the golden traverser's; gives the report and the number of hits.
-fn compare(scene: &Scene, h: &Hierarchy, config: Hardware, traffic: &Traffic, rays: &[Ray], seed: u64) -> (RunReport, u64) {
+fn compare(scene: &Scene, config: Hardware, traffic: &Traffic, rays: &[Ray], seed: u64) -> (RunReport, u64) {
     let memory = SceneMemory::new(LodImage::of(scene), seed % (1 << 35));
     let what = format!("seed {seed}, {config:?}, {traffic:?}");
     let mut both = SideBySide {
@@ -67,7 +66,8 @@ fn compare(scene: &Scene, h: &Hierarchy, config: Hardware, traffic: &Traffic, ra
     };
     let report = run(&mut both, &memory, traffic, rays).unwrap_or_else(|error| panic!("{what}: {error}"));
     assert!(!both.rtl.sim.failed(), "{what}: an assertion of the RTL failed");
-    let golden = Exact::new(h);
+    let h = scene.decode();
+    let golden = Exact::new(&h);
     for (ray, traced) in rays.iter().zip(&report.rays) {
         let HitOut { found, hit, .. } = traced.hit;
         assert_eq!(found.then(|| plain(&hit)), golden.trace(ray), "{what}: {ray:?}");
@@ -123,9 +123,10 @@ fn random_rays(hardware: &[Hardware], wanted: u64) {
         let levels = (round % u64::from(most + 1)) as u32;
         let roughness = [0.05, 0.4, 1.5][rng.below(3) as usize];
         let h = if rng.below(2) == 0 { ball(levels, roughness, seed) } else { terrain(2, levels, roughness, seed) };
+        let h = with_vertices(VertexForm::ALL[rng.below(2) as usize], h);
         let config = hardware[round as usize % hardware.len()];
         let rays = any_rays(&h, 20 * config.contexts, seed);
-        let (report, met) = compare(&scene_of(&h), &h, config, &any_traffic(&mut rng), &rays, seed);
+        let (report, met) = compare(&scene_of(&h), config, &any_traffic(&mut rng), &rays, seed);
         cycles += report.cycles;
         traced += rays.len();
         hits += met;
@@ -138,27 +139,26 @@ fn random_rays(hardware: &[Hardware], wanted: u64) {
 }
 
 /// A frame of a procedural scene on model and RTL.
-fn frame(kind: procedural::Scene, config: Hardware, latency: Latency) {
+fn frame(kind: procedural::Scene, form: VertexForm, config: Hardware, latency: Latency) {
     const SIDE: u32 = 96;
     let options = Options { levels: Some(3), base: Some(32), ..Options::new(kind) };
-    let scene = build(&procedural::generate(&options).expect("options"));
-    let h = scene.decode();
+    let scene = build_with(&procedural::generate(&options).expect("options"), form);
     let space = ModelSpace::of(&scene);
     let camera = Camera::new(&View { distance: Some(2.5), ..View::default() }, &space, SIDE, SIDE).expect("a view");
     let pixels = (0..SIDE * SIDE).map(|i| camera.ray(i % SIDE, i / SIDE));
     // Where a ray misses the model's box there is nothing to trace.
     let rays: Vec<Ray> = pixels.filter_map(|world| Some(space.enter(&world, 1.0)?.ray)).collect();
-    let (report, hits) = compare(&scene, &h, config, &Traffic::smooth(latency), &rays, 1);
-    println!("{kind:?}: {SIDE}x{SIDE} pixels, {} rays, {hits} hits, {} cycles", rays.len(), report.cycles);
+    let (report, hits) = compare(&scene, config, &Traffic::smooth(latency), &rays, 1);
+    println!("{kind:?}, {form:?}: {SIDE}x{SIDE} pixels, {} rays, {hits} hits, {} cycles", rays.len(), report.cycles);
     assert!(hits > 1000, "only {hits} hits");
 }
 
 #[test]
 fn a_frame_of_a_terrain() {
-    frame(procedural::Scene::Terrain, configs()[2], Latency::Random { min: 5, max: 60, seed: 1 });
+    frame(procedural::Scene::Terrain, VertexForm::Compact, configs()[2], Latency::Random { min: 5, max: 60, seed: 1 });
 }
 
 #[test]
 fn a_frame_of_a_sphere() {
-    frame(procedural::Scene::Sphere, configs()[1], Latency::Fixed(20));
+    frame(procedural::Scene::Sphere, VertexForm::Exact, configs()[1], Latency::Fixed(20));
 }

@@ -3,10 +3,10 @@
 use crate::port::{RESET, Rtl};
 use lodray::hardware::Hardware;
 use lodray::method::lod::LodImage;
-use lodray::num::Ray;
+use lodray::num::{Ray, VertexForm};
 use lodray::sim::unit::wave::{PERIOD, Waves, one_ray};
 use lodray::sim::unit::{SceneMemory, TraversalUnit};
-use lodray_test_support::models::{any_rays, ball, scene_of, terrain};
+use lodray_test_support::models::{any_rays, ball, scene_of, terrain, with_vertices};
 use std::collections::BTreeMap;
 use std::io::BufReader;
 use vcd::{Command, IdCode, Parser, ScopeItem, Value};
@@ -97,7 +97,8 @@ fn compare(memory: &SceneMemory<'_>, latency: u32, ray: &Ray, seed: u64) -> (usi
 #[test]
 fn the_waveforms_of_model_and_rtl_are_equal() {
     let (mut signals, mut cycles, mut bits) = (0, 0, 0);
-    for (number, h) in [ball(4, 0.4, 1), terrain(2, 2, 0.4, 2), ball(0, 0.4, 3)].iter().enumerate() {
+    let compact = |h| with_vertices(VertexForm::Compact, h);
+    for (number, h) in [compact(ball(4, 0.4, 1)), terrain(2, 2, 0.4, 2), ball(0, 0.4, 3), compact(ball(1, 0.4, 4))].iter().enumerate() {
         let scene = scene_of(h);
         let memory = SceneMemory::new(LodImage::of(&scene), 0);
         for ray in any_rays(h, 8, number as u64) {

@@ -2,12 +2,12 @@
 
 use lodray::machine::Machine;
 use lodray::method::lod::LodImage;
-use lodray::num::Ray;
+use lodray::num::{Ray, VertexForm};
 use lodray::sim::replay::{self, Chunk, Run};
 use lodray::sim::unit::environment::run;
 use lodray::sim::unit::{Latency, SceneMemory, Traffic, TraversalUnit};
 use lodray::step::{Batch, Step};
-use lodray_test_support::models::{any_rays, ball, scene_of, terrain};
+use lodray_test_support::models::{any_rays, ball, scene_of, terrain, with_vertices};
 use lodray_test_support::timing::steps_of;
 
 fn machine(sets: &[(&str, u32)]) -> Machine {
@@ -33,7 +33,9 @@ fn units(machine: &Machine, rays: &[Vec<Step>]) -> Run {
 #[test]
 fn a_unit_before_a_full_cache_takes_the_cycles_of_the_cycle_model() {
     let mut compared = 0;
-    for (h, seed) in [(ball(4, 0.4, 1), 1), (terrain(3, 5, 0.5, 2), 2), (ball(0, 0.4, 3), 3)] {
+    use VertexForm::{Compact, Exact};
+    for (form, h, seed) in [(Compact, ball(4, 0.4, 1), 1), (Exact, terrain(3, 5, 0.5, 2), 2), (Compact, ball(0, 0.4, 3), 3)] {
+        let h = with_vertices(form, h);
         let scene = scene_of(&h);
         let image = LodImage::of(&scene);
         let memory = SceneMemory::new(image, 0);
@@ -64,7 +66,7 @@ fn a_unit_before_a_full_cache_takes_the_cycles_of_the_cycle_model() {
 
 #[test]
 fn many_units_lose_nothing_however_little_room_there_is() {
-    let h = terrain(4, 5, 0.5, 2);
+    let h = with_vertices(VertexForm::Compact, terrain(4, 5, 0.5, 2));
     let scene = scene_of(&h);
     let image = LodImage::of(&scene);
     let rays = steps(image, &any_rays(&h, 1000, 4));

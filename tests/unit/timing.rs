@@ -4,13 +4,13 @@ use lodray::block::EdgesPerCycle;
 use lodray::hardware::Hardware;
 use lodray::mesh::Hierarchy;
 use lodray::method::lod::LodImage;
-use lodray::num::Ray;
+use lodray::num::{Ray, VertexForm};
 use lodray::sim::timing::UnitTiming;
 use lodray::sim::unit::environment::{RunReport, UnitPort, run};
 use lodray::sim::unit::{Inputs, Latency, Outputs, SceneMemory, Stall, Traffic, TraversalUnit};
 use lodray::step::{Act, Batch, Fetch, SectionId, Step};
 use lodray_test_support::hardware::OTHERS;
-use lodray_test_support::models::{Rng, any_rays, ball, model, octahedron, scene_of, terrain};
+use lodray_test_support::models::{Rng, any_rays, ball, model, octahedron, scene_of, terrain, with_vertices};
 use lodray_test_support::timing::{Smooth, Timed, steps_of};
 
 /// A unit, noting its requests: cycle, tag, address.
@@ -83,7 +83,8 @@ fn models() -> Vec<(String, Hierarchy)> {
         std::array::from_fn(|k| p[k] as f64 * size + f64::from(level) * size * 3.0 * f64::from((p[k] % 5) as i32))
     });
     all.push(("deep octahedron".into(), deep));
-    all
+    let in_form = |form: VertexForm| all.iter().map(move |(name, h)| (format!("{} {name}", form.name()), with_vertices(form, h.clone())));
+    VertexForm::ALL.into_iter().flat_map(in_form).collect()
 }
 
 #[test]
@@ -127,7 +128,7 @@ fn equals_the_cycle_model_in_every_cycle() {
 
 #[test]
 fn equals_the_cycle_model_from_event_to_event() {
-    let h = terrain(4, 5, 0.4, 7);
+    let h = with_vertices(VertexForm::Compact, terrain(4, 5, 0.4, 7));
     let scene = scene_of(&h);
     let image = LodImage::of(&scene);
     let memory = SceneMemory::new(image, 0);
@@ -153,10 +154,32 @@ fn equals_the_cycle_model_from_event_to_event() {
 const NODES: SectionId = SectionId::new(0);
 const LEAVES: SectionId = SectionId::new(1);
 
-/// A visit of a node with boxes of 16 or, `wide`, 32 bits.
-fn node(line: u32, met: u32, wide: bool) -> Step {
-    let act = if wide { Act::WideChildren { met } } else { Act::PlainChildren { met } };
-    Step::on(Fetch::new(NODES, line, if wide { 4 } else { 2 }), act).visiting()
+/// How a node stores its boxes: steps, codes of 16 bits, or coordinates of 32.
+#[derive(Clone, Copy)]
+enum Boxes {
+    Local,
+    Plain,
+    Wide,
+}
+
+impl Boxes {
+    fn lines(self) -> u32 {
+        match self {
+            Self::Local => 1,
+            Self::Plain => 2,
+            Self::Wide => 4,
+        }
+    }
+}
+
+/// A visit of a node.
+fn node(line: u32, met: u32, boxes: Boxes) -> Step {
+    let act = match boxes {
+        Boxes::Local => Act::LocalChildren { met },
+        Boxes::Plain => Act::PlainChildren { met },
+        Boxes::Wide => Act::WideChildren { met },
+    };
+    Step::on(Fetch::new(NODES, line, boxes.lines()), act).visiting()
 }
 
 /// The lines of a leaf.
@@ -193,7 +216,7 @@ fn alone(steps: Vec<Step>, latency: u64) -> u64 {
 fn baseline_rays_take_the_cycles_of_their_blocks() {
     use lodray::block::Block;
     use lodray::block::{
-        box_test::BoxTest, box_test32::BoxTest32, child_sort::ChildSort, hit_divide::HitDivide, hit_select::HitSelect,
+        box_decode::BoxDecode, box_test::BoxTest, box_test32::BoxTest32, child_sort::ChildSort, hit_divide::HitDivide, hit_select::HitSelect,
         node_address::NodeAddress, ray_setup::RaySetup, tri_test::TriTest,
     };
     let cycles = |timing: lodray::block::Timing| u64::from(timing.latency);
@@ -202,23 +225,27 @@ fn baseline_rays_take_the_cycles_of_their_blocks() {
     let setup = 1 + 1 + cycles(RaySetup::TIMING);
     // VISIT; one grant for each line; address, memory; and the cycle in which all is seen to be there.
     let fetch = |lines: u64| 1 + lines + cycles(NodeAddress::TIMING) + latency + 1;
-    let node_cycles = |wide: bool| {
-        let test = if wide { BoxTest32::TIMING } else { BoxTest::TIMING };
-        fetch(if wide { 4 } else { 2 }) + 1 + cycles(test) + cycles(ChildSort::TIMING)
+    let node_cycles = |boxes: Boxes| {
+        let test = match boxes {
+            Boxes::Local => cycles(BoxDecode::TIMING) + cycles(BoxTest::TIMING),
+            Boxes::Plain => cycles(BoxTest::TIMING),
+            Boxes::Wide => cycles(BoxTest32::TIMING),
+        };
+        fetch(boxes.lines().into()) + 1 + test + cycles(ChildSort::TIMING)
     };
     // SETUP and its wait, a node and one PUSH, POP, DONE and the hit's register.
-    let miss = |wide| alone(vec![node(0, 0, wide), end(false)], latency);
-    assert_eq!(miss(false), setup + node_cycles(false) + 1 + 1 + 1 + 1 - 1);
-    assert_eq!(miss(true), setup + node_cycles(true) + 1 + 1 + 1 + 1 - 1);
+    for boxes in [Boxes::Local, Boxes::Plain, Boxes::Wide] {
+        assert_eq!(alone(vec![node(0, 0, boxes), end(false)], latency), setup + node_cycles(boxes) + 1 + 1 + 1 + 1 - 1);
+    }
 
     let of_leaf = |hits| {
-        let mut steps = vec![node(0, 1, true)];
+        let mut steps = vec![node(0, 1, Boxes::Wide)];
         steps.extend(leaf([40, 41, 57]));
         steps.extend([triangles(5, hits), end(hits != 0)]);
         alone(steps, latency)
     };
     let tests = 5 + cycles(TriTest::TIMING);
-    let to_leaf = setup + node_cycles(true) + 1 + fetch(3);
+    let to_leaf = setup + node_cycles(Boxes::Wide) + 1 + fetch(3);
     // PUSH and its leaf; five tests, the cycle in which all are seen through; POP, DONE, the register.
     assert_eq!(of_leaf(0), to_leaf + tests + 1 + 1 + 1 + 1 - 1);
     // The last test's hit: the queue, the division, the comparison; then v, w and SUM, and no map.
@@ -234,7 +261,7 @@ fn baseline_rays_share_a_unit() {
     let mut rng = Rng(5);
     let mut lines = 0;
     let mut ray = |_| {
-        let mut steps = vec![node(4, 1, true)];
+        let mut steps = vec![node(4, 1, Boxes::Wide)];
         for _ in 0..20 {
             lines += 4;
             let leaves = rng.below(16) + 1;
@@ -242,7 +269,7 @@ fn baseline_rays_share_a_unit() {
             steps.extend(leaf(0..leaves as u32));
             steps.push(triangles(rng.below(32) as u32 + 1, (rng.draw() & rng.draw()) as u32));
             steps.extend([pop(true); 90]);
-            steps.extend([pop(false), node(8, 1, true)]);
+            steps.extend([pop(false), node(8, 1, Boxes::Wide)]);
         }
         lines += 4 + 1;
         steps.extend(leaf([3]));

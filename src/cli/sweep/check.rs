@@ -14,6 +14,7 @@ use lodray::mesh::{BoundKind, Placement, procedural};
 use lodray::method::bvh::{LEAF_LAYOUT, LEAF_SIZE};
 use lodray::method::knob::DELTA;
 use lodray::method::{Knob, KnobError, Knobs};
+use lodray::num::VertexForm;
 use lodray::rays::{DEFAULT_VIEW_ANGLE_DEGREES, ModelSpace};
 use lodray::run::{self, Compute};
 use std::collections::{BTreeSet, HashSet};
@@ -193,6 +194,7 @@ fn scene(source: &ListText<'_>, list: &List, spanned: &Spanned<SceneEntry>, fold
                 place(entry.seed.as_ref().map(Spanned::span), "seed"),
                 place(entry.roughness.as_ref().map(Spanned::span), "roughness"),
                 place(entry.bounds.as_ref().map(Spanned::span), "bounds"),
+                place(entry.vertices.as_ref().map(Spanned::span), "vertices"),
             ];
             if let Some((key, place)) = own.into_iter().flatten().next() {
                 return Err(source.wrong(place, format!("scene: {key} goes with generate, not with file")));
@@ -213,7 +215,8 @@ fn scene(source: &ListText<'_>, list: &List, spanned: &Spanned<SceneEntry>, fold
             };
             generate::check(&options).map_err(|why| source.wrong(spanned.span(), format!("scene: {}", one_line(&why))))?;
             let bounds = entry.bounds.as_ref().or(list.bounds.as_ref()).map_or_else(BoundKind::default, |bounds| *bounds.get_ref());
-            (Origin::Generate(Generated { options, bounds }), format!("{:?}", kind.get_ref()).to_lowercase(), 0, stand_in())
+            let vertices = entry.vertices.as_ref().or(list.vertices.as_ref()).map_or_else(VertexForm::default, |form| *form.get_ref());
+            (Origin::Generate(Generated { options, bounds, vertices }), format!("{:?}", kind.get_ref()).to_lowercase(), 0, stand_in())
         }
         (Some(file), Some(_)) => return Err(source.wrong(file.span(), "scene: has both file and generate")),
         (None, None) => return Err(source.wrong(spanned.span(), "scene: needs either file or generate")),

@@ -2,6 +2,7 @@
 
 use super::check;
 use super::list::ListText;
+use crate::cli::build::FormArgs;
 use crate::cli::generate::make;
 use crate::cli::method::Chosen;
 use crate::cli::output::open;
@@ -12,6 +13,7 @@ use lodray::mesh::{BoundKind, procedural};
 use lodray::method::Knob;
 use lodray::method::bvh::{LEAF_LAYOUT, LEAF_SIZE};
 use lodray::method::knob::DELTA;
+use lodray::num::VertexForm;
 use lodray::rays::{Camera, DEFAULT_DIRECTION, ModelSpace, View};
 use lodray::report::results_version;
 use lodray::sim::energy;
@@ -28,7 +30,7 @@ pub enum Origin {
     Generate(Generated),
 }
 
-/// What is generated, with which displacement bounds.
+/// What is generated, and in which form.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Generated {
     #[serde(flatten)]
@@ -36,6 +38,7 @@ pub struct Generated {
     /// A job of the paper's bounds is the same as when there were no others.
     #[serde(skip_serializing_if = "BoundKind::is_unnamed")]
     pub bounds: BoundKind,
+    pub vertices: VertexForm,
 }
 
 /// A scene and what to see of it.
@@ -65,7 +68,7 @@ impl SceneJobs {
     pub fn open(&self) -> anyhow::Result<Scene> {
         match &self.origin {
             Origin::File(file) => open(file),
-            Origin::Generate(made) => make(&made.options, made.bounds),
+            Origin::Generate(made) => make(&made.options, FormArgs { bounds: made.bounds, vertices: made.vertices }),
         }
     }
 

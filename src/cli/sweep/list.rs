@@ -2,6 +2,7 @@
 
 use crate::cli::method::Listed;
 use lodray::mesh::{BoundKind, procedural};
+use lodray::num::VertexForm;
 use lodray::run::Compute;
 use serde::Deserialize;
 use std::collections::BTreeMap;
@@ -26,6 +27,7 @@ pub struct List {
     pub leaf_size: Maybe<u32>,
     /// Of generated scenes.
     pub bounds: Maybe<BoundKind>,
+    pub vertices: Maybe<VertexForm>,
     /// Other knobs of methods, by name.
     #[serde(default)]
     pub knobs: BTreeMap<String, Spanned<Value>>,
@@ -53,6 +55,7 @@ pub struct SceneEntry {
     pub seed: Maybe<u64>,
     pub roughness: Maybe<f64>,
     pub bounds: Maybe<BoundKind>,
+    pub vertices: Maybe<VertexForm>,
     pub size: Maybe<String>,
     pub distances: Maybe<Vec<f64>>,
     /// From the target to the eye, for distances.

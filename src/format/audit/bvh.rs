@@ -1,59 +1,86 @@
 //! The quad-BVH over the trees.
 
+use super::boxes::{Span, local};
 use super::tally::{CheckKind, Tallies};
-use crate::format::{Box16, BvhChild, ChildRef, Scene};
+use crate::format::{BvhNode, L0Record, Scene};
 use crate::num::Wire;
 
-/// Walks from the root and checks references and boxes.
-pub(super) fn check(scene: &Scene, found: &mut Tallies) {
+/// Kinds of slots.
+const EMPTY: u64 = 0;
+const INNER: u64 = 1;
+const LEAF: u64 = 2;
+
+/// Walks from the root and checks references and boxes; `trees` are the boxes of their full-resolution vertices.
+pub(super) fn check(scene: &Scene, trees: &[Span], found: &mut Tallies) {
     let nodes = scene.nodes();
-    let children = |node: usize| std::array::from_fn::<_, 4, _>(|k| BvhChild::from_words(&nodes[node][2 * k..]));
-    let (mut node_uses, mut tree_uses) = (vec![0u32; nodes.len()], vec![0u32; scene.trees()]);
+    let (mut node_uses, mut tree_uses) = (vec![0u32; nodes.len()], vec![0u32; trees.len()]);
+    // Boxes of all vertices below a node, and the slots that lead to nodes: (node, slot, child), parents first.
+    let mut spans = vec![Span::EMPTY; nodes.len()];
+    let mut inner = Vec::new();
     let mut open = Vec::new();
     if let Some(root) = node_uses.first_mut() {
         *root = 1;
         open.push(0);
     }
-    while let Some(node) = open.pop() {
-        for (k, slot) in children(node).into_iter().enumerate() {
-            let (kind, index, more) = (slot.child.kind.get(), slot.child.index.get() as usize, slot.child.count.get() as usize);
-            let zero = kind != ChildRef::EMPTY || nodes[node][2 * k..2 * k + 2] == [0, 0];
-            let legal = kind <= ChildRef::LEAF && (kind != ChildRef::INNER || more == 0);
+    while let Some(at) = open.pop() {
+        let node = BvhNode::from_words(&nodes[at]);
+        let without = |kind: u64| node.kinds.iter().all(|k| k.get() != kind);
+        let unused = without(INNER) && node.first_node.get() != 0 || without(LEAF) && node.first_leaf.get() != 0;
+        found.check(CheckKind::Reserved, node.reserved.get() == 0 && !unused, || {
+            format!("quad-BVH node {at}: its first bit, or children {} and {} that there are not", node.first_node, node.first_leaf)
+        });
+        // Children of a kind stand side by side, in the order of their slots.
+        let (mut next_node, mut next_leaf) = (node.first_node.get() as usize, node.first_leaf.get() as usize);
+        for k in 0..4 {
+            let (kind, count) = (node.kinds[k].get(), node.counts[k].get());
+            let planes = &node.planes[6 * k..6 * k + 6];
+            let zero = kind != EMPTY || planes.iter().all(|plane| plane.get() == 0);
+            let legal = kind == LEAF || kind < LEAF && count == 0;
             found.check(CheckKind::Reserved, zero && legal, || {
-                format!("quad-BVH node {node}: slot {k} is {:x?}", &nodes[node][2 * k..2 * k + 2])
+                format!("quad-BVH node {at}: slot {k} of kind {kind} has count {count}, planes {planes:?}")
             });
             match kind {
-                ChildRef::INNER => match node_uses.get_mut(index) {
-                    Some(uses) => {
-                        *uses += 1;
-                        if *uses == 1 {
-                            open.push(index);
-                            let inside = children(index).into_iter().filter(|c| c.child.kind.get() != ChildRef::EMPTY);
-                            let holds = inside.into_iter().all(|c| contains(slot.bounds, c.bounds));
-                            found.check(CheckKind::BvhInnerBoxes, holds, || {
-                                format!("quad-BVH node {node}: box of child {k} (node {index})")
-                            });
+                INNER => {
+                    let index = next_node;
+                    next_node += 1;
+                    match node_uses.get_mut(index) {
+                        Some(uses) => {
+                            *uses += 1;
+                            if *uses == 1 {
+                                open.push(index);
+                                inner.push((at, k, index));
+                            }
                         }
+                        None => found.check(CheckKind::BvhNodes, false, || format!("quad-BVH node {at} refers to node {index}")),
                     }
-                    None => found.check(CheckKind::BvhNodes, false, || format!("quad-BVH node {node} refers to node {index}")),
-                },
-                ChildRef::LEAF => {
-                    for tree in index..=index + more {
+                }
+                LEAF => {
+                    let (lo, hi) = local(&node, k);
+                    for _ in 0..=count {
+                        let tree = next_leaf;
+                        next_leaf += 1;
                         match tree_uses.get_mut(tree) {
                             Some(uses) => {
                                 *uses += 1;
-                                let holds = contains(slot.bounds, scene.record(tree).root.bounds);
-                                found.check(CheckKind::BvhLeafBoxes, holds, || {
-                                    format!("quad-BVH node {node}: box of child {k} (tree {tree})")
+                                spans[at] = spans[at].with(&trees[tree]);
+                                found.check(CheckKind::BvhLeafBoxes, trees[tree].is_within(lo, hi), || {
+                                    format!("quad-BVH node {at}: box of child {k} (tree {tree}), {lo:?} to {hi:?} (times 2^16)")
                                 });
                             }
-                            None => found.check(CheckKind::BvhTrees, false, || format!("quad-BVH node {node} refers to tree {tree}")),
+                            None => found.check(CheckKind::BvhTrees, false, || format!("quad-BVH node {at} refers to tree {tree}")),
                         }
                     }
                 }
                 _ => {}
             }
         }
+    }
+    for (at, k, index) in inner.into_iter().rev() {
+        let (lo, hi) = local(&BvhNode::from_words(&nodes[at]), k);
+        found.check(CheckKind::BvhInnerBoxes, spans[index].is_within(lo, hi), || {
+            format!("quad-BVH node {at}: box of child {k} (node {index}), {lo:?} to {hi:?} (times 2^16)")
+        });
+        spans[at] = spans[at].with(&spans[index]);
     }
     for (node, &uses) in node_uses.iter().enumerate() {
         found.check(CheckKind::BvhNodes, uses == 1, || format!("quad-BVH node {node} is referred to {uses} times"));
@@ -63,7 +90,17 @@ pub(super) fn check(scene: &Scene, found: &mut Tallies) {
     }
 }
 
-fn contains(outer: Box16, inner: Box16) -> bool {
-    let [a, b, c, d] = [outer.lo.get(), inner.lo.get(), inner.hi.get(), outer.hi.get()];
-    (0..3).all(|k| a[k] <= b[k] && c[k] <= d[k])
+/// Each base triangle as it was given is that of one tree.
+pub(super) fn check_sources(scene: &Scene, found: &mut Tallies) {
+    let mut uses = vec![0u32; scene.trees()];
+    for (tree, record) in scene.records().iter().enumerate() {
+        let source = L0Record::from_words(&record[4..]).source.get();
+        match uses.get_mut(source as usize) {
+            Some(uses) => *uses += 1,
+            None => found.check(CheckKind::Sources, false, || format!("tree {tree} is of base triangle {source}")),
+        }
+    }
+    for (source, &uses) in uses.iter().enumerate() {
+        found.check(CheckKind::Sources, uses == 1, || format!("base triangle {source} is that of {uses} trees"));
+    }
 }

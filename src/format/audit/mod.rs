@@ -4,14 +4,16 @@
 //! squared (no root is rounded), and truths are kept at the inserted vertices and not by edge. Each check has the number of things that it must
 //! look at; looking at fewer is a failure, so no check passes by doing nothing.
 
+mod boxes;
 mod bvh;
 mod edges;
 mod tally;
 mod tree;
 
-use super::Scene;
+use super::{L0Record, Scene};
 use crate::mesh::{BoundKind, edges_of_level, edges_of_tree, lattice};
-use crate::num::bound_decode;
+use crate::num::{VertexForm, Wire};
+use boxes::Span;
 use edges::Edges;
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
@@ -80,16 +82,36 @@ impl fmt::Display for AuditReport {
     }
 }
 
-/// Checks a scene that has been opened or built.
-pub fn audit(scene: &Scene) -> AuditReport {
-    let levels = scene.levels();
-    let len = lattice::len(levels);
+/// What the images say, as the audit reads them.
+pub struct Reading {
+    /// Positions in units, tree by tree in lattice order.
+    pub points: Vec<[i32; 3]>,
+    /// For each of these points the bound code of the edge that it splits; none for base vertices.
+    pub codes: Vec<Option<u8>>,
+}
+
+/// Points and codes of a scene that has been opened or built, read by the audit's own recursion.
+pub fn reading(scene: &Scene) -> Reading {
+    let (lattices, _) = read(scene);
+    Reading { points: lattices.points, codes: lattices.codes.into_iter().map(|code| u8::try_from(code).ok()).collect() }
+}
+
+/// Reads all trees, and checks what can be checked on the way.
+fn read(scene: &Scene) -> (tree::Lattices, Tallies) {
+    let len = lattice::len(scene.levels());
     let mut lattices = tree::Lattices::new(scene.trees() * len);
     let per_tree = lattices.trees(len).zip(scene.records()).enumerate();
-    let mut found = per_tree.map(|(t, (lattice, record))| tree::read(scene, t, record, lattice)).reduce(Tallies::default, Tallies::join);
+    let found = per_tree.map(|(t, (lattice, record))| tree::read(scene, t, record, lattice)).reduce(Tallies::default, Tallies::join);
+    (lattices, found)
+}
+
+/// Checks a scene that has been opened or built. (How far compact vertices lie from where they were, META's `moved`, cannot be told from them.)
+pub fn audit(scene: &Scene) -> AuditReport {
+    let levels = scene.levels();
+    let (mut lattices, mut found) = read(scene);
     let (lo, hi) = (scene.meta().lo, scene.meta().hi);
     for k in 0..3 {
-        for (which, stored, truth) in [("lo", lo[k], found.lo[k]), ("hi", hi[k], found.hi[k])] {
+        for (which, stored, truth) in [("lo", lo[k], found.span.lo[k]), ("hi", hi[k], found.span.hi[k])] {
             found.check(CheckKind::ModelBox, stored == truth, || format!("META {which}[{k}] is {stored}, the vertices give {truth}"));
         }
     }
@@ -99,7 +121,9 @@ pub fn audit(scene: &Scene) -> AuditReport {
     edges.check_shared(&lattices, &mut found);
     lattices.cover(scene.meta().bounds, levels, |level, displacements| edges.raise_shared(level, displacements));
     found = found.join(lattices.check_codes(levels, &allowed(scene)));
-    bvh::check(scene, &mut found);
+    let spans: Vec<Span> = lattices.points.par_chunks(lattice::len(levels)).map(|points| Span::around(points.iter().copied())).collect();
+    bvh::check(scene, &spans, &mut found);
+    bvh::check_sources(scene, &mut found);
     found = found.join(check_shading(scene));
 
     let expected = expected(scene, &edges, corners);
@@ -112,8 +136,13 @@ pub fn audit(scene: &Scene) -> AuditReport {
 
 /// For each code the length in units that it covers.
 fn allowed(scene: &Scene) -> Vec<u64> {
-    let scale = scene.meta().bound_scale();
-    (0..1024).map(|code| bound_decode(scale, code)).collect()
+    let covered = |code: u64| {
+        let k = code + u64::from(scene.meta().bound_offset);
+        // Only 2^0 is whole, and it is exact; all others are far enough from whole numbers for any `powf`.
+        let root = (256.0 * 2f64.powf((k % 16) as f64 / 16.0)).ceil() as u64; // 256 to 491
+        if code == 0 { 0 } else { root * 2u64.pow((k / 16) as u32) / 256 } // at most 47, so 56 bits
+    };
+    (0..256).map(covered).collect()
 }
 
 /// Normals and materials.
@@ -121,13 +150,13 @@ fn check_shading(scene: &Scene) -> Tallies {
     let len = lattice::len(scene.levels());
     let colours = scene.colours().len().max(1) as u64; // without colours all are material 0
     let per_tree = scene.normals().par_chunks(len).zip(scene.records()).enumerate();
-    let checked = per_tree.map(|(t, (normals, _))| {
+    let checked = per_tree.map(|(t, (normals, record))| {
         let mut found = Tallies::default();
         for (point, &code) in normals.iter().enumerate() {
             let ok = (code & 0xFFFF) != 0x8000 && (code >> 16) != 0x8000;
             found.check(CheckKind::Normals, ok, || format!("tree {t}: normal {point} is {code:#010x}"));
         }
-        let material = scene.record(t).material.get();
+        let material = L0Record::from_words(&record[4..]).material.get();
         found.check(CheckKind::Materials, material < colours, || format!("tree {t}: material {material} of {colours}"));
         found
     });
@@ -139,25 +168,29 @@ fn expected(scene: &Scene, edges: &Edges, shared_corners: u64) -> [(CheckKind, u
     let n = scene.levels();
     let trees = scene.trees() as u64;
     let [len, edge_count] = [lattice::len(n), edges_of_tree(n)].map(|c| c as u64);
-    // Nodes of levels 0 to N-1: each stores three inserted vertices and three codes.
+    // Nodes of levels 0 to N-1, each with three inserted vertices; those below the root by fours in groups of nine codes, the root with three.
     let inner = ((1u64 << (2 * n)) - 1) / 3;
     let grouped = inner.saturating_sub(1);
+    let (groups, codes) = (grouped / 4, if n == 0 { 0 } else { 3 + 9 * (grouped / 4) });
+    // Of compact ones the root's vertices stand in its L0 record.
+    let vertices = if scene.meta().vertices == VertexForm::Exact { inner } else { grouped };
     // Six edges meet at an inserted vertex, four on the tree's border, for all levels but the last that has codes.
     let meeting: u64 = (0..n.saturating_sub(1)).map(|level| 6 * edges_of_level(level) as u64 - 6 * (1 << level)).sum();
     let nodes = scene.nodes().len() as u64;
     [
-        (CheckKind::Reserved, trees * (2 + grouped + inner) + 4 * nodes),
+        (CheckKind::Reserved, trees * (2 + groups + vertices) + 5 * nodes),
         (CheckKind::Limit, trees * 3 * (1 + inner)),
         (CheckKind::LowBits, trees * 3 * (1 + inner)),
         (CheckKind::VerticesInTree, trees * (3 * inner - (len - 3))),
         (CheckKind::VerticesAcross, edges.extra_uses * ((1 << n) - 1) + shared_corners),
-        (CheckKind::CodesInTree, trees * (3 * inner - edge_count)),
+        (CheckKind::CodesInTree, trees * (codes - edge_count)),
         (CheckKind::CodesAcross, edges.extra_uses * ((1 << n) - 1)),
         (CheckKind::Bounds, trees * edge_count),
         (CheckKind::Monotone, trees * meeting),
-        (CheckKind::Boxes, trees * inner.max(1)),
+        (CheckKind::Boxes, trees * grouped),
         (CheckKind::ModelBox, 6),
         (CheckKind::BaseTriangles, trees),
+        (CheckKind::Sources, trees),
         (CheckKind::BvhNodes, nodes),
         (CheckKind::BvhTrees, trees),
         (CheckKind::BvhLeafBoxes, trees),

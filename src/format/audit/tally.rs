@@ -1,5 +1,7 @@
 //! Counts of what was checked and what was wrong.
 
+use super::boxes::Span;
+
 /// The checks.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum CheckKind {
@@ -15,6 +17,7 @@ pub(super) enum CheckKind {
     Boxes,
     ModelBox,
     BaseTriangles,
+    Sources,
     BvhNodes,
     BvhTrees,
     BvhLeafBoxes,
@@ -24,7 +27,7 @@ pub(super) enum CheckKind {
 }
 
 /// All checks in the order of [`CheckKind`], with their names.
-pub(super) const CHECKS: [(CheckKind, &str); 18] = [
+pub(super) const CHECKS: [(CheckKind, &str); 19] = [
     (CheckKind::Reserved, "reserved bits and empty slots are zero"),
     (CheckKind::Limit, "coordinates keep to the limit"),
     (CheckKind::LowBits, "low bits of the level's grid are zero"),
@@ -37,10 +40,11 @@ pub(super) const CHECKS: [(CheckKind, &str); 18] = [
     (CheckKind::Boxes, "boxes contain all full-resolution vertices below"),
     (CheckKind::ModelBox, "the model's box is that of its vertices"),
     (CheckKind::BaseTriangles, "base triangles have three different vertices"),
+    (CheckKind::Sources, "trees are the given base triangles, each once"),
     (CheckKind::BvhNodes, "quad-BVH nodes are referred to exactly once"),
     (CheckKind::BvhTrees, "trees are referred to exactly once"),
-    (CheckKind::BvhLeafBoxes, "quad-BVH leaf boxes contain their trees' boxes"),
-    (CheckKind::BvhInnerBoxes, "quad-BVH inner boxes contain their children's boxes"),
+    (CheckKind::BvhLeafBoxes, "quad-BVH leaf boxes contain all vertices of their trees"),
+    (CheckKind::BvhInnerBoxes, "quad-BVH inner boxes contain all vertices of the trees below"),
     (CheckKind::Normals, "normals are present"),
     (CheckKind::Materials, "materials have colours"),
 ];
@@ -57,13 +61,12 @@ pub(super) struct Tally {
 #[derive(Clone, Debug)]
 pub(super) struct Tallies {
     pub tallies: [Tally; CHECKS.len()],
-    pub lo: [i32; 3],
-    pub hi: [i32; 3],
+    pub span: Span,
 }
 
 impl Default for Tallies {
     fn default() -> Self {
-        Self { tallies: Default::default(), lo: [i32::MAX; 3], hi: [i32::MIN; 3] }
+        Self { tallies: Default::default(), span: Span::EMPTY }
     }
 }
 
@@ -86,10 +89,7 @@ impl Tallies {
             a.breaches += b.breaches;
             a.first = a.first.take().or(b.first);
         }
-        for k in 0..3 {
-            self.lo[k] = self.lo[k].min(later.lo[k]);
-            self.hi[k] = self.hi[k].max(later.hi[k]);
-        }
+        self.span = self.span.with(&later.span);
         self
     }
 }

@@ -2,10 +2,11 @@
 //!
 //! An inserted vertex stands for the edge that it splits: the edge's code and its true displacement are kept at the vertex's place.
 
+use super::boxes::{Span, excess};
 use super::tally::{CheckKind, Tallies};
-use crate::format::{BoundData, L0Record, Scene, VertexData};
+use crate::format::{Displacements, L0Record, Scene, SiblingGroup, VertexData};
 use crate::mesh::{BoundKind, lattice};
-use crate::num::{COORD_LIMIT, LARGEST_BOUND, Wire, sqrt_ceil};
+use crate::num::{COORD_LIMIT, LARGEST_BOUND, VertexForm, Wire, sqrt_ceil};
 use rayon::prelude::*;
 
 /// Code of a lattice point at which no edge has been seen.
@@ -121,12 +122,21 @@ fn each_inserted(levels: u32, level: u32, mut f: impl FnMut(usize, &[usize])) {
 /// Reads a tree by recursion over its stored nodes and checks what can be checked on the way.
 pub(super) fn read(scene: &Scene, tree: usize, record: &[u64; 8], lattice: Lattice<'_>) -> Tallies {
     let levels = scene.levels();
-    let lines = ((1 << (2 * levels)) - 1) / 3;
-    let groups = if levels < 2 { 0 } else { (lines - 1) / 4 };
+    let inner = first(levels);
+    let groups = if levels < 2 { 0 } else { (inner - 1) / 4 };
+    let form = scene.meta().vertices;
+    let lines = match form {
+        VertexForm::Exact => inner,
+        VertexForm::Compact => 2 * groups,
+    };
+    let second = L0Record::from_words(&record[4..]);
     let mut reader = Reader {
         tree,
         levels,
+        form,
+        offset: u64::from(scene.meta().bound_offset),
         lines: &scene.vertices()[tree * lines..][..lines],
+        split: second.split,
         groups: &scene.bounds()[tree * groups..][..groups],
         lattice,
         found: Tallies::default(),
@@ -135,11 +145,14 @@ pub(super) fn read(scene: &Scene, tree: usize, record: &[u64; 8], lattice: Latti
     reader.found.check(CheckKind::BaseTriangles, a != b && b != c && c != a, || format!("tree {tree}: vertices {a}, {b}, {c}"));
 
     let corners = VertexData::from_words(&record[..4]);
-    let second = L0Record::from_words(&record[4..]);
     reader.found.check(CheckKind::Reserved, corners.reserved.get() == 0, || format!("tree {tree}: first line of the L0 record"));
-    let codes = [second.root.e0, second.root.e1, second.root.e2];
-    let zero = [second.reserved_high.get(), second.reserved.get(), second.root.reserved.get()] == [0; 3]
-        && (levels > 0 || codes.iter().all(|c| c.get() == 0));
+    let codes = [second.e0, second.e1, second.e2].map(|c| c.get() as u8); // 8 bits
+    let splits = match form {
+        _ if levels == 0 => codes == [0; 3] && second.split == Displacements::default(),
+        VertexForm::Exact => second.split == Displacements::default(),
+        VertexForm::Compact => second.split.reserved.get() == 0,
+    };
+    let zero = second.reserved.get() == 0 && splits;
     reader.found.check(CheckKind::Reserved, zero, || format!("tree {tree}: second line of the L0 record"));
 
     let points = corners.points().map(|p| p.get().map(|c| c as i32)); // 32 bits by their type
@@ -148,16 +161,21 @@ pub(super) fn read(scene: &Scene, tree: usize, record: &[u64; 8], lattice: Latti
         reader.coordinates(0, point, || format!("tree {tree}: corner at {place:?}"));
         reader.lattice.points[lattice::index(levels, place)] = point;
     }
-    let (lo, hi) = reader.node(0, 0, places, points, second.root);
-    (reader.found.lo, reader.found.hi) = (lo, hi);
+    let span = reader.node(0, 0, places, points, codes);
+    reader.found.span = span;
     reader.found
 }
 
 struct Reader<'a> {
     tree: usize,
     levels: u32,
+    form: VertexForm,
+    /// Added to every code but 0.
+    offset: u64,
     lines: &'a [[u64; 4]],
-    groups: &'a [[u64; 8]],
+    /// The root's displacements.
+    split: Displacements,
+    groups: &'a [[u64; 4]],
     lattice: Lattice<'a>,
     found: Tallies,
 }
@@ -166,58 +184,74 @@ type Place = (u32, u32);
 
 impl Reader<'_> {
     /// Checks a node and all below it; gives the box of its full-resolution vertices. `places` and `p` are its corners.
-    fn node(&mut self, level: u32, node: usize, places: [Place; 3], p: [[i32; 3]; 3], data: BoundData) -> ([i32; 3], [i32; 3]) {
-        let (mut lo, mut hi) = (p[0], p[0]);
-        let mut widen = |v: [i32; 3]| {
-            for k in 0..3 {
-                lo[k] = lo[k].min(v[k]);
-                hi[k] = hi[k].max(v[k]);
-            }
-        };
-        p.into_iter().for_each(&mut widen);
-        if level < self.levels {
-            let (q_places, q) = self.inserted(level, node, places, p, data);
-            if level + 1 == self.levels {
-                q.into_iter().for_each(&mut widen);
-            } else {
-                let corners = [[(0, 0), (1, 2), (1, 1)], [(1, 2), (0, 1), (1, 0)], [(1, 1), (1, 0), (0, 2)], [(1, 0), (1, 1), (1, 2)]];
-                let group = self.groups[first(level) + node];
-                for (k, corners) in corners.into_iter().enumerate() {
-                    let child_places = corners.map(|(new, i)| if new == 1 { q_places[i] } else { places[i] });
-                    let child = corners.map(|(new, i)| if new == 1 { q[i] } else { p[i] });
-                    let data = BoundData::from_words(&group[2 * k..]);
-                    let (tree, below) = (self.tree, 4 * node + k);
-                    self.found.check(CheckKind::Reserved, data.reserved.get() == 0, || {
-                        format!("tree {tree}: bound data of node {below} of level {}", level + 1)
-                    });
-                    let (a, b) = self.node(level + 1, below, child_places, child, data);
-                    widen(a);
-                    widen(b);
-                }
-            }
+    fn node(&mut self, level: u32, node: usize, places: [Place; 3], p: [[i32; 3]; 3], codes: [u8; 3]) -> Span {
+        let mut span = Span::around(p);
+        if level == self.levels {
+            return span;
         }
-        if level < self.levels || level == 0 {
-            let (stored_lo, stored_hi) = (data.bounds.lo.get(), data.bounds.hi.get());
-            let holds = (0..3).all(|k| stored_lo[k] << 16 <= i64::from(lo[k]) && stored_hi[k] << 16 >= i64::from(hi[k]));
-            let tree = self.tree;
-            self.found.check(CheckKind::Boxes, holds, || {
-                format!(
-                    "tree {tree}: node {node} of level {level} spans {lo:?} to {hi:?}, its box {stored_lo:?} to {stored_hi:?} (times 2^16)"
-                )
+        let (q_places, q) = self.inserted(level, node, places, p, codes);
+        if level + 1 == self.levels {
+            return span.with(&Span::around(q));
+        }
+        let tree = self.tree;
+        let group = SiblingGroup::from_words(&self.groups[first(level) + node]);
+        self.found.check(CheckKind::Reserved, group.reserved.get() == 0, || format!("tree {tree}: group of node {node} of level {level}"));
+        let corners = [[(0, 0), (1, 2), (1, 1)], [(1, 2), (0, 1), (1, 0)], [(1, 1), (1, 0), (0, 2)], [(1, 0), (1, 1), (1, 2)]];
+        for (k, corners) in corners.into_iter().enumerate() {
+            let child_places = corners.map(|(new, i)| if new == 1 { q_places[i] } else { places[i] });
+            let child = corners.map(|(new, i)| if new == 1 { q[i] } else { p[i] });
+            // The centre child has one edge of each sibling: e0 of child 0, e1 of child 1, e2 of child 2.
+            let codes = [0, 1, 2].map(|i| group.codes[if k < 3 { 3 * k + i } else { 3 * i + i }].get() as u8); // 8 bits
+            let below = self.node(level + 1, 4 * node + k, child_places, child, codes);
+            let (lo, hi) = excess(&group, k, child);
+            self.found.check(CheckKind::Boxes, below.is_within(lo, hi), || {
+                let (number, level) = (4 * node + k, level + 1);
+                format!("tree {tree}: node {number} of level {level} spans {below:?}, its box {lo:?} to {hi:?} (times 2^16)")
             });
+            span = span.with(&below);
         }
-        (lo, hi)
+        span
+    }
+
+    /// The inserted vertices of a node as they are stored.
+    #[inline]
+    fn stored(&mut self, level: u32, node: usize, p: [[i32; 3]; 3], codes: [u8; 3]) -> [[i32; 3]; 3] {
+        let tree = self.tree;
+        let name = || format!("tree {tree}: vertices of node {node} of level {level}");
+        if self.form == VertexForm::Exact {
+            let line = VertexData::from_words(&self.lines[first(level) + node]);
+            self.found.check(CheckKind::Reserved, line.reserved.get() == 0, name);
+            return line.points().map(|v| v.get().map(|c| c as i32)); // 32 bits by their type
+        }
+        // Two nodes share a line, the first of them in its low half; the root's are in the L0 record.
+        let d = if level == 0 {
+            self.split
+        } else {
+            let number = first(level) + node - 1;
+            let half = Displacements::from_words(&self.lines[number / 2][2 * (number % 2)..]);
+            self.found.check(CheckKind::Reserved, half.reserved.get() == 0, name);
+            half
+        };
+        let zero = self.levels - level + 3;
+        std::array::from_fn(|k| {
+            let (a, b) = (p[(k + 1) % 3], p[(k + 2) % 3]);
+            let octave = (u64::from(codes[k]) + self.offset) / 16;
+            let unit = 2i64.pow(zero.max(octave.saturating_sub(11) as u32)); // below 48
+            let d = [d.v0, d.v1, d.v2][k].get();
+            std::array::from_fn(|c| {
+                let v = (i64::from(a[c]) + i64::from(b[c])).div_euclid(2) + d[c] * unit;
+                v.clamp(i32::MIN.into(), i32::MAX.into()) as i32 // beyond the limit if it had to be clamped
+            })
+        })
     }
 
     /// Checks the inserted vertices and codes of a node and gives the vertices.
     #[inline]
-    fn inserted(&mut self, level: u32, node: usize, places: [Place; 3], p: [[i32; 3]; 3], data: BoundData) -> ([Place; 3], [[i32; 3]; 3]) {
+    fn inserted(&mut self, level: u32, node: usize, places: [Place; 3], p: [[i32; 3]; 3], codes: [u8; 3]) -> ([Place; 3], [[i32; 3]; 3]) {
         let (tree, levels) = (self.tree, self.levels);
-        let line = VertexData::from_words(&self.lines[first(level) + node]);
-        self.found
-            .check(CheckKind::Reserved, line.reserved.get() == 0, || format!("tree {tree}: vertex line of node {node} of level {level}"));
-        let q = line.points().map(|v| v.get().map(|c| c as i32)); // 32 bits by their type
-        let codes = [data.e0, data.e1, data.e2].map(|c| c.get() as u16); // 10 bits
+        let q = self.stored(level, node, p, codes);
+        // The centre child's codes are its siblings': there is nothing to compare.
+        let own_codes = level == 0 || node % 4 < 3;
         let mut q_places = places;
         for k in 0..3 {
             let (a, b) = ((k + 1) % 3, (k + 2) % 3);
@@ -227,7 +261,7 @@ impl Reader<'_> {
             let name = || format!("tree {tree}: q{k} of node {node} of level {level} (lattice point {at})");
             self.coordinates(level + 1, q[k], name);
             if self.lattice.codes[at] == UNSEEN {
-                self.lattice.codes[at] = codes[k];
+                self.lattice.codes[at] = codes[k].into();
                 self.lattice.points[at] = q[k];
                 // 2q - a - b: stored coordinates are multiples of 16, so eighths of units of the displacement have 30 bits.
                 let twice = |c: usize| (2 * i64::from(q[k][c]) - i64::from(p[a][c]) - i64::from(p[b][c])) / 16;
@@ -236,8 +270,10 @@ impl Reader<'_> {
                 let (code, point) = (self.lattice.codes[at], self.lattice.points[at]);
                 self.found
                     .check(CheckKind::VerticesInTree, point == q[k], || format!("{} is {:?}, its other side {point:?}", name(), q[k]));
-                self.found
-                    .check(CheckKind::CodesInTree, code == codes[k], || format!("{}: code {}, its other side {code}", name(), codes[k]));
+                if own_codes {
+                    let equal = code == u16::from(codes[k]);
+                    self.found.check(CheckKind::CodesInTree, equal, || format!("{}: code {}, its other side {code}", name(), codes[k]));
+                }
             }
         }
         (q_places, q)
@@ -248,7 +284,9 @@ impl Reader<'_> {
     fn coordinates(&mut self, level: u32, v: [i32; 3], name: impl Fn() -> String) {
         let within = v.iter().all(|c| (-COORD_LIMIT..=COORD_LIMIT).contains(c));
         self.found.check(CheckKind::Limit, within, || format!("{} is {v:?}", name()));
-        let low = (1i32 << (self.levels - level)) - 1;
+        // Exact ones end in the four zero bits that are not stored, whatever their grid; compact ones have them besides it.
+        let bits = self.levels - level + if self.form == VertexForm::Compact { 4 } else { 0 };
+        let low = (1i32 << bits) - 1;
         self.found.check(CheckKind::LowBits, v.iter().all(|c| c & low == 0), || format!("{} is {v:?}", name()));
     }
 }

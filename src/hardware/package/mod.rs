@@ -24,7 +24,8 @@ impl Hardware {
         let fetches = [
             ("NODE", Fetch::Node as u32, "quad-BVH node"),
             ("RECORD", Fetch::Record as u32, "L0 record"),
-            ("VERTEX", Fetch::Vertex as u32, "inserted vertices and, but on the last split, the children's bound data"),
+            ("VERTEX", Fetch::Vertex as u32, "inserted vertices and, but on the last split, the children's sibling group"),
+            ("GROUP", Fetch::Group as u32, "the sibling group alone: the inserted vertices came with the L0 record"),
         ];
         enumeration("What a context fetches.", "fetch_t", &fetches, &mut out);
         out + UNIT

@@ -2,8 +2,10 @@
 
 use crate::block::bary_map::{BaryMap, NodeIndex};
 use crate::block::bound_decode::{Bound, BoundDecode};
+use crate::block::box_decode::BoxDecode;
 use crate::block::box_test::BoxTest;
 use crate::block::box_test32::BoxTest32;
+use crate::block::child_boxes::ChildBoxes;
 use crate::block::child_sort::ChildSort;
 use crate::block::hit_divide::HitDivide;
 use crate::block::hit_select::{FullId, HitSelect};
@@ -13,7 +15,6 @@ use crate::block::ray_setup::RaySetup;
 use crate::block::tessellate::Tessellate;
 use crate::block::tree_base::TreeBase;
 use crate::block::tri_test::{EdgeFunction, TNumerator, TriTest};
-use crate::block::widen_box::WidenBox;
 use crate::block::{Block, EdgesPerCycle, parts};
 use crate::hardware::Hardware;
 use crate::num::{BOX_SHIFT, Bary, BoundCode, EdgeState, LineAddress, RayT, S_ONE, T_NEAR_TO_T_SHIFT, TNear, Wire};
@@ -97,7 +98,7 @@ pub(super) fn print(hardware: &Hardware, out: &mut String) {
         )
         .put("SPLIT_TRIANGLES", hardware.split_triangles(), "of a context: one of each level that splits into nodes")
         .put("NODE_W", 2 * hardware.levels, "of a node within its level, where it is kept: two bits of each level")
-        .put("TREE_LINES_W", 2 * hardware.levels - 1, "of a tree's number of vertex lines, (4^N - 1) / 3");
+        .put("TREE_LINES_W", 2 * hardware.levels - 1, "of a tree's number of splits, (4^N - 1) / 3");
     let scales =
         Group::new("Scales.").put("BOX_SHIFT", BOX_SHIFT, "").put("T_NEAR_TO_T_SHIFT", T_NEAR_TO_T_SHIFT, "").put("S_ONE", S_ONE, "");
     let cycles = Group::new(
@@ -105,8 +106,10 @@ pub(super) fn print(hardware: &Hardware, out: &mut String) {
     )
     .timing::<BaryMap>(hardware)
     .timing::<BoundDecode>(hardware)
+    .timing::<BoxDecode>(hardware)
     .timing::<BoxTest>(hardware)
     .timing::<BoxTest32>(hardware)
+    .timing::<ChildBoxes>(hardware)
     .timing::<ChildSort>(hardware)
     .timing::<HitDivide>(hardware)
     .timing::<HitSelect>(hardware)
@@ -118,8 +121,7 @@ pub(super) fn print(hardware: &Hardware, out: &mut String) {
     .put("TRI_TEST_LATENCY", TriTest::TIMING.latency, "with EDGES_PER_CYCLE = 3")
     .put("TRI_TEST_1_LATENCY", TriTest::ONE_EDGE.latency, "with EDGES_PER_CYCLE = 1")
     .put("TRI_TEST_1_INTERVAL", TriTest::ONE_EDGE.interval, "")
-    .timing::<WidenBox>(hardware)
-    .put("CHILD_TEST_LATENCY", "WIDEN_BOX_LATENCY + BOX_TEST_LATENCY + CHILD_SORT_LATENCY", "");
+    .put("CHILD_TEST_LATENCY", "CHILD_BOXES_LATENCY + BOX_TEST_LATENCY + CHILD_SORT_LATENCY", "");
     let parts = Group::new("Cycles of parts of blocks.")
         .put("ENTRY_DISTANCE_LATENCY", parts::ENTRY_DISTANCE_LATENCY, "of the box tests")
         .put("EDGE_PRODUCT_STAGES", parts::EDGE_PRODUCT_STAGES, "registers of the products of an edge function")

@@ -1,7 +1,7 @@
 //! Packed structs from [`Wire`] types: names, order, widths and descriptions of the fields are those of the source.
 
 use crate::block::{self, Block};
-use crate::format::{BoundData, BvhChild, ChildRef, L0Record, VertexData};
+use crate::format::{BvhNode, Displacements, L0Record, SiblingGroup, VertexData};
 use crate::hardware::ports::{HitOut, MemoryAnswer, MemoryRequest, RayIn, SceneConfig};
 use crate::method::{Entry, Hit};
 use crate::num::{self, Box16, Field, Layout, Wire};
@@ -14,9 +14,10 @@ pub(super) struct Struct {
     fields: &'static [Field],
 }
 
-/// The struct of a type, with its own description.
+/// The struct of a type, with the first paragraph of its own description.
 fn of<T: Wire>(name: impl Into<String>) -> Struct {
-    Struct { name: name.into(), doc: plain(T::DOC), fields: T::FIELDS }
+    let first = T::DOC.split(|line| line.trim().is_empty()).next().unwrap_or_default();
+    Struct { name: name.into(), doc: plain(first), fields: T::FIELDS }
 }
 
 /// A vector of three equal components.
@@ -30,6 +31,7 @@ pub(super) fn all() -> Vec<Struct> {
         vector::<32>("point", "Vertex position or ray origin in units."),
         vector::<31>("direction", "Ray direction: each component below 2^30 in magnitude."),
         vector::<28>("stored_point", "Stored vertex: units / 16."),
+        vector::<13>("displacement", "Displacement of a compact vertex from the midpoint of its edge, in steps."),
         vector::<16>("code3", "Corner of a box in steps of 2^16 units."),
         vector::<63>("moment", "Moment of a ray: origin cross direction."),
         of::<num::BoundScale>("bound_scale"),
@@ -53,7 +55,8 @@ pub(super) fn all() -> Vec<Struct> {
         block::bound_decode::BoundDecode,
         block::lod_test::LodTest,
         block::tessellate::Tessellate,
-        block::widen_box::WidenBox,
+        block::child_boxes::ChildBoxes,
+        block::box_decode::BoxDecode,
         block::box_test::BoxTest,
         block::box_test32::BoxTest32,
         block::child_sort::ChildSort,
@@ -66,11 +69,11 @@ pub(super) fn all() -> Vec<Struct> {
         block::node_address::NodeAddress,
     );
     all.extend([
-        of::<BoundData>("bound_data"),
+        of::<SiblingGroup>("sibling_group"),
+        of::<BvhNode>("bvh_node"),
         of::<VertexData>("vertex_data"),
+        of::<Displacements>("displacements"),
         of::<L0Record>("l0_record"),
-        of::<ChildRef>("child_ref"),
-        of::<BvhChild>("bvh_child"),
         of::<Entry>("stack_entry"),
         of::<Hit>("hit"),
         of::<SceneConfig>("scene_config"),
@@ -148,7 +151,12 @@ fn plain(doc: &[&str]) -> String {
     let mut out = parts.next().unwrap_or_default().to_owned();
     for part in parts {
         match part.split_once("`]") {
-            Some((name, rest)) => out += &(snake(name) + rest),
+            Some((name, rest)) => {
+                let name = name.rsplit("::").next().unwrap_or(name);
+                out += &if name.contains(|c: char| c.is_ascii_lowercase()) { snake(name) } else { name.to_owned() };
+                // Where the link leads is nothing to the RTL.
+                out += rest.strip_prefix('(').and_then(|rest| rest.split_once(')')).map_or(rest, |(_, rest)| rest);
+            }
             None => out += part,
         }
     }

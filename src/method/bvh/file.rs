@@ -6,7 +6,7 @@
 //! | 8..12 | version |
 //! | 12..16 | number of splits N |
 //! | 16..32 | key: of what the tree was built |
-//! | 32..40 | bytes of a node: 64 or 128 |
+//! | 32..40 | bytes of a node: 32, 64 or 128 |
 //! | 40..48 | number of nodes |
 //! | 48..56 | number of triangles |
 //! | 56..72 | checksum of the first 56 bytes and all from 72 on |
@@ -14,9 +14,9 @@
 //!
 //! All numbers are little-endian. A file is a shortcut, not a source: whatever is not as it should be makes it none.
 
-use super::{FullNodes, FullTree};
+use super::{FullNodes, FullOptions, FullTree};
 use crate::bvh::{BvhChild32, MAX_DEPTH, Node16, Node32, Options};
-use crate::format::{BvhChild, ChildRef, FileSection, Scene};
+use crate::format::{BvhChild, BvhNode, ChildRef, FileSection, Line, Scene};
 use crate::num::Wire;
 use rayon::prelude::*;
 use std::io::{self, Read, Write};
@@ -24,7 +24,7 @@ use xxhash_rust::xxh3::Xxh3Default;
 
 const MAGIC: [u8; 8] = *b"LODRAYBV";
 /// Of the file, and of what is built: a test fails when trees change and this does not.
-const VERSION: u32 = 1;
+const VERSION: u32 = 2;
 const HEADER: usize = 72;
 /// Where the checksum stands, behind all that it covers of the header.
 const SUM: usize = 56;
@@ -34,17 +34,19 @@ const SUM: usize = 56;
 pub struct TreeKey(u128);
 
 impl TreeKey {
-    /// The key of the tree of `options` over the triangles of a level of `scene`.
-    pub fn new(scene: &Scene, options: &Options, wide_boxes: bool, level: u32) -> Self {
-        let Options { max_leaf, collapse, costs } = options;
+    /// The key of the tree of `options`, whatever its leaves, over the triangles of a level of `scene`.
+    pub fn new(scene: &Scene, options: &FullOptions, level: u32) -> Self {
+        let Options { max_leaf, collapse, costs } = options.tree;
         let mut hash = Xxh3Default::new();
-        for number in [VERSION, scene.levels(), level, *max_leaf, *collapse as u32, u32::from(wide_boxes)] {
+        let scale = scene.meta().bound_offset;
+        for number in [VERSION, scene.levels(), level, max_leaf, collapse as u32, options.boxes as u32, scale, scene.meta().vertices as u32] {
             hash.update(&number.to_le_bytes());
         }
         for cost in [costs.node, costs.primitive] {
             hash.update(&cost.to_bits().to_le_bytes());
         }
-        for section in [FileSection::Records, FileSection::Vertices] {
+        // Codes say where compact vertices lie.
+        for section in [FileSection::Records, FileSection::Bounds, FileSection::Vertices] {
             let bytes = scene.section(section);
             hash.update(&(bytes.len() as u64).to_le_bytes());
             hash.update(bytes);
@@ -66,6 +68,7 @@ impl FullTree {
     /// What `out` says.
     pub fn write(&self, key: TreeKey, out: &mut dyn Write) -> io::Result<()> {
         let (size, nodes): (u64, &[u8]) = match &self.nodes {
+            FullNodes::Local(nodes) => (32, bytemuck::cast_slice(nodes)),
             FullNodes::Boxes16(nodes) => (64, bytemuck::cast_slice(nodes)),
             FullNodes::Boxes32(nodes) => (128, bytemuck::cast_slice(nodes)),
         };
@@ -95,6 +98,7 @@ impl FullTree {
         }
         // Both fit into a file of this length.
         let nodes = match size {
+            32 => FullNodes::Local(filled::<Line>(nodes as usize, file)?),
             64 => FullNodes::Boxes16(filled::<Node16>(nodes as usize, file)?),
             128 => FullNodes::Boxes32(filled::<Node32>(nodes as usize, file)?),
             _ => return None,
@@ -138,6 +142,7 @@ impl FullTree {
 impl FullNodes {
     fn raw(&self) -> &[u8] {
         match self {
+            Self::Local(nodes) => bytemuck::cast_slice(nodes),
             Self::Boxes16(nodes) => bytemuck::cast_slice(nodes),
             Self::Boxes32(nodes) => bytemuck::cast_slice(nodes),
         }
@@ -145,6 +150,7 @@ impl FullNodes {
 
     fn children(&self, at: usize) -> [ChildRef; 4] {
         match self {
+            Self::Local(nodes) => std::array::from_fn(|k| BvhNode::line_child(&nodes[at], k)),
             Self::Boxes16(nodes) => std::array::from_fn(|k| BvhChild::from_words(&nodes[at][2 * k..]).child),
             Self::Boxes32(nodes) => std::array::from_fn(|k| BvhChild32::from_words(&nodes[at][4 * k..]).child),
         }
@@ -168,14 +174,16 @@ fn checksum(header: &[u8], nodes: &[u8], ids: &[u8]) -> u128 {
 mod tests {
     use super::*;
     use crate::bvh::check::synthetic_terrain;
-    use crate::method::bvh::{FullBuilder, FullOptions, LeafLayout};
+    use crate::method::bvh::{FullBuilder, LeafLayout, NodeBoxes};
     use proptest::prelude::*;
     use xxhash_rust::xxh3::xxh3_64;
 
     const KEY: TreeKey = TreeKey(7 << 100 | 3);
 
-    fn tree(wide: bool) -> FullTree {
-        FullBuilder::new(&synthetic_terrain(3, 2)).unwrap().tree(&Options::with_leaf(2), wide).unwrap()
+    const ALL: [NodeBoxes; 3] = [NodeBoxes::Local, NodeBoxes::Codes, NodeBoxes::Wide];
+
+    fn tree(boxes: NodeBoxes) -> FullTree {
+        FullBuilder::new(&synthetic_terrain(3, 2)).unwrap().tree(&Options::with_leaf(2), boxes).unwrap()
     }
 
     fn file(tree: &FullTree) -> Vec<u8> {
@@ -185,27 +193,27 @@ mod tests {
     }
 
     fn read(bytes: &[u8]) -> Option<FullTree> {
-        FullTree::read(KEY, tree(false).ids.len() as u64, bytes.len() as u64, &mut &*bytes)
+        FullTree::read(KEY, tree(NodeBoxes::Codes).ids.len() as u64, bytes.len() as u64, &mut &*bytes)
     }
 
     #[test]
     fn what_was_written_is_read() {
-        for wide in [false, true] {
-            let tree = tree(wide);
-            assert!(read(&file(&tree)).is_some_and(|read| read == tree), "{wide}");
+        for boxes in ALL {
+            let tree = tree(boxes);
+            assert!(read(&file(&tree)).is_some_and(|read| read == tree), "{boxes:?}");
         }
     }
 
     #[test]
     fn a_file_of_another_key_or_scene_is_none() {
-        let bytes = file(&tree(false));
+        let bytes = file(&tree(NodeBoxes::Codes));
         let of = |key, triangles| FullTree::read(key, triangles, bytes.len() as u64, &mut &*bytes);
         assert!(of(KEY, 288).is_some() && of(TreeKey(8), 288).is_none() && of(KEY, 287).is_none());
     }
 
     #[test]
     fn references_that_lead_nowhere_make_no_tree_even_with_the_right_sum() {
-        let sound = tree(false);
+        let sound = tree(NodeBoxes::Codes);
         let with = |kind: u64, index: u64, count: u64| {
             let mut tree = sound.clone();
             let FullNodes::Boxes16(nodes) = &mut tree.nodes else { panic!("16") };
@@ -235,17 +243,17 @@ mod tests {
     fn the_version_names_what_is_built() {
         let builder = FullBuilder::new(&synthetic_terrain(5, 3)).unwrap();
         let of = |(size, layout)| {
-            let options = FullOptions::new(size, false, layout);
-            xxh3_64(&file(&builder.tree(&options.tree, options.wide_boxes).unwrap()))
+            let options = FullOptions::new(size, NodeBoxes::Local, layout);
+            xxh3_64(&file(&builder.tree(&options.tree, options.boxes).unwrap()))
         };
         let sums = [(1, LeafLayout::Indexed), (2, LeafLayout::Line), (4, LeafLayout::Line)].map(of);
-        assert_eq!((VERSION, sums), (1, [0x4eded08308a4b0ba, 0xcd864ee52c07bd6e, 0xe98b34fbeb910107]));
+        assert_eq!((VERSION, sums), (2, [0, 0, 0]));
     }
 
     proptest! {
         #[test]
-        fn damage_is_noticed(at in any::<prop::sample::Index>(), bit in 0u32..8, wide: bool) {
-            let mut bytes = file(&tree(wide));
+        fn damage_is_noticed(at in any::<prop::sample::Index>(), bit in 0u32..8, boxes in prop::sample::select(ALL.to_vec())) {
+            let mut bytes = file(&tree(boxes));
             let at = at.index(bytes.len());
             bytes[at] ^= 1u8 << bit;
             prop_assert!(read(&bytes).is_none());

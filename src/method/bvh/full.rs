@@ -6,18 +6,41 @@
 use super::finest::Finest;
 use super::{LeafLayout, Leaves};
 use crate::bvh::build::{Binary, Prim, binary_tree};
-use crate::bvh::{BvhError, Costs, MAX_DEPTH, Node16, Node32, Options, check_options, collapse, encode16, encode32};
+use crate::bvh::{BvhError, Costs, MAX_DEPTH, Node16, Node32, Options, QuadNode, check_options, collapse, encode_line, encode16, encode32, side_by_side};
+use crate::format::Line;
 use crate::mesh::Hierarchy;
 use rayon::prelude::*;
 use std::sync::Arc;
+
+/// How nodes hold their children's boxes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum NodeBoxes {
+    /// Steps of 5 bits in a frame of the node's own: 32 bytes a node.
+    Local,
+    /// Codes of 16 bits: 64 bytes.
+    Codes,
+    /// Coordinates of 32 bits: 128 bytes.
+    Wide,
+}
+
+impl NodeBoxes {
+    /// Those of 16 bits or fewer, of this name.
+    pub fn named(name: &str) -> Option<Self> {
+        match name {
+            "local" => Some(Self::Local),
+            "codes" => Some(Self::Codes),
+            _ => None,
+        }
+    }
+}
 
 /// How a [`FullBvh`] is built.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FullOptions {
     /// The tree.
     pub tree: Options,
-    /// 32-bit instead of 16-bit boxes.
-    pub wide_boxes: bool,
+    /// The boxes.
+    pub boxes: NodeBoxes,
     /// The leaves.
     pub layout: LeafLayout,
 }
@@ -25,16 +48,18 @@ pub struct FullOptions {
 impl FullOptions {
     /// Leaves of at most `max_leaf` triangles, with costs that suit the layout: measured on the terrain, cheap triangles save an indexed layout
     /// 9 % of the lines near by, because neighbours share their vertices, and cost the others 3 % far away.
-    pub fn new(max_leaf: u32, wide_boxes: bool, layout: LeafLayout) -> Self {
+    pub fn new(max_leaf: u32, boxes: NodeBoxes, layout: LeafLayout) -> Self {
         let primitive = if layout == LeafLayout::Indexed { 0.25 } else { 0.5 };
         let costs = Costs { primitive, ..Costs::default() };
-        Self { tree: Options { costs, ..Options::with_leaf(max_leaf) }, wide_boxes, layout }
+        Self { tree: Options { costs, ..Options::with_leaf(max_leaf) }, boxes, layout }
     }
 }
 
-/// Nodes in one of the two encodings; node 0 is the root.
+/// Nodes in one of the encodings; node 0 is the root.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum FullNodes {
+    /// 32 bytes each.
+    Local(Vec<Line>),
     /// 64 bytes each.
     Boxes16(Vec<Node16>),
     /// 128 bytes each.
@@ -45,6 +70,7 @@ impl FullNodes {
     /// Number of nodes.
     pub fn len(&self) -> usize {
         match self {
+            Self::Local(n) => n.len(),
             Self::Boxes16(n) => n.len(),
             Self::Boxes32(n) => n.len(),
         }
@@ -58,6 +84,7 @@ impl FullNodes {
     /// Memory in bytes.
     pub fn bytes(&self) -> u64 {
         match self {
+            Self::Local(n) => size_of_val(n.as_slice()) as u64,
             Self::Boxes16(n) => size_of_val(n.as_slice()) as u64,
             Self::Boxes32(n) => size_of_val(n.as_slice()) as u64,
         }
@@ -113,15 +140,20 @@ impl FullBuilder {
     ///
     /// # Errors
     /// Illegal options.
-    pub fn tree(&self, options: &Options, wide_boxes: bool) -> Result<FullTree, BvhError> {
+    pub fn tree(&self, options: &Options, boxes: NodeBoxes) -> Result<FullTree, BvhError> {
         check_options(options)?;
         let source = collapse::BinaryTree::new(&self.prims, &self.binary, options);
-        let nodes = if wide_boxes {
-            FullNodes::Boxes32(collapse::nodes(&source, MAX_DEPTH, encode32))
-        } else {
-            FullNodes::Boxes16(collapse::nodes(&source, MAX_DEPTH, encode16))
+        let mut ids: Vec<u32> = self.prims.par_iter().map(|p| p.id).collect();
+        let nodes = match boxes {
+            NodeBoxes::Local => {
+                let mut nodes: Vec<QuadNode> = collapse::nodes(&source, MAX_DEPTH, |n| *n);
+                ids = side_by_side(&mut nodes, &ids);
+                FullNodes::Local(nodes.par_iter().map(encode_line).collect())
+            }
+            NodeBoxes::Codes => FullNodes::Boxes16(collapse::nodes(&source, MAX_DEPTH, encode16)),
+            NodeBoxes::Wide => FullNodes::Boxes32(collapse::nodes(&source, MAX_DEPTH, encode32)),
         };
-        Ok(FullTree { levels: self.levels, nodes, ids: self.prims.par_iter().map(|p| p.id).collect() })
+        Ok(FullTree { levels: self.levels, nodes, ids })
     }
 }
 
@@ -143,7 +175,7 @@ impl FullBvh {
     /// No or too many triangles, too many levels, points missing or beyond the coordinate limit, or illegal options.
     pub fn build(hierarchy: &Hierarchy, options: &FullOptions) -> Result<Self, BvhError> {
         check_options(&options.tree)?;
-        let tree = FullBuilder::new(hierarchy)?.tree(&options.tree, options.wide_boxes)?;
+        let tree = FullBuilder::new(hierarchy)?.tree(&options.tree, options.boxes)?;
         tree.with_leaves(hierarchy, options.layout)
     }
 }

@@ -1,4 +1,4 @@
-//! Quad-BVH over the full-resolution mesh, with 16-bit or 32-bit boxes: the baseline (paper section 6.1).
+//! Quad-BVH over the full-resolution mesh: the baseline (paper section 6.1). Nodes have boxes of 16-bit codes, or of 5 bits in a frame of their own, or of 32 bits.
 
 mod file;
 mod finest;
@@ -8,7 +8,7 @@ mod store;
 mod trace;
 
 pub use file::TreeKey;
-pub use full::{FullBuilder, FullBvh, FullNodes, FullOptions, FullTree};
+pub use full::{FullBuilder, FullBvh, FullNodes, FullOptions, FullTree, NodeBoxes};
 pub use leaves::{LeafLayout, Leaves};
 pub use store::{NoStore, TreeStore};
 pub use trace::BvhTraverser;
@@ -51,6 +51,17 @@ pub static LEAF_SIZE: Knob = Knob {
     allows: |value| if ["1", "2", "4"].contains(&value) { Ok(()) } else { Err(format!("'{value}' is not 1, 2 or 4")) },
 };
 
+/// How nodes hold boxes of 16 bits or fewer.
+pub static NODE_BOXES: Knob = Knob {
+    name: "node-boxes",
+    value_name: "NODE_BOXES",
+    help: "Boxes of a BVH's nodes",
+    default: Some("local"),
+    words: &[("local", "Steps of 5 bits in a frame of the node's own, a node in 32 bytes"), ("codes", "Codes of 16 bits, a node in 64 bytes, as in the paper")],
+    of_frame: false,
+    allows: |value| NodeBoxes::named(value).map(drop).ok_or_else(|| format!("'{value}' is not local or codes")),
+};
+
 /// Operations of a unit with these tests of boxes: four at once, then their order.
 const fn unit(boxes: Operation) -> [Operation; 10] {
     [
@@ -67,14 +78,18 @@ const fn unit(boxes: Operation) -> [Operation; 10] {
     ]
 }
 
-/// Operations of a unit for nodes with 16-bit boxes.
-pub(super) const UNIT: &[Operation] = &unit(Operation::BoxTest);
+/// Operations of a unit for nodes with boxes of up to 16 bits: it has what decodes local ones, used or not.
+pub(super) const UNIT: &[Operation] = &{
+    let mut operations = [Operation::BoxDecode; 14];
+    operations.split_at_mut(10).0.copy_from_slice(&unit(Operation::BoxTest));
+    operations
+};
 
-/// The method with 16-bit boxes.
+/// The method with boxes of up to 16 bits.
 pub static METHOD: Registered = Registered {
     name: "bvh",
-    help: "Quad-BVH of the full-resolution mesh, 16-bit boxes",
-    knobs: &[&LEAF_LAYOUT, &LEAF_SIZE],
+    help: "Quad-BVH of the full-resolution mesh, boxes of up to 16 bits",
+    knobs: &[&NODE_BOXES, &LEAF_LAYOUT, &LEAF_SIZE],
     error: None,
     unit: Some(MethodUnit { blocks: UNIT, has_levels: false }),
     make: |scene, knobs, store| Bvh::of(scene, knobs, false, store),
@@ -91,12 +106,14 @@ pub static METHOD_WIDE: Registered = Registered {
 };
 
 impl FullOptions {
-    /// Those that were chosen.
+    /// Those that were chosen; 32-bit boxes are not chosen but a method's own.
     pub fn chosen(knobs: &Knobs, wide_boxes: bool) -> Self {
         // Checked when they were chosen.
+        let named = || knobs.get(&NODE_BOXES).and_then(NodeBoxes::named).unwrap_or(NodeBoxes::Local);
+        let boxes = if wide_boxes { NodeBoxes::Wide } else { named() };
         let layout = knobs.get(&LEAF_LAYOUT).and_then(LeafLayout::named).unwrap_or(LeafLayout::Line);
         let size = knobs.get(&LEAF_SIZE).and_then(|size| size.parse().ok()).unwrap_or(4);
-        Self::new(size, wide_boxes, layout)
+        Self::new(size, boxes, layout)
     }
 }
 
@@ -110,8 +127,8 @@ impl Bvh {
     fn of<'a>(scene: &Scene, knobs: &Knobs, wide_boxes: bool, store: &dyn TreeStore) -> Result<Box<dyn Method + 'a>, BvhError> {
         let options = FullOptions::chosen(knobs, wide_boxes);
         let hierarchy = scene.decode();
-        let key = || TreeKey::new(scene, &options.tree, wide_boxes, scene.levels());
-        let tree = store.tree(&key, scene.finest_triangles(), &mut || FullBuilder::new(&hierarchy)?.tree(&options.tree, wide_boxes))?;
+        let key = || TreeKey::new(scene, &options, scene.levels());
+        let tree = store.tree(&key, scene.finest_triangles(), &mut || FullBuilder::new(&hierarchy)?.tree(&options.tree, options.boxes))?;
         Ok(Box::new(Self { bvh: tree.with_leaves(&hierarchy, options.layout)?, space: ModelSpace::of(scene) }))
     }
 }
@@ -167,6 +184,7 @@ pub fn bvh_map(bvhs: &[&FullBvh]) -> MemoryMap {
 /// Lines of a node.
 fn node_lines(nodes: &FullNodes) -> u32 {
     match nodes {
+        FullNodes::Local(_) => 1,
         FullNodes::Boxes16(_) => 2,
         FullNodes::Boxes32(_) => 4,
     }

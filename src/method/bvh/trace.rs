@@ -1,4 +1,4 @@
-//! The baseline: the full-resolution mesh under a quad-BVH with 16-bit or 32-bit boxes, built from the same blocks (paper section 6.1).
+//! The baseline: the full-resolution mesh under a quad-BVH, built from the same blocks (paper section 6.1).
 
 use super::{FullBvh, FullNodes, LEAVES, Leaves, NODES, bvh_map, node_lines};
 use crate::block::Block;
@@ -8,8 +8,8 @@ use crate::block::child_test::sort;
 use crate::block::ray_setup::{self, RaySetup};
 use crate::block::tri_test::{self, TriTest};
 use crate::bvh::BvhChild32;
-use crate::format::{BvhChild, ChildRef};
-use crate::method::children::{bvh_children, quarter};
+use crate::format::{BvhChild, BvhNode, ChildRef};
+use crate::method::children::{bvh_children, coded_children, quarter};
 use crate::method::stack::{Entry, Op, TraversalStack, push_sorted};
 use crate::method::{HitSink, TriangleId, is_beyond};
 use crate::num::{LINE_BYTES, Point, Ray, U, Wire};
@@ -112,9 +112,15 @@ impl<'a> BvhTraverser<'a> {
         let lines = node_lines(self.nodes);
         let fetch = Fetch::new(NODES, self.map.line(NODES, self.before[NODES.place()] + u64::from(lines) * index as u64), lines);
         match self.nodes {
+            FullNodes::Local(nodes) => {
+                let line = &nodes[index];
+                let tests = bvh_children(setup, t_max, line);
+                steps.step(Step::on(fetch, Act::LocalChildren { met: tests.met() }).visiting());
+                push_sorted(&mut self.stack, &tests, |k| waiting(BvhNode::line_child(line, k)))
+            }
             FullNodes::Boxes16(nodes) => {
                 let child = |k| quarter::<BvhChild>(&nodes[index], k);
-                let tests = bvh_children(setup, t_max, &nodes[index]);
+                let tests = coded_children(setup, t_max, &nodes[index]);
                 steps.step(Step::on(fetch, Act::PlainChildren { met: tests.met() }).visiting());
                 push_sorted(&mut self.stack, &tests, |k| waiting(child(k).child))
             }

@@ -16,6 +16,7 @@ pub(super) fn at_level(hierarchy: &Hierarchy, level: u32) -> Hierarchy {
         triangles: hierarchy.triangles.clone(),
         points: (0..hierarchy.triangles.len()).flat_map(|tree| places.iter().map(move |&at| hierarchy.tree(tree)[at])).collect(),
         bounds: EdgeCodes::default(),
+        vertices: hierarchy.vertices,
     }
 }
 
@@ -25,7 +26,7 @@ pub(super) fn largest_bounds(hierarchy: &Hierarchy) -> Vec<u64> {
     for tree in 0..hierarchy.triangles.len() {
         for (level, most) in (0..hierarchy.levels).zip(&mut codes) {
             let own = &hierarchy.codes(tree)[edges_of_tree(level)..edges_of_tree(level + 1)];
-            *most = own.iter().copied().fold(*most, u16::max);
+            *most = own.iter().copied().fold(*most, u8::max);
         }
     }
     codes.into_iter().map(|code| bound_decode(hierarchy.bounds.scale, code)).collect()

@@ -1,11 +1,11 @@
-//! Discrete level of detail: a quad-BVH with 16-bit boxes over each whole level of the hierarchy, of which all rays of a frame use one.
+//! Discrete level of detail: a quad-BVH with boxes of up to 16 bits over each whole level of the hierarchy, of which all rays of a frame use one.
 //!
 //! The level is the coarsest whose displacement is tolerated where the model is nearest: with h the largest displacement bound of the level's edges, r the
 //! smallest radius of any ray's cone at the model, h <= 2 r / delta, as the LOD test has it of each edge (paper section 4.1); or the one that is chosen.
 
 mod levels;
 
-use super::bvh::{BvhTracer, BvhTraverser, FullBuilder, FullBvh, FullOptions, LEAF_LAYOUT, LEAF_SIZE, TreeKey, TreeStore, UNIT, bvh_map};
+use super::bvh::{BvhTracer, BvhTraverser, FullBuilder, FullBvh, FullOptions, LEAF_LAYOUT, LEAF_SIZE, NODE_BOXES, TreeKey, TreeStore, UNIT, bvh_map};
 use super::knob::{DELTA, ErrorKnob};
 use super::{Knob, Knobs, Method, MethodUnit, Registered, Tracer};
 use crate::block::Operation;
@@ -35,7 +35,7 @@ pub static LEVEL: Knob = Knob {
 pub static METHOD: Registered = Registered {
     name: "discrete",
     help: "Discrete levels of detail: a quad-BVH of each level, one level for the whole frame",
-    knobs: &[&DELTA, &LEVEL, &LEAF_LAYOUT, &LEAF_SIZE],
+    knobs: &[&DELTA, &LEVEL, &NODE_BOXES, &LEAF_LAYOUT, &LEAF_SIZE],
     // Every level: by quality it has the finest alone where the eye is within the model's box.
     error: Some(ErrorKnob { knob: &LEVEL, values: || (0..=MAX_LEVELS).map(f64::from).collect() }),
     unit: Some(MethodUnit {
@@ -76,8 +76,8 @@ impl Discrete {
         let hierarchy = scene.decode();
         let bvh = |level| {
             let own = at_level(&hierarchy, level);
-            let key = || TreeKey::new(scene, &options.tree, false, level);
-            let tree = store.tree(&key, own.finest_triangles(), &mut || FullBuilder::new(&own)?.tree(&options.tree, false))?;
+            let key = || TreeKey::new(scene, &options, level);
+            let tree = store.tree(&key, own.finest_triangles(), &mut || FullBuilder::new(&own)?.tree(&options.tree, options.boxes))?;
             tree.with_leaves(&own, options.layout)
         };
         let levels = scene.levels();

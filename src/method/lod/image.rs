@@ -1,22 +1,57 @@
 //! The memory images of a model.
 
-use crate::format::Scene;
-use crate::num::BoundScale;
+use crate::format::{Line, Scene, layout};
+use crate::method::Knob;
+use crate::num::{BoundScale, LINE_BYTES, VertexForm};
 use crate::step::{Fetch, MemoryMap, Section, SectionId};
 
 /// Quad-BVH nodes over base triangles.
 pub const NODES: SectionId = SectionId::new(0);
-/// L0 records: base triangle and root bound data.
+/// L0 records: base triangle, the root's codes and, if they are compact, inserted vertices.
 pub const RECORDS: SectionId = SectionId::new(1);
-/// Sibling groups of bound data.
+/// Sibling groups: boxes and bound codes.
 pub const BOUNDS: SectionId = SectionId::new(2);
 /// Inserted vertices.
 pub const VERTICES: SectionId = SectionId::new(3);
 
-/// Lines of a node, of an L0 record and of a group of bound data.
+/// Lines of an L0 record.
 const PAIR: u32 = 2;
-/// Place of the inserted vertices among the lines of a split, behind the bound data.
-pub(super) const VERTEX_PLACE: u32 = 2;
+
+/// Whose lines rays ask for.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum LineLayout {
+    /// Those of the images.
+    #[default]
+    Own,
+    /// Those that the paper has (section 4.3): nodes and sibling groups of two lines, inserted vertices of one, every group asked for with its vertices. The rays' ways
+    /// and hits are the same; only addresses are others. For simulations of the paper's own figures.
+    Paper,
+}
+
+impl LineLayout {
+    /// The layout of this name.
+    pub fn named(name: &str) -> Option<Self> {
+        match name {
+            "own" => Some(Self::Own),
+            "paper" => Some(Self::Paper),
+            _ => None,
+        }
+    }
+}
+
+/// Whose lines rays ask for.
+pub static LINE_LAYOUT: Knob = Knob {
+    name: "line-layout",
+    value_name: "LINE_LAYOUT",
+    help: "Memory lines that rays of lod ask for",
+    default: Some("own"),
+    words: &[
+        ("own", "Those of the scene: a node or group in one line, compact vertices in half a line"),
+        ("paper", "Those of the paper's layout, for the same rays: a node or group in two lines, vertices in one"),
+    ],
+    of_frame: false,
+    allows: |value| LineLayout::named(value).map(drop).ok_or_else(|| format!("'{value}' is not own or paper")),
+};
 
 /// The memory images of one model, as the hardware sees them.
 #[derive(Clone, Copy, Debug)]
@@ -25,37 +60,81 @@ pub struct LodImage<'a> {
     pub levels: u32,
     /// Scale of the displacement bounds.
     pub scale: BoundScale,
+    /// How inserted vertices are stored.
+    pub form: VertexForm,
     /// Quad-BVH nodes over base triangles; node 0 is the root.
-    pub nodes: &'a [[u64; 8]],
+    pub nodes: &'a [Line],
     /// L0 records, one per tree.
     pub records: &'a [[u64; 8]],
-    /// Sibling groups of bound data.
-    pub bounds: &'a [[u64; 8]],
+    /// Sibling groups.
+    pub bounds: &'a [Line],
     /// Inserted vertices.
-    pub vertices: &'a [[u64; 4]],
+    pub vertices: &'a [Line],
     /// Where their lines lie.
     pub map: MemoryMap,
+    layout: LineLayout,
 }
 
 impl<'a> LodImage<'a> {
     /// The images of a scene.
     pub fn of(scene: &'a Scene) -> Self {
-        let (nodes, records, bounds, vertices) = (scene.nodes(), scene.records(), scene.bounds(), scene.vertices());
-        let section = |name, bytes: usize| Section::of_bytes(name, bytes as u64);
-        let sections = [
-            section("bvh_node", size_of_val(nodes)).of_base(),
-            section("l0_record", size_of_val(records)).of_base(),
-            section("bound_data", size_of_val(bounds)),
-            section("vertex_data", size_of_val(vertices)),
-        ];
-        let map = MemoryMap::new(&sections, Some((NODES, PAIR)))
-            .expect("at most 2^28 triangles, of at most four lines each in all sections together");
-        Self { levels: scene.levels(), scale: scene.meta().bound_scale(), nodes, records, bounds, vertices, map }
+        Self::with(scene, LineLayout::Own)
     }
 
-    /// Both lines of 64-byte record `index` of a section.
+    /// The same, whose rays ask for these lines.
+    pub fn with(scene: &'a Scene, layout: LineLayout) -> Self {
+        let (nodes, records, bounds, vertices) = (scene.nodes(), scene.records(), scene.bounds(), scene.vertices());
+        let (levels, form) = (scene.levels(), scene.meta().vertices);
+        let line = |lines: usize| LINE_BYTES * lines as u64;
+        let (pair, vertex_lines) = match layout {
+            LineLayout::Own => (1, vertices.len()),
+            LineLayout::Paper => (2, scene.trees() * layout::vertex_lines(VertexForm::Exact, levels)),
+        };
+        let sections = [
+            Section::of_bytes("bvh_node", line(pair * nodes.len())).of_base(),
+            Section::of_bytes("l0_record", size_of_val(records) as u64).of_base(),
+            Section::of_bytes("bound_data", line(pair * bounds.len())),
+            Section::of_bytes("vertex_data", line(vertex_lines)),
+        ];
+        let map = MemoryMap::new(&sections, Some((NODES, pair as u32))) // 1 or 2
+            .expect("at most 2^28 triangles, of at most four lines each in all sections together");
+        Self { levels, scale: scene.meta().bound_scale(), form, nodes, records, bounds, vertices, map, layout }
+    }
+
+    /// The inserted vertices of a root are in its L0 record, and rays ask for it alone.
     #[inline(always)]
-    pub(super) fn pair(&self, section: SectionId, index: usize) -> Fetch {
+    pub(super) fn root_has_split(&self) -> bool {
+        self.form.is_compact() && self.layout == LineLayout::Own
+    }
+
+    /// The line or lines of quad-BVH node or sibling group `index`.
+    #[inline(always)]
+    pub(super) fn record(&self, section: SectionId, index: usize) -> Fetch {
+        match self.layout {
+            LineLayout::Own => Fetch::new(section, self.map.line(section, index as u64), 1),
+            LineLayout::Paper => self.pair(section, index),
+        }
+    }
+
+    /// Both lines of L0 record `index`.
+    #[inline(always)]
+    pub(super) fn l0_record(&self, index: usize) -> Fetch {
+        self.pair(RECORDS, index)
+    }
+
+    #[inline(always)]
+    fn pair(&self, section: SectionId, index: usize) -> Fetch {
         Fetch::new(section, self.map.line(section, 2 * index as u64), PAIR)
+    }
+
+    /// The line with the inserted vertices of a node, which is not a root that has them in its record.
+    #[inline(always)]
+    pub(super) fn split(&self, tree: usize, level: u32, node: usize) -> Fetch {
+        let (form, place) = match self.layout {
+            LineLayout::Own => (self.form, 1),
+            LineLayout::Paper => (VertexForm::Exact, 2),
+        };
+        let line = layout::vertex_line(form, self.levels, tree, level, node);
+        Fetch::new(VERTICES, self.map.line(VERTICES, line as u64), 1).at(place)
     }
 }

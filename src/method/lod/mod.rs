@@ -3,11 +3,11 @@
 mod image;
 mod trace;
 
-pub use image::{BOUNDS, LodImage, NODES, RECORDS, VERTICES};
+pub use image::{BOUNDS, LINE_LAYOUT, LineLayout, LodImage, NODES, RECORDS, VERTICES};
 pub use trace::LodTraverser;
 
 use super::knob::{DELTA, ErrorKnob, octaves};
-use super::{ClosestHit, Method, MethodUnit, Registered, SurfaceHit, Trace, Tracer};
+use super::{ClosestHit, Knobs, Method, MethodUnit, Registered, SurfaceHit, Trace, Tracer};
 use crate::block::Operation;
 use crate::format::Scene;
 use crate::rays::{ModelSpace, Query, Sight};
@@ -17,7 +17,7 @@ use crate::step::{MemoryMap, Step, StepSink};
 pub static METHOD: Registered = Registered {
     name: "lod",
     help: "Locally adaptive level of detail",
-    knobs: &[&DELTA],
+    knobs: &[&DELTA, &LINE_LAYOUT],
     error: Some(ErrorKnob { knob: &DELTA, values: octaves }),
     unit: Some(MethodUnit {
         blocks: &[
@@ -34,7 +34,7 @@ pub static METHOD: Registered = Registered {
         ],
         has_levels: true,
     }),
-    make: |scene, _, _| Ok(Box::new(Lod::of(scene))),
+    make: |scene, knobs, _| Ok(Box::new(Lod::of(scene, knobs))),
 };
 
 /// The method on a scene.
@@ -44,8 +44,10 @@ struct Lod<'a> {
 }
 
 impl<'a> Lod<'a> {
-    fn of(scene: &'a Scene) -> Self {
-        Self { image: LodImage::of(scene), space: ModelSpace::of(scene) }
+    fn of(scene: &'a Scene, knobs: &Knobs) -> Self {
+        // Checked when it was chosen.
+        let layout = knobs.get(&LINE_LAYOUT).and_then(LineLayout::named).unwrap_or_default();
+        Self { image: LodImage::with(scene, layout), space: ModelSpace::of(scene) }
     }
 }
 

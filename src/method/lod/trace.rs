@@ -1,17 +1,17 @@
 //! The traversal loop of the paper's figure 9: quad-BVH over base triangles, then tessellation trees with an LOD test at every node.
 
-use super::image::{BOUNDS, LodImage, NODES, RECORDS, VERTEX_PLACE, VERTICES};
+use super::image::{BOUNDS, LodImage, NODES};
 use crate::block::Block;
 use crate::block::lod_test::{self, LodTest};
 use crate::block::ray_setup::{self, RaySetup};
 use crate::block::tessellate::{self, Tessellate, child_triangle};
 use crate::block::tri_test::{self, TriTest};
-use crate::format::{BoundData, BvhChild, L0Record, VertexData, layout};
-use crate::method::children::{Split, bvh_children, quarter, tree_children};
+use crate::format::{BvhNode, Displacements, L0Record, SiblingGroup, VertexData, layout};
+use crate::method::children::{Split, bvh_children, tree_children};
 use crate::method::stack::{Entry, Op, TraversalStack, push_sorted};
 use crate::method::{HitSink, TriangleId, is_beyond};
-use crate::num::{BoundCode, MAX_LEVELS, Point, Ray, TNear, U, Wire};
-use crate::step::{Act, Fetch, Step, StepSink, TriangleRun};
+use crate::num::{BoundCode, MAX_LEVELS, Point, Ray, TNear, U, VertexForm, Wire};
+use crate::step::{Act, Step, StepSink, TriangleRun};
 
 /// Traces rays through one image; keeps its stack from ray to ray.
 pub struct LodTraverser<'a> {
@@ -79,9 +79,9 @@ impl<S: StepSink, H: HitSink> Journey<'_, S, H> {
             Entry::TREE => self.root(entry.index.get() as usize),
             _ => {
                 let (level, node) = (entry.level.get() as u32, entry.index.get() as u32);
-                let split = &self.splits[level as usize - 1];
-                let p = child_triangle(split.p, split.q, node as usize & 3);
-                self.tree_node(level, node, p, [entry.e0, entry.e1, entry.e2])
+                let (split, child) = (&self.splits[level as usize - 1], node as usize & 3);
+                let corners = [child_triangle(split.f, split.g, child), child_triangle(split.p, split.q, child)];
+                self.tree_node(level, node, corners, [entry.e0, entry.e1, entry.e2])
             }
         }
     }
@@ -89,11 +89,11 @@ impl<S: StepSink, H: HitSink> Journey<'_, S, H> {
     /// Tests the four children of a quad-BVH node.
     #[inline(always)]
     fn bvh_node(&mut self, index: usize) -> Option<Entry> {
-        let group = &self.image.nodes[index];
-        let tests = bvh_children(&self.setup, self.sink.t_max(), group);
-        self.steps.step(Step::on(self.image.pair(NODES, index), Act::Children { met: tests.met() }).visiting());
+        let line = &self.image.nodes[index];
+        let tests = bvh_children(&self.setup, self.sink.t_max(), line);
+        self.steps.step(Step::on(self.image.record(NODES, index), Act::Children { met: tests.met() }).visiting());
         push_sorted(self.stack, &tests, |k| {
-            let BvhChild { child, .. } = quarter(group, k);
+            let child = BvhNode::line_child(line, k);
             // Inner nodes and leaves have the kinds of their entries one lower.
             Entry { kind: U::new(child.kind.get() - 1), index: child.index, ..Entry::default() }
         })
@@ -102,23 +102,24 @@ impl<S: StepSink, H: HitSink> Journey<'_, S, H> {
     /// Enters a tree.
     #[inline(always)]
     fn root(&mut self, tree: usize) -> Option<Entry> {
-        self.steps.step(Step::on(self.image.pair(RECORDS, tree), Act::TreeBase).visiting());
+        self.steps.step(Step::on(self.image.l0_record(tree), Act::TreeBase).visiting());
         let record = &self.image.records[tree];
         self.tree = tree as u32; // an index of 28 bits
         let p = VertexData::from_words(&record[..4]).points();
-        let root = L0Record::from_words(&record[4..]).root;
-        self.tree_node(0, 0, p, [root.e0, root.e1, root.e2])
+        let L0Record { e0, e1, e2, .. } = L0Record::from_words(&record[4..]);
+        self.tree_node(0, 0, [p, p], [e0, e1, e2])
     }
 
-    /// Decides whether the triangle `p` of node (`level`, `node`) serves the ray, and tests it or goes down.
+    /// Decides whether the triangle of node (`level`, `node`) serves the ray, and tests it or goes down. Its corners are of full resolution and as morphed.
     #[inline(always)]
-    fn tree_node(&mut self, level: u32, node: u32, p: [Point; 3], [e0, e1, e2]: [BoundCode; 3]) -> Option<Entry> {
+    fn tree_node(&mut self, level: u32, node: u32, [f, p]: [[Point; 3]; 2], codes: [BoundCode; 3]) -> Option<Entry> {
         let levels = self.image.levels;
         if level == levels {
             self.triangles(level, node, [p]);
             return None;
         }
-        let lod = LodTest::eval(&lod_test::In { ray: *self.ray, p0: p[0], p1: p[1], p2: p[2], e0, e1, e2, scale: self.image.scale });
+        let ([p0, p1, p2], [e0, e1, e2]) = (p, codes);
+        let lod = LodTest::eval(&lod_test::In { ray: *self.ray, p0, p1, p2, e0, e1, e2, scale: self.image.scale });
         // A tree's root was visited for its record.
         self.steps.step(Step { visits: level > 0, ..Step::of(Act::LodTest { refine: lod.refine }) });
         if !lod.refine {
@@ -126,33 +127,50 @@ impl<S: StepSink, H: HitSink> Journey<'_, S, H> {
             return None;
         }
 
-        let line = layout::vertex_line(levels, self.tree as usize, level, node as usize);
-        let fetch = Fetch::new(VERTICES, self.image.map.line(VERTICES, line as u64), 1).at(VERTEX_PLACE);
-        self.steps.step(Step::on(fetch, Act::Tessellate));
-        let [q0, q1, q2] = VertexData::from_words(&self.image.vertices[line]).points();
-        let grid = U::new(u64::from(levels - level - 1));
-        let t = Tessellate::eval(&tessellate::In { grid, s0: lod.s0, s1: lod.s1, s2: lod.s2, p0: p[0], p1: p[1], p2: p[2], q0, q1, q2 });
-        let q = [t.q0, t.q1, t.q2];
+        let alone = level == 0 && self.image.root_has_split();
+        self.steps.step(if alone {
+            Step::of(Act::Tessellate)
+        } else {
+            Step::on(self.image.split(self.tree as usize, level, node as usize), Act::Tessellate)
+        });
+        let [v0, v1, v2] = self.stored(level, node as usize);
+        let (compact, grid, scale) = (self.image.form.is_compact(), U::new(u64::from(levels - level - 1)), self.image.scale);
+        let ([f0, f1, f2], lod_test::Out { s0, s1, s2, .. }) = (f, lod);
+        let t = Tessellate::eval(&tessellate::In { compact, grid, scale, e0, e1, e2, s0, s1, s2, f0, f1, f2, p0, p1, p2, v0, v1, v2 });
+        let (g, q) = ([t.g0, t.g1, t.g2], [t.q0, t.q1, t.q2]);
 
         if level + 1 == levels {
             self.triangles(levels, 4 * node, std::array::from_fn::<_, 4, _>(|k| child_triangle(p, q, k)));
             return None;
         }
         let group = layout::child_group(levels, self.tree as usize, level, node as usize);
-        self.splits[level as usize] = Split { p, q };
-        self.tree_children(level + 1, 4 * node, group)
+        self.splits[level as usize] = Split { f, p, g, q };
+        self.tree_children(level + 1, 4 * node, group, !alone)
     }
 
-    /// Tests the boxes of the four children, widened by their morphed triangles.
+    /// The inserted vertices of a node as they are stored.
     #[inline(always)]
-    fn tree_children(&mut self, level: u32, first: u32, group: usize) -> Option<Entry> {
-        let fetch = self.image.pair(BOUNDS, group).joining();
+    fn stored(&self, level: u32, node: usize) -> [Point; 3] {
+        let (image, tree) = (self.image, self.tree as usize);
+        let line = |level| &image.vertices[layout::vertex_line(image.form, image.levels, tree, level, node)];
+        match (image.form, level) {
+            (VertexForm::Exact, _) => VertexData::from_words(line(level)).points(),
+            (VertexForm::Compact, 0) => L0Record::from_words(&image.records[tree][4..]).split.steps(),
+            (VertexForm::Compact, _) => Displacements::half(line(level), node).steps(),
+        }
+    }
+
+    /// Tests the boxes of the four children; their group was asked for together with the inserted vertices if it `joins` them.
+    #[inline(always)]
+    fn tree_children(&mut self, level: u32, first: u32, group: usize, joins: bool) -> Option<Entry> {
+        let fetch = self.image.record(BOUNDS, group);
+        let fetch = if joins { fetch.joining() } else { fetch };
         let split = &self.splits[level as usize - 1];
-        let group = &self.image.bounds[group];
-        let tests = tree_children(&self.setup, self.sink.t_max(), group, split);
+        let line = &self.image.bounds[group];
+        let tests = tree_children(&self.setup, self.sink.t_max(), line, split);
         self.steps.step(Step::on(fetch, Act::Children { met: tests.met() }));
         push_sorted(self.stack, &tests, |k| {
-            let BoundData { e0, e1, e2, .. } = quarter(group, k);
+            let [e0, e1, e2] = SiblingGroup::line_codes(line, k);
             Entry {
                 t_near: TNear::ZERO,
                 kind: U::new(Entry::TREE_NODE),

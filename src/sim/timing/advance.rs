@@ -45,6 +45,7 @@ impl<R: Steps> UnitTiming<R> {
         let context = &mut self.contexts[who];
         let result = match (resource, context.act) {
             (Resource::Child, Act::PlainChildren { .. }) => station.take_for(self.plain_node, since, now),
+            (Resource::Child, Act::LocalChildren { .. }) => station.take_for(self.local_node, since, now),
             (Resource::Child, Act::WideChildren { .. }) => station.take_for(self.wide_node, since, now),
             _ => station.take(since, now),
         };
@@ -61,8 +62,9 @@ impl<R: Steps> UnitTiming<R> {
                 }
             }
             Resource::Child => {
-                let (Act::Children { met } | Act::PlainChildren { met } | Act::WideChildren { met }) = context.act else {
-                    unreachable!("asks for its act's block only")
+                let met = match context.act {
+                    Act::Children { met } | Act::PlainChildren { met } | Act::LocalChildren { met } | Act::WideChildren { met } => met,
+                    _ => unreachable!("asks for its act's block only"),
                 };
                 self.left(State::Child, who, now + 1);
                 self.states[State::ChildWait as usize] += result - now;
@@ -206,7 +208,9 @@ impl<R: Steps> UnitTiming<R> {
                 (context.found, context.mapped) = (found, mapped);
                 context.enter(if found { State::DivideV } else { State::Done }, at + 1);
             }
-            Act::Children { .. } | Act::PlainChildren { .. } | Act::WideChildren { .. } => context.enter(State::Child, at),
+            Act::Children { .. } | Act::PlainChildren { .. } | Act::LocalChildren { .. } | Act::WideChildren { .. } => {
+                context.enter(State::Child, at);
+            }
             Act::LodTest { .. } => context.enter(State::Lod, at),
             Act::Tessellate => context.enter(State::Morph, at),
             Act::Triangles { count, hits } => context.enter_triangles(count, hits, at),

@@ -7,6 +7,7 @@ use super::station::Station;
 use super::wheel::{Wheel, bits};
 use crate::block::Timing;
 use crate::block::bary_map::BaryMap;
+use crate::block::box_decode::BoxDecode;
 use crate::block::box_test::BoxTest;
 use crate::block::box_test32::BoxTest32;
 use crate::block::child_sort::ChildSort;
@@ -38,8 +39,9 @@ pub struct UnitTiming<R> {
     /// By resource.
     pub(super) stations: [Station; Resource::COUNT],
     pub(super) select: Station,
-    /// Cycles of the test of a node whose 16-bit boxes are as they are, and of one with 32-bit boxes.
+    /// Cycles of the test of a node whose 16-bit boxes are stored as they are, of one that stores steps, and of one with 32-bit boxes.
     pub(super) plain_node: u64,
+    pub(super) local_node: u64,
     pub(super) wide_node: u64,
     pub(super) idle: u64,
     /// Requests on their way through `node_address`, and since when.
@@ -62,6 +64,7 @@ impl<R: Steps> UnitTiming<R> {
     pub fn new(config: Hardware) -> Self {
         config.validate().unwrap_or_else(|error| panic!("{error}"));
         let sort = config.timing::<ChildSort>().latency;
+        let plain = config.timing::<BoxTest>().latency + sort;
         let timing = |resource| match resource {
             Resource::Setup => config.timing::<RaySetup>(),
             Resource::Fetch => config.timing::<NodeAddress>(),
@@ -83,7 +86,8 @@ impl<R: Steps> UnitTiming<R> {
             asked: 0,
             stations: Resource::ALL.map(|resource| Station::new(timing(resource))),
             select: Station::new(config.timing::<HitSelect>()),
-            plain_node: u64::from(config.timing::<BoxTest>().latency + sort),
+            plain_node: u64::from(plain),
+            local_node: u64::from(config.timing::<BoxDecode>().latency + plain),
             wide_node: u64::from(config.timing::<BoxTest32>().latency + sort),
             idle: u64::MAX >> (MAX_CONTEXTS - config.contexts),
             requests: VecDeque::new(),

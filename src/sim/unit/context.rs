@@ -26,8 +26,10 @@ pub struct Context {
     pub tree: Register<U<28>>,
     pub level: Register<U<4>>,
     pub node: Register<NodeIndex>,
-    /// Corners of the node's triangle, its inserted vertices, bound codes and edge states.
+    /// Corners of the node's triangle and its inserted vertices, at full resolution and as morphed; bound codes and edge states.
+    pub f: Register<[Point; 3]>,
     pub p: Register<[Point; 3]>,
+    pub g: Register<[Point; 3]>,
     pub q: Register<[Point; 3]>,
     pub e: [BoundCode; 3],
     pub lod: Register<lod_test::Out>,
@@ -37,9 +39,8 @@ pub struct Context {
     pub waiting: u8,
     pub base_want: bool,
     pub base_ready: Register<bool>,
-    /// Line buffers 0 and 1, and 2.
-    pub record: [u64; 8],
-    pub inserted: [u64; 4],
+    /// Line buffers.
+    pub lines: [[u64; 4]; 2],
     /// Children still to be pushed.
     pub sorted: Register<child_test::Out>,
     pub count: Register<U<3>>,
@@ -65,6 +66,11 @@ impl Context {
     /// The node's children are of level N: triangles, not nodes.
     pub fn last_split(&self, scene: &SceneConfig) -> bool {
         self.level.get().get() + 1 == scene.levels.get()
+    }
+
+    /// The node is a compact model's root: its inserted vertices came with its record.
+    pub fn compact_root(&self, scene: &SceneConfig) -> bool {
+        scene.compact && self.level.get() == U::ZERO
     }
 
     /// Tree, level and node of triangle `number`: of this node, or its child of that number.
@@ -108,10 +114,10 @@ impl Context {
                 }
                 let there = want == 0 && waiting == 0;
                 match self.fetch.get() {
-                    Fetch::Node => self.when(there, State::Child),
+                    Fetch::Node | Fetch::Group => self.when(there, State::Child),
                     Fetch::Record if there && self.base_ready.get() => self.enter_tree(scene),
                     Fetch::Record => State::Fetch,
-                    Fetch::Vertex => self.when(want == 0 && waiting & 0b100 == 0, State::Morph),
+                    Fetch::Vertex => self.when(want == 0 && waiting & 0b10 == 0, State::Morph),
                 }
             }
             State::Child => self.when(cycle.child.granted(me), State::ChildWait),
@@ -129,12 +135,14 @@ impl Context {
             State::LodWait => match cycle.lod.result(me) {
                 Some(&lod) => {
                     self.lod.set(lod);
-                    if lod.refine {
-                        self.fetch.set(Fetch::Vertex);
-                        self.want = if last_split { 0b100 } else { 0b111 };
-                        State::Fetch
-                    } else {
+                    if !lod.refine {
                         self.enter_triangles(false)
+                    } else if self.compact_root(scene) {
+                        State::Morph
+                    } else {
+                        self.fetch.set(Fetch::Vertex);
+                        self.want = if last_split { 0b10 } else { 0b11 };
+                        State::Fetch
                     }
                 }
                 None => State::LodWait,
@@ -142,13 +150,20 @@ impl Context {
             State::Morph => self.when(cycle.morph.granted(me), State::MorphWait),
             State::MorphWait => match cycle.morph.result(me) {
                 Some(morphed) => {
-                    let q = [morphed.q0, morphed.q1, morphed.q2];
+                    let (g, q) = ([morphed.g0, morphed.g1, morphed.g2], [morphed.q0, morphed.q1, morphed.q2]);
+                    self.g.set(g);
                     self.q.set(q);
                     if last_split {
                         self.enter_triangles(true)
                     } else {
-                        self.splits[self.level.get().get() as usize] = Split { p: self.p.get(), q };
-                        State::Child
+                        self.splits[self.level.get().get() as usize] = Split { f: self.f.get(), p: self.p.get(), g, q };
+                        if self.compact_root(scene) {
+                            self.fetch.set(Fetch::Group);
+                            self.want = 0b01;
+                            State::Fetch
+                        } else {
+                            State::Child
+                        }
                     }
                 }
                 None => State::MorphWait,
@@ -185,13 +200,13 @@ impl Context {
         match entry.kind.get() {
             Entry::BVH_NODE => {
                 self.fetch.set(Fetch::Node);
-                self.want = 0b011;
+                self.want = 0b01;
                 State::Fetch
             }
             Entry::TREE => {
                 self.tree.set(entry.index);
                 self.fetch.set(Fetch::Record);
-                self.want = 0b011;
+                self.want = 0b11;
                 self.base_want = true;
                 self.base_ready.set(false);
                 State::Fetch
@@ -202,7 +217,9 @@ impl Context {
                 self.node.set(U::new(entry.index.get()));
                 self.e = [entry.e0, entry.e1, entry.e2];
                 let parent = &self.splits[entry.level.get() as usize - 1];
-                self.p.set(child_triangle(parent.p, parent.q, entry.index.get() as usize & 3));
+                let child = entry.index.get() as usize & 3;
+                self.f.set(child_triangle(parent.f, parent.g, child));
+                self.p.set(child_triangle(parent.p, parent.q, child));
                 State::Lod
             }
         }
@@ -211,9 +228,11 @@ impl Context {
     fn enter_tree(&mut self, scene: &SceneConfig) -> State {
         self.level.set(U::ZERO);
         self.node.set(U::ZERO);
-        self.p.set(VertexData::from_words(&self.record[..4]).points());
-        let root = L0Record::from_words(&self.record[4..]).root;
-        self.e = [root.e0, root.e1, root.e2];
+        let corners = VertexData::from_words(&self.lines[0]).points();
+        self.f.set(corners);
+        self.p.set(corners);
+        let L0Record { e0, e1, e2, .. } = L0Record::from_words(&self.lines[1]);
+        self.e = [e0, e1, e2];
         if scene.levels == U::ZERO { self.enter_triangles(false) } else { State::Lod }
     }
 
@@ -283,12 +302,8 @@ impl Context {
             self.waiting |= asked;
         }
         if let Some(answer) = cycle.fetch.result(me) {
-            let place = answer.tag.get() & 3;
-            match place {
-                0 => self.record[..4].copy_from_slice(&answer.line.map(U::get)),
-                1 => self.record[4..].copy_from_slice(&answer.line.map(U::get)),
-                _ => self.inserted = answer.line.map(U::get),
-            }
+            let place = answer.tag.get() as usize & 3;
+            self.lines[place] = answer.line.map(U::get);
             self.waiting &= !(1 << place);
         }
         if let Some(&base) = cycle.base.result(me) {

@@ -69,7 +69,7 @@ impl TraversalUnit {
     pub fn describe(&self) -> String {
         let line = |(k, c): (usize, &Context)| {
             format!(
-                "context {k}: {:?}, ray {}, tree {} level {} node {}, lines wanted {:03b} waiting {:03b}, stack {}, triangles left {} pending {}\n",
+                "context {k}: {:?}, ray {}, tree {} level {} node {}, lines wanted {:02b} waiting {:02b}, stack {}, triangles left {} pending {}\n",
                 c.state,
                 c.tag,
                 c.tree.get(),

@@ -9,6 +9,7 @@ use crate::step::{MemoryMap, SectionId};
 #[derive(Clone, Copy, Debug)]
 pub struct SceneMemory<'a> {
     levels: u32,
+    compact: bool,
     scale: BoundScale,
     /// Words of each section, by its place.
     sections: [&'a [u64]; 4],
@@ -29,13 +30,14 @@ impl<'a> SceneMemory<'a> {
         sections[BOUNDS.place()] = image.bounds.as_flattened();
         sections[VERTICES.place()] = image.vertices.as_flattened();
         assert!(first + image.map.lines() <= LineAddress::MAX.get(), "the model does not fit the address space");
-        Self { levels: image.levels, scale: image.scale, sections, map: image.map, first }
+        Self { levels: image.levels, compact: image.form.is_compact(), scale: image.scale, sections, map: image.map, first }
     }
 
     /// What the unit is told of the model.
     pub fn config(&self) -> SceneConfig {
         let [nodes, records, bounds, vertices] = [NODES, RECORDS, BOUNDS, VERTICES].map(|section| self.address(self.map.first(section)));
-        SceneConfig { levels: U::new(u64::from(self.levels)), scale: self.scale, nodes, records, bounds, vertices }
+        let levels = U::new(u64::from(self.levels));
+        SceneConfig { levels, compact: self.compact, scale: self.scale, nodes, records, bounds, vertices }
     }
 
     /// Section and line within it of an address; `None` outside of all.

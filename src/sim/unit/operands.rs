@@ -4,10 +4,10 @@ use super::context::Context;
 use super::wires::{DIVIDE_FOR_V, DIVIDE_FOR_W};
 use crate::block::tessellate::child_triangle;
 use crate::block::{bary_map, child_test, hit_divide, hit_select, lod_test, node_address, ray_setup, tessellate, tree_base, tri_test};
-use crate::format::VertexData;
+use crate::format::{Displacements, L0Record, VertexData};
 use crate::hardware::ports::{HitOut, SceneConfig};
 use crate::hardware::{Fetch, State};
-use crate::num::{LineAddress, RayT, U, Wire};
+use crate::num::{LineAddress, Point, RayT, U, Wire};
 
 /// What contexts share, one arbiter each.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -45,7 +45,7 @@ impl Context {
                     ask(Resource::Base);
                 }
             }
-            State::Child if self.waiting & 0b011 == 0 => ask(Resource::Child),
+            State::Child if self.waiting & 0b01 == 0 => ask(Resource::Child),
             State::Lod => ask(Resource::Lod),
             State::Morph => ask(Resource::Morph),
             State::Tri if self.left.get().get() != 0 => ask(Resource::Tri),
@@ -56,13 +56,9 @@ impl Context {
         }
     }
 
-    /// Place of the line to send for next among those wanted: inserted vertices first.
+    /// Place of the line to send for next among those wanted: of a split the inserted vertices first.
     pub fn place_of(&self, want: u8) -> u16 {
-        match want {
-            w if w & 0b100 != 0 => 2,
-            w if w & 0b001 != 0 => 0,
-            _ => 1,
-        }
+        u16::from(want & 0b10 != 0 && (self.fetch.get() == Fetch::Vertex || want & 0b01 == 0))
     }
 
     /// Operands of `ray_setup`.
@@ -72,22 +68,33 @@ impl Context {
 
     /// Operands of `node_address`.
     pub fn fetch_in(&self, scene: &SceneConfig) -> node_address::In {
-        let place = self.place_of(self.want);
-        let record = |base: LineAddress| (base, U::ZERO, self.entry.get().index);
-        let (base, level, index) = match self.fetch.get() {
-            Fetch::Node => record(scene.nodes),
-            Fetch::Record => record(scene.records),
-            Fetch::Vertex => {
-                let base = if place == 2 { self.base.vertices } else { self.base.bounds };
-                (base, self.level.get(), U::new(self.node.get().get()))
-            }
+        let second = self.place_of(self.want) == 1;
+        let record = |base: LineAddress, pair: bool| node_address::In {
+            base,
+            index: self.entry.get().index,
+            pair,
+            half: second,
+            ..node_address::In::default()
         };
-        node_address::In { base, level, index, pair: place != 2, half: place == 1 }
+        let of_tree = |base: LineAddress, halves: bool| node_address::In {
+            base,
+            level: self.level.get(),
+            index: U::new(self.node.get().get()),
+            halves,
+            ..node_address::In::default()
+        };
+        match self.fetch.get() {
+            Fetch::Node => record(scene.nodes, false),
+            Fetch::Record => record(scene.records, true),
+            Fetch::Vertex if second => of_tree(self.base.vertices, scene.compact),
+            Fetch::Vertex | Fetch::Group => of_tree(self.base.bounds, false),
+        }
     }
 
     /// Operands of `tree_base`.
     pub fn base_in(&self, scene: &SceneConfig) -> tree_base::In {
-        tree_base::In { levels: scene.levels, tree: self.tree.get(), vertices: scene.vertices, bounds: scene.bounds }
+        let (vertices, bounds) = (scene.vertices, scene.bounds);
+        tree_base::In { compact: scene.compact, levels: scene.levels, tree: self.tree.get(), vertices, bounds }
     }
 
     /// Operands of `child_test`.
@@ -104,9 +111,23 @@ impl Context {
     /// Operands of `tessellate`.
     pub fn morph_in(&self, scene: &SceneConfig) -> tessellate::In {
         let lod_test::Out { s0, s1, s2, .. } = self.lod.get();
-        let ([p0, p1, p2], [q0, q1, q2]) = (self.p.get(), VertexData::from_words(&self.inserted).points());
+        let ([f0, f1, f2], [p0, p1, p2], [e0, e1, e2]) = (self.f.get(), self.p.get(), self.e);
+        let [v0, v1, v2] = self.inserted(scene);
         let grid = U::new(scene.levels.get() - self.level.get().get() - 1);
-        tessellate::In { grid, s0, s1, s2, p0, p1, p2, q0, q1, q2 }
+        let (compact, scale) = (scene.compact, scene.scale);
+        tessellate::In { compact, grid, scale, e0, e1, e2, s0, s1, s2, f0, f1, f2, p0, p1, p2, v0, v1, v2 }
+    }
+
+    /// What line buffer 1 holds of the node's inserted vertices: themselves, or of a compact model their displacements.
+    fn inserted(&self, scene: &SceneConfig) -> [Point; 3] {
+        let line = &self.lines[1];
+        if self.compact_root(scene) {
+            L0Record::from_words(line).split.steps()
+        } else if scene.compact {
+            Displacements::half(line, self.node.get().get() as usize & 1).steps()
+        } else {
+            VertexData::from_words(line).points()
+        }
     }
 
     /// Operands of `tri_test`.

@@ -3,9 +3,9 @@
 use lodray::{
     bvh::over_trees,
     format::{self, Scene, SceneInfo},
-    golden::naive_bounds,
+    golden::{naive_bounds, naive_compact},
     mesh::{BoundKind, EdgeCodes, Hierarchy, Placement, Surface, lattice},
-    num::{Cone, Ray, U, Vec3, random, snap},
+    num::{Cone, Ray, U, Vec3, VertexForm, random, snap},
 };
 
 /// A plain 64-bit generator (splitmix64): the same numbers everywhere.
@@ -41,7 +41,7 @@ fn noise(p: [i64; 3], seed: u64) -> [f64; 3] {
 }
 
 /// A hierarchy over base vertices with small integer coordinates; `place` maps M times the interpolated base position and the
-/// vertex's level to a position in units, so vertices that trees share get one position. Its bounds are the paper's.
+/// vertex's level to a position in units, so vertices that trees share get one position. Its bounds are the paper's, its vertices exact.
 pub fn model(levels: u32, base: &[[i64; 3]], triangles: Vec<[u32; 3]>, place: impl Fn([i64; 3], u32) -> [f64; 3]) -> Hierarchy {
     let m = 1i64 << levels;
     let mut points = Vec::new();
@@ -62,8 +62,24 @@ pub fn model(levels: u32, base: &[[i64; 3]], triangles: Vec<[u32; 3]>, place: im
         triangles,
         points,
         bounds: EdgeCodes { kind: BoundKind::Largest, ..EdgeCodes::default() },
+        vertices: VertexForm::Exact,
     };
     naive_bounds(&mut h);
+    h
+}
+
+/// The same model with vertices of this form: to have them compact its points go to the coarser grids of that form, and bounds are those of that.
+pub fn with_vertices(form: VertexForm, mut h: Hierarchy) -> Hierarchy {
+    if form == VertexForm::Compact {
+        let m = 1u32 << h.levels;
+        let places = (0..=m).flat_map(|j| (0..=m - j).map(move |i| (i, j)));
+        let bits: Vec<u32> = places.map(|place| form.zero_bits(h.levels - lattice::level_of(h.levels, place))).collect();
+        for (point, &bits) in h.points.iter_mut().zip(bits.iter().cycle()) {
+            *point = point.map(|v| snap(f64::from(v), bits));
+        }
+        naive_bounds(&mut h);
+        naive_compact(&mut h);
+    }
     h
 }
 
@@ -164,12 +180,17 @@ pub fn any_rays(h: &Hierarchy, count: usize, seed: u64) -> Vec<Ray> {
     (0..count).map(|_| random()).collect()
 }
 
-/// The scene of a surface, with the paper's bounds.
+/// The scene of a surface, with the paper's bounds and exact vertices.
 pub fn build(surface: &Surface) -> Scene {
-    format::build(surface, SceneInfo { bounds: BoundKind::Largest, ..SceneInfo::default() }, over_trees).expect("a valid surface")
+    build_with(surface, VertexForm::Exact)
 }
 
-/// The scene of a hierarchy, all normals up.
+/// The scene of a surface, with the paper's bounds.
+pub fn build_with(surface: &Surface, vertices: VertexForm) -> Scene {
+    format::build(surface, SceneInfo { bounds: BoundKind::Largest, vertices, ..SceneInfo::default() }, over_trees).expect("a valid surface")
+}
+
+/// The scene of a hierarchy, all normals up. Its trees have the order of its quad-BVH's leaves, so its `decode` has other numbers for them.
 pub fn scene_of(h: &Hierarchy) -> Scene {
     let surface = Surface {
         levels: h.levels,
@@ -178,6 +199,6 @@ pub fn scene_of(h: &Hierarchy) -> Scene {
         normals: vec![[0.0, 0.0, 1.0]; h.points.len()],
         ..Surface::default()
     };
-    let nodes = over_trees(&format::tree_boxes(h)).expect("at least one tree");
-    format::encode(h, &surface, SceneInfo::default(), &nodes).expect("a valid model")
+    let bvh = over_trees(&format::tree_boxes(h)).expect("at least one tree");
+    format::encode(h, &surface, SceneInfo::default(), &bvh).expect("a valid model")
 }

@@ -1,8 +1,9 @@
 //! Small surfaces and a plain quad-BVH for tests and benchmarks.
 
-use lodray::format::{Box16, BvhChild, ChildRef, SceneInfo};
+use lodray::bvh::{Box32, Child, QuadNode, QuadTree, encode_line};
+use lodray::format::{Box16, SceneInfo, TreeBvh};
 use lodray::mesh::{BoundKind, Surface, lattice};
-use lodray::num::Wire;
+use lodray::num::VertexForm;
 
 /// A surface over a base mesh: each lattice point is the weighted mean of the base vertices (summed in the order of their indices, so that
 /// trees agree bit for bit on shared edges), then moved by `displace`.
@@ -74,48 +75,55 @@ pub fn fan(levels: u32) -> Surface {
 }
 
 /// A quad-BVH over boxes in their order, one per leaf slot.
-pub fn quad_tree(boxes: &[Box16]) -> Vec<[u64; 8]> {
-    let mut nodes = vec![[0; 8]];
-    fill(&mut nodes, 0, boxes, 0);
-    nodes
+pub fn quad_tree(boxes: &[Box16]) -> TreeBvh {
+    // Codes have 16 bits, so code << 16 fits 32.
+    let wide = |b: &Box16| Box32 { lo: b.lo.get().map(|c| (c << 16) as i32), hi: b.hi.get().map(|c| (c << 16) as i32) };
+    let boxes: Vec<Box32> = boxes.iter().map(wide).collect();
+    let mut tree = QuadTree { nodes: vec![QuadNode::default()], order: (0..boxes.len() as u32).collect() };
+    fill(&mut tree.nodes, 0, &boxes, 0);
+    let tree = tree.side_by_side();
+    TreeBvh { nodes: tree.nodes.iter().map(encode_line).collect(), order: tree.order }
 }
 
-fn fill(nodes: &mut Vec<[u64; 8]>, node: usize, boxes: &[Box16], first: usize) -> Box16 {
-    let mut all: Option<Box16> = None;
-    for slot in 0..4 {
-        let (from, to) = (boxes.len() * slot / 4, boxes.len() * (slot + 1) / 4);
-        let (child, bounds) = match to - from {
-            0 => continue,
-            1 => (ChildRef::leaf((first + from) as u32, 1), boxes[from]),
-            _ => {
-                let index = nodes.len();
-                nodes.push([0; 8]);
-                (ChildRef::inner(index as u32), fill(nodes, index, &boxes[from..to], first + from))
-            }
+/// Splits `boxes`, the first of which is number `first`, below node `at`.
+fn fill(nodes: &mut Vec<QuadNode>, at: usize, boxes: &[Box32], first: usize) {
+    let parts = (0..4).map(|slot| boxes.len() * slot / 4..boxes.len() * (slot + 1) / 4).filter(|part| !part.is_empty());
+    let mut below = Vec::new();
+    for (slot, part) in parts.enumerate() {
+        let own = &boxes[part.clone()];
+        nodes[at].boxes[slot] = own[1..].iter().fold(own[0], |all, b| all.union(b));
+        nodes[at].children[slot] = if own.len() == 1 {
+            Child::Leaf { first: (first + part.start) as u32, count: 1 }
+        } else {
+            // Siblings stand side by side, before all that is below them.
+            nodes.push(QuadNode::default());
+            below.push((nodes.len() - 1, part));
+            Child::Inner((nodes.len() - 1) as u32)
         };
-        BvhChild { child, bounds }.to_words(&mut nodes[node][2 * slot..2 * slot + 2]);
-        all = Some(all.map_or(bounds, |a| union(a, bounds)));
     }
-    all.unwrap_or_default()
+    for (index, part) in below {
+        fill(nodes, index, &boxes[part.clone()], first + part.start);
+    }
 }
 
-fn union(a: Box16, b: Box16) -> Box16 {
-    let pick = |f: fn(i64, i64) -> i64, a: [i64; 3], b: [i64; 3]| std::array::from_fn(|k| f(a[k], b[k]) as i16);
-    Box16::from_codes(pick(i64::min, a.lo.get(), b.lo.get()), pick(i64::max, a.hi.get(), b.hi.get()))
-}
-
+/// What a test's scene says about itself: the paper's bounds, exact vertices.
 pub fn info(name: &str) -> SceneInfo {
-    SceneInfo { name: name.into(), origin: serde_json::json!({ "made": "test" }), bounds: BoundKind::Largest }
+    SceneInfo {
+        name: name.into(),
+        origin: serde_json::json!({ "made": "test" }),
+        bounds: BoundKind::Largest,
+        vertices: VertexForm::Exact,
+    }
 }
 
-/// The scene of a surface with a plain quad-BVH and the paper's bounds.
+/// The scene of a surface with a plain quad-BVH, the paper's bounds and exact vertices.
 pub fn scene(surface: &Surface) -> lodray::format::Scene {
-    scene_with(surface, BoundKind::Largest)
+    scene_with(surface, BoundKind::Largest, VertexForm::Exact)
 }
 
 /// The scene of a surface with a plain quad-BVH.
-pub fn scene_with(surface: &Surface, bounds: BoundKind) -> lodray::format::Scene {
-    lodray::format::build(surface, SceneInfo { bounds, ..info("test") }, |boxes| Ok::<_, String>(quad_tree(boxes)))
+pub fn scene_with(surface: &Surface, bounds: BoundKind, vertices: VertexForm) -> lodray::format::Scene {
+    lodray::format::build(surface, SceneInfo { bounds, vertices, ..info("test") }, |boxes| Ok::<_, String>(quad_tree(boxes)))
         .expect("a valid surface")
 }
 

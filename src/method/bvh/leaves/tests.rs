@@ -2,7 +2,7 @@ use super::*;
 use crate::bvh::check::synthetic_terrain;
 use crate::bvh::{BvhChild32, BvhError};
 use crate::format::{BvhChild, ChildRef};
-use crate::method::bvh::{FullBvh, FullNodes, FullOptions};
+use crate::method::bvh::{FullBvh, FullNodes, FullOptions, NodeBoxes};
 use std::collections::BTreeSet;
 
 const LAYOUTS: [LeafLayout; 3] = [LeafLayout::Indexed, LeafLayout::Packed, LeafLayout::Line];
@@ -13,7 +13,7 @@ fn every_layout_gives_every_triangle_once() {
         let h = synthetic_terrain(3, levels);
         for max_leaf in [1, 2, 4] {
             for layout in LAYOUTS {
-                let leaves = FullBvh::build(&h, &FullOptions::new(max_leaf, false, layout)).unwrap().leaves;
+                let leaves = FullBvh::build(&h, &FullOptions::new(max_leaf, NodeBoxes::Codes, layout)).unwrap().leaves;
                 assert_eq!(leaves.layout(), layout);
                 let mut seen = BTreeSet::new();
                 for slot in 0..leaves.len() {
@@ -33,7 +33,7 @@ fn every_layout_gives_every_triangle_once() {
 fn indexed_vertices_are_shared_and_in_order_of_first_use() {
     let (quads, levels) = (3, 3);
     let h = synthetic_terrain(quads, levels);
-    let full = FullBvh::build(&h, &FullOptions::new(2, false, LeafLayout::Indexed)).unwrap();
+    let full = FullBvh::build(&h, &FullOptions::new(2, NodeBoxes::Codes, LeafLayout::Indexed)).unwrap();
     let side = (quads as usize) << levels;
     assert_eq!(full.leaves.vertices(), (side + 1) * (side + 1));
     let Storage::Indexed { triples, vertices } = &full.leaves.storage else { panic!("wrong layout") };
@@ -49,7 +49,7 @@ fn indexed_vertices_are_shared_and_in_order_of_first_use() {
 fn lines_are_those_of_the_records() {
     let h = synthetic_terrain(2, 3);
     for layout in LAYOUTS {
-        let leaves = FullBvh::build(&h, &FullOptions::new(4, false, layout)).unwrap().leaves;
+        let leaves = FullBvh::build(&h, &FullOptions::new(4, NodeBoxes::Codes, layout)).unwrap().leaves;
         for slots in (0..leaves.len()).map(|first| first..leaves.len().min(first + 1 + first % 4)) {
             let mut lines = Vec::new();
             leaves.lines(slots.clone(), |l| lines.push(l));
@@ -76,7 +76,7 @@ fn lines_are_those_of_the_records() {
 #[test]
 fn both_box_widths_refer_to_the_same_and_16_bits_contain_32() {
     let h = synthetic_terrain(4, 4);
-    let nodes = |wide| FullBvh::build(&h, &FullOptions::new(4, wide, LeafLayout::Line)).unwrap().nodes;
+    let nodes = |wide| FullBvh::build(&h, &FullOptions::new(4, if wide { NodeBoxes::Wide } else { NodeBoxes::Codes }, LeafLayout::Line)).unwrap().nodes;
     let (narrow, wide) = (nodes(false), nodes(true));
     let FullNodes::Boxes16(narrow) = narrow.as_ref() else { panic!("16") };
     let FullNodes::Boxes32(wide) = wide.as_ref() else { panic!("32") };
@@ -105,7 +105,7 @@ fn both_box_widths_refer_to_the_same_and_16_bits_contain_32() {
 #[test]
 fn hierarchies_that_do_not_add_up_are_refused() {
     let good = synthetic_terrain(2, 2);
-    let o = FullOptions::new(4, false, LeafLayout::Line);
+    let o = FullOptions::new(4, NodeBoxes::Codes, LeafLayout::Line);
     let mut h = good.clone();
     h.points.pop();
     assert!(matches!(FullBvh::build(&h, &o), Err(BvhError::Points { .. })));

@@ -124,7 +124,7 @@ function picturesSection(section, state) {
 
 const nearestRay = (grid, [x, y]) => d3.minIndex(grid.rays, (r) => (r.pixel[0] - x) ** 2 + (r.pixel[1] - y) ** 2);
 
-const BOXES = { c: "16-bit boxes", p: "16-bit boxes, never widened", w: "32-bit boxes" };
+const BOXES = { c: "boxes in steps, widened where morphed", p: "16-bit boxes", l: "16-bit boxes in steps", w: "32-bit boxes" };
 const ENDS = { h: "hit", m: "hit, mapped to full resolution", n: "nothing met" };
 
 /** A step's word in words; src/report/inspect.rs has the table. */

@@ -114,13 +114,18 @@ fn a_chase_in_memory_takes_the_way_and_the_memorys_own_time() {
 
 #[test]
 fn pinned_nodes_are_not_asked_for() {
-    for (wide, lines) in [(false, 2), (true, 4)] {
+    type Test = fn(u32) -> Act;
+    let tests: [(Test, u32); 4] = [
+        (|met| Act::Children { met }, 1),
+        (|met| Act::LocalChildren { met }, 1),
+        (|met| Act::PlainChildren { met }, 2),
+        (|met| Act::WideChildren { met }, 4),
+    ];
+    for (test, lines) in tests {
         let sections = ["node", "leaf"].map(|name| Section::of_bytes(name, 64 * 32));
         let layout = MemoryMap::new(&sections, Some((SectionId::new(0), lines))).unwrap().nodes();
-        let node = |(number, met): (u32, u32)| {
-            let act = if wide { Act::WideChildren { met } } else { Act::Children { met } };
-            Step::on(Fetch::new(SectionId::new(0), number * lines, lines), act).visiting()
-        };
+        let node =
+            |(number, met): (u32, u32)| Step::on(Fetch::new(SectionId::new(0), number * lines, lines), test(met)).visiting();
         let nodes = [(0, 1), (1, 1), (2, 1), (3, 1), (0, 0)].map(node);
         // Lines of other data are asked for, however many nodes there could be.
         let other = Step::on(Fetch::new(SectionId::new(1), 64, 1), Act::Fetch);

@@ -43,7 +43,7 @@ const GROUPS: &[(&str, &[Row])] = &[
     (
         "Children",
         &[
-            (UNIT, BITS, &["u_child_test.valid_i", "u_child_test.in_i.present", "u_child_test.in_i.widen", "u_child_test.valid_o"]),
+            (UNIT, BITS, &["u_child_test.valid_i", "u_child_test.in_i.present", "u_child_test.in_i.tree", "u_child_test.valid_o"]),
             (CONTEXT, DECIMAL, &["sorted_q.count", "sorted_q.order[0]", "sorted_q.t_near[0]", "count_q"]),
         ],
     ),
@@ -58,10 +58,10 @@ const GROUPS: &[(&str, &[Row])] = &[
     (
         "Morph",
         &[
-            (UNIT, BITS, &["u_tessellate.valid_i"]),
+            (UNIT, BITS, &["u_tessellate.valid_i", "u_tessellate.in_i.compact"]),
             (UNIT, DECIMAL, &["u_tessellate.in_i.grid"]),
             (UNIT, BITS, &["u_tessellate.valid_o"]),
-            (CONTEXT, SIGNED, &["p0_q.x", "p0_q.y", "p0_q.z", "q0_q.x", "q0_q.y", "q0_q.z"]),
+            (CONTEXT, SIGNED, &["p0_q.x", "p0_q.y", "p0_q.z", "g0_q.x", "g0_q.y", "g0_q.z", "q0_q.x", "q0_q.y", "q0_q.z"]),
         ],
     ),
     (

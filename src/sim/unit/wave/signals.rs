@@ -1,6 +1,6 @@
 //! The signals of the waveform: names, widths and values, in one walk over the unit.
 
-use crate::block::{Block, child_test, hit_select, lod_test, tessellate};
+use crate::block::{Block, child_test, hit_select, lod_test};
 use crate::hardware::ports::{HitOut, MemoryAnswer, MemoryRequest, RayIn, SceneConfig};
 use crate::method::{Entry, STACK_ENTRIES};
 use crate::num::{BitVec, Layout, Point, Wire};
@@ -154,15 +154,14 @@ fn context_signals(c: &Context, to: &mut impl Visitor) {
     to.signal("tree_q", Vector::register(c.tree.known()));
     to.signal("level_q", Vector::register(c.level.known()));
     to.signal("node_q", Vector::register(c.node.known()));
-    for (k, p) in ["p0_q", "p1_q", "p2_q"].into_iter().enumerate() {
-        typed::<Point>(to, p, &Vector::register(c.p.known().map(|p| p[k])));
-    }
-    for (k, q) in ["q0_q", "q1_q", "q2_q"].into_iter().enumerate() {
-        typed::<Point>(to, q, &Vector::register(c.q.known().map(|q| q[k])));
+    for (name, points) in [("f", c.f), ("p", c.p), ("g", c.g), ("q", c.q)] {
+        for k in 0..3 {
+            typed::<Point>(to, &format!("{name}{k}_q"), &Vector::register(points.known().map(|points| points[k])));
+        }
     }
     typed::<lod_test::Out>(to, "lod_q", &Vector::register(c.lod.known()));
-    to.signal("want_q", Vector::number(c.want.into(), 3));
-    to.signal("waiting_q", Vector::number(c.waiting.into(), 3));
+    to.signal("want_q", Vector::number(c.want.into(), 2));
+    to.signal("waiting_q", Vector::number(c.waiting.into(), 2));
     to.signal("base_want_q", Vector::flag(c.base_want));
     to.signal("base_ready_q", Vector::register(c.base_ready.known()));
     typed::<child_test::Out>(to, "sorted_q", &Vector::register(c.sorted.known()));
@@ -219,16 +218,15 @@ where
 
 /// `child_test` sees the triangle's registers even where it does not use them: before the first tree they are unknown.
 fn children(to: &mut impl Visitor, unit: &TraversalUnit, wires: &Wires) {
-    const CORNERS: u32 = tessellate::Out::WIDTH;
+    const CORNERS: u32 = 3 * Point::WIDTH;
     let link = &wires.child;
     let mut input = Vector::offer(link.input.as_ref().map(|(input, _)| input));
     if let Some(context) = link.winner.map(|k| &unit.contexts[k]) {
-        // The last fields: three corners, then as many inserted vertices.
-        if context.p.known().is_none() {
-            input = input.blur(CORNERS, CORNERS);
-        }
-        if context.q.known().is_none() {
-            input = input.blur(0, CORNERS);
+        // The last fields: corners and inserted vertices at full resolution, then the same as morphed.
+        for (behind, points) in [(3, context.f), (2, context.g), (1, context.p), (0, context.q)] {
+            if points.known().is_none() {
+                input = input.blur(behind * CORNERS, CORNERS);
+            }
         }
     }
     let tag = Vector::number(link.input.as_ref().map_or(0, |(_, tag)| (*tag).into()), 6);

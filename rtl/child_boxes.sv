@@ -1,0 +1,163 @@
+`default_nettype none
+
+/// The boxes of the four children of a node for this ray. Twin of src/block/child_boxes.rs (paper section 3.4).
+///
+/// A child of a tree's node, of corners F at full resolution and P as morphed: lo = min(max(-32767, min floor(F) - steps), min floor(P)) and hi =
+/// max(min(32767, max ceil(F) + steps), max ceil(P)) in codes of 2^16 units, steps = floor(v (2 + half) 2^exponent / 2) of its plane v. A child of a quad-BVH node:
+/// min(32767, origin + steps) for both; all corners at full resolution are the origin there.
+/// Legal: |points| <= 0x7FFE_0000, so that ceilings fit 16 bits, origin >= -32767; any where they do not count. Its last register is a `pipe_skid`.
+/// Latency CHILD_BOXES_LATENCY = 3, interval 1.
+module child_boxes #(
+  parameter int unsigned TAG_W = 8
+) (
+  input  logic                      clk_i,
+  input  logic                      rst_ni,
+  input  logic                      valid_i,
+  output logic                      ready_o,
+  input  lod_pkg::child_boxes_in_t  in_i,
+  input  logic [TAG_W-1:0]          tag_i,
+  output logic                      valid_o,
+  input  logic                      ready_i,
+  output lod_pkg::child_boxes_out_t out_o,
+  output logic [TAG_W-1:0]          tag_o
+);
+
+  localparam int unsigned CODE_W = lod_pkg::CODE3_W / 3;
+  localparam int unsigned POINT_W = lod_pkg::POINT_W / 3;
+  localparam int unsigned PLANE_W = 7;
+  // A floor, and whether anything was cut off: a ceiling is their sum, and ceilings are ordered as these are.
+  localparam int unsigned EXACT_W = CODE_W + 1;
+  // Times 2 or 3: at most 381.
+  localparam int unsigned PRODUCT_W = PLANE_W + 2;
+  // A code, 16 bits of steps, another code: within 2^17 in magnitude.
+  localparam int unsigned SUM_W = CODE_W + 2;
+  localparam logic signed [SUM_W-1:0] MOST = SUM_W'(32767);
+  // Of one coordinate of one triangle: its corners, the smaller and the larger of pairs; smallest and largest of each child.
+  localparam int unsigned PAIRS_W = 3 * (EXACT_W + CODE_W + EXACT_W);
+  if (lod_pkg::CHILD_BOXES_LATENCY != 3) begin : g_illegal_latency
+    $error("child_boxes: lod_pkg::CHILD_BOXES_LATENCY must be 3");
+  end
+
+  // The node's triangle at full resolution, then as morphed: three corners and three inserted vertices.
+  logic [11:0][lod_pkg::POINT_W-1:0] points;
+  logic [2:0][CODE_W-1:0]            origin;
+  assign points = {in_i.q2, in_i.q1, in_i.q0, in_i.p2, in_i.p1, in_i.p0, in_i.g2, in_i.g1, in_i.g0, in_i.f2, in_i.f1, in_i.f0};
+  assign origin = {in_i.origin.z, in_i.origin.y, in_i.origin.x};
+
+  // Stage 1: codes; of two inserted vertices the smaller and the larger. Pair j is that of child j < 3, on the two edges that meet at corner j.
+  logic [5:0][PAIRS_W-1:0] pairs, pairs_q;
+  for (genvar l = 0; l < 6; l++) begin : g_pairs
+    localparam int unsigned TRIANGLE = l / 3;
+    localparam int unsigned AXIS = l % 3;
+    logic [5:0][EXACT_W-1:0] codes;
+    logic [2:0][CODE_W-1:0]  low;
+    logic [2:0][EXACT_W-1:0] high;
+    for (genvar i = 0; i < 6; i++) begin : g_code
+      logic [POINT_W-1:0] v;
+      assign v        = points[6*TRIANGLE+i][(2-AXIS)*POINT_W +: POINT_W];
+      assign codes[i] = TRIANGLE == 0 && !in_i.tree ? {origin[AXIS], 1'b0} : {v[POINT_W-1:lod_pkg::BOX_SHIFT], v[lod_pkg::BOX_SHIFT-1:0] != '0};
+    end
+    for (genvar j = 0; j < 3; j++) begin : g_pair
+      logic signed [EXACT_W-1:0] a, b;
+      logic                      rises;
+      assign a       = codes[3+(j+1)%3];
+      assign b       = codes[3+(j+2)%3];
+      assign rises   = a < b;
+      assign low[j]  = rises ? a[EXACT_W-1:1] : b[EXACT_W-1:1];
+      assign high[j] = rises ? b : a;
+    end
+    assign pairs[l] = {codes[2:0], low, high};
+  end
+
+  // And the planes, v (2 + half).
+  logic [23:0][PRODUCT_W-1:0] products, products_q;
+  logic [2:0][3:0]            exponents_q;
+  logic                       tree_pairs, valid_pairs, ready_pairs;
+  logic [TAG_W-1:0]           tag_pairs;
+  for (genvar i = 0; i < 24; i++) begin : g_product
+    assign products[i] = PRODUCT_W'({in_i.planes[i], 1'b0}) + (in_i.halves[i%3] ? PRODUCT_W'(in_i.planes[i]) : '0);
+  end
+  pipe_stage #(.W(6 * PAIRS_W + 24 * PRODUCT_W + 3 * 4 + 1 + TAG_W)) u_pairs (
+    .clk_i, .rst_ni, .valid_i, .ready_o, .data_i({pairs, products, in_i.exponents, in_i.tree, tag_i}),
+    .valid_o(valid_pairs), .ready_i(ready_pairs), .data_o({pairs_q, products_q, exponents_q, tree_pairs, tag_pairs})
+  );
+
+  // Stage 2: the smallest and the largest code of each child's corners; child 3 has all three inserted vertices. Steps. Child c's are at 3 c + axis.
+  logic [11:0][CODE_W-1:0]  full_low, full_low_q, low, low_q, high, high_q;
+  logic [11:0][EXACT_W-1:0] full_high, full_high_q;
+  logic [23:0][CODE_W-1:0]  steps, steps_q;
+  logic                     tree_q, valid_ends, ready_ends;
+  logic [TAG_W-1:0]         tag_ends;
+  for (genvar l = 0; l < 6; l++) begin : g_ends
+    logic [2:0][EXACT_W-1:0] corner_codes, high_pairs;
+    logic [2:0][CODE_W-1:0]  low_pairs;
+    assign {corner_codes, low_pairs, high_pairs} = pairs_q[l];
+    for (genvar c = 0; c < 4; c++) begin : g_child
+      localparam int unsigned AT = 3 * c + l % 3;
+      logic signed [CODE_W-1:0]  a, b, lowest;
+      logic signed [EXACT_W-1:0] d, e, highest;
+      assign a       = c < 3 ? corner_codes[c%3][EXACT_W-1:1] : low_pairs[1];
+      assign b       = low_pairs[c%3];
+      assign lowest  = a < b ? a : b;
+      assign d       = c < 3 ? corner_codes[c%3] : high_pairs[1];
+      assign e       = high_pairs[c%3];
+      assign highest = d > e ? d : e;
+      if (l < 3) begin : g_full
+        assign full_low[AT]  = lowest;
+        assign full_high[AT] = highest;
+      end else begin : g_morphed
+        // At most 32766 for legal corners.
+        assign low[AT]  = lowest;
+        assign high[AT] = highest[EXACT_W-1:1] + CODE_W'(highest[0]);
+      end
+    end
+  end
+  for (genvar i = 0; i < 24; i++) begin : g_steps
+    box_steps #(.W(PRODUCT_W)) u_steps (.w_i(products_q[i]), .exponent_i(exponents_q[i%3]), .steps_o(steps[i]));
+  end
+  pipe_stage #(.W(12 * (3 * CODE_W + EXACT_W) + 24 * CODE_W + 1 + TAG_W)) u_ends (
+    .clk_i, .rst_ni, .valid_i(valid_pairs), .ready_o(ready_pairs), .data_i({full_low, full_high, low, high, steps, tree_pairs, tag_pairs}),
+    .valid_o(valid_ends), .ready_i(ready_ends), .data_o({full_low_q, full_high_q, low_q, high_q, steps_q, tree_q, tag_ends})
+  );
+
+  // Stage 3: planes from the full-resolution triangle, and beside them whether these reach beyond the morphed one.
+  logic [3:0][6*CODE_W-1:0] bounds;
+  for (genvar i = 0; i < 12; i++) begin : g_plane
+    localparam int unsigned CHILD = i / 3;
+    localparam int unsigned AXIS = i % 3;
+    logic signed [CODE_W-1:0]  from_low, least, most;
+    logic signed [EXACT_W-1:0] from_high;
+    logic [CODE_W-1:0]         down, up, outer_low, outer_high;
+    logic [SUM_W-1:0]          way;
+    logic signed [SUM_W-1:0]   low_sum, high_sum, low_beyond;
+    logic signed [SUM_W:0]     low_twice, high_twice, high_beyond;
+    assign {from_low, from_high, least, most} = {full_low_q[i], full_high_q[i], low_q[i], high_q[i]};
+    assign {up, down}                         = {steps_q[6*CHILD+3+AXIS], steps_q[6*CHILD+AXIS]};
+
+    // The floor -+ steps, the carry as a bit below.
+    assign way        = {2'd0, down} ^ {SUM_W{tree_q}};
+    assign low_twice  = {SUM_W'(from_low), tree_q} + {way, tree_q};
+    assign low_sum    = low_twice[SUM_W:1];
+    assign low_beyond = SUM_W'(least) + {2'd0, down} + SUM_W'(~from_low);
+    assign outer_low  = low_sum < -MOST ? -MOST[CODE_W-1:0] : low_sum > MOST ? MOST[CODE_W-1:0] : low_sum[CODE_W-1:0];
+
+    // The floor, what was cut off, and steps.
+    assign high_twice  = (SUM_W+1)'(from_high) + {2'd0, up, 1'b1};
+    assign high_sum    = high_twice[SUM_W:1];
+    assign high_beyond = (SUM_W+1)'(from_high) + {2'd0, up, 1'b0} + {SUM_W'(~most), 1'b1};
+    assign outer_high  = high_sum > MOST ? MOST[CODE_W-1:0] : high_sum[CODE_W-1:0];
+
+    assign bounds[CHILD][(5-AXIS)*CODE_W +: CODE_W] = tree_q && low_beyond[SUM_W-1] ? least : outer_low;
+    assign bounds[CHILD][(2-AXIS)*CODE_W +: CODE_W] = tree_q && high_beyond[SUM_W] ? most : outer_high;
+
+    logic unused_bits;
+    assign unused_bits = ^{low_twice[0], high_twice[0], low_beyond[SUM_W-2:0], high_beyond[SUM_W-1:0]};
+  end
+  pipe_skid #(.W(4 * 6 * CODE_W + TAG_W)) u_out (
+    .clk_i, .rst_ni, .valid_i(valid_ends), .ready_o(ready_ends), .data_i({bounds, tag_ends}),
+    .valid_o, .ready_i, .data_o({out_o, tag_o})
+  );
+
+endmodule
+
+`default_nettype wire

@@ -1,0 +1,137 @@
+`default_nettype none
+
+/// An inserted vertex at full resolution, and morphed between the midpoint of its morphed edge and there (paper section 3.4). Coordinate by coordinate:
+///
+/// full: g = v, or for a displacement (fa + fb) / 2 + v 2^shift; morphed: m + (floor((g - m) s / 256) with its low `grid` bits cleared), m = (pa + pb) / 2. Midpoints
+/// are exact. s = 0 gives m, s = 256 gives g; the result lies between m and g. Legal: ends multiples of 2^(grid+1), g of 2^grid, none beyond 0x7FFE_0000 in
+/// magnitude, grid 0 to 9, s 0 to 256. Latency TESSELLATE_LATENCY; interval 1.
+module morph_vertex (
+  input  logic                             clk_i,
+  input  logic                             rst_ni,
+  input  logic                             valid_i,
+  output logic                             ready_o,
+  input  logic                             compact_i,
+  input  logic [4:0]                       shift_i,
+  input  logic [3:0]                       grid_i,
+  input  logic [lod_pkg::EDGE_STATE_W-1:0] s_i,
+  input  logic [lod_pkg::POINT_W-1:0]      fa_i,
+  input  logic [lod_pkg::POINT_W-1:0]      fb_i,
+  input  logic [lod_pkg::POINT_W-1:0]      pa_i,
+  input  logic [lod_pkg::POINT_W-1:0]      pb_i,
+  input  logic [lod_pkg::POINT_W-1:0]      v_i,
+  output logic                             valid_o,
+  input  logic                             ready_i,
+  output logic [lod_pkg::POINT_W-1:0]      full_o,
+  output logic [lod_pkg::POINT_W-1:0]      morphed_o
+);
+
+  localparam int unsigned W = lod_pkg::POINT_W / 3;
+  localparam int unsigned SHIFT_W = 5;
+  localparam int unsigned GRID_W = 4;
+  localparam int unsigned DIFFERENCE_W = W + 1;
+  // s is unsigned: one bit more as a signed number.
+  localparam int unsigned STATE_W = lod_pkg::EDGE_STATE_W;
+  localparam int unsigned S_W = STATE_W + 1;
+  localparam int unsigned PRODUCT_W = DIFFERENCE_W + S_W;
+  localparam int unsigned PRODUCT_LATENCY = lod_pkg::multiplier_latency(DIFFERENCE_W, S_W);
+  localparam int unsigned FRACTION_W = 8;
+  if (lod_pkg::TESSELLATE_LATENCY != PRODUCT_LATENCY + 5) begin : g_illegal_latency
+    $error("morph_vertex: lod_pkg::TESSELLATE_LATENCY must be %0d", PRODUCT_LATENCY + 5);
+  end
+
+  // Midpoints: 33-bit sums, even, so exact in 32 bits again. A vertex that is stored itself is a displacement of 0 bits from 0.
+  logic [2:0][W-1:0]  v, base, m, base_q, v_q, m_q;
+  logic [SHIFT_W-1:0] shift_q;
+  logic [GRID_W-1:0]  grid_m;
+  logic [STATE_W-1:0] s_m;
+  logic               valid_m, ready_m;
+  assign v = v_i;
+  for (genvar k = 0; k < 3; k++) begin : g_midpoint
+    logic signed [W-1:0] fa, fb, pa, pb;
+    logic [W:0]          full_sum, morphed_sum;
+    logic                unused_even;
+    assign {fa, fb}    = {fa_i[k*W +: W], fb_i[k*W +: W]};
+    assign {pa, pb}    = {pa_i[k*W +: W], pb_i[k*W +: W]};
+    assign full_sum    = (W+1)'(fa) + (W+1)'(fb);
+    assign morphed_sum = (W+1)'(pa) + (W+1)'(pb);
+    assign base[k]     = compact_i ? full_sum[W:1] : '0;
+    assign m[k]        = morphed_sum[W:1];
+    assign unused_even = full_sum[0] ^ morphed_sum[0];
+  end
+  pipe_stage #(.W(9 * W + SHIFT_W + STATE_W + GRID_W)) u_midpoint (
+    .clk_i, .rst_ni, .valid_i, .ready_o, .data_i({base, v, m, compact_i ? shift_i : SHIFT_W'(0), s_i, grid_i}),
+    .valid_o(valid_m), .ready_i(ready_m), .data_o({base_q, v_q, m_q, shift_q, s_m, grid_m})
+  );
+
+  // g: 32 bits for legal displacements.
+  logic [2:0][W-1:0]  g, g_q, m_g;
+  logic [GRID_W-1:0]  grid_g;
+  logic [STATE_W-1:0] s_g;
+  logic               valid_g, ready_g;
+  for (genvar k = 0; k < 3; k++) begin : g_full
+    assign g[k] = base_q[k] + (v_q[k] << shift_q);
+  end
+  pipe_stage #(.W(6 * W + STATE_W + GRID_W)) u_full (
+    .clk_i, .rst_ni, .valid_i(valid_m), .ready_o(ready_m), .data_i({g, m_q, s_m, grid_m}),
+    .valid_o(valid_g), .ready_i(ready_g), .data_o({g_q, m_g, s_g, grid_g})
+  );
+
+  // g - m: 33 bits.
+  logic [2:0][DIFFERENCE_W-1:0] difference, difference_q;
+  logic [2:0][W-1:0]            g_d, m_d;
+  logic [GRID_W-1:0]            grid_d;
+  logic [STATE_W-1:0]           s_d;
+  logic                         valid_d, ready_d;
+  for (genvar k = 0; k < 3; k++) begin : g_difference
+    logic signed [W-1:0] to, from;
+    assign {to, from}    = {g_q[k], m_g[k]};
+    assign difference[k] = DIFFERENCE_W'(to) - DIFFERENCE_W'(from);
+  end
+  pipe_stage #(.W(3 * DIFFERENCE_W + 6 * W + STATE_W + GRID_W)) u_difference (
+    .clk_i, .rst_ni, .valid_i(valid_g), .ready_o(ready_g), .data_i({difference, g_q, m_g, s_g, grid_g}),
+    .valid_o(valid_d), .ready_i(ready_d), .data_o({difference_q, g_d, m_d, s_d, grid_d})
+  );
+
+  // (g - m) s: 33 bits times 9. The step, on the grid.
+  logic [2:0]        valid_product, ready_product;
+  logic [2:0][W-1:0] step, step_q, g_p, m_p, g_s, m_s, morphed;
+  logic [GRID_W-1:0] grid_p;
+  logic              valid_p, ready_p, valid_s, ready_s;
+  pipe_delay #(.W(6 * W + GRID_W), .STAGES(PRODUCT_LATENCY)) u_beside (
+    .clk_i, .rst_ni, .valid_i(valid_d), .ready_o(ready_d), .data_i({g_d, m_d, grid_d}),
+    .valid_o(valid_p), .ready_i(ready_p), .data_o({g_p, m_p, grid_p})
+  );
+  for (genvar k = 0; k < 3; k++) begin : g_step
+    logic [PRODUCT_W-1:0] product;
+    logic                 unused_bits;
+    multiplier #(.A_W(DIFFERENCE_W), .B_W(S_W)) u_product (
+      .clk_i, .rst_ni, .valid_i(valid_d), .ready_o(ready_product[k]), .a_i(difference_q[k]), .b_i({1'b0, s_d}),
+      .valid_o(valid_product[k]), .ready_i(ready_p), .product_o(product)
+    );
+    always_comb begin
+      step[k] = product[FRACTION_W +: W];
+      for (int unsigned i = 0; i < lod_pkg::MAX_LEVELS; i++) begin
+        if (grid_p > GRID_W'(i)) step[k][i] = 1'b0;
+      end
+    end
+    assign unused_bits = ^{product[PRODUCT_W-1:FRACTION_W+W], product[FRACTION_W-1:0]};
+  end
+  pipe_stage #(.W(9 * W)) u_step (
+    .clk_i, .rst_ni, .valid_i(valid_p), .ready_o(ready_p), .data_i({step, g_p, m_p}),
+    .valid_o(valid_s), .ready_i(ready_s), .data_o({step_q, g_s, m_s})
+  );
+
+  // It and m add up to 32 bits again, between m and g.
+  for (genvar k = 0; k < 3; k++) begin : g_morphed
+    assign morphed[k] = m_s[k] + step_q[k];
+  end
+  pipe_stage #(.W(6 * W)) u_out (
+    .clk_i, .rst_ni, .valid_i(valid_s), .ready_o(ready_s), .data_i({g_s, morphed}), .valid_o, .ready_i, .data_o({full_o, morphed_o})
+  );
+
+  logic unused_lockstep;
+  assign unused_lockstep = ^{valid_product, ready_product};
+
+endmodule
+
+`default_nettype wire

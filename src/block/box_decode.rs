@@ -1,0 +1,84 @@
+//! The box of a child of a quad-BVH node in its node's frame: what [`super::child_boxes`] does for such a node, of one child and alone.
+//!
+//! Only units of the full-resolution BVHs have it. Legal: origin at least -32767.
+
+use super::child_boxes::{Reach, framed};
+use super::parts::{Parts, Registers, TAG};
+use super::{Block, Form, Timing};
+use crate::num::{Box16, U, Vec3, box_steps, wire_struct};
+
+wire_struct! {
+    /// Input of [`BoxDecode`].
+    pub struct In {
+        /// Lower corner of the node's frame.
+        origin: Vec3<16>,
+        /// Steps along x, y, z are half as long again.
+        halves: [bool; 3],
+        /// Powers of two of these steps.
+        exponents: [U<4>; 3],
+        /// Steps of the lower corner.
+        lo: [U<5>; 3],
+        /// Steps of the upper corner.
+        hi: [U<5>; 3],
+    }
+}
+
+wire_struct! {
+    /// Output of [`BoxDecode`].
+    pub struct Out {
+        /// The box.
+        bounds: Box16,
+    }
+}
+
+/// The block.
+pub struct BoxDecode;
+
+/// Bits of a code, of steps times two or three, and of steps in codes.
+const CODE: u32 = 16;
+const DOUBLED: u32 = 7;
+const STEPS: u32 = 17;
+
+impl Block for BoxDecode {
+    const NAME: &'static str = "box_decode";
+    const TIMING: Timing = Timing::pipelined(2);
+    type In = In;
+    type Out = Out;
+    fn parts(_: &Form) -> Parts {
+        let registers = Registers::stage(6 * STEPS + 3 * CODE + TAG) + Registers::stage(6 * CODE + TAG);
+        Parts { products: vec![], add_bits: 6 * (DOUBLED + STEPS), select_bits: 6 * (4 * STEPS + CODE), registers }
+    }
+    #[inline(always)]
+    fn eval(i: &In) -> Out {
+        let exponents = i.exponents.map(U::narrow).map(i32::cast_unsigned);
+        let steps = |planes: [U<5>; 3]| {
+            let [x, y, z] = planes.map(U::narrow).map(i32::cast_unsigned);
+            // Below 2^22.
+            [(0, x), (1, y), (2, z)].map(|(axis, v)| box_steps(i.halves[axis], exponents[axis], v).cast_signed())
+        };
+        let origin = [i.origin.x.narrow(), i.origin.y.narrow(), i.origin.z.narrow()];
+        Out { bounds: framed(origin, Reach { lo: steps(i.lo), hi: steps(i.hi) }) }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::format::BvhNode;
+    use crate::num::{Random, Wire};
+
+    #[test]
+    fn boxes_are_those_of_the_record() {
+        for number in 0..10_000 {
+            let mut random = Random::of(3, number);
+            let line = [(); 4].map(|()| random.next());
+            let mut node = BvhNode::from_words(&line);
+            node.origin = Vec3::new(random.within(32_767), random.within(32_767), random.within(32_767));
+            for k in 0..4 {
+                let planes = |from: usize| std::array::from_fn(|axis| node.planes[6 * k + from + axis]);
+                let input = In { origin: node.origin, halves: node.halves, exponents: node.exponents, lo: planes(0), hi: planes(3) };
+                assert_eq!(BoxDecode::eval(&input).bounds, node.bounds(k));
+            }
+        }
+    }
+}

@@ -1,0 +1,117 @@
+//! Compact vertices: what is left of a hierarchy's points if each inserted vertex is stored as its displacement in steps of its edge's code.
+//!
+//! Displacements are those of the points as they were, rounded towards zero, and the points are put together again from the base down. So no displacement gets longer,
+//! and every bound that held still holds. A vertex inserted by split n is moved by at most sqrt(3) (e_1 + ... + e_n) units more than the base vertices were,
+//! e_k the largest step of level k.
+
+use super::hierarchy::edge_index;
+use super::{EdgeCodes, edges_of_tree, lattice};
+use crate::num::{COORD_LIMIT, VertexForm, displaced, displacement_shift, displacement_steps};
+use rayon::prelude::*;
+
+/// Zero bits of a compact vertex that a node of `level` inserts.
+pub(crate) fn inserted_zero_bits(levels: u32, level: u32) -> u32 {
+    VertexForm::Compact.zero_bits(levels - level - 1)
+}
+
+/// The displacement of `q` from the midpoint of `a` and `b` in steps of 2^shift units.
+pub(crate) fn steps_of(q: [i32; 3], a: [i32; 3], b: [i32; 3], shift: u32) -> [i32; 3] {
+    std::array::from_fn(|c| displacement_steps(i64::from(q[c]) - (i64::from(a[c]) + i64::from(b[c])) / 2, shift))
+}
+
+/// Moves every inserted vertex to where its compact form has it. Points have the zero bits of that form, and codes cover their displacements.
+pub(super) fn compact(levels: u32, points: &mut [[i32; 3]], bounds: &EdgeCodes) {
+    let edges = edges_of_tree(levels);
+    if edges == 0 {
+        return;
+    }
+    let trees = points.par_chunks_mut(lattice::len(levels)).zip(bounds.codes.par_chunks(edges));
+    trees.for_each(|(points, codes)| {
+        let mut moved = points.to_vec();
+        for level in 0..levels {
+            let (k, half) = (1u32 << level, 1u32 << (levels - level - 1));
+            // The edges of upward triangles are all edges.
+            for (i, j) in (0..k).flat_map(|j| (0..k - j).map(move |i| (i, j))) {
+                let at = |x: u32, y: u32| ((2 * i + x) * half, (2 * j + y) * half);
+                let [p0, p1, p2] = [at(0, 0), at(2, 0), at(0, 2)];
+                for (q, a, b) in [(at(1, 1), p1, p2), (at(0, 1), p2, p0), (at(1, 0), p0, p1)] {
+                    let [own, ends @ ..] = [q, a, b].map(|place| lattice::index(levels, place));
+                    let shift = displacement_shift(bounds.scale, codes[edge_index(levels, level, a, b)], inserted_zero_bits(levels, level));
+                    let steps = steps_of(points[own], points[ends[0]], points[ends[1]], shift);
+                    moved[own] = std::array::from_fn(|c| within(moved[ends[0]][c], moved[ends[1]][c], steps[c], shift));
+                }
+            }
+        }
+        points.copy_from_slice(&moved);
+    });
+}
+
+/// The displaced coordinate, or the furthest on the way to it that keeps to the limit.
+fn within(a: i32, b: i32, steps: i32, shift: u32) -> i32 {
+    let middle = displaced(a, b, 0, shift);
+    // The midpoint keeps to the limit, and so does whatever lies towards it.
+    let most = (if steps < 0 { COORD_LIMIT + middle } else { COORD_LIMIT - middle }) >> shift;
+    displaced(a, b, steps.clamp(-most, most), shift)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::procedural::{Options, Scene, generate};
+    use super::super::{BoundKind, Hierarchy, quantise};
+    use super::*;
+
+    fn displacement(h: &Hierarchy, tree: usize, level: u32, p: [lattice::LatticePoint; 3], edge: usize) -> ([i64; 3], u8) {
+        let points = h.tree(tree);
+        let at = |place| points[lattice::index(h.levels, place)].map(i64::from);
+        let (a, b, q) = (at(p[(edge + 1) % 3]), at(p[(edge + 2) % 3]), at(lattice::midpoints(p)[edge]));
+        (std::array::from_fn(|c| q[c] - (a[c] + b[c]) / 2), h.node_codes(tree, level, p)[edge])
+    }
+
+    #[test]
+    fn displacements_never_get_longer_and_points_stay_near() {
+        for scene in [Scene::Terrain, Scene::Cloth, Scene::Sphere, Scene::Spikes] {
+            let levels = 4;
+            let surface = generate(&Options { levels: Some(levels), base: Some(6), ..Options::new(scene) }).unwrap();
+            let exact = quantise(&surface, BoundKind::Total, VertexForm::Exact).unwrap();
+            let small = quantise(&surface, BoundKind::Total, VertexForm::Compact).unwrap();
+            assert_eq!(small.placement, exact.placement);
+            // What the module's head states, with half the grid of the base for its rounding in each form.
+            let mut reach = 3f64.sqrt() * f64::from(1 << levels);
+            for level in 0..levels {
+                let mut step = 0;
+                for tree in 0..small.triangles.len() {
+                    for node in 0..1u32 << (2 * level) {
+                        let p = lattice::node(levels, level, node);
+                        for edge in 0..3 {
+                            let ((small_d, code), (exact_d, _)) = (displacement(&small, tree, level, p, edge), displacement(&exact, tree, level, p, edge));
+                            let shift = displacement_shift(small.bounds.scale, code, inserted_zero_bits(levels, level));
+                            step = step.max(shift);
+                            for c in 0..3 {
+                                assert_eq!(small_d[c] & ((1 << shift) - 1), 0);
+                                assert!((-4096..4096).contains(&(small_d[c] >> shift)));
+                                // Both were snapped, by half a step of 2^(grid + 4) each and their ends by twice that, before displacements were taken.
+                                let slack = 4i64 << inserted_zero_bits(levels, level);
+                                assert!(small_d[c].abs() <= exact_d[c].abs() + slack, "{scene:?}");
+                            }
+                        }
+                    }
+                }
+                reach += 3f64.sqrt() * f64::from(1 << step);
+            }
+            reach += 3f64.sqrt() * f64::from(1 << (levels + 4));
+            let far = |(p, q): (&[i32; 3], &[i32; 3])| (0..3).map(|c| f64::from(p[c] - q[c]).powi(2)).sum::<f64>().sqrt();
+            let most = small.points.iter().zip(&exact.points).map(far).fold(0.0, f64::max);
+            assert!(most <= reach && most > 0.0, "{scene:?}: {most} of {reach}");
+        }
+    }
+
+    #[test]
+    fn nothing_passes_the_limit() {
+        let shift = 12;
+        let top = COORD_LIMIT;
+        assert_eq!(within(top, top, 5, shift), top);
+        assert_eq!(within(-top, -top, -5, shift), -top);
+        assert_eq!(within(top, top - (2 << shift), 5, shift), top);
+        assert_eq!(within(0, 0, 5, shift), 5 << shift);
+    }
+}
