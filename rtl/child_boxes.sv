@@ -32,8 +32,6 @@ module child_boxes #(
   // A code, 16 bits of steps, another code: within 2^17 in magnitude.
   localparam int unsigned SUM_W = CODE_W + 2;
   localparam logic signed [SUM_W-1:0] MOST = SUM_W'(32767);
-  // Of one coordinate of one triangle: its corners, the smaller and the larger of pairs; smallest and largest of each child.
-  localparam int unsigned PAIRS_W = 3 * (EXACT_W + CODE_W + EXACT_W);
   if (lod_pkg::CHILD_BOXES_LATENCY != 3) begin : g_illegal_latency
     $error("child_boxes: lod_pkg::CHILD_BOXES_LATENCY must be 3");
   end
@@ -44,29 +42,27 @@ module child_boxes #(
   assign points = {in_i.q2, in_i.q1, in_i.q0, in_i.p2, in_i.p1, in_i.p0, in_i.g2, in_i.g1, in_i.g0, in_i.f2, in_i.f1, in_i.f0};
   assign origin = {in_i.origin.z, in_i.origin.y, in_i.origin.x};
 
-  // Stage 1: codes; of two inserted vertices the smaller and the larger. Pair j is that of child j < 3, on the two edges that meet at corner j.
-  logic [5:0][PAIRS_W-1:0] pairs, pairs_q;
-  for (genvar l = 0; l < 6; l++) begin : g_pairs
-    localparam int unsigned TRIANGLE = l / 3;
-    localparam int unsigned AXIS = l % 3;
-    logic [5:0][EXACT_W-1:0] codes;
-    logic [2:0][CODE_W-1:0]  low;
-    logic [2:0][EXACT_W-1:0] high;
-    for (genvar i = 0; i < 6; i++) begin : g_code
-      logic [POINT_W-1:0] v;
-      assign v        = points[6*TRIANGLE+i][(2-AXIS)*POINT_W +: POINT_W];
-      assign codes[i] = TRIANGLE == 0 && !in_i.tree ? {origin[AXIS], 1'b0} : {v[POINT_W-1:lod_pkg::BOX_SHIFT], v[lod_pkg::BOX_SHIFT-1:0] != '0};
-    end
-    for (genvar j = 0; j < 3; j++) begin : g_pair
-      logic signed [EXACT_W-1:0] a, b;
-      logic                      rises;
-      assign a       = codes[3+(j+1)%3];
-      assign b       = codes[3+(j+2)%3];
-      assign rises   = a < b;
-      assign low[j]  = rises ? a[EXACT_W-1:1] : b[EXACT_W-1:1];
-      assign high[j] = rises ? b : a;
-    end
-    assign pairs[l] = {codes[2:0], low, high};
+  // Stage 1: codes; of two inserted vertices the smaller and the larger. Triangle t has its corners along an axis at 9 t + 3 axis, and so its pairs; pair j is that
+  // of child j < 3, on the two edges that meet at corner j.
+  logic [17:0][EXACT_W-1:0] corner_codes, corner_codes_q, inserted_codes, high_pairs, high_pairs_q;
+  logic [17:0][CODE_W-1:0]  low_pairs, low_pairs_q;
+  for (genvar i = 0; i < 18; i++) begin : g_pair
+    localparam int unsigned TRIANGLE = i / 9;
+    localparam int unsigned AXIS = i / 3 % 3;
+    localparam int unsigned FIRST = i - i % 3;
+    logic [POINT_W-1:0]        p, q;
+    logic signed [EXACT_W-1:0] a, b;
+    logic                      framed, rises;
+    assign p                 = points[6*TRIANGLE+i%3][(2-AXIS)*POINT_W +: POINT_W];
+    assign q                 = points[6*TRIANGLE+3+i%3][(2-AXIS)*POINT_W +: POINT_W];
+    assign framed            = TRIANGLE == 0 && !in_i.tree;
+    assign corner_codes[i]   = framed ? {origin[AXIS], 1'b0} : {p[POINT_W-1:lod_pkg::BOX_SHIFT], p[lod_pkg::BOX_SHIFT-1:0] != '0};
+    assign inserted_codes[i] = framed ? {origin[AXIS], 1'b0} : {q[POINT_W-1:lod_pkg::BOX_SHIFT], q[lod_pkg::BOX_SHIFT-1:0] != '0};
+    assign a                 = inserted_codes[FIRST+(i+1)%3];
+    assign b                 = inserted_codes[FIRST+(i+2)%3];
+    assign rises             = a < b;
+    assign low_pairs[i]      = rises ? a[EXACT_W-1:1] : b[EXACT_W-1:1];
+    assign high_pairs[i]     = rises ? b : a;
   end
 
   // And the planes, v (2 + half).
@@ -77,9 +73,9 @@ module child_boxes #(
   for (genvar i = 0; i < 24; i++) begin : g_product
     assign products[i] = PRODUCT_W'({in_i.planes[i], 1'b0}) + (in_i.halves[i%3] ? PRODUCT_W'(in_i.planes[i]) : '0);
   end
-  pipe_stage #(.W(6 * PAIRS_W + 24 * PRODUCT_W + 3 * 4 + 1 + TAG_W)) u_pairs (
-    .clk_i, .rst_ni, .valid_i, .ready_o, .data_i({pairs, products, in_i.exponents, in_i.tree, tag_i}),
-    .valid_o(valid_pairs), .ready_i(ready_pairs), .data_o({pairs_q, products_q, exponents_q, tree_pairs, tag_pairs})
+  pipe_stage #(.W(18 * (2 * EXACT_W + CODE_W) + 24 * PRODUCT_W + 3 * 4 + 1 + TAG_W)) u_pairs (
+    .clk_i, .rst_ni, .valid_i, .ready_o, .data_i({corner_codes, low_pairs, high_pairs, products, in_i.exponents, in_i.tree, tag_i}),
+    .valid_o(valid_pairs), .ready_i(ready_pairs), .data_o({corner_codes_q, low_pairs_q, high_pairs_q, products_q, exponents_q, tree_pairs, tag_pairs})
   );
 
   // Stage 2: the smallest and the largest code of each child's corners; child 3 has all three inserted vertices. Steps. Child c's are at 3 c + axis.
@@ -88,28 +84,25 @@ module child_boxes #(
   logic [23:0][CODE_W-1:0]  steps, steps_q;
   logic                     tree_q, valid_ends, ready_ends;
   logic [TAG_W-1:0]         tag_ends;
-  for (genvar l = 0; l < 6; l++) begin : g_ends
-    logic [2:0][EXACT_W-1:0] corner_codes, high_pairs;
-    logic [2:0][CODE_W-1:0]  low_pairs;
-    assign {corner_codes, low_pairs, high_pairs} = pairs_q[l];
-    for (genvar c = 0; c < 4; c++) begin : g_child
-      localparam int unsigned AT = 3 * c + l % 3;
-      logic signed [CODE_W-1:0]  a, b, lowest;
-      logic signed [EXACT_W-1:0] d, e, highest;
-      assign a       = c < 3 ? corner_codes[c%3][EXACT_W-1:1] : low_pairs[1];
-      assign b       = low_pairs[c%3];
-      assign lowest  = a < b ? a : b;
-      assign d       = c < 3 ? corner_codes[c%3] : high_pairs[1];
-      assign e       = high_pairs[c%3];
-      assign highest = d > e ? d : e;
-      if (l < 3) begin : g_full
-        assign full_low[AT]  = lowest;
-        assign full_high[AT] = highest;
-      end else begin : g_morphed
-        // At most 32766 for legal corners.
-        assign low[AT]  = lowest;
-        assign high[AT] = highest[EXACT_W-1:1] + CODE_W'(highest[0]);
-      end
+  for (genvar i = 0; i < 24; i++) begin : g_ends
+    localparam int unsigned CHILD = i / 3 % 4;
+    localparam int unsigned AT = i % 12;
+    localparam int unsigned FIRST = i / 12 * 9 + i % 3 * 3;
+    logic signed [CODE_W-1:0]  a, b, lowest;
+    logic signed [EXACT_W-1:0] c, d, highest;
+    assign a       = CHILD < 3 ? corner_codes_q[FIRST+CHILD%3][EXACT_W-1:1] : low_pairs_q[FIRST+1];
+    assign b       = low_pairs_q[FIRST+CHILD%3];
+    assign lowest  = a < b ? a : b;
+    assign c       = CHILD < 3 ? corner_codes_q[FIRST+CHILD%3] : high_pairs_q[FIRST+1];
+    assign d       = high_pairs_q[FIRST+CHILD%3];
+    assign highest = c > d ? c : d;
+    if (i < 12) begin : g_full
+      assign full_low[AT]  = lowest;
+      assign full_high[AT] = highest;
+    end else begin : g_morphed
+      // At most 32766 for legal corners.
+      assign low[AT]  = lowest;
+      assign high[AT] = highest[EXACT_W-1:1] + CODE_W'(highest[0]);
     end
   end
   for (genvar i = 0; i < 24; i++) begin : g_steps

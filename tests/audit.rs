@@ -289,9 +289,9 @@ fn each_damage_to_compact_vertices_is_found() {
     let raise = |r: &mut SiblingGroup| r.codes[2] = U::new(r.codes[2].get() + 16);
     let group = 32 * layout::child_group(levels, 5, 1, 2);
     found_by(&damaged(&good, BOUNDS, |b| change(b, group, raise)), inside);
-    // A displacement beyond what its code says, of a vertex that lies near the middle of all.
-    let longest = |r: &mut Displacements| r.v2 = Vec3::new(-4096, r.v2.y.get(), r.v2.z.get());
-    found_by(&damaged(&good, VERTICES, |b| change(b, half(3, 63), longest)), "bounds cover the true displacement");
+    // A displacement beyond what its code says, where its vertex is read first.
+    let longest = |r: &mut Displacements| r.v0 = Vec3::new(-4096, r.v0.y.get(), r.v0.z.get());
+    found_by(&damaged(&good, VERTICES, |b| change(b, half(3, 60), longest)), "bounds cover the true displacement");
 
     let refused = |kind, f: &dyn Fn(&mut [u8])| reopened(&good, kind, f).expect_err("refused").to_string();
     let far = |r: &mut L0Record| r.split.v0 = Vec3::new(-4096, 4095, -4096);

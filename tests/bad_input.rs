@@ -23,6 +23,10 @@ fn folder() -> tempfile::TempDir {
     let mut flipped = good.clone();
     flipped[good.len() / 2] ^= 0x10;
     write("flipped.lod", &flipped);
+    // Of the layout before this one: whatever else is in it is not looked at.
+    let mut old = good.clone();
+    old[8] = 1;
+    write("old.lod", &old);
     write("cut.lod", &good[..500]);
     write("cut20.lod", &good[..20]);
     write("long.lod", &[&good[..], &[0; 64]].concat());
@@ -88,6 +92,7 @@ fn scenes() {
         ("cut20.lod", "cut20.lod: header: file is truncated at 20 bytes"),
         ("long.lod", "long.lod: file length"),
         ("flipped.lod", "flipped.lod: section"),
+        ("old.lod", "old.lod: version: 1 is older than 2, the only one that this program reads; make the scene again with build or generate"),
     ];
     let commands = ["info", "verify", "crack", "lines --size 8x8", "render --size 8x8 -o new", "export -o new.obj"];
     let rows: Vec<(String, &str)> = commands.iter().flat_map(|c| files.map(|(file, says)| (format!("{c} {file}"), says))).collect();
@@ -162,6 +167,7 @@ fn numbers() {
         ("generate sphere --base 4000000000 -o new.lod", USAGE, "'4000000000' for '--base"),
         ("generate sphere --base 134217728 --levels 10 -o new.lod", FAILS, ""),
         ("generate sphere --seed -1 -o new.lod", USAGE, "'-1' for '--seed"),
+        ("generate sphere --vertices round -o new.lod", USAGE, "'round' for '--vertices"),
         ("generate sphere --roughness nan -o new.lod", USAGE, "'nan' for '--roughness"),
         ("generate sphere --roughness -0.1 -o new.lod", USAGE, "'-0.1' for '--roughness"),
         ("generate sphere --roughness 2 -o new.lod", USAGE, "'2' for '--roughness"),

@@ -5,15 +5,15 @@ use lodray::golden::exact::{Exact, ExactHit};
 use lodray::mesh::Hierarchy;
 use lodray::mesh::procedural::{self, Options};
 use lodray::method::bvh::BvhTraverser;
-use lodray::method::bvh::{FullBvh, FullOptions, LeafLayout};
+use lodray::method::bvh::{FullBvh, FullOptions, LeafLayout, NodeBoxes};
 use lodray::method::lod::{LodImage, LodTraverser};
 use lodray::method::{ClosestHit, Crossings};
-use lodray::num::{Cone, Point, Ray, Vec3};
+use lodray::num::{Cone, Point, Ray, Vec3, VertexForm};
 use lodray::rays::ModelSpace;
 use lodray::rays::{Camera, View};
 use lodray::step::NoSteps;
 use lodray_test_support::cases;
-use lodray_test_support::models::{Rng, ball, build, cone, model, octahedron, scene_of, terrain};
+use lodray_test_support::models::{Rng, ball, build_with, cone, model, octahedron, scene_of, terrain, with_vertices};
 use lodray_test_support::plain::plain;
 use proptest::prelude::*;
 
@@ -54,14 +54,17 @@ impl Bench<'_> {
 }
 
 fn full_bvhs(h: &Hierarchy) -> Vec<FullBvh> {
-    let variants = [(false, LeafLayout::Line, 4), (false, LeafLayout::Indexed, 2), (true, LeafLayout::Packed, 1)];
-    let build = |(wide_boxes, layout, size)| FullBvh::build(h, &FullOptions::new(size, wide_boxes, layout)).expect("a valid model");
+    let variants =
+        [(NodeBoxes::Local, LeafLayout::Line, 4), (NodeBoxes::Codes, LeafLayout::Indexed, 2), (NodeBoxes::Wide, LeafLayout::Packed, 1)];
+    let build = |(boxes, layout, size)| FullBvh::build(h, &FullOptions::new(size, boxes, layout)).expect("a valid model");
     variants.map(build).into()
 }
 
 /// Runs `rays` through everything on one model; gives how many hit.
 fn compare(h: &Hierarchy, with_bvhs: bool, rays: impl IntoIterator<Item = Ray>) -> u64 {
     let scene = scene_of(h);
+    // Its trees have an order of their own.
+    let h = &scene.decode();
     let full = if with_bvhs { full_bvhs(h) } else { Vec::new() };
     let mut bench = Bench {
         golden: Exact::new(h),
@@ -133,10 +136,12 @@ fn random_balls_and_terrains() {
     for seed in 0..12u64 {
         let levels = seed as u32 % 5;
         let roughness = [0.05, 0.4, 1.5][seed as usize % 3];
-        let h = ball(levels, roughness, seed);
-        hits += compare(&h, true, rays(&h, 1500, seed));
-        let h = terrain(3, levels, roughness, seed);
-        hits += compare(&h, true, rays(&h, 1500, seed + 100));
+        for form in VertexForm::ALL {
+            let h = with_vertices(form, ball(levels, roughness, seed));
+            hits += compare(&h, true, rays(&h, 750, seed));
+            let h = with_vertices(form, terrain(3, levels, roughness, seed));
+            hits += compare(&h, true, rays(&h, 750, seed + 100));
+        }
     }
     println!("{hits} hits compared");
     assert!(hits > 10_000, "only {hits} hits");
@@ -150,8 +155,11 @@ fn deep_trees() {
             let size = f64::from(1 << 30) / f64::from(1u32 << levels);
             std::array::from_fn(|k| p[k] as f64 * size + f64::from(level) * size * 3.0 * f64::from((p[k] % 5) as i32))
         });
-        let hits = compare(&h, levels < 10, rays(&h, 1500, u64::from(levels)));
-        assert!(hits > 300, "N = {levels}: only {hits} hits");
+        for form in VertexForm::ALL {
+            let h = with_vertices(form, h.clone());
+            let hits = compare(&h, levels < 10, rays(&h, 750, u64::from(levels)));
+            assert!(hits > 150, "N = {levels}, {form:?}: only {hits} hits");
+        }
     }
 }
 
@@ -167,7 +175,10 @@ fn non_manifold_fans_and_loose_triangles() {
             let bump = if level == 0 { 0.0 } else { 2e7 / f64::from(level) };
             std::array::from_fn(|k| p[k] as f64 * scale + bump * (p[(k + 1) % 3] as f64 * 0.7).sin())
         });
-        hits += compare(&h, true, rays(&h, 4000, u64::from(levels)));
+        for form in VertexForm::ALL {
+            let h = with_vertices(form, h.clone());
+            hits += compare(&h, true, rays(&h, 2000, u64::from(levels)));
+        }
     }
     assert!(hits > 3000, "only {hits} hits");
 }
@@ -178,14 +189,16 @@ fn procedural_scenes() {
     for (kind, base, levels) in [(Terrain, 32, 4), (Cloth, 32, 3), (Sphere, 32, 4), (Spikes, 32, 3), (Room, 64, 2)] {
         let options = Options { levels: Some(levels), base: Some(base), ..Options::new(kind) };
         let surface = procedural::generate(&options).expect("options");
-        let scene = build(&surface);
-        let h = scene.decode();
-        let mut all = camera_rays(&scene, 24);
-        all.extend(rays(&h, 3000, 5));
-        let tried = all.len();
-        let hits = compare(&h, true, all);
-        println!("{kind:?}: {hits} hits of {tried} rays");
-        assert!(hits > 2000, "{kind:?}: only {hits} hits");
+        for form in VertexForm::ALL {
+            let scene = build_with(&surface, form);
+            let h = scene.decode();
+            let mut all = camera_rays(&scene, 17);
+            all.extend(rays(&h, 1500, 5));
+            let tried = all.len();
+            let hits = compare(&h, true, all);
+            println!("{kind:?}, {form:?}: {hits} hits of {tried} rays");
+            assert!(hits > 1000, "{kind:?}, {form:?}: only {hits} hits");
+        }
     }
 }
 
@@ -193,8 +206,8 @@ proptest! {
     #![proptest_config(cases(200))]
 
     #[test]
-    fn any_ball(levels in 0u32..=4, roughness in 0.0f64..4.0, seed: u64) {
-        let h = ball(levels, roughness, seed);
+    fn any_ball(levels in 0u32..=4, roughness in 0.0f64..4.0, seed: u64, form in prop::sample::select(&VertexForm::ALL[..])) {
+        let h = with_vertices(form, ball(levels, roughness, seed));
         compare(&h, true, rays(&h, 100, seed));
     }
 }

@@ -62,19 +62,24 @@ fn asserts(text: &str, name: &str) -> bool {
 
 #[test]
 fn each_rounding_is_called_by_a_test_that_asserts() {
-    let text = code(&read("src/num/round.rs"));
-    let program = without_tests(&text);
-    let names = |text: &str, before: &str| -> BTreeSet<String> {
-        text.match_indices(before)
-            .map(|(at, _)| text[at + before.len()..].chars().take_while(|&c| c == '_' || c.is_alphanumeric()).collect())
-            .collect()
-    };
-    let roundings: BTreeSet<String> = names(&program, "pub fn ").union(&names(&program, "pub const fn ")).cloned().collect();
-    assert!(roundings.len() >= 9, "{roundings:?}");
-    let tests: Vec<String> = names(&text, "fn ").difference(&names(&program, "fn ")).filter(|name| asserts(&text, name)).cloned().collect();
-    let called: BTreeSet<&str> = tests.iter().flat_map(|test| calls(body(&text, test).unwrap_or_default())).collect();
-    let left: Vec<_> = roundings.iter().filter(|name| !called.contains(name.as_str())).collect();
-    assert!(left.is_empty(), "no test of src/num/round.rs that asserts calls {left:?}");
+    let mut count = 0;
+    for file in ["src/num/round.rs", "src/num/displacement.rs", "src/num/step.rs"] {
+        let text = code(&read(file));
+        let program = without_tests(&text);
+        let names = |text: &str, before: &str| -> BTreeSet<String> {
+            text.match_indices(before)
+                .map(|(at, _)| text[at + before.len()..].chars().take_while(|&c| c == '_' || c.is_alphanumeric()).collect())
+                .collect()
+        };
+        let roundings: BTreeSet<String> = names(&program, "\npub fn ").union(&names(&program, "\npub const fn ")).cloned().collect();
+        count += roundings.len();
+        let tests: Vec<String> =
+            names(&text, "fn ").difference(&names(&program, "fn ")).filter(|name| asserts(&text, name)).cloned().collect();
+        let called: BTreeSet<&str> = tests.iter().flat_map(|test| calls(body(&text, test).unwrap_or_default())).collect();
+        let left: Vec<_> = roundings.iter().filter(|name| !called.contains(name.as_str())).collect();
+        assert!(left.is_empty(), "no test of {file} that asserts calls {left:?}");
+    }
+    assert!(count >= 12, "{count}");
 }
 
 #[test]

@@ -53,11 +53,8 @@ fn flip_flops(block: &str) -> u32 {
 #[test]
 fn what_is_kept_are_the_flip_flops_of_the_netlists() {
     // Bits that synthesis drops besides: products with a limb of one bit are no multiplications, and some signs repeat. At most 1 in 180.
-    let bound_decode = 2;
     let edge_function = 22;
     let besides = |block: &str| match block {
-        "bound_decode" => bound_decode,
-        "lod_test" => 3 * bound_decode,
         "tree_base" => 2,
         "tri_test" => 3 * edge_function,
         "tri_test-EDGES_PER_CYCLE=1" => edge_function,

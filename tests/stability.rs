@@ -7,8 +7,8 @@ use lodray::lab::growth::growth;
 use lodray::lab::hunt::hunt;
 use lodray::lab::{CASES, Case, FILE_CASES, Found, GOALS, Goal, Judge, Model, Scale, Shot, Tally, suite};
 use lodray::mesh::lattice;
-use lodray::num::MAX_LEVELS;
-use lodray_test_support::models::{ball, scene_of};
+use lodray::num::{MAX_LEVELS, VertexForm};
+use lodray_test_support::models::{ball, scene_of, with_vertices};
 use std::fs;
 use std::path::Path;
 use std::process::Output;
@@ -49,8 +49,7 @@ fn every_case_is_sound() {
 
 #[test]
 fn files_run_through_all_families() {
-    let h = ball(3, 0.6, 5);
-    let models = [Model::of_scene("ball", scene_of(&h))];
+    let models = VertexForm::ALL.map(|form| Model::of_scene("ball", scene_of(&with_vertices(form, ball(3, 0.6, 5)))));
     for case in FILE_CASES {
         let row = suite::shoot(case, &models, 20_000, 2, &|_| ());
         sound(case.name, &row.tally);

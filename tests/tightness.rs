@@ -1,8 +1,8 @@
 //! No ray visits a box in vain: which nodes, lines and triangles a traversal reads are those that boxes of their definition ask for, met in exact fractions.
 //!
 //! Equal hits do not show it: looser boxes, a looser box test or a worse order give the same hits for more lines. So the loop of the paper's figure 9
-//! is written here once more, as a plain recursion with boxes taken from the model's points (not from what the scene stores), widened and tested in
-//! exact arithmetic. Without a closest hit to drop what is behind it, every count is the same; with one, the blocks' rounded entry distances drop a
+//! is written here once more, as a plain recursion with boxes taken from the model's points (not from what the scene stores), in the steps that docs/numbers.md says,
+//! widened and tested in exact arithmetic. Without a closest hit to drop what is behind it, every count is the same; with one, the blocks' rounded entry distances drop a
 //! little later, by a share that is bounded. States of edges, morphed vertices and triangles come from the blocks: other tests compare those.
 
 use lodray::block::Block;
@@ -10,18 +10,20 @@ use lodray::block::lod_test::{self, LodTest};
 use lodray::block::tessellate::{self, Tessellate, child_triangle};
 use lodray::block::tri_test::{self, TriTest};
 use lodray::bvh::BvhChild32;
-use lodray::format::{BoundData, BvhChild, ChildRef, L0Record, VertexData, layout};
+use lodray::format::{BvhChild, BvhNode, ChildRef, Displacements, L0Record, Line, SiblingGroup, VertexData, layout};
 use lodray::mesh::{Hierarchy, lattice};
-use lodray::method::bvh::{self, BvhTraverser, FullBvh, FullNodes, FullOptions, LeafLayout};
+use lodray::method::bvh::{self, BvhTraverser, FullBvh, FullNodes, FullOptions, LeafLayout, NodeBoxes};
 use lodray::method::lod::{self, LodImage, LodTraverser};
 use lodray::method::{ClosestHit, Crossings, HitSink, TriangleId};
-use lodray::num::{LINE_BYTES, Point, Ray, U, Wire};
+use lodray::num::{BoundCode, LINE_BYTES, Point, Ray, U, VertexForm, Wire};
 use lodray::step::{SectionId, StepCounts};
-use lodray_test_support::models::{any_rays, ball, scene_of, terrain};
+use lodray_test_support::models::{any_rays, ball, scene_of, terrain, with_vertices};
 use lodray_test_support::slabs::{Fraction, slabs};
 
 /// Units of a box code.
 const STEP: i64 = 1 << 16;
+/// No wall lies farther out, in codes.
+const FARTHEST: i64 = 32_767;
 /// Steps of t in a whole one.
 const ONE_T: i128 = 1 << 32;
 
@@ -47,6 +49,60 @@ impl Bounds {
     fn at_codes(self) -> Self {
         Self { lo: self.lo.map(|v| v.div_euclid(STEP) * STEP), hi: self.hi.map(|v| -(-v).div_euclid(STEP) * STEP) }
     }
+
+    /// Its walls in codes, of a box that has them at whole ones.
+    fn codes(self) -> ([i64; 3], [i64; 3]) {
+        (self.lo.map(|v| v / STEP), self.hi.map(|v| v / STEP))
+    }
+
+    fn of_codes(lo: [i64; 3], hi: [i64; 3]) -> Self {
+        let within = |c: i64| c.clamp(-FARTHEST, FARTHEST) * STEP;
+        Self { lo: lo.map(within), hi: hi.map(within) }
+    }
+}
+
+/// Codes that whole steps reach, 1, 1 1/2, 2, 3, 4, 6, ... codes long and rounded down: the shortest steps of which `most` reach `extent` codes.
+fn reached(extent: i64, most: i64) -> Vec<i64> {
+    let lengths = (0..16).flat_map(|exponent| [2i64 << exponent, 3 << exponent]);
+    let length = lengths.into_iter().find(|length| most * length / 2 >= extent).expect("not that far");
+    (0..=most).map(|steps| steps * length / 2).collect()
+}
+
+/// The least of these that is not below `codes`, and the most that is not above.
+fn up(reached: &[i64], codes: i64) -> i64 {
+    reached[reached.partition_point(|&r| r < codes)]
+}
+fn down(reached: &[i64], codes: i64) -> i64 {
+    reached[reached.partition_point(|&r| r <= codes) - 1]
+}
+
+/// Boxes of four siblings, `own` those of their triangles and `all` those of what is below, as a group holds them: by how far they reach beyond their triangles, in 127 steps.
+fn in_excess(own: &[Bounds], all: &[Bounds]) -> Vec<Bounds> {
+    let corners = |b: &[Bounds]| b.iter().map(|b| b.at_codes().codes()).collect::<Vec<_>>();
+    let (own, all) = (corners(own), corners(all));
+    let excess = |k: usize, axis: usize| [own[k].0[axis] - all[k].0[axis], all[k].1[axis] - own[k].1[axis]];
+    let steps: [Vec<i64>; 3] =
+        std::array::from_fn(|axis| reached((0..4).flat_map(|k| excess(k, axis)).max().expect("four of them"), 127));
+    let stored = |k: usize| {
+        Bounds::of_codes(
+            std::array::from_fn(|axis| own[k].0[axis] - up(&steps[axis], excess(k, axis)[0])),
+            std::array::from_fn(|axis| own[k].1[axis] + up(&steps[axis], excess(k, axis)[1])),
+        )
+    };
+    (0..4).map(stored).collect()
+}
+
+/// Boxes at whole codes as a node of one line holds them: from the corner of all of them on, in 31 steps.
+fn in_frame(boxes: [Option<Bounds>; 4]) -> [Option<Bounds>; 4] {
+    let (origin, end) = around(boxes.iter().flatten()).codes();
+    let steps: [Vec<i64>; 3] = std::array::from_fn(|axis| reached(end[axis] - origin[axis], 31));
+    boxes.map(|b| {
+        let (lo, hi) = b?.codes();
+        Some(Bounds::of_codes(
+            std::array::from_fn(|axis| origin[axis] + down(&steps[axis], lo[axis] - origin[axis])),
+            std::array::from_fn(|axis| origin[axis] + up(&steps[axis], hi[axis] - origin[axis])),
+        ))
+    })
 }
 
 /// A ray, and what it did.
@@ -96,54 +152,66 @@ fn around<'a>(boxes: impl IntoIterator<Item = &'a Bounds>) -> Bounds {
     boxes.into_iter().copied().fold(Bounds::EMPTY, Bounds::with)
 }
 
-/// The boxes of the children of quad-BVH node `index` and of all below it, from those of its leaves; gives the box around them.
+/// The boxes of the children of quad-BVH node `index` and of all below it, from those of its leaves; gives the box around what is below. Nodes of one line have
+/// frames of their own.
 fn fill(
     boxes: &mut [[Option<Bounds>; 4]],
     index: usize,
+    is_line: bool,
     child: &impl Fn(usize, usize) -> ChildRef,
     leaf: &impl Fn(ChildRef) -> Bounds,
 ) -> Bounds {
-    for k in 0..4 {
+    let own: [Option<Bounds>; 4] = std::array::from_fn(|k| {
         let to = child(index, k);
-        boxes[index][k] = match to.kind.get() {
+        match to.kind.get() {
             ChildRef::EMPTY => None,
-            ChildRef::INNER => Some(fill(boxes, to.index.get() as usize, child, leaf)),
+            ChildRef::INNER => Some(fill(boxes, to.index.get() as usize, is_line, child, leaf)),
             _ => Some(leaf(to)),
-        };
-    }
-    around(boxes[index].iter().flatten())
+        }
+    });
+    boxes[index] = if is_line { in_frame(own) } else { own };
+    around(own.iter().flatten())
 }
 
 /// The LOD method.
 struct Lod<'a> {
     image: LodImage<'a>,
-    /// By level, then by node through all trees: the box around the finest triangles below.
+    /// By level but the first, then by node through all trees: the box of the finest triangles below, as its group holds it.
     trees: Vec<Vec<Bounds>>,
     /// Of each quad-BVH node's children.
     nodes: Vec<[Option<Bounds>; 4]>,
 }
 
+/// A node's corners, of full resolution and as morphed.
+type Corners = [[Point; 3]; 2];
+
 impl<'a> Lod<'a> {
     fn new(h: &Hierarchy, image: LodImage<'a>) -> Self {
-        let finest = |tree: usize| {
-            let at = move |p| h.tree(tree)[lattice::index(h.levels, p)].map(i64::from);
-            (0..1u32 << (2 * h.levels)).map(move |node| Bounds::around(lattice::node(h.levels, h.levels, node).map(at)))
+        let own = |level: u32| -> Vec<Bounds> {
+            let of_tree = |tree: usize| {
+                let at = move |p| h.tree(tree)[lattice::index(h.levels, p)].map(i64::from);
+                (0..1u32 << (2 * level)).map(move |node| Bounds::around(lattice::node(h.levels, level, node).map(at)))
+            };
+            (0..h.triangles.len()).flat_map(of_tree).collect()
         };
-        let mut trees = vec![(0..h.triangles.len()).flat_map(finest).collect::<Vec<_>>()];
-        for _ in 0..h.levels {
-            let above = trees[trees.len() - 1].chunks(4).map(around).collect();
-            trees.push(above);
+        let mut below = own(h.levels);
+        let mut trees = Vec::new();
+        for level in (1..=h.levels).rev() {
+            let groups = own(level);
+            trees.push(groups.chunks(4).zip(below.chunks(4)).flat_map(|(own, all)| in_excess(own, all)).collect());
+            below = below.chunks(4).map(around).collect();
         }
+        trees.push(Vec::new()); // roots are in no group
         trees.reverse();
         let mut nodes = vec![[None; 4]; image.nodes.len()];
-        fill(&mut nodes, 0, &|at, k| bvh_child(&image.nodes[at], k), &|to| trees[0][to.index.get() as usize].at_codes());
+        fill(&mut nodes, 0, true, &|at, k| line_child(&image.nodes[at], k), &|to| below[to.index.get() as usize].at_codes());
         Self { image, trees, nodes }
     }
 
     fn node<H: HitSink>(&self, walk: &mut Walk<'_, H>, index: usize) {
-        walk.reads(lod::NODES, 2);
+        walk.reads(lod::NODES, 1);
         walk.children(self.nodes[index], |walk, k| {
-            let to = bvh_child(&self.image.nodes[index], k);
+            let to = line_child(&self.image.nodes[index], k);
             let at = to.index.get() as usize;
             if to.kind.get() == ChildRef::INNER { self.node(walk, at) } else { self.tree(walk, at) }
         });
@@ -151,45 +219,61 @@ impl<'a> Lod<'a> {
 
     fn tree<H: HitSink>(&self, walk: &mut Walk<'_, H>, tree: usize) {
         walk.reads(lod::RECORDS, 2);
-        let record = &self.image.records[tree];
-        let p = VertexData::from_words(&record[..4]).points();
-        self.tree_node(walk, TriangleId { tree: tree as u32, level: 0, node: 0 }, p, &L0Record::from_words(&record[4..]).root);
+        let p = VertexData::from_words(&self.image.records[tree][..4]).points();
+        let L0Record { e0, e1, e2, .. } = self.record(tree);
+        self.tree_node(walk, TriangleId { tree: tree as u32, level: 0, node: 0 }, [p, p], [e0, e1, e2]);
     }
 
-    fn tree_node<H: HitSink>(&self, walk: &mut Walk<'_, H>, id: TriangleId, p: [Point; 3], codes: &BoundData) {
-        let levels = self.image.levels;
+    fn record(&self, tree: usize) -> L0Record {
+        L0Record::from_words(&self.image.records[tree][4..])
+    }
+
+    /// A node's inserted vertices as they are stored, and how many lines they are.
+    fn stored(&self, TriangleId { tree, level, node }: TriangleId) -> ([Point; 3], u64) {
+        let (tree, image) = (tree as usize, &self.image);
+        let line = || &image.vertices[layout::vertex_line(image.form, image.levels, tree, level, node as usize)];
+        match image.form {
+            VertexForm::Exact => (VertexData::from_words(line()).points(), 1),
+            // With the record.
+            VertexForm::Compact if level == 0 => (self.record(tree).split.steps(), 0),
+            VertexForm::Compact => (Displacements::half(line(), node as usize).steps(), 1),
+        }
+    }
+
+    fn tree_node<H: HitSink>(&self, walk: &mut Walk<'_, H>, id: TriangleId, [f, p]: Corners, [e0, e1, e2]: [BoundCode; 3]) {
+        let (levels, scale) = (self.image.levels, self.image.scale);
         let TriangleId { tree, level, node } = id;
         if level == levels {
             return walk.triangle(id, p);
         }
-        let [p0, p1, p2] = p;
-        let BoundData { e0, e1, e2, .. } = *codes;
-        let lod = LodTest::eval(&lod_test::In { ray: *walk.ray, p0, p1, p2, e0, e1, e2, scale: self.image.scale });
+        let ([f0, f1, f2], [p0, p1, p2]) = (f, p);
+        let lod = LodTest::eval(&lod_test::In { ray: *walk.ray, p0, p1, p2, e0, e1, e2, scale });
         walk.counts.lod_tests += 1;
         if !lod.refine {
             return walk.triangle(id, p);
         }
-        walk.reads(lod::VERTICES, 1);
-        let line = layout::vertex_line(levels, tree as usize, level, node as usize);
-        let [q0, q1, q2] = VertexData::from_words(&self.image.vertices[line]).points();
-        let grid = U::new(u64::from(levels - level - 1));
-        let t = Tessellate::eval(&tessellate::In { grid, s0: lod.s0, s1: lod.s1, s2: lod.s2, p0, p1, p2, q0, q1, q2 });
-        let corners: [[Point; 3]; 4] = std::array::from_fn(|k| child_triangle(p, [t.q0, t.q1, t.q2], k));
+        let ([v0, v1, v2], lines) = self.stored(id);
+        walk.reads(lod::VERTICES, lines);
+        let (compact, grid) = (self.image.form == VertexForm::Compact, U::new(u64::from(levels - level - 1)));
+        let lod_test::Out { s0, s1, s2, .. } = lod;
+        let t = Tessellate::eval(&tessellate::In { compact, grid, scale, e0, e1, e2, s0, s1, s2, f0, f1, f2, p0, p1, p2, v0, v1, v2 });
+        let corners: [Corners; 4] =
+            std::array::from_fn(|k| [child_triangle(f, [t.g0, t.g1, t.g2], k), child_triangle(p, [t.q0, t.q1, t.q2], k)]);
         let below = |k: usize| TriangleId { tree, level: level + 1, node: 4 * node + k as u32 };
         if level + 1 == levels {
-            return (0..4).for_each(|k| walk.triangle(below(k), corners[k]));
+            return (0..4).for_each(|k| walk.triangle(below(k), corners[k][1]));
         }
-        walk.reads(lod::BOUNDS, 2);
+        walk.reads(lod::BOUNDS, 1);
         let first = ((tree as usize) << (2 * (level + 1))) + 4 * node as usize;
         let stored = &self.trees[level as usize + 1][first..first + 4];
-        let boxes = std::array::from_fn(|k| Some(stored[k].with(Bounds::around(corners[k].map(|p| p.get()))).at_codes()));
-        let group = &self.image.bounds[layout::child_group(levels, tree as usize, level, node as usize)];
-        walk.children(boxes, |walk, k| self.tree_node(walk, below(k), corners[k], &BoundData::from_words(&group[2 * k..2 * k + 2])));
+        let boxes = std::array::from_fn(|k| Some(stored[k].with(Bounds::around(corners[k][1].map(|p| p.get())).at_codes())));
+        let group = SiblingGroup::from_words(&self.image.bounds[layout::child_group(levels, tree as usize, level, node as usize)]);
+        walk.children(boxes, |walk, k| self.tree_node(walk, below(k), corners[k], group.codes_of(k)));
     }
 }
 
-fn bvh_child(group: &[u64; 8], k: usize) -> ChildRef {
-    BvhChild::from_words(&group[2 * k..2 * k + 2]).child
+fn line_child(line: &Line, k: usize) -> ChildRef {
+    BvhNode::from_words(line).child(k)
 }
 
 /// The baseline.
@@ -201,18 +285,23 @@ struct Full<'a> {
 impl<'a> Full<'a> {
     fn new(bvh: &'a FullBvh) -> Self {
         let points = |slot| bvh.leaves.triangle(slot).0.map(|p: [i32; 3]| p.map(i64::from));
-        let is_wide = matches!(*bvh.nodes, FullNodes::Boxes32(_));
+        let (is_wide, is_line) = (matches!(*bvh.nodes, FullNodes::Boxes32(_)), matches!(*bvh.nodes, FullNodes::Local(_)));
         let leaf = |to: ChildRef| {
             let bounds = Bounds::around(slots(to).flat_map(points));
             if is_wide { bounds } else { bounds.at_codes() }
         };
         let mut nodes = vec![[None; 4]; bvh.nodes.len()];
-        fill(&mut nodes, 0, &|at, k| full_child(bvh, at, k), &leaf);
+        fill(&mut nodes, 0, is_line, &|at, k| full_child(bvh, at, k), &leaf);
         Self { bvh, nodes }
     }
 
     fn node<H: HitSink>(&self, walk: &mut Walk<'_, H>, index: usize) {
-        walk.reads(bvh::NODES, if matches!(*self.bvh.nodes, FullNodes::Boxes32(_)) { 4 } else { 2 });
+        let lines = match *self.bvh.nodes {
+            FullNodes::Local(_) => 1,
+            FullNodes::Boxes16(_) => 2,
+            FullNodes::Boxes32(_) => 4,
+        };
+        walk.reads(bvh::NODES, lines);
         walk.children(self.nodes[index], |walk, k| {
             let to = full_child(self.bvh, index, k);
             if to.kind.get() == ChildRef::INNER {
@@ -232,7 +321,8 @@ impl<'a> Full<'a> {
 
 fn full_child(bvh: &FullBvh, index: usize, k: usize) -> ChildRef {
     match &*bvh.nodes {
-        FullNodes::Boxes16(nodes) => bvh_child(&nodes[index], k),
+        FullNodes::Local(nodes) => line_child(&nodes[index], k),
+        FullNodes::Boxes16(nodes) => BvhChild::from_words(&nodes[index][2 * k..2 * k + 2]).child,
         FullNodes::Boxes32(nodes) => BvhChild32::from_words(&nodes[index][4 * k..4 * k + 4]).child,
     }
 }
@@ -275,10 +365,13 @@ impl Sums {
 /// Rays of both methods at a model: without a closest hit every count is the same for every ray.
 fn compare(h: &Hierarchy, rays: &[Ray], lod: &mut Sums, full: &mut Sums) {
     let scene = scene_of(h);
+    // Its trees have an order of their own.
+    let h = &scene.decode();
     let exact = Lod::new(h, LodImage::of(&scene));
     let mut blocks = LodTraverser::new(LodImage::of(&scene));
-    let variants = [(false, LeafLayout::Line, 4), (false, LeafLayout::Packed, 2), (true, LeafLayout::Indexed, 1)];
-    let bvhs = variants.map(|(wide, layout, size)| FullBvh::build(h, &FullOptions::new(size, wide, layout)).expect("a valid model"));
+    let variants =
+        [(NodeBoxes::Local, LeafLayout::Line, 4), (NodeBoxes::Codes, LeafLayout::Packed, 2), (NodeBoxes::Wide, LeafLayout::Indexed, 1)];
+    let bvhs = variants.map(|(boxes, layout, size)| FullBvh::build(h, &FullOptions::new(size, boxes, layout)).expect("a valid model"));
     for ray in rays {
         let (mut counts, mut sink) = (StepCounts::default(), Crossings::default());
         blocks.trace(ray, &mut counts, &mut sink);
@@ -321,7 +414,9 @@ fn every_box_that_is_visited_is_met_and_no_other() {
     for seed in 0..10u64 {
         let levels = seed as u32 % 5;
         let roughness = [0.05, 0.4, 1.5][seed as usize % 3];
+        let form = VertexForm::ALL[seed as usize % 2];
         for h in [ball(levels, roughness, seed), terrain(3, levels, roughness, seed)] {
+            let h = with_vertices(form, h);
             compare(&h, &any_rays(&h, 400, seed), &mut lod, &mut full);
         }
     }

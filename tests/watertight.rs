@@ -5,9 +5,9 @@ use lodray::lab::crack::{Closedness, CrackReport, closedness, measure};
 use lodray::mesh::procedural::{self, Options};
 use lodray::mesh::{Hierarchy, RemeshOptions, TriangleMesh, remesh};
 use lodray::method::lod::LodImage;
-use lodray::num::COORD_LIMIT;
+use lodray::num::{COORD_LIMIT, VertexForm};
 use lodray::rays::ModelSpace;
-use lodray_test_support::models::{ball, build, model, octahedron, scene_of};
+use lodray_test_support::models::{ball, build, build_with, model, octahedron, scene_of, with_vertices};
 
 /// Rays over all models; `LODRAY_RAYS` asks for more.
 fn total() -> u64 {
@@ -50,25 +50,23 @@ fn remeshed_box() -> Scene {
 #[test]
 fn closed_models_have_neither_misses_nor_double_hits() {
     let mut models: Vec<(String, Hierarchy, Scene)> = Vec::new();
+    let mut add = |name: String, scene: Scene| models.push((format!("{name}, {} vertices", scene.meta().vertices.name()), scene.decode(), scene));
     for (levels, roughness) in [(0, 0.3), (1, 1.0), (3, 0.1), (3, 2.0), (5, 0.6)] {
-        let h = ball(levels, roughness, u64::from(levels));
-        let scene = scene_of(&h);
-        models.push((format!("ball N = {levels}, roughness {roughness}"), h, scene));
+        for form in VertexForm::ALL {
+            let h = with_vertices(form, ball(levels, roughness, u64::from(levels)));
+            add(format!("ball N = {levels}, roughness {roughness}"), scene_of(&h));
+        }
     }
     for kind in [procedural::Scene::Sphere, procedural::Scene::Spikes] {
         let options = Options { levels: Some(4), base: Some(128), ..Options::new(kind) };
         let surface = procedural::generate(&options).expect("options");
-        let scene = build(&surface);
-        models.push((format!("{kind:?}"), scene.decode(), scene));
+        VertexForm::ALL.into_iter().for_each(|form| add(format!("{kind:?}"), build_with(&surface, form)));
     }
-
     for turned in [false, true] {
-        let h = large(4, turned);
-        let scene = scene_of(&h);
-        models.push((format!("to the limit, turned {turned}"), h, scene));
+        let scenes = VertexForm::ALL.map(|form| scene_of(&with_vertices(form, large(4, turned))));
+        scenes.into_iter().for_each(|scene| add(format!("to the limit, turned {turned}"), scene));
     }
-    let scene = remeshed_box();
-    models.push(("remeshed box".to_owned(), scene.decode(), scene));
+    add("remeshed box".to_owned(), remeshed_box());
 
     let each = total().div_ceil(models.len() as u64);
     let mut rays = 0;

@@ -2,28 +2,77 @@
 
 /// The inserted vertices. Coordinates in units; a vertex of grid g has its low g bits zero.
 
-/// One vertex, full width: midpoints are exact, the full-resolution vertex is the stored one or its displacement from the midpoint of the full-resolution edge, the morphed
-/// vertex lies between the midpoint of the morphed edge and it, on the grid, and nothing overflows.
-module morph_between (
-  input logic                             clk_i,
-  input logic                             rst_ni,
-  input logic                             compact_i,
-  input logic [4:0]                       shift_i,
-  input logic [lod_pkg::POINT_W-1:0]      fa_i,
-  input logic [lod_pkg::POINT_W-1:0]      fb_i,
-  input logic [lod_pkg::POINT_W-1:0]      pa_i,
-  input logic [lod_pkg::POINT_W-1:0]      pb_i,
-  input logic [lod_pkg::POINT_W-1:0]      v_i,
-  input logic [lod_pkg::EDGE_STATE_W-1:0] s_i,
-  input logic [3:0]                       grid_i
+/// One vertex at full resolution, full width: midpoints are exact, it is the stored one or its displacement from the midpoint of the full-resolution edge, and nothing
+/// overflows.
+module morph_full (
+  input logic                        clk_i,
+  input logic                        rst_ni,
+  input logic                        compact_i,
+  input logic [4:0]                  shift_i,
+  input logic [lod_pkg::POINT_W-1:0] fa_i,
+  input logic [lod_pkg::POINT_W-1:0] fb_i,
+  input logic [lod_pkg::POINT_W-1:0] v_i,
+  input logic [3:0]                  grid_i
 );
 
   localparam logic signed [39:0] LIMIT = 40'sh00_7ffe_0000;
 
+  logic [lod_pkg::POINT_W-1:0] full;
+  logic                        valid, ready;
+  morph_vertex u_morph (
+    .clk_i, .rst_ni, .valid_i(1'b1), .ready_o(ready), .compact_i, .shift_i, .grid_i, .s_i('0), .fa_i, .fb_i, .pa_i('0), .pb_i('0), .v_i,
+    .valid_o(valid), .ready_i(1'b1), .full_o(full), .morphed_o()
+  );
+
+  logic [31:0] corner_grid, vertex_grid;
+  assign vertex_grid = (32'd1 << grid_i) - 32'd1;
+  assign corner_grid = {vertex_grid[30:0], 1'b1};
+
+  logic [2:0] legal, middle, exact;
+  for (genvar k = 0; k < 3; k++) begin : g_coordinate
+    logic signed [31:0] a, b, v, got;
+    logic signed [32:0] sum;
+    // With room for displacements of 13 bits, shifted by 21.
+    logic signed [39:0] wide_a, wide_b, half_sum, g;
+    assign {a, b}           = {fa_i[32*k +: 32], fb_i[32*k +: 32]};
+    assign {v, got}         = {v_i[32*k +: 32], full[32*k +: 32]};
+    assign {wide_a, wide_b} = {40'(a), 40'(b)};
+    assign sum              = 33'(a) + 33'(b);
+    assign half_sum         = 40'(sum) >>> 1;
+    assign g                = compact_i ? half_sum + (40'(v) <<< shift_i) : 40'(v);
+    assign legal[k] = ((a | b) & corner_grid) == '0 && wide_a <= LIMIT && wide_a >= -LIMIT && wide_b <= LIMIT && wide_b >= -LIMIT
+      && (!compact_i || (v >= -32'sd4096 && v <= 32'sd4095)) && g <= LIMIT && g >= -LIMIT;
+    // Parity: the midpoint of two corners is whole, and on the grid of the vertex.
+    assign middle[k] = !sum[0] && (half_sum[31:0] & vertex_grid) == '0;
+    assign exact[k]  = 40'(got) == g;
+  end
+
+  always_comb begin
+    assume (grid_i <= 4'(lod_pkg::MAX_LEVELS - 1) && shift_i <= 5'd21);
+    assume (legal == '1);
+    assert (middle == '1);
+    assert (exact == '1);
+    assert (valid && ready);
+    cover (compact_i && shift_i == 5'd21 && v_i[31:0] == 32'hffff_f830 && full[31:0] == 32'h8002_0000);
+    cover (!compact_i && v_i[31:0] == 32'h7ffe_0000 && fa_i[31:0] == 32'h8002_0000 && fb_i[31:0] == 32'h8002_0000);
+  end
+
+endmodule
+
+/// One morphed vertex, full width, with the vertex at full resolution free: it lies between the midpoint of the morphed edge and that, on the grid, and nothing overflows.
+module morph_between (
+  input logic                             clk_i,
+  input logic                             rst_ni,
+  input logic [lod_pkg::POINT_W-1:0]      pa_i,
+  input logic [lod_pkg::POINT_W-1:0]      pb_i,
+  input logic [lod_pkg::EDGE_STATE_W-1:0] s_i,
+  input logic [3:0]                       grid_i
+);
+
   logic [lod_pkg::POINT_W-1:0] full, morphed;
   logic                        valid, ready;
   morph_vertex u_morph (
-    .clk_i, .rst_ni, .valid_i(1'b1), .ready_o(ready), .compact_i, .shift_i, .grid_i, .s_i, .fa_i, .fb_i, .pa_i, .pb_i, .v_i,
+    .clk_i, .rst_ni, .valid_i(1'b1), .ready_o(ready), .compact_i(1'b0), .shift_i('0), .grid_i, .s_i, .fa_i('0), .fb_i('0), .pa_i, .pb_i, .v_i('0),
     .valid_o(valid), .ready_i(1'b1), .full_o(full), .morphed_o(morphed)
   );
 
@@ -31,48 +80,33 @@ module morph_between (
   assign vertex_grid = (32'd1 << grid_i) - 32'd1;
   assign corner_grid = {vertex_grid[30:0], 1'b1};
 
-  logic [2:0] legal, middle, whole, between, ends, further;
+  logic [2:0] legal, between, ends, further;
   for (genvar k = 0; k < 3; k++) begin : g_coordinate
-    logic signed [31:0] fa, fb, pa, pb, v, got, q;
-    // With room for displacements of 13 bits, shifted by 21.
-    logic signed [39:0] full_middle, morphed_middle, g, wide_q, low, high;
-    logic signed [32:0] full_sum, morphed_sum;
-    assign {fa, fb, pa, pb} = {fa_i[32*k +: 32], fb_i[32*k +: 32], pa_i[32*k +: 32], pb_i[32*k +: 32]};
-    assign {v, got, q}      = {v_i[32*k +: 32], full[32*k +: 32], morphed[32*k +: 32]};
-    assign full_sum         = 33'(fa) + 33'(fb);
-    assign morphed_sum      = 33'(pa) + 33'(pb);
-    assign full_middle      = 40'(full_sum) >>> 1;
-    assign morphed_middle   = 40'(morphed_sum) >>> 1;
-    assign g                = compact_i ? full_middle + (40'(v) <<< shift_i) : 40'(v);
-    assign wide_q           = 40'(q);
-    assign low              = morphed_middle < g ? morphed_middle : g;
-    assign high             = morphed_middle < g ? g : morphed_middle;
-    assign legal[k] = ((fa | fb | pa | pb) & corner_grid) == '0 && (g[31:0] & vertex_grid) == '0 && g <= LIMIT && g >= -LIMIT
-      && (!compact_i || (v >= -32'sd4096 && v <= 32'sd4095))
-      && 40'(fa) <= LIMIT && 40'(fa) >= -LIMIT && 40'(fb) <= LIMIT && 40'(fb) >= -LIMIT && 40'(pa) <= LIMIT && 40'(pa) >= -LIMIT && 40'(pb) <= LIMIT && 40'(pb) >= -LIMIT;
-    // Parity: the midpoint of two corners is whole, and on the grid of the vertex.
-    assign middle[k]  = !full_sum[0] && !morphed_sum[0] && (morphed_middle[31:0] & vertex_grid) == '0 && (full_middle[31:0] & vertex_grid) == '0;
-    assign whole[k]   = 40'(got) == g;
-    assign between[k] = low <= wide_q && wide_q <= high && (q & vertex_grid) == '0;
-    assign ends[k]    = (s_i != '0 || wide_q == morphed_middle) && (s_i != lod_pkg::EDGE_STATE_W'(lod_pkg::S_ONE) || wide_q == g);
-    assign further[k] = wide_q != morphed_middle && wide_q != g;
+    logic signed [31:0] a, b, g, q, m, low, high;
+    logic signed [32:0] sum;
+    assign {a, b, g, q} = {pa_i[32*k +: 32], pb_i[32*k +: 32], full[32*k +: 32], morphed[32*k +: 32]};
+    assign sum          = 33'(a) + 33'(b);
+    assign m            = sum[32:1];
+    assign low          = m < g ? m : g;
+    assign high         = m < g ? g : m;
+    assign legal[k]     = (a & corner_grid) == '0 && (b & corner_grid) == '0 && (g & vertex_grid) == '0;
+    assign between[k]   = low <= q && q <= high && (q & vertex_grid) == '0;
+    assign ends[k]      = (s_i != '0 || q == m) && (s_i != lod_pkg::EDGE_STATE_W'(lod_pkg::S_ONE) || q == g);
+    assign further[k]   = q != m && q != g;
   end
 
   for (genvar k = 0; k < 3; k++) begin : g_proved
     always_comb begin
-      assert (middle[k]);
-      assert (whole[k]);
       assert (between[k]);
       assert (ends[k]);
     end
   end
   always_comb begin
-    assume (grid_i <= 4'(lod_pkg::MAX_LEVELS - 1) && s_i <= lod_pkg::EDGE_STATE_W'(lod_pkg::S_ONE) && shift_i <= 5'd21);
+    assume (grid_i <= 4'(lod_pkg::MAX_LEVELS - 1) && s_i <= lod_pkg::EDGE_STATE_W'(lod_pkg::S_ONE));
     assume (legal == '1);
     assert (valid && ready);
-    cover (compact_i && shift_i == 5'd21 && s_i == 9'd128 && further == '1 && v_i[31]);
-    cover (!compact_i && grid_i == 4'd9 && s_i == 9'd128 && further == '1);
-    cover (!compact_i && grid_i == 4'd0 && pa_i[31:0] == 32'h8002_0000 && pb_i[31:0] == 32'h8002_0000 && v_i[31:0] == 32'h7ffe_0000 && s_i == 9'd255);
+    cover (grid_i == 4'd9 && s_i == 9'd128 && further == '1 && full[31]);
+    cover (grid_i == 4'd0 && pa_i[31:0] == 32'h8002_0000 && pb_i[31:0] == 32'h8002_0000 && full[31:0] == 32'h7ffe_0000 && s_i == 9'd255);
   end
 
 endmodule

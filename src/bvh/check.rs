@@ -126,6 +126,7 @@ pub(crate) fn synthetic_terrain(quads: u32, levels: u32) -> crate::mesh::Hierarc
         triangles: vec![],
         points: vec![],
         bounds: EdgeCodes::default(),
+        vertices: crate::num::VertexForm::Exact,
     };
     for qy in 0..quads {
         for qx in 0..quads {
@@ -151,7 +152,7 @@ pub(crate) fn synthetic_terrain(quads: u32, levels: u32) -> crate::mesh::Hierarc
 mod tests {
     use super::*;
     use crate::bvh::{BvhError, Collapse, Options, build, build::Prim, build_nodes, over_trees};
-    use crate::format::{Box16, BvhChild, ChildRef};
+    use crate::format::{Box16, BvhNode, ChildRef, TreeBvh};
     use crate::num::{COORD_LIMIT, Wire};
     use proptest::prelude::*;
 
@@ -311,7 +312,7 @@ mod tests {
     }
 
     #[test]
-    fn leaves_over_trees_name_the_tree_and_keep_its_box() {
+    fn leaves_over_trees_name_the_tree_and_hold_its_box() {
         let mut r = Random(11);
         for count in [1, 2, 5, 4000] {
             let boxes: Vec<Box16> = (0..count)
@@ -321,13 +322,15 @@ mod tests {
                 })
                 .collect();
             let mut seen = vec![false; boxes.len()];
-            for node in over_trees(&boxes).unwrap() {
+            let TreeBvh { nodes, order } = over_trees(&boxes).unwrap();
+            for node in nodes.iter().map(|line| BvhNode::from_words(line)) {
                 for k in 0..4 {
-                    let c = BvhChild::from_words(&node[2 * k..]);
-                    if c.child.kind.get() == ChildRef::LEAF {
-                        assert_eq!(c.child.count.get(), 0);
-                        let tree = c.child.index.get() as usize;
-                        assert_eq!(c.bounds, boxes[tree]);
+                    let child = node.child(k);
+                    if child.kind.get() == ChildRef::LEAF {
+                        assert_eq!(child.count.get(), 0);
+                        let tree = order[child.index.get() as usize] as usize;
+                        let (stored, own) = (node.bounds(k), boxes[tree]);
+                        assert!((0..3).all(|c| stored.lo.get()[c] <= own.lo.get()[c] && stored.hi.get()[c] >= own.hi.get()[c]));
                         assert!(!std::mem::replace(&mut seen[tree], true));
                     }
                 }
@@ -346,6 +349,7 @@ mod tests {
             }).collect();
             let tree = build(&boxes, &Options::with_leaf(max_leaf)).unwrap();
             prop_assert_eq!(check(&tree, &boxes), Ok(()));
+            prop_assert_eq!(check(&tree.side_by_side(), &boxes), Ok(()));
         }
     }
 }

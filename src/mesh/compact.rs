@@ -50,21 +50,26 @@ pub(super) fn compact(levels: u32, points: &mut [[i32; 3]], bounds: &EdgeCodes) 
 fn within(a: i32, b: i32, steps: i32, shift: u32) -> i32 {
     let middle = displaced(a, b, 0, shift);
     // The midpoint keeps to the limit, and so does whatever lies towards it.
-    let most = (if steps < 0 { COORD_LIMIT + middle } else { COORD_LIMIT - middle }) >> shift;
+    let room = i64::from(COORD_LIMIT) + if steps < 0 { i64::from(middle) } else { -i64::from(middle) };
+    // 13 bits at most.
+    let most = (room >> shift).min(4095) as i32;
     displaced(a, b, steps.clamp(-most, most), shift)
 }
 
 #[cfg(test)]
 mod tests {
+    use super::super::bounds::edge_codes;
     use super::super::procedural::{Options, Scene, generate};
-    use super::super::{BoundKind, Hierarchy, quantise};
+    use super::super::{BoundKind, Hierarchy, SharedEdges, quantise};
     use super::*;
+    use crate::num::bound_decode;
 
+    /// Twice the displacement of the vertex on an edge, and the edge's code.
     fn displacement(h: &Hierarchy, tree: usize, level: u32, p: [lattice::LatticePoint; 3], edge: usize) -> ([i64; 3], u8) {
         let points = h.tree(tree);
         let at = |place| points[lattice::index(h.levels, place)].map(i64::from);
         let (a, b, q) = (at(p[(edge + 1) % 3]), at(p[(edge + 2) % 3]), at(lattice::midpoints(p)[edge]));
-        (std::array::from_fn(|c| q[c] - (a[c] + b[c]) / 2), h.node_codes(tree, level, p)[edge])
+        (std::array::from_fn(|c| 2 * q[c] - a[c] - b[c]), h.node_codes(tree, level, p)[edge])
     }
 
     #[test]
@@ -72,36 +77,42 @@ mod tests {
         for scene in [Scene::Terrain, Scene::Cloth, Scene::Sphere, Scene::Spikes] {
             let levels = 4;
             let surface = generate(&Options { levels: Some(levels), base: Some(6), ..Options::new(scene) }).unwrap();
-            let exact = quantise(&surface, BoundKind::Total, VertexForm::Exact).unwrap();
-            let small = quantise(&surface, BoundKind::Total, VertexForm::Compact).unwrap();
-            assert_eq!(small.placement, exact.placement);
-            // What the module's head states, with half the grid of the base for its rounding in each form.
-            let mut reach = 3f64.sqrt() * f64::from(1 << levels);
+            let mut before = quantise(&surface, BoundKind::Total, VertexForm::Exact).unwrap();
+            let m = 1u32 << levels;
+            let places: Vec<_> = (0..=m).flat_map(|j| (0..=m - j).map(move |i| (i, j))).collect();
+            for (point, place) in before.points.iter_mut().zip(places.iter().cycle()) {
+                let bits = VertexForm::Compact.zero_bits(levels - lattice::level_of(levels, *place));
+                *point = point.map(|c| (c >> bits) << bits);
+            }
+            before.bounds = edge_codes(BoundKind::Total, levels, &before.points, &SharedEdges::new(&before.triangles));
+            let mut after = before.clone();
+            compact(levels, &mut after.points, &after.bounds);
+
+            let (mut reach, mut shorter) = (0.0, 0);
             for level in 0..levels {
                 let mut step = 0;
-                for tree in 0..small.triangles.len() {
-                    for node in 0..1u32 << (2 * level) {
-                        let p = lattice::node(levels, level, node);
-                        for edge in 0..3 {
-                            let ((small_d, code), (exact_d, _)) = (displacement(&small, tree, level, p, edge), displacement(&exact, tree, level, p, edge));
-                            let shift = displacement_shift(small.bounds.scale, code, inserted_zero_bits(levels, level));
-                            step = step.max(shift);
-                            for c in 0..3 {
-                                assert_eq!(small_d[c] & ((1 << shift) - 1), 0);
-                                assert!((-4096..4096).contains(&(small_d[c] >> shift)));
-                                // Both were snapped, by half a step of 2^(grid + 4) each and their ends by twice that, before displacements were taken.
-                                let slack = 4i64 << inserted_zero_bits(levels, level);
-                                assert!(small_d[c].abs() <= exact_d[c].abs() + slack, "{scene:?}");
-                            }
+                for (tree, node) in (0..after.triangles.len()).flat_map(|tree| (0..1u32 << (2 * level)).map(move |node| (tree, node))) {
+                    let p = lattice::node(levels, level, node);
+                    for edge in 0..3 {
+                        let ((new, code), (old, _)) = (displacement(&after, tree, level, p, edge), displacement(&before, tree, level, p, edge));
+                        let shift = displacement_shift(after.bounds.scale, code, inserted_zero_bits(levels, level));
+                        step = step.max(shift);
+                        for (new, old) in new.into_iter().zip(old) {
+                            assert!(new.abs() <= old.abs() && new * old >= 0, "{scene:?}: {new} of {old}");
+                            assert!(new & ((2 << shift) - 1) == 0 && (-4096..4096).contains(&(new >> (shift + 1))));
+                            shorter += u32::from(new != old);
                         }
                     }
                 }
                 reach += 3f64.sqrt() * f64::from(1 << step);
             }
-            reach += 3f64.sqrt() * f64::from(1 << (levels + 4));
             let far = |(p, q): (&[i32; 3], &[i32; 3])| (0..3).map(|c| f64::from(p[c] - q[c]).powi(2)).sum::<f64>().sqrt();
-            let most = small.points.iter().zip(&exact.points).map(far).fold(0.0, f64::max);
-            assert!(most <= reach && most > 0.0, "{scene:?}: {most} of {reach}");
+            let most = after.points.iter().zip(&before.points).map(far).fold(0.0, f64::max);
+            assert!(most <= reach && shorter > 0, "{scene:?}: {most} of {reach}, {shorter} shorter");
+            // So all bounds hold that held.
+            let again = edge_codes(BoundKind::Total, levels, &after.points, &SharedEdges::new(&after.triangles));
+            let decoded = |bounds: &EdgeCodes| bounds.codes.iter().map(|&code| bound_decode(bounds.scale, code)).collect::<Vec<_>>();
+            assert!(decoded(&again).iter().zip(decoded(&after.bounds)).all(|(new, old)| *new <= old));
         }
     }
 
@@ -113,5 +124,6 @@ mod tests {
         assert_eq!(within(-top, -top, -5, shift), -top);
         assert_eq!(within(top, top - (2 << shift), 5, shift), top);
         assert_eq!(within(0, 0, 5, shift), 5 << shift);
+        assert_eq!(within(-top, -top, 5, shift), -top + (5 << shift));
     }
 }

@@ -3,11 +3,15 @@
 use crate::draw::Draw;
 use crate::suite::{Category, Suite};
 use lodray::block::bound_decode::{BoundDecode, In};
-use lodray::num::{LARGEST_BOUND, U, bound_scale};
+use lodray::num::{BoundScale, MAX_BOUND_OFFSET, U};
 use tb::Mode;
 
 fn random(draw: &mut Draw) -> In {
-    In { code: U::new(draw.below(1024)), scale: draw.scale() }
+    In { code: U::new(draw.below(256)), scale: draw.scale() }
+}
+
+fn with_offset(draw: &mut Draw, offset: u64) -> In {
+    In { code: draw.bits(), scale: BoundScale { offset: U::new(offset) } }
 }
 
 fn no_code(draw: &mut Draw) -> In {
@@ -18,28 +22,29 @@ fn largest_code(draw: &mut Draw) -> In {
     In { code: U::MAX, ..random(draw) }
 }
 
-fn no_bounds(draw: &mut Draw) -> In {
-    In { scale: bound_scale(0), ..random(draw) }
-}
-
 fn small_bounds(draw: &mut Draw) -> In {
-    In { code: draw.bits(), scale: bound_scale(1 + draw.below(3)) }
+    In { code: U::new(draw.below(32)), ..with_offset(draw, 0) }
 }
 
 fn largest_bounds(draw: &mut Draw) -> In {
-    In { code: U::new(1023 - draw.below(4)), scale: bound_scale(LARGEST_BOUND - draw.below(2)) }
+    In { code: U::new(255 - draw.below(4)), ..with_offset(draw, MAX_BOUND_OFFSET) }
 }
 
-/// Where a scale takes one bit more: around 1023^2 2^k.
-fn scale_steps(draw: &mut Draw) -> In {
-    let largest = ((1023u64 * 1023) << draw.below(13)).wrapping_add_signed(draw.beside());
-    In { code: draw.bits(), scale: bound_scale(largest.min(LARGEST_BOUND)) }
+/// Around a power of two: the last part of an octave or the first of the next.
+fn octaves(draw: &mut Draw) -> In {
+    let input = random(draw);
+    let offset = input.scale.offset.get();
+    let k = 16 * (offset / 16 + 1 + draw.below(15));
+    In { code: U::new((k - offset - draw.below(2)).max(1)), ..input }
 }
 
-/// What `bound_scale` gives: a mantissa of all its 18 bits unless its own rounding up has just passed a power of two, and no bound of 34 bits.
+/// Code + offset.
+fn sum(i: &In) -> u64 {
+    i.code.get() + i.scale.offset.get()
+}
+
 fn legal(i: &In) -> bool {
-    let (mantissa, shift) = (i.scale.mantissa.get(), i.scale.shift.get());
-    if mantissa == 0 { shift == 0 } else { mantissa >= 1 << 17 && (1023 * 1023 * mantissa) >> shift < 1 << 33 }
+    i.scale.offset.get() <= MAX_BOUND_OFFSET
 }
 
 type Is = Category<BoundDecode>;
@@ -50,21 +55,18 @@ pub fn suite() -> Suite<BoundDecode> {
         vec![
             Is::any("random", random),
             Is::all("code 0", no_code, |_, o| o.h.get() == 0),
-            Is::all("largest code", largest_code, |i, _| i.code.get() == 1023),
-            Is::all("zero bounds", no_bounds, |_, o| o.h.get() == 0),
-            Is::often("bounds of a unit or three", small_bounds, |_, o| o.h.get() <= 1),
+            Is::all("largest code", largest_code, |i, _| i.code.get() == 255),
+            Is::all("smallest offset", |d| with_offset(d, 0), |_, o| o.h.get() < 1 << 16),
+            Is::often("bounds of a unit or three", small_bounds, |_, o| o.h.get() <= 3),
             Is::all("the largest bounds", largest_bounds, |_, o| o.h.get() > 1 << 32),
-            Is::any("steps of the scale", scale_steps),
+            Is::often("whole octaves", octaves, |i, o| o.h.get() == 1 << (sum(i) >> 4)),
         ],
         vec![
-            ("a shift that takes all", |i, o| i.code.get() > 0 && i.scale.mantissa.get() > 0 && o.h.get() == 0),
             ("a bound of one unit", |_, o| o.h.get() == 1),
+            ("the largest bound there is", |_, o| o.h.get() == 491 << 24),
+            ("the largest offset, no bound", |i, o| i.scale.offset.get() == MAX_BOUND_OFFSET && o.h.get() == 0),
         ],
-        vec![(
-            "shift, from the largest bound to one unit",
-            5..=37,
-            |i, _| if i.scale.mantissa.get() == 0 { 5 } else { i.scale.shift.get() },
-        )],
+        vec![("octave", 0..=32, |i, _| sum(i) >> 4), ("part of an octave", 0..=15, |i, _| sum(i) & 15)],
     )
 }
 

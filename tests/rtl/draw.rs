@@ -1,6 +1,6 @@
 //! Random integers as blocks like them least: all magnitudes, zeros, extremes.
 
-use lodray::num::{BoundScale, Box16, COORD_LIMIT, Cone, LARGEST_BOUND, MAX_LEVELS, Point, Ray, RayT, U, bound_scale};
+use lodray::num::{BoundScale, Box16, COORD_LIMIT, Cone, MAX_BOUND_OFFSET, MAX_LEVELS, Point, Ray, RayT, U};
 use lodray_test_support::models::Rng;
 
 /// Largest magnitude of a point's coordinate.
@@ -13,14 +13,11 @@ pub struct Draw {
     pub(crate) rng: Rng,
     /// The most levels that the hardware under test is for.
     pub levels: u64,
-    /// Scales take long to make: one in sixteen that are drawn is new.
-    scales: Vec<BoundScale>,
 }
 
 impl Draw {
     pub fn new(seed: u64) -> Self {
-        let scales = [0, 1, 2, 1 << 20, (1 << 32) - 1, 1 << 32, LARGEST_BOUND].map(bound_scale).to_vec();
-        Self { rng: Rng(seed), levels: u64::from(MAX_LEVELS), scales }
+        Self { rng: Rng(seed), levels: u64::from(MAX_LEVELS) }
     }
 
     /// 0 to `n` - 1.
@@ -112,19 +109,12 @@ impl Draw {
 
     /// The scale of any model's bounds.
     pub fn scale(&mut self) -> BoundScale {
-        if self.scales.len() < 64 || self.once_in(16) {
-            let largest = (self.rng.draw() >> (31 + self.below(33))).min(LARGEST_BOUND);
-            let scale = bound_scale(largest);
-            if self.scales.len() < 64 {
-                self.scales.push(scale);
-            } else {
-                let place = self.below(64) as usize;
-                self.scales[place] = scale;
-            }
-            return scale;
-        }
-        let place = self.below(64) as usize;
-        self.scales[place]
+        let offset = match self.below(8) {
+            0 => 0,
+            1 => MAX_BOUND_OFFSET,
+            _ => self.below(MAX_BOUND_OFFSET + 1),
+        };
+        BoundScale { offset: U::new(offset) }
     }
 
     /// A cone of all kinds: none, parallel, wide, saturated.

@@ -5,9 +5,11 @@
 
 mod bary_map;
 mod bound_decode;
+mod box_decode;
 mod box_test;
 mod box_test32;
 mod boxes;
+mod child_boxes;
 mod child_sort;
 mod child_test;
 mod draw;
@@ -24,4 +26,3 @@ mod tessellate;
 mod traversal_stack;
 mod tree_base;
 mod tri_test;
-mod widen_box;

@@ -2,6 +2,7 @@
 
 use crate::draw::Draw;
 use crate::suite::{Category, Suite};
+use lodray::block::Block;
 use lodray::block::node_address::{In, NodeAddress};
 use lodray::num::{MAX_LEVELS, U};
 use tb::Mode;
@@ -9,7 +10,11 @@ use tb::Mode;
 /// Line of a record, from its section's first.
 fn line(i: &In) -> u64 {
     let record = ((1 << (2 * i.level.get())) - 1) / 3 + i.index.get();
-    if i.pair { 2 * record + u64::from(i.half) } else { record }
+    match (i.pair, i.halves) {
+        (true, _) => 2 * record + u64::from(i.half),
+        (false, true) => (record - 1) / 2,
+        (false, false) => record,
+    }
 }
 
 /// With a base that leaves room for it.
@@ -20,7 +25,7 @@ fn based(draw: &mut Draw, record: In) -> In {
 
 fn record(draw: &mut Draw) -> In {
     let pair = draw.once_in(2);
-    let record = In { base: U::ZERO, level: U::ZERO, index: draw.bits(), pair, half: pair && draw.once_in(2) };
+    let record = In { base: U::ZERO, level: U::ZERO, index: draw.bits(), pair, halves: false, half: pair && draw.once_in(2) };
     based(draw, record)
 }
 
@@ -31,9 +36,22 @@ fn node(draw: &mut Draw) -> In {
     based(draw, node)
 }
 
+/// Below the root a node may have half a line.
+fn half_a_line(draw: &mut Draw) -> In {
+    let node = loop {
+        let node = node(draw);
+        if node.level > U::ZERO {
+            break node;
+        }
+    };
+    based(draw, In { pair: false, halves: true, half: false, ..node })
+}
+
 fn any_level(draw: &mut Draw) -> In {
-    let node = In { level: U::new(draw.below(draw.levels)), ..record(draw) };
-    based(draw, node)
+    let level = draw.below(draw.levels);
+    let node = In { level: U::new(level), ..record(draw) };
+    let halves = level > 0 && !node.pair && draw.once_in(2);
+    based(draw, In { halves, ..node })
 }
 
 fn top(draw: &mut Draw) -> In {
@@ -46,7 +64,7 @@ fn bottom(draw: &mut Draw) -> In {
 }
 
 fn legal(i: &In) -> bool {
-    i.level.get() <= 9 && (i.pair || !i.half) && i.base.get() + line(i) <= U::<36>::MAX.get()
+    i.level.get() <= 9 && (i.pair || !i.half) && (!i.halves || (!i.pair && i.level > U::ZERO)) && i.base.get() + line(i) <= U::<36>::MAX.get()
 }
 
 type Is = Category<NodeAddress>;
@@ -58,6 +76,9 @@ pub fn suite(levels: u64) -> Suite<NodeAddress> {
         vec![
             Is::any("records", record),
             Is::any("nodes of trees", node),
+            Is::all("two nodes in a line", half_a_line, |i, o| {
+                NodeAddress::eval(&In { index: U::new(i.index.get() ^ 1), ..*i }) == *o
+            }),
             Is::any("every index on every level", any_level),
             Is::all("top of memory", top, |_, o| o.address == U::MAX),
             Is::all("bottom of memory", bottom, |i, o| o.address.get() == line(i)),
@@ -65,7 +86,7 @@ pub fn suite(levels: u64) -> Suite<NodeAddress> {
         vec![("largest index", |i, _| i.index == U::MAX), ("address 0", |_, o| o.address == U::ZERO)],
         vec![
             ("level", 0..=levels - 1, |i, _| i.level.get()),
-            ("one line, first and second of two", 0..=2, |i, _| u64::from(i.pair) + u64::from(i.half)),
+            ("one line, first and second of two, half a line", 0..=3, |i, _| if i.halves { 3 } else { u64::from(i.pair) + u64::from(i.half) }),
         ],
     )
 }

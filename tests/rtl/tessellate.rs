@@ -1,23 +1,88 @@
-//! Morphed vertices.
+//! Inserted vertices, at full resolution and morphed.
 
-use crate::draw::{Draw, POINT_MAX};
-use crate::rays::{is_point, point};
+use crate::draw::Draw;
+use crate::rays::point;
 use crate::suite::{Category, Suite};
-use lodray::block::tessellate::{In, Tessellate};
-use lodray::num::{EdgeState, MAX_LEVELS, Point, S_ONE, U};
+use lodray::block::tessellate::{In, Out, Tessellate};
+use lodray::num::{BoundCode, COORD_LIMIT, EdgeState, MAX_BOUND_OFFSET, MAX_DISPLACEMENT_SHIFT, MAX_LEVELS, Point, S_ONE, U};
 use tb::Mode;
+
+const LIMIT: i64 = 0x7FFE_0000;
+const _: () = assert!(LIMIT == COORD_LIMIT as i64);
+/// What displacements can be.
+const STEPS: [i64; 2] = [-4096, 4095];
 
 /// A point of which each coordinate has its low `zeros` bits zero.
 fn on_grid(draw: &mut Draw, zeros: u64) -> Point {
-    point([0; 3].map(|_| draw.signed(POINT_MAX >> zeros) << zeros))
+    point([0; 3].map(|_| draw.signed(LIMIT >> zeros) << zeros))
 }
 
+fn midpoint(a: Point, b: Point) -> [i64; 3] {
+    [0, 1, 2].map(|k| (a.get()[k] + b.get()[k]) / 2)
+}
+
+/// Ends of edge `k` at full resolution, and as morphed.
+fn ends(i: &In, k: usize) -> [[Point; 2]; 2] {
+    let of = |p: [Point; 3]| [p[(k + 1) % 3], p[(k + 2) % 3]];
+    [of([i.f0, i.f1, i.f2]), of([i.p0, i.p1, i.p2])]
+}
+
+fn middles(i: &In, as_morphed: bool) -> [[i64; 3]; 3] {
+    [0, 1, 2].map(|k| {
+        let [a, b] = ends(i, k)[usize::from(as_morphed)];
+        midpoint(a, b)
+    })
+}
+
+fn codes(i: &In) -> [BoundCode; 3] {
+    [i.e0, i.e1, i.e2]
+}
+
+/// Shift of the displacement on edge `k`.
+fn shift(i: &In, k: usize) -> u64 {
+    let octave = (codes(i)[k].get() + i.scale.offset.get()) / 16;
+    octave.saturating_sub(11).max(i.grid.get() + 4)
+}
+
+fn full(o: &Out) -> [[i64; 3]; 3] {
+    [o.g0, o.g1, o.g2].map(Point::get)
+}
+
+fn morphed(o: &Out) -> [[i64; 3]; 3] {
+    [o.q0, o.q1, o.q2].map(Point::get)
+}
+
+/// Corners and states in either form, and as what vertices `vertex` gives: from the midpoint of the full-resolution edge and the shift to be used.
 fn triangle(draw: &mut Draw, mut state: impl FnMut(&mut Draw) -> EdgeState) -> In {
     let grid = draw.below(draw.levels);
     let [s0, s1, s2] = [0; 3].map(|_| state(draw));
-    let [p0, p1, p2] = [0; 3].map(|_| on_grid(draw, grid + 1));
-    let [q0, q1, q2] = [0; 3].map(|_| on_grid(draw, grid));
-    In { grid: U::new(grid), s0, s1, s2, p0, p1, p2, q0, q1, q2 }
+    let [f0, f1, f2, p0, p1, p2] = [0; 6].map(|_| on_grid(draw, grid + 1));
+    let [e0, e1, e2] = [0; 3].map(|_| draw.bits());
+    let (compact, grid, scale) = (draw.once_in(2), U::new(grid), draw.scale());
+    let input = In { compact, grid, scale, e0, e1, e2, s0, s1, s2, f0, f1, f2, p0, p1, p2, ..In::default() };
+    stored(draw, input, |draw, low, high| match draw.below(8) {
+        0 => low,
+        1 => high,
+        2..5 => draw.between(low, high) >> draw.below(32),
+        _ => draw.between(low, high),
+    })
+}
+
+/// With vertices from `place`, which chooses between two numbers of steps: of displacements, or of the grid.
+fn stored(draw: &mut Draw, input: In, mut place: impl FnMut(&mut Draw, i64, i64) -> i64) -> In {
+    let [v0, v1, v2] = [0, 1, 2].map(|k| {
+        if !input.compact {
+            let (grid, most) = (input.grid.get(), LIMIT >> input.grid.get());
+            return point([0; 3].map(|_| place(draw, -most, most) << grid));
+        }
+        let by = shift(&input, k);
+        point(middles(&input, false)[k].map(|m| {
+            // Within the model: rounded towards zero, which it always reaches.
+            let (low, high) = ((-LIMIT - m) / (1 << by), (LIMIT - m) / (1 << by));
+            place(draw, low.max(STEPS[0]), high.min(STEPS[1]))
+        }))
+    });
+    In { v0, v1, v2, ..input }
 }
 
 fn random(draw: &mut Draw) -> In {
@@ -32,40 +97,67 @@ fn border_states(draw: &mut Draw) -> In {
     triangle(draw, |draw| U::new(draw.one_of(&[0, 1, S_ONE - 1, S_ONE])))
 }
 
-fn edges(i: &In) -> [(Point, Point, Point); 3] {
-    [(i.p1, i.p2, i.q0), (i.p2, i.p0, i.q1), (i.p0, i.p1, i.q2)]
-}
-
-fn midpoint(a: Point, b: Point) -> [i64; 3] {
-    [0, 1, 2].map(|k| (a.get()[k] + b.get()[k]) / 2)
-}
-
-/// Inserted vertices a few steps of the grid from the midpoint: what is added rounds to none or few of them.
+/// Exact, a few steps of the grid from the midpoint: what is added rounds to none or few of them.
 fn beside_midpoint(draw: &mut Draw, steps: i64) -> In {
-    let input = random(draw);
+    let input = In { compact: false, ..random(draw) };
     let grid = input.grid.get();
-    let most = POINT_MAX >> grid;
-    let [q0, q1, q2] = edges(&input)
-        .map(|(a, b, _)| point(midpoint(a, b).map(|m| ((m >> grid) + draw.between(-steps, steps)).clamp(-most, most) << grid)));
-    In { q0, q1, q2, ..input }
+    let most = LIMIT >> grid;
+    let [v0, v1, v2] =
+        middles(&input, true).map(|m| point(m.map(|m| ((m >> grid) + draw.between(-steps, steps)).clamp(-most, most) << grid)));
+    In { v0, v1, v2, ..input }
+}
+
+/// Compact, and nothing has moved: all ends the same in both forms.
+fn unmorphed(draw: &mut Draw) -> In {
+    let input = In { compact: true, ..random(draw) };
+    In { p0: input.f0, p1: input.f1, p2: input.f2, ..input }
+}
+
+fn no_displacement(draw: &mut Draw) -> In {
+    let input = In { compact: true, ..random(draw) };
+    let none = Point::default();
+    In { v0: none, v1: none, v2: none, ..input }
+}
+
+/// The longest displacements of all, from one end of the range towards the other.
+fn far(draw: &mut Draw) -> In {
+    let way = draw.sign(1);
+    let zeros = 17;
+    let end = point([way * (LIMIT >> zeros << zeros); 3]);
+    let input = border_states(draw);
+    let (scale, codes) = (lodray::num::BoundScale { offset: U::new(MAX_BOUND_OFFSET) }, U::MAX);
+    let input = In { compact: true, scale, e0: codes, e1: codes, e2: codes, f0: end, f1: end, f2: end, ..input };
+    stored(draw, input, |_, low, high| if way > 0 { low } else { high })
 }
 
 /// Edges in one corner of the range, their vertices in another.
 fn extreme(draw: &mut Draw) -> In {
-    let input = border_states(draw);
-    let zeros = input.grid.get() + 1;
-    let far = draw.corner().map(|v| v.signum() * (POINT_MAX >> zeros << zeros));
-    let (p, q) = (point(far), point(far.map(|v| -v)));
-    In { p0: p, p1: p, p2: p, q0: q, q1: q, q2: q, ..input }
+    let input = In { compact: false, ..border_states(draw) };
+    let corner = [LIMIT; 3].map(|v| draw.sign(v));
+    let (p, v) = (point(corner), point(corner.map(|v| -v)));
+    In { p0: p, p1: p, p2: p, v0: v, v1: v, v2: v, ..input }
 }
 
 fn legal(i: &In) -> bool {
     let grid = i.grid.get();
-    let on = |p: Point, zeros: u64| is_point(p) && p.get().iter().all(|v| v & ((1 << zeros) - 1) == 0);
+    let on = |p: [i64; 3], zeros: u64| p.iter().all(|v| v.abs() <= LIMIT && v & ((1 << zeros) - 1) == 0);
+    let vertex = |k: usize| {
+        let v = [i.v0, i.v1, i.v2][k].get();
+        if !i.compact {
+            return on(v, grid);
+        }
+        let (m, by) = (middles(i, false)[k], shift(i, k));
+        v.iter().all(|v| (STEPS[0]..=STEPS[1]).contains(v)) && on([0, 1, 2].map(|k| m[k] + (v[k] << by)), grid)
+    };
     grid <= 9
+        && i.scale.offset.get() <= MAX_BOUND_OFFSET
         && [i.s0, i.s1, i.s2].iter().all(|s| s.get() <= S_ONE)
-        && [i.p0, i.p1, i.p2].into_iter().all(|p| on(p, grid + 1))
-        && [i.q0, i.q1, i.q2].into_iter().all(|q| on(q, grid))
+        && [i.f0, i.f1, i.f2, i.p0, i.p1, i.p2].into_iter().all(|p| on(p.get(), grid + 1))
+        && (0..3).all(vertex)
+}
+
+fn stored_as_they_are(i: &In, o: &Out) -> bool {
+    i.compact || full(o) == [i.v0, i.v1, i.v2].map(Point::get)
 }
 
 type Is = Category<Tessellate>;
@@ -75,26 +167,39 @@ pub fn suite(levels: u64) -> Suite<Tessellate> {
     Suite::new(
         legal,
         vec![
-            Is::any("random", random),
-            Is::any("states at the borders", border_states),
-            Is::all(
-                "s = 0: midpoints",
-                |d| with_state(d, 0),
-                |i, o| edges(i).map(|(a, b, _)| midpoint(a, b)) == [o.q0, o.q1, o.q2].map(Point::get),
-            ),
+            Is::all("random", random, stored_as_they_are),
+            Is::all("states at the borders", border_states, stored_as_they_are),
+            Is::all("s = 0: midpoints", |d| with_state(d, 0), |i, o| middles(i, true) == morphed(o)),
             Is::all("s just above 0", |d| with_state(d, 1), |i, _| i.s0.get() == 1),
             Is::all("s just below 1", |d| with_state(d, S_ONE - 1), |i, _| i.s0.get() == S_ONE - 1),
-            Is::all("s = 1: stored vertices", |d| with_state(d, S_ONE), |i, o| [i.q0, i.q1, i.q2] == [o.q0, o.q1, o.q2]),
-            Is::all("stored at the midpoint", |d| beside_midpoint(d, 0), |i, o| [i.q0, i.q1, i.q2] == [o.q0, o.q1, o.q2]),
+            Is::all("s = 1: full resolution", |d| with_state(d, S_ONE), |_, o| full(o) == morphed(o)),
+            Is::all("stored at the midpoint", |d| beside_midpoint(d, 0), |_, o| full(o) == morphed(o)),
             Is::any("a step from the midpoint", |d| beside_midpoint(d, 1)),
             Is::any("a few steps from the midpoint", |d| beside_midpoint(d, 300)),
-            Is::all("the longest way", extreme, |i, _| (i.q0.get()[0] - i.p0.get()[0]).abs() > (1 << 32) - 4096),
+            Is::all("nothing morphed", unmorphed, |i, _| middles(i, true) == middles(i, false)),
+            Is::all("no displacement", no_displacement, |i, o| middles(i, false) == full(o)),
+            Is::all("the longest displacements", far, |i, o| {
+                (o.g1.get()[2] - i.f0.get()[2]).abs() > (1 << 32) - (1 << 22) && shift(i, 1) == u64::from(MAX_DISPLACEMENT_SHIFT)
+            }),
+            Is::all("the longest way", extreme, |i, o| (o.g0.get()[0] - i.p0.get()[0]).abs() == 2 * LIMIT),
         ],
-        vec![("a step down that rounds to one", |i, o| {
-            let (m, q, got) = (midpoint(i.p1, i.p2)[0], i.q0.get()[0], o.q0.get()[0]);
-            q < m && (m - q) >> i.grid.get() == 1 && got == q && i.s0.get() < S_ONE
-        })],
-        vec![("grid: N - n - 1", 0..=levels - 1, |i, _| i.grid.get()), ("s", 0..=256, |i, _| i.s1.get())],
+        vec![
+            ("a step down that rounds to one", |i, o| {
+                let (m, g, got) = (middles(i, true)[0][0], o.g0.get()[0], o.q0.get()[0]);
+                g < m && (m - g) >> i.grid.get() == 1 && got == g && i.s0.get() < S_ONE
+            }),
+            ("the most steps back", |i, _| i.compact && i.v1.get()[1] == STEPS[0]),
+            ("the most steps ahead", |i, _| i.compact && i.v1.get()[1] == STEPS[1]),
+            ("shifts of all kinds in a triangle", |i, _| {
+                i.compact && shift(i, 0) < shift(i, 1) && shift(i, 1) < shift(i, 2) && shift(i, 0) > i.grid.get() + 4
+            }),
+            ("code 0", |i, _| i.compact && i.e2.get() == 0 && i.scale.offset.get() == MAX_BOUND_OFFSET),
+        ],
+        vec![
+            ("grid: N - n - 1", 0..=levels - 1, |i, _| i.grid.get()),
+            ("s", 0..=256, |i, _| i.s1.get()),
+            ("shift", 4..=21, |i, _| if i.compact { shift(i, 2) } else { 4 }),
+        ],
     )
 }
 

@@ -16,7 +16,8 @@ fn triangles(levels: u64) -> u64 {
 /// Lines of vertex data and of bound data before those of the tree.
 fn before(i: &In) -> (u64, u64) {
     let groups = i.levels.get().checked_sub(1).map_or(0, triangles);
-    (i.tree.get() * triangles(i.levels.get()), 2 * i.tree.get() * groups)
+    let lines = if i.compact { 2 * groups } else { triangles(i.levels.get()) };
+    (i.tree.get() * lines, i.tree.get() * groups)
 }
 
 /// As many trees as memory holds, or fewer, or one.
@@ -28,7 +29,7 @@ fn random(draw: &mut Draw) -> In {
         1 => draw.bits::<28>().get().min(most),
         _ => draw.below(most + 1),
     };
-    let input = In { levels: U::new(levels), tree: U::new(tree), vertices: U::ZERO, bounds: U::ZERO };
+    let input = In { compact: draw.once_in(2), levels: U::new(levels), tree: U::new(tree), vertices: U::ZERO, bounds: U::ZERO };
     let (vertices, bounds) = before(&input);
     let below = |draw: &mut Draw, used: u64| U::new(draw.bits::<36>().get().min(LAST - used));
     In { vertices: below(draw, vertices), bounds: below(draw, bounds), ..input }
@@ -63,10 +64,13 @@ pub fn suite(levels: u64) -> Suite<TreeBase> {
         ],
         vec![
             ("N = 0: no lines", |i, o| i.levels.get() == 0 && i.tree.get() > 0 && o.vertices == i.vertices && o.bounds == i.bounds),
-            ("N = 1: no bounds", |i, o| i.levels.get() == 1 && i.tree.get() > 0 && o.vertices != i.vertices && o.bounds == i.bounds),
+            ("N = 1, exact: no bounds", |i, o| i.levels.get() == 1 && i.tree.get() > 0 && o.vertices != i.vertices && o.bounds == i.bounds),
+            ("N = 1, compact: no lines", |i, o| {
+                i.levels.get() == 1 && i.compact && i.tree.get() > 0 && o.vertices == i.vertices && o.bounds == i.bounds
+            }),
             ("the largest tree", |i, _| i.tree == U::MAX),
         ],
-        vec![("N", 0..=levels, |i, _| i.levels.get())],
+        vec![("N, in both forms", 0..=2 * levels + 1, |i, _| 2 * i.levels.get() + u64::from(i.compact))],
     )
 }
 
