@@ -24,7 +24,7 @@ module box_decode #(
   localparam int unsigned PRODUCT_W = PLANE_W + 2;
   // A code and 16 bits of steps.
   localparam int unsigned SUM_W = CODE_W + 2;
-  localparam logic signed [SUM_W-1:0] MOST = SUM_W'(32767);
+  localparam logic [CODE_W-1:0] MOST = CODE_W'(32767);
   if (lod_pkg::BOX_DECODE_LATENCY != 2) begin : g_illegal_latency
     $error("box_decode: lod_pkg::BOX_DECODE_LATENCY must be 2");
   end
@@ -53,7 +53,8 @@ module box_decode #(
     logic signed [SUM_W-1:0]  sum;
     assign origin   = origin_q[k%3];
     assign sum      = SUM_W'(origin) + {2'd0, steps_q[k]};
-    assign codes[k] = sum > MOST ? MOST[CODE_W-1:0] : sum[CODE_W-1:0];
+    // Above 32767; it is never below -32767.
+    assign codes[k] = !sum[SUM_W-1] && sum[SUM_W-2:CODE_W-1] != '0 ? MOST : sum[CODE_W-1:0];
   end
   pipe_stage #(.W(6 * CODE_W + TAG_W)) u_out (
     .clk_i, .rst_ni, .valid_i(valid_steps), .ready_o(ready_steps), .data_i({codes, tag_steps}),

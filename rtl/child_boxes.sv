@@ -29,9 +29,9 @@ module child_boxes #(
   localparam int unsigned EXACT_W = CODE_W + 1;
   // Times 2 or 3: at most 381.
   localparam int unsigned PRODUCT_W = PLANE_W + 2;
-  // A code, 16 bits of steps, another code: within 2^17 in magnitude.
+  // A code and 16 bits of steps: within 2^17 in magnitude.
   localparam int unsigned SUM_W = CODE_W + 2;
-  localparam logic signed [SUM_W-1:0] MOST = SUM_W'(32767);
+  localparam logic [CODE_W-1:0] MOST = CODE_W'(32767);
   if (lod_pkg::CHILD_BOXES_LATENCY != 3) begin : g_illegal_latency
     $error("child_boxes: lod_pkg::CHILD_BOXES_LATENCY must be 3");
   end
@@ -46,13 +46,15 @@ module child_boxes #(
   // of child j < 3, on the two edges that meet at corner j.
   logic [17:0][EXACT_W-1:0] corner_codes, corner_codes_q, inserted_codes, high_pairs, high_pairs_q;
   logic [17:0][CODE_W-1:0]  low_pairs, low_pairs_q;
+  logic [17:0]              rises;
+  logic [5:0]               last_rises, last_rises_q;
   for (genvar i = 0; i < 18; i++) begin : g_pair
     localparam int unsigned TRIANGLE = i / 9;
     localparam int unsigned AXIS = i / 3 % 3;
     localparam int unsigned FIRST = i - i % 3;
     logic [POINT_W-1:0]        p, q;
     logic signed [EXACT_W-1:0] a, b;
-    logic                      framed, rises;
+    logic                      framed;
     assign p                 = points[6*TRIANGLE+i%3][(2-AXIS)*POINT_W +: POINT_W];
     assign q                 = points[6*TRIANGLE+3+i%3][(2-AXIS)*POINT_W +: POINT_W];
     assign framed            = TRIANGLE == 0 && !in_i.tree;
@@ -60,9 +62,13 @@ module child_boxes #(
     assign inserted_codes[i] = framed ? {origin[AXIS], 1'b0} : {q[POINT_W-1:lod_pkg::BOX_SHIFT], q[lod_pkg::BOX_SHIFT-1:0] != '0};
     assign a                 = inserted_codes[FIRST+(i+1)%3];
     assign b                 = inserted_codes[FIRST+(i+2)%3];
-    assign rises             = a < b;
-    assign low_pairs[i]      = rises ? a[EXACT_W-1:1] : b[EXACT_W-1:1];
-    assign high_pairs[i]     = rises ? b : a;
+    assign rises[i]          = a < b;
+    assign low_pairs[i]      = rises[i] ? a[EXACT_W-1:1] : b[EXACT_W-1:1];
+    assign high_pairs[i]     = rises[i] ? b : a;
+  end
+  // Whether the first inserted vertex is below the second.
+  for (genvar l = 0; l < 6; l++) begin : g_last
+    assign last_rises[l] = rises[3*l+2];
   end
 
   // And the planes, v (2 + half).
@@ -73,29 +79,34 @@ module child_boxes #(
   for (genvar i = 0; i < 24; i++) begin : g_product
     assign products[i] = PRODUCT_W'({in_i.planes[i], 1'b0}) + (in_i.halves[i%3] ? PRODUCT_W'(in_i.planes[i]) : '0);
   end
-  pipe_stage #(.W(18 * (2 * EXACT_W + CODE_W) + 24 * PRODUCT_W + 3 * 4 + 1 + TAG_W)) u_pairs (
-    .clk_i, .rst_ni, .valid_i, .ready_o, .data_i({corner_codes, low_pairs, high_pairs, products, in_i.exponents, in_i.tree, tag_i}),
-    .valid_o(valid_pairs), .ready_i(ready_pairs), .data_o({corner_codes_q, low_pairs_q, high_pairs_q, products_q, exponents_q, tree_pairs, tag_pairs})
+  pipe_stage #(.W(18 * (2 * EXACT_W + CODE_W) + 6 + 24 * PRODUCT_W + 3 * 4 + 1 + TAG_W)) u_pairs (
+    .clk_i, .rst_ni, .valid_i, .ready_o, .data_i({corner_codes, low_pairs, high_pairs, last_rises, products, in_i.exponents, in_i.tree, tag_i}),
+    .valid_o(valid_pairs), .ready_i(ready_pairs), .data_o({corner_codes_q, low_pairs_q, high_pairs_q, last_rises_q, products_q, exponents_q, tree_pairs, tag_pairs})
   );
 
-  // Stage 2: the smallest and the largest code of each child's corners; child 3 has all three inserted vertices. Steps. Child c's are at 3 c + axis.
-  logic [11:0][CODE_W-1:0]  full_low, full_low_q, low, low_q, high, high_q;
-  logic [11:0][EXACT_W-1:0] full_high, full_high_q;
-  logic [23:0][CODE_W-1:0]  steps, steps_q;
-  logic                     tree_q, valid_ends, ready_ends;
-  logic [TAG_W-1:0]         tag_ends;
+  // Stage 2: the smallest and the largest code of each child's corners; of all three inserted vertices, child 3's, from the two pairs with that which is not at the
+  // end in question. Child c's are at 3 c + axis.
+  logic [11:0][CODE_W-1:0]  full_low, low, low_q, high, high_q;
+  logic [11:0][EXACT_W-1:0] full_high;
   for (genvar i = 0; i < 24; i++) begin : g_ends
     localparam int unsigned CHILD = i / 3 % 4;
     localparam int unsigned AT = i % 12;
-    localparam int unsigned FIRST = i / 12 * 9 + i % 3 * 3;
+    localparam int unsigned LINE = i / 12 * 3 + i % 3;
     logic signed [CODE_W-1:0]  a, b, lowest;
     logic signed [EXACT_W-1:0] c, d, highest;
-    assign a       = CHILD < 3 ? corner_codes_q[FIRST+CHILD%3][EXACT_W-1:1] : low_pairs_q[FIRST+1];
-    assign b       = low_pairs_q[FIRST+CHILD%3];
-    assign lowest  = a < b ? a : b;
-    assign c       = CHILD < 3 ? corner_codes_q[FIRST+CHILD%3] : high_pairs_q[FIRST+1];
-    assign d       = high_pairs_q[FIRST+CHILD%3];
-    assign highest = c > d ? c : d;
+    if (CHILD < 3) begin : g_corner
+      assign a       = corner_codes_q[3*LINE+CHILD][EXACT_W-1:1];
+      assign b       = low_pairs_q[3*LINE+CHILD];
+      assign lowest  = a < b ? a : b;
+      assign c       = corner_codes_q[3*LINE+CHILD];
+      assign d       = high_pairs_q[3*LINE+CHILD];
+      assign highest = c > d ? c : d;
+    end else begin : g_centre
+      assign {a, b}  = {low_pairs_q[3*LINE+1], low_pairs_q[3*LINE]};
+      assign lowest  = last_rises_q[LINE] ? a : b;
+      assign {c, d}  = {high_pairs_q[3*LINE+1], high_pairs_q[3*LINE]};
+      assign highest = last_rises_q[LINE] ? d : c;
+    end
     if (i < 12) begin : g_full
       assign full_low[AT]  = lowest;
       assign full_high[AT] = highest;
@@ -105,46 +116,45 @@ module child_boxes #(
       assign high[AT] = highest[EXACT_W-1:1] + CODE_W'(highest[0]);
     end
   end
-  for (genvar i = 0; i < 24; i++) begin : g_steps
-    box_steps #(.W(PRODUCT_W)) u_steps (.w_i(products_q[i]), .exponent_i(exponents_q[i%3]), .steps_o(steps[i]));
+
+  // And the planes that the full-resolution triangle, or the origin, gives.
+  logic [11:0][SUM_W-1:0] outer_low, outer_low_q, outer_high, outer_high_q;
+  logic                   tree_q, valid_ends, ready_ends;
+  logic [TAG_W-1:0]       tag_ends;
+  for (genvar i = 0; i < 12; i++) begin : g_outer
+    localparam int unsigned LOW = i / 3 * 6 + i % 3;
+    localparam int unsigned HIGH = LOW + 3;
+    logic signed [CODE_W-1:0]  from_low;
+    logic signed [EXACT_W-1:0] from_high;
+    logic [CODE_W-1:0]         down, up;
+    logic                      unused_low, unused_high;
+    assign {from_low, from_high} = {full_low[i], full_high[i]};
+    box_steps #(.W(PRODUCT_W)) u_down (.w_i(products_q[LOW]), .exponent_i(exponents_q[LOW%3]), .steps_o(down));
+    box_steps #(.W(PRODUCT_W)) u_up (.w_i(products_q[HIGH]), .exponent_i(exponents_q[HIGH%3]), .steps_o(up));
+    // The floor -+ steps, the carry as a bit below; the floor, whether anything was cut off, and steps.
+    assign {outer_low[i], unused_low}   = {SUM_W'(from_low), tree_pairs} + {{2'd0, down} ^ {SUM_W{tree_pairs}}, tree_pairs};
+    assign {outer_high[i], unused_high} = (SUM_W+1)'(from_high) + {2'd0, up, 1'b1};
   end
-  pipe_stage #(.W(12 * (3 * CODE_W + EXACT_W) + 24 * CODE_W + 1 + TAG_W)) u_ends (
-    .clk_i, .rst_ni, .valid_i(valid_pairs), .ready_o(ready_pairs), .data_i({full_low, full_high, low, high, steps, tree_pairs, tag_pairs}),
-    .valid_o(valid_ends), .ready_i(ready_ends), .data_o({full_low_q, full_high_q, low_q, high_q, steps_q, tree_q, tag_ends})
+  pipe_stage #(.W(12 * 2 * (SUM_W + CODE_W) + 1 + TAG_W)) u_ends (
+    .clk_i, .rst_ni, .valid_i(valid_pairs), .ready_o(ready_pairs), .data_i({outer_low, outer_high, low, high, tree_pairs, tag_pairs}),
+    .valid_o(valid_ends), .ready_i(ready_ends), .data_o({outer_low_q, outer_high_q, low_q, high_q, tree_q, tag_ends})
   );
 
-  // Stage 3: planes from the full-resolution triangle, and beside them whether these reach beyond the morphed one.
+  // Stage 3: these as far as codes reach, or the morphed triangle where it reaches further, always within the range.
   logic [3:0][6*CODE_W-1:0] bounds;
   for (genvar i = 0; i < 12; i++) begin : g_plane
     localparam int unsigned CHILD = i / 3;
     localparam int unsigned AXIS = i % 3;
-    logic signed [CODE_W-1:0]  from_low, least, most;
-    logic signed [EXACT_W-1:0] from_high;
-    logic [CODE_W-1:0]         down, up, outer_low, outer_high;
-    logic [SUM_W-1:0]          way;
-    logic signed [SUM_W-1:0]   low_sum, high_sum, low_beyond;
-    logic signed [SUM_W:0]     low_twice, high_twice, high_beyond;
-    assign {from_low, from_high, least, most} = {full_low_q[i], full_high_q[i], low_q[i], high_q[i]};
-    assign {up, down}                         = {steps_q[6*CHILD+3+AXIS], steps_q[6*CHILD+AXIS]};
-
-    // The floor -+ steps, the carry as a bit below.
-    assign way        = {2'd0, down} ^ {SUM_W{tree_q}};
-    assign low_twice  = {SUM_W'(from_low), tree_q} + {way, tree_q};
-    assign low_sum    = low_twice[SUM_W:1];
-    assign low_beyond = SUM_W'(least) + {2'd0, down} + SUM_W'(~from_low);
-    assign outer_low  = low_sum < -MOST ? -MOST[CODE_W-1:0] : low_sum > MOST ? MOST[CODE_W-1:0] : low_sum[CODE_W-1:0];
-
-    // The floor, what was cut off, and steps.
-    assign high_twice  = (SUM_W+1)'(from_high) + {2'd0, up, 1'b1};
-    assign high_sum    = high_twice[SUM_W:1];
-    assign high_beyond = (SUM_W+1)'(from_high) + {2'd0, up, 1'b0} + {SUM_W'(~most), 1'b1};
-    assign outer_high  = high_sum > MOST ? MOST[CODE_W-1:0] : high_sum[CODE_W-1:0];
-
-    assign bounds[CHILD][(5-AXIS)*CODE_W +: CODE_W] = tree_q && low_beyond[SUM_W-1] ? least : outer_low;
-    assign bounds[CHILD][(2-AXIS)*CODE_W +: CODE_W] = tree_q && high_beyond[SUM_W] ? most : outer_high;
-
-    logic unused_bits;
-    assign unused_bits = ^{low_twice[0], high_twice[0], low_beyond[SUM_W-2:0], high_beyond[SUM_W-1:0]};
+    logic signed [CODE_W-1:0] least, most;
+    logic signed [SUM_W-1:0]  lower, upper;
+    logic                     above, below, beyond;
+    assign {least, most, lower, upper} = {low_q[i], high_q[i], outer_low_q[i], outer_high_q[i]};
+    assign above  = !lower[SUM_W-1] && lower[SUM_W-2:CODE_W-1] != '0;
+    assign below  = lower[SUM_W-1] && (lower[SUM_W-2:CODE_W-1] != '1 || lower[CODE_W-2:0] == '0);
+    assign beyond = !upper[SUM_W-1] && upper[SUM_W-2:CODE_W-1] != '0;
+    assign bounds[CHILD][(5-AXIS)*CODE_W +: CODE_W] = tree_q && SUM_W'(least) < lower ? least
+                                                    : above ? MOST : below ? -MOST : lower[CODE_W-1:0];
+    assign bounds[CHILD][(2-AXIS)*CODE_W +: CODE_W] = tree_q && SUM_W'(most) > upper ? most : beyond ? MOST : upper[CODE_W-1:0];
   end
   pipe_skid #(.W(4 * 6 * CODE_W + TAG_W)) u_out (
     .clk_i, .rst_ni, .valid_i(valid_ends), .ready_o(ready_ends), .data_i({bounds, tag_ends}),

@@ -4,7 +4,7 @@
 ///
 /// full: g = v, or for a displacement (fa + fb) / 2 + v 2^shift; morphed: m + (floor((g - m) s / 256) with its low `grid` bits cleared), m = (pa + pb) / 2. Midpoints
 /// are exact. s = 0 gives m, s = 256 gives g; the result lies between m and g. Legal: ends multiples of 2^(grid+1), g of 2^grid, none beyond 0x7FFE_0000 in
-/// magnitude, grid 0 to 9, s 0 to 256. Latency TESSELLATE_LATENCY; interval 1.
+/// magnitude, grid 0 to 9, s 0 to 256, displacements of 13 bits. Latency TESSELLATE_LATENCY; interval 1.
 module morph_vertex (
   input  logic                             clk_i,
   input  logic                             rst_ni,
@@ -26,6 +26,7 @@ module morph_vertex (
 );
 
   localparam int unsigned W = lod_pkg::POINT_W / 3;
+  localparam int unsigned STEPS_W = lod_pkg::DISPLACEMENT_W / 3;
   localparam int unsigned SHIFT_W = 5;
   localparam int unsigned GRID_W = 4;
   localparam int unsigned DIFFERENCE_W = W + 1;
@@ -39,12 +40,13 @@ module morph_vertex (
     $error("morph_vertex: lod_pkg::TESSELLATE_LATENCY must be %0d", PRODUCT_LATENCY + 5);
   end
 
-  // Midpoints: 33-bit sums, even, so exact in 32 bits again. A vertex that is stored itself is a displacement of 0 bits from 0.
-  logic [2:0][W-1:0]  v, base, m, base_q, v_q, m_q;
-  logic [SHIFT_W-1:0] shift_q;
-  logic [GRID_W-1:0]  grid_m;
-  logic [STATE_W-1:0] s_m;
-  logic               valid_m, ready_m;
+  // Midpoints: 33-bit sums, even, so exact in 32 bits again. A vertex that is stored itself takes the place of the midpoint, without a displacement.
+  logic [2:0][W-1:0]       v, base, m, base_q, m_q;
+  logic [2:0][STEPS_W-1:0] steps, steps_q;
+  logic [SHIFT_W-1:0]      shift_q;
+  logic [GRID_W-1:0]       grid_m;
+  logic [STATE_W-1:0]      s_m;
+  logic                    valid_m, ready_m;
   assign v = v_i;
   for (genvar k = 0; k < 3; k++) begin : g_midpoint
     logic signed [W-1:0] fa, fb, pa, pb;
@@ -54,13 +56,14 @@ module morph_vertex (
     assign {pa, pb}    = {pa_i[k*W +: W], pb_i[k*W +: W]};
     assign full_sum    = (W+1)'(fa) + (W+1)'(fb);
     assign morphed_sum = (W+1)'(pa) + (W+1)'(pb);
-    assign base[k]     = compact_i ? full_sum[W:1] : '0;
+    assign base[k]     = compact_i ? full_sum[W:1] : v[k];
+    assign steps[k]    = compact_i ? v[k][STEPS_W-1:0] : '0;
     assign m[k]        = morphed_sum[W:1];
     assign unused_even = full_sum[0] ^ morphed_sum[0];
   end
-  pipe_stage #(.W(9 * W + SHIFT_W + STATE_W + GRID_W)) u_midpoint (
-    .clk_i, .rst_ni, .valid_i, .ready_o, .data_i({base, v, m, compact_i ? shift_i : SHIFT_W'(0), s_i, grid_i}),
-    .valid_o(valid_m), .ready_i(ready_m), .data_o({base_q, v_q, m_q, shift_q, s_m, grid_m})
+  pipe_stage #(.W(3 * (2 * W + STEPS_W) + SHIFT_W + STATE_W + GRID_W)) u_midpoint (
+    .clk_i, .rst_ni, .valid_i, .ready_o, .data_i({base, steps, m, shift_i, s_i, grid_i}),
+    .valid_o(valid_m), .ready_i(ready_m), .data_o({base_q, steps_q, m_q, shift_q, s_m, grid_m})
   );
 
   // g: 32 bits for legal displacements.
@@ -69,7 +72,9 @@ module morph_vertex (
   logic [STATE_W-1:0] s_g;
   logic               valid_g, ready_g;
   for (genvar k = 0; k < 3; k++) begin : g_full
-    assign g[k] = base_q[k] + (v_q[k] << shift_q);
+    logic signed [STEPS_W-1:0] displacement;
+    assign displacement = steps_q[k];
+    assign g[k]         = base_q[k] + (W'(displacement) << shift_q);
   end
   pipe_stage #(.W(6 * W + STATE_W + GRID_W)) u_full (
     .clk_i, .rst_ni, .valid_i(valid_m), .ready_o(ready_m), .data_i({g, m_q, s_m, grid_m}),

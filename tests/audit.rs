@@ -305,7 +305,9 @@ fn each_damage_to_compact_vertices_is_found() {
 fn swapped_and_doubled_tree_references_are_found() {
     let good = scene(&octahedron(3));
     // Nodes 1 to 4 hold two leaves each.
-    let leaf = |b: &[u8], at: usize| BvhNode::from_words(&[0, 1, 2, 3].map(|k| u64::from_le_bytes(b[at + 8 * k..][..8].try_into().unwrap()))).first_leaf;
+    let leaf = |b: &[u8], at: usize| {
+        BvhNode::from_words(&[0, 1, 2, 3].map(|k| u64::from_le_bytes(b[at + 8 * k..][..8].try_into().unwrap()))).first_leaf
+    };
     let swapped = damaged(&good, NODES, |b| {
         let leaves = [leaf(b, 32), leaf(b, 128)];
         assert_ne!(leaves[0], leaves[1]);

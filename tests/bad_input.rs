@@ -92,7 +92,10 @@ fn scenes() {
         ("cut20.lod", "cut20.lod: header: file is truncated at 20 bytes"),
         ("long.lod", "long.lod: file length"),
         ("flipped.lod", "flipped.lod: section"),
-        ("old.lod", "old.lod: version: 1 is older than 2, the only one that this program reads; make the scene again with build or generate"),
+        (
+            "old.lod",
+            "old.lod: version: 1 is older than 2, the only one that this program reads; make the scene again with build or generate",
+        ),
     ];
     let commands = ["info", "verify", "crack", "lines --size 8x8", "render --size 8x8 -o new", "export -o new.obj"];
     let rows: Vec<(String, &str)> = commands.iter().flat_map(|c| files.map(|(file, says)| (format!("{c} {file}"), says))).collect();

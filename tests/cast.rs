@@ -43,8 +43,8 @@ fn hits(method: &str, scene: &Scene, queries: Vec<Query>, delta: f64) -> Vec<Hit
 
 #[test]
 fn hits_are_the_golden_traversers_between_any_two_distances() {
-    let h = terrain(4, 4, 0.6, 5);
-    let scene = scene_of(&h);
+    let scene = scene_of(&terrain(4, 4, 0.6, 5));
+    let h = scene.decode();
     let (space, golden) = (ModelSpace::of(&scene), Exact::new(&h));
     let all = queries(&space, 3000, 1);
     let whole = hits(lod::METHOD.name, &scene, all.clone(), 1.0);

@@ -146,11 +146,11 @@ fn lines_by_distance() {
     desk.run("generate terrain --levels 3 --base 32 -o a.lod");
     let report = desk.json("lines a.lod --distances 1.5,6 --size 32x32 --bvh32");
     assert_eq!(report["distances"], serde_json::json!([1.5, 6.0]));
-    assert_eq!(report["rows"].as_array().unwrap().len(), 2 + 18);
+    assert_eq!(report["rows"].as_array().unwrap().len(), 2 + 27);
     for field in ["ratio", "base_share", "mean_level"] {
         assert_eq!(report[field].as_array().unwrap().len(), 2, "{field}");
     }
-    assert!(desk.run("lines a.lod --distances 4 --size 8x8").contains("best 16-bit BVH / LOD"));
+    assert!(desk.run("lines a.lod --distances 4 --size 8x8").contains("best BVH / LOD"));
 }
 
 #[test]

@@ -16,8 +16,8 @@ fn every_layout_has_the_lines_of_its_own_frame() {
     json(folder.path(), "generate terrain --levels 3 --base 128 --json -o a.lod");
     let report = json(folder.path(), "lines a.lod --distances 1.5,5 --size 45x37 --bvh32 --json");
     let rows = report["rows"].as_array().unwrap();
-    assert_eq!(rows.len(), 2 + 18);
-    for (method, bits) in [("bvh", 16), ("bvh32", 32)] {
+    assert_eq!(rows.len(), 2 + 27);
+    for (method, bits) in [("bvh --node-boxes local", 5), ("bvh --node-boxes codes", 16), ("bvh32", 32)] {
         for size in [1, 2, 4] {
             for layout in ["Indexed", "Packed", "Line"] {
                 let name = format!("BVH {bits}-bit, {layout}, {size} a leaf");

@@ -29,7 +29,7 @@ fn points_are_snapped_to_their_grid_without_clamping() {
 #[test]
 fn flat_and_single_point_models_work() {
     let flat = quantise(&surface(3, &QUAD, &[[0, 1, 2], [3, 2, 1]], |p| p), BoundKind::Largest, VertexForm::Exact).unwrap();
-    assert!(flat.bounds.codes.iter().all(|&c| c == 0) && flat.bounds.scale.mantissa.get() == 0);
+    assert!(flat.bounds.codes.iter().all(|&c| c == 0) && flat.bounds.scale.offset.get() == 0);
     let point = quantise(&surface(3, &[[7.0, -2.0, 1e6]; 3], &[[0, 1, 2]], |p| p), BoundKind::Largest, VertexForm::Exact).unwrap();
     assert!(point.points.iter().all(|p| *p == [0; 3]) && point.placement.scale > 0.0);
     assert_eq!(point.to_world([0; 3]), [7.0, -2.0, 1e6]);

@@ -169,7 +169,14 @@ impl Words<'_> {
     }
 
     /// Calls `visit` with level, node, corners and codes of every node, on level N without codes.
-    fn each(&self, tree: usize, level: usize, node: usize, p: [[i64; 3]; 3], visit: &mut impl FnMut(usize, usize, [[i64; 3]; 3], [u64; 3])) {
+    fn each(
+        &self,
+        tree: usize,
+        level: usize,
+        node: usize,
+        p: [[i64; 3]; 3],
+        visit: &mut impl FnMut(usize, usize, [[i64; 3]; 3], [u64; 3]),
+    ) {
         if level == self.levels {
             return visit(level, node, p, [0; 3]);
         }

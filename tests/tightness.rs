@@ -81,8 +81,7 @@ fn in_excess(own: &[Bounds], all: &[Bounds]) -> Vec<Bounds> {
     let corners = |b: &[Bounds]| b.iter().map(|b| b.at_codes().codes()).collect::<Vec<_>>();
     let (own, all) = (corners(own), corners(all));
     let excess = |k: usize, axis: usize| [own[k].0[axis] - all[k].0[axis], all[k].1[axis] - own[k].1[axis]];
-    let steps: [Vec<i64>; 3] =
-        std::array::from_fn(|axis| reached((0..4).flat_map(|k| excess(k, axis)).max().expect("four of them"), 127));
+    let steps: [Vec<i64>; 3] = std::array::from_fn(|axis| reached((0..4).flat_map(|k| excess(k, axis)).max().expect("four of them"), 127));
     let stored = |k: usize| {
         Bounds::of_codes(
             std::array::from_fn(|axis| own[k].0[axis] - up(&steps[axis], excess(k, axis)[0])),

@@ -50,7 +50,8 @@ fn remeshed_box() -> Scene {
 #[test]
 fn closed_models_have_neither_misses_nor_double_hits() {
     let mut models: Vec<(String, Hierarchy, Scene)> = Vec::new();
-    let mut add = |name: String, scene: Scene| models.push((format!("{name}, {} vertices", scene.meta().vertices.name()), scene.decode(), scene));
+    let mut add =
+        |name: String, scene: Scene| models.push((format!("{name}, {} vertices", scene.meta().vertices.name()), scene.decode(), scene));
     for (levels, roughness) in [(0, 0.3), (1, 1.0), (3, 0.1), (3, 2.0), (5, 0.6)] {
         for form in VertexForm::ALL {
             let h = with_vertices(form, ball(levels, roughness, u64::from(levels)));

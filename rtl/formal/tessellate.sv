@@ -133,7 +133,7 @@ module tessellate_displacement (
   assign g    = {out.g2, out.g1, out.g0};
   assign code = {in_i.e2, in_i.e1, in_i.e0};
 
-  logic [8:0] exact;
+  logic [8:0] exact, short;
   logic [2:0] coarser;
   for (genvar i = 0; i < 3; i++) begin : g_vertex
     logic signed [15:0] octave, zero, e;
@@ -148,12 +148,14 @@ module tessellate_displacement (
       assign b   = f[(i+2)%3][32*k +: 32];
       assign d   = v[i][32*k +: 32];
       assign sum = 33'(a) + 33'(b);
+      assign short[3*i+k] = d >= -32'sd4096 && d <= 32'sd4095;
       assign exact[3*i+k] = g[i][32*k +: 32] == (in_i.compact ? sum[32:1] + (d << e[4:0]) : d);
     end
   end
 
   always_comb begin
     assume (in_i.scale.offset <= 9'd272 && in_i.grid <= 4'(lod_pkg::MAX_LEVELS - 1));
+    assume (!in_i.compact || short == '1);
     assert (exact == '1);
     assert (tag == tag_i && valid && ready);
     cover (in_i.compact && coarser == 3'b101 && in_i.grid == 4'd9);

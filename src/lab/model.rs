@@ -36,7 +36,8 @@ impl Model {
             // Trees have the order of the scene.
             let len = lattice::len(surface.levels);
             let source = |tree: usize| model.scene.record(tree).source.get() as usize; // 28 bits
-            model.positions = (0..model.scene.trees()).flat_map(|tree| surface.positions[source(tree) * len..][..len].iter().copied()).collect();
+            model.positions =
+                (0..model.scene.trees()).flat_map(|tree| surface.positions[source(tree) * len..][..len].iter().copied()).collect();
         }
         Ok(model)
     }

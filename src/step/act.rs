@@ -243,9 +243,10 @@ mod tests {
             ("hit_divide", 7),
             ("hit_select", 3),
             ("bary_map", 1),
-            ("box_test", 4),
+            ("box_decode", 4),
+            ("box_test", 8),
             ("box_test32", 4),
-            ("child_sort", 2),
+            ("child_sort", 3),
         ];
         assert_eq!(some, wanted);
     }

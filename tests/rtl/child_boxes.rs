@@ -137,9 +137,12 @@ fn sides(b: &Box16) -> [i64; 6] {
 
 /// Which sides of child 0 of a tree's node its morphed triangle decides alone.
 fn decided(i: &In, o: &Out) -> u64 {
+    if !i.tree {
+        return 0;
+    }
     let (all, full) = (sides(&o.bounds[0]), sides(&own(full(i), 0)));
     let out = |at: usize| if at < 3 { (full[at] - steps(i, 0, at)).max(-MOST) } else { (full[at] + steps(i, 0, at)).min(MOST) };
-    if i.tree { (0..6).map(|at| u64::from(all[at] != out(at)) << at).sum() } else { 0 }
+    (0..6).map(|at| u64::from(all[at] != out(at)) << at).sum()
 }
 
 fn legal(i: &In) -> bool {

@@ -1,6 +1,6 @@
 //! Random integers as blocks like them least: all magnitudes, zeros, extremes.
 
-use lodray::num::{BoundScale, Box16, COORD_LIMIT, Cone, MAX_BOUND_OFFSET, MAX_LEVELS, Point, Ray, RayT, U};
+use lodray::num::{BoundScale, COORD_LIMIT, Cone, MAX_BOUND_OFFSET, MAX_LEVELS, Point, Ray, RayT, U};
 use lodray_test_support::models::Rng;
 
 /// Largest magnitude of a point's coordinate.
@@ -130,15 +130,5 @@ impl Draw {
     /// The end of the ray so far: mostly open.
     pub fn t_max(&mut self) -> RayT {
         if self.once_in(2) { RayT::MAX } else { self.bits() }
-    }
-
-    /// A box of codes with |code| <= `max`, often flat.
-    pub fn box16(&mut self, max: i64) -> Box16 {
-        let mut corner = || [0; 3].map(|_| self.signed(max) as i16); // at most 16 bits
-        let (a, b) = (corner(), corner());
-        let flat = self.below(6) as usize;
-        let lo = [0, 1, 2].map(|k: usize| a[k].min(b[k]));
-        let hi = [0, 1, 2].map(|k: usize| if k == flat { lo[k] } else { a[k].max(b[k]) });
-        Box16::from_codes(lo, hi)
     }
 }

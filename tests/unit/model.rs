@@ -119,7 +119,7 @@ fn equals_the_functional_and_the_golden_traverser() {
         let h = &scene.decode();
         let image = LodImage::of(&scene);
         let memory = SceneMemory::new(image, *first_line);
-        let rays = any_rays(h, 80, number as u64);
+        let rays = any_rays(h, 50, number as u64);
 
         let golden = Exact::new(h);
         let mut lod = LodTraverser::new(image);

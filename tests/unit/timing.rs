@@ -94,7 +94,7 @@ fn equals_the_cycle_model_in_every_cycle() {
         let scene = scene_of(h);
         let image = LodImage::of(&scene);
         let memory = SceneMemory::new(image, 1000);
-        let rays = any_rays(h, 60, number as u64);
+        let rays = any_rays(h, 40, number as u64);
         let batch = steps_of(image, &rays);
         for config in configs().into_iter().chain(OTHERS).filter(|config| h.levels <= config.levels) {
             for traffic in traffics() {
