@@ -244,7 +244,7 @@ package lod_pkg;
 
   // Input of tessellate.
   typedef struct packed {
-    logic compact;                // Inserted vertices are displacements.
+    logic compact;                // Stored vertices are displacements.
     logic [3:0] grid;             // Zero bits at the bottom of an inserted vertex.
     bound_scale_t scale;          // The model's bound scale.
     logic [BOUND_CODE_W-1:0] e0;  // Bound code of edge (p1, p2).
@@ -253,24 +253,24 @@ package lod_pkg;
     logic [EDGE_STATE_W-1:0] s0;  // State of edge (p1, p2).
     logic [EDGE_STATE_W-1:0] s1;  // State of edge (p2, p0).
     logic [EDGE_STATE_W-1:0] s2;  // State of edge (p0, p1).
-    point_t f0;                   // Corner p0 at full resolution.
-    point_t f1;                   // Corner p1.
-    point_t f2;                   // Corner p2.
-    point_t p0;                   // Corner p0.
+    point_t f0;                   // Corner p0 of full resolution.
+    point_t f1;                   // Corner p1 of full resolution.
+    point_t f2;                   // Corner p2 of full resolution.
+    point_t p0;                   // Corner p0 as morphed for this ray.
     point_t p1;                   // Corner p1.
     point_t p2;                   // Corner p2.
-    point_t v0;                   // Vertex or displacement on (p1, p2).
+    point_t v0;                   // Stored vertex on (p1, p2), or its displacement.
     point_t v1;                   // On (p2, p0).
     point_t v2;                   // On (p0, p1).
   } tessellate_in_t;
   localparam int unsigned TESSELLATE_IN_W = 1 + 4 + BOUND_SCALE_W + BOUND_CODE_W + BOUND_CODE_W + BOUND_CODE_W + EDGE_STATE_W + EDGE_STATE_W + EDGE_STATE_W + POINT_W + POINT_W + POINT_W + POINT_W + POINT_W + POINT_W + POINT_W + POINT_W + POINT_W;
 
-  // Output of tessellate.
+  // Output of tessellate: the inserted vertices of full resolution, and as morphed.
   typedef struct packed {
-    point_t g0;  // Inserted vertex on (p1, p2) at full resolution.
+    point_t g0;  // Full resolution, on (p1, p2).
     point_t g1;  // On (p2, p0).
     point_t g2;  // On (p0, p1).
-    point_t q0;  // The same as morphed.
+    point_t q0;  // Morphed, on (p1, p2).
     point_t q1;  // On (p2, p0).
     point_t q2;  // On (p0, p1).
   } tessellate_out_t;
@@ -278,21 +278,21 @@ package lod_pkg;
 
   // Input of child_boxes.
   typedef struct packed {
-    logic tree;                  // Children of a tree's node.
-    code3_t origin;              // Lower corner of the frame.
+    logic tree;                  // Children of a tree's node; else of a quad-BVH node.
+    code3_t origin;              // Lower corner of a quad-BVH node's frame.
     logic [2:0] halves;          // Steps along x, y, z are half as long again.
     logic [2:0][3:0] exponents;  // Powers of two of these steps.
-    logic [23:0][6:0] planes;    // Planes.
-    point_t f0;                  // Corner p0 at full resolution.
-    point_t f1;                  // Corner p1.
-    point_t f2;                  // Corner p2.
-    point_t g0;                  // Inserted vertex on (p1, p2) at full resolution.
+    logic [23:0][6:0] planes;    // Steps of child k: lower x, y, z and upper x, y, z at 6k to 6k + 5.
+    point_t f0;                  // Corner p0 of full resolution.
+    point_t f1;                  // Corner p1 of full resolution.
+    point_t f2;                  // Corner p2 of full resolution.
+    point_t g0;                  // Inserted vertex of full resolution on (p1, p2).
     point_t g1;                  // On (p2, p0).
     point_t g2;                  // On (p0, p1).
-    point_t p0;                  // Corner p0 as morphed.
+    point_t p0;                  // Corner p0 as morphed for this ray.
     point_t p1;                  // Corner p1.
     point_t p2;                  // Corner p2.
-    point_t q0;                  // Inserted vertex on (p1, p2) as morphed.
+    point_t q0;                  // Inserted vertex on (p1, p2) as morphed for this ray.
     point_t q1;                  // On (p2, p0).
     point_t q2;                  // On (p0, p1).
   } child_boxes_in_t;
@@ -306,11 +306,11 @@ package lod_pkg;
 
   // Input of box_decode.
   typedef struct packed {
-    code3_t origin;              // Lower corner of the frame.
+    code3_t origin;              // Lower corner of the node's frame.
     logic [2:0] halves;          // Steps along x, y, z are half as long again.
     logic [2:0][3:0] exponents;  // Powers of two of these steps.
-    logic [2:0][4:0] lo;         // Lower planes.
-    logic [2:0][4:0] hi;         // Upper planes.
+    logic [2:0][4:0] lo;         // Steps of the lower corner.
+    logic [2:0][4:0] hi;         // Steps of the upper corner.
   } box_decode_in_t;
   localparam int unsigned BOX_DECODE_IN_W = CODE3_W + 3 + 3 * 4 + 3 * 5 + 3 * 5;
 
@@ -363,21 +363,21 @@ package lod_pkg;
     ray_setup_out_t ray;         // The ray's constants.
     logic [RAY_T_W-1:0] t_max;   // t of the closest hit so far.
     logic [3:0] present;         // Child k exists.
-    logic tree;                  // Children of a tree's node.
-    code3_t origin;              // Lower corner of the frame.
+    logic tree;                  // Children of a tree's node; else of a quad-BVH node.
+    code3_t origin;              // Lower corner of a quad-BVH node's frame.
     logic [2:0] halves;          // Steps along x, y, z are half as long again.
     logic [2:0][3:0] exponents;  // Powers of two of these steps.
-    logic [23:0][6:0] planes;    // Planes.
-    point_t f0;                  // Corner p0 at full resolution.
-    point_t f1;                  // Corner p1.
-    point_t f2;                  // Corner p2.
-    point_t g0;                  // Inserted vertex on (p1, p2) at full resolution.
+    logic [23:0][6:0] planes;    // Steps of child k: lower x, y, z and upper x, y, z at 6k to 6k + 5.
+    point_t f0;                  // Corner p0 of full resolution of the parent.
+    point_t f1;                  // Corner p1 of full resolution.
+    point_t f2;                  // Corner p2 of full resolution.
+    point_t g0;                  // Its inserted vertex of full resolution on (p1, p2).
     point_t g1;                  // On (p2, p0).
     point_t g2;                  // On (p0, p1).
-    point_t p0;                  // Corner p0 as morphed.
+    point_t p0;                  // Corner p0 of the parent as morphed for this ray.
     point_t p1;                  // Corner p1.
     point_t p2;                  // Corner p2.
-    point_t q0;                  // Inserted vertex on (p1, p2) as morphed.
+    point_t q0;                  // Its inserted vertex on (p1, p2), as morphed for this ray.
     point_t q1;                  // On (p2, p0).
     point_t q2;                  // On (p0, p1).
   } child_test_in_t;
@@ -466,7 +466,7 @@ package lod_pkg;
 
   // Input of tree_base.
   typedef struct packed {
-    logic compact;                        // Inserted vertices are compact.
+    logic compact;                        // Vertices are compact.
     logic [3:0] levels;                   // Number of splits N.
     logic [27:0] tree;                    // The tree.
     logic [LINE_ADDRESS_W-1:0] vertices;  // First line of the vertex data.
@@ -487,8 +487,8 @@ package lod_pkg;
     logic [3:0] level;                // Level of the node within its tree; 0 outside of trees.
     logic [27:0] index;               // Number of the record on its level.
     logic pair;                       // Records have two lines.
-    logic halves;                     // Records are halves of lines.
-    logic half;                       // The second of two lines.
+    logic halves;                     // Records have half a line.
+    logic half;                       // The second line of a pair; else 0.
   } node_address_in_t;
   localparam int unsigned NODE_ADDRESS_IN_W = LINE_ADDRESS_W + 4 + 28 + 1 + 1 + 1;
 
@@ -501,14 +501,14 @@ package lod_pkg;
   // What traversal needs of the four children of a tree's node: 32 bytes.
   typedef struct packed {
     logic reserved;                       // Zero.
-    logic [8:0][BOUND_CODE_W-1:0] codes;  // Codes of the nine different edges.
+    logic [8:0][BOUND_CODE_W-1:0] codes;  // Codes of the nine different edges: 3k, 3k + 1, 3k + 2 of e0, e1, e2 of child k < 3; child 3 has 0, 4 and 8 (codes_of).
     logic [2:0] halves;                   // Steps along x, y, z are half as long again.
     logic [2:0][3:0] exponents;           // Powers of two of these steps.
     logic [23:0][6:0] planes;             // Child k: below in x, y, z and above in x, y, z at 6k to 6k + 5.
   } sibling_group_t;
   localparam int unsigned SIBLING_GROUP_W = 1 + 9 * BOUND_CODE_W + 3 + 3 * 4 + 24 * 7;
 
-  // A quad-BVH node: 32 bytes.
+  // A quad-BVH node: 32 bytes. Its boxes lie in a frame of its own: box_steps of their axis from its origin.
   typedef struct packed {
     logic reserved;              // Zero.
     logic [3:0][1:0] kinds;      // Kind of each child: 0 empty, 1 inner node, 2 leaf.
@@ -531,7 +531,7 @@ package lod_pkg;
   } vertex_data_t;
   localparam int unsigned VERTEX_DATA_W = 4 + STORED_POINT_W + STORED_POINT_W + STORED_POINT_W;
 
-  // Inserted vertices of a node, compact.
+  // Inserted vertices of a node, compact: displacements from the midpoints of the edges between its full-resolution corners, in steps of displacement_shift. 16 bytes.
   typedef struct packed {
     logic [10:0] reserved;  // Zero.
     displacement_t v0;      // Of q0.
