@@ -5,8 +5,8 @@
 use criterion::{BenchmarkId, Criterion, SamplingMode, Throughput, criterion_group, criterion_main};
 use lodray::mesh::procedural::{self, generate};
 use lodray::mesh::{BoundKind, quantise};
-use lodray::num::VertexForm;
 use lodray::method::bvh::{FullBvh, FullOptions, LeafLayout, NodeBoxes};
+use lodray::num::VertexForm;
 use std::hint::black_box;
 
 fn benches(c: &mut Criterion) {

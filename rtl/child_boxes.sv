@@ -59,12 +59,12 @@ module child_boxes #(
     assign q                 = points[6*TRIANGLE+3+i%3][(2-AXIS)*POINT_W +: POINT_W];
     assign framed            = TRIANGLE == 0 && !in_i.tree;
     assign corner_codes[i]   = framed ? {origin[AXIS], 1'b0} : {p[POINT_W-1:lod_pkg::BOX_SHIFT], p[lod_pkg::BOX_SHIFT-1:0] != '0};
-    assign inserted_codes[i] = framed ? {origin[AXIS], 1'b0} : {q[POINT_W-1:lod_pkg::BOX_SHIFT], q[lod_pkg::BOX_SHIFT-1:0] != '0};
+    assign inserted_codes[i] = {q[POINT_W-1:lod_pkg::BOX_SHIFT], q[lod_pkg::BOX_SHIFT-1:0] != '0};
     assign a                 = inserted_codes[FIRST+(i+1)%3];
     assign b                 = inserted_codes[FIRST+(i+2)%3];
     assign rises[i]          = a < b;
-    assign low_pairs[i]      = rises[i] ? a[EXACT_W-1:1] : b[EXACT_W-1:1];
-    assign high_pairs[i]     = rises[i] ? b : a;
+    assign low_pairs[i]      = framed ? origin[AXIS] : rises[i] ? a[EXACT_W-1:1] : b[EXACT_W-1:1];
+    assign high_pairs[i]     = framed ? {origin[AXIS], 1'b0} : rises[i] ? b : a;
   end
   // Whether the first inserted vertex is below the second.
   for (genvar l = 0; l < 6; l++) begin : g_last

@@ -242,7 +242,8 @@ fn widths_limits_and_timings_are_the_same() {
 fn states_have_the_same_names_and_numbers() {
     let package = package();
     let states: Vec<(String, u64)> = State::ALL.iter().map(|&state| (state.name().to_owned(), state as u64)).collect();
-    let fetches = [Fetch::Node, Fetch::Record, Fetch::Vertex, Fetch::Group].map(|fetch| (format!("{fetch:?}").to_uppercase(), fetch as u64));
+    let fetches =
+        [Fetch::Node, Fetch::Record, Fetch::Vertex, Fetch::Group].map(|fetch| (format!("{fetch:?}").to_uppercase(), fetch as u64));
     assert_eq!(package.enums["context_state_t"].1, states);
     assert_eq!(package.enums["fetch_t"].1, fetches);
     assert_eq!(package.enums.len(), 2, "an enum without a twin");

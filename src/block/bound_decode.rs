@@ -36,17 +36,18 @@ pub struct BoundDecode;
 const SUM: u32 = BoundScale::WIDTH + 1;
 const OCTAVE: u32 = SUM - 4;
 const MANTISSA: u32 = 9;
+/// Of a mantissa shifted by up to 7.
+const FINE: u32 = MANTISSA + 7;
 
 impl BoundDecode {
-    /// Registers with a tag of so many bits: the sum with whether the code is 0, the mantissa shifted coarsely, h.
+    /// Registers with a tag of so many bits: the sum with whether the code is 0, the mantissa shifted by up to 7 with the bytes to come, h.
     pub(super) fn registers(tag: u32) -> Registers {
-        let coarse = Bound::WIDTH + 8;
-        Registers::stage(SUM + 1 + tag) + Registers::stage(coarse + 3 + tag) + Registers::stage(Bound::WIDTH + tag)
+        Registers::stage(SUM + 1 + tag) + Registers::stage(FINE + OCTAVE - 3 + tag) + Registers::stage(Bound::WIDTH + tag)
     }
 
-    /// Its sums and selections: the table of sixteen, and a shift of up to six steps.
+    /// Its sums and selections: the table of sixteen, nothing for code 0, the shift in three steps of bits and three of bytes.
     pub(super) fn arithmetic() -> (u32, u32) {
-        (SUM, 15 * MANTISSA + OCTAVE * (Bound::WIDTH + 8))
+        (SUM, 15 * MANTISSA + FINE + 3 * FINE + (OCTAVE - 3) * (Bound::WIDTH + 8))
     }
 }
 

@@ -37,7 +37,7 @@ pub struct BoxDecode;
 /// Bits of a code, of steps times two or three, and of steps in codes.
 const CODE: u32 = 16;
 const DOUBLED: u32 = 7;
-const STEPS: u32 = 17;
+const STEPS: u32 = 16;
 
 impl Block for BoxDecode {
     const NAME: &'static str = "box_decode";

@@ -115,14 +115,15 @@ pub fn widened(reach: Reach, f: [Point; 3], p: [Point; 3]) -> Box16 {
 const CODE: u32 = 16;
 const STICKY: u32 = CODE + 1;
 const DOUBLED: u32 = 9;
-const STEPS: u32 = 17;
+const STEPS: u32 = 16;
 
 impl ChildBoxes {
-    /// Registers with a tag of so many bits: pairs of corners and single ones, least and largest of each child, boxes.
+    /// Registers with a tag of so many bits: corners and pairs of inserted vertices, least and largest of each child, boxes.
     pub(super) fn registers(tag: u32) -> Registers {
-        let set = 3 * (3 * (CODE + STICKY) + 4 * STICKY);
-        let pairs = 2 * set + 24 * DOUBLED + 3 * CODE + 3 * 4 + 1;
-        let ends = 4 * 3 * 2 * (CODE + STICKY) + 24 * STEPS + 1;
+        // Of both triangles three numbers along each axis.
+        let pairs = 2 * 3 * 3 * (STICKY + CODE + STICKY) + 24 * DOUBLED + 3 * 4 + 1;
+        // A morphed triangle's largest is rounded up already.
+        let ends = 4 * 3 * (CODE + STICKY + 2 * CODE) + 24 * STEPS + 1;
         Registers::stage(pairs + tag) + Registers::stage(ends + tag) + Registers::skid(4 * 6 * CODE + tag)
     }
 }

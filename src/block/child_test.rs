@@ -113,8 +113,8 @@ impl Block for ChildTest {
         let boxes = child_boxes::In { tree, origin, halves, exponents, planes, f0, f1, f2, g0, g1, g2, p0, p1, p2, q0, q1, q2 };
         let bounds = ChildBoxes::eval(&boxes).bounds;
         let mut tests = child_sort::In::default();
-        for k in 0..4 {
-            let test = BoxTest::eval(&box_test::In { ray: i.ray, t_max: i.t_max, bounds: bounds[k] });
+        for (k, bounds) in bounds.into_iter().enumerate() {
+            let test = BoxTest::eval(&box_test::In { ray: i.ray, t_max: i.t_max, bounds });
             tests.hit[k] = test.hit & i.present[k];
             tests.t_near[k] = if i.present[k] { test.t_near } else { TNear::ZERO };
         }

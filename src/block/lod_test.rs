@@ -140,13 +140,7 @@ impl Block for LodTest {
         Parts {
             products,
             // Corners, sums along the ray, nearer ends, sums of the cone, bounds, openings, divisions.
-            add_bits: 9 * RELATIVE
-                + 6 * ALONG
-                + 3 * DISTANCE
-                + 6 * SUM
-                + 3 * decode_adds
-                + 9 * TOLERANCE
-                + 3 * BITS * (TOLERANCE + 1),
+            add_bits: 9 * RELATIVE + 6 * ALONG + 3 * DISTANCE + 6 * SUM + 3 * decode_adds + 9 * TOLERANCE + 3 * BITS * (TOLERANCE + 1),
             // Nearer ends, shifts of cone and bound, clamps, divisions, ends of s.
             select_bits: 3 * (DISTANCE + SUM * SHIFT + decode_selects + TOLERANCE + BITS * TOLERANCE + EdgeState::WIDTH),
             registers: corners + 3 * along + nearer + cone + codes + edges + ends,

@@ -141,19 +141,20 @@ impl Block for Tessellate {
         // A coordinate, its difference from the midpoint, s as a signed number, and the fraction of the product that is dropped.
         let (w, s, grid, fraction) = (RELATIVE - 1, EdgeState::WIDTH + 1, 4, 8);
         let product = Multiplier { low: fraction, high: fraction + w, ..Multiplier::new(RELATIVE, s) };
-        // Both midpoints and the displacement; the vertex; the difference. The vertex goes along to the end.
-        let ahead = Registers::stage(3 * w + s - 1 + grid)
-            + Registers::stage(2 * w + s - 1 + grid)
-            + Registers::stage(RELATIVE + 2 * w + s - 1 + grid);
-        let beside = Registers::line(2 * w + grid, multiplier_latency(RELATIVE, s), 0);
-        let coordinate = ahead + product.registers() + beside + Registers::stage(3 * w) + Registers::stage(2 * w);
+        // Three coordinates share state, grid and shift. Both midpoints and the displacement; the vertex; the difference. The vertex goes along to the end.
+        let (opening, shift) = (s - 1 + grid, 5);
+        let ahead = Registers::stage(9 * w + shift + opening)
+            + Registers::stage(6 * w + opening)
+            + Registers::stage(3 * RELATIVE + 6 * w + opening);
+        let beside = Registers::line(6 * w + grid, multiplier_latency(RELATIVE, s), 0);
+        let vertex = ahead + 3 * product.registers() + beside + Registers::stage(9 * w) + Registers::stage(6 * w);
         Parts {
             products: vec![[9, RELATIVE, s]],
             // Shifts of three edges; midpoints, vertex, difference, sum.
             add_bits: 3 * (BoundScale::WIDTH + 1 + 6) + 9 * (2 * RELATIVE + w + RELATIVE + w),
             // Shifts; the displacement's in five steps, or the vertex as it is; the grid.
             select_bits: 3 * 5 + 9 * (5 * w + w + w),
-            registers: 9 * coordinate + Registers::line(TAG, Self::TIMING.latency, 0),
+            registers: 3 * vertex + Registers::line(TAG, Self::TIMING.latency, 0),
         }
     }
     #[inline(always)]

@@ -83,7 +83,9 @@ impl Named for VertexForm {
     fn about(self) -> &'static str {
         match self {
             Self::Exact => "28 bits a coordinate: a line of 32 bytes for the three vertices of a split",
-            Self::Compact => "13 bits of the displacement from the edge's midpoint: half a line, and each vertex moved by up to 1/2048 of its edge's bound",
+            Self::Compact => {
+                "13 bits of the displacement from the edge's midpoint: half a line, and each vertex moved by up to 1/2048 of its edge's bound"
+            }
         }
     }
 }

@@ -94,7 +94,8 @@ mod tests {
                 for (tree, node) in (0..after.triangles.len()).flat_map(|tree| (0..1u32 << (2 * level)).map(move |node| (tree, node))) {
                     let p = lattice::node(levels, level, node);
                     for edge in 0..3 {
-                        let ((new, code), (old, _)) = (displacement(&after, tree, level, p, edge), displacement(&before, tree, level, p, edge));
+                        let ((new, code), (old, _)) =
+                            (displacement(&after, tree, level, p, edge), displacement(&before, tree, level, p, edge));
                         let shift = displacement_shift(after.bounds.scale, code, inserted_zero_bits(levels, level));
                         step = step.max(shift);
                         for (new, old) in new.into_iter().zip(old) {

@@ -167,7 +167,8 @@ fn snap_points(surface: &Surface, placement: Placement, vertices: VertexForm) ->
     let Placement { offset, scale } = placement;
     // The zero bits of each lattice point are the same for all trees.
     let m = 1 << levels;
-    let zero_bits: Vec<u32> = (0..=m).flat_map(|j| (0..=m - j).map(move |i| vertices.zero_bits(levels - lattice::level_of(levels, (i, j))))).collect();
+    let zero_bits: Vec<u32> =
+        (0..=m).flat_map(|j| (0..=m - j).map(move |i| vertices.zero_bits(levels - lattice::level_of(levels, (i, j))))).collect();
     let mut points = vec![[0; 3]; surface.positions.len()];
     points.par_chunks_mut(len).zip(surface.positions.par_chunks(len)).for_each(|(points, positions)| {
         for ((point, position), &bits) in points.iter_mut().zip(positions).zip(&zero_bits) {

@@ -15,7 +15,7 @@ mod wire;
 
 pub use bits::{BitReader, BitVec, BitWriter};
 pub use box16::Box16;
-pub use displacement::{VertexForm, displacement_shift, displacement_steps, displaced};
+pub use displacement::{VertexForm, displaced, displacement_shift, displacement_steps};
 pub use fixed::{S, U, WS, WU};
 pub use formats::*;
 pub use random::Random;

@@ -50,7 +50,11 @@ const PINS: [Pin; 10] = [
     Pin::new("lod-units-gpu", "lod", "turing2018", Compute::Units, 0.7),
     Pin::new("lod-packet", "lod", "packet", Compute::Free, 4.0),
     Pin::new("bvh-free", "bvh", "haydel2023-ddr3", Compute::Free, 1.2),
-    Pin::new("bvh-units", "bvh", "haydel2023", Compute::Units, 2.0).with(&[("node-boxes", "codes"), ("leaf-layout", "packed"), ("leaf-size", "2")]),
+    Pin::new("bvh-units", "bvh", "haydel2023", Compute::Units, 2.0).with(&[
+        ("node-boxes", "codes"),
+        ("leaf-layout", "packed"),
+        ("leaf-size", "2"),
+    ]),
     Pin::new("bvh32-units", "bvh32", "turing2018", Compute::Units, 1.2).with(&[("leaf-layout", "indexed")]),
     Pin::new("discrete-free", "discrete", "haydel2023-public", Compute::Free, 1.2).with(&[("level", "2")]),
     Pin::new("discrete-units", "discrete", "haydel2023", Compute::Units, 4.0),

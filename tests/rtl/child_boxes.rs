@@ -85,7 +85,7 @@ fn level(draw: &mut Draw) -> In {
     // All corners in the same place, and morphed by as much, in codes.
     let from = input.f0.get().map(|v| v >> 16 << 16);
     let way = draw.sign(1);
-    let to = from.map(|v| v + (way * (by + draw.beside()) << 16) + draw.beside());
+    let to = from.map(|v| v + ((way * (by + draw.beside())) << 16) + draw.beside());
     let planes = [U::new(by.unsigned_abs()); 24];
     In { halves, exponents, planes, ..with_points(input, [point(from); 6], [point(to); 6]) }
 }
@@ -173,12 +173,16 @@ pub fn suite() -> Suite<ChildBoxes> {
                         && (3..6).all(|at| all[at] == (own[at] + steps(i, k, at)).min(MOST))
                 })
             }),
-            Is::often("to the ends of the range", far_out, |_, o| o.bounds.iter().all(|b| b.lo.get() == [-MOST; 3] && b.hi.get() == [MOST; 3])),
+            Is::often("to the ends of the range", far_out, |_, o| {
+                o.bounds.iter().all(|b| b.lo.get() == [-MOST; 3] && b.hi.get() == [MOST; 3])
+            }),
             Is::any("excess as far as morphing", level),
             Is::any("children of a quad-BVH node", node),
             Is::often("of these within the range", node_within, |_, o| o.bounds.iter().all(|b| b.hi.get().iter().all(|&v| v < MOST))),
             Is::all("at the origin", node_at_the_origin, |i, o| o.bounds.iter().all(|b| b.lo == i.origin && b.hi == i.origin)),
-            Is::all("beyond the range", node_of_all_of_space, |_, o| o.bounds.iter().all(|b| b.lo.get() == [MOST; 3] && b.hi.get() == [MOST; 3])),
+            Is::all("beyond the range", node_of_all_of_space, |_, o| {
+                o.bounds.iter().all(|b| b.lo.get() == [MOST; 3] && b.hi.get() == [MOST; 3])
+            }),
         ],
         vec![
             ("morphed by as much as the excess", |i, o| {
@@ -191,7 +195,9 @@ pub fn suite() -> Suite<ChildBoxes> {
             ("the lower end of the range, not beyond it", |i, o| {
                 i.tree && o.bounds[2].lo.get()[0] == -MOST && sides(&own(full(i), 2))[0] - steps(i, 2, 0) == -MOST
             }),
-            ("a node's plane at the last code", |i, o| !i.tree && o.bounds[1].lo.get()[2] == MOST && i.origin.get()[2] + steps(i, 1, 2) == MOST),
+            ("a node's plane at the last code", |i, o| {
+                !i.tree && o.bounds[1].lo.get()[2] == MOST && i.origin.get()[2] + steps(i, 1, 2) == MOST
+            }),
         ],
         vec![
             ("sides that the morphed triangle decides", 0..=63, decided),

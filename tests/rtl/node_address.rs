@@ -64,7 +64,10 @@ fn bottom(draw: &mut Draw) -> In {
 }
 
 fn legal(i: &In) -> bool {
-    i.level.get() <= 9 && (i.pair || !i.half) && (!i.halves || (!i.pair && i.level > U::ZERO)) && i.base.get() + line(i) <= U::<36>::MAX.get()
+    i.level.get() <= 9
+        && (i.pair || !i.half)
+        && (!i.halves || (!i.pair && i.level > U::ZERO))
+        && i.base.get() + line(i) <= U::<36>::MAX.get()
 }
 
 type Is = Category<NodeAddress>;
@@ -76,9 +79,7 @@ pub fn suite(levels: u64) -> Suite<NodeAddress> {
         vec![
             Is::any("records", record),
             Is::any("nodes of trees", node),
-            Is::all("two nodes in a line", half_a_line, |i, o| {
-                NodeAddress::eval(&In { index: U::new(i.index.get() ^ 1), ..*i }) == *o
-            }),
+            Is::all("two nodes in a line", half_a_line, |i, o| NodeAddress::eval(&In { index: U::new(i.index.get() ^ 1), ..*i }) == *o),
             Is::any("every index on every level", any_level),
             Is::all("top of memory", top, |_, o| o.address == U::MAX),
             Is::all("bottom of memory", bottom, |i, o| o.address.get() == line(i)),
@@ -86,7 +87,11 @@ pub fn suite(levels: u64) -> Suite<NodeAddress> {
         vec![("largest index", |i, _| i.index == U::MAX), ("address 0", |_, o| o.address == U::ZERO)],
         vec![
             ("level", 0..=levels - 1, |i, _| i.level.get()),
-            ("one line, first and second of two, half a line", 0..=3, |i, _| if i.halves { 3 } else { u64::from(i.pair) + u64::from(i.half) }),
+            (
+                "one line, first and second of two, half a line",
+                0..=3,
+                |i, _| if i.halves { 3 } else { u64::from(i.pair) + u64::from(i.half) },
+            ),
         ],
     )
 }

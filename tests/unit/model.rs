@@ -95,8 +95,10 @@ fn models() -> Vec<Model> {
     });
     all.push(Model { name: "deep".into(), h, first_line: 12_345 });
     let in_form = |form: VertexForm| {
-        let each = |of: &Model| {
-            Model { name: format!("{} {}", form.name(), of.name), h: with_vertices(form, of.h.clone()), first_line: of.first_line }
+        let each = |of: &Model| Model {
+            name: format!("{} {}", form.name(), of.name),
+            h: with_vertices(form, of.h.clone()),
+            first_line: of.first_line,
         };
         all.iter().map(each).collect::<Vec<_>>()
     };

@@ -216,8 +216,8 @@ fn alone(steps: Vec<Step>, latency: u64) -> u64 {
 fn baseline_rays_take_the_cycles_of_their_blocks() {
     use lodray::block::Block;
     use lodray::block::{
-        box_decode::BoxDecode, box_test::BoxTest, box_test32::BoxTest32, child_sort::ChildSort, hit_divide::HitDivide, hit_select::HitSelect,
-        node_address::NodeAddress, ray_setup::RaySetup, tri_test::TriTest,
+        box_decode::BoxDecode, box_test::BoxTest, box_test32::BoxTest32, child_sort::ChildSort, hit_divide::HitDivide,
+        hit_select::HitSelect, node_address::NodeAddress, ray_setup::RaySetup, tri_test::TriTest,
     };
     let cycles = |timing: lodray::block::Timing| u64::from(timing.latency);
     let latency = 30;

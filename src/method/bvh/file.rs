@@ -39,7 +39,8 @@ impl TreeKey {
         let Options { max_leaf, collapse, costs } = options.tree;
         let mut hash = Xxh3Default::new();
         let scale = scene.meta().bound_offset;
-        for number in [VERSION, scene.levels(), level, max_leaf, collapse as u32, options.boxes as u32, scale, scene.meta().vertices as u32] {
+        for number in [VERSION, scene.levels(), level, max_leaf, collapse as u32, options.boxes as u32, scale, scene.meta().vertices as u32]
+        {
             hash.update(&number.to_le_bytes());
         }
         for cost in [costs.node, costs.primitive] {

@@ -6,7 +6,9 @@
 use super::finest::Finest;
 use super::{LeafLayout, Leaves};
 use crate::bvh::build::{Binary, Prim, binary_tree};
-use crate::bvh::{BvhError, Costs, MAX_DEPTH, Node16, Node32, Options, QuadNode, check_options, collapse, encode_line, encode16, encode32, side_by_side};
+use crate::bvh::{
+    BvhError, Costs, MAX_DEPTH, Node16, Node32, Options, QuadNode, check_options, collapse, encode_line, encode16, encode32, side_by_side,
+};
 use crate::format::Line;
 use crate::mesh::Hierarchy;
 use rayon::prelude::*;

@@ -57,7 +57,10 @@ pub static NODE_BOXES: Knob = Knob {
     value_name: "NODE_BOXES",
     help: "Boxes of a BVH's nodes",
     default: Some("local"),
-    words: &[("local", "Steps of 5 bits in a frame of the node's own, a node in 32 bytes"), ("codes", "Codes of 16 bits, a node in 64 bytes, as in the paper")],
+    words: &[
+        ("local", "Steps of 5 bits in a frame of the node's own, a node in 32 bytes"),
+        ("codes", "Codes of 16 bits, a node in 64 bytes, as in the paper"),
+    ],
     of_frame: false,
     allows: |value| NodeBoxes::named(value).map(drop).ok_or_else(|| format!("'{value}' is not local or codes")),
 };

@@ -5,7 +5,9 @@
 
 mod levels;
 
-use super::bvh::{BvhTracer, BvhTraverser, FullBuilder, FullBvh, FullOptions, LEAF_LAYOUT, LEAF_SIZE, NODE_BOXES, TreeKey, TreeStore, UNIT, bvh_map};
+use super::bvh::{
+    BvhTracer, BvhTraverser, FullBuilder, FullBvh, FullOptions, LEAF_LAYOUT, LEAF_SIZE, NODE_BOXES, TreeKey, TreeStore, UNIT, bvh_map,
+};
 use super::knob::{DELTA, ErrorKnob};
 use super::{Knob, Knobs, Method, MethodUnit, Registered, Tracer};
 use crate::block::Operation;

@@ -76,7 +76,9 @@ fn lines_are_those_of_the_records() {
 #[test]
 fn both_box_widths_refer_to_the_same_and_16_bits_contain_32() {
     let h = synthetic_terrain(4, 4);
-    let nodes = |wide| FullBvh::build(&h, &FullOptions::new(4, if wide { NodeBoxes::Wide } else { NodeBoxes::Codes }, LeafLayout::Line)).unwrap().nodes;
+    let nodes = |wide| {
+        FullBvh::build(&h, &FullOptions::new(4, if wide { NodeBoxes::Wide } else { NodeBoxes::Codes }, LeafLayout::Line)).unwrap().nodes
+    };
     let (narrow, wide) = (nodes(false), nodes(true));
     let FullNodes::Boxes16(narrow) = narrow.as_ref() else { panic!("16") };
     let FullNodes::Boxes32(wide) = wide.as_ref() else { panic!("32") };

@@ -124,8 +124,7 @@ fn pinned_nodes_are_not_asked_for() {
     for (test, lines) in tests {
         let sections = ["node", "leaf"].map(|name| Section::of_bytes(name, 64 * 32));
         let layout = MemoryMap::new(&sections, Some((SectionId::new(0), lines))).unwrap().nodes();
-        let node =
-            |(number, met): (u32, u32)| Step::on(Fetch::new(SectionId::new(0), number * lines, lines), test(met)).visiting();
+        let node = |(number, met): (u32, u32)| Step::on(Fetch::new(SectionId::new(0), number * lines, lines), test(met)).visiting();
         let nodes = [(0, 1), (1, 1), (2, 1), (3, 1), (0, 0)].map(node);
         // Lines of other data are asked for, however many nodes there could be.
         let other = Step::on(Fetch::new(SectionId::new(1), 64, 1), Act::Fetch);
