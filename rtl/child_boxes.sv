@@ -84,8 +84,8 @@ module child_boxes #(
     .valid_o(valid_pairs), .ready_i(ready_pairs), .data_o({corner_codes_q, low_pairs_q, high_pairs_q, last_rises_q, products_q, exponents_q, tree_pairs, tag_pairs})
   );
 
-  // Stage 2: the smallest and the largest code of each child's corners; of all three inserted vertices, child 3's, from the two pairs with that which is not at the
-  // end in question. Child c's are at 3 c + axis.
+  // Stage 2: the smallest and the largest code of each child's corners. Child 3 has all three inserted vertices: of the first two one cannot be the smallest, so the
+  // smallest is that of the pair without it, and so with the largest. Child c's are at 3 c + axis.
   logic [11:0][CODE_W-1:0]  full_low, low, low_q, high, high_q;
   logic [11:0][EXACT_W-1:0] full_high;
   for (genvar i = 0; i < 24; i++) begin : g_ends

@@ -111,19 +111,20 @@ pub fn widened(reach: Reach, f: [Point; 3], p: [Point; 3]) -> Box16 {
     }
 }
 
-/// Bits of a box code, of a code with whether it is to be rounded up, of steps times two or three, and of steps in codes.
+/// Bits of a box code, of a code with whether it is to be rounded up, of steps times two or three, of steps in codes, and of a code less or plus them.
 const CODE: u32 = 16;
 const STICKY: u32 = CODE + 1;
 const DOUBLED: u32 = 9;
 const STEPS: u32 = 16;
+const SUM: u32 = CODE + 2;
 
 impl ChildBoxes {
     /// Registers with a tag of so many bits: corners and pairs of inserted vertices, least and largest of each child, boxes.
     pub(super) fn registers(tag: u32) -> Registers {
-        // Of both triangles three numbers along each axis.
-        let pairs = 2 * 3 * 3 * (STICKY + CODE + STICKY) + 24 * DOUBLED + 3 * 4 + 1;
-        // A morphed triangle's largest is rounded up already.
-        let ends = 4 * 3 * (CODE + STICKY + 2 * CODE) + 24 * STEPS + 1;
+        // Of both triangles, along each axis, three corners and three pairs of inserted vertices, and which of the first of them is less.
+        let pairs = 2 * 3 * (3 * (STICKY + CODE + STICKY) + 1) + 24 * DOUBLED + 3 * 4 + 1;
+        // Planes of the full-resolution triangle with its excess, and of the morphed one.
+        let ends = 24 * (SUM + CODE) + 1;
         Registers::stage(pairs + tag) + Registers::stage(ends + tag) + Registers::skid(4 * 6 * CODE + tag)
     }
 }

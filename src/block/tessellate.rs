@@ -11,7 +11,7 @@
 
 use super::parts::{Multiplier, Parts, RELATIVE, Registers, TAG, multiplier_latency};
 use super::{Block, Form, Timing};
-use crate::num::{BoundCode, BoundScale, EdgeState, MAX_DISPLACEMENT_SHIFT, Point, S, U, Vec3, Wire, wire_struct};
+use crate::num::{BoundCode, BoundScale, Displacement, EdgeState, MAX_DISPLACEMENT_SHIFT, Point, S, U, Vec3, Wire, wire_struct};
 
 wire_struct! {
     /// Input of [`Tessellate`].
@@ -143,7 +143,7 @@ impl Block for Tessellate {
         let product = Multiplier { low: fraction, high: fraction + w, ..Multiplier::new(RELATIVE, s) };
         // Three coordinates share state, grid and shift. Both midpoints and the displacement; the vertex; the difference. The vertex goes along to the end.
         let (opening, shift) = (s - 1 + grid, 5);
-        let ahead = Registers::stage(9 * w + shift + opening)
+        let ahead = Registers::stage(3 * (2 * w + Displacement::WIDTH / 3) + shift + opening)
             + Registers::stage(6 * w + opening)
             + Registers::stage(3 * RELATIVE + 6 * w + opening);
         let beside = Registers::line(6 * w + grid, multiplier_latency(RELATIVE, s), 0);
