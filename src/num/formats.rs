@@ -53,7 +53,7 @@ pub type TNear = U<17>;
 wire_struct! {
     /// Scale of the displacement bounds of one model: a code other than 0 stands for `2^((code + offset) / 16)` units, rounded (`bound_decode`).
     pub struct BoundScale {
-        /// Added to every code but 0, at most [`MAX_BOUND_OFFSET`](super::MAX_BOUND_OFFSET).
+        /// Added to every code but 0, at most [`MAX_BOUND_OFFSET`].
         offset: U<9>,
     }
 }
