@@ -2,7 +2,7 @@
 
 use super::output::{grouped, open, plain, print_json, print_line};
 use lodray::format::Scene;
-use lodray::mesh::{BoundKind, TwoSidedDistance};
+use lodray::mesh::{BoundKind, Distance, TwoSidedDistance};
 use lodray::num::{PADDING_BITS, VertexForm};
 use lodray::rays::ModelSpace;
 use serde::Serialize;
@@ -121,10 +121,18 @@ impl<'a> Info<'a> {
             base_bits_lost: meta.vertices.zero_bits(scene.levels()) - PADDING_BITS,
             hierarchy_bytes_per_triangle: per(hierarchy),
             parts,
-            distance: serde_json::from_value(meta.origin["remesh"]["distance"].clone()).ok(),
+            distance: serde_json::from_value(meta.origin["remesh"]["distance"].clone())
+                .ok()
+                .map(|distance| stored(distance, 100.0 * meta.moved / (2.0 * space.radius()))),
             origin: &meta.origin,
         }
     }
+}
+
+/// Distances of the surface before it was rounded, to that which is stored: no point was moved by more than `moved` percent.
+fn stored(distance: TwoSidedDistance, moved: f64) -> TwoSidedDistance {
+    let further = |d: Distance| Distance { max: d.max + moved, ..d };
+    TwoSidedDistance { to_original: further(distance.to_original), from_original: further(distance.from_original) }
 }
 
 /// The few figures that tell what a scene is, each in words.
