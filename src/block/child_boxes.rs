@@ -8,7 +8,6 @@
 //! Legal: |points| <= `COORD_LIMIT`, so that ceilings fit 16 bits; origin at least -32767; any planes and steps.
 
 use super::parts::{Parts, Registers, TAG};
-use super::tessellate::child_triangle;
 use super::{Block, Form, Timing};
 use crate::num::{BOX_SHIFT, Box16, Point, S, U, Vec3, box_steps, wire_struct};
 
@@ -84,31 +83,51 @@ pub fn framed(origin: [i32; 3], reach: Reach) -> Box16 {
     Box16 { lo: corner(reach.lo), hi: corner(reach.hi) }
 }
 
+/// The least of the corners of each child along an axis, from those of its parent.
 #[inline(always)]
-fn lower(steps: i32, f: [S<32>; 3], p: [S<32>; 3]) -> S<16> {
-    // floor is monotone: one shift behind the minima.
-    let least = |[a, b, c]: [S<32>; 3]| a.narrow().min(b.narrow()).min(c.narrow()) >> BOX_SHIFT;
-    S::new(i64::from((least(f) - steps).max(-MOST).min(least(p))))
+fn least([p0, p1, p2]: [i32; 3], [q0, q1, q2]: [i32; 3]) -> [i32; 4] {
+    let [a, b, c] = [q1.min(q2), q2.min(q0), q0.min(q1)];
+    [p0.min(a), p1.min(b), p2.min(c), q2.min(c)]
 }
 
+/// The largest.
 #[inline(always)]
-fn upper(steps: i32, f: [S<32>; 3], p: [S<32>; 3]) -> S<16> {
-    let round_up = (1 << BOX_SHIFT) - 1;
-    // At most ceil(COORD_LIMIT / 2^16) = 32766.
-    let most = |[a, b, c]: [S<32>; 3]| (a.narrow().max(b.narrow()).max(c.narrow()) + round_up) >> BOX_SHIFT;
-    S::new(i64::from((most(f) + steps).min(MOST).max(most(p))))
+fn most([p0, p1, p2]: [i32; 3], [q0, q1, q2]: [i32; 3]) -> [i32; 4] {
+    let [a, b, c] = [q1.max(q2), q2.max(q0), q0.max(q1)];
+    [p0.max(a), p1.max(b), p2.max(c), q2.max(c)]
 }
 
-/// The box of a child of a tree's node with full-resolution triangle `f` and morphed triangle `p`.
+/// Planes of all children along an axis, lower and upper, from the corners and inserted vertices of the node, of full resolution and as morphed.
 #[inline(always)]
-pub fn widened(reach: Reach, f: [Point; 3], p: [Point; 3]) -> Box16 {
-    let ([fa, fb, fc], [pa, pb, pc]) = (f, p);
-    let (fx, fy, fz) = ([fa.x, fb.x, fc.x], [fa.y, fb.y, fc.y], [fa.z, fb.z, fc.z]);
-    let (px, py, pz) = ([pa.x, pb.x, pc.x], [pa.y, pb.y, pc.y], [pa.z, pb.z, pc.z]);
-    Box16 {
-        lo: Vec3 { x: lower(reach.lo[0], fx, px), y: lower(reach.lo[1], fy, py), z: lower(reach.lo[2], fz, pz) },
-        hi: Vec3 { x: upper(reach.hi[0], fx, px), y: upper(reach.hi[1], fy, py), z: upper(reach.hi[2], fz, pz) },
+fn planes(down: [i32; 4], up: [i32; 4], [f, g, p, q]: [[i32; 3]; 4]) -> [[i32; 4]; 2] {
+    const ROUND_UP: i32 = (1 << BOX_SHIFT) - 1;
+    // Floor and ceiling are monotone: one shift behind the minima and maxima. At most ceil(COORD_LIMIT / 2^16) = 32766.
+    let (full, morphed) = (least(f, g), least(p, q));
+    let (mut lo, mut hi) = ([0; 4], [0; 4]);
+    for k in 0..4 {
+        lo[k] = ((full[k] >> BOX_SHIFT) - down[k]).max(-MOST).min(morphed[k] >> BOX_SHIFT);
     }
+    let (full, morphed) = (most(f, g), most(p, q));
+    for k in 0..4 {
+        hi[k] = (((full[k] + ROUND_UP) >> BOX_SHIFT) + up[k]).min(MOST).max((morphed[k] + ROUND_UP) >> BOX_SHIFT);
+    }
+    [lo, hi]
+}
+
+/// The boxes of the children of a tree's node with these corners and inserted vertices, of full resolution (`f`, `g`) and as morphed (`p`, `q`).
+#[inline(always)]
+pub fn widened(reach: &[Reach; 4], [f, g, p, q]: [[Point; 3]; 4]) -> [Box16; 4] {
+    let axis = |of: fn(&Point) -> S<32>, at: usize| {
+        let component = |v: [Point; 3]| [of(&v[0]).narrow(), of(&v[1]).narrow(), of(&v[2]).narrow()];
+        let steps = |of: fn(&Reach) -> [i32; 3]| [of(&reach[0])[at], of(&reach[1])[at], of(&reach[2])[at], of(&reach[3])[at]];
+        planes(steps(|r| r.lo), steps(|r| r.hi), [component(f), component(g), component(p), component(q)])
+    };
+    let ([x_lo, x_hi], [y_lo, y_hi], [z_lo, z_hi]) = (axis(|v| v.x, 0), axis(|v| v.y, 1), axis(|v| v.z, 2));
+    let code = |c: i32| S::new(i64::from(c));
+    [0, 1, 2, 3].map(|k| Box16 {
+        lo: Vec3 { x: code(x_lo[k]), y: code(y_lo[k]), z: code(z_lo[k]) },
+        hi: Vec3 { x: code(x_hi[k]), y: code(y_hi[k]), z: code(z_hi[k]) },
+    })
 }
 
 /// Bits of a box code, of a code with whether it is to be rounded up, of steps times two or three, of steps in codes, and of a code less or plus them.
@@ -150,14 +169,14 @@ impl Block for ChildBoxes {
         let exponents = i.exponents.map(U::narrow).map(i32::cast_unsigned);
         let origin = [i.origin.x.narrow(), i.origin.y.narrow(), i.origin.z.narrow()];
         let (f, g, p, q) = ([i.f0, i.f1, i.f2], [i.g0, i.g1, i.g2], [i.p0, i.p1, i.p2], [i.q0, i.q1, i.q2]);
-        let bounds = [0, 1, 2, 3].map(|k| {
+        let reach = [0, 1, 2, 3].map(|k| {
             let steps = |axis: usize, at: usize| {
                 // Below 2^24.
                 box_steps(i.halves[axis], exponents[axis], i.planes[6 * k + at].narrow().cast_unsigned()).cast_signed()
             };
-            let reach = Reach { lo: [steps(0, 0), steps(1, 1), steps(2, 2)], hi: [steps(0, 3), steps(1, 4), steps(2, 5)] };
-            if i.tree { widened(reach, child_triangle(f, g, k), child_triangle(p, q, k)) } else { framed(origin, reach) }
+            Reach { lo: [steps(0, 0), steps(1, 1), steps(2, 2)], hi: [steps(0, 3), steps(1, 4), steps(2, 5)] }
         });
+        let bounds = if i.tree { widened(&reach, [f, g, p, q]) } else { reach.map(|reach| framed(origin, reach)) };
         Out { bounds }
     }
 }
@@ -165,32 +184,29 @@ impl Block for ChildBoxes {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::block::tessellate::child_triangle;
     use proptest::prelude::*;
 
     const LIMIT: i32 = crate::num::COORD_LIMIT;
 
-    fn points(v: &[[i32; 3]]) -> [Point; 3] {
-        [v[0], v[1], v[2]].map(Point::from_i32)
-    }
-
     proptest! {
         #[test]
-        fn without_excess_a_box_is_the_smallest_around_both_triangles(v in prop::array::uniform6(prop::array::uniform3(-LIMIT..=LIMIT))) {
-            let none = Reach { lo: [0; 3], hi: [0; 3] };
-            prop_assert_eq!(widened(none, points(&v[..3]), points(&v[3..])), Box16::of_points(&v));
-        }
-
-        #[test]
-        fn excess_lets_out_the_full_triangle_alone(
-            v in prop::array::uniform6(prop::array::uniform3(-LIMIT..=LIMIT)), lo in prop::array::uniform3(0i32..1 << 23), hi in prop::array::uniform3(0i32..1 << 23), bits in 0u32..23
+        fn boxes_are_the_smallest_around_the_morphed_triangle_and_the_full_one_let_out(
+            v in prop::collection::vec(prop::array::uniform3(-LIMIT..=LIMIT), 12), steps in prop::collection::vec(0i32..1 << 23, 24), bits in 0u32..=23
         ) {
-            let reach = Reach { lo: lo.map(|c| c >> bits), hi: hi.map(|c| c >> bits) };
-            let (own, morphed) = (Box16::of_points(&v[..3]), Box16::of_points(&v[3..]));
-            let out = widened(reach, points(&v[..3]), points(&v[3..]));
-            for c in 0..3 {
-                let low = (own.lo.get()[c] - i64::from(reach.lo[c])).max(-32_767).min(morphed.lo.get()[c]);
-                let high = (own.hi.get()[c] + i64::from(reach.hi[c])).min(32_767).max(morphed.hi.get()[c]);
-                prop_assert_eq!((out.lo.get()[c], out.hi.get()[c]), (low, high));
+            let set = |at: usize| [v[at], v[at + 1], v[at + 2]].map(Point::from_i32);
+            let [f, g, p, q] = [set(0), set(3), set(6), set(9)];
+            let three = |at: usize| [steps[at] >> bits, steps[at + 1] >> bits, steps[at + 2] >> bits];
+            let reach = [0, 6, 12, 18].map(|at| Reach { lo: three(at), hi: three(at + 3) });
+            let out = widened(&reach, [f, g, p, q]);
+            for k in 0..4 {
+                let of = |corners: [Point; 3]| Box16::of_points(&corners.map(|c| c.get().map(|c| i32::try_from(c).unwrap())));
+                let (own, morphed) = (of(child_triangle(f, g, k)), of(child_triangle(p, q, k)));
+                for c in 0..3 {
+                    let low = (own.lo.get()[c] - i64::from(reach[k].lo[c])).max(-32_767).min(morphed.lo.get()[c]);
+                    let high = (own.hi.get()[c] + i64::from(reach[k].hi[c])).min(32_767).max(morphed.hi.get()[c]);
+                    prop_assert_eq!((out[k].lo.get()[c], out[k].hi.get()[c]), (low, high));
+                }
             }
         }
     }

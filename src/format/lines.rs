@@ -235,7 +235,21 @@ impl BvhNode {
     /// The same from the node's line.
     #[inline(always)]
     pub fn line_child(line: &Line, k: usize) -> ChildRef {
-        Self::from_words(line).child(k)
+        let count = |j: usize| line[3] >> (47 + 2 * j) & 3;
+        let kind = Self::line_kind(line, k);
+        let (mut inner, mut slots) = (0, 0);
+        for j in 0..k {
+            let of = Self::line_kind(line, j);
+            inner += u64::from(of == ChildRef::INNER);
+            slots += if of == ChildRef::LEAF { count(j) + 1 } else { 0 };
+        }
+        let index = match kind {
+            ChildRef::INNER => (line[3] >> 19) + inner,
+            // Bits 183 to 210: nine of them in the third word.
+            ChildRef::LEAF => (line[2] >> 55 | line[3] << 9) + slots,
+            _ => 0,
+        };
+        ChildRef { kind: U::new(kind), count: U::new(count(k)), index: U::new(index & U::<28>::MAX.get()) }
     }
 
     /// Kind of child `k` of the node's line.
@@ -371,6 +385,7 @@ mod tests {
                 prop_assert!((0..6).all(|j| own(j) == (group.planes[6 * k + j].get(), node.planes[6 * k + j].get())));
                 prop_assert_eq!(SiblingGroup::line_codes(&line, k), group.codes_of(k));
                 prop_assert_eq!(BvhNode::line_kind(&line, k), node.kinds[k].get());
+                prop_assert_eq!(BvhNode::line_child(&line, k), node.child(k));
             }
         }
     }

@@ -9,7 +9,6 @@ use crate::block::child_boxes::{Reach, framed, widened};
 use crate::block::child_sort;
 use crate::block::child_test::{self, sort};
 use crate::block::ray_setup;
-use crate::block::tessellate::child_triangle;
 use crate::format::{BvhChild, BvhNode, ChildRef, Line, SiblingGroup};
 use crate::num::{BoxStep, Point, RayT, Wire};
 
@@ -71,9 +70,9 @@ fn coded(ray: &ray_setup::Out, t_max: RayT, group: &[u64; 8], out: &mut child_te
 fn tree(ray: &ray_setup::Out, t_max: RayT, line: &Line, split: &Split, out: &mut child_test::Out) {
     let mut tests = child_sort::In::default();
     let steps = SiblingGroup::line_steps(line);
-    for k in 0..4 {
-        let reach = reach(&steps, SiblingGroup::line_planes(line, k));
-        let bounds = widened(reach, child_triangle(split.f, split.g, k), child_triangle(split.p, split.q, k));
+    let reach = [0, 1, 2, 3].map(|k| reach(&steps, SiblingGroup::line_planes(line, k)));
+    let boxes = widened(&reach, [split.f, split.g, split.p, split.q]);
+    for (k, bounds) in boxes.into_iter().enumerate() {
         let test = BoxTest::eval(&box_test::In { ray: *ray, t_max, bounds });
         tests.hit[k] = test.hit;
         tests.t_near[k] = test.t_near;
