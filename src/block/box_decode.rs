@@ -2,10 +2,10 @@
 //!
 //! Only units of the full-resolution BVHs have it. Legal: origin at least -32767.
 
-use super::child_boxes::{Reach, framed};
+use super::child_boxes::framed_plane;
 use super::parts::{Parts, Registers, TAG};
 use super::{Block, Form, Timing};
-use crate::num::{Box16, U, Vec3, box_steps, wire_struct};
+use crate::num::{Box16, S, U, Vec3, box_steps, wire_struct};
 
 wire_struct! {
     /// Input of [`BoxDecode`].
@@ -51,13 +51,13 @@ impl Block for BoxDecode {
     #[inline(always)]
     fn eval(i: &In) -> Out {
         let exponents = i.exponents.map(U::narrow).map(i32::cast_unsigned);
-        let steps = |planes: [U<5>; 3]| {
-            let [x, y, z] = planes.map(U::narrow).map(i32::cast_unsigned);
+        let plane = |axis: usize, origin: S<16>, plane: U<5>| {
             // Below 2^22.
-            [(0, x), (1, y), (2, z)].map(|(axis, v)| box_steps(i.halves[axis], exponents[axis], v).cast_signed())
+            let steps = box_steps(i.halves[axis], exponents[axis], plane.narrow().cast_unsigned()).cast_signed();
+            S::new(i64::from(framed_plane(origin.narrow(), steps)))
         };
-        let origin = [i.origin.x.narrow(), i.origin.y.narrow(), i.origin.z.narrow()];
-        Out { bounds: framed(origin, Reach { lo: steps(i.lo), hi: steps(i.hi) }) }
+        let corner = |[x, y, z]: [U<5>; 3]| Vec3 { x: plane(0, i.origin.x, x), y: plane(1, i.origin.y, y), z: plane(2, i.origin.z, z) };
+        Out { bounds: Box16 { lo: corner(i.lo), hi: corner(i.hi) } }
     }
 }
 

@@ -65,69 +65,122 @@ pub struct ChildBoxes;
 /// Largest code in magnitude.
 const MOST: i32 = 32_767;
 
-/// Steps of the six planes of a child, in codes.
-#[derive(Clone, Copy)]
-pub struct Reach {
-    /// Of its lower corner.
-    pub lo: [i32; 3],
-    /// Of its upper corner.
-    pub hi: [i32; 3],
+/// A number of each child, side by side.
+pub type Four = [i32; 4];
+
+/// The triangle of a node, along each axis: p0, p1, p2, q0, q1, q2, q0, q1, q2. In that order the corners of the four children lie side by side from places 0, 4 and 5 on.
+#[derive(Clone, Copy, Default)]
+pub struct Corners([[i32; 9]; 3]);
+
+impl Corners {
+    /// Of the node with corners `p` and inserted vertices `q`.
+    #[inline(always)]
+    pub fn of([p0, p1, p2]: [Point; 3], [q0, q1, q2]: [Point; 3]) -> Self {
+        let mut corners = Self::default();
+        for (at, of) in [p0, p1, p2, q0, q1, q2, q0, q1, q2].into_iter().enumerate() {
+            let [x, y, z] = &mut corners.0;
+            (x[at], y[at], z[at]) = (of.x.narrow(), of.y.narrow(), of.z.narrow());
+        }
+        corners
+    }
+
+    /// The triangle of child `k`, as [`child_triangle`](super::tessellate::child_triangle) has it: read from memory, since which child it is is what no predictor knows.
+    #[inline(always)]
+    pub fn child(&self, k: usize) -> [Point; 3] {
+        const PLACES: [[usize; 3]; 4] = [[0, 5, 4], [5, 1, 3], [4, 3, 2], [3, 4, 5]];
+        let ([x, y, z], [a, b, c]) = (&self.0, PLACES[k]);
+        let point = |at: usize| Point::from_i32([x[at], y[at], z[at]]);
+        [point(a), point(b), point(c)]
+    }
+
+    /// A corner of child `k` along an axis each.
+    #[inline(always)]
+    fn along(&self, axis: usize, k: usize) -> [i32; 3] {
+        let of = &self.0[axis];
+        [of[k], of[4 + k], of[5 + k]]
+    }
 }
 
-/// The box of a child of a quad-BVH node.
+/// Planes of the boxes of the children, or their steps: lower x, y, z and upper x, y, z; in codes.
+pub type Planes = [Four; 6];
+
+/// A plane of a box in a frame that starts at `origin`.
 #[inline(always)]
-pub fn framed(origin: [i32; 3], reach: Reach) -> Box16 {
+pub(super) fn framed_plane(origin: i32, steps: i32) -> i32 {
     // 16 and 24 bits.
-    let plane = |origin: i32, steps: i32| S::new(i64::from((origin + steps).min(MOST)));
-    let corner = |steps: [i32; 3]| Vec3 { x: plane(origin[0], steps[0]), y: plane(origin[1], steps[1]), z: plane(origin[2], steps[2]) };
-    Box16 { lo: corner(reach.lo), hi: corner(reach.hi) }
+    (origin + steps).min(MOST)
 }
 
-/// The least of the corners of each child along an axis, from those of its parent.
+/// The boxes of the children of a quad-BVH node.
 #[inline(always)]
-fn least([p0, p1, p2]: [i32; 3], [q0, q1, q2]: [i32; 3]) -> [i32; 4] {
-    let [a, b, c] = [q1.min(q2), q2.min(q0), q0.min(q1)];
-    [p0.min(a), p1.min(b), p2.min(c), q2.min(c)]
-}
-
-/// The largest.
-#[inline(always)]
-fn most([p0, p1, p2]: [i32; 3], [q0, q1, q2]: [i32; 3]) -> [i32; 4] {
-    let [a, b, c] = [q1.max(q2), q2.max(q0), q0.max(q1)];
-    [p0.max(a), p1.max(b), p2.max(c), q2.max(c)]
-}
-
-/// Planes of all children along an axis, lower and upper, from the corners and inserted vertices of the node, of full resolution and as morphed.
-#[inline(always)]
-fn planes(down: [i32; 4], up: [i32; 4], [f, g, p, q]: [[i32; 3]; 4]) -> [[i32; 4]; 2] {
-    const ROUND_UP: i32 = (1 << BOX_SHIFT) - 1;
-    // Floor and ceiling are monotone: one shift behind the minima and maxima. At most ceil(COORD_LIMIT / 2^16) = 32766.
-    let (full, morphed) = (least(f, g), least(p, q));
-    let (mut lo, mut hi) = ([0; 4], [0; 4]);
-    for k in 0..4 {
-        lo[k] = ((full[k] >> BOX_SHIFT) - down[k]).max(-MOST).min(morphed[k] >> BOX_SHIFT);
+pub fn framed(origin: [i32; 3], steps: &Planes) -> Planes {
+    let mut planes = Planes::default();
+    for (at, (planes, steps)) in planes.iter_mut().zip(steps).enumerate() {
+        for k in 0..4 {
+            planes[k] = framed_plane(origin[at % 3], steps[k]);
+        }
     }
-    let (full, morphed) = (most(f, g), most(p, q));
-    for k in 0..4 {
-        hi[k] = (((full[k] + ROUND_UP) >> BOX_SHIFT) + up[k]).min(MOST).max((morphed[k] + ROUND_UP) >> BOX_SHIFT);
-    }
-    [lo, hi]
+    planes
 }
 
-/// The boxes of the children of a tree's node with these corners and inserted vertices, of full resolution (`f`, `g`) and as morphed (`p`, `q`).
 #[inline(always)]
-pub fn widened(reach: &[Reach; 4], [f, g, p, q]: [[Point; 3]; 4]) -> [Box16; 4] {
-    let axis = |of: fn(&Point) -> S<32>, at: usize| {
-        let component = |v: [Point; 3]| [of(&v[0]).narrow(), of(&v[1]).narrow(), of(&v[2]).narrow()];
-        let steps = |of: fn(&Reach) -> [i32; 3]| [of(&reach[0])[at], of(&reach[1])[at], of(&reach[2])[at], of(&reach[3])[at]];
-        planes(steps(|r| r.lo), steps(|r| r.hi), [component(f), component(g), component(p), component(q)])
+fn least([a, b, c]: [i32; 3]) -> i32 {
+    a.min(b).min(c) >> BOX_SHIFT
+}
+
+#[inline(always)]
+fn most([a, b, c]: [i32; 3]) -> i32 {
+    // Floor and ceiling are monotone: one shift behind minimum and maximum. At most ceil(COORD_LIMIT / 2^16) = 32766.
+    (a.max(b).max(c) + ((1 << BOX_SHIFT) - 1)) >> BOX_SHIFT
+}
+
+/// The boxes of the children of a tree's node with this full-resolution triangle, let out by their steps.
+#[inline(always)]
+pub fn let_out(steps: &Planes, full: &Corners) -> Planes {
+    let mut planes = Planes::default();
+    for axis in 0..3 {
+        for k in 0..4 {
+            planes[axis][k] = (least(full.along(axis, k)) - steps[axis][k]).max(-MOST);
+        }
+        for k in 0..4 {
+            planes[axis + 3][k] = (most(full.along(axis, k)) + steps[axis + 3][k]).min(MOST);
+        }
+    }
+    planes
+}
+
+/// These boxes widened by the triangle as morphed; if it is the full-resolution one, they stay what they are.
+#[inline(always)]
+pub fn widened(boxes: Planes, morphed: &Corners) -> Planes {
+    let mut planes = boxes;
+    for axis in 0..3 {
+        for k in 0..4 {
+            planes[axis][k] = planes[axis][k].min(least(morphed.along(axis, k)));
+        }
+        for k in 0..4 {
+            planes[axis + 3][k] = planes[axis + 3][k].max(most(morphed.along(axis, k)));
+        }
+    }
+    planes
+}
+
+/// The boxes with these planes.
+#[inline(always)]
+pub fn boxed(planes: &Planes) -> [Box16; 4] {
+    let mut codes = [[0; 4]; 6];
+    for (codes, planes) in codes.iter_mut().zip(planes) {
+        for k in 0..4 {
+            codes[k] = i64::from(planes[k]);
+        }
+    }
+    // Behind this the compiler finds them in memory, four in a row, and goes on in lanes; otherwise it takes them apart and puts them together again.
+    let codes = std::hint::black_box(codes);
+    let code = |at: usize, k: usize| S::new(codes[at][k]);
+    let bounds = |k: usize| Box16 {
+        lo: Vec3 { x: code(0, k), y: code(1, k), z: code(2, k) },
+        hi: Vec3 { x: code(3, k), y: code(4, k), z: code(5, k) },
     };
-    let ([x_lo, x_hi], [y_lo, y_hi], [z_lo, z_hi]) = (axis(|v| v.x, 0), axis(|v| v.y, 1), axis(|v| v.z, 2));
-    let code = |c: i32| S::new(i64::from(c));
-    [0, 1, 2, 3].map(|k| Box16 {
-        lo: Vec3 { x: code(x_lo[k]), y: code(y_lo[k]), z: code(z_lo[k]) },
-        hi: Vec3 { x: code(x_hi[k]), y: code(y_hi[k]), z: code(z_hi[k]) },
-    })
+    [bounds(0), bounds(1), bounds(2), bounds(3)]
 }
 
 /// Bits of a box code, of a code with whether it is to be rounded up, of steps times two or three, of steps in codes, and of a code less or plus them.
@@ -168,16 +221,21 @@ impl Block for ChildBoxes {
     fn eval(i: &In) -> Out {
         let exponents = i.exponents.map(U::narrow).map(i32::cast_unsigned);
         let origin = [i.origin.x.narrow(), i.origin.y.narrow(), i.origin.z.narrow()];
-        let (f, g, p, q) = ([i.f0, i.f1, i.f2], [i.g0, i.g1, i.g2], [i.p0, i.p1, i.p2], [i.q0, i.q1, i.q2]);
-        let reach = [0, 1, 2, 3].map(|k| {
-            let steps = |axis: usize, at: usize| {
-                // Below 2^24.
-                box_steps(i.halves[axis], exponents[axis], i.planes[6 * k + at].narrow().cast_unsigned()).cast_signed()
-            };
-            Reach { lo: [steps(0, 0), steps(1, 1), steps(2, 2)], hi: [steps(0, 3), steps(1, 4), steps(2, 5)] }
-        });
-        let bounds = if i.tree { widened(&reach, [f, g, p, q]) } else { reach.map(|reach| framed(origin, reach)) };
-        Out { bounds }
+        let mut reach = Planes::default();
+        for (at, reach) in reach.iter_mut().enumerate() {
+            let axis = at % 3;
+            // Below 2^24.
+            let steps = |plane: U<7>| box_steps(i.halves[axis], exponents[axis], plane.narrow().cast_unsigned()).cast_signed();
+            *reach = [0, 1, 2, 3].map(|k| steps(i.planes[6 * k + at]));
+        }
+        let planes = if i.tree {
+            let (full, morphed) =
+                (Corners::of([i.f0, i.f1, i.f2], [i.g0, i.g1, i.g2]), Corners::of([i.p0, i.p1, i.p2], [i.q0, i.q1, i.q2]));
+            widened(let_out(&reach, &full), &morphed)
+        } else {
+            framed(origin, &reach)
+        };
+        Out { bounds: boxed(&planes) }
     }
 }
 
@@ -196,15 +254,19 @@ mod tests {
         ) {
             let set = |at: usize| [v[at], v[at + 1], v[at + 2]].map(Point::from_i32);
             let [f, g, p, q] = [set(0), set(3), set(6), set(9)];
-            let three = |at: usize| [steps[at] >> bits, steps[at + 1] >> bits, steps[at + 2] >> bits];
-            let reach = [0, 6, 12, 18].map(|at| Reach { lo: three(at), hi: three(at + 3) });
-            let out = widened(&reach, [f, g, p, q]);
+            let reach: Planes = std::array::from_fn(|at| std::array::from_fn(|k| steps[6 * k + at] >> bits));
+            let (full, morphed) = (Corners::of(f, g), Corners::of(p, q));
+            let own = let_out(&reach, &full);
+            prop_assert_eq!(widened(own, &full), own);
+            let out = boxed(&widened(own, &morphed));
             for k in 0..4 {
                 let of = |corners: [Point; 3]| Box16::of_points(&corners.map(|c| c.get().map(|c| i32::try_from(c).unwrap())));
-                let (own, morphed) = (of(child_triangle(f, g, k)), of(child_triangle(p, q, k)));
+                let triangles = (child_triangle(f, g, k), child_triangle(p, q, k));
+                prop_assert_eq!((full.child(k), morphed.child(k)), triangles);
+                let (own, morphed) = (of(triangles.0), of(triangles.1));
                 for c in 0..3 {
-                    let low = (own.lo.get()[c] - i64::from(reach[k].lo[c])).max(-32_767).min(morphed.lo.get()[c]);
-                    let high = (own.hi.get()[c] + i64::from(reach[k].hi[c])).min(32_767).max(morphed.hi.get()[c]);
+                    let low = (own.lo.get()[c] - i64::from(reach[c][k])).max(-32_767).min(morphed.lo.get()[c]);
+                    let high = (own.hi.get()[c] + i64::from(reach[c + 3][k])).min(32_767).max(morphed.hi.get()[c]);
                     prop_assert_eq!((out[k].lo.get()[c], out[k].hi.get()[c]), (low, high));
                 }
             }

@@ -10,7 +10,7 @@ use rayon::prelude::*;
 /// A point in units as 32-bit integers.
 #[inline]
 pub(super) fn units(p: Point) -> [i32; 3] {
-    p.get().map(|c| c as i32) // 32 bits by its type
+    [p.x.narrow(), p.y.narrow(), p.z.narrow()]
 }
 
 impl Scene {
@@ -35,7 +35,8 @@ impl Scene {
         } else {
             SiblingGroup::line_codes(&self.bounds()[layout::child_group(self.levels(), tree, level - 1, node >> 2)], node & 3)
         };
-        codes.map(|code| code.get() as u8) // 8 bits
+        let [e0, e1, e2] = codes;
+        [e0.get() as u8, e1.get() as u8, e2.get() as u8] // 8 bits
     }
 
     /// Inserted vertices q0, q1, q2 in units of node (`level`, `node`) of a tree with full-resolution corners `p`; `level` below N.
@@ -48,11 +49,14 @@ impl Scene {
             (VertexForm::Compact, 0) => self.record(tree).split,
             (VertexForm::Compact, _) => Displacements::half(line(level), node),
         };
-        let (steps, codes) = (steps.steps().map(units), self.node_codes(tree, level, node));
-        std::array::from_fn(|k| {
-            let shift = displacement_shift(meta.bound_scale(), codes[k], inserted_zero_bits(meta.levels, level));
-            std::array::from_fn(|c| displaced(p[(k + 1) % 3][c], p[(k + 2) % 3][c], steps[k][c], shift))
-        })
+        let ([d0, d1, d2], [e0, e1, e2]) = (steps.steps(), self.node_codes(tree, level, node));
+        let (scale, zeros) = (meta.bound_scale(), inserted_zero_bits(meta.levels, level));
+        let vertex = |a: [i32; 3], b: [i32; 3], by: Point, code: u8| {
+            let (by, shift) = (units(by), displacement_shift(scale, code, zeros));
+            let coordinate = |c: usize| displaced(a[c], b[c], by[c], shift);
+            [coordinate(0), coordinate(1), coordinate(2)]
+        };
+        [vertex(p[1], p[2], d0, e0), vertex(p[2], p[0], d1, e1), vertex(p[0], p[1], d2, e2)]
     }
 
     /// Corners in units of node (`level`, `node`) of a tree, `level` at most N: reads the inserted vertices of each level above it.
@@ -60,7 +64,7 @@ impl Scene {
         (0..level).fold(self.corners(tree), |p, n| {
             let below = node >> (2 * (level - n));
             let q = self.inserted(tree, n, below, p);
-            child(p, q, (node >> (2 * (level - n - 1))) & 3)
+            child_corners(p, q, (node >> (2 * (level - n - 1))) & 3)
         })
     }
 
@@ -135,7 +139,7 @@ impl Scene {
             let q = self.inserted(tree, level, node, p);
             f((level, node), places, q);
             for k in 0..4 {
-                self.below(tree, finest, (level + 1, 4 * node + k), lattice::child(places, k as u32), child(p, q, k), f); // k < 4
+                self.below(tree, finest, (level + 1, 4 * node + k), lattice::child(places, k as u32), child_corners(p, q, k), f); // k < 4
             }
         }
     }
@@ -143,7 +147,7 @@ impl Scene {
 
 /// The corners of child `k` of a triangle `p` with inserted vertices `q`.
 #[inline]
-fn child(p: [[i32; 3]; 3], q: [[i32; 3]; 3], k: usize) -> [[i32; 3]; 3] {
+pub fn child_corners(p: [[i32; 3]; 3], q: [[i32; 3]; 3], k: usize) -> [[i32; 3]; 3] {
     match k {
         0 => [p[0], q[2], q[1]],
         1 => [q[2], p[1], q[0]],

@@ -163,18 +163,33 @@ fn bits(line: &Line, at: u32) -> u64 {
     line[word] >> bit | (above << 1) << (63 - bit)
 }
 
-/// The six planes of a child, of `BITS` bits each.
+/// The six planes of the four children, of `BITS` bits each; plane j of child k at `[j][k]`.
 #[inline(always)]
-fn planes<const BITS: u32>(line: &Line, child: usize) -> [u32; 6] {
-    let all = bits(line, 6 * BITS * child as u32); // child 0 to 3; at most 42 bits
-    std::array::from_fn(|j| (all >> (BITS * j as u32)) as u32 & ((1 << BITS) - 1))
+fn planes<const BITS: u32>(line: &Line) -> [[u32; 4]; 6] {
+    // Words that start at whole bytes: one load each, where the line lies in memory.
+    let bytes: &[u8; 32] = bytemuck::cast_ref(line);
+    let word = |k: u32| {
+        let at = 6 * BITS * k;
+        let from = (at / 8) as usize;
+        // At most 42 bits, from bit 6 on at the furthest; the last at byte 15.
+        u64::from_ne_bytes(std::array::from_fn(|j| bytes[from + j])) >> (at % 8)
+    };
+    let all = [word(0), word(1), word(2), word(3)];
+    let mut planes = [[0; 4]; 6];
+    for (j, planes) in (0..).zip(&mut planes) {
+        for k in 0..4 {
+            planes[k] = (all[k] >> (BITS * j)) as u32 & ((1 << BITS) - 1);
+        }
+    }
+    planes
 }
 
 /// Steps at bit `from`, behind the planes: exponents of x, y, z, then their halves.
 #[inline(always)]
 fn steps(line: &Line, from: u32) -> [BoxStep; 3] {
     let all = bits(line, from) as u32; // 15 bits
-    std::array::from_fn(|axis| BoxStep { half: all >> (12 + axis) & 1 == 1, exponent: all >> (4 * axis) & 15 })
+    let step = |axis: u32| BoxStep { half: all >> (12 + axis) & 1 == 1, exponent: all >> (4 * axis) & 15 };
+    [step(0), step(1), step(2)]
 }
 
 impl SiblingGroup {
@@ -184,7 +199,8 @@ impl SiblingGroup {
     /// Where the codes of e0, e1, e2 of child `k` stand: those of child 3 are e0 of child 0, e1 of child 1 and e2 of child 2.
     #[inline(always)]
     pub const fn places_of(k: usize) -> [usize; 3] {
-        if k < 3 { [3 * k, 3 * k + 1, 3 * k + 2] } else { [0, 4, 8] }
+        const PLACES: [[usize; 3]; 4] = [[0, 1, 2], [3, 4, 5], [6, 7, 8], [0, 4, 8]];
+        PLACES[k]
     }
 
     /// Codes of e0, e1, e2 of child `k`.
@@ -196,15 +212,18 @@ impl SiblingGroup {
     /// The same from the group's line.
     #[inline(always)]
     pub fn line_codes(line: &Line, k: usize) -> [BoundCode; 3] {
-        // Behind the planes and their steps.
-        const FIRST: u32 = 24 * GROUP_PLANE + 15;
-        Self::places_of(k).map(|place| U::new(bits(line, FIRST + 8 * place as u32) & 0xFF)) // place 0 to 8
+        // Behind the planes and their steps, 72 bits up to the reserved one: read from memory as bytes, since which of them is what no predictor knows.
+        const FIRST: u32 = 24 * GROUP_PLANE + 15 - 128;
+        let bytes = ((u128::from(line[3]) << 64 | u128::from(line[2])) >> FIRST).to_le_bytes();
+        let [e0, e1, e2] = Self::places_of(k);
+        let code = |place: usize| U::new(u64::from(bytes[place]));
+        [code(e0), code(e1), code(e2)]
     }
 
-    /// The six planes of child `k` of the group's line.
+    /// Plane j of child k of the group's line at `[j][k]`.
     #[inline(always)]
-    pub fn line_planes(line: &Line, k: usize) -> [u32; 6] {
-        planes::<GROUP_PLANE>(line, k)
+    pub fn line_planes(line: &Line) -> [[u32; 4]; 6] {
+        planes::<GROUP_PLANE>(line)
     }
 
     /// Steps along x, y, z of the group's line.
@@ -263,13 +282,14 @@ impl BvhNode {
     pub fn line_origin(line: &Line) -> [i32; 3] {
         // Bits 135 to 182, x highest.
         let bits = line[2] >> 7;
-        [bits >> 32, bits >> 16, bits].map(|code| i32::from(code as i16))
+        let code = |shift: u32| i32::from((bits >> shift) as i16);
+        [code(32), code(16), code(0)]
     }
 
-    /// The six planes of child `k` of the node's line.
+    /// Plane j of child k of the node's line at `[j][k]`.
     #[inline(always)]
-    pub fn line_planes(line: &Line, k: usize) -> [u32; 6] {
-        planes::<NODE_PLANE>(line, k)
+    pub fn line_planes(line: &Line) -> [[u32; 4]; 6] {
+        planes::<NODE_PLANE>(line)
     }
 
     /// Steps along x, y, z of the node's line.
@@ -381,7 +401,7 @@ mod tests {
             }
             prop_assert_eq!(BvhNode::line_origin(&line).map(i64::from), node.origin.get());
             for k in 0..4 {
-                let own = |j: usize| (u64::from(SiblingGroup::line_planes(&line, k)[j]), u64::from(BvhNode::line_planes(&line, k)[j]));
+                let own = |j: usize| (u64::from(SiblingGroup::line_planes(&line)[j][k]), u64::from(BvhNode::line_planes(&line)[j][k]));
                 prop_assert!((0..6).all(|j| own(j) == (group.planes[6 * k + j].get(), node.planes[6 * k + j].get())));
                 prop_assert_eq!(SiblingGroup::line_codes(&line, k), group.codes_of(k));
                 prop_assert_eq!(BvhNode::line_kind(&line, k), node.kinds[k].get());

@@ -15,6 +15,7 @@ mod sections;
 mod staging;
 
 pub use colour::to_srgb;
+pub use decode::child_corners;
 pub use encode::{SceneInfo, TreeBvh, build, encode, tree_boxes};
 pub use export::{ExportCounts, export_level};
 pub use lines::{Box16, BvhChild, BvhNode, ChildRef, Displacements, L0Record, Line, SiblingGroup, VertexData};

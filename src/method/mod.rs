@@ -15,7 +15,6 @@ mod registry;
 mod stack;
 mod tracer;
 
-pub(crate) use children::Split;
 pub use hit::{ClosestHit, Crossings, Hit, HitSink, SurfaceHit, TriangleId, is_beyond};
 pub use knob::{ErrorKnob, Knob, KnobError, Knobs};
 pub use registry::{METHODS, find};

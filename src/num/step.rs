@@ -13,7 +13,7 @@ pub struct BoxStep {
 #[inline(always)]
 pub const fn box_steps(half: bool, exponent: u32, steps: u32) -> u32 {
     // 7 bits times 2 or 3: 9 bits, and 15 more.
-    ((if half { 3 * steps } else { 2 * steps }) << exponent) >> 1
+    ((2 * steps + (steps & (half as u32).wrapping_neg())) << exponent) >> 1
 }
 
 impl BoxStep {

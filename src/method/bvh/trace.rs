@@ -9,6 +9,8 @@ use crate::block::ray_setup::{self, RaySetup};
 use crate::block::tri_test::{self, TriTest};
 use crate::bvh::BvhChild32;
 use crate::format::{BvhChild, BvhNode, ChildRef};
+#[cfg(target_arch = "x86_64")]
+use crate::method::children::has_lanes;
 use crate::method::children::{bvh_children, coded_children, quarter};
 use crate::method::stack::{Entry, Op, TraversalStack, push_sorted};
 use crate::method::{HitSink, TriangleId, is_beyond};
@@ -62,7 +64,27 @@ impl<'a> BvhTraverser<'a> {
     }
 
     /// The same; the slots of every leaf read go to `leaf` too.
-    pub fn trace_with<S: StepSink, H: HitSink>(&mut self, ray: &Ray, steps: &mut S, sink: &mut H, mut leaf: impl FnMut(Range<usize>)) {
+    pub fn trace_with<S: StepSink, H: HitSink, L: FnMut(Range<usize>)>(&mut self, ray: &Ray, steps: &mut S, sink: &mut H, leaf: L) {
+        #[cfg(target_arch = "x86_64")]
+        if has_lanes() {
+            #[target_feature(enable = "avx2,bmi1,bmi2")]
+            fn lanes<S: StepSink, H: HitSink, L: FnMut(Range<usize>)>(
+                by: &mut BvhTraverser<'_>,
+                ray: &Ray,
+                steps: &mut S,
+                sink: &mut H,
+                leaf: L,
+            ) {
+                by.run(ray, steps, sink, leaf);
+            }
+            // SAFETY: the processor has them, as was just asked.
+            return unsafe { lanes(self, ray, steps, sink, leaf) };
+        }
+        self.run(ray, steps, sink, leaf);
+    }
+
+    #[inline(always)]
+    fn run<S: StepSink, H: HitSink>(&mut self, ray: &Ray, steps: &mut S, sink: &mut H, mut leaf: impl FnMut(Range<usize>)) {
         let setup = RaySetup::eval(&ray_setup::In { origin: ray.origin, direction: ray.direction });
         self.stack.clear();
         let mut next = Some(Entry::default());

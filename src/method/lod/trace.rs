@@ -2,11 +2,14 @@
 
 use super::image::{BOUNDS, LodImage, NODES};
 use crate::block::Block;
+use crate::block::child_boxes::Corners;
 use crate::block::lod_test::{self, LodTest};
 use crate::block::ray_setup::{self, RaySetup};
 use crate::block::tessellate::{self, Tessellate, child_triangle};
 use crate::block::tri_test::{self, TriTest};
 use crate::format::{BvhNode, Displacements, L0Record, SiblingGroup, VertexData, layout};
+#[cfg(target_arch = "x86_64")]
+use crate::method::children::has_lanes;
 use crate::method::children::{Split, bvh_children, tree_children};
 use crate::method::stack::{Entry, Op, TraversalStack, push_sorted};
 use crate::method::{HitSink, TriangleId, is_beyond};
@@ -17,7 +20,7 @@ use crate::step::{Act, Step, StepSink, TriangleRun};
 pub struct LodTraverser<'a> {
     image: LodImage<'a>,
     stack: TraversalStack,
-    /// The split triangle of each level on the way to the current node.
+    /// The triangles that the current node and its siblings on each level on the way to it are.
     splits: [Split; MAX_LEVELS as usize],
 }
 
@@ -47,6 +50,20 @@ impl<'a> LodTraverser<'a> {
 
     /// Traces `ray`: every triangle that serves the ray and is met goes to `sink`, every step to `steps`.
     pub fn trace<S: StepSink, H: HitSink>(&mut self, ray: &Ray, steps: &mut S, sink: &mut H) {
+        #[cfg(target_arch = "x86_64")]
+        if has_lanes() {
+            #[target_feature(enable = "avx2,bmi1,bmi2")]
+            fn lanes<S: StepSink, H: HitSink>(by: &mut LodTraverser<'_>, ray: &Ray, steps: &mut S, sink: &mut H) {
+                by.run(ray, steps, sink);
+            }
+            // SAFETY: the processor has them, as was just asked.
+            return unsafe { lanes(self, ray, steps, sink) };
+        }
+        self.run(ray, steps, sink);
+    }
+
+    #[inline(always)]
+    fn run<S: StepSink, H: HitSink>(&mut self, ray: &Ray, steps: &mut S, sink: &mut H) {
         let setup = RaySetup::eval(&ray_setup::In { origin: ray.origin, direction: ray.direction });
         self.stack.clear();
         let Self { image, stack, splits } = self;
@@ -80,8 +97,7 @@ impl<S: StepSink, H: HitSink> Journey<'_, S, H> {
             _ => {
                 let (level, node) = (entry.level.get() as u32, entry.index.get() as u32);
                 let (split, child) = (&self.splits[level as usize - 1], node as usize & 3);
-                let corners = [child_triangle(split.f, split.g, child), child_triangle(split.p, split.q, child)];
-                self.tree_node(level, node, corners, [entry.e0, entry.e1, entry.e2])
+                self.tree_node(level, node, [split.full.child(child), split.morphed.child(child)], [entry.e0, entry.e1, entry.e2])
             }
         }
     }
@@ -144,8 +160,9 @@ impl<S: StepSink, H: HitSink> Journey<'_, S, H> {
             return None;
         }
         let group = layout::child_group(levels, self.tree as usize, level, node as usize);
-        self.splits[level as usize] = Split { f, p, g, q };
-        self.tree_children(level + 1, 4 * node, group, !alone)
+        let split = Split { full: Corners::of(f, g), morphed: Corners::of(p, q) };
+        self.splits[level as usize] = split;
+        self.tree_children(level + 1, 4 * node, group, &split, !alone)
     }
 
     /// The inserted vertices of a node as they are stored.
@@ -162,10 +179,9 @@ impl<S: StepSink, H: HitSink> Journey<'_, S, H> {
 
     /// Tests the boxes of the four children; their group was asked for together with the inserted vertices if it `joins` them.
     #[inline(always)]
-    fn tree_children(&mut self, level: u32, first: u32, group: usize, joins: bool) -> Option<Entry> {
+    fn tree_children(&mut self, level: u32, first: u32, group: usize, split: &Split, joins: bool) -> Option<Entry> {
         let fetch = self.image.record(BOUNDS, group);
         let fetch = if joins { fetch.joining() } else { fetch };
-        let split = &self.splits[level as usize - 1];
         let line = &self.image.bounds[group];
         let tests = tree_children(&self.setup, self.sink.t_max(), line, split);
         self.steps.step(Step::on(fetch, Act::Children { met: tests.met() }));

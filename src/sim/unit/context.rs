@@ -11,8 +11,21 @@ use crate::block::{child_test, lod_test, ray_setup, tessellate::child_triangle, 
 use crate::format::{L0Record, VertexData};
 use crate::hardware::ports::SceneConfig;
 use crate::hardware::{Fetch, Hardware, State};
-use crate::method::{Entry, Op, Split, TraversalStack, is_beyond};
+use crate::method::{Entry, Op, TraversalStack, is_beyond};
 use crate::num::{BoundCode, Point, Ray, U, Wire};
+
+/// Triangle of a node: corners and inserted vertices, of full resolution and as morphed for this ray.
+#[derive(Clone, Copy, Default)]
+pub struct Split {
+    /// Corners of full resolution.
+    f: [Point; 3],
+    /// Corners as morphed.
+    p: [Point; 3],
+    /// Inserted vertices of full resolution.
+    g: [Point; 3],
+    /// Inserted vertices as morphed.
+    q: [Point; 3],
+}
 
 /// The registers of a context; those with names of the RTL's `*_q`.
 #[derive(Clone, Default)]
