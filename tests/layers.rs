@@ -8,7 +8,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 /// The floors, lowest first: each a module with all below it, but for those that have a line of their own.
-const FLOORS: [&str; 21] = [
+const FLOORS: [&str; 22] = [
     "num",
     "block",
     "mesh",
@@ -27,6 +27,7 @@ const FLOORS: [&str; 21] = [
     "sim::replay",
     "sim",
     "run",
+    "plan",
     "picture",
     "report",
     "lab",

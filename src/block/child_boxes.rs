@@ -154,11 +154,11 @@ pub fn let_out(steps: &Planes, full: &Corners) -> Planes {
 pub fn widened(boxes: Planes, morphed: &Corners) -> Planes {
     let mut planes = boxes;
     for axis in 0..3 {
-        for k in 0..4 {
-            planes[axis][k] = planes[axis][k].min(least(morphed.along(axis, k)));
+        for (k, plane) in planes[axis].iter_mut().enumerate() {
+            *plane = (*plane).min(least(morphed.along(axis, k)));
         }
-        for k in 0..4 {
-            planes[axis + 3][k] = planes[axis + 3][k].max(most(morphed.along(axis, k)));
+        for (k, plane) in planes[axis + 3].iter_mut().enumerate() {
+            *plane = (*plane).max(most(morphed.along(axis, k)));
         }
     }
     planes

@@ -23,6 +23,7 @@ mod original;
 mod output;
 mod pass;
 mod pictures;
+mod plan;
 mod render;
 mod report;
 mod results;
@@ -58,6 +59,8 @@ enum Command {
     Info(info::Args),
     /// Audit a scene file: recompute every promise from the vertices
     Verify(verify::Args),
+    /// Tell what scenes and a job do not need of a traversal unit, and what leaving it out saves
+    Plan(plan::Args),
     /// Render a scene
     #[command(after_long_help = words::RENDER)]
     Render(render::Args),
@@ -104,6 +107,7 @@ pub fn run(cli: Cli) -> anyhow::Result<ExitCode> {
         Command::Build(args) => build::run(&args),
         Command::Info(args) => info::run(&args),
         Command::Verify(args) => verify::run(&args),
+        Command::Plan(args) => plan::run(&args),
         Command::Render(args) => render::run(&args),
         Command::Simulate(args) => simulate::run(&args),
         Command::Sweep(args) => sweep::run(&args),

@@ -46,8 +46,9 @@ impl Hardware {
 
     /// Entries and length.
     fn stack(&self, has_levels: bool) -> u32 {
-        let levels = Self { levels: if has_levels { self.levels } else { 0 }, ..*self };
-        let entries = levels.stack_entries();
+        // How many can wait is known of trees below a quad-BVH, not of the same quad-BVH over other triangles.
+        let entries =
+            if has_levels { self.stack_entries() } else { Self { levels: 0, fewer_stack_entries: None, ..*self }.stack_entries() };
         let width = if has_levels { Entry::WIDTH } else { Entry::WIDTH - LEVEL + LEAF - 3 * BoundCode::WIDTH };
         entries * width + (entries + 1).next_power_of_two().ilog2()
     }

@@ -20,8 +20,6 @@ use crate::num::{MAX_BVH_DEPTH, MAX_LEVELS};
 const MAX_CONTEXT_BITS: u32 = 6;
 /// The most contexts that a unit can have.
 pub const MAX_CONTEXTS: usize = 1 << MAX_CONTEXT_BITS;
-/// The fewest levels: a tree of one split has no nodes below its root, and no register for its triangles.
-const MIN_LEVELS: u32 = 2;
 
 /// A hardware: `rtl/lod_pkg.sv` as it stands is that of the default.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -30,6 +28,8 @@ pub struct Hardware {
     pub levels: u32,
     /// The most quad-BVH nodes on a path from the root to a tree, 1 to [`MAX_BVH_DEPTH`].
     pub bvh_depth: u32,
+    /// Fewer entries of a traversal stack than its depth asks for, at least 2: for scenes of which is known how many can wait.
+    pub fewer_stack_entries: Option<u32>,
     /// Ray contexts of a traversal unit, 1 to 2^`context_bits`.
     pub contexts: usize,
     /// Bits of a context's number, 1 to 6.
@@ -59,10 +59,14 @@ impl Hardware {
     pub const DEFAULT: Self = Self {
         levels: MAX_LEVELS,
         bvh_depth: MAX_BVH_DEPTH,
+        fewer_stack_entries: None,
         contexts: 4,
         context_bits: MAX_CONTEXT_BITS,
         edges_per_cycle: EdgesPerCycle::Three,
     };
+
+    /// The fewest levels: a tree of one split has no nodes below its root, and no register for its triangles.
+    pub const LEAST_LEVELS: u32 = 2;
 
     /// A unit for one ray at a time, the default in all else.
     pub const fn one_context() -> Self {
@@ -75,8 +79,9 @@ impl Hardware {
     /// The first field that is out of its range.
     pub fn validate(&self) -> Result<(), HardwareError> {
         let fields = [
-            ("levels", u64::from(self.levels), u64::from(MIN_LEVELS), u64::from(MAX_LEVELS)),
+            ("levels", u64::from(self.levels), u64::from(Self::LEAST_LEVELS), u64::from(MAX_LEVELS)),
             ("bvh_depth", u64::from(self.bvh_depth), 1, u64::from(MAX_BVH_DEPTH)),
+            ("fewer_stack_entries", u64::from(self.stack_entries()), 2, u64::from(self.deepest_stack())),
             ("context_bits", u64::from(self.context_bits), 1, u64::from(MAX_CONTEXT_BITS)),
             ("contexts", self.contexts as u64, 1, 1 << self.context_bits.min(MAX_CONTEXT_BITS)),
         ];
@@ -96,8 +101,13 @@ impl Hardware {
         B::timing(&self.form())
     }
 
-    /// Entries of a traversal stack: each level of the quad-BVH and of a tree leaves at most three siblings waiting.
-    pub const fn stack_entries(&self) -> u32 {
+    /// Entries of a traversal stack.
+    pub fn stack_entries(&self) -> u32 {
+        self.fewer_stack_entries.unwrap_or_else(|| self.deepest_stack())
+    }
+
+    /// Each level of the quad-BVH and of a tree leaves at most three siblings waiting.
+    const fn deepest_stack(&self) -> u32 {
         3 * (self.bvh_depth + self.levels) + 1
     }
 
@@ -120,6 +130,10 @@ mod tests {
         assert_eq!(wrong(Hardware { levels: 11, ..default }), "hardware: levels must be 2 to 10, but is 11");
         assert_eq!(wrong(Hardware { levels: 1, ..default }), "hardware: levels must be 2 to 10, but is 1");
         assert_eq!(wrong(Hardware { bvh_depth: 25, ..default }), "hardware: bvh_depth must be 1 to 24, but is 25");
+        assert_eq!(
+            wrong(Hardware { fewer_stack_entries: Some(104), ..default }),
+            "hardware: fewer_stack_entries must be 2 to 103, but is 104"
+        );
         assert_eq!(wrong(Hardware { context_bits: 7, ..default }), "hardware: context_bits must be 1 to 6, but is 7");
         assert_eq!(wrong(Hardware { contexts: 0, ..default }), "hardware: contexts must be 1 to 64, but is 0");
         assert_eq!(wrong(Hardware { contexts: 5, context_bits: 2, ..default }), "hardware: contexts must be 1 to 4, but is 5");

@@ -1,12 +1,14 @@
 //! The cycle model of the traversal unit against the functional traverser (same lines, same counts) and the golden one (same hits).
 
 use lodray::block::EdgesPerCycle;
+use lodray::format::Scene;
 use lodray::golden::exact::Exact;
 use lodray::hardware::Hardware;
 use lodray::mesh::Hierarchy;
 use lodray::method::lod::{LodImage, LodTraverser};
 use lodray::method::{ClosestHit, Hit};
 use lodray::num::{LineAddress, Ray, VertexForm};
+use lodray::plan::{Measure, Plan};
 use lodray::sim::unit::environment::{RunReport, UnitPort, run};
 use lodray::sim::unit::{Inputs, Latency, Outputs, SceneMemory, Stall, Traffic, TraversalUnit, UnitCounts, UnitError};
 use lodray::step::{Step, StepCounts, StepSink};
@@ -74,6 +76,13 @@ fn configs() -> Vec<Hardware> {
         .into()
 }
 
+/// No more of a unit than a scene needs.
+fn planned(scene: &Scene) -> Hardware {
+    let mut plan = Plan::new(false);
+    plan.add("it", &Measure::of(scene).needs());
+    plan.hardware(&Hardware::default())
+}
+
 struct Model {
     name: String,
     h: Hierarchy,
@@ -137,7 +146,7 @@ fn equals_the_functional_and_the_golden_traverser() {
             expected.push((hit, lines.read));
         }
 
-        for config in configs() {
+        for config in configs().into_iter().chain([planned(&scene)]) {
             for traffic in traffics() {
                 let (report, lines, unit) = simulate(&memory, config, &traffic, &rays);
                 let what = format!("{name}, {config:?}, {traffic:?}");

@@ -25,7 +25,7 @@ use xxhash_rust::xxh3::xxh3_64;
 
 /// The jobs of a list.
 pub fn jobs(source: &ListText<'_>) -> anyhow::Result<Jobs> {
-    let list = source.list()?;
+    let list: List = source.parse()?;
     // Before the first table, where the list's own keys stand.
     let top = || 0..0;
     let methods = needed(source, list.methods.as_ref(), "methods", top())?;

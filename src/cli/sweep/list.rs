@@ -5,6 +5,7 @@ use lodray::mesh::{BoundKind, procedural};
 use lodray::num::VertexForm;
 use lodray::run::Compute;
 use serde::Deserialize;
+use serde::de::DeserializeOwned;
 use std::collections::BTreeMap;
 use std::fmt::{self, Display};
 use std::ops::Range;
@@ -120,7 +121,7 @@ pub struct ListText<'a> {
 
 impl ListText<'_> {
     /// What the file says.
-    pub fn list(&self) -> anyhow::Result<List> {
+    pub fn parse<T: DeserializeOwned>(&self) -> anyhow::Result<T> {
         // The reader's own messages are several lines, with a picture of the place.
         toml::from_str(self.text).map_err(|e| {
             let brackets =

@@ -26,6 +26,7 @@ use std::path::PathBuf;
 use std::process::ExitCode;
 
 pub use jobs::{Jobs, Origin, SceneJobs, ViewJob};
+pub use list::ListText;
 pub use rows::Row;
 use rows::csv;
 

@@ -94,7 +94,10 @@ pub(super) fn print(hardware: &Hardware, out: &mut String) {
         .put(
             "STACK_ENTRIES",
             hardware.stack_entries(),
-            "3 (MAX_BVH_DEPTH + MAX_LEVELS) + 1: each level leaves at most three siblings waiting",
+            match hardware.fewer_stack_entries {
+                None => "3 (MAX_BVH_DEPTH + MAX_LEVELS) + 1: each level leaves at most three siblings waiting",
+                Some(_) => "as many as can wait in the scenes that it is for",
+            },
         )
         .put("SPLIT_TRIANGLES", hardware.split_triangles(), "of a context: one of each level that splits into nodes")
         .put("NODE_W", 2 * hardware.levels, "of a node within its level, where it is kept: two bits of each level")

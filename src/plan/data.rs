@@ -1,0 +1,54 @@
+//! What of a scene's data no ray of a job reads.
+
+use super::scene::Met;
+use crate::format::Scene;
+use crate::num::{LINE_BYTES, VertexForm};
+use serde::Serialize;
+
+/// Bytes of a scene's trees: as they are stored, and those that a ray can read.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+pub struct Data {
+    /// Full-resolution triangles.
+    pub triangles: u64,
+    /// L0 records, sibling groups and inserted vertices as they are stored.
+    pub stored: u64,
+    /// Of them what lies below a node with three codes of 0, where every ray ends: without it.
+    pub above_flat: u64,
+    /// What then remains above the finest level that a ray of the job can go down to.
+    pub reached: u64,
+}
+
+impl Data {
+    pub(super) fn of(scene: &Scene, met: &Met, deepest: u32) -> Self {
+        let (levels, form) = (scene.levels(), scene.meta().vertices);
+        let records = size_of_val(scene.records()) as u64;
+        // Of a node that splits: its vertices, but for a root's that are in its record; and its children's group, but above the finest level.
+        let of = |level: u32| {
+            let vertices = match (form, level) {
+                (VertexForm::Exact, _) => LINE_BYTES,
+                (VertexForm::Compact, 0) => 0,
+                (VertexForm::Compact, _) => LINE_BYTES / 2,
+            };
+            vertices + if level + 1 < levels { LINE_BYTES } else { 0 }
+        };
+        let upto = |deepest: u32| records + (0..levels.min(deepest)).map(|level| met.splits[level as usize] * of(level)).sum::<u64>();
+        let stored = records + (size_of_val(scene.bounds()) + size_of_val(scene.vertices())) as u64;
+        Self { triangles: scene.finest_triangles(), stored, above_flat: upto(levels), reached: upto(deepest) }
+    }
+
+    /// Bytes for each full-resolution triangle.
+    pub fn per_triangle(&self, bytes: u64) -> f64 {
+        bytes as f64 / self.triangles as f64
+    }
+
+    /// Of both scenes.
+    #[must_use]
+    pub fn with(self, other: Self) -> Self {
+        Self {
+            triangles: self.triangles + other.triangles,
+            stored: self.stored + other.stored,
+            above_flat: self.above_flat + other.above_flat,
+            reached: self.reached + other.reached,
+        }
+    }
+}

@@ -1,0 +1,34 @@
+//! A scene looked through once, for all that is asked about it.
+
+use super::scene::{Met, met};
+use super::{Data, RayNeeds, SceneNeeds};
+use crate::format::Scene;
+use crate::rays::RaySource;
+
+/// A scene and what was met on the way through all its trees.
+pub struct Measure<'a> {
+    scene: &'a Scene,
+    met: Met,
+}
+
+impl<'a> Measure<'a> {
+    /// Looks through a scene: each node of each tree that some ray could read.
+    pub fn of(scene: &'a Scene) -> Self {
+        Self { scene, met: met(scene) }
+    }
+
+    /// What it needs.
+    pub fn needs(&self) -> SceneNeeds {
+        SceneNeeds::of(self.scene, &self.met)
+    }
+
+    /// What the rays of `source` need on it at quality `delta`; those that miss the model's box need nothing.
+    pub fn rays(&self, source: &dyn RaySource, delta: f64) -> RayNeeds {
+        RayNeeds::of(self.scene, &self.met, source, delta)
+    }
+
+    /// Its bytes, where no ray goes below `deepest`.
+    pub fn data(&self, deepest: u32) -> Data {
+        Data::of(self.scene, &self.met, deepest)
+    }
+}

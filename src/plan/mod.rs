@@ -1,0 +1,198 @@
+//! What a scene and a job need of a traversal unit, and so what can be left out.
+//!
+//! [`SceneNeeds`] is measured on every node of a scene's trees and quad-BVH, [`RayNeeds`] on every ray of a job. All are exact: a width is the least that holds
+//! every number met, a level is unneeded only if no ray of the job can go down to it.
+
+mod data;
+mod measure;
+mod rays;
+mod report;
+mod scene;
+
+pub use data::Data;
+pub use measure::Measure;
+pub use rays::RayNeeds;
+pub use report::{Part, Saving, savings};
+pub use scene::SceneNeeds;
+
+use crate::hardware::Hardware;
+use serde::{Deserialize, Serialize};
+use std::collections::BTreeMap;
+use thiserror::Error;
+
+/// Bits of a number that counts up to `most`: none for 0.
+pub(crate) fn bits(most: u64) -> u32 {
+    u64::BITS - most.leading_zeros()
+}
+
+/// Bits of a two's complement number that holds `least` to `most`: none if both are 0.
+pub(crate) fn signed_bits(least: i64, most: i64) -> u32 {
+    let magnitude = |v: i64| bits((if v < 0 { !v } else { v }).cast_unsigned());
+    if least == 0 && most == 0 { 0 } else { magnitude(least).max(magnitude(most)) + 1 }
+}
+
+/// What is needed for some scenes and a job, as `lodray plan` writes it.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields, rename_all = "kebab-case")]
+pub struct Plan {
+    /// Version of the program that wrote it.
+    pub program: String,
+    /// Names of the scenes.
+    pub scenes: Vec<String>,
+    /// Of the scenes, each the most of all.
+    pub scene: SceneNeeds,
+    /// Of the rays of the job; nothing where no job was given: any ray can come.
+    pub rays: Option<RayNeeds>,
+}
+
+/// A scene or a ray that a plan is too narrow for.
+#[derive(Clone, Debug, PartialEq, Eq, Error)]
+#[error("{what} does not fit the plan: {field} is {value}, and the plan has {planned}")]
+pub struct Misfit {
+    what: String,
+    field: String,
+    value: u64,
+    planned: u64,
+}
+
+impl Plan {
+    /// The plan of no scene and no ray.
+    pub fn new(rays: bool) -> Self {
+        let program = env!("CARGO_PKG_VERSION").to_owned();
+        Self { program, scenes: Vec::new(), scene: SceneNeeds::default(), rays: rays.then(RayNeeds::default) }
+    }
+
+    /// Makes room for a scene.
+    pub fn add(&mut self, name: &str, needs: &SceneNeeds) {
+        self.scenes.push(name.to_owned());
+        self.scene = self.scene.with(needs);
+    }
+
+    /// Makes room for rays, if the plan is of some.
+    pub fn add_rays(&mut self, needs: &RayNeeds) {
+        self.rays = self.rays.as_ref().map(|rays| rays.with(needs));
+    }
+
+    /// A hardware for it, `hardware` in all that a plan does not say.
+    pub fn hardware(&self, hardware: &Hardware) -> Hardware {
+        let SceneNeeds { levels, bvh_depth, stack_entries, .. } = self.scene;
+        // A tree of one split has no nodes below its root, and no register for its triangles: there is no smaller unit.
+        let (levels, bvh_depth) = (levels.clamp(Hardware::LEAST_LEVELS, hardware.levels), bvh_depth.clamp(1, hardware.bvh_depth));
+        let most = Hardware { levels, bvh_depth, fewer_stack_entries: None, ..*hardware };
+        Hardware { fewer_stack_entries: Some(stack_entries.clamp(2, most.stack_entries())), ..most }
+    }
+
+    /// Checks that a scene fits.
+    ///
+    /// # Errors
+    /// The first field that is too narrow.
+    pub fn check(&self, name: &str, needs: &SceneNeeds) -> Result<(), Misfit> {
+        fits(&format!("scene {name}"), &self.scene, needs)
+    }
+
+    /// Checks that the rays of a job fit; any do if the plan is of none.
+    ///
+    /// # Errors
+    /// The first field that is too narrow.
+    pub fn check_rays(&self, what: &str, needs: &RayNeeds) -> Result<(), Misfit> {
+        self.rays.as_ref().map_or(Ok(()), |rays| fits(what, rays, needs))
+    }
+}
+
+/// The numbers of a struct of needs, by name.
+fn numbers<T: Serialize>(of: &T) -> BTreeMap<String, u64> {
+    let value = serde_json::to_value(of).unwrap_or_default();
+    let fields = value.as_object().into_iter().flatten();
+    // What is true is needed, as what is 1 is.
+    let number = |value: &serde_json::Value| value.as_u64().or_else(|| value.as_bool().map(u64::from));
+    fields.filter_map(|(name, value)| Some((name.clone(), number(value)?))).collect()
+}
+
+fn fits<T: Serialize>(what: &str, planned: &T, needs: &T) -> Result<(), Misfit> {
+    let planned = numbers(planned);
+    for (field, value) in numbers(needs) {
+        let has = planned.get(&field).copied().unwrap_or(0);
+        // Of zeros at the bottom of numbers a scene must have as many as were left out.
+        let narrow = if field.ends_with("-zeros") { value < has } else { value > has };
+        if narrow {
+            return Err(Misfit { what: what.to_owned(), field, value, planned: has });
+        }
+    }
+    Ok(())
+}
+
+/// Declares needs: for each field the most of two, of fields that end in `zeros` the least.
+macro_rules! needs {
+    ($(#[$doc:meta])* pub struct $name:ident {
+        most { $($(#[$mdoc:meta])* $most:ident: $mty:ty,)* }
+        least { $($(#[$ldoc:meta])* $least:ident,)* }
+    }) => {
+        $(#[$doc])*
+        #[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
+        #[serde(deny_unknown_fields, rename_all = "kebab-case")]
+        pub struct $name {
+            $($(#[$mdoc])* pub $most: $mty,)*
+            $($(#[$ldoc])* pub $least: u32,)*
+        }
+
+        impl Default for $name {
+            /// Of nothing: 0 in all, and zeros as many as there can be.
+            fn default() -> Self {
+                Self { $($most: Default::default(),)* $($least: $crate::plan::ALL_ZEROS,)* }
+            }
+        }
+
+        impl $name {
+            /// What serves both.
+            #[must_use]
+            pub fn with(&self, other: &Self) -> Self {
+                Self { $($most: self.$most.max(other.$most),)* $($least: self.$least.min(other.$least),)* }
+            }
+        }
+    };
+}
+pub(crate) use needs;
+
+/// Zeros at the bottom of no number at all.
+pub(crate) const ALL_ZEROS: u32 = 32;
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn bits_by_hand() {
+        assert_eq!([0, 1, 2, 255, 256].map(bits), [0, 1, 2, 8, 9]);
+        assert_eq!(signed_bits(0, 0), 0);
+        assert_eq!(
+            [signed_bits(-1, 0), signed_bits(0, 1), signed_bits(-128, 127), signed_bits(-129, 0), signed_bits(0, 128)],
+            [1, 2, 8, 9, 9]
+        );
+    }
+
+    #[test]
+    fn each_field_one_too_narrow_is_named() {
+        let wide = SceneNeeds { levels: 5, bvh_depth: 5, coordinate_zeros: 3, ..SceneNeeds::default() };
+        let mut plan = Plan::new(false);
+        plan.add("wide", &wide);
+        assert_eq!(plan.check("wide", &wide), Ok(()));
+        let named = |needs: SceneNeeds| plan.check("it", &needs).expect_err("too narrow").to_string();
+        assert_eq!(named(SceneNeeds { levels: 6, ..wide }), "scene it does not fit the plan: levels is 6, and the plan has 5");
+        assert_eq!(
+            named(SceneNeeds { coordinate_zeros: 2, ..wide }),
+            "scene it does not fit the plan: coordinate-zeros is 2, and the plan has 3"
+        );
+        // Each field that there is.
+        for field in numbers(&wide).keys() {
+            let mut value = serde_json::to_value(wide).expect("numbers");
+            let old = &value[field];
+            value[field] = match (old.as_bool(), old.as_u64()) {
+                (Some(_), _) => true.into(),
+                (_, Some(old)) if field.ends_with("-zeros") => (old - 1).into(),
+                (_, old) => (old.expect("a number") + 1).into(),
+            };
+            let narrow: SceneNeeds = serde_json::from_value(value).expect("needs");
+            assert!(named(narrow).contains(&format!(": {field} is ")), "{field}");
+        }
+    }
+}

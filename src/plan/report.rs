@@ -1,0 +1,127 @@
+//! A plan as a table: what is needed, what there is, and what leaving out the rest saves.
+
+use super::{Data, Plan};
+use crate::hardware::Hardware;
+use crate::num::MAX_DISPLACEMENT_SHIFT;
+use serde::Serialize;
+
+/// What a line is about.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Part {
+    /// How deep and how large the hierarchy is.
+    Structure,
+    /// Widths of numbers.
+    Numbers,
+    /// What rays ask for.
+    Features,
+    /// Bytes of the scenes.
+    Data,
+}
+
+/// A line: something of which a plan needs less than there is.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Saving {
+    /// What it is about.
+    pub part: Part,
+    /// What it is, in words.
+    pub what: &'static str,
+    /// How much is needed.
+    pub needed: String,
+    /// How much there is.
+    pub full: String,
+    /// Why no more is needed.
+    pub reason: &'static str,
+    /// What is saved, where the unit or the file can leave it out; empty where it cannot yet.
+    pub saved: String,
+}
+
+struct Table {
+    lines: Vec<Saving>,
+}
+
+impl Table {
+    fn add(&mut self, part: Part, what: &'static str, [needed, full]: [u32; 2], reason: &'static str, saved: String) {
+        if needed < full {
+            self.lines.push(Saving { part, what, needed: needed.to_string(), full: full.to_string(), reason, saved });
+        }
+    }
+
+    fn bits(&mut self, what: &'static str, needed_of_full: [u32; 2], reason: &'static str) {
+        self.add(Part::Numbers, what, needed_of_full, reason, String::new());
+    }
+
+    fn feature(&mut self, what: &'static str, needed: bool, reason: &'static str) {
+        if !needed {
+            let (needed, full) = ("no".to_owned(), "yes".to_owned());
+            self.lines.push(Saving { part: Part::Features, what, needed, full, reason, saved: String::new() });
+        }
+    }
+}
+
+/// What `plan` leaves out of `full`, and of the data of its scenes.
+pub fn savings(plan: &Plan, full: &Hardware, data: Option<&Data>) -> Vec<Saving> {
+    let (scene, own) = (&plan.scene, plan.hardware(full));
+    let context = |hardware: &Hardware| hardware.context_registers(true).kept;
+    let without = |less: Hardware| format!("{} bits of a context", context(full) - context(&less));
+    let mut table = Table { lines: Vec::new() };
+    // Each by itself, with the stack that follows from it.
+    let levels = without(Hardware { levels: own.levels, ..*full });
+    table.add(Part::Structure, "levels", [own.levels, full.levels], "no scene has more", levels);
+    let depth = without(Hardware { bvh_depth: own.bvh_depth, ..*full });
+    table.add(Part::Structure, "quad-BVH depth", [own.bvh_depth, full.bvh_depth], "no path to a tree is longer", depth);
+    let stack = without(Hardware { fewer_stack_entries: own.fewer_stack_entries, ..*full });
+    let reason = "siblings that can wait, on the path on which most can";
+    table.add(Part::Structure, "stack entries", [own.stack_entries(), full.stack_entries()], reason, stack);
+    if own != *full {
+        let (needed, of) = (context(&own).to_string(), context(full).to_string());
+        let (reason, saved) = ("all of these together", without(own));
+        table.lines.push(Saving { part: Part::Structure, what: "bits of a context", needed, full: of, reason, saved });
+    }
+    table.bits("number of a quad-BVH node", [scene.bvh_node_bits, 28], "so many are there");
+    table.bits("number of a tree", [scene.tree_bits, 28], "so many are there");
+    table.bits("number of a memory line", [scene.line_bits, 32], "so many have the scene's sections");
+    table.bits("coordinate", [scene.coordinate_bits, 32], "none is larger");
+    table.bits("box code of a frame", [scene.frame_bits, 16], "none is larger");
+    table.bits("plane of a quad-BVH node", [scene.node_plane_bits, 5], "none is larger");
+    table.bits("plane of a sibling group", [scene.group_plane_bits, 7], "none is larger");
+    table.add(Part::Numbers, "exponent of a node's steps", [scene.node_exponent, 15], "none is larger", String::new());
+    table.add(Part::Numbers, "exponent of a group's steps", [scene.group_exponent, 15], "none is larger", String::new());
+    table.bits("bound code", [scene.code_bits, 8], "none is larger");
+    table.bits("displacement bound", [scene.bound_bits, 33], "none is larger");
+    table.bits("displacement", [scene.displacement_bits, 13], "none is larger");
+    table.add(
+        Part::Numbers,
+        "shift of a displacement",
+        [scene.displacement_shift, MAX_DISPLACEMENT_SHIFT],
+        "none is larger",
+        String::new(),
+    );
+    if let Some(rays) = &plan.rays {
+        table.bits("component of a direction", [rays.direction_bits, 31], "none is larger");
+        table.bits(
+            "zero-ended component of a direction",
+            [rays.direction_bits.saturating_sub(rays.direction_zeros), rays.direction_bits],
+            "all end in zeros",
+        );
+        table.bits("offset of a cone", [rays.cone_offset_bits, 53], "none is larger");
+        table.bits("slope of a cone", [rays.cone_slope_bits, 18], "none is larger");
+        table.add(Part::Numbers, "shift of a cone", [rays.cone_shift, 63], "none is larger", String::new());
+        table.feature("choice of a level, and morphs", rays.lod_test, "every quality is 0 or infinite: edges are closed or open");
+        table.feature("hits mapped to full resolution", rays.hit_mapping, "every hit is on a triangle of the finest level");
+        table.feature("radius where a ray starts", rays.start_radius, "no ray has one");
+    }
+    table.feature("vertices as displacements", scene.compact, "no scene has compact vertices");
+    table.feature("vertices as they are", scene.exact, "no scene has exact vertices");
+    if let Some(data) = data {
+        let mut less = |what, from: u64, to: u64, reason| {
+            if to < from {
+                let (needed, full) = (format!("{:.2}", data.per_triangle(to)), format!("{:.2}", data.per_triangle(from)));
+                table.lines.push(Saving { part: Part::Data, what, needed, full, reason, saved: String::new() });
+            }
+        };
+        less("bytes a finest triangle", data.stored, data.above_flat, "below a node with three codes of 0 no ray reads");
+        less("bytes a finest triangle", data.above_flat, data.reached, "no ray of the job goes deeper");
+    }
+    table.lines
+}
