@@ -18,7 +18,7 @@ fn terrain(c: &mut Criterion) {
     group.sample_size(10).throughput(Throughput::Elements(surface.finest_triangles()));
     group.bench_function("generate", |b| b.iter(|| procedural::generate(&options).expect("default options")));
     group.bench_function("quantise and bounds", |b| {
-        b.iter(|| quantise(&surface, BoundKind::Largest, VertexForm::Exact).expect("a valid surface"))
+        b.iter(|| quantise(&surface, BoundKind::Largest, VertexForm::Exact, 0).expect("a valid surface"))
     });
     group.bench_function("build and write", |b| b.iter(|| built().save(&path).expect("written")));
     group.bench_function("open", |b| b.iter(|| Scene::open(&path).expect("valid")));

@@ -12,7 +12,7 @@ use std::hint::black_box;
 fn benches(c: &mut Criterion) {
     let levels = std::env::var("LODRAY_TERRAIN_LEVELS").ok().and_then(|v| v.parse().ok());
     let surface = generate(&procedural::Options { levels, ..procedural::Options::new(procedural::Scene::Terrain) }).expect("options");
-    let hierarchy = quantise(&surface, BoundKind::Largest, VertexForm::Exact).expect("a valid surface");
+    let hierarchy = quantise(&surface, BoundKind::Largest, VertexForm::Exact, 0).expect("a valid surface");
     drop(surface);
     let mut group = c.benchmark_group("full-resolution quad-BVH of the terrain");
     group.throughput(Throughput::Elements(hierarchy.finest_triangles())).sample_size(10).sampling_mode(SamplingMode::Flat);

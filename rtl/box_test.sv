@@ -21,18 +21,19 @@ module box_test #(
 );
 
   localparam int unsigned CODE_W = lod_pkg::CODE3_W / 3;
-  localparam int unsigned D_W = 30;
+  localparam int unsigned D_ZEROS = lod_pkg::DIRECTION_ZEROS;
+  localparam int unsigned D_W = 30 - D_ZEROS;
   localparam int unsigned CEIL_W = 17;
   localparam int unsigned NEAR_W = 16;
   localparam int unsigned T_W = lod_pkg::T_NEAR_W;
   localparam int unsigned MOMENT_W = lod_pkg::MOMENT_W / 3;
   // 16 bits times 30 unsigned: below 2^45 in magnitude, their differences below 2^46; floor(c / 2^16) and its negative: 47 bits.
   localparam int unsigned PRODUCT_W = CODE_W + D_W + 1;
-  localparam int unsigned LIMIT_W = MOMENT_W - lod_pkg::BOX_SHIFT;
-  // Codes and directions come from afar: registers of its own beside each multiplier; `u_entry` takes as long.
+  localparam int unsigned LIMIT_W = MOMENT_W - lod_pkg::BOX_SHIFT - D_ZEROS;
+  // Codes and directions come from afar: registers of its own beside each multiplier; all together takes as long as `u_entry`.
   localparam int unsigned FACTOR_STAGES = 1;
-  localparam int unsigned PRODUCT_LATENCY = FACTOR_STAGES + lod_pkg::multiplier_latency(CODE_W, D_W + 1);
-  localparam int unsigned WAIT = 1 + lod_pkg::ENTRY_DISTANCE_LATENCY - PRODUCT_LATENCY - 3;
+  localparam int unsigned PRODUCT_LATENCY = lod_pkg::ENTRY_DISTANCE_LATENCY - 2;
+  localparam int unsigned PRODUCT_STAGES = PRODUCT_LATENCY - FACTOR_STAGES - lod_pkg::multiplier_latency(CODE_W, D_W + 1) + 1;
   localparam int unsigned LATENCY = 1 + 1 + lod_pkg::ENTRY_DISTANCE_LATENCY + 1;
   if (lod_pkg::BOX_TEST_LATENCY != LATENCY) begin : g_illegal_latency
     $error("box_test: lod_pkg::BOX_TEST_LATENCY must be %0d", LATENCY);
@@ -49,7 +50,7 @@ module box_test #(
   logic [2:0]               cut, cut_q;
   logic                     valid_mirror, ready_mirror;
   assign mirror     = {in_i.ray.z.mirror, in_i.ray.y.mirror, in_i.ray.x.mirror};
-  assign d          = {in_i.ray.z.d, in_i.ray.y.d, in_i.ray.x.d};
+  assign d          = {in_i.ray.z.d[29:D_ZEROS], in_i.ray.y.d[29:D_ZEROS], in_i.ray.x.d[29:D_ZEROS]};
   assign ceil       = {in_i.ray.z.ceil, in_i.ray.y.ceil, in_i.ray.x.ceil};
   assign reciprocal = {in_i.ray.z.reciprocal, in_i.ray.y.reciprocal, in_i.ray.x.reciprocal};
   assign stored_lo  = {in_i.bounds.lo.z, in_i.bounds.lo.y, in_i.bounds.lo.x};
@@ -59,8 +60,9 @@ module box_test #(
   for (genvar k = 0; k < 3; k++) begin : g_mirror
     assign lo[k]    = mirror[k] ? -stored_hi[k] : stored_lo[k];
     assign hi[k]    = mirror[k] ? -stored_lo[k] : stored_hi[k];
-    assign limit[k] = moment[k][MOMENT_W-1:lod_pkg::BOX_SHIFT];
-    assign cut[k]   = moment[k][lod_pkg::BOX_SHIFT-1:0] != '0;
+    assign limit[k] = moment[k][MOMENT_W-1:lod_pkg::BOX_SHIFT+D_ZEROS];
+    // Below the zeros of origin and direction nothing can be cut off.
+    assign cut[k]   = moment[k][lod_pkg::BOX_SHIFT+D_ZEROS-1:0] >> (lod_pkg::COORDINATE_ZEROS + D_ZEROS) != '0;
   end
   pipe_stage #(.W(3 * (2 * CODE_W + D_W + CEIL_W + lod_pkg::RECIPROCAL_W + LIMIT_W + 1))) u_mirror (
     .clk_i, .rst_ni, .valid_i, .ready_o, .data_i({lo, hi, d, ceil, reciprocal, limit, cut}),
@@ -107,11 +109,11 @@ module box_test #(
     localparam int unsigned I = k < 3 ? (k + 1) % 3 : (k + 2) % 3;
     localparam int unsigned J = k < 3 ? (k + 2) % 3 : (k + 1) % 3;
     logic [PRODUCT_W-1:0] low, high;
-    multiplier #(.A_W(CODE_W), .B_W(D_W + 1), .FACTOR_STAGES(FACTOR_STAGES)) u_low (
+    multiplier #(.A_W(CODE_W), .B_W(D_W + 1), .FACTOR_STAGES(FACTOR_STAGES), .PRODUCT_STAGES(PRODUCT_STAGES)) u_low (
       .clk_i, .rst_ni, .valid_i(valid_mirror), .ready_o(ready_low[k]), .a_i(lo_q[I]), .b_i({1'b0, d_q[J]}),
       .valid_o(valid_low[k]), .ready_i(ready_product), .product_o(low)
     );
-    multiplier #(.A_W(CODE_W), .B_W(D_W + 1), .FACTOR_STAGES(FACTOR_STAGES)) u_high (
+    multiplier #(.A_W(CODE_W), .B_W(D_W + 1), .FACTOR_STAGES(FACTOR_STAGES), .PRODUCT_STAGES(PRODUCT_STAGES)) u_high (
       .clk_i, .rst_ni, .valid_i(valid_mirror), .ready_o(ready_high[k]), .a_i(hi_q[J]), .b_i({1'b0, d_q[I]}),
       .valid_o(valid_high[k]), .ready_i(ready_product), .product_o(high)
     );
@@ -125,7 +127,7 @@ module box_test #(
 
   // Against the limits.
   logic [2:0][LIMIT_W-1:0] limit_there, turned_there;
-  logic                    ahead_there, slabs, slabs_q, valid_slabs, ready_slabs, slabs_last;
+  logic                    ahead_there, slabs, slabs_last;
   logic                    valid_passes, ready_passes;
   logic [5:0]              passes;
   logic [6:0]              passes_q;
@@ -147,10 +149,7 @@ module box_test #(
   assign slabs = passes_q == '1;
   pipe_stage #(.W(1)) u_slabs (
     .clk_i, .rst_ni, .valid_i(valid_passes), .ready_o(ready_passes), .data_i(slabs),
-    .valid_o(valid_slabs), .ready_i(ready_slabs), .data_o(slabs_q)
-  );
-  pipe_delay #(.W(1), .STAGES(WAIT)) u_wait (
-    .clk_i, .rst_ni, .valid_i(valid_slabs), .ready_o(ready_slabs), .data_i(slabs_q), .valid_o(), .ready_i(ready_last), .data_o(slabs_last)
+    .valid_o(), .ready_i(ready_last), .data_o(slabs_last)
   );
 
   // Stage last: early termination. t_near 2^18 <= t_max iff t_near <= floor(t_max / 2^18).
@@ -171,7 +170,7 @@ module box_test #(
   // The box test takes less of a ray than `ray_setup` gives: the origin is in its moment.
   logic unused;
   assign unused = ^{in_i.ray.x.origin, in_i.ray.y.origin, in_i.ray.z.origin, in_i.t_max[lod_pkg::T_NEAR_TO_T_SHIFT-1:0],
-                    valid_low[5:1], ready_low[5:1], valid_high, ready_high};
+                    in_i.ray.x.d, in_i.ray.y.d, in_i.ray.z.d, valid_low[5:1], ready_low[5:1], valid_high, ready_high};
 
 endmodule
 

@@ -35,6 +35,10 @@ module closest_hit (
   output lod_pkg::hit_t                      hit_o
 );
 
+  // Numerators without their zeros.
+  localparam int unsigned EDGE_W = lod_pkg::SIGNED_EDGE_W - 1;
+  localparam int unsigned ZEROS = lod_pkg::EDGE_ZEROS;
+
   logic                                known_q;
   logic [lod_pkg::RAY_T_W-1:0]         t_max_q;
   logic [lod_pkg::FULL_ID_W-1:0]       id_q;
@@ -42,7 +46,7 @@ module closest_hit (
   logic [3:0]                          level_q;
   logic [lod_pkg::NODE_W-1:0]          node_q;
   logic                                front_q;
-  logic [lod_pkg::EDGE_FUNCTION_W-1:0] v_q, w_q, det_q;
+  logic [EDGE_W-1:0]                   v_q, w_q, det_q;
   logic [lod_pkg::BARY_W-1:0]          b0_q, b1_q, b2_q;
   lod_pkg::bary_map_out_t              full_q;
 
@@ -62,12 +66,12 @@ module closest_hit (
       level_q <= level_i;
       node_q  <= node_i;
       front_q <= front_i;
-      {v_q, w_q, det_q} <= {v_i, w_i, det_i};
+      {v_q, w_q, det_q} <= {EDGE_W'(v_i >> ZEROS), EDGE_W'(w_i >> ZEROS), EDGE_W'(det_i >> ZEROS)};
     end
   end
 
   // Edge functions fit a numerator of t: 96 bits of 99.
-  assign divide_o = {lod_pkg::T_NUMERATOR_W'(divide_v_i ? v_q : w_q), det_q};
+  assign divide_o = {lod_pkg::T_NUMERATOR_W'(divide_v_i ? v_q : w_q) << ZEROS, lod_pkg::EDGE_FUNCTION_W'(det_q) << ZEROS};
 
   always_ff @(posedge clk_i) begin
     // An edge function is at most det, so quotients are at most 2^32; their last bit is dropped: 32 bits.

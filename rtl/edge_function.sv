@@ -13,7 +13,7 @@ module edge_function (
   output logic                                 ready_o,
   input  logic [3*lod_pkg::RELATIVE_W-1:0]     p_i,
   input  logic [3*lod_pkg::RELATIVE_W-1:0]     q_i,
-  input  logic [lod_pkg::DIRECTION_W-1:0]      d_i,
+  input  logic [lod_pkg::KEPT_DIRECTION_W-1:0]      d_i,
   output logic [3*lod_pkg::NORMAL_W-1:0]       normal_o,
   output logic                                 valid_o,
   input  logic                                 ready_i,
@@ -23,9 +23,9 @@ module edge_function (
 
   localparam int unsigned W = lod_pkg::RELATIVE_W;
   localparam int unsigned N_W = lod_pkg::NORMAL_W;
-  localparam int unsigned D_W = lod_pkg::DIRECTION_W / 3;
+  localparam int unsigned D_W = lod_pkg::COMPONENT_W;
   localparam int unsigned CROSS_LATENCY = lod_pkg::cross_product_latency(W);
-  localparam int unsigned PRODUCT_STAGES = lod_pkg::EDGE_PRODUCT_STAGES;
+  localparam int unsigned PRODUCT_STAGES = lod_pkg::EDGE_DOT_STAGES;
   localparam int unsigned DOT_LATENCY = PRODUCT_STAGES - 1 + lod_pkg::dot_product_latency(N_W, D_W);
   if (lod_pkg::EDGE_FUNCTION_LATENCY != CROSS_LATENCY + DOT_LATENCY) begin : g_illegal_latency
     $error("edge_function: lod_pkg::EDGE_FUNCTION_LATENCY must be %0d", CROSS_LATENCY + DOT_LATENCY);

@@ -7,30 +7,35 @@
 package lod_pkg;
 
   // This hardware: `Hardware` in Rust, which prints this file. All that follows from these is made smaller or larger with them.
-  localparam int unsigned MAX_LEVELS = 10;      // splits N of a model
-  localparam int unsigned MAX_BVH_DEPTH = 24;   // quad-BVH nodes on a path from the root to a tree
-  localparam int unsigned CONTEXTS = 4;         // rays under way in a traversal unit, if its parameter does not say otherwise
-  localparam int unsigned CONTEXT_W = 6;        // bits of a context's number
-  localparam int unsigned EDGES_PER_CYCLE = 3;  // edge functions that tri_test evaluates in a cycle, if its parameter does not say otherwise
+  localparam int unsigned MAX_LEVELS = 10;       // splits N of a model
+  localparam int unsigned MAX_BVH_DEPTH = 24;    // quad-BVH nodes on a path from the root to a tree
+  localparam int unsigned CONTEXTS = 4;          // rays under way in a traversal unit, if its parameter does not say otherwise
+  localparam int unsigned CONTEXT_W = 6;         // bits of a context's number
+  localparam int unsigned EDGES_PER_CYCLE = 3;   // edge functions that tri_test evaluates in a cycle, if its parameter does not say otherwise
+  localparam int unsigned COORDINATE_ZEROS = 0;  // zero bits at the bottom of every coordinate, which it leaves out
+  localparam int unsigned DIRECTION_ZEROS = 0;   // of every component of a direction
 
   // Widths (docs/numbers.md).
-  localparam int unsigned RAY_T_W = 35;          // t in steps of 2^-32
-  localparam int unsigned T_NEAR_W = 17;         // t_near in steps of 2^16 units
-  localparam int unsigned BARY_W = 32;           // 2^31 = 1
-  localparam int unsigned EDGE_STATE_W = 9;      // 256 = 1
-  localparam int unsigned DISTANCE_W = 34;       // l = (p - x).d / 2^30, signed: 64 - 30 bits
-  localparam int unsigned TOLERANCE_W = 34;      // D, clamped to this width
+  localparam int unsigned RAY_T_W = 35;                                         // t in steps of 2^-32
+  localparam int unsigned T_NEAR_W = 17;                                        // t_near in steps of 2^16 units
+  localparam int unsigned BARY_W = 32;                                          // 2^31 = 1
+  localparam int unsigned EDGE_STATE_W = 9;                                     // 256 = 1
+  localparam int unsigned DISTANCE_W = 34;                                      // l = (p - x).d / 2^30, signed: 64 - 30 bits
+  localparam int unsigned TOLERANCE_W = 34;                                     // D, clamped to this width
   localparam int unsigned BOUND_CODE_W = 8;
-  localparam int unsigned BOUND_W = 33;          // |q - m| < 2^32.8
-  localparam int unsigned LINE_ADDRESS_W = 36;   // 2 TiB of 32-byte lines
-  localparam int unsigned NODE_INDEX_W = 20;     // of a node at the ports: 4^10 nodes on the last level that there can be
-  localparam int unsigned FULL_ID_W = 48;        // 28 bits of tree, 2 of each of ten levels
-  localparam int unsigned RELATIVE_W = 33;       // difference of two 32-bit coordinates
-  localparam int unsigned NORMAL_W = 66;         // component of p x q: |p_i q_j| < 2^64, two of them
-  localparam int unsigned EDGE_FUNCTION_W = 96;  // |p x q| |d| < 2^96
-  localparam int unsigned SIGNED_EDGE_W = EDGE_FUNCTION_W + 1;
-  localparam int unsigned T_NUMERATOR_W = 99;    // |a| |b| |c| < 2^98.4
-  localparam int unsigned SIGNED_T_NUMERATOR_W = T_NUMERATOR_W + 1;
+  localparam int unsigned BOUND_W = 33;                                         // |q - m| < 2^32.8
+  localparam int unsigned LINE_ADDRESS_W = 36;                                  // 2 TiB of 32-byte lines
+  localparam int unsigned NODE_INDEX_W = 20;                                    // of a node at the ports: 4^10 nodes on the last level that there can be
+  localparam int unsigned FULL_ID_W = 48;                                       // 28 bits of tree, 2 of each of ten levels
+  localparam int unsigned COORDINATE_W = 32;                                    // a coordinate without the bits that are always 0
+  localparam int unsigned COMPONENT_W = 31;                                     // a component of a direction, likewise
+  localparam int unsigned RELATIVE_W = 33;                                      // difference of two coordinates
+  localparam int unsigned NORMAL_W = 66;                                        // component of p x q: two products of two differences
+  localparam int unsigned EDGE_FUNCTION_W = 96;                                 // |p x q| |d| < 2^96
+  localparam int unsigned EDGE_ZEROS = 2 * COORDINATE_ZEROS + DIRECTION_ZEROS;  // at the bottom of an edge function
+  localparam int unsigned SIGNED_EDGE_W = EDGE_FUNCTION_W + 1 - EDGE_ZEROS;
+  localparam int unsigned T_NUMERATOR_W = 99;                                   // |a| |b| |c| < 2^98.4
+  localparam int unsigned SIGNED_T_NUMERATOR_W = T_NUMERATOR_W + 1 - 3 * COORDINATE_ZEROS;
 
   // Sizes.
   localparam int unsigned MAX_CONTEXTS = 64;    // that CONTEXT_W can number
@@ -68,7 +73,9 @@ package lod_pkg;
 
   // Cycles of parts of blocks.
   localparam int unsigned ENTRY_DISTANCE_LATENCY = 5;  // of the box tests
-  localparam int unsigned EDGE_PRODUCT_STAGES = 2;     // registers of the products of an edge function
+  localparam int unsigned EDGE_PRODUCT_STAGES = 2;     // registers of the products of a cross product
+  localparam int unsigned EDGE_DOT_STAGES = 2;         // of those with a direction
+  localparam int unsigned T_DOT_STAGES = 2;            // of those of t, which take as long
   localparam int unsigned EDGE_FUNCTION_LATENCY = 14;  // of tri_test
   localparam int unsigned TRI_DECIDE_LATENCY = 3;      // of tri_test
   localparam int unsigned CONE_TOLERANCE_LATENCY = 7;  // of lod_test
@@ -245,7 +252,8 @@ package lod_pkg;
   // Input of tessellate.
   typedef struct packed {
     logic compact;                // Stored vertices are displacements.
-    logic [3:0] grid;             // Zero bits at the bottom of an inserted vertex.
+    logic [3:0] grid;             // Zero bits at the bottom of an inserted vertex as morphed.
+    logic [2:0] padding;          // How many more it has as stored.
     bound_scale_t scale;          // The model's bound scale.
     logic [BOUND_CODE_W-1:0] e0;  // Bound code of edge (p1, p2).
     logic [BOUND_CODE_W-1:0] e1;  // Bound code of edge (p2, p0).
@@ -263,7 +271,7 @@ package lod_pkg;
     point_t v1;                   // On (p2, p0).
     point_t v2;                   // On (p0, p1).
   } tessellate_in_t;
-  localparam int unsigned TESSELLATE_IN_W = 1 + 4 + BOUND_SCALE_W + BOUND_CODE_W + BOUND_CODE_W + BOUND_CODE_W + EDGE_STATE_W + EDGE_STATE_W + EDGE_STATE_W + POINT_W + POINT_W + POINT_W + POINT_W + POINT_W + POINT_W + POINT_W + POINT_W + POINT_W;
+  localparam int unsigned TESSELLATE_IN_W = 1 + 4 + 3 + BOUND_SCALE_W + BOUND_CODE_W + BOUND_CODE_W + BOUND_CODE_W + EDGE_STATE_W + EDGE_STATE_W + EDGE_STATE_W + POINT_W + POINT_W + POINT_W + POINT_W + POINT_W + POINT_W + POINT_W + POINT_W + POINT_W;
 
   // Output of tessellate: the inserted vertices of full resolution, and as morphed.
   typedef struct packed {
@@ -584,6 +592,7 @@ package lod_pkg;
   // The model that the rays meet; held still while rays are under way.
   typedef struct packed {
     logic [3:0] levels;                   // Number of splits N.
+    logic [4:0] zeros;                    // Zero bits at the bottom of all coordinates: of morphed triangles too, and of the rays' origins.
     logic compact;                        // Inserted vertices are stored as displacements from the midpoints of their edges.
     bound_scale_t scale;                  // Scale of the displacement bounds.
     logic [LINE_ADDRESS_W-1:0] nodes;     // First line of the quad-BVH's nodes.
@@ -591,7 +600,7 @@ package lod_pkg;
     logic [LINE_ADDRESS_W-1:0] bounds;    // First line of the bound data.
     logic [LINE_ADDRESS_W-1:0] vertices;  // First line of the vertex data.
   } scene_config_t;
-  localparam int unsigned SCENE_CONFIG_W = 4 + 1 + BOUND_SCALE_W + LINE_ADDRESS_W + LINE_ADDRESS_W + LINE_ADDRESS_W + LINE_ADDRESS_W;
+  localparam int unsigned SCENE_CONFIG_W = 4 + 5 + 1 + BOUND_SCALE_W + LINE_ADDRESS_W + LINE_ADDRESS_W + LINE_ADDRESS_W + LINE_ADDRESS_W;
 
   // A ray to trace.
   typedef struct packed {
@@ -654,6 +663,68 @@ package lod_pkg;
     VERTEX = 2'd2,  // inserted vertices and, but on the last split, the children's sibling group
     GROUP  = 2'd3   // the sibling group alone: the inserted vertices came with the L0 record
   } fetch_t;
+
+  // Coordinates and directions as they are kept, without the bits that are always 0; and as they were.
+  typedef struct packed {
+    logic signed [COORDINATE_W-1:0] x;
+    logic signed [COORDINATE_W-1:0] y;
+    logic signed [COORDINATE_W-1:0] z;
+  } kept_point_t;
+  localparam int unsigned KEPT_POINT_W = 3 * COORDINATE_W;
+  localparam int unsigned KEPT_DIRECTION_W = 3 * COMPONENT_W;
+  function automatic kept_point_t keep_point(input point_t p);
+    keep_point = {COORDINATE_W'(p.x >>> COORDINATE_ZEROS), COORDINATE_W'(p.y >>> COORDINATE_ZEROS), COORDINATE_W'(p.z >>> COORDINATE_ZEROS)};
+  endfunction
+  function automatic point_t whole_point(input kept_point_t p);
+    whole_point = {32'(p.x) << COORDINATE_ZEROS, 32'(p.y) << COORDINATE_ZEROS, 32'(p.z) << COORDINATE_ZEROS};
+  endfunction
+  typedef struct packed {
+    logic signed [COMPONENT_W-1:0] x;
+    logic signed [COMPONENT_W-1:0] y;
+    logic signed [COMPONENT_W-1:0] z;
+  } kept_direction_t;
+  function automatic kept_direction_t keep_direction(input direction_t d);
+    keep_direction = {COMPONENT_W'(d.x >>> DIRECTION_ZEROS), COMPONENT_W'(d.y >>> DIRECTION_ZEROS), COMPONENT_W'(d.z >>> DIRECTION_ZEROS)};
+  endfunction
+  function automatic direction_t whole_direction(input kept_direction_t d);
+    whole_direction = {31'(d.x) << DIRECTION_ZEROS, 31'(d.y) << DIRECTION_ZEROS, 31'(d.z) << DIRECTION_ZEROS};
+  endfunction
+
+  // Constants of a ray as a context keeps them.
+  localparam int unsigned KEPT_D_W = 30 - DIRECTION_ZEROS;
+  localparam int unsigned MOMENT_ZEROS = COORDINATE_ZEROS + DIRECTION_ZEROS;
+  localparam int unsigned KEPT_MOMENT_W = 63 - MOMENT_ZEROS;
+  typedef struct packed {
+    logic mirror;
+    logic [KEPT_D_W-1:0] d;
+    logic [COORDINATE_W-1:0] origin;
+    logic signed [16:0] ceil;
+    reciprocal_t reciprocal;
+  } kept_axis_t;
+  typedef struct packed {
+    kept_axis_t x;
+    kept_axis_t y;
+    kept_axis_t z;
+    logic [2:0][KEPT_MOMENT_W-1:0] moment;
+  } kept_setup_t;
+  function automatic kept_axis_t keep_axis(input axis_t a);
+    keep_axis = {a.mirror, KEPT_D_W'(a.d >> DIRECTION_ZEROS), COORDINATE_W'(a.origin >>> COORDINATE_ZEROS), a.ceil, a.reciprocal};
+  endfunction
+  function automatic axis_t whole_axis(input kept_axis_t a);
+    whole_axis = {a.mirror, 30'(a.d) << DIRECTION_ZEROS, 32'(a.origin) << COORDINATE_ZEROS, a.ceil, a.reciprocal};
+  endfunction
+  function automatic kept_setup_t keep_setup(input ray_setup_out_t r);
+    keep_setup = {keep_axis(r.x), keep_axis(r.y), keep_axis(r.z), KEPT_MOMENT_W'(r.moment.x >>> MOMENT_ZEROS),
+                  KEPT_MOMENT_W'(r.moment.y >>> MOMENT_ZEROS), KEPT_MOMENT_W'(r.moment.z >>> MOMENT_ZEROS)};
+  endfunction
+  function automatic ray_setup_out_t whole_setup(input kept_setup_t r);
+    whole_setup = {whole_axis(r.x), whole_axis(r.y), whole_axis(r.z), 63'(r.moment[2]) << MOMENT_ZEROS, 63'(r.moment[1]) << MOMENT_ZEROS, 63'(r.moment[0]) << MOMENT_ZEROS};
+  endfunction
+
+  // A corner as seen from an origin.
+  function automatic logic [3*RELATIVE_W-1:0] relative_corner(input kept_point_t p, input kept_point_t x);
+    relative_corner = {RELATIVE_W'(p.x) - RELATIVE_W'(x.x), RELATIVE_W'(p.y) - RELATIVE_W'(x.y), RELATIVE_W'(p.z) - RELATIVE_W'(x.z)};
+  endfunction
 
   // Kinds of stack entries.
   localparam logic [1:0] ENTRY_BVH_NODE = 2'd0;

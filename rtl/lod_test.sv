@@ -21,13 +21,13 @@ module lod_test #(
 );
 
   localparam int unsigned W = lod_pkg::RELATIVE_W;
-  localparam int unsigned COMPONENT_W = lod_pkg::DIRECTION_W / 3;
+  localparam int unsigned COMPONENT_W = lod_pkg::COMPONENT_W;
   localparam int unsigned L_W = lod_pkg::DISTANCE_W;
   localparam int unsigned D_W = lod_pkg::TOLERANCE_W;
   localparam int unsigned H_W = lod_pkg::BOUND_W;
   localparam int unsigned S_W = lod_pkg::EDGE_STATE_W;
   localparam int unsigned CODE_W = lod_pkg::BOUND_CODE_W;
-  // (p - x).d: |p - x| < 2^32 sqrt 3 and |d| <= 2^30, so below 2^62.8, partial sums too (Cauchy-Schwarz).
+  // (p - x).d: |p - x| < 2^32 sqrt 3 and |d| <= 2^30, so below 2^62.8, partial sums too (Cauchy-Schwarz), less the zeros of both.
   localparam int unsigned ALONG_W = W + COMPONENT_W;
 
   localparam int unsigned ALONG_LATENCY = 1 + lod_pkg::dot_product_latency(W, COMPONENT_W);
@@ -46,15 +46,17 @@ module lod_test #(
   localparam logic [63:0] NEARER_SKIDS = 64'd1 << (ALONG_LATENCY - 3) | 64'd1 << (NEARER_LATENCY - 1);
   localparam logic [63:0] SKIDS = NEARER_SKIDS | 64'd1 << LIMITS_LATENCY;
 
-  // Corners relative to the origin: differences of 32-bit coordinates, 33 bits.
-  logic [2:0][3*W-1:0]             corners, corners_q;
-  logic [lod_pkg::DIRECTION_W-1:0] direction_q;
+  // Corners relative to the origin.
+  lod_pkg::kept_point_t      origin;
+  logic [2:0][3*W-1:0]       corners, corners_q;
+  logic [3*COMPONENT_W-1:0]  direction_q;
   logic                            valid_relative, ready_relative;
-  assign corners[0] = {W'(in_i.p0.x) - W'(in_i.ray.origin.x), W'(in_i.p0.y) - W'(in_i.ray.origin.y), W'(in_i.p0.z) - W'(in_i.ray.origin.z)};
-  assign corners[1] = {W'(in_i.p1.x) - W'(in_i.ray.origin.x), W'(in_i.p1.y) - W'(in_i.ray.origin.y), W'(in_i.p1.z) - W'(in_i.ray.origin.z)};
-  assign corners[2] = {W'(in_i.p2.x) - W'(in_i.ray.origin.x), W'(in_i.p2.y) - W'(in_i.ray.origin.y), W'(in_i.p2.z) - W'(in_i.ray.origin.z)};
-  pipe_stage #(.W(9 * W + lod_pkg::DIRECTION_W)) u_relative (
-    .clk_i, .rst_ni, .valid_i, .ready_o, .data_i({corners, in_i.ray.direction}),
+  assign origin     = lod_pkg::keep_point(in_i.ray.origin);
+  assign corners[0] = lod_pkg::relative_corner(lod_pkg::keep_point(in_i.p0), origin);
+  assign corners[1] = lod_pkg::relative_corner(lod_pkg::keep_point(in_i.p1), origin);
+  assign corners[2] = lod_pkg::relative_corner(lod_pkg::keep_point(in_i.p2), origin);
+  pipe_stage #(.W(9 * W + 3 * COMPONENT_W)) u_relative (
+    .clk_i, .rst_ni, .valid_i, .ready_o, .data_i({corners, lod_pkg::keep_direction(in_i.ray.direction)}),
     .valid_o(valid_relative), .ready_i(ready_relative), .data_o({corners_q, direction_q})
   );
 

@@ -4,7 +4,7 @@
 ///
 /// full: g = v, or for a displacement (fa + fb) / 2 + v 2^shift; morphed: m + (floor((g - m) s / 256) with its low `grid` bits cleared), m = (pa + pb) / 2. Midpoints
 /// are exact. s = 0 gives m, s = 256 gives g; the result lies between m and g. Legal: ends multiples of 2^(grid+1), g of 2^grid, none beyond 0x7FFE_0000 in
-/// magnitude, grid 0 to 9, s 0 to 256, displacements of 13 bits. Latency TESSELLATE_LATENCY; interval 1.
+/// magnitude, grid 0 to 15, s 0 to 256, displacements of 13 bits. Latency TESSELLATE_LATENCY; interval 1.
 module morph_vertex (
   input  logic                             clk_i,
   input  logic                             rst_ni,
@@ -14,21 +14,24 @@ module morph_vertex (
   input  logic [4:0]                       shift_i,
   input  logic [3:0]                       grid_i,
   input  logic [lod_pkg::EDGE_STATE_W-1:0] s_i,
-  input  logic [lod_pkg::POINT_W-1:0]      fa_i,
-  input  logic [lod_pkg::POINT_W-1:0]      fb_i,
-  input  logic [lod_pkg::POINT_W-1:0]      pa_i,
-  input  logic [lod_pkg::POINT_W-1:0]      pb_i,
+  input  logic [lod_pkg::KEPT_POINT_W-1:0] fa_i,
+  input  logic [lod_pkg::KEPT_POINT_W-1:0] fb_i,
+  input  logic [lod_pkg::KEPT_POINT_W-1:0] pa_i,
+  input  logic [lod_pkg::KEPT_POINT_W-1:0] pb_i,
   input  logic [lod_pkg::POINT_W-1:0]      v_i,
   output logic                             valid_o,
   input  logic                             ready_i,
-  output logic [lod_pkg::POINT_W-1:0]      full_o,
-  output logic [lod_pkg::POINT_W-1:0]      morphed_o
+  output logic [lod_pkg::KEPT_POINT_W-1:0] full_o,
+  output logic [lod_pkg::KEPT_POINT_W-1:0] morphed_o
 );
 
-  localparam int unsigned W = lod_pkg::POINT_W / 3;
+  localparam int unsigned V_W = lod_pkg::POINT_W / 3;
+  localparam int unsigned W = lod_pkg::COORDINATE_W;
+  localparam int unsigned ZEROS = lod_pkg::COORDINATE_ZEROS;
   localparam int unsigned STEPS_W = lod_pkg::DISPLACEMENT_W / 3;
   localparam int unsigned SHIFT_W = 5;
   localparam int unsigned GRID_W = 4;
+  localparam int unsigned MOST_GRID = 15;
   localparam int unsigned DIFFERENCE_W = W + 1;
   // s is unsigned: one bit more as a signed number.
   localparam int unsigned STATE_W = lod_pkg::EDGE_STATE_W;
@@ -41,7 +44,8 @@ module morph_vertex (
   end
 
   // Midpoints: 33-bit sums, even, so exact in 32 bits again. A vertex that is stored itself takes the place of the midpoint, without a displacement.
-  logic [2:0][W-1:0]       v, base, m, base_q, m_q;
+  logic [2:0][V_W-1:0]     v;
+  logic [2:0][W-1:0]       base, m, base_q, m_q;
   logic [2:0][STEPS_W-1:0] steps, steps_q;
   logic [SHIFT_W-1:0]      shift_q;
   logic [GRID_W-1:0]       grid_m;
@@ -56,7 +60,7 @@ module morph_vertex (
     assign {pa, pb}    = {pa_i[k*W +: W], pb_i[k*W +: W]};
     assign full_sum    = (W+1)'(fa) + (W+1)'(fb);
     assign morphed_sum = (W+1)'(pa) + (W+1)'(pb);
-    assign base[k]     = compact_i ? full_sum[W:1] : v[k];
+    assign base[k]     = compact_i ? full_sum[W:1] : W'(v[k] >> ZEROS);
     assign steps[k]    = compact_i ? v[k][STEPS_W-1:0] : '0;
     assign m[k]        = morphed_sum[W:1];
     assign unused_even = full_sum[0] ^ morphed_sum[0];
@@ -74,7 +78,8 @@ module morph_vertex (
   for (genvar k = 0; k < 3; k++) begin : g_full
     logic signed [STEPS_W-1:0] displacement;
     assign displacement = steps_q[k];
-    assign g[k]         = base_q[k] + (W'(displacement) << shift_q);
+    // Steps have all the zeros that are left out.
+    assign g[k]         = base_q[k] + (W'(displacement) << (shift_q - SHIFT_W'(ZEROS)));
   end
   pipe_stage #(.W(6 * W + STATE_W + GRID_W)) u_full (
     .clk_i, .rst_ni, .valid_i(valid_m), .ready_o(ready_m), .data_i({g, m_q, s_m, grid_m}),
@@ -115,8 +120,8 @@ module morph_vertex (
     );
     always_comb begin
       step[k] = product[FRACTION_W +: W];
-      for (int unsigned i = 0; i < lod_pkg::MAX_LEVELS; i++) begin
-        if (grid_p > GRID_W'(i)) step[k][i] = 1'b0;
+      for (int unsigned i = 0; i < MOST_GRID - ZEROS; i++) begin
+        if (grid_p > GRID_W'(i + ZEROS)) step[k][i] = 1'b0;
       end
     end
     assign unused_bits = ^{product[PRODUCT_W-1:FRACTION_W+W], product[FRACTION_W-1:0]};

@@ -85,7 +85,7 @@ module ray_context (
 );
 
   localparam int unsigned NODE_W = lod_pkg::NODE_W;
-  localparam int unsigned SPLIT_W = 12 * lod_pkg::POINT_W;
+  localparam int unsigned SPLIT_W = 12 * lod_pkg::KEPT_POINT_W;
   localparam int unsigned SPLITS = lod_pkg::SPLIT_TRIANGLES;
   localparam int unsigned SPLIT_INDEX_W = SPLITS > 1 ? $clog2(SPLITS) : 1;
 
@@ -95,16 +95,18 @@ module ray_context (
   lod_pkg::fetch_t         fetch_q;
 
   // The ray.
-  logic [31:0]             tag_q;
-  lod_pkg::ray_t           ray_q;
-  lod_pkg::ray_setup_out_t setup_q;
+  logic [31:0]              tag_q;
+  lod_pkg::kept_point_t     origin_q;
+  lod_pkg::kept_direction_t direction_q;
+  lod_pkg::cone_t           cone_q;
+  lod_pkg::kept_setup_t     setup_q;
 
   // Where it is: entry under visit, tree, node; its triangle with inserted vertices, at full resolution (f, g) and as morphed (p, q); bound codes and edge states.
   lod_pkg::stack_entry_t            entry_q;
   logic [27:0]                      tree_q;
   logic [3:0]                       level_q;
   logic [NODE_W-1:0]                node_q;
-  lod_pkg::point_t                  f0_q, f1_q, f2_q, g0_q, g1_q, g2_q, p0_q, p1_q, p2_q, q0_q, q1_q, q2_q;
+  lod_pkg::kept_point_t             f0_q, f1_q, f2_q, g0_q, g1_q, g2_q, p0_q, p1_q, p2_q, q0_q, q1_q, q2_q;
   logic [lod_pkg::BOUND_CODE_W-1:0] e0_q, e1_q, e2_q;
   lod_pkg::lod_test_out_t           lod_q;
   lod_pkg::tree_base_out_t          base_q;
@@ -196,14 +198,19 @@ module ray_context (
   // One triangle with its inserted vertices per level that splits into nodes: levels 0 to MAX_LEVELS - 2.
   logic [SPLIT_W-1:0]       splits_q [SPLITS];
   logic [SPLIT_INDEX_W-1:0] parent_level;
-  lod_pkg::point_t          b0, b1, b2, a0, a1, a2, n0, n1, n2, m0, m1, m2;
+  lod_pkg::kept_point_t     b0, b1, b2, a0, a1, a2, n0, n1, n2, m0, m1, m2;
 
   assign parent_level = SPLIT_INDEX_W'(entry_q.level - 4'd1);
   assign {b0, b1, b2, a0, a1, a2, n0, n1, n2, m0, m1, m2} = splits_q[parent_level];
 
+  // The inserted vertices that come now, at full resolution and as morphed.
+  logic [SPLIT_W/2-1:0] inserted_now;
+  assign inserted_now = {lod_pkg::keep_point(morph_i.g0), lod_pkg::keep_point(morph_i.g1), lod_pkg::keep_point(morph_i.g2),
+                         lod_pkg::keep_point(morph_i.q0), lod_pkg::keep_point(morph_i.q1), lod_pkg::keep_point(morph_i.q2)};
+
   always_ff @(posedge clk_i) begin
     if (morph_valid_i && !last_split) begin
-      splits_q[SPLIT_INDEX_W'(level_q)] <= {f0_q, f1_q, f2_q, p0_q, p1_q, p2_q, morph_i};
+      splits_q[SPLIT_INDEX_W'(level_q)] <= {f0_q, f1_q, f2_q, p0_q, p1_q, p2_q, inserted_now};
     end
   end
 
@@ -228,7 +235,11 @@ module ray_context (
   assign idle_o = state_q == lod_pkg::IDLE;
 
   assign setup_request_o = state_q == lod_pkg::SETUP;
-  assign setup_o         = {ray_q.origin, ray_q.direction};
+  lod_pkg::point_t     origin_whole;
+  lod_pkg::direction_t direction_whole;
+  assign origin_whole    = lod_pkg::whole_point(origin_q);
+  assign direction_whole = lod_pkg::whole_direction(direction_q);
+  assign setup_o         = {origin_whole, direction_whole};
 
   assign fetch_request_o = state_q == lod_pkg::FETCH && want_q != '0;
   // Vertices before the group.
@@ -258,11 +269,18 @@ module ray_context (
 
   assign child_request_o = state_q == lod_pkg::CHILD && !waiting_q[0];
 
-  assign child_o = {setup_q, t_max, present, group_there, origin, halves, exponents, planes,
-                    f0_q, f1_q, f2_q, g0_q, g1_q, g2_q, p0_q, p1_q, p2_q, q0_q, q1_q, q2_q};
+  // The node's triangle as others take it.
+  lod_pkg::point_t f0, f1, f2, g0, g1, g2, p0, p1, p2, q0, q1, q2;
+  assign {f0, f1, f2} = {lod_pkg::whole_point(f0_q), lod_pkg::whole_point(f1_q), lod_pkg::whole_point(f2_q)};
+  assign {g0, g1, g2} = {lod_pkg::whole_point(g0_q), lod_pkg::whole_point(g1_q), lod_pkg::whole_point(g2_q)};
+  assign {p0, p1, p2} = {lod_pkg::whole_point(p0_q), lod_pkg::whole_point(p1_q), lod_pkg::whole_point(p2_q)};
+  assign {q0, q1, q2} = {lod_pkg::whole_point(q0_q), lod_pkg::whole_point(q1_q), lod_pkg::whole_point(q2_q)};
+
+  assign child_o = {lod_pkg::whole_setup(setup_q), t_max, present, group_there, origin, halves, exponents, planes,
+                    f0, f1, f2, g0, g1, g2, p0, p1, p2, q0, q1, q2};
 
   assign lod_request_o = state_q == lod_pkg::LOD;
-  assign lod_o         = {ray_q, p0_q, p1_q, p2_q, e0_q, e1_q, e2_q, scene_i.scale};
+  assign lod_o         = {origin_whole, direction_whole, cone_q, p0, p1, p2, e0_q, e1_q, e2_q, scene_i.scale};
 
   assign morph_request_o = state_q == lod_pkg::MORPH;
 
@@ -270,12 +288,13 @@ module ray_context (
     morph_o         = '0;
     morph_o.compact = scene_i.compact;
     // level_q < levels here.
-    morph_o.grid    = scene_i.levels - level_q - 4'd1;
+    morph_o.grid    = scene_i.levels - level_q - 4'd1 + scene_i.zeros[3:0];
+    morph_o.padding = scene_i.zeros >= 5'd4 ? 3'd0 : 3'd4 - scene_i.zeros[2:0];
     morph_o.scale   = scene_i.scale;
     {morph_o.e0, morph_o.e1, morph_o.e2} = {e0_q, e1_q, e2_q};
     {morph_o.s0, morph_o.s1, morph_o.s2} = {lod_q.s0, lod_q.s1, lod_q.s2};
-    {morph_o.f0, morph_o.f1, morph_o.f2} = {f0_q, f1_q, f2_q};
-    {morph_o.p0, morph_o.p1, morph_o.p2} = {p0_q, p1_q, p2_q};
+    {morph_o.f0, morph_o.f1, morph_o.f2} = {f0, f1, f2};
+    {morph_o.p0, morph_o.p1, morph_o.p2} = {p0, p1, p2};
     if (scene_i.compact) begin
       morph_o.v0 = {32'(displacements.v0.x), 32'(displacements.v0.y), 32'(displacements.v0.z)};
       morph_o.v1 = {32'(displacements.v1.x), 32'(displacements.v1.y), 32'(displacements.v1.z)};
@@ -292,15 +311,15 @@ module ray_context (
 
   always_comb begin
     tri_o           = '0;
-    tri_o.origin    = ray_q.origin;
-    tri_o.direction = ray_q.direction;
-    if (!four_q) {tri_o.p0, tri_o.p1, tri_o.p2} = {p0_q, p1_q, p2_q};
+    tri_o.origin    = origin_whole;
+    tri_o.direction = direction_whole;
+    if (!four_q) {tri_o.p0, tri_o.p1, tri_o.p2} = {p0, p1, p2};
     else begin
       unique case (next_q)
-        2'd0: {tri_o.p0, tri_o.p1, tri_o.p2} = {p0_q, q2_q, q1_q};
-        2'd1: {tri_o.p0, tri_o.p1, tri_o.p2} = {q2_q, p1_q, q0_q};
-        2'd2: {tri_o.p0, tri_o.p1, tri_o.p2} = {q1_q, q0_q, p2_q};
-        2'd3: {tri_o.p0, tri_o.p1, tri_o.p2} = {q0_q, q1_q, q2_q};
+        2'd0: {tri_o.p0, tri_o.p1, tri_o.p2} = {p0, q2, q1};
+        2'd1: {tri_o.p0, tri_o.p1, tri_o.p2} = {q2, p1, q0};
+        2'd2: {tri_o.p0, tri_o.p1, tri_o.p2} = {q1, q0, p2};
+        2'd3: {tri_o.p0, tri_o.p1, tri_o.p2} = {q0, q1, q2};
       endcase
     end
   end
@@ -376,16 +395,21 @@ module ray_context (
   // ---- Ray ----
 
   always_ff @(posedge clk_i) begin
-    if (take_i) {tag_q, ray_q} <= ray_i;
-    if (setup_valid_i) setup_q <= setup_i;
+    if (take_i) begin
+      tag_q       <= ray_i.tag;
+      origin_q    <= lod_pkg::keep_point(ray_i.ray.origin);
+      direction_q <= lod_pkg::keep_direction(ray_i.ray.direction);
+      cone_q      <= ray_i.ray.cone;
+    end
+    if (setup_valid_i) setup_q <= lod_pkg::keep_setup(setup_i);
   end
 
   // ---- Entry, node and triangle ----
 
-  lod_pkg::point_t root0, root1, root2;
-  assign root0 = {corners.v0.x, 4'd0, corners.v0.y, 4'd0, corners.v0.z, 4'd0};
-  assign root1 = {corners.v1.x, 4'd0, corners.v1.y, 4'd0, corners.v1.z, 4'd0};
-  assign root2 = {corners.v2.x, 4'd0, corners.v2.y, 4'd0, corners.v2.z, 4'd0};
+  lod_pkg::kept_point_t root0, root1, root2;
+  assign root0 = lod_pkg::keep_point({corners.v0.x, 4'd0, corners.v0.y, 4'd0, corners.v0.z, 4'd0});
+  assign root1 = lod_pkg::keep_point({corners.v1.x, 4'd0, corners.v1.y, 4'd0, corners.v1.z, 4'd0});
+  assign root2 = lod_pkg::keep_point({corners.v2.x, 4'd0, corners.v2.y, 4'd0, corners.v2.z, 4'd0});
 
   always_ff @(posedge clk_i) begin
     if (setup_valid_i) entry_q <= '0;
@@ -416,7 +440,7 @@ module ray_context (
       {p0_q, p1_q, p2_q} <= {root0, root1, root2};
     end
     if (lod_valid_i) lod_q <= lod_i;
-    if (morph_valid_i) {g0_q, g1_q, g2_q, q0_q, q1_q, q2_q} <= morph_i;
+    if (morph_valid_i) {g0_q, g1_q, g2_q, q0_q, q1_q, q2_q} <= inserted_now;
   end
 
   // ---- Lines ----

@@ -77,20 +77,25 @@ module tri_decide #(
   // Stage 3: the numbers with det > 0, or all zero on a miss. They are magnitudes: their sign bits end up 0.
   logic [EDGE_W-1:0]      v, w, det_positive;
   logic [T_W-1:0]         t_num;
-  lod_pkg::tri_test_out_t out;
   assign v            = ((v_det_q ^ {EDGE_W{front_q}}) & {EDGE_W{hit_q}}) + EDGE_W'(front_q);
   assign w            = ((w_det_q ^ {EDGE_W{front_q}}) & {EDGE_W{hit_q}}) + EDGE_W'(front_q);
   assign det_positive = ((det_q ^ {EDGE_W{front_q}}) & {EDGE_W{hit_q}}) + EDGE_W'(front_q);
   assign t_num        = ((t_num_det_q ^ {T_W{front_q}}) & {T_W{hit_q}}) + T_W'(front_q);
-  assign out          = {hit_q, front_q, v[EDGE_W-2:0], w[EDGE_W-2:0], det_positive[EDGE_W-2:0], t_num[T_W-2:0]};
 
   logic unused_signs;
   assign unused_signs = ^{v[EDGE_W-1], w[EDGE_W-1], det_positive[EDGE_W-1], t_num[T_W-1]};
 
-  pipe_stage #(.W(lod_pkg::TRI_TEST_OUT_W + TAG_W)) u_out (
-    .clk_i, .rst_ni, .valid_i(valid_det), .ready_o(ready_det), .data_i({out, tag_det_q}),
-    .valid_o, .ready_i, .data_o({out_o, tag_o})
+  logic              hit_out, front_out;
+  logic [EDGE_W-2:0] v_out, w_out, det_out;
+  logic [T_W-2:0]    t_num_out;
+  pipe_stage #(.W(2 + 3 * (EDGE_W - 1) + T_W - 1 + TAG_W)) u_out (
+    .clk_i, .rst_ni, .valid_i(valid_det), .ready_o(ready_det),
+    .data_i({hit_q, front_q, v[EDGE_W-2:0], w[EDGE_W-2:0], det_positive[EDGE_W-2:0], t_num[T_W-2:0], tag_det_q}),
+    .valid_o, .ready_i, .data_o({hit_out, front_out, v_out, w_out, det_out, t_num_out, tag_o})
   );
+  // With the zeros that were left out.
+  assign out_o = {hit_out, front_out, lod_pkg::EDGE_FUNCTION_W'(v_out) << lod_pkg::EDGE_ZEROS, lod_pkg::EDGE_FUNCTION_W'(w_out) << lod_pkg::EDGE_ZEROS,
+                  lod_pkg::EDGE_FUNCTION_W'(det_out) << lod_pkg::EDGE_ZEROS, lod_pkg::T_NUMERATOR_W'(t_num_out) << 3 * lod_pkg::COORDINATE_ZEROS};
 
 endmodule
 

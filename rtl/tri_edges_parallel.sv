@@ -14,7 +14,7 @@ module tri_edges_parallel #(
   input  logic [3*lod_pkg::RELATIVE_W-1:0]        a_i,
   input  logic [3*lod_pkg::RELATIVE_W-1:0]        b_i,
   input  logic [3*lod_pkg::RELATIVE_W-1:0]        c_i,
-  input  logic [lod_pkg::DIRECTION_W-1:0]         d_i,
+  input  logic [lod_pkg::KEPT_DIRECTION_W-1:0]         d_i,
   input  logic [TAG_W-1:0]                        tag_i,
   output logic                                    valid_o,
   input  logic                                    ready_i,
@@ -30,9 +30,9 @@ module tri_edges_parallel #(
 
   localparam int unsigned W = lod_pkg::RELATIVE_W;
   localparam int unsigned N_W = lod_pkg::NORMAL_W;
-  localparam int unsigned D_W = lod_pkg::DIRECTION_W;
+  localparam int unsigned D_W = lod_pkg::KEPT_DIRECTION_W;
   localparam int unsigned CROSS_LATENCY = lod_pkg::cross_product_latency(W);
-  localparam int unsigned PRODUCT_STAGES = lod_pkg::EDGE_PRODUCT_STAGES;
+  localparam int unsigned PRODUCT_STAGES = lod_pkg::T_DOT_STAGES;
   // Where the cross products and the multipliers of the dot products end in a `pipe_skid`, so does what goes beside them.
   localparam logic [63:0] CROSS_SKIDS = 64'd1 << (CROSS_LATENCY - 1);
   localparam logic [63:0] EDGE_SKIDS = CROSS_SKIDS | 64'd1 << (lod_pkg::EDGE_FUNCTION_LATENCY - 3);

@@ -15,7 +15,7 @@ module tri_edges_serial #(
   input  logic [3*lod_pkg::RELATIVE_W-1:0]         a_i,
   input  logic [3*lod_pkg::RELATIVE_W-1:0]         b_i,
   input  logic [3*lod_pkg::RELATIVE_W-1:0]         c_i,
-  input  logic [lod_pkg::DIRECTION_W-1:0]          d_i,
+  input  logic [lod_pkg::KEPT_DIRECTION_W-1:0]          d_i,
   input  logic [TAG_W-1:0]                         tag_i,
   output logic                                     valid_o,
   input  logic                                     ready_i,
@@ -35,7 +35,7 @@ module tri_edges_serial #(
   localparam int unsigned EDGE_W = lod_pkg::SIGNED_EDGE_W;
   localparam int unsigned PASS_W = 2;
   localparam int unsigned CROSS_LATENCY = lod_pkg::cross_product_latency(W);
-  localparam int unsigned PRODUCT_STAGES = lod_pkg::EDGE_PRODUCT_STAGES;
+  localparam int unsigned PRODUCT_STAGES = lod_pkg::T_DOT_STAGES;
   localparam int unsigned PRODUCT_LATENCY = PRODUCT_STAGES - 1 + lod_pkg::multiplier_latency(N_W, W);
   if (lod_pkg::EDGE_FUNCTION_LATENCY != CROSS_LATENCY + 1 + PRODUCT_LATENCY + 2) begin : g_illegal_latency
     $error("tri_edges_serial: the path of t_num must have the latency of the edge function");
@@ -43,7 +43,7 @@ module tri_edges_serial #(
 
   // The triangle under way: it turns with each pass and makes room with the last one.
   logic [3*W-1:0]                  a_q, b_q, c_q;
-  logic [lod_pkg::DIRECTION_W-1:0] d_q;
+  logic [lod_pkg::KEPT_DIRECTION_W-1:0] d_q;
   logic [TAG_W-1:0]                tag_q;
   logic                            busy_q, ready_pass;
   logic [PASS_W-1:0]               pass_q;

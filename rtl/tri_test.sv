@@ -7,8 +7,8 @@
 /// component of q - p; if p = q, positive. Hit iff the three signs agree, det != 0 and t_num / det >= 0; front face iff det < 0.
 /// Legal: |v| < 2^31 for points and origin, |d| <= 2^30 and each |d_i| < 2^30. On a miss all numbers are 0. On a hit they are taken with det > 0.
 ///
-/// EDGES_PER_CYCLE = 3: latency TRI_TEST_LATENCY, interval 1, 168 multipliers. 1: latency TRI_TEST_1_LATENCY, interval TRI_TEST_1_INTERVAL,
-/// 56 multipliers.
+/// Low bits that are always 0 are left out on the way (COORDINATE_ZEROS, DIRECTION_ZEROS); 168 and 56 multipliers without them.
+/// EDGES_PER_CYCLE = 3: latency TRI_TEST_LATENCY, interval 1. 1: latency TRI_TEST_1_LATENCY, interval TRI_TEST_1_INTERVAL.
 module tri_test #(
   parameter int unsigned TAG_W = 8,
   parameter int unsigned EDGES_PER_CYCLE = lod_pkg::EDGES_PER_CYCLE
@@ -26,6 +26,7 @@ module tri_test #(
 );
 
   localparam int unsigned W = lod_pkg::RELATIVE_W;
+  localparam int unsigned D_W = lod_pkg::KEPT_DIRECTION_W;
   localparam int unsigned EDGE_W = lod_pkg::SIGNED_EDGE_W;
   localparam int unsigned LATENCY = 1 + lod_pkg::EDGE_FUNCTION_LATENCY + lod_pkg::TRI_DECIDE_LATENCY;
 
@@ -36,11 +37,14 @@ module tri_test #(
     $error("tri_test: two further passes make lod_pkg::TRI_TEST_1_LATENCY %0d and TRI_TEST_1_INTERVAL 3", lod_pkg::TRI_TEST_LATENCY + 2);
   end
 
-  // Differences of 32-bit coordinates: 33 bits.
-  logic [3*W-1:0] a, b, c;
-  assign a = {W'(in_i.p0.x) - W'(in_i.origin.x), W'(in_i.p0.y) - W'(in_i.origin.y), W'(in_i.p0.z) - W'(in_i.origin.z)};
-  assign b = {W'(in_i.p1.x) - W'(in_i.origin.x), W'(in_i.p1.y) - W'(in_i.origin.y), W'(in_i.p1.z) - W'(in_i.origin.z)};
-  assign c = {W'(in_i.p2.x) - W'(in_i.origin.x), W'(in_i.p2.y) - W'(in_i.origin.y), W'(in_i.p2.z) - W'(in_i.origin.z)};
+  lod_pkg::kept_point_t origin;
+  logic [3*W-1:0]       a, b, c;
+  logic [D_W-1:0]       d;
+  assign origin = lod_pkg::keep_point(in_i.origin);
+  assign a      = lod_pkg::relative_corner(lod_pkg::keep_point(in_i.p0), origin);
+  assign b      = lod_pkg::relative_corner(lod_pkg::keep_point(in_i.p1), origin);
+  assign c      = lod_pkg::relative_corner(lod_pkg::keep_point(in_i.p2), origin);
+  assign d      = lod_pkg::keep_direction(in_i.direction);
 
   logic                                     valid_edges, ready_edges;
   logic [EDGE_W-1:0]                        u, v, w;
@@ -49,13 +53,13 @@ module tri_test #(
   logic [TAG_W-1:0]                         tag;
   if (EDGES_PER_CYCLE == 3) begin : g_parallel
     tri_edges_parallel #(.TAG_W(TAG_W)) u_edges (
-      .clk_i, .rst_ni, .valid_i, .ready_o, .a_i(a), .b_i(b), .c_i(c), .d_i(in_i.direction), .tag_i,
+      .clk_i, .rst_ni, .valid_i, .ready_o, .a_i(a), .b_i(b), .c_i(c), .d_i(d), .tag_i,
       .valid_o(valid_edges), .ready_i(ready_edges), .u_o(u), .v_o(v), .w_o(w),
       .tie_u_o(tie_u), .tie_v_o(tie_v), .tie_w_o(tie_w), .t_num_o(t_num), .tag_o(tag)
     );
   end else if (EDGES_PER_CYCLE == 1) begin : g_serial
     tri_edges_serial #(.TAG_W(TAG_W)) u_edges (
-      .clk_i, .rst_ni, .valid_i, .ready_o, .a_i(a), .b_i(b), .c_i(c), .d_i(in_i.direction), .tag_i,
+      .clk_i, .rst_ni, .valid_i, .ready_o, .a_i(a), .b_i(b), .c_i(c), .d_i(d), .tag_i,
       .valid_o(valid_edges), .ready_i(ready_edges), .u_o(u), .v_o(v), .w_o(w),
       .tie_u_o(tie_u), .tie_v_o(tie_v), .tie_w_o(tie_w), .t_num_o(t_num), .tag_o(tag)
     );

@@ -128,7 +128,7 @@ fn one_lowered_code_is_found(kind: BoundKind) {
 #[test]
 fn the_papers_bounds_do_not_pass_for_total_ones() {
     for s in [octahedron(2), octahedron(5), grid(3, 3), fan(4)] {
-        let mut h = quantise(&s, BoundKind::Largest, VertexForm::Exact).unwrap();
+        let mut h = quantise(&s, BoundKind::Largest, VertexForm::Exact, 0).unwrap();
         h.bounds.kind = BoundKind::Total;
         let bvh = over_trees(&tree_boxes(&h)).unwrap();
         let report = audit(&encode(&h, &s, info("said to be total"), &bvh).unwrap());
@@ -356,7 +356,7 @@ fn a_deep_displacement_lifts_its_ancestors_across_the_border() {
     let lifted = |p: [f64; 3]| if p == [1.0, 6.0, 0.0] { [1.0, 6.0, 0.5] } else { p };
     for (second, shared, half) in [([3, 2, 1], 0, [(8, 0), (4, 4)]), ([1, 2, 3], 2, [(4, 0), (8, 0)]), ([2, 1, 3], 2, [(0, 0), (4, 0)])] {
         let s = surface(levels, &v, &[[0, 1, 2], second], lifted);
-        let h = quantise(&s, BoundKind::Largest, VertexForm::Exact).unwrap();
+        let h = quantise(&s, BoundKind::Largest, VertexForm::Exact, 0).unwrap();
         let top = |tree: usize, mut edges: Vec<usize>| {
             edges.sort_unstable();
             let lifted: Vec<_> = (0..h.codes(tree).len()).filter(|&e| h.codes(tree)[e] != 0).collect();

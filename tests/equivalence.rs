@@ -13,7 +13,9 @@ use lodray::rays::ModelSpace;
 use lodray::rays::{Camera, View};
 use lodray::step::NoSteps;
 use lodray_test_support::cases;
-use lodray_test_support::models::{Rng, ball, build_with, cone, model, octahedron, scene_of, terrain, with_vertices};
+use lodray_test_support::models::{
+    Rng, ball, build_with, coarsened, cone, model, octahedron, scene_of, terrain, with_vertices, with_zeros,
+};
 use lodray_test_support::plain::plain;
 use proptest::prelude::*;
 
@@ -145,6 +147,17 @@ fn random_balls_and_terrains() {
     }
     println!("{hits} hits compared");
     assert!(hits > 10_000, "only {hits} hits");
+}
+
+#[test]
+fn coarser_grids() {
+    for (zeros, levels, form) in
+        [(1, 4, VertexForm::Exact), (4, 3, VertexForm::Compact), (7, 5, VertexForm::Compact), (12, 3, VertexForm::Exact)]
+    {
+        let h = with_vertices(form, with_zeros(zeros, terrain(3, levels, 0.3, u64::from(zeros))));
+        let cut = rays(&h, 2_000, 5).into_iter().map(|ray| coarsened(&ray, [zeros, zeros]));
+        assert!(compare(&h, false, cut) > 500, "{zeros} zeros");
+    }
 }
 
 #[test]

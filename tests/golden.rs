@@ -27,6 +27,7 @@ fn single_triangle() -> Hierarchy {
         points: vec![[0, 0, 0], [1 << 20, 0, 0], [0, 1 << 20, 0]],
         bounds: EdgeCodes::default(),
         vertices: VertexForm::Exact,
+        zeros: 0,
     }
 }
 

@@ -12,7 +12,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::path::PathBuf;
 
 /// Structs that only the RTL has: they pass between two of its modules.
-const RTL_ONLY: [&str; 1] = ["queued_hit_t"];
+const RTL_ONLY: [&str; 5] = ["queued_hit_t", "kept_point_t", "kept_direction_t", "kept_axis_t", "kept_setup_t"];
 
 struct BlockTwin {
     name: &'static str,

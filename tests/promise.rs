@@ -188,7 +188,7 @@ fn models(seed: u64) -> Vec<(String, Make)> {
         let options = Options { levels: Some(levels), base: Some(128), roughness, seed, ..Options::new(scene) };
         let surface = move || procedural::generate(&options).expect("options");
         let name = format!("{}{}", scene.name(), roughness.map_or_else(String::new, |roughness| format!(" {roughness}")));
-        all.push((name, Box::new(move |form| lodray::mesh::quantise(&surface(), BoundKind::Total, form).expect("a surface"))));
+        all.push((name, Box::new(move |form| lodray::mesh::quantise(&surface(), BoundKind::Total, form, 0).expect("a surface"))));
     }
     all
 }

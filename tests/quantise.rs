@@ -10,7 +10,7 @@ const QUAD: [[f64; 3]; 4] = [[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [1.0, 1
 fn points_are_snapped_to_their_grid_without_clamping() {
     for (size, origin) in [(1.0, 0.0), (1e-30, 0.0), (1e30, 0.0), (1.0, 1e9), (1e-3, -1e12), (1e308, 0.0), (1e-290, 0.0)] {
         let s = surface(4, &QUAD, &[[0, 1, 2], [3, 2, 1]], |p| bumps(p).map(|c| c * size + origin));
-        let h = quantise(&s, BoundKind::Largest, VertexForm::Exact).unwrap();
+        let h = quantise(&s, BoundKind::Largest, VertexForm::Exact, 0).unwrap();
         let largest = h.points.iter().flatten().map(|c| c.unsigned_abs()).max().unwrap();
         assert!(largest <= COORD_LIMIT as u32 && largest > COORD_LIMIT as u32 / 2, "{size} {origin}: {largest}");
         for (at, (point, position)) in h.points.iter().zip(&s.positions).enumerate() {
@@ -28,9 +28,9 @@ fn points_are_snapped_to_their_grid_without_clamping() {
 
 #[test]
 fn flat_and_single_point_models_work() {
-    let flat = quantise(&surface(3, &QUAD, &[[0, 1, 2], [3, 2, 1]], |p| p), BoundKind::Largest, VertexForm::Exact).unwrap();
+    let flat = quantise(&surface(3, &QUAD, &[[0, 1, 2], [3, 2, 1]], |p| p), BoundKind::Largest, VertexForm::Exact, 0).unwrap();
     assert!(flat.bounds.codes.iter().all(|&c| c == 0) && flat.bounds.scale.offset.get() == 0);
-    let point = quantise(&surface(3, &[[7.0, -2.0, 1e6]; 3], &[[0, 1, 2]], |p| p), BoundKind::Largest, VertexForm::Exact).unwrap();
+    let point = quantise(&surface(3, &[[7.0, -2.0, 1e6]; 3], &[[0, 1, 2]], |p| p), BoundKind::Largest, VertexForm::Exact, 0).unwrap();
     assert!(point.points.iter().all(|p| *p == [0; 3]) && point.placement.scale > 0.0);
     assert_eq!(point.to_world([0; 3]), [7.0, -2.0, 1e6]);
 }
@@ -40,7 +40,7 @@ fn what_does_not_fit_is_refused_by_name() {
     let refused = |word: &str, f: &dyn Fn(&mut Surface)| {
         let mut s = grid(3, 2);
         f(&mut s);
-        let message = quantise(&s, BoundKind::Largest, VertexForm::Exact).unwrap_err().to_string();
+        let message = quantise(&s, BoundKind::Largest, VertexForm::Exact, 0).unwrap_err().to_string();
         assert!(message.contains(word), "{message}");
     };
     refused("no triangles", &|s| *s = Surface::default());

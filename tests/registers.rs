@@ -5,10 +5,13 @@ use lodray::block::EdgesPerCycle;
 use lodray::block::Operation;
 use lodray::block::parts::Registers;
 use lodray::hardware::Hardware;
-use lodray_test_support::hardware::{MIDDLE, OTHERS, SMALL};
+use lodray_test_support::hardware::{NARROW, NARROWS, OTHERS, SMALL};
 
 /// Blocks whose registers depend on the levels.
 const BY_LEVEL: [Operation; 3] = [Operation::BaryMap, Operation::HitSelect, Operation::TreeBase];
+
+/// Blocks whose registers depend on the bits of coordinates and directions.
+const BY_WIDTH: [Operation; 5] = [Operation::BoxTest, Operation::ChildTest, Operation::LodTest, Operation::Tessellate, Operation::TriTest];
 
 fn counted(operation: Operation, hardware: &Hardware) -> Registers {
     operation.parts(&hardware.form()).registers
@@ -25,6 +28,7 @@ fn blocks_and_contexts_declare_the_registers_that_are_counted() {
     let mut all: Vec<(Operation, Hardware)> = Operation::ALL.map(|operation| (operation, default)).to_vec();
     all.push((Operation::TriTest, one_edge));
     all.extend(OTHERS.iter().flat_map(|&hardware| BY_LEVEL.map(|operation| (operation, hardware))));
+    all.extend(NARROWS.iter().flat_map(|&hardware| BY_WIDTH.map(|operation| (operation, hardware))));
     let mut wrong = Vec::new();
     for (operation, hardware) in &all {
         let (rtl, rust) = (declared(operation.name(), hardware), counted(*operation, hardware));
@@ -33,7 +37,7 @@ fn blocks_and_contexts_declare_the_registers_that_are_counted() {
             wrong.push(format!("{}: {rtl} bits in the RTL, {} counted; {hardware:?}", operation.name(), rust.declared));
         }
     }
-    for hardware in [default, SMALL, MIDDLE] {
+    for hardware in [default].into_iter().chain(OTHERS) {
         let (rtl, rust) = (declared("ray_context", &hardware), hardware.context_registers(true));
         println!("ray_context: {rtl} bits; {hardware:?}");
         if rtl != rust.declared {
@@ -78,8 +82,10 @@ fn hardware_for_less_is_smaller() {
     let [default, small] = [Hardware::default(), SMALL].map(|hardware| hardware.context_registers(true).kept);
     println!("a context: {default} bits for 10 levels below 24, {small} for {} below {}", SMALL.levels, SMALL.bvh_depth);
     assert!(small * 10 < default * 7);
-    for operation in BY_LEVEL {
-        let [default, small] = [Hardware::default(), SMALL].map(|hardware| counted(operation, &hardware).kept);
+    let wide = Hardware::default();
+    let less = BY_LEVEL.map(|operation| (operation, SMALL)).into_iter().chain(BY_WIDTH.map(|operation| (operation, NARROW)));
+    for (operation, hardware) in less {
+        let [default, small] = [wide, hardware].map(|hardware| counted(operation, &hardware).kept);
         println!("{}: {default} and {small} bits", operation.name());
         assert!(small < default);
     }

@@ -31,7 +31,7 @@ fn images_decode_to_the_hierarchy_that_they_were_made_from() {
         for surface in [grid(levels, 3), octahedron(levels), fan(levels)] {
             for form in VertexForm::ALL {
                 // Once with leaves in the order of the trees, once in an order that a quad-BVH makes.
-                let hierarchy = quantise(&surface, BoundKind::Largest, form).unwrap();
+                let hierarchy = quantise(&surface, BoundKind::Largest, form, 0).unwrap();
                 for scene in [scene_with(&surface, BoundKind::Largest, form), build_with(&surface, form)] {
                     assert_eq!(scene.meta().vertices, form);
                     is_decoded(&scene, &hierarchy);

@@ -254,8 +254,10 @@ impl<'a> Lod<'a> {
         let ([v0, v1, v2], lines) = self.stored(id);
         walk.reads(lod::VERTICES, lines);
         let (compact, grid) = (self.image.form == VertexForm::Compact, U::new(u64::from(levels - level - 1)));
+        let padding = U::new(4);
         let lod_test::Out { s0, s1, s2, .. } = lod;
-        let t = Tessellate::eval(&tessellate::In { compact, grid, scale, e0, e1, e2, s0, s1, s2, f0, f1, f2, p0, p1, p2, v0, v1, v2 });
+        let t =
+            Tessellate::eval(&tessellate::In { compact, grid, padding, scale, e0, e1, e2, s0, s1, s2, f0, f1, f2, p0, p1, p2, v0, v1, v2 });
         let corners: [Corners; 4] =
             std::array::from_fn(|k| [child_triangle(f, [t.g0, t.g1, t.g2], k), child_triangle(p, [t.q0, t.q1, t.q2], k)]);
         let below = |k: usize| TriangleId { tree, level: level + 1, node: 4 * node + k as u32 };

@@ -86,15 +86,29 @@ pub(super) const ENTRY_STEPS: u32 = RECIPROCAL - MANTISSA;
 
 impl BoxTest {
     /// Registers with a tag of so many bits.
-    pub(super) fn registers(tag: u32) -> Registers {
-        let limit = MOMENT - BOX_SHIFT;
-        let mirrored = Registers::stage(3 * (2 * CODE + MAGNITUDE + CEIL + RECIPROCAL + limit + 1));
+    pub(super) fn registers(form: &Form, tag: u32) -> Registers {
+        let (limit, magnitude) = (limit(form), magnitude(form));
+        let mirrored = Registers::stage(3 * (2 * CODE + magnitude + CEIL + RECIPROCAL + limit + 1));
         let near = Registers::stage(3 * (NEAR + RECIPROCAL + 2 * limit) + 1);
-        let pair = Multiplier { unsigned: 1, ..Multiplier::new(CODE, MAGNITUDE + 1).near() };
-        let differences = Registers::stage(6 * (CODE + MAGNITUDE + 1));
-        let limits = Registers::line(6 * limit + 1, 1 + multiplier_latency(CODE, MAGNITUDE + 1), 0);
-        mirrored + near + entry_distance() + 12 * pair.registers() + differences + limits + verdict() + last(Self::TIMING, tag)
+        // Products take as long as the entry distance leaves them.
+        let product_latency = ENTRY_DISTANCE_LATENCY - 2;
+        let product_stages = product_latency - multiplier_latency(CODE, magnitude + 1);
+        let pair = Multiplier { unsigned: 1, product_stages, ..Multiplier::new(CODE, magnitude + 1).near() };
+        let differences = Registers::stage(6 * (CODE + magnitude + 1));
+        let limits = Registers::line(6 * limit + 1, product_latency, 0);
+        let ends = verdict() + last(Self::TIMING, tag);
+        mirrored + near + entry_distance() + 12 * pair.registers() + differences + limits + ends
     }
+}
+
+/// A magnitude |d| without the bits that are always 0.
+const fn magnitude(form: &Form) -> u32 {
+    MAGNITUDE - form.direction_zeros
+}
+
+/// floor(c / 2^16) of a moment, likewise.
+const fn limit(form: &Form) -> u32 {
+    MOMENT - BOX_SHIFT - form.direction_zeros
 }
 
 /// `entry_distance`: factors, products, shifted, the larger of two, of three.
@@ -118,17 +132,17 @@ impl Block for BoxTest {
     const TIMING: Timing = Timing::pipelined(2 + ENTRY_DISTANCE_LATENCY + 1);
     type In = In;
     type Out = Out;
-    fn parts(_: &Form) -> Parts {
-        let limit = MOMENT - BOX_SHIFT;
+    fn parts(form: &Form) -> Parts {
+        let (limit, magnitude) = (limit(form), magnitude(form));
         let (mirror, ends) = (6 * CODE, TNear::WIDTH);
         let entry = 3 * ENTRY * ENTRY_STEPS + 5 * TNear::WIDTH;
         Parts {
             // Planes, entry distances.
-            products: vec![[12, CODE, MAGNITUDE + 1], [3, NEAR, MANTISSA]],
+            products: vec![[12, CODE, magnitude + 1], [3, NEAR, MANTISSA]],
             // Mirror, near and far sides, limits turned, planes, the largest of three, the end.
-            add_bits: mirror + 3 * (CEIL + 1) + 3 * CEIL + 3 * limit + 6 * 2 * (CODE + MAGNITUDE + 1) + 2 * TNear::WIDTH + ends,
+            add_bits: mirror + 3 * (CEIL + 1) + 3 * CEIL + 3 * limit + 6 * 2 * (CODE + magnitude + 1) + 2 * TNear::WIDTH + ends,
             select_bits: mirror + 3 * NEAR + 3 * limit + entry + ends,
-            registers: Self::registers(TAG),
+            registers: Self::registers(form, TAG),
         }
     }
     #[inline(always)]

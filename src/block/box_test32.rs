@@ -4,7 +4,7 @@
 //! Legal: |v| < 2^31, lo <= hi; constants from [`super::ray_setup`].
 
 use super::box_test::{self, ENTRY, ENTRY_STEPS, MAGNITUDE, MANTISSA, NEAR, RECIPROCAL, entry, entry_distance, finish, last, verdict};
-use super::parts::{ENTRY_DISTANCE_LATENCY, Multiplier, Parts, RELATIVE, Registers, TAG, multiplier_latency};
+use super::parts::{ENTRY_DISTANCE_LATENCY, Multiplier, Parts, Registers, TAG, multiplier_latency};
 use super::ray_setup::{self, Axis};
 use super::{Block, Form, Timing};
 use crate::num::{BOX_SHIFT, Point, RayT, S, TNear, Wire, wire_struct};
@@ -40,18 +40,20 @@ impl Block for BoxTest32 {
     type Out = box_test::Out;
     fn parts(_: &Form) -> Parts {
         let coordinate = Point::WIDTH / 3;
-        let (mirror, sides, ends) = (6 * coordinate, 6 * RELATIVE, TNear::WIDTH);
-        let pair = Multiplier { unsigned: 1, ..Multiplier::new(RELATIVE, MAGNITUDE + 1).near() };
+        let difference = coordinate + 1;
+        let (mirror, sides, ends) = (6 * coordinate, 6 * difference, TNear::WIDTH);
+        let pair = Multiplier { unsigned: 1, ..Multiplier::new(difference, MAGNITUDE + 1).near() };
         let mirrored = Registers::stage(3 * (3 * coordinate + MAGNITUDE + RECIPROCAL));
-        let relative = Registers::stage(3 * (2 * RELATIVE + MAGNITUDE + RECIPROCAL));
-        let ahead = Registers::line(1, 1 + multiplier_latency(RELATIVE, MAGNITUDE + 1), 0);
+        let sides_there = Registers::stage(3 * (2 * difference + MAGNITUDE + RECIPROCAL));
+        let ahead = Registers::line(1, 1 + multiplier_latency(difference, MAGNITUDE + 1), 0);
         let near = Registers::stage(3 * (NEAR + RECIPROCAL));
-        let registers = mirrored + relative + near + entry_distance() + 12 * pair.registers() + ahead + verdict() + last(Self::TIMING, TAG);
+        let registers =
+            mirrored + sides_there + near + entry_distance() + 12 * pair.registers() + ahead + verdict() + last(Self::TIMING, TAG);
         Parts {
             // Planes, entry distances.
-            products: vec![[12, RELATIVE, MAGNITUDE + 1], [3, NEAR, MANTISSA]],
+            products: vec![[12, difference, MAGNITUDE + 1], [3, NEAR, MANTISSA]],
             // Sides, mirror, planes, the largest of three, the end.
-            add_bits: sides + mirror + 6 * (RELATIVE + MAGNITUDE + 1) + 2 * TNear::WIDTH + ends,
+            add_bits: sides + mirror + 6 * (difference + MAGNITUDE + 1) + 2 * TNear::WIDTH + ends,
             select_bits: mirror + 3 * NEAR + 3 * ENTRY * ENTRY_STEPS + 5 * TNear::WIDTH + ends,
             registers,
         }

@@ -90,12 +90,13 @@ impl Block for ChildTest {
     fn parts(form: &Form) -> Parts {
         let (boxes, test, sort) = (ChildBoxes::parts(form), BoxTest::parts(form), ChildSort::parts(form));
         let (boxed, tested) = (ChildBoxes::TIMING.latency, BoxTest::TIMING.latency);
-        // The ray beside the boxes: 16-bit boxes need neither the origins nor what t_near leaves of t_max.
-        let unread = 3 * (Point::WIDTH / 3) + T_NEAR_TO_T_SHIFT;
+        // The ray beside the boxes: 16-bit boxes need neither the origins nor what t_near leaves of t_max, nor zeros of directions and moments.
+        let zeros = 3 * form.direction_zeros + 3 * (form.coordinate_zeros + form.direction_zeros);
+        let unread = 3 * (Point::WIDTH / 3) + T_NEAR_TO_T_SHIFT + zeros;
         let ray = Registers::line(ray_setup::Out::WIDTH + RayT::WIDTH + 4, boxed, 1).without((boxed + 1) * unread);
         // A tag of one bit for which there is no use, in each of their registers.
         let bounds = ChildBoxes::registers(1).without(boxed + 1);
-        let child = BoxTest::registers(1).without(tested + 1);
+        let child = BoxTest::registers(form, 1).without(tested + 1);
         let present = Registers::line(4, tested, 1);
         let tag = Registers::line(TAG, Self::TIMING.latency, 2);
         Parts {

@@ -8,11 +8,11 @@
 
 use super::bound_decode::{self, Bound, BoundDecode};
 use super::parts::{
-    COMPONENT, CONE_TOLERANCE_LATENCY, DISTANCE, EDGE_OPENING_LATENCY, Multiplier, Parts, RELATIVE, Registers, TAG, TOLERANCE, dot_product,
-    dot_product_latency, multiplier_latency,
+    CONE_TOLERANCE_LATENCY, DISTANCE, EDGE_OPENING_LATENCY, Multiplier, Parts, Registers, TAG, TOLERANCE, dot_product, dot_product_latency,
+    multiplier_latency,
 };
 use super::{Block, Form, Timing, dot};
-use crate::num::{BoundCode, BoundScale, Cone, Direction, EdgeState, Point, Ray, S, S_ONE, U, Wire, wire_struct};
+use crate::num::{BoundCode, BoundScale, Cone, EdgeState, Point, Ray, S, S_ONE, U, Wire, wire_struct};
 
 wire_struct! {
     /// Input of [`LodTest`].
@@ -92,10 +92,21 @@ fn limits(input: &In, code: BoundCode, a: S<64>, b: S<64>) -> (Bound, U<34>) {
     (h, tolerated(&input.ray.cone, a.min(b).get()))
 }
 
-/// Distances along the ray, and behind how many stages the nearer ends and the limits of the edges stand.
-const ALONG: u32 = RELATIVE + COMPONENT;
-const NEARER: u32 = 1 + dot_product_latency(RELATIVE, COMPONENT) + 1;
-const LIMITS: u32 = NEARER + CONE_TOLERANCE_LATENCY;
+/// Behind how many stages the nearer ends of the edges stand.
+const fn nearer(form: &Form) -> u32 {
+    1 + dot_product_latency(form.relative(), form.component()) + 1
+}
+
+/// And their limits.
+const fn limits_at(form: &Form) -> u32 {
+    nearer(form) + CONE_TOLERANCE_LATENCY
+}
+
+/// Cycles of the block.
+const fn latency(form: &Form) -> u32 {
+    limits_at(form) + EDGE_OPENING_LATENCY + 1
+}
+
 /// Bits of a cone's slope and shift, and of offset + l slope.
 const SLOPE: u32 = 18;
 const SHIFT: u32 = 6;
@@ -121,29 +132,40 @@ fn edge_opening() -> Registers {
 
 impl Block for LodTest {
     const NAME: &'static str = "lod_test";
-    const TIMING: Timing = Timing::pipelined(LIMITS + EDGE_OPENING_LATENCY + 1);
+    const TIMING: Timing = Timing::pipelined(latency(&Form::FULL));
     type In = In;
     type Out = Out;
-    fn parts(_: &Form) -> Parts {
+    fn timing(form: &Form) -> Timing {
+        Timing::pipelined(latency(form))
+    }
+    fn parts(form: &Form) -> Parts {
+        let (relative, component) = (form.relative(), form.component());
+        let distance_along = relative + component;
         let (decode_adds, decode_selects) = BoundDecode::arithmetic();
-        let products = vec![[9, RELATIVE, COMPONENT], [3, DISTANCE, SLOPE]];
-        let corners = Registers::stage(9 * RELATIVE + Direction::WIDTH);
+        let products = vec![[9, relative, component], [3, DISTANCE, SLOPE]];
+        let corners = Registers::stage(9 * relative + 3 * component);
         // The fraction of a distance is dropped.
-        let along = dot_product(RELATIVE, COMPONENT, ALONG, 1, ALONG - DISTANCE);
-        let nearer = Registers::skid(3 * DISTANCE);
-        let cone = Registers::line(Cone::WIDTH, NEARER, 2);
-        let codes = Registers::line(3 * BoundCode::WIDTH + BoundScale::WIDTH, LIMITS - BoundDecode::TIMING.latency, 2);
+        let along = dot_product(relative, component, distance_along, 1, distance_along - DISTANCE);
+        let nearer_ends = Registers::skid(3 * DISTANCE);
+        let cone = Registers::line(Cone::WIDTH, nearer(form), 2);
+        let codes = Registers::line(3 * BoundCode::WIDTH + BoundScale::WIDTH, limits_at(form) - BoundDecode::TIMING.latency, 2);
         // A tag of one bit for which there is no use, in each of its registers.
         let bound = BoundDecode::registers(1).without(BoundDecode::TIMING.latency);
         let edges = 3 * (cone_tolerance() + bound + edge_opening());
-        let ends = Registers::line(TAG, Self::TIMING.latency - 1, 3) + Registers::stage(Out::WIDTH + TAG);
+        let ends = Registers::line(TAG, latency(form) - 1, 3) + Registers::stage(Out::WIDTH + TAG);
         Parts {
             products,
             // Corners, sums along the ray, nearer ends, sums of the cone, bounds, openings, divisions.
-            add_bits: 9 * RELATIVE + 6 * ALONG + 3 * DISTANCE + 6 * SUM + 3 * decode_adds + 9 * TOLERANCE + 3 * BITS * (TOLERANCE + 1),
+            add_bits: 9 * relative
+                + 6 * distance_along
+                + 3 * DISTANCE
+                + 6 * SUM
+                + 3 * decode_adds
+                + 9 * TOLERANCE
+                + 3 * BITS * (TOLERANCE + 1),
             // Nearer ends, shifts of cone and bound, clamps, divisions, ends of s.
             select_bits: 3 * (DISTANCE + SUM * SHIFT + decode_selects + TOLERANCE + BITS * TOLERANCE + EdgeState::WIDTH),
-            registers: corners + 3 * along + nearer + cone + codes + edges + ends,
+            registers: corners + 3 * along + nearer_ends + cone + codes + edges + ends,
         }
     }
     #[inline(always)]

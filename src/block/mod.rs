@@ -26,6 +26,7 @@ pub mod tri_test;
 
 pub use operation::{Operation, Operations};
 
+use crate::hardware::Hardware;
 use crate::num::Wire;
 use parts::Parts;
 
@@ -62,6 +63,15 @@ pub struct Form {
     pub levels: u32,
     /// Edge functions of the triangle test.
     pub edges_per_cycle: EdgesPerCycle,
+    /// Zero bits at the bottom of all coordinates, of origins and of morphed triangles too.
+    pub coordinate_zeros: u32,
+    /// Zero bits at the bottom of all components of directions.
+    pub direction_zeros: u32,
+}
+
+impl Form {
+    /// Of the default hardware.
+    pub const FULL: Self = Hardware::DEFAULT.form();
 }
 
 /// A combinational block: what it computes, and the cycles its pipeline takes for it.

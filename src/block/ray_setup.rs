@@ -5,7 +5,7 @@
 //! mantissa held at 2^18 - 1; both 0 for d_i = 0.
 //! Legal: |x_i| < 2^31, |d_i| < 2^30.
 
-use super::parts::{COMPONENT, Multiplier, Parts, Registers, TAG};
+use super::parts::{Multiplier, Parts, Registers, TAG};
 use super::{Block, Form, Timing};
 use crate::num::{BOX_SHIFT, Direction, Point, S, U, Vec3, Wire, wire_struct};
 
@@ -100,20 +100,21 @@ impl Block for RaySetup {
     type In = In;
     type Out = Out;
     fn parts(_: &Form) -> Parts {
-        let (x, d, moment) = (Point::WIDTH / 3, COMPONENT - 1, Vec3::<63>::WIDTH / 3);
+        let (x, component, moment) = (Point::WIDTH / 3, Direction::WIDTH / 3, Vec3::<63>::WIDTH / 3);
+        let d = component - 1;
         let (ceil, mantissa, shift) = (17, 18, 5);
         // Mirror, d, x; the highest bit's place, divisor and remainder, quotient; mantissa and shift, ceil.
         let axis = Registers::bits(1 + d + x + shift + 2 * d + mantissa + mantissa + shift + ceil);
-        let product = Multiplier { unsigned: 1, ..Multiplier::new(x, COMPONENT).near() };
+        let product = Multiplier { unsigned: 1, ..Multiplier::new(x, component).near() };
         // Busy, the count of cycles, the tag; the first of two products, that it is there, and the moment.
-        let around = Registers::bits(1 + 5 + TAG + x + COMPONENT + 1 + 3 * moment);
+        let around = Registers::bits(1 + 5 + TAG + x + component + 1 + 3 * moment);
         Parts {
             // One multiplier for all.
-            products: vec![[6, x, COMPONENT]],
+            products: vec![[6, x, component]],
             // Divisions, moment, ceil, mirror.
-            add_bits: 3 * (mantissa * (d + 1) + moment + ceil + x + COMPONENT),
+            add_bits: 3 * (mantissa * (d + 1) + moment + ceil + x + component),
             // Divisions, normalising in as many steps as the place has bits, mirror.
-            select_bits: 3 * (mantissa * d + d * shift + x + COMPONENT),
+            select_bits: 3 * (mantissa * d + d * shift + x + component),
             registers: 3 * axis + product.registers() + around,
         }
     }

@@ -1,15 +1,15 @@
 //! Inserted vertices of a node's triangle for this ray: put together, and morphed between edge midpoint and their stored position (paper section 3.4).
 //!
 //! The stored vertex g is given as it is, or as its displacement from the midpoint of the full-resolution ends of its edge: g = (fa + fb) / 2 + v 2^e,
-//! e = max(grid + 4, (code + offset) / 16 - 11), so that the edge's bound is below 4096 steps (docs/numbers.md). All of that is the edge's own: whichever triangle
+//! e = max(grid + padding, (code + offset) / 16 - 11), so that the edge's bound is below 4096 steps (docs/numbers.md). All of that is the edge's own: whichever triangle
 //! asks, in whatever tree, g is the same.
 //!
 //! m = (pa + pb) / 2, exact; q = m + (floor((g - m) s / 256) with its low `grid` bits cleared). s = 0 gives m, s = 256 gives g; g - m is
 //! a multiple of 2^grid and so is what is added, hence q lies between m and g in each coordinate and on the level's grid. Neither m nor the
 //! rounding depends on which triangle asks.
-//! Legal: all corners multiples of 2^(grid+1), g of 2^grid, grid = N - level - 1 (0 to 9), |corners| and |g| at most `COORD_LIMIT`, s from 0 to 256; v of 13 bits where it is a displacement.
+//! Legal: all corners multiples of 2^(grid+1), g of 2^grid, grid = N - level - 1 + Z (0 to 15), |corners| and |g| at most `COORD_LIMIT`, s from 0 to 256; v of 13 bits where it is a displacement.
 
-use super::parts::{Multiplier, Parts, RELATIVE, Registers, TAG, multiplier_latency};
+use super::parts::{Multiplier, Parts, Registers, TAG, multiplier_latency};
 use super::{Block, Form, Timing};
 use crate::num::{BoundCode, BoundScale, Displacement, EdgeState, MAX_DISPLACEMENT_SHIFT, Point, S, U, Vec3, Wire, wire_struct};
 
@@ -18,8 +18,10 @@ wire_struct! {
     pub struct In {
         /// Stored vertices are displacements.
         compact: bool,
-        /// Zero bits at the bottom of an inserted vertex.
+        /// Zero bits at the bottom of an inserted vertex as morphed.
         grid: U<4>,
+        /// How many more it has as stored.
+        padding: U<3>,
         /// The model's bound scale.
         scale: BoundScale,
         /// Bound code of edge (p1, p2).
@@ -81,6 +83,7 @@ pub struct Tessellate;
 struct Split {
     compact: bool,
     grid: U<4>,
+    padding: U<3>,
     scale: BoundScale,
 }
 
@@ -89,7 +92,7 @@ struct Split {
 fn displacement_shift(split: Split, code: BoundCode) -> U<5> {
     // 8 and 9 bits: k / 16 is below 48 (below 33 in a legal scale), less 11.
     let octave = (code.get() + split.scale.offset.get()) >> 4;
-    let shift = octave.saturating_sub(11).max(split.grid.get() + 4);
+    let shift = octave.saturating_sub(11).max(split.grid.get() + split.padding.get());
     // Legal scales and grids keep it to this.
     U::new(shift.min(u64::from(MAX_DISPLACEMENT_SHIFT)))
 }
@@ -132,34 +135,46 @@ fn vertex(split: Split, edge: Edge, v: Point) -> (Point, Point) {
     (g, Vec3 { x: morph(pa.x, pb.x, g.x), y: morph(pa.y, pb.y, g.y), z: morph(pa.z, pb.z, g.z) })
 }
 
+/// Bits of a state as a signed number, and of the number of zero bits.
+const STATE: u32 = EdgeState::WIDTH + 1;
+const GRID: u32 = 4;
+
+/// Midpoints, the vertex, the difference; its product with a state; the step, and the sum.
+const fn latency(form: &Form) -> u32 {
+    3 + multiplier_latency(form.relative(), STATE) + 2
+}
+
 impl Block for Tessellate {
     const NAME: &'static str = "tessellate";
-    const TIMING: Timing = Timing::pipelined(7);
+    const TIMING: Timing = Timing::pipelined(latency(&Form::FULL));
     type In = In;
     type Out = Out;
-    fn parts(_: &Form) -> Parts {
+    fn timing(form: &Form) -> Timing {
+        Timing::pipelined(latency(form))
+    }
+    fn parts(form: &Form) -> Parts {
         // A coordinate, its difference from the midpoint, s as a signed number, and the fraction of the product that is dropped.
-        let (w, s, grid, fraction) = (RELATIVE - 1, EdgeState::WIDTH + 1, 4, 8);
-        let product = Multiplier { low: fraction, high: fraction + w, ..Multiplier::new(RELATIVE, s) };
+        let (w, relative, s, grid, fraction) = (form.coordinate(), form.relative(), STATE, GRID, 8);
+        let product = Multiplier { low: fraction, high: fraction + w, ..Multiplier::new(relative, s) };
         // Three coordinates share state, grid and shift. Both midpoints and the displacement; the vertex; the difference. The vertex goes along to the end.
         let (opening, shift) = (s - 1 + grid, 5);
         let ahead = Registers::stage(3 * (2 * w + Displacement::WIDTH / 3) + shift + opening)
             + Registers::stage(6 * w + opening)
-            + Registers::stage(3 * RELATIVE + 6 * w + opening);
-        let beside = Registers::line(6 * w + grid, multiplier_latency(RELATIVE, s), 0);
+            + Registers::stage(3 * relative + 6 * w + opening);
+        let beside = Registers::line(6 * w + grid, multiplier_latency(relative, s), 0);
         let vertex = ahead + 3 * product.registers() + beside + Registers::stage(9 * w) + Registers::stage(6 * w);
         Parts {
-            products: vec![[9, RELATIVE, s]],
+            products: vec![[9, relative, s]],
             // Shifts of three edges; midpoints, vertex, difference, sum.
-            add_bits: 3 * (BoundScale::WIDTH + 1 + 6) + 9 * (2 * RELATIVE + w + RELATIVE + w),
+            add_bits: 3 * (BoundScale::WIDTH + 1 + 6) + 9 * (2 * relative + w + relative + w),
             // Shifts; the displacement's in five steps, or the vertex as it is; the grid.
             select_bits: 3 * 5 + 9 * (5 * w + w + w),
-            registers: 3 * vertex + Registers::line(TAG, Self::TIMING.latency, 0),
+            registers: 3 * vertex + Registers::line(TAG, latency(form), 0),
         }
     }
     #[inline(always)]
     fn eval(i: &In) -> Out {
-        let split = Split { compact: i.compact, grid: i.grid, scale: i.scale };
+        let split = Split { compact: i.compact, grid: i.grid, padding: i.padding, scale: i.scale };
         let (g0, q0) = vertex(split, Edge { f: [i.f1, i.f2], p: [i.p1, i.p2], code: i.e0, s: i.s0 }, i.v0);
         let (g1, q1) = vertex(split, Edge { f: [i.f2, i.f0], p: [i.p2, i.p0], code: i.e1, s: i.s1 }, i.v1);
         let (g2, q2) = vertex(split, Edge { f: [i.f0, i.f1], p: [i.p0, i.p1], code: i.e2, s: i.s2 }, i.v2);
@@ -189,7 +204,7 @@ mod tests {
         fn stored_vertices_are_those_of_the_format(
             grid in 0u64..=9, offset in 0u64..=num::MAX_BOUND_OFFSET, code in 0u8..=255, v in prop::array::uniform2(-(1i32 << 30)..1 << 30), part in -4096i32..4096
         ) {
-            let split = Split { compact: true, grid: U::new(grid), scale: BoundScale { offset: U::new(offset) } };
+            let split = Split { compact: true, grid: U::new(grid), padding: U::new(4), scale: BoundScale { offset: U::new(offset) } };
             let shift = displacement_shift(split, BoundCode::new(u64::from(code)));
             prop_assert_eq!(shift.get(), u64::from(num::displacement_shift(split.scale, code, grid as u32 + 4)));
             let [a, b] = v.map(|v| (v >> (grid + 5)) << (grid + 5));

@@ -8,11 +8,10 @@
 //! Legal: |v| < 2^31 for points and origin, |d| <= 2^30 and each |d_i| < 2^30. On a miss all numbers are 0. On a hit they are taken with det > 0.
 
 use super::parts::{
-    COMPONENT, EDGE_FUNCTION_LATENCY, EDGE_PRODUCT_STAGES, Multiplier, NORMAL, Parts, RELATIVE, Registers, TAG, TRI_DECIDE_LATENCY,
-    cross_product, cross_product_latency, dot_product, multiplier_latency,
+    Multiplier, Parts, Registers, TAG, TRI_DECIDE_LATENCY, cross_product, cross_product_latency, dot_product, multiplier_latency,
 };
 use super::{Block, EdgesPerCycle, Form, Timing};
-use crate::num::{Direction, Point, WU, Wire, wire_struct};
+use crate::num::{Direction, Point, WU, wire_struct};
 
 wire_struct! {
     /// Input of [`TriTest`].
@@ -57,9 +56,8 @@ wire_struct! {
 pub struct TriTest;
 
 impl TriTest {
-    /// Timing of the RTL with one edge function (its parameter `EDGES_PER_CYCLE` = 1), which u, v and w pass through in turn: two
-    /// passes more; [`Block::TIMING`] is that with three.
-    pub const ONE_EDGE: Timing = Timing { latency: Self::TIMING.latency + 2, interval: 3 };
+    /// Timing of the default's RTL with one edge function (its parameter `EDGES_PER_CYCLE` = 1); [`Block::TIMING`] is that with three.
+    pub const ONE_EDGE: Timing = one_edge(&Form::FULL);
 }
 
 /// p x q: components below 2 * 2^64, and below 2^65.6 together.
@@ -90,68 +88,78 @@ fn tie_is_positive(normal: [i128; 3], p: [i64; 3], q: [i64; 3]) -> bool {
     normal.into_iter().chain(along).find(|&c| c != 0).is_none_or(|c| c > 0)
 }
 
-/// Widths with a sign, and cycles of the cross product.
-const SIGNED_EDGE: u32 = EdgeFunction::WIDTH + 1;
-const SIGNED_T: u32 = TNumerator::WIDTH + 1;
-const CROSS: u32 = cross_product_latency(RELATIVE);
-
 /// `edge_function`: the cross product with d and the sign of q - p beside it, the dot product with the tie's sign beside it.
-fn edge_function() -> Registers {
-    let cross = cross_product(RELATIVE) + Registers::line(Direction::WIDTH + 1, CROSS, 1);
-    cross + dot_product(NORMAL, COMPONENT, SIGNED_EDGE, EDGE_PRODUCT_STAGES, 0) + Registers::line(1, EDGE_FUNCTION_LATENCY - CROSS, 1)
+fn edge_function(form: &Form) -> Registers {
+    let (cross, [with_d, _]) = (cross_product_latency(form.relative()), form.edge_product_stages());
+    let normal = cross_product(form.relative()) + Registers::line(3 * form.component() + 1, cross, 1);
+    let dot = dot_product(form.normal(), form.component(), form.signed_edge(), with_d, 0);
+    normal + dot + Registers::line(1, form.edge_function_latency() - cross, 1)
 }
 
 /// `tri_decide`: signs, decision, numbers.
-fn tri_decide() -> Registers {
-    let numbers = 3 * SIGNED_EDGE + SIGNED_T + TAG;
+fn tri_decide(form: &Form) -> Registers {
+    let numbers = 3 * form.signed_edge() + form.signed_t() + TAG;
     // Magnitudes leave: behind the signs no number needs its top bit, but for t until the decision.
     let signs = Registers::stage(7 + numbers).without(3);
-    signs + Registers::skid(2 + numbers).without(2 * 4) + Registers::stage(Out::WIDTH + TAG)
+    signs + Registers::skid(2 + numbers).without(2 * 4) + Registers::stage(2 + numbers - 4)
 }
 
 /// `tri_edges_parallel`: the corners, three edge functions, and a . (b x c).
-fn parallel() -> Registers {
-    let corners = Registers::stage(9 * RELATIVE + Direction::WIDTH + TAG);
-    let t = Registers::line(3 * RELATIVE, CROSS, 1) + dot_product(NORMAL, RELATIVE, SIGNED_T, EDGE_PRODUCT_STAGES, 0);
-    corners + 3 * edge_function() + t + Registers::line(TAG, EDGE_FUNCTION_LATENCY, 2)
+fn parallel(form: &Form) -> Registers {
+    let (cross, [_, with_a]) = (cross_product_latency(form.relative()), form.edge_product_stages());
+    let corners = Registers::stage(9 * form.relative() + 3 * form.component() + TAG);
+    let t = Registers::line(3 * form.relative(), cross, 1) + dot_product(form.normal(), form.relative(), form.signed_t(), with_a, 0);
+    corners + 3 * edge_function(form) + t + Registers::line(TAG, form.edge_function_latency(), 2)
 }
 
 /// `tri_edges_serial`: the corners, which turn; one edge function; t, a component a pass; u and v, which wait.
-fn serial() -> Registers {
-    let pass = 2;
-    let corners = Registers::bits(9 * RELATIVE + Direction::WIDTH + TAG + 1 + pass);
-    let beside_cross = Registers::line(RELATIVE + pass + TAG, CROSS, 1);
-    let factors = Registers::bits(2 * NORMAL) + Registers::stage(NORMAL + RELATIVE + pass + TAG);
-    let product = Multiplier { product_stages: EDGE_PRODUCT_STAGES, last_is_skid: true, ..Multiplier::new(NORMAL, RELATIVE) };
-    let beside_product = Registers::line(pass + TAG, EDGE_PRODUCT_STAGES - 1 + multiplier_latency(NORMAL, RELATIVE), 1);
-    let sum = Registers::bits(SIGNED_T) + Registers::stage(pass + TAG) + Registers::stage(SIGNED_T + pass + TAG);
-    let waiting = Registers::bits(2 * (SIGNED_EDGE + 1));
-    corners + edge_function() + beside_cross + factors + product.registers() + beside_product + sum + waiting
+fn serial(form: &Form) -> Registers {
+    let (pass, relative, normal, [_, with_a]) = (2, form.relative(), form.normal(), form.edge_product_stages());
+    let corners = Registers::bits(9 * relative + 3 * form.component() + TAG + 1 + pass);
+    let beside_cross = Registers::line(relative + pass + TAG, cross_product_latency(relative), 1);
+    let factors = Registers::bits(2 * normal) + Registers::stage(normal + relative + pass + TAG);
+    let product = Multiplier { product_stages: with_a, last_is_skid: true, ..Multiplier::new(normal, relative) };
+    let beside_product = Registers::line(pass + TAG, with_a - 1 + multiplier_latency(normal, relative), 1);
+    let sum = Registers::bits(form.signed_t()) + Registers::stage(pass + TAG) + Registers::stage(form.signed_t() + pass + TAG);
+    let waiting = Registers::bits(2 * (form.signed_edge() + 1));
+    corners + edge_function(form) + beside_cross + factors + product.registers() + beside_product + sum + waiting
+}
+
+/// Timing with three edge functions.
+const fn three_edges(form: &Form) -> Timing {
+    Timing::pipelined(1 + form.edge_function_latency() + TRI_DECIDE_LATENCY)
+}
+
+/// Timing with one, which u, v and w pass through in turn: two passes more.
+const fn one_edge(form: &Form) -> Timing {
+    Timing { latency: three_edges(form).latency + 2, interval: 3 }
 }
 
 impl Block for TriTest {
     const NAME: &'static str = "tri_test";
-    const TIMING: Timing = Timing::pipelined(1 + EDGE_FUNCTION_LATENCY + TRI_DECIDE_LATENCY);
+    const TIMING: Timing = three_edges(&Form::FULL);
     type In = In;
     type Out = Out;
     fn timing(form: &Form) -> Timing {
         match form.edges_per_cycle {
-            EdgesPerCycle::Three => Self::TIMING,
-            EdgesPerCycle::One => Self::ONE_EDGE,
+            EdgesPerCycle::Three => three_edges(form),
+            EdgesPerCycle::One => one_edge(form),
         }
     }
     fn parts(form: &Form) -> Parts {
+        let (relative, normal, component) = (form.relative(), form.normal(), form.component());
+        let (edge, t) = (form.signed_edge(), form.signed_t());
         // Signs and zeros of three edge functions and t; corners, cross products, edge functions, det, ties.
-        let signs = 3 * SIGNED_EDGE + SIGNED_T;
-        let add_bits = 9 * RELATIVE + 9 * NORMAL + 6 * SIGNED_EDGE + 2 * SIGNED_EDGE + signs + 9 * RELATIVE;
+        let signs = 3 * edge + t;
+        let add_bits = 9 * relative + 9 * normal + 6 * edge + 2 * edge + signs + 9 * relative;
         let (add_bits, select_bits, edges) = match form.edges_per_cycle {
-            EdgesPerCycle::Three => (add_bits + 2 * SIGNED_T, signs, parallel()),
+            EdgesPerCycle::Three => (add_bits + 2 * t, signs, parallel(form)),
             // t grows by a component from zero; a component of a and of b x c is chosen for each.
-            EdgesPerCycle::One => (add_bits + 3 * SIGNED_T, signs + 3 * (2 * NORMAL + 2 * RELATIVE), serial()),
+            EdgesPerCycle::One => (add_bits + 3 * t, signs + 3 * (2 * normal + 2 * relative), serial(form)),
         };
         // Cross products, edge functions, t.
-        let products = vec![[18, RELATIVE, RELATIVE], [9, NORMAL, COMPONENT], [3, NORMAL, RELATIVE]];
-        Parts { products, add_bits, select_bits, registers: edges + tri_decide() }
+        let products = vec![[18, relative, relative], [9, normal, component], [3, normal, relative]];
+        Parts { products, add_bits, select_bits, registers: edges + tri_decide(form) }
     }
     #[inline(always)]
     fn eval(input: &In) -> Out {

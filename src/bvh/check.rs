@@ -127,6 +127,7 @@ pub(crate) fn synthetic_terrain(quads: u32, levels: u32) -> crate::mesh::Hierarc
         points: vec![],
         bounds: EdgeCodes::default(),
         vertices: crate::num::VertexForm::Exact,
+        zeros: 0,
     };
     for qy in 0..quads {
         for qx in 0..quads {

@@ -28,6 +28,12 @@ pub struct FormArgs {
     /// How inserted vertices are stored
     #[arg(long, value_name = "FORM", value_parser = named::<VertexForm>(), default_value = VertexForm::default().name())]
     pub vertices: VertexForm,
+    /// Zero bits at the bottom of all coordinates, of vertices, morphed triangles and origins of rays: 0 to 16 less the splits. A hardware can leave them out
+    #[arg(long, value_name = "BITS", default_value_t = 0, value_parser = whole::<u32>(0..=16), allow_negative_numbers = true)]
+    pub coordinate_zeros: u32,
+    /// Zero bits at the bottom of the directions of rays, 0 to 14
+    #[arg(long, value_name = "BITS", default_value_t = 0, value_parser = whole::<u32>(0..=14), allow_negative_numbers = true)]
+    pub direction_zeros: u32,
 }
 
 #[derive(clap::Args)]
@@ -121,8 +127,9 @@ fn read_stdin(format: MeshFormat, name: &Path) -> anyhow::Result<TriangleMesh> {
 
 /// The scene of a surface; `origin` says how it was made.
 pub fn build_scene(surface: &Surface, name: &str, origin: serde_json::Value, form: FormArgs) -> anyhow::Result<Scene> {
-    let FormArgs { bounds, vertices } = form;
-    Ok(busy("encoding", || format::build(surface, SceneInfo { name: name.to_owned(), origin, bounds, vertices }, over_trees))?)
+    let FormArgs { bounds, vertices, coordinate_zeros, direction_zeros } = form;
+    let info = SceneInfo { name: name.to_owned(), origin, bounds, vertices, coordinate_zeros, direction_zeros };
+    Ok(busy("encoding", || format::build(surface, info, over_trees))?)
 }
 
 /// Saves a new scene and says what it holds.

@@ -117,8 +117,8 @@ impl<'a> Info<'a> {
             centre: space.centre(),
             radius: space.radius(),
             unit: space.placement.scale,
-            base_grid: space.placement.scale * f64::from(1u32 << meta.vertices.zero_bits(scene.levels())),
-            base_bits_lost: meta.vertices.zero_bits(scene.levels()) - PADDING_BITS,
+            base_grid: space.placement.scale * f64::from(1u32 << meta.vertices.zero_bits(scene.levels(), meta.coordinate_zeros)),
+            base_bits_lost: meta.vertices.zero_bits(scene.levels(), meta.coordinate_zeros) - PADDING_BITS,
             hierarchy_bytes_per_triangle: per(hierarchy),
             parts,
             distance: serde_json::from_value(meta.origin["remesh"]["distance"].clone())

@@ -50,7 +50,7 @@ impl Scene {
             (VertexForm::Compact, _) => Displacements::half(line(level), node),
         };
         let ([d0, d1, d2], [e0, e1, e2]) = (steps.steps(), self.node_codes(tree, level, node));
-        let (scale, zeros) = (meta.bound_scale(), inserted_zero_bits(meta.levels, level));
+        let (scale, zeros) = (meta.bound_scale(), inserted_zero_bits(meta.levels, level, meta.coordinate_zeros));
         let vertex = |a: [i32; 3], b: [i32; 3], by: Point, code: u8| {
             let (by, shift) = (units(by), displacement_shift(scale, code, zeros));
             let coordinate = |c: usize| displaced(a[c], b[c], by[c], shift);
@@ -91,6 +91,7 @@ impl Scene {
             points,
             bounds: EdgeCodes { kind: self.meta.bounds, scale: self.meta.bound_scale(), codes },
             vertices: self.meta.vertices,
+            zeros: self.meta.coordinate_zeros,
         }
     }
 

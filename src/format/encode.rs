@@ -21,6 +21,10 @@ pub struct SceneInfo {
     pub bounds: BoundKind,
     /// How its inserted vertices are stored.
     pub vertices: VertexForm,
+    /// Zero bits at the bottom of every coordinate.
+    pub coordinate_zeros: u32,
+    /// Zero bits at the bottom of the components of its rays' directions.
+    pub direction_zeros: u32,
 }
 
 /// The quad-BVH over a scene's trees.
@@ -41,7 +45,7 @@ pub fn build<E: std::fmt::Display>(
     info: SceneInfo,
     build_l0: impl FnOnce(&[Box16]) -> Result<TreeBvh, E>,
 ) -> Result<Scene, SceneError> {
-    let hierarchy = quantise(surface, info.bounds, info.vertices)?;
+    let hierarchy = quantise(surface, info.bounds, info.vertices, info.coordinate_zeros)?;
     let bvh = build_l0(&tree_boxes(&hierarchy)).map_err(|e| SceneError::Build(format!("quad-BVH: {e}")))?;
     encode(&hierarchy, surface, info, &bvh)
 }
@@ -50,7 +54,7 @@ pub fn build<E: std::fmt::Display>(
 fn check_points(h: &Hierarchy) -> Result<(), SceneError> {
     let m = 1u32 << h.levels;
     let places: Vec<LatticePoint> = (0..=m).flat_map(|j| (0..=m - j).map(move |i| (i, j))).collect();
-    let zero_bits = |place| h.vertices.zero_bits(h.levels - lattice::level_of(h.levels, place));
+    let zero_bits = |place| h.vertices.zero_bits(h.levels - lattice::level_of(h.levels, place), h.zeros);
     let masks: Vec<i32> = places.iter().map(|&place| (1 << zero_bits(place)) - 1).collect();
     let fits = |p: &[i32; 3], mask: i32| p.iter().all(|c| c & mask == 0 && c.unsigned_abs() <= COORD_LIMIT.unsigned_abs());
     let bad = |points: &[[i32; 3]]| points.iter().zip(&masks).any(|(p, &mask)| !fits(p, mask));
@@ -144,6 +148,8 @@ fn meta(h: &Hierarchy, surface: &Surface, info: SceneInfo) -> Meta {
         bounds: h.bounds.kind,
         bound_offset: h.bounds.scale.offset.get() as u32, // 9 bits
         vertices: h.vertices,
+        coordinate_zeros: h.zeros,
+        direction_zeros: info.direction_zeros,
         moved: h.points.par_iter().zip(&surface.positions).map(distance).reduce(|| 0.0, f64::max),
         lo,
         hi,
@@ -300,7 +306,7 @@ impl TreeWriter<'_> {
         let (points, q) = (p.map(|c| self.at(c)), lattice::midpoints(p).map(|c| self.at(c)));
         let steps = std::array::from_fn(|k| {
             let (a, b) = (points[(k + 1) % 3], points[(k + 2) % 3]);
-            let shift = displacement_shift(self.h.bounds.scale, codes[k], inserted_zero_bits(self.h.levels, level));
+            let shift = displacement_shift(self.h.bounds.scale, codes[k], inserted_zero_bits(self.h.levels, level, self.h.zeros));
             let steps = steps_of(q[k], a, b, shift);
             self.fits &= (0..3).all(|c| (-4096..4096).contains(&steps[c]) && displaced(a[c], b[c], steps[c], shift) == q[k][c]);
             steps.map(|c| c.clamp(-4096, 4095))

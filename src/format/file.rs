@@ -3,7 +3,10 @@
 use super::scene::Image;
 use super::sections::{FileSection, checksum, read_header};
 use super::{BvhNode, ChildRef, L0Record, Meta, Scene, SceneError, VertexData, write_and_rename};
-use crate::num::{COORD_LIMIT, LINE_BYTES, MAX_BOUND_OFFSET, MAX_BVH_DEPTH, MAX_LEVELS, PADDING_BITS, VertexForm, Wire};
+use crate::mesh::most_zeros;
+use crate::num::{
+    COORD_LIMIT, LINE_BYTES, MAX_BOUND_OFFSET, MAX_BVH_DEPTH, MAX_LEVELS, MOST_DIRECTION_ZEROS, PADDING_BITS, VertexForm, Wire,
+};
 use memmap2::Mmap;
 use rayon::prelude::*;
 use std::fs::File;
@@ -117,7 +120,7 @@ impl Scene {
     /// The first node of a tree with compact vertices whose inserted vertices exceed the limit. Base corners that are not on their grid make midpoints that are no
     /// integers: those count too, as the root's.
     fn beyond_limit(&self, tree: usize) -> Option<(u32, usize)> {
-        let mask = (1 << VertexForm::Compact.zero_bits(self.levels())) - 1;
+        let mask = (1 << VertexForm::Compact.zero_bits(self.levels(), self.meta.coordinate_zeros)) - 1;
         let mut found = self.corners(tree).iter().flatten().any(|c| c & mask != 0).then_some((0, 0));
         // A tree whose vertices wrap at one node is not read any further below by anyone: the first is reported.
         self.each_node(tree, self.levels(), &mut |at, _, q| {
@@ -185,6 +188,15 @@ fn check_meta(meta: &Meta) -> Result<(), String> {
     }
     if u64::from(meta.bound_offset) > MAX_BOUND_OFFSET {
         return fail("bound_offset", format!("{} is above {MAX_BOUND_OFFSET}", meta.bound_offset));
+    }
+    if meta.coordinate_zeros > most_zeros(meta.levels) {
+        return fail(
+            "coordinate_zeros",
+            format!("{} is above {} with {} splits", meta.coordinate_zeros, most_zeros(meta.levels), meta.levels),
+        );
+    }
+    if meta.direction_zeros > MOST_DIRECTION_ZEROS {
+        return fail("direction_zeros", format!("{} is above {MOST_DIRECTION_ZEROS}", meta.direction_zeros));
     }
     if !(meta.moved.is_finite() && meta.moved >= 0.0) {
         return fail("moved", format!("{} is no distance", meta.moved));

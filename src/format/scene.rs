@@ -64,6 +64,12 @@ pub struct Meta {
     pub bound_offset: u32,
     /// How inserted vertices are stored.
     pub vertices: VertexForm,
+    /// Zero bits at the bottom of every coordinate: of full-resolution vertices, morphed triangles and the origins of rays. 0 is not written.
+    #[serde(default, skip_serializing_if = "is_zero")]
+    pub coordinate_zeros: u32,
+    /// Zero bits at the bottom of every component of the directions of rays. 0 is not written.
+    #[serde(default, skip_serializing_if = "is_zero")]
+    pub direction_zeros: u32,
     /// Largest distance of a stored vertex from where the surface had it, in world units.
     pub moved: f64,
     /// Lower corner of the box of all vertices in units.
@@ -73,6 +79,11 @@ pub struct Meta {
     /// How the model was made.
     #[serde(default, skip_serializing_if = "serde_json::Value::is_null")]
     pub origin: serde_json::Value,
+}
+
+#[expect(clippy::trivially_copy_pass_by_ref, reason = "serde asks so")]
+fn is_zero(v: &u32) -> bool {
+    *v == 0
 }
 
 impl Meta {

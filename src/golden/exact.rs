@@ -204,7 +204,7 @@ impl Walk<'_> {
         if s == [0; 3] {
             return serve(at);
         }
-        let grid = self.model.levels - level - 1;
+        let grid = self.model.levels - level - 1 + self.model.zeros;
         let stored = lattice::midpoints(places).map(|q| self.point(tree, q));
         // Edge i is opposite corner i.
         let q: [Vector; 3] = std::array::from_fn(|i| lod::inserted(p[(i + 1) % 3], p[(i + 2) % 3], stored[i], s[i], grid));

@@ -11,14 +11,14 @@ use crate::{
 
 /// Gives the model compact vertices: its points become those of that form, its codes stay.
 ///
-/// Points are multiples of 2^(N - n + 4) units, n their level, and codes cover their displacements.
+/// Points are multiples of 2^(N - n + max(4, Z)) units, n their level and Z the zero bits of all coordinates, and codes cover their displacements.
 pub fn naive_compact(h: &mut Hierarchy) {
     let mut points = h.points.clone();
     for level in 0..h.levels {
         for_each_edge(h, level, |tree, a, b, q| {
             let code = h.codes(tree as usize)[edge_index(h.levels, level, a, b)];
             let octave = (u64::from(code) + h.bounds.scale.offset.get()) / 16;
-            let exponent = u64::from(h.levels - level + 3).max(octave.saturating_sub(11));
+            let exponent = u64::from(h.levels - level - 1 + h.zeros.max(4)).max(octave.saturating_sub(11));
             let [a, b, q] = [a, b, q].map(|p| place(h, tree, p));
             let all = (h.points[a], h.points[b], h.points[q]);
             points[q] = std::array::from_fn(|c| coordinate([all.0[c], all.1[c], all.2[c]], [points[a][c], points[b][c]], 1 << exponent));

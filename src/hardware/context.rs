@@ -2,9 +2,9 @@
 
 use super::Hardware;
 use super::ports::{MemoryAnswer, RayIn};
-use crate::block::{bary_map, child_test, hit_select, lod_test, parts::Registers, ray_setup, tree_base, tri_test};
+use crate::block::{bary_map, child_test, hit_select, lod_test, parts::Registers, ray_setup, tree_base};
 use crate::method::Entry;
-use crate::num::{Bary, BoundCode, Point, RayT, Wire};
+use crate::num::{Bary, BoundCode, RayT, Wire};
 
 /// Bits of a tree's number, of a level, and of a count up to four.
 const TREE: u32 = 28;
@@ -18,15 +18,24 @@ const FETCH: u32 = 2;
 const CHILD: u32 = 2;
 /// Lines that a context waits for at most.
 const LINES: u32 = 2;
-/// A triangle with its inserted vertices.
-const SPLIT: u32 = 6 * Point::WIDTH;
 
 impl Hardware {
     /// Bits of the registers of a ray context: `rtl/`'s if it `has_levels`. Without them it has no split triangles and no second triangle at full resolution,
     /// and its stack is as deep as the quad-BVH and holds no bound codes, and of levels only what counts the triangles of a leaf.
     pub fn context_registers(&self, has_levels: bool) -> Registers {
-        let levels = if has_levels { SPLIT + self.splits() } else { 0 };
+        let levels = if has_levels { self.split() + self.splits() } else { 0 };
         Registers::bits(self.place() + self.stack(has_levels) + levels + self.lines() + self.closest())
+    }
+
+    /// A triangle with its inserted vertices.
+    fn split(&self) -> u32 {
+        6 * 3 * self.form().coordinate()
+    }
+
+    /// Ray, and its constants for the box tests: origin, direction, and moment.
+    fn ray(&self) -> u32 {
+        let zeros = self.coordinate_zeros + self.direction_zeros;
+        RayIn::WIDTH + ray_setup::Out::WIDTH - 3 * (zeros + zeros + zeros)
     }
 
     /// Bits of a node's number within its level.
@@ -36,12 +45,11 @@ impl Hardware {
 
     /// State, ray, constants; the entry under visit, the node, its triangle as morphed and what was found out about it; children and triangles to come.
     fn place(&self) -> u32 {
-        let ray = RayIn::WIDTH + ray_setup::Out::WIDTH;
-        let node = TREE + LEVEL + self.node() + SPLIT + 3 * BoundCode::WIDTH + lod_test::Out::WIDTH + tree_base::Out::WIDTH;
+        let node = TREE + LEVEL + self.node() + self.split() + 3 * BoundCode::WIDTH + lod_test::Out::WIDTH + tree_base::Out::WIDTH;
         let children = child_test::Out::WIDTH + COUNT;
         // Whether it is four triangles; how many are left and pending, and the next.
         let triangles = 1 + 2 * COUNT + CHILD;
-        STATE + FETCH + ray + Entry::WIDTH + node + children + triangles
+        STATE + FETCH + self.ray() + Entry::WIDTH + node + children + triangles
     }
 
     /// Entries and length.
@@ -55,7 +63,7 @@ impl Hardware {
 
     /// A triangle with its inserted vertices, at full resolution and as morphed, for each level that splits into nodes.
     fn splits(&self) -> u32 {
-        self.split_triangles() * 2 * SPLIT
+        self.split_triangles() * 2 * self.split()
     }
 
     /// The lines, which of them are wanted and waited for, and the same of the tree's base.
@@ -66,7 +74,7 @@ impl Hardware {
     /// The closest hit: whether there is one, t, id, numerators, weights, and the full-resolution triangle.
     fn closest(&self) -> u32 {
         let triangle = TREE + LEVEL + self.node();
-        let numerators = 3 * tri_test::EdgeFunction::WIDTH;
+        let numerators = 3 * (self.form().signed_edge() - 1);
         let front = 1;
         1 + RayT::WIDTH + hit_select::FullId::WIDTH + triangle + front + numerators + 3 * Bary::WIDTH + bary_map::Out::WIDTH
     }

@@ -14,7 +14,7 @@ mod state;
 pub use state::{Fetch, State};
 
 use crate::block::{Block, EdgesPerCycle, Form, Timing};
-use crate::num::{MAX_BVH_DEPTH, MAX_LEVELS};
+use crate::num::{BOX_SHIFT, MAX_BVH_DEPTH, MAX_LEVELS, MOST_DIRECTION_ZEROS};
 
 /// The widest number of a context: it and two bits of place make the tag of a memory request ([`ports::MemoryRequest`]).
 const MAX_CONTEXT_BITS: u32 = 6;
@@ -36,6 +36,11 @@ pub struct Hardware {
     pub context_bits: u32,
     /// Edge functions that the triangle test evaluates in a cycle.
     pub edges_per_cycle: EdgesPerCycle,
+    /// Bits at the bottom of all coordinates that it leaves out, as they are 0 in the scenes that it is for: 0 to 16. Vertices, morphed triangles and origins
+    /// have at least as many ([`Meta::coordinate_zeros`](crate::format::Meta::coordinate_zeros)).
+    pub coordinate_zeros: u32,
+    /// Bits at the bottom of the components of directions that it leaves out likewise: 0 to 14.
+    pub direction_zeros: u32,
 }
 
 impl Default for Hardware {
@@ -63,6 +68,8 @@ impl Hardware {
         contexts: 4,
         context_bits: MAX_CONTEXT_BITS,
         edges_per_cycle: EdgesPerCycle::Three,
+        coordinate_zeros: 0,
+        direction_zeros: 0,
     };
 
     /// The fewest levels: a tree of one split has no nodes below its root, and no register for its triangles.
@@ -84,6 +91,8 @@ impl Hardware {
             ("fewer_stack_entries", u64::from(self.stack_entries()), 2, u64::from(self.deepest_stack())),
             ("context_bits", u64::from(self.context_bits), 1, u64::from(MAX_CONTEXT_BITS)),
             ("contexts", self.contexts as u64, 1, 1 << self.context_bits.min(MAX_CONTEXT_BITS)),
+            ("coordinate_zeros", u64::from(self.coordinate_zeros), 0, u64::from(BOX_SHIFT)),
+            ("direction_zeros", u64::from(self.direction_zeros), 0, u64::from(MOST_DIRECTION_ZEROS)),
         ];
         match fields.into_iter().find(|(_, value, least, most)| !(least..=most).contains(&value)) {
             Some((field, value, least, most)) => Err(HardwareError { field, least, most, value }),
@@ -93,7 +102,8 @@ impl Hardware {
 
     /// What the blocks of this hardware depend on.
     pub const fn form(&self) -> Form {
-        Form { levels: self.levels, edges_per_cycle: self.edges_per_cycle }
+        let Self { levels, edges_per_cycle, coordinate_zeros, direction_zeros, .. } = *self;
+        Form { levels, edges_per_cycle, coordinate_zeros, direction_zeros }
     }
 
     /// Timing of a block.
@@ -135,6 +145,8 @@ mod tests {
             "hardware: fewer_stack_entries must be 2 to 103, but is 104"
         );
         assert_eq!(wrong(Hardware { context_bits: 7, ..default }), "hardware: context_bits must be 1 to 6, but is 7");
+        assert_eq!(wrong(Hardware { coordinate_zeros: 17, ..default }), "hardware: coordinate_zeros must be 0 to 16, but is 17");
+        assert_eq!(wrong(Hardware { direction_zeros: 15, ..default }), "hardware: direction_zeros must be 0 to 14, but is 15");
         assert_eq!(wrong(Hardware { contexts: 0, ..default }), "hardware: contexts must be 1 to 64, but is 0");
         assert_eq!(wrong(Hardware { contexts: 5, context_bits: 2, ..default }), "hardware: contexts must be 1 to 4, but is 5");
     }

@@ -8,6 +8,8 @@ wire_struct! {
     pub struct SceneConfig {
         /// Number of splits N.
         levels: U<4>,
+        /// Zero bits at the bottom of all coordinates: of morphed triangles too, and of the rays' origins.
+        zeros: U<5>,
         /// Inserted vertices are stored as displacements from the midpoints of their edges.
         compact: bool,
         /// Scale of the displacement bounds.

@@ -412,5 +412,5 @@ pub(super) fn adversary(random: &mut Random) -> Result<Model, SceneError> {
     };
     let form = VertexForm::ALL[random.below(2) as usize];
     // By way of its integers, as a kept ray's model is made again.
-    Model::of_hierarchy("hunted", quantise(&surface, BoundKind::Largest, form)?)
+    Model::of_hierarchy("hunted", quantise(&surface, BoundKind::Largest, form, 0)?)
 }

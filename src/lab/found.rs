@@ -96,6 +96,7 @@ impl Found {
             points: self.points.clone(),
             bounds: EdgeCodes { kind: BoundKind::Largest, ..EdgeCodes::default() },
             vertices: self.vertices,
+            zeros: 0,
         };
         Model::of_hierarchy("found", hierarchy)
     }

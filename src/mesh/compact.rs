@@ -6,12 +6,12 @@
 
 use super::hierarchy::edge_index;
 use super::{EdgeCodes, edges_of_tree, lattice};
-use crate::num::{COORD_LIMIT, VertexForm, displaced, displacement_shift, displacement_steps};
+use crate::num::{COORD_LIMIT, VertexForm, displaced, displacement_shift, displacement_steps, snap};
 use rayon::prelude::*;
 
-/// Zero bits of a compact vertex that a node of `level` inserts.
-pub(crate) fn inserted_zero_bits(levels: u32, level: u32) -> u32 {
-    VertexForm::Compact.zero_bits(levels - level - 1)
+/// Zero bits of a compact vertex that a node of `level` inserts, in a model of which every coordinate has `zeros`.
+pub(crate) fn inserted_zero_bits(levels: u32, level: u32, zeros: u32) -> u32 {
+    VertexForm::Compact.zero_bits(levels - level - 1, zeros)
 }
 
 /// The displacement of `q` from the midpoint of `a` and `b` in steps of 2^shift units.
@@ -19,15 +19,19 @@ pub(crate) fn steps_of(q: [i32; 3], a: [i32; 3], b: [i32; 3], shift: u32) -> [i3
     std::array::from_fn(|c| displacement_steps(i64::from(q[c]) - (i64::from(a[c]) + i64::from(b[c])) / 2, shift))
 }
 
-/// Moves every inserted vertex to where its compact form has it. Points have the zero bits of that form, and codes cover their displacements.
-pub(super) fn compact(levels: u32, points: &mut [[i32; 3]], bounds: &EdgeCodes) {
+/// Moves every inserted vertex to where its compact form has it, and base vertices to their grid. Points are on grids as fine or finer, and codes cover their displacements.
+pub(super) fn compact(levels: u32, zeros: u32, points: &mut [[i32; 3]], bounds: &EdgeCodes) {
     let edges = edges_of_tree(levels);
     if edges == 0 {
+        points.iter_mut().for_each(|p| *p = p.map(|c| snap(f64::from(c), VertexForm::Compact.zero_bits(0, zeros))));
         return;
     }
     let trees = points.par_chunks_mut(lattice::len(levels)).zip(bounds.codes.par_chunks(edges));
     trees.for_each(|(points, codes)| {
         let mut moved = points.to_vec();
+        for corner in lattice::root(levels).map(|place| lattice::index(levels, place)) {
+            moved[corner] = points[corner].map(|c| snap(f64::from(c), VertexForm::Compact.zero_bits(levels, zeros)));
+        }
         for level in 0..levels {
             let (k, half) = (1u32 << level, 1u32 << (levels - level - 1));
             // The edges of upward triangles are all edges.
@@ -36,7 +40,8 @@ pub(super) fn compact(levels: u32, points: &mut [[i32; 3]], bounds: &EdgeCodes) 
                 let [p0, p1, p2] = [at(0, 0), at(2, 0), at(0, 2)];
                 for (q, a, b) in [(at(1, 1), p1, p2), (at(0, 1), p2, p0), (at(1, 0), p0, p1)] {
                     let [own, ends @ ..] = [q, a, b].map(|place| lattice::index(levels, place));
-                    let shift = displacement_shift(bounds.scale, codes[edge_index(levels, level, a, b)], inserted_zero_bits(levels, level));
+                    let shift =
+                        displacement_shift(bounds.scale, codes[edge_index(levels, level, a, b)], inserted_zero_bits(levels, level, zeros));
                     let steps = steps_of(points[own], points[ends[0]], points[ends[1]], shift);
                     moved[own] = std::array::from_fn(|c| within(moved[ends[0]][c], moved[ends[1]][c], steps[c], shift));
                 }
@@ -77,16 +82,16 @@ mod tests {
         for scene in [Scene::Terrain, Scene::Cloth, Scene::Sphere, Scene::Spikes] {
             let levels = 4;
             let surface = generate(&Options { levels: Some(levels), base: Some(6), ..Options::new(scene) }).unwrap();
-            let mut before = quantise(&surface, BoundKind::Total, VertexForm::Exact).unwrap();
+            let mut before = quantise(&surface, BoundKind::Total, VertexForm::Exact, 0).unwrap();
             let m = 1u32 << levels;
             let places: Vec<_> = (0..=m).flat_map(|j| (0..=m - j).map(move |i| (i, j))).collect();
             for (point, place) in before.points.iter_mut().zip(places.iter().cycle()) {
-                let bits = VertexForm::Compact.zero_bits(levels - lattice::level_of(levels, *place));
+                let bits = VertexForm::Compact.zero_bits(levels - lattice::level_of(levels, *place), 0);
                 *point = point.map(|c| (c >> bits) << bits);
             }
             before.bounds = edge_codes(BoundKind::Total, levels, &before.points, &SharedEdges::new(&before.triangles));
             let mut after = before.clone();
-            compact(levels, &mut after.points, &after.bounds);
+            compact(levels, 0, &mut after.points, &after.bounds);
 
             let (mut reach, mut shorter) = (0.0, 0);
             for level in 0..levels {
@@ -96,7 +101,7 @@ mod tests {
                     for edge in 0..3 {
                         let ((new, code), (old, _)) =
                             (displacement(&after, tree, level, p, edge), displacement(&before, tree, level, p, edge));
-                        let shift = displacement_shift(after.bounds.scale, code, inserted_zero_bits(levels, level));
+                        let shift = displacement_shift(after.bounds.scale, code, inserted_zero_bits(levels, level, 0));
                         step = step.max(shift);
                         for (new, old) in new.into_iter().zip(old) {
                             assert!(new.abs() <= old.abs() && new * old >= 0, "{scene:?}: {new} of {old}");

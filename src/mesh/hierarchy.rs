@@ -87,6 +87,8 @@ pub struct Hierarchy {
     pub bounds: EdgeCodes,
     /// How inserted vertices are stored; the points are what that leaves of them.
     pub vertices: VertexForm,
+    /// Zero bits at the bottom of every coordinate, of morphed triangles too.
+    pub zeros: u32,
 }
 
 /// Number of edges of level `level` of one tree.

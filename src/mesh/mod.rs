@@ -3,6 +3,7 @@
 mod borders;
 mod bounds;
 mod clean;
+mod coarsen;
 pub(crate) mod compact;
 mod distance;
 mod farthest;
@@ -19,11 +20,12 @@ mod surface;
 
 pub use borders::{EdgeUse, SharedEdges};
 pub use clean::{CleanReport, MeshError, TriangleMesh};
+pub use coarsen::{coarsen, farthest as coarsened_by};
 pub use distance::{Distance, TwoSidedDistance};
 pub use hierarchy::{BoundKind, EdgeCodes, Hierarchy, Placement, edge_index, edges_of_level, edges_of_tree};
 pub use nearest::FinestSurface;
 pub use normals::{DEFAULT_CREASE_ANGLE, corner_normals};
-pub use quantise::{SurfaceError, quantise};
+pub use quantise::{SurfaceError, most_zeros, quantise};
 pub use read::{MESH_ENDINGS, MeshFormat, ReadError, named_files, read, read_as, read_bytes};
 pub use remesh::{DEFAULT_MAX_ERROR, RemeshError, RemeshOptions, RemeshReport, Works, remesh};
 pub use surface::Surface;

@@ -37,7 +37,7 @@ mod tests {
     #[test]
     fn vertices_lie_on_the_surface_and_what_is_above_them_is_as_far_as_it_is() {
         let options = Options { levels: Some(2), base: Some(32), ..Options::new(Scene::Terrain) };
-        let h = quantise(&generate(&options).unwrap(), crate::mesh::BoundKind::default(), crate::num::VertexForm::default()).unwrap();
+        let h = quantise(&generate(&options).unwrap(), crate::mesh::BoundKind::default(), crate::num::VertexForm::default(), 0).unwrap();
         let surface = FinestSurface::new(&h);
         for &p in h.points.iter().step_by(7) {
             let p = p.map(f64::from);

@@ -4,7 +4,7 @@ use super::borders::SharedEdges;
 use super::bounds::edge_codes;
 use super::compact::compact;
 use super::{BoundKind, Hierarchy, Placement, Surface, lattice};
-use crate::num::{COORD_LIMIT, MAX_LEVELS, VertexForm, snap};
+use crate::num::{BOX_SHIFT, COORD_LIMIT, MAX_LEVELS, VertexForm, snap};
 use rayon::prelude::*;
 use thiserror::Error;
 
@@ -17,6 +17,14 @@ pub enum SurfaceError {
     /// Too many splits.
     #[error("surface levels: {0} splits, at most {MAX_LEVELS} are possible")]
     Levels(u32),
+    /// More zero bits than there is room for.
+    #[error("surface zeros: {zeros} zero bits at the bottom of the coordinates, at most {} are possible with {levels} splits", most_zeros(*.levels))]
+    Zeros {
+        /// How many.
+        zeros: u32,
+        /// Number of splits.
+        levels: u32,
+    },
     /// More trees than a 28-bit reference can name.
     #[error("surface triangles: {0} base triangles, fewer than 2^28 are possible")]
     TooManyTrees(usize),
@@ -87,22 +95,33 @@ pub enum SurfaceError {
     },
 }
 
-/// The hierarchy of a surface: points snapped to the grids of their levels and to what vertices of this form can hold, and the bounds of all edges, of this kind.
+/// The hierarchy of a surface: points snapped to the grids of their levels, of which the finest has `zeros` zero bits, and to what vertices of this form can hold, and the
+/// bounds of all edges, of this kind.
 ///
 /// # Errors
 /// Whatever [`SurfaceError`] names: lengths, indices or values that [`Surface`] does not allow.
-pub fn quantise(surface: &Surface, kind: BoundKind, vertices: VertexForm) -> Result<Hierarchy, SurfaceError> {
+pub fn quantise(surface: &Surface, kind: BoundKind, vertices: VertexForm, zeros: u32) -> Result<Hierarchy, SurfaceError> {
+    if zeros > most_zeros(surface.levels) {
+        return Err(SurfaceError::Zeros { zeros, levels: surface.levels });
+    }
     check_shape(surface)?;
     let placement = placement(&surface.positions, lattice::len(surface.levels))?;
-    let mut points = snap_points(surface, placement, vertices);
+    let Placement { offset, scale } = placement;
+    let units = |position: [f64; 3]| std::array::from_fn(|k| (position[k] - offset[k]) / scale);
+    let mut points = snap_points(surface.levels, vertices, zeros, &surface.positions, units);
     let shared = SharedEdges::new(&surface.triangles);
     check_shared_points(surface, &points, &shared)?;
     let bounds = edge_codes(kind, surface.levels, &points, &shared);
     if vertices.is_compact() {
-        compact(surface.levels, &mut points, &bounds);
+        compact(surface.levels, zeros, &mut points, &bounds);
     }
     let Surface { levels, base_vertices, .. } = *surface;
-    Ok(Hierarchy { levels, placement, base_vertices, triangles: surface.triangles.clone(), points, bounds, vertices })
+    Ok(Hierarchy { levels, placement, base_vertices, triangles: surface.triangles.clone(), points, bounds, vertices, zeros })
+}
+
+/// The most zero bits at the bottom of every coordinate: base vertices have one more for each split, and boxes end at no more than 16.
+pub const fn most_zeros(levels: u32) -> u32 {
+    BOX_SHIFT - levels
 }
 
 /// Lengths, indices and materials.
@@ -160,19 +179,23 @@ fn placement(positions: &[[f64; 3]], per_tree: usize) -> Result<Placement, Surfa
     Ok(Placement { offset, scale })
 }
 
-/// Every point to its level's grid.
-fn snap_points(surface: &Surface, placement: Placement, vertices: VertexForm) -> Vec<[i32; 3]> {
-    let levels = surface.levels;
+/// Every point of all trees, in the units that `units` gives, to its level's grid.
+pub(super) fn snap_points<P: Copy + Sync>(
+    levels: u32,
+    vertices: VertexForm,
+    zeros: u32,
+    places: &[P],
+    units: impl Fn(P) -> [f64; 3] + Sync,
+) -> Vec<[i32; 3]> {
     let len = lattice::len(levels);
-    let Placement { offset, scale } = placement;
     // The zero bits of each lattice point are the same for all trees.
     let m = 1 << levels;
     let zero_bits: Vec<u32> =
-        (0..=m).flat_map(|j| (0..=m - j).map(move |i| vertices.zero_bits(levels - lattice::level_of(levels, (i, j))))).collect();
-    let mut points = vec![[0; 3]; surface.positions.len()];
-    points.par_chunks_mut(len).zip(surface.positions.par_chunks(len)).for_each(|(points, positions)| {
-        for ((point, position), &bits) in points.iter_mut().zip(positions).zip(&zero_bits) {
-            *point = std::array::from_fn(|k| snap((position[k] - offset[k]) / scale, bits));
+        (0..=m).flat_map(|j| (0..=m - j).map(move |i| vertices.zero_bits(levels - lattice::level_of(levels, (i, j)), zeros))).collect();
+    let mut points = vec![[0; 3]; places.len()];
+    points.par_chunks_mut(len).zip(places.par_chunks(len)).for_each(|(points, places)| {
+        for ((point, &place), &bits) in points.iter_mut().zip(places).zip(&zero_bits) {
+            *point = units(place).map(|v| snap(v, bits));
         }
     });
     points

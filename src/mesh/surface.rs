@@ -66,6 +66,6 @@ mod tests {
         // The corners are where a lattice has them.
         let corners = lattice::root(0).map(|p| lattice::index(0, p));
         assert_eq!(corners, [0, 1, 2]);
-        assert!(quantise(&surface, BoundKind::Largest, crate::num::VertexForm::Exact).is_ok());
+        assert!(quantise(&surface, BoundKind::Largest, crate::num::VertexForm::Exact, 0).is_ok());
     }
 }

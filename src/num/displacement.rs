@@ -31,12 +31,12 @@ impl VertexForm {
         self == Self::Compact
     }
 
-    /// Zero bits at the bottom of a vertex whose level's grid has `grid` of them.
-    pub fn zero_bits(self, grid: u32) -> u32 {
+    /// Zero bits at the bottom of a vertex with `finer` levels below its own, in a model of which every coordinate has `zeros`.
+    pub fn zero_bits(self, finer: u32, zeros: u32) -> u32 {
         match self {
-            Self::Exact => grid.max(super::PADDING_BITS),
+            Self::Exact => (finer + zeros).max(super::PADDING_BITS),
             // Midpoints of finer levels keep the padding.
-            Self::Compact => grid + super::PADDING_BITS,
+            Self::Compact => finer + zeros.max(super::PADDING_BITS),
         }
     }
 }

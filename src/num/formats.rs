@@ -16,6 +16,8 @@ pub const BOX_SHIFT: u32 = 16;
 pub const BOX_MARGIN: i32 = 64;
 /// Length of a ray direction.
 pub const DIRECTION_SCALE: i32 = (1 << 30) - 1;
+/// The most zero bits at the bottom of the components of directions, with room left for 16 of coordinates: what the LOD test drops of their product.
+pub const MOST_DIRECTION_ZEROS: u32 = 30 - BOX_SHIFT;
 /// s = 1 of an edge state.
 pub const S_ONE: u64 = 256;
 /// 1 of a barycentric coordinate.

@@ -43,7 +43,8 @@ mod tests {
 
     #[test]
     fn errors_are_in_pixels() {
-        let space = ModelSpace { placement: Placement { offset: [0.0; 3], scale: 1e-9 }, lo: [-1 << 30; 3], hi: [1 << 30; 3] };
+        let space =
+            ModelSpace { placement: Placement { offset: [0.0; 3], scale: 1e-9 }, lo: [-1 << 30; 3], hi: [1 << 30; 3], zeros: [0; 2] };
         let camera = Camera::new(&View::default(), &space, 2, 2).unwrap();
         let at = |distance| Some(SurfaceHit { distance, ..SurfaceHit::default() });
         let frame = |pixels: Vec<Option<SurfaceHit>>| Frame { width: 2, height: 2, pixels };

@@ -149,7 +149,7 @@ impl Met {
                 let c = c as i32; // 13 bits
                 self.displacement = [self.displacement[0].min(c), self.displacement[1].max(c)];
             }
-            let zeros = inserted_zero_bits(levels, level);
+            let zeros = inserted_zero_bits(levels, level, meta.coordinate_zeros);
             self.shift = codes.into_iter().map(|code| displacement_shift(meta.bound_scale(), code, zeros)).fold(self.shift, u32::max);
         }
         if level + 1 < levels {

@@ -275,7 +275,7 @@ mod tests {
 
     fn space() -> ModelSpace {
         let side = 1 << 20;
-        ModelSpace { placement: Placement { offset: [0.0; 3], scale: 1.0 / f64::from(side) }, lo: [-side; 3], hi: [side; 3] }
+        ModelSpace { placement: Placement { offset: [0.0; 3], scale: 1.0 / f64::from(side) }, lo: [-side; 3], hi: [side; 3], zeros: [0; 2] }
     }
 
     #[test]

@@ -75,7 +75,12 @@ mod tests {
 
     #[test]
     fn a_camera_gives_each_pixel_once_and_knows_how_near_the_model_is() {
-        let space = ModelSpace { placement: Placement { offset: [1.0, 0.0, 0.0], scale: 0.5 }, lo: [-10, -20, -30], hi: [10, 20, 30] };
+        let space = ModelSpace {
+            placement: Placement { offset: [1.0, 0.0, 0.0], scale: 0.5 },
+            lo: [-10, -20, -30],
+            hi: [10, 20, 30],
+            zeros: [0; 2],
+        };
         let view = View { eye: Some([1.0, 0.0, 115.0]), target: Some([1.0, 0.0, 0.0]), ..View::default() };
         let camera = Camera::new(&view, &space, 19, 13).unwrap();
         let mut seen = vec![0; 19 * 13];

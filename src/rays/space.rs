@@ -14,6 +14,8 @@ pub struct ModelSpace {
     pub lo: [i32; 3],
     /// Upper corner.
     pub hi: [i32; 3],
+    /// Zero bits at the bottom of the coordinates of origins, and of components of directions.
+    pub zeros: [u32; 2],
 }
 
 /// A ray as the hardware takes it, and how to get back.
@@ -40,7 +42,7 @@ impl ModelSpace {
     /// The space of a scene.
     pub fn of(scene: &Scene) -> Self {
         let meta = scene.meta();
-        Self { placement: meta.placement, lo: meta.lo, hi: meta.hi }
+        Self { placement: meta.placement, lo: meta.lo, hi: meta.hi, zeros: [meta.coordinate_zeros, meta.direction_zeros] }
     }
 
     /// Centre of the box in world space.
@@ -54,9 +56,14 @@ impl ModelSpace {
         0.5 * self.placement.scale * sides.iter().map(|s| s * s).sum::<f64>().sqrt()
     }
 
+    /// Units by which the model's box is enlarged: a step of origins at least.
+    fn margin(&self) -> f64 {
+        f64::from(BOX_MARGIN.max(1 << self.zeros[0]))
+    }
+
     /// Corners, in units, of the box outside which [`Self::enter`] finds nothing.
     pub fn enlarged(&self) -> [[f64; 3]; 8] {
-        let margin = f64::from(BOX_MARGIN);
+        let margin = self.margin();
         let side = |k: usize, upper| if upper { f64::from(self.hi[k]) + margin } else { f64::from(self.lo[k]) - margin };
         std::array::from_fn(|corner| std::array::from_fn(|k| side(k, corner >> k & 1 == 1)))
     }
@@ -80,7 +87,7 @@ impl ModelSpace {
         if !origin.iter().all(|c| c.is_finite()) {
             return None;
         }
-        let margin = f64::from(BOX_MARGIN);
+        let margin = self.margin();
         let lo = self.lo.map(|v| f64::from(v) - margin);
         let hi = self.hi.map(|v| f64::from(v) + margin);
 
@@ -100,10 +107,11 @@ impl ModelSpace {
             return None;
         }
 
-        let d = direction.map(|c| (c * f64::from(DIRECTION_SCALE)).round() as i64); // at most DIRECTION_SCALE
+        let d = direction.map(|c| to_step(c * f64::from(DIRECTION_SCALE), self.zeros[1], f64::from(DIRECTION_SCALE)));
         let length = d.iter().map(|&c| (c as f64) * (c as f64)).sum::<f64>().sqrt();
         // Clamping keeps the point in the enlarged box, hence in 32 bits.
-        let x: [i64; 3] = std::array::from_fn(|k| (origin[k] + near * direction[k]).clamp(lo[k], hi[k]).round() as i64);
+        let x: [i64; 3] =
+            std::array::from_fn(|k| to_step((origin[k] + near * direction[k]).clamp(lo[k], hi[k]), self.zeros[0], f64::from(i32::MAX)));
         let radius = world.radius / self.placement.scale + near * world.tan_theta;
         let ray = Ray {
             origin: Point::new(x[0], x[1], x[2]),
@@ -115,6 +123,13 @@ impl ModelSpace {
         let range = [steps_from(world.t_min, start, step), steps_to(world.t_max, start, step)?];
         Some(ModelRay { ray, start, step, range })
     }
+}
+
+/// The nearest multiple of 2^`zeros` that is at most `most` in magnitude.
+fn to_step(v: f64, zeros: u32, most: f64) -> i64 {
+    let step = f64::from(1u32 << zeros);
+    let last = (most / step).floor();
+    ((v / step).round().clamp(-last, last) as i64) << zeros // at most 31 bits
 }
 
 /// The first step of t that is not nearer than `t`: rounded up; 0 for what lies before the ray's start, and for what is no number.
@@ -149,7 +164,12 @@ mod tests {
     use super::*;
 
     fn space() -> ModelSpace {
-        ModelSpace { placement: Placement { offset: [10.0, 0.0, 0.0], scale: 0.5 }, lo: [-1600, -1600, -1600], hi: [1600, 1600, 1600] }
+        ModelSpace {
+            placement: Placement { offset: [10.0, 0.0, 0.0], scale: 0.5 },
+            lo: [-1600, -1600, -1600],
+            hi: [1600, 1600, 1600],
+            zeros: [0; 2],
+        }
     }
 
     fn ray(origin: [f64; 3], direction: [f64; 3]) -> Query {

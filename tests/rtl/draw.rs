@@ -13,11 +13,13 @@ pub struct Draw {
     pub(crate) rng: Rng,
     /// The most levels that the hardware under test is for.
     pub levels: u64,
+    /// The zero bits at the bottom of all coordinates that it leaves out.
+    pub zeros: u64,
 }
 
 impl Draw {
     pub fn new(seed: u64) -> Self {
-        Self { rng: Rng(seed), levels: u64::from(MAX_LEVELS) }
+        Self { rng: Rng(seed), levels: u64::from(MAX_LEVELS), zeros: 0 }
     }
 
     /// 0 to `n` - 1.

@@ -16,6 +16,7 @@ mod draw;
 mod hit_divide;
 mod hit_select;
 mod lod_test;
+mod narrow_hardware;
 mod node_address;
 mod other_hardware;
 mod queues;

@@ -32,8 +32,11 @@ fn blocks_that_depend_on_the_levels() {
     play(&OTHERS, bary_map::suite);
     play(&OTHERS, hit_select::suite);
     play(&OTHERS, node_address::suite);
-    play(&OTHERS, tessellate::suite);
     play(&OTHERS, tree_base::suite);
+    for &hardware in &OTHERS {
+        let zeros = u64::from(hardware.coordinate_zeros);
+        play(&[hardware], |levels| tessellate::suite(levels, zeros));
+    }
     OTHERS.iter().for_each(|hardware| traversal_stack::play(hardware, TRANSACTIONS));
 }
 

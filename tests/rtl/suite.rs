@@ -54,12 +54,17 @@ pub type Event<B> = (&'static str, fn(&<B as Block>::In, &<B as Block>::Out) -> 
 /// A number of which each value of a range must occur, and no other.
 pub type Spread<B> = (&'static str, RangeInclusive<u64>, fn(&<B as Block>::In, &<B as Block>::Out) -> u64);
 
+/// An input with so many zero bits at the bottom of all coordinates and directions.
+pub type Coarsen<B> = fn(<B as Block>::In, [u32; 2]) -> <B as Block>::In;
+
 /// The test of one block.
 pub struct Suite<B: Block> {
     pub build: Build,
     /// Where a parameter gives another than the block's own.
     pub timing: Timing,
     pub hardware: Hardware,
+    /// Takes from inputs the bits that the hardware leaves out. They are no longer what their category says then, nor what must happen.
+    pub coarsen: Option<Coarsen<B>>,
     /// The legal inputs, as the head of the block's file states them.
     pub legal: fn(&B::In) -> bool,
     pub categories: Vec<Category<B>>,
@@ -88,7 +93,21 @@ where
 {
     /// The block as it stands, with its own timing.
     pub fn new(legal: fn(&B::In) -> bool, categories: Vec<Category<B>>, events: Vec<Event<B>>, spreads: Vec<Spread<B>>) -> Self {
-        Self { build: Build::block::<B>(), timing: B::TIMING, hardware: Hardware::default(), legal, categories, events, spreads }
+        Self {
+            build: Build::block::<B>(),
+            timing: B::TIMING,
+            hardware: Hardware::default(),
+            coarsen: None,
+            legal,
+            categories,
+            events,
+            spreads,
+        }
+    }
+
+    /// With inputs as such hardware takes them.
+    pub fn coarsened(self, coarsen: Coarsen<B>) -> Self {
+        Self { coarsen: Some(coarsen), events: Vec::new(), spreads: Vec::new(), ..self }
     }
 
     /// The same for other hardware.
@@ -153,6 +172,7 @@ impl<'a, B: Block> Inputs<'a, B> {
         let (drawn, seen) = (vec![(0, 0); suite.categories.len()], vec![0; suite.events.len()]);
         let mut draw = Draw::new(seed);
         draw.levels = u64::from(suite.hardware.levels);
+        draw.zeros = u64::from(suite.hardware.coordinate_zeros);
         Self { suite, draw, left: count, made: 0, drawn, seen, spread, fault: None }
     }
 
@@ -214,6 +234,12 @@ where
         let k = self.draw.below(self.suite.categories.len() as u64) as usize;
         let category = &self.suite.categories[k];
         let input = (category.make)(&mut self.draw);
+        if let Some(coarsen) = self.suite.coarsen {
+            self.drawn[k].0 += 1;
+            self.drawn[k].1 += 1;
+            let Hardware { coordinate_zeros, direction_zeros, .. } = self.suite.hardware;
+            return Some(coarsen(input, [coordinate_zeros, direction_zeros]));
+        }
         let out = B::eval(&input);
 
         let kept = (category.holds)(&input, &out);

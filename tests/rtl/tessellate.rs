@@ -9,6 +9,8 @@ use tb::Mode;
 
 const LIMIT: i64 = 0x7FFE_0000;
 const _: () = assert!(LIMIT == COORD_LIMIT as i64);
+/// Most zero bits of an inserted vertex as morphed.
+const MOST_GRID: u64 = 15;
 /// What displacements can be.
 const STEPS: [i64; 2] = [-4096, 4095];
 
@@ -41,7 +43,7 @@ fn codes(i: &In) -> [BoundCode; 3] {
 /// Shift of the displacement on edge `k`.
 fn shift(i: &In, k: usize) -> u64 {
     let octave = (codes(i)[k].get() + i.scale.offset.get()) / 16;
-    octave.saturating_sub(11).max(i.grid.get() + 4)
+    octave.saturating_sub(11).max(i.grid.get() + i.padding.get())
 }
 
 fn full(o: &Out) -> [[i64; 3]; 3] {
@@ -54,12 +56,15 @@ fn morphed(o: &Out) -> [[i64; 3]; 3] {
 
 /// Corners and states in either form, and as what vertices `vertex` gives: from the midpoint of the full-resolution edge and the shift to be used.
 fn triangle(draw: &mut Draw, mut state: impl FnMut(&mut Draw) -> EdgeState) -> In {
-    let grid = draw.below(draw.levels);
+    // Of models on coarser grids too, as far as there are.
+    let zeros = draw.zeros.max(if draw.once_in(2) { draw.below(7) } else { 0 });
+    let grid = (draw.below(draw.levels) + zeros).min(MOST_GRID);
+    let padding = U::new(4u64.saturating_sub(zeros));
     let [s0, s1, s2] = [0; 3].map(|_| state(draw));
     let [f0, f1, f2, p0, p1, p2] = [0; 6].map(|_| on_grid(draw, grid + 1));
     let [e0, e1, e2] = [0; 3].map(|_| draw.bits());
     let (compact, grid, scale) = (draw.once_in(2), U::new(grid), draw.scale());
-    let input = In { compact, grid, scale, e0, e1, e2, s0, s1, s2, f0, f1, f2, p0, p1, p2, ..In::default() };
+    let input = In { compact, grid, padding, scale, e0, e1, e2, s0, s1, s2, f0, f1, f2, p0, p1, p2, ..In::default() };
     stored(draw, input, |draw, low, high| match draw.below(8) {
         0 => low,
         1 => high,
@@ -149,7 +154,7 @@ fn legal(i: &In) -> bool {
         let (m, by) = (middles(i, false)[k], shift(i, k));
         v.iter().all(|v| (STEPS[0]..=STEPS[1]).contains(v)) && on([0, 1, 2].map(|k| m[k] + (v[k] << by)), grid)
     };
-    grid <= 9
+    grid <= MOST_GRID
         && i.scale.offset.get() <= MAX_BOUND_OFFSET
         && [i.s0, i.s1, i.s2].iter().all(|s| s.get() <= S_ONE)
         && [i.f0, i.f1, i.f2, i.p0, i.p1, i.p2].into_iter().all(|p| on(p.get(), grid + 1))
@@ -162,8 +167,8 @@ fn stored_as_they_are(i: &In, o: &Out) -> bool {
 
 type Is = Category<Tessellate>;
 
-/// For hardware of so many levels.
-pub fn suite(levels: u64) -> Suite<Tessellate> {
+/// For hardware of so many levels, and so many zeros of all coordinates.
+pub fn suite(levels: u64, zeros: u64) -> Suite<Tessellate> {
     Suite::new(
         legal,
         vec![
@@ -191,24 +196,24 @@ pub fn suite(levels: u64) -> Suite<Tessellate> {
             ("the most steps back", |i, _| i.compact && i.v1.get()[1] == STEPS[0]),
             ("the most steps ahead", |i, _| i.compact && i.v1.get()[1] == STEPS[1]),
             ("shifts of all kinds in a triangle", |i, _| {
-                i.compact && shift(i, 0) < shift(i, 1) && shift(i, 1) < shift(i, 2) && shift(i, 0) > i.grid.get() + 4
+                i.compact && shift(i, 0) < shift(i, 1) && shift(i, 1) < shift(i, 2) && shift(i, 0) > i.grid.get() + i.padding.get()
             }),
             ("code 0", |i, _| i.compact && i.e2.get() == 0 && i.scale.offset.get() == MAX_BOUND_OFFSET),
         ],
         vec![
-            ("grid: N - n - 1", 0..=levels - 1, |i, _| i.grid.get()),
+            ("grid: N - n - 1 + Z", zeros..=MOST_GRID.min(levels - 1 + zeros.max(6)), |i, _| i.grid.get()),
             ("s", 0..=256, |i, _| i.s1.get()),
-            ("shift", 4..=21, |i, _| if i.compact { shift(i, 2) } else { 4 }),
+            ("shift", zeros.max(4)..=21, |i, _| if i.compact { shift(i, 2) } else { 21 }),
         ],
     )
 }
 
 #[test]
 fn free_running() {
-    suite(u64::from(MAX_LEVELS)).run(Mode::Free);
+    suite(u64::from(MAX_LEVELS), 0).run(Mode::Free);
 }
 
 #[test]
 fn stalled() {
-    suite(u64::from(MAX_LEVELS)).run(Mode::Stalled);
+    suite(u64::from(MAX_LEVELS), 0).run(Mode::Stalled);
 }

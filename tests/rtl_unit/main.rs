@@ -9,6 +9,7 @@ use lodray::format::Scene;
 use lodray::golden::exact::Exact;
 use lodray::hardware::Hardware;
 use lodray::hardware::ports::HitOut;
+use lodray::mesh::most_zeros;
 use lodray::mesh::procedural::{self, Options};
 use lodray::method::lod::LodImage;
 use lodray::num::{Ray, VertexForm};
@@ -16,7 +17,7 @@ use lodray::rays::{Camera, ModelSpace, View};
 use lodray::sim::unit::environment::{RunReport, UnitPort, run};
 use lodray::sim::unit::{Inputs, Latency, Outputs, SceneMemory, Stall, Traffic, TraversalUnit};
 use lodray_test_support::hardware::OTHERS;
-use lodray_test_support::models::{Rng, any_rays, ball, build_with, scene_of, terrain, with_vertices};
+use lodray_test_support::models::{Rng, any_rays, ball, build_with, coarsened, scene_of, terrain, with_vertices, with_zeros};
 use lodray_test_support::plain::plain;
 use port::Rtl;
 
@@ -123,9 +124,12 @@ fn random_rays(hardware: &[Hardware], wanted: u64) {
         let levels = (round % u64::from(most + 1)) as u32;
         let roughness = [0.05, 0.4, 1.5][rng.below(3) as usize];
         let h = if rng.below(2) == 0 { ball(levels, roughness, seed) } else { terrain(2, levels, roughness, seed) };
-        let h = with_vertices(VertexForm::ALL[rng.below(2) as usize], h);
         let config = hardware[round as usize % hardware.len()];
+        // As many zeros as the hardware leaves out, or some more.
+        let zeros = (config.coordinate_zeros + rng.below(3) as u32 * rng.below(3) as u32).min(most_zeros(levels));
+        let h = with_vertices(VertexForm::ALL[rng.below(2) as usize], with_zeros(zeros, h));
         let rays = any_rays(&h, 20 * config.contexts, seed);
+        let rays: Vec<Ray> = rays.iter().map(|ray| coarsened(ray, [zeros, config.direction_zeros])).collect();
         let (report, met) = compare(&scene_of(&h), config, &any_traffic(&mut rng), &rays, seed);
         cycles += report.cycles;
         traced += rays.len();

@@ -10,6 +10,8 @@ pub use multiplier::{LIMB, cross_product_latency, dot_product_latency, multiplie
 pub(super) use multiplier::{Multiplier, cross_product, dot_product};
 pub use registers::Registers;
 
+use super::Form;
+use super::tri_test::{EdgeFunction, TNumerator};
 use crate::num::{Direction, EdgeState, Point, Wire};
 
 /// What a block is made of and an operation of it does: each comparison is a sum, each step of a shifter a selection.
@@ -28,23 +30,60 @@ pub struct Parts {
 /// Bits of the tag of a block that stands alone, as in `docs/hardware.md` and in the tests: the RTL's default.
 pub const TAG: u32 = 8;
 
-/// Difference of two coordinates.
-pub const RELATIVE: u32 = Point::WIDTH / 3 + 1;
-/// Component of p x q: |p_i q_j| < 2^64, and two of them.
-pub const NORMAL: u32 = 2 * RELATIVE;
-/// A component of a direction.
-pub const COMPONENT: u32 = Direction::WIDTH / 3;
+impl Form {
+    /// A coordinate without the bits that are always 0.
+    pub const fn coordinate(&self) -> u32 {
+        Point::WIDTH / 3 - self.coordinate_zeros
+    }
+
+    /// Difference of two coordinates.
+    pub const fn relative(&self) -> u32 {
+        self.coordinate() + 1
+    }
+
+    /// Component of p x q: |p_i q_j| < 2^64, and two of them.
+    pub const fn normal(&self) -> u32 {
+        2 * self.relative()
+    }
+
+    /// A component of a direction.
+    pub const fn component(&self) -> u32 {
+        Direction::WIDTH / 3 - self.direction_zeros
+    }
+
+    /// Edge function with its sign, below 2^96 in steps of the bits that are always 0.
+    pub const fn signed_edge(&self) -> u32 {
+        EdgeFunction::WIDTH + 1 - 2 * self.coordinate_zeros - self.direction_zeros
+    }
+
+    /// Numerator of t with its sign, likewise below 2^98.4.
+    pub const fn signed_t(&self) -> u32 {
+        TNumerator::WIDTH + 1 - 3 * self.coordinate_zeros
+    }
+
+    /// Registers of the products of p x q with d, and of those with a beside them: so many that both take as long.
+    pub const fn edge_product_stages(&self) -> [u32; 2] {
+        let [d, a] = [dot_product_latency(self.normal(), self.component()), dot_product_latency(self.normal(), self.relative())];
+        let longest = if d > a { d } else { a };
+        [EDGE_PRODUCT_STAGES + longest - d, EDGE_PRODUCT_STAGES + longest - a]
+    }
+
+    /// Cycles of `edge_function`: p x q, and its product with d.
+    pub const fn edge_function_latency(&self) -> u32 {
+        let [with_d, _] = self.edge_product_stages();
+        cross_product_latency(self.relative()) + with_d - 1 + dot_product_latency(self.normal(), self.component())
+    }
+}
+
 /// l = (p - x).d / 2^30 of the LOD test, signed: below 2^62.8 and its fraction dropped.
-pub const DISTANCE: u32 = RELATIVE + COMPONENT - 30;
+pub const DISTANCE: u32 = Form::FULL.relative() + Form::FULL.component() - 30;
 /// D of the LOD test, clamped to this width.
 pub const TOLERANCE: u32 = 34;
 
-/// Registers of the products of an edge function.
+/// Registers of the products of an edge function, where nothing beside them takes longer.
 pub const EDGE_PRODUCT_STAGES: u32 = 2;
 /// Cycles of `entry_distance`: factors, products, the shift, and the largest of three.
 pub const ENTRY_DISTANCE_LATENCY: u32 = 5;
-/// Cycles of `edge_function`: p x q, and its product with d.
-pub const EDGE_FUNCTION_LATENCY: u32 = cross_product_latency(RELATIVE) + EDGE_PRODUCT_STAGES - 1 + dot_product_latency(NORMAL, COMPONENT);
 /// Cycles of `tri_decide`: signs, decision, numbers.
 pub const TRI_DECIDE_LATENCY: u32 = 3;
 /// Cycles of `cone_tolerance`: factors, l slope, the sum, a shift in two steps, the clamp.

@@ -233,7 +233,7 @@ fn scene(source: &ListText<'_>, list: &List, spanned: &Spanned<SceneEntry>, fold
 /// A place for a model that is not there yet. Its centre is nowhere in particular, so that a camera that is impossible here is so for every model.
 fn stand_in() -> ModelSpace {
     let placement = Placement { offset: [0.312, 0.417, 0.523], scale: 2f64.powi(-31) };
-    ModelSpace { placement, lo: [-1 << 30; 3], hi: [1 << 30; 3] }
+    ModelSpace { placement, lo: [-1 << 30; 3], hi: [1 << 30; 3], zeros: [0; 2] }
 }
 
 fn views(source: &ListText<'_>, list: &List, spanned: &Spanned<SceneEntry>) -> anyhow::Result<Vec<ViewJob>> {

@@ -68,7 +68,7 @@ impl SceneJobs {
     pub fn open(&self) -> anyhow::Result<Scene> {
         match &self.origin {
             Origin::File(file) => open(file),
-            Origin::Generate(made) => make(&made.options, FormArgs { bounds: made.bounds, vertices: made.vertices }),
+            Origin::Generate(made) => make(&made.options, FormArgs { bounds: made.bounds, vertices: made.vertices, ..FormArgs::default() }),
         }
     }
 

@@ -15,7 +15,7 @@ use crate::block::ray_setup::RaySetup;
 use crate::block::tessellate::Tessellate;
 use crate::block::tree_base::TreeBase;
 use crate::block::tri_test::{EdgeFunction, TNumerator, TriTest};
-use crate::block::{Block, EdgesPerCycle, parts};
+use crate::block::{Block, EdgesPerCycle, Form, parts};
 use crate::hardware::Hardware;
 use crate::num::{BOX_SHIFT, Bary, BoundCode, EdgeState, LineAddress, RayT, S_ONE, T_NEAR_TO_T_SHIFT, TNear, Wire};
 use std::fmt::Write;
@@ -70,7 +70,13 @@ pub(super) fn print(hardware: &Hardware, out: &mut String) {
     .put("MAX_BVH_DEPTH", hardware.bvh_depth, "quad-BVH nodes on a path from the root to a tree")
     .put("CONTEXTS", hardware.contexts, "rays under way in a traversal unit, if its parameter does not say otherwise")
     .put("CONTEXT_W", hardware.context_bits, "bits of a context's number")
-    .put("EDGES_PER_CYCLE", edges, "edge functions that tri_test evaluates in a cycle, if its parameter does not say otherwise");
+    .put("EDGES_PER_CYCLE", edges, "edge functions that tri_test evaluates in a cycle, if its parameter does not say otherwise")
+    .put("COORDINATE_ZEROS", hardware.coordinate_zeros, "zero bits at the bottom of every coordinate, which it leaves out")
+    .put("DIRECTION_ZEROS", hardware.direction_zeros, "of every component of a direction");
+    let form = hardware.form();
+    let [edge_stages, t_stages] = form.edge_product_stages();
+    let edges_at = |edges_per_cycle| TriTest::timing(&Form { edges_per_cycle, ..form });
+    let (three, one) = (edges_at(EdgesPerCycle::Three), edges_at(EdgesPerCycle::One));
     let widths = Group::new("Widths (docs/numbers.md).")
         .put("RAY_T_W", RayT::WIDTH, "t in steps of 2^-32")
         .put("T_NEAR_W", TNear::WIDTH, "t_near in steps of 2^16 units")
@@ -83,12 +89,15 @@ pub(super) fn print(hardware: &Hardware, out: &mut String) {
         .put("LINE_ADDRESS_W", LineAddress::WIDTH, "2 TiB of 32-byte lines")
         .put("NODE_INDEX_W", NodeIndex::WIDTH, "of a node at the ports: 4^10 nodes on the last level that there can be")
         .put("FULL_ID_W", FullId::WIDTH, "28 bits of tree, 2 of each of ten levels")
-        .put("RELATIVE_W", parts::RELATIVE, "difference of two 32-bit coordinates")
-        .put("NORMAL_W", parts::NORMAL, "component of p x q: |p_i q_j| < 2^64, two of them")
+        .put("COORDINATE_W", form.coordinate(), "a coordinate without the bits that are always 0")
+        .put("COMPONENT_W", form.component(), "a component of a direction, likewise")
+        .put("RELATIVE_W", form.relative(), "difference of two coordinates")
+        .put("NORMAL_W", form.normal(), "component of p x q: two products of two differences")
         .put("EDGE_FUNCTION_W", EdgeFunction::WIDTH, "|p x q| |d| < 2^96")
-        .put("SIGNED_EDGE_W", "EDGE_FUNCTION_W + 1", "")
+        .put("EDGE_ZEROS", "2 * COORDINATE_ZEROS + DIRECTION_ZEROS", "at the bottom of an edge function")
+        .put("SIGNED_EDGE_W", "EDGE_FUNCTION_W + 1 - EDGE_ZEROS", "")
         .put("T_NUMERATOR_W", TNumerator::WIDTH, "|a| |b| |c| < 2^98.4")
-        .put("SIGNED_T_NUMERATOR_W", "T_NUMERATOR_W + 1", "");
+        .put("SIGNED_T_NUMERATOR_W", "T_NUMERATOR_W + 1 - 3 * COORDINATE_ZEROS", "");
     let sizes = Group::new("Sizes.")
         .put("MAX_CONTEXTS", 1u32 << hardware.context_bits, "that CONTEXT_W can number")
         .put(
@@ -121,14 +130,16 @@ pub(super) fn print(hardware: &Hardware, out: &mut String) {
     .timing::<RaySetup>(hardware)
     .timing::<Tessellate>(hardware)
     .timing::<TreeBase>(hardware)
-    .put("TRI_TEST_LATENCY", TriTest::TIMING.latency, "with EDGES_PER_CYCLE = 3")
-    .put("TRI_TEST_1_LATENCY", TriTest::ONE_EDGE.latency, "with EDGES_PER_CYCLE = 1")
-    .put("TRI_TEST_1_INTERVAL", TriTest::ONE_EDGE.interval, "")
+    .put("TRI_TEST_LATENCY", three.latency, "with EDGES_PER_CYCLE = 3")
+    .put("TRI_TEST_1_LATENCY", one.latency, "with EDGES_PER_CYCLE = 1")
+    .put("TRI_TEST_1_INTERVAL", one.interval, "")
     .put("CHILD_TEST_LATENCY", "CHILD_BOXES_LATENCY + BOX_TEST_LATENCY + CHILD_SORT_LATENCY", "");
     let parts = Group::new("Cycles of parts of blocks.")
         .put("ENTRY_DISTANCE_LATENCY", parts::ENTRY_DISTANCE_LATENCY, "of the box tests")
-        .put("EDGE_PRODUCT_STAGES", parts::EDGE_PRODUCT_STAGES, "registers of the products of an edge function")
-        .put("EDGE_FUNCTION_LATENCY", parts::EDGE_FUNCTION_LATENCY, "of tri_test")
+        .put("EDGE_PRODUCT_STAGES", parts::EDGE_PRODUCT_STAGES, "registers of the products of a cross product")
+        .put("EDGE_DOT_STAGES", edge_stages, "of those with a direction")
+        .put("T_DOT_STAGES", t_stages, "of those of t, which take as long")
+        .put("EDGE_FUNCTION_LATENCY", form.edge_function_latency(), "of tri_test")
         .put("TRI_DECIDE_LATENCY", parts::TRI_DECIDE_LATENCY, "of tri_test")
         .put("CONE_TOLERANCE_LATENCY", parts::CONE_TOLERANCE_LATENCY, "of lod_test")
         .put("EDGE_OPENING_LATENCY", parts::EDGE_OPENING_LATENCY, "of lod_test")

@@ -1,4 +1,66 @@
 
+  // Coordinates and directions as they are kept, without the bits that are always 0; and as they were.
+  typedef struct packed {
+    logic signed [COORDINATE_W-1:0] x;
+    logic signed [COORDINATE_W-1:0] y;
+    logic signed [COORDINATE_W-1:0] z;
+  } kept_point_t;
+  localparam int unsigned KEPT_POINT_W = 3 * COORDINATE_W;
+  localparam int unsigned KEPT_DIRECTION_W = 3 * COMPONENT_W;
+  function automatic kept_point_t keep_point(input point_t p);
+    keep_point = {COORDINATE_W'(p.x >>> COORDINATE_ZEROS), COORDINATE_W'(p.y >>> COORDINATE_ZEROS), COORDINATE_W'(p.z >>> COORDINATE_ZEROS)};
+  endfunction
+  function automatic point_t whole_point(input kept_point_t p);
+    whole_point = {32'(p.x) << COORDINATE_ZEROS, 32'(p.y) << COORDINATE_ZEROS, 32'(p.z) << COORDINATE_ZEROS};
+  endfunction
+  typedef struct packed {
+    logic signed [COMPONENT_W-1:0] x;
+    logic signed [COMPONENT_W-1:0] y;
+    logic signed [COMPONENT_W-1:0] z;
+  } kept_direction_t;
+  function automatic kept_direction_t keep_direction(input direction_t d);
+    keep_direction = {COMPONENT_W'(d.x >>> DIRECTION_ZEROS), COMPONENT_W'(d.y >>> DIRECTION_ZEROS), COMPONENT_W'(d.z >>> DIRECTION_ZEROS)};
+  endfunction
+  function automatic direction_t whole_direction(input kept_direction_t d);
+    whole_direction = {31'(d.x) << DIRECTION_ZEROS, 31'(d.y) << DIRECTION_ZEROS, 31'(d.z) << DIRECTION_ZEROS};
+  endfunction
+
+  // Constants of a ray as a context keeps them.
+  localparam int unsigned KEPT_D_W = 30 - DIRECTION_ZEROS;
+  localparam int unsigned MOMENT_ZEROS = COORDINATE_ZEROS + DIRECTION_ZEROS;
+  localparam int unsigned KEPT_MOMENT_W = 63 - MOMENT_ZEROS;
+  typedef struct packed {
+    logic mirror;
+    logic [KEPT_D_W-1:0] d;
+    logic [COORDINATE_W-1:0] origin;
+    logic signed [16:0] ceil;
+    reciprocal_t reciprocal;
+  } kept_axis_t;
+  typedef struct packed {
+    kept_axis_t x;
+    kept_axis_t y;
+    kept_axis_t z;
+    logic [2:0][KEPT_MOMENT_W-1:0] moment;
+  } kept_setup_t;
+  function automatic kept_axis_t keep_axis(input axis_t a);
+    keep_axis = {a.mirror, KEPT_D_W'(a.d >> DIRECTION_ZEROS), COORDINATE_W'(a.origin >>> COORDINATE_ZEROS), a.ceil, a.reciprocal};
+  endfunction
+  function automatic axis_t whole_axis(input kept_axis_t a);
+    whole_axis = {a.mirror, 30'(a.d) << DIRECTION_ZEROS, 32'(a.origin) << COORDINATE_ZEROS, a.ceil, a.reciprocal};
+  endfunction
+  function automatic kept_setup_t keep_setup(input ray_setup_out_t r);
+    keep_setup = {keep_axis(r.x), keep_axis(r.y), keep_axis(r.z), KEPT_MOMENT_W'(r.moment.x >>> MOMENT_ZEROS),
+                  KEPT_MOMENT_W'(r.moment.y >>> MOMENT_ZEROS), KEPT_MOMENT_W'(r.moment.z >>> MOMENT_ZEROS)};
+  endfunction
+  function automatic ray_setup_out_t whole_setup(input kept_setup_t r);
+    whole_setup = {whole_axis(r.x), whole_axis(r.y), whole_axis(r.z), 63'(r.moment[2]) << MOMENT_ZEROS, 63'(r.moment[1]) << MOMENT_ZEROS, 63'(r.moment[0]) << MOMENT_ZEROS};
+  endfunction
+
+  // A corner as seen from an origin.
+  function automatic logic [3*RELATIVE_W-1:0] relative_corner(input kept_point_t p, input kept_point_t x);
+    relative_corner = {RELATIVE_W'(p.x) - RELATIVE_W'(x.x), RELATIVE_W'(p.y) - RELATIVE_W'(x.y), RELATIVE_W'(p.z) - RELATIVE_W'(x.z)};
+  endfunction
+
   // Kinds of stack entries.
   localparam logic [1:0] ENTRY_BVH_NODE = 2'd0;
   localparam logic [1:0] ENTRY_TREE = 2'd1;

@@ -17,6 +17,7 @@ pub(super) fn at_level(hierarchy: &Hierarchy, level: u32) -> Hierarchy {
         points: (0..hierarchy.triangles.len()).flat_map(|tree| places.iter().map(move |&at| hierarchy.tree(tree)[at])).collect(),
         bounds: EdgeCodes::default(),
         vertices: hierarchy.vertices,
+        zeros: hierarchy.zeros,
     }
 }
 

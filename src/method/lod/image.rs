@@ -58,6 +58,8 @@ pub static LINE_LAYOUT: Knob = Knob {
 pub struct LodImage<'a> {
     /// Number of splits N.
     pub levels: u32,
+    /// Zero bits at the bottom of all coordinates.
+    pub zeros: u32,
     /// Scale of the displacement bounds.
     pub scale: BoundScale,
     /// How inserted vertices are stored.
@@ -98,7 +100,18 @@ impl<'a> LodImage<'a> {
         ];
         let map = MemoryMap::new(&sections, Some((NODES, pair as u32))) // 1 or 2
             .expect("at most 2^28 triangles, of at most four lines each in all sections together");
-        Self { levels, scale: scene.meta().bound_scale(), form, nodes, records, bounds, vertices, map, layout }
+        Self {
+            levels,
+            zeros: scene.meta().coordinate_zeros,
+            scale: scene.meta().bound_scale(),
+            form,
+            nodes,
+            records,
+            bounds,
+            vertices,
+            map,
+            layout,
+        }
     }
 
     /// The inserted vertices of a root are in its L0 record, and rays ask for it alone.

@@ -13,7 +13,7 @@ use crate::method::children::has_lanes;
 use crate::method::children::{Split, bvh_children, tree_children};
 use crate::method::stack::{Entry, Op, TraversalStack, push_sorted};
 use crate::method::{HitSink, TriangleId, is_beyond};
-use crate::num::{BoundCode, MAX_LEVELS, Point, Ray, TNear, U, VertexForm, Wire};
+use crate::num::{BoundCode, MAX_LEVELS, PADDING_BITS, Point, Ray, TNear, U, VertexForm, Wire};
 use crate::step::{Act, Step, StepSink, TriangleRun};
 
 /// Traces rays through one image; keeps its stack from ray to ray.
@@ -150,9 +150,11 @@ impl<S: StepSink, H: HitSink> Journey<'_, S, H> {
             Step::on(self.image.split(self.tree as usize, level, node as usize), Act::Tessellate)
         });
         let [v0, v1, v2] = self.stored(level, node as usize);
-        let (compact, grid, scale) = (self.image.form.is_compact(), U::new(u64::from(levels - level - 1)), self.image.scale);
+        let (compact, scale, zeros) = (self.image.form.is_compact(), self.image.scale, self.image.zeros);
+        let (grid, padding) = (U::new(u64::from(levels - level - 1 + zeros)), U::new(u64::from(PADDING_BITS.saturating_sub(zeros))));
         let ([f0, f1, f2], lod_test::Out { s0, s1, s2, .. }) = (f, lod);
-        let t = Tessellate::eval(&tessellate::In { compact, grid, scale, e0, e1, e2, s0, s1, s2, f0, f1, f2, p0, p1, p2, v0, v1, v2 });
+        let t =
+            Tessellate::eval(&tessellate::In { compact, grid, padding, scale, e0, e1, e2, s0, s1, s2, f0, f1, f2, p0, p1, p2, v0, v1, v2 });
         let (g, q) = ([t.g0, t.g1, t.g2], [t.q0, t.q1, t.q2]);
 
         if level + 1 == levels {

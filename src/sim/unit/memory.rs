@@ -9,6 +9,7 @@ use crate::step::{MemoryMap, SectionId};
 #[derive(Clone, Copy, Debug)]
 pub struct SceneMemory<'a> {
     levels: u32,
+    zeros: u32,
     compact: bool,
     scale: BoundScale,
     /// Words of each section, by its place.
@@ -30,14 +31,22 @@ impl<'a> SceneMemory<'a> {
         sections[BOUNDS.place()] = image.bounds.as_flattened();
         sections[VERTICES.place()] = image.vertices.as_flattened();
         assert!(first + image.map.lines() <= LineAddress::MAX.get(), "the model does not fit the address space");
-        Self { levels: image.levels, compact: image.form.is_compact(), scale: image.scale, sections, map: image.map, first }
+        Self {
+            levels: image.levels,
+            zeros: image.zeros,
+            compact: image.form.is_compact(),
+            scale: image.scale,
+            sections,
+            map: image.map,
+            first,
+        }
     }
 
     /// What the unit is told of the model.
     pub fn config(&self) -> SceneConfig {
         let [nodes, records, bounds, vertices] = [NODES, RECORDS, BOUNDS, VERTICES].map(|section| self.address(self.map.first(section)));
-        let levels = U::new(u64::from(self.levels));
-        SceneConfig { levels, compact: self.compact, scale: self.scale, nodes, records, bounds, vertices }
+        let (levels, zeros) = (U::new(u64::from(self.levels)), U::new(u64::from(self.zeros)));
+        SceneConfig { levels, zeros, compact: self.compact, scale: self.scale, nodes, records, bounds, vertices }
     }
 
     /// Section and line within it of an address; `None` outside of all.

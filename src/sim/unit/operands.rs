@@ -7,7 +7,10 @@ use crate::block::{bary_map, child_test, hit_divide, hit_select, lod_test, node_
 use crate::format::{Displacements, L0Record, VertexData};
 use crate::hardware::ports::{HitOut, SceneConfig};
 use crate::hardware::{Fetch, State};
-use crate::num::{LineAddress, Point, RayT, U, Wire};
+use crate::num::{LineAddress, PADDING_BITS, Point, RayT, U, Wire};
+
+/// Zero bits at the bottom of every stored coordinate.
+const PADDING: u64 = PADDING_BITS as u64;
 
 /// What contexts share, one arbiter each.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -113,9 +116,10 @@ impl Context {
         let lod_test::Out { s0, s1, s2, .. } = self.lod.get();
         let ([f0, f1, f2], [p0, p1, p2], [e0, e1, e2]) = (self.f.get(), self.p.get(), self.e);
         let [v0, v1, v2] = self.inserted(scene);
-        let grid = U::new(scene.levels.get() - self.level.get().get() - 1);
+        let zeros = scene.zeros.get();
+        let (grid, padding) = (U::new(scene.levels.get() - self.level.get().get() - 1 + zeros), U::new(PADDING.saturating_sub(zeros)));
         let (compact, scale) = (scene.compact, scene.scale);
-        tessellate::In { compact, grid, scale, e0, e1, e2, s0, s1, s2, f0, f1, f2, p0, p1, p2, v0, v1, v2 }
+        tessellate::In { compact, grid, padding, scale, e0, e1, e2, s0, s1, s2, f0, f1, f2, p0, p1, p2, v0, v1, v2 }
     }
 
     /// What line buffer 1 holds of the node's inserted vertices: themselves, or of a compact model their displacements.

@@ -5,7 +5,7 @@ use lodray::{
     format::{self, Scene, SceneInfo},
     golden::{naive_bounds, naive_compact},
     mesh::{BoundKind, EdgeCodes, Hierarchy, Placement, Surface, lattice},
-    num::{Cone, Ray, U, Vec3, VertexForm, random, snap},
+    num::{Cone, Direction, Point, Ray, U, Vec3, VertexForm, random, snap},
 };
 
 /// A plain 64-bit generator (splitmix64): the same numbers everywhere.
@@ -63,21 +63,45 @@ pub fn model(levels: u32, base: &[[i64; 3]], triangles: Vec<[u32; 3]>, place: im
         points,
         bounds: EdgeCodes { kind: BoundKind::Largest, ..EdgeCodes::default() },
         vertices: VertexForm::Exact,
+        zeros: 0,
     };
     naive_bounds(&mut h);
     h
 }
 
+/// The same model on coarser grids, the finest of which has `zeros` zero bits, and with the bounds of that.
+pub fn with_zeros(zeros: u32, mut h: Hierarchy) -> Hierarchy {
+    if zeros > h.zeros {
+        h.zeros = zeros;
+        let form = h.vertices;
+        regrid(form, &mut h);
+    }
+    h
+}
+
+/// Puts the points of a model on the grids of this form, and bounds them.
+fn regrid(form: VertexForm, h: &mut Hierarchy) {
+    let m = 1u32 << h.levels;
+    let places = (0..=m).flat_map(|j| (0..=m - j).map(move |i| (i, j)));
+    let bits: Vec<u32> = places.map(|place| form.zero_bits(h.levels - lattice::level_of(h.levels, place), h.zeros)).collect();
+    for (point, &bits) in h.points.iter_mut().zip(bits.iter().cycle()) {
+        *point = point.map(|v| snap(f64::from(v), bits));
+    }
+    naive_bounds(h);
+}
+
+/// A ray with so many zero bits at the bottom of its origin and of its direction.
+pub fn coarsened(ray: &Ray, zeros: [u32; 2]) -> Ray {
+    // Towards zero: nothing gets too long.
+    let cut = |v: [i64; 3], zeros: u32| v.map(|v| v.signum() * (v.abs() >> zeros << zeros));
+    let ([x, y, z], [dx, dy, dz]) = (cut(ray.origin.get(), zeros[0]), cut(ray.direction.get(), zeros[1]));
+    Ray { origin: Point::new(x, y, z), direction: Direction::new(dx, dy, dz), ..*ray }
+}
+
 /// The same model with vertices of this form: to have them compact its points go to the coarser grids of that form, and bounds are those of that.
 pub fn with_vertices(form: VertexForm, mut h: Hierarchy) -> Hierarchy {
     if form == VertexForm::Compact {
-        let m = 1u32 << h.levels;
-        let places = (0..=m).flat_map(|j| (0..=m - j).map(move |i| (i, j)));
-        let bits: Vec<u32> = places.map(|place| form.zero_bits(h.levels - lattice::level_of(h.levels, place))).collect();
-        for (point, &bits) in h.points.iter_mut().zip(bits.iter().cycle()) {
-            *point = point.map(|v| snap(f64::from(v), bits));
-        }
-        naive_bounds(&mut h);
+        regrid(form, &mut h);
         naive_compact(&mut h);
     }
     h

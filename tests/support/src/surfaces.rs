@@ -108,7 +108,13 @@ fn fill(nodes: &mut Vec<QuadNode>, at: usize, boxes: &[Box32], first: usize) {
 
 /// What a test's scene says about itself: the paper's bounds, exact vertices.
 pub fn info(name: &str) -> SceneInfo {
-    SceneInfo { name: name.into(), origin: serde_json::json!({ "made": "test" }), bounds: BoundKind::Largest, vertices: VertexForm::Exact }
+    SceneInfo {
+        name: name.into(),
+        origin: serde_json::json!({ "made": "test" }),
+        bounds: BoundKind::Largest,
+        vertices: VertexForm::Exact,
+        ..SceneInfo::default()
+    }
 }
 
 /// The scene of a surface with a plain quad-BVH, the paper's bounds and exact vertices.
