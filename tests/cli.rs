@@ -186,7 +186,7 @@ fn export_is_read_again() {
 }
 
 #[test]
-fn demo_writes_pictures_and_a_table() {
+fn demo_writes_pictures_a_table_and_a_plan() {
     let desk = empty();
     let rows: Value = desk.json("demo --out new/demo");
     let views: Vec<_> = rows.as_array().unwrap().iter().map(|r| (r["view"].as_str().unwrap(), r["method"].as_str().unwrap())).collect();
@@ -195,7 +195,12 @@ fn demo_writes_pictures_and_a_table() {
     assert_eq!(names.iter().filter(|n| n.ends_with("-image.png")).count(), 9);
     assert_eq!(names.iter().filter(|n| n.ends_with("-levels.png")).count(), 9);
     assert_eq!(names.iter().filter(|n| n.ends_with("-lod-error.png")).count(), 3);
-    assert!(names.contains(&"table.txt".to_owned()));
+    // What a unit for the views leaves out ends the table, and is the plan's.
+    let (table, plan) = (desk.text("new/demo/table.txt"), desk.text("new/demo/plan.toml"));
+    assert!(table.contains("a traversal unit for these views needs 5 of 10 levels") && table.contains(" gate equivalents, "), "{table}");
+    let level = plan.lines().find_map(|line| line.strip_prefix("deepest-level = ")).expect("a level");
+    assert!(table.contains(&format!("their rays go down to level {level} at most")), "{table}");
+    assert!(names.contains(&"plan.toml".to_owned()));
     // Maps have their legends below.
     let size = |name: &str| image::image_dimensions(desk.path("new/demo").join(name)).unwrap();
     assert_eq!(size("far-lod-image.png"), (512, 512));

@@ -1,5 +1,5 @@
 //! What a plan says is needed is what the scene's points and codes need, looked up another way; no ray of a job goes below the level that it says; and what is one too narrow
-//! is refused.
+//! is refused. Units that are said to be fast enough are, simulated again, and with a context less they are not.
 
 use lodray::format::Scene;
 use lodray::mesh::procedural::{self, Options};
@@ -10,7 +10,7 @@ use lodray::num::VertexForm;
 use lodray::plan::Measure;
 use lodray::rays::{Camera, ModelSpace, RaySource, View};
 use lodray::step::{Act, Step, StepSink};
-use lodray_test_support::program::Desk;
+use lodray_test_support::program::{Desk, USAGE};
 use lodray_test_support::surfaces::scene_with;
 
 fn made(scene: procedural::Scene, levels: u32, vertices: VertexForm) -> Scene {
@@ -157,4 +157,66 @@ fn a_plan_takes_its_scenes_and_refuses_others() {
         "size = \"32x32\"\nmethods = [\"lod\"]\ndistances = [2]\n[[scene]]\nfile = \"rough.lod\"\n[[machine]]\nname = \"haydel2023\"\n",
     );
     desk.refused("plan --job jobs.toml --check full.toml", 1, &["job of scene", "does not fit the plan"]);
+}
+
+/// Cycles of both views, and what their rays hit, on `machine` with `compute`.
+fn frames(desk: &Desk, machine: &str, compute: &str) -> [(f64, u64); 2] {
+    [1, 2].map(|distance| {
+        let shot = format!("simulate rough.lod --size 64x64 --distance {distance} --delta inf --compute {compute} {machine}");
+        let frame = desk.json(&shot);
+        (frame["cycles"].as_f64().expect("cycles"), frame["hits"].as_u64().expect("hits"))
+    })
+}
+
+#[test]
+fn units_are_the_least_that_keep_the_share() {
+    let desk = Desk::new(assert_cmd::cargo::cargo_bin!("lodray"));
+    desk.run("generate terrain --levels 5 --base 32 --seed 5 --roughness 0.6 -o rough.lod");
+    desk.write(
+        "jobs.toml",
+        "size = \"64x64\"\nmethods = [\"lod\"]\ndeltas = [\"inf\"]\ndistances = [1, 2]\n[[scene]]\nfile = \"rough.lod\"\n[[machine]]\nname = \"packet\"\n",
+    );
+    // Compute is the limit, both are, the memory is.
+    let plans =
+        [("", 95.0), ("--set dram.channels=1 --set units.per_group=4", 95.0), ("--set dram.channels=1 --set units.per_group=4", 60.0)];
+    let mut contexts = Vec::new();
+    for (machine, percent) in plans {
+        let document = desk.json(&format!("plan --job jobs.toml --speed --share {percent} {machine}"));
+        let speed = &document["plan"]["speed"];
+        let number = |value: &serde_json::Value| value.as_f64().expect("a number");
+        let (share, units) = (percent / 100.0, |key: &str| speed["units"][key].as_u64().expect("a number"));
+        assert_eq!([number(&speed["share"]), number(&speed["frames"])], [share, 2.0]);
+        let of = |contexts: u64| {
+            let [per_group, edges] = ["per_group", "edges_per_cycle"].map(units);
+            format!("{machine} --set units.per_group={per_group} --set units.contexts={contexts} --set units.edges_per_cycle={edges}")
+        };
+        let (free, full) = (frames(&desk, machine, "free"), frames(&desk, machine, "units"));
+        let measure: Vec<f64> = free.iter().zip(full).map(|(free, full)| if free.0 / full.0 < share { full.0 } else { free.0 }).collect();
+        assert_eq!(
+            number(&speed["frames-of-units"]),
+            measure.iter().zip(full).filter(|(measure, full)| **measure == full.0).count() as f64
+        );
+        let least = |of: [(f64, u64); 2]| measure.iter().zip(of).map(|(measure, of)| measure / of.0).fold(f64::INFINITY, f64::min);
+        let chosen = frames(&desk, &of(units("contexts")), "units");
+        assert_eq!(number(&speed["kept"]), least(chosen));
+        assert!(least(chosen) >= share, "{speed}");
+        assert_eq!(chosen.map(|frame| frame.1), free.map(|frame| frame.1), "hits");
+        assert!(least(frames(&desk, &of(units("contexts") - 1), "units")) < share, "{speed}");
+        // What it saves is in the table.
+        let savings = document["savings"].as_array().expect("lines");
+        assert!(savings.iter().any(|line| line["part"] == "speed" && line["what"] == "million gate equivalents"), "{savings:?}");
+        contexts.push(units("contexts") * units("per_group"));
+    }
+    assert_eq!(desk.json("plan --job jobs.toml")["plan"]["speed"], serde_json::Value::Null);
+    let [alone, both, memory] = contexts[..] else { panic!("three plans") };
+    assert!(memory < both && memory < alone, "{contexts:?}");
+
+    // The unit is as many contexts and edge functions wide, and a plan with a speed is none the narrower.
+    let shown = desk.run("plan --job jobs.toml --speed -o fast.toml --package lod_pkg.sv");
+    assert!(shown.contains("speed: on haydel2023, 2 frames: in 2 the machine's own units"), "{shown}");
+    assert!(desk.text("lod_pkg.sv").contains(&format!(" CONTEXTS = {alone};")) && desk.text("fast.toml").contains("[speed.units]"));
+    desk.run("plan --job jobs.toml --check fast.toml");
+    desk.refused("plan rough.lod --speed", USAGE, &["--speed", "cannot be used with", "SCENES"]);
+    desk.refused("plan --job jobs.toml --speed --share 0", USAGE, &["'0' is not above 0 and at most 100"]);
+    desk.refused("plan --job jobs.toml --speed --machine none", 1, &["--machine none"]);
 }

@@ -1,4 +1,4 @@
-//! `demo`: a built-in scene from three distances, LOD beside BVH and full resolution.
+//! `demo`: a built-in scene from three distances, LOD beside BVH and full resolution, and what a traversal unit for these views can leave out.
 
 use super::build::{FormArgs, build_scene};
 use super::cache::Cache;
@@ -8,10 +8,12 @@ use super::method::Chosen;
 use super::output::{busy, grouped, print_json, print_line, remark, write_file};
 use super::pictures::{Shot, shoot};
 use super::render::{Against, Comparison, compare_shots};
+use lodray::hardware::{Hardware, unit_gates};
 use lodray::mesh::procedural::{Options, Scene, generate};
 use lodray::method::knob::DELTA;
 use lodray::method::{Registered, bvh, lod, reference};
 use lodray::picture::Shading;
+use lodray::plan::{Data, Measure, Plan, RayNeeds};
 use lodray::rays::{Camera, ModelSpace, View};
 use serde::Serialize;
 use std::path::PathBuf;
@@ -21,14 +23,18 @@ use std::process::ExitCode;
 const LEVELS: u32 = 5;
 const DISTANCES: [(&str, f64); 3] = [("near", 0.6), ("middle", 2.0), ("far", 8.0)];
 const SIDE: u32 = 512;
+/// Quality of level of detail.
+const QUALITY: f64 = 1.0;
 const TABLE: &str = "table.txt";
+/// What a unit for the views needs.
+const PLAN: &str = "plan.toml";
 /// Pictures of each view.
 const PICTURES: [&str; 8] = ["lod-image", "lod-levels", "lod-error", "bvh-image", "bvh-levels", "bvh-error", "full-image", "full-levels"];
 
 #[derive(clap::Args)]
 pub struct Args {
-    /// Folder for pictures and table
-    #[arg(short, long, default_value = "out/demo", long_help = one_run("Folder for pictures and table"))]
+    /// Folder for pictures, table and plan
+    #[arg(short, long, default_value = "out/demo", long_help = one_run("Folder for pictures, table and plan"))]
     out: PathBuf,
     #[command(flatten)]
     overrule: Overrule,
@@ -52,7 +58,7 @@ struct Row {
 
 pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
     let pictures = DISTANCES.iter().flat_map(|(view, _)| PICTURES.map(|picture| format!("{view}-{picture}.png")));
-    let names: Vec<_> = pictures.chain([TABLE.to_owned()]).collect();
+    let names: Vec<_> = pictures.chain([TABLE, PLAN].map(str::to_owned)).collect();
     let folder = RunFolder::open(&args.out, names.iter().map(String::as_str), &[], &args.overrule)?;
     let out = folder.staging();
     let options = Options { levels: Some(LEVELS), ..Options::new(Scene::Terrain) };
@@ -62,11 +68,13 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
     let methods: [&Registered; 3] = [&lod::METHOD, &bvh::METHOD, &reference::METHOD];
     let made = methods.iter().map(|method| Chosen::plain(method).make(&scene, &Cache::NONE)).collect::<anyhow::Result<Vec<_>>>()?;
 
-    let mut rows = Vec::new();
+    let (mut rows, mut rays) = (Vec::new(), RayNeeds::default());
+    let measure = Measure::of(&scene);
     for (view, distance) in DISTANCES {
         let camera = Camera::new(&View { distance: Some(distance), ..View::default() }, &space, SIDE, SIDE)?;
+        rays = rays.with(&measure.rays(&camera, QUALITY));
         let shots: Vec<_> =
-            methods.iter().zip(&made).map(|(method, (made, _))| shoot(&**made, &scene, &space, &camera, 1.0, method.name)).collect();
+            methods.iter().zip(&made).map(|(method, (made, _))| shoot(&**made, &scene, &space, &camera, QUALITY, method.name)).collect();
         let full = &shots[2];
         for (method, shot) in methods.iter().zip(&shots) {
             let is_truth = *method == &reference::METHOD;
@@ -74,7 +82,7 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
             let facts = Facts {
                 scene: &scene.meta().name,
                 method: method.name,
-                delta: method.has(DELTA.name).then_some(1.0),
+                delta: method.has(DELTA.name).then_some(QUALITY),
                 choices: &[],
                 shading: (Shading::Full, 1),
                 camera: &camera,
@@ -91,14 +99,18 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
         }
     }
 
-    let table = table(&rows, scene.finest_triangles());
+    let mut plan = Plan::new(true);
+    plan.add(&scene.meta().name, &measure.needs());
+    plan.add_rays(&rays);
+    let table = table(&rows, scene.finest_triangles()) + "\n\n" + &saving(&plan, &measure.data(rays.deepest_level));
     write_file(&out.join(TABLE), format!("{table}\n"))?;
+    write_file(&out.join(PLAN), toml::to_string(&plan)?)?;
     folder.finish()?;
     if args.json {
         print_json(&rows)?
     } else {
         print_line(&table)?;
-        remark(&format!("pictures in {}", args.out.display()))?;
+        remark(&format!("pictures, table and plan in {}", args.out.display()))?;
     }
     Ok(ExitCode::SUCCESS)
 }
@@ -152,4 +164,30 @@ fn table(rows: &[Row], triangles: u64) -> String {
         );
     }
     text.trim_end().to_owned()
+}
+
+/// What a unit for the views can leave out, and what of the scene they do not read.
+fn saving(plan: &Plan, data: &Data) -> String {
+    let (full, own) = (Hardware::default(), plan.hardware(&Hardware::default()));
+    let gates = |hardware: &Hardware| lod::METHOD.unit.and_then(|unit| unit_gates(unit, hardware)).map_or(0, |gates| gates.round() as u64);
+    let (of, needed) = (gates(&full), gates(&own));
+    format!(
+        "a traversal unit for these views needs {} of {} levels, {} of {} nodes on a path, {} of {} stack entries\n\
+         without the rest its {} contexts are smaller: {} of {} gate equivalents, {} fewer\n\
+         their rays go down to level {} at most and read no more than {} of the scene's {} bytes, {} fewer",
+        own.levels,
+        full.levels,
+        own.bvh_depth,
+        full.bvh_depth,
+        own.stack_entries(),
+        full.stack_entries(),
+        full.contexts,
+        grouped(needed),
+        grouped(of),
+        grouped(of - needed),
+        plan.rays.as_ref().map_or(0, |rays| rays.deepest_level),
+        grouped(data.reached),
+        grouped(data.stored),
+        grouped(data.stored - data.reached)
+    )
 }

@@ -6,11 +6,13 @@
 //! every value, so that one memory image, one testbench and one cycle model serve them all: a hardware for fewer levels takes the same bits
 //! and has fewer registers inside.
 
+mod area;
 mod context;
 mod package;
 pub mod ports;
 mod state;
 
+pub use area::unit_gates;
 pub use state::{Fetch, State};
 
 use crate::block::{Block, EdgesPerCycle, Form, Timing};

@@ -1,19 +1,21 @@
 //! What a scene and a job need of a traversal unit, and so what can be left out.
 //!
 //! [`SceneNeeds`] is measured on every node of a scene's trees and quad-BVH, [`RayNeeds`] on every ray of a job. All are exact: a width is the least that holds
-//! every number met, a level is unneeded only if no ray of the job can go down to it.
+//! every number met, a level is unneeded only if no ray of the job can go down to it. [`Speed`] is simulated: what keeps a share of the job's frame rate.
 
 mod data;
 mod measure;
 mod rays;
 mod report;
 mod scene;
+mod speed;
 
 pub use data::Data;
 pub use measure::Measure;
 pub use rays::RayNeeds;
 pub use report::{Part, Saving, savings};
 pub use scene::SceneNeeds;
+pub use speed::Speed;
 
 use crate::hardware::Hardware;
 use serde::{Deserialize, Serialize};
@@ -32,7 +34,7 @@ pub(crate) fn signed_bits(least: i64, most: i64) -> u32 {
 }
 
 /// What is needed for some scenes and a job, as `lodray plan` writes it.
-#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 pub struct Plan {
     /// Version of the program that wrote it.
@@ -43,6 +45,8 @@ pub struct Plan {
     pub scene: SceneNeeds,
     /// Of the rays of the job; nothing where no job was given: any ray can come.
     pub rays: Option<RayNeeds>,
+    /// Of the machine's units, if it was searched for. Whatever does not fit, it is not this.
+    pub speed: Option<Speed>,
 }
 
 /// A scene or a ray that a plan is too narrow for.
@@ -59,7 +63,7 @@ impl Plan {
     /// The plan of no scene and no ray.
     pub fn new(rays: bool) -> Self {
         let program = env!("CARGO_PKG_VERSION").to_owned();
-        Self { program, scenes: Vec::new(), scene: SceneNeeds::default(), rays: rays.then(RayNeeds::default) }
+        Self { program, scenes: Vec::new(), scene: SceneNeeds::default(), rays: rays.then(RayNeeds::default), speed: None }
     }
 
     /// Makes room for a scene.
@@ -79,7 +83,9 @@ impl Plan {
         // A tree of one split has no nodes below its root, and no register for its triangles: there is no smaller unit.
         let (levels, bvh_depth) = (levels.clamp(Hardware::LEAST_LEVELS, hardware.levels), bvh_depth.clamp(1, hardware.bvh_depth));
         let most = Hardware { levels, bvh_depth, fewer_stack_entries: None, ..*hardware };
-        Hardware { fewer_stack_entries: Some(stack_entries.clamp(2, most.stack_entries())), ..most }
+        let fewer_stack_entries = Some(stack_entries.clamp(2, most.stack_entries()));
+        let Hardware { contexts, edges_per_cycle, .. } = self.speed.as_ref().map_or(*hardware, |speed| speed.units.config());
+        Hardware { fewer_stack_entries, contexts, edges_per_cycle, ..most }
     }
 
     /// Checks that a scene fits.

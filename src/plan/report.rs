@@ -1,6 +1,6 @@
 //! A plan as a table: what is needed, what there is, and what leaving out the rest saves.
 
-use super::{Data, Plan};
+use super::{Data, Plan, Speed};
 use crate::hardware::Hardware;
 use crate::num::MAX_DISPLACEMENT_SHIFT;
 use serde::Serialize;
@@ -15,6 +15,8 @@ pub enum Part {
     Numbers,
     /// What rays ask for.
     Features,
+    /// How fast units are.
+    Speed,
     /// Bytes of the scenes.
     Data,
 }
@@ -31,7 +33,7 @@ pub struct Saving {
     /// How much there is.
     pub full: String,
     /// Why no more is needed.
-    pub reason: &'static str,
+    pub reason: String,
     /// What is saved, where the unit or the file can leave it out; empty where it cannot yet.
     pub saved: String,
 }
@@ -41,20 +43,50 @@ struct Table {
 }
 
 impl Table {
-    fn add(&mut self, part: Part, what: &'static str, [needed, full]: [u32; 2], reason: &'static str, saved: String) {
+    fn add(&mut self, part: Part, what: &'static str, [needed, full]: [u32; 2], reason: &str, saved: String) {
         if needed < full {
-            self.lines.push(Saving { part, what, needed: needed.to_string(), full: full.to_string(), reason, saved });
+            self.lines.push(Saving { part, what, needed: needed.to_string(), full: full.to_string(), reason: reason.to_owned(), saved });
         }
     }
 
-    fn bits(&mut self, what: &'static str, needed_of_full: [u32; 2], reason: &'static str) {
+    fn bits(&mut self, what: &'static str, needed_of_full: [u32; 2], reason: &str) {
         self.add(Part::Numbers, what, needed_of_full, reason, String::new());
     }
 
-    fn feature(&mut self, what: &'static str, needed: bool, reason: &'static str) {
+    fn feature(&mut self, what: &'static str, needed: bool, reason: &str) {
         if !needed {
             let (needed, full) = ("no".to_owned(), "yes".to_owned());
-            self.lines.push(Saving { part: Part::Features, what, needed, full, reason, saved: String::new() });
+            self.lines.push(Saving { part: Part::Features, what, needed, full, reason: reason.to_owned(), saved: String::new() });
+        }
+    }
+}
+
+impl Table {
+    /// What a machine's units are more than fast enough by; in all else they are as `hardware`.
+    fn speed(&mut self, speed: &Speed, hardware: &Hardware) {
+        let Speed { units, own, .. } = speed;
+        let reason = format!("keeps {:.1} % of the frame rate", 100.0 * speed.kept);
+        for (what, needed_of_full) in [
+            ("contexts of a unit", [units.contexts, own.contexts]),
+            ("edge functions a cycle", [units.edges_per_cycle, own.edges_per_cycle]),
+            ("units of a group", [units.per_group, own.per_group]),
+        ] {
+            self.add(Part::Speed, what, needed_of_full, &reason, String::new());
+        }
+        let gates = |units| Speed::gates(units, hardware);
+        let (needed, full) = (gates(units), gates(own));
+        if needed < full {
+            let million = |gates: f64| format!("{:.3}", 1e-6 * gates);
+            let (reason, saved) =
+                ("all of these together".to_owned(), format!("{} million gate equivalents of a group", million(full - needed)));
+            self.lines.push(Saving {
+                part: Part::Speed,
+                what: "million gate equivalents",
+                needed: million(needed),
+                full: million(full),
+                reason,
+                saved,
+            });
         }
     }
 }
@@ -73,9 +105,9 @@ pub fn savings(plan: &Plan, full: &Hardware, data: Option<&Data>) -> Vec<Saving>
     let stack = without(Hardware { fewer_stack_entries: own.fewer_stack_entries, ..*full });
     let reason = "siblings that can wait, on the path on which most can";
     table.add(Part::Structure, "stack entries", [own.stack_entries(), full.stack_entries()], reason, stack);
-    if own != *full {
+    if context(&own) != context(full) {
         let (needed, of) = (context(&own).to_string(), context(full).to_string());
-        let (reason, saved) = ("all of these together", without(own));
+        let (reason, saved) = ("all of these together".to_owned(), without(own));
         table.lines.push(Saving { part: Part::Structure, what: "bits of a context", needed, full: of, reason, saved });
     }
     table.bits("number of a quad-BVH node", [scene.bvh_node_bits, 28], "so many are there");
@@ -113,11 +145,14 @@ pub fn savings(plan: &Plan, full: &Hardware, data: Option<&Data>) -> Vec<Saving>
     }
     table.feature("vertices as displacements", scene.compact, "no scene has compact vertices");
     table.feature("vertices as they are", scene.exact, "no scene has exact vertices");
+    if let Some(speed) = &plan.speed {
+        table.speed(speed, &own);
+    }
     if let Some(data) = data {
         let mut less = |what, from: u64, to: u64, reason| {
             if to < from {
                 let (needed, full) = (format!("{:.2}", data.per_triangle(to)), format!("{:.2}", data.per_triangle(from)));
-                table.lines.push(Saving { part: Part::Data, what, needed, full, reason, saved: String::new() });
+                table.lines.push(Saving { part: Part::Data, what, needed, full, reason: String::from(reason), saved: String::new() });
             }
         };
         less("bytes a finest triangle", data.stored, data.above_flat, "below a node with three codes of 0 no ray reads");

@@ -2,8 +2,10 @@
 
 mod cast;
 mod frame;
+mod held;
 mod simulate;
 
 pub use cast::{HitRow, cast, write_hits};
 pub use frame::{FrameRays, RayHit, Traced};
+pub use held::HeldFrame;
 pub use simulate::{Compute, Job, check, simulate};

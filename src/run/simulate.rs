@@ -3,7 +3,8 @@
 use super::{FrameRays, Traced};
 use crate::machine::Machine;
 use crate::sim::energy::EnergyModel;
-use crate::sim::replay::{self, Chunk, ReplayError, Run, Window};
+use crate::sim::replay::{self, Chunk, ChunkSource, ReplayError, Run, Window};
+use crate::step::Nodes;
 use serde::{Deserialize, Serialize};
 use std::sync::mpsc::{Receiver, SyncSender, sync_channel};
 use std::thread;
@@ -54,6 +55,14 @@ pub fn check(machine: &Machine, compute: Compute) -> Result<(), ReplayError> {
     replay::check(machine, compute == Compute::Units)
 }
 
+/// Runs steps for a job; their rays begin with `nodes`.
+pub(super) fn replay(job: &Job, nodes: Nodes, source: impl ChunkSource) -> Result<Run, ReplayError> {
+    match job.compute {
+        Compute::Free => replay::run_free(&job.machine, nodes, source, job.window),
+        Compute::Units => replay::run_units(&job.machine, source, job.window),
+    }
+}
+
 /// Runs the rays of `frame` for each of `jobs`. Rays are traced once; every replay has a thread of its own.
 /// `look` sees the rays, in order, before they go to the machines.
 pub fn simulate(frame: &FrameRays<'_>, jobs: &[Job], look: &mut dyn FnMut(&Traced)) -> Vec<Result<Run, ReplayError>> {
@@ -61,13 +70,9 @@ pub fn simulate(frame: &FrameRays<'_>, jobs: &[Job], look: &mut dyn FnMut(&Trace
         let nodes = frame.method.map(frame.sight).nodes();
         let (senders, runs): (Vec<SyncSender<Chunk>>, Vec<_>) = jobs
             .iter()
-            .map(|Job { machine, compute, window }| {
+            .map(|job| {
                 let (sender, receiver): (_, Receiver<Chunk>) = sync_channel(AHEAD);
-                let run = move || match compute {
-                    Compute::Free => replay::run_free(machine, nodes, receiver.into_iter(), *window),
-                    Compute::Units => replay::run_units(machine, receiver.into_iter(), *window),
-                };
-                (sender, scope.spawn(run))
+                (sender, scope.spawn(move || replay(job, nodes, receiver.into_iter())))
             })
             .unzip();
         frame.produce(|traced| {

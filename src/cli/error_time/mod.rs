@@ -15,11 +15,10 @@ use super::output::{busy, check_target, print_line, progress, remark, write_file
 use super::report::{save, this_run, titled};
 use super::sweep::SceneJobs;
 use lodray::format::Scene;
+use lodray::hardware::unit_gates;
 use lodray::method::{find, lod};
 use lodray::report::diagram::{csv, diagrams, latex};
-use lodray::report::error_time::{
-    ErrorTime, KIND, MethodEntry, Options, SceneEntry, USUAL_COSTS, USUAL_ERRORS, VERSION, equal_errors, unit_gates,
-};
+use lodray::report::error_time::{ErrorTime, KIND, MethodEntry, Options, SceneEntry, USUAL_COSTS, USUAL_ERRORS, VERSION, equal_errors};
 use lodray::report::page::{Documents, PICTURE_BYTES, embed};
 use lodray::report::results_version;
 use measure::Bench;

@@ -13,6 +13,7 @@ use lodray::mesh::{BoundKind, procedural};
 use lodray::method::Knob;
 use lodray::method::bvh::{LEAF_LAYOUT, LEAF_SIZE};
 use lodray::method::knob::DELTA;
+use lodray::method::lod;
 use lodray::num::VertexForm;
 use lodray::rays::{Camera, DEFAULT_DIRECTION, ModelSpace, View};
 use lodray::report::results_version;
@@ -119,6 +120,11 @@ impl Jobs {
     pub fn each_method_once(&mut self) {
         let mut seen = BTreeSet::new();
         self.methods.retain(|chosen| seen.insert(chosen.method.name));
+    }
+
+    /// Those of the traversal unit's method: each of its qualities.
+    pub fn lod(&self) -> Vec<&Chosen> {
+        self.methods.iter().filter(|chosen| chosen.method.name == lod::METHOD.name).collect()
     }
 
     /// The names of all jobs, in order.

@@ -1,12 +1,10 @@
 //! Error against cost: what each method's picture is off by, and what it costs.
 
-mod area;
 mod check;
 mod document;
 mod equal;
 mod measure;
 
-pub use area::unit_gates;
 pub use document::{
     Appearance, Converged, Costs, Energy, EqualCost, EqualError, ErrorTime, KIND, MethodEntry, Options, PictureEntry, Point, SceneEntry,
     Shift, TraceGrid, TracedHit, TracedRay, VERSION, ViewEntry,

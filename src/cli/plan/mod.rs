@@ -1,5 +1,7 @@
 //! `plan`: what scenes and a job need of a traversal unit, and what can be left out.
 
+mod speed;
+
 use super::method::Chosen;
 use super::output::{busy, check_target, open, print_json, print_line, remark, write_file};
 use super::sweep::{Jobs, ListText, SceneJobs};
@@ -8,6 +10,7 @@ use lodray::hardware::Hardware;
 use lodray::plan::{Data, Measure, Part, Plan, RayNeeds, Saving, savings};
 use lodray::rays::ModelSpace;
 use serde::Serialize;
+use speed::{Frames, SpeedArgs};
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
@@ -28,6 +31,8 @@ pub struct Args {
     /// Check the scenes (and the job's rays) against this plan in place of making one
     #[arg(long, value_name = "PLAN", conflicts_with = "out")]
     check: Option<PathBuf>,
+    #[command(flatten)]
+    speed: SpeedArgs,
     /// Print the plan and what it saves as JSON
     #[arg(long)]
     json: bool,
@@ -47,17 +52,20 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
     }
     let jobs = args.job.as_deref().map(Jobs::read).transpose()?;
     let given = args.check.as_deref().map(read).transpose()?;
-    let (plan, data) = made(&args.scenes, jobs.as_ref(), given.as_ref())?;
+    let mut frames = args.speed.frames()?;
+    let (mut plan, data) = made(&args.scenes, jobs.as_ref(), given.as_ref(), frames.as_mut())?;
     if given.is_some() {
         let scenes = plan.scenes.len();
         remark(&format!("{scenes} {} the plan", if scenes == 1 { "scene fits" } else { "scenes fit" }))?;
         return Ok(ExitCode::SUCCESS);
     }
+    plan.speed = frames.map(|frames| frames.speed(&plan.hardware(&Hardware::default()))).transpose()?;
     let savings = savings(&plan, &Hardware::default(), Some(&data));
     if args.json {
         print_json(&Document { plan: &plan, data: &data, savings: &savings })?;
     } else {
         print_line(&table(&savings))?;
+        plan.speed.iter().try_for_each(|speed| print_line(&speed::words(speed)))?;
     }
     if let Some(out) = &args.out {
         write_file(out, toml::to_string(&plan)?)?;
@@ -76,8 +84,8 @@ fn read(path: &Path) -> anyhow::Result<Plan> {
     ListText { path, text: &text }.parse()
 }
 
-/// The plan of all scenes, or of all scenes of a list and their views; each is checked against the plan that was given.
-fn made(files: &[PathBuf], jobs: Option<&Jobs>, given: Option<&Plan>) -> anyhow::Result<(Plan, Data)> {
+/// The plan of all scenes, or of all scenes of a list and their views; each is checked against the plan that was given. The views are traced for `frames`.
+fn made(files: &[PathBuf], jobs: Option<&Jobs>, given: Option<&Plan>, mut frames: Option<&mut Frames<'_>>) -> anyhow::Result<(Plan, Data)> {
     let mut plan = Plan::new(jobs.is_some());
     let mut all: Option<Data> = None;
     let mut add = |name: &str, measure: &Measure, deepest: Option<u32>| -> anyhow::Result<()> {
@@ -97,23 +105,27 @@ fn made(files: &[PathBuf], jobs: Option<&Jobs>, given: Option<&Plan>) -> anyhow:
     for job in jobs.iter().flat_map(|jobs| &jobs.scenes) {
         let scene = job.open()?;
         let measure = busy("measuring", || Measure::of(&scene));
-        let needs = views(job, jobs.map_or(&[], |jobs| jobs.methods.as_slice()), &measure, &ModelSpace::of(&scene))?;
+        let lod = jobs.map_or_else(Vec::new, Jobs::lod);
+        let needs = views(job, &lod, &measure, &ModelSpace::of(&scene))?;
         given.map_or(Ok(()), |given| given.check_rays(&format!("the job of scene {}", job.name), &needs))?;
         add(&job.name, &measure, Some(needs.deepest_level))?;
         rays.push(needs);
+        if let Some(frames) = &mut frames {
+            let each = job.views.iter().flat_map(|view| lod.iter().map(move |chosen| (view, chosen)));
+            each.into_iter().try_for_each(|(view, chosen)| frames.trace(&scene, view, chosen))?;
+        }
     }
     rays.iter().for_each(|needs| plan.add_rays(needs));
     Ok((plan, all.context("no scene to plan for")?))
 }
 
 /// What all views of a scene need, at all qualities of the list.
-fn views(job: &SceneJobs, methods: &[Chosen], measure: &Measure, space: &ModelSpace) -> anyhow::Result<RayNeeds> {
-    let lod: Vec<_> = methods.iter().filter(|chosen| chosen.method.name == "lod").collect();
+fn views(job: &SceneJobs, lod: &[&Chosen], measure: &Measure, space: &ModelSpace) -> anyhow::Result<RayNeeds> {
     anyhow::ensure!(!lod.is_empty(), "the list of jobs has no job of lod");
     let mut needs = RayNeeds::default();
     for view in &job.views {
         let camera = view.camera(space).with_context(|| format!("scene {}", job.name))?;
-        for chosen in &lod {
+        for chosen in lod {
             needs = needs.with(&busy("measuring rays", || measure.rays(&camera, chosen.delta())));
         }
     }
@@ -129,7 +141,7 @@ fn table(savings: &[Saving]) -> String {
             rows.push([format!("{:?}", line.part).to_lowercase(), String::new(), String::new(), String::new(), String::new()]);
         }
         let saved = if line.saved.is_empty() { "-" } else { &line.saved };
-        rows.push([format!("  {}", line.what), line.needed.clone(), line.full.clone(), line.reason.to_owned(), saved.to_owned()]);
+        rows.push([format!("  {}", line.what), line.needed.clone(), line.full.clone(), line.reason.clone(), saved.to_owned()]);
     }
     let width = |column: usize| rows.iter().map(|row| row[column].chars().count()).max().unwrap_or(0);
     let widths: [usize; 5] = std::array::from_fn(width);

@@ -1,10 +1,10 @@
 //! Area of a traversal unit, from what `scripts/synth` measured of its blocks (`docs/hardware.md`).
 
+use super::Hardware;
 use crate::block::{EdgesPerCycle, Operation};
-use crate::hardware::Hardware;
 use crate::method::MethodUnit;
 
-const MEASURED: &str = include_str!("../../../docs/hardware.md");
+const MEASURED: &str = include_str!("../../docs/hardware.md");
 
 /// A flip-flop with enable, in gate equivalents: what a context's state is made of. As in the table of `docs/hardware.md`.
 const FLIP_FLOP: f64 = 7.67;

@@ -1,0 +1,33 @@
+//! A frame traced once and kept, for replays one after the other.
+
+use super::simulate::replay;
+use super::{FrameRays, Job, Traced};
+use crate::sim::replay::{Chunk, ReplayError, Run};
+use crate::step::Nodes;
+
+/// The steps of a frame's rays: eight bytes a step, some hundred bytes a ray.
+pub struct HeldFrame {
+    nodes: Nodes,
+    chunks: Vec<Chunk>,
+}
+
+impl HeldFrame {
+    /// Traces all rays of `frame`; `look` sees them, in order.
+    pub fn of(frame: &FrameRays<'_>, look: &mut dyn FnMut(&Traced)) -> Self {
+        let mut chunks = Vec::new();
+        frame.produce(|traced| {
+            look(&traced);
+            chunks.push(Chunk::from(traced.batches));
+            true
+        });
+        Self { nodes: frame.method.map(frame.sight).nodes(), chunks }
+    }
+
+    /// Runs them on a machine.
+    ///
+    /// # Errors
+    /// The machine is impossible or too large, or nothing happens any more while rays are under way.
+    pub fn run(&self, job: &Job) -> Result<Run, ReplayError> {
+        replay(job, self.nodes, self.chunks.iter().cloned())
+    }
+}
