@@ -53,8 +53,8 @@ fn widths_are_those_of_what_rays_can_read() {
         let holds = |bits: u32, c: i32| i64::from(c) >= -(1 << (bits - 1)) && i64::from(c) < 1 << (bits - 1);
         assert!(points.iter().all(|&c| holds(needs.coordinate_bits, c)), "{name}");
         assert!(points.iter().any(|&c| !holds(needs.coordinate_bits - 1, c)), "{name}");
-        assert!(points.iter().all(|c| c % (1 << needs.coordinate_zeros) == 0), "{name}");
-        assert!(points.iter().any(|c| c % (2 << needs.coordinate_zeros) != 0), "{name}");
+        assert!(points.iter().all(|c| c % (1 << needs.vertex_zeros) == 0), "{name}");
+        assert!(points.iter().any(|c| c % (2 << needs.vertex_zeros) != 0), "{name}");
         assert_eq!(needs.code_bits, u8::BITS - code.leading_zeros(), "{name}");
         assert_eq!((needs.levels, needs.compact, needs.exact), (3, form.is_compact(), !form.is_compact()));
         // Sibling groups of 32 bytes below levels 0 and 1; vertices of 32 bytes each, or of 16 below the root, whose own are in the record.

@@ -9,6 +9,7 @@ mod rays;
 mod report;
 mod scene;
 mod speed;
+mod within;
 
 pub use data::Data;
 pub use measure::Measure;
@@ -16,8 +17,10 @@ pub use rays::RayNeeds;
 pub use report::{Part, Saving, savings};
 pub use scene::SceneNeeds;
 pub use speed::Speed;
+pub use within::{Narrowest, Within};
 
 use crate::hardware::Hardware;
+use crate::num::{BOX_SHIFT, MOST_DIRECTION_ZEROS};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 use thiserror::Error;
@@ -45,6 +48,8 @@ pub struct Plan {
     pub scene: SceneNeeds,
     /// Of the rays of the job; nothing where no job was given: any ray can come.
     pub rays: Option<RayNeeds>,
+    /// The grids that the scenes are to be on, if they were asked for: `lodray prune` puts them there.
+    pub within: Option<Within>,
     /// Of the machine's units, if it was searched for. Whatever does not fit, it is not this.
     pub speed: Option<Speed>,
 }
@@ -63,7 +68,7 @@ impl Plan {
     /// The plan of no scene and no ray.
     pub fn new(rays: bool) -> Self {
         let program = env!("CARGO_PKG_VERSION").to_owned();
-        Self { program, scenes: Vec::new(), scene: SceneNeeds::default(), rays: rays.then(RayNeeds::default), speed: None }
+        Self { program, scenes: Vec::new(), scene: SceneNeeds::default(), rays: rays.then(RayNeeds::default), within: None, speed: None }
     }
 
     /// Makes room for a scene.
@@ -85,7 +90,21 @@ impl Plan {
         let most = Hardware { levels, bvh_depth, fewer_stack_entries: None, ..*hardware };
         let fewer_stack_entries = Some(stack_entries.clamp(2, most.stack_entries()));
         let Hardware { contexts, edges_per_cycle, .. } = self.speed.as_ref().map_or(*hardware, |speed| speed.units.config());
-        Hardware { fewer_stack_entries, contexts, edges_per_cycle, ..most }
+        let [coordinate_zeros, direction_zeros] = self.zeros();
+        Hardware { fewer_stack_entries, contexts, edges_per_cycle, coordinate_zeros, direction_zeros, ..most }
+    }
+
+    /// Zero bits at the bottom of coordinates and of directions that a hardware can leave out.
+    fn zeros(&self) -> [u32; 2] {
+        let of_rays = self.rays.map_or(0, |rays| rays.direction_zeros);
+        [self.scene.coordinate_zeros.min(BOX_SHIFT), self.scene.direction_zeros.max(of_rays).min(MOST_DIRECTION_ZEROS)]
+    }
+
+    /// Has the scenes on coarser grids.
+    pub fn coarsen(&mut self, within: Within) {
+        self.scene.coordinate_zeros = self.scene.coordinate_zeros.max(within.coordinate_zeros);
+        self.scene.direction_zeros = self.scene.direction_zeros.max(within.direction_zeros);
+        self.within = Some(within);
     }
 
     /// Checks that a scene fits.

@@ -110,6 +110,11 @@ pub fn savings(plan: &Plan, full: &Hardware, data: Option<&Data>) -> Vec<Saving>
         let (reason, saved) = ("all of these together".to_owned(), without(own));
         table.lines.push(Saving { part: Part::Structure, what: "bits of a context", needed, full: of, reason, saved });
     }
+    let (form, zeros) = (own.form(), |coordinate_zeros, direction_zeros| without(Hardware { coordinate_zeros, direction_zeros, ..*full }));
+    let reason = "all end in zeros, of morphed triangles and origins too";
+    table.add(Part::Numbers, "coordinate without its zeros", [form.coordinate(), 32], reason, zeros(own.coordinate_zeros, 0));
+    let reason = "all components end in zeros";
+    table.add(Part::Numbers, "direction without its zeros", [form.component(), 31], reason, zeros(0, own.direction_zeros));
     table.bits("number of a quad-BVH node", [scene.bvh_node_bits, 28], "so many are there");
     table.bits("number of a tree", [scene.tree_bits, 28], "so many are there");
     table.bits("number of a memory line", [scene.line_bits, 32], "so many have the scene's sections");
@@ -131,11 +136,6 @@ pub fn savings(plan: &Plan, full: &Hardware, data: Option<&Data>) -> Vec<Saving>
     );
     if let Some(rays) = &plan.rays {
         table.bits("component of a direction", [rays.direction_bits, 31], "none is larger");
-        table.bits(
-            "zero-ended component of a direction",
-            [rays.direction_bits.saturating_sub(rays.direction_zeros), rays.direction_bits],
-            "all end in zeros",
-        );
         table.bits("offset of a cone", [rays.cone_offset_bits, 53], "none is larger");
         table.bits("slope of a cone", [rays.cone_slope_bits, 18], "none is larger");
         table.add(Part::Numbers, "shift of a cone", [rays.cone_shift, 63], "none is larger", String::new());

@@ -50,8 +50,12 @@ needs! {
             displacement_shift: u32,
         }
         least {
-            /// Zero bits at the bottom of every coordinate of full resolution.
+            /// Zero bits at the bottom of every coordinate, of morphed triangles and of the rays' origins too.
             coordinate_zeros,
+            /// Zero bits at the bottom of every coordinate of full resolution.
+            vertex_zeros,
+            /// Zero bits at the bottom of every component of a direction.
+            direction_zeros,
         }
     }
 }
@@ -244,7 +248,9 @@ impl SceneNeeds {
             exact: !compact && levels > 0,
             displacement_bits: signed_bits(met.displacement[0].into(), met.displacement[1].into()),
             displacement_shift: met.shift,
-            coordinate_zeros: met.ones.trailing_zeros(),
+            coordinate_zeros: scene.meta().coordinate_zeros,
+            vertex_zeros: met.ones.trailing_zeros(),
+            direction_zeros: scene.meta().direction_zeros,
         }
     }
 }

@@ -7,7 +7,7 @@ use super::output::{busy, check_target, open, print_json, print_line, remark, wr
 use super::sweep::{Jobs, ListText, SceneJobs};
 use anyhow::Context;
 use lodray::hardware::Hardware;
-use lodray::plan::{Data, Measure, Part, Plan, RayNeeds, Saving, savings};
+use lodray::plan::{Data, Measure, Narrowest, Part, Plan, RayNeeds, Saving, Within, savings};
 use lodray::rays::ModelSpace;
 use serde::Serialize;
 use speed::{Frames, SpeedArgs};
@@ -17,11 +17,17 @@ use std::process::ExitCode;
 #[derive(clap::Args)]
 pub struct Args {
     /// Scene files that one unit is to serve, with any rays
-    #[arg(required_unless_present = "job", conflicts_with = "job")]
+    #[arg(required_unless_present_any = ["job", "plan"], conflicts_with = "job")]
     scenes: Vec<PathBuf>,
     /// What will be done: a list of jobs as for sweep, of which the scenes, the cameras and the qualities of lod count
     #[arg(long, value_name = "LIST")]
     job: Option<PathBuf>,
+    /// Also coarser grids of coordinates and directions, on which nothing that is seen moves by more than so many pixels: `prune` puts the scenes there
+    #[arg(long, value_name = "PIXELS", requires = "job", conflicts_with = "check", value_parser = pixels, allow_negative_numbers = true)]
+    within: Option<f64>,
+    /// Take this plan, made before
+    #[arg(long, value_name = "PLAN", conflicts_with_all = ["scenes", "job", "check", "out", "speed"])]
+    plan: Option<PathBuf>,
     /// Write the plan (TOML) to this file
     #[arg(short, long)]
     out: Option<PathBuf>,
@@ -41,34 +47,43 @@ pub struct Args {
 #[derive(Serialize)]
 struct Document<'a> {
     plan: &'a Plan,
-    data: &'a Data,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    data: Option<&'a Data>,
     savings: &'a [Saving],
 }
 
 pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
-    let inputs: Vec<&Path> = args.scenes.iter().chain(&args.job).map(PathBuf::as_path).collect();
+    let inputs: Vec<&Path> = args.scenes.iter().chain(&args.job).chain(&args.plan).map(PathBuf::as_path).collect();
     for out in args.out.iter().chain(&args.package) {
         check_target(out, &inputs)?;
+    }
+    if let Some(path) = &args.plan {
+        return say(args, &read(path)?, None);
     }
     let jobs = args.job.as_deref().map(Jobs::read).transpose()?;
     let given = args.check.as_deref().map(read).transpose()?;
     let mut frames = args.speed.frames()?;
-    let (mut plan, data) = made(&args.scenes, jobs.as_ref(), given.as_ref(), frames.as_mut())?;
+    let (mut plan, data) = made(args, jobs.as_ref(), given.as_ref(), frames.as_mut())?;
     if given.is_some() {
         let scenes = plan.scenes.len();
         remark(&format!("{scenes} {} the plan", if scenes == 1 { "scene fits" } else { "scenes fit" }))?;
         return Ok(ExitCode::SUCCESS);
     }
     plan.speed = frames.map(|frames| frames.speed(&plan.hardware(&Hardware::default()))).transpose()?;
-    let savings = savings(&plan, &Hardware::default(), Some(&data));
+    say(args, &plan, Some(&data))
+}
+
+/// Prints a plan and writes what was asked for.
+fn say(args: &Args, plan: &Plan, data: Option<&Data>) -> anyhow::Result<ExitCode> {
+    let savings = savings(plan, &Hardware::default(), data);
     if args.json {
-        print_json(&Document { plan: &plan, data: &data, savings: &savings })?;
+        print_json(&Document { plan, data, savings: &savings })?;
     } else {
         print_line(&table(&savings))?;
         plan.speed.iter().try_for_each(|speed| print_line(&speed::words(speed)))?;
     }
     if let Some(out) = &args.out {
-        write_file(out, toml::to_string(&plan)?)?;
+        write_file(out, toml::to_string(plan)?)?;
         remark(&format!("plan in {}", out.display()))?;
     }
     if let Some(package) = &args.package {
@@ -78,6 +93,11 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
     Ok(ExitCode::SUCCESS)
 }
 
+/// A number of pixels.
+fn pixels(s: &str) -> Result<f64, String> {
+    s.parse().ok().filter(|v: &f64| *v > 0.0 && v.is_finite()).ok_or_else(|| format!("'{s}' is no number of pixels above 0"))
+}
+
 /// A plan from its file.
 fn read(path: &Path) -> anyhow::Result<Plan> {
     let text = std::fs::read_to_string(path).with_context(|| format!("cannot read {}", path.display()))?;
@@ -85,7 +105,8 @@ fn read(path: &Path) -> anyhow::Result<Plan> {
 }
 
 /// The plan of all scenes, or of all scenes of a list and their views; each is checked against the plan that was given. The views are traced for `frames`.
-fn made(files: &[PathBuf], jobs: Option<&Jobs>, given: Option<&Plan>, mut frames: Option<&mut Frames<'_>>) -> anyhow::Result<(Plan, Data)> {
+fn made(args: &Args, jobs: Option<&Jobs>, given: Option<&Plan>, mut frames: Option<&mut Frames<'_>>) -> anyhow::Result<(Plan, Data)> {
+    let mut within: Option<Within> = None;
     let mut plan = Plan::new(jobs.is_some());
     let mut all: Option<Data> = None;
     let mut add = |name: &str, measure: &Measure, deepest: Option<u32>| -> anyhow::Result<()> {
@@ -96,7 +117,7 @@ fn made(files: &[PathBuf], jobs: Option<&Jobs>, given: Option<&Plan>, mut frames
         all = Some(all.map_or(data, |all| all.with(data)));
         Ok(())
     };
-    for file in files {
+    for file in &args.scenes {
         let scene = open(file)?;
         let measure = busy("measuring", || Measure::of(&scene));
         add(&file.display().to_string(), &measure, None)?;
@@ -110,13 +131,27 @@ fn made(files: &[PathBuf], jobs: Option<&Jobs>, given: Option<&Plan>, mut frames
         given.map_or(Ok(()), |given| given.check_rays(&format!("the job of scene {}", job.name), &needs))?;
         add(&job.name, &measure, Some(needs.deepest_level))?;
         rays.push(needs);
+        if let Some(pixels) = args.within {
+            let of = Within::of(&scene, &narrowest(job, &ModelSpace::of(&scene))?, pixels);
+            within = Some(within.map_or(of, |within| within.with(of)));
+        }
         if let Some(frames) = &mut frames {
             let each = job.views.iter().flat_map(|view| lod.iter().map(move |chosen| (view, chosen)));
             each.into_iter().try_for_each(|(view, chosen)| frames.trace(&scene, view, chosen))?;
         }
     }
     rays.iter().for_each(|needs| plan.add_rays(needs));
+    within.into_iter().for_each(|within| plan.coarsen(within));
     Ok((plan, all.context("no scene to plan for")?))
+}
+
+/// The narrowest cones of all views of a scene.
+fn narrowest(job: &SceneJobs, space: &ModelSpace) -> anyhow::Result<Narrowest> {
+    let mut least = Narrowest::NONE;
+    for view in &job.views {
+        least = least.with(Narrowest::of(space, &view.camera(space).with_context(|| format!("scene {}", job.name))?));
+    }
+    Ok(least)
 }
 
 /// What all views of a scene need, at all qualities of the list.
