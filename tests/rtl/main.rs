@@ -24,5 +24,4 @@ mod rays;
 mod suite;
 mod tessellate;
 mod traversal_stack;
-mod tree_base;
 mod tri_test;
