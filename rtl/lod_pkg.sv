@@ -42,7 +42,6 @@ package lod_pkg;
   localparam int unsigned STACK_ENTRIES = 103;  // 3 (MAX_BVH_DEPTH + MAX_LEVELS) + 1: each level leaves at most three siblings waiting
   localparam int unsigned SPLIT_TRIANGLES = 9;  // of a context: one of each level that splits into nodes
   localparam int unsigned NODE_W = 20;          // of a node within its level, where it is kept: two bits of each level
-  localparam int unsigned TREE_LINES_W = 19;    // of a tree's number of splits, (4^N - 1) / 3
 
   // Scales.
   localparam int unsigned BOX_SHIFT = 16;
@@ -65,7 +64,6 @@ package lod_pkg;
   localparam int unsigned RAY_SETUP_LATENCY = 22;
   localparam int unsigned RAY_SETUP_INTERVAL = 22;
   localparam int unsigned TESSELLATE_LATENCY = 7;
-  localparam int unsigned TREE_BASE_LATENCY = 5;
   localparam int unsigned TRI_TEST_LATENCY = 18;    // with EDGES_PER_CYCLE = 3
   localparam int unsigned TRI_TEST_1_LATENCY = 20;  // with EDGES_PER_CYCLE = 1
   localparam int unsigned TRI_TEST_1_INTERVAL = 3;
@@ -472,33 +470,17 @@ package lod_pkg;
   } bary_map_out_t;
   localparam int unsigned BARY_MAP_OUT_W = NODE_INDEX_W + BARY_W + BARY_W + BARY_W;
 
-  // Input of tree_base.
-  typedef struct packed {
-    logic compact;                        // Vertices are compact.
-    logic [3:0] levels;                   // Number of splits N.
-    logic [27:0] tree;                    // The tree.
-    logic [LINE_ADDRESS_W-1:0] vertices;  // First line of the vertex data.
-    logic [LINE_ADDRESS_W-1:0] bounds;    // First line of the bound data.
-  } tree_base_in_t;
-  localparam int unsigned TREE_BASE_IN_W = 1 + 4 + 28 + LINE_ADDRESS_W + LINE_ADDRESS_W;
-
-  // Output of tree_base.
-  typedef struct packed {
-    logic [LINE_ADDRESS_W-1:0] vertices;  // First line of the tree's vertex data.
-    logic [LINE_ADDRESS_W-1:0] bounds;    // First line of its bound data.
-  } tree_base_out_t;
-  localparam int unsigned TREE_BASE_OUT_W = LINE_ADDRESS_W + LINE_ADDRESS_W;
-
   // Input of node_address.
   typedef struct packed {
-    logic [LINE_ADDRESS_W-1:0] base;  // First line of the section, or of the tree within it.
+    logic [LINE_ADDRESS_W-1:0] base;  // First line of the section.
+    logic [27:0] first;               // The tree's first line in it; 0 outside of trees.
     logic [3:0] level;                // Level of the node within its tree; 0 outside of trees.
     logic [27:0] index;               // Number of the record on its level.
     logic pair;                       // Records have two lines.
     logic halves;                     // Records have half a line.
     logic half;                       // The second line of a pair; else 0.
   } node_address_in_t;
-  localparam int unsigned NODE_ADDRESS_IN_W = LINE_ADDRESS_W + 4 + 28 + 1 + 1 + 1;
+  localparam int unsigned NODE_ADDRESS_IN_W = LINE_ADDRESS_W + 28 + 4 + 28 + 1 + 1 + 1;
 
   // Output of node_address.
   typedef struct packed {
@@ -550,15 +532,17 @@ package lod_pkg;
 
   // Second line of an L0 record.
   typedef struct packed {
-    logic [59:0] reserved;        // Zero.
+    logic [3:0] depth;            // Levels of the tree that are stored, 0 to N: below them is nothing that a ray could want.
+    logic [27:0] group;           // Number of its first sibling group.
+    logic [27:0] vertices;        // Number of its first line of inserted vertices.
     logic [27:0] source;          // Number of the base triangle in the mesh that the scene was made of.
     logic [15:0] material;        // Material index.
-    logic [BOUND_CODE_W-1:0] e0;  // Code of edge (p1, p2) of the root; zero if N = 0, like the others.
+    logic [BOUND_CODE_W-1:0] e0;  // Code of edge (p1, p2) of the root; zero if depth is 0, like the others.
     logic [BOUND_CODE_W-1:0] e1;  // Code of edge (p2, p0).
     logic [BOUND_CODE_W-1:0] e2;  // Code of edge (p0, p1).
-    displacements_t split;        // Inserted vertices of the root, if the scene's are compact; else zero.
+    displacements_t split;        // Inserted vertices of the root, if it splits and the scene's are compact; else zero.
   } l0_record_t;
-  localparam int unsigned L0_RECORD_W = 60 + 28 + 16 + BOUND_CODE_W + BOUND_CODE_W + BOUND_CODE_W + DISPLACEMENTS_W;
+  localparam int unsigned L0_RECORD_W = 4 + 28 + 28 + 28 + 16 + BOUND_CODE_W + BOUND_CODE_W + BOUND_CODE_W + DISPLACEMENTS_W;
 
   // One waiting node.
   typedef struct packed {

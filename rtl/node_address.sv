@@ -2,8 +2,8 @@
 
 /// Address of a memory line of a record. Twin of src/block/node_address.rs.
 ///
-/// With i = (4^level - 1) / 3 + index: base + i for one-line records, base + 2i + half for two-line ones, base + floor((i - 1) / 2) for halves of lines, which
-/// begin at level 1. Records outside of trees have level 0. Legal: level < MAX_LEVELS; result below 2^36, which the size of the sections keeps. Latency NODE_ADDRESS_LATENCY = 2, interval 1.
+/// With i = (4^level - 1) / 3 + index: base + first + i for one-line records, base + first + 2i + half for two-line ones, base + first + floor((i - 1) / 2) for halves
+/// of lines, which begin at level 1. Records outside of trees have first and level 0. Legal: level < MAX_LEVELS; result below 2^36, which the size of the sections keeps. Latency NODE_ADDRESS_LATENCY = 2, interval 1.
 module node_address #(
   parameter int unsigned TAG_W = 8
 ) (
@@ -45,10 +45,12 @@ module node_address #(
 
   logic                 valid_line, ready_line;
   logic [LINE_W-1:0]    line_q;
-  logic [ADDRESS_W-1:0] base_q, address;
+  logic [ADDRESS_W-1:0] base, base_q, address;
   logic [TAG_W-1:0]     tag_line;
+  // No carry: the tree's lines have addresses.
+  assign base = in_i.base + ADDRESS_W'(in_i.first);
   pipe_stage #(.W(LINE_W + ADDRESS_W + TAG_W)) u_line (
-    .clk_i, .rst_ni, .valid_i, .ready_o, .data_i({line, in_i.base, tag_i}),
+    .clk_i, .rst_ni, .valid_i, .ready_o, .data_i({line, base, tag_i}),
     .valid_o(valid_line), .ready_i(ready_line), .data_o({line_q, base_q, tag_line})
   );
 

@@ -26,12 +26,6 @@ module ray_context (
   input  logic                             fetch_grant_i,
   input  logic                             line_valid_i,
   input  lod_pkg::memory_answer_t          line_i,
-  // tree_base.
-  output logic                             base_request_o,
-  output lod_pkg::tree_base_in_t           base_o,
-  input  logic                             base_grant_i,
-  input  logic                             base_valid_i,
-  input  lod_pkg::tree_base_out_t          base_i,
   // child_test.
   output logic                             child_request_o,
   output lod_pkg::child_test_in_t          child_o,
@@ -101,19 +95,17 @@ module ray_context (
   lod_pkg::cone_t           cone_q;
   lod_pkg::kept_setup_t     setup_q;
 
-  // Where it is: entry under visit, tree, node; its triangle with inserted vertices, at full resolution (f, g) and as morphed (p, q); bound codes and edge states.
+  // Where it is: entry under visit; tree, how many of its levels are stored, its first sibling group and vertex line; node; its triangle with inserted vertices, at full resolution (f, g) and as morphed (p, q); bound codes and edge states.
   lod_pkg::stack_entry_t            entry_q;
-  logic [27:0]                      tree_q;
-  logic [3:0]                       level_q;
+  logic [27:0]                      tree_q, group_q, vertices_q;
+  logic [3:0]                       depth_q, level_q;
   logic [NODE_W-1:0]                node_q;
   lod_pkg::kept_point_t             f0_q, f1_q, f2_q, g0_q, g1_q, g2_q, p0_q, p1_q, p2_q, q0_q, q1_q, q2_q;
   logic [lod_pkg::BOUND_CODE_W-1:0] e0_q, e1_q, e2_q;
   lod_pkg::lod_test_out_t           lod_q;
-  lod_pkg::tree_base_out_t          base_q;
 
   // Lines asked for and not yet sent, sent and not yet there, and there: a node, a sibling group or the corners of a record; the rest of the record or vertices.
   logic [1:0]   want_q, waiting_q;
-  logic         base_want_q, base_ready_q;
   logic [255:0] line0_q, line1_q;
 
   // Children still to be pushed.
@@ -144,8 +136,8 @@ module ray_context (
   assign compact_root = scene_i.compact && level_q == '0;
 
   logic last_split;
-  // levels <= MAX_LEVELS and level_q < levels where this is used.
-  assign last_split = level_q + 4'd1 == scene_i.levels;
+  // depth_q <= MAX_LEVELS and level_q < depth_q where this is used.
+  assign last_split = level_q + 4'd1 == depth_q;
 
   // ---- Closest hit ----
 
@@ -256,16 +248,14 @@ module ray_context (
         fetch_o.half = fetch_place_o;
       end
       default: begin
-        fetch_o.base   = fetch_place_o ? base_q.vertices : base_q.bounds;
+        fetch_o.base   = fetch_place_o ? scene_i.vertices : scene_i.bounds;
+        fetch_o.first  = fetch_place_o ? vertices_q : group_q;
         fetch_o.level  = level_q;
         fetch_o.index  = 28'(node_q);
         fetch_o.halves = fetch_place_o && scene_i.compact;
       end
     endcase
   end
-
-  assign base_request_o = state_q == lod_pkg::FETCH && base_want_q;
-  assign base_o         = {scene_i.compact, scene_i.levels, tree_q, scene_i.vertices, scene_i.bounds};
 
   assign child_request_o = state_q == lod_pkg::CHILD && !waiting_q[0];
 
@@ -355,7 +345,7 @@ module ray_context (
       lod_pkg::FETCH: begin
         case (fetch_q)
           lod_pkg::NODE:   if (record_there) state_d = lod_pkg::CHILD;
-          lod_pkg::RECORD: if (record_there && base_ready_q) state_d = (scene_i.levels == '0) ? lod_pkg::TRI : lod_pkg::LOD;
+          lod_pkg::RECORD: if (record_there) state_d = (record.depth == '0) ? lod_pkg::TRI : lod_pkg::LOD;
           // The group may still be under way.
           lod_pkg::VERTEX: if (want_q == '0 && !waiting_q[1]) state_d = lod_pkg::MORPH;
           lod_pkg::GROUP:  if (record_there) state_d = lod_pkg::CHILD;
@@ -432,7 +422,8 @@ module ray_context (
           2'd3: {f0_q, f1_q, f2_q, p0_q, p1_q, p2_q} <= {n0, n1, n2, m0, m1, m2};
         endcase
       end
-    end else if (state_q == lod_pkg::FETCH && fetch_q == lod_pkg::RECORD && record_there && base_ready_q) begin
+    end else if (state_q == lod_pkg::FETCH && fetch_q == lod_pkg::RECORD && record_there) begin
+      {depth_q, group_q, vertices_q} <= {record.depth, record.group, record.vertices};
       level_q <= '0;
       node_q  <= '0;
       {e0_q, e1_q, e2_q} <= {record.e0, record.e1, record.e2};
@@ -454,9 +445,8 @@ module ray_context (
 
   always_ff @(posedge clk_i) begin
     if (!rst_ni) begin
-      want_q      <= '0;
-      waiting_q   <= '0;
-      base_want_q <= 1'b0;
+      want_q    <= '0;
+      waiting_q <= '0;
     end else begin
       waiting_q <= (waiting_q | granted) & ~arrived;
       if (state_q == lod_pkg::VISIT && entry_q.kind == lod_pkg::ENTRY_BVH_NODE) want_q <= 2'b01;
@@ -464,17 +454,12 @@ module ray_context (
       else if (lod_valid_i && lod_i.refine && !compact_root) want_q <= last_split ? 2'b10 : 2'b11;
       else if (fetch_group) want_q <= 2'b01;
       else want_q <= want_q & ~granted;
-      if (state_q == lod_pkg::VISIT && entry_q.kind == lod_pkg::ENTRY_TREE) base_want_q <= 1'b1;
-      else if (base_grant_i) base_want_q <= 1'b0;
     end
   end
 
   always_ff @(posedge clk_i) begin
     if (arrived[0]) line0_q <= line_i.line;
     if (arrived[1]) line1_q <= line_i.line;
-    if (base_valid_i) base_q <= base_i;
-    if (state_q == lod_pkg::VISIT && entry_q.kind == lod_pkg::ENTRY_TREE) base_ready_q <= 1'b0;
-    else if (base_valid_i) base_ready_q <= 1'b1;
     if (state_q == lod_pkg::VISIT && entry_q.kind == lod_pkg::ENTRY_BVH_NODE) fetch_q <= lod_pkg::NODE;
     else if (state_q == lod_pkg::VISIT && entry_q.kind == lod_pkg::ENTRY_TREE) fetch_q <= lod_pkg::RECORD;
     else if (lod_valid_i && lod_i.refine && !compact_root) fetch_q <= lod_pkg::VERTEX;

@@ -65,25 +65,6 @@ module traversal_unit #(
     .valid_o(setup_valid), .ready_i(1'b1), .out_o(setup_out), .tag_o(setup_tag)
   );
 
-  logic [N-1:0] base_request, base_grant;
-  logic [N-1:0][lod_pkg::TREE_BASE_IN_W-1:0] base_data;
-  logic base_in_valid, base_in_ready, base_valid;
-  lod_pkg::tree_base_in_t base_in;
-  lod_pkg::tree_base_out_t base_out;
-  logic [CONTEXT_W-1:0] base_in_tag, base_tag;
-
-  shared_input #(.N(N), .W(lod_pkg::TREE_BASE_IN_W)) u_base_input (
-    .clk_i, .rst_ni,
-    .request_i(base_request), .data_i(base_data), .grant_o(base_grant),
-    .valid_o(base_in_valid), .ready_i(base_in_ready), .data_o(base_in), .index_o(base_in_tag)
-  );
-
-  tree_base #(.TAG_W(CONTEXT_W)) u_tree_base (
-    .clk_i, .rst_ni,
-    .valid_i(base_in_valid), .ready_o(base_in_ready), .in_i(base_in), .tag_i(base_in_tag),
-    .valid_o(base_valid), .ready_i(1'b1), .out_o(base_out), .tag_o(base_tag)
-  );
-
   logic [N-1:0] child_request, child_grant;
   logic [N-1:0][lod_pkg::CHILD_TEST_IN_W-1:0] child_data;
   logic child_in_valid, child_in_ready, child_valid;
@@ -315,8 +296,6 @@ module traversal_unit #(
       .idle_o(idle[k]), .take_i(take[k]), .ray_i(in_i),
       .setup_request_o(setup_request[k]), .setup_o(setup_data[k]), .setup_grant_i(setup_grant[k]),
       .setup_valid_i(setup_valid && setup_tag == ME), .setup_i(setup_out),
-      .base_request_o(base_request[k]), .base_o(base_data[k]), .base_grant_i(base_grant[k]),
-      .base_valid_i(base_valid && base_tag == ME), .base_i(base_out),
       .child_request_o(child_request[k]), .child_o(child_data[k]), .child_grant_i(child_grant[k]),
       .child_valid_i(child_valid && child_tag == ME), .child_i(child_out),
       .lod_request_o(lod_request[k]), .lod_o(lod_data[k]), .lod_grant_i(lod_grant[k]),

@@ -2,9 +2,7 @@
 
 use lodray::bvh::over_trees;
 use lodray::format::audit::{AuditReport, audit};
-use lodray::format::{
-    BvhNode, Displacements, L0Record, Scene, SceneError, SiblingGroup, VertexData, encode, export_level, layout, tree_boxes,
-};
+use lodray::format::{BvhNode, Displacements, L0Record, Scene, SceneError, SiblingGroup, VertexData, encode, export_level, tree_boxes};
 use lodray::mesh::{BoundKind, Surface, edge_index, lattice, quantise};
 use lodray::num::{BoundCode, U, Vec3, VertexForm, Wire, bound_decode};
 use lodray_test_support::cases;
@@ -116,7 +114,7 @@ fn one_lowered_code_is_found(kind: BoundKind) {
             lowered += 1;
         }
         for place in 0..9 {
-            let at = 32 * layout::child_group(2, tree, 0, 0);
+            let at = 32 * good.tree_lines(tree).child_group(0, 0);
             let report = damaged(&good, BOUNDS, |b| change(b, at, |r: &mut SiblingGroup| lower(&mut r.codes[place])));
             found_by(&report, "bounds cover the true displacement");
             lowered += 1;
@@ -205,8 +203,8 @@ fn each_damage_is_found_by_its_check() {
     let levels = 6;
     let good = scene(&octahedron(levels));
     assert!(audit(&good).passed());
-    let group = 32 * layout::child_group(levels, 3, 1, 2);
-    let line = |level, node| 32 * layout::vertex_line(VertexForm::Exact, levels, 5, level, node);
+    let group = 32 * good.tree_lines(3).child_group(1, 2);
+    let line = |level, node| 32 * good.tree_lines(5).vertex_line(VertexForm::Exact, level, node);
 
     // Bit 4 of a coordinate, the lowest that is stored: no vertex of level 1 of 6 may have it.
     let nudge = |r: &mut VertexData| r.v1 = Vec3::new(r.v1.x.get() ^ 1, r.v1.y.get(), r.v1.z.get());
@@ -223,11 +221,18 @@ fn each_damage_is_found_by_its_check() {
     assert!(refused(RECORDS, &|b| change(b, 64, outside)).contains("coordinate beyond"));
     let least = |r: &mut BvhNode| r.origin = Vec3::new(0, -32_768, 0);
     assert!(refused(NODES, &|b| change(b, 0, least)).contains("box inside out"));
+    let place = |f: fn(&mut L0Record)| refused(RECORDS, &|b| change(b, 64 * 5 + 32, f));
+    assert!(place(|r| r.depth = U::new(7)).contains("depth of tree 5 is 7"));
+    assert!(place(|r| r.depth = U::new(5)).contains("tree 6 has group"));
+    assert!(place(|r| r.group = U::new(r.group.get() + 1)).contains("tree 5 has group"));
+    assert!(place(|r| r.vertices = U::ZERO).contains("tree 5 has group"));
+    // The last tree: nothing comes behind it but the end of the sections.
+    let last = |r: &mut L0Record| r.depth = U::new(5);
+    assert!(refused(RECORDS, &|b| change(b, 64 * 7 + 32, last)).contains("but the trees have"));
 
     let reserved = "reserved bits and empty slots are zero";
     found_by(&damaged(&good, VERTICES, |b| change(b, line(2, 1), |r: &mut VertexData| r.reserved = U::new(1))), reserved);
     found_by(&damaged(&good, BOUNDS, |b| change(b, group, |r: &mut SiblingGroup| r.reserved = U::new(1))), reserved);
-    found_by(&damaged(&good, RECORDS, |b| b[64 + 63] = 0x80), reserved);
     found_by(&damaged(&good, RECORDS, |b| b[31] |= 0x80), reserved);
     // Exact vertices leave no displacements in the records.
     found_by(&damaged(&good, RECORDS, |b| b[64 + 32] = 1), reserved);
@@ -261,7 +266,7 @@ fn each_damage_to_compact_vertices_is_found() {
     let levels = 4;
     let good = scene_with(&octahedron(levels), BoundKind::Largest, VertexForm::Compact);
     assert!(audit(&good).passed());
-    let half = |level, node| 32 * layout::vertex_line(VertexForm::Compact, levels, 5, level, node) + 16 * (node % 2);
+    let half = |level, node| 32 * good.tree_lines(5).vertex_line(VertexForm::Compact, level, node) + 16 * (node % 2);
     let record = 64 * 5 + 32;
     let nudge = |r: &mut Displacements| r.v1 = Vec3::new(r.v1.x.get() ^ 1, r.v1.y.get(), r.v1.z.get());
 
@@ -287,7 +292,7 @@ fn each_damage_to_compact_vertices_is_found() {
     let report = damaged(&good, RECORDS, |b| change(b, record, raise));
     found_by(&report, "all trees that share an edge hold the same code");
     let raise = |r: &mut SiblingGroup| r.codes[2] = U::new(r.codes[2].get() + 16);
-    let group = 32 * layout::child_group(levels, 5, 1, 2);
+    let group = 32 * good.tree_lines(5).child_group(1, 2);
     found_by(&damaged(&good, BOUNDS, |b| change(b, group, raise)), inside);
     // A displacement beyond what its code says, where its vertex is read first.
     let longest = |r: &mut Displacements| r.v0 = Vec3::new(-4096, r.v0.y.get(), r.v0.z.get());
@@ -335,12 +340,13 @@ fn finer_codes_above_coarser_are_found() {
     // An inner edge of level 1 raised for both of its sides: equal and covering, but above the codes of the base edges.
     let levels = 3;
     let v = [[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [1.0, 1.0, 0.0]];
-    // Two trees, a bump in the second alone: the first's codes are small.
-    let s = surface(levels, &v, &[[0, 1, 2], [3, 2, 1]], |p| [p[0], p[1], if p[0] + p[1] > 1.6 { 0.1 } else { 0.0 }]);
+    // Two trees, a bump in the second and hardly any in the first: its codes are small.
+    let height = |p: [f64; 3]| if p[0] + p[1] > 1.6 { 0.1 } else { 1e-3 * p[0] * p[1] };
+    let s = surface(levels, &v, &[[0, 1, 2], [3, 2, 1]], |p| [p[0], p[1], height(p)]);
     let good = scene(&s);
     assert!(audit(&good).passed());
     // e_0 of child 0 and of the centre child.
-    let group = 32 * layout::child_group(levels, 0, 0, 0);
+    let group = 32 * good.tree_lines(0).child_group(0, 0);
     let report = damaged(&good, BOUNDS, |b| change(b, group, |r: &mut SiblingGroup| r.codes[0] = U::new(255)));
     found_by(&report, "codes do not grow towards finer levels");
     assert_eq!(report.check("both sides of an edge hold the same code").unwrap().breaches, 0);

@@ -85,7 +85,6 @@ fn rust_side() -> (Vec<BlockTwin>, Vec<StructTwin>) {
         block::node_address::NodeAddress,
         block::ray_setup::RaySetup,
         block::tessellate::Tessellate,
-        block::tree_base::TreeBase,
         TriTest,
     );
     (blocks, structs)

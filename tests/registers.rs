@@ -8,7 +8,7 @@ use lodray::hardware::Hardware;
 use lodray_test_support::hardware::{NARROW, NARROWS, OTHERS, SMALL};
 
 /// Blocks whose registers depend on the levels.
-const BY_LEVEL: [Operation; 3] = [Operation::BaryMap, Operation::HitSelect, Operation::TreeBase];
+const BY_LEVEL: [Operation; 2] = [Operation::BaryMap, Operation::HitSelect];
 
 /// Blocks whose registers depend on the bits of coordinates and directions.
 const BY_WIDTH: [Operation; 5] = [Operation::BoxTest, Operation::ChildTest, Operation::LodTest, Operation::Tessellate, Operation::TriTest];
@@ -59,7 +59,6 @@ fn what_is_kept_are_the_flip_flops_of_the_netlists() {
     // Bits that synthesis drops besides: products with a limb of one bit are no multiplications, and some signs repeat. At most 1 in 180.
     let edge_function = 22;
     let besides = |block: &str| match block {
-        "tree_base" => 2,
         "tri_test" => 3 * edge_function,
         "tri_test-EDGES_PER_CYCLE=1" => edge_function,
         _ => 0,

@@ -108,6 +108,41 @@ fn what_the_audit_reads_is_what_is_decoded() {
     assert!(vertices > 10_000, "{vertices}");
 }
 
+#[test]
+fn trees_are_as_deep_as_their_codes() {
+    use lodray::mesh::procedural::{Options, Scene as Kind, generate};
+    let made = |kind| generate(&Options { levels: Some(4), base: Some(48), ..Options::new(kind) }).unwrap();
+    // Flat but for a bump: trees of every depth.
+    let bump = |at: [f64; 3]| if (at[0] - 1.3).abs() + (at[1] - 1.7).abs() < 0.4 { [at[0], at[1], 0.1] } else { at };
+    let vertices: Vec<[f64; 3]> = (0..16).map(|k| [f64::from(k % 4), f64::from(k / 4), 0.0]).collect();
+    let square = |k: u32| [[k, k + 1, k + 4], [k + 5, k + 4, k + 1]];
+    let triangles: Vec<[u32; 3]> = [0, 1, 2, 4, 5, 6, 8, 9, 10].into_iter().flat_map(square).collect();
+    let flat = lodray_test_support::surfaces::surface(4, &vertices, &triangles, bump);
+    let mut seen = [0; 5];
+    for surface in [flat, made(Kind::Room), made(Kind::Terrain), octahedron(4), fan(0)] {
+        for (form, kind) in VertexForm::ALL.into_iter().flat_map(|form| BoundKind::ALL.map(|kind| (form, kind))) {
+            let (h, scene) = (quantise(&surface, kind, form, 0).unwrap(), scene_with(&surface, kind, form));
+            let (mut groups, mut lines) = (0, 0);
+            for tree in 0..scene.trees() {
+                let source = scene.record(tree).source.get() as usize;
+                let zero = |level: u32| {
+                    (0..1u32 << (2 * level)).all(|node| h.node_codes(source, level, lattice::node(h.levels, level, node)) == [0; 3])
+                };
+                let depth = (0..=h.levels).find(|&level| (level..h.levels).all(zero)).unwrap();
+                let stored = scene.tree_lines(tree);
+                assert_eq!((stored.depth, stored.group, stored.vertices), (depth, groups, lines), "tree {tree}");
+                let inner: usize = (0..depth).map(|level| 1 << (2 * level)).sum();
+                let own = (0..depth.saturating_sub(1)).map(|level| 1 << (2 * level)).sum::<usize>();
+                groups += own;
+                lines += if form.is_compact() { 2 * own } else { inner };
+                seen[depth as usize] += 1;
+            }
+            assert_eq!((scene.bounds().len(), scene.vertices().len()), (groups, lines));
+        }
+    }
+    assert!(seen.iter().all(|&trees| trees > 0), "{seen:?}");
+}
+
 /// Bits `high` to `low` of record `at` of so many bytes, as docs/scene-format.md numbers them.
 fn bits(bytes: &[u8], size: usize, at: usize, [high, low]: [usize; 2]) -> u64 {
     let bit = |k: usize| u64::from(bytes[size * at + k / 8] >> (k % 8) & 1);
@@ -134,21 +169,33 @@ impl Words<'_> {
         std::array::from_fn(|v| std::array::from_fn(|c| 16 * field(v, c)))
     }
 
+    /// How many levels of the tree are stored, and its first group and vertex line.
+    fn stored(&self, tree: usize) -> [usize; 3] {
+        [[255, 252], [251, 224], [223, 196]].map(|field| bits(self.sections[2], 64, tree, field.map(|bit| 256 + bit)) as usize)
+    }
+
     /// Codes of e0, e1, e2.
     fn codes(&self, tree: usize, level: usize, node: usize) -> [u64; 3] {
+        let [depth, first, _] = self.stored(tree);
+        if level >= depth {
+            return [0; 3];
+        }
         if level == 0 {
             return [151, 143, 135].map(|high| bits(self.sections[2], 64, tree, [256 + high, 256 + high - 7]));
         }
-        let groups = (4usize.pow(self.levels as u32 - 1) - 1) / 3;
-        let group = tree * groups + (4usize.pow(level as u32 - 1) - 1) / 3 + node / 4;
+        let group = first + (4usize.pow(level as u32 - 1) - 1) / 3 + node / 4;
         let places = [[0, 1, 2], [3, 4, 5], [6, 7, 8], [0, 4, 8]][node % 4];
         places.map(|place| bits(self.sections[3], 32, group, [190 + 8 * place, 183 + 8 * place]))
     }
 
     fn inserted(&self, tree: usize, level: usize, node: usize, p: [[i64; 3]; 3]) -> [[i64; 3]; 3] {
         let before = (4usize.pow(level as u32) - 1) / 3 + node;
+        let [depth, _, first] = self.stored(tree);
+        if level >= depth {
+            return std::array::from_fn(|v| std::array::from_fn(|c| (p[(v + 1) % 3][c] + p[(v + 2) % 3][c]) / 2));
+        }
         if !self.compact {
-            let line = tree * (4usize.pow(self.levels as u32) - 1) / 3 + before;
+            let line = first + before;
             let field = |v: usize, c: usize| signed(self.sections[4], 32, line, [251 - 84 * v - 28 * c, 224 - 84 * v - 28 * c]);
             return std::array::from_fn(|v| std::array::from_fn(|c| 16 * field(v, c)));
         }
@@ -160,8 +207,7 @@ impl Words<'_> {
                 let d = if level == 0 {
                     signed(self.sections[2], 64, tree, at.map(|bit| 256 + bit))
                 } else {
-                    let halves = 4 * (4usize.pow(self.levels as u32 - 1) - 1) / 3;
-                    signed(self.sections[4], 16, tree * halves + before - 1, at)
+                    signed(self.sections[4], 16, 2 * first + before - 1, at)
                 };
                 (p[(v + 1) % 3][c] + p[(v + 2) % 3][c]) / 2 + d * (1 << exponent)
             })
@@ -274,13 +320,15 @@ fn truncated_long_foreign_and_newer_files_are_refused() {
     assert!(open(b"").unwrap_err().contains("magic"));
     assert!(open(b"solid ascii\nfacet normal 0 0 1").unwrap_err().contains("magic"));
     let mut newer = good.clone();
-    newer[8] = 3;
+    newer[8] = 4;
     lodray_test_support::surfaces::reseal(&mut newer);
     assert!(open(&newer).unwrap_err().contains("newer"));
-    let mut older = good.clone();
-    older[8] = 1;
-    lodray_test_support::surfaces::reseal(&mut older);
-    assert!(open(&older).unwrap_err().contains("make the scene again with build or generate"));
+    for version in [1, 2] {
+        let mut older = good.clone();
+        older[8] = version;
+        lodray_test_support::surfaces::reseal(&mut older);
+        assert!(open(&older).unwrap_err().contains("make the scene again with build or generate"));
+    }
     assert!(Scene::open(std::path::Path::new("/nonexistent/x.lod")).unwrap_err().to_string().contains("x.lod"));
     assert!(Scene::open(&std::env::temp_dir()).is_err());
 }

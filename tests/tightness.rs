@@ -10,7 +10,7 @@ use lodray::block::lod_test::{self, LodTest};
 use lodray::block::tessellate::{self, Tessellate, child_triangle};
 use lodray::block::tri_test::{self, TriTest};
 use lodray::bvh::BvhChild32;
-use lodray::format::{BvhChild, BvhNode, ChildRef, Displacements, L0Record, Line, SiblingGroup, VertexData, layout};
+use lodray::format::{BvhChild, BvhNode, ChildRef, Displacements, L0Record, Line, SiblingGroup, TreeLines, VertexData};
 use lodray::mesh::{Hierarchy, lattice};
 use lodray::method::bvh::{self, BvhTraverser, FullBvh, FullNodes, FullOptions, LeafLayout, NodeBoxes};
 use lodray::method::lod::{self, LodImage, LodTraverser};
@@ -223,6 +223,10 @@ impl<'a> Lod<'a> {
         self.tree_node(walk, TriangleId { tree: tree as u32, level: 0, node: 0 }, [p, p], [e0, e1, e2]);
     }
 
+    fn lines(&self, tree: usize) -> TreeLines {
+        L0Record::line_tree(&self.image.records[tree][4..])
+    }
+
     fn record(&self, tree: usize) -> L0Record {
         L0Record::from_words(&self.image.records[tree][4..])
     }
@@ -230,7 +234,7 @@ impl<'a> Lod<'a> {
     /// A node's inserted vertices as they are stored, and how many lines they are.
     fn stored(&self, TriangleId { tree, level, node }: TriangleId) -> ([Point; 3], u64) {
         let (tree, image) = (tree as usize, &self.image);
-        let line = || &image.vertices[layout::vertex_line(image.form, image.levels, tree, level, node as usize)];
+        let line = || &image.vertices[self.lines(tree).vertex_line(image.form, level, node as usize)];
         match image.form {
             VertexForm::Exact => (VertexData::from_words(line()).points(), 1),
             // With the record.
@@ -242,7 +246,8 @@ impl<'a> Lod<'a> {
     fn tree_node<H: HitSink>(&self, walk: &mut Walk<'_, H>, id: TriangleId, [f, p]: Corners, [e0, e1, e2]: [BoundCode; 3]) {
         let (levels, scale) = (self.image.levels, self.image.scale);
         let TriangleId { tree, level, node } = id;
-        if level == levels {
+        let lines = self.lines(tree as usize);
+        if level == lines.depth {
             return walk.triangle(id, p);
         }
         let ([f0, f1, f2], [p0, p1, p2]) = (f, p);
@@ -251,8 +256,8 @@ impl<'a> Lod<'a> {
         if !lod.refine {
             return walk.triangle(id, p);
         }
-        let ([v0, v1, v2], lines) = self.stored(id);
-        walk.reads(lod::VERTICES, lines);
+        let ([v0, v1, v2], read) = self.stored(id);
+        walk.reads(lod::VERTICES, read);
         let (compact, grid) = (self.image.form == VertexForm::Compact, U::new(u64::from(levels - level - 1)));
         let padding = U::new(4);
         let lod_test::Out { s0, s1, s2, .. } = lod;
@@ -261,14 +266,14 @@ impl<'a> Lod<'a> {
         let corners: [Corners; 4] =
             std::array::from_fn(|k| [child_triangle(f, [t.g0, t.g1, t.g2], k), child_triangle(p, [t.q0, t.q1, t.q2], k)]);
         let below = |k: usize| TriangleId { tree, level: level + 1, node: 4 * node + k as u32 };
-        if level + 1 == levels {
+        if level + 1 == lines.depth {
             return (0..4).for_each(|k| walk.triangle(below(k), corners[k][1]));
         }
         walk.reads(lod::BOUNDS, 1);
         let first = ((tree as usize) << (2 * (level + 1))) + 4 * node as usize;
         let stored = &self.trees[level as usize + 1][first..first + 4];
         let boxes = std::array::from_fn(|k| Some(stored[k].with(Bounds::around(corners[k][1].map(|p| p.get())).at_codes())));
-        let group = SiblingGroup::from_words(&self.image.bounds[layout::child_group(levels, tree as usize, level, node as usize)]);
+        let group = SiblingGroup::from_words(&self.image.bounds[lines.child_group(level, node as usize)]);
         walk.children(boxes, |walk, k| self.tree_node(walk, below(k), corners[k], group.codes_of(k)));
     }
 }

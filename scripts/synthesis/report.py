@@ -8,8 +8,8 @@ HEADINGS = ["block", "GE", "flip-flops", "multipliers", "depth", "LUTs", "ECP5 F
 
 
 # What a traversal unit has one of each of, and what level of detail adds to it, as (block, how many).
-UNIT = ["ray_setup", "node_address", "tree_base", "child_test", "lod_test", "tessellate", "tri_test", "hit_divide", "hit_select", "bary_map"]
-ADDED = [("lod_test", 1), ("tessellate", 1), ("child_boxes", 1), ("bary_map", 1), ("tree_base", 1)]
+UNIT = ["ray_setup", "node_address", "child_test", "lod_test", "tessellate", "tri_test", "hit_divide", "hit_select", "bary_map"]
+ADDED = [("lod_test", 1), ("tessellate", 1), ("child_boxes", 1), ("bary_map", 1)]
 
 
 def row(name, figures):

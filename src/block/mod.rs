@@ -21,7 +21,6 @@ mod operation;
 pub mod parts;
 pub mod ray_setup;
 pub mod tessellate;
-pub mod tree_base;
 pub mod tri_test;
 
 pub use operation::{Operation, Operations};

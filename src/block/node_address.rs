@@ -1,7 +1,7 @@
 //! Address of a memory line of a record (`docs/scene-format.md`).
 //!
-//! With i = (4^level - 1) / 3 + index: base + i for one-line records, base + 2i + half for two-line ones, base + (i - 1) / 2, rounded down, for records of half a
-//! line, of which the first level has none. Records outside of trees have level 0.
+//! With i = (4^level - 1) / 3 + index: base + first + i for one-line records, base + first + 2i + half for two-line ones, base + first + (i - 1) / 2, rounded down, for records of half a
+//! line, of which the first level has none. Records outside of trees have first and level 0.
 //! Legal: level <= 9, above 0 for records of half a line; result below 2^36, which the size of the sections keeps.
 
 use super::parts::{Parts, Registers, TAG};
@@ -11,8 +11,10 @@ use crate::num::{LineAddress, U, Wire, wire_struct};
 wire_struct! {
     /// Input of [`NodeAddress`].
     pub struct In {
-        /// First line of the section, or of the tree within it.
+        /// First line of the section.
         base: LineAddress,
+        /// The tree's first line in it; 0 outside of trees.
+        first: U<28>,
         /// Level of the node within its tree; 0 outside of trees.
         level: U<4>,
         /// Number of the record on its level.
@@ -47,7 +49,7 @@ impl Block for NodeAddress {
         const RECORD: u32 = 29;
         let (line, address) = (RECORD + 1, LineAddress::WIDTH);
         let registers = Registers::stage(line + address + TAG) + Registers::stage(address + TAG);
-        Parts { products: vec![], add_bits: RECORD + address, select_bits: 2 * line, registers }
+        Parts { products: vec![], add_bits: RECORD + 2 * address, select_bits: 2 * line, registers }
     }
     #[inline(always)]
     fn eval(i: &In) -> Out {
@@ -61,7 +63,7 @@ impl Block for NodeAddress {
         } else {
             record
         };
-        Out { address: LineAddress::new(i.base.get() + line) }
+        Out { address: LineAddress::new(i.base.get() + i.first.get() + line) }
     }
 }
 
@@ -76,13 +78,13 @@ mod tests {
         for level in 0..=9u32 {
             for node in [0, 1, (1usize << (2 * level)) - 1].into_iter().filter(|&node| node < 1 << (2 * level)) {
                 let (level_in, index) = (U::new(u64::from(level)), U::new(node as u64));
-                let input = In { base: U::new(100), level: level_in, index, pair: false, halves: false, half: false };
+                let input = In { base: U::new(60), first: U::new(40), level: level_in, index, pair: false, halves: false, half: false };
                 let line = |input: &In| NodeAddress::eval(input).address.get() as usize;
-                assert_eq!(line(&input), 100 + layout::vertex_line(VertexForm::Exact, 10, 0, level, node));
-                assert_eq!(line(&input), 100 + layout::child_group(10, 0, level, node));
-                assert_eq!(line(&In { pair: true, half: true, ..input }), 101 + 2 * layout::child_group(10, 0, level, node));
+                assert_eq!(line(&input), 100 + layout::vertex_line(VertexForm::Exact, 0, level, node));
+                assert_eq!(line(&input), 100 + layout::child_group(0, level, node));
+                assert_eq!(line(&In { pair: true, half: true, ..input }), 101 + 2 * layout::child_group(0, level, node));
                 if level > 0 {
-                    assert_eq!(line(&In { halves: true, ..input }), 100 + layout::vertex_line(VertexForm::Compact, 10, 0, level, node));
+                    assert_eq!(line(&In { halves: true, ..input }), 100 + layout::vertex_line(VertexForm::Compact, 0, level, node));
                 }
             }
         }

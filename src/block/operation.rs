@@ -15,14 +15,13 @@ use super::lod_test::LodTest;
 use super::node_address::NodeAddress;
 use super::ray_setup::RaySetup;
 use super::tessellate::Tessellate;
-use super::tree_base::TreeBase;
 use super::tri_test::TriTest;
 use super::{Form, Timing, parts::Parts};
 
 /// Something of the block of an operation, whose type is `$block`.
 macro_rules! of_block {
     ($operation:expr, $block:ident => $value:expr) => {
-        of_block!($operation, $block => $value; RaySetup, NodeAddress, TreeBase, ChildTest, LodTest, Tessellate, TriTest, HitDivide, HitSelect,
+        of_block!($operation, $block => $value; RaySetup, NodeAddress, ChildTest, LodTest, Tessellate, TriTest, HitDivide, HitSelect,
             BaryMap, ChildBoxes, BoxDecode, BoxTest, BoxTest32, ChildSort, BoundDecode)
     };
     ($operation:expr, $block:ident => $value:expr; $($name:ident),+) => {
@@ -42,8 +41,6 @@ pub enum Operation {
     RaySetup,
     /// A line's address.
     NodeAddress,
-    /// A tree's place.
-    TreeBase,
     /// Four children of a node.
     ChildTest,
     /// Does a triangle serve.
@@ -74,10 +71,9 @@ pub enum Operation {
 
 impl Operation {
     /// Every operation.
-    pub const ALL: [Self; 16] = [
+    pub const ALL: [Self; 15] = [
         Self::RaySetup,
         Self::NodeAddress,
-        Self::TreeBase,
         Self::ChildTest,
         Self::LodTest,
         Self::Tessellate,

@@ -1,6 +1,6 @@
 //! Memory images back to a hierarchy, and single triangles of full resolution.
 
-use super::{Displacements, L0Record, Scene, SiblingGroup, VertexData, layout};
+use super::{Displacements, L0Record, Scene, SiblingGroup, VertexData};
 use crate::mesh::compact::inserted_zero_bits;
 use crate::mesh::lattice::{self, LatticePoint};
 use crate::mesh::{EdgeCodes, Hierarchy, edge_index, edges_of_tree};
@@ -26,24 +26,33 @@ impl Scene {
         L0Record::from_words(&self.records()[tree][4..])
     }
 
-    /// Codes of edges e0, e1, e2 of node (`level`, `node`) of a tree; `level` below N, or 0.
+    /// Codes of edges e0, e1, e2 of node (`level`, `node`) of a tree, `level` below N or 0: 0 from the tree's depth on.
     #[inline]
     pub fn node_codes(&self, tree: usize, level: u32, node: usize) -> [u8; 3] {
+        let lines = self.tree_lines(tree);
+        if level >= lines.depth {
+            return [0; 3];
+        }
         let codes = if level == 0 {
             let L0Record { e0, e1, e2, .. } = self.record(tree);
             [e0, e1, e2]
         } else {
-            SiblingGroup::line_codes(&self.bounds()[layout::child_group(self.levels(), tree, level - 1, node >> 2)], node & 3)
+            SiblingGroup::line_codes(&self.bounds()[lines.child_group(level - 1, node >> 2)], node & 3)
         };
         let [e0, e1, e2] = codes;
         [e0.get() as u8, e1.get() as u8, e2.get() as u8] // 8 bits
     }
 
-    /// Inserted vertices q0, q1, q2 in units of node (`level`, `node`) of a tree with full-resolution corners `p`; `level` below N.
+    /// Inserted vertices q0, q1, q2 in units of node (`level`, `node`) of a tree with full-resolution corners `p`, `level` below N: from the tree's depth on the middles
+    /// of the edges.
     #[inline]
     pub fn inserted(&self, tree: usize, level: u32, node: usize, p: [[i32; 3]; 3]) -> [[i32; 3]; 3] {
-        let meta = self.meta();
-        let line = |level| &self.vertices()[layout::vertex_line(meta.vertices, meta.levels, tree, level, node)];
+        let (meta, lines) = (self.meta(), self.tree_lines(tree));
+        if level >= lines.depth {
+            let middle = |a: [i32; 3], b: [i32; 3]| std::array::from_fn(|c| displaced(a[c], b[c], 0, 0));
+            return [middle(p[1], p[2]), middle(p[2], p[0]), middle(p[0], p[1])];
+        }
+        let line = |level| &self.vertices()[lines.vertex_line(meta.vertices, level, node)];
         let steps = match (meta.vertices, level) {
             (VertexForm::Exact, _) => return VertexData::from_words(line(level)).points().map(units),
             (VertexForm::Compact, 0) => self.record(tree).split,

@@ -2,7 +2,7 @@
 
 use super::scene::Image;
 use super::sections::{COUNT, FileSection, HEADER, checksum, place, write_header};
-use super::{Box16, Displacements, L0Record, Line, Meta, Scene, SceneError, SiblingGroup, VertexData, colour, layout, normal};
+use super::{Box16, Displacements, L0Record, Line, Meta, Scene, SceneError, SiblingGroup, TreeLines, VertexData, colour, layout, normal};
 use crate::mesh::compact::{inserted_zero_bits, steps_of};
 use crate::mesh::lattice::{self, LatticePoint};
 use crate::mesh::{BoundKind, Hierarchy, Surface, SurfaceError, quantise};
@@ -91,9 +91,13 @@ pub fn encode(hierarchy: &Hierarchy, surface: &Surface, info: SceneInfo, bvh: &T
     }
     let meta = meta(hierarchy, surface, info);
     let json = serde_json::to_vec(&meta).map_err(|e| SceneError::Build(format!("META: {e}")))?;
+    let depths: Vec<u32> = order.par_iter().map(|&tree| hierarchy.depth(tree as usize)).collect();
+    let (trees_lines, end) = tree_lines(meta.vertices, &depths);
     let lengths = FileSection::ALL.map(|section| match section {
         FileSection::Meta => json.len(),
         FileSection::Nodes => size_of_val(nodes.as_slice()),
+        FileSection::Bounds => size_of::<Line>() * end.group,
+        FileSection::Vertices => size_of::<Line>() * end.vertices,
         FileSection::Colours => 4 * surface.colours.len(),
         _ => Scene::section_lengths(&meta, section).unwrap_or(usize::MAX / 16), // too large to be had
     });
@@ -124,13 +128,30 @@ pub fn encode(hierarchy: &Hierarchy, surface: &Surface, info: SceneInfo, bvh: &T
         groups: bytemuck::cast_slice_mut(bounds),
         vertices: bytemuck::cast_slice_mut(vertices),
     };
-    images.write(hierarchy, &surface.materials, order)?;
+    images.write(hierarchy, &surface.materials, order, &trees_lines)?;
 
     let mut sums = [0; COUNT];
     sums.par_iter_mut().zip(&ranges).for_each(|(sum, range)| *sum = checksum(&image[range.clone()]));
     write_header(&mut image[..HEADER], total, &ranges, &sums);
     debug_assert_eq!(trees, meta.trees as usize);
     Ok(Scene { image: Image::Owned(image), ranges, meta })
+}
+
+/// What is stored of trees of these depths, in their order; and where another's lines would begin.
+pub(super) fn tree_lines(form: VertexForm, depths: &[u32]) -> (Vec<TreeLines>, TreeLines) {
+    let mut next = TreeLines::default();
+    let mut place = |depth| {
+        let lines = TreeLines { depth, ..next };
+        next = lines.next(form);
+        lines
+    };
+    let all = depths.iter().map(|&depth| place(depth)).collect();
+    (all, next)
+}
+
+/// A first group or line of a tree has no number.
+pub(super) fn too_many_lines(tree: usize) -> SceneError {
+    SceneError::Build(format!("sibling groups or vertex lines of tree {tree} begin behind 2^28 others: fewer splits or trees are needed"))
 }
 
 fn meta(h: &Hierarchy, surface: &Surface, info: SceneInfo) -> Meta {
@@ -182,6 +203,16 @@ fn write_normals(surface: &Surface, order: &[u32], out: &mut [u32]) -> Result<()
     })
 }
 
+/// Lines in parts of these lengths.
+fn cut(mut lines: &mut [Line], lengths: impl Iterator<Item = usize>) -> Vec<&mut [Line]> {
+    let part = |length| {
+        let (part, rest) = std::mem::take(&mut lines).split_at_mut(length);
+        lines = rest;
+        part
+    };
+    lengths.map(part).collect()
+}
+
 /// The images of all trees.
 struct Images<'a> {
     records: &'a mut [[u64; 8]],
@@ -190,23 +221,24 @@ struct Images<'a> {
 }
 
 impl Images<'_> {
-    /// Fills the record, sibling groups and vertices of every tree; the first is tree `order[0]` of the hierarchy.
-    fn write(self, h: &Hierarchy, materials: &[u16], order: &[u32]) -> Result<(), SceneError> {
-        // Empty parts have no chunks.
-        let (groups, lines) = (layout::sibling_groups(h.levels), layout::vertex_lines(h.vertices, h.levels));
-        let mut groups: Vec<&mut [Line]> = if groups > 0 { self.groups.chunks_mut(groups).collect() } else { Vec::new() };
-        let mut lines: Vec<&mut [Line]> = if lines > 0 { self.vertices.chunks_mut(lines).collect() } else { Vec::new() };
-        groups.resize_with(order.len(), Default::default);
-        lines.resize_with(order.len(), Default::default);
-        let trees = self.records.par_iter_mut().zip(order).zip(groups).zip(lines);
-        let bad = trees.find_map_first(|(((record, &tree), groups), lines)| {
+    /// Fills the record, sibling groups and vertices of every tree, of which so much is stored; the first is tree `order[0]` of the hierarchy.
+    fn write(self, h: &Hierarchy, materials: &[u16], order: &[u32], stored: &[TreeLines]) -> Result<(), SceneError> {
+        let groups = cut(self.groups, stored.iter().map(|lines| lines.groups()));
+        let lines = cut(self.vertices, stored.iter().map(|lines| lines.vertex_lines(h.vertices)));
+        let trees = self.records.par_iter_mut().zip(order).zip(stored).zip(groups.into_par_iter().zip(lines));
+        let bad = trees.find_map_first(|(((record, &tree), &stored), (groups, lines))| {
             let index = tree as usize;
-            let mut writer = TreeWriter { h, points: h.tree(index), tree: index, groups, lines, fits: true };
-            let material = materials.get(index).copied().unwrap_or(0);
-            writer.record(tree, material, record);
-            (!writer.fits).then_some(tree)
+            let mut writer = TreeWriter { h, points: h.tree(index), tree: index, depth: stored.depth, groups, lines, fits: true };
+            let source = L0Record {
+                source: U::new(u64::from(tree)),
+                material: U::new(u64::from(materials.get(index).copied().unwrap_or(0))),
+                ..L0Record::default()
+            };
+            let Some(second) = source.of_tree(stored) else { return Some(too_many_lines(index)) };
+            writer.record(second, record);
+            (!writer.fits).then(|| SceneError::Build(format!("tree {tree} has a vertex that its compact form cannot hold")))
         });
-        bad.map_or(Ok(()), |tree| Err(SceneError::Build(format!("tree {tree} has a vertex that its compact form cannot hold"))))
+        bad.map_or(Ok(()), Err)
     }
 }
 
@@ -215,6 +247,8 @@ struct TreeWriter<'a> {
     h: &'a Hierarchy,
     points: &'a [[i32; 3]],
     tree: usize,
+    /// Levels that are stored.
+    depth: u32,
     groups: &'a mut [Line],
     lines: &'a mut [Line],
     /// Compact vertices are what the hierarchy has.
@@ -229,11 +263,10 @@ fn span(points: [[i32; 3]; 3]) -> Span {
 }
 
 impl TreeWriter<'_> {
-    fn record(&mut self, source: u32, material: u16, out: &mut [u64; 8]) {
+    fn record(&mut self, mut record: L0Record, out: &mut [u64; 8]) {
         let p = lattice::root(self.h.levels);
         VertexData::from_points(p.map(|c| self.at(c))).to_words(&mut out[..4]);
-        let mut record = L0Record { source: U::new(u64::from(source)), material: U::new(u64::from(material)), ..L0Record::default() };
-        if self.h.levels > 0 {
+        if self.depth > 0 {
             [record.e0, record.e1, record.e2] = self.h.node_codes(self.tree, 0, p).map(|c| U::new(u64::from(c)));
             if self.h.vertices.is_compact() {
                 record.split = self.displacements(0, p);
@@ -247,10 +280,10 @@ impl TreeWriter<'_> {
         self.points[lattice::index(self.h.levels, p)]
     }
 
-    /// Writes everything below node (`level`, `node`) with corners `p` and gives the box of its full-resolution triangles.
+    /// Writes everything below node (`level`, `node`) with corners `p` and gives the box of its full-resolution triangles: where nothing more is stored, they lie in
+    /// its own.
     fn node(&mut self, level: u32, node: usize, p: [LatticePoint; 3]) -> Span {
-        let levels = self.h.levels;
-        if level == levels {
+        if level == self.depth {
             return span(p.map(|c| self.at(c)));
         }
         let q = lattice::midpoints(p).map(|c| self.at(c));
@@ -264,7 +297,7 @@ impl TreeWriter<'_> {
                 half.to_words(&mut self.lines[(number - 1) / 2][2 * (node & 1)..][..2]);
             }
         }
-        if level + 1 == levels {
+        if level + 1 == self.depth {
             return join(span(p.map(|c| self.at(c))), span(q));
         }
         let children: [_; 4] = std::array::from_fn(|k| lattice::child(p, k as u32)); // k < 4

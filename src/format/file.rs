@@ -2,7 +2,7 @@
 
 use super::scene::Image;
 use super::sections::{FileSection, checksum, read_header};
-use super::{BvhNode, ChildRef, L0Record, Meta, Scene, SceneError, VertexData, write_and_rename};
+use super::{BvhNode, ChildRef, L0Record, Meta, Scene, SceneError, TreeLines, VertexData, write_and_rename};
 use crate::mesh::most_zeros;
 use crate::num::{
     COORD_LIMIT, LINE_BYTES, MAX_BOUND_OFFSET, MAX_BVH_DEPTH, MAX_LEVELS, MOST_DIRECTION_ZEROS, PADDING_BITS, VertexForm, Wire,
@@ -58,23 +58,52 @@ impl Scene {
         let meta: Meta =
             serde_json::from_slice(&bytes[ranges[FileSection::Meta.slot()].clone()]).map_err(|e| format!("section META: {e}"))?;
         check_meta(&meta)?;
-        for section in [FileSection::Records, FileSection::Bounds, FileSection::Vertices, FileSection::Normals, FileSection::Triangles] {
+        for section in [FileSection::Records, FileSection::Normals, FileSection::Triangles] {
             let found = ranges[section.slot()].len();
             if Self::section_lengths(&meta, section) != Some(found) {
                 let (name, trees, levels) = (section.name(), meta.trees, meta.levels);
                 return Err(format!("section {name}: length {found} does not fit {trees} trees of {levels} splits"));
             }
         }
-        for (section, size) in [(FileSection::Nodes, LINE_BYTES as usize), (FileSection::Colours, 4)] {
+        let line = LINE_BYTES as usize;
+        for (section, size) in
+            [(FileSection::Nodes, line), (FileSection::Bounds, line), (FileSection::Vertices, line), (FileSection::Colours, 4)]
+        {
             let length = ranges[section.slot()].len();
             if length % size != 0 {
                 return Err(format!("section {}: length {length} is not a multiple of {size}", section.name()));
             }
         }
         let scene = Self { image, ranges, meta };
+        scene.check_trees()?;
         scene.check_indices()?;
         scene.check_values()?;
         Ok(scene)
+    }
+
+    /// Sibling groups and vertices follow each other tree by tree, as many as the trees' depths say.
+    fn check_trees(&self) -> Result<(), String> {
+        let (levels, form) = (self.levels(), self.meta.vertices);
+        let mut next = TreeLines::default();
+        for tree in 0..self.trees() {
+            let lines = self.tree_lines(tree);
+            if lines.depth > levels {
+                return Err(format!("section RECORDS: depth of tree {tree} is {}, above {levels} splits", lines.depth));
+            }
+            if (lines.group, lines.vertices) != (next.group, next.vertices) {
+                return Err(format!(
+                    "section RECORDS: tree {tree} has group {} and vertices {} as its first, and {} and {} are",
+                    lines.group, lines.vertices, next.group, next.vertices
+                ));
+            }
+            next = lines.next(form);
+        }
+        for (name, found, expected) in [("BOUNDS", self.bounds().len(), next.group), ("VERTICES", self.vertices().len(), next.vertices)] {
+            if found != expected {
+                return Err(format!("section {name}: {found} lines, but the trees have {expected}"));
+            }
+        }
+        Ok(())
     }
 
     /// Coordinates and frames are what the blocks take for granted, so that no width overflows.
@@ -123,7 +152,8 @@ impl Scene {
         let mask = (1 << VertexForm::Compact.zero_bits(self.levels(), self.meta.coordinate_zeros)) - 1;
         let mut found = self.corners(tree).iter().flatten().any(|c| c & mask != 0).then_some((0, 0));
         // A tree whose vertices wrap at one node is not read any further below by anyone: the first is reported.
-        self.each_node(tree, self.levels(), &mut |at, _, q| {
+        // Middles of edges keep the limit.
+        self.each_node(tree, self.tree_lines(tree).depth, &mut |at, _, q| {
             if found.is_none() && q.iter().flatten().any(|c| c.unsigned_abs() > COORD_LIMIT.unsigned_abs()) {
                 found = Some(at);
             }

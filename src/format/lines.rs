@@ -10,8 +10,9 @@
 //!
 //! The full-resolution BVHs with 16-bit boxes have nodes of four [`BvhChild`], 64 bytes.
 
+use super::layout;
 pub use crate::num::Box16;
-use crate::num::{BoundCode, BoxStep, Displacement, PADDING_BITS, Point, S, U, Vec3, Wire, box_steps, wire_struct};
+use crate::num::{BoundCode, BoxStep, Displacement, PADDING_BITS, Point, S, U, Vec3, VertexForm, Wire, box_steps, wire_struct};
 
 /// A memory line.
 pub type Line = [u64; 4];
@@ -93,19 +94,23 @@ wire_struct! {
 wire_struct! {
     /// Second line of an L0 record.
     pub struct L0Record {
-        /// Zero.
-        reserved: U<60>,
+        /// Levels of the tree that are stored, 0 to N: below them is nothing that a ray could want.
+        depth: U<4>,
+        /// Number of its first sibling group.
+        group: U<28>,
+        /// Number of its first line of inserted vertices.
+        vertices: U<28>,
         /// Number of the base triangle in the mesh that the scene was made of.
         source: U<28>,
         /// Material index.
         material: U<16>,
-        /// Code of edge (p1, p2) of the root; zero if N = 0, like the others.
+        /// Code of edge (p1, p2) of the root; zero if depth is 0, like the others.
         e0: BoundCode,
         /// Code of edge (p2, p0).
         e1: BoundCode,
         /// Code of edge (p0, p1).
         e2: BoundCode,
-        /// Inserted vertices of the root, if the scene's are compact; else zero.
+        /// Inserted vertices of the root, if it splits and the scene's are compact; else zero.
         split: Displacements,
     }
 }
@@ -129,6 +134,66 @@ wire_struct! {
         child: ChildRef,
         /// Its box; all zero in an empty slot.
         bounds: Box16,
+    }
+}
+
+/// What of a tree is stored, and from where on.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct TreeLines {
+    /// Levels of it: all nodes of that level serve every ray, and none below is stored.
+    pub depth: u32,
+    /// Its first sibling group.
+    pub group: usize,
+    /// Its first line of inserted vertices.
+    pub vertices: usize,
+}
+
+impl TreeLines {
+    /// Where the lines of the next tree begin, none of whose levels is stored yet.
+    #[must_use]
+    pub fn next(self, form: VertexForm) -> Self {
+        Self { depth: 0, group: self.group + self.groups(), vertices: self.vertices + self.vertex_lines(form) }
+    }
+
+    /// How many sibling groups it has.
+    #[inline]
+    pub fn groups(self) -> usize {
+        layout::sibling_groups(self.depth)
+    }
+
+    /// How many lines of inserted vertices.
+    #[inline]
+    pub fn vertex_lines(self, form: VertexForm) -> usize {
+        layout::vertex_lines(form, self.depth)
+    }
+
+    /// The sibling group of the children of node (`level`, `node`); `level` below the depth - 1.
+    #[inline(always)]
+    pub fn child_group(self, level: u32, node: usize) -> usize {
+        layout::child_group(self.group, level, node)
+    }
+
+    /// The vertex line of node (`level`, `node`); `level` below the depth, and not 0 if vertices are compact.
+    #[inline(always)]
+    pub fn vertex_line(self, form: VertexForm, level: u32, node: usize) -> usize {
+        layout::vertex_line(form, self.vertices, level, node)
+    }
+}
+
+impl L0Record {
+    /// What of the tree is stored, from the record's second line.
+    #[inline(always)]
+    pub fn line_tree(line: &[u64]) -> TreeLines {
+        const NUMBER: u64 = (1 << 28) - 1;
+        let [group, vertices] = [line[3] >> 32 & NUMBER, line[3] >> 4 & NUMBER].map(|first| first as usize); // 28 bits
+        TreeLines { depth: (line[3] >> 60) as u32, group, vertices } // 4 bits
+    }
+
+    /// The record of a tree of which this is stored; none if a number does not fit.
+    #[must_use]
+    pub fn of_tree(self, lines: TreeLines) -> Option<Self> {
+        let number = |first: usize| (first < 1 << 28).then(|| U::new(first as u64));
+        Some(Self { depth: U::new(lines.depth.into()), group: number(lines.group)?, vertices: number(lines.vertices)?, ..self })
     }
 }
 
@@ -394,6 +459,8 @@ mod tests {
         #[test]
         fn parts_of_lines_are_the_fields(line in prop::array::uniform4(any::<u64>())) {
             let (group, node) = (SiblingGroup::from_words(&line), BvhNode::from_words(&line));
+            let (record, lines) = (L0Record::from_words(&line), L0Record::line_tree(&line));
+            prop_assert_eq!(record.clone().of_tree(lines), Some(record));
             for axis in 0..3 {
                 let step = |half: [bool; 3], exponents: [U<4>; 3]| BoxStep { half: half[axis], exponent: exponents[axis].get() as u32 };
                 prop_assert_eq!(SiblingGroup::line_steps(&line)[axis], step(group.halves, group.exponents));

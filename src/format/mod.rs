@@ -18,7 +18,7 @@ pub use colour::to_srgb;
 pub use decode::child_corners;
 pub use encode::{SceneInfo, TreeBvh, build, encode, tree_boxes};
 pub use export::{ExportCounts, export_level};
-pub use lines::{Box16, BvhChild, BvhNode, ChildRef, Displacements, L0Record, Line, SiblingGroup, VertexData};
+pub use lines::{Box16, BvhChild, BvhNode, ChildRef, Displacements, L0Record, Line, SiblingGroup, TreeLines, VertexData};
 pub use normal::{decode_normal, encode_normal};
 pub use replace::{remove_abandoned, temporary_beside, write_and_rename};
 pub use scene::{Meta, Scene, SceneError};

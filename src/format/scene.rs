@@ -1,7 +1,7 @@
 //! A scene: one byte image, owned or mapped from its file, read through typed slices.
 
 use super::sections::{COUNT, FileSection};
-use super::{Line, layout, normal};
+use super::{L0Record, Line, TreeLines, normal};
 use crate::mesh::{BoundKind, Placement, SurfaceError, lattice};
 use crate::num::{BoundScale, LINE_BYTES, U, VertexForm};
 use memmap2::{Mmap, MmapMut};
@@ -137,12 +137,18 @@ impl Scene {
         bytemuck::cast_slice(self.section(FileSection::Records))
     }
 
-    /// Sibling groups ([`super::SiblingGroup`]), where [`layout::child_group`] says.
+    /// What of a tree is stored, and from where on.
+    #[inline]
+    pub fn tree_lines(&self, tree: usize) -> TreeLines {
+        L0Record::line_tree(&self.records()[tree][4..])
+    }
+
+    /// Sibling groups ([`super::SiblingGroup`]), where [`TreeLines::child_group`] says.
     pub fn bounds(&self) -> &[Line] {
         bytemuck::cast_slice(self.section(FileSection::Bounds))
     }
 
-    /// Inserted vertices ([`super::VertexData`] or two [`super::Displacements`]), where [`layout::vertex_line`] says.
+    /// Inserted vertices ([`super::VertexData`] or two [`super::Displacements`]), where [`TreeLines::vertex_line`] says.
     pub fn vertices(&self) -> &[Line] {
         bytemuck::cast_slice(self.section(FileSection::Vertices))
     }
@@ -194,16 +200,14 @@ impl Scene {
         self.colours().get(usize::from(material)).map(|&[r, g, b, _]| [r, g, b].map(super::colour::to_linear))
     }
 
-    /// Lengths that all sections but META have, from META's counts; `None` if they overflow.
+    /// Lengths of the sections that have as much of every tree, from META's counts; `None` if they overflow.
     pub(super) fn section_lengths(meta: &Meta, section: FileSection) -> Option<usize> {
         const LINE: usize = LINE_BYTES as usize;
         let per_tree = match section {
             FileSection::Records => 2 * LINE,
-            FileSection::Bounds => LINE * layout::sibling_groups(meta.levels),
-            FileSection::Vertices => LINE * layout::vertex_lines(meta.vertices, meta.levels),
             FileSection::Normals => 4 * lattice::len(meta.levels),
             FileSection::Triangles => 12,
-            FileSection::Meta | FileSection::Nodes | FileSection::Colours => return None,
+            FileSection::Meta | FileSection::Nodes | FileSection::Bounds | FileSection::Vertices | FileSection::Colours => return None,
         };
         per_tree.checked_mul(meta.trees as usize)
     }

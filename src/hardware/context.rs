@@ -2,12 +2,13 @@
 
 use super::Hardware;
 use super::ports::{MemoryAnswer, RayIn};
-use crate::block::{bary_map, child_test, hit_select, lod_test, parts::Registers, ray_setup, tree_base};
+use crate::block::{bary_map, child_test, hit_select, lod_test, parts::Registers, ray_setup};
 use crate::method::Entry;
 use crate::num::{Bary, BoundCode, RayT, Wire};
 
-/// Bits of a tree's number, of a level, and of a count up to four.
+/// Bits of a tree's number, of those of its first group and line, of a level, and of a count up to four.
 const TREE: u32 = 28;
+const FIRST: u32 = 28;
 const LEVEL: u32 = 4;
 const COUNT: u32 = 3;
 /// Bits of the number of a leaf's triangles, 1 to 4, which a BVH keeps where others have levels.
@@ -45,7 +46,8 @@ impl Hardware {
 
     /// State, ray, constants; the entry under visit, the node, its triangle as morphed and what was found out about it; children and triangles to come.
     fn place(&self) -> u32 {
-        let node = TREE + LEVEL + self.node() + self.split() + 3 * BoundCode::WIDTH + lod_test::Out::WIDTH + tree_base::Out::WIDTH;
+        let tree = TREE + LEVEL + 2 * FIRST;
+        let node = tree + LEVEL + self.node() + self.split() + 3 * BoundCode::WIDTH + lod_test::Out::WIDTH;
         let children = child_test::Out::WIDTH + COUNT;
         // Whether it is four triangles; how many are left and pending, and the next.
         let triangles = 1 + 2 * COUNT + CHILD;
@@ -66,9 +68,9 @@ impl Hardware {
         self.split_triangles() * 2 * self.split()
     }
 
-    /// The lines, which of them are wanted and waited for, and the same of the tree's base.
+    /// The lines, and which of them are wanted and waited for.
     fn lines(&self) -> u32 {
-        LINES * MemoryAnswer::FIELDS[1].width + 2 * LINES + 2
+        LINES * MemoryAnswer::FIELDS[1].width + 2 * LINES
     }
 
     /// The closest hit: whether there is one, t, id, numerators, weights, and the full-resolution triangle.

@@ -147,6 +147,14 @@ impl Hierarchy {
         [[p[1], p[2]], [p[2], p[0]], [p[0], p[1]]].map(|[a, b]| codes[edge_index(self.levels, level, a, b)])
     }
 
+    /// How many levels of a tree any ray could want: the least level from which on all codes are 0, as every triangle there serves. What is inserted below lies exactly
+    /// on the middles of its edges: a bound of 0 is that of no displacement at all.
+    pub fn depth(&self, tree: usize) -> u32 {
+        let codes = self.codes(tree);
+        let last = codes.iter().rposition(|&code| code != 0);
+        last.map_or(0, |last| (1..=self.levels).find(|&level| last < edges_of_tree(level)).unwrap_or(self.levels))
+    }
+
     /// World position of a point in units.
     pub fn to_world(&self, p: [i32; 3]) -> [f64; 3] {
         std::array::from_fn(|k| self.placement.offset[k] + self.placement.scale * f64::from(p[k]))

@@ -1,7 +1,7 @@
 //! What a scene needs, measured on all its nodes.
 
 use super::{bits, needs, signed_bits};
-use crate::format::{BvhNode, ChildRef, Displacements, Scene, SiblingGroup, child_corners, layout};
+use crate::format::{BvhNode, ChildRef, Displacements, Scene, SiblingGroup, child_corners};
 use crate::mesh::compact::inserted_zero_bits;
 use crate::num::{MAX_LEVELS, VertexForm, Wire, bound_decode, displacement_shift};
 use rayon::prelude::*;
@@ -129,7 +129,7 @@ impl Met {
 
     /// The node (`level`, `node`) with corners `p` and all below it. What lies below a node with three codes of 0 is read by no ray.
     fn node(&mut self, scene: &Scene, tree: usize, (level, node): (u32, usize), p: [[i32; 3]; 3]) {
-        let (levels, meta) = (scene.levels(), scene.meta());
+        let (levels, meta, lines) = (scene.levels(), scene.meta(), scene.tree_lines(tree));
         if level == levels {
             return;
         }
@@ -147,7 +147,7 @@ impl Met {
         if meta.vertices == VertexForm::Compact {
             let steps = match level {
                 0 => scene.record(tree).split,
-                _ => Displacements::half(&scene.vertices()[layout::vertex_line(meta.vertices, levels, tree, level, node)], node),
+                _ => Displacements::half(&scene.vertices()[lines.vertex_line(meta.vertices, level, node)], node),
             };
             for c in steps.steps().into_iter().flat_map(|v| v.get()) {
                 let c = c as i32; // 13 bits
@@ -156,8 +156,8 @@ impl Met {
             let zeros = inserted_zero_bits(levels, level, meta.coordinate_zeros);
             self.shift = codes.into_iter().map(|code| displacement_shift(meta.bound_scale(), code, zeros)).fold(self.shift, u32::max);
         }
-        if level + 1 < levels {
-            let group = SiblingGroup::from_words(&scene.bounds()[layout::child_group(levels, tree, level, node)]);
+        if level + 1 < lines.depth {
+            let group = SiblingGroup::from_words(&scene.bounds()[lines.child_group(level, node)]);
             self.group_planes = group.planes.iter().map(|plane| plane.get() as u32).fold(self.group_planes, u32::max); // 7 bits
             self.group_exponent = group.exponents.iter().map(|e| e.get() as u32).fold(self.group_exponent, u32::max); // 4 bits
             self.half |= group.halves.iter().any(|&half| half);

@@ -85,7 +85,6 @@ fn act(text: &mut String, act: Act, edges: Option<&Edges>) -> std::fmt::Result {
         Act::PlainChildren { met } => write!(text, "p{met}"),
         Act::LocalChildren { met } => write!(text, "l{met}"),
         Act::WideChildren { met } => write!(text, "w{met}"),
-        Act::TreeBase => write!(text, "b"),
         Act::LodTest { refine } => {
             text.push(if refine { 'r' } else { 's' });
             let Some(Edges { level, node, states: [s0, s1, s2] }) = edges else { return Ok(()) };
@@ -181,7 +180,7 @@ mod tests {
         let fetch = Fetch::new(SectionId::new(1), 40, 2);
         let steps = [
             Step::on(fetch, Act::Children { met: 2 }).visiting(),
-            Step::on(fetch.joining(), Act::TreeBase),
+            Step::on(fetch.joining(), Act::Fetch),
             Step::of(Act::LodTest { refine: true }),
             Step::of(Act::Tessellate),
             Step::of(Act::LodTest { refine: false }),
@@ -198,7 +197,7 @@ mod tests {
             Step::end(false, true),
         ];
         steps.into_iter().for_each(|step| words.step(step));
-        assert_eq!(words.text, "*c2@1.40.2 b@+1.40.2 r2.17:0.128.256 t s3.4 s x4:5 o d f@1.40.2 p0 l1 w4 m h n");
+        assert_eq!(words.text, "*c2@1.40.2 f@+1.40.2 r2.17:0.128.256 t s3.4 s x4:5 o d f@1.40.2 p0 l1 w4 m h n");
     }
 
     #[test]

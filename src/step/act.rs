@@ -7,7 +7,6 @@
 //! | `PlainChildren` | the same with 16-bit boxes that are stored as they are | four `box_test`, `child_sort` |
 //! | `LocalChildren` | the same with 16-bit boxes that are stored in steps from their node's corner | four `box_decode`, four `box_test`, `child_sort` |
 //! | `WideChildren` | the same with 32-bit boxes | four `box_test32`, `child_sort` |
-//! | `TreeBase` | where a tree's groups and vertices begin | `tree_base` |
 //! | `LodTest` | does a triangle serve | `lod_test` |
 //! | `Tessellate` | the inserted vertices of a triangle are morphed | `tessellate` |
 //! | `Triangles` | triangle tests; bit k of `hits`: the k-th is met | `tri_test`, and of those met `hit_divide` and `hit_select` |
@@ -75,7 +74,6 @@ pub enum Act {
     PlainChildren { met: u32 },
     LocalChildren { met: u32 },
     WideChildren { met: u32 },
-    TreeBase,
     LodTest { refine: bool },
     Tessellate,
     Triangles { count: u32, hits: u32 },
@@ -142,7 +140,6 @@ impl Step {
                 add(Operation::BoxTest32, 4);
                 add(Operation::ChildSort, 1);
             }
-            Act::TreeBase => add(Operation::TreeBase, 1),
             Act::LodTest { .. } => add(Operation::LodTest, 1),
             Act::Tessellate => add(Operation::Tessellate, 1),
             Act::Triangles { count, hits } => {
@@ -221,7 +218,6 @@ mod tests {
             Step::on(fetch, Act::PlainChildren { met: 1 }),
             Step::on(fetch, Act::LocalChildren { met: 1 }),
             Step::on(fetch, Act::Children { met: 1 }),
-            Step::on(fetch, Act::TreeBase),
             Step::of(Act::LodTest { refine: true }),
             Step::on(fetch, Act::Tessellate),
             Step::of(Act::Triangles { count: 5, hits: 0b10110 }),
@@ -234,8 +230,7 @@ mod tests {
         steps.iter().for_each(|step| step.count(&mut operations));
         let some: Vec<_> = operations.iter().filter(|&(_, n)| n > 0).map(|(operation, n)| (operation.name(), n)).collect();
         let wanted = [
-            ("node_address", 28),
-            ("tree_base", 1),
+            ("node_address", 24),
             ("child_test", 1),
             ("lod_test", 1),
             ("tessellate", 1),

@@ -51,7 +51,7 @@ impl StepSink for StepCounts {
             Act::Children { .. } | Act::PlainChildren { .. } | Act::LocalChildren { .. } | Act::WideChildren { .. } => self.nodes += 1,
             Act::LodTest { .. } => self.lod_tests += 1,
             Act::Triangles { count, .. } => self.triangles += u64::from(count),
-            Act::Fetch | Act::TreeBase | Act::Tessellate | Act::Pop { .. } | Act::End { .. } => (),
+            Act::Fetch | Act::Tessellate | Act::Pop { .. } | Act::End { .. } => (),
         }
     }
 }

@@ -29,14 +29,13 @@ const PLACE: u32 = 0;
 const FETCH: u64 = 0;
 const CHILDREN: u64 = 1;
 const WIDE_CHILDREN: u64 = 2;
-const TREE_BASE: u64 = 3;
-const LOD_TEST: u64 = 4;
-const TESSELLATE: u64 = 5;
-const TRIANGLES: u64 = 6;
-const POP: u64 = 7;
-const END: u64 = 8;
-const PLAIN_CHILDREN: u64 = 9;
-const LOCAL_CHILDREN: u64 = 10;
+const LOD_TEST: u64 = 3;
+const TESSELLATE: u64 = 4;
+const TRIANGLES: u64 = 5;
+const POP: u64 = 6;
+const END: u64 = 7;
+const PLAIN_CHILDREN: u64 = 8;
+const LOCAL_CHILDREN: u64 = 9;
 
 /// A step, as whoever only reads its lines sees it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -70,7 +69,6 @@ impl StepWord {
             Act::PlainChildren { met } => (PLAIN_CHILDREN, met, false, false, 0),
             Act::LocalChildren { met } => (LOCAL_CHILDREN, met, false, false, 0),
             Act::WideChildren { met } => (WIDE_CHILDREN, met, false, false, 0),
-            Act::TreeBase => (TREE_BASE, 0, false, false, 0),
             Act::LodTest { refine } => (LOD_TEST, 0, refine, false, 0),
             Act::Tessellate => (TESSELLATE, 0, false, false, 0),
             Act::Triangles { count, hits } => (TRIANGLES, count, false, false, hits),
@@ -119,7 +117,6 @@ impl StepWord {
             PLAIN_CHILDREN => Act::PlainChildren { met: number },
             LOCAL_CHILDREN => Act::LocalChildren { met: number },
             WIDE_CHILDREN => Act::WideChildren { met: number },
-            TREE_BASE => Act::TreeBase,
             LOD_TEST => Act::LodTest { refine: flag },
             TESSELLATE => Act::Tessellate,
             TRIANGLES => Act::Triangles { count: number, hits: upper },
@@ -164,7 +161,6 @@ mod tests {
             Act::PlainChildren { met: 3 },
             Act::LocalChildren { met: 2 },
             Act::WideChildren { met: 0 },
-            Act::TreeBase,
             Act::LodTest { refine: true },
             Act::LodTest { refine: false },
             Act::Tessellate,

@@ -25,5 +25,4 @@ mod rays;
 mod suite;
 mod tessellate;
 mod traversal_stack;
-mod tree_base;
 mod tri_test;

@@ -19,20 +19,21 @@ fn line(i: &In) -> u64 {
 
 /// With a base that leaves room for it.
 fn based(draw: &mut Draw, record: In) -> In {
-    let most = U::<36>::MAX.get() - line(&record);
+    let most = U::<36>::MAX.get() - record.first.get() - line(&record);
     In { base: U::new(draw.bits::<36>().get().min(most)), ..record }
 }
 
 fn record(draw: &mut Draw) -> In {
     let pair = draw.once_in(2);
-    let record = In { base: U::ZERO, level: U::ZERO, index: draw.bits(), pair, halves: false, half: pair && draw.once_in(2) };
+    let record = In { index: draw.bits(), pair, half: pair && draw.once_in(2), ..In::default() };
     based(draw, record)
 }
 
 fn node(draw: &mut Draw) -> In {
     let level = draw.below(draw.levels);
     let index = if draw.once_in(4) { (1 << (2 * level)) - 1 } else { draw.below(1 << (2 * level)) };
-    let node = In { level: U::new(level), index: U::new(index), ..record(draw) };
+    let first = if draw.once_in(4) { U::MAX } else { draw.bits() };
+    let node = In { first, level: U::new(level), index: U::new(index), ..record(draw) };
     based(draw, node)
 }
 
@@ -49,14 +50,14 @@ fn half_a_line(draw: &mut Draw) -> In {
 
 fn any_level(draw: &mut Draw) -> In {
     let level = draw.below(draw.levels);
-    let node = In { level: U::new(level), ..record(draw) };
+    let node = In { first: draw.bits(), level: U::new(level), ..record(draw) };
     let halves = level > 0 && !node.pair && draw.once_in(2);
     based(draw, In { halves, ..node })
 }
 
 fn top(draw: &mut Draw) -> In {
     let record = any_level(draw);
-    In { base: U::new(U::<36>::MAX.get() - line(&record)), ..record }
+    In { base: U::new(U::<36>::MAX.get() - record.first.get() - line(&record)), ..record }
 }
 
 fn bottom(draw: &mut Draw) -> In {
@@ -67,7 +68,7 @@ fn legal(i: &In) -> bool {
     i.level.get() <= 9
         && (i.pair || !i.half)
         && (!i.halves || (!i.pair && i.level > U::ZERO))
-        && i.base.get() + line(i) <= U::<36>::MAX.get()
+        && i.base.get() + i.first.get() + line(i) <= U::<36>::MAX.get()
 }
 
 type Is = Category<NodeAddress>;
@@ -82,9 +83,13 @@ pub fn suite(levels: u64) -> Suite<NodeAddress> {
             Is::all("two nodes in a line", half_a_line, |i, o| NodeAddress::eval(&In { index: U::new(i.index.get() ^ 1), ..*i }) == *o),
             Is::any("every index on every level", any_level),
             Is::all("top of memory", top, |_, o| o.address == U::MAX),
-            Is::all("bottom of memory", bottom, |i, o| o.address.get() == line(i)),
+            Is::all("bottom of memory", bottom, |i, o| o.address.get() == i.first.get() + line(i)),
         ],
-        vec![("largest index", |i, _| i.index == U::MAX), ("address 0", |_, o| o.address == U::ZERO)],
+        vec![
+            ("largest index", |i, _| i.index == U::MAX),
+            ("largest tree", |i, _| i.first == U::MAX),
+            ("address 0", |_, o| o.address == U::ZERO),
+        ],
         vec![
             ("level", 0..=levels - 1, |i, _| i.level.get()),
             (

@@ -3,7 +3,7 @@
 use crate::suite::Suite;
 use crate::{
     bary_map, bound_decode, box_decode, box_test, box_test32, child_boxes, child_sort, child_test, hit_divide, hit_select, lod_test,
-    node_address, ray_setup, tessellate, traversal_stack, tree_base, tri_test,
+    node_address, ray_setup, tessellate, traversal_stack, tri_test,
 };
 use lodray::block::Block;
 use lodray::hardware::Hardware;
@@ -32,7 +32,6 @@ fn blocks_that_depend_on_the_levels() {
     play(&OTHERS, bary_map::suite);
     play(&OTHERS, hit_select::suite);
     play(&OTHERS, node_address::suite);
-    play(&OTHERS, tree_base::suite);
     for &hardware in &OTHERS {
         let zeros = u64::from(hardware.coordinate_zeros);
         play(&[hardware], |levels| tessellate::suite(levels, zeros));

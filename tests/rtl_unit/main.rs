@@ -20,6 +20,7 @@ use lodray_test_support::hardware::OTHERS;
 use lodray_test_support::models::{Rng, any_rays, ball, build_with, coarsened, scene_of, terrain, with_vertices, with_zeros};
 use lodray_test_support::plain::plain;
 use port::Rtl;
+use std::collections::BTreeSet;
 
 /// Model and RTL with the same inputs.
 struct SideBySide {
@@ -153,6 +154,8 @@ fn frame(kind: procedural::Scene, form: VertexForm, config: Hardware, latency: L
     // Where a ray misses the model's box there is nothing to trace.
     let rays: Vec<Ray> = pixels.filter_map(|world| Some(space.enter(&world, 1.0)?.ray)).collect();
     let (report, hits) = compare(&scene, config, &Traffic::smooth(latency), &rays, 1);
+    let depths: BTreeSet<_> = (0..scene.trees()).map(|tree| scene.tree_lines(tree).depth).collect();
+    assert!(kind != procedural::Scene::Room || depths.len() > 2, "{depths:?}");
     println!("{kind:?}, {form:?}: {SIDE}x{SIDE} pixels, {} rays, {hits} hits, {} cycles", rays.len(), report.cycles);
     assert!(hits > 1000, "only {hits} hits");
 }
@@ -160,6 +163,11 @@ fn frame(kind: procedural::Scene, form: VertexForm, config: Hardware, latency: L
 #[test]
 fn a_frame_of_a_terrain() {
     frame(procedural::Scene::Terrain, VertexForm::Compact, configs()[2], Latency::Random { min: 5, max: 60, seed: 1 });
+}
+
+#[test]
+fn a_frame_of_trees_of_many_depths() {
+    frame(procedural::Scene::Room, VertexForm::Compact, configs()[1], Latency::Random { min: 2, max: 80, seed: 2 });
 }
 
 #[test]

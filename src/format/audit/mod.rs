@@ -12,7 +12,7 @@ mod tree;
 
 use super::{L0Record, Scene};
 use crate::mesh::{BoundKind, edges_of_level, edges_of_tree, lattice};
-use crate::num::{VertexForm, Wire};
+use crate::num::Wire;
 use boxes::Span;
 use edges::Edges;
 use rayon::prelude::*;
@@ -165,20 +165,23 @@ fn check_shading(scene: &Scene) -> Tallies {
 
 /// How many things each check must look at, from the counts alone.
 fn expected(scene: &Scene, edges: &Edges, shared_corners: u64) -> [(CheckKind, u64); CHECKS.len()] {
-    let n = scene.levels();
+    let (n, form) = (scene.levels(), scene.meta().vertices);
     let trees = scene.trees() as u64;
     let [len, edge_count] = [lattice::len(n), edges_of_tree(n)].map(|c| c as u64);
     // Nodes of levels 0 to N-1, each with three inserted vertices; those below the root by fours in groups of nine codes, the root with three.
     let inner = ((1u64 << (2 * n)) - 1) / 3;
     let grouped = inner.saturating_sub(1);
-    let (groups, codes) = (grouped / 4, if n == 0 { 0 } else { 3 + 9 * (grouped / 4) });
-    // Of compact ones the root's vertices stand in its L0 record.
-    let vertices = if scene.meta().vertices == VertexForm::Exact { inner } else { grouped };
+    let codes = if n == 0 { 0 } else { 3 + 9 * (grouped / 4) };
+    // What is stored, tree by tree. Of compact ones the root's vertices stand in its L0 record.
+    let [stored_groups, stored_vertices] = (0..scene.trees()).fold([0; 2], |[groups, vertices], tree| {
+        let own = tree::Stored::of(form, scene.record(tree).depth.get() as u32); // 4 bits
+        [groups + own.groups, vertices + own.vertices]
+    });
     // Six edges meet at an inserted vertex, four on the tree's border, for all levels but the last that has codes.
     let meeting: u64 = (0..n.saturating_sub(1)).map(|level| 6 * edges_of_level(level) as u64 - 6 * (1 << level)).sum();
     let nodes = scene.nodes().len() as u64;
     [
-        (CheckKind::Reserved, trees * (2 + groups + vertices) + 5 * nodes),
+        (CheckKind::Reserved, 2 * trees + stored_groups + stored_vertices + 5 * nodes),
         (CheckKind::Limit, trees * 3 * (1 + inner)),
         (CheckKind::LowBits, trees * 3 * (1 + inner)),
         (CheckKind::VerticesInTree, trees * (3 * inner - (len - 3))),
@@ -187,7 +190,7 @@ fn expected(scene: &Scene, edges: &Edges, shared_corners: u64) -> [(CheckKind, u
         (CheckKind::CodesAcross, edges.extra_uses * ((1 << n) - 1)),
         (CheckKind::Bounds, trees * edge_count),
         (CheckKind::Monotone, trees * meeting),
-        (CheckKind::Boxes, trees * grouped),
+        (CheckKind::Boxes, 4 * stored_groups),
         (CheckKind::ModelBox, 6),
         (CheckKind::BaseTriangles, trees),
         (CheckKind::Sources, trees),

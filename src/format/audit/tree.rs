@@ -122,22 +122,18 @@ fn each_inserted(levels: u32, level: u32, mut f: impl FnMut(usize, &[usize])) {
 /// Reads a tree by recursion over its stored nodes and checks what can be checked on the way.
 pub(super) fn read(scene: &Scene, tree: usize, record: &[u64; 8], lattice: Lattice<'_>) -> Tallies {
     let levels = scene.levels();
-    let inner = first(levels);
-    let groups = if levels < 2 { 0 } else { (inner - 1) / 4 };
     let form = scene.meta().vertices;
-    let lines = match form {
-        VertexForm::Exact => inner,
-        VertexForm::Compact => 2 * groups,
-    };
     let second = L0Record::from_words(&record[4..]);
+    let (depth, counts) = (second.depth.get() as u32, Stored::of(form, second.depth.get() as u32)); // 4 bits
     let mut reader = Reader {
         tree,
         levels,
+        depth,
         form,
         offset: u64::from(scene.meta().bound_offset),
-        lines: &scene.vertices()[tree * lines..][..lines],
+        lines: &scene.vertices()[second.vertices.get() as usize..][..counts.lines as usize],
         split: second.split,
-        groups: &scene.bounds()[tree * groups..][..groups],
+        groups: &scene.bounds()[second.group.get() as usize..][..counts.groups as usize],
         lattice,
         found: Tallies::default(),
     };
@@ -148,12 +144,11 @@ pub(super) fn read(scene: &Scene, tree: usize, record: &[u64; 8], lattice: Latti
     reader.found.check(CheckKind::Reserved, corners.reserved.get() == 0, || format!("tree {tree}: first line of the L0 record"));
     let codes = [second.e0, second.e1, second.e2].map(|c| c.get() as u8); // 8 bits
     let splits = match form {
-        _ if levels == 0 => codes == [0; 3] && second.split == Displacements::default(),
+        _ if depth == 0 => codes == [0; 3] && second.split == Displacements::default(),
         VertexForm::Exact => second.split == Displacements::default(),
         VertexForm::Compact => second.split.reserved.get() == 0,
     };
-    let zero = second.reserved.get() == 0 && splits;
-    reader.found.check(CheckKind::Reserved, zero, || format!("tree {tree}: second line of the L0 record"));
+    reader.found.check(CheckKind::Reserved, splits, || format!("tree {tree}: second line of the L0 record"));
 
     let points = corners.points().map(|p| p.get().map(|c| c as i32)); // 32 bits by their type
     let places = [(0, 0), (1 << levels, 0), (0, 1 << levels)];
@@ -166,9 +161,31 @@ pub(super) fn read(scene: &Scene, tree: usize, record: &[u64; 8], lattice: Latti
     reader.found
 }
 
+/// What is stored of a tree.
+pub(super) struct Stored {
+    /// Sibling groups.
+    pub groups: u64,
+    /// Records of vertices outside of the L0 record.
+    pub vertices: u64,
+    /// Their lines.
+    lines: u64,
+}
+
+impl Stored {
+    /// Of one of this depth.
+    pub fn of(form: VertexForm, depth: u32) -> Self {
+        let inner = first(depth) as u64;
+        let groups = if depth < 2 { 0 } else { (inner - 1) / 4 };
+        let (vertices, lines) = if form == VertexForm::Exact { (inner, inner) } else { (4 * groups, 2 * groups) };
+        Self { groups, vertices, lines }
+    }
+}
+
 struct Reader<'a> {
     tree: usize,
     levels: u32,
+    /// Levels that are stored: below them every vertex is the middle of its edge, and every code 0.
+    depth: u32,
     form: VertexForm,
     /// Added to every code but 0.
     offset: u64,
@@ -193,16 +210,20 @@ impl Reader<'_> {
         if level + 1 == self.levels {
             return span.with(&Span::around(q));
         }
+        let corners = [[(0, 0), (1, 2), (1, 1)], [(1, 2), (0, 1), (1, 0)], [(1, 1), (1, 0), (0, 2)], [(1, 0), (1, 1), (1, 2)]];
+        let places_of = |k: usize| corners[k].map(|(new, i): (u8, usize)| if new == 1 { q_places[i] } else { places[i] });
+        let triangle_of = |k: usize| corners[k].map(|(new, i)| if new == 1 { q[i] } else { p[i] });
+        if level + 1 >= self.depth {
+            return (0..4).fold(span, |span, k| span.with(&self.node(level + 1, 4 * node + k, places_of(k), triangle_of(k), [0; 3])));
+        }
         let tree = self.tree;
         let group = SiblingGroup::from_words(&self.groups[first(level) + node]);
         self.found.check(CheckKind::Reserved, group.reserved.get() == 0, || format!("tree {tree}: group of node {node} of level {level}"));
-        let corners = [[(0, 0), (1, 2), (1, 1)], [(1, 2), (0, 1), (1, 0)], [(1, 1), (1, 0), (0, 2)], [(1, 0), (1, 1), (1, 2)]];
-        for (k, corners) in corners.into_iter().enumerate() {
-            let child_places = corners.map(|(new, i)| if new == 1 { q_places[i] } else { places[i] });
-            let child = corners.map(|(new, i)| if new == 1 { q[i] } else { p[i] });
+        for k in 0..4 {
+            let child = triangle_of(k);
             // The centre child has one edge of each sibling: e0 of child 0, e1 of child 1, e2 of child 2.
             let codes = [0, 1, 2].map(|i| group.codes[if k < 3 { 3 * k + i } else { 3 * i + i }].get() as u8); // 8 bits
-            let below = self.node(level + 1, 4 * node + k, child_places, child, codes);
+            let below = self.node(level + 1, 4 * node + k, places_of(k), child, codes);
             let (lo, hi) = excess(&group, k, child);
             self.found.check(CheckKind::Boxes, below.is_within(lo, hi), || {
                 let (number, level) = (4 * node + k, level + 1);
@@ -217,6 +238,10 @@ impl Reader<'_> {
     #[inline]
     fn stored(&mut self, level: u32, node: usize, p: [[i32; 3]; 3], codes: [u8; 3]) -> [[i32; 3]; 3] {
         let tree = self.tree;
+        if level >= self.depth {
+            let middle = |a: usize, b: usize| std::array::from_fn(|c| (i64::from(p[a][c]) + i64::from(p[b][c])).div_euclid(2) as i32); // between them
+            return [middle(1, 2), middle(2, 0), middle(0, 1)];
+        }
         let name = || format!("tree {tree}: vertices of node {node} of level {level}");
         if self.form == VertexForm::Exact {
             let line = VertexData::from_words(&self.lines[first(level) + node]);

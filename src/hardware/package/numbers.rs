@@ -13,7 +13,6 @@ use crate::block::lod_test::LodTest;
 use crate::block::node_address::NodeAddress;
 use crate::block::ray_setup::RaySetup;
 use crate::block::tessellate::Tessellate;
-use crate::block::tree_base::TreeBase;
 use crate::block::tri_test::{EdgeFunction, TNumerator, TriTest};
 use crate::block::{Block, EdgesPerCycle, Form, parts};
 use crate::hardware::Hardware;
@@ -109,8 +108,7 @@ pub(super) fn print(hardware: &Hardware, out: &mut String) {
             },
         )
         .put("SPLIT_TRIANGLES", hardware.split_triangles(), "of a context: one of each level that splits into nodes")
-        .put("NODE_W", 2 * hardware.levels, "of a node within its level, where it is kept: two bits of each level")
-        .put("TREE_LINES_W", 2 * hardware.levels - 1, "of a tree's number of splits, (4^N - 1) / 3");
+        .put("NODE_W", 2 * hardware.levels, "of a node within its level, where it is kept: two bits of each level");
     let scales =
         Group::new("Scales.").put("BOX_SHIFT", BOX_SHIFT, "").put("T_NEAR_TO_T_SHIFT", T_NEAR_TO_T_SHIFT, "").put("S_ONE", S_ONE, "");
     let cycles = Group::new(
@@ -129,7 +127,6 @@ pub(super) fn print(hardware: &Hardware, out: &mut String) {
     .timing::<NodeAddress>(hardware)
     .timing::<RaySetup>(hardware)
     .timing::<Tessellate>(hardware)
-    .timing::<TreeBase>(hardware)
     .put("TRI_TEST_LATENCY", three.latency, "with EDGES_PER_CYCLE = 3")
     .put("TRI_TEST_1_LATENCY", one.latency, "with EDGES_PER_CYCLE = 1")
     .put("TRI_TEST_1_INTERVAL", one.interval, "")

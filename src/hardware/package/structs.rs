@@ -65,7 +65,6 @@ pub(super) fn all() -> Vec<Struct> {
         block::hit_divide::HitDivide,
         block::hit_select::HitSelect,
         block::bary_map::BaryMap,
-        block::tree_base::TreeBase,
         block::node_address::NodeAddress,
     );
     all.extend([

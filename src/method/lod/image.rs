@@ -1,6 +1,6 @@
 //! The memory images of a model.
 
-use crate::format::{Line, Scene, layout};
+use crate::format::{Line, Scene, TreeLines, layout};
 use crate::method::Knob;
 use crate::num::{BoundScale, LINE_BYTES, VertexForm};
 use crate::step::{Fetch, MemoryMap, Section, SectionId};
@@ -53,6 +53,15 @@ pub static LINE_LAYOUT: Knob = Knob {
     allows: |value| LineLayout::named(value).map(drop).ok_or_else(|| format!("'{value}' is not own or paper")),
 };
 
+/// A tree that a ray is in.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct TreeAt {
+    /// Its number.
+    pub index: u32,
+    /// What of it is stored.
+    pub lines: TreeLines,
+}
+
 /// The memory images of one model, as the hardware sees them.
 #[derive(Clone, Copy, Debug)]
 pub struct LodImage<'a> {
@@ -92,10 +101,14 @@ impl<'a> LodImage<'a> {
             LineLayout::Own => (1, vertices.len()),
             LineLayout::Paper => (2, scene.trees() * layout::vertex_lines(VertexForm::Exact, levels)),
         };
+        let groups = match layout {
+            LineLayout::Own => bounds.len(),
+            LineLayout::Paper => scene.trees() * layout::sibling_groups(levels),
+        };
         let sections = [
             Section::of_bytes("bvh_node", line(pair * nodes.len())).of_base(),
             Section::of_bytes("l0_record", size_of_val(records) as u64).of_base(),
-            Section::of_bytes("bound_data", line(pair * bounds.len())),
+            Section::of_bytes("bound_data", line(pair * groups)),
             Section::of_bytes("vertex_data", line(vertex_lines)),
         ];
         let map = MemoryMap::new(&sections, Some((NODES, pair as u32))) // 1 or 2
@@ -120,12 +133,21 @@ impl<'a> LodImage<'a> {
         self.form.is_compact() && self.layout == LineLayout::Own
     }
 
-    /// The line or lines of quad-BVH node or sibling group `index`.
+    /// The line or lines of quad-BVH node `index`.
     #[inline(always)]
-    pub(super) fn record(&self, section: SectionId, index: usize) -> Fetch {
+    pub(super) fn node(&self, index: usize) -> Fetch {
         match self.layout {
-            LineLayout::Own => Fetch::new(section, self.map.line(section, index as u64), 1),
-            LineLayout::Paper => self.pair(section, index),
+            LineLayout::Own => Fetch::new(NODES, self.map.line(NODES, index as u64), 1),
+            LineLayout::Paper => self.pair(NODES, index),
+        }
+    }
+
+    /// The line or lines of the sibling group of the children of a node.
+    #[inline(always)]
+    pub(super) fn group(&self, tree: TreeAt, level: u32, node: usize) -> Fetch {
+        match self.layout {
+            LineLayout::Own => Fetch::new(BOUNDS, self.map.line(BOUNDS, tree.lines.child_group(level, node) as u64), 1),
+            LineLayout::Paper => self.pair(BOUNDS, self.whole(tree).child_group(level, node)),
         }
     }
 
@@ -142,12 +164,18 @@ impl<'a> LodImage<'a> {
 
     /// The line with the inserted vertices of a node, which is not a root that has them in its record.
     #[inline(always)]
-    pub(super) fn split(&self, tree: usize, level: u32, node: usize) -> Fetch {
-        let (form, place) = match self.layout {
-            LineLayout::Own => (self.form, 1),
-            LineLayout::Paper => (VertexForm::Exact, 2),
+    pub(super) fn split(&self, tree: TreeAt, level: u32, node: usize) -> Fetch {
+        let (line, place) = match self.layout {
+            LineLayout::Own => (tree.lines.vertex_line(self.form, level, node), 1),
+            LineLayout::Paper => (self.whole(tree).vertex_line(VertexForm::Exact, level, node), 2),
         };
-        let line = layout::vertex_line(form, self.levels, tree, level, node);
         Fetch::new(VERTICES, self.map.line(VERTICES, line as u64), 1).at(place)
+    }
+
+    /// Where the lines of a tree would lie if all levels of all trees were stored, vertices as they are.
+    #[inline(always)]
+    fn whole(&self, tree: TreeAt) -> TreeLines {
+        let (depth, index) = (self.levels, tree.index as usize);
+        TreeLines { depth, group: index * layout::sibling_groups(depth), vertices: index * layout::vertex_lines(VertexForm::Exact, depth) }
     }
 }

@@ -23,7 +23,6 @@ pub static METHOD: Registered = Registered {
         blocks: &[
             Operation::RaySetup,
             Operation::NodeAddress,
-            Operation::TreeBase,
             Operation::ChildTest,
             Operation::LodTest,
             Operation::Tessellate,

@@ -1,13 +1,13 @@
 //! The traversal loop of the paper's figure 9: quad-BVH over base triangles, then tessellation trees with an LOD test at every node.
 
-use super::image::{BOUNDS, LodImage, NODES};
+use super::image::{LodImage, TreeAt};
 use crate::block::Block;
 use crate::block::child_boxes::Corners;
 use crate::block::lod_test::{self, LodTest};
 use crate::block::ray_setup::{self, RaySetup};
 use crate::block::tessellate::{self, Tessellate, child_triangle};
 use crate::block::tri_test::{self, TriTest};
-use crate::format::{BvhNode, Displacements, L0Record, SiblingGroup, VertexData, layout};
+use crate::format::{BvhNode, Displacements, L0Record, SiblingGroup, VertexData};
 #[cfg(target_arch = "x86_64")]
 use crate::method::children::has_lanes;
 use crate::method::children::{Split, bvh_children, tree_children};
@@ -32,7 +32,7 @@ struct Journey<'a, S, H> {
     ray: &'a Ray,
     setup: ray_setup::Out,
     /// The current tree.
-    tree: u32,
+    tree: TreeAt,
     steps: &'a mut S,
     sink: &'a mut H,
 }
@@ -67,7 +67,7 @@ impl<'a> LodTraverser<'a> {
         let setup = RaySetup::eval(&ray_setup::In { origin: ray.origin, direction: ray.direction });
         self.stack.clear();
         let Self { image, stack, splits } = self;
-        let mut journey = Journey { image, stack, splits, ray, setup, tree: 0, steps, sink };
+        let mut journey = Journey { image, stack, splits, ray, setup, tree: TreeAt::default(), steps, sink };
         let mut next = Some(Entry::default());
         loop {
             // A child just tested is not beyond the closest hit; an entry that waited may be by now.
@@ -107,7 +107,7 @@ impl<S: StepSink, H: HitSink> Journey<'_, S, H> {
     fn bvh_node(&mut self, index: usize) -> Option<Entry> {
         let line = &self.image.nodes[index];
         let tests = bvh_children(&self.setup, self.sink.t_max(), line);
-        self.steps.step(Step::on(self.image.record(NODES, index), Act::Children { met: tests.met() }).visiting());
+        self.steps.step(Step::on(self.image.node(index), Act::Children { met: tests.met() }).visiting());
         push_sorted(self.stack, &tests, |k| {
             let child = BvhNode::line_child(line, k);
             // Inner nodes and leaves have the kinds of their entries one lower.
@@ -118,9 +118,9 @@ impl<S: StepSink, H: HitSink> Journey<'_, S, H> {
     /// Enters a tree.
     #[inline(always)]
     fn root(&mut self, tree: usize) -> Option<Entry> {
-        self.steps.step(Step::on(self.image.l0_record(tree), Act::TreeBase).visiting());
+        self.steps.step(Step::on(self.image.l0_record(tree), Act::Fetch).visiting());
         let record = &self.image.records[tree];
-        self.tree = tree as u32; // an index of 28 bits
+        self.tree = TreeAt { index: tree as u32, lines: L0Record::line_tree(&record[4..]) }; // an index of 28 bits
         let p = VertexData::from_words(&record[..4]).points();
         let L0Record { e0, e1, e2, .. } = L0Record::from_words(&record[4..]);
         self.tree_node(0, 0, [p, p], [e0, e1, e2])
@@ -129,8 +129,8 @@ impl<S: StepSink, H: HitSink> Journey<'_, S, H> {
     /// Decides whether the triangle of node (`level`, `node`) serves the ray, and tests it or goes down. Its corners are of full resolution and as morphed.
     #[inline(always)]
     fn tree_node(&mut self, level: u32, node: u32, [f, p]: [[Point; 3]; 2], codes: [BoundCode; 3]) -> Option<Entry> {
-        let levels = self.image.levels;
-        if level == levels {
+        let depth = self.tree.lines.depth;
+        if level == depth {
             self.triangles(level, node, [p]);
             return None;
         }
@@ -147,44 +147,44 @@ impl<S: StepSink, H: HitSink> Journey<'_, S, H> {
         self.steps.step(if alone {
             Step::of(Act::Tessellate)
         } else {
-            Step::on(self.image.split(self.tree as usize, level, node as usize), Act::Tessellate)
+            Step::on(self.image.split(self.tree, level, node as usize), Act::Tessellate)
         });
         let [v0, v1, v2] = self.stored(level, node as usize);
         let (compact, scale, zeros) = (self.image.form.is_compact(), self.image.scale, self.image.zeros);
-        let (grid, padding) = (U::new(u64::from(levels - level - 1 + zeros)), U::new(u64::from(PADDING_BITS.saturating_sub(zeros))));
+        let grid = U::new(u64::from(self.image.levels - level - 1 + zeros));
+        let padding = U::new(u64::from(PADDING_BITS.saturating_sub(zeros)));
         let ([f0, f1, f2], lod_test::Out { s0, s1, s2, .. }) = (f, lod);
         let t =
             Tessellate::eval(&tessellate::In { compact, grid, padding, scale, e0, e1, e2, s0, s1, s2, f0, f1, f2, p0, p1, p2, v0, v1, v2 });
         let (g, q) = ([t.g0, t.g1, t.g2], [t.q0, t.q1, t.q2]);
 
-        if level + 1 == levels {
-            self.triangles(levels, 4 * node, std::array::from_fn::<_, 4, _>(|k| child_triangle(p, q, k)));
+        if level + 1 == depth {
+            self.triangles(depth, 4 * node, std::array::from_fn::<_, 4, _>(|k| child_triangle(p, q, k)));
             return None;
         }
-        let group = layout::child_group(levels, self.tree as usize, level, node as usize);
         let split = Split { full: Corners::of(f, g), morphed: Corners::of(p, q) };
         self.splits[level as usize] = split;
-        self.tree_children(level + 1, 4 * node, group, &split, !alone)
+        self.tree_children(level, node, &split, !alone)
     }
 
     /// The inserted vertices of a node as they are stored.
     #[inline(always)]
     fn stored(&self, level: u32, node: usize) -> [Point; 3] {
-        let (image, tree) = (self.image, self.tree as usize);
-        let line = |level| &image.vertices[layout::vertex_line(image.form, image.levels, tree, level, node)];
+        let (image, tree) = (self.image, self.tree);
+        let line = |level| &image.vertices[tree.lines.vertex_line(image.form, level, node)];
         match (image.form, level) {
             (VertexForm::Exact, _) => VertexData::from_words(line(level)).points(),
-            (VertexForm::Compact, 0) => L0Record::from_words(&image.records[tree][4..]).split.steps(),
+            (VertexForm::Compact, 0) => L0Record::from_words(&image.records[tree.index as usize][4..]).split.steps(),
             (VertexForm::Compact, _) => Displacements::half(line(level), node).steps(),
         }
     }
 
-    /// Tests the boxes of the four children; their group was asked for together with the inserted vertices if it `joins` them.
+    /// Tests the boxes of the four children of a node; their group was asked for together with the inserted vertices if it `joins` them.
     #[inline(always)]
-    fn tree_children(&mut self, level: u32, first: u32, group: usize, split: &Split, joins: bool) -> Option<Entry> {
-        let fetch = self.image.record(BOUNDS, group);
+    fn tree_children(&mut self, level: u32, node: u32, split: &Split, joins: bool) -> Option<Entry> {
+        let fetch = self.image.group(self.tree, level, node as usize);
         let fetch = if joins { fetch.joining() } else { fetch };
-        let line = &self.image.bounds[group];
+        let line = &self.image.bounds[self.tree.lines.child_group(level, node as usize)];
         let tests = tree_children(&self.setup, self.sink.t_max(), line, split);
         self.steps.step(Step::on(fetch, Act::Children { met: tests.met() }));
         push_sorted(self.stack, &tests, |k| {
@@ -192,8 +192,8 @@ impl<S: StepSink, H: HitSink> Journey<'_, S, H> {
             Entry {
                 t_near: TNear::ZERO,
                 kind: U::new(Entry::TREE_NODE),
-                level: U::new(u64::from(level)),
-                index: U::new(u64::from(first) + k as u64),
+                level: U::new(u64::from(level + 1)),
+                index: U::new(u64::from(4 * node) + k as u64),
                 e0,
                 e1,
                 e2,
@@ -210,7 +210,7 @@ impl<S: StepSink, H: HitSink> Journey<'_, S, H> {
             let test = TriTest::eval(&tri_test::In { origin: self.ray.origin, direction: self.ray.direction, p0, p1, p2 });
             run.add(test.hit, self.steps);
             if test.hit {
-                self.sink.offer(TriangleId { tree: self.tree, level, node }, &corners, &test);
+                self.sink.offer(TriangleId { tree: self.tree.index, level, node }, &corners, &test);
             }
         }
         run.state(self.steps);

@@ -55,12 +55,6 @@ impl<R: Steps> UnitTiming<R> {
                 self.states[State::SetupWait as usize] += result - now;
                 self.onward(who, result + 1, now);
             }
-            Resource::Base => {
-                context.settle(result + 1);
-                if context.owed == 0 {
-                    self.fetched(who, now);
-                }
-            }
             Resource::Child => {
                 let met = match context.act {
                     Act::Children { met } | Act::PlainChildren { met } | Act::LocalChildren { met } | Act::WideChildren { met } => met,
@@ -184,8 +178,8 @@ impl<R: Steps> UnitTiming<R> {
                 at += 1;
             }
             let asked = std::mem::take(&mut context.later.asked);
-            if !asked && (step.fetch.is_some() || step.act == Act::TreeBase) {
-                context.enter_fetch(step.fetch, at);
+            if let Some(fetch) = step.fetch.filter(|_| !asked) {
+                context.enter_fetch(fetch, at);
                 return self.sleep(who, now);
             }
             let Some(next) = self.act(who, at, now) else { return };
@@ -197,7 +191,7 @@ impl<R: Steps> UnitTiming<R> {
     fn act(&mut self, who: usize, at: u64, now: u64) -> Option<u64> {
         let context = &mut self.contexts[who];
         match context.act {
-            Act::Fetch | Act::TreeBase => return Some(at),
+            Act::Fetch => return Some(at),
             Act::Pop { .. } => {
                 self.states[State::Pop as usize] += 1;
                 return Some(at + 1);

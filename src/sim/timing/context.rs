@@ -104,16 +104,12 @@ impl<R: Steps> ContextTiming<R> {
         (self.state, self.entered) = (state, at);
     }
 
-    /// Asks for the lines of a step, and whatever else its act needs in `FETCH`, from cycle `at` on.
+    /// Asks for the lines of a step from cycle `at` on.
     #[inline(always)]
-    pub fn enter_fetch(&mut self, fetch: Option<Fetch>, at: u64) {
+    pub fn enter_fetch(&mut self, fetch: Fetch, at: u64) {
         self.enter(State::Fetch, at);
-        // A tree's bases are found meanwhile.
-        (self.owed, self.ready) = (u32::from(self.act == Act::TreeBase), at);
-        if let Some(fetch) = fetch {
-            self.want(fetch);
-            self.owed += fetch.lines;
-        }
+        self.want(fetch);
+        (self.owed, self.ready) = (fetch.lines, at);
     }
 
     /// Tests triangles from cycle `at` on.

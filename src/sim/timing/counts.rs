@@ -10,7 +10,6 @@ use crate::block::lod_test::LodTest;
 use crate::block::node_address::NodeAddress;
 use crate::block::ray_setup::RaySetup;
 use crate::block::tessellate::Tessellate;
-use crate::block::tree_base::TreeBase;
 use crate::block::tri_test::TriTest;
 use crate::sim::unit::{Resource, State, UnitCounts};
 
@@ -21,7 +20,6 @@ impl<R> UnitTiming<R> {
         let blocks = vec![
             (RaySetup::NAME, counts(Resource::Setup)),
             (NodeAddress::NAME, counts(Resource::Fetch)),
-            (TreeBase::NAME, counts(Resource::Base)),
             (ChildTest::NAME, counts(Resource::Child)),
             (LodTest::NAME, counts(Resource::Lod)),
             (Tessellate::NAME, counts(Resource::Morph)),

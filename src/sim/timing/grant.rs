@@ -3,7 +3,6 @@
 use super::ports::Steps;
 use super::unit::UnitTiming;
 use crate::sim::unit::{Resource, State};
-use crate::step::Act;
 
 impl<R: Steps> UnitTiming<R> {
     /// Context `who` asks for what its state needs, from cycle `now` on.
@@ -22,15 +21,8 @@ impl<R: Steps> UnitTiming<R> {
             State::Done => Resource::Hit,
             state => unreachable!("nobody wakes in {state:?}"),
         };
-        let (wants_lines, wants_base) = (context.want > 0, context.act == Act::TreeBase);
-        if resource != Resource::Fetch {
-            return self.ask_for(resource, who, now);
-        }
-        if wants_base {
-            self.ask_for(Resource::Base, who, now);
-        }
-        if wants_lines {
-            self.ask_for(Resource::Fetch, who, now);
+        if resource != Resource::Fetch || context.want > 0 {
+            self.ask_for(resource, who, now);
         }
     }
 

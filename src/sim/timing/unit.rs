@@ -18,7 +18,6 @@ use crate::block::lod_test::LodTest;
 use crate::block::node_address::NodeAddress;
 use crate::block::ray_setup::RaySetup;
 use crate::block::tessellate::Tessellate;
-use crate::block::tree_base::TreeBase;
 use crate::block::tri_test::TriTest;
 use crate::hardware::{Hardware, MAX_CONTEXTS};
 use crate::sim::unit::{Arbiter, Resource, State};
@@ -68,7 +67,6 @@ impl<R: Steps> UnitTiming<R> {
         let timing = |resource| match resource {
             Resource::Setup => config.timing::<RaySetup>(),
             Resource::Fetch => config.timing::<NodeAddress>(),
-            Resource::Base => config.timing::<TreeBase>(),
             Resource::Child => config.timing::<ChildTest>(),
             Resource::Lod => config.timing::<LodTest>(),
             Resource::Morph => config.timing::<Tessellate>(),

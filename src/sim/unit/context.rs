@@ -7,7 +7,7 @@ use super::closest::{Closest, Met};
 use super::register::Register;
 use super::wires::{Cycle, DIVIDE_FOR_T, DIVIDE_FOR_V, DIVIDE_FOR_W};
 use crate::block::bary_map::NodeIndex;
-use crate::block::{child_test, lod_test, ray_setup, tessellate::child_triangle, tree_base};
+use crate::block::{child_test, lod_test, ray_setup, tessellate::child_triangle};
 use crate::format::{L0Record, VertexData};
 use crate::hardware::ports::SceneConfig;
 use crate::hardware::{Fetch, Hardware, State};
@@ -37,6 +37,10 @@ pub struct Context {
     pub setup: ray_setup::Out,
     pub entry: Register<Entry>,
     pub tree: Register<U<28>>,
+    /// Of the tree: levels that are stored, and its first sibling group and vertex line.
+    pub depth: Register<U<4>>,
+    pub group: U<28>,
+    pub vertices: U<28>,
     pub level: Register<U<4>>,
     pub node: Register<NodeIndex>,
     /// Corners of the node's triangle and its inserted vertices, at full resolution and as morphed; bound codes and edge states.
@@ -46,12 +50,9 @@ pub struct Context {
     pub q: Register<[Point; 3]>,
     pub e: [BoundCode; 3],
     pub lod: Register<lod_test::Out>,
-    pub base: tree_base::Out,
     /// Lines asked for and not yet sent, and sent and not yet there, by place.
     pub want: u8,
     pub waiting: u8,
-    pub base_want: bool,
-    pub base_ready: Register<bool>,
     /// Line buffers.
     pub lines: [[u64; 4]; 2],
     /// Children still to be pushed.
@@ -76,9 +77,9 @@ impl Context {
         Self { splits, room: hardware.stack_entries() as usize, ..Self::default() }
     }
 
-    /// The node's children are of level N: triangles, not nodes.
-    pub fn last_split(&self, scene: &SceneConfig) -> bool {
-        self.level.get().get() + 1 == scene.levels.get()
+    /// The node's children are as deep as the tree: triangles, not nodes.
+    pub fn last_split(&self) -> bool {
+        self.level.get().get() + 1 == self.depth.get().get()
     }
 
     /// The node is a compact model's root: its inserted vertices came with its record.
@@ -95,7 +96,7 @@ impl Context {
     /// The end of a cycle of context `me`.
     pub fn tick(&mut self, me: usize, scene: &SceneConfig, cycle: &Cycle) {
         let (want, waiting) = (self.want, self.waiting);
-        let last_split = self.last_split(scene);
+        let last_split = self.last_split();
         if let Some(&quotient) = cycle.divide.result(me)
             && quotient.what != DIVIDE_FOR_T
         {
@@ -122,13 +123,10 @@ impl Context {
             },
             State::Visit => self.visit(),
             State::Fetch => {
-                if cycle.base.granted(me) {
-                    self.base_want = false;
-                }
                 let there = want == 0 && waiting == 0;
                 match self.fetch.get() {
                     Fetch::Node | Fetch::Group => self.when(there, State::Child),
-                    Fetch::Record if there && self.base_ready.get() => self.enter_tree(scene),
+                    Fetch::Record if there => self.enter_tree(),
                     Fetch::Record => State::Fetch,
                     Fetch::Vertex => self.when(want == 0 && waiting & 0b10 == 0, State::Morph),
                 }
@@ -220,8 +218,6 @@ impl Context {
                 self.tree.set(entry.index);
                 self.fetch.set(Fetch::Record);
                 self.want = 0b11;
-                self.base_want = true;
-                self.base_ready.set(false);
                 State::Fetch
             }
             _ => {
@@ -238,15 +234,17 @@ impl Context {
         }
     }
 
-    fn enter_tree(&mut self, scene: &SceneConfig) -> State {
+    fn enter_tree(&mut self) -> State {
         self.level.set(U::ZERO);
         self.node.set(U::ZERO);
         let corners = VertexData::from_words(&self.lines[0]).points();
         self.f.set(corners);
         self.p.set(corners);
-        let L0Record { e0, e1, e2, .. } = L0Record::from_words(&self.lines[1]);
+        let L0Record { depth, group, vertices, e0, e1, e2, .. } = L0Record::from_words(&self.lines[1]);
+        self.depth.set(depth);
+        (self.group, self.vertices) = (group, vertices);
         self.e = [e0, e1, e2];
-        if scene.levels == U::ZERO { self.enter_triangles(false) } else { State::Lod }
+        if depth == U::ZERO { self.enter_triangles(false) } else { State::Lod }
     }
 
     fn push(&mut self) -> State {
@@ -308,7 +306,7 @@ impl Context {
         self.when(done, State::Pop)
     }
 
-    /// Memory lines sent for and come, and the bases of the tree; `asked` is the bit of the line that the context asked for in this cycle.
+    /// Memory lines sent for and come; `asked` is the bit of the line that the context asked for in this cycle.
     fn lines(&mut self, me: usize, cycle: &Cycle, asked: u8) {
         if cycle.fetch.granted(me) {
             self.want &= !asked;
@@ -318,10 +316,6 @@ impl Context {
             let place = answer.tag.get() as usize & 3;
             self.lines[place] = answer.line.map(U::get);
             self.waiting &= !(1 << place);
-        }
-        if let Some(&base) = cycle.base.result(me) {
-            self.base = base;
-            self.base_ready.set(true);
         }
     }
 }

@@ -12,7 +12,6 @@ use crate::block::lod_test::LodTest;
 use crate::block::node_address::NodeAddress;
 use crate::block::ray_setup::RaySetup;
 use crate::block::tessellate::Tessellate;
-use crate::block::tree_base::TreeBase;
 use crate::block::tri_test::TriTest;
 use crate::hardware::State;
 
@@ -53,7 +52,6 @@ impl TraversalUnit {
         let blocks = vec![
             (RaySetup::NAME, self.ray_setup.counts()),
             (NodeAddress::NAME, self.node_address.counts()),
-            (TreeBase::NAME, self.tree_base.counts()),
             (ChildTest::NAME, self.child_test.counts()),
             (LodTest::NAME, self.lod_test.counts()),
             (Tessellate::NAME, self.tessellate.counts()),

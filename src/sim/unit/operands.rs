@@ -3,7 +3,7 @@
 use super::context::Context;
 use super::wires::{DIVIDE_FOR_V, DIVIDE_FOR_W};
 use crate::block::tessellate::child_triangle;
-use crate::block::{bary_map, child_test, hit_divide, hit_select, lod_test, node_address, ray_setup, tessellate, tree_base, tri_test};
+use crate::block::{bary_map, child_test, hit_divide, hit_select, lod_test, node_address, ray_setup, tessellate, tri_test};
 use crate::format::{Displacements, L0Record, VertexData};
 use crate::hardware::ports::{HitOut, SceneConfig};
 use crate::hardware::{Fetch, State};
@@ -17,7 +17,6 @@ const PADDING: u64 = PADDING_BITS as u64;
 pub enum Resource {
     Setup,
     Fetch,
-    Base,
     Child,
     Lod,
     Morph,
@@ -30,7 +29,7 @@ pub enum Resource {
 impl Resource {
     /// All, by number.
     pub const ALL: [Self; Self::COUNT] =
-        [Self::Setup, Self::Fetch, Self::Base, Self::Child, Self::Lod, Self::Morph, Self::Tri, Self::Divide, Self::Map, Self::Hit];
+        [Self::Setup, Self::Fetch, Self::Child, Self::Lod, Self::Morph, Self::Tri, Self::Divide, Self::Map, Self::Hit];
     /// How many there are.
     pub const COUNT: usize = Self::Hit as usize + 1;
 }
@@ -40,14 +39,7 @@ impl Context {
     pub fn requests(&self, mut ask: impl FnMut(Resource)) {
         match self.state {
             State::Setup => ask(Resource::Setup),
-            State::Fetch => {
-                if self.want != 0 {
-                    ask(Resource::Fetch);
-                }
-                if self.base_want {
-                    ask(Resource::Base);
-                }
-            }
+            State::Fetch if self.want != 0 => ask(Resource::Fetch),
             State::Child if self.waiting & 0b01 == 0 => ask(Resource::Child),
             State::Lod => ask(Resource::Lod),
             State::Morph => ask(Resource::Morph),
@@ -79,8 +71,9 @@ impl Context {
             half: second,
             ..node_address::In::default()
         };
-        let of_tree = |base: LineAddress, halves: bool| node_address::In {
+        let of_tree = |base: LineAddress, first: U<28>, halves: bool| node_address::In {
             base,
+            first,
             level: self.level.get(),
             index: U::new(self.node.get().get()),
             halves,
@@ -89,15 +82,9 @@ impl Context {
         match self.fetch.get() {
             Fetch::Node => record(scene.nodes, false),
             Fetch::Record => record(scene.records, true),
-            Fetch::Vertex if second => of_tree(self.base.vertices, scene.compact),
-            Fetch::Vertex | Fetch::Group => of_tree(self.base.bounds, false),
+            Fetch::Vertex if second => of_tree(scene.vertices, self.vertices, scene.compact),
+            Fetch::Vertex | Fetch::Group => of_tree(scene.bounds, self.group, false),
         }
-    }
-
-    /// Operands of `tree_base`.
-    pub fn base_in(&self, scene: &SceneConfig) -> tree_base::In {
-        let (vertices, bounds) = (scene.vertices, scene.bounds);
-        tree_base::In { compact: scene.compact, levels: scene.levels, tree: self.tree.get(), vertices, bounds }
     }
 
     /// Operands of `child_test`.

@@ -14,7 +14,6 @@ use crate::block::lod_test::LodTest;
 use crate::block::node_address::NodeAddress;
 use crate::block::ray_setup::RaySetup;
 use crate::block::tessellate::Tessellate;
-use crate::block::tree_base::TreeBase;
 use crate::block::tri_test::TriTest;
 use crate::hardware::ports::{HitOut, MemoryAnswer, MemoryRequest, RayIn, SceneConfig};
 use crate::hardware::{Hardware, State};
@@ -52,7 +51,6 @@ pub struct TraversalUnit {
     arbiters: [Arbiter; Resource::COUNT],
     pub(super) ray_setup: Pipeline<RaySetup>,
     pub(super) node_address: Pipeline<NodeAddress>,
-    pub(super) tree_base: Pipeline<TreeBase>,
     pub(super) child_test: Pipeline<ChildTest>,
     pub(super) lod_test: Pipeline<LodTest>,
     pub(super) tessellate: Pipeline<Tessellate>,
@@ -86,7 +84,6 @@ impl TraversalUnit {
             arbiters: Default::default(),
             ray_setup: Pipeline::new(&config),
             node_address: Pipeline::new(&config),
-            tree_base: Pipeline::new(&config),
             child_test: Pipeline::new(&config),
             lod_test: Pipeline::new(&config),
             tessellate: Pipeline::new(&config),
@@ -158,7 +155,6 @@ impl TraversalUnit {
             fetch: self.link(winner(Resource::Fetch), self.node_address.ready(inputs.mem_ready), |c, k| {
                 (c.fetch_in(scene), numbered(k, c.place_of(c.want)))
             }),
-            base: self.link(winner(Resource::Base), self.tree_base.ready(true), |c, k| (c.base_in(scene), k as u16)),
             child: self.link(winner(Resource::Child), self.child_test.ready(true), |c, k| (c.child_in(), k as u16)),
             lod: self.link(winner(Resource::Lod), self.lod_test.ready(true), |c, k| (c.lod_in(scene), k as u16)),
             morph: self.link(winner(Resource::Morph), self.tessellate.ready(true), |c, k| (c.morph_in(scene), k as u16)),
@@ -187,7 +183,6 @@ impl TraversalUnit {
             ray: w.take.zip(inputs.ray),
             setup: Served { granted: w.setup.granted(), result: self.ray_setup.offered().map(|(out, tag)| (plain(tag), out)) },
             fetch: Served { granted: w.fetch.granted(), result: inputs.answer.map(|a| (a.tag.get() as usize >> 2, a)) }, // 8 bits
-            base: Served { granted: w.base.granted(), result: self.tree_base.offered().map(|(out, tag)| (plain(tag), out)) },
             child: Served { granted: w.child.granted(), result: self.child_test.offered().map(|(out, tag)| (plain(tag), out)) },
             lod: Served { granted: w.lod.granted(), result: self.lod_test.offered().map(|(out, tag)| (plain(tag), out)) },
             morph: Served { granted: w.morph.granted(), result: self.tessellate.offered().map(|(out, tag)| (plain(tag), out)) },
@@ -215,7 +210,6 @@ impl TraversalUnit {
         let grants = [
             (Resource::Setup, w.setup.granted()),
             (Resource::Fetch, w.fetch.granted()),
-            (Resource::Base, w.base.granted()),
             (Resource::Child, w.child.granted()),
             (Resource::Lod, w.lod.granted()),
             (Resource::Morph, w.morph.granted()),
@@ -250,7 +244,6 @@ impl TraversalUnit {
 
         self.ray_setup.tick(input(&w.setup), true);
         self.node_address.tick(input(&w.fetch), inputs.mem_ready);
-        self.tree_base.tick(input(&w.base), true);
         self.child_test.tick(input(&w.child), true);
         self.lod_test.tick(input(&w.lod), true);
         self.tessellate.tick(input(&w.morph), true);

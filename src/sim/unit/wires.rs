@@ -1,7 +1,7 @@
 //! What runs over the wires between contexts and blocks in one cycle.
 
 use super::closest::Met;
-use crate::block::{bary_map, child_test, hit_divide, hit_select, lod_test, node_address, ray_setup, tessellate, tree_base, tri_test};
+use crate::block::{bary_map, child_test, hit_divide, hit_select, lod_test, node_address, ray_setup, tessellate, tri_test};
 use crate::hardware::ports::{HitOut, MemoryAnswer, RayIn};
 use crate::num::RayT;
 
@@ -35,7 +35,6 @@ pub struct Wires {
     pub take: Option<usize>,
     pub setup: Link<ray_setup::In>,
     pub fetch: Link<node_address::In>,
-    pub base: Link<tree_base::In>,
     pub child: Link<child_test::In>,
     pub lod: Link<lod_test::In>,
     pub morph: Link<tessellate::In>,
@@ -81,7 +80,6 @@ pub struct Cycle {
     pub setup: Served<ray_setup::Out>,
     /// Its results are memory lines.
     pub fetch: Served<MemoryAnswer>,
-    pub base: Served<tree_base::Out>,
     pub child: Served<child_test::Out>,
     pub lod: Served<lod_test::Out>,
     pub morph: Served<tessellate::Out>,

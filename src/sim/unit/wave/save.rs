@@ -102,8 +102,8 @@ const GROUPS: &[(&str, &[Row])] = &[
     (
         "Addresses",
         &[
-            (UNIT, BITS, &["u_tree_base.valid_i", "u_tree_base.valid_o", "u_node_address.valid_i", "u_node_address.ready_o"]),
-            (UNIT, HEX, &["u_node_address.in_i.base"]),
+            (UNIT, BITS, &["u_node_address.valid_i", "u_node_address.ready_o"]),
+            (UNIT, HEX, &["u_node_address.in_i.base", "u_node_address.in_i.first"]),
             (UNIT, DECIMAL, &["u_node_address.in_i.level", "u_node_address.in_i.index"]),
         ],
     ),

@@ -132,7 +132,6 @@ pub fn walk(unit: &TraversalUnit, inputs: &Inputs, wires: &Wires, to: &mut impl 
 
     block(to, &unit.ray_setup, &wires.setup, 6);
     block_waiting(to, &unit.node_address, &wires.fetch, 8, inputs.mem_ready);
-    block(to, &unit.tree_base, &wires.base, 6);
     children(to, unit, wires);
     block(to, &unit.lod_test, &wires.lod, 6);
     block(to, &unit.tessellate, &wires.morph, 6);
@@ -152,6 +151,7 @@ fn context_signals(c: &Context, to: &mut impl Visitor) {
     to.signal("fetch_q", c.fetch.known().map_or(Vector::unknown(2), |fetch| Vector::number(fetch as u64, 2)));
     typed::<Entry>(to, "entry_q", &Vector::register(c.entry.known()));
     to.signal("tree_q", Vector::register(c.tree.known()));
+    to.signal("depth_q", Vector::register(c.depth.known()));
     to.signal("level_q", Vector::register(c.level.known()));
     to.signal("node_q", Vector::register(c.node.known()));
     for (name, points) in [("f", c.f), ("p", c.p), ("g", c.g), ("q", c.q)] {
@@ -162,8 +162,6 @@ fn context_signals(c: &Context, to: &mut impl Visitor) {
     typed::<lod_test::Out>(to, "lod_q", &Vector::register(c.lod.known()));
     to.signal("want_q", Vector::number(c.want.into(), 2));
     to.signal("waiting_q", Vector::number(c.waiting.into(), 2));
-    to.signal("base_want_q", Vector::flag(c.base_want));
-    to.signal("base_ready_q", Vector::register(c.base_ready.known()));
     typed::<child_test::Out>(to, "sorted_q", &Vector::register(c.sorted.known()));
     to.signal("count_q", Vector::register(c.count.known()));
     to.signal("four_q", Vector::register(c.four.known()));
