@@ -128,7 +128,7 @@ fn read_stdin(format: MeshFormat, name: &Path) -> anyhow::Result<TriangleMesh> {
 /// The scene of a surface; `origin` says how it was made.
 pub fn build_scene(surface: &Surface, name: &str, origin: serde_json::Value, form: FormArgs) -> anyhow::Result<Scene> {
     let FormArgs { bounds, vertices, coordinate_zeros, direction_zeros } = form;
-    let info = SceneInfo { name: name.to_owned(), origin, bounds, vertices, coordinate_zeros, direction_zeros };
+    let info = SceneInfo { name: name.to_owned(), origin, bounds, vertices, coordinate_zeros, direction_zeros, moved: 0.0 };
     Ok(busy("encoding", || format::build(surface, info, over_trees))?)
 }
 

@@ -25,6 +25,8 @@ pub struct SceneInfo {
     pub coordinate_zeros: u32,
     /// Zero bits at the bottom of the components of its rays' directions.
     pub direction_zeros: u32,
+    /// How far the surface's points had been moved before at most, in world units.
+    pub moved: f64,
 }
 
 /// The quad-BVH over a scene's trees.
@@ -171,7 +173,7 @@ fn meta(h: &Hierarchy, surface: &Surface, info: SceneInfo) -> Meta {
         vertices: h.vertices,
         coordinate_zeros: h.zeros,
         direction_zeros: info.direction_zeros,
-        moved: h.points.par_iter().zip(&surface.positions).map(distance).reduce(|| 0.0, f64::max),
+        moved: info.moved + h.points.par_iter().zip(&surface.positions).map(distance).reduce(|| 0.0, f64::max),
         lo,
         hi,
         origin: info.origin,

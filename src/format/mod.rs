@@ -1,6 +1,7 @@
 //! Memory images: the lines that the hardware reads, bit for bit, and the scene file that holds them.
 
 pub mod audit;
+mod coarsen;
 mod colour;
 mod decode;
 mod encode;
