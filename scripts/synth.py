@@ -9,7 +9,7 @@ import concurrent.futures
 import os
 import sys
 
-from synthesis import blocks, check, ecp5, gates, report
+from synthesis import blocks, check, ecp5, gates, plan, report
 from synthesis.tools import Failure, Tools
 
 
@@ -18,10 +18,13 @@ def main():
     options = parse()
     try:
         tools = Tools()
-        wanted = blocks.chosen(options.block) or blocks.every()
+        unit = plan.read(options.plan) if options.plan else None
+        wanted = unit.blocks() if unit else blocks.chosen(options.block) or blocks.every()
         figures, failures = Run(tools, options).all(wanted)
         rows = [report.row(block.name, figures[block.name]) for block in wanted if block.name in figures]
         print(report.plain(rows))
+        if unit and not failures:
+            print(unit.sum(figures))
         if options.paths:
             print_paths(wanted, figures)
         if options.check and not failures:
@@ -50,12 +53,15 @@ def parse():
     parser.add_argument("--paths", action="store_true", help="print the longest path of the slowest seed of each block")
     parser.add_argument("--jobs", type=int, default=os.cpu_count(), metavar="N", help="tools at work at once (default: one per core)")
     parser.add_argument("--check", action="store_true", help="write the netlists to target/synth/netlists and run the blocks' own tests on them")
+    parser.add_argument("--plan", metavar="PLAN", help="the unit of a plan (lodray plan -o): its blocks with the package that the plan prints, and what they and its contexts have together")
     parser.add_argument("--doc", action="store_true", help="write the table into docs/hardware.md")
     options = parser.parse_args()
     if options.seeds < 1 or options.jobs < 1:
         parser.error("--seeds and --jobs must be at least 1")
     if options.doc and (options.block or options.no_place or options.no_gates):
         parser.error("--doc writes the whole table: name no block and leave nothing out")
+    if options.plan and (options.block or options.doc or options.check):
+        parser.error("--plan is of a whole unit: it has its own blocks, no place in docs/hardware.md, and its tests are those of cargo test")
     if options.check and options.no_gates:
         parser.error("--check needs the gates")
     return options

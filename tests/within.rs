@@ -62,7 +62,7 @@ fn nothing_that_is_seen_moves_by_more_than_was_said() {
     for (kind, form) in kinds.into_iter().flat_map(|kind| VertexForm::ALL.map(|form| (kind, form))) {
         let fine = scene(kind, form);
         let space = ModelSpace::of(&fine);
-        for (distance, pixels) in [(1.6, 2.0), (4.0, 0.3)] {
+        for (distance, pixels) in [(1.6, 0.1), (4.0, 0.05)] {
             // Pixels as narrow as those of a picture that people look at.
             let camera =
                 Camera::new(&View { distance: Some(distance), fov: 40.0 * f64::from(side) / 512.0, ..View::default() }, &space, side, side)
@@ -70,7 +70,7 @@ fn nothing_that_is_seen_moves_by_more_than_was_said() {
             let within = Within::of(&fine, &Narrowest::of(&space, &camera), pixels);
             let zeros = [within.coordinate_zeros, within.direction_zeros];
             let coarse = fine.coarsened(zeros, over_trees).expect("room");
-            assert!(zeros[0] > 2 && zeros[1] > 10, "{kind:?}: {zeros:?}");
+            assert!(zeros[0] > 2 && zeros[0] < 12, "{kind:?}: {zeros:?}");
             for delta in [f64::INFINITY, 64.0] {
                 let (hits, worst) = worst([&fine, &coarse], &camera, side, delta, pixels);
                 println!("{kind:?}, {} vertices, {zeros:?}, delta {delta}: {hits} hits, {worst:.3} of what may move", form.name());

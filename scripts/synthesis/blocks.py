@@ -16,10 +16,11 @@ FURTHER = ["edge_function", "traversal_stack"]
 
 @dataclasses.dataclass(frozen=True)
 class Block:
-    """A module with its parameters."""
+    """A module with its parameters, and with another package than that of rtl/ if there is one."""
 
     module: str
     parameters: tuple = ()
+    package: str = ""
 
     @property
     def name(self):
@@ -29,6 +30,8 @@ class Block:
     def sources(self):
         """Its files, the package first, then by name: the closure of the modules named in them (a file bears its module's name)."""
         known = {path.stem: path for path in RTL.glob("*.sv")}
+        if self.package:
+            known[PACKAGE] = ROOT / self.package
         if self.module not in known:
             raise Failure(f"rtl/{self.module}.sv is missing")
         needed, waiting = set(), [PACKAGE, self.module]
@@ -42,13 +45,29 @@ class Block:
 
     def ingredients(self):
         """All that its synthesis depends on but for the tools."""
-        return {"module": self.module, "parameters": self.parameters, "sources": {str(path): (ROOT / path).read_text(encoding="utf-8") for path in self.sources()}}
+        package, *others = ((ROOT / path).read_text(encoding="utf-8") for path in self.sources())
+        # Of the package what the block uses: another hardware is the same block if it differs in other things.
+        return {"module": self.module, "parameters": self.parameters, "sources": [used(package, "\n".join(others)), *others]}
 
     def read(self):
         """Yosys commands that read it and make it the top, under its module's name."""
         files = " ".join(map(str, self.sources()))
         parameters = " ".join(f"-chparam {name} {value}" for name, value in self.parameters)
         return [f"read_verilog -sv {files}", f"hierarchy -check -top {self.module} {parameters}", f"rename -top {self.module}"]
+
+
+def used(package, code):
+    """The items of the package that the code uses, and those that they use."""
+    text = re.sub(r"//.*", "", package)
+    items = {}
+    for item in re.finditer(r"^  (?:localparam .*?;|typedef .*?^  } \w+;|function .*?^  endfunction)", text, re.MULTILINE | re.DOTALL):
+        named = re.match(r"  localparam [^=]*?(\w+) =|  typedef .*} (\w+);$|  function [^(]*?(\w+)\(", item[0], re.DOTALL)
+        items[next(name for name in named.groups() if name)] = item[0]
+    needed, waiting = set(), set(re.findall(r"\w+", re.sub(r"//.*", "", code)))
+    while waiting:
+        needed |= waiting & items.keys()
+        waiting = {word for name in waiting & items.keys() for word in re.findall(r"\w+", items[name])} - needed
+    return [items[name] for name in sorted(needed)]
 
 
 def twins():

@@ -55,6 +55,16 @@ pub enum EdgesPerCycle {
     One,
 }
 
+impl EdgesPerCycle {
+    /// How many.
+    pub const fn count(self) -> u32 {
+        match self {
+            Self::Three => 3,
+            Self::One => 1,
+        }
+    }
+}
+
 /// What blocks depend on of the hardware that they are built for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Form {

@@ -50,6 +50,37 @@ struct Document<'a> {
     #[serde(skip_serializing_if = "Option::is_none")]
     data: Option<&'a Data>,
     savings: &'a [Saving],
+    unit: UnitFacts,
+    full_unit: UnitFacts,
+}
+
+/// A unit in numbers.
+#[derive(Serialize)]
+struct UnitFacts {
+    levels: u32,
+    bvh_depth: u32,
+    stack_entries: u32,
+    contexts: usize,
+    edges_per_cycle: u32,
+    coordinate_zeros: u32,
+    direction_zeros: u32,
+    /// Registers of a context, in bits.
+    context_bits: u32,
+}
+
+impl UnitFacts {
+    fn of(hardware: &Hardware) -> Self {
+        Self {
+            levels: hardware.levels,
+            bvh_depth: hardware.bvh_depth,
+            stack_entries: hardware.stack_entries(),
+            contexts: hardware.contexts,
+            edges_per_cycle: hardware.edges_per_cycle.count(),
+            coordinate_zeros: hardware.coordinate_zeros,
+            direction_zeros: hardware.direction_zeros,
+            context_bits: hardware.context_registers(true).kept,
+        }
+    }
 }
 
 pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
@@ -77,7 +108,9 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
 fn say(args: &Args, plan: &Plan, data: Option<&Data>) -> anyhow::Result<ExitCode> {
     let savings = savings(plan, &Hardware::default(), data);
     if args.json {
-        print_json(&Document { plan, data, savings: &savings })?;
+        let full = plan.speed.as_ref().map_or(Hardware::default(), |speed| speed.own.config());
+        let (unit, full_unit) = (UnitFacts::of(&plan.hardware(&Hardware::default())), UnitFacts::of(&full));
+        print_json(&Document { plan, data, savings: &savings, unit, full_unit })?;
     } else {
         print_line(&table(&savings))?;
         plan.speed.iter().try_for_each(|speed| print_line(&speed::words(speed)))?;

@@ -58,10 +58,7 @@ impl Group {
 
 /// Prints all numbers but the structs' widths.
 pub(super) fn print(hardware: &Hardware, out: &mut String) {
-    let edges = match hardware.edges_per_cycle {
-        EdgesPerCycle::One => 1,
-        EdgesPerCycle::Three => 3,
-    };
+    let edges = hardware.edges_per_cycle.count();
     let of_hardware = Group::new(
         "This hardware: `Hardware` in Rust, which prints this file. All that follows from these is made smaller or larger with them.",
     )
