@@ -365,7 +365,7 @@ fn resealed_nonsense_is_refused_with_section_and_field() {
         (broken(&|b| word(b, entry + 8, vertices as u64 - 64)), ["VERTICES", "offset"]),
         (broken(&|b| word(b, entry + 16, u64::MAX)), ["VERTICES", "past the end"]),
         (broken(&|b| word(b, entry, 9)), ["section table", "kind 9"]),
-        (with_meta(&good, "\"levels\":2", "\"levels\":3").unwrap_err(), ["RECORDS", "BOUNDS"]),
+        (with_meta(&good, "\"levels\":2", "\"levels\":3").unwrap_err(), ["NORMALS", "3 splits"]),
         (with_meta(&good, "\"trees\":8", "\"trees\":7").unwrap_err(), ["RECORDS", "length"]),
         (with_meta(&good, "\"base_vertices\":6", "\"base_vertices\":5").unwrap_err(), ["TRIANGLES", "below 5"]),
         (with_meta(&good, "\"levels\":2", "\"levels\":x").unwrap_err(), ["META", "line"]),

@@ -37,7 +37,7 @@ const GROUPS: &[(&str, &[Row])] = &[
             (UNIT, HEX, &["mem_o.tag", "mem_o.address"]),
             (UNIT, BITS, &["mem_valid_i"]),
             (UNIT, HEX, &["mem_i.tag"]),
-            (CONTEXT, BITS, &["want_q", "waiting_q", "base_want_q", "base_ready_q"]),
+            (CONTEXT, BITS, &["want_q", "waiting_q"]),
         ],
     ),
     (
