@@ -32,7 +32,8 @@ pub enum PassRays {
 }
 
 impl PassRays {
-    fn source(&self) -> &dyn RaySource {
+    /// Where they come from.
+    pub fn source(&self) -> &dyn RaySource {
         match self {
             Self::Camera(camera) => camera,
             Self::File(rays, _) => rays,

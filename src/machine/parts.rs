@@ -99,13 +99,16 @@ pub struct Units {
     pub contexts: u32,
     /// Edge functions that the triangle test evaluates in a cycle: 3 or 1.
     pub edges_per_cycle: u32,
+    /// A unit of a plan: what the keys above do not say is as there. Machine files have none.
+    #[serde(skip)]
+    pub like: Option<Hardware>,
 }
 
 impl Units {
-    /// The hardware of a unit: what the machine does not say is as in `rtl/`.
+    /// The hardware of a unit: what the machine does not say is as in a plan's, or as in `rtl/`.
     pub fn config(&self) -> Hardware {
         let edges_per_cycle = if self.edges_per_cycle == 1 { EdgesPerCycle::One } else { EdgesPerCycle::Three };
-        Hardware { contexts: self.contexts as usize, edges_per_cycle, ..Hardware::default() }
+        Hardware { contexts: self.contexts as usize, edges_per_cycle, ..self.like.unwrap_or_default() }
     }
 }
 

@@ -103,7 +103,7 @@ struct Search<'a> {
 impl Search<'_> {
     /// These units, if they serve.
     fn serving(&mut self, per_group: u32, contexts: u32, edges_per_cycle: u32) -> Result<Option<Found>, ReplayError> {
-        let units = Units { per_group, contexts, edges_per_cycle };
+        let units = Units { per_group, contexts, edges_per_cycle, like: None };
         let found = match self.tried.iter().find(|tried| tried.units == units) {
             Some(tried) => tried.clone(),
             None => {
@@ -129,7 +129,7 @@ impl Search<'_> {
                 halved(all, |found| found.units.per_group, |per_group| self.serving(per_group, full.contexts, edges))?.units.per_group;
             // More of fewer contexts each can be cheaper.
             for per_group in few..=full.per_group {
-                let of = |contexts| Units { per_group, contexts, edges_per_cycle: edges };
+                let of = |contexts| Units { per_group, contexts, edges_per_cycle: edges, like: None };
                 let Some(cheaper) = (1..=full.contexts).rev().find(|&contexts| gates(&of(contexts)) < gates(&best.units)) else { break };
                 if let Some(found) = self.serving(per_group, cheaper, edges)? {
                     best = halved(found, |found| found.units.contexts, |contexts| self.serving(per_group, contexts, edges))?;

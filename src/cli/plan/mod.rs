@@ -6,9 +6,11 @@ use super::method::Chosen;
 use super::output::{busy, check_target, open, print_json, print_line, remark, write_file};
 use super::sweep::{Jobs, ListText, SceneJobs};
 use anyhow::Context;
+use lodray::format::Scene;
 use lodray::hardware::Hardware;
 use lodray::plan::{Data, Measure, Narrowest, Part, Plan, RayNeeds, Saving, Within, savings};
-use lodray::rays::ModelSpace;
+use lodray::rays::{ModelSpace, RaySource};
+use lodray::report::result::MachineFacts;
 use serde::Serialize;
 use speed::{Frames, SpeedArgs};
 use std::path::{Path, PathBuf};
@@ -131,8 +133,27 @@ fn pixels(s: &str) -> Result<f64, String> {
     s.parse().ok().filter(|v: &f64| *v > 0.0 && v.is_finite()).ok_or_else(|| format!("'{s}' is no number of pixels above 0"))
 }
 
+/// Has a machine's units as the plan of this file has them.
+pub fn in_machine(plan: &Plan, path: &Path, machine: &mut MachineFacts) {
+    let units = &mut machine.description.units;
+    let own = plan.hardware(&units.config());
+    // Contexts and edges are the machine's own where no frame was simulated.
+    (units.contexts, units.edges_per_cycle) = (own.contexts as u32, own.edges_per_cycle.count()); // at most 64
+    units.like = Some(own);
+    machine.set.push(format!("plan={}", path.display()));
+}
+
+/// Refuses a scene or rays that a plan is too narrow for.
+pub fn check(plan: &Plan, path: &Path, scene: &Scene, chosen: &Chosen, rays: &dyn RaySource) -> anyhow::Result<()> {
+    anyhow::ensure!(chosen.method.name == "lod", "--plan: is of units for lod, not for {}", chosen.method.name);
+    let measure = busy("measuring", || Measure::of(scene));
+    plan.check(&path.display().to_string(), &measure.needs())?;
+    plan.check_rays("the view", &busy("measuring rays", || measure.rays(rays, chosen.delta())))?;
+    Ok(())
+}
+
 /// A plan from its file.
-fn read(path: &Path) -> anyhow::Result<Plan> {
+pub fn read(path: &Path) -> anyhow::Result<Plan> {
     let text = std::fs::read_to_string(path).with_context(|| format!("cannot read {}", path.display()))?;
     ListText { path, text: &text }.parse()
 }

@@ -13,6 +13,7 @@ use super::method::MachineMethod;
 use super::names::named;
 use super::output::{check_target, explain, grouped, open, print_json, print_line, remark, warn, write_file};
 use super::pass::{Pass, PassRays, Target, machine, machine_files};
+use super::plan;
 use super::report::PageArgs;
 use anyhow::Context;
 use files::Files;
@@ -38,6 +39,9 @@ pub struct Args {
     /// Change a value of the machines, such as l1.bytes=32768; may be repeated
     #[arg(long, value_name = "KEY=VALUE")]
     set: Vec<Change>,
+    /// Traversal units of a plan (lodray plan -o), in energy, leakage and cycles; the scene and its rays must fit it
+    #[arg(long, value_name = "PLAN", conflicts_with = "rays")]
+    plan: Option<PathBuf>,
     /// How compute is simulated
     #[arg(long, value_parser = named::<Compute>(), default_value = Compute::Free.name())]
     compute: Compute,
@@ -88,14 +92,18 @@ fn check_window(window: Window, last: u64) -> anyhow::Result<()> {
 
 pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
     let read = |name: &String| machine(name, &args.set, "--set").with_context(|| format!("--machine {name}"));
-    let machines = args.machine.iter().map(read).collect::<anyhow::Result<Vec<_>>>()?;
+    let mut machines = args.machine.iter().map(read).collect::<anyhow::Result<Vec<_>>>()?;
+    let plan = args.plan.as_deref().map(plan::read).transpose()?;
+    if let (Some(plan), Some(path)) = (&plan, &args.plan) {
+        machines.iter_mut().for_each(|machine| plan::in_machine(plan, path, machine));
+    }
     for (k, machine) in machines.iter().enumerate() {
         run::check(&machine.description, args.compute).with_context(|| format!("--machine {}", args.machine[k]))?;
         anyhow::ensure!(machines[..k].iter().all(|before| before.label != machine.label), "--machine: {} is given twice", machine.label);
     }
     let read =
         args.machine.iter().zip(&machines).map(|(name, machine)| machine_files(name, machine)).collect::<Result<Vec<_>, _>>()?.concat();
-    let inputs: Vec<_> = std::iter::once(&args.scene).chain(&args.rays).chain(&read).map(PathBuf::as_path).collect();
+    let inputs: Vec<_> = std::iter::once(&args.scene).chain(&args.rays).chain(&args.plan).chain(&read).map(PathBuf::as_path).collect();
     if let Some(vcd) = &args.vcd {
         anyhow::ensure!(machines.len() == 1, "--vcd: takes one machine, not {}", machines.len());
         check_target(vcd, &inputs)?;
@@ -114,6 +122,9 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
     let folder = args.out.as_ref().map(open_folder).transpose()?;
 
     let chosen = &args.method.0;
+    if let Some(plan) = &plan {
+        plan::check(plan, &args.scene, &scene, chosen, rays.source())?;
+    }
     let (method, _) = chosen.make(&scene, &Cache::new(&args.cache, args.out.as_deref())?)?;
     let pass = Pass { scene: &scene, space: &space, chosen, method: &*method, rays };
     let targets: Vec<_> = machines.into_iter().map(|machine| Target { machine, compute: args.compute, window: args.window }).collect();
