@@ -4,8 +4,9 @@ use super::method::Chosen;
 use super::output::{busy, check_target, open, print_json, print_line, remark, write_file};
 use super::sweep::{Jobs, ListText, SceneJobs};
 use anyhow::Context;
+use lodray::format::JobView;
 use lodray::hardware::Hardware;
-use lodray::plan::{Data, Measure, Part, Plan, RayNeeds, Saving, savings};
+use lodray::plan::{Data, Measure, Part, Plan, RayNeeds, Reach, Saving, savings};
 use lodray::rays::ModelSpace;
 use serde::Serialize;
 use std::path::{Path, PathBuf};
@@ -71,7 +72,7 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
 }
 
 /// A plan from its file.
-fn read(path: &Path) -> anyhow::Result<Plan> {
+pub fn read(path: &Path) -> anyhow::Result<Plan> {
     let text = std::fs::read_to_string(path).with_context(|| format!("cannot read {}", path.display()))?;
     ListText { path, text: &text }.parse()
 }
@@ -80,44 +81,56 @@ fn read(path: &Path) -> anyhow::Result<Plan> {
 fn made(files: &[PathBuf], jobs: Option<&Jobs>, given: Option<&Plan>) -> anyhow::Result<(Plan, Data)> {
     let mut plan = Plan::new(jobs.is_some());
     let mut all: Option<Data> = None;
-    let mut add = |name: &str, measure: &Measure, deepest: Option<u32>| -> anyhow::Result<()> {
+    let mut add = |name: &str, measure: &Measure, depths: &[u32]| -> anyhow::Result<()> {
         let needs = measure.needs();
         given.map_or(Ok(()), |given| given.check(name, &needs))?;
         plan.add(name, &needs);
-        let data = measure.data(deepest.unwrap_or(needs.levels));
+        let data = measure.data(depths);
         all = Some(all.map_or(data, |all| all.with(data)));
         Ok(())
     };
     for file in files {
         let scene = open(file)?;
         let measure = busy("measuring", || Measure::of(&scene));
-        add(&file.display().to_string(), &measure, None)?;
+        add(&file.display().to_string(), &measure, &scene.depths())?;
     }
     let mut rays = Vec::new();
+    let mut all_views = Vec::new();
     for job in jobs.iter().flat_map(|jobs| &jobs.scenes) {
         let scene = job.open()?;
         let measure = busy("measuring", || Measure::of(&scene));
-        let needs = views(job, jobs.map_or(&[], |jobs| jobs.methods.as_slice()), &measure, &ModelSpace::of(&scene))?;
+        let reach = Reach::of(&scene);
+        let (needs, views) = views(job, jobs.map_or(&[], |jobs| jobs.methods.as_slice()), &measure, &reach, &ModelSpace::of(&scene))?;
         given.map_or(Ok(()), |given| given.check_rays(&format!("the job of scene {}", job.name), &needs))?;
-        add(&job.name, &measure, Some(needs.deepest_level))?;
+        add(&job.name, &measure, &reach.depths())?;
         rays.push(needs);
+        all_views.extend(views.into_iter().map(|view| (scene.meta().name.clone(), view)));
     }
     rays.iter().for_each(|needs| plan.add_rays(needs));
+    all_views.into_iter().for_each(|(name, view)| plan.add_view(&name, view));
     Ok((plan, all.context("no scene to plan for")?))
 }
 
-/// What all views of a scene need, at all qualities of the list.
-fn views(job: &SceneJobs, methods: &[Chosen], measure: &Measure, space: &ModelSpace) -> anyhow::Result<RayNeeds> {
+/// What all views of a scene need, at all qualities of the list, and the views; `reach` learns how deep they go.
+fn views(
+    job: &SceneJobs,
+    methods: &[Chosen],
+    measure: &Measure,
+    reach: &Reach,
+    space: &ModelSpace,
+) -> anyhow::Result<(RayNeeds, Vec<JobView>)> {
     let lod: Vec<_> = methods.iter().filter(|chosen| chosen.method.name == "lod").collect();
     anyhow::ensure!(!lod.is_empty(), "the list of jobs has no job of lod");
-    let mut needs = RayNeeds::default();
+    let (mut needs, mut views) = (RayNeeds::default(), Vec::new());
     for view in &job.views {
         let camera = view.camera(space).with_context(|| format!("scene {}", job.name))?;
         for chosen in &lod {
             needs = needs.with(&busy("measuring rays", || measure.rays(&camera, chosen.delta())));
+            busy("looking at rays", || reach.add(&camera, chosen.delta()));
+            views.push(camera.job_view(chosen.delta()));
         }
     }
-    Ok(needs)
+    Ok((needs, views))
 }
 
 /// A line for each saving, in columns.

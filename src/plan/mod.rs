@@ -6,15 +6,18 @@
 mod data;
 mod measure;
 mod rays;
+mod reach;
 mod report;
 mod scene;
 
 pub use data::Data;
 pub use measure::Measure;
 pub use rays::RayNeeds;
+pub use reach::Reach;
 pub use report::{Part, Saving, savings};
 pub use scene::SceneNeeds;
 
+use crate::format::JobView;
 use crate::hardware::Hardware;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
@@ -32,7 +35,7 @@ pub(crate) fn signed_bits(least: i64, most: i64) -> u32 {
 }
 
 /// What is needed for some scenes and a job, as `lodray plan` writes it.
-#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 pub struct Plan {
     /// Version of the program that wrote it.
@@ -43,6 +46,9 @@ pub struct Plan {
     pub scene: SceneNeeds,
     /// Of the rays of the job; nothing where no job was given: any ray can come.
     pub rays: Option<RayNeeds>,
+    /// The views of the job, by the name of the scene that they are of.
+    #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
+    pub views: BTreeMap<String, Vec<JobView>>,
 }
 
 /// A scene or a ray that a plan is too narrow for.
@@ -59,7 +65,7 @@ impl Plan {
     /// The plan of no scene and no ray.
     pub fn new(rays: bool) -> Self {
         let program = env!("CARGO_PKG_VERSION").to_owned();
-        Self { program, scenes: Vec::new(), scene: SceneNeeds::default(), rays: rays.then(RayNeeds::default) }
+        Self { program, scenes: Vec::new(), scene: SceneNeeds::default(), rays: rays.then(RayNeeds::default), views: BTreeMap::new() }
     }
 
     /// Makes room for a scene.
@@ -71,6 +77,14 @@ impl Plan {
     /// Makes room for rays, if the plan is of some.
     pub fn add_rays(&mut self, needs: &RayNeeds) {
         self.rays = self.rays.as_ref().map(|rays| rays.with(needs));
+    }
+
+    /// Adds a view of a scene, whose file has this name, once.
+    pub fn add_view(&mut self, name: &str, view: JobView) {
+        let views = self.views.entry(name.to_owned()).or_default();
+        if !views.contains(&view) {
+            views.push(view);
+        }
     }
 
     /// A hardware for it, `hardware` in all that a plan does not say.
