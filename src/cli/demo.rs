@@ -13,7 +13,7 @@ use lodray::mesh::procedural::{Options, Scene, generate};
 use lodray::method::knob::DELTA;
 use lodray::method::{Registered, bvh, lod, reference};
 use lodray::picture::Shading;
-use lodray::plan::{Data, Measure, Plan, RayNeeds};
+use lodray::plan::{Data, Measure, Plan, RayNeeds, Reach};
 use lodray::rays::{Camera, ModelSpace, View};
 use serde::Serialize;
 use std::path::PathBuf;
@@ -69,10 +69,11 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
     let made = methods.iter().map(|method| Chosen::plain(method).make(&scene, &Cache::NONE)).collect::<anyhow::Result<Vec<_>>>()?;
 
     let (mut rows, mut rays) = (Vec::new(), RayNeeds::default());
-    let measure = Measure::of(&scene);
+    let (measure, reach) = (Measure::of(&scene), Reach::of(&scene));
     for (view, distance) in DISTANCES {
         let camera = Camera::new(&View { distance: Some(distance), ..View::default() }, &space, SIDE, SIDE)?;
         rays = rays.with(&measure.rays(&camera, QUALITY));
+        reach.add(&camera, QUALITY);
         let shots: Vec<_> =
             methods.iter().zip(&made).map(|(method, (made, _))| shoot(&**made, &scene, &space, &camera, QUALITY, method.name)).collect();
         let full = &shots[2];
@@ -102,7 +103,7 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
     let mut plan = Plan::new(true);
     plan.add(&scene.meta().name, &measure.needs());
     plan.add_rays(&rays);
-    let table = table(&rows, scene.finest_triangles()) + "\n\n" + &saving(&plan, &measure.data(rays.deepest_level));
+    let table = table(&rows, scene.finest_triangles()) + "\n\n" + &saving(&plan, &measure.data(&reach.depths()));
     write_file(&out.join(TABLE), format!("{table}\n"))?;
     write_file(&out.join(PLAN), toml::to_string(&plan)?)?;
     folder.finish()?;

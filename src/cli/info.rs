@@ -1,7 +1,7 @@
 //! `info`: what a scene file holds.
 
-use super::output::{grouped, open, plain, print_json, print_line};
-use lodray::format::Scene;
+use super::output::{grouped, open_any, plain, print_json, print_line};
+use lodray::format::{JobView, Scene};
 use lodray::mesh::{BoundKind, Distance, TwoSidedDistance};
 use lodray::num::{PADDING_BITS, VertexForm};
 use lodray::rays::ModelSpace;
@@ -38,6 +38,11 @@ struct Info<'a> {
     size: [f64; 3],
     levels: u32,
     base_triangles: u64,
+    /// How many of them have how many levels stored: from none on.
+    trees_by_depth: Vec<usize>,
+    /// The views that it was pruned for; empty if it serves any ray.
+    #[serde(skip_serializing_if = "<[_]>::is_empty")]
+    job: &'a [JobView],
     base_vertices: u64,
     finest_triangles: u64,
     /// What displacement bounds cover.
@@ -61,7 +66,7 @@ struct Info<'a> {
 }
 
 pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
-    let scene = open(&args.scene)?;
+    let scene = open_any(&args.scene)?;
     match (args.json, args.verbose) {
         (true, _) => print_json(&Info::of(&scene))?,
         (false, true) => print_line(&verbose(&Info::of(&scene)))?,
@@ -109,6 +114,8 @@ impl<'a> Info<'a> {
             size: std::array::from_fn(|k| space.placement.scale * (f64::from(space.hi[k]) - f64::from(space.lo[k]))),
             levels: scene.levels(),
             base_triangles: scene.trees() as u64,
+            trees_by_depth: scene.trees_by_depth(),
+            job: &meta.job,
             base_vertices: u64::from(meta.base_vertices),
             finest_triangles: triangles,
             bounds: meta.bounds,
@@ -158,6 +165,7 @@ fn summary(i: &Info<'_>) -> String {
             ),
         ),
         ("model size", format!("{width} x {height} x {depth} (width x height x depth, in the units of its coordinates)")),
+        ("tree depths", depths(&i.trees_by_depth)),
         ("bounds", format!("{}: {}", i.bounds.name(), promise(i.bounds))),
         ("vertices", format!("{}: none is further than {} from its place on the surface", i.vertices.name(), plain(i.moved))),
     ];
@@ -174,8 +182,20 @@ fn summary(i: &Info<'_>) -> String {
         let why = "how the mesh is connected, and its borders and creases, allow no fewer triangles";
         lines.push(("note", format!("--base {wanted} was not met, the base has {made}: {why}")));
     }
+    for view in i.job {
+        let [width, height] = view.size;
+        let at = view.eye.map(plain).join(", ");
+        lines.push(("pruned for", format!("{width}x{height} from ({at}) at delta {}: no other rays are served", view.delta)));
+    }
     lines.extend(losses(i).into_iter().map(|loss| ("warning", loss)));
     lines.iter().map(|(name, value)| format!("{name:<12}{value}")).collect::<Vec<_>>().join("\n")
+}
+
+/// Levels that are stored, and of how many trees.
+fn depths(trees: &[usize]) -> String {
+    let some = trees.iter().enumerate().filter(|(_, trees)| **trees > 0);
+    let of = |(levels, trees): (usize, &usize)| format!("{levels} ({})", grouped(*trees as u64));
+    format!("{} levels stored (of so many base triangles): no ray goes deeper", some.map(of).collect::<Vec<_>>().join(", "))
 }
 
 /// What displacement bounds mean for who chooses a delta.

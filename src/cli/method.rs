@@ -155,10 +155,23 @@ impl Chosen {
 
     /// Builds what it needs for a scene, or takes it from the cache, and whether all was taken.
     pub fn make<'a>(&self, scene: &'a Scene, cache: &Cache) -> anyhow::Result<(Box<dyn Method + 'a>, bool)> {
+        self.check(scene)?;
         let lookup = Lookup::new(cache);
         let what = format!("building what {} needs", self.method.name);
         let made = busy(&what, || (self.method.make)(scene, &self.knobs, &lookup)).with_context(|| what.clone())?;
         Ok((made, lookup.was_read()))
+    }
+
+    /// Refuses a method that needs the full resolution on a scene that was pruned for a job.
+    pub fn check(&self, scene: &Scene) -> anyhow::Result<()> {
+        let whole = scene.meta().job.is_empty();
+        anyhow::ensure!(
+            whole || self.method == &lod::METHOD,
+            "scene {} was pruned for a job: method: {} needs the full resolution, and there is but what lod's rays read",
+            scene.meta().name,
+            self.method.name
+        );
+        Ok(())
     }
 }
 

@@ -14,6 +14,7 @@ mod facts;
 mod folder;
 mod generate;
 mod info;
+mod job;
 mod job_lines;
 mod json;
 mod lines;
@@ -24,6 +25,7 @@ mod output;
 mod pass;
 mod pictures;
 mod plan;
+mod prune;
 mod render;
 mod report;
 mod results;
@@ -61,6 +63,8 @@ enum Command {
     Verify(verify::Args),
     /// Tell what scenes and a job do not need of a traversal unit, and what leaving it out saves
     Plan(plan::Args),
+    /// Take away the levels of a scene that no ray of a plan's job goes down to; the hits of its rays stay the same, others are refused
+    Prune(prune::Args),
     /// Render a scene
     #[command(after_long_help = words::RENDER)]
     Render(render::Args),
@@ -108,6 +112,7 @@ pub fn run(cli: Cli) -> anyhow::Result<ExitCode> {
         Command::Info(args) => info::run(&args),
         Command::Verify(args) => verify::run(&args),
         Command::Plan(args) => plan::run(&args),
+        Command::Prune(args) => prune::run(&args),
         Command::Render(args) => render::run(&args),
         Command::Simulate(args) => simulate::run(&args),
         Command::Sweep(args) => sweep::run(&args),

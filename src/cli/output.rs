@@ -68,8 +68,20 @@ pub fn write_file(path: &Path, bytes: impl AsRef<[u8]>) -> anyhow::Result<()> {
     write_and_rename(path, |out| out.write_all(bytes.as_ref())).with_context(|| format!("cannot write {}", path.display()))
 }
 
-/// Opens a scene file; the error names it, and for a mesh says how to make a scene of it.
+/// Opens a scene file for any rays: refuses one that was pruned for a job.
 pub fn open(path: &Path) -> anyhow::Result<Scene> {
+    let scene = open_any(path)?;
+    anyhow::ensure!(
+        scene.meta().job.is_empty(),
+        "{}: job: the scene was pruned for the views of a job, and is not there for anything else (lodray info lists them)",
+        path.display()
+    );
+    Ok(scene)
+}
+
+/// Opens a scene file, which may have been pruned for a job: whoever traces rays on it asks `job::check` first. The error names the file, and for a mesh says how to
+/// make a scene of it.
+pub fn open_any(path: &Path) -> anyhow::Result<Scene> {
     busy("opening", || Scene::open(path)).or_else(|error| {
         if path.is_file() && MeshFormat::of(path).is_some() {
             let (mesh, scene) = (path.display(), path.with_extension("lod"));

@@ -4,9 +4,10 @@ use super::args::CameraArgs;
 use super::cache::{Cache, CacheArgs};
 use super::facts::Facts;
 use super::folder::{Overrule, RunFolder, one_run};
+use super::job;
 use super::method::{Chosen, PictureMethod};
 use super::original::original;
-use super::output::{explain, grouped, open, print_json, print_line, remark};
+use super::output::{explain, grouped, open, open_any, print_json, print_line, remark};
 use super::pictures::{Shot, shoot_with};
 use anyhow::Context;
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
@@ -175,7 +176,7 @@ fn subjects(args: &Args) -> anyhow::Result<(Subject, Option<Subject>)> {
         Some(_) if !is_original && !args.compare => anyhow::bail!("--mesh: goes with --compare or with --method original only"),
         Some(mesh) => Ok((Subject::of(open(&args.scene)?), Some(Subject::of(original(mesh)?)))),
         None if is_original => Ok((Subject::of(original(&args.scene)?), None)),
-        None => Ok((Subject::of(open(&args.scene)?), None)),
+        None => Ok((Subject::of(open_any(&args.scene)?), None)),
     }
 }
 
@@ -184,6 +185,12 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
     let camera = args.camera.camera(&seen.space, None)?;
     let samples = camera.with_samples(args.samples).context("--samples")?;
     let cameras = [&camera, &samples];
+    cameras.into_iter().try_for_each(|rays| job::check(&seen.scene, Some(rays), args.method.chosen.delta()))?;
+    job::check_shading(&seen.scene, args.shading)?;
+    args.method.chosen.check(&seen.scene)?;
+    if args.compare && mesh.is_none() {
+        Chosen::plain(&reference::METHOD).check(&seen.scene)?;
+    }
     let pictures = ["image.png", "levels.png", "normals.png", SHEET, "error.png"];
     let names = pictures.into_iter().take(4 + usize::from(args.compare));
     let inputs: Vec<_> = std::iter::once(&args.scene).chain(&args.mesh).map(PathBuf::as_path).collect();

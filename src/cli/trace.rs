@@ -1,7 +1,8 @@
 //! `trace`: one ray through the traversal unit, cycle by cycle.
 
 use super::args::{CameraArgs, whole};
-use super::output::{check_target, grouped, open, print_line, remark, write_file};
+use super::job;
+use super::output::{check_target, grouped, open_any, print_line, remark, write_file};
 use anyhow::Context;
 use lodray::hardware::Hardware;
 use lodray::method::knob::quality;
@@ -65,9 +66,10 @@ impl Bench<'_> {
 }
 
 pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
-    let scene = open(&args.scene)?;
+    let scene = open_any(&args.scene)?;
     let space = ModelSpace::of(&scene);
     let camera = args.camera.camera(&space, None)?;
+    job::check(&scene, Some(&camera), args.delta)?;
     let Place(x, y) = args.pixel;
     let (width, height) = (camera.width, camera.height);
     anyhow::ensure!(

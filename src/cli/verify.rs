@@ -1,6 +1,6 @@
 //! `verify`: the audit.
 
-use super::output::{busy, grouped, open, print_json, print_line};
+use super::output::{busy, grouped, open_any, print_json, print_line};
 use lodray::format::audit::audit;
 use std::path::PathBuf;
 use std::process::ExitCode;
@@ -15,7 +15,7 @@ pub struct Args {
 }
 
 pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
-    let scene = open(&args.scene)?;
+    let scene = open_any(&args.scene)?;
     let report = busy("checking", || audit(&scene));
     if args.json {
         print_json(&report)?;

@@ -132,7 +132,7 @@ impl Scene {
     }
 
     /// Calls `f` with level and number, corners' places and inserted vertices of every node of levels 0 to `finest` - 1 of a tree, depth first.
-    pub(super) fn each_node(&self, tree: usize, finest: u32, f: &mut impl FnMut((u32, usize), [LatticePoint; 3], [[i32; 3]; 3])) {
+    pub(crate) fn each_node(&self, tree: usize, finest: u32, f: &mut impl FnMut((u32, usize), [LatticePoint; 3], [[i32; 3]; 3])) {
         self.below(tree, finest, (0, 0), lattice::root(self.levels()), self.corners(tree), f);
     }
 

@@ -9,6 +9,7 @@ use crate::mesh::{BoundKind, Hierarchy, Surface, SurfaceError, quantise};
 use crate::num::{BoxStep, COORD_LIMIT, U, VertexForm, Wire, box_code_ceil, box_code_floor, displaced, displacement_shift};
 use memmap2::MmapMut;
 use rayon::prelude::*;
+use std::ops::Range;
 
 /// What a scene says about itself.
 #[derive(Clone, Debug, Default)]
@@ -103,9 +104,7 @@ pub fn encode(hierarchy: &Hierarchy, surface: &Surface, info: SceneInfo, bvh: &T
         FileSection::Colours => 4 * surface.colours.len(),
         _ => Scene::section_lengths(&meta, section).unwrap_or(usize::MAX / 16), // too large to be had
     });
-    let (ranges, total) = place(lengths);
-    // Anonymous pages come zeroed and are first touched by the thread that fills them.
-    let mut image = MmapMut::map_anon(total).map_err(|e| SceneError::Build(format!("{total} bytes for the images: {e}")))?;
+    let (mut image, ranges) = new_image(lengths)?;
 
     let mut rest = &mut image[..];
     let mut taken = 0;
@@ -132,11 +131,25 @@ pub fn encode(hierarchy: &Hierarchy, surface: &Surface, info: SceneInfo, bvh: &T
     };
     images.write(hierarchy, &surface.materials, order, &trees_lines)?;
 
+    debug_assert_eq!(trees, meta.trees as usize);
+    Ok(sealed(image, ranges, meta))
+}
+
+/// An image of sections of these lengths, all zero, and where they are.
+pub(super) fn new_image(lengths: [usize; COUNT]) -> Result<(MmapMut, [Range<usize>; COUNT]), SceneError> {
+    let (ranges, total) = place(lengths);
+    // Anonymous pages come zeroed and are first touched by the thread that fills them.
+    let image = MmapMut::map_anon(total).map_err(|e| SceneError::Build(format!("{total} bytes for the images: {e}")))?;
+    Ok((image, ranges))
+}
+
+/// The scene of an image whose sections are filled: checksums and header are written.
+pub(super) fn sealed(mut image: MmapMut, ranges: [Range<usize>; COUNT], meta: Meta) -> Scene {
     let mut sums = [0; COUNT];
     sums.par_iter_mut().zip(&ranges).for_each(|(sum, range)| *sum = checksum(&image[range.clone()]));
+    let total = image.len();
     write_header(&mut image[..HEADER], total, &ranges, &sums);
-    debug_assert_eq!(trees, meta.trees as usize);
-    Ok(Scene { image: Image::Owned(image), ranges, meta })
+    Scene { image: Image::Owned(image), ranges, meta }
 }
 
 /// What is stored of trees of these depths, in their order; and where another's lines would begin.
@@ -176,6 +189,7 @@ fn meta(h: &Hierarchy, surface: &Surface, info: SceneInfo) -> Meta {
         moved: info.moved + h.points.par_iter().zip(&surface.positions).map(distance).reduce(|| 0.0, f64::max),
         lo,
         hi,
+        job: Vec::new(),
         origin: info.origin,
     }
 }

@@ -460,7 +460,7 @@ mod tests {
         fn parts_of_lines_are_the_fields(line in prop::array::uniform4(any::<u64>())) {
             let (group, node) = (SiblingGroup::from_words(&line), BvhNode::from_words(&line));
             let (record, lines) = (L0Record::from_words(&line), L0Record::line_tree(&line));
-            prop_assert_eq!(record.clone().of_tree(lines), Some(record));
+            prop_assert_eq!(record.of_tree(lines), Some(record));
             for axis in 0..3 {
                 let step = |half: [bool; 3], exponents: [U<4>; 3]| BoxStep { half: half[axis], exponent: exponents[axis].get() as u32 };
                 prop_assert_eq!(SiblingGroup::line_steps(&line)[axis], step(group.halves, group.exponents));

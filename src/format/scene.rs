@@ -1,7 +1,7 @@
 //! A scene: one byte image, owned or mapped from its file, read through typed slices.
 
 use super::sections::{COUNT, FileSection};
-use super::{L0Record, Line, TreeLines, normal};
+use super::{JobView, L0Record, Line, TreeLines, normal};
 use crate::mesh::{BoundKind, Placement, SurfaceError, lattice};
 use crate::num::{BoundScale, LINE_BYTES, U, VertexForm};
 use memmap2::{Mmap, MmapMut};
@@ -76,6 +76,9 @@ pub struct Meta {
     pub lo: [i32; 3],
     /// Upper corner of the box of all vertices in units.
     pub hi: [i32; 3],
+    /// For whose rays levels were taken away: none but theirs may be traced. Empty: any may.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub job: Vec<JobView>,
     /// How the model was made.
     #[serde(default, skip_serializing_if = "serde_json::Value::is_null")]
     pub origin: serde_json::Value,
@@ -141,6 +144,18 @@ impl Scene {
     #[inline]
     pub fn tree_lines(&self, tree: usize) -> TreeLines {
         L0Record::line_tree(&self.records()[tree][4..])
+    }
+
+    /// How many levels of each tree are stored.
+    pub fn depths(&self) -> Vec<u32> {
+        (0..self.trees()).map(|tree| self.tree_lines(tree).depth).collect()
+    }
+
+    /// How many trees have how many levels stored: from none to N.
+    pub fn trees_by_depth(&self) -> Vec<usize> {
+        let mut trees = vec![0; self.levels() as usize + 1];
+        self.depths().into_iter().for_each(|depth| trees[depth as usize] += 1);
+        trees
     }
 
     /// Sibling groups ([`super::SiblingGroup`]), where [`TreeLines::child_group`] says.

@@ -12,14 +12,14 @@ pub struct Data {
     pub triangles: u64,
     /// L0 records, sibling groups and inserted vertices as they are stored.
     pub stored: u64,
-    /// Of them what lies below a node with three codes of 0, where every ray ends: without it.
+    /// Of them what a ray of some quality can read: what lies below a node with three codes of 0, in a tree that is deeper elsewhere, is read by none.
     pub above_flat: u64,
-    /// What then remains above the finest level that a ray of the job can go down to.
+    /// What is stored if each tree has no more levels than a ray of the job can go down to.
     pub reached: u64,
 }
 
 impl Data {
-    pub(super) fn of(scene: &Scene, met: &Met, deepest: u32) -> Self {
+    pub(super) fn of(scene: &Scene, met: &Met, depths: &[u32]) -> Self {
         let (levels, form) = (scene.levels(), scene.meta().vertices);
         let records = size_of_val(scene.records()) as u64;
         // Of a node that splits: its vertices, but for a root's that are in its record; and its children's group, but above the finest level.
@@ -31,9 +31,8 @@ impl Data {
             };
             vertices + if level + 1 < levels { LINE_BYTES } else { 0 }
         };
-        let upto = |deepest: u32| records + (0..levels.min(deepest)).map(|level| met.splits[level as usize] * of(level)).sum::<u64>();
-        let stored = records + (size_of_val(scene.bounds()) + size_of_val(scene.vertices())) as u64;
-        Self { triangles: scene.finest_triangles(), stored, above_flat: upto(levels), reached: upto(deepest) }
+        let above_flat = records + (0..levels).map(|level| met.splits[level as usize] * of(level)).sum::<u64>();
+        Self { triangles: scene.finest_triangles(), stored: scene.bytes_of(&scene.depths()), above_flat, reached: scene.bytes_of(depths) }
     }
 
     /// Bytes for each full-resolution triangle.

@@ -27,8 +27,8 @@ impl<'a> Measure<'a> {
         RayNeeds::of(self.scene, &self.met, source, delta)
     }
 
-    /// Its bytes, where no ray goes below `deepest`.
-    pub fn data(&self, deepest: u32) -> Data {
-        Data::of(self.scene, &self.met, deepest)
+    /// Its bytes, and those if no more levels of each tree were stored than this.
+    pub fn data(&self, depths: &[u32]) -> Data {
+        Data::of(self.scene, &self.met, depths)
     }
 }

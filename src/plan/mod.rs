@@ -6,6 +6,7 @@
 mod data;
 mod measure;
 mod rays;
+mod reach;
 mod report;
 mod scene;
 mod speed;
@@ -14,11 +15,13 @@ mod within;
 pub use data::Data;
 pub use measure::Measure;
 pub use rays::RayNeeds;
+pub use reach::Reach;
 pub use report::{Part, Saving, savings};
 pub use scene::SceneNeeds;
 pub use speed::Speed;
 pub use within::{Narrowest, Within};
 
+use crate::format::JobView;
 use crate::hardware::Hardware;
 use crate::num::{BOX_SHIFT, MOST_DIRECTION_ZEROS};
 use serde::{Deserialize, Serialize};
@@ -52,6 +55,9 @@ pub struct Plan {
     pub within: Option<Within>,
     /// Of the machine's units, if it was searched for. Whatever does not fit, it is not this.
     pub speed: Option<Speed>,
+    /// The views of the job, by the name of the scene that they are of.
+    #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
+    pub views: BTreeMap<String, Vec<JobView>>,
 }
 
 /// A scene or a ray that a plan is too narrow for.
@@ -68,7 +74,8 @@ impl Plan {
     /// The plan of no scene and no ray.
     pub fn new(rays: bool) -> Self {
         let program = env!("CARGO_PKG_VERSION").to_owned();
-        Self { program, scenes: Vec::new(), scene: SceneNeeds::default(), rays: rays.then(RayNeeds::default), within: None, speed: None }
+        let rays = rays.then(RayNeeds::default);
+        Self { program, scenes: Vec::new(), scene: SceneNeeds::default(), rays, within: None, speed: None, views: BTreeMap::new() }
     }
 
     /// Makes room for a scene.
@@ -80,6 +87,14 @@ impl Plan {
     /// Makes room for rays, if the plan is of some.
     pub fn add_rays(&mut self, needs: &RayNeeds) {
         self.rays = self.rays.as_ref().map(|rays| rays.with(needs));
+    }
+
+    /// Adds a view of a scene, whose file has this name, once.
+    pub fn add_view(&mut self, name: &str, view: JobView) {
+        let views = self.views.entry(name.to_owned()).or_default();
+        if !views.contains(&view) {
+            views.push(view);
+        }
     }
 
     /// A hardware for it, `hardware` in all that a plan does not say.

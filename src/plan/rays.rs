@@ -5,7 +5,7 @@ use super::{bits, needs, signed_bits};
 use crate::block::Block;
 use crate::block::lod_test::{self, LodTest};
 use crate::format::Scene;
-use crate::num::{BoundCode, Cone, Point, Ray, U};
+use crate::num::{BoundCode, BoundScale, Cone, Point, Ray, U};
 use crate::rays::{ModelSpace, RaySource};
 use rayon::prelude::*;
 
@@ -46,6 +46,15 @@ fn extremes(cone: &Cone) -> [bool; 2] {
     [flat && cone.offset == U::ZERO, flat && cone.offset == U::MAX && cone.shift == U::ZERO]
 }
 
+/// Whether a ray goes below a level whose largest code is `code`, where all triangles, morphed or not, lie in a box: at its corner that is nearest along the ray it
+/// tolerates least.
+pub(super) fn refines(ray: &Ray, [lo, hi]: [[i32; 3]; 2], scale: BoundScale, code: u8) -> bool {
+    let d = ray.direction.get();
+    let nearest = Point::from_i32(std::array::from_fn(|k| if d[k] < 0 { hi[k] } else { lo[k] }));
+    let e0 = BoundCode::new(code.into());
+    LodTest::eval(&lod_test::In { ray: *ray, p0: nearest, p1: nearest, p2: nearest, e0, scale, ..lod_test::In::default() }).refine
+}
+
 /// A scene as rays need it: where its vertices lie, and its largest code of an edge of each level.
 struct Below<'a> {
     scene: &'a Scene,
@@ -53,18 +62,10 @@ struct Below<'a> {
 }
 
 impl Below<'_> {
-    /// The finest level that a ray can go down to: at the corner of the box of all vertices that is nearest along the ray it tolerates least, and
-    /// all triangles of a level, morphed or not, lie in that box.
+    /// The finest level that a ray can go down to.
     fn deepest(&self, ray: &Ray) -> u32 {
         let meta = self.scene.meta();
-        let d = ray.direction.get();
-        let nearest = Point::from_i32(std::array::from_fn(|k| if d[k] < 0 { meta.hi[k] } else { meta.lo[k] }));
-        let refines = |code: u8| {
-            let e0 = BoundCode::new(code.into());
-            let edge =
-                lod_test::In { ray: *ray, p0: nearest, p1: nearest, p2: nearest, e0, scale: meta.bound_scale(), ..lod_test::In::default() };
-            LodTest::eval(&edge).refine
-        };
+        let refines = |code: u8| refines(ray, [meta.lo, meta.hi], meta.bound_scale(), code);
         // Nodes of a level are reached only through those above it.
         (0..).zip(&self.met.codes[..meta.levels as usize]).find(|(_, code)| !refines(**code)).map_or(meta.levels, |(level, _)| level)
     }

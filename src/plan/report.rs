@@ -149,14 +149,15 @@ pub fn savings(plan: &Plan, full: &Hardware, data: Option<&Data>) -> Vec<Saving>
         table.speed(speed, &own);
     }
     if let Some(data) = data {
-        let mut less = |what, from: u64, to: u64, reason| {
-            if to < from {
-                let (needed, full) = (format!("{:.2}", data.per_triangle(to)), format!("{:.2}", data.per_triangle(from)));
-                table.lines.push(Saving { part: Part::Data, what, needed, full, reason: String::from(reason), saved: String::new() });
+        let mut less = |to: u64, reason, saved: &str| {
+            if to < data.stored {
+                let (needed, full) = (format!("{:.2}", data.per_triangle(to)), format!("{:.2}", data.per_triangle(data.stored)));
+                let (what, saved) = ("bytes a finest triangle", saved.to_owned());
+                table.lines.push(Saving { part: Part::Data, what, needed, full, reason: String::from(reason), saved });
             }
         };
-        less("bytes a finest triangle", data.stored, data.above_flat, "below a node with three codes of 0 no ray reads");
-        less("bytes a finest triangle", data.above_flat, data.reached, "no ray of the job goes deeper");
+        less(data.above_flat, "below a node with three codes of 0 no ray reads", "");
+        less(data.reached, "no ray of the job goes deeper in its tree", "lodray prune");
     }
     table.lines
 }

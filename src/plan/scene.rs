@@ -183,7 +183,7 @@ pub(super) fn met(scene: &Scene) -> Met {
 #[derive(Default)]
 struct Nodes {
     depth: u32,
-    /// Siblings that can wait while a tree is under visit.
+    /// Siblings that can wait while a tree is under visit, in the quad-BVH and in the tree.
     waiting: u32,
     frame: [i64; 2],
     planes: u32,
@@ -206,7 +206,6 @@ impl Nodes {
         let children: Vec<_> = (0..4).map(|k| node.child(k)).filter(|child| child.kind.get() != ChildRef::EMPTY).collect();
         let waiting = waiting + children.len().saturating_sub(1) as u32; // at most 3
         self.depth = self.depth.max(level);
-        self.waiting = self.waiting.max(waiting);
         for c in node.origin.get() {
             self.frame = [self.frame[0].min(c), self.frame[1].max(c)];
         }
@@ -214,8 +213,12 @@ impl Nodes {
         self.exponent = node.exponents.iter().map(|e| e.get() as u32).fold(self.exponent, u32::max); // 4 bits
         self.half |= node.halves.iter().any(|&half| half);
         for child in children {
+            let index = child.index.get() as usize; // 28 bits
             if child.kind.get() == ChildRef::INNER {
-                self.node(scene, child.index.get() as usize, level + 1, waiting);
+                self.node(scene, index, level + 1, waiting);
+            } else {
+                // Three children of each level of a tree but the last wait, whose triangles are tested at once.
+                self.waiting = self.waiting.max(waiting + 3 * scene.tree_lines(index).depth.saturating_sub(1));
             }
         }
     }
@@ -230,8 +233,7 @@ impl SceneNeeds {
         Self {
             levels,
             bvh_depth: nodes.depth,
-            // Three children of each level of a tree but the last wait, whose triangles are tested at once.
-            stack_entries: nodes.waiting + 3 * levels.saturating_sub(1),
+            stack_entries: nodes.waiting,
             bvh_node_bits: bits(last(scene.nodes().len())),
             tree_bits: bits(last(scene.trees())),
             line_bits: bits(last(lines)),

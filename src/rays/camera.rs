@@ -73,12 +73,12 @@ pub struct Camera {
     pub placed: Option<f64>,
     /// Distance from the target in bounding radii.
     pub radii: f64,
-    forward: DVec3,
+    pub(super) forward: DVec3,
     /// To the next sample on the right, and up, for a picture plane at distance 1.
-    right: DVec3,
-    above: DVec3,
+    pub(super) right: DVec3,
+    pub(super) above: DVec3,
     /// Where the picture's rays begin, in samples to the right and down.
-    shift: [f64; 2],
+    pub(super) shift: [f64; 2],
     /// Columns of samples: of pixels, where a pixel has one.
     pub width: u32,
     /// Rows of samples.

@@ -3,6 +3,7 @@
 mod camera;
 mod cone;
 mod file;
+mod job;
 mod orbit;
 mod query;
 mod source;

@@ -13,6 +13,7 @@ use lodray::mesh::most_zeros;
 use lodray::mesh::procedural::{self, Options};
 use lodray::method::lod::LodImage;
 use lodray::num::{Ray, VertexForm};
+use lodray::plan::Reach;
 use lodray::rays::{Camera, ModelSpace, View};
 use lodray::sim::unit::environment::{RunReport, UnitPort, run};
 use lodray::sim::unit::{Inputs, Latency, Outputs, SceneMemory, Stall, Traffic, TraversalUnit};
@@ -20,7 +21,6 @@ use lodray_test_support::hardware::OTHERS;
 use lodray_test_support::models::{Rng, any_rays, ball, build_with, coarsened, scene_of, terrain, with_vertices, with_zeros};
 use lodray_test_support::plain::plain;
 use port::Rtl;
-use std::collections::BTreeSet;
 
 /// Model and RTL with the same inputs.
 struct SideBySide {
@@ -145,6 +145,11 @@ fn random_rays(hardware: &[Hardware], wanted: u64) {
 
 /// A frame of a procedural scene on model and RTL.
 fn frame(kind: procedural::Scene, form: VertexForm, config: Hardware, latency: Latency) {
+    frame_of(kind, form, config, latency, false);
+}
+
+/// The same; on a scene that is pruned for it if `pruned`: with trees of many depths.
+fn frame_of(kind: procedural::Scene, form: VertexForm, config: Hardware, latency: Latency, pruned: bool) {
     const SIDE: u32 = 96;
     let options = Options { levels: Some(3), base: Some(32), ..Options::new(kind) };
     let scene = build_with(&procedural::generate(&options).expect("options"), form);
@@ -153,9 +158,15 @@ fn frame(kind: procedural::Scene, form: VertexForm, config: Hardware, latency: L
     let pixels = (0..SIDE * SIDE).map(|i| camera.ray(i % SIDE, i / SIDE));
     // Where a ray misses the model's box there is nothing to trace.
     let rays: Vec<Ray> = pixels.filter_map(|world| Some(space.enter(&world, 1.0)?.ray)).collect();
+    let scene = if pruned {
+        let reach = Reach::of(&scene);
+        reach.add(&camera, 1.0);
+        scene.pruned(&reach.depths(), vec![camera.job_view(1.0)]).expect("memory")
+    } else {
+        scene
+    };
+    assert!(!pruned || scene.trees_by_depth().iter().all(|&trees| trees > 0), "{:?}", scene.trees_by_depth());
     let (report, hits) = compare(&scene, config, &Traffic::smooth(latency), &rays, 1);
-    let depths: BTreeSet<_> = (0..scene.trees()).map(|tree| scene.tree_lines(tree).depth).collect();
-    assert!(kind != procedural::Scene::Room || depths.len() > 2, "{depths:?}");
     println!("{kind:?}, {form:?}: {SIDE}x{SIDE} pixels, {} rays, {hits} hits, {} cycles", rays.len(), report.cycles);
     assert!(hits > 1000, "only {hits} hits");
 }
@@ -167,7 +178,9 @@ fn a_frame_of_a_terrain() {
 
 #[test]
 fn a_frame_of_trees_of_many_depths() {
-    frame(procedural::Scene::Room, VertexForm::Compact, configs()[1], Latency::Random { min: 2, max: 80, seed: 2 });
+    for form in VertexForm::ALL {
+        frame_of(procedural::Scene::Room, form, configs()[2], Latency::Random { min: 2, max: 80, seed: 2 }, true);
+    }
 }
 
 #[test]

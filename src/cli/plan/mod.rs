@@ -6,9 +6,9 @@ use super::method::Chosen;
 use super::output::{busy, check_target, open, print_json, print_line, remark, write_file};
 use super::sweep::{Jobs, ListText, SceneJobs};
 use anyhow::Context;
-use lodray::format::Scene;
+use lodray::format::{JobView, Scene};
 use lodray::hardware::Hardware;
-use lodray::plan::{Data, Measure, Narrowest, Part, Plan, RayNeeds, Saving, Within, savings};
+use lodray::plan::{Data, Measure, Narrowest, Part, Plan, RayNeeds, Reach, Saving, Within, savings};
 use lodray::rays::{ModelSpace, RaySource};
 use lodray::report::result::MachineFacts;
 use serde::Serialize;
@@ -163,28 +163,31 @@ fn made(args: &Args, jobs: Option<&Jobs>, given: Option<&Plan>, mut frames: Opti
     let mut within: Option<Within> = None;
     let mut plan = Plan::new(jobs.is_some());
     let mut all: Option<Data> = None;
-    let mut add = |name: &str, measure: &Measure, deepest: Option<u32>| -> anyhow::Result<()> {
+    let mut add = |name: &str, measure: &Measure, depths: &[u32]| -> anyhow::Result<()> {
         let needs = measure.needs();
         given.map_or(Ok(()), |given| given.check(name, &needs))?;
         plan.add(name, &needs);
-        let data = measure.data(deepest.unwrap_or(needs.levels));
+        let data = measure.data(depths);
         all = Some(all.map_or(data, |all| all.with(data)));
         Ok(())
     };
     for file in &args.scenes {
         let scene = open(file)?;
         let measure = busy("measuring", || Measure::of(&scene));
-        add(&file.display().to_string(), &measure, None)?;
+        add(&file.display().to_string(), &measure, &scene.depths())?;
     }
     let mut rays = Vec::new();
+    let mut all_views = Vec::new();
     for job in jobs.iter().flat_map(|jobs| &jobs.scenes) {
         let scene = job.open()?;
         let measure = busy("measuring", || Measure::of(&scene));
         let lod = jobs.map_or_else(Vec::new, Jobs::lod);
-        let needs = views(job, &lod, &measure, &ModelSpace::of(&scene))?;
+        let reach = Reach::of(&scene);
+        let (needs, views) = views(job, &lod, &measure, &reach, &ModelSpace::of(&scene))?;
         given.map_or(Ok(()), |given| given.check_rays(&format!("the job of scene {}", job.name), &needs))?;
-        add(&job.name, &measure, Some(needs.deepest_level))?;
+        add(&job.name, &measure, &reach.depths())?;
         rays.push(needs);
+        all_views.extend(views.into_iter().map(|view| (scene.meta().name.clone(), view)));
         if let Some(pixels) = args.within {
             let of = Within::of(&scene, &narrowest(job, &ModelSpace::of(&scene))?, pixels);
             within = Some(within.map_or(of, |within| within.with(of)));
@@ -195,6 +198,7 @@ fn made(args: &Args, jobs: Option<&Jobs>, given: Option<&Plan>, mut frames: Opti
         }
     }
     rays.iter().for_each(|needs| plan.add_rays(needs));
+    all_views.into_iter().for_each(|(name, view)| plan.add_view(&name, view));
     within.into_iter().for_each(|within| plan.coarsen(within));
     Ok((plan, all.context("no scene to plan for")?))
 }
@@ -208,17 +212,25 @@ fn narrowest(job: &SceneJobs, space: &ModelSpace) -> anyhow::Result<Narrowest> {
     Ok(least)
 }
 
-/// What all views of a scene need, at all qualities of the list.
-fn views(job: &SceneJobs, lod: &[&Chosen], measure: &Measure, space: &ModelSpace) -> anyhow::Result<RayNeeds> {
+/// What all views of a scene need, at all qualities of the list, and the views; `reach` learns how deep they go.
+fn views(
+    job: &SceneJobs,
+    lod: &[&Chosen],
+    measure: &Measure,
+    reach: &Reach,
+    space: &ModelSpace,
+) -> anyhow::Result<(RayNeeds, Vec<JobView>)> {
     anyhow::ensure!(!lod.is_empty(), "the list of jobs has no job of lod");
-    let mut needs = RayNeeds::default();
+    let (mut needs, mut views) = (RayNeeds::default(), Vec::new());
     for view in &job.views {
         let camera = view.camera(space).with_context(|| format!("scene {}", job.name))?;
         for chosen in lod {
             needs = needs.with(&busy("measuring rays", || measure.rays(&camera, chosen.delta())));
+            busy("looking at rays", || reach.add(&camera, chosen.delta()));
+            views.push(camera.job_view(chosen.delta()));
         }
     }
-    Ok(needs)
+    Ok((needs, views))
 }
 
 /// A line for each saving, in columns.

@@ -9,9 +9,10 @@ use super::args::{CameraArgs, Change};
 use super::cache::{Cache, CacheArgs};
 use super::common::is_quiet;
 use super::folder::{Overrule, RunFolder, one_run};
+use super::job;
 use super::method::MachineMethod;
 use super::names::named;
-use super::output::{check_target, explain, grouped, open, print_json, print_line, remark, warn, write_file};
+use super::output::{check_target, explain, grouped, open_any, print_json, print_line, remark, warn, write_file};
 use super::pass::{Pass, PassRays, Target, machine, machine_files};
 use super::plan;
 use super::report::PageArgs;
@@ -109,7 +110,7 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
         check_target(vcd, &inputs)?;
     }
     args.page.check(&inputs)?;
-    let scene = open(&args.scene)?;
+    let scene = open_any(&args.scene)?;
     let space = ModelSpace::of(&scene);
     let rays = match &args.rays {
         Some(path) => PassRays::File(RayFile::read(path)?, path.clone()),
@@ -122,6 +123,7 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
     let folder = args.out.as_ref().map(open_folder).transpose()?;
 
     let chosen = &args.method.0;
+    job::check(&scene, rays.camera(), chosen.delta())?;
     if let Some(plan) = &plan {
         plan::check(plan, &args.scene, &scene, chosen, rays.source())?;
     }

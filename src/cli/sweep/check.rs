@@ -6,7 +6,7 @@ use super::list::{List, ListText, MachineEntry, Maybe, SceneEntry, Spanned};
 use crate::cli::args::{CameraArgs, Change, Size, radii};
 use crate::cli::generate;
 use crate::cli::method::{Chosen, Listed, machine_methods};
-use crate::cli::output::open;
+use crate::cli::output::open_any;
 use crate::cli::pass::{Target, is_path, machine, machine_files};
 use crate::one_line;
 use clap::Args as _;
@@ -200,7 +200,7 @@ fn scene(source: &ListText<'_>, list: &List, spanned: &Spanned<SceneEntry>, fold
                 return Err(source.wrong(place, format!("scene: {key} goes with generate, not with file")));
             }
             let path = folder.join(file.get_ref());
-            let scene = open(&path).map_err(|why| source.wrong(file.span(), format!("scene: {}", one_line(&why))))?;
+            let scene = open_any(&path).map_err(|why| source.wrong(file.span(), format!("scene: {}", one_line(&why))))?;
             let name = file.get_ref().file_stem().unwrap_or_default().to_string_lossy().into_owned();
             (Origin::File(path), name, xxh3_64(scene.bytes()), ModelSpace::of(&scene))
         }

@@ -5,7 +5,7 @@ use super::list::ListText;
 use crate::cli::build::FormArgs;
 use crate::cli::generate::make;
 use crate::cli::method::Chosen;
-use crate::cli::output::open;
+use crate::cli::output::open_any;
 use crate::cli::pass::Target;
 use anyhow::Context;
 use lodray::format::Scene;
@@ -68,7 +68,7 @@ impl SceneJobs {
     /// Opens or generates it.
     pub fn open(&self) -> anyhow::Result<Scene> {
         match &self.origin {
-            Origin::File(file) => open(file),
+            Origin::File(file) => open_any(file),
             Origin::Generate(made) => make(&made.options, FormArgs { bounds: made.bounds, vertices: made.vertices, ..FormArgs::default() }),
         }
     }

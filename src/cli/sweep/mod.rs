@@ -9,6 +9,7 @@ mod rows;
 
 use super::cache::{Cache, CacheArgs};
 use super::folder::{Overrule, RunFolder, one_run};
+use super::job;
 use super::job_lines::{JobLines, keep_aside};
 use super::method::Chosen;
 use super::output::{check_target, print_line, remark, write_file};
@@ -184,6 +185,7 @@ struct Workshop<'a> {
 impl Workshop<'_> {
     fn group(&mut self, group: &Group<'_>) -> anyhow::Result<Vec<Row>> {
         let camera = group.view.camera(&self.space)?;
+        job::check(self.scene, Some(&camera), group.chosen.delta())?;
         let at = self.made(group.chosen)?;
         let image = if self.jobs.error { Some(self.image_error(group.view, at, group.chosen.delta(), &camera)?) } else { None };
         let pass = Pass {

@@ -11,8 +11,6 @@ type Use = (u32, u32, usize, usize, usize);
 pub(super) struct Edges {
     levels: u32,
     uses: Vec<Use>,
-    /// Number of uses beyond each edge's first.
-    pub extra_uses: u64,
 }
 
 impl Edges {
@@ -24,8 +22,13 @@ impl Edges {
             }
         }
         uses.sort_unstable();
-        let extra_uses = uses.windows(2).filter(|w| (w[0].0, w[0].1) == (w[1].0, w[1].1)).count() as u64;
-        Self { levels, uses, extra_uses }
+        Self { levels, uses }
+    }
+
+    /// How many places of shared edges, ends excluded, are to be compared with those of each edge's first tree, where trees are known down to these levels.
+    pub fn places(&self, known: &[u32]) -> u64 {
+        let first = |uses: &[Use]| known[uses[0].2];
+        self.shared().flat_map(|uses| uses[1..].iter().map(move |other| (1 << known[other.2].min(first(uses))) - 1)).sum()
     }
 
     /// The uses of each edge that several trees have.
@@ -42,13 +45,14 @@ impl Edges {
         tree * lattice::len(self.levels) + lattice::index(self.levels, (steps[1], steps[2]))
     }
 
-    /// Positions and codes along shared edges, ends excluded.
-    pub fn check_shared(&self, lattices: &Lattices, found: &mut Tallies) {
+    /// Positions and codes along shared edges, ends excluded, of trees that are known down to these levels.
+    pub fn check_shared(&self, lattices: &Lattices, known: &[u32], found: &mut Tallies) {
         for uses in self.shared() {
             for other in &uses[1..] {
                 let name = |place| format!("trees {} and {}, edge ({}, {}), place {place}", uses[0].2, other.2, other.0, other.1);
-                for place in 1..1 << self.levels {
-                    let (a, b) = (self.index(&uses[0], place), self.index(other, place));
+                let step = 1 << (self.levels - known[uses[0].2].min(known[other.2]));
+                for place in (step..1 << self.levels).step_by(step) {
+                    let (a, b) = (self.index(&uses[0], place as u32), self.index(other, place as u32));
                     let (p, q) = (lattices.points[a], lattices.points[b]);
                     found.check(CheckKind::VerticesAcross, p == q, || format!("{}: {p:?} and {q:?}", name(place)));
                     let (c, d) = (lattices.codes[a], lattices.codes[b]);

@@ -101,8 +101,15 @@ fn read(scene: &Scene) -> (tree::Lattices, Tallies) {
     let len = lattice::len(scene.levels());
     let mut lattices = tree::Lattices::new(scene.trees() * len);
     let per_tree = lattices.trees(len).zip(scene.records()).enumerate();
-    let found = per_tree.map(|(t, (lattice, record))| tree::read(scene, t, record, lattice)).reduce(Tallies::default, Tallies::join);
+    let known = known(scene);
+    let found =
+        per_tree.map(|(t, (lattice, record))| tree::read(scene, t, known[t], record, lattice)).reduce(Tallies::default, Tallies::join);
     (lattices, found)
+}
+
+/// The level of each tree down to which its vertices and codes are known: below what is stored they are middles and 0, but in a scene that was pruned for a job.
+fn known(scene: &Scene) -> Vec<u32> {
+    if scene.meta().job.is_empty() { vec![scene.levels(); scene.trees()] } else { scene.depths() }
 }
 
 /// Checks a scene that has been opened or built. (How far compact vertices lie from where they were, META's `moved`, cannot be told from them.)
@@ -110,23 +117,29 @@ pub fn audit(scene: &Scene) -> AuditReport {
     let levels = scene.levels();
     let (mut lattices, mut found) = read(scene);
     let (lo, hi) = (scene.meta().lo, scene.meta().hi);
+    let whole = scene.meta().job.is_empty();
     for k in 0..3 {
-        for (which, stored, truth) in [("lo", lo[k], found.span.lo[k]), ("hi", hi[k], found.span.hi[k])] {
-            found.check(CheckKind::ModelBox, stored == truth, || format!("META {which}[{k}] is {stored}, the vertices give {truth}"));
+        let (least, most) = (found.span.lo[k], found.span.hi[k]);
+        for (which, stored, truth, holds) in [("lo", lo[k], least, lo[k] <= least), ("hi", hi[k], most, hi[k] >= most)] {
+            // Of a pruned scene not all vertices are known.
+            found.check(CheckKind::ModelBox, stored == truth || !whole && holds, || {
+                format!("META {which}[{k}] is {stored}, the vertices give {truth}")
+            });
         }
     }
 
     let edges = Edges::new(scene.triangles(), levels);
     let corners = edges.check_corners(scene.triangles(), &lattices, &mut found);
-    edges.check_shared(&lattices, &mut found);
+    let known = known(scene);
+    edges.check_shared(&lattices, &known, &mut found);
     lattices.cover(scene.meta().bounds, levels, |level, displacements| edges.raise_shared(level, displacements));
-    found = found.join(lattices.check_codes(levels, &allowed(scene)));
+    found = found.join(lattices.check_codes(levels, &known, &allowed(scene)));
     let spans: Vec<Span> = lattices.points.par_chunks(lattice::len(levels)).map(|points| Span::around(points.iter().copied())).collect();
     bvh::check(scene, &spans, &mut found);
     bvh::check_sources(scene, &mut found);
     found = found.join(check_shading(scene));
 
-    let expected = expected(scene, &edges, corners);
+    let expected = expected(scene, &known, &edges, corners);
     let checks = CHECKS.iter().zip(found.tallies).zip(expected).map(|((&(kind, name), tally), (for_kind, expected))| {
         debug_assert_eq!(kind, for_kind);
         Check { name: name.into(), checked: tally.checked, expected, breaches: tally.breaches, first: tally.first }
@@ -164,33 +177,30 @@ fn check_shading(scene: &Scene) -> Tallies {
 }
 
 /// How many things each check must look at, from the counts alone.
-fn expected(scene: &Scene, edges: &Edges, shared_corners: u64) -> [(CheckKind, u64); CHECKS.len()] {
-    let (n, form) = (scene.levels(), scene.meta().vertices);
+fn expected(scene: &Scene, known: &[u32], edges: &Edges, shared_corners: u64) -> [(CheckKind, u64); CHECKS.len()] {
+    let form = scene.meta().vertices;
     let trees = scene.trees() as u64;
-    let [len, edge_count] = [lattice::len(n), edges_of_tree(n)].map(|c| c as u64);
-    // Nodes of levels 0 to N-1, each with three inserted vertices; those below the root by fours in groups of nine codes, the root with three.
-    let inner = ((1u64 << (2 * n)) - 1) / 3;
-    let grouped = inner.saturating_sub(1);
-    let codes = if n == 0 { 0 } else { 3 + 9 * (grouped / 4) };
     // What is stored, tree by tree. Of compact ones the root's vertices stand in its L0 record.
-    let [stored_groups, stored_vertices] = (0..scene.trees()).fold([0; 2], |[groups, vertices], tree| {
+    let [groups, vertices] = (0..scene.trees()).fold([0; 2], |[groups, vertices], tree| {
         let own = tree::Stored::of(form, scene.record(tree).depth.get() as u32); // 4 bits
         [groups + own.groups, vertices + own.vertices]
     });
-    // Six edges meet at an inserted vertex, four on the tree's border, for all levels but the last that has codes.
-    let meeting: u64 = (0..n.saturating_sub(1)).map(|level| 6 * edges_of_level(level) as u64 - 6 * (1 << level)).sum();
+    let sum = |of: fn(u32) -> u64| known.iter().map(|&levels| of(levels)).sum::<u64>();
+    let shared = edges.places(known);
     let nodes = scene.nodes().len() as u64;
     [
-        (CheckKind::Reserved, 2 * trees + stored_groups + stored_vertices + 5 * nodes),
-        (CheckKind::Limit, trees * 3 * (1 + inner)),
-        (CheckKind::LowBits, trees * 3 * (1 + inner)),
-        (CheckKind::VerticesInTree, trees * (3 * inner - (len - 3))),
-        (CheckKind::VerticesAcross, edges.extra_uses * ((1 << n) - 1) + shared_corners),
-        (CheckKind::CodesInTree, trees * (codes - edge_count)),
-        (CheckKind::CodesAcross, edges.extra_uses * ((1 << n) - 1)),
-        (CheckKind::Bounds, trees * edge_count),
-        (CheckKind::Monotone, trees * meeting),
-        (CheckKind::Boxes, 4 * stored_groups),
+        (CheckKind::Reserved, 2 * trees + groups + vertices + 5 * nodes),
+        (CheckKind::Limit, sum(|n| 3 * (1 + inner(n)))),
+        (CheckKind::LowBits, sum(|n| 3 * (1 + inner(n)))),
+        (CheckKind::VerticesInTree, sum(|n| 3 * inner(n) - (lattice::len(n) as u64 - 3))),
+        (CheckKind::VerticesAcross, shared + shared_corners),
+        // Nodes below the root stand by fours in groups of nine codes, the root with three.
+        (CheckKind::CodesInTree, sum(|n| if n == 0 { 0 } else { 3 + 9 * ((inner(n) - 1) / 4) - edges_of_tree(n) as u64 })),
+        (CheckKind::CodesAcross, shared),
+        (CheckKind::Bounds, sum(|n| edges_of_tree(n) as u64)),
+        // Six edges meet at an inserted vertex, four on the tree's border, for all levels but the last that has codes.
+        (CheckKind::Monotone, sum(|n| (0..n.saturating_sub(1)).map(|level| 6 * edges_of_level(level) as u64 - 6 * (1 << level)).sum())),
+        (CheckKind::Boxes, 4 * groups),
         (CheckKind::ModelBox, 6),
         (CheckKind::BaseTriangles, trees),
         (CheckKind::Sources, trees),
@@ -198,7 +208,12 @@ fn expected(scene: &Scene, edges: &Edges, shared_corners: u64) -> [(CheckKind, u
         (CheckKind::BvhTrees, trees),
         (CheckKind::BvhLeafBoxes, trees),
         (CheckKind::BvhInnerBoxes, nodes - 1),
-        (CheckKind::Normals, trees * len),
+        (CheckKind::Normals, trees * lattice::len(scene.levels()) as u64),
         (CheckKind::Materials, trees),
     ]
+}
+
+/// Nodes of levels 0 to `levels` - 1, each with three inserted vertices.
+fn inner(levels: u32) -> u64 {
+    ((1 << (2 * levels)) - 1) / 3
 }

@@ -64,12 +64,12 @@ impl Lattices {
         }
     }
 
-    /// Codes against displacements, and against the codes of the edges that meet at the vertex.
-    pub fn check_codes(&self, levels: u32, allowed: &[u64]) -> Tallies {
+    /// Codes against displacements, and against the codes of the edges that meet at the vertex; of each tree down to its level of `known`.
+    pub fn check_codes(&self, levels: u32, known: &[u32], allowed: &[u64]) -> Tallies {
         let len = lattice::len(levels);
         let per_tree = self.codes.par_chunks(len).zip(self.displacements.par_chunks(len)).enumerate().map(|(t, (codes, truths))| {
             let mut found = Tallies::default();
-            for level in 1..=levels {
+            for level in 1..=known[t] {
                 each_inserted(levels, level, |at, meeting| {
                     let code = codes[at];
                     let covers = allowed.get(usize::from(code)).is_some_and(|&most| truths[at] <= most);
@@ -77,7 +77,7 @@ impl Lattices {
                         let truth = truths[at];
                         format!("tree {t}: edge of level {} split at lattice point {at} has code {code}, displacement {truth}", level - 1)
                     });
-                    for &finer in meeting {
+                    for &finer in meeting.iter().filter(|_| level < known[t]) {
                         found.check(CheckKind::Monotone, codes[finer] <= code, || {
                             format!(
                                 "tree {t}: edge of level {} at lattice point {at} has code {code}, a finer one {}",
@@ -119,8 +119,8 @@ fn each_inserted(levels: u32, level: u32, mut f: impl FnMut(usize, &[usize])) {
     }
 }
 
-/// Reads a tree by recursion over its stored nodes and checks what can be checked on the way.
-pub(super) fn read(scene: &Scene, tree: usize, record: &[u64; 8], lattice: Lattice<'_>) -> Tallies {
+/// Reads a tree by recursion over its nodes, down to level `known`, and checks what can be checked on the way.
+pub(super) fn read(scene: &Scene, tree: usize, known: u32, record: &[u64; 8], lattice: Lattice<'_>) -> Tallies {
     let levels = scene.levels();
     let form = scene.meta().vertices;
     let second = L0Record::from_words(&record[4..]);
@@ -129,6 +129,7 @@ pub(super) fn read(scene: &Scene, tree: usize, record: &[u64; 8], lattice: Latti
         tree,
         levels,
         depth,
+        known,
         form,
         offset: u64::from(scene.meta().bound_offset),
         lines: &scene.vertices()[second.vertices.get() as usize..][..counts.lines as usize],
@@ -152,6 +153,8 @@ pub(super) fn read(scene: &Scene, tree: usize, record: &[u64; 8], lattice: Latti
 
     let points = corners.points().map(|p| p.get().map(|c| c as i32)); // 32 bits by their type
     let places = [(0, 0), (1 << levels, 0), (0, 1 << levels)];
+    // Vertices that nobody knows are somewhere in the tree.
+    reader.lattice.points.fill(points[0]);
     for (point, place) in points.into_iter().zip(places) {
         reader.coordinates(0, point, || format!("tree {tree}: corner at {place:?}"));
         reader.lattice.points[lattice::index(levels, place)] = point;
@@ -186,6 +189,8 @@ struct Reader<'a> {
     levels: u32,
     /// Levels that are stored: below them every vertex is the middle of its edge, and every code 0.
     depth: u32,
+    /// The level down to which anything is known: N, or in a scene that was pruned for a job as many as are stored.
+    known: u32,
     form: VertexForm,
     /// Added to every code but 0.
     offset: u64,
@@ -203,11 +208,11 @@ impl Reader<'_> {
     /// Checks a node and all below it; gives the box of its full-resolution vertices. `places` and `p` are its corners.
     fn node(&mut self, level: u32, node: usize, places: [Place; 3], p: [[i32; 3]; 3], codes: [u8; 3]) -> Span {
         let mut span = Span::around(p);
-        if level == self.levels {
+        if level == self.known {
             return span;
         }
         let (q_places, q) = self.inserted(level, node, places, p, codes);
-        if level + 1 == self.levels {
+        if level + 1 == self.known {
             return span.with(&Span::around(q));
         }
         let corners = [[(0, 0), (1, 2), (1, 1)], [(1, 2), (0, 1), (1, 0)], [(1, 1), (1, 0), (0, 2)], [(1, 0), (1, 1), (1, 2)]];

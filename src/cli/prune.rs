@@ -1,0 +1,136 @@
+//! `prune`: a scene without the levels that no ray of a plan's job goes down to, or on the coarser grids of a plan.
+
+use super::output::{busy, check_target, grouped, open, print_json, print_line, remark};
+use super::plan::read;
+use anyhow::Context;
+use lodray::bvh::over_trees;
+use lodray::format::Scene;
+use lodray::plan::{Reach, Within};
+use lodray::rays::Camera;
+use serde::Serialize;
+use std::path::PathBuf;
+use std::process::ExitCode;
+
+#[derive(clap::Args)]
+pub struct Args {
+    /// Scene file
+    scene: PathBuf,
+    /// Plan of a job (from lodray plan --job): its views of this scene are those that the new file serves, to the bit; others it refuses
+    #[arg(long)]
+    plan: PathBuf,
+    /// File to write
+    #[arg(short, long)]
+    out: PathBuf,
+    /// Print the figures as JSON
+    #[arg(long)]
+    json: bool,
+}
+
+/// What was left out.
+#[derive(Serialize)]
+struct Figures {
+    /// Views of the job.
+    views: usize,
+    trees: usize,
+    /// Trees of each number of levels, from none on: before and after.
+    depths: [Vec<usize>; 2],
+    /// L0 records, bounds and vertices: before and after, and for each full-resolution triangle.
+    bytes: [u64; 2],
+    bytes_per_finest_triangle: [f64; 2],
+}
+
+pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
+    check_target(&args.out, &[&args.scene, &args.plan])?;
+    let plan = read(&args.plan)?;
+    let scene = open(&args.scene)?;
+    if let Some(within) = plan.within {
+        return coarser(args, &scene, within);
+    }
+    let name = &scene.meta().name;
+    let shown = args.plan.display();
+    anyhow::ensure!(
+        plan.rays.is_some(),
+        "{shown}: views: the plan is of no job, and a scene for any ray has no more levels than it needs (make it with lodray plan --job)"
+    );
+    let views = plan.views.get(name).with_context(|| {
+        let names = plan.views.keys().map(String::as_str).collect::<Vec<_>>().join(", ");
+        format!("{shown}: views: the plan has none of a scene that is called {name}, but of: {names}")
+    })?;
+    let reach = Reach::of(&scene);
+    for view in views {
+        let delta = view.quality().with_context(|| format!("{shown}: views: delta '{}' is no number", view.delta))?;
+        let camera = Camera::of_job(view).with_context(|| format!("{shown}: views"))?;
+        busy("looking at rays", || reach.add(&camera, delta));
+    }
+    let (stored, depths) = (scene.depths(), reach.depths());
+    // As it is, it serves any ray.
+    let job = if depths == stored { Vec::new() } else { views.clone() };
+    let pruned = scene.pruned(&depths, job)?;
+    pruned.save(&args.out)?;
+    let figures = Figures::of(views.len(), [&scene, &pruned]);
+    if args.json {
+        print_json(&figures)?;
+    } else {
+        print_line(&figures.table())?;
+        remark(&format!("scene in {}", args.out.display()))?;
+    }
+    Ok(ExitCode::SUCCESS)
+}
+
+/// What coarser grids are, and how far they moved anything.
+#[derive(Serialize)]
+struct Coarser {
+    coordinate_zeros: u32,
+    direction_zeros: u32,
+    /// Largest distance of a vertex from where the surface had it, in the scene's units of length: before and after.
+    moved: [f64; 2],
+}
+
+/// The scene on a plan's grids: for any rays, as the levels that the job's need are known only on it.
+fn coarser(args: &Args, scene: &Scene, within: Within) -> anyhow::Result<ExitCode> {
+    anyhow::ensure!(
+        scene.meta().job.is_empty(),
+        "{}: levels were taken away for a job; coarser grids are for the scene as it was before",
+        args.scene.display()
+    );
+    let Within { pixels, coordinate_zeros, direction_zeros } = within;
+    let made = busy("encoding", || scene.coarsened([coordinate_zeros, direction_zeros], over_trees))?;
+    made.save(&args.out)?;
+    let figures = Coarser { coordinate_zeros, direction_zeros, moved: [scene.meta().moved, made.meta().moved] };
+    if args.json {
+        print_json(&figures)?;
+    } else {
+        let Coarser { moved: [before, after], .. } = figures;
+        print_line(&format!(
+            "{coordinate_zeros} zero bits of coordinates, {direction_zeros} of directions: nothing that the job sees moves by more than {pixels} pixels; no vertex is further than {after:.3e} from its place on the surface ({before:.3e} before)"
+        ))?;
+        remark(&format!("scene in {}; plan it again for its unit", args.out.display()))?;
+    }
+    Ok(ExitCode::SUCCESS)
+}
+
+impl Figures {
+    fn of(views: usize, scenes: [&Scene; 2]) -> Self {
+        Self {
+            views,
+            trees: scenes[0].trees(),
+            depths: scenes.map(Scene::trees_by_depth),
+            bytes: scenes.map(|scene| scene.bytes_of(&scene.depths())),
+            bytes_per_finest_triangle: scenes.map(Scene::bytes_per_triangle),
+        }
+    }
+
+    fn table(&self) -> String {
+        let [before, after] = self.bytes.map(grouped);
+        let [per_before, per_after] = self.bytes_per_finest_triangle;
+        let mut text = format!(
+            "{} views; bytes of trees {before} -> {after}; for each triangle at full resolution {per_before:.3} -> {per_after:.3}",
+            self.views
+        );
+        let [before, after] = &self.depths;
+        for (levels, (before, after)) in before.iter().zip(after).enumerate().filter(|(_, (a, b))| **a + **b > 0) {
+            text += &format!("\n{:>10} -> {:>10} trees of {levels} levels", grouped(*before as u64), grouped(*after as u64));
+        }
+        text
+    }
+}

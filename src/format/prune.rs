@@ -1,0 +1,69 @@
+//! A scene with fewer levels of its trees: what is stored of a tree is breadth first, so that a part of it is its beginning.
+
+use super::encode::{new_image, sealed, too_many_lines, tree_lines};
+use super::sections::FileSection;
+use super::{Displacements, JobView, Line, Scene, SceneError};
+use crate::num::{BoundCode, Wire};
+
+impl Scene {
+    /// Bytes of L0 records, sibling groups and vertices of trees of these depths.
+    pub fn bytes_of(&self, depths: &[u32]) -> u64 {
+        let (_, end) = tree_lines(self.meta().vertices, depths);
+        (size_of_val(self.records()) + size_of::<Line>() * (end.group + end.vertices)) as u64
+    }
+
+    /// The same scene with at most so many levels of each tree, for these rays alone: none of them goes deeper.
+    ///
+    /// # Errors
+    /// Memory cannot be had.
+    ///
+    /// # Panics
+    /// There is not one depth for each tree.
+    pub fn pruned(&self, depths: &[u32], job: Vec<JobView>) -> Result<Self, SceneError> {
+        assert_eq!(depths.len(), self.trees());
+        let depths: Vec<u32> = self.depths().into_iter().zip(depths).map(|(stored, &depth)| stored.min(depth)).collect();
+        let form = self.meta().vertices;
+        let (trees, end) = tree_lines(form, &depths);
+        let mut meta = self.meta().clone();
+        meta.job = job;
+        let json = serde_json::to_vec(&meta).map_err(|e| SceneError::Build(format!("META: {e}")))?;
+        let lengths = FileSection::ALL.map(|section| match section {
+            FileSection::Meta => json.len(),
+            FileSection::Bounds => size_of::<Line>() * end.group,
+            FileSection::Vertices => size_of::<Line>() * end.vertices,
+            _ => self.section(section).len(),
+        });
+        let (mut image, ranges) = new_image(lengths)?;
+        for section in FileSection::ALL {
+            let out = &mut image[ranges[section.slot()].clone()];
+            match section {
+                FileSection::Meta => out.copy_from_slice(&json),
+                FileSection::Records => {
+                    for (tree, (record, &lines)) in bytemuck::cast_slice_mut::<u8, [u64; 8]>(out).iter_mut().zip(&trees).enumerate() {
+                        *record = self.records()[tree];
+                        let mut second = self.record(tree).of_tree(lines).ok_or_else(|| too_many_lines(tree))?;
+                        if lines.depth == 0 {
+                            [second.e0, second.e1, second.e2] = [BoundCode::ZERO; 3];
+                            second.split = Displacements::default();
+                        }
+                        second.to_words(&mut record[4..]);
+                    }
+                }
+                FileSection::Bounds | FileSection::Vertices => {
+                    let out: &mut [Line] = bytemuck::cast_slice_mut(out);
+                    for (tree, lines) in trees.iter().enumerate() {
+                        let whole = self.tree_lines(tree);
+                        if section == FileSection::Bounds {
+                            out[lines.group..][..lines.groups()].copy_from_slice(&self.bounds()[whole.group..][..lines.groups()]);
+                        } else {
+                            let count = lines.vertex_lines(form);
+                            out[lines.vertices..][..count].copy_from_slice(&self.vertices()[whole.vertices..][..count]);
+                        }
+                    }
+                }
+                _ => out.copy_from_slice(self.section(section)),
+            }
+        }
+        Ok(sealed(image, ranges, meta))
+    }
+}

@@ -1,0 +1,99 @@
+//! How deep the rays of a job can go down each tree.
+
+use super::rays::refines;
+use crate::block::Block;
+use crate::block::ray_setup::{self, RaySetup};
+use crate::format::{BvhNode, ChildRef, Scene};
+use crate::method::bvh_children;
+use crate::num::{MAX_LEVELS, Ray, RayT};
+use crate::rays::{ModelSpace, RaySource};
+use rayon::prelude::*;
+use std::sync::atomic::{AtomicU32, Ordering};
+
+/// A scene, and how deep rays have been found to go down its trees.
+pub struct Reach<'a> {
+    scene: &'a Scene,
+    trees: Vec<Tree>,
+}
+
+/// What bounds the way of rays down a tree.
+struct Tree {
+    /// Box of all its vertices: all its triangles, morphed or not, lie in it.
+    lo: [i32; 3],
+    hi: [i32; 3],
+    /// Largest code of each level. None is above those of the level before.
+    codes: [u8; MAX_LEVELS as usize],
+    /// Levels that are stored.
+    depth: u32,
+    /// The deepest level that a ray can go down to.
+    reached: AtomicU32,
+}
+
+impl Tree {
+    fn of(scene: &Scene, tree: usize) -> Self {
+        let (depth, corners) = (scene.tree_lines(tree).depth, scene.corners(tree));
+        let [mut lo, mut hi] = [corners[0]; 2];
+        let mut codes = [0; MAX_LEVELS as usize];
+        let mut vertex = |p: [i32; 3]| {
+            for k in 0..3 {
+                (lo[k], hi[k]) = (lo[k].min(p[k]), hi[k].max(p[k]));
+            }
+        };
+        corners.into_iter().for_each(&mut vertex);
+        scene.each_node(tree, depth, &mut |(level, node), _, q| {
+            q.into_iter().for_each(&mut vertex);
+            let most = scene.node_codes(tree, level, node).into_iter().max().unwrap_or(0);
+            codes[level as usize] = codes[level as usize].max(most);
+        });
+        Self { lo, hi, codes, depth, reached: AtomicU32::new(0) }
+    }
+}
+
+impl<'a> Reach<'a> {
+    /// A scene that no ray was sent at.
+    pub fn of(scene: &'a Scene) -> Self {
+        Self { scene, trees: (0..scene.trees()).into_par_iter().map(|tree| Tree::of(scene, tree)).collect() }
+    }
+
+    /// The rays of `source` at quality `delta`: each goes to every tree whose box it meets, whatever is hit before.
+    pub fn add(&self, source: &dyn RaySource, delta: f64) {
+        let space = ModelSpace::of(self.scene);
+        (0..source.batches()).into_par_iter().for_each(|batch| {
+            source.batch(batch, &mut |_, query| {
+                if let Some(entered) = space.enter(query, delta) {
+                    self.ray(&entered.ray);
+                }
+            });
+        });
+    }
+
+    /// For each tree the deepest level that any of the rays can go down to.
+    pub fn depths(&self) -> Vec<u32> {
+        self.trees.iter().map(|tree| tree.reached.load(Ordering::Relaxed)).collect()
+    }
+
+    fn ray(&self, ray: &Ray) {
+        let setup = RaySetup::eval(&ray_setup::In { origin: ray.origin, direction: ray.direction });
+        let nodes = self.scene.nodes();
+        let mut open = vec![0];
+        while let Some(node) = open.pop() {
+            let line = &nodes[node];
+            let tests = bvh_children(&setup, RayT::MAX, line);
+            for slot in &tests.order[..tests.count.get() as usize] {
+                let child = BvhNode::line_child(line, slot.get() as usize); // two bits
+                let index = child.index.get() as usize; // 28 bits
+                if child.kind.get() == ChildRef::INNER { open.push(index) } else { self.tree(&self.trees[index], ray) }
+            }
+        }
+    }
+
+    /// A ray in the box of a tree. Where it refines some level's largest code it refines those of the levels above, which are no smaller.
+    fn tree(&self, tree: &Tree, ray: &Ray) {
+        let scale = self.scene.meta().bound_scale();
+        let mut level = tree.reached.load(Ordering::Relaxed);
+        while level < tree.depth && refines(ray, [tree.lo, tree.hi], scale, tree.codes[level as usize]) {
+            level += 1;
+        }
+        tree.reached.fetch_max(level, Ordering::Relaxed);
+    }
+}

@@ -1,0 +1,207 @@
+//! Scenes that are pruned for a job: the hits of its rays are the same to the bit in every field, by each traverser; the audit takes them; other rays are refused.
+
+use lodray::format::audit::audit;
+use lodray::format::{Scene, VertexData};
+use lodray::golden::exact::Exact;
+use lodray::hardware::Hardware;
+use lodray::mesh::Surface;
+use lodray::mesh::procedural::{self, Options, generate};
+use lodray::method::lod::{LodImage, LodTraverser};
+use lodray::method::{ClosestHit, Hit};
+use lodray::num::{Ray, VertexForm, Wire};
+use lodray::plan::{Measure, Plan, Reach};
+use lodray::rays::{Camera, ModelSpace, View};
+use lodray::sim::unit::environment::run;
+use lodray::sim::unit::{Latency, SceneMemory, Traffic, TraversalUnit};
+use lodray::step::NoSteps;
+use lodray_test_support::models::build_with;
+use lodray_test_support::plain::plain;
+use lodray_test_support::program::Desk;
+use lodray_test_support::surfaces::{bumps, grid, octahedron, surface};
+
+/// Procedural scenes, and a grid that is flat but for one corner.
+fn surfaces() -> Vec<Surface> {
+    use procedural::Scene::{Cloth, Room, Sphere, Spikes, Terrain};
+    let made = |kind| generate(&Options { levels: Some(4), base: Some(32), ..Options::new(kind) }).expect("a surface");
+    let vertices: Vec<[f64; 3]> = (0..25).map(|k| [f64::from(k % 5), f64::from(k / 5), 0.0]).collect();
+    let triangles: Vec<[u32; 3]> = (0..16).map(|k| k % 4 + 5 * (k / 4)).flat_map(|k| [[k, k + 1, k + 5], [k + 6, k + 5, k + 1]]).collect();
+    let corner = surface(4, &vertices, &triangles, |p| if p[0] < 1.5 && p[1] < 1.5 { bumps(p) } else { p });
+    [Terrain, Cloth, Sphere, Spikes, Room].into_iter().map(made).chain([corner, grid(3, 3), octahedron(4)]).collect()
+}
+
+fn camera(space: &ModelSpace, distance: f64, side: u32) -> Camera {
+    Camera::new(&View { distance: Some(distance), ..View::default() }, space, side, side).expect("a camera")
+}
+
+/// The camera's rays that meet the model's box.
+fn rays(camera: &Camera, space: &ModelSpace, delta: f64) -> Vec<Ray> {
+    let pixels = (0..camera.width * camera.height).map(|i| camera.ray(i % camera.width, i / camera.width));
+    pixels.filter_map(|query| Some(space.enter(&query, delta)?.ray)).collect()
+}
+
+fn pruned_for(scene: &Scene, views: &[(Camera, f64)]) -> Scene {
+    let reach = Reach::of(scene);
+    views.iter().for_each(|(camera, delta)| reach.add(camera, *delta));
+    scene.pruned(&reach.depths(), views.iter().map(|(camera, delta)| camera.job_view(*delta)).collect()).expect("memory")
+}
+
+fn hits(scene: &Scene, rays: &[Ray]) -> Vec<Option<Hit>> {
+    let mut traverser = LodTraverser::new(LodImage::of(scene));
+    let trace = |ray| {
+        let mut hit = ClosestHit::new(scene.levels());
+        traverser.trace(ray, &mut NoSteps, &mut hit);
+        hit.record()
+    };
+    rays.iter().map(trace).collect()
+}
+
+#[test]
+fn hits_are_the_same_by_every_traverser() {
+    let (mut less, mut met, mut kinds) = (0, 0, 0);
+    for (surface, form) in surfaces().iter().flat_map(|surface| VertexForm::ALL.map(|form| (surface, form))) {
+        let scene = build_with(surface, form);
+        let space = ModelSpace::of(&scene);
+        for (distance, delta) in [(2.5, 0.0), (1.2, 0.5), (2.0, 1.0), (6.0, 1.0), (30.0, 1.0), (3.0, 4.0), (2.5, f64::INFINITY)] {
+            let camera = camera(&space, distance, 40);
+            let pruned = pruned_for(&scene, &[(camera, delta)]);
+            let rays = rays(&camera, &space, delta);
+            let what = format!("{} {form:?} from {distance} at {delta}", scene.meta().name);
+            let whole = hits(&scene, &rays);
+            assert!(hits(&pruned, &rays) == whole, "{what}: functional");
+            // Some of them through the slower ones.
+            let (some, expected): (Vec<Ray>, Vec<_>) = rays.iter().copied().zip(whole).step_by(7).unzip();
+            for of in [&scene, &pruned] {
+                let h = of.decode();
+                let golden = Exact::new(&h);
+                assert!(some.iter().zip(&expected).all(|(ray, hit)| golden.trace(ray) == hit.as_ref().map(plain)), "{what}: golden");
+            }
+            let memory = SceneMemory::new(LodImage::of(&pruned), 77);
+            let mut plan = Plan::new(false);
+            plan.add("it", &Measure::of(&pruned).needs());
+            let mut unit = TraversalUnit::new(plan.hardware(&Hardware::default()), memory.config());
+            let report = run(&mut unit, &memory, &Traffic::smooth(Latency::Fixed(9)), &some).expect("a run");
+            let found = report.rays.iter().map(|ray| ray.hit.found.then_some(ray.hit.hit));
+            assert!(found.eq(expected.iter().cloned()), "{what}: cycle model");
+            let report = audit(&pruned);
+            assert!(report.passed(), "{what}: {report}");
+            met += expected.iter().flatten().count();
+            less += u32::from(pruned.bytes_per_triangle() < scene.bytes_per_triangle());
+            kinds += u32::from(pruned.trees_by_depth().iter().filter(|trees| **trees > 0).count() > 2);
+            assert!(pruned.depths().iter().zip(scene.depths()).all(|(pruned, stored)| *pruned <= stored));
+            assert!(delta > 0.0 || pruned.depths().iter().all(|&depth| depth == 0), "{what}");
+        }
+    }
+    assert!(met > 5_000 && less > 40 && kinds > 10, "{met} hits, {less} smaller, {kinds} of many depths");
+}
+
+#[test]
+fn only_levels_are_taken_away() {
+    let scene = build_with(&octahedron(4), VertexForm::Compact);
+    let space = ModelSpace::of(&scene);
+    let whole = scene.pruned(&scene.depths(), Vec::new()).expect("memory");
+    assert!(whole.bytes() == scene.bytes());
+    let view = camera(&space, 20.0, 32);
+    let pruned = pruned_for(&scene, &[(view, 1.0)]);
+    assert_eq!(
+        (pruned.normals(), pruned.triangles(), pruned.colours(), pruned.nodes()),
+        (scene.normals(), scene.triangles(), scene.colours(), scene.nodes())
+    );
+    assert_eq!((pruned.meta().lo, pruned.meta().hi, pruned.levels()), (scene.meta().lo, scene.meta().hi, 4));
+    for tree in 0..scene.trees() {
+        assert_eq!(VertexData::from_words(&pruned.records()[tree][..4]), VertexData::from_words(&scene.records()[tree][..4]));
+        let depth = pruned.tree_lines(tree).depth;
+        for level in 0..4 {
+            for node in 0..1 << (2 * level) {
+                let codes = if level < depth { scene.node_codes(tree, level, node) } else { [0; 3] };
+                assert_eq!(pruned.node_codes(tree, level, node), codes);
+            }
+            assert!(level > depth || pruned.triangle(tree, level, 0) == scene.triangle(tree, level, 0));
+        }
+    }
+    // More views, deeper trees.
+    let both = pruned_for(&scene, &[(view, 1.0), (camera(&space, 3.0, 32), 1.0)]);
+    assert!(both.depths().iter().zip(pruned.depths()).all(|(both, one)| *both >= one) && both.bytes().len() > pruned.bytes().len());
+    assert_eq!(both.meta().job.len(), 2);
+    // It opens as it was saved.
+    let folder = tempfile::tempdir().unwrap();
+    both.save(&folder.path().join("a.lod")).unwrap();
+    let opened = Scene::open(&folder.path().join("a.lod")).unwrap();
+    assert!(opened.bytes() == both.bytes() && opened.meta() == both.meta());
+}
+
+#[test]
+fn the_papers_lines_are_those_of_whole_trees() {
+    use lodray::method::lod::LineLayout;
+    let scene = build_with(&grid(4, 2), VertexForm::Compact);
+    let pruned = pruned_for(&scene, &[(camera(&ModelSpace::of(&scene), 6.0, 32), 1.0)]);
+    assert!(pruned.bytes().len() < scene.bytes().len());
+    let map = |scene| LodImage::with(scene, LineLayout::Paper).map;
+    assert_eq!(map(&scene), map(&pruned));
+}
+
+const LIST: &str =
+    "size = \"48x48\"\nmethods = [\"lod\"]\ndistances = [3, 20]\n[[scene]]\nfile = \"ball.lod\"\n[[machine]]\nname = \"haydel2023\"\n";
+
+#[test]
+fn a_pruned_scene_serves_its_job_and_refuses_all_else() {
+    let desk = Desk::new(assert_cmd::cargo::cargo_bin!("lodray"));
+    desk.run("generate sphere --levels 4 --base 32 -o ball.lod");
+    desk.write("jobs.toml", LIST);
+    desk.run("plan --job jobs.toml -o plan.toml");
+    assert!(desk.text("plan.toml").contains("[[views.sphere]]"), "{}", desk.text("plan.toml"));
+    let shown = desk.run("prune ball.lod --plan plan.toml -o small.lod");
+    assert!(shown.contains("2 views") && shown.contains("trees of 4 levels"), "{shown}");
+    assert!(desk.bytes("small.lod").len() < desk.bytes("ball.lod").len());
+    assert!(desk.run("verify small.lod").contains("passed"));
+    assert!(desk.run("info small.lod").contains("pruned for"));
+
+    // Its rays: the same pictures, the same figures of what was hit.
+    for distance in [3, 20] {
+        let render =
+            |scene: &str, out: &str| desk.run(&format!("render {scene} --size 48x48 --distance {distance} --shading full -o {out}"));
+        render("ball.lod", "whole");
+        render("small.lod", "part");
+        for picture in ["image.png", "levels.png", "normals.png"] {
+            assert!(pixels(&desk, &format!("whole/{picture}")) == pixels(&desk, &format!("part/{picture}")), "{picture} from {distance}");
+        }
+    }
+    let of_job = "--size 48x48 --distance 3";
+    desk.run(&format!("simulate small.lod --machine haydel2023 {of_job} --method lod"));
+    desk.run(&format!("trace small.lod {of_job} --pixel 20,20 --text"));
+
+    // Others, each with the field that differs.
+    let refused = |args: &str, words: &[&str]| desk.refused(args, 1, &[&["pruned for"], words].concat());
+    refused(&format!("render small.lod {of_job} --shading full --delta 2 -o no"), &["delta is 2"]);
+    refused("render small.lod --size 48x47 --distance 3 --shading full -o no", &["size is 48x47"]);
+    refused("render small.lod --size 48x48 --distance 4 --shading full -o no", &["eye is"]);
+    refused(&format!("render small.lod {of_job} --shading full --samples 4 -o no"), &["size is 96x96"]);
+    refused(&format!("render small.lod {of_job} --shading full --method bvh -o no"), &["method: bvh"]);
+    refused(&format!("render small.lod {of_job} --shading full --compare -o no"), &["method: reference"]);
+    refused(&format!("render small.lod {of_job} -o no"), &["--shading facets"]);
+    refused(&format!("trace small.lod {of_job} --pixel 20,20 --delta 0.5 --text"), &["delta is 0.5"]);
+    refused(&format!("simulate small.lod --machine haydel2023 {of_job} --method bvh"), &["method: bvh"]);
+    refused("simulate small.lod --machine haydel2023 --size 8x8 --distance 3 --method lod", &["size is 8x8"]);
+    for any in ["lines small.lod", "crack small.lod", "export small.lod --level 1 -o no.obj", "prune small.lod --plan plan.toml -o no.lod"]
+    {
+        refused(any, &["job"]);
+    }
+    desk.write("sweep.toml", &LIST.replace("ball", "small"));
+    assert!(desk.run("sweep sweep.toml -o swept").contains("0 failed"));
+    desk.write("sweep.toml", &LIST.replace("ball", "small").replace("[3, 20]", "[3, 21]"));
+    let (code, said) = desk.hear("sweep sweep.toml -o swept2");
+    assert!(code == 1 && said.contains("pruned for a job, which has no such view: eye is"), "{said}");
+
+    // Plans without what is needed.
+    desk.run("plan ball.lod -o any.toml");
+    desk.refused("prune ball.lod --plan any.toml -o no.lod", 1, &["views", "of no job"]);
+    desk.run("generate cloth --levels 2 --base 32 -o cloth.lod");
+    desk.refused("prune cloth.lod --plan plan.toml -o no.lod", 1, &["called cloth", "sphere"]);
+    desk.write("bad.toml", &desk.text("plan.toml").replace("delta = \"1\"", "delta = \"one\""));
+    desk.refused("prune ball.lod --plan bad.toml -o no.lod", 1, &["delta 'one'"]);
+    assert!(!desk.path("no.lod").exists() && !desk.path("no").exists());
+}
+
+/// The pixels of a picture; its notes may differ.
+fn pixels(desk: &Desk, name: &str) -> Vec<u8> {
+    image::load_from_memory(&desk.bytes(name)).expect("a picture").to_rgba8().into_raw()
+}
