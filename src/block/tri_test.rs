@@ -60,6 +60,19 @@ impl TriTest {
     pub const ONE_EDGE: Timing = one_edge(&Form::FULL);
 }
 
+/// p x d: components below 2^62.8 (Lagrange). The edge function d.(p x q) is p.(q x d), of 64 x 64-bit products where p x q takes wider ones.
+#[inline(always)]
+fn moment(p: [i64; 3], d: [i64; 3]) -> [i64; 3] {
+    [p[1] * d[2] - p[2] * d[1], p[2] * d[0] - p[0] * d[2], p[0] * d[1] - p[1] * d[0]]
+}
+
+/// p.m: partial sums below 2^95.6 (32.8 and 62.8 bits; Cauchy-Schwarz).
+#[inline(always)]
+fn dot_moment(p: [i64; 3], m: [i64; 3]) -> i128 {
+    let wide = |a: i64, b: i64| i128::from(a) * i128::from(b);
+    wide(p[0], m[0]) + wide(p[1], m[1]) + wide(p[2], m[2])
+}
+
 /// p x q: components below 2 * 2^64, and below 2^65.6 together.
 #[inline(always)]
 fn cross(p: [i64; 3], q: [i64; 3]) -> [i128; 3] {
@@ -67,25 +80,25 @@ fn cross(p: [i64; 3], q: [i64; 3]) -> [i128; 3] {
     [wide(p[1], q[2]) - wide(p[2], q[1]), wide(p[2], q[0]) - wide(p[0], q[2]), wide(p[0], q[1]) - wide(p[1], q[0])]
 }
 
-/// Partial sums below 2^95.6 for a direction (30 bits), below 2^98.4 for a point (32.8 bits): Cauchy-Schwarz.
+/// Partial sums below 2^98.4 for a point (32.8 bits): Cauchy-Schwarz.
 #[inline(always)]
 fn dot_wide(n: [i128; 3], d: [i64; 3]) -> i128 {
     n[0] * i128::from(d[0]) + n[1] * i128::from(d[1]) + n[2] * i128::from(d[2])
 }
 
-/// True if the edge function `value` = d.(p x q) with `normal` = p x q counts as positive.
+/// True if the edge function `value` = d.(p x q) counts as positive.
 #[inline(always)]
-fn is_positive(value: i128, normal: [i128; 3], p: [i64; 3], q: [i64; 3]) -> bool {
+fn is_positive(value: i128, p: [i64; 3], q: [i64; 3]) -> bool {
     if value != 0 {
         return value > 0;
     }
-    tie_is_positive(normal, p, q)
+    tie_is_positive(p, q)
 }
 
 #[cold]
-fn tie_is_positive(normal: [i128; 3], p: [i64; 3], q: [i64; 3]) -> bool {
+fn tie_is_positive(p: [i64; 3], q: [i64; 3]) -> bool {
     let along = [0, 1, 2].map(|k| i128::from(q[k] - p[k]));
-    normal.into_iter().chain(along).find(|&c| c != 0).is_none_or(|c| c > 0)
+    cross(p, q).into_iter().chain(along).find(|&c| c != 0).is_none_or(|c| c > 0)
 }
 
 /// `edge_function`: the cross product with d and the sign of q - p beside it, the dot product with the tie's sign beside it.
@@ -172,19 +185,17 @@ impl Block for TriTest {
         };
         let (a, b, c) = (relative(input.p0), relative(input.p1), relative(input.p2));
 
-        let (n_bc, n_ca) = (cross(b, c), cross(c, a));
-        let (u, v) = (dot_wide(n_bc, d), dot_wide(n_ca, d));
-        let positive = is_positive(u, n_bc, b, c);
-        if positive != is_positive(v, n_ca, c, a) {
+        let (u, v) = (dot_moment(b, moment(c, d)), dot_moment(c, moment(a, d)));
+        let positive = is_positive(u, b, c);
+        if positive != is_positive(v, c, a) {
             return Out::default();
         }
-        let n_ab = cross(a, b);
-        let w = dot_wide(n_ab, d);
-        if positive != is_positive(w, n_ab, a, b) {
+        let w = dot_moment(a, moment(b, d));
+        if positive != is_positive(w, a, b) {
             return Out::default();
         }
         let det = u + v + w;
-        let t_num = dot_wide(n_bc, a);
+        let t_num = dot_wide(cross(b, c), a);
         let (v, w, det, t_num) = if positive { (v, w, det, t_num) } else { (-v, -w, -det, -t_num) };
         // The signs agree, so det is not negative here.
         if det == 0 || t_num < 0 {
