@@ -2,21 +2,23 @@
 
 use lodray::format::Scene;
 use lodray::golden::exact::{Exact, ExactHit};
-use lodray::mesh::Hierarchy;
 use lodray::mesh::procedural::{self, Options};
+use lodray::mesh::{BoundKind, Hierarchy};
 use lodray::method::bvh::BvhTraverser;
+use lodray::method::bvh::NoStore;
 use lodray::method::bvh::{FullBvh, FullOptions, LeafLayout, NodeBoxes};
-use lodray::method::lod::{LodImage, LodTraverser};
-use lodray::method::{ClosestHit, Crossings};
+use lodray::method::lod::{self, LodImage, LodTraverser};
+use lodray::method::{ClosestHit, Crossings, Knobs};
 use lodray::num::{Cone, Point, Ray, Vec3, VertexForm};
 use lodray::rays::ModelSpace;
-use lodray::rays::{Camera, View};
-use lodray::step::NoSteps;
+use lodray::rays::{Camera, RaySource, Sight, View};
+use lodray::step::{NoSteps, Recorder};
 use lodray_test_support::cases;
 use lodray_test_support::models::{
     Rng, ball, build_with, coarsened, cone, model, octahedron, scene_of, terrain, with_vertices, with_zeros,
 };
 use lodray_test_support::plain::plain;
+use lodray_test_support::surfaces::scene_with;
 use proptest::prelude::*;
 
 struct Bench<'a> {
@@ -222,5 +224,37 @@ proptest! {
     fn any_ball(levels in 0u32..=4, roughness in 0.0f64..4.0, seed: u64, form in prop::sample::select(&VertexForm::ALL[..])) {
         let h = with_vertices(form, ball(levels, roughness, seed));
         compare(&h, true, rays(&h, 100, seed));
+    }
+}
+
+#[test]
+fn a_tracer_of_full_detail_takes_the_same_steps() {
+    let options = |scene| Options { scene, levels: Some(4), base: Some(32), seed: 5, roughness: None };
+    for (scene, form) in [procedural::Scene::Terrain, procedural::Scene::Spikes, procedural::Scene::Wall]
+        .into_iter()
+        .flat_map(|scene| VertexForm::ALL.map(|form| (scene, form)))
+    {
+        let scene = scene_with(&procedural::generate(&options(scene)).expect("a surface"), BoundKind::Total, form);
+        let (space, image) = (ModelSpace::of(&scene), LodImage::of(&scene));
+        let method = (lod::METHOD.make)(&scene, &Knobs::default(), &NoStore).expect("the method");
+        for (distance, delta) in [(0.4, f64::INFINITY), (2.0, f64::INFINITY), (2.0, 1.0)] {
+            let camera = Camera::new(&View { distance: Some(distance), ..View::default() }, &space, 64, 64).expect("a camera");
+            let sight = Sight::new(&camera, &space, delta);
+            let (mut tracer, mut traverser, mut hits) = (method.tracer(&sight), LodTraverser::new(image), 0);
+            for batch in 0..camera.batches() {
+                camera.batch(batch, &mut |_, query| {
+                    let Some(ray) = space.enter(query, delta) else { return };
+                    let (mut wanted, mut steps) = (Recorder::default(), Recorder::default());
+                    let mut closest = ClosestHit::of(image.levels, &ray, false);
+                    traverser.trace(&ray.ray, &mut wanted, &mut closest);
+                    let hit = tracer.recorded(query, &mut steps);
+                    assert_eq!(hit, closest.surface(&ray), "{query:?}");
+                    let (steps, wanted) = (steps.batch(), wanted.batch());
+                    assert!(steps.words() == wanted.words(), "{query:?}");
+                    hits += u64::from(hit.is_some());
+                });
+            }
+            assert!(hits > 500, "{hits}");
+        }
     }
 }

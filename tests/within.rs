@@ -62,7 +62,7 @@ fn nothing_that_is_seen_moves_by_more_than_was_said() {
     for (kind, form) in kinds.into_iter().flat_map(|kind| VertexForm::ALL.map(|form| (kind, form))) {
         let fine = scene(kind, form);
         let space = ModelSpace::of(&fine);
-        for (distance, pixels) in [(1.6, 0.1), (4.0, 0.05)] {
+        for (distance, pixels) in [(1.6, 0.03), (4.0, 0.005)] {
             // Pixels as narrow as those of a picture that people look at.
             let camera =
                 Camera::new(&View { distance: Some(distance), fov: 40.0 * f64::from(side) / 512.0, ..View::default() }, &space, side, side)

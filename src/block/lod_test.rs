@@ -92,6 +92,26 @@ fn limits(input: &In, code: BoundCode, a: S<64>, b: S<64>) -> (Bound, U<34>) {
     (h, tolerated(&input.ray.cone, a.min(b).get()))
 }
 
+/// What bounds and tolerances of the three edges come to.
+#[inline(always)]
+fn decided(limits: [(Bound, U<34>); 3]) -> Out {
+    // s = 0 exactly when h <= D: one decision for all three edges.
+    let [(h0, d0), (h1, d1), (h2, d2)] = limits;
+    if (h0.get() <= d0.get()) & (h1.get() <= d1.get()) & (h2.get() <= d2.get()) {
+        return Out::default();
+    }
+    let [s0, s1, s2] = limits.map(|(h, d)| edge_state(h, d));
+    Out { refine: true, s0, s1, s2 }
+}
+
+impl LodTest {
+    /// The outcome for a ray that tolerates nothing, wherever it and the triangle are: each edge is open or has no bound.
+    #[inline(always)]
+    pub fn of_full_detail(codes: [BoundCode; 3], scale: BoundScale) -> Out {
+        decided(codes.map(|code| (BoundDecode::eval(&bound_decode::In { code, scale }).h, U::ZERO)))
+    }
+}
+
 /// Behind how many stages the nearer ends of the edges stand.
 const fn nearer(form: &Form) -> u32 {
     1 + dot_product_latency(form.relative(), form.component()) + 1
@@ -172,19 +192,14 @@ impl Block for LodTest {
     fn eval(input: &In) -> Out {
         let (l0, l1, l2) = (along(&input.ray, input.p0), along(&input.ray, input.p1), along(&input.ray, input.p2));
         let limits = [(input.e0, l1, l2), (input.e1, l2, l0), (input.e2, l0, l1)].map(|(code, a, b)| limits(input, code, a, b));
-        // s = 0 exactly when h <= D: one decision for all three edges.
-        let [(h0, d0), (h1, d1), (h2, d2)] = limits;
-        if (h0.get() <= d0.get()) & (h1.get() <= d1.get()) & (h2.get() <= d2.get()) {
-            return Out::default();
-        }
-        let [s0, s1, s2] = limits.map(|(h, d)| edge_state(h, d));
-        Out { refine: true, s0, s1, s2 }
+        decided(limits)
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::num::Direction;
     use proptest::prelude::*;
 
     fn cone(offset: u64, slope: u64, shift: u64) -> Cone {
@@ -208,6 +223,18 @@ mod tests {
     }
 
     proptest! {
+        #[test]
+        fn rays_that_tolerate_nothing_need_no_place(
+            codes in prop::array::uniform3(0u64..256), offset in 0u64..=crate::num::MAX_BOUND_OFFSET, p in prop::array::uniform9(-(1i64 << 31) + 1..1 << 31), shift in 0u64..64
+        ) {
+            let [e0, e1, e2] = codes.map(|code| BoundCode::new(if code % 3 == 0 { 0 } else { code }));
+            let [p0, p1, p2] = [0, 3, 6].map(|k| Point::new(p[k], p[k + 1], p[k + 2]));
+            let ray = Ray { direction: Direction::new(1 << 29, -5, 0), cone: cone(0, 0, shift), ..Ray::default() };
+            let scale = BoundScale { offset: U::new(offset) };
+            let out = LodTest::eval(&In { ray, p0, p1, p2, e0, e1, e2, scale });
+            prop_assert_eq!(LodTest::of_full_detail([e0, e1, e2], scale), out);
+        }
+
         #[test]
         fn states_are_monotone(h in 0u64..1 << 33, more in 0u64..1 << 20, d in 0u64..1 << 34, shift in 0u64..30) {
             let (h, d) = (h >> shift, d >> shift);

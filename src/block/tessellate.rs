@@ -125,14 +125,26 @@ struct Edge {
     s: EdgeState,
 }
 
-/// The vertex `v` on an edge, of full resolution and as morphed.
+/// The vertex `v` on an edge, of full resolution and as morphed; if `ENDS`, s is 0 or 256, and nothing is multiplied.
 #[inline(always)]
-fn vertex(split: Split, edge: Edge, v: Point) -> (Point, Point) {
+fn vertex<const ENDS: bool>(split: Split, edge: Edge, v: Point) -> (Point, Point) {
     let ([fa, fb], [pa, pb], shift) = (edge.f, edge.p, displacement_shift(split, edge.code));
     let stored = |a, b, v| stored_coordinate(a, b, v, split.compact, shift);
     let g = Vec3 { x: stored(fa.x, fb.x, v.x), y: stored(fa.y, fb.y, v.y), z: stored(fa.z, fb.z, v.z) };
-    let morph = |a, b, g| morph_coordinate(a, b, g, edge.s, split.grid);
+    let morph = |a: S<32>, b: S<32>, g: S<32>| match ENDS {
+        true => S::new(if edge.s == EdgeState::ZERO { (a.get() + b.get()) >> 1 } else { g.get() }),
+        false => morph_coordinate(a, b, g, edge.s, split.grid),
+    };
     (g, Vec3 { x: morph(pa.x, pb.x, g.x), y: morph(pa.y, pb.y, g.y), z: morph(pa.z, pb.z, g.z) })
+}
+
+#[inline(always)]
+fn vertices<const ENDS: bool>(i: &In) -> Out {
+    let split = Split { compact: i.compact, grid: i.grid, padding: i.padding, scale: i.scale };
+    let (g0, q0) = vertex::<ENDS>(split, Edge { f: [i.f1, i.f2], p: [i.p1, i.p2], code: i.e0, s: i.s0 }, i.v0);
+    let (g1, q1) = vertex::<ENDS>(split, Edge { f: [i.f2, i.f0], p: [i.p2, i.p0], code: i.e1, s: i.s1 }, i.v1);
+    let (g2, q2) = vertex::<ENDS>(split, Edge { f: [i.f0, i.f1], p: [i.p0, i.p1], code: i.e2, s: i.s2 }, i.v2);
+    Out { g0, g1, g2, q0, q1, q2 }
 }
 
 /// Bits of a state as a signed number, and of the number of zero bits.
@@ -174,11 +186,15 @@ impl Block for Tessellate {
     }
     #[inline(always)]
     fn eval(i: &In) -> Out {
-        let split = Split { compact: i.compact, grid: i.grid, padding: i.padding, scale: i.scale };
-        let (g0, q0) = vertex(split, Edge { f: [i.f1, i.f2], p: [i.p1, i.p2], code: i.e0, s: i.s0 }, i.v0);
-        let (g1, q1) = vertex(split, Edge { f: [i.f2, i.f0], p: [i.p2, i.p0], code: i.e1, s: i.s1 }, i.v1);
-        let (g2, q2) = vertex(split, Edge { f: [i.f0, i.f1], p: [i.p0, i.p1], code: i.e2, s: i.s2 }, i.v2);
-        Out { g0, g1, g2, q0, q1, q2 }
+        vertices::<false>(i)
+    }
+}
+
+impl Tessellate {
+    /// The same where every edge is closed or open, its s 0 or 256.
+    #[inline(always)]
+    pub fn of_full_detail(i: &In) -> Out {
+        vertices::<true>(i)
     }
 }
 
@@ -227,6 +243,15 @@ mod tests {
             prop_assert_eq!(r & ((1 << grid) - 1), 0);
             prop_assert!(s != 0 || r == m);
             prop_assert!(s != 256 || r == q);
+            let edge = |s| {
+                let at = |v| Point::new(v, v, v);
+                let split = Split { compact: false, grid: U::new(grid), padding: U::new(4), scale: BoundScale::default() };
+                let edge = Edge { f: [at(a), at(b)], p: [at(a), at(b)], code: BoundCode::new(0), s: U::new(s) };
+                (vertex::<false>(split, edge, at(q)), vertex::<true>(split, edge, at(q)))
+            };
+            for (morphed, closed_or_open) in [edge(0), edge(256)] {
+                prop_assert_eq!(morphed, closed_or_open);
+            }
             let swapped = morph_coordinate(S::new(b), S::new(a), S::new(q), U::new(s), U::new(grid)).get();
             prop_assert_eq!(r, swapped);
         }

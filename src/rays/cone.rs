@@ -19,6 +19,11 @@ pub fn cone(delta: f64, radius: f64, tan_theta: f64) -> Cone {
     Cone { offset: U::saturating(part(offset)), slope: U::saturating(part(slope)), shift: U::new(u64::from(shift.cast_unsigned())) }
 }
 
+/// Whether rays at quality `delta` tolerate nothing, whatever their cones: [`cone`] is then neither as wide as anything anywhere nor does it grow.
+pub fn is_full_detail(delta: f64) -> bool {
+    delta == f64::INFINITY
+}
+
 /// Largest s with v 2^s < 2^width; large if v is 0 or subnormal.
 fn room(v: f64, width: i32) -> i32 {
     if v.is_finite() {
@@ -41,6 +46,10 @@ mod tests {
     fn extremes() {
         assert_eq!(plain(cone(0.0, 1.0, 1.0)), ((1 << 53) - 1, 0, 0));
         assert_eq!(plain(cone(f64::INFINITY, 5.0, 0.1)), (0, 0, 63));
+        for (radius, tan) in [(0.0, 0.0), (1e300, 1e-300), (f64::INFINITY, f64::INFINITY), (f64::NAN, 1.0)] {
+            let Cone { offset, slope, .. } = cone(f64::INFINITY, radius, tan);
+            assert!(is_full_detail(f64::INFINITY) && (offset, slope) == (U::ZERO, U::ZERO), "{radius} {tan}");
+        }
         assert_eq!(plain(cone(1.0, 0.0, -3.0)), (0, 0, 63));
         assert_eq!(plain(cone(1.0, 0.0, 1e16)), (0, (1 << 18) - 1, 0));
         assert_eq!(plain(cone(2.0, 0.0, 0.5)), (0, 1 << 17, 18));

@@ -10,7 +10,7 @@ mod source;
 mod space;
 
 pub use camera::{Camera, CameraError, DEFAULT_DIRECTION, DEFAULT_VIEW_ANGLE_DEGREES, MAX_PIXELS, MAX_SIDE, View};
-pub use cone::cone;
+pub use cone::{cone, is_full_detail};
 pub use file::{RayFile, RayFileError};
 pub use query::Query;
 pub use source::{RaySource, Sight};

@@ -10,7 +10,7 @@ use super::knob::{DELTA, ErrorKnob, octaves};
 use super::{ClosestHit, Knobs, Method, MethodUnit, Registered, SurfaceHit, Trace, Tracer};
 use crate::block::Operation;
 use crate::format::Scene;
-use crate::rays::{ModelSpace, Query, Sight};
+use crate::rays::{ModelSpace, Query, Sight, is_full_detail};
 use crate::step::{MemoryMap, Step, StepSink};
 
 /// The method.
@@ -50,30 +50,43 @@ impl<'a> Lod<'a> {
     }
 }
 
+impl Lod<'_> {
+    fn tracer_as<const COMPACT: bool, const FULL_DETAIL: bool>(&self, sight: &Sight) -> Box<dyn Tracer + '_> {
+        let (traverser, space, delta) = (LodTraverser::new(self.image), self.space, sight.delta);
+        Box::new(LodTracer::<COMPACT, FULL_DETAIL> { traverser, space, delta })
+    }
+}
+
 impl Method for Lod<'_> {
     fn map(&self, _: &Sight) -> MemoryMap {
         self.image.map
     }
 
     fn tracer(&self, sight: &Sight) -> Box<dyn Tracer + '_> {
-        Box::new(LodTracer { traverser: LodTraverser::new(self.image), space: self.space, delta: sight.delta })
+        match (self.image.form.is_compact(), is_full_detail(sight.delta)) {
+            (true, true) => self.tracer_as::<true, true>(sight),
+            (true, false) => self.tracer_as::<true, false>(sight),
+            (false, true) => self.tracer_as::<false, true>(sight),
+            (false, false) => self.tracer_as::<false, false>(sight),
+        }
     }
 }
 
-struct LodTracer<'a> {
+/// Compiled for one form of inserted vertices, and for rays that tolerate nothing by itself: which it is is chosen once.
+struct LodTracer<'a, const COMPACT: bool, const FULL_DETAIL: bool> {
     traverser: LodTraverser<'a>,
     space: ModelSpace,
     delta: f64,
 }
 
-impl Trace for LodTracer<'_> {
+impl<const COMPACT: bool, const FULL_DETAIL: bool> Trace for LodTracer<'_, COMPACT, FULL_DETAIL> {
     fn trace<S: StepSink>(&mut self, query: &Query, steps: &mut S) -> Option<SurfaceHit> {
         let Some(ray) = self.space.enter(query, self.delta) else {
             steps.step(Step::end(false, false));
             return None;
         };
         let mut hit = ClosestHit::of(self.traverser.levels(), &ray, query.any);
-        self.traverser.trace(&ray.ray, steps, &mut hit);
+        self.traverser.trace_as::<_, _, COMPACT, FULL_DETAIL>(&ray.ray, steps, &mut hit);
         hit.surface(&ray)
     }
 }

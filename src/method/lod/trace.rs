@@ -25,7 +25,7 @@ pub struct LodTraverser<'a> {
 }
 
 /// One ray under way.
-struct Journey<'a, S, H> {
+struct Journey<'a, S, H, const COMPACT: bool, const FULL_DETAIL: bool> {
     image: &'a LodImage<'a>,
     stack: &'a mut TraversalStack,
     splits: &'a mut [Split; MAX_LEVELS as usize],
@@ -50,24 +50,44 @@ impl<'a> LodTraverser<'a> {
 
     /// Traces `ray`: every triangle that serves the ray and is met goes to `sink`, every step to `steps`.
     pub fn trace<S: StepSink, H: HitSink>(&mut self, ray: &Ray, steps: &mut S, sink: &mut H) {
+        match self.image.form {
+            VertexForm::Compact => self.trace_as::<S, H, true, false>(ray, steps, sink),
+            VertexForm::Exact => self.trace_as::<S, H, false, false>(ray, steps, sink),
+        }
+    }
+
+    /// The same, compiled for scenes of one form of vertices, and for rays that tolerate nothing if they are of `FULL_DETAIL`.
+    #[inline(always)]
+    pub(super) fn trace_as<S: StepSink, H: HitSink, const COMPACT: bool, const FULL_DETAIL: bool>(
+        &mut self,
+        ray: &Ray,
+        steps: &mut S,
+        sink: &mut H,
+    ) {
+        debug_assert_eq!(COMPACT, self.image.form.is_compact());
         #[cfg(target_arch = "x86_64")]
         if has_lanes() {
             #[target_feature(enable = "avx2,bmi1,bmi2")]
-            fn lanes<S: StepSink, H: HitSink>(by: &mut LodTraverser<'_>, ray: &Ray, steps: &mut S, sink: &mut H) {
-                by.run(ray, steps, sink);
+            fn lanes<S: StepSink, H: HitSink, const COMPACT: bool, const FULL_DETAIL: bool>(
+                by: &mut LodTraverser<'_>,
+                ray: &Ray,
+                steps: &mut S,
+                sink: &mut H,
+            ) {
+                by.run::<S, H, COMPACT, FULL_DETAIL>(ray, steps, sink);
             }
             // SAFETY: the processor has them, as was just asked.
-            return unsafe { lanes(self, ray, steps, sink) };
+            return unsafe { lanes::<S, H, COMPACT, FULL_DETAIL>(self, ray, steps, sink) };
         }
-        self.run(ray, steps, sink);
+        self.run::<S, H, COMPACT, FULL_DETAIL>(ray, steps, sink);
     }
 
     #[inline(always)]
-    fn run<S: StepSink, H: HitSink>(&mut self, ray: &Ray, steps: &mut S, sink: &mut H) {
+    fn run<S: StepSink, H: HitSink, const COMPACT: bool, const FULL_DETAIL: bool>(&mut self, ray: &Ray, steps: &mut S, sink: &mut H) {
         let setup = RaySetup::eval(&ray_setup::In { origin: ray.origin, direction: ray.direction });
         self.stack.clear();
         let Self { image, stack, splits } = self;
-        let mut journey = Journey { image, stack, splits, ray, setup, tree: TreeAt::default(), steps, sink };
+        let mut journey = Journey::<S, H, COMPACT, FULL_DETAIL> { image, stack, splits, ray, setup, tree: TreeAt::default(), steps, sink };
         let mut next = Some(Entry::default());
         loop {
             // A child just tested is not beyond the closest hit; an entry that waited may be by now.
@@ -88,7 +108,7 @@ impl<'a> LodTraverser<'a> {
     }
 }
 
-impl<S: StepSink, H: HitSink> Journey<'_, S, H> {
+impl<S: StepSink, H: HitSink, const COMPACT: bool, const FULL_DETAIL: bool> Journey<'_, S, H, COMPACT, FULL_DETAIL> {
     #[inline(always)]
     fn visit(&mut self, entry: &Entry) -> Option<Entry> {
         match entry.kind.get() {
@@ -135,7 +155,11 @@ impl<S: StepSink, H: HitSink> Journey<'_, S, H> {
             return None;
         }
         let ([p0, p1, p2], [e0, e1, e2]) = (p, codes);
-        let lod = LodTest::eval(&lod_test::In { ray: *self.ray, p0, p1, p2, e0, e1, e2, scale: self.image.scale });
+        let scale = self.image.scale;
+        let lod = match FULL_DETAIL {
+            true => LodTest::of_full_detail(codes, scale),
+            false => LodTest::eval(&lod_test::In { ray: *self.ray, p0, p1, p2, e0, e1, e2, scale }),
+        };
         // A tree's root was visited for its record.
         self.steps.step(Step { visits: level > 0, ..Step::of(Act::LodTest { refine: lod.refine }) });
         if !lod.refine {
@@ -150,12 +174,12 @@ impl<S: StepSink, H: HitSink> Journey<'_, S, H> {
             Step::on(self.image.split(self.tree, level, node as usize), Act::Tessellate)
         });
         let [v0, v1, v2] = self.stored(level, node as usize);
-        let (compact, scale, zeros) = (self.image.form.is_compact(), self.image.scale, self.image.zeros);
+        let (scale, zeros) = (self.image.scale, self.image.zeros);
         let grid = U::new(u64::from(self.image.levels - level - 1 + zeros));
-        let padding = U::new(u64::from(PADDING_BITS.saturating_sub(zeros)));
+        let (compact, padding) = (COMPACT, U::new(u64::from(PADDING_BITS.saturating_sub(zeros))));
         let ([f0, f1, f2], lod_test::Out { s0, s1, s2, .. }) = (f, lod);
-        let t =
-            Tessellate::eval(&tessellate::In { compact, grid, padding, scale, e0, e1, e2, s0, s1, s2, f0, f1, f2, p0, p1, p2, v0, v1, v2 });
+        let tessellate = if FULL_DETAIL { Tessellate::of_full_detail } else { Tessellate::eval };
+        let t = tessellate(&tessellate::In { compact, grid, padding, scale, e0, e1, e2, s0, s1, s2, f0, f1, f2, p0, p1, p2, v0, v1, v2 });
         let (g, q) = ([t.g0, t.g1, t.g2], [t.q0, t.q1, t.q2]);
 
         if level + 1 == depth {
@@ -171,11 +195,12 @@ impl<S: StepSink, H: HitSink> Journey<'_, S, H> {
     #[inline(always)]
     fn stored(&self, level: u32, node: usize) -> [Point; 3] {
         let (image, tree) = (self.image, self.tree);
-        let line = |level| &image.vertices[tree.lines.vertex_line(image.form, level, node)];
-        match (image.form, level) {
-            (VertexForm::Exact, _) => VertexData::from_words(line(level)).points(),
-            (VertexForm::Compact, 0) => L0Record::from_words(&image.records[tree.index as usize][4..]).split.steps(),
-            (VertexForm::Compact, _) => Displacements::half(line(level), node).steps(),
+        let form = if COMPACT { VertexForm::Compact } else { VertexForm::Exact };
+        let line = |level| &image.vertices[tree.lines.vertex_line(form, level, node)];
+        match (COMPACT, level) {
+            (false, _) => VertexData::from_words(line(level)).points(),
+            (true, 0) => L0Record::from_words(&image.records[tree.index as usize][4..]).split.steps(),
+            (true, _) => Displacements::half(line(level), node).steps(),
         }
     }
 
