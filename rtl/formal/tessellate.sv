@@ -48,7 +48,7 @@ module morph_full (
   end
 
   always_comb begin
-    assume (grid_i <= 4'(lod_pkg::MAX_LEVELS - 1) && shift_i <= 5'd21);
+    assume (shift_i <= 5'd21);
     assume (legal == '1);
     assert (middle == '1);
     assert (exact == '1);
@@ -102,7 +102,7 @@ module morph_between (
     end
   end
   always_comb begin
-    assume (grid_i <= 4'(lod_pkg::MAX_LEVELS - 1) && s_i <= lod_pkg::EDGE_STATE_W'(lod_pkg::S_ONE));
+    assume (s_i <= lod_pkg::EDGE_STATE_W'(lod_pkg::S_ONE));
     assume (legal == '1);
     assert (valid && ready);
     cover (grid_i == 4'd9 && s_i == 9'd128 && further == '1 && full[31]);
@@ -111,7 +111,7 @@ module morph_between (
 
 endmodule
 
-/// The steps of a displacement: 2^e units, e = max(grid + 4, floor((code + offset) / 16) - 11), from the midpoint of the edge's own ends.
+/// The steps of a displacement: 2^e units, e = max(grid + padding, floor((code + offset) / 16) - 11), from the midpoint of the edge's own ends.
 module tessellate_displacement (
   input logic                    clk_i,
   input logic                    rst_ni,
@@ -138,7 +138,7 @@ module tessellate_displacement (
   for (genvar i = 0; i < 3; i++) begin : g_vertex
     logic signed [15:0] octave, zero, e;
     assign octave     = (16'(code[i]) + 16'(in_i.scale.offset)) >> 4;
-    assign zero       = 16'(in_i.grid) + 16'sd4;
+    assign zero       = 16'(in_i.grid) + 16'(in_i.padding);
     assign e          = octave - 16'sd11 > zero ? octave - 16'sd11 : zero;
     assign coarser[i] = e > zero;
     for (genvar k = 0; k < 3; k++) begin : g_coordinate
@@ -154,11 +154,11 @@ module tessellate_displacement (
   end
 
   always_comb begin
-    assume (in_i.scale.offset <= 9'd272 && in_i.grid <= 4'(lod_pkg::MAX_LEVELS - 1));
+    assume (in_i.scale.offset <= 9'd272 && in_i.padding <= 3'd4);
     assume (!in_i.compact || short == '1);
     assert (exact == '1);
     assert (tag == tag_i && valid && ready);
-    cover (in_i.compact && coarser == 3'b101 && in_i.grid == 4'd9);
+    cover (in_i.compact && coarser == 3'b101 && in_i.grid == 4'd9 && in_i.padding == 3'd4);
     cover (in_i.compact && coarser == '0 && in_i.grid == 4'd0 && in_i.e1 == '1);
   end
 
@@ -171,6 +171,7 @@ module tessellate_shared (
   input logic                                  rst_ni,
   input logic                                  compact_i,
   input logic [3:0]                            grid_i,
+  input logic [2:0]                            padding_i,
   input lod_pkg::bound_scale_t                 scale_i,
   input lod_pkg::point_t                       full_a_i,
   input lod_pkg::point_t                       full_b_i,
@@ -204,13 +205,13 @@ module tessellate_shared (
     lod_pkg::tessellate_in_t  in;
     lod_pkg::tessellate_out_t out;
     if (PLACE == 0) begin : g_0
-      assign in = {compact_i, grid_i, scale_i, code_i, e1, e2, s_i, s1, s2, full_c, full_first, full_second, c, first, second, v_i, v1, v2};
+      assign in = {compact_i, grid_i, padding_i, scale_i, code_i, e1, e2, s_i, s1, s2, full_c, full_first, full_second, c, first, second, v_i, v1, v2};
       assign vertex[k*2*P_W +: 2*P_W] = {out.g0, out.q0};
     end else if (PLACE == 1) begin : g_1
-      assign in = {compact_i, grid_i, scale_i, e1, code_i, e2, s1, s_i, s2, full_second, full_c, full_first, second, c, first, v1, v_i, v2};
+      assign in = {compact_i, grid_i, padding_i, scale_i, e1, code_i, e2, s1, s_i, s2, full_second, full_c, full_first, second, c, first, v1, v_i, v2};
       assign vertex[k*2*P_W +: 2*P_W] = {out.g1, out.q1};
     end else begin : g_2
-      assign in = {compact_i, grid_i, scale_i, e1, e2, code_i, s1, s2, s_i, full_first, full_second, full_c, first, second, c, v1, v2, v_i};
+      assign in = {compact_i, grid_i, padding_i, scale_i, e1, e2, code_i, s1, s2, s_i, full_first, full_second, full_c, first, second, c, v1, v2, v_i};
       assign vertex[k*2*P_W +: 2*P_W] = {out.g2, out.q2};
     end
     tessellate #(.TAG_W(1)) u_tessellate (
