@@ -153,7 +153,10 @@ fn a_pruned_scene_serves_its_job_and_refuses_all_else() {
     assert!(shown.contains("2 views") && shown.contains("trees of 4 levels"), "{shown}");
     assert!(desk.bytes("small.lod").len() < desk.bytes("ball.lod").len());
     assert!(desk.run("verify small.lod").contains("passed"));
-    assert!(desk.run("info small.lod").contains("pruned for"));
+    let info = desk.run("info small.lod");
+    assert!(info.contains("pruned for") && info.contains("tree depths"), "{info}");
+    assert!(!desk.run("info ball.lod").contains("tree depths"));
+    assert_eq!(desk.json("info small.lod")["job"].as_array().map(Vec::len), Some(2));
 
     // Its rays: the same pictures, the same figures of what was hit.
     for distance in [3, 20] {

@@ -165,7 +165,6 @@ fn summary(i: &Info<'_>) -> String {
             ),
         ),
         ("model size", format!("{width} x {height} x {depth} (width x height x depth, in the units of its coordinates)")),
-        ("tree depths", depths(&i.trees_by_depth)),
         ("bounds", format!("{}: {}", i.bounds.name(), promise(i.bounds))),
         ("vertices", format!("{}: none is further than {} from its place on the surface", i.vertices.name(), plain(i.moved))),
     ];
@@ -181,6 +180,9 @@ fn summary(i: &Info<'_>) -> String {
         let (wanted, made) = (grouped(wanted), grouped(i.base_triangles));
         let why = "how the mesh is connected, and its borders and creases, allow no fewer triangles";
         lines.push(("note", format!("--base {wanted} was not met, the base has {made}: {why}")));
+    }
+    if i.trees_by_depth[..i.levels as usize].iter().any(|&trees| trees > 0) {
+        lines.push(("tree depths", depths(&i.trees_by_depth)));
     }
     for view in i.job {
         let [width, height] = view.size;

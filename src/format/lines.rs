@@ -436,6 +436,14 @@ mod tests {
     }
 
     #[test]
+    fn a_tree_begins_where_28_bits_can_say() {
+        let last = (1 << 28) - 1;
+        let of = |group, vertices| L0Record::default().of_tree(TreeLines { depth: 10, group, vertices });
+        assert_eq!(of(last, last).map(|record| (record.group.get(), record.vertices.get())), Some((last as u64, last as u64)));
+        assert!(of(last + 1, 0).is_none() && of(0, last + 1).is_none());
+    }
+
+    #[test]
     fn vertex_lines_give_their_points_back() {
         let p = [[16, -32, 0x7FFE_0000], [-0x7FFE_0000, 0, 48], [1 << 20, -(1 << 20), 160]];
         let mut line = [0u64; 4];
