@@ -25,8 +25,7 @@ pub mod tri_test;
 
 pub use operation::{Operation, Operations};
 
-use crate::hardware::Hardware;
-use crate::num::Wire;
+use crate::num::{MAX_LEVELS, Wire};
 use parts::Parts;
 
 /// Cycles of a block's pipeline in `rtl/`, with nothing in its way.
@@ -80,7 +79,7 @@ pub struct Form {
 
 impl Form {
     /// Of the default hardware.
-    pub const FULL: Self = Hardware::DEFAULT.form();
+    pub const FULL: Self = Self { levels: MAX_LEVELS, edges_per_cycle: EdgesPerCycle::Three, coordinate_zeros: 0, direction_zeros: 0 };
 }
 
 /// A combinational block: what it computes, and the cycles its pipeline takes for it.

@@ -10,7 +10,7 @@
 use super::parts::{
     Multiplier, Parts, Registers, TAG, TRI_DECIDE_LATENCY, cross_product, cross_product_latency, dot_product, multiplier_latency,
 };
-use super::{Block, EdgesPerCycle, Form, Timing};
+use super::{Block, EdgesPerCycle, Form, Timing, parts};
 use crate::num::{Direction, Point, WU, wire_struct};
 
 wire_struct! {
@@ -30,9 +30,9 @@ wire_struct! {
 }
 
 /// Edge functions and det, positive: |p x q| |d| <= (2^32.8)^2 2^30 < 2^96 (Hadamard), det likewise from the triangle's edges.
-pub type EdgeFunction = WU<96>;
+pub type EdgeFunction = WU<{ parts::EDGE_FUNCTION }>;
 /// Numerator of t, positive: |a| |b| |c| < 2^98.4.
-pub type TNumerator = WU<99>;
+pub type TNumerator = WU<{ parts::T_NUMERATOR }>;
 
 wire_struct! {
     /// Output of [`TriTest`].

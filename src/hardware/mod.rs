@@ -139,6 +139,7 @@ mod tests {
         let wrong = |hardware: Hardware| hardware.validate().expect_err("an error").to_string();
         let default = Hardware::default();
         assert_eq!(default.validate(), Ok(()));
+        assert_eq!(default.form(), Form::FULL);
         assert_eq!(wrong(Hardware { levels: 11, ..default }), "hardware: levels must be 2 to 10, but is 11");
         assert_eq!(wrong(Hardware { levels: 1, ..default }), "hardware: levels must be 2 to 10, but is 1");
         assert_eq!(wrong(Hardware { bvh_depth: 25, ..default }), "hardware: bvh_depth must be 1 to 24, but is 25");

@@ -11,7 +11,6 @@ pub(super) use multiplier::{Multiplier, cross_product, dot_product};
 pub use registers::Registers;
 
 use super::Form;
-use super::tri_test::{EdgeFunction, TNumerator};
 use crate::num::{Direction, EdgeState, Point, Wire};
 
 /// What a block is made of and an operation of it does: each comparison is a sum, each step of a shifter a selection.
@@ -29,6 +28,11 @@ pub struct Parts {
 
 /// Bits of the tag of a block that stands alone, as in `docs/hardware.md` and in the tests: the RTL's default.
 pub const TAG: u32 = 8;
+
+/// Edge functions and det, positive: |p x q| |d| < 2^96.
+pub const EDGE_FUNCTION: u32 = 96;
+/// Numerator of t, positive: |a| |b| |c| < 2^98.4.
+pub const T_NUMERATOR: u32 = 99;
 
 impl Form {
     /// A coordinate without the bits that are always 0.
@@ -53,12 +57,12 @@ impl Form {
 
     /// Edge function with its sign, below 2^96 in steps of the bits that are always 0.
     pub const fn signed_edge(&self) -> u32 {
-        EdgeFunction::WIDTH + 1 - 2 * self.coordinate_zeros - self.direction_zeros
+        EDGE_FUNCTION + 1 - 2 * self.coordinate_zeros - self.direction_zeros
     }
 
     /// Numerator of t with its sign, likewise below 2^98.4.
     pub const fn signed_t(&self) -> u32 {
-        TNumerator::WIDTH + 1 - 3 * self.coordinate_zeros
+        T_NUMERATOR + 1 - 3 * self.coordinate_zeros
     }
 
     /// Registers of the products of p x q with d, and of those with a beside them: so many that both take as long.
