@@ -113,10 +113,8 @@ fn a_coarser_scene_is_the_same_but_for_its_grids() {
         assert_eq!((hardware.coordinate_zeros, hardware.direction_zeros), (6, 9));
         assert_eq!(hardware.validate(), Ok(()));
     }
-    let room = fine_error();
-    assert!(room.contains("at most 12 are possible"), "{room}");
-}
-
-fn fine_error() -> String {
-    scene(procedural::Scene::Sphere, VertexForm::Compact).coarsened([13, 0], over_trees).err().expect("no room").to_string()
+    let Err(told) = scene(procedural::Scene::Sphere, VertexForm::Compact).coarsened([13, 0], over_trees) else {
+        panic!("there is no room")
+    };
+    assert!(told.to_string().contains("at most 12 are possible"), "{told}");
 }
