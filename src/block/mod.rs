@@ -86,7 +86,7 @@ impl Form {
 pub trait Block {
     /// Its name: the file here, the file and module in `rtl/`.
     const NAME: &'static str;
-    /// Cycles of its RTL as it stands in `rtl/`: for [`MAX_LEVELS`](crate::num::MAX_LEVELS), and three edges per cycle.
+    /// Cycles of its RTL as it stands in `rtl/`: for [`MAX_LEVELS`], and three edges per cycle.
     const TIMING: Timing;
     /// What goes in.
     type In: Wire;
