@@ -11,7 +11,7 @@ use lodray::format::{self, Scene, SceneInfo};
 use lodray::mesh::{
     BoundKind, DEFAULT_CREASE_ANGLE, DEFAULT_MAX_ERROR, MeshFormat, RemeshOptions, Surface, TriangleMesh, read, read_as, read_bytes, remesh,
 };
-use lodray::num::VertexForm;
+use lodray::num::{BOX_SHIFT, MOST_DIRECTION_ZEROS, VertexForm};
 use std::io::Read;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
@@ -29,10 +29,10 @@ pub struct FormArgs {
     #[arg(long, value_name = "FORM", value_parser = named::<VertexForm>(), default_value = VertexForm::default().name())]
     pub vertices: VertexForm,
     /// Zero bits at the bottom of all coordinates, of vertices, morphed triangles and origins of rays: 0 to 16 less the splits. A hardware can leave them out
-    #[arg(long, value_name = "BITS", default_value_t = 0, value_parser = whole::<u32>(0..=16), allow_negative_numbers = true)]
+    #[arg(long, value_name = "BITS", default_value_t = 0, value_parser = whole::<u32>(0..=u64::from(BOX_SHIFT)), allow_negative_numbers = true)]
     pub coordinate_zeros: u32,
     /// Zero bits at the bottom of the directions of rays, 0 to 14
-    #[arg(long, value_name = "BITS", default_value_t = 0, value_parser = whole::<u32>(0..=14), allow_negative_numbers = true)]
+    #[arg(long, value_name = "BITS", default_value_t = 0, value_parser = whole::<u32>(0..=u64::from(MOST_DIRECTION_ZEROS)), allow_negative_numbers = true)]
     pub direction_zeros: u32,
 }
 
