@@ -28,7 +28,11 @@ await page.goto(address);
 await page.waitForSelector("html[data-ready]");
 const ready = Number(await page.evaluate(() => document.documentElement.dataset.ready));
 
-const rendered = (ms = 150) => page.waitForTimeout(ms);
+/** Frames, not time alone: a busy machine may draw none for a while. */
+const rendered = async (ms = 150) => {
+  await page.evaluate(() => new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done))));
+  await page.waitForTimeout(ms);
+};
 /** What the diagrams of a section show. */
 const dots = (id) => page.evaluate((id) => [...document.querySelectorAll(`#${id} [data-point]`)].map((e) => [Number(e.dataset.x), Number(e.dataset.y)]), id);
 
@@ -81,6 +85,8 @@ if (doc) {
 
   // The table beside the plot.
   await work.locator("summary").first().click();
+  // Its rows are made at the toggle event, which comes after the click.
+  await work.locator("td[data-value]").first().waitFor();
   const cells = await work.locator("td[data-value]").evaluateAll((all) => all.map((e) => [Number(e.dataset.value), e.textContent]));
   const values = new Set(cells.map(([v]) => v));
   check(of.every((p) => values.has(p.picture.rmse) && values.has(costOf(p, "milliseconds"))), "the table lacks a figure of the document");
