@@ -67,10 +67,20 @@ class Scene:
 
     def pictures(self, scene):
         """The views as pictures."""
-        out = self.path("png")
+        out = self.path("pictures")
         for distance in DISTANCES:
             call("--quiet", "render", scene, "--distance", distance, "--size", SIZE, "--shading", "full", "-o", out)
-            yield out.read_bytes()
+            yield from (b"".join(pixels((out / name).read_bytes())) for name in ["image.png", "levels.png", "normals.png"])
+
+
+def pixels(png):
+    """The pixels of a PNG file, without what it says of its scene."""
+    at = 8
+    while at < len(png):
+        size, kind = int.from_bytes(png[at : at + 4], "big"), png[at + 4 : at + 8]
+        if kind in (b"IHDR", b"IDAT"):
+            yield png[at + 8 : at + 8 + size]
+        at += 12 + size
 
 
 def main():
