@@ -140,8 +140,10 @@ module child_boxes #(
     .valid_o(valid_ends), .ready_i(ready_ends), .data_o({outer_low_q, outer_high_q, low_q, high_q, tree_q, tag_ends})
   );
 
-  // Stage 3: these as far as codes reach, or the morphed triangle where it reaches further, always within the range.
+  // Stage 3: these as far as codes reach, or the morphed triangle, if there is one, where it reaches further, always within the range.
+  logic                     widens;
   logic [3:0][6*CODE_W-1:0] bounds;
+  assign widens = lod_pkg::LOD_TEST != 0 && tree_q;
   for (genvar i = 0; i < 12; i++) begin : g_plane
     localparam int unsigned CHILD = i / 3;
     localparam int unsigned AXIS = i % 3;
@@ -152,9 +154,9 @@ module child_boxes #(
     assign above  = !lower[SUM_W-1] && lower[SUM_W-2:CODE_W-1] != '0;
     assign below  = lower[SUM_W-1] && (lower[SUM_W-2:CODE_W-1] != '1 || lower[CODE_W-2:0] == '0);
     assign beyond = !upper[SUM_W-1] && upper[SUM_W-2:CODE_W-1] != '0;
-    assign bounds[CHILD][(5-AXIS)*CODE_W +: CODE_W] = tree_q && SUM_W'(least) < lower ? least
+    assign bounds[CHILD][(5-AXIS)*CODE_W +: CODE_W] = widens && SUM_W'(least) < lower ? least
                                                     : above ? MOST : below ? -MOST : lower[CODE_W-1:0];
-    assign bounds[CHILD][(2-AXIS)*CODE_W +: CODE_W] = tree_q && SUM_W'(most) > upper ? most : beyond ? MOST : upper[CODE_W-1:0];
+    assign bounds[CHILD][(2-AXIS)*CODE_W +: CODE_W] = widens && SUM_W'(most) > upper ? most : beyond ? MOST : upper[CODE_W-1:0];
   end
   pipe_skid #(.W(4 * 6 * CODE_W + TAG_W)) u_out (
     .clk_i, .rst_ni, .valid_i(valid_ends), .ready_o(ready_ends), .data_i({bounds, tag_ends}),

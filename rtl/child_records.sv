@@ -8,7 +8,7 @@ module child_records (
   input  logic                              tree_i,
   input  logic [255:0]                      line_i,
   input  logic [3:0]                        level_i,
-  input  logic [lod_pkg::NODE_W-1:0]        node_i,
+  input  logic [lod_pkg::KEPT_NODE_W-1:0]        node_i,
   input  logic [2:0]                        count_i,
   input  logic [3:0][1:0]                   order_i,
   input  logic [3:0][lod_pkg::T_NEAR_W-1:0] t_near_i,

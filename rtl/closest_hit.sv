@@ -15,9 +15,9 @@ module closest_hit (
   input  logic                               select_valid_i,
   input  lod_pkg::hit_select_out_t           select_i,
   input  logic [lod_pkg::RAY_T_W-1:0]        t_i,
-  input  logic [27:0]                        tree_i,
+  input  logic [lod_pkg::INDEX_W-1:0]        tree_i,
   input  logic [3:0]                         level_i,
-  input  logic [lod_pkg::NODE_W-1:0]         node_i,
+  input  logic [lod_pkg::KEPT_NODE_W-1:0]    node_i,
   input  logic                               front_i,
   input  logic [lod_pkg::EDGE_FUNCTION_W-1:0] v_i,
   input  logic [lod_pkg::EDGE_FUNCTION_W-1:0] w_i,
@@ -42,13 +42,10 @@ module closest_hit (
   logic                                known_q;
   logic [lod_pkg::RAY_T_W-1:0]         t_max_q;
   logic [lod_pkg::FULL_ID_W-1:0]       id_q;
-  logic [27:0]                         tree_q;
-  logic [3:0]                          level_q;
-  logic [lod_pkg::NODE_W-1:0]          node_q;
+  logic [lod_pkg::INDEX_W-1:0]         tree_q;
   logic                                front_q;
   logic [EDGE_W-1:0]                   v_q, w_q, det_q;
   logic [lod_pkg::BARY_W-1:0]          b0_q, b1_q, b2_q;
-  lod_pkg::bary_map_out_t              full_q;
 
   assign {known_o, t_max_o, id_o} = {known_q, t_max_q, id_q};
 
@@ -63,8 +60,6 @@ module closest_hit (
     if (select_valid_i && select_i.closer) begin
       id_q    <= select_i.id;
       tree_q  <= tree_i;
-      level_q <= level_i;
-      node_q  <= node_i;
       front_q <= front_i;
       {v_q, w_q, det_q} <= {EDGE_W'(v_i >> ZEROS), EDGE_W'(w_i >> ZEROS), EDGE_W'(det_i >> ZEROS)};
     end
@@ -79,12 +74,41 @@ module closest_hit (
     if (divide_valid_i && divide_what_i == lod_pkg::DIVIDE_FOR_W) b2_q <= divide_i.quotient[lod_pkg::BARY_W:1];
     // Both were rounded down and v + w <= det: not negative.
     if (sum_i) b0_q <= 32'h8000_0000 - b1_q - b2_q;
-    if (map_valid_i) full_q <= map_i;
+  end
+
+  // Level and node, where trees have any but their roots.
+  logic [3:0]                       level;
+  logic [lod_pkg::NODE_INDEX_W-1:0] node;
+  if (lod_pkg::STORED_LEVELS != 0) begin : g_place
+    logic [3:0]                      level_q;
+    logic [lod_pkg::KEPT_NODE_W-1:0] node_q;
+    always_ff @(posedge clk_i) begin
+      if (select_valid_i && select_i.closer) {level_q, node_q} <= {level_i, node_i};
+    end
+    assign {level, node} = {level_q, lod_pkg::NODE_INDEX_W'(node_q)};
+  end else begin : g_root
+    logic unused_place;
+    assign {level, node} = '0;
+    assign unused_place  = ^{level_i, node_i};
+  end
+
+  // The full-resolution triangle: this one, where all hits are on such.
+  lod_pkg::bary_map_out_t full;
+  if (lod_pkg::HIT_MAPPING != 0) begin : g_full
+    lod_pkg::bary_map_out_t full_q;
+    always_ff @(posedge clk_i) begin
+      if (map_valid_i) full_q <= map_i;
+    end
+    assign full = full_q;
+  end else begin : g_finest
+    logic unused_map;
+    assign full       = {node, b0_q, b1_q, b2_q};
+    assign unused_map = ^{map_valid_i, map_i};
   end
 
   // The hit's level is at most N.
-  assign map_o = {levels_i - level_q, lod_pkg::NODE_INDEX_W'(node_q), b0_q, b1_q, b2_q};
-  assign hit_o = {t_max_q, front_q, tree_q, level_q, lod_pkg::NODE_INDEX_W'(node_q), b0_q, b1_q, b2_q, full_q};
+  assign map_o = {levels_i - level, node, b0_q, b1_q, b2_q};
+  assign hit_o = {t_max_q, front_q, 28'(tree_q), level, node, b0_q, b1_q, b2_q, full};
 
 endmodule
 

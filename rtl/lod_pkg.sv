@@ -8,10 +8,18 @@ package lod_pkg;
 
   // This hardware: `Hardware` in Rust, which prints this file. All that follows from these is made smaller or larger with them.
   localparam int unsigned MAX_LEVELS = 10;       // splits N of a model
+  localparam int unsigned STORED_LEVELS = 10;    // of a tree at most: below, there are triangles
   localparam int unsigned MAX_BVH_DEPTH = 24;    // quad-BVH nodes on a path from the root to a tree
   localparam int unsigned CONTEXTS = 4;          // rays under way in a traversal unit, if its parameter does not say otherwise
   localparam int unsigned CONTEXT_W = 6;         // bits of a context's number
   localparam int unsigned EDGES_PER_CYCLE = 3;   // edge functions that tri_test evaluates in a cycle, if its parameter does not say otherwise
+  localparam int unsigned INDEX_W = 28;          // of the number of a quad-BVH node, of a tree, and of a node, where it is kept
+  localparam int unsigned LINE_W = 28;           // of the numbers of a tree's first sibling group and vertex line
+  localparam int unsigned LOD_TEST = 1;          // levels of detail are chosen, and triangles morphed: 1, or 0 if all rays are of full detail or of none
+  localparam int unsigned START_RADIUS = 1;      // cones can have a radius where their rays start
+  localparam int unsigned HIT_MAPPING = 1;       // hits can be above the finest level
+  localparam int unsigned COMPACT_VERTICES = 1;  // inserted vertices can be displacements
+  localparam int unsigned EXACT_VERTICES = 1;    // they can be stored as they are
   localparam int unsigned COORDINATE_ZEROS = 0;  // zero bits at the bottom of every coordinate, which it leaves out
   localparam int unsigned DIRECTION_ZEROS = 0;   // of every component of a direction
 
@@ -39,9 +47,11 @@ package lod_pkg;
 
   // Sizes.
   localparam int unsigned MAX_CONTEXTS = 64;    // that CONTEXT_W can number
-  localparam int unsigned STACK_ENTRIES = 103;  // 3 (MAX_BVH_DEPTH + MAX_LEVELS) + 1: each level leaves at most three siblings waiting
+  localparam int unsigned STACK_ENTRIES = 103;  // 3 (MAX_BVH_DEPTH + STORED_LEVELS) + 1: each level leaves at most three siblings waiting
+  localparam int unsigned KEPT_ENTRY_W = 75;    // of a stack entry, where it is kept
   localparam int unsigned SPLIT_TRIANGLES = 9;  // of a context: one of each level that splits into nodes
-  localparam int unsigned NODE_W = 20;          // of a node within its level, where it is kept: two bits of each level
+  localparam int unsigned NODE_W = 20;          // of a node within its level: two bits of each level
+  localparam int unsigned KEPT_NODE_W = 20;     // where it is kept: two bits of each stored level
 
   // Scales.
   localparam int unsigned BOX_SHIFT = 16;
@@ -714,6 +724,17 @@ package lod_pkg;
   localparam logic [1:0] ENTRY_BVH_NODE = 2'd0;
   localparam logic [1:0] ENTRY_TREE = 2'd1;
   localparam logic [1:0] ENTRY_TREE_NODE = 2'd2;
+
+  // They as they are kept: indices of this hardware's bits, and level and codes only where trees have nodes.
+  localparam int unsigned WIDE_ENTRY_W = STACK_ENTRY_W - 28 + INDEX_W;
+  function automatic logic [KEPT_ENTRY_W-1:0] keep_entry(input stack_entry_t e);
+    keep_entry = KEPT_ENTRY_W'({e.level, e.e0, e.e1, e.e2, e.t_near, e.kind, INDEX_W'(e.index)});
+  endfunction
+  function automatic stack_entry_t whole_entry(input logic [KEPT_ENTRY_W-1:0] kept);
+    logic [INDEX_W-1:0] index;
+    {whole_entry.level, whole_entry.e0, whole_entry.e1, whole_entry.e2, whole_entry.t_near, whole_entry.kind, index} = WIDE_ENTRY_W'(kept);
+    whole_entry.index = 28'(index);
+  endfunction
 
   // What a division is for.
   localparam logic [1:0] DIVIDE_FOR_T = 2'd0;

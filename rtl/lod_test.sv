@@ -92,9 +92,10 @@ module lod_test #(
   );
 
   // D of each edge, and its bound in time for it.
-  lod_pkg::cone_t cone_q;
+  lod_pkg::cone_t cone, cone_q;
+  assign cone = {lod_pkg::START_RADIUS != 0 ? in_i.ray.cone.offset : '0, in_i.ray.cone.slope, in_i.ray.cone.shift};
   pipe_delay #(.W(lod_pkg::CONE_W), .STAGES(NEARER_LATENCY), .SKIDS(NEARER_SKIDS)) u_cone (
-    .clk_i, .rst_ni, .valid_i, .ready_o(), .data_i(in_i.ray.cone), .valid_o(), .ready_i(ready_nearer), .data_o(cone_q)
+    .clk_i, .rst_ni, .valid_i, .ready_o(), .data_i(cone), .valid_o(), .ready_i(ready_nearer), .data_o(cone_q)
   );
   logic [2:0][CODE_W-1:0] codes_q;
   lod_pkg::bound_scale_t  scale_q;

@@ -39,108 +39,131 @@ module morph_vertex (
   localparam int unsigned PRODUCT_W = DIFFERENCE_W + S_W;
   localparam int unsigned PRODUCT_LATENCY = lod_pkg::multiplier_latency(DIFFERENCE_W, S_W);
   localparam int unsigned FRACTION_W = 8;
-  if (lod_pkg::TESSELLATE_LATENCY != PRODUCT_LATENCY + 5) begin : g_illegal_latency
-    $error("morph_vertex: lod_pkg::TESSELLATE_LATENCY must be %0d", PRODUCT_LATENCY + 5);
+  // Where nothing is morphed the vertex is all there is.
+  localparam bit MORPHING = lod_pkg::LOD_TEST != 0;
+  localparam int unsigned LATENCY = MORPHING ? PRODUCT_LATENCY + 5 : 2;
+  if (lod_pkg::TESSELLATE_LATENCY != LATENCY) begin : g_illegal_latency
+    $error("morph_vertex: lod_pkg::TESSELLATE_LATENCY must be %0d", LATENCY);
   end
 
-  // Midpoints: 33-bit sums, even, so exact in 32 bits again. A vertex that is stored itself takes the place of the midpoint, without a displacement.
+  // Midpoint: a 33-bit sum, even, so exact in 32 bits again. A vertex that is stored itself takes the place of the midpoint, without a displacement.
   logic [2:0][V_W-1:0]     v;
-  logic [2:0][W-1:0]       base, m, base_q, m_q;
+  logic [2:0][W-1:0]       base, base_q;
   logic [2:0][STEPS_W-1:0] steps, steps_q;
   logic [SHIFT_W-1:0]      shift_q;
-  logic [GRID_W-1:0]       grid_m;
-  logic [STATE_W-1:0]      s_m;
   logic                    valid_m, ready_m;
   assign v = v_i;
   for (genvar k = 0; k < 3; k++) begin : g_midpoint
-    logic signed [W-1:0] fa, fb, pa, pb;
-    logic [W:0]          full_sum, morphed_sum;
+    logic signed [W-1:0] fa, fb;
+    logic [W:0]          sum;
     logic                unused_even;
     assign {fa, fb}    = {fa_i[k*W +: W], fb_i[k*W +: W]};
-    assign {pa, pb}    = {pa_i[k*W +: W], pb_i[k*W +: W]};
-    assign full_sum    = (W+1)'(fa) + (W+1)'(fb);
-    assign morphed_sum = (W+1)'(pa) + (W+1)'(pb);
-    assign base[k]     = compact_i ? full_sum[W:1] : W'(v[k] >> ZEROS);
+    assign sum         = (W+1)'(fa) + (W+1)'(fb);
+    assign base[k]     = compact_i ? sum[W:1] : W'(v[k] >> ZEROS);
     assign steps[k]    = compact_i ? v[k][STEPS_W-1:0] : '0;
-    assign m[k]        = morphed_sum[W:1];
-    assign unused_even = full_sum[0] ^ morphed_sum[0];
+    assign unused_even = sum[0];
   end
-  pipe_stage #(.W(3 * (2 * W + STEPS_W) + SHIFT_W + STATE_W + GRID_W)) u_midpoint (
-    .clk_i, .rst_ni, .valid_i, .ready_o, .data_i({base, steps, m, shift_i, s_i, grid_i}),
-    .valid_o(valid_m), .ready_i(ready_m), .data_o({base_q, steps_q, m_q, shift_q, s_m, grid_m})
-  );
 
   // g: 32 bits for legal displacements.
-  logic [2:0][W-1:0]  g, g_q, m_g;
-  logic [GRID_W-1:0]  grid_g;
-  logic [STATE_W-1:0] s_g;
-  logic               valid_g, ready_g;
+  logic [2:0][W-1:0] g;
   for (genvar k = 0; k < 3; k++) begin : g_full
     logic signed [STEPS_W-1:0] displacement;
     assign displacement = steps_q[k];
     // Steps have all the zeros that are left out.
     assign g[k]         = base_q[k] + (W'(displacement) << (shift_q - SHIFT_W'(ZEROS)));
   end
-  pipe_stage #(.W(6 * W + STATE_W + GRID_W)) u_full (
-    .clk_i, .rst_ni, .valid_i(valid_m), .ready_o(ready_m), .data_i({g, m_q, s_m, grid_m}),
-    .valid_o(valid_g), .ready_i(ready_g), .data_o({g_q, m_g, s_g, grid_g})
-  );
 
-  // g - m: 33 bits.
-  logic [2:0][DIFFERENCE_W-1:0] difference, difference_q;
-  logic [2:0][W-1:0]            g_d, m_d;
-  logic [GRID_W-1:0]            grid_d;
-  logic [STATE_W-1:0]           s_d;
-  logic                         valid_d, ready_d;
-  for (genvar k = 0; k < 3; k++) begin : g_difference
-    logic signed [W-1:0] to, from;
-    assign {to, from}    = {g_q[k], m_g[k]};
-    assign difference[k] = DIFFERENCE_W'(to) - DIFFERENCE_W'(from);
-  end
-  pipe_stage #(.W(3 * DIFFERENCE_W + 6 * W + STATE_W + GRID_W)) u_difference (
-    .clk_i, .rst_ni, .valid_i(valid_g), .ready_o(ready_g), .data_i({difference, g_q, m_g, s_g, grid_g}),
-    .valid_o(valid_d), .ready_i(ready_d), .data_o({difference_q, g_d, m_d, s_d, grid_d})
-  );
-
-  // (g - m) s: 33 bits times 9. The step, on the grid.
-  logic [2:0]        valid_product, ready_product;
-  logic [2:0][W-1:0] step, step_q, g_p, m_p, g_s, m_s, morphed;
-  logic [GRID_W-1:0] grid_p;
-  logic              valid_p, ready_p, valid_s, ready_s;
-  pipe_delay #(.W(6 * W + GRID_W), .STAGES(PRODUCT_LATENCY)) u_beside (
-    .clk_i, .rst_ni, .valid_i(valid_d), .ready_o(ready_d), .data_i({g_d, m_d, grid_d}),
-    .valid_o(valid_p), .ready_i(ready_p), .data_o({g_p, m_p, grid_p})
-  );
-  for (genvar k = 0; k < 3; k++) begin : g_step
-    logic [PRODUCT_W-1:0] product;
-    logic                 unused_bits;
-    multiplier #(.A_W(DIFFERENCE_W), .B_W(S_W)) u_product (
-      .clk_i, .rst_ni, .valid_i(valid_d), .ready_o(ready_product[k]), .a_i(difference_q[k]), .b_i({1'b0, s_d}),
-      .valid_o(valid_product[k]), .ready_i(ready_p), .product_o(product)
-    );
-    always_comb begin
-      step[k] = product[FRACTION_W +: W];
-      for (int unsigned i = 0; i < MOST_GRID - ZEROS; i++) begin
-        if (grid_p > GRID_W'(i + ZEROS)) step[k][i] = 1'b0;
-      end
+  if (MORPHING) begin : g_morph
+    // The midpoint of the edge as morphed goes along.
+    logic [2:0][W-1:0]  m, m_q, g_q, m_g;
+    logic [GRID_W-1:0]  grid_m, grid_g;
+    logic [STATE_W-1:0] s_m, s_g;
+    logic               valid_g, ready_g;
+    for (genvar k = 0; k < 3; k++) begin : g_between
+      logic signed [W-1:0] pa, pb;
+      logic [W:0]          sum;
+      logic                unused_even;
+      assign {pa, pb}    = {pa_i[k*W +: W], pb_i[k*W +: W]};
+      assign sum         = (W+1)'(pa) + (W+1)'(pb);
+      assign m[k]        = sum[W:1];
+      assign unused_even = sum[0];
     end
-    assign unused_bits = ^{product[PRODUCT_W-1:FRACTION_W+W], product[FRACTION_W-1:0]};
-  end
-  pipe_stage #(.W(9 * W)) u_step (
-    .clk_i, .rst_ni, .valid_i(valid_p), .ready_o(ready_p), .data_i({step, g_p, m_p}),
-    .valid_o(valid_s), .ready_i(ready_s), .data_o({step_q, g_s, m_s})
-  );
+    pipe_stage #(.W(3 * (2 * W + STEPS_W) + SHIFT_W + STATE_W + GRID_W)) u_midpoint (
+      .clk_i, .rst_ni, .valid_i, .ready_o, .data_i({base, steps, m, shift_i, s_i, grid_i}),
+      .valid_o(valid_m), .ready_i(ready_m), .data_o({base_q, steps_q, m_q, shift_q, s_m, grid_m})
+    );
+    pipe_stage #(.W(6 * W + STATE_W + GRID_W)) u_full (
+      .clk_i, .rst_ni, .valid_i(valid_m), .ready_o(ready_m), .data_i({g, m_q, s_m, grid_m}),
+      .valid_o(valid_g), .ready_i(ready_g), .data_o({g_q, m_g, s_g, grid_g})
+    );
 
-  // It and m add up to 32 bits again, between m and g.
-  for (genvar k = 0; k < 3; k++) begin : g_morphed
-    assign morphed[k] = m_s[k] + step_q[k];
-  end
-  pipe_stage #(.W(6 * W)) u_out (
-    .clk_i, .rst_ni, .valid_i(valid_s), .ready_o(ready_s), .data_i({g_s, morphed}), .valid_o, .ready_i, .data_o({full_o, morphed_o})
-  );
+    // g - m: 33 bits.
+    logic [2:0][DIFFERENCE_W-1:0] difference, difference_q;
+    logic [2:0][W-1:0]            g_d, m_d;
+    logic [GRID_W-1:0]            grid_d;
+    logic [STATE_W-1:0]           s_d;
+    logic                         valid_d, ready_d;
+    for (genvar k = 0; k < 3; k++) begin : g_difference
+      logic signed [W-1:0] to, from;
+      assign {to, from}    = {g_q[k], m_g[k]};
+      assign difference[k] = DIFFERENCE_W'(to) - DIFFERENCE_W'(from);
+    end
+    pipe_stage #(.W(3 * DIFFERENCE_W + 6 * W + STATE_W + GRID_W)) u_difference (
+      .clk_i, .rst_ni, .valid_i(valid_g), .ready_o(ready_g), .data_i({difference, g_q, m_g, s_g, grid_g}),
+      .valid_o(valid_d), .ready_i(ready_d), .data_o({difference_q, g_d, m_d, s_d, grid_d})
+    );
 
-  logic unused_lockstep;
-  assign unused_lockstep = ^{valid_product, ready_product};
+    // (g - m) s: 33 bits times 9. The step, on the grid.
+    logic [2:0]        valid_product, ready_product;
+    logic [2:0][W-1:0] step, step_q, g_p, m_p, g_s, m_s, morphed;
+    logic [GRID_W-1:0] grid_p;
+    logic              valid_p, ready_p, valid_s, ready_s;
+    pipe_delay #(.W(6 * W + GRID_W), .STAGES(PRODUCT_LATENCY)) u_beside (
+      .clk_i, .rst_ni, .valid_i(valid_d), .ready_o(ready_d), .data_i({g_d, m_d, grid_d}),
+      .valid_o(valid_p), .ready_i(ready_p), .data_o({g_p, m_p, grid_p})
+    );
+    for (genvar k = 0; k < 3; k++) begin : g_step
+      logic [PRODUCT_W-1:0] product;
+      logic                 unused_bits;
+      multiplier #(.A_W(DIFFERENCE_W), .B_W(S_W)) u_product (
+        .clk_i, .rst_ni, .valid_i(valid_d), .ready_o(ready_product[k]), .a_i(difference_q[k]), .b_i({1'b0, s_d}),
+        .valid_o(valid_product[k]), .ready_i(ready_p), .product_o(product)
+      );
+      always_comb begin
+        step[k] = product[FRACTION_W +: W];
+        for (int unsigned i = 0; i < MOST_GRID - ZEROS; i++) begin
+          if (grid_p > GRID_W'(i + ZEROS)) step[k][i] = 1'b0;
+        end
+      end
+      assign unused_bits = ^{product[PRODUCT_W-1:FRACTION_W+W], product[FRACTION_W-1:0]};
+    end
+    pipe_stage #(.W(9 * W)) u_step (
+      .clk_i, .rst_ni, .valid_i(valid_p), .ready_o(ready_p), .data_i({step, g_p, m_p}),
+      .valid_o(valid_s), .ready_i(ready_s), .data_o({step_q, g_s, m_s})
+    );
+
+    // It and m add up to 32 bits again, between m and g.
+    for (genvar k = 0; k < 3; k++) begin : g_morphed
+      assign morphed[k] = m_s[k] + step_q[k];
+    end
+    pipe_stage #(.W(6 * W)) u_out (
+      .clk_i, .rst_ni, .valid_i(valid_s), .ready_o(ready_s), .data_i({g_s, morphed}), .valid_o, .ready_i, .data_o({full_o, morphed_o})
+    );
+
+    logic unused_lockstep;
+    assign unused_lockstep = ^{valid_product, ready_product};
+  end else begin : g_no_morph
+    logic unused_morph;
+    pipe_stage #(.W(3 * (W + STEPS_W) + SHIFT_W)) u_midpoint (
+      .clk_i, .rst_ni, .valid_i, .ready_o, .data_i({base, steps, shift_i}),
+      .valid_o(valid_m), .ready_i(ready_m), .data_o({base_q, steps_q, shift_q})
+    );
+    pipe_stage #(.W(3 * W)) u_full (
+      .clk_i, .rst_ni, .valid_i(valid_m), .ready_o(ready_m), .data_i(g), .valid_o, .ready_i, .data_o(full_o)
+    );
+    assign morphed_o    = full_o;
+    assign unused_morph = ^{grid_i, s_i, pa_i, pb_i};
+  end
 
 endmodule
 

@@ -78,8 +78,13 @@ module ray_context (
   input  logic                             hit_grant_i
 );
 
-  localparam int unsigned NODE_W = lod_pkg::NODE_W;
-  localparam int unsigned SPLIT_W = 12 * lod_pkg::KEPT_POINT_W;
+  localparam int unsigned NODE_W = lod_pkg::KEPT_NODE_W;
+  // What this hardware has.
+  localparam bit SPLITTING = lod_pkg::STORED_LEVELS != 0;
+  localparam bit CHOOSING = lod_pkg::LOD_TEST != 0;
+  localparam bit MAPPING = lod_pkg::HIT_MAPPING != 0;
+  // A triangle with its inserted vertices, at full resolution and, where it is another, as morphed.
+  localparam int unsigned SPLIT_W = (CHOOSING ? 12 : 6) * lod_pkg::KEPT_POINT_W;
   localparam int unsigned SPLITS = lod_pkg::SPLIT_TRIANGLES;
   localparam int unsigned SPLIT_INDEX_W = SPLITS > 1 ? $clog2(SPLITS) : 1;
 
@@ -92,17 +97,19 @@ module ray_context (
   logic [31:0]              tag_q;
   lod_pkg::kept_point_t     origin_q;
   lod_pkg::kept_direction_t direction_q;
-  lod_pkg::cone_t           cone_q;
   lod_pkg::kept_setup_t     setup_q;
 
   // Where it is: entry under visit; tree, how many of its levels are stored, its first sibling group and vertex line; node; its triangle with inserted vertices, at full resolution (f, g) and as morphed (p, q); bound codes and edge states.
-  lod_pkg::stack_entry_t            entry_q;
-  logic [27:0]                      tree_q, group_q, vertices_q;
-  logic [3:0]                       depth_q, level_q;
-  logic [NODE_W-1:0]                node_q;
-  lod_pkg::kept_point_t             f0_q, f1_q, f2_q, g0_q, g1_q, g2_q, p0_q, p1_q, p2_q, q0_q, q1_q, q2_q;
-  logic [lod_pkg::BOUND_CODE_W-1:0] e0_q, e1_q, e2_q;
-  lod_pkg::lod_test_out_t           lod_q;
+  logic [lod_pkg::KEPT_ENTRY_W-1:0] entry_q;
+  lod_pkg::stack_entry_t            entry;
+  logic [lod_pkg::INDEX_W-1:0]      tree_q;
+  logic [lod_pkg::LINE_W-1:0]       group, vertices;
+  logic [3:0]                       depth, level;
+  logic [NODE_W-1:0]                node;
+  lod_pkg::kept_point_t             f0_q, f1_q, f2_q, g0, g1, g2, p0, p1, p2, q0, q1, q2;
+  logic [lod_pkg::BOUND_CODE_W-1:0] e0, e1, e2;
+  lod_pkg::lod_test_out_t           lod;
+  assign entry = lod_pkg::whole_entry(entry_q);
 
   // Lines asked for and not yet sent, sent and not yet there, and there: a node, a sibling group or the corners of a record; the rest of the record or vertices.
   logic [1:0]   want_q, waiting_q;
@@ -127,17 +134,18 @@ module ray_context (
   assign record        = line1_q;
   assign inserted      = line1_q;
   // Two siblings share a line; the root's are in the lower half of its record's.
-  assign displacements = node_q[0] ? line1_q[255:128] : line1_q[127:0];
+  assign displacements = node[0] ? line1_q[255:128] : line1_q[127:0];
 
-  logic group_there, compact_root;
+  logic group_there, compact, compact_root;
   // Line 0 is a sibling group.
   assign group_there  = fetch_q == lod_pkg::VERTEX || fetch_q == lod_pkg::GROUP;
   // Its vertices come with its record: only the group is fetched, later.
-  assign compact_root = scene_i.compact && level_q == '0;
+  assign compact      = lod_pkg::EXACT_VERTICES == 0 || (lod_pkg::COMPACT_VERTICES != 0 && scene_i.compact);
+  assign compact_root = compact && level == '0;
 
   logic last_split;
-  // depth_q <= MAX_LEVELS and level_q < depth_q where this is used.
-  assign last_split = level_q + 4'd1 == depth_q;
+  // depth <= STORED_LEVELS and level < depth where this is used.
+  assign last_split = level + 4'd1 == depth;
 
   // ---- Closest hit ----
 
@@ -146,9 +154,9 @@ module ray_context (
   logic [NODE_W-1:0] hit_node, chosen_node;
 
   // Children of level N - 1 at most: their nodes are below 4^N.
-  assign hit_level   = four_q ? level_q + 4'd1 : level_q;
-  assign hit_node    = four_q ? {node_q[NODE_W-3:0], hit_number_i} : node_q;
-  assign chosen_node = four_q ? {node_q[NODE_W-3:0], chosen_i.number} : node_q;
+  assign hit_level   = four_q ? level + 4'd1 : level;
+  assign hit_node    = four_q ? NODE_W'({node, hit_number_i}) : node;
+  assign chosen_node = four_q ? NODE_W'({node, chosen_i.number}) : node;
 
   logic                          known;
   logic [lod_pkg::RAY_T_W-1:0]   t_max;
@@ -187,23 +195,35 @@ module ray_context (
   // 17 + 18 bits against 35.
   assign drop = {top.t_near, lod_pkg::T_NEAR_TO_T_SHIFT'(0)} > t_max;
 
-  // One triangle with its inserted vertices per level that splits into nodes: levels 0 to MAX_LEVELS - 2.
-  logic [SPLIT_W-1:0]       splits_q [SPLITS];
-  logic [SPLIT_INDEX_W-1:0] parent_level;
-  lod_pkg::kept_point_t     b0, b1, b2, a0, a1, a2, n0, n1, n2, m0, m1, m2;
+  // One triangle with its inserted vertices per level that splits into nodes: levels 0 to STORED_LEVELS - 2. That of the node's parent: b with n, as morphed a with m.
+  lod_pkg::kept_point_t b0, b1, b2, a0, a1, a2, n0, n1, n2, m0, m1, m2;
 
-  assign parent_level = SPLIT_INDEX_W'(entry_q.level - 4'd1);
-  assign {b0, b1, b2, a0, a1, a2, n0, n1, n2, m0, m1, m2} = splits_q[parent_level];
+  // The inserted vertices that come now.
+  lod_pkg::kept_point_t g0_now, g1_now, g2_now, q0_now, q1_now, q2_now;
+  assign {g0_now, g1_now, g2_now} = {lod_pkg::keep_point(morph_i.g0), lod_pkg::keep_point(morph_i.g1), lod_pkg::keep_point(morph_i.g2)};
+  assign {q0_now, q1_now, q2_now} = {lod_pkg::keep_point(morph_i.q0), lod_pkg::keep_point(morph_i.q1), lod_pkg::keep_point(morph_i.q2)};
 
-  // The inserted vertices that come now, at full resolution and as morphed.
-  logic [SPLIT_W/2-1:0] inserted_now;
-  assign inserted_now = {lod_pkg::keep_point(morph_i.g0), lod_pkg::keep_point(morph_i.g1), lod_pkg::keep_point(morph_i.g2),
-                         lod_pkg::keep_point(morph_i.q0), lod_pkg::keep_point(morph_i.q1), lod_pkg::keep_point(morph_i.q2)};
+  if (SPLITS > 0) begin : g_splits
+    logic [SPLIT_W-1:0]       splits_q [SPLITS];
+    logic [SPLIT_W-1:0]       parent, own;
+    logic [SPLIT_INDEX_W-1:0] parent_level;
 
-  always_ff @(posedge clk_i) begin
-    if (morph_valid_i && !last_split) begin
-      splits_q[SPLIT_INDEX_W'(level_q)] <= {f0_q, f1_q, f2_q, p0_q, p1_q, p2_q, inserted_now};
+    assign parent_level = SPLIT_INDEX_W'(entry.level - 4'd1);
+    assign parent       = splits_q[parent_level];
+    if (CHOOSING) begin : g_both
+      assign own = {f0_q, f1_q, f2_q, g0_now, g1_now, g2_now, p0, p1, p2, q0_now, q1_now, q2_now};
+      assign {b0, b1, b2, n0, n1, n2, a0, a1, a2, m0, m1, m2} = parent;
+    end else begin : g_full
+      assign own = {f0_q, f1_q, f2_q, g0_now, g1_now, g2_now};
+      assign {b0, b1, b2, n0, n1, n2} = parent;
+      assign {a0, a1, a2, m0, m1, m2} = parent;
     end
+
+    always_ff @(posedge clk_i) begin
+      if (morph_valid_i && !last_split) splits_q[SPLIT_INDEX_W'(level)] <= own;
+    end
+  end else begin : g_no_splits
+    assign {b0, b1, b2, n0, n1, n2, a0, a1, a2, m0, m1, m2} = '0;
   end
 
   // ---- Children ----
@@ -217,7 +237,7 @@ module ray_context (
   child_records u_children (
     .tree_i(group_there),
     .line_i(line0_q),
-    .level_i(level_q), .node_i(node_q),
+    .level_i(level), .node_i(node),
     .count_i(count_q), .order_i(sorted_q.order), .t_near_i(sorted_q.t_near),
     .present_o(present), .origin_o(origin), .halves_o(halves), .exponents_o(exponents), .planes_o(planes), .entry_o(child_entry)
   );
@@ -239,7 +259,7 @@ module ray_context (
 
   always_comb begin
     fetch_o       = '0;
-    fetch_o.index = entry_q.index;
+    fetch_o.index = entry.index;
     case (fetch_q)
       lod_pkg::NODE: fetch_o.base = scene_i.nodes;
       lod_pkg::RECORD: begin
@@ -249,10 +269,10 @@ module ray_context (
       end
       default: begin
         fetch_o.base   = fetch_place_o ? scene_i.vertices : scene_i.bounds;
-        fetch_o.first  = fetch_place_o ? vertices_q : group_q;
-        fetch_o.level  = level_q;
-        fetch_o.index  = 28'(node_q);
-        fetch_o.halves = fetch_place_o && scene_i.compact;
+        fetch_o.first  = 28'(fetch_place_o ? vertices : group);
+        fetch_o.level  = level;
+        fetch_o.index  = 28'(node);
+        fetch_o.halves = fetch_place_o && compact;
       end
     endcase
   end
@@ -260,32 +280,61 @@ module ray_context (
   assign child_request_o = state_q == lod_pkg::CHILD && !waiting_q[0];
 
   // The node's triangle as others take it.
-  lod_pkg::point_t f0, f1, f2, g0, g1, g2, p0, p1, p2, q0, q1, q2;
-  assign {f0, f1, f2} = {lod_pkg::whole_point(f0_q), lod_pkg::whole_point(f1_q), lod_pkg::whole_point(f2_q)};
-  assign {g0, g1, g2} = {lod_pkg::whole_point(g0_q), lod_pkg::whole_point(g1_q), lod_pkg::whole_point(g2_q)};
-  assign {p0, p1, p2} = {lod_pkg::whole_point(p0_q), lod_pkg::whole_point(p1_q), lod_pkg::whole_point(p2_q)};
-  assign {q0, q1, q2} = {lod_pkg::whole_point(q0_q), lod_pkg::whole_point(q1_q), lod_pkg::whole_point(q2_q)};
+  lod_pkg::point_t whole_f0, whole_f1, whole_f2, whole_g0, whole_g1, whole_g2, whole_p0, whole_p1, whole_p2, whole_q0, whole_q1, whole_q2;
+  assign {whole_f0, whole_f1, whole_f2} = {lod_pkg::whole_point(f0_q), lod_pkg::whole_point(f1_q), lod_pkg::whole_point(f2_q)};
+  assign {whole_g0, whole_g1, whole_g2} = {lod_pkg::whole_point(g0), lod_pkg::whole_point(g1), lod_pkg::whole_point(g2)};
+  assign {whole_p0, whole_p1, whole_p2} = {lod_pkg::whole_point(p0), lod_pkg::whole_point(p1), lod_pkg::whole_point(p2)};
+  assign {whole_q0, whole_q1, whole_q2} = {lod_pkg::whole_point(q0), lod_pkg::whole_point(q1), lod_pkg::whole_point(q2)};
 
   assign child_o = {lod_pkg::whole_setup(setup_q), t_max, present, group_there, origin, halves, exponents, planes,
-                    f0, f1, f2, g0, g1, g2, p0, p1, p2, q0, q1, q2};
+                    whole_f0, whole_f1, whole_f2, whole_g0, whole_g1, whole_g2, whole_p0, whole_p1, whole_p2, whole_q0, whole_q1, whole_q2};
 
-  assign lod_request_o = state_q == lod_pkg::LOD;
-  assign lod_o         = {origin_whole, direction_whole, cone_q, p0, p1, p2, e0_q, e1_q, e2_q, scene_i.scale};
+  // The cone, as far as it counts; without a choice of levels, whether the ray is of no detail.
+  lod_pkg::cone_t cone;
+  logic           no_detail;
+  if (CHOOSING) begin : g_cone
+    localparam int unsigned CONE_W = lod_pkg::START_RADIUS != 0 ? lod_pkg::CONE_W : lod_pkg::CONE_W - 53;
+    logic [CONE_W-1:0] cone_q;
+    always_ff @(posedge clk_i) begin
+      if (take_i) cone_q <= CONE_W'(ray_i.ray.cone);
+    end
+    assign cone      = lod_pkg::CONE_W'(cone_q);
+    assign no_detail = 1'b0;
+  end else begin : g_extreme
+    assign cone = '0;
+    if (SPLITTING) begin : g_detail
+      logic no_detail_q;
+      always_ff @(posedge clk_i) begin
+        if (take_i) no_detail_q <= ray_i.ray.cone.offset[52];
+      end
+      assign no_detail = no_detail_q;
+    end else begin : g_none
+      assign no_detail = 1'b1;
+    end
+  end
+
+  assign lod_request_o = CHOOSING && state_q == lod_pkg::LOD;
+  assign lod_o         = {origin_whole, direction_whole, cone, whole_p0, whole_p1, whole_p2, e0, e1, e2, scene_i.scale};
+
+  // It is known whether the node's triangle serves: from the LOD test, or at once.
+  logic decided, refine;
+  assign decided = CHOOSING ? lod_valid_i : state_q == lod_pkg::LOD;
+  assign refine  = CHOOSING ? lod_i.refine : !no_detail && {e0, e1, e2} != '0;
 
   assign morph_request_o = state_q == lod_pkg::MORPH;
 
   always_comb begin
     morph_o         = '0;
-    morph_o.compact = scene_i.compact;
-    // level_q < levels here.
-    morph_o.grid    = scene_i.levels - level_q - 4'd1 + scene_i.zeros[3:0];
+    morph_o.compact = compact;
+    // level < levels here.
+    morph_o.grid    = scene_i.levels - level - 4'd1 + scene_i.zeros[3:0];
     morph_o.padding = scene_i.zeros >= 5'd4 ? 3'd0 : 3'd4 - scene_i.zeros[2:0];
     morph_o.scale   = scene_i.scale;
-    {morph_o.e0, morph_o.e1, morph_o.e2} = {e0_q, e1_q, e2_q};
-    {morph_o.s0, morph_o.s1, morph_o.s2} = {lod_q.s0, lod_q.s1, lod_q.s2};
-    {morph_o.f0, morph_o.f1, morph_o.f2} = {f0, f1, f2};
-    {morph_o.p0, morph_o.p1, morph_o.p2} = {p0, p1, p2};
-    if (scene_i.compact) begin
+    {morph_o.e0, morph_o.e1, morph_o.e2} = {e0, e1, e2};
+    {morph_o.s0, morph_o.s1, morph_o.s2} = {lod.s0, lod.s1, lod.s2};
+    {morph_o.f0, morph_o.f1, morph_o.f2} = {whole_f0, whole_f1, whole_f2};
+    {morph_o.p0, morph_o.p1, morph_o.p2} = {whole_p0, whole_p1, whole_p2};
+    if (compact) begin
       morph_o.v0 = {32'(displacements.v0.x), 32'(displacements.v0.y), 32'(displacements.v0.z)};
       morph_o.v1 = {32'(displacements.v1.x), 32'(displacements.v1.y), 32'(displacements.v1.z)};
       morph_o.v2 = {32'(displacements.v2.x), 32'(displacements.v2.y), 32'(displacements.v2.z)};
@@ -303,22 +352,22 @@ module ray_context (
     tri_o           = '0;
     tri_o.origin    = origin_whole;
     tri_o.direction = direction_whole;
-    if (!four_q) {tri_o.p0, tri_o.p1, tri_o.p2} = {p0, p1, p2};
+    if (!four_q) {tri_o.p0, tri_o.p1, tri_o.p2} = {whole_p0, whole_p1, whole_p2};
     else begin
       unique case (next_q)
-        2'd0: {tri_o.p0, tri_o.p1, tri_o.p2} = {p0, q2, q1};
-        2'd1: {tri_o.p0, tri_o.p1, tri_o.p2} = {q2, p1, q0};
-        2'd2: {tri_o.p0, tri_o.p1, tri_o.p2} = {q1, q0, p2};
-        2'd3: {tri_o.p0, tri_o.p1, tri_o.p2} = {q0, q1, q2};
+        2'd0: {tri_o.p0, tri_o.p1, tri_o.p2} = {whole_p0, whole_q2, whole_q1};
+        2'd1: {tri_o.p0, tri_o.p1, tri_o.p2} = {whole_q2, whole_p1, whole_q0};
+        2'd2: {tri_o.p0, tri_o.p1, tri_o.p2} = {whole_q1, whole_q0, whole_p2};
+        2'd3: {tri_o.p0, tri_o.p1, tri_o.p2} = {whole_q0, whole_q1, whole_q2};
       endcase
     end
   end
 
-  assign select_o    = {scene_i.levels, known, t_max, best_id, hit_t_i, tree_q, hit_level, lod_pkg::NODE_INDEX_W'(hit_node)};
+  assign select_o    = {scene_i.levels, known, t_max, best_id, hit_t_i, 28'(tree_q), hit_level, lod_pkg::NODE_INDEX_W'(hit_node)};
 
   assign divide_request_o = state_q == lod_pkg::DIVIDE_V || state_q == lod_pkg::DIVIDE_W;
   assign divide_what_o    = (state_q == lod_pkg::DIVIDE_V) ? lod_pkg::DIVIDE_FOR_V : lod_pkg::DIVIDE_FOR_W;
-  assign map_request_o = state_q == lod_pkg::MAP;
+  assign map_request_o = MAPPING && state_q == lod_pkg::MAP;
   assign hit_request_o = state_q == lod_pkg::DONE;
 
   always_comb begin
@@ -341,7 +390,7 @@ module ray_context (
       lod_pkg::IDLE:       if (take_i) state_d = lod_pkg::SETUP;
       lod_pkg::SETUP:      if (setup_grant_i) state_d = lod_pkg::SETUP_WAIT;
       lod_pkg::SETUP_WAIT: if (setup_valid_i) state_d = lod_pkg::VISIT;
-      lod_pkg::VISIT:      state_d = (entry_q.kind == lod_pkg::ENTRY_TREE_NODE) ? lod_pkg::LOD : lod_pkg::FETCH;
+      lod_pkg::VISIT:      state_d = (entry.kind == lod_pkg::ENTRY_TREE_NODE) ? lod_pkg::LOD : lod_pkg::FETCH;
       lod_pkg::FETCH: begin
         case (fetch_q)
           lod_pkg::NODE:   if (record_there) state_d = lod_pkg::CHILD;
@@ -361,15 +410,17 @@ module ray_context (
         if (stack_empty) state_d = known ? lod_pkg::DIVIDE_V : lod_pkg::DONE;
         else if (!drop) state_d = lod_pkg::VISIT;
       end
-      lod_pkg::LOD:         if (lod_grant_i) state_d = lod_pkg::LOD_WAIT;
-      lod_pkg::LOD_WAIT:    if (lod_valid_i) state_d = !lod_i.refine ? lod_pkg::TRI : compact_root ? lod_pkg::MORPH : lod_pkg::FETCH;
+      lod_pkg::LOD, lod_pkg::LOD_WAIT: begin
+        if (decided) state_d = !refine ? lod_pkg::TRI : compact_root ? lod_pkg::MORPH : lod_pkg::FETCH;
+        else if (lod_grant_i) state_d = lod_pkg::LOD_WAIT;
+      end
       lod_pkg::MORPH:       if (morph_grant_i) state_d = lod_pkg::MORPH_WAIT;
       lod_pkg::MORPH_WAIT:  if (morph_valid_i) state_d = last_split ? lod_pkg::TRI : compact_root ? lod_pkg::FETCH : lod_pkg::CHILD;
       lod_pkg::TRI:         if (left_q == '0 && pending_q == '0) state_d = lod_pkg::POP;
       lod_pkg::DIVIDE_V:    if (divide_grant_i) state_d = lod_pkg::DIVIDE_W;
       lod_pkg::DIVIDE_W:    if (divide_grant_i) state_d = lod_pkg::DIVIDE_WAIT;
       lod_pkg::DIVIDE_WAIT: if (divide_valid_i && divide_what_i == lod_pkg::DIVIDE_FOR_W) state_d = lod_pkg::SUM;
-      lod_pkg::SUM:         state_d = lod_pkg::MAP;
+      lod_pkg::SUM:         state_d = MAPPING ? lod_pkg::MAP : lod_pkg::DONE;
       lod_pkg::MAP:         if (map_grant_i) state_d = lod_pkg::MAP_WAIT;
       lod_pkg::MAP_WAIT:    if (map_valid_i) state_d = lod_pkg::DONE;
       lod_pkg::DONE:        if (hit_grant_i) state_d = lod_pkg::IDLE;
@@ -389,7 +440,6 @@ module ray_context (
       tag_q       <= ray_i.tag;
       origin_q    <= lod_pkg::keep_point(ray_i.ray.origin);
       direction_q <= lod_pkg::keep_direction(ray_i.ray.direction);
-      cone_q      <= ray_i.ray.cone;
     end
     if (setup_valid_i) setup_q <= lod_pkg::keep_setup(setup_i);
   end
@@ -403,35 +453,82 @@ module ray_context (
 
   always_ff @(posedge clk_i) begin
     if (setup_valid_i) entry_q <= '0;
-    else if (state_q == lod_pkg::PUSH && count_q == 3'd1) entry_q <= child_entry;
-    else if (pop && !drop) entry_q <= top;
+    else if (state_q == lod_pkg::PUSH && count_q == 3'd1) entry_q <= lod_pkg::keep_entry(child_entry);
+    else if (pop && !drop) entry_q <= lod_pkg::keep_entry(top);
   end
 
+  // A tree is entered, or a node of one.
+  logic enter_root, enter_node;
+  assign enter_root = state_q == lod_pkg::FETCH && fetch_q == lod_pkg::RECORD && record_there;
+  assign enter_node = state_q == lod_pkg::VISIT && entry.kind == lod_pkg::ENTRY_TREE_NODE;
+
   always_ff @(posedge clk_i) begin
-    if (state_q == lod_pkg::VISIT) begin
-      if (entry_q.kind == lod_pkg::ENTRY_TREE) tree_q <= entry_q.index;
-      if (entry_q.kind == lod_pkg::ENTRY_TREE_NODE) begin
-        level_q <= entry_q.level;
-        // Nodes of a tree are below 4^N.
-        node_q  <= entry_q.index[NODE_W-1:0];
-        {e0_q, e1_q, e2_q} <= {entry_q.e0, entry_q.e1, entry_q.e2};
-        unique case (entry_q.index[1:0])
-          2'd0: {f0_q, f1_q, f2_q, p0_q, p1_q, p2_q} <= {b0, n2, n1, a0, m2, m1};
-          2'd1: {f0_q, f1_q, f2_q, p0_q, p1_q, p2_q} <= {n2, b1, n0, m2, a1, m0};
-          2'd2: {f0_q, f1_q, f2_q, p0_q, p1_q, p2_q} <= {n1, n0, b2, m1, m0, a2};
-          2'd3: {f0_q, f1_q, f2_q, p0_q, p1_q, p2_q} <= {n0, n1, n2, m0, m1, m2};
+    if (state_q == lod_pkg::VISIT && entry.kind == lod_pkg::ENTRY_TREE) tree_q <= lod_pkg::INDEX_W'(entry.index);
+    if (enter_root) {f0_q, f1_q, f2_q} <= {root0, root1, root2};
+    else if (enter_node) begin
+      unique case (entry.index[1:0])
+        2'd0: {f0_q, f1_q, f2_q} <= {b0, n2, n1};
+        2'd1: {f0_q, f1_q, f2_q} <= {n2, b1, n0};
+        2'd2: {f0_q, f1_q, f2_q} <= {n1, n0, b2};
+        2'd3: {f0_q, f1_q, f2_q} <= {n0, n1, n2};
+      endcase
+    end
+  end
+
+  // Level, node and what else only trees with splits have.
+  if (SPLITTING) begin : g_place
+    logic [lod_pkg::LINE_W-1:0]       group_q, vertices_q;
+    logic [3:0]                       depth_q, level_q;
+    logic [NODE_W-1:0]                node_q;
+    logic [lod_pkg::BOUND_CODE_W-1:0] e0_q, e1_q, e2_q;
+    lod_pkg::kept_point_t             g0_q, g1_q, g2_q;
+
+    always_ff @(posedge clk_i) begin
+      if (enter_root) begin
+        {depth_q, group_q, vertices_q} <= {record.depth, lod_pkg::LINE_W'(record.group), lod_pkg::LINE_W'(record.vertices)};
+        {level_q, node_q}              <= '0;
+        {e0_q, e1_q, e2_q}             <= {record.e0, record.e1, record.e2};
+      end else if (enter_node) begin
+        // Nodes of a tree are below 4^STORED_LEVELS.
+        {level_q, node_q}  <= {entry.level, NODE_W'(entry.index)};
+        {e0_q, e1_q, e2_q} <= {entry.e0, entry.e1, entry.e2};
+      end
+      if (morph_valid_i) {g0_q, g1_q, g2_q} <= {g0_now, g1_now, g2_now};
+    end
+    assign {depth, group, vertices, level, node} = {depth_q, group_q, vertices_q, level_q, node_q};
+    assign {e0, e1, e2, g0, g1, g2}              = {e0_q, e1_q, e2_q, g0_q, g1_q, g2_q};
+  end else begin : g_base
+    logic unused_split;
+    assign {depth, group, vertices, level, node} = '0;
+    assign {e0, e1, e2, g0, g1, g2}              = '0;
+    assign unused_split                          = ^{g0_now, g1_now, g2_now};
+  end
+
+  // The triangle as morphed, and the states of its edges.
+  if (CHOOSING) begin : g_morphed
+    lod_pkg::kept_point_t   p0_q, p1_q, p2_q, q0_q, q1_q, q2_q;
+    lod_pkg::lod_test_out_t lod_q;
+
+    always_ff @(posedge clk_i) begin
+      if (enter_root) {p0_q, p1_q, p2_q} <= {root0, root1, root2};
+      else if (enter_node) begin
+        unique case (entry.index[1:0])
+          2'd0: {p0_q, p1_q, p2_q} <= {a0, m2, m1};
+          2'd1: {p0_q, p1_q, p2_q} <= {m2, a1, m0};
+          2'd2: {p0_q, p1_q, p2_q} <= {m1, m0, a2};
+          2'd3: {p0_q, p1_q, p2_q} <= {m0, m1, m2};
         endcase
       end
-    end else if (state_q == lod_pkg::FETCH && fetch_q == lod_pkg::RECORD && record_there) begin
-      {depth_q, group_q, vertices_q} <= {record.depth, record.group, record.vertices};
-      level_q <= '0;
-      node_q  <= '0;
-      {e0_q, e1_q, e2_q} <= {record.e0, record.e1, record.e2};
-      {f0_q, f1_q, f2_q} <= {root0, root1, root2};
-      {p0_q, p1_q, p2_q} <= {root0, root1, root2};
+      if (lod_valid_i) lod_q <= lod_i;
+      if (morph_valid_i) {q0_q, q1_q, q2_q} <= {q0_now, q1_now, q2_now};
     end
-    if (lod_valid_i) lod_q <= lod_i;
-    if (morph_valid_i) {g0_q, g1_q, g2_q, q0_q, q1_q, q2_q} <= inserted_now;
+    assign {p0, p1, p2, q0, q1, q2} = {p0_q, p1_q, p2_q, q0_q, q1_q, q2_q};
+    assign lod                      = lod_q;
+  end else begin : g_full
+    logic unused_morphed;
+    assign {p0, p1, p2, q0, q1, q2} = {f0_q, f1_q, f2_q, g0, g1, g2};
+    assign lod                      = '0;
+    assign unused_morphed           = ^{a0, a1, a2, m0, m1, m2, q0_now, q1_now, q2_now, lod_i};
   end
 
   // ---- Lines ----
@@ -449,9 +546,9 @@ module ray_context (
       waiting_q <= '0;
     end else begin
       waiting_q <= (waiting_q | granted) & ~arrived;
-      if (state_q == lod_pkg::VISIT && entry_q.kind == lod_pkg::ENTRY_BVH_NODE) want_q <= 2'b01;
-      else if (state_q == lod_pkg::VISIT && entry_q.kind == lod_pkg::ENTRY_TREE) want_q <= 2'b11;
-      else if (lod_valid_i && lod_i.refine && !compact_root) want_q <= last_split ? 2'b10 : 2'b11;
+      if (state_q == lod_pkg::VISIT && entry.kind == lod_pkg::ENTRY_BVH_NODE) want_q <= 2'b01;
+      else if (state_q == lod_pkg::VISIT && entry.kind == lod_pkg::ENTRY_TREE) want_q <= 2'b11;
+      else if (decided && refine && !compact_root) want_q <= last_split ? 2'b10 : 2'b11;
       else if (fetch_group) want_q <= 2'b01;
       else want_q <= want_q & ~granted;
     end
@@ -460,9 +557,9 @@ module ray_context (
   always_ff @(posedge clk_i) begin
     if (arrived[0]) line0_q <= line_i.line;
     if (arrived[1]) line1_q <= line_i.line;
-    if (state_q == lod_pkg::VISIT && entry_q.kind == lod_pkg::ENTRY_BVH_NODE) fetch_q <= lod_pkg::NODE;
-    else if (state_q == lod_pkg::VISIT && entry_q.kind == lod_pkg::ENTRY_TREE) fetch_q <= lod_pkg::RECORD;
-    else if (lod_valid_i && lod_i.refine && !compact_root) fetch_q <= lod_pkg::VERTEX;
+    if (state_q == lod_pkg::VISIT && entry.kind == lod_pkg::ENTRY_BVH_NODE) fetch_q <= lod_pkg::NODE;
+    else if (state_q == lod_pkg::VISIT && entry.kind == lod_pkg::ENTRY_TREE) fetch_q <= lod_pkg::RECORD;
+    else if (decided && refine && !compact_root) fetch_q <= lod_pkg::VERTEX;
     else if (fetch_group) fetch_q <= lod_pkg::GROUP;
   end
 

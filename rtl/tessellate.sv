@@ -46,6 +46,10 @@ module tessellate #(
   assign code = {in_i.e2, in_i.e1, in_i.e0};
   assign s    = {in_i.s2, in_i.s1, in_i.s0};
 
+  // Of the two forms of vertices this hardware may have one.
+  logic compact;
+  assign compact = lod_pkg::EXACT_VERTICES == 0 || (lod_pkg::COMPACT_VERTICES != 0 && in_i.compact);
+
   // Zero bits of the vertices as stored.
   logic [SHIFT_W-1:0] zeros;
   assign zeros = SHIFT_W'(in_i.grid) + SHIFT_W'(in_i.padding);
@@ -62,7 +66,7 @@ module tessellate #(
     assign shift       = octave > OCTAVE_W'(zeros) + OCTAVE_W'(11) ? SHIFT_W'(octave) - SHIFT_W'(11) : zeros;
     morph_vertex u_morph (
       .clk_i, .rst_ni, .valid_i, .ready_o(ready[i]),
-      .compact_i(in_i.compact), .shift_i(shift), .grid_i(in_i.grid), .s_i(s[i]),
+      .compact_i(compact), .shift_i(shift), .grid_i(in_i.grid), .s_i(s[i]),
       .fa_i(fa[i]), .fb_i(fb[i]), .pa_i(pa[i]), .pb_i(pb[i]), .v_i(v[i]),
       .valid_o(valid[i]), .ready_i, .full_o(full[i]), .morphed_o(morphed[i])
     );

@@ -3,7 +3,7 @@
 /// The traversal stack of one ray (paper figure 9): what is still to be visited, nearest on top.
 ///
 /// `entry_o` is the top entry, valid while `empty_o` is low; a pop drops it at the end of the cycle. Push, pop and clear exclude each other. Depth: `STACK_ENTRIES`, which a quad-BVH of
-/// `MAX_BVH_DEPTH` levels and a tree of `MAX_LEVELS` cannot exceed (each level leaves at most three siblings waiting). Only the length is reset.
+/// `MAX_BVH_DEPTH` levels and a tree of `STORED_LEVELS` cannot exceed (each level leaves at most three siblings waiting). Only the length is reset.
 module traversal_stack (
   input  logic                  clk_i,
   input  logic                  rst_ni,
@@ -20,13 +20,13 @@ module traversal_stack (
   localparam int unsigned LEN_W = $clog2(DEPTH + 1);
   localparam int unsigned INDEX_W = $clog2(DEPTH);
 
-  logic [lod_pkg::STACK_ENTRY_W-1:0] entries_q [DEPTH];
+  logic [lod_pkg::KEPT_ENTRY_W-1:0] entries_q [DEPTH];
   logic [LEN_W-1:0] len_q;
   logic [LEN_W-1:0] top;
 
   // Never read while empty, when this wraps.
   assign top     = len_q - LEN_W'(1);
-  assign entry_o = entries_q[INDEX_W'(top)];
+  assign entry_o = lod_pkg::whole_entry(entries_q[INDEX_W'(top)]);
   assign empty_o = len_q == '0;
 
   always_ff @(posedge clk_i) begin
@@ -37,7 +37,7 @@ module traversal_stack (
   end
 
   always_ff @(posedge clk_i) begin
-    if (push_i) entries_q[INDEX_W'(len_q)] <= entry_i;
+    if (push_i) entries_q[INDEX_W'(len_q)] <= lod_pkg::keep_entry(entry_i);
   end
 
   always_ff @(posedge clk_i) begin

@@ -97,11 +97,17 @@ module traversal_unit #(
     .valid_o(lod_in_valid), .ready_i(lod_in_ready), .data_o(lod_in), .index_o(lod_in_tag)
   );
 
-  lod_test #(.TAG_W(CONTEXT_W)) u_lod_test (
-    .clk_i, .rst_ni,
-    .valid_i(lod_in_valid), .ready_o(lod_in_ready), .in_i(lod_in), .tag_i(lod_in_tag),
-    .valid_o(lod_valid), .ready_i(1'b1), .out_o(lod_out), .tag_o(lod_tag)
-  );
+  if (lod_pkg::LOD_TEST != 0) begin : g_lod_test
+    lod_test #(.TAG_W(CONTEXT_W)) u_lod_test (
+      .clk_i, .rst_ni,
+      .valid_i(lod_in_valid), .ready_o(lod_in_ready), .in_i(lod_in), .tag_i(lod_in_tag),
+      .valid_o(lod_valid), .ready_i(1'b1), .out_o(lod_out), .tag_o(lod_tag)
+    );
+  end else begin : g_no_lod_test
+    logic unused_lod;
+    assign {lod_in_ready, lod_valid, lod_out, lod_tag} = '0;
+    assign unused_lod = ^{lod_in_valid, lod_in, lod_in_tag};
+  end
 
   logic [N-1:0] morph_request, morph_grant;
   logic [N-1:0][lod_pkg::TESSELLATE_IN_W-1:0] morph_data;
@@ -116,11 +122,17 @@ module traversal_unit #(
     .valid_o(morph_in_valid), .ready_i(morph_in_ready), .data_o(morph_in), .index_o(morph_in_tag)
   );
 
-  tessellate #(.TAG_W(CONTEXT_W)) u_tessellate (
-    .clk_i, .rst_ni,
-    .valid_i(morph_in_valid), .ready_o(morph_in_ready), .in_i(morph_in), .tag_i(morph_in_tag),
-    .valid_o(morph_valid), .ready_i(1'b1), .out_o(morph_out), .tag_o(morph_tag)
-  );
+  if (lod_pkg::STORED_LEVELS != 0) begin : g_tessellate
+    tessellate #(.TAG_W(CONTEXT_W)) u_tessellate (
+      .clk_i, .rst_ni,
+      .valid_i(morph_in_valid), .ready_o(morph_in_ready), .in_i(morph_in), .tag_i(morph_in_tag),
+      .valid_o(morph_valid), .ready_i(1'b1), .out_o(morph_out), .tag_o(morph_tag)
+    );
+  end else begin : g_no_tessellate
+    logic unused_morph;
+    assign {morph_in_ready, morph_valid, morph_out, morph_tag} = '0;
+    assign unused_morph = ^{morph_in_valid, morph_in, morph_in_tag};
+  end
 
   logic [N-1:0] map_request, map_grant;
   logic [N-1:0][lod_pkg::BARY_MAP_IN_W-1:0] map_data;
@@ -135,11 +147,17 @@ module traversal_unit #(
     .valid_o(map_in_valid), .ready_i(map_in_ready), .data_o(map_in), .index_o(map_in_tag)
   );
 
-  bary_map #(.TAG_W(CONTEXT_W)) u_bary_map (
-    .clk_i, .rst_ni,
-    .valid_i(map_in_valid), .ready_o(map_in_ready), .in_i(map_in), .tag_i(map_in_tag),
-    .valid_o(map_valid), .ready_i(1'b1), .out_o(map_out), .tag_o(map_tag)
-  );
+  if (lod_pkg::HIT_MAPPING != 0) begin : g_bary_map
+    bary_map #(.TAG_W(CONTEXT_W)) u_bary_map (
+      .clk_i, .rst_ni,
+      .valid_i(map_in_valid), .ready_o(map_in_ready), .in_i(map_in), .tag_i(map_in_tag),
+      .valid_o(map_valid), .ready_i(1'b1), .out_o(map_out), .tag_o(map_tag)
+    );
+  end else begin : g_no_bary_map
+    logic unused_map;
+    assign {map_in_ready, map_valid, map_out, map_tag} = '0;
+    assign unused_map = ^{map_in_valid, map_in, map_in_tag};
+  end
 
   // ---- Memory: requests carry the place of their line besides the operands ----
 

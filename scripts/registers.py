@@ -33,8 +33,12 @@ def main():
             registers.update((symbol.hierarchicalPath, symbol.type.bitstreamWidth) for symbol in written(node.left))
 
     def member(node):
+        # The branch of a generate that was not taken.
+        if node.kind.name == "GenerateBlock" and node.isUninstantiated:
+            return pyslang.VisitAction.Skip
         if node.kind.name == "ProceduralBlock" and node.procedureKind.name == "AlwaysFF":
             node.body.visit(statement)
+        return None
 
     for top in driver.createCompilation().getRoot().topInstances:
         top.visit(member)

@@ -76,8 +76,9 @@ fn hits_are_the_same_by_every_traverser() {
                 assert!(some.iter().zip(&expected).all(|(ray, hit)| golden.trace(ray) == hit.as_ref().map(plain)), "{what}: golden");
             }
             let memory = SceneMemory::new(LodImage::of(&pruned), 77);
-            let mut plan = Plan::new(false);
-            plan.add("it", &Measure::of(&pruned).needs());
+            let (measure, mut plan) = (Measure::of(&pruned), Plan::new(true));
+            plan.add("it", &measure.needs());
+            plan.add_rays(&measure.rays(&camera, delta));
             let mut unit = TraversalUnit::new(plan.hardware(&Hardware::default()), memory.config());
             let report = run(&mut unit, &memory, &Traffic::smooth(Latency::Fixed(9)), &some).expect("a run");
             let found = report.rays.iter().map(|ray| ray.hit.found.then_some(ray.hit.hit));

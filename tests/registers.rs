@@ -5,7 +5,7 @@ use lodray::block::EdgesPerCycle;
 use lodray::block::Operation;
 use lodray::block::parts::Registers;
 use lodray::hardware::Hardware;
-use lodray_test_support::hardware::{NARROW, NARROWS, OTHERS, SMALL};
+use lodray_test_support::hardware::{LESS, NARROW, NARROWS, OTHERS, SMALL};
 
 /// Blocks whose registers depend on the levels.
 const BY_LEVEL: [Operation; 2] = [Operation::BaryMap, Operation::HitSelect];
@@ -29,6 +29,7 @@ fn blocks_and_contexts_declare_the_registers_that_are_counted() {
     all.push((Operation::TriTest, one_edge));
     all.extend(OTHERS.iter().flat_map(|&hardware| BY_LEVEL.map(|operation| (operation, hardware))));
     all.extend(NARROWS.iter().flat_map(|&hardware| BY_WIDTH.map(|operation| (operation, hardware))));
+    all.extend(LESS.map(|hardware| (Operation::Tessellate, hardware)));
     let mut wrong = Vec::new();
     for (operation, hardware) in &all {
         let (rtl, rust) = (declared(operation.name(), hardware), counted(*operation, hardware));

@@ -5,7 +5,7 @@ import json
 import pathlib
 import subprocess
 
-from . import gates, report
+from . import gates
 from .blocks import Block
 from .tools import OUT, ROOT, Failure, write
 
@@ -21,11 +21,11 @@ class Unit:
 
     def blocks(self):
         """One of each."""
-        return [Block(name, (), self.package) for name in report.UNIT]
+        return [Block(name, (), self.package) for name in self.own["blocks"]]
 
     def sum(self, figures):
         """Gate equivalents of the blocks and of the contexts' registers, in words."""
-        parts = sum(figures[name]["gates"]["ge"] for name in report.UNIT)
+        parts = sum(figures[name]["gates"]["ge"] for name in self.own["blocks"])
         contexts = round(self.own["contexts"] * self.own["context_bits"] * REGISTER)
         return (
             f"One of each block has {parts:,} GE; {self.own['contexts']} contexts of {self.own['context_bits']:,} bits have {contexts:,}: "

@@ -192,12 +192,14 @@ const SUM: u32 = CODE + 2;
 
 impl ChildBoxes {
     /// Registers with a tag of so many bits: corners and pairs of inserted vertices, least and largest of each child, boxes.
-    pub(super) fn registers(tag: u32) -> Registers {
+    pub(super) fn registers(form: &Form, tag: u32) -> Registers {
         // Of both triangles, along each axis, three corners and three pairs of inserted vertices, and which of the first of them is less.
         let pairs = 2 * 3 * (3 * (STICKY + CODE + STICKY) + 1) + 24 * DOUBLED + 3 * 4 + 1;
         // Planes of the full-resolution triangle with its excess, and of the morphed one.
         let ends = 24 * (SUM + CODE) + 1;
-        Registers::stage(pairs + tag) + Registers::stage(ends + tag) + Registers::skid(4 * 6 * CODE + tag)
+        // Where nothing is morphed there is one triangle, and at the end it does not matter of what the boxes are.
+        let [second, widens] = if form.lod_test { [0, 0] } else { [3 * (3 * (STICKY + CODE + STICKY) + 1), 24 * CODE + 1] };
+        Registers::stage(pairs + tag).without(second) + Registers::stage(ends + tag).without(widens) + Registers::skid(4 * 6 * CODE + tag)
     }
 }
 
@@ -206,15 +208,17 @@ impl Block for ChildBoxes {
     const TIMING: Timing = Timing::pipelined(3);
     type In = In;
     type Out = Out;
-    fn parts(_: &Form) -> Parts {
-        let (pairs, ends, planes) = (2 * 3 * 3 * (CODE + STICKY), 2 * 4 * 3 * (CODE + STICKY), 24);
+    fn parts(form: &Form) -> Parts {
+        let triangles = if form.lod_test { 2 } else { 1 };
+        let (pairs, ends, planes) = (triangles * 3 * 3 * (CODE + STICKY), triangles * 4 * 3 * (CODE + STICKY), 24);
+        let widened = planes * (triangles - 1);
         Parts {
             products: vec![],
             // Comparisons of pairs and of them with single corners; steps and a half; sums, and their comparison with the morphed triangle.
-            add_bits: pairs + ends + planes * (DOUBLED + STEPS + STEPS),
+            add_bits: pairs + ends + planes * (DOUBLED + STEPS) + widened * STEPS,
             // The same; shifts in four steps; the frame or the triangle, and which of three.
-            select_bits: pairs + ends + planes * (4 * STEPS + CODE + 2 * CODE),
-            registers: Self::registers(TAG),
+            select_bits: pairs + ends + planes * (4 * STEPS + CODE + CODE) + widened * CODE,
+            registers: Self::registers(form, TAG),
         }
     }
     #[inline(always)]

@@ -95,7 +95,7 @@ impl Block for ChildTest {
         let unread = 3 * (Point::WIDTH / 3) + T_NEAR_TO_T_SHIFT + zeros;
         let ray = Registers::line(ray_setup::Out::WIDTH + RayT::WIDTH + 4, boxed, 1).without((boxed + 1) * unread);
         // A tag of one bit for which there is no use, in each of their registers.
-        let bounds = ChildBoxes::registers(1).without(boxed + 1);
+        let bounds = ChildBoxes::registers(form, 1).without(boxed + 1);
         let child = BoxTest::registers(form, 1).without(tested + 1);
         let present = Registers::line(4, tested, 1);
         let tag = Registers::line(TAG, Self::TIMING.latency, 2);

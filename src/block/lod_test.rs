@@ -127,6 +127,8 @@ const fn latency(form: &Form) -> u32 {
     limits_at(form) + EDGE_OPENING_LATENCY + 1
 }
 
+/// Bits of a cone's offset.
+const OFFSET: u32 = 53;
 /// Bits of a cone's slope and shift, and of offset + l slope.
 const SLOPE: u32 = 18;
 const SHIFT: u32 = 6;
@@ -167,7 +169,8 @@ impl Block for LodTest {
         // The fraction of a distance is dropped.
         let along = dot_product(relative, component, distance_along, 1, distance_along - DISTANCE);
         let nearer_ends = Registers::skid(3 * DISTANCE);
-        let cone = Registers::line(Cone::WIDTH, nearer(form), 2);
+        let start = if form.start_radius { 0 } else { OFFSET };
+        let cone = Registers::line(Cone::WIDTH, nearer(form), 2).without((nearer(form) + 2) * start);
         let codes = Registers::line(3 * BoundCode::WIDTH + BoundScale::WIDTH, limits_at(form) - BoundDecode::TIMING.latency, 2);
         // A tag of one bit for which there is no use, in each of its registers.
         let bound = BoundDecode::registers(1).without(BoundDecode::TIMING.latency);

@@ -71,6 +71,14 @@ pub struct Form {
     pub levels: u32,
     /// Edge functions of the triangle test.
     pub edges_per_cycle: EdgesPerCycle,
+    /// Levels of detail are chosen: triangles are morphed.
+    pub lod_test: bool,
+    /// Cones can have a radius where their rays start.
+    pub start_radius: bool,
+    /// Inserted vertices can be displacements.
+    pub compact_vertices: bool,
+    /// They can be stored as they are.
+    pub exact_vertices: bool,
     /// Zero bits at the bottom of all coordinates, of origins and of morphed triangles too.
     pub coordinate_zeros: u32,
     /// Zero bits at the bottom of all components of directions.
@@ -79,7 +87,16 @@ pub struct Form {
 
 impl Form {
     /// Of the default hardware.
-    pub const FULL: Self = Self { levels: MAX_LEVELS, edges_per_cycle: EdgesPerCycle::Three, coordinate_zeros: 0, direction_zeros: 0 };
+    pub const FULL: Self = Self {
+        levels: MAX_LEVELS,
+        edges_per_cycle: EdgesPerCycle::Three,
+        lod_test: true,
+        start_radius: true,
+        compact_vertices: true,
+        exact_vertices: true,
+        coordinate_zeros: 0,
+        direction_zeros: 0,
+    };
 }
 
 /// A combinational block: what it computes, and the cycles its pipeline takes for it.

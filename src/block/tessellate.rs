@@ -150,10 +150,12 @@ fn vertices<const ENDS: bool>(i: &In) -> Out {
 /// Bits of a state as a signed number, and of the number of zero bits.
 const STATE: u32 = EdgeState::WIDTH + 1;
 const GRID: u32 = 4;
+/// Of the shift of a displacement.
+const SHIFT: u32 = 5;
 
-/// Midpoints, the vertex, the difference; its product with a state; the step, and the sum.
+/// Midpoints, the vertex, the difference; its product with a state; the step, and the sum. Where nothing is morphed: midpoint and vertex.
 const fn latency(form: &Form) -> u32 {
-    3 + multiplier_latency(form.relative(), STATE) + 2
+    if form.lod_test { 3 + multiplier_latency(form.relative(), STATE) + 2 } else { 2 }
 }
 
 impl Block for Tessellate {
@@ -165,12 +167,29 @@ impl Block for Tessellate {
         Timing::pipelined(latency(form))
     }
     fn parts(form: &Form) -> Parts {
+        let tag = Registers::line(TAG, latency(form), 0);
+        // Of vertices that are stored as they are no displacement and no shift.
+        let displaced = if form.compact_vertices { 3 * Displacement::WIDTH / 3 + SHIFT } else { 0 };
+        let unread = 3 * Displacement::WIDTH / 3 + SHIFT - displaced;
+        let [shift_adds, shift_selects] = if form.compact_vertices { [3 * (BoundScale::WIDTH + 1 + 6), 3 * 5] } else { [0, 0] };
+        // The displacement in five steps, or the vertex as it is.
+        let placed = 5 * u32::from(form.compact_vertices) + u32::from(form.compact_vertices && form.exact_vertices);
+        if !form.lod_test {
+            let w = form.coordinate();
+            let vertex = Registers::stage(3 * (w + Displacement::WIDTH / 3) + SHIFT).without(unread) + Registers::stage(3 * w);
+            return Parts {
+                products: vec![],
+                add_bits: shift_adds + 9 * (form.relative() + w),
+                select_bits: shift_selects + 9 * placed * w,
+                registers: 3 * vertex + tag,
+            };
+        }
         // A coordinate, its difference from the midpoint, s as a signed number, and the fraction of the product that is dropped.
         let (w, relative, s, grid, fraction) = (form.coordinate(), form.relative(), STATE, GRID, 8);
         let product = Multiplier { low: fraction, high: fraction + w, ..Multiplier::new(relative, s) };
         // Three coordinates share state, grid and shift. Both midpoints and the displacement; the vertex; the difference. The vertex goes along to the end.
-        let (opening, shift) = (s - 1 + grid, 5);
-        let ahead = Registers::stage(3 * (2 * w + Displacement::WIDTH / 3) + shift + opening)
+        let opening = s - 1 + grid;
+        let ahead = Registers::stage(3 * (2 * w + Displacement::WIDTH / 3) + SHIFT + opening).without(unread)
             + Registers::stage(6 * w + opening)
             + Registers::stage(3 * relative + 6 * w + opening);
         let beside = Registers::line(6 * w + grid, multiplier_latency(relative, s), 0);
@@ -178,10 +197,10 @@ impl Block for Tessellate {
         Parts {
             products: vec![[9, relative, s]],
             // Shifts of three edges; midpoints, vertex, difference, sum.
-            add_bits: 3 * (BoundScale::WIDTH + 1 + 6) + 9 * (2 * relative + w + relative + w),
-            // Shifts; the displacement's in five steps, or the vertex as it is; the grid.
-            select_bits: 3 * 5 + 9 * (5 * w + w + w),
-            registers: 3 * vertex + Registers::line(TAG, latency(form), 0),
+            add_bits: shift_adds + 9 * (2 * relative + w + relative + w),
+            // Shifts; the vertex; the grid.
+            select_bits: shift_selects + 9 * (placed * w + w),
+            registers: 3 * vertex + tag,
         }
     }
     #[inline(always)]

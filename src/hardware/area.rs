@@ -11,7 +11,8 @@ const FLIP_FLOP: f64 = 7.67;
 
 /// Gate equivalents of one unit: its blocks, of the default sizes, and the registers of its contexts. None if a block was not measured.
 pub fn unit_gates(unit: MethodUnit, hardware: &Hardware) -> Option<f64> {
-    let blocks: f64 = unit.blocks.iter().map(|&operation| block_gates(operation, hardware.edges_per_cycle)).sum::<Option<f64>>()?;
+    let blocks: f64 =
+        hardware.blocks(unit.blocks).map(|&operation| block_gates(operation, hardware.edges_per_cycle)).sum::<Option<f64>>()?;
     let context = f64::from(hardware.context_registers(unit.has_levels).kept);
     Some(blocks + hardware.contexts as f64 * context * FLIP_FLOP)
 }

@@ -4,11 +4,10 @@ use super::Hardware;
 use super::ports::{MemoryAnswer, RayIn};
 use crate::block::{bary_map, child_test, hit_select, lod_test, parts::Registers, ray_setup};
 use crate::method::Entry;
-use crate::num::{Bary, BoundCode, RayT, Wire};
+use crate::num::{Bary, BoundCode, Cone, RayT, Wire};
 
-/// Bits of a tree's number, of those of its first group and line, of a level, and of a count up to four.
-const TREE: u32 = 28;
-const FIRST: u32 = 28;
+/// Bits of an index in a stack entry of any hardware, of a level, and of a count up to four.
+const INDEX: u32 = 28;
 const LEVEL: u32 = 4;
 const COUNT: u32 = 3;
 /// Bits of the number of a leaf's triangles, 1 to 4, which a BVH keeps where others have levels.
@@ -17,6 +16,8 @@ const LEAF: u32 = 2;
 const STATE: u32 = 5;
 const FETCH: u32 = 2;
 const CHILD: u32 = 2;
+/// Bits of a cone's offset.
+const CONE_OFFSET: u32 = 53;
 /// Lines that a context waits for at most.
 const LINES: u32 = 2;
 
@@ -24,34 +25,48 @@ impl Hardware {
     /// Bits of the registers of a ray context: `rtl/`'s if it `has_levels`. Without them it has no split triangles and no second triangle at full resolution,
     /// and its stack is as deep as the quad-BVH and holds no bound codes, and of levels only what counts the triangles of a leaf.
     pub fn context_registers(&self, has_levels: bool) -> Registers {
-        let levels = if has_levels { self.split() + self.splits() } else { 0 };
-        Registers::bits(self.place() + self.stack(has_levels) + levels + self.lines() + self.closest())
+        let triangles = if has_levels { self.split() + self.splits() } else { 2 * self.triangle() };
+        Registers::bits(self.place() + triangles + self.stack(has_levels) + self.lines() + self.closest())
     }
 
-    /// A triangle with its inserted vertices.
+    /// A triangle.
+    fn triangle(&self) -> u32 {
+        3 * 3 * self.form().coordinate()
+    }
+
+    /// A triangle with its inserted vertices, at full resolution and, where levels are chosen, as morphed.
     fn split(&self) -> u32 {
-        6 * 3 * self.form().coordinate()
+        let inserted = if self.stored_levels() > 0 { 2 } else { 1 };
+        inserted * self.triangle() * if self.chooses_levels() { 2 } else { 1 }
     }
 
-    /// Ray, and its constants for the box tests: origin, direction, and moment.
+    /// Ray, and its constants for the box tests: origin, direction, and moment. Of the cone its start may be left out, or all but whether the ray is of no detail.
     fn ray(&self) -> u32 {
         let zeros = self.coordinate_zeros + self.direction_zeros;
-        RayIn::WIDTH + ray_setup::Out::WIDTH - 3 * (zeros + zeros + zeros)
+        let cone = match (self.stored_levels() > 0, self.lod_test) {
+            (true, true) => Cone::WIDTH - if self.start_radius { 0 } else { CONE_OFFSET },
+            (true, false) => 1,
+            (false, _) => 0,
+        };
+        RayIn::WIDTH - Cone::WIDTH + cone + ray_setup::Out::WIDTH - 3 * (zeros + zeros + zeros)
     }
 
-    /// Bits of a node's number within its level.
-    const fn node(&self) -> u32 {
-        2 * self.levels
+    /// A stack entry: of a tree's node, if trees have any, with level and codes.
+    pub(super) fn entry(&self) -> u32 {
+        let narrow = Entry::WIDTH - INDEX + self.index_bits;
+        if self.split_triangles() > 0 { narrow } else { narrow - LEVEL - 3 * BoundCode::WIDTH }
     }
 
-    /// State, ray, constants; the entry under visit, the node, its triangle as morphed and what was found out about it; children and triangles to come.
+    /// State, ray, constants; the entry under visit, the node and what was found out about it; children and triangles to come.
     fn place(&self) -> u32 {
-        let tree = TREE + LEVEL + 2 * FIRST;
-        let node = tree + LEVEL + self.node() + self.split() + 3 * BoundCode::WIDTH + lod_test::Out::WIDTH;
+        let tree = self.index_bits + if self.stored_levels() > 0 { LEVEL + 2 * self.line_bits } else { 0 };
+        let place = if self.stored_levels() > 0 { LEVEL + self.node_bits() + 3 * BoundCode::WIDTH } else { 0 };
+        let lod = if self.chooses_levels() { lod_test::Out::WIDTH } else { 0 };
+        let node = tree + place + lod;
         let children = child_test::Out::WIDTH + COUNT;
         // Whether it is four triangles; how many are left and pending, and the next.
         let triangles = 1 + 2 * COUNT + CHILD;
-        STATE + FETCH + self.ray() + Entry::WIDTH + node + children + triangles
+        STATE + FETCH + self.ray() + self.entry() + node + children + triangles
     }
 
     /// Entries and length.
@@ -59,13 +74,13 @@ impl Hardware {
         // How many can wait is known of trees below a quad-BVH, not of the same quad-BVH over other triangles.
         let entries =
             if has_levels { self.stack_entries() } else { Self { levels: 0, fewer_stack_entries: None, ..*self }.stack_entries() };
-        let width = if has_levels { Entry::WIDTH } else { Entry::WIDTH - LEVEL + LEAF - 3 * BoundCode::WIDTH };
+        let width = if has_levels { self.entry() } else { Entry::WIDTH - LEVEL + LEAF - 3 * BoundCode::WIDTH };
         entries * width + (entries + 1).next_power_of_two().ilog2()
     }
 
-    /// A triangle with its inserted vertices, at full resolution and as morphed, for each level that splits into nodes.
+    /// A triangle with its inserted vertices for each level that splits into nodes.
     fn splits(&self) -> u32 {
-        self.split_triangles() * 2 * self.split()
+        self.split_triangles() * self.split()
     }
 
     /// The lines, and which of them are wanted and waited for.
@@ -73,11 +88,12 @@ impl Hardware {
         LINES * MemoryAnswer::FIELDS[1].width + 2 * LINES
     }
 
-    /// The closest hit: whether there is one, t, id, numerators, weights, and the full-resolution triangle.
+    /// The closest hit: whether there is one, t, id, numerators, weights, and the full-resolution triangle, if it can be another.
     fn closest(&self) -> u32 {
-        let triangle = TREE + LEVEL + self.node();
+        let triangle = self.index_bits + if self.stored_levels() > 0 { LEVEL + self.node_bits() } else { 0 };
+        let full = if self.hit_mapping { bary_map::Out::WIDTH } else { 0 };
         let numerators = 3 * (self.form().signed_edge() - 1);
         let front = 1;
-        1 + RayT::WIDTH + hit_select::FullId::WIDTH + triangle + front + numerators + 3 * Bary::WIDTH + bary_map::Out::WIDTH
+        1 + RayT::WIDTH + hit_select::FullId::WIDTH + triangle + front + numerators + 3 * Bary::WIDTH + full
     }
 }

@@ -15,19 +15,24 @@ mod state;
 pub use area::unit_gates;
 pub use state::{Fetch, State};
 
-use crate::block::{Block, EdgesPerCycle, Form, Timing};
+use crate::block::{Block, EdgesPerCycle, Form, Operation, Timing};
 use crate::num::{BOX_SHIFT, MAX_BVH_DEPTH, MAX_LEVELS, MOST_DIRECTION_ZEROS};
 
 /// The widest number of a context: it and two bits of place make the tag of a memory request ([`ports::MemoryRequest`]).
 const MAX_CONTEXT_BITS: u32 = 6;
 /// The most contexts that a unit can have.
 pub const MAX_CONTEXTS: usize = 1 << MAX_CONTEXT_BITS;
+/// The most bits of a number of nodes, trees and lines of a section ([`L0Record`](crate::format::L0Record), [`BvhNode`](crate::format::BvhNode)).
+const MOST_INDEX_BITS: u32 = 28;
 
 /// A hardware: `rtl/lod_pkg.sv` as it stands is that of the default.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Hardware {
     /// The most 1-to-4 splits N that a model may have, 2 to [`MAX_LEVELS`].
     pub levels: u32,
+    /// Levels that trees are stored to ([`Scene::depth`](crate::format::Scene::depth)), if fewer than `levels`: 0 to `levels`. At 0 no triangle is ever split: a unit without LOD
+    /// test and tessellation.
+    pub fewer_stored_levels: Option<u32>,
     /// The most quad-BVH nodes on a path from the root to a tree, 1 to [`MAX_BVH_DEPTH`].
     pub bvh_depth: u32,
     /// Fewer entries of a traversal stack than its depth asks for, at least 2: for scenes of which is known how many can wait.
@@ -38,6 +43,20 @@ pub struct Hardware {
     pub context_bits: u32,
     /// Edge functions that the triangle test evaluates in a cycle.
     pub edges_per_cycle: EdgesPerCycle,
+    /// Bits of the number of a quad-BVH node, of a tree, and of a node within its level, as a context keeps them: at most 28.
+    pub index_bits: u32,
+    /// Bits of the numbers of a tree's first sibling group and vertex line: at most 28.
+    pub line_bits: u32,
+    /// Levels of detail are chosen. Without it there is no LOD test and no morph, and rays are of full detail or of none ([`Cone::is_of_no_detail`](crate::num::Cone::is_of_no_detail)).
+    pub lod_test: bool,
+    /// Cones can have a radius where their rays start.
+    pub start_radius: bool,
+    /// Hits can be above the finest level, and are mapped to it.
+    pub hit_mapping: bool,
+    /// Inserted vertices can be displacements.
+    pub compact_vertices: bool,
+    /// They can be stored as they are.
+    pub exact_vertices: bool,
     /// Bits at the bottom of all coordinates that it leaves out, as they are 0 in the scenes that it is for: 0 to 16. Vertices, morphed triangles and origins
     /// have at least as many ([`Meta::coordinate_zeros`](crate::format::Meta::coordinate_zeros)).
     pub coordinate_zeros: u32,
@@ -65,11 +84,19 @@ impl Hardware {
     /// The default as a constant.
     pub const DEFAULT: Self = Self {
         levels: MAX_LEVELS,
+        fewer_stored_levels: None,
         bvh_depth: MAX_BVH_DEPTH,
         fewer_stack_entries: None,
         contexts: 4,
         context_bits: MAX_CONTEXT_BITS,
         edges_per_cycle: EdgesPerCycle::Three,
+        index_bits: MOST_INDEX_BITS,
+        line_bits: MOST_INDEX_BITS,
+        lod_test: true,
+        start_radius: true,
+        hit_mapping: true,
+        compact_vertices: true,
+        exact_vertices: true,
         coordinate_zeros: 0,
         direction_zeros: 0,
     };
@@ -89,10 +116,14 @@ impl Hardware {
     pub fn validate(&self) -> Result<(), HardwareError> {
         let fields = [
             ("levels", u64::from(self.levels), u64::from(Self::LEAST_LEVELS), u64::from(MAX_LEVELS)),
+            ("fewer_stored_levels", u64::from(self.stored_levels()), 0, u64::from(self.levels)),
             ("bvh_depth", u64::from(self.bvh_depth), 1, u64::from(MAX_BVH_DEPTH)),
             ("fewer_stack_entries", u64::from(self.stack_entries()), 2, u64::from(self.deepest_stack())),
             ("context_bits", u64::from(self.context_bits), 1, u64::from(MAX_CONTEXT_BITS)),
             ("contexts", self.contexts as u64, 1, 1 << self.context_bits.min(MAX_CONTEXT_BITS)),
+            ("index_bits", u64::from(self.index_bits), u64::from(self.node_bits()), u64::from(MOST_INDEX_BITS)),
+            ("line_bits", u64::from(self.line_bits), 1, u64::from(MOST_INDEX_BITS)),
+            ("compact_vertices", u64::from(self.compact_vertices), u64::from(!self.exact_vertices), 1),
             ("coordinate_zeros", u64::from(self.coordinate_zeros), 0, u64::from(BOX_SHIFT)),
             ("direction_zeros", u64::from(self.direction_zeros), 0, u64::from(MOST_DIRECTION_ZEROS)),
         ];
@@ -104,8 +135,44 @@ impl Hardware {
 
     /// What the blocks of this hardware depend on.
     pub const fn form(&self) -> Form {
-        let Self { levels, edges_per_cycle, coordinate_zeros, direction_zeros, .. } = *self;
-        Form { levels, edges_per_cycle, coordinate_zeros, direction_zeros }
+        let Self { levels, edges_per_cycle, start_radius, compact_vertices, exact_vertices, coordinate_zeros, direction_zeros, .. } = *self;
+        let lod_test = self.chooses_levels();
+        Form { levels, edges_per_cycle, lod_test, start_radius, compact_vertices, exact_vertices, coordinate_zeros, direction_zeros }
+    }
+
+    /// Levels that trees are stored to.
+    pub const fn stored_levels(&self) -> u32 {
+        match self.fewer_stored_levels {
+            Some(levels) => levels,
+            None => self.levels,
+        }
+    }
+
+    /// There is something to choose from, and a LOD test that does.
+    pub const fn chooses_levels(&self) -> bool {
+        self.lod_test && self.stored_levels() > 0
+    }
+
+    /// Bits of a node's number within its level, two of each level that is stored; at least two.
+    pub const fn node_bits(&self) -> u32 {
+        let levels = self.stored_levels();
+        2 * if levels == 0 { 1 } else { levels }
+    }
+
+    /// Whether a unit of this hardware has such a block.
+    pub const fn has(&self, operation: Operation) -> bool {
+        match operation {
+            Operation::LodTest => self.chooses_levels(),
+            Operation::Tessellate => self.stored_levels() > 0,
+            Operation::BaryMap => self.hit_mapping,
+            _ => true,
+        }
+    }
+
+    /// Those of these blocks that it has.
+    pub fn blocks<'a>(&self, blocks: &'a [Operation]) -> impl Iterator<Item = &'a Operation> {
+        let hardware = *self;
+        blocks.iter().filter(move |operation| hardware.has(**operation))
     }
 
     /// Timing of a block.
@@ -120,12 +187,12 @@ impl Hardware {
 
     /// Each level of the quad-BVH and of a tree leaves at most three siblings waiting.
     const fn deepest_stack(&self) -> u32 {
-        3 * (self.bvh_depth + self.levels) + 1
+        3 * (self.bvh_depth + self.stored_levels()) + 1
     }
 
-    /// Split triangles that a context keeps: one of each level but the last, whose children are no nodes.
+    /// Split triangles that a context keeps: one of each stored level but the last, whose children are no nodes.
     pub const fn split_triangles(&self) -> u32 {
-        self.levels - 1
+        self.stored_levels().saturating_sub(1)
     }
 }
 

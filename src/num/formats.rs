@@ -1,6 +1,9 @@
 //! The named formats of `docs/numbers.md`: widths, limits, and the integer ray.
 
-use super::{U, Vec3, wire::wire_struct};
+use super::{
+    U, Vec3,
+    wire::{Wire, wire_struct},
+};
 
 /// Largest magnitude of a model coordinate in units, so that 16-bit box codes keep to +-32766.
 pub const COORD_LIMIT: i32 = 0x7FFE_0000;
@@ -69,6 +72,13 @@ wire_struct! {
         slope: U<18>,
         /// Right shift.
         shift: U<6>,
+    }
+}
+
+impl Cone {
+    /// Of a ray that tolerates anything, if it tolerates either nothing or anything.
+    pub fn is_of_no_detail(&self) -> bool {
+        self.offset.get() >> (<U<53> as Wire>::WIDTH - 1) == 1
     }
 }
 

@@ -99,14 +99,38 @@ impl Plan {
 
     /// A hardware for it, `hardware` in all that a plan does not say.
     pub fn hardware(&self, hardware: &Hardware) -> Hardware {
-        let SceneNeeds { levels, bvh_depth, stack_entries, .. } = self.scene;
-        // A tree of one split has no nodes below its root, and no register for its triangles: there is no smaller unit.
+        let SceneNeeds { levels, stored_levels, bvh_depth, stack_entries, .. } = self.scene;
         let (levels, bvh_depth) = (levels.clamp(Hardware::LEAST_LEVELS, hardware.levels), bvh_depth.clamp(1, hardware.bvh_depth));
-        let most = Hardware { levels, bvh_depth, fewer_stack_entries: None, ..*hardware };
+        // Nodes of the deepest level that rays reach are nodes, and not triangles, where trees are stored deeper.
+        let reached = self.rays.map_or(stored_levels, |rays| stored_levels.min(rays.deepest_level + 1));
+        let most = self.features(&Hardware {
+            levels,
+            fewer_stored_levels: Some(reached.min(levels)),
+            bvh_depth,
+            fewer_stack_entries: None,
+            ..*hardware
+        });
         let fewer_stack_entries = Some(stack_entries.clamp(2, most.stack_entries()));
         let Hardware { contexts, edges_per_cycle, .. } = self.speed.as_ref().map_or(*hardware, |speed| speed.units.config());
         let [coordinate_zeros, direction_zeros] = self.zeros();
         Hardware { fewer_stack_entries, contexts, edges_per_cycle, coordinate_zeros, direction_zeros, ..most }
+    }
+
+    /// A hardware with no more of these than the plan needs.
+    fn features(&self, hardware: &Hardware) -> Hardware {
+        let SceneNeeds { bvh_node_bits, tree_bits, line_bits, compact, exact, .. } = self.scene;
+        let any = RayNeeds { lod_test: true, hit_mapping: self.scene.levels > 0, start_radius: true, ..RayNeeds::default() };
+        let rays = self.rays.unwrap_or(any);
+        Hardware {
+            index_bits: bvh_node_bits.max(tree_bits).clamp(hardware.node_bits(), hardware.index_bits),
+            line_bits: line_bits.clamp(1, hardware.line_bits),
+            lod_test: rays.lod_test && hardware.lod_test,
+            start_radius: rays.start_radius && hardware.start_radius,
+            hit_mapping: rays.hit_mapping && hardware.hit_mapping,
+            compact_vertices: compact || !exact,
+            exact_vertices: exact,
+            ..*hardware
+        }
     }
 
     /// Zero bits at the bottom of coordinates and of directions that a hardware can leave out.

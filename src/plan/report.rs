@@ -53,10 +53,10 @@ impl Table {
         self.add(Part::Numbers, what, needed_of_full, reason, String::new());
     }
 
-    fn feature(&mut self, what: &'static str, needed: bool, reason: &str) {
+    fn feature(&mut self, what: &'static str, needed: bool, reason: &str, saved: String) {
         if !needed {
             let (needed, full) = ("no".to_owned(), "yes".to_owned());
-            self.lines.push(Saving { part: Part::Features, what, needed, full, reason: reason.to_owned(), saved: String::new() });
+            self.lines.push(Saving { part: Part::Features, what, needed, full, reason: reason.to_owned(), saved });
         }
     }
 }
@@ -100,6 +100,10 @@ pub fn savings(plan: &Plan, full: &Hardware, data: Option<&Data>) -> Vec<Saving>
     // Each by itself, with the stack that follows from it.
     let levels = without(Hardware { levels: own.levels, ..*full });
     table.add(Part::Structure, "levels", [own.levels, full.levels], "no scene has more", levels);
+    let [own_stored, stored] = [own.stored_levels(), own.levels];
+    let reason = if plan.rays.is_some() { "no tree is stored deeper, or no ray goes there" } else { "no tree is stored deeper" };
+    let saved = format!("{} bits of a context", context(&Hardware { fewer_stored_levels: None, ..own }) - context(&own));
+    table.add(Part::Structure, "stored levels", [own_stored, stored], reason, saved);
     let depth = without(Hardware { bvh_depth: own.bvh_depth, ..*full });
     table.add(Part::Structure, "quad-BVH depth", [own.bvh_depth, full.bvh_depth], "no path to a tree is longer", depth);
     let stack = without(Hardware { fewer_stack_entries: own.fewer_stack_entries, ..*full });
@@ -115,9 +119,12 @@ pub fn savings(plan: &Plan, full: &Hardware, data: Option<&Data>) -> Vec<Saving>
     table.add(Part::Numbers, "coordinate without its zeros", [form.coordinate(), 32], reason, zeros(own.coordinate_zeros, 0));
     let reason = "all components end in zeros";
     table.add(Part::Numbers, "direction without its zeros", [form.component(), 31], reason, zeros(0, own.direction_zeros));
+    let index = without(Hardware { index_bits: own.index_bits, fewer_stored_levels: own.fewer_stored_levels, ..*full });
     table.bits("number of a quad-BVH node", [scene.bvh_node_bits, 28], "so many are there");
     table.bits("number of a tree", [scene.tree_bits, 28], "so many are there");
-    table.bits("number of a memory line", [scene.line_bits, 32], "so many have the scene's sections");
+    table.add(Part::Numbers, "number of either, or of a node", [own.index_bits, 28], "the larger of both", index);
+    let line = without(Hardware { line_bits: own.line_bits, ..*full });
+    table.add(Part::Numbers, "number of a memory line", [scene.line_bits, 32], "so many have the scene's sections", line);
     table.bits("coordinate", [scene.coordinate_bits, 32], "none is larger");
     table.bits("box code of a frame", [scene.frame_bits, 16], "none is larger");
     table.bits("plane of a quad-BVH node", [scene.node_plane_bits, 5], "none is larger");
@@ -139,12 +146,16 @@ pub fn savings(plan: &Plan, full: &Hardware, data: Option<&Data>) -> Vec<Saving>
         table.bits("offset of a cone", [rays.cone_offset_bits, 53], "none is larger");
         table.bits("slope of a cone", [rays.cone_slope_bits, 18], "none is larger");
         table.add(Part::Numbers, "shift of a cone", [rays.cone_shift, 63], "none is larger", String::new());
-        table.feature("choice of a level, and morphs", rays.lod_test, "every quality is 0 or infinite: edges are closed or open");
-        table.feature("hits mapped to full resolution", rays.hit_mapping, "every hit is on a triangle of the finest level");
-        table.feature("radius where a ray starts", rays.start_radius, "no ray has one");
+        let saved = format!("lod_test, morphs of tessellate, {}", without(Hardware { lod_test: false, ..*full }));
+        table.feature("choice of a level, and morphs", rays.lod_test, "every quality is 0 or infinite: edges are closed or open", saved);
+        let saved = format!("bary_map, {}", without(Hardware { hit_mapping: false, ..*full }));
+        table.feature("hits mapped to full resolution", rays.hit_mapping, "every hit is on a triangle of the finest level", saved);
+        let saved = without(Hardware { start_radius: false, ..*full });
+        table.feature("radius where a ray starts", rays.start_radius, "no ray has one", saved);
     }
-    table.feature("vertices as displacements", scene.compact, "no scene has compact vertices");
-    table.feature("vertices as they are", scene.exact, "no scene has exact vertices");
+    let saved = "selections in tessellate".to_owned();
+    table.feature("vertices as displacements", scene.compact, "no scene has compact vertices", saved.clone());
+    table.feature("vertices as they are", scene.exact, "no scene has exact vertices", saved);
     if let Some(speed) = &plan.speed {
         table.speed(speed, &own);
     }

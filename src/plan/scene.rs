@@ -12,6 +12,8 @@ needs! {
         most {
             /// Splits N.
             levels: u32,
+            /// Levels that a tree is stored to.
+            stored_levels: u32,
             /// Quad-BVH nodes on the longest path from the root to a tree.
             bvh_depth: u32,
             /// Entries that can wait on the traversal stack at once.
@@ -232,6 +234,7 @@ impl SceneNeeds {
         let code = met.codes.into_iter().max().unwrap_or(0);
         Self {
             levels,
+            stored_levels: scene.depths().into_iter().max().unwrap_or(0),
             bvh_depth: nodes.depth,
             stack_entries: nodes.waiting,
             bvh_node_bits: bits(last(scene.nodes().len())),

@@ -5,9 +5,10 @@ use crate::{
     bary_map, bound_decode, box_decode, box_test, box_test32, child_boxes, child_sort, child_test, hit_divide, hit_select, lod_test,
     node_address, ray_setup, tessellate, traversal_stack, tri_test,
 };
-use lodray::block::Block;
+use lodray::block::{self, Block};
 use lodray::hardware::Hardware;
-use lodray_test_support::hardware::{OTHERS, SMALL};
+use lodray::num::U;
+use lodray_test_support::hardware::{FULL_DETAIL, LESS, OTHERS, SHALLOW, SMALL};
 use std::fmt::Debug;
 use tb::Mode;
 
@@ -34,9 +35,29 @@ fn blocks_that_depend_on_the_levels() {
     play(&OTHERS, node_address::suite);
     for &hardware in &OTHERS {
         let zeros = u64::from(hardware.coordinate_zeros);
-        play(&[hardware], |levels| tessellate::suite(levels, zeros));
+        let suite = |levels| {
+            let suite = tessellate::suite(levels, zeros);
+            if LESS.contains(&hardware) { suite.coarsened(tessellate::of_less(&hardware)) } else { suite }
+        };
+        play(&[hardware], suite);
     }
     OTHERS.iter().for_each(|hardware| traversal_stack::play(hardware, TRANSACTIONS));
+}
+
+#[test]
+fn blocks_that_depend_on_features() {
+    play(&[SHALLOW], |_| {
+        lod_test::suite().coarsened(|mut i, _| {
+            i.ray.cone.offset = U::ZERO;
+            i
+        })
+    });
+    play(&[FULL_DETAIL], |_| {
+        child_boxes::suite().coarsened(|i, _| block::child_boxes::In { p0: i.f0, p1: i.f1, p2: i.f2, q0: i.g0, q1: i.g1, q2: i.g2, ..i })
+    });
+    play(&[FULL_DETAIL], |_| {
+        child_test::suite().coarsened(|i, _| block::child_test::In { p0: i.f0, p1: i.f1, p2: i.f2, q0: i.g0, q1: i.g1, q2: i.g2, ..i })
+    });
 }
 
 #[test]

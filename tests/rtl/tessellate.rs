@@ -2,8 +2,9 @@
 
 use crate::draw::Draw;
 use crate::rays::point;
-use crate::suite::{Category, Suite};
+use crate::suite::{Category, Coarsen, Suite};
 use lodray::block::tessellate::{In, Out, Tessellate};
+use lodray::hardware::Hardware;
 use lodray::num::{BoundCode, COORD_LIMIT, EdgeState, MAX_BOUND_OFFSET, MAX_DISPLACEMENT_SHIFT, MAX_LEVELS, Point, S_ONE, U};
 use tb::Mode;
 
@@ -163,6 +164,31 @@ fn legal(i: &In) -> bool {
 
 fn stored_as_they_are(i: &In, o: &Out) -> bool {
     i.compact || full(o) == [i.v0, i.v1, i.v2].map(Point::get)
+}
+
+/// Inputs as hardware that leaves out features takes them: of one form of vertices, and where nothing is morphed, open.
+pub fn of_less(hardware: &Hardware) -> Coarsen<Tessellate> {
+    fn open(i: In) -> In {
+        let s = U::new(S_ONE);
+        In { p0: i.f0, p1: i.f1, p2: i.f2, s0: s, s1: s, s2: s, ..i }
+    }
+    /// The midpoints as vertices of a form, where it was the other.
+    fn formed(i: In, compact: bool) -> In {
+        let [v0, v1, v2] = if i.compact == compact {
+            [i.v0, i.v1, i.v2]
+        } else if compact {
+            [Point::default(); 3]
+        } else {
+            middles(&i, false).map(point)
+        };
+        In { compact, v0, v1, v2, ..i }
+    }
+    match (hardware.compact_vertices, hardware.exact_vertices, hardware.chooses_levels()) {
+        (true, true, false) => |i, _| open(i),
+        (true, false, false) => |i, _| formed(open(i), true),
+        (false, true, true) => |i, _| formed(i, false),
+        _ => unreachable!("{hardware:?}"),
+    }
 }
 
 type Is = Category<Tessellate>;

@@ -7,8 +7,9 @@ use lodray::method::{Entry, Op, TraversalStack};
 use lodray::num::{U, Wire};
 use tb::{Build, Direction, Sim};
 
-fn entry(draw: &mut Draw) -> Entry {
-    Entry {
+/// Any that the hardware can meet.
+fn entry(hardware: &Hardware, draw: &mut Draw) -> Entry {
+    let any = Entry {
         t_near: draw.bits(),
         kind: U::new(draw.below(3)),
         level: draw.bits(),
@@ -16,6 +17,11 @@ fn entry(draw: &mut Draw) -> Entry {
         e0: draw.bits(),
         e1: draw.bits(),
         e2: draw.bits(),
+    };
+    let index = U::new(any.index.get() & ((1 << hardware.index_bits) - 1));
+    match hardware.split_triangles() {
+        0 => Entry { index, t_near: any.t_near, kind: any.kind, ..Entry::default() },
+        _ => Entry { index, ..any },
     }
 }
 
@@ -51,7 +57,7 @@ pub fn play(hardware: &Hardware, count: u64) {
         let does_clear = draw.once_in(5000);
         let does_push = !does_clear && wants_push && stack.len() < room;
         let does_pop = !does_clear && !does_push && !stack.is_empty() && draw.below(8) < 7;
-        let item = entry(&mut draw);
+        let item = entry(hardware, &mut draw);
         sim.poke(clear, &does_clear);
         sim.poke(push, &does_push);
         sim.poke(pop, &does_pop);

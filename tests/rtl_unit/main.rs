@@ -13,12 +13,12 @@ use lodray::mesh::most_zeros;
 use lodray::mesh::procedural::{self, Options};
 use lodray::method::lod::LodImage;
 use lodray::num::{Ray, VertexForm};
-use lodray::plan::Reach;
+use lodray::plan::{Measure, Plan, Reach};
 use lodray::rays::{Camera, ModelSpace, View};
 use lodray::sim::unit::environment::{RunReport, UnitPort, run};
 use lodray::sim::unit::{Inputs, Latency, Outputs, SceneMemory, Stall, Traffic, TraversalUnit};
-use lodray_test_support::hardware::OTHERS;
-use lodray_test_support::models::{Rng, any_rays, ball, build_with, coarsened, scene_of, terrain, with_vertices, with_zeros};
+use lodray_test_support::hardware::{OTHERS, form_for, most_levels, ray_for, scene_for};
+use lodray_test_support::models::{Rng, any_rays, ball, build_with, coarsened, terrain, with_vertices, with_zeros};
 use lodray_test_support::plain::plain;
 use port::Rtl;
 
@@ -114,24 +114,24 @@ fn other_hardware_under_random_traffic() {
     random_rays(&OTHERS, cycles_wanted() / 8);
 }
 
-/// Random models, of each number of levels that all of the hardware is for, for so many cycles; the hardware by turns.
+/// Random models, of any number of levels that the hardware is for, for so many cycles; the hardware by turns.
 fn random_rays(hardware: &[Hardware], wanted: u64) {
-    let most = hardware.iter().map(|hardware| hardware.levels).min().map_or(0, |levels| levels.min(6));
     let seed = tb::seed(1).unwrap_or_else(|error| panic!("{error}"));
     let (mut cycles, mut traced, mut hits) = (0, 0, 0);
     for round in 0.. {
         let seed = seed + round;
         let mut rng = Rng(seed);
-        let levels = (round % u64::from(most + 1)) as u32;
-        let roughness = [0.05, 0.4, 1.5][rng.below(3) as usize];
-        let h = if rng.below(2) == 0 { ball(levels, roughness, seed) } else { terrain(2, levels, roughness, seed) };
         let config = hardware[round as usize % hardware.len()];
+        let roughness = [0.05, 0.4, 1.5][rng.below(3) as usize];
+        let levels = rng.below(u64::from(most_levels(&config).min(6) + 1)) as u32;
+        let h = if rng.below(2) == 0 { ball(levels, roughness, seed) } else { terrain(2, levels, roughness, seed) };
         // As many zeros as the hardware leaves out, or some more.
         let zeros = (config.coordinate_zeros + rng.below(3) as u32 * rng.below(3) as u32).min(most_zeros(levels));
-        let h = with_vertices(VertexForm::ALL[rng.below(2) as usize], with_zeros(zeros, h));
+        let h = with_vertices(form_for(&config, VertexForm::ALL[rng.below(2) as usize]), with_zeros(zeros, h));
         let rays = any_rays(&h, 20 * config.contexts, seed);
-        let rays: Vec<Ray> = rays.iter().map(|ray| coarsened(ray, [zeros, config.direction_zeros])).collect();
-        let (report, met) = compare(&scene_of(&h), config, &any_traffic(&mut rng), &rays, seed);
+        let rays: Vec<Ray> =
+            rays.iter().enumerate().map(|(k, ray)| ray_for(&config, &coarsened(ray, [zeros, config.direction_zeros]), k)).collect();
+        let (report, met) = compare(&scene_for(&config, &h), config, &any_traffic(&mut rng), &rays, seed);
         cycles += report.cycles;
         traced += rays.len();
         hits += met;
@@ -148,13 +148,22 @@ fn frame(kind: procedural::Scene, form: VertexForm, config: Hardware, latency: L
     frame_of(kind, form, config, latency, false);
 }
 
-/// The same; on a scene that is pruned for it if `pruned`: with trees of many depths.
+/// No more of `hardware` than the rays of a view need on a scene.
+fn planned(scene: &Scene, camera: &Camera, hardware: Hardware) -> Hardware {
+    let (measure, mut plan) = (Measure::of(scene), Plan::new(true));
+    plan.add("it", &measure.needs());
+    plan.add_rays(&measure.rays(camera, 1.0));
+    plan.hardware(&hardware)
+}
+
+/// The same; if `pruned`, on a scene that is pruned for it, by the unit of its plan.
 fn frame_of(kind: procedural::Scene, form: VertexForm, config: Hardware, latency: Latency, pruned: bool) {
     const SIDE: u32 = 96;
     let options = Options { levels: Some(3), base: Some(32), ..Options::new(kind) };
     let scene = build_with(&procedural::generate(&options).expect("options"), form);
     let space = ModelSpace::of(&scene);
-    let camera = Camera::new(&View { distance: Some(2.5), ..View::default() }, &space, SIDE, SIDE).expect("a view");
+    let camera =
+        Camera::new(&View { distance: Some(if pruned { 5.0 } else { 2.5 }), ..View::default() }, &space, SIDE, SIDE).expect("a view");
     let pixels = (0..SIDE * SIDE).map(|i| camera.ray(i % SIDE, i / SIDE));
     // Where a ray misses the model's box there is nothing to trace.
     let rays: Vec<Ray> = pixels.filter_map(|world| Some(space.enter(&world, 1.0)?.ray)).collect();
@@ -165,9 +174,11 @@ fn frame_of(kind: procedural::Scene, form: VertexForm, config: Hardware, latency
     } else {
         scene
     };
-    assert!(!pruned || scene.trees_by_depth().iter().all(|&trees| trees > 0), "{:?}", scene.trees_by_depth());
+    let depths = scene.trees_by_depth().iter().filter(|trees| **trees > 0).count();
+    assert!(!pruned || depths > 1, "{:?}", scene.trees_by_depth());
+    let config = if pruned { planned(&scene, &camera, config) } else { config };
     let (report, hits) = compare(&scene, config, &Traffic::smooth(latency), &rays, 1);
-    println!("{kind:?}, {form:?}: {SIDE}x{SIDE} pixels, {} rays, {hits} hits, {} cycles", rays.len(), report.cycles);
+    println!("{kind:?}, {form:?}: {SIDE}x{SIDE} pixels, {} rays, {hits} hits, {} cycles; {config:?}", rays.len(), report.cycles);
     assert!(hits > 1000, "only {hits} hits");
 }
 
@@ -177,9 +188,11 @@ fn a_frame_of_a_terrain() {
 }
 
 #[test]
-fn a_frame_of_trees_of_many_depths() {
-    for form in VertexForm::ALL {
-        frame_of(procedural::Scene::Room, form, configs()[2], Latency::Random { min: 2, max: 80, seed: 2 }, true);
+fn frames_of_pruned_scenes_by_their_own_units() {
+    use procedural::Scene::{Cloth, Room, Sphere, Terrain};
+    let scenes = [(Room, VertexForm::Exact), (Sphere, VertexForm::Compact), (Cloth, VertexForm::Compact), (Terrain, VertexForm::Exact)];
+    for (kind, form) in scenes {
+        frame_of(kind, form, configs()[1], Latency::Random { min: 2, max: 80, seed: 2 }, true);
     }
 }
 

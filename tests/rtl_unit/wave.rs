@@ -14,10 +14,14 @@ use vcd::{Command, IdCode, Parser, ScopeItem, Value};
 /// Values of every signal by path, one per cycle.
 struct Waveform(BTreeMap<String, Vec<Vec<Value>>>);
 
+/// Generate blocks of the RTL around what hardware can lack: the model has no such scopes.
+const OPTIONAL: [&str; 5] = ["g_place", "g_morphed", "g_lod_test", "g_tessellate", "g_bary_map"];
+
 fn paths(items: &[ScopeItem], within: &str, to: &mut Vec<(String, IdCode, usize)>) {
     for item in items {
         match item {
             ScopeItem::Var(var) => to.push((format!("{within}{}", var.reference), var.code, var.size as usize)),
+            ScopeItem::Scope(scope) if OPTIONAL.contains(&&*scope.identifier) => paths(&scope.items, within, to),
             ScopeItem::Scope(scope) => paths(&scope.items, &format!("{within}{}.", scope.identifier), to),
             _ => (),
         }

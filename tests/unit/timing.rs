@@ -9,7 +9,7 @@ use lodray::sim::timing::UnitTiming;
 use lodray::sim::unit::environment::{RunReport, UnitPort, run};
 use lodray::sim::unit::{Inputs, Latency, Outputs, SceneMemory, Stall, Traffic, TraversalUnit};
 use lodray::step::{Act, Batch, Fetch, SectionId, Step};
-use lodray_test_support::hardware::OTHERS;
+use lodray_test_support::hardware::{OTHERS, form_for, most_levels, ray_for, scene_for};
 use lodray_test_support::models::{Rng, any_rays, ball, model, octahedron, scene_of, terrain, with_vertices};
 use lodray_test_support::timing::{Smooth, Timed, steps_of};
 
@@ -91,12 +91,14 @@ fn models() -> Vec<(String, Hierarchy)> {
 fn equals_the_cycle_model_in_every_cycle() {
     let [mut rays_compared, mut requests, mut cycles, mut ticks, mut found, mut refused] = [0u64; 6];
     for (number, (name, h)) in models().iter().enumerate() {
-        let scene = scene_of(h);
-        let image = LodImage::of(&scene);
-        let memory = SceneMemory::new(image, 1000);
-        let rays = any_rays(h, 40, number as u64);
-        let batch = steps_of(image, &rays);
-        for config in configs().into_iter().chain(OTHERS).filter(|config| h.levels <= config.levels) {
+        let any = any_rays(h, 40, number as u64);
+        let fits = |config: &Hardware| h.levels <= most_levels(config) && form_for(config, h.vertices) == h.vertices;
+        for config in configs().into_iter().chain(OTHERS).filter(fits) {
+            let scene = scene_for(&config, h);
+            let image = LodImage::of(&scene);
+            let memory = SceneMemory::new(image, 1000);
+            let rays: Vec<Ray> = any.iter().enumerate().map(|(k, ray)| ray_for(&config, ray, k)).collect();
+            let batch = steps_of(image, &rays);
             for traffic in traffics() {
                 let what = format!("{name}, {config:?}, {traffic:?}");
                 let mut model = Noting::new(TraversalUnit::new(config, memory.config()));

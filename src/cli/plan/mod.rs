@@ -8,6 +8,7 @@ use super::sweep::{Jobs, ListText, SceneJobs};
 use anyhow::Context;
 use lodray::format::{JobView, Scene};
 use lodray::hardware::Hardware;
+use lodray::method::lod;
 use lodray::plan::{Data, Measure, Narrowest, Part, Plan, RayNeeds, Reach, Saving, Within, savings};
 use lodray::rays::{ModelSpace, RaySource};
 use lodray::report::result::MachineFacts;
@@ -60,26 +61,46 @@ struct Document<'a> {
 #[derive(Serialize)]
 struct UnitFacts {
     levels: u32,
+    stored_levels: u32,
     bvh_depth: u32,
     stack_entries: u32,
     contexts: usize,
     edges_per_cycle: u32,
+    index_bits: u32,
+    line_bits: u32,
+    lod_test: bool,
+    start_radius: bool,
+    hit_mapping: bool,
+    compact_vertices: bool,
+    exact_vertices: bool,
     coordinate_zeros: u32,
     direction_zeros: u32,
+    /// Blocks of a traversal unit that it has.
+    blocks: Vec<&'static str>,
     /// Registers of a context, in bits.
     context_bits: u32,
 }
 
 impl UnitFacts {
     fn of(hardware: &Hardware) -> Self {
+        let blocks = lod::METHOD.unit.into_iter().flat_map(|unit| hardware.blocks(unit.blocks));
         Self {
             levels: hardware.levels,
+            stored_levels: hardware.stored_levels(),
             bvh_depth: hardware.bvh_depth,
             stack_entries: hardware.stack_entries(),
             contexts: hardware.contexts,
             edges_per_cycle: hardware.edges_per_cycle.count(),
+            index_bits: hardware.index_bits,
+            line_bits: hardware.line_bits,
+            lod_test: hardware.chooses_levels(),
+            start_radius: hardware.start_radius,
+            hit_mapping: hardware.hit_mapping,
+            compact_vertices: hardware.compact_vertices,
+            exact_vertices: hardware.exact_vertices,
             coordinate_zeros: hardware.coordinate_zeros,
             direction_zeros: hardware.direction_zeros,
+            blocks: blocks.map(|operation| operation.name()).collect(),
             context_bits: hardware.context_registers(true).kept,
         }
     }

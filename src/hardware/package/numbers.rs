@@ -63,10 +63,22 @@ pub(super) fn print(hardware: &Hardware, out: &mut String) {
         "This hardware: `Hardware` in Rust, which prints this file. All that follows from these is made smaller or larger with them.",
     )
     .put("MAX_LEVELS", hardware.levels, "splits N of a model")
+    .put("STORED_LEVELS", hardware.stored_levels(), "of a tree at most: below, there are triangles")
     .put("MAX_BVH_DEPTH", hardware.bvh_depth, "quad-BVH nodes on a path from the root to a tree")
     .put("CONTEXTS", hardware.contexts, "rays under way in a traversal unit, if its parameter does not say otherwise")
     .put("CONTEXT_W", hardware.context_bits, "bits of a context's number")
     .put("EDGES_PER_CYCLE", edges, "edge functions that tri_test evaluates in a cycle, if its parameter does not say otherwise")
+    .put("INDEX_W", hardware.index_bits, "of the number of a quad-BVH node, of a tree, and of a node, where it is kept")
+    .put("LINE_W", hardware.line_bits, "of the numbers of a tree's first sibling group and vertex line")
+    .put(
+        "LOD_TEST",
+        u32::from(hardware.chooses_levels()),
+        "levels of detail are chosen, and triangles morphed: 1, or 0 if all rays are of full detail or of none",
+    )
+    .put("START_RADIUS", u32::from(hardware.start_radius), "cones can have a radius where their rays start")
+    .put("HIT_MAPPING", u32::from(hardware.hit_mapping), "hits can be above the finest level")
+    .put("COMPACT_VERTICES", u32::from(hardware.compact_vertices), "inserted vertices can be displacements")
+    .put("EXACT_VERTICES", u32::from(hardware.exact_vertices), "they can be stored as they are")
     .put("COORDINATE_ZEROS", hardware.coordinate_zeros, "zero bits at the bottom of every coordinate, which it leaves out")
     .put("DIRECTION_ZEROS", hardware.direction_zeros, "of every component of a direction");
     let form = hardware.form();
@@ -100,12 +112,14 @@ pub(super) fn print(hardware: &Hardware, out: &mut String) {
             "STACK_ENTRIES",
             hardware.stack_entries(),
             match hardware.fewer_stack_entries {
-                None => "3 (MAX_BVH_DEPTH + MAX_LEVELS) + 1: each level leaves at most three siblings waiting",
+                None => "3 (MAX_BVH_DEPTH + STORED_LEVELS) + 1: each level leaves at most three siblings waiting",
                 Some(_) => "as many as can wait in the scenes that it is for",
             },
         )
+        .put("KEPT_ENTRY_W", hardware.entry(), "of a stack entry, where it is kept")
         .put("SPLIT_TRIANGLES", hardware.split_triangles(), "of a context: one of each level that splits into nodes")
-        .put("NODE_W", 2 * hardware.levels, "of a node within its level, where it is kept: two bits of each level");
+        .put("NODE_W", 2 * hardware.levels, "of a node within its level: two bits of each level")
+        .put("KEPT_NODE_W", hardware.node_bits(), "where it is kept: two bits of each stored level");
     let scales =
         Group::new("Scales.").put("BOX_SHIFT", BOX_SHIFT, "").put("T_NEAR_TO_T_SHIFT", T_NEAR_TO_T_SHIFT, "").put("S_ONE", S_ONE, "");
     let cycles = Group::new(

@@ -66,6 +66,17 @@
   localparam logic [1:0] ENTRY_TREE = 2'd1;
   localparam logic [1:0] ENTRY_TREE_NODE = 2'd2;
 
+  // They as they are kept: indices of this hardware's bits, and level and codes only where trees have nodes.
+  localparam int unsigned WIDE_ENTRY_W = STACK_ENTRY_W - 28 + INDEX_W;
+  function automatic logic [KEPT_ENTRY_W-1:0] keep_entry(input stack_entry_t e);
+    keep_entry = KEPT_ENTRY_W'({e.level, e.e0, e.e1, e.e2, e.t_near, e.kind, INDEX_W'(e.index)});
+  endfunction
+  function automatic stack_entry_t whole_entry(input logic [KEPT_ENTRY_W-1:0] kept);
+    logic [INDEX_W-1:0] index;
+    {whole_entry.level, whole_entry.e0, whole_entry.e1, whole_entry.e2, whole_entry.t_near, whole_entry.kind, index} = WIDE_ENTRY_W'(kept);
+    whole_entry.index = 28'(index);
+  endfunction
+
   // What a division is for.
   localparam logic [1:0] DIVIDE_FOR_T = 2'd0;
   localparam logic [1:0] DIVIDE_FOR_V = 2'd1;

@@ -71,8 +71,11 @@ impl BlockTable {
         Ok(table)
     }
 
-    /// Energy of one operation of a block of this hardware, in pJ.
+    /// Energy of one operation of a block of this hardware, in pJ; none of one that it does not have.
     pub fn operation_pj(&self, operation: Operation, hardware: &Hardware) -> f64 {
+        if !hardware.has(operation) {
+            return 0.0;
+        }
         let (parts, cycles) = built(operation, hardware);
         let prices = &self.operations;
         let logic = products(&parts) * prices.multiply_32_pj / (WORD * WORD) + f64::from(parts.add_bits) * prices.add_32_pj / WORD;
@@ -91,7 +94,7 @@ impl BlockTable {
                 + f64::from(parts.select_bits) * prices.select_32_mw / WORD;
             logic / cycles
         };
-        let logic: f64 = unit.blocks.iter().map(of_block).sum();
+        let logic: f64 = hardware.blocks(unit.blocks).map(of_block).sum();
         (logic + unit_registers(unit, hardware) * prices.register_mw) * self.scale.leakage
     }
 
@@ -138,7 +141,7 @@ fn products(parts: &Parts) -> f64 {
 
 /// Registers of a traversal unit.
 fn unit_registers(unit: MethodUnit, hardware: &Hardware) -> f64 {
-    let of_blocks: f64 = unit.blocks.iter().map(|operation| f64::from(operation.parts(&hardware.form()).registers.kept)).sum();
+    let of_blocks: f64 = hardware.blocks(unit.blocks).map(|operation| f64::from(operation.parts(&hardware.form()).registers.kept)).sum();
     let context = hardware.context_registers(unit.has_levels);
     of_blocks + hardware.contexts as f64 * f64::from(context.kept)
 }

@@ -102,7 +102,7 @@ impl<R: Steps> UnitTiming<R> {
                 self.states[State::DivideWait as usize] += result - now;
                 self.states[State::Sum as usize] += 1;
                 let context = &mut self.contexts[who];
-                context.enter(if context.mapped { State::Map } else { State::Done }, result + 2);
+                context.enter(if context.mapped && self.hit_mapping { State::Map } else { State::Done }, result + 2);
                 self.sleep(who, now);
             }
             Resource::Map => {
@@ -204,6 +204,11 @@ impl<R: Steps> UnitTiming<R> {
             }
             Act::Children { .. } | Act::PlainChildren { .. } | Act::LocalChildren { .. } | Act::WideChildren { .. } => {
                 context.enter(State::Child, at);
+            }
+            // A context sees itself which edges are open, where rays are of full detail or of none.
+            Act::LodTest { .. } if !self.chooses_levels => {
+                self.states[State::Lod as usize] += 1;
+                return Some(at + 1);
             }
             Act::LodTest { .. } => context.enter(State::Lod, at),
             Act::Tessellate => context.enter(State::Morph, at),

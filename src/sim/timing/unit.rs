@@ -42,6 +42,9 @@ pub struct UnitTiming<R> {
     pub(super) plain_node: u64,
     pub(super) local_node: u64,
     pub(super) wide_node: u64,
+    /// The hardware has a LOD test, and a map of hits.
+    pub(super) chooses_levels: bool,
+    pub(super) hit_mapping: bool,
     pub(super) idle: u64,
     /// Requests on their way through `node_address`, and since when.
     pub(super) requests: VecDeque<(u64, LineRequest)>,
@@ -87,6 +90,8 @@ impl<R: Steps> UnitTiming<R> {
             plain_node: u64::from(plain),
             local_node: u64::from(config.timing::<BoxDecode>().latency + plain),
             wide_node: u64::from(config.timing::<BoxTest32>().latency + sort),
+            chooses_levels: config.chooses_levels(),
+            hit_mapping: config.hit_mapping,
             idle: u64::MAX >> (MAX_CONTEXTS - config.contexts),
             requests: VecDeque::new(),
             hits: HitQueue::default(),

@@ -79,6 +79,11 @@ impl Closest {
         bary_map::In { levels: U::new(levels.get() - self.level.get()), node: self.node, b0: self.b0, b1: self.b1, b2: self.b2 }
     }
 
+    /// The hit is on a full-resolution triangle.
+    pub fn is_finest(&mut self) {
+        self.full = bary_map::Out { node: self.node, b0: self.b0, b1: self.b1, b2: self.b2 };
+    }
+
     /// The full-resolution triangle.
     pub fn mapped(&mut self, out: &bary_map::Out) {
         self.full = *out;

@@ -12,7 +12,7 @@ use crate::format::{L0Record, VertexData};
 use crate::hardware::ports::SceneConfig;
 use crate::hardware::{Fetch, Hardware, State};
 use crate::method::{Entry, Op, TraversalStack, is_beyond};
-use crate::num::{BoundCode, Point, Ray, U, Wire};
+use crate::num::{BoundCode, Point, Ray, S_ONE, U, Wire};
 
 /// Triangle of a node: corners and inserted vertices, of full resolution and as morphed for this ray.
 #[derive(Clone, Copy, Default)]
@@ -68,13 +68,17 @@ pub struct Context {
     pub splits: Box<[Split]>,
     /// Entries that the stack has room for.
     pub room: usize,
+    /// Its hardware has a LOD test, and a map of hits.
+    pub chooses_levels: bool,
+    hit_mapping: bool,
 }
 
 impl Context {
     /// An idle context of this hardware.
     pub fn new(hardware: &Hardware) -> Self {
         let splits = vec![Split::default(); hardware.split_triangles() as usize].into();
-        Self { splits, room: hardware.stack_entries() as usize, ..Self::default() }
+        let (chooses_levels, hit_mapping) = (hardware.chooses_levels(), hardware.hit_mapping);
+        Self { splits, room: hardware.stack_entries() as usize, chooses_levels, hit_mapping, ..Self::default() }
     }
 
     /// The node's children are as deep as the tree: triangles, not nodes.
@@ -96,7 +100,6 @@ impl Context {
     /// The end of a cycle of context `me`.
     pub fn tick(&mut self, me: usize, scene: &SceneConfig, cycle: &Cycle) {
         let (want, waiting) = (self.want, self.waiting);
-        let last_split = self.last_split();
         if let Some(&quotient) = cycle.divide.result(me)
             && quotient.what != DIVIDE_FOR_T
         {
@@ -142,20 +145,10 @@ impl Context {
             },
             State::Push => self.push(),
             State::Pop => self.pop(),
+            State::Lod if !self.chooses_levels => self.decided(scene, self.extreme()),
             State::Lod => self.when(cycle.lod.granted(me), State::LodWait),
             State::LodWait => match cycle.lod.result(me) {
-                Some(&lod) => {
-                    self.lod.set(lod);
-                    if !lod.refine {
-                        self.enter_triangles(false)
-                    } else if self.compact_root(scene) {
-                        State::Morph
-                    } else {
-                        self.fetch.set(Fetch::Vertex);
-                        self.want = if last_split { 0b10 } else { 0b11 };
-                        State::Fetch
-                    }
-                }
+                Some(&lod) => self.decided(scene, lod),
                 None => State::LodWait,
             },
             State::Morph => self.when(cycle.morph.granted(me), State::MorphWait),
@@ -164,7 +157,7 @@ impl Context {
                     let (g, q) = ([morphed.g0, morphed.g1, morphed.g2], [morphed.q0, morphed.q1, morphed.q2]);
                     self.g.set(g);
                     self.q.set(q);
-                    if last_split {
+                    if self.last_split() {
                         self.enter_triangles(true)
                     } else {
                         self.splits[self.level.get().get() as usize] = Split { f: self.f.get(), p: self.p.get(), g, q };
@@ -185,7 +178,12 @@ impl Context {
             State::DivideWait => self.when(cycle.divide.result(me).is_some_and(|q| q.what == DIVIDE_FOR_W), State::Sum),
             State::Sum => {
                 self.closest.sum();
-                State::Map
+                if self.hit_mapping {
+                    State::Map
+                } else {
+                    self.closest.is_finest();
+                    State::Done
+                }
             }
             State::Map => self.when(cycle.map.granted(me), State::MapWait),
             State::MapWait => match cycle.map.result(me) {
@@ -204,6 +202,28 @@ impl Context {
     /// The next state: `to` when something happened.
     fn when(&self, happened: bool, to: State) -> State {
         if happened { to } else { self.state }
+    }
+
+    /// What a ray of full detail, or of none, makes of the node: edges with a bound are open, or none is.
+    fn extreme(&self) -> lod_test::Out {
+        let open = |code: BoundCode| !self.ray.cone.is_of_no_detail() && code != BoundCode::ZERO;
+        let [o0, o1, o2] = self.e.map(open);
+        let state = |open| if open { U::new(S_ONE) } else { U::ZERO };
+        lod_test::Out { refine: o0 || o1 || o2, s0: state(o0), s1: state(o1), s2: state(o2) }
+    }
+
+    /// It is known whether the node's triangle serves.
+    fn decided(&mut self, scene: &SceneConfig, lod: lod_test::Out) -> State {
+        self.lod.set(lod);
+        if !lod.refine {
+            self.enter_triangles(false)
+        } else if self.compact_root(scene) {
+            State::Morph
+        } else {
+            self.fetch.set(Fetch::Vertex);
+            self.want = if self.last_split() { 0b10 } else { 0b11 };
+            State::Fetch
+        }
     }
 
     fn visit(&mut self) -> State {

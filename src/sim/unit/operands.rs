@@ -41,7 +41,7 @@ impl Context {
             State::Setup => ask(Resource::Setup),
             State::Fetch if self.want != 0 => ask(Resource::Fetch),
             State::Child if self.waiting & 0b01 == 0 => ask(Resource::Child),
-            State::Lod => ask(Resource::Lod),
+            State::Lod if self.chooses_levels => ask(Resource::Lod),
             State::Morph => ask(Resource::Morph),
             State::Tri if self.left.get().get() != 0 => ask(Resource::Tri),
             State::DivideV | State::DivideW => ask(Resource::Divide),

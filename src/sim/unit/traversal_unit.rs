@@ -74,10 +74,12 @@ impl TraversalUnit {
     /// A unit behind its reset.
     ///
     /// # Panics
-    /// There is no such hardware ([`Hardware::validate`]), or the scene has more levels than it.
+    /// There is no such hardware ([`Hardware::validate`]), or the scene has more levels than it, or vertices of another form.
     pub fn new(config: Hardware, scene: SceneConfig) -> Self {
         config.validate().unwrap_or_else(|error| panic!("{error}"));
         assert!(scene.levels.get() <= u64::from(config.levels), "{} levels, but the hardware is for {}", scene.levels.get(), config.levels);
+        let has_form = if scene.compact { config.compact_vertices } else { config.exact_vertices };
+        assert!(has_form || config.stored_levels() == 0, "vertices of a form that the hardware does not have");
         Self {
             scene,
             contexts: vec![Context::new(&config); config.contexts],

@@ -1,7 +1,12 @@
 //! Hardware other than the default, which tests build and compare too.
 
+use crate::models::scene_of;
 use lodray::block::EdgesPerCycle;
+use lodray::format::Scene;
 use lodray::hardware::Hardware;
+use lodray::mesh::Hierarchy;
+use lodray::num::{Ray, U, VertexForm};
+use lodray::rays::cone;
 
 /// Small: few levels, a stack for scenes of which is known how many can wait, two rays under way, one edge a cycle.
 pub const SMALL: Hardware = Hardware {
@@ -21,7 +26,64 @@ pub const NARROW: Hardware =
 /// A little narrower, as many limbs, one edge a cycle.
 pub const NARROWER_BY_FEW: Hardware =
     Hardware { coordinate_zeros: 3, direction_zeros: 5, edges_per_cycle: EdgesPerCycle::One, ..Hardware::DEFAULT };
+/// For rays of full detail or none of models of compact vertices: no LOD test, nothing morphed, and fewer bits of every number of nodes, trees and lines.
+pub const FULL_DETAIL: Hardware = Hardware {
+    levels: 4,
+    bvh_depth: 17,
+    contexts: 3,
+    context_bits: 2,
+    index_bits: 15,
+    line_bits: 18,
+    lod_test: false,
+    exact_vertices: false,
+    ..Hardware::DEFAULT
+};
+/// For views so far away that trees of up to seven levels are stored to one, of exact vertices, from inside of the model.
+pub const SHALLOW: Hardware =
+    Hardware { levels: 7, fewer_stored_levels: Some(1), index_bits: 20, start_radius: false, compact_vertices: false, ..Hardware::DEFAULT };
+/// For base meshes alone: nothing is split, and every hit is where it is.
+pub const FLAT: Hardware =
+    Hardware { fewer_stored_levels: Some(0), lod_test: false, start_radius: false, hit_mapping: false, contexts: 2, ..Hardware::DEFAULT };
 /// The others.
-pub const OTHERS: [Hardware; 4] = [SMALL, MIDDLE, NARROW, NARROWER_BY_FEW];
+pub const OTHERS: [Hardware; 7] = [SMALL, MIDDLE, NARROW, NARROWER_BY_FEW, FULL_DETAIL, SHALLOW, FLAT];
+/// The most levels of the models that such hardware is for.
+pub fn most_levels(hardware: &Hardware) -> u32 {
+    if hardware.hit_mapping { hardware.levels } else { hardware.stored_levels() }
+}
+
+/// The form of vertices that is wanted, or the one that such hardware has.
+pub fn form_for(hardware: &Hardware, wanted: VertexForm) -> VertexForm {
+    match (hardware.compact_vertices, hardware.exact_vertices) {
+        (true, true) => wanted,
+        (compact, _) => {
+            if compact {
+                VertexForm::Compact
+            } else {
+                VertexForm::Exact
+            }
+        }
+    }
+}
+
+/// The scene of a model, its trees stored as deep as such hardware takes them.
+pub fn scene_for(hardware: &Hardware, h: &Hierarchy) -> Scene {
+    let scene = scene_of(h);
+    let depths = vec![hardware.stored_levels(); scene.trees()];
+    scene.pruned(&depths, Vec::new()).expect("memory")
+}
+
+/// The ray as such hardware takes it, by turns of full detail and of none if it has no LOD test.
+pub fn ray_for(hardware: &Hardware, ray: &Ray, number: usize) -> Ray {
+    let mut ray = *ray;
+    if !hardware.lod_test {
+        ray.cone = cone(if number % 4 == 3 { 0.0 } else { f64::INFINITY }, 1e6, 0.1);
+    } else if !hardware.start_radius {
+        ray.cone.offset = U::ZERO;
+    }
+    ray
+}
+
+/// Those that leave out features.
+pub const LESS: [Hardware; 3] = [FULL_DETAIL, SHALLOW, FLAT];
 /// Those that leave out low bits.
 pub const NARROWS: [Hardware; 2] = [NARROW, NARROWER_BY_FEW];

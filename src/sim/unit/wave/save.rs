@@ -24,7 +24,7 @@ const GROUPS: &[(&str, &[Row])] = &[
         &[
             (UNIT, BITS, &["clk_i"]),
             (CONTEXT, NAMES, &["state_q"]),
-            (CONTEXT, DECIMAL, &["entry_q.kind", "entry_q.index", "entry_q.t_near", "tree_q", "level_q", "node_q"]),
+            (CONTEXT, DECIMAL, &["entry.kind", "entry.index", "entry.t_near", "tree_q", "level_q", "node_q"]),
             (CONTEXT, DECIMAL, &["lod_q.refine", "lod_q.s0", "lod_q.s1", "lod_q.s2", "u_stack.len_q"]),
             (CONTEXT, BITS, &["u_closest.known_q"]),
             (CONTEXT, HEX, &["u_closest.t_max_q"]),

@@ -149,7 +149,7 @@ pub fn walk(unit: &TraversalUnit, inputs: &Inputs, wires: &Wires, to: &mut impl 
 fn context_signals(c: &Context, to: &mut impl Visitor) {
     to.signal("state_q", Vector::number(c.state as u64, 5));
     to.signal("fetch_q", c.fetch.known().map_or(Vector::unknown(2), |fetch| Vector::number(fetch as u64, 2)));
-    typed::<Entry>(to, "entry_q", &Vector::register(c.entry.known()));
+    typed::<Entry>(to, "entry", &Vector::register(c.entry.known()));
     to.signal("tree_q", Vector::register(c.tree.known()));
     to.signal("depth_q", Vector::register(c.depth.known()));
     to.signal("level_q", Vector::register(c.level.known()));
