@@ -74,8 +74,8 @@ module morph_vertex (
   end
 
   if (MORPHING) begin : g_morph
-    // The midpoint of the edge as morphed goes along.
-    logic [2:0][W-1:0]  m, m_q, g_q, m_g;
+    // The midpoint of the edge as morphed goes along. Flat: Yosys loses the width of packed arrays inside a generate block.
+    logic [3*W-1:0]     m, m_q, g_q, m_g;
     logic [GRID_W-1:0]  grid_m, grid_g;
     logic [STATE_W-1:0] s_m, s_g;
     logic               valid_g, ready_g;
@@ -85,7 +85,7 @@ module morph_vertex (
       logic                unused_even;
       assign {pa, pb}    = {pa_i[k*W +: W], pb_i[k*W +: W]};
       assign sum         = (W+1)'(pa) + (W+1)'(pb);
-      assign m[k]        = sum[W:1];
+      assign m[k*W +: W] = sum[W:1];
       assign unused_even = sum[0];
     end
     pipe_stage #(.W(3 * (2 * W + STEPS_W) + SHIFT_W + STATE_W + GRID_W)) u_midpoint (
@@ -98,15 +98,15 @@ module morph_vertex (
     );
 
     // g - m: 33 bits.
-    logic [2:0][DIFFERENCE_W-1:0] difference, difference_q;
-    logic [2:0][W-1:0]            g_d, m_d;
-    logic [GRID_W-1:0]            grid_d;
-    logic [STATE_W-1:0]           s_d;
-    logic                         valid_d, ready_d;
+    logic [3*DIFFERENCE_W-1:0] difference, difference_q;
+    logic [3*W-1:0]            g_d, m_d;
+    logic [GRID_W-1:0]         grid_d;
+    logic [STATE_W-1:0]        s_d;
+    logic                      valid_d, ready_d;
     for (genvar k = 0; k < 3; k++) begin : g_difference
       logic signed [W-1:0] to, from;
-      assign {to, from}    = {g_q[k], m_g[k]};
-      assign difference[k] = DIFFERENCE_W'(to) - DIFFERENCE_W'(from);
+      assign {to, from} = {g_q[k*W +: W], m_g[k*W +: W]};
+      assign difference[k*DIFFERENCE_W +: DIFFERENCE_W] = DIFFERENCE_W'(to) - DIFFERENCE_W'(from);
     end
     pipe_stage #(.W(3 * DIFFERENCE_W + 6 * W + STATE_W + GRID_W)) u_difference (
       .clk_i, .rst_ni, .valid_i(valid_g), .ready_o(ready_g), .data_i({difference, g_q, m_g, s_g, grid_g}),
@@ -115,7 +115,7 @@ module morph_vertex (
 
     // (g - m) s: 33 bits times 9. The step, on the grid.
     logic [2:0]        valid_product, ready_product;
-    logic [2:0][W-1:0] step, step_q, g_p, m_p, g_s, m_s, morphed;
+    logic [3*W-1:0]    step, step_q, g_p, m_p, g_s, m_s, morphed;
     logic [GRID_W-1:0] grid_p;
     logic              valid_p, ready_p, valid_s, ready_s;
     pipe_delay #(.W(6 * W + GRID_W), .STAGES(PRODUCT_LATENCY)) u_beside (
@@ -124,18 +124,20 @@ module morph_vertex (
     );
     for (genvar k = 0; k < 3; k++) begin : g_step
       logic [PRODUCT_W-1:0] product;
+      logic [W-1:0]         on_grid;
       logic                 unused_bits;
       multiplier #(.A_W(DIFFERENCE_W), .B_W(S_W)) u_product (
-        .clk_i, .rst_ni, .valid_i(valid_d), .ready_o(ready_product[k]), .a_i(difference_q[k]), .b_i({1'b0, s_d}),
+        .clk_i, .rst_ni, .valid_i(valid_d), .ready_o(ready_product[k]), .a_i(difference_q[k*DIFFERENCE_W +: DIFFERENCE_W]), .b_i({1'b0, s_d}),
         .valid_o(valid_product[k]), .ready_i(ready_p), .product_o(product)
       );
       always_comb begin
-        step[k] = product[FRACTION_W +: W];
+        on_grid = product[FRACTION_W +: W];
         for (int unsigned i = 0; i < MOST_GRID - ZEROS; i++) begin
-          if (grid_p > GRID_W'(i + ZEROS)) step[k][i] = 1'b0;
+          if (grid_p > GRID_W'(i + ZEROS)) on_grid[i] = 1'b0;
         end
       end
-      assign unused_bits = ^{product[PRODUCT_W-1:FRACTION_W+W], product[FRACTION_W-1:0]};
+      assign step[k*W +: W] = on_grid;
+      assign unused_bits    = ^{product[PRODUCT_W-1:FRACTION_W+W], product[FRACTION_W-1:0]};
     end
     pipe_stage #(.W(9 * W)) u_step (
       .clk_i, .rst_ni, .valid_i(valid_p), .ready_o(ready_p), .data_i({step, g_p, m_p}),
@@ -144,7 +146,7 @@ module morph_vertex (
 
     // It and m add up to 32 bits again, between m and g.
     for (genvar k = 0; k < 3; k++) begin : g_morphed
-      assign morphed[k] = m_s[k] + step_q[k];
+      assign morphed[k*W +: W] = m_s[k*W +: W] + step_q[k*W +: W];
     end
     pipe_stage #(.W(6 * W)) u_out (
       .clk_i, .rst_ni, .valid_i(valid_s), .ready_o(ready_s), .data_i({g_s, morphed}), .valid_o, .ready_i, .data_o({full_o, morphed_o})

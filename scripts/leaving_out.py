@@ -1,18 +1,23 @@
-"""What nine scenes do not need: bytes, simulated time and energy of a pruned scene on its own unit over the whole on the full one, pictures that are the same, and the least units.
+"""What nine scenes do not need: units in gates, bytes, simulated time and energy and host time of pruned scenes on their own units over whole ones on full units.
 
-Scenes, plans and results are kept in the folder. `scripts/synth --plan FOLDER/SCENE.fast.toml` measures the gates of a scene's least unit.
+Scenes, plans and results are kept in the folder. Pictures of whole and pruned scenes are compared pixel by pixel, hits field by field (benches/leaving_out.rs).
 """
 
 import argparse
 import json
 import re
 import subprocess
+import types
 from pathlib import Path
+
+from synth import Run
+from synthesis import plan as synthesis
+from synthesis.blocks import Block
+from synthesis.tools import Tools
 
 ROOT = Path(__file__).resolve().parent.parent
 PROGRAM = ROOT / "target/release/lodray"
 DOC = ROOT / "docs/leaving-out.md"
-BEGIN, END = "<!-- scripts/leaving-out: begin -->", "<!-- scripts/leaving-out: end -->"
 GENERATED = {
     "terrain 0.45": ["terrain", "--roughness", "0.45"],
     "terrain 0.60": ["terrain", "--roughness", "0.60"],
@@ -26,21 +31,26 @@ HEAD = 'size = "{size}"\nmethods = ["lod"]\ndeltas = [1]\ndistances = {distances
 
 def call(*words):
     """What the program prints."""
-    got = subprocess.run([PROGRAM, *map(str, words)], capture_output=True, text=True)
+    return command([PROGRAM, *words])
+
+
+def command(words):
+    """What a command prints."""
+    got = subprocess.run(list(map(str, words)), cwd=ROOT, capture_output=True, text=True)
     if got.returncode != 0:
         raise SystemExit(f"scripts/leaving-out: {' '.join(map(str, words))}: {got.stderr.strip()}")
     return got.stdout
 
 
 class Scene:
-    """A scene, its plan and what was found out about them."""
+    """A scene, its plans and what was found out about them."""
 
-    def __init__(self, name, folder, models):
-        self.name, self.folder = name, folder
+    def __init__(self, name, options):
+        self.name, self.folder = name, options.folder
         self.stem = name.replace(" ", "-")
         self.file = self.path("lod")
         if not self.file.exists():
-            made = ["generate", *GENERATED[name]] if name in GENERATED else ["build", models / MESHES[name]]
+            made = ["generate", *GENERATED[name]] if name in GENERATED else ["build", options.models / MESHES[name]]
             call("--quiet", *made, "-o", self.file)
 
     def path(self, ending):
@@ -48,10 +58,8 @@ class Scene:
         return self.folder / f"{self.stem}.{ending}"
 
     def planned(self, scene, ending, *more):
-        """The plan of the job on a scene file, as JSON, and in a file."""
-        job, plan = self.path(f"{ending}.job.toml"), self.path(f"{ending}.toml")
-        job.write_text(HEAD.format(size=SIZE, distances=DISTANCES) + f'[[scene]]\nfile = "{scene.name}"\n')
-        return json.loads(call("--quiet", "plan", "--job", job, "--json", "-o", plan, *more)), plan
+        """The file of the plan of the job on a scene file."""
+        return planned(self.folder / f"{self.stem}.{ending}", [scene], *more)
 
     def simulated(self, scene, *more):
         """Cycles and picojoules of all views together, and hits."""
@@ -66,11 +74,19 @@ class Scene:
         }
 
     def pictures(self, scene):
-        """The views as pictures."""
+        """The views as pixels."""
         out = self.path("pictures")
         for distance in DISTANCES:
             call("--quiet", "render", scene, "--distance", distance, "--size", SIZE, "--shading", "full", "-o", out)
             yield from (b"".join(pixels((out / name).read_bytes())) for name in ["image.png", "levels.png", "normals.png"])
+
+
+def planned(stem, scenes, *more):
+    """The file of the plan of the job on scene files."""
+    job, plan = Path(f"{stem}.job.toml"), Path(f"{stem}.toml")
+    job.write_text(HEAD.format(size=SIZE, distances=DISTANCES) + "".join(f'[[scene]]\nfile = "{scene.name}"\n' for scene in scenes))
+    call("--quiet", "plan", "--job", job, "-o", plan, *more)
+    return plan
 
 
 def pixels(png):
@@ -83,63 +99,131 @@ def pixels(png):
         at += 12 + size
 
 
+class Gates:
+    """Units in gates: their blocks as synthesis has them, and the registers of their contexts."""
+
+    def __init__(self, options):
+        self.options = types.SimpleNamespace(seeds=1, no_place=options.no_place, no_gates=False, jobs=options.jobs)
+
+    def unit(self, plan, **facts):
+        """The unit of a plan, with these facts in place of its own."""
+        unit = synthesis.read(plan)
+        return self.of({**unit.own, **facts}, unit.blocks())
+
+    def full(self, plan):
+        """The full one of the machine that the plan's search for speed was on."""
+        full = synthesis.read(plan).full
+        return self.of(full, [Block(name) for name in full["blocks"]])
+
+    def of(self, facts, blocks):
+        """Gate equivalents, flip-flops, multipliers, and the clock of the slowest block that was placed."""
+        figures, failures = Run(Tools(), self.options).all(blocks)
+        if failures:
+            raise SystemExit(f"scripts/leaving-out: {failures}")
+        gates = [of["gates"] for of in figures.values()]
+        registers = facts["contexts"] * facts["context_bits"]
+        return {
+            **facts,
+            "ge": sum(of["ge"] for of in gates) + registers * synthesis.REGISTER,
+            "flip_flops": sum(of["flip_flops"] for of in gates) + registers,
+            "multipliers": sum(sum(of["multipliers"].values()) for of in gates),
+            "mhz": min([(max(of["mhz"]), name) for name, of in figures.items() if isinstance(of.get("mhz"), list)], default=None),
+        }
+
+
 def main():
-    """The table."""
+    """The tables."""
     parser = argparse.ArgumentParser(prog="scripts/leaving-out", description=__doc__.split("\n", maxsplit=1)[0])
     parser.add_argument("models", type=Path, help="folder of models with stanford-bunny.obj and igea.ply")
     parser.add_argument("--folder", type=Path, default=ROOT / "target/leaving-out", help="for scenes, plans and results (default target/leaving-out)")
     parser.add_argument("--only", nargs="*", help="these scenes alone; the document is left as it is")
-    parser.add_argument("--within", type=float, metavar="PIXELS", help="besides, the coarsest grids within so many pixels")
+    parser.add_argument("--within", type=float, metavar="PIXELS", help="first the coarsest grids within so many pixels; the table of those")
+    parser.add_argument("--no-place", action="store_true", help="no clocks: leave place and route out")
+    parser.add_argument("--jobs", type=int, default=2, help="tools of synthesis at work at once (default 2)")
     options = parser.parse_args()
+    options.models, options.folder = options.models.resolve(), options.folder.resolve()
     options.folder.mkdir(parents=True, exist_ok=True)
     names = [name for name in [*GENERATED, *MESHES] if not options.only or name in options.only]
-    rows = []
+    gates, rows = Gates(options), []
     for name in names:
-        rows.append(row(Scene(name, options.folder, options.models), options.within))
-        print(rows[-1], flush=True)
+        rows.append(row(Scene(name, options), options.within, gates))
+        print(json.dumps(rows[-1]), flush=True)
+    # One unit for all of them.
     if not options.only:
-        put(table(rows))
+        scenes = [Path(of["pruned"]) for of in rows]
+        together = planned(options.folder / "all.fast", scenes, "--speed", "--speed-size", "128x128")
+        wide = gates.unit(planned(options.folder / "all.unit", scenes), contexts=rows[0]["full"]["contexts"])
+        rows.append({"scene": "all of them", "unit": gates.unit(together), "wide": wide, "kept": speed(together)["kept"]})
+    result = options.folder / f"table{options.within or ''}.json"
+    result.write_text(json.dumps(rows, indent=1), encoding="utf-8")
+    print(table(rows))
+    if not options.only:
+        put(table(rows), f"within {options.within:g}" if options.within else "lossless")
 
 
-def row(scene, within):
+def speed(plan):
+    """What a plan says of speed."""
+    return json.loads(call("plan", "--plan", plan, "--json"))["plan"]["speed"]
+
+
+def row(scene, within, gates):
     """The figures of a scene: lossless, or within some pixels."""
-    file = scene.file
+    file, own = scene.file, ""
     if within:
-        _, plan = scene.planned(file, "grids", "--within", within)
-        file = scene.path("coarse.lod")
-        call("--quiet", "prune", scene.file, "--plan", plan, "-o", file)
-    _, plan = scene.planned(file, "plan")
-    document, _ = scene.planned(file, "fast", "--speed", "--speed-size", "128x128")
-    pruned = scene.path("pruned.lod")
-    bytes_of = json.loads(call("prune", file, "--plan", plan, "-o", pruned, "--json"))["bytes_per_finest_triangle"]
-    full = scene.simulated(file)
-    own = scene.simulated(pruned, "--plan", plan)
-    if full["hits"] != own["hits"] or list(scene.pictures(file)) != list(scene.pictures(pruned)):
+        own = f"within-{within:g}."
+        file = scene.path(f"{own}lod")
+        call("--quiet", "prune", scene.file, "--plan", scene.planned(scene.file, f"{own}grids", "--within", within), "-o", file)
+    # What the job's rays read; the unit is that of what is left.
+    pruned = scene.path(f"{own}pruned.lod")
+    bytes_of = json.loads(call("prune", file, "--plan", scene.planned(file, f"{own}whole"), "-o", pruned, "--json"))["bytes_per_finest_triangle"]
+    plan = scene.planned(pruned, f"{own}unit")
+    fast = scene.planned(pruned, f"{own}fast", "--speed", "--speed-size", "128x128")
+    whole, less = scene.simulated(file), scene.simulated(pruned, "--plan", plan)
+    if whole["hits"] != less["hits"] or list(scene.pictures(file)) != list(scene.pictures(pruned)):
         raise SystemExit(f"scripts/leaving-out: {scene.name}: the pruned scene looks other than the whole")
-    speed, unit, whole = document["plan"]["speed"], document["unit"], document["full_unit"]
+    host = command(["cargo", "bench", "--quiet", "--bench", "leaving_out", "--", file, pruned])
+    full = gates.full(fast)
+    unit, wide = gates.unit(fast), gates.unit(plan, contexts=full["contexts"])
     return {
-        "scene": scene.name, "levels": unit["levels"], "stack": unit["stack_entries"], "contexts": unit["contexts"], "edges": unit["edges_per_cycle"],
-        "context": unit["context_bits"], "full_context": whole["context_bits"], "zeros": [unit["coordinate_zeros"], unit["direction_zeros"]],
-        "bytes": bytes_of, "time": own["cycles"] / full["cycles"], "energy": own["energy"] / full["energy"], "kept": speed["kept"],
+        "scene": scene.name, "pruned": str(pruned), "unit": unit, "wide": wide, "full": full, "kept": speed(fast)["kept"], "bytes": bytes_of,
+        "time": less["cycles"] / whole["cycles"], "energy": less["energy"] / whole["energy"],
+        "host": float(re.search(r"pruned over whole: ([\d.]+)", host)[1]),
     }
 
 
 def table(rows):
     """Rows as Markdown."""
-    lines = ["| scene | levels | stack | contexts | edges a cycle | bits of a context | bytes a finest triangle | time | energy |", "| --- |" + " ---: |" * 8]
+    heads = ["scene", "levels", "stack", "index", "contexts", "edges", "bits of a context", "GE with the machine's contexts and edges", "less", "GE", "less", "flip-flops", "multipliers", "MHz"]
+    heads += ["bytes a finest triangle", "time", "energy", "host rays/s"]
+    full = next((of["full"] for of in rows if "full" in of), None)
+    lines = [f"| {' | '.join(heads)} |", "| --- |" + " ---: |" * (len(heads) - 1)]
+    if full:
+        lines.append(f"| the full unit | {cells(full, full, full)} | | | | |")
     for of in rows:
-        full, pruned = of["bytes"]
-        lines.append(
-            f"| {of['scene']} | {of['levels']} of 10 | {of['stack']} of 103 | {of['contexts']} of 16 | {of['edges']} of 3 | {of['context']:,} of {of['full_context']:,} "
-            f"| {full:.2f} -> {pruned:.2f} | {of['time']:.2f} | {of['energy']:.2f} |"
-        )
+        ends = [f"{of['bytes'][0]:.2f} -> {of['bytes'][1]:.2f}", f"{of['time']:.3f}", f"{of['energy']:.3f}", f"{of['host']:.2f}"] if "bytes" in of else [""] * 4
+        lines.append(f"| {of['scene']} | {cells(of['unit'], of['wide'], full)} | {' | '.join(ends)} |")
     return "\n".join(lines)
 
 
-def put(text):
-    """The table between its marks."""
+def cells(unit, wide, full):
+    """A unit's; `wide` is the same with all the contexts and edge functions of the machine."""
+    less = [f"{100 * (1 - of['ge'] / full['ge']):.0f} %" for of in [unit, wide]]
+    zeros = unit["coordinate_zeros"] + unit["direction_zeros"]
+    return " | ".join([
+        f"{unit['stored_levels']} of {unit['levels']}" + (f", zeros {unit['coordinate_zeros']}, {unit['direction_zeros']}" if zeros else ""),
+        str(unit["stack_entries"]), str(unit["index_bits"]), str(unit["contexts"]), str(unit["edges_per_cycle"]), f"{unit['context_bits']:,}",
+        f"{wide['ge']:,.0f}", less[1], f"{unit['ge']:,.0f}", less[0], f"{unit['flip_flops']:,}", str(unit["multipliers"]),
+        f"{unit['mhz'][0]:.0f} ({unit['mhz'][1]})" if unit["mhz"] else "-",
+    ])
+
+
+def put(text, name):
+    """A table between its marks."""
+    begin, end = (f"<!-- scripts/leaving-out: {name}: {mark} -->" for mark in ["begin", "end"])
     document = DOC.read_text(encoding="utf-8")
-    DOC.write_text(re.sub(f"{BEGIN}.*{END}", f"{BEGIN}\n{text}\n{END}", document, flags=re.DOTALL), encoding="utf-8")
+    if begin not in document:
+        raise SystemExit(f"scripts/leaving-out: {DOC} has no marks for {name}")
+    DOC.write_text(re.sub(f"{re.escape(begin)}.*{re.escape(end)}", f"{begin}\n{text}\n{end}", document, flags=re.DOTALL), encoding="utf-8")
 
 
 if __name__ == "__main__":

@@ -97,13 +97,12 @@ pub fn savings(plan: &Plan, full: &Hardware, data: Option<&Data>) -> Vec<Saving>
     let context = |hardware: &Hardware| hardware.context_registers(true).kept;
     let without = |less: Hardware| format!("{} bits of a context", context(full) - context(&less));
     let mut table = Table { lines: Vec::new() };
-    // Each by itself, with the stack that follows from it.
+    // Each by itself, with the stack that follows from it; numbers of nodes and lines besides all others.
     let levels = without(Hardware { levels: own.levels, ..*full });
     table.add(Part::Structure, "levels", [own.levels, full.levels], "no scene has more", levels);
-    let [own_stored, stored] = [own.stored_levels(), own.levels];
     let reason = if plan.rays.is_some() { "no tree is stored deeper, or no ray goes there" } else { "no tree is stored deeper" };
-    let saved = format!("{} bits of a context", context(&Hardware { fewer_stored_levels: None, ..own }) - context(&own));
-    table.add(Part::Structure, "stored levels", [own_stored, stored], reason, saved);
+    let saved = without(Hardware { fewer_stored_levels: own.fewer_stored_levels, ..*full });
+    table.add(Part::Structure, "stored levels", [own.stored_levels(), full.stored_levels()], reason, saved);
     let depth = without(Hardware { bvh_depth: own.bvh_depth, ..*full });
     table.add(Part::Structure, "quad-BVH depth", [own.bvh_depth, full.bvh_depth], "no path to a tree is longer", depth);
     let stack = without(Hardware { fewer_stack_entries: own.fewer_stack_entries, ..*full });
@@ -119,11 +118,12 @@ pub fn savings(plan: &Plan, full: &Hardware, data: Option<&Data>) -> Vec<Saving>
     table.add(Part::Numbers, "coordinate without its zeros", [form.coordinate(), 32], reason, zeros(own.coordinate_zeros, 0));
     let reason = "all components end in zeros";
     table.add(Part::Numbers, "direction without its zeros", [form.component(), 31], reason, zeros(0, own.direction_zeros));
-    let index = without(Hardware { index_bits: own.index_bits, fewer_stored_levels: own.fewer_stored_levels, ..*full });
+    let besides = |more: Hardware| format!("{} bits of a context", context(&more) - context(&own));
+    let index = besides(Hardware { index_bits: full.index_bits, ..own });
     table.bits("number of a quad-BVH node", [scene.bvh_node_bits, 28], "so many are there");
     table.bits("number of a tree", [scene.tree_bits, 28], "so many are there");
     table.add(Part::Numbers, "number of either, or of a node", [own.index_bits, 28], "the larger of both", index);
-    let line = without(Hardware { line_bits: own.line_bits, ..*full });
+    let line = besides(Hardware { line_bits: full.line_bits, ..own });
     table.add(Part::Numbers, "number of a memory line", [scene.line_bits, 32], "so many have the scene's sections", line);
     table.bits("coordinate", [scene.coordinate_bits, 32], "none is larger");
     table.bits("box code of a frame", [scene.frame_bits, 16], "none is larger");

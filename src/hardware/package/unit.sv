@@ -72,9 +72,9 @@
     keep_entry = KEPT_ENTRY_W'({e.level, e.e0, e.e1, e.e2, e.t_near, e.kind, INDEX_W'(e.index)});
   endfunction
   function automatic stack_entry_t whole_entry(input logic [KEPT_ENTRY_W-1:0] kept);
-    logic [INDEX_W-1:0] index;
-    {whole_entry.level, whole_entry.e0, whole_entry.e1, whole_entry.e2, whole_entry.t_near, whole_entry.kind, index} = WIDE_ENTRY_W'(kept);
-    whole_entry.index = 28'(index);
+    logic [WIDE_ENTRY_W-1:0] wide;
+    wide = WIDE_ENTRY_W'(kept);
+    whole_entry = {wide[INDEX_W+2 +: T_NEAR_W], wide[INDEX_W +: 2], wide[WIDE_ENTRY_W-1 -: 4], 28'(wide[INDEX_W-1:0]), wide[INDEX_W+2+T_NEAR_W +: 3*BOUND_CODE_W]};
   endfunction
 
   // What a division is for.
