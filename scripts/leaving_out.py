@@ -138,6 +138,7 @@ def main():
     parser.add_argument("--folder", type=Path, default=ROOT / "target/leaving-out", help="for scenes, plans and results (default target/leaving-out)")
     parser.add_argument("--only", nargs="*", help="these scenes alone; the document is left as it is")
     parser.add_argument("--within", type=float, metavar="PIXELS", help="first the coarsest grids within so many pixels; the table of those")
+    parser.add_argument("--go-on", action="store_true", help="take the figures of scenes that the folder has them of, and measure the others")
     parser.add_argument("--no-place", action="store_true", help="no clocks: leave place and route out")
     parser.add_argument("--jobs", type=int, default=2, help="tools of synthesis at work at once (default 2)")
     options = parser.parse_args()
@@ -146,16 +147,18 @@ def main():
     names = [name for name in [*GENERATED, *MESHES] if not options.only or name in options.only]
     gates, rows = Gates(options), []
     for name in names:
-        rows.append(row(Scene(name, options), options.within, gates))
-        print(json.dumps(rows[-1]), flush=True)
+        scene = Scene(name, options)
+        done = scene.path(f"within-{options.within:g}.row.json" if options.within else "row.json")
+        if not (options.go_on and done.exists()):
+            done.write_text(json.dumps(row(scene, options.within, gates), indent=1), encoding="utf-8")
+        rows.append(json.loads(done.read_text(encoding="utf-8")))
+        print(f"{name}: {rows[-1]['unit']['ge']:,.0f} gate equivalents", flush=True)
     # One unit for all of them.
     if not options.only:
         scenes = [Path(of["pruned"]) for of in rows]
         together = planned(options.folder / "all.fast", scenes, "--speed", "--speed-size", "128x128")
         wide = gates.unit(planned(options.folder / "all.unit", scenes), contexts=rows[0]["full"]["contexts"])
         rows.append({"scene": "all of them", "unit": gates.unit(together), "wide": wide, "kept": speed(together)["kept"]})
-    result = options.folder / f"table{options.within or ''}.json"
-    result.write_text(json.dumps(rows, indent=1), encoding="utf-8")
     print(table(rows))
     if not options.only:
         put(table(rows), f"within {options.within:g}" if options.within else "lossless")

@@ -1,5 +1,6 @@
 """A block in generic gates: gate equivalents, flip-flops, multipliers, logic depth, and the netlist for simulation."""
 
+import dataclasses
 import json
 import re
 
@@ -51,7 +52,9 @@ def synthesise(block, tools):
         return measure(block.module, read_json(folder / "stat.json"), {name: multipliers.shape(module) for name, module in mapped.items()}, log)
 
     texts = [multipliers.MAP, multipliers.MODULES]
-    ingredients = {"block": block.ingredients(), "script": script(block, "."), "map": texts, "tool": tools.versions[YOSYS], "areas": AREAS}
+    # The same script whichever package it is: what the block uses of that is among its ingredients.
+    plain = dataclasses.replace(block, package="")
+    ingredients = {"block": block.ingredients(), "script": script(plain, "."), "map": texts, "tool": tools.versions[YOSYS], "areas": AREAS}
     return kept(f"gates-{block.name}", ingredients, make)
 
 

@@ -163,7 +163,7 @@ fn frame_of(kind: procedural::Scene, form: VertexForm, config: Hardware, latency
     let scene = build_with(&procedural::generate(&options).expect("options"), form);
     let space = ModelSpace::of(&scene);
     let camera =
-        Camera::new(&View { distance: Some(if pruned { 5.0 } else { 2.5 }), ..View::default() }, &space, SIDE, SIDE).expect("a view");
+        Camera::new(&View { distance: Some(if pruned { 3.5 } else { 2.5 }), ..View::default() }, &space, SIDE, SIDE).expect("a view");
     let pixels = (0..SIDE * SIDE).map(|i| camera.ray(i % SIDE, i / SIDE));
     // Where a ray misses the model's box there is nothing to trace.
     let rays: Vec<Ray> = pixels.filter_map(|world| Some(space.enter(&world, 1.0)?.ray)).collect();
