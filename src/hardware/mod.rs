@@ -30,7 +30,7 @@ const MOST_INDEX_BITS: u32 = 28;
 pub struct Hardware {
     /// The most 1-to-4 splits N that a model may have, 2 to [`MAX_LEVELS`].
     pub levels: u32,
-    /// Levels that trees are stored to ([`Scene::depth`](crate::format::Scene::depth)), if fewer than `levels`: 0 to `levels`. At 0 no triangle is ever split: a unit without LOD
+    /// Levels that trees are stored to ([`Scene::depths`](crate::format::Scene::depths)), if fewer than `levels`: 0 to `levels`. At 0 no triangle is ever split: a unit without LOD
     /// test and tessellation.
     pub fewer_stored_levels: Option<u32>,
     /// The most quad-BVH nodes on a path from the root to a tree, 1 to [`MAX_BVH_DEPTH`].
