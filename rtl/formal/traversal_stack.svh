@@ -26,7 +26,7 @@
       assert (depth_q != place + LEN_W'(1) || entry_o == watched_q);
       // Hold the induction together.
       assert (len_q == depth_q && depth_q <= LEN_W'(DEPTH));
-      assert (depth_q <= place || entries_q[place] == watched_q);
+      assert (depth_q <= place || entries_q[place] == lod_pkg::keep_entry(watched_q));
     end
     cover (live_q && pop_i && depth_q == place + LEN_W'(1) && place == LEN_W'(3) && watched_q.index == 28'd77);
     cover (live_q && clear_i && depth_q == LEN_W'(2));
