@@ -33,18 +33,12 @@ pub(super) fn compact(levels: u32, zeros: u32, points: &mut [[i32; 3]], bounds: 
             moved[corner] = points[corner].map(|c| snap(f64::from(c), VertexForm::Compact.zero_bits(levels, zeros)));
         }
         for level in 0..levels {
-            let (k, half) = (1u32 << level, 1u32 << (levels - level - 1));
-            // The edges of upward triangles are all edges.
-            for (i, j) in (0..k).flat_map(|j| (0..k - j).map(move |i| (i, j))) {
-                let at = |x: u32, y: u32| ((2 * i + x) * half, (2 * j + y) * half);
-                let [p0, p1, p2] = [at(0, 0), at(2, 0), at(0, 2)];
-                for (q, a, b) in [(at(1, 1), p1, p2), (at(0, 1), p2, p0), (at(1, 0), p0, p1)] {
-                    let [own, ends @ ..] = [q, a, b].map(|place| lattice::index(levels, place));
-                    let shift =
-                        displacement_shift(bounds.scale, codes[edge_index(levels, level, a, b)], inserted_zero_bits(levels, level, zeros));
-                    let steps = steps_of(points[own], points[ends[0]], points[ends[1]], shift);
-                    moved[own] = std::array::from_fn(|c| within(moved[ends[0]][c], moved[ends[1]][c], steps[c], shift));
-                }
+            for place @ [_, a, b] in lattice::inserted(levels, level) {
+                let [own, ends @ ..] = place.map(|place| lattice::index(levels, place));
+                let shift =
+                    displacement_shift(bounds.scale, codes[edge_index(levels, level, a, b)], inserted_zero_bits(levels, level, zeros));
+                let steps = steps_of(points[own], points[ends[0]], points[ends[1]], shift);
+                moved[own] = std::array::from_fn(|c| within(moved[ends[0]][c], moved[ends[1]][c], steps[c], shift));
             }
         }
         points.copy_from_slice(&moved);

@@ -59,6 +59,18 @@ pub fn node(levels: u32, level: u32, node: u32) -> [LatticePoint; 3] {
     (0..level).rev().fold(root(levels), |p, step| child(p, (node >> (2 * step)) & 3))
 }
 
+/// What the split of `level` inserts in a tree of `levels` splits, 0 to `levels` - 1: each vertex with the two ends of its edge.
+pub fn inserted(levels: u32, level: u32) -> impl Iterator<Item = [LatticePoint; 3]> {
+    let (k, half) = (1u32 << level, 1u32 << (levels - level - 1));
+    // The edges of upward triangles are all edges.
+    (0..k).flat_map(move |j| (0..k - j).map(move |i| (i, j))).flat_map(move |(i, j)| {
+        let at = |x: u32, y: u32| ((2 * i + x) * half, (2 * j + y) * half);
+        let p = [at(0, 0), at(2, 0), at(0, 2)];
+        let q = midpoints(p);
+        [[q[0], p[1], p[2]], [q[1], p[2], p[0]], [q[2], p[0], p[1]]]
+    })
+}
+
 const fn mid(a: LatticePoint, b: LatticePoint) -> LatticePoint {
     (a.0.midpoint(b.0), a.1.midpoint(b.1))
 }

@@ -8,6 +8,10 @@ use crate::num::{BOX_SHIFT, COORD_LIMIT, MAX_LEVELS, VertexForm, snap};
 use rayon::prelude::*;
 use thiserror::Error;
 
+/// The furthest that a point may be from the middle of its edge's ends, in units and in each coordinate, to be taken for it: far less than what any is rounded by, and
+/// more than what arithmetic in `f64` leaves of a middle in a model no further than some thousand times its size from the world's origin.
+const FLAT: f64 = 1.0 / 16.0;
+
 /// Why a surface cannot become a hierarchy.
 #[derive(Clone, Debug, PartialEq, Error)]
 pub enum SurfaceError {
@@ -179,7 +183,8 @@ fn placement(positions: &[[f64; 3]], per_tree: usize) -> Result<Placement, Surfa
     Ok(Placement { offset, scale })
 }
 
-/// Every point of all trees, in the units that `units` gives, to its level's grid.
+/// Every point of all trees, in the units that `units` gives, to its level's grid; where the surface is flat, to the middle of its edge's ends as they were snapped, if
+/// that is on the grid, as it always is in the compact form: there are no displacements, and nothing to store.
 pub(super) fn snap_points<P: Copy + Sync>(
     levels: u32,
     vertices: VertexForm,
@@ -188,14 +193,28 @@ pub(super) fn snap_points<P: Copy + Sync>(
     units: impl Fn(P) -> [f64; 3] + Sync,
 ) -> Vec<[i32; 3]> {
     let len = lattice::len(levels);
-    // The zero bits of each lattice point are the same for all trees.
+    // The zero bits of each lattice point and what is inserted between what are the same for all trees.
     let m = 1 << levels;
     let zero_bits: Vec<u32> =
         (0..=m).flat_map(|j| (0..=m - j).map(move |i| vertices.zero_bits(levels - lattice::level_of(levels, (i, j)), zeros))).collect();
+    let inserted: Vec<[usize; 3]> =
+        (0..levels).flat_map(|level| lattice::inserted(levels, level)).map(|places| places.map(|p| lattice::index(levels, p))).collect();
     let mut points = vec![[0; 3]; places.len()];
     points.par_chunks_mut(len).zip(places.par_chunks(len)).for_each(|(points, places)| {
-        for ((point, &place), &bits) in points.iter_mut().zip(places).zip(&zero_bits) {
-            *point = units(place).map(|v| snap(v, bits));
+        let exact: Vec<[f64; 3]> = places.iter().map(|&place| units(place)).collect();
+        for ((point, &exact), &bits) in points.iter_mut().zip(&exact).zip(&zero_bits) {
+            *point = exact.map(|v| snap(v, bits));
+        }
+        for &[q, a, b] in &inserted {
+            // The sum is the same in either order: so trees that share an edge agree.
+            if (0..3).any(|k| (exact[q][k] - 0.5 * (exact[a][k] + exact[b][k])).abs() > FLAT) {
+                continue;
+            }
+            let middle = std::array::from_fn(|k| points[a][k].midpoint(points[b][k]));
+            // Below the padding of exact vertices it may not be on the grid.
+            if middle.iter().all(|c| c.trailing_zeros() >= zero_bits[q]) {
+                points[q] = middle;
+            }
         }
     });
     points
@@ -226,4 +245,95 @@ fn check_shared_points(surface: &Surface, points: &[[i32; 3]], shared: &SharedEd
         }
     }
     Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use lattice::LatticePoint;
+
+    const LEVELS: u32 = 4;
+
+    fn places() -> impl Iterator<Item = LatticePoint> {
+        (0..=1u32 << LEVELS).flat_map(|j| (0..=(1 << LEVELS) - j).map(move |i| (i, j)))
+    }
+
+    /// Two triangles of a tilted plane far from the world's origin, with one point of the first somewhere else.
+    fn tilted(apart: Option<(LatticePoint, [f64; 3])>) -> Surface {
+        let corners = [[300.1, -20.3, 7.7], [301.3, -20.1, 7.9], [299.9, -19.2, 8.6], [301.1, -19.0, 8.8]];
+        let triangles = [[0, 1, 2], [3, 2, 1]];
+        let m = f64::from(1 << LEVELS);
+        let mut positions: Vec<[f64; 3]> = Vec::new();
+        for t in triangles {
+            let at = |(i, j): LatticePoint| {
+                // Corners in one order, so that both trees have the same points along their edge.
+                let mut weighted = [(t[0], m - f64::from(i) - f64::from(j)), (t[1], f64::from(i)), (t[2], f64::from(j))];
+                weighted.sort_unstable_by_key(|&(v, _)| v);
+                std::array::from_fn(|k| {
+                    weighted.iter().fold(0.0, |sum, &(v, w)| if w == 0.0 { sum } else { sum + w / m * corners[v as usize][k] })
+                })
+            };
+            positions.extend(places().map(at));
+        }
+        if let Some((place, by)) = apart {
+            let point = &mut positions[lattice::index(LEVELS, place)];
+            *point = std::array::from_fn(|k| point[k] + by[k]);
+        }
+        let normals = vec![[0.0, 0.0, 1.0]; positions.len()];
+        Surface { levels: LEVELS, base_vertices: 4, triangles: triangles.to_vec(), positions, normals, ..Surface::default() }
+    }
+
+    fn furthest(surface: &Surface, h: &Hierarchy) -> f64 {
+        let to_units = |p: [f64; 3]| std::array::from_fn(|k| (p[k] - h.placement.offset[k]) / h.placement.scale);
+        let far = |(p, q): (&[f64; 3], &[i32; 3])| {
+            let p: [f64; 3] = to_units(*p);
+            (0..3).map(|k| (p[k] - f64::from(q[k])).abs()).fold(0.0, f64::max)
+        };
+        surface.positions.iter().zip(&h.points).map(far).fold(0.0, f64::max)
+    }
+
+    #[test]
+    fn where_a_surface_is_flat_nothing_is_displaced() {
+        let surface = tilted(None);
+        for (kind, zeros) in BoundKind::ALL.into_iter().flat_map(|kind| [0, 5].map(|zeros| (kind, zeros))) {
+            let h = quantise(&surface, kind, VertexForm::Compact, zeros).unwrap();
+            assert!(h.bounds.codes.iter().all(|&code| code == 0));
+            assert_eq!((h.depth(0), h.depth(1)), (0, 0));
+            // Half a step of the base vertices' grid, and a little of the middles.
+            let half = f64::from(1 << VertexForm::Compact.zero_bits(LEVELS, zeros)) / 2.0;
+            let most = furthest(&surface, &h);
+            assert!(most <= half + 1.0 && most > half / 8.0, "{most} of {half}");
+        }
+    }
+
+    #[test]
+    fn one_point_apart_is_found_by_the_edges_around_it_alone() {
+        for (place, units) in [((3, 3), 40.0), ((3, 3), 4e6), ((6, 2), 4e6)] {
+            let flat = tilted(None);
+            let scale = quantise(&flat, BoundKind::Largest, VertexForm::Compact, 0).unwrap().placement.scale;
+            let h = quantise(&tilted(Some((place, [0.0, 0.0, units * scale]))), BoundKind::Largest, VertexForm::Compact, 0).unwrap();
+            // The other tree's only through the edge that both share.
+            assert!(h.depth(0) == LEVELS && h.depth(1) <= 1);
+            let displaced = (0..LEVELS).flat_map(|level| lattice::inserted(LEVELS, level)).filter(|place| {
+                let [q, a, b] = place.map(|p| h.tree(0)[lattice::index(LEVELS, p)]);
+                (0..3).any(|k| 2 * i64::from(q[k]) != i64::from(a[k]) + i64::from(b[k]))
+            });
+            let displaced: Vec<_> = displaced.map(|[q, ..]| q).collect();
+            // A point of the finest level is the end of no other edge; one of the level above is that of six, whose middles stay where they were.
+            let around = if place == (3, 3) { 1 } else { 7 };
+            assert!(displaced.len() == around && displaced.contains(&place), "{place:?}: {displaced:?}");
+        }
+    }
+
+    #[test]
+    fn exact_vertices_keep_to_their_grid() {
+        let h = quantise(&tilted(None), BoundKind::Largest, VertexForm::Exact, 0).unwrap();
+        for (point, place) in h.points.iter().zip(places().chain(places())) {
+            let bits = VertexForm::Exact.zero_bits(LEVELS - lattice::level_of(LEVELS, place), 0);
+            assert!(point.iter().all(|c| c.trailing_zeros() >= bits), "{place:?}: {point:?}");
+        }
+        // With nothing finer than the padding no middle is off the grid.
+        let coarse = quantise(&tilted(None), BoundKind::Largest, VertexForm::Exact, 5).unwrap();
+        assert_eq!((coarse.depth(0), coarse.depth(1)), (0, 0));
+    }
 }
