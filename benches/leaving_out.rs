@@ -1,10 +1,10 @@
 //! Host time of a scene that was pruned for a job over that of the whole, which hold the same hits: every field of every hit is compared first, by the functional traverser
 //! for all rays of the job, and for some of them by the cycle model of the unit that the pruned scene's plan has.
 //!
-//! `cargo bench --bench leaving_out -- WHOLE.lod PRUNED.lod` for scenes of one's own; without arguments a room and a terrain from two views each.
+//! `cargo bench --bench leaving_out -- WHOLE.lod PRUNED.lod PLAN.toml` for scenes of one's own and the plan that the one was pruned by; without arguments a room and a terrain from two views each.
 
 use lodray::bvh::over_trees;
-use lodray::format::{self, Scene, SceneInfo};
+use lodray::format::{self, JobView, Scene, SceneInfo};
 use lodray::hardware::Hardware;
 use lodray::mesh::procedural::{self, Options};
 use lodray::method::lod::{LodImage, LodTraverser};
@@ -32,10 +32,15 @@ fn main() {
     match &files[..] {
         [] => [procedural::Scene::Room, procedural::Scene::Terrain].into_iter().for_each(|kind| {
             let (whole, pruned) = generated(kind);
-            compare(&whole, &pruned);
+            compare(&whole, &pruned, &pruned.meta().job);
         }),
-        [whole, pruned] => compare(&open(whole), &open(pruned)),
-        _ => panic!("two scenes, one of them pruned, or none"),
+        [whole, pruned, file] => {
+            let text = std::fs::read_to_string(file).unwrap_or_else(|error| panic!("{file}: {error}"));
+            let plan: Plan = toml::from_str(&text).unwrap_or_else(|error| panic!("{file}: {error}"));
+            let (whole, pruned) = (open(whole), open(pruned));
+            compare(&whole, &pruned, plan.views.get(&whole.meta().name).expect("views of the scene in the plan"));
+        }
+        _ => panic!("two scenes, one of them pruned, and the plan of that; or nothing"),
     }
 }
 
@@ -56,18 +61,18 @@ fn traced(traverser: &mut LodTraverser<'_>, levels: u32, ray: &Ray) -> Option<Hi
     closest.record()
 }
 
-fn compare(whole: &Scene, pruned: &Scene) {
+fn compare(whole: &Scene, pruned: &Scene, views: &[JobView]) {
     let (space, levels, measure) = (ModelSpace::of(whole), whole.levels(), Measure::of(pruned));
     let mut plan = Plan::new(true);
     plan.add("it", &measure.needs());
     let mut rays = Vec::new();
-    for view in &pruned.meta().job {
+    for view in views {
         let (camera, delta) = (Camera::of_job(view).expect("a view"), view.quality().expect("a quality"));
         plan.add_rays(&measure.rays(&camera, delta));
         let pixels = (0..camera.width * camera.height).map(|i| camera.ray(i % camera.width, i / camera.width));
         rays.extend(pixels.filter_map(|world| Some(space.enter(&world, delta)?.ray)));
     }
-    assert!(!rays.is_empty(), "no views in the pruned scene, or none from which it is seen");
+    assert!(!rays.is_empty(), "no views, or none from which the scene is seen");
     let mut both = [whole, pruned].map(|scene| LodTraverser::new(LodImage::of(scene)));
     let [full, less] = &mut both;
     let hits: Vec<Option<Hit>> = rays.iter().map(|ray| traced(full, levels, ray)).collect();

@@ -26,7 +26,8 @@ fn check_kind(surface: &Surface, kind: BoundKind, form: VertexForm, name: &str) 
     let on_grid = |(p, &bits): (&[f64; 3], &u32)| -> [i32; 3] {
         std::array::from_fn(|k| snap((p[k] - built.placement.offset[k]) / built.placement.scale, bits))
     };
-    let points = surface.positions.iter().zip(bits.iter().cycle()).map(on_grid).collect();
+    let mut points: Vec<[i32; 3]> = surface.positions.iter().zip(bits.iter().cycle()).map(on_grid).collect();
+    flatten(surface, &built, &bits, &mut points);
     let mut plain = Hierarchy { points, ..built.clone() };
     naive_bounds(&mut plain);
     if form == VertexForm::Compact {
@@ -45,6 +46,28 @@ fn check_kind(surface: &Surface, kind: BoundKind, form: VertexForm, name: &str) 
     let decoded = |h: &Hierarchy| h.bounds.codes.iter().map(|&code| decode(h.bounds.scale, code)).collect::<Vec<_>>();
     assert!(decoded(&left).iter().zip(decoded(&built)).all(|(&left, own)| left <= own), "{name}");
     built.bounds.codes.iter().filter(|&&c| c > 0).count()
+}
+
+/// Points within a 16th of a unit of the middle of their edge become the middle of its ends as they were rounded, where that is on their grid (docs/numbers.md, "Flat parts").
+fn flatten(surface: &Surface, built: &Hierarchy, bits: &[u32], points: &mut [[i32; 3]]) {
+    let levels = surface.levels;
+    let units = |p: [f64; 3]| -> [f64; 3] { std::array::from_fn(|k| (p[k] - built.placement.offset[k]) / built.placement.scale) };
+    for tree in 0..surface.triangles.len() {
+        let (first, exact) = (tree * lattice::len(levels), surface.tree(tree));
+        for (level, node) in (0..levels).flat_map(|level| (0..1u32 << (2 * level)).map(move |node| (level, node))) {
+            let p = lattice::node(levels, level, node);
+            for edge in 0..3 {
+                let ends = [p[(edge + 1) % 3], p[(edge + 2) % 3]].map(|place| lattice::index(levels, place));
+                let own = lattice::index(levels, lattice::midpoints(p)[edge]);
+                let [a, b, q] = [ends[0], ends[1], own].map(|at| units(exact[at]));
+                let sum: [i64; 3] = std::array::from_fn(|k| ends.iter().map(|end| i64::from(points[first + end][k])).sum());
+                let is_flat = (0..3).all(|k| (2.0 * q[k] - a[k] - b[k]).abs() <= 0.125);
+                if is_flat && sum.iter().all(|s| s % (2 << bits[own]) == 0) {
+                    points[first + own] = sum.map(|s| i32::try_from(s / 2).expect("a coordinate"));
+                }
+            }
+        }
+    }
 }
 
 /// What a code stands for, by docs/numbers.md: 2^(k / 16) for k = code + offset, with a mantissa of 9 bits rounded up and the whole rounded down.
