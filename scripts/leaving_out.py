@@ -26,6 +26,7 @@ GENERATED = {
 MESHES = {"bunny": "stanford-bunny.obj", "igea": "igea.ply"}
 DISTANCES = [1.5, 3]
 SIZE = "512x512"
+WITHIN = [0.01, 0.05, 0.25, 1]
 HEAD = 'size = "{size}"\nmethods = ["lod"]\ndeltas = [1]\ndistances = {distances}\n[[machine]]\nname = "haydel2023"\n'
 
 
@@ -141,10 +142,14 @@ def main():
     parser.add_argument("--go-on", action="store_true", help="take the figures of scenes that the folder has them of, and measure the others")
     parser.add_argument("--no-place", action="store_true", help="no clocks: leave place and route out")
     parser.add_argument("--jobs", type=int, default=2, help="tools of synthesis at work at once (default 2)")
+    parser.add_argument("--errors", action="store_true", help="in place of all that: errors against area and bytes, by error-time")
     options = parser.parse_args()
     options.models, options.folder = options.models.resolve(), options.folder.resolve()
     options.folder.mkdir(parents=True, exist_ok=True)
     names = [name for name in [*GENERATED, *MESHES] if not options.only or name in options.only]
+    if options.errors:
+        put(errors([Scene(name, options) for name in names], options.folder / "errors"), "errors")
+        return
     gates, rows = Gates(options), []
     for name in names:
         scene = Scene(name, options)
@@ -164,6 +169,27 @@ def main():
         put(table(rows), f"within {options.within:g}" if options.within else "lossless")
 
 
+def errors(scenes, out):
+    """The table of error-time."""
+    within, distances = ",".join(map(str, WITHIN)), ",".join(map(str, DISTANCES))
+    views = ["--distances", distances, "--size", SIZE, "--samples", "1", "--methods", "lod", "--values", "delta=1", "--compute", "units"]
+    call("--quiet", "error-time", *[scene.file for scene in scenes], "-o", out, *views, "--most-samples", "0", "--no-host", "--within", within)
+    document = json.loads((out / "error-time.json").read_text(encoding="utf-8"))
+    heads = ["scene", "radii", "left out", "zeros of coordinates, directions", "error in pixels: mean", "99th percentile", "largest", "GE of a unit", "bytes a finest triangle", "time", "energy"]
+    lines = [f"| {' | '.join(heads)} |", "| --- | ---: | --- |" + " ---: |" * (len(heads) - 3)]
+    for left in document["left_out"]:
+        point, view = left["point"], document["views"][left["point"]["view"]]
+        costs, surface = point["costs"][0], point["geometry"]["surface"]
+        if left["what"] == "whole":
+            whole = costs
+        lines.append("| " + " | ".join([
+            document["scenes"][view["scene"]]["name"], f"{view['distance']:g}", left["what"], f"{left['coordinate_zeros']}, {left['direction_zeros']}",
+            *[f"{surface[of]:.4f}" for of in ["mean", "percentile_99", "maximum"]], f"{costs['unit_gates']:,.0f}", f"{point['bytes_per_triangle']:.2f}",
+            f"{costs['cycles'] / whole['cycles']:.3f}", f"{costs['energy']['total'] / whole['energy']['total']:.3f}",
+        ]) + " |")
+    return "\n".join(lines)
+
+
 def speed(plan):
     """What a plan says of speed."""
     return json.loads(call("plan", "--plan", plan, "--json"))["plan"]["speed"]
@@ -178,13 +204,14 @@ def row(scene, within, gates):
         call("--quiet", "prune", scene.file, "--plan", scene.planned(scene.file, f"{own}grids", "--within", within), "-o", file)
     # What the job's rays read; the unit is that of what is left.
     pruned = scene.path(f"{own}pruned.lod")
-    bytes_of = json.loads(call("prune", file, "--plan", scene.planned(file, f"{own}whole"), "-o", pruned, "--json"))["bytes_per_finest_triangle"]
+    job = scene.planned(file, f"{own}whole")
+    bytes_of = json.loads(call("prune", file, "--plan", job, "-o", pruned, "--json"))["bytes_per_finest_triangle"]
     plan = scene.planned(pruned, f"{own}unit")
     fast = scene.planned(pruned, f"{own}fast", "--speed", "--speed-size", "128x128")
     whole, less = scene.simulated(file), scene.simulated(pruned, "--plan", plan)
     if whole["hits"] != less["hits"] or list(scene.pictures(file)) != list(scene.pictures(pruned)):
         raise SystemExit(f"scripts/leaving-out: {scene.name}: the pruned scene looks other than the whole")
-    host = command(["cargo", "bench", "--quiet", "--bench", "leaving_out", "--", file, pruned])
+    host = command(["cargo", "bench", "--quiet", "--bench", "leaving_out", "--", file, pruned, job])
     full = gates.full(fast)
     unit, wide = gates.unit(fast), gates.unit(plan, contexts=full["contexts"])
     return {

@@ -44,14 +44,14 @@ pub struct FullResolution<'a> {
 }
 
 impl SurfaceError {
-    /// The errors of what the rays of `camera`, one for each of its pixels, met; one of `stride` columns and rows is held against the nearest point of the surface.
-    pub fn of(pixels: &[Option<SurfaceHit>], truth: &FullResolution<'_>, camera: &Camera, stride: u32) -> Self {
+    /// The errors of what the rays of `camera`, one for each of its pixels, met of `scene`: that of the truth, or what is left of it; one of `stride` columns and rows is held against the nearest point of the surface.
+    pub fn of(scene: &Scene, pixels: &[Option<SurfaceHit>], truth: &FullResolution<'_>, camera: &Camera, stride: u32) -> Self {
         let width = camera.width as usize;
         let both = || pixels.iter().zip(truth.pixels).filter_map(|(a, b)| Some(((*a)?, (*b)?)));
         let hit = both().map(|(a, b)| (a.distance - b.distance).abs() / (2.0 * camera.tan_theta * b.distance));
         let degrees: Vec<f64> = (pixels.par_iter().zip(truth.pixels))
             .filter_map(|(a, b)| {
-                let [a, b] = [(*a)?, (*b)?].map(|hit| hit.normal(truth.scene).as_dvec3());
+                let [a, b] = [(scene, (*a)?), (truth.scene, (*b)?)].map(|(scene, hit)| hit.normal(scene).as_dvec3());
                 // Of nearly equal directions the cosine says little.
                 Some(2.0 * (0.5 * (a - b).length()).min(1.0).asin().to_degrees())
             })

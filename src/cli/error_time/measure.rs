@@ -9,7 +9,7 @@ use super::workers::at_once;
 use crate::cli::cache::Cache;
 use crate::cli::method::Chosen;
 use crate::cli::output::{busy, progress};
-use crate::cli::pass::{Pass, PassRays};
+use crate::cli::pass::{Pass, PassRays, Target};
 use crate::cli::pictures::shoot_with;
 use crate::cli::sweep::ViewJob;
 use anyhow::Context;
@@ -32,9 +32,10 @@ const MOST_KEPT: u32 = 4;
 
 /// A scene with everything that measuring it needs.
 pub struct Bench<'a> {
-    plan: &'a Plan,
-    scene: &'a Scene,
-    space: ModelSpace,
+    pub(super) plan: &'a Plan,
+    pub(super) scene: &'a Scene,
+    pub(super) space: ModelSpace,
+    pub(super) cache: &'a Cache,
     facts: SceneEntry,
     methods: Vec<(Chosen, Box<dyn Method + 'a>)>,
     builds: Vec<BuildTime>,
@@ -42,23 +43,32 @@ pub struct Bench<'a> {
     surface: FinestSurface,
 }
 
+/// What is traced, and on which machines.
+pub(super) struct Stage<'a> {
+    pub scene: &'a Scene,
+    pub space: &'a ModelSpace,
+    pub chosen: &'a Chosen,
+    pub method: &'a dyn Method,
+    pub targets: &'a [Target],
+}
+
 /// A setting's picture, and what it cost.
-struct Seen {
+pub(super) struct Seen {
     picture: RgbImage,
     luminance: Vec<f32>,
     /// Against full resolution with the same samples.
-    errors: PictureError,
+    pub errors: PictureError,
     /// On every machine.
-    results: Vec<SimResult>,
+    pub results: Vec<SimResult>,
     /// If there was one sample a pixel.
-    surface: Option<Surface>,
+    pub surface: Option<Surface>,
 }
 
 /// A setting's surface.
 #[derive(Clone)]
-struct Surface {
-    errors: SurfaceError,
-    /// Of the setting by default, if it has levels.
+pub(super) struct Surface {
+    pub errors: SurfaceError,
+    /// Of the setting by default, if it has levels, and of what was traced for itself.
     frame: Option<Frame>,
 }
 
@@ -71,7 +81,7 @@ struct Unseen {
 
 impl<'a> Bench<'a> {
     /// Builds what the methods need.
-    pub fn new(plan: &'a Plan, scene: &'a Scene, facts: SceneEntry, cache: &Cache) -> anyhow::Result<Self> {
+    pub fn new(plan: &'a Plan, scene: &'a Scene, facts: SceneEntry, cache: &'a Cache) -> anyhow::Result<Self> {
         let (mut methods, mut builds) = (Vec::new(), Vec::new());
         for chosen in &plan.jobs.methods {
             let begun = Instant::now();
@@ -84,6 +94,7 @@ impl<'a> Bench<'a> {
             plan,
             scene,
             space: ModelSpace::of(scene),
+            cache,
             facts,
             methods,
             builds,
@@ -135,22 +146,7 @@ impl<'a> Bench<'a> {
                         book.add(&level_map(frame), name, &setting.words, 1, "levels")?;
                     }
                 }
-                let facts = &results.first().context("no machine")?.setup.method;
-                points.push(Point {
-                    view: 0,
-                    method: facts.name.clone(),
-                    setting: setting.words.clone(),
-                    knobs: facts.knobs.clone(),
-                    choices: facts.choices.clone(),
-                    samples,
-                    bytes: facts.bytes,
-                    bytes_per_triangle: facts.bytes as f64 / self.facts.finest_triangles as f64,
-                    geometry: surface.errors,
-                    picture: errors,
-                    viewed: None,
-                    appearance: None,
-                    costs: results.iter().enumerate().map(|(machine, result)| costs(machine, result)).collect(),
-                });
+                points.push(self.point(&setting.words, samples, &results, errors, surface.errors)?);
                 if self.plan.measure.most_samples > 0 {
                     unseen.push(Unseen { point: points.len() - 1, picture, luminance });
                 }
@@ -172,6 +168,7 @@ impl<'a> Bench<'a> {
             traces: self.traces(&camera, &settings),
             host: self.host(&camera, &settings),
             builds: self.builds.clone(),
+            left_out: self.left_out(&camera.with_samples(1)?, &truth.image, &truth.frame)?,
         })
     }
 
@@ -193,16 +190,27 @@ impl<'a> Bench<'a> {
         Ok(self.methods.iter().enumerate().map(of).collect::<anyhow::Result<Vec<_>>>()?.into_iter().flatten().collect())
     }
 
-    /// Traces a setting once: its steps go to the machines, and what its rays meet makes the picture, whose errors are against `full`; with one ray a pixel,
-    /// also the surface, whose errors are against `truth`.
+    /// Traces a setting once.
     fn see(&self, of: &(usize, Setting), camera: &Camera, full: &RgbImage, truth: &Frame) -> anyhow::Result<Seen> {
         let (at, setting) = of;
         let method = self.method(*at, setting);
-        let pass = Pass { scene: self.scene, space: &self.space, chosen: &setting.chosen, method, rays: PassRays::Camera(*camera) };
-        let shader = self.subject().shader;
+        let stage = Stage { scene: self.scene, space: &self.space, chosen: &setting.chosen, method, targets: &self.plan.jobs.targets };
+        let mut seen = self.seen(&stage, camera, full, truth)?;
+        if let Some(surface) = seen.surface.as_mut().filter(|_| !setting.has_levels()) {
+            surface.frame = None;
+        }
+        Ok(seen)
+    }
+
+    /// Traces a stage once: its steps go to the machines, and what its rays meet makes the picture, whose errors are against `full`; with one ray a pixel, also the surface,
+    /// whose errors are against `truth`.
+    pub(super) fn seen(&self, stage: &Stage<'_>, camera: &Camera, full: &RgbImage, truth: &Frame) -> anyhow::Result<Seen> {
+        let &Stage { scene, space, chosen, method, targets } = stage;
+        let pass = Pass { scene, space, chosen, method, rays: PassRays::Camera(*camera) };
+        let shader = Shader::new(scene, space, self.plan.measure.shading);
         let mut drawn = Sampled::new(camera);
         let mut pixels = if camera.samples == 1 { vec![None; drawn.pixels.len()] } else { Vec::new() };
-        let outcomes = pass.watched(&self.plan.jobs.targets, &mut |traced| {
+        let outcomes = pass.watched(targets, &mut |traced| {
             drawn.add(&shader, camera, &traced.hits);
             if camera.samples == 1 {
                 traced.hits.iter().for_each(|of| pixels[of.ray as usize] = of.hit); // a pixel of the picture
@@ -214,7 +222,34 @@ impl<'a> Bench<'a> {
             errors: PictureError::of(&picture, full, self.plan.measure.pixels_per_degree),
             picture,
             results: outcomes.into_iter().map(|outcome| Ok(outcome?.0)).collect::<anyhow::Result<_>>()?,
-            surface: (camera.samples == 1).then(|| self.surface(setting, pixels, camera, truth)),
+            surface: (camera.samples == 1).then(|| self.surface(scene, pixels, camera, truth)),
+        })
+    }
+
+    /// What was measured of a setting with so many samples.
+    pub(super) fn point(
+        &self,
+        words: &str,
+        samples: u32,
+        results: &[SimResult],
+        picture: PictureError,
+        geometry: SurfaceError,
+    ) -> anyhow::Result<Point> {
+        let facts = &results.first().context("no machine")?.setup.method;
+        Ok(Point {
+            view: 0,
+            method: facts.name.clone(),
+            setting: words.to_owned(),
+            knobs: facts.knobs.clone(),
+            choices: facts.choices.clone(),
+            samples,
+            bytes: facts.bytes,
+            bytes_per_triangle: facts.bytes as f64 / self.facts.finest_triangles as f64,
+            geometry,
+            picture,
+            viewed: None,
+            appearance: None,
+            costs: results.iter().enumerate().map(|(machine, result)| costs(machine, result)).collect(),
         })
     }
 
@@ -228,17 +263,17 @@ impl<'a> Bench<'a> {
             let bar = progress(u64::from(camera.height), "surface");
             let frame = render(self.method(*at, setting), &self.space, camera, setting.chosen.delta(), &|| bar.inc(1)).0;
             bar.finish_and_clear();
-            self.surface(setting, frame.pixels, camera, truth)
+            let surface = self.surface(self.scene, frame.pixels, camera, truth);
+            Surface { frame: surface.frame.filter(|_| setting.has_levels()), ..surface }
         };
         settings.iter().map(of).collect()
     }
 
-    fn surface(&self, setting: &Setting, pixels: Vec<Option<SurfaceHit>>, camera: &Camera, truth: &Frame) -> Surface {
+    /// What rays met of a scene: this one, or what is left of it.
+    fn surface(&self, scene: &Scene, pixels: Vec<Option<SurfaceHit>>, camera: &Camera, truth: &Frame) -> Surface {
         let full = FullResolution { scene: self.scene, space: &self.space, surface: &self.surface, pixels: &truth.pixels };
-        let errors = SurfaceError::of(&pixels, &full, camera, self.plan.measure.stride);
-        // Without a knob every triangle is of the finest level.
-        let has_levels = setting.is_default && setting.chosen.method.error.is_some();
-        Surface { errors, frame: has_levels.then_some(Frame { width: camera.width, height: camera.height, pixels }) }
+        let errors = SurfaceError::of(scene, &pixels, &full, camera, self.plan.measure.stride);
+        Surface { errors, frame: Some(Frame { width: camera.width, height: camera.height, pixels }) }
     }
 
     /// Draws full resolution with more and more samples until its standard error is a quarter of the smallest error, or there are no more; then says how

@@ -2,6 +2,7 @@
 
 mod draw;
 mod host;
+mod less;
 mod measure;
 mod options;
 mod plan;
@@ -17,8 +18,10 @@ use super::sweep::SceneJobs;
 use lodray::format::Scene;
 use lodray::hardware::unit_gates;
 use lodray::method::{find, lod};
-use lodray::report::diagram::{csv, diagrams, latex};
-use lodray::report::error_time::{ErrorTime, KIND, MethodEntry, Options, SceneEntry, USUAL_COSTS, USUAL_ERRORS, VERSION, equal_errors};
+use lodray::report::diagram::{csv, diagrams, latex, left_out_csv};
+use lodray::report::error_time::{
+    ErrorTime, KIND, LeftOut, MethodEntry, Options, SceneEntry, USUAL_COSTS, USUAL_ERRORS, VERSION, equal_errors,
+};
 use lodray::report::page::{Documents, PICTURE_BYTES, embed};
 use lodray::report::results_version;
 use measure::Bench;
@@ -35,6 +38,8 @@ pub use options::Args;
 const LINES: &str = "views.jsonl";
 const DOCUMENT: &str = "error-time.json";
 const TABLE: &str = "error-time.csv";
+/// What was left out, if that was asked for.
+const LEFT_OUT: &str = "left-out.csv";
 const LATEX: &str = "error-time.tex";
 const HOST: &str = "host-times.json";
 const PAGE: &str = "report.html";
@@ -51,7 +56,7 @@ struct HostTimes<'a> {
 pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
     let plan = args.plan()?;
     let inputs: Vec<_> = plan.jobs.files.iter().map(PathBuf::as_path).collect();
-    let mut folder = RunFolder::open(&args.out, [DOCUMENT, TABLE, LATEX, HOST, PAGE], &inputs, &args.overrule)?;
+    let mut folder = RunFolder::open(&args.out, [DOCUMENT, TABLE, LATEX, LEFT_OUT, HOST, PAGE], &inputs, &args.overrule)?;
     let cache = Cache::new(&args.cache, Some(&args.out))?;
     let lines = args.out.join(LINES);
     check_target(&lines, &inputs)?;
@@ -150,6 +155,13 @@ fn document(plan: &Plan, measured: &[&Measured]) -> ErrorTime {
             grid
         }));
     }
+    let left_out = measured.iter().enumerate().flat_map(|(number, of)| {
+        of.left_out.iter().cloned().map(move |mut left| {
+            left.point.view = number;
+            left
+        })
+    });
+    let mut left_out: Vec<LeftOut> = left_out.collect();
     let machines = plan.machines();
     // A target is a machine with a way to compute; the same machine is listed once.
     for point in &mut points {
@@ -159,6 +171,9 @@ fn document(plan: &Plan, measured: &[&Measured]) -> ErrorTime {
             costs.unit_gates =
                 unit.zip(machines.get(costs.machine)).and_then(|(unit, machine)| unit_gates(unit, &machine.description.units.config()));
         }
+    }
+    for costs in left_out.iter_mut().flat_map(|left| &mut left.point.costs) {
+        costs.machine = plan.machine_of(costs.machine, &machines);
     }
     let method = |chosen: &super::method::Chosen| MethodEntry {
         name: chosen.method.name.to_owned(),
@@ -184,6 +199,7 @@ fn document(plan: &Plan, measured: &[&Measured]) -> ErrorTime {
         equal_error: Vec::new(),
         pictures,
         traces,
+        left_out,
     };
     document.equal_error = equal_errors(&document, lod::METHOD.name);
     document
@@ -193,6 +209,9 @@ fn write(folder: &Path, document: &ErrorTime, measured: &[&Measured]) -> anyhow:
     write_file(&folder.join(DOCUMENT), serde_json::to_string(document)? + "\n")?;
     write_file(&folder.join(TABLE), csv(document))?;
     write_file(&folder.join(LATEX), latex(document))?;
+    if !document.left_out.is_empty() {
+        write_file(&folder.join(LEFT_OUT), left_out_csv(document))?;
+    }
     let drawn = busy("diagrams", || diagrams(document, &USUAL_ERRORS, &USUAL_COSTS))?;
     drawn.iter().try_for_each(|(name, bytes)| write_file(&folder.join(name), bytes))?;
     let times = measured.iter().filter(|of| !of.host.is_empty());

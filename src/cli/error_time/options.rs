@@ -8,10 +8,11 @@ use crate::cli::method::{Chosen, Listed, machine_methods};
 use crate::cli::names::named;
 use crate::cli::output::open;
 use crate::cli::pass::{Target, machine, machine_files};
+use crate::cli::plan::pixels;
 use crate::cli::render::shading;
 use crate::cli::sweep::{Jobs, Origin, SceneJobs, ViewJob};
 use anyhow::{Context, ensure};
-use lodray::method::METHODS;
+use lodray::method::{METHODS, lod};
 use lodray::picture::{PIXELS_PER_DEGREE, Shading};
 use lodray::rays::{DEFAULT_VIEW_ANGLE_DEGREES, ModelSpace};
 use lodray::run::{self, Compute};
@@ -71,6 +72,10 @@ pub struct Args {
     /// Most samples of a pixel of the picture that stands for what a viewer should see; 0 leaves such a picture and its errors out (default: 1024; 64 with --quick)
     #[arg(long, value_name = "N", value_parser = samples_or_none)]
     most_samples: Option<u32>,
+    /// Also what scenes and units for a view cost in error with less in them: lossless, and on the coarsest grids on which nothing moves by more than each of so many
+    /// pixels, with commas
+    #[arg(long, value_name = "PIXELS", value_delimiter = ',', value_parser = pixels)]
+    within: Vec<f64>,
     /// Do not time the host
     #[arg(long)]
     no_host: bool,
@@ -155,7 +160,14 @@ impl Args {
             most_samples: self.most_samples.unwrap_or(if self.quick { 8 } else { 32 }),
             host_rays: if self.no_host { 0 } else { 16_384 },
         };
-        let plan = Plan { jobs, values, sides, measure };
+        ensure!(
+            self.within.is_empty() || jobs.methods.iter().any(|chosen| *chosen.method == lod::METHOD),
+            "--within: what is left out is lod's, and lod is none of the methods"
+        );
+        let mut within = self.within.clone();
+        within.sort_unstable_by(f64::total_cmp);
+        within.dedup();
+        let plan = Plan { jobs, values, sides, measure, within };
         plan.check()?;
         Ok(plan)
     }

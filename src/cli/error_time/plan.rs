@@ -18,6 +18,8 @@ pub struct Plan {
     /// Samples along a side of a pixel.
     pub sides: Vec<u32>,
     pub measure: Measure,
+    /// What may be left out of scenes and units: whatever moves nothing by more than so many pixels.
+    pub within: Vec<f64>,
 }
 
 /// Rays whose steps a page has, of all views and methods together.
@@ -47,6 +49,13 @@ pub struct Setting {
     pub words: String,
     /// It is what the method does if nothing is chosen.
     pub is_default: bool,
+}
+
+impl Setting {
+    /// It is the usual one of a method with levels: without a knob every triangle is of the finest.
+    pub fn has_levels(&self) -> bool {
+        self.is_default && self.chosen.method.error.is_some()
+    }
 }
 
 impl Plan {
@@ -143,6 +152,7 @@ impl Plan {
             inputs += &format!("{:?}", self.values(chosen));
         }
         inputs += &format!("{:?} {:?} {}", self.sides, self.measure, self.trace_grid());
+        inputs += &self.within.iter().map(|pixels| format!(" within {pixels}")).collect::<String>();
         // As in a sweep: scene, place and size, and the version at the end.
         let place: Vec<_> = name.split(", ").take(3).collect();
         let version = name.rsplit(' ').next().unwrap_or_default();

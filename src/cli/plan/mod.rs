@@ -150,18 +150,18 @@ fn say(args: &Args, plan: &Plan, data: Option<&Data>) -> anyhow::Result<ExitCode
 }
 
 /// A number of pixels.
-fn pixels(s: &str) -> Result<f64, String> {
+pub fn pixels(s: &str) -> Result<f64, String> {
     s.parse().ok().filter(|v: &f64| *v > 0.0 && v.is_finite()).ok_or_else(|| format!("'{s}' is no number of pixels above 0"))
 }
 
 /// Has a machine's units as the plan of this file has them.
-pub fn in_machine(plan: &Plan, path: &Path, machine: &mut MachineFacts) {
+pub fn in_machine(plan: &Plan, name: &str, machine: &mut MachineFacts) {
     let units = &mut machine.description.units;
     let own = plan.hardware(&units.config());
     // Contexts and edges are the machine's own where no frame was simulated.
     (units.contexts, units.edges_per_cycle) = (own.contexts as u32, own.edges_per_cycle.count()); // at most 64
     units.like = Some(own);
-    machine.set.push(format!("plan={}", path.display()));
+    machine.set.push(format!("plan={name}"));
 }
 
 /// Refuses a scene or rays that a plan is too narrow for.

@@ -96,7 +96,7 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
     let mut machines = args.machine.iter().map(read).collect::<anyhow::Result<Vec<_>>>()?;
     let plan = args.plan.as_deref().map(plan::read).transpose()?;
     if let (Some(plan), Some(path)) = (&plan, &args.plan) {
-        machines.iter_mut().for_each(|machine| plan::in_machine(plan, path, machine));
+        machines.iter_mut().for_each(|machine| plan::in_machine(plan, &path.display().to_string(), machine));
     }
     for (k, machine) in machines.iter().enumerate() {
         run::check(&machine.description, args.compute).with_context(|| format!("--machine {}", args.machine[k]))?;

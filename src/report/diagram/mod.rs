@@ -5,6 +5,7 @@
 mod canvas;
 mod distance;
 mod fault;
+mod less;
 mod marks;
 mod raster;
 mod table;
@@ -13,9 +14,9 @@ mod work;
 pub use distance::{DistanceChart, Line, Spot, gain};
 pub use fault::DiagramFault;
 pub use raster::png;
-pub use table::{csv, latex};
+pub use table::{csv, latex, left_out_csv};
 
-use super::error_time::{CostMeasure, ErrorMeasure, ErrorTime};
+use super::error_time::{CostMeasure, ErrorMeasure, ErrorTime, USUAL_ERRORS};
 use rayon::prelude::*;
 
 /// File name and contents.
@@ -42,6 +43,12 @@ pub fn diagrams(document: &ErrorTime, errors: &[ErrorMeasure], costs: &[CostMeas
             }
             for cost in costs {
                 add(format!("{}-distance-{}", entry.name, cost.id), of.costs_by_distance(cost)?);
+            }
+            for measure in &less::MEASURES {
+                add(
+                    format!("{}-left-out-{}", entry.name, measure.id),
+                    less::less(document, scene, (machine, &compute), measure, &USUAL_ERRORS[1])?,
+                );
             }
         }
     }

@@ -1,26 +1,46 @@
 //! Tables of a document: all points as CSV, and what methods cost at equal error as LaTeX.
 
 use super::canvas::short;
-use crate::report::error_time::{COSTS, ERRORS, EqualError, ErrorTime};
+use crate::report::error_time::{COSTS, ERRORS, EqualError, ErrorTime, Point};
 use std::collections::BTreeMap;
 
 /// All points, a line for each machine that they have costs of.
 pub fn csv(document: &ErrorTime) -> String {
-    let head = ["scene", "distance", "method", "setting", "samples", "machine", "compute", "energy_unit"].map(str::to_owned).into_iter();
-    let measures = ERRORS.iter().map(|error| error.id).chain(COSTS.iter().map(|cost| cost.id)).map(|id| id.replace('-', "_"));
-    let mut text = head.chain(measures).collect::<Vec<_>>().join(",") + "\n";
+    let mut text = head(&["scene", "distance", "method", "setting", "samples"]);
     for point in &document.points {
-        let view = &document.views[point.view];
-        for costs in &point.costs {
-            let mut cells = vec![document.scenes[view.scene].name.clone(), view.distance.to_string(), point.method.clone()];
-            cells.extend([point.setting.clone(), point.samples.to_string(), document.machines[costs.machine].title()]);
-            cells.extend([costs.compute.clone(), costs.energy.unit.clone()]);
-            cells.extend(ERRORS.iter().map(|error| (error.of)(point).map_or_else(String::new, |v| v.to_string())));
-            cells.extend(COSTS.iter().map(|cost| (cost.of)(point, costs).map_or_else(String::new, |v| v.to_string())));
-            text += &(cells.iter().map(|cell| quoted(cell)).collect::<Vec<_>>().join(",") + "\n");
-        }
+        lines(&mut text, document, point, &[point.method.clone(), point.setting.clone(), point.samples.to_string()]);
     }
     text
+}
+
+/// What was left out, likewise.
+pub fn left_out_csv(document: &ErrorTime) -> String {
+    let mut text = head(&["scene", "distance", "setting", "left_out", "coordinate_zeros", "direction_zeros"]);
+    for left in &document.left_out {
+        let own = [left.point.setting.clone(), left.what.clone(), left.coordinate_zeros.to_string(), left.direction_zeros.to_string()];
+        lines(&mut text, document, &left.point, &own);
+    }
+    text
+}
+
+/// Names of columns: these, the machine, and everything that is measured.
+fn head(own: &[&str]) -> String {
+    let head = own.iter().chain(&["machine", "compute", "energy_unit"]).map(|&name| name.to_owned());
+    let measures = ERRORS.iter().map(|error| error.id).chain(COSTS.iter().map(|cost| cost.id)).map(|id| id.replace('-', "_"));
+    head.chain(measures).collect::<Vec<_>>().join(",") + "\n"
+}
+
+/// The lines of a point: scene and distance, its `own` cells, the machine, and everything that was measured.
+fn lines(text: &mut String, document: &ErrorTime, point: &Point, own: &[String]) {
+    let view = &document.views[point.view];
+    for costs in &point.costs {
+        let mut cells = vec![document.scenes[view.scene].name.clone(), view.distance.to_string()];
+        cells.extend_from_slice(own);
+        cells.extend([document.machines[costs.machine].title(), costs.compute.clone(), costs.energy.unit.clone()]);
+        cells.extend(ERRORS.iter().map(|error| (error.of)(point).map_or_else(String::new, |v| v.to_string())));
+        cells.extend(COSTS.iter().map(|cost| (cost.of)(point, costs).map_or_else(String::new, |v| v.to_string())));
+        *text += &(cells.iter().map(|cell| quoted(cell)).collect::<Vec<_>>().join(",") + "\n");
+    }
 }
 
 /// A cell of a CSV file.

@@ -21,10 +21,12 @@ impl ErrorTime {
                 return Err(format!("views[{k}]: distance and size must be above 0"));
             }
         }
-        for (k, point) in self.points.iter().enumerate() {
-            names(format!("points[{k}].view"), point.view, "views", views)?;
+        let points = self.points.iter().enumerate().map(|(k, point)| (format!("points[{k}]"), point));
+        let left = self.left_out.iter().enumerate().map(|(k, left)| (format!("left_out[{k}].point"), &left.point));
+        for (field, point) in points.chain(left) {
+            names(format!("{field}.view"), point.view, "views", views)?;
             for (j, costs) in point.costs.iter().enumerate() {
-                names(format!("points[{k}].costs[{j}].machine"), costs.machine, "machines", machines)?;
+                names(format!("{field}.costs[{j}].machine"), costs.machine, "machines", machines)?;
             }
         }
         for (k, equal) in self.equal_error.iter().enumerate() {

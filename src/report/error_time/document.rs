@@ -40,6 +40,9 @@ pub struct ErrorTime {
     /// The steps of a coarse grid of rays.
     #[serde(default)]
     pub traces: Vec<TraceGrid>,
+    /// What scenes and units cost in error with less in them, if that was asked for.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub left_out: Vec<LeftOut>,
 }
 
 /// What was asked for.
@@ -158,6 +161,21 @@ pub struct Point {
     pub appearance: Option<Appearance>,
     /// What it costs, by machine and kind of compute.
     pub costs: Vec<Costs>,
+}
+
+/// A view with one ray a pixel, of a scene that has no more than the view needs, on units for that.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct LeftOut {
+    /// `whole`: nothing was left out; `lossless`: what moves no hit; `within P`: also what moves nothing by more than P pixels.
+    pub what: String,
+    /// How many pixels that is; 0 for none.
+    pub pixels: f64,
+    /// Zero bits at the bottom of coordinates.
+    pub coordinate_zeros: u32,
+    /// Zero bits at the bottom of components of directions.
+    pub direction_zeros: u32,
+    /// What was measured: errors are against full resolution of the whole scene, and the unit's area is its own.
+    pub point: Point,
 }
 
 /// Luminance against that of the converged picture, linear, over the pixels that are wholly surface in both: what is left of an error if the surface is where it

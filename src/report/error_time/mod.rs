@@ -6,8 +6,8 @@ mod equal;
 mod measure;
 
 pub use document::{
-    Appearance, Converged, Costs, Energy, EqualCost, EqualError, ErrorTime, KIND, MethodEntry, Options, PictureEntry, Point, SceneEntry,
-    Shift, TraceGrid, TracedHit, TracedRay, VERSION, ViewEntry,
+    Appearance, Converged, Costs, Energy, EqualCost, EqualError, ErrorTime, KIND, LeftOut, MethodEntry, Options, PictureEntry, Point,
+    SceneEntry, Shift, TraceGrid, TracedHit, TracedRay, VERSION, ViewEntry,
 };
 pub use equal::{ALWAYS_BELOW, NOT_REACHED, Pair, cost_at, equal_errors, front};
 pub use measure::{COSTS, CostMeasure, ERRORS, ErrorMeasure, USUAL_COSTS, USUAL_ERRORS};

@@ -134,6 +134,7 @@ async function start() {
     ["parts", "Energy and traffic", partsSection, hasPoints],
     ["pictures", "Pictures and rays", picturesSection, page.pictures.length > 0],
     ["equal", "At equal error", equalSection, page.error_time?.equal_error.length > 0],
+    ["left-out", "With less in scene and unit", leftOutSection, page.error_time?.left_out?.length > 0],
     ["stability", "Stability", stabilitySection, page.stability.length > 0],
     ["claims", "The paper’s claims", ledgerSection, page.ledger.length > 0],
     ["run", "How it was run", runSection, true],

@@ -38,6 +38,33 @@ function equalSection(section, state) {
   state.onChange(draw);
 }
 
+function leftOutSection(section, state) {
+  const doc = page.error_time;
+  const body = h("div", {});
+  const draw = () => {
+    const all = doc.left_out.map((l) => {
+      const costs = l.point.costs.find((c) => target([doc.machines[c.machine].label, ...doc.machines[c.machine].set].join(" "), c.compute) === state.machine);
+      return { ...l, v: doc.views[l.point.view], costs };
+    }).filter((l) => l.costs && doc.scenes[l.v.scene].name === state.scene);
+    if (!all.length) return body.replaceChildren(h("p", { class: "note" }, "None for this scene and machine."));
+    const whole = (l) => all.find((other) => other.point.view === l.point.view && other.what === "whole");
+    const over = (of) => ({ value: (l) => of(l) / of(whole(l)), show: (l) => num(of(l) / of(whole(l)), 3) });
+    const columns = [
+      { name: "from (radii)", value: (l) => l.v.distance }, { name: "left out", value: (l) => l.what }, { name: "zero bits of coordinates", value: (l) => l.coordinate_zeros }, { name: "of directions", value: (l) => l.direction_zeros },
+      { name: "surface error, pixels, 99th percentile", value: (l) => l.point.geometry.surface?.percentile_99 }, { name: "largest", value: (l) => l.point.geometry.surface?.maximum },
+      { name: "gate equivalents of a unit", value: (l) => l.costs.unit_gates }, { name: "bytes a finest triangle", value: (l) => l.point.bytes_per_triangle, show: (l) => num(l.point.bytes_per_triangle, 3) },
+      { name: "time over whole", ...over((l) => l.costs.cycles) }, { name: "energy over whole", ...over((l) => l.costs.energy.total) },
+    ];
+    const name = `Left out, ${state.scene}`;
+    body.replaceChildren(
+      scrolled(name, table(name, columns, all)),
+      h("div", { class: "data" }, h("button", { type: "button", "aria-label": `CSV of: ${name}`, onclick: () => save("left-out.csv", "text/csv", csv(columns, all)) }, "CSV")),
+    );
+  };
+  section.append(h("p", {}, "The same view at delta 1: with the whole scene on the machine's own units; with only what its rays read, on units for that, every hit the same; and on the coarsest grids on which nothing moves by more than so many pixels. Errors are against full resolution of the whole scene, so those of the first two are delta's."), body);
+  state.onChange(draw);
+}
+
 function stabilitySection(section) {
   for (const report of page.stability) {
     const rows = [...report.rows.map((r) => ({ name: r.case, ...r })), ...(report.hunt ? [{ name: "hunt", ...report.hunt }] : [])];

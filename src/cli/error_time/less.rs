@@ -1,0 +1,88 @@
+//! What a view costs in error, area and bytes where a scene and a unit have no more than it needs.
+
+use super::measure::{Bench, Stage};
+use crate::cli::method::Chosen;
+use crate::cli::output::busy;
+use crate::cli::pass::Target;
+use crate::cli::plan::in_machine;
+use anyhow::Context;
+use image::RgbImage;
+use lodray::bvh::over_trees;
+use lodray::format::Scene;
+use lodray::hardware::unit_gates;
+use lodray::method::lod;
+use lodray::picture::Frame;
+use lodray::plan::{Measure, Narrowest, Plan, Reach, Within};
+use lodray::rays::{Camera, ModelSpace};
+use lodray::report::error_time::LeftOut;
+
+/// A scene with less in it, and its unit.
+struct Less {
+    scene: Scene,
+    plan: Plan,
+}
+
+impl Less {
+    /// What the rays of a camera read of a scene, and the unit for that.
+    fn of(scene: &Scene, camera: &Camera, delta: f64) -> anyhow::Result<Self> {
+        let reach = Reach::of(scene);
+        reach.add(camera, delta);
+        let depths = reach.depths();
+        // As it is, it serves any ray.
+        let job = if depths == scene.depths() { Vec::new() } else { vec![camera.job_view(delta)] };
+        let scene = scene.pruned(&depths, job)?;
+        let measure = Measure::of(&scene);
+        let mut plan = Plan::new(true);
+        plan.add(&scene.meta().name, &measure.needs());
+        plan.add_rays(&measure.rays(camera, delta));
+        Ok(Self { scene, plan })
+    }
+}
+
+impl Bench<'_> {
+    /// The view with lod as it is by default: all of the scene on the machines' own units; what the view needs on units for that; and the same on the coarsest grids within
+    /// each of so many pixels. Nothing if none are asked for.
+    pub fn left_out(&self, camera: &Camera, full: &RgbImage, truth: &Frame) -> anyhow::Result<Vec<LeftOut>> {
+        let (within, base) = (&self.plan.within, self.plan.jobs.methods.iter().find(|chosen| *chosen.method == lod::METHOD));
+        if within.is_empty() {
+            return Ok(Vec::new());
+        }
+        let base = base.context("--within: is of lod, and lod is none of the methods")?;
+        let knobs = base.method.error.map_or_else(|| base.knobs.clone(), |error| base.knobs.clone().without(error.knob));
+        let chosen = Chosen { method: base.method, knobs };
+        let seen = |what: String, grids: Option<Within>, scene: &Scene, targets: &[Target]| -> anyhow::Result<LeftOut> {
+            let (space, method) = (ModelSpace::of(scene), chosen.make(scene, self.cache)?.0);
+            let stage = Stage { scene, space: &space, method: &*method, chosen: &chosen, targets };
+            let seen = self.seen(&stage, camera, full, truth)?;
+            let geometry = seen.surface.context("one ray a pixel")?.errors;
+            let point = self.point(&format!("delta {}", chosen.delta()), 1, &seen.results, seen.errors, geometry)?;
+            let mut left = LeftOut {
+                what,
+                pixels: grids.map_or(0.0, |grids| grids.pixels),
+                coordinate_zeros: scene.meta().coordinate_zeros,
+                direction_zeros: scene.meta().direction_zeros,
+                point,
+            };
+            for (costs, target) in left.point.costs.iter_mut().zip(targets) {
+                costs.unit_gates = lod::METHOD.unit.and_then(|unit| unit_gates(unit, &target.machine.description.units.config()));
+            }
+            Ok(left)
+        };
+        let own = &self.plan.jobs.targets;
+        let mut all = vec![seen("whole".to_owned(), None, self.scene, own)?];
+        let mut add = |what: String, grids: Option<Within>, scene: &Scene| -> anyhow::Result<()> {
+            let less = busy("leaving out", || Less::of(scene, camera, chosen.delta()))?;
+            let mut targets = own.clone();
+            targets.iter_mut().for_each(|target| in_machine(&less.plan, &what, &mut target.machine));
+            all.push(seen(what, grids, &less.scene, &targets)?);
+            Ok(())
+        };
+        add("lossless".to_owned(), None, self.scene)?;
+        for &pixels in within {
+            let grids = Within::of(self.scene, &Narrowest::of(&self.space, camera), pixels);
+            let coarse = busy("coarser grids", || self.scene.coarsened([grids.coordinate_zeros, grids.direction_zeros], over_trees))?;
+            add(format!("within {pixels}"), Some(grids), &coarse)?;
+        }
+        Ok(all)
+    }
+}
