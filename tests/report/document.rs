@@ -8,7 +8,7 @@ use std::path::Path;
 /// `error-time` of the scene in `a.lod`, into the desk's own folder.
 pub fn of(desk: &Desk) -> ErrorTime {
     desk.run(
-        "error-time a.lod -o . --size 96x96 --distances 0.7,2,6 --samples 1,4 --values delta=0.25,1,4 --most-samples 64 --no-host --quiet",
+        "error-time a.lod -o . --size 96x96 --distances 0.7,2,6 --samples 1,4 --values delta=0.25,1,4 --most-samples 64 --no-host --within 0.0001,1 --quiet",
     );
     serde_json::from_str(&desk.text("error-time.json")).unwrap()
 }

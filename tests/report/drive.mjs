@@ -121,6 +121,12 @@ if (doc) {
   const missing = equal.filter((e) => e.ours == null).length;
   check((await page.locator("#equal .why").count()) >= missing, "no reason where there is no cost");
 
+  // What was left out.
+  const lessShown = await page.locator("#left-out td[data-value]").evaluateAll((all) => all.map((e) => Number(e.dataset.value)));
+  const less = doc.left_out.filter((l) => doc.views[l.point.view].scene === 0);
+  const lessValues = (l) => [l.coordinate_zeros, l.direction_zeros, l.point.geometry.surface.maximum, l.point.bytes_per_triangle, l.point.costs[0].unit_gates];
+  check(less.length > 0 && less.every((l) => lessValues(l).every((value) => lessShown.includes(value))), "what was left out is not the document's");
+
   // Pointer and keys on a diagram.
   const tip = page.locator("#work .tip:not([hidden])");
   const first = page.locator("#work [data-point][tabindex='0']").first();

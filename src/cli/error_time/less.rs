@@ -50,9 +50,9 @@ impl Bench<'_> {
         let base = base.context("--within: is of lod, and lod is none of the methods")?;
         let knobs = base.method.error.map_or_else(|| base.knobs.clone(), |error| base.knobs.clone().without(error.knob));
         let chosen = Chosen { method: base.method, knobs };
-        let seen = |what: String, grids: Option<Within>, scene: &Scene, targets: &[Target]| -> anyhow::Result<LeftOut> {
+        let seen = |what: String, grids: Option<Within>, [scene, all]: [&Scene; 2], targets: &[Target]| -> anyhow::Result<LeftOut> {
             let (space, method) = (ModelSpace::of(scene), chosen.make(scene, self.cache)?.0);
-            let stage = Stage { scene, space: &space, method: &*method, chosen: &chosen, targets };
+            let stage = Stage { scene, all, space: &space, method: &*method, chosen: &chosen, targets };
             let seen = self.seen(&stage, camera, full, truth)?;
             let geometry = seen.surface.context("one ray a pixel")?.errors;
             let point = self.point(&format!("delta {}", chosen.delta()), 1, &seen.results, seen.errors, geometry)?;
@@ -69,12 +69,12 @@ impl Bench<'_> {
             Ok(left)
         };
         let own = &self.plan.jobs.targets;
-        let mut all = vec![seen("whole".to_owned(), None, self.scene, own)?];
+        let mut all = vec![seen("whole".to_owned(), None, [self.scene; 2], own)?];
         let mut add = |what: String, grids: Option<Within>, scene: &Scene| -> anyhow::Result<()> {
             let less = busy("leaving out", || Less::of(scene, camera, chosen.delta()))?;
             let mut targets = own.clone();
             targets.iter_mut().for_each(|target| in_machine(&less.plan, &what, &mut target.machine));
-            all.push(seen(what, grids, &less.scene, &targets)?);
+            all.push(seen(what, grids, [&less.scene, scene], &targets)?);
             Ok(())
         };
         add("lossless".to_owned(), None, self.scene)?;

@@ -46,6 +46,8 @@ pub struct Bench<'a> {
 /// What is traced, and on which machines.
 pub(super) struct Stage<'a> {
     pub scene: &'a Scene,
+    /// The same with all its levels: facets are shaded, and normals found, at full resolution.
+    pub all: &'a Scene,
     pub space: &'a ModelSpace,
     pub chosen: &'a Chosen,
     pub method: &'a dyn Method,
@@ -194,7 +196,14 @@ impl<'a> Bench<'a> {
     fn see(&self, of: &(usize, Setting), camera: &Camera, full: &RgbImage, truth: &Frame) -> anyhow::Result<Seen> {
         let (at, setting) = of;
         let method = self.method(*at, setting);
-        let stage = Stage { scene: self.scene, space: &self.space, chosen: &setting.chosen, method, targets: &self.plan.jobs.targets };
+        let stage = Stage {
+            scene: self.scene,
+            all: self.scene,
+            space: &self.space,
+            chosen: &setting.chosen,
+            method,
+            targets: &self.plan.jobs.targets,
+        };
         let mut seen = self.seen(&stage, camera, full, truth)?;
         if let Some(surface) = seen.surface.as_mut().filter(|_| !setting.has_levels()) {
             surface.frame = None;
@@ -205,9 +214,9 @@ impl<'a> Bench<'a> {
     /// Traces a stage once: its steps go to the machines, and what its rays meet makes the picture, whose errors are against `full`; with one ray a pixel, also the surface,
     /// whose errors are against `truth`.
     pub(super) fn seen(&self, stage: &Stage<'_>, camera: &Camera, full: &RgbImage, truth: &Frame) -> anyhow::Result<Seen> {
-        let &Stage { scene, space, chosen, method, targets } = stage;
+        let &Stage { scene, all, space, chosen, method, targets } = stage;
         let pass = Pass { scene, space, chosen, method, rays: PassRays::Camera(*camera) };
-        let shader = Shader::new(scene, space, self.plan.measure.shading);
+        let shader = Shader::new(all, space, self.plan.measure.shading);
         let mut drawn = Sampled::new(camera);
         let mut pixels = if camera.samples == 1 { vec![None; drawn.pixels.len()] } else { Vec::new() };
         let outcomes = pass.watched(targets, &mut |traced| {
@@ -222,7 +231,7 @@ impl<'a> Bench<'a> {
             errors: PictureError::of(&picture, full, self.plan.measure.pixels_per_degree),
             picture,
             results: outcomes.into_iter().map(|outcome| Ok(outcome?.0)).collect::<anyhow::Result<_>>()?,
-            surface: (camera.samples == 1).then(|| self.surface(scene, pixels, camera, truth)),
+            surface: (camera.samples == 1).then(|| self.surface(all, pixels, camera, truth)),
         })
     }
 
