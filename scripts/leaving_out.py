@@ -4,6 +4,7 @@ Scenes, plans and results are kept in the folder. Pictures of whole and pruned s
 """
 
 import argparse
+import itertools
 import json
 import re
 import subprocess
@@ -177,14 +178,18 @@ def errors(scenes, out):
     document = json.loads((out / "error-time.json").read_text(encoding="utf-8"))
     heads = ["scene", "radii", "left out", "zeros of coordinates, directions", "error in pixels: mean", "99th percentile", "largest", "GE of a unit", "bytes a finest triangle", "time", "energy"]
     lines = [f"| {' | '.join(heads)} |", "| --- | ---: | --- |" + " ---: |" * (len(heads) - 3)]
-    for left in document["left_out"]:
-        point, view = left["point"], document["views"][left["point"]["view"]]
+    # Where more pixels give no coarser grids one row has them all.
+    grids = lambda left: (left["point"]["view"], left["what"] if left["pixels"] == 0 else "within", left["coordinate_zeros"], left["direction_zeros"])
+    for (of, what, *zeros), alike in itertools.groupby(document["left_out"], grids):
+        alike = list(alike)
+        point, view = alike[0]["point"], document["views"][of]
         costs, surface = point["costs"][0], point["geometry"]["surface"]
-        if left["what"] == "whole":
+        if what == "whole":
             whole = costs
         lines.append("| " + " | ".join([
-            document["scenes"][view["scene"]]["name"], f"{view['distance']:g}", left["what"], f"{left['coordinate_zeros']}, {left['direction_zeros']}",
-            *[f"{surface[of]:.4f}" for of in ["mean", "percentile_99", "maximum"]], f"{costs['unit_gates']:,.0f}", f"{point['bytes_per_triangle']:.2f}",
+            document["scenes"][view["scene"]]["name"], f"{view['distance']:g}", what if what != "within" else "within " + ", ".join(f"{left['pixels']:g}" for left in alike),
+            ", ".join(map(str, zeros)), *[f"{surface[of]:.4f}" for of in ["mean", "percentile_99", "maximum"]],
+            f"{costs['unit_gates']:,.0f}", f"{point['bytes_per_triangle']:.2f}",
             f"{costs['cycles'] / whole['cycles']:.3f}", f"{costs['energy']['total'] / whole['energy']['total']:.3f}",
         ]) + " |")
     return "\n".join(lines)
