@@ -191,6 +191,7 @@ fn what_is_wrong_is_refused_before_anything_is_traced() {
         ("a.lod --size 8192x8192 --samples 4", &["--samples 4", "too many"]),
         ("a.lod --distances 0", &["distances"]),
         ("a.lod --within 0", &["--within", "no number of pixels above 0"]),
+        ("a.lod --within -1", &["--within", "'-1' is no number of pixels above 0"]),
         ("a.lod --within 0.1 --methods bvh", &["--within", "lod is none of the methods"]),
         ("a.lod --jobs a.lod", &["--jobs"]),
         ("a.lod a.lod", &["a.lod", "another scene of the name a"]),

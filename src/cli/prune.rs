@@ -62,10 +62,7 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
         let camera = Camera::of_job(view).with_context(|| format!("{shown}: views"))?;
         busy("looking at rays", || reach.add(&camera, delta));
     }
-    let (stored, depths) = (scene.depths(), reach.depths());
-    // As it is, it serves any ray.
-    let job = if depths == stored { Vec::new() } else { views.clone() };
-    let pruned = scene.pruned(&depths, job)?;
+    let pruned = reach.pruned(views.clone())?;
     pruned.save(&args.out)?;
     let figures = Figures::of(views.len(), [&scene, &pruned]);
     if args.json {

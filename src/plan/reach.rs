@@ -3,7 +3,7 @@
 use super::rays::refines;
 use crate::block::Block;
 use crate::block::ray_setup::{self, RaySetup};
-use crate::format::{BvhNode, ChildRef, Scene};
+use crate::format::{BvhNode, ChildRef, JobView, Scene, SceneError};
 use crate::method::bvh_children;
 use crate::num::{MAX_LEVELS, Ray, RayT};
 use crate::rays::{ModelSpace, RaySource};
@@ -70,6 +70,16 @@ impl<'a> Reach<'a> {
     /// For each tree the deepest level that any of the rays can go down to.
     pub fn depths(&self) -> Vec<u32> {
         self.trees.iter().map(|tree| tree.reached.load(Ordering::Relaxed)).collect()
+    }
+
+    /// The scene without what none of the rays goes down to, which are those of `views`. As it is, it serves any ray.
+    ///
+    /// # Errors
+    /// Memory cannot be had.
+    pub fn pruned(&self, views: Vec<JobView>) -> Result<Scene, SceneError> {
+        let depths = self.depths();
+        let job = if depths == self.scene.depths() { Vec::new() } else { views };
+        self.scene.pruned(&depths, job)
     }
 
     fn ray(&self, ray: &Ray) {

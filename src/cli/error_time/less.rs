@@ -27,10 +27,7 @@ impl Less {
     fn of(scene: &Scene, camera: &Camera, delta: f64) -> anyhow::Result<Self> {
         let reach = Reach::of(scene);
         reach.add(camera, delta);
-        let depths = reach.depths();
-        // As it is, it serves any ray.
-        let job = if depths == scene.depths() { Vec::new() } else { vec![camera.job_view(delta)] };
-        let scene = scene.pruned(&depths, job)?;
+        let scene = reach.pruned(vec![camera.job_view(delta)])?;
         let measure = Measure::of(&scene);
         let mut plan = Plan::new(true);
         plan.add(&scene.meta().name, &measure.needs());
@@ -43,11 +40,10 @@ impl Bench<'_> {
     /// The view with lod as it is by default: all of the scene on the machines' own units; what the view needs on units for that; and the same on the coarsest grids within
     /// each of so many pixels. Nothing if none are asked for.
     pub fn left_out(&self, camera: &Camera, full: &RgbImage, truth: &Frame) -> anyhow::Result<Vec<LeftOut>> {
-        let (within, base) = (&self.plan.within, self.plan.jobs.methods.iter().find(|chosen| *chosen.method == lod::METHOD));
-        if within.is_empty() {
-            return Ok(Vec::new());
-        }
-        let base = base.context("--within: is of lod, and lod is none of the methods")?;
+        let within = &self.plan.within;
+        // It is one of the methods where this is asked for.
+        let lod = self.plan.jobs.methods.iter().find(|chosen| *chosen.method == lod::METHOD);
+        let Some(base) = lod.filter(|_| !within.is_empty()) else { return Ok(Vec::new()) };
         let knobs = base.method.error.map_or_else(|| base.knobs.clone(), |error| base.knobs.clone().without(error.knob));
         let chosen = Chosen { method: base.method, knobs };
         let seen = |what: String, grids: Option<Within>, [scene, all]: [&Scene; 2], targets: &[Target]| -> anyhow::Result<LeftOut> {

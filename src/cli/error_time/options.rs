@@ -74,7 +74,7 @@ pub struct Args {
     most_samples: Option<u32>,
     /// Also what scenes and units for a view cost in error with less in them: lossless, and on the coarsest grids on which nothing moves by more than each of so many
     /// pixels, with commas
-    #[arg(long, value_name = "PIXELS", value_delimiter = ',', value_parser = pixels)]
+    #[arg(long, value_name = "PIXELS", value_delimiter = ',', value_parser = pixels, allow_negative_numbers = true)]
     within: Vec<f64>,
     /// Do not time the host
     #[arg(long)]

@@ -77,6 +77,7 @@ impl DistanceChart {
         }
         let mut at: Vec<f64> = spots().map(|spot| spot.x).collect();
         at.sort_by(f64::total_cmp);
+        // The labels of places that are nearer than that would lie upon each other.
         at.dedup_by(|a, b| (*a / *b - 1.0).abs() < 0.05);
         let ticks = (at.len() <= 12).then(|| at.iter().map(|v| (v * 100.0).round() / 100.0).collect());
         let x = Axis { range: range(spots().map(|spot| spot.x), 1.3), name: &self.x, ticks };
