@@ -4,7 +4,7 @@
 //! `cargo bench --bench leaving_out -- WHOLE.lod PRUNED.lod PLAN.toml` for scenes of one's own and the plan that the one was pruned by; without arguments a room and a terrain from two views each.
 
 use lodray::bvh::over_trees;
-use lodray::format::{self, JobView, Scene, SceneInfo};
+use lodray::format::{self, Job, JobView, Scene, SceneInfo};
 use lodray::hardware::Hardware;
 use lodray::mesh::procedural::{self, Options};
 use lodray::method::lod::{LodImage, LodTraverser};
@@ -51,7 +51,8 @@ fn generated(kind: procedural::Scene) -> (Scene, Scene) {
     let cameras =
         [1.5, 3.0].map(|distance| Camera::new(&View { distance: Some(distance), ..View::default() }, &space, 256, 256).expect("a view"));
     cameras.iter().for_each(|camera| reach.add(camera, 1.0));
-    let pruned = scene.pruned(&reach.depths(), cameras.iter().map(|camera| camera.job_view(1.0)).collect()).expect("memory");
+    let pruned =
+        reach.pruned(Job { views: cameras.iter().map(|camera| camera.job_view(1.0)).collect(), ..Job::default() }).expect("memory");
     (scene, pruned)
 }
 

@@ -8,17 +8,7 @@ use lodray::method::{Knobs, knob, lod};
 use lodray::rays::{ModelSpace, Query, RayFile, Sight};
 use lodray::run::{HitRow, cast};
 use lodray_test_support::models::{Rng, scene_of, terrain};
-use lodray_test_support::program::{Desk, FAILS, USAGE};
-use npyz::WriterBuilder;
-use std::path::Path;
-
-fn write_rays(path: &Path, columns: u64, rows: &[f64]) {
-    let file = std::fs::File::create(path).unwrap();
-    let shape = [rows.len() as u64 / columns, columns];
-    let mut writer = npyz::WriteOptions::new().default_dtype().shape(&shape).writer(file).begin_nd().unwrap();
-    writer.extend(rows.iter()).unwrap();
-    writer.finish().unwrap();
-}
+use lodray_test_support::program::{Desk, FAILS, USAGE, write_rays};
 
 /// Rays at a scene from around it, thin and wide.
 fn queries(space: &ModelSpace, count: usize, seed: u64) -> Vec<Query> {

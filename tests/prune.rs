@@ -1,22 +1,22 @@
 //! Scenes that are pruned for a job: the hits of its rays are the same to the bit in every field, by each traverser; the audit takes them; other rays are refused.
 
 use lodray::format::audit::audit;
-use lodray::format::{Scene, VertexData};
+use lodray::format::{Job, JobRegion, Scene, VertexData};
 use lodray::golden::exact::Exact;
 use lodray::hardware::Hardware;
 use lodray::mesh::Surface;
 use lodray::mesh::procedural::{self, Options, generate};
 use lodray::method::lod::{LodImage, LodTraverser};
 use lodray::method::{ClosestHit, Hit};
-use lodray::num::{Ray, VertexForm, Wire};
+use lodray::num::{Random, Ray, VertexForm, Wire};
 use lodray::plan::{Measure, Plan, Reach};
-use lodray::rays::{Camera, ModelSpace, View};
+use lodray::rays::{Camera, ModelSpace, Query, RaySource, View};
 use lodray::sim::unit::environment::run;
 use lodray::sim::unit::{Latency, SceneMemory, Traffic, TraversalUnit};
 use lodray::step::NoSteps;
 use lodray_test_support::models::build_with;
 use lodray_test_support::plain::plain;
-use lodray_test_support::program::Desk;
+use lodray_test_support::program::{Desk, write_rays};
 use lodray_test_support::surfaces::{bumps, grid, octahedron, surface};
 
 /// Procedural scenes, and a grid that is flat but for one corner.
@@ -42,7 +42,8 @@ fn rays(camera: &Camera, space: &ModelSpace, delta: f64) -> Vec<Ray> {
 fn pruned_for(scene: &Scene, views: &[(Camera, f64)]) -> Scene {
     let reach = Reach::of(scene);
     views.iter().for_each(|(camera, delta)| reach.add(camera, *delta));
-    scene.pruned(&reach.depths(), views.iter().map(|(camera, delta)| camera.job_view(*delta)).collect()).expect("memory")
+    let views = views.iter().map(|(camera, delta)| camera.job_view(*delta)).collect();
+    scene.pruned(&reach.depths(), Job { views, ..Job::default() }).expect("memory")
 }
 
 fn hits(scene: &Scene, rays: &[Ray]) -> Vec<Option<Hit>> {
@@ -95,11 +96,99 @@ fn hits_are_the_same_by_every_traverser() {
     assert!(met > 5_000 && less > 40 && kinds > 10, "{met} hits, {less} smaller, {kinds} of many depths");
 }
 
+/// Rays from anywhere in a region, most of them towards the model, with its narrowest cones and wider ones.
+fn from_region(region: &JobRegion, space: &ModelSpace, count: usize, seed: u64) -> Vec<(Query, f64)> {
+    let (mut random, most) = (Random::new(seed), region.quality().expect("a number"));
+    let mut next = |lo: f64, hi: f64| lo + (hi - lo) * 0.5 * (random.signed() + 1.0);
+    let mut rays = Vec::new();
+    for k in 0..count {
+        // Corners of the box are where it is nearest.
+        let origin: [f64; 3] =
+            std::array::from_fn(
+                |a| if k % 3 == 0 { [region.lo, region.hi][k / (3 << a) & 1][a] } else { next(region.lo[a], region.hi[a]) },
+            );
+        let corner = space.to_units([0.0; 3]);
+        let at: [f64; 3] = std::array::from_fn(|a| {
+            let side = next(f64::from(space.lo[a]), f64::from(space.hi[a]));
+            (side - corner[a]) * space.placement.scale
+        });
+        let (wide, low) = (if k % 4 == 0 { next(1.0, 3.0) } else { 1.0 }, if k % 5 == 0 { next(0.2, 1.0) } else { 1.0 });
+        let query = Query::new(origin, std::array::from_fn(|a| at[a] - origin[a]))
+            .with_cone(if k % 7 == 0 { 1e-3 } else { 0.0 }, wide * region.cone);
+        rays.push((query, if most.is_finite() { low * most } else { most }));
+    }
+    rays
+}
+
+#[test]
+fn all_rays_of_a_region_hit_the_same() {
+    let (mut less, mut met) = (0, 0);
+    for (at, (surface, form)) in surfaces().iter().flat_map(|surface| VertexForm::ALL.map(|form| (surface, form))).enumerate() {
+        let scene = build_with(surface, form);
+        let space = ModelSpace::of(&scene);
+        let (radius, centre) = (space.radius(), space.centre());
+        // A box around a place so many radii away, so large; one holds the whole model.
+        for (away, half, delta, cone) in [
+            (1.5, 0.1, "1", 2e-3),
+            (4.0, 1.0, "1", 2e-3),
+            (4.0, 0.0, "0.5", 1e-2),
+            (30.0, 8.0, "4", 1e-3),
+            (0.0, 2.0, "1", 1e-3),
+            (9.0, 1.0, "0", 1e-3),
+            (9.0, 1.0, "inf", 1e-3),
+        ] {
+            let place = [0.3, 0.5, 0.81].map(|c| c * away * radius);
+            let corner = |side: f64| std::array::from_fn(|k| centre[k] + place[k] + side * half * radius);
+            let region = JobRegion { delta: delta.into(), lo: corner(-1.0), hi: corner(1.0), cone };
+            let reach = Reach::of(&scene);
+            reach.add_region(&region);
+            let pruned = reach.pruned(Job { regions: vec![region.clone()], ..Job::default() }).expect("memory");
+            let what = format!("{} {form:?} {region:?}", scene.meta().name);
+            let asked = from_region(&region, &space, 1500, at as u64);
+            assert!(asked.iter().all(|(query, delta)| region.beyond(*delta, query.origin, query.tan_theta).is_none()), "{what}");
+            let rays: Vec<Ray> = asked.iter().filter_map(|(query, delta)| Some(space.enter(query, *delta)?.ray)).collect();
+            let whole = hits(&scene, &rays);
+            assert!(hits(&pruned, &rays) == whole, "{what}");
+            // What each of the rays can do is no more than what all can.
+            let single = Reach::of(&scene);
+            for (query, delta) in asked.iter().step_by(50) {
+                single.add(&One(*query), *delta);
+            }
+            assert!(single.depths().iter().zip(reach.depths()).all(|(one, all)| *one <= all), "{what}");
+            let report = audit(&pruned);
+            assert!(report.passed(), "{what}: {report}");
+            met += whole.iter().flatten().count();
+            less += u32::from(pruned.bytes_per_triangle() < scene.bytes_per_triangle());
+            assert!(delta != "0" || pruned.depths().iter().all(|&depth| depth == 0), "{what}");
+            assert!(delta != "inf" && away > 0.0 || pruned.bytes() == scene.bytes(), "{what}");
+        }
+    }
+    assert!(met > 50_000 && less > 50, "{met} hits, {less} smaller");
+}
+
+/// One ray.
+struct One(Query);
+
+impl RaySource for One {
+    fn rays(&self) -> u64 {
+        1
+    }
+    fn batches(&self) -> usize {
+        1
+    }
+    fn batch(&self, _: usize, each: &mut dyn FnMut(u64, &Query)) {
+        each(0, &self.0);
+    }
+    fn least_radius(&self, _: &ModelSpace) -> f64 {
+        0.0
+    }
+}
+
 #[test]
 fn only_levels_are_taken_away() {
     let scene = build_with(&octahedron(4), VertexForm::Compact);
     let space = ModelSpace::of(&scene);
-    let whole = scene.pruned(&scene.depths(), Vec::new()).expect("memory");
+    let whole = scene.pruned(&scene.depths(), Job::default()).expect("memory");
     assert!(whole.bytes() == scene.bytes());
     let view = camera(&space, 20.0, 32);
     let pruned = pruned_for(&scene, &[(view, 1.0)]);
@@ -202,6 +291,64 @@ fn a_pruned_scene_serves_its_job_and_refuses_all_else() {
     desk.refused("prune cloth.lod --plan plan.toml -o no.lod", 1, &["called cloth", "sphere"]);
     desk.write("bad.toml", &desk.text("plan.toml").replace("delta = \"1\"", "delta = \"one\""));
     desk.refused("prune ball.lod --plan bad.toml -o no.lod", 1, &["delta 'one'"]);
+    assert!(!desk.path("no.lod").exists() && !desk.path("no").exists());
+}
+
+/// The same for a box that cameras stay in, in place of views.
+#[test]
+fn a_scene_pruned_for_a_region_serves_all_rays_from_there() {
+    let desk = Desk::new(assert_cmd::cargo::cargo_bin!("lodray"));
+    desk.run("generate sphere --levels 4 --base 32 -o ball.lod");
+    let list = |regions: &str| LIST.replace("distances = [3, 20]\n", "").replace("[[machine]]", &format!("{regions}\n[[machine]]"));
+    desk.write("jobs.toml", &list("regions = [{ from = [6, -2, 9], to = [4, 2, 7] }]"));
+    desk.run("plan --job jobs.toml -o plan.toml");
+    assert!(desk.text("plan.toml").contains("[[regions.sphere]]"), "{}", desk.text("plan.toml"));
+    let shown = desk.run("prune ball.lod --plan plan.toml -o small.lod");
+    assert!(shown.contains("0 views, 1 regions") && shown.contains("trees of 4 levels"), "{shown}");
+    assert!(desk.bytes("small.lod").len() < desk.bytes("ball.lod").len());
+    assert!(desk.run("verify small.lod").contains("passed"));
+    assert!(
+        desk.run("info small.lod").contains("rays that start between (4, -2, 7) and (6, 2, 9), at most delta 1"),
+        "{}",
+        desk.run("info small.lod")
+    );
+    // The whole scene and the pruned one fit the plan, on units of it.
+    desk.run("plan --job jobs.toml --check plan.toml");
+    let inside = "--size 48x48 --eye 5,1,8 --target 0.2,0,0";
+    for scene in ["ball.lod", "small.lod"] {
+        desk.run(&format!("simulate {scene} --machine haydel2023 {inside} --method lod --plan plan.toml"));
+        desk.run(&format!("render {scene} {inside} --shading full -o {}", scene.replace(".lod", "")));
+    }
+    for picture in ["image.png", "levels.png", "normals.png"] {
+        assert!(pixels(&desk, &format!("ball/{picture}")) == pixels(&desk, &format!("small/{picture}")), "{picture}");
+    }
+    // Rays of a file.
+    let rays = |name: &str, x: f64, tan: f64| write_rays(&desk.path(name), 8, &[x, 0.0, 8.0, -x, 0.1, -8.0, 0.0, tan]);
+    rays("in.npy", 5.0, 0.02);
+    rays("out.npy", 6.1, 0.02);
+    rays("thin.npy", 5.0, 1e-4);
+    let cast = |scene: &str| desk.run(&format!("cast {scene}.lod in.npy -o {scene}.npy"));
+    assert!(["ball", "small"].iter().all(|scene| cast(scene).contains("1 rays, 1 hit")));
+    assert!(desk.bytes("ball.npy") == desk.bytes("small.npy"));
+    desk.run("simulate small.lod --machine haydel2023 --rays in.npy --method lod");
+    let refused = |args: &str, words: &[&str]| desk.refused(args, 1, &[&["pruned for rays from a region"], words].concat());
+    refused("cast small.lod out.npy -o no.npy", &["ray 0: origin is [6.1"]);
+    refused("simulate small.lod --machine haydel2023 --rays thin.npy --method lod", &["ray 0: cone is 0.0001"]);
+    refused(&format!("render small.lod {inside} --shading full --delta 2 -o no"), &["delta is 2"]);
+    refused("render small.lod --size 48x48 --eye 5,3,8 --shading full -o no", &["origin is [5.0, 3.0, 8.0]"]);
+    refused("render small.lod --size 96x96 --eye 5,1,8 --shading full -o no", &["cone is"]);
+    desk.refused("sweep jobs.toml -o no", 1, &["jobs.toml", "scene ball", "regions are for lodray plan"]);
+    // Nothing that cannot be.
+    for (regions, words) in [
+        ("regions = []", ["line 5", "regions must not be empty"]),
+        ("regions = [{ from = [0, 0, 0], to = [inf, 1, 1] }]", ["line 5", "regions: lo and hi must be finite"]),
+        ("regions = [{ from = [0, 0, 0] }]", ["line 5", "missing field `to`"]),
+    ] {
+        desk.write("wrong.toml", &list(regions));
+        desk.refused("plan --job wrong.toml", 1, &words);
+    }
+    desk.write("bad.toml", &desk.text("plan.toml").replace("delta = \"1\"", "delta = \"one\""));
+    desk.refused("prune ball.lod --plan bad.toml -o no.lod", 1, &["regions: delta must be"]);
     assert!(!desk.path("no.lod").exists() && !desk.path("no").exists());
 }
 

@@ -1,8 +1,9 @@
 //! `cast`: what the rays of a file meet.
 
 use super::cache::{Cache, CacheArgs};
+use super::job;
 use super::method::PictureMethod;
-use super::output::{check_target, grouped, open, print_json, progress, remark};
+use super::output::{check_target, grouped, open_any, print_json, progress, remark};
 use anyhow::Context;
 use lodray::format::write_and_rename;
 use lodray::rays::{ModelSpace, RayFile, RaySource, Sight};
@@ -33,9 +34,10 @@ pub struct Args {
 pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
     anyhow::ensure!(!args.method.original, "--method original: cast rays at a scene made of it, with --method reference");
     check_target(&args.out, &[&args.scene, &args.rays])?;
-    let scene = open(&args.scene)?;
+    let scene = open_any(&args.scene)?;
     let rays = RayFile::read(&args.rays)?;
     let chosen = &args.method.chosen;
+    job::check_rays(&scene, &rays, chosen.delta())?;
     let (method, _) = chosen.make(&scene, &Cache::new(&args.cache, None)?)?;
     let sight = Sight::new(&rays, &ModelSpace::of(&scene), chosen.delta());
     let bar = progress(rays.batches() as u64, "casting");

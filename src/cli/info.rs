@@ -1,7 +1,7 @@
 //! `info`: what a scene file holds.
 
 use super::output::{grouped, open_any, plain, print_json, print_line};
-use lodray::format::{JobView, Scene};
+use lodray::format::{JobRegion, JobView, Scene};
 use lodray::mesh::{BoundKind, Distance, TwoSidedDistance};
 use lodray::num::{PADDING_BITS, VertexForm};
 use lodray::rays::ModelSpace;
@@ -43,6 +43,9 @@ struct Info<'a> {
     /// The views that it was pruned for; empty if it serves any ray.
     #[serde(skip_serializing_if = "<[_]>::is_empty")]
     job: &'a [JobView],
+    /// The boxes from which rays may start besides.
+    #[serde(skip_serializing_if = "<[_]>::is_empty")]
+    regions: &'a [JobRegion],
     base_vertices: u64,
     finest_triangles: u64,
     /// What displacement bounds cover.
@@ -116,6 +119,7 @@ impl<'a> Info<'a> {
             base_triangles: scene.trees() as u64,
             trees_by_depth: scene.trees_by_depth(),
             job: &meta.job,
+            regions: &meta.regions,
             base_vertices: u64::from(meta.base_vertices),
             finest_triangles: triangles,
             bounds: meta.bounds,
@@ -188,6 +192,13 @@ fn summary(i: &Info<'_>) -> String {
         let [width, height] = view.size;
         let at = view.eye.map(plain).join(", ");
         lines.push(("pruned for", format!("{width}x{height} from ({at}) at delta {}: no other rays are served", view.delta)));
+    }
+    for region in i.regions {
+        let [lo, hi] = [region.lo, region.hi].map(|corner| corner.map(plain).join(", "));
+        let (delta, cone) = (&region.delta, plain(region.cone));
+        let what =
+            format!("rays that start between ({lo}) and ({hi}), at most delta {delta}, cones of at least {cone}: no others are served");
+        lines.push(("pruned for", what));
     }
     lines.extend(losses(i).into_iter().map(|loss| ("warning", loss)));
     lines.iter().map(|(name, value)| format!("{name:<12}{value}")).collect::<Vec<_>>().join("\n")

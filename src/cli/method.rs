@@ -164,7 +164,7 @@ impl Chosen {
 
     /// Refuses a method that needs the full resolution on a scene that was pruned for a job.
     pub fn check(&self, scene: &Scene) -> anyhow::Result<()> {
-        let whole = scene.meta().job.is_empty();
+        let whole = scene.meta().is_whole();
         anyhow::ensure!(
             whole || self.method == &lod::METHOD,
             "scene {} was pruned for a job: method: {} needs the full resolution, and there is but what lod's rays read",

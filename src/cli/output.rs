@@ -72,8 +72,8 @@ pub fn write_file(path: &Path, bytes: impl AsRef<[u8]>) -> anyhow::Result<()> {
 pub fn open(path: &Path) -> anyhow::Result<Scene> {
     let scene = open_any(path)?;
     anyhow::ensure!(
-        scene.meta().job.is_empty(),
-        "{}: job: the scene was pruned for the views of a job, and is not there for anything else (lodray info lists them)",
+        scene.meta().is_whole(),
+        "{}: job: the scene was pruned for the rays of a job, and is not there for anything else (lodray info lists them)",
         path.display()
     );
     Ok(scene)

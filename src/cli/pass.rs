@@ -32,14 +32,6 @@ pub enum PassRays {
 }
 
 impl PassRays {
-    /// The camera, if they are one's.
-    pub fn camera(&self) -> Option<&Camera> {
-        match self {
-            Self::Camera(camera) => Some(camera),
-            Self::File(..) => None,
-        }
-    }
-
     /// Where they come from.
     pub fn source(&self) -> &dyn RaySource {
         match self {

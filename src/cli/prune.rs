@@ -8,6 +8,7 @@ use lodray::format::Scene;
 use lodray::plan::{Reach, Within};
 use lodray::rays::Camera;
 use serde::Serialize;
+use std::collections::BTreeSet;
 use std::path::PathBuf;
 use std::process::ExitCode;
 
@@ -15,7 +16,7 @@ use std::process::ExitCode;
 pub struct Args {
     /// Scene file
     scene: PathBuf,
-    /// Plan of a job (from lodray plan --job): its views of this scene are those that the new file serves, to the bit; others it refuses
+    /// Plan of a job (from lodray plan --job): the rays of its views and regions of this scene are those that the new file serves, to the bit; others it refuses
     #[arg(long)]
     plan: PathBuf,
     /// File to write
@@ -31,6 +32,7 @@ pub struct Args {
 struct Figures {
     /// Views of the job.
     views: usize,
+    regions: usize,
     trees: usize,
     /// Trees of each number of levels, from none on: before and after.
     depths: [Vec<usize>; 2],
@@ -52,19 +54,27 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
         plan.rays.is_some(),
         "{shown}: views: the plan is of no job, and a scene for any ray has no more levels than it needs (make it with lodray plan --job)"
     );
-    let views = plan.views.get(name).with_context(|| {
-        let names = plan.views.keys().map(String::as_str).collect::<Vec<_>>().join(", ");
+    let job = plan.job(name).with_context(|| {
+        let names: BTreeSet<&str> = plan.views.keys().chain(plan.regions.keys()).map(String::as_str).collect();
+        let names = names.into_iter().collect::<Vec<_>>().join(", ");
         format!("{shown}: views: the plan has none of a scene that is called {name}, but of: {names}")
     })?;
     let reach = Reach::of(&scene);
-    for view in views {
+    for view in &job.views {
         let delta = view.quality().with_context(|| format!("{shown}: views: delta '{}' is no number", view.delta))?;
         let camera = Camera::of_job(view).with_context(|| format!("{shown}: views"))?;
         busy("looking at rays", || reach.add(&camera, delta));
     }
-    let pruned = reach.pruned(views.clone())?;
+    for region in &job.regions {
+        if let Some((field, must)) = region.wrong() {
+            anyhow::bail!("{shown}: regions: {field} must be {must}");
+        }
+        reach.add_region(region);
+    }
+    let (views, regions) = (job.views.len(), job.regions.len());
+    let pruned = reach.pruned(job)?;
     pruned.save(&args.out)?;
-    let figures = Figures::of(views.len(), [&scene, &pruned]);
+    let figures = Figures::of([views, regions], [&scene, &pruned]);
     if args.json {
         print_json(&figures)?;
     } else {
@@ -86,7 +96,7 @@ struct Coarser {
 /// The scene on a plan's grids: for any rays, as the levels that the job's need are known only on it.
 fn coarser(args: &Args, scene: &Scene, within: Within) -> anyhow::Result<ExitCode> {
     anyhow::ensure!(
-        scene.meta().job.is_empty(),
+        scene.meta().is_whole(),
         "{}: levels were taken away for a job; coarser grids are for the scene as it was before",
         args.scene.display()
     );
@@ -107,9 +117,10 @@ fn coarser(args: &Args, scene: &Scene, within: Within) -> anyhow::Result<ExitCod
 }
 
 impl Figures {
-    fn of(views: usize, scenes: [&Scene; 2]) -> Self {
+    fn of([views, regions]: [usize; 2], scenes: [&Scene; 2]) -> Self {
         Self {
             views,
+            regions,
             trees: scenes[0].trees(),
             depths: scenes.map(Scene::trees_by_depth),
             bytes: scenes.map(|scene| scene.bytes_of(&scene.depths())),
@@ -120,8 +131,9 @@ impl Figures {
     fn table(&self) -> String {
         let [before, after] = self.bytes.map(grouped);
         let [per_before, per_after] = self.bytes_per_finest_triangle;
+        let regions = if self.regions > 0 { format!(", {} regions", self.regions) } else { String::new() };
         let mut text = format!(
-            "{} views; bytes of trees {before} -> {after}; for each triangle at full resolution {per_before:.3} -> {per_after:.3}",
+            "{} views{regions}; bytes of trees {before} -> {after}; for each triangle at full resolution {per_before:.3} -> {per_after:.3}",
             self.views
         );
         let [before, after] = &self.depths;

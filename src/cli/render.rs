@@ -185,7 +185,7 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
     let camera = args.camera.camera(&seen.space, None)?;
     let samples = camera.with_samples(args.samples).context("--samples")?;
     let cameras = [&camera, &samples];
-    cameras.into_iter().try_for_each(|rays| job::check(&seen.scene, Some(rays), args.method.chosen.delta()))?;
+    cameras.into_iter().try_for_each(|rays| job::check(&seen.scene, rays, args.method.chosen.delta()))?;
     job::check_shading(&seen.scene, args.shading)?;
     args.method.chosen.check(&seen.scene)?;
     if args.compare && mesh.is_none() {

@@ -69,7 +69,7 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
     let scene = open_any(&args.scene)?;
     let space = ModelSpace::of(&scene);
     let camera = args.camera.camera(&space, None)?;
-    job::check(&scene, Some(&camera), args.delta)?;
+    job::check(&scene, &camera, args.delta)?;
     let Place(x, y) = args.pixel;
     let (width, height) = (camera.width, camera.height);
     anyhow::ensure!(

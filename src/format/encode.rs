@@ -190,6 +190,7 @@ fn meta(h: &Hierarchy, surface: &Surface, info: SceneInfo) -> Meta {
         lo,
         hi,
         job: Vec::new(),
+        regions: Vec::new(),
         origin: info.origin,
     }
 }

@@ -2,7 +2,7 @@
 
 use super::encode::{new_image, sealed, too_many_lines, tree_lines};
 use super::sections::FileSection;
-use super::{Displacements, JobView, Line, Scene, SceneError};
+use super::{Displacements, Job, Line, Scene, SceneError};
 use crate::num::{BoundCode, Wire};
 
 impl Scene {
@@ -19,13 +19,13 @@ impl Scene {
     ///
     /// # Panics
     /// There is not one depth for each tree.
-    pub fn pruned(&self, depths: &[u32], job: Vec<JobView>) -> Result<Self, SceneError> {
+    pub fn pruned(&self, depths: &[u32], job: Job) -> Result<Self, SceneError> {
         assert_eq!(depths.len(), self.trees());
         let depths: Vec<u32> = self.depths().into_iter().zip(depths).map(|(stored, &depth)| stored.min(depth)).collect();
         let form = self.meta().vertices;
         let (trees, end) = tree_lines(form, &depths);
         let mut meta = self.meta().clone();
-        meta.job = job;
+        (meta.job, meta.regions) = (job.views, job.regions);
         let json = serde_json::to_vec(&meta).map_err(|e| SceneError::Build(format!("META: {e}")))?;
         let lengths = FileSection::ALL.map(|section| match section {
             FileSection::Meta => json.len(),

@@ -1,7 +1,7 @@
 //! A scene: one byte image, owned or mapped from its file, read through typed slices.
 
 use super::sections::{COUNT, FileSection};
-use super::{JobView, L0Record, Line, TreeLines, normal};
+use super::{JobRegion, JobView, L0Record, Line, TreeLines, normal};
 use crate::mesh::{BoundKind, Placement, SurfaceError, lattice};
 use crate::num::{BoundScale, LINE_BYTES, U, VertexForm};
 use memmap2::{Mmap, MmapMut};
@@ -76,9 +76,12 @@ pub struct Meta {
     pub lo: [i32; 3],
     /// Upper corner of the box of all vertices in units.
     pub hi: [i32; 3],
-    /// For whose rays levels were taken away: none but theirs may be traced. Empty: any may.
+    /// For the rays of which cameras levels were taken away ([`Self::is_whole`]).
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub job: Vec<JobView>,
+    /// For which rays besides, by where they start.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub regions: Vec<JobRegion>,
     /// How the model was made.
     #[serde(default, skip_serializing_if = "serde_json::Value::is_null")]
     pub origin: serde_json::Value,
@@ -90,6 +93,11 @@ fn is_zero(v: &u32) -> bool {
 }
 
 impl Meta {
+    /// No levels were taken away: any ray may be traced. Otherwise those of `job` and `regions` alone.
+    pub fn is_whole(&self) -> bool {
+        self.job.is_empty() && self.regions.is_empty()
+    }
+
     /// Scale of the displacement bounds.
     pub fn bound_scale(&self) -> BoundScale {
         // Widths are checked when a file is opened.

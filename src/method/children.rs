@@ -10,7 +10,7 @@ use crate::block::child_sort;
 use crate::block::child_test::{self, sort};
 use crate::block::ray_setup;
 use crate::format::{BvhChild, BvhNode, ChildRef, Line, SiblingGroup};
-use crate::num::{BoxStep, RayT, Wire};
+use crate::num::{Box16, BoxStep, RayT, Wire};
 
 /// Whether the processor has what `#[target_feature(enable = "avx2,bmi1,bmi2")]` asks for.
 #[cfg(target_arch = "x86_64")]
@@ -48,12 +48,17 @@ fn reach(steps: &[BoxStep; 3], planes: &[[u32; 4]; 6]) -> Planes {
     reach
 }
 
+/// Boxes of the children of the quad-BVH node `line`, which lie in its frame; those of empty slots are of no meaning.
+#[inline(always)]
+pub(crate) fn bvh_boxes(line: &Line) -> [Box16; 4] {
+    boxed(&framed(BvhNode::line_origin(line), &reach(&BvhNode::line_steps(line), &BvhNode::line_planes(line))))
+}
+
 /// Tests and sorts the children of the quad-BVH node `line`, whose boxes lie in its frame; an empty slot is never hit.
 #[inline(always)]
 pub(crate) fn bvh_children(ray: &ray_setup::Out, t_max: RayT, line: &Line) -> child_test::Out {
     let mut tests = child_sort::In::default();
-    let boxes = framed(BvhNode::line_origin(line), &reach(&BvhNode::line_steps(line), &BvhNode::line_planes(line)));
-    for (k, bounds) in boxed(&boxes).into_iter().enumerate() {
+    for (k, bounds) in bvh_boxes(line).into_iter().enumerate() {
         let test = BoxTest::eval(&box_test::In { ray: *ray, t_max, bounds });
         tests.hit[k] = test.hit & (BvhNode::line_kind(line, k) != ChildRef::EMPTY);
         tests.t_near[k] = test.t_near;

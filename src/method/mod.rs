@@ -15,7 +15,7 @@ mod registry;
 mod stack;
 mod tracer;
 
-pub(crate) use children::bvh_children;
+pub(crate) use children::{bvh_boxes, bvh_children};
 pub use hit::{ClosestHit, Crossings, Hit, HitSink, SurfaceHit, TriangleId, is_beyond};
 pub use knob::{ErrorKnob, Knob, KnobError, Knobs};
 pub use registry::{METHODS, find};

@@ -7,6 +7,7 @@ mod data;
 mod measure;
 mod rays;
 mod reach;
+mod region;
 mod report;
 mod scene;
 mod speed;
@@ -21,7 +22,7 @@ pub use scene::SceneNeeds;
 pub use speed::Speed;
 pub use within::{Narrowest, Within};
 
-use crate::format::JobView;
+use crate::format::{Job, JobRegion, JobView};
 use crate::hardware::Hardware;
 use crate::num::{BOX_SHIFT, MOST_DIRECTION_ZEROS};
 use serde::{Deserialize, Serialize};
@@ -58,6 +59,9 @@ pub struct Plan {
     /// The views of the job, by the name of the scene that they are of.
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
     pub views: BTreeMap<String, Vec<JobView>>,
+    /// And its regions.
+    #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
+    pub regions: BTreeMap<String, Vec<JobRegion>>,
 }
 
 /// A scene or a ray that a plan is too narrow for.
@@ -75,7 +79,16 @@ impl Plan {
     pub fn new(rays: bool) -> Self {
         let program = env!("CARGO_PKG_VERSION").to_owned();
         let rays = rays.then(RayNeeds::default);
-        Self { program, scenes: Vec::new(), scene: SceneNeeds::default(), rays, within: None, speed: None, views: BTreeMap::new() }
+        Self {
+            program,
+            scenes: Vec::new(),
+            scene: SceneNeeds::default(),
+            rays,
+            within: None,
+            speed: None,
+            views: BTreeMap::new(),
+            regions: BTreeMap::new(),
+        }
     }
 
     /// Makes room for a scene.
@@ -95,6 +108,21 @@ impl Plan {
         if !views.contains(&view) {
             views.push(view);
         }
+    }
+
+    /// Adds a region of a scene likewise.
+    pub fn add_region(&mut self, name: &str, region: JobRegion) {
+        let regions = self.regions.entry(name.to_owned()).or_default();
+        if !regions.contains(&region) {
+            regions.push(region);
+        }
+    }
+
+    /// The rays of a scene, by the name in its file; nothing if there are none of it.
+    pub fn job(&self, name: &str) -> Option<Job> {
+        let (views, regions) = (self.views.get(name), self.regions.get(name));
+        (views.is_some() || regions.is_some())
+            .then(|| Job { views: views.cloned().unwrap_or_default(), regions: regions.cloned().unwrap_or_default() })
     }
 
     /// A hardware for it, `hardware` in all that a plan does not say.

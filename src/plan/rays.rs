@@ -4,8 +4,8 @@ use super::scene::Met;
 use super::{bits, needs, signed_bits};
 use crate::block::Block;
 use crate::block::lod_test::{self, LodTest};
-use crate::format::Scene;
-use crate::num::{BoundCode, BoundScale, Cone, Point, Ray, U};
+use crate::format::{JobRegion, Scene};
+use crate::num::{BoundCode, BoundScale, Cone, Direction, Point, Ray, U, Wire};
 use crate::rays::{ModelSpace, RaySource};
 use rayon::prelude::*;
 
@@ -103,5 +103,25 @@ impl RayNeeds {
             needs
         };
         (0..source.batches()).into_par_iter().map(batch).reduce(Self::default, |a, b| a.with(&b))
+    }
+
+    /// Of all rays of a region, none of which goes below `deepest_level`: any numbers that a ray can have.
+    pub(super) fn of_region(scene: &Scene, region: &JobRegion, deepest_level: u32) -> Self {
+        let levels = scene.levels();
+        let none = region.quality() == Some(0.0);
+        let [origin_bits, direction_bits] = [Point::WIDTH, Direction::WIDTH].map(|three| three / 3);
+        Self {
+            deepest_level,
+            // Its rays can have any lower quality.
+            lod_test: levels > 0 && !none,
+            hit_mapping: levels > 0,
+            start_radius: levels > 0 && !none,
+            origin_bits,
+            direction_bits,
+            cone_offset_bits: U::<53>::WIDTH,
+            cone_slope_bits: U::<18>::WIDTH,
+            cone_shift: 63,
+            direction_zeros: 0,
+        }
     }
 }

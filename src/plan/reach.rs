@@ -1,11 +1,13 @@
 //! How deep the rays of a job can go down each tree.
 
 use super::rays::refines;
+use super::region::{Tolerance, UnitBox};
 use crate::block::Block;
+use crate::block::bound_decode::{self, BoundDecode};
 use crate::block::ray_setup::{self, RaySetup};
-use crate::format::{BvhNode, ChildRef, JobView, Scene, SceneError};
-use crate::method::bvh_children;
-use crate::num::{MAX_LEVELS, Ray, RayT};
+use crate::format::{BvhNode, ChildRef, Job, JobRegion, Scene, SceneError};
+use crate::method::{bvh_boxes, bvh_children};
+use crate::num::{BOX_SHIFT, BoundCode, Box16, MAX_LEVELS, Ray, RayT};
 use crate::rays::{ModelSpace, RaySource};
 use rayon::prelude::*;
 use std::sync::atomic::{AtomicU32, Ordering};
@@ -67,18 +69,44 @@ impl<'a> Reach<'a> {
         });
     }
 
+    /// All rays of a region: each, too, goes to every tree whose box it meets. Those of a region that is none ([`JobRegion::wrong`]) go all the way down.
+    pub fn add_region(&self, region: &JobRegion) {
+        let tolerance = Tolerance::of(&ModelSpace::of(self.scene), region);
+        let scale = self.scene.meta().bound_scale();
+        let units = |code: u8| BoundDecode::eval(&bound_decode::In { code: BoundCode::new(code.into()), scale }).h.get() as f64; // 33 bits
+        self.scene.nodes().par_iter().for_each(|line| {
+            for (slot, bounds) in bvh_boxes(line).into_iter().enumerate() {
+                let child = BvhNode::line_child(line, slot);
+                if child.kind.get() != ChildRef::INNER && child.kind.get() != ChildRef::EMPTY {
+                    let tree = &self.trees[child.index.get() as usize]; // 28 bits
+                    let own = [tree.lo, tree.hi].map(|corner| corner.map(f64::from));
+                    let tolerated = tolerance.as_ref().map_or(0.0, |tolerance| tolerance.at(own, in_units(bounds)));
+                    tree.reached.fetch_max(
+                        tree.codes[..tree.depth as usize].iter().take_while(|&&code| units(code) > tolerated).count() as u32,
+                        Ordering::Relaxed,
+                    ); // at most 10
+                }
+            }
+        });
+    }
+
+    /// The deepest level of all trees that any of the rays can go down to.
+    pub fn deepest(&self) -> u32 {
+        self.depths().into_iter().max().unwrap_or(0)
+    }
+
     /// For each tree the deepest level that any of the rays can go down to.
     pub fn depths(&self) -> Vec<u32> {
         self.trees.iter().map(|tree| tree.reached.load(Ordering::Relaxed)).collect()
     }
 
-    /// The scene without what none of the rays goes down to, which are those of `views`. As it is, it serves any ray.
+    /// The scene without what none of the rays goes down to, which are those of `job`. As it is, it serves any ray.
     ///
     /// # Errors
     /// Memory cannot be had.
-    pub fn pruned(&self, views: Vec<JobView>) -> Result<Scene, SceneError> {
+    pub fn pruned(&self, job: Job) -> Result<Scene, SceneError> {
         let depths = self.depths();
-        let job = if depths == self.scene.depths() { Vec::new() } else { views };
+        let job = if depths == self.scene.depths() { Job::default() } else { job };
         self.scene.pruned(&depths, job)
     }
 
@@ -106,4 +134,10 @@ impl<'a> Reach<'a> {
         }
         tree.reached.fetch_max(level, Ordering::Relaxed);
     }
+}
+
+/// A box of codes in units.
+fn in_units(bounds: Box16) -> UnitBox {
+    let units = f64::from(1u32 << BOX_SHIFT);
+    [bounds.lo.get(), bounds.hi.get()].map(|corner| corner.map(|code| code as f64 * units)) // 16 bits
 }

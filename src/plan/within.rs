@@ -4,7 +4,7 @@
 //! nearness"): together C world units, wherever the ray is. A direction of D zero bits turns by sqrt(3)/2 2^(D-30). A pixel is 2 (r + l tan theta) wide at the distance l
 //! behind the ray's entry, r the cone's radius there. So nothing moves by more than w pixels if C <= 2 w r and the turn is at most 2 w tan theta, for all rays of the job.
 
-use crate::format::{Meta, Scene};
+use crate::format::{JobRegion, Meta, Scene};
 use crate::mesh::{coarsened_by, most_zeros};
 use crate::num::MOST_DIRECTION_ZEROS;
 use crate::rays::{ModelSpace, RaySource};
@@ -46,6 +46,11 @@ impl Narrowest {
             least
         };
         (0..source.batches()).into_par_iter().map(batch).reduce(|| Self::NONE, Self::with)
+    }
+
+    /// Of all rays of a region.
+    pub fn of_region(space: &ModelSpace, region: &JobRegion) -> Self {
+        Self { radius: region.cone * space.distance_between(region.lo, region.hi), tan_theta: region.cone }
     }
 
     /// Of both.

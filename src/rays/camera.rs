@@ -107,7 +107,7 @@ impl Camera {
         if width == 0 || height == 0 || width > MAX_SIDE || height > MAX_SIDE || u64::from(width) * u64::from(height) > MAX_PIXELS {
             return field("--size", format!("at most {MAX_SIDE} pixels wide and high, and {MAX_PIXELS} in all"));
         }
-        let half_height = (0.5 * view.fov.to_radians()).tan();
+        let half_height = half_tangent(view.fov);
         let half_width = half_height * f64::from(width) / f64::from(height);
         let target = target.unwrap_or_else(|| DVec3::from_array(space.centre()));
         let (eye, placed) = match (eye, view.distance) {
@@ -148,6 +148,11 @@ impl Camera {
             samples: 1,
             tan_theta: 0.5 * pixel,
         })
+    }
+
+    /// Tangent of the half angle of the cones of a camera that sees so many degrees from bottom to top in so many rows of pixels.
+    pub fn cone(fov: f64, height: u32) -> f64 {
+        half_tangent(fov) / f64::from(height)
     }
 
     /// The same picture with `side` x `side` samples in each pixel, on a regular grid, each with the cone of the whole pixel: what level of detail
@@ -266,6 +271,11 @@ fn fit(half: [(DVec3, f64); 2], forward: DVec3, centre: DVec3) -> Result<f64, Ca
 /// A vector as an option takes it.
 fn shown(v: DVec3) -> String {
     format!("{},{},{}", v.x, v.y, v.z)
+}
+
+/// Half the height of a picture at distance 1.
+fn half_tangent(fov: f64) -> f64 {
+    (0.5 * fov.to_radians()).tan()
 }
 
 #[cfg(test)]

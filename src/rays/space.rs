@@ -75,8 +75,13 @@ impl ModelSpace {
 
     /// Distance from a world position to the model's box, in world units; 0 inside.
     pub fn distance_to(&self, p: [f64; 3]) -> f64 {
-        let p = self.to_units(p);
-        let beside: [f64; 3] = std::array::from_fn(|k| (f64::from(self.lo[k]) - p[k]).max(p[k] - f64::from(self.hi[k])).max(0.0));
+        self.distance_between(p, p)
+    }
+
+    /// Distance from the box of these corners to the model's; 0 if they meet.
+    pub fn distance_between(&self, lo: [f64; 3], hi: [f64; 3]) -> f64 {
+        let (lo, hi) = (self.to_units(lo), self.to_units(hi));
+        let beside: [f64; 3] = std::array::from_fn(|k| (f64::from(self.lo[k]) - hi[k]).max(lo[k] - f64::from(self.hi[k])).max(0.0));
         self.placement.scale * beside.iter().map(|d| d * d).sum::<f64>().sqrt()
     }
 

@@ -5,7 +5,7 @@ mod port;
 mod wave;
 
 use lodray::block::EdgesPerCycle;
-use lodray::format::Scene;
+use lodray::format::{Job, Scene};
 use lodray::golden::exact::Exact;
 use lodray::hardware::Hardware;
 use lodray::hardware::ports::HitOut;
@@ -170,7 +170,7 @@ fn frame_of(kind: procedural::Scene, form: VertexForm, config: Hardware, latency
     let scene = if pruned {
         let reach = Reach::of(&scene);
         reach.add(&camera, 1.0);
-        scene.pruned(&reach.depths(), vec![camera.job_view(1.0)]).expect("memory")
+        scene.pruned(&reach.depths(), Job { views: vec![camera.job_view(1.0)], ..Job::default() }).expect("memory")
     } else {
         scene
     };

@@ -8,7 +8,7 @@ use crate::cli::plan::in_machine;
 use anyhow::Context;
 use image::RgbImage;
 use lodray::bvh::over_trees;
-use lodray::format::Scene;
+use lodray::format::{Job, Scene};
 use lodray::hardware::unit_gates;
 use lodray::method::lod;
 use lodray::picture::Frame;
@@ -27,7 +27,7 @@ impl Less {
     fn of(scene: &Scene, camera: &Camera, delta: f64) -> anyhow::Result<Self> {
         let reach = Reach::of(scene);
         reach.add(camera, delta);
-        let scene = reach.pruned(vec![camera.job_view(delta)])?;
+        let scene = reach.pruned(Job { views: vec![camera.job_view(delta)], ..Job::default() })?;
         let measure = Measure::of(&scene);
         let mut plan = Plan::new(true);
         plan.add(&scene.meta().name, &measure.needs());

@@ -126,7 +126,7 @@ impl Args {
     pub fn plan(&self) -> anyhow::Result<Plan> {
         let (mut jobs, deltas) = match &self.jobs {
             Some(list) => {
-                let mut jobs = Jobs::read(list)?;
+                let mut jobs = Jobs::of_views(list)?;
                 jobs.files.insert(list.clone());
                 let deltas = std::mem::take(&mut jobs.deltas);
                 (jobs, deltas)
@@ -197,7 +197,13 @@ impl Args {
             ensure!(scenes.iter().all(|before| before.name != name), "{}: there is another scene of the name {name}", path.display());
             let space = ModelSpace::of(&scene);
             views.iter().try_for_each(|view| view.camera(&space).map(drop)).with_context(|| path.display().to_string())?;
-            scenes.push(SceneJobs { name, origin: Origin::File(path.clone()), content: xxh3_64(scene.bytes()), views: views.clone() });
+            scenes.push(SceneJobs {
+                name,
+                origin: Origin::File(path.clone()),
+                content: xxh3_64(scene.bytes()),
+                views: views.clone(),
+                regions: Vec::new(),
+            });
         }
         let mut files: BTreeSet<PathBuf> = self.scenes.iter().cloned().collect();
         let compute = match &self.compute[..] {

@@ -6,7 +6,7 @@ use super::method::Chosen;
 use super::output::{busy, check_target, open, print_json, print_line, remark, write_file};
 use super::sweep::{Jobs, ListText, SceneJobs};
 use anyhow::Context;
-use lodray::format::{JobView, Scene};
+use lodray::format::{Job, Scene};
 use lodray::hardware::Hardware;
 use lodray::method::lod;
 use lodray::plan::{Data, Measure, Narrowest, Part, Plan, RayNeeds, Reach, Saving, Within, savings};
@@ -22,7 +22,7 @@ pub struct Args {
     /// Scene files that one unit is to serve, with any rays
     #[arg(required_unless_present_any = ["job", "plan"], conflicts_with = "job")]
     scenes: Vec<PathBuf>,
-    /// What will be done: a list of jobs as for sweep, of which the scenes, the cameras and the qualities of lod count
+    /// What will be done: a list of jobs as for sweep, of which the scenes, the cameras or the regions that they stay in, and the qualities of lod count
     #[arg(long, value_name = "LIST")]
     job: Option<PathBuf>,
     /// Also coarser grids of coordinates and directions, on which nothing that is seen moves by more than so many pixels: `prune` puts the scenes there
@@ -169,7 +169,14 @@ pub fn check(plan: &Plan, path: &Path, scene: &Scene, chosen: &Chosen, rays: &dy
     anyhow::ensure!(chosen.method.name == "lod", "--plan: is of units for lod, not for {}", chosen.method.name);
     let measure = busy("measuring", || Measure::of(scene));
     plan.check(&path.display().to_string(), &measure.needs())?;
-    plan.check_rays("the view", &busy("measuring rays", || measure.rays(rays, chosen.delta())))?;
+    let mut needs = busy("measuring rays", || measure.rays(rays, chosen.delta()));
+    // What a ray can do in the whole model says less than what it can in each tree, and is found sooner.
+    if plan.rays.is_some_and(|planned| needs.deepest_level > planned.deepest_level) {
+        let reach = Reach::of(scene);
+        busy("looking at rays", || reach.add(rays, chosen.delta()));
+        needs.deepest_level = reach.deepest();
+    }
+    plan.check_rays("the view", &needs)?;
     Ok(())
 }
 
@@ -198,17 +205,17 @@ fn made(args: &Args, jobs: Option<&Jobs>, given: Option<&Plan>, mut frames: Opti
         add(&file.display().to_string(), &measure, &scene.depths())?;
     }
     let mut rays = Vec::new();
-    let mut all_views = Vec::new();
+    let mut jobs_of = Vec::new();
     for job in jobs.iter().flat_map(|jobs| &jobs.scenes) {
         let scene = job.open()?;
         let measure = busy("measuring", || Measure::of(&scene));
         let lod = jobs.map_or_else(Vec::new, Jobs::lod);
         let reach = Reach::of(&scene);
-        let (needs, views) = views(job, &lod, &measure, &reach, &ModelSpace::of(&scene))?;
+        let (needs, of_job) = rays_of(job, &lod, &measure, &reach, &ModelSpace::of(&scene))?;
         given.map_or(Ok(()), |given| given.check_rays(&format!("the job of scene {}", job.name), &needs))?;
         add(&job.name, &measure, &reach.depths())?;
         rays.push(needs);
-        all_views.extend(views.into_iter().map(|view| (scene.meta().name.clone(), view)));
+        jobs_of.push((scene.meta().name.clone(), of_job));
         if let Some(pixels) = args.within {
             let of = Within::of(&scene, &narrowest(job, &ModelSpace::of(&scene))?, pixels);
             within = Some(within.map_or(of, |within| within.with(of)));
@@ -219,39 +226,47 @@ fn made(args: &Args, jobs: Option<&Jobs>, given: Option<&Plan>, mut frames: Opti
         }
     }
     rays.iter().for_each(|needs| plan.add_rays(needs));
-    all_views.into_iter().for_each(|(name, view)| plan.add_view(&name, view));
+    for (name, of_job) in jobs_of {
+        of_job.views.into_iter().for_each(|view| plan.add_view(&name, view));
+        of_job.regions.into_iter().for_each(|region| plan.add_region(&name, region));
+    }
     within.into_iter().for_each(|within| plan.coarsen(within));
     Ok((plan, all.context("no scene to plan for")?))
 }
 
-/// The narrowest cones of all views of a scene.
+/// The narrowest cones of all rays of a scene's job.
 fn narrowest(job: &SceneJobs, space: &ModelSpace) -> anyhow::Result<Narrowest> {
     let mut least = Narrowest::NONE;
     for view in &job.views {
         least = least.with(Narrowest::of(space, &view.camera(space).with_context(|| format!("scene {}", job.name))?));
     }
+    for region in &job.regions {
+        least = least.with(Narrowest::of_region(space, &region.at(1.0)));
+    }
     Ok(least)
 }
 
-/// What all views of a scene need, at all qualities of the list, and the views; `reach` learns how deep they go.
-fn views(
-    job: &SceneJobs,
-    lod: &[&Chosen],
-    measure: &Measure,
-    reach: &Reach,
-    space: &ModelSpace,
-) -> anyhow::Result<(RayNeeds, Vec<JobView>)> {
+/// What all rays of a scene's job need, at all qualities of the list, and the job; `reach` learns how deep they go.
+fn rays_of(job: &SceneJobs, lod: &[&Chosen], measure: &Measure, reach: &Reach, space: &ModelSpace) -> anyhow::Result<(RayNeeds, Job)> {
     anyhow::ensure!(!lod.is_empty(), "the list of jobs has no job of lod");
-    let (mut needs, mut views) = (RayNeeds::default(), Vec::new());
+    let (mut needs, mut of_job) = (RayNeeds::default(), Job::default());
     for view in &job.views {
         let camera = view.camera(space).with_context(|| format!("scene {}", job.name))?;
         for chosen in lod {
             needs = needs.with(&busy("measuring rays", || measure.rays(&camera, chosen.delta())));
             busy("looking at rays", || reach.add(&camera, chosen.delta()));
-            views.push(camera.job_view(chosen.delta()));
+            of_job.views.push(camera.job_view(chosen.delta()));
         }
     }
-    Ok((needs, views))
+    let regions = job.regions.iter().flat_map(|region| lod.iter().map(|chosen| region.at(chosen.delta())));
+    of_job.regions.extend(regions);
+    of_job.regions.iter().for_each(|region| reach.add_region(region));
+    for region in &of_job.regions {
+        needs = needs.with(&measure.region(region, reach.deepest()));
+    }
+    // What a ray can do in each tree says more than what it can in the whole model.
+    needs.deepest_level = needs.deepest_level.min(reach.deepest());
+    Ok((needs, of_job))
 }
 
 /// A line for each saving, in columns.

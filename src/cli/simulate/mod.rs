@@ -123,7 +123,10 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
     let folder = args.out.as_ref().map(open_folder).transpose()?;
 
     let chosen = &args.method.0;
-    job::check(&scene, rays.camera(), chosen.delta())?;
+    match &rays {
+        PassRays::File(rays, _) => job::check_rays(&scene, rays, chosen.delta())?,
+        PassRays::Camera(camera) => job::check(&scene, camera, chosen.delta())?,
+    }
     if let Some(plan) = &plan {
         plan::check(plan, &args.scene, &scene, chosen, rays.source())?;
     }

@@ -1,8 +1,8 @@
 //! From the list to jobs. Everything is looked at before the first job runs, so that a mistake in the last line does not cost the hours before it:
 //! values and their ranges, scene files, machines with their tables, and cameras.
 
-use super::jobs::{Generated, Jobs, Origin, SceneJobs, ViewJob};
-use super::list::{List, ListText, MachineEntry, Maybe, SceneEntry, Spanned};
+use super::jobs::{Generated, Jobs, Origin, RegionJob, SceneJobs, ViewJob};
+use super::list::{List, ListText, MachineEntry, Maybe, RegionEntry, SceneEntry, Spanned};
 use crate::cli::args::{CameraArgs, Change, Size, radii};
 use crate::cli::generate;
 use crate::cli::method::{Chosen, Listed, machine_methods};
@@ -15,7 +15,7 @@ use lodray::method::bvh::{LEAF_LAYOUT, LEAF_SIZE};
 use lodray::method::knob::DELTA;
 use lodray::method::{Knob, KnobError, Knobs};
 use lodray::num::VertexForm;
-use lodray::rays::{DEFAULT_VIEW_ANGLE_DEGREES, ModelSpace};
+use lodray::rays::{Camera, DEFAULT_VIEW_ANGLE_DEGREES, ModelSpace};
 use lodray::run::{self, Compute};
 use std::collections::{BTreeSet, HashSet};
 use std::error::Error as _;
@@ -223,11 +223,12 @@ fn scene(source: &ListText<'_>, list: &List, spanned: &Spanned<SceneEntry>, fold
     };
     let name = entry.name.as_ref().map_or(name, |name| name.get_ref().clone());
     let views = views(source, list, spanned)?;
+    let regions = regions(source, list, spanned)?;
     for view in &views {
         let wrong = |why: anyhow::Error| source.wrong(spanned.span(), format!("scene {name}: {}", one_line(&why)));
         view.camera(&space).map_err(wrong)?;
     }
-    Ok(SceneJobs { name, origin, content, views })
+    Ok(SceneJobs { name, origin, content, views, regions })
 }
 
 /// A place for a model that is not there yet. Its centre is nowhere in particular, so that a camera that is impossible here is so for every model.
@@ -236,10 +237,36 @@ fn stand_in() -> ModelSpace {
     ModelSpace { placement, lo: [-1 << 30; 3], hi: [1 << 30; 3], zeros: [0; 2] }
 }
 
-fn views(source: &ListText<'_>, list: &List, spanned: &Spanned<SceneEntry>) -> anyhow::Result<Vec<ViewJob>> {
-    let entry = spanned.get_ref();
+/// Columns and rows of a scene's pictures.
+fn size(source: &ListText<'_>, list: &List, entry: &SceneEntry) -> anyhow::Result<[u32; 2]> {
     let size = needed(source, entry.size.as_ref().or(list.size.as_ref()), "size", 0..0)?;
     let Size(width, height) = size.get_ref().parse().map_err(|why| source.wrong(size.span(), format!("size: {why}")))?;
+    Ok([width, height])
+}
+
+/// Boxes that cameras stay in; none for most scenes.
+fn regions(source: &ListText<'_>, list: &List, spanned: &Spanned<SceneEntry>) -> anyhow::Result<Vec<RegionJob>> {
+    let entry = spanned.get_ref();
+    let Some(regions) = &entry.regions else { return Ok(Vec::new()) };
+    let cone = Camera::cone(entry.fov.unwrap_or(DEFAULT_VIEW_ANGLE_DEGREES), size(source, list, entry)?[1]);
+    let region = |of: &RegionEntry| {
+        let corner = |by: fn(f64, f64) -> f64| std::array::from_fn(|k| by(of.from[k], of.to[k]));
+        RegionJob { lo: corner(f64::min), hi: corner(f64::max), cone }
+    };
+    let all: Vec<RegionJob> = filled(source, regions, "regions")?.iter().map(region).collect();
+    match all.iter().find_map(|region| region.at(1.0).wrong()) {
+        Some((field, must)) => Err(source.wrong(regions.span(), format!("regions: {field} must be {must}"))),
+        None => Ok(all),
+    }
+}
+
+fn views(source: &ListText<'_>, list: &List, spanned: &Spanned<SceneEntry>) -> anyhow::Result<Vec<ViewJob>> {
+    let entry = spanned.get_ref();
+    // In place of the list's views; beside the scene's own.
+    if entry.regions.is_some() && entry.distances.is_none() && entry.eyes.is_none() {
+        return Ok(Vec::new());
+    }
+    let [width, height] = size(source, list, entry)?;
     let triple = |value: &Maybe<[f64; 3]>, key: &str| match value {
         Some(value) => option(source, value.span(), key, key, value.get_ref()).map(|()| Some(*value.get_ref())),
         None => Ok(None),

@@ -8,7 +8,7 @@ use crate::cli::method::Chosen;
 use crate::cli::output::open_any;
 use crate::cli::pass::Target;
 use anyhow::Context;
-use lodray::format::Scene;
+use lodray::format::{JobRegion, Scene};
 use lodray::mesh::{BoundKind, procedural};
 use lodray::method::Knob;
 use lodray::method::bvh::{LEAF_LAYOUT, LEAF_SIZE};
@@ -49,6 +49,24 @@ pub struct SceneJobs {
     /// Checksum of its file.
     pub content: u64,
     pub views: Vec<ViewJob>,
+    pub regions: Vec<RegionJob>,
+}
+
+/// A box in the world that cameras stay in, and their cones.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct RegionJob {
+    pub lo: [f64; 3],
+    pub hi: [f64; 3],
+    /// Tangent of the half angle.
+    pub cone: f64,
+}
+
+impl RegionJob {
+    /// Its rays at a quality.
+    pub fn at(self, delta: f64) -> JobRegion {
+        let Self { lo, hi, cone } = self;
+        JobRegion { delta: delta.to_string(), lo, hi, cone }
+    }
 }
 
 /// A camera, before the scene is there.
@@ -114,6 +132,17 @@ impl Jobs {
     pub fn read(path: &Path) -> anyhow::Result<Self> {
         let text = std::fs::read_to_string(path).with_context(|| format!("cannot read {}", path.display()))?;
         check::jobs(&ListText { path, text: &text })
+    }
+
+    /// Reads and checks a list of pictures: regions have none.
+    pub fn of_views(path: &Path) -> anyhow::Result<Self> {
+        let jobs = Self::read(path)?;
+        match jobs.scenes.iter().find(|scene| !scene.regions.is_empty()) {
+            Some(scene) => {
+                anyhow::bail!("{}: scene {}: regions are for lodray plan; pictures need distances or eyes", path.display(), scene.name)
+            }
+            None => Ok(jobs),
+        }
     }
 
     /// Leaves one of each method's qualities.

@@ -63,9 +63,19 @@ pub struct SceneEntry {
     pub directions: Maybe<Vec<[f64; 3]>>,
     /// Positions, in place of distances.
     pub eyes: Maybe<Vec<[f64; 3]>>,
+    /// Boxes that cameras stay in, in place of views or beside the scene's own; of `lodray plan` alone.
+    pub regions: Maybe<Vec<RegionEntry>>,
     pub target: Maybe<[f64; 3]>,
     pub up: Maybe<[f64; 3]>,
     pub fov: Option<f64>,
+}
+
+/// A box that cameras stay in: two opposite corners.
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct RegionEntry {
+    pub from: [f64; 3],
+    pub to: [f64; 3],
 }
 
 /// A machine and its variants: each combination of the values.

@@ -67,7 +67,7 @@ struct Sweep<'a> {
 }
 
 pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
-    let jobs = Jobs::read(&args.jobs)?;
+    let jobs = Jobs::of_views(&args.jobs)?;
     let inputs: Vec<_> = std::iter::once(&args.jobs).chain(&jobs.files).map(PathBuf::as_path).collect();
     args.page.check(&inputs)?;
     let mut folder = RunFolder::open(&args.out, [TABLE], &inputs, &args.overrule)?;
@@ -185,7 +185,7 @@ struct Workshop<'a> {
 impl Workshop<'_> {
     fn group(&mut self, group: &Group<'_>) -> anyhow::Result<Vec<Row>> {
         let camera = group.view.camera(&self.space)?;
-        job::check(self.scene, Some(&camera), group.chosen.delta())?;
+        job::check(self.scene, &camera, group.chosen.delta())?;
         let at = self.made(group.chosen)?;
         let image = if self.jobs.error { Some(self.image_error(group.view, at, group.chosen.delta(), &camera)?) } else { None };
         let pass = Pass {

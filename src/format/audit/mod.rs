@@ -109,7 +109,7 @@ fn read(scene: &Scene) -> (tree::Lattices, Tallies) {
 
 /// The level of each tree down to which its vertices and codes are known: below what is stored they are middles and 0, but in a scene that was pruned for a job.
 fn known(scene: &Scene) -> Vec<u32> {
-    if scene.meta().job.is_empty() { vec![scene.levels(); scene.trees()] } else { scene.depths() }
+    if scene.meta().is_whole() { vec![scene.levels(); scene.trees()] } else { scene.depths() }
 }
 
 /// Checks a scene that has been opened or built. (How far compact vertices lie from where they were, META's `moved`, cannot be told from them.)
@@ -117,7 +117,7 @@ pub fn audit(scene: &Scene) -> AuditReport {
     let levels = scene.levels();
     let (mut lattices, mut found) = read(scene);
     let (lo, hi) = (scene.meta().lo, scene.meta().hi);
-    let whole = scene.meta().job.is_empty();
+    let whole = scene.meta().is_whole();
     for k in 0..3 {
         let (least, most) = (found.span.lo[k], found.span.hi[k]);
         for (which, stored, truth, holds) in [("lo", lo[k], least, lo[k] <= least), ("hi", hi[k], most, hi[k] >= most)] {

@@ -2,7 +2,7 @@
 
 use crate::models::scene_of;
 use lodray::block::EdgesPerCycle;
-use lodray::format::Scene;
+use lodray::format::{Job, Scene};
 use lodray::hardware::Hardware;
 use lodray::mesh::Hierarchy;
 use lodray::num::{Ray, U, VertexForm};
@@ -69,7 +69,7 @@ pub fn form_for(hardware: &Hardware, wanted: VertexForm) -> VertexForm {
 pub fn scene_for(hardware: &Hardware, h: &Hierarchy) -> Scene {
     let scene = scene_of(h);
     let depths = vec![hardware.stored_levels(); scene.trees()];
-    scene.pruned(&depths, Vec::new()).expect("memory")
+    scene.pruned(&depths, Job::default()).expect("memory")
 }
 
 /// The ray as such hardware takes it, by turns of full detail and of none if it has no LOD test.

@@ -1,5 +1,6 @@
 //! The program in a folder of its own, as a user runs it.
 
+use npyz::WriterBuilder;
 use serde_json::Value;
 use std::collections::BTreeMap;
 use std::fs;
@@ -9,6 +10,15 @@ use std::process::Command;
 /// Exit codes.
 pub const FAILS: i32 = 1;
 pub const USAGE: i32 = 2;
+
+/// Writes a file of rays, of so many columns.
+pub fn write_rays(path: &Path, columns: u64, rows: &[f64]) {
+    let file = fs::File::create(path).unwrap();
+    let shape = [rows.len() as u64 / columns, columns];
+    let mut writer = npyz::WriteOptions::new().default_dtype().shape(&shape).writer(file).begin_nd().unwrap();
+    writer.extend(rows.iter()).unwrap();
+    writer.finish().unwrap();
+}
 
 /// A folder that goes away with it, and the program to run there. No BVH is kept for later.
 pub struct Desk {
