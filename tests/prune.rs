@@ -294,6 +294,51 @@ fn a_pruned_scene_serves_its_job_and_refuses_all_else() {
     assert!(!desk.path("no.lod").exists() && !desk.path("no").exists());
 }
 
+#[test]
+fn normals_are_left_out_where_nothing_is_shaded() {
+    let desk = Desk::new(assert_cmd::cargo::cargo_bin!("lodray"));
+    desk.run("generate sphere --levels 4 --base 32 -o ball.lod");
+    desk.write("jobs.toml", LIST);
+    desk.run("plan --job jobs.toml -o plan.toml");
+    desk.run("prune ball.lod --plan plan.toml -o with.lod");
+    let shown = desk.run("prune ball.lod --plan plan.toml --no-normals -o without.lod");
+    // 153 places in a tree of 4 splits, 4 bytes each.
+    let trees = desk.json("info ball.lod")["base_triangles"].as_u64().expect("a number");
+    let less = desk.bytes("with.lod").len() as u64 - desk.bytes("without.lod").len() as u64;
+    // Up to what META has more.
+    assert!(shown.contains("no normals: ") && less.abs_diff(trees * 153 * 4) <= 64, "{shown} {less}");
+    assert!(desk.run("verify without.lod").contains("passed"));
+    assert!(desk.run("info without.lod").contains("normals     left out"), "{}", desk.run("info without.lod"));
+    // The same frame, to the cycle and the picojoule.
+    let frame = |scene: &str| {
+        let mut frame = desk.json(&format!("simulate {scene} --machine haydel2023 --size 48x48 --distance 3 --method lod"));
+        (frame["cycles"].take(), frame["hits"].take(), frame["energy"].take())
+    };
+    assert_eq!(frame("with.lod"), frame("without.lod"));
+    desk.run("trace without.lod --size 48x48 --distance 3 --pixel 20,20 --text");
+    desk.write("sweep.toml", &LIST.replace("ball", "without"));
+    assert!(desk.run("sweep sweep.toml -o swept").contains("0 failed"));
+    // What is shaded is refused, also where nothing but the normals could be taken.
+    desk.write("all.toml", &LIST.replace("methods", "deltas = [\"inf\"]\nmethods"));
+    desk.run("plan --job all.toml -o all-plan.toml");
+    desk.run("prune ball.lod --plan all-plan.toml --no-normals -o bare.lod");
+    assert!(!desk.run("info bare.lod").contains("pruned for"));
+    let refused = |args: &str| desk.refused(args, 1, &["without its normals"]);
+    write_rays(&desk.path("in.npy"), 6, &[5.0, 0.0, 8.0, -5.0, 0.1, -8.0]);
+    refused("render without.lod --size 48x48 --distance 3 --shading full -o no");
+    for needs in ["render bare.lod -o no", "cast bare.lod in.npy -o no.npy", "export bare.lod --level 1 -o no.obj", "lines bare.lod"] {
+        refused(needs);
+    }
+    desk.write("sweep.toml", &format!("error = true\n{}", LIST.replace("ball", "bare")));
+    let (code, said) = desk.hear("sweep sweep.toml -o swept2");
+    assert!(code == 1 && said.contains("without its normals"), "{said}");
+    let (code, said) = desk.hear("error-time bare.lod -o measured --quick --size 8x8 --distances 3");
+    assert!(code == 1 && said.contains("without its normals"), "{said}");
+    desk.run("plan --job jobs.toml --within 0.05 -o grids.toml");
+    desk.refused("prune ball.lod --plan grids.toml --no-normals -o no.lod", 1, &["--no-normals"]);
+    assert!(!desk.path("no.lod").exists() && !desk.path("no").exists() && !desk.path("no.npy").exists());
+}
+
 /// The same for a box that cameras stay in, in place of views.
 #[test]
 fn a_scene_pruned_for_a_region_serves_all_rays_from_there() {

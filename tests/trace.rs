@@ -89,6 +89,41 @@ fn steps_as_text() {
 }
 
 #[test]
+fn a_plans_unit_takes_the_same_steps() {
+    let folder = desk();
+    let desk = folder.path();
+    let list = |distance: f64| {
+        format!(
+            "size = \"48x48\"\nmethods = [\"lod\"]\ndistances = [{distance}]\n[[scene]]\nfile = \"a.lod\"\n[[machine]]\nname = \"haydel2023\"\n"
+        )
+    };
+    fs::write(desk.join("jobs.toml"), list(3.0)).unwrap();
+    assert!(lodray(desk, "plan --job jobs.toml -o plan.toml").status.success());
+    assert!(lodray(desk, "prune a.lod --plan plan.toml -o small.lod").status.success());
+    let view = "--pixel 24,24 --size 48x48 --distance 3";
+    let whole = succeed(desk, &format!("trace a.lod {view} --text"));
+    // Numbers of lines follow from where trees begin, cycles from the unit: it maps hits in as few steps as there are levels. All else is the same.
+    let steps = |text: &str| {
+        let lines = text.lines().skip(2).filter(|line| !line.contains("read line"));
+        lines.filter_map(|line| Some(line.split_at_checked(8)?.1.to_owned())).collect::<Vec<_>>()
+    };
+    let cycles = |text: &str| text.lines().last().and_then(|line| line.split(' ').next()?.parse::<u32>().ok()).expect("cycles");
+    for scene in ["a.lod", "small.lod"] {
+        let own = succeed(desk, &format!("trace {scene} {view} --plan plan.toml --text"));
+        let ([most, less], last) =
+            ([&whole, &own].map(|text| steps(text)), whole.lines().filter(|line| !line.contains("read line")).count() - 3);
+        assert_eq!(most[..last], less[..last], "{scene}");
+        assert!(cycles(&own) < cycles(&whole), "{scene}");
+    }
+    succeed(desk, &format!("trace small.lod {view} --plan plan.toml -o ray.vcd"));
+    // A ray of full detail goes deeper than those of a coarse job.
+    fs::write(desk.join("jobs.toml"), list(40.0)).unwrap();
+    assert!(lodray(desk, "plan --job jobs.toml -o far.toml").status.success());
+    fail(desk, &format!("trace a.lod {view} --plan far.toml --text"), "does not fit the plan: ");
+    fail(desk, &format!("trace a.lod {view} --plan none.toml --text"), "cannot read none.toml");
+}
+
+#[test]
 fn what_cannot_be_traced_is_refused() {
     let folder = desk();
     let desk = folder.path();

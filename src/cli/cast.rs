@@ -3,7 +3,7 @@
 use super::cache::{Cache, CacheArgs};
 use super::job;
 use super::method::PictureMethod;
-use super::output::{check_target, grouped, open_any, print_json, progress, remark};
+use super::output::{check_normals, check_target, grouped, open_any, print_json, progress, remark};
 use anyhow::Context;
 use lodray::format::write_and_rename;
 use lodray::rays::{ModelSpace, RayFile, RaySource, Sight};
@@ -35,6 +35,7 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
     anyhow::ensure!(!args.method.original, "--method original: cast rays at a scene made of it, with --method reference");
     check_target(&args.out, &[&args.scene, &args.rays])?;
     let scene = open_any(&args.scene)?;
+    check_normals(&scene, "a hit's normal")?;
     let rays = RayFile::read(&args.rays)?;
     let chosen = &args.method.chosen;
     job::check_rays(&scene, &rays, chosen.delta())?;

@@ -46,6 +46,8 @@ struct Info<'a> {
     /// The boxes from which rays may start besides.
     #[serde(skip_serializing_if = "<[_]>::is_empty")]
     regions: &'a [JobRegion],
+    /// Shading normals were left out.
+    without_normals: bool,
     base_vertices: u64,
     finest_triangles: u64,
     /// What displacement bounds cover.
@@ -120,6 +122,7 @@ impl<'a> Info<'a> {
             trees_by_depth: scene.trees_by_depth(),
             job: &meta.job,
             regions: &meta.regions,
+            without_normals: meta.without_normals,
             base_vertices: u64::from(meta.base_vertices),
             finest_triangles: triangles,
             bounds: meta.bounds,
@@ -187,6 +190,9 @@ fn summary(i: &Info<'_>) -> String {
     }
     if i.trees_by_depth[..i.levels as usize].iter().any(|&trees| trees > 0) {
         lines.push(("tree depths", depths(&i.trees_by_depth)));
+    }
+    if i.without_normals {
+        lines.push(("normals", "left out: rays can be simulated, pictures are refused".to_owned()));
     }
     for view in i.job {
         let [width, height] = view.size;

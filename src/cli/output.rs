@@ -76,7 +76,18 @@ pub fn open(path: &Path) -> anyhow::Result<Scene> {
         "{}: job: the scene was pruned for the rays of a job, and is not there for anything else (lodray info lists them)",
         path.display()
     );
+    check_normals(&scene, "this")?;
     Ok(scene)
+}
+
+/// Refuses a scene without normals, for what needs them.
+pub fn check_normals(scene: &Scene, what: &str) -> anyhow::Result<()> {
+    anyhow::ensure!(
+        !scene.meta().without_normals,
+        "scene {} was pruned without its normals, and {what} needs them: rays can be simulated on it",
+        scene.meta().name
+    );
+    Ok(())
 }
 
 /// Opens a scene file, which may have been pruned for a job: whoever traces rays on it asks `job::check` first. The error names the file, and for a mesh says how to

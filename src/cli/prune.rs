@@ -19,6 +19,9 @@ pub struct Args {
     /// Plan of a job (from lodray plan --job): the rays of its views and regions of this scene are those that the new file serves, to the bit; others it refuses
     #[arg(long)]
     plan: PathBuf,
+    /// Without shading normals too: for jobs that shade nothing, such as simulations; pictures of the new file are refused
+    #[arg(long)]
+    no_normals: bool,
     /// File to write
     #[arg(short, long)]
     out: PathBuf,
@@ -39,6 +42,8 @@ struct Figures {
     /// L0 records, bounds and vertices: before and after, and for each full-resolution triangle.
     bytes: [u64; 2],
     bytes_per_finest_triangle: [f64; 2],
+    /// Shading normals.
+    bytes_of_normals: [u64; 2],
 }
 
 pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
@@ -46,6 +51,7 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
     let plan = read(&args.plan)?;
     let scene = open(&args.scene)?;
     if let Some(within) = plan.within {
+        anyhow::ensure!(!args.no_normals, "--no-normals: goes with a plan that takes levels away; coarser grids keep normals");
         return coarser(args, &scene, within);
     }
     let name = &scene.meta().name;
@@ -54,11 +60,12 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
         plan.rays.is_some(),
         "{shown}: views: the plan is of no job, and a scene for any ray has no more levels than it needs (make it with lodray plan --job)"
     );
-    let job = plan.job(name).with_context(|| {
+    let mut job = plan.job(name).with_context(|| {
         let names: BTreeSet<&str> = plan.views.keys().chain(plan.regions.keys()).map(String::as_str).collect();
         let names = names.into_iter().collect::<Vec<_>>().join(", ");
         format!("{shown}: views: the plan has none of a scene that is called {name}, but of: {names}")
     })?;
+    job.unshaded = args.no_normals;
     let reach = Reach::of(&scene);
     for view in &job.views {
         let delta = view.quality().with_context(|| format!("{shown}: views: delta '{}' is no number", view.delta))?;
@@ -125,6 +132,7 @@ impl Figures {
             depths: scenes.map(Scene::trees_by_depth),
             bytes: scenes.map(|scene| scene.bytes_of(&scene.depths())),
             bytes_per_finest_triangle: scenes.map(Scene::bytes_per_triangle),
+            bytes_of_normals: scenes.map(|scene| size_of_val(scene.normals()) as u64),
         }
     }
 
@@ -136,6 +144,9 @@ impl Figures {
             "{} views{regions}; bytes of trees {before} -> {after}; for each triangle at full resolution {per_before:.3} -> {per_after:.3}",
             self.views
         );
+        if let [before, 0] = self.bytes_of_normals {
+            text += &format!("\nno normals: {} bytes less", grouped(before));
+        }
         let [before, after] = &self.depths;
         for (levels, (before, after)) in before.iter().zip(after).enumerate().filter(|(_, (a, b))| **a + **b > 0) {
             text += &format!("\n{:>10} -> {:>10} trees of {levels} levels", grouped(*before as u64), grouped(*after as u64));

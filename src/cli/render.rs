@@ -7,7 +7,7 @@ use super::folder::{Overrule, RunFolder, one_run};
 use super::job;
 use super::method::{Chosen, PictureMethod};
 use super::original::original;
-use super::output::{explain, grouped, open, open_any, print_json, print_line, remark};
+use super::output::{check_normals, explain, grouped, open, open_any, print_json, print_line, remark};
 use super::pictures::{Shot, shoot_with};
 use anyhow::Context;
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
@@ -186,6 +186,7 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
     let samples = camera.with_samples(args.samples).context("--samples")?;
     let cameras = [&camera, &samples];
     cameras.into_iter().try_for_each(|rays| job::check(&seen.scene, rays, args.method.chosen.delta()))?;
+    check_normals(&seen.scene, "a picture")?;
     job::check_shading(&seen.scene, args.shading)?;
     args.method.chosen.check(&seen.scene)?;
     if args.compare && mesh.is_none() {

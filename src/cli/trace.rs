@@ -3,12 +3,14 @@
 use super::args::{CameraArgs, whole};
 use super::job;
 use super::output::{check_target, grouped, open_any, print_line, remark, write_file};
+use super::plan;
 use anyhow::Context;
+use lodray::format::Scene;
 use lodray::hardware::Hardware;
 use lodray::method::knob::quality;
 use lodray::method::lod::LodImage;
 use lodray::num::Ray;
-use lodray::rays::ModelSpace;
+use lodray::rays::{Camera, ModelSpace};
 use lodray::sim::unit::environment::RunReport;
 use lodray::sim::unit::ray_trace::RayTrace;
 use lodray::sim::unit::wave::{Waves, gtkwave_save, gtkwave_states, one_ray, surfer_commands};
@@ -35,6 +37,9 @@ pub struct Args {
     /// Waveform (VCD); save files for GTKWave and Surfer are written beside it. "-": as --text
     #[arg(short, long, value_name = "FILE", required_unless_present = "text")]
     out: Option<PathBuf>,
+    /// The unit of a plan (from lodray plan), in place of the full one
+    #[arg(long)]
+    plan: Option<PathBuf>,
     /// Print each step: visits, memory lines, edge states, decisions
     #[arg(long)]
     text: bool,
@@ -57,11 +62,12 @@ struct Bench<'a> {
     memory: SceneMemory<'a>,
     latency: u32,
     ray: Ray,
+    hardware: Hardware,
 }
 
 impl Bench<'_> {
     fn unit(&self) -> TraversalUnit {
-        TraversalUnit::new(Hardware::one_context(), self.memory.config())
+        TraversalUnit::new(self.hardware, self.memory.config())
     }
 }
 
@@ -83,7 +89,10 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
     let entered = space.enter(&camera.ray(x, y), args.delta);
     let ray = entered.with_context(|| format!("the ray of pixel {x},{y} misses the model's box, so the unit never gets it"))?.ray;
 
-    let bench = Bench { memory: SceneMemory::new(LodImage::of(&scene), 0), latency: args.memory_latency, ray };
+    // For one ray at a time.
+    let hardware =
+        Hardware { contexts: 1, ..args.plan.as_deref().map_or(Ok(Hardware::one_context()), |plan| planned(plan, args, &scene, &camera))? };
+    let bench = Bench { memory: SceneMemory::new(LodImage::of(&scene), 0), latency: args.memory_latency, ray, hardware };
     if let Some(files) = files {
         let report = files.write(&bench)?;
         if !args.text {
@@ -100,6 +109,13 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
         print_line(&text(&bench)?)?;
     }
     Ok(ExitCode::SUCCESS)
+}
+
+/// The unit of a plan that the scene and the camera's rays fit.
+fn planned(path: &Path, args: &Args, scene: &Scene, camera: &Camera) -> anyhow::Result<Hardware> {
+    let plan = plan::read(path)?;
+    plan::check(&plan, &args.scene, scene, camera, args.delta)?;
+    Ok(plan.hardware(&Hardware::one_context()))
 }
 
 /// The ray's steps.

@@ -10,13 +10,16 @@ impl Scene {
     /// the trees' boxes, and with it their order; base triangles keep their numbers.
     ///
     /// # Errors
-    /// There is no room for so many, `build_l0` failed, or memory cannot be had.
+    /// There is no room for so many, `build_l0` failed, the scene has no normals, or memory cannot be had.
     pub fn coarsened<E: std::fmt::Display>(
         &self,
         [zeros, direction_zeros]: [u32; 2],
         build_l0: impl FnOnce(&[Box16]) -> Result<TreeBvh, E>,
     ) -> Result<Self, SceneError> {
         let meta = self.meta();
+        if meta.without_normals {
+            return Err(SceneError::Build("normals: the scene was pruned without them".into()));
+        }
         let fine = self.by_source(&self.decode());
         let coarse = coarsen(&fine, zeros)?;
         let order = self.sources();

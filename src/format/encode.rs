@@ -191,6 +191,7 @@ fn meta(h: &Hierarchy, surface: &Surface, info: SceneInfo) -> Meta {
         hi,
         job: Vec::new(),
         regions: Vec::new(),
+        without_normals: false,
         origin: info.origin,
     }
 }

@@ -26,11 +26,14 @@ impl Scene {
         let (trees, end) = tree_lines(form, &depths);
         let mut meta = self.meta().clone();
         (meta.job, meta.regions) = (job.views, job.regions);
+        meta.without_normals |= job.unshaded;
+        let normals = if meta.without_normals { &[] } else { self.section(FileSection::Normals) };
         let json = serde_json::to_vec(&meta).map_err(|e| SceneError::Build(format!("META: {e}")))?;
         let lengths = FileSection::ALL.map(|section| match section {
             FileSection::Meta => json.len(),
             FileSection::Bounds => size_of::<Line>() * end.group,
             FileSection::Vertices => size_of::<Line>() * end.vertices,
+            FileSection::Normals => normals.len(),
             _ => self.section(section).len(),
         });
         let (mut image, ranges) = new_image(lengths)?;
@@ -61,6 +64,7 @@ impl Scene {
                         }
                     }
                 }
+                FileSection::Normals => out.copy_from_slice(normals),
                 _ => out.copy_from_slice(self.section(section)),
             }
         }

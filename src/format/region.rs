@@ -62,6 +62,8 @@ pub struct Job {
     pub views: Vec<JobView>,
     /// Those that start in boxes.
     pub regions: Vec<JobRegion>,
+    /// Nothing of what is hit is shaded: no normals are needed.
+    pub unshaded: bool,
 }
 
 #[cfg(test)]

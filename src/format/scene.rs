@@ -82,6 +82,9 @@ pub struct Meta {
     /// For which rays besides, by where they start.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub regions: Vec<JobRegion>,
+    /// Shading normals were left out: rays find their hits, but no picture of them is shaded.
+    #[serde(default, skip_serializing_if = "is_false")]
+    pub without_normals: bool,
     /// How the model was made.
     #[serde(default, skip_serializing_if = "serde_json::Value::is_null")]
     pub origin: serde_json::Value,
@@ -90,6 +93,11 @@ pub struct Meta {
 #[expect(clippy::trivially_copy_pass_by_ref, reason = "serde asks so")]
 fn is_zero(v: &u32) -> bool {
     *v == 0
+}
+
+#[expect(clippy::trivially_copy_pass_by_ref, reason = "serde asks so")]
+fn is_false(v: &bool) -> bool {
+    !*v
 }
 
 impl Meta {
@@ -176,7 +184,7 @@ impl Scene {
         bytemuck::cast_slice(self.section(FileSection::Vertices))
     }
 
-    /// Octahedral normals, `lattice::len(levels)` per tree.
+    /// Octahedral normals, `lattice::len(levels)` per tree; none if they were left out ([`Meta::without_normals`]).
     pub fn normals(&self) -> &[u32] {
         bytemuck::cast_slice(self.section(FileSection::Normals))
     }
@@ -213,6 +221,9 @@ impl Scene {
     }
 
     /// Unit shading normal at a lattice point (of the full lattice) of a tree.
+    ///
+    /// # Panics
+    /// The scene has none ([`Meta::without_normals`]).
     pub fn normal_at(&self, tree: usize, point: lattice::LatticePoint) -> [f32; 3] {
         let levels = self.levels();
         normal::decode_normal(self.normals()[tree * lattice::len(levels) + lattice::index(levels, point)])
@@ -228,6 +239,7 @@ impl Scene {
         const LINE: usize = LINE_BYTES as usize;
         let per_tree = match section {
             FileSection::Records => 2 * LINE,
+            FileSection::Normals if meta.without_normals => 0,
             FileSection::Normals => 4 * lattice::len(meta.levels),
             FileSection::Triangles => 12,
             FileSection::Meta | FileSection::Nodes | FileSection::Bounds | FileSection::Vertices | FileSection::Colours => return None,

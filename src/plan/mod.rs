@@ -121,8 +121,11 @@ impl Plan {
     /// The rays of a scene, by the name in its file; nothing if there are none of it.
     pub fn job(&self, name: &str) -> Option<Job> {
         let (views, regions) = (self.views.get(name), self.regions.get(name));
-        (views.is_some() || regions.is_some())
-            .then(|| Job { views: views.cloned().unwrap_or_default(), regions: regions.cloned().unwrap_or_default() })
+        (views.is_some() || regions.is_some()).then(|| Job {
+            views: views.cloned().unwrap_or_default(),
+            regions: regions.cloned().unwrap_or_default(),
+            unshaded: false,
+        })
     }
 
     /// A hardware for it, `hardware` in all that a plan does not say.

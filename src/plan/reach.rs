@@ -106,7 +106,8 @@ impl<'a> Reach<'a> {
     /// Memory cannot be had.
     pub fn pruned(&self, job: Job) -> Result<Scene, SceneError> {
         let depths = self.depths();
-        let job = if depths == self.scene.depths() { Job::default() } else { job };
+        let unshaded = job.unshaded;
+        let job = if depths == self.scene.depths() { Job { unshaded, ..Job::default() } } else { job };
         self.scene.pruned(&depths, job)
     }
 

@@ -12,7 +12,7 @@ mod workers;
 use super::cache::Cache;
 use super::folder::RunFolder;
 use super::job_lines::{JobLines, keep_aside};
-use super::output::{busy, check_target, print_line, progress, remark, write_file};
+use super::output::{busy, check_normals, check_target, print_line, progress, remark, write_file};
 use super::report::{save, this_run, titled};
 use super::sweep::SceneJobs;
 use lodray::format::Scene;
@@ -76,7 +76,7 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
         }
         let failure =
             |key: &String, error: &anyhow::Error| ViewRow { key: key.clone(), measured: None, error: Some(crate::one_line(error)) };
-        let made = match scene.open() {
+        let made = match scene.open().and_then(|made| check_normals(&made, "a picture").map(|()| made)) {
             Ok(made) => made,
             Err(error) => {
                 left.iter().try_for_each(|(_, _, key)| rows.add(failure(key, &error)))?;

@@ -165,15 +165,14 @@ pub fn in_machine(plan: &Plan, name: &str, machine: &mut MachineFacts) {
 }
 
 /// Refuses a scene or rays that a plan is too narrow for.
-pub fn check(plan: &Plan, path: &Path, scene: &Scene, chosen: &Chosen, rays: &dyn RaySource) -> anyhow::Result<()> {
-    anyhow::ensure!(chosen.method.name == "lod", "--plan: is of units for lod, not for {}", chosen.method.name);
+pub fn check(plan: &Plan, path: &Path, scene: &Scene, rays: &dyn RaySource, delta: f64) -> anyhow::Result<()> {
     let measure = busy("measuring", || Measure::of(scene));
     plan.check(&path.display().to_string(), &measure.needs())?;
-    let mut needs = busy("measuring rays", || measure.rays(rays, chosen.delta()));
+    let mut needs = busy("measuring rays", || measure.rays(rays, delta));
     // What a ray can do in the whole model says less than what it can in each tree, and is found sooner.
     if plan.rays.is_some_and(|planned| needs.deepest_level > planned.deepest_level) {
         let reach = Reach::of(scene);
-        busy("looking at rays", || reach.add(rays, chosen.delta()));
+        busy("looking at rays", || reach.add(rays, delta));
         needs.deepest_level = reach.deepest();
     }
     plan.check_rays("the view", &needs)?;

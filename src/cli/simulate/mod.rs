@@ -128,7 +128,8 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
         PassRays::Camera(camera) => job::check(&scene, camera, chosen.delta())?,
     }
     if let Some(plan) = &plan {
-        plan::check(plan, &args.scene, &scene, chosen, rays.source())?;
+        anyhow::ensure!(chosen.method.name == "lod", "--plan: is of units for lod, not for {}", chosen.method.name);
+        plan::check(plan, &args.scene, &scene, rays.source(), chosen.delta())?;
     }
     let (method, _) = chosen.make(&scene, &Cache::new(&args.cache, args.out.as_deref())?)?;
     let pass = Pass { scene: &scene, space: &space, chosen, method: &*method, rays };

@@ -12,7 +12,7 @@ use super::folder::{Overrule, RunFolder, one_run};
 use super::job;
 use super::job_lines::{JobLines, keep_aside};
 use super::method::Chosen;
-use super::output::{check_target, print_line, remark, write_file};
+use super::output::{check_normals, check_target, print_line, remark, write_file};
 use super::pass::{Outcome, Pass, PassRays, Target};
 use super::pictures::{Shot, shoot};
 use super::render::compare_shots;
@@ -186,6 +186,9 @@ impl Workshop<'_> {
     fn group(&mut self, group: &Group<'_>) -> anyhow::Result<Vec<Row>> {
         let camera = group.view.camera(&self.space)?;
         job::check(self.scene, &camera, group.chosen.delta())?;
+        if self.jobs.error {
+            check_normals(self.scene, "the error of a picture")?;
+        }
         let at = self.made(group.chosen)?;
         let image = if self.jobs.error { Some(self.image_error(group.view, at, group.chosen.delta(), &camera)?) } else { None };
         let pass = Pass {
