@@ -105,7 +105,7 @@ fn from_region(region: &JobRegion, space: &ModelSpace, count: usize, seed: u64) 
         // Corners of the box are where it is nearest.
         let origin: [f64; 3] =
             std::array::from_fn(
-                |a| if k % 3 == 0 { [region.lo, region.hi][k / (3 << a) & 1][a] } else { next(region.lo[a], region.hi[a]) },
+                |a| if k % 3 == 0 { [region.lo, region.hi][(k / (3 << a)) & 1][a] } else { next(region.lo[a], region.hi[a]) },
             );
         let corner = space.to_units([0.0; 3]);
         let at: [f64; 3] = std::array::from_fn(|a| {
