@@ -1,8 +1,12 @@
 //! `simulate`, `sweep` and `compare` end to end, as a user types them.
 
+use lodray::machine::Machine;
 use lodray_test_support::program::{Desk, FAILS, USAGE};
 use serde_json::Value;
+use std::collections::BTreeSet;
 use std::fs;
+use std::path::Path;
+use std::process::Command;
 
 const SHOT: &str = "simulate a.lod --size 40x24 --distance 2.5";
 
@@ -56,10 +60,25 @@ fn conserved(r: &Value) {
     near(parts, at(r, "/energy/total"), "energy");
     let dram: f64 = r["energy"]["dram"]["parts"].as_object().unwrap().values().map(|v| v.as_f64().unwrap()).sum();
     near(dram, at(r, "/energy/dram/total"), "DRAM energy");
-    for level in ["l1", "l2", "dram"] {
-        let share = at(r, &format!("/roofline/{level}/share"));
-        assert!(share > 0.0 && share <= 1.0, "{level} alone needs {share} of the frame");
+    let limits = r["roofline"]["limits"].as_object().unwrap();
+    assert_eq!(limits.len(), 10);
+    for (part, bound) in limits {
+        let share = at(bound, "/share");
+        assert!(share > 0.0 && share <= 1.0, "{part} alone needs {share} of the frame");
+        assert!(share <= at(&limits[r["roofline"]["largest"].as_str().unwrap()], "/share"));
     }
+    // Every cycle of every context has one cause.
+    let stalls: u64 = r["stalls"]["cycles"].as_object().unwrap().values().map(|v| v.as_u64().unwrap()).sum();
+    assert_eq!(stalls, count(r, "/stalls/context_cycles"));
+    assert_eq!(stalls, count(r, "/waits/context_cycles"));
+    let stalled = |names: &[&str]| names.iter().filter_map(|name| r["stalls"]["cycles"][name].as_u64()).sum::<u64>() as f64;
+    near(stalled(&["idle"]) / stalls as f64, at(r, "/waits/idle"), "idle");
+    for (of, whole) in [("rays", "/rays"), ("l1_misses", "/l1/misses"), ("l2_misses", "/l2/misses")] {
+        let steps = r["latencies"][of]["steps"].as_array().unwrap();
+        assert_eq!(steps.iter().map(|step| step[1].as_u64().unwrap()).sum::<u64>(), count(r, whole), "{of}");
+        assert!(count(r, &format!("/latencies/{of}/median")) <= count(r, &format!("/latencies/{of}/largest")));
+    }
+    assert_eq!(count(r, "/dram/activates"), count(r, "/dram/row_misses") + count(r, "/dram/row_conflicts"));
 
     let intervals = r["intervals"].as_array().unwrap();
     for (key, whole) in [
@@ -98,7 +117,18 @@ fn a_run_has_consistent_figures() {
         conserved(&r);
     }
     let text = desk.run(SHOT);
-    for word in ["accesses/ray", "hit rate", "row conflicts", "for DRAM", "mean W", "vertex_data", "read the L0 part"] {
+    for word in [
+        "accesses/ray",
+        "hit rate",
+        "row conflicts",
+        "for DRAM",
+        "rays wait for",
+        "alone needs",
+        "latency",
+        "mean W",
+        "vertex_data",
+        "read the L0 part",
+    ] {
         assert!(text.contains(word), "no {word} in:\n{text}");
     }
     // A BVH shows all detail at any quality; the level of detail reads less at lower quality.
@@ -121,6 +151,9 @@ fn files_are_the_same_at_any_number_of_threads() {
         let plots: Vec<_> = names.iter().filter(|name| name.ends_with(".svg")).collect();
         assert_eq!(plots, ["energy.svg", "turing2018-power.svg", "turing2018-traffic.svg"]);
         assert!(desk.text(&format!("{out}/run.json")).contains("no haydel2023-power.svg: the frame is too short"));
+        let intervals = desk.text(&format!("{out}/turing2018-intervals.csv"));
+        assert!(intervals.lines().next().unwrap().ends_with(",dram_queue,limit,limit_share"), "{intervals}");
+        assert!(intervals.lines().all(|line| line.split(',').count() == 22), "{intervals}");
         assert_eq!(json, desk.text(&format!("{out}/result.json")));
         (json, names, texts)
     });
@@ -206,6 +239,86 @@ fn units_take_their_time_and_nothing_else_changes() {
             assert!(units["units"]["blocks"][block]["operations"].as_u64().unwrap() > 0, "{method} {block}");
         }
     }
+}
+
+/// The script adds up every part of the energy again, from counts, prices and the machines' own tables; and sees a figure that is off.
+#[test]
+fn every_picojoule_can_be_added_up_again() {
+    let desk = with_scene();
+    let script = Path::new(env!("CARGO_MANIFEST_DIR")).join("scripts/energy.py");
+    let run = |files: &[&str]| {
+        let out = Command::new("python3").arg(&script).args(files).current_dir(desk.folder()).output().unwrap();
+        (out.status.code().unwrap(), String::from_utf8(out.stdout).unwrap(), String::from_utf8(out.stderr).unwrap())
+    };
+    let machines = Machine::all_shipped().join(",");
+    desk.write("lod.json", &desk.run(&format!("{SHOT} --machine {machines} --json")));
+    desk.write("bvh.json", &desk.run(&format!("{SHOT} --method bvh32 --compute units --machine haydel2023 --json")));
+    desk.write("units.json", &desk.run(&format!("{SHOT} --compute units --machine turing2018 --set units.per_group=2 --json")));
+    desk.write("jobs.toml", &format!("{HEAD}{SCENE}{MACHINE}"));
+    desk.run("sweep jobs.toml -o out");
+    let files = ["lod.json", "bvh.json", "units.json", "out/results.jsonl"];
+    let (code, out, err) = run(&files);
+    assert_eq!((code, out.trim(), err.as_str()), (0, "11 results, every part again: 0 differ", ""));
+    let mut wrong: Value = serde_json::from_str(&desk.text("units.json")).unwrap();
+    wrong["dram"]["activates"] = (count(&wrong, "/dram/activates") + 1).into();
+    desk.write("wrong.json", &wrong.to_string());
+    let (code, _, err) = run(&["wrong.json"]);
+    assert_eq!(code, 1, "{err}");
+    assert!(err.contains("wrong.json: dram.activate is ") && err.contains("wrong.json: total is "), "{err}");
+    assert_eq!(run(&["jobs.toml"]).0, 1);
+}
+
+/// What makes a cause of stalls smaller, in the machine.
+fn easing(cause: &str, machine: &Value) -> Vec<String> {
+    let twice = |keys: &[&str]| {
+        keys.iter()
+            .map(|key| format!("{key}={}", 2 * machine.pointer(&format!("/{}", key.replace('.', "/"))).unwrap().as_u64().unwrap()))
+            .collect()
+    };
+    match cause {
+        "l1_queue" | "l1_turn" => twice(&["l1.banks", "l1.bytes"]),
+        "l1_mshr" => twice(&["l1.mshrs", "l1.targets"]),
+        "l1_look_up" => vec!["l1.latency_cycles=1".to_owned()],
+        "crossbar_request" | "crossbar_answer" => twice(&["crossbar.per_group", "crossbar.per_bank"]),
+        "l2_queue" | "l2_turn" => twice(&["l2.banks", "l2.bytes"]),
+        "l2_mshr" => twice(&["l2.mshrs", "l2.targets"]),
+        "l2_look_up" => vec!["l2.latency_cycles=1".to_owned()],
+        "dram_queue" | "dram_bank" | "dram_conflict" | "dram_activate" | "dram_opening" | "dram_bus" | "dram_access" => {
+            twice(&["dram.channels"])
+        }
+        _ => twice(&["units.per_group"]),
+    }
+}
+
+/// What rays wait for most, eased in the machine, makes the frame shorter: so it was what they waited for.
+#[test]
+fn the_largest_cause_eased_shortens_the_frame() {
+    let desk = with_scene();
+    let mut causes = BTreeSet::new();
+    for machine in ["haydel2023", "turing2018"] {
+        for way in [
+            "--method lod",
+            "--method bvh",
+            "--method lod --compute units",
+            "--method bvh --set dram.channels=1",
+            "--method lod --set l1.mshrs=1",
+        ] {
+            let shot = format!("simulate a.lod --size 192x128 --distance 1.5 --machine {machine} {way}");
+            let before = desk.json(&shot);
+            let cause = before["stalls"]["largest"].as_str().unwrap().to_owned();
+            let sets: String =
+                easing(&cause, &before["setup"]["machine"]["description"]).iter().map(|set| format!(" --set {set}")).collect();
+            let (whole, eased) = (count(&before, "/cycles"), count(&desk.json(&(shot + &sets)), "/cycles"));
+            println!(
+                "{machine} {way}: {cause} {:.1} %, {whole} cycles;{sets}: {:.3}",
+                100.0 * at(&before, "/stalls/largest_share"),
+                eased as f64 / whole as f64
+            );
+            assert!(eased < whole, "{machine} {way}: {cause} eased by{sets} leaves {eased} of {whole} cycles");
+            causes.insert(cause);
+        }
+    }
+    assert!(causes.len() >= 3, "{causes:?}");
 }
 
 #[test]

@@ -195,7 +195,7 @@ fn results_of_another_version_are_set_aside_and_their_jobs_done_again() {
     let version = format!(" {}\",\"scene\"", lodray::report::results_version());
     assert!(a.contains(&version) && b.contains(&version), "{version}: {a}");
     for (old, said) in [(" 0.0.1-00000000\",\"scene\"", "1 result is"), ("\",\"scene\"", "1 result is")] {
-        let other = a.replace(&version, old).replace("\"cycles\":", "\"cycles\":9");
+        let other = a.replace(&version, old).replacen("\"cycles\":", "\"cycles\":9", 1);
         desk.write("out/results.jsonl", &format!("{other}\n{b}\n"));
         let _ = fs::remove_file(desk.path("out/results.old.jsonl"));
         let (code, out, err) = desk.run_on(0, "sweep jobs.toml -o out");

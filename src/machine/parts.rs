@@ -2,6 +2,7 @@
 
 use crate::block::EdgesPerCycle;
 use crate::hardware::Hardware;
+use crate::sim::dram::{Controller, Scheduler};
 use serde::{Deserialize, Serialize};
 
 /// Picoseconds per cycle at 1 MHz.
@@ -125,6 +126,16 @@ pub struct Memory {
     /// Bits of a line number that choose channel, bank, row and column, as the DRAM model writes them; its default if absent.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub mapping: Option<String>,
+    /// Which request of a channel goes first.
+    #[serde(default)]
+    pub scheduler: Scheduler,
+    /// How many hits of an open row go before others, as the scheduler counts them.
+    #[serde(default = "hit_cap")]
+    pub hit_cap: u32,
+}
+
+fn hit_cap() -> u32 {
+    Controller::default().hit_cap
 }
 
 /// The energy tables, each `energy/NAME.toml`.

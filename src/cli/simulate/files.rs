@@ -83,14 +83,17 @@ fn no_traffic(r: &SimResult) -> Option<&'static str> {
 }
 
 fn intervals_csv(intervals: &[IntervalResult]) -> String {
-    let mut text = "end_cycle,cycles,rays,l1_requests,l1_misses,l2_requests,l2_misses,dram_bytes,row_hits,row_misses,l1_watts,l2_watts,dram_watts,compute_watts,leakage_watts\n"
+    let mut text = "end_cycle,cycles,rays,l1_requests,l1_misses,l2_requests,l2_misses,dram_bytes,row_hits,row_misses,l1_watts,l2_watts,dram_watts,compute_watts,leakage_watts,\
+l1_registers,l1_queue,l2_registers,l2_queue,dram_queue,limit,limit_share\n"
         .to_owned();
     for i in intervals {
         let counts =
             [i.end, i.cycles, i.rays, i.l1_requests, i.l1_misses, i.l2_requests, i.l2_misses, i.dram_bytes, i.row_hits, i.row_misses];
         let watts =
             i.watts.map_or_else(|| ",,,,".to_owned(), |w| [w.l1, w.l2, w.dram, w.compute, w.leakage].map(|w| w.to_string()).join(","));
-        text += &format!("{},{watts}\n", counts.map(|c| c.to_string()).join(","));
+        let counts = counts.map(|c| c.to_string()).join(",");
+        let occupancy = [i.l1_registers, i.l1_queue, i.l2_registers, i.l2_queue, i.dram_queue].map(|mean| mean.to_string()).join(",");
+        text += &format!("{counts},{watts},{occupancy},{},{}\n", i.limit, i.limit_share);
     }
     text
 }

@@ -6,6 +6,9 @@ use lodray::report::result::{CacheResult, SimResult};
 /// Columns of the name and of each figure.
 const NAME: usize = 14;
 const CELL: usize = 14;
+/// Columns of names of limits and causes, and how many are shown of each.
+const WIDE: usize = 19;
+const SHOWN: usize = 5;
 
 /// A number with about four digits, or all before the point.
 pub fn amount(value: f64) -> String {
@@ -29,6 +32,12 @@ impl Lines {
     fn line<T: AsRef<str>>(&mut self, name: &str, cells: impl IntoIterator<Item = T>) {
         let cells: String = cells.into_iter().map(|cell| format!("{:>CELL$}", cell.as_ref())).collect();
         self.0 += &format!("{name:<NAME$}{cells}\n");
+    }
+
+    /// The same with room for longer names.
+    fn wide<T: AsRef<str>>(&mut self, name: &str, cells: impl IntoIterator<Item = T>) {
+        let cells: String = cells.into_iter().map(|cell| format!("{:>WIDE$}", cell.as_ref())).collect();
+        self.0 += &format!("{name:<WIDE$}{cells}\n");
     }
 
     fn gap(&mut self) {
@@ -120,11 +129,27 @@ fn times(lines: &mut Lines, r: &SimResult) {
             }
         }
     }
-    lines.line("alone needs", ["L1", "L2", "DRAM", "largest"]);
-    let parts = [("l1", "L1", r.roofline.l1), ("l2", "L2", r.roofline.l2), ("dram", "DRAM", r.roofline.dram)];
-    let largest = parts.iter().find(|part| part.0 == r.roofline.largest).map_or("", |part| part.1);
-    lines.line("  cycles", parts.iter().map(|part| grouped(part.2.cycles.round() as u64)).chain([largest.to_owned()]));
-    lines.line("  of frame", parts.iter().map(|part| percent(part.2.share)));
+    let stalls = by_size(r.stalls.cycles.iter().map(|(name, &cycles)| (name.as_str(), cycles as f64)));
+    let with_rays = r.stalls.context_cycles as f64 - r.stalls.cycles.get("idle").map_or(0.0, |&idle| idle as f64);
+    let of_rays = |cycles: f64| percent(if with_rays == 0.0 { 0.0 } else { cycles / with_rays });
+    let shown: Vec<_> = stalls.into_iter().filter(|(name, _)| *name != "idle").take(SHOWN).collect();
+    lines.wide("rays wait for", shown.iter().map(|(name, _)| *name));
+    lines.wide("  of their time", shown.iter().map(|(_, cycles)| of_rays(*cycles)));
+    let limits: Vec<_> =
+        by_size(r.roofline.limits.iter().map(|(name, bound)| (name.as_str(), bound.share))).into_iter().take(SHOWN).collect();
+    lines.wide("alone needs", limits.iter().map(|(name, _)| *name));
+    lines.wide("  of frame", limits.iter().map(|(_, share)| percent(*share)));
+    lines.line("latency", ["median", "90 %", "99 %", "largest"]);
+    for (name, of) in [("  rays", &r.latencies.rays), ("  L1 misses", &r.latencies.l1_misses), ("  L2 misses", &r.latencies.l2_misses)] {
+        lines.line(name, [of.median, of.percentile_90, of.percentile_99, of.largest].map(grouped));
+    }
+}
+
+/// The largest first.
+fn by_size<'a>(all: impl Iterator<Item = (&'a str, f64)>) -> Vec<(&'a str, f64)> {
+    let mut all: Vec<_> = all.collect();
+    all.sort_by(|a, b| b.1.total_cmp(&a.1));
+    all
 }
 
 fn energy(lines: &mut Lines, r: &SimResult) {

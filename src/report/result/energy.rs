@@ -2,7 +2,7 @@
 
 use super::ratio;
 use crate::sim::dram::DramEnergy;
-use crate::sim::energy::{EnergyReport, EnergyUnit};
+use crate::sim::energy::{EnergyReport, EnergyUnit, Prices};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 
@@ -26,6 +26,8 @@ pub struct EnergyResult {
     pub compute: ComputeEnergy,
     /// Leakage of what is on the chip.
     pub leakage: LeakageEnergy,
+    /// What one of each costs: with the counts of the result, all of the above (`scripts/energy.py` adds it up).
+    pub prices: Prices,
 }
 
 /// A cache without its leakage.
@@ -97,7 +99,7 @@ pub(super) fn unit_of(unit: EnergyUnit) -> (f64, &'static str) {
 }
 
 impl EnergyResult {
-    pub(super) fn new(report: &EnergyReport, seconds: f64) -> Self {
+    pub(super) fn new(report: &EnergyReport, prices: Prices, seconds: f64) -> Self {
         let (scale, unit) = unit_of(report.unit);
         let named = |parts: &[(&'static str, f64)]| parts.iter().map(|&(name, energy)| (name.to_owned(), energy * scale)).collect();
         let cache = |read: f64, fill: f64| ReadFill { total: (read + fill) * scale, read: read * scale, fill: fill * scale };
@@ -121,6 +123,7 @@ impl EnergyResult {
                 l2: report.l2_leakage * scale,
                 units: report.unit_leakage * scale,
             },
+            prices,
         }
     }
 

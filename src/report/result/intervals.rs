@@ -1,13 +1,14 @@
 //! A run over time: what each stretch of cycles added.
 
 use super::energy::dram_parts;
+use super::ratio;
+use super::roofline::Parts;
 use crate::block::Operations;
-use crate::machine::Machine;
 use crate::method::MethodUnit;
 use crate::num::LINE_BYTES;
 use crate::sim::dram::{ChannelCounts, DramEnergy};
 use crate::sim::energy::{EnergyCounts, EnergyModel, EnergyUnit};
-use crate::sim::replay::{Counts, Interval};
+use crate::sim::replay::{CacheCounts, Counts, Interval};
 use serde::{Deserialize, Serialize};
 
 /// What happened in a stretch of cycles.
@@ -34,6 +35,20 @@ pub struct IntervalResult {
     pub row_hits: u64,
     /// Requests that did not.
     pub row_misses: u64,
+    /// Miss registers in use and requests in queues of the L1s, the L2 and (`dram_queue`) the memory, in the mean, all together: those of requests that left them in this stretch.
+    pub l1_registers: f64,
+    #[expect(missing_docs, reason = "above")]
+    pub l1_queue: f64,
+    #[expect(missing_docs, reason = "above")]
+    pub l2_registers: f64,
+    #[expect(missing_docs, reason = "above")]
+    pub l2_queue: f64,
+    #[expect(missing_docs, reason = "above")]
+    pub dram_queue: f64,
+    /// The part of the machine with the largest share ([`Roofline`](super::Roofline)), and that share.
+    pub limit: String,
+    #[expect(missing_docs, reason = "above")]
+    pub limit_share: f64,
     /// Power; none for relative energies.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub watts: Option<IntervalPower>,
@@ -56,7 +71,7 @@ pub struct IntervalPower {
 }
 
 /// The stretches of a run whose traversal units have the blocks `unit`.
-pub(super) fn intervals(cumulative: &[Interval], model: &EnergyModel, machine: &Machine, unit: Option<MethodUnit>) -> Vec<IntervalResult> {
+pub(super) fn intervals(cumulative: &[Interval], model: &EnergyModel, parts: &Parts<'_>, unit: Option<MethodUnit>) -> Vec<IntervalResult> {
     let zero = Interval {
         end: 0,
         counts: Counts::default(),
@@ -65,10 +80,10 @@ pub(super) fn intervals(cumulative: &[Interval], model: &EnergyModel, machine: &
         operations: Operations::default(),
     };
     let begins = std::iter::once(&zero).chain(cumulative);
-    begins.zip(cumulative).map(|(begin, end)| between(begin, end, model, machine, unit)).collect()
+    begins.zip(cumulative).map(|(begin, end)| between(begin, end, model, parts, unit)).collect()
 }
 
-fn between(begin: &Interval, end: &Interval, model: &EnergyModel, machine: &Machine, unit: Option<MethodUnit>) -> IntervalResult {
+fn between(begin: &Interval, end: &Interval, model: &EnergyModel, parts: &Parts<'_>, unit: Option<MethodUnit>) -> IntervalResult {
     let added = |of: fn(&Interval) -> u64| of(end) - of(begin);
     let cycles = added(|i| i.end);
     let lines = added(|i| i.channels.reads + i.channels.writes);
@@ -87,7 +102,7 @@ fn between(begin: &Interval, end: &Interval, model: &EnergyModel, machine: &Mach
     let dram: Vec<_> = before.into_iter().zip(after).map(|((name, before), (_, after))| (name, after - before)).collect();
     let energy = model.report(&counts, &dram);
     // Picojoules in a time to watts.
-    let watts = |pj: f64| pj * 1e-12 * f64::from(machine.cores.clock_mhz) * 1e6 / cycles as f64;
+    let watts = |pj: f64| pj * 1e-12 * f64::from(parts.machine.cores.clock_mhz) * 1e6 / cycles as f64;
     let power = || IntervalPower {
         l1: watts(energy.l1_read + energy.l1_fill),
         l2: watts(energy.l2_read + energy.l2_fill),
@@ -95,6 +110,25 @@ fn between(begin: &Interval, end: &Interval, model: &EnergyModel, machine: &Mach
         compute: watts(energy.compute() - energy.unit_leakage),
         leakage: watts(energy.l1_leakage + energy.l2_leakage + energy.unit_leakage),
     };
+    // What the roofline takes, between the two.
+    let limiting = Counts {
+        l1: CacheCounts {
+            requests: l1_requests,
+            fills: counts.l1_fills,
+            register_cycles: added(|i| i.counts.l1.register_cycles),
+            ..CacheCounts::default()
+        },
+        l2: CacheCounts { requests: l2_requests, register_cycles: added(|i| i.counts.l2.register_cycles), ..CacheCounts::default() },
+        ..Counts::default()
+    };
+    let channels = ChannelCounts {
+        queued_clocks: added(|i| i.channels.queued_clocks),
+        bus_clocks: added(|i| i.channels.bus_clocks),
+        activates: added(|i| i.channels.activates),
+        ..ChannelCounts::default()
+    };
+    let mean = |cycles_of_all: u64| ratio(cycles_of_all as f64, cycles as f64);
+    let (limit, limit_share) = parts.largest(&limiting, &channels, cycles);
     IntervalResult {
         end: end.end,
         cycles,
@@ -106,6 +140,13 @@ fn between(begin: &Interval, end: &Interval, model: &EnergyModel, machine: &Mach
         dram_bytes: lines * LINE_BYTES,
         row_hits: added(|i| i.channels.row_hits),
         row_misses: added(|i| i.channels.row_misses + i.channels.row_conflicts),
+        l1_registers: mean(limiting.l1.register_cycles),
+        l1_queue: mean(added(|i| i.counts.l1.queued_cycles)),
+        l2_registers: mean(limiting.l2.register_cycles),
+        l2_queue: mean(added(|i| i.counts.l2.queued_cycles)),
+        dram_queue: mean(channels.queued_clocks) * parts.cycles_per_clock(),
+        limit: limit.to_owned(),
+        limit_share,
         watts: (energy.unit == EnergyUnit::Picojoules && cycles > 0).then(power),
     }
 }

@@ -3,7 +3,7 @@
 use super::ratio;
 use crate::num::LINE_BYTES;
 use crate::sim::dram::{ChannelCounts, DramConfig};
-use crate::sim::replay::{CacheCounts, Waits};
+use crate::sim::replay::{CacheCounts, Run, Waits};
 use crate::sim::unit::{State, UnitCounts};
 use serde::{Deserialize, Serialize};
 
@@ -31,13 +31,56 @@ pub struct CacheResult {
     pub blocked_cycles: u64,
     /// Cycles of requesters whose bank's queue was full.
     pub refused_cycles: u64,
+    /// Miss registers in use, and requests that waited in queues, in the mean over the frame, all banks together.
+    pub mean_registers: f64,
+    #[expect(missing_docs, reason = "above")]
+    pub mean_queue: f64,
+    /// Most of both that a bank had at once.
+    pub most_registers: u64,
+    #[expect(missing_docs, reason = "above")]
+    pub longest_queue: u64,
+    /// Requests of the busiest bank over the mean of all, where that is known.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub busiest_bank_over_mean: Option<f64>,
+    /// The same of groups.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub busiest_group_over_mean: Option<f64>,
 }
 
-impl From<&CacheCounts> for CacheResult {
-    fn from(counts: &CacheCounts) -> Self {
-        let CacheCounts { requests, hits, misses, merges, fills, conflicts, queued_cycles, refused_cycles, blocked_cycles } = *counts;
-        let hit_rate = ratio(hits as f64, requests as f64);
-        Self { requests, hits, misses, merges, hit_rate, fills, conflicts, queued_cycles, blocked_cycles, refused_cycles }
+impl CacheResult {
+    /// What a level did in `cycles`.
+    pub(super) fn new(counts: &CacheCounts, cycles: u64) -> Self {
+        let CacheCounts { requests, hits, misses, merges, fills, conflicts, queued_cycles, refused_cycles, blocked_cycles, .. } = *counts;
+        let CacheCounts { register_cycles, most_registers, longest_queue, .. } = *counts;
+        Self {
+            requests,
+            hits,
+            misses,
+            merges,
+            hit_rate: ratio(hits as f64, requests as f64),
+            fills,
+            conflicts,
+            queued_cycles,
+            blocked_cycles,
+            refused_cycles,
+            mean_registers: ratio(register_cycles as f64, cycles as f64),
+            mean_queue: ratio(queued_cycles as f64, cycles as f64),
+            most_registers,
+            longest_queue,
+            busiest_bank_over_mean: None,
+            busiest_group_over_mean: None,
+        }
+    }
+
+    /// The same of the L1s, of which each of `groups` has its banks among `looked_up`.
+    pub(super) fn of_groups(counts: &CacheCounts, cycles: u64, looked_up: &[u64], groups: u32) -> Self {
+        let over_mean = |each: &[u64]| {
+            let (most, all) = (each.iter().max().copied().unwrap_or(0), each.iter().sum::<u64>());
+            ratio((most * each.len() as u64) as f64, all as f64)
+        };
+        let of_group: Vec<u64> = looked_up.chunks(looked_up.len() / groups as usize).map(|banks| banks.iter().sum()).collect();
+        let (bank, group) = (Some(over_mean(looked_up)), Some(over_mean(&of_group)));
+        Self { busiest_bank_over_mean: bank, busiest_group_over_mean: group, ..Self::new(counts, cycles) }
     }
 }
 
@@ -69,6 +112,26 @@ pub struct DramResult {
     pub row_conflicts: u64,
     /// Refreshes.
     pub refreshes: u64,
+    /// Activates, and precharges of single banks and of those open when all of a rank are closed.
+    pub activates: u64,
+    #[expect(missing_docs, reason = "above")]
+    pub precharges: u64,
+    /// Command clocks of the frame, and picoseconds of one.
+    pub clocks: u64,
+    #[expect(missing_docs, reason = "above")]
+    pub clock_picoseconds: u64,
+    /// Clocks with data on the bus, summed over the channels.
+    pub bus_clocks: u64,
+    /// Clocks with a bank active or in refresh, summed over the ranks of all channels; and of them, and of the others, those in power-down.
+    pub active_clocks: u64,
+    #[expect(missing_docs, reason = "above")]
+    pub active_down_clocks: u64,
+    #[expect(missing_docs, reason = "above")]
+    pub precharged_down_clocks: u64,
+    /// The other clocks, with all banks precharged and no power-down.
+    pub precharged_clocks: u64,
+    /// Requests that waited, in the mean over the frame, all channels together.
+    pub mean_queue: f64,
     /// Bytes read and written.
     pub bytes: u64,
     /// The same in a second.
@@ -102,8 +165,9 @@ pub struct ChannelResult {
 }
 
 impl DramResult {
-    /// What the channels of `config` did in `seconds`.
-    pub(super) fn new(channels: &[ChannelCounts], refused_cycles: u64, config: &DramConfig, seconds: f64) -> Self {
+    /// What the channels of `config` did in a run of `seconds`.
+    pub(super) fn new(run: &Run, config: &DramConfig, seconds: f64) -> Self {
+        let (channels, clocks) = (&run.channels, run.dram_clocks);
         let mut sum = ChannelCounts::default();
         channels.iter().for_each(|channel| sum.add(channel));
         let device = &config.device;
@@ -120,12 +184,22 @@ impl DramResult {
             row_misses: sum.row_misses,
             row_conflicts: sum.row_conflicts,
             refreshes: sum.refreshes,
+            activates: sum.activates,
+            precharges: sum.precharges,
+            clocks,
+            clock_picoseconds: device.clock_ps,
+            bus_clocks: sum.bus_clocks,
+            active_clocks: sum.active_clocks,
+            active_down_clocks: sum.active_down_clocks,
+            precharged_down_clocks: sum.precharged_down_clocks,
+            precharged_clocks: channels.iter().map(|counts| counts.precharged_clocks(device.organisation.ranks, clocks)).sum(),
+            mean_queue: ratio(sum.queued_clocks as f64, clocks as f64),
             bytes: lines(&sum) * LINE_BYTES,
             bytes_per_second: per_second(&sum),
             peak_bytes_per_second: all_peak,
             bandwidth_share: per_second(&sum) / all_peak,
             mean_queue_nanoseconds: ratio((sum.queued_clocks * device.clock_ps) as f64 * 1e-3, lines(&sum) as f64),
-            refused_cycles,
+            refused_cycles: run.counts.dram_refused_cycles,
             busiest_over_mean: ratio((busiest * channels.len() as u64) as f64, lines(&sum) as f64),
             channels: channels
                 .iter()

@@ -3,31 +3,38 @@
 //! - `memory`: caches, crossbar, DRAM and what contexts waited for.
 //! - `traffic`: lines by what they hold.
 //! - `energy`: the energy model's report, split.
-//! - `roofline`: what each part of the memory system would need alone.
+//! - `roofline`: what each part of the machine would need alone.
+//! - `stalls`: what contexts did with each of their cycles; `latency`: how long rays and misses took.
 //! - `intervals`: the same over time.
 
 mod energy;
 mod intervals;
+mod latency;
 mod memory;
 mod roofline;
 mod setup;
+mod stalls;
 mod traffic;
 mod units;
 
 pub use energy::{ComputeEnergy, DramParts, EnergyResult, LeakageEnergy, ReadFill};
 pub use intervals::{IntervalPower, IntervalResult};
+pub use latency::{Distribution, LatencyResult};
 pub use memory::{CacheResult, ChannelResult, CrossbarResult, DramResult, WaitShares};
 pub use roofline::{Bound, Roofline};
 pub use setup::{MachineFacts, MethodFacts, RayFileFacts, SceneFacts, Setup, ViewFacts};
+pub use stalls::StallResult;
 pub use traffic::{KindResult, LevelBytes, TrafficResult};
 pub use units::{BlockResult, UnitsResult};
 
 use crate::machine::MachineError;
 use crate::method::Registered;
 use crate::run::Compute;
+use crate::sim::dram::{ChannelCounts, DramPrices};
 use crate::sim::energy::{EnergyCounts, EnergyModel};
 use crate::sim::replay::{ReplayError, Run, dram_of};
 use crate::step::MemoryMap;
+use roofline::Parts;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 use thiserror::Error;
@@ -75,8 +82,12 @@ pub struct SimResult {
     pub energy: EnergyResult,
     /// Lines and bytes by what they hold.
     pub traffic: TrafficResult,
-    /// What the parts of the memory system would need alone.
+    /// What the parts of the machine would need alone.
     pub roofline: Roofline,
+    /// What contexts did with each of their cycles.
+    pub stalls: StallResult,
+    /// How long rays and misses took.
+    pub latencies: LatencyResult,
     /// The traversal units, if compute takes time.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub units: Option<UnitsResult>,
@@ -100,7 +111,13 @@ impl SimResult {
         let counts = &run.counts;
         // Where compute takes no time there are no units.
         let unit = method.unit.filter(|_| setup.compute == Compute::Units);
-        let dram = DramResult::new(&run.channels, counts.dram_refused_cycles, &dram, seconds);
+        let parts = Parts { machine, dram: &dram, compute: setup.compute };
+        let mut channels = ChannelCounts::default();
+        run.channels.iter().for_each(|channel| channels.add(channel));
+        let roofline = parts.roofline(counts, &channels, run.cycles);
+        let intervals = intervals::intervals(&run.intervals, &model, &parts, unit);
+        let dram_prices = DramPrices::new(&dram.device);
+        let dram = DramResult::new(run, &dram, seconds);
         let energy_counts = EnergyCounts {
             cycles: run.cycles,
             l1_reads: counts.l1.requests,
@@ -111,6 +128,8 @@ impl SimResult {
             operations: run.operations.clone(),
             unit,
         };
+        let mut prices = model.prices(&energy_counts);
+        prices.dram = prices.dram_line.is_none().then_some(dram_prices);
         Ok(Self {
             cycles: run.cycles,
             milliseconds: seconds * 1e3,
@@ -118,19 +137,21 @@ impl SimResult {
             rays: counts.rays,
             hits: counts.hits,
             accesses_per_ray: ratio(counts.l1.requests as f64, counts.rays as f64),
-            l1: CacheResult::from(&counts.l1),
-            l2: CacheResult::from(&counts.l2),
+            l1: CacheResult::of_groups(&counts.l1, run.cycles, &run.l1_banks, machine.cores.groups),
+            l2: CacheResult::new(&counts.l2, run.cycles),
             crossbar: CrossbarResult { request_cycles: counts.crossbar_cycles, answer_cycles: counts.answer_cycles },
             waits: WaitShares::new(&counts.waits, run.units.as_ref(), run.cycles * setup.contexts()),
-            energy: EnergyResult::new(&model.report(&energy_counts, &energy::dram_parts(&run.dram)), seconds),
+            energy: EnergyResult::new(&model.report(&energy_counts, &energy::dram_parts(&run.dram)), prices, seconds),
             traffic: TrafficResult::new(map, &counts.traffic, counts.rays),
-            roofline: Roofline::new(&setup, run, &dram),
+            roofline,
+            stalls: StallResult::new(run, run.cycles * setup.contexts()),
+            latencies: (&run.latencies).into(),
             units: run
                 .units
                 .as_ref()
                 .map(|counts| UnitsResult::new(counts, u64::from(machine.cores.groups) * u64::from(machine.units.per_group))),
             operations: run.operations.iter().filter(|&(_, n)| n > 0).map(|(o, n)| (o.name().to_owned(), n)).collect(),
-            intervals: intervals::intervals(&run.intervals, &model, machine, unit),
+            intervals,
             dram,
             setup,
         })

@@ -1,23 +1,25 @@
-//! What each part of the memory system would need for its share of the frame, if nothing else took time.
+//! What each part of the machine would need for its share of the frame, if nothing else took time: the largest share names the limit.
 
-use super::memory::DramResult;
 use super::ratio;
-use super::setup::Setup;
+use crate::machine::Machine;
 use crate::run::Compute;
-use crate::sim::replay::Run;
+use crate::sim::dram::{ChannelCounts, DramConfig};
+use crate::sim::replay::Counts;
 use serde::{Deserialize, Serialize};
+use std::collections::BTreeMap;
 
-/// Bounds of the frame's time from bandwidths.
+/// Bounds of the frame's time, from how much a part can take at a time.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Roofline {
-    /// Requests to the L1s, over what their banks, and the ports before them, can take.
-    pub l1: Bound,
-    /// Requests to the L2, over what its banks, and the crossbar before them, can take.
-    pub l2: Bound,
-    /// Bytes of memory, over its peak.
-    pub dram: Bound,
-    /// Which of them is the largest: `l1`, `l2` or `dram`.
+    /// By part:
+    /// `l1_banks`, `l2_banks`: requests, over what the banks, and the ports before the L1s, take in a cycle;
+    /// `l1_mshrs`, `l2_mshrs`: cycles of miss registers in use, over all registers (Little's law);
+    /// `crossbar_requests`, `crossbar_answers`: lines there and back, over the groups' ports;
+    /// `dram_queues`: clocks in the channels' queues, over their places;
+    /// `dram_bus`: clocks with data; `dram_activates`: activates times the larger of nRRD_S and nFAW / 4; `dram_banks`: activates times nRC, over all banks.
+    pub limits: BTreeMap<String, Bound>,
+    /// The part with the largest share.
     pub largest: String,
 }
 
@@ -31,25 +33,59 @@ pub struct Bound {
     pub share: f64,
 }
 
-impl Roofline {
-    pub(super) fn new(setup: &Setup, run: &Run, dram: &DramResult) -> Self {
-        let machine = &setup.machine.description;
-        let (cores, crossbar) = (&machine.cores, &machine.crossbar);
-        let product = |factors: [u32; 2]| factors.into_iter().map(f64::from).product::<f64>();
-        let ports = match setup.compute {
+/// The machine that has the parts.
+pub(super) struct Parts<'a> {
+    pub machine: &'a Machine,
+    pub dram: &'a DramConfig,
+    pub compute: Compute,
+}
+
+impl Parts<'_> {
+    /// Cycles of the cores that each part would need for what was done.
+    fn cycles(&self, counts: &Counts, channels: &ChannelCounts) -> [(&'static str, f64); 10] {
+        let Self { machine, dram, compute } = self;
+        let (cores, l1, l2, crossbar) = (&machine.cores, &machine.l1, &machine.l2, &machine.crossbar);
+        let product = |factors: &[u32]| factors.iter().copied().map(f64::from).product::<f64>();
+        let ports = match compute {
             Compute::Free => cores.per_group,
             Compute::Units => machine.units.per_group,
         };
-        let l1_rate = product([cores.groups, machine.l1.banks.min(ports)]);
-        // A bank takes one request a cycle, whatever it may be handed.
-        let l2_rate = f64::from(machine.l2.banks).min(product([cores.groups, crossbar.per_group]));
-        let cycles = [
-            ("l1", run.counts.l1.requests as f64 / l1_rate),
-            ("l2", run.counts.l2.requests as f64 / l2_rate),
-            ("dram", dram.bytes as f64 / dram.peak_bytes_per_second * f64::from(cores.clock_mhz) * 1e6),
-        ];
-        let bound = |k: usize| Bound { cycles: cycles[k].1, share: ratio(cycles[k].1, run.cycles as f64) };
-        let largest = cycles.iter().max_by(|a, b| a.1.total_cmp(&b.1)).map_or("", |part| part.0);
-        Self { l1: bound(0), l2: bound(1), dram: bound(2), largest: largest.to_owned() }
+        let per = |count: u64, rate: f64| count as f64 / rate;
+        let clock = self.cycles_per_clock();
+        let (t, organisation) = (&dram.device.timing, &dram.device.organisation);
+        let activate = (t.n_rrd_s as f64).max(t.n_faw as f64 / 4.0);
+        let [groups, channel_count] = [cores.groups, dram.channels];
+        [
+            ("l1_banks", per(counts.l1.requests, product(&[groups, l1.banks.min(ports)]))),
+            ("l1_mshrs", per(counts.l1.register_cycles, product(&[groups, l1.banks, l1.mshrs]))),
+            ("crossbar_requests", per(counts.l2.requests, product(&[groups, crossbar.per_group]))),
+            ("crossbar_answers", per(counts.l1.fills, product(&[groups, crossbar.per_group]))),
+            // A bank takes one request a cycle, whatever it may be handed.
+            ("l2_banks", per(counts.l2.requests, f64::from(l2.banks))),
+            ("l2_mshrs", per(counts.l2.register_cycles, product(&[l2.banks, l2.mshrs]))),
+            ("dram_queues", clock * per(channels.queued_clocks, product(&[channel_count, dram.controller.read_queue.into()]))),
+            ("dram_bus", clock * per(channels.bus_clocks, f64::from(channel_count))),
+            ("dram_activates", clock * activate * per(channels.activates, product(&[channel_count, organisation.ranks]))),
+            ("dram_banks", clock * t.n_rc as f64 * per(channels.activates, product(&[channel_count, dram.device.banks()]))),
+        ]
+    }
+
+    /// Cycles of the cores in a clock of the memory.
+    pub(super) fn cycles_per_clock(&self) -> f64 {
+        self.dram.device.clock_ps as f64 * f64::from(self.machine.cores.clock_mhz) * 1e-6
+    }
+
+    /// The part with the largest share of `cycles` for what was done, and that share.
+    pub(super) fn largest(&self, counts: &Counts, channels: &ChannelCounts, cycles: u64) -> (&'static str, f64) {
+        let all = self.cycles(counts, channels);
+        let largest = all.into_iter().max_by(|a, b| a.1.total_cmp(&b.1)).unwrap_or(("", 0.0));
+        (largest.0, ratio(largest.1, cycles as f64))
+    }
+
+    /// All of a frame of `cycles`.
+    pub(super) fn roofline(&self, counts: &Counts, channels: &ChannelCounts, cycles: u64) -> Roofline {
+        let bound = |needed: f64| Bound { cycles: needed, share: ratio(needed, cycles as f64) };
+        let limits = self.cycles(counts, channels).into_iter().map(|(name, needed)| (name.to_owned(), bound(needed))).collect();
+        Roofline { limits, largest: self.largest(counts, channels, cycles).0.to_owned() }
     }
 }

@@ -9,6 +9,8 @@ pub(super) enum BankCommand {
     Column,
     Activate,
     Precharge,
+    /// A read while writes are served, or the other way round: the row was opened for it before.
+    Owed,
 }
 
 /// Limits are stored by bank group and step, a power of two per group.
@@ -17,10 +19,20 @@ pub(super) const STEPS: usize = 4;
 /// What a command is for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Purpose {
-    CloseAll { rank: usize },
-    Refresh { rank: usize },
-    Towards { bank: usize },
-    Close { bank: usize },
+    CloseAll {
+        rank: usize,
+    },
+    Refresh {
+        rank: usize,
+    },
+    /// `older`: closing the row for the bank's oldest request, while hits of the row wait too.
+    Towards {
+        bank: usize,
+        older: bool,
+    },
+    Close {
+        bank: usize,
+    },
 }
 
 /// The next command and its clock.
@@ -32,9 +44,11 @@ pub(super) struct Choice {
 
 // Within a clock the smallest order goes first: its kind of command, then the age of the request; the bank is in the low bits.
 pub(super) const REFRESH_ORDER: u64 = 0;
-pub(super) const COLUMN_ORDER: u64 = 1 << 60;
-pub(super) const ROW_ORDER: u64 = 2 << 60;
-pub(super) const CLOSE_ORDER: u64 = 3 << 60;
+pub(super) const OWED_ORDER: u64 = 1 << 60;
+pub(super) const COLUMN_ORDER: u64 = 2 << 60;
+pub(super) const ROW_ORDER: u64 = 3 << 60;
+pub(super) const CAPPED_ORDER: u64 = 4 << 60;
+pub(super) const CLOSE_ORDER: u64 = 5 << 60;
 
 /// Clock and order as one number: the smallest is given.
 pub(super) fn key(clock: u64, order: u64) -> u128 {

@@ -1,16 +1,31 @@
 //! The controller's side of a channel: which command is given next.
 //!
-//! FR-FCFS: of the commands that are allowed in the earliest clock in which any is, a read or write of an open row goes first, then the
-//! oldest request's. One command per clock. A due refresh goes before everything of its rank. Requests of a bank may overtake its oldest
-//! one `hit_cap` times per activate, so that none waits forever.
+//! Of the commands that are allowed in the earliest clock in which any is, one goes first by the [`Scheduler`]. One command per clock. The request for
+//! which a row was opened is owed its read or write: until then the row stays open, for it nothing else of the bank is given, and it goes before other
+//! requests, also if reads and writes have changed turns meanwhile. A due refresh goes before everything of its rank but what is owed.
 
 use super::candidates::{BankCommand, Candidates, Choice, Purpose};
-use super::config::{Controller, PagePolicy};
+use super::config::{Controller, PagePolicy, Scheduler};
 use super::counts::ChannelCounts;
 use super::device::Device;
-use super::queue::{NONE, Opened, Queue, READ, WRITE};
+use super::queue::{DramRequest, NONE, Opened, Queue, READ, WRITE};
 use super::ranks::{NO_ROW, Ranks};
 use super::trace::{Command, Given};
+
+/// The way of a request through its channel: until which clock each stretch lasted, from its arrival on.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Way {
+    /// Of waiting for its bank; while another row was closed for it; for the activates of other banks; while its row was opened (nRCD); for reads and
+    /// writes before it, and the data bus; and from its command to its last data.
+    pub ends: [u64; 6],
+}
+
+impl Way {
+    /// The clock of its last data.
+    pub fn end(&self) -> u64 {
+        self.ends[5]
+    }
+}
 
 /// One channel.
 #[derive(Clone, Debug)]
@@ -22,9 +37,19 @@ pub(super) struct Channel {
     pub(super) kind: usize,
     /// First request to the open row, by bank and kind.
     pub(super) hits: Vec<[u16; 2]>,
-    /// Requests served before an older one of the bank since its activate.
+    /// Requests served before an older one of the bank since its activate; for [`Scheduler::OldestReadyCapped`] all that were served.
     pub(super) overtaken: Vec<u32>,
+    /// Kind and slot of the request for which a bank's row was opened, until it is served.
+    pub(super) owed: Vec<Option<(usize, u16)>>,
+    /// Banks with such a request.
+    pub(super) owing: u64,
     pub(super) candidates: Candidates,
+    /// Where hits wait and an older request that wants another row: closing it for that one, if the scheduler may.
+    pub(super) closers: Candidates,
+    /// Banks of `closers`.
+    pub(super) closing: u64,
+    /// Banks whose hits count as not ready.
+    pub(super) capped: u64,
     /// Banks with an open row.
     pub(super) open: u64,
     /// First clock without a command.
@@ -41,6 +66,11 @@ impl Channel {
         let banks = device.banks();
         let mut channel = Self {
             candidates: Candidates::new(),
+            closers: Candidates::new(),
+            owed: vec![None; banks as usize],
+            owing: 0,
+            closing: 0,
+            capped: 0,
             ranks: Ranks::new(device),
             queues: [Queue::new(controller.read_queue, banks), Queue::new(controller.write_queue, banks)],
             controller: controller.clone(),
@@ -100,9 +130,9 @@ impl Channel {
         self.choose();
     }
 
-    /// Gives the commands up to clock `until`; `done` gets the id and last data clock of each request whose read or write command was
+    /// Gives the commands up to clock `until`; `done` gets the id and way of each request whose read or write command was
     /// given.
-    pub fn advance(&mut self, until: u64, done: &mut impl FnMut(u64, u64)) {
+    pub fn advance(&mut self, until: u64, done: &mut impl FnMut(u64, &Way)) {
         while let Some(choice) = self.next.filter(|choice| choice.clock <= until) {
             self.give(choice, done);
         }
@@ -118,13 +148,14 @@ impl Channel {
         counts
     }
 
-    fn give(&mut self, choice: Choice, done: &mut impl FnMut(u64, u64)) {
+    fn give(&mut self, choice: Choice, done: &mut impl FnMut(u64, &Way)) {
         let t = choice.clock;
         self.free = t + 1;
         match choice.purpose {
-            Purpose::Towards { bank } => {
-                let step = self.candidates.steps[bank];
-                if self.step(bank, t, done) {
+            Purpose::Towards { bank, older } => {
+                let candidates = if older { &self.closers } else { &self.candidates };
+                let (step, slot) = (candidates.steps[bank], candidates.slots[bank]);
+                if self.step(step, slot, bank, t, done) {
                     self.update_limits();
                     self.update_candidates();
                 } else {
@@ -160,13 +191,14 @@ impl Channel {
         self.choose();
     }
 
-    /// Gives a bank's candidate at clock `t`; whether the other kind is now served.
-    fn step(&mut self, bank: usize, t: u64, done: &mut impl FnMut(u64, u64)) -> bool {
-        let (slot, kind) = (self.candidates.slots[bank], self.kind);
-        match self.candidates.steps[bank] {
+    /// Gives a step of a bank at clock `t`; whether the other kind is now served.
+    fn step(&mut self, step: BankCommand, slot: u16, bank: usize, t: u64, done: &mut impl FnMut(u64, &Way)) -> bool {
+        let kind = if step == BankCommand::Owed { 1 - self.kind } else { self.kind };
+        match step {
             BankCommand::Activate => {
                 let request = self.queues[kind].get_mut(slot);
                 let row = request.row;
+                (request.ready, request.activated) = (self.ranks.banks[bank].activate.max(request.arrival).min(t), t);
                 if request.opened == Opened::Already {
                     request.opened = Opened::Activated;
                 }
@@ -174,19 +206,26 @@ impl Channel {
                 self.counts.activates += 1;
                 self.open |= 1 << bank;
                 self.overtaken[bank] = 0;
+                self.owed[bank] = Some((kind, slot));
+                self.owing |= 1 << bank;
                 self.hits[bank] = [self.first_hit(bank, READ, row), self.first_hit(bank, WRITE, row)];
                 self.note(t, Given::Activate { bank, row });
                 false
             }
             BankCommand::Precharge => {
-                self.queues[kind].get_mut(slot).opened = Opened::ClosedFirst;
+                let request = self.queues[kind].get_mut(slot);
+                (request.opened, request.closed) = (Opened::ClosedFirst, t);
                 self.close(bank, t);
                 self.note(t, Given::Precharge { bank });
                 false
             }
-            BankCommand::Column => {
-                if slot != self.queues[kind].head(bank) {
+            BankCommand::Column | BankCommand::Owed => {
+                if slot != self.queues[kind].head(bank) || self.controller.scheduler == Scheduler::OldestReadyCapped {
                     self.overtaken[bank] += 1;
+                }
+                if self.owed[bank] == Some((kind, slot)) {
+                    self.owed[bank] = None;
+                    self.owing &= !(1 << bank);
                 }
                 let request = self.queues[kind].remove(bank, slot);
                 self.hits[bank][kind] = self.queues[kind].first_to_row(Queue::after(&request), request.row);
@@ -207,10 +246,21 @@ impl Channel {
                     self.counts.writes += 1;
                     self.note(t, Given::Write { bank, row: request.row });
                 }
-                done(request.id, end);
+                done(request.id, &self.way(&request, t, end));
                 self.choose_kind()
             }
         }
+    }
+
+    /// What a request that is read or written at clock `t` waited for.
+    fn way(&self, request: &DramRequest, t: u64, end: u64) -> Way {
+        let within = |clock: u64, from: u64| clock.clamp(from, t);
+        // Whose row was open waits for nothing but reads and writes.
+        let activated = if request.opened == Opened::Already { request.arrival } else { within(request.activated, request.arrival) };
+        let ready = within(request.ready, request.arrival).min(activated);
+        let closed = if request.opened == Opened::ClosedFirst { within(request.closed, request.arrival).min(ready) } else { ready };
+        let opened = if request.opened == Opened::Already { activated } else { within(activated + self.ranks.timing.n_rcd_rd, activated) };
+        Way { ends: [closed, ready, activated, opened, t, end] }
     }
 
     /// The oldest request of a kind to a bank's row.
@@ -220,6 +270,7 @@ impl Channel {
     }
 
     fn close(&mut self, bank: usize, t: u64) {
+        debug_assert!(self.owed[bank].is_none(), "a row is closed before it was of use");
         self.ranks.precharge(bank, t, &mut self.counts);
         self.open &= !(1 << bank);
         self.hits[bank] = [NONE; 2];

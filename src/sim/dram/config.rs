@@ -3,7 +3,7 @@
 use super::device::Device;
 use super::error::{DramError, invalid};
 use super::mapping::DEFAULT_MAPPING;
-use serde::Deserialize;
+use serde::{Deserialize, Serialize};
 
 /// When a row without waiting requests is closed.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize)]
@@ -18,6 +18,24 @@ pub enum PagePolicy {
     Timeout(u64),
 }
 
+/// Which request of those that are served (reads, or writes) goes first. A row that was opened for a request is not closed before it is read or written,
+/// and that goes before all others.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Scheduler {
+    /// Of the commands that are allowed in a clock the hits of open rows, then the oldest request's; at most [`Controller::hit_cap`] hits overtake the oldest request of
+    /// their bank per activate.
+    #[default]
+    HitsCapped,
+    /// The same without a cap.
+    Hits,
+    /// The oldest request whose command is allowed: it closes a row whatever younger hits wait (FRFCFS of Ramulator 1 and 2.1).
+    OldestReady,
+    /// The same, but when a row was read and written [`Controller::hit_cap`] + 1 times since its activate its hits count as not ready: one is served only
+    /// if it is the oldest of all and nothing else is ready (FRFCFS_Cap of Ramulator 1, its default).
+    OldestReadyCapped,
+}
+
 /// A channel's controller. The defaults are common choices, not a product's.
 #[derive(Clone, Debug, PartialEq, Eq, Deserialize)]
 #[serde(default, deny_unknown_fields)]
@@ -30,7 +48,9 @@ pub struct Controller {
     pub write_high: u16,
     /// ... until so few are left.
     pub write_low: u16,
-    /// Requests that may overtake the oldest one of their bank per activate.
+    /// Which request goes first.
+    pub scheduler: Scheduler,
+    /// How many hits of an open row go before others: what is counted is said by the scheduler.
     pub hit_cap: u32,
     /// When rows are closed.
     pub page: PagePolicy,
@@ -40,8 +60,9 @@ pub struct Controller {
 
 impl Default for Controller {
     fn default() -> Self {
-        // The cap is that of Ramulator's FRFCFS_Cap (src/Scheduler.h).
-        Self { read_queue: 64, write_queue: 64, write_high: 48, write_low: 16, hit_cap: 16, page: PagePolicy::Open, power_down: None }
+        // The cap has the number of Ramulator's FRFCFS_Cap (src/Scheduler.h), not its rule: that is OldestReadyCapped.
+        let (scheduler, page) = (Scheduler::default(), PagePolicy::Open);
+        Self { read_queue: 64, write_queue: 64, write_high: 48, write_low: 16, scheduler, hit_cap: 16, page, power_down: None }
     }
 }
 

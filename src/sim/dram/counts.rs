@@ -34,6 +34,11 @@ pub struct ChannelCounts {
 }
 
 impl ChannelCounts {
+    /// Clocks with all banks precharged, but for power-down, summed over `ranks`, of so many clocks; 0 if more are counted than there are.
+    pub fn precharged_clocks(&self, ranks: u32, clocks: u64) -> u64 {
+        (clocks * u64::from(ranks)).saturating_sub(self.active_clocks + self.precharged_down_clocks)
+    }
+
     /// Adds another channel's; the longest queue is that of either.
     pub fn add(&mut self, other: &Self) {
         self.activates += other.activates;

@@ -12,6 +12,7 @@
 
 use super::counts::ChannelCounts;
 use super::device::{Device, Supply};
+use serde::{Deserialize, Serialize};
 
 /// Energies in picojoules.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -47,42 +48,78 @@ impl DramEnergy {
     }
 }
 
-/// The energy of one channel that ran for `elapsed_ps` and did `counts`.
-///
-/// The clocks with a bank active must be those of the same time: see [`Dram::counts`](super::Dram::counts).
-pub fn energy(counts: &ChannelCounts, device: &Device, elapsed_ps: u64) -> DramEnergy {
-    let mut sum = DramEnergy::default();
-    for supply in &device.supply {
-        sum.add(&of_supply(counts, device, supply, elapsed_ps));
-    }
-    let burst_ps = (device.timing.n_bl * device.clock_ps) as f64;
-    let mw_ps = f64::from(device.io.pins) * burst_ps;
-    let io = counts.reads as f64 * device.io.read_mw_per_pin + counts.writes as f64 * device.io.write_mw_per_pin;
-    sum.io_pj = io * mw_ps * f64::from(device.organisation.devices_per_rank) * 1e-3;
-    sum
+/// What each thing costs that is counted, in picojoules.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct DramPrices {
+    /// A clock of a rank with a bank active or in refresh, but for power-down.
+    pub active_clock_pj: f64,
+    /// The same in power-down.
+    pub active_down_clock_pj: f64,
+    /// A clock of a rank with all banks precharged, but for power-down.
+    pub precharged_clock_pj: f64,
+    /// The same in power-down.
+    pub precharged_down_clock_pj: f64,
+    /// An activate and its precharge.
+    pub activate_pj: f64,
+    /// A read, without I/O.
+    pub read_pj: f64,
+    /// A write, without I/O.
+    pub write_pj: f64,
+    /// A refresh of all banks of a rank.
+    pub refresh_pj: f64,
+    /// I/O of a read.
+    pub read_io_pj: f64,
+    /// I/O of a write.
+    pub write_io_pj: f64,
 }
 
-/// The part from one supply; no I/O.
-fn of_supply(counts: &ChannelCounts, device: &Device, supply: &Supply, elapsed_ps: u64) -> DramEnergy {
-    let t = &device.timing;
-    let clock_ps = device.clock_ps as f64;
-    // picojoules of 1 mA for one clock in all devices of a rank
-    let pj = supply.volts * clock_ps * f64::from(device.organisation.devices_per_rank) * 1e-3;
-    let rank_clocks = elapsed_ps as f64 / clock_ps * f64::from(device.organisation.ranks);
-    let active = (counts.active_clocks - counts.active_down_clocks) as f64;
-    let precharged = rank_clocks - (counts.active_clocks + counts.precharged_down_clocks) as f64;
-    let background = supply.idd3n * active
-        + supply.idd2n * precharged
-        + supply.idd3p * counts.active_down_clocks as f64
-        + supply.idd2p * counts.precharged_down_clocks as f64;
-    let activate = supply.idd0 * t.n_rc as f64 - supply.idd3n * t.n_ras as f64 - supply.idd2n * (t.n_rc - t.n_ras) as f64;
-    let burst = t.n_bl as f64;
-    DramEnergy {
-        background_pj: pj * background,
-        activate_pj: pj * activate * counts.activates as f64,
-        read_pj: pj * (supply.idd4r - supply.idd3n) * burst * counts.reads as f64,
-        write_pj: pj * (supply.idd4w - supply.idd3n) * burst * counts.writes as f64,
-        refresh_pj: pj * (supply.idd5b - supply.idd3n) * t.n_rfc as f64 * counts.refreshes as f64,
-        io_pj: 0.0,
+impl DramPrices {
+    /// Those of a device.
+    pub fn new(device: &Device) -> Self {
+        let mut sum = Self::default();
+        device.supply.iter().for_each(|supply| sum.add_supply(device, supply));
+        let of_burst = f64::from(device.io.pins)
+            * (device.timing.n_bl * device.clock_ps) as f64
+            * f64::from(device.organisation.devices_per_rank)
+            * 1e-3;
+        (sum.read_io_pj, sum.write_io_pj) = (device.io.read_mw_per_pin * of_burst, device.io.write_mw_per_pin * of_burst);
+        sum
+    }
+
+    /// The part from one supply; no I/O.
+    fn add_supply(&mut self, device: &Device, supply: &Supply) {
+        let t = &device.timing;
+        // picojoules of 1 mA for one clock in all devices of a rank
+        let pj = supply.volts * device.clock_ps as f64 * f64::from(device.organisation.devices_per_rank) * 1e-3;
+        let activate = supply.idd0 * t.n_rc as f64 - supply.idd3n * t.n_ras as f64 - supply.idd2n * (t.n_rc - t.n_ras) as f64;
+        let burst = t.n_bl as f64;
+        self.active_clock_pj += pj * supply.idd3n;
+        self.active_down_clock_pj += pj * supply.idd3p;
+        self.precharged_clock_pj += pj * supply.idd2n;
+        self.precharged_down_clock_pj += pj * supply.idd2p;
+        self.activate_pj += pj * activate;
+        self.read_pj += pj * (supply.idd4r - supply.idd3n) * burst;
+        self.write_pj += pj * (supply.idd4w - supply.idd3n) * burst;
+        self.refresh_pj += pj * (supply.idd5b - supply.idd3n) * t.n_rfc as f64;
+    }
+
+    /// The energy of one channel of `ranks` that ran for so many clocks and did `counts`.
+    ///
+    /// The clocks with a bank active must be those of the same time: see [`Dram::counts`](super::Dram::counts).
+    pub fn energy(&self, counts: &ChannelCounts, ranks: u32, clocks: u64) -> DramEnergy {
+        let of = |count: u64, price: f64| count as f64 * price;
+        let precharged = counts.precharged_clocks(ranks, clocks);
+        DramEnergy {
+            background_pj: of(counts.active_clocks - counts.active_down_clocks, self.active_clock_pj)
+                + of(precharged, self.precharged_clock_pj)
+                + of(counts.active_down_clocks, self.active_down_clock_pj)
+                + of(counts.precharged_down_clocks, self.precharged_down_clock_pj),
+            activate_pj: of(counts.activates, self.activate_pj),
+            read_pj: of(counts.reads, self.read_pj),
+            write_pj: of(counts.writes, self.write_pj),
+            refresh_pj: of(counts.refreshes, self.refresh_pj),
+            io_pj: of(counts.reads, self.read_io_pj) + of(counts.writes, self.write_io_pj),
+        }
     }
 }

@@ -7,10 +7,10 @@
 //!   between; it is found anew when a command was given or a request came.
 //! - `ranks`: the devices' rules. Every command moves the earliest clocks of later ones: of its bank (nRCD, nRAS, nRP, nRC, nRTP, nWR), its
 //!   bank group (nCCD_L, nRRD_L, nWTR_L), its rank (nCCD_S, nRRD_S, nFAW, nWTR_S, nRTW, nPPD) and the other ranks (the data bus, nRTRS).
-//! - Refresh: all banks of a rank every nREFI, never postponed: from the clock in which it is due the rank takes nothing else; its rows are
-//!   closed, it is refreshed and blocked for nRFC.
+//! - Refresh: all banks of a rank every nREFI: from the clock in which it is due the rank gives only the reads and writes for which rows were opened; then its rows
+//!   are closed, it is refreshed and blocked for nRFC.
 //! - Writes are answered when their data are through; reads do not look into the write queue (there are no data here).
-//! - [`mod@energy`]: joules from counts, at report time.
+//! - `energy`: joules from counts, at report time.
 //!
 //! Time is in picoseconds, a command clock a whole number of them, so nothing drifts. A request that comes at time t is first considered in
 //! the first clock at or after t.
@@ -21,7 +21,7 @@ mod choose;
 pub mod config;
 pub mod counts;
 pub mod device;
-pub mod energy;
+mod energy;
 pub mod error;
 pub mod mapping;
 mod power_down;
@@ -33,13 +33,14 @@ mod validate;
 #[cfg(test)]
 mod tests;
 
-pub use config::{Controller, DramConfig, PagePolicy};
+pub use config::{Controller, DramConfig, PagePolicy, Scheduler};
 pub use counts::ChannelCounts;
 pub use device::Device;
-pub use energy::{DramEnergy, energy};
+pub use energy::{DramEnergy, DramPrices};
 pub use error::DramError;
 
 use channel::Channel;
+pub use channel::Way;
 use mapping::Mapping;
 use trace::Command;
 
@@ -70,6 +71,11 @@ impl Dram {
         let next_ps = vec![channel.next_clock() * config.device.clock_ps; config.channels as usize];
         let events_ps = vec![u64::MAX; next_ps.len()];
         Ok(Self { device: config.device.clone(), mapping, channels: vec![channel; next_ps.len()], next_ps, events_ps, now_ps: 0 })
+    }
+
+    /// Picoseconds of a command clock.
+    pub fn clock_ps(&self) -> u64 {
+        self.device.clock_ps
     }
 
     /// The channel of `line`.
@@ -115,9 +121,15 @@ impl Dram {
     /// neither may `to`.
     pub fn advance(&mut self, to: u64, done: &mut impl FnMut(u64, u64)) {
         let clock_ps = self.device.clock_ps;
+        self.advance_by_way(to, &mut |id, way| done(id, way.end() * clock_ps));
+    }
+
+    /// The same, with the way of each request, in command clocks.
+    pub fn advance_by_way(&mut self, to: u64, done: &mut impl FnMut(u64, &Way)) {
+        let clock_ps = self.device.clock_ps;
         for ((channel, next), event) in self.channels.iter_mut().zip(&mut self.next_ps).zip(&mut self.events_ps) {
             if *next <= to {
-                channel.advance(to / clock_ps, &mut |id, end| done(id, end * clock_ps));
+                channel.advance(to / clock_ps, done);
                 *next = channel.next_clock() * clock_ps;
                 *event = if channel.waiting() > 0 { *next } else { u64::MAX };
             }
@@ -138,12 +150,17 @@ impl Dram {
 
     /// Energy of all channels up to the time of the last advance.
     pub fn energy(&self) -> DramEnergy {
-        let elapsed_ps = self.now_ps / self.device.clock_ps * self.device.clock_ps;
+        let (prices, clocks) = (DramPrices::new(&self.device), self.clocks());
         let mut sum = DramEnergy::default();
         for counts in self.counts() {
-            sum.add(&energy(&counts, &self.device, elapsed_ps));
+            sum.add(&prices.energy(&counts, self.device.organisation.ranks, clocks));
         }
         sum
+    }
+
+    /// Command clocks up to the time of the last advance.
+    pub fn clocks(&self) -> u64 {
+        self.now_ps / self.device.clock_ps
     }
 
     /// Notes all commands from now on.

@@ -26,6 +26,10 @@ pub(super) struct DramRequest {
     pub age: u64,
     pub row: u32,
     pub opened: Opened,
+    /// When another row was closed for it, from when its bank would have let its row be opened, and when it was; 0 if not.
+    pub closed: u64,
+    pub ready: u64,
+    pub activated: u64,
     before: u16,
     after: u16,
 }
@@ -51,7 +55,18 @@ pub(super) struct Queue {
 impl Queue {
     /// Room for `depth` requests (less than 2^16 - 1) to `banks` banks (at most 64).
     pub fn new(depth: u16, banks: u32) -> Self {
-        let empty = DramRequest { id: 0, arrival: 0, age: 0, row: 0, opened: Opened::Already, before: NONE, after: NONE };
+        let empty = DramRequest {
+            id: 0,
+            arrival: 0,
+            age: 0,
+            row: 0,
+            opened: Opened::Already,
+            closed: 0,
+            ready: 0,
+            activated: 0,
+            before: NONE,
+            after: NONE,
+        };
         Self {
             slots: vec![empty; usize::from(depth)],
             free: (0..depth).rev().collect(),
@@ -85,6 +100,11 @@ impl Queue {
         self.lists[bank].head
     }
 
+    /// The one behind the oldest of a bank, which there is, or [`NONE`].
+    pub fn second(&self, bank: usize) -> u16 {
+        self.get(self.head(bank)).after
+    }
+
     /// Appends to a bank's list; returns the slot.
     ///
     /// # Panics
@@ -92,7 +112,9 @@ impl Queue {
     pub fn push(&mut self, bank: usize, id: u64, arrival: u64, age: u64, row: u32) -> u16 {
         let slot = self.free.pop().expect("a request was pushed to a full DRAM queue");
         let list = &mut self.lists[bank];
-        self.slots[usize::from(slot)] = DramRequest { id, arrival, age, row, opened: Opened::Already, before: list.tail, after: NONE };
+        let (before, opened) = (list.tail, Opened::Already);
+        self.slots[usize::from(slot)] =
+            DramRequest { id, arrival, age, row, opened, closed: 0, ready: 0, activated: 0, before, after: NONE };
         match list.tail {
             NONE => list.head = slot,
             tail => self.slots[usize::from(tail)].after = slot,

@@ -11,6 +11,7 @@ pub mod blocks;
 pub mod caches;
 pub mod cacti;
 pub mod geometry;
+mod prices;
 mod report;
 
 #[cfg(test)]
@@ -20,6 +21,7 @@ pub use blocks::BlockTable;
 pub use caches::{CacheEnergy, CacheTable, EnergyUnit};
 pub use geometry::{Geometry, Level};
 
+pub use prices::Prices;
 pub use report::EnergyReport;
 
 use crate::block::{Operation, Operations};
@@ -111,29 +113,48 @@ impl EnergyModel {
         })
     }
 
+    /// What each thing costs that `counts` counts; the memory's commands are priced by its own model.
+    pub fn prices(&self, counts: &EnergyCounts) -> Prices {
+        let (l1, l2) = (&self.l1, &self.l2);
+        let blocks = self.blocks.as_ref();
+        let occurred = counts.operations.iter().filter(|&(_, count)| count > 0);
+        let priced =
+            |(operation, _): (Operation, u64)| Some((operation.name().to_owned(), blocks?.operation_pj(operation, &self.hardware)));
+        let units = blocks.zip(counts.unit);
+        Prices {
+            l1_read: l1.read,
+            l1_fill: l1.fill,
+            l1_leakage_mw: self.groups * l1.leakage_mw(),
+            l2_read: l2.read,
+            l2_fill: l2.fill,
+            l2_leakage_mw: l2.leakage_mw(),
+            dram_line: self.dram_line,
+            dram: None,
+            operations: occurred.filter_map(priced).collect(),
+            units_leakage_mw: units.map_or(0.0, |(table, unit)| self.units * table.unit_leakage_mw(unit, &self.hardware)),
+            units_clock: units.map_or(0.0, |(table, unit)| self.units * table.unit_clock_pj(unit, &self.hardware)),
+        }
+    }
+
     /// The energy of a frame. `dram_pj` is the memory's, by part, as its model has it; with relative energies it is not used.
     pub fn report(&self, counts: &EnergyCounts, dram_pj: &[(&'static str, f64)]) -> EnergyReport {
         let mw_to_pj = counts.cycles as f64 / self.cycles_per_second * PJ_PER_MW_S;
-        let (l1, l2) = (&self.l1, &self.l2);
-        let blocks = self.blocks.as_ref();
-        let compute = counts.operations.iter().filter(|&(_, count)| count > 0);
-        let priced = |(operation, count): (Operation, u64)| {
-            blocks.map(|table| (operation.name(), count as f64 * table.operation_pj(operation, &self.hardware)))
-        };
-        let units = blocks.zip(counts.unit);
+        let prices = self.prices(counts);
+        let of = |count: u64, price: f64| count as f64 * price;
+        let compute = |(operation, count): (Operation, u64)| Some((operation.name(), of(count, *prices.operations.get(operation.name())?)));
         EnergyReport {
             unit: self.unit,
-            l1_read: counts.l1_reads as f64 * l1.read,
-            l1_fill: counts.l1_fills as f64 * l1.fill,
-            l1_leakage: self.groups * l1.leakage_mw() * mw_to_pj,
-            l2_read: counts.l2_reads as f64 * l2.read,
-            l2_fill: counts.l2_fills as f64 * l2.fill,
-            l2_leakage: l2.leakage_mw() * mw_to_pj,
-            compute: compute.filter_map(priced).collect(),
-            unit_leakage: units.map_or(0.0, |(table, unit)| self.units * table.unit_leakage_mw(unit, &self.hardware) * mw_to_pj),
-            unit_clock: units.map_or(0.0, |(table, unit)| self.units * table.unit_clock_pj(unit, &self.hardware) * counts.cycles as f64),
+            l1_read: of(counts.l1_reads, prices.l1_read),
+            l1_fill: of(counts.l1_fills, prices.l1_fill),
+            l1_leakage: prices.l1_leakage_mw * mw_to_pj,
+            l2_read: of(counts.l2_reads, prices.l2_read),
+            l2_fill: of(counts.l2_fills, prices.l2_fill),
+            l2_leakage: prices.l2_leakage_mw * mw_to_pj,
+            compute: counts.operations.iter().filter_map(compute).collect(),
+            unit_leakage: prices.units_leakage_mw * mw_to_pj,
+            unit_clock: of(counts.cycles, prices.units_clock),
             dram: match self.dram_line {
-                Some(line) => vec![("lines", counts.dram_lines as f64 * line)],
+                Some(line) => vec![("lines", of(counts.dram_lines, line))],
                 None => dram_pj.to_vec(),
             },
         }

@@ -93,9 +93,9 @@ impl<S: feed::ChunkSource> FreeCores<S> {
         }
     }
 
-    fn next_ray(&mut self, context: u32) {
+    fn next_ray(&mut self, context: u32, now: u64) {
         let group = context / self.rays_in_flight / self.per_group;
-        let ray = self.feed.ray(group);
+        let ray = self.feed.ray(group, now);
         self.under_way += u64::from(ray.is_some());
         self.contexts[context as usize].ray = ray;
     }
@@ -108,7 +108,7 @@ impl<S: feed::ChunkSource> FreeCores<S> {
             let own = self.rays_in_flight * self.per_group;
             for context in group * own..(group + 1) * own {
                 if self.contexts[context as usize].ray.is_none() {
-                    self.next_ray(context);
+                    self.next_ray(context, memory.now());
                     self.take_rays(context, memory);
                 }
             }
@@ -118,7 +118,7 @@ impl<S: feed::ChunkSource> FreeCores<S> {
     #[inline]
     fn take_rays(&mut self, context: u32, memory: &mut Hierarchy) {
         while self.contexts[context as usize].ray.is_some() && !self.asks(context, memory) {
-            self.next_ray(context);
+            self.next_ray(context, memory.now());
         }
     }
 
@@ -137,6 +137,7 @@ impl<S: feed::ChunkSource> FreeCores<S> {
                 counts.rays += 1;
                 counts.hits += u64::from(matches!(word.step().act, Act::End { found: true, .. }));
                 self.under_way -= 1;
+                memory.ray_ends(ray.started);
                 self.feed.ended(ray, context / self.rays_in_flight / self.per_group);
                 return false;
             }
@@ -194,6 +195,7 @@ impl<S: feed::ChunkSource> FreeCores<S> {
         state.free = memory.now() + 1;
         let asked = memory.request(port / self.per_group, port, context, line, section);
         if let Asked::Comes(cycle) = asked {
+            memory.look_up(context, cycle);
             asking.comes(context, cycle, memory);
         }
         if asked == Asked::Held {
@@ -206,9 +208,13 @@ impl<S: feed::ChunkSource> FreeCores<S> {
 }
 
 impl<S: feed::ChunkSource> FrontEnd for FreeCores<S> {
+    fn slots(&self) -> (usize, fn(u32) -> usize) {
+        (self.contexts.len(), |context| context as usize)
+    }
+
     fn start(&mut self, memory: &mut Hierarchy) {
         for context in 0..self.contexts.len() as u32 {
-            self.next_ray(context);
+            self.next_ray(context, memory.now());
             self.go_on(context, memory);
         }
     }
@@ -254,6 +260,7 @@ impl<S: feed::ChunkSource> FrontEnd for FreeCores<S> {
         if state.come == state.count {
             let waited = memory.now() - state.since;
             memory.counts_mut().waits.add(state.from, waited);
+            memory.charge(context, state.since);
             self.go_on(context, memory);
         }
     }

@@ -1,5 +1,6 @@
 //! What a run counts.
 
+use super::stalls::Stalls;
 use crate::step::MAX_SECTIONS;
 use serde::Serialize;
 
@@ -24,6 +25,12 @@ pub struct CacheCounts {
     pub refused_cycles: u64,
     /// Cycles of banks that could not go on for want of an MSHR, or of a target in one.
     pub blocked_cycles: u64,
+    /// Cycles of miss registers in use.
+    pub register_cycles: u64,
+    /// Most miss registers of a bank that were in use at once.
+    pub most_registers: u64,
+    /// Most requests that waited for a bank at once.
+    pub longest_queue: u64,
 }
 
 /// Where a line came from.
@@ -91,6 +98,8 @@ pub struct Counts {
     pub dram_refused_cycles: u64,
     /// What contexts waited for.
     pub waits: Waits,
+    /// The same by cause.
+    pub stalls: Stalls,
     /// By the place of their section.
     pub traffic: [KindTraffic; MAX_SECTIONS],
 }

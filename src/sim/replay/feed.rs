@@ -40,6 +40,8 @@ pub struct FedRay {
     at: u32,
     /// Its number in the batch.
     ray: u32,
+    /// The cycle in which it was taken.
+    pub started: u64,
 }
 
 impl FedRay {
@@ -216,10 +218,13 @@ impl<S: ChunkSource> Feed<S> {
         }
     }
 
-    /// The next ray of `group`: one that waited for another of the group's, else of the source, else one that waited for another group's. `None` when all are
+    /// The next ray of `group`, which is taken in cycle `now`: one that waited for another of the group's, else of the source, else one that waited for another group's. `None` when all are
     /// taken or wait for others.
-    pub fn ray(&mut self, group: u32) -> Option<FedRay> {
-        let ray = self.order.ready(group, false).or_else(|| self.taken(group)).or_else(|| self.order.ready(group, true));
+    pub fn ray(&mut self, group: u32, now: u64) -> Option<FedRay> {
+        let mut ray = self.order.ready(group, false).or_else(|| self.taken(group)).or_else(|| self.order.ready(group, true));
+        if let Some(ray) = &mut ray {
+            ray.started = now;
+        }
         if ray.is_none() && self.is_ordered {
             self.order.idle.insert(group);
         }
@@ -240,7 +245,7 @@ impl<S: ChunkSource> Feed<S> {
                     current.ray += 1;
                     // The next to be taken.
                     prefetch(batch.words(), batch.end(at_ray) as usize);
-                    let ray = FedRay { chunk: Arc::clone(&current.chunk), batch: current.batch, at, ray: at_ray as u32 };
+                    let ray = FedRay { chunk: Arc::clone(&current.chunk), batch: current.batch, at, ray: at_ray as u32, started: 0 };
                     self.is_ordered |= ray.link().is_some();
                     let Some(waits_for) = self.order.waits_for(&ray) else { return Some(ray) };
                     if self.order.put_aside(waits_for, ray, group) {

@@ -1,8 +1,9 @@
 //! A level of cache: banks that each take a request per cycle, with a queue in front, tags, and registers for misses.
 
 use super::counts::CacheCounts;
-use super::mshr::{Entered, Mshrs};
+use super::mshr::{Entered, Mshrs, Waiter};
 use super::prefetch::prefetch;
+use super::stalls::Histogram;
 use super::tags::Tags;
 use crate::machine::Cache;
 use crate::step::SectionId;
@@ -19,6 +20,10 @@ pub struct CacheRequest {
     pub section: SectionId,
     /// The cycle since when it waits in the queue.
     pub since: u64,
+    /// Cycles that it waited before the queue, which was full.
+    pub held: u32,
+    /// Cycles that its bank had stood still when it came.
+    pub blocked: u64,
 }
 
 /// A bank.
@@ -31,6 +36,18 @@ struct Bank {
     awake: bool,
     /// Since when its head has no room among the misses.
     blocked: Option<u64>,
+    /// Cycles in which it had none before that.
+    stood_still: u64,
+    /// Requests looked up.
+    looked_up: u64,
+}
+
+impl Bank {
+    /// Cycles up to `now` in which its head had no room among the misses.
+    #[inline]
+    fn blocked_cycles(&self, now: u64) -> u64 {
+        self.stood_still + self.blocked.map_or(0, |since| now - since)
+    }
 }
 
 /// What a look-up gave.
@@ -42,6 +59,19 @@ pub enum Served {
     Miss(u32),
     /// Not found, but asked for.
     Merged,
+}
+
+/// A look-up.
+#[derive(Clone, Copy, Debug)]
+pub struct Look {
+    /// Who gets the answer.
+    pub waiter: u32,
+    /// Cycles that it waited before the bank's full queue, in it for its turn, and while the bank stood still.
+    pub before: [u32; 3],
+    /// What became of it.
+    pub served: Served,
+    /// To come back in the next cycle.
+    pub again: bool,
 }
 
 /// A level: one cache, or one for each group.
@@ -56,6 +86,8 @@ pub struct Level {
     pub latency: u64,
     /// What it did.
     pub counts: CacheCounts,
+    /// Cycles from a miss to its line.
+    pub latencies: Histogram,
 }
 
 impl Level {
@@ -71,6 +103,7 @@ impl Level {
             queue: cache.queue as usize,
             latency: u64::from(cache.latency_cycles),
             counts: CacheCounts::default(),
+            latencies: Histogram::default(),
         }
     }
 
@@ -114,6 +147,7 @@ impl Level {
             return false;
         }
         state.free = now + 1;
+        state.looked_up += 1;
         self.counts.hits += 1;
         self.counts.requests += 1;
         true
@@ -123,7 +157,8 @@ impl Level {
     #[inline]
     pub fn enqueue(&mut self, bank: u32, request: CacheRequest) -> Option<u64> {
         let bank = &mut self.banks[bank as usize];
-        bank.queue.push_back(request);
+        bank.queue.push_back(CacheRequest { blocked: bank.blocked_cycles(request.since), ..request });
+        self.counts.longest_queue = self.counts.longest_queue.max(bank.queue.len() as u64);
         if bank.awake || bank.blocked.is_some() {
             return None;
         }
@@ -131,18 +166,21 @@ impl Level {
         Some(bank.free.max(request.since))
     }
 
-    /// Looks up the head of the queue of `bank` in cycle `now`. Gives the request, what became of it, and whether to come back in the next cycle; `None`
+    /// Looks up the head of the queue of `bank` in cycle `now`; `None`
     /// if there is no room for its miss: the bank sleeps until [`Level::fill`].
     #[inline]
-    pub fn serve(&mut self, bank: u32, now: u64) -> Option<(CacheRequest, Served, bool)> {
+    pub fn serve(&mut self, bank: u32, now: u64) -> Option<Look> {
         let state = &mut self.banks[bank as usize];
         state.awake = false;
         let request = *state.queue.front()?;
+        let still = state.blocked_cycles(now) - request.blocked;
+        let turn = now - request.since - still;
+        let before = [request.held, turn as u32, still as u32]; // a wait of 2^32 cycles does not end
         let served = if self.tags.look_up(bank, request.line) {
             self.counts.hits += 1;
             Served::Hit
         } else {
-            match self.mshrs.enter(bank, request.line, request.section, request.waiter) {
+            match self.mshrs.enter(bank, request.line, request.section, Waiter { waiter: request.waiter, before, since: now }) {
                 Entered::New { slot } => {
                     self.counts.misses += 1;
                     Served::Miss(bank * self.mshrs_per_bank + slot)
@@ -158,25 +196,44 @@ impl Level {
             }
         };
         state.queue.pop_front();
+        state.looked_up += 1;
         state.free = now + 1;
         state.awake = !state.queue.is_empty();
         self.counts.requests += 1;
         self.counts.queued_cycles += now - request.since;
         self.counts.conflicts += u64::from(now > request.since);
-        Some((request, served, state.awake))
+        Some(Look { waiter: request.waiter, before, served, again: state.awake })
     }
 
     /// The line of `register` has come in cycle `now`: it is written, its waiters are given to `answer`. True if the bank was blocked and is to be served now.
-    pub fn fill(&mut self, register: u32, now: u64, answer: impl FnMut(u32)) -> bool {
+    pub fn fill(&mut self, register: u32, now: u64, answer: impl FnMut(Waiter)) -> bool {
         let bank = self.bank_of(register);
         self.tags.fill(bank, self.mshrs.line(register));
-        self.mshrs.free(register, answer);
+        let taken = now - self.mshrs.free(register, answer);
         self.counts.fills += 1;
+        self.counts.register_cycles += taken;
+        self.latencies.add(taken);
         let bank = &mut self.banks[bank as usize];
         let Some(since) = bank.blocked.take() else { return false };
         self.counts.blocked_cycles += now - since;
+        bank.stood_still += now - since;
         bank.awake = true;
         true
+    }
+
+    /// What it did, with what is known of registers.
+    pub fn counts(&self) -> CacheCounts {
+        CacheCounts { most_registers: self.mshrs.most.into(), ..self.counts }
+    }
+
+    /// How many miss registers there are.
+    pub fn registers(&self) -> usize {
+        self.banks.len() * self.mshrs_per_bank as usize
+    }
+
+    /// Requests looked up, by bank.
+    pub fn looked_up(&self) -> Vec<u64> {
+        self.banks.iter().map(|bank| bank.looked_up).collect()
     }
 
     /// `bank` is served soon.

@@ -21,6 +21,7 @@ mod level;
 mod mshr;
 mod prefetch;
 mod slots;
+mod stalls;
 mod tags;
 mod units;
 mod wave;
@@ -32,11 +33,13 @@ mod tests;
 pub use counts::{CacheCounts, Counts, KindTraffic, Waits};
 pub use error::ReplayError;
 pub use feed::{Chunk, ChunkSource};
+pub use hierarchy::Latencies;
 pub use intervals::Interval;
+pub use stalls::{CAUSES, Cause, Histogram, Stalls};
 pub use wave::Window;
 
 use super::dram::{ChannelCounts, Device, Dram, DramConfig, DramEnergy};
-use super::unit::UnitCounts;
+use super::unit::{State, UnitCounts};
 use crate::block::Operations;
 use crate::machine::Machine;
 use crate::step::Nodes;
@@ -58,8 +61,16 @@ pub struct Run {
     pub operations: Operations,
     /// What the traversal units did, all together; none if compute takes no time.
     pub units: Option<UnitCounts>,
+    /// Cycles of the units' contexts, by state, in which they waited for lines, but for `FETCH`.
+    pub late: [u64; State::ALL.len()],
+    /// Cycles of rays and of misses.
+    pub latencies: Latencies,
+    /// Requests that each bank of the L1s looked up.
+    pub l1_banks: Vec<u64>,
     /// What each memory channel did.
     pub channels: Vec<ChannelCounts>,
+    /// Command clocks of the memory.
+    pub dram_clocks: u64,
     /// The memory's energy.
     pub dram: DramEnergy,
     /// The same over time.
@@ -79,7 +90,8 @@ pub fn dram_of(machine: &Machine) -> Result<DramConfig, ReplayError> {
     if let Some(mapping) = &machine.dram.mapping {
         config.mapping.clone_from(mapping);
     }
-    config.controller.read_queue = machine.dram.queue as u16; // at most 4096;
+    config.controller.read_queue = machine.dram.queue as u16; // at most 4096
+    (config.controller.scheduler, config.controller.hit_cap) = (machine.dram.scheduler, machine.dram.hit_cap);
     config.validate().map_err(|source| ReplayError::Dram { file, source })?;
     Ok(config)
 }
@@ -114,12 +126,16 @@ pub fn run_free(machine: &Machine, nodes: Nodes, source: impl ChunkSource, windo
 pub fn run_units(machine: &Machine, source: impl ChunkSource, window: Option<Window>) -> Result<Run, ReplayError> {
     check(machine, true)?;
     let mut units = Units::new(machine, source);
-    let run = drive(&mut units, machine, window)?;
-    Ok(Run { units: Some(units.counts(run.cycles)), ..run })
+    let mut run = drive(&mut units, machine, window)?;
+    let (late, port) = units.line_waits();
+    run.counts.stalls[Cause::Port as usize] += port;
+    Ok(Run { units: Some(units.counts(run.cycles)), late, ..run })
 }
 
 /// Who asks the memory hierarchy for lines.
 trait FrontEnd {
+    /// Of how many waiters at once the way of the last line is kept, and where each one's is.
+    fn slots(&self) -> (usize, fn(u32) -> usize);
     /// Begins, in cycle 0.
     fn start(&mut self, memory: &mut Hierarchy);
     /// The cycle it asked for has come, or its held request was taken.
@@ -143,7 +159,8 @@ trait FrontEnd {
 /// Lets `front` run on `machine` until it is done.
 fn drive(front: &mut impl FrontEnd, machine: &Machine, window: Option<Window>) -> Result<Run, ReplayError> {
     let dram = dram_of(machine)?;
-    let mut memory = Hierarchy::new(machine, &dram).map_err(|source| ReplayError::Dram { file: machine.dram.device.clone(), source })?;
+    let mut memory =
+        Hierarchy::new(machine, &dram, front.slots()).map_err(|source| ReplayError::Dram { file: machine.dram.device.clone(), source })?;
     let mut intervals = Intervals::new();
     let mut wave = window.map(Wave::new);
     front.start(&mut memory);
@@ -173,15 +190,20 @@ fn drive(front: &mut impl FrontEnd, machine: &Machine, window: Option<Window>) -
     }
     let cycles = memory.now();
     let intervals = intervals.end(&mut memory, front.operations());
+    let (latencies, l1_banks) = memory.distributions();
     let dram = memory.dram();
-    let (channels, dram) = (dram.counts(), dram.energy());
+    let (channels, dram_clocks, dram) = (dram.counts(), dram.clocks(), dram.energy());
     Ok(Run {
         cycles,
         channels,
+        dram_clocks,
         dram,
         counts: memory.counts(),
         operations: front.operations().clone(),
         units: None,
+        late: [0; State::ALL.len()],
+        latencies,
+        l1_banks,
         intervals,
         wave: wave.map(Wave::into_bytes),
     })

@@ -9,10 +9,11 @@ use super::event::Asked;
 use super::feed::{self, FedRay, Feed};
 use super::hierarchy::Hierarchy;
 use super::slots::Slots;
+use super::stalls::Cause;
 use crate::block::Operations;
 use crate::machine::Machine;
 use crate::sim::timing::{LineRequest, Ports, Steps, UnitTiming};
-use crate::sim::unit::UnitCounts;
+use crate::sim::unit::{State, UnitCounts};
 use crate::step::Step;
 use std::collections::VecDeque;
 
@@ -89,13 +90,24 @@ impl<S: feed::ChunkSource> Units<S> {
         sum
     }
 
+    /// Cycles by state in which contexts of all units waited for lines, other than `FETCH`; and cycles in `FETCH` that no line ended.
+    pub fn line_waits(&self) -> ([u64; State::ALL.len()], u64) {
+        let (mut late, mut port) = ([0; State::ALL.len()], 0);
+        for unit in &self.units {
+            let (of_unit, of_port) = unit.timing.line_waits();
+            late.iter_mut().zip(of_unit).for_each(|(sum, cycles)| *sum += cycles);
+            port += of_port;
+        }
+        (late, port)
+    }
+
     /// Does what unit `id` has to do in this cycle.
     fn tick(&mut self, id: u32, memory: &mut Hierarchy) {
         let now = memory.now();
         let unit = &mut self.units[id as usize];
         while let Some(&(_, tag)) = unit.come.front().filter(|come| come.0 <= now) {
             unit.come.pop_front();
-            unit.timing.answer(now, tag);
+            told(id, tag, unit.timing.answer(now, tag), memory);
         }
         if unit.free <= now {
             let group = id / self.per_group;
@@ -136,6 +148,10 @@ impl<S: feed::ChunkSource> Units<S> {
 }
 
 impl<S: feed::ChunkSource> FrontEnd for Units<S> {
+    fn slots(&self) -> (usize, fn(u32) -> usize) {
+        (self.units.len() << 8, slot)
+    }
+
     fn start(&mut self, memory: &mut Hierarchy) {
         (0..self.units.len() as u32).for_each(|id| self.tick(id, memory));
     }
@@ -158,7 +174,7 @@ impl<S: feed::ChunkSource> FrontEnd for Units<S> {
         let unit = &mut self.units[id as usize];
         let at = unit.answers.take(now, 1);
         if at == now {
-            unit.timing.answer(now, tag);
+            told(id, tag, unit.timing.answer(now, tag), memory);
         } else {
             unit.come.push_back((at, tag));
         }
@@ -182,6 +198,19 @@ impl<S: feed::ChunkSource> FrontEnd for Units<S> {
     }
 }
 
+/// Charges a wait of a context, if the line of `tag` ended one.
+#[inline]
+fn told(id: u32, tag: u16, wait: Option<(u64, u64)>, memory: &mut Hierarchy) {
+    if let Some((since, end)) = wait {
+        memory.charge_between(id << TAG_BITS | u32::from(tag), since, end, Cause::Port);
+    }
+}
+
+/// Where the way of a waiter's line is kept: lines of a record that are four places apart share one, as a context waits for the last alone.
+fn slot(waiter: u32) -> usize {
+    ((waiter >> TAG_BITS) << 8 | waiter & 0xff) as usize
+}
+
 /// What surrounds a unit in one cycle.
 struct Surroundings<'a, S> {
     id: u32,
@@ -196,7 +225,7 @@ impl<S: feed::ChunkSource> Ports for Surroundings<'_, S> {
     type Ray = FedRay;
 
     fn ray(&mut self) -> Option<FedRay> {
-        let ray = self.feed.ray(self.group)?;
+        let ray = self.feed.ray(self.group, self.memory.now())?;
         *self.under_way += 1;
         Some(ray)
     }
@@ -212,7 +241,10 @@ impl<S: feed::ChunkSource> Ports for Surroundings<'_, S> {
                 let waiter = self.id << TAG_BITS | u32::from(tag);
                 self.memory.counts_mut().traffic[section.place()].l1 += 1;
                 match self.memory.request(self.group, 2 * self.id + 1, waiter, line, section) {
-                    Asked::Comes(cycle) => self.memory.answer_at(cycle, waiter, Supplier::L1),
+                    Asked::Comes(cycle) => {
+                        self.memory.look_up(waiter, cycle);
+                        self.memory.answer_at(cycle, waiter, Supplier::L1);
+                    }
                     Asked::Taken => (),
                     Asked::Held => *self.port = RequestPort::Held,
                 }
@@ -226,6 +258,7 @@ impl<S: feed::ChunkSource> Ports for Surroundings<'_, S> {
         counts.rays += 1;
         counts.hits += u64::from(found);
         *self.under_way -= 1;
+        self.memory.ray_ends(ray.started);
         self.feed.ended(ray, self.group);
         true
     }

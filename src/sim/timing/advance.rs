@@ -33,7 +33,8 @@ impl<R: Steps> UnitTiming<R> {
         let context = &mut self.contexts[who];
         let request = context.ask_line(who, now);
         if context.owed == 0 {
-            self.fetched(who, now);
+            let (since, end) = self.fetched(who, now);
+            self.port_cycles += end - since;
         }
         request
     }
@@ -121,23 +122,28 @@ impl<R: Steps> UnitTiming<R> {
         let context = &mut self.contexts[who];
         if context.later.comes(place.into(), now) {
             if context.later.owed == 0 && std::mem::take(&mut context.later.waits) {
+                let (state, since) = (context.state, context.entered);
+                let end = context.later.ready.max(since);
+                self.late[state as usize] += end - since;
+                self.line_wait = Some((since, end));
                 self.sleep(who, now);
             }
         } else {
             context.settle(now + 1);
             if context.owed == 0 {
-                self.fetched(who, now);
+                self.line_wait = Some(self.fetched(who, now));
             }
         }
     }
 
-    /// Context `who` has all lines that it waits for in `FETCH`.
-    fn fetched(&mut self, who: usize, now: u64) {
-        let at = self.contexts[who].ready + 1;
+    /// Context `who` has all lines that it waits for in `FETCH`: from when to when it was there.
+    fn fetched(&mut self, who: usize, now: u64) -> (u64, u64) {
+        let (since, at) = (self.contexts[who].entered, self.contexts[who].ready + 1);
         self.left(State::Fetch, who, at);
         if let Some(at) = self.act(who, at, now) {
             self.onward(who, at, now);
         }
+        (since, at)
     }
 
     /// The comparison of a hit of context `who` ends in cycle `result`.

@@ -56,6 +56,12 @@ pub struct UnitTiming<R> {
     next: Option<u64>,
     /// Cycles of contexts by state, but for `IDLE`.
     pub(super) states: [u64; State::ALL.len()],
+    /// Of them, those in which a context waited for lines that were asked for with an earlier step's.
+    pub(super) late: [u64; State::ALL.len()],
+    /// Cycles in `FETCH` that no line ended: all had come when the last was asked for.
+    pub(super) port_cycles: u64,
+    /// The wait that the line ended that came last, from when to when, if it did.
+    pub(super) line_wait: Option<(u64, u64)>,
 }
 
 impl<R: Steps> UnitTiming<R> {
@@ -99,6 +105,9 @@ impl<R: Steps> UnitTiming<R> {
             now: 0,
             next: None,
             states: Default::default(),
+            late: Default::default(),
+            port_cycles: 0,
+            line_wait: None,
         }
     }
 
@@ -125,13 +134,20 @@ impl<R: Steps> UnitTiming<R> {
     }
 
     /// The line of request `tag` comes in cycle `now`, before or behind that cycle's tick; no other does in this cycle. [`next`](Self::next) may be sooner then.
+    /// Gives from when to when a context waited that goes on with it, if one does.
     #[inline]
-    pub fn answer(&mut self, now: u64, tag: u16) {
+    pub fn answer(&mut self, now: u64, tag: u16) -> Option<(u64, u64)> {
         debug_assert!(now + 1 >= self.now, "an answer of cycle {now} comes too late");
         let (who, place) = untag(tag);
         self.now = self.now.max(now);
         self.answered(who, place, now);
         self.next = self.next.into_iter().chain(self.wheel.next(self.now)).min();
+        self.line_wait.take()
+    }
+
+    /// Cycles by state in which contexts waited for lines, other than `FETCH`; and cycles in `FETCH` that no line ended.
+    pub fn line_waits(&self) -> ([u64; State::ALL.len()], u64) {
+        (self.late, self.port_cycles)
     }
 
     /// Cycle `now`; gives the [`next`](Self::next).

@@ -192,10 +192,11 @@ fn check_bus(device: &Device, events: &[Event], findings: &mut Findings) {
     }
 }
 
-/// The k-th refresh of a rank comes at k nREFI or as soon after as its rows can be closed.
+/// The k-th refresh of a rank comes at k nREFI or as soon after as the reads and writes for which rows were opened are given and the rows can be closed.
 fn check_refreshes(device: &Device, trace: &[Command], findings: &mut Findings) {
     let t = &device.timing;
-    let latest = t.n_ras.max(t.n_cwl + t.n_bl + t.n_wr) + t.n_ppd + t.n_rc + 2 * u64::from(device.organisation.ranks);
+    let owed = t.n_rcd_rd.max(t.n_rcd_wr) + u64::from(device.banks()) * t.n_ccd_l + t.n_rtw + t.n_cwl + t.n_bl + t.n_wtr_l;
+    let latest = owed + t.n_ras.max(t.n_cwl + t.n_bl + t.n_wr) + t.n_ppd + t.n_rc + 2 * u64::from(device.organisation.ranks);
     for wanted in 0..device.organisation.ranks as usize {
         let refreshes = trace.iter().filter(|command| command.given == Given::Refresh { rank: wanted });
         for (k, command) in refreshes.enumerate() {

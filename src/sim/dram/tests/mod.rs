@@ -4,6 +4,7 @@ mod checker;
 mod description;
 mod latency;
 mod power;
+mod published;
 mod reference;
 mod scheduling;
 mod throughput;

