@@ -304,7 +304,7 @@ fn refusals_name_option_value_and_limit() {
         (
             "simulate a.lod --machine none",
             "--machine none",
-            "there are: haydel2023, haydel2023-ddr3, haydel2023-public, packet, turing2018",
+            "there are: haydel2023, haydel2023-ddr3, haydel2023-mshr4, haydel2023-public, packet, turing2018",
         ),
     ] {
         let (code, text) = desk.hear(args);

@@ -94,7 +94,7 @@ fn a_mistake_is_named_with_its_place_before_anything_runs() {
         (file("empty.lod"), "line 5: scene: empty.lod: magic: not a lodray scene file"),
         (file("ball.OBJ"), "line 5: scene: ball.OBJ: this is a mesh, not a scene: `lodray build ball.OBJ -o ball.lod` makes one of it"),
         // Machines and what they name.
-        (format!("{HEAD}{SCENE}[[machine]]\nname = \"nope\"\n"), "line 7: machine nope: no nope comes with the program"),
+        (format!("{HEAD}{SCENE}[[machine]]\nname = \"nope\"\n"), "line 7: machine nope: there is no machine nope"),
         (format!("{HEAD}{SCENE}[[machine]]\nname = \"none.toml\"\n"), "line 7: machine none.toml: none.toml: "),
         (format!("{HEAD}{SCENE}[[machine]]\nname = \"slow.toml\"\n"), "line 7: machine slow.toml: slow.toml: "),
         (machine("\"l9.x\" = 1"), "line 8: machine packet: set l9.x = 1"),
@@ -302,4 +302,31 @@ fn jobs_of_different_bounds_are_different_jobs() {
     assert_eq!(said, [(Some("a"), None), (Some("b"), Some("total")), (Some("a"), Some("total"))]);
     let cycles: Vec<_> = rows.iter().map(|row| row["result"]["cycles"].as_u64()).collect();
     assert!(cycles[1] == cycles[2] && cycles[0] != cycles[1], "{cycles:?}");
+}
+
+#[test]
+fn any_number_of_frames_at_once_gives_the_same_bytes() {
+    let desk = with_scene();
+    let list = |distances: &str| {
+        format!(
+            "size = \"24x24\"\ndistances = {distances}\nmethods = [\"lod\", \"bvh\", \"discrete\"]\nerror = true\nintervals = true\n{SCENE}{MACHINE}{CACHES}"
+        )
+    };
+    desk.write("jobs.toml", &list("[1.2, 2, 4, 9]"));
+    let sweep = |options: &str, folder: &str| {
+        desk.run(&format!("sweep jobs.toml -o {folder} {options}"));
+        desk.files(folder)
+    };
+    let one = sweep("--at-once 1 --threads 1", "one");
+    assert_eq!(one["results.jsonl"].split(|&byte| byte == b'\n').filter(|line| !line.is_empty()).count(), 24);
+    assert_eq!(sweep("--at-once 2", "two"), one);
+    assert_eq!(sweep("--at-once 1024 --threads 5", "all"), one);
+    assert_eq!(sweep("", "some"), one);
+    // One that was ended and goes on, in the order of the list as far as it went.
+    desk.write("jobs.toml", &list("[1.2, 2]"));
+    sweep("--at-once 3", "rest");
+    desk.write("jobs.toml", &list("[1.2, 2, 4, 9]"));
+    assert_eq!(sweep("--at-once 3", "rest")["results.jsonl"], one["results.jsonl"]);
+    let (code, text) = desk.hear("sweep jobs.toml -o no --at-once 0");
+    assert!(code != 0 && text.contains("'0' is not a whole number from 1 to 1024"), "{text}");
 }

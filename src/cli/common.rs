@@ -4,7 +4,7 @@ use super::args::whole;
 use std::sync::atomic::{AtomicBool, Ordering};
 
 /// Most threads: far above what a machine has, and far below where the system has none left.
-const MAX_THREADS: u64 = 1024;
+pub const MAX_THREADS: u64 = 1024;
 
 /// Options that every subcommand takes.
 #[derive(clap::Args)]
@@ -59,8 +59,10 @@ impl Invocation {
                 "--" => kept.extend(std::iter::once(word).chain(words.by_ref())),
                 "--quiet" | "--json" | "--force" => {}
                 // Their value is the next word.
-                "-o" | "--out" | "--threads" | "--cache" | "--report" => drop(words.next()),
-                one if ["-o", "--out=", "--threads=", "--cache=", "--report="].iter().any(|option| one.starts_with(option)) => {}
+                "-o" | "--out" | "--threads" | "--at-once" | "--cache" | "--report" => drop(words.next()),
+                one if ["-o", "--out=", "--threads=", "--at-once=", "--cache=", "--report="]
+                    .iter()
+                    .any(|option| one.starts_with(option)) => {}
                 _ => kept.push(word),
             }
         }

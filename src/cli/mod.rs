@@ -35,6 +35,7 @@ mod sweep;
 mod trace;
 mod verify;
 mod words;
+mod workers;
 
 use clap::{Parser, Subcommand};
 use std::process::ExitCode;

@@ -2,28 +2,29 @@
 
 use super::common::is_quiet;
 use anyhow::Context;
-use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
+use indicatif::{MultiProgress, ProgressBar, ProgressDrawTarget, ProgressStyle};
 use lodray::format::{Scene, remove_abandoned, temporary_beside, write_and_rename};
 use lodray::mesh::MeshFormat;
 use serde::Serialize;
 use std::path::Path;
+use std::sync::LazyLock;
 use std::time::Duration;
 
-/// Where progress is shown: standard error, if it is a terminal and nobody wants quiet.
-fn shown() -> ProgressDrawTarget {
+/// All that is shown of progress, one under the other: standard error, if it is a terminal and nobody wants quiet.
+static PROGRESS: LazyLock<MultiProgress> = LazyLock::new(|| {
     // indicatif draws only on terminals.
-    if is_quiet() { ProgressDrawTarget::hidden() } else { ProgressDrawTarget::stderr() }
-}
+    MultiProgress::with_draw_target(if is_quiet() { ProgressDrawTarget::hidden() } else { ProgressDrawTarget::stderr() })
+});
 
 /// A progress bar on standard error; silent where that is not a terminal.
 pub fn progress(steps: u64, what: &str) -> ProgressBar {
     let style = ProgressStyle::with_template("{msg:24} {wide_bar} {percent:>3}% {eta:>4}").unwrap_or_else(|_| ProgressStyle::default_bar());
-    ProgressBar::with_draw_target(Some(steps), shown()).with_style(style).with_message(what.to_owned())
+    PROGRESS.add(ProgressBar::new(steps)).with_style(style).with_message(what.to_owned())
 }
 
 /// Does work of unknown length; a spinner says what on a terminal.
 pub fn busy<T>(what: &str, work: impl FnOnce() -> T) -> T {
-    let spinner = ProgressBar::with_draw_target(None, shown()).with_style(ProgressStyle::default_spinner()).with_message(what.to_owned());
+    let spinner = PROGRESS.add(ProgressBar::no_length()).with_style(ProgressStyle::default_spinner()).with_message(what.to_owned());
     if !spinner.is_hidden() {
         spinner.enable_steady_tick(Duration::from_millis(100));
     }

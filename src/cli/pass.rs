@@ -92,10 +92,7 @@ fn in_one_line(error: MachineError) -> anyhow::Error {
         }
         MachineError::NotShipped { name, .. } if !name.contains('/') => {
             let name = name.trim_end_matches(".toml");
-            anyhow::anyhow!(
-                "no {name} comes with the program; there are: {}; a file's name ends in .toml",
-                Machine::all_shipped().join(", ")
-            )
+            anyhow::anyhow!("there is no machine {name}; there are: {}; a file's name ends in .toml", Machine::all_shipped().join(", "))
         }
         other => other.into(),
     }

@@ -6,9 +6,10 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 /// What comes with the program: path below `machines`, and text; the devices of `machines/dram` are the DRAM model's own.
-const SHIPPED: [(&str, &str); 11] = [
+const SHIPPED: [(&str, &str); 12] = [
     ("haydel2023.toml", include_str!("../../machines/haydel2023.toml")),
     ("haydel2023-ddr3.toml", include_str!("../../machines/haydel2023-ddr3.toml")),
+    ("haydel2023-mshr4.toml", include_str!("../../machines/haydel2023-mshr4.toml")),
     ("haydel2023-public.toml", include_str!("../../machines/haydel2023-public.toml")),
     ("packet.toml", include_str!("../../machines/packet.toml")),
     ("turing2018.toml", include_str!("../../machines/turing2018.toml")),

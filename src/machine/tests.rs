@@ -18,7 +18,7 @@ fn broken(from: &str, to: &str) -> Result<Machine, MachineError> {
 
 #[test]
 fn the_papers_machines_have_the_papers_figures() {
-    for name in ["haydel2023", "haydel2023-ddr3"] {
+    for name in ["haydel2023", "haydel2023-mshr4", "haydel2023-ddr3"] {
         let m = shipped(name);
         assert_eq!((m.cores.groups, m.cores.per_group, m.cores.total(), m.cores.clock_mhz), (64, 16, 1024, 2000));
         assert_eq!((m.l1.bytes, m.l1.ways, m.l1.banks, m.l1.latency_cycles, m.l1.line_bytes), (16 << 10, 2, 4, 1, 32));
@@ -26,7 +26,13 @@ fn the_papers_machines_have_the_papers_figures() {
         assert_eq!((m.l1.lines(), m.l1.sets_per_bank(), m.l2.lines(), m.l2.sets_per_bank()), (512, 64, 65_536, 512));
         assert_eq!(m.dram.channels, 8);
     }
-    assert_eq!(shipped("haydel2023").dram.device, "dram/gddr5.toml");
+    // One is the other with the registers of the authors' simulator and another mapping.
+    let (ours, mut theirs) = (shipped("haydel2023"), shipped("haydel2023-mshr4"));
+    assert_eq!((ours.l1.mshrs, ours.l2.mshrs, theirs.l1.mshrs, theirs.l2.mshrs), (8, 32, 4, 4));
+    assert_ne!(ours.dram.mapping, theirs.dram.mapping);
+    (theirs.name, theirs.l1, theirs.l2, theirs.dram) = (ours.name.clone(), ours.l1.clone(), ours.l2.clone(), ours.dram.clone());
+    assert_eq!(theirs, ours);
+    assert_eq!(ours.dram.device, "dram/gddr5.toml");
     assert_eq!(shipped("haydel2023").energy.caches, "cacti22");
     assert_eq!(shipped("haydel2023-ddr3").dram.device, "dram/ddr3-scaled.toml");
     assert_eq!(shipped("haydel2023-ddr3").energy.caches, "cacti22-older");
@@ -71,7 +77,7 @@ fn all_machines_of_the_folder_are_shipped_and_load_alike() {
     let mut known = Machine::all_shipped();
     known.sort();
     assert_eq!(names, known);
-    assert_eq!(names.len(), 5);
+    assert_eq!(names.len(), 6);
 }
 
 /// A number without a source beside it is a bug of the file.
@@ -118,7 +124,7 @@ fn an_impossible_value_names_file_key_and_reason() {
         ("bytes = 16384", "bytes = 4194304", "l1.bytes must be at most l2.bytes = 2097152, but is 4194304"),
         ("bytes = 2097152", "bytes = 2147483648", "l2.bytes must be 1 to 1073741824"),
         ("latency_cycles = 4", "latency_cycles = 0", "l2.latency_cycles must be"),
-        ("mshrs = 4", "mshrs = 0", "l2.mshrs must be"),
+        ("mshrs = 32", "mshrs = 0", "l2.mshrs must be"),
         ("targets = 64", "targets = 0", "l2.targets must be"),
         ("queue = 64         # [A3]", "queue = 0 # [A3]", "l2.queue must be"),
         ("request_cycles = 1", "request_cycles = 0", "crossbar.request_cycles must be"),
@@ -131,7 +137,7 @@ fn an_impossible_value_names_file_key_and_reason() {
         ("\"dram/gddr5.toml\"", "\"gddr5\"", "dram.device must be a file's path, with .toml, but is \"gddr5\""),
         ("channels = 8", "channels = 6", "dram.channels must be a power of two up to 65536, but is 6"),
         ("queue = 64                 # own", "queue = 0", "dram.queue must be"),
-        ("queue = 64                 # own", "queue = 64\nmapping = \"\"", "dram.mapping must not be empty"),
+        ("mapping = \"row:rank:bank:group:channel:column\"", "mapping = \"\"", "dram.mapping must not be empty"),
         ("\"cacti22\"", "\"../cacti22\"", "energy.caches must be a name of letters"),
         ("\"blocks22\"", "\"\"", "energy.blocks must be a name of letters"),
         ("\"Haydel 2023\"", "\"\"", "name must not be empty"),
@@ -148,7 +154,7 @@ fn an_unknown_missing_or_mistyped_key_names_file_and_key() {
         ("groups = 64", "groups = 64\nthreads = 2", "`threads`"),
         ("[units]", "[unit]", "`unit`"),
         ("ways = 2 ", "way = 2 ", "`way`"),
-        ("mshrs = 4", "", "`mshrs`"),
+        ("mshrs = 32", "", "`mshrs`"),
         ("queue = 64                 # own", "queue = 64\nwrites = 1", "`writes`"),
         ("groups = 64", "groups = \"many\"", "groups = \"many\""),
         ("groups = 64", "groups = -1", "groups = -1"),

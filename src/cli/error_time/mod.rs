@@ -7,7 +7,6 @@ mod measure;
 mod options;
 mod plan;
 mod row;
-mod workers;
 
 use super::cache::Cache;
 use super::folder::RunFolder;

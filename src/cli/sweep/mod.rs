@@ -7,7 +7,9 @@ mod labels;
 mod list;
 mod rows;
 
+use super::args::whole;
 use super::cache::{Cache, CacheArgs};
+use super::common::MAX_THREADS;
 use super::folder::{Overrule, RunFolder, one_run};
 use super::job;
 use super::job_lines::{JobLines, keep_aside};
@@ -17,7 +19,7 @@ use super::pass::{Outcome, Pass, PassRays, Target};
 use super::pictures::{Shot, shoot};
 use super::render::compare_shots;
 use super::report::PageArgs;
-use anyhow::Context;
+use super::workers::in_order;
 use lodray::format::Scene;
 use lodray::method::{Method, reference};
 use lodray::rays::{Camera, ModelSpace};
@@ -25,6 +27,7 @@ use lodray::report::page::{Documents, ImageFigures, Simulation};
 use std::collections::HashSet;
 use std::path::PathBuf;
 use std::process::ExitCode;
+use std::sync::{Arc, Mutex, PoisonError};
 
 pub use jobs::{Jobs, Origin, SceneJobs, ViewJob};
 pub use list::ListText;
@@ -44,6 +47,10 @@ pub struct Args {
     /// Folder for the results, one line of JSON for each job, their table, and charts (SVG) that set views, methods and machines side by side
     #[arg(short, long, long_help = one_run(FOLDER))]
     out: PathBuf,
+    /// Frames simulated at once, 1 to 1024 (default: as many as there are threads, over the machines that share a frame's rays); each holds some of
+    /// its steps in memory, at most 150 MB and mostly far less. Results are the same, in the same order, with any number
+    #[arg(long, value_name = "N", value_parser = whole::<usize>(1..=MAX_THREADS), allow_hyphen_values = true)]
+    at_once: Option<usize>,
     #[command(flatten)]
     overrule: Overrule,
     #[command(flatten)]
@@ -63,6 +70,7 @@ struct Group<'a> {
 struct Sweep<'a> {
     jobs: &'a Jobs,
     cache: &'a Cache,
+    at_once: usize,
     rows: JobLines<Row>,
 }
 
@@ -78,7 +86,9 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
     folder.keep(LINES)?;
     keep_aside(&mut folder, &lines)?;
     let done = rows.done();
-    let mut sweep = Sweep { jobs: &jobs, cache: &cache, rows };
+    // Each machine's replay is a thread's work.
+    let at_once = args.at_once.unwrap_or_else(|| rayon::current_num_threads().div_ceil(jobs.targets.len().max(1)));
+    let mut sweep = Sweep { jobs: &jobs, cache: &cache, at_once, rows };
     let mut keys = Vec::new();
     for scene in &jobs.scenes {
         let groups = sweep.groups(scene, &done, &mut keys)?;
@@ -140,19 +150,19 @@ impl<'a> Sweep<'a> {
             Ok(made) => made,
             Err(error) => return groups.iter().try_for_each(|group| self.failed(scene, group, &error)),
         };
-        let mut workshop =
-            Workshop { jobs: self.jobs, cache: self.cache, space: ModelSpace::of(&made), scene: &made, built: Vec::new(), truth: None };
-        for group in groups {
-            match workshop.group(group) {
-                Err(error) => self.failed(scene, group, &error)?,
-                Ok(rows) => {
-                    for row in rows {
-                        self.rows.add(Row { scene: scene.name.clone(), ..row })?;
-                    }
-                }
-            }
-        }
-        Ok(())
+        let workshop = Workshop {
+            jobs: self.jobs,
+            cache: self.cache,
+            space: ModelSpace::of(&made),
+            scene: &made,
+            built: Mutex::default(),
+            truth: Mutex::default(),
+        };
+        let work = |group: &Group<'_>| workshop.group(group);
+        in_order(groups, self.at_once, work, |group, rows| match rows {
+            Err(error) => self.failed(scene, group, &error),
+            Ok(rows) => rows.into_iter().try_for_each(|row| self.rows.add(Row { scene: scene.name.clone(), ..row })),
+        })
     }
 
     fn failed(&mut self, scene: &SceneJobs, group: &Group<'_>, error: &anyhow::Error) -> anyhow::Result<()> {
@@ -167,37 +177,35 @@ fn failure(key: &str, error: &anyhow::Error) -> Row {
     Row { key: key.to_owned(), scene: String::new(), result: None, image: None, error: Some(crate::one_line(error)) }
 }
 
-/// A view, and its picture.
-type LastShot = Option<(ViewJob, Shot)>;
-
-/// A scene and what was made of it.
+/// A scene and what was made of it, for several groups at once.
 struct Workshop<'a> {
     jobs: &'a Jobs,
     cache: &'a Cache,
     scene: &'a Scene,
     space: ModelSpace,
-    /// Methods by all that what they need depends on, which is not their quality.
-    built: Vec<(Chosen, Box<dyn Method + 'a>)>,
-    /// The reference, and its picture of the last view.
-    truth: Option<(Box<dyn Method + 'a>, LastShot)>,
+    /// Methods by all that what they need depends on, which is not their quality. Who makes one keeps the others waiting: all threads are at it.
+    built: Mutex<Vec<(Chosen, Arc<dyn Method + 'a>)>>,
+    /// Pictures are taken one after the other, each by all threads.
+    truth: Mutex<Truth<'a>>,
 }
 
-impl Workshop<'_> {
-    fn group(&mut self, group: &Group<'_>) -> anyhow::Result<Vec<Row>> {
+/// The reference, and its picture of the last view.
+#[derive(Default)]
+struct Truth<'a> {
+    reference: Option<Box<dyn Method + 'a>>,
+    last: Option<(ViewJob, Shot)>,
+}
+
+impl<'a> Workshop<'a> {
+    fn group(&self, group: &Group<'_>) -> anyhow::Result<Vec<Row>> {
         let camera = group.view.camera(&self.space)?;
         job::check(self.scene, &camera, group.chosen.delta())?;
         if self.jobs.error {
             check_normals(self.scene, "the error of a picture")?;
         }
-        let at = self.made(group.chosen)?;
-        let image = if self.jobs.error { Some(self.image_error(group.view, at, group.chosen.delta(), &camera)?) } else { None };
-        let pass = Pass {
-            scene: self.scene,
-            space: &self.space,
-            chosen: group.chosen,
-            method: &*self.built[at].1,
-            rays: PassRays::Camera(camera),
-        };
+        let method = self.made(group.chosen)?;
+        let image = if self.jobs.error { Some(self.image_error(group, &*method, &camera)?) } else { None };
+        let pass = Pass { scene: self.scene, space: &self.space, chosen: group.chosen, method: &*method, rays: PassRays::Camera(camera) };
         let targets: Vec<_> = group.jobs.iter().map(|(_, target)| target.clone()).collect();
         let row = |(result, (key, _)): (Outcome, &(String, Target))| match result {
             Err(error) => failure(key, &error),
@@ -211,28 +219,32 @@ impl Workshop<'_> {
         Ok(pass.run(&targets)?.into_iter().zip(&group.jobs).map(row).collect())
     }
 
-    /// Where the method is that was made for these choices, now or before.
-    fn made(&mut self, chosen: &Chosen) -> anyhow::Result<usize> {
+    /// The method that is made for these choices, now or before.
+    fn made(&self, chosen: &Chosen) -> anyhow::Result<Arc<dyn Method + 'a>> {
         let key = Chosen { knobs: chosen.knobs.clone().of_scene(chosen.method.knobs), ..*chosen };
-        if let Some(at) = self.built.iter().position(|(of, _)| *of == key) {
-            return Ok(at);
+        let mut built = self.built.lock().unwrap_or_else(PoisonError::into_inner);
+        if let Some((_, method)) = built.iter().find(|(of, _)| *of == key) {
+            return Ok(Arc::clone(method));
         }
-        let (method, _) = chosen.make(self.scene, self.cache)?;
-        self.built.push((key, method));
-        Ok(self.built.len() - 1)
+        let method: Arc<dyn Method + 'a> = Arc::from(chosen.make(self.scene, self.cache)?.0);
+        built.push((key, Arc::clone(&method)));
+        Ok(method)
     }
 
-    fn image_error(&mut self, view: &ViewJob, at: usize, delta: f64, camera: &Camera) -> anyhow::Result<ImageFigures> {
-        if self.truth.is_none() {
-            self.truth = Some((Chosen::plain(&reference::METHOD).make(self.scene, self.cache)?.0, None));
-        }
-        let (reference, last) = self.truth.as_mut().context("no reference")?;
-        if last.as_ref().is_none_or(|(of, _)| of != view) {
-            *last = Some((view.clone(), shoot(&**reference, self.scene, &self.space, camera, delta, "full resolution")));
-        }
-        let (_, truth) = last.as_ref().context("no picture of the reference")?;
-        let shot = shoot(&*self.built[at].1, self.scene, &self.space, camera, delta, "picture");
-        let error = compare_shots(&shot, truth, self.scene, camera);
+    fn image_error(&self, group: &Group<'_>, method: &dyn Method, camera: &Camera) -> anyhow::Result<ImageFigures> {
+        let (view, delta) = (group.view, group.chosen.delta());
+        let mut truth = self.truth.lock().unwrap_or_else(PoisonError::into_inner);
+        let Truth { reference, last } = &mut *truth;
+        let reference = match reference {
+            Some(reference) => reference,
+            None => reference.insert(Chosen::plain(&reference::METHOD).make(self.scene, self.cache)?.0),
+        };
+        let full = match last {
+            Some((of, full)) if *of == *view => full,
+            _ => &last.insert((view.clone(), shoot(&**reference, self.scene, &self.space, camera, delta, "full resolution"))).1,
+        };
+        let shot = shoot(method, self.scene, &self.space, camera, delta, "picture");
+        let error = compare_shots(&shot, full, self.scene, camera);
         Ok(ImageFigures {
             rmse: error.image.rmse,
             psnr_db: error.image.psnr_db,

@@ -47,9 +47,14 @@ fn odd_device() -> Device {
     device
 }
 
+/// So many channels, whose mapping is the one for streams.
+fn streams(device: Device, channels: u32) -> DramConfig {
+    DramConfig { mapping: super::mapping::STREAM_MAPPING.to_owned(), ..DramConfig::new(device, channels) }
+}
+
 /// One channel of a device, commands noted.
 fn single(device: &Device) -> Dram {
-    made(&DramConfig::new(device.clone(), 1))
+    made(&streams(device.clone(), 1))
 }
 
 /// A DRAM, commands noted.
@@ -59,12 +64,12 @@ fn made(config: &DramConfig) -> Dram {
     dram
 }
 
-/// The line at a place by the default mapping with one channel.
+/// The line at a place by the mapping for streams with one channel.
 fn line(device: &Device, rank: u32, group: u32, bank: u32, row: u32, column: u32) -> u64 {
     let o = &device.organisation;
     let parts = [(rank, o.ranks), (bank, o.banks_per_group), (column, o.columns), (group, o.bank_groups)];
     let line = parts.iter().fold(u64::from(row), |line, &(part, size)| line * u64::from(size) + u64::from(part));
-    let place = super::mapping::Mapping::new(super::mapping::DEFAULT_MAPPING, 1, o).unwrap().place(line);
+    let place = super::mapping::Mapping::new(super::mapping::STREAM_MAPPING, 1, o).unwrap().place(line);
     assert_eq!(place, Place { channel: 0, rank, group, bank, row, column });
     line
 }

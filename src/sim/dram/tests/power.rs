@@ -1,6 +1,6 @@
 //! Counts and energies against hand-computed values.
 
-use super::{Random, Wish, drive, odd_device, single};
+use super::{Random, Wish, drive, odd_device, single, streams};
 use crate::sim::dram::trace::Given;
 use crate::sim::dram::{ChannelCounts, Controller, Device, Dram, DramConfig, DramEnergy, DramPrices, PagePolicy};
 
@@ -52,7 +52,7 @@ fn idle_gddr6_draws_from_both_supplies() {
 #[test]
 fn idle_paper_machine_draws_about_14_watts() {
     let device = Device::preset("ddr3-scaled").unwrap();
-    let mut dram = Dram::new(&DramConfig::new(device, 8)).unwrap();
+    let mut dram = Dram::new(&streams(device, 8)).unwrap();
     dram.advance(MILLISECOND_PS, &mut |_, _| {});
     let watts = milliwatts(dram.energy().total_pj()) * 1e-3;
     // 128 chips x 1.5 V x 70 mA = 13.44 W, and refreshes.
@@ -96,7 +96,7 @@ fn random_channel() {
 #[test]
 fn power_down_lowers_the_background() {
     let device = Device::preset("gddr5").unwrap();
-    let mut config = DramConfig::new(device, 1);
+    let mut config = streams(device, 1);
     config.controller.power_down = Some(20);
     let mut dram = Dram::new(&config).unwrap();
     dram.advance(MILLISECOND_PS, &mut |_, _| {});
@@ -151,7 +151,7 @@ fn counts_are_those_of_the_commands() {
     let device = odd_device();
     for (page, seed) in [(PagePolicy::Open, 5), (PagePolicy::Timeout(30), 6)] {
         let controller = Controller { page, ..Controller::default() };
-        let mut dram = super::made(&DramConfig { controller, ..DramConfig::new(device.clone(), 1) });
+        let mut dram = super::made(&DramConfig { controller, ..streams(device.clone(), 1) });
         let mut random = Random::new(seed);
         let wishes: Vec<Wish> = (0..3000).map(|k| (k * 20 * 7, random.below(1 << 11), random.below(3) == 0)).collect();
         drive(&mut dram, &wishes);

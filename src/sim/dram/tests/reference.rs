@@ -3,8 +3,8 @@
 
 use super::checker::CommandKind::{self, Act, Pre, Rd, Ref, Wr};
 use super::checker::{Event, Rule, banks_per_rank, events, rules};
-use super::{Random, Wish, made, odd_device};
-use crate::sim::dram::mapping::{DEFAULT_MAPPING, Mapping};
+use super::{Random, Wish, made, odd_device, streams};
+use crate::sim::dram::mapping::{Mapping, STREAM_MAPPING};
 use crate::sim::dram::trace::{Command, Given};
 use crate::sim::dram::{Controller, Device, DramConfig, Scheduler};
 
@@ -180,7 +180,7 @@ impl Reference<'_> {
 
 /// The commands for requests that come at whole clocks, until none waits.
 fn reference(device: &Device, controller: &Controller, wishes: &[Wish]) -> Vec<Command> {
-    let mapping = Mapping::new(DEFAULT_MAPPING, 1, &device.organisation).unwrap();
+    let mapping = Mapping::new(STREAM_MAPPING, 1, &device.organisation).unwrap();
     let banks = device.banks() as usize;
     let mut reference = Reference {
         device,
@@ -234,7 +234,7 @@ fn commands_are_those_of_a_search_clock_by_clock() {
                 (clock * device.clock_ps, line, random.below(4) < writes)
             };
             let wishes: Vec<Wish> = (0..400).map(|_| wish()).collect();
-            let mut dram = made(&DramConfig { controller: controller.clone(), ..DramConfig::new(device.clone(), 1) });
+            let mut dram = made(&DramConfig { controller: controller.clone(), ..streams(device.clone(), 1) });
             for (id, &(time, line, write)) in wishes.iter().enumerate() {
                 dram.advance(time.saturating_sub(1), &mut |_, _| {}); // the command of this very clock knows the request
                 dram.push(time, line, id as u64, write);

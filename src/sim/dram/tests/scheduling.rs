@@ -1,6 +1,6 @@
 //! Who goes first, who must wait, and when rows are closed.
 
-use super::{Wish, drive, line, made, odd_device, single};
+use super::{Wish, drive, line, made, odd_device, single, streams};
 use crate::sim::dram::trace::Given;
 use crate::sim::dram::{Controller, Device, DramConfig, PagePolicy, Scheduler};
 
@@ -9,7 +9,7 @@ fn gddr5() -> Device {
 }
 
 fn with(controller: Controller) -> DramConfig {
-    DramConfig { controller, ..DramConfig::new(gddr5(), 1) }
+    DramConfig { controller, ..streams(gddr5(), 1) }
 }
 
 /// Ids by the time of their data.

@@ -1,8 +1,8 @@
 //! What a channel delivers, and what bounds it.
 
-use super::{Random, Wish, drive, line, made, odd_device, single};
+use super::{Random, Wish, drive, line, made, odd_device, single, streams};
 use crate::num::LINE_BYTES;
-use crate::sim::dram::{ChannelCounts, Device, Dram, DramConfig};
+use crate::sim::dram::{ChannelCounts, Device, Dram};
 
 /// Clocks until the last data of reads of `lines`, pushed as fast as they are taken.
 fn clocks(dram: &mut Dram, device: &Device, lines: impl Iterator<Item = u64>) -> u64 {
@@ -15,7 +15,7 @@ fn streams_reach_nine_tenths_of_the_peak() {
     for device in Device::presets().map(|name| Device::preset(name).unwrap()) {
         for channels in [1, 8] {
             let count = 20_000 * u64::from(channels);
-            let mut dram = made(&DramConfig::new(device.clone(), channels));
+            let mut dram = made(&streams(device.clone(), channels));
             let seconds = (clocks(&mut dram, &device, 0..count) * device.clock_ps) as f64 * 1e-12;
             let share = (count * LINE_BYTES) as f64 / seconds / (device.peak_bytes_per_second() * f64::from(channels));
             assert!((0.9..1.0).contains(&share), "{} {channels}: {share}", device.name);
@@ -123,7 +123,7 @@ fn channels_do_not_disturb_each_other() {
     let device = Device::preset("gddr5").unwrap();
     let mut random = Random::new(3);
     let wishes: Vec<Wish> = (0..5000).map(|k| (k * 900, random.below(1 << 25), random.below(4) == 0)).collect();
-    let mut all = made(&DramConfig::new(device.clone(), 8));
+    let mut all = made(&streams(device.clone(), 8));
     let together = drive(&mut all, &wishes);
     let mut sum = ChannelCounts::default();
     all.counts().iter().for_each(|counts| sum.add(counts));
@@ -131,7 +131,7 @@ fn channels_do_not_disturb_each_other() {
     for channel in 0..8 {
         let mine: Vec<_> = (0..wishes.len()).filter(|&k| wishes[k].1 % 8 == channel).collect();
         assert!(mine.len() > 500);
-        let mut one = made(&DramConfig::new(device.clone(), 8));
+        let mut one = made(&streams(device.clone(), 8));
         let alone = drive(&mut one, &mine.iter().map(|&k| wishes[k]).collect::<Vec<_>>());
         assert!(mine.iter().zip(&alone).all(|(&k, times)| together[k] == *times), "channel {channel}");
         let (commands, all_commands) = (one.trace(channel as usize), all.trace(channel as usize));

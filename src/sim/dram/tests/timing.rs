@@ -1,7 +1,7 @@
 //! Every timing rule, on random traffic: never broken, and kept to the clock.
 
 use super::checker::{Findings, check};
-use super::{Random, Wish, drive, made, odd_device};
+use super::{Random, Wish, drive, made, odd_device, streams};
 use crate::sim::dram::trace::Given;
 use crate::sim::dram::{Controller, Device, DramConfig, PagePolicy};
 use std::collections::BTreeSet;
@@ -53,7 +53,7 @@ fn all_findings(device: &Device, judge: &Device, count: usize) -> Vec<(String, F
     let mut all = Vec::new();
     for controller in controllers() {
         for (seed, shape) in SHAPES.into_iter().enumerate() {
-            let mut dram = made(&DramConfig { controller: controller.clone(), ..DramConfig::new(device.clone(), 1) });
+            let mut dram = made(&DramConfig { controller: controller.clone(), ..streams(device.clone(), 1) });
             drive(&mut dram, &traffic(shape, device, seed as u64, count));
             let trace = dram.trace(0);
             let accesses = trace.iter().filter(|command| matches!(command.given, Given::Read { .. } | Given::Write { .. })).count();
@@ -152,7 +152,7 @@ fn checker_finds_what_is_a_clock_too_early() {
 fn same_traffic_gives_the_same_commands() {
     let device = odd_device();
     for controller in controllers() {
-        let config = DramConfig { controller, ..DramConfig::new(device.clone(), 1) };
+        let config = DramConfig { controller, ..streams(device.clone(), 1) };
         let wishes = traffic(SHAPES[4], &device, 99, 3000);
         let (mut one, mut other) = (made(&config), made(&config));
         assert_eq!(drive(&mut one, &wishes), drive(&mut other, &wishes));

@@ -189,7 +189,8 @@ fn every_list_of_jobs_has_its_rows() {
         let list: toml::Table = fs::read_to_string(&path).unwrap().parse().unwrap();
         for entry in list["machine"].as_array().unwrap() {
             let name = entry["name"].as_str().unwrap();
-            let mut variants = vec![Machine::shipped(name).unwrap()];
+            // A file: scripts/figures makes it, from haydel2023.
+            let mut variants = vec![Machine::shipped(if name.ends_with(".toml") { "haydel2023" } else { name }).unwrap()];
             for (key, values) in entry.get("set").and_then(toml::Value::as_table).into_iter().flatten() {
                 let values = values.as_array().cloned().unwrap_or_else(|| vec![values.clone()]);
                 let text = |value: &toml::Value| value.as_str().map_or_else(|| value.as_integer().unwrap().to_string(), str::to_owned);
