@@ -150,7 +150,7 @@ fn lines_by_distance() {
     desk.run("generate terrain --levels 3 --base 32 -o a.lod");
     let report = desk.json("lines a.lod --distances 1.5,6 --size 32x32 --bvh32");
     assert_eq!(report["distances"], serde_json::json!([1.5, 6.0]));
-    assert_eq!(report["rows"].as_array().unwrap().len(), 2 + 27);
+    assert_eq!(report["rows"].as_array().unwrap().len(), 2 + 36);
     for field in ["ratio", "base_share", "mean_level"] {
         assert_eq!(report[field].as_array().unwrap().len(), 2, "{field}");
     }

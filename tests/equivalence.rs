@@ -58,8 +58,13 @@ impl Bench<'_> {
 }
 
 fn full_bvhs(h: &Hierarchy) -> Vec<FullBvh> {
-    let variants =
-        [(NodeBoxes::Local, LeafLayout::Line, 4), (NodeBoxes::Codes, LeafLayout::Indexed, 2), (NodeBoxes::Wide, LeafLayout::Packed, 1)];
+    let variants = [
+        (NodeBoxes::Local, LeafLayout::Line, 4),
+        (NodeBoxes::Codes, LeafLayout::Indexed, 2),
+        (NodeBoxes::Wide, LeafLayout::Packed, 1),
+        (NodeBoxes::Local, LeafLayout::Block, 16),
+        (NodeBoxes::Wide, LeafLayout::Block, 8),
+    ];
     let build = |(boxes, layout, size)| FullBvh::build(h, &FullOptions::new(size, boxes, layout)).expect("a valid model");
     variants.map(build).into()
 }

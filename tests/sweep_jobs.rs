@@ -62,7 +62,7 @@ fn a_mistake_is_named_with_its_place_before_anything_runs() {
         (format!("{HEAD}[scene]\nfile = \"a.lod\"\n{MACHINE}"), "line 4: invalid type: map, expected a sequence; [[scene]] and"),
         (format!("{HEAD}{SCENE}{MACHINE}x = = 3\n"), "line 8: "),
         // Values out of range.
-        (format!("{HEAD}leaf_size = 3\n{SCENE}{MACHINE}"), "line 4: leaf_size must be 1, 2 or 4, but is 3"),
+        (format!("{HEAD}leaf_size = 3\n{SCENE}{MACHINE}"), "line 4: leaf_size must be 1, 2, 4, 8 or 16, but is 3"),
         (format!("{HEAD}deltas = [1, \"fine\"]\n{SCENE}{MACHINE}"), "line 4: deltas: 'fine' is not a quality"),
         (format!("{HEAD}deltas = [nan]\n{SCENE}{MACHINE}"), "line 4: deltas: 'NaN' is not a quality"),
         (scene("distances = [1, -1]"), "line 6: distances: '-1' is not a distance"),

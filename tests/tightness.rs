@@ -293,7 +293,7 @@ impl<'a> Full<'a> {
         let points = |slot| bvh.leaves.triangle(slot).0.map(|p: [i32; 3]| p.map(i64::from));
         let (is_wide, is_line) = (matches!(*bvh.nodes, FullNodes::Boxes32(_)), matches!(*bvh.nodes, FullNodes::Local(_)));
         let leaf = |to: ChildRef| {
-            let bounds = Bounds::around(slots(to).flat_map(points));
+            let bounds = Bounds::around(leaf_of(bvh, to).slots.flat_map(points));
             if is_wide { bounds } else { bounds.at_codes() }
         };
         let mut nodes = vec![[None; 4]; bvh.nodes.len()];
@@ -314,9 +314,10 @@ impl<'a> Full<'a> {
                 return self.node(walk, to.index.get() as usize);
             }
             let mut lines = 0;
-            self.bvh.leaves.lines(slots(to), |address| lines += u64::from(address.is_multiple_of(LINE_BYTES)));
+            let leaf = leaf_of(self.bvh, to);
+            self.bvh.leaves.lines(&leaf, |address| lines += u64::from(address.is_multiple_of(LINE_BYTES)));
             walk.reads(bvh::LEAVES, lines);
-            for slot in slots(to) {
+            for slot in leaf.slots {
                 let (points, id) = self.bvh.leaves.triangle(slot);
                 let (level, bits) = (self.bvh.levels, 2 * self.bvh.levels);
                 walk.triangle(TriangleId { tree: id >> bits, level, node: id & ((1 << bits) - 1) }, points.map(Point::from_i32));
@@ -333,10 +334,9 @@ fn full_child(bvh: &FullBvh, index: usize, k: usize) -> ChildRef {
     }
 }
 
-/// A leaf's triangles.
-fn slots(leaf: ChildRef) -> std::ops::Range<usize> {
-    let first = leaf.index.get() as usize;
-    first..first + leaf.count.get() as usize + 1
+/// The leaf of a reference.
+fn leaf_of(bvh: &FullBvh, to: ChildRef) -> bvh::Leaf {
+    bvh.leaves.leaf(to.index.get() as usize, to.count.get() as usize + 1)
 }
 
 /// Sums over rays: by the blocks, and by exact boxes.
@@ -375,8 +375,13 @@ fn compare(h: &Hierarchy, rays: &[Ray], lod: &mut Sums, full: &mut Sums) {
     let h = &scene.decode();
     let exact = Lod::new(h, LodImage::of(&scene));
     let mut blocks = LodTraverser::new(LodImage::of(&scene));
-    let variants =
-        [(NodeBoxes::Local, LeafLayout::Line, 4), (NodeBoxes::Codes, LeafLayout::Packed, 2), (NodeBoxes::Wide, LeafLayout::Indexed, 1)];
+    let variants = [
+        (NodeBoxes::Local, LeafLayout::Line, 4),
+        (NodeBoxes::Codes, LeafLayout::Packed, 2),
+        (NodeBoxes::Wide, LeafLayout::Indexed, 1),
+        (NodeBoxes::Local, LeafLayout::Block, 16),
+        (NodeBoxes::Wide, LeafLayout::Block, 8),
+    ];
     let bvhs = variants.map(|(boxes, layout, size)| FullBvh::build(h, &FullOptions::new(size, boxes, layout)).expect("a valid model"));
     for ray in rays {
         let (mut counts, mut sink) = (StepCounts::default(), Crossings::default());

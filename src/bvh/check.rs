@@ -303,7 +303,7 @@ mod tests {
         assert_eq!(build(&[], &Options::with_leaf(1)), Err(BvhError::Empty));
         assert_eq!(build(&[good], &Options::with_leaf(0)), Err(BvhError::LeafSize(0)));
         assert_eq!(build(&[good], &Options::with_leaf(5)), Err(BvhError::LeafSize(5)));
-        let costs = Costs { node: f64::NAN, primitive: 1.0 };
+        let costs = Costs { node: f64::NAN, ..Costs::default() };
         assert_eq!(build(&[good], &Options { costs, ..Options::with_leaf(1) }), Err(BvhError::Costs));
         for bad in [Box32 { lo: [1, 0, 0], hi: [0; 3] }, Box32 { lo: [i32::MIN; 3], hi: [0; 3] }, Box32 { lo: [0; 3], hi: [i32::MAX; 3] }] {
             assert_eq!(build(&[good, good, bad], &Options::with_leaf(1)), Err(BvhError::IllegalBox(2)));

@@ -4,7 +4,7 @@
 //! choice of children is taken only if each child still fits what then remains, so the bound holds whatever the costs say.
 
 use super::build::{Binary, Node, Prim};
-use super::plan::{Plan, plans};
+use super::plan::{LeafCost, Plan, plans};
 use super::{Box32, Child, Collapse, Options, QuadNode};
 use rayon::prelude::*;
 
@@ -17,7 +17,7 @@ pub(crate) struct BinaryTree<'a> {
     tree: &'a Binary,
     plans: Vec<Plan>,
     collapse: Collapse,
-    max_leaf: u32,
+    leaf: &'a LeafCost<'a>,
 }
 
 /// A subtree: the primitives `begin..end`, split at `split` if there are several.
@@ -47,8 +47,8 @@ impl Parts {
 }
 
 impl<'a> BinaryTree<'a> {
-    pub fn new(prims: &'a [Prim], tree: &'a Binary, options: &Options) -> Self {
-        Self { prims, tree, plans: plans(prims, tree, options), collapse: options.collapse, max_leaf: options.max_leaf }
+    pub fn new(prims: &'a [Prim], tree: &'a Binary, options: &Options, leaf: &'a LeafCost<'a>) -> Self {
+        Self { prims, tree, plans: plans(prims, tree, options.costs.node, leaf), collapse: options.collapse, leaf }
     }
 
     fn whole(&self) -> Part {
@@ -75,7 +75,7 @@ impl<'a> BinaryTree<'a> {
         count == 1
             || match self.collapse {
                 Collapse::Optimal => self.plan(p).one == 0,
-                Collapse::Greedy => count <= self.max_leaf,
+                Collapse::Greedy => (self.leaf)(&self.prims[p.begin as usize..p.end as usize]).is_some(),
             }
     }
 
@@ -159,7 +159,7 @@ impl<'a> BinaryTree<'a> {
         for (k, &p) in parts.as_slice().iter().enumerate() {
             quad.boxes[k] = self.bounds(p);
             quad.children[k] = if self.is_leaf(p) {
-                Child::Leaf { first: p.begin, count: (p.end - p.begin) as u8 } // at most 4
+                Child::Leaf { first: p.begin, count: (p.end - p.begin) as u8 } // at most 16
             } else {
                 next += 1;
                 Child::Inner(next - 1)

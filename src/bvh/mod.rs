@@ -8,7 +8,8 @@ pub(crate) mod build;
 pub(crate) mod check;
 pub(crate) mod collapse;
 mod encode;
-mod plan;
+pub(crate) mod order;
+pub(crate) mod plan;
 
 pub use check::{Defect, check, sah_cost};
 pub use encode::{BvhChild32, Node16, Node32, encode_line, encode16, encode32};
@@ -20,6 +21,8 @@ use thiserror::Error;
 
 /// Largest number of nodes on a path from the root to a leaf, whatever the input.
 pub const MAX_DEPTH: u32 = crate::num::MAX_BVH_DEPTH;
+/// Largest number of primitives of a leaf that is no block: references hold 2 bits of it.
+pub const MAX_LEAF: u32 = 4;
 /// Largest number of primitives: references hold 28 bits.
 pub const MAX_PRIMITIVES: usize = 1 << 28;
 
@@ -83,21 +86,23 @@ pub enum Collapse {
 pub struct Costs {
     /// One visit of a node: up to two 32-byte lines, four box tests.
     pub node: f64,
-    /// One triangle of a leaf: one line or a little more, one triangle test.
+    /// One triangle of a leaf: one line or a little more, one triangle test; of a leaf block the test alone.
     pub primitive: f64,
+    /// One line of a leaf block.
+    pub line: f64,
 }
 
 impl Default for Costs {
     /// By lines read, which is what the energy follows: two for a node, one for a triangle.
     fn default() -> Self {
-        Self { node: 1.0, primitive: 0.5 }
+        Self { node: 1.0, primitive: 0.5, line: 0.0 }
     }
 }
 
 /// How a quad-BVH is built.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Options {
-    /// Largest number of primitives of a leaf, 1 to 4.
+    /// Largest number of primitives of a leaf: 1 to 4, or 16 where leaves are blocks.
     pub max_leaf: u32,
     /// Collapse to four children.
     pub collapse: Collapse,
@@ -110,6 +115,13 @@ impl Options {
     pub fn with_leaf(max_leaf: u32) -> Self {
         Self { max_leaf, collapse: Collapse::default(), costs: Costs::default() }
     }
+
+    /// What a leaf of some primitives costs for each unit of its area, if it may be one: where all leaves up to the largest may.
+    pub(crate) fn leaf_cost(&self) -> impl Fn(&[build::Prim]) -> Option<f64> + Sync + use<> {
+        let Self { max_leaf, costs, .. } = *self;
+        // 1 to 4: exact in f64.
+        move |prims| (prims.len() <= max_leaf as usize).then_some(costs.primitive * prims.len() as f64)
+    }
 }
 
 /// Why a quad-BVH could not be built.
@@ -118,11 +130,11 @@ pub enum BvhError {
     /// No primitives.
     #[error("a quad-BVH needs at least one primitive")]
     Empty,
-    /// More primitives than references can name.
-    #[error("{0} primitives: a quad-BVH holds at most 2^28")]
+    /// More primitives, or lines of leaf blocks, than references can name.
+    #[error("{0} primitives or lines of leaf blocks: a quad-BVH holds at most 2^28")]
     TooMany(u64),
-    /// A leaf size outside 1 to 4.
-    #[error("leaves hold 1 to 4 primitives, not {0}")]
+    /// A leaf size outside 1 to 4, or to 16 of leaf blocks.
+    #[error("leaves hold 1 to 4 primitives, blocks up to 16, not {0}")]
     LeafSize(u32),
     /// Costs that are not positive and finite.
     #[error("the costs of the surface area heuristic must be positive and finite")]
@@ -156,9 +168,9 @@ pub enum Child {
     Inner(u32),
     /// Primitives `order[first..first + count]`.
     Leaf {
-        /// Position of the first in the order.
+        /// Position of the first in the order; of a leaf block, its first line.
         first: u32,
-        /// Number of primitives, 1 to 4.
+        /// Number of primitives, 1 to 4; of a leaf block, its lines.
         count: u8,
     },
 }
@@ -241,13 +253,13 @@ pub(crate) fn check_count(count: u64) -> Result<(), BvhError> {
     }
 }
 
-/// Refuses options that no tree can be built with.
-pub(crate) fn check_options(options: &Options) -> Result<(), BvhError> {
-    if !(1..=4).contains(&options.max_leaf) {
+/// Refuses options that no tree with leaves of at most `most` primitives can be built with.
+pub(crate) fn check_options(options: &Options, most: u32) -> Result<(), BvhError> {
+    if !(1..=most).contains(&options.max_leaf) {
         return Err(BvhError::LeafSize(options.max_leaf));
     }
-    let Costs { node, primitive } = options.costs;
-    if !(node > 0.0 && node.is_finite() && primitive > 0.0 && primitive.is_finite()) {
+    let Costs { node, primitive, line } = options.costs;
+    if !(node > 0.0 && node.is_finite() && primitive > 0.0 && primitive.is_finite() && line >= 0.0 && line.is_finite()) {
         return Err(BvhError::Costs);
     }
     Ok(())
@@ -260,9 +272,10 @@ where
     T: Copy + Default + Send,
     F: Fn(&QuadNode) -> T + Sync,
 {
-    check_options(options)?;
+    check_options(options, MAX_LEAF)?;
     let binary = build::binary_tree(&mut prims, depth);
-    let nodes = collapse::nodes(&collapse::BinaryTree::new(&prims, &binary, options), depth, encode);
+    let leaf = options.leaf_cost();
+    let nodes = collapse::nodes(&collapse::BinaryTree::new(&prims, &binary, options, &leaf), depth, encode);
     drop(binary);
     Ok((nodes, prims.par_iter().map(|p| p.id).collect()))
 }

@@ -1,6 +1,5 @@
 //! How the binary tree is best collapsed: bottom-up, the cheapest way to put each subtree into one, two and three slots.
 
-use super::Options;
 use super::build::{Binary, Node, PARALLEL, Prim};
 
 /// The cheapest way to put a subtree into a stated number of slots.
@@ -14,20 +13,24 @@ pub(super) struct Plan {
     pub two: bool,
 }
 
+/// What a leaf of some primitives costs for each unit of its area; none if they may not be one, which one primitive may.
+pub(crate) type LeafCost<'a> = dyn Fn(&[Prim]) -> Option<f64> + Sync + 'a;
+
 /// Least cost in 1, 2 and 3 slots, times area.
 type Cost = [f64; 3];
 
 /// The plan of every node of `tree` over `prims`.
-pub(super) fn plans(prims: &[Prim], tree: &Binary, options: &Options) -> Vec<Plan> {
+pub(super) fn plans(prims: &[Prim], tree: &Binary, node_cost: f64, leaf: &LeafCost<'_>) -> Vec<Plan> {
     let mut plans = vec![Plan::default(); tree.nodes.len()];
-    subtree(prims, &tree.nodes, &mut plans, (0, tree.root), options);
+    subtree(prims, &tree.nodes, &mut plans, (0, tree.root), node_cost, leaf);
     plans
 }
 
 /// `begin`: position of the first of `prims` in the whole; `split`: where they are split, if they are several.
-fn subtree(prims: &[Prim], nodes: &[Node], plans: &mut [Plan], (begin, split): (u32, u32), options: &Options) -> Cost {
+fn subtree(prims: &[Prim], nodes: &[Node], plans: &mut [Plan], (begin, split): (u32, u32), node_cost: f64, leaf: &LeafCost<'_>) -> Cost {
     if let [p] = prims {
-        return [p.bounds().half_area() * options.costs.primitive; 3];
+        // One primitive may always be a leaf.
+        return [p.bounds().half_area() * leaf(prims).unwrap_or(node_cost); 3];
     }
     let count = prims.len();
     let mid = (split - begin) as usize;
@@ -35,30 +38,27 @@ fn subtree(prims: &[Prim], nodes: &[Node], plans: &mut [Plan], (begin, split): (
     let node = &nodes[mid - 1];
     let (lower_plans, rest) = plans.split_at_mut(mid - 1);
     let (own, upper_plans) = rest.split_at_mut(1);
-    let mut left = || subtree(lower, &nodes[..mid - 1], lower_plans, (begin, node.left), options);
-    let mut right = || subtree(upper, &nodes[mid..], upper_plans, (split, node.right), options);
+    let mut left = || subtree(lower, &nodes[..mid - 1], lower_plans, (begin, node.left), node_cost, leaf);
+    let mut right = || subtree(upper, &nodes[mid..], upper_plans, (split, node.right), node_cost, leaf);
     let (l, r) = if count > PARALLEL { rayon::join(left, right) } else { (left(), right()) };
-    let (plan, cost) = plan(&l, &r, node.bounds.half_area(), count, options);
+    let (plan, cost) = plan(&l, &r, node.bounds.half_area(), node_cost, leaf(prims));
     own[0] = plan;
     cost
 }
 
-/// The cheapest use of two halves with these costs.
+/// The cheapest use of two halves with these costs; `leaf` is the cost of both as a leaf, if they may be one.
 #[inline]
-fn plan(l: &Cost, r: &Cost, area: f64, count: usize, options: &Options) -> (Plan, Cost) {
+fn plan(l: &Cost, r: &Cost, area: f64, node_cost: f64, leaf: Option<f64>) -> (Plan, Cost) {
     let mut four = (1, l[0] + r[2]);
     for (slots, cost) in [(2, l[1] + r[1]), (3, l[2] + r[0])] {
         if cost < four.1 {
             four = (slots, cost);
         }
     }
-    let mut one = area * options.costs.node + four.1;
-    // A leaf of 1 to 4: exact in f64. Equal costs: the leaf, which saves a node.
-    let as_leaf = area * options.costs.primitive * count as f64;
-    let leaf = count <= options.max_leaf as usize && as_leaf <= one;
-    if leaf {
-        one = as_leaf;
-    }
+    let mut one = area * node_cost + four.1;
+    // Equal costs: the leaf, which saves a node.
+    let as_leaf = leaf.map(|cost| area * cost).filter(|&cost| cost <= one);
+    one = as_leaf.unwrap_or(one);
     let two = l[0] + r[0];
     let split_two = two < one;
     let two = if split_two { two } else { one };
@@ -68,5 +68,5 @@ fn plan(l: &Cost, r: &Cost, area: f64, count: usize, options: &Options) -> (Plan
             three = (slots, cost);
         }
     }
-    (Plan { one: if leaf { 0 } else { four.0 }, three: three.0, two: split_two }, [one, two, three.1])
+    (Plan { one: if as_leaf.is_some() { 0 } else { four.0 }, three: three.0, two: split_two }, [one, two, three.1])
 }

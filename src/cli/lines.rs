@@ -6,7 +6,9 @@ use super::output::{explain, grouped, open, print_json, print_line, progress};
 use lodray::bvh::{BvhError, Options};
 use lodray::format::Scene;
 use lodray::mesh::Hierarchy;
-use lodray::method::bvh::{FullBuilder, FullBvh, FullNodes, FullOptions, LeafLayout, Leaves, NoStore, NodeBoxes, TreeKey, TreeStore};
+use lodray::method::bvh::{
+    FullBuilder, FullBvh, FullOptions, FullTree, LeafLayout, Leaves, NoStore, NodeBoxes, NodeOrder, TreeKey, TreeStore,
+};
 use lodray::method::{Knobs, knob, lod};
 use lodray::picture::{FrameStats, distinct_lines, render};
 use lodray::rays::{ModelSpace, Sight};
@@ -63,6 +65,9 @@ struct Report {
     ratio: Vec<f64>,
 }
 
+/// Largest numbers of triangles of leaf blocks that are counted.
+const BLOCK_SIZES: [u32; 3] = [4, 8, 16];
+
 pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
     let cache = Cache::new(&args.cache, None)?;
     let scene = open(&args.scene)?;
@@ -71,7 +76,7 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
     let formats = [NodeBoxes::Local, NodeBoxes::Codes, NodeBoxes::Wide];
     let formats = if args.bvh32 { &formats[..] } else { &formats[..2] };
     let rows = cameras.iter().map(|camera| u64::from(camera.height)).sum::<u64>();
-    let bar = progress((2 + formats.len() as u64 * 9) * rows, "tracing");
+    let bar = progress((2 + formats.len() as u64 * (3 * 3 + BLOCK_SIZES.len() as u64)) * rows, "tracing");
 
     let method = (lod::METHOD.make)(&scene, &Knobs::default(), &NoStore)?;
     let count = |delta: f64| -> Vec<_> {
@@ -85,13 +90,15 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
         Row { structure: "LOD".to_owned(), distinct_lines: distinct(&lod) },
         Row { structure: "LOD structure at full detail".to_owned(), distinct_lines: distinct(&count(f64::INFINITY)) },
     ];
-    let mut trees = Trees::new(&scene, &cache);
+    let hierarchy = scene.decode();
+    let mut trees = Trees::new(&scene, &cache, &hierarchy);
     let mut best = vec![u64::MAX; cameras.len()];
+    let triangles = [1, 2, 4].map(|size| (size, &[LeafLayout::Indexed, LeafLayout::Packed, LeafLayout::Line][..]));
+    let blocks = BLOCK_SIZES.map(|size| (size, &[LeafLayout::Block][..]));
     for &boxes in formats {
-        for size in [1, 2, 4] {
+        for (size, layouts) in triangles.into_iter().chain(blocks) {
             let options = |layout| FullOptions::new(size, boxes, layout);
             // Layouts of one tree are counted together.
-            let layouts = [LeafLayout::Indexed, LeafLayout::Packed, LeafLayout::Line];
             for group in layouts.chunk_by(|&a, &b| options(a).tree == options(b).tree) {
                 bar.set_message("building the BVH");
                 let bvh = trees.bvh(&options(group[0]))?;
@@ -146,54 +153,53 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
 struct Trees<'a> {
     scene: &'a Scene,
     cache: &'a Cache,
-    hierarchy: Hierarchy,
+    hierarchy: &'a Hierarchy,
     /// Made when the cache lacks a tree.
-    builder: Option<FullBuilder>,
-    /// The last tree's options and nodes.
-    nodes: Option<((Options, NodeBoxes), Arc<FullNodes>)>,
-    /// Triangles in leaf order: that of the binary tree, the same for all but those with local boxes.
-    ids: Vec<u32>,
-    /// Those of each layout so far.
+    builder: Option<FullBuilder<'a>>,
+    /// The last tree, and its options.
+    tree: Option<((Options, NodeBoxes, NodeOrder), Arc<FullTree>)>,
+    /// Leaves of each layout over the triangles of the last tree: those of the binary tree in its order, the same for all but local boxes and blocks.
     leaves: Vec<Arc<Leaves>>,
 }
 
 impl<'a> Trees<'a> {
-    fn new(scene: &'a Scene, cache: &'a Cache) -> Self {
-        Self { scene, cache, hierarchy: scene.decode(), builder: None, nodes: None, ids: Vec::new(), leaves: Vec::new() }
+    fn new(scene: &'a Scene, cache: &'a Cache, hierarchy: &'a Hierarchy) -> Self {
+        Self { scene, cache, hierarchy, builder: None, tree: None, leaves: Vec::new() }
     }
 
     fn bvh(&mut self, options: &FullOptions) -> Result<FullBvh, BvhError> {
-        Ok(FullBvh { levels: self.hierarchy.levels, nodes: self.nodes(options)?, leaves: self.leaves(options.layout)? })
+        let nodes = self.tree(options)?.nodes();
+        Ok(FullBvh { levels: self.hierarchy.levels, nodes, leaves: self.leaves(options.layout)? })
     }
 
-    fn nodes(&mut self, options: &FullOptions) -> Result<Arc<FullNodes>, BvhError> {
-        let shape = (options.tree, options.boxes);
-        if let Some((_, nodes)) = self.nodes.as_ref().filter(|(of, _)| *of == shape) {
-            return Ok(Arc::clone(nodes));
+    fn tree(&mut self, options: &FullOptions) -> Result<Arc<FullTree>, BvhError> {
+        let shape = (options.tree, options.boxes, options.order);
+        if let Some((_, tree)) = self.tree.as_ref().filter(|(of, _)| *of == shape) {
+            return Ok(Arc::clone(tree));
         }
-        self.nodes = None;
         let key = || TreeKey::new(self.scene, options, self.scene.levels());
         let tree = Lookup::new(self.cache).tree(&key, self.scene.finest_triangles(), &mut || {
             let builder = match self.builder.take() {
                 Some(builder) => builder,
-                None => FullBuilder::new(&self.hierarchy)?,
+                None => FullBuilder::new(self.hierarchy)?,
             };
-            self.builder.insert(builder).tree(&options.tree, options.boxes)
+            self.builder.insert(builder).tree(options)
         })?;
-        let (nodes, ids) = tree.into_parts();
-        if self.ids != ids {
-            (self.ids, self.leaves) = (ids, Vec::new());
+        if self.tree.as_ref().is_none_or(|(_, before)| !before.has_leaves_of(&tree)) {
+            self.leaves = Vec::new();
         }
-        let nodes = Arc::new(nodes);
-        self.nodes = Some((shape, Arc::clone(&nodes)));
-        Ok(nodes)
+        let tree = Arc::new(tree);
+        self.tree = Some((shape, Arc::clone(&tree)));
+        Ok(tree)
     }
 
+    /// Those of the last tree.
     fn leaves(&mut self, layout: LeafLayout) -> Result<Arc<Leaves>, BvhError> {
         if let Some(made) = self.leaves.iter().find(|leaves| leaves.layout() == layout) {
             return Ok(Arc::clone(made));
         }
-        let made = Arc::new(Leaves::new(&self.hierarchy, self.ids.clone(), layout)?);
+        let (_, tree) = self.tree.as_ref().ok_or(BvhError::OtherHierarchy)?;
+        let made = Arc::new(tree.leaves(self.hierarchy, layout)?);
         self.leaves.push(Arc::clone(&made));
         Ok(made)
     }

@@ -1,12 +1,11 @@
 //! Distinct lines of leaf layouts that share a tree, counted in one go: rays take the same way through all of them.
 
 use crate::method::ClosestHit;
-use crate::method::bvh::{BvhTraverser, FullBvh, LEAVES, Leaves, NODES, bvh_map};
+use crate::method::bvh::{BvhTraverser, FullBvh, LEAVES, Leaf, Leaves, NODES, bvh_map};
 use crate::num::LINE_BYTES;
 use crate::rays::{Camera, ModelSpace};
 use crate::step::{LineSets, MemoryMap, Section, Step, StepSink};
 use rayon::prelude::*;
-use std::ops::Range;
 
 /// Rows of a band, which is one unit of work, and columns of its tiles.
 const ROWS: u32 = 8;
@@ -22,7 +21,7 @@ impl StepSink for Marker<'_> {
     }
 }
 
-/// Distinct 32-byte lines that a frame touches: of `bvh`, then of the same with each of `others`, which hold the same triangles, in place of its
+/// Distinct 32-byte lines that a frame touches: of `bvh`, then of the same with each of `others`, which hold the same triangles and are no blocks, in place of its
 /// leaves. `rows_done` is told of finished rows, from any thread.
 pub fn distinct_lines(
     bvh: &FullBvh,
@@ -41,10 +40,10 @@ pub fn distinct_lines(
         || BvhTraverser::new(bvh),
         |traverser, band| {
             let rows = band * ROWS..height.min((band + 1) * ROWS);
-            let others = |slots: Range<usize>| {
+            let others = |leaf: &Leaf| {
                 for (leaves, set) in &others {
                     // Below 2^32 lines.
-                    leaves.lines(slots.clone(), |address| set.mark((address / LINE_BYTES) as u32));
+                    leaves.lines(leaf, |address| set.mark((address / LINE_BYTES) as u32));
                 }
             };
             for left in columns.clone().step_by(COLUMNS as usize) {

@@ -87,7 +87,7 @@ fn knobs(source: &ListText<'_>, list: &List) -> anyhow::Result<Knobs> {
         knobs.set(&LEAF_LAYOUT, layout.get_ref()).map_err(why)?;
     }
     if let Some(size) = &list.leaf_size {
-        let why = |_| source.wrong(size.span(), format!("leaf_size must be 1, 2 or 4, but is {}", size.get_ref()));
+        let why = |_| source.wrong(size.span(), format!("leaf_size must be 1, 2, 4, 8 or 16, but is {}", size.get_ref()));
         knobs.set(&LEAF_SIZE, &size.get_ref().to_string()).map_err(why)?;
     }
     for (name, value) in &list.knobs {

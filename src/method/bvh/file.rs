@@ -9,41 +9,44 @@
 //! | 32..40 | bytes of a node: 32, 64 or 128 |
 //! | 40..48 | number of nodes |
 //! | 48..56 | number of triangles |
-//! | 56..72 | checksum of the first 56 bytes and all from 72 on |
-//! | from 72 on | the nodes, then the triangles' ids in leaf order, 4 bytes each |
+//! | 56..64 | number of leaf blocks |
+//! | 64..80 | checksum of the first 64 bytes and all from 80 on |
+//! | from 80 on | the nodes, then the triangles' ids in leaf order, 4 bytes each, then the blocks' sizes, a byte each: triangles less one in the lower four bits, lines less one above |
 //!
 //! All numbers are little-endian. A file is a shortcut, not a source: whatever is not as it should be makes it none.
 
-use super::{FullNodes, FullOptions, FullTree};
+use super::{FullNodes, FullOptions, FullTree, LeafLayout};
 use crate::bvh::{BvhChild32, MAX_DEPTH, Node16, Node32, Options};
 use crate::format::{BvhChild, BvhNode, ChildRef, FileSection, Line, Scene};
 use crate::num::Wire;
 use rayon::prelude::*;
 use std::io::{self, Read, Write};
+use std::sync::Arc;
 use xxhash_rust::xxh3::Xxh3Default;
 
 const MAGIC: [u8; 8] = *b"LODRAYBV";
 /// Of the file, and of what is built: a test fails when trees change and this does not.
-const VERSION: u32 = 2;
-const HEADER: usize = 72;
+const VERSION: u32 = 3;
+const HEADER: usize = 80;
 /// Where the checksum stands, behind all that it covers of the header.
-const SUM: usize = 56;
+const SUM: usize = 64;
 
 /// What a tree depends on, as a name: equal keys, equal trees.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct TreeKey(u128);
 
 impl TreeKey {
-    /// The key of the tree of `options`, whatever its leaves, over the triangles of a level of `scene`.
+    /// The key of the tree of `options`, whatever its leaves but for blocks, over the triangles of a level of `scene`.
     pub fn new(scene: &Scene, options: &FullOptions, level: u32) -> Self {
         let Options { max_leaf, collapse, costs } = options.tree;
         let mut hash = Xxh3Default::new();
         let scale = scene.meta().bound_offset;
-        for number in [VERSION, scene.levels(), level, max_leaf, collapse as u32, options.boxes as u32, scale, scene.meta().vertices as u32]
-        {
+        let is_block = u32::from(options.layout == LeafLayout::Block);
+        let [boxes, vertices] = [options.boxes as u32, scene.meta().vertices as u32];
+        for number in [VERSION, scene.levels(), level, max_leaf, collapse as u32, boxes, options.order as u32, is_block, scale, vertices] {
             hash.update(&number.to_le_bytes());
         }
-        for cost in [costs.node, costs.primitive] {
+        for cost in [costs.node, costs.primitive, costs.line] {
             hash.update(&cost.to_bits().to_le_bytes());
         }
         // Codes say where compact vertices lie.
@@ -68,7 +71,7 @@ impl FullTree {
     /// # Errors
     /// What `out` says.
     pub fn write(&self, key: TreeKey, out: &mut dyn Write) -> io::Result<()> {
-        let (size, nodes): (u64, &[u8]) = match &self.nodes {
+        let (size, nodes): (u64, &[u8]) = match &*self.nodes {
             FullNodes::Local(nodes) => (32, bytemuck::cast_slice(nodes)),
             FullNodes::Boxes16(nodes) => (64, bytemuck::cast_slice(nodes)),
             FullNodes::Boxes32(nodes) => (128, bytemuck::cast_slice(nodes)),
@@ -79,11 +82,12 @@ impl FullTree {
         header.extend(VERSION.to_le_bytes());
         header.extend(self.levels.to_le_bytes());
         header.extend(key.0.to_le_bytes());
-        for number in [size, self.nodes.len() as u64, self.ids.len() as u64] {
+        for number in [size, self.nodes.len() as u64, self.ids.len() as u64, self.blocks.len() as u64] {
             header.extend(number.to_le_bytes());
         }
-        header.extend(checksum(&header, nodes, ids).to_le_bytes());
-        [&header, nodes, ids].into_iter().try_for_each(|part| out.write_all(part))
+        let blocks = bytemuck::cast_slice(&self.blocks);
+        header.extend(checksum(&[&header, nodes, ids, blocks]).to_le_bytes());
+        [&header, nodes, ids, blocks].into_iter().try_for_each(|part| out.write_all(part))
     }
 
     /// Reads the tree of `key`, which has `triangles`, from a file of `length` bytes; none if that is not what the file holds, whole and sound.
@@ -92,20 +96,22 @@ impl FullTree {
         file.read_exact(&mut header).ok()?;
         let word = |at: usize| header[at..].first_chunk().map(|bytes| u64::from_le_bytes(*bytes));
         let half = |at: usize| header[at..].first_chunk().map(|bytes| u32::from_le_bytes(*bytes));
-        let (size, nodes, ids) = (word(32)?, word(40)?, word(48)?);
-        let fits = size.checked_mul(nodes)?.checked_add(ids.checked_mul(4)?)?.checked_add(HEADER as u64)? == length;
+        let (size, nodes, ids, blocks) = (word(32)?, word(40)?, word(48)?, word(56)?);
+        let parts = size.checked_mul(nodes)?.checked_add(ids.checked_mul(4)?)?.checked_add(blocks)?;
+        let fits = parts.checked_add(HEADER as u64)? == length;
         if header[..8] != MAGIC || half(8)? != VERSION || header[16..32] != key.0.to_le_bytes() || ids != triangles || !fits {
             return None;
         }
-        // Both fit into a file of this length.
+        // All fit into a file of this length.
         let nodes = match size {
             32 => FullNodes::Local(filled::<Line>(nodes as usize, file)?),
             64 => FullNodes::Boxes16(filled::<Node16>(nodes as usize, file)?),
             128 => FullNodes::Boxes32(filled::<Node32>(nodes as usize, file)?),
             _ => return None,
         };
-        let tree = Self { levels: half(12)?, nodes, ids: filled(ids as usize, file)? };
-        let sum = checksum(&header[..SUM], tree.nodes.raw(), bytemuck::cast_slice(&tree.ids));
+        let tree =
+            Self { levels: half(12)?, nodes: Arc::new(nodes), ids: filled(ids as usize, file)?, blocks: filled(blocks as usize, file)? };
+        let sum = checksum(&[&header[..SUM], tree.nodes.raw(), bytemuck::cast_slice(&tree.ids), bytemuck::cast_slice(&tree.blocks)]);
         (header[SUM..] == sum.to_le_bytes() && tree.is_sound()).then_some(tree)
     }
 
@@ -114,6 +120,12 @@ impl FullTree {
         let triangles = self.ids.len() as u64;
         let count = self.nodes.len();
         if count == 0 || !self.ids.par_iter().all(|&id| u64::from(id) < triangles) {
+            return false;
+        }
+        // Of each line of leaf blocks the lines of the block that begins there, or 0.
+        let lines: Vec<u8> =
+            self.blocks.iter().flat_map(|size| (0..size.lines()).map(|k| if k == 0 { size.lines() as u8 } else { 0 })).collect();
+        if !self.blocks.is_empty() && self.blocks.iter().map(|size| u64::from(size.triangles())).sum::<u64>() != triangles {
             return false;
         }
         let mut depths = vec![0u8; count];
@@ -132,7 +144,8 @@ impl FullTree {
                         }
                         ahead
                     }
-                    ChildRef::LEAF => index + child.count.get() < triangles,
+                    ChildRef::LEAF if self.blocks.is_empty() => index + child.count.get() < triangles,
+                    ChildRef::LEAF => lines.get(index as usize).is_some_and(|&lines| u64::from(lines) == child.count.get() + 1),
                     _ => false,
                 }
             })
@@ -165,9 +178,9 @@ fn filled<T: bytemuck::Pod>(count: usize, file: &mut dyn Read) -> Option<Vec<T>>
     Some(values)
 }
 
-fn checksum(header: &[u8], nodes: &[u8], ids: &[u8]) -> u128 {
+fn checksum(parts: &[&[u8]]) -> u128 {
     let mut hash = Xxh3Default::new();
-    [header, nodes, ids].into_iter().for_each(|part| hash.update(part));
+    parts.iter().for_each(|part| hash.update(part));
     hash.digest128()
 }
 
@@ -175,7 +188,8 @@ fn checksum(header: &[u8], nodes: &[u8], ids: &[u8]) -> u128 {
 mod tests {
     use super::*;
     use crate::bvh::check::synthetic_terrain;
-    use crate::method::bvh::{FullBuilder, LeafLayout, NodeBoxes};
+    use crate::method::bvh::leaves::BlockSize;
+    use crate::method::bvh::{FullBuilder, NodeBoxes};
     use proptest::prelude::*;
     use xxhash_rust::xxh3::xxh3_64;
 
@@ -183,8 +197,10 @@ mod tests {
 
     const ALL: [NodeBoxes; 3] = [NodeBoxes::Local, NodeBoxes::Codes, NodeBoxes::Wide];
 
-    fn tree(boxes: NodeBoxes) -> FullTree {
-        FullBuilder::new(&synthetic_terrain(3, 2)).unwrap().tree(&Options::with_leaf(2), boxes).unwrap()
+    const LAYOUTS: [LeafLayout; 2] = [LeafLayout::Line, LeafLayout::Block];
+
+    fn tree(boxes: NodeBoxes, layout: LeafLayout) -> FullTree {
+        FullBuilder::new(&synthetic_terrain(3, 2)).unwrap().tree(&FullOptions::new(2, boxes, layout)).unwrap()
     }
 
     fn file(tree: &FullTree) -> Vec<u8> {
@@ -194,30 +210,31 @@ mod tests {
     }
 
     fn read(bytes: &[u8]) -> Option<FullTree> {
-        FullTree::read(KEY, tree(NodeBoxes::Codes).ids.len() as u64, bytes.len() as u64, &mut &*bytes)
+        FullTree::read(KEY, 288, bytes.len() as u64, &mut &*bytes)
     }
 
     #[test]
     fn what_was_written_is_read() {
-        for boxes in ALL {
-            let tree = tree(boxes);
-            assert!(read(&file(&tree)).is_some_and(|read| read == tree), "{boxes:?}");
+        for (boxes, layout) in ALL.into_iter().flat_map(|boxes| LAYOUTS.map(|layout| (boxes, layout))) {
+            let tree = tree(boxes, layout);
+            assert_eq!((tree.ids.len(), tree.blocks.is_empty()), (288, layout == LeafLayout::Line));
+            assert!(read(&file(&tree)).is_some_and(|read| read == tree), "{boxes:?} {layout:?}");
         }
     }
 
     #[test]
     fn a_file_of_another_key_or_scene_is_none() {
-        let bytes = file(&tree(NodeBoxes::Codes));
+        let bytes = file(&tree(NodeBoxes::Codes, LeafLayout::Line));
         let of = |key, triangles| FullTree::read(key, triangles, bytes.len() as u64, &mut &*bytes);
         assert!(of(KEY, 288).is_some() && of(TreeKey(8), 288).is_none() && of(KEY, 287).is_none());
     }
 
     #[test]
     fn references_that_lead_nowhere_make_no_tree_even_with_the_right_sum() {
-        let sound = tree(NodeBoxes::Codes);
+        let sound = tree(NodeBoxes::Codes, LeafLayout::Line);
         let with = |kind: u64, index: u64, count: u64| {
             let mut tree = sound.clone();
-            let FullNodes::Boxes16(nodes) = &mut tree.nodes else { panic!("16") };
+            let FullNodes::Boxes16(nodes) = Arc::make_mut(&mut tree.nodes) else { panic!("16") };
             let child = match kind {
                 ChildRef::INNER => ChildRef::inner(index as u32),
                 _ => ChildRef::leaf(index as u32, count as u32),
@@ -234,27 +251,38 @@ mod tests {
         {
             assert!(with(kind, index, count).is_none(), "{kind} {index}");
         }
-        let mut tree = sound.clone();
-        tree.ids[7] = 288;
-        assert!(read(&file(&tree)).is_none());
+        let mut wrong = sound.clone();
+        wrong.ids[7] = 288;
+        assert!(read(&file(&wrong)).is_none());
+        // Blocks of other sizes than leaves say, or of fewer triangles.
+        let sound = tree(NodeBoxes::Local, LeafLayout::Block);
+        let with = |at: usize, size: BlockSize| {
+            let mut tree = sound.clone();
+            tree.blocks[at] = size;
+            read(&file(&tree))
+        };
+        let size = sound.blocks[3];
+        assert!(with(3, size).is_some() && with(3, BlockSize::new(16, size.lines())).is_none());
+        assert!(with(3, BlockSize::new(size.triangles() as usize, size.lines() + 1)).is_none());
     }
 
     /// Whoever changes what is built must raise [`VERSION`], so that trees of before are not taken for those of now.
     #[test]
     fn the_version_names_what_is_built() {
-        let builder = FullBuilder::new(&synthetic_terrain(5, 3)).unwrap();
+        let terrain = synthetic_terrain(5, 3);
+        let builder = FullBuilder::new(&terrain).unwrap();
         let of = |(size, layout)| {
             let options = FullOptions::new(size, NodeBoxes::Local, layout);
-            xxh3_64(&file(&builder.tree(&options.tree, options.boxes).unwrap()))
+            xxh3_64(&file(&builder.tree(&options).unwrap()))
         };
-        let sums = [(1, LeafLayout::Indexed), (2, LeafLayout::Line), (4, LeafLayout::Line)].map(of);
-        assert_eq!((VERSION, sums), (2, [0x56e1cea2ac7b0141, 0x1048c797648f379b, 0x3bf518645e7cadf5]));
+        let sums = [(1, LeafLayout::Indexed), (2, LeafLayout::Line), (4, LeafLayout::Line), (16, LeafLayout::Block)].map(of);
+        assert_eq!((VERSION, sums), (3, [0xf369c247788c18e, 0xd08305be03852c77, 0x10b4048ebe679560, 0x60b7969f2ea66fe6]));
     }
 
     proptest! {
         #[test]
-        fn damage_is_noticed(at in any::<prop::sample::Index>(), bit in 0u32..8, boxes in prop::sample::select(ALL.to_vec())) {
-            let mut bytes = file(&tree(boxes));
+        fn damage_is_noticed(at in any::<prop::sample::Index>(), bit in 0u32..8, boxes in prop::sample::select(ALL.to_vec()), layout in prop::sample::select(LAYOUTS.to_vec())) {
+            let mut bytes = file(&tree(boxes, layout));
             let at = at.index(bytes.len());
             bytes[at] ^= 1u8 << bit;
             prop_assert!(read(&bytes).is_none());

@@ -8,8 +8,8 @@ mod store;
 mod trace;
 
 pub use file::TreeKey;
-pub use full::{FullBuilder, FullBvh, FullNodes, FullOptions, FullTree, NodeBoxes};
-pub use leaves::{LeafLayout, Leaves};
+pub use full::{FullBuilder, FullBvh, FullNodes, FullOptions, FullTree, NodeBoxes, NodeOrder};
+pub use leaves::{Leaf, LeafLayout, Leaves};
 pub use store::{NoStore, TreeStore};
 pub use trace::BvhTraverser;
 
@@ -22,7 +22,7 @@ use crate::step::{MemoryMap, Section, SectionId, Step, StepSink};
 
 /// Nodes.
 pub const NODES: SectionId = SectionId::new(0);
-/// Triangles: index triples and vertices, packed triangles or triangle lines.
+/// Triangles: index triples and vertices, packed triangles, triangle lines or leaf blocks.
 pub const LEAVES: SectionId = SectionId::new(1);
 
 /// How leaf triangles lie in memory.
@@ -30,25 +30,26 @@ pub static LEAF_LAYOUT: Knob = Knob {
     name: "leaf-layout",
     value_name: "LEAF_LAYOUT",
     help: "Leaf layout of a BVH",
-    default: Some("line"),
+    default: Some("block"),
     words: &[
         ("indexed", "Index triples and shared vertices"),
         ("packed", "Nine 32-bit coordinates, 36 bytes"),
         ("line", "One 32-byte line of 28-bit coordinates"),
+        ("block", "Leaves of up to 16 triangles that share vertices, in one to four lines"),
     ],
     of_frame: false,
-    allows: |value| LeafLayout::named(value).map(drop).ok_or_else(|| format!("'{value}' is not indexed, packed or line")),
+    allows: |value| LeafLayout::named(value).map(drop).ok_or_else(|| format!("'{value}' is not indexed, packed, line or block")),
 };
 
 /// Largest number of triangles in a leaf.
 pub static LEAF_SIZE: Knob = Knob {
     name: "leaf-size",
     value_name: "LEAF_SIZE",
-    help: "Largest number of triangles in a leaf of a BVH: 1, 2 or 4",
-    default: Some("4"),
+    help: "Largest number of triangles in a leaf of a BVH: 1, 2, 4, 8 or 16; at most 4 where leaves are no blocks",
+    default: Some("16"),
     words: &[],
     of_frame: false,
-    allows: |value| if ["1", "2", "4"].contains(&value) { Ok(()) } else { Err(format!("'{value}' is not 1, 2 or 4")) },
+    allows: |value| if ["1", "2", "4", "8", "16"].contains(&value) { Ok(()) } else { Err(format!("'{value}' is not 1, 2, 4, 8 or 16")) },
 };
 
 /// How nodes hold boxes of 16 bits or fewer.
@@ -63,6 +64,20 @@ pub static NODE_BOXES: Knob = Knob {
     ],
     of_frame: false,
     allows: |value| NodeBoxes::named(value).map(drop).ok_or_else(|| format!("'{value}' is not local or codes")),
+};
+
+/// Where nodes lie.
+pub static NODE_ORDER: Knob = Knob {
+    name: "node-order",
+    value_name: "NODE_ORDER",
+    help: "Order of a BVH's nodes in memory",
+    default: Some("depth"),
+    words: &[
+        ("depth", "Depth first, siblings together"),
+        ("treelets", "By treelets of 2 KB, a row of DRAM, that grow along the largest boxes"),
+    ],
+    of_frame: false,
+    allows: |value| NodeOrder::named(value).map(drop).ok_or_else(|| format!("'{value}' is not depth or treelets")),
 };
 
 /// Operations of a unit with these tests of boxes: four at once, then their order.
@@ -92,7 +107,7 @@ pub(super) const UNIT: &[Operation] = &{
 pub static METHOD: Registered = Registered {
     name: "bvh",
     help: "Quad-BVH of the full-resolution mesh, boxes of up to 16 bits",
-    knobs: &[&NODE_BOXES, &LEAF_LAYOUT, &LEAF_SIZE],
+    knobs: &[&NODE_BOXES, &NODE_ORDER, &LEAF_LAYOUT, &LEAF_SIZE],
     error: None,
     unit: Some(MethodUnit { blocks: UNIT, has_levels: false }),
     make: |scene, knobs, store| Bvh::of(scene, knobs, false, store),
@@ -102,7 +117,7 @@ pub static METHOD: Registered = Registered {
 pub static METHOD_WIDE: Registered = Registered {
     name: "bvh32",
     help: "The same with 32-bit boxes",
-    knobs: &[&LEAF_LAYOUT, &LEAF_SIZE],
+    knobs: &[&NODE_ORDER, &LEAF_LAYOUT, &LEAF_SIZE],
     error: None,
     unit: Some(MethodUnit { blocks: &unit(Operation::BoxTest32), has_levels: false }),
     make: |scene, knobs, store| Bvh::of(scene, knobs, true, store),
@@ -114,9 +129,10 @@ impl FullOptions {
         // Checked when they were chosen.
         let named = || knobs.get(&NODE_BOXES).and_then(NodeBoxes::named).unwrap_or(NodeBoxes::Local);
         let boxes = if wide_boxes { NodeBoxes::Wide } else { named() };
-        let layout = knobs.get(&LEAF_LAYOUT).and_then(LeafLayout::named).unwrap_or(LeafLayout::Line);
-        let size = knobs.get(&LEAF_SIZE).and_then(|size| size.parse().ok()).unwrap_or(4);
-        Self::new(size, boxes, layout)
+        let layout = knobs.get(&LEAF_LAYOUT).and_then(LeafLayout::named).unwrap_or(LeafLayout::Block);
+        let size = knobs.get(&LEAF_SIZE).and_then(|size| size.parse().ok()).unwrap_or(16);
+        let order = knobs.get(&NODE_ORDER).and_then(NodeOrder::named).unwrap_or_default();
+        Self { order, ..Self::new(size, boxes, layout) }
     }
 }
 
@@ -131,7 +147,7 @@ impl Bvh {
         let options = FullOptions::chosen(knobs, wide_boxes);
         let hierarchy = scene.decode();
         let key = || TreeKey::new(scene, &options, scene.levels());
-        let tree = store.tree(&key, scene.finest_triangles(), &mut || FullBuilder::new(&hierarchy)?.tree(&options.tree, options.boxes))?;
+        let tree = store.tree(&key, scene.finest_triangles(), &mut || FullBuilder::new(&hierarchy)?.tree(&options))?;
         Ok(Box::new(Self { bvh: tree.with_leaves(&hierarchy, options.layout)?, space: ModelSpace::of(scene) }))
     }
 }

@@ -1,6 +1,6 @@
 //! The baseline: the full-resolution mesh under a quad-BVH, built from the same blocks (paper section 6.1).
 
-use super::{FullBvh, FullNodes, LEAVES, Leaves, NODES, bvh_map, node_lines};
+use super::{FullBvh, FullNodes, LEAVES, Leaf, Leaves, NODES, bvh_map, node_lines};
 use crate::block::Block;
 use crate::block::box_test32::{self, BoxTest32};
 use crate::block::child_sort;
@@ -16,7 +16,6 @@ use crate::method::stack::{Entry, Op, TraversalStack, push_sorted};
 use crate::method::{HitSink, TriangleId, is_beyond};
 use crate::num::{LINE_BYTES, Point, Ray, U, Wire};
 use crate::step::{Act, Fetch, MemoryMap, Step, StepSink, TriangleRun};
-use std::ops::Range;
 
 /// Traces rays through a full-resolution quad-BVH; keeps its stack from ray to ray.
 pub struct BvhTraverser<'a> {
@@ -63,18 +62,12 @@ impl<'a> BvhTraverser<'a> {
         self.trace_with(ray, steps, sink, |_| ());
     }
 
-    /// The same; the slots of every leaf read go to `leaf` too.
-    pub fn trace_with<S: StepSink, H: HitSink, L: FnMut(Range<usize>)>(&mut self, ray: &Ray, steps: &mut S, sink: &mut H, leaf: L) {
+    /// The same; every leaf read goes to `leaf` too.
+    pub fn trace_with<S: StepSink, H: HitSink, L: FnMut(&Leaf)>(&mut self, ray: &Ray, steps: &mut S, sink: &mut H, leaf: L) {
         #[cfg(target_arch = "x86_64")]
         if has_lanes() {
             #[target_feature(enable = "avx2,bmi1,bmi2")]
-            fn lanes<S: StepSink, H: HitSink, L: FnMut(Range<usize>)>(
-                by: &mut BvhTraverser<'_>,
-                ray: &Ray,
-                steps: &mut S,
-                sink: &mut H,
-                leaf: L,
-            ) {
+            fn lanes<S: StepSink, H: HitSink, L: FnMut(&Leaf)>(by: &mut BvhTraverser<'_>, ray: &Ray, steps: &mut S, sink: &mut H, leaf: L) {
                 by.run(ray, steps, sink, leaf);
             }
             // SAFETY: the processor has them, as was just asked.
@@ -84,7 +77,7 @@ impl<'a> BvhTraverser<'a> {
     }
 
     #[inline(always)]
-    fn run<S: StepSink, H: HitSink>(&mut self, ray: &Ray, steps: &mut S, sink: &mut H, mut leaf: impl FnMut(Range<usize>)) {
+    fn run<S: StepSink, H: HitSink>(&mut self, ray: &Ray, steps: &mut S, sink: &mut H, mut leaf: impl FnMut(&Leaf)) {
         let setup = RaySetup::eval(&ray_setup::In { origin: ray.origin, direction: ray.direction });
         self.stack.clear();
         let mut next = Some(Entry::default());
@@ -104,9 +97,9 @@ impl<'a> BvhTraverser<'a> {
                 next = self.node(&setup, index, steps, sink);
             } else {
                 // Leaves keep their count in `level`, which trees need and leaves do not.
-                let slots = index..index + entry.level.get() as usize + 1;
-                leaf(slots.clone());
-                self.leaf(ray, slots, steps, sink);
+                let own = self.leaves.leaf(index, entry.level.get() as usize + 1);
+                leaf(&own);
+                self.leaf(ray, &own, steps, sink);
             }
         }
         steps.step(Step::end(sink.found(), self.mapped));
@@ -163,11 +156,11 @@ impl<'a> BvhTraverser<'a> {
         }
     }
 
-    /// Reads the leaf of the triangles in `slots` and tests them.
+    /// Reads a leaf and tests its triangles.
     #[inline(always)]
-    fn leaf<S: StepSink, H: HitSink>(&mut self, ray: &Ray, slots: Range<usize>, steps: &mut S, sink: &mut H) {
+    fn leaf<S: StepSink, H: HitSink>(&mut self, ray: &Ray, leaf: &Leaf, steps: &mut S, sink: &mut H) {
         let mut place = 0;
-        self.leaves.lines(slots.clone(), |address| {
+        self.leaves.lines(leaf, |address| {
             let fetch = Fetch::new(LEAVES, self.map.line(LEAVES, self.before[LEAVES.place()] + address / LINE_BYTES), 1).at(place);
             let first = place == 0;
             let fetch = if first { fetch } else { fetch.joining() };
@@ -175,8 +168,7 @@ impl<'a> BvhTraverser<'a> {
             place += 1;
         });
         let mut run = TriangleRun::default();
-        for slot in slots {
-            let (points, id) = self.leaves.triangle(slot);
+        self.leaves.triangles(leaf, |points, id| {
             let corners = points.map(Point::from_i32);
             let [p0, p1, p2] = corners;
             let test = TriTest::eval(&tri_test::In { origin: ray.origin, direction: ray.direction, p0, p1, p2 });
@@ -186,7 +178,7 @@ impl<'a> BvhTraverser<'a> {
                 let (tree, node) = (id >> (2 * levels), id & ((1 << (2 * levels)) - 1));
                 sink.offer(TriangleId { tree, level: levels, node }, &corners, &test);
             }
-        }
+        });
         run.state(steps);
     }
 }

@@ -6,7 +6,8 @@
 mod levels;
 
 use super::bvh::{
-    BvhTracer, BvhTraverser, FullBuilder, FullBvh, FullOptions, LEAF_LAYOUT, LEAF_SIZE, NODE_BOXES, TreeKey, TreeStore, UNIT, bvh_map,
+    BvhTracer, BvhTraverser, FullBuilder, FullBvh, FullOptions, LEAF_LAYOUT, LEAF_SIZE, NODE_BOXES, NODE_ORDER, TreeKey, TreeStore, UNIT,
+    bvh_map,
 };
 use super::knob::{DELTA, ErrorKnob};
 use super::{Knob, Knobs, Method, MethodUnit, Registered, Tracer};
@@ -37,7 +38,7 @@ pub static LEVEL: Knob = Knob {
 pub static METHOD: Registered = Registered {
     name: "discrete",
     help: "Discrete levels of detail: a quad-BVH of each level, one level for the whole frame",
-    knobs: &[&DELTA, &LEVEL, &NODE_BOXES, &LEAF_LAYOUT, &LEAF_SIZE],
+    knobs: &[&DELTA, &LEVEL, &NODE_BOXES, &NODE_ORDER, &LEAF_LAYOUT, &LEAF_SIZE],
     // Every level: by quality it has the finest alone where the eye is within the model's box.
     error: Some(ErrorKnob { knob: &LEVEL, values: || (0..=MAX_LEVELS).map(f64::from).collect() }),
     unit: Some(MethodUnit {
@@ -79,7 +80,7 @@ impl Discrete {
         let bvh = |level| {
             let own = at_level(&hierarchy, level);
             let key = || TreeKey::new(scene, &options, level);
-            let tree = store.tree(&key, own.finest_triangles(), &mut || FullBuilder::new(&own)?.tree(&options.tree, options.boxes))?;
+            let tree = store.tree(&key, own.finest_triangles(), &mut || FullBuilder::new(&own)?.tree(&options))?;
             tree.with_leaves(&own, options.layout)
         };
         let levels = scene.levels();

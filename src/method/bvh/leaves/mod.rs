@@ -1,20 +1,26 @@
-//! The triangles of a full-resolution quad-BVH in three layouts.
+//! The triangles of a full-resolution quad-BVH in four layouts.
 //!
 //! | layout | bytes | read per triangle |
 //! |---|---|---|
 //! | indexed | 12 per triangle + 12 per vertex | an index triple, three vertices anywhere behind all triples |
 //! | packed | 36 per triangle | nine coordinates across two or three lines |
 //! | line | 32 per triangle | one line of 28-bit coordinates |
+//! | block | 32, 64, 96 or 128 per leaf | its lines ([`block`]) |
 //!
 //! The full-resolution triangle id of each slot is kept beside the layout and charged to none: a design would look it up once per final hit.
 
+mod block;
+
 use super::finest::Finest;
-use crate::bvh::BvhError;
-use crate::format::VertexData;
+use crate::bvh::{BvhError, MAX_LEAF};
+use crate::format::{Line, VertexData};
 use crate::mesh::{Hierarchy, lattice};
 use crate::num::{LINE_BYTES, Wire};
 use rayon::prelude::*;
 use std::ops::Range;
+
+pub(super) use block::lines as block_lines;
+pub use block::{MOST_LINES, MOST_TRIANGLES};
 
 /// How leaf triangles lie in memory.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -25,16 +31,53 @@ pub enum LeafLayout {
     Packed,
     /// One 32-byte line of 28-bit coordinates ([`VertexData`]).
     Line,
+    /// Leaves of up to 16 triangles that share vertices in one to four lines ([`block`]).
+    Block,
 }
 
 impl LeafLayout {
     /// All, with their names.
-    const NAMES: [(Self, &'static str); 3] = [(Self::Indexed, "indexed"), (Self::Packed, "packed"), (Self::Line, "line")];
+    const NAMES: [(Self, &'static str); 4] =
+        [(Self::Indexed, "indexed"), (Self::Packed, "packed"), (Self::Line, "line"), (Self::Block, "block")];
 
     /// The layout of this name.
     pub fn named(name: &str) -> Option<Self> {
         Self::NAMES.into_iter().find(|(_, own)| *own == name).map(|(layout, _)| layout)
     }
+
+    /// Largest number of triangles of a leaf.
+    pub fn most_triangles(self) -> u32 {
+        if self == Self::Block { MOST_TRIANGLES as u32 } else { MAX_LEAF }
+    }
+}
+
+/// The sizes of a leaf block: triangles less one in the lower four bits, lines less one above.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Default, bytemuck::Pod, bytemuck::Zeroable)]
+#[repr(transparent)]
+pub(super) struct BlockSize(u8);
+
+impl BlockSize {
+    /// Of 1 to 16 triangles in 1 to 4 lines.
+    pub fn new(triangles: usize, lines: u32) -> Self {
+        Self((triangles as u8 - 1) | (lines as u8 - 1) << 4)
+    }
+
+    pub fn triangles(self) -> u32 {
+        u32::from(self.0 & 15) + 1
+    }
+
+    pub fn lines(self) -> u32 {
+        u32::from(self.0 >> 4) + 1
+    }
+}
+
+/// A leaf to read.
+#[derive(Clone, Debug)]
+pub struct Leaf {
+    /// Its triangles.
+    pub slots: Range<usize>,
+    /// Its lines, if it is a block.
+    block: Range<usize>,
 }
 
 /// Triangles in the order of the tree's leaves, each with a slot.
@@ -47,17 +90,25 @@ pub struct Leaves {
 
 #[derive(Clone, Debug, PartialEq, Eq)]
 enum Storage {
-    Indexed { triples: Vec<[u32; 3]>, vertices: Vec<[i32; 3]> },
+    Indexed {
+        triples: Vec<[u32; 3]>,
+        vertices: Vec<[i32; 3]>,
+    },
     Packed(Vec<[i32; 9]>),
     Line(Vec<[u64; 4]>),
+    /// `starts` has the slot of the first triangle of each line's block.
+    Block {
+        lines: Vec<Line>,
+        starts: Vec<u32>,
+    },
 }
 
 impl Leaves {
-    /// Stores the full-resolution triangles `ids` of a hierarchy, each of them once, in this order.
+    /// Stores the full-resolution triangles `ids` of a hierarchy, each of them once, in this order; `blocks` are the sizes of leaf blocks, if they are the layout.
     ///
     /// # Errors
     /// A hierarchy that does not add up, or of other triangles.
-    pub fn new(hierarchy: &Hierarchy, ids: Vec<u32>, layout: LeafLayout) -> Result<Self, BvhError> {
+    pub(super) fn new(hierarchy: &Hierarchy, ids: Vec<u32>, layout: LeafLayout, blocks: &[BlockSize]) -> Result<Self, BvhError> {
         let mesh = &Finest::new(hierarchy)?;
         if ids.len() != mesh.count() || ids.par_iter().any(|&id| id as usize >= mesh.count()) {
             return Err(BvhError::OtherHierarchy);
@@ -73,6 +124,7 @@ impl Leaves {
                 };
                 Storage::Line(ids.par_iter().map(line).collect())
             }
+            LeafLayout::Block => in_blocks(mesh, &ids, blocks).ok_or(BvhError::OtherHierarchy)?,
         };
         Ok(Self { storage, ids })
     }
@@ -83,6 +135,7 @@ impl Leaves {
             Storage::Indexed { .. } => LeafLayout::Indexed,
             Storage::Packed(_) => LeafLayout::Packed,
             Storage::Line(_) => LeafLayout::Line,
+            Storage::Block { .. } => LeafLayout::Block,
         }
     }
 
@@ -107,14 +160,47 @@ impl Leaves {
             }
             // Stored coordinates have 28 + 4 bits.
             Storage::Line(lines) => VertexData::from_words(&lines[slot]).points().map(|p| p.get().map(|c| c as i32)),
+            Storage::Block { lines, starts } => {
+                // The first line of the last block that begins at or before the slot.
+                let start = starts[starts.partition_point(|&start| start as usize <= slot) - 1];
+                let at = starts.partition_point(|&other| other < start);
+                block::Block::new(&lines[at..]).triangle(slot - start as usize)
+            }
         };
         (corners, self.ids[slot])
     }
 
-    /// Byte addresses, relative to the start of the leaf section and multiples of [`LINE_BYTES`], of the lines read for a leaf of the triangles in
-    /// `slots` (at most four, below [`Leaves::len`]): each line once for the whole leaf, in the order in which it is first needed.
+    /// The leaf that a reference with this index and count stands for.
     #[inline]
-    pub fn lines(&self, slots: Range<usize>, mut read: impl FnMut(u64)) {
+    pub fn leaf(&self, index: usize, count: usize) -> Leaf {
+        match &self.storage {
+            Storage::Block { lines, starts } => {
+                let (block, first) = (index..index + count, starts[index] as usize);
+                Leaf { slots: first..first + block::Block::new(&lines[block.clone()]).len(), block }
+            }
+            _ => Leaf { slots: index..index + count, block: 0..0 },
+        }
+    }
+
+    /// Gives each triangle of a leaf, in order, as [`Leaves::triangle`] does.
+    #[inline(always)]
+    pub fn triangles(&self, leaf: &Leaf, mut give: impl FnMut([[i32; 3]; 3], u32)) {
+        if let Storage::Block { lines, .. } = &self.storage {
+            let block = block::Block::new(&lines[leaf.block.clone()]);
+            leaf.slots.clone().enumerate().for_each(|(k, slot)| give(block.triangle(k), self.ids[slot]));
+        } else {
+            for slot in leaf.slots.clone() {
+                let (corners, id) = self.triangle(slot);
+                give(corners, id);
+            }
+        }
+    }
+
+    /// Byte addresses, relative to the start of the leaf section and multiples of [`LINE_BYTES`], of the lines read for a leaf: each line once, in the
+    /// order in which it is first needed. The leaf may be that of other leaves of the same tree, of any layouts but blocks.
+    #[inline]
+    pub fn lines(&self, leaf: &Leaf, mut read: impl FnMut(u64)) {
+        let slots = leaf.slots.clone();
         match &self.storage {
             Storage::Indexed { triples, .. } => {
                 // Four triangles, a triple and three vertices each, in one or two lines.
@@ -146,6 +232,7 @@ impl Leaves {
                 }
             }
             Storage::Line(_) => slots.for_each(|slot| read(LINE_BYTES * slot as u64)),
+            Storage::Block { .. } => leaf.block.clone().for_each(|line| read(LINE_BYTES * line as u64)),
         }
     }
 
@@ -154,7 +241,7 @@ impl Leaves {
         match &self.storage {
             Storage::Indexed { triples, vertices } => vertex_section(triples.len()) + 12 * vertices.len() as u64,
             Storage::Packed(records) => 36 * records.len() as u64,
-            Storage::Line(lines) => LINE_BYTES * lines.len() as u64,
+            Storage::Line(lines) | Storage::Block { lines, .. } => LINE_BYTES * lines.len() as u64,
         }
     }
 
@@ -165,6 +252,30 @@ impl Leaves {
             _ => 3 * self.len(),
         }
     }
+}
+
+/// Blocks of these sizes; none if they do not hold these triangles.
+fn in_blocks(mesh: &Finest<'_>, ids: &[u32], sizes: &[BlockSize]) -> Option<Storage> {
+    let firsts: Vec<u32> = sizes
+        .iter()
+        .scan(0, |next, size| {
+            let first = *next;
+            *next += size.triangles(); // at most 2^28
+            Some(first)
+        })
+        .collect();
+    if firsts.last().zip(sizes.last()).map(|(first, size)| first + size.triangles()) != u32::try_from(ids.len()).ok() {
+        return None;
+    }
+    let encode = |(&first, size): (&u32, &BlockSize)| {
+        let own = &ids[first as usize..][..size.triangles() as usize];
+        let triangles: Vec<_> = own.iter().map(|&id| mesh.triangle(id)).collect();
+        let lines = block::encode(&triangles).filter(|lines| lines.len() as u32 == size.lines())?;
+        Some(lines.into_iter().map(move |line| (line, first)))
+    };
+    let blocks: Option<Vec<_>> = firsts.par_iter().zip(sizes).map(encode).collect();
+    let (lines, starts) = blocks?.into_iter().flatten().unzip();
+    Some(Storage::Block { lines, starts })
 }
 
 /// Where the vertices start behind this many index triples.

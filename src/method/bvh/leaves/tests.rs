@@ -5,7 +5,7 @@ use crate::format::{BvhChild, ChildRef};
 use crate::method::bvh::{FullBvh, FullNodes, FullOptions, NodeBoxes};
 use std::collections::BTreeSet;
 
-const LAYOUTS: [LeafLayout; 3] = [LeafLayout::Indexed, LeafLayout::Packed, LeafLayout::Line];
+const LAYOUTS: [LeafLayout; 4] = [LeafLayout::Indexed, LeafLayout::Packed, LeafLayout::Line, LeafLayout::Block];
 
 #[test]
 fn every_layout_gives_every_triangle_once() {
@@ -48,13 +48,13 @@ fn indexed_vertices_are_shared_and_in_order_of_first_use() {
 #[test]
 fn lines_are_those_of_the_records() {
     let h = synthetic_terrain(2, 3);
-    for layout in LAYOUTS {
+    for layout in [LeafLayout::Indexed, LeafLayout::Packed, LeafLayout::Line] {
         let leaves = FullBvh::build(&h, &FullOptions::new(4, NodeBoxes::Codes, layout)).unwrap().leaves;
         for slots in (0..leaves.len()).map(|first| first..leaves.len().min(first + 1 + first % 4)) {
             let mut lines = Vec::new();
-            leaves.lines(slots.clone(), |l| lines.push(l));
             let mut bytes = BTreeSet::new();
             let mut record = |from: u64, len: u64| bytes.extend((from..from + len).map(|b| b / 32 * 32));
+            leaves.lines(&leaves.leaf(slots.start, slots.len()), |l| lines.push(l));
             for slot in slots {
                 match &leaves.storage {
                     Storage::Indexed { triples, .. } => {
@@ -64,6 +64,7 @@ fn lines_are_those_of_the_records() {
                     }
                     Storage::Packed(_) => record(36 * slot as u64, 36),
                     Storage::Line(_) => record(32 * slot as u64, 32),
+                    Storage::Block { .. } => panic!("no records"),
                 }
             }
             assert_eq!(lines.len(), bytes.len());
@@ -71,6 +72,34 @@ fn lines_are_those_of_the_records() {
             assert!(bytes.iter().all(|l| *l < leaves.bytes()));
         }
     }
+}
+
+#[test]
+fn blocks_lie_one_behind_the_other_and_have_their_triangles() {
+    let h = synthetic_terrain(2, 3);
+    let (mut blocks, mut triangles) = (0, 0);
+    for most in [1, 2, 4, 8, 16] {
+        let leaves = FullBvh::build(&h, &FullOptions::new(most, NodeBoxes::Codes, LeafLayout::Block)).unwrap().leaves;
+        let Storage::Block { lines, starts } = &leaves.storage else { panic!("wrong layout") };
+        let mut next = 0;
+        for own in starts.chunk_by(|a, b| a == b) {
+            let leaf = leaves.leaf(next, own.len());
+            assert_eq!((leaf.slots.start, leaf.slots.len() <= most as usize), (own[0] as usize, true));
+            let mut given = Vec::new();
+            leaves.triangles(&leaf, |corners, id| given.push((corners, id)));
+            assert_eq!(given, leaf.slots.clone().map(|slot| leaves.triangle(slot)).collect::<Vec<_>>());
+            let corners: Vec<_> = given.iter().map(|(corners, _)| *corners).collect();
+            assert_eq!(block::lines(&corners), Some(own.len() as u32));
+            let mut read = Vec::new();
+            leaves.lines(&leaf, |address| read.push(address as usize / 32));
+            assert_eq!(read, (next..next + own.len()).collect::<Vec<_>>());
+            next += own.len();
+            (blocks, triangles) = (blocks + 1, triangles + given.len());
+        }
+        assert_eq!(next, lines.len());
+    }
+    assert_eq!(triangles as u64, 5 * h.finest_triangles());
+    assert!(blocks < 2000, "{blocks} blocks of {triangles} triangles");
 }
 
 #[test]
