@@ -2,7 +2,7 @@
 
 /// A box in the frame of a quad-BVH node as one of 16-bit codes: for units that keep boxes of both kinds. Twin of src/block/box_decode.rs.
 ///
-/// Each plane is min(32767, origin + steps), steps = floor(v (2 + half) 2^exponent / 2). Legal: origin >= -32767. Latency BOX_DECODE_LATENCY = 2; interval 1.
+/// One `framed_box`. Legal: origin >= -32767. Latency BOX_DECODE_LATENCY = 2; interval 1.
 module box_decode #(
   parameter int unsigned TAG_W = 8
 ) (
@@ -18,47 +18,14 @@ module box_decode #(
   output logic [TAG_W-1:0]         tag_o
 );
 
-  localparam int unsigned CODE_W = lod_pkg::CODE3_W / 3;
-  localparam int unsigned PLANE_W = 5;
-  // Times 2 or 3: at most 93.
-  localparam int unsigned PRODUCT_W = PLANE_W + 2;
-  // A code and 16 bits of steps.
-  localparam int unsigned SUM_W = CODE_W + 2;
-  localparam logic [CODE_W-1:0] MOST = CODE_W'(32767);
   if (lod_pkg::BOX_DECODE_LATENCY != 2) begin : g_illegal_latency
     $error("box_decode: lod_pkg::BOX_DECODE_LATENCY must be 2");
   end
 
-  // Planes of both corners as structs lie: z of the upper one first, x of the lower one last.
-  logic [5:0][PLANE_W-1:0] planes;
-  logic [5:0][CODE_W-1:0]  steps, steps_q, codes;
-  logic [2:0][CODE_W-1:0]  origin_q;
-  assign planes = {in_i.lo[0], in_i.lo[1], in_i.lo[2], in_i.hi[0], in_i.hi[1], in_i.hi[2]};
-  for (genvar k = 0; k < 6; k++) begin : g_steps
-    localparam int unsigned AXIS = 2 - k % 3;
-    logic [PRODUCT_W-1:0] w;
-    assign w = PRODUCT_W'({planes[k], 1'b0}) + (in_i.halves[AXIS] ? PRODUCT_W'(planes[k]) : '0);
-    box_steps #(.W(PRODUCT_W)) u_steps (.w_i(w), .exponent_i(in_i.exponents[AXIS]), .steps_o(steps[k]));
-  end
-
-  logic             valid_steps, ready_steps;
-  logic [TAG_W-1:0] tag_steps;
-  pipe_stage #(.W(9 * CODE_W + TAG_W)) u_steps (
-    .clk_i, .rst_ni, .valid_i, .ready_o, .data_i({in_i.origin, steps, tag_i}),
-    .valid_o(valid_steps), .ready_i(ready_steps), .data_o({origin_q, steps_q, tag_steps})
-  );
-
-  for (genvar k = 0; k < 6; k++) begin : g_code
-    logic signed [CODE_W-1:0] origin;
-    logic signed [SUM_W-1:0]  sum;
-    assign origin   = origin_q[k%3];
-    assign sum      = SUM_W'(origin) + {2'd0, steps_q[k]};
-    // Above 32767; it is never below -32767.
-    assign codes[k] = !sum[SUM_W-1] && sum[SUM_W-2:CODE_W-1] != '0 ? MOST : sum[CODE_W-1:0];
-  end
-  pipe_stage #(.W(6 * CODE_W + TAG_W)) u_out (
-    .clk_i, .rst_ni, .valid_i(valid_steps), .ready_o(ready_steps), .data_i({codes, tag_steps}),
-    .valid_o, .ready_i, .data_o({out_o, tag_o})
+  framed_box #(.PLANE_W(5), .TAG_W(TAG_W)) u_box (
+    .clk_i, .rst_ni, .valid_i, .ready_o, .origin_i(in_i.origin), .halves_i(in_i.halves), .exponents_i(in_i.exponents),
+    .planes_i({in_i.lo[0], in_i.lo[1], in_i.lo[2], in_i.hi[0], in_i.hi[1], in_i.hi[2]}), .tag_i,
+    .valid_o, .ready_i, .bounds_o(out_o), .tag_o
   );
 
 endmodule

@@ -62,10 +62,12 @@ package lod_pkg;
   localparam int unsigned BARY_MAP_LATENCY = 10;
   localparam int unsigned BOUND_DECODE_LATENCY = 3;
   localparam int unsigned BOX_DECODE_LATENCY = 2;
+  localparam int unsigned BOX_DECODE8_LATENCY = 2;
   localparam int unsigned BOX_TEST_LATENCY = 8;
   localparam int unsigned BOX_TEST32_LATENCY = 9;
   localparam int unsigned CHILD_BOXES_LATENCY = 3;
   localparam int unsigned CHILD_SORT_LATENCY = 3;
+  localparam int unsigned CHILD_SORT6_LATENCY = 5;
   localparam int unsigned HIT_DIVIDE_LATENCY = 36;
   localparam int unsigned HIT_DIVIDE_INTERVAL = 36;
   localparam int unsigned HIT_SELECT_LATENCY = 3;
@@ -336,6 +338,22 @@ package lod_pkg;
   } box_decode_out_t;
   localparam int unsigned BOX_DECODE_OUT_W = BOX16_W;
 
+  // Input of box_decode8.
+  typedef struct packed {
+    code3_t origin;              // Lower corner of the node's frame.
+    logic [2:0] halves;          // Steps along x, y, z are half as long again.
+    logic [2:0][3:0] exponents;  // Powers of two of these steps.
+    logic [2:0][7:0] lo;         // Steps of the lower corner.
+    logic [2:0][7:0] hi;         // Steps of the upper corner.
+  } box_decode8_in_t;
+  localparam int unsigned BOX_DECODE8_IN_W = CODE3_W + 3 + 3 * 4 + 3 * 8 + 3 * 8;
+
+  // Output of box_decode8.
+  typedef struct packed {
+    box16_t bounds;  // The box.
+  } box_decode8_out_t;
+  localparam int unsigned BOX_DECODE8_OUT_W = BOX16_W;
+
   // Input of box_test.
   typedef struct packed {
     ray_setup_out_t ray;        // The ray's constants.
@@ -373,6 +391,20 @@ package lod_pkg;
     logic [3:0][1:0] order;  // Child numbers, nearest first.
   } child_sort_out_t;
   localparam int unsigned CHILD_SORT_OUT_W = 3 + 4 * 2;
+
+  // Input of child_sort6.
+  typedef struct packed {
+    logic [5:0] hit;                   // Child k is hit.
+    logic [5:0][T_NEAR_W-1:0] t_near;  // Entry distance of child k.
+  } child_sort6_in_t;
+  localparam int unsigned CHILD_SORT6_IN_W = 6 + 6 * T_NEAR_W;
+
+  // Output of child_sort6.
+  typedef struct packed {
+    logic [2:0] count;       // Number of children hit, 0 to 6.
+    logic [5:0][2:0] order;  // Child numbers, nearest first.
+  } child_sort6_out_t;
+  localparam int unsigned CHILD_SORT6_OUT_W = 3 + 6 * 3;
 
   // Input of child_test.
   typedef struct packed {

@@ -51,6 +51,7 @@ fn results_are_the_same_with_and_without() {
         "render a.lod --method bvh --size 40x30 --json -o out",
         "render a.lod --method bvh32 --leaf-layout packed --leaf-size 2 --size 40x30 --json -o out",
         "render a.lod --method bvh --leaf-layout indexed --leaf-size 1 --size 40x30 --json -o out",
+        "render a.lod --method bvh6 --size 40x30 --json -o out",
         SHOT,
         "lines a.lod --size 24x16 --distances 1,4 --bvh32 --json",
     ]
@@ -65,8 +66,8 @@ fn results_are_the_same_with_and_without() {
             assert_eq!(desk.run(&cache, args), plain, "{args}: {round}");
             assert_eq!(desk.path("out").exists().then(|| desk.files("out")), pictures);
         }
-        // Six trees of boxes in frames serve nine layouts, and so do six of 16-bit boxes, and six of 32-bit boxes; of leaf blocks there are three each.
-        assert_eq!(desk.files(&cache).len(), if args.starts_with("lines") { 27 } else { 1 }, "{args}");
+        // Six trees of boxes in frames serve nine layouts, and so do six of 16-bit boxes, and six of 32-bit boxes, and six of nodes of six children; of leaf blocks there are three each.
+        assert_eq!(desk.files(&cache).len(), if args.starts_with("lines") { 36 } else { 1 }, "{args}");
     }
 }
 
@@ -84,17 +85,18 @@ fn trees_are_kept_under_what_they_depend_on() {
     count("render a.lod --method bvh32 --size 9x9 -o out", 4);
     count("render a.lod --method bvh --size 9x9 --leaf-size 2 -o out", 5);
     count("render a.lod --method bvh --size 9x9 --node-order treelets -o out", 6);
+    count("render a.lod --method bvh6 --size 9x9 -o out", 7);
     // Another name and other colours are the same geometry; another seed is not.
     fs::copy(desk.path("a.lod"), desk.path("b.lod")).unwrap();
-    count("render b.lod --method bvh --size 9x9 -o out", 6);
+    count("render b.lod --method bvh --size 9x9 -o out", 7);
     desk.run("none", "generate terrain --levels 4 --base 512 --seed 5 -o c.lod");
-    count("render c.lod --method bvh --size 9x9 -o out", 7);
+    count("render c.lod --method bvh --size 9x9 -o out", 8);
     // Too small to be worth it, or without a tree.
-    count("render small.lod --method bvh --size 9x9 -o out", 7);
-    count("render a.lod --size 9x9 -o out", 7);
+    count("render small.lod --method bvh --size 9x9 -o out", 8);
+    count("render a.lod --size 9x9 -o out", 8);
     // The option goes before the environment.
     desk.run("cache", &format!("{SHOT} --cache other"));
-    assert_eq!((desk.files("cache").len(), desk.files("other").len()), (7, 1));
+    assert_eq!((desk.files("cache").len(), desk.files("other").len()), (8, 1));
 }
 
 #[cfg(unix)]

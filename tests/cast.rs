@@ -84,9 +84,9 @@ fn hits_are_the_golden_traversers_between_any_two_distances() {
 fn any_hit_is_found_just_where_the_closest_is() {
     let scene = scene_of(&terrain(4, 4, 0.9, 7));
     let space = ModelSpace::of(&scene);
-    let closest = queries(&space, 3000, 2);
+    let closest = queries(&space, 20_000, 2);
     let any: Vec<_> = closest.iter().map(|query| Query { any: true, ..*query }).collect();
-    for method in ["lod", "bvh", "bvh32", "discrete"] {
+    for method in ["lod", "bvh", "bvh6", "bvh32", "discrete"] {
         let [closest, any] = [&closest, &any].map(|queries| hits(method, &scene, queries.clone(), 1.0));
         let mut farther = 0;
         for (closest, any) in closest.iter().zip(&any) {
@@ -106,6 +106,7 @@ fn methods_agree_at_full_resolution_and_levels_are_as_chosen() {
     let bvh = hits("bvh", &scene, all.clone(), 1.0);
     let finest = [
         hits("lod", &scene, all.clone(), f64::INFINITY),
+        hits("bvh6", &scene, all.clone(), 1.0),
         hits("bvh32", &scene, all.clone(), 1.0),
         hits("discrete", &scene, all.clone(), f64::INFINITY),
     ];
@@ -176,7 +177,7 @@ fn files_of_rays_run_on_machines_and_wait_for_each_other_there() {
     let chain: Vec<f64> = all.iter().enumerate().flat_map(|(k, query)| row(k as f64 - 1.0, query)).collect();
     write_rays(&desk.path("free.npy"), 12, &free);
     write_rays(&desk.path("chain.npy"), 12, &chain);
-    for method in ["lod", "bvh", "bvh32", "discrete"] {
+    for method in ["lod", "bvh", "bvh6", "bvh32", "discrete"] {
         let cast = desk.json(&format!("cast a.lod free.npy --method {method} -o hits.npy"));
         for compute in ["free", "units"] {
             let [together, one_by_one] =

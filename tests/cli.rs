@@ -123,7 +123,7 @@ fn verify_counts_and_fails() {
 fn render_with_every_method() {
     let desk = empty();
     desk.run("generate sphere --levels 3 --base 32 -o a.lod");
-    for method in ["lod", "bvh", "bvh32", "reference"] {
+    for method in ["lod", "bvh", "bvh6", "bvh32", "reference"] {
         let report = desk.json(&format!("render a.lod --method {method} --size 40x24 --distance 3 --compare -o {method}"));
         assert_eq!((&report["method"], &report["stats"]["rays"]), (&method.into(), &960.into()));
         assert!(report["stats"]["hits"].as_u64().unwrap() > 50);
@@ -150,7 +150,7 @@ fn lines_by_distance() {
     desk.run("generate terrain --levels 3 --base 32 -o a.lod");
     let report = desk.json("lines a.lod --distances 1.5,6 --size 32x32 --bvh32");
     assert_eq!(report["distances"], serde_json::json!([1.5, 6.0]));
-    assert_eq!(report["rows"].as_array().unwrap().len(), 2 + 36);
+    assert_eq!(report["rows"].as_array().unwrap().len(), 2 + 48);
     for field in ["ratio", "base_share", "mean_level"] {
         assert_eq!(report[field].as_array().unwrap().len(), 2, "{field}");
     }

@@ -64,6 +64,8 @@ fn full_bvhs(h: &Hierarchy) -> Vec<FullBvh> {
         (NodeBoxes::Wide, LeafLayout::Packed, 1),
         (NodeBoxes::Local, LeafLayout::Block, 16),
         (NodeBoxes::Wide, LeafLayout::Block, 8),
+        (NodeBoxes::Six, LeafLayout::Block, 16),
+        (NodeBoxes::Six, LeafLayout::Indexed, 1),
     ];
     let build = |(boxes, layout, size)| FullBvh::build(h, &FullOptions::new(size, boxes, layout)).expect("a valid model");
     variants.map(build).into()

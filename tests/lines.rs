@@ -18,11 +18,13 @@ fn every_layout_has_the_lines_of_its_own_frame() {
     json(folder.path(), "generate terrain --levels 3 --base 128 --json -o a.lod");
     let report = json(folder.path(), "lines a.lod --distances 1.5,5 --size 45x37 --bvh32 --json");
     let rows = report["rows"].as_array().unwrap();
-    assert_eq!(rows.len(), 2 + 27 + 9);
-    for (method, bits) in [("bvh --node-boxes local", 5), ("bvh --node-boxes codes", 16), ("bvh32", 32)] {
+    assert_eq!(rows.len(), 2 + 36 + 12);
+    for (method, bits) in
+        [("bvh --node-boxes local", "BVH 5"), ("bvh6", "BVH6 8"), ("bvh --node-boxes codes", "BVH 16"), ("bvh32", "BVH 32")]
+    {
         for (size, layouts) in [(1, &LAYOUTS[..3]), (2, &LAYOUTS[..3]), (4, &LAYOUTS), (8, &LAYOUTS[3..]), (16, &LAYOUTS[3..])] {
             for layout in layouts {
-                let name = format!("BVH {bits}-bit, {layout}, {size} a leaf");
+                let name = format!("{bits}-bit, {layout}, {size} a leaf");
                 let row = rows.iter().find(|row| row["structure"] == name.as_str()).unwrap_or_else(|| panic!("no {name}"));
                 for (k, distance) in ["1.5", "5"].iter().enumerate() {
                     let layout = layout.to_lowercase();

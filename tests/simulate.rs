@@ -104,7 +104,9 @@ fn conserved(r: &Value) {
 #[test]
 fn a_run_has_consistent_figures() {
     let desk = with_scene();
-    for (method, machine) in [("lod", "haydel2023"), ("bvh", "turing2018"), ("bvh32", "haydel2023-public"), ("lod", "packet")] {
+    for (method, machine) in
+        [("lod", "haydel2023"), ("bvh", "turing2018"), ("bvh32", "haydel2023-public"), ("bvh6", "haydel2023"), ("lod", "packet")]
+    {
         let r = desk.json(&format!("{SHOT} --method {method} --machine {machine}"));
         assert_eq!(count(&r, "/rays"), 960);
         assert!((100..960).contains(&count(&r, "/hits")));
@@ -226,7 +228,7 @@ fn wrong_words_are_one_clear_error() {
 #[test]
 fn units_take_their_time_and_nothing_else_changes() {
     let desk = with_scene();
-    for method in ["lod", "bvh", "bvh32"] {
+    for method in ["lod", "bvh", "bvh6", "bvh32"] {
         let [free, units] = ["free", "units"].map(|compute| desk.json(&format!("{SHOT} --method {method} --compute {compute}")));
         for same in ["/rays", "/hits", "/l1/requests", "/operations"] {
             assert_eq!(free.pointer(same), units.pointer(same), "{method} {same}");

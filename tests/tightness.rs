@@ -10,7 +10,7 @@ use lodray::block::lod_test::{self, LodTest};
 use lodray::block::tessellate::{self, Tessellate, child_triangle};
 use lodray::block::tri_test::{self, TriTest};
 use lodray::bvh::BvhChild32;
-use lodray::format::{BvhChild, BvhNode, ChildRef, Displacements, L0Record, Line, SiblingGroup, TreeLines, VertexData};
+use lodray::format::{BvhChild, BvhNode, ChildRef, Displacements, L0Record, Line, SiblingGroup, SixNode, TreeLines, VertexData};
 use lodray::mesh::{Hierarchy, lattice};
 use lodray::method::bvh::{self, BvhTraverser, FullBvh, FullNodes, FullOptions, LeafLayout, NodeBoxes};
 use lodray::method::lod::{self, LodImage, LodTraverser};
@@ -91,10 +91,10 @@ fn in_excess(own: &[Bounds], all: &[Bounds]) -> Vec<Bounds> {
     (0..4).map(stored).collect()
 }
 
-/// Boxes at whole codes as a node of one line holds them: from the corner of all of them on, in 31 steps.
-fn in_frame(boxes: [Option<Bounds>; 4]) -> [Option<Bounds>; 4] {
+/// Boxes at whole codes as a node with a frame of its own holds them: from the corner of all of them on, in `most` steps.
+fn in_frame<const W: usize>(boxes: [Option<Bounds>; W], most: i64) -> [Option<Bounds>; W] {
     let (origin, end) = around(boxes.iter().flatten()).codes();
-    let steps: [Vec<i64>; 3] = std::array::from_fn(|axis| reached(end[axis] - origin[axis], 31));
+    let steps: [Vec<i64>; 3] = std::array::from_fn(|axis| reached(end[axis] - origin[axis], most));
     boxes.map(|b| {
         let (lo, hi) = b?.codes();
         Some(Bounds::of_codes(
@@ -121,10 +121,10 @@ impl<'a, H: HitSink> Walk<'a, H> {
     }
 
     /// Tests a group of boxes (`None`: no child), and visits those that are met, nearest first and equal ones by number.
-    fn children(&mut self, boxes: [Option<Bounds>; 4], mut visit: impl FnMut(&mut Self, usize)) {
+    fn children<const W: usize>(&mut self, boxes: [Option<Bounds>; W], mut visit: impl FnMut(&mut Self, usize)) {
         self.counts.nodes += 1;
         let entry = |b: Bounds| slabs(self.ray.origin.get(), self.ray.direction.get(), b.lo, b.hi).filter(|&t| !self.is_beyond(t));
-        let mut met: Vec<(usize, Fraction)> = (0..4).filter_map(|k| Some((k, entry(boxes[k]?)?))).collect();
+        let mut met: Vec<(usize, Fraction)> = (0..W).filter_map(|k| Some((k, entry(boxes[k]?)?))).collect();
         met.sort_by(|a, b| (a.1.0 * b.1.1).cmp(&(b.1.0 * a.1.1)));
         for (k, t) in met {
             if !self.is_beyond(t) {
@@ -151,24 +151,24 @@ fn around<'a>(boxes: impl IntoIterator<Item = &'a Bounds>) -> Bounds {
     boxes.into_iter().copied().fold(Bounds::EMPTY, Bounds::with)
 }
 
-/// The boxes of the children of quad-BVH node `index` and of all below it, from those of its leaves; gives the box around what is below. Nodes of one line have
-/// frames of their own.
-fn fill(
-    boxes: &mut [[Option<Bounds>; 4]],
+/// The boxes of the children of BVH node `index` and of all below it, from those of its leaves; gives the box around what is below. `frame`: steps of a node's
+/// own frame, if it has one.
+fn fill<const W: usize>(
+    boxes: &mut [[Option<Bounds>; W]],
     index: usize,
-    is_line: bool,
+    frame: Option<i64>,
     child: &impl Fn(usize, usize) -> ChildRef,
     leaf: &impl Fn(ChildRef) -> Bounds,
 ) -> Bounds {
-    let own: [Option<Bounds>; 4] = std::array::from_fn(|k| {
+    let own: [Option<Bounds>; W] = std::array::from_fn(|k| {
         let to = child(index, k);
         match to.kind.get() {
             ChildRef::EMPTY => None,
-            ChildRef::INNER => Some(fill(boxes, to.index.get() as usize, is_line, child, leaf)),
+            ChildRef::INNER => Some(fill(boxes, to.index.get() as usize, frame, child, leaf)),
             _ => Some(leaf(to)),
         }
     });
-    boxes[index] = if is_line { in_frame(own) } else { own };
+    boxes[index] = frame.map_or(own, |most| in_frame(own, most));
     around(own.iter().flatten())
 }
 
@@ -203,7 +203,7 @@ impl<'a> Lod<'a> {
         trees.push(Vec::new()); // roots are in no group
         trees.reverse();
         let mut nodes = vec![[None; 4]; image.nodes.len()];
-        fill(&mut nodes, 0, true, &|at, k| line_child(&image.nodes[at], k), &|to| below[to.index.get() as usize].at_codes());
+        fill(&mut nodes, 0, Some(31), &|at, k| line_child(&image.nodes[at], k), &|to| below[to.index.get() as usize].at_codes());
         Self { image, trees, nodes }
     }
 
@@ -272,7 +272,8 @@ impl<'a> Lod<'a> {
         walk.reads(lod::BOUNDS, 1);
         let first = ((tree as usize) << (2 * (level + 1))) + 4 * node as usize;
         let stored = &self.trees[level as usize + 1][first..first + 4];
-        let boxes = std::array::from_fn(|k| Some(stored[k].with(Bounds::around(corners[k][1].map(|p| p.get())).at_codes())));
+        let boxes: [Option<Bounds>; 4] =
+            std::array::from_fn(|k| Some(stored[k].with(Bounds::around(corners[k][1].map(|p| p.get())).at_codes())));
         let group = SiblingGroup::from_words(&self.image.bounds[lines.child_group(level, node as usize)]);
         walk.children(boxes, |walk, k| self.tree_node(walk, below(k), corners[k], group.codes_of(k)));
     }
@@ -285,26 +286,32 @@ fn line_child(line: &Line, k: usize) -> ChildRef {
 /// The baseline.
 struct Full<'a> {
     bvh: &'a FullBvh,
-    nodes: Vec<[Option<Bounds>; 4]>,
+    /// With none beyond the fourth where nodes have four.
+    nodes: Vec<[Option<Bounds>; 6]>,
 }
 
 impl<'a> Full<'a> {
     fn new(bvh: &'a FullBvh) -> Self {
         let points = |slot| bvh.leaves.triangle(slot).0.map(|p: [i32; 3]| p.map(i64::from));
-        let (is_wide, is_line) = (matches!(*bvh.nodes, FullNodes::Boxes32(_)), matches!(*bvh.nodes, FullNodes::Local(_)));
+        let is_wide = matches!(*bvh.nodes, FullNodes::Boxes32(_));
+        let frame = match *bvh.nodes {
+            FullNodes::Local(_) => Some(31),
+            FullNodes::Six(_) => Some(255),
+            FullNodes::Boxes16(_) | FullNodes::Boxes32(_) => None,
+        };
         let leaf = |to: ChildRef| {
             let bounds = Bounds::around(leaf_of(bvh, to).slots.flat_map(points));
             if is_wide { bounds } else { bounds.at_codes() }
         };
-        let mut nodes = vec![[None; 4]; bvh.nodes.len()];
-        fill(&mut nodes, 0, is_line, &|at, k| full_child(bvh, at, k), &leaf);
+        let mut nodes = vec![[None; 6]; bvh.nodes.len()];
+        fill(&mut nodes, 0, frame, &|at, k| full_child(bvh, at, k), &leaf);
         Self { bvh, nodes }
     }
 
     fn node<H: HitSink>(&self, walk: &mut Walk<'_, H>, index: usize) {
         let lines = match *self.bvh.nodes {
             FullNodes::Local(_) => 1,
-            FullNodes::Boxes16(_) => 2,
+            FullNodes::Boxes16(_) | FullNodes::Six(_) => 2,
             FullNodes::Boxes32(_) => 4,
         };
         walk.reads(bvh::NODES, lines);
@@ -328,6 +335,8 @@ impl<'a> Full<'a> {
 
 fn full_child(bvh: &FullBvh, index: usize, k: usize) -> ChildRef {
     match &*bvh.nodes {
+        FullNodes::Six(nodes) => SixNode::from_words(&nodes[index]).child(k),
+        _ if k >= 4 => ChildRef::default(),
         FullNodes::Local(nodes) => line_child(&nodes[index], k),
         FullNodes::Boxes16(nodes) => BvhChild::from_words(&nodes[index][2 * k..2 * k + 2]).child,
         FullNodes::Boxes32(nodes) => BvhChild32::from_words(&nodes[index][4 * k..4 * k + 4]).child,
@@ -381,6 +390,8 @@ fn compare(h: &Hierarchy, rays: &[Ray], lod: &mut Sums, full: &mut Sums) {
         (NodeBoxes::Wide, LeafLayout::Indexed, 1),
         (NodeBoxes::Local, LeafLayout::Block, 16),
         (NodeBoxes::Wide, LeafLayout::Block, 8),
+        (NodeBoxes::Six, LeafLayout::Block, 16),
+        (NodeBoxes::Six, LeafLayout::Line, 2),
     ];
     let bvhs = variants.map(|(boxes, layout, size)| FullBvh::build(h, &FullOptions::new(size, boxes, layout)).expect("a valid model"));
     for ray in rays {

@@ -34,9 +34,8 @@ wire_struct! {
 /// The block.
 pub struct BoxDecode;
 
-/// Bits of a code, of steps times two or three, and of steps in codes.
+/// Bits of a code, and of steps in codes.
 const CODE: u32 = 16;
-const DOUBLED: u32 = 7;
 const STEPS: u32 = 16;
 
 impl Block for BoxDecode {
@@ -45,20 +44,36 @@ impl Block for BoxDecode {
     type In = In;
     type Out = Out;
     fn parts(_: &Form) -> Parts {
-        let registers = Registers::stage(6 * STEPS + 3 * CODE + TAG) + Registers::stage(6 * CODE + TAG);
-        Parts { products: vec![], add_bits: 6 * (DOUBLED + STEPS), select_bits: 6 * (4 * STEPS + CODE), registers }
+        parts(5)
     }
     #[inline(always)]
     fn eval(i: &In) -> Out {
-        let exponents = i.exponents.map(U::narrow).map(i32::cast_unsigned);
-        let plane = |axis: usize, origin: S<16>, plane: U<5>| {
-            // Below 2^22.
-            let steps = box_steps(i.halves[axis], exponents[axis], plane.narrow().cast_unsigned()).cast_signed();
-            S::new(i64::from(framed_plane(origin.narrow(), steps)))
-        };
-        let corner = |[x, y, z]: [U<5>; 3]| Vec3 { x: plane(0, i.origin.x, x), y: plane(1, i.origin.y, y), z: plane(2, i.origin.z, z) };
-        Out { bounds: Box16 { lo: corner(i.lo), hi: corner(i.hi) } }
+        Out { bounds: framed_box(i.origin, i.halves, i.exponents, [i.lo, i.hi]) }
     }
+}
+
+/// What the block is made of for planes of so many bits.
+pub(super) fn parts(plane: u32) -> Parts {
+    let registers = Registers::stage(6 * STEPS + 3 * CODE + TAG) + Registers::stage(6 * CODE + TAG);
+    Parts { products: vec![], add_bits: 6 * (plane + 2 + STEPS), select_bits: 6 * (4 * STEPS + CODE), registers }
+}
+
+/// The box with these corners in a frame.
+#[inline(always)]
+pub(super) fn framed_box<const PLANE: u32>(
+    origin: Vec3<16>,
+    halves: [bool; 3],
+    exponents: [U<4>; 3],
+    [lo, hi]: [[U<PLANE>; 3]; 2],
+) -> Box16 {
+    let exponents = exponents.map(U::narrow).map(i32::cast_unsigned);
+    let plane = |axis: usize, origin: S<16>, plane: U<PLANE>| {
+        // Below 2^24, of planes of up to 8 bits.
+        let steps = box_steps(halves[axis], exponents[axis], plane.narrow().cast_unsigned()).cast_signed();
+        S::new(i64::from(framed_plane(origin.narrow(), steps)))
+    };
+    let corner = |[x, y, z]: [U<PLANE>; 3]| Vec3 { x: plane(0, origin.x, x), y: plane(1, origin.y, y), z: plane(2, origin.z, z) };
+    Box16 { lo: corner(lo), hi: corner(hi) }
 }
 
 #[cfg(test)]

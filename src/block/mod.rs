@@ -8,10 +8,12 @@
 pub mod bary_map;
 pub mod bound_decode;
 pub mod box_decode;
+pub mod box_decode8;
 pub mod box_test;
 pub mod box_test32;
 pub mod child_boxes;
 pub mod child_sort;
+pub mod child_sort6;
 pub mod child_test;
 pub mod hit_divide;
 pub mod hit_select;

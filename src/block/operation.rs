@@ -4,10 +4,12 @@ use super::Block;
 use super::bary_map::BaryMap;
 use super::bound_decode::BoundDecode;
 use super::box_decode::BoxDecode;
+use super::box_decode8::BoxDecode8;
 use super::box_test::BoxTest;
 use super::box_test32::BoxTest32;
 use super::child_boxes::ChildBoxes;
 use super::child_sort::ChildSort;
+use super::child_sort6::ChildSort6;
 use super::child_test::ChildTest;
 use super::hit_divide::HitDivide;
 use super::hit_select::HitSelect;
@@ -22,7 +24,7 @@ use super::{Form, Timing, parts::Parts};
 macro_rules! of_block {
     ($operation:expr, $block:ident => $value:expr) => {
         of_block!($operation, $block => $value; RaySetup, NodeAddress, ChildTest, LodTest, Tessellate, TriTest, HitDivide, HitSelect,
-            BaryMap, ChildBoxes, BoxDecode, BoxTest, BoxTest32, ChildSort, BoundDecode)
+            BaryMap, ChildBoxes, BoxDecode, BoxTest, BoxTest32, ChildSort, BoundDecode, BoxDecode8, ChildSort6)
     };
     ($operation:expr, $block:ident => $value:expr; $($name:ident),+) => {
         match $operation {
@@ -67,11 +69,15 @@ pub enum Operation {
     ChildSort,
     /// A displacement bound.
     BoundDecode,
+    /// A box in the frame of a node of six.
+    BoxDecode8,
+    /// Six children ordered.
+    ChildSort6,
 }
 
 impl Operation {
     /// Every operation.
-    pub const ALL: [Self; 15] = [
+    pub const ALL: [Self; 17] = [
         Self::RaySetup,
         Self::NodeAddress,
         Self::ChildTest,
@@ -87,6 +93,8 @@ impl Operation {
         Self::BoxTest32,
         Self::ChildSort,
         Self::BoundDecode,
+        Self::BoxDecode8,
+        Self::ChildSort6,
     ];
 
     /// Its number in [`Operation::ALL`].

@@ -1,8 +1,8 @@
-//! What every quad-BVH must satisfy, and what it costs.
+//! What every BVH must satisfy, and what it costs.
 
-use super::{Box32, Child, Costs, MAX_DEPTH, QuadTree};
+use super::{Box32, Child, Costs, MAX_DEPTH, WideTree};
 
-/// The first thing found wrong with a quad-BVH.
+/// The first thing found wrong with a BVH.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum Defect {
     /// A reference to a node or slot that does not exist, or a node reached twice.
@@ -29,11 +29,11 @@ pub enum Defect {
 ///
 /// # Errors
 /// The first defect found.
-pub fn check(tree: &QuadTree, boxes: &[Box32]) -> Result<(), Defect> {
+pub fn check<const W: usize>(tree: &WideTree<W>, boxes: &[Box32]) -> Result<(), Defect> {
     check_depth(tree, boxes, MAX_DEPTH)
 }
 
-fn check_depth(tree: &QuadTree, boxes: &[Box32], depth: u32) -> Result<(), Defect> {
+fn check_depth<const W: usize>(tree: &WideTree<W>, boxes: &[Box32], depth: u32) -> Result<(), Defect> {
     let mut reached = vec![false; tree.nodes.len()];
     let mut held = vec![false; boxes.len()];
     let mut path = vec![(0u32, 1u32)];
@@ -46,7 +46,7 @@ fn check_depth(tree: &QuadTree, boxes: &[Box32], depth: u32) -> Result<(), Defec
             return Err(Defect::Depth(index));
         }
         let used = node.children.iter().take_while(|c| **c != Child::Empty).count();
-        if used == 0 || (used..4).any(|k| node.children[k] != Child::Empty || node.boxes[k] != Box32::default()) {
+        if used == 0 || (used..W).any(|k| node.children[k] != Child::Empty || node.boxes[k] != Box32::default()) {
             return Err(Defect::Slots(index));
         }
         for (bounds, child) in node.boxes.iter().zip(&node.children[..used]) {
@@ -86,7 +86,7 @@ fn check_depth(tree: &QuadTree, boxes: &[Box32], depth: u32) -> Result<(), Defec
 }
 
 /// Expected cost of a ray that meets the root's box, by the surface area heuristic; a root without area counts as 1.
-pub fn sah_cost(tree: &QuadTree, costs: &Costs) -> f64 {
+pub fn sah_cost<const W: usize>(tree: &WideTree<W>, costs: &Costs) -> f64 {
     let Some(root) = tree.nodes.first() else { return 0.0 };
     let used = root.boxes.iter().zip(&root.children).filter(|(_, c)| **c != Child::Empty);
     let root_area = used.map(|(b, _)| *b).reduce(|a, b| a.union(&b)).map_or(0.0, |b| b.half_area());
@@ -152,7 +152,9 @@ pub(crate) fn synthetic_terrain(quads: u32, levels: u32) -> crate::mesh::Hierarc
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::bvh::{BvhError, Collapse, Options, build, build::Prim, build_nodes, over_trees};
+    use crate::bvh::{
+        BvhError, Collapse, MAX_DEPTH_OF_SIX, Options, QuadNode, QuadTree, WideNode, WideTree, build, build::Prim, build_nodes, over_trees,
+    };
     use crate::format::{Box16, BvhNode, ChildRef, TreeBvh};
     use crate::num::{COORD_LIMIT, Wire};
     use proptest::prelude::*;
@@ -234,13 +236,38 @@ mod tests {
             for depth in least..least + 3 {
                 for collapse in [Collapse::Optimal, Collapse::Greedy] {
                     let prims = (0..).zip(&boxes).map(|(k, b)| Prim::new(b, k)).collect();
-                    let (nodes, order) = build_nodes(prims, &options(1, collapse), depth, |n| *n).unwrap();
+                    let (nodes, order) = build_nodes(prims, &options(1, collapse), depth, |n: &QuadNode| *n).unwrap();
                     assert_eq!(check_depth(&QuadTree { nodes, order }, &boxes, depth), Ok(()), "{name} {depth}");
                     checked += 1;
                 }
             }
         }
         assert_eq!(checked, 27 * 6);
+    }
+
+    #[test]
+    fn six_children_a_node_are_sound_and_cost_less() {
+        let mut cheaper = 0;
+        for (name, boxes) in inputs() {
+            let least = (boxes.len() as u32).next_power_of_two().trailing_zeros().div_ceil(2).max(1);
+            for depth in [least, least + 1, MAX_DEPTH_OF_SIX] {
+                for (max_leaf, collapse) in [(1, Collapse::Optimal), (4, Collapse::Optimal), (1, Collapse::Greedy)] {
+                    let prims = || (0..).zip(&boxes).map(|(k, b)| Prim::new(b, k)).collect();
+                    let of = options(max_leaf, collapse);
+                    let (nodes, order) = build_nodes(prims(), &of, depth, |n: &WideNode<6>| *n).unwrap();
+                    let six = WideTree { nodes, order };
+                    assert_eq!(check_depth(&six, &boxes, depth), Ok(()), "{name} {depth}");
+                    let (nodes, order) = build_nodes(prims(), &of, depth, |n: &QuadNode| *n).unwrap();
+                    let four = QuadTree { nodes, order };
+                    if depth == MAX_DEPTH_OF_SIX && collapse == Collapse::Optimal {
+                        let [six, four] = [sah_cost(&six, &of.costs), sah_cost(&four, &of.costs)];
+                        assert!(six <= four * 1.000_001, "{name} {max_leaf}: {six} {four}");
+                        cheaper += u32::from(six < four * 0.95);
+                    }
+                }
+            }
+        }
+        assert!(cheaper > 27, "{cheaper}");
     }
 
     #[test]

@@ -1,21 +1,22 @@
-//! From the binary tree to nodes of four children, in the memory order that [`super::QuadTree`] states.
+//! From the binary tree to nodes of `W` children, four or more, in the memory order that [`super::WideTree`] states.
 //!
-//! Depth: a subtree of binary height h fits h / 2 quad nodes (rounded up) on a path, by opening both halves of every node. Any other
+//! Depth: a subtree of binary height h fits h / 2 nodes (rounded up) on a path, by opening both halves of every node. Any other
 //! choice of children is taken only if each child still fits what then remains, so the bound holds whatever the costs say.
 
 use super::build::{Binary, Node, Prim};
 use super::plan::{LeafCost, Plan, plans};
-use super::{Box32, Child, Collapse, Options, QuadNode};
+use super::{Box32, Child, Collapse, Options, WideNode};
 use rayon::prelude::*;
 
 /// Subtrees up to this many primitives are written by one thread.
 const TASK: u32 = 1 << 16;
 
 /// The binary tree to read.
-pub(crate) struct BinaryTree<'a> {
+pub(crate) struct BinaryTree<'a, const W: usize> {
     prims: &'a [Prim],
     tree: &'a Binary,
-    plans: Vec<Plan>,
+    plans: Vec<Plan<W>>,
+    cost: f64,
     collapse: Collapse,
     leaf: &'a LeafCost<'a>,
 }
@@ -28,14 +29,20 @@ struct Part {
     split: u32,
 }
 
-/// Up to four children.
-#[derive(Clone, Copy, Default)]
-struct Parts {
-    parts: [Part; 4],
+/// Up to `W` children.
+#[derive(Clone, Copy)]
+struct Parts<const W: usize> {
+    parts: [Part; W],
     len: usize,
 }
 
-impl Parts {
+impl<const W: usize> Default for Parts<W> {
+    fn default() -> Self {
+        Self { parts: [Part::default(); W], len: 0 }
+    }
+}
+
+impl<const W: usize> Parts<W> {
     fn push(&mut self, p: Part) {
         self.parts[self.len] = p;
         self.len += 1;
@@ -46,9 +53,16 @@ impl Parts {
     }
 }
 
-impl<'a> BinaryTree<'a> {
+impl<'a, const W: usize> BinaryTree<'a, W> {
     pub fn new(prims: &'a [Prim], tree: &'a Binary, options: &Options, leaf: &'a LeafCost<'a>) -> Self {
-        Self { prims, tree, plans: plans(prims, tree, options.costs.node, leaf), collapse: options.collapse, leaf }
+        let (plans, cost) = plans(prims, tree, options.costs.node, leaf);
+        Self { prims, tree, plans, cost, collapse: options.collapse, leaf }
+    }
+
+    /// Expected cost of a ray that meets the root's box, by the surface area heuristic, of the optimal collapse; a root without area counts as 1.
+    pub fn cost(&self) -> f64 {
+        let area = self.bounds(self.whole()).half_area();
+        if area > 0.0 { self.cost / area } else { self.cost }
     }
 
     fn whole(&self) -> Part {
@@ -61,7 +75,7 @@ impl<'a> BinaryTree<'a> {
     }
 
     /// How the subtree of a node is best collapsed.
-    fn plan(&self, p: Part) -> Plan {
+    fn plan(&self, p: Part) -> Plan<W> {
         self.plans[p.split as usize - 1]
     }
 
@@ -74,7 +88,7 @@ impl<'a> BinaryTree<'a> {
         let count = p.end - p.begin;
         count == 1
             || match self.collapse {
-                Collapse::Optimal => self.plan(p).one == 0,
+                Collapse::Optimal => self.plan(p).is_leaf(),
                 Collapse::Greedy => (self.leaf)(&self.prims[p.begin as usize..p.end as usize]).is_some(),
             }
     }
@@ -84,7 +98,7 @@ impl<'a> BinaryTree<'a> {
     }
 
     /// The children of a node over `p`; `depth` nodes may stand on a path from it, itself included.
-    fn children(&self, p: Part, depth: u32) -> Parts {
+    fn children(&self, p: Part, depth: u32) -> Parts<W> {
         let mut out = Parts::default();
         if self.is_leaf(p) {
             out.push(p); // only the root
@@ -93,14 +107,14 @@ impl<'a> BinaryTree<'a> {
         let [l, r] = self.halves(p);
         match self.collapse {
             Collapse::Optimal => {
-                let slots = self.plan(p).one;
+                let slots = self.plan(p).lower(1);
                 self.open(l, slots, &mut out);
-                self.open(r, 4 - slots, &mut out);
+                self.open(r, W - slots, &mut out);
             }
             Collapse::Greedy => {
                 out.push(l);
                 out.push(r);
-                while out.len < 4 {
+                while out.len < W {
                     let mut largest = None;
                     for (k, &c) in out.as_slice().iter().enumerate() {
                         let area = self.bounds(c).half_area();
@@ -129,47 +143,41 @@ impl<'a> BinaryTree<'a> {
         out
     }
 
-    /// Puts a subtree into at most `slots` (1 to 3) slots.
-    fn open(&self, p: Part, slots: u8, out: &mut Parts) {
-        if slots == 1 || p.end - p.begin == 1 {
+    /// Puts a subtree into at most `slots` slots, 1 to `W` - 1.
+    fn open(&self, p: Part, mut slots: usize, out: &mut Parts<W>) {
+        if p.end - p.begin == 1 {
             return out.push(p);
         }
         let plan = self.plan(p);
-        let [l, r] = self.halves(p);
-        match (slots, plan.three) {
-            (3, 1) => {
-                self.open(l, 1, out);
-                self.open(r, 2, out);
-            }
-            (3, 2) => {
-                self.open(l, 2, out);
-                self.open(r, 1, out);
-            }
-            _ if plan.two => {
-                out.push(l);
-                out.push(r);
-            }
-            _ => out.push(p),
+        while slots > 1 && plan.lower(slots) == 0 {
+            slots -= 1;
         }
+        if slots == 1 {
+            return out.push(p);
+        }
+        let [l, r] = self.halves(p);
+        let lower = plan.lower(slots);
+        self.open(l, lower, out);
+        self.open(r, slots - lower, out);
     }
 
     /// The node with these children, the first inner one at index `next`.
-    fn quad(&self, parts: &Parts, mut next: u32) -> QuadNode {
-        let mut quad = QuadNode::default();
+    fn wide(&self, parts: &Parts<W>, mut next: u32) -> WideNode<W> {
+        let mut wide = WideNode::default();
         for (k, &p) in parts.as_slice().iter().enumerate() {
-            quad.boxes[k] = self.bounds(p);
-            quad.children[k] = if self.is_leaf(p) {
+            wide.boxes[k] = self.bounds(p);
+            wide.children[k] = if self.is_leaf(p) {
                 Child::Leaf { first: p.begin, count: (p.end - p.begin) as u8 } // at most 16
             } else {
                 next += 1;
                 Child::Inner(next - 1)
             };
         }
-        quad
+        wide
     }
 
     /// The inner ones of these children.
-    fn inner(&self, parts: &Parts) -> Parts {
+    fn inner(&self, parts: &Parts<W>) -> Parts<W> {
         let mut out = Parts::default();
         for &p in parts.as_slice() {
             if !self.is_leaf(p) {
@@ -187,12 +195,12 @@ impl<'a> BinaryTree<'a> {
 
     /// Hands every node of the subtree over `p` to `put` with its index, the node itself with index `at`; those below take the indices from
     /// `next` on.
-    fn walk(&self, p: Part, depth: u32, at: u32, next: &mut u32, put: &mut impl FnMut(u32, &QuadNode)) {
+    fn walk(&self, p: Part, depth: u32, at: u32, next: &mut u32, put: &mut impl FnMut(u32, &WideNode<W>)) {
         let parts = self.children(p, depth);
         let first = *next;
-        put(at, &self.quad(&parts, first));
+        put(at, &self.wide(&parts, first));
         let inner = self.inner(&parts);
-        *next += inner.len as u32; // at most 4
+        *next += inner.len as u32; // at most W
         for (at, &c) in (first..).zip(inner.as_slice()) {
             self.walk(c, depth - 1, at, next, put);
         }
@@ -211,10 +219,10 @@ struct Task {
 }
 
 /// All nodes, encoded, root first.
-pub(crate) fn nodes<T, F>(source: &BinaryTree<'_>, depth: u32, encode: F) -> Vec<T>
+pub(crate) fn nodes<T, F, const W: usize>(source: &BinaryTree<'_, W>, depth: u32, encode: F) -> Vec<T>
 where
     T: Copy + Default + Send,
-    F: Fn(&QuadNode) -> T + Sync,
+    F: Fn(&WideNode<W>) -> T + Sync,
 {
     // Cut the tree into tasks, count their nodes in parallel, place them, write them in parallel.
     let mut tasks = Vec::new();
@@ -251,7 +259,7 @@ where
 }
 
 /// Lists the largest subtrees that are small enough for one thread, in memory order.
-fn cut(source: &BinaryTree<'_>, p: Part, depth: u32, tasks: &mut Vec<Task>) {
+fn cut<const W: usize>(source: &BinaryTree<'_, W>, p: Part, depth: u32, tasks: &mut Vec<Task>) {
     if p.end - p.begin <= TASK {
         return tasks.push(Task { part: p, depth, at: 0, below: 0, first: 0 });
     }
@@ -261,14 +269,14 @@ fn cut(source: &BinaryTree<'_>, p: Part, depth: u32, tasks: &mut Vec<Task>) {
 }
 
 /// Gives every task its indices, and lists the nodes above the tasks.
-fn place<'t>(
-    source: &BinaryTree<'_>,
+fn place<'t, const W: usize>(
+    source: &BinaryTree<'_, W>,
     p: Part,
     depth: u32,
     at: u32,
     next: &mut u32,
     tasks: &mut impl Iterator<Item = &'t mut Task>,
-    above: &mut Vec<(u32, QuadNode)>,
+    above: &mut Vec<(u32, WideNode<W>)>,
 ) {
     if p.end - p.begin <= TASK {
         if let Some(t) = tasks.next() {
@@ -279,9 +287,9 @@ fn place<'t>(
     }
     let parts = source.children(p, depth);
     let first = *next;
-    above.push((at, source.quad(&parts, first)));
+    above.push((at, source.wide(&parts, first)));
     let inner = source.inner(&parts);
-    *next += inner.len as u32; // at most 4
+    *next += inner.len as u32; // at most W
     for (at, &c) in (first..).zip(inner.as_slice()) {
         place(source, c, depth - 1, at, next, tasks, above);
     }

@@ -1,18 +1,21 @@
 //! The quad-BVH over any boxes: those of base triangles, or of the triangles of a level.
 //!
 //! A binary tree by the surface area heuristic (binned, exact for small ranges) down to single primitives; collapsed to four children per
-//! node by dynamic programming, which also chooses the leaves; written as nodes of 32 bytes (boxes in the node's frame), 64 (16-bit boxes) or 128 (32-bit boxes).
+//! node by dynamic programming, which also chooses the leaves; written as nodes of 32 bytes (boxes in the node's frame), 64 (16-bit boxes) or 128 (32-bit boxes); or to six
+//! children, in 64 bytes.
 //! The result depends on the input alone: not on the number of threads, nor on the machine.
 
 pub(crate) mod build;
 pub(crate) mod check;
 pub(crate) mod collapse;
 mod encode;
+pub(crate) mod foreign;
 pub(crate) mod order;
 pub(crate) mod plan;
 
 pub use check::{Defect, check, sah_cost};
-pub use encode::{BvhChild32, Node16, Node32, encode_line, encode16, encode32};
+pub use encode::{BvhChild32, Node6, Node16, Node32, encode_line, encode6, encode16, encode32};
+pub use foreign::BinaryNode;
 
 use crate::format::{Box16, TreeBvh};
 use crate::num::COORD_LIMIT;
@@ -21,6 +24,9 @@ use thiserror::Error;
 
 /// Largest number of nodes on a path from the root to a leaf, whatever the input.
 pub const MAX_DEPTH: u32 = crate::num::MAX_BVH_DEPTH;
+/// The same of a tree of six children a node, five of which may wait at each: what fits a traversal stack made for quad-BVHs and trees below.
+pub const MAX_DEPTH_OF_SIX: u32 = 20;
+const _: () = assert!(5 * MAX_DEPTH_OF_SIX as usize + 1 <= crate::method::STACK_ENTRIES);
 /// Largest number of primitives of a leaf that is no block: references hold 2 bits of it.
 pub const MAX_LEAF: u32 = 4;
 /// Largest number of primitives: references hold 28 bits.
@@ -150,6 +156,9 @@ pub enum BvhError {
         /// Number of points there should be.
         expected: u64,
     },
+    /// A binary tree that is none over the hierarchy's triangles, or too deep.
+    #[error("no binary tree over the hierarchy's triangles, or one of paths of more than 40 nodes")]
+    ForeignTree,
     /// A tree over other triangles than those of the hierarchy.
     #[error("the tree was built over another hierarchy")]
     OtherHierarchy,
@@ -175,26 +184,38 @@ pub enum Child {
     },
 }
 
-/// A node: up to four children and their boxes.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
-pub struct QuadNode {
+/// A node: up to `W` children and their boxes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct WideNode<const W: usize> {
     /// The boxes, all zero in an empty slot.
-    pub boxes: [Box32; 4],
+    pub boxes: [Box32; W],
     /// The children.
-    pub children: [Child; 4],
+    pub children: [Child; W],
 }
 
-/// A quad-BVH; node 0 is the root.
+impl<const W: usize> Default for WideNode<W> {
+    fn default() -> Self {
+        Self { boxes: [Box32::default(); W], children: [Child::Empty; W] }
+    }
+}
+
+/// A node of a quad-BVH.
+pub type QuadNode = WideNode<4>;
+
+/// A BVH of `W` children a node; node 0 is the root.
 ///
 /// The inner children of a node stand side by side, followed by everything below the first, then everything below the second, and so on
 /// (depth first with siblings kept together). A leaf's primitives stand in `order` in the order of the tree, left to right.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct QuadTree {
+pub struct WideTree<const W: usize> {
     /// The nodes.
-    pub nodes: Vec<QuadNode>,
+    pub nodes: Vec<WideNode<W>>,
     /// Primitive indices in leaf order; every index occurs once.
     pub order: Vec<u32>,
 }
+
+/// A quad-BVH.
+pub type QuadTree = WideTree<4>;
 
 /// Builds the quad-BVH of these boxes; primitive k is `boxes[k]`.
 ///
@@ -207,11 +228,11 @@ pub fn build(boxes: &[Box32], options: &Options) -> Result<QuadTree, BvhError> {
     }
     // Indices fit: at most 2^28.
     let prims = boxes.par_iter().enumerate().map(|(k, b)| build::Prim::new(b, k as u32)).collect();
-    let (nodes, order) = build_nodes(prims, options, MAX_DEPTH, |n| *n)?;
+    let (nodes, order) = build_nodes(prims, options, MAX_DEPTH, |n: &QuadNode| *n)?;
     Ok(QuadTree { nodes, order })
 }
 
-impl QuadTree {
+impl<const W: usize> WideTree<W> {
     /// The same with the leaves of each node side by side: their primitives follow each other in the order of its slots, nodes in their own order.
     #[must_use]
     pub fn side_by_side(mut self) -> Self {
@@ -221,7 +242,7 @@ impl QuadTree {
 }
 
 /// Moves the leaves of each of `nodes` side by side in the order that is returned.
-pub(crate) fn side_by_side(nodes: &mut [QuadNode], order: &[u32]) -> Vec<u32> {
+pub(crate) fn side_by_side<const W: usize>(nodes: &mut [WideNode<W>], order: &[u32]) -> Vec<u32> {
     let mut out = Vec::with_capacity(order.len());
     for child in nodes.iter_mut().flat_map(|node| &mut node.children) {
         if let Child::Leaf { first, count } = child {
@@ -267,10 +288,15 @@ pub(crate) fn check_options(options: &Options, most: u32) -> Result<(), BvhError
 
 /// Builds over legal primitives (1 to [`MAX_PRIMITIVES`]) and turns each node into what `encode` makes of it, so that no second copy of the
 /// nodes is held. `depth` is the bound on the nodes of a path; at least half the logarithm of the count.
-fn build_nodes<T, F>(mut prims: Vec<build::Prim>, options: &Options, depth: u32, encode: F) -> Result<(Vec<T>, Vec<u32>), BvhError>
+fn build_nodes<T, F, const W: usize>(
+    mut prims: Vec<build::Prim>,
+    options: &Options,
+    depth: u32,
+    encode: F,
+) -> Result<(Vec<T>, Vec<u32>), BvhError>
 where
     T: Copy + Default + Send,
-    F: Fn(&QuadNode) -> T + Sync,
+    F: Fn(&WideNode<W>) -> T + Sync,
 {
     check_options(options, MAX_LEAF)?;
     let binary = build::binary_tree(&mut prims, depth);

@@ -1,6 +1,6 @@
 //! Another order of a tree's nodes in memory: by treelets, parts of the tree that a ray is likely to go through together.
 
-use super::{Child, QuadNode};
+use super::{Child, WideNode};
 use std::cmp::Reverse;
 use std::collections::BinaryHeap;
 
@@ -16,7 +16,7 @@ struct Siblings {
 
 impl Siblings {
     /// The inner children of a node, if it has any.
-    fn below(node: &QuadNode) -> Option<Self> {
+    fn below<const W: usize>(node: &WideNode<W>) -> Option<Self> {
         let mut first = None;
         let (mut area, mut count) = (0.0, 0);
         for (bounds, child) in node.boxes.iter().zip(&node.children) {
@@ -30,9 +30,9 @@ impl Siblings {
     }
 }
 
-/// The nodes in treelets of at most `size` nodes, at least four: each begins with siblings and goes on with those of largest area that are next below it, as
+/// The nodes in treelets of at most `size` nodes, at least `W`: each begins with siblings and goes on with those of largest area that are next below it, as
 /// long as they fit. Treelets follow each other depth first. Siblings stay side by side and behind their parents; the root stays first.
-pub(crate) fn by_treelets(nodes: &[QuadNode], size: usize) -> Vec<QuadNode> {
+pub(crate) fn by_treelets<const W: usize>(nodes: &[WideNode<W>], size: usize) -> Vec<WideNode<W>> {
     let mut order: Vec<u32> = Vec::with_capacity(nodes.len());
     let mut begins = vec![Siblings { area: 0, first: Reverse(0), count: 1 }];
     while let Some(begin) = begins.pop() {

@@ -73,8 +73,8 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
     let scene = open(&args.scene)?;
     let space = ModelSpace::of(&scene);
     let cameras = args.distances.iter().map(|&d| args.camera.camera(&space, Some(d))).collect::<Result<Vec<_>, _>>()?;
-    let formats = [NodeBoxes::Local, NodeBoxes::Codes, NodeBoxes::Wide];
-    let formats = if args.bvh32 { &formats[..] } else { &formats[..2] };
+    let formats = [NodeBoxes::Local, NodeBoxes::Six, NodeBoxes::Codes, NodeBoxes::Wide];
+    let formats = if args.bvh32 { &formats[..] } else { &formats[..3] };
     let rows = cameras.iter().map(|camera| u64::from(camera.height)).sum::<u64>();
     let bar = progress((2 + formats.len() as u64 * (3 * 3 + BLOCK_SIZES.len() as u64)) * rows, "tracing");
 
@@ -113,12 +113,13 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
                     if boxes != NodeBoxes::Wide {
                         best.iter_mut().zip(&lines).for_each(|(b, &n)| *b = n.min(*b));
                     }
-                    let bits = match boxes {
-                        NodeBoxes::Local => "5-bit",
-                        NodeBoxes::Codes => "16-bit",
-                        NodeBoxes::Wide => "32-bit",
+                    let nodes = match boxes {
+                        NodeBoxes::Local => "BVH 5-bit",
+                        NodeBoxes::Six => "BVH6 8-bit",
+                        NodeBoxes::Codes => "BVH 16-bit",
+                        NodeBoxes::Wide => "BVH 32-bit",
                     };
-                    rows.push(Row { structure: format!("BVH {bits}, {layout:?}, {size} a leaf"), distinct_lines: lines });
+                    rows.push(Row { structure: format!("{nodes}, {layout:?}, {size} a leaf"), distinct_lines: lines });
                 }
             }
         }
@@ -158,7 +159,7 @@ struct Trees<'a> {
     builder: Option<FullBuilder<'a>>,
     /// The last tree, and its options.
     tree: Option<((Options, NodeBoxes, NodeOrder), Arc<FullTree>)>,
-    /// Leaves of each layout over the triangles of the last tree: those of the binary tree in its order, the same for all but local boxes and blocks.
+    /// Leaves of each layout over the triangles of the last tree: those of the binary tree in its order, the same for all but local boxes, nodes of six and blocks.
     leaves: Vec<Arc<Leaves>>,
 }
 

@@ -63,6 +63,30 @@ wire_struct! {
 }
 
 wire_struct! {
+    /// A node of six children of a full-resolution BVH: 64 bytes. As a [`BvhNode`], with planes of 8 bits.
+    pub struct SixNode {
+        /// Zero.
+        reserved: [U<27>; 3],
+        /// Kind of each child: 0 empty, 1 inner node, 2 leaf.
+        kinds: [U<2>; 6],
+        /// Leaf: number of triangles, or lines of its block, minus one; else 0.
+        counts: [U<2>; 6],
+        /// The first inner child.
+        first_node: U<28>,
+        /// The first triangle slot or line of the first leaf.
+        first_leaf: U<28>,
+        /// Lower corner of the frame.
+        origin: Vec3<16>,
+        /// Steps along x, y, z are half as long again.
+        halves: [bool; 3],
+        /// Powers of two of these steps.
+        exponents: [U<4>; 3],
+        /// Of each child, lower corner x, y, z and upper corner x, y, z; zero in an empty slot.
+        planes: [[U<8>; 6]; 6],
+    }
+}
+
+wire_struct! {
     /// Three points of 28-bit coordinates (the stored part: units / 16): one 32-byte line.
     pub struct VertexData {
         /// Zero.
@@ -305,15 +329,7 @@ impl BvhNode {
     /// What child `k` is.
     #[inline(always)]
     pub fn child(&self, k: usize) -> ChildRef {
-        let (kind, count) = (self.kinds[k], self.counts[k]);
-        let before = |of: u64| (0..k).filter(move |&j| self.kinds[j].get() == of);
-        let index = match kind.get() {
-            ChildRef::INNER => self.first_node.get() + before(ChildRef::INNER).count() as u64,
-            ChildRef::LEAF => self.first_leaf.get() + before(ChildRef::LEAF).map(|j| self.counts[j].get() + 1).sum::<u64>(),
-            _ => 0,
-        };
-        // Whatever the file says: 28 bits, as in hardware.
-        ChildRef { kind, count, index: U::new(index & U::<28>::MAX.get()) }
+        child_at(&self.kinds, &self.counts, [self.first_node, self.first_leaf], k)
     }
 
     /// The same from the node's line.
@@ -365,16 +381,54 @@ impl BvhNode {
 
     /// Box of child `k`.
     pub fn bounds(&self, k: usize) -> Box16 {
-        let corner = |from: usize| {
-            let origin = self.origin.get();
-            std::array::from_fn(|axis| {
-                let steps = self.planes[6 * k + from + axis].get() as u32; // 5 bits
-                let up = box_steps(self.halves[axis], self.exponents[axis].get() as u32, steps); // 4 bits
-                (origin[axis] + i64::from(up)).min(32_767) as i16
-            })
-        };
-        Box16::from_codes(corner(0), corner(3))
+        let planes = std::array::from_fn(|j| self.planes[6 * k + j].get() as u32); // 5 bits
+        framed_bounds(self.origin.get(), self.halves, self.exponents, planes)
     }
+}
+
+impl SixNode {
+    /// Most steps of a plane.
+    pub const MOST: u32 = 255;
+
+    /// What child `k` is.
+    #[inline(always)]
+    pub fn child(&self, k: usize) -> ChildRef {
+        child_at(&self.kinds, &self.counts, [self.first_node, self.first_leaf], k)
+    }
+
+    /// Box of child `k`.
+    #[inline(always)]
+    pub fn bounds(&self, k: usize) -> Box16 {
+        let planes = self.planes[k].map(|plane| plane.get() as u32); // 8 bits
+        framed_bounds(self.origin.get(), self.halves, self.exponents, planes)
+    }
+}
+
+/// What child `k` is among children of these kinds and counts, of which those of a kind stand side by side: inner ones from the first of `firsts` on, leaves
+/// from the second.
+#[inline(always)]
+fn child_at(kinds: &[U<2>], counts: &[U<2>], firsts: [U<28>; 2], k: usize) -> ChildRef {
+    let before = |of: u64| (0..k).filter(move |&j| kinds[j].get() == of);
+    let [first_node, first_leaf] = firsts.map(U::get);
+    let index = match kinds[k].get() {
+        ChildRef::INNER => first_node + before(ChildRef::INNER).count() as u64,
+        ChildRef::LEAF => first_leaf + before(ChildRef::LEAF).map(|j| counts[j].get() + 1).sum::<u64>(),
+        _ => 0,
+    };
+    // Whatever the file says: 28 bits, as in hardware.
+    ChildRef { kind: kinds[k], count: counts[k], index: U::new(index & U::<28>::MAX.get()) }
+}
+
+/// The box with these planes, lower x, y, z and upper x, y, z in steps of a frame.
+#[inline(always)]
+fn framed_bounds(origin: [i64; 3], halves: [bool; 3], exponents: [U<4>; 3], planes: [u32; 6]) -> Box16 {
+    let corner = |from: usize| {
+        std::array::from_fn(|axis| {
+            let up = box_steps(halves[axis], exponents[axis].get() as u32, planes[from + axis]); // 4 bits
+            (origin[axis] + i64::from(up)).min(32_767) as i16
+        })
+    };
+    Box16::from_codes(corner(0), corner(3))
 }
 
 impl Displacements {

@@ -7,10 +7,11 @@ use crate::block::Block;
 use crate::block::box_test::{self, BoxTest};
 use crate::block::child_boxes::{Corners, Planes, boxed, framed, let_out, widened};
 use crate::block::child_sort;
+use crate::block::child_sort6::{self, ChildSort6};
 use crate::block::child_test::{self, sort};
 use crate::block::ray_setup;
-use crate::format::{BvhChild, BvhNode, ChildRef, Line, SiblingGroup};
-use crate::num::{Box16, BoxStep, RayT, Wire};
+use crate::format::{BvhChild, BvhNode, ChildRef, Line, SiblingGroup, SixNode};
+use crate::num::{Box16, BoxStep, RayT, TNear, Wire};
 
 /// Whether the processor has what `#[target_feature(enable = "avx2,bmi1,bmi2")]` asks for.
 #[cfg(target_arch = "x86_64")]
@@ -77,6 +78,18 @@ pub(crate) fn coded_children(ray: &ray_setup::Out, t_max: RayT, group: &[u64; 8]
         tests.t_near[k] = test.t_near;
     }
     sort(&tests)
+}
+
+/// Tests and sorts the children of a node of six; an empty slot is never hit. With their entry distances.
+#[inline(always)]
+pub(crate) fn six_children(ray: &ray_setup::Out, t_max: RayT, node: &SixNode) -> (child_sort6::Out, [TNear; 6]) {
+    let mut tests = child_sort6::In::default();
+    for k in 0..6 {
+        let test = BoxTest::eval(&box_test::In { ray: *ray, t_max, bounds: node.bounds(k) });
+        tests.hit[k] = test.hit & (node.kinds[k].get() != ChildRef::EMPTY);
+        tests.t_near[k] = test.t_near;
+    }
+    (ChildSort6::eval(&tests), tests.t_near)
 }
 
 /// Tests and sorts the children of the tree's node with sibling group `line`, whose triangles are `split`.

@@ -101,11 +101,15 @@ impl TraversalStack {
 /// Gives the nearest hit child, to go on with, and pushes the others, farthest first; `entry` makes the entry of child k but for its `t_near`.
 #[inline(always)]
 pub(super) fn push_sorted(stack: &mut TraversalStack, sorted: &child_test::Out, entry: impl Fn(usize) -> Entry) -> Option<Entry> {
-    let at = |place: usize| {
+    push_nearest(stack, sorted.count.get() as usize, |place| {
         let k = sorted.order[place].get() as usize;
         Entry { t_near: sorted.t_near[k], ..entry(k) }
-    };
-    let count = sorted.count.get() as usize;
+    })
+}
+
+/// Gives the first of `count` entries, to go on with, and pushes the others, the last first.
+#[inline(always)]
+pub(super) fn push_nearest(stack: &mut TraversalStack, count: usize, at: impl Fn(usize) -> Entry) -> Option<Entry> {
     for place in (1..count).rev() {
         stack.step(Op::Push(at(place)));
     }

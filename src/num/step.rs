@@ -9,10 +9,10 @@ pub struct BoxStep {
     pub exponent: u32,
 }
 
-/// Codes of 2^16 units in `steps` (up to 7 bits) steps: floor((2 + half) steps 2^exponent / 2), below 2^24.
+/// Codes of 2^16 units in `steps` (up to 8 bits) steps: floor((2 + half) steps 2^exponent / 2), below 2^24.
 #[inline(always)]
 pub const fn box_steps(half: bool, exponent: u32, steps: u32) -> u32 {
-    // 7 bits times 2 or 3: 9 bits, and 15 more.
+    // 8 bits times 2 or 3: 10 bits, and 15 more; halved.
     ((2 * steps + (steps & (half as u32).wrapping_neg())) << exponent) >> 1
 }
 
@@ -57,6 +57,7 @@ mod tests {
         assert_eq!([0, 1, 2, 3].map(|v| box_steps(true, 0, v)), [0, 1, 3, 4]);
         assert_eq!([1, 3].map(|v| box_steps(true, 4, v)), [24, 72]);
         assert_eq!(box_steps(true, 15, 127), 381 << 14);
+        assert_eq!(box_steps(true, 15, 255), 765 << 14);
         assert_eq!(BoxStep::reaching(0, 31), BoxStep::default());
         assert_eq!(BoxStep::reaching(47, 31), BoxStep { half: false, exponent: 1 });
         assert_eq!(BoxStep::reaching(46, 31), BoxStep { half: true, exponent: 0 });
@@ -64,7 +65,7 @@ mod tests {
 
     proptest! {
         #[test]
-        fn the_shortest_step_reaches_and_rounding_is_by_less_than_one(extent in 0u32..=65_534, codes in 0u32..=65_534, most in prop::sample::select(vec![31u32, 127])) {
+        fn the_shortest_step_reaches_and_rounding_is_by_less_than_one(extent in 0u32..=65_534, codes in 0u32..=65_534, most in prop::sample::select(vec![31u32, 127, 255])) {
             let (step, codes) = (BoxStep::reaching(extent, most), codes.min(extent));
             prop_assert!(step.codes(most) >= extent);
             let (below, above) = (step.below(codes), step.above(codes));

@@ -39,9 +39,10 @@ const fn style(light: [u8; 3], dark: [u8; 3], mark: Mark) -> Style {
 }
 
 /// Methods by name.
-const KNOWN: [(&str, Style); 6] = [
+const KNOWN: [(&str, Style); 7] = [
     ("lod", style([0, 98, 178], [96, 180, 255], Mark::Circle)),
     ("bvh", style([196, 78, 4], [255, 156, 84], Mark::Square)),
+    ("bvh6", style([176, 40, 104], [255, 140, 190], Mark::Star)),
     ("bvh32", style([132, 60, 160], [212, 160, 240], Mark::Diamond)),
     ("discrete", style([0, 122, 92], [64, 208, 164], Mark::Triangle)),
     ("reference", style([92, 98, 108], [172, 180, 190], Mark::Times)),
@@ -49,8 +50,7 @@ const KNOWN: [(&str, Style); 6] = [
 ];
 
 /// For methods that came later.
-const OTHERS: [Style; 4] = [
-    style([176, 40, 104], [255, 140, 190], Mark::Star),
+const OTHERS: [Style; 3] = [
     style([128, 100, 0], [226, 194, 70], Mark::Wye),
     style([40, 104, 128], [134, 206, 228], Mark::Cross),
     style([96, 84, 40], [206, 192, 140], Mark::Diamond),

@@ -7,6 +7,7 @@
 //! | `PlainChildren` | the same with 16-bit boxes that are stored as they are | four `box_test`, `child_sort` |
 //! | `LocalChildren` | the same with 16-bit boxes that are stored in steps from their node's corner | four `box_decode`, four `box_test`, `child_sort` |
 //! | `WideChildren` | the same with 32-bit boxes | four `box_test32`, `child_sort` |
+//! | `SixChildren` | six children of a node with 16-bit boxes that are stored in finer steps from its corner are tested | six `box_decode8`, six `box_test`, `child_sort6` |
 //! | `LodTest` | does a triangle serve | `lod_test` |
 //! | `Tessellate` | the inserted vertices of a triangle are morphed | `tessellate` |
 //! | `Triangles` | triangle tests; bit k of `hits`: the k-th is met | `tri_test`, and of those met `hit_divide` and `hit_select` |
@@ -74,6 +75,7 @@ pub enum Act {
     PlainChildren { met: u32 },
     LocalChildren { met: u32 },
     WideChildren { met: u32 },
+    SixChildren { met: u32 },
     LodTest { refine: bool },
     Tessellate,
     Triangles { count: u32, hits: u32 },
@@ -90,6 +92,21 @@ pub struct Step {
     pub fetch: Option<Fetch>,
     /// The act.
     pub act: Act,
+}
+
+impl Act {
+    /// How many children of a node were met, if it tests those of one.
+    #[inline(always)]
+    pub const fn met(self) -> Option<u32> {
+        match self {
+            Self::Children { met }
+            | Self::PlainChildren { met }
+            | Self::LocalChildren { met }
+            | Self::WideChildren { met }
+            | Self::SixChildren { met } => Some(met),
+            _ => None,
+        }
+    }
 }
 
 impl Step {
@@ -139,6 +156,11 @@ impl Step {
             Act::WideChildren { .. } => {
                 add(Operation::BoxTest32, 4);
                 add(Operation::ChildSort, 1);
+            }
+            Act::SixChildren { .. } => {
+                add(Operation::BoxDecode8, 6);
+                add(Operation::BoxTest, 6);
+                add(Operation::ChildSort6, 1);
             }
             Act::LodTest { .. } => add(Operation::LodTest, 1),
             Act::Tessellate => add(Operation::Tessellate, 1),
@@ -218,6 +240,7 @@ mod tests {
             Step::on(fetch, Act::PlainChildren { met: 1 }),
             Step::on(fetch, Act::LocalChildren { met: 1 }),
             Step::on(fetch, Act::Children { met: 1 }),
+            Step::on(fetch, Act::SixChildren { met: 6 }),
             Step::of(Act::LodTest { refine: true }),
             Step::on(fetch, Act::Tessellate),
             Step::of(Act::Triangles { count: 5, hits: 0b10110 }),
@@ -230,7 +253,7 @@ mod tests {
         steps.iter().for_each(|step| step.count(&mut operations));
         let some: Vec<_> = operations.iter().filter(|&(_, n)| n > 0).map(|(operation, n)| (operation.name(), n)).collect();
         let wanted = [
-            ("node_address", 24),
+            ("node_address", 28),
             ("child_test", 1),
             ("lod_test", 1),
             ("tessellate", 1),
@@ -239,9 +262,11 @@ mod tests {
             ("hit_select", 3),
             ("bary_map", 1),
             ("box_decode", 4),
-            ("box_test", 8),
+            ("box_test", 14),
             ("box_test32", 4),
             ("child_sort", 3),
+            ("box_decode8", 6),
+            ("child_sort6", 1),
         ];
         assert_eq!(some, wanted);
     }

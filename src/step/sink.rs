@@ -47,11 +47,11 @@ impl StepSink for StepCounts {
         if let Some(fetch) = step.fetch {
             self.lines[fetch.section.place()] += u64::from(fetch.lines);
         }
+        self.nodes += u64::from(step.act.met().is_some());
         match step.act {
-            Act::Children { .. } | Act::PlainChildren { .. } | Act::LocalChildren { .. } | Act::WideChildren { .. } => self.nodes += 1,
             Act::LodTest { .. } => self.lod_tests += 1,
             Act::Triangles { count, .. } => self.triangles += u64::from(count),
-            Act::Fetch | Act::Tessellate | Act::Pop { .. } | Act::End { .. } => (),
+            _ => (),
         }
     }
 }

@@ -36,6 +36,7 @@ const POP: u64 = 6;
 const END: u64 = 7;
 const PLAIN_CHILDREN: u64 = 8;
 const LOCAL_CHILDREN: u64 = 9;
+const SIX_CHILDREN: u64 = 10;
 
 /// A step, as whoever only reads its lines sees it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -69,6 +70,7 @@ impl StepWord {
             Act::PlainChildren { met } => (PLAIN_CHILDREN, met, false, false, 0),
             Act::LocalChildren { met } => (LOCAL_CHILDREN, met, false, false, 0),
             Act::WideChildren { met } => (WIDE_CHILDREN, met, false, false, 0),
+            Act::SixChildren { met } => (SIX_CHILDREN, met, false, false, 0),
             Act::LodTest { refine } => (LOD_TEST, 0, refine, false, 0),
             Act::Tessellate => (TESSELLATE, 0, false, false, 0),
             Act::Triangles { count, hits } => (TRIANGLES, count, false, false, hits),
@@ -117,6 +119,7 @@ impl StepWord {
             PLAIN_CHILDREN => Act::PlainChildren { met: number },
             LOCAL_CHILDREN => Act::LocalChildren { met: number },
             WIDE_CHILDREN => Act::WideChildren { met: number },
+            SIX_CHILDREN => Act::SixChildren { met: number },
             LOD_TEST => Act::LodTest { refine: flag },
             TESSELLATE => Act::Tessellate,
             TRIANGLES => Act::Triangles { count: number, hits: upper },
@@ -161,6 +164,7 @@ mod tests {
             Act::PlainChildren { met: 3 },
             Act::LocalChildren { met: 2 },
             Act::WideChildren { met: 0 },
+            Act::SixChildren { met: 6 },
             Act::LodTest { refine: true },
             Act::LodTest { refine: false },
             Act::Tessellate,

@@ -43,7 +43,7 @@ impl Pin {
     }
 }
 
-const PINS: [Pin; 10] = [
+const PINS: [Pin; 11] = [
     Pin::new("lod-free", "lod", "haydel2023", Compute::Free, 1.2),
     Pin::new("lod-paper", "lod", "haydel2023", Compute::Free, 1.2).with(&[("line-layout", "paper")]),
     Pin::new("lod-units", "lod", "haydel2023", Compute::Units, 2.0),
@@ -55,6 +55,7 @@ const PINS: [Pin; 10] = [
         ("leaf-layout", "packed"),
         ("leaf-size", "2"),
     ]),
+    Pin::new("bvh6-units", "bvh6", "haydel2023", Compute::Units, 1.5),
     Pin::new("bvh32-units", "bvh32", "turing2018", Compute::Units, 1.2).with(&[("leaf-layout", "indexed")]),
     Pin::new("discrete-free", "discrete", "haydel2023-public", Compute::Free, 1.2).with(&[("level", "2")]),
     Pin::new("discrete-units", "discrete", "haydel2023", Compute::Units, 4.0),

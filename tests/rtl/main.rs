@@ -6,11 +6,13 @@
 mod bary_map;
 mod bound_decode;
 mod box_decode;
+mod box_decode8;
 mod box_test;
 mod box_test32;
 mod boxes;
 mod child_boxes;
 mod child_sort;
+mod child_sort6;
 mod child_test;
 mod draw;
 mod hit_divide;

@@ -2,8 +2,8 @@
 
 use crate::suite::Suite;
 use crate::{
-    bary_map, bound_decode, box_decode, box_test, box_test32, child_boxes, child_sort, child_test, hit_divide, hit_select, lod_test,
-    node_address, ray_setup, tessellate, traversal_stack, tri_test,
+    bary_map, bound_decode, box_decode, box_decode8, box_test, box_test32, child_boxes, child_sort, child_sort6, child_test, hit_divide,
+    hit_select, lod_test, node_address, ray_setup, tessellate, traversal_stack, tri_test,
 };
 use lodray::block::{self, Block};
 use lodray::hardware::Hardware;
@@ -65,10 +65,12 @@ fn blocks_that_do_not() {
     // Of one of the others: the text of these is the same for all but for the edges of `tri_test`.
     play(&[SMALL], |_| bound_decode::suite());
     play(&[SMALL], |_| box_decode::suite());
+    play(&[SMALL], |_| box_decode8::suite());
     play(&[SMALL], |_| box_test::suite());
     play(&[SMALL], |_| box_test32::suite());
     play(&[SMALL], |_| child_boxes::suite());
     play(&[SMALL], |_| child_sort::suite());
+    play(&[SMALL], |_| child_sort6::suite());
     play(&[SMALL], |_| child_test::suite());
     play(&[SMALL], |_| hit_divide::suite());
     play(&[SMALL], |_| lod_test::suite());

@@ -156,19 +156,20 @@ fn equals_the_cycle_model_from_event_to_event() {
 const NODES: SectionId = SectionId::new(0);
 const LEAVES: SectionId = SectionId::new(1);
 
-/// How a node stores its boxes: steps, codes of 16 bits, or coordinates of 32.
+/// How a node stores its boxes: steps, codes of 16 bits, coordinates of 32, or finer steps of six children.
 #[derive(Clone, Copy)]
 enum Boxes {
     Local,
     Plain,
     Wide,
+    Six,
 }
 
 impl Boxes {
     fn lines(self) -> u32 {
         match self {
             Self::Local => 1,
-            Self::Plain => 2,
+            Self::Plain | Self::Six => 2,
             Self::Wide => 4,
         }
     }
@@ -180,6 +181,7 @@ fn node(line: u32, met: u32, boxes: Boxes) -> Step {
         Boxes::Local => Act::LocalChildren { met },
         Boxes::Plain => Act::PlainChildren { met },
         Boxes::Wide => Act::WideChildren { met },
+        Boxes::Six => Act::SixChildren { met },
     };
     Step::on(Fetch::new(NODES, line, boxes.lines()), act).visiting()
 }
@@ -218,8 +220,9 @@ fn alone(steps: Vec<Step>, latency: u64) -> u64 {
 fn baseline_rays_take_the_cycles_of_their_blocks() {
     use lodray::block::Block;
     use lodray::block::{
-        box_decode::BoxDecode, box_test::BoxTest, box_test32::BoxTest32, child_sort::ChildSort, hit_divide::HitDivide,
-        hit_select::HitSelect, node_address::NodeAddress, ray_setup::RaySetup, tri_test::TriTest,
+        box_decode::BoxDecode, box_decode8::BoxDecode8, box_test::BoxTest, box_test32::BoxTest32, child_sort::ChildSort,
+        child_sort6::ChildSort6, hit_divide::HitDivide, hit_select::HitSelect, node_address::NodeAddress, ray_setup::RaySetup,
+        tri_test::TriTest,
     };
     let cycles = |timing: lodray::block::Timing| u64::from(timing.latency);
     let latency = 30;
@@ -232,11 +235,13 @@ fn baseline_rays_take_the_cycles_of_their_blocks() {
             Boxes::Local => cycles(BoxDecode::TIMING) + cycles(BoxTest::TIMING),
             Boxes::Plain => cycles(BoxTest::TIMING),
             Boxes::Wide => cycles(BoxTest32::TIMING),
+            Boxes::Six => cycles(BoxDecode8::TIMING) + cycles(BoxTest::TIMING),
         };
-        fetch(boxes.lines().into()) + 1 + test + cycles(ChildSort::TIMING)
+        let sort = if matches!(boxes, Boxes::Six) { cycles(ChildSort6::TIMING) } else { cycles(ChildSort::TIMING) };
+        fetch(boxes.lines().into()) + 1 + test + sort
     };
     // SETUP and its wait, a node and one PUSH, POP, DONE and the hit's register.
-    for boxes in [Boxes::Local, Boxes::Plain, Boxes::Wide] {
+    for boxes in [Boxes::Local, Boxes::Plain, Boxes::Wide, Boxes::Six] {
         assert_eq!(alone(vec![node(0, 0, boxes), end(false)], latency), setup + node_cycles(boxes) + 1 + 1 + 1 + 1 - 1);
     }
 

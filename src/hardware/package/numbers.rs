@@ -3,10 +3,12 @@
 use crate::block::bary_map::{BaryMap, NodeIndex};
 use crate::block::bound_decode::{Bound, BoundDecode};
 use crate::block::box_decode::BoxDecode;
+use crate::block::box_decode8::BoxDecode8;
 use crate::block::box_test::BoxTest;
 use crate::block::box_test32::BoxTest32;
 use crate::block::child_boxes::ChildBoxes;
 use crate::block::child_sort::ChildSort;
+use crate::block::child_sort6::ChildSort6;
 use crate::block::hit_divide::HitDivide;
 use crate::block::hit_select::{FullId, HitSelect};
 use crate::block::lod_test::LodTest;
@@ -128,10 +130,12 @@ pub(super) fn print(hardware: &Hardware, out: &mut String) {
     .timing::<BaryMap>(hardware)
     .timing::<BoundDecode>(hardware)
     .timing::<BoxDecode>(hardware)
+    .timing::<BoxDecode8>(hardware)
     .timing::<BoxTest>(hardware)
     .timing::<BoxTest32>(hardware)
     .timing::<ChildBoxes>(hardware)
     .timing::<ChildSort>(hardware)
+    .timing::<ChildSort6>(hardware)
     .timing::<HitDivide>(hardware)
     .timing::<HitSelect>(hardware)
     .timing::<LodTest>(hardware)

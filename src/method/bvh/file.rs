@@ -1,4 +1,4 @@
-//! A full-resolution quad-BVH's tree as a file, for whoever wants to build it once only.
+//! A full-resolution BVH's tree as a file, for whoever wants to build it once only.
 //!
 //! | bytes | what |
 //! |---|---|
@@ -6,7 +6,7 @@
 //! | 8..12 | version |
 //! | 12..16 | number of splits N |
 //! | 16..32 | key: of what the tree was built |
-//! | 32..40 | bytes of a node: 32, 64 or 128 |
+//! | 32..40 | bytes of a node: 32, 64 or 128; 6 for nodes of six children, which have 64 |
 //! | 40..48 | number of nodes |
 //! | 48..56 | number of triangles |
 //! | 56..64 | number of leaf blocks |
@@ -16,8 +16,8 @@
 //! All numbers are little-endian. A file is a shortcut, not a source: whatever is not as it should be makes it none.
 
 use super::{FullNodes, FullOptions, FullTree, LeafLayout};
-use crate::bvh::{BvhChild32, MAX_DEPTH, Node16, Node32, Options};
-use crate::format::{BvhChild, BvhNode, ChildRef, FileSection, Line, Scene};
+use crate::bvh::{BvhChild32, MAX_DEPTH, MAX_DEPTH_OF_SIX, Node6, Node16, Node32, Options};
+use crate::format::{BvhChild, BvhNode, ChildRef, FileSection, Line, Scene, SixNode};
 use crate::num::Wire;
 use rayon::prelude::*;
 use std::io::{self, Read, Write};
@@ -27,6 +27,8 @@ use xxhash_rust::xxh3::Xxh3Default;
 const MAGIC: [u8; 8] = *b"LODRAYBV";
 /// Of the file, and of what is built: a test fails when trees change and this does not.
 const VERSION: u32 = 3;
+/// In place of the bytes of a node: six children in 64 bytes.
+const OF_SIX: u64 = 6;
 const HEADER: usize = 80;
 /// Where the checksum stands, behind all that it covers of the header.
 const SUM: usize = 64;
@@ -75,6 +77,7 @@ impl FullTree {
             FullNodes::Local(nodes) => (32, bytemuck::cast_slice(nodes)),
             FullNodes::Boxes16(nodes) => (64, bytemuck::cast_slice(nodes)),
             FullNodes::Boxes32(nodes) => (128, bytemuck::cast_slice(nodes)),
+            FullNodes::Six(nodes) => (OF_SIX, bytemuck::cast_slice(nodes)),
         };
         let ids = bytemuck::cast_slice(&self.ids);
         let mut header = Vec::with_capacity(HEADER);
@@ -97,7 +100,8 @@ impl FullTree {
         let word = |at: usize| header[at..].first_chunk().map(|bytes| u64::from_le_bytes(*bytes));
         let half = |at: usize| header[at..].first_chunk().map(|bytes| u32::from_le_bytes(*bytes));
         let (size, nodes, ids, blocks) = (word(32)?, word(40)?, word(48)?, word(56)?);
-        let parts = size.checked_mul(nodes)?.checked_add(ids.checked_mul(4)?)?.checked_add(blocks)?;
+        let bytes = if size == OF_SIX { 64 } else { size };
+        let parts = bytes.checked_mul(nodes)?.checked_add(ids.checked_mul(4)?)?.checked_add(blocks)?;
         let fits = parts.checked_add(HEADER as u64)? == length;
         if header[..8] != MAGIC || half(8)? != VERSION || header[16..32] != key.0.to_le_bytes() || ids != triangles || !fits {
             return None;
@@ -107,6 +111,7 @@ impl FullTree {
             32 => FullNodes::Local(filled::<Line>(nodes as usize, file)?),
             64 => FullNodes::Boxes16(filled::<Node16>(nodes as usize, file)?),
             128 => FullNodes::Boxes32(filled::<Node32>(nodes as usize, file)?),
+            OF_SIX => FullNodes::Six(filled::<Node6>(nodes as usize, file)?),
             _ => return None,
         };
         let tree =
@@ -138,7 +143,7 @@ impl FullTree {
                     ChildRef::EMPTY => true,
                     ChildRef::INNER => {
                         let place = index as usize; // 28 bits
-                        let ahead = place > at && place < count && u32::from(below) <= MAX_DEPTH;
+                        let ahead = place > at && place < count && u32::from(below) <= self.nodes.most_depth();
                         if ahead {
                             depths[place] = depths[place].max(below);
                         }
@@ -159,15 +164,27 @@ impl FullNodes {
             Self::Local(nodes) => bytemuck::cast_slice(nodes),
             Self::Boxes16(nodes) => bytemuck::cast_slice(nodes),
             Self::Boxes32(nodes) => bytemuck::cast_slice(nodes),
+            Self::Six(nodes) => bytemuck::cast_slice(nodes),
         }
     }
 
-    fn children(&self, at: usize) -> [ChildRef; 4] {
+    /// The children of a node; those beyond the fourth are empty where nodes have four.
+    fn children(&self, at: usize) -> [ChildRef; 6] {
+        let four = |child: &dyn Fn(usize) -> ChildRef| std::array::from_fn(|k| if k < 4 { child(k) } else { ChildRef::default() });
         match self {
-            Self::Local(nodes) => std::array::from_fn(|k| BvhNode::line_child(&nodes[at], k)),
-            Self::Boxes16(nodes) => std::array::from_fn(|k| BvhChild::from_words(&nodes[at][2 * k..]).child),
-            Self::Boxes32(nodes) => std::array::from_fn(|k| BvhChild32::from_words(&nodes[at][4 * k..]).child),
+            Self::Local(nodes) => four(&|k| BvhNode::line_child(&nodes[at], k)),
+            Self::Boxes16(nodes) => four(&|k| BvhChild::from_words(&nodes[at][2 * k..]).child),
+            Self::Boxes32(nodes) => four(&|k| BvhChild32::from_words(&nodes[at][4 * k..]).child),
+            Self::Six(nodes) => {
+                let node = SixNode::from_words(&nodes[at]);
+                std::array::from_fn(|k| node.child(k))
+            }
         }
+    }
+
+    /// Most nodes on a path from the root.
+    fn most_depth(&self) -> u32 {
+        if matches!(self, Self::Six(_)) { MAX_DEPTH_OF_SIX } else { MAX_DEPTH }
     }
 }
 
@@ -195,7 +212,7 @@ mod tests {
 
     const KEY: TreeKey = TreeKey(7 << 100 | 3);
 
-    const ALL: [NodeBoxes; 3] = [NodeBoxes::Local, NodeBoxes::Codes, NodeBoxes::Wide];
+    const ALL: [NodeBoxes; 4] = [NodeBoxes::Local, NodeBoxes::Codes, NodeBoxes::Wide, NodeBoxes::Six];
 
     const LAYOUTS: [LeafLayout; 2] = [LeafLayout::Line, LeafLayout::Block];
 
@@ -275,6 +292,8 @@ mod tests {
             let options = FullOptions::new(size, NodeBoxes::Local, layout);
             xxh3_64(&file(&builder.tree(&options).unwrap()))
         };
+        let six = FullOptions::new(16, NodeBoxes::Six, LeafLayout::Block);
+        assert_eq!(xxh3_64(&file(&builder.tree(&six).unwrap())), 0x7338735074289ac5);
         let sums = [(1, LeafLayout::Indexed), (2, LeafLayout::Line), (4, LeafLayout::Line), (16, LeafLayout::Block)].map(of);
         assert_eq!((VERSION, sums), (3, [0xf369c247788c18e, 0xd08305be03852c77, 0x10b4048ebe679560, 0x60b7969f2ea66fe6]));
     }

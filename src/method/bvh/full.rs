@@ -1,4 +1,4 @@
-//! The baseline: a quad-BVH over the full-resolution triangles of a hierarchy.
+//! The baseline: a BVH over the full-resolution triangles of a hierarchy.
 //!
 //! Trees of different options over one hierarchy differ in how the same binary tree is collapsed: [`FullBuilder`] makes that once. Their leaves hold
 //! the triangles in the same order, so that BVHs may share them.
@@ -7,11 +7,13 @@ use super::finest::Finest;
 use super::leaves::{BlockSize, MOST_LINES, MOST_TRIANGLES, block_lines};
 use super::{LeafLayout, Leaves};
 use crate::bvh::build::{Binary, Prim, binary_tree};
+use crate::bvh::collapse::{self, BinaryTree};
+use crate::bvh::foreign::adopt;
 use crate::bvh::order::by_treelets;
 use crate::bvh::plan::LeafCost;
 use crate::bvh::{
-    BvhError, Child, Costs, MAX_DEPTH, Node16, Node32, Options, QuadNode, check_count, check_options, collapse, encode_line, encode16,
-    encode32, side_by_side,
+    BinaryNode, BvhError, Child, Costs, MAX_DEPTH, MAX_DEPTH_OF_SIX, Node6, Node16, Node32, Options, WideNode, check_count, check_options,
+    encode_line, encode6, encode16, encode32, side_by_side,
 };
 use crate::format::Line;
 use crate::mesh::Hierarchy;
@@ -27,6 +29,8 @@ pub enum NodeBoxes {
     Codes,
     /// Coordinates of 32 bits: 128 bytes.
     Wide,
+    /// Of six children, not four: steps of 8 bits in a frame of the node's own, 64 bytes.
+    Six,
 }
 
 impl NodeBoxes {
@@ -34,12 +38,12 @@ impl NodeBoxes {
     pub const fn node_bytes(self) -> usize {
         match self {
             Self::Local => 32,
-            Self::Codes => 64,
+            Self::Codes | Self::Six => 64,
             Self::Wide => 128,
         }
     }
 
-    /// Those of 16 bits or fewer, of this name.
+    /// Those of 16 bits or fewer in nodes of four, of this name.
     pub fn named(name: &str) -> Option<Self> {
         match name {
             "local" => Some(Self::Local),
@@ -111,6 +115,8 @@ pub enum FullNodes {
     Boxes16(Vec<Node16>),
     /// 128 bytes each.
     Boxes32(Vec<Node32>),
+    /// 64 bytes each, of six children.
+    Six(Vec<Node6>),
 }
 
 impl FullNodes {
@@ -120,6 +126,7 @@ impl FullNodes {
             Self::Local(n) => n.len(),
             Self::Boxes16(n) => n.len(),
             Self::Boxes32(n) => n.len(),
+            Self::Six(n) => n.len(),
         }
     }
 
@@ -134,11 +141,12 @@ impl FullNodes {
             Self::Local(n) => size_of_val(n.as_slice()) as u64,
             Self::Boxes16(n) => size_of_val(n.as_slice()) as u64,
             Self::Boxes32(n) => size_of_val(n.as_slice()) as u64,
+            Self::Six(n) => size_of_val(n.as_slice()) as u64,
         }
     }
 }
 
-/// A quad-BVH's tree, before its triangles lie in memory.
+/// A BVH's tree, before its triangles lie in memory.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct FullTree {
     /// Number of splits N of the hierarchy.
@@ -195,8 +203,30 @@ impl<'a> FullBuilder<'a> {
     pub fn new(hierarchy: &'a Hierarchy) -> Result<Self, BvhError> {
         let mesh = Finest::new(hierarchy)?;
         let mut prims = mesh.primitives();
-        let binary = binary_tree(&mut prims, MAX_DEPTH);
+        // For nodes of four children and of six alike.
+        let binary = binary_tree(&mut prims, MAX_DEPTH_OF_SIX);
         Ok(Self { mesh, prims, binary })
+    }
+
+    /// Takes a binary tree over the finest triangles, by their ids, that something else built.
+    ///
+    /// # Errors
+    /// Those of [`FullBuilder::new`], and a tree that is none over all of them or has a path of more than 40 nodes.
+    pub fn with_binary(hierarchy: &'a Hierarchy, tree: &[BinaryNode]) -> Result<Self, BvhError> {
+        let mesh = Finest::new(hierarchy)?;
+        let (prims, binary) = adopt(&mesh.primitives(), tree, MAX_DEPTH_OF_SIX).ok_or(BvhError::ForeignTree)?;
+        Ok(Self { mesh, prims, binary })
+    }
+
+    /// Expected cost, by the surface area heuristic, of a ray that meets the root's box of the tree of these options.
+    ///
+    /// # Errors
+    /// Illegal options.
+    pub fn sah_cost(&self, options: &FullOptions) -> Result<f64, BvhError> {
+        match options.boxes {
+            NodeBoxes::Six => self.collapsed(options, |source: &BinaryTree<'_, 6>| source.cost()),
+            NodeBoxes::Local | NodeBoxes::Codes | NodeBoxes::Wide => self.collapsed(options, |source: &BinaryTree<'_, 4>| source.cost()),
+        }
     }
 
     /// Collapses it.
@@ -204,34 +234,62 @@ impl<'a> FullBuilder<'a> {
     /// # Errors
     /// Illegal options, or leaf blocks of more lines than references can name.
     pub fn tree(&self, options: &FullOptions) -> Result<FullTree, BvhError> {
-        let FullOptions { tree: options, boxes, layout, order } = options;
+        let ids = || self.prims.par_iter().map(|p| p.id).collect();
+        let all = |nodes, (ids, blocks)| FullTree { levels: self.mesh.levels, nodes: Arc::new(nodes), ids, blocks };
+        let as_collapsed = options.layout != LeafLayout::Block && options.order == NodeOrder::Depth;
+        Ok(match options.boxes {
+            // Nodes of such boxes can be encoded one by one.
+            NodeBoxes::Codes if as_collapsed => all(FullNodes::Boxes16(self.nodes(options, MAX_DEPTH, encode16)?), (ids(), Vec::new())),
+            NodeBoxes::Wide if as_collapsed => all(FullNodes::Boxes32(self.nodes(options, MAX_DEPTH, encode32)?), (ids(), Vec::new())),
+            NodeBoxes::Six => {
+                let (nodes, rest) = self.laid_out::<6>(options, MAX_DEPTH_OF_SIX)?;
+                all(FullNodes::Six(nodes.par_iter().map(encode6).collect()), rest)
+            }
+            NodeBoxes::Local | NodeBoxes::Codes | NodeBoxes::Wide => {
+                let (nodes, rest) = self.laid_out(options, MAX_DEPTH)?;
+                let nodes = match options.boxes {
+                    NodeBoxes::Codes => FullNodes::Boxes16(nodes.par_iter().map(encode16).collect()),
+                    NodeBoxes::Wide => FullNodes::Boxes32(nodes.par_iter().map(encode32).collect()),
+                    _ => FullNodes::Local(nodes.par_iter().map(encode_line).collect()),
+                };
+                all(nodes, rest)
+            }
+        })
+    }
+
+    /// What `of` makes of the plan of a collapse.
+    fn collapsed<R, const W: usize>(&self, options: &FullOptions, of: impl FnOnce(&BinaryTree<'_, W>) -> R) -> Result<R, BvhError> {
+        let FullOptions { tree: options, layout, .. } = options;
         check_options(options, layout.most_triangles())?;
         let (of_block, of_triangles) = (self.block_cost(options), options.leaf_cost());
-        let is_block = *layout == LeafLayout::Block;
-        let leaf: &LeafCost<'_> = if is_block { &of_block } else { &of_triangles };
-        let source = collapse::BinaryTree::new(&self.prims, &self.binary, options, leaf);
-        let mut ids: Vec<u32> = self.prims.par_iter().map(|p| p.id).collect();
-        let mut blocks = Vec::new();
-        let nodes = if *boxes == NodeBoxes::Local || is_block || *order != NodeOrder::Depth {
-            let mut nodes: Vec<QuadNode> = collapse::nodes(&source, MAX_DEPTH, |n| *n);
-            if *order == NodeOrder::Treelets {
-                nodes = by_treelets(&nodes, TREELET_BYTES / boxes.node_bytes());
-            }
-            ids = side_by_side(&mut nodes, &ids);
-            if is_block {
-                blocks = self.to_blocks(&mut nodes, &ids)?;
-            }
-            match boxes {
-                NodeBoxes::Local => FullNodes::Local(nodes.par_iter().map(encode_line).collect()),
-                NodeBoxes::Codes => FullNodes::Boxes16(nodes.par_iter().map(encode16).collect()),
-                NodeBoxes::Wide => FullNodes::Boxes32(nodes.par_iter().map(encode32).collect()),
-            }
-        } else if *boxes == NodeBoxes::Codes {
-            FullNodes::Boxes16(collapse::nodes(&source, MAX_DEPTH, encode16))
-        } else {
-            FullNodes::Boxes32(collapse::nodes(&source, MAX_DEPTH, encode32))
-        };
-        Ok(FullTree { levels: self.mesh.levels, nodes: Arc::new(nodes), ids, blocks })
+        let leaf: &LeafCost<'_> = if *layout == LeafLayout::Block { &of_block } else { &of_triangles };
+        Ok(of(&BinaryTree::new(&self.prims, &self.binary, options, leaf)))
+    }
+
+    /// The nodes, depth first, each as what `encode` makes of it.
+    fn nodes<T, F, const W: usize>(&self, options: &FullOptions, depth: u32, encode: F) -> Result<Vec<T>, BvhError>
+    where
+        T: Copy + Default + Send,
+        F: Fn(&WideNode<W>) -> T + Sync,
+    {
+        self.collapsed(options, |source| collapse::nodes(source, depth, encode))
+    }
+
+    /// The nodes in their order, the triangles of those of each side by side, and the sizes of their blocks, if they are any.
+    #[expect(clippy::type_complexity, reason = "the nodes, and the rest of a tree")]
+    fn laid_out<const W: usize>(
+        &self,
+        options: &FullOptions,
+        depth: u32,
+    ) -> Result<(Vec<WideNode<W>>, (Vec<u32>, Vec<BlockSize>)), BvhError> {
+        let mut nodes = self.nodes(options, depth, |n: &WideNode<W>| *n)?;
+        if options.order == NodeOrder::Treelets {
+            nodes = by_treelets(&nodes, TREELET_BYTES / options.boxes.node_bytes());
+        }
+        let ids: Vec<u32> = self.prims.par_iter().map(|p| p.id).collect();
+        let ids = side_by_side(&mut nodes, &ids);
+        let blocks = if options.layout == LeafLayout::Block { self.to_blocks(&mut nodes, &ids)? } else { Vec::new() };
+        Ok((nodes, (ids, blocks)))
     }
 
     /// Lines of the block of some triangles.
@@ -256,16 +314,16 @@ impl<'a> FullBuilder<'a> {
     }
 
     /// Gives leaves, which stand side by side, the lines of their blocks in place of their triangles.
-    fn to_blocks(&self, nodes: &mut [QuadNode], ids: &[u32]) -> Result<Vec<BlockSize>, BvhError> {
+    fn to_blocks<const W: usize>(&self, nodes: &mut [WideNode<W>], ids: &[u32]) -> Result<Vec<BlockSize>, BvhError> {
         let size = |first: u32, count: u8| {
             let own = &ids[first as usize..][..usize::from(count)];
             // Every leaf was planned to fit.
             BlockSize::new(own.len(), self.lines(own.iter().copied()).unwrap_or(MOST_LINES as u32))
         };
-        let of_node = |node: &QuadNode| {
+        let of_node = |node: &WideNode<W>| {
             node.children.map(|child| if let Child::Leaf { first, count } = child { Some(size(first, count)) } else { None })
         };
-        let sizes: Vec<[Option<BlockSize>; 4]> = nodes.par_iter().map(of_node).collect();
+        let sizes: Vec<[Option<BlockSize>; W]> = nodes.par_iter().map(of_node).collect();
         let mut next = 0;
         for (node, sizes) in nodes.iter_mut().zip(&sizes) {
             for (child, size) in node.children.iter_mut().zip(sizes) {
@@ -280,7 +338,7 @@ impl<'a> FullBuilder<'a> {
     }
 }
 
-/// Quad-BVH over the full-resolution triangles of a hierarchy; leaf references count slots of `leaves`. BVHs may share both parts.
+/// BVH over the full-resolution triangles of a hierarchy; leaf references count slots of `leaves`. BVHs may share both parts.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct FullBvh {
     /// Number of splits N of the hierarchy.

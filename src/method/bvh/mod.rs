@@ -1,4 +1,5 @@
-//! Quad-BVH over the full-resolution mesh: the baseline (paper section 6.1). Nodes have boxes of 16-bit codes, or of 5 bits in a frame of their own, or of 32 bits.
+//! BVH over the full-resolution mesh: the baseline (paper section 6.1). Nodes have four children and boxes of 16-bit codes, or of 5 bits in a frame of their
+//! own, or of 32 bits; or six children and boxes of 8 bits in a frame.
 
 mod file;
 mod finest;
@@ -110,7 +111,30 @@ pub static METHOD: Registered = Registered {
     knobs: &[&NODE_BOXES, &NODE_ORDER, &LEAF_LAYOUT, &LEAF_SIZE],
     error: None,
     unit: Some(MethodUnit { blocks: UNIT, has_levels: false }),
-    make: |scene, knobs, store| Bvh::of(scene, knobs, false, store),
+    make: |scene, knobs, store| Bvh::of(scene, knobs, None, store),
+};
+
+/// Operations of a unit for nodes of six.
+const UNIT_OF_SIX: &[Operation] = &{
+    let mut operations = [Operation::BoxTest; 18];
+    operations[0] = Operation::RaySetup;
+    operations[1] = Operation::NodeAddress;
+    operations[2] = Operation::ChildSort6;
+    operations[3] = Operation::TriTest;
+    operations[4] = Operation::HitDivide;
+    operations[5] = Operation::HitSelect;
+    operations.split_at_mut(6).1.split_at_mut(6).0.copy_from_slice(&[Operation::BoxDecode8; 6]);
+    operations
+};
+
+/// The method with nodes of six children.
+pub static METHOD_SIX: Registered = Registered {
+    name: "bvh6",
+    help: "BVH of six children a node, in 64 bytes, with boxes in steps of 8 bits",
+    knobs: &[&NODE_ORDER, &LEAF_LAYOUT, &LEAF_SIZE],
+    error: None,
+    unit: Some(MethodUnit { blocks: UNIT_OF_SIX, has_levels: false }),
+    make: |scene, knobs, store| Bvh::of(scene, knobs, Some(NodeBoxes::Six), store),
 };
 
 /// The method with 32-bit boxes.
@@ -120,15 +144,15 @@ pub static METHOD_WIDE: Registered = Registered {
     knobs: &[&NODE_ORDER, &LEAF_LAYOUT, &LEAF_SIZE],
     error: None,
     unit: Some(MethodUnit { blocks: &unit(Operation::BoxTest32), has_levels: false }),
-    make: |scene, knobs, store| Bvh::of(scene, knobs, true, store),
+    make: |scene, knobs, store| Bvh::of(scene, knobs, Some(NodeBoxes::Wide), store),
 };
 
 impl FullOptions {
-    /// Those that were chosen; 32-bit boxes are not chosen but a method's own.
-    pub fn chosen(knobs: &Knobs, wide_boxes: bool) -> Self {
+    /// Those that were chosen; boxes that are a method's own are not.
+    pub fn chosen(knobs: &Knobs, boxes: Option<NodeBoxes>) -> Self {
         // Checked when they were chosen.
         let named = || knobs.get(&NODE_BOXES).and_then(NodeBoxes::named).unwrap_or(NodeBoxes::Local);
-        let boxes = if wide_boxes { NodeBoxes::Wide } else { named() };
+        let boxes = boxes.unwrap_or_else(named);
         let layout = knobs.get(&LEAF_LAYOUT).and_then(LeafLayout::named).unwrap_or(LeafLayout::Block);
         let size = knobs.get(&LEAF_SIZE).and_then(|size| size.parse().ok()).unwrap_or(16);
         let order = knobs.get(&NODE_ORDER).and_then(NodeOrder::named).unwrap_or_default();
@@ -143,8 +167,8 @@ struct Bvh {
 }
 
 impl Bvh {
-    fn of<'a>(scene: &Scene, knobs: &Knobs, wide_boxes: bool, store: &dyn TreeStore) -> Result<Box<dyn Method + 'a>, BvhError> {
-        let options = FullOptions::chosen(knobs, wide_boxes);
+    fn of<'a>(scene: &Scene, knobs: &Knobs, boxes: Option<NodeBoxes>, store: &dyn TreeStore) -> Result<Box<dyn Method + 'a>, BvhError> {
+        let options = FullOptions::chosen(knobs, boxes);
         let hierarchy = scene.decode();
         let key = || TreeKey::new(scene, &options, scene.levels());
         let tree = store.tree(&key, scene.finest_triangles(), &mut || FullBuilder::new(&hierarchy)?.tree(&options))?;
@@ -204,7 +228,7 @@ pub fn bvh_map(bvhs: &[&FullBvh]) -> MemoryMap {
 fn node_lines(nodes: &FullNodes) -> u32 {
     match nodes {
         FullNodes::Local(_) => 1,
-        FullNodes::Boxes16(_) => 2,
+        FullNodes::Boxes16(_) | FullNodes::Six(_) => 2,
         FullNodes::Boxes32(_) => 4,
     }
 }

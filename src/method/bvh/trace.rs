@@ -8,11 +8,11 @@ use crate::block::child_test::sort;
 use crate::block::ray_setup::{self, RaySetup};
 use crate::block::tri_test::{self, TriTest};
 use crate::bvh::BvhChild32;
-use crate::format::{BvhChild, BvhNode, ChildRef};
+use crate::format::{BvhChild, BvhNode, ChildRef, SixNode};
 #[cfg(target_arch = "x86_64")]
 use crate::method::children::has_lanes;
-use crate::method::children::{bvh_children, coded_children, quarter};
-use crate::method::stack::{Entry, Op, TraversalStack, push_sorted};
+use crate::method::children::{bvh_children, coded_children, quarter, six_children};
+use crate::method::stack::{Entry, Op, TraversalStack, push_nearest, push_sorted};
 use crate::method::{HitSink, TriangleId, is_beyond};
 use crate::num::{LINE_BYTES, Point, Ray, U, Wire};
 use crate::step::{Act, Fetch, MemoryMap, Step, StepSink, TriangleRun};
@@ -152,6 +152,16 @@ impl<'a> BvhTraverser<'a> {
                 let tests = sort(&tests);
                 steps.step(Step::on(fetch, Act::WideChildren { met: tests.met() }).visiting());
                 push_sorted(&mut self.stack, &tests, |k| waiting(child(k).child))
+            }
+            FullNodes::Six(nodes) => {
+                let node = SixNode::from_words(&nodes[index]);
+                let (tests, t_near) = six_children(setup, t_max, &node);
+                let met = tests.count.get() as usize;
+                steps.step(Step::on(fetch, Act::SixChildren { met: met as u32 }).visiting()); // at most 6
+                push_nearest(&mut self.stack, met, |place| {
+                    let k = tests.order[place].get() as usize;
+                    Entry { t_near: t_near[k], ..waiting(node.child(k)) }
+                })
             }
         }
     }

@@ -75,7 +75,7 @@ fn chosen(knobs: &Knobs, finest: u32) -> Option<usize> {
 
 impl Discrete {
     fn of<'a>(scene: &Scene, knobs: &Knobs, store: &dyn TreeStore) -> Result<Box<dyn Method + 'a>, BvhError> {
-        let options = FullOptions::chosen(knobs, false);
+        let options = FullOptions::chosen(knobs, None);
         let hierarchy = scene.decode();
         let bvh = |level| {
             let own = at_level(&hierarchy, level);

@@ -48,6 +48,7 @@ impl<R: Steps> UnitTiming<R> {
             (Resource::Child, Act::PlainChildren { .. }) => station.take_for(self.plain_node, since, now),
             (Resource::Child, Act::LocalChildren { .. }) => station.take_for(self.local_node, since, now),
             (Resource::Child, Act::WideChildren { .. }) => station.take_for(self.wide_node, since, now),
+            (Resource::Child, Act::SixChildren { .. }) => station.take_for(self.six_node, since, now),
             _ => station.take(since, now),
         };
         match resource {
@@ -57,10 +58,7 @@ impl<R: Steps> UnitTiming<R> {
                 self.onward(who, result + 1, now);
             }
             Resource::Child => {
-                let met = match context.act {
-                    Act::Children { met } | Act::PlainChildren { met } | Act::LocalChildren { met } | Act::WideChildren { met } => met,
-                    _ => unreachable!("asks for its act's block only"),
-                };
+                let Some(met) = context.act.met() else { unreachable!("asks for its act's block only") };
                 self.left(State::Child, who, now + 1);
                 self.states[State::ChildWait as usize] += result - now;
                 // One child a cycle, and none takes one too.
@@ -208,7 +206,11 @@ impl<R: Steps> UnitTiming<R> {
                 (context.found, context.mapped) = (found, mapped);
                 context.enter(if found { State::DivideV } else { State::Done }, at + 1);
             }
-            Act::Children { .. } | Act::PlainChildren { .. } | Act::LocalChildren { .. } | Act::WideChildren { .. } => {
+            Act::Children { .. }
+            | Act::PlainChildren { .. }
+            | Act::LocalChildren { .. }
+            | Act::WideChildren { .. }
+            | Act::SixChildren { .. } => {
                 context.enter(State::Child, at);
             }
             // A context sees itself which edges are open, where rays are of full detail or of none.

@@ -8,9 +8,11 @@ use super::wheel::{Wheel, bits};
 use crate::block::Timing;
 use crate::block::bary_map::BaryMap;
 use crate::block::box_decode::BoxDecode;
+use crate::block::box_decode8::BoxDecode8;
 use crate::block::box_test::BoxTest;
 use crate::block::box_test32::BoxTest32;
 use crate::block::child_sort::ChildSort;
+use crate::block::child_sort6::ChildSort6;
 use crate::block::child_test::ChildTest;
 use crate::block::hit_divide::HitDivide;
 use crate::block::hit_select::HitSelect;
@@ -42,6 +44,7 @@ pub struct UnitTiming<R> {
     pub(super) plain_node: u64,
     pub(super) local_node: u64,
     pub(super) wide_node: u64,
+    pub(super) six_node: u64,
     /// The hardware has a LOD test, and a map of hits.
     pub(super) chooses_levels: bool,
     pub(super) hit_mapping: bool,
@@ -96,6 +99,9 @@ impl<R: Steps> UnitTiming<R> {
             plain_node: u64::from(plain),
             local_node: u64::from(config.timing::<BoxDecode>().latency + plain),
             wide_node: u64::from(config.timing::<BoxTest32>().latency + sort),
+            six_node: u64::from(
+                config.timing::<BoxDecode8>().latency + config.timing::<BoxTest>().latency + config.timing::<ChildSort6>().latency,
+            ),
             chooses_levels: config.chooses_levels(),
             hit_mapping: config.hit_mapping,
             idle: u64::MAX >> (MAX_CONTEXTS - config.contexts),

@@ -301,24 +301,25 @@ fn the_documented_energies_are_the_tables() {
 fn the_documented_units_are_the_tables() {
     let table = BlockTable::parse(BLOCKS, "blocks22").unwrap();
     let documented = include_str!("../../../../docs/energy.md");
-    let units = [&lod::METHOD, &bvh::METHOD, &bvh::METHOD_WIDE].map(|method| method.unit.unwrap());
+    let units = [&lod::METHOD, &bvh::METHOD, &bvh::METHOD_WIDE, &bvh::METHOD_SIX].map(|method| method.unit.unwrap());
     let sixteen = Hardware { contexts: 16, ..Hardware::default() };
     let leaks = units.map(|unit| format!("{:.1}", table.unit_leakage_mw(unit, &sixteen)));
     let clocks = units.map(|unit| format!("{:.1}", table.unit_clock_pj(unit, &sixteen)));
-    let said = |of: &[String; 3]| format!("{}, {} and {}", of[0], of[1], of[2]);
+    let said = |of: &[String; 4]| format!("{}, {}, {} and {}", of[0], of[1], of[2], of[3]);
     let line = format!("With 16 contexts they leak {} mW and their clocks take {} pJ a cycle.", said(&leaks), said(&clocks));
     assert!(documented.contains(&line), "{line}");
     let pj = |operation| table.operation_pj(operation, &hardware(false));
     let boxes = |of| 4.0 * pj(of) + pj(Operation::ChildSort);
     let [plain, wide] = [boxes(Operation::BoxTest), boxes(Operation::BoxTest32)];
     let local = plain + 4.0 * pj(Operation::BoxDecode);
+    let six = 6.0 * (pj(Operation::BoxDecode8) + pj(Operation::BoxTest)) + pj(Operation::ChildSort6);
     let line = format!(
-        "A node takes {:.1} pJ of the LOD unit; of a BVH's {local:.1} pJ with boxes in steps, {plain:.1} pJ with codes of 16 bits and {wide:.1} pJ with 32 bits.",
+        "A node takes {:.1} pJ of the LOD unit; of a BVH's {local:.1} pJ with boxes in steps, {plain:.1} pJ with codes of 16 bits and {wide:.1} pJ with 32 bits, and {six:.1} pJ with six children.",
         pj(Operation::ChildTest)
     );
     assert!(documented.contains(&line), "{line}");
     let thousands = |bits: u32| format!("{},{:03} |", bits / 1000, bits % 1000);
-    for (name, has_levels) in [("`lod`", true), ("`bvh`", false), ("`discrete`", false), ("`bvh32`", false)] {
+    for (name, has_levels) in [("`lod`", true), ("`bvh`", false), ("`discrete`", false), ("`bvh32`", false), ("`bvh6`", false)] {
         let row = documented.lines().find(|line| line.starts_with(&format!("| {name} |"))).expect("a row");
         assert!(row.ends_with(&thousands(sixteen.context_registers(has_levels).kept)), "{row}");
     }

@@ -153,11 +153,12 @@ fn a_chase_in_memory_takes_the_way_and_the_memorys_own_time() {
 #[test]
 fn pinned_nodes_are_not_asked_for() {
     type Test = fn(u32) -> Act;
-    let tests: [(Test, u32); 4] = [
+    let tests: [(Test, u32); 5] = [
         (|met| Act::Children { met }, 1),
         (|met| Act::LocalChildren { met }, 1),
         (|met| Act::PlainChildren { met }, 2),
         (|met| Act::WideChildren { met }, 4),
+        (|met| Act::SixChildren { met }, 2),
     ];
     for (test, lines) in tests {
         let sections = ["node", "leaf"].map(|name| Section::of_bytes(name, 64 * 32));
