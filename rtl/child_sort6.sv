@@ -24,22 +24,24 @@ module child_sort6 #(
   localparam int unsigned KEY_W = 1 + lod_pkg::T_NEAR_W + 3;
   localparam int unsigned STAGE_W = 3 + 6 * KEY_W + TAG_W;
   // In each step, whom key k is compared with; itself if with none.
-  localparam logic [STEPS-1:0][5:0][2:0] PARTNER = {
-    {3'd5, 3'd3, 3'd4, 3'd1, 3'd2, 3'd0},
-    {3'd4, 3'd5, 3'd2, 3'd3, 3'd0, 3'd1},
-    {3'd2, 3'd4, 3'd0, 3'd5, 3'd1, 3'd3},
-    {3'd5, 3'd3, 3'd4, 3'd1, 3'd2, 3'd0},
-    {3'd0, 3'd2, 3'd1, 3'd4, 3'd3, 3'd5}
+  localparam logic [STEPS*18-1:0] PARTNER = {
+    3'd5, 3'd3, 3'd4, 3'd1, 3'd2, 3'd0,
+    3'd4, 3'd5, 3'd2, 3'd3, 3'd0, 3'd1,
+    3'd2, 3'd4, 3'd0, 3'd5, 3'd1, 3'd3,
+    3'd5, 3'd3, 3'd4, 3'd1, 3'd2, 3'd0,
+    3'd0, 3'd2, 3'd1, 3'd4, 3'd3, 3'd5
   };
   if (lod_pkg::CHILD_SORT6_LATENCY != STEPS) begin : g_illegal_latency
     $error("child_sort6: lod_pkg::CHILD_SORT6_LATENCY must be 5");
   end
 
   // Before step s, and behind the last.
-  logic [STEPS:0][5:0][KEY_W-1:0] keys;
-  logic [STEPS:0][2:0]            count;
-  logic [STEPS:0]                 valid, ready;
-  logic [STEPS:0][TAG_W-1:0]      tag;
+  logic [STEPS:0][5:0][KEY_W-1:0]   keys;
+  // Behind its comparators.
+  logic [STEPS-1:0][5:0][KEY_W-1:0] sorted;
+  logic [STEPS:0][2:0]              count;
+  logic [STEPS:0]                   valid, ready;
+  logic [STEPS:0][TAG_W-1:0]        tag;
 
   always_comb begin
     count[0] = '0;
@@ -53,19 +55,18 @@ module child_sort6 #(
   assign ready_o  = ready[0];
 
   for (genvar s = 0; s < STEPS; s++) begin : g_step
-    logic [5:0][KEY_W-1:0] sorted;
     for (genvar k = 0; k < 6; k++) begin : g_key
-      localparam int unsigned P = 32'(PARTNER[s][k]);
+      localparam int unsigned P = 32'(PARTNER[18*s+3*k+:3]);
       if (P == k) begin : g_kept
-        assign sorted[k] = keys[s][k];
+        assign sorted[s][k] = keys[s][k];
       end else if (P > k) begin : g_less
-        assign sorted[k] = keys[s][k] < keys[s][P] ? keys[s][k] : keys[s][P];
+        assign sorted[s][k] = keys[s][k] < keys[s][P] ? keys[s][k] : keys[s][P];
       end else begin : g_greater
-        assign sorted[k] = keys[s][P] < keys[s][k] ? keys[s][k] : keys[s][P];
+        assign sorted[s][k] = keys[s][P] < keys[s][k] ? keys[s][k] : keys[s][P];
       end
     end
     pipe_stage #(.W(STAGE_W)) u_stage (
-      .clk_i, .rst_ni, .valid_i(valid[s]), .ready_o(ready[s]), .data_i({count[s], sorted, tag[s]}),
+      .clk_i, .rst_ni, .valid_i(valid[s]), .ready_o(ready[s]), .data_i({count[s], sorted[s], tag[s]}),
       .valid_o(valid[s+1]), .ready_i(ready[s+1]), .data_o({count[s+1], keys[s+1], tag[s+1]})
     );
   end
