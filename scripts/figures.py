@@ -179,6 +179,9 @@ def search(data, values):
     rows = [[f"`{e[3]}`", e[4], e[5], f"{e[2]:,}", f"{e[0] / authors[0]:.3f}{name(e)}".replace(" **", " (chosen)"), f"{e[1] / authors[1]:.3f}"] for e in sorted(shown)]
     values["search"] = table(["mapping", "L1 MSHRs of a bank", "of the L2", "registers", "cycles of the BVH", "of the LOD"], rows)
     values["search_count"] = str(len(entries))
+    most = max(entries, key=lambda e: (e[2], -e[0]))
+    values["search_most"] = f"{100 - 100 * most[0] / chosen[0]:.1f} %"
+    values["search_bvh"], values["search_lod"] = f"{chosen[0] / authors[0]:.2f}", f"{chosen[1] / authors[1]:.2f}"
 
 
 def causes(data, values):
