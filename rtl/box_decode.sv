@@ -25,7 +25,7 @@ module box_decode #(
   framed_box #(.PLANE_W(5), .TAG_W(TAG_W)) u_box (
     .clk_i, .rst_ni, .valid_i, .ready_o, .origin_i(in_i.origin), .halves_i(in_i.halves), .exponents_i(in_i.exponents),
     .planes_i({in_i.lo[0], in_i.lo[1], in_i.lo[2], in_i.hi[0], in_i.hi[1], in_i.hi[2]}), .tag_i,
-    .valid_o, .ready_i, .bounds_o(out_o), .tag_o
+    .valid_o, .ready_i, .bounds_o(out_o.bounds), .tag_o
   );
 
 endmodule

@@ -45,8 +45,8 @@ impl Block for ChildSort6 {
     type Out = Out;
     fn parts(_: &Form) -> Parts {
         let step = Registers::stage(3 + 6 * KEY + TAG);
-        // Ends that no later step compares are numbers alone: both behind the fourth, all behind the fifth. The first knows all but a bit of each number.
-        let all = step.without(12) + step + step + step.without(2 * (KEY - NUMBER)) + step.without(6 * (KEY - NUMBER));
+        // The first step knows all but a bit or two of each number, the second of those at both ends; ends that no later step compares are numbers alone: both behind the fourth, all behind the fifth.
+        let all = step.without(12) + step.without(4) + step + step.without(2 * (KEY - NUMBER)) + step.without(6 * (KEY - NUMBER));
         Parts { products: vec![], add_bits: 12 * KEY + 15, select_bits: 12 * 2 * KEY, registers: all }
     }
     #[inline(always)]

@@ -26,7 +26,7 @@ use thiserror::Error;
 pub const MAX_DEPTH: u32 = crate::num::MAX_BVH_DEPTH;
 /// The same of a tree of six children a node, five of which may wait at each: what fits a traversal stack made for quad-BVHs and trees below.
 pub const MAX_DEPTH_OF_SIX: u32 = 20;
-const _: () = assert!(5 * MAX_DEPTH_OF_SIX as usize + 1 <= crate::method::STACK_ENTRIES);
+const _: () = assert!(5 * MAX_DEPTH_OF_SIX <= 3 * (crate::num::MAX_BVH_DEPTH + crate::num::MAX_LEVELS));
 /// Largest number of primitives of a leaf that is no block: references hold 2 bits of it.
 pub const MAX_LEAF: u32 = 4;
 /// Largest number of primitives: references hold 28 bits.

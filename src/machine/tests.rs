@@ -28,7 +28,7 @@ fn the_papers_machines_have_the_papers_figures() {
     }
     // One is the other with the registers of the authors' simulator and another mapping.
     let (ours, mut theirs) = (shipped("haydel2023"), shipped("haydel2023-mshr4"));
-    assert_eq!((ours.l1.mshrs, ours.l2.mshrs, theirs.l1.mshrs, theirs.l2.mshrs), (8, 32, 4, 4));
+    assert_eq!((ours.l1.mshrs, ours.l2.mshrs, theirs.l1.mshrs, theirs.l2.mshrs), (16, 64, 4, 4));
     assert_ne!(ours.dram.mapping, theirs.dram.mapping);
     (theirs.name, theirs.l1, theirs.l2, theirs.dram) = (ours.name.clone(), ours.l1.clone(), ours.l2.clone(), ours.dram.clone());
     assert_eq!(theirs, ours);
@@ -124,7 +124,7 @@ fn an_impossible_value_names_file_key_and_reason() {
         ("bytes = 16384", "bytes = 4194304", "l1.bytes must be at most l2.bytes = 2097152, but is 4194304"),
         ("bytes = 2097152", "bytes = 2147483648", "l2.bytes must be 1 to 1073741824"),
         ("latency_cycles = 4", "latency_cycles = 0", "l2.latency_cycles must be"),
-        ("mshrs = 32", "mshrs = 0", "l2.mshrs must be"),
+        ("mshrs = 64", "mshrs = 0", "l2.mshrs must be"),
         ("targets = 64", "targets = 0", "l2.targets must be"),
         ("queue = 64         # [A3]", "queue = 0 # [A3]", "l2.queue must be"),
         ("request_cycles = 1", "request_cycles = 0", "crossbar.request_cycles must be"),
@@ -154,7 +154,7 @@ fn an_unknown_missing_or_mistyped_key_names_file_and_key() {
         ("groups = 64", "groups = 64\nthreads = 2", "`threads`"),
         ("[units]", "[unit]", "`unit`"),
         ("ways = 2 ", "way = 2 ", "`way`"),
-        ("mshrs = 32", "", "`mshrs`"),
+        ("mshrs = 64", "", "`mshrs`"),
         ("queue = 64                 # own", "queue = 64\nwrites = 1", "`writes`"),
         ("groups = 64", "groups = \"many\"", "groups = \"many\""),
         ("groups = 64", "groups = -1", "groups = -1"),
