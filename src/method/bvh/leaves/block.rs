@@ -118,8 +118,8 @@ pub fn encode(triangles: &[Triangle]) -> Option<Vec<Line>> {
     put(u64::from(plan.zeros), 5);
     plan.anchor.iter().for_each(|&c| put((c >> PADDING) as u64 & MASK28, 28));
     for vertex in &plan.vertices[..plan.count] {
-        for k in 0..3 {
-            put(u64::from(offset(vertex[k], plan.anchor[k]) >> plan.zeros), plan.widths[k]);
+        for ((&c, &anchor), &width) in vertex.iter().zip(&plan.anchor).zip(&plan.widths) {
+            put(u64::from(offset(c, anchor) >> plan.zeros), width);
         }
     }
     for corner in plan.corners[..triangles.len()].as_flattened() {
