@@ -31,7 +31,7 @@ pub enum LeafLayout {
     Packed,
     /// One 32-byte line of 28-bit coordinates ([`VertexData`]).
     Line,
-    /// Leaves of up to 16 triangles that share vertices in one to four lines ([`block`]).
+    /// Leaves of up to 16 triangles that share vertices in one to four lines.
     Block,
 }
 
