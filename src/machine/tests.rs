@@ -137,7 +137,7 @@ fn an_impossible_value_names_file_key_and_reason() {
         ("\"dram/gddr5.toml\"", "\"gddr5\"", "dram.device must be a file's path, with .toml, but is \"gddr5\""),
         ("channels = 8", "channels = 6", "dram.channels must be a power of two up to 65536, but is 6"),
         ("queue = 64                 # own", "queue = 0", "dram.queue must be"),
-        ("mapping = \"row:rank:bank:group:channel:column\"", "mapping = \"\"", "dram.mapping must not be empty"),
+        ("mapping = \"row:rank:group:bank:channel:column\"", "mapping = \"\"", "dram.mapping must not be empty"),
         ("\"cacti22\"", "\"../cacti22\"", "energy.caches must be a name of letters"),
         ("\"blocks22\"", "\"\"", "energy.blocks must be a name of letters"),
         ("\"Haydel 2023\"", "\"\"", "name must not be empty"),
