@@ -1,4 +1,4 @@
-//! How fast frames are simulated on the paper's machine, in rays and accesses per second: tracing alone, replay alone (also with eight rays in flight per core), and both together.
+//! How fast frames are simulated on the paper's machine, in rays and accesses per second: tracing alone, replay alone (on one thread and on all up to eight; also with eight rays in flight per core), and both together.
 //!
 //! `cargo bench --bench simulate -- SCENE.lod...`: 1024 x 1024 rays at two bounding radii; without a scene, a terrain of 131,072 triangles. Each figure is the best of three.
 
@@ -8,7 +8,7 @@ use lodray::method::bvh::NoStore;
 use lodray::method::{Knobs, Method, bvh, lod};
 use lodray::rays::{Camera, ModelSpace, Sight, View};
 use lodray::run::{Compute, FrameRays, Job, simulate};
-use lodray::sim::replay::{self, Chunk};
+use lodray::sim::replay::{self, Chunk, Running};
 use lodray_test_support::models::{scene_of, terrain};
 use std::path::PathBuf;
 use std::time::Instant;
@@ -49,20 +49,25 @@ fn measure(name: &str, method: &dyn Method, scene: &Scene) {
     });
     let mut accesses = 0;
     let replaying = best(|| {
-        let run = replay::run_free(&machine, nodes, chunks.iter().cloned(), None).expect("a run");
+        let run = replay::run_free(&machine, nodes, chunks.iter().cloned(), Running::default()).expect("a run");
         accesses = run.counts.l1.requests;
+    });
+    let threads = rayon::current_num_threads().min(8);
+    let beside = best(|| {
+        let run = replay::run_free(&machine, nodes, chunks.iter().cloned(), Running { threads, ..Running::default() }).expect("a run");
+        assert_eq!(run.counts.l1.requests, accesses);
     });
     let mut many = machine.clone();
     many.cores.rays_in_flight = 8;
     let mut many_accesses = 0;
     let crowded = best(|| {
-        let run = replay::run_free(&many, nodes, chunks.iter().cloned(), None).expect("a run");
+        let run = replay::run_free(&many, nodes, chunks.iter().cloned(), Running::default()).expect("a run");
         many_accesses = run.counts.l1.requests;
     });
     assert_eq!(accesses, many_accesses);
     let mut units_requests = 0;
     let units = best(|| {
-        let run = replay::run_units(&machine, chunks.iter().cloned(), None).expect("a run");
+        let run = replay::run_units(&machine, chunks.iter().cloned(), Running::default()).expect("a run");
         units_requests = run.counts.l1.requests;
     });
     assert_eq!(accesses, units_requests);
@@ -70,10 +75,11 @@ fn measure(name: &str, method: &dyn Method, scene: &Scene) {
     let together = best(|| simulate(&frame, std::slice::from_ref(&job), &mut |_| ()).pop().expect("a run").map(drop).expect("a run"));
     let rays = f64::from(SIDE * SIDE) / 1e3;
     println!(
-        "{name:<30} tracing {:8.0} k rays/s   replay {:8.0} k rays/s {:6.1} M accesses/s   of 8 rays a core {:6.1} M accesses/s   with units {:8.0} k rays/s   together {:8.0} k rays/s   {:.1} accesses per ray",
+        "{name:<30} tracing {:8.0} k rays/s   replay {:8.0} k rays/s {:6.1} M accesses/s   on {threads} threads {:6.1} M accesses/s   of 8 rays a core {:6.1} M accesses/s   with units {:8.0} k rays/s   together {:8.0} k rays/s   {:.1} accesses per ray",
         rays / tracing,
         rays / replaying,
         accesses as f64 / 1e6 / replaying,
+        accesses as f64 / 1e6 / beside,
         accesses as f64 / 1e6 / crowded,
         rays / units,
         rays / together,

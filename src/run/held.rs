@@ -28,6 +28,6 @@ impl HeldFrame {
     /// # Errors
     /// The machine is impossible or too large, or nothing happens any more while rays are under way.
     pub fn run(&self, job: &Job) -> Result<Run, ReplayError> {
-        replay(job, self.nodes, self.chunks.iter().cloned())
+        replay(job, self.nodes, self.chunks.iter().cloned(), 1)
     }
 }

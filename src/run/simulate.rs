@@ -3,7 +3,7 @@
 use super::{FrameRays, Traced};
 use crate::machine::Machine;
 use crate::sim::energy::EnergyModel;
-use crate::sim::replay::{self, Chunk, ChunkSource, ReplayError, Run, Window};
+use crate::sim::replay::{self, Chunk, ChunkSource, ReplayError, Run, Running, Window};
 use crate::step::Nodes;
 use serde::{Deserialize, Serialize};
 use std::sync::mpsc::{Receiver, SyncSender, sync_channel};
@@ -55,12 +55,21 @@ pub fn check(machine: &Machine, compute: Compute) -> Result<(), ReplayError> {
     replay::check(machine, compute == Compute::Units)
 }
 
-/// Runs steps for a job; their rays begin with `nodes`.
-pub(super) fn replay(job: &Job, nodes: Nodes, source: impl ChunkSource) -> Result<Run, ReplayError> {
+/// Runs steps for a job on so many threads; their rays begin with `nodes`.
+pub(super) fn replay(job: &Job, nodes: Nodes, source: impl ChunkSource, threads: usize) -> Result<Run, ReplayError> {
+    let how = Running { window: job.window, threads };
     match job.compute {
-        Compute::Free => replay::run_free(&job.machine, nodes, source, job.window),
-        Compute::Units => replay::run_units(&job.machine, source, job.window),
+        Compute::Free => replay::run_free(&job.machine, nodes, source, how),
+        Compute::Units => replay::run_units(&job.machine, source, how),
     }
+}
+
+/// More threads than this make no replay faster.
+const MOST_THREADS: usize = 8;
+
+/// Threads of each of so many replays beside each other.
+fn threads_of_replay(replays: usize) -> usize {
+    (rayon::current_num_threads() / replays.max(1)).clamp(1, MOST_THREADS)
 }
 
 /// Runs the rays of `frame` for each of `jobs`. Rays are traced once; every replay has a thread of its own.
@@ -68,11 +77,12 @@ pub(super) fn replay(job: &Job, nodes: Nodes, source: impl ChunkSource) -> Resul
 pub fn simulate(frame: &FrameRays<'_>, jobs: &[Job], look: &mut dyn FnMut(&Traced)) -> Vec<Result<Run, ReplayError>> {
     thread::scope(|scope| {
         let nodes = frame.method.map(frame.sight).nodes();
+        let threads = threads_of_replay(jobs.len());
         let (senders, runs): (Vec<SyncSender<Chunk>>, Vec<_>) = jobs
             .iter()
             .map(|job| {
                 let (sender, receiver): (_, Receiver<Chunk>) = sync_channel(AHEAD);
-                (sender, scope.spawn(move || replay(job, nodes, receiver.into_iter())))
+                (sender, scope.spawn(move || replay(job, nodes, receiver.into_iter(), threads)))
             })
             .unzip();
         frame.produce(|traced| {

@@ -1,9 +1,13 @@
 //! Traversal units on a machine: a unit whose lines are all in its L1 takes the cycles of the RTL, and many of them lose nothing.
 
 use lodray::machine::Machine;
+use lodray::method::Knobs;
+use lodray::method::bvh::{self, NoStore};
 use lodray::method::lod::LodImage;
 use lodray::num::{Ray, VertexForm};
-use lodray::sim::replay::{self, Chunk, Run};
+use lodray::rays::{Camera, ModelSpace, Sight, View};
+use lodray::run::FrameRays;
+use lodray::sim::replay::{self, Chunk, Run, Running};
 use lodray::sim::unit::environment::run;
 use lodray::sim::unit::{Latency, SceneMemory, Traffic, TraversalUnit};
 use lodray::step::{Batch, Step};
@@ -27,7 +31,7 @@ fn steps(image: LodImage<'_>, rays: &[Ray]) -> Vec<Vec<Step>> {
 
 fn units(machine: &Machine, rays: &[Vec<Step>]) -> Run {
     let chunks: Vec<Chunk> = rays.chunks(64).map(|rays| Chunk::from([Batch::new(rays)])).collect();
-    replay::run_units(machine, chunks.into_iter(), None).expect("a run")
+    replay::run_units(machine, chunks.into_iter(), Running::default()).expect("a run")
 }
 
 #[test]
@@ -86,4 +90,25 @@ fn many_units_lose_nothing_however_little_room_there_is() {
         assert_eq!(counts.states.iter().sum::<u64>(), run.cycles * 8 * 16, "every context is in some state in every cycle");
     }
     assert!(tight.cycles > roomy.cycles && tight.counts.l1.refused_cycles > 0);
+}
+
+/// In a frame of this size groups are given rays in cycles in which ports wake, and lines come in those in which others are asked for.
+#[test]
+fn a_frame_does_not_depend_on_threads() {
+    let scene = scene_of(&terrain(16, 3, 0.5, 1));
+    let space = ModelSpace::of(&scene);
+    let camera = Camera::new(&View { distance: Some(2.0), ..View::default() }, &space, 512, 512).expect("a camera");
+    let sight = Sight::new(&camera, &space, 1.0);
+    let method = (bvh::METHOD.make)(&scene, &Knobs::default(), &NoStore).expect("a method on a scene");
+    let mut chunks: Vec<Chunk> = Vec::new();
+    FrameRays { method: &*method, rays: &camera, sight: &sight }.produce(|traced| {
+        chunks.push(traced.batches.into());
+        true
+    });
+    let nodes = method.map(&sight).nodes();
+    let run = |threads| {
+        let how = Running { threads, ..Running::default() };
+        replay::run_free(&machine(&[]), nodes, chunks.iter().cloned(), how).expect("a run")
+    };
+    assert!(run(1) == run(2));
 }

@@ -5,11 +5,10 @@
 use super::FrontEnd;
 use super::counts::Supplier;
 use super::event::{Asked, Happening};
-use super::feed::{self, FedRay, Feed};
-use super::hierarchy::Hierarchy;
+use super::feed::{FedRay, Feed};
+use super::group_side::GroupSide;
 use super::prefetch::prefetch;
-use crate::block::Operations;
-use crate::machine::Cores;
+use crate::machine::Machine;
 use crate::step::{Act, Asking, Nodes, SectionId};
 use std::ops::Range;
 
@@ -18,6 +17,11 @@ const MOST_LINES: usize = 16;
 
 /// No context.
 const NONE: u32 = u32::MAX;
+
+/// Contexts of a group.
+pub fn contexts_of_group(machine: &Machine) -> u32 {
+    machine.cores.per_group * machine.cores.rays_in_flight
+}
 
 /// What a core holds of a ray. (What most steps need lies in one cache line.)
 #[derive(Clone)]
@@ -41,7 +45,7 @@ struct CoreContext {
 impl CoreContext {
     /// A line comes from the L1 in `cycle`: only of the last is the context told when it is there.
     #[inline(always)]
-    fn comes(&mut self, context: u32, cycle: u64, memory: &mut Hierarchy) {
+    fn comes(&mut self, context: u32, cycle: u64, memory: &mut GroupSide) {
         self.ready = self.ready.max(cycle);
         if self.come + 1 == self.count {
             memory.answer_at(self.ready, context, Supplier::L1);
@@ -64,8 +68,8 @@ struct CorePort {
 }
 
 /// All cores.
-pub struct FreeCores<S> {
-    feed: Feed<S>,
+pub struct FreeCores {
+    feed: Feed,
     contexts: Vec<CoreContext>,
     ports: Vec<CorePort>,
     rays_in_flight: u32,
@@ -75,15 +79,16 @@ pub struct FreeCores<S> {
     under_way: u64,
 }
 
-impl<S: feed::ChunkSource> FreeCores<S> {
-    /// Cores that take rays from `source`, and hold the first of `nodes`.
-    pub fn new(cores: &Cores, nodes: Nodes, source: S) -> Self {
+impl FreeCores {
+    /// The cores of `machine`, whose groups are those from `first` on; they hold the first of `nodes`.
+    pub fn new(machine: &Machine, first: u32, nodes: Nodes) -> Self {
+        let cores = &machine.cores;
         let (lines, sections) = ([0; MOST_LINES], [SectionId::default(); MOST_LINES]);
         let context =
             CoreContext { ray: None, ready: 0, since: 0, from: Supplier::L1, count: 0, sent: 0, come: 0, next: NONE, lines, sections };
         let port = CorePort { free: 0, first: NONE, last: NONE, awake: false };
         Self {
-            feed: Feed::new(source, cores.groups),
+            feed: Feed::new(first, cores.groups, contexts_of_group(machine)),
             contexts: vec![context; (cores.total() * cores.rays_in_flight) as usize],
             ports: vec![port; cores.total() as usize],
             rays_in_flight: cores.rays_in_flight,
@@ -100,30 +105,16 @@ impl<S: feed::ChunkSource> FreeCores<S> {
         self.contexts[context as usize].ray = ray;
     }
 
-    /// Takes ray after ray up to the first lines that one asks for; so do idle contexts whose rays waited for one of these.
+    /// Takes ray after ray up to the first lines that one asks for.
     #[inline]
-    fn go_on(&mut self, context: u32, memory: &mut Hierarchy) {
-        self.take_rays(context, memory);
-        while let Some(group) = self.feed.released() {
-            let own = self.rays_in_flight * self.per_group;
-            for context in group * own..(group + 1) * own {
-                if self.contexts[context as usize].ray.is_none() {
-                    self.next_ray(context, memory.now());
-                    self.take_rays(context, memory);
-                }
-            }
-        }
-    }
-
-    #[inline]
-    fn take_rays(&mut self, context: u32, memory: &mut Hierarchy) {
+    fn take_rays(&mut self, context: u32, memory: &mut GroupSide) {
         while self.contexts[context as usize].ray.is_some() && !self.asks(context, memory) {
             self.next_ray(context, memory.now());
         }
     }
 
     /// Takes the ray through all steps that ask for nothing, up to the lines that it asks for next, or its end: false.
-    fn asks(&mut self, context: u32, memory: &mut Hierarchy) -> bool {
+    fn asks(&mut self, context: u32, memory: &mut GroupSide) -> bool {
         let state = &mut self.contexts[context as usize];
         let Some(ray) = &mut state.ray else { return false };
         let counts = memory.counts_mut();
@@ -138,7 +129,7 @@ impl<S: feed::ChunkSource> FreeCores<S> {
                 counts.hits += u64::from(matches!(word.step().act, Act::End { found: true, .. }));
                 self.under_way -= 1;
                 memory.ray_ends(ray.started);
-                self.feed.ended(ray, context / self.rays_in_flight / self.per_group);
+                self.feed.ended(ray, context / self.rays_in_flight / self.per_group, memory.now());
                 return false;
             }
             if self.pinned.contains(&first) {
@@ -178,7 +169,7 @@ impl<S: feed::ChunkSource> FreeCores<S> {
 
     /// The port asks for a line.
     #[inline]
-    fn ask(&mut self, port: u32, memory: &mut Hierarchy) {
+    fn ask(&mut self, port: u32, memory: &mut GroupSide) {
         let state = &mut self.ports[port as usize];
         state.awake = false;
         let context = state.first;
@@ -207,24 +198,17 @@ impl<S: feed::ChunkSource> FreeCores<S> {
     }
 }
 
-impl<S: feed::ChunkSource> FrontEnd for FreeCores<S> {
+impl FrontEnd for FreeCores {
     fn slots(&self) -> (usize, fn(u32) -> usize) {
         (self.contexts.len(), |context| context as usize)
     }
 
-    fn start(&mut self, memory: &mut Hierarchy) {
-        for context in 0..self.contexts.len() as u32 {
-            self.next_ray(context, memory.now());
-            self.go_on(context, memory);
-        }
-    }
-
-    fn wake(&mut self, port: u32, memory: &mut Hierarchy) {
+    fn wake(&mut self, port: u32, memory: &mut GroupSide) {
         self.ask(port, memory);
     }
 
     #[inline]
-    fn comes(&mut self, context: u32, cycle: u64, memory: &mut Hierarchy) {
+    fn comes(&mut self, context: u32, cycle: u64, memory: &mut GroupSide) {
         self.contexts[context as usize].comes(context, cycle, memory);
     }
 
@@ -248,7 +232,7 @@ impl<S: feed::ChunkSource> FrontEnd for FreeCores<S> {
     }
 
     #[inline]
-    fn answer(&mut self, context: u32, from: Supplier, memory: &mut Hierarchy) {
+    fn answer(&mut self, context: u32, from: Supplier, memory: &mut GroupSide) {
         let state = &mut self.contexts[context as usize];
         state.from = state.from.max(from);
         if state.come + 1 == state.count && state.ready > memory.now() {
@@ -261,16 +245,27 @@ impl<S: feed::ChunkSource> FrontEnd for FreeCores<S> {
             let waited = memory.now() - state.since;
             memory.counts_mut().waits.add(state.from, waited);
             memory.charge(context, state.since);
-            self.go_on(context, memory);
+            self.take_rays(context, memory);
         }
     }
 
-    fn operations(&self) -> &Operations {
-        &self.feed.operations
+    fn granted(&mut self, group: u32, memory: &mut GroupSide) {
+        self.feed.came(group);
+        let own = self.rays_in_flight * self.per_group;
+        for context in group * own..(group + 1) * own {
+            if self.contexts[context as usize].ray.is_none() {
+                self.next_ray(context, memory.now());
+                self.take_rays(context, memory);
+            }
+        }
     }
 
-    fn is_busy(&self) -> bool {
-        self.under_way > 0
+    fn feed(&mut self) -> &mut Feed {
+        &mut self.feed
+    }
+
+    fn under_way(&self) -> u64 {
+        self.under_way
     }
 
     fn describe(&self) -> String {

@@ -33,6 +33,27 @@ pub struct CacheCounts {
     pub longest_queue: u64,
 }
 
+impl CacheCounts {
+    /// Adds what another side counted.
+    pub fn add(&mut self, other: &Self) {
+        let Self {
+            requests, hits, misses, merges, fills, conflicts, queued_cycles, refused_cycles, blocked_cycles, register_cycles, ..
+        } = self;
+        *requests += other.requests;
+        *hits += other.hits;
+        *misses += other.misses;
+        *merges += other.merges;
+        *fills += other.fills;
+        *conflicts += other.conflicts;
+        *queued_cycles += other.queued_cycles;
+        *refused_cycles += other.refused_cycles;
+        *blocked_cycles += other.blocked_cycles;
+        *register_cycles += other.register_cycles;
+        self.most_registers = self.most_registers.max(other.most_registers);
+        self.longest_queue = self.longest_queue.max(other.longest_queue);
+    }
+}
+
 /// Where a line came from.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 #[repr(u8)]
@@ -102,4 +123,26 @@ pub struct Counts {
     pub stalls: Stalls,
     /// By the place of their section.
     pub traffic: [KindTraffic; MAX_SECTIONS],
+}
+
+impl Counts {
+    /// Adds what another side counted.
+    pub fn add(&mut self, other: &Self) {
+        self.rays += other.rays;
+        self.hits += other.hits;
+        self.l1.add(&other.l1);
+        self.l2.add(&other.l2);
+        self.crossbar_cycles += other.crossbar_cycles;
+        self.answer_cycles += other.answer_cycles;
+        self.dram_refused_cycles += other.dram_refused_cycles;
+        self.waits.l1 += other.waits.l1;
+        self.waits.l2 += other.waits.l2;
+        self.waits.dram += other.waits.dram;
+        self.stalls.iter_mut().zip(other.stalls).for_each(|(sum, cycles)| *sum += cycles);
+        for (sum, more) in self.traffic.iter_mut().zip(&other.traffic) {
+            sum.l1 += more.l1;
+            sum.l2 += more.l2;
+            sum.dram += more.dram;
+        }
+    }
 }

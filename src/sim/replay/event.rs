@@ -5,11 +5,13 @@ use super::counts::Supplier;
 /// Bits of the number of who has an event; its kind stands above.
 const ID_BITS: u32 = 28;
 
-/// Classes of the wheel: within a cycle lines are moved and given first, then asked for.
+/// Classes of the wheel: within a cycle lines are moved and given first, then asked for. (The shared side has two: misses that come, and all else.)
 pub const MOVES: usize = 0;
 pub const SERVES: usize = 1;
 pub const ANSWERS: usize = 2;
 pub const WAKES: usize = 3;
+/// (Of its own: how grants and wakes of a cycle are entered depends on where rounds end.)
+pub const GRANTS: usize = 4;
 
 /// How many events ahead of it an event's own state is fetched, and how many what that leads to.
 pub const FAR: usize = 5;
@@ -29,8 +31,11 @@ pub enum EventKind {
     ServeL2,
     PushDram,
     FillL2,
+    FreeL2,
     FillL1FromL2,
     FillL1FromDram,
+    Miss,
+    Grant,
 }
 
 impl EventKind {
@@ -52,8 +57,9 @@ impl EventKind {
     pub const fn class(self) -> usize {
         match self {
             Self::Wake => WAKES,
+            Self::Grant => GRANTS,
             Self::AnswerL1 | Self::AnswerL2 | Self::AnswerDram => ANSWERS,
-            Self::ServeL1 => SERVES,
+            Self::ServeL1 | Self::Miss => SERVES,
             _ => MOVES,
         }
     }
@@ -65,7 +71,7 @@ pub fn id(event: u32) -> u32 {
     event & ((1 << ID_BITS) - 1)
 }
 
-const KINDS: [EventKind; 12] = [
+const KINDS: [EventKind; 15] = [
     EventKind::Wake,
     EventKind::AnswerL1,
     EventKind::AnswerL2,
@@ -76,8 +82,11 @@ const KINDS: [EventKind; 12] = [
     EventKind::ServeL2,
     EventKind::PushDram,
     EventKind::FillL2,
+    EventKind::FreeL2,
     EventKind::FillL1FromL2,
     EventKind::FillL1FromDram,
+    EventKind::Miss,
+    EventKind::Grant,
 ];
 
 /// What became of a request.
@@ -94,10 +103,12 @@ pub enum Asked {
 /// What whoever uses the hierarchy is told.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Happening {
-    /// The cycle that was asked for with [`Hierarchy::wake_at`](super::hierarchy::Hierarchy::wake_at), or the port's request was taken that had been held.
+    /// The cycle that was asked for with [`GroupSide::wake_at`](super::group_side::GroupSide::wake_at), or the port's request was taken that had been held.
     Wake(u32),
     /// The line that was asked for comes in this cycle from the L1, which nobody will be told again.
     Comes(u32, u64),
     /// The line that was asked for came.
     Answer(u32, Supplier),
+    /// The group has rays again.
+    Granted(u32),
 }

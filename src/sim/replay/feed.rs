@@ -1,42 +1,15 @@
-//! Where rays come from: batches of the functional layer, in order, taken by groups of cores as they need them.
-//!
-//! A ray that starts behind the end of another is put aside until then, and the group that took it goes on with the next; when the other has ended, it is among the
-//! first that the other's group takes, or whoever has nothing else to do.
+//! Rays of a partition's groups: what the dispatcher gave them, taken by their cores as they need it.
 
+use super::messages::{Notice, Told};
 use super::prefetch::prefetch;
-use crate::block::Operations;
 use crate::step::{Batch, Link, StepWord};
-use std::collections::{BTreeSet, HashMap, HashSet, VecDeque};
+use std::collections::VecDeque;
 use std::sync::Arc;
-
-/// Batches that were traced together.
-pub type Chunk = Arc<[Batch]>;
-
-/// Gives the chunks of a frame in order.
-pub trait ChunkSource {
-    /// The next one; `None` after the last. May wait for it.
-    fn next(&mut self) -> Option<Chunk>;
-}
-
-impl<I: Iterator<Item = Chunk>> ChunkSource for I {
-    fn next(&mut self) -> Option<Chunk> {
-        Iterator::next(self)
-    }
-}
-
-/// A batch in its chunk, and its next ray.
-#[derive(Clone)]
-struct Current {
-    chunk: Chunk,
-    batch: u32,
-    ray: u32,
-}
 
 /// A ray: its place among its batch's steps.
 #[derive(Clone)]
 pub struct FedRay {
-    chunk: Chunk,
-    batch: u32,
+    batch: Arc<Batch>,
     at: u32,
     /// Its number in the batch.
     ray: u32,
@@ -45,16 +18,22 @@ pub struct FedRay {
 }
 
 impl FedRay {
+    /// Ray number `ray` of `batch`.
+    pub fn new(batch: Arc<Batch>, ray: u32) -> Self {
+        let at = batch.start(ray as usize);
+        Self { batch, at, ray, started: 0 }
+    }
+
     /// Its next step; a ray ends with [`Act::End`](crate::step::Act::End), after which it has none.
     #[inline(always)]
     pub fn peek(&self) -> StepWord {
-        self.chunk[self.batch as usize].words()[self.at as usize]
+        self.batch.words()[self.at as usize]
     }
 
     /// Its steps from the next on, and those of the rays behind it.
     #[inline(always)]
     pub fn rest(&self) -> &[StepWord] {
-        &self.chunk[self.batch as usize].words()[self.at as usize..]
+        &self.batch.words()[self.at as usize..]
     }
 
     /// Goes on by `steps`.
@@ -66,230 +45,127 @@ impl FedRay {
     /// The steps behind the next are read soon.
     #[inline(always)]
     pub fn prefetch(&self) {
-        prefetch(self.chunk[self.batch as usize].words(), self.at as usize);
+        prefetch(self.batch.words(), self.at as usize);
+    }
+
+    /// Its place among the rays of a frame whose rays wait for others.
+    pub fn link(&self) -> Option<Link> {
+        self.batch.link(self.ray as usize)
     }
 }
 
-impl FedRay {
-    fn link(&self) -> Option<Link> {
-        self.chunk[self.batch as usize].link(self.ray as usize)
-    }
+/// What a group is given at once.
+#[derive(Clone)]
+pub enum Grant {
+    /// A batch, none of whose rays waits for another.
+    Batch(Arc<Batch>),
+    /// Rays, of whatever batches.
+    Rays(VecDeque<FedRay>),
 }
 
-/// Most rays that are put aside: beyond, a group puts one more aside and stands still until that one is ready or there is room, so that what is held in memory
-/// does not grow with the frame. The first ray that has not ended waits for none, and no group stands still before it: all go on in the end.
-pub(super) const MOST_WAITING: usize = 1 << 16;
-
-/// A ray that waits, and the group that stands still until it is ready, if one does.
-struct Waiting {
-    ray: FedRay,
-    holds_back: Option<u32>,
+/// What a group holds.
+struct Held {
+    /// On its way: in this order.
+    coming: VecDeque<Grant>,
+    /// Its batches, and the next ray of the first.
+    batches: VecDeque<Arc<Batch>>,
+    next: u32,
+    rays: VecDeque<FedRay>,
+    /// Rays that are left of these.
+    left: u32,
+    /// It asked for more; at first all have.
+    asked: bool,
 }
 
-/// Rays that wait for others.
-struct Order {
-    /// All rays before this one have ended, and so have those of `ended`.
-    open: u64,
-    ended: HashSet<u64>,
-    /// By the ray that they wait for.
-    waiting: HashMap<u64, Vec<Waiting>>,
-    waiting_count: usize,
-    /// Rays that wait no more, by the group in which the one ended that they waited for.
-    ready: Vec<VecDeque<FedRay>>,
-    ready_count: usize,
-    /// Groups that have got rays.
-    released: Vec<u32>,
-    /// Groups that asked and got none.
-    idle: BTreeSet<u32>,
-    /// Those of them that stand still.
-    held_back: BTreeSet<u32>,
-}
+impl Held {
+    fn new() -> Self {
+        Self { coming: VecDeque::new(), batches: VecDeque::new(), next: 0, rays: VecDeque::new(), left: 0, asked: true }
+    }
 
-impl Order {
-    fn new(groups: u32) -> Self {
-        Self {
-            open: 0,
-            ended: HashSet::new(),
-            waiting: HashMap::new(),
-            waiting_count: 0,
-            ready: vec![VecDeque::new(); groups as usize],
-            ready_count: 0,
-            released: Vec::new(),
-            idle: BTreeSet::new(),
-            held_back: BTreeSet::new(),
+    fn take(&mut self) -> Option<FedRay> {
+        if let Some(ray) = self.rays.pop_front() {
+            return Some(ray);
         }
-    }
-
-    /// The ray behind whose end `ray` starts, if that is still to come.
-    fn waits_for(&self, ray: &FedRay) -> Option<u64> {
-        ray.link()?.after.filter(|after| *after >= self.open && !self.ended.contains(after))
-    }
-
-    fn is_full(&self) -> bool {
-        self.waiting_count >= MOST_WAITING
-    }
-
-    /// Whether `group`, which took `ray`, goes on.
-    fn put_aside(&mut self, waits_for: u64, ray: FedRay, group: u32) -> bool {
-        let holds_back = self.is_full().then_some(group);
-        self.held_back.extend(holds_back);
-        self.waiting.entry(waits_for).or_default().push(Waiting { ray, holds_back });
-        self.waiting_count += 1;
-        holds_back.is_none()
-    }
-
-    /// `group` does not go on in its batches yet.
-    fn holds_back(&mut self, group: u32) -> bool {
-        if !self.is_full() {
-            self.held_back.remove(&group);
-        }
-        self.held_back.contains(&group)
-    }
-
-    /// A ray of `group` has ended.
-    fn ended(&mut self, number: u64, group: u32) {
-        self.ended.insert(number);
-        while self.ended.remove(&self.open) {
-            self.open += 1;
-        }
-        let rays = self.waiting.remove(&number).unwrap_or_default();
-        if rays.is_empty() {
-            return;
-        }
-        self.waiting_count -= rays.len();
-        self.ready_count += rays.len();
-        for Waiting { ray, holds_back } in rays {
-            self.ready[group as usize].push_back(ray);
-            if let Some(other) = holds_back {
-                self.held_back.remove(&other);
-                self.released.push(other);
+        loop {
+            let batch = self.batches.front()?;
+            if (self.next as usize) < batch.rays() {
+                let ray = FedRay::new(Arc::clone(batch), self.next);
+                // The next to be taken.
+                prefetch(batch.words(), batch.end(self.next as usize) as usize);
+                self.next += 1;
+                return Some(ray);
             }
+            self.batches.pop_front();
+            self.next = 0;
         }
-        self.released.push(group);
-    }
-
-    /// A ray that waits no more: of `group`, or, if `any`, of the group with the most of them.
-    fn ready(&mut self, group: u32, any: bool) -> Option<FedRay> {
-        if self.ready_count == 0 {
-            return None;
-        }
-        let own = &mut self.ready[group as usize];
-        let ray = match own.pop_front() {
-            None if any => self.ready.iter_mut().rev().max_by_key(|rays| rays.len())?.pop_front(),
-            own => own,
-        };
-        self.ready_count -= usize::from(ray.is_some());
-        ray
-    }
-
-    fn released(&mut self) -> Option<u32> {
-        let idle = if self.ready_count > 0 { self.idle.first().copied() } else { None };
-        let held_back = if self.is_full() { None } else { self.held_back.first().copied() };
-        let group = self.released.pop().or(idle).or(held_back)?;
-        self.idle.remove(&group);
-        self.held_back.remove(&group);
-        Some(group)
     }
 }
 
-/// Hands out rays: a group takes a batch at a time, its cores the rays of it.
-pub struct Feed<S> {
-    source: S,
-    /// The chunk that batches come from, and its next.
-    open: Option<(Chunk, u32)>,
-    groups: Vec<Option<Current>>,
-    order: Order,
-    /// Rays of the frame wait for others.
-    is_ordered: bool,
-    /// What the rays of batches taken have the hardware blocks do.
-    pub operations: Operations,
+/// The rays of some groups.
+pub struct Feed {
+    /// Their number of the first.
+    first: u32,
+    groups: Vec<Held>,
+    /// With fewer rays left a group asks for more.
+    reserve: u32,
+    /// For the dispatcher.
+    pub told: Vec<Told>,
 }
 
-impl<S: ChunkSource> Feed<S> {
-    /// Nothing taken yet.
-    pub fn new(source: S, groups: u32) -> Self {
-        Self {
-            source,
-            open: None,
-            groups: vec![None; groups as usize],
-            order: Order::new(groups),
-            is_ordered: false,
-            operations: Operations::default(),
-        }
+impl Feed {
+    /// Nothing yet for `count` groups from `first` on, of so many contexts each.
+    pub fn new(first: u32, count: u32, contexts: u32) -> Self {
+        Self { first, groups: (0..count).map(|_| Held::new()).collect(), reserve: contexts.max(1), told: Vec::new() }
     }
 
-    /// The next ray of `group`, which is taken in cycle `now`: one that waited for another of the group's, else of the source, else one that waited for another group's. `None` when all are
-    /// taken or wait for others.
+    /// The next ray of `group`, which is taken in cycle `now`, if it has one.
+    #[inline]
     pub fn ray(&mut self, group: u32, now: u64) -> Option<FedRay> {
-        let mut ray = self.order.ready(group, false).or_else(|| self.taken(group)).or_else(|| self.order.ready(group, true));
+        let held = &mut self.groups[group as usize];
+        let mut ray = held.take();
         if let Some(ray) = &mut ray {
             ray.started = now;
+            held.left -= 1;
         }
-        if ray.is_none() && self.is_ordered {
-            self.order.idle.insert(group);
+        if held.left < self.reserve && !held.asked {
+            held.asked = true;
+            self.told.push(Told { cycle: now, group: self.first + group, notice: Notice::Asks });
         }
         ray
     }
 
-    /// The next ray of the group's batches that waits for nobody; those that wait are put aside.
-    fn taken(&mut self, group: u32) -> Option<FedRay> {
-        if self.is_ordered && self.order.holds_back(group) {
-            return None;
-        }
-        loop {
-            if let Some(current) = &mut self.groups[group as usize] {
-                let batch = &current.chunk[current.batch as usize];
-                if (current.ray as usize) < batch.rays() {
-                    let at_ray = current.ray as usize;
-                    let at = batch.start(at_ray);
-                    current.ray += 1;
-                    // The next to be taken.
-                    prefetch(batch.words(), batch.end(at_ray) as usize);
-                    let ray = FedRay { chunk: Arc::clone(&current.chunk), batch: current.batch, at, ray: at_ray as u32, started: 0 };
-                    self.is_ordered |= ray.link().is_some();
-                    let Some(waits_for) = self.order.waits_for(&ray) else { return Some(ray) };
-                    if self.order.put_aside(waits_for, ray, group) {
-                        continue;
-                    }
-                    return None;
-                }
-            }
-            self.groups[group as usize] = None; // lets go of the chunk
-            self.groups[group as usize] = Some(self.batch()?);
-        }
-    }
-
-    /// `ray` of `group` has ended: rays that waited for it are ready, and [`Feed::released`] tells who is to ask for them.
+    /// `ray` of `group` has ended in cycle `now`.
     #[inline(always)]
-    pub fn ended(&mut self, ray: &FedRay, group: u32) {
+    pub fn ended(&mut self, ray: &FedRay, group: u32, now: u64) {
         if let Some(link) = ray.link() {
-            self.order.ended(link.number, group);
+            self.told.push(Told { cycle: now, group: self.first + group, notice: Notice::Ended(link.number) });
         }
     }
 
-    /// Rays wait for nobody any more, and have not been taken.
-    pub fn has_ready(&self) -> bool {
-        self.order.ready_count > 0
+    /// `group` will have a grant.
+    pub fn comes(&mut self, group: u32, grant: Grant) {
+        self.groups[group as usize].coming.push_back(grant);
     }
 
-    /// A group that may get rays now, if there is one: that of the ray that ended, then those that asked in vain.
-    #[inline(always)]
-    pub fn released(&mut self) -> Option<u32> {
-        if self.is_ordered { self.order.released() } else { None }
-    }
-
-    fn batch(&mut self) -> Option<Current> {
-        loop {
-            if let Some((chunk, next)) = &mut self.open
-                && (*next as usize) < chunk.len()
-            {
-                let batch = *next;
-                *next += 1;
-                self.operations.join(chunk[batch as usize].operations());
-                return Some(Current { chunk: Arc::clone(chunk), batch, ray: 0 });
+    /// It has it now.
+    pub fn came(&mut self, group: u32) {
+        let held = &mut self.groups[group as usize];
+        held.asked = false;
+        match held.coming.pop_front() {
+            Some(Grant::Batch(batch)) => {
+                held.left += batch.rays() as u32; // far fewer than 2^32
+                held.batches.push_back(batch);
             }
-            self.open = None;
-            self.open = Some((self.source.next()?, 0));
+            Some(Grant::Rays(rays)) => {
+                held.left += rays.len() as u32;
+                held.rays.extend(rays);
+            }
+            None => (),
         }
+    }
+
+    /// No group has or gets any.
+    pub fn is_empty(&self) -> bool {
+        self.groups.iter().all(|held| held.left == 0 && held.coming.is_empty())
     }
 }

@@ -1,7 +1,9 @@
 //! Everything counted, over time: what each stretch of cycles added.
+//!
+//! Every side of a replay counts for itself, and notes what it had counted when a stretch ended; where a stretch may end is the same for all, so that what they noted adds up whatever
+//! the partitions are.
 
 use super::counts::Counts;
-use super::hierarchy::Hierarchy;
 use crate::block::Operations;
 use crate::sim::dram::{ChannelCounts, DramEnergy};
 
@@ -26,48 +28,92 @@ pub struct Interval {
     pub operations: Operations,
 }
 
-/// The stretches so far.
-pub struct Intervals {
+/// What one side had counted at the ends of stretches: of those in which it did something after that.
+pub struct Series<T> {
     length: u64,
-    done: Vec<Interval>,
+    done: Vec<(u64, T)>,
 }
 
-impl Intervals {
+impl<T: Clone> Series<T> {
     /// None yet.
     pub fn new() -> Self {
         Self { length: FIRST, done: Vec::new() }
     }
 
-    /// Ends the stretches that end before `next`, the next cycle in which something happens. Those in which nothing did are left out.
+    /// The side does something in cycle `next`, behind all that it did before: the end of the stretch before that cycle's, if it is to be noted.
     #[inline]
-    pub fn up_to(&mut self, next: u64, memory: &mut Hierarchy, operations: &Operations) {
-        let begun = self.done.last().map_or(0, |interval| interval.end);
-        if next >= begun + self.length {
-            let end = next / self.length * self.length;
-            self.note(end, memory, operations);
-            if self.done.len() == MOST {
-                self.length *= 2;
-                let length = self.length;
-                self.done.retain(|interval| interval.end % length == 0);
-            }
+    pub fn end_before(&self, next: u64) -> Option<u64> {
+        let last = self.done.last().map_or(0, |done| done.0);
+        (next >= last + self.length).then(|| next / self.length * self.length)
+    }
+
+    /// What was counted when a stretch ended.
+    pub fn note(&mut self, end: u64, counted: T) {
+        self.done.push((end, counted));
+        if self.done.len() == MOST {
+            self.length *= 2;
+            self.coarsen(self.length);
         }
     }
 
-    fn note(&mut self, end: u64, memory: &mut Hierarchy, operations: &Operations) {
-        let counts = memory.counts();
-        let dram = memory.dram();
-        let mut channels = ChannelCounts::default();
-        dram.counts().iter().for_each(|channel| channels.add(channel));
-        let energy = dram.energy();
-        self.done.push(Interval { end, counts, channels, dram: energy, operations: operations.clone() });
+    /// Keeps the ends of stretches of `length` alone: an end that is none becomes the one before, for in between nothing was done.
+    fn coarsen(&mut self, length: u64) {
+        self.length = length;
+        self.done.iter_mut().for_each(|done| done.0 = done.0 / length * length);
+        self.done.dedup_by_key(|done| done.0);
+        self.done.retain(|done| done.0 > 0);
     }
 
-    /// All of them, the last one ending now.
-    pub fn end(mut self, memory: &mut Hierarchy, operations: &Operations) -> Vec<Interval> {
-        let now = memory.now();
-        // A stretch that ended with this cycle has not seen it.
-        self.done.pop_if(|last| last.end == now);
-        self.note(now, memory, operations);
-        self.done
+    fn ends(&self) -> impl Iterator<Item = u64> {
+        self.done.iter().map(|done| done.0)
     }
+
+    /// What was counted before cycle `end`; `all` was in the end.
+    fn before<'a>(&'a self, end: u64, all: &'a T) -> &'a T {
+        let at = self.done.partition_point(|done| done.0 < end);
+        self.done.get(at).map_or(all, |done| &done.1)
+    }
+}
+
+/// What the side that all groups share counts.
+#[derive(Clone)]
+pub struct SharedCounts {
+    /// Of the L2 and the crossbar.
+    pub counts: Counts,
+    /// All channels.
+    pub channels: ChannelCounts,
+    /// The memory's energy.
+    pub dram: DramEnergy,
+}
+
+/// The stretches of a run of so many cycles: of each side what it had counted in the end, and over time.
+pub fn join(
+    groups: &[(Counts, Series<Counts>)],
+    shared: (&SharedCounts, &Series<SharedCounts>),
+    operations: (&Operations, &Series<Operations>),
+    cycles: u64,
+) -> Vec<Interval> {
+    let mut ends: Vec<u64> = groups.iter().flat_map(|side| side.1.ends()).chain(shared.1.ends()).chain(operations.1.ends()).collect();
+    let lengths = groups.iter().map(|side| side.1.length).chain([shared.1.length, operations.1.length]);
+    let mut length = lengths.max().unwrap_or(FIRST);
+    let mut coarsen = |length: u64| {
+        ends.iter_mut().for_each(|end| *end = *end / length * length);
+        ends.sort_unstable();
+        ends.dedup();
+        // A stretch that ended with the last cycle has not seen it.
+        ends.retain(|&end| end > 0 && end < cycles);
+        ends.len()
+    };
+    while coarsen(length) >= MOST {
+        length *= 2;
+    }
+    let interval = |end: u64, is_last: bool| {
+        let before = if is_last { u64::MAX } else { end };
+        let of = shared.1.before(before, shared.0);
+        let mut counts = of.counts;
+        groups.iter().for_each(|(all, series)| counts.add(series.before(before, all)));
+        let operations = operations.1.before(before, operations.0).clone();
+        Interval { end, counts, channels: of.channels, dram: of.dram, operations }
+    };
+    ends.iter().map(|&end| interval(end, false)).chain([interval(cycles, true)]).collect()
 }

@@ -167,7 +167,7 @@ impl Level {
     }
 
     /// Looks up the head of the queue of `bank` in cycle `now`; `None`
-    /// if there is no room for its miss: the bank sleeps until [`Level::fill`].
+    /// if there is no room for its miss: the bank sleeps until [`Level::free`].
     #[inline]
     pub fn serve(&mut self, bank: u32, now: u64) -> Option<Look> {
         let state = &mut self.banks[bank as usize];
@@ -205,14 +205,19 @@ impl Level {
         Some(Look { waiter: request.waiter, before, served, again: state.awake })
     }
 
-    /// The line of `register` has come in cycle `now`: it is written, its waiters are given to `answer`. True if the bank was blocked and is to be served now.
-    pub fn fill(&mut self, register: u32, now: u64, answer: impl FnMut(Waiter)) -> bool {
-        let bank = self.bank_of(register);
-        self.tags.fill(bank, self.mshrs.line(register));
-        let taken = now - self.mshrs.free(register, answer);
+    /// The line of `register` is written: from now on it is found; who waits for it is given to `answer`, and nobody joins them.
+    pub fn land(&mut self, register: u32, answer: impl FnMut(Waiter)) {
+        self.tags.fill(self.bank_of(register), self.mshrs.line(register));
+        self.mshrs.land(register, answer);
         self.counts.fills += 1;
+    }
+
+    /// `register`, whose line was written, is free in cycle `now`. True if the bank was blocked and is to be served now.
+    pub fn free(&mut self, register: u32, now: u64) -> bool {
+        let taken = now - self.mshrs.free(register);
         self.counts.register_cycles += taken;
         self.latencies.add(taken);
+        let bank = self.bank_of(register);
         let bank = &mut self.banks[bank as usize];
         let Some(since) = bank.blocked.take() else { return false };
         self.counts.blocked_cycles += now - since;

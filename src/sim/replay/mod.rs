@@ -1,25 +1,31 @@
 //! The replay: the steps of a frame's rays on a machine, cycle by cycle, driven by events.
 //!
 //! - `wheel`: what happens when.
-//! - `feed`: rays, from the functional layer ([`step`](crate::step)).
+//! - `dispatch`: rays, from the functional layer ([`step`](crate::step)), given to groups (`feed`) as they ask; `order`: rays that wait for others.
 //! - `cores`: who asks for lines when compute takes no time; `units`: traversal units, who do in the cycles of the RTL.
 //! - `prefetch`: what is read soon.
-//! - `event`: what happens, and what others are told of it.
-//! - `hierarchy`: L1s, crossbar, L2 and memory; `level`, `tags`, `mshr` and `slots` are its parts.
+//! - `event`: what happens, and what others are told of it; `messages`: what the sides tell each other.
+//! - `group_side`: groups with their L1s; `shared_side`: crossbar, L2 and memory; `level`, `tags`, `mshr` and `slots` are their parts.
+//! - `rounds`: how the sides go on together, on one thread or several.
 //! - `intervals`: everything counted, over time; `wave`: a window of cycles as a waveform.
 //!
-//! One thread runs a replay; frames on several machines are several replays, fed by one functional pass.
+//! A run does not depend on its threads. Frames on several machines are several replays, fed by one functional pass.
 
 mod cores;
 mod counts;
+mod dispatch;
 mod error;
 mod event;
 mod feed;
-mod hierarchy;
+mod group_side;
 mod intervals;
 mod level;
+mod messages;
 mod mshr;
+mod order;
 mod prefetch;
+mod rounds;
+mod shared_side;
 mod slots;
 mod stalls;
 mod tags;
@@ -31,9 +37,8 @@ mod wheel;
 mod tests;
 
 pub use counts::{CacheCounts, Counts, KindTraffic, Waits};
+pub use dispatch::{Chunk, ChunkSource};
 pub use error::ReplayError;
-pub use feed::{Chunk, ChunkSource};
-pub use hierarchy::Latencies;
 pub use intervals::Interval;
 pub use stalls::{CAUSES, Cause, Histogram, Stalls};
 pub use wave::Window;
@@ -44,11 +49,41 @@ use crate::block::Operations;
 use crate::machine::Machine;
 use crate::step::Nodes;
 use cores::FreeCores;
+use dispatch::Dispatcher;
 use event::Happening;
-use hierarchy::Hierarchy;
-use intervals::Intervals;
+use feed::Feed;
+use group_side::GroupSide;
+use rounds::Partition;
+use shared_side::SharedSide;
+use std::sync::Mutex;
 use units::Units;
 use wave::Wave;
+
+/// Latencies in cycles.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Latencies {
+    /// Of rays, from their start to their end.
+    pub rays: Histogram,
+    /// Of misses of the L1s, from the look-up to the line.
+    pub l1_misses: Histogram,
+    /// The same of the L2.
+    pub l2_misses: Histogram,
+}
+
+/// How to run.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Running {
+    /// The cycles of which a waveform is wanted: one thread alone.
+    pub window: Option<Window>,
+    /// Threads, of which the run does not depend; at least 1.
+    pub threads: usize,
+}
+
+impl Default for Running {
+    fn default() -> Self {
+        Self { window: None, threads: 1 }
+    }
+}
 
 /// What a run gave.
 #[derive(Clone, Debug, PartialEq)]
@@ -113,100 +148,120 @@ pub fn check(machine: &Machine, units: bool) -> Result<(), ReplayError> {
 ///
 /// # Errors
 /// The machine is impossible or too large, or nothing happens any more while rays are under way.
-pub fn run_free(machine: &Machine, nodes: Nodes, source: impl ChunkSource, window: Option<Window>) -> Result<Run, ReplayError> {
+pub fn run_free(machine: &Machine, nodes: Nodes, source: impl ChunkSource, how: Running) -> Result<Run, ReplayError> {
     check(machine, false)?;
-    let mut cores = FreeCores::new(&machine.cores, nodes, source);
-    drive(&mut cores, machine, window)
+    let make = |part: &Machine, first| FreeCores::new(part, first, nodes);
+    Ok(drive(make, machine, cores::contexts_of_group(machine), source, how)?.0)
 }
 
 /// The same with traversal units that take the cycles of the RTL.
 ///
 /// # Errors
 /// As [`run_free`].
-pub fn run_units(machine: &Machine, source: impl ChunkSource, window: Option<Window>) -> Result<Run, ReplayError> {
+pub fn run_units(machine: &Machine, source: impl ChunkSource, how: Running) -> Result<Run, ReplayError> {
     check(machine, true)?;
-    let mut units = Units::new(machine, source);
-    let mut run = drive(&mut units, machine, window)?;
-    let (late, port) = units.line_waits();
-    run.counts.stalls[Cause::Port as usize] += port;
-    Ok(Run { units: Some(units.counts(run.cycles)), late, ..run })
+    let (run, fronts) = drive(Units::new, machine, units::contexts_of_group(machine), source, how)?;
+    let mut run = Run { units: Some(UnitCounts::default()), ..run };
+    for units in fronts {
+        if let Some(sum) = &mut run.units {
+            sum.add(&units.counts(run.cycles));
+        }
+        let (late, port) = units.line_waits();
+        run.late.iter_mut().zip(late).for_each(|(sum, cycles)| *sum += cycles);
+        run.counts.stalls[Cause::Port as usize] += port;
+    }
+    Ok(run)
 }
 
-/// Who asks the memory hierarchy for lines.
+/// Who asks the memory hierarchy for lines: the cores or units of a partition's groups.
 trait FrontEnd {
     /// Of how many waiters at once the way of the last line is kept, and where each one's is.
     fn slots(&self) -> (usize, fn(u32) -> usize);
-    /// Begins, in cycle 0.
-    fn start(&mut self, memory: &mut Hierarchy);
+    /// The rays of its groups.
+    fn feed(&mut self) -> &mut Feed;
+    /// A group has rays again, or its first.
+    fn granted(&mut self, group: u32, memory: &mut GroupSide);
     /// The cycle it asked for has come, or its held request was taken.
-    fn wake(&mut self, id: u32, memory: &mut Hierarchy);
+    fn wake(&mut self, id: u32, memory: &mut GroupSide);
     /// `waiter`'s line comes from the L1 in `cycle`.
-    fn comes(&mut self, waiter: u32, cycle: u64, memory: &mut Hierarchy) {
+    fn comes(&mut self, waiter: u32, cycle: u64, memory: &mut GroupSide) {
         memory.answer_at(cycle, waiter, counts::Supplier::L1);
     }
     /// What happens soon to those, far ahead and near, is like `happening`.
     fn prefetch(&self, _happening: Happening, _soon: [Option<u32>; 2]) {}
     /// A line came for `waiter`.
-    fn answer(&mut self, waiter: u32, from: counts::Supplier, memory: &mut Hierarchy);
-    /// What the rays of tiles begun have the hardware blocks do.
-    fn operations(&self) -> &Operations;
-    /// Rays are under way.
-    fn is_busy(&self) -> bool;
+    fn answer(&mut self, waiter: u32, from: counts::Supplier, memory: &mut GroupSide);
+    /// Rays taken that have not ended.
+    fn under_way(&self) -> u64;
     /// What it does, for error messages.
     fn describe(&self) -> String;
 }
 
-/// Lets `front` run on `machine` until it is done.
-fn drive(front: &mut impl FrontEnd, machine: &Machine, window: Option<Window>) -> Result<Run, ReplayError> {
+/// Runs the rays of `source` on `machine` with a front end for each partition of its groups, which have so many contexts each. Gives the front ends too.
+fn drive<F: FrontEnd + Send>(
+    make: impl Fn(&Machine, u32) -> F,
+    machine: &Machine,
+    contexts: u32,
+    source: impl ChunkSource,
+    how: Running,
+) -> Result<(Run, Vec<F>), ReplayError> {
     let dram = dram_of(machine)?;
-    let mut memory =
-        Hierarchy::new(machine, &dram, front.slots()).map_err(|source| ReplayError::Dram { file: machine.dram.device.clone(), source })?;
-    let mut intervals = Intervals::new();
-    let mut wave = window.map(Wave::new);
-    front.start(&mut memory);
-    loop {
-        while let Some(happening) = memory.take() {
-            front.prefetch(happening, memory.soon(happening));
-            match happening {
-                Happening::Wake(id) => front.wake(id, &mut memory),
-                Happening::Comes(waiter, cycle) => front.comes(waiter, cycle, &mut memory),
-                Happening::Answer(waiter, from) => front.answer(waiter, from, &mut memory),
-            }
-        }
-        let is_busy = front.is_busy();
-        let next = if is_busy { memory.next() } else { None };
-        if let Some(wave) = &mut wave {
-            wave.sample(&memory, &machine.cores, next)?;
-        }
-        if !is_busy {
-            break;
-        }
-        let Some(next) = next else {
-            let state = format!("{}\n{}", front.describe(), memory.describe());
-            return Err(ReplayError::Deadlock { cycle: memory.now(), state });
-        };
-        intervals.up_to(next, &mut memory, front.operations());
-        memory.go(next);
+    let reply = SharedSide::reply(machine, &dram);
+    let mut shared = SharedSide::new(machine, &dram).map_err(|source| ReplayError::Dram { file: machine.dram.device.clone(), source })?;
+    let mut dispatcher = Dispatcher::new(source, machine.cores.groups, contexts, u64::from(machine.l1.latency_cycles) + reply);
+    let threads = if how.window.is_some() { 1 } else { how.threads.max(1) };
+    let partitions = partitions(machine, threads, make);
+    let mut wave = how.window.map(Wave::new);
+    rounds::run(machine, &partitions, &mut shared, reply, &mut dispatcher, threads, wave.as_mut())?;
+
+    let (mut fronts, mut of_groups) = (Vec::new(), Vec::new());
+    let (mut latencies, mut l1_banks, mut cycles) = (Latencies::default(), Vec::new(), 0);
+    for partition in partitions {
+        let Partition { front, side, .. } = partition.into_inner().expect("a replay's thread has panicked");
+        let (rays, misses, looked_up) = side.distributions();
+        latencies.rays.join(rays);
+        latencies.l1_misses.join(misses);
+        l1_banks.extend(looked_up);
+        cycles = cycles.max(side.last_end());
+        of_groups.push((side.counts(), side.over_time));
+        fronts.push(front);
     }
-    let cycles = memory.now();
-    let intervals = intervals.end(&mut memory, front.operations());
-    let (latencies, l1_banks) = memory.distributions();
-    let dram = memory.dram();
-    let (channels, dram_clocks, dram) = (dram.counts(), dram.clocks(), dram.energy());
-    Ok(Run {
+    latencies.l2_misses = shared.latencies().clone();
+    shared.end(cycles);
+    let of_shared = shared.counts();
+    let mut counts = of_shared.counts;
+    of_groups.iter().for_each(|side| counts.add(&side.0));
+    let (channels, dram_clocks, dram) = (shared.dram().counts(), shared.dram().clocks(), shared.dram().energy());
+    let operations = dispatcher.operations;
+    let intervals = intervals::join(&of_groups, (&of_shared, &shared.over_time), (&operations, &dispatcher.over_time), cycles);
+    let run = Run {
         cycles,
         channels,
         dram_clocks,
         dram,
-        counts: memory.counts(),
-        operations: front.operations().clone(),
+        counts,
+        operations,
         units: None,
         late: [0; State::ALL.len()],
         latencies,
         l1_banks,
         intervals,
         wave: wave.map(Wave::into_bytes),
-    })
+    };
+    Ok((run, fronts))
+}
+
+/// The groups of `machine`, divided into at most so many partitions.
+fn partitions<F: FrontEnd>(machine: &Machine, most: usize, make: impl Fn(&Machine, u32) -> F) -> Vec<Mutex<Partition<F>>> {
+    let groups = machine.cores.groups;
+    let count = groups.min(most as u32);
+    let first = |partition: u32| (u64::from(partition) * u64::from(groups) / u64::from(count)) as u32; // at most `groups`
+    let partition = |at: u32| {
+        let mut part = machine.clone();
+        part.cores.groups = first(at + 1) - first(at);
+        Mutex::new(Partition::new(make(&part, first(at)), &part, first(at)))
+    };
+    (0..count).map(partition).collect()
 }
 
 /// Events name contexts, cores and miss registers by 28 bits.

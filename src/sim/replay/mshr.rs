@@ -5,12 +5,15 @@ use crate::step::SectionId;
 /// No waiter.
 const NONE: u32 = u32::MAX;
 
+/// The line of a register that nobody joins: it is free, or its line was written.
+const CLOSED: u32 = u32::MAX;
+
 /// A miss under way.
 #[derive(Clone, Copy, Debug)]
 struct Miss {
     line: u32,
     section: SectionId,
-    /// First and last waiter; [`NONE`] if the register is free.
+    /// First and last waiter; of a free register, the next free one of its bank is `first`.
     first: u32,
     last: u32,
     waiting: u32,
@@ -54,6 +57,10 @@ pub enum Entered {
 #[derive(Clone, Debug)]
 pub struct Mshrs {
     misses: Vec<Miss>,
+    /// The lines that a miss may join, by register: apart from all else, for every miss is compared with a bank's.
+    open: Vec<u32>,
+    /// By bank, the first free register.
+    free: Vec<u32>,
     per_bank: usize,
     targets: u32,
     links: Vec<Link>,
@@ -67,20 +74,32 @@ pub struct Mshrs {
 impl Mshrs {
     /// `per_bank` registers in each of `banks`, with room for `targets` waiters.
     pub fn new(banks: u32, per_bank: u32, targets: u32) -> Self {
-        let misses = vec![
-            Miss { line: 0, section: SectionId::default(), first: NONE, last: NONE, waiting: 0, since: 0 };
-            banks as usize * per_bank as usize
-        ];
-        Self { misses, per_bank: per_bank as usize, targets, links: Vec::new(), spare: NONE, in_use: vec![0; banks as usize], most: 0 }
+        let count = banks as usize * per_bank as usize;
+        let miss = |register: u32| {
+            let next = if (register + 1).is_multiple_of(per_bank) { NONE } else { register + 1 };
+            Miss { line: CLOSED, section: SectionId::default(), first: next, last: NONE, waiting: 0, since: 0 }
+        };
+        Self {
+            misses: (0..count as u32).map(miss).collect(),
+            open: vec![CLOSED; count],
+            free: (0..banks).map(|bank| bank * per_bank).collect(),
+            per_bank: per_bank as usize,
+            targets,
+            links: Vec::new(),
+            spare: NONE,
+            in_use: vec![0; banks as usize],
+            most: 0,
+        }
     }
 
     /// `waiter` of `bank` misses `line` of `section`.
     #[inline]
     pub fn enter(&mut self, bank: u32, line: u32, section: SectionId, waiter: Waiter) -> Entered {
         let from = bank as usize * self.per_bank;
-        let misses = &self.misses[from..from + self.per_bank];
-        if let Some(slot) = misses.iter().position(|miss| miss.first != NONE && miss.line == line) {
-            if misses[slot].waiting == self.targets {
+        if self.in_use[bank as usize] > 0
+            && let Some(slot) = position(&self.open[from..from + self.per_bank], line)
+        {
+            if self.misses[from + slot].waiting == self.targets {
                 return Entered::Full;
             }
             let link = self.link(waiter);
@@ -90,13 +109,19 @@ impl Mshrs {
             miss.waiting += 1;
             return Entered::Merged;
         }
-        let Some(slot) = misses.iter().position(|miss| miss.first == NONE) else { return Entered::Full };
+        let register = self.free[bank as usize];
+        if register == NONE {
+            return Entered::Full;
+        }
         let link = self.link(waiter);
-        self.misses[from + slot] = Miss { line, section, first: link, last: link, waiting: 1, since: waiter.since };
+        let miss = &mut self.misses[register as usize];
+        self.free[bank as usize] = miss.first;
+        *miss = Miss { line, section, first: link, last: link, waiting: 1, since: waiter.since };
+        self.open[register as usize] = line;
         let in_use = &mut self.in_use[bank as usize];
         *in_use += 1;
         self.most = self.most.max(*in_use);
-        Entered::New { slot: slot as u32 }
+        Entered::New { slot: register - from as u32 }
     }
 
     fn link(&mut self, waiter: Waiter) -> u32 {
@@ -120,12 +145,11 @@ impl Mshrs {
         self.misses[register as usize].section
     }
 
-    /// The line has come: frees the register and gives its waiters to `answer`, first come first. Since when it was in use.
-    pub fn free(&mut self, register: u32, mut answer: impl FnMut(Waiter)) -> u64 {
-        self.in_use[register as usize / self.per_bank] -= 1;
+    /// The line of `register` was written: gives its waiters to `answer`, first come first. The register stays in use until [`Mshrs::free`], but nobody joins it.
+    pub fn land(&mut self, register: u32, mut answer: impl FnMut(Waiter)) {
         let miss = &mut self.misses[register as usize];
-        let (mut at, last, since) = (miss.first, miss.last, miss.since);
-        miss.first = NONE;
+        let (mut at, last) = (miss.first, miss.last);
+        self.open[register as usize] = CLOSED;
         self.links[last as usize].next = self.spare;
         self.spare = at;
         while at != NONE {
@@ -133,13 +157,35 @@ impl Mshrs {
             answer(link.waiter);
             at = if at == last { NONE } else { link.next };
         }
-        since
+    }
+
+    /// Frees a register whose line was written. Since when it was in use.
+    pub fn free(&mut self, register: u32) -> u64 {
+        let bank = register as usize / self.per_bank;
+        self.in_use[bank] -= 1;
+        let miss = &mut self.misses[register as usize];
+        miss.first = std::mem::replace(&mut self.free[bank], register);
+        miss.since
     }
 
     /// Registers of `bank` in use.
     pub fn in_use_of(&self, bank: u32) -> usize {
         self.in_use[bank as usize] as usize
     }
+}
+
+/// Where `line` is among `lines`. (Eight at a time: the compiler compares them at once.)
+#[inline]
+fn position(lines: &[u32], line: u32) -> Option<usize> {
+    let (eights, rest) = lines.as_chunks::<8>();
+    let found = |eight: &[u32; 8]| eight.iter().enumerate().fold(0u32, |bits, (k, &held)| bits | u32::from(held == line) << k);
+    for (at, eight) in eights.iter().enumerate() {
+        let bits = found(eight);
+        if bits != 0 {
+            return Some(8 * at + bits.trailing_zeros() as usize);
+        }
+    }
+    rest.iter().position(|&held| held == line).map(|at| 8 * eights.len() + at)
 }
 
 #[cfg(test)]
@@ -161,14 +207,17 @@ mod tests {
         assert_eq!(enter(&mut mshrs, 1, 7, 30), Entered::Full, "no register");
         assert_eq!(enter(&mut mshrs, 0, 9, 40), Entered::New { slot: 0 }, "banks do not share");
         let mut answered = Vec::new();
-        assert_eq!(mshrs.free(2, |waiter| answered.push(waiter.waiter)), 7);
+        mshrs.land(2, |waiter| answered.push(waiter.waiter));
+        assert_eq!(enter(&mut mshrs, 1, 9, 13), Entered::Full, "nobody joins a line that was written, and its register is not free yet");
+        assert_eq!(mshrs.free(2), 7);
         assert_eq!((answered, mshrs.in_use_of(0), mshrs.in_use_of(1)), (vec![10, 11, 12], 1, 1));
         assert_eq!(enter(&mut mshrs, 1, 7, 30), Entered::New { slot: 0 });
         assert_eq!((mshrs.line(2), mshrs.section(2)), (7, SectionId::new(7)));
         let links = mshrs.links.len();
         for round in 0..100 {
             assert_eq!(enter(&mut mshrs, 1, 7, round), Entered::Merged);
-            mshrs.free(2, |_| ());
+            mshrs.land(2, |_| ());
+            mshrs.free(2);
             assert_eq!(enter(&mut mshrs, 1, 7, round), Entered::New { slot: 0 });
         }
         assert_eq!(mshrs.links.len(), links, "links are used again");

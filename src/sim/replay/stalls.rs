@@ -157,6 +157,14 @@ impl Histogram {
         self.counts[at] += 1;
     }
 
+    /// Adds another's.
+    pub fn join(&mut self, other: &Self) {
+        if other.counts.len() > self.counts.len() {
+            self.counts.resize(other.counts.len(), 0);
+        }
+        self.counts.iter_mut().zip(&other.counts).for_each(|(sum, count)| *sum += count);
+    }
+
     /// 0 to 3 alone, then four steps an octave.
     fn step(cycles: u64) -> usize {
         match cycles {

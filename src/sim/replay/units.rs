@@ -6,11 +6,10 @@
 use super::FrontEnd;
 use super::counts::Supplier;
 use super::event::Asked;
-use super::feed::{self, FedRay, Feed};
-use super::hierarchy::Hierarchy;
+use super::feed::{FedRay, Feed};
+use super::group_side::GroupSide;
 use super::slots::Slots;
 use super::stalls::Cause;
-use crate::block::Operations;
 use crate::machine::Machine;
 use crate::sim::timing::{LineRequest, Ports, Steps, UnitTiming};
 use crate::sim::unit::{State, UnitCounts};
@@ -60,16 +59,16 @@ enum RequestPort {
 }
 
 /// All units.
-pub struct Units<S> {
-    feed: Feed<S>,
+pub struct Units {
+    feed: Feed,
     units: Vec<Unit>,
     per_group: u32,
     under_way: u64,
 }
 
-impl<S: feed::ChunkSource> Units<S> {
-    /// Units that take rays from `source`.
-    pub fn new(machine: &Machine, source: S) -> Self {
+impl Units {
+    /// The units of `machine`, whose groups are those from `first` on.
+    pub fn new(machine: &Machine, first: u32) -> Self {
         let (groups, per_group) = (machine.cores.groups, machine.units.per_group);
         let unit = |_| Unit {
             timing: UnitTiming::new(machine.units.config()),
@@ -80,7 +79,7 @@ impl<S: feed::ChunkSource> Units<S> {
             answers: Slots::default(),
         };
         let units = (0..groups * per_group).map(unit).collect();
-        Self { feed: Feed::new(source, groups), units, per_group, under_way: 0 }
+        Self { feed: Feed::new(first, groups, contexts_of_group(machine)), units, per_group, under_way: 0 }
     }
 
     /// What all units did in `cycles` cycles.
@@ -102,7 +101,7 @@ impl<S: feed::ChunkSource> Units<S> {
     }
 
     /// Does what unit `id` has to do in this cycle.
-    fn tick(&mut self, id: u32, memory: &mut Hierarchy) {
+    fn tick(&mut self, id: u32, memory: &mut GroupSide) {
         let now = memory.now();
         let unit = &mut self.units[id as usize];
         while let Some(&(_, tag)) = unit.come.front().filter(|come| come.0 <= now) {
@@ -117,14 +116,11 @@ impl<S: feed::ChunkSource> Units<S> {
             unit.free = now + 1;
         }
         self.sleep(id, memory);
-        while let Some(group) = self.feed.released() {
-            (group * self.per_group..(group + 1) * self.per_group).for_each(|id| self.wake_at(now + 1, id, memory));
-        }
     }
 
     /// Enters a wake of unit `id` in cycle `next`, if none is entered before.
     #[inline]
-    fn wake_at(&mut self, next: u64, id: u32, memory: &mut Hierarchy) {
+    fn wake_at(&mut self, next: u64, id: u32, memory: &mut GroupSide) {
         let unit = &mut self.units[id as usize];
         // One of this cycle is still to come, and enters the next.
         if unit.wake.is_none_or(|wake| wake > next) {
@@ -135,7 +131,7 @@ impl<S: feed::ChunkSource> Units<S> {
 
     /// Enters the unit's next wake.
     #[inline]
-    fn sleep(&mut self, id: u32, memory: &mut Hierarchy) {
+    fn sleep(&mut self, id: u32, memory: &mut GroupSide) {
         let now = memory.now();
         let unit = &mut self.units[id as usize];
         let come = unit.come.front().map(|come| come.0);
@@ -147,16 +143,12 @@ impl<S: feed::ChunkSource> Units<S> {
     }
 }
 
-impl<S: feed::ChunkSource> FrontEnd for Units<S> {
+impl FrontEnd for Units {
     fn slots(&self) -> (usize, fn(u32) -> usize) {
         (self.units.len() << 8, slot)
     }
 
-    fn start(&mut self, memory: &mut Hierarchy) {
-        (0..self.units.len() as u32).for_each(|id| self.tick(id, memory));
-    }
-
-    fn wake(&mut self, id: u32, memory: &mut Hierarchy) {
+    fn wake(&mut self, id: u32, memory: &mut GroupSide) {
         let (id, is_port) = (id / 2, id % 2 == 1);
         let unit = &mut self.units[id as usize];
         if is_port {
@@ -168,7 +160,7 @@ impl<S: feed::ChunkSource> FrontEnd for Units<S> {
         }
     }
 
-    fn answer(&mut self, waiter: u32, _: Supplier, memory: &mut Hierarchy) {
+    fn answer(&mut self, waiter: u32, _: Supplier, memory: &mut GroupSide) {
         let (id, tag) = (waiter >> TAG_BITS, waiter as u16);
         let now = memory.now();
         let unit = &mut self.units[id as usize];
@@ -181,13 +173,21 @@ impl<S: feed::ChunkSource> FrontEnd for Units<S> {
         self.sleep(id, memory);
     }
 
-    fn operations(&self) -> &Operations {
-        &self.feed.operations
+    fn granted(&mut self, group: u32, memory: &mut GroupSide) {
+        self.feed.came(group);
+        for id in group * self.per_group..(group + 1) * self.per_group {
+            // In this cycle, if the unit has not had it.
+            let next = self.units[id as usize].free.max(memory.now());
+            self.wake_at(next, id, memory);
+        }
     }
 
-    fn is_busy(&self) -> bool {
-        // The last ray under way may have been what others waited for.
-        self.under_way > 0 || self.feed.has_ready()
+    fn feed(&mut self) -> &mut Feed {
+        &mut self.feed
+    }
+
+    fn under_way(&self) -> u64 {
+        self.under_way
     }
 
     fn describe(&self) -> String {
@@ -198,9 +198,14 @@ impl<S: feed::ChunkSource> FrontEnd for Units<S> {
     }
 }
 
+/// Contexts of a group.
+pub fn contexts_of_group(machine: &Machine) -> u32 {
+    machine.units.per_group * machine.units.contexts
+}
+
 /// Charges a wait of a context, if the line of `tag` ended one.
 #[inline]
-fn told(id: u32, tag: u16, wait: Option<(u64, u64)>, memory: &mut Hierarchy) {
+fn told(id: u32, tag: u16, wait: Option<(u64, u64)>, memory: &mut GroupSide) {
     if let Some((since, end)) = wait {
         memory.charge_between(id << TAG_BITS | u32::from(tag), since, end, Cause::Port);
     }
@@ -212,16 +217,16 @@ fn slot(waiter: u32) -> usize {
 }
 
 /// What surrounds a unit in one cycle.
-struct Surroundings<'a, S> {
+struct Surroundings<'a> {
     id: u32,
     group: u32,
     port: &'a mut RequestPort,
-    feed: &'a mut Feed<S>,
+    feed: &'a mut Feed,
     under_way: &'a mut u64,
-    memory: &'a mut Hierarchy,
+    memory: &'a mut GroupSide,
 }
 
-impl<S: feed::ChunkSource> Ports for Surroundings<'_, S> {
+impl Ports for Surroundings<'_> {
     type Ray = FedRay;
 
     fn ray(&mut self) -> Option<FedRay> {
@@ -259,7 +264,7 @@ impl<S: feed::ChunkSource> Ports for Surroundings<'_, S> {
         counts.hits += u64::from(found);
         *self.under_way -= 1;
         self.memory.ray_ends(ray.started);
-        self.feed.ended(ray, self.group);
+        self.feed.ended(ray, self.group, self.memory.now());
         true
     }
 }

@@ -2,7 +2,7 @@
 //!
 //! Values are those at the end of a cycle and stand from the time at which it begins. Events (`hits`, `misses`, ...) are how many happened in that cycle.
 
-use super::hierarchy::Hierarchy;
+use super::counts::Counts;
 use crate::machine::Cores;
 use std::io;
 use vcd::{IdCode, TimescaleUnit, Value, VarType};
@@ -38,10 +38,22 @@ type Events = [u64; 8];
 /// Their names.
 const EVENTS: [&str; 8] = ["l1_hits", "l1_misses", "l1_merges", "l2_hits", "l2_misses", "l2_merges", "dram_reads", "rays_done"];
 
-fn events(memory: &Hierarchy) -> Events {
-    let c = memory.counts();
+fn events(c: &Counts) -> Events {
     let reads = c.traffic.iter().map(|kind| kind.dram).sum();
     [c.l1.hits, c.l1.misses, c.l1.merges, c.l2.hits, c.l2.misses, c.l2.merges, reads, c.rays]
+}
+
+/// Takes a signal: its scope, name and value.
+pub(super) type Shown<'a> = dyn FnMut(&str, &str, u64) + 'a;
+
+/// What a machine is like at the end of a cycle.
+pub(super) struct Look<'a> {
+    /// The cycle.
+    pub now: u64,
+    /// What was counted so far.
+    pub counts: Counts,
+    /// Gives scope, name and value of every signal, always in the same order; a scope's signals follow each other.
+    pub show: &'a dyn Fn(&mut Shown<'_>),
 }
 
 impl Wave {
@@ -63,8 +75,8 @@ impl Wave {
     ///
     /// # Errors
     /// Only what the writer of waveforms says; memory takes everything.
-    pub fn sample(&mut self, memory: &Hierarchy, cores: &Cores, next: Option<u64>) -> io::Result<()> {
-        let (now, after) = (memory.now(), events(memory));
+    pub fn sample(&mut self, look: &Look<'_>, cores: &Cores, next: Option<u64>) -> io::Result<()> {
+        let (now, after) = (look.now, events(&look.counts));
         if now > self.looked {
             (self.looked, self.before) = (now, self.latest);
         }
@@ -73,7 +85,7 @@ impl Wave {
             // The window may begin, and end, where nothing happens.
             if next.is_some_and(|next| next > self.window.from) {
                 self.sampled = Some(self.window.from);
-                self.show(self.window.from, Events::default(), memory, cores)?;
+                self.show(self.window.from, Events::default(), look, cores)?;
             }
             return Ok(());
         }
@@ -92,27 +104,27 @@ impl Wave {
             return Ok(());
         }
         let events = std::array::from_fn(|k| after[k] - self.before[k]);
-        self.show(now, events, memory, cores)
+        self.show(now, events, look, cores)
     }
 
     /// Writes what is so in a cycle.
-    fn show(&mut self, cycle: u64, events: Events, memory: &Hierarchy, cores: &Cores) -> io::Result<()> {
+    fn show(&mut self, cycle: u64, events: Events, look: &Look<'_>, cores: &Cores) -> io::Result<()> {
         if self.signals.is_empty() {
-            self.declare(memory)?;
+            self.declare(look)?;
         }
         self.writer.timestamp(cores.start_ps(cycle))?;
         for (k, count) in events.into_iter().enumerate() {
             self.set(k, count)?;
         }
         let mut values = Vec::with_capacity(self.signals.len());
-        memory.show(&mut |_, _, value| values.push(value));
+        (look.show)(&mut |_, _, value| values.push(value));
         for (k, value) in values.into_iter().enumerate() {
             self.set(EVENTS.len() + k, value)?;
         }
         Ok(())
     }
 
-    fn declare(&mut self, memory: &Hierarchy) -> io::Result<()> {
+    fn declare(&mut self, look: &Look<'_>) -> io::Result<()> {
         let writer = &mut self.writer;
         writer.version("lodray, replay")?;
         writer.timescale(1, TimescaleUnit::PS)?;
@@ -122,7 +134,7 @@ impl Wave {
             self.signals.push((writer.add_var(VarType::Wire, BITS, name, None)?, None));
         }
         let mut names: Vec<(String, String)> = Vec::new();
-        memory.show(&mut |scope, name, _| names.push((scope.to_owned(), name.to_owned())));
+        (look.show)(&mut |scope, name, _| names.push((scope.to_owned(), name.to_owned())));
         let mut open = "events".to_owned();
         for (scope, name) in names {
             if scope != open {

@@ -9,7 +9,7 @@ use std::collections::BinaryHeap;
 const SLOTS: u64 = 64;
 
 /// Classes of events.
-pub const CLASSES: usize = 4;
+pub const CLASSES: usize = 5;
 
 /// Events of a cycle, by class.
 type Lists = [Vec<u32>; CLASSES];

@@ -35,7 +35,7 @@ fn rays(lines: &[Vec<u32>]) -> Chunk {
 }
 
 fn run(machine: &Machine, lines: &[Vec<u32>]) -> Run {
-    run_free(machine, nodes(), std::iter::once(rays(lines)), None).unwrap()
+    run_free(machine, nodes(), std::iter::once(rays(lines)), Running::default()).unwrap()
 }
 
 /// Cycles on the way to the L2's miss, and back from memory.
@@ -175,10 +175,10 @@ fn pinned_nodes_are_not_asked_for() {
         for (pinned, asked) in [(0, 5), (1, 3), (3, 1), (9, 0), (4000, 0)] {
             let machine = machine(&[("cores.pinned_nodes", pinned)]);
             for chunk in [&chunk, &with_pops] {
-                let run = run_free(&machine, layout, std::iter::once(chunk.clone()), None).unwrap();
+                let run = run_free(&machine, layout, std::iter::once(chunk.clone()), Running::default()).unwrap();
                 assert_eq!(run.counts.l1.requests, u64::from(asked * lines + 1), "{pinned} of {lines} lines");
             }
-            let charged = run_units(&machine, std::iter::once(chunk.clone()), None);
+            let charged = run_units(&machine, std::iter::once(chunk.clone()), Running::default());
             assert_eq!(charged.is_ok(), pinned == 0);
         }
     }
@@ -380,7 +380,7 @@ fn a_stream_reaches_most_of_the_peak() {
         // Every ray reads its own stretch, all together one stream.
         let lines: Vec<Vec<u32>> = (0..4096).map(|ray| (0..64).map(|k| k * 4096 + ray).collect()).collect();
         let chunks: Vec<Chunk> = lines.chunks(64).map(rays).collect();
-        let run = run_free(&machine, nodes(), chunks.into_iter(), None).unwrap();
+        let run = run_free(&machine, nodes(), chunks.into_iter(), Running::default()).unwrap();
         conserved(&run);
         let config = dram_of(&machine).unwrap();
         let peak = config.device.peak_bytes_per_second() * f64::from(config.channels);
@@ -391,35 +391,63 @@ fn a_stream_reaches_most_of_the_peak() {
 
 #[test]
 fn silence_is_an_error_that_tells_what_everyone_does() {
-    #[derive(Default)]
-    struct Silent(Operations);
+    struct Silent(Feed);
     impl FrontEnd for Silent {
         fn slots(&self) -> (usize, fn(u32) -> usize) {
             (0, |waiter| waiter as usize)
         }
-        fn operations(&self) -> &Operations {
-            &self.0
+        fn feed(&mut self) -> &mut Feed {
+            &mut self.0
         }
-        fn start(&mut self, memory: &mut Hierarchy) {
+        fn granted(&mut self, _: u32, memory: &mut GroupSide) {
             memory.wake_at(9, 0);
         }
-        fn wake(&mut self, _: u32, _: &mut Hierarchy) {}
-        fn answer(&mut self, _: u32, _: counts::Supplier, _: &mut Hierarchy) {}
-        fn is_busy(&self) -> bool {
-            true
+        fn wake(&mut self, _: u32, _: &mut GroupSide) {}
+        fn answer(&mut self, _: u32, _: counts::Supplier, _: &mut GroupSide) {}
+        fn under_way(&self) -> u64 {
+            1
         }
         fn describe(&self) -> String {
             "one context waits for ever".to_owned()
         }
     }
-    let error = drive(&mut Silent::default(), &machine(&[]), None).unwrap_err().to_string();
-    assert!(error.starts_with("deadlock after cycle 9:\none context waits for ever\nL1: 0 requests queued"), "{error}");
+    for threads in [1, 2] {
+        let how = Running { threads, ..Running::default() };
+        let silent = |_: &Machine, first| Silent(Feed::new(first, 1, 1));
+        let error = drive(silent, &machine(&[]), 1, std::iter::once(rays(&[vec![0]])), how).map(drop).unwrap_err().to_string();
+        assert!(error.starts_with("deadlock after cycle 9:\none context waits for ever\nL1: 0 requests queued"), "{error}");
+    }
+}
+
+#[test]
+fn neither_threads_nor_rounds_change_a_run() {
+    let lines = wandering(400, 40);
+    let shape = [("cores.groups", 6), ("cores.per_group", 4)];
+    let slow = [("l1.latency_cycles", 3), ("l2.latency_cycles", 40), ("crossbar.answer_cycles", 5), ("cores.rays_in_flight", 3)];
+    let tight = [("l1.mshrs", 1), ("l1.queue", 1), ("l2.mshrs", 1), ("l2.queue", 2), ("l2.banks", 2), ("dram.queue", 1)];
+    // A memory so fast that it answers before the L2's latency is over.
+    let quick = [("l2.latency_cycles", 400), ("crossbar.answer_cycles", 1)];
+    for sets in [&[][..], &slow, &tight, &quick] {
+        let machine = machine(&[&shape, sets].concat());
+        let free = |how| run_free(&machine, nodes(), lines.chunks(10).map(rays), how).unwrap();
+        let units = |how| run_units(&machine, lines.chunks(10).map(rays), how).unwrap();
+        for run in [&free as &dyn Fn(Running) -> Run, &units] {
+            let one = run(Running::default());
+            conserved(&one);
+            for threads in [2, 3, 16] {
+                assert!(run(Running { threads, ..Running::default() }) == one, "{threads} threads");
+            }
+            // Every cycle is a round of its own.
+            let window = Some(Window { from: 0, to: 9 });
+            assert!(Run { wave: None, ..run(Running { window, threads: 1 }) } == one, "cycle by cycle");
+        }
+    }
 }
 
 #[test]
 fn machines_that_events_cannot_name_are_refused() {
     let machine = machine(&[("cores.groups", 4096), ("cores.per_group", 4096)]);
-    let error = run_free(&machine, nodes(), std::iter::empty(), None).unwrap_err().to_string();
+    let error = run_free(&machine, nodes(), std::iter::empty(), Running::default()).unwrap_err().to_string();
     assert_eq!(error, "rays in flight of the machine are more than 4194304: 16777216");
 }
 
@@ -427,7 +455,8 @@ fn machines_that_events_cannot_name_are_refused() {
 fn a_waveform_shows_the_events_of_its_window() {
     let lines = wandering(50, 20);
     let machine = machine(&[("cores.groups", 2), ("cores.per_group", 4)]);
-    let run_with = |window| run_free(&machine, nodes(), std::iter::once(rays(&lines)), Some(window)).unwrap();
+    let run_with =
+        |window| run_free(&machine, nodes(), std::iter::once(rays(&lines)), Running { window: Some(window), threads: 1 }).unwrap();
     let whole = run_with(Window { from: 0, to: u64::MAX });
     let text = String::from_utf8(whole.wave.clone().unwrap()).unwrap();
     let mut vcd = vcd::Parser::new(text.as_bytes());
@@ -471,7 +500,7 @@ fn the_last_stretch_has_the_last_cycle() {
     let mut ends = HashSet::new();
     for cycles in 1..1100 {
         let machine = machine(&[("crossbar.answer_cycles", cycles)]);
-        let run = run_free(&machine, nodes(), std::iter::once(rays(&[vec![0]])), None).unwrap();
+        let run = run_free(&machine, nodes(), std::iter::once(rays(&[vec![0]])), Running::default()).unwrap();
         let last = run.intervals.last().unwrap();
         assert_eq!((last.end, last.counts, last.counts.rays), (run.cycles, run.counts, 1));
         ends.insert(run.cycles % 1024);
