@@ -121,15 +121,18 @@ def figure11(data, values):
     values["most_energy_ddr3_active"] = times(max(following)[1])
 
 
-def best(data, indexed, paper, values):
+def best(data, indexed, treelets, paper, values):
     """Our defaults against the better of all baselines at each point, for each figure by itself."""
-    rows, gain_of = [], {}
+    rows, gain_of, six, by_treelets = [], {}, [], []
     forms = {"bvh": "4-wide", "bvh6": "6-wide"}
     for scene in data.each("scene"):
         for eye in data.each("eye", scene=scene):
             lod = data.find(scene=scene, eye=eye, method="lod")
-            rivals = [(f"{form}, {leaves}", source.find(scene=scene, eye=eye, method=method)) for method, form in forms.items() for leaves, source in [("blocks", data), ("indexed", indexed)]]
+            rivals = [(f"{form}, {leaves}", source.find(scene=scene, eye=eye, method=method)) for method, form in forms.items() for leaves, source in [("blocks", data), ("indexed", indexed), ("blocks, treelets", treelets)]]
             of = [(gains(lod, rival), name, rival) for name, rival in rivals]
+            cycles = {name: rival["result"]["cycles"] for name, rival in rivals}
+            six.append(cycles["6-wide, blocks"] / cycles["4-wide, blocks"])
+            by_treelets += [cycles[f"{form}, blocks, treelets"] / cycles[f"{form}, blocks"] for form in forms.values()]
             energy, time, dram = (min(of, key=lambda entry: entry[0][k]) for k in range(3))
             for what, value in zip(["energy", "time", "dram"], [energy[0][0], time[0][1], dram[0][2]]):
                 gain_of.setdefault(what, []).append((value, scene, eye))
@@ -139,6 +142,8 @@ def best(data, indexed, paper, values):
             rows.append([scene, f"{eye:.2f}", hits(lod), times(time[0][1]), time[1], times(energy[0][0]), times(dram[0][2]), row_hits(lod), row_hits(time[2]), beside, error])
     head = ["scene", "eye at", "rays that hit", "time", "best baseline", "energy", "DRAM lines", "row hits, ours", "row hits, baseline", "time, paper-like baseline", "surface off, pixels"]
     values["best"] = table(head, rows)
+    values["best_six"] = span(six)
+    values["best_treelets"] = span(by_treelets)
     for what, all_of_them in gain_of.items():
         value, scene, eye = max(all_of_them)
         values[f"best_{what}"] = f"{times(value)} ({scene}, {eye:.2f})"
@@ -271,7 +276,7 @@ def main():
     sweep = lambda name: Rows(folder, name)
     values = {}
     figure11(sweep("figure11"), values)
-    best(sweep("best"), sweep("best-indexed"), sweep("figure11"), values)
+    best(sweep("best"), sweep("best-indexed"), sweep("best-treelets"), sweep("figure11"), values)
     search(sweep("search"), values)
     causes(sweep("causes"), values)
     units(sweep("free"), sweep("units"), values)

@@ -6,7 +6,7 @@ Words of the table:
   bounding radius     half the diagonal of the model's box; distances are given in it
   level               how often a base triangle is split: 0 is the base mesh, N full resolution;
                       the mean is over the triangles that rays hit
-  nodes               groups of four boxes tested; LOD tests: is a triangle fine enough for its ray
+  nodes               groups of child boxes tested (four, of `bvh6` six); LOD tests: is a triangle fine enough for its ray
   line                32 bytes of memory; read counts every time, distinct each line once
   bvh_node, l0_record, bound_data, vertex_data, leaf
                       what a line holds: boxes over triangles, a base triangle, how far the surface

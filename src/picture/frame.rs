@@ -24,7 +24,7 @@ pub struct FrameStats {
     pub rays: u64,
     /// Rays that hit.
     pub hits: u64,
-    /// Groups of four boxes tested.
+    /// Groups of child boxes tested: four, of `bvh6` six.
     pub nodes: u64,
     /// LOD tests.
     pub lod_tests: u64,

@@ -19,7 +19,7 @@ impl StepSink for NoSteps {
 /// Counts what rays do.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct StepCounts {
-    /// Groups of four boxes tested.
+    /// Groups of child boxes tested: four, of `bvh6` six.
     pub nodes: u64,
     /// LOD tests.
     pub lod_tests: u64,
