@@ -5,7 +5,8 @@
 use super::FrontEnd;
 use super::counts::Supplier;
 use super::event::{Asked, Happening};
-use super::feed::{FedRay, Feed};
+use super::fed_ray::FedRay;
+use super::feed::Feed;
 use super::group_side::GroupSide;
 use super::prefetch::prefetch;
 use crate::machine::Machine;

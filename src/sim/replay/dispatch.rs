@@ -6,9 +6,9 @@
 //! A ray that starts behind the end of another is put aside until then ([`Order`]); when the other has ended, it is among the first that the other's group gets, or
 //! whoever asks and finds nothing else.
 
-use super::feed::{FedRay, Grant};
+use super::fed_ray::FedRay;
 use super::intervals::Series;
-use super::messages::{Granted, Notice, Told};
+use super::messages::{Grant, Granted, Notice, Told};
 use super::order::Order;
 use crate::block::Operations;
 use crate::step::Batch;

@@ -1,67 +1,11 @@
 //! Rays of a partition's groups: what the dispatcher gave them, taken by their cores as they need it.
 
-use super::messages::{Notice, Told};
+use super::fed_ray::FedRay;
+use super::messages::{Grant, Notice, Told};
 use super::prefetch::prefetch;
-use crate::step::{Batch, Link, StepWord};
+use crate::step::Batch;
 use std::collections::VecDeque;
 use std::sync::Arc;
-
-/// A ray: its place among its batch's steps.
-#[derive(Clone)]
-pub struct FedRay {
-    batch: Arc<Batch>,
-    at: u32,
-    /// Its number in the batch.
-    ray: u32,
-    /// The cycle in which it was taken.
-    pub started: u64,
-}
-
-impl FedRay {
-    /// Ray number `ray` of `batch`.
-    pub fn new(batch: Arc<Batch>, ray: u32) -> Self {
-        let at = batch.start(ray as usize);
-        Self { batch, at, ray, started: 0 }
-    }
-
-    /// Its next step; a ray ends with [`Act::End`](crate::step::Act::End), after which it has none.
-    #[inline(always)]
-    pub fn peek(&self) -> StepWord {
-        self.batch.words()[self.at as usize]
-    }
-
-    /// Its steps from the next on, and those of the rays behind it.
-    #[inline(always)]
-    pub fn rest(&self) -> &[StepWord] {
-        &self.batch.words()[self.at as usize..]
-    }
-
-    /// Goes on by `steps`.
-    #[inline(always)]
-    pub fn skip(&mut self, steps: u32) {
-        self.at += steps;
-    }
-
-    /// The steps behind the next are read soon.
-    #[inline(always)]
-    pub fn prefetch(&self) {
-        prefetch(self.batch.words(), self.at as usize);
-    }
-
-    /// Its place among the rays of a frame whose rays wait for others.
-    pub fn link(&self) -> Option<Link> {
-        self.batch.link(self.ray as usize)
-    }
-}
-
-/// What a group is given at once.
-#[derive(Clone)]
-pub enum Grant {
-    /// A batch, none of whose rays waits for another.
-    Batch(Arc<Batch>),
-    /// Rays, of whatever batches.
-    Rays(VecDeque<FedRay>),
-}
 
 /// What a group holds.
 struct Held {

@@ -1,9 +1,11 @@
 //! What the sides of a replay tell each other: groups with their L1s, the side they share (crossbar, L2, memory), and the dispatcher of rays.
 
 use super::event::EventKind;
-use super::feed::Grant;
+use super::fed_ray::FedRay;
 use super::stalls::Path;
-use crate::step::SectionId;
+use crate::step::{Batch, SectionId};
+use std::collections::VecDeque;
+use std::sync::Arc;
 
 /// A miss of an L1, for the crossbar.
 #[derive(Clone, Copy, Debug)]
@@ -51,6 +53,15 @@ pub struct Told {
     pub group: u32,
     /// What.
     pub notice: Notice,
+}
+
+/// What a group is given at once.
+#[derive(Clone)]
+pub enum Grant {
+    /// A batch, none of whose rays waits for another.
+    Batch(Arc<Batch>),
+    /// Rays, of whatever batches.
+    Rays(VecDeque<FedRay>),
 }
 
 /// Rays for a group.

@@ -16,6 +16,7 @@ mod counts;
 mod dispatch;
 mod error;
 mod event;
+mod fed_ray;
 mod feed;
 mod group_side;
 mod intervals;

@@ -1,6 +1,6 @@
 //! Rays that start behind the end of others: put aside until then, and ready when the other has ended.
 
-use super::feed::FedRay;
+use super::fed_ray::FedRay;
 use std::collections::{BTreeSet, HashMap, HashSet, VecDeque};
 
 /// Most rays that are put aside: beyond, a group is given one more that is put aside and nothing else until that one is ready or there is room, so that what is held in memory

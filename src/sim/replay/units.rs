@@ -6,7 +6,8 @@
 use super::FrontEnd;
 use super::counts::Supplier;
 use super::event::Asked;
-use super::feed::{FedRay, Feed};
+use super::fed_ray::FedRay;
+use super::feed::Feed;
 use super::group_side::GroupSide;
 use super::slots::Slots;
 use super::stalls::Cause;
