@@ -227,8 +227,8 @@ fn drive<F: FrontEnd + Send>(
         of_groups.push((side.counts(), side.over_time));
         fronts.push(front);
     }
-    latencies.l2_misses = shared.latencies().clone();
     shared.end(cycles);
+    latencies.l2_misses = shared.latencies().clone();
     let of_shared = shared.counts();
     let mut counts = of_shared.counts;
     of_groups.iter().for_each(|side| counts.add(&side.0));

@@ -415,8 +415,9 @@ impl SharedSide {
         }
     }
 
-    /// The run ends in cycle `end`.
+    /// The run ends in cycle `end`. Lines are on their way to the last rays before their registers are free: those may be further than this side, which ran a round behind.
     pub fn end(&mut self, end: u64) {
+        self.run(end + 1);
         self.dram.advance(self.cores.start_ps(end), &mut |_, _| ());
     }
 
