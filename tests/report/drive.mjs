@@ -7,7 +7,10 @@ const [modules, chromiumPath, file, documentFile, shots] = process.argv.slice(2)
 const require = createRequire(`${modules}/node_modules/`);
 const { chromium } = require("playwright-core");
 const axe = readFileSync(require.resolve("axe-core/axe.min.js"), "utf8");
-const doc = documentFile && documentFile !== "-" ? JSON.parse(readFileSync(documentFile, "utf8")) : null;
+const text = documentFile && documentFile !== "-" ? readFileSync(documentFile, "utf8") : "";
+const isSweep = text && documentFile.endsWith(".jsonl");
+const doc = text && !isSweep ? JSON.parse(text) : null;
+const runs = isSweep ? text.trim().split("\n").map((line) => JSON.parse(line).result) : [];
 
 const faults = [];
 const counts = { points: 0, diagrams: 0, cells: 0, axe_rules: 0, steps: 0 };
@@ -194,6 +197,25 @@ if (doc) {
   await page.locator("#pictures").getByLabel("Column", { exact: true }).fill("0");
   await page.keyboard.press("Tab");
   await inspect("column");
+}
+
+if (isSweep) {
+  // Causes of a run are the whole of its rays' time, and the table has every limit and cause of the results.
+  const sums = await page.evaluate(() => [...document.querySelectorAll("#parts figure")].filter((f) => /^What held the rays/.test(f.querySelector("svg[aria-label]")?.getAttribute("aria-label") ?? "")).map((f) => [...f.querySelectorAll("[data-point]")].reduce((sum, e) => sum + Number(e.dataset.x), 0)));
+  const methods = new Set(runs.map((r) => r.setup.method.name)).size;
+  check(sums.length > 0 && sums.every((sum) => Math.abs(sum - 100 * methods) < 1e-6), `causes of ${methods} runs are ${sums} %`);
+  const details = page.locator("#parts details[data-table^='Limits and causes']");
+  await details.locator("summary").click();
+  await details.locator("td[data-value]").first().waitFor();
+  const cells = await details.locator("td[data-value]").evaluateAll((all) => all.map((e) => Number(e.dataset.value)));
+  const words = await details.textContent();
+  const held = (r) => r.stalls.context_cycles - (r.stalls.cycles.idle ?? 0);
+  for (const r of runs) {
+    const values = [...Object.values(r.roofline.limits).map((l) => 100 * l.share), ...Object.entries(r.stalls.cycles).filter(([name]) => name !== "idle").map(([, n]) => (100 * n) / held(r)), r.latencies.rays.largest];
+    check(values.every((v) => cells.some((c) => Math.abs(c - v) <= 1e-9 * Math.abs(v))), `the table lacks a limit or a cause of ${r.setup.method.name}`);
+    check(words.includes(r.roofline.largest) && words.includes(r.stalls.largest), `the table does not name what limits ${r.setup.method.name}`);
+    counts.cells += values.length;
+  }
 }
 
 // Everything there is to open, both grounds, both widths.

@@ -39,7 +39,7 @@ fn a_page_of_everything_works_in_a_browser() {
     // Simulations have fewer sections, and work as well.
     desk.run("report sweep/results.jsonl -o sweep.html --title plain");
     assert!(desk.text("sweep.html").contains("<title>plain</title>"));
-    if let Some(found) = browser::drive(&desk.path("sweep.html"), None) {
+    if let Some(found) = browser::drive(&desk.path("sweep.html"), Some(&desk.path("sweep/results.jsonl"))) {
         assert!(found.faults.is_empty(), "{:#?}", found.faults);
     }
 }

@@ -29,11 +29,12 @@ use std::io::{self, Write};
 const SHELL: &str = include_str!("web/shell.html");
 const STYLE: &str = include_str!("web/style.css");
 /// In the order in which they stand in the page.
-const SCRIPTS: [&str; 8] = [
+const SCRIPTS: [&str; 9] = [
     include_str!("web/base.js"),
     include_str!("web/points.js"),
     include_str!("web/chart.js"),
     include_str!("web/work.js"),
+    include_str!("web/limits.js"),
     include_str!("web/distance.js"),
     include_str!("web/pictures.js"),
     include_str!("web/tables.js"),

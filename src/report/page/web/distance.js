@@ -175,7 +175,7 @@ function partsSection(section, state) {
       { name: "DRAM lines", value: (p) => costAt(p, state.machine).dram_lines }, { name: "DRAM bytes", value: (p) => costAt(p, state.machine).dram_bytes }, { name: "L1 requests for each ray", value: (p) => costAt(p, state.machine).l1_requests_per_ray },
     ];
     const kinds = shown.flatMap((p) => (costAt(p, state.machine).traffic?.kinds ?? []).map((kind) => ({ point: p, ...kind })));
-    body.replaceChildren(h("h3", {}, "Energy"), partKeys, h("div", { class: "grid" }, charts), dataTable(`Energy and traffic, ${state.scene}`, columns, shown), traffic(kinds, state), overTime(shown, state));
+    body.replaceChildren(h("h3", {}, "Energy"), partKeys, h("div", { class: "grid" }, charts), dataTable(`Energy and traffic, ${state.scene}`, columns, shown), traffic(kinds, state), limits(shown, state), overTime(shown, state));
   };
   section.append(h("p", {}, "The settings chosen above. Every distance has an axis of its own, as far views take a small part of what near ones take."), body);
   state.onChange(draw);
