@@ -7,7 +7,7 @@ use lodray::method::lod::LodImage;
 use lodray::num::{Ray, VertexForm};
 use lodray::rays::{Camera, ModelSpace, Sight, View};
 use lodray::run::FrameRays;
-use lodray::sim::replay::{self, Chunk, Run, Running};
+use lodray::sim::replay::{self, Chunk, Interval, Run, Running};
 use lodray::sim::unit::environment::run;
 use lodray::sim::unit::{Latency, SceneMemory, Traffic, TraversalUnit};
 use lodray::step::{Batch, Step};
@@ -92,12 +92,11 @@ fn many_units_lose_nothing_however_little_room_there_is() {
     assert!(tight.cycles > roomy.cycles && tight.counts.l1.refused_cycles > 0);
 }
 
-/// In a frame of this size groups are given rays in cycles in which ports wake, and lines come in those in which others are asked for.
-#[test]
-fn a_frame_does_not_depend_on_threads() {
+/// What replays a terrain from `distance` radii through a BVH on so many threads.
+fn replayed(distance: f64) -> impl Fn(&Machine, usize) -> Run {
     let scene = scene_of(&terrain(16, 3, 0.5, 1));
     let space = ModelSpace::of(&scene);
-    let camera = Camera::new(&View { distance: Some(2.0), ..View::default() }, &space, 512, 512).expect("a camera");
+    let camera = Camera::new(&View { distance: Some(distance), ..View::default() }, &space, 512, 512).expect("a camera");
     let sight = Sight::new(&camera, &space, 1.0);
     let method = (bvh::METHOD.make)(&scene, &Knobs::default(), &NoStore).expect("a method on a scene");
     let mut chunks: Vec<Chunk> = Vec::new();
@@ -106,10 +105,61 @@ fn a_frame_does_not_depend_on_threads() {
         true
     });
     let nodes = method.map(&sight).nodes();
-    let run = |threads| {
+    move |machine, threads| {
         let how = Running { threads, ..Running::default() };
-        replay::run_free(&machine(&[]), nodes, chunks.iter().cloned(), how).expect("a run")
-    };
-    let one = run(1);
-    assert!((2..9).all(|threads| run(threads) == one));
+        replay::run_free(machine, nodes, chunks.iter().cloned(), how).expect("a run")
+    }
+}
+
+/// In a frame of this size groups are given rays in cycles in which ports wake, and lines come in those in which others are asked for.
+#[test]
+fn a_frame_does_not_depend_on_threads() {
+    let run = replayed(2.0);
+    let one = run(&machine(&[]), 1);
+    assert!((2..9).all(|threads| run(&machine(&[]), threads) == one));
+}
+
+/// A memory that answers late: whole stretches go by in which a group waits and does nothing.
+#[test]
+fn nothing_is_fuller_than_full_in_any_stretch_of_time() {
+    let run = replayed(2.0);
+    for sets in [&[][..], &[("l1.mshrs", 2), ("l2.mshrs", 1), ("l2.queue", 2), ("crossbar.answer_cycles", 5000), ("dram.queue", 2)]] {
+        let machine = machine(sets);
+        let one = run(&machine, 1);
+        assert!(run(&machine, 3) == one);
+        let (groups, l1, l2) = (u64::from(machine.cores.groups), &machine.l1, &machine.l2);
+        let mut before = (0, [0; 5]);
+        for interval in &one.intervals {
+            let Interval { end, counts, channels, .. } = interval;
+            let taken = [
+                counts.l1.register_cycles,
+                counts.l1.queued_cycles,
+                counts.l2.register_cycles,
+                counts.l2.queued_cycles,
+                channels.queued_clocks,
+            ];
+            let room = [
+                groups * u64::from(l1.banks * l1.mshrs),
+                groups * u64::from(l1.banks * l1.queue),
+                u64::from(l2.banks * l2.mshrs),
+                u64::from(l2.banks * l2.queue),
+            ];
+            let cycles = end - before.0;
+            for (k, room) in room.into_iter().enumerate() {
+                let added = taken[k] - before.1[k];
+                assert!(added <= cycles * room, "{k}: {added} of {} up to cycle {end}", cycles * room);
+            }
+            // Clocks begin and end within cycles.
+            let clocks = (cycles as f64 * one.dram_clocks as f64 / one.cycles as f64) as u64 + 2;
+            let room = u64::from(machine.dram.channels) * u64::from(machine.dram.queue);
+            assert!(taken[4] - before.1[4] <= clocks * room, "{} of {} up to cycle {end}", taken[4] - before.1[4], clocks * room);
+            before = (*end, taken);
+        }
+        assert!(one.intervals.len() > 8);
+        assert_eq!(
+            before.1[..4],
+            [one.counts.l1.register_cycles, one.counts.l1.queued_cycles, one.counts.l2.register_cycles, one.counts.l2.queued_cycles]
+        );
+        assert_eq!([one.counts.l1.registers_now, one.counts.l2.registers_now, one.counts.l1.queued_now, one.counts.l2.queued_now], [0; 4]);
+    }
 }

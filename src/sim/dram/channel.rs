@@ -141,6 +141,7 @@ impl Channel {
     /// What was done up to clock `t`, not before the last command.
     pub fn counts_at(&self, t: u64) -> ChannelCounts {
         let mut counts = self.counts;
+        counts.queued_clocks += self.queues.iter().map(|queue| queue.standing.time(t)).sum::<u64>();
         counts.active_clocks = counts.active_clocks.saturating_add_signed(self.ranks.active_now(t));
         for rank in 0..self.ranks.ranks.len() {
             self.count_down(rank, t, &mut counts);

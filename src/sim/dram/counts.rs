@@ -27,7 +27,7 @@ pub struct ChannelCounts {
     pub active_down_clocks: u64,
     /// Clocks with all banks precharged, in power-down, summed over the ranks.
     pub precharged_down_clocks: u64,
-    /// Clocks from arrival to read or write command, summed over the requests.
+    /// Clocks from arrival to read or write command, summed over the requests; those that wait count up to now.
     pub queued_clocks: u64,
     /// Most requests that waited at once.
     pub longest_queue: u64,

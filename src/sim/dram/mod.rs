@@ -27,6 +27,7 @@ pub mod mapping;
 mod power_down;
 mod queue;
 mod ranks;
+mod standing;
 pub mod trace;
 mod validate;
 
@@ -38,6 +39,7 @@ pub use counts::ChannelCounts;
 pub use device::Device;
 pub use energy::{DramEnergy, DramPrices};
 pub use error::DramError;
+pub use standing::Standing;
 
 use channel::Channel;
 pub use channel::Way;

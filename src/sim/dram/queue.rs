@@ -1,5 +1,7 @@
 //! The requests that wait in a channel: one list per bank for reads and one for writes, oldest first, in slots of fixed number.
 
+use super::standing::Standing;
+
 /// No slot.
 pub(super) const NONE: u16 = u16::MAX;
 
@@ -50,6 +52,8 @@ pub(super) struct Queue {
     lists: Vec<List>,
     /// Banks with a request, one bit each.
     pub banks: u64,
+    /// Since their arrivals.
+    pub standing: Standing,
 }
 
 impl Queue {
@@ -72,6 +76,7 @@ impl Queue {
             free: (0..depth).rev().collect(),
             lists: vec![List { head: NONE, tail: NONE }; banks as usize],
             banks: 0,
+            standing: Standing::default(),
         }
     }
 
@@ -121,6 +126,7 @@ impl Queue {
         }
         list.tail = slot;
         self.banks |= 1 << bank;
+        self.standing.comes(arrival);
         slot
     }
 
@@ -140,6 +146,7 @@ impl Queue {
             self.banks &= !(1 << bank);
         }
         self.free.push(slot);
+        self.standing.goes(request.arrival);
         request
     }
 

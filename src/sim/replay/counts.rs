@@ -4,6 +4,12 @@ use super::stalls::Stalls;
 use crate::step::MAX_SECTIONS;
 use serde::Serialize;
 
+/// What was counted up to a cycle.
+pub trait Earlier: Clone {
+    /// What it was so many cycles earlier, if nothing happened between; what waits, waits for less long.
+    fn earlier(&mut self, cycles: u64);
+}
+
 /// A level of cache.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
 pub struct CacheCounts {
@@ -27,6 +33,12 @@ pub struct CacheCounts {
     pub blocked_cycles: u64,
     /// Cycles of miss registers in use.
     pub register_cycles: u64,
+    /// Miss registers in use when this was counted.
+    #[serde(skip)]
+    pub registers_now: u64,
+    /// Requests in queues when this was counted.
+    #[serde(skip)]
+    pub queued_now: u64,
     /// Most miss registers of a bank that were in use at once.
     pub most_registers: u64,
     /// Most requests that waited for a bank at once.
@@ -37,7 +49,20 @@ impl CacheCounts {
     /// Adds what another side counted.
     pub fn add(&mut self, other: &Self) {
         let Self {
-            requests, hits, misses, merges, fills, conflicts, queued_cycles, refused_cycles, blocked_cycles, register_cycles, ..
+            requests,
+            hits,
+            misses,
+            merges,
+            fills,
+            conflicts,
+            queued_cycles,
+            refused_cycles,
+            blocked_cycles,
+            register_cycles,
+            registers_now,
+            queued_now,
+            most_registers: _,
+            longest_queue: _,
         } = self;
         *requests += other.requests;
         *hits += other.hits;
@@ -49,8 +74,17 @@ impl CacheCounts {
         *refused_cycles += other.refused_cycles;
         *blocked_cycles += other.blocked_cycles;
         *register_cycles += other.register_cycles;
+        *registers_now += other.registers_now;
+        *queued_now += other.queued_now;
         self.most_registers = self.most_registers.max(other.most_registers);
         self.longest_queue = self.longest_queue.max(other.longest_queue);
+    }
+}
+
+impl Earlier for CacheCounts {
+    fn earlier(&mut self, cycles: u64) {
+        self.register_cycles -= cycles * self.registers_now;
+        self.queued_cycles -= cycles * self.queued_now;
     }
 }
 
@@ -123,6 +157,13 @@ pub struct Counts {
     pub stalls: Stalls,
     /// By the place of their section.
     pub traffic: [KindTraffic; MAX_SECTIONS],
+}
+
+impl Earlier for Counts {
+    fn earlier(&mut self, cycles: u64) {
+        self.l1.earlier(cycles);
+        self.l2.earlier(cycles);
+    }
 }
 
 impl Counts {

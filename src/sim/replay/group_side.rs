@@ -90,7 +90,11 @@ impl GroupSide {
 
     /// What was counted so far.
     pub fn counts(&self) -> Counts {
-        Counts { l1: self.l1.counts(), ..self.counts }
+        self.counts_at(self.now())
+    }
+
+    fn counts_at(&self, cycle: u64) -> Counts {
+        Counts { l1: self.l1.counts_at(cycle), ..self.counts }
     }
 
     /// What whoever uses it counts.
@@ -299,7 +303,7 @@ impl GroupSide {
     #[inline]
     pub fn go(&mut self, cycle: u64) {
         if let Some(end) = self.over_time.end_before(cycle) {
-            self.over_time.note(end, self.counts());
+            self.over_time.note(end, self.counts_at(end));
         }
         self.wheel.go(cycle);
     }

@@ -3,7 +3,7 @@
 //! Every side of a replay counts for itself, and notes what it had counted when a stretch ended; where a stretch may end is the same for all, so that what they noted adds up whatever
 //! the partitions are.
 
-use super::counts::Counts;
+use super::counts::{Counts, Earlier};
 use crate::block::Operations;
 use crate::sim::dram::{ChannelCounts, DramEnergy};
 
@@ -28,13 +28,17 @@ pub struct Interval {
     pub operations: Operations,
 }
 
+impl Earlier for Operations {
+    fn earlier(&mut self, _: u64) {}
+}
+
 /// What one side had counted at the ends of stretches: of those in which it did something after that.
 pub struct Series<T> {
     length: u64,
     done: Vec<(u64, T)>,
 }
 
-impl<T: Clone> Series<T> {
+impl<T: Earlier> Series<T> {
     /// None yet.
     pub fn new() -> Self {
         Self { length: FIRST, done: Vec::new() }
@@ -59,19 +63,30 @@ impl<T: Clone> Series<T> {
     /// Keeps the ends of stretches of `length` alone: an end that is none becomes the one before, for in between nothing was done.
     fn coarsen(&mut self, length: u64) {
         self.length = length;
-        self.done.iter_mut().for_each(|done| done.0 = done.0 / length * length);
-        self.done.dedup_by_key(|done| done.0);
-        self.done.retain(|done| done.0 > 0);
+        let mut last = 0;
+        self.done.retain_mut(|(end, counted)| {
+            let late = *end % length;
+            *end -= late;
+            let is_kept = *end > last;
+            if is_kept {
+                counted.earlier(late);
+                last = *end;
+            }
+            is_kept
+        });
     }
 
     fn ends(&self) -> impl Iterator<Item = u64> {
         self.done.iter().map(|done| done.0)
     }
 
-    /// What was counted before cycle `end`; `all` was in the end.
-    fn before<'a>(&'a self, end: u64, all: &'a T) -> &'a T {
+    /// What was counted before cycle `end`; `all` was in the end, when nothing waited.
+    fn before(&self, end: u64, all: &T) -> T {
         let at = self.done.partition_point(|done| done.0 < end);
-        self.done.get(at).map_or(all, |done| &done.1)
+        let Some((noted, counted)) = self.done.get(at) else { return all.clone() };
+        let mut counted = counted.clone();
+        counted.earlier(noted - end);
+        counted
     }
 }
 
@@ -84,6 +99,13 @@ pub struct SharedCounts {
     pub channels: ChannelCounts,
     /// The memory's energy.
     pub dram: DramEnergy,
+}
+
+impl Earlier for SharedCounts {
+    /// (Not the memory: while requests wait there it gives commands, so that no stretch goes by in which nothing happens.)
+    fn earlier(&mut self, cycles: u64) {
+        self.counts.earlier(cycles);
+    }
 }
 
 /// The stretches of a run of so many cycles: of each side what it had counted in the end, and over time.
@@ -111,8 +133,8 @@ pub fn join(
         let before = if is_last { u64::MAX } else { end };
         let of = shared.1.before(before, shared.0);
         let mut counts = of.counts;
-        groups.iter().for_each(|(all, series)| counts.add(series.before(before, all)));
-        let operations = operations.1.before(before, operations.0).clone();
+        groups.iter().for_each(|(all, series)| counts.add(&series.before(before, all)));
+        let operations = operations.1.before(before, operations.0);
         Interval { end, counts, channels: of.channels, dram: of.dram, operations }
     };
     ends.iter().map(|&end| interval(end, false)).chain([interval(cycles, true)]).collect()

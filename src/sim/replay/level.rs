@@ -6,6 +6,7 @@ use super::prefetch::prefetch;
 use super::stalls::Histogram;
 use super::tags::Tags;
 use crate::machine::Cache;
+use crate::sim::dram::Standing;
 use crate::step::SectionId;
 use std::collections::VecDeque;
 
@@ -82,6 +83,8 @@ pub struct Level {
     mshrs: Mshrs,
     mshrs_per_bank: u32,
     queue: usize,
+    /// Requests in the queues of all banks.
+    queued: Standing,
     /// Cycles of a look-up.
     pub latency: u64,
     /// What it did.
@@ -101,6 +104,7 @@ impl Level {
             mshrs: Mshrs::new(banks, cache.mshrs, cache.targets),
             mshrs_per_bank: cache.mshrs,
             queue: cache.queue as usize,
+            queued: Standing::default(),
             latency: u64::from(cache.latency_cycles),
             counts: CacheCounts::default(),
             latencies: Histogram::default(),
@@ -157,6 +161,7 @@ impl Level {
     #[inline]
     pub fn enqueue(&mut self, bank: u32, request: CacheRequest) -> Option<u64> {
         let bank = &mut self.banks[bank as usize];
+        self.queued.comes(request.since);
         bank.queue.push_back(CacheRequest { blocked: bank.blocked_cycles(request.since), ..request });
         self.counts.longest_queue = self.counts.longest_queue.max(bank.queue.len() as u64);
         if bank.awake || bank.blocked.is_some() {
@@ -196,6 +201,7 @@ impl Level {
             }
         };
         state.queue.pop_front();
+        self.queued.goes(request.since);
         state.looked_up += 1;
         state.free = now + 1;
         state.awake = !state.queue.is_empty();
@@ -226,9 +232,17 @@ impl Level {
         true
     }
 
-    /// What it did, with what is known of registers.
-    pub fn counts(&self) -> CacheCounts {
-        CacheCounts { most_registers: self.mshrs.most.into(), ..self.counts }
+    /// What it did before cycle `cycle`, the next or one until which nothing happens here; registers in use and requests queued count up to then.
+    pub fn counts_at(&self, cycle: u64) -> CacheCounts {
+        let registers = self.mshrs.standing;
+        CacheCounts {
+            most_registers: self.mshrs.most.into(),
+            register_cycles: self.counts.register_cycles + registers.time(cycle),
+            queued_cycles: self.counts.queued_cycles + self.queued.time(cycle),
+            registers_now: registers.count(),
+            queued_now: self.queued.count(),
+            ..self.counts
+        }
     }
 
     /// How many miss registers there are.

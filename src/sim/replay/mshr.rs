@@ -1,5 +1,6 @@
 //! The misses under way of a bank, and who waits for each.
 
+use crate::sim::dram::Standing;
 use crate::step::SectionId;
 
 /// No waiter.
@@ -69,6 +70,8 @@ pub struct Mshrs {
     /// Registers in use, by bank, and the most of any.
     in_use: Vec<u32>,
     pub most: u32,
+    /// Of all banks.
+    pub standing: Standing,
 }
 
 impl Mshrs {
@@ -89,6 +92,7 @@ impl Mshrs {
             spare: NONE,
             in_use: vec![0; banks as usize],
             most: 0,
+            standing: Standing::default(),
         }
     }
 
@@ -121,6 +125,7 @@ impl Mshrs {
         let in_use = &mut self.in_use[bank as usize];
         *in_use += 1;
         self.most = self.most.max(*in_use);
+        self.standing.comes(waiter.since);
         Entered::New { slot: register - from as u32 }
     }
 
@@ -165,6 +170,7 @@ impl Mshrs {
         self.in_use[bank] -= 1;
         let miss = &mut self.misses[register as usize];
         miss.first = std::mem::replace(&mut self.free[bank], register);
+        self.standing.goes(miss.since);
         miss.since
     }
 

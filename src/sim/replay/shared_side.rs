@@ -147,9 +147,13 @@ impl SharedSide {
 
     /// What was counted up to this cycle.
     pub fn counts(&self) -> SharedCounts {
+        self.counts_at(self.now())
+    }
+
+    fn counts_at(&self, cycle: u64) -> SharedCounts {
         let mut channels = ChannelCounts::default();
         self.dram.counts().iter().for_each(|channel| channels.add(channel));
-        SharedCounts { counts: Counts { l2: self.l2.counts(), ..self.counts }, channels, dram: self.dram.energy() }
+        SharedCounts { counts: Counts { l2: self.l2.counts_at(cycle), ..self.counts }, channels, dram: self.dram.energy() }
     }
 
     /// Latencies of misses of the L2.
@@ -407,7 +411,7 @@ impl SharedSide {
         if let Some(end) = self.over_time.end_before(cycle) {
             // Time passes for the memory although nothing happens: up to the last cycle of the stretch.
             self.dram.advance(self.cores.start_ps(end - 1), &mut |_, _| ());
-            self.over_time.note(end, self.counts());
+            self.over_time.note(end, self.counts_at(end));
         }
         self.wheel.go(cycle);
         if self.dram_next.is_some_and(|next| next <= cycle) {
