@@ -205,8 +205,10 @@ struct Batch {
     const uint64_t* tags;  // Their tags.
     uint64_t* out;         // The outputs, `out_stride` words each.
     uint64_t* out_tags;
-    uint64_t* accepted;  // Cycle in which each input was taken.
-    uint64_t* offered;   // Cycle in which each output was first offered.
+    uint64_t* presented;  // Cycle in which each input was first offered.
+    uint64_t* accepted;   // Cycle in which each input was taken.
+    uint64_t* offered;    // Cycle in which each output was first offered.
+    uint64_t* delivered;  // Cycle in which each output was taken.
     uint64_t in_stride, out_stride, count;
     uint64_t seed;     // Of the stalls.
     uint64_t patience; // Cycles without any transfer that count as stuck.
@@ -268,7 +270,10 @@ EXPORT void lodray_run(Instance* i, Batch* b) {
         const auto early_out = top.out_o;
         const auto early_tag = top.tag_o;
 
-        if (!offering) offering = sent < b->count && (!b->stalled || in_gate.open());
+        if (!offering && sent < b->count && (!b->stalled || in_gate.open())) {
+            offering = true;
+            b->presented[sent] = cycle;
+        }
         top.valid_i = offering;
         if (offering) {
             load(top.in_i, b->in + sent * b->in_stride);
@@ -308,6 +313,7 @@ EXPORT void lodray_run(Instance* i, Batch* b) {
                 store(top.out_o, b->out + b->received * b->out_stride);
                 b->out_tags[b->received] = 0;
                 store(top.tag_o, b->out_tags + b->received);
+                b->delivered[b->received] = cycle;
                 ++b->received;
                 moved = true;
             }

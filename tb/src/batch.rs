@@ -56,8 +56,12 @@ pub(crate) struct Batch {
     pub outputs: Vec<u64>,
     pub tags: Vec<u64>,
     pub out_tags: Vec<u64>,
+    /// Cycle in which each input was first offered, and in which it was taken.
+    pub presented: Vec<u64>,
     pub accepted: Vec<u64>,
+    /// Cycle in which each output was first offered, and in which it was taken.
     pub offered: Vec<u64>,
+    pub delivered: Vec<u64>,
     /// Cycles from the end of reset.
     pub cycles: u64,
     /// Outputs that came.
@@ -77,9 +81,8 @@ pub(crate) struct Shape {
 impl Batch {
     /// Makes room for the results.
     pub fn prepare(&mut self, shape: Shape) {
-        for (results, words) in
-            [(&mut self.outputs, shape.out_words), (&mut self.out_tags, 1), (&mut self.accepted, 1), (&mut self.offered, 1)]
-        {
+        let cycles = [&mut self.presented, &mut self.accepted, &mut self.offered, &mut self.delivered].map(|cycles| (cycles, 1));
+        for (results, words) in [(&mut self.outputs, shape.out_words), (&mut self.out_tags, 1)].into_iter().chain(cycles) {
             results.clear();
             results.resize(self.count * words, 0);
         }
@@ -103,8 +106,10 @@ impl Batch {
             tags: self.tags.as_ptr(),
             out: self.outputs.as_mut_ptr(),
             out_tags: self.out_tags.as_mut_ptr(),
+            presented: self.presented.as_mut_ptr(),
             accepted: self.accepted.as_mut_ptr(),
             offered: self.offered.as_mut_ptr(),
+            delivered: self.delivered.as_mut_ptr(),
             in_stride: in_words as u64,
             out_stride: out_words as u64,
             count: count as u64,

@@ -75,7 +75,7 @@ pub struct Report {
 }
 
 /// Plays the inputs through the RTL and compares every output, tag and rule of the handshake with the Rust block; in [`Mode::Free`] also
-/// latency and interval of every transaction. The first difference ends it; no input at all is an error.
+/// latency and interval of every transaction, in [`Mode::Stalled`] that no output comes and no input goes later than those and the stalls make it. The first difference ends it; no input at all is an error.
 pub fn check_block<B: Block>(build: &Build, plan: &Plan, inputs: impl IntoIterator<Item = B::In>) -> Result<Report, Error>
 where
     B::In: Debug,
@@ -225,6 +225,22 @@ where
             let got = cycle - taken;
             if if free { got != u64::from(latency) } else { got < u64::from(latency) } {
                 return Some((k, cycle, Fault::Latency { expected: latency, got }));
+            }
+            if let (false, Some(before)) = (free, k.checked_sub(1)) {
+                let (latency, interval) = (u64::from(latency), u64::from(interval));
+                let least = (taken + latency).max(batch.delivered[before] + interval);
+                if cycle > least {
+                    return Some((k, cycle, Fault::Late { least, got: cycle }));
+                }
+                let (from, room) = (batch.presented[k].max(batch.accepted[before] + interval), latency.div_ceil(interval));
+                if taken > from {
+                    // In the last cycle that refused it: there were never fewer inside.
+                    let refused = taken - 1;
+                    let inside = (k - batch.delivered[..k].partition_point(|&at| at < refused)) as u64;
+                    if inside < room {
+                        return Some((k, refused, Fault::Refused { inside, least: room }));
+                    }
+                }
             }
             if free && k > 0 && taken - batch.accepted[k - 1] != u64::from(interval) {
                 return Some((k, taken, Fault::Interval { expected: interval, got: taken - batch.accepted[k - 1] }));

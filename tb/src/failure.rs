@@ -52,6 +52,20 @@ pub enum Fault {
         /// Measured.
         got: u64,
     },
+    /// Cycle in which an output was first offered, when stalled: it had its latency behind it, and the interval from the output before.
+    Late {
+        /// The first in which it could have been.
+        least: u64,
+        /// Measured.
+        got: u64,
+    },
+    /// An input was refused, when stalled, though the interval from the input before was over and the block had room.
+    Refused {
+        /// Items in it.
+        inside: u64,
+        /// The fewest that fill it: latency over interval.
+        least: u64,
+    },
     /// A rule of the handshake.
     Rule(&'static str),
 }
@@ -63,6 +77,10 @@ impl fmt::Display for Fault {
             Self::Tag { expected, got } => write!(f, "tag {got:#x} instead of {expected:#x}"),
             Self::Latency { expected, got } => write!(f, "latency {got} instead of {expected}"),
             Self::Interval { expected, got } => write!(f, "interval {got} instead of {expected}"),
+            Self::Late { least, got } => write!(f, "offered in cycle {got} instead of {least}"),
+            Self::Refused { inside, least } => {
+                write!(f, "the input was refused with {inside} items inside, of {least} or more that it holds")
+            }
             Self::Rule(text) => f.write_str(text),
         }
     }

@@ -76,6 +76,12 @@ fn another_latency_and_interval() {
 }
 
 #[test]
+fn a_stall_that_costs_more_than_it_must() {
+    assert!(matches!(fault(10, Mode::Stalled), Fault::Late { least, got } if got == least + 1));
+    assert!(matches!(fault(11, Mode::Stalled), Fault::Refused { inside: 0..3, least: 3 }));
+}
+
+#[test]
 fn an_output_that_does_not_wait() {
     assert!(matches!(fault(3, Mode::Stalled), Fault::Rule(text) if text.contains("changed")));
     assert!(matches!(fault(5, Mode::Stalled), Fault::Rule(text) if text.contains("fell")));

@@ -26,6 +26,7 @@ module rotate #(
   logic [95:0]      data;
   logic [TAG_W-1:0] tag;
   logic [9:0]       count_q;
+  logic             pause_q;
 
   always_ff @(posedge clk_i) begin
     if (!rst_ni) count_q <= '0;
@@ -35,26 +36,30 @@ module rotate #(
   // 1: one bit of one output in 1024 is wrong.
   assign rotated = {in_i[63:0], ~in_i[95:64]} ^ 96'((FAULT == 1 && count_q == 10'd700) ? 1 : 0);
 
-  // 2: one input in 1024 is lost. 7: every other cycle takes nothing.
-  logic take;
+  // 2: one input in 1024 is lost. 7: every other cycle takes nothing. 11: nothing is taken while an output waits.
+  logic take, refuse;
   logic hold_q;
-  assign take    = valid_i && !(FAULT == 2 && count_q == 10'd700) && !(FAULT == 7 && hold_q);
-  assign ready_o = ready && !(FAULT == 7 && hold_q);
+  logic [3:0] wait_q;
+  assign refuse  = (FAULT == 7 && hold_q) || (FAULT == 11 && wait_q != '0);
+  assign take    = valid_i && !(FAULT == 2 && count_q == 10'd700) && !refuse;
+  assign ready_o = ready && !refuse;
   always_ff @(posedge clk_i) hold_q <= rst_ni && valid_i && ready_o;
 
   pipe_delay #(.W(96 + TAG_W), .STAGES(STAGES)) u_delay (
     .clk_i, .rst_ni,
     .valid_i(take), .ready_o(ready), .data_i({rotated, tag_i}),
-    .valid_o(valid), .ready_i, .data_o({data, tag})
+    .valid_o(valid), .ready_i(ready_i && !pause_q), .data_o({data, tag})
   );
 
+  // 10: behind an output that has waited the next one comes a cycle late.
+  always_ff @(posedge clk_i) pause_q <= FAULT == 10 && rst_ni && valid && ready_i && wait_q != '0;
+
   // 3: the output does not hold still while it waits.
-  logic [3:0] wait_q;
   always_ff @(posedge clk_i) wait_q <= (valid && !ready_i) ? wait_q + 1'b1 : '0;
   assign out_o = data ^ 96'((FAULT == 3 && wait_q == 4'd15) ? 1 : 0);
 
   // 5: the output is withdrawn while it waits. 6: it depends on an input.
-  assign valid_o = valid && !(FAULT == 5 && wait_q == 4'd9) && !(FAULT == 6 && tag_i == '0);
+  assign valid_o = valid && !pause_q && !(FAULT == 5 && wait_q == 4'd9) && !(FAULT == 6 && tag_i == '0);
 
   // 8: the tag is another one's.
   assign tag_o = (FAULT == 8) ? ~tag : tag;
