@@ -48,6 +48,11 @@ fn on_steps(draw: &mut Draw, by: i64) -> In {
     if draw.once_in(2) { tight(input) } else { In { exponents: [U::ZERO; 3], ..input } }
 }
 
+/// Above steps by one bit: each bit below the code counts for a ceiling.
+fn above_by_a_bit(draw: &mut Draw) -> In {
+    tight(tree(draw, |draw| point([0; 3].map(|_| (draw.signed(32765) << 16) + (1 << draw.below(16))))))
+}
+
 fn around_zero(draw: &mut Draw) -> In {
     tight(tree(draw, |draw| point([0; 3].map(|_| draw.between(-3, 3)))))
 }
@@ -160,6 +165,10 @@ pub fn suite() -> Suite<ChildBoxes> {
             Is::any("a few codes of excess", few),
             Is::any("on steps of box codes", |d| on_steps(d, 0)),
             Is::any("just above steps", |d| on_steps(d, 1)),
+            Is::all("above steps by one bit", above_by_a_bit, |i, o| {
+                let [full, morphed, all] = [own(full(i), 3), own(morphed(i), 3), o.bounds[3]].map(|b| sides(&b));
+                (0..3).all(|at| all[at] == full[at].min(morphed[at])) && (3..6).all(|at| all[at] == full[at].max(morphed[at]))
+            }),
             Is::any("just below steps", |d| on_steps(d, -1)),
             Is::all("around zero", around_zero, |_, o| {
                 o.bounds.iter().all(|b| b.lo.get().iter().all(|v| [-1, 0].contains(v)) && b.hi.get().iter().all(|v| [0, 1].contains(v)))
