@@ -66,7 +66,9 @@ module closest_hit (
   end
 
   // Edge functions fit a numerator of t: 96 bits of 99.
-  assign divide_o = {lod_pkg::T_NUMERATOR_W'(divide_v_i ? v_q : w_q) << ZEROS, lod_pkg::EDGE_FUNCTION_W'(det_q) << ZEROS};
+  logic [EDGE_W-1:0] numerator;
+  assign numerator = divide_v_i ? v_q : w_q;
+  assign divide_o  = {lod_pkg::T_NUMERATOR_W'(numerator) << ZEROS, lod_pkg::EDGE_FUNCTION_W'(det_q) << ZEROS};
 
   always_ff @(posedge clk_i) begin
     // An edge function is at most det, so quotients are at most 2^32; their last bit is dropped: 32 bits.

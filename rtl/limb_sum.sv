@@ -5,7 +5,7 @@
 /// One level per stage: neighbours are added, of which the lower STEP bits pass by the adder; the rest of the tree is this module again, over half
 /// as many numbers STEP bits wider. Legal: N >= 1, STEP < W, and each level's sums must fit W + STEP bits, as those of the limb products of one
 /// multiplication do (a run of n limbs times an 18-bit limb: 17 n + 19 bits). Latency: clog2(N).
-/// LAST_IS_SKID makes the last level's register a `pipe_skid`.
+/// An odd number above 1 comes with hardware that leaves out low zeros (`Hardware::coordinate_zeros`). LAST_IS_SKID makes the last level's register a `pipe_skid`.
 module limb_sum #(
   parameter int unsigned N = 2,
   parameter int unsigned W = 36,

@@ -397,7 +397,7 @@ module ray_context (
           lod_pkg::RECORD: if (record_there) state_d = (record.depth == '0) ? lod_pkg::TRI : lod_pkg::LOD;
           // The group may still be under way.
           lod_pkg::VERTEX: if (want_q == '0 && !waiting_q[1]) state_d = lod_pkg::MORPH;
-          lod_pkg::GROUP:  if (record_there) state_d = lod_pkg::CHILD;
+          default:         if (record_there) state_d = lod_pkg::CHILD;  // GROUP
         endcase
       end
       lod_pkg::CHILD:      if (child_grant_i) state_d = lod_pkg::CHILD_WAIT;

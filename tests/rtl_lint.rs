@@ -1,9 +1,11 @@
-//! Every module of `rtl/` is clean under Verilator's lint with all warnings on and for slang, which is stricter about names; declares all its nets;
-//! and is free of what the free synthesis tools get wrong.
+//! Every module of `rtl/` is clean for Verilator with all warnings on, for the distribution's older one, for slang, which is stricter about names, for
+//! verible, which looks at style, and for Yosys, which looks at nets; declares all its nets; and is free of what the free synthesis tools get wrong.
 
 use lodray::hardware::Hardware;
 use lodray_test_support::hardware::OTHERS;
 use lodray_test_support::sv::donts;
+use std::path::PathBuf;
+use tb::Verilator;
 
 /// Names of the files of `rtl/`.
 fn modules() -> Vec<String> {
@@ -16,27 +18,48 @@ fn modules() -> Vec<String> {
     names
 }
 
+fn verilator() -> Verilator {
+    Verilator::find().unwrap_or_else(|error| panic!("{error}"))
+}
+
 fn text(module: &str) -> String {
     let path = tb::rtl().join(format!("{module}.sv"));
     std::fs::read_to_string(&path).unwrap_or_else(|error| panic!("{}: {error}", path.display()))
 }
 
-#[test]
-fn every_module_is_clean_by_itself() {
-    let mut tops: Vec<(String, Vec<(&str, u64)>)> = modules().into_iter().map(|name| (name, Vec::new())).collect();
+/// Every top, and with other values of the parameters that choose between structures.
+fn tops() -> Vec<(String, Vec<(&'static str, u64)>)> {
+    let mut tops: Vec<(String, Vec<(&'static str, u64)>)> = modules().into_iter().map(|name| (name, Vec::new())).collect();
     // Verilator takes no module as the top that contains itself: such a one is linted within its users.
     tops.retain(|(name, _)| name != "lod_pkg" && !text(name).contains(&format!("\n    {name} #(")));
     assert!(tops.len() >= 20, "only {} tops in {}", tops.len(), tb::rtl().display());
-    // And with other values of the parameters that choose between structures.
     for (top, parameter, value) in
         [("tri_test", "EDGES_PER_CYCLE", 1), ("traversal_unit", "EDGES_PER_CYCLE", 1), ("traversal_unit", "CONTEXTS", 1)]
     {
         tops.push((top.to_owned(), vec![(parameter, value)]));
     }
-    let wrong: Vec<String> =
-        tops.iter().filter_map(|(top, parameters)| tb::lint(top, parameters, &Hardware::default()).err()).map(|e| e.to_string()).collect();
+    tops
+}
+
+fn clean_by_itself(verilator: &Verilator) {
+    let tops = tops();
+    let lint = |(top, parameters): &(String, Vec<_>)| tb::lint(verilator, top, parameters, &Hardware::default()).err();
+    let wrong: Vec<String> = tops.iter().filter_map(lint).map(|error| error.to_string()).collect();
     println!("{} tops linted", tops.len());
     assert!(wrong.is_empty(), "{}", wrong.join("\n"));
+}
+
+#[test]
+fn every_module_is_clean_by_itself() {
+    clean_by_itself(&verilator());
+}
+
+#[test]
+fn every_module_is_clean_for_the_distributions_verilator() {
+    match Verilator::of_distribution().unwrap_or_else(|error| panic!("{error}")) {
+        Some(older) => clean_by_itself(&older),
+        None => eprintln!("*** the distribution has no Verilator: NOT linted with it ***"),
+    }
 }
 
 /// Hardware at the ends of what there can be, and the others that tests build.
@@ -55,7 +78,7 @@ fn every_module_is_clean_in_other_hardware() {
         hardware.validate().unwrap_or_else(|error| panic!("{error}"));
         // With everything in them: all of `rtl/`.
         for top in ["traversal_unit", "box_test32"] {
-            wrong.extend(tb::lint(top, &[], &hardware).err().map(|error| format!("{hardware:?}: {error}")));
+            wrong.extend(tb::lint(&verilator(), top, &[], &hardware).err().map(|error| format!("{hardware:?}: {error}")));
             linted += 1;
         }
         tb::elaborate(&[], &hardware).unwrap_or_else(|error| panic!("{hardware:?}: {error}"));
@@ -77,9 +100,9 @@ fn nothing_is_used_that_free_tools_get_wrong() {
 
 #[test]
 fn no_net_is_implicit() {
-    let formal = tb::rtl().join("formal");
+    let [formal, rules] = ["formal", "rules"].map(|folder| tb::rtl().join(folder));
     let mut compared = 0;
-    for folder in [tb::rtl(), formal] {
+    for folder in [tb::rtl(), formal, rules] {
         let entries = std::fs::read_dir(&folder).unwrap_or_else(|error| panic!("{}: {error}", folder.display()));
         for path in entries.flatten().map(|entry| entry.path()).filter(|path| path.extension().is_some_and(|e| e == "sv")) {
             let text = std::fs::read_to_string(&path).unwrap_or_else(|error| panic!("{}: {error}", path.display()));
@@ -98,5 +121,29 @@ fn a_strict_front_end_takes_every_module() {
     // Slang refuses what Verilator lets pass: a name before its declaration, from which other tools make a net of their own that nothing drives.
     for options in [&[][..], &["--top", "traversal_unit", "-GEDGES_PER_CYCLE=1"], &["--top", "traversal_unit", "-GCONTEXTS=1"]] {
         tb::elaborate(options, &Hardware::default()).unwrap_or_else(|error| panic!("{options:?}: {error}"));
+    }
+}
+
+#[test]
+fn verible_finds_nothing() {
+    let paths = |folder: PathBuf| -> Vec<PathBuf> {
+        let entries = std::fs::read_dir(&folder).unwrap_or_else(|error| panic!("{}: {error}", folder.display()));
+        entries.flatten().map(|entry| entry.path()).filter(|path| path.extension().is_some_and(|e| e == "sv")).collect()
+    };
+    let rtl = [paths(tb::rtl()), paths(tb::rtl().join("rules"))].concat();
+    tb::verible(&rtl, "").unwrap_or_else(|error| panic!("{error}"));
+    // Files of properties and stubs bear the names of what they are about.
+    let formal = paths(tb::rtl().join("formal"));
+    tb::verible(&formal, "-module-filename").unwrap_or_else(|error| panic!("{error}"));
+    println!("{} files", rtl.len() + formal.len());
+    assert!(rtl.len() >= 40 && formal.len() >= 20);
+    // It looks: a file that is called otherwise is found.
+    assert!(tb::verible(&formal, "").is_err_and(|error| error.to_string().contains("module-filename")));
+}
+
+#[test]
+fn yosys_finds_nothing() {
+    for parameters in [&[("CONTEXTS", 1)][..], &[("CONTEXTS", 2), ("EDGES_PER_CYCLE", 1)]] {
+        tb::yosys("traversal_unit", parameters, &Hardware::default()).unwrap_or_else(|error| panic!("{parameters:?}: {error}"));
     }
 }

@@ -6,11 +6,11 @@ use std::path::PathBuf;
 /// One line for each way to fail; tests print it and fail.
 #[derive(Debug, thiserror::Error)]
 pub enum Error {
-    /// No Verilator to be found.
-    #[error("Verilator is missing ({0}): run scripts/tools")]
+    /// No Verilator, or no other tool, to be found.
+    #[error("a tool is missing ({0}): run scripts/tools")]
     ToolMissing(String),
     /// The tool refused the sources.
-    #[error("Verilator refuses {top}:\n{output}")]
+    #[error("{top} is refused:\n{output}")]
     Refused {
         /// The top.
         top: String,
@@ -66,6 +66,12 @@ pub enum Error {
 }
 
 impl Error {
+    /// An [`Error::Refused`] with what a tool said.
+    pub(crate) fn refused(top: &str, out: &std::process::Output) -> Self {
+        let output = format!("{}{}", String::from_utf8_lossy(&out.stdout), String::from_utf8_lossy(&out.stderr)).trim().to_owned();
+        Self::Refused { top: top.to_owned(), output }
+    }
+
     /// An [`Error::File`] for this path.
     pub(crate) fn file(path: impl Into<PathBuf>) -> impl FnOnce(std::io::Error) -> Self {
         let path = path.into();

@@ -1,8 +1,7 @@
-//! Verilator itself: where it is, which one it is, and a run of it; and slang, a second reader of the RTL.
+//! Verilator itself: where it is, which one it is, and a run of it.
 
 use crate::Error;
-use crate::sources::{self, Sources};
-use lodray::hardware::Hardware;
+use crate::sources;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 use std::sync::OnceLock;
@@ -40,6 +39,20 @@ impl Verilator {
         Ok(FOUND.get_or_init(|| Self { binary, root, hash }).clone())
     }
 
+    /// The one of the distribution's packages, years older; none where `scripts/tools` found no such package.
+    pub fn of_distribution() -> Result<Option<Self>, Error> {
+        let folder = sources::root().join("target/tools/verilator-distribution");
+        if folder.join("none").is_file() {
+            return Ok(None);
+        }
+        let (binary, root) = (folder.join("usr/bin/verilator_bin"), folder.join("usr/share/verilator"));
+        if !binary.is_file() {
+            return Err(Error::ToolMissing(format!("no file {}", binary.display())));
+        }
+        let hash = xxh3_128(&std::fs::read(&binary).map_err(Error::file(&binary))?);
+        Ok(Some(Self { binary, root, hash }))
+    }
+
     /// The folder with Verilator's own C++ sources.
     pub fn include(&self) -> PathBuf {
         self.root.join("include")
@@ -61,57 +74,8 @@ impl Verilator {
         if out.status.success() {
             return Ok(());
         }
-        let output = format!("{}{}", String::from_utf8_lossy(&out.stdout), String::from_utf8_lossy(&out.stderr)).trim().to_owned();
-        Err(Error::Refused { top: top.to_owned(), output })
+        Err(Error::refused(top, &out))
     }
-}
-
-/// Lints a top of `rtl/` with the sizes of this hardware and every warning on; a warning is an error.
-pub fn lint(top: &str, parameters: &[(&str, u64)], hardware: &Hardware) -> Result<(), Error> {
-    let package: Vec<PathBuf> = sources::package(hardware)?.into_iter().collect();
-    let sources = Sources::with(&package, top)?;
-    let mut arguments = vec!["--lint-only".to_owned(), "-Wall".to_owned(), "--top-module".to_owned(), top.to_owned()];
-    arguments.extend(parameters.iter().map(|(name, value)| format!("-G{name}={value}")));
-    arguments.extend(sources.arguments());
-    Verilator::find()?.run(top, &arguments)
-}
-
-/// Elaborates all of `rtl/` with slang, which takes the standard by its word, with the sizes of this hardware; `options` are slang's. A warning is an error.
-pub fn elaborate(options: &[&str], hardware: &Hardware) -> Result<(), Error> {
-    slang("scripts/elaborate.py", options, hardware).map(drop)
-}
-
-/// Bits of the registers that a top declares, with everything in it: variables that are written at a clock edge, memories too.
-pub fn registers(top: &str, parameters: &[(&str, u64)], hardware: &Hardware) -> Result<u32, Error> {
-    let given: Vec<String> = parameters.iter().map(|(name, value)| format!("-G{name}={value}")).collect();
-    let mut options = vec!["--top", top];
-    options.extend(given.iter().map(String::as_str));
-    let said = slang("scripts/registers.py", &options, hardware)?;
-    said.trim().parse().map_err(|_| Error::Refused { top: top.to_owned(), output: said })
-}
-
-/// Runs one of the scripts that use slang on all of `rtl/`; what it printed.
-fn slang(script: &str, options: &[&str], hardware: &Hardware) -> Result<String, Error> {
-    let python = sources::root().join("target/tools/slang/bin/python3");
-    if !python.is_file() {
-        return Err(Error::ToolMissing(format!("no file {}", python.display())));
-    }
-    let folder = sources::rtl();
-    let entries = std::fs::read_dir(&folder).map_err(Error::file(&folder))?;
-    let mut files: Vec<PathBuf> = entries.flatten().map(|e| e.path()).filter(|p| p.extension().is_some_and(|e| e == "sv")).collect();
-    // The package comes before its users.
-    files.sort_by_key(|path| (!path.ends_with("lod_pkg.sv"), path.clone()));
-    if let (Some(package), Some(first)) = (sources::package(hardware)?, files.first_mut()) {
-        *first = package;
-    }
-    let mut command = Command::new(&python);
-    let out = command.arg(script).args(options).args(&files).current_dir(sources::root()).output();
-    let out = out.map_err(Error::file(&python))?;
-    if out.status.success() {
-        return Ok(String::from_utf8_lossy(&out.stdout).into_owned());
-    }
-    let output = format!("{}{}", String::from_utf8_lossy(&out.stdout), String::from_utf8_lossy(&out.stderr)).trim().to_owned();
-    Err(Error::Refused { top: "rtl".to_owned(), output })
 }
 
 /// Where `scripts/tools` puts it.
