@@ -1,7 +1,7 @@
 """Breaks the RTL in small ways, one at a time, and shows that the tests notice each.
 
 A mutant is one change of one operator, width, constant or condition in one file of rtl/. Sites are found by the rules below and drawn with a seed, so many a
-file. Each mutant is a copy of rtl/ that the tests of the blocks that contain the file (or the unit's) run against, smallest block first, until one notices. A mutant that does not pass Verilator's lint says nothing about the tests:
+file, from each rule by turns. Each mutant is a copy of rtl/ that the tests of the blocks that contain the file (or the unit's) run against, smallest block first, until one notices; with --unit against the unit's tests alone. A mutant that does not pass Verilator's lint says nothing about the tests:
 it is counted apart and another one is drawn. Survivors must be listed with their reason in scripts/mutants.toml; any other makes the script fail.
 """
 
@@ -76,6 +76,21 @@ def sites(text):
     return out
 
 
+def drawn(name, text, seed):
+    """All sites in the order in which they are tried: the rules by turns, in an order and with sites that the seed draws, so that a frequent operator does not push out a rare one."""
+    draw = random.Random(f"{seed} {name}")
+    by_pattern = {}
+    for site in sites(text):
+        old = text[site[1] : site[2]].strip()
+        by_pattern.setdefault((site[0], "" if old.isdigit() else old), []).append(site)
+    groups = sorted(by_pattern.items())
+    draw.shuffle(groups)
+    for _, group in groups:
+        draw.shuffle(group)
+    longest = max((len(group) for _, group in groups), default=0)
+    return [group[k] for k in range(longest) for _, group in groups if k < len(group)]
+
+
 def binaries(tests):
     """Paths of the compiled test binaries."""
     found = {}
@@ -125,6 +140,7 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("files", nargs="*", help="modules to mutate (default: all)")
     parser.add_argument("--per-file", type=int, default=3, help="mutants a file (default 3)")
+    parser.add_argument("--unit", action="store_true", help="against the tests of the whole unit alone, which every block in it must be noticed by (slow)")
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--jobs", type=int, default=os.cpu_count())
     parser.add_argument("--timeout", type=int, default=600, help="seconds a mutant")
@@ -141,22 +157,25 @@ def main():
     # The tests of a file are those of the tops that contain it; what only moves items has tests of its own.
     own = {name: "queues" for name in ("arbiter", "hit_queue", "pipe_stage", "pipe_skid")}
     cost = lambda top: sum(len(sources[m]) for m in closure(top, sources))
+    unit = closure("traversal_unit", sources)
     plans = []
     for name in args.files or sources:
         holders = sorted((t for t in tops if name in closure(t, sources)), key=cost)
         tops_of = [own[name]] if name in own else holders
         commands = {top: [tests["rtl"], f"{top}::"] for top in tops_of} or {"unit": [tests["rtl_unit"]]}
-        drawn = sites(sources[name])
-        random.Random(f"{args.seed} {name}").shuffle(drawn)
-        plans.append((name, drawn, commands))
+        if args.unit:
+            if name not in unit:
+                continue
+            commands = {"unit": [tests["rtl_unit"]]}
+        plans.append((name, drawn(name, sources[name], args.seed), commands))
 
     totals = {"killed": 0, "lint": 0, "lives": 0, "late": 0}
     unexplained = []
 
     def work(plan):
-        name, drawn, commands = plan
+        name, order, commands = plan
         lines, tried = [], 0
-        for index, site in enumerate(drawn):
+        for index, site in enumerate(order):
             if tried == args.per_file:
                 break
             for by, command in commands.items():
