@@ -11,6 +11,8 @@ use xxhash_rust::xxh3::xxh3_128;
 
 const PACKAGE: &str = "lod_pkg";
 const WAIVERS: &str = "lint.vlt";
+/// Folder of what is bound to modules in simulation, `MODULE_rules.sv`.
+const RULES: &str = "rules";
 
 /// The root of the repository.
 pub fn root() -> &'static Path {
@@ -80,10 +82,13 @@ impl Sources {
         }
         let mut files: Vec<PathBuf> = Vec::new();
         files.extend(Some(folder.join(WAIVERS)).filter(|path| path.is_file()));
+        let rules: Vec<PathBuf> =
+            needed.iter().map(|module| folder.join(RULES).join(format!("{module}_rules.sv"))).filter(|path| path.is_file()).collect();
         if needed.remove(PACKAGE) {
             files.push(known[PACKAGE].clone());
         }
         files.extend(needed.iter().map(|module| known[module].clone()));
+        files.extend(rules);
         Self::exactly(&files)
     }
 

@@ -1,6 +1,7 @@
 //! The RTL of the traversal unit beside its cycle model in one environment: every port compared in every cycle, every hit against the golden
 //! traverser's. `LODRAY_CYCLES` asks for that many cycles (default 1 million), `LODRAY_SEED` for another seed.
 
+mod limits;
 mod port;
 mod wave;
 
@@ -56,8 +57,15 @@ impl UnitPort for SideBySide {
     }
 }
 
-/// Runs `rays` through both and compares every hit with the golden traverser's; gives the report and the number of hits.
-fn compare(scene: &Scene, config: Hardware, traffic: &Traffic, rays: &[Ray], seed: u64) -> (RunReport, u64) {
+/// What a comparison has seen.
+struct Compared {
+    report: RunReport,
+    hits: u64,
+    longest_queue: usize,
+}
+
+/// Runs `rays` through both and compares every hit with the golden traverser's.
+fn compare(scene: &Scene, config: Hardware, traffic: &Traffic, rays: &[Ray], seed: u64) -> Compared {
     let memory = SceneMemory::new(LodImage::of(scene), seed % (1 << 35));
     let what = format!("seed {seed}, {config:?}, {traffic:?}");
     let mut both = SideBySide {
@@ -74,8 +82,8 @@ fn compare(scene: &Scene, config: Hardware, traffic: &Traffic, rays: &[Ray], see
         let HitOut { found, hit, .. } = traced.hit;
         assert_eq!(found.then(|| plain(&hit)), golden.trace(ray), "{what}: {ray:?}");
     }
-    let hits = report.rays.iter().filter(|ray| ray.hit.found).count();
-    (report, hits as u64)
+    let hits = report.rays.iter().filter(|ray| ray.hit.found).count() as u64;
+    Compared { report, hits, longest_queue: both.model.counts().longest_queue }
 }
 
 /// Cycles to compare: `LODRAY_CYCLES`, or a million.
@@ -131,7 +139,7 @@ fn random_rays(hardware: &[Hardware], wanted: u64) {
         let rays = any_rays(&h, 20 * config.contexts, seed);
         let rays: Vec<Ray> =
             rays.iter().enumerate().map(|(k, ray)| ray_for(&config, &coarsened(ray, [zeros, config.direction_zeros]), k)).collect();
-        let (report, met) = compare(&scene_for(&config, &h), config, &any_traffic(&mut rng), &rays, seed);
+        let Compared { report, hits: met, .. } = compare(&scene_for(&config, &h), config, &any_traffic(&mut rng), &rays, seed);
         cycles += report.cycles;
         traced += rays.len();
         hits += met;
@@ -177,7 +185,7 @@ fn frame_of(kind: procedural::Scene, form: VertexForm, config: Hardware, latency
     let depths = scene.trees_by_depth().iter().filter(|trees| **trees > 0).count();
     assert!(!pruned || depths > 1, "{:?}", scene.trees_by_depth());
     let config = if pruned { planned(&scene, &camera, config) } else { config };
-    let (report, hits) = compare(&scene, config, &Traffic::smooth(latency), &rays, 1);
+    let Compared { report, hits, .. } = compare(&scene, config, &Traffic::smooth(latency), &rays, 1);
     println!("{kind:?}, {form:?}: {SIDE}x{SIDE} pixels, {} rays, {hits} hits, {} cycles; {config:?}", rays.len(), report.cycles);
     assert!(hits > 1000, "only {hits} hits");
 }

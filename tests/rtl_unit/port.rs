@@ -69,6 +69,12 @@ impl Rtl {
         rtl.sim.eval();
         rtl
     }
+
+    /// Another scene from now on.
+    pub fn scene(&mut self, scene: &SceneConfig) {
+        let port = self.sim.port("scene_i", SceneConfig::WIDTH, Direction::In).unwrap_or_else(|error| panic!("{error}"));
+        self.sim.poke(port, scene);
+    }
 }
 
 impl UnitPort for Rtl {
