@@ -1,5 +1,8 @@
 #!/usr/bin/env python3
-"""Fills scripts/paper/claims.md with what the sweeps measured: writes docs/claims.md. Argument: the folder of the sweeps' results."""
+"""Fills scripts/paper/claims.md with what the sweeps measured: writes docs/claims.md. Argument: the folder of the sweeps' results.
+
+Figures of sweeps that are not in the folder stay as they were measured last (scripts/paper/measured.json), each with the version of the program that measured them.
+"""
 
 import json
 import math
@@ -10,6 +13,7 @@ from pathlib import Path
 
 ROOT = Path(__file__).resolve().parent.parent
 TEMPLATE = ROOT / "scripts" / "paper" / "claims.md"
+MEASURED = ROOT / "scripts" / "paper" / "measured.json"
 
 
 class Rows:
@@ -67,9 +71,13 @@ def percent(share):
     return f"{100 * share:.0f} %"
 
 
-def row_hits(row):
+def row_share(row):
     d = row["result"]["dram"]
-    return percent(d["row_hits"] / max(1, d["row_hits"] + d["row_misses"] + d["row_conflicts"]))
+    return d["row_hits"] / max(1, d["row_hits"] + d["row_misses"] + d["row_conflicts"])
+
+
+def row_hits(row):
+    return percent(row_share(row))
 
 
 def hits(row):
@@ -107,6 +115,7 @@ def figure11(data, values):
                     active = [row["result"]["energy"]["total"] - row["result"]["energy"]["dram"]["parts"]["background"] for row in (lod, bvh)]
                     following.append((gain[0], active[1] / active[0]))
             rows.append(cells)
+    values["peaks"] = "; ".join(peaks(data, scene) for scene in data.each("scene"))
     values["figure11"] = table(["scene", "eye at", "energy, DDR3", "time", "DRAM lines", "energy, GDDR5", "time"], rows)
     for (machine, what), all_of_them in largest.items():
         name = "ddr3" if machine.endswith("ddr3") else "gddr5"
@@ -119,6 +128,12 @@ def figure11(data, values):
     for level, shares in nodes.items():
         values[f"nodes_{level}"] = span(shares, percent)
     values["most_energy_ddr3_active"] = times(max(following)[1])
+
+
+def peaks(data, scene):
+    """Where a scene costs most time."""
+    most = {m: max(data.each("eye", scene=scene), key=lambda eye: data.find(scene=scene, eye=eye, machine="haydel2023", method=m)["result"]["cycles"]) for m in ["bvh", "lod"]}
+    return f"{scene}: the BVH's at {most['bvh']:.2f}, ours at {most['lod']:.2f}"
 
 
 def best(data, indexed, treelets, paper, values):
@@ -191,24 +206,54 @@ def search(data, values):
     values["search_bvh"], values["search_lod"] = f"{chosen[0] / authors[0]:.2f}", f"{chosen[1] / authors[1]:.2f}"
 
 
+# A cause turned off takes so much of the gain's logarithm with it: then it was the cause, or a part of it.
+CAUSE, PART = 0.5, 0.15
+
+
 def causes(data, values):
-    def time(scene, machine="haydel2023", set=""):
-        lod, bvh = (data.find(scene=scene, machine=machine, set=set, method=m) for m in ["lod", "bvh"])
-        return lod["result"]["cycles"], bvh["result"]["cycles"]
+    def cycles(scene, machine="haydel2023", set=""):
+        """Of ours, and of the better of the BVHs; and the gain."""
+        lod, *bvhs = (data.find(scene=scene, machine=machine, set=set, method=m)["result"]["cycles"] for m in ["lod", "bvh", "bvh6"])
+        return [lod, min(bvhs), min(bvhs) / lod]
 
-    def cells(asked, off, before, after):
-        return [asked, off, *(f"{b:,}" for b in before), times(before[1] / before[0]), *(f"{a:,}" for a in after), times(after[1] / after[0])]
+    def cells(said, off, before, after):
+        gone = 1 - math.log(after[2]) / math.log(before[2])
+        verdict = "the cause" if gone > CAUSE else "a part" if gone > PART else "not the cause"
+        return [said, off] + [cell for of in (before, after) for cell in (f"{of[0]:,}", f"{of[1]:,}", times(of[2]))] + [f"{100 * gone:.0f} %", f"**{verdict}**"]
 
+    near, far = ["wall, near", "cloth, near", "terrain, near"], ["terrain", "terrain 0.45, far", "cloth, far"]
     rows = []
-    for scene in ["wall, near", "cloth, near"]:
-        rows.append(cells(f"{scene}: the L1s' banks", "8 banks for 4", time(scene), time(scene, set="l1.banks=8")))
-    rows.append(cells("cloth, far: few of the rays hit", "the middle 96 x 96 pixels alone", time("cloth, far"), time("cloth, far, its middle")))
+    for scene in far:
+        rows.append(cells(f"{scene}: the gain, to lines of DRAM", "a memory a hundred times as fast", cycles(scene), cycles(scene, set="cores.clock_mhz=20")))
     for scene in ["terrain", "cloth, far, its middle"]:
-        rows.append(cells(f"{scene}: rows that may be opened in a time", "nRRD of 1, nFAW of 4", time(scene), time(scene, "free-activates")))
-    head = ["said to be the cause", "turned off by", "cycles, LOD", "BVH", "gain", "without it, LOD", "BVH", "gain"]
+        rows.append(cells(f"{scene}: the gain, to rows that may be opened in a time", "nRRD of 1, nFAW of 4", cycles(scene), cycles(scene, "free-activates")))
+    rows.append(cells("cloth, far: the gain, to how few of the rays hit", "the middle 96 x 96 pixels alone", cycles("cloth, far"), cycles("cloth, far, its middle")))
+    larger = "l1.banks={} l1.bytes=32768"
+    for scene in near:
+        rows.append(cells(f"{scene}: the loss, to the L1s' banks", "16 banks for 4, in L1s of 32 KB both", cycles(scene, set=larger.format(4)), cycles(scene, set=larger.format(16))))
+    head = ["put down to", "turned off by", "cycles, ours", "BVH", "gain", "without it, ours", "BVH", "gain", "of it goes", ""]
     values["causes"] = table(head, rows)
+    values["cause_part"] = percent(PART)
     values["far_hits"] = hits(data.find(scene="cloth, far", machine="haydel2023", set="", method="lod"))
     values["middle_hits"] = hits(data.find(scene="cloth, far, its middle", machine="haydel2023", set="", method="lod"))
+    rows = []
+    for scene in near:
+        fast = "cores.clock_mhz=20"
+        lod, bvh = (data.find(scene=scene, machine="haydel2023", set=fast, method=m)["result"] for m in ["lod", "bvh"])
+        rows.append([scene, times(bvh["l1"]["requests"] / lod["l1"]["requests"]), times(bvh["cycles"] / lod["cycles"])])
+    values["near_requests"] = table(["", "L1 requests, BVH over ours", "gain in time, a memory a hundred times as fast"], rows)
+
+
+def boxes(data, values):
+    """Of the lines that boxes of 32 bits add, how many are nodes."""
+    shares = {}
+    for scene in data.each("scene"):
+        for eye in data.each("eye", scene=scene):
+            narrow, wide = (data.find(scene=scene, eye=eye, method=m)["result"]["traffic"]["kinds"] for m in ["bvh", "bvh32"])
+            for level in ["l1", "dram"]:
+                added = {b["kind"]: b[level] - a[level] for a, b in zip(narrow, wide)}
+                shares.setdefault(level, []).append(added["bvh_node"] / sum(added.values()))
+    values["boxes_l1"], values["boxes_dram"] = span(shares["l1"], percent), span(shares["dram"], percent)
 
 
 def units(free, charged, values):
@@ -244,23 +289,28 @@ def units(free, charged, values):
     values["free"] = table(head, rows)
 
 
-def sensitivity(data, values):
-    rows, ranges = [], {}
-    places = [(scene, radii) for scene in data.each("scene") for radii in data.each("radii", scene=scene)]
+def over_machines(data, values, name):
+    """Gains over the better of the BVHs on each machine of a list, and their ranges."""
+    rows, ranges, row_hits_of, hit = [], {}, {}, {}
+    places = [(scene, eye) for scene in data.each("scene") for eye in data.each("eye", scene=scene)]
     for machine in data.each("machine"):
-        for name in data.each("set", machine=machine):
-            cells = [f"{machine} {name}".strip().replace("dram/", "")]
-            for scene, radii in places:
-                lod, bvh = (data.find(machine=machine, set=name, scene=scene, radii=radii, method=m) for m in ["lod", "bvh"])
-                energy, time, dram = gains(lod, bvh)
+        for of in data.each("set", machine=machine):
+            cells = [f"{machine} {of}".strip().replace("dram/", "")]
+            for scene, eye in places:
+                lod, *bvhs = (data.find(machine=machine, set=of, scene=scene, eye=eye, method=m) for m in ["lod", "bvh", "bvh6"])
+                energy, time, dram = (min(each) for each in zip(*(gains(lod, bvh) for bvh in bvhs)))
+                bvh = min(bvhs, key=lambda row: row["result"]["cycles"])
                 cells.append(f"{times(time)} / {times(energy)} / {times(dram)}; {row_hits(lod)[:-2]}, {row_hits(bvh)}")
                 for what, value in [("energy", energy), ("time", time), ("dram", dram)]:
-                    ranges.setdefault((scene, radii, what), []).append(value)
+                    ranges.setdefault((scene, eye, what), []).append(value)
+                row_hits_of.setdefault((scene, eye), []).append([row_share(lod), row_share(bvh)])
+                hit[scene, eye] = hits(lod)
             rows.append(cells)
-    rows.append(["**range**"] + ["**" + " / ".join(span(ranges[scene, radii, what]) for what in ["time", "energy", "dram"]) + "**" for scene, radii in places])
-    values["sensitivity"] = table(["machine"] + [f"{scene}, {radii:g} radii" for scene, radii in places], rows)
-    shares = [hits(data.find(machine="haydel2023", set="", scene=scene, radii=radii, method="lod")) for scene, radii in places]
-    values["sensitivity_hits"] = ", ".join(f"{share} ({scene}, {radii:g} radii)" for share, (scene, radii) in zip(shares, places))
+    rows.append(["**range**"] + ["**" + " / ".join(span(ranges[scene, eye, what]) for what in ["time", "energy", "dram"]) + "**" for scene, eye in places])
+    values[f"{name}_machines"] = str(len(rows) - 1)
+    values[name] = table(["machine"] + [f"{scene}, {eye:.2f}" for scene, eye in places], rows)
+    of_rows = lambda place: [span([100 * pair[k] for pair in row_hits_of[place]], lambda share: f"{share:.0f}") + " %" for k in (0, 1)]
+    values[f"{name}_ranges"] = [[scene, f"{eye:.2f}", hit[scene, eye]] + [span(ranges[scene, eye, what]) for what in ["time", "energy", "dram"]] + of_rows((scene, eye)) for scene, eye in places]
 
 
 def base_part(data, values):
@@ -273,23 +323,52 @@ def base_part(data, values):
     values["l0"] = table(["scene", "nodes pinned", "L0 part of L1 requests", "requests per ray", "cycles", "energy, uJ", "DRAM lines"], rows)
 
 
+def headline(values):
+    """Ranges over machines beside each other: reasonable ones, and those that hold the baselines back."""
+    rows = [ours + starved[3:6] for ours, starved in zip(values.pop("sensitivity_ranges"), values.pop("starved_ranges"))]
+    values["machine_ranges"] = table(["scene", "eye at", "rays that hit", "time", "energy", "DRAM lines", "row hits, ours", "row hits, baseline", "time, held back", "energy", "DRAM lines"], rows)
+
+
+# What is measured, and by which sweeps.
+PARTS = [
+    (figure11, ["figure11"]),
+    (best, ["best", "best-indexed", "best-treelets", "figure11"]),
+    (search, ["search"]),
+    (causes, ["causes"]),
+    (boxes, ["boxes"]),
+    (units, ["free", "units"]),
+    (lambda data, values: over_machines(data, values, "sensitivity"), ["sensitivity"]),
+    (lambda data, values: over_machines(data, values, "starved"), ["starved"]),
+    (base_part, ["l0"]),
+]
+
+
 def main():
     folder = Path(sys.argv[1])
-    sweep = lambda name: Rows(folder, name)
-    values = {}
-    figure11(sweep("figure11"), values)
-    best(sweep("best"), sweep("best-indexed"), sweep("best-treelets"), sweep("figure11"), values)
-    search(sweep("search"), values)
-    causes(sweep("causes"), values)
-    units(sweep("free"), sweep("units"), values)
-    sensitivity(sweep("sensitivity"), values)
-    base_part(sweep("l0"), values)
+    measured = json.loads(MEASURED.read_text())
+    for of, names in PARTS:
+        if all((folder / name / "results.jsonl").exists() for name in names):
+            sweeps = [Rows(folder, name) for name in names]
+            values = {}
+            of(*sweeps, values)
+            versions = sorted({row["key"].split()[-1] for sweep in sweeps for row in sweep.rows})
+            measured[names[0]] = {"version": ", ".join(versions), "values": values}
+    save(MEASURED, json.dumps(measured, indent=1, sort_keys=True) + "\n")
+    values = {name: value for part in measured.values() for name, value in part["values"].items()}
+    headline(values)
+    versions = {}
+    for name, part in measured.items():
+        versions.setdefault(part["version"], []).append(f"`{name}`")
+    values["versions"] = "; ".join(f"{', '.join(sorted(names))} by {version}" for version, names in sorted(versions.items()))
     text = TEMPLATE.read_text()
     missing = [name for name in re.findall(r"\{\{(\w+)\}\}", text) if name not in values]
     if missing:
         sys.exit(f"figures: claims.md asks for {', '.join(missing)}")
-    text = re.sub(r"\{\{(\w+)\}\}", lambda match: values[match[1]], text)
-    target = ROOT / "docs" / "claims.md"
+    save(ROOT / "docs" / "claims.md", re.sub(r"\{\{(\w+)\}\}", lambda match: values[match[1]], text))
+
+
+def save(target, text):
+    """Writes a file whole or not at all."""
     fresh = target.with_suffix(".tmp")
     fresh.write_text(text)
     fresh.replace(target)

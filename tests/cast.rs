@@ -185,6 +185,11 @@ fn files_of_rays_run_on_machines_and_wait_for_each_other_there() {
             assert_eq!((&together["rays"], &together["hits"]), (&300.into(), &cast["hits"]), "{method}");
             assert_eq!(together["setup"]["rays"], serde_json::json!({ "file": "free.npy", "count": 300 }));
             assert!(together["setup"].get("view").is_none());
+            for result in [&together, &one_by_one] {
+                let causes = result["stalls"]["cycles"].as_object().unwrap().values();
+                let all: u64 = causes.map(|cycles| cycles.as_u64().unwrap()).sum();
+                assert_eq!(all, result["stalls"]["context_cycles"].as_u64().unwrap(), "{method} {compute}");
+            }
             for same in ["hits", "operations", "traffic"] {
                 let (a, b) = (&together[same], &one_by_one[same]);
                 // Lines that two rays ask for at once are asked of the L2 once.

@@ -6,7 +6,7 @@ use lodray::mesh::procedural::{self, Options};
 use lodray::mesh::{BoundKind, Hierarchy};
 use lodray::method::bvh::BvhTraverser;
 use lodray::method::bvh::NoStore;
-use lodray::method::bvh::{FullBvh, FullOptions, LeafLayout, NodeBoxes};
+use lodray::method::bvh::{FullBvh, FullOptions, LeafLayout, NodeBoxes, NodeOrder};
 use lodray::method::lod::{self, LodImage, LodTraverser};
 use lodray::method::{ClosestHit, Crossings, Knobs};
 use lodray::num::{Cone, Point, Ray, Vec3, VertexForm};
@@ -59,15 +59,18 @@ impl Bench<'_> {
 
 fn full_bvhs(h: &Hierarchy) -> Vec<FullBvh> {
     let variants = [
-        (NodeBoxes::Local, LeafLayout::Line, 4),
-        (NodeBoxes::Codes, LeafLayout::Indexed, 2),
-        (NodeBoxes::Wide, LeafLayout::Packed, 1),
-        (NodeBoxes::Local, LeafLayout::Block, 16),
-        (NodeBoxes::Wide, LeafLayout::Block, 8),
-        (NodeBoxes::Six, LeafLayout::Block, 16),
-        (NodeBoxes::Six, LeafLayout::Indexed, 1),
+        (NodeBoxes::Local, LeafLayout::Line, 4, NodeOrder::Depth),
+        (NodeBoxes::Codes, LeafLayout::Indexed, 2, NodeOrder::Treelets),
+        (NodeBoxes::Wide, LeafLayout::Packed, 1, NodeOrder::Depth),
+        (NodeBoxes::Local, LeafLayout::Block, 16, NodeOrder::Treelets),
+        (NodeBoxes::Wide, LeafLayout::Block, 8, NodeOrder::Treelets),
+        (NodeBoxes::Six, LeafLayout::Block, 16, NodeOrder::Treelets),
+        (NodeBoxes::Six, LeafLayout::Indexed, 1, NodeOrder::Depth),
     ];
-    let build = |(boxes, layout, size)| FullBvh::build(h, &FullOptions::new(size, boxes, layout)).expect("a valid model");
+    let build = |(boxes, layout, size, order)| {
+        let options = FullOptions { order, ..FullOptions::new(size, boxes, layout) };
+        FullBvh::build(h, &options).expect("a valid model")
+    };
     variants.map(build).into()
 }
 

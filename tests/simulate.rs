@@ -61,10 +61,17 @@ fn conserved(r: &Value) {
     let dram: f64 = r["energy"]["dram"]["parts"].as_object().unwrap().values().map(|v| v.as_f64().unwrap()).sum();
     near(dram, at(r, "/energy/dram/total"), "DRAM energy");
     let limits = r["roofline"]["limits"].as_object().unwrap();
-    assert_eq!(limits.len(), 10);
+    // Of the memory, and where there are units of each block that has something to do: what it does begins at most as often as it may.
+    let done = |block: &Value| block["operations"].as_u64().is_some_and(|count| count > 0);
+    let blocks = r["units"]["blocks"].as_object();
+    assert_eq!(limits.len(), 12 + blocks.map_or(0, |blocks| blocks.values().filter(|block| done(block)).count()));
+    for (name, block) in blocks.into_iter().flatten().filter(|(_, block)| done(block)) {
+        let each = at(&limits[name], "/cycles") * at(r, "/units/units") / at(block, "/operations");
+        assert!(each >= 1.0 && (each - each.round()).abs() < 1e-9, "{name}: {each} cycles an operation");
+    }
     for (part, bound) in limits {
         let share = at(bound, "/share");
-        assert!(share > 0.0 && share <= 1.0, "{part} alone needs {share} of the frame");
+        assert!((share > 0.0 || part.ends_with("queues")) && share <= 1.0, "{part} alone needs {share} of the frame");
         assert!(share <= at(&limits[r["roofline"]["largest"].as_str().unwrap()], "/share"));
     }
     // Every cycle of every context has one cause.
@@ -228,12 +235,14 @@ fn wrong_words_are_one_clear_error() {
 #[test]
 fn units_take_their_time_and_nothing_else_changes() {
     let desk = with_scene();
-    for method in ["lod", "bvh", "bvh6", "bvh32"] {
+    for method in ["lod", "bvh", "bvh6", "bvh32", "discrete"] {
         let [free, units] = ["free", "units"].map(|compute| desk.json(&format!("{SHOT} --method {method} --compute {compute}")));
         for same in ["/rays", "/hits", "/l1/requests", "/operations"] {
             assert_eq!(free.pointer(same), units.pointer(same), "{method} {same}");
         }
         assert!(count(&units, "/cycles") > count(&free, "/cycles"), "{method}");
+        conserved(&free);
+        conserved(&units);
         assert!(free["units"].is_null());
         near(units["units"]["states"].as_object().unwrap().values().map(|v| v.as_f64().unwrap()).sum(), 1.0, "states");
         let blocks = if method == "lod" { ["lod_test", "tessellate"] } else { ["child_test", "tri_test"] };
@@ -256,11 +265,14 @@ fn every_picojoule_can_be_added_up_again() {
     desk.write("lod.json", &desk.run(&format!("{SHOT} --machine {machines} --json")));
     desk.write("bvh.json", &desk.run(&format!("{SHOT} --method bvh32 --compute units --machine haydel2023 --json")));
     desk.write("units.json", &desk.run(&format!("{SHOT} --compute units --machine turing2018 --set units.per_group=2 --json")));
+    for method in ["bvh6", "discrete"] {
+        desk.write(&format!("{method}.json"), &desk.run(&format!("{SHOT} --method {method} --compute units --json")));
+    }
     desk.write("jobs.toml", &format!("{HEAD}{SCENE}{MACHINE}"));
     desk.run("sweep jobs.toml -o out");
-    let files = ["lod.json", "bvh.json", "units.json", "out/results.jsonl"];
+    let files = ["lod.json", "bvh.json", "units.json", "bvh6.json", "discrete.json", "out/results.jsonl"];
     let (code, out, err) = run(&files);
-    let results = Machine::all_shipped().len() + 6;
+    let results = Machine::all_shipped().len() + 8;
     assert_eq!((code, out.trim(), err.as_str()), (0, format!("{results} results, every part again: 0 differ").as_str(), ""));
     let mut wrong: Value = serde_json::from_str(&desk.text("units.json")).unwrap();
     wrong["dram"]["activates"] = (count(&wrong, "/dram/activates") + 1).into();

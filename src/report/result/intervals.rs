@@ -2,7 +2,7 @@
 
 use super::energy::dram_parts;
 use super::ratio;
-use super::roofline::Parts;
+use super::roofline::{Done, Parts};
 use crate::block::Operations;
 use crate::method::MethodUnit;
 use crate::num::LINE_BYTES;
@@ -45,7 +45,7 @@ pub struct IntervalResult {
     pub l2_queue: f64,
     #[expect(missing_docs, reason = "above")]
     pub dram_queue: f64,
-    /// The part of the machine with the largest share ([`Roofline`](super::Roofline)), and that share.
+    /// The part of the memory, or its way there, with the largest share ([`Roofline`](super::Roofline)), and that share.
     pub limit: String,
     #[expect(missing_docs, reason = "above")]
     pub limit_share: f64,
@@ -116,9 +116,15 @@ fn between(begin: &Interval, end: &Interval, model: &EnergyModel, parts: &Parts<
             requests: l1_requests,
             fills: counts.l1_fills,
             register_cycles: added(|i| i.counts.l1.register_cycles),
+            queued_cycles: added(|i| i.counts.l1.queued_cycles),
             ..CacheCounts::default()
         },
-        l2: CacheCounts { requests: l2_requests, register_cycles: added(|i| i.counts.l2.register_cycles), ..CacheCounts::default() },
+        l2: CacheCounts {
+            requests: l2_requests,
+            register_cycles: added(|i| i.counts.l2.register_cycles),
+            queued_cycles: added(|i| i.counts.l2.queued_cycles),
+            ..CacheCounts::default()
+        },
         ..Counts::default()
     };
     let channels = ChannelCounts {
@@ -128,7 +134,7 @@ fn between(begin: &Interval, end: &Interval, model: &EnergyModel, parts: &Parts<
         ..ChannelCounts::default()
     };
     let mean = |cycles_of_all: u64| ratio(cycles_of_all as f64, cycles as f64);
-    let (limit, limit_share) = parts.largest(&limiting, &channels, cycles);
+    let (limit, limit_share) = parts.largest(&Done { counts: &limiting, channels: &channels, operations: None, cycles });
     IntervalResult {
         end: end.end,
         cycles,
@@ -141,9 +147,9 @@ fn between(begin: &Interval, end: &Interval, model: &EnergyModel, parts: &Parts<
         row_hits: added(|i| i.channels.row_hits),
         row_misses: added(|i| i.channels.row_misses + i.channels.row_conflicts),
         l1_registers: mean(limiting.l1.register_cycles),
-        l1_queue: mean(added(|i| i.counts.l1.queued_cycles)),
+        l1_queue: mean(limiting.l1.queued_cycles),
         l2_registers: mean(limiting.l2.register_cycles),
-        l2_queue: mean(added(|i| i.counts.l2.queued_cycles)),
+        l2_queue: mean(limiting.l2.queued_cycles),
         dram_queue: mean(channels.queued_clocks) * parts.cycles_per_clock(),
         limit: limit.to_owned(),
         limit_share,

@@ -34,7 +34,7 @@ use crate::sim::dram::{ChannelCounts, DramPrices};
 use crate::sim::energy::{EnergyCounts, EnergyModel};
 use crate::sim::replay::{ReplayError, Run, dram_of};
 use crate::step::MemoryMap;
-use roofline::Parts;
+use roofline::{Done, Parts};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 use thiserror::Error;
@@ -114,7 +114,7 @@ impl SimResult {
         let parts = Parts { machine, dram: &dram, compute: setup.compute };
         let mut channels = ChannelCounts::default();
         run.channels.iter().for_each(|channel| channels.add(channel));
-        let roofline = parts.roofline(counts, &channels, run.cycles);
+        let roofline = parts.roofline(&Done { counts, channels: &channels, operations: Some(&run.operations), cycles: run.cycles });
         let intervals = intervals::intervals(&run.intervals, &model, &parts, unit);
         let dram_prices = DramPrices::new(&dram.device);
         let dram = DramResult::new(run, &dram, seconds);

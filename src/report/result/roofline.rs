@@ -1,6 +1,7 @@
 //! What each part of the machine would need for its share of the frame, if nothing else took time: the largest share names the limit.
 
 use super::ratio;
+use crate::block::{Operation, Operations};
 use crate::machine::Machine;
 use crate::run::Compute;
 use crate::sim::dram::{ChannelCounts, DramConfig};
@@ -14,10 +15,12 @@ use std::collections::BTreeMap;
 pub struct Roofline {
     /// By part:
     /// `l1_banks`, `l2_banks`: requests, over what the banks, and the ports before the L1s, take in a cycle;
+    /// `l1_queues`, `l2_queues`: cycles in the banks' queues, over their places;
     /// `l1_mshrs`, `l2_mshrs`: cycles of miss registers in use, over all registers (Little's law);
     /// `crossbar_requests`, `crossbar_answers`: lines there and back, over the groups' ports;
     /// `dram_queues`: clocks in the channels' queues, over their places;
-    /// `dram_bus`: clocks with data; `dram_activates`: activates times the larger of nRRD_S and nFAW / 4; `dram_banks`: activates times nRC, over all banks.
+    /// `dram_bus`: clocks with data; `dram_activates`: activates times the larger of nRRD_S and nFAW / 4; `dram_banks`: activates times nRC, over all banks;
+    /// and by name of the block, where there are traversal units and it has something to do: operations times its interval, over all units.
     pub limits: BTreeMap<String, Bound>,
     /// The part with the largest share.
     pub largest: String,
@@ -33,6 +36,28 @@ pub struct Bound {
     pub share: f64,
 }
 
+/// Blocks of a unit that contexts share.
+const BLOCKS: [Operation; 9] = [
+    Operation::RaySetup,
+    Operation::NodeAddress,
+    Operation::ChildTest,
+    Operation::LodTest,
+    Operation::Tessellate,
+    Operation::TriTest,
+    Operation::HitDivide,
+    Operation::HitSelect,
+    Operation::BaryMap,
+];
+
+/// What was done in a frame or a stretch of it.
+pub(super) struct Done<'a> {
+    pub counts: &'a Counts,
+    pub channels: &'a ChannelCounts,
+    /// None where it is not known when: they are counted as a tile begins.
+    pub operations: Option<&'a Operations>,
+    pub cycles: u64,
+}
+
 /// The machine that has the parts.
 pub(super) struct Parts<'a> {
     pub machine: &'a Machine,
@@ -42,7 +67,8 @@ pub(super) struct Parts<'a> {
 
 impl Parts<'_> {
     /// Cycles of the cores that each part would need for what was done.
-    fn cycles(&self, counts: &Counts, channels: &ChannelCounts) -> [(&'static str, f64); 10] {
+    fn cycles(&self, done: &Done<'_>) -> Vec<(&'static str, f64)> {
+        let Done { counts, channels, .. } = done;
         let Self { machine, dram, compute } = self;
         let (cores, l1, l2, crossbar) = (&machine.cores, &machine.l1, &machine.l2, &machine.crossbar);
         let product = |factors: &[u32]| factors.iter().copied().map(f64::from).product::<f64>();
@@ -55,19 +81,40 @@ impl Parts<'_> {
         let (t, organisation) = (&dram.device.timing, &dram.device.organisation);
         let activate = (t.n_rrd_s as f64).max(t.n_faw as f64 / 4.0);
         let [groups, channel_count] = [cores.groups, dram.channels];
-        [
+        let memory = [
             ("l1_banks", per(counts.l1.requests, product(&[groups, l1.banks.min(ports)]))),
+            ("l1_queues", per(counts.l1.queued_cycles, product(&[groups, l1.banks, l1.queue]))),
             ("l1_mshrs", per(counts.l1.register_cycles, product(&[groups, l1.banks, l1.mshrs]))),
             ("crossbar_requests", per(counts.l2.requests, product(&[groups, crossbar.per_group]))),
             ("crossbar_answers", per(counts.l1.fills, product(&[groups, crossbar.per_group]))),
             // A bank takes one request a cycle, whatever it may be handed.
             ("l2_banks", per(counts.l2.requests, f64::from(l2.banks))),
+            ("l2_queues", per(counts.l2.queued_cycles, product(&[l2.banks, l2.queue]))),
             ("l2_mshrs", per(counts.l2.register_cycles, product(&[l2.banks, l2.mshrs]))),
             ("dram_queues", clock * per(channels.queued_clocks, product(&[channel_count, dram.controller.read_queue.into()]))),
             ("dram_bus", clock * per(channels.bus_clocks, f64::from(channel_count))),
             ("dram_activates", clock * activate * per(channels.activates, product(&[channel_count, organisation.ranks]))),
             ("dram_banks", clock * t.n_rc as f64 * per(channels.activates, product(&[channel_count, dram.device.banks()]))),
-        ]
+        ];
+        memory.into_iter().chain(done.operations.map(|of| self.blocks(of)).unwrap_or_default()).collect()
+    }
+
+    /// Cycles that each block of the units would need, where there are any.
+    fn blocks(&self, operations: &Operations) -> Vec<(&'static str, f64)> {
+        if self.compute == Compute::Free {
+            return Vec::new();
+        }
+        let (units, form) = (&self.machine.units, self.machine.units.config().form());
+        let all = f64::from(self.machine.cores.groups * units.per_group);
+        // Nodes of all kinds go through `child_test`: those of a BVH count as their sorts.
+        let count = |block| match block {
+            Operation::ChildTest => {
+                [Operation::ChildTest, Operation::ChildSort, Operation::ChildSort6].map(|sorts| operations.get(sorts)).iter().sum()
+            }
+            _ => operations.get(block),
+        };
+        let needed = |block: Operation| (block.name(), count(block) as f64 * f64::from(block.timing(&form).interval) / all);
+        BLOCKS.into_iter().filter(|&block| count(block) > 0).map(needed).collect()
     }
 
     /// Cycles of the cores in a clock of the memory.
@@ -75,17 +122,16 @@ impl Parts<'_> {
         self.dram.device.clock_ps as f64 * f64::from(self.machine.cores.clock_mhz) * 1e-6
     }
 
-    /// The part with the largest share of `cycles` for what was done, and that share.
-    pub(super) fn largest(&self, counts: &Counts, channels: &ChannelCounts, cycles: u64) -> (&'static str, f64) {
-        let all = self.cycles(counts, channels);
-        let largest = all.into_iter().max_by(|a, b| a.1.total_cmp(&b.1)).unwrap_or(("", 0.0));
-        (largest.0, ratio(largest.1, cycles as f64))
+    /// The part with the largest share of the time for what was done, and that share.
+    pub(super) fn largest(&self, done: &Done<'_>) -> (&'static str, f64) {
+        let largest = self.cycles(done).into_iter().max_by(|a, b| a.1.total_cmp(&b.1)).unwrap_or(("", 0.0));
+        (largest.0, ratio(largest.1, done.cycles as f64))
     }
 
-    /// All of a frame of `cycles`.
-    pub(super) fn roofline(&self, counts: &Counts, channels: &ChannelCounts, cycles: u64) -> Roofline {
-        let bound = |needed: f64| Bound { cycles: needed, share: ratio(needed, cycles as f64) };
-        let limits = self.cycles(counts, channels).into_iter().map(|(name, needed)| (name.to_owned(), bound(needed))).collect();
-        Roofline { limits, largest: self.largest(counts, channels, cycles).0.to_owned() }
+    /// All of a frame.
+    pub(super) fn roofline(&self, done: &Done<'_>) -> Roofline {
+        let bound = |needed: f64| Bound { cycles: needed, share: ratio(needed, done.cycles as f64) };
+        let limits = self.cycles(done).into_iter().map(|(name, needed)| (name.to_owned(), bound(needed))).collect();
+        Roofline { limits, largest: self.largest(done).0.to_owned() }
     }
 }
