@@ -22,7 +22,7 @@ RTL = HERE.parent.parent / "rtl"
 def sources() -> list[Path]:
     """All of the RTL, and the rules of its ports: a broken one ends the simulation."""
     listed = [line for line in (RTL / "files.f").read_text().splitlines() if not line.startswith("//")]
-    return [RTL / "lint.vlt", *(RTL / name for name in listed), *sorted((RTL / "rules").glob("*.sv"))]
+    return [RTL / "lint.vlt", HERE / "ports.vlt", *(RTL / name for name in listed), *sorted((RTL / "rules").glob("*.sv"))]
 
 
 def main() -> int:
@@ -40,7 +40,7 @@ def main() -> int:
         sources=sources(),
         hdl_toplevel="traversal_unit_axi",
         parameters={"CONTEXTS": 1, "DATA_W": args.data_width},
-        build_args=["--assert", "--no-timing"],
+        build_args=["--assert", "--no-timing", "--no-public-flat-rw"],
         build_dir=args.build,
         timescale=("1ns", "1ps"),
     )
