@@ -52,11 +52,17 @@ fn constraints_name_every_port() {
 
 #[test]
 fn what_fusesoc_makes_is_clean() {
+    what_fusesoc_makes("lint", "traversal_unit");
+    what_fusesoc_makes("lint_axi", "traversal_unit_axi");
+}
+
+/// Lints what FuseSoC makes of a target of its core.
+fn what_fusesoc_makes(target: &str, top: &str) {
     let fusesoc = tb::root().join("target/tools/fusesoc/bin/fusesoc");
     assert!(fusesoc.is_file(), "no file {}: run scripts/tools", fusesoc.display());
     let folder = tempfile::tempdir().unwrap_or_else(|error| panic!("{error}"));
     let out = Command::new(fusesoc)
-        .args(["--cores-root", "rtl", "run", "--target=lint", "--setup", "--build-root"])
+        .args(["--cores-root", "rtl", "run", &format!("--target={target}"), "--setup", "--build-root"])
         .arg(folder.path())
         .arg("lodray:hw:traversal_unit")
         .current_dir(tb::root())
@@ -68,7 +74,7 @@ fn what_fusesoc_makes_is_clean() {
     // It names files beside itself.
     let arguments = ["-F".to_owned(), list.display().to_string()];
     let verilator = Verilator::find().unwrap_or_else(|error| panic!("{error}"));
-    verilator.run("traversal_unit", &arguments).unwrap_or_else(|error| panic!("{error}"));
+    verilator.run(top, &arguments).unwrap_or_else(|error| panic!("{error}"));
 }
 
 /// The program that these tests are built with.
