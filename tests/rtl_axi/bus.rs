@@ -158,6 +158,13 @@ impl<F: Fn(u64) -> u32> Memory<F> {
         Some(Beat { id, data, resp, last })
     }
 
+    /// A reset.
+    pub fn forget(&mut self) {
+        self.reads.clear();
+        self.finished.clear();
+        self.before = None;
+    }
+
     /// A request taken.
     pub fn take(&mut self, request: Request) {
         let (low, high) = self.manners.latency;

@@ -1,4 +1,4 @@
-//! The unit behind its adapter, with a scene's file as memory: a frame equals the golden traverser's hits.
+//! The unit behind its adapter, with a scene's file as memory: a frame equals the golden traverser's hits, and errors show.
 
 use crate::bus::{Bus, Manners, Memory, input, output};
 use lodray::golden::exact::Exact;
@@ -50,7 +50,10 @@ fn frame<const N: usize, const ID: u32>(kind: procedural::Scene, form: VertexFor
     let (mut next, mut offering, mut held) = (0, false, None);
     let mut hits: Vec<Option<HitOut>> = vec![None; rays.len()];
     let (mut done, mut cycles, mut met) = (0, 0u64, 0);
-    while done < rays.len() {
+    let (mut wrong, mut shown, mut still) = (0, 0, 0);
+    // Until the last answer is over, too.
+    while still < 4 {
+        still = if done < rays.len() || sim.peek::<bool>(busy) { 0 } else { still + 1 };
         let (beat, takes, takes_hit) = (memory.beat(), memory.ready(), rng.below(4) > 0);
         offering |= next < rays.len() && rng.below(4) > 0;
         bus.drive(&mut sim, takes, beat, &mut rng);
@@ -72,13 +75,18 @@ fn frame<const N: usize, const ID: u32>(kind: procedural::Scene, form: VertexFor
             assert!(hits[hit.tag.get() as usize].replace(hit).is_none());
             done += 1;
         }
-        assert!(!sim.peek::<bool>(error));
-        memory.finished.clear();
+        shown += u64::from(sim.peek::<bool>(error));
+        wrong += memory.finished.drain(..).filter(|(_, wrong)| *wrong).count() as u64;
         sim.clock();
         cycles += 1;
         assert!(cycles < 100_000_000, "seed {seed}: no end");
     }
     assert!(!sim.failed(), "seed {seed}: an assertion of the RTL failed");
+    assert!(shown == wrong && (wrong > 0) == (manners.errors > 0), "seed {seed}: {wrong} answers with errors, {shown} shown");
+    if wrong > 0 {
+        println!("{} rays, {wrong} answers with errors", rays.len());
+        return;
+    }
     let h = scene.decode();
     let golden = Exact::new(&h);
     for (ray, hit) in rays.iter().zip(&hits) {
@@ -93,6 +101,12 @@ fn frame<const N: usize, const ID: u32>(kind: procedural::Scene, form: VertexFor
 #[test]
 fn a_frame_over_wide_beats() {
     let manners = Manners { refuses: 3, rests: 1, latency: (4, 60), interleaves: true, errors: 0 };
+    frame::<8, 3>(procedural::Scene::Sphere, VertexForm::Compact, 4, 3, manners);
+}
+
+#[test]
+fn errors_of_the_bus_are_shown() {
+    let manners = Manners { refuses: 0, rests: 0, latency: (1, 20), interleaves: true, errors: 30 };
     frame::<8, 3>(procedural::Scene::Sphere, VertexForm::Compact, 4, 3, manners);
 }
 
