@@ -36,17 +36,23 @@ fn every_list_names_every_file_in_order() {
 
 #[test]
 fn constraints_name_every_port() {
-    let (constraints, unit) = (read("rtl/traversal_unit.sdc"), read("rtl/traversal_unit.sv"));
+    constraints_name_ports("traversal_unit", 15);
+    constraints_name_ports("traversal_unit_axi", 27);
+}
+
+/// The constraints of a top name its ports, so many.
+fn constraints_name_ports(top: &str, count: usize) {
+    let (constraints, unit) = (read(&format!("rtl/{top}.sdc")), read(&format!("rtl/{top}.sv")));
     let header = unit.split(");").next().unwrap_or_default();
     let ports: Vec<&str> = header
         .lines()
         .filter(|line| line.trim_start().starts_with("input ") || line.trim_start().starts_with("output "))
         .filter_map(|line| line.split_whitespace().last()?.trim_end_matches(',').into())
         .collect();
-    assert_eq!(ports.len(), 15, "{ports:?}");
+    assert_eq!(ports.len(), count, "{ports:?}");
     let named: Vec<&str> = constraints.split(|c: char| " {}[]*\n".contains(c)).collect();
     for port in ports {
-        assert!(named.contains(&port), "rtl/traversal_unit.sdc has no {port}");
+        assert!(named.contains(&port), "rtl/{top}.sdc has no {port}");
     }
 }
 
