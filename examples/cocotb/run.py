@@ -4,7 +4,7 @@
     lodray trace sphere.lod --pixel 24,24 --size 48x48 --distance 3 --ports ray.json
     python3 examples/cocotb/run.py sphere.lod ray.json
 
-Needs cocotb (`pip install cocotb==2.1.0`), and Verilator 5.036 or newer with make and a C++ compiler.
+Needs cocotb (`pip install cocotb==2.1.0`), and Verilator 5.036 or newer with make, Perl and a C++ compiler.
 """
 
 import argparse
