@@ -96,11 +96,11 @@ fn lines<const N: usize, const ID: u32>(reads: u64, manners: Manners, pauses: u6
         }
         quiet += 1;
         if sim.peek::<bool>(valid_o) {
-            let MemoryAnswer { tag, line: got } = sim.peek(mem_o);
-            let address = due.remove(&tag.get()).unwrap_or_else(|| panic!("{what}: an answer with tag {tag}"));
+            let answer: MemoryAnswer = sim.peek(mem_o);
+            let address = due.remove(&answer.tag.get()).unwrap_or_else(|| panic!("{what}: an answer with tag {}", answer.tag));
             let (last, error) = memory.finished.pop_front().unwrap_or_else(|| panic!("{what}: an answer before its last beat"));
             assert_eq!((address, sim.peek::<bool>(error_o)), (last, error), "{what}");
-            assert_eq!(got, line(address), "{what}: line at {address:#x}");
+            assert_eq!(answer.line, line(address), "{what}: line at {address:#x}");
             (answered, wrong, quiet) = (answered + 1, wrong + u64::from(error), 0);
         }
         // One cycle behind its last beat.
