@@ -1,6 +1,7 @@
 // All of the design, its package first, relative to this file: for tools that take -F (Verilator) or another such list.
 lod_pkg.sv
 arbiter.sv
+axi_read_adapter.sv
 bary_map.sv
 bary_step.sv
 bound_decode.sv
@@ -40,6 +41,7 @@ shared_input.sv
 tessellate.sv
 traversal_stack.sv
 traversal_unit.sv
+traversal_unit_axi.sv
 tri_decide.sv
 tri_edges_parallel.sv
 tri_edges_serial.sv

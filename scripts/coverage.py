@@ -39,7 +39,10 @@ def collect(folder):
     files = sorted(folder.glob("*.dat"))
     for path in files:
         for fields, count in points(path):
-            name = pathlib.PurePath(fields["f"]).name
+            file = pathlib.PurePath(fields["f"])
+            name = file.name
+            if file.parent.name == "rules":
+                continue  # bound in simulation, no part of the design
             kind = fields.get("page", "")
             if kind.startswith("v_toggle"):
                 toggles[name, fields["o"]] += count

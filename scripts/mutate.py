@@ -151,11 +151,12 @@ def main():
     if unknown:
         sys.exit(f"mutate: no such module in rtl/: {', '.join(unknown)}")
     tops = {p.stem for p in (ROOT / "tests" / "rtl").glob("*.rs")} & set(sources)
-    tests = binaries(["rtl", "rtl_unit"])
+    tests = binaries(["rtl", "rtl_axi", "rtl_unit"])
     reasons = tomllib.loads(REASONS.read_text()).get("lives", []) if REASONS.exists() else []
 
-    # The tests of a file are those of the tops that contain it; what only moves items has tests of its own.
+    # The tests of a file are those of the tops that contain it; what only moves items has tests of its own, and so has what stands outside of the unit.
     own = {name: "queues" for name in ("arbiter", "hit_queue", "pipe_stage", "pipe_skid")}
+    outside = {"axi_read_adapter": "adapter::", "traversal_unit_axi": "frame::"}
     cost = lambda top: sum(len(sources[m]) for m in closure(top, sources))
     unit = closure("traversal_unit", sources)
     plans = []
@@ -163,6 +164,8 @@ def main():
         holders = sorted((t for t in tops if name in closure(t, sources)), key=cost)
         tops_of = [own[name]] if name in own else holders
         commands = {top: [tests["rtl"], f"{top}::"] for top in tops_of} or {"unit": [tests["rtl_unit"]]}
+        if name in outside:
+            commands = {"axi": [tests["rtl_axi"], outside[name]]}
         if args.unit:
             if name not in unit:
                 continue

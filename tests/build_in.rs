@@ -1,4 +1,5 @@
-//! What others build the unit in with: lists of files, a FuseSoC core, constraints. Each names all of `rtl/`, and what it makes is linted.
+//! What others build the unit in with: lists of files, a FuseSoC core, constraints, a testbench in Python. Each list names all of `rtl/`, what is made of it is linted, and
+//! the testbench passes.
 
 use std::path::{Path, PathBuf};
 use std::process::Command;
@@ -29,33 +30,45 @@ fn every_list_names_every_file_in_order() {
         let files = text.lines().filter_map(|line| line.strip_prefix(before)).filter(|name| name.ends_with(".sv"));
         let (rules, files): (Vec<_>, Vec<_>) = files.partition(|name| name.starts_with("rules/"));
         assert_eq!(files, sources, "{list}");
-        assert_eq!(rules, ["rules/traversal_unit_rules.sv"], "{list}");
+        assert_eq!(rules, ["rules/axi_read_adapter_rules.sv", "rules/traversal_unit_rules.sv"], "{list}");
     }
 }
 
 #[test]
 fn constraints_name_every_port() {
-    let (constraints, unit) = (read("rtl/traversal_unit.sdc"), read("rtl/traversal_unit.sv"));
+    constraints_name_ports("traversal_unit", 15);
+    constraints_name_ports("traversal_unit_axi", 27);
+}
+
+/// The constraints of a top name its ports, so many.
+fn constraints_name_ports(top: &str, count: usize) {
+    let (constraints, unit) = (read(&format!("rtl/{top}.sdc")), read(&format!("rtl/{top}.sv")));
     let header = unit.split(");").next().unwrap_or_default();
     let ports: Vec<&str> = header
         .lines()
         .filter(|line| line.trim_start().starts_with("input ") || line.trim_start().starts_with("output "))
         .filter_map(|line| line.split_whitespace().last()?.trim_end_matches(',').into())
         .collect();
-    assert_eq!(ports.len(), 15, "{ports:?}");
+    assert_eq!(ports.len(), count, "{ports:?}");
     let named: Vec<&str> = constraints.split(|c: char| " {}[]*\n".contains(c)).collect();
     for port in ports {
-        assert!(named.contains(&port), "rtl/traversal_unit.sdc has no {port}");
+        assert!(named.contains(&port), "rtl/{top}.sdc has no {port}");
     }
 }
 
 #[test]
 fn what_fusesoc_makes_is_clean() {
+    what_fusesoc_makes("lint", "traversal_unit");
+    what_fusesoc_makes("lint_axi", "traversal_unit_axi");
+}
+
+/// Lints what FuseSoC makes of a target of its core.
+fn what_fusesoc_makes(target: &str, top: &str) {
     let fusesoc = tb::root().join("target/tools/fusesoc/bin/fusesoc");
     assert!(fusesoc.is_file(), "no file {}: run scripts/tools", fusesoc.display());
     let folder = tempfile::tempdir().unwrap_or_else(|error| panic!("{error}"));
     let out = Command::new(fusesoc)
-        .args(["--cores-root", "rtl", "run", "--target=lint", "--setup", "--build-root"])
+        .args(["--cores-root", "rtl", "run", &format!("--target={target}"), "--setup", "--build-root"])
         .arg(folder.path())
         .arg("lodray:hw:traversal_unit")
         .current_dir(tb::root())
@@ -67,7 +80,44 @@ fn what_fusesoc_makes_is_clean() {
     // It names files beside itself.
     let arguments = ["-F".to_owned(), list.display().to_string()];
     let verilator = Verilator::find().unwrap_or_else(|error| panic!("{error}"));
-    verilator.run("traversal_unit", &arguments).unwrap_or_else(|error| panic!("{error}"));
+    verilator.run(top, &arguments).unwrap_or_else(|error| panic!("{error}"));
+}
+
+/// The program that these tests are built with.
+fn lodray(folder: &Path, arguments: &str) {
+    let out = assert_cmd::cargo::cargo_bin_cmd!("lodray").current_dir(folder).args(arguments.split_whitespace()).output();
+    let out = out.unwrap_or_else(|error| panic!("{error}"));
+    assert!(out.status.success(), "{arguments}: {}", String::from_utf8_lossy(&out.stderr));
+}
+
+#[test]
+fn the_cocotb_example_passes() {
+    let python = tb::root().join("target/tools/cocotb/bin/python3");
+    assert!(python.is_file(), "no file {}: run scripts/tools", python.display());
+    // Its own Verilator first, as someone has it who installed one.
+    let include = Verilator::find().unwrap_or_else(|error| panic!("{error}")).include();
+    let root = include.parent().unwrap_or(Path::new(""));
+    let path = std::env::var("PATH").unwrap_or_default();
+    let desk = tempfile::tempdir().unwrap_or_else(|error| panic!("{error}"));
+    lodray(desk.path(), "generate sphere --levels 3 --base 32 -o sphere.lod");
+    lodray(desk.path(), "trace sphere.lod --pixel 24,24 --size 48x48 --distance 3 --ports ray.json");
+    let run = |ports: &str| {
+        let mut command = Command::new(&python);
+        command.env("VERILATOR_ROOT", root).env("PATH", format!("{}:{path}", root.join("bin").display()));
+        command.arg("examples/cocotb/run.py").args(["sphere.lod", ports].map(|name| desk.path().join(name)));
+        command.arg("--build").arg(tb::root().join("target/cocotb")).current_dir(tb::root());
+        let out = command.output().unwrap_or_else(|error| panic!("{}: {error}", python.display()));
+        (out.status.success(), format!("{}{}", String::from_utf8_lossy(&out.stdout), String::from_utf8_lossy(&out.stderr)))
+    };
+    let (passed, said) = run("ray.json");
+    assert!(passed && said.contains("PASS=1"), "{said}");
+    // It looks: another hit is not what came.
+    let ray = std::fs::read_to_string(desk.path().join("ray.json")).unwrap_or_else(|error| panic!("{error}"));
+    let mut ports: serde_json::Value = serde_json::from_str(&ray).unwrap_or_else(|error| panic!("{error}"));
+    ports["out_o"]["bits"] = "0x1".into();
+    std::fs::write(desk.path().join("wrong.json"), ports.to_string()).unwrap_or_else(|error| panic!("{error}"));
+    let (passed, said) = run("wrong.json");
+    assert!(!passed && said.contains("out_o is "), "{said}");
 }
 
 /// Files below a folder with this ending.

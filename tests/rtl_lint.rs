@@ -33,9 +33,17 @@ fn tops() -> Vec<(String, Vec<(&'static str, u64)>)> {
     // Verilator takes no module as the top that contains itself: such a one is linted within its users.
     tops.retain(|(name, _)| name != "lod_pkg" && !text(name).contains(&format!("\n    {name} #(")));
     assert!(tops.len() >= 20, "only {} tops in {}", tops.len(), tb::rtl().display());
-    for (top, parameter, value) in
-        [("tri_test", "EDGES_PER_CYCLE", 1), ("traversal_unit", "EDGES_PER_CYCLE", 1), ("traversal_unit", "CONTEXTS", 1)]
-    {
+    for (top, parameter, value) in [
+        ("tri_test", "EDGES_PER_CYCLE", 1),
+        ("traversal_unit", "EDGES_PER_CYCLE", 1),
+        ("traversal_unit", "CONTEXTS", 1),
+        ("axi_read_adapter", "DATA_W", 128),
+        ("axi_read_adapter", "DATA_W", 64),
+        ("axi_read_adapter", "DATA_W", 32),
+        ("axi_read_adapter", "ADDRESS_W", 32),
+        ("axi_read_adapter", "READS", 7),
+        ("axi_read_adapter", "READS", 2),
+    ] {
         tops.push((top.to_owned(), vec![(parameter, value)]));
     }
     tops
@@ -77,7 +85,7 @@ fn every_module_is_clean_in_other_hardware() {
     for hardware in hardwares() {
         hardware.validate().unwrap_or_else(|error| panic!("{error}"));
         // With everything in them: all of `rtl/`.
-        for top in ["traversal_unit", "box_test32"] {
+        for top in ["traversal_unit_axi", "box_test32"] {
             wrong.extend(tb::lint(&verilator(), top, &[], &hardware).err().map(|error| format!("{hardware:?}: {error}")));
             linted += 1;
         }
@@ -145,5 +153,8 @@ fn verible_finds_nothing() {
 fn yosys_finds_nothing() {
     for parameters in [&[("CONTEXTS", 1)][..], &[("CONTEXTS", 2), ("EDGES_PER_CYCLE", 1)]] {
         tb::yosys("traversal_unit", parameters, &Hardware::default()).unwrap_or_else(|error| panic!("{parameters:?}: {error}"));
+    }
+    for parameters in [&[][..], &[("DATA_W", 32), ("ADDRESS_W", 32), ("READS", 7)]] {
+        tb::yosys("axi_read_adapter", parameters, &Hardware::default()).unwrap_or_else(|error| panic!("{parameters:?}: {error}"));
     }
 }

@@ -89,6 +89,55 @@ fn steps_as_text() {
 }
 
 #[test]
+fn ports_are_those_of_a_unit_over_the_scenes_file() {
+    use lodray::format::Scene;
+    use lodray::hardware::ports::{HitOut, RayIn, SceneConfig};
+    use lodray::num::Wire;
+    let folder = desk();
+    let desk = folder.path();
+    let view = "--pixel 24,24 --size 48x48 --distance 3";
+    assert_eq!(succeed(desk, &format!("trace a.lod {view} --ports ray.json")), "ports in ray.json\n");
+    let ports: serde_json::Value = serde_json::from_slice(&fs::read(desk.join("ray.json")).unwrap()).unwrap();
+    let words = |port: &str, width: u32| {
+        let digits = ports[port]["bits"].as_str().and_then(|bits| bits.strip_prefix("0x")).expect("hexadecimal");
+        assert_eq!((ports[port]["width"].as_u64(), digits.len()), (Some(u64::from(width)), width.div_ceil(4) as usize), "{port}");
+        let chunks = digits.as_bytes().rchunks(16).map(|chunk| std::str::from_utf8(chunk).unwrap());
+        chunks.map(|chunk| u64::from_str_radix(chunk, 16).unwrap()).collect::<Vec<_>>()
+    };
+    // The lines that scene_i points at are the sections of the file.
+    let config = SceneConfig::from_words(&words("scene_i", SceneConfig::WIDTH));
+    let scene = Scene::open(&desk.join("a.lod")).unwrap();
+    let at = |first: u64, bytes: usize| &scene.bytes()[32 * first as usize..][..bytes];
+    for (first, section) in [
+        (config.nodes, bytes_of(scene.nodes().as_flattened())),
+        (config.records, bytes_of(scene.records().as_flattened())),
+        (config.bounds, bytes_of(scene.bounds().as_flattened())),
+        (config.vertices, bytes_of(scene.vertices().as_flattened())),
+    ] {
+        assert!(!section.is_empty() && at(first.get(), section.len()) == section);
+    }
+    assert_eq!((config.levels.get(), config.compact), (3, true));
+    // What it met and what it read are what the text says.
+    let steps = succeed(desk, &format!("trace a.lod {view} --text"));
+    let (ray, hit) = (RayIn::from_words(&words("in_i", RayIn::WIDTH)), HitOut::from_words(&words("out_o", HitOut::WIDTH)));
+    assert!(steps.starts_with(&format!("ray from {:?} along {:?}", ray.ray.origin.get(), ray.ray.direction.get())), "{steps}");
+    assert!(hit.found && steps.contains(&format!("hit: t {}", hit.hit.t)), "{steps}");
+    assert!(steps.ends_with(&format!(" {} memory lines\n", ports["lines"])), "{steps}");
+
+    // Beside the waveform, and beside the text.
+    succeed(desk, &format!("trace a.lod {view} -o ray.vcd --ports again.json"));
+    assert!(succeed(desk, &format!("trace a.lod {view} -o - --ports again.json")).ends_with(&steps));
+    assert_eq!(fs::read(desk.join("again.json")).unwrap(), fs::read(desk.join("ray.json")).unwrap());
+    fail(desk, &format!("trace a.lod {view} --ports a.lod"), "it is the input file");
+    fail(desk, &format!("trace a.lod {view} -o new.vcd --ports new.sucl"), "it is a file of the waveform");
+}
+
+/// As they lie in memory.
+fn bytes_of(words: &[u64]) -> Vec<u8> {
+    words.iter().flat_map(|word| word.to_le_bytes()).collect()
+}
+
+#[test]
 fn a_plans_unit_takes_the_same_steps() {
     let folder = desk();
     let desk = folder.path();

@@ -7,14 +7,15 @@ use super::plan;
 use anyhow::Context;
 use lodray::format::Scene;
 use lodray::hardware::Hardware;
+use lodray::hardware::ports::RayIn;
 use lodray::method::knob::quality;
 use lodray::method::lod::LodImage;
-use lodray::num::Ray;
+use lodray::num::{Ray, U, Wire};
 use lodray::rays::{Camera, ModelSpace};
 use lodray::sim::unit::environment::RunReport;
 use lodray::sim::unit::ray_trace::RayTrace;
 use lodray::sim::unit::wave::{Waves, gtkwave_save, gtkwave_states, one_ray, surfer_commands};
-use lodray::sim::unit::{SceneMemory, TraversalUnit};
+use lodray::sim::unit::{SceneMemory, TraversalUnit, file_config};
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use std::str::FromStr;
@@ -35,11 +36,14 @@ pub struct Args {
     #[arg(long, value_name = "CYCLES", default_value_t = 40, value_parser = whole::<u32>(1..=100_000), allow_negative_numbers = true)]
     memory_latency: u32,
     /// Waveform (VCD); save files for GTKWave and Surfer are written beside it. "-": as --text
-    #[arg(short, long, value_name = "FILE", required_unless_present = "text")]
+    #[arg(short, long, value_name = "FILE", required_unless_present_any = ["text", "ports"])]
     out: Option<PathBuf>,
     /// The unit of a plan (from lodray plan), in place of the full one
     #[arg(long)]
     plan: Option<PathBuf>,
+    /// What goes over the unit's ports, as JSON: scene_i for the scene's file as memory, in_i, out_o
+    #[arg(long, value_name = "FILE")]
+    ports: Option<PathBuf>,
     /// Print each step: visits, memory lines, edge states, decisions
     #[arg(long)]
     text: bool,
@@ -86,6 +90,11 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
     );
     let file = args.out.as_deref().filter(|path| *path != Path::new("-"));
     let files = file.map(|vcd| Files::beside(vcd, &args.scene)).transpose()?;
+    if let Some(path) = &args.ports {
+        check_target(path, &[&args.scene])?;
+        let clash = files.as_ref().is_some_and(|files| files.all().contains(&path.as_path()));
+        anyhow::ensure!(!clash, "cannot write {}: it is a file of the waveform", path.display());
+    }
     let entered = space.enter(&camera.ray(x, y), args.delta);
     let ray = entered.with_context(|| format!("the ray of pixel {x},{y} misses the model's box, so the unit never gets it"))?.ray;
 
@@ -105,7 +114,11 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
             ))?;
         }
     }
-    if args.text || file.is_none() {
+    if let Some(path) = &args.ports {
+        write_file(path, ports(&bench, &scene)?)?;
+        remark(&format!("ports in {}", path.display()))?;
+    }
+    if args.text || (file.is_none() && (args.out.is_some() || args.ports.is_none())) {
         print_line(&text(&bench)?)?;
     }
     Ok(ExitCode::SUCCESS)
@@ -116,6 +129,26 @@ fn planned(path: &Path, args: &Args, scene: &Scene, camera: &Camera) -> anyhow::
     let plan = plan::read(path)?;
     plan::check(&plan, &args.scene, scene, camera, args.delta)?;
     Ok(plan.hardware(&Hardware::one_context()))
+}
+
+/// What goes over the ports of a unit whose memory holds the scene's file as it is, from line 0 on.
+fn ports(bench: &Bench<'_>, scene: &Scene) -> anyhow::Result<String> {
+    let report = one_ray(&mut bench.unit(), &bench.memory, bench.latency, &bench.ray)?;
+    let ports = serde_json::json!({
+        "scene_i": bits(&file_config(scene)),
+        "in_i": bits(&RayIn { tag: U::default(), ray: bench.ray }),
+        "out_o": bits(&report.rays[0].hit),
+        "lines": report.requests,
+    });
+    Ok(serde_json::to_string_pretty(&ports)? + "\n")
+}
+
+/// A port's word: its width, and its bits as a hexadecimal number.
+fn bits(word: &impl Wire) -> serde_json::Value {
+    let bits = word.to_bits();
+    let digits: String = bits.words().iter().rev().map(|word| format!("{word:016x}")).collect();
+    let above = digits.len() - bits.width().div_ceil(4) as usize; // of whole words
+    serde_json::json!({ "width": bits.width(), "bits": format!("0x{}", &digits[above..]) })
 }
 
 /// The ray's steps.

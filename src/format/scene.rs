@@ -143,7 +143,12 @@ impl Scene {
 
     /// Bytes of a section.
     pub fn section(&self, section: FileSection) -> &[u8] {
-        &self.bytes()[self.ranges[section.slot()].clone()]
+        &self.bytes()[self.range(section)]
+    }
+
+    /// Where a section lies in the file.
+    pub fn range(&self, section: FileSection) -> Range<usize> {
+        self.ranges[section.slot()].clone()
     }
 
     /// L0 quad-BVH nodes ([`super::BvhNode`]), the root first.

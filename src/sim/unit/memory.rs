@@ -1,8 +1,9 @@
 //! A scene's sections as the unit's memory, from some address on.
 
+use crate::format::{FileSection, Scene};
 use crate::hardware::ports::SceneConfig;
 use crate::method::lod::{BOUNDS, LodImage, NODES, RECORDS, VERTICES};
-use crate::num::{BoundScale, LineAddress, U};
+use crate::num::{BoundScale, LINE_BYTES, LineAddress, U};
 use crate::step::{MemoryMap, SectionId};
 
 /// The lines of a model, as its [`MemoryMap`] has them.
@@ -70,5 +71,17 @@ impl<'a> SceneMemory<'a> {
         let words = self.sections[section.place()];
         let at = 4 * line as usize; // within a slice
         Some(std::array::from_fn(|k| U::new(words[at + k])))
+    }
+}
+
+/// What the unit is told of a scene whose file lies in memory as it is, from line 0 on: sections begin at multiples of two lines.
+pub fn file_config(scene: &Scene) -> SceneConfig {
+    let first = |section| U::new(scene.range(section).start as u64 / LINE_BYTES);
+    SceneConfig {
+        nodes: first(FileSection::Nodes),
+        records: first(FileSection::Records),
+        bounds: first(FileSection::Bounds),
+        vertices: first(FileSection::Vertices),
+        ..SceneMemory::new(LodImage::of(scene), 0).config()
     }
 }

@@ -24,7 +24,7 @@ pub use crate::hardware::{Fetch, State};
 pub(super) use arbiter::Arbiter;
 pub use counts::UnitCounts;
 pub use error::UnitError;
-pub use memory::SceneMemory;
+pub use memory::{SceneMemory, file_config};
 pub(super) use operands::Resource;
 pub use register::BlockCounts;
 pub use traffic::{Latency, Stall, Traffic};
