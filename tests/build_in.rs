@@ -42,7 +42,7 @@ fn constraints_name_every_port() {
         .filter(|line| line.trim_start().starts_with("input ") || line.trim_start().starts_with("output "))
         .filter_map(|line| line.split_whitespace().last()?.trim_end_matches(',').into())
         .collect();
-    assert_eq!(ports.len(), 15, "{ports:?}");
+    assert_eq!(ports.len(), 17, "{ports:?}");
     let named: Vec<&str> = constraints.split(|c: char| " {}[]*\n".contains(c)).collect();
     for port in ports {
         assert!(named.contains(&port), "rtl/traversal_unit.sdc has no {port}");
