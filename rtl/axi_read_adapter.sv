@@ -2,8 +2,8 @@
 
 /// From the memory port of `traversal_unit` to an AXI4 read master: each line is a burst of 32 bytes at `base_i` + 32 times its address.
 ///
-/// An id is the number of one of `READS` places, which keeps the unit's tag from the request to the last beat of its answer: so ids are dense, none is outstanding twice, and
-/// answers may come in any order, beats of different ids in turns. Requests wait while all places are taken; answers are taken always, and go on one cycle after their last beat.
+/// An id is the number of one of `READS` places, which keeps the unit's tag and epoch from the request to the last beat of its answer: so ids are dense, none is outstanding twice, and
+/// answers may come in any order, beats of different ids in turns; one of which a beat is no OKAY is an error. Requests wait while all places are taken; answers are taken always, and go on one cycle after their last beat.
 /// A line begins at a multiple of its length, so no burst crosses 4 KB. Every output comes from registers alone. What an interconnect must do: docs/integration.md.
 module axi_read_adapter #(
   parameter int unsigned DATA_W = 256,
@@ -24,8 +24,6 @@ module axi_read_adapter #(
   input  lod_pkg::memory_request_t mem_i,
   output logic                     mem_valid_o,
   output lod_pkg::memory_answer_t  mem_o,
-  // A beat of this answer was no OKAY.
-  output logic                     mem_error_o,
   output logic                     axi_arvalid_o,
   input  logic                     axi_arready_i,
   output logic [$clog2(READS)-1:0] axi_arid_o,
@@ -89,7 +87,7 @@ module axi_read_adapter #(
   end
 
   always_ff @(posedge clk_i) begin
-    if (mem_valid_i && some_free) tags_q[place] <= mem_i.tag;
+    if (mem_valid_i && some_free) tags_q[place] <= {mem_i.tag, mem_i.epoch};
   end
 
   // ---- Requests ----
@@ -144,9 +142,11 @@ module axi_read_adapter #(
     end
   end
 
+  logic error;
+  assign error = ((wrong_q | wrong) & done) != '0;
+
   always_ff @(posedge clk_i) begin
-    mem_o       <= {tags_q[axi_rid_i], line};
-    mem_error_o <= ((wrong_q | wrong) & done) != '0;
+    mem_o <= {tags_q[axi_rid_i], error, line};
   end
 
 endmodule

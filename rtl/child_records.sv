@@ -12,6 +12,8 @@ module child_records (
   input  logic [2:0]                        count_i,
   input  logic [3:0][1:0]                   order_i,
   input  logic [3:0][lod_pkg::T_NEAR_W-1:0] t_near_i,
+  // Of a node: no scene has one of such kinds, or with its frame there.
+  output logic                              wrong_o,
   output logic [3:0]                        present_o,
   output lod_pkg::code3_t                   origin_o,
   output logic [2:0]                        halves_o,
@@ -33,6 +35,12 @@ module child_records (
   // 0 to 3 while count_i is 1 to 4, when it is used.
   assign place = 2'(count_i - 3'd1);
   assign child = order_i[place];
+
+  // There are three kinds of slots, and no box code is below -32767.
+  always_comb begin
+    wrong_o = node.origin.x == 16'sh8000 || node.origin.y == 16'sh8000 || node.origin.z == 16'sh8000;
+    for (int unsigned k = 0; k < 4; k++) if (node.kinds[k] == 2'd3) wrong_o = 1'b1;
+  end
 
   // A group's boxes have no frame of their own; a node's planes are narrower.
   assign origin_o    = tree_i ? '0 : node.origin;

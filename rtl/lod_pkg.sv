@@ -33,6 +33,8 @@ package lod_pkg;
   localparam int unsigned BOUND_CODE_W = 8;
   localparam int unsigned BOUND_W = 33;                                         // |q - m| < 2^32.8
   localparam int unsigned LINE_ADDRESS_W = 36;                                  // 2 TiB of 32-byte lines
+  localparam int unsigned EPOCH_W = 8;                                          // of the number of a context's ray, which its lines come back with
+  localparam int unsigned ANSWER_LIMIT_W = 20;                                  // cycles that a line may take
   localparam int unsigned NODE_INDEX_W = 20;                                    // of a node at the ports: 4^10 nodes on the last level that there can be
   localparam int unsigned FULL_ID_W = 48;                                       // 28 bits of tree, 2 of each of ten levels
   localparam int unsigned COORDINATE_W = 32;                                    // a coordinate without the bits that are always 0
@@ -46,12 +48,15 @@ package lod_pkg;
   localparam int unsigned SIGNED_T_NUMERATOR_W = T_NUMERATOR_W + 1 - 3 * COORDINATE_ZEROS;
 
   // Sizes.
-  localparam int unsigned MAX_CONTEXTS = 64;    // that CONTEXT_W can number
-  localparam int unsigned STACK_ENTRIES = 103;  // 3 (MAX_BVH_DEPTH + STORED_LEVELS) + 1: each level leaves at most three siblings waiting
-  localparam int unsigned KEPT_ENTRY_W = 75;    // of a stack entry, where it is kept
-  localparam int unsigned SPLIT_TRIANGLES = 9;  // of a context: one of each level that splits into nodes
-  localparam int unsigned NODE_W = 20;          // of a node within its level: two bits of each level
-  localparam int unsigned KEPT_NODE_W = 20;     // where it is kept: two bits of each stored level
+  localparam int unsigned COORD_LIMIT = 2147352576;  // of a coordinate in magnitude
+  localparam int unsigned MAX_BOUND_OFFSET = 272;    // of a scale of displacement bounds
+  localparam int unsigned SCENE_LEVELS = 10;         // splits N of a model whose hits it can map
+  localparam int unsigned MAX_CONTEXTS = 64;         // that CONTEXT_W can number
+  localparam int unsigned STACK_ENTRIES = 103;       // 3 (MAX_BVH_DEPTH + STORED_LEVELS) + 1: each level leaves at most three siblings waiting
+  localparam int unsigned KEPT_ENTRY_W = 75;         // of a stack entry, where it is kept
+  localparam int unsigned SPLIT_TRIANGLES = 9;       // of a context: one of each level that splits into nodes
+  localparam int unsigned NODE_W = 20;               // of a node within its level: two bits of each level
+  localparam int unsigned KEPT_NODE_W = 20;          // where it is kept: two bits of each stored level
 
   // Scales.
   localparam int unsigned BOX_SHIFT = 16;
@@ -615,18 +620,20 @@ package lod_pkg;
   } hit_t;
   localparam int unsigned HIT_W = RAY_T_W + 1 + 28 + 4 + NODE_INDEX_W + BARY_W + BARY_W + BARY_W + NODE_INDEX_W + BARY_W + BARY_W + BARY_W;
 
-  // The model that the rays meet; held still while rays are under way.
+  // The model that the rays meet, and what bounds their ways; held still while rays are under way.
   typedef struct packed {
-    logic [3:0] levels;                   // Number of splits N.
-    logic [4:0] zeros;                    // Zero bits at the bottom of all coordinates: of morphed triangles too, and of the rays' origins.
-    logic compact;                        // Inserted vertices are stored as displacements from the midpoints of their edges.
-    bound_scale_t scale;                  // Scale of the displacement bounds.
-    logic [LINE_ADDRESS_W-1:0] nodes;     // First line of the quad-BVH's nodes.
-    logic [LINE_ADDRESS_W-1:0] records;   // First line of the L0 records.
-    logic [LINE_ADDRESS_W-1:0] bounds;    // First line of the bound data.
-    logic [LINE_ADDRESS_W-1:0] vertices;  // First line of the vertex data.
+    logic [3:0] levels;                       // Number of splits N.
+    logic [4:0] zeros;                        // Zero bits at the bottom of all coordinates: of morphed triangles too, and of the rays' origins.
+    logic compact;                            // Inserted vertices are stored as displacements from the midpoints of their edges.
+    bound_scale_t scale;                      // Scale of the displacement bounds.
+    logic [LINE_ADDRESS_W-1:0] nodes;         // First line of the quad-BVH's nodes.
+    logic [LINE_ADDRESS_W-1:0] records;       // First line of the L0 records.
+    logic [LINE_ADDRESS_W-1:0] bounds;        // First line of the bound data.
+    logic [LINE_ADDRESS_W-1:0] vertices;      // First line of the vertex data.
+    logic [31:0] visits;                      // The most entries that a ray can visit: quad-BVH nodes, trees, and nodes of trees. A ray that would visit more is in a loop.
+    logic [ANSWER_LIMIT_W-1:0] answer_limit;  // Cycles, less one, after which a line that is waited for counts as late if it has not come in as many more.
   } scene_config_t;
-  localparam int unsigned SCENE_CONFIG_W = 4 + 5 + 1 + BOUND_SCALE_W + LINE_ADDRESS_W + LINE_ADDRESS_W + LINE_ADDRESS_W + LINE_ADDRESS_W;
+  localparam int unsigned SCENE_CONFIG_W = 4 + 5 + 1 + BOUND_SCALE_W + LINE_ADDRESS_W + LINE_ADDRESS_W + LINE_ADDRESS_W + LINE_ADDRESS_W + 32 + ANSWER_LIMIT_W;
 
   // A ray to trace.
   typedef struct packed {
@@ -637,25 +644,29 @@ package lod_pkg;
 
   // A ray traced.
   typedef struct packed {
-    logic [31:0] tag;  // The ray's tag.
-    logic found;       // The ray met something.
-    hit_t hit;         // What; all zero if nothing.
+    logic [31:0] tag;   // The ray's tag.
+    logic [2:0] error;  // Why it ended early: a code of `ray_error_t`. 0: it did not.
+    logic found;        // The ray met something; 0 if it ended early.
+    hit_t hit;          // What; all zero if nothing.
   } hit_out_t;
-  localparam int unsigned HIT_OUT_W = 32 + 1 + HIT_W;
+  localparam int unsigned HIT_OUT_W = 32 + 3 + 1 + HIT_W;
 
   // A memory line asked for.
   typedef struct packed {
     logic [7:0] tag;                     // Ray context (upper six bits) and place of the line in its record (lower two).
+    logic [EPOCH_W-1:0] epoch;           // Of the context's rays, the one that asks: comes back with the line.
     logic [LINE_ADDRESS_W-1:0] address;  // The line.
   } memory_request_t;
-  localparam int unsigned MEMORY_REQUEST_W = 8 + LINE_ADDRESS_W;
+  localparam int unsigned MEMORY_REQUEST_W = 8 + EPOCH_W + LINE_ADDRESS_W;
 
   // A memory line that came.
   typedef struct packed {
-    logic [7:0] tag;         // Tag of the request.
-    logic [3:0][63:0] line;  // Its 32 bytes, word 0 first.
+    logic [7:0] tag;            // Tag of the request.
+    logic [EPOCH_W-1:0] epoch;  // Its epoch.
+    logic error;                // There is no such line, or it could not be read.
+    logic [3:0][63:0] line;     // Its 32 bytes, word 0 first.
   } memory_answer_t;
-  localparam int unsigned MEMORY_ANSWER_W = 8 + 4 * 64;
+  localparam int unsigned MEMORY_ANSWER_W = 8 + EPOCH_W + 1 + 4 * 64;
 
   // State of a context.
   typedef enum logic [4:0] {
@@ -689,6 +700,18 @@ package lod_pkg;
     VERTEX = 2'd2,  // inserted vertices and, but on the last split, the children's sibling group
     GROUP  = 2'd3   // the sibling group alone: the inserted vertices came with the L0 record
   } fetch_t;
+
+  // Why a ray ended early.
+  typedef enum logic [2:0] {
+    ERROR_NONE    = 3'd0,
+    ERROR_MEMORY  = 3'd1,  // a line came with an error
+    ERROR_LATE    = 3'd2,  // a line did not come in time
+    ERROR_IMAGE   = 3'd3,  // a line holds what no scene of this configuration has there
+    ERROR_VISITS  = 3'd4,  // more entries were visited than the scene has
+    ERROR_STACK   = 3'd5,  // more entries wait than the stack has room for
+    ERROR_SCENE   = 3'd6,  // the scene is not for this hardware
+    ERROR_ABORTED = 3'd7   // the unit was flushed
+  } ray_error_t;
 
   // Coordinates and directions as they are kept, without the bits that are always 0; and as they were.
   typedef struct packed {
@@ -747,6 +770,15 @@ package lod_pkg;
     whole_setup = {whole_axis(r.x), whole_axis(r.y), whole_axis(r.z), 63'(r.moment[2]) << MOMENT_ZEROS, 63'(r.moment[1]) << MOMENT_ZEROS, 63'(r.moment[0]) << MOMENT_ZEROS};
   endfunction
 
+  // A corner or an inserted vertex where no model has one: beyond the largest coordinate, or not on a grid of so many zero bits, 16 at most.
+  function automatic logic misplaced(input point_t p, input logic [4:0] zeros);
+    logic signed [31:0] most;
+    logic [15:0] off_grid;
+    most      = $signed(32'(COORD_LIMIT));
+    off_grid  = (p.x[15:0] | p.y[15:0] | p.z[15:0]) & ~(16'hFFFF << zeros);
+    misplaced = off_grid != '0 || p.x > most || p.x < -most || p.y > most || p.y < -most || p.z > most || p.z < -most;
+  endfunction
+
   // A corner as seen from an origin.
   function automatic logic [3*RELATIVE_W-1:0] relative_corner(input kept_point_t p, input kept_point_t x);
     relative_corner = {RELATIVE_W'(p.x) - RELATIVE_W'(x.x), RELATIVE_W'(p.y) - RELATIVE_W'(x.y), RELATIVE_W'(p.z) - RELATIVE_W'(x.z)};
@@ -773,9 +805,10 @@ package lod_pkg;
   localparam logic [1:0] DIVIDE_FOR_V = 2'd1;
   localparam logic [1:0] DIVIDE_FOR_W = 2'd2;
 
-  // Tags within the unit: a context's number, and two bits of a triangle's number or of a line's place; a division's has what it is for in front.
+  // Tags within the unit: a context's number, and two bits of a triangle's number or of a line's place; a division's has what it is for in front, a line's the epoch behind.
   localparam int unsigned PLACE_TAG_W = CONTEXT_W + 2;
   localparam int unsigned DIVIDE_TAG_W = 2 + PLACE_TAG_W;
+  localparam int unsigned FETCH_TAG_W = PLACE_TAG_W + EPOCH_W;
 
   // A hit on its way to the closest.
   typedef struct packed {

@@ -4,11 +4,16 @@
 ///
 /// States, conditions and registers are those of docs/traversal-unit.md. A context asks for a block with `*_request_o`, holding the operands until
 /// `*_grant_i`; the result comes with `*_valid_i`, later. It computes nothing itself but counts.
-/// Only states and bits that ask for something are reset.
+/// What cannot be done ends the ray early, before it is done; errors of memory and a flush are kept until the context waits for no block.
+/// Only states, bits that ask for something, and the epoch are reset.
 module ray_context (
   input  logic                             clk_i,
   input  logic                             rst_ni,
   input  lod_pkg::scene_config_t           scene_i,
+  // The scene is one for this hardware; every ray under way ends; the limit of answers has passed since the last tick.
+  input  logic                             fits_i,
+  input  logic                             flush_i,
+  input  logic                             tick_i,
   // Ray in.
   output logic                             idle_o,
   input  logic                             take_i,
@@ -22,6 +27,7 @@ module ray_context (
   // node_address and the memory behind it; `place_o` is the line's place: the line buffer that it goes to.
   output logic                             fetch_request_o,
   output logic                             fetch_place_o,
+  output logic [lod_pkg::EPOCH_W-1:0]      fetch_epoch_o,
   output lod_pkg::node_address_in_t        fetch_o,
   input  logic                             fetch_grant_i,
   input  logic                             line_valid_i,
@@ -115,6 +121,13 @@ module ray_context (
   logic [1:0]   want_q, waiting_q;
   logic [255:0] line0_q, line1_q;
 
+  // Number of the ray among the context's: its lines come back with it. Why it ends early, how many entries it may still visit, and whether a tick has passed
+  // since something came that it waits for.
+  logic [lod_pkg::EPOCH_W-1:0] epoch_q;
+  lod_pkg::ray_error_t         error_q;
+  logic [31:0]                 visits_q;
+  logic                        stale_q;
+
   // Children still to be pushed.
   lod_pkg::child_test_out_t sorted_q;
   logic [2:0]               count_q;
@@ -180,18 +193,18 @@ module ray_context (
 
   // ---- Stack and split triangles ----
 
-  logic                  push, pop, drop, stack_empty;
+  logic                  push, pop, drop, stop, stack_empty, stack_full;
   lod_pkg::stack_entry_t top, child_entry;
 
   traversal_stack u_stack (
     .clk_i, .rst_ni,
     .clear_i(setup_valid_i),
     .push_i(push), .entry_i(child_entry),
-    .pop_i(pop), .entry_o(top), .empty_o(stack_empty)
+    .pop_i(pop), .entry_o(top), .empty_o(stack_empty), .full_o(stack_full)
   );
 
-  assign push = state_q == lod_pkg::PUSH && count_q > 3'd1;
-  assign pop  = state_q == lod_pkg::POP && !stack_empty;
+  assign push = state_q == lod_pkg::PUSH && count_q > 3'd1 && !stop;
+  assign pop  = state_q == lod_pkg::POP && !stack_empty && !stop;
   // 17 + 18 bits against 35.
   assign drop = {top.t_near, lod_pkg::T_NEAR_TO_T_SHIFT'(0)} > t_max;
 
@@ -228,6 +241,7 @@ module ray_context (
 
   // ---- Children ----
 
+  logic             wrong_node;
   logic [3:0]       present;
   lod_pkg::code3_t  origin;
   logic [2:0]       halves;
@@ -239,7 +253,7 @@ module ray_context (
     .line_i(line0_q),
     .level_i(level), .node_i(node),
     .count_i(count_q), .order_i(sorted_q.order), .t_near_i(sorted_q.t_near),
-    .present_o(present), .origin_o(origin), .halves_o(halves), .exponents_o(exponents), .planes_o(planes), .entry_o(child_entry)
+    .wrong_o(wrong_node), .present_o(present), .origin_o(origin), .halves_o(halves), .exponents_o(exponents), .planes_o(planes), .entry_o(child_entry)
   );
 
   // ---- Requests ----
@@ -253,7 +267,8 @@ module ray_context (
   assign direction_whole = lod_pkg::whole_direction(direction_q);
   assign setup_o         = {origin_whole, direction_whole};
 
-  assign fetch_request_o = state_q == lod_pkg::FETCH && want_q != '0;
+  assign fetch_request_o = state_q == lod_pkg::FETCH && want_q != '0 && error_q == lod_pkg::ERROR_NONE;
+  assign fetch_epoch_o   = epoch_q;
   // Vertices before the group.
   assign fetch_place_o   = want_q[1] && (fetch_q == lod_pkg::VERTEX || !want_q[0]);
 
@@ -277,7 +292,7 @@ module ray_context (
     endcase
   end
 
-  assign child_request_o = state_q == lod_pkg::CHILD && !waiting_q[0];
+  assign child_request_o = state_q == lod_pkg::CHILD && !waiting_q[0] && error_q == lod_pkg::ERROR_NONE;
 
   // The node's triangle as others take it.
   lod_pkg::point_t whole_f0, whole_f1, whole_f2, whole_g0, whole_g1, whole_g2, whole_p0, whole_p1, whole_p2, whole_q0, whole_q1, whole_q2;
@@ -371,23 +386,107 @@ module ray_context (
   assign hit_request_o = state_q == lod_pkg::DONE;
 
   always_comb begin
-    hit_o     = '0;
-    hit_o.tag = tag_q;
-    if (known) begin
+    hit_o       = '0;
+    hit_o.tag   = tag_q;
+    hit_o.error = error_q;
+    if (known && error_q == lod_pkg::ERROR_NONE) begin
       hit_o.found = 1'b1;
       hit_o.hit   = best;
     end
   end
 
-  // ---- Next state ----
+  // ---- What ends a ray early ----
 
   logic record_there;
   assign record_there = want_q == '0 && waiting_q == '0;
 
+  // An L0 record that no scene of this configuration has: deeper, with lines beyond the bits that are kept of them, or with corners where there is none.
+  lod_pkg::kept_point_t root0, root1, root2;
+  assign root0 = lod_pkg::keep_point({corners.v0.x, 4'd0, corners.v0.y, 4'd0, corners.v0.z, 4'd0});
+  assign root1 = lod_pkg::keep_point({corners.v1.x, 4'd0, corners.v1.y, 4'd0, corners.v1.z, 4'd0});
+  assign root2 = lod_pkg::keep_point({corners.v2.x, 4'd0, corners.v2.y, 4'd0, corners.v2.z, 4'd0});
+
+  logic       too_deep, lines_beyond, wrong_record;
+  logic [4:0] root_zeros;
+  assign too_deep     = record.depth > scene_i.levels || record.depth > 4'(lod_pkg::STORED_LEVELS);
+  assign lines_beyond = record.depth != '0 && (record.group | record.vertices) >> lod_pkg::LINE_W != '0;
+  // 16 at most, in a scene that fits.
+  assign root_zeros   = 5'(scene_i.levels) + scene_i.zeros;
+  assign wrong_record = too_deep || lines_beyond || lod_pkg::misplaced(lod_pkg::whole_point(root0), root_zeros)
+                     || lod_pkg::misplaced(lod_pkg::whole_point(root1), root_zeros) || lod_pkg::misplaced(lod_pkg::whole_point(root2), root_zeros);
+
+  // Inserted vertices likewise; a displacement can lead anywhere.
+  logic wrong_vertices;
+  assign wrong_vertices = lod_pkg::misplaced(lod_pkg::whole_point(g0_now), 5'(morph_o.grid)) || lod_pkg::misplaced(lod_pkg::whole_point(g1_now), 5'(morph_o.grid))
+                       || lod_pkg::misplaced(lod_pkg::whole_point(g2_now), 5'(morph_o.grid));
+
+  // What the context cannot do in this cycle.
+  lod_pkg::ray_error_t objection;
+  always_comb begin
+    objection = lod_pkg::ERROR_NONE;
+    case (state_q)
+      lod_pkg::VISIT:      if (visits_q == '0) objection = lod_pkg::ERROR_VISITS;
+      lod_pkg::FETCH: begin
+        if (record_there && (fetch_q == lod_pkg::NODE && wrong_node || fetch_q == lod_pkg::RECORD && wrong_record)) objection = lod_pkg::ERROR_IMAGE;
+      end
+      lod_pkg::MORPH_WAIT: if (morph_valid_i && wrong_vertices) objection = lod_pkg::ERROR_IMAGE;
+      lod_pkg::PUSH: begin
+        if (count_q != '0 && child_entry.index >> lod_pkg::INDEX_W != '0) objection = lod_pkg::ERROR_IMAGE;
+        else if (count_q > 3'd1 && stack_full) objection = lod_pkg::ERROR_STACK;
+      end
+      default:             ;
+    endcase
+  end
+
+  // An error is acted upon where the context waits for no block, so that each of a block's results has its context.
+  logic waits_for_no_block;
+  always_comb begin
+    case (state_q)
+      lod_pkg::VISIT, lod_pkg::FETCH, lod_pkg::CHILD, lod_pkg::PUSH, lod_pkg::POP: waits_for_no_block = 1'b1;
+      default:                                                                     waits_for_no_block = 1'b0;
+    endcase
+  end
+  assign stop = objection != lod_pkg::ERROR_NONE || (error_q != lod_pkg::ERROR_NONE && waits_for_no_block);
+
+  // Lines that come, and whether nothing moves while they are waited for.
+  logic [1:0] granted, arrived;
+  logic       idles;
+  assign granted = fetch_grant_i ? 2'b01 << fetch_place_o : 2'b00;
+  assign arrived = line_valid_i && line_i.epoch == epoch_q && !line_i.tag[1] ? (2'b01 << line_i.tag[0]) & waiting_q : 2'b00;
+  assign idles   = !record_there && granted == '0 && arrived == '0;
+
+  lod_pkg::ray_error_t error_taken;
+  assign error_taken = flush_i ? lod_pkg::ERROR_ABORTED : fits_i ? lod_pkg::ERROR_NONE : lod_pkg::ERROR_SCENE;
+
+  // The first one stays.
+  always_ff @(posedge clk_i) begin
+    if (take_i) error_q <= error_taken;
+    else if (error_q == lod_pkg::ERROR_NONE && state_q != lod_pkg::IDLE && state_q != lod_pkg::DONE) begin
+      if (flush_i) error_q <= lod_pkg::ERROR_ABORTED;
+      else if (arrived != '0 && line_i.error) error_q <= lod_pkg::ERROR_MEMORY;
+      else if (idles && tick_i && stale_q) error_q <= lod_pkg::ERROR_LATE;
+      else error_q <= objection;
+    end
+    stale_q <= idles && (tick_i || stale_q);
+    if (setup_valid_i) visits_q <= scene_i.visits;
+    else if (state_q == lod_pkg::VISIT) visits_q <= visits_q - 32'd1;
+  end
+
+  always_ff @(posedge clk_i) begin
+    if (!rst_ni) epoch_q <= '0;
+    else if (setup_valid_i) epoch_q <= epoch_q + lod_pkg::EPOCH_W'(1);
+  end
+
+  // The unit's alone.
+  logic unused_limit;
+  assign unused_limit = ^scene_i.answer_limit;
+
+  // ---- Next state ----
+
   always_comb begin
     state_d = state_q;
     case (state_q)
-      lod_pkg::IDLE:       if (take_i) state_d = lod_pkg::SETUP;
+      lod_pkg::IDLE:       if (take_i) state_d = (error_taken == lod_pkg::ERROR_NONE) ? lod_pkg::SETUP : lod_pkg::DONE;
       lod_pkg::SETUP:      if (setup_grant_i) state_d = lod_pkg::SETUP_WAIT;
       lod_pkg::SETUP_WAIT: if (setup_valid_i) state_d = lod_pkg::VISIT;
       lod_pkg::VISIT:      state_d = (entry.kind == lod_pkg::ENTRY_TREE_NODE) ? lod_pkg::LOD : lod_pkg::FETCH;
@@ -426,6 +525,7 @@ module ray_context (
       lod_pkg::DONE:        if (hit_grant_i) state_d = lod_pkg::IDLE;
       default:              state_d = lod_pkg::IDLE;
     endcase
+    if (stop) state_d = lod_pkg::DONE;
   end
 
   always_ff @(posedge clk_i) begin
@@ -445,11 +545,6 @@ module ray_context (
   end
 
   // ---- Entry, node and triangle ----
-
-  lod_pkg::kept_point_t root0, root1, root2;
-  assign root0 = lod_pkg::keep_point({corners.v0.x, 4'd0, corners.v0.y, 4'd0, corners.v0.z, 4'd0});
-  assign root1 = lod_pkg::keep_point({corners.v1.x, 4'd0, corners.v1.y, 4'd0, corners.v1.z, 4'd0});
-  assign root2 = lod_pkg::keep_point({corners.v2.x, 4'd0, corners.v2.y, 4'd0, corners.v2.z, 4'd0});
 
   always_ff @(posedge clk_i) begin
     if (setup_valid_i) entry_q <= '0;
@@ -533,15 +628,15 @@ module ray_context (
 
   // ---- Lines ----
 
-  logic [1:0] granted, arrived;
-  logic       fetch_group;
-
-  assign granted     = fetch_grant_i ? 2'b01 << fetch_place_o : 2'b00;
-  assign arrived     = line_valid_i ? 2'b01 << line_i.tag[0] : 2'b00;
+  logic fetch_group;
   assign fetch_group = morph_valid_i && compact_root && !last_split;
 
   always_ff @(posedge clk_i) begin
     if (!rst_ni) begin
+      want_q    <= '0;
+      waiting_q <= '0;
+    end else if (take_i) begin
+      // What the ray before still waited for comes too late, if at all.
       want_q    <= '0;
       waiting_q <= '0;
     end else begin

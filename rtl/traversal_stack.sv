@@ -3,7 +3,8 @@
 /// The traversal stack of one ray (paper figure 9): what is still to be visited, nearest on top.
 ///
 /// `entry_o` is the top entry, valid while `empty_o` is low; a pop drops it at the end of the cycle. Push, pop and clear exclude each other. Depth: `STACK_ENTRIES`, which a quad-BVH of
-/// `MAX_BVH_DEPTH` levels and a tree of `STORED_LEVELS` cannot exceed (each level leaves at most three siblings waiting). Only the length is reset.
+/// `MAX_BVH_DEPTH` levels and a tree of `STORED_LEVELS` cannot exceed (each level leaves at most three siblings waiting). Of deeper ones the caller stops at
+/// `full_o`: then nothing may be pushed. Only the length is reset.
 module traversal_stack (
   input  logic                  clk_i,
   input  logic                  rst_ni,
@@ -12,7 +13,8 @@ module traversal_stack (
   input  lod_pkg::stack_entry_t entry_i,
   input  logic                  pop_i,
   output lod_pkg::stack_entry_t entry_o,
-  output logic                  empty_o
+  output logic                  empty_o,
+  output logic                  full_o
 );
 
   localparam int unsigned DEPTH = lod_pkg::STACK_ENTRIES;
@@ -28,6 +30,7 @@ module traversal_stack (
   assign top     = len_q - LEN_W'(1);
   assign entry_o = lod_pkg::whole_entry(entries_q[INDEX_W'(top)]);
   assign empty_o = len_q == '0;
+  assign full_o  = len_q == LEN_W'(DEPTH);
 
   always_ff @(posedge clk_i) begin
     if (!rst_ni) len_q <= '0;
@@ -43,7 +46,7 @@ module traversal_stack (
   always_ff @(posedge clk_i) begin
     if (rst_ni) begin
       assert (32'(push_i) + 32'(pop_i) + 32'(clear_i) <= 1);
-      assert (!(push_i && len_q == LEN_W'(DEPTH)));
+      assert (!(push_i && full_o));
       assert (!(pop_i && empty_o));
     end
   end

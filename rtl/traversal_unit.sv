@@ -6,6 +6,7 @@
 /// `src/sim/unit` is the cycle model. A result always has a place, so no block ever waits for its consumer; only the memory and hit ports stall.
 /// Memory: one 32-byte line a request, any latency and order of answers, at most two outstanding a context; answers are always taken.
 /// Hits: smaller t first, then smaller triangle; every field as at full resolution (paper section 3.6).
+/// Every ray that is taken gives exactly one hit, whatever memory holds or does; one that cannot go on gives an error (docs/integration.md).
 module traversal_unit #(
   parameter int unsigned CONTEXTS = lod_pkg::CONTEXTS,
   parameter int unsigned EDGES_PER_CYCLE = lod_pkg::EDGES_PER_CYCLE
@@ -13,6 +14,8 @@ module traversal_unit #(
   input  logic                     clk_i,
   input  logic                     rst_ni,
   input  lod_pkg::scene_config_t   scene_i,
+  input  logic                     flush_i,
+  output logic                     busy_o,
   input  logic                     valid_i,
   output logic                     ready_o,
   input  lod_pkg::ray_in_t         in_i,
@@ -43,6 +46,28 @@ module traversal_unit #(
 
   assign ready_o = idle != '0;
   assign take    = valid_i ? idle & (~idle + N'(1)) : '0;
+  // A ray that ended early has left node_address two cycles before its hit leaves, or what it asked for waits at the port.
+  assign busy_o  = idle != '1 || valid_o || mem_valid_o;
+
+  // ---- Is the scene one for this hardware? ----
+
+  logic       fits;
+  logic [5:0] zeros;
+  assign zeros = 6'(scene_i.levels) + 6'(scene_i.zeros);
+  assign fits  = scene_i.levels <= 4'(lod_pkg::SCENE_LEVELS) && 6'(scene_i.zeros) + 6'd1 > 6'(lod_pkg::COORDINATE_ZEROS) && zeros <= 6'(lod_pkg::BOX_SHIFT)
+              && (lod_pkg::STORED_LEVELS == 0 || (scene_i.compact ? lod_pkg::COMPACT_VERTICES != 0 : lod_pkg::EXACT_VERTICES != 0))
+              && scene_i.scale.offset <= lod_pkg::BOUND_SCALE_W'(lod_pkg::MAX_BOUND_OFFSET);
+
+  // ---- Ticks of the limit of answers, the same for all contexts: what is waited for through two of them is late ----
+
+  logic                               tick;
+  logic [lod_pkg::ANSWER_LIMIT_W-1:0] ticks_q;
+  assign tick = ticks_q >= scene_i.answer_limit;
+
+  always_ff @(posedge clk_i) begin
+    if (!rst_ni || tick) ticks_q <= '0;
+    else ticks_q <= ticks_q + lod_pkg::ANSWER_LIMIT_W'(1);
+  end
 
   // ---- Requests of the contexts, and the winners' operands ----
 
@@ -159,9 +184,9 @@ module traversal_unit #(
     assign unused_map = ^{map_in_valid, map_in, map_in_tag};
   end
 
-  // ---- Memory: requests carry the place of their line besides the operands ----
+  // ---- Memory: requests carry the place of their line and the epoch of their ray besides the operands ----
 
-  localparam int unsigned FETCH_W = 1 + lod_pkg::NODE_ADDRESS_IN_W;
+  localparam int unsigned FETCH_W = 1 + lod_pkg::EPOCH_W + lod_pkg::NODE_ADDRESS_IN_W;
 
   logic [N-1:0] fetch_request, fetch_grant;
   logic [N-1:0][FETCH_W-1:0] fetch_data;
@@ -169,22 +194,23 @@ module traversal_unit #(
   lod_pkg::node_address_in_t fetch_in;
   lod_pkg::node_address_out_t fetch_out;
   logic [CONTEXT_W-1:0] fetch_in_tag;
+  logic [lod_pkg::EPOCH_W-1:0] fetch_in_epoch, fetch_epoch;
   logic [lod_pkg::PLACE_TAG_W-1:0] fetch_tag;
 
   shared_input #(.N(N), .W(FETCH_W)) u_fetch_input (
     .clk_i, .rst_ni,
     .request_i(fetch_request), .data_i(fetch_data), .grant_o(fetch_grant),
-    .valid_o(fetch_in_valid), .ready_i(fetch_in_ready), .data_o({fetch_place, fetch_in}), .index_o(fetch_in_tag)
+    .valid_o(fetch_in_valid), .ready_i(fetch_in_ready), .data_o({fetch_place, fetch_in_epoch, fetch_in}), .index_o(fetch_in_tag)
   );
 
-  node_address #(.TAG_W(lod_pkg::PLACE_TAG_W)) u_node_address (
+  node_address #(.TAG_W(lod_pkg::FETCH_TAG_W)) u_node_address (
     .clk_i, .rst_ni,
-    .valid_i(fetch_in_valid), .ready_o(fetch_in_ready), .in_i(fetch_in), .tag_i({fetch_in_tag, 1'b0, fetch_place}),
-    .valid_o(mem_valid_o), .ready_i(mem_ready_i), .out_o(fetch_out), .tag_o(fetch_tag)
+    .valid_i(fetch_in_valid), .ready_o(fetch_in_ready), .in_i(fetch_in), .tag_i({fetch_in_tag, 1'b0, fetch_place, fetch_in_epoch}),
+    .valid_o(mem_valid_o), .ready_i(mem_ready_i), .out_o(fetch_out), .tag_o({fetch_tag, fetch_epoch})
   );
 
   // The port has room for the number of any context that there can be.
-  assign mem_o       = {8'(fetch_tag), fetch_out.address};
+  assign mem_o       = {8'(fetch_tag), fetch_epoch, fetch_out.address};
   assign mem_ready_o = 1'b1;
 
   // ---- Triangles: the tag carries the triangle's number too ----
@@ -310,7 +336,7 @@ module traversal_unit #(
     localparam logic [CONTEXT_W-1:0] ME = CONTEXT_W'(k);
 
     ray_context u_context (
-      .clk_i, .rst_ni, .scene_i,
+      .clk_i, .rst_ni, .scene_i, .fits_i(fits), .flush_i, .tick_i(tick),
       .idle_o(idle[k]), .take_i(take[k]), .ray_i(in_i),
       .setup_request_o(setup_request[k]), .setup_o(setup_data[k]), .setup_grant_i(setup_grant[k]),
       .setup_valid_i(setup_valid && setup_tag == ME), .setup_i(setup_out),
@@ -323,7 +349,8 @@ module traversal_unit #(
       .map_request_o(map_request[k]), .map_o(map_data[k]), .map_grant_i(map_grant[k]),
       .map_valid_i(map_valid && map_tag == ME), .map_i(map_out),
       .fetch_request_o(fetch_request[k]), .fetch_place_o(fetch_data[k][FETCH_W-1]),
-      .fetch_o(fetch_data[k][FETCH_W-2:0]), .fetch_grant_i(fetch_grant[k]),
+      .fetch_epoch_o(fetch_data[k][FETCH_W-2 -: lod_pkg::EPOCH_W]),
+      .fetch_o(fetch_data[k][lod_pkg::NODE_ADDRESS_IN_W-1:0]), .fetch_grant_i(fetch_grant[k]),
       .line_valid_i(mem_valid_i && mem_i.tag[7:2] == 6'(ME)), .line_i(mem_i),
       .tri_request_o(tri_request[k]), .tri_number_o(tri_data[k][TRI_W-1:TRI_W-2]),
       .tri_o(tri_data[k][TRI_W-3:0]), .tri_grant_i(tri_grant[k]),

@@ -13,6 +13,8 @@ module traversal_unit_axi #(
   input  logic                          rst_ni,
   input  lod_pkg::scene_config_t        scene_i,
   input  logic [ADDRESS_W-1:0]          base_i,
+  input  logic                          flush_i,
+  output logic                          busy_o,
   input  logic                          valid_i,
   output logic                          ready_o,
   input  lod_pkg::ray_in_t              in_i,
@@ -39,12 +41,12 @@ module traversal_unit_axi #(
   input  logic                          axi_rlast_i
 );
 
-  logic request_valid, request_ready, answer_valid, answer_error;
+  logic request_valid, request_ready, answer_valid;
   lod_pkg::memory_request_t request;
   lod_pkg::memory_answer_t answer;
 
   traversal_unit #(.CONTEXTS(CONTEXTS), .EDGES_PER_CYCLE(EDGES_PER_CYCLE)) u_unit (
-    .clk_i, .rst_ni, .scene_i,
+    .clk_i, .rst_ni, .scene_i, .flush_i, .busy_o,
     .valid_i, .ready_o, .in_i,
     .valid_o, .ready_i, .out_o,
     .mem_valid_o(request_valid), .mem_ready_i(request_ready), .mem_o(request),
@@ -54,12 +56,12 @@ module traversal_unit_axi #(
   axi_read_adapter #(.DATA_W(DATA_W), .ADDRESS_W(ADDRESS_W), .READS(2 * CONTEXTS)) u_adapter (
     .clk_i, .rst_ni, .base_i, .busy_o(reads_busy_o),
     .mem_valid_i(request_valid), .mem_ready_o(request_ready), .mem_i(request),
-    .mem_valid_o(answer_valid), .mem_o(answer), .mem_error_o(answer_error),
+    .mem_valid_o(answer_valid), .mem_o(answer),
     .axi_arvalid_o, .axi_arready_i, .axi_arid_o, .axi_araddr_o, .axi_arlen_o, .axi_arsize_o, .axi_arburst_o, .axi_arcache_o, .axi_arprot_o,
     .axi_rvalid_i, .axi_rready_o, .axi_rid_i, .axi_rdata_i, .axi_rresp_i, .axi_rlast_i
   );
 
-  assign read_error_o = answer_valid && answer_error;
+  assign read_error_o = answer_valid && answer.error;
 
 endmodule
 

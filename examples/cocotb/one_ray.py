@@ -90,6 +90,7 @@ async def one_ray(dut) -> None:
 
     dut.scene_i.value = word["scene_i"]
     dut.base_i.value = BASE
+    dut.flush_i.value = 0
     dut.valid_i.value = 0
     dut.ready_i.value = 1
     dut.rst_ni.value = 0

@@ -2,7 +2,7 @@
   (* anyconst *) logic [ID_W-1:0] watched;
   logic             live_q;  // reset has been
   logic             due_q;  // a request has its id, and the last beat has not come
-  logic [TAG_W-1:0] asked_q;  // its tag
+  logic [TAG_W-1:0] asked_q;  // its tag and epoch
   logic             bad_q;  // a beat of it was no OKAY
   logic             asks, beat, answered_q, answered_bad_q;
   logic [TAG_W-1:0] answered_tag_q;
@@ -18,7 +18,7 @@
       answered_tag_q <= asked_q;
       answered_bad_q <= bad_q || axi_rresp_i != 2'b00;
       if (beat) {due_q, bad_q} <= {!axi_rlast_i, (bad_q || axi_rresp_i != 2'b00) && !axi_rlast_i};
-      if (asks) {due_q, asked_q} <= {1'b1, mem_i.tag};
+      if (asks) {due_q, asked_q} <= {1'b1, mem_i.tag, mem_i.epoch};
     end
   end
 
@@ -34,7 +34,7 @@
       assert (mem_ready_o == (axi_arready_i && taken_q != '1));
       assert (axi_arvalid_o == (mem_valid_i && taken_q != '1));
       // An answer comes one cycle behind its last beat, with its request's tag and error.
-      assert (!answered_q || (mem_valid_o && mem_o.tag == answered_tag_q && mem_error_o == answered_bad_q));
+      assert (!answered_q || (mem_valid_o && {mem_o.tag, mem_o.epoch} == answered_tag_q && mem_o.error == answered_bad_q));
       // Hold the induction together.
       assert (taken_q[watched] == due_q && wrong_q[watched] == bad_q);
       assert (!due_q || tags_q[watched] == asked_q);

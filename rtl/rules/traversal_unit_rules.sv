@@ -2,11 +2,13 @@
 
 /// What stands at the ports of `traversal_unit` keeps the rules of docs/integration.md, checked in every simulation: bound to every unit, in no netlist.
 ///
-/// Of its surroundings: a ray and the scene stand still as they must, answers come to requests. Of the unit: what is offered stands still, no tag is asked for twice.
+/// Of its surroundings: a ray and the scene stand still as they must, answers come to requests, and none of those made before a reset comes behind it. Of the unit:
+/// what is offered stands still, no tag is asked for twice, each ray gives one hit, which is an error or a result, and it is busy until then.
 module traversal_unit_rules (
   input logic                     clk_i,
   input logic                     rst_ni,
   input lod_pkg::scene_config_t   scene_i,
+  input logic                     busy_o,
   input logic                     valid_i,
   input logic                     ready_o,
   input lod_pkg::ray_in_t         in_i,
@@ -18,29 +20,44 @@ module traversal_unit_rules (
   input lod_pkg::memory_request_t mem_o,
   input logic                     mem_valid_i,
   input logic                     mem_ready_o,
-  input logic [7:0]               answer_tag_i,
-  // Some ray is under way.
-  input logic                     busy_i
+  // Tag and epoch.
+  input logic [15:0]              answer_tag_i
 );
 
   // What stood at the ports in the cycle before and was not taken.
-  logic                     ray_waits_q, hit_waits_q, request_waits_q, busy_q;
+  logic                     ray_waits_q, hit_waits_q, request_waits_q;
   lod_pkg::ray_in_t         ray_q;
   lod_pkg::hit_out_t        hit_q;
   lod_pkg::memory_request_t request_q;
   lod_pkg::scene_config_t   scene_q;
-  // Tags that an answer is due for.
-  logic [255:0]             due_q;
+  // Rays taken whose hits were not, and by tag the epochs that an answer is due for, also one that never comes.
+  logic [31:0]              rays_q;
+  logic [255:0]             due_q [256];
+  // The epoch of the ray that each context asked for last, and the tags of that ray without an answer.
+  logic [63:0][7:0]         epochs_q;
+  logic [255:0]             asked_q;
+  logic                     new_ray;
+  assign new_ray = mem_o.epoch != epochs_q[mem_o.tag[7:2]];
 
   always_ff @(posedge clk_i) begin
     {ray_q, hit_q, request_q, scene_q} <= {in_i, out_o, mem_o, scene_i};
     if (!rst_ni) begin
-      {ray_waits_q, hit_waits_q, request_waits_q, busy_q} <= '0;
-      due_q <= '0;
+      {ray_waits_q, hit_waits_q, request_waits_q} <= '0;
+      rays_q <= '0;
+      for (int unsigned k = 0; k < 256; k++) due_q[k] <= '0;
+      epochs_q <= '0;
+      asked_q <= '0;
     end else begin
-      {ray_waits_q, hit_waits_q, request_waits_q, busy_q} <= {valid_i && !ready_o, valid_o && !ready_i, mem_valid_o && !mem_ready_i, busy_i};
-      if (mem_valid_i && mem_ready_o) due_q[answer_tag_i] <= 1'b0;
-      if (mem_valid_o && mem_ready_i) due_q[mem_o.tag] <= 1'b1;
+      {ray_waits_q, hit_waits_q, request_waits_q} <= {valid_i && !ready_o, valid_o && !ready_i, mem_valid_o && !mem_ready_i};
+      rays_q <= rays_q + 32'(valid_i && ready_o) - 32'(valid_o && ready_i);
+      if (mem_valid_i && mem_ready_o) due_q[answer_tag_i[15:8]][answer_tag_i[7:0]] <= 1'b0;
+      if (mem_valid_i && mem_ready_o && answer_tag_i[7:0] == epochs_q[answer_tag_i[15:10]]) asked_q[answer_tag_i[15:8]] <= 1'b0;
+      if (mem_valid_o && mem_ready_i) begin
+        due_q[mem_o.tag][mem_o.epoch] <= 1'b1;
+        epochs_q[mem_o.tag[7:2]] <= mem_o.epoch;
+        if (new_ray) asked_q[{mem_o.tag[7:2], 2'd0} +: 4] <= '0;
+        asked_q[mem_o.tag] <= 1'b1;
+      end
     end
   end
 
@@ -49,17 +66,21 @@ module traversal_unit_rules (
       assert (!ray_waits_q || (valid_i && in_i == ray_q)) else $error("in_i: a ray was withdrawn or changed before it was taken");
       assert (!hit_waits_q || (valid_o && out_o == hit_q)) else $error("out_o: a hit was withdrawn or changed before it was taken");
       assert (!request_waits_q || (mem_valid_o && mem_o == request_q)) else $error("mem_o: a request was withdrawn or changed before it was taken");
-      assert (!(busy_q && busy_i) || scene_i == scene_q) else $error("scene_i: it changed while a ray was under way");
-      assert (!mem_valid_i || due_q[answer_tag_i]) else $error("mem_i: an answer without a request");
-      assert (!mem_valid_o || !due_q[mem_o.tag]) else $error("mem_o: a tag that an answer is due for");
+      assert (!busy_o || scene_i == scene_q) else $error("scene_i: it changed while a ray was under way");
+      assert (!mem_valid_i || due_q[answer_tag_i[15:8]][answer_tag_i[7:0]]) else $error("mem_i: an answer without a request, or to one from before a reset");
+      assert (!mem_valid_o || new_ray || !asked_q[mem_o.tag]) else $error("mem_o: a tag that the same ray waits for");
+      assert (!valid_o || rays_q != '0) else $error("out_o: a hit of no ray");
+      assert (!valid_o || out_o.error == '0 || (!out_o.found && out_o.hit == '0)) else $error("out_o: an error with a hit");
+      assert (busy_o == (rays_q != '0 || mem_valid_o)) else $error("busy_o: high without a ray or a request, or low with one");
+      assert (busy_o || ready_o) else $error("busy_o: low while no ray would be taken");
     end
   end
 
 endmodule
 
 bind traversal_unit traversal_unit_rules u_rules (
-  .clk_i, .rst_ni, .scene_i, .valid_i, .ready_o, .in_i, .valid_o, .ready_i, .out_o, .mem_valid_o, .mem_ready_i, .mem_o, .mem_valid_i, .mem_ready_o,
-  .answer_tag_i(mem_i.tag), .busy_i(idle != '1 || valid_o)
+  .clk_i, .rst_ni, .scene_i, .busy_o, .valid_i, .ready_o, .in_i, .valid_o, .ready_i, .out_o, .mem_valid_o, .mem_ready_i, .mem_o, .mem_valid_i, .mem_ready_o,
+  .answer_tag_i({mem_i.tag, mem_i.epoch})
 );
 
 `default_nettype wire

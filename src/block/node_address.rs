@@ -2,7 +2,7 @@
 //!
 //! With i = (4^level - 1) / 3 + index: base + first + i for one-line records, base + first + 2i + half for two-line ones, base + first + (i - 1) / 2, rounded down, for records of half a
 //! line, of which the first level has none. Records outside of trees have first and level 0.
-//! Legal: level <= 9, above 0 for records of half a line; result below 2^36, which the size of the sections keeps.
+//! Legal: level <= 9, above 0 for records of half a line; below 2^36, which the size of the sections keeps. Of an image that no scene has the sum wraps there.
 
 use super::parts::{Parts, Registers, TAG};
 use super::{Block, Form, Timing};
@@ -63,7 +63,7 @@ impl Block for NodeAddress {
         } else {
             record
         };
-        Out { address: LineAddress::new(i.base.get() + i.first.get() + line) }
+        Out { address: LineAddress::wrapping(i.base.get() + i.first.get() + line) }
     }
 }
 

@@ -8,6 +8,7 @@
 //! a multiple of 2^grid and so is what is added, hence q lies between m and g in each coordinate and on the level's grid. Neither m nor the
 //! rounding depends on which triangle asks.
 //! Legal: all corners multiples of 2^(grid+1), g of 2^grid, grid = N - level - 1 + Z (0 to 15), |corners| and |g| at most `COORD_LIMIT`, s from 0 to 256; v of 13 bits where it is a displacement.
+//! Any v is taken, as it comes from memory: a g that is not legal shows in the output.
 
 use super::parts::{Multiplier, Parts, Registers, TAG, multiplier_latency};
 use super::{Block, Form, Timing};
@@ -100,9 +101,9 @@ fn displacement_shift(split: Split, code: BoundCode) -> U<5> {
 /// The full-resolution vertex between `a` and `b`.
 #[inline(always)]
 fn stored_coordinate(a: S<32>, b: S<32>, v: S<32>, compact: bool, shift: U<5>) -> S<32> {
-    // 33-bit sum, even: the midpoint is exact and fits 32 bits again. 13 bits and 21 more: legal vertices fit 32.
+    // 33-bit sum, even: the midpoint is exact and fits 32 bits again. 13 bits and 21 more: legal vertices fit 32, others wrap.
     let displaced = ((a.get() + b.get()) >> 1) + (v.get() << shift.get());
-    S::new(if compact { displaced } else { v.get() })
+    S::wrapping(if compact { displaced } else { v.get() })
 }
 
 #[inline(always)]
@@ -112,8 +113,8 @@ fn morph_coordinate(a: S<32>, b: S<32>, g: S<32>, s: EdgeState, grid: U<4>) -> S
     // 33-bit difference times 9 bits: 42.
     let product = S::<42>::new((g.get() - m) * s.get().cast_signed());
     let step = (product.get() >> 8) & (-1 << grid.get());
-    // Between m and g, so 32 bits.
-    S::new(m + step)
+    // Between m and g, so 32 bits; of a g that is on no grid it wraps.
+    S::wrapping(m + step)
 }
 
 /// An edge: its ends of full resolution and as morphed, its code and its state.

@@ -106,7 +106,11 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
         let report = files.write(&bench)?;
         if !args.text {
             let (ray, requests) = (&report.rays[0], grouped(report.requests));
-            let found = if ray.hit.found { "hit" } else { "miss" };
+            let found = match ray.hit.error() {
+                Some(error) => format!("ended early ({error})"),
+                None if ray.hit.found => "hit".to_owned(),
+                None => "miss".to_owned(),
+            };
             remark(&format!(
                 "{found} after {} cycles, {requests} memory lines; waveform in {}",
                 grouped(ray.cycles()),

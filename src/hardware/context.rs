@@ -1,10 +1,10 @@
 //! The registers of a ray context (`rtl/ray_context.sv`), one by one.
 
 use super::Hardware;
-use super::ports::{MemoryAnswer, RayIn};
+use super::ports::{Epoch, HitOut, MemoryAnswer, RayIn, SceneConfig};
 use crate::block::{bary_map, child_test, hit_select, lod_test, parts::Registers, ray_setup};
 use crate::method::Entry;
-use crate::num::{Bary, BoundCode, Cone, RayT, Wire};
+use crate::num::{Bary, BoundCode, Cone, Field, RayT, Wire};
 
 /// Bits of an index in a stack entry of any hardware, of a level, and of a count up to four.
 const INDEX: u32 = 28;
@@ -20,13 +20,20 @@ const CHILD: u32 = 2;
 const CONE_OFFSET: u32 = 53;
 /// Lines that a context waits for at most.
 const LINES: u32 = 2;
+/// Whether a tick has passed since something came.
+const STALE: u32 = 1;
+
+/// Width of the field of that name.
+fn width(fields: &[Field], name: &str) -> u32 {
+    fields.iter().find(|field| field.name == name).map_or(0, |field| field.width)
+}
 
 impl Hardware {
     /// Bits of the registers of a ray context: `rtl/`'s if it `has_levels`. Without them it has no split triangles and no second triangle at full resolution,
     /// and its stack is as deep as the quad-BVH and holds no bound codes, and of levels only what counts the triangles of a leaf.
     pub fn context_registers(&self, has_levels: bool) -> Registers {
         let triangles = if has_levels { self.split() + self.splits() } else { 2 * self.triangle() };
-        Registers::bits(self.place() + triangles + self.stack(has_levels) + self.lines() + self.closest())
+        Registers::bits(self.place() + triangles + self.stack(has_levels) + self.lines() + self.bounds() + self.closest())
     }
 
     /// A triangle.
@@ -83,9 +90,14 @@ impl Hardware {
         self.split_triangles() * self.split()
     }
 
-    /// The lines, and which of them are wanted and waited for.
+    /// The lines, which of them are wanted and waited for, and whose they are.
     fn lines(&self) -> u32 {
-        LINES * MemoryAnswer::FIELDS[1].width + 2 * LINES
+        LINES * width(MemoryAnswer::FIELDS, "line") + 2 * LINES + Epoch::WIDTH
+    }
+
+    /// What bounds the ray's way: its error, how many entries it may still visit, and whether a line is late.
+    fn bounds(&self) -> u32 {
+        width(HitOut::FIELDS, "error") + width(SceneConfig::FIELDS, "visits") + STALE
     }
 
     /// The closest hit: whether there is one, t, id, numerators, weights, and the full-resolution triangle, if it can be another.

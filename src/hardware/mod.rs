@@ -13,10 +13,11 @@ pub mod ports;
 mod state;
 
 pub use area::unit_gates;
-pub use state::{Fetch, State};
+pub use state::{Fetch, RayError, State};
 
 use crate::block::{Block, EdgesPerCycle, Form, Operation, Timing};
-use crate::num::{BOX_SHIFT, MAX_BVH_DEPTH, MAX_LEVELS, MOST_DIRECTION_ZEROS};
+use crate::num::{BOX_SHIFT, MAX_BOUND_OFFSET, MAX_BVH_DEPTH, MAX_LEVELS, MOST_DIRECTION_ZEROS};
+use ports::SceneConfig;
 
 /// The widest number of a context: it and two bits of place make the tag of a memory request ([`ports::MemoryRequest`]).
 const MAX_CONTEXT_BITS: u32 = 6;
@@ -151,6 +152,22 @@ impl Hardware {
     /// There is something to choose from, and a LOD test that does.
     pub const fn chooses_levels(&self) -> bool {
         self.lod_test && self.stored_levels() > 0
+    }
+
+    /// The most levels of a scene: of one whose hits cannot be mapped, those that it is stored to.
+    pub const fn scene_levels(&self) -> u32 {
+        if self.hit_mapping { self.levels } else { self.stored_levels() }
+    }
+
+    /// A scene of this configuration is one for this hardware. Rays of another end early, with [`RayError::Scene`].
+    pub fn takes(&self, scene: &SceneConfig) -> bool {
+        let (levels, zeros) = (scene.levels.get(), scene.zeros.get());
+        let has_form = if scene.compact { self.compact_vertices } else { self.exact_vertices };
+        levels <= u64::from(self.scene_levels())
+            && zeros >= u64::from(self.coordinate_zeros)
+            && levels + zeros <= u64::from(BOX_SHIFT)
+            && (has_form || self.stored_levels() == 0)
+            && scene.scale.offset.get() <= MAX_BOUND_OFFSET
     }
 
     /// Bits of a node's number within its level, two of each level that is stored; at least two.

@@ -116,6 +116,12 @@ fixed_int!(
 );
 
 impl<const W: u32> S<W> {
+    /// The low `W` bits of `v`, as hardware keeps them.
+    #[inline(always)]
+    pub const fn wrapping(v: i64) -> Self {
+        Self(v << (64 - W) >> (64 - W))
+    }
+
     /// The value as a 32-bit integer; only widths up to 32 compile. It tells the compiler that a 32 x 32 -> 64-bit multiplier will do.
     #[inline(always)]
     pub const fn narrow(self) -> i32 {
@@ -125,6 +131,12 @@ impl<const W: u32> S<W> {
 }
 
 impl<const W: u32> U<W> {
+    /// The low `W` bits of `v`, as hardware keeps them.
+    #[inline(always)]
+    pub const fn wrapping(v: u64) -> Self {
+        Self(v & Self::MAX.0)
+    }
+
     /// The value as a 32-bit signed integer; only widths up to 31 compile.
     #[inline(always)]
     pub const fn narrow(self) -> i32 {
@@ -153,6 +165,13 @@ mod tests {
         assert_eq!(U::<9>::checked(512), None);
         assert_eq!(S::<16>::saturating(40_000).get(), 32_767);
         assert_eq!(S::<16>::saturating(-40_000).get(), -32_768);
+    }
+
+    #[test]
+    fn wrapping_keeps_the_low_bits() {
+        assert_eq!([S::<16>::wrapping(40_000), S::<16>::wrapping(-40_000), S::<16>::wrapping(7)].map(S::get), [-25_536, 25_536, 7]);
+        assert_eq!([U::<9>::wrapping(513), U::<9>::wrapping(511)].map(U::get), [1, 511]);
+        assert_eq!((S::<64>::wrapping(i64::MIN).get(), U::<64>::wrapping(u64::MAX).get()), (i64::MIN, u64::MAX));
     }
 
     #[test]

@@ -43,7 +43,7 @@ fn lines<const N: usize, const ID: u32>(reads: u64, manners: Manners, pauses: u6
     let (reset, base_i, busy) = (input::<bool>(&sim, "rst_ni"), input::<U<64>>(&sim, "base_i"), output::<bool>(&sim, "busy_o"));
     let (valid_i, mem_i) = (input::<bool>(&sim, "mem_valid_i"), input::<MemoryRequest>(&sim, "mem_i"));
     let (ready, valid_o) = (output::<bool>(&sim, "mem_ready_o"), output::<bool>(&sim, "mem_valid_o"));
-    let (mem_o, error_o) = (output::<MemoryAnswer>(&sim, "mem_o"), output::<bool>(&sim, "mem_error_o"));
+    let mem_o = output::<MemoryAnswer>(&sim, "mem_o");
 
     let mut rng = Rng(seed);
     // Anywhere, up to the last line that the bus has.
@@ -56,8 +56,8 @@ fn lines<const N: usize, const ID: u32>(reads: u64, manners: Manners, pauses: u6
     sim.clock();
     sim.poke(reset, &true);
 
-    // Requests by tag until they are answered, those on their way to the bus, and the one that is offered.
-    let mut due: BTreeMap<u64, u64> = BTreeMap::new();
+    // Requests by tag and epoch until they are answered, those on their way to the bus, and the one that is offered.
+    let mut due: BTreeMap<[u64; 2], u64> = BTreeMap::new();
     let mut asked: Vec<u64> = Vec::new();
     let mut offered: Option<MemoryRequest> = None;
     let (mut sent, mut answered, mut wrong, mut cycles, mut quiet) = (0, 0, 0, 0, 0);
@@ -75,14 +75,15 @@ fn lines<const N: usize, const ID: u32>(reads: u64, manners: Manners, pauses: u6
         let beat = memory.beat();
         let ended = beat.is_some_and(|beat| beat.last);
         if offered.is_none() && sent < count && rng.below(8) >= pauses {
-            let tag = std::iter::repeat_with(|| rng.below(256)).find(|tag| !due.contains_key(tag)).unwrap_or_default();
-            let address = U::new(rng.draw() >> (64 - LineAddress::WIDTH));
-            offered = Some(MemoryRequest { tag: U::new(tag), address });
+            let mark = std::iter::repeat_with(|| [rng.below(256), rng.below(256)]).find(|mark| !due.contains_key(mark)).unwrap_or_default();
+            let [tag, epoch] = mark.map(U::new);
+            offered = Some(MemoryRequest { tag, epoch, address: U::new(rng.draw() >> (64 - LineAddress::WIDTH)) });
         }
         let takes = memory.ready();
         bus.drive(&mut sim, takes, beat, &mut rng);
         sim.poke(valid_i, &offered.is_some());
-        sim.poke(mem_i, &offered.unwrap_or(MemoryRequest { tag: U::new(rng.below(256)), address: U::new(rng.draw() >> 40) }));
+        let rubbish = MemoryRequest { tag: U::new(rng.below(256)), epoch: U::new(rng.below(256)), address: U::new(rng.draw() >> 40) };
+        sim.poke(mem_i, &offered.unwrap_or(rubbish));
         sim.eval();
         // The place of an answer is free already when it is given.
         let places = due.len() - usize::from(sim.peek::<bool>(valid_o));
@@ -97,9 +98,10 @@ fn lines<const N: usize, const ID: u32>(reads: u64, manners: Manners, pauses: u6
         quiet += 1;
         if sim.peek::<bool>(valid_o) {
             let answer: MemoryAnswer = sim.peek(mem_o);
-            let address = due.remove(&answer.tag.get()).unwrap_or_else(|| panic!("{what}: an answer with tag {}", answer.tag));
+            let mark = [answer.tag.get(), answer.epoch.get()];
+            let address = due.remove(&mark).unwrap_or_else(|| panic!("{what}: an answer with tag and epoch {mark:?}"));
             let (last, error) = memory.finished.pop_front().unwrap_or_else(|| panic!("{what}: an answer before its last beat"));
-            assert_eq!((address, sim.peek::<bool>(error_o)), (last, error), "{what}");
+            assert_eq!((address, answer.error), (last, error), "{what}");
             assert_eq!(answer.line, line(address), "{what}: line at {address:#x}");
             (answered, wrong, quiet) = (answered + 1, wrong + u64::from(error), 0);
         }
@@ -107,7 +109,7 @@ fn lines<const N: usize, const ID: u32>(reads: u64, manners: Manners, pauses: u6
         assert_eq!(memory.finished.len(), usize::from(ended), "{what}: an answer came late");
         if let Some(request) = offered.filter(|_| sim.peek::<bool>(ready)) {
             let address = base + 32 * request.address.get();
-            due.insert(request.tag.get(), address);
+            due.insert([request.tag.get(), request.epoch.get()], address);
             asked.push(address);
             (sent, offered, quiet) = (sent + 1, None, 0);
         }

@@ -155,7 +155,7 @@ fn passes(model: &Arc<Model>, fault: Fault, rules: u64) -> bool {
         sim.poke(base_i, &U::<32>::new(base));
         sim.poke(valid_i, &(cycle % 4 != 0));
         number += u64::from(cycle % 4 == 0);
-        sim.poke(mem_i, &MemoryRequest { tag: U::new(number & 255), address: U::new(61 * number) });
+        sim.poke(mem_i, &MemoryRequest { tag: U::new(number & 255), epoch: U::new(number >> 8 & 255), address: U::new(61 * number) });
         sim.eval();
         if let Some(request) = bus.request(&mut sim).filter(|_| takes) {
             memory.take(request);

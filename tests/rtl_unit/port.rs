@@ -33,6 +33,9 @@ fn model(config: Hardware) -> Arc<Model> {
 /// The RTL's ports.
 pub struct Rtl {
     pub sim: Sim,
+    reset: PortId,
+    flush: PortId,
+    busy: PortId,
     ready: PortId,
     hit: (PortId, PortId),
     mem: (PortId, PortId),
@@ -50,6 +53,9 @@ impl Rtl {
         let input = |sim: &Sim, name, width| port(sim, name, width, Direction::In);
         let output = |sim: &Sim, name, width| port(sim, name, width, Direction::Out);
         let mut rtl = Self {
+            reset: input(&sim, "rst_ni", 1),
+            flush: input(&sim, "flush_i", 1),
+            busy: output(&sim, "busy_o", 1),
             ready: output(&sim, "ready_o", 1),
             hit: (output(&sim, "valid_o", 1), output(&sim, "out_o", HitOut::WIDTH)),
             mem: (output(&sim, "mem_valid_o", 1), output(&sim, "mem_o", MemoryRequest::WIDTH)),
@@ -70,6 +76,14 @@ impl Rtl {
         rtl
     }
 
+    /// A cycle of reset.
+    pub fn reset(&mut self) {
+        self.sim.poke(self.reset, &false);
+        self.sim.clock();
+        self.sim.poke(self.reset, &true);
+        self.sim.eval();
+    }
+
     /// Another scene from now on.
     pub fn scene(&mut self, scene: &SceneConfig) {
         let port = self.sim.port("scene_i", SceneConfig::WIDTH, Direction::In).unwrap_or_else(|error| panic!("{error}"));
@@ -82,10 +96,11 @@ impl UnitPort for Rtl {
         // All of them come from registers, so they stand before the inputs of this cycle.
         let hit = if self.sim.peek(self.hit.0) { Some(self.sim.peek(self.hit.1)) } else { None };
         let mem = if self.sim.peek(self.mem.0) { Some(self.sim.peek(self.mem.1)) } else { None };
-        Outputs { ready: self.sim.peek(self.ready), hit, mem }
+        Outputs { ready: self.sim.peek(self.ready), hit, mem, busy: self.sim.peek(self.busy) }
     }
 
     fn tick(&mut self, inputs: &Inputs) {
+        self.sim.poke(self.flush, &inputs.flush);
         self.sim.poke(self.ray_in.0, &inputs.ray.is_some());
         self.sim.poke(self.ray_in.1, &inputs.ray.unwrap_or_default());
         self.sim.poke(self.hit_ready, &inputs.hit_ready);

@@ -10,7 +10,7 @@ use lodray::sim::unit::environment::{RunReport, UnitPort, run};
 use lodray::sim::unit::{Inputs, Latency, Outputs, SceneMemory, Stall, Traffic, TraversalUnit};
 use lodray::step::{Act, Batch, Fetch, SectionId, Step};
 use lodray_test_support::hardware::{OTHERS, form_for, most_levels, ray_for, scene_for};
-use lodray_test_support::models::{Rng, any_rays, ball, model, octahedron, scene_of, terrain, with_vertices};
+use lodray_test_support::models::{Rng, any_rays, ball, coarsened, model, octahedron, scene_of, terrain, with_vertices, with_zeros};
 use lodray_test_support::timing::{Smooth, Timed, steps_of};
 
 /// A unit, noting its requests: cycle, tag, address.
@@ -94,10 +94,12 @@ fn equals_the_cycle_model_in_every_cycle() {
         let any = any_rays(h, 40, number as u64);
         let fits = |config: &Hardware| h.levels <= most_levels(config) && form_for(config, h.vertices) == h.vertices;
         for config in configs().into_iter().chain(OTHERS).filter(fits) {
-            let scene = scene_for(&config, h);
+            // Of as many zeros as the hardware leaves out.
+            let zeros = [config.coordinate_zeros, config.direction_zeros];
+            let scene = scene_for(&config, &with_zeros(config.coordinate_zeros, h.clone()));
             let image = LodImage::of(&scene);
             let memory = SceneMemory::new(image, 1000);
-            let rays: Vec<Ray> = any.iter().enumerate().map(|(k, ray)| ray_for(&config, ray, k)).collect();
+            let rays: Vec<Ray> = any.iter().enumerate().map(|(k, ray)| ray_for(&config, &coarsened(ray, zeros), k)).collect();
             let batch = steps_of(image, &rays);
             for traffic in traffics() {
                 let what = format!("{name}, {config:?}, {traffic:?}");

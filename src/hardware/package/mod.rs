@@ -3,7 +3,7 @@
 mod numbers;
 mod structs;
 
-use super::{Fetch, Hardware, State};
+use super::{Fetch, Hardware, RayError, State};
 use std::fmt::Write;
 
 /// What no value changes: the head, functions of widths, and what passes between two modules of the unit.
@@ -28,6 +28,9 @@ impl Hardware {
             ("GROUP", Fetch::Group as u32, "the sibling group alone: the inserted vertices came with the L0 record"),
         ];
         enumeration("What a context fetches.", "fetch_t", &fetches, &mut out);
+        let error = |error: RayError| (error.named().0, error as u32, error.named().1);
+        let errors: Vec<(&str, u32, &str)> = [("ERROR_NONE", 0, "")].into_iter().chain(RayError::ALL.map(error)).collect();
+        enumeration("Why a ray ended early.", "ray_error_t", &errors, &mut out);
         out + UNIT
     }
 }

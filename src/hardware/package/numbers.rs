@@ -18,7 +18,10 @@ use crate::block::tessellate::Tessellate;
 use crate::block::tri_test::{EdgeFunction, TNumerator, TriTest};
 use crate::block::{Block, EdgesPerCycle, Form, parts};
 use crate::hardware::Hardware;
-use crate::num::{BOX_SHIFT, Bary, BoundCode, EdgeState, LineAddress, RayT, S_ONE, T_NEAR_TO_T_SHIFT, TNear, Wire};
+use crate::hardware::ports::{AnswerLimit, Epoch};
+use crate::num::{
+    BOX_SHIFT, Bary, BoundCode, COORD_LIMIT, EdgeState, LineAddress, MAX_BOUND_OFFSET, RayT, S_ONE, T_NEAR_TO_T_SHIFT, TNear, Wire,
+};
 use std::fmt::Write;
 
 /// A group of numbers under a heading; their comments stand in one column.
@@ -97,6 +100,8 @@ pub(super) fn print(hardware: &Hardware, out: &mut String) {
         .put("BOUND_CODE_W", BoundCode::WIDTH, "")
         .put("BOUND_W", Bound::WIDTH, "|q - m| < 2^32.8")
         .put("LINE_ADDRESS_W", LineAddress::WIDTH, "2 TiB of 32-byte lines")
+        .put("EPOCH_W", Epoch::WIDTH, "of the number of a context's ray, which its lines come back with")
+        .put("ANSWER_LIMIT_W", AnswerLimit::WIDTH, "cycles that a line may take")
         .put("NODE_INDEX_W", NodeIndex::WIDTH, "of a node at the ports: 4^10 nodes on the last level that there can be")
         .put("FULL_ID_W", FullId::WIDTH, "28 bits of tree, 2 of each of ten levels")
         .put("COORDINATE_W", form.coordinate(), "a coordinate without the bits that are always 0")
@@ -109,6 +114,9 @@ pub(super) fn print(hardware: &Hardware, out: &mut String) {
         .put("T_NUMERATOR_W", TNumerator::WIDTH, "|a| |b| |c| < 2^98.4")
         .put("SIGNED_T_NUMERATOR_W", "T_NUMERATOR_W + 1 - 3 * COORDINATE_ZEROS", "");
     let sizes = Group::new("Sizes.")
+        .put("COORD_LIMIT", COORD_LIMIT, "of a coordinate in magnitude")
+        .put("MAX_BOUND_OFFSET", MAX_BOUND_OFFSET, "of a scale of displacement bounds")
+        .put("SCENE_LEVELS", hardware.scene_levels(), "splits N of a model whose hits it can map")
         .put("MAX_CONTEXTS", 1u32 << hardware.context_bits, "that CONTEXT_W can number")
         .put(
             "STACK_ENTRIES",

@@ -56,6 +56,15 @@
     whole_setup = {whole_axis(r.x), whole_axis(r.y), whole_axis(r.z), 63'(r.moment[2]) << MOMENT_ZEROS, 63'(r.moment[1]) << MOMENT_ZEROS, 63'(r.moment[0]) << MOMENT_ZEROS};
   endfunction
 
+  // A corner or an inserted vertex where no model has one: beyond the largest coordinate, or not on a grid of so many zero bits, 16 at most.
+  function automatic logic misplaced(input point_t p, input logic [4:0] zeros);
+    logic signed [31:0] most;
+    logic [15:0] off_grid;
+    most      = $signed(32'(COORD_LIMIT));
+    off_grid  = (p.x[15:0] | p.y[15:0] | p.z[15:0]) & ~(16'hFFFF << zeros);
+    misplaced = off_grid != '0 || p.x > most || p.x < -most || p.y > most || p.y < -most || p.z > most || p.z < -most;
+  endfunction
+
   // A corner as seen from an origin.
   function automatic logic [3*RELATIVE_W-1:0] relative_corner(input kept_point_t p, input kept_point_t x);
     relative_corner = {RELATIVE_W'(p.x) - RELATIVE_W'(x.x), RELATIVE_W'(p.y) - RELATIVE_W'(x.y), RELATIVE_W'(p.z) - RELATIVE_W'(x.z)};
@@ -82,9 +91,10 @@
   localparam logic [1:0] DIVIDE_FOR_V = 2'd1;
   localparam logic [1:0] DIVIDE_FOR_W = 2'd2;
 
-  // Tags within the unit: a context's number, and two bits of a triangle's number or of a line's place; a division's has what it is for in front.
+  // Tags within the unit: a context's number, and two bits of a triangle's number or of a line's place; a division's has what it is for in front, a line's the epoch behind.
   localparam int unsigned PLACE_TAG_W = CONTEXT_W + 2;
   localparam int unsigned DIVIDE_TAG_W = 2 + PLACE_TAG_W;
+  localparam int unsigned FETCH_TAG_W = PLACE_TAG_W + EPOCH_W;
 
   // A hit on its way to the closest.
   typedef struct packed {

@@ -9,8 +9,8 @@ use super::wires::{Cycle, DIVIDE_FOR_T, DIVIDE_FOR_V, DIVIDE_FOR_W};
 use crate::block::bary_map::NodeIndex;
 use crate::block::{child_test, lod_test, ray_setup, tessellate::child_triangle};
 use crate::format::{L0Record, VertexData};
-use crate::hardware::ports::SceneConfig;
-use crate::hardware::{Fetch, Hardware, State};
+use crate::hardware::ports::{Epoch, RayIn, SceneConfig};
+use crate::hardware::{Fetch, Hardware, RayError, State};
 use crate::method::{Entry, Op, TraversalStack, is_beyond};
 use crate::num::{BoundCode, Point, Ray, S_ONE, U, Wire};
 
@@ -53,6 +53,14 @@ pub struct Context {
     /// Lines asked for and not yet sent, and sent and not yet there, by place.
     pub want: u8,
     pub waiting: u8,
+    /// Number of the ray among the context's, which its lines come back with.
+    pub epoch: Epoch,
+    /// Why the ray ends early.
+    pub error: Option<RayError>,
+    /// Entries that it may still visit.
+    pub visits_left: Register<U<32>>,
+    /// A tick has passed since something came that was waited for.
+    pub stale: bool,
     /// Line buffers.
     pub lines: [[u64; 4]; 2],
     /// Children still to be pushed.
@@ -68,6 +76,11 @@ pub struct Context {
     pub splits: Box<[Split]>,
     /// Entries that the stack has room for.
     pub room: usize,
+    /// Of its hardware: levels that trees are stored to, bits of indices and of lines, zeros of coordinates.
+    pub stored_levels: u64,
+    pub index_bits: u32,
+    pub line_bits: u32,
+    pub coordinate_zeros: u32,
     /// Its hardware has a LOD test, and a map of hits.
     pub chooses_levels: bool,
     hit_mapping: bool,
@@ -77,8 +90,10 @@ impl Context {
     /// An idle context of this hardware.
     pub fn new(hardware: &Hardware) -> Self {
         let splits = vec![Split::default(); hardware.split_triangles() as usize].into();
-        let (chooses_levels, hit_mapping) = (hardware.chooses_levels(), hardware.hit_mapping);
-        Self { splits, room: hardware.stack_entries() as usize, chooses_levels, hit_mapping, ..Self::default() }
+        let &Hardware { hit_mapping, index_bits, line_bits, coordinate_zeros, .. } = hardware;
+        let (room, stored_levels) = (hardware.stack_entries() as usize, u64::from(hardware.stored_levels()));
+        let chooses_levels = hardware.chooses_levels();
+        Self { splits, room, stored_levels, index_bits, line_bits, coordinate_zeros, chooses_levels, hit_mapping, ..Self::default() }
     }
 
     /// The node's children are as deep as the tree: triangles, not nodes.
@@ -100,17 +115,21 @@ impl Context {
     /// The end of a cycle of context `me`.
     pub fn tick(&mut self, me: usize, scene: &SceneConfig, cycle: &Cycle) {
         let (want, waiting) = (self.want, self.waiting);
+        let asked = 1 << self.place_of(want);
+        let objection = self.objection(me, scene, cycle);
+        let (error, stale) = (self.error_after(me, cycle, objection), self.stale_after(me, cycle));
+        let arrival = self.arrival(me, cycle).copied();
+        let stops = self.stops(objection);
+        self.error = error;
         if let Some(&quotient) = cycle.divide.result(me)
             && quotient.what != DIVIDE_FOR_T
         {
             self.closest.divided(quotient.what == DIVIDE_FOR_V, &quotient.out);
         }
         let to = match self.state {
+            _ if stops => State::Done,
             State::Idle => match cycle.ray {
-                Some((owner, ray)) if owner == me => {
-                    (self.tag, self.ray) = (ray.tag, ray.ray);
-                    State::Setup
-                }
+                Some((owner, ray)) if owner == me => self.take(&ray, cycle),
                 _ => State::Idle,
             },
             State::Setup => self.when(cycle.setup.granted(me), State::SetupWait),
@@ -120,6 +139,8 @@ impl Context {
                     self.closest.clear();
                     self.stack.clear();
                     self.entry.set(Entry::default());
+                    self.visits_left.set(scene.visits);
+                    self.epoch = Epoch::wrapping(self.epoch.get() + 1);
                     State::Visit
                 }
                 None => State::SetupWait,
@@ -195,8 +216,31 @@ impl Context {
             },
             State::Done => self.when(cycle.hit.granted(me), State::Idle),
         };
-        self.lines(me, cycle, 1 << self.place_of(want));
+        if cycle.fetch.granted(me) {
+            self.want &= !asked;
+            self.waiting |= asked;
+        }
+        if let Some(answer) = arrival {
+            let place = answer.tag.get() as usize & 3;
+            self.lines[place] = answer.line.map(U::get);
+            self.waiting &= !(1 << place);
+        }
+        self.stale = stale;
         self.state = to;
+    }
+
+    /// A ray comes. What the one before still waited for comes too late, if at all.
+    fn take(&mut self, ray: &RayIn, cycle: &Cycle) -> State {
+        (self.tag, self.ray) = (ray.tag, ray.ray);
+        (self.want, self.waiting) = (0, 0);
+        self.error = if cycle.flush {
+            Some(RayError::Aborted)
+        } else if cycle.fits {
+            None
+        } else {
+            Some(RayError::Scene)
+        };
+        if self.error.is_some() { State::Done } else { State::Setup }
     }
 
     /// The next state: `to` when something happened.
@@ -228,6 +272,7 @@ impl Context {
 
     fn visit(&mut self) -> State {
         let entry = self.entry.get();
+        self.visits_left.set(U::new(self.visits_left.get().get() - 1));
         match entry.kind.get() {
             Entry::BVH_NODE => {
                 self.fetch.set(Fetch::Node);
@@ -257,7 +302,7 @@ impl Context {
     fn enter_tree(&mut self) -> State {
         self.level.set(U::ZERO);
         self.node.set(U::ZERO);
-        let corners = VertexData::from_words(&self.lines[0]).points();
+        let corners = VertexData::from_words(&self.lines[0]).points().map(|point| self.kept(point));
         self.f.set(corners);
         self.p.set(corners);
         let L0Record { depth, group, vertices, e0, e1, e2, .. } = L0Record::from_words(&self.lines[1]);
@@ -276,8 +321,6 @@ impl Context {
                 State::Visit
             }
             _ => {
-                // The depths of a checked quad-BVH and of its trees, which are the hardware's at most, keep it from overflowing.
-                debug_assert!(self.stack.len() < self.room, "a quad-BVH deeper than the hardware's");
                 self.stack.step(Op::Push(self.child_entry(count as usize - 1)));
                 self.count.set(U::new(count - 1));
                 State::Push
@@ -324,18 +367,5 @@ impl Context {
         }
         self.pending.set(U::new(pending));
         self.when(done, State::Pop)
-    }
-
-    /// Memory lines sent for and come; `asked` is the bit of the line that the context asked for in this cycle.
-    fn lines(&mut self, me: usize, cycle: &Cycle, asked: u8) {
-        if cycle.fetch.granted(me) {
-            self.want &= !asked;
-            self.waiting |= asked;
-        }
-        if let Some(answer) = cycle.fetch.result(me) {
-            let place = answer.tag.get() as usize & 3;
-            self.lines[place] = answer.line.map(U::get);
-            self.waiting &= !(1 << place);
-        }
     }
 }

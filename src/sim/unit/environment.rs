@@ -119,8 +119,8 @@ struct Environment<'a> {
     quiet: u64,
 }
 
-/// Tag and address of a request.
-type MemoryRequestBits = (u64, u64);
+/// Tag, epoch and address of a request.
+type MemoryRequestBits = (u64, u64, u64);
 
 impl<'a> Environment<'a> {
     fn new(memory: &'a SceneMemory<'a>, traffic: &'a Traffic, rays: &'a [Ray]) -> Self {
@@ -150,12 +150,14 @@ impl<'a> Environment<'a> {
         let ray = self.offering.then(ray);
         let due = self.due.peek().is_some_and(|Reverse((due, ..))| *due <= cycle);
         let answer = if due { self.due.pop() } else { None };
-        let answer = answer.and_then(|Reverse((_, _, (tag, address)))| {
+        let answer = answer.and_then(|Reverse((_, _, (tag, epoch, address)))| {
             self.outstanding[tag as usize] = false; // eight bits
             // Checked when it was asked for.
-            self.memory.line(U::new(address)).map(|line| MemoryAnswer { tag: U::new(tag), line })
+            let (tag, epoch) = (U::new(tag), U::new(epoch));
+            self.memory.line(U::new(address)).map(|line| MemoryAnswer { tag, epoch, error: false, line })
         });
-        Inputs { ray, hit_ready: !self.traffic.hit_stall.at(cycle), mem_ready: !self.traffic.memory_stall.at(cycle), answer }
+        let (hit_ready, mem_ready) = (!self.traffic.hit_stall.at(cycle), !self.traffic.memory_stall.at(cycle));
+        Inputs { ray, hit_ready, mem_ready, answer, flush: false }
     }
 
     fn check_held(&self, outputs: &Outputs) -> Result<(), UnitError> {
@@ -182,8 +184,8 @@ impl<'a> Environment<'a> {
                 self.waited[2] += 1;
             }
         }
-        self.held =
-            Outputs { ready: false, hit: outputs.hit.filter(|_| !inputs.hit_ready), mem: outputs.mem.filter(|_| !inputs.mem_ready) };
+        let (hit, mem) = (outputs.hit.filter(|_| !inputs.hit_ready), outputs.mem.filter(|_| !inputs.mem_ready));
+        self.held = Outputs { hit, mem, ..Outputs::default() };
         self.waited[0] += u64::from(self.held.mem.is_some());
         self.waited[1] += u64::from(self.held.hit.is_some());
         if let Some(request) = outputs.mem.filter(|_| inputs.mem_ready) {
@@ -206,7 +208,7 @@ impl<'a> Environment<'a> {
         if std::mem::replace(outstanding, true) {
             return Err(UnitError::TagInUse { cycle, tag });
         }
-        self.due.push(Reverse((cycle + self.traffic.latency.of(self.requests), self.requests, (tag, address))));
+        self.due.push(Reverse((cycle + self.traffic.latency.of(self.requests), self.requests, (tag, request.epoch.get(), address))));
         self.requests += 1;
         Ok(())
     }

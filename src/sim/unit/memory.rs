@@ -1,10 +1,13 @@
 //! A scene's sections as the unit's memory, from some address on.
 
 use crate::format::{FileSection, Scene};
-use crate::hardware::ports::SceneConfig;
+use crate::hardware::ports::{AnswerLimit, SceneConfig};
 use crate::method::lod::{BOUNDS, LodImage, NODES, RECORDS, VERTICES};
 use crate::num::{BoundScale, LINE_BYTES, LineAddress, U};
 use crate::step::{MemoryMap, SectionId};
+
+/// Words of a line.
+const WORDS: u64 = 4;
 
 /// The lines of a model, as its [`MemoryMap`] has them.
 #[derive(Clone, Copy, Debug)]
@@ -47,7 +50,24 @@ impl<'a> SceneMemory<'a> {
     pub fn config(&self) -> SceneConfig {
         let [nodes, records, bounds, vertices] = [NODES, RECORDS, BOUNDS, VERTICES].map(|section| self.address(self.map.first(section)));
         let (levels, zeros) = (U::new(u64::from(self.levels)), U::new(u64::from(self.zeros)));
-        SceneConfig { levels, zeros, compact: self.compact, scale: self.scale, nodes, records, bounds, vertices }
+        SceneConfig {
+            levels,
+            zeros,
+            compact: self.compact,
+            scale: self.scale,
+            nodes,
+            records,
+            bounds,
+            vertices,
+            visits: U::new(self.visits()),
+            answer_limit: AnswerLimit::MAX,
+        }
+    }
+
+    /// The most entries that a ray can visit: each node of the quad-BVH, each tree and each node of a tree has one parent and is visited once.
+    fn visits(&self) -> u64 {
+        let lines = |section: SectionId| self.sections[section.place()].len() as u64 / WORDS;
+        lines(NODES) + lines(RECORDS) / 2 + 4 * lines(BOUNDS)
     }
 
     /// Section and line within it of an address; `None` outside of all.

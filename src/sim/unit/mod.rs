@@ -5,6 +5,7 @@
 //! model or the RTL with rays and a memory; [`wave`] writes what happens as a waveform, [`ray_trace`] as text.
 
 mod arbiter;
+mod checks;
 mod closest;
 mod context;
 mod counts;
@@ -20,7 +21,7 @@ mod traversal_unit;
 pub mod wave;
 mod wires;
 
-pub use crate::hardware::{Fetch, State};
+pub use crate::hardware::{Fetch, RayError, State};
 pub(super) use arbiter::Arbiter;
 pub use counts::UnitCounts;
 pub use error::UnitError;

@@ -6,7 +6,7 @@ use crate::block::tessellate::child_triangle;
 use crate::block::{bary_map, child_test, hit_divide, hit_select, lod_test, node_address, ray_setup, tessellate, tri_test};
 use crate::format::{Displacements, L0Record, VertexData};
 use crate::hardware::ports::{HitOut, SceneConfig};
-use crate::hardware::{Fetch, State};
+use crate::hardware::{Fetch, RayError, State};
 use crate::num::{LineAddress, PADDING_BITS, Point, RayT, U, Wire};
 
 /// Zero bits at the bottom of every stored coordinate.
@@ -39,8 +39,8 @@ impl Context {
     pub fn requests(&self, mut ask: impl FnMut(Resource)) {
         match self.state {
             State::Setup => ask(Resource::Setup),
-            State::Fetch if self.want != 0 => ask(Resource::Fetch),
-            State::Child if self.waiting & 0b01 == 0 => ask(Resource::Child),
+            State::Fetch if self.want != 0 && self.error.is_none() => ask(Resource::Fetch),
+            State::Child if self.waiting & 0b01 == 0 && self.error.is_none() => ask(Resource::Child),
             State::Lod if self.chooses_levels => ask(Resource::Lod),
             State::Morph => ask(Resource::Morph),
             State::Tri if self.left.get().get() != 0 => ask(Resource::Tri),
@@ -117,7 +117,7 @@ impl Context {
         } else if scene.compact {
             Displacements::half(line, self.node.get().get() as usize & 1).steps()
         } else {
-            VertexData::from_words(line).points()
+            VertexData::from_words(line).points().map(|point| self.kept(point))
         }
     }
 
@@ -148,9 +148,10 @@ impl Context {
 
     /// The ray's hit, once it is done.
     pub fn hit_out(&self) -> HitOut {
-        match self.closest.hit() {
-            Some(hit) => HitOut { tag: self.tag, found: true, hit },
-            None => HitOut { tag: self.tag, ..HitOut::default() },
+        let error = RayError::code(self.error);
+        match self.closest.hit().filter(|_| self.error.is_none()) {
+            Some(hit) => HitOut { tag: self.tag, error, found: true, hit },
+            None => HitOut { tag: self.tag, error, ..HitOut::default() },
         }
     }
 }

@@ -99,7 +99,10 @@ impl fmt::Display for TraceEvent {
             Self::Compared { t, closer } => write!(f, "  t {t}: {}", if *closer { "closest" } else { "not closer" }),
             Self::Popped { entry, dropped: true } => write!(f, "pop {}: dropped, behind the closest hit", Named(*entry)),
             Self::Popped { entry, dropped: false } => write!(f, "pop {}", Named(*entry)),
-            Self::Hit(HitOut { found: false, .. }) => write!(f, "miss"),
+            Self::Hit(hit @ HitOut { found: false, .. }) => match hit.error() {
+                Some(error) => write!(f, "ends early: {error}"),
+                None => write!(f, "miss"),
+            },
             Self::Hit(HitOut { hit: h, .. }) => {
                 let side = if h.front { "front" } else { "back" };
                 write!(

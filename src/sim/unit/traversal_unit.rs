@@ -11,13 +11,13 @@ use crate::block::child_test::ChildTest;
 use crate::block::hit_divide::{self, HitDivide};
 use crate::block::hit_select::HitSelect;
 use crate::block::lod_test::LodTest;
-use crate::block::node_address::NodeAddress;
+use crate::block::node_address::{self, NodeAddress};
 use crate::block::ray_setup::RaySetup;
 use crate::block::tessellate::Tessellate;
 use crate::block::tri_test::TriTest;
-use crate::hardware::ports::{HitOut, MemoryAnswer, MemoryRequest, RayIn, SceneConfig};
+use crate::hardware::ports::{Epoch, HitOut, MemoryAnswer, MemoryRequest, RayIn, SceneConfig};
 use crate::hardware::{Hardware, State};
-use crate::num::{RayT, U};
+use crate::num::{RayT, U, Wire};
 use std::collections::VecDeque;
 
 /// Output ports in a cycle.
@@ -29,6 +29,8 @@ pub struct Outputs {
     pub hit: Option<HitOut>,
     /// `mem_valid_o` and `mem_o`.
     pub mem: Option<MemoryRequest>,
+    /// `busy_o`: some ray is under way, or something waits at a port.
+    pub busy: bool,
 }
 
 /// Input ports in a cycle.
@@ -42,11 +44,16 @@ pub struct Inputs {
     pub mem_ready: bool,
     /// `mem_valid_i` and `mem_i`.
     pub answer: Option<MemoryAnswer>,
+    /// `flush_i`: every ray under way ends.
+    pub flush: bool,
 }
 
 /// The unit.
 pub struct TraversalUnit {
+    hardware: Hardware,
     pub(super) scene: SceneConfig,
+    /// Cycles since the last tick of the limit of answers.
+    ticks: u64,
     pub(super) contexts: Vec<Context>,
     arbiters: [Arbiter; Resource::COUNT],
     pub(super) ray_setup: Pipeline<RaySetup>,
@@ -74,14 +81,13 @@ impl TraversalUnit {
     /// A unit behind its reset.
     ///
     /// # Panics
-    /// There is no such hardware ([`Hardware::validate`]), or the scene has more levels than it, or vertices of another form.
+    /// There is no such hardware ([`Hardware::validate`]).
     pub fn new(config: Hardware, scene: SceneConfig) -> Self {
         config.validate().unwrap_or_else(|error| panic!("{error}"));
-        assert!(scene.levels.get() <= u64::from(config.levels), "{} levels, but the hardware is for {}", scene.levels.get(), config.levels);
-        let has_form = if scene.compact { config.compact_vertices } else { config.exact_vertices };
-        assert!(has_form || config.stored_levels() == 0, "vertices of a form that the hardware does not have");
         Self {
+            hardware: config,
             scene,
+            ticks: 0,
             contexts: vec![Context::new(&config); config.contexts],
             arbiters: Default::default(),
             ray_setup: Pipeline::new(&config),
@@ -103,18 +109,42 @@ impl TraversalUnit {
         }
     }
 
+    /// `scene_i` from this cycle on.
+    pub fn set_scene(&mut self, scene: SceneConfig) {
+        self.scene = scene;
+    }
+
+    /// The end of a cycle in which `rst_ni` is low.
+    pub fn reset(&mut self) {
+        *self = Self::new(self.hardware, self.scene);
+    }
+
     /// The output ports in this cycle.
     pub fn outputs(&self) -> Outputs {
+        // Context and place, and the epoch, eight bits each.
+        let request = |(out, tag): (node_address::Out, u16)| MemoryRequest {
+            tag: U::new(u64::from(tag >> Epoch::WIDTH)),
+            epoch: Epoch::wrapping(tag.into()),
+            address: out.address,
+        };
+        let (hit, mem) = (self.hit.offered(), self.node_address.offered().map(request));
         Outputs {
             ready: self.contexts.iter().any(|c| c.state == State::Idle),
-            hit: self.hit.offered(),
-            mem: self.node_address.offered().map(|(out, tag)| MemoryRequest { tag: U::new(u64::from(tag)), address: out.address }),
+            hit,
+            mem,
+            busy: self.contexts.iter().any(|c| c.state != State::Idle) || hit.is_some() || mem.is_some(),
         }
     }
 
     /// Tag of the ray that context `context` has, if it is not idle.
     pub fn ray_tag(&self, context: usize) -> Option<u64> {
         self.contexts.get(context).filter(|c| c.state != State::Idle).map(|c| c.tag.get())
+    }
+
+    /// Tag of the ray that asks for this line, if it is still under way.
+    pub fn owner(&self, request: &MemoryRequest) -> Option<u64> {
+        let context = request.tag.get() as usize >> 2; // eight bits
+        self.ray_tag(context).filter(|_| self.contexts[context].epoch == request.epoch)
     }
 
     /// The end of a cycle.
@@ -155,7 +185,7 @@ impl TraversalUnit {
             take: inputs.ray.and_then(|_| self.contexts.iter().position(|c| c.state == State::Idle)),
             setup: self.link(winner(Resource::Setup), self.ray_setup.ready(true), |c, k| (c.setup_in(), k as u16)),
             fetch: self.link(winner(Resource::Fetch), self.node_address.ready(inputs.mem_ready), |c, k| {
-                (c.fetch_in(scene), numbered(k, c.place_of(c.want)))
+                (c.fetch_in(scene), numbered(k, c.place_of(c.want)) << Epoch::WIDTH | c.epoch.get() as u16)
             }),
             child: self.link(winner(Resource::Child), self.child_test.ready(true), |c, k| (c.child_in(), k as u16)),
             lod: self.link(winner(Resource::Lod), self.lod_test.ready(true), |c, k| (c.lod_in(scene), k as u16)),
@@ -181,8 +211,12 @@ impl TraversalUnit {
         let owner = |tag: u16| usize::from(tag >> 2 & 63);
         let tri = self.tri_test.offered();
         let divided = self.hit_divide.offered();
+        let tick = self.ticks >= self.scene.answer_limit.get();
         let cycle = Cycle {
             ray: w.take.zip(inputs.ray),
+            fits: self.hardware.takes(&self.scene),
+            flush: inputs.flush,
+            tick,
             setup: Served { granted: w.setup.granted(), result: self.ray_setup.offered().map(|(out, tag)| (plain(tag), out)) },
             fetch: Served { granted: w.fetch.granted(), result: inputs.answer.map(|a| (a.tag.get() as usize >> 2, a)) }, // 8 bits
             child: Served { granted: w.child.granted(), result: self.child_test.offered().map(|(out, tag)| (plain(tag), out)) },
@@ -205,6 +239,7 @@ impl TraversalUnit {
         };
 
         self.cycles += 1;
+        self.ticks = if tick { 0 } else { self.ticks + 1 };
         for (k, context) in self.contexts.iter_mut().enumerate() {
             self.states[context.state as usize] += 1;
             context.tick(k, &self.scene, &cycle);

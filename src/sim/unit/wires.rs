@@ -77,6 +77,12 @@ pub struct Quotient {
 #[derive(Clone, Debug)]
 pub struct Cycle {
     pub ray: Option<(usize, RayIn)>,
+    /// The scene is one for this hardware.
+    pub fits: bool,
+    /// Every ray under way ends.
+    pub flush: bool,
+    /// The limit of answers has passed since the last one.
+    pub tick: bool,
     pub setup: Served<ray_setup::Out>,
     /// Its results are memory lines.
     pub fetch: Served<MemoryAnswer>,

@@ -36,7 +36,7 @@ impl<'a> Timed<'a> {
     }
 
     fn memory_request(&self, request: LineRequest) -> MemoryRequest {
-        MemoryRequest { tag: U::new(request.tag.into()), address: self.memory.address(request.line) }
+        MemoryRequest { tag: U::new(request.tag.into()), address: self.memory.address(request.line), ..MemoryRequest::default() }
     }
 }
 
@@ -66,10 +66,11 @@ impl UnitPort for Timed<'_> {
             ready: self.unit.is_ready(),
             hit: self.unit.hit().map(hit),
             mem: self.unit.request(self.cycle).map(|request| self.memory_request(request)),
+            ..Outputs::default()
         }
     }
     fn tick(&mut self, inputs: &Inputs) {
-        let Outputs { ready, hit, mem } = self.outputs();
+        let Outputs { ready, hit, mem, .. } = self.outputs();
         // An answer may be told before or behind the tick of its cycle.
         let early = self.cycle & 1 == 0;
         let answer = |unit: &mut UnitTiming<_>, when: bool| {

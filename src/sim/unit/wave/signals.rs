@@ -1,7 +1,7 @@
 //! The signals of the waveform: names, widths and values, in one walk over the unit.
 
 use crate::block::{Block, child_test, hit_select, lod_test};
-use crate::hardware::ports::{HitOut, MemoryAnswer, MemoryRequest, RayIn, SceneConfig};
+use crate::hardware::ports::{Epoch, HitOut, MemoryAnswer, MemoryRequest, RayIn, SceneConfig};
 use crate::method::{Entry, STACK_ENTRIES};
 use crate::num::{BitVec, Layout, Point, Wire};
 use crate::sim::unit::context::Context;
@@ -109,6 +109,8 @@ pub fn walk(unit: &TraversalUnit, inputs: &Inputs, wires: &Wires, to: &mut impl 
     to.enter("traversal_unit");
     to.signal("rst_ni", Vector::flag(true));
     typed::<SceneConfig>(to, "scene_i", &Vector::of(&unit.scene));
+    to.signal("flush_i", Vector::flag(inputs.flush));
+    to.signal("busy_o", Vector::flag(outputs.busy));
     to.signal("valid_i", Vector::flag(inputs.ray.is_some()));
     to.signal("ready_o", Vector::flag(outputs.ready));
     typed::<RayIn>(to, "in_i", &Vector::offer(inputs.ray.as_ref()));
@@ -131,7 +133,7 @@ pub fn walk(unit: &TraversalUnit, inputs: &Inputs, wires: &Wires, to: &mut impl 
     }
 
     block(to, &unit.ray_setup, &wires.setup, 6);
-    block_waiting(to, &unit.node_address, &wires.fetch, 8, inputs.mem_ready);
+    block_waiting(to, &unit.node_address, &wires.fetch, 8 + Epoch::WIDTH, inputs.mem_ready);
     children(to, unit, wires);
     block(to, &unit.lod_test, &wires.lod, 6);
     block(to, &unit.tessellate, &wires.morph, 6);
@@ -162,6 +164,8 @@ fn context_signals(c: &Context, to: &mut impl Visitor) {
     typed::<lod_test::Out>(to, "lod_q", &Vector::register(c.lod.known()));
     to.signal("want_q", Vector::number(c.want.into(), 2));
     to.signal("waiting_q", Vector::number(c.waiting.into(), 2));
+    to.signal("epoch_q", Vector::of(&c.epoch));
+    to.signal("visits_q", Vector::register(c.visits_left.known()));
     typed::<child_test::Out>(to, "sorted_q", &Vector::register(c.sorted.known()));
     to.signal("count_q", Vector::register(c.count.known()));
     to.signal("four_q", Vector::register(c.four.known()));
@@ -199,7 +203,7 @@ fn block_ports<B: Block>(to: &mut impl Visitor, pipeline: &Pipeline<B>, link: &L
 where
     B::Out: Copy,
 {
-    let tag_width = tag.0.len() as u32; // at most ten bits
+    let tag_width = tag.0.len() as u32; // at most sixteen bits
     to.enter(&format!("u_{}", B::NAME));
     to.signal("valid_i", Vector::flag(link.input.is_some()));
     to.signal("ready_o", Vector::flag(link.ready));

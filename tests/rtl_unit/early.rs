@@ -1,0 +1,69 @@
+//! Rays that end early: every error, and any mischief of memory, flushes, resets and scenes, on model and RTL side by side, equal on every port in every cycle.
+//! `LODRAY_CYCLES` asks for that many cycles in place of a few hundred thousand.
+
+use crate::{SideBySide, configs, cycles_or};
+use lodray::hardware::Hardware;
+use lodray::hardware::ports::SceneConfig;
+use lodray::sim::unit::TraversalUnit;
+use lodray_test_support::early::{each_error, each_moment};
+use lodray_test_support::hardware::OTHERS;
+use lodray_test_support::hostile::{Exposed, Hostile, Stage};
+use lodray_test_support::models::Rng;
+
+impl Exposed for SideBySide {
+    fn reset(&mut self) {
+        self.model.reset();
+        self.rtl.reset();
+        self.cycle += 1;
+    }
+    fn set_scene(&mut self, scene: &SceneConfig) {
+        self.model.set_scene(*scene);
+        self.rtl.scene(scene);
+    }
+    fn model(&self) -> &TraversalUnit {
+        &self.model
+    }
+}
+
+impl Drop for SideBySide {
+    fn drop(&mut self) {
+        assert!(std::thread::panicking() || self.any_answer || !self.rtl.sim.failed(), "{}: an assertion of the RTL failed", self.what);
+    }
+}
+
+#[test]
+fn every_error_is_told_and_the_next_ray_is_right() {
+    each_error(|config, scene| SideBySide::new(config, scene, 1, "every error".to_owned()));
+}
+
+#[test]
+fn flushes_and_resets_at_any_moment() {
+    each_moment(|config, scene| SideBySide::new(config, scene, 1, "every moment".to_owned()), 7);
+}
+
+fn mischief(lawful: bool, cycles: u64) {
+    let seed = tb::seed(1).unwrap_or_else(|error| panic!("{error}"));
+    let hardware: Vec<Hardware> = configs().into_iter().chain(OTHERS).collect();
+    let mut clean = 0;
+    for (seed, config) in (seed..).zip(&hardware) {
+        let mut rng = Rng(seed);
+        let stages: Vec<Stage> = (0..3).map(|_| Stage::random(config, &mut rng)).collect();
+        let mut around = Hostile::new(*config, &stages, lawful, seed);
+        let mut both = SideBySide::new(*config, &around.scene(), seed, format!("seed {seed}, {config:?}"));
+        both.any_answer = !lawful;
+        around.run(&mut both, cycles / hardware.len() as u64);
+        println!("{:?}; {config:?}", around.tally);
+        clean += around.tally.clean;
+    }
+    assert!(clean > 0);
+}
+
+#[test]
+fn whatever_memory_does() {
+    mischief(true, cycles_or(300_000));
+}
+
+#[test]
+fn whatever_tags_answers_have() {
+    mischief(false, cycles_or(300_000) / 2);
+}
