@@ -33,9 +33,17 @@ fn tops() -> Vec<(String, Vec<(&'static str, u64)>)> {
     // Verilator takes no module as the top that contains itself: such a one is linted within its users.
     tops.retain(|(name, _)| name != "lod_pkg" && !text(name).contains(&format!("\n    {name} #(")));
     assert!(tops.len() >= 20, "only {} tops in {}", tops.len(), tb::rtl().display());
-    for (top, parameter, value) in
-        [("tri_test", "EDGES_PER_CYCLE", 1), ("traversal_unit", "EDGES_PER_CYCLE", 1), ("traversal_unit", "CONTEXTS", 1)]
-    {
+    for (top, parameter, value) in [
+        ("tri_test", "EDGES_PER_CYCLE", 1),
+        ("hit_divide", "DIVIDE_BITS", 1),
+        ("hit_divide", "DIVIDE_BITS", 2),
+        ("ray_setup", "SETUP_BITS", 1),
+        ("ray_setup", "SETUP_BITS", 2),
+        ("divide_step", "BITS", 3),
+        ("divide_multiples", "BITS", 3),
+        ("traversal_unit", "EDGES_PER_CYCLE", 1),
+        ("traversal_unit", "CONTEXTS", 1),
+    ] {
         tops.push((top.to_owned(), vec![(parameter, value)]));
     }
     tops
