@@ -27,19 +27,28 @@ impl DivisorMultiples {
         (self.odd() - 1) * (self.width + self.bits)
     }
 
-    /// Registers of the odd ones: each as wide as the largest.
+    /// Registers of the odd ones beside each other: each as wide as the largest.
     pub const fn registers(self) -> Registers {
-        // The divisor itself has no bits above its own.
-        Registers::bits(self.odd() * (self.width + self.bits)).without(self.bits + self.unused())
+        // Above, the divisor and three times it are narrower. Below, three times it has its lowest bit, five times two of its, and seven times its lowest and
+        // the second of three times it.
+        let without = [1, 2 + 1, 3 + 1 + 5];
+        Registers::bits(self.odd() * (self.width + self.bits)).without(self.of(without))
     }
 
-    /// Registers of those besides the divisor.
+    /// Registers of those besides the divisor, where it is kept elsewhere.
     pub const fn registers_besides(self) -> Registers {
-        Registers::bits((self.odd() - 1) * (self.width + self.bits)).without(self.unused())
+        // Three times the divisor is narrower than the others, which have their lowest bits from it: five times one, seven times two.
+        let without = [0, 0, 1 + 3];
+        Registers::bits((self.odd() - 1) * (self.width + self.bits)).without(self.of(without))
     }
 
-    /// Three times the divisor has a bit less than five and seven times.
-    const fn unused(self) -> u32 {
-        if self.bits > 2 { 1 } else { 0 }
+    /// That of so many bits of a step.
+    const fn of(self, by_bits: [u32; 3]) -> u32 {
+        let [one, two, three] = by_bits;
+        match self.bits {
+            1 => one,
+            2 => two,
+            _ => three,
+        }
     }
 }
