@@ -7,7 +7,7 @@ module divide_multiples #(
   parameter int unsigned W = 34,
   parameter int unsigned BITS = 1
 ) (
-  input  logic [W-1:0]                         divisor_i,
+  input  logic [W-1:0]                       divisor_i,
   output logic [2**(BITS-1)-1:0][W+BITS-1:0] odd_o
 );
 
@@ -17,9 +17,13 @@ module divide_multiples #(
 
   for (genvar k = 0; k < 2**(BITS-1); k++) begin : g_odd
     // 1, 1 + 2, 1 + 4, 8 - 1.
-    if (k == 0) assign odd_o[k] = divisor;
-    else if (k < 3) assign odd_o[k] = divisor + (divisor << k);
-    else assign odd_o[k] = (divisor << 3) - divisor;
+    if (k == 0) begin : g_once
+      assign odd_o[k] = divisor;
+    end else if (k < 3) begin : g_sum
+      assign odd_o[k] = divisor + (divisor << k);
+    end else begin : g_difference
+      assign odd_o[k] = (divisor << 3) - divisor;
+    end
   end
 
 endmodule

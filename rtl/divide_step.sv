@@ -10,10 +10,10 @@ module divide_step #(
   parameter int unsigned W = 34,
   parameter int unsigned BITS = 1
 ) (
-  input  logic [W-1:0]                         remainder_i,
+  input  logic [W-1:0]                       remainder_i,
   input  logic [2**(BITS-1)-1:0][W+BITS-1:0] odd_i,
-  output logic [BITS-1:0]                      quotient_o,
-  output logic [W-1:0]                         remainder_o
+  output logic [BITS-1:0]                    quotient_o,
+  output logic [W-1:0]                       remainder_o
 );
 
   localparam int unsigned DIGITS = 2**BITS;
@@ -22,16 +22,15 @@ module divide_step #(
     $error("divide_step: BITS = %0d, must be 1 to 3", BITS);
   end
 
-  // Choices of a level stand behind those of the one before: the remainders for every digit first, then the better of each two, to the last one.
+  // Choices of a level stand behind those of the one before: the remainders for every digit first, then one of each two, to the last one.
   localparam int unsigned CHOICES = 2 * DIGITS - 1;
-  logic [SHIFTED_W-1:0]        shifted;
-  logic [DIGITS-1:0]           fits;
+  logic [SHIFTED_W-1:0]         shifted;
+  logic [DIGITS-1:1]            fits;
   logic [CHOICES-1:0][W-1:0]    remainder;
   logic [CHOICES-1:0][BITS-1:0] digit;
   assign shifted = {remainder_i, {BITS{1'b0}}};
 
   // The multiple fits iff there is no borrow. What is left of the largest that fits is below the divisor: W bits.
-  assign fits[0]      = 1'b1;
   assign remainder[0] = shifted[W-1:0];
   assign digit[0]     = '0;
   for (genvar k = 1; k < DIGITS; k++) begin : g_multiple

@@ -99,7 +99,7 @@ module divide_step_exact #(
 endmodule
 
 /// One step of two divisions: of a larger remainder by a smaller divisor comes the larger digit, or the same and again the larger remainder. The odd multiples
-/// are any that are ordered, and likewise.
+/// are any that are ordered and do not wrap, and likewise.
 module divide_step_order #(
   parameter int unsigned W = 34,
   parameter int unsigned BITS = 1
@@ -121,7 +121,7 @@ module divide_step_order #(
   divide_chain #(.W(W), .BITS(BITS)) u_low_chain (.odd_i(low_odd_i), .multiple_o(low_multiple), .next_o(low_next));
 
   for (genvar k = 1; k < 2**BITS; k++) begin : g_multiple
-    always_comb assume (high_multiple[k] <= low_multiple[k]);
+    always_comb assume (high_multiple[k] <= low_multiple[k] && !low_multiple[k][W+BITS]);
   end
   for (genvar k = 0; k < 2**BITS; k++) begin : g_digit
     always_comb assert (!high_next[k] || !low_next[k] || high_digit != BITS'(k) || low_digit != BITS'(k) || high >= low);
