@@ -48,20 +48,20 @@ module divide_multiples_order #(
   parameter int unsigned W = 34,
   parameter int unsigned BITS = 1
 ) (
-  input logic [W-1:0] small_i,
-  input logic [W-1:0] large_i
+  input logic [W-1:0] low_i,
+  input logic [W-1:0] high_i
 );
 
-  logic [2**(BITS-1)-1:0][W+BITS-1:0] small, large;
-  divide_multiples #(.W(W), .BITS(BITS)) u_small (.divisor_i(small_i), .odd_o(small));
-  divide_multiples #(.W(W), .BITS(BITS)) u_large (.divisor_i(large_i), .odd_o(large));
+  logic [2**(BITS-1)-1:0][W+BITS-1:0] low, high;
+  divide_multiples #(.W(W), .BITS(BITS)) u_low (.divisor_i(low_i), .odd_o(low));
+  divide_multiples #(.W(W), .BITS(BITS)) u_high (.divisor_i(high_i), .odd_o(high));
 
   always_comb begin
-    assume (small_i <= large_i);
-    cover (small_i < large_i && small_i[W-1]);
+    assume (low_i <= high_i);
+    cover (low_i < high_i && low_i[W-1]);
   end
   for (genvar k = 0; k < 2**(BITS-1); k++) begin : g_odd
-    always_comb assert (small[k] <= large[k]);
+    always_comb assert (low[k] <= high[k]);
   end
 
 endmodule
