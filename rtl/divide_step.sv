@@ -22,12 +22,10 @@ module divide_step #(
     $error("divide_step: BITS = %0d, must be 1 to 3", BITS);
   end
 
-  // Choices of a level stand behind those of the one before: the remainders for every digit first, then one of each two, to the last one.
-  localparam int unsigned CHOICES = 2 * DIGITS - 1;
-  logic [SHIFTED_W-1:0]         shifted;
-  logic [DIGITS-1:1]            fits;
-  logic [CHOICES-1:0][W-1:0]    remainder;
-  logic [CHOICES-1:0][BITS-1:0] digit;
+  logic [SHIFTED_W-1:0]        shifted;
+  logic [DIGITS-1:1]           fits;
+  logic [DIGITS-1:0][W-1:0]    remainder, chosen;
+  logic [DIGITS-1:0][BITS-1:0] digit, chosen_digit;
   assign shifted = {remainder_i, {BITS{1'b0}}};
 
   // The multiple fits iff there is no borrow. What is left of the largest that fits is below the divisor: W bits.
@@ -44,18 +42,18 @@ module divide_step #(
     assign unused_high  = ^difference[SHIFTED_W-1:W];
   end
   // A choice is between two neighbouring ranges of digits; the lowest digit of the upper one decides.
-  for (genvar level = 0; level < BITS; level++) begin : g_level
-    localparam int unsigned FROM = 2 * DIGITS - (2 * DIGITS >> level);
-    localparam int unsigned TO = 2 * DIGITS - (DIGITS >> level);
-    for (genvar k = 0; k < (DIGITS >> (level + 1)); k++) begin : g_choice
-      logic upper;
-      assign upper           = fits[(2 * k + 1) << level];
-      assign remainder[TO+k] = upper ? remainder[FROM+2*k+1] : remainder[FROM+2*k];
-      assign digit[TO+k]     = upper ? digit[FROM+2*k+1] : digit[FROM+2*k];
+  always_comb begin
+    chosen       = remainder;
+    chosen_digit = digit;
+    for (int unsigned level = 0; level < BITS; level++) begin
+      for (int unsigned k = 0; k < (DIGITS >> (level + 1)); k++) begin
+        chosen[k]       = fits[(2 * k + 1) << level] ? chosen[2*k+1] : chosen[2*k];
+        chosen_digit[k] = fits[(2 * k + 1) << level] ? chosen_digit[2*k+1] : chosen_digit[2*k];
+      end
     end
   end
-  assign remainder_o = remainder[CHOICES-1];
-  assign quotient_o  = digit[CHOICES-1];
+  assign remainder_o = chosen[0];
+  assign quotient_o  = chosen_digit[0];
 
 endmodule
 
