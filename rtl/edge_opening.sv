@@ -47,7 +47,7 @@ module edge_opening (
     logic unused_top;
     assign unused_top = quotient[BITS-1];
     divide_step #(.W(D_W)) u_step (
-      .remainder_i(remainder), .divisor_i(divisor), .quotient_bit_o(quotient_bit), .remainder_o(remainder_next)
+      .remainder_i(remainder), .odd_i({1'b0, divisor}), .quotient_o(quotient_bit), .remainder_o(remainder_next)
     );
     pipe_stage #(.W(STATE_W)) u_stage (
       .clk_i, .rst_ni, .valid_i(valid[k]), .ready_o(ready[k]),

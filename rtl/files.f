@@ -18,6 +18,7 @@ child_test.sv
 closest_hit.sv
 cone_tolerance.sv
 cross_product.sv
+divide_multiples.sv
 divide_step.sv
 dot_product.sv
 edge_function.sv

@@ -2,11 +2,13 @@
 
 /// The division of hits: quotient = floor(numerator * 2^32 / denominator), saturating at 35 bits. Twin of src/block/hit_divide.rs.
 ///
-/// The quotient fits iff numerator < 8 denominator; it is then floor(2^35 numerator / (8 denominator)): one restoring step for each of 35 bits, from
-/// the numerator as first remainder. Otherwise every bit is set. Legal: denominator > 0.
-/// Latency and interval: HIT_DIVIDE_LATENCY, constant: one cycle to take the input, 35 steps. It holds one item.
+/// The quotient fits iff numerator < 8 denominator; it is then floor(2^35 numerator / (8 denominator)): restoring steps of DIVIDE_BITS bits, from the numerator as
+/// first remainder. Otherwise every bit is set. Legal: denominator > 0, DIVIDE_BITS 1 to 3.
+/// Latency and interval are constant: one cycle to take the input and the divisor's multiples, then the steps for 35 bits: 35, 18 or 12. It holds one item.
+/// With lod_pkg::DIVIDE_BITS they are HIT_DIVIDE_LATENCY.
 module hit_divide #(
-  parameter int unsigned TAG_W = 8
+  parameter int unsigned TAG_W = 8,
+  parameter int unsigned DIVIDE_BITS = lod_pkg::DIVIDE_BITS
 ) (
   input  logic                     clk_i,
   input  logic                     rst_ni,
@@ -23,23 +25,32 @@ module hit_divide #(
   localparam int unsigned QUOTIENT_W = lod_pkg::RAY_T_W;
   // 2^35 = 8 * 2^32.
   localparam int unsigned WHOLE_W = QUOTIENT_W - 32;
-  // 8 denominator, and with it every remainder.
-  localparam int unsigned DIVISOR_W = lod_pkg::EDGE_FUNCTION_W + WHOLE_W;
-  localparam int unsigned STEP_W = $clog2(QUOTIENT_W + 1);
+  localparam int unsigned STEPS = (QUOTIENT_W + DIVIDE_BITS - 1) / DIVIDE_BITS;
+  // What the steps give beyond the quotient: bits that are 0 above it, as the divisor is larger by as many.
+  localparam int unsigned SPARE_W = STEPS * DIVIDE_BITS - QUOTIENT_W;
+  localparam int unsigned ZEROS = WHOLE_W + SPARE_W;
+  // 8 denominator or 16, and with it every remainder.
+  localparam int unsigned DIVISOR_W = lod_pkg::EDGE_FUNCTION_W + ZEROS;
+  // Of a multiple of the denominator.
+  localparam int unsigned MULTIPLE_W = lod_pkg::EDGE_FUNCTION_W + DIVIDE_BITS;
+  localparam int unsigned ODDS = 2**(DIVIDE_BITS-1);
+  localparam int unsigned STEP_W = $clog2(STEPS + 1);
 
   if (lod_pkg::T_NUMERATOR_W > DIVISOR_W) begin : g_illegal_width
     $error("hit_divide: a numerator of %0d bits does not fit the remainder's %0d", lod_pkg::T_NUMERATOR_W, DIVISOR_W);
   end
-  if (lod_pkg::HIT_DIVIDE_LATENCY != QUOTIENT_W + 1 || lod_pkg::HIT_DIVIDE_INTERVAL != QUOTIENT_W + 1) begin : g_illegal_timing
-    $error("hit_divide: lod_pkg::HIT_DIVIDE_LATENCY and HIT_DIVIDE_INTERVAL must be %0d", QUOTIENT_W + 1);
+  if (DIVIDE_BITS == lod_pkg::DIVIDE_BITS && (lod_pkg::HIT_DIVIDE_LATENCY != STEPS + 1 || lod_pkg::HIT_DIVIDE_INTERVAL != STEPS + 1)) begin : g_illegal_timing
+    $error("hit_divide: lod_pkg::HIT_DIVIDE_LATENCY and HIT_DIVIDE_INTERVAL must be %0d", STEPS + 1);
   end
 
-  logic                  busy_q, stepping;
-  logic [STEP_W-1:0]     steps_left_q;
-  logic [DIVISOR_W-1:0]  remainder_q, divisor_q, remainder;
-  logic                  saturated_q, quotient_bit;
-  logic [QUOTIENT_W-1:0] quotient_q;
-  logic [TAG_W-1:0]      tag_q;
+  logic                            busy_q, stepping;
+  logic [STEP_W-1:0]               steps_left_q;
+  logic [DIVISOR_W-1:0]            remainder_q, remainder;
+  logic [ODDS-1:0][MULTIPLE_W-1:0] odd, odd_q;
+  logic                            saturated_q;
+  logic [DIVIDE_BITS-1:0]          digit;
+  logic [QUOTIENT_W-1:0]           quotient_q;
+  logic [TAG_W-1:0]                tag_q;
 
   assign stepping = busy_q && steps_left_q != 0;
   assign valid_o  = busy_q && steps_left_q == 0;
@@ -47,8 +58,14 @@ module hit_divide #(
   assign out_o    = quotient_q;
   assign tag_o    = tag_q;
 
-  divide_step #(.W(DIVISOR_W)) u_step (
-    .remainder_i(remainder_q), .divisor_i(divisor_q), .quotient_bit_o(quotient_bit), .remainder_o(remainder)
+  divide_multiples #(.W(lod_pkg::EDGE_FUNCTION_W), .BITS(DIVIDE_BITS)) u_multiples (.divisor_i(in_i.denominator), .odd_o(odd));
+
+  logic [ODDS-1:0][DIVISOR_W+DIVIDE_BITS-1:0] odd_divisor;
+  for (genvar k = 0; k < ODDS; k++) begin : g_odd
+    assign odd_divisor[k] = {odd_q[k], {ZEROS{1'b0}}};
+  end
+  divide_step #(.W(DIVISOR_W), .BITS(DIVIDE_BITS)) u_step (
+    .remainder_i(remainder_q), .odd_i(odd_divisor), .quotient_o(digit), .remainder_o(remainder)
   );
 
   always_ff @(posedge clk_i) begin
@@ -57,7 +74,7 @@ module hit_divide #(
       steps_left_q <= '0;
     end else if (ready_o) begin
       busy_q       <= valid_i;
-      steps_left_q <= STEP_W'(QUOTIENT_W);
+      steps_left_q <= STEP_W'(STEPS);
     end else if (stepping) begin
       steps_left_q <= steps_left_q - 1;
     end
@@ -66,12 +83,12 @@ module hit_divide #(
   always_ff @(posedge clk_i) begin
     if (ready_o && valid_i) begin
       remainder_q <= DIVISOR_W'(in_i.numerator);
-      divisor_q   <= {in_i.denominator, {WHOLE_W{1'b0}}};
+      odd_q       <= odd;
       saturated_q <= in_i.numerator[lod_pkg::T_NUMERATOR_W-1:WHOLE_W] >= in_i.denominator;
       tag_q       <= tag_i;
     end else if (stepping) begin
       remainder_q <= remainder;
-      quotient_q  <= {quotient_q[QUOTIENT_W-2:0], quotient_bit || saturated_q};
+      quotient_q  <= {quotient_q[QUOTIENT_W-DIVIDE_BITS-1:0], digit | {DIVIDE_BITS{saturated_q}}};
     end
   end
 

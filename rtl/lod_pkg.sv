@@ -13,6 +13,8 @@ package lod_pkg;
   localparam int unsigned CONTEXTS = 4;          // rays under way in a traversal unit, if its parameter does not say otherwise
   localparam int unsigned CONTEXT_W = 6;         // bits of a context's number
   localparam int unsigned EDGES_PER_CYCLE = 3;   // edge functions that tri_test evaluates in a cycle, if its parameter does not say otherwise
+  localparam int unsigned DIVIDE_BITS = 3;       // bits of a quotient that hit_divide finds in a cycle, if its parameter does not say otherwise
+  localparam int unsigned SETUP_BITS = 3;        // of each reciprocal that ray_setup finds, likewise
   localparam int unsigned INDEX_W = 28;          // of the number of a quad-BVH node, of a tree, and of a node, where it is kept
   localparam int unsigned LINE_W = 28;           // of the numbers of a tree's first sibling group and vertex line
   localparam int unsigned LOD_TEST = 1;          // levels of detail are chosen, and triangles morphed: 1, or 0 if all rays are of full detail or of none
@@ -73,13 +75,13 @@ package lod_pkg;
   localparam int unsigned CHILD_BOXES_LATENCY = 3;
   localparam int unsigned CHILD_SORT_LATENCY = 3;
   localparam int unsigned CHILD_SORT6_LATENCY = 5;
-  localparam int unsigned HIT_DIVIDE_LATENCY = 36;
-  localparam int unsigned HIT_DIVIDE_INTERVAL = 36;
+  localparam int unsigned HIT_DIVIDE_LATENCY = 13;
+  localparam int unsigned HIT_DIVIDE_INTERVAL = 13;
   localparam int unsigned HIT_SELECT_LATENCY = 3;
   localparam int unsigned LOD_TEST_LATENCY = 25;
   localparam int unsigned NODE_ADDRESS_LATENCY = 2;
-  localparam int unsigned RAY_SETUP_LATENCY = 22;
-  localparam int unsigned RAY_SETUP_INTERVAL = 22;
+  localparam int unsigned RAY_SETUP_LATENCY = 11;
+  localparam int unsigned RAY_SETUP_INTERVAL = 11;
   localparam int unsigned TESSELLATE_LATENCY = 7;
   localparam int unsigned TRI_TEST_LATENCY = 18;    // with EDGES_PER_CYCLE = 3
   localparam int unsigned TRI_TEST_1_LATENCY = 20;  // with EDGES_PER_CYCLE = 1

@@ -3,11 +3,13 @@
 /// Per-ray constants of the box tests. Twin of src/block/ray_setup.rs.
 ///
 /// Axes are mirrored so that d >= 0. `moment` holds x_i d_j - x_j d_i for yz, zx, xy; `ceil` = ceil(x / 2^16); mantissa / 2^shift = 2^30 / d rounded down. With e the
-/// place of d's highest bit and n = d 2^(29-e): mantissa = floor(2^47 / n) and shift = e - 12, from 18 steps of a restoring division; if d = 2^e they are 2^17 and
-/// e - 13; below e = 13 what does not fit is held at 2^18 - 1 and 0; d = 0 gives 0 and 0.
-/// Legal: |x| < 2^31, |d_i| < 2^30. Latency and interval: RAY_SETUP_LATENCY, constant; it holds one item. One 32 x 31-bit multiplier serves the six products.
+/// place of d's highest bit and n = d 2^(29-e): mantissa = floor(2^47 / n) and shift = e - 12, from the 18 bits of a restoring division, SETUP_BITS in a step; if
+/// d = 2^e they are 2^17 and e - 13; below e = 13 what does not fit is held at 2^18 - 1 and 0; d = 0 gives 0 and 0.
+/// Legal: |x| < 2^31, |d_i| < 2^30, SETUP_BITS 1 to 3. Latency and interval are constant: 22, 14 or 11; it holds one item. One 32 x 31-bit multiplier serves the
+/// six products, which take as long as the division of three bits a step. With lod_pkg::SETUP_BITS they are RAY_SETUP_LATENCY.
 module ray_setup #(
-  parameter int unsigned TAG_W = 8
+  parameter int unsigned TAG_W = 8,
+  parameter int unsigned SETUP_BITS = lod_pkg::SETUP_BITS
 ) (
   input  logic                    clk_i,
   input  logic                    rst_ni,
@@ -32,14 +34,21 @@ module ray_setup #(
   localparam int unsigned FACTOR_STAGES = 1;
   localparam int unsigned PRODUCT_LATENCY = FACTOR_STAGES + lod_pkg::multiplier_latency(X_W, D_W + 1);
   localparam int unsigned PRODUCTS = 6;
-  // Cycle 1 finds the highest bit, cycle 2 normalises, then the steps, and one cycle to choose.
-  localparam int unsigned FIRST_STEP = 2;
-  localparam int unsigned LAST = FIRST_STEP + MANTISSA_W + 1;
+  // Cycle 0 finds the highest bit, cycle 1 normalises, a further one makes multiples where steps take some, then the steps, and one cycle to choose.
+  localparam int unsigned ODDS = 2**(SETUP_BITS-1);
+  localparam int unsigned MULTIPLE_W = D_W + SETUP_BITS;
+  localparam int unsigned STEPS = MANTISSA_W / SETUP_BITS;
+  localparam int unsigned FIRST_STEP = ODDS == 1 ? 2 : 3;
+  localparam int unsigned CHOICE = FIRST_STEP + STEPS;
+  localparam int unsigned LAST = CHOICE + 1;
   localparam int unsigned COUNT_W = $clog2(LAST + 1);
-  if (lod_pkg::RAY_SETUP_LATENCY != LAST + 1 || lod_pkg::RAY_SETUP_INTERVAL != LAST + 1) begin : g_illegal_timing
+  if (STEPS * SETUP_BITS != MANTISSA_W) begin : g_illegal_bits
+    $error("ray_setup: steps of %0d bits do not make %0d", SETUP_BITS, MANTISSA_W);
+  end
+  if (SETUP_BITS == lod_pkg::SETUP_BITS && (lod_pkg::RAY_SETUP_LATENCY != LAST + 1 || lod_pkg::RAY_SETUP_INTERVAL != LAST + 1)) begin : g_illegal_timing
     $error("ray_setup: lod_pkg::RAY_SETUP_LATENCY and RAY_SETUP_INTERVAL must be %0d", LAST + 1);
   end
-  if (PRODUCTS + PRODUCT_LATENCY >= LAST) begin : g_illegal_products
+  if (PRODUCTS + PRODUCT_LATENCY > LAST) begin : g_illegal_products
     $error("ray_setup: the products take longer than the division");
   end
 
@@ -94,21 +103,33 @@ module ray_setup #(
     end
 
     // Normalised divisor, highest bit set; the division starts from half its range, which is below it unless d is a power of two.
-    logic [D_W-1:0]        divisor_q, remainder_q, remainder;
-    logic [MANTISSA_W-1:0] quotient_q;
-    logic                  quotient_bit, power;
+    logic [D_W-1:0]             divisor_q, remainder_q, remainder;
+    logic [ODDS*MULTIPLE_W-1:0] made, odd;
+    logic [MANTISSA_W-1:0]      quotient_q;
+    logic [SETUP_BITS-1:0]      digit;
+    logic                       power;
     assign power = divisor_q[D_W-2:0] == '0;
-    divide_step #(.W(D_W)) u_step (
-      .remainder_i(remainder_q), .divisor_i(divisor_q), .quotient_bit_o(quotient_bit), .remainder_o(remainder)
+    divide_multiples #(.W(D_W), .BITS(SETUP_BITS)) u_multiples (.divisor_i(divisor_q), .odd_o(made));
+    if (ODDS == 1) begin : g_divisor
+      assign odd = made;
+    end else begin : g_multiples
+      logic [(ODDS-1)*MULTIPLE_W-1:0] higher_q;
+      always_ff @(posedge clk_i) begin
+        if (count_q == COUNT_W'(2)) higher_q <= made[ODDS*MULTIPLE_W-1:MULTIPLE_W];
+      end
+      assign odd = {higher_q, made[MULTIPLE_W-1:0]};
+    end
+    divide_step #(.W(D_W), .BITS(SETUP_BITS)) u_step (
+      .remainder_i(remainder_q), .odd_i(odd), .quotient_o(digit), .remainder_o(remainder)
     );
     always_ff @(posedge clk_i) begin
       if (count_q == COUNT_W'(0)) place_q <= place;
       if (count_q == COUNT_W'(1)) begin
         divisor_q   <= d_q[k] << (SHIFT_W'(D_W - 1) - place_q);
         remainder_q <= {1'b1, {(D_W-1){1'b0}}};
-      end else if (count_q >= COUNT_W'(FIRST_STEP) && count_q < COUNT_W'(FIRST_STEP + MANTISSA_W)) begin
+      end else if (count_q >= COUNT_W'(FIRST_STEP) && count_q < COUNT_W'(CHOICE)) begin
         remainder_q <= remainder;
-        quotient_q  <= {quotient_q[MANTISSA_W-2:0], quotient_bit};
+        quotient_q  <= {quotient_q[MANTISSA_W-SETUP_BITS-1:0], digit};
       end
     end
 
@@ -121,7 +142,7 @@ module ray_setup #(
       else {mantissa, shift} = {quotient_q, place_q - SHIFT_W'(12)};
     end
     always_ff @(posedge clk_i) begin
-      if (count_q == COUNT_W'(LAST - 1)) {mantissa_q, shift_q} <= {mantissa, shift};
+      if (count_q == COUNT_W'(CHOICE)) {mantissa_q, shift_q} <= {mantissa, shift};
     end
 
     // ceil(x / 2^16): 32 bits over 2^16, plus 1 if anything was cut off: 17 bits.

@@ -13,6 +13,14 @@ const BY_LEVEL: [Operation; 2] = [Operation::BaryMap, Operation::HitSelect];
 /// Blocks whose registers depend on the bits of coordinates and directions.
 const BY_WIDTH: [Operation; 5] = [Operation::BoxTest, Operation::ChildTest, Operation::LodTest, Operation::Tessellate, Operation::TriTest];
 
+/// Blocks whose registers depend on the bits of a division's step.
+const DIVIDERS: [Operation; 2] = [Operation::HitDivide, Operation::RaySetup];
+
+/// The default with so many.
+fn dividing(bits: u32) -> Hardware {
+    Hardware { divide_bits: bits, setup_bits: bits, ..Hardware::default() }
+}
+
 fn counted(operation: Operation, hardware: &Hardware) -> Registers {
     operation.parts(&hardware.form()).registers
 }
@@ -27,6 +35,7 @@ fn blocks_and_contexts_declare_the_registers_that_are_counted() {
     let one_edge = Hardware { edges_per_cycle: EdgesPerCycle::One, ..default };
     let mut all: Vec<(Operation, Hardware)> = Operation::ALL.map(|operation| (operation, default)).to_vec();
     all.push((Operation::TriTest, one_edge));
+    all.extend([1, 2].into_iter().flat_map(|bits| DIVIDERS.map(|operation| (operation, dividing(bits)))));
     all.extend(OTHERS.iter().flat_map(|&hardware| BY_LEVEL.map(|operation| (operation, hardware))));
     all.extend(NARROWS.iter().flat_map(|&hardware| BY_WIDTH.map(|operation| (operation, hardware))));
     all.extend(LESS.map(|hardware| (Operation::Tessellate, hardware)));
@@ -68,7 +77,14 @@ fn what_is_kept_are_the_flip_flops_of_the_netlists() {
     let one_edge = Hardware { edges_per_cycle: EdgesPerCycle::One, ..default };
     let mut wrong = Vec::new();
     let named = Operation::ALL.map(|operation| (operation.name(), counted(operation, &default)));
-    for (name, registers) in named.into_iter().chain([("tri_test-EDGES_PER_CYCLE=1", counted(Operation::TriTest, &one_edge))]) {
+    let further = [
+        ("tri_test-EDGES_PER_CYCLE=1", counted(Operation::TriTest, &one_edge)),
+        ("hit_divide-DIVIDE_BITS=2", counted(Operation::HitDivide, &dividing(2))),
+        ("hit_divide-DIVIDE_BITS=1", counted(Operation::HitDivide, &dividing(1))),
+        ("ray_setup-SETUP_BITS=2", counted(Operation::RaySetup, &dividing(2))),
+        ("ray_setup-SETUP_BITS=1", counted(Operation::RaySetup, &dividing(1))),
+    ];
+    for (name, registers) in named.into_iter().chain(further) {
         println!("{name}: {} declared, {} kept, {} in the netlist", registers.declared, registers.kept, flip_flops(name));
         if registers.kept != flip_flops(name) + besides(name) {
             wrong.push(format!("{name}: {} counted, {} in the netlist", registers.kept, flip_flops(name)));

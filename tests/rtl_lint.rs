@@ -35,6 +35,12 @@ fn tops() -> Vec<(String, Vec<(&'static str, u64)>)> {
     assert!(tops.len() >= 20, "only {} tops in {}", tops.len(), tb::rtl().display());
     for (top, parameter, value) in [
         ("tri_test", "EDGES_PER_CYCLE", 1),
+        ("hit_divide", "DIVIDE_BITS", 1),
+        ("hit_divide", "DIVIDE_BITS", 2),
+        ("ray_setup", "SETUP_BITS", 1),
+        ("ray_setup", "SETUP_BITS", 2),
+        ("divide_step", "BITS", 3),
+        ("divide_multiples", "BITS", 3),
         ("traversal_unit", "EDGES_PER_CYCLE", 1),
         ("traversal_unit", "CONTEXTS", 1),
         ("axi_read_adapter", "DATA_W", 128),

@@ -9,7 +9,11 @@ RTL = ROOT / "rtl"
 PACKAGE = "lod_pkg"
 
 # Blocks are the modules with a twin in src/block; of these, some come in several forms.
-FORMS = {"tri_test": [{}, {"EDGES_PER_CYCLE": 1}]}
+FORMS = {
+    "tri_test": [{}, {"EDGES_PER_CYCLE": 1}],
+    "hit_divide": [{}, {"DIVIDE_BITS": 2}, {"DIVIDE_BITS": 1}],
+    "ray_setup": [{}, {"SETUP_BITS": 2}, {"SETUP_BITS": 1}],
+}
 # Modules without a twin there that are worth a row.
 FURTHER = ["edge_function", "traversal_stack"]
 

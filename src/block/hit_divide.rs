@@ -2,8 +2,10 @@
 //!
 //! With numerator t_num and denominator det it gives t; with v or w it gives a barycentric coordinate in steps of 2^-32, of which the
 //! last bit is dropped (floor of a floor). Legal: denominator > 0.
+//!
+//! The RTL finds [`Form::divide_bits`] bits of q in a step, against all multiples of the denominator that so many bits can stand for.
 
-use super::parts::{Parts, Registers, TAG};
+use super::parts::{DivisorMultiples, Parts, Registers, TAG};
 use super::tri_test::{EdgeFunction, TNumerator};
 use super::{Block, Form, Timing};
 use crate::num::{RayT, Wire, wire_struct};
@@ -29,16 +31,41 @@ wire_struct! {
 /// The block.
 pub struct HitDivide;
 
+/// Steps of a division.
+const fn steps(form: &Form) -> u32 {
+    RayT::WIDTH.div_ceil(form.divide_bits)
+}
+
+/// One item: a cycle to take it, and the steps.
+const fn timing(form: &Form) -> Timing {
+    let cycles = 1 + steps(form);
+    Timing { latency: cycles, interval: cycles }
+}
+
 impl Block for HitDivide {
     const NAME: &'static str = "hit_divide";
-    const TIMING: Timing = Timing { latency: 36, interval: 36 };
+    const TIMING: Timing = timing(&Form::FULL);
     type In = In;
     type Out = Out;
-    fn parts(_: &Form) -> Parts {
-        let (bits, remainder) = (RayT::WIDTH, EdgeFunction::WIDTH + 3);
-        // Busy, saturated, the count of steps; the divisor is 8 times the denominator.
-        let registers = Registers::bits(2 + (bits + 1).next_power_of_two().ilog2() + 2 * remainder + bits + TAG).without(3);
-        Parts { products: vec![], add_bits: bits * (remainder + 1) + EdgeFunction::WIDTH, select_bits: bits * remainder, registers }
+    fn timing(form: &Form) -> Timing {
+        timing(form)
+    }
+    fn parts(form: &Form) -> Parts {
+        let (bits, steps) = (form.divide_bits, steps(form));
+        // The divisor is 2^zeros times the denominator: what the quotient has above 2^32, and what the steps give beyond it.
+        let zeros = RayT::WIDTH - 32 + steps * bits - RayT::WIDTH;
+        let (remainder, denominator) = (EdgeFunction::WIDTH + zeros, EdgeFunction::WIDTH);
+        let multiples = DivisorMultiples { width: denominator, bits };
+        // Busy, saturated, the count of steps.
+        let registers =
+            Registers::bits(2 + (steps + 1).next_power_of_two().ilog2() + remainder + RayT::WIDTH + TAG) + multiples.registers();
+        let candidates = multiples.compared();
+        Parts {
+            products: vec![],
+            add_bits: steps * candidates * (remainder + bits) + multiples.add_bits() + denominator,
+            select_bits: steps * candidates * remainder,
+            registers,
+        }
     }
     #[inline(always)]
     fn eval(input: &In) -> Out {

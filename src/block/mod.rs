@@ -66,6 +66,9 @@ impl EdgesPerCycle {
     }
 }
 
+/// The most bits of a quotient that a division finds in a cycle.
+pub const MOST_DIVIDE_BITS: u32 = 3;
+
 /// What blocks depend on of the hardware that they are built for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Form {
@@ -73,6 +76,10 @@ pub struct Form {
     pub levels: u32,
     /// Edge functions of the triangle test.
     pub edges_per_cycle: EdgesPerCycle,
+    /// Bits of a quotient in a cycle of the division of hits.
+    pub divide_bits: u32,
+    /// Bits of a reciprocal in a cycle of the constants of a ray.
+    pub setup_bits: u32,
     /// Levels of detail are chosen: triangles are morphed.
     pub lod_test: bool,
     /// Cones can have a radius where their rays start.
@@ -92,6 +99,8 @@ impl Form {
     pub const FULL: Self = Self {
         levels: MAX_LEVELS,
         edges_per_cycle: EdgesPerCycle::Three,
+        divide_bits: MOST_DIVIDE_BITS,
+        setup_bits: MOST_DIVIDE_BITS,
         lod_test: true,
         start_radius: true,
         compact_vertices: true,
@@ -105,7 +114,7 @@ impl Form {
 pub trait Block {
     /// Its name: the file here, the file and module in `rtl/`.
     const NAME: &'static str;
-    /// Cycles of its RTL as it stands in `rtl/`: for [`MAX_LEVELS`], and three edges per cycle.
+    /// Cycles of its RTL as it stands in `rtl/`: for [`MAX_LEVELS`], three edges and three bits of a quotient per cycle.
     const TIMING: Timing;
     /// What goes in.
     type In: Wire;

@@ -5,7 +5,7 @@
 //! mantissa held at 2^18 - 1; both 0 for d_i = 0.
 //! Legal: |x_i| < 2^31, |d_i| < 2^30.
 
-use super::parts::{Multiplier, Parts, Registers, TAG};
+use super::parts::{DivisorMultiples, Multiplier, Parts, Registers, TAG};
 use super::{Block, Form, Timing};
 use crate::num::{BOX_SHIFT, Direction, Point, S, U, Vec3, Wire, wire_struct};
 
@@ -13,7 +13,7 @@ wire_struct! {
     /// Reciprocal of one direction component, rounded down.
     pub struct Reciprocal {
         /// Mantissa.
-        mantissa: U<18>,
+        mantissa: U<MANTISSA>,
         /// Right shift.
         shift: U<5>,
     }
@@ -62,6 +62,21 @@ wire_struct! {
 /// The block.
 pub struct RaySetup;
 
+/// Bits of a mantissa.
+const MANTISSA: u32 = 18;
+
+/// Steps of a division.
+const fn steps(form: &Form) -> u32 {
+    MANTISSA.div_ceil(form.setup_bits)
+}
+
+/// One item: a cycle to take it, the highest bit's place, normalising, multiples where a step takes more than the divisor, the steps, the choice.
+const fn timing(form: &Form) -> Timing {
+    let multiples = if form.setup_bits > 1 { 1 } else { 0 };
+    let cycles = 1 + 2 + multiples + steps(form) + 1;
+    Timing { latency: cycles, interval: cycles }
+}
+
 #[inline(always)]
 fn reciprocal(d: U<30>) -> Reciprocal {
     const LARGEST: u64 = (1 << 18) - 1;
@@ -96,25 +111,31 @@ fn moment(i: &Axis, j: &Axis) -> S<63> {
 
 impl Block for RaySetup {
     const NAME: &'static str = "ray_setup";
-    const TIMING: Timing = Timing { latency: 22, interval: 22 };
+    const TIMING: Timing = timing(&Form::FULL);
     type In = In;
     type Out = Out;
-    fn parts(_: &Form) -> Parts {
+    fn timing(form: &Form) -> Timing {
+        timing(form)
+    }
+    fn parts(form: &Form) -> Parts {
         let (x, component, moment) = (Point::WIDTH / 3, Direction::WIDTH / 3, Vec3::<63>::WIDTH / 3);
         let d = component - 1;
-        let (ceil, mantissa, shift) = (17, 18, 5);
+        let (ceil, mantissa, shift) = (17, MANTISSA, 5);
+        let (bits, steps) = (form.setup_bits, steps(form));
+        let multiples = DivisorMultiples { width: d, bits };
         // Mirror, d, x; the highest bit's place, divisor and remainder, quotient; mantissa and shift, ceil.
-        let axis = Registers::bits(1 + d + x + shift + 2 * d + mantissa + mantissa + shift + ceil);
+        let axis = Registers::bits(1 + d + x + shift + 2 * d + mantissa + mantissa + shift + ceil) + multiples.registers_besides();
         let product = Multiplier { unsigned: 1, ..Multiplier::new(x, component).near() };
         // Busy, the count of cycles, the tag; the first of two products, that it is there, and the moment.
-        let around = Registers::bits(1 + 5 + TAG + x + component + 1 + 3 * moment);
+        let count = timing(form).latency.next_power_of_two().ilog2();
+        let around = Registers::bits(1 + count + TAG + x + component + 1 + 3 * moment);
         Parts {
             // One multiplier for all.
             products: vec![[6, x, component]],
             // Divisions, moment, ceil, mirror.
-            add_bits: 3 * (mantissa * (d + 1) + moment + ceil + x + component),
+            add_bits: 3 * (steps * multiples.compared() * (d + bits) + multiples.add_bits() + moment + ceil + x + component),
             // Divisions, normalising in as many steps as the place has bits, mirror.
-            select_bits: 3 * (mantissa * d + d * shift + x + component),
+            select_bits: 3 * (steps * multiples.compared() * d + d * shift + x + component),
             registers: 3 * axis + product.registers() + around,
         }
     }

@@ -1,7 +1,7 @@
 //! Area of a traversal unit, from what `scripts/synth` measured of its blocks (`docs/hardware.md`).
 
 use super::Hardware;
-use crate::block::{EdgesPerCycle, Operation};
+use crate::block::Operation;
 use crate::method::MethodUnit;
 
 const MEASURED: &str = include_str!("../../docs/hardware.md");
@@ -11,15 +11,27 @@ const FLIP_FLOP: f64 = 7.67;
 
 /// Gate equivalents of one unit: its blocks, of the default sizes, and the registers of its contexts. None if a block was not measured.
 pub fn unit_gates(unit: MethodUnit, hardware: &Hardware) -> Option<f64> {
-    let blocks: f64 =
-        hardware.blocks(unit.blocks).map(|&operation| block_gates(operation, hardware.edges_per_cycle)).sum::<Option<f64>>()?;
+    let blocks: f64 = hardware.blocks(unit.blocks).map(|&operation| block_gates(operation, hardware)).sum::<Option<f64>>()?;
     let context = f64::from(hardware.context_registers(unit.has_levels).kept);
     Some(blocks + hardware.contexts as f64 * context * FLIP_FLOP)
 }
 
-fn block_gates(operation: Operation, edges: EdgesPerCycle) -> Option<f64> {
-    let is_narrow = operation == Operation::TriTest && edges == EdgesPerCycle::One;
-    let row = format!("| `{}{}` | ", operation.name(), if is_narrow { "-EDGES_PER_CYCLE=1" } else { "" });
+fn block_gates(operation: Operation, hardware: &Hardware) -> Option<f64> {
+    let (own, default) = (hardware.form(), Hardware::DEFAULT.form());
+    let parameter = match operation {
+        Operation::TriTest => ("EDGES_PER_CYCLE", own.edges_per_cycle.count(), default.edges_per_cycle.count()),
+        Operation::HitDivide => ("DIVIDE_BITS", own.divide_bits, default.divide_bits),
+        Operation::RaySetup => ("SETUP_BITS", own.setup_bits, default.setup_bits),
+        _ => ("", 0, 0),
+    };
+    let form = if let (name, value, usual) = parameter
+        && value != usual
+    {
+        format!("-{name}={value}")
+    } else {
+        String::new()
+    };
+    let row = format!("| `{}{form}` | ", operation.name());
     let cells = MEASURED.lines().find_map(|line| line.strip_prefix(&row))?;
     cells.split(" | ").next()?.replace(',', "").parse().ok()
 }
@@ -27,6 +39,7 @@ fn block_gates(operation: Operation, edges: EdgesPerCycle) -> Option<f64> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::block::EdgesPerCycle;
     use crate::method::METHODS;
 
     #[test]
@@ -39,6 +52,9 @@ mod tests {
             assert!(one > 1e6 && (two - one - context).abs() < 1e-3, "{}: {one}, {two}", method.name);
             let narrow = Hardware { contexts: 1, edges_per_cycle: EdgesPerCycle::One, ..Hardware::default() };
             assert!(unit_gates(unit, &narrow).unwrap() < one - 4e5);
+            let [three, two, single] =
+                [3, 2, 1].map(|bits| unit_gates(unit, &Hardware { divide_bits: bits, setup_bits: bits, ..Hardware::default() }).unwrap());
+            assert!(single < two && two < three, "{}: {single}, {two}, {three}", method.name);
         }
     }
 }

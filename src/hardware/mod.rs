@@ -1,4 +1,4 @@
-//! A hardware as one value: how deep its hierarchies are, how many rays it has under way, how many edges it tests in a cycle.
+//! A hardware as one value: how deep its hierarchies are, how many rays it has under way, how much it tests and divides in a cycle.
 //!
 //! Everything that depends on such a choice follows from [`Hardware`]: the timing and the parts of each block ([`Block::timing`],
 //! [`Block::parts`]), the sizes of the cycle model, the registers of a ray context ([`Hardware::context_registers`]), and `rtl/lod_pkg.sv`
@@ -15,7 +15,7 @@ mod state;
 pub use area::unit_gates;
 pub use state::{Fetch, RayError, State};
 
-use crate::block::{Block, EdgesPerCycle, Form, Operation, Timing};
+use crate::block::{Block, EdgesPerCycle, Form, MOST_DIVIDE_BITS, Operation, Timing};
 use crate::num::{BOX_SHIFT, MAX_BOUND_OFFSET, MAX_BVH_DEPTH, MAX_LEVELS, MOST_DIRECTION_ZEROS};
 use ports::SceneConfig;
 
@@ -44,6 +44,10 @@ pub struct Hardware {
     pub context_bits: u32,
     /// Edge functions that the triangle test evaluates in a cycle.
     pub edges_per_cycle: EdgesPerCycle,
+    /// Bits of a quotient that the division of hits finds in a cycle, 1 to 3.
+    pub divide_bits: u32,
+    /// Bits of each reciprocal that the constants of a ray take in a cycle, 1 to 3.
+    pub setup_bits: u32,
     /// Bits of the number of a quad-BVH node, of a tree, and of a node within its level, as a context keeps them: at most 28.
     pub index_bits: u32,
     /// Bits of the numbers of a tree's first sibling group and vertex line: at most 28.
@@ -91,6 +95,8 @@ impl Hardware {
         contexts: 4,
         context_bits: MAX_CONTEXT_BITS,
         edges_per_cycle: EdgesPerCycle::Three,
+        divide_bits: MOST_DIVIDE_BITS,
+        setup_bits: MOST_DIVIDE_BITS,
         index_bits: MOST_INDEX_BITS,
         line_bits: MOST_INDEX_BITS,
         lod_test: true,
@@ -122,6 +128,8 @@ impl Hardware {
             ("fewer_stack_entries", u64::from(self.stack_entries()), 2, u64::from(self.deepest_stack())),
             ("context_bits", u64::from(self.context_bits), 1, u64::from(MAX_CONTEXT_BITS)),
             ("contexts", self.contexts as u64, 1, 1 << self.context_bits.min(MAX_CONTEXT_BITS)),
+            ("divide_bits", u64::from(self.divide_bits), 1, u64::from(MOST_DIVIDE_BITS)),
+            ("setup_bits", u64::from(self.setup_bits), 1, u64::from(MOST_DIVIDE_BITS)),
             ("index_bits", u64::from(self.index_bits), u64::from(self.node_bits()), u64::from(MOST_INDEX_BITS)),
             ("line_bits", u64::from(self.line_bits), 1, u64::from(MOST_INDEX_BITS)),
             ("compact_vertices", u64::from(self.compact_vertices), u64::from(!self.exact_vertices), 1),
@@ -136,9 +144,18 @@ impl Hardware {
 
     /// What the blocks of this hardware depend on.
     pub const fn form(&self) -> Form {
-        let Self { levels, edges_per_cycle, start_radius, compact_vertices, exact_vertices, coordinate_zeros, direction_zeros, .. } = *self;
-        let lod_test = self.chooses_levels();
-        Form { levels, edges_per_cycle, lod_test, start_radius, compact_vertices, exact_vertices, coordinate_zeros, direction_zeros }
+        Form {
+            levels: self.levels,
+            edges_per_cycle: self.edges_per_cycle,
+            divide_bits: self.divide_bits,
+            setup_bits: self.setup_bits,
+            lod_test: self.chooses_levels(),
+            start_radius: self.start_radius,
+            compact_vertices: self.compact_vertices,
+            exact_vertices: self.exact_vertices,
+            coordinate_zeros: self.coordinate_zeros,
+            direction_zeros: self.direction_zeros,
+        }
     }
 
     /// Levels that trees are stored to.
@@ -232,6 +249,8 @@ mod tests {
             "hardware: fewer_stack_entries must be 2 to 103, but is 104"
         );
         assert_eq!(wrong(Hardware { context_bits: 7, ..default }), "hardware: context_bits must be 1 to 6, but is 7");
+        assert_eq!(wrong(Hardware { divide_bits: 4, ..default }), "hardware: divide_bits must be 1 to 3, but is 4");
+        assert_eq!(wrong(Hardware { setup_bits: 0, ..default }), "hardware: setup_bits must be 1 to 3, but is 0");
         assert_eq!(wrong(Hardware { coordinate_zeros: 17, ..default }), "hardware: coordinate_zeros must be 0 to 16, but is 17");
         assert_eq!(wrong(Hardware { direction_zeros: 15, ..default }), "hardware: direction_zeros must be 0 to 14, but is 15");
         assert_eq!(wrong(Hardware { contexts: 0, ..default }), "hardware: contexts must be 1 to 64, but is 0");

@@ -100,6 +100,12 @@ pub struct Units {
     pub contexts: u32,
     /// Edge functions that the triangle test evaluates in a cycle: 3 or 1.
     pub edges_per_cycle: u32,
+    /// Bits of a quotient that the division of hits finds in a cycle: 1 to 3.
+    #[serde(default = "Units::divide_bits")]
+    pub divide_bits: u32,
+    /// Bits of a reciprocal that the constants of a ray take in a cycle: 1 to 3.
+    #[serde(default = "Units::setup_bits")]
+    pub setup_bits: u32,
     /// A unit of a plan: what the keys above do not say is as there. Machine files have none.
     #[serde(skip)]
     pub like: Option<Hardware>,
@@ -109,7 +115,18 @@ impl Units {
     /// The hardware of a unit: what the machine does not say is as in a plan's, or as in `rtl/`.
     pub fn config(&self) -> Hardware {
         let edges_per_cycle = if self.edges_per_cycle == 1 { EdgesPerCycle::One } else { EdgesPerCycle::Three };
-        Hardware { contexts: self.contexts as usize, edges_per_cycle, ..self.like.unwrap_or_default() }
+        let Self { divide_bits, setup_bits, .. } = *self;
+        Hardware { contexts: self.contexts as usize, edges_per_cycle, divide_bits, setup_bits, ..self.like.unwrap_or_default() }
+    }
+
+    /// Where a file does not say.
+    const fn divide_bits() -> u32 {
+        Hardware::DEFAULT.divide_bits
+    }
+
+    /// Likewise.
+    const fn setup_bits() -> u32 {
+        Hardware::DEFAULT.setup_bits
     }
 }
 

@@ -1,5 +1,6 @@
 use super::{Machine, MachineError};
 use crate::block::EdgesPerCycle;
+use crate::hardware::Hardware;
 use crate::sim::energy;
 use std::fs;
 use std::path::Path;
@@ -134,6 +135,8 @@ fn an_impossible_value_names_file_key_and_reason() {
         ("per_group = 1       # own", "per_group = 0 # own", "units.per_group must be"),
         ("contexts = 16", "contexts = 65", "units.contexts must be 1 to 64, but is 65"),
         ("edges_per_cycle = 3", "edges_per_cycle = 2", "units.edges_per_cycle must be 3 or 1, but is 2"),
+        ("divide_bits = 1", "divide_bits = 4", "units.divide_bits must be 1 to 3, but is 4"),
+        ("setup_bits = 1", "setup_bits = 0", "units.setup_bits must be 1 to 3, but is 0"),
         ("\"dram/gddr5.toml\"", "\"gddr5\"", "dram.device must be a file's path, with .toml, but is \"gddr5\""),
         ("channels = 8", "channels = 6", "dram.channels must be a power of two up to 65536, but is 6"),
         ("queue = 64                 # own", "queue = 0", "dram.queue must be"),
@@ -207,6 +210,10 @@ fn overrides_change_one_value() {
     assert_eq!(machine.units.config().edges_per_cycle, EdgesPerCycle::One);
     assert_eq!(expected.units.config().edges_per_cycle, EdgesPerCycle::Three);
     assert_eq!(machine.units.config().contexts, 16);
+    machine.set("units.divide_bits", "2").unwrap();
+    machine.set("units.setup_bits", "1").unwrap();
+    let Hardware { divide_bits, setup_bits, .. } = machine.units.config();
+    assert_eq!([divide_bits, setup_bits], [2, 1]);
 }
 
 #[test]

@@ -3,6 +3,7 @@
 use super::Machine;
 use super::error::Breach;
 use super::parts::{Cache, Memory, Tables};
+use crate::block::MOST_DIVIDE_BITS;
 use crate::hardware::MAX_CONTEXTS;
 use crate::num::LINE_BYTES;
 
@@ -33,6 +34,8 @@ impl Machine {
             ("crossbar.per_group", self.crossbar.per_group, MOST),
             ("units.per_group", self.units.per_group, MOST),
             ("units.contexts", self.units.contexts, MAX_CONTEXTS as u32),
+            ("units.divide_bits", self.units.divide_bits, MOST_DIVIDE_BITS),
+            ("units.setup_bits", self.units.setup_bits, MOST_DIVIDE_BITS),
             ("dram.queue", self.dram.queue, MOST_QUEUED),
         ];
         counts.iter().try_for_each(|&(key, value, most)| count(key, value, most))?;

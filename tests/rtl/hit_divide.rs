@@ -1,13 +1,13 @@
-//! The division of hits.
+//! The division of hits, with three bits of a quotient per cycle, two and one.
 
 use crate::draw::Draw;
 use crate::suite::{Category, Suite};
 use crate::tri_test;
-use lodray::block::Block;
 use lodray::block::hit_divide::{HitDivide, In};
 use lodray::block::tri_test::TriTest;
+use lodray::block::{Block, Form};
 use lodray::num::{RayT, U, WU};
-use tb::Mode;
+use tb::{Build, Mode};
 
 const ONE: u64 = 1 << 32;
 
@@ -100,12 +100,38 @@ pub fn suite() -> Suite<HitDivide> {
     )
 }
 
+/// With so many bits a cycle.
+fn of_bits(bits: u32) -> Suite<HitDivide> {
+    let timing = HitDivide::timing(&Form { divide_bits: bits, ..Form::FULL });
+    Suite { build: Build::block::<HitDivide>().parameter("DIVIDE_BITS", bits as usize), timing, ..suite() }
+}
+
 #[test]
-fn free_running() {
+fn three_bits_per_cycle_free_running() {
     suite().run(Mode::Free);
 }
 
 #[test]
-fn stalled() {
+fn three_bits_per_cycle_stalled() {
     suite().run(Mode::Stalled);
+}
+
+#[test]
+fn two_bits_per_cycle_free_running() {
+    of_bits(2).run(Mode::Free);
+}
+
+#[test]
+fn two_bits_per_cycle_stalled() {
+    of_bits(2).run(Mode::Stalled);
+}
+
+#[test]
+fn one_bit_per_cycle_free_running() {
+    of_bits(1).run(Mode::Free);
+}
+
+#[test]
+fn one_bit_per_cycle_stalled() {
+    of_bits(1).run(Mode::Stalled);
 }

@@ -8,7 +8,7 @@ use crate::{
 use lodray::block::{self, Block};
 use lodray::hardware::Hardware;
 use lodray::num::U;
-use lodray_test_support::hardware::{FULL_DETAIL, LESS, OTHERS, SHALLOW, SMALL};
+use lodray_test_support::hardware::{FULL_DETAIL, LESS, MIDDLE, OTHERS, SHALLOW, SMALL};
 use std::fmt::Debug;
 use tb::Mode;
 
@@ -61,6 +61,13 @@ fn blocks_that_depend_on_features() {
 }
 
 #[test]
+fn blocks_that_divide() {
+    // One and two bits a cycle; the default's three are in the suites' own tests.
+    play(&[SMALL, MIDDLE], |_| hit_divide::suite());
+    play(&[SMALL, MIDDLE], |_| ray_setup::suite());
+}
+
+#[test]
 fn blocks_that_do_not() {
     // Of one of the others: the text of these is the same for all but for the edges of `tri_test`.
     play(&[SMALL], |_| bound_decode::suite());
@@ -72,8 +79,6 @@ fn blocks_that_do_not() {
     play(&[SMALL], |_| child_sort::suite());
     play(&[SMALL], |_| child_sort6::suite());
     play(&[SMALL], |_| child_test::suite());
-    play(&[SMALL], |_| hit_divide::suite());
     play(&[SMALL], |_| lod_test::suite());
-    play(&[SMALL], |_| ray_setup::suite());
     play(&[SMALL], |_| tri_test::suite());
 }

@@ -1,11 +1,12 @@
-//! Constants of rays.
+//! Constants of rays, with three bits of each reciprocal per cycle, two and one.
 
 use crate::draw::{DIRECTION_MAX, Draw, POINT_MAX};
 use crate::rays::{direction, has_components, is_point, point};
 use crate::suite::{Category, Suite};
 use lodray::block::ray_setup::{In, RaySetup};
+use lodray::block::{Block, Form};
 use lodray::num::Direction;
-use tb::Mode;
+use tb::{Build, Mode};
 
 fn with(draw: &mut Draw, direction: Direction) -> In {
     In { origin: draw.point(POINT_MAX), direction }
@@ -99,12 +100,38 @@ pub fn suite() -> Suite<RaySetup> {
     )
 }
 
+/// With so many bits a cycle.
+fn of_bits(bits: u32) -> Suite<RaySetup> {
+    let timing = RaySetup::timing(&Form { setup_bits: bits, ..Form::FULL });
+    Suite { build: Build::block::<RaySetup>().parameter("SETUP_BITS", bits as usize), timing, ..suite() }
+}
+
 #[test]
-fn free_running() {
+fn three_bits_per_cycle_free_running() {
     suite().run(Mode::Free);
 }
 
 #[test]
-fn stalled() {
+fn three_bits_per_cycle_stalled() {
     suite().run(Mode::Stalled);
+}
+
+#[test]
+fn two_bits_per_cycle_free_running() {
+    of_bits(2).run(Mode::Free);
+}
+
+#[test]
+fn two_bits_per_cycle_stalled() {
+    of_bits(2).run(Mode::Stalled);
+}
+
+#[test]
+fn one_bit_per_cycle_free_running() {
+    of_bits(1).run(Mode::Free);
+}
+
+#[test]
+fn one_bit_per_cycle_stalled() {
+    of_bits(1).run(Mode::Stalled);
 }

@@ -71,8 +71,14 @@ fn traffics() -> [Traffic; 5] {
 
 fn configs() -> Vec<Hardware> {
     use EdgesPerCycle::{One, Three};
-    [(1, Three), (1, One), (3, One), (4, Three), (8, One), (8, Three), (64, Three)]
-        .map(|(contexts, edges_per_cycle)| Hardware { contexts, edges_per_cycle, ..Hardware::default() })
+    [(1, Three, 3), (1, One, 1), (3, One, 2), (4, Three, 3), (8, One, 2), (8, Three, 1), (64, Three, 3)]
+        .map(|(contexts, edges_per_cycle, bits)| Hardware {
+            contexts,
+            edges_per_cycle,
+            divide_bits: bits,
+            setup_bits: 4 - bits,
+            ..Hardware::default()
+        })
         .into()
 }
 

@@ -67,7 +67,9 @@ fn traffics() -> Vec<Traffic> {
 fn configs() -> Vec<Hardware> {
     use EdgesPerCycle::{One, Three};
     let each = |contexts| [Three, One].map(|edges_per_cycle| Hardware { contexts, edges_per_cycle, ..Hardware::default() });
-    [1, 2, 4, 16, 64].into_iter().flat_map(each).collect()
+    let dividing = |contexts, divide_bits, setup_bits| Hardware { contexts, divide_bits, setup_bits, ..Hardware::default() };
+    let slower = [dividing(1, 1, 2), dividing(4, 2, 1), dividing(16, 1, 1)];
+    [1, 2, 4, 16, 64].into_iter().flat_map(each).chain(slower).collect()
 }
 
 fn models() -> Vec<(String, Hierarchy)> {

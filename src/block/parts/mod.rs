@@ -3,9 +3,11 @@
 //! The counts stand beside each block ([`Block::parts`](super::Block::parts)), as formulas in the widths of its types; `tests/registers.rs` holds the registers
 //! against those that the RTL declares, and against the netlists of `docs/hardware.md`.
 
+mod divide;
 mod multiplier;
 mod registers;
 
+pub(super) use divide::DivisorMultiples;
 pub use multiplier::{LIMB, cross_product_latency, dot_product_latency, multiplier_latency};
 pub(super) use multiplier::{Multiplier, cross_product, dot_product};
 pub use registers::Registers;

@@ -66,6 +66,8 @@ struct UnitFacts {
     stack_entries: u32,
     contexts: usize,
     edges_per_cycle: u32,
+    divide_bits: u32,
+    setup_bits: u32,
     index_bits: u32,
     line_bits: u32,
     lod_test: bool,
@@ -91,6 +93,8 @@ impl UnitFacts {
             stack_entries: hardware.stack_entries(),
             contexts: hardware.contexts,
             edges_per_cycle: hardware.edges_per_cycle.count(),
+            divide_bits: hardware.divide_bits,
+            setup_bits: hardware.setup_bits,
             index_bits: hardware.index_bits,
             line_bits: hardware.line_bits,
             lod_test: hardware.chooses_levels(),
@@ -158,8 +162,9 @@ pub fn pixels(s: &str) -> Result<f64, String> {
 pub fn in_machine(plan: &Plan, name: &str, machine: &mut MachineFacts) {
     let units = &mut machine.description.units;
     let own = plan.hardware(&units.config());
-    // Contexts and edges are the machine's own where no frame was simulated.
+    // Contexts, edges and bits of a cycle are the machine's own where no frame was simulated.
     (units.contexts, units.edges_per_cycle) = (own.contexts as u32, own.edges_per_cycle.count()); // at most 64
+    (units.divide_bits, units.setup_bits) = (own.divide_bits, own.setup_bits);
     units.like = Some(own);
     machine.set.push(format!("plan={name}"));
 }

@@ -73,6 +73,12 @@ pub(super) fn print(hardware: &Hardware, out: &mut String) {
     .put("CONTEXTS", hardware.contexts, "rays under way in a traversal unit, if its parameter does not say otherwise")
     .put("CONTEXT_W", hardware.context_bits, "bits of a context's number")
     .put("EDGES_PER_CYCLE", edges, "edge functions that tri_test evaluates in a cycle, if its parameter does not say otherwise")
+    .put(
+        "DIVIDE_BITS",
+        hardware.divide_bits,
+        "bits of a quotient that hit_divide finds in a cycle, if its parameter does not say otherwise",
+    )
+    .put("SETUP_BITS", hardware.setup_bits, "of each reciprocal that ray_setup finds, likewise")
     .put("INDEX_W", hardware.index_bits, "of the number of a quad-BVH node, of a tree, and of a node, where it is kept")
     .put("LINE_W", hardware.line_bits, "of the numbers of a tree's first sibling group and vertex line")
     .put(

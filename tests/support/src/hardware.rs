@@ -8,7 +8,7 @@ use lodray::mesh::Hierarchy;
 use lodray::num::{Ray, U, VertexForm};
 use lodray::rays::cone;
 
-/// Small: few levels, a stack for scenes of which is known how many can wait, two rays under way, one edge a cycle.
+/// Small: few levels, a stack for scenes of which is known how many can wait, two rays under way, one edge and one bit of each division a cycle.
 pub const SMALL: Hardware = Hardware {
     levels: 6,
     bvh_depth: 16,
@@ -16,10 +16,13 @@ pub const SMALL: Hardware = Hardware {
     contexts: 2,
     context_bits: 1,
     edges_per_cycle: EdgesPerCycle::One,
+    divide_bits: 1,
+    setup_bits: 1,
     ..Hardware::DEFAULT
 };
-/// Between it and the default in depth, with more rays under way, not a power of two.
-pub const MIDDLE: Hardware = Hardware { levels: 9, bvh_depth: 20, contexts: 5, context_bits: 3, ..Hardware::DEFAULT };
+/// Between it and the default in depth, with more rays under way, not a power of two, and two bits of each division a cycle.
+pub const MIDDLE: Hardware =
+    Hardware { levels: 9, bvh_depth: 20, contexts: 5, context_bits: 3, divide_bits: 2, setup_bits: 2, ..Hardware::DEFAULT };
 /// For coordinates and directions of fewer bits: products of other limbs and other latencies than the default's.
 pub const NARROW: Hardware =
     Hardware { levels: 5, bvh_depth: 18, contexts: 3, context_bits: 2, coordinate_zeros: 11, direction_zeros: 13, ..Hardware::DEFAULT };
