@@ -4,7 +4,7 @@ use lodray::block::tri_test::{EdgeFunction, TNumerator, TriTest};
 use lodray::block::{self, Block, Timing};
 use lodray::format::{BvhNode, Displacements, L0Record, SiblingGroup, VertexData};
 use lodray::hardware::ports::{HitOut, MemoryAnswer, MemoryRequest, RayIn, SceneConfig};
-use lodray::hardware::{Fetch, MAX_CONTEXTS, State};
+use lodray::hardware::{Fetch, MAX_CONTEXTS, RayError, State};
 use lodray::method::{self, Entry, Hit};
 use lodray::num::{self, Box16, Field, Layout, Wire};
 use lodray_test_support::sv::{Module, Package, Shape};
@@ -247,8 +247,10 @@ fn states_have_the_same_names_and_numbers() {
         [Fetch::Node, Fetch::Record, Fetch::Vertex, Fetch::Group].map(|fetch| (format!("{fetch:?}").to_uppercase(), fetch as u64));
     assert_eq!(package.enums["context_state_t"].1, states);
     assert_eq!(package.enums["fetch_t"].1, fetches);
-    assert_eq!(package.enums.len(), 2, "an enum without a twin");
-    println!("{} states compared", states.len() + fetches.len());
+    let errors = RayError::ALL.map(|error| (error.named().0.to_owned(), error as u64));
+    assert_eq!(package.enums["ray_error_t"].1, [&[("ERROR_NONE".to_owned(), 0)], &errors[..]].concat());
+    assert_eq!(package.enums.len(), 3, "an enum without a twin");
+    println!("{} states compared", states.len() + fetches.len() + errors.len());
 }
 
 #[test]

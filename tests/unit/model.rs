@@ -4,10 +4,11 @@ use lodray::block::EdgesPerCycle;
 use lodray::format::Scene;
 use lodray::golden::exact::Exact;
 use lodray::hardware::Hardware;
+use lodray::hardware::ports::MemoryRequest;
 use lodray::mesh::Hierarchy;
 use lodray::method::lod::{LodImage, LodTraverser};
 use lodray::method::{ClosestHit, Hit};
-use lodray::num::{LineAddress, Ray, VertexForm};
+use lodray::num::{LineAddress, Ray, U, VertexForm};
 use lodray::plan::{Measure, Plan};
 use lodray::sim::unit::environment::{RunReport, UnitPort, run};
 use lodray::sim::unit::{Inputs, Latency, Outputs, SceneMemory, Stall, Traffic, TraversalUnit, UnitCounts, UnitError};
@@ -229,11 +230,11 @@ fn misbehaviour_is_an_error() {
     let asleep = try_out(Outputs::default());
     assert!(matches!(&asleep, UnitError::Deadlock { contexts, .. } if contexts.contains("asleep")), "{asleep}");
     let request = |address: u64| {
-        let mem = lodray::hardware::ports::MemoryRequest { tag: lodray::num::U::new(6), address: LineAddress::new(address) };
+        let mem = MemoryRequest { tag: U::new(6), address: LineAddress::new(address), ..MemoryRequest::default() };
         Outputs { mem: Some(mem), ..Outputs::default() }
     };
     assert_eq!(try_out(request(99)), UnitError::Address { cycle: 0, address: 99, tag: 6 });
     assert_eq!(try_out(request(100)), UnitError::TagInUse { cycle: 1, tag: 6 });
-    let hit = Outputs { hit: Some(Default::default()), ready: false, mem: None };
+    let hit = Outputs { hit: Some(Default::default()), ..Outputs::default() };
     assert_eq!(try_out(hit), UnitError::StrayHit { cycle: 0, tag: 0 });
 }

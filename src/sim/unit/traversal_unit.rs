@@ -143,8 +143,10 @@ impl TraversalUnit {
 
     /// Tag of the ray that asks for this line, if it is still under way.
     pub fn owner(&self, request: &MemoryRequest) -> Option<u64> {
-        let context = request.tag.get() as usize >> 2; // eight bits
-        self.ray_tag(context).filter(|_| self.contexts[context].epoch == request.epoch)
+        let context = self.contexts.get(request.tag.get() as usize >> 2)?; // eight bits
+        // A ray that has not asked for anything still has the epoch of the one before.
+        let has_asked = !matches!(context.state, State::Idle | State::Setup | State::SetupWait);
+        (has_asked && context.epoch == request.epoch).then(|| context.tag.get())
     }
 
     /// The end of a cycle.

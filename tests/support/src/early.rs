@@ -10,7 +10,7 @@ use lodray::hardware::ports::{AnswerLimit, HitOut, MemoryAnswer, MemoryRequest, 
 use lodray::hardware::{Hardware, RayError};
 use lodray::mesh::Hierarchy;
 use lodray::method::lod::LodImage;
-use lodray::num::{BoundScale, Ray, S, U, Vec3, VertexForm, Wire};
+use lodray::num::{BoundScale, COORD_LIMIT, Cone, Ray, S, U, Vec3, VertexForm, Wire};
 use lodray::sim::unit::{Inputs, SceneMemory};
 
 type Line = [U<64>; 4];
@@ -36,6 +36,8 @@ impl Desk {
         let golden = Exact::new(&decoded);
         desk.rays.retain(|ray| golden.trace(ray).is_some_and(|hit| hit.level > 1));
         assert!(desk.rays.len() > 3, "only {} rays go down", desk.rays.len());
+        // Those of full detail first.
+        desk.rays.sort_by_key(|ray| ray.cone != Cone::default());
         desk
     }
 
@@ -161,12 +163,16 @@ fn record(line: Line, change: impl Fn(&mut L0Record)) -> Option<(Line, bool)> {
     plain_line(words)
 }
 
-fn corner(line: Line, x: i64) -> Option<(Line, bool)> {
+fn corners(line: Line, change: impl Fn(&mut VertexData)) -> Option<(Line, bool)> {
     let mut words = line.map(U::get);
     let mut corners = VertexData::from_words(&words);
-    corners.v1.x = S::new(x);
+    change(&mut corners);
     corners.to_words(&mut words);
     plain_line(words)
+}
+
+fn corner(line: Line, x: i64) -> Option<(Line, bool)> {
+    corners(line, |corners| corners.v1.x = S::new(x))
 }
 
 /// Every error, by each way that leads to it.
@@ -202,19 +208,19 @@ pub fn each_error<E: Exposed>(mut make: impl FnMut(Hardware, &SceneConfig) -> E)
                 wrong(make, &desk, &scene, image, |of, _, line| if of == "vertex_data" { corner(line, -(1 << 27)) } else { same(line) });
             }
             VertexForm::Compact => {
-                // The largest steps, of the largest code of the largest scale.
-                let far = SceneConfig { scale: BoundScale { offset: U::new(lodray::num::MAX_BOUND_OFFSET) }, ..scene };
-                let change = |record: &mut L0Record| {
-                    (record.e0, record.e1, record.e2) = (U::MAX, U::MAX, U::MAX);
-                    record.split.v0.x = S::MIN;
+                // Corners where no coordinate can be larger, and steps from there.
+                let far = |record: &mut L0Record| {
+                    (record.e0, record.e1, record.e2) = (U::new(1), U::new(1), U::new(1));
+                    record.split.v0.x = S::new(1000);
                 };
-                wrong(
-                    make,
-                    &desk,
-                    &far,
-                    image,
-                    |of, at, line| if of == "l0_record" && at & 1 == 1 { record(line, change) } else { same(line) },
-                );
+                wrong(make, &desk, &scene, image, |of, at, line| match (of, at & 1) {
+                    ("l0_record", 0) => corners(line, |corners| {
+                        let x = S::new(i64::from(COORD_LIMIT >> 4));
+                        (corners.v0.x, corners.v1.x, corners.v2.x) = (x, x, x);
+                    }),
+                    ("l0_record", _) => record(line, far),
+                    _ => same(line),
+                });
             }
         }
 

@@ -85,13 +85,13 @@ pub struct Mischief {
 impl Mischief {
     /// Any, or none; only what memory may do if it is `lawful`.
     fn random(rng: &mut Rng, lawful: bool) -> Self {
-        let mut some = |most: u64| if rng.below(3) == 0 { 1 + rng.below(most) } else { 0 };
-        match some(2) {
+        let mut some = |most: u64| if rng.below(4) == 0 { 1 + rng.below(most) } else { 0 };
+        match some(1) {
             1 => Self::default(),
             _ => Self {
-                noise: some(1023),
-                flips: some(1023),
-                loops: some(512),
+                noise: some(500),
+                flips: some(500),
+                loops: some(500),
                 errors: some(100),
                 lost: some(100),
                 late: some(300),
@@ -145,6 +145,8 @@ pub struct Hostile<'a> {
     scene: SceneConfig,
     /// The scene is what its stage says.
     is_true: bool,
+    /// No ray comes until there is another scene.
+    waits: bool,
     under_way: BTreeMap<u64, UnderWay>,
     offered: Option<(RayIn, usize)>,
     next_tag: u64,
@@ -188,6 +190,7 @@ impl<'a> Hostile<'a> {
             stage: 0,
             scene,
             is_true: true,
+            waits: false,
             under_way: BTreeMap::new(),
             offered: None,
             next_tag: 0,
@@ -221,6 +224,7 @@ impl<'a> Hostile<'a> {
         self.mischief = Mischief { lost: 1024, ..Mischief::default() };
         self.drain(unit, 2 * (LIMIT + 1) + 1000 * self.config.contexts as u64);
         self.mischief = Mischief::default();
+        self.waits = false;
         self.change(unit, 0, self.memories[0].config(), true);
         for _ in 0..20_000 {
             self.cycle(unit, true, false);
@@ -231,13 +235,12 @@ impl<'a> Hostile<'a> {
     /// No more rays; the unit must be idle after as many cycles.
     fn drain(&mut self, unit: &mut impl Exposed, most: u64) {
         let until = self.tally.cycles + most;
-        self.offered = None;
         if self.mischief.lost > 0 {
             self.answers.clear();
             self.due.clear();
             self.under_way.values_mut().for_each(|ray| ray.spoiled = true);
         }
-        while unit.outputs().busy {
+        while unit.outputs().busy || self.offered.is_some() {
             assert!(self.tally.cycles < until, "the unit does not end its rays: {}", unit.describe());
             self.cycle(unit, false, false);
         }
@@ -254,13 +257,14 @@ impl<'a> Hostile<'a> {
     fn another_scene(&mut self, unit: &mut impl Exposed) {
         let stage = self.rng.below(self.stages.len() as u64) as usize;
         let scene = self.memories[stage].config();
-        let wrong = match self.rng.below(10) {
+        let wrong = match self.rng.below(20) {
             0 => SceneConfig { levels: U::new(self.rng.below(16)), ..scene },
             1 => SceneConfig { zeros: U::new(self.rng.below(32)), ..scene },
             2 => SceneConfig { compact: !scene.compact, ..scene },
             3 => SceneConfig { visits: U::new(self.rng.below(20)), ..scene },
             4 => SceneConfig { scale: lodray::num::BoundScale { offset: U::new(self.rng.below(512)) }, ..scene },
             5 => SceneConfig { nodes: U::new(self.rng.below(1 << 36)), bounds: U::MAX, ..scene },
+            6 => SceneConfig { visits: U::MAX, ..scene },
             _ => return self.change(unit, stage, scene, true),
         };
         self.change(unit, stage, wrong, false);
@@ -279,11 +283,13 @@ impl<'a> Hostile<'a> {
         if self.chance(1 << 16, self.mischief.resets) {
             return self.reset(unit);
         }
-        if !outputs.busy && self.offered.is_none() && rays && stalls && self.rng.below(8) == 0 {
+        self.waits |= rays && stalls && self.rng.below(2000) == 0;
+        if self.waits && !outputs.busy && self.offered.is_none() {
             self.another_scene(unit);
+            self.waits = false;
         }
         let flush = self.chance(1 << 16, self.mischief.flushes);
-        if self.offered.is_none() && rays && self.rng.below(4) > 0 {
+        if self.offered.is_none() && rays && !self.waits && self.rng.below(4) > 0 {
             let ray = self.rng.below(self.stages[self.stage].rays.len() as u64) as usize;
             self.offered = Some((RayIn { tag: U::new(self.next_tag), ray: self.stages[self.stage].rays[ray] }, ray));
             self.next_tag += 1;
@@ -372,8 +378,7 @@ impl<'a> Hostile<'a> {
             wait = LIMIT / 2 + self.rng.below(8 * LIMIT);
             done = true;
         }
-        let is_lost = self.chance(1024, lost);
-        let mut wrong = false;
+        let (is_lost, mut wrong) = (self.chance(1024, lost), false);
         if self.chance(1024, wrong_tags) {
             match self.rng.below(4) {
                 0 => (answer.tag, answer.epoch) = (U::new(self.rng.below(256)), U::new(self.rng.below(256))),
