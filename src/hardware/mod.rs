@@ -15,7 +15,7 @@ mod state;
 pub use area::unit_gates;
 pub use state::{Fetch, State};
 
-use crate::block::{Block, EdgesPerCycle, Form, Operation, Timing};
+use crate::block::{Block, BoxesPerCycle, EdgesPerCycle, Form, Operation, Timing};
 use crate::num::{BOX_SHIFT, MAX_BVH_DEPTH, MAX_LEVELS, MOST_DIRECTION_ZEROS};
 
 /// The widest number of a context: it and two bits of place make the tag of a memory request ([`ports::MemoryRequest`]).
@@ -43,6 +43,8 @@ pub struct Hardware {
     pub context_bits: u32,
     /// Edge functions that the triangle test evaluates in a cycle.
     pub edges_per_cycle: EdgesPerCycle,
+    /// Boxes that the test of four children tests in a cycle.
+    pub boxes_per_cycle: BoxesPerCycle,
     /// Bits of the number of a quad-BVH node, of a tree, and of a node within its level, as a context keeps them: at most 28.
     pub index_bits: u32,
     /// Bits of the numbers of a tree's first sibling group and vertex line: at most 28.
@@ -90,6 +92,7 @@ impl Hardware {
         contexts: 4,
         context_bits: MAX_CONTEXT_BITS,
         edges_per_cycle: EdgesPerCycle::Three,
+        boxes_per_cycle: BoxesPerCycle::Four,
         index_bits: MOST_INDEX_BITS,
         line_bits: MOST_INDEX_BITS,
         lod_test: true,
@@ -135,9 +138,29 @@ impl Hardware {
 
     /// What the blocks of this hardware depend on.
     pub const fn form(&self) -> Form {
-        let Self { levels, edges_per_cycle, start_radius, compact_vertices, exact_vertices, coordinate_zeros, direction_zeros, .. } = *self;
+        let Self {
+            levels,
+            edges_per_cycle,
+            boxes_per_cycle,
+            start_radius,
+            compact_vertices,
+            exact_vertices,
+            coordinate_zeros,
+            direction_zeros,
+            ..
+        } = *self;
         let lod_test = self.chooses_levels();
-        Form { levels, edges_per_cycle, lod_test, start_radius, compact_vertices, exact_vertices, coordinate_zeros, direction_zeros }
+        Form {
+            levels,
+            edges_per_cycle,
+            boxes_per_cycle,
+            lod_test,
+            start_radius,
+            compact_vertices,
+            exact_vertices,
+            coordinate_zeros,
+            direction_zeros,
+        }
     }
 
     /// Levels that trees are stored to.
@@ -169,10 +192,20 @@ impl Hardware {
         }
     }
 
-    /// Those of these blocks that it has.
+    /// Those of these blocks that it has: of several for the boxes of a node as many as test side by side.
     pub fn blocks<'a>(&self, blocks: &'a [Operation]) -> impl Iterator<Item = &'a Operation> {
         let hardware = *self;
-        blocks.iter().filter(move |operation| hardware.has(**operation))
+        let is_of_boxes =
+            |operation| matches!(operation, Operation::BoxDecode | Operation::BoxDecode8 | Operation::BoxTest | Operation::BoxTest32);
+        blocks
+            .iter()
+            .enumerate()
+            .filter(move |&(k, &operation)| {
+                let before = blocks[..k].iter().filter(|&&other| other == operation).count() as u32; // a handful
+                let all = blocks.iter().filter(|&&other| other == operation).count() as u32;
+                hardware.has(operation) && (!is_of_boxes(operation) || before < hardware.boxes_per_cycle.side_by_side(all))
+            })
+            .map(|(_, operation)| operation)
     }
 
     /// Timing of a block.

@@ -1,6 +1,6 @@
 //! The parts of a machine, field by field as in its file.
 
-use crate::block::EdgesPerCycle;
+use crate::block::{BoxesPerCycle, EdgesPerCycle};
 use crate::hardware::Hardware;
 use crate::sim::dram::{Controller, Scheduler};
 use serde::{Deserialize, Serialize};
@@ -100,16 +100,25 @@ pub struct Units {
     pub contexts: u32,
     /// Edge functions that the triangle test evaluates in a cycle: 3 or 1.
     pub edges_per_cycle: u32,
+    /// Boxes of a node of four that are tested in a cycle: 4 (if left out), 2 or 1.
+    #[serde(default = "all_boxes")]
+    pub boxes_per_cycle: u32,
     /// A unit of a plan: what the keys above do not say is as there. Machine files have none.
     #[serde(skip)]
     pub like: Option<Hardware>,
+}
+
+/// Boxes that a unit tests in a cycle if a machine does not say.
+fn all_boxes() -> u32 {
+    Hardware::DEFAULT.boxes_per_cycle.count()
 }
 
 impl Units {
     /// The hardware of a unit: what the machine does not say is as in a plan's, or as in `rtl/`.
     pub fn config(&self) -> Hardware {
         let edges_per_cycle = if self.edges_per_cycle == 1 { EdgesPerCycle::One } else { EdgesPerCycle::Three };
-        Hardware { contexts: self.contexts as usize, edges_per_cycle, ..self.like.unwrap_or_default() }
+        let boxes_per_cycle = BoxesPerCycle::new(self.boxes_per_cycle).unwrap_or_default();
+        Hardware { contexts: self.contexts as usize, edges_per_cycle, boxes_per_cycle, ..self.like.unwrap_or_default() }
     }
 }
 

@@ -61,8 +61,9 @@ impl Speed {
 
     /// Gate equivalents of the units of a group, in all else as `hardware` is.
     pub fn gates(units: &Units, hardware: &Hardware) -> f64 {
-        let Hardware { contexts, edges_per_cycle, .. } = units.config();
-        let unit = lod::METHOD.unit.and_then(|unit| unit_gates(unit, &Hardware { contexts, edges_per_cycle, ..*hardware }));
+        let Hardware { contexts, edges_per_cycle, boxes_per_cycle, .. } = units.config();
+        let own = Hardware { contexts, edges_per_cycle, boxes_per_cycle, ..*hardware };
+        let unit = lod::METHOD.unit.and_then(|unit| unit_gates(unit, &own));
         f64::from(units.per_group) * unit.expect("each of its blocks was measured, as the test of areas holds")
     }
 }
@@ -103,7 +104,7 @@ struct Search<'a> {
 impl Search<'_> {
     /// These units, if they serve.
     fn serving(&mut self, per_group: u32, contexts: u32, edges_per_cycle: u32) -> Result<Option<Found>, ReplayError> {
-        let units = Units { per_group, contexts, edges_per_cycle, like: None };
+        let units = Units { per_group, contexts, edges_per_cycle, ..self.machine.units.clone() };
         let found = match self.tried.iter().find(|tried| tried.units == units) {
             Some(tried) => tried.clone(),
             None => {
@@ -129,7 +130,7 @@ impl Search<'_> {
                 halved(all, |found| found.units.per_group, |per_group| self.serving(per_group, full.contexts, edges))?.units.per_group;
             // More of fewer contexts each can be cheaper.
             for per_group in few..=full.per_group {
-                let of = |contexts| Units { per_group, contexts, edges_per_cycle: edges, like: None };
+                let of = |contexts| Units { per_group, contexts, edges_per_cycle: edges, ..full.clone() };
                 let Some(cheaper) = (1..=full.contexts).rev().find(|&contexts| gates(&of(contexts)) < gates(&best.units)) else { break };
                 if let Some(found) = self.serving(per_group, cheaper, edges)? {
                     best = halved(found, |found| found.units.contexts, |contexts| self.serving(per_group, contexts, edges))?;

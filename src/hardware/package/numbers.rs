@@ -70,6 +70,11 @@ pub(super) fn print(hardware: &Hardware, out: &mut String) {
     .put("CONTEXTS", hardware.contexts, "rays under way in a traversal unit, if its parameter does not say otherwise")
     .put("CONTEXT_W", hardware.context_bits, "bits of a context's number")
     .put("EDGES_PER_CYCLE", edges, "edge functions that tri_test evaluates in a cycle, if its parameter does not say otherwise")
+    .put(
+        "BOXES_PER_CYCLE",
+        hardware.boxes_per_cycle.count(),
+        "boxes that child_test tests in a cycle, if its parameter does not say otherwise",
+    )
     .put("INDEX_W", hardware.index_bits, "of the number of a quad-BVH node, of a tree, and of a node, where it is kept")
     .put("LINE_W", hardware.line_bits, "of the numbers of a tree's first sibling group and vertex line")
     .put(
@@ -145,7 +150,11 @@ pub(super) fn print(hardware: &Hardware, out: &mut String) {
     .put("TRI_TEST_LATENCY", three.latency, "with EDGES_PER_CYCLE = 3")
     .put("TRI_TEST_1_LATENCY", one.latency, "with EDGES_PER_CYCLE = 1")
     .put("TRI_TEST_1_INTERVAL", one.interval, "")
-    .put("CHILD_TEST_LATENCY", "CHILD_BOXES_LATENCY + BOX_TEST_LATENCY + CHILD_SORT_LATENCY", "");
+    .put(
+        "CHILD_TEST_LATENCY",
+        "CHILD_BOXES_LATENCY + BOX_TEST_LATENCY + CHILD_SORT_LATENCY",
+        "",
+    );
     let parts = Group::new("Cycles of parts of blocks.")
         .put("ENTRY_DISTANCE_LATENCY", parts::ENTRY_DISTANCE_LATENCY, "of the box tests")
         .put("EDGE_PRODUCT_STAGES", parts::EDGE_PRODUCT_STAGES, "registers of the products of a cross product")
