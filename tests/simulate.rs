@@ -243,6 +243,11 @@ fn units_take_their_time_and_nothing_else_changes() {
         assert!(count(&units, "/cycles") > count(&free, "/cycles"), "{method}");
         conserved(&free);
         conserved(&units);
+        // Fewer boxes a cycle: the same rays, later.
+        let one_box = desk.json(&format!("{SHOT} --method {method} --compute units --set units.boxes_per_cycle=1"));
+        conserved(&one_box);
+        assert!(count(&one_box, "/cycles") > count(&units, "/cycles"), "{method}");
+        assert_eq!((&one_box["hits"], &one_box["operations"]), (&units["hits"], &units["operations"]), "{method}");
         assert!(free["units"].is_null());
         near(units["units"]["states"].as_object().unwrap().values().map(|v| v.as_f64().unwrap()).sum(), 1.0, "states");
         let blocks = if method == "lod" { ["lod_test", "tessellate"] } else { ["child_test", "tri_test"] };

@@ -1,6 +1,6 @@
 //! The four children of a node against a ray: their boxes, tested and sorted (paper figure 9).
 //!
-//! [`ChildBoxes`], four [`BoxTest`] and one [`ChildSort`] in a row. A child that is not present is never hit. (Software runs the same parts lane by lane:
+//! [`ChildBoxes`], four [`BoxTest`] (or fewer, through which the children go in turn) and one [`ChildSort`] in a row. A child that is not present is never hit. (Software runs the same parts lane by lane:
 //! `src/method/children.rs`.)
 //! Legal: what the parts ask for.
 
@@ -9,7 +9,7 @@ use super::child_boxes::{self, ChildBoxes};
 use super::child_sort::{self, ChildSort};
 use super::parts::{Parts, Registers, TAG};
 use super::ray_setup;
-use super::{Block, Form, Timing};
+use super::{Block, BoxesPerCycle, Form, Timing};
 use crate::num::{Point, RayT, T_NEAR_TO_T_SHIFT, TNear, U, Vec3, Wire, wire_struct};
 
 wire_struct! {
@@ -82,29 +82,44 @@ impl Out {
 /// The block.
 pub struct ChildTest;
 
+impl ChildTest {
+    /// Timing of the RTL with so many box tests (its parameter `BOXES_PER_CYCLE`): each pass but the first takes a cycle more.
+    pub const fn with_boxes(boxes: BoxesPerCycle) -> Timing {
+        let passes = boxes.passes(4);
+        let latency = ChildBoxes::TIMING.latency + BoxTest::TIMING.latency + ChildSort::TIMING.latency + passes - 1;
+        Timing { latency, interval: passes }
+    }
+}
+
 impl Block for ChildTest {
     const NAME: &'static str = "child_test";
-    const TIMING: Timing = Timing::pipelined(ChildBoxes::TIMING.latency + BoxTest::TIMING.latency + ChildSort::TIMING.latency);
+    const TIMING: Timing = Self::with_boxes(BoxesPerCycle::Four);
     type In = In;
     type Out = Out;
+    fn timing(form: &Form) -> Timing {
+        Self::with_boxes(form.boxes_per_cycle)
+    }
     fn parts(form: &Form) -> Parts {
         let (boxes, test, sort) = (ChildBoxes::parts(form), BoxTest::parts(form), ChildSort::parts(form));
         let (boxed, tested) = (ChildBoxes::TIMING.latency, BoxTest::TIMING.latency);
         // The ray beside the boxes: 16-bit boxes need neither the origins nor what t_near leaves of t_max, nor zeros of directions and moments.
         let zeros = 3 * form.direction_zeros + 3 * (form.coordinate_zeros + form.direction_zeros);
         let unread = 3 * (Point::WIDTH / 3) + T_NEAR_TO_T_SHIFT + zeros;
-        let ray = Registers::line(ray_setup::Out::WIDTH + RayT::WIDTH + 4, boxed, 1).without((boxed + 1) * unread);
-        // A tag of one bit for which there is no use, in each of their registers.
+        let ray = Registers::line(ray_setup::Out::WIDTH + RayT::WIDTH + 4 + TAG, boxed, 1).without((boxed + 1) * unread);
+        // A tag of one bit for which there is no use, in each of their registers; that of the first box test is of use.
         let bounds = ChildBoxes::registers(form, 1).without(boxed + 1);
+        let (side_by_side, passes) = (form.boxes_per_cycle.side_by_side(4), form.boxes_per_cycle.passes(4));
         let child = BoxTest::registers(form, 1).without(tested + 1);
-        let present = Registers::line(4, tested, 1);
-        let tag = Registers::line(TAG, Self::TIMING.latency, 2);
+        let pass = passes.ilog2();
+        let first = BoxTest::registers(form, TAG + side_by_side + pass);
+        // Which pass it is, and how many cycles until the next node; children that wait for the last pass.
+        let turns = Registers::bits(2 * pass + (4 - side_by_side) * (1 + TNear::WIDTH));
         Parts {
             products: test.products.iter().map(|&[count, a, b]| [4 * count, a, b]).collect(),
             add_bits: boxes.add_bits + 4 * test.add_bits + sort.add_bits,
             select_bits: boxes.select_bits + 4 * test.select_bits + sort.select_bits,
             // The distances pass through the sort as its tag.
-            registers: ray + bounds + 4 * child + present + ChildSort::registers(4 * TNear::WIDTH) + tag,
+            registers: ray + bounds + first + (side_by_side - 1) * child + turns + ChildSort::registers(4 * TNear::WIDTH + TAG),
         }
     }
     #[inline(always)]

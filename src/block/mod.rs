@@ -66,6 +66,50 @@ impl EdgesPerCycle {
     }
 }
 
+/// Boxes that the test of four children tests in a cycle.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum BoxesPerCycle {
+    /// All four of a node.
+    #[default]
+    Four,
+    /// Two.
+    Two,
+    /// One.
+    One,
+}
+
+impl BoxesPerCycle {
+    /// All that there are.
+    pub const ALL: [Self; 3] = [Self::One, Self::Two, Self::Four];
+
+    /// How many.
+    pub const fn count(self) -> u32 {
+        match self {
+            Self::Four => 4,
+            Self::Two => 2,
+            Self::One => 1,
+        }
+    }
+
+    /// As many as `count`, if that may be.
+    pub fn new(count: u32) -> Option<Self> {
+        Self::ALL.into_iter().find(|boxes| boxes.count() == count)
+    }
+
+    /// Box tests side by side for nodes of so many children: one for each, or as many as four children have.
+    pub const fn side_by_side(self, children: u32) -> u32 {
+        match self {
+            Self::Four => children,
+            _ => self.count(),
+        }
+    }
+
+    /// Cycles from one such node to the next.
+    pub const fn passes(self, children: u32) -> u32 {
+        children.div_ceil(self.side_by_side(children))
+    }
+}
+
 /// The most bits of a quotient that a division finds in a cycle.
 pub const MOST_DIVIDE_BITS: u32 = 3;
 
@@ -80,6 +124,8 @@ pub struct Form {
     pub divide_bits: u32,
     /// Bits of a reciprocal in a cycle of the constants of a ray.
     pub setup_bits: u32,
+    /// Box tests of the test of four children.
+    pub boxes_per_cycle: BoxesPerCycle,
     /// Levels of detail are chosen: triangles are morphed.
     pub lod_test: bool,
     /// Cones can have a radius where their rays start.
@@ -101,6 +147,7 @@ impl Form {
         edges_per_cycle: EdgesPerCycle::Three,
         divide_bits: MOST_DIVIDE_BITS,
         setup_bits: MOST_DIVIDE_BITS,
+        boxes_per_cycle: BoxesPerCycle::Four,
         lod_test: true,
         start_radius: true,
         compact_vertices: true,

@@ -15,7 +15,7 @@ mod state;
 pub use area::unit_gates;
 pub use state::{Fetch, RayError, State};
 
-use crate::block::{Block, EdgesPerCycle, Form, MOST_DIVIDE_BITS, Operation, Timing};
+use crate::block::{Block, BoxesPerCycle, EdgesPerCycle, Form, MOST_DIVIDE_BITS, Operation, Timing};
 use crate::num::{BOX_SHIFT, MAX_BOUND_OFFSET, MAX_BVH_DEPTH, MAX_LEVELS, MOST_DIRECTION_ZEROS};
 use ports::SceneConfig;
 
@@ -48,6 +48,8 @@ pub struct Hardware {
     pub divide_bits: u32,
     /// Bits of each reciprocal that the constants of a ray take in a cycle, 1 to 3.
     pub setup_bits: u32,
+    /// Boxes that the test of four children tests in a cycle.
+    pub boxes_per_cycle: BoxesPerCycle,
     /// Bits of the number of a quad-BVH node, of a tree, and of a node within its level, as a context keeps them: at most 28.
     pub index_bits: u32,
     /// Bits of the numbers of a tree's first sibling group and vertex line: at most 28.
@@ -97,6 +99,7 @@ impl Hardware {
         edges_per_cycle: EdgesPerCycle::Three,
         divide_bits: MOST_DIVIDE_BITS,
         setup_bits: MOST_DIVIDE_BITS,
+        boxes_per_cycle: BoxesPerCycle::Four,
         index_bits: MOST_INDEX_BITS,
         line_bits: MOST_INDEX_BITS,
         lod_test: true,
@@ -149,6 +152,7 @@ impl Hardware {
             edges_per_cycle: self.edges_per_cycle,
             divide_bits: self.divide_bits,
             setup_bits: self.setup_bits,
+            boxes_per_cycle: self.boxes_per_cycle,
             lod_test: self.chooses_levels(),
             start_radius: self.start_radius,
             compact_vertices: self.compact_vertices,
@@ -203,10 +207,20 @@ impl Hardware {
         }
     }
 
-    /// Those of these blocks that it has.
+    /// Those of these blocks that it has: of several for the boxes of a node as many as test side by side.
     pub fn blocks<'a>(&self, blocks: &'a [Operation]) -> impl Iterator<Item = &'a Operation> {
         let hardware = *self;
-        blocks.iter().filter(move |operation| hardware.has(**operation))
+        let is_of_boxes =
+            |operation| matches!(operation, Operation::BoxDecode | Operation::BoxDecode8 | Operation::BoxTest | Operation::BoxTest32);
+        blocks
+            .iter()
+            .enumerate()
+            .filter(move |&(k, &operation)| {
+                let before = blocks[..k].iter().filter(|&&other| other == operation).count() as u32; // a handful
+                let all = blocks.iter().filter(|&&other| other == operation).count() as u32;
+                hardware.has(operation) && (!is_of_boxes(operation) || before < hardware.boxes_per_cycle.side_by_side(all))
+            })
+            .map(|(_, operation)| operation)
     }
 
     /// Timing of a block.

@@ -1,6 +1,6 @@
 //! The parts of a machine, field by field as in its file.
 
-use crate::block::EdgesPerCycle;
+use crate::block::{BoxesPerCycle, EdgesPerCycle};
 use crate::hardware::Hardware;
 use crate::sim::dram::{Controller, Scheduler};
 use serde::{Deserialize, Serialize};
@@ -106,6 +106,9 @@ pub struct Units {
     /// Bits of a reciprocal that the constants of a ray take in a cycle: 1 to 3.
     #[serde(default = "Units::setup_bits")]
     pub setup_bits: u32,
+    /// Boxes of a node of four that are tested in a cycle: 4 (if left out), 2 or 1.
+    #[serde(default = "Units::boxes_per_cycle")]
+    pub boxes_per_cycle: u32,
     /// A unit of a plan: what the keys above do not say is as there. Machine files have none.
     #[serde(skip)]
     pub like: Option<Hardware>,
@@ -115,13 +118,26 @@ impl Units {
     /// The hardware of a unit: what the machine does not say is as in a plan's, or as in `rtl/`.
     pub fn config(&self) -> Hardware {
         let edges_per_cycle = if self.edges_per_cycle == 1 { EdgesPerCycle::One } else { EdgesPerCycle::Three };
+        let boxes_per_cycle = BoxesPerCycle::new(self.boxes_per_cycle).unwrap_or_default();
         let Self { divide_bits, setup_bits, .. } = *self;
-        Hardware { contexts: self.contexts as usize, edges_per_cycle, divide_bits, setup_bits, ..self.like.unwrap_or_default() }
+        Hardware {
+            contexts: self.contexts as usize,
+            edges_per_cycle,
+            boxes_per_cycle,
+            divide_bits,
+            setup_bits,
+            ..self.like.unwrap_or_default()
+        }
     }
 
     /// Where a file does not say.
     const fn divide_bits() -> u32 {
         Hardware::DEFAULT.divide_bits
+    }
+
+    /// Likewise.
+    const fn boxes_per_cycle() -> u32 {
+        Hardware::DEFAULT.boxes_per_cycle.count()
     }
 
     /// Likewise.

@@ -212,8 +212,11 @@ fn overrides_change_one_value() {
     assert_eq!(machine.units.config().contexts, 16);
     machine.set("units.divide_bits", "2").unwrap();
     machine.set("units.setup_bits", "1").unwrap();
-    let Hardware { divide_bits, setup_bits, .. } = machine.units.config();
-    assert_eq!([divide_bits, setup_bits], [2, 1]);
+    machine.set("units.boxes_per_cycle", "2").unwrap();
+    let Hardware { divide_bits, setup_bits, boxes_per_cycle, .. } = machine.units.config();
+    assert_eq!([divide_bits, setup_bits, boxes_per_cycle.count()], [2, 1, 2]);
+    let error = machine.set("units.boxes_per_cycle", "3").unwrap_err().to_string();
+    assert!(error.contains("units.boxes_per_cycle must be 4, 2 or 1, but is 3"), "{error}");
 }
 
 #[test]

@@ -3,7 +3,7 @@
 use super::Machine;
 use super::error::Breach;
 use super::parts::{Cache, Memory, Tables};
-use crate::block::MOST_DIVIDE_BITS;
+use crate::block::{BoxesPerCycle, MOST_DIVIDE_BITS};
 use crate::hardware::MAX_CONTEXTS;
 use crate::num::LINE_BYTES;
 
@@ -39,6 +39,9 @@ impl Machine {
             ("dram.queue", self.dram.queue, MOST_QUEUED),
         ];
         counts.iter().try_for_each(|&(key, value, most)| count(key, value, most))?;
+        if BoxesPerCycle::new(self.units.boxes_per_cycle).is_none() {
+            return Err(Breach::new("units.boxes_per_cycle", "must be 4, 2 or 1", self.units.boxes_per_cycle));
+        }
         if ![1, 3].contains(&self.units.edges_per_cycle) {
             return Err(Breach::new("units.edges_per_cycle", "must be 3 or 1", self.units.edges_per_cycle));
         }

@@ -61,8 +61,8 @@ impl Speed {
 
     /// Gate equivalents of the units of a group, in all else as `hardware` is.
     pub fn gates(units: &Units, hardware: &Hardware) -> f64 {
-        let Hardware { contexts, edges_per_cycle, divide_bits, setup_bits, .. } = units.config();
-        let hardware = Hardware { contexts, edges_per_cycle, divide_bits, setup_bits, ..*hardware };
+        let Hardware { contexts, edges_per_cycle, boxes_per_cycle, divide_bits, setup_bits, .. } = units.config();
+        let hardware = Hardware { contexts, edges_per_cycle, boxes_per_cycle, divide_bits, setup_bits, ..*hardware };
         let unit = lod::METHOD.unit.and_then(|unit| unit_gates(unit, &hardware));
         f64::from(units.per_group) * unit.expect("each of its blocks was measured, as the test of areas holds")
     }

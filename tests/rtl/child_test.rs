@@ -4,11 +4,11 @@ use crate::boxes::is_setup;
 use crate::draw::Draw;
 use crate::rays::{direction, point};
 use crate::suite::{Category, Suite};
-use lodray::block::Block;
 use lodray::block::child_test::{ChildTest, In, Out};
 use lodray::block::ray_setup::{self, RaySetup};
+use lodray::block::{Block, BoxesPerCycle};
 use lodray::num::{Box16, BoxStep, COORD_LIMIT, Direction, Point, RayT, T_NEAR_TO_T_SHIFT, TNear, U, Vec3};
-use tb::Mode;
+use tb::{Build, Mode};
 
 fn setup(origin: Point, direction: Direction) -> ray_setup::Out {
     RaySetup::eval(&ray_setup::In { origin, direction })
@@ -224,12 +224,37 @@ pub fn suite() -> Suite<ChildTest> {
     )
 }
 
-#[test]
-fn free_running() {
-    suite().run(Mode::Free);
+fn with(boxes: BoxesPerCycle) -> Suite<ChildTest> {
+    let build = Build::block::<ChildTest>().parameter("BOXES_PER_CYCLE", boxes.count());
+    Suite { build, timing: ChildTest::with_boxes(boxes), ..suite() }
 }
 
 #[test]
-fn stalled() {
-    suite().run(Mode::Stalled);
+fn four_boxes_per_cycle_free_running() {
+    with(BoxesPerCycle::Four).run(Mode::Free);
+}
+
+#[test]
+fn four_boxes_per_cycle_stalled() {
+    with(BoxesPerCycle::Four).run(Mode::Stalled);
+}
+
+#[test]
+fn two_boxes_per_cycle_free_running() {
+    with(BoxesPerCycle::Two).run(Mode::Free);
+}
+
+#[test]
+fn two_boxes_per_cycle_stalled() {
+    with(BoxesPerCycle::Two).run(Mode::Stalled);
+}
+
+#[test]
+fn one_box_per_cycle_free_running() {
+    with(BoxesPerCycle::One).run(Mode::Free);
+}
+
+#[test]
+fn one_box_per_cycle_stalled() {
+    with(BoxesPerCycle::One).run(Mode::Stalled);
 }

@@ -1,6 +1,6 @@
 //! The timing of the traversal unit against its cycle model: every ray's cycles, every request's cycle, tag and line, and all counts are equal.
 
-use lodray::block::EdgesPerCycle;
+use lodray::block::{BoxesPerCycle, EdgesPerCycle};
 use lodray::hardware::Hardware;
 use lodray::mesh::Hierarchy;
 use lodray::method::lod::LodImage;
@@ -66,7 +66,10 @@ fn traffics() -> Vec<Traffic> {
 
 fn configs() -> Vec<Hardware> {
     use EdgesPerCycle::{One, Three};
-    let each = |contexts| [Three, One].map(|edges_per_cycle| Hardware { contexts, edges_per_cycle, ..Hardware::default() });
+    let each = |contexts| {
+        [(Three, BoxesPerCycle::Four), (One, BoxesPerCycle::One), (Three, BoxesPerCycle::Two)]
+            .map(|(edges_per_cycle, boxes_per_cycle)| Hardware { contexts, edges_per_cycle, boxes_per_cycle, ..Hardware::default() })
+    };
     let dividing = |contexts, divide_bits, setup_bits| Hardware { contexts, divide_bits, setup_bits, ..Hardware::default() };
     let slower = [dividing(1, 1, 2), dividing(4, 2, 1), dividing(16, 1, 1)];
     [1, 2, 4, 16, 64].into_iter().flat_map(each).chain(slower).collect()

@@ -79,6 +79,11 @@ pub(super) fn print(hardware: &Hardware, out: &mut String) {
         "bits of a quotient that hit_divide finds in a cycle, if its parameter does not say otherwise",
     )
     .put("SETUP_BITS", hardware.setup_bits, "of each reciprocal that ray_setup finds, likewise")
+    .put(
+        "BOXES_PER_CYCLE",
+        hardware.boxes_per_cycle.count(),
+        "boxes that child_test tests in a cycle, if its parameter does not say otherwise",
+    )
     .put("INDEX_W", hardware.index_bits, "of the number of a quad-BVH node, of a tree, and of a node, where it is kept")
     .put("LINE_W", hardware.line_bits, "of the numbers of a tree's first sibling group and vertex line")
     .put(

@@ -35,21 +35,27 @@ impl Station {
     /// Takes an input in cycle `now`; inputs were offered from `since` on, if not since before the last; gives the cycle of its result.
     #[inline]
     pub fn take(&mut self, since: u64, now: u64) -> u64 {
-        self.take_for(self.latency(), since, now)
+        self.take_for(self.timing, since, now)
     }
 
-    /// The same with another latency.
+    /// The same with another timing.
     #[inline]
-    pub fn take_for(&mut self, latency: u64, since: u64, now: u64) -> u64 {
-        self.enter(since, now);
-        self.inside(now, now + latency);
-        now + latency
+    pub fn take_for(&mut self, timing: Timing, since: u64, now: u64) -> u64 {
+        let left = now + u64::from(timing.latency);
+        self.begin(timing.interval, since, now);
+        self.inside(now, left);
+        left
     }
 
     /// Takes an input whose time inside is not known yet.
     #[inline]
     pub fn enter(&mut self, since: u64, now: u64) {
-        self.free = now + u64::from(self.timing.interval);
+        self.begin(self.timing.interval, since, now);
+    }
+
+    #[inline(always)]
+    fn begin(&mut self, interval: u32, since: u64, now: u64) {
+        self.free = now + u64::from(interval);
         self.counts.taken += 1;
         // Of what is offered it takes one as soon as it can.
         self.counts.refused += now - since.max(self.behind);

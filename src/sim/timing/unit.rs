@@ -40,11 +40,11 @@ pub struct UnitTiming<R> {
     /// By resource.
     pub(super) stations: [Station; Resource::COUNT],
     pub(super) select: Station,
-    /// Cycles of the test of a node whose 16-bit boxes are stored as they are, of one that stores steps, and of one with 32-bit boxes.
-    pub(super) plain_node: u64,
-    pub(super) local_node: u64,
-    pub(super) wide_node: u64,
-    pub(super) six_node: u64,
+    /// The test of a node whose 16-bit boxes are stored as they are, of one that stores steps, of one with 32-bit boxes, and of one of six.
+    pub(super) plain_node: Timing,
+    pub(super) local_node: Timing,
+    pub(super) wide_node: Timing,
+    pub(super) six_node: Timing,
     /// The hardware has a LOD test, and a map of hits.
     pub(super) chooses_levels: bool,
     pub(super) hit_mapping: bool,
@@ -74,8 +74,15 @@ impl<R: Steps> UnitTiming<R> {
     /// There is no such hardware ([`Hardware::validate`]).
     pub fn new(config: Hardware) -> Self {
         config.validate().unwrap_or_else(|error| panic!("{error}"));
-        let sort = config.timing::<ChildSort>().latency;
-        let plain = config.timing::<BoxTest>().latency + sort;
+        let latency = |parts: &[u32]| parts.iter().sum::<u32>();
+        let [decode, decode8] = [config.timing::<BoxDecode>().latency, config.timing::<BoxDecode8>().latency];
+        let [test, test32] = [config.timing::<BoxTest>().latency, config.timing::<BoxTest32>().latency];
+        let [sort, sort6] = [config.timing::<ChildSort>().latency, config.timing::<ChildSort6>().latency];
+        // Where boxes go through fewer tests than there are, each pass but the first takes a cycle more, and so does the next node.
+        let node = |children, latency: u32| {
+            let interval = config.boxes_per_cycle.passes(children);
+            Timing { latency: latency + interval - 1, interval }
+        };
         let timing = |resource| match resource {
             Resource::Setup => config.timing::<RaySetup>(),
             Resource::Fetch => config.timing::<NodeAddress>(),
@@ -96,12 +103,10 @@ impl<R: Steps> UnitTiming<R> {
             asked: 0,
             stations: Resource::ALL.map(|resource| Station::new(timing(resource))),
             select: Station::new(config.timing::<HitSelect>()),
-            plain_node: u64::from(plain),
-            local_node: u64::from(config.timing::<BoxDecode>().latency + plain),
-            wide_node: u64::from(config.timing::<BoxTest32>().latency + sort),
-            six_node: u64::from(
-                config.timing::<BoxDecode8>().latency + config.timing::<BoxTest>().latency + config.timing::<ChildSort6>().latency,
-            ),
+            plain_node: node(4, latency(&[test, sort])),
+            local_node: node(4, latency(&[decode, test, sort])),
+            wide_node: node(4, latency(&[test32, sort])),
+            six_node: node(6, latency(&[decode8, test, sort6])),
             chooses_levels: config.chooses_levels(),
             hit_mapping: config.hit_mapping,
             idle: u64::MAX >> (MAX_CONTEXTS - config.contexts),

@@ -1,14 +1,14 @@
 //! Hardware other than the default, which tests build and compare too.
 
 use crate::models::scene_of;
-use lodray::block::EdgesPerCycle;
+use lodray::block::{BoxesPerCycle, EdgesPerCycle};
 use lodray::format::{Job, Scene};
 use lodray::hardware::Hardware;
 use lodray::mesh::Hierarchy;
 use lodray::num::{Ray, U, VertexForm};
 use lodray::rays::cone;
 
-/// Small: few levels, a stack for scenes of which is known how many can wait, two rays under way, one edge and one bit of each division a cycle.
+/// Small: few levels, a stack for scenes of which is known how many can wait, two rays under way, one edge, one box and one bit of each division a cycle.
 pub const SMALL: Hardware = Hardware {
     levels: 6,
     bvh_depth: 16,
@@ -18,14 +18,23 @@ pub const SMALL: Hardware = Hardware {
     edges_per_cycle: EdgesPerCycle::One,
     divide_bits: 1,
     setup_bits: 1,
+    boxes_per_cycle: BoxesPerCycle::One,
     ..Hardware::DEFAULT
 };
 /// Between it and the default in depth, with more rays under way, not a power of two, and two bits of each division a cycle.
 pub const MIDDLE: Hardware =
     Hardware { levels: 9, bvh_depth: 20, contexts: 5, context_bits: 3, divide_bits: 2, setup_bits: 2, ..Hardware::DEFAULT };
-/// For coordinates and directions of fewer bits: products of other limbs and other latencies than the default's.
-pub const NARROW: Hardware =
-    Hardware { levels: 5, bvh_depth: 18, contexts: 3, context_bits: 2, coordinate_zeros: 11, direction_zeros: 13, ..Hardware::DEFAULT };
+/// For coordinates and directions of fewer bits: products of other limbs and other latencies than the default's; two boxes a cycle.
+pub const NARROW: Hardware = Hardware {
+    levels: 5,
+    bvh_depth: 18,
+    contexts: 3,
+    context_bits: 2,
+    boxes_per_cycle: BoxesPerCycle::Two,
+    coordinate_zeros: 11,
+    direction_zeros: 13,
+    ..Hardware::DEFAULT
+};
 /// A little narrower, as many limbs, one edge a cycle.
 pub const NARROWER_BY_FEW: Hardware =
     Hardware { coordinate_zeros: 3, direction_zeros: 5, edges_per_cycle: EdgesPerCycle::One, ..Hardware::DEFAULT };
