@@ -20,6 +20,7 @@ fn block_gates(operation: Operation, hardware: &Hardware) -> Option<f64> {
     let (own, default) = (hardware.form(), Hardware::DEFAULT.form());
     let parameter = match operation {
         Operation::TriTest => ("EDGES_PER_CYCLE", own.edges_per_cycle.count(), default.edges_per_cycle.count()),
+        Operation::ChildTest => ("BOXES_PER_CYCLE", own.boxes_per_cycle.count(), default.boxes_per_cycle.count()),
         Operation::HitDivide => ("DIVIDE_BITS", own.divide_bits, default.divide_bits),
         Operation::RaySetup => ("SETUP_BITS", own.setup_bits, default.setup_bits),
         _ => ("", 0, 0),
@@ -39,7 +40,7 @@ fn block_gates(operation: Operation, hardware: &Hardware) -> Option<f64> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::block::EdgesPerCycle;
+    use crate::block::{BoxesPerCycle, EdgesPerCycle};
     use crate::method::METHODS;
 
     #[test]
@@ -55,6 +56,9 @@ mod tests {
             let [three, two, single] =
                 [3, 2, 1].map(|bits| unit_gates(unit, &Hardware { divide_bits: bits, setup_bits: bits, ..Hardware::default() }).unwrap());
             assert!(single < two && two < three, "{}: {single}, {two}, {three}", method.name);
+            let [four, two, single] = [BoxesPerCycle::Four, BoxesPerCycle::Two, BoxesPerCycle::One]
+                .map(|boxes_per_cycle| unit_gates(unit, &Hardware { boxes_per_cycle, ..Hardware::default() }).unwrap());
+            assert!(single + 6e4 < two && two + 6e4 < four, "{}: {single}, {two}, {four}", method.name);
         }
     }
 }
