@@ -1,9 +1,8 @@
 //! The registers that blocks and contexts are counted to have: those that the RTL declares, as slang finds them, and those that synthesis leaves, as
 //! `docs/hardware.md` has them.
 
-use lodray::block::EdgesPerCycle;
-use lodray::block::Operation;
 use lodray::block::parts::Registers;
+use lodray::block::{BoxesPerCycle, EdgesPerCycle, Operation};
 use lodray::hardware::Hardware;
 use lodray_test_support::hardware::{LESS, NARROW, NARROWS, OTHERS, SMALL};
 
@@ -35,6 +34,9 @@ fn blocks_and_contexts_declare_the_registers_that_are_counted() {
     let one_edge = Hardware { edges_per_cycle: EdgesPerCycle::One, ..default };
     let mut all: Vec<(Operation, Hardware)> = Operation::ALL.map(|operation| (operation, default)).to_vec();
     all.push((Operation::TriTest, one_edge));
+    all.extend(
+        [BoxesPerCycle::One, BoxesPerCycle::Two].map(|boxes_per_cycle| (Operation::ChildTest, Hardware { boxes_per_cycle, ..default })),
+    );
     all.extend([1, 2].into_iter().flat_map(|bits| DIVIDERS.map(|operation| (operation, dividing(bits)))));
     all.extend(OTHERS.iter().flat_map(|&hardware| BY_LEVEL.map(|operation| (operation, hardware))));
     all.extend(NARROWS.iter().flat_map(|&hardware| BY_WIDTH.map(|operation| (operation, hardware))));
@@ -79,6 +81,8 @@ fn what_is_kept_are_the_flip_flops_of_the_netlists() {
     let named = Operation::ALL.map(|operation| (operation.name(), counted(operation, &default)));
     let further = [
         ("tri_test-EDGES_PER_CYCLE=1", counted(Operation::TriTest, &one_edge)),
+        ("child_test-BOXES_PER_CYCLE=2", counted(Operation::ChildTest, &Hardware { boxes_per_cycle: BoxesPerCycle::Two, ..default })),
+        ("child_test-BOXES_PER_CYCLE=1", counted(Operation::ChildTest, &Hardware { boxes_per_cycle: BoxesPerCycle::One, ..default })),
         ("hit_divide-DIVIDE_BITS=2", counted(Operation::HitDivide, &dividing(2))),
         ("hit_divide-DIVIDE_BITS=1", counted(Operation::HitDivide, &dividing(1))),
         ("ray_setup-SETUP_BITS=2", counted(Operation::RaySetup, &dividing(2))),
