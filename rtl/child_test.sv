@@ -128,16 +128,22 @@ module child_test #(
         else if (!open) wait_q <= wait_q - PASS_W'(1);
       end
     end
-    for (genvar k = 0; k < B; k++) begin : g_bounds
-      logic [PASSES-1:0][BOX_W-1:0] of_passes;
-      for (genvar p = 0; p < PASSES; p++) begin : g_pass
-        assign of_passes[p] = boxes.bounds[B*p+k];
+    logic [3:0][BOX_W-1:0] all_bounds;
+    logic [B-1:0]          present;
+    assign all_bounds = boxes.bounds;
+    always_comb begin
+      bounds  = '0;
+      present = '0;
+      for (int unsigned p = 0; p < PASSES; p++) begin
+        for (int unsigned k = 0; k < B; k++) begin
+          if (pass_q == PASS_W'(p)) begin
+            bounds[k]  = all_bounds[B*p+k];
+            present[k] = present_q[B*p+k];
+          end
+        end
       end
-      assign bounds[k] = of_passes[pass_q];
     end
-    logic [PASSES-1:0][B-1:0] present;
-    assign present = present_q;
-    assign beside  = {pass_q, tag_q, present[pass_q]};
+    assign beside = {pass_q, tag_q, present};
 
     // Those of earlier passes wait for the last, the first of them in the lowest place.
     logic                         last;
