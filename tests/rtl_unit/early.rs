@@ -38,7 +38,7 @@ fn every_error_is_told_and_the_next_ray_is_right() {
 
 #[test]
 fn flushes_and_resets_at_any_moment() {
-    each_moment(|config, scene| SideBySide::new(config, scene, 1, "every moment".to_owned()), 7);
+    each_moment(|config, scene| SideBySide::new(config, scene, 1, "every moment".to_owned()), 29);
 }
 
 fn mischief(lawful: bool, cycles: u64) {

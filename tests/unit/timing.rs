@@ -101,7 +101,10 @@ fn equals_the_cycle_model_in_every_cycle() {
         for config in configs().into_iter().chain(OTHERS).filter(fits) {
             // Of as many zeros as the hardware leaves out.
             let zeros = [config.coordinate_zeros, config.direction_zeros];
-            let scene = scene_for(&config, &with_zeros(config.coordinate_zeros, h.clone()));
+            let scene = match config.coordinate_zeros {
+                0 => scene_for(&config, h),
+                zeros => scene_for(&config, &with_vertices(h.vertices, with_zeros(zeros, h.clone()))),
+            };
             let image = LodImage::of(&scene);
             let memory = SceneMemory::new(image, 1000);
             let rays: Vec<Ray> = any.iter().enumerate().map(|(k, ray)| ray_for(&config, &coarsened(ray, zeros), k)).collect();

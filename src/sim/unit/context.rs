@@ -175,7 +175,9 @@ impl Context {
             State::Morph => self.when(cycle.morph.granted(me), State::MorphWait),
             State::MorphWait => match cycle.morph.result(me) {
                 Some(morphed) => {
-                    let (g, q) = ([morphed.g0, morphed.g1, morphed.g2], [morphed.q0, morphed.q1, morphed.q2]);
+                    let g = [morphed.g0, morphed.g1, morphed.g2];
+                    // Without a LOD test nothing is morphed: of an image that no scene has, even where an edge has no bound and its vertex is not in its middle.
+                    let q = if self.chooses_levels { [morphed.q0, morphed.q1, morphed.q2] } else { g };
                     self.g.set(g);
                     self.q.set(q);
                     if self.last_split() {

@@ -15,8 +15,8 @@ use lodray::sim::unit::{Inputs, SceneMemory};
 
 type Line = [U<64>; 4];
 
-/// Cycles from a request to its answer.
-const LATENCY: u64 = 3;
+/// Cycles from a request to its answer: so many that a line of a ray that ended early comes when the next one waits for its own.
+const LATENCY: u64 = 60;
 /// Cycles after which a line may be late, less one.
 const LIMIT: u64 = 300;
 
@@ -50,27 +50,31 @@ impl Desk {
     }
 }
 
-/// Lines on their way.
-type Due = Vec<(u64, MemoryAnswer)>;
+/// Lines on their way, with the cycles from which on they come.
+#[derive(Default)]
+struct Due {
+    now: u64,
+    lines: Vec<(u64, MemoryAnswer)>,
+}
 
 /// One cycle of a memory that makes of a line what `of` says: the hit that is taken, and whether the ray was.
 fn cycle<E: Exposed>(
     unit: &mut E,
-    now: u64,
     ray: Option<RayIn>,
     flush: bool,
     due: &mut Due,
     of: &mut impl FnMut(&MemoryRequest) -> Option<(Line, bool)>,
 ) -> (Option<HitOut>, bool) {
     let outputs = unit.outputs();
-    let at = due.iter().position(|(when, _)| *when <= now);
-    let answer = at.map(|at| due.remove(at).1);
+    let at = due.lines.iter().position(|(when, _)| *when <= due.now);
+    let answer = at.map(|at| due.lines.remove(at).1);
     if let Some(request) = outputs.mem
         && let Some((line, error)) = of(&request)
     {
-        due.push((now + LATENCY, MemoryAnswer { tag: request.tag, epoch: request.epoch, error, line }));
+        due.lines.push((due.now + LATENCY, MemoryAnswer { tag: request.tag, epoch: request.epoch, error, line }));
     }
     unit.tick(&Inputs { ray, hit_ready: true, mem_ready: true, answer, flush });
+    due.now += 1;
     (outputs.hit, outputs.ready && ray.is_some())
 }
 
@@ -83,15 +87,14 @@ fn trace<E: Exposed>(
     mut of: impl FnMut(&MemoryRequest) -> Option<(Line, bool)>,
 ) -> (HitOut, u64) {
     let mut offered = Some(RayIn { tag: U::new(5), ray: *ray });
-    let start = due.iter().map(|(when, _)| *when).max().unwrap_or(0);
-    for now in start..start + 100_000 {
-        let (hit, taken) = cycle(unit, now, offered, flush == Some(now - start), due, &mut of);
+    for now in 0..100_000 {
+        let (hit, taken) = cycle(unit, offered, flush == Some(now), due, &mut of);
         if taken {
             offered = None;
         }
         if let Some(hit) = hit {
             assert_eq!(hit.tag.get(), 5);
-            return (hit, now - start);
+            return (hit, now);
         }
     }
     panic!("the ray has no end: {}", unit.describe());
@@ -117,7 +120,7 @@ fn wrong<E: Exposed>(
 ) -> u64 {
     let memory = desk.memory();
     let mut unit = make(desk.config, scene);
-    let mut due = Due::new();
+    let mut due = Due::default();
     let (hit, cycles) = trace(&mut unit, &desk.rays[0], &mut due, None, |request| {
         let (section, line) = memory.locate(request.address).unwrap_or_default();
         of(memory.name(section), line, memory.line(request.address).unwrap_or_default())
@@ -138,7 +141,7 @@ fn settle<E: Exposed>(unit: &mut E, due: &mut Due) {
             break;
         }
         assert!(now < 10, "busy without a ray");
-        let (hit, _) = cycle(unit, 0, None, false, due, &mut |_| None);
+        let (hit, _) = cycle(unit, None, false, due, &mut |_| None);
         assert_eq!(hit, None);
     }
 }
@@ -264,7 +267,7 @@ pub fn each_moment<E: Exposed>(mut make: impl FnMut(Hardware, &SceneConfig) -> E
     let desk = Desk::of(Hardware::one_context(), with_vertices(VertexForm::Compact, terrain(2, 3, 0.4, 1)));
     let memory = desk.memory();
     let mut unit = make(desk.config, &desk.scene());
-    let (mut due, [first, second, ..]) = (Due::new(), &desk.rays[..]) else { panic!("rays") };
+    let (mut due, [first, second, ..]) = (Due::default(), &desk.rays[..]) else { panic!("rays") };
     let cycles = right(&mut unit, &desk, first, &mut due);
     let (mut aborted, mut ended) = (0, 0);
     for at in (0..cycles).step_by(step) {
@@ -283,15 +286,15 @@ pub fn each_moment<E: Exposed>(mut make: impl FnMut(Hardware, &SceneConfig) -> E
     assert!(aborted > 10 && ended <= 3, "{aborted} rays aborted, {ended} not");
     for at in (0..cycles).step_by(step) {
         let mut offered = Some(RayIn { tag: U::new(9), ray: *first });
-        for now in 0..at {
+        for _ in 0..at {
             let (hit, taken) =
-                cycle(&mut unit, now, offered, false, &mut due, &mut |request| memory.line(request.address).map(|line| (line, false)));
+                cycle(&mut unit, offered, false, &mut due, &mut |request| memory.line(request.address).map(|line| (line, false)));
             assert!(hit.is_none());
             offered = offered.filter(|_| !taken);
         }
         unit.reset();
         // The memory too.
-        due.clear();
+        due.lines.clear();
         assert!(!unit.outputs().busy, "busy behind a reset");
         right(&mut unit, &desk, second, &mut due);
         settle(&mut unit, &mut due);

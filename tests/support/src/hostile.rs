@@ -91,7 +91,7 @@ impl Mischief {
             _ => Self {
                 noise: some(500),
                 flips: some(500),
-                loops: some(500),
+                loops: [0, 0, 0, 100, 500, 1024][some(6) as usize % 6],
                 errors: some(100),
                 lost: some(100),
                 late: some(300),
@@ -283,7 +283,9 @@ impl<'a> Hostile<'a> {
         if self.chance(1 << 16, self.mischief.resets) {
             return self.reset(unit);
         }
-        self.waits |= rays && stalls && self.rng.below(2000) == 0;
+        // Soon, if the rays of this one mean nothing.
+        let soon = if self.is_true { 2000 } else { 200 };
+        self.waits |= rays && stalls && self.rng.below(soon) == 0;
         if self.waits && !outputs.busy && self.offered.is_none() {
             self.another_scene(unit);
             self.waits = false;
@@ -364,7 +366,7 @@ impl<'a> Hostile<'a> {
             done = true;
         }
         if self.chance(1024, loops) {
-            let kind = [ChildRef::INNER, ChildRef::INNER, ChildRef::LEAF][self.rng.below(3) as usize];
+            let kind = if self.rng.below(20) > 0 { ChildRef::INNER } else { ChildRef::LEAF };
             answer.line = everywhere(kind, 1 + self.rng.below(4) as usize, self.rng.below(8));
             done = true;
         }
