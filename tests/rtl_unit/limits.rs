@@ -48,7 +48,7 @@ fn the_hit_queue_filled() {
         }
         println!("{contexts} contexts: {longest} hits in the queue");
         // The first goes to the division at once.
-        assert_eq!(longest, 4 * contexts as usize - 1, "{contexts} contexts");
+        assert_eq!(longest, 4 * contexts - 1, "{contexts} contexts");
     }
 }
 
