@@ -128,8 +128,9 @@ module child_test #(
         else if (!open) wait_q <= wait_q - PASS_W'(1);
       end
     end
-    logic [3:0][BOX_W-1:0] all_bounds;
-    logic [B-1:0]          present;
+    // A flat vector: Yosys does not see the width of an element of an array that is declared here.
+    logic [4*BOX_W-1:0] all_bounds;
+    logic [B-1:0]       present;
     assign all_bounds = boxes.bounds;
     always_comb begin
       bounds  = '0;
@@ -137,7 +138,7 @@ module child_test #(
       for (int unsigned p = 0; p < PASSES; p++) begin
         for (int unsigned k = 0; k < B; k++) begin
           if (pass_q == PASS_W'(p)) begin
-            bounds[k]  = all_bounds[B*p+k];
+            bounds[k]  = all_bounds[(B*p+k)*BOX_W +: BOX_W];
             present[k] = present_q[B*p+k];
           end
         end
