@@ -128,7 +128,7 @@ module child_test #(
         else if (!open) wait_q <= wait_q - PASS_W'(1);
       end
     end
-    // A flat vector: Yosys does not see the width of an element of an array that is declared here.
+    // Flat vectors: Yosys does not see the width of an array that is declared here.
     logic [4*BOX_W-1:0] all_bounds;
     logic [B-1:0]       present;
     assign all_bounds = boxes.bounds;
@@ -147,19 +147,21 @@ module child_test #(
     assign beside = {pass_q, tag_q, present};
 
     // Those of earlier passes wait for the last, the first of them in the lowest place.
-    logic                         last;
-    logic [4-B-1:0]               hit_q;
-    logic [4-B-1:0][T_W-1:0]      t_near_q;
-    logic [3:0]                   hit_all;
-    assign pass_there = beside_there[BESIDE_W-1 -: PASS_W];
-    assign last       = pass_there == LAST;
-    assign valid_all  = valid_box[0] && last;
-    assign ready_test = ready_all || !last;
-    assign hit_all    = {hit_there, hit_q};
-    assign t_near_all = {t_near_there, t_near_q};
-    assign sort_in    = {hit_all, t_near_all};
+    logic                 last;
+    logic [4-B-1:0]       hit_q;
+    logic [(4-B)*T_W-1:0] t_near_q;
+    logic [3:0]           hit_all;
+    logic [4*T_W-1:0]     t_near_turned;
+    assign pass_there    = beside_there[BESIDE_W-1 -: PASS_W];
+    assign last          = pass_there == LAST;
+    assign valid_all     = valid_box[0] && last;
+    assign ready_test    = ready_all || !last;
+    assign hit_all       = {hit_there, hit_q};
+    assign t_near_turned = {t_near_there, t_near_q};
+    assign t_near_all    = t_near_turned;
+    assign sort_in       = {hit_all, t_near_turned};
     always_ff @(posedge clk_i) begin
-      if (valid_box[0] && !last) {hit_q, t_near_q} <= {hit_all[3:B], t_near_all[3:B]};
+      if (valid_box[0] && !last) {hit_q, t_near_q} <= {hit_all[3:B], t_near_turned[4*T_W-1:B*T_W]};
     end
   end
 
