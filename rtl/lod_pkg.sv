@@ -37,7 +37,7 @@ package lod_pkg;
   localparam int unsigned BOUND_W = 33;                                         // |q - m| < 2^32.8
   localparam int unsigned LINE_ADDRESS_W = 36;                                  // 2 TiB of 32-byte lines
   localparam int unsigned EPOCH_W = 8;                                          // of the number of a context's ray, which its lines come back with
-  localparam int unsigned ANSWER_LIMIT_W = 20;                                  // cycles that a line may take
+  localparam int unsigned ANSWER_LIMIT_W = 20;                                  // of the cycles after which a line may be late
   localparam int unsigned NODE_INDEX_W = 20;                                    // of a node at the ports: 4^10 nodes on the last level that there can be
   localparam int unsigned FULL_ID_W = 48;                                       // 28 bits of tree, 2 of each of ten levels
   localparam int unsigned COORDINATE_W = 32;                                    // a coordinate without the bits that are always 0
@@ -53,7 +53,7 @@ package lod_pkg;
   // Sizes.
   localparam int unsigned COORD_LIMIT = 2147352576;  // of a coordinate in magnitude
   localparam int unsigned MAX_BOUND_OFFSET = 272;    // of a scale of displacement bounds
-  localparam int unsigned SCENE_LEVELS = 10;         // splits N of a model whose hits it can map
+  localparam int unsigned SCENE_LEVELS = 10;         // the most splits N of a scene: where hits cannot be mapped, those that are stored
   localparam int unsigned MAX_CONTEXTS = 64;         // that CONTEXT_W can number
   localparam int unsigned STACK_ENTRIES = 103;       // 3 (MAX_BVH_DEPTH + STORED_LEVELS) + 1: each level leaves at most three siblings waiting
   localparam int unsigned KEPT_ENTRY_W = 75;         // of a stack entry, where it is kept

@@ -4,7 +4,7 @@
 ///
 /// `CONTEXTS` ray contexts (state machines) share one of each block; docs/traversal-unit.md gives every state, arbitration and port rule, and
 /// `src/sim/unit` is the cycle model. A result always has a place, so no block ever waits for its consumer; only the memory and hit ports stall.
-/// Memory: one 32-byte line a request, any latency and order of answers, at most two outstanding a context; answers are always taken.
+/// Memory: one 32-byte line a request, any latency and order of answers, at most two outstanding a ray; answers are always taken.
 /// Hits: smaller t first, then smaller triangle; every field as at full resolution (paper section 3.6).
 /// Every ray that is taken gives exactly one hit, whatever memory holds or does; one that cannot go on gives an error (docs/integration.md).
 module traversal_unit #(

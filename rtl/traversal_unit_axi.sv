@@ -2,7 +2,7 @@
 
 /// `traversal_unit` with its memory behind an AXI4 read master (`axi_read_adapter`): rays in, hits out, lines from `base_i` on.
 ///
-/// As many reads outstanding as the unit can ask for, two a context, so nothing but the bus holds a request up.
+/// Two reads outstanding a context, as many as its ray can ask for: only behind rays that ended early may requests wait for a place.
 module traversal_unit_axi #(
   parameter int unsigned CONTEXTS = lod_pkg::CONTEXTS,
   parameter int unsigned EDGES_PER_CYCLE = lod_pkg::EDGES_PER_CYCLE,

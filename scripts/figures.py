@@ -218,13 +218,13 @@ def causes(data, values):
 
     def cells(said, off, before, after):
         gone = 1 - math.log(after[2]) / math.log(before[2])
-        verdict = "the cause" if gone > CAUSE else "a part" if gone > PART else "not the cause"
+        verdict = "the cause" if gone >= CAUSE else "a part" if gone >= PART else "not the cause"
         return [said, off] + [cell for of in (before, after) for cell in (f"{of[0]:,}", f"{of[1]:,}", times(of[2]))] + [f"{100 * gone:.0f} %", f"**{verdict}**"]
 
     near, far = ["wall, near", "cloth, near", "terrain, near"], ["terrain", "terrain 0.45, far", "cloth, far"]
     rows = []
     for scene in far:
-        rows.append(cells(f"{scene}: the gain, to lines of DRAM", "a memory a hundred times as fast", cycles(scene), cycles(scene, set="cores.clock_mhz=20")))
+        rows.append(cells(f"{scene}: the gain, to memory", "a memory a hundred times as fast", cycles(scene), cycles(scene, set="cores.clock_mhz=20")))
     for scene in ["terrain", "cloth, far, its middle"]:
         rows.append(cells(f"{scene}: the gain, to rows that may be opened in a time", "nRRD of 1, nFAW of 4", cycles(scene), cycles(scene, "free-activates")))
     rows.append(cells("cloth, far: the gain, to how few of the rays hit", "the middle 96 x 96 pixels alone", cycles("cloth, far"), cycles("cloth, far, its middle")))
@@ -237,7 +237,7 @@ def causes(data, values):
     values["far_hits"] = hits(data.find(scene="cloth, far", machine="haydel2023", set="", method="lod"))
     values["middle_hits"] = hits(data.find(scene="cloth, far, its middle", machine="haydel2023", set="", method="lod"))
     rows = []
-    for scene in near:
+    for scene in near + far:
         fast = "cores.clock_mhz=20"
         lod, bvh = (data.find(scene=scene, machine="haydel2023", set=fast, method=m)["result"] for m in ["lod", "bvh"])
         rows.append([scene, times(bvh["l1"]["requests"] / lod["l1"]["requests"]), times(bvh["cycles"] / lod["cycles"])])
@@ -289,6 +289,56 @@ def units(free, charged, values):
     values["free"] = table(head, rows)
 
 
+# Blocks of a unit, and which parameter of the RTL each key of a machine is.
+BLOCKS = ["ray_setup", "node_address", "child_test", "lod_test", "tessellate", "tri_test", "hit_divide", "hit_select", "bary_map"]
+PARAMETERS = {
+    "tri_test": ("EDGES_PER_CYCLE", "units.edges_per_cycle"),
+    "child_test": ("BOXES_PER_CYCLE", "units.boxes_per_cycle"),
+    "hit_divide": ("DIVIDE_BITS", "units.divide_bits"),
+    "ray_setup": ("SETUP_BITS", "units.setup_bits"),
+}
+FLIP_FLOP = 7.67  # gate equivalents of a bit of a context
+
+
+def block_gates(block, keys):
+    """Gate equivalents of a block as docs/hardware.md has them."""
+    name, key = PARAMETERS.get(block, ("", ""))
+    package = (ROOT / "rtl" / "lod_pkg.sv").read_text()
+    usual = not name or re.search(rf"localparam int unsigned {name} = (\d+);", package)[1] == keys[key]
+    row = block if usual else f"{block}-{name}={keys[key]}"
+    found = re.search(rf"^\| `{row}` \| ([\d,]+) ", (ROOT / "docs" / "hardware.md").read_text(), re.M)
+    return int(found[1].replace(",", "")) if found else sys.exit(f"figures: docs/hardware.md has no row of {row}")
+
+
+def balance(charged, free, values):
+    context = int(re.search(r"^\| a ray context, bits of registers \| ([\d,]+) ", (ROOT / "docs" / "hardware.md").read_text(), re.M)[1].replace(",", ""))
+
+    def time(source, machine, set, radii):
+        return [source.find(machine=machine, set=set, radii=radii, method=m)["result"]["cycles"] for m in ["lod", "bvh"]]
+
+    rows = []
+    for machine in charged.each("machine"):
+        for name in charged.each("set", machine=machine):
+            keys = dict(part.split("=") for part in name.split())
+            per_group, contexts = int(keys["units.per_group"]), int(keys["units.contexts"])
+            cells = [machine, per_group] + [keys[key] for _, key in PARAMETERS.values()]
+            gates = sum(block_gates(block, keys) for block in BLOCKS)
+            cells += [f"{gates:,}"]
+            for radii in charged.each("radii"):
+                lod, bvh = time(charged, machine, name, radii)
+                free_lod, free_bvh = time(free, machine, f"cores.rays_in_flight={per_group * contexts // 16}", radii)
+                result = charged.find(machine=machine, set=name, radii=radii, method="lod")["result"]
+                groups = result["setup"]["machine"]["description"]["cores"]["groups"]
+                rate = result["rays"] / lod * result["setup"]["machine"]["description"]["cores"]["clock_mhz"] / (groups * per_group)
+                unit = gates + contexts * context * FLIP_FLOP
+                cells += [f"{lod:,}", percent(bvh / lod / (free_bvh / free_lod)), f"{unit / rate:,.0f}"]
+            rows.append(cells)
+    head = ["machine", "units of a group", "edges", "boxes", "bits of hit_divide", "of ray_setup", "GE, one of each block"]
+    for radii in charged.each("radii"):
+        head += [f"our cycles, {radii:g} radii", "gain kept", "GE for a million rays/s"]
+    values["balance"] = table(head, rows)
+
+
 def over_machines(data, values, name):
     """Gains over the better of the BVHs on each machine of a list, and their ranges."""
     rows, ranges, row_hits_of, hit = [], {}, {}, {}
@@ -337,6 +387,7 @@ PARTS = [
     (causes, ["causes"]),
     (boxes, ["boxes"]),
     (units, ["free", "units"]),
+    (balance, ["balance", "balance-free"]),
     (lambda data, values: over_machines(data, values, "sensitivity"), ["sensitivity"]),
     (lambda data, values: over_machines(data, values, "starved"), ["starved"]),
     (base_part, ["l0"]),
@@ -352,14 +403,14 @@ def main():
             values = {}
             of(*sweeps, values)
             versions = sorted({row["key"].split()[-1] for sweep in sweeps for row in sweep.rows})
-            measured[names[0]] = {"version": ", ".join(versions), "values": values}
+            measured[names[0]] = {"sweeps": names, "version": ", ".join(versions), "values": values}
     save(MEASURED, json.dumps(measured, indent=1, sort_keys=True) + "\n")
     values = {name: value for part in measured.values() for name, value in part["values"].items()}
     headline(values)
     versions = {}
     for name, part in measured.items():
-        versions.setdefault(part["version"], []).append(f"`{name}`")
-    values["versions"] = "; ".join(f"{', '.join(sorted(names))} by {version}" for version, names in sorted(versions.items()))
+        versions.setdefault(part["version"], []).extend(f"`{sweep}`" for sweep in part.get("sweeps", [name]))
+    values["versions"] = "; ".join(f"{', '.join(sorted(set(names)))} by {version}" for version, names in sorted(versions.items()))
     text = TEMPLATE.read_text()
     missing = [name for name in re.findall(r"\{\{(\w+)\}\}", text) if name not in values]
     if missing:

@@ -35,6 +35,10 @@ fn tops() -> Vec<(String, Vec<(&'static str, u64)>)> {
     assert!(tops.len() >= 20, "only {} tops in {}", tops.len(), tb::rtl().display());
     for (top, parameter, value) in [
         ("tri_test", "EDGES_PER_CYCLE", 1),
+        ("child_test", "BOXES_PER_CYCLE", 2),
+        ("child_test", "BOXES_PER_CYCLE", 1),
+        ("divide_step", "BITS", 2),
+        ("divide_multiples", "BITS", 2),
         ("hit_divide", "DIVIDE_BITS", 1),
         ("hit_divide", "DIVIDE_BITS", 2),
         ("ray_setup", "SETUP_BITS", 1),
@@ -162,5 +166,8 @@ fn yosys_finds_nothing() {
     }
     for parameters in [&[][..], &[("DATA_W", 32), ("ADDRESS_W", 32), ("READS", 7)]] {
         tb::yosys("axi_read_adapter", parameters, &Hardware::default()).unwrap_or_else(|error| panic!("{parameters:?}: {error}"));
+    }
+    for parameters in [&[("BOXES_PER_CYCLE", 2)][..], &[("BOXES_PER_CYCLE", 1)]] {
+        tb::yosys("child_test", parameters, &Hardware::default()).unwrap_or_else(|error| panic!("{parameters:?}: {error}"));
     }
 }

@@ -248,6 +248,9 @@ fn units_take_their_time_and_nothing_else_changes() {
         conserved(&one_box);
         assert!(count(&one_box, "/cycles") > count(&units, "/cycles"), "{method}");
         assert_eq!((&one_box["hits"], &one_box["operations"]), (&units["hits"], &units["operations"]), "{method}");
+        let of = |pointer| at(&one_box, pointer);
+        let each = of("/roofline/limits/child_test/cycles") * of("/units/units") / of("/units/blocks/child_test/operations");
+        near(each, if method == "bvh6" { 6.0 } else { 4.0 }, method);
         assert!(free["units"].is_null());
         near(units["units"]["states"].as_object().unwrap().values().map(|v| v.as_f64().unwrap()).sum(), 1.0, "states");
         let blocks = if method == "lod" { ["lod_test", "tessellate"] } else { ["child_test", "tri_test"] };

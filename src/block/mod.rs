@@ -161,7 +161,7 @@ impl Form {
 pub trait Block {
     /// Its name: the file here, the file and module in `rtl/`.
     const NAME: &'static str;
-    /// Cycles of its RTL as it stands in `rtl/`: for [`MAX_LEVELS`], three edges and three bits of a quotient per cycle.
+    /// Cycles of its RTL as it stands in `rtl/`: for [`MAX_LEVELS`], three edges, four boxes and three bits of a quotient per cycle.
     const TIMING: Timing;
     /// What goes in.
     type In: Wire;

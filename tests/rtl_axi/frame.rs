@@ -102,6 +102,7 @@ fn frame<const N: usize, const ID: u32>(kind: procedural::Scene, form: VertexFor
     }
     assert!(ended <= wrong && (ended > 0) == (wrong > 0), "seed {seed}: {ended} rays ended early by {wrong} answers");
     if wrong > 0 {
+        assert!(met > 100, "seed {seed}: {met} hits beside {ended} rays that ended early");
         println!("{} rays, {wrong} answers with errors, {ended} rays ended early", rays.len());
         return;
     }

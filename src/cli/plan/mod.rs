@@ -164,8 +164,9 @@ pub fn pixels(s: &str) -> Result<f64, String> {
 pub fn in_machine(plan: &Plan, name: &str, machine: &mut MachineFacts) {
     let units = &mut machine.description.units;
     let own = plan.hardware(&units.config());
-    // Contexts, edges and bits of a cycle are the machine's own where no frame was simulated.
+    // Contexts, edges, boxes and bits of a cycle are the machine's own where no frame was simulated.
     (units.contexts, units.edges_per_cycle) = (own.contexts as u32, own.edges_per_cycle.count()); // at most 64
+    units.boxes_per_cycle = own.boxes_per_cycle.count();
     (units.divide_bits, units.setup_bits) = (own.divide_bits, own.setup_bits);
     units.like = Some(own);
     machine.set.push(format!("plan={name}"));

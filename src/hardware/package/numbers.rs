@@ -112,7 +112,7 @@ pub(super) fn print(hardware: &Hardware, out: &mut String) {
         .put("BOUND_W", Bound::WIDTH, "|q - m| < 2^32.8")
         .put("LINE_ADDRESS_W", LineAddress::WIDTH, "2 TiB of 32-byte lines")
         .put("EPOCH_W", Epoch::WIDTH, "of the number of a context's ray, which its lines come back with")
-        .put("ANSWER_LIMIT_W", AnswerLimit::WIDTH, "cycles that a line may take")
+        .put("ANSWER_LIMIT_W", AnswerLimit::WIDTH, "of the cycles after which a line may be late")
         .put("NODE_INDEX_W", NodeIndex::WIDTH, "of a node at the ports: 4^10 nodes on the last level that there can be")
         .put("FULL_ID_W", FullId::WIDTH, "28 bits of tree, 2 of each of ten levels")
         .put("COORDINATE_W", form.coordinate(), "a coordinate without the bits that are always 0")
@@ -127,7 +127,7 @@ pub(super) fn print(hardware: &Hardware, out: &mut String) {
     let sizes = Group::new("Sizes.")
         .put("COORD_LIMIT", COORD_LIMIT, "of a coordinate in magnitude")
         .put("MAX_BOUND_OFFSET", MAX_BOUND_OFFSET, "of a scale of displacement bounds")
-        .put("SCENE_LEVELS", hardware.scene_levels(), "splits N of a model whose hits it can map")
+        .put("SCENE_LEVELS", hardware.scene_levels(), "the most splits N of a scene: where hits cannot be mapped, those that are stored")
         .put("MAX_CONTEXTS", 1u32 << hardware.context_bits, "that CONTEXT_W can number")
         .put(
             "STACK_ENTRIES",

@@ -106,15 +106,19 @@ impl Parts<'_> {
         }
         let (units, form) = (&self.machine.units, self.machine.units.config().form());
         let all = f64::from(self.machine.cores.groups * units.per_group);
-        // Nodes of all kinds go through `child_test`: those of a BVH count as their sorts.
-        let count = |block| match block {
-            Operation::ChildTest => {
-                [Operation::ChildTest, Operation::ChildSort, Operation::ChildSort6].map(|sorts| operations.get(sorts)).iter().sum()
+        let of = |operation| operations.get(operation);
+        // Operations, and the cycles that they take. Nodes of all kinds go through `child_test`: those of a BVH count as their sorts.
+        let taken = |block: Operation| {
+            let interval = u64::from(block.timing(&form).interval);
+            match block {
+                Operation::ChildTest => {
+                    let [fours, sixes] = [of(Operation::ChildTest) + of(Operation::ChildSort), of(Operation::ChildSort6)];
+                    (fours + sixes, interval * fours + u64::from(form.boxes_per_cycle.passes(6)) * sixes)
+                }
+                _ => (of(block), interval * of(block)),
             }
-            _ => operations.get(block),
         };
-        let needed = |block: Operation| (block.name(), count(block) as f64 * f64::from(block.timing(&form).interval) / all);
-        BLOCKS.into_iter().filter(|&block| count(block) > 0).map(needed).collect()
+        BLOCKS.into_iter().filter(|&block| taken(block).0 > 0).map(|block| (block.name(), taken(block).1 as f64 / all)).collect()
     }
 
     /// Cycles of the cores in a clock of the memory.
