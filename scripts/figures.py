@@ -316,7 +316,7 @@ def balance(charged, free, values):
     def time(source, machine, set, radii):
         return [source.find(machine=machine, set=set, radii=radii, method=m)["result"]["cycles"] for m in ["lod", "bvh"]]
 
-    rows = []
+    rows, prices = [], {}
     for machine in charged.each("machine"):
         for name in charged.each("set", machine=machine):
             keys = dict(part.split("=") for part in name.split())
@@ -332,11 +332,14 @@ def balance(charged, free, values):
                 rate = result["rays"] / lod * result["setup"]["machine"]["description"]["cores"]["clock_mhz"] / (groups * per_group)
                 unit = gates + contexts * context * FLIP_FLOP
                 cells += [f"{lod:,}", percent(bvh / lod / (free_bvh / free_lod)), f"{unit / rate:,.0f}"]
+                prices.setdefault(tuple(keys[key] for _, key in PARAMETERS.values()), []).append(unit / rate)
             rows.append(cells)
     head = ["machine", "units of a group", "edges", "boxes", "bits of hit_divide", "of ray_setup", "GE, one of each block"]
     for radii in charged.each("radii"):
         head += [f"our cycles, {radii:g} radii", "gain kept", "GE for a million rays/s"]
     values["balance"] = table(head, rows)
+    edges, boxes, divide, setup = min(prices, key=lambda way: geometric_mean(prices[way]))
+    values["balance_best"] = f"{edges} edge functions, {boxes} boxes, {divide} and {setup} bits"
 
 
 def over_machines(data, values, name):
