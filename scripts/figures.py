@@ -339,7 +339,7 @@ def balance(charged, free, values):
         head += [f"our cycles, {radii:g} radii", "gain kept", "GE for a million rays/s"]
     values["balance"] = table(head, rows)
     edges, boxes, divide, setup = min(prices, key=lambda way: geometric_mean(prices[way]))
-    values["balance_best"] = f"{edges} edge functions, {boxes} boxes, {divide} and {setup} bits"
+    values["balance_best"] = f"edges {edges}, boxes {boxes}, bits {divide} and {setup}"
 
 
 def over_machines(data, values, name):
