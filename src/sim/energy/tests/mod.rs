@@ -130,8 +130,9 @@ fn operations_by_hand() {
     counts.operations.add(Operation::HitDivide, 5);
     let report = model("haydel2023").report(&counts, &[]);
     assert_eq!(report.compute.iter().map(|part| part.0).collect::<Vec<_>>(), ["tessellate", "hit_divide"]);
-    assert!(close(report.compute[0].1, 3.0 * tessellate) && close(report.compute[1].1, 5.0 * hit_divide));
-    assert!(close(report.total(), 3.0 * tessellate + 5.0 * hit_divide));
+    // The machine's units find a bit a cycle.
+    assert!(close(report.compute[0].1, 3.0 * tessellate) && close(report.compute[1].1, 5.0 * slow));
+    assert!(close(report.total(), 3.0 * tessellate + 5.0 * slow));
 }
 
 #[test]
