@@ -3,6 +3,7 @@
 use super::ratio;
 use crate::block::{Operation, Operations};
 use crate::machine::Machine;
+use crate::method::lod;
 use crate::run::Compute;
 use crate::sim::dram::{ChannelCounts, DramConfig};
 use crate::sim::replay::Counts;
@@ -35,19 +36,6 @@ pub struct Bound {
     /// The same as a share of the frame; the largest one near 1 says that it limits the frame.
     pub share: f64,
 }
-
-/// Blocks of a unit that contexts share.
-const BLOCKS: [Operation; 9] = [
-    Operation::RaySetup,
-    Operation::NodeAddress,
-    Operation::ChildTest,
-    Operation::LodTest,
-    Operation::Tessellate,
-    Operation::TriTest,
-    Operation::HitDivide,
-    Operation::HitSelect,
-    Operation::BaryMap,
-];
 
 /// What was done in a frame or a stretch of it.
 pub(super) struct Done<'a> {
@@ -118,7 +106,9 @@ impl Parts<'_> {
                 _ => (of(block), interval * of(block)),
             }
         };
-        BLOCKS.into_iter().filter(|&block| taken(block).0 > 0).map(|block| (block.name(), taken(block).1 as f64 / all)).collect()
+        // Of all blocks that contexts share, which our own unit has, those with something to do.
+        let blocks = lod::METHOD.unit.into_iter().flat_map(|unit| unit.blocks);
+        blocks.filter(|&&block| taken(block).0 > 0).map(|&block| (block.name(), taken(block).1 as f64 / all)).collect()
     }
 
     /// Cycles of the cores in a clock of the memory.
