@@ -29,6 +29,8 @@ hit_divide.sv
 hit_queue.sv
 hit_select.sv
 limb_sum.sv
+lod_edges_parallel.sv
+lod_edges_serial.sv
 lod_test.sv
 morph_vertex.sv
 multiplier.sv

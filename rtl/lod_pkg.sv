@@ -7,24 +7,25 @@
 package lod_pkg;
 
   // This hardware: `Hardware` in Rust, which prints this file. All that follows from these is made smaller or larger with them.
-  localparam int unsigned MAX_LEVELS = 10;       // splits N of a model
-  localparam int unsigned STORED_LEVELS = 10;    // of a tree at most: below, there are triangles
-  localparam int unsigned MAX_BVH_DEPTH = 24;    // quad-BVH nodes on a path from the root to a tree
-  localparam int unsigned CONTEXTS = 4;          // rays under way in a traversal unit, if its parameter does not say otherwise
-  localparam int unsigned CONTEXT_W = 6;         // bits of a context's number
-  localparam int unsigned EDGES_PER_CYCLE = 3;   // edge functions that tri_test evaluates in a cycle, if its parameter does not say otherwise
-  localparam int unsigned DIVIDE_BITS = 3;       // bits of a quotient that hit_divide finds in a cycle, if its parameter does not say otherwise
-  localparam int unsigned SETUP_BITS = 3;        // of each reciprocal that ray_setup finds, likewise
-  localparam int unsigned BOXES_PER_CYCLE = 4;   // boxes that child_test tests in a cycle, if its parameter does not say otherwise
-  localparam int unsigned INDEX_W = 28;          // of the number of a quad-BVH node, of a tree, and of a node, where it is kept
-  localparam int unsigned LINE_W = 28;           // of the numbers of a tree's first sibling group and vertex line
-  localparam int unsigned LOD_TEST = 1;          // levels of detail are chosen, and triangles morphed: 1, or 0 if all rays are of full detail or of none
-  localparam int unsigned START_RADIUS = 1;      // cones can have a radius where their rays start
-  localparam int unsigned HIT_MAPPING = 1;       // hits can be above the finest level
-  localparam int unsigned COMPACT_VERTICES = 1;  // inserted vertices can be displacements
-  localparam int unsigned EXACT_VERTICES = 1;    // they can be stored as they are
-  localparam int unsigned COORDINATE_ZEROS = 0;  // zero bits at the bottom of every coordinate, which it leaves out
-  localparam int unsigned DIRECTION_ZEROS = 0;   // of every component of a direction
+  localparam int unsigned MAX_LEVELS = 10;          // splits N of a model
+  localparam int unsigned STORED_LEVELS = 10;       // of a tree at most: below, there are triangles
+  localparam int unsigned MAX_BVH_DEPTH = 24;       // quad-BVH nodes on a path from the root to a tree
+  localparam int unsigned CONTEXTS = 4;             // rays under way in a traversal unit, if its parameter does not say otherwise
+  localparam int unsigned CONTEXT_W = 6;            // bits of a context's number
+  localparam int unsigned EDGES_PER_CYCLE = 1;      // edge functions that tri_test evaluates in a cycle, if its parameter does not say otherwise
+  localparam int unsigned LOD_EDGES_PER_CYCLE = 1;  // edges of a triangle that lod_test takes in a cycle, likewise
+  localparam int unsigned DIVIDE_BITS = 3;          // bits of a quotient that hit_divide finds in a cycle, if its parameter does not say otherwise
+  localparam int unsigned SETUP_BITS = 3;           // of each reciprocal that ray_setup finds, likewise
+  localparam int unsigned BOXES_PER_CYCLE = 2;      // boxes that child_test tests in a cycle, if its parameter does not say otherwise
+  localparam int unsigned INDEX_W = 28;             // of the number of a quad-BVH node, of a tree, and of a node, where it is kept
+  localparam int unsigned LINE_W = 28;              // of the numbers of a tree's first sibling group and vertex line
+  localparam int unsigned LOD_TEST = 1;             // levels of detail are chosen, and triangles morphed: 1, or 0 if all rays are of full detail or of none
+  localparam int unsigned START_RADIUS = 1;         // cones can have a radius where their rays start
+  localparam int unsigned HIT_MAPPING = 1;          // hits can be above the finest level
+  localparam int unsigned COMPACT_VERTICES = 1;     // inserted vertices can be displacements
+  localparam int unsigned EXACT_VERTICES = 1;       // they can be stored as they are
+  localparam int unsigned COORDINATE_ZEROS = 0;     // zero bits at the bottom of every coordinate, which it leaves out
+  localparam int unsigned DIRECTION_ZEROS = 0;      // of every component of a direction
 
   // Widths (docs/numbers.md).
   localparam int unsigned RAY_T_W = 35;                                         // t in steps of 2^-32
@@ -79,15 +80,22 @@ package lod_pkg;
   localparam int unsigned HIT_DIVIDE_LATENCY = 13;
   localparam int unsigned HIT_DIVIDE_INTERVAL = 13;
   localparam int unsigned HIT_SELECT_LATENCY = 3;
-  localparam int unsigned LOD_TEST_LATENCY = 25;
+  localparam int unsigned LOD_TEST_LATENCY = 30;
+  localparam int unsigned LOD_TEST_INTERVAL = 3;
+  localparam int unsigned LOD_TEST_1_LATENCY = 30;  // of the form with one edge a cycle
+  localparam int unsigned LOD_TEST_1_INTERVAL = 3;
+  localparam int unsigned LOD_TEST_3_LATENCY = 25;  // of the form with three
   localparam int unsigned NODE_ADDRESS_LATENCY = 2;
   localparam int unsigned RAY_SETUP_LATENCY = 11;
   localparam int unsigned RAY_SETUP_INTERVAL = 11;
   localparam int unsigned TESSELLATE_LATENCY = 7;
-  localparam int unsigned TRI_TEST_LATENCY = 18;    // with EDGES_PER_CYCLE = 3
-  localparam int unsigned TRI_TEST_1_LATENCY = 20;  // with EDGES_PER_CYCLE = 1
+  localparam int unsigned TRI_TEST_LATENCY = 20;
+  localparam int unsigned TRI_TEST_INTERVAL = 3;
+  localparam int unsigned TRI_TEST_1_LATENCY = 20;  // of the form with one edge a cycle
   localparam int unsigned TRI_TEST_1_INTERVAL = 3;
-  localparam int unsigned CHILD_TEST_LATENCY = CHILD_BOXES_LATENCY + BOX_TEST_LATENCY + CHILD_SORT_LATENCY;
+  localparam int unsigned TRI_TEST_3_LATENCY = 18;  // of the form with three
+  localparam int unsigned CHILD_TEST_LATENCY = 15;
+  localparam int unsigned CHILD_TEST_INTERVAL = 2;
 
   // Cycles of parts of blocks.
   localparam int unsigned ENTRY_DISTANCE_LATENCY = 5;  // of the box tests

@@ -57,12 +57,10 @@ module ray_context (
   input  lod_pkg::tessellate_out_t         morph_i,
   input  logic                             morph_beyond_i,
   input  logic [15:0]                      morph_bits_i,
-  // tri_test: the ray and the node's triangle, the inserted vertices, and whether it is about the four children; `number_o` tells the triangles of a context apart.
+  // tri_test; `number_o` tells the triangles of a context apart.
   output logic                             tri_request_o,
   output logic [1:0]                       tri_number_o,
-  output logic                             tri_four_o,
   output lod_pkg::tri_test_in_t            tri_o,
-  output logic [2:0][lod_pkg::POINT_W-1:0] tri_inserted_o,
   input  logic                             tri_grant_i,
   input  logic                             tri_miss_i,
   // hit_select: `hit_number_i` is the triangle that t belongs to; its numerators follow with the result.
@@ -330,9 +328,16 @@ module ray_context (
   assign tri_request_o = state_q == lod_pkg::TRI && left_q != '0;
   assign tri_number_o  = next_q;
 
-  assign tri_four_o     = four_q;
-  assign tri_o          = {origin_whole, direction_whole, whole_p0, whole_p1, whole_p2};
-  assign tri_inserted_o = {whole_q2, whole_q1, whole_q0};
+  // The node's triangle, or one of its children's: {p0, q2, q1}, {q2, p1, q0}, {q1, q0, p2}, {q0, q1, q2}. Chosen two by two, which is smaller than all at once.
+  logic            own0, own1, own2;
+  lod_pkg::point_t tested0, tested1, tested2;
+  assign own0     = !four_q || next_q == 2'd0;
+  assign own1     = !four_q || next_q == 2'd1;
+  assign own2     = !four_q || next_q == 2'd2;
+  assign tested0  = own0 ? whole_p0 : next_q[1] ? (next_q[0] ? whole_q0 : whole_q1) : whole_q2;
+  assign tested1  = own1 ? whole_p1 : next_q[1] ? (next_q[0] ? whole_q1 : whole_q0) : whole_q2;
+  assign tested2  = own2 ? whole_p2 : next_q[0] ? (next_q[1] ? whole_q2 : whole_q0) : whole_q1;
+  assign tri_o    = {origin_whole, direction_whole, tested0, tested1, tested2};
 
   assign select_o    = {scene_i.levels, known, t_max, best_id, hit_t_i, 28'(tree_q), hit_level, lod_pkg::NODE_INDEX_W'(hit_node)};
 
@@ -660,7 +665,15 @@ module ray_context (
   end
 
   logic enter_tri;
-  assign enter_tri = state_d == lod_pkg::TRI && state_q != lod_pkg::TRI;
+  // The cases in which state_d is TRI from another state, without the late ones that it is not in.
+  always_comb begin
+    case (state_q)
+      lod_pkg::FETCH:                  enter_tri = enter_root && record.depth == '0;
+      lod_pkg::LOD, lod_pkg::LOD_WAIT: enter_tri = decided && !refine;
+      lod_pkg::MORPH_WAIT:             enter_tri = morph_valid_i && last_split;
+      default:                         enter_tri = 1'b0;
+    endcase
+  end
 
   always_ff @(posedge clk_i) begin
     if (enter_tri) begin

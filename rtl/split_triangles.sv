@@ -51,14 +51,11 @@ module split_triangles #(
   end
 
   // The corner that stays is at its own place, and so are the vertices of child 3; the other two of a child change places.
-  always_comb begin
-    unique case (child_i)
-      2'd0: corners_o = {words[1], words[2], words[0]};
-      2'd1: corners_o = {words[0], words[1], words[2]};
-      2'd2: corners_o = {words[2], words[0], words[1]};
-      2'd3: corners_o = words;
-    endcase
-  end
+  logic [W-1:0] corner0, corner1, corner2;
+  assign corner0   = child_i == 2'd1 ? words[2] : child_i == 2'd2 ? words[1] : words[0];
+  assign corner1   = child_i == 2'd0 ? words[2] : child_i == 2'd2 ? words[0] : words[1];
+  assign corner2   = child_i == 2'd0 ? words[1] : child_i == 2'd1 ? words[0] : words[2];
+  assign corners_o = {corner2, corner1, corner0};
 
   always_ff @(posedge clk_i) begin
     assert (32'(root_write_i) + 32'(corners_write_i) + 32'(inserted_write_i) + 32'(read_i) <= 1);

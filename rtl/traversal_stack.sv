@@ -23,6 +23,8 @@ module traversal_stack (
   localparam int unsigned LEN_W = $clog2(DEPTH + 1);
   localparam int unsigned INDEX_W = $clog2(DEPTH);
 
+  // On an FPGA not in a block RAM: what comes out of one comes late, and is compared before it is used.
+  (* ram_style = "distributed" *)
   logic [lod_pkg::KEPT_ENTRY_W-1:0] entries_q [DEPTH];
   logic [lod_pkg::KEPT_ENTRY_W-1:0] top_q;
   logic [LEN_W-1:0] len_q;

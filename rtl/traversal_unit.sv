@@ -263,37 +263,21 @@ module traversal_unit #(
 
   // ---- Triangles: the tag carries the triangle's number too ----
 
-  // The corners are chosen once the context is.
-  localparam int unsigned TRI_W = 3 + lod_pkg::TRI_TEST_IN_W + 3 * lod_pkg::POINT_W;
+  localparam int unsigned TRI_W = 2 + lod_pkg::TRI_TEST_IN_W;
 
   logic [N-1:0] tri_request, tri_grant;
   logic [N-1:0][TRI_W-1:0] tri_data;
   logic tri_in_valid, tri_in_ready, tri_valid;
   logic [1:0] tri_in_number, tri_number;
-  logic tri_four;
-  lod_pkg::tri_test_in_t tri_own, tri_in;
-  lod_pkg::point_t inserted0, inserted1, inserted2;
+  lod_pkg::tri_test_in_t tri_in;
   lod_pkg::tri_test_out_t tri_out;
   logic [CONTEXT_W-1:0] tri_in_tag, tri_owner;
 
   shared_input #(.N(N), .W(TRI_W)) u_tri_input (
     .clk_i, .rst_ni,
     .request_i(tri_request), .data_i(tri_data), .grant_o(tri_grant),
-    .valid_o(tri_in_valid), .ready_i(tri_in_ready), .data_o({tri_in_number, tri_four, tri_own, inserted2, inserted1, inserted0}), .index_o(tri_in_tag)
+    .valid_o(tri_in_valid), .ready_i(tri_in_ready), .data_o({tri_in_number, tri_in}), .index_o(tri_in_tag)
   );
-
-  // The node's triangle, or one of its children's.
-  always_comb begin
-    tri_in = tri_own;
-    if (tri_four) begin
-      unique case (tri_in_number)
-        2'd0: {tri_in.p0, tri_in.p1, tri_in.p2} = {tri_own.p0, inserted2, inserted1};
-        2'd1: {tri_in.p0, tri_in.p1, tri_in.p2} = {inserted2, tri_own.p1, inserted0};
-        2'd2: {tri_in.p0, tri_in.p1, tri_in.p2} = {inserted1, inserted0, tri_own.p2};
-        2'd3: {tri_in.p0, tri_in.p1, tri_in.p2} = {inserted0, inserted1, inserted2};
-      endcase
-    end
-  end
 
   tri_test #(.TAG_W(lod_pkg::PLACE_TAG_W), .EDGES_PER_CYCLE(EDGES_PER_CYCLE)) u_tri_test (
     .clk_i, .rst_ni,
@@ -419,8 +403,8 @@ module traversal_unit #(
       .fetch_epoch_o(fetch_data[k][FETCH_W-2 -: lod_pkg::EPOCH_W]),
       .fetch_o(fetch_data[k][lod_pkg::NODE_ADDRESS_IN_W-1:0]), .fetch_grant_i(fetch_grant[k]),
       .line_valid_i(mem_valid_i && mem_i.tag[7:2] == 6'(ME)), .line_i(mem_i), .line_misplaced_i(line_misplaced),
-      .tri_request_o(tri_request[k]), .tri_number_o(tri_data[k][TRI_W-1:TRI_W-2]), .tri_four_o(tri_data[k][TRI_W-3]),
-      .tri_o(tri_data[k][TRI_W-4:3*lod_pkg::POINT_W]), .tri_inserted_o(tri_data[k][3*lod_pkg::POINT_W-1:0]), .tri_grant_i(tri_grant[k]),
+      .tri_request_o(tri_request[k]), .tri_number_o(tri_data[k][TRI_W-1:TRI_W-2]),
+      .tri_o(tri_data[k][TRI_W-3:0]), .tri_grant_i(tri_grant[k]),
       .tri_miss_i(tri_valid && !tri_out.hit && tri_owner == ME),
       .hit_number_i(divide_number), .hit_t_i(divide_out.quotient), .select_o(select_data[k]),
       .select_valid_i(select_valid && select_owner == ME), .select_i(select_out),

@@ -8,7 +8,7 @@
 /// Legal: |v| < 2^31 for points and origin, |d| <= 2^30 and each |d_i| < 2^30. On a miss all numbers are 0. On a hit they are taken with det > 0.
 ///
 /// Low bits that are always 0 are left out on the way (COORDINATE_ZEROS, DIRECTION_ZEROS); 168 and 56 multipliers without them.
-/// EDGES_PER_CYCLE = 3: latency TRI_TEST_LATENCY, interval 1. 1: latency TRI_TEST_1_LATENCY, interval TRI_TEST_1_INTERVAL.
+/// EDGES_PER_CYCLE = 3: latency TRI_TEST_3_LATENCY, interval 1. 1: latency TRI_TEST_1_LATENCY, interval TRI_TEST_1_INTERVAL.
 module tri_test #(
   parameter int unsigned TAG_W = 8,
   parameter int unsigned EDGES_PER_CYCLE = lod_pkg::EDGES_PER_CYCLE
@@ -30,11 +30,11 @@ module tri_test #(
   localparam int unsigned EDGE_W = lod_pkg::SIGNED_EDGE_W;
   localparam int unsigned LATENCY = 1 + lod_pkg::EDGE_FUNCTION_LATENCY + lod_pkg::TRI_DECIDE_LATENCY;
 
-  if (lod_pkg::TRI_TEST_LATENCY != LATENCY) begin : g_illegal_latency
-    $error("tri_test: lod_pkg::TRI_TEST_LATENCY must be %0d", LATENCY);
+  if (lod_pkg::TRI_TEST_3_LATENCY != LATENCY) begin : g_illegal_latency
+    $error("tri_test: lod_pkg::TRI_TEST_3_LATENCY must be %0d", LATENCY);
   end
-  if (lod_pkg::TRI_TEST_1_LATENCY != lod_pkg::TRI_TEST_LATENCY + 2 || lod_pkg::TRI_TEST_1_INTERVAL != 3) begin : g_illegal_timing
-    $error("tri_test: two further passes make lod_pkg::TRI_TEST_1_LATENCY %0d and TRI_TEST_1_INTERVAL 3", lod_pkg::TRI_TEST_LATENCY + 2);
+  if (lod_pkg::TRI_TEST_1_LATENCY != lod_pkg::TRI_TEST_3_LATENCY + 2 || lod_pkg::TRI_TEST_1_INTERVAL != 3) begin : g_illegal_timing
+    $error("tri_test: two further passes make lod_pkg::TRI_TEST_1_LATENCY %0d and TRI_TEST_1_INTERVAL 3", lod_pkg::TRI_TEST_3_LATENCY + 2);
   end
 
   lod_pkg::kept_point_t origin;

@@ -289,21 +289,22 @@ def units(free, charged, values):
     values["free"] = table(head, rows)
 
 
-# Blocks of a unit, and which parameter of the RTL each key of a machine is.
+# Blocks of a unit, and which parameter of the RTL and which number of its package each key of a machine is.
 BLOCKS = ["ray_setup", "node_address", "child_test", "lod_test", "tessellate", "tri_test", "hit_divide", "hit_select", "bary_map"]
 PARAMETERS = {
-    "tri_test": ("EDGES_PER_CYCLE", "units.edges_per_cycle"),
-    "child_test": ("BOXES_PER_CYCLE", "units.boxes_per_cycle"),
-    "hit_divide": ("DIVIDE_BITS", "units.divide_bits"),
-    "ray_setup": ("SETUP_BITS", "units.setup_bits"),
+    "tri_test": ("EDGES_PER_CYCLE", "EDGES_PER_CYCLE", "units.edges_per_cycle"),
+    "lod_test": ("EDGES_PER_CYCLE", "LOD_EDGES_PER_CYCLE", "units.lod_edges_per_cycle"),
+    "child_test": ("BOXES_PER_CYCLE", "BOXES_PER_CYCLE", "units.boxes_per_cycle"),
+    "hit_divide": ("DIVIDE_BITS", "DIVIDE_BITS", "units.divide_bits"),
+    "ray_setup": ("SETUP_BITS", "SETUP_BITS", "units.setup_bits"),
 }
 
 
 def block_gates(block, keys):
     """Gate equivalents of a block as docs/hardware.md has them."""
-    name, key = PARAMETERS.get(block, ("", ""))
+    name, number, key = PARAMETERS.get(block, ("", "", ""))
     package = (ROOT / "rtl" / "lod_pkg.sv").read_text()
-    usual = not name or re.search(rf"localparam int unsigned {name} = (\d+);", package)[1] == keys[key]
+    usual = not name or re.search(rf"localparam int unsigned {number} = (\d+);", package)[1] == keys[key]
     row = block if usual else f"{block}-{name}={keys[key]}"
     found = re.search(rf"^\| `{row}` \| ([\d,]+) ", (ROOT / "docs" / "hardware.md").read_text(), re.M)
     return int(found[1].replace(",", "")) if found else sys.exit(f"figures: docs/hardware.md has no row of {row}")
@@ -320,7 +321,7 @@ def balance(charged, free, values):
         for name in charged.each("set", machine=machine):
             keys = dict(part.split("=") for part in name.split())
             per_group, contexts = int(keys["units.per_group"]), int(keys["units.contexts"])
-            cells = [machine, per_group] + [keys[key] for _, key in PARAMETERS.values()]
+            cells = [machine, per_group] + [keys[key] for *_, key in PARAMETERS.values()]
             gates = sum(block_gates(block, keys) for block in BLOCKS)
             cells += [f"{gates:,}"]
             for radii in charged.each("radii"):
@@ -331,14 +332,14 @@ def balance(charged, free, values):
                 rate = result["rays"] / lod * result["setup"]["machine"]["description"]["cores"]["clock_mhz"] / (groups * per_group)
                 unit = gates + contexts * context
                 cells += [f"{lod:,}", percent(bvh / lod / (free_bvh / free_lod)), f"{unit / rate:,.0f}"]
-                prices.setdefault(tuple(keys[key] for _, key in PARAMETERS.values()), []).append(unit / rate)
+                prices.setdefault(tuple(keys[key] for *_, key in PARAMETERS.values()), []).append(unit / rate)
             rows.append(cells)
-    head = ["machine", "units of a group", "edges", "boxes", "bits of hit_divide", "of ray_setup", "GE, one of each block"]
+    head = ["machine", "units of a group", "edges", "of lod_test", "boxes", "bits of hit_divide", "of ray_setup", "GE, one of each block"]
     for radii in charged.each("radii"):
         head += [f"our cycles, {radii:g} radii", "gain kept", "GE for a million rays/s"]
     values["balance"] = table(head, rows)
-    edges, boxes, divide, setup = min(prices, key=lambda way: geometric_mean(prices[way]))
-    values["balance_best"] = f"edges {edges}, boxes {boxes}, bits {divide} and {setup}"
+    edges, lod_edges, boxes, divide, setup = min(prices, key=lambda way: geometric_mean(prices[way]))
+    values["balance_best"] = f"edges {edges} and {lod_edges}, boxes {boxes}, bits {divide} and {setup}"
 
 
 def over_machines(data, values, name):

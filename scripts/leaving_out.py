@@ -228,7 +228,7 @@ def row(scene, within, gates):
 
 def table(rows):
     """Rows as Markdown."""
-    heads = ["scene", "levels", "stack", "index", "contexts", "edges", "bits of a context", "GE with the machine's contexts and edges", "less", "GE", "less", "flip-flops", "multipliers", "MHz"]
+    heads = ["scene", "levels", "stack", "index", "contexts", "edges", "of LOD tests", "boxes", "bits of divisions", "bits of a context", "GE with the machine's contexts and edges", "less", "GE", "less", "flip-flops", "multipliers", "MHz"]
     heads += ["bytes a finest triangle", "time", "energy", "host rays/s"]
     full = next((of["full"] for of in rows if "full" in of), None)
     lines = [f"| {' | '.join(heads)} |", "| --- |" + " ---: |" * (len(heads) - 1)]
@@ -246,7 +246,7 @@ def cells(unit, wide, full):
     zeros = unit["coordinate_zeros"] + unit["direction_zeros"]
     return " | ".join([
         f"{unit['stored_levels']} of {unit['levels']}" + (f", zeros {unit['coordinate_zeros']}, {unit['direction_zeros']}" if zeros else ""),
-        str(unit["stack_entries"]), str(unit["index_bits"]), str(unit["contexts"]), str(unit["edges_per_cycle"]), f"{unit['context_bits']:,}",
+        str(unit["stack_entries"]), str(unit["index_bits"]), str(unit["contexts"]), str(unit["edges_per_cycle"]), str(unit["lod_edges_per_cycle"]), str(unit["boxes_per_cycle"]), f"{unit['divide_bits']}, {unit['setup_bits']}", f"{unit['context_bits']:,}",
         f"{wide['ge']:,.0f}", less[1], f"{unit['ge']:,.0f}", less[0], f"{unit['flip_flops']:,}", str(unit["multipliers"]),
         f"{unit['mhz'][0]:.0f} ({unit['mhz'][1]})" if unit["mhz"] else "-",
     ])

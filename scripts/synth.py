@@ -49,7 +49,7 @@ def main():
 def parse():
     """The command line."""
     parser = argparse.ArgumentParser(prog="scripts/synth", description=__doc__.split("\n", maxsplit=1)[0])
-    parser.add_argument("block", nargs="*", help="module of rtl/ (tri_test-EDGES_PER_CYCLE=1 gives a parameter); all blocks if none is named")
+    parser.add_argument("block", nargs="*", help="module of rtl/ (tri_test-EDGES_PER_CYCLE=3 gives a parameter); all blocks if none is named")
     parser.add_argument("--seeds", type=int, default=3, metavar="N", help="place and route N times and take the median clock (default 3)")
     parser.add_argument("--no-place", action="store_true", help="leave place and route out")
     parser.add_argument("--no-gates", action="store_true", help="leave the generic gates out")

@@ -192,8 +192,9 @@ fn units_are_the_least_that_keep_the_share() {
         let (share, units) = (percent / 100.0, |key: &str| speed["units"][key].as_u64().expect("a number"));
         assert_eq!([number(&speed["share"]), number(&speed["frames"])], [share, 2.0]);
         let of = |contexts: u64| {
-            let [per_group, edges] = ["per_group", "edges_per_cycle"].map(units);
-            format!("{machine} --set units.per_group={per_group} --set units.contexts={contexts} --set units.edges_per_cycle={edges}")
+            let keys = ["per_group", "edges_per_cycle", "lod_edges_per_cycle", "boxes_per_cycle", "divide_bits", "setup_bits"];
+            let set = keys.map(|key| format!(" --set units.{key}={}", units(key))).concat();
+            format!("{machine} --set units.contexts={contexts}{set}")
         };
         let (free, full) = (frames(&desk, machine, "free"), frames(&desk, machine, "units"));
         let measure: Vec<f64> = free.iter().zip(full).map(|(free, full)| if free.0 / full.0 < share { full.0 } else { free.0 }).collect();

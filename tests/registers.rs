@@ -15,7 +15,15 @@ const BY_WIDTH: [Operation; 5] = [Operation::BoxTest, Operation::ChildTest, Oper
 /// Blocks whose registers depend on the bits of a division's step.
 const DIVIDERS: [Operation; 2] = [Operation::HitDivide, Operation::RaySetup];
 
-/// The default with so many.
+/// Blocks that take the edges of a triangle in turn or at once.
+const EDGERS: [Operation; 2] = [Operation::LodTest, Operation::TriTest];
+
+/// The default with all at once.
+fn all_edges() -> Hardware {
+    Hardware { edges_per_cycle: EdgesPerCycle::Three, lod_edges_per_cycle: EdgesPerCycle::Three, ..Hardware::default() }
+}
+
+/// The default with so many bits of a division in a cycle.
 fn dividing(bits: u32) -> Hardware {
     Hardware { divide_bits: bits, setup_bits: bits, ..Hardware::default() }
 }
@@ -31,11 +39,10 @@ fn declared(top: &str, hardware: &Hardware) -> u32 {
 #[test]
 fn blocks_and_contexts_declare_the_registers_that_are_counted() {
     let default = Hardware::default();
-    let one_edge = Hardware { edges_per_cycle: EdgesPerCycle::One, ..default };
     let mut all: Vec<(Operation, Hardware)> = Operation::ALL.map(|operation| (operation, default)).to_vec();
-    all.push((Operation::TriTest, one_edge));
+    all.extend(EDGERS.map(|operation| (operation, all_edges())));
     all.extend(
-        [BoxesPerCycle::One, BoxesPerCycle::Two].map(|boxes_per_cycle| (Operation::ChildTest, Hardware { boxes_per_cycle, ..default })),
+        [BoxesPerCycle::One, BoxesPerCycle::Four].map(|boxes_per_cycle| (Operation::ChildTest, Hardware { boxes_per_cycle, ..default })),
     );
     all.extend([1, 2].into_iter().flat_map(|bits| DIVIDERS.map(|operation| (operation, dividing(bits)))));
     all.extend(OTHERS.iter().flat_map(|&hardware| BY_LEVEL.map(|operation| (operation, hardware))));
@@ -71,17 +78,17 @@ fn what_is_kept_are_the_flip_flops_of_the_netlists() {
     // Bits that synthesis drops besides: products with a limb of one bit are no multiplications, and some signs repeat. At most 1 in 180.
     let edge_function = 22;
     let besides = |block: &str| match block {
-        "tri_test" => 3 * edge_function,
-        "tri_test-EDGES_PER_CYCLE=1" => edge_function,
+        "tri_test-EDGES_PER_CYCLE=3" => 3 * edge_function,
+        "tri_test" => edge_function,
         _ => 0,
     };
     let default = Hardware::default();
-    let one_edge = Hardware { edges_per_cycle: EdgesPerCycle::One, ..default };
     let mut wrong = Vec::new();
     let named = Operation::ALL.map(|operation| (operation.name(), counted(operation, &default)));
     let further = [
-        ("tri_test-EDGES_PER_CYCLE=1", counted(Operation::TriTest, &one_edge)),
-        ("child_test-BOXES_PER_CYCLE=2", counted(Operation::ChildTest, &Hardware { boxes_per_cycle: BoxesPerCycle::Two, ..default })),
+        ("tri_test-EDGES_PER_CYCLE=3", counted(Operation::TriTest, &all_edges())),
+        ("lod_test-EDGES_PER_CYCLE=3", counted(Operation::LodTest, &all_edges())),
+        ("child_test-BOXES_PER_CYCLE=4", counted(Operation::ChildTest, &Hardware { boxes_per_cycle: BoxesPerCycle::Four, ..default })),
         ("child_test-BOXES_PER_CYCLE=1", counted(Operation::ChildTest, &Hardware { boxes_per_cycle: BoxesPerCycle::One, ..default })),
         ("hit_divide-DIVIDE_BITS=2", counted(Operation::HitDivide, &dividing(2))),
         ("hit_divide-DIVIDE_BITS=1", counted(Operation::HitDivide, &dividing(1))),
@@ -113,10 +120,11 @@ fn hardware_for_less_is_smaller() {
     let [default, small] = [Hardware::default(), SMALL].map(|hardware| hardware.context_registers(true).kept);
     println!("a context: {default} bits for 10 levels below 24, {small} for {} below {}", SMALL.levels, SMALL.bvh_depth);
     assert!(small * 10 < default * 7);
-    let wide = Hardware::default();
     let less = BY_LEVEL.map(|operation| (operation, SMALL)).into_iter().chain(BY_WIDTH.map(|operation| (operation, NARROW)));
     for (operation, hardware) in less {
-        let [default, small] = [wide, hardware].map(|hardware| counted(operation, &hardware).kept);
+        let Hardware { edges_per_cycle, lod_edges_per_cycle, boxes_per_cycle, .. } = hardware;
+        let alike = Hardware { edges_per_cycle, lod_edges_per_cycle, boxes_per_cycle, ..Hardware::default() };
+        let [default, small] = [alike, hardware].map(|hardware| counted(operation, &hardware).kept);
         println!("{}: {default} and {small} bits", operation.name());
         assert!(small < default);
     }

@@ -34,8 +34,9 @@ fn tops() -> Vec<(String, Vec<(&'static str, u64)>)> {
     tops.retain(|(name, _)| name != "lod_pkg" && !text(name).contains(&format!("\n    {name} #(")));
     assert!(tops.len() >= 20, "only {} tops in {}", tops.len(), tb::rtl().display());
     for (top, parameter, value) in [
-        ("tri_test", "EDGES_PER_CYCLE", 1),
-        ("child_test", "BOXES_PER_CYCLE", 2),
+        ("tri_test", "EDGES_PER_CYCLE", 3),
+        ("lod_test", "EDGES_PER_CYCLE", 3),
+        ("child_test", "BOXES_PER_CYCLE", 4),
         ("child_test", "BOXES_PER_CYCLE", 1),
         ("divide_step", "BITS", 2),
         ("divide_multiples", "BITS", 2),
@@ -45,7 +46,7 @@ fn tops() -> Vec<(String, Vec<(&'static str, u64)>)> {
         ("ray_setup", "SETUP_BITS", 2),
         ("divide_step", "BITS", 3),
         ("divide_multiples", "BITS", 3),
-        ("traversal_unit", "EDGES_PER_CYCLE", 1),
+        ("traversal_unit", "EDGES_PER_CYCLE", 3),
         ("traversal_unit", "CONTEXTS", 1),
         ("axi_read_adapter", "DATA_W", 128),
         ("axi_read_adapter", "DATA_W", 64),
@@ -137,7 +138,7 @@ fn no_net_is_implicit() {
 #[test]
 fn a_strict_front_end_takes_every_module() {
     // Slang refuses what Verilator lets pass: a name before its declaration, from which other tools make a net of their own that nothing drives.
-    for options in [&[][..], &["--top", "traversal_unit", "-GEDGES_PER_CYCLE=1"], &["--top", "traversal_unit", "-GCONTEXTS=1"]] {
+    for options in [&[][..], &["--top", "traversal_unit", "-GEDGES_PER_CYCLE=3"], &["--top", "traversal_unit", "-GCONTEXTS=1"]] {
         tb::elaborate(options, &Hardware::default()).unwrap_or_else(|error| panic!("{options:?}: {error}"));
     }
 }
@@ -161,13 +162,13 @@ fn verible_finds_nothing() {
 
 #[test]
 fn yosys_finds_nothing() {
-    for parameters in [&[("CONTEXTS", 1)][..], &[("CONTEXTS", 2), ("EDGES_PER_CYCLE", 1)]] {
+    for parameters in [&[("CONTEXTS", 1)][..], &[("CONTEXTS", 2), ("EDGES_PER_CYCLE", 3)]] {
         tb::yosys("traversal_unit", parameters, &Hardware::default()).unwrap_or_else(|error| panic!("{parameters:?}: {error}"));
     }
     for parameters in [&[][..], &[("DATA_W", 32), ("ADDRESS_W", 32), ("READS", 7)]] {
         tb::yosys("axi_read_adapter", parameters, &Hardware::default()).unwrap_or_else(|error| panic!("{parameters:?}: {error}"));
     }
-    for parameters in [&[("BOXES_PER_CYCLE", 2)][..], &[("BOXES_PER_CYCLE", 1)]] {
+    for parameters in [&[("BOXES_PER_CYCLE", 4)][..], &[("BOXES_PER_CYCLE", 1)]] {
         tb::yosys("child_test", parameters, &Hardware::default()).unwrap_or_else(|error| panic!("{parameters:?}: {error}"));
     }
 }

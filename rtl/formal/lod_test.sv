@@ -44,7 +44,7 @@ module lod_edge_shared (
       assign state[k*S_W +: S_W] = out.s2;
     end
     assign refine[k] = out.refine == (out.s0 != '0 || out.s1 != '0 || out.s2 != '0);
-    lod_test #(.TAG_W(1)) u_test (
+    lod_test #(.TAG_W(1), .EDGES_PER_CYCLE(3)) u_test (
       .clk_i, .rst_ni, .valid_i(1'b1), .ready_o(), .in_i(in), .tag_i(1'b0), .valid_o(), .ready_i(1'b1), .out_o(out), .tag_o()
     );
   end

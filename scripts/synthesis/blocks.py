@@ -10,8 +10,9 @@ PACKAGE = "lod_pkg"
 
 # Blocks are the modules with a twin in src/block; of these, some come in several forms.
 FORMS = {
-    "tri_test": [{}, {"EDGES_PER_CYCLE": 1}],
-    "child_test": [{}, {"BOXES_PER_CYCLE": 2}, {"BOXES_PER_CYCLE": 1}],
+    "tri_test": [{}, {"EDGES_PER_CYCLE": 3}],
+    "lod_test": [{}, {"EDGES_PER_CYCLE": 3}],
+    "child_test": [{}, {"BOXES_PER_CYCLE": 4}, {"BOXES_PER_CYCLE": 1}],
     "hit_divide": [{}, {"DIVIDE_BITS": 2}, {"DIVIDE_BITS": 1}],
     "ray_setup": [{}, {"SETUP_BITS": 2}, {"SETUP_BITS": 1}],
 }

@@ -93,7 +93,7 @@ impl ChildTest {
 
 impl Block for ChildTest {
     const NAME: &'static str = "child_test";
-    const TIMING: Timing = Self::with_boxes(BoxesPerCycle::Four);
+    const TIMING: Timing = Self::with_boxes(Form::FULL.boxes_per_cycle);
     type In = In;
     type Out = Out;
     fn timing(form: &Form) -> Timing {
@@ -114,12 +114,13 @@ impl Block for ChildTest {
         let first = BoxTest::registers(form, TAG + side_by_side + pass);
         // Which pass it is, and how many cycles until the next node; children that wait for the last pass.
         let turns = Registers::bits(2 * pass + (4 - side_by_side) * (1 + TNear::WIDTH));
+        let tests = first + (side_by_side - 1) * child + turns;
         Parts {
             products: test.products.iter().map(|&[count, a, b]| [4 * count, a, b]).collect(),
             add_bits: boxes.add_bits + 4 * test.add_bits + sort.add_bits,
             select_bits: boxes.select_bits + 4 * test.select_bits + sort.select_bits,
             // The distances pass through the sort as its tag.
-            registers: ray + bounds + first + (side_by_side - 1) * child + turns + ChildSort::registers(4 * TNear::WIDTH + TAG),
+            registers: ray + bounds + tests.in_turns(passes) + ChildSort::registers(4 * TNear::WIDTH + TAG),
         }
     }
     #[inline(always)]

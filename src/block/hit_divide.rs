@@ -64,7 +64,7 @@ impl Block for HitDivide {
             products: vec![],
             add_bits: steps * candidates * (remainder + bits) + multiples.add_bits() + denominator,
             select_bits: steps * candidates * remainder,
-            registers,
+            registers: registers.in_turns(timing(form).interval),
         }
     }
     #[inline(always)]

@@ -11,7 +11,7 @@ use super::parts::{
     CONE_TOLERANCE_LATENCY, DISTANCE, EDGE_OPENING_LATENCY, Multiplier, Parts, Registers, TAG, TOLERANCE, dot_product, dot_product_latency,
     multiplier_latency,
 };
-use super::{Block, Form, Timing, dot};
+use super::{Block, EdgesPerCycle, Form, Timing, dot};
 use crate::num::{BoundCode, BoundScale, Cone, EdgeState, Point, Ray, S, S_ONE, U, Wire, wire_struct};
 
 wire_struct! {
@@ -105,6 +105,11 @@ fn decided(limits: [(Bound, U<34>); 3]) -> Out {
 }
 
 impl LodTest {
+    /// Timing of the default's RTL with one edge (its parameter `EDGES_PER_CYCLE` = 1).
+    pub const ONE_EDGE: Timing = one_edge(&Form::FULL);
+    /// And with three.
+    pub const THREE_EDGES: Timing = three_edges(&Form::FULL);
+
     /// The outcome for a ray that tolerates nothing, wherever it and the triangle are: each edge is open or has no bound.
     #[inline(always)]
     pub fn of_full_detail(codes: [BoundCode; 3], scale: BoundScale) -> Out {
@@ -112,7 +117,7 @@ impl LodTest {
     }
 }
 
-/// Behind how many stages the nearer ends of the edges stand.
+/// Behind how many stages the nearer ends of the edges stand where all three go at once.
 const fn nearer(form: &Form) -> u32 {
     1 + dot_product_latency(form.relative(), form.component()) + 1
 }
@@ -122,9 +127,21 @@ const fn limits_at(form: &Form) -> u32 {
     nearer(form) + CONE_TOLERANCE_LATENCY
 }
 
-/// Cycles of the block.
-const fn latency(form: &Form) -> u32 {
-    limits_at(form) + EDGE_OPENING_LATENCY + 1
+/// Timing with three edges.
+const fn three_edges(form: &Form) -> Timing {
+    Timing::pipelined(limits_at(form) + EDGE_OPENING_LATENCY + 1)
+}
+
+/// Timing with one: two corners more, which wait for the third, and two edges more.
+const fn one_edge(form: &Form) -> Timing {
+    Timing { latency: three_edges(form).latency + 5, interval: 3 }
+}
+
+const fn timing(form: &Form) -> Timing {
+    match form.lod_edges_per_cycle {
+        EdgesPerCycle::Three => three_edges(form),
+        EdgesPerCycle::One => one_edge(form),
+    }
 }
 
 /// Bits of a cone's offset.
@@ -152,35 +169,69 @@ fn edge_opening() -> Registers {
     (Registers::skid(state) + Registers::line(state, BITS, 0)).without(to_come + 2 * TOLERANCE)
 }
 
+/// A tag of one bit for which there is no use, in each of its registers.
+fn bound() -> Registers {
+    BoundDecode::registers(1).without(BoundDecode::TIMING.latency)
+}
+
+/// A dot product along the ray; the fraction of a distance is dropped.
+fn distance_along(form: &Form) -> Registers {
+    let (relative, component) = (form.relative(), form.component());
+    dot_product(relative, component, relative + component, 1, relative + component - DISTANCE)
+}
+
+/// Bits of a cone's start that are always 0.
+const fn no_start(form: &Form) -> u32 {
+    if form.start_radius { 0 } else { OFFSET }
+}
+
+/// Bits of the codes of three edges with their scale.
+const CODES: u32 = 3 * BoundCode::WIDTH + BoundScale::WIDTH;
+
+/// `lod_edges_parallel`: the corners, three distances, and three edges.
+fn parallel(form: &Form) -> Registers {
+    let corners = Registers::stage(9 * form.relative() + 3 * form.component());
+    let cone = Registers::line(Cone::WIDTH, nearer(form), 2).without((nearer(form) + 2) * no_start(form));
+    let codes = Registers::line(CODES, limits_at(form) - BoundDecode::TIMING.latency, 2);
+    let edges = Registers::skid(3 * DISTANCE) + cone + codes + 3 * (cone_tolerance() + bound() + edge_opening());
+    corners + 3 * distance_along(form) + edges + Registers::line(TAG, limits_at(form) + EDGE_OPENING_LATENCY, 3)
+}
+
+/// `lod_edges_serial`: the corners, which turn; one distance; the distances, which turn; one edge; the states, which wait.
+fn serial(form: &Form) -> Registers {
+    let (pass, along) = (2, dot_product_latency(form.relative(), form.component()));
+    let beside = Cone::WIDTH + CODES + TAG;
+    let corners = Registers::bits(9 * form.relative() + 3 * form.component() + beside + 1 + pass).without(no_start(form));
+    let beside_along = Registers::line(pass + beside, along, 1).without((along + 1) * no_start(form));
+    let distances = Registers::bits((2 + 3) * DISTANCE + beside + 1 + pass).without(no_start(form));
+    let nearer_end = Registers::skid(DISTANCE + Cone::WIDTH).without(2 * no_start(form));
+    let to_limits = 1 + CONE_TOLERANCE_LATENCY;
+    let code = Registers::line(BoundCode::WIDTH + BoundScale::WIDTH, to_limits - BoundDecode::TIMING.latency, 1);
+    let edge = nearer_end + cone_tolerance() + code + bound() + edge_opening();
+    let states = Registers::line(pass + TAG, to_limits + EDGE_OPENING_LATENCY, 2) + Registers::bits(2 * (1 + EdgeState::WIDTH));
+    (corners + distance_along(form) + beside_along + distances + edge + states).in_turns(3)
+}
+
 impl Block for LodTest {
     const NAME: &'static str = "lod_test";
-    const TIMING: Timing = Timing::pipelined(latency(&Form::FULL));
+    const TIMING: Timing = timing(&Form::FULL);
     type In = In;
     type Out = Out;
     fn timing(form: &Form) -> Timing {
-        Timing::pipelined(latency(form))
+        timing(form)
     }
     fn parts(form: &Form) -> Parts {
         let (relative, component) = (form.relative(), form.component());
-        let distance_along = relative + component;
         let (decode_adds, decode_selects) = BoundDecode::arithmetic();
-        let products = vec![[9, relative, component], [3, DISTANCE, SLOPE]];
-        let corners = Registers::stage(9 * relative + 3 * component);
-        // The fraction of a distance is dropped.
-        let along = dot_product(relative, component, distance_along, 1, distance_along - DISTANCE);
-        let nearer_ends = Registers::skid(3 * DISTANCE);
-        let start = if form.start_radius { 0 } else { OFFSET };
-        let cone = Registers::line(Cone::WIDTH, nearer(form), 2).without((nearer(form) + 2) * start);
-        let codes = Registers::line(3 * BoundCode::WIDTH + BoundScale::WIDTH, limits_at(form) - BoundDecode::TIMING.latency, 2);
-        // A tag of one bit for which there is no use, in each of its registers.
-        let bound = BoundDecode::registers(1).without(BoundDecode::TIMING.latency);
-        let edges = 3 * (cone_tolerance() + bound + edge_opening());
-        let ends = Registers::line(TAG, latency(form) - 1, 3) + Registers::stage(Out::WIDTH + TAG);
+        let edges = match form.lod_edges_per_cycle {
+            EdgesPerCycle::Three => parallel(form),
+            EdgesPerCycle::One => serial(form),
+        };
         Parts {
-            products,
+            products: vec![[9, relative, component], [3, DISTANCE, SLOPE]],
             // Corners, sums along the ray, nearer ends, sums of the cone, bounds, openings, divisions.
             add_bits: 9 * relative
-                + 6 * distance_along
+                + 6 * (relative + component)
                 + 3 * DISTANCE
                 + 6 * SUM
                 + 3 * decode_adds
@@ -188,7 +239,7 @@ impl Block for LodTest {
                 + 3 * BITS * (TOLERANCE + 1),
             // Nearer ends, shifts of cone and bound, clamps, divisions, ends of s.
             select_bits: 3 * (DISTANCE + SUM * SHIFT + decode_selects + TOLERANCE + BITS * TOLERANCE + EdgeState::WIDTH),
-            registers: corners + 3 * along + nearer_ends + cone + codes + edges + ends,
+            registers: edges + Registers::stage(Out::WIDTH + TAG),
         }
     }
     #[inline(always)]

@@ -46,17 +46,24 @@ impl Timing {
     }
 }
 
-/// Edge functions that the triangle test evaluates in a cycle.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+/// Edges of a triangle that a block takes in a cycle.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum EdgesPerCycle {
     /// All three of a triangle.
-    #[default]
     Three,
     /// One.
     One,
 }
 
 impl EdgesPerCycle {
+    /// All that there are.
+    pub const ALL: [Self; 2] = [Self::One, Self::Three];
+
+    /// As many as `count`, if that may be.
+    pub fn new(count: u32) -> Option<Self> {
+        Self::ALL.into_iter().find(|edges| edges.count() == count)
+    }
+
     /// How many.
     pub const fn count(self) -> u32 {
         match self {
@@ -67,10 +74,9 @@ impl EdgesPerCycle {
 }
 
 /// Boxes that the test of four children tests in a cycle.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum BoxesPerCycle {
     /// All four of a node.
-    #[default]
     Four,
     /// Two.
     Two,
@@ -120,6 +126,8 @@ pub struct Form {
     pub levels: u32,
     /// Edge functions of the triangle test.
     pub edges_per_cycle: EdgesPerCycle,
+    /// Edges of the LOD test.
+    pub lod_edges_per_cycle: EdgesPerCycle,
     /// Bits of a quotient in a cycle of the division of hits.
     pub divide_bits: u32,
     /// Bits of a reciprocal in a cycle of the constants of a ray.
@@ -144,10 +152,11 @@ impl Form {
     /// Of the default hardware.
     pub const FULL: Self = Self {
         levels: MAX_LEVELS,
-        edges_per_cycle: EdgesPerCycle::Three,
+        edges_per_cycle: EdgesPerCycle::One,
+        lod_edges_per_cycle: EdgesPerCycle::One,
         divide_bits: MOST_DIVIDE_BITS,
         setup_bits: MOST_DIVIDE_BITS,
-        boxes_per_cycle: BoxesPerCycle::Four,
+        boxes_per_cycle: BoxesPerCycle::Two,
         lod_test: true,
         start_radius: true,
         compact_vertices: true,
@@ -161,7 +170,7 @@ impl Form {
 pub trait Block {
     /// Its name: the file here, the file and module in `rtl/`.
     const NAME: &'static str;
-    /// Cycles of its RTL as it stands in `rtl/`: for [`MAX_LEVELS`], three edges, four boxes and three bits of a quotient per cycle.
+    /// Cycles of its RTL as it stands in `rtl/`: that of the default hardware, [`Form::FULL`].
     const TIMING: Timing;
     /// What goes in.
     type In: Wire;

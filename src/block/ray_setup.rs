@@ -136,7 +136,7 @@ impl Block for RaySetup {
             add_bits: 3 * (steps * multiples.compared() * (d + bits) + multiples.add_bits() + moment + ceil + x + component),
             // Divisions, normalising in as many steps as the place has bits, mirror.
             select_bits: 3 * (steps * multiples.compared() * d + d * shift + x + component),
-            registers: 3 * axis + product.registers() + around,
+            registers: (3 * axis + product.registers() + around).in_turns(timing(form).interval),
         }
     }
     #[inline(always)]

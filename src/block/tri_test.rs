@@ -56,8 +56,10 @@ wire_struct! {
 pub struct TriTest;
 
 impl TriTest {
-    /// Timing of the default's RTL with one edge function (its parameter `EDGES_PER_CYCLE` = 1); [`Block::TIMING`] is that with three.
+    /// Timing of the default's RTL with one edge function (its parameter `EDGES_PER_CYCLE` = 1).
     pub const ONE_EDGE: Timing = one_edge(&Form::FULL);
+    /// And with three.
+    pub const THREE_EDGES: Timing = three_edges(&Form::FULL);
 }
 
 /// p x d: components below 2^62.8 (Lagrange). The edge function d.(p x q) is p.(q x d), of 64 x 64-bit products where p x q takes wider ones.
@@ -135,7 +137,7 @@ fn serial(form: &Form) -> Registers {
     let beside_product = Registers::line(pass + TAG, with_a - 1 + multiplier_latency(normal, relative), 1);
     let sum = Registers::bits(form.signed_t()) + Registers::stage(pass + TAG) + Registers::stage(form.signed_t() + pass + TAG);
     let waiting = Registers::bits(2 * (form.signed_edge() + 1));
-    corners + edge_function(form) + beside_cross + factors + product.registers() + beside_product + sum + waiting
+    (corners + edge_function(form) + beside_cross + factors + product.registers() + beside_product + sum + waiting).in_turns(3)
 }
 
 /// Timing with three edge functions.
@@ -148,16 +150,20 @@ const fn one_edge(form: &Form) -> Timing {
     Timing { latency: three_edges(form).latency + 2, interval: 3 }
 }
 
+const fn timing(form: &Form) -> Timing {
+    match form.edges_per_cycle {
+        EdgesPerCycle::Three => three_edges(form),
+        EdgesPerCycle::One => one_edge(form),
+    }
+}
+
 impl Block for TriTest {
     const NAME: &'static str = "tri_test";
-    const TIMING: Timing = three_edges(&Form::FULL);
+    const TIMING: Timing = timing(&Form::FULL);
     type In = In;
     type Out = Out;
     fn timing(form: &Form) -> Timing {
-        match form.edges_per_cycle {
-            EdgesPerCycle::Three => three_edges(form),
-            EdgesPerCycle::One => one_edge(form),
-        }
+        timing(form)
     }
     fn parts(form: &Form) -> Parts {
         let (relative, normal, component) = (form.relative(), form.normal(), form.component());

@@ -45,6 +45,8 @@ pub struct Hardware {
     pub context_bits: u32,
     /// Edge functions that the triangle test evaluates in a cycle.
     pub edges_per_cycle: EdgesPerCycle,
+    /// Edges of a triangle that the LOD test takes in a cycle.
+    pub lod_edges_per_cycle: EdgesPerCycle,
     /// Bits of a quotient that the division of hits finds in a cycle, 1 to 3.
     pub divide_bits: u32,
     /// Bits of each reciprocal that the constants of a ray take in a cycle, 1 to 3.
@@ -97,10 +99,11 @@ impl Hardware {
         fewer_stack_entries: None,
         contexts: 4,
         context_bits: MAX_CONTEXT_BITS,
-        edges_per_cycle: EdgesPerCycle::Three,
+        edges_per_cycle: EdgesPerCycle::One,
+        lod_edges_per_cycle: EdgesPerCycle::One,
         divide_bits: MOST_DIVIDE_BITS,
         setup_bits: MOST_DIVIDE_BITS,
-        boxes_per_cycle: BoxesPerCycle::Four,
+        boxes_per_cycle: BoxesPerCycle::Two,
         index_bits: MOST_INDEX_BITS,
         line_bits: MOST_INDEX_BITS,
         lod_test: true,
@@ -165,6 +168,7 @@ impl Hardware {
         Form {
             levels: self.levels,
             edges_per_cycle: self.edges_per_cycle,
+            lod_edges_per_cycle: self.lod_edges_per_cycle,
             divide_bits: self.divide_bits,
             setup_bits: self.setup_bits,
             boxes_per_cycle: self.boxes_per_cycle,

@@ -100,13 +100,16 @@ pub struct Units {
     pub contexts: u32,
     /// Edge functions that the triangle test evaluates in a cycle: 3 or 1.
     pub edges_per_cycle: u32,
+    /// Edges of a triangle that the LOD test takes in a cycle: 3 or 1.
+    #[serde(default = "Units::lod_edges_per_cycle")]
+    pub lod_edges_per_cycle: u32,
     /// Bits of a quotient that the division of hits finds in a cycle: 1 to 3.
     #[serde(default = "Units::divide_bits")]
     pub divide_bits: u32,
     /// Bits of a reciprocal that the constants of a ray take in a cycle: 1 to 3.
     #[serde(default = "Units::setup_bits")]
     pub setup_bits: u32,
-    /// Boxes of a node of four that are tested in a cycle: 4 (if left out), 2 or 1.
+    /// Boxes of a node of four that are tested in a cycle: 4, 2 or 1.
     #[serde(default = "Units::boxes_per_cycle")]
     pub boxes_per_cycle: u32,
     /// A unit of a plan: what the keys above do not say is as there. Machine files have none.
@@ -117,20 +120,29 @@ pub struct Units {
 impl Units {
     /// The hardware of a unit: what the machine does not say is as in a plan's, or as in `rtl/`.
     pub fn config(&self) -> Hardware {
-        let edges_per_cycle = if self.edges_per_cycle == 1 { EdgesPerCycle::One } else { EdgesPerCycle::Three };
-        let boxes_per_cycle = BoxesPerCycle::new(self.boxes_per_cycle).unwrap_or_default();
+        // Machines with other counts are refused before.
+        let usual = self.like.unwrap_or_default();
+        let edges_per_cycle = EdgesPerCycle::new(self.edges_per_cycle).unwrap_or(usual.edges_per_cycle);
+        let lod_edges_per_cycle = EdgesPerCycle::new(self.lod_edges_per_cycle).unwrap_or(usual.lod_edges_per_cycle);
+        let boxes_per_cycle = BoxesPerCycle::new(self.boxes_per_cycle).unwrap_or(usual.boxes_per_cycle);
         let Self { divide_bits, setup_bits, .. } = *self;
         Hardware {
             contexts: self.contexts as usize,
             edges_per_cycle,
+            lod_edges_per_cycle,
             boxes_per_cycle,
             divide_bits,
             setup_bits,
-            ..self.like.unwrap_or_default()
+            ..usual
         }
     }
 
     /// Where a file does not say.
+    const fn lod_edges_per_cycle() -> u32 {
+        Hardware::DEFAULT.lod_edges_per_cycle.count()
+    }
+
+    /// Likewise.
     const fn divide_bits() -> u32 {
         Hardware::DEFAULT.divide_bits
     }

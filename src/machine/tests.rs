@@ -132,11 +132,12 @@ fn an_impossible_value_names_file_key_and_reason() {
         ("answer_cycles = 1", "answer_cycles = 0", "crossbar.answer_cycles must be"),
         ("per_bank = 1", "per_bank = 0", "crossbar.per_bank must be"),
         ("per_group = 1      # [A3]", "per_group = 0 # [A3]", "crossbar.per_group must be"),
-        ("per_group = 1       # own", "per_group = 0 # own", "units.per_group must be"),
+        ("per_group = 1           # own", "per_group = 0 # own", "units.per_group must be"),
         ("contexts = 16", "contexts = 65", "units.contexts must be 1 to 64, but is 65"),
-        ("edges_per_cycle = 3", "edges_per_cycle = 2", "units.edges_per_cycle must be 3 or 1, but is 2"),
-        ("divide_bits = 1", "divide_bits = 4", "units.divide_bits must be 1 to 3, but is 4"),
-        ("setup_bits = 1", "setup_bits = 0", "units.setup_bits must be 1 to 3, but is 0"),
+        ("\nedges_per_cycle = 1", "\nedges_per_cycle = 2", "units.edges_per_cycle must be 3 or 1, but is 2"),
+        ("lod_edges_per_cycle = 1", "lod_edges_per_cycle = 0", "units.lod_edges_per_cycle must be 3 or 1, but is 0"),
+        ("divide_bits = 3", "divide_bits = 4", "units.divide_bits must be 1 to 3, but is 4"),
+        ("setup_bits = 3", "setup_bits = 0", "units.setup_bits must be 1 to 3, but is 0"),
         ("\"dram/gddr5.toml\"", "\"gddr5\"", "dram.device must be a file's path, with .toml, but is \"gddr5\""),
         ("channels = 8", "channels = 6", "dram.channels must be a power of two up to 65536, but is 6"),
         ("queue = 64                 # own", "queue = 0", "dram.queue must be"),
@@ -206,15 +207,18 @@ fn overrides_change_one_value() {
     expected.energy.caches = "cacti22-older".to_owned();
     expected.name = "mine".to_owned();
     assert_eq!(machine, expected);
-    machine.set("units.edges_per_cycle", "1").unwrap();
-    assert_eq!(machine.units.config().edges_per_cycle, EdgesPerCycle::One);
-    assert_eq!(expected.units.config().edges_per_cycle, EdgesPerCycle::Three);
+    let edges = |machine: &Machine| [machine.units.config().edges_per_cycle, machine.units.config().lod_edges_per_cycle];
+    machine.set("units.edges_per_cycle", "3").unwrap();
+    assert_eq!(edges(&machine), [EdgesPerCycle::Three, EdgesPerCycle::One]);
+    machine.set("units.lod_edges_per_cycle", "3").unwrap();
+    assert_eq!(edges(&machine), [EdgesPerCycle::Three; 2]);
+    assert_eq!(edges(&expected), [EdgesPerCycle::One; 2]);
     assert_eq!(machine.units.config().contexts, 16);
     machine.set("units.divide_bits", "2").unwrap();
     machine.set("units.setup_bits", "1").unwrap();
-    machine.set("units.boxes_per_cycle", "2").unwrap();
+    machine.set("units.boxes_per_cycle", "1").unwrap();
     let Hardware { divide_bits, setup_bits, boxes_per_cycle, .. } = machine.units.config();
-    assert_eq!([divide_bits, setup_bits, boxes_per_cycle.count()], [2, 1, 2]);
+    assert_eq!([divide_bits, setup_bits, boxes_per_cycle.count()], [2, 1, 1]);
     let error = machine.set("units.boxes_per_cycle", "3").unwrap_err().to_string();
     assert!(error.contains("units.boxes_per_cycle must be 4, 2 or 1, but is 3"), "{error}");
 }

@@ -3,7 +3,7 @@
 use super::Machine;
 use super::error::Breach;
 use super::parts::{Cache, Memory, Tables};
-use crate::block::{BoxesPerCycle, MOST_DIVIDE_BITS};
+use crate::block::{BoxesPerCycle, EdgesPerCycle, MOST_DIVIDE_BITS};
 use crate::hardware::MAX_CONTEXTS;
 use crate::num::LINE_BYTES;
 
@@ -42,8 +42,9 @@ impl Machine {
         if BoxesPerCycle::new(self.units.boxes_per_cycle).is_none() {
             return Err(Breach::new("units.boxes_per_cycle", "must be 4, 2 or 1", self.units.boxes_per_cycle));
         }
-        if ![1, 3].contains(&self.units.edges_per_cycle) {
-            return Err(Breach::new("units.edges_per_cycle", "must be 3 or 1", self.units.edges_per_cycle));
+        let edges = [("units.edges_per_cycle", self.units.edges_per_cycle), ("units.lod_edges_per_cycle", self.units.lod_edges_per_cycle)];
+        if let Some((key, count)) = edges.into_iter().find(|&(_, count)| EdgesPerCycle::new(count).is_none()) {
+            return Err(Breach::new(key, "must be 3 or 1", count));
         }
         self.l1.validate("l1")?;
         self.l2.validate("l2")?;

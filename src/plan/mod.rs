@@ -142,13 +142,14 @@ impl Plan {
             ..*hardware
         });
         let fewer_stack_entries = Some(stack_entries.clamp(2, most.stack_entries()));
-        let Hardware { contexts, edges_per_cycle, boxes_per_cycle, divide_bits, setup_bits, .. } =
+        let Hardware { contexts, edges_per_cycle, lod_edges_per_cycle, boxes_per_cycle, divide_bits, setup_bits, .. } =
             self.speed.as_ref().map_or(*hardware, |speed| speed.units.config());
         let [coordinate_zeros, direction_zeros] = self.zeros();
         Hardware {
             fewer_stack_entries,
             contexts,
             edges_per_cycle,
+            lod_edges_per_cycle,
             boxes_per_cycle,
             divide_bits,
             setup_bits,

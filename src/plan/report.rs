@@ -69,6 +69,10 @@ impl Table {
         for (what, needed_of_full) in [
             ("contexts of a unit", [units.contexts, own.contexts]),
             ("edge functions a cycle", [units.edges_per_cycle, own.edges_per_cycle]),
+            ("edges of the LOD test a cycle", [units.lod_edges_per_cycle, own.lod_edges_per_cycle]),
+            ("boxes a cycle", [units.boxes_per_cycle, own.boxes_per_cycle]),
+            ("bits of a hit's division a cycle", [units.divide_bits, own.divide_bits]),
+            ("bits of a reciprocal a cycle", [units.setup_bits, own.setup_bits]),
             ("units of a group", [units.per_group, own.per_group]),
         ] {
             self.add(Part::Speed, what, needed_of_full, &reason, String::new());

@@ -1,8 +1,9 @@
 //! The least traversal units of a machine that keep a share of the frame rate that its memory allows, found by the simulator.
 //!
 //! What the memory allows is the frame with compute free. Where even the machine's own units do not keep the share of it, they are the measure themselves.
-//! More contexts, edge functions or units make a frame shorter, but not always: more rays at a time share the same caches. The search halves as if they did, so there may
-//! be smaller units that would do; those that are found were simulated in every frame, and so were those with one context less.
+//! More contexts, units, or edges, boxes and bits in a cycle make a frame shorter, but not always: more rays at a time share the same caches. Blocks do less in a cycle as long as
+//! that serves, what saves most first; contexts and units are halved as if more of them were always faster. So there may be smaller units that would do; those that are found
+//! were simulated in every frame, and so were those with one context less.
 
 use crate::hardware::{Hardware, unit_gates};
 use crate::machine::{Machine, Units};
@@ -36,7 +37,7 @@ pub struct Speed {
 
 impl Speed {
     /// The units of the fewest gate equivalents, in all else as `hardware` is, that keep `share` in every one of `frames`. A group has no more of them, and they no
-    /// more contexts and edge functions, than in the machine.
+    /// more contexts and no more edges, boxes and bits in a cycle, than in the machine.
     ///
     /// # Errors
     /// The machine is impossible or too large, or nothing happens any more while rays are under way.
@@ -44,7 +45,8 @@ impl Speed {
         let free = cycles(frames, machine, Compute::Free)?;
         let full = cycles(frames, machine, Compute::Units)?;
         let measures: Vec<u64> = free.iter().zip(&full).map(|(&free, &full)| if rate(free, full) < share { full } else { free }).collect();
-        let own = Found { units: machine.units.clone(), cycles: full };
+        // What is tried is a unit of the plan: only what the machine's keys say is the machine's.
+        let own = Found { units: Units { like: None, ..machine.units.clone() }, cycles: full };
         let mut search = Search { frames, machine: machine.clone(), measures: &measures, share, hardware, tried: vec![own.clone()] };
         let Found { units, cycles } = search.least(own)?;
         Ok(Self {
@@ -61,8 +63,8 @@ impl Speed {
 
     /// Gate equivalents of the units of a group, in all else as `hardware` is.
     pub fn gates(units: &Units, hardware: &Hardware) -> f64 {
-        let Hardware { contexts, edges_per_cycle, boxes_per_cycle, divide_bits, setup_bits, .. } = units.config();
-        let hardware = Hardware { contexts, edges_per_cycle, boxes_per_cycle, divide_bits, setup_bits, ..*hardware };
+        let Hardware { contexts, edges_per_cycle, lod_edges_per_cycle, boxes_per_cycle, divide_bits, setup_bits, .. } = units.config();
+        let hardware = Hardware { contexts, edges_per_cycle, lod_edges_per_cycle, boxes_per_cycle, divide_bits, setup_bits, ..*hardware };
         let unit = lod::METHOD.unit.and_then(|unit| unit_gates(unit, &hardware));
         f64::from(units.per_group) * unit.expect("each of its blocks was measured, as the test of areas holds")
     }
@@ -103,8 +105,7 @@ struct Search<'a> {
 
 impl Search<'_> {
     /// These units, if they serve.
-    fn serving(&mut self, per_group: u32, contexts: u32, edges_per_cycle: u32) -> Result<Option<Found>, ReplayError> {
-        let units = Units { per_group, contexts, edges_per_cycle, like: None, ..self.machine.units };
+    fn serving(&mut self, units: Units) -> Result<Option<Found>, ReplayError> {
         let found = match self.tried.iter().find(|tried| tried.units == units) {
             Some(tried) => tried.clone(),
             None => {
@@ -117,28 +118,60 @@ impl Search<'_> {
         Ok((worst(self.measures, &found.cycles) >= self.share).then_some(found))
     }
 
+    /// The same units of blocks that do less in a cycle, as long as they serve: first what saves most.
+    fn narrowed(&mut self, own: Found) -> Result<Found, ReplayError> {
+        let hardware = self.hardware;
+        let mut best = own;
+        'less: loop {
+            let full = Speed::gates(&best.units, hardware);
+            let mut less: Vec<(f64, Units)> = narrower(&best.units).map(|units| (Speed::gates(&units, hardware), units)).collect();
+            less.retain(|(gates, _)| *gates < full);
+            less.sort_by(|a, b| a.0.total_cmp(&b.0));
+            for (_, units) in less {
+                if let Some(found) = self.serving(units)? {
+                    best = found;
+                    continue 'less;
+                }
+            }
+            return Ok(best);
+        }
+    }
+
     /// The cheapest that serve, beginning with the machine's own, which do.
     fn least(&mut self, own: Found) -> Result<Found, ReplayError> {
-        let full = own.units.clone();
         let hardware = self.hardware;
         let gates = |units: &Units| Speed::gates(units, hardware);
-        let mut best = own;
-        for edges in [1, 3].into_iter().filter(|&edges| edges <= full.edges_per_cycle) {
+        let narrow = self.narrowed(own.clone())?;
+        let mut best = own.clone();
+        for all in [narrow, own] {
+            let full = all.units.clone();
+            let of = |per_group, contexts| Units { per_group, contexts, ..full.clone() };
             // So few of all contexts that fewer units have no chance.
-            let Some(all) = self.serving(full.per_group, full.contexts, edges)? else { continue };
-            let few =
-                halved(all, |found| found.units.per_group, |per_group| self.serving(per_group, full.contexts, edges))?.units.per_group;
+            let few = halved(all, |found| found.units.per_group, |per_group| self.serving(of(per_group, full.contexts)))?.units.per_group;
             // More of fewer contexts each can be cheaper.
             for per_group in few..=full.per_group {
-                let of = |contexts| Units { per_group, contexts, edges_per_cycle: edges, like: None, ..full };
-                let Some(cheaper) = (1..=full.contexts).rev().find(|&contexts| gates(&of(contexts)) < gates(&best.units)) else { break };
-                if let Some(found) = self.serving(per_group, cheaper, edges)? {
-                    best = halved(found, |found| found.units.contexts, |contexts| self.serving(per_group, contexts, edges))?;
+                let best_gates = gates(&best.units);
+                let Some(cheaper) = (1..=full.contexts).rev().find(|&contexts| gates(&of(per_group, contexts)) < best_gates) else { break };
+                if let Some(found) = self.serving(of(per_group, cheaper))? {
+                    best = halved(found, |found| found.units.contexts, |contexts| self.serving(of(per_group, contexts)))?;
                 }
             }
         }
         Ok(best)
     }
+}
+
+/// Units each of which does less in a cycle in one of its blocks, by one step.
+fn narrower(units: &Units) -> impl Iterator<Item = Units> {
+    let edges = |count| (count > 1).then_some(1);
+    let less = [
+        edges(units.edges_per_cycle).map(|edges_per_cycle| Units { edges_per_cycle, ..units.clone() }),
+        edges(units.lod_edges_per_cycle).map(|lod_edges_per_cycle| Units { lod_edges_per_cycle, ..units.clone() }),
+        (units.boxes_per_cycle > 1).then(|| Units { boxes_per_cycle: units.boxes_per_cycle / 2, ..units.clone() }),
+        (units.divide_bits > 1).then(|| Units { divide_bits: units.divide_bits - 1, ..units.clone() }),
+        (units.setup_bits > 1).then(|| Units { setup_bits: units.setup_bits - 1, ..units.clone() }),
+    ];
+    less.into_iter().flatten()
 }
 
 /// What serves with the least number, where all numbers above one that serves are taken to serve; `found` is the first that does.

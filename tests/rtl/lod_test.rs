@@ -3,11 +3,11 @@
 use crate::draw::{Draw, POINT_MAX};
 use crate::rays::{DIAGONAL, direction, is_direction, is_point, point};
 use crate::suite::{Category, Suite};
-use lodray::block::Block;
 use lodray::block::bound_decode::{self, BoundDecode};
 use lodray::block::lod_test::{In, LodTest, Out};
+use lodray::block::{Block, Timing};
 use lodray::num::{BoundCode, BoundScale, Cone, Point, Ray, S_ONE, U};
-use tb::Mode;
+use tb::{Build, Mode};
 
 /// Bound, distance l, displacement before its clamp, and state of edge `k`.
 struct Edge {
@@ -217,12 +217,34 @@ pub fn suite() -> Suite<LodTest> {
     )
 }
 
-#[test]
-fn free_running() {
-    suite().run(Mode::Free);
+fn with(edges_per_cycle: u32, timing: Timing) -> Suite<LodTest> {
+    Suite { build: Build::block::<LodTest>().parameter("EDGES_PER_CYCLE", edges_per_cycle), timing, ..suite() }
+}
+
+fn three_edges() -> Suite<LodTest> {
+    with(3, LodTest::THREE_EDGES)
+}
+
+fn one_edge() -> Suite<LodTest> {
+    with(1, LodTest::ONE_EDGE)
 }
 
 #[test]
-fn stalled() {
-    suite().run(Mode::Stalled);
+fn three_edges_per_cycle_free_running() {
+    three_edges().run(Mode::Free);
+}
+
+#[test]
+fn three_edges_per_cycle_stalled() {
+    three_edges().run(Mode::Stalled);
+}
+
+#[test]
+fn one_edge_per_cycle_free_running() {
+    one_edge().run(Mode::Free);
+}
+
+#[test]
+fn one_edge_per_cycle_stalled() {
+    one_edge().run(Mode::Stalled);
 }

@@ -3,6 +3,7 @@
 use crate::draw::{DIRECTION_MAX, Draw, POINT_MAX};
 use crate::rays::{DIAGONAL, direction, is_direction, is_point, point};
 use crate::suite::{Category, Suite};
+use lodray::block::Timing;
 use lodray::block::tri_test::{In, TriTest};
 use lodray::num::{Direction, Point};
 use tb::{Build, Mode};
@@ -289,18 +290,26 @@ pub fn suite() -> Suite<TriTest> {
     )
 }
 
+fn with(edges_per_cycle: u32, timing: Timing) -> Suite<TriTest> {
+    Suite { build: Build::block::<TriTest>().parameter("EDGES_PER_CYCLE", edges_per_cycle), timing, ..suite() }
+}
+
+fn three_edges() -> Suite<TriTest> {
+    with(3, TriTest::THREE_EDGES)
+}
+
 fn one_edge() -> Suite<TriTest> {
-    Suite { build: Build::block::<TriTest>().parameter("EDGES_PER_CYCLE", 1), timing: TriTest::ONE_EDGE, ..suite() }
+    with(1, TriTest::ONE_EDGE)
 }
 
 #[test]
 fn three_edges_per_cycle_free_running() {
-    suite().run(Mode::Free);
+    three_edges().run(Mode::Free);
 }
 
 #[test]
 fn three_edges_per_cycle_stalled() {
-    suite().run(Mode::Stalled);
+    three_edges().run(Mode::Stalled);
 }
 
 #[test]

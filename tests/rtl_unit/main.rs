@@ -104,7 +104,7 @@ fn cycles_wanted() -> u64 {
 
 fn configs() -> [Hardware; 3] {
     let eight = Hardware { contexts: 8, ..Hardware::default() };
-    let four = Hardware { contexts: 4, edges_per_cycle: EdgesPerCycle::One, ..Hardware::default() };
+    let four = Hardware { contexts: 4, edges_per_cycle: EdgesPerCycle::Three, ..Hardware::default() };
     [Hardware::one_context(), four, eight]
 }
 

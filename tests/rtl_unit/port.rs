@@ -1,6 +1,5 @@
 //! The RTL of the unit behind the ports of the model.
 
-use lodray::block::EdgesPerCycle;
 use lodray::hardware::Hardware;
 use lodray::hardware::ports::{HitOut, MemoryAnswer, MemoryRequest, RayIn, SceneConfig};
 use lodray::num::Wire;
@@ -14,14 +13,10 @@ pub const RESET: u64 = 2;
 
 /// The RTL of this hardware; `cargo test` compiles each once. That of the default's sizes takes contexts and edges as parameters.
 fn model(config: Hardware) -> Arc<Model> {
-    let edges = match config.edges_per_cycle {
-        EdgesPerCycle::One => 1,
-        EdgesPerCycle::Three => 3,
-    };
-    let sizes = Hardware { contexts: Hardware::DEFAULT.contexts, edges_per_cycle: EdgesPerCycle::Three, ..config };
+    let sizes = Hardware { contexts: Hardware::DEFAULT.contexts, edges_per_cycle: Hardware::DEFAULT.edges_per_cycle, ..config };
     let build = Build::rtl("traversal_unit");
     let build = if sizes == Hardware::default() {
-        build.parameter("CONTEXTS", config.contexts).parameter("EDGES_PER_CYCLE", edges)
+        build.parameter("CONTEXTS", config.contexts).parameter("EDGES_PER_CYCLE", config.edges_per_cycle.count())
     } else {
         build.hardware(&config).unwrap_or_else(|error| panic!("{error}"))
     };

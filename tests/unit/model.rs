@@ -76,6 +76,7 @@ fn configs() -> Vec<Hardware> {
         .map(|(contexts, edges_per_cycle, bits)| Hardware {
             contexts,
             edges_per_cycle,
+            lod_edges_per_cycle: if contexts == 3 { Three } else { edges_per_cycle },
             divide_bits: bits,
             setup_bits: 4 - bits,
             ..Hardware::default()

@@ -66,10 +66,12 @@ fn traffics() -> Vec<Traffic> {
 
 fn configs() -> Vec<Hardware> {
     use EdgesPerCycle::{One, Three};
-    let each = |contexts| {
-        [(Three, BoxesPerCycle::Four), (One, BoxesPerCycle::One), (Three, BoxesPerCycle::Two)]
-            .map(|(edges_per_cycle, boxes_per_cycle)| Hardware { contexts, edges_per_cycle, boxes_per_cycle, ..Hardware::default() })
-    };
+    let each =
+        |contexts| {
+            [(Three, BoxesPerCycle::Four), (One, BoxesPerCycle::One), (Three, BoxesPerCycle::Two)].map(|(edges, boxes_per_cycle)| {
+                Hardware { contexts, edges_per_cycle: edges, lod_edges_per_cycle: edges, boxes_per_cycle, ..Hardware::default() }
+            })
+        };
     let dividing = |contexts, divide_bits, setup_bits| Hardware { contexts, divide_bits, setup_bits, ..Hardware::default() };
     let slower = [dividing(1, 1, 2), dividing(4, 2, 1), dividing(16, 1, 1)];
     [1, 2, 4, 16, 64].into_iter().flat_map(each).chain(slower).collect()
@@ -248,7 +250,10 @@ fn baseline_rays_take_the_cycles_of_their_blocks() {
             Boxes::Six => cycles(BoxDecode8::TIMING) + cycles(BoxTest::TIMING),
         };
         let sort = if matches!(boxes, Boxes::Six) { cycles(ChildSort6::TIMING) } else { cycles(ChildSort::TIMING) };
-        fetch(boxes.lines().into()) + 1 + test + sort
+        // Each turn but the first takes a cycle more.
+        let children = if matches!(boxes, Boxes::Six) { 6 } else { 4 };
+        let turns = u64::from(Hardware::DEFAULT.boxes_per_cycle.passes(children));
+        fetch(boxes.lines().into()) + 1 + test + turns - 1 + sort
     };
     // SETUP and its wait, a node and one PUSH, POP, DONE and the hit's register.
     for boxes in [Boxes::Local, Boxes::Plain, Boxes::Wide, Boxes::Six] {
@@ -261,7 +266,8 @@ fn baseline_rays_take_the_cycles_of_their_blocks() {
         steps.extend([triangles(5, hits), end(hits != 0)]);
         alone(steps, latency)
     };
-    let tests = 5 + cycles(TriTest::TIMING);
+    let interval = u64::from(TriTest::TIMING.interval);
+    let tests = 1 + 4 * interval + cycles(TriTest::TIMING);
     let to_leaf = setup + node_cycles(Boxes::Wide) + 1 + fetch(3);
     // PUSH and its leaf; five tests, the cycle in which all are seen through; POP, DONE, the register.
     assert_eq!(of_leaf(0), to_leaf + tests + 1 + 1 + 1 + 1 - 1);
@@ -270,7 +276,7 @@ fn baseline_rays_take_the_cycles_of_their_blocks() {
     let divide = 2 * cycles(HitDivide::TIMING) + 1 + 1;
     assert_eq!(of_leaf(1 << 4), to_leaf + tests + hit + 1 + 1 + divide + 1 + 1 - 1);
     // Two hits one behind the other in the division.
-    assert_eq!(of_leaf(0b11000), of_leaf(1 << 4) + cycles(HitDivide::TIMING) - 1);
+    assert_eq!(of_leaf(0b11000), of_leaf(1 << 4) + cycles(HitDivide::TIMING) - interval);
 }
 
 #[test]

@@ -65,7 +65,7 @@ impl Multiplier {
         let pairs = (0..lb).flat_map(|j| (0..la).map(move |i| (i, j)));
         let kept = pairs.map(|(i, j)| self.kept(run(self.a, i, 1) + run(self.b, j, 1), i + j)).sum::<u32>();
         let copies = self.product_stages + u32::from(self.last_is_skid && la * lb == 1);
-        let products = copies * Registers { declared: la * lb * 2 * (LIMB + 1) + 1, kept: kept + 1 };
+        let products = copies * Registers::of_use(la * lb * 2 * (LIMB + 1) + 1, kept + 1);
         let row = |j| {
             self.tree(la, 2 * (LIMB + 1), self.last_is_skid && lb == 1, |from, many| {
                 self.kept(run(self.a, from, many) + run(self.b, j, 1), from + j)
@@ -88,7 +88,7 @@ impl Multiplier {
             many *= 2;
             let used = (0..left).map(|k| kept(k * many, many.min(n - k * many))).sum::<u32>();
             let copies = 1 + u32::from(last_is_skid && left == 1);
-            registers = registers + copies * Registers { declared: left * width + 1, kept: used + 1 };
+            registers = registers + copies * Registers::of_use(left * width + 1, used + 1);
         }
         registers
     }

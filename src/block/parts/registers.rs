@@ -11,12 +11,19 @@ pub struct Registers {
     pub declared: u32,
     /// As they are built.
     pub kept: u32,
+    /// Of these, those that an operation writes, each as often as it does.
+    pub written: u32,
 }
 
 impl Registers {
     /// So many bits, all of use.
     pub const fn bits(bits: u32) -> Self {
-        Self { declared: bits, kept: bits }
+        Self::of_use(bits, bits)
+    }
+
+    /// So many bits, of which so many are of use.
+    pub const fn of_use(declared: u32, kept: u32) -> Self {
+        Self { declared, kept, written: kept }
     }
 
     /// `stages` elastic registers in a row (`pipe_stage`, `pipe_delay`), of which `skids` are a `pipe_skid`: each has a valid bit, and a `pipe_skid` has
@@ -37,21 +44,26 @@ impl Registers {
 
     /// Of these, `bits` are of no use.
     pub const fn without(self, bits: u32) -> Self {
-        Self { kept: self.kept - bits, ..self }
+        Self { kept: self.kept - bits, written: self.written - bits, ..self }
+    }
+
+    /// An operation passes through them in so many turns.
+    pub const fn in_turns(self, turns: u32) -> Self {
+        Self { written: turns * self.written, ..self }
     }
 }
 
 impl Add for Registers {
     type Output = Self;
     fn add(self, other: Self) -> Self {
-        Self { declared: self.declared + other.declared, kept: self.kept + other.kept }
+        Self { declared: self.declared + other.declared, kept: self.kept + other.kept, written: self.written + other.written }
     }
 }
 
 impl Mul<Registers> for u32 {
     type Output = Registers;
     fn mul(self, one: Registers) -> Registers {
-        Registers { declared: self * one.declared, kept: self * one.kept }
+        Registers { declared: self * one.declared, kept: self * one.kept, written: self * one.written }
     }
 }
 

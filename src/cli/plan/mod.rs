@@ -66,6 +66,7 @@ struct UnitFacts {
     stack_entries: u32,
     contexts: usize,
     edges_per_cycle: u32,
+    lod_edges_per_cycle: u32,
     divide_bits: u32,
     setup_bits: u32,
     boxes_per_cycle: u32,
@@ -96,6 +97,7 @@ impl UnitFacts {
             stack_entries: hardware.stack_entries(),
             contexts: hardware.contexts,
             edges_per_cycle: hardware.edges_per_cycle.count(),
+            lod_edges_per_cycle: hardware.lod_edges_per_cycle.count(),
             divide_bits: hardware.divide_bits,
             setup_bits: hardware.setup_bits,
             boxes_per_cycle: hardware.boxes_per_cycle.count(),
@@ -169,6 +171,7 @@ pub fn in_machine(plan: &Plan, name: &str, machine: &mut MachineFacts) {
     let own = plan.hardware(&units.config());
     // Contexts, edges, boxes and bits of a cycle are the machine's own where no frame was simulated.
     (units.contexts, units.edges_per_cycle) = (own.contexts as u32, own.edges_per_cycle.count()); // at most 64
+    units.lod_edges_per_cycle = own.lod_edges_per_cycle.count();
     units.boxes_per_cycle = own.boxes_per_cycle.count();
     (units.divide_bits, units.setup_bits) = (own.divide_bits, own.setup_bits);
     units.like = Some(own);

@@ -9,6 +9,7 @@ use crate::block::box_test32::BoxTest32;
 use crate::block::child_boxes::ChildBoxes;
 use crate::block::child_sort::ChildSort;
 use crate::block::child_sort6::ChildSort6;
+use crate::block::child_test::ChildTest;
 use crate::block::hit_divide::HitDivide;
 use crate::block::hit_select::{FullId, HitSelect};
 use crate::block::lod_test::LodTest;
@@ -63,7 +64,7 @@ impl Group {
 
 /// Prints all numbers but the structs' widths.
 pub(super) fn print(hardware: &Hardware, out: &mut String) {
-    let edges = hardware.edges_per_cycle.count();
+    let (edges, lod_edges) = (hardware.edges_per_cycle.count(), hardware.lod_edges_per_cycle.count());
     let of_hardware = Group::new(
         "This hardware: `Hardware` in Rust, which prints this file. All that follows from these is made smaller or larger with them.",
     )
@@ -73,6 +74,7 @@ pub(super) fn print(hardware: &Hardware, out: &mut String) {
     .put("CONTEXTS", hardware.contexts, "rays under way in a traversal unit, if its parameter does not say otherwise")
     .put("CONTEXT_W", hardware.context_bits, "bits of a context's number")
     .put("EDGES_PER_CYCLE", edges, "edge functions that tri_test evaluates in a cycle, if its parameter does not say otherwise")
+    .put("LOD_EDGES_PER_CYCLE", lod_edges, "edges of a triangle that lod_test takes in a cycle, likewise")
     .put(
         "DIVIDE_BITS",
         hardware.divide_bits,
@@ -101,6 +103,8 @@ pub(super) fn print(hardware: &Hardware, out: &mut String) {
     let [edge_stages, t_stages] = form.edge_product_stages();
     let edges_at = |edges_per_cycle| TriTest::timing(&Form { edges_per_cycle, ..form });
     let (three, one) = (edges_at(EdgesPerCycle::Three), edges_at(EdgesPerCycle::One));
+    let lod_edges_at = |lod_edges_per_cycle| LodTest::timing(&Form { lod_edges_per_cycle, ..form });
+    let (lod_three, lod_one) = (lod_edges_at(EdgesPerCycle::Three), lod_edges_at(EdgesPerCycle::One));
     let widths = Group::new("Widths (docs/numbers.md).")
         .put("RAY_T_W", RayT::WIDTH, "t in steps of 2^-32")
         .put("T_NEAR_W", TNear::WIDTH, "t_near in steps of 2^16 units")
@@ -158,13 +162,17 @@ pub(super) fn print(hardware: &Hardware, out: &mut String) {
     .timing::<HitDivide>(hardware)
     .timing::<HitSelect>(hardware)
     .timing::<LodTest>(hardware)
+    .put("LOD_TEST_1_LATENCY", lod_one.latency, "of the form with one edge a cycle")
+    .put("LOD_TEST_1_INTERVAL", lod_one.interval, "")
+    .put("LOD_TEST_3_LATENCY", lod_three.latency, "of the form with three")
     .timing::<NodeAddress>(hardware)
     .timing::<RaySetup>(hardware)
     .timing::<Tessellate>(hardware)
-    .put("TRI_TEST_LATENCY", three.latency, "with EDGES_PER_CYCLE = 3")
-    .put("TRI_TEST_1_LATENCY", one.latency, "with EDGES_PER_CYCLE = 1")
+    .timing::<TriTest>(hardware)
+    .put("TRI_TEST_1_LATENCY", one.latency, "of the form with one edge a cycle")
     .put("TRI_TEST_1_INTERVAL", one.interval, "")
-    .put("CHILD_TEST_LATENCY", "CHILD_BOXES_LATENCY + BOX_TEST_LATENCY + CHILD_SORT_LATENCY", "");
+    .put("TRI_TEST_3_LATENCY", three.latency, "of the form with three")
+    .timing::<ChildTest>(hardware);
     let parts = Group::new("Cycles of parts of blocks.")
         .put("ENTRY_DISTANCE_LATENCY", parts::ENTRY_DISTANCE_LATENCY, "of the box tests")
         .put("EDGE_PRODUCT_STAGES", parts::EDGE_PRODUCT_STAGES, "registers of the products of a cross product")

@@ -1,8 +1,8 @@
 //! Energies of the hardware blocks, from what each is made of and published energies per operation (`machines/energy/blocks22.toml`).
 //!
-//! With P the sum of a x b over the products of a x b bits, A the bits added, S the bits selected and R the registers of a block ([`Parts`]) whose
-//! operation takes c cycles, its interval: one operation costs P multiply / 32^2 + A add / 32 + S select / 32 + R c register. The block leaks as much
-//! hardware as it has: P / c, A / c, S / c and R.
+//! With P the sum of a x b over the products of a x b bits, A the bits added, S the bits selected, R the registers and W the bits written in them by an
+//! operation ([`Parts`]), which takes the block c cycles, its interval: one operation costs P multiply / 32^2 + A add / 32 + S select / 32 + W register.
+//! The block leaks as much hardware as it has: P / c, A / c, S / c and R.
 
 use super::caches::not_negative;
 use crate::block::Operation;
@@ -76,10 +76,10 @@ impl BlockTable {
         if !hardware.has(operation) {
             return 0.0;
         }
-        let (parts, cycles) = built(operation, hardware);
+        let parts = operation.parts(&hardware.form());
         let prices = &self.operations;
         let logic = products(&parts) * prices.multiply_32_pj / (WORD * WORD) + f64::from(parts.add_bits) * prices.add_32_pj / WORD;
-        let written = f64::from(parts.registers.kept) * cycles;
+        let written = f64::from(parts.registers.written);
         let cells = f64::from(parts.select_bits) * prices.select_32_pj / WORD + written * prices.register_pj;
         logic * self.scale.from_45 + cells * self.scale.from_40
     }
@@ -88,7 +88,8 @@ impl BlockTable {
     pub fn unit_leakage_mw(&self, unit: MethodUnit, hardware: &Hardware) -> f64 {
         let prices = &self.operations;
         let of_block = |&operation: &Operation| {
-            let (parts, cycles) = built(operation, hardware);
+            let form = hardware.form();
+            let (parts, cycles) = (operation.parts(&form), f64::from(operation.timing(&form).interval));
             let logic = products(&parts) * prices.multiply_32_mw / (WORD * WORD)
                 + f64::from(parts.add_bits) * prices.add_32_mw / WORD
                 + f64::from(parts.select_bits) * prices.select_32_mw / WORD;
@@ -126,12 +127,6 @@ impl BlockTable {
         }
         Ok(())
     }
-}
-
-/// What a block is made of, and the cycles that an operation takes of it.
-fn built(operation: Operation, hardware: &Hardware) -> (Parts, f64) {
-    let form = hardware.form();
-    (operation.parts(&form), f64::from(operation.timing(&form).interval))
 }
 
 /// Sum over the products of bits times bits.

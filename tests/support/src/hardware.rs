@@ -16,28 +16,46 @@ pub const SMALL: Hardware = Hardware {
     contexts: 2,
     context_bits: 1,
     edges_per_cycle: EdgesPerCycle::One,
+    lod_edges_per_cycle: EdgesPerCycle::One,
     divide_bits: 1,
     setup_bits: 1,
     boxes_per_cycle: BoxesPerCycle::One,
     ..Hardware::DEFAULT
 };
-/// Between it and the default in depth, with more rays under way, not a power of two, and two bits of each division a cycle.
-pub const MIDDLE: Hardware =
-    Hardware { levels: 9, bvh_depth: 20, contexts: 5, context_bits: 3, divide_bits: 2, setup_bits: 2, ..Hardware::DEFAULT };
-/// For coordinates and directions of fewer bits: products of other limbs and other latencies than the default's; two boxes a cycle.
+/// Between it and the default in depth, with more rays under way, not a power of two; all edges and boxes at once, and two bits of each division a cycle.
+pub const MIDDLE: Hardware = Hardware {
+    levels: 9,
+    bvh_depth: 20,
+    contexts: 5,
+    context_bits: 3,
+    edges_per_cycle: EdgesPerCycle::Three,
+    lod_edges_per_cycle: EdgesPerCycle::Three,
+    boxes_per_cycle: BoxesPerCycle::Four,
+    divide_bits: 2,
+    setup_bits: 2,
+    ..Hardware::DEFAULT
+};
+/// For coordinates and directions of fewer bits: products of other limbs and other latencies than the default's; all edges at once, two boxes a cycle.
 pub const NARROW: Hardware = Hardware {
     levels: 5,
     bvh_depth: 18,
     contexts: 3,
     context_bits: 2,
+    edges_per_cycle: EdgesPerCycle::Three,
+    lod_edges_per_cycle: EdgesPerCycle::Three,
     boxes_per_cycle: BoxesPerCycle::Two,
     coordinate_zeros: 11,
     direction_zeros: 13,
     ..Hardware::DEFAULT
 };
 /// A little narrower, as many limbs, one edge a cycle.
-pub const NARROWER_BY_FEW: Hardware =
-    Hardware { coordinate_zeros: 3, direction_zeros: 5, edges_per_cycle: EdgesPerCycle::One, ..Hardware::DEFAULT };
+pub const NARROWER_BY_FEW: Hardware = Hardware {
+    coordinate_zeros: 3,
+    direction_zeros: 5,
+    edges_per_cycle: EdgesPerCycle::One,
+    lod_edges_per_cycle: EdgesPerCycle::One,
+    ..Hardware::DEFAULT
+};
 /// For rays of full detail or none of models of compact vertices: no LOD test, nothing morphed, and fewer bits of every number of nodes, trees and lines.
 pub const FULL_DETAIL: Hardware = Hardware {
     levels: 4,
@@ -51,8 +69,16 @@ pub const FULL_DETAIL: Hardware = Hardware {
     ..Hardware::DEFAULT
 };
 /// For views so far away that trees of up to seven levels are stored to one, of exact vertices, from inside of the model.
-pub const SHALLOW: Hardware =
-    Hardware { levels: 7, fewer_stored_levels: Some(1), index_bits: 20, start_radius: false, compact_vertices: false, ..Hardware::DEFAULT };
+pub const SHALLOW: Hardware = Hardware {
+    levels: 7,
+    fewer_stored_levels: Some(1),
+    lod_edges_per_cycle: EdgesPerCycle::Three,
+    boxes_per_cycle: BoxesPerCycle::Four,
+    index_bits: 20,
+    start_radius: false,
+    compact_vertices: false,
+    ..Hardware::DEFAULT
+};
 /// For base meshes alone: nothing is split, and every hit is where it is.
 pub const FLAT: Hardware =
     Hardware { fewer_stored_levels: Some(0), lod_test: false, start_radius: false, hit_mapping: false, contexts: 2, ..Hardware::DEFAULT };

@@ -1,11 +1,12 @@
 mod geometry;
 
 use super::{BlockTable, CacheTable, EnergyCounts, EnergyModel, EnergyReport, EnergyUnit, Level, Operation};
-use crate::block::Block;
-use crate::block::EdgesPerCycle;
+use crate::block::child_test::ChildTest;
 use crate::block::hit_divide::HitDivide;
+use crate::block::lod_test::LodTest;
 use crate::block::ray_setup::RaySetup;
 use crate::block::tri_test::TriTest;
+use crate::block::{Block, BoxesPerCycle, EdgesPerCycle};
 use crate::hardware::Hardware;
 use crate::machine::Machine;
 use crate::method::{bvh, lod};
@@ -18,10 +19,15 @@ fn model(machine: &str) -> EnergyModel {
     EnergyModel::new(&Machine::shipped(machine).unwrap()).unwrap()
 }
 
-/// The default, and with one edge a cycle.
-fn hardware(one_edge: bool) -> Hardware {
-    Hardware { edges_per_cycle: if one_edge { EdgesPerCycle::One } else { EdgesPerCycle::Three }, ..Hardware::default() }
-}
+/// All edges and boxes at once.
+const WIDE: Hardware = Hardware {
+    edges_per_cycle: EdgesPerCycle::Three,
+    lod_edges_per_cycle: EdgesPerCycle::Three,
+    boxes_per_cycle: BoxesPerCycle::Four,
+    ..Hardware::DEFAULT
+};
+/// One box, which the default has two of.
+const ONE_BOX: Hardware = Hardware { boxes_per_cycle: BoxesPerCycle::One, ..Hardware::DEFAULT };
 
 /// Equal to within 1 / 10^9.
 fn close(a: f64, b: f64) -> bool {
@@ -117,10 +123,10 @@ fn operations_by_hand() {
     let table = BlockTable::parse(BLOCKS, "blocks22").unwrap();
     // tessellate: 9 products of 33 x 10 bits; 1515 bits added; 2031 selected; 5667 registers.
     let tessellate = (9.0 * 330.0 * 3.1 / 1024.0 + 1515.0 * 0.1 / 32.0) * 0.268 + (2031.0 * 0.018 / 32.0 + 5667.0 * 0.0090) * 0.309;
-    assert!(close(table.operation_pj(Operation::Tessellate, &hardware(false)), tessellate));
+    assert!(close(table.operation_pj(Operation::Tessellate, &Hardware::DEFAULT), tessellate));
     // hit_divide: its 536 registers are written in each of 13 cycles, 12 of which compare 7 multiples of 103 bits; three multiples of 99 bits, and 96 compared before.
     let hit_divide = 9045.0 * 0.1 / 32.0 * 0.268 + (8400.0 * 0.018 / 32.0 + 536.0 * 13.0 * 0.0090) * 0.309;
-    assert!(close(table.operation_pj(Operation::HitDivide, &hardware(false)), hit_divide));
+    assert!(close(table.operation_pj(Operation::HitDivide, &Hardware::DEFAULT), hit_divide));
     // With a bit a cycle 246 registers in each of 36, 35 of which compare 100 bits.
     let slow = 3596.0 * 0.1 / 32.0 * 0.268 + (3465.0 * 0.018 / 32.0 + 246.0 * 36.0 * 0.0090) * 0.309;
     assert!(close(table.operation_pj(Operation::HitDivide, &Hardware { divide_bits: 1, ..Hardware::default() }), slow));
@@ -130,9 +136,9 @@ fn operations_by_hand() {
     counts.operations.add(Operation::HitDivide, 5);
     let report = model("haydel2023").report(&counts, &[]);
     assert_eq!(report.compute.iter().map(|part| part.0).collect::<Vec<_>>(), ["tessellate", "hit_divide"]);
-    // The machine's units find a bit a cycle.
-    assert!(close(report.compute[0].1, 3.0 * tessellate) && close(report.compute[1].1, 5.0 * slow));
-    assert!(close(report.total(), 3.0 * tessellate + 5.0 * slow));
+    // The machine's units are the default's.
+    assert!(close(report.compute[0].1, 3.0 * tessellate) && close(report.compute[1].1, 5.0 * hit_divide));
+    assert!(close(report.total(), 3.0 * tessellate + 5.0 * hit_divide));
 }
 
 #[test]
@@ -151,7 +157,7 @@ fn units_leak_and_are_clocked_for_the_whole_frame_where_there_are_any() {
     assert!(close(report.unit_leakage, 64.0 * table.unit_leakage_mw(unit, &own) * 1e6));
     assert!(close(report.unit_clock, 64.0 * table.unit_clock_pj(unit, &own) * 2e6));
     // Registers of the blocks of a unit, and 16 contexts: one bit in 32 is clocked, each leaks.
-    let registers: f64 = 1465.0 + 120.0 + 22784.0 + 10440.0 + 5667.0 + 30856.0 + 536.0 + 296.0 + 1286.0 + 16.0 * 21719.0;
+    let registers: f64 = 1465.0 + 120.0 + 13885.0 + 5016.0 + 5667.0 + 12171.0 + 536.0 + 296.0 + 1286.0 + 16.0 * 21719.0;
     assert!(close(table.unit_clock_pj(unit, &sixteen), registers / 32.0 * 0.0079 * 0.309));
     let logic = table.unit_leakage_mw(unit, &sixteen) - registers * 0.000074;
     assert!((2.0..8.0).contains(&logic), "{logic} mW");
@@ -167,16 +173,17 @@ fn a_unit_leaks_and_is_clocked_by_the_blocks_that_its_method_needs() {
     let kept = |operation: Operation| f64::from(operation.parts(&sixteen.form()).registers.kept);
     let [narrow, wide, levels] = [&bvh::METHOD, &bvh::METHOD_WIDE, &lod::METHOD].map(|method| method.unit.unwrap());
     // No trees, levels or maps: neither blocks nor a context's registers for them.
-    let shared = 1465.0 + 120.0 + 30856.0 + 536.0 + 296.0 + 16.0 * 6490.0;
+    let shared = 1465.0 + 120.0 + 12171.0 + 536.0 + 296.0 + 16.0 * 6490.0;
     let order = 164.0;
-    let bvh = shared + 4.0 * (258.0 + kept(Operation::BoxTest)) + order;
+    // Two boxes at a time.
+    let bvh = shared + 2.0 * (258.0 + kept(Operation::BoxTest)) + order;
     assert!(close(table.unit_clock_pj(narrow, &sixteen), clock(bvh)));
-    let bvh32 = shared + 4.0 * kept(Operation::BoxTest32) + order;
+    let bvh32 = shared + 2.0 * kept(Operation::BoxTest32) + order;
     assert!(close(table.unit_clock_pj(wide, &sixteen), clock(bvh32)));
     let logic = |unit, registers: f64| table.unit_leakage_mw(unit, &sixteen) - registers * 0.000074;
-    let products = 4.0 * (13_140.0 - 6816.0) * 0.0483 / 1024.0;
-    let sums = 4.0 * (825.0 - 957.0 - 138.0) * 0.00238 / 32.0;
-    let selections = 4.0 * (852.0 - 897.0 - 480.0) * 0.00061 / 32.0;
+    let products = 2.0 * (13_140.0 - 6816.0) * 0.0483 / 1024.0;
+    let sums = 2.0 * (825.0 - 957.0 - 138.0) * 0.00238 / 32.0;
+    let selections = 2.0 * (852.0 - 897.0 - 480.0) * 0.00061 / 32.0;
     assert!(close(logic(wide, bvh32) - logic(narrow, bvh), products + sums + selections));
     assert!(table.unit_leakage_mw(narrow, &sixteen) < table.unit_leakage_mw(levels, &sixteen));
     let leakage =
@@ -188,14 +195,16 @@ fn a_unit_leaks_and_is_clocked_by_the_blocks_that_its_method_needs() {
 /// Products of 18 x 18 bits as the multipliers of `rtl/` cut them: limbs of 17 bits, the highest up to 18.
 #[test]
 fn products_are_those_of_the_rtl() {
-    let parts = |operation: Operation, one_edge| operation.parts(&hardware(one_edge).form());
+    let parts = |operation: Operation, hardware: &Hardware| operation.parts(&hardware.form());
     let limbs = |bits: u32| if bits <= 18 { 1 } else { (bits - 1).div_ceil(17) };
-    let multipliers = |operation| -> u32 { parts(operation, false).products.iter().map(|&[n, a, b]| n * limbs(a) * limbs(b)).sum() };
+    let multipliers = |operation| -> u32 { parts(operation, &WIDE).products.iter().map(|&[n, a, b]| n * limbs(a) * limbs(b)).sum() };
     assert_eq!(multipliers(Operation::BoxTest), 24 + 3);
     assert_eq!(multipliers(Operation::BoxTest32), 48 + 3);
     assert_eq!(multipliers(Operation::ChildTest), 4 * (24 + 3));
     assert_eq!(multipliers(Operation::TriTest), 168);
-    assert_eq!(parts(Operation::TriTest, true).products, parts(Operation::TriTest, false).products);
+    for operation in [Operation::TriTest, Operation::LodTest, Operation::ChildTest] {
+        assert_eq!(parts(operation, &ONE_BOX).products, parts(operation, &WIDE).products);
+    }
     assert_eq!(multipliers(Operation::LodTest), 9 * 4 + 3 * 2);
 }
 
@@ -208,17 +217,46 @@ fn cycles_of_a_blocks_hardware_are_its_interval() {
             Operation::HitDivide => HitDivide::TIMING.interval,
             _ => 1,
         };
-        assert_eq!(operation.timing(&hardware(false).form()).interval, interval, "{}", operation.name());
+        assert_eq!(operation.timing(&WIDE.form()).interval, interval, "{}", operation.name());
     }
-    assert_eq!(Operation::TriTest.timing(&hardware(false).form()).interval, TriTest::TIMING.interval);
-    assert_eq!(Operation::TriTest.timing(&hardware(true).form()).interval, TriTest::ONE_EDGE.interval);
+    let intervals = [TriTest::TIMING, LodTest::TIMING, ChildTest::TIMING].map(|timing| timing.interval);
+    assert_eq!(intervals, [3, 3, 2]);
     let mut machine = Machine::shipped("haydel2023").unwrap();
-    let mut counts = EnergyCounts::default();
-    counts.operations.add(Operation::TriTest, 1);
-    for (edges, one_edge) in [("3", false), ("1", true)] {
-        machine.set("units.edges_per_cycle", edges).unwrap();
-        let report = EnergyModel::new(&machine).unwrap().report(&counts, &[]);
-        assert!(close(report.compute(), table.operation_pj(Operation::TriTest, &hardware(one_edge))));
+    for (operation, key, counts) in [
+        (Operation::TriTest, "units.edges_per_cycle", [("1", Hardware::DEFAULT), ("3", WIDE)]),
+        (Operation::LodTest, "units.lod_edges_per_cycle", [("1", Hardware::DEFAULT), ("3", WIDE)]),
+        (Operation::ChildTest, "units.boxes_per_cycle", [("1", ONE_BOX), ("4", WIDE)]),
+    ] {
+        let mut one = EnergyCounts::default();
+        one.operations.add(operation, 1);
+        for (count, hardware) in counts {
+            machine.set(key, count).unwrap();
+            let report = EnergyModel::new(&machine).unwrap().report(&one, &[]);
+            assert!(close(report.compute(), table.operation_pj(operation, &hardware)), "{key} = {count}");
+        }
+    }
+}
+
+/// Registers that an operation passes through in turns are written in each; others once.
+#[test]
+fn turns_are_charged_where_they_are_taken() {
+    let registers = |operation: Operation, hardware: &Hardware| operation.parts(&hardware.form()).registers;
+    for operation in Operation::ALL {
+        let of = registers(operation, &WIDE);
+        let interval = operation.timing(&WIDE.form()).interval;
+        assert_eq!(of.written, interval * of.kept, "{}", operation.name());
+    }
+    // Behind the three edges: the decision, and the outcome.
+    let tri = registers(Operation::TriTest, &Hardware::DEFAULT);
+    assert!(tri.written < 3 * tri.kept && tri.written > 5 * tri.kept / 2);
+    let lod = registers(Operation::LodTest, &Hardware::DEFAULT);
+    assert_eq!(3 * lod.kept - lod.written, 2 * (28 + 8 + 1));
+    // Boxes and order are found for all four at once; four box tests take as much in turns as side by side, but for what stands beside them.
+    let boxes = |operation| f64::from(registers(operation, &Hardware::DEFAULT).kept);
+    let tests = 4.0 * boxes(Operation::BoxTest);
+    for hardware in [WIDE, Hardware::DEFAULT, ONE_BOX] {
+        let around = f64::from(registers(Operation::ChildTest, &hardware).written) - tests;
+        assert!((2000.0..7000.0).contains(&around), "{around}");
     }
 }
 
@@ -298,10 +336,22 @@ fn the_documented_energies_are_the_tables() {
         let row = documented.lines().find(|line| line.starts_with(&format!("| `{name}` |"))).unwrap_or_else(|| panic!("no row for {name}"));
         row.trim_end_matches(" |").rsplit(" | ").next().unwrap().to_owned()
     };
-    for operation in Operation::ALL {
-        assert_eq!(pj(operation.name()), format!("{:.1}", table.operation_pj(operation, &hardware(false))), "{}", operation.name());
-    }
-    assert_eq!(pj("tri_test_one_edge"), format!("{:.1}", table.operation_pj(Operation::TriTest, &hardware(true))));
+    let default = Operation::ALL.map(|operation| (operation.name(), operation, Hardware::DEFAULT));
+    let further = [
+        ("tri_test-EDGES_PER_CYCLE=3", Operation::TriTest, WIDE),
+        ("lod_test-EDGES_PER_CYCLE=3", Operation::LodTest, WIDE),
+        ("child_test-BOXES_PER_CYCLE=4", Operation::ChildTest, WIDE),
+        ("child_test-BOXES_PER_CYCLE=1", Operation::ChildTest, ONE_BOX),
+    ];
+    let said = default.into_iter().chain(further).map(|(name, operation, hardware)| {
+        let part = operation.parts(&hardware.form());
+        let of = |pj: f64| format!("{pj:.1}");
+        let products: u32 = part.products.iter().map(|of| of.iter().product::<u32>()).sum();
+        let prices = [f64::from(products) * 0.000811, f64::from(part.add_bits) * 0.000838, f64::from(part.select_bits) * 0.000174];
+        (name, of(table.operation_pj(operation, &hardware)), prices, part)
+    });
+    let wrong: Vec<_> = said.filter(|(name, all, ..)| pj(name) != *all).collect();
+    assert!(wrong.is_empty(), "{wrong:#?}");
 }
 
 #[test]
@@ -315,7 +365,7 @@ fn the_documented_units_are_the_tables() {
     let said = |of: &[String; 4]| format!("{}, {}, {} and {}", of[0], of[1], of[2], of[3]);
     let line = format!("With 16 contexts they leak {} mW and their clocks take {} pJ a cycle.", said(&leaks), said(&clocks));
     assert!(documented.contains(&line), "{line}");
-    let pj = |operation| table.operation_pj(operation, &hardware(false));
+    let pj = |operation| table.operation_pj(operation, &Hardware::DEFAULT);
     let boxes = |of| 4.0 * pj(of) + pj(Operation::ChildSort);
     let [plain, wide] = [boxes(Operation::BoxTest), boxes(Operation::BoxTest32)];
     let local = plain + 4.0 * pj(Operation::BoxDecode);
