@@ -38,14 +38,20 @@ module closest_hit (
   // Numerators without their zeros.
   localparam int unsigned EDGE_W = lod_pkg::SIGNED_EDGE_W - 1;
   localparam int unsigned ZEROS = lod_pkg::EDGE_ZEROS;
+  // Where weights of the full-resolution triangle would lie in a numerator, and whether there is room for them and its node.
+  localparam int unsigned FULL_AT = lod_pkg::BARY_W;
+  localparam bit FULL_WITHIN = lod_pkg::HIT_MAPPING != 0 && EDGE_W >= 2 * lod_pkg::BARY_W + lod_pkg::NODE_INDEX_W;
 
   logic                                known_q;
   logic [lod_pkg::RAY_T_W-1:0]         t_max_q;
   logic [lod_pkg::FULL_ID_W-1:0]       id_q;
   logic [lod_pkg::INDEX_W-1:0]         tree_q;
   logic                                front_q;
+  // The numerators v, w and det, and at their lower ends, once they have been divided, b1, b2 and b0: the quotient of v comes before w is asked for, so b1 may not lie in another.
   logic [EDGE_W-1:0]                   v_q, w_q, det_q;
-  logic [lod_pkg::BARY_W-1:0]          b0_q, b1_q, b2_q;
+  logic [lod_pkg::BARY_W-1:0]          b0, b1, b2;
+
+  assign {b1, b2, b0} = {v_q[lod_pkg::BARY_W-1:0], w_q[lod_pkg::BARY_W-1:0], det_q[lod_pkg::BARY_W-1:0]};
 
   assign {known_o, t_max_o, id_o} = {known_q, t_max_q, id_q};
 
@@ -61,7 +67,23 @@ module closest_hit (
       id_q    <= select_i.id;
       tree_q  <= tree_i;
       front_q <= front_i;
-      {v_q, w_q, det_q} <= {EDGE_W'(v_i >> ZEROS), EDGE_W'(w_i >> ZEROS), EDGE_W'(det_i >> ZEROS)};
+    end
+  end
+
+  // Numerators, and what takes their place.
+  logic              quotient_of_v, quotient_of_w, map_within;
+  logic [EDGE_W-1:0] v_mapped, w_mapped, det_mapped;
+  assign quotient_of_v = divide_valid_i && divide_what_i == lod_pkg::DIVIDE_FOR_V;
+  assign quotient_of_w = divide_valid_i && divide_what_i == lod_pkg::DIVIDE_FOR_W;
+  always_ff @(posedge clk_i) begin
+    if (select_valid_i && select_i.closer) {v_q, w_q, det_q} <= {EDGE_W'(v_i >> ZEROS), EDGE_W'(w_i >> ZEROS), EDGE_W'(det_i >> ZEROS)};
+    else begin
+      // An edge function is at most det, so quotients are at most 2^32; their last bit is dropped: 32 bits.
+      if (quotient_of_v) v_q[lod_pkg::BARY_W-1:0] <= divide_i.quotient[lod_pkg::BARY_W:1];
+      if (quotient_of_w) w_q[lod_pkg::BARY_W-1:0] <= divide_i.quotient[lod_pkg::BARY_W:1];
+      // Both were rounded down and v + w <= det: not negative.
+      if (sum_i) det_q[lod_pkg::BARY_W-1:0] <= 32'h8000_0000 - b1 - b2;
+      if (map_within) {v_q, w_q, det_q} <= {v_mapped, w_mapped, det_mapped};
     end
   end
 
@@ -69,14 +91,6 @@ module closest_hit (
   logic [EDGE_W-1:0] numerator;
   assign numerator = divide_v_i ? v_q : w_q;
   assign divide_o  = {lod_pkg::T_NUMERATOR_W'(numerator) << ZEROS, lod_pkg::EDGE_FUNCTION_W'(det_q) << ZEROS};
-
-  always_ff @(posedge clk_i) begin
-    // An edge function is at most det, so quotients are at most 2^32; their last bit is dropped: 32 bits.
-    if (divide_valid_i && divide_what_i == lod_pkg::DIVIDE_FOR_V) b1_q <= divide_i.quotient[lod_pkg::BARY_W:1];
-    if (divide_valid_i && divide_what_i == lod_pkg::DIVIDE_FOR_W) b2_q <= divide_i.quotient[lod_pkg::BARY_W:1];
-    // Both were rounded down and v + w <= det: not negative.
-    if (sum_i) b0_q <= 32'h8000_0000 - b1_q - b2_q;
-  end
 
   // Level and node, where trees have any but their roots.
   logic [3:0]                       level;
@@ -94,23 +108,39 @@ module closest_hit (
     assign unused_place  = ^{level_i, node_i};
   end
 
-  // The full-resolution triangle: this one, where all hits are on such.
+  // The full-resolution triangle: this one, where all hits are on such. It comes last, when the numerators are done with, and lies above the weights where there is room.
   lod_pkg::bary_map_out_t full;
-  if (lod_pkg::HIT_MAPPING != 0) begin : g_full
+  if (FULL_WITHIN) begin : g_within
+    assign map_within = map_valid_i;
+    always_comb begin
+      v_mapped   = v_q;
+      w_mapped   = w_q;
+      det_mapped = det_q;
+      v_mapped[FULL_AT +: lod_pkg::BARY_W]   = map_i.b1;
+      w_mapped[FULL_AT +: lod_pkg::BARY_W]   = map_i.b2;
+      det_mapped[FULL_AT +: lod_pkg::BARY_W] = map_i.b0;
+      v_mapped[EDGE_W-1 -: lod_pkg::NODE_INDEX_W] = map_i.node;
+    end
+    assign full = {v_q[EDGE_W-1 -: lod_pkg::NODE_INDEX_W], det_q[FULL_AT +: lod_pkg::BARY_W], v_q[FULL_AT +: lod_pkg::BARY_W], w_q[FULL_AT +: lod_pkg::BARY_W]};
+  end else if (lod_pkg::HIT_MAPPING != 0) begin : g_full
     lod_pkg::bary_map_out_t full_q;
     always_ff @(posedge clk_i) begin
       if (map_valid_i) full_q <= map_i;
     end
-    assign full = full_q;
+    assign full       = full_q;
+    assign map_within = 1'b0;
+    assign {v_mapped, w_mapped, det_mapped} = '0;
   end else begin : g_finest
     logic unused_map;
-    assign full       = {node, b0_q, b1_q, b2_q};
+    assign map_within = 1'b0;
+    assign {v_mapped, w_mapped, det_mapped} = '0;
+    assign full       = {node, b0, b1, b2};
     assign unused_map = ^{map_valid_i, map_i};
   end
 
   // The hit's level is at most N.
-  assign map_o = {levels_i - level, node, b0_q, b1_q, b2_q};
-  assign hit_o = {t_max_q, front_q, 28'(tree_q), level, node, b0_q, b1_q, b2_q, full};
+  assign map_o = {levels_i - level, node, b0, b1, b2};
+  assign hit_o = {t_max_q, front_q, 28'(tree_q), level, node, b0, b1, b2, full};
 
 endmodule
 

@@ -41,6 +41,7 @@ pipe_stage.sv
 ray_context.sv
 ray_setup.sv
 shared_input.sv
+split_triangles.sv
 tessellate.sv
 traversal_stack.sv
 traversal_unit.sv

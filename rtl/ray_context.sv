@@ -32,6 +32,8 @@ module ray_context (
   input  logic                             fetch_grant_i,
   input  logic                             line_valid_i,
   input  lod_pkg::memory_answer_t          line_i,
+  // The corners in this line, if it is the first of an L0 record, are none of such a scene.
+  input  logic                             line_misplaced_i,
   // child_test.
   output logic                             child_request_o,
   output lod_pkg::child_test_in_t          child_o,
@@ -44,16 +46,23 @@ module ray_context (
   input  logic                             lod_grant_i,
   input  logic                             lod_valid_i,
   input  lod_pkg::lod_test_out_t           lod_i,
-  // tessellate.
+  // tessellate: its operands but for the vertices, the line that these are in, and in which half of it compact ones are. Of the inserted vertices that come, whether one lies beyond the
+  // largest coordinate, and their lowest bits together.
   output logic                             morph_request_o,
-  output lod_pkg::tessellate_in_t          morph_o,
+  output logic [lod_pkg::TESSELLATE_IN_W-3*lod_pkg::POINT_W-1:0] morph_o,
+  output logic [255:0]                     morph_line_o,
+  output logic                             morph_half_o,
   input  logic                             morph_grant_i,
   input  logic                             morph_valid_i,
   input  lod_pkg::tessellate_out_t         morph_i,
-  // tri_test; `number_o` tells the triangles of a context apart.
+  input  logic                             morph_beyond_i,
+  input  logic [15:0]                      morph_bits_i,
+  // tri_test: the ray and the node's triangle, the inserted vertices, and whether it is about the four children; `number_o` tells the triangles of a context apart.
   output logic                             tri_request_o,
   output logic [1:0]                       tri_number_o,
+  output logic                             tri_four_o,
   output lod_pkg::tri_test_in_t            tri_o,
+  output logic [2:0][lod_pkg::POINT_W-1:0] tri_inserted_o,
   input  logic                             tri_grant_i,
   input  logic                             tri_miss_i,
   // hit_select: `hit_number_i` is the triangle that t belongs to; its numerators follow with the result.
@@ -78,7 +87,7 @@ module ray_context (
   input  logic                             map_grant_i,
   input  logic                             map_valid_i,
   input  lod_pkg::bary_map_out_t           map_i,
-  // Hit out.
+  // Hit out: the hit itself means nothing without `found`.
   output logic                             hit_request_o,
   output lod_pkg::hit_out_t                hit_o,
   input  logic                             hit_grant_i
@@ -89,10 +98,11 @@ module ray_context (
   localparam bit SPLITTING = lod_pkg::STORED_LEVELS != 0;
   localparam bit CHOOSING = lod_pkg::LOD_TEST != 0;
   localparam bit MAPPING = lod_pkg::HIT_MAPPING != 0;
-  // A triangle with its inserted vertices, at full resolution and, where it is another, as morphed.
-  localparam int unsigned SPLIT_W = (CHOOSING ? 12 : 6) * lod_pkg::KEPT_POINT_W;
+  // A vertex at full resolution and, where it is another, as morphed.
+  localparam int unsigned CORNER_W = (CHOOSING ? 2 : 1) * lod_pkg::KEPT_POINT_W;
   localparam int unsigned SPLITS = lod_pkg::SPLIT_TRIANGLES;
-  localparam int unsigned SPLIT_INDEX_W = SPLITS > 1 ? $clog2(SPLITS) : 1;
+  // Three inserted vertices.
+  localparam int unsigned G_W = 3 * lod_pkg::KEPT_POINT_W;
 
   // ---- Registers ----
 
@@ -112,12 +122,13 @@ module ray_context (
   logic [lod_pkg::LINE_W-1:0]       group, vertices;
   logic [3:0]                       depth, level;
   logic [NODE_W-1:0]                node;
-  lod_pkg::kept_point_t             f0_q, f1_q, f2_q, g0, g1, g2, p0, p1, p2, q0, q1, q2;
+  lod_pkg::kept_point_t             f0, f1, f2, g0, g1, g2, p0, p1, p2, q0, q1, q2;
   logic [lod_pkg::BOUND_CODE_W-1:0] e0, e1, e2;
   lod_pkg::lod_test_out_t           lod;
   assign entry = lod_pkg::whole_entry(entry_q);
 
-  // Lines asked for and not yet sent, sent and not yet there, and there: a node, a sibling group or the corners of a record; the rest of the record or vertices.
+  // Lines asked for and not yet sent, sent and not yet there, and there: a node, a sibling group or the corners of a record; the rest of the record or vertices, and when `tessellate` has
+  // taken these, what it gave for them at full resolution, as far as a line has room.
   logic [1:0]   want_q, waiting_q;
   logic [255:0] line0_q, line1_q;
 
@@ -139,15 +150,8 @@ module ray_context (
 
   // ---- Records in the line buffers ----
 
-  lod_pkg::vertex_data_t   corners, inserted;
-  lod_pkg::l0_record_t     record;
-  lod_pkg::displacements_t displacements;
-
-  assign corners       = line0_q;
-  assign record        = line1_q;
-  assign inserted      = line1_q;
-  // Two siblings share a line; the root's are in the lower half of its record's.
-  assign displacements = node[0] ? line1_q[255:128] : line1_q[127:0];
+  lod_pkg::l0_record_t record;
+  assign record = line1_q;
 
   logic group_there, compact, compact_root;
   // Line 0 is a sibling group.
@@ -208,36 +212,12 @@ module ray_context (
   // 17 + 18 bits against 35.
   assign drop = {top.t_near, lod_pkg::T_NEAR_TO_T_SHIFT'(0)} > t_max;
 
-  // One triangle with its inserted vertices per level that splits into nodes: levels 0 to STORED_LEVELS - 2. That of the node's parent: b with n, as morphed a with m.
-  lod_pkg::kept_point_t b0, b1, b2, a0, a1, a2, n0, n1, n2, m0, m1, m2;
-
   // The inserted vertices that come now.
   lod_pkg::kept_point_t g0_now, g1_now, g2_now, q0_now, q1_now, q2_now;
   assign {g0_now, g1_now, g2_now} = {lod_pkg::keep_point(morph_i.g0), lod_pkg::keep_point(morph_i.g1), lod_pkg::keep_point(morph_i.g2)};
+  logic [G_W-1:0] g_now;
+  assign g_now = {g0_now, g1_now, g2_now};
   assign {q0_now, q1_now, q2_now} = {lod_pkg::keep_point(morph_i.q0), lod_pkg::keep_point(morph_i.q1), lod_pkg::keep_point(morph_i.q2)};
-
-  if (SPLITS > 0) begin : g_splits
-    logic [SPLIT_W-1:0]       splits_q [SPLITS];
-    logic [SPLIT_W-1:0]       parent, own;
-    logic [SPLIT_INDEX_W-1:0] parent_level;
-
-    assign parent_level = SPLIT_INDEX_W'(entry.level - 4'd1);
-    assign parent       = splits_q[parent_level];
-    if (CHOOSING) begin : g_both
-      assign own = {f0_q, f1_q, f2_q, g0_now, g1_now, g2_now, p0, p1, p2, q0_now, q1_now, q2_now};
-      assign {b0, b1, b2, n0, n1, n2, a0, a1, a2, m0, m1, m2} = parent;
-    end else begin : g_full
-      assign own = {f0_q, f1_q, f2_q, g0_now, g1_now, g2_now};
-      assign {b0, b1, b2, n0, n1, n2} = parent;
-      assign {a0, a1, a2, m0, m1, m2} = parent;
-    end
-
-    always_ff @(posedge clk_i) begin
-      if (morph_valid_i && !last_split) splits_q[SPLIT_INDEX_W'(level)] <= own;
-    end
-  end else begin : g_no_splits
-    assign {b0, b1, b2, n0, n1, n2, a0, a1, a2, m0, m1, m2} = '0;
-  end
 
   // ---- Children ----
 
@@ -296,7 +276,7 @@ module ray_context (
 
   // The node's triangle as others take it.
   lod_pkg::point_t whole_f0, whole_f1, whole_f2, whole_g0, whole_g1, whole_g2, whole_p0, whole_p1, whole_p2, whole_q0, whole_q1, whole_q2;
-  assign {whole_f0, whole_f1, whole_f2} = {lod_pkg::whole_point(f0_q), lod_pkg::whole_point(f1_q), lod_pkg::whole_point(f2_q)};
+  assign {whole_f0, whole_f1, whole_f2} = {lod_pkg::whole_point(f0), lod_pkg::whole_point(f1), lod_pkg::whole_point(f2)};
   assign {whole_g0, whole_g1, whole_g2} = {lod_pkg::whole_point(g0), lod_pkg::whole_point(g1), lod_pkg::whole_point(g2)};
   assign {whole_p0, whole_p1, whole_p2} = {lod_pkg::whole_point(p0), lod_pkg::whole_point(p1), lod_pkg::whole_point(p2)};
   assign {whole_q0, whole_q1, whole_q2} = {lod_pkg::whole_point(q0), lod_pkg::whole_point(q1), lod_pkg::whole_point(q2)};
@@ -338,45 +318,21 @@ module ray_context (
 
   assign morph_request_o = state_q == lod_pkg::MORPH;
 
-  always_comb begin
-    morph_o         = '0;
-    morph_o.compact = compact;
-    // level < levels here.
-    morph_o.grid    = scene_i.levels - level - 4'd1 + scene_i.zeros[3:0];
-    morph_o.padding = scene_i.zeros >= 5'd4 ? 3'd0 : 3'd4 - scene_i.zeros[2:0];
-    morph_o.scale   = scene_i.scale;
-    {morph_o.e0, morph_o.e1, morph_o.e2} = {e0, e1, e2};
-    {morph_o.s0, morph_o.s1, morph_o.s2} = {lod.s0, lod.s1, lod.s2};
-    {morph_o.f0, morph_o.f1, morph_o.f2} = {whole_f0, whole_f1, whole_f2};
-    {morph_o.p0, morph_o.p1, morph_o.p2} = {whole_p0, whole_p1, whole_p2};
-    if (compact) begin
-      morph_o.v0 = {32'(displacements.v0.x), 32'(displacements.v0.y), 32'(displacements.v0.z)};
-      morph_o.v1 = {32'(displacements.v1.x), 32'(displacements.v1.y), 32'(displacements.v1.z)};
-      morph_o.v2 = {32'(displacements.v2.x), 32'(displacements.v2.y), 32'(displacements.v2.z)};
-    end else begin
-      morph_o.v0 = {inserted.v0.x, 4'd0, inserted.v0.y, 4'd0, inserted.v0.z, 4'd0};
-      morph_o.v1 = {inserted.v1.x, 4'd0, inserted.v1.y, 4'd0, inserted.v1.z, 4'd0};
-      morph_o.v2 = {inserted.v2.x, 4'd0, inserted.v2.y, 4'd0, inserted.v2.z, 4'd0};
-    end
-  end
+  // level < levels here.
+  logic [3:0] grid;
+  assign grid         = scene_i.levels - level - 4'd1 + scene_i.zeros[3:0];
+  assign morph_o      = {compact, grid, scene_i.zeros >= 5'd4 ? 3'd0 : 3'd4 - scene_i.zeros[2:0], scene_i.scale, e0, e1, e2, lod.s0, lod.s1, lod.s2,
+                         whole_f0, whole_f1, whole_f2, whole_p0, whole_p1, whole_p2};
+  assign morph_line_o = line1_q;
+  // Two siblings share a line; the root's are in the lower half of its record's.
+  assign morph_half_o = node[0];
 
   assign tri_request_o = state_q == lod_pkg::TRI && left_q != '0;
   assign tri_number_o  = next_q;
 
-  always_comb begin
-    tri_o           = '0;
-    tri_o.origin    = origin_whole;
-    tri_o.direction = direction_whole;
-    if (!four_q) {tri_o.p0, tri_o.p1, tri_o.p2} = {whole_p0, whole_p1, whole_p2};
-    else begin
-      unique case (next_q)
-        2'd0: {tri_o.p0, tri_o.p1, tri_o.p2} = {whole_p0, whole_q2, whole_q1};
-        2'd1: {tri_o.p0, tri_o.p1, tri_o.p2} = {whole_q2, whole_p1, whole_q0};
-        2'd2: {tri_o.p0, tri_o.p1, tri_o.p2} = {whole_q1, whole_q0, whole_p2};
-        2'd3: {tri_o.p0, tri_o.p1, tri_o.p2} = {whole_q0, whole_q1, whole_q2};
-      endcase
-    end
-  end
+  assign tri_four_o     = four_q;
+  assign tri_o          = {origin_whole, direction_whole, whole_p0, whole_p1, whole_p2};
+  assign tri_inserted_o = {whole_q2, whole_q1, whole_q0};
 
   assign select_o    = {scene_i.levels, known, t_max, best_id, hit_t_i, 28'(tree_q), hit_level, lod_pkg::NODE_INDEX_W'(hit_node)};
 
@@ -385,15 +341,7 @@ module ray_context (
   assign map_request_o = MAPPING && state_q == lod_pkg::MAP;
   assign hit_request_o = state_q == lod_pkg::DONE;
 
-  always_comb begin
-    hit_o       = '0;
-    hit_o.tag   = tag_q;
-    hit_o.error = error_q;
-    if (known && error_q == lod_pkg::ERROR_NONE) begin
-      hit_o.found = 1'b1;
-      hit_o.hit   = best;
-    end
-  end
+  assign hit_o = {tag_q, error_q, known && error_q == lod_pkg::ERROR_NONE, best};
 
   // ---- What ends a ray early ----
 
@@ -401,24 +349,14 @@ module ray_context (
   assign record_there = want_q == '0 && waiting_q == '0;
 
   // An L0 record that no scene of this configuration has: deeper, with lines beyond the bits that are kept of them, or with corners where there is none.
-  lod_pkg::kept_point_t root0, root1, root2;
-  assign root0 = lod_pkg::keep_point({corners.v0.x, 4'd0, corners.v0.y, 4'd0, corners.v0.z, 4'd0});
-  assign root1 = lod_pkg::keep_point({corners.v1.x, 4'd0, corners.v1.y, 4'd0, corners.v1.z, 4'd0});
-  assign root2 = lod_pkg::keep_point({corners.v2.x, 4'd0, corners.v2.y, 4'd0, corners.v2.z, 4'd0});
-
-  logic       too_deep, lines_beyond, wrong_record;
-  logic [4:0] root_zeros;
+  logic too_deep, lines_beyond, wrong_record, misplaced_q;
   assign too_deep     = record.depth > scene_i.levels || record.depth > 4'(lod_pkg::STORED_LEVELS);
   assign lines_beyond = record.depth != '0 && (record.group | record.vertices) >> lod_pkg::LINE_W != '0;
-  // 16 at most, in a scene that fits.
-  assign root_zeros   = 5'(scene_i.levels) + scene_i.zeros;
-  assign wrong_record = too_deep || lines_beyond || lod_pkg::misplaced(lod_pkg::whole_point(root0), root_zeros)
-                     || lod_pkg::misplaced(lod_pkg::whole_point(root1), root_zeros) || lod_pkg::misplaced(lod_pkg::whole_point(root2), root_zeros);
+  assign wrong_record = too_deep || lines_beyond || misplaced_q;
 
   // Inserted vertices likewise; a displacement can lead anywhere.
   logic wrong_vertices;
-  assign wrong_vertices = lod_pkg::misplaced(lod_pkg::whole_point(g0_now), 5'(morph_o.grid)) || lod_pkg::misplaced(lod_pkg::whole_point(g1_now), 5'(morph_o.grid))
-                       || lod_pkg::misplaced(lod_pkg::whole_point(g2_now), 5'(morph_o.grid));
+  assign wrong_vertices = morph_beyond_i || (morph_bits_i & ~(16'hFFFF << grid)) != '0;
 
   // What the context cannot do in this cycle.
   lod_pkg::ray_error_t objection;
@@ -546,84 +484,136 @@ module ray_context (
 
   // ---- Entry, node and triangle ----
 
-  always_ff @(posedge clk_i) begin
-    if (setup_valid_i) entry_q <= '0;
-    else if (state_q == lod_pkg::PUSH && count_q == 3'd1) entry_q <= lod_pkg::keep_entry(child_entry);
-    else if (pop && !drop) entry_q <= lod_pkg::keep_entry(top);
-  end
-
   // A tree is entered, or a node of one.
   logic enter_root, enter_node;
   assign enter_root = state_q == lod_pkg::FETCH && fetch_q == lod_pkg::RECORD && record_there;
   assign enter_node = state_q == lod_pkg::VISIT && entry.kind == lod_pkg::ENTRY_TREE_NODE;
 
-  always_ff @(posedge clk_i) begin
-    if (state_q == lod_pkg::VISIT && entry.kind == lod_pkg::ENTRY_TREE) tree_q <= lod_pkg::INDEX_W'(entry.index);
-    if (enter_root) {f0_q, f1_q, f2_q} <= {root0, root1, root2};
-    else if (enter_node) begin
-      unique case (entry.index[1:0])
-        2'd0: {f0_q, f1_q, f2_q} <= {b0, n2, n1};
-        2'd1: {f0_q, f1_q, f2_q} <= {n2, b1, n0};
-        2'd2: {f0_q, f1_q, f2_q} <= {n1, n0, b2};
-        2'd3: {f0_q, f1_q, f2_q} <= {n0, n1, n2};
-      endcase
-    end
+  // A tree's entry with the bound codes that only its record has.
+  lod_pkg::stack_entry_t root_entry;
+  always_comb begin
+    root_entry = entry;
+    {root_entry.e0, root_entry.e1, root_entry.e2} = {record.e0, record.e1, record.e2};
   end
 
-  // Level, node and what else only trees with splits have.
-  if (SPLITTING) begin : g_place
-    logic [lod_pkg::LINE_W-1:0]       group_q, vertices_q;
-    logic [3:0]                       depth_q, level_q;
-    logic [NODE_W-1:0]                node_q;
-    logic [lod_pkg::BOUND_CODE_W-1:0] e0_q, e1_q, e2_q;
-    lod_pkg::kept_point_t             g0_q, g1_q, g2_q;
+  always_ff @(posedge clk_i) begin
+    if (setup_valid_i) entry_q <= '0;
+    else if (state_q == lod_pkg::PUSH && count_q == 3'd1) entry_q <= lod_pkg::keep_entry(child_entry);
+    else if (pop && !drop) entry_q <= lod_pkg::keep_entry(top);
+    else if (enter_root) entry_q <= lod_pkg::keep_entry(root_entry);
+  end
 
+  always_ff @(posedge clk_i) begin
+    if (state_q == lod_pkg::VISIT && entry.kind == lod_pkg::ENTRY_TREE) tree_q <= lod_pkg::INDEX_W'(entry.index);
+  end
+
+  // Its triangle, at full resolution (f) and as morphed (p): a root's as it is.
+  if (SPLITS > 0) begin : g_splits
+    lod_pkg::vertex_data_t corners_now;
+    lod_pkg::kept_point_t  root0_now, root1_now, root2_now;
+    logic                  root_comes;
+    logic [3*CORNER_W-1:0] roots_now, inserted_now, node_corners;
+
+    // A root's corners go to the memory as they come, so that they can be read when the whole record is there.
+    assign corners_now = line_i.line;
+    assign root0_now   = lod_pkg::keep_point({corners_now.v0.x, 4'd0, corners_now.v0.y, 4'd0, corners_now.v0.z, 4'd0});
+    assign root1_now   = lod_pkg::keep_point({corners_now.v1.x, 4'd0, corners_now.v1.y, 4'd0, corners_now.v1.z, 4'd0});
+    assign root2_now   = lod_pkg::keep_point({corners_now.v2.x, 4'd0, corners_now.v2.y, 4'd0, corners_now.v2.z, 4'd0});
+    assign root_comes  = state_q == lod_pkg::FETCH && fetch_q == lod_pkg::RECORD && arrived[0];
+
+    if (CHOOSING) begin : g_both
+      assign roots_now    = {root2_now, root2_now, root1_now, root1_now, root0_now, root0_now};
+      assign inserted_now = {g2_now, q2_now, g1_now, q1_now, g0_now, q0_now};
+      assign {f2, p2, f1, p1, f0, p0} = node_corners;
+    end else begin : g_full
+      assign roots_now    = {root2_now, root1_now, root0_now};
+      assign inserted_now = {g2_now, g1_now, g0_now};
+      assign {f2, f1, f0} = node_corners;
+      assign {p2, p1, p0} = node_corners;
+    end
+
+    split_triangles #(.W(CORNER_W), .LEVELS(SPLITS)) u_splits (
+      .clk_i,
+      .root_write_i(root_comes), .root_corners_i(roots_now),
+      .corners_write_i(morph_grant_i && !last_split), .inserted_write_i(morph_valid_i && !last_split), .level_i(level), .inserted_i(inserted_now),
+      .read_i(enter_root || enter_node), .root_i(enter_root), .parent_i(entry.level - 4'd1),
+      .child_i(entry.kind == lod_pkg::ENTRY_TREE_NODE ? entry.index[1:0] : 2'd3), .corners_o(node_corners)
+    );
+  end else begin : g_no_splits
+    // There are roots alone.
+    logic                  unused_node;
+    lod_pkg::vertex_data_t corners;
+    lod_pkg::kept_point_t  f0_q, f1_q, f2_q;
+    assign unused_node = enter_node;
+    assign corners     = line0_q;
     always_ff @(posedge clk_i) begin
       if (enter_root) begin
-        {depth_q, group_q, vertices_q} <= {record.depth, lod_pkg::LINE_W'(record.group), lod_pkg::LINE_W'(record.vertices)};
-        {level_q, node_q}              <= '0;
-        {e0_q, e1_q, e2_q}             <= {record.e0, record.e1, record.e2};
-      end else if (enter_node) begin
-        // Nodes of a tree are below 4^STORED_LEVELS.
-        {level_q, node_q}  <= {entry.level, NODE_W'(entry.index)};
-        {e0_q, e1_q, e2_q} <= {entry.e0, entry.e1, entry.e2};
+        f0_q <= lod_pkg::keep_point({corners.v0.x, 4'd0, corners.v0.y, 4'd0, corners.v0.z, 4'd0});
+        f1_q <= lod_pkg::keep_point({corners.v1.x, 4'd0, corners.v1.y, 4'd0, corners.v1.z, 4'd0});
+        f2_q <= lod_pkg::keep_point({corners.v2.x, 4'd0, corners.v2.y, 4'd0, corners.v2.z, 4'd0});
       end
-      if (morph_valid_i) {g0_q, g1_q, g2_q} <= {g0_now, g1_now, g2_now};
     end
-    assign {depth, group, vertices, level, node} = {depth_q, group_q, vertices_q, level_q, node_q};
-    assign {e0, e1, e2, g0, g1, g2}              = {e0_q, e1_q, e2_q, g0_q, g1_q, g2_q};
+    assign {f0, f1, f2} = {f0_q, f1_q, f2_q};
+    assign {p0, p1, p2} = {f0_q, f1_q, f2_q};
+  end
+
+  // Level, node, bound codes and what else only trees with splits have. A root has level and node 0, and its record's codes; a node those of its entry.
+  if (SPLITTING) begin : g_place
+    logic [lod_pkg::LINE_W-1:0] group_q, vertices_q;
+    logic [3:0]                 depth_q;
+
+    always_ff @(posedge clk_i) begin
+      if (enter_root) {depth_q, group_q, vertices_q} <= {record.depth, lod_pkg::LINE_W'(record.group), lod_pkg::LINE_W'(record.vertices)};
+    end
+    assign {depth, group, vertices} = {depth_q, group_q, vertices_q};
+
+    // An entry is kept with its codes where trees have nodes: those of a root take the place of its own, which are 0.
+    if (SPLITS > 0) begin : g_nodes
+      // Nodes of a tree are below 4^STORED_LEVELS.
+      assign {level, node} = entry.kind == lod_pkg::ENTRY_TREE_NODE ? {entry.level, NODE_W'(entry.index)} : '0;
+      assign {e0, e1, e2}  = {entry.e0, entry.e1, entry.e2};
+    end else begin : g_root
+      logic [lod_pkg::BOUND_CODE_W-1:0] e0_q, e1_q, e2_q;
+      always_ff @(posedge clk_i) begin
+        if (enter_root) {e0_q, e1_q, e2_q} <= {record.e0, record.e1, record.e2};
+      end
+      assign {level, node} = '0;
+      assign {e0, e1, e2}  = {e0_q, e1_q, e2_q};
+    end
+
+    // Inserted vertices at full resolution: what the line has no room for.
+    if (G_W > 256) begin : g_rest
+      logic [G_W-257:0] rest_q;
+      always_ff @(posedge clk_i) begin
+        if (morph_valid_i) rest_q <= g_now[G_W-1:256];
+      end
+      assign {g0, g1, g2} = {rest_q, line1_q};
+    end else begin : g_all
+      assign {g0, g1, g2} = line1_q[G_W-1:0];
+    end
   end else begin : g_base
     logic unused_split;
     assign {depth, group, vertices, level, node} = '0;
     assign {e0, e1, e2, g0, g1, g2}              = '0;
-    assign unused_split                          = ^{g0_now, g1_now, g2_now};
+    assign unused_split                          = ^g_now;
   end
 
-  // The triangle as morphed, and the states of its edges.
+  // The inserted vertices as morphed, and the states of the triangle's edges.
   if (CHOOSING) begin : g_morphed
-    lod_pkg::kept_point_t   p0_q, p1_q, p2_q, q0_q, q1_q, q2_q;
+    lod_pkg::kept_point_t   q0_q, q1_q, q2_q;
     lod_pkg::lod_test_out_t lod_q;
 
     always_ff @(posedge clk_i) begin
-      if (enter_root) {p0_q, p1_q, p2_q} <= {root0, root1, root2};
-      else if (enter_node) begin
-        unique case (entry.index[1:0])
-          2'd0: {p0_q, p1_q, p2_q} <= {a0, m2, m1};
-          2'd1: {p0_q, p1_q, p2_q} <= {m2, a1, m0};
-          2'd2: {p0_q, p1_q, p2_q} <= {m1, m0, a2};
-          2'd3: {p0_q, p1_q, p2_q} <= {m0, m1, m2};
-        endcase
-      end
       if (lod_valid_i) lod_q <= lod_i;
       if (morph_valid_i) {q0_q, q1_q, q2_q} <= {q0_now, q1_now, q2_now};
     end
-    assign {p0, p1, p2, q0, q1, q2} = {p0_q, p1_q, p2_q, q0_q, q1_q, q2_q};
-    assign lod                      = lod_q;
+    assign {q0, q1, q2} = {q0_q, q1_q, q2_q};
+    assign lod          = lod_q;
   end else begin : g_full
     logic unused_morphed;
-    assign {p0, p1, p2, q0, q1, q2} = {f0_q, f1_q, f2_q, g0, g1, g2};
-    assign lod                      = '0;
-    assign unused_morphed           = ^{a0, a1, a2, m0, m1, m2, q0_now, q1_now, q2_now, lod_i};
+    assign {q0, q1, q2}   = {g0, g1, g2};
+    assign lod            = '0;
+    assign unused_morphed = ^{q0_now, q1_now, q2_now, lod_i};
   end
 
   // ---- Lines ----
@@ -650,8 +640,10 @@ module ray_context (
   end
 
   always_ff @(posedge clk_i) begin
-    if (arrived[0]) line0_q <= line_i.line;
+    if (arrived[0]) {line0_q, misplaced_q} <= {line_i.line, line_misplaced_i};
+    // Vertices come before `tessellate` is asked.
     if (arrived[1]) line1_q <= line_i.line;
+    else if (SPLITTING && morph_valid_i) line1_q <= 256'(g_now);
     if (state_q == lod_pkg::VISIT && entry.kind == lod_pkg::ENTRY_BVH_NODE) fetch_q <= lod_pkg::NODE;
     else if (state_q == lod_pkg::VISIT && entry.kind == lod_pkg::ENTRY_TREE) fetch_q <= lod_pkg::RECORD;
     else if (decided && refine && !compact_root) fetch_q <= lod_pkg::VERTEX;

@@ -2,7 +2,8 @@
 
 /// The traversal stack of one ray (paper figure 9): what is still to be visited, nearest on top.
 ///
-/// `entry_o` is the top entry, valid while `empty_o` is low; a pop drops it at the end of the cycle. Push, pop and clear exclude each other. Depth: `STACK_ENTRIES`, which a quad-BVH of
+/// `entry_o` is the top entry, valid while `empty_o` is low, but not in the cycle after a push: then there is no pop. A pop drops it at the end of the cycle. Push, pop and clear
+/// exclude each other. A memory with one write and one clocked read port, which never work in the same cycle; the top is what was read last. Depth: `STACK_ENTRIES`, which a quad-BVH of
 /// `MAX_BVH_DEPTH` levels and a tree of `STORED_LEVELS` cannot exceed (each level leaves at most three siblings waiting). Of deeper ones the caller stops at
 /// `full_o`: then nothing may be pushed. Only the length is reset.
 module traversal_stack (
@@ -23,12 +24,18 @@ module traversal_stack (
   localparam int unsigned INDEX_W = $clog2(DEPTH);
 
   logic [lod_pkg::KEPT_ENTRY_W-1:0] entries_q [DEPTH];
+  logic [lod_pkg::KEPT_ENTRY_W-1:0] top_q;
   logic [LEN_W-1:0] len_q;
   logic [LEN_W-1:0] top;
+  // Where the top is from the next cycle on, if nothing is pushed in this one.
+  logic [INDEX_W-1:0] next_top;
+  // What was read is no longer the top.
+  logic stale_q;
 
-  // Never read while empty, when this wraps.
-  assign top     = len_q - LEN_W'(1);
-  assign entry_o = lod_pkg::whole_entry(entries_q[INDEX_W'(top)]);
+  // What is read there while empty, when this wraps, is never used.
+  assign top      = len_q - LEN_W'(1);
+  assign next_top = INDEX_W'(top) - INDEX_W'(pop_i);
+  assign entry_o  = lod_pkg::whole_entry(top_q);
   assign empty_o = len_q == '0;
   assign full_o  = len_q == LEN_W'(DEPTH);
 
@@ -41,6 +48,8 @@ module traversal_stack (
 
   always_ff @(posedge clk_i) begin
     if (push_i) entries_q[INDEX_W'(len_q)] <= lod_pkg::keep_entry(entry_i);
+    else if (pop_i || stale_q) top_q <= entries_q[next_top];
+    stale_q <= push_i;
   end
 
   always_ff @(posedge clk_i) begin
@@ -48,6 +57,7 @@ module traversal_stack (
       assert (32'(push_i) + 32'(pop_i) + 32'(clear_i) <= 1);
       assert (!(push_i && full_o));
       assert (!(pop_i && empty_o));
+      assert (!(pop_i && stale_q));
     end
   end
 

@@ -134,18 +134,44 @@ module traversal_unit #(
     assign unused_lod = ^{lod_in_valid, lod_in, lod_in_tag};
   end
 
+  // The vertices are taken out of their line once the context is chosen.
+  localparam int unsigned MORPH_OWN_W = lod_pkg::TESSELLATE_IN_W - 3 * lod_pkg::POINT_W;
+  localparam int unsigned MORPH_W = MORPH_OWN_W + 256 + 1;
+
   logic [N-1:0] morph_request, morph_grant;
-  logic [N-1:0][lod_pkg::TESSELLATE_IN_W-1:0] morph_data;
+  logic [N-1:0][MORPH_W-1:0] morph_data;
+  logic [MORPH_OWN_W-1:0] morph_own;
+  logic [255:0] morph_line;
+  logic morph_half;
   logic morph_in_valid, morph_in_ready, morph_valid;
   lod_pkg::tessellate_in_t morph_in;
   lod_pkg::tessellate_out_t morph_out;
   logic [CONTEXT_W-1:0] morph_in_tag, morph_tag;
 
-  shared_input #(.N(N), .W(lod_pkg::TESSELLATE_IN_W)) u_morph_input (
+  shared_input #(.N(N), .W(MORPH_W)) u_morph_input (
     .clk_i, .rst_ni,
     .request_i(morph_request), .data_i(morph_data), .grant_o(morph_grant),
-    .valid_o(morph_in_valid), .ready_i(morph_in_ready), .data_o(morph_in), .index_o(morph_in_tag)
+    .valid_o(morph_in_valid), .ready_i(morph_in_ready), .data_o({morph_own, morph_line, morph_half}), .index_o(morph_in_tag)
   );
+
+  lod_pkg::vertex_data_t   inserted;
+  lod_pkg::displacements_t displacements;
+  logic [3*lod_pkg::POINT_W-1:0] morph_vertices;
+  assign inserted      = morph_line;
+  assign displacements = morph_half ? morph_line[255:128] : morph_line[127:0];
+  always_comb begin
+    // The first bit of the operands: displacements.
+    if (morph_own[MORPH_OWN_W-1]) begin
+      morph_vertices = {32'(displacements.v0.x), 32'(displacements.v0.y), 32'(displacements.v0.z),
+                        32'(displacements.v1.x), 32'(displacements.v1.y), 32'(displacements.v1.z),
+                        32'(displacements.v2.x), 32'(displacements.v2.y), 32'(displacements.v2.z)};
+    end else begin
+      morph_vertices = {inserted.v0.x, 4'd0, inserted.v0.y, 4'd0, inserted.v0.z, 4'd0,
+                        inserted.v1.x, 4'd0, inserted.v1.y, 4'd0, inserted.v1.z, 4'd0,
+                        inserted.v2.x, 4'd0, inserted.v2.y, 4'd0, inserted.v2.z, 4'd0};
+    end
+  end
+  assign morph_in = {morph_own, morph_vertices};
 
   if (lod_pkg::STORED_LEVELS != 0) begin : g_tessellate
     tessellate #(.TAG_W(CONTEXT_W)) u_tessellate (
@@ -158,6 +184,17 @@ module traversal_unit #(
     assign {morph_in_ready, morph_valid, morph_out, morph_tag} = '0;
     assign unused_morph = ^{morph_in_valid, morph_in, morph_in_tag};
   end
+
+  // What a context asks of the inserted vertices that come, as it keeps them: whether one is beyond the largest coordinate, and the bits that may have to be 0.
+  lod_pkg::point_t come0, come1, come2;
+  logic            morph_beyond;
+  logic [15:0]     morph_bits;
+  assign come0        = lod_pkg::whole_point(lod_pkg::keep_point(morph_out.g0));
+  assign come1        = lod_pkg::whole_point(lod_pkg::keep_point(morph_out.g1));
+  assign come2        = lod_pkg::whole_point(lod_pkg::keep_point(morph_out.g2));
+  // On a grid of no zero bits they all are.
+  assign morph_beyond = lod_pkg::misplaced(come0, 5'd0) || lod_pkg::misplaced(come1, 5'd0) || lod_pkg::misplaced(come2, 5'd0);
+  assign morph_bits   = come0.x[15:0] | come0.y[15:0] | come0.z[15:0] | come1.x[15:0] | come1.y[15:0] | come1.z[15:0] | come2.x[15:0] | come2.y[15:0] | come2.z[15:0];
 
   logic [N-1:0] map_request, map_grant;
   logic [N-1:0][lod_pkg::BARY_MAP_IN_W-1:0] map_data;
@@ -209,27 +246,54 @@ module traversal_unit #(
     .valid_o(mem_valid_o), .ready_i(mem_ready_i), .out_o(fetch_out), .tag_o({fetch_tag, fetch_epoch})
   );
 
+  // Corners of an L0 record, in the line that comes: beyond the largest coordinate, or with fewer zero bits than levels and zeros.
+  lod_pkg::vertex_data_t corners;
+  lod_pkg::point_t       corner0, corner1, corner2;
+  logic                  line_misplaced;
+  assign corners        = mem_i.line;
+  assign corner0        = lod_pkg::whole_point(lod_pkg::keep_point({corners.v0.x, 4'd0, corners.v0.y, 4'd0, corners.v0.z, 4'd0}));
+  assign corner1        = lod_pkg::whole_point(lod_pkg::keep_point({corners.v1.x, 4'd0, corners.v1.y, 4'd0, corners.v1.z, 4'd0}));
+  assign corner2        = lod_pkg::whole_point(lod_pkg::keep_point({corners.v2.x, 4'd0, corners.v2.y, 4'd0, corners.v2.z, 4'd0}));
+  // 16 at most, in a scene that fits.
+  assign line_misplaced = lod_pkg::misplaced(corner0, zeros[4:0]) || lod_pkg::misplaced(corner1, zeros[4:0]) || lod_pkg::misplaced(corner2, zeros[4:0]);
+
   // The port has room for the number of any context that there can be.
   assign mem_o       = {8'(fetch_tag), fetch_epoch, fetch_out.address};
   assign mem_ready_o = 1'b1;
 
   // ---- Triangles: the tag carries the triangle's number too ----
 
-  localparam int unsigned TRI_W = 2 + lod_pkg::TRI_TEST_IN_W;
+  // The corners are chosen once the context is.
+  localparam int unsigned TRI_W = 3 + lod_pkg::TRI_TEST_IN_W + 3 * lod_pkg::POINT_W;
 
   logic [N-1:0] tri_request, tri_grant;
   logic [N-1:0][TRI_W-1:0] tri_data;
   logic tri_in_valid, tri_in_ready, tri_valid;
   logic [1:0] tri_in_number, tri_number;
-  lod_pkg::tri_test_in_t tri_in;
+  logic tri_four;
+  lod_pkg::tri_test_in_t tri_own, tri_in;
+  lod_pkg::point_t inserted0, inserted1, inserted2;
   lod_pkg::tri_test_out_t tri_out;
   logic [CONTEXT_W-1:0] tri_in_tag, tri_owner;
 
   shared_input #(.N(N), .W(TRI_W)) u_tri_input (
     .clk_i, .rst_ni,
     .request_i(tri_request), .data_i(tri_data), .grant_o(tri_grant),
-    .valid_o(tri_in_valid), .ready_i(tri_in_ready), .data_o({tri_in_number, tri_in}), .index_o(tri_in_tag)
+    .valid_o(tri_in_valid), .ready_i(tri_in_ready), .data_o({tri_in_number, tri_four, tri_own, inserted2, inserted1, inserted0}), .index_o(tri_in_tag)
   );
+
+  // The node's triangle, or one of its children's.
+  always_comb begin
+    tri_in = tri_own;
+    if (tri_four) begin
+      unique case (tri_in_number)
+        2'd0: {tri_in.p0, tri_in.p1, tri_in.p2} = {tri_own.p0, inserted2, inserted1};
+        2'd1: {tri_in.p0, tri_in.p1, tri_in.p2} = {inserted2, tri_own.p1, inserted0};
+        2'd2: {tri_in.p0, tri_in.p1, tri_in.p2} = {inserted1, inserted0, tri_own.p2};
+        2'd3: {tri_in.p0, tri_in.p1, tri_in.p2} = {inserted0, inserted1, inserted2};
+      endcase
+    end
+  end
 
   tri_test #(.TAG_W(lod_pkg::PLACE_TAG_W), .EDGES_PER_CYCLE(EDGES_PER_CYCLE)) u_tri_test (
     .clk_i, .rst_ni,
@@ -316,7 +380,7 @@ module traversal_unit #(
   logic [N-1:0] hit_request, hit_grant;
   logic [N-1:0][lod_pkg::HIT_OUT_W-1:0] hit_data;
   logic hit_in_valid, hit_in_ready;
-  lod_pkg::hit_out_t hit_in;
+  lod_pkg::hit_out_t hit_in, hit_told;
 
   shared_input #(.N(N), .W(lod_pkg::HIT_OUT_W)) u_hit_input (
     .clk_i, .rst_ni,
@@ -324,9 +388,11 @@ module traversal_unit #(
     .valid_o(hit_in_valid), .ready_i(hit_in_ready), .data_o(hit_in), .index_o()
   );
 
+  // All zero if nothing was met.
+  assign hit_told = {hit_in.tag, hit_in.error, hit_in.found, hit_in.found ? hit_in.hit : lod_pkg::HIT_W'(0)};
   pipe_stage #(.W(lod_pkg::HIT_OUT_W)) u_hit_stage (
     .clk_i, .rst_ni,
-    .valid_i(hit_in_valid), .ready_o(hit_in_ready), .data_i(hit_in),
+    .valid_i(hit_in_valid), .ready_o(hit_in_ready), .data_i(hit_told),
     .valid_o, .ready_i, .data_o(out_o)
   );
 
@@ -344,16 +410,17 @@ module traversal_unit #(
       .child_valid_i(child_valid && child_tag == ME), .child_i(child_out),
       .lod_request_o(lod_request[k]), .lod_o(lod_data[k]), .lod_grant_i(lod_grant[k]),
       .lod_valid_i(lod_valid && lod_tag == ME), .lod_i(lod_out),
-      .morph_request_o(morph_request[k]), .morph_o(morph_data[k]), .morph_grant_i(morph_grant[k]),
-      .morph_valid_i(morph_valid && morph_tag == ME), .morph_i(morph_out),
+      .morph_request_o(morph_request[k]), .morph_o(morph_data[k][MORPH_W-1:257]), .morph_line_o(morph_data[k][256:1]), .morph_half_o(morph_data[k][0]),
+      .morph_grant_i(morph_grant[k]),
+      .morph_valid_i(morph_valid && morph_tag == ME), .morph_i(morph_out), .morph_beyond_i(morph_beyond), .morph_bits_i(morph_bits),
       .map_request_o(map_request[k]), .map_o(map_data[k]), .map_grant_i(map_grant[k]),
       .map_valid_i(map_valid && map_tag == ME), .map_i(map_out),
       .fetch_request_o(fetch_request[k]), .fetch_place_o(fetch_data[k][FETCH_W-1]),
       .fetch_epoch_o(fetch_data[k][FETCH_W-2 -: lod_pkg::EPOCH_W]),
       .fetch_o(fetch_data[k][lod_pkg::NODE_ADDRESS_IN_W-1:0]), .fetch_grant_i(fetch_grant[k]),
-      .line_valid_i(mem_valid_i && mem_i.tag[7:2] == 6'(ME)), .line_i(mem_i),
-      .tri_request_o(tri_request[k]), .tri_number_o(tri_data[k][TRI_W-1:TRI_W-2]),
-      .tri_o(tri_data[k][TRI_W-3:0]), .tri_grant_i(tri_grant[k]),
+      .line_valid_i(mem_valid_i && mem_i.tag[7:2] == 6'(ME)), .line_i(mem_i), .line_misplaced_i(line_misplaced),
+      .tri_request_o(tri_request[k]), .tri_number_o(tri_data[k][TRI_W-1:TRI_W-2]), .tri_four_o(tri_data[k][TRI_W-3]),
+      .tri_o(tri_data[k][TRI_W-4:3*lod_pkg::POINT_W]), .tri_inserted_o(tri_data[k][3*lod_pkg::POINT_W-1:0]), .tri_grant_i(tri_grant[k]),
       .tri_miss_i(tri_valid && !tri_out.hit && tri_owner == ME),
       .hit_number_i(divide_number), .hit_t_i(divide_out.quotient), .select_o(select_data[k]),
       .select_valid_i(select_valid && select_owner == ME), .select_i(select_out),

@@ -298,7 +298,6 @@ PARAMETERS = {
     "hit_divide": ("DIVIDE_BITS", "DIVIDE_BITS", "units.divide_bits"),
     "ray_setup": ("SETUP_BITS", "SETUP_BITS", "units.setup_bits"),
 }
-FLIP_FLOP = 7.67  # gate equivalents of a bit of a context
 
 
 def block_gates(block, keys):
@@ -312,7 +311,7 @@ def block_gates(block, keys):
 
 
 def balance(charged, free, values):
-    context = int(re.search(r"^\| a ray context, bits of registers \| ([\d,]+) ", (ROOT / "docs" / "hardware.md").read_text(), re.M)[1].replace(",", ""))
+    context = block_gates("ray_context", {})
 
     def time(source, machine, set, radii):
         return [source.find(machine=machine, set=set, radii=radii, method=m)["result"]["cycles"] for m in ["lod", "bvh"]]
@@ -331,7 +330,7 @@ def balance(charged, free, values):
                 result = charged.find(machine=machine, set=name, radii=radii, method="lod")["result"]
                 groups = result["setup"]["machine"]["description"]["cores"]["groups"]
                 rate = result["rays"] / lod * result["setup"]["machine"]["description"]["cores"]["clock_mhz"] / (groups * per_group)
-                unit = gates + contexts * context * FLIP_FLOP
+                unit = gates + contexts * context
                 cells += [f"{lod:,}", percent(bvh / lod / (free_bvh / free_lod)), f"{unit / rate:,.0f}"]
                 prices.setdefault(tuple(keys[key] for *_, key in PARAMETERS.values()), []).append(unit / rate)
             rows.append(cells)

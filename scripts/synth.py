@@ -9,7 +9,7 @@ import concurrent.futures
 import os
 import sys
 
-from synthesis import blocks, check, ecp5, gates, plan, report
+from synthesis import blocks, check, ecp5, fpga, gates, plan, report
 from synthesis.tools import Failure, Tools
 
 
@@ -18,6 +18,9 @@ def main():
     options = parse()
     try:
         tools = Tools()
+        if options.fpga:
+            fpga.run(options.fpga, options.seeds, options.paths, tools)
+            return
         unit = plan.read(options.plan) if options.plan else None
         wanted = unit.blocks() if unit else blocks.chosen(options.block) or blocks.every()
         figures, failures = Run(tools, options).all(wanted)
@@ -54,6 +57,7 @@ def parse():
     parser.add_argument("--jobs", type=int, default=os.cpu_count(), metavar="N", help="tools at work at once (default: one per core)")
     parser.add_argument("--check", action="store_true", help="write the netlists to target/synth/netlists and run the blocks' own tests on them")
     parser.add_argument("--plan", metavar="PLAN", help="the unit of a plan (lodray plan -o): its blocks with the package that the plan prints, and what they and its contexts have together")
+    parser.add_argument("--fpga", type=int, nargs="?", const=2, metavar="CONTEXTS", help="the whole unit for an LFE5U-85F, with that many contexts (default 2): placed, routed, and as a bitstream")
     parser.add_argument("--doc", action="store_true", help="write the table into docs/hardware.md")
     options = parser.parse_args()
     if options.seeds < 1 or options.jobs < 1:
@@ -62,6 +66,8 @@ def parse():
         parser.error("--doc writes the whole table: name no block and leave nothing out")
     if options.plan and (options.block or options.doc or options.check):
         parser.error("--plan is of a whole unit: it has its own blocks, no place in docs/hardware.md, and its tests are those of cargo test")
+    if options.fpga is not None and (options.fpga < 1 or options.block or options.doc or options.check or options.plan or options.no_place):
+        parser.error("--fpga is the whole unit, of at least one context: of all else it takes --seeds and --paths alone")
     if options.check and options.no_gates:
         parser.error("--check needs the gates")
     return options
@@ -107,7 +113,7 @@ class Run:
             self.failures.setdefault(block.name, f"{kind}: {why}")
             return
         if kind == "place":
-            figures["placed"] = sorted([*figures.get("placed", []), result], key=lambda placed: placed["mhz"])
+            figures["placed"] = sorted([*figures.get("placed", []), result[0]], key=lambda placed: placed["mhz"])
             figures["mhz"] = [placed["mhz"] for placed in figures["placed"]]
             return
         figures[kind], figures[f"{kind}_at"] = result

@@ -1,5 +1,5 @@
 //! `rtl/lod_pkg.sv` is what the default hardware prints, byte for byte. With `LODRAY_REWRITE_PACKAGE` in the environment the file is written again
-//! (`scripts/package`).
+//! (`scripts/package`). With `LODRAY_FPGA_PACKAGE` that of the hardware for an FPGA is written there, of `LODRAY_CONTEXTS` contexts (`scripts/synth --fpga`).
 
 use lodray::hardware::Hardware;
 
@@ -18,4 +18,17 @@ fn the_package_of_the_rtl_is_that_of_the_default_hardware() {
         "rtl/lod_pkg.sv is not what Hardware::default() prints, from line {differs} on; scripts/package writes it again"
     );
     assert!(printed.lines().count() > 500);
+}
+
+#[test]
+fn the_package_for_an_fpga_is_that_of_its_contexts() {
+    for (contexts, bits) in [(1, 1), (2, 1), (3, 2), (4, 2), (5, 3), (64, 6)] {
+        assert_eq!(Hardware::fpga(contexts).context_bits, bits);
+        assert_eq!(Hardware::fpga(contexts).validate(), Ok(()));
+    }
+    let Some(path) = std::env::var_os("LODRAY_FPGA_PACKAGE") else { return };
+    let contexts = std::env::var("LODRAY_CONTEXTS").map_or(2, |text| text.parse().expect("LODRAY_CONTEXTS: a number"));
+    let hardware = Hardware::fpga(contexts);
+    hardware.validate().unwrap_or_else(|error| panic!("{error}"));
+    std::fs::write(&path, hardware.package()).unwrap_or_else(|error| panic!("{}: {error}", path.display()));
 }

@@ -3,7 +3,7 @@
 
 use lodray::block::parts::Registers;
 use lodray::block::{BoxesPerCycle, EdgesPerCycle, Operation};
-use lodray::hardware::Hardware;
+use lodray::hardware::{Hardware, Memory};
 use lodray_test_support::hardware::{LESS, NARROW, NARROWS, OTHERS, SMALL};
 
 /// Blocks whose registers depend on the levels.
@@ -102,6 +102,17 @@ fn what_is_kept_are_the_flip_flops_of_the_netlists() {
         }
     }
     assert!(wrong.is_empty(), "{}", wrong.join("\n"));
+}
+
+#[test]
+fn a_context_has_the_flip_flops_and_memories_of_its_netlist() {
+    let hardware = Hardware::default();
+    let memories: u32 = hardware.context_memories(true).iter().map(Memory::bits).sum();
+    let (counted, found) = (hardware.context_flip_flops(true), flip_flops("ray_context"));
+    println!("ray_context: {counted} flip-flops counted, {found} in the netlist, {memories} bits in memories");
+    // Bits of a record that nothing reads.
+    assert!(found <= counted && counted - found < counted / 100);
+    assert_eq!(memories, 18_669);
 }
 
 #[test]

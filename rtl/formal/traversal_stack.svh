@@ -18,15 +18,16 @@
     assume (place < LEN_W'(DEPTH));
     // What the unit keeps to.
     assume (32'(push_i) + 32'(pop_i) + 32'(clear_i) <= 1);
-    assume (!(push_i && depth_q == LEN_W'(DEPTH)) && !(pop_i && depth_q == '0));
+    assume (!(push_i && depth_q == LEN_W'(DEPTH)) && !(pop_i && (depth_q == '0 || stale_q)));
     // Before the first reset nothing is known, and the block's own assertions need not hold.
     assume (live_q || !rst_ni);
     if (live_q) begin
       assert (empty_o == (depth_q == '0));
-      assert (depth_q != place + LEN_W'(1) || entry_o == watched_q);
+      assert (depth_q != place + LEN_W'(1) || stale_q || entry_o == watched_q);
       // Hold the induction together.
       assert (len_q == depth_q && depth_q <= LEN_W'(DEPTH));
       assert (depth_q <= place || entries_q[place] == lod_pkg::keep_entry(watched_q));
+      assert (depth_q != place + LEN_W'(1) || stale_q || top_q == lod_pkg::keep_entry(watched_q));
     end
     cover (live_q && pop_i && depth_q == place + LEN_W'(1) && place == LEN_W'(3) && watched_q.index == 28'd77);
     cover (live_q && clear_i && depth_q == LEN_W'(2));

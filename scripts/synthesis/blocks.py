@@ -17,7 +17,9 @@ FORMS = {
     "ray_setup": [{}, {"SETUP_BITS": 2}, {"SETUP_BITS": 1}],
 }
 # Modules without a twin there that are worth a row.
-FURTHER = ["edge_function", "traversal_stack"]
+FURTHER = ["edge_function", "traversal_stack", "ray_context"]
+# A memory: an array of registers that are written one word at a time.
+MEMORY = re.compile(r"^\s*logic (?:\[[^\]]*\] *)*\w+_q +\[", re.MULTILINE)
 
 
 @dataclasses.dataclass(frozen=True)
@@ -54,6 +56,10 @@ class Block:
         package, *others = ((ROOT / path).read_text(encoding="utf-8") for path in self.sources())
         # Of the package what the block uses: another hardware is the same block if it differs in other things.
         return {"module": self.module, "parameters": self.parameters, "sources": [used(package, "\n".join(others)), *others]}
+
+    def has_memories(self):
+        """Whether there are any in it."""
+        return any(MEMORY.search((ROOT / path).read_text(encoding="utf-8")) for path in self.sources())
 
     def read(self):
         """Yosys commands that read it and make it the top, under its module's name."""

@@ -79,8 +79,8 @@ endmodule
 """
 
 
-def place(block, netlist, seed, tools):
-    """Clock after place and route in MHz, and the longest path's cells, with one seed."""
+def place(block, netlist, seed, tools, options=tuple(PLACEMENT), limit=PLACEMENT_LIMIT_S, configuration=False):
+    """Clock after place and route in MHz and the longest path's cells, with one seed; and the folder of the configuration."""
     netlist_text = (ROOT / netlist).read_text(encoding="utf-8")
 
     def make(folder):
@@ -93,8 +93,8 @@ def place(block, netlist, seed, tools):
         ]
         (ROOT / folder / "join.ys").write_text("\n".join(join) + "\n", encoding="utf-8")
         tools.run(YOSYS, ["-s", folder / "join.ys"], folder / "join.log", SYNTHESIS_LIMIT_S)
-        arguments = ["--json", folder / "placed.json", "--seed", seed, "--report", folder / "report.json", *PLACEMENT]
-        log = tools.run(NEXTPNR, arguments, folder / "log", PLACEMENT_LIMIT_S)
+        arguments = ["--json", folder / "placed.json", "--seed", seed, "--report", folder / "report.json", *(["--textcfg", folder / "unit.config"] if configuration else []), *options]
+        log = tools.run(NEXTPNR, arguments, folder / "log", limit)
         clocks = re.findall(r"Max frequency for clock\s+\S*clk_i\S*: ([\d.]+) MHz", log)
         if not clocks:
             raise Failure(f"nextpnr named no clock; see {folder}/log")
@@ -103,8 +103,8 @@ def place(block, netlist, seed, tools):
         # The report counts after routing, as the last of the log's lines does.
         return {"mhz": float(clocks[-1]), "path": longest_path(report)}
 
-    ingredients = {"netlist": netlist_text, "seed": seed, "options": PLACEMENT, "tool": tools.versions[NEXTPNR], "harness": harness("block", {"a": ("input", 1), "b": ("output", 1)})}
-    return kept(f"place-{block.name}-{seed}", ingredients, make)[0]
+    ingredients = {"netlist": netlist_text, "seed": seed, "options": list(options), "tool": tools.versions[NEXTPNR], "harness": harness("block", {"a": ("input", 1), "b": ("output", 1)})}
+    return kept(f"place-{block.name}-{seed}", ingredients, make)
 
 
 def longest_path(report):

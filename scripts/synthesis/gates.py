@@ -14,6 +14,9 @@ AREAS = {
     "NOT": 0.67, "NAND": 1.0, "NOR": 1.0, "AND": 1.33, "OR": 1.33, "AOI3": 1.33, "OAI3": 1.33, "MUX": 2.33, "XOR": 2.33, "XNOR": 2.33,
     "DFF": 5.33, "DFFE": 7.67,
 }
+# A memory of one write and one clocked read port, likewise in NAND gates: per bit, per column (precharge, sense amplifier, latches and drivers of both ports), per word (two decoders and word
+# lines), and for control. docs/hardware.md says why.
+MEMORY = {"bit": 1.0, "column": 12.0, "word": 4.0, "control": 250.0}
 # Without abc's rewriting for area (dc2), which turns prefix adders back into ripples: three times the depth for a quarter of the adder's area.
 ABC = "+strash;ifraig;scorr;dch,-f;map,-B,0.9;topo"
 # What Yosys says of a netlist that is not the design.
@@ -23,16 +26,19 @@ SUSPECT = re.compile(r"implicitly declared|no driver|undriven|(?<!No )latch infe
 def script(block, folder):
     """The Yosys commands; hierarchy is kept, so that equal modules are mapped once."""
     gates = ",".join(name for name in AREAS if name not in ("NOT", "DFF", "DFFE"))
+    # Memories stay what they are.
+    memories = block.has_memories()
     return [
         *block.read(),
         "proc", "chformal -remove", "check -assert", "opt_expr", "opt_clean", "opt -nodffe -nosdff", "wreduce", "peepopt", "opt_clean",
         f"techmap -map {folder}/map_multipliers.v", f"read_verilog {folder}/multipliers.v", f"hierarchy -check -top {block.module}", "proc",
-        "booth", "alumacc", "opt", "memory", "opt -fast -full", "opt -undriven -fine", "techmap", "opt -fast",
+        "booth", "alumacc", "opt", "memory -nomap" if memories else "memory", "opt -fast -full", "opt -undriven -fine", "techmap", "opt -fast",
         "dfflegalize -cell $_DFF_P_ x -cell $_DFFE_PP_ x", "opt_expr", "opt_clean",
         f"abc -g {gates} -script {ABC}", "opt_clean", "check -assert",
         f"json -o {folder}/multipliers.json A:multiplier",
         # One flat module and the multipliers: registers that no output needs show only now. Wires of one bit simulate well.
         "flatten -noscopeinfo", "opt -nodffe -nosdff", "opt_clean", "splitnets", "opt_clean", "check -assert",
+        *([f"json -o {folder}/memories.json t:$mem_v2"] if memories else []),
         f"tee -q -o {folder}/stat.json stat -json", f"write_verilog -noattr {folder}/netlist.v",
         "setattr -mod -unset keep_hierarchy A:multiplier", "flatten -noscopeinfo", "opt_clean", "ltp -noff",
     ]
@@ -49,12 +55,16 @@ def synthesise(block, tools):
         mapped = {name: module for name, module in read_json(folder / "multipliers.json")["modules"].items() if multipliers.is_multiplier(name)}
         for name, module in mapped.items():
             multipliers.verify(name, module)
-        return measure(block.module, read_json(folder / "stat.json"), {name: multipliers.shape(module) for name, module in mapped.items()}, log)
+        shapes = {name: multipliers.shape(module) for name, module in mapped.items()}
+        memories = memories_of(read_json(folder / "memories.json")) if block.has_memories() else []
+        return measure(block.module, read_json(folder / "stat.json"), shapes, memories, log)
 
     texts = [multipliers.MAP, multipliers.MODULES]
     # The same script whichever package it is: what the block uses of that is among its ingredients.
     plain = dataclasses.replace(block, package="")
     ingredients = {"block": block.ingredients(), "script": script(plain, "."), "map": texts, "tool": tools.versions[YOSYS], "areas": AREAS}
+    if block.has_memories():
+        ingredients["memory"] = MEMORY
     return kept(f"gates-{block.name}", ingredients, make)
 
 
@@ -70,7 +80,26 @@ def refuse_suspect(log):
             raise Failure(f"Yosys: {line.strip()}")
 
 
-def measure(top, stat, shapes, log):
+def memories_of(netlist):
+    """Words and bits in a word of every memory of a flat netlist. A memory that is read without a clock, or by more than one, is none that the areas are for."""
+    found = []
+    for module in netlist["modules"].values():
+        for name, cell in module["cells"].items():
+            own = {key: int(value, 2) for key, value in cell["parameters"].items() if key in ("SIZE", "WIDTH", "RD_PORTS", "WR_PORTS", "RD_CLK_ENABLE")}
+            if (own["RD_PORTS"], own["WR_PORTS"]) != (1, 1):
+                raise Failure(f"the memory {name} has {own['RD_PORTS']} read and {own['WR_PORTS']} write ports, not one of each")
+            found.append((own["SIZE"], own["WIDTH"], bool(own["RD_CLK_ENABLE"])))
+    return sorted(found)
+
+
+def memory_area(words, width, clocked):
+    """Gate equivalents of a memory. One that is read without a clock is flip-flops and a tree of multiplexers."""
+    if not clocked:
+        return words * width * AREAS["DFFE"] + (words - 1) * width * AREAS["MUX"]
+    return words * width * MEMORY["bit"] + width * MEMORY["column"] + words * MEMORY["word"] + MEMORY["control"]
+
+
+def measure(top, stat, shapes, memories, log):
     """The figures out of Yosys' statistics and its longest path."""
     modules = {bare(name): module["num_cells_by_type"] for name, module in stat["modules"].items()}
     cells = total(top, modules)
@@ -83,10 +112,14 @@ def measure(top, stat, shapes, log):
         elif kind in shapes:
             shape = " x ".join(map(str, sorted(shapes[kind], reverse=True)))
             products[shape] = products.get(shape, 0) + count
-        elif kind not in modules:
+        elif kind not in modules and kind != "$mem_v2":
             raise Failure(f"Yosys left a cell that is no gate: {kind}")
     depth = re.findall(r"Longest topological path in \S+ \(length=(\d+)\)", log)
-    return {"ge": round(ge), "flip_flops": flip_flops, "multipliers": products, "depth": int(depth[-1])}
+    in_memories = sum(memory_area(*memory) for memory in memories)
+    return {
+        "ge": round(ge + in_memories), "memory_ge": round(in_memories), "flip_flops": flip_flops, "memory_bits": sum(words * width for words, width, _ in memories), "memories": memories,
+        "multipliers": products, "depth": int(depth[-1]),
+    }
 
 
 def total(top, modules):

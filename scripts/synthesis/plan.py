@@ -5,12 +5,8 @@ import json
 import pathlib
 import subprocess
 
-from . import gates
 from .blocks import Block
 from .tools import OUT, ROOT, Failure, write
-
-# The register of a context, with enable.
-REGISTER = gates.AREAS["DFFE"]
 
 
 class Unit:
@@ -24,9 +20,9 @@ class Unit:
         return [Block(name, (), self.package) for name in self.own["blocks"]]
 
     def sum(self, figures):
-        """Gate equivalents of the blocks and of the contexts' registers, in words."""
+        """Gate equivalents of the blocks and of the contexts, in words."""
         parts = sum(figures[name]["gates"]["ge"] for name in self.own["blocks"])
-        contexts = round(self.own["contexts"] * self.own["context_bits"] * REGISTER)
+        contexts = round(self.own["contexts"] * self.own["context_gates"])
         return (
             f"One of each block has {parts:,} GE; {self.own['contexts']} contexts of {self.own['context_bits']:,} bits have {contexts:,}: "
             f"{parts + contexts:,} GE together. The full unit has {self.full['contexts']} contexts of {self.full['context_bits']:,} bits."

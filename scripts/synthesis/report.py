@@ -4,7 +4,7 @@ from .tools import NEXTPNR, ROOT, YOSYS, Failure, write
 
 DOC = ROOT / "docs/hardware.md"
 BEGIN, END = "<!-- scripts/synth: begin -->", "<!-- scripts/synth: end -->"
-HEADINGS = ["block", "GE", "flip-flops", "multipliers", "depth", "LUTs", "ECP5 FFs", "DSPs", "MHz", "seeds"]
+HEADINGS = ["block", "GE", "flip-flops", "memory bits", "multipliers", "depth", "LUTs", "ECP5 FFs", "DSPs", "MHz", "seeds"]
 
 
 # What a traversal unit has one of each of, and what level of detail adds to it, as (block, how many).
@@ -17,9 +17,9 @@ def row(name, figures):
     gates, ecp5, clocks = figures.get("gates"), figures.get("ecp5"), figures.get("mhz")
     words = [name]
     if gates:
-        words += [f"{gates['ge']:,}", f"{gates['flip_flops']:,}", str(sum(gates["multipliers"].values())), str(gates["depth"])]
+        words += [f"{gates['ge']:,}", f"{gates['flip_flops']:,}", f"{gates.get('memory_bits', 0):,}", str(sum(gates["multipliers"].values())), str(gates["depth"])]
     else:
-        words += ["-"] * 4
+        words += ["-"] * 5
     words += [f"{ecp5['luts']:,}", f"{ecp5['flip_flops']:,}", str(ecp5["dsps"])] if ecp5 else ["-"] * 3
     if clocks == "does not fit":
         return [*words, clocks, "-"]

@@ -12,7 +12,8 @@ mod package;
 pub mod ports;
 mod state;
 
-pub use area::unit_gates;
+pub use area::{context_gates, unit_gates};
+pub use context::Memory;
 pub use state::{Fetch, RayError, State};
 
 use crate::block::{Block, BoxesPerCycle, EdgesPerCycle, Form, MOST_DIVIDE_BITS, Operation, Timing};
@@ -120,6 +121,21 @@ impl Hardware {
     /// A unit for one ray at a time, the default in all else.
     pub const fn one_context() -> Self {
         Self { contexts: 1, ..Self::DEFAULT }
+    }
+
+    /// A unit of so many contexts (1 to 64) that an LFE5U-85F has the multipliers for: one edge, one box and one bit of each division a cycle (`scripts/synth --fpga`).
+    pub const fn fpga(contexts: usize) -> Self {
+        let context_bits = if contexts <= 2 { 1 } else { (contexts - 1).ilog2() + 1 };
+        Self {
+            contexts,
+            context_bits,
+            edges_per_cycle: EdgesPerCycle::One,
+            lod_edges_per_cycle: EdgesPerCycle::One,
+            divide_bits: 1,
+            setup_bits: 1,
+            boxes_per_cycle: BoxesPerCycle::One,
+            ..Self::DEFAULT
+        }
     }
 
     /// Checks every field.

@@ -7,7 +7,7 @@ use super::output::{busy, check_target, open, print_json, print_line, remark, wr
 use super::sweep::{Jobs, ListText, SceneJobs};
 use anyhow::Context;
 use lodray::format::{Job, Scene};
-use lodray::hardware::Hardware;
+use lodray::hardware::{Hardware, context_gates};
 use lodray::method::lod;
 use lodray::plan::{Data, Measure, Narrowest, Part, Plan, RayNeeds, Reach, Saving, Within, savings};
 use lodray::rays::{ModelSpace, RaySource};
@@ -83,6 +83,8 @@ struct UnitFacts {
     blocks: Vec<&'static str>,
     /// Registers of a context, in bits.
     context_bits: u32,
+    /// Gate equivalents of one, with its logic and its memories.
+    context_gates: f64,
 }
 
 impl UnitFacts {
@@ -110,6 +112,7 @@ impl UnitFacts {
             direction_zeros: hardware.direction_zeros,
             blocks: blocks.map(|operation| operation.name()).collect(),
             context_bits: hardware.context_registers(true).kept,
+            context_gates: context_gates(hardware, true),
         }
     }
 }

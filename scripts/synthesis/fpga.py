@@ -1,0 +1,53 @@
+"""The whole traversal unit on a Lattice ECP5: as many contexts as asked for, placed and routed in the harness of the blocks, and written as a bitstream."""
+
+import os
+import subprocess
+
+from . import ecp5, report
+from .blocks import Block
+from .tools import OUT, ROOT, Failure
+
+ECPPACK = "yowasp-ecppack"
+TARGET_MHZ = 80
+# For a netlist of this size the other router takes an hour.
+PLACEMENT = ["--85k", "--package", "CABGA756", "--speed", "6", "--freq", TARGET_MHZ, "--timing-allow-fail", "--lpf-allow-unconstrained", "--router", "router2"]
+LIMIT_S = 4 * 3600
+
+
+def unit(contexts):
+    """The unit with the package of the hardware that is for this FPGA (Hardware::fpga in src/hardware), as cargo writes it."""
+    package = OUT / "fpga" / f"contexts-{contexts}" / "lod_pkg.sv"
+    (ROOT / package).parent.mkdir(parents=True, exist_ok=True)
+    settings = {"LODRAY_FPGA_PACKAGE": str(ROOT / package), "LODRAY_CONTEXTS": str(contexts)}
+    got = subprocess.run(["cargo", "test", "--quiet", "--test", "package"], cwd=ROOT, env={**os.environ, **settings}, capture_output=True, text=True)
+    if got.returncode != 0 or not (ROOT / package).is_file():
+        raise Failure(f"cargo test --test package: {got.stdout[-2000:]}{got.stderr[-2000:]}")
+    return Block("traversal_unit", (), str(package))
+
+
+def run(contexts, seeds, paths, tools):
+    """Synthesises the unit, places and routes it with each seed, and prints what came of it."""
+    block = unit(contexts)
+    size, netlist = ecp5.synthesise(block, tools)
+    print(f"traversal_unit of {contexts} contexts: {size['luts']:,} LUTs, {size['flip_flops']:,} flip-flops, {size['dsps']} multipliers, {size['memories']} block RAMs", flush=True)
+    if not ecp5.fits(size):
+        raise Failure(f"the FPGA has {ecp5.DSP_BLOCKS} multipliers")
+    placed = []
+    for seed in range(1, seeds + 1):
+        made, folder = ecp5.place(block, netlist, seed, tools, PLACEMENT, LIMIT_S, configuration=True)
+        placed.append(made)
+        print(f"seed {seed}: {made['mhz']} MHz, bitstream {pack(folder, tools)}", flush=True)
+    print(f"median {report.median([made['mhz'] for made in placed])} MHz")
+    if paths:
+        for kind, delay, cell in min(placed, key=lambda made: made["mhz"])["path"]:
+            print(f"  {kind:8} {delay:6.2f} ns  {cell}")
+
+
+def pack(folder, tools):
+    """The bitstream of a placed and routed unit, and its size."""
+    bits = folder / "unit.bit"
+    if not (ROOT / bits).is_file():
+        got = subprocess.run([tools.folder / ECPPACK, folder / "unit.config", bits], cwd=ROOT, capture_output=True, text=True)
+        if got.returncode != 0:
+            raise Failure(f"{ECPPACK}: {' '.join(got.stderr.split())[-500:]}")
+    return f"{bits} ({(ROOT / bits).stat().st_size:,} bytes)"
