@@ -130,6 +130,7 @@ impl Hardware {
             contexts,
             context_bits,
             edges_per_cycle: EdgesPerCycle::One,
+            lod_edges_per_cycle: EdgesPerCycle::One,
             divide_bits: 1,
             setup_bits: 1,
             boxes_per_cycle: BoxesPerCycle::One,
