@@ -2,6 +2,7 @@
 
 use crate::port::Rtl;
 use crate::{Compared, compare};
+use lodray::block::EdgesPerCycle;
 use lodray::hardware::Hardware;
 use lodray::hardware::ports::{MemoryAnswer, RayIn, SceneConfig};
 use lodray::mesh::Hierarchy;
@@ -29,8 +30,8 @@ fn the_hit_queue_filled() {
     let h = with_vertices(VertexForm::Exact, stacked());
     let scene = scene_of(&h);
     for contexts in [1, 4] {
-        // Divisions so slow that none but the first ends before all hits are there.
-        let config = Hardware { contexts, divide_bits: 1, ..Hardware::default() };
+        // Tests so fast, and divisions so slow, that none but the first ends before all hits are there.
+        let config = Hardware { contexts, edges_per_cycle: EdgesPerCycle::Three, divide_bits: 1, ..Hardware::default() };
         let mut longest = 0;
         for seed in 0..24 {
             let mut rng = Rng(seed);

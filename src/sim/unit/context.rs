@@ -225,6 +225,10 @@ impl Context {
         if let Some(answer) = arrival {
             let place = answer.tag.get() as usize & 3;
             self.lines[place] = answer.line.map(U::get);
+            if place == 1 {
+                // Inserted vertices of full resolution lie where their line was.
+                self.g.forget();
+            }
             self.waiting &= !(1 << place);
         }
         self.stale = stale;
@@ -311,6 +315,10 @@ impl Context {
         self.depth.set(depth);
         (self.group, self.vertices) = (group, vertices);
         self.e = [e0, e1, e2];
+        if !self.splits.is_empty() {
+            // Where entries have codes the root's are kept in its own.
+            self.entry.set(Entry { e0, e1, e2, ..self.entry.get() });
+        }
         if depth == U::ZERO { self.enter_triangles(false) } else { State::Lod }
     }
 

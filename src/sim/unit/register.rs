@@ -23,6 +23,11 @@ impl<T: Copy + Default> Register<T> {
     pub fn set(&mut self, value: T) {
         self.0 = Some(value);
     }
+
+    /// Something else takes its place.
+    pub fn forget(&mut self) {
+        self.0 = None;
+    }
 }
 
 /// The elastic register of `rtl/pipe_stage.sv`: takes an item when it is empty or its item leaves in the same cycle.

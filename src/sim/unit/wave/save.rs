@@ -24,7 +24,7 @@ const GROUPS: &[(&str, &[Row])] = &[
         &[
             (UNIT, BITS, &["clk_i"]),
             (CONTEXT, NAMES, &["state_q"]),
-            (CONTEXT, DECIMAL, &["entry.kind", "entry.index", "entry.t_near", "tree_q", "level_q", "node_q"]),
+            (CONTEXT, DECIMAL, &["entry.kind", "entry.level", "entry.index", "entry.t_near", "tree_q"]),
             (CONTEXT, DECIMAL, &["lod_q.refine", "lod_q.s0", "lod_q.s1", "lod_q.s2", "u_stack.len_q"]),
             (CONTEXT, BITS, &["u_closest.known_q"]),
             (CONTEXT, HEX, &["u_closest.t_max_q"]),
@@ -61,7 +61,7 @@ const GROUPS: &[(&str, &[Row])] = &[
             (UNIT, BITS, &["u_tessellate.valid_i", "u_tessellate.in_i.compact"]),
             (UNIT, DECIMAL, &["u_tessellate.in_i.grid"]),
             (UNIT, BITS, &["u_tessellate.valid_o"]),
-            (CONTEXT, SIGNED, &["p0_q.x", "p0_q.y", "p0_q.z", "g0_q.x", "g0_q.y", "g0_q.z", "q0_q.x", "q0_q.y", "q0_q.z"]),
+            (CONTEXT, SIGNED, &["p0.x", "p0.y", "p0.z", "g0.x", "g0.y", "g0.z", "q0.x", "q0.y", "q0.z"]),
         ],
     ),
     (

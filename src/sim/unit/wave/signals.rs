@@ -154,11 +154,9 @@ fn context_signals(c: &Context, to: &mut impl Visitor) {
     typed::<Entry>(to, "entry", &Vector::register(c.entry.known()));
     to.signal("tree_q", Vector::register(c.tree.known()));
     to.signal("depth_q", Vector::register(c.depth.known()));
-    to.signal("level_q", Vector::register(c.level.known()));
-    to.signal("node_q", Vector::register(c.node.known()));
     for (name, points) in [("f", c.f), ("p", c.p), ("g", c.g), ("q", c.q)] {
         for k in 0..3 {
-            typed::<Point>(to, &format!("{name}{k}_q"), &Vector::register(points.known().map(|points| points[k])));
+            typed::<Point>(to, &format!("{name}{k}"), &Vector::register(points.known().map(|points| points[k])));
         }
     }
     typed::<lod_test::Out>(to, "lod_q", &Vector::register(c.lod.known()));
