@@ -221,7 +221,14 @@ mod tests {
         ] {
             assert_eq!(found(text), [], "{text}");
         }
-        for text in ["debug_assert!(a < 1)", "match a { 1 => b, _ => c }", "if let 1 = a { b }", "[a; 2]", "f::<{ 1 + 2 }>()", "{ const A: u32 = 1; A }"] {
+        for text in [
+            "debug_assert!(a < 1)",
+            "match a { 1 => b, _ => c }",
+            "if let 1 = a { b }",
+            "[a; 2]",
+            "f::<{ 1 + 2 }>()",
+            "{ const A: u32 = 1; A }",
+        ] {
             assert_eq!(inner(text), [], "{text}");
         }
     }

@@ -72,3 +72,26 @@ fn main() -> Result<()> {
         _ => bail!("usage: mutants list FILE... | mutants write ROOT"),
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn blocks_and_golden_traverser_are_programs_with_all_their_mutants_in_them() {
+        let source = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../src");
+        let mut count = 0;
+        for folder in ["block", "golden"] {
+            for entry in fs::read_dir(source.join(folder)).unwrap() {
+                let path = entry.unwrap().path();
+                if path.is_file() {
+                    let (text, sites) = read(&path).unwrap();
+                    count += sites.len();
+                    let all: Vec<_> = (1..).zip(sites).collect();
+                    syn::parse_file(&rewrite::rewritten(&text, &all)).unwrap_or_else(|error| panic!("{}: {error}", path.display()));
+                }
+            }
+        }
+        assert!(count > 1000, "{count}");
+    }
+}
