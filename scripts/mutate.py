@@ -76,19 +76,36 @@ def sites(text):
     return out
 
 
-def drawn(name, text, seed):
-    """All sites in the order in which they are tried: the rules by turns, in an order and with sites that the seed draws, so that a frequent operator does not push out a rare one."""
-    draw = random.Random(f"{seed} {name}")
-    by_pattern = {}
-    for site in sites(text):
-        old = text[site[1] : site[2]].strip()
-        by_pattern.setdefault((site[0], "" if old.isdigit() else old), []).append(site)
-    groups = sorted(by_pattern.items())
+def by_turns(draw, sites, alike):
+    """All sites in the order in which they are tried: those that are `alike` by turns, in an order and with sites that are drawn, so that a frequent operator does not push out a rare one."""
+    by_kind = {}
+    for site in sites:
+        by_kind.setdefault(alike(site), []).append(site)
+    groups = sorted(by_kind.items())
     draw.shuffle(groups)
     for _, group in groups:
         draw.shuffle(group)
     longest = max((len(group) for _, group in groups), default=0)
     return [group[k] for k in range(longest) for _, group in groups if k < len(group)]
+
+
+def drawn(name, text, seed):
+    """All sites of a module, in the order in which they are tried."""
+
+    def alike(site):
+        old = text[site[1] : site[2]].strip()
+        return (site[0], "" if old.isdigit() else old)
+
+    return by_turns(random.Random(f"{seed} {name}"), sites(text), alike)
+
+
+def reason(mutant, reasons):
+    """Why this mutant may live; None if nothing is known."""
+    return next((r["why"] for r in reasons if r["file"] == mutant["file"] and r["after"] == mutant["after"]), None)
+
+
+def known_reasons():
+    return tomllib.loads(REASONS.read_text())["lives"]
 
 
 def binaries(tests):
@@ -152,7 +169,7 @@ def main():
         sys.exit(f"mutate: no such module in rtl/: {', '.join(unknown)}")
     tops = {p.stem for p in (ROOT / "tests" / "rtl").glob("*.rs")} & set(sources)
     tests = binaries(["rtl", "rtl_axi", "rtl_unit"])
-    reasons = tomllib.loads(REASONS.read_text()).get("lives", []) if REASONS.exists() else []
+    reasons = known_reasons()
 
     # The tests of a file are those of the tops that contain it; what only moves items has tests of its own, and so has what stands outside of the unit.
     own = {name: "queues" for name in ("arbiter", "hit_queue", "pipe_stage", "pipe_skid")}
@@ -194,11 +211,11 @@ def main():
         for lines in pool.map(work, plans):
             for outcome, what, by in lines:
                 totals[outcome] += 1
-                reason = next((r["why"] for r in reasons if r["file"] == what["file"] and r["after"] == what["after"]), None)
-                if outcome == "lives" and reason is None:
+                why = reason(what, reasons)
+                if outcome == "lives" and why is None:
                     unexplained.append(what)
                 if outcome != "lint":
-                    note = f"  [{reason}]" if outcome == "lives" and reason else ""
+                    note = f"  [{why}]" if outcome == "lives" and why else ""
                     print(f"{outcome:7} {what['file']}.sv:{what['line']} ({what['rule']}, {by}): {what['before']}  =>  {what['after']}{note}", flush=True)
     print(f"{totals['killed']} killed, {totals['lives']} live ({len(unexplained)} of them unexplained), {totals['lint']} more stopped by lint, {totals['late']} not done in time")
     if totals["killed"] == 0:

@@ -85,6 +85,16 @@ fn half_way_between_two_levels_by_hand() {
 }
 
 #[test]
+fn an_origin_on_the_surface_is_told() {
+    let (h, lift) = lifted();
+    let exact = Exact::new(&h);
+    let starts = |origin| exact.starts_on_surface(&ray(origin, [0, 0, 1 << 29], Cone::default()));
+    // A corner of one triangle of four, a vertex of three, and beside them.
+    assert!(starts([0; 3]) && starts([1 << 27, 0, lift]));
+    assert!(!starts([0, 0, 1]) && !starts([1 << 27, 0, lift - 1]) && !starts([-1, 0, 0]));
+}
+
+#[test]
 fn coarse_hits_are_mapped_and_halves_go_to_the_centre() {
     let (h, lift) = lifted();
     let exact = Exact::new(&h);

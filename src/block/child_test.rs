@@ -145,3 +145,44 @@ pub fn sort(tests: &child_sort::In) -> Out {
     let sorted = ChildSort::eval(tests);
     Out { count: sorted.count, order: sorted.order, t_near: tests.t_near }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::block::ray_setup::RaySetup;
+    use crate::num::{Direction, Random};
+
+    #[test]
+    fn present_children_that_are_met_come_by_their_distance() {
+        let mut met = [0; 5];
+        for number in 0..2_000 {
+            let mut random = Random::of(5, number);
+            let mut input = In { t_max: RayT::MAX, exponents: [U::new(5); 3], ..In::default() };
+            let corner = [(); 3].map(|()| random.within(8_000));
+            input.origin = Vec3::new(corner[0], corner[1], corner[2]);
+            input.present = [(); 4].map(|()| random.below(4) > 0);
+            for (at, plane) in input.planes.iter_mut().enumerate() {
+                let (upper, step) = (at % 6 >= 3, random.below(64));
+                *plane = U::new(if upper { 64 + step } else { step });
+            }
+            // From outside through the frame, whose steps are 32 codes, or past it.
+            let d = [(); 3].map(|()| random.within(1 << 28));
+            let x: [i64; 3] = std::array::from_fn(|k| ((corner[k] + 2_048 + random.within(2_500)) << 16) - 4 * d[k]);
+            let (origin, direction) = (Point::new(x[0], x[1], x[2]), Direction::new(d[0], d[1], d[2]));
+            input.ray = RaySetup::eval(&ray_setup::In { origin, direction });
+
+            let In { ray, t_max, origin, exponents, planes, .. } = input;
+            let boxes = ChildBoxes::eval(&child_boxes::In { origin, exponents, planes, ..Default::default() }).bounds;
+            let tests = boxes.map(|bounds| BoxTest::eval(&box_test::In { ray, t_max, bounds }));
+            let mut wanted: Vec<usize> = (0..4).filter(|&k| input.present[k] && tests[k].hit).collect();
+            wanted.sort_by_key(|&k| tests[k].t_near);
+            let out = ChildTest::eval(&input);
+            let order: Vec<usize> = out.order.iter().take(out.met() as usize).map(|k| k.get() as usize).collect();
+            assert_eq!(order, wanted, "{number}");
+            let distances: [TNear; 4] = std::array::from_fn(|k| if input.present[k] { tests[k].t_near } else { TNear::ZERO });
+            assert_eq!(out.t_near, distances, "{number}");
+            met[wanted.len()] += 1;
+        }
+        assert!(met.iter().all(|&count| count > 20), "{met:?}");
+    }
+}

@@ -269,6 +269,23 @@ mod tests {
     }
 
     #[test]
+    fn an_edge_is_judged_by_the_nearer_of_its_ends_along_the_ray() {
+        // The corners' distances along the ray are 500, 1000 and 2000, of which each tolerates twice as much; code 160 is a bound of 1024.
+        let place = |x, z| Point::new(10 + x, 20, 30 + z);
+        let ray = Ray { origin: Point::new(10, 20, 30), direction: Direction::new(1 << 28, 0, 1 << 29), cone: cone(0, 2, 0) };
+        let [e0, e1, e2] = [BoundCode::new(160); 3];
+        let corners = In { ray, p0: place(400, 800), p1: place(-400, 2200), p2: place(0, 4000), e0, e1, e2, ..In::default() };
+        let states = |input: &In| {
+            let out = LodTest::eval(input);
+            (out.refine, [out.s0, out.s1, out.s2].map(|s| s.get()))
+        };
+        assert_eq!(states(&corners), (true, [0, 6, 6]));
+        let In { p0, p1, p2, .. } = corners;
+        assert_eq!(states(&In { p0: p1, p1: p2, p2: p0, ..corners }), (true, [6, 6, 0]));
+        assert_eq!(states(&In { p0: p1, ..corners }), (false, [0; 3]));
+    }
+
+    #[test]
     fn behind_the_origin_is_full_detail_and_saturation_is_the_base() {
         assert_eq!(tolerated(&cone(0, 1000, 4), -5 << 30).get(), 0);
         assert_eq!(tolerated(&cone((1 << 53) - 1, 0, 0), -5 << 30), U::MAX);

@@ -191,3 +191,16 @@ pub trait Block {
 fn dot(a: [i64; 3], b: [i64; 3]) -> i64 {
     a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn boxes_a_cycle_are_one_two_or_four() {
+        assert_eq!(
+            [0, 1, 2, 3, 4, 5].map(|count| BoxesPerCycle::new(count).map(BoxesPerCycle::count)),
+            [None, Some(1), Some(2), None, Some(4), None]
+        );
+    }
+}

@@ -135,6 +135,13 @@ mod tests {
     }
 
     #[test]
+    fn margins_by_hand() {
+        // X = 1000, in eighths of a unit: D = 125 has none, and D = 250 one of 8 to (250 / 2 + 1) 8.
+        let v = viewer(1000, 0, 3);
+        assert_eq!([0, 120, 125, 130, 250].map(|h| margin(&v, [0; 3], [5; 3], h)), [None, Some(40), Some(0), Some(40), Some(8)]);
+    }
+
+    #[test]
     fn inserted_vertices_reach_both_ends_and_keep_to_the_grid() {
         let (a, b, q) = ([0, -64, 32], [64, 0, 96], [48, -128, 64]);
         assert_eq!(inserted(a, b, q, 0, 4), [32, -32, 64]);

@@ -213,6 +213,16 @@ mod tests {
     }
 
     #[test]
+    fn the_closest_edge_by_hand() {
+        let at = |x: i64, y: i64| {
+            let [a, b, c] = [A, B, C].map(|p| sub(p, [x, y, 0]));
+            closest_edge([0, 0, 32], a, b, c)
+        };
+        // det = 2^17; weights 5/8, 1/4, 1/8: all may decide. Outside only that whose companions agree: -1/4, 3/4, 1/2; 3/2, -1/4, -1/4; 1/2, 3/4, -1/4.
+        assert_eq!([at(16, 8), at(48, 32), at(-16, -16), at(48, -16)], [Some(1 << 14), Some(1 << 15), Some(3 << 16), Some(1 << 15)]);
+    }
+
+    #[test]
     fn the_origin_in_a_triangle() {
         let at = |x: i64, y: i64, z: i64| [A, B, C].map(|p| sub(p, [x, y, z]));
         let holds = |[a, b, c]: [Vector; 3]| holds_origin(a, b, c);

@@ -61,3 +61,37 @@ impl Ties {
 fn ratio(a: &BigInt, b: &BigInt) -> Option<f64> {
     Some(a.to_f64()? / b.to_f64()?)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn hit(t_num: i128, [v, w]: [i128; 2], det: i128) -> Fractions {
+        Fractions { t_num, weights: [det - v - w, v, w], det }
+    }
+
+    #[test]
+    fn the_closest_of_each_kind_is_kept() {
+        let mut ties = Ties::default();
+        for value in [None, Some(5), Some(0), Some(3), Some(4), Some(0)] {
+            ties.note_edge(value);
+            ties.note_lod(value);
+        }
+        assert_eq!(ties, Ties { edge: Some(3), edge_zeros: 2, lod: Some(0), ..Ties::default() });
+    }
+
+    #[test]
+    fn remainders_and_gaps_by_hand() {
+        let of = |hits: &[Fractions]| Ties::default().with_hits(hits);
+        // 2^31 and 2^32 leave 2 and 4 of 7: in sevenths t, v and w come to 1, 2, 2; to 3, 2, 3; to 3, 3, 2.
+        let sevenths = [(2, [1, 1], 1.0), (1, [1, 5], 2.0), (1, [5, 1], 2.0)];
+        for (t_num, weights, wanted) in sevenths {
+            assert_eq!(of(&[hit(t_num, weights, 7)]), Ties { remainder: Some(wanted / 7.0), ..Ties::default() });
+        }
+        // 2 / 7 and 1 / 3 are 1 / 21 apart, and 1 / 3 and 1 / 5 are 2 / 15.
+        let hits = [hit(2, [1, 1], 7), hit(1, [1, 1], 3), hit(1, [1, 1], 5)];
+        assert_eq!(of(&hits[..2]).t_gap, Some(4_294_967_296.0 / 21.0));
+        assert_eq!(of(&hits[1..]).t_gap, Some(8_589_934_592.0 / 15.0));
+        assert_eq!(of(&hits).t_gap, of(&hits[..2]).t_gap);
+    }
+}
