@@ -25,6 +25,14 @@ class Change:
 
 
 @dataclasses.dataclass(frozen=True)
+class Fragment:
+    """A file of rtl/formal that is set inside a module."""
+
+    file: str
+    inside: str
+
+
+@dataclasses.dataclass(frozen=True)
 class Property:
     """One property. `inside`: the module that the fragment is set into; without it the property is a module of its own."""
 
@@ -36,12 +44,15 @@ class Property:
     mutants: tuple
     module: str = ""  # the property's module, if not of its name
     inside: str = ""
+    also: tuple = ()  # further fragments and the modules that they are set into
     registers: bool = False  # keep the elastic registers; else they are wires
     memory: bool = False  # has one: its state is a record with an array, else one long number
     apart: bool = False  # decide the asserts one by one
     induction: int = 0  # depth; 0: combinational
     reach: int = 8  # cycles in which covers and broken mutants must show
     stubs: tuple = ()  # modules of rtl/formal that take the place of those of rtl/
+    helpers: tuple = ()  # modules of rtl/formal that the property is made with
+    free: tuple = ()  # modules whose outputs become free variables
     cut: tuple = ()  # wires that become free variables
     parameters: tuple = ()
     narrow: tuple = ()  # changes that make a narrower version
@@ -52,6 +63,11 @@ class Property:
     def method(self):
         """How it is proved."""
         return f"induction, depth {self.induction}" if self.induction else "combinational"
+
+    @property
+    def fragments(self):
+        """What is set inside modules."""
+        return ((Fragment(self.file, self.inside),) if self.inside else ()) + self.also
 
     @property
     def top(self):
@@ -69,9 +85,10 @@ def load():
         mutants, narrow = changes("mutant"), changes("narrow")
         if not mutants:
             raise Failure(f"{entry['name']} has no mutant that it rejects")
-        lists = {key: tuple(entry.pop(key, [])) for key in ("stubs", "cut")}
+        lists = {key: tuple(entry.pop(key, [])) for key in ("stubs", "helpers", "free", "cut")}
+        also = tuple(Fragment(**fragment) for fragment in entry.pop("also", []))
         parameters = tuple(sorted(entry.pop("parameters", {}).items()))
-        found.append(Property(mutants=mutants, narrow=narrow, parameters=parameters, **lists, **entry))
+        found.append(Property(mutants=mutants, narrow=narrow, also=also, parameters=parameters, **lists, **entry))
     names = [one.name for one in found]
     if len(set(names)) != len(names):
         raise Failure("two properties have the same name")

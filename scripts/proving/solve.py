@@ -96,14 +96,18 @@ class Solver:
         texts = dict(self.rtl)
         for change in one.narrow + ((mutant,) if mutant else ()):
             texts[change.file] = change.apply(texts[change.file])
-        own = (FORMAL / one.file).read_text(encoding="utf-8")
-        if one.inside:
-            head, end, tail = texts[one.inside].rpartition("\nendmodule")
-            texts[one.inside] = f"{head}\n{own}{end}{tail}"
-        else:
-            texts[one.top] = own
+        if not one.inside:
+            texts[one.top] = (FORMAL / one.file).read_text(encoding="utf-8")
+        for helper in one.helpers:
+            texts[helper] = (FORMAL / f"{helper}.sv").read_text(encoding="utf-8")
         for stub in one.stubs:
             texts[stub] = (FORMAL / f"{stub}_stub.sv").read_text(encoding="utf-8")
+        for module in one.free:
+            # Its ports are all that is needed.
+            texts[module] = texts[module][: texts[module].index("\n);\n") + 4] + "endmodule\n"
+        for fragment in one.fragments:
+            head, end, tail = texts[fragment.inside].rpartition("\nendmodule")
+            texts[fragment.inside] = f"{head}\n{(FORMAL / fragment.file).read_text(encoding='utf-8')}{end}{tail}"
         if not one.registers:
             wire = (FORMAL / "elastic_stub.sv").read_text(encoding="utf-8")
             for register in ("pipe_stage", "pipe_skid"):
@@ -121,9 +125,15 @@ class Solver:
         lines = [
             f"read_verilog -sv -formal -defer {' '.join(files)}",
             f"hierarchy -check -top {one.top}" + "".join(f" -chparam {name} {value}" for name, value in one.parameters),
+            *(f"select -assert-min 1 t:*{module}*\ncutpoint t:*{module}*" for module in one.free),
             "proc",
             "flatten",
+            # What a fragment names of a module inside is there, by that name.
+            "select -assert-none a:hierconn",
             *(f"select -assert-count 1 w:{wire}\ncutpoint w:{wire}" for wire in one.cut),
+            # Of what leads to outputs alone nothing is asked.
+            "delete -output o:*",
+            "opt_clean",
             "memory -nordff -nomap",
             "async2sync",
             "chformal -lower",
