@@ -138,7 +138,7 @@ impl Context {
                     self.setup = *setup;
                     self.closest.clear();
                     self.stack.clear();
-                    self.entry.set(Entry::default());
+                    self.stand_at(Entry::default());
                     self.visits_left.set(scene.visits);
                     self.epoch = Epoch::wrapping(self.epoch.get() + 1);
                     State::Visit
@@ -305,6 +305,13 @@ impl Context {
         }
     }
 
+    /// Another entry: which corners of the triangle that was read last are its own is the entry's to say, so that one is none any more.
+    fn stand_at(&mut self, entry: Entry) {
+        self.entry.set(entry);
+        self.f.forget();
+        self.p.forget();
+    }
+
     fn enter_tree(&mut self) -> State {
         self.level.set(U::ZERO);
         self.node.set(U::ZERO);
@@ -327,7 +334,7 @@ impl Context {
         match count {
             0 => State::Pop,
             1 => {
-                self.entry.set(self.child_entry(0));
+                self.stand_at(self.child_entry(0));
                 State::Visit
             }
             _ => {
@@ -344,7 +351,7 @@ impl Context {
             None => State::Done,
             Some(top) if is_beyond(top.t_near, self.closest.t_max.get()) => State::Pop,
             Some(top) => {
-                self.entry.set(top);
+                self.stand_at(top);
                 State::Visit
             }
         }
