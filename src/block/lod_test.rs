@@ -220,7 +220,7 @@ mod tests {
     #[test]
     fn an_edge_is_judged_by_the_nearer_of_its_ends_along_the_ray() {
         // The corners' distances along the ray are 500, 1000 and 2000, of which each tolerates twice as much; code 160 is a bound of 1024.
-        let place = |x, z| Point::new(10 + x, 20, 30 + z);
+        let place = |x: i64, z: i64| Point::new(10 + x, 20, 30 + z);
         let ray = Ray { origin: Point::new(10, 20, 30), direction: Direction::new(1 << 28, 0, 1 << 29), cone: cone(0, 2, 0) };
         let [e0, e1, e2] = [BoundCode::new(160); 3];
         let corners = In { ray, p0: place(400, 800), p1: place(-400, 2200), p2: place(0, 4000), e0, e1, e2, ..In::default() };
