@@ -34,10 +34,16 @@
   lod_pkg::scene_config_t scene_q;
   always_ff @(posedge clk_i) scene_q <= scene_i;
   always_comb assume (idle_o || scene_i == scene_q);
+  // Before the first reset nothing comes: the rule of `split_triangles`, which has no reset, is not about that.
+  always_comb assume (live || (!morph_grant_i && !morph_valid_i && !line_valid_i));
+
+  // What the stack read last is its top again before anything is popped.
+  (* hierconn *) logic \u_stack.stale_q ;
 
   always_comb begin
     if (live) begin
       assert (state_q <= lod_pkg::DONE);
+      assert (!\u_stack.stale_q  || state_q == lod_pkg::PUSH || state_q == lod_pkg::VISIT || state_q == lod_pkg::DONE || state_q == lod_pkg::IDLE);
       // Who waits for a block's result has its one operation there, and nobody else has.
       assert (inside == {state_q == lod_pkg::SETUP_WAIT, state_q == lod_pkg::CHILD_WAIT, state_q == lod_pkg::LOD_WAIT, state_q == lod_pkg::MORPH_WAIT, state_q == lod_pkg::MAP_WAIT});
       // Triangles: a node's one or its children's four are sent, in turn, or still to be sent; those sent have a verdict or are waited for.
