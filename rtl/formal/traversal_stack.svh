@@ -22,7 +22,7 @@
     // Before the first reset nothing is known, and the block's own assertions need not hold.
     assume (live_q || !rst_ni);
     if (live_q) begin
-      assert (empty_o == (depth_q == '0));
+      assert (empty_o == (depth_q == '0) && full_o == (depth_q == LEN_W'(DEPTH)));
       assert (depth_q != place + LEN_W'(1) || stale_q || entry_o == watched_q);
       // Hold the induction together.
       assert (len_q == depth_q && depth_q <= LEN_W'(DEPTH));
