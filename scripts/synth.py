@@ -60,6 +60,8 @@ def parse():
     parser.add_argument("--fpga", type=int, nargs="?", const=2, metavar="CONTEXTS", help="the whole unit for an LFE5U-85F, with that many contexts (default 2): placed, routed, and as a bitstream")
     parser.add_argument("--doc", action="store_true", help="write the table into docs/hardware.md")
     options = parser.parse_args()
+    if options.fpga is not None and not 1 <= options.fpga <= 64:
+        parser.error(f"--fpga must be 1 to 64 contexts, but is {options.fpga}")
     if options.seeds < 1 or options.jobs < 1:
         parser.error("--seeds and --jobs must be at least 1")
     if options.doc and (options.block or options.no_place or options.no_gates):
