@@ -102,7 +102,7 @@ def pixels(png):
 
 
 class Gates:
-    """Units in gates: their blocks as synthesis has them, and the registers of their contexts."""
+    """Units in gates: their blocks as synthesis has them, and their contexts by the model of their area."""
 
     def __init__(self, options):
         self.options = types.SimpleNamespace(seeds=1, no_place=options.no_place, no_gates=False, jobs=options.jobs)
@@ -123,11 +123,11 @@ class Gates:
         if failures:
             raise SystemExit(f"scripts/leaving-out: {failures}")
         gates = [of["gates"] for of in figures.values()]
-        registers = facts["contexts"] * facts["context_bits"]
+        contexts = facts["contexts"]
         return {
             **facts,
-            "ge": sum(of["ge"] for of in gates) + registers * synthesis.REGISTER,
-            "flip_flops": sum(of["flip_flops"] for of in gates) + registers,
+            "ge": sum(of["ge"] for of in gates) + contexts * facts["context_gates"],
+            "flip_flops": sum(of["flip_flops"] for of in gates) + contexts * facts["context_bits"],
             "multipliers": sum(sum(of["multipliers"].values()) for of in gates),
             "mhz": min([(max(of["mhz"]), name) for name, of in figures.items() if isinstance(of.get("mhz"), list)], default=None),
         }
@@ -228,7 +228,7 @@ def row(scene, within, gates):
 
 def table(rows):
     """Rows as Markdown."""
-    heads = ["scene", "levels", "stack", "index", "contexts", "edges", "of LOD tests", "boxes", "bits of divisions", "bits of a context", "GE with the machine's contexts and edges", "less", "GE", "less", "flip-flops", "multipliers", "MHz"]
+    heads = ["scene", "levels", "stack", "index", "contexts", "edges", "of LOD tests", "boxes", "bits of divisions", "bits of a context", "GE with the machine's contexts and edges", "less", "GE", "less", "flip-flops and memory bits", "multipliers", "MHz"]
     heads += ["bytes a finest triangle", "time", "energy", "host rays/s"]
     full = next((of["full"] for of in rows if "full" in of), None)
     lines = [f"| {' | '.join(heads)} |", "| --- |" + " ---: |" * (len(heads) - 1)]
