@@ -182,3 +182,143 @@ pub fn divide(input: &hit_divide::In, low: U<START_BITS>) -> RayT {
     let [whole, fraction] = [whole as u64, fraction as u64];
     RayT::new(whole << 32 | fraction)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::block::tri_test::TriTest;
+    use crate::num::{Random, Vec3};
+    use num_bigint::BigUint;
+    use proptest::prelude::*;
+
+    fn point(random: &mut Random, most: u64) -> Point {
+        let [x, y, z] = [(); 3].map(|()| random.within(most));
+        Point::new(x, y, z)
+    }
+
+    fn any_direction(random: &mut Random) -> Direction {
+        let [x, y, z] = [(); 3].map(|()| random.within(1 << 29) * i64::from(random.below(5) > 0));
+        Direction::new(x, y, z)
+    }
+
+    /// Coordinates in steps of 2^-31.
+    fn fine(start: &Start) -> [i128; 3] {
+        let whole = start.point.get();
+        std::array::from_fn(|k| (i128::from(whole[k]) << START_BITS) + i128::from(start.fraction[k].get()))
+    }
+
+    #[test]
+    fn starts_are_exact_and_inside() {
+        for number in 0..20_000 {
+            let mut random = Random::of(1, number);
+            let corners = [(); 3].map(|()| point(&mut random, (1 << 31) - 1));
+            let b1 = random.below(BARY_ONE + 1) >> random.below(32);
+            let b2 = random.below(BARY_ONE - b1 + 1) >> random.below(32);
+            let mut weights = [BARY_ONE - b1 - b2, b1, b2];
+            weights.rotate_left((number % 3) as usize);
+            let at = fine(&start(&corners, weights.map(Bary::new)));
+            // None is 0, the largest gives what they lack.
+            let raised = weights.map(|b| b.max(1));
+            let most = (0..3).rev().max_by_key(|&k| weights[k]).unwrap();
+            let exact: [i128; 3] = std::array::from_fn(|axis| {
+                let weight = |k: usize| i128::from(raised[k]) - i128::from(raised.iter().sum::<u64>() - BARY_ONE) * i128::from(k == most);
+                (0..3).map(|k| weight(k) * i128::from(corners[k].get()[axis])).sum()
+            });
+            assert_eq!(at, exact, "{weights:?}");
+        }
+    }
+
+    #[test]
+    fn constants_are_those_of_the_exact_start() {
+        for number in 0..20_000 {
+            let mut random = Random::of(2, number);
+            let from = Start {
+                point: point(&mut random, (1 << 31) - 2),
+                fraction: [(); 3].map(|()| U::new(random.below(1 << 31) * random.below(2))),
+            };
+            let d = any_direction(&mut random);
+            let out = Leaving::new(&from, d).setup(from.point, d);
+            let (x, d) = (fine(&from), d.get());
+            // Mirrored.
+            let m: [i128; 3] = std::array::from_fn(|k| if d[k] < 0 { -x[k] } else { x[k] });
+            let size = |k: usize| i128::from(d[k].abs());
+            let axes = [out.x, out.y, out.z];
+            for k in 0..3 {
+                let ceil = -((-m[k]) >> (START_BITS + BOX_SHIFT));
+                assert_eq!((i128::from(axes[k].ceil.get()), axes[k].mirror), (ceil, d[k] < 0), "{from:?} {d:?}");
+            }
+            let moment = [(1, 2), (2, 0), (0, 1)].map(|(i, j)| (m[i] * size(j) - m[j] * size(i)) >> START_BITS);
+            assert_eq!(out.moment.get().map(i128::from), moment, "{from:?} {d:?}");
+        }
+    }
+
+    #[test]
+    fn from_a_whole_point_it_is_the_block() {
+        let mut hits = 0;
+        for number in 0..20_000 {
+            let mut random = Random::of(3, number);
+            let most = 1 << random.below(31);
+            let [origin, p0, p1, p2] = [(); 4].map(|()| point(&mut random, most));
+            let input = tri_test::In { origin, direction: any_direction(&mut random), p0, p1, p2 };
+            let from = Start { point: origin, fraction: Default::default() };
+            let leaving = Leaving::new(&from, input.direction);
+            assert_eq!(leaving.test(&input), (TriTest::eval(&input), Below::default()));
+            let setup = RaySetup::eval(&ray_setup::In { origin, direction: input.direction });
+            assert_eq!(leaving.setup(origin, input.direction), setup);
+            hits += u64::from(TriTest::eval(&input).hit);
+        }
+        assert!(hits > 500, "{hits}");
+    }
+
+    #[test]
+    fn what_a_ray_leaves_is_not_met_and_what_lies_ahead_is() {
+        let triangle = |z: i64| [[0, 0, z], [64, 0, z], [0, 64, z + 1]].map(|[x, y, z]: [i64; 3]| Point::new(x, y, z));
+        let own = triangle(0);
+        let third = Bary::new(BARY_ONE / 3);
+        let from = start(&own, [Bary::new(BARY_ONE - 2 * (BARY_ONE / 3)), third, third]);
+        let met = |direction: Direction, [p0, p1, p2]: [Point; 3]| {
+            Leaving::new(&from, direction).test(&tri_test::In { origin: from.point, direction, p0, p1, p2 }).0.hit
+        };
+        let (up, down) = (Direction::new(3, 5, 1 << 29), Direction::new(3, 5, -(1 << 29)));
+        assert_eq!(
+            [side(&own, up), side(&own, down), side(&own, Direction::new(1, 0, 0))],
+            [Ordering::Greater, Ordering::Less, Ordering::Equal]
+        );
+        assert!(!met(up, own) && !met(down, own));
+        // The next sheet is one unit away: the rounded start lies on its other side or on it, the exact one does not.
+        assert!(met(up, triangle(1)) && !met(down, triangle(1)));
+        assert!(met(down, triangle(-1)) && !met(up, triangle(-1)));
+    }
+
+    proptest! {
+        #[test]
+        fn divisions_agree_with_big_integers(n in 0u128..1 << 99, low in 0u64..1 << 31, d in 1u128..1 << 96, sn in 0u32..99, sd in 0u32..96) {
+            let (n, d) = (n >> sn, (d >> sd).max(1));
+            let exact = ((BigUint::from(n) << START_BITS) + low) * 2u32 / BigUint::from(d);
+            let wanted = exact.min(BigUint::from(RayT::MAX.get()));
+            let input = hit_divide::In { numerator: WU::new(n), denominator: WU::new(d) };
+            prop_assert_eq!(BigUint::from(divide(&input, U::new(low)).get()), wanted);
+        }
+    }
+
+    /// The largest coordinates, so that every width is used.
+    #[test]
+    fn nothing_overflows() {
+        let m = (1i64 << 31) - 1;
+        let ends = [-m, m];
+        for corner in 0..8u64 {
+            for d in [[1, 1, 1], [1, -1, 1], [-1, 1, 1], [1, 1, -1]] {
+                let direction = Vec3::new(d[0] * 619_925_131, d[1] * 619_925_131, d[2] * 619_925_131);
+                let p = std::array::from_fn(|k| ends[(corner >> k & 1) as usize]);
+                let [p0, p1, p2] = [[m, -m, -m], [-m, m, -m], [-m, -m, m]].map(|[x, y, z]| Point::new(x, y, z));
+                let from = Start { point: Point::new(p[0], p[1], p[2]), fraction: [U::new((1 << 31) - 1); 3] };
+                let leaving = Leaving::new(&from, direction);
+                let input = tri_test::In { origin: from.point, direction, p0, p1, p2 };
+                let whole = TriTest::eval(&input);
+                let (out, _) = leaving.test(&input);
+                assert!(!out.hit || out.det == whole.det || !whole.hit);
+                leaving.setup(from.point, direction);
+            }
+        }
+    }
+}
