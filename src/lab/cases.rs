@@ -1,8 +1,7 @@
 //! The named cases: stiff models, stiff rays, stiff cones.
 
 use super::model::Model;
-use super::paths::{BOUNCES, Bounce};
-use super::rays::{Aim, Cones, PIXEL, Views};
+use super::rays::{Aim, BOUNCES, Bounce, Cones, PIXEL, Views};
 use super::shapes::{Base, Place, bipyramid, bumpy, cube, fan, flat, octahedron, sheet, stretched, surface, tetrahedron, together};
 use crate::format::SceneError;
 use crate::mesh::procedural::{self, Options, Scene};

@@ -22,6 +22,5 @@ pub use goal::{GOALS, Goal};
 pub use hunt::Hunt;
 pub use judge::{Judge, Tally, WIDTHS_CHECKED};
 pub use model::Model;
-pub use paths::{BOUNCES, Bounce};
-pub use rays::{Aim, Cones, PIXEL, Shot, Views, shot};
+pub use rays::{Aim, BOUNCES, Bounce, Cones, PIXEL, Shot, Views, shot};
 pub use suite::{Report, Row};

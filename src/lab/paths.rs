@@ -6,7 +6,7 @@
 
 use super::judge::{Judge, Tally, guarded, plain};
 use super::model::Model;
-use super::rays::{Cones, Shot, legal, pick, scaled, some_cone};
+use super::rays::{Bounce, Cones, Shot, legal, pick, scaled, some_cone};
 use crate::golden::Leg;
 use crate::lab::crack::{self, Closedness};
 use crate::mesh::lattice;
@@ -14,30 +14,10 @@ use crate::method::leave::side;
 use crate::method::{ClosestHit, Crossings, Departure};
 use crate::num::{Direction, Point, Random, Ray};
 use crate::step::NoSteps;
-use serde::Serialize;
 use std::cmp::Ordering;
 
 /// The most rays of a path, its first included.
 pub const DEPTH: usize = 8;
-
-/// How the rays of a path go on from a hit.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
-#[serde(rename_all = "snake_case")]
-pub enum Bounce {
-    /// To the side that the ray came from, anywhere.
-    Diffuse,
-    /// As a mirror would.
-    Mirror,
-    /// In the plane of the triangle, as nearly as a direction can be, or a unit of direction off.
-    Grazing,
-    /// At a vertex, or a midpoint of an edge, of the model: often one of the triangle's own neighbours.
-    Vertex,
-    /// Through the surface: on the same way, to the other side.
-    Through,
-}
-
-/// All of them.
-pub const BOUNCES: [Bounce; 5] = [Bounce::Diffuse, Bounce::Mirror, Bounce::Grazing, Bounce::Vertex, Bounce::Through];
 
 /// Exact, as far as `f64` goes, normal of a triangle.
 fn normal(corners: &[Point; 3]) -> [f64; 3] {

@@ -1,7 +1,6 @@
 //! Families of rays: where a ray of the lab starts and what it is aimed at. The n-th ray of a seed is the same on any number of threads.
 
 use super::model::Model;
-use super::paths::Bounce;
 use crate::lab::crack::{self, TARGETS};
 use crate::mesh::lattice;
 use crate::num::{BOX_SHIFT, Cone, DIRECTION_SCALE, Point, Random, Ray, Vec3};
@@ -31,6 +30,25 @@ pub enum Aim {
     /// A path: what leaves, one after the other, where the first of these families hits.
     Leaving(&'static [Aim], &'static [Bounce]),
 }
+
+/// How the rays of a path go on from a hit.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Bounce {
+    /// To the side that the ray came from, anywhere.
+    Diffuse,
+    /// As a mirror would.
+    Mirror,
+    /// In the plane of the triangle, as nearly as a direction can be, or a unit of direction off.
+    Grazing,
+    /// At a vertex, or a midpoint of an edge, of the model: often one of the triangle's own neighbours.
+    Vertex,
+    /// Through the surface: on the same way, to the other side.
+    Through,
+}
+
+/// All of them.
+pub const BOUNCES: [Bounce; 5] = [Bounce::Diffuse, Bounce::Mirror, Bounce::Grazing, Bounce::Vertex, Bounce::Through];
 
 /// Cones of the rays that no camera makes.
 #[derive(Clone, Copy, Debug)]
