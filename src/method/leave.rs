@@ -309,7 +309,7 @@ mod tests {
         for corner in 0..8u64 {
             for d in [[1, 1, 1], [1, -1, 1], [-1, 1, 1], [1, 1, -1]] {
                 let direction = Vec3::new(d[0] * 619_925_131, d[1] * 619_925_131, d[2] * 619_925_131);
-                let p = std::array::from_fn(|k| ends[(corner >> k & 1) as usize]);
+                let p: [i64; 3] = std::array::from_fn(|k| ends[(corner >> k & 1) as usize]);
                 let [p0, p1, p2] = [[m, -m, -m], [-m, m, -m], [-m, -m, m]].map(|[x, y, z]| Point::new(x, y, z));
                 let from = Start { point: Point::new(p[0], p[1], p[2]), fraction: [U::new((1 << 31) - 1); 3] };
                 let leaving = Leaving::new(&from, direction);
