@@ -159,7 +159,8 @@ impl Judge<'_> {
             rays.iter().for_each(|ray| self.lengthen(&mut own, ray));
             &own
         });
-        unbalanced &= !self.golden.starts_on_another(legs, ray);
+        // Asked only where it matters: it looks at the whole surface.
+        unbalanced = unbalanced && !self.golden.starts_on_another(legs, ray);
         tally.compared = 1;
         let wanted = self.golden.crossings_after(legs, ray);
         for (found, wanted) in [(seen.front, wanted.front), (seen.back, wanted.back)] {
