@@ -79,7 +79,7 @@ fn onward(model: &Model, bounce: Bounce, before: Direction, from: &Departure, ra
 }
 
 impl Judge<'_> {
-    /// Shoots ray `number` and those that leave where it hits, one after the other, at most [`DEPTH`] in all.
+    /// Shoots ray `number` and those that leave where it hits, one after the other, at most eight in all.
     pub fn follow(&mut self, number: u64, shot: &Shot, bounces: &[Bounce], cones: Cones, random: &mut Random) -> Tally {
         let first = self.shoot(number, shot);
         first.with(&guarded(number, || self.onwards(number, shot, bounces, cones, random)))
