@@ -3,7 +3,7 @@
 /// The end of the triangle test: from u, v, w with their tie signs and t_num to hit, face and positive numbers.
 ///
 /// An edge function counts as positive if it is above 0, or if it is 0 and its tie sign says so. Hit iff all three agree, det = u + v + w != 0 and
-/// t_num / det >= 0. Where the signs agree no two of u, v, w have opposite signs, so det = 0 iff all three are 0, and all sums stay below 2^96;
+/// t_num / det > 0. Where the signs agree no two of u, v, w have opposite signs, so det = 0 iff all three are 0, and all sums stay below 2^96;
 /// where they do not, sums may wrap: it is a miss. Its second register is a `pipe_skid`. Latency: lod_pkg::TRI_DECIDE_LATENCY = 3; interval 1.
 module tri_decide #(
   parameter int unsigned TAG_W = 8
@@ -59,7 +59,7 @@ module tri_decide #(
   logic              agree, ahead, hit;
   logic [EDGE_W-1:0] det;
   assign agree = positive_u_q == positive_v_q && positive_u_q == positive_w_q;
-  assign ahead = !some_t_q || t_num_q[T_W-1] != positive_u_q;
+  assign ahead = some_t_q && t_num_q[T_W-1] != positive_u_q;
   assign hit   = agree && ahead && (some_u_q || some_v_q || some_w_q);
   assign det   = uv_q + w_q;
 

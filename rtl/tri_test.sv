@@ -3,8 +3,9 @@
 /// Ray against one triangle: exact Plücker test with a tie rule (paper appendix A). Twin of src/block/tri_test.rs.
 ///
 /// With a, b, c relative to the origin: u = d.(b x c), v = d.(c x a), w = d.(a x b), det = u + v + w, t_num = a.(b x c), all exact.
-/// Sign of an edge function d.(p x q): its own; if 0, that of the first non-zero component of p x q; if p x q = 0, that of the first non-zero
-/// component of q - p; if p = q, positive. Hit iff the three signs agree, det != 0 and t_num / det >= 0; front face iff det < 0.
+/// Sign of an edge function d.(p x q): its own; if 0, that of the first non-zero component of p x q; if p x q = 0, either
+/// (that of q - p, or positive): t_num is then 0.
+/// Hit iff the three signs agree, det != 0 and t_num / det > 0; front face iff det < 0.
 /// Legal: |v| < 2^31 for points and origin, |d| <= 2^30 and each |d_i| < 2^30. On a miss all numbers are 0. On a hit they are taken with det > 0.
 ///
 /// Low bits that are always 0 are left out on the way (COORDINATE_ZEROS, DIRECTION_ZEROS); 168 and 56 multipliers without them.

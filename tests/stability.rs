@@ -5,7 +5,7 @@ use lodray::golden::Exact;
 use lodray::lab::crack::Closedness;
 use lodray::lab::growth::growth;
 use lodray::lab::hunt::hunt;
-use lodray::lab::{CASES, Case, FILE_CASES, Found, GOALS, Goal, Judge, Model, Scale, Shot, Tally, suite};
+use lodray::lab::{Aim, CASES, Case, FILE_CASES, Found, GOALS, Goal, Judge, Model, Scale, Shot, Tally, suite};
 use lodray::mesh::lattice;
 use lodray::num::{MAX_LEVELS, VertexForm};
 use lodray_test_support::models::{ball, scene_of, with_vertices};
@@ -34,7 +34,9 @@ fn every_case_is_sound() {
         let row = suite::run(case, Scale::Small, share, 1, &|_| ()).expect("a case");
         println!("{:<14} {:?}", case.name, row.tally);
         sound(case.name, &row.tally);
-        assert_eq!(row.tally.rays, share);
+        // A path has a ray at least.
+        let paths = case.aims.iter().any(|aim| matches!(aim, Aim::Leaving(..)));
+        assert!(row.tally.rays == share || paths && row.tally.rays > share + share / 2, "{}: {} rays", case.name, row.tally.rays);
         assert!(row.tally.crossing > share / 10, "{}: rays do not reach the surface", case.name);
         assert!(row.tally.compared >= if case.every == 1 { share / 2 } else { share / 1000 }, "{}: too few compared", case.name);
         if case.every > 1 {

@@ -13,6 +13,7 @@ use lodray::bvh::BvhChild32;
 use lodray::format::{BvhChild, BvhNode, ChildRef, Displacements, L0Record, Line, SiblingGroup, SixNode, TreeLines, VertexData};
 use lodray::mesh::{Hierarchy, lattice};
 use lodray::method::bvh::{self, BvhTraverser, FullBvh, FullNodes, FullOptions, LeafLayout, NodeBoxes};
+use lodray::method::leave::Below;
 use lodray::method::lod::{self, LodImage, LodTraverser};
 use lodray::method::{ClosestHit, Crossings, HitSink, TriangleId};
 use lodray::num::{BoundCode, LINE_BYTES, Point, Ray, U, VertexForm, Wire};
@@ -138,7 +139,7 @@ impl<'a, H: HitSink> Walk<'a, H> {
         let test = TriTest::eval(&tri_test::In { origin: self.ray.origin, direction: self.ray.direction, p0, p1, p2 });
         self.counts.triangles += 1;
         if test.hit {
-            self.sink.offer(id, &corners, &test);
+            self.sink.offer(id, &corners, &test, &Below::default());
         }
     }
 

@@ -34,14 +34,15 @@ fn expected(x: [i64; 3], d: [i64; 3], p: [[i64; 3]; 3]) -> Option<(bool, [BigInt
     let sign = |p: &Big, q: &Big| match dot(&perturbed, &cross(p, q)).sign() {
         Sign::Plus => true,
         Sign::Minus => false,
-        Sign::NoSign => (0..3).map(|k| &q[k] - &p[k]).find(|v| v.sign() != Sign::NoSign).is_none_or(|v| v.sign() == Sign::Plus),
+        // The origin is on the edge's line: nothing is met ahead.
+        Sign::NoSign => true,
     };
     let signs = [sign(&b, &c), sign(&c, &a), sign(&a, &b)];
     let d = big(d);
     let (v, w) = (dot(&d, &cross(&c, &a)), dot(&d, &cross(&a, &b)));
     let det = dot(&d, &cross(&b, &c)) + &v + &w;
     let t_num = dot(&a, &cross(&b, &c));
-    if signs != [signs[0]; 3] || det.sign() == Sign::NoSign || (&t_num * &det).sign() == Sign::Minus {
+    if signs != [signs[0]; 3] || det.sign() == Sign::NoSign || (&t_num * &det).sign() != Sign::Plus {
         return None;
     }
     let front = det.sign() == Sign::Minus;

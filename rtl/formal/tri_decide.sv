@@ -31,7 +31,7 @@ module tri_decide_exact (
   assign {u, v, w, t_num} = {WIDE'(u_i), WIDE'(v_i), WIDE'(w_i), WIDE'(t_num_i)};
   assign det      = u + v + w;
   assign positive = {u > 0 || (u == 0 && tie_i[2]), v > 0 || (v == 0 && tie_i[1]), w > 0 || (w == 0 && tie_i[0])};
-  assign hit      = (positive == '0 || positive == '1) && det != 0 && (t_num == 0 || (t_num > 0) == (det > 0));
+  assign hit      = (positive == '0 || positive == '1) && det != 0 && t_num != 0 && (t_num > 0) == (det > 0);
 
   localparam logic signed [WIDE-1:0] EDGE_LIMIT = WIDE'(1) <<< (EDGE_W - 1);
   localparam logic signed [WIDE-1:0] T_LIMIT = WIDE'(1) <<< (T_W - 1);

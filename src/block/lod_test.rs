@@ -110,6 +110,15 @@ impl LodTest {
     /// And with three.
     pub const THREE_EDGES: Timing = three_edges(&Form::FULL);
 
+    /// The outcome where another ray may decide about each edge: `viewers[k]` about edge k (paper section 3.8).
+    #[inline]
+    pub fn by(viewers: [&Ray; 3], input: &In) -> Out {
+        let &In { p0, p1, p2, e0, e1, e2, .. } = input;
+        let edge = |ray: &Ray, code, a, b| limits(&In { ray: *ray, ..*input }, code, along(ray, a), along(ray, b));
+        let [v0, v1, v2] = viewers;
+        decided([edge(v0, e0, p1, p2), edge(v1, e1, p2, p0), edge(v2, e2, p0, p1)])
+    }
+
     /// The outcome for a ray that tolerates nothing, wherever it and the triangle are: each edge is open or has no bound.
     #[inline(always)]
     pub fn of_full_detail(codes: [BoundCode; 3], scale: BoundScale) -> Out {

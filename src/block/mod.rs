@@ -188,7 +188,7 @@ pub trait Block {
 
 /// Dot product of two integer vectors; the caller proves that it and its partial sums fit 64 bits.
 #[inline(always)]
-fn dot(a: [i64; 3], b: [i64; 3]) -> i64 {
+pub(crate) fn dot(a: [i64; 3], b: [i64; 3]) -> i64 {
     a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 }
 

@@ -2,8 +2,8 @@
 //!
 //! With a, b, c relative to the origin: u = d.(b x c), v = d.(c x a), w = d.(a x b), det = u + v + w, t_num = a.(b x c), all exact.
 //! Sign of an edge function d.(p x q): its own; if 0, that of the first non-zero component of p x q (the direction perturbed by (e, e^2, e^3));
-//! if p x q = 0, that of the first non-zero component of q - p; if p = q, positive. Hit iff the three signs agree, det != 0 and
-//! t_num / det >= 0; both faces are hit, the front one if det < 0. Half edges have parallel normals and directions, so both sides of a T-junction and of an edge
+//! if p x q = 0, either: the origin is then in the triangle's plane, or the triangle is flat, and t_num = 0. (The RTL takes the sign of q - p there, which decides nothing.) Hit iff the three signs agree, det != 0 and
+//! t_num / det > 0; both faces are hit, the front one if det < 0. Half edges have parallel normals and directions, so both sides of a T-junction and of an edge
 //! decide alike: a closed surface is crossed exactly once.
 //! Legal: |v| < 2^31 for points and origin, |d| <= 2^30 and each |d_i| < 2^30. On a miss all numbers are 0. On a hit they are taken with det > 0.
 
@@ -64,27 +64,27 @@ impl TriTest {
 
 /// p x d: components below 2^62.8 (Lagrange). The edge function d.(p x q) is p.(q x d), of 64 x 64-bit products where p x q takes wider ones.
 #[inline(always)]
-fn moment(p: [i64; 3], d: [i64; 3]) -> [i64; 3] {
+pub(crate) fn moment(p: [i64; 3], d: [i64; 3]) -> [i64; 3] {
     [p[1] * d[2] - p[2] * d[1], p[2] * d[0] - p[0] * d[2], p[0] * d[1] - p[1] * d[0]]
 }
 
 /// p.m: partial sums below 2^95.6 (32.8 and 62.8 bits; Cauchy-Schwarz).
 #[inline(always)]
-fn dot_moment(p: [i64; 3], m: [i64; 3]) -> i128 {
+pub(crate) fn dot_moment(p: [i64; 3], m: [i64; 3]) -> i128 {
     let wide = |a: i64, b: i64| i128::from(a) * i128::from(b);
     wide(p[0], m[0]) + wide(p[1], m[1]) + wide(p[2], m[2])
 }
 
 /// p x q: components below 2 * 2^64, and below 2^65.6 together.
 #[inline(always)]
-fn cross(p: [i64; 3], q: [i64; 3]) -> [i128; 3] {
+pub(crate) fn cross(p: [i64; 3], q: [i64; 3]) -> [i128; 3] {
     let wide = |a: i64, b: i64| i128::from(a) * i128::from(b);
     [wide(p[1], q[2]) - wide(p[2], q[1]), wide(p[2], q[0]) - wide(p[0], q[2]), wide(p[0], q[1]) - wide(p[1], q[0])]
 }
 
 /// Partial sums below 2^98.4 for a point (32.8 bits): Cauchy-Schwarz.
 #[inline(always)]
-fn dot_wide(n: [i128; 3], d: [i64; 3]) -> i128 {
+pub(crate) fn dot_wide(n: [i128; 3], d: [i64; 3]) -> i128 {
     n[0] * i128::from(d[0]) + n[1] * i128::from(d[1]) + n[2] * i128::from(d[2])
 }
 
@@ -99,8 +99,7 @@ fn is_positive(value: i128, p: [i64; 3], q: [i64; 3]) -> bool {
 
 #[cold]
 fn tie_is_positive(p: [i64; 3], q: [i64; 3]) -> bool {
-    let along = [0, 1, 2].map(|k| i128::from(q[k] - p[k]));
-    cross(p, q).into_iter().chain(along).find(|&c| c != 0).is_none_or(|c| c > 0)
+    cross(p, q).into_iter().find(|&c| c != 0).is_none_or(|c| c > 0)
 }
 
 /// `edge_function`: the cross product with d and the sign of q - p beside it, the dot product with the tie's sign beside it.
@@ -204,7 +203,7 @@ impl Block for TriTest {
         let t_num = dot_wide(cross(b, c), a);
         let (v, w, det, t_num) = if positive { (v, w, det, t_num) } else { (-v, -w, -det, -t_num) };
         // The signs agree, so det is not negative here.
-        if det == 0 || t_num < 0 {
+        if det == 0 || t_num <= 0 {
             return Out::default();
         }
         Out {
@@ -251,10 +250,15 @@ mod tests {
     }
 
     #[test]
-    fn an_origin_on_an_edge_belongs_to_one_of_its_two_triangles() {
-        let (a, b) = ([0, 0, 0], [32, 0, 0]);
-        let hits = [shoot([8, 0, 0], DOWN, [a, b, [0, 32, 0]]).hit, shoot([8, 0, 0], DOWN, [b, a, [0, -32, 0]]).hit];
-        assert_eq!(hits.iter().filter(|&&h| h).count(), 1);
+    fn what_an_origin_lies_on_is_not_met() {
+        let p = [[0, 0, 0], [32, 0, 0], [0, 32, 0]];
+        for origin in [[8, 8, 0], [8, 0, 0], [0, 0, 0], [32, 0, 0], [16, 16, 0]] {
+            for direction in [DOWN, DOWN.map(|c| -c), [3, -5, 1 << 20]] {
+                assert!(!shoot(origin, direction, p).hit, "{origin:?} {direction:?}");
+            }
+            assert!(shoot([origin[0], origin[1], 1], DOWN, p).hit == shoot([origin[0], origin[1], 9], DOWN, p).hit);
+        }
+        assert!(shoot([8, 8, 1], DOWN, p).hit && !shoot([8, 8, -1], DOWN, p).hit);
     }
 
     #[test]

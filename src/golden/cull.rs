@@ -15,7 +15,7 @@ pub(super) struct Bounds {
 }
 
 impl Bounds {
-    const EMPTY: Self = Self { lo: [i32::MAX; 3], hi: [i32::MIN; 3] };
+    pub const EMPTY: Self = Self { lo: [i32::MAX; 3], hi: [i32::MIN; 3] };
 
     fn around(points: impl IntoIterator<Item = [i32; 3]>) -> Self {
         points.into_iter().fold(Self::EMPTY, |b, p| b.union(Self { lo: p, hi: p }))
@@ -25,10 +25,10 @@ impl Bounds {
         Self { lo: std::array::from_fn(|k| self.lo[k].min(other.lo[k])), hi: std::array::from_fn(|k| self.hi[k].max(other.hi[k])) }
     }
 
-    /// The ray from `x` along `d` certainly has no point in the box around this one and `corners`.
-    pub fn missed_by(&self, x: Vector, d: Vector, corners: &[Vector]) -> bool {
+    /// The ray from `x`, or from a point less than `slack` beyond it in each coordinate, along `d` certainly has no point in the box around this one and `corners`.
+    pub fn missed_by(&self, x: Vector, slack: i64, d: Vector, corners: &[Vector]) -> bool {
         let with = |start: i32, pick: fn(i64, i64) -> i64, k: usize| corners.iter().fold(i64::from(start), |v, p| pick(v, p[k])) - x[k];
-        let lo: Vector = std::array::from_fn(|k| with(self.lo[k], i64::min, k));
+        let lo: Vector = std::array::from_fn(|k| with(self.lo[k], i64::min, k) - slack);
         let hi: Vector = std::array::from_fn(|k| with(self.hi[k], i64::max, k));
         // Behind along axis k, or beside a ray that does not move along it.
         let behind = (0..3).any(|k| (d[k] >= 0 && hi[k] < 0) || (d[k] <= 0 && lo[k] > 0));
@@ -120,11 +120,11 @@ impl Boxes {
     }
 
     /// Calls `visit` for each tree whose box the ray may meet.
-    pub fn trees(&self, x: Vector, d: Vector, visit: &mut impl FnMut(u32)) {
+    pub fn trees(&self, x: Vector, slack: i64, d: Vector, visit: &mut impl FnMut(u32)) {
         let mut open = vec![0u32];
         while let Some(at) = open.pop() {
             let Some(top) = self.top.get(at as usize) else { return }; // a model without triangles
-            if top.bounds.missed_by(x, d, &[]) {
+            if top.bounds.missed_by(x, slack, d, &[]) {
                 continue;
             }
             match top.tree {
@@ -151,7 +151,7 @@ mod tests {
             ([0, 0, 0], [1, 2, 3]),
             ([-30, 30, 10], [1, -1, 0]),
         ] {
-            assert!(!UNIT.missed_by(x, d, &[]), "{x:?} {d:?}");
+            assert!(!UNIT.missed_by(x, 0, d, &[]), "{x:?} {d:?}");
         }
         for (x, d) in [
             ([11, 10, -50], [0, 0, 7]),
@@ -160,9 +160,9 @@ mod tests {
             ([-30, 51, 10], [1, -1, 0]),
             ([0, 0, 11], [0, 0, 1]),
         ] {
-            assert!(UNIT.missed_by(x, d, &[]), "{x:?} {d:?}");
+            assert!(UNIT.missed_by(x, 0, d, &[]), "{x:?} {d:?}");
         }
-        assert!(!UNIT.missed_by([11, 10, -50], [0, 0, 7], &[[11, 0, 0]]));
+        assert!(!UNIT.missed_by([11, 10, -50], 0, [0, 0, 7], &[[11, 0, 0]]));
     }
 
     proptest! {
@@ -171,7 +171,7 @@ mod tests {
                                                        d in prop::array::uniform3(-9i64..=9), k in 0i64..40) {
             let b = Bounds { lo, hi: std::array::from_fn(|i| lo[i] + size[i]) };
             let x: Vector = std::array::from_fn(|i| i64::from(lo[i] + part[i].min(size[i])) - d[i] * k);
-            prop_assert!(!b.missed_by(x, d, &[]));
+            prop_assert!(!b.missed_by(x, 0, d, &[]));
         }
     }
 }

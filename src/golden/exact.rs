@@ -5,8 +5,9 @@
 //! the least (t, id). Boxes only spare work: see `cull`.
 
 use super::{
-    cull::Boxes,
+    cull::{Bounds, Boxes},
     hit_map, lod,
+    paths::{self, Leg},
     predicates::{self, Fractions, Meeting, Vector},
     ties::Ties,
 };
@@ -96,6 +97,32 @@ impl<'a> Exact<'a> {
         self.closest(ray, true)
     }
 
+    /// The closest hit of `ray` where it leaves the surface at the end of `before`, the rays of a path so far; its origin is that point's, rounded down.
+    pub fn trace_after(&self, before: &[Leg], ray: &Ray) -> Option<ExactHit> {
+        self.closest_of(&self.walk_after(before, ray)).map(|(hit, _)| hit)
+    }
+
+    /// All its crossings.
+    pub fn crossings_after(&self, before: &[Leg], ray: &Ray) -> Crossings {
+        count(&self.walk_after(before, ray))
+    }
+
+    /// Another triangle of its surface than the one it leaves, in another plane, holds the point that `ray` starts from.
+    pub fn starts_on_another(&self, before: &[Leg], ray: &Ray) -> bool {
+        let Some(last) = before.last() else { return false };
+        let walk = Walk { boxes: None, ..self.walk_after(before, ray) };
+        let mut found = false;
+        walk.trees(&mut |tree| walk.tree(tree, &mut |at| found |= predicates::holds_another(last.start, last.corners, at.corners)));
+        found
+    }
+
+    /// The leg of a path that `ray` makes with its hit, to be added to those before it.
+    pub fn leg(&self, before: &[Leg], ray: &Ray, hit: &ExactHit) -> Leg {
+        let walk = self.walk_after(before, ray);
+        let corners = walk.corners(hit);
+        Leg { viewer: viewer(ray), tree: hit.tree, base: walk.base(hit.tree), corners, start: predicates::inside(corners, hit.bary) }
+    }
+
     /// How near this ray comes to deciding otherwise anywhere (see [`Ties`]).
     pub fn ties(&self, ray: &Ray) -> Ties {
         let watch = RefCell::new(Ties::default());
@@ -111,9 +138,7 @@ impl<'a> Exact<'a> {
 
     /// All crossings of the surface that the ray's cone asks for.
     pub fn crossings(&self, ray: &Ray) -> Crossings {
-        let mut count = Crossings::default();
-        self.walk(ray, true).run(&mut |_, met| if met.front { count.front += 1 } else { count.back += 1 });
-        count
+        count(&self.walk(ray, true))
     }
 
     /// The whole surface that the ray's cone asks for, in tree order.
@@ -136,14 +161,21 @@ impl<'a> Exact<'a> {
     }
 
     fn walk(&self, ray: &Ray, lod: bool) -> Walk<'_> {
-        let viewer = lod::Viewer { origin: ray.origin.get(), direction: ray.direction.get(), cone: ray.cone };
-        Walk { model: self.model, boxes: self.boxes.as_ref(), viewer, lod, watch: None }
+        Walk { model: self.model, boxes: self.boxes.as_ref(), viewer: viewer(ray), before: &[], only: None, lod, watch: None }
+    }
+
+    fn walk_after<'b>(&'b self, before: &'b [Leg], ray: &Ray) -> Walk<'b> {
+        Walk { before, ..self.walk(ray, true) }
     }
 
     fn closest(&self, ray: &Ray, lod: bool) -> Option<(ExactHit, Fractions)> {
+        self.closest_of(&self.walk(ray, lod))
+    }
+
+    fn closest_of(&self, walk: &Walk<'_>) -> Option<(ExactHit, Fractions)> {
         let levels = self.model.levels;
         let mut best: Option<(ExactHit, Fractions)> = None;
-        self.walk(ray, lod).run(&mut |at, met| {
+        walk.run(&mut |at, met| {
             let bary = met.bary();
             let (full_node, full_bary) = hit_map::descend(at.node, bary, levels - at.level);
             let Served { tree, level, node, .. } = at;
@@ -156,11 +188,30 @@ impl<'a> Exact<'a> {
     }
 }
 
+fn viewer(ray: &Ray) -> lod::Viewer {
+    lod::Viewer { origin: ray.origin.get(), direction: ray.direction.get(), cone: ray.cone }
+}
+
+/// Parts of a lattice point's base corners, in 2^-N.
+fn weights(levels: u32, (i, j): LatticePoint) -> [u32; 3] {
+    [(1 << levels) - i - j, i, j]
+}
+
+fn count(walk: &Walk<'_>) -> Crossings {
+    let mut count = Crossings::default();
+    walk.run(&mut |_, met| if met.front { count.front += 1 } else { count.back += 1 });
+    count
+}
+
 /// One ray's recursion.
 struct Walk<'a> {
     model: &'a Hierarchy,
     boxes: Option<&'a Boxes>,
     viewer: lod::Viewer,
+    /// The rays before it, if it leaves the surface.
+    before: &'a [Leg],
+    /// Only what leads to this node, a level and its number there.
+    only: Option<(u32, u32)>,
     /// False: full resolution everywhere.
     lod: bool,
     /// Where near ties are noted.
@@ -171,6 +222,18 @@ impl Walk<'_> {
     /// Calls `hit` for every triangle of the surface that the ray meets.
     fn run(&self, hit: &mut impl FnMut(Served, Meeting)) {
         let (x, d) = (self.viewer.origin, self.viewer.direction);
+        if let Some(last) = self.before.last() {
+            let mut test = |at: Served| {
+                // The exact test takes long.
+                if Bounds::EMPTY.missed_by(x, 1, d, &at.corners) {
+                    return;
+                }
+                if let Some(met) = predicates::meet_from(last.start, d, at.corners) {
+                    hit(at, met);
+                }
+            };
+            return self.trees(&mut |tree| self.tree(tree, &mut test));
+        }
         let mut test = |at: Served| {
             let [a, b, c] = at.corners.map(|p| predicates::sub(p, x));
             if let Some(watch) = self.watch {
@@ -180,10 +243,37 @@ impl Walk<'_> {
                 hit(at, met);
             }
         };
+        self.trees(&mut |tree| self.tree(tree, &mut test));
+    }
+
+    /// Calls `visit` for each tree that the ray may meet.
+    fn trees(&self, visit: &mut impl FnMut(u32)) {
         match self.boxes {
-            Some(boxes) => boxes.trees(x, d, &mut |tree| self.tree(tree, &mut test)),
-            None => (0..self.model.triangles.len() as u32).for_each(|tree| self.tree(tree, &mut test)),
+            Some(boxes) => boxes.trees(self.viewer.origin, self.slack(), self.viewer.direction, visit),
+            None => (0..self.model.triangles.len() as u32).for_each(visit),
         }
+    }
+
+    /// By how much the ray's origin may lie beyond that of its viewer.
+    fn slack(&self) -> i64 {
+        i64::from(!self.before.is_empty())
+    }
+
+    /// Corners of a base triangle.
+    fn base(&self, tree: u32) -> [Vector; 3] {
+        lattice::root(self.model.levels).map(|p| self.point(tree, p))
+    }
+
+    /// Corners of the triangle of a hit, as this ray sees it.
+    fn corners(&self, hit: &ExactHit) -> [Vector; 3] {
+        let mut corners = [[0; 3]; 3];
+        let whole = Walk { boxes: None, watch: None, only: Some((hit.level, hit.node)), ..*self };
+        whole.tree(hit.tree, &mut |at| {
+            if (at.level, at.node) == (hit.level, hit.node) {
+                corners = at.corners;
+            }
+        });
+        corners
     }
 
     /// Calls `serve` for the triangles of one tree.
@@ -194,10 +284,13 @@ impl Walk<'_> {
 
     fn node(&self, at: Served, places: [LatticePoint; 3], serve: &mut impl FnMut(Served)) {
         let Served { tree, level, node, corners: p } = at;
+        if self.only.is_some_and(|(to, number)| level <= to && number >> (2 * (to - level)) != node) {
+            return;
+        }
         if level == self.model.levels {
             return serve(at);
         }
-        if self.boxes.is_some_and(|b| b.node(tree, level, node).missed_by(self.viewer.origin, self.viewer.direction, &p)) {
+        if self.boxes.is_some_and(|b| b.node(tree, level, node).missed_by(self.viewer.origin, self.slack(), self.viewer.direction, &p)) {
             return;
         }
         let s = self.states(&at, places);
@@ -222,11 +315,22 @@ impl Walk<'_> {
         let codes = self.model.node_codes(at.tree as usize, at.level, places);
         std::array::from_fn(|i| {
             let bound = lod::displacement(self.model.bounds.scale, codes[i]);
+            let viewer = self.decider(at.tree, i, [places[(i + 1) % 3], places[(i + 2) % 3]]);
             if let Some(watch) = self.watch {
-                watch.borrow_mut().note_lod(lod::margin(&self.viewer, at.corners[(i + 1) % 3], at.corners[(i + 2) % 3], bound));
+                watch.borrow_mut().note_lod(lod::margin(viewer, at.corners[(i + 1) % 3], at.corners[(i + 2) % 3], bound));
             }
-            lod::state(&self.viewer, at.corners[(i + 1) % 3], at.corners[(i + 2) % 3], bound)
+            lod::state(viewer, at.corners[(i + 1) % 3], at.corners[(i + 2) % 3], bound)
         })
+    }
+
+    /// Who decides about edge `i` of a node, between these places.
+    fn decider(&self, tree: u32, i: usize, ends: [LatticePoint; 2]) -> &lod::Viewer {
+        if self.before.is_empty() {
+            return &self.viewer;
+        }
+        // It lies on base edge i, opposite base corner i, if nothing of that corner is left at its ends.
+        let on_base = ends.iter().all(|&end| weights(self.model.levels, end)[i] == 0);
+        paths::decider(self.before, &self.viewer, tree, self.base(tree), on_base.then_some(i))
     }
 
     fn point(&self, tree: u32, at: LatticePoint) -> Vector {

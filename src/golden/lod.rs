@@ -6,6 +6,7 @@ use num_bigint::BigUint;
 use std::sync::LazyLock;
 
 /// What of a ray the level of detail depends on.
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Viewer {
     pub origin: Vector,
     pub direction: Vector,

@@ -1,7 +1,7 @@
 //! The named cases: stiff models, stiff rays, stiff cones.
 
 use super::model::Model;
-use super::rays::{Aim, Cones, PIXEL, Views};
+use super::rays::{Aim, BOUNCES, Bounce, Cones, PIXEL, Views};
 use super::shapes::{Base, Place, bipyramid, bumpy, cube, fan, flat, octahedron, sheet, stretched, surface, tetrahedron, together};
 use crate::format::SceneError;
 use crate::mesh::procedural::{self, Options, Scene};
@@ -140,7 +140,56 @@ pub const CASES: &[Case] = &[
     Case { name: "open", about: "open sheets, also folded ones", models: open, ..OPEN },
     Case { name: "non-manifold", about: "five triangles on an edge, loose and turned ones", models: non_manifold, ..OPEN },
     Case { name: "rebuilds", about: "rebuilt again and again, points jump by the whole box", models: rebuilds, share: 8, ..CLOSED },
+    Case { name: "leave", about: "paths of up to 8 rays from hits anywhere", models: both, aims: ALL_PATHS, ..PATHS },
+    Case {
+        name: "leave-edges",
+        about: "paths from edges, vertices and borders of trees, to vertices",
+        models: both,
+        aims: &[Aim::Leaving(&[Aim::Edges, Aim::AlongEdge], &[Bounce::Vertex, Bounce::Diffuse])],
+        ..PATHS
+    },
+    Case {
+        name: "leave-grazing",
+        about: "paths along the planes of what they leave",
+        models: both,
+        aims: &[Aim::Leaving(STARTS, &[Bounce::Grazing])],
+        ..PATHS
+    },
+    Case { name: "mirrors", about: "chains of mirrors", models: both, aims: &[Aim::Leaving(STARTS, &[Bounce::Mirror])], ..PATHS },
+    Case { name: "sheets", about: "paths between sheets a few steps of the grid apart, and in acute corners", models: sheets, ..PATHS },
+    Case { name: "leave-needles", about: "paths on stretched balls", models: needles, ..PATHS },
+    Case { name: "leave-slivers", about: "paths on triangles up to 1e6 times longer than high", models: slivers, share: 4, ..PATHS },
+    Case { name: "leave-flat", about: "paths on zero area and in one plane", models: flats, ..PATHS },
+    Case { name: "leave-coincident", about: "paths on triangles two and four times in one place", models: coincident, ..PATHS },
+    Case { name: "leave-scales", about: "paths between parts of 1e-6 to 1e6", models: scales, views: CLOSE, ..PATHS },
+    Case { name: "leave-spikes", about: "paths where displacement is 1000 times the edge", models: spikes, share: 4, ..PATHS },
+    Case { name: "leave-levels", about: "paths at N = 0 to 8", models: |s| levels(s, 0..=8), views: CLOSE, ..PATHS },
+    Case { name: "leave-deep", about: "paths at N = 9 and 10", models: |s| levels(s, 9..=10), views: CLOSE, ..PATHS },
+    Case {
+        name: "leave-deltas",
+        about: "paths at delta 0 to infinite, each ray another",
+        models: balls,
+        cones: Cones::Listed(&[
+            (0.0, 1e6, PIXEL),
+            (1e-2, 1e5, PIXEL),
+            (1.0, 1e6, PIXEL),
+            (1.0, 0.0, 1.0),
+            (1e2, 1e6, PIXEL),
+            (f64::INFINITY, 1e6, PIXEL),
+        ]),
+        ..PATHS
+    },
+    Case { name: "leave-turned", about: "paths where some triangles are turned: parity only", models: turned, ..PATHS },
+    Case { name: "leave-open", about: "paths on open sheets", models: open, every: 1, share: 1, ..PATHS },
+    Case { name: "leave-non-manifold", about: "paths on edges of five triangles", models: non_manifold, every: 1, share: 1, ..PATHS },
 ];
+
+const ALL_PATHS: &[Aim] = &[Aim::Leaving(STARTS, &BOUNCES)];
+/// A path is up to eight rays, and each is traced three times.
+const PATHS: Case = Case { aims: ALL_PATHS, every: 64, share: 8, ..CLOSED };
+
+/// Where the paths of the lab begin: on edges and vertices, and anywhere.
+const STARTS: &[Aim] = &[Aim::Edges, Aim::View, Aim::Grazing, Aim::Edges, Aim::AxisParallel];
 
 /// A ray family of real scenes.
 const FILE: Case = Case { name: "", about: "", ..CLOSED };
@@ -288,6 +337,28 @@ fn spikes(_: Scale) -> Result<Vec<Model>, SceneError> {
 
 fn generated(options: &Options) -> Result<Surface, SceneError> {
     procedural::generate(options).map_err(|e| SceneError::Build(e.to_string()))
+}
+
+/// Five plates, each on top of the other a few steps of the grid apart, plane and bumpy; and two pyramids with an acute rim.
+fn sheets(_: Scale) -> Result<Vec<Model>, SceneError> {
+    let plates = together((0..5).map(|k| (cube(), 1.0, [0.0, 0.0, 2.5 * f64::from(k)])));
+    let pressed = |by: f64, noise: f64| {
+        let bump = move |p: Place| if p.level == 0 { p.flat } else { [p.flat[0], p.flat[1], p.flat[2] + noise * p.noise(24)[2]] };
+        stretched([1.0, 1.0, by], [0.0; 3], bump)
+    };
+    list([
+        ("plates, N = 0".to_owned(), surface(0, &plates, pressed(2f64.powi(-25), 0.0))),
+        ("bumpy plates".to_owned(), surface(3, &plates, pressed(2f64.powi(-22), 0.2))),
+        ("bumpy plates that nearly touch".to_owned(), surface(3, &plates, pressed(2f64.powi(-18), 0.24))),
+        ("acute rim".to_owned(), surface(2, &bipyramid(5), stretched([1.0, 1.0, 1e-7], [0.0; 3], flat))),
+        ("acute rim, bumpy".to_owned(), surface(3, &bipyramid(5), stretched([1.0, 1.0, 1e-4], [0.0; 3], bumpy(0.3, 25)))),
+    ])
+}
+
+fn flats(scale: Scale) -> Result<Vec<Model>, SceneError> {
+    let mut models = zero_area(scale)?;
+    models.extend(flat_parts(scale)?);
+    Ok(models)
 }
 
 fn flat_parts(_: Scale) -> Result<Vec<Model>, SceneError> {

@@ -175,8 +175,14 @@ impl crate::method::HitSink for LevelCrossings {
     fn t_max(&self) -> crate::num::RayT {
         self.crossings.t_max()
     }
-    fn offer(&mut self, id: crate::method::TriangleId, corners: &[Point; 3], test: &crate::block::tri_test::Out) {
-        self.crossings.offer(id, corners, test);
+    fn offer(
+        &mut self,
+        id: crate::method::TriangleId,
+        corners: &[Point; 3],
+        test: &crate::block::tri_test::Out,
+        below: &crate::method::leave::Below,
+    ) {
+        self.crossings.offer(id, corners, test, below);
         self.levels |= 1 << id.level;
     }
     fn found(&self) -> bool {

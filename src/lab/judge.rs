@@ -12,6 +12,7 @@ use super::rays::Shot;
 use crate::block::tri_test;
 use crate::golden::Exact;
 use crate::lab::crack::Closedness;
+use crate::method::leave::Below;
 use crate::method::lod::{LodImage, LodTraverser};
 use crate::method::{ClosestHit, Hit, HitSink, TriangleId};
 use crate::num::{Direction, Point, Ray, RayT};
@@ -43,6 +44,8 @@ pub struct Tally {
     pub different: u64,
     /// Rays on which a value did not fit its stated width; counted where [`WIDTHS_CHECKED`].
     pub overflows: u64,
+    /// Paths that ended where two prior rays are not enough: not a breach, and none on surfaces whose edges have at most two triangles.
+    pub crowded: u64,
     /// Closest hits at the end of t's range.
     pub saturated: u64,
     /// Worst error of t, in steps of 2^-32.
@@ -75,6 +78,7 @@ impl Tally {
             doubles: self.doubles + b.doubles,
             different: self.different + b.different,
             overflows: self.overflows + b.overflows,
+            crowded: self.crowded + b.crowded,
             saturated: self.saturated + b.saturated,
             t_ulp: self.t_ulp.max(b.t_ulp),
             bary_ulp: self.bary_ulp.max(b.bary_ulp),
@@ -92,8 +96,6 @@ struct Seen {
     back: u32,
     /// Set of the levels met.
     levels: u32,
-    /// A crossing at the origin itself.
-    at_origin: bool,
 }
 
 impl HitSink for Seen {
@@ -102,14 +104,13 @@ impl HitSink for Seen {
         RayT::MAX
     }
     #[inline(always)]
-    fn offer(&mut self, id: TriangleId, _: &[Point; 3], test: &tri_test::Out) {
+    fn offer(&mut self, id: TriangleId, _: &[Point; 3], test: &tri_test::Out, _: &Below) {
         if test.front {
             self.front += 1;
         } else {
             self.back += 1;
         }
         self.levels |= 1 << id.level;
-        self.at_origin |= test.t_num.get() == 0;
     }
     #[inline(always)]
     fn found(&self) -> bool {
@@ -119,11 +120,11 @@ impl HitSink for Seen {
 
 /// Judges the rays of one model; one for each thread.
 pub struct Judge<'a> {
-    model: &'a Model,
-    golden: &'a Exact<'a>,
-    traverser: LodTraverser<'a>,
+    pub(super) model: &'a Model,
+    pub(super) golden: &'a Exact<'a>,
+    pub(super) traverser: LodTraverser<'a>,
     /// Every how many rays the golden traverser is asked.
-    every: u64,
+    pub(super) every: u64,
 }
 
 impl<'a> Judge<'a> {
@@ -134,25 +135,11 @@ impl<'a> Judge<'a> {
 
     /// Shoots and judges ray `number`.
     pub fn shoot(&mut self, number: u64, shot: &Shot) -> Tally {
-        let mut tally = Tally { rays: 1, ..Tally::default() };
-        if WIDTHS_CHECKED {
-            // A value outside its width panics; the traverser starts anew with each ray.
-            let judged = catch_unwind(AssertUnwindSafe(|| {
-                let mut judged = tally;
-                self.judge(number, shot, &mut judged);
-                judged
-            }));
-            match judged {
-                Ok(judged) => tally = judged,
-                Err(_) => tally.overflows = 1,
-            }
-        } else {
+        guarded(number, || {
+            let mut tally = Tally { rays: 1, ..Tally::default() };
             self.judge(number, shot, &mut tally);
-        }
-        if tally.breaches() > 0 {
-            tally.first_breach = Some(number);
-        }
-        tally
+            tally
+        })
     }
 
     fn judge(&mut self, number: u64, shot: &Shot, tally: &mut Tally) {
@@ -191,11 +178,8 @@ impl<'a> Judge<'a> {
         let difference = if outside {
             winding(seen)
         } else {
-            let [x, y, z] = shot.other.filter(|_| shot.ray.cone.slope.get() == 0 && !seen.at_origin)?;
+            let [x, y, z] = shot.other.filter(|_| shot.ray.cone.slope.get() == 0)?;
             let other = self.seen(&Ray { direction: Direction::new(x, y, z), ..shot.ray });
-            if other.at_origin {
-                return None;
-            }
             let difference = winding(seen) - winding(&other);
             // On an edge or vertex a ray may meet none of the triangles around: only the exact surface can tell.
             if difference != 0 && self.golden.starts_on_surface(&shot.ray) {
@@ -237,8 +221,19 @@ impl<'a> Judge<'a> {
     }
 }
 
+/// What judging ray `number` shows; where widths are checked a value outside its own counts as an overflow.
+pub(super) fn guarded(number: u64, judge: impl FnOnce() -> Tally) -> Tally {
+    let tally = if WIDTHS_CHECKED {
+        // A value outside its width panics; the traverser starts anew with each ray.
+        catch_unwind(AssertUnwindSafe(judge)).unwrap_or(Tally { rays: 1, overflows: 1, ..Tally::default() })
+    } else {
+        judge()
+    };
+    Tally { first_breach: (tally.breaches() > 0).then_some(number), ..tally }
+}
+
 /// A hit record in the golden traverser's words.
-fn plain(hit: &Hit) -> crate::golden::ExactHit {
+pub(super) fn plain(hit: &Hit) -> crate::golden::ExactHit {
     let narrow = |v: u64| v as u32; // fields of at most 32 bits
     crate::golden::ExactHit {
         t: hit.t.get(),

@@ -27,7 +27,28 @@ pub enum Aim {
     OnSurface,
     /// From a camera that looks at a vertex.
     View,
+    /// A path: what leaves, one after the other, where the first of these families hits.
+    Leaving(&'static [Aim], &'static [Bounce]),
 }
+
+/// How the rays of a path go on from a hit.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Bounce {
+    /// To the side that the ray came from, anywhere.
+    Diffuse,
+    /// As a mirror would.
+    Mirror,
+    /// In the plane of the triangle, as nearly as a direction can be, or a unit of direction off.
+    Grazing,
+    /// At a vertex, or a midpoint of an edge, of the model: often one of the triangle's own neighbours.
+    Vertex,
+    /// Through the surface: on the same way, to the other side.
+    Through,
+}
+
+/// All of them.
+pub const BOUNCES: [Bounce; 5] = [Bounce::Diffuse, Bounce::Mirror, Bounce::Grazing, Bounce::Vertex, Bounce::Through];
 
 /// Cones of the rays that no camera makes.
 #[derive(Clone, Copy, Debug)]
@@ -69,7 +90,7 @@ pub struct Shot {
     pub other: Option<[i64; 3]>,
 }
 
-fn pick<T: Copy>(from: &[T], random: &mut Random) -> T {
+pub(super) fn pick<T: Copy>(from: &[T], random: &mut Random) -> T {
     from[random.below(from.len() as u64) as usize]
 }
 
@@ -120,7 +141,7 @@ fn through(model: &Model, p: [i64; 3], d: [i64; 3]) -> ([i64; 3], [i64; 3]) {
 }
 
 /// `d` (not 0) at the direction's full length, rounded.
-fn scaled(d: [i64; 3]) -> [i64; 3] {
+pub(super) fn scaled(d: [i64; 3]) -> [i64; 3] {
     let length = d.iter().map(|&c| (c as f64).powi(2)).sum::<f64>().sqrt();
     d.map(|c| (c as f64 / length * f64::from(DIRECTION_SCALE)).round() as i64)
 }
@@ -190,11 +211,24 @@ pub fn shot(model: &Model, aim: Aim, cones: Cones, views: &Views, random: &mut R
             (p, scaled(crack::direction(random)))
         }
         Aim::View => return None,
+        Aim::Leaving(first, _) => return shot(model, pick(first, random), cones, views, random),
     };
     let ray_cone = match cones {
         // A tolerance that does not grow: then the surface is one for all directions from the origin.
         Cones::Mixed if aim == Aim::Inside => constant(crack::cone(&model.hierarchy, 1, random)),
         Cones::Mixed if aimed.is_some() => aimed.unwrap_or_default(),
+        cones => any_cone(model, cones, random),
+    };
+    let ray = Ray {
+        origin: Point::new(origin[0], origin[1], origin[2]),
+        direction: Vec3::new(direction[0], direction[1], direction[2]),
+        cone: ray_cone,
+    };
+    Some(Shot { ray, view: None, other })
+}
+
+fn any_cone(model: &Model, cones: Cones, random: &mut Random) -> Cone {
+    match cones {
         Cones::Mixed => {
             let away = (0..3).map(|k| i64::from(model.space.hi[k]) - i64::from(model.space.lo[k])).max().unwrap_or(0);
             crack::cone(&model.hierarchy, away.cast_unsigned().max(1), random)
@@ -203,13 +237,19 @@ pub fn shot(model: &Model, aim: Aim, cones: Cones, views: &Views, random: &mut R
             let (delta, radius, tangent) = pick(list, random);
             cone(delta, radius, tangent)
         }
-    };
-    let ray = Ray {
-        origin: Point::new(origin[0], origin[1], origin[2]),
-        direction: Vec3::new(direction[0], direction[1], direction[2]),
-        cone: ray_cone,
-    };
-    Some(Shot { ray, view: None, other })
+    }
+}
+
+/// A cone for a ray that leaves the surface: one of the case's, but for one in four it does not grow, so that the surface is one for all directions.
+pub(super) fn some_cone(model: &Model, cones: Cones, random: &mut Random) -> Cone {
+    let any = any_cone(model, cones, random);
+    if random.below(4) == 0 { any } else { constant(crack::cone(&model.hierarchy, 1 << random.below(31), random)) }
+}
+
+/// `d` itself, or shorter by half, so that it keeps to the length that the blocks are made for.
+pub(super) fn legal(d: [i64; 3]) -> [i64; 3] {
+    let is_legal = d.iter().map(|c| c * c).sum::<i64>() < i64::from(DIRECTION_SCALE + 1).pow(2);
+    if is_legal { d } else { d.map(|c| c / 2) }
 }
 
 fn constant(c: Cone) -> Cone {
@@ -229,8 +269,7 @@ fn grazing(model: &Model, random: &mut Random) -> ([i64; 3], [i64; 3]) {
     let mut off = direction;
     off[random.below(3) as usize] += random.within(1);
     // As long as it stays within the length that the blocks are made for.
-    let legal = off.iter().map(|c| c * c).sum::<i64>() < i64::from(DIRECTION_SCALE + 1).pow(2);
-    (origin, if legal && random.below(2) == 0 { off } else { direction })
+    (origin, if legal(off) == off && random.below(2) == 0 { off } else { direction })
 }
 
 /// A ray that moves within a plane of box codes, or crosses it at a vertex's other two coordinates.

@@ -3,7 +3,7 @@
 use super::cases::{Case, Scale};
 use super::judge::{Judge, Tally, WIDTHS_CHECKED};
 use super::model::Model;
-use super::rays::shot;
+use super::rays::{Aim, shot};
 use crate::format::SceneError;
 use crate::golden::Exact;
 use crate::lab::crack::Closedness;
@@ -85,7 +85,12 @@ pub fn shoot(case: &Case, models: &[Model], rays: u64, seed: u64, progress: &(dy
             let mut random = Random::of(seed, number);
             let aim = case.aims[random.below(case.aims.len() as u64) as usize];
             match shot(model, aim, case.cones, &case.views, &mut random) {
-                Some(shot) => sum = sum.with(&judge.shoot(number, &shot)),
+                Some(shot) => {
+                    sum = sum.with(&match aim {
+                        Aim::Leaving(_, bounces) => judge.follow(number, &shot, bounces, case.cones, &mut random),
+                        _ => judge.shoot(number, &shot),
+                    });
+                }
                 None => sum.rays += 1, // it misses the model's box, and so the model
             }
         }

@@ -1,12 +1,14 @@
 //! Hits: what a traversal returns, and what it does with each triangle that the ray meets.
 
+use super::lod::Prior;
 use crate::block::Block;
 use crate::block::bary_map::{self, BaryMap, NodeIndex};
-use crate::block::hit_divide::{self, HitDivide};
+use crate::block::hit_divide;
 use crate::block::hit_select::{self, FullId, HitSelect};
 use crate::block::tri_test::{self, EdgeFunction, TNumerator};
 use crate::format::encode_normal;
-use crate::num::{BARY_ONE, Bary, Point, RayT, T_NEAR_TO_T_SHIFT, TNear, U, wire_struct};
+use crate::method::leave::{self, Below};
+use crate::num::{BARY_ONE, Bary, Point, RayT, Start, T_NEAR_TO_T_SHIFT, TNear, U, wire_struct};
 use crate::rays::ModelRay;
 use glam::DVec3;
 
@@ -55,8 +57,8 @@ pub struct TriangleId {
 pub trait HitSink {
     /// Nothing beyond this t is wanted.
     fn t_max(&self) -> RayT;
-    /// Triangle `id` with these corners, as they were tested, was met; `test.hit` is true.
-    fn offer(&mut self, id: TriangleId, corners: &[Point; 3], test: &tri_test::Out);
+    /// Triangle `id` with these corners, as they were tested, was met; `test.hit` is true, and `below` what its numerators have below whole numbers.
+    fn offer(&mut self, id: TriangleId, corners: &[Point; 3], test: &tri_test::Out, below: &Below);
     /// Something was met that counts.
     fn found(&self) -> bool;
     /// Nothing more is wanted.
@@ -81,7 +83,7 @@ pub struct ClosestHit {
     any: bool,
     t: RayT,
     id: FullId,
-    best: Option<(TriangleId, [Point; 3], tri_test::Out)>,
+    best: Option<(TriangleId, [Point; 3], tri_test::Out, Below)>,
 }
 
 impl ClosestHit {
@@ -95,15 +97,20 @@ impl ClosestHit {
         Self { range: ray.range, any, t: ray.range[1], ..Self::new(levels) }
     }
 
+    /// Corners of the triangle of the hit, as it was tested.
+    pub fn corners(&self) -> Option<[Point; 3]> {
+        self.best.as_ref().map(|(_, corners, ..)| *corners)
+    }
+
     /// The hit record: divides and maps.
     pub fn record(&self) -> Option<Hit> {
-        let (id, _, test) = self.best.as_ref()?;
-        let weight = |edge: EdgeFunction| {
+        let (id, _, test, below) = self.best.as_ref()?;
+        let weight = |edge: EdgeFunction, low| {
             // An edge function is at most det: the quotient is at most 2^32 before its last bit is dropped.
             let numerator = TNumerator::new(edge.get());
-            HitDivide::eval(&hit_divide::In { numerator, denominator: test.det }).quotient.get() >> 1
+            leave::divide(&hit_divide::In { numerator, denominator: test.det }, low).get() >> 1
         };
-        let (b1, b2) = (weight(test.v), weight(test.w));
+        let (b1, b2) = (weight(test.v, below.v), weight(test.w, below.w));
         // Both were rounded down and v + w <= det.
         let [b0, b1, b2] = [BARY_ONE - b1 - b2, b1, b2].map(Bary::new);
         let node = U::new(u64::from(id.node));
@@ -126,7 +133,7 @@ impl ClosestHit {
 
     /// The same in the world, with what pictures need beyond it. `ray` is the one that was traced.
     pub fn surface(&self, ray: &ModelRay) -> Option<SurfaceHit> {
-        let (_, corners, _) = self.best.as_ref()?;
+        let (_, corners, ..) = self.best.as_ref()?;
         Some(SurfaceHit::new(ray, &self.record()?, plane(corners.map(|p| p.get().map(|c| c as f64)))))
     }
 }
@@ -145,8 +152,8 @@ impl HitSink for ClosestHit {
     }
 
     #[inline(always)]
-    fn offer(&mut self, id: TriangleId, corners: &[Point; 3], test: &tri_test::Out) {
-        let t = HitDivide::eval(&hit_divide::In { numerator: test.t_num, denominator: test.det }).quotient;
+    fn offer(&mut self, id: TriangleId, corners: &[Point; 3], test: &tri_test::Out, below: &Below) {
+        let t = leave::divide(&hit_divide::In { numerator: test.t_num, denominator: test.det }, below.t);
         if t < self.range[0] || t > self.range[1] {
             return;
         }
@@ -162,7 +169,7 @@ impl HitSink for ClosestHit {
         });
         if select.closer {
             (self.t, self.id) = (t, select.id);
-            self.best = Some((id, *corners, *test));
+            self.best = Some((id, *corners, *test, *below));
         }
     }
 
@@ -174,6 +181,19 @@ impl HitSink for ClosestHit {
     fn is_done(&self) -> bool {
         self.any && self.best.is_some()
     }
+}
+
+/// Where rays start that leave a surface, and what they need of the rays before them.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Departure {
+    /// The exact point.
+    pub start: Start,
+    /// Corners of the triangle that was hit, as it was tested.
+    pub corners: [Point; 3],
+    /// Who decides about the level of detail around it; nothing where there is only one level.
+    pub prior: Option<Prior>,
+    /// A third ray had decided about an edge there, and was dropped ([`Prior::after`]).
+    pub crowded: bool,
 }
 
 /// Counts all crossings of the surface: for a closed surface and a ray that starts outside, `front` equals `back`.
@@ -192,7 +212,7 @@ impl HitSink for Crossings {
     }
 
     #[inline(always)]
-    fn offer(&mut self, _: TriangleId, _: &[Point; 3], test: &tri_test::Out) {
+    fn offer(&mut self, _: TriangleId, _: &[Point; 3], test: &tri_test::Out, _: &Below) {
         if test.front {
             self.front += 1;
         } else {

@@ -8,6 +8,7 @@ mod children;
 pub mod discrete;
 mod hit;
 pub mod knob;
+pub mod leave;
 pub mod lod;
 mod normal;
 pub mod reference;
@@ -16,7 +17,7 @@ mod stack;
 mod tracer;
 
 pub(crate) use children::{bvh_boxes, bvh_children};
-pub use hit::{ClosestHit, Crossings, Hit, HitSink, SurfaceHit, TriangleId, is_beyond};
+pub use hit::{ClosestHit, Crossings, Departure, Hit, HitSink, SurfaceHit, TriangleId, is_beyond};
 pub use knob::{ErrorKnob, Knob, KnobError, Knobs};
 pub use registry::{METHODS, find};
 pub use stack::{Entry, Op, STACK_ENTRIES, TraversalStack};

@@ -93,3 +93,16 @@ wire_struct! {
         cone: Cone,
     }
 }
+
+/// Bits of the fraction of a [`Start`]: those of barycentric coordinates.
+pub const START_BITS: u32 = 31;
+
+wire_struct! {
+    /// Where a ray starts: a whole point, or a point of a triangle, exact in steps of 2^-31 units.
+    pub struct Start {
+        /// Coordinates rounded down to units.
+        point: Vec3<32>,
+        /// What is left of each, in steps of 2^-31 units.
+        fraction: [U<START_BITS>; 3],
+    }
+}

@@ -12,6 +12,7 @@ use crate::format::{BvhChild, BvhNode, ChildRef, SixNode};
 #[cfg(target_arch = "x86_64")]
 use crate::method::children::has_lanes;
 use crate::method::children::{bvh_children, coded_children, quarter, six_children};
+use crate::method::leave::Below;
 use crate::method::stack::{Entry, Op, TraversalStack, push_nearest, push_sorted};
 use crate::method::{HitSink, TriangleId, is_beyond};
 use crate::num::{LINE_BYTES, Point, Ray, U, Wire};
@@ -186,7 +187,7 @@ impl<'a> BvhTraverser<'a> {
             if test.hit {
                 let levels = self.levels;
                 let (tree, node) = (id >> (2 * levels), id & ((1 << (2 * levels)) - 1));
-                sink.offer(TriangleId { tree, level: levels, node }, &corners, &test);
+                sink.offer(TriangleId { tree, level: levels, node }, &corners, &test, &Below::default());
             }
         });
         run.state(steps);

@@ -1,9 +1,11 @@
 //! Locally adaptive level of detail: a level chosen for each ray and each edge while it is traced (the paper's method).
 
 mod image;
+mod prior;
 mod trace;
 
 pub use image::{BOUNDS, LINE_LAYOUT, LineLayout, LodImage, NODES, RECORDS, VERTICES};
+pub use prior::{Deciders, Prior};
 pub use trace::LodTraverser;
 
 use super::knob::{DELTA, ErrorKnob, octaves};
@@ -86,7 +88,7 @@ impl<const COMPACT: bool, const FULL_DETAIL: bool> Trace for LodTracer<'_, COMPA
             return None;
         };
         let mut hit = ClosestHit::of(self.traverser.levels(), &ray, query.any);
-        self.traverser.trace_as::<_, _, COMPACT, FULL_DETAIL>(&ray.ray, steps, &mut hit);
+        self.traverser.trace_as::<_, _, COMPACT, FULL_DETAIL, false>(&ray.ray, None, steps, &mut hit);
         hit.surface(&ray)
     }
 }

@@ -1,6 +1,7 @@
 //! The traversal loop of the paper's figure 9: quad-BVH over base triangles, then tessellation trees with an LOD test at every node.
 
 use super::image::{LodImage, TreeAt};
+use super::prior::{Deciders, Prior};
 use crate::block::Block;
 use crate::block::child_boxes::Corners;
 use crate::block::lod_test::{self, LodTest};
@@ -11,8 +12,9 @@ use crate::format::{BvhNode, Displacements, L0Record, SiblingGroup, VertexData};
 #[cfg(target_arch = "x86_64")]
 use crate::method::children::has_lanes;
 use crate::method::children::{Split, bvh_children, tree_children};
+use crate::method::leave::{self, Below, Leaving};
 use crate::method::stack::{Entry, Op, TraversalStack, push_sorted};
-use crate::method::{HitSink, TriangleId, is_beyond};
+use crate::method::{Departure, Hit, HitSink, TriangleId, is_beyond};
 use crate::num::{BoundCode, MAX_LEVELS, PADDING_BITS, Point, Ray, TNear, U, VertexForm, Wire};
 use crate::step::{Act, Step, StepSink, TriangleRun};
 
@@ -25,12 +27,16 @@ pub struct LodTraverser<'a> {
 }
 
 /// One ray under way.
-struct Journey<'a, S, H, const COMPACT: bool, const FULL_DETAIL: bool> {
+struct Journey<'a, S, H, const COMPACT: bool, const FULL_DETAIL: bool, const LEAVES: bool> {
     image: &'a LodImage<'a>,
     stack: &'a mut TraversalStack,
     splits: &'a mut [Split; MAX_LEVELS as usize],
     ray: &'a Ray,
     setup: ray_setup::Out,
+    /// Of a ray that leaves a surface: its start, and who decides in the current tree.
+    leaving: Leaving,
+    prior: Option<&'a Prior>,
+    deciders: Deciders,
     /// The current tree.
     tree: TreeAt,
     steps: &'a mut S,
@@ -51,16 +57,35 @@ impl<'a> LodTraverser<'a> {
     /// Traces `ray`: every triangle that serves the ray and is met goes to `sink`, every step to `steps`.
     pub fn trace<S: StepSink, H: HitSink>(&mut self, ray: &Ray, steps: &mut S, sink: &mut H) {
         match self.image.form {
-            VertexForm::Compact => self.trace_as::<S, H, true, false>(ray, steps, sink),
-            VertexForm::Exact => self.trace_as::<S, H, false, false>(ray, steps, sink),
+            VertexForm::Compact => self.trace_as::<S, H, true, false, false>(ray, None, steps, sink),
+            VertexForm::Exact => self.trace_as::<S, H, false, false, false>(ray, None, steps, sink),
         }
     }
 
-    /// The same, compiled for scenes of one form of vertices, and for rays that tolerate nothing if they are of `FULL_DETAIL`.
+    /// Traces `ray` from the surface: its origin is the whole point of `departure.start`, and what it needs of the rays before it is there.
+    pub fn trace_from<S: StepSink, H: HitSink>(&mut self, ray: &Ray, departure: &Departure, steps: &mut S, sink: &mut H) {
+        match self.image.form {
+            VertexForm::Compact => self.trace_as::<S, H, true, false, true>(ray, Some(departure), steps, sink),
+            VertexForm::Exact => self.trace_as::<S, H, false, false, true>(ray, Some(departure), steps, sink),
+        }
+    }
+
+    /// Where rays start that leave the surface where `ray` hit it, and what they need of it and the rays before it; `from` is where `ray` started.
+    pub fn departure(&self, ray: &Ray, from: Option<&Departure>, hit: &Hit, corners: &[Point; 3]) -> Departure {
+        let tree = hit.tree.get() as u32; // 28 bits
+        let base = VertexData::from_words(&self.image.records[tree as usize][..4]).points();
+        let (prior, crowded) = Prior::after(ray, from.and_then(|from| from.prior.as_ref()), tree, base);
+        let start = leave::start(corners, [hit.b0, hit.b1, hit.b2]);
+        Departure { start, corners: *corners, prior: Some(prior), crowded }
+    }
+
+    /// The same, compiled for scenes of one form of vertices, for rays that tolerate nothing if they are of `FULL_DETAIL`, and for those that have a departure if they are
+    /// ones that `LEAVES` a surface.
     #[inline(always)]
-    pub(super) fn trace_as<S: StepSink, H: HitSink, const COMPACT: bool, const FULL_DETAIL: bool>(
+    pub(super) fn trace_as<S: StepSink, H: HitSink, const COMPACT: bool, const FULL_DETAIL: bool, const LEAVES: bool>(
         &mut self,
         ray: &Ray,
+        departure: Option<&Departure>,
         steps: &mut S,
         sink: &mut H,
     ) {
@@ -68,26 +93,43 @@ impl<'a> LodTraverser<'a> {
         #[cfg(target_arch = "x86_64")]
         if has_lanes() {
             #[target_feature(enable = "avx2,bmi1,bmi2")]
-            fn lanes<S: StepSink, H: HitSink, const COMPACT: bool, const FULL_DETAIL: bool>(
+            fn lanes<S: StepSink, H: HitSink, const COMPACT: bool, const FULL_DETAIL: bool, const LEAVES: bool>(
                 by: &mut LodTraverser<'_>,
                 ray: &Ray,
+                departure: Option<&Departure>,
                 steps: &mut S,
                 sink: &mut H,
             ) {
-                by.run::<S, H, COMPACT, FULL_DETAIL>(ray, steps, sink);
+                by.run::<S, H, COMPACT, FULL_DETAIL, LEAVES>(ray, departure, steps, sink);
             }
             // SAFETY: the processor has them, as was just asked.
-            return unsafe { lanes::<S, H, COMPACT, FULL_DETAIL>(self, ray, steps, sink) };
+            return unsafe { lanes::<S, H, COMPACT, FULL_DETAIL, LEAVES>(self, ray, departure, steps, sink) };
         }
-        self.run::<S, H, COMPACT, FULL_DETAIL>(ray, steps, sink);
+        self.run::<S, H, COMPACT, FULL_DETAIL, LEAVES>(ray, departure, steps, sink);
     }
 
     #[inline(always)]
-    fn run<S: StepSink, H: HitSink, const COMPACT: bool, const FULL_DETAIL: bool>(&mut self, ray: &Ray, steps: &mut S, sink: &mut H) {
-        let setup = RaySetup::eval(&ray_setup::In { origin: ray.origin, direction: ray.direction });
+    fn run<S: StepSink, H: HitSink, const COMPACT: bool, const FULL_DETAIL: bool, const LEAVES: bool>(
+        &mut self,
+        ray: &Ray,
+        departure: Option<&Departure>,
+        steps: &mut S,
+        sink: &mut H,
+    ) {
+        debug_assert_eq!(LEAVES, departure.is_some());
+        let (leaving, prior, setup) = match departure {
+            Some(from) if LEAVES => {
+                debug_assert_eq!(from.start.point, ray.origin);
+                let leaving = Leaving::new(&from.start, ray.direction);
+                (leaving, from.prior.as_ref(), leaving.setup(ray.origin, ray.direction))
+            }
+            _ => (Leaving::default(), None, RaySetup::eval(&ray_setup::In { origin: ray.origin, direction: ray.direction })),
+        };
         self.stack.clear();
         let Self { image, stack, splits } = self;
-        let mut journey = Journey::<S, H, COMPACT, FULL_DETAIL> { image, stack, splits, ray, setup, tree: TreeAt::default(), steps, sink };
+        let (tree, deciders) = (TreeAt::default(), Deciders::default());
+        let mut journey =
+            Journey::<S, H, COMPACT, FULL_DETAIL, LEAVES> { image, stack, splits, ray, setup, leaving, prior, deciders, tree, steps, sink };
         let mut next = Some(Entry::default());
         loop {
             // A child just tested is not beyond the closest hit; an entry that waited may be by now.
@@ -108,7 +150,9 @@ impl<'a> LodTraverser<'a> {
     }
 }
 
-impl<S: StepSink, H: HitSink, const COMPACT: bool, const FULL_DETAIL: bool> Journey<'_, S, H, COMPACT, FULL_DETAIL> {
+impl<S: StepSink, H: HitSink, const COMPACT: bool, const FULL_DETAIL: bool, const LEAVES: bool>
+    Journey<'_, S, H, COMPACT, FULL_DETAIL, LEAVES>
+{
     #[inline(always)]
     fn visit(&mut self, entry: &Entry) -> Option<Entry> {
         match entry.kind.get() {
@@ -142,6 +186,9 @@ impl<S: StepSink, H: HitSink, const COMPACT: bool, const FULL_DETAIL: bool> Jour
         let record = &self.image.records[tree];
         self.tree = TreeAt { index: tree as u32, lines: L0Record::line_tree(&record[4..]) }; // an index of 28 bits
         let p = VertexData::from_words(&record[..4]).points();
+        if LEAVES {
+            self.deciders = self.prior.map_or(Deciders::default(), |prior| prior.deciders(tree as u32, &p));
+        }
         let L0Record { e0, e1, e2, .. } = L0Record::from_words(&record[4..]);
         self.tree_node(0, 0, [p, p], [e0, e1, e2])
     }
@@ -158,7 +205,7 @@ impl<S: StepSink, H: HitSink, const COMPACT: bool, const FULL_DETAIL: bool> Jour
         let scale = self.image.scale;
         let lod = match FULL_DETAIL {
             true => LodTest::of_full_detail(codes, scale),
-            false => LodTest::eval(&lod_test::In { ray: *self.ray, p0, p1, p2, e0, e1, e2, scale }),
+            false => self.lod_test(level, node, &lod_test::In { ray: *self.ray, p0, p1, p2, e0, e1, e2, scale }),
         };
         // A tree's root was visited for its record.
         self.steps.step(Step { visits: level > 0, ..Step::of(Act::LodTest { refine: lod.refine }) });
@@ -189,6 +236,18 @@ impl<S: StepSink, H: HitSink, const COMPACT: bool, const FULL_DETAIL: bool> Jour
         let split = Split { full: Corners::of(f, g), morphed: Corners::of(p, q) };
         self.splits[level as usize] = split;
         self.tree_children(level, node, &split, !alone)
+    }
+
+    /// The LOD test of a node, by the rays that decide about its edges.
+    #[inline(always)]
+    fn lod_test(&self, level: u32, node: u32, input: &lod_test::In) -> lod_test::Out {
+        match self.prior {
+            Some(prior) if LEAVES && self.deciders.is_any() => {
+                let viewer = |by: u8| if by == 0 { self.ray } else { &prior.viewers[usize::from(by) - 1] };
+                LodTest::by(self.deciders.of_node(level, node).map(viewer), input)
+            }
+            _ => LodTest::eval(input),
+        }
     }
 
     /// The inserted vertices of a node as they are stored.
@@ -232,10 +291,11 @@ impl<S: StepSink, H: HitSink, const COMPACT: bool, const FULL_DETAIL: bool> Jour
         let mut run = TriangleRun::default();
         for (node, corners) in (first..).zip(triangles) {
             let [p0, p1, p2] = corners;
-            let test = TriTest::eval(&tri_test::In { origin: self.ray.origin, direction: self.ray.direction, p0, p1, p2 });
+            let input = tri_test::In { origin: self.ray.origin, direction: self.ray.direction, p0, p1, p2 };
+            let (test, below) = if LEAVES { self.leaving.test(&input) } else { (TriTest::eval(&input), Below::default()) };
             run.add(test.hit, self.steps);
             if test.hit {
-                self.sink.offer(TriangleId { tree: self.tree.index, level, node }, &corners, &test);
+                self.sink.offer(TriangleId { tree: self.tree.index, level, node }, &corners, &test, &below);
             }
         }
         run.state(self.steps);
