@@ -8,7 +8,7 @@
 use super::parts::{DivisorMultiples, Parts, Registers, TAG};
 use super::tri_test::{EdgeFunction, TNumerator};
 use super::{Block, Form, Timing};
-use crate::num::{RayT, Wire, wire_struct};
+use crate::num::{RayT, START_BITS, U, Wire, wire_struct};
 
 wire_struct! {
     /// Input of [`HitDivide`].
@@ -69,13 +69,22 @@ impl Block for HitDivide {
     }
     #[inline(always)]
     fn eval(input: &In) -> Out {
+        Self::with(input, U::ZERO)
+    }
+}
+
+impl HitDivide {
+    /// The division for a numerator with `low` steps of 2^-31 below whole numbers: floor((n + low / 2^31) 2^32 / d). Where the block's steps take a zero they would
+    /// take the next bit of `low`.
+    #[inline(always)]
+    pub fn with(input: &In, low: U<START_BITS>) -> Out {
         let (n, d) = (input.numerator.get(), input.denominator.get());
         let whole = n / d;
         if whole >= 1 << 3 {
             return Out { quotient: RayT::MAX }; // 8 * 2^32 does not fit 35 bits
         }
-        // The remainder is below 2^96: 128 bits after the shift.
-        let fraction = ((n - whole * d) << 32) / d;
+        // The remainder r is at most d - 1 and 2 low below 2^32: r 2^32 + 2 low < d 2^32, 128 bits.
+        let fraction = (((n - whole * d) << 32) + (u128::from(low.get()) << 1)) / d;
         #[expect(clippy::as_conversions, reason = "below 2^3 and below 2^32")]
         let [whole, fraction] = [whole as u64, fraction as u64];
         Out { quotient: RayT::new(whole << 32 | fraction) }
@@ -97,6 +106,15 @@ mod tests {
             let wanted = exact.min(BigUint::from(RayT::MAX.get()));
             let out = HitDivide::eval(&In { numerator: WU::new(n), denominator: WU::new(d) });
             prop_assert_eq!(BigUint::from(out.quotient.get()), wanted);
+        }
+
+        #[test]
+        fn what_is_below_whole_numbers_counts(n in 0u128..1 << 99, low in 0u64..1 << 31, d in 1u128..1 << 96, sn in 0u32..99, sd in 0u32..96) {
+            let (n, d) = (n >> sn, (d >> sd).max(1));
+            let exact = ((BigUint::from(n) << START_BITS) + low) * 2u32 / BigUint::from(d);
+            let wanted = exact.min(BigUint::from(RayT::MAX.get()));
+            let input = In { numerator: WU::new(n), denominator: WU::new(d) };
+            prop_assert_eq!(BigUint::from(HitDivide::with(&input, U::new(low)).quotient.get()), wanted);
         }
     }
 }

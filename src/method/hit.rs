@@ -3,11 +3,11 @@
 use super::lod::Prior;
 use crate::block::Block;
 use crate::block::bary_map::{self, BaryMap, NodeIndex};
-use crate::block::hit_divide;
+use crate::block::hit_divide::{self, HitDivide};
 use crate::block::hit_select::{self, FullId, HitSelect};
 use crate::block::tri_test::{self, EdgeFunction, TNumerator};
 use crate::format::encode_normal;
-use crate::method::leave::{self, Below};
+use crate::method::leave::Below;
 use crate::num::{BARY_ONE, Bary, Point, RayT, Start, T_NEAR_TO_T_SHIFT, TNear, U, wire_struct};
 use crate::rays::ModelRay;
 use glam::DVec3;
@@ -108,7 +108,7 @@ impl ClosestHit {
         let weight = |edge: EdgeFunction, low| {
             // An edge function is at most det: the quotient is at most 2^32 before its last bit is dropped.
             let numerator = TNumerator::new(edge.get());
-            leave::divide(&hit_divide::In { numerator, denominator: test.det }, low).get() >> 1
+            HitDivide::with(&hit_divide::In { numerator, denominator: test.det }, low).quotient.get() >> 1
         };
         let (b1, b2) = (weight(test.v, below.v), weight(test.w, below.w));
         // Both were rounded down and v + w <= det.
@@ -153,7 +153,7 @@ impl HitSink for ClosestHit {
 
     #[inline(always)]
     fn offer(&mut self, id: TriangleId, corners: &[Point; 3], test: &tri_test::Out, below: &Below) {
-        let t = leave::divide(&hit_divide::In { numerator: test.t_num, denominator: test.det }, below.t);
+        let t = HitDivide::with(&hit_divide::In { numerator: test.t_num, denominator: test.det }, below.t).quotient;
         if t < self.range[0] || t > self.range[1] {
             return;
         }
@@ -190,8 +190,8 @@ pub struct Departure {
     pub start: Start,
     /// Corners of the triangle that was hit, as it was tested.
     pub corners: [Point; 3],
-    /// Who decides about the level of detail around it; nothing where there is only one level.
-    pub prior: Option<Prior>,
+    /// Who decides about the level of detail around it.
+    pub prior: Prior,
     /// A third ray had decided about an edge there, and was dropped ([`Prior::after`]).
     pub crowded: bool,
 }

@@ -6,11 +6,10 @@
 //! width proved; the RTL has no such rays yet.
 //! Legal: as [`TriTest`](tri_test::TriTest); the weights' sum is 2^31.
 
-use crate::block::hit_divide;
 use crate::block::ray_setup::{self, Axis, RaySetup};
 use crate::block::tri_test::{self, EdgeFunction, TNumerator, cross, dot_moment, dot_wide, moment};
 use crate::block::{Block, dot};
-use crate::num::{BARY_ONE, BOX_SHIFT, Bary, Direction, Point, RayT, S, START_BITS, Start, U, WU, wire_struct};
+use crate::num::{BARY_ONE, BOX_SHIFT, Bary, Direction, Point, S, START_BITS, Start, U, WU, wire_struct};
 use std::cmp::Ordering;
 
 /// Whole part of a number in steps of 2^-31.
@@ -167,29 +166,11 @@ impl Leaving {
     }
 }
 
-/// The division of hits for a numerator with something below whole numbers: floor((n + low / 2^31) 2^32 / d), saturating at 35 bits. Where [`hit_divide`]'s has zeros, a step
-/// of this one takes the next bit of `low`.
-#[inline(always)]
-pub fn divide(input: &hit_divide::In, low: U<START_BITS>) -> RayT {
-    let (n, d) = (input.numerator.get(), input.denominator.get());
-    let whole = n / d;
-    if whole >= 1 << 3 {
-        return RayT::MAX;
-    }
-    // r <= d - 1 and 2 low < 2^32: r 2^32 + 2 low < d 2^32, 128 bits.
-    let fraction = (((n - whole * d) << 32) + (u128::from(low.get()) << 1)) / d;
-    #[expect(clippy::as_conversions, reason = "below 2^3 and below 2^32")]
-    let [whole, fraction] = [whole as u64, fraction as u64];
-    RayT::new(whole << 32 | fraction)
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::block::tri_test::TriTest;
     use crate::num::{Random, Vec3};
-    use num_bigint::BigUint;
-    use proptest::prelude::*;
 
     fn point(random: &mut Random, most: u64) -> Point {
         let [x, y, z] = [(); 3].map(|()| random.within(most));
@@ -288,17 +269,6 @@ mod tests {
         // The next sheet is one unit away: the rounded start lies on its other side or on it, the exact one does not.
         assert!(met(up, triangle(1)) && !met(down, triangle(1)));
         assert!(met(down, triangle(-1)) && !met(up, triangle(-1)));
-    }
-
-    proptest! {
-        #[test]
-        fn divisions_agree_with_big_integers(n in 0u128..1 << 99, low in 0u64..1 << 31, d in 1u128..1 << 96, sn in 0u32..99, sd in 0u32..96) {
-            let (n, d) = (n >> sn, (d >> sd).max(1));
-            let exact = ((BigUint::from(n) << START_BITS) + low) * 2u32 / BigUint::from(d);
-            let wanted = exact.min(BigUint::from(RayT::MAX.get()));
-            let input = hit_divide::In { numerator: WU::new(n), denominator: WU::new(d) };
-            prop_assert_eq!(BigUint::from(divide(&input, U::new(low)).get()), wanted);
-        }
     }
 
     /// The largest coordinates, so that every width is used.
