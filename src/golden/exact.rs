@@ -6,7 +6,7 @@
 
 use super::{
     cull::{Bounds, Boxes},
-    hit_map, lod,
+    fine, hit_map, lod,
     paths::{self, Leg},
     predicates::{self, Fractions, Meeting, Vector},
     ties::Ties,
@@ -112,7 +112,7 @@ impl<'a> Exact<'a> {
         let Some(last) = before.last() else { return false };
         let walk = Walk { boxes: None, ..self.walk_after(before, ray) };
         let mut found = false;
-        walk.trees(&mut |tree| walk.tree(tree, &mut |at| found |= predicates::holds_another(last.start, last.corners, at.corners)));
+        walk.trees(&mut |tree| walk.tree(tree, &mut |at| found |= fine::holds_another(last.start, last.corners, at.corners)));
         found
     }
 
@@ -120,7 +120,7 @@ impl<'a> Exact<'a> {
     pub fn leg(&self, before: &[Leg], ray: &Ray, hit: &ExactHit) -> Leg {
         let walk = self.walk_after(before, ray);
         let corners = walk.corners(hit);
-        Leg { viewer: viewer(ray), tree: hit.tree, base: walk.base(hit.tree), corners, start: predicates::inside(corners, hit.bary) }
+        Leg { viewer: viewer(ray), tree: hit.tree, base: walk.base(hit.tree), corners, start: fine::inside(corners, hit.bary) }
     }
 
     /// How near this ray comes to deciding otherwise anywhere (see [`Ties`]).
@@ -228,7 +228,7 @@ impl Walk<'_> {
                 if Bounds::EMPTY.missed_by(x, 1, d, &at.corners) {
                     return;
                 }
-                if let Some(met) = predicates::meet_from(last.start, d, at.corners) {
+                if let Some(met) = fine::meet(last.start, d, at.corners) {
                     hit(at, met);
                 }
             };

@@ -6,6 +6,7 @@
 
 mod cull;
 pub mod exact;
+mod fine;
 mod hit_map;
 mod lod;
 mod naive_bounds;

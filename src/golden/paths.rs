@@ -3,8 +3,9 @@
 //! About an edge decides, for ray i: if it lies in the base triangle that ray i - 1 hit, who decided about it for ray i - 1; if it lies on a base edge that is one of that
 //! triangle's too, with the same two points for ends, likewise; else ray i.
 
+use super::fine::Fine;
 use super::lod::Viewer;
-use super::predicates::{Fine, Vector};
+use super::predicates::Vector;
 use crate::num::{Point, START_BITS, Start, U};
 
 /// A ray of a path with its hit.

@@ -4,66 +4,22 @@
 //! then the polynomial E + e n_x + e^2 n_y + e^3 n_z with n = p x q, and its sign that of its first non-zero coefficient. If all
 //! vanish, the origin lies on the edge's line, so in the triangle's plane, and whatever they count as it is met nowhere ahead of the origin.
 
-use num_bigint::{BigInt, BigUint, Sign};
+use num_bigint::BigInt;
 
 /// An exact integer vector: at most 33 bits a component, 34 for differences.
 pub(super) type Vector = [i64; 3];
 
-/// A triangle that the ray meets: barycentrics and distance as fractions with the common, positive denominator `det`; 2^31 times all of them for a ray from a [`Fine`] point.
+/// A triangle that the ray meets: barycentrics and distance as fractions with the common, positive denominator `det`; 2^31 times all of them for a ray from a [`Fine`](super::fine::Fine) point.
 pub(super) struct Meeting {
-    u: i128,
-    v: i128,
-    w: i128,
-    det: i128,
-    t_num: i128,
+    pub u: i128,
+    pub v: i128,
+    pub w: i128,
+    pub det: i128,
+    pub t_num: i128,
     /// floor(t 2^32) where t's numerator is too long.
-    t: Option<u64>,
+    pub t: Option<u64>,
     /// The determinant was negative before it was made positive.
     pub front: bool,
-}
-
-/// Where a ray starts on a triangle: in steps of 2^-31 units.
-pub(super) type Fine = [i64; 3];
-
-/// The mean of a triangle's corners by barycentrics of sum 2^31, each taken as 1 at least at the cost of the first of the largest.
-pub(super) fn inside(corners: [Vector; 3], bary: [u32; 3]) -> Fine {
-    let mut b = bary.map(i64::from);
-    let most = (0..3).rev().max_by_key(|&k| b[k]).unwrap_or(0);
-    let raised: i64 = b.iter().filter(|&&v| v == 0).count() as i64; // two at most
-    b[most] -= raised;
-    let b = b.map(|v| v.max(1));
-    std::array::from_fn(|axis| (0..3).map(|k| b[k] * corners[k][axis]).sum())
-}
-
-/// The meeting of the ray from `start` along `d` with a triangle, in big integers: everything in steps of 2^-31 units.
-pub(super) fn meet_from(start: Fine, d: Vector, corners: [Vector; 3]) -> Option<Meeting> {
-    type Big = [BigInt; 3];
-    let big = |v: Vector| v.map(BigInt::from);
-    let cross =
-        |p: &Big, q: &Big| -> Big { std::array::from_fn(|k| &p[(k + 1) % 3] * &q[(k + 2) % 3] - &p[(k + 2) % 3] * &q[(k + 1) % 3]) };
-    let dot = |p: &Big, q: &Big| -> BigInt { (0..3).map(|k| &p[k] * &q[k]).sum() };
-    let d = big(d);
-    let [a, b, c] = corners.map(|p| -> Big { std::array::from_fn(|k| (BigInt::from(p[k]) << 31) - start[k]) });
-    let edge = |p: &Big, q: &Big| {
-        let n = cross(p, q);
-        let value = dot(&d, &n);
-        let leading = std::iter::once(&value).chain(&n).map(BigInt::sign).find(|&s| s != Sign::NoSign).unwrap_or(Sign::Plus);
-        (value, leading)
-    };
-    let [(u, sign), (v, sign_v), (w, sign_w)] = [edge(&b, &c), edge(&c, &a), edge(&a, &b)];
-    // Steps of 2^-62.
-    let det = &u + &v + &w;
-    let t_num = dot(&a, &cross(&b, &c));
-    if sign_v != sign || sign_w != sign || (&t_num * &det).sign() != Sign::Plus {
-        return None;
-    }
-    let front = det.sign() == Sign::Minus;
-    let size = |e: &BigInt| i128::try_from(e.magnitude() >> 31u32).unwrap_or(i128::MAX);
-    // Whole steps of 2^-31: d is whole, and a product of two others has no more than 2^-62 to lose.
-    let t = held((BigInt::from(t_num.magnitude().clone()) << 1u32) / BigInt::from(det.magnitude().clone()));
-    let exact = |e: &BigInt| (e.magnitude() & BigUint::from((1u32 << 31) - 1)) == BigUint::ZERO;
-    debug_assert!([&u, &v, &w, &det].into_iter().all(exact));
-    Some(Meeting { u: size(&u), v: size(&v), w: size(&w), det: size(&det), t_num: 0, t: Some(t), front })
 }
 
 /// Distance and barycentrics of a hit as they are before any rounding: fractions over one denominator.
@@ -81,7 +37,7 @@ pub(super) fn sub(p: Vector, q: Vector) -> Vector {
     std::array::from_fn(|k| p[k] - q[k])
 }
 
-fn cross(p: Vector, q: Vector) -> [i128; 3] {
+pub(super) fn cross(p: Vector, q: Vector) -> [i128; 3] {
     // Components below 2^32 in magnitude: the difference of two products stays below 2^66.
     std::array::from_fn(|k| {
         let (i, j) = ((k + 1) % 3, (k + 2) % 3);
@@ -89,7 +45,7 @@ fn cross(p: Vector, q: Vector) -> [i128; 3] {
     })
 }
 
-fn dot(p: Vector, q: [i128; 3]) -> i128 {
+pub(super) fn dot(p: Vector, q: [i128; 3]) -> i128 {
     // Below 3 * 2^32 * 2^66 < 2^100.
     (0..3).map(|k| i128::from(p[k]) * q[k]).sum()
 }
@@ -121,24 +77,8 @@ pub(super) fn meet(d: Vector, a: Vector, b: Vector, c: Vector) -> Option<Meeting
     (met.t_num > 0).then_some(met)
 }
 
-/// The triangle `corners` holds the point `start`, and does not lie in the plane of the triangle `own`, in which `start` lies.
-pub(super) fn holds_another(start: Fine, own: [Vector; 3], corners: [Vector; 3]) -> bool {
-    let n = cross(sub(own[1], own[0]), sub(own[2], own[0]));
-    if corners.iter().all(|&p| dot(sub(p, own[0]), n) == 0) {
-        return false;
-    }
-    let [a, b, c] = corners.map(|p| -> [BigInt; 3] { std::array::from_fn(|k| (BigInt::from(p[k]) << 31) - start[k]) });
-    let cross = |p: &[BigInt; 3], q: &[BigInt; 3]| -> [BigInt; 3] {
-        std::array::from_fn(|k| &p[(k + 1) % 3] * &q[(k + 2) % 3] - &p[(k + 2) % 3] * &q[(k + 1) % 3])
-    };
-    let dot = |p: &[BigInt; 3], q: &[BigInt; 3]| -> BigInt { (0..3).map(|k| &p[k] * &q[k]).sum() };
-    let sides = [cross(&b, &c), cross(&c, &a), cross(&a, &b)];
-    // In its plane, and the three areas around the point are turned alike; flat triangles hold what they may.
-    dot(&a, &sides[0]).sign() == Sign::NoSign && (0..3).all(|i| dot(&sides[i], &sides[(i + 1) % 3]).sign() != Sign::Minus)
-}
-
 /// At most 2^35 - 1.
-fn held(t: BigInt) -> u64 {
+pub(super) fn held(t: BigInt) -> u64 {
     u64::try_from(t).unwrap_or(u64::MAX).min((1 << 35) - 1)
 }
 
@@ -253,6 +193,7 @@ mod tests {
             ([0, 0, -1], [0, 8, 0], [-8, 0, 0], -1), // E = -64, n = (0, 0, 64)
             ([5, 6, 7], [2, 0, 0], [-3, 0, 0], 1),   // origin on the edge
             ([5, 6, 7], [0, 3, -9], [0, 1, -3], 1),  // origin on its line
+            ([5, 6, 7], [0, 0, -9], [0, 0, 4], 1),
         ] {
             assert_eq!(edge_function(d, p, q).1, sign, "{d:?} {p:?} {q:?}");
         }
