@@ -1,9 +1,9 @@
 //! How errors grow with the number of splits and with the distance of the camera.
 
-use super::cases::round_model;
 use super::error::{bary_error, pixels_off};
 use super::model::Model;
 use super::rays::{Aim, Cones, PIXEL, Shot, Views, shot};
+use super::stiff::round_model;
 use crate::format::SceneError;
 use crate::golden::Exact;
 use crate::method::ClosestHit;

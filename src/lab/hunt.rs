@@ -4,12 +4,13 @@
 //! direction, or in the cone; now and then a vertex moves by a step of its grid. A move that does not lead away from its goal is kept. Climbs
 //! are independent of each other: the same seed hunts the same on any number of threads.
 
-use super::cases::{adversary, hunting_case};
+use super::cases::hunting_case;
 use super::found::Found;
 use super::goal::{GOALS, Goal};
 use super::judge::{Judge, Tally};
 use super::model::Model;
 use super::rays::{Aim, Shot, shot};
+use super::stiff::adversary;
 use crate::format::SceneError;
 use crate::golden::Exact;
 use crate::mesh::{Hierarchy, lattice};

@@ -13,9 +13,10 @@ mod model;
 mod paths;
 mod rays;
 mod shapes;
+mod stiff;
 pub mod suite;
 
-pub use cases::{CASES, Case, FILE_CASES, SAMPLE, Scale};
+pub use cases::{CASES, Case, FILE_CASES, SAMPLE};
 pub use dyadic::Dyadic;
 pub use found::Found;
 pub use goal::{GOALS, Goal};
@@ -23,4 +24,5 @@ pub use hunt::Hunt;
 pub use judge::{Judge, Tally, WIDTHS_CHECKED};
 pub use model::Model;
 pub use rays::{Aim, BOUNCES, Bounce, Cones, PIXEL, Shot, Views, shot};
+pub use stiff::Scale;
 pub use suite::{Report, Row};

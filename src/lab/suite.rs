@@ -1,9 +1,10 @@
 //! Runs cases: rays in parallel, tallies in order.
 
-use super::cases::{Case, Scale};
+use super::cases::Case;
 use super::judge::{Judge, Tally, WIDTHS_CHECKED};
 use super::model::Model;
 use super::rays::{Aim, shot};
+use super::stiff::Scale;
 use crate::format::SceneError;
 use crate::golden::Exact;
 use crate::lab::crack::Closedness;

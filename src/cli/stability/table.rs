@@ -40,7 +40,7 @@ fn rows(report: &Report, hunt: Option<&Hunt>) -> Vec<[String; 11]> {
 /// For the terminal.
 pub fn text(report: &Report, hunt: Option<&Hunt>, seed: u64) -> String {
     let line = |cells: &[String]| {
-        let widths = [14, 15, 15, 12, 7, 8, 7, 10, 8, 9, 8];
+        let widths = [18, 15, 15, 12, 7, 8, 7, 10, 8, 9, 8];
         let cells = cells.iter().zip(widths).enumerate();
         let text: String =
             cells.map(|(k, (cell, width))| if k == 0 { format!("{cell:<width$}") } else { format!("{cell:>width$}") }).collect();
