@@ -50,6 +50,13 @@ package lod_pkg;
   localparam int unsigned SIGNED_EDGE_W = EDGE_FUNCTION_W + 1 - EDGE_ZEROS;
   localparam int unsigned T_NUMERATOR_W = 99;                                   // |a| |b| |c| < 2^98.4
   localparam int unsigned SIGNED_T_NUMERATOR_W = T_NUMERATOR_W + 1 - 3 * COORDINATE_ZEROS;
+  localparam int unsigned DECIDER_W = 2;                                        // of who decides about an edge: 0 the ray itself, 1 and 2 its viewers
+  localparam int unsigned FRACTION_W = 31;                                      // of the fraction of an exact start, in each coordinate
+  localparam int unsigned WHOLE_RELATIVE_W = 33;                                // difference of two coordinates with all their bits
+  localparam int unsigned WHOLE_NORMAL_W = 66;                                  // component of p x q of such
+  localparam int unsigned EXACT_NORMAL_W = 98;                                  // of an exact start: |p x q| < 2^65.6 in steps of 2^-31
+  localparam int unsigned EXACT_EDGE_W = EDGE_FUNCTION_W + FRACTION_W + 1;      // its product with d, likewise
+  localparam int unsigned EXACT_T_W = T_NUMERATOR_W + FRACTION_W + 1;           // and a.(b x c)
 
   // Sizes.
   localparam int unsigned COORD_LIMIT = 2147352576;  // of a coordinate in magnitude
@@ -82,18 +89,34 @@ package lod_pkg;
   localparam int unsigned HIT_SELECT_LATENCY = 3;
   localparam int unsigned LOD_TEST_LATENCY = 30;
   localparam int unsigned LOD_TEST_INTERVAL = 3;
-  localparam int unsigned LOD_TEST_1_LATENCY = 30;  // of the form with one edge a cycle
+  localparam int unsigned LOD_TEST_1_LATENCY = 30;     // of the form with one edge a cycle
   localparam int unsigned LOD_TEST_1_INTERVAL = 3;
-  localparam int unsigned LOD_TEST_3_LATENCY = 25;  // of the form with three
+  localparam int unsigned LOD_TEST_3_LATENCY = 25;     // of the form with three
+  localparam int unsigned LOD_TEST_BY_LATENCY = 27;
+  localparam int unsigned LOD_TEST_BY_INTERVAL = 3;
+  localparam int unsigned LOD_TEST_BY_1_LATENCY = 27;  // of the form with one edge a cycle
+  localparam int unsigned LOD_TEST_BY_1_INTERVAL = 3;
+  localparam int unsigned LOD_TEST_BY_3_LATENCY = 25;  // of the form with three
   localparam int unsigned NODE_ADDRESS_LATENCY = 2;
+  localparam int unsigned NODE_DECIDERS_LATENCY = 1;
   localparam int unsigned RAY_SETUP_LATENCY = 11;
   localparam int unsigned RAY_SETUP_INTERVAL = 11;
+  localparam int unsigned START_DIVIDE_LATENCY = 13;
+  localparam int unsigned START_DIVIDE_INTERVAL = 13;
+  localparam int unsigned START_SETUP_LATENCY = 11;
+  localparam int unsigned START_SETUP_INTERVAL = 11;
+  localparam int unsigned START_TEST_LATENCY = 22;
+  localparam int unsigned START_TEST_INTERVAL = 3;
+  localparam int unsigned START_TEST_1_LATENCY = 22;   // of the form with one edge a cycle
+  localparam int unsigned START_TEST_1_INTERVAL = 3;
+  localparam int unsigned START_TEST_3_LATENCY = 21;   // of the form with three
   localparam int unsigned TESSELLATE_LATENCY = 7;
+  localparam int unsigned TREE_DECIDERS_LATENCY = 2;
   localparam int unsigned TRI_TEST_LATENCY = 20;
   localparam int unsigned TRI_TEST_INTERVAL = 3;
-  localparam int unsigned TRI_TEST_1_LATENCY = 20;  // of the form with one edge a cycle
+  localparam int unsigned TRI_TEST_1_LATENCY = 20;     // of the form with one edge a cycle
   localparam int unsigned TRI_TEST_1_INTERVAL = 3;
-  localparam int unsigned TRI_TEST_3_LATENCY = 18;  // of the form with three
+  localparam int unsigned TRI_TEST_3_LATENCY = 18;     // of the form with three
   localparam int unsigned CHILD_TEST_LATENCY = 15;
   localparam int unsigned CHILD_TEST_INTERVAL = 2;
 
@@ -103,9 +126,12 @@ package lod_pkg;
   localparam int unsigned EDGE_DOT_STAGES = 2;         // of those with a direction
   localparam int unsigned T_DOT_STAGES = 2;            // of those of t, which take as long
   localparam int unsigned EDGE_FUNCTION_LATENCY = 14;  // of tri_test
-  localparam int unsigned TRI_DECIDE_LATENCY = 3;      // of tri_test
+  localparam int unsigned TRI_DECIDE_LATENCY = 3;      // of tri_test and start_test
+  localparam int unsigned START_PRODUCT_STAGES = 2;    // registers of the products of exact numbers
+  localparam int unsigned START_EDGE_LATENCY = 16;     // of start_test
   localparam int unsigned CONE_TOLERANCE_LATENCY = 7;  // of lod_test
   localparam int unsigned EDGE_OPENING_LATENCY = 9;    // of lod_test
+  localparam int unsigned LOD_EDGE_BY_LATENCY = 23;    // of lod_test_by
   localparam int unsigned MULTIPLIER_LIMB_W = 17;      // a factor of multiplier is cut into limbs of so many bits, the highest signed with up to one more
 
   // Bit k: stage k of the box tests is a `pipe_skid`. Two registers follow it.
@@ -199,6 +225,13 @@ package lod_pkg;
     cone_t cone;            // Its cone and the wanted quality.
   } ray_t;
   localparam int unsigned RAY_W = POINT_W + DIRECTION_W + CONE_W;
+
+  // Where a ray starts: a whole point, or a point of a triangle, exact in steps of 2^-31 units.
+  typedef struct packed {
+    point_t point;               // Coordinates rounded down to units.
+    logic [2:0][30:0] fraction;  // What is left of each, in steps of 2^-31 units.
+  } start_t;
+  localparam int unsigned START_W = POINT_W + 3 * 31;
 
   // A box in steps of 2^16 units, rounded outwards.
   typedef struct packed {
@@ -546,6 +579,97 @@ package lod_pkg;
   } node_address_out_t;
   localparam int unsigned NODE_ADDRESS_OUT_W = LINE_ADDRESS_W;
 
+  // Input of tree_deciders.
+  typedef struct packed {
+    logic [27:0] last;   // Base triangle of the last hit.
+    point_t a0;          // Its corner p0.
+    point_t a1;          // Its corner p1.
+    point_t a2;          // Its corner p2.
+    logic [2:0] second;  // Of its edges (p1, p2), (p2, p0), (p0, p1): the second viewer decides, not the first.
+    logic [27:0] tree;   // The base triangle entered.
+    point_t p0;          // Its corner p0.
+    point_t p1;          // Its corner p1.
+    point_t p2;          // Its corner p2.
+  } tree_deciders_in_t;
+  localparam int unsigned TREE_DECIDERS_IN_W = 28 + POINT_W + POINT_W + POINT_W + 3 + 28 + POINT_W + POINT_W + POINT_W;
+
+  // Output of tree_deciders.
+  typedef struct packed {
+    logic [DECIDER_W-1:0] inner;       // Who decides about inner edges.
+    logic [2:0][DECIDER_W-1:0] edges;  // About base edge (p1, p2), (p2, p0), (p0, p1), and parts of it.
+  } tree_deciders_out_t;
+  localparam int unsigned TREE_DECIDERS_OUT_W = DECIDER_W + 3 * DECIDER_W;
+
+  // Input of node_deciders.
+  typedef struct packed {
+    tree_deciders_out_t tree;       // Who decides in its tree.
+    logic [3:0] level;              // Its level.
+    logic [NODE_INDEX_W-1:0] node;  // Its number on that level.
+  } node_deciders_in_t;
+  localparam int unsigned NODE_DECIDERS_IN_W = TREE_DECIDERS_OUT_W + 4 + NODE_INDEX_W;
+
+  // Output of node_deciders.
+  typedef struct packed {
+    logic [2:0][DECIDER_W-1:0] by;  // Who decides about edge (p1, p2), (p2, p0), (p0, p1).
+  } node_deciders_out_t;
+  localparam int unsigned NODE_DECIDERS_OUT_W = 3 * DECIDER_W;
+
+  // Input of lod_test_by.
+  typedef struct packed {
+    ray_t ray;                      // The ray.
+    ray_t first;                    // Its first viewer.
+    ray_t second;                   // Its second viewer.
+    logic [2:0][DECIDER_W-1:0] by;  // Who decides about edge (p1, p2), (p2, p0), (p0, p1): 0 the ray, 1 and 2 its viewers.
+    point_t p0;                     // Corner p0 of the (morphed) triangle.
+    point_t p1;                     // Corner p1.
+    point_t p2;                     // Corner p2.
+    logic [BOUND_CODE_W-1:0] e0;    // Bound code of edge (p1, p2).
+    logic [BOUND_CODE_W-1:0] e1;    // Bound code of edge (p2, p0).
+    logic [BOUND_CODE_W-1:0] e2;    // Bound code of edge (p0, p1).
+    bound_scale_t scale;            // The model's bound scale.
+  } lod_test_by_in_t;
+  localparam int unsigned LOD_TEST_BY_IN_W = RAY_W + RAY_W + RAY_W + 3 * DECIDER_W + POINT_W + POINT_W + POINT_W + BOUND_CODE_W + BOUND_CODE_W + BOUND_CODE_W + BOUND_SCALE_W;
+
+  // Input of start_setup.
+  typedef struct packed {
+    start_t start;          // Where the ray starts.
+    direction_t direction;  // Direction.
+  } start_setup_in_t;
+  localparam int unsigned START_SETUP_IN_W = START_W + DIRECTION_W;
+
+  // What numerators have below whole numbers, in steps of 2^-31: nothing for a ray from a whole point.
+  typedef struct packed {
+    logic [30:0] v;  // Of v.
+    logic [30:0] w;  // Of w.
+    logic [30:0] t;  // Of t.
+  } below_t;
+  localparam int unsigned BELOW_W = 31 + 31 + 31;
+
+  // Input of start_test.
+  typedef struct packed {
+    start_t start;          // Where the ray starts.
+    direction_t direction;  // Its direction.
+    point_t p0;             // Corner a = p0.
+    point_t p1;             // Corner b = p1.
+    point_t p2;             // Corner c = p2.
+  } start_test_in_t;
+  localparam int unsigned START_TEST_IN_W = START_W + DIRECTION_W + POINT_W + POINT_W + POINT_W;
+
+  // Output of start_test.
+  typedef struct packed {
+    tri_test_out_t test;  // As the triangle test has it, its numerators rounded down.
+    below_t below;        // What is left of them.
+  } start_test_out_t;
+  localparam int unsigned START_TEST_OUT_W = TRI_TEST_OUT_W + BELOW_W;
+
+  // Input of start_divide.
+  typedef struct packed {
+    logic [T_NUMERATOR_W-1:0] numerator;      // Numerator, rounded down.
+    logic [30:0] low;                         // What is left of it, in steps of 2^-31.
+    logic [EDGE_FUNCTION_W-1:0] denominator;  // Denominator, not 0.
+  } start_divide_in_t;
+  localparam int unsigned START_DIVIDE_IN_W = T_NUMERATOR_W + 31 + EDGE_FUNCTION_W;
+
   // What traversal needs of the four children of a tree's node: 32 bytes.
   typedef struct packed {
     logic reserved;                       // Zero.
@@ -793,6 +917,12 @@ package lod_pkg;
   // A corner as seen from an origin.
   function automatic logic [3*RELATIVE_W-1:0] relative_corner(input kept_point_t p, input kept_point_t x);
     relative_corner = {RELATIVE_W'(p.x) - RELATIVE_W'(x.x), RELATIVE_W'(p.y) - RELATIVE_W'(x.y), RELATIVE_W'(p.z) - RELATIVE_W'(x.z)};
+  endfunction
+
+  // The same with all bits, for rays from exact starts and their viewers.
+  function automatic logic [3*WHOLE_RELATIVE_W-1:0] whole_relative(input point_t p, input point_t x);
+    whole_relative = {WHOLE_RELATIVE_W'(p.x) - WHOLE_RELATIVE_W'(x.x), WHOLE_RELATIVE_W'(p.y) - WHOLE_RELATIVE_W'(x.y),
+                      WHOLE_RELATIVE_W'(p.z) - WHOLE_RELATIVE_W'(x.z)};
   endfunction
 
   // Kinds of stack entries.

@@ -4,30 +4,29 @@
 ///
 /// An edge function counts as positive if it is above 0, or if it is 0 and its tie sign says so. Hit iff all three agree, det = u + v + w != 0 and
 /// t_num / det > 0. Where the signs agree no two of u, v, w have opposite signs, so det = 0 iff all three are 0, and all sums stay below 2^96;
-/// where they do not, sums may wrap: it is a miss. Its second register is a `pipe_skid`. Latency: lod_pkg::TRI_DECIDE_LATENCY = 3; interval 1.
+/// where they do not, sums may wrap: it is a miss. out_o is {hit, front, v, w, det, t_num}, magnitudes of one bit less than what came in. Its second register is a `pipe_skid`. Latency: lod_pkg::TRI_DECIDE_LATENCY = 3; interval 1.
 module tri_decide #(
-  parameter int unsigned TAG_W = 8
+  parameter int unsigned TAG_W = 8,
+  parameter int unsigned EDGE_W = lod_pkg::SIGNED_EDGE_W,
+  parameter int unsigned T_W = lod_pkg::SIGNED_T_NUMERATOR_W
 ) (
-  input  logic                                     clk_i,
-  input  logic                                     rst_ni,
-  input  logic                                     valid_i,
-  output logic                                     ready_o,
-  input  logic [lod_pkg::SIGNED_EDGE_W-1:0]        u_i,
-  input  logic [lod_pkg::SIGNED_EDGE_W-1:0]        v_i,
-  input  logic [lod_pkg::SIGNED_EDGE_W-1:0]        w_i,
-  input  logic                                     tie_u_i,
-  input  logic                                     tie_v_i,
-  input  logic                                     tie_w_i,
-  input  logic [lod_pkg::SIGNED_T_NUMERATOR_W-1:0] t_num_i,
-  input  logic [TAG_W-1:0]                         tag_i,
-  output logic                                     valid_o,
-  input  logic                                     ready_i,
-  output lod_pkg::tri_test_out_t                   out_o,
-  output logic [TAG_W-1:0]                         tag_o
+  input  logic                    clk_i,
+  input  logic                    rst_ni,
+  input  logic                    valid_i,
+  output logic                    ready_o,
+  input  logic [EDGE_W-1:0]       u_i,
+  input  logic [EDGE_W-1:0]       v_i,
+  input  logic [EDGE_W-1:0]       w_i,
+  input  logic                    tie_u_i,
+  input  logic                    tie_v_i,
+  input  logic                    tie_w_i,
+  input  logic [T_W-1:0]          t_num_i,
+  input  logic [TAG_W-1:0]        tag_i,
+  output logic                    valid_o,
+  input  logic                    ready_i,
+  output logic [3*EDGE_W+T_W-3:0] out_o,
+  output logic [TAG_W-1:0]        tag_o
 );
-
-  localparam int unsigned EDGE_W = lod_pkg::SIGNED_EDGE_W;
-  localparam int unsigned T_W = lod_pkg::SIGNED_T_NUMERATOR_W;
 
   // Stage 1: signs, and the first sum of det.
   logic              some_u, some_v, some_w, some_t;
@@ -85,17 +84,11 @@ module tri_decide #(
   logic unused_signs;
   assign unused_signs = ^{v[EDGE_W-1], w[EDGE_W-1], det_positive[EDGE_W-1], t_num[T_W-1]};
 
-  logic              hit_out, front_out;
-  logic [EDGE_W-2:0] v_out, w_out, det_out;
-  logic [T_W-2:0]    t_num_out;
   pipe_stage #(.W(2 + 3 * (EDGE_W - 1) + T_W - 1 + TAG_W)) u_out (
     .clk_i, .rst_ni, .valid_i(valid_det), .ready_o(ready_det),
     .data_i({hit_q, front_q, v[EDGE_W-2:0], w[EDGE_W-2:0], det_positive[EDGE_W-2:0], t_num[T_W-2:0], tag_det_q}),
-    .valid_o, .ready_i, .data_o({hit_out, front_out, v_out, w_out, det_out, t_num_out, tag_o})
+    .valid_o, .ready_i, .data_o({out_o, tag_o})
   );
-  // With the zeros that were left out.
-  assign out_o = {hit_out, front_out, lod_pkg::EDGE_FUNCTION_W'(v_out) << lod_pkg::EDGE_ZEROS, lod_pkg::EDGE_FUNCTION_W'(w_out) << lod_pkg::EDGE_ZEROS,
-                  lod_pkg::EDGE_FUNCTION_W'(det_out) << lod_pkg::EDGE_ZEROS, lod_pkg::T_NUMERATOR_W'(t_num_out) << 3 * lod_pkg::COORDINATE_ZEROS};
 
 endmodule
 

@@ -68,11 +68,17 @@ module tri_test #(
     $error("tri_test: EDGES_PER_CYCLE = %0d, must be 1 or 3", EDGES_PER_CYCLE);
   end
 
+  logic                                     hit, front;
+  logic [EDGE_W-2:0]                        v_out, w_out, det_out;
+  logic [lod_pkg::SIGNED_T_NUMERATOR_W-2:0] t_num_out;
   tri_decide #(.TAG_W(TAG_W)) u_decide (
     .clk_i, .rst_ni, .valid_i(valid_edges), .ready_o(ready_edges), .u_i(u), .v_i(v), .w_i(w),
     .tie_u_i(tie_u), .tie_v_i(tie_v), .tie_w_i(tie_w), .t_num_i(t_num), .tag_i(tag),
-    .valid_o, .ready_i, .out_o, .tag_o
+    .valid_o, .ready_i, .out_o({hit, front, v_out, w_out, det_out, t_num_out}), .tag_o
   );
+  // With the zeros that were left out.
+  assign out_o = {hit, front, lod_pkg::EDGE_FUNCTION_W'(v_out) << lod_pkg::EDGE_ZEROS, lod_pkg::EDGE_FUNCTION_W'(w_out) << lod_pkg::EDGE_ZEROS,
+                  lod_pkg::EDGE_FUNCTION_W'(det_out) << lod_pkg::EDGE_ZEROS, lod_pkg::T_NUMERATOR_W'(t_num_out) << 3 * lod_pkg::COORDINATE_ZEROS};
 
 endmodule
 

@@ -30,11 +30,21 @@ fn twin<T: Wire>(name: impl Into<String>) -> StructTwin {
     StructTwin { name: name.into(), width: T::WIDTH, fields: T::FIELDS }
 }
 
+/// The block whose output this one has: mostly itself.
+fn out_of(block: &str) -> &str {
+    match block {
+        "box_test32" => "box_test",
+        "lod_test_by" => "lod_test",
+        "start_setup" => "ray_setup",
+        "start_divide" => "hit_divide",
+        itself => itself,
+    }
+}
+
 fn add<B: Block>(blocks: &mut Vec<BlockTwin>, structs: &mut Vec<StructTwin>) {
     blocks.push(BlockTwin { name: B::NAME, timing: B::TIMING });
     structs.push(twin::<B::In>(format!("{}_in_t", B::NAME)));
-    // The two box tests share an output.
-    if B::NAME != "box_test32" {
+    if out_of(B::NAME) == B::NAME {
         structs.push(twin::<B::Out>(format!("{}_out_t", B::NAME)));
     }
 }
@@ -50,6 +60,8 @@ fn rust_side() -> (Vec<BlockTwin>, Vec<StructTwin>) {
         twin::<num::BoundScale>("bound_scale_t"),
         twin::<num::Cone>("cone_t"),
         twin::<num::Ray>("ray_t"),
+        twin::<num::Start>("start_t"),
+        twin::<block::start_test::Below>("below_t"),
         twin::<Box16>("box16_t"),
         twin::<block::ray_setup::Reciprocal>("reciprocal_t"),
         twin::<block::ray_setup::Axis>("axis_t"),
@@ -84,9 +96,15 @@ fn rust_side() -> (Vec<BlockTwin>, Vec<StructTwin>) {
         block::hit_divide::HitDivide,
         block::hit_select::HitSelect,
         block::lod_test::LodTest,
+        block::lod_test_by::LodTestBy,
         block::node_address::NodeAddress,
+        block::node_deciders::NodeDeciders,
         block::ray_setup::RaySetup,
+        block::start_divide::StartDivide,
+        block::start_setup::StartSetup,
+        block::start_test::StartTest,
         block::tessellate::Tessellate,
+        block::tree_deciders::TreeDeciders,
         TriTest,
     );
     (blocks, structs)
@@ -100,6 +118,7 @@ fn numbers() -> Vec<(&'static str, u64)> {
         width("T_NEAR_W", num::TNear::WIDTH),
         width("BARY_W", num::Bary::WIDTH),
         width("EDGE_STATE_W", num::EdgeState::WIDTH),
+        width("DECIDER_W", block::tree_deciders::Decider::WIDTH),
         width("BOUND_CODE_W", num::BoundCode::WIDTH),
         width("BOUND_W", block::bound_decode::Bound::WIDTH),
         width("LINE_ADDRESS_W", num::LineAddress::WIDTH),
@@ -115,6 +134,13 @@ fn numbers() -> Vec<(&'static str, u64)> {
         width("TRI_TEST_3_LATENCY", TriTest::THREE_EDGES.latency),
         width("LOD_TEST_1_LATENCY", block::lod_test::LodTest::ONE_EDGE.latency),
         width("LOD_TEST_1_INTERVAL", block::lod_test::LodTest::ONE_EDGE.interval),
+        width("LOD_TEST_BY_3_LATENCY", block::lod_test_by::LodTestBy::THREE_EDGES.latency),
+        width("LOD_TEST_BY_1_LATENCY", block::lod_test_by::LodTestBy::ONE_EDGE.latency),
+        width("LOD_TEST_BY_1_INTERVAL", block::lod_test_by::LodTestBy::ONE_EDGE.interval),
+        width("START_TEST_3_LATENCY", block::start_test::StartTest::THREE_EDGES.latency),
+        width("START_TEST_1_LATENCY", block::start_test::StartTest::ONE_EDGE.latency),
+        width("START_TEST_1_INTERVAL", block::start_test::StartTest::ONE_EDGE.interval),
+        width("FRACTION_W", num::START_BITS),
         width("TRI_TEST_1_LATENCY", TriTest::ONE_EDGE.latency),
         width("TRI_TEST_1_INTERVAL", TriTest::ONE_EDGE.interval),
         ("S_ONE", num::S_ONE),
@@ -282,7 +308,7 @@ fn blocks_have_the_ports_of_blocks() {
     let modules = modules();
     for BlockTwin { name, .. } in &blocks {
         let module = &modules[*name];
-        let out = if *name == "box_test32" { "box_test" } else { name };
+        let out = out_of(name);
         let ports = [
             ("input", "logic".to_owned(), "clk_i"),
             ("input", "logic".to_owned(), "rst_ni"),

@@ -1,8 +1,14 @@
 //! The registers that blocks and contexts are counted to have: those that the RTL declares, as slang finds them, and those that synthesis leaves, as
 //! `docs/hardware.md` has them.
 
+use lodray::block::lod_test_by::LodTestBy;
+use lodray::block::node_deciders::NodeDeciders;
 use lodray::block::parts::Registers;
-use lodray::block::{BoxesPerCycle, EdgesPerCycle, Operation};
+use lodray::block::start_divide::StartDivide;
+use lodray::block::start_setup::StartSetup;
+use lodray::block::start_test::StartTest;
+use lodray::block::tree_deciders::TreeDeciders;
+use lodray::block::{Block, BoxesPerCycle, EdgesPerCycle, Operation};
 use lodray::hardware::{Hardware, Memory};
 use lodray_test_support::hardware::{LESS, NARROW, NARROWS, OTHERS, SMALL};
 
@@ -32,6 +38,21 @@ fn counted(operation: Operation, hardware: &Hardware) -> Registers {
     operation.parts(&hardware.form()).registers
 }
 
+/// Blocks for secondary rays, which no unit has yet: what their RTL declares.
+fn for_secondary_rays(hardware: &Hardware) -> [(&'static str, Registers); 6] {
+    fn of<B: Block>(hardware: &Hardware) -> (&'static str, Registers) {
+        (B::NAME, B::parts(&hardware.form()).registers)
+    }
+    [
+        of::<TreeDeciders>(hardware),
+        of::<NodeDeciders>(hardware),
+        of::<LodTestBy>(hardware),
+        of::<StartSetup>(hardware),
+        of::<StartTest>(hardware),
+        of::<StartDivide>(hardware),
+    ]
+}
+
 fn declared(top: &str, hardware: &Hardware) -> u32 {
     tb::registers(top, &[], hardware).unwrap_or_else(|error| panic!("{top}: {error}"))
 }
@@ -54,6 +75,15 @@ fn blocks_and_contexts_declare_the_registers_that_are_counted() {
         println!("{}: {rtl} bits declared, {} kept; {hardware:?}", operation.name(), rust.kept);
         if rtl != rust.declared {
             wrong.push(format!("{}: {rtl} bits in the RTL, {} counted; {hardware:?}", operation.name(), rust.declared));
+        }
+    }
+    for hardware in [default, all_edges(), dividing(1), dividing(2), NARROW] {
+        for (name, rust) in for_secondary_rays(&hardware) {
+            let rtl = declared(name, &hardware);
+            println!("{name}: {rtl} bits declared; {hardware:?}");
+            if rtl != rust.declared {
+                wrong.push(format!("{name}: {rtl} bits in the RTL, {} counted; {hardware:?}", rust.declared));
+            }
         }
     }
     for hardware in [default].into_iter().chain(OTHERS) {

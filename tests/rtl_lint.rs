@@ -36,6 +36,11 @@ fn tops() -> Vec<(String, Vec<(&'static str, u64)>)> {
     for (top, parameter, value) in [
         ("tri_test", "EDGES_PER_CYCLE", 3),
         ("lod_test", "EDGES_PER_CYCLE", 3),
+        ("start_test", "EDGES_PER_CYCLE", 3),
+        ("lod_test_by", "EDGES_PER_CYCLE", 3),
+        ("start_divide", "DIVIDE_BITS", 1),
+        ("start_divide", "DIVIDE_BITS", 2),
+        ("start_setup", "SETUP_BITS", 1),
         ("child_test", "BOXES_PER_CYCLE", 4),
         ("child_test", "BOXES_PER_CYCLE", 1),
         ("divide_step", "BITS", 2),
@@ -96,7 +101,16 @@ fn every_module_is_clean_in_other_hardware() {
     for hardware in hardwares() {
         hardware.validate().unwrap_or_else(|error| panic!("{error}"));
         // With everything in them: all of `rtl/`.
-        for top in ["traversal_unit_axi", "box_test32"] {
+        for top in [
+            "traversal_unit_axi",
+            "box_test32",
+            "start_setup",
+            "start_test",
+            "start_divide",
+            "tree_deciders",
+            "node_deciders",
+            "lod_test_by",
+        ] {
             wrong.extend(tb::lint(&verilator(), top, &[], &hardware).err().map(|error| format!("{hardware:?}: {error}")));
             linted += 1;
         }

@@ -7,13 +7,13 @@
 
 use lodray::block::Block;
 use lodray::block::lod_test::{self, LodTest};
+use lodray::block::start_test::Below;
 use lodray::block::tessellate::{self, Tessellate, child_triangle};
 use lodray::block::tri_test::{self, TriTest};
 use lodray::bvh::BvhChild32;
 use lodray::format::{BvhChild, BvhNode, ChildRef, Displacements, L0Record, Line, SiblingGroup, SixNode, TreeLines, VertexData};
 use lodray::mesh::{Hierarchy, lattice};
 use lodray::method::bvh::{self, BvhTraverser, FullBvh, FullNodes, FullOptions, LeafLayout, NodeBoxes};
-use lodray::method::leave::Below;
 use lodray::method::lod::{self, LodImage, LodTraverser};
 use lodray::method::{ClosestHit, Crossings, HitSink, TriangleId};
 use lodray::num::{BoundCode, LINE_BYTES, Point, Ray, U, VertexForm, Wire};

@@ -163,7 +163,7 @@ const SUM: u32 = 55;
 const BITS: u32 = EdgeState::WIDTH - 1;
 
 /// `cone_tolerance`: the product with the rest beside it, the sum, the shift in two steps, the clamp.
-fn cone_tolerance() -> Registers {
+pub(super) fn cone_tolerance() -> Registers {
     let product = Multiplier::new(DISTANCE, SLOPE).near();
     let beside = Registers::line(SUM + SHIFT, 1 + multiplier_latency(DISTANCE, SLOPE), 0);
     let shift = Registers::stage(SUM + SHIFT) + Registers::stage(SUM + 4) + Registers::stage(SUM);
@@ -171,7 +171,7 @@ fn cone_tolerance() -> Registers {
 }
 
 /// `edge_opening`: the comparison, and the steps.
-fn edge_opening() -> Registers {
+pub(super) fn edge_opening() -> Registers {
     let state = 2 + 2 * TOLERANCE + BITS;
     // Quotient bits to come are 0; behind the last step divisor and remainder have no use.
     let to_come = 2 * BITS + BITS * (BITS - 1) / 2;
@@ -179,12 +179,12 @@ fn edge_opening() -> Registers {
 }
 
 /// A tag of one bit for which there is no use, in each of its registers.
-fn bound() -> Registers {
+pub(super) fn bound() -> Registers {
     BoundDecode::registers(1).without(BoundDecode::TIMING.latency)
 }
 
 /// A dot product along the ray; the fraction of a distance is dropped.
-fn distance_along(form: &Form) -> Registers {
+pub(super) fn distance_along(form: &Form) -> Registers {
     let (relative, component) = (form.relative(), form.component());
     dot_product(relative, component, relative + component, 1, relative + component - DISTANCE)
 }
@@ -221,6 +221,18 @@ fn serial(form: &Form) -> Registers {
     (corners + distance_along(form) + beside_along + distances + edge + states).in_turns(3)
 }
 
+/// Products, sums and selections of three edges with so many distances along rays.
+pub(super) fn edge_arithmetic(distances: u32, relative: u32, component: u32) -> (Vec<[u32; 3]>, u32, u32) {
+    let (decode_adds, decode_selects) = BoundDecode::arithmetic();
+    let products = vec![[3 * distances, relative, component], [3, DISTANCE, SLOPE]];
+    // Sums along the ray, nearer ends, sums of the cone, bounds, openings, divisions.
+    let adds =
+        2 * distances * (relative + component) + 3 * DISTANCE + 6 * SUM + 3 * decode_adds + 9 * TOLERANCE + 3 * BITS * (TOLERANCE + 1);
+    // Nearer ends, shifts of cone and bound, clamps, divisions, ends of s.
+    let selects = 3 * (DISTANCE + SUM * SHIFT + decode_selects + TOLERANCE + BITS * TOLERANCE + EdgeState::WIDTH);
+    (products, adds, selects)
+}
+
 impl Block for LodTest {
     const NAME: &'static str = "lod_test";
     const TIMING: Timing = timing(&Form::FULL);
@@ -231,23 +243,16 @@ impl Block for LodTest {
     }
     fn parts(form: &Form) -> Parts {
         let (relative, component) = (form.relative(), form.component());
-        let (decode_adds, decode_selects) = BoundDecode::arithmetic();
         let edges = match form.lod_edges_per_cycle {
             EdgesPerCycle::Three => parallel(form),
             EdgesPerCycle::One => serial(form),
         };
+        let (products, adds, select_bits) = edge_arithmetic(3, relative, component);
         Parts {
-            products: vec![[9, relative, component], [3, DISTANCE, SLOPE]],
-            // Corners, sums along the ray, nearer ends, sums of the cone, bounds, openings, divisions.
-            add_bits: 9 * relative
-                + 6 * (relative + component)
-                + 3 * DISTANCE
-                + 6 * SUM
-                + 3 * decode_adds
-                + 9 * TOLERANCE
-                + 3 * BITS * (TOLERANCE + 1),
-            // Nearer ends, shifts of cone and bound, clamps, divisions, ends of s.
-            select_bits: 3 * (DISTANCE + SUM * SHIFT + decode_selects + TOLERANCE + BITS * TOLERANCE + EdgeState::WIDTH),
+            products,
+            // Corners besides.
+            add_bits: 9 * relative + adds,
+            select_bits,
             registers: edges + Registers::stage(Out::WIDTH + TAG),
         }
     }

@@ -18,11 +18,17 @@ pub mod child_test;
 pub mod hit_divide;
 pub mod hit_select;
 pub mod lod_test;
+pub mod lod_test_by;
 pub mod node_address;
+pub mod node_deciders;
 mod operation;
 pub mod parts;
 pub mod ray_setup;
+pub mod start_divide;
+pub mod start_setup;
+pub mod start_test;
 pub mod tessellate;
+pub mod tree_deciders;
 pub mod tri_test;
 
 pub use operation::{Operation, Operations};

@@ -110,9 +110,9 @@ fn edge_function(form: &Form) -> Registers {
     normal + dot + Registers::line(1, form.edge_function_latency() - cross, 1)
 }
 
-/// `tri_decide`: signs, decision, numbers.
-fn tri_decide(form: &Form) -> Registers {
-    let numbers = 3 * form.signed_edge() + form.signed_t() + TAG;
+/// `tri_decide`: signs, decision, numbers, of edge functions and a t of so many bits.
+pub(super) fn tri_decide(signed_edge: u32, signed_t: u32) -> Registers {
+    let numbers = 3 * signed_edge + signed_t + TAG;
     // Magnitudes leave: behind the signs no number needs its top bit, but for t until the decision.
     let signs = Registers::stage(7 + numbers).without(3);
     signs + Registers::skid(2 + numbers).without(2 * 4) + Registers::stage(2 + numbers - 4)
@@ -177,7 +177,7 @@ impl Block for TriTest {
         };
         // Cross products, edge functions, t.
         let products = vec![[18, relative, relative], [9, normal, component], [3, normal, relative]];
-        Parts { products, add_bits, select_bits, registers: edges + tri_decide(form) }
+        Parts { products, add_bits, select_bits, registers: edges + tri_decide(edge, t) }
     }
     #[inline(always)]
     fn eval(input: &In) -> Out {

@@ -180,7 +180,7 @@ impl crate::method::HitSink for LevelCrossings {
         id: crate::method::TriangleId,
         corners: &[Point; 3],
         test: &crate::block::tri_test::Out,
-        below: &crate::method::leave::Below,
+        below: &crate::block::start_test::Below,
     ) {
         self.crossings.offer(id, corners, test, below);
         self.levels |= 1 << id.level;

@@ -9,10 +9,10 @@
 use super::error::{bary_error, pixels_off, t_error};
 use super::model::Model;
 use super::rays::Shot;
+use crate::block::start_test::Below;
 use crate::block::tri_test;
 use crate::golden::Exact;
 use crate::lab::crack::Closedness;
-use crate::method::leave::Below;
 use crate::method::lod::{LodImage, LodTraverser};
 use crate::method::{ClosestHit, Hit, HitSink, TriangleId};
 use crate::num::{Direction, Point, Ray, RayT};

@@ -68,6 +68,22 @@ fn is_around(i: &In, q: RayT, by: i128) -> bool {
     exact * (i.denominator.get() >> 32) == i.numerator.get().saturating_add_signed(-by)
 }
 
+/// Operands of any of the cases.
+pub fn any(draw: &mut Draw) -> In {
+    match draw.below(10) {
+        0 => random(draw),
+        1 => fitting(draw),
+        2 => of_triangles(draw),
+        3 => multiple(draw, 8, -1),
+        4 => multiple(draw, 8, 1),
+        5 => multiple(draw, 1, 0),
+        6 => around_exact(draw, 0),
+        7 => around_exact(draw, -1),
+        8 => by_one(draw),
+        _ => largest(draw),
+    }
+}
+
 type Is = Category<HitDivide>;
 
 pub fn suite() -> Suite<HitDivide> {

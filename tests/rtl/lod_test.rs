@@ -38,13 +38,13 @@ fn edges(i: &In, o: &Out) -> [Edge; 3] {
     })
 }
 
-fn random(draw: &mut Draw) -> In {
+pub fn random(draw: &mut Draw) -> In {
     let [p0, p1, p2] = [0; 3].map(|_| draw.point(POINT_MAX));
     In { ray: draw.ray(), p0, p1, p2, e0: draw.bits(), e1: draw.bits(), e2: draw.bits(), scale: draw.scale() }
 }
 
 /// A plausible frame: bounds small against distances, cones of about a pixel, a small triangle ahead.
-fn pixels(draw: &mut Draw) -> In {
+pub fn pixels(draw: &mut Draw) -> In {
     let d = draw.full_direction();
     let size = 1 << draw.between(8, 24);
     let target = [0; 3].map(|_| draw.between(-(1 << 30), 1 << 30));
@@ -160,12 +160,24 @@ fn extreme(draw: &mut Draw) -> In {
     In { ray, p0, p1, p2, ..random(draw) }
 }
 
-fn legal(i: &In) -> bool {
+pub fn legal(i: &In) -> bool {
     is_direction(i.ray.direction) && [i.ray.origin, i.p0, i.p1, i.p2].into_iter().all(is_point)
 }
 
 fn has(o: &Out, s: u64) -> bool {
     [o.s0, o.s1, o.s2].iter().any(|state| state.get() == s)
+}
+
+/// A ray and a triangle at one of the borders between states.
+pub fn border(draw: &mut Draw) -> In {
+    match draw.below(6) {
+        0 => tolerating(draw, |_, h| h),
+        1 => tolerating(draw, |_, h| h - 1),
+        2 => tolerating(draw, |_, h| h / 2 + 1),
+        3 => tolerating(draw, |_, h| h / 2),
+        4 => no_radius(draw),
+        _ => corner_at_origin(draw),
+    }
 }
 
 type Is = Category<LodTest>;

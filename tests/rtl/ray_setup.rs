@@ -56,20 +56,42 @@ fn quotient_steps(draw: &mut Draw) -> In {
 }
 
 /// Origins on steps of box codes, plus `by`.
-fn steps(draw: &mut Draw, by: i64) -> In {
+pub fn steps(draw: &mut Draw, by: i64) -> In {
     let origin = point([0; 3].map(|_| ((draw.signed(32767) << 16) + by).clamp(-POINT_MAX, POINT_MAX)));
     In { origin, direction: draw.components() }
 }
 
-fn extreme(draw: &mut Draw) -> In {
+pub fn extreme(draw: &mut Draw) -> In {
     In { origin: point(draw.corner()), direction: direction([DIRECTION_MAX; 3].map(|v| draw.sign(v))) }
+}
+
+/// A ray of any of the cases.
+pub fn any(draw: &mut Draw) -> In {
+    match draw.below(12) {
+        0 => random(draw),
+        1 => of_a_frame(draw),
+        2 => axis_parallel(draw),
+        3 => plane_parallel(draw),
+        4 => none(draw),
+        5 => powers(draw, 0),
+        6 => powers(draw, 1),
+        7 => powers(draw, -1),
+        8 => quotient_steps(draw),
+        9 => steps(draw, 0),
+        10 => steps(draw, 1),
+        _ => extreme(draw),
+    }
+}
+
+pub fn legal(i: &In) -> bool {
+    is_point(i.origin) && has_components(i.direction)
 }
 
 type Is = Category<RaySetup>;
 
 pub fn suite() -> Suite<RaySetup> {
     Suite::new(
-        |i| is_point(i.origin) && has_components(i.direction),
+        legal,
         vec![
             Is::any("random", random),
             Is::any("rays of a frame", of_a_frame),

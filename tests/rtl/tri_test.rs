@@ -10,7 +10,7 @@ use tb::{Build, Mode};
 
 /// Corners of the exact cases are multiples of 2^FINE, so that points between them with weights of 2^-FINE are whole.
 const FINE: u32 = 8;
-const WHOLE: i64 = 1 << FINE;
+pub const WHOLE: i64 = 1 << FINE;
 
 fn random(draw: &mut Draw) -> In {
     let [p0, p1, p2] = [0; 3].map(|_| draw.point(POINT_MAX));
@@ -18,7 +18,7 @@ fn random(draw: &mut Draw) -> In {
 }
 
 /// Three points with coordinates up to `max`, of every size and shape.
-fn corners(draw: &mut Draw, max: i64) -> [[i64; 3]; 3] {
+pub fn corners(draw: &mut Draw, max: i64) -> [[i64; 3]; 3] {
     let size = (max >> draw.below(16)) >> FINE;
     match draw.below(4) {
         // Small numbers: axis-aligned edges and coincidences are common.
@@ -29,7 +29,7 @@ fn corners(draw: &mut Draw, max: i64) -> [[i64; 3]; 3] {
 }
 
 /// The point with these weights, of which 2^FINE make one.
-fn weighted(p: [[i64; 3]; 3], weights: [i64; 3]) -> [i64; 3] {
+pub fn weighted(p: [[i64; 3]; 3], weights: [i64; 3]) -> [i64; 3] {
     [0, 1, 2].map(|k| (0..3).map(|i| weights[i] * p[i][k]).sum::<i64>() >> FINE)
 }
 
@@ -51,13 +51,13 @@ fn through(draw: &mut Draw, weights: [i64; 3], d: Direction) -> In {
     turned(draw, origin, d, p)
 }
 
-fn inside_weights(draw: &mut Draw) -> [i64; 3] {
+pub fn inside_weights(draw: &mut Draw) -> [i64; 3] {
     let (x, y) = (draw.between(1, WHOLE - 2), draw.between(1, WHOLE - 2));
     let (low, high) = (x.min(y), x.max(y) + 1);
     [WHOLE - high, high - low, low]
 }
 
-fn edge_weights(draw: &mut Draw) -> [i64; 3] {
+pub fn edge_weights(draw: &mut Draw) -> [i64; 3] {
     let along = draw.between(1, WHOLE - 1);
     [along, WHOLE - along, 0]
 }
@@ -95,7 +95,7 @@ fn edge_line(draw: &mut Draw) -> In {
     turned(draw, origin, d, p)
 }
 
-fn any_weights(draw: &mut Draw) -> [i64; 3] {
+pub fn any_weights(draw: &mut Draw) -> [i64; 3] {
     match draw.below(3) {
         0 => [0, WHOLE, 0],
         1 => edge_weights(draw),
@@ -199,7 +199,7 @@ fn extreme(draw: &mut Draw) -> In {
 }
 
 /// The largest triangle as seen from a corner of the range, met by the longest diagonal.
-fn largest(draw: &mut Draw) -> In {
+pub fn largest(draw: &mut Draw) -> In {
     let from = draw.corner();
     let p = [0, 1, 2].map(|i| [0, 1, 2].map(|k| (if i == k { from[k] } else { -from[k] }) - from[k].signum() * draw.between(-9, 0)));
     // Inwards by up to nine units.
@@ -236,6 +236,31 @@ fn det(i: &In) -> i128 {
 
 fn legal(i: &In) -> bool {
     is_direction(i.direction) && [i.origin, i.p0, i.p1, i.p2].into_iter().all(is_point)
+}
+
+/// A ray and a triangle of any of the cases.
+pub fn any(draw: &mut Draw) -> In {
+    let cases = [
+        random,
+        inside,
+        behind,
+        vertex,
+        edge,
+        edge_line,
+        axis_parallel,
+        plane_parallel,
+        beside,
+        in_plane,
+        grazing,
+        on_the_surface,
+        on_an_edge,
+        sliver,
+        no_area,
+        no_direction,
+        extreme,
+        largest,
+    ];
+    draw.one_of(&cases)(draw)
 }
 
 type Is = Category<TriTest>;

@@ -13,7 +13,7 @@ pub(super) use multiplier::{Multiplier, cross_product, dot_product};
 pub use registers::Registers;
 
 use super::Form;
-use crate::num::{Direction, EdgeState, Point, Wire};
+use crate::num::{Direction, EdgeState, Point, START_BITS, Wire};
 
 /// What a block is made of and an operation of it does: each comparison is a sum, each step of a shifter a selection.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
@@ -80,6 +80,18 @@ impl Form {
         cross_product_latency(self.relative()) + with_d - 1 + dot_product_latency(self.normal(), self.component())
     }
 }
+
+/// Component of p x q of an exact start in steps of 2^-31, signed: |p x q| < 2^65.6 units.
+pub const EXACT_NORMAL: u32 = 98;
+/// d.(p x q) likewise: below 2^96 units.
+pub const EXACT_EDGE: u32 = EDGE_FUNCTION + START_BITS + 1;
+/// a.(b x c) likewise: below 2^98.4 units.
+pub const EXACT_T: u32 = T_NUMERATOR + START_BITS + 1;
+/// Registers of the products of the exact p x q, likewise of those with a beside them, which take as long.
+pub const START_PRODUCT_STAGES: u32 = 2;
+/// Cycles of `start_edge`: two cross products, their sum, and its product with d.
+pub const START_EDGE_LATENCY: u32 =
+    cross_product_latency(Form::FULL.relative()) + 1 + START_PRODUCT_STAGES - 1 + dot_product_latency(EXACT_NORMAL, Form::FULL.component());
 
 /// l = (p - x).d / 2^30 of the LOD test, signed: below 2^62.8 and its fraction dropped.
 pub const DISTANCE: u32 = Form::FULL.relative() + Form::FULL.component() - 30;

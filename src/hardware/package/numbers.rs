@@ -13,15 +13,22 @@ use crate::block::child_test::ChildTest;
 use crate::block::hit_divide::HitDivide;
 use crate::block::hit_select::{FullId, HitSelect};
 use crate::block::lod_test::LodTest;
+use crate::block::lod_test_by::{self, LodTestBy};
 use crate::block::node_address::NodeAddress;
+use crate::block::node_deciders::NodeDeciders;
 use crate::block::ray_setup::RaySetup;
+use crate::block::start_divide::StartDivide;
+use crate::block::start_setup::StartSetup;
+use crate::block::start_test::StartTest;
 use crate::block::tessellate::Tessellate;
+use crate::block::tree_deciders::{Decider, TreeDeciders};
 use crate::block::tri_test::{EdgeFunction, TNumerator, TriTest};
 use crate::block::{Block, EdgesPerCycle, Form, parts};
 use crate::hardware::Hardware;
 use crate::hardware::ports::{AnswerLimit, Epoch};
 use crate::num::{
-    BOX_SHIFT, Bary, BoundCode, COORD_LIMIT, EdgeState, LineAddress, MAX_BOUND_OFFSET, RayT, S_ONE, T_NEAR_TO_T_SHIFT, TNear, Wire,
+    BOX_SHIFT, Bary, BoundCode, COORD_LIMIT, EdgeState, LineAddress, MAX_BOUND_OFFSET, RayT, S_ONE, START_BITS, T_NEAR_TO_T_SHIFT, TNear,
+    Wire,
 };
 use std::fmt::Write;
 
@@ -128,6 +135,14 @@ pub(super) fn print(hardware: &Hardware, out: &mut String) {
         .put("SIGNED_EDGE_W", "EDGE_FUNCTION_W + 1 - EDGE_ZEROS", "")
         .put("T_NUMERATOR_W", TNumerator::WIDTH, "|a| |b| |c| < 2^98.4")
         .put("SIGNED_T_NUMERATOR_W", "T_NUMERATOR_W + 1 - 3 * COORDINATE_ZEROS", "");
+    let widths = widths
+        .put("DECIDER_W", Decider::WIDTH, "of who decides about an edge: 0 the ray itself, 1 and 2 its viewers")
+        .put("FRACTION_W", START_BITS, "of the fraction of an exact start, in each coordinate")
+        .put("WHOLE_RELATIVE_W", Form::FULL.relative(), "difference of two coordinates with all their bits")
+        .put("WHOLE_NORMAL_W", Form::FULL.normal(), "component of p x q of such")
+        .put("EXACT_NORMAL_W", parts::EXACT_NORMAL, "of an exact start: |p x q| < 2^65.6 in steps of 2^-31")
+        .put("EXACT_EDGE_W", "EDGE_FUNCTION_W + FRACTION_W + 1", "its product with d, likewise")
+        .put("EXACT_T_W", "T_NUMERATOR_W + FRACTION_W + 1", "and a.(b x c)");
     let sizes = Group::new("Sizes.")
         .put("COORD_LIMIT", COORD_LIMIT, "of a coordinate in magnitude")
         .put("MAX_BOUND_OFFSET", MAX_BOUND_OFFSET, "of a scale of displacement bounds")
@@ -165,9 +180,21 @@ pub(super) fn print(hardware: &Hardware, out: &mut String) {
     .put("LOD_TEST_1_LATENCY", lod_one.latency, "of the form with one edge a cycle")
     .put("LOD_TEST_1_INTERVAL", lod_one.interval, "")
     .put("LOD_TEST_3_LATENCY", lod_three.latency, "of the form with three")
+    .timing::<LodTestBy>(hardware)
+    .put("LOD_TEST_BY_1_LATENCY", LodTestBy::ONE_EDGE.latency, "of the form with one edge a cycle")
+    .put("LOD_TEST_BY_1_INTERVAL", LodTestBy::ONE_EDGE.interval, "")
+    .put("LOD_TEST_BY_3_LATENCY", LodTestBy::THREE_EDGES.latency, "of the form with three")
     .timing::<NodeAddress>(hardware)
+    .timing::<NodeDeciders>(hardware)
     .timing::<RaySetup>(hardware)
+    .timing::<StartDivide>(hardware)
+    .timing::<StartSetup>(hardware)
+    .timing::<StartTest>(hardware)
+    .put("START_TEST_1_LATENCY", StartTest::ONE_EDGE.latency, "of the form with one edge a cycle")
+    .put("START_TEST_1_INTERVAL", StartTest::ONE_EDGE.interval, "")
+    .put("START_TEST_3_LATENCY", StartTest::THREE_EDGES.latency, "of the form with three")
     .timing::<Tessellate>(hardware)
+    .timing::<TreeDeciders>(hardware)
     .timing::<TriTest>(hardware)
     .put("TRI_TEST_1_LATENCY", one.latency, "of the form with one edge a cycle")
     .put("TRI_TEST_1_INTERVAL", one.interval, "")
@@ -179,9 +206,12 @@ pub(super) fn print(hardware: &Hardware, out: &mut String) {
         .put("EDGE_DOT_STAGES", edge_stages, "of those with a direction")
         .put("T_DOT_STAGES", t_stages, "of those of t, which take as long")
         .put("EDGE_FUNCTION_LATENCY", form.edge_function_latency(), "of tri_test")
-        .put("TRI_DECIDE_LATENCY", parts::TRI_DECIDE_LATENCY, "of tri_test")
+        .put("TRI_DECIDE_LATENCY", parts::TRI_DECIDE_LATENCY, "of tri_test and start_test")
+        .put("START_PRODUCT_STAGES", parts::START_PRODUCT_STAGES, "registers of the products of exact numbers")
+        .put("START_EDGE_LATENCY", parts::START_EDGE_LATENCY, "of start_test")
         .put("CONE_TOLERANCE_LATENCY", parts::CONE_TOLERANCE_LATENCY, "of lod_test")
         .put("EDGE_OPENING_LATENCY", parts::EDGE_OPENING_LATENCY, "of lod_test")
+        .put("LOD_EDGE_BY_LATENCY", lod_test_by::EDGE_LATENCY, "of lod_test_by")
         .put(
             "MULTIPLIER_LIMB_W",
             parts::LIMB,

@@ -7,6 +7,9 @@ use crate::method::{Entry, Hit};
 use crate::num::{self, Box16, Field, Layout, Wire};
 use std::fmt::Write;
 
+/// Blocks that have the output of another.
+const SHARED: [&str; 4] = ["box_test32", "lod_test_by", "start_setup", "start_divide"];
+
 /// A packed struct: its name without `_t`, its description and its fields.
 pub(super) struct Struct {
     name: String,
@@ -37,15 +40,15 @@ pub(super) fn all() -> Vec<Struct> {
         of::<num::BoundScale>("bound_scale"),
         of::<num::Cone>("cone"),
         of::<num::Ray>("ray"),
+        of::<num::Start>("start"),
         of::<Box16>("box16"),
         of::<block::ray_setup::Reciprocal>("reciprocal"),
         of::<block::ray_setup::Axis>("axis"),
     ];
-    // The two box tests share an output.
     macro_rules! blocks {
         ($($block:ty),+ $(,)?) => { $(
             all.push(of::<<$block as Block>::In>(format!("{}_in", <$block>::NAME)));
-            if <$block>::NAME != "box_test32" {
+            if !SHARED.contains(&<$block>::NAME) {
                 all.push(of::<<$block as Block>::Out>(format!("{}_out", <$block>::NAME)));
             }
         )+ };
@@ -68,7 +71,13 @@ pub(super) fn all() -> Vec<Struct> {
         block::hit_select::HitSelect,
         block::bary_map::BaryMap,
         block::node_address::NodeAddress,
+        block::tree_deciders::TreeDeciders,
+        block::node_deciders::NodeDeciders,
+        block::lod_test_by::LodTestBy,
+        block::start_setup::StartSetup,
     );
+    all.push(of::<block::start_test::Below>("below"));
+    blocks!(block::start_test::StartTest, block::start_divide::StartDivide);
     all.extend([
         of::<SiblingGroup>("sibling_group"),
         of::<BvhNode>("bvh_node"),

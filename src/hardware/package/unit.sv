@@ -70,6 +70,12 @@
     relative_corner = {RELATIVE_W'(p.x) - RELATIVE_W'(x.x), RELATIVE_W'(p.y) - RELATIVE_W'(x.y), RELATIVE_W'(p.z) - RELATIVE_W'(x.z)};
   endfunction
 
+  // The same with all bits, for rays from exact starts and their viewers.
+  function automatic logic [3*WHOLE_RELATIVE_W-1:0] whole_relative(input point_t p, input point_t x);
+    whole_relative = {WHOLE_RELATIVE_W'(p.x) - WHOLE_RELATIVE_W'(x.x), WHOLE_RELATIVE_W'(p.y) - WHOLE_RELATIVE_W'(x.y),
+                      WHOLE_RELATIVE_W'(p.z) - WHOLE_RELATIVE_W'(x.z)};
+  endfunction
+
   // Kinds of stack entries.
   localparam logic [1:0] ENTRY_BVH_NODE = 2'd0;
   localparam logic [1:0] ENTRY_TREE = 2'd1;

@@ -6,13 +6,13 @@ use crate::block::box_test32::{self, BoxTest32};
 use crate::block::child_sort;
 use crate::block::child_test::sort;
 use crate::block::ray_setup::{self, RaySetup};
+use crate::block::start_test::Below;
 use crate::block::tri_test::{self, TriTest};
 use crate::bvh::BvhChild32;
 use crate::format::{BvhChild, BvhNode, ChildRef, SixNode};
 #[cfg(target_arch = "x86_64")]
 use crate::method::children::has_lanes;
 use crate::method::children::{bvh_children, coded_children, quarter, six_children};
-use crate::method::leave::Below;
 use crate::method::stack::{Entry, Op, TraversalStack, push_nearest, push_sorted};
 use crate::method::{HitSink, TriangleId, is_beyond};
 use crate::num::{LINE_BYTES, Point, Ray, U, Wire};

@@ -7,7 +7,12 @@
 //! Base edges are the same if their ends are the same points: no number is stored for them and none is fetched. (A base vertex is never morphed, so triangles that share
 //! no more than a vertex meet there whatever they decide.)
 
-use crate::num::{Point, Ray};
+use crate::block::Block;
+use crate::block::tree_deciders::{self, Decider, TreeDeciders};
+use crate::num::{Point, Ray, U};
+
+/// Who decides in a base triangle: 0 the ray itself, 1 and 2 the viewers of its [`Prior`].
+pub type Deciders = tree_deciders::Out;
 
 /// What a ray needs of the rays before it.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -22,20 +27,6 @@ pub struct Prior {
     pub second: [bool; 3],
 }
 
-/// Who decides in a base triangle: 0 the ray itself, 1 and 2 the viewers of its [`Prior`].
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Deciders {
-    /// About its inner edges.
-    pub inner: u8,
-    /// About its base edges, and parts of them.
-    pub edges: [u8; 3],
-}
-
-/// Ends of edge `k` of a triangle, which is opposite corner `k`.
-fn ends(corners: &[Point; 3], k: usize) -> [Point; 2] {
-    [corners[(k + 1) % 3], corners[(k + 2) % 3]]
-}
-
 impl Prior {
     /// What a ray needs that starts at a hit of `ray` in the base triangle `tree` with these `corners`; `prior` is what `ray` needed. With it, whether three
     /// rays had decided there, and the third's edges count as `ray`'s now: on no surface whose edges have at most two triangles.
@@ -46,55 +37,33 @@ impl Prior {
             return (*prior, false);
         }
         let Deciders { edges, .. } = prior.deciders(tree, &corners);
-        let Some(second) = edges.into_iter().find(|&by| by > 0) else { return (next, false) };
-        next.viewers[1] = prior.viewers[usize::from(second) - 1];
+        let Some(second) = edges.into_iter().find(|&by| by > Decider::ZERO) else { return (next, false) };
+        next.viewers[1] = *prior.viewer(second).unwrap_or(ray);
         next.second = edges.map(|by| by == second);
-        (next, edges.iter().any(|&by| by > 0 && by != second))
+        (next, edges.iter().any(|&by| by > Decider::ZERO && by != second))
+    }
+
+    /// Who this is, of those that decide; none if it is the ray itself.
+    pub fn viewer(&self, by: Decider) -> Option<&Ray> {
+        match by.get() {
+            0 => None,
+            1 => Some(&self.viewers[0]),
+            _ => Some(&self.viewers[1]),
+        }
     }
 
     /// Who decides in base triangle `tree` with these corners.
     pub fn deciders(&self, tree: u32, corners: &[Point; 3]) -> Deciders {
-        let of = |second: bool| if second { 2 } else { 1 };
-        if tree == self.tree {
-            return Deciders { inner: 1, edges: self.second.map(of) };
-        }
-        let edges = std::array::from_fn(|k| {
-            let [a, b] = ends(corners, k);
-            let shared = (0..3).find(|&i| {
-                let [p, q] = ends(&self.corners, i);
-                p == a && q == b || p == b && q == a
-            });
-            shared.map_or(0, |i| of(self.second[i]))
-        });
-        Deciders { inner: 0, edges }
-    }
-}
-
-impl Deciders {
-    /// Whether anyone but the ray itself does.
-    pub fn is_any(&self) -> bool {
-        *self != Self::default()
-    }
-
-    /// Who decides about the edges of node `node` of `level`.
-    pub fn of_node(&self, level: u32, node: u32) -> [u8; 3] {
-        // Edge k of a child lies on edge k of its parent in the children at its ends: all but k itself and the middle.
-        let mut on_base = [true; 3];
-        for n in 0..level {
-            let child = node >> (2 * n) & 3;
-            for (k, on) in (0..).zip(&mut on_base) {
-                *on &= child != k && child != 3;
-            }
-        }
-        std::array::from_fn(|k| if on_base[k] { self.edges[k] } else { self.inner })
+        let ([a0, a1, a2], [p0, p1, p2]) = (self.corners, *corners);
+        let [last, tree] = [self.tree, tree].map(|tree| U::new(u64::from(tree)));
+        TreeDeciders::eval(&tree_deciders::In { last, a0, a1, a2, second: self.second, tree, p0, p1, p2 })
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::mesh::lattice;
-    use crate::num::{Cone, U, Vec3};
+    use crate::num::{Cone, Vec3};
 
     fn ray(number: u64) -> Ray {
         Ray { cone: Cone { offset: U::new(number), ..Cone::default() }, origin: Point::new(0, 0, 0), direction: Vec3::new(0, 0, 1) }
@@ -107,7 +76,7 @@ mod tests {
 
     fn deciders(prior: &Prior, tree: u32, of: [i64; 3]) -> [u64; 4] {
         let Deciders { inner, edges } = prior.deciders(tree, &corners(of));
-        [inner, edges[0], edges[1], edges[2]].map(|by| if by == 0 { 0 } else { prior.viewers[usize::from(by) - 1].cone.offset.get() })
+        [inner, edges[0], edges[1], edges[2]].map(|by| prior.viewer(by).map_or(0, |ray| ray.cone.offset.get()))
     }
 
     #[test]
@@ -144,21 +113,5 @@ mod tests {
         assert!(!crowded && deciders(&of_front, 0, front) == [2, 2, 2, 1]);
         let (of_back, crowded) = Prior::after(&ray(3), Some(&of_front), 1, corners(back));
         assert!(crowded && deciders(&of_back, 1, back) == [3, 2, 3, 2], "{:?}", deciders(&of_back, 1, back));
-    }
-
-    #[test]
-    fn nodes_know_which_of_their_edges_lie_on_base_edges() {
-        let by = Deciders { inner: 9, edges: [0, 1, 2] };
-        for level in 0..=5u32 {
-            for node in 0..1 << (2 * level) {
-                let places = lattice::node(5, level, node);
-                let wanted = std::array::from_fn(|k| {
-                    // On base edge k nothing of corner k is left.
-                    let weight = |(i, j): lattice::LatticePoint| [32 - i - j, i, j][k];
-                    if weight(places[(k + 1) % 3]) == 0 && weight(places[(k + 2) % 3]) == 0 { by.edges[k] } else { 9 }
-                });
-                assert_eq!(by.of_node(level, node), wanted, "{level} {node}");
-            }
-        }
     }
 }

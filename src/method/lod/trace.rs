@@ -5,17 +5,20 @@ use super::prior::{Deciders, Prior};
 use crate::block::Block;
 use crate::block::child_boxes::Corners;
 use crate::block::lod_test::{self, LodTest};
+use crate::block::node_deciders::{self, NodeDeciders};
 use crate::block::ray_setup::{self, RaySetup};
+use crate::block::start_setup::{self, StartSetup};
+use crate::block::start_test::{self, Below, StartTest};
 use crate::block::tessellate::{self, Tessellate, child_triangle};
 use crate::block::tri_test::{self, TriTest};
 use crate::format::{BvhNode, Displacements, L0Record, SiblingGroup, VertexData};
 #[cfg(target_arch = "x86_64")]
 use crate::method::children::has_lanes;
 use crate::method::children::{Split, bvh_children, tree_children};
-use crate::method::leave::{self, Below, Leaving};
+use crate::method::leave;
 use crate::method::stack::{Entry, Op, TraversalStack, push_sorted};
 use crate::method::{Departure, Hit, HitSink, TriangleId, is_beyond};
-use crate::num::{BoundCode, MAX_LEVELS, PADDING_BITS, Point, Ray, TNear, U, VertexForm, Wire};
+use crate::num::{BoundCode, MAX_LEVELS, PADDING_BITS, Point, Ray, Start, TNear, U, VertexForm, Wire};
 use crate::step::{Act, Step, StepSink, TriangleRun};
 
 /// Traces rays through one image; keeps its stack from ray to ray.
@@ -34,7 +37,7 @@ struct Journey<'a, S, H, const COMPACT: bool, const FULL_DETAIL: bool, const LEA
     ray: &'a Ray,
     setup: ray_setup::Out,
     /// Of a ray that leaves a surface: its start, and who decides in the current tree.
-    leaving: Leaving,
+    start: Start,
     prior: Option<&'a Prior>,
     deciders: Deciders,
     /// The current tree.
@@ -117,19 +120,19 @@ impl<'a> LodTraverser<'a> {
         sink: &mut H,
     ) {
         debug_assert_eq!(LEAVES, departure.is_some());
-        let (leaving, prior, setup) = match departure {
+        let (start, prior, setup) = match departure {
             Some(from) if LEAVES => {
                 debug_assert_eq!(from.start.point, ray.origin);
-                let leaving = Leaving::new(&from.start, ray.direction);
-                (leaving, Some(&from.prior), leaving.setup(ray.origin, ray.direction))
+                let setup = StartSetup::eval(&start_setup::In { start: from.start, direction: ray.direction });
+                (from.start, Some(&from.prior), setup)
             }
-            _ => (Leaving::default(), None, RaySetup::eval(&ray_setup::In { origin: ray.origin, direction: ray.direction })),
+            _ => (Start::default(), None, RaySetup::eval(&ray_setup::In { origin: ray.origin, direction: ray.direction })),
         };
         self.stack.clear();
         let Self { image, stack, splits } = self;
         let (tree, deciders) = (TreeAt::default(), Deciders::default());
         let mut journey =
-            Journey::<S, H, COMPACT, FULL_DETAIL, LEAVES> { image, stack, splits, ray, setup, leaving, prior, deciders, tree, steps, sink };
+            Journey::<S, H, COMPACT, FULL_DETAIL, LEAVES> { image, stack, splits, ray, setup, start, prior, deciders, tree, steps, sink };
         let mut next = Some(Entry::default());
         loop {
             // A child just tested is not beyond the closest hit; an entry that waited may be by now.
@@ -243,8 +246,8 @@ impl<S: StepSink, H: HitSink, const COMPACT: bool, const FULL_DETAIL: bool, cons
     fn lod_test(&self, level: u32, node: u32, input: &lod_test::In) -> lod_test::Out {
         match self.prior {
             Some(prior) if LEAVES && self.deciders.is_any() => {
-                let viewer = |by: u8| if by == 0 { self.ray } else { &prior.viewers[usize::from(by) - 1] };
-                LodTest::by(self.deciders.of_node(level, node).map(viewer), input)
+                let place = node_deciders::In { tree: self.deciders, level: U::new(u64::from(level)), node: U::new(u64::from(node)) };
+                LodTest::by(NodeDeciders::eval(&place).by.map(|by| prior.viewer(by).unwrap_or(self.ray)), input)
             }
             _ => LodTest::eval(input),
         }
@@ -291,8 +294,14 @@ impl<S: StepSink, H: HitSink, const COMPACT: bool, const FULL_DETAIL: bool, cons
         let mut run = TriangleRun::default();
         for (node, corners) in (first..).zip(triangles) {
             let [p0, p1, p2] = corners;
-            let input = tri_test::In { origin: self.ray.origin, direction: self.ray.direction, p0, p1, p2 };
-            let (test, below) = if LEAVES { self.leaving.test(&input) } else { (TriTest::eval(&input), Below::default()) };
+            let direction = self.ray.direction;
+            let start_test::Out { test, below } = match LEAVES {
+                true => StartTest::eval(&start_test::In { start: self.start, direction, p0, p1, p2 }),
+                false => {
+                    let test = TriTest::eval(&tri_test::In { origin: self.ray.origin, direction, p0, p1, p2 });
+                    start_test::Out { test, below: Below::default() }
+                }
+            };
             run.add(test.hit, self.steps);
             if test.hit {
                 self.sink.offer(TriangleId { tree: self.tree.index, level, node }, &corners, &test, &below);

@@ -1,0 +1,253 @@
+//! The triangle test of rays from exact starts, with three edges per cycle and with one.
+
+use crate::draw::{Draw, POINT_MAX};
+use crate::rays::{direction, is_direction, is_point, point};
+use crate::start_setup::fraction;
+use crate::suite::{Category, Suite};
+use crate::tri_test::{self, WHOLE, any_weights, corners, edge_weights, weighted};
+use lodray::block::start_test::{Below, In, StartTest};
+use lodray::block::tri_test::TriTest;
+use lodray::block::{self, Block, Timing};
+use lodray::method::leave;
+use lodray::num::{BARY_ONE, Bary, Direction, Point, START_BITS, Start, U};
+use tb::{Build, Mode};
+
+/// One unit.
+const ONE: i128 = 1 << START_BITS;
+
+fn of(case: &block::tri_test::In, start: Start) -> In {
+    let &block::tri_test::In { direction, p0, p1, p2, .. } = case;
+    In { start, direction, p0, p1, p2 }
+}
+
+/// A case of whole points, a fraction of a unit beside it.
+fn beside(draw: &mut Draw) -> In {
+    let case = tri_test::any(draw);
+    of(&case, Start { point: case.origin, fraction: fraction(draw) })
+}
+
+fn whole(draw: &mut Draw) -> In {
+    let case = tri_test::any(draw);
+    of(&case, Start { point: case.origin, fraction: [U::ZERO; 3] })
+}
+
+fn random(draw: &mut Draw) -> In {
+    let [p0, p1, p2] = [0; 3].map(|_| draw.point(POINT_MAX));
+    let start = Start { point: draw.point(POINT_MAX), fraction: fraction(draw) };
+    In { start, direction: draw.direction(), p0, p1, p2 }
+}
+
+/// The start of the ray that passes exactly through `target` after `steps` times its direction in steps of 2^-31: any, as far as it is within the range.
+fn before(draw: &mut Draw, target: [i64; 3], d: Direction) -> Start {
+    let mut most = i64::MAX;
+    for (t, c) in target.into_iter().zip(d.get()) {
+        if c != 0 {
+            let room = i128::from(if c > 0 { t + POINT_MAX } else { POINT_MAX - 1 - t }.max(0)) << START_BITS;
+            most = most.min(i64::try_from(room / i128::from(c.abs())).unwrap_or(i64::MAX));
+        }
+    }
+    let steps = match draw.below(8) {
+        0 => 0,
+        1 => most,
+        2..4 => draw.between(0, most) >> draw.below(60),
+        _ => draw.between(0, most),
+    };
+    let at = [0, 1, 2].map(|k| (i128::from(target[k]) << START_BITS) - i128::from(steps) * i128::from(d.get()[k]));
+    // In range: at a bound the target itself may be at the end of it.
+    let [x, y, z] = at.map(|c| (c >> START_BITS) as i64);
+    Start { point: Point::new(x, y, z), fraction: at.map(|c| U::new((c & (ONE - 1)) as u64)) }
+}
+
+fn turned(draw: &mut Draw, p: [[i64; 3]; 3], start: Start, direction: Direction) -> In {
+    let mut p = p.map(point);
+    p.rotate_left(draw.below(3) as usize);
+    if draw.once_in(2) {
+        p.swap(0, 1);
+    }
+    let [p0, p1, p2] = p;
+    In { start, direction, p0, p1, p2 }
+}
+
+/// Exactly through the point with these weights.
+fn through(draw: &mut Draw, weights: [i64; 3]) -> In {
+    let (p, d) = (corners(draw, POINT_MAX - WHOLE), draw.direction());
+    let start = before(draw, weighted(p, weights), d);
+    turned(draw, p, start, d)
+}
+
+fn inside(draw: &mut Draw) -> In {
+    let weights = tri_test::inside_weights(draw);
+    through(draw, weights)
+}
+
+fn vertex(draw: &mut Draw) -> In {
+    through(draw, [WHOLE, 0, 0])
+}
+
+fn edge(draw: &mut Draw) -> In {
+    let weights = edge_weights(draw);
+    through(draw, weights)
+}
+
+/// From a triangle, in whatever direction: exactly in its plane and inside it.
+fn own(draw: &mut Draw) -> In {
+    let p = corners(draw, POINT_MAX);
+    let start = on(draw, p);
+    let d = if draw.once_in(4) { along(draw, p) } else { draw.direction() };
+    turned(draw, p, start, d)
+}
+
+/// A point of a triangle with any weights.
+fn on(draw: &mut Draw, p: [[i64; 3]; 3]) -> Start {
+    let b1 = draw.below(BARY_ONE + 1) >> draw.below(32);
+    let b2 = draw.below(BARY_ONE - b1 + 1) >> draw.below(32);
+    let mut weights = [BARY_ONE - b1 - b2, b1, b2];
+    weights.rotate_left(draw.below(3) as usize);
+    leave::start(&p.map(point), weights.map(Bary::new))
+}
+
+/// A direction within a triangle's plane; not zero.
+fn along(draw: &mut Draw, p: [[i64; 3]; 3]) -> Direction {
+    let (m, n) = draw.one_of(&[(1, 0), (0, 1), (1, -1), (1, 1)]);
+    let d = [0, 1, 2].map(|k| (m * (p[1][k] - p[0][k]) + n * (p[2][k] - p[0][k])) >> 3);
+    let d = direction(d);
+    if is_direction(d) && d != Direction::default() { d } else { draw.direction() }
+}
+
+/// The sheets next to the one that a ray leaves: a unit or a few from it.
+fn next_sheet(draw: &mut Draw) -> In {
+    let p = corners(draw, (POINT_MAX >> 1) - 8);
+    let start = on(draw, p);
+    let by = [0; 3].map(|_| draw.between(-2, 2));
+    let p = p.map(|corner| [0, 1, 2].map(|k| corner[k] + by[k]));
+    let d = draw.direction();
+    turned(draw, p, start, d)
+}
+
+/// A neighbour of the triangle that a ray leaves, over one of its edges.
+fn neighbour(draw: &mut Draw) -> In {
+    let p = corners(draw, POINT_MAX - WHOLE);
+    let start = on(draw, p);
+    let mut q = p;
+    q[draw.below(3) as usize] = corners(draw, POINT_MAX - WHOLE)[0];
+    // Towards a point of the neighbour, as far as a direction can tell.
+    let weights = any_weights(draw);
+    let target = weighted(q, weights);
+    let d = direction([0, 1, 2].map(|k| (target[k] - start.point.get()[k]) >> 3));
+    let d = if is_direction(d) && d != Direction::default() { d } else { draw.direction() };
+    turned(draw, q, start, d)
+}
+
+/// All corners on a line, or in one place.
+fn no_area(draw: &mut Draw) -> In {
+    let mut p = corners(draw, POINT_MAX);
+    let along = draw.one_of(&[0, 1, WHOLE / 2, WHOLE]);
+    p[2] = weighted(p, [along, WHOLE - along, 0]);
+    let (start, d) = (on(draw, p), draw.direction());
+    turned(draw, p, start, d)
+}
+
+fn extreme(draw: &mut Draw) -> In {
+    let case = tri_test::largest(draw);
+    of(&case, Start { point: case.origin, fraction: [0; 3].map(|_| if draw.once_in(4) { U::ZERO } else { U::MAX }) })
+}
+
+/// Exact d.(p x q) in steps of 2^-31 and p x q in the same, of the three edges.
+fn edges(i: &In) -> [(i128, [i128; 3]); 3] {
+    let x = i.start.point.get();
+    let f = i.start.fraction.map(|f| i128::from(f.get()));
+    let p = [i.p0, i.p1, i.p2].map(|p| [0, 1, 2].map(|k| i128::from(p.get()[k] - x[k])));
+    let d = i.direction.get().map(i128::from);
+    [(1, 2), (2, 0), (0, 1)].map(|(a, b)| {
+        let (p, q) = (p[a], p[b]);
+        let n = [(1, 2), (2, 0), (0, 1)].map(|(j, k)| (p[j] * q[k] - p[k] * q[j]) * ONE + f[j] * (p[k] - q[k]) - f[k] * (p[j] - q[j]));
+        (d[0] * n[0] + d[1] * n[1] + d[2] * n[2], n)
+    })
+}
+
+/// Edge functions that are 0 though p x q is not.
+fn ties(i: &In) -> usize {
+    edges(i).iter().filter(|(value, normal)| *value == 0 && *normal != [0; 3]).count()
+}
+
+fn is_whole(i: &In) -> bool {
+    i.start.fraction == [U::ZERO; 3]
+}
+
+/// What the test says of the whole point alone.
+fn of_point(i: &In) -> block::tri_test::Out {
+    let &In { start, direction, p0, p1, p2 } = i;
+    TriTest::eval(&block::tri_test::In { origin: start.point, direction, p0, p1, p2 })
+}
+
+type Is = Category<StartTest>;
+
+pub fn suite() -> Suite<StartTest> {
+    Suite::new(
+        |i| is_direction(i.direction) && [i.start.point, i.p0, i.p1, i.p2].into_iter().all(is_point),
+        vec![
+            Is::any("random", random),
+            Is::any("beside a case of whole points", beside),
+            Is::all("whole points", whole, |i, o| of_point(i) == o.test && o.below == Below::default()),
+            Is::often("inside", inside, |_, o| o.test.hit),
+            Is::often("through a vertex", vertex, |i, _| ties(i) >= 2),
+            Is::often("through an edge", edge, |i, _| ties(i) >= 1),
+            Is::all("the triangle that it leaves", own, |_, o| !o.test.hit),
+            Is::some("the next sheet", next_sheet, |i, o| o.test.hit && o.test.t_num.get() << 20 < o.test.det.get() && !is_whole(i)),
+            Is::some("a neighbour", neighbour, |_, o| o.test.hit),
+            Is::all("no area", no_area, |_, o| !o.test.hit),
+            Is::all("the largest", extreme, |_, o| o.test.t_num.get() > 31 << 92 || !o.test.hit),
+        ],
+        vec![
+            ("edge tie of a fraction, hit", |i, o| o.test.hit && ties(i) == 1 && !is_whole(i)),
+            ("edge tie of a fraction, miss", |i, o| !o.test.hit && ties(i) == 1 && !is_whole(i)),
+            ("vertex tie of a fraction, hit", |i, o| o.test.hit && ties(i) == 2 && !is_whole(i)),
+            ("three ties", |i, _| ties(i) == 3 && !is_whole(i)),
+            ("ties decided by y", |i, o| o.test.hit && edges(i).iter().any(|(v, n)| *v == 0 && n[0] == 0 && n[1] != 0)),
+            ("ties decided by z", |i, o| o.test.hit && edges(i).iter().any(|(v, n)| *v == 0 && n[0] == 0 && n[1] == 0 && n[2] != 0)),
+            ("met though the whole point's ray misses", |i, o| o.test.hit && !of_point(i).hit),
+            ("missed though the whole point's ray meets", |i, o| !o.test.hit && of_point(i).hit),
+            ("t below 1", |_, o| o.test.hit && o.test.t_num.get() == 0 && o.below.t != U::ZERO),
+            ("v below 1", |_, o| o.test.hit && o.test.v.get() == 0 && o.below.v != U::ZERO),
+            ("many bits below", |_, o| o.test.hit && o.below.w.get() & 0xFF == 0xFF),
+        ],
+        vec![
+            ("hit of the back, of the front", 0..=2, |_, o| if o.test.hit { 1 + u64::from(o.test.front) } else { 0 }),
+            ("signs of u, v, w", 0..=26, |i, _| {
+                edges(i).iter().fold(0, |code, (v, _)| 3 * code + (v.signum() + 1) as u64) // 0 to 2
+            }),
+        ],
+    )
+}
+
+fn with(edges_per_cycle: u32, timing: Timing) -> Suite<StartTest> {
+    Suite { build: Build::block::<StartTest>().parameter("EDGES_PER_CYCLE", edges_per_cycle), timing, ..suite() }
+}
+
+fn three_edges() -> Suite<StartTest> {
+    with(3, StartTest::THREE_EDGES)
+}
+
+fn one_edge() -> Suite<StartTest> {
+    with(1, StartTest::ONE_EDGE)
+}
+
+#[test]
+fn three_edges_per_cycle_free_running() {
+    three_edges().run(Mode::Free);
+}
+
+#[test]
+fn three_edges_per_cycle_stalled() {
+    three_edges().run(Mode::Stalled);
+}
+
+#[test]
+fn one_edge_per_cycle_free_running() {
+    one_edge().run(Mode::Free);
+}
+
+#[test]
+fn one_edge_per_cycle_stalled() {
+    one_edge().run(Mode::Stalled);
+}
