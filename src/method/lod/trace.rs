@@ -74,9 +74,9 @@ impl<'a> LodTraverser<'a> {
     pub fn departure(&self, ray: &Ray, from: Option<&Departure>, hit: &Hit, corners: &[Point; 3]) -> Departure {
         let tree = hit.tree.get() as u32; // 28 bits
         let base = VertexData::from_words(&self.image.records[tree as usize][..4]).points();
-        let (prior, crowded) = Prior::after(ray, from.map(|from| &from.prior), tree, base);
+        let (prior, crowded) = Prior::after(ray, from.and_then(|from| from.prior.as_ref()), tree, base);
         let start = leave::start(corners, [hit.b0, hit.b1, hit.b2]);
-        Departure { start, corners: *corners, prior, crowded }
+        Departure { start, corners: *corners, prior: Some(prior), crowded }
     }
 
     /// The same, compiled for scenes of one form of vertices, for rays that tolerate nothing if they are of `FULL_DETAIL`, and for those that have a departure if they are
@@ -121,7 +121,7 @@ impl<'a> LodTraverser<'a> {
             Some(from) if LEAVES => {
                 debug_assert_eq!(from.start.point, ray.origin);
                 let leaving = Leaving::new(&from.start, ray.direction);
-                (leaving, Some(&from.prior), leaving.setup(ray.origin, ray.direction))
+                (leaving, from.prior.as_ref(), leaving.setup(ray.origin, ray.direction))
             }
             _ => (Leaving::default(), None, RaySetup::eval(&ray_setup::In { origin: ray.origin, direction: ray.direction })),
         };
