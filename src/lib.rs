@@ -24,6 +24,7 @@ pub mod machine;
 pub mod mesh;
 pub mod method;
 pub mod num;
+pub mod paths;
 pub mod picture;
 pub mod plan;
 pub mod rays;

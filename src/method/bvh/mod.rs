@@ -14,7 +14,7 @@ pub use leaves::{Leaf, LeafLayout, Leaves};
 pub use store::{NoStore, TreeStore};
 pub use trace::BvhTraverser;
 
-use super::{ClosestHit, Departure, Knob, Landing, Knobs, Method, MethodUnit, Registered, SurfaceHit, Trace, Tracer};
+use super::{ClosestHit, Departure, Knob, Knobs, Landing, Method, MethodUnit, Registered, SurfaceHit, Trace, Tracer};
 use crate::block::Operation;
 use crate::bvh::BvhError;
 use crate::format::Scene;

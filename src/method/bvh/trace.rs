@@ -221,7 +221,14 @@ impl<'a> BvhTraverser<'a> {
 
     /// Reads a leaf and tests its triangles.
     #[inline(always)]
-    fn leaf<S: StepSink, H: HitSink, const LEAVING: bool>(&mut self, ray: &Ray, leaving: &Leaving, leaf: &Leaf, steps: &mut S, sink: &mut H) {
+    fn leaf<S: StepSink, H: HitSink, const LEAVING: bool>(
+        &mut self,
+        ray: &Ray,
+        leaving: &Leaving,
+        leaf: &Leaf,
+        steps: &mut S,
+        sink: &mut H,
+    ) {
         let mut place = 0;
         self.leaves.lines(leaf, |address| {
             let fetch = Fetch::new(LEAVES, self.map.line(LEAVES, self.before[LEAVES.place()] + address / LINE_BYTES), 1).at(place);
