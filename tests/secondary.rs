@@ -2,12 +2,13 @@
 
 use lodray::golden::{Exact, ExactHit, Leg};
 use lodray::mesh::Hierarchy;
+use lodray::method::bvh::BvhTraverser;
 use lodray::method::leave;
 use lodray::method::lod::{LodImage, LodTraverser};
 use lodray::method::{ClosestHit, Crossings, Departure};
 use lodray::num::{Cone, Direction, Point, Ray, VertexForm};
 use lodray::step::NoSteps;
-use lodray_test_support::models::{Rng, ball, cone, model, scene_of, terrain, with_vertices};
+use lodray_test_support::models::{Rng, ball, cone, full_bvhs, model, scene_of, terrain, with_vertices};
 use lodray_test_support::plain::plain;
 use std::cmp::Ordering;
 
@@ -222,4 +223,47 @@ fn fans_of_five_triangles_and_pillows_too() {
     }
     println!("{rays} rays, {crowded} paths with a third prior ray");
     assert!(rays > 3_000);
+}
+
+/// Every kind of BVH: rays that leave a hit meet what golden full resolution has, and start where it says.
+#[test]
+fn paths_through_bvhs_are_the_golden_ones_of_full_resolution() {
+    let (mut rays, mut hits) = (0u64, 0u64);
+    for seed in 0..6u64 {
+        let levels = 1 + seed as u32 % 4;
+        let h = if seed % 2 == 0 { ball(levels, 0.6, seed) } else { terrain(3, levels, 0.7, seed) };
+        let h = &scene_of(&h).decode();
+        let (golden, bvhs) = (Exact::new(h), full_bvhs(h));
+        let mut rng = Rng(seed + 1);
+        for _ in 0..100 {
+            let mut ray = Ray { cone: Cone::default(), ..start_at(h, &mut rng) };
+            let (mut legs, mut from) = (Vec::<Leg>::new(), None::<Departure>);
+            for _ in 0..6 {
+                let wanted = golden.trace_after(&legs, &ray);
+                let mut next = None;
+                for bvh in &bvhs {
+                    let mut closest = ClosestHit::new(h.levels);
+                    let mut traverser = BvhTraverser::new(bvh);
+                    match &from {
+                        Some(from) => traverser.trace_from(&ray, from, &mut NoSteps, &mut closest),
+                        None => traverser.trace(&ray, &mut NoSteps, &mut closest),
+                    }
+                    assert_eq!(closest.record().as_ref().map(plain), wanted, "{ray:?} {from:?}");
+                    next = closest.record().zip(closest.corners()).map(|(hit, corners)| BvhTraverser::departure(&hit, &corners));
+                    rays += 1;
+                }
+                let (Some(hit), Some(departure)) = (wanted, next) else { break };
+                hits += 1;
+                let leg = golden.leg(&legs, &ray, &hit);
+                assert_eq!((leg.start(), leg.corners()), (departure.start, departure.corners.map(Point::get)));
+                legs.push(leg);
+                let at = h.points[rng.below(h.points.len() as u64) as usize].map(i64::from);
+                let direction = leaving(&mut rng, &departure.corners, departure.start.point, at);
+                ray = Ray { origin: departure.start.point, direction, cone: Cone::default() };
+                from = Some(departure);
+            }
+        }
+    }
+    println!("{rays} rays, {hits} hits of paths");
+    assert!(rays > 5_000 && hits > 500);
 }
