@@ -78,17 +78,19 @@ impl Film {
         })
     }
 
-    /// Writes the light as OpenEXR, 32-bit floats, with notes of itself.
+    /// Writes the light as OpenEXR, 32-bit floats; it says what it is.
     ///
     /// # Errors
     /// It cannot be written.
-    pub fn save_exr(&self, notes: &[(String, String)], path: &Path) -> Result<(), FilmError> {
+    pub fn save_exr(&self, software: &str, what: &str, path: &Path) -> Result<(), FilmError> {
         let pixels = PixelVec::new((self.width as usize, self.height as usize), self.light.iter().map(|c| (c.x, c.y, c.z)).collect());
         let channels = SpecificChannels::rgb(pixels);
-        let mut own = LayerAttributes::named("lodray");
-        for (key, text) in notes {
-            own.other.insert(Text::from(key.as_str()), exr::meta::attribute::AttributeValue::Text(Text::from(text.as_str())));
-        }
+        // Attributes of other names would be written in any order.
+        let own = LayerAttributes {
+            software_name: Some(Text::from(software)),
+            comments: Some(Text::from(what)),
+            ..LayerAttributes::named("lodray")
+        };
         let size = exr::math::Vec2(self.width as usize, self.height as usize);
         let layer = Layer::new(size, own, exr::image::Encoding::SMALL_LOSSLESS, channels);
         let image = Image::new(ImageAttributes::with_size(size), layer);

@@ -146,6 +146,10 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
     file.picture.seed = args.seed.unwrap_or(file.picture.seed);
     file.cones.diffuse = args.diffuse_spread.unwrap_or(file.cones.diffuse);
     let named: Vec<_> = file.model.iter().filter_map(|model| model.file.as_ref()).map(|name| beside.join(name)).collect();
+    for (k, model) in file.model.iter().enumerate() {
+        let missing = model.file.as_ref().map(|name| beside.join(name)).filter(|path| !path.is_file());
+        ensure!(missing.is_none(), "{shown}: model[{k}].file: there is no file {}", missing.unwrap_or_default().display());
+    }
     let inputs: Vec<&Path> = named.iter().map(PathBuf::as_path).chain([args.scene.as_path()]).collect();
     let mut names = vec![FIGURES];
     names.extend(if args.machine.is_none() { &[PICTURE, LIGHT][..] } else { &[RESULTS] });
@@ -186,7 +190,7 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
         let notes = [("Software", format!("lodray {}", env!("CARGO_PKG_VERSION"))), ("Description", what.to_owned())];
         let notes = notes.map(|(key, text)| (key.to_owned(), text));
         save_png(&film.image(exposure), &notes, &folder.staging().join(picture))?;
-        Ok(film.save_exr(&notes, &folder.staging().join(light))?)
+        Ok(film.save_exr(&notes[0].1, what, &folder.staging().join(light))?)
     };
     save(&film, PICTURE, LIGHT, args.method.0.method.name)?;
 
