@@ -2,6 +2,7 @@
 """Runs the experiments with paths that are not in the folder yet, and fills scripts/paper/paths.md with what they measured: writes docs/paths.md. Argument: the folder."""
 
 import json
+import math
 import re
 import shutil
 import subprocess
@@ -11,6 +12,7 @@ from pathlib import Path
 ROOT = Path(__file__).resolve().parent.parent
 LODRAY = ROOT / "target" / "release" / "lodray"
 TEMPLATE = ROOT / "scripts" / "paper" / "paths.md"
+MEASURED = ROOT / "scripts" / "paper" / "measured.json"
 IMAGES = ROOT / "docs" / "images"
 SCENES = ["room", "drape", "terrain"]
 
@@ -141,6 +143,19 @@ def rule(runs):
     return table(head, rows)
 
 
+def ledger(runs):
+    """What docs/claims.md says of figure 17."""
+    measured = json.loads(MEASURED.read_text())
+    values = {}
+    for form in FORMS:
+        own = factors(gains(*(runs.bounces(BASE, form, method) for method in ["lod", "bvh"])))
+        values |= {f"paths_{form}_{name}": f"{value} times" for name, value in zip(["energy", "time", "first", "second", "third"], own)}
+    version = json.loads((runs.folder / "rule" / "room-exact" / "run.json").read_text())["lodray"]
+    measured["paths"] = {"sweeps": ["paths"], "version": version, "values": values}
+    MEASURED.write_text(json.dumps(measured, indent=1, sort_keys=True) + "\n")
+    subprocess.run([sys.executable, str(ROOT / "scripts" / "figures.py"), str(runs.folder)], check=True)
+
+
 def spread(runs):
     rows = []
     for value in ["0", "0.01", "0.02", "0.05", "0.1", "0.2", "0.5"]:
@@ -160,6 +175,7 @@ def error_time(runs):
     for scene in ["room", "terrain"]:
         ways = [("lod", ["--delta", delta], f"delta {delta}") for delta in DELTAS]
         ways += [("discrete", ["--level", str(level)], f"level {level}") for level in [1, 2, 3, 4, 5]] + [("bvh", [], "")]
+        lines = {}
         for method, options, knob in ways:
             name = f"error-time/{scene}-{method}-{knob.replace(' ', '-')}"
             options = [described(scene), "--size", "192x144", "--samples", 64, "--method", method, *options]
@@ -167,8 +183,45 @@ def error_time(runs):
             cost = runs.paths(name + "-cost", *options, "--samples", 4, "--machine", "haydel2023")[-1]
             # Of 64 paths a pixel, as many as the pictures have.
             figures = [f"{cost['milliseconds'] * 16:.3f}", f"{cost['energy'] * 16 / 1000:.2f}", f"{cost['dram_bytes'] * 16 / 1e6:.1f}"]
+            lines.setdefault(method, []).append((cost["milliseconds"] * 16, error["light"]))
             rows.append([scene, method, knob, f"{error['light']:.5f}", f"{error['image']['psnr_db']:.2f}", *figures])
+        (IMAGES / f"paths-error-time-{scene}.svg").write_text(diagram(f"{scene}.toml, haydel2023, compute free", lines))
     return table(["scene", "method", "knob", "error of light", "picture, dB", "ms", "mJ", "MB of DRAM"], rows)
+
+
+def diagram(title, lines):
+    """Error against time, both logarithmic: an SVG of {name: [(ms, error)]}."""
+    colours = {"lod": "#0b6e99", "discrete": "#c77800", "bvh": "#555555"}
+    points = [point for line in lines.values() for point in line]
+    (left, right), (low, high) = ((min(axis), max(axis)) for axis in ([math.log10(p[k]) for p in points] for k in (0, 1)))
+    wide, tall, edge = 460, 320, 54
+    margin = [0.06 * (right - left) + 0.02, 0.06 * (high - low) + 0.02]
+
+    def place(ms, error):
+        x = (math.log10(ms) - left + margin[0]) / (right - left + 2 * margin[0])
+        y = (math.log10(error) - low + margin[1]) / (high - low + 2 * margin[1])
+        return edge + x * (wide - edge - 12), tall - edge - y * (tall - edge - 30)
+
+    out = [f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {wide} {tall}" font-family="sans-serif" font-size="11">']
+    out.append(f'<rect width="{wide}" height="{tall}" fill="white"/><text x="{edge}" y="18" font-size="13">{title}</text>')
+    out.append(f'<path d="M{edge},30V{tall - edge}H{wide - 12}" fill="none" stroke="black"/>')
+    steps = [m * 10.0**e for e in range(-8, 5) for m in (1, 2, 5)]
+    for v in steps:
+        if 10**left <= v <= 10**right:
+            x = place(v, 10**low)[0]
+            out.append(f'<text x="{x:.1f}" y="{tall - edge + 14}" text-anchor="middle">{v:g}</text><path d="M{x:.1f},{tall - edge}v4" stroke="black"/>')
+        if 10**low <= v <= 10**high:
+            y = place(10**left, v)[1]
+            out.append(f'<text x="{edge - 6}" y="{y + 4:.1f}" text-anchor="end">{v:g}</text><path d="M{edge},{y:.1f}h-4" stroke="black"/>')
+    out.append(f'<text x="{(wide + edge) / 2}" y="{tall - 14}" text-anchor="middle">ms of a picture of 64 paths a pixel</text>')
+    out.append(f'<text transform="translate(12,{(tall - edge) / 2 + 20}) rotate(-90)" text-anchor="middle">error of light</text>')
+    for k, (name, line) in enumerate(lines.items()):
+        at = [place(*point) for point in line]
+        path = "M" + "L".join(f"{x:.1f},{y:.1f}" for x, y in at)
+        out.append(f'<path d="{path}" fill="none" stroke="{colours[name]}" stroke-width="1.5"/>')
+        out.extend(f'<circle cx="{x:.1f}" cy="{y:.1f}" r="3" fill="{colours[name]}"/>' for x, y in at)
+        out.append(f'<text x="{wide - 70}" y="{42 + 15 * k}" fill="{colours[name]}">{name}</text>')
+    return "\n".join(out + ["</svg>\n"])
 
 
 def main():
@@ -181,6 +234,7 @@ def main():
             sys.exit(f"paths: {TEMPLATE} has no {mark}")
         text = text.replace(mark, part(runs))
     (ROOT / "docs" / "paths.md").write_text(text)
+    ledger(runs)
 
 
 main()

@@ -51,25 +51,25 @@ pub struct Args {
     #[arg(long, value_name = "WxH")]
     size: Option<Size>,
     /// Paths of a pixel, in place of the description's
-    #[arg(long, value_name = "N", value_parser = whole::<u32>(1..=1 << 20))]
+    #[arg(long, value_name = "N", value_parser = whole::<u32>(1..=1 << 20), allow_negative_numbers = true)]
     samples: Option<u32>,
     /// Bounces, in place of the description's
-    #[arg(long, value_name = "N", value_parser = whole::<u32>(0..=64))]
+    #[arg(long, value_name = "N", value_parser = whole::<u32>(0..=64), allow_negative_numbers = true)]
     depth: Option<u32>,
     /// Seed, in place of the description's
-    #[arg(long, value_name = "N", value_parser = seed())]
+    #[arg(long, value_name = "N", value_parser = seed(), allow_negative_numbers = true)]
     seed: Option<u64>,
     /// Spread of cones after a diffuse bounce, in place of the description's: the tangent of the half angle
-    #[arg(long, value_name = "TANGENT", value_parser = not_negative)]
+    #[arg(long, value_name = "TANGENT", value_parser = not_negative, allow_negative_numbers = true)]
     diffuse_spread: Option<f64>,
     /// How rays leave surfaces: exact (the rule), independent (each ray decides for itself), or so far above the surface, in bounding radii of its model
-    #[arg(long, value_name = "exact|independent|RADII", value_parser = starts, default_value = "exact")]
+    #[arg(long, value_name = "exact|independent|RADII", value_parser = starts, default_value = "exact", allow_negative_numbers = true)]
     starts: Starts,
     /// Also full resolution, by the same paths, and how far the picture is from it: error, and pixels whose light is wrong
     #[arg(long)]
     compare: bool,
     /// Also full resolution by other paths, so many of a pixel, and the error to it
-    #[arg(long, value_name = "N", value_parser = whole::<u32>(1..=1 << 20))]
+    #[arg(long, value_name = "N", value_parser = whole::<u32>(1..=1 << 20), allow_negative_numbers = true)]
     converged: Option<u32>,
     /// Simulate the paths on a machine, the name of one that comes with the program or a file, in place of a picture, at all depths from 0 on: what each bounce adds; for scenes of one model
     #[arg(long, value_name = "NAME|FILE", conflicts_with_all = ["compare", "converged"])]
