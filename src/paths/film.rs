@@ -132,3 +132,33 @@ pub fn picture_error(film: &Film, truth: &Film) -> f64 {
         film.light.iter().zip(&truth.light).map(|(a, b)| f64::from((*a - *b).length_squared() / (b.length_squared() + 1e-2))).sum();
     sum / film.light.len().max(1) as f64
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn film(light: &[f32], lit: &[[u32; 2]]) -> Film {
+        let counts = PathCounts::default();
+        Film { width: light.len() as u32, height: 1, light: light.iter().map(|&c| Vec3::splat(c)).collect(), lit: lit.to_vec(), counts }
+    }
+
+    #[test]
+    fn light_is_wrong_where_it_is_on_the_other_side() {
+        let truth = film(&[0.0; 5], &[[4, 4], [3, 4], [0, 4], [1, 4], [4, 4]]);
+        let own = film(&[0.0; 5], &[[1, 4], [2, 4], [3, 4], [4, 4], [0, 0]]);
+        assert_eq!(light_count(&own, &truth), LightCount { pixels: 4, shadowed: 1, leaking: 2 });
+        assert_eq!(light_count(&truth, &truth), LightCount { pixels: 5, shadowed: 0, leaking: 0 });
+    }
+
+    #[test]
+    fn errors_are_relative_and_screens_get_all_from_black_to_white() {
+        let (a, b) = (film(&[1.0, 100.0], &[]), film(&[1.1, 110.0], &[]));
+        assert_eq!(picture_error(&a, &a), 0.0);
+        let error = picture_error(&a, &b);
+        assert!((error - (0.1f64 / 1.1).powi(2)).abs() < 2e-4, "{error}");
+        let ramp = film(&[0.0, 0.1, 0.3, 0.5, 1.0, 4.0, 1e6], &[]).image(0.0);
+        let codes: Vec<u8> = ramp.pixels().map(|pixel| pixel.0[0]).collect();
+        assert!(codes[0] == 0 && codes.is_sorted() && codes[6] == 255, "{codes:?}");
+        assert_eq!(film(&[0.25], &[]).image(1.0), film(&[0.5], &[]).image(0.0));
+    }
+}

@@ -8,9 +8,20 @@ use anyhow::{Context, ensure};
 use lodray::format::Scene;
 use lodray::mesh::{RemeshOptions, read, remesh};
 use lodray::method::Method;
-use lodray::paths::{Instance, ModelTable, Paths, Pose, SceneFile, Starts, World};
+use lodray::paths::{Instance, ModelTable, Paths, Pose, SceneFile, SceneFileError, Starts, World};
 use lodray::rays::{Camera, ModelSpace, View};
 use std::path::Path;
+
+/// Reads a description; what is wrong with it is said in one line.
+pub fn description(path: &Path) -> anyhow::Result<SceneFile> {
+    SceneFile::read(path).map_err(|error| match error {
+        SceneFileError::Toml { file, source } => {
+            let picture = source.to_string();
+            anyhow::anyhow!("{file}: {}: {}", picture.lines().next().unwrap_or_default(), source.message())
+        }
+        other => other.into(),
+    })
+}
 
 /// The model of a table.
 pub fn load(model: &ModelTable, beside: &Path) -> anyhow::Result<Scene> {

@@ -12,10 +12,10 @@ use super::names::named;
 use super::output::{print_json, progress, write_file};
 use anyhow::{Context, ensure};
 use lodray::method::lod;
-use lodray::paths::{Film, LightCount, PathCounts, Paths, SceneFile, Starts, light_count, picture_error};
+use lodray::paths::{Film, LightCount, PathCounts, Paths, Starts, light_count, picture_error};
 use lodray::picture::{ImageError, compare, save_png};
 use lodray::run::Compute;
-use made::{camera, load, paths, world};
+use made::{camera, description, load, paths, world};
 use serde::Serialize;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
@@ -135,7 +135,7 @@ struct Against {
 }
 
 pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
-    let mut file = SceneFile::read(&args.scene)?;
+    let mut file = description(&args.scene)?;
     let beside = args.scene.parent().unwrap_or(Path::new(""));
     let shown = args.scene.display();
     if let Some(Size(width, height)) = args.size {
