@@ -192,8 +192,9 @@ fn non_manifold_fans_and_loose_triangles() {
 
 #[test]
 fn procedural_scenes() {
-    use procedural::Scene::{Cloth, Room, Sphere, Spikes, Terrain};
-    for (kind, base, levels) in [(Terrain, 32, 4), (Cloth, 32, 3), (Sphere, 32, 4), (Spikes, 32, 3), (Room, 64, 2)] {
+    use procedural::Scene::{Cloth, Drape, Pot, Room, Sphere, Spikes, Terrain};
+    let kinds = [(Terrain, 32, 4), (Cloth, 32, 3), (Sphere, 32, 4), (Spikes, 32, 3), (Room, 64, 2), (Pot, 64, 3), (Drape, 32, 3)];
+    for (kind, base, levels) in kinds {
         let options = Options { levels: Some(levels), base: Some(base), ..Options::new(kind) };
         let surface = procedural::generate(&options).expect("options");
         for form in VertexForm::ALL {
