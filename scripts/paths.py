@@ -161,8 +161,8 @@ def spread(runs):
     for value in ["0", "0.01", "0.02", "0.05", "0.1", "0.2", "0.5"]:
         row = [value]
         for scene in ["room", "terrain"]:
-            options = [described(scene), "--size", "256x192", "--samples", 16, "--diffuse-spread", value]
-            error = runs.paths(f"spread/{scene}-{value}-error", *options, "--compare")["against_full"]
+            options = [described(scene), "--size", "256x192", "--diffuse-spread", value]
+            error = runs.paths(f"spread/{scene}-{value}-error", *options, "--samples", 16, "--compare")["against_full"]
             cost = runs.paths(f"spread/{scene}-{value}-cost", *options, "--samples", 1, "--machine", "haydel2023")[-1]
             row += [f"{error['light']:.4f}", f"{error['image']['psnr_db']:.1f}", f"{cost['milliseconds']:.4f}", f"{cost['energy'] / 1000:.3f}"]
         rows.append(row)
@@ -178,8 +178,8 @@ def error_time(runs):
         lines = {}
         for method, options, knob in ways:
             name = f"error-time/{scene}-{method}-{knob.replace(' ', '-')}"
-            options = [described(scene), "--size", "192x144", "--samples", 64, "--method", method, *options]
-            error = runs.paths(name + "-error", *options, "--converged", 1024)["against_converged"]
+            options = [described(scene), "--size", "128x96", "--method", method, *options]
+            error = runs.paths(name + "-error", *options, "--samples", 64, "--converged", 512)["against_converged"]
             cost = runs.paths(name + "-cost", *options, "--samples", 4, "--machine", "haydel2023")[-1]
             # Of 64 paths a pixel, as many as the pictures have.
             figures = [f"{cost['milliseconds'] * 16:.3f}", f"{cost['energy'] * 16 / 1000:.2f}", f"{cost['dram_bytes'] * 16 / 1e6:.1f}"]
