@@ -7,7 +7,7 @@ use lodray::machine::Machine;
 use lodray::method::bvh::NoStore;
 use lodray::method::{Knobs, Method, bvh, lod};
 use lodray::rays::{Camera, ModelSpace, Sight, View};
-use lodray::run::{Compute, FrameRays, Job, simulate};
+use lodray::run::{Compute, Frame, FrameRays, Job, simulate};
 use lodray::sim::replay::{self, Chunk, Running};
 use lodray_test_support::models::{scene_of, terrain};
 use std::path::PathBuf;
@@ -42,7 +42,7 @@ fn measure(name: &str, method: &dyn Method, scene: &Scene) {
     let mut chunks: Vec<Chunk> = Vec::new();
     let tracing = best(|| {
         chunks.clear();
-        frame.produce(|traced| {
+        frame.produce(&mut |traced| {
             chunks.push(traced.batches.into());
             true
         });

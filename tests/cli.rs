@@ -27,7 +27,7 @@ fn sheet(n: u32) -> String {
 #[test]
 fn generate_and_info() {
     let desk = empty();
-    for (name, base) in [("terrain", 32), ("cloth", 32), ("sphere", 32), ("spikes", 32), ("room", 42)] {
+    for (name, base) in [("terrain", 32), ("cloth", 32), ("sphere", 32), ("spikes", 32), ("room", 42), ("pot", 64), ("drape", 32)] {
         let made = desk.json(&format!("generate {name} --levels 2 --base {base} --seed 3 -o {name}.lod"));
         assert_eq!(made["name"], name);
         assert_eq!(made, desk.json(&format!("info {name}.lod")));

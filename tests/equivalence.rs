@@ -6,7 +6,6 @@ use lodray::mesh::procedural::{self, Options};
 use lodray::mesh::{BoundKind, Hierarchy};
 use lodray::method::bvh::BvhTraverser;
 use lodray::method::bvh::NoStore;
-use lodray::method::bvh::{FullBvh, FullOptions, LeafLayout, NodeBoxes, NodeOrder};
 use lodray::method::lod::{self, LodImage, LodTraverser};
 use lodray::method::{ClosestHit, Crossings, Knobs};
 use lodray::num::{Cone, Point, Ray, Vec3, VertexForm};
@@ -15,7 +14,7 @@ use lodray::rays::{Camera, RaySource, Sight, View};
 use lodray::step::{NoSteps, Recorder};
 use lodray_test_support::cases;
 use lodray_test_support::models::{
-    Rng, ball, build_with, coarsened, cone, model, octahedron, scene_of, terrain, with_vertices, with_zeros,
+    Rng, ball, build_with, coarsened, cone, full_bvhs, model, octahedron, scene_of, terrain, with_vertices, with_zeros,
 };
 use lodray_test_support::plain::plain;
 use lodray_test_support::surfaces::scene_with;
@@ -55,23 +54,6 @@ impl Bench<'_> {
         }
         golden
     }
-}
-
-fn full_bvhs(h: &Hierarchy) -> Vec<FullBvh> {
-    let variants = [
-        (NodeBoxes::Local, LeafLayout::Line, 4, NodeOrder::Depth),
-        (NodeBoxes::Codes, LeafLayout::Indexed, 2, NodeOrder::Treelets),
-        (NodeBoxes::Wide, LeafLayout::Packed, 1, NodeOrder::Depth),
-        (NodeBoxes::Local, LeafLayout::Block, 16, NodeOrder::Treelets),
-        (NodeBoxes::Wide, LeafLayout::Block, 8, NodeOrder::Treelets),
-        (NodeBoxes::Six, LeafLayout::Block, 16, NodeOrder::Treelets),
-        (NodeBoxes::Six, LeafLayout::Indexed, 1, NodeOrder::Depth),
-    ];
-    let build = |(boxes, layout, size, order)| {
-        let options = FullOptions { order, ..FullOptions::new(size, boxes, layout) };
-        FullBvh::build(h, &options).expect("a valid model")
-    };
-    variants.map(build).into()
 }
 
 /// Runs `rays` through everything on one model; gives how many hit.
@@ -210,8 +192,9 @@ fn non_manifold_fans_and_loose_triangles() {
 
 #[test]
 fn procedural_scenes() {
-    use procedural::Scene::{Cloth, Room, Sphere, Spikes, Terrain};
-    for (kind, base, levels) in [(Terrain, 32, 4), (Cloth, 32, 3), (Sphere, 32, 4), (Spikes, 32, 3), (Room, 64, 2)] {
+    use procedural::Scene::{Cloth, Drape, Pot, Room, Sphere, Spikes, Terrain};
+    let kinds = [(Terrain, 32, 4), (Cloth, 32, 3), (Sphere, 32, 4), (Spikes, 32, 3), (Room, 64, 2), (Pot, 64, 3), (Drape, 32, 3)];
+    for (kind, base, levels) in kinds {
         let options = Options { levels: Some(levels), base: Some(base), ..Options::new(kind) };
         let surface = procedural::generate(&options).expect("options");
         for form in VertexForm::ALL {

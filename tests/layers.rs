@@ -8,7 +8,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 /// The floors, lowest first: each a module with all below it, but for those that have a line of their own.
-const FLOORS: [&str; 22] = [
+const FLOORS: [&str; 23] = [
     "num",
     "block",
     "mesh",
@@ -29,6 +29,7 @@ const FLOORS: [&str; 22] = [
     "run",
     "plan",
     "picture",
+    "paths",
     "report",
     "lab",
 ];

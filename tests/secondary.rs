@@ -2,12 +2,14 @@
 
 use lodray::golden::{Exact, ExactHit, Leg};
 use lodray::mesh::Hierarchy;
+use lodray::method::bvh::{self, BvhTraverser, NoStore};
 use lodray::method::leave;
-use lodray::method::lod::{LodImage, LodTraverser};
-use lodray::method::{ClosestHit, Crossings, Departure};
+use lodray::method::lod::{self, LodImage, LodTraverser};
+use lodray::method::{ClosestHit, Crossings, Departure, Knobs};
 use lodray::num::{Cone, Direction, Point, Ray, VertexForm};
-use lodray::step::NoSteps;
-use lodray_test_support::models::{Rng, ball, cone, model, scene_of, terrain, with_vertices};
+use lodray::rays::{ModelSpace, Query, Sight};
+use lodray::step::{NoSteps, Recorder};
+use lodray_test_support::models::{Rng, ball, cone, full_bvhs, model, scene_of, terrain, with_vertices};
 use lodray_test_support::plain::plain;
 use std::cmp::Ordering;
 
@@ -222,4 +224,90 @@ fn fans_of_five_triangles_and_pillows_too() {
     }
     println!("{rays} rays, {crowded} paths with a third prior ray");
     assert!(rays > 3_000);
+}
+
+/// Every kind of BVH: rays that leave a hit meet what golden full resolution has, and start where it says.
+#[test]
+fn paths_through_bvhs_are_the_golden_ones_of_full_resolution() {
+    let (mut rays, mut hits) = (0u64, 0u64);
+    for seed in 0..6u64 {
+        let levels = 1 + seed as u32 % 4;
+        let h = if seed % 2 == 0 { ball(levels, 0.6, seed) } else { terrain(3, levels, 0.7, seed) };
+        let h = &scene_of(&h).decode();
+        let (golden, bvhs) = (Exact::new(h), full_bvhs(h));
+        let mut rng = Rng(seed + 1);
+        for _ in 0..100 {
+            let mut ray = Ray { cone: Cone::default(), ..start_at(h, &mut rng) };
+            let (mut legs, mut from) = (Vec::<Leg>::new(), None::<Departure>);
+            for _ in 0..6 {
+                let wanted = golden.trace_after(&legs, &ray);
+                let mut next = None;
+                for bvh in &bvhs {
+                    let mut closest = ClosestHit::new(h.levels);
+                    let mut traverser = BvhTraverser::new(bvh);
+                    match &from {
+                        Some(from) => traverser.trace_from(&ray, from, &mut NoSteps, &mut closest),
+                        None => traverser.trace(&ray, &mut NoSteps, &mut closest),
+                    }
+                    assert_eq!(closest.record().as_ref().map(plain), wanted, "{ray:?} {from:?}");
+                    next = closest.record().zip(closest.corners()).map(|(hit, corners)| BvhTraverser::departure(&hit, &corners));
+                    rays += 1;
+                }
+                let (Some(hit), Some(departure)) = (wanted, next) else { break };
+                hits += 1;
+                let leg = golden.leg(&legs, &ray, &hit);
+                assert_eq!((leg.start(), leg.corners()), (departure.start, departure.corners.map(Point::get)));
+                legs.push(leg);
+                let at = h.points[rng.below(h.points.len() as u64) as usize].map(i64::from);
+                let direction = leaving(&mut rng, &departure.corners, departure.start.point, at);
+                ray = Ray { origin: departure.start.point, direction, cone: Cone::default() };
+                from = Some(departure);
+            }
+        }
+    }
+    println!("{rays} rays, {hits} hits of paths");
+    assert!(rays > 5_000 && hits > 500);
+}
+
+/// What pictures and machines are made of: tracers of methods, asked in the world, go on where golden paths do.
+#[test]
+fn tracers_follow_golden_paths() {
+    let mut hits = 0;
+    for seed in 0..4u64 {
+        let scene = scene_of(&ball(1 + seed as u32, 0.4, seed));
+        let (h, space) = (&scene.decode(), ModelSpace::of(&scene));
+        let golden = Exact::new(h);
+        for (method, delta) in [(&lod::METHOD, 1.0), (&lod::METHOD, f64::INFINITY), (&bvh::METHOD, f64::INFINITY)] {
+            let method = (method.make)(&scene, &Knobs::default(), &NoStore).expect("a method on a scene");
+            let mut tracer = method.tracer(&Sight { delta, least_radius: 0.0 });
+            let mut rng = Rng(seed);
+            for _ in 0..150 {
+                let eye = [0, 1, 2].map(|k| space.centre()[k] + 3.0 * space.radius() * rng.signed());
+                let towards = |rng: &mut Rng| [(); 3].map(|()| rng.signed());
+                let aside = towards(&mut rng);
+                let direction = std::array::from_fn(|k| space.centre()[k] + 0.5 * space.radius() * aside[k] - eye[k]);
+                let mut query = Query::new(eye, direction).with_cone(0.0, 0.02);
+                let (mut legs, mut from) = (Vec::<Leg>::new(), None::<Departure>);
+                for _ in 0..5 {
+                    let Some(ray) = space.enter_from(&query, from.as_ref().map(|from| &from.start), delta) else { break };
+                    let (landing, wanted) = (tracer.follow(&query, from.as_ref(), None), golden.trace_after(&legs, &ray.ray));
+                    let mut recorder = Recorder::default();
+                    assert_eq!(tracer.follow(&query, from.as_ref(), Some(&mut recorder)), landing);
+                    assert_eq!(recorder.batch().rays(), 1);
+                    assert_eq!(landing.is_some(), wanted.is_some(), "{ray:?}");
+                    let (Some(landing), Some(wanted)) = (landing, wanted) else { break };
+                    hits += 1;
+                    assert_eq!((landing.surface.tree, landing.surface.front), (wanted.tree, wanted.front), "{ray:?}");
+                    assert_eq!(landing.surface.distance, ray.distance(wanted.t));
+                    let leg = golden.leg(&legs, &ray.ray, &wanted);
+                    assert_eq!(leg.start(), landing.departure.start);
+                    legs.push(leg);
+                    query = Query::new([0.0; 3], towards(&mut rng)).with_cone(0.01 * rng.unit(), 0.1 * rng.unit());
+                    from = Some(landing.departure);
+                }
+            }
+        }
+    }
+    println!("{hits} hits");
+    assert!(hits > 1_500);
 }

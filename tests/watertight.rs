@@ -58,7 +58,7 @@ fn closed_models_have_neither_misses_nor_double_hits() {
             add(format!("ball N = {levels}, roughness {roughness}"), scene_of(&h));
         }
     }
-    for kind in [procedural::Scene::Sphere, procedural::Scene::Spikes] {
+    for kind in [procedural::Scene::Sphere, procedural::Scene::Spikes, procedural::Scene::Pot] {
         let options = Options { levels: Some(4), base: Some(128), ..Options::new(kind) };
         let surface = procedural::generate(&options).expect("options");
         VertexForm::ALL.into_iter().for_each(|form| add(format!("{kind:?}"), build_with(&surface, form)));

@@ -23,6 +23,7 @@ mod names;
 mod original;
 mod output;
 mod pass;
+mod paths;
 mod pictures;
 mod plan;
 mod prune;
@@ -86,6 +87,9 @@ enum Command {
     /// Count the memory lines that a frame touches, LOD against every BVH layout, by distance
     #[command(after_long_help = words::LINES)]
     Lines(lines::Args),
+    /// Trace paths through a scene described in TOML, with shadows, mirrors and light from surface to surface: a picture, or what each bounce costs on a machine
+    #[command(after_long_help = words::PATHS)]
+    Paths(paths::Args),
     /// Cast the rays of a file (NumPy) at a scene, with any method, and write what they meet (NumPy)
     #[command(after_long_help = words::CAST)]
     Cast(cast::Args),
@@ -122,6 +126,7 @@ pub fn run(cli: Cli) -> anyhow::Result<ExitCode> {
         Command::Report(args) => report::run(&args),
         Command::Trace(args) => trace::run(&args),
         Command::Lines(args) => lines::run(&args),
+        Command::Paths(args) => paths::run(&args),
         Command::Cast(args) => cast::run(&args),
         Command::Crack(args) => crack::run(&args),
         Command::Stability(args) => stability::run(&args),

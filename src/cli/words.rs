@@ -66,6 +66,24 @@ Words of the table:
   pixels              worst shift of a hit on the picture of a camera
   breaches            misses, doubles, differences and overflows together: there should be none";
 
+/// Of `paths`.
+pub const PATHS: &str = "\
+Keys of the description (scenes/*.toml are examples; every colour is linear):
+  [picture]           width, height, samples (paths of a pixel), depth (bounces), seed,
+                      shadow_rays (lights are asked for light; true), exposure (steps of 2; 0)
+  [cones]             how cones spread after a hit: diffuse, glossy, light, curvature
+  [[camera]]          name, eye, target, up (0, 1, 0), fov (degrees from bottom to top)
+  [[model]]           file (.lod, or a mesh with levels) or generate = { scene, levels, base, seed, roughness };
+                      material (a name) or materials (names by the model's own numbers);
+                      rotate (degrees about x, y, z), scale, translate
+  [material.NAME]     kind = \"diffuse\" (albedo), \"glossy\" (reflectance, roughness, albedo) or \"mirror\" (reflectance)
+  [[light]]           kind = \"point\" (position, intensity), \"area\" (corner, along, across, radiance; shines to along x across)
+                      or \"sun\" (direction, half_angle in degrees, irradiance)
+  [environment]       zenith, horizon, ground (radiance), up
+
+Example: lodray paths scenes/room.toml --compare
+";
+
 /// Of `cast`.
 pub const CAST: &str = "\
 Columns of the rays (an array of float32 or float64, 6, 8, 10, 11 or 12 columns):

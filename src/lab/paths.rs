@@ -61,7 +61,7 @@ fn onward(model: &Model, bounce: Bounce, before: Direction, from: &Departure, ra
         Bounce::Vertex => {
             let h = &model.hierarchy;
             // Of the model anywhere, or of the tree that was hit and those beside it in memory.
-            let near = u64::from(from.prior.tree) + random.below(3);
+            let near = from.prior.map_or(0, |prior| u64::from(prior.tree)) + random.below(3);
             let tree = if random.below(2) == 0 { near.min(h.triangles.len() as u64 - 1) } else { random.below(h.triangles.len() as u64) };
             let points = h.tree(tree as usize);
             let level = random.below(u64::from(h.levels) + 1) as u32;

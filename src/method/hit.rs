@@ -145,6 +145,15 @@ pub(super) fn plane(corners: [[f64; 3]; 3]) -> u32 {
     encode_normal((p1 - p0).cross(p2 - p0).as_vec3().to_array()).unwrap_or(SurfaceHit::NO_PLANE)
 }
 
+impl ClosestHit {
+    /// The same, with where rays start that leave it: `departure` of the hit and the corners of its triangle.
+    pub fn landing(&self, ray: &ModelRay, departure: impl FnOnce(&Hit, &[Point; 3]) -> Departure) -> Option<Landing> {
+        let (hit, corners) = (self.record()?, self.corners()?);
+        let surface = SurfaceHit::new(ray, &hit, plane(corners.map(|p| p.get().map(|c| c as f64))));
+        Some(Landing { surface, departure: departure(&hit, &corners) })
+    }
+}
+
 impl HitSink for ClosestHit {
     #[inline(always)]
     fn t_max(&self) -> RayT {
@@ -190,10 +199,19 @@ pub struct Departure {
     pub start: Start,
     /// Corners of the triangle that was hit, as it was tested.
     pub corners: [Point; 3],
-    /// Who decides about the level of detail around it.
-    pub prior: Prior,
+    /// Who decides about the level of detail around it; none where no ray decides, or each ray for itself.
+    pub prior: Option<Prior>,
     /// A third ray had decided about an edge there, and was dropped ([`Prior::after`]).
     pub crowded: bool,
+}
+
+/// What a ray met whose path may go on.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Landing {
+    /// In the world.
+    pub surface: SurfaceHit,
+    /// For the rays after it.
+    pub departure: Departure,
 }
 
 /// Counts all crossings of the surface: for a closed surface and a ray that starts outside, `front` equals `back`.

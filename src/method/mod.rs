@@ -17,7 +17,7 @@ mod stack;
 mod tracer;
 
 pub(crate) use children::{bvh_boxes, bvh_children};
-pub use hit::{ClosestHit, Crossings, Departure, Hit, HitSink, SurfaceHit, TriangleId, is_beyond};
+pub use hit::{ClosestHit, Crossings, Departure, Hit, HitSink, Landing, SurfaceHit, TriangleId, is_beyond};
 pub use knob::{ErrorKnob, Knob, KnobError, Knobs};
 pub use registry::{METHODS, find};
 pub use stack::{Entry, Op, STACK_ENTRIES, TraversalStack};
@@ -66,6 +66,11 @@ pub trait Method: Send + Sync {
 
     /// Traces one ray after the other; one for each thread.
     fn tracer(&self, sight: &Sight) -> Box<dyn Tracer + '_>;
+
+    /// Rays may start on the surface that it finds, exactly where others met it ([`Tracer::follow`]).
+    fn leaves(&self) -> bool {
+        true
+    }
 
     /// The same structures with other choices of its error knob, where that is not the quality, which rays bring along.
     fn again(&self, _knobs: &Knobs) -> Option<Box<dyn Method>> {

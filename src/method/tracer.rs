@@ -1,6 +1,6 @@
 //! Tracing rays through any method.
 
-use super::SurfaceHit;
+use super::{Departure, Landing, SurfaceHit};
 use crate::rays::Query;
 use crate::step::{LineCounter, NoSteps, Recorder, Step, StepSink};
 
@@ -8,6 +8,9 @@ use crate::step::{LineCounter, NoSteps, Recorder, Step, StepSink};
 pub trait Trace {
     /// What `query` meets first, or, if any hit serves, meets; every step goes to `steps`, the last one being the end.
     fn trace<S: StepSink>(&mut self, query: &Query, steps: &mut S) -> Option<SurfaceHit>;
+
+    /// The same for a ray whose path may go on; it starts at `from`, a hit of this method, if there is one, whatever the query's origin.
+    fn follow<S: StepSink>(&mut self, query: &Query, from: Option<&Departure>, steps: &mut S) -> Option<Landing>;
 }
 
 /// Any method's tracer: one call for each ray decides which method it is, and none for each step.
@@ -20,6 +23,9 @@ pub trait Tracer {
     fn recorded(&mut self, query: &Query, recorder: &mut Recorder) -> Option<SurfaceHit>;
     /// Whoever listens, at a call for each step.
     fn heard(&mut self, query: &Query, steps: &mut dyn StepSink) -> Option<SurfaceHit>;
+    /// A ray of a path, which starts at `from` if the path has hit something; its steps are kept if there is a recorder. Nothing from a method that does not
+    /// [`leave`](super::Method::leaves) its surface.
+    fn follow(&mut self, query: &Query, from: Option<&Departure>, recorder: Option<&mut Recorder>) -> Option<Landing>;
 }
 
 /// A listener behind a reference.
@@ -43,5 +49,11 @@ impl<T: Trace> Tracer for T {
     }
     fn heard(&mut self, query: &Query, steps: &mut dyn StepSink) -> Option<SurfaceHit> {
         self.trace(query, &mut Heard(steps))
+    }
+    fn follow(&mut self, query: &Query, from: Option<&Departure>, recorder: Option<&mut Recorder>) -> Option<Landing> {
+        match recorder {
+            Some(recorder) => Trace::follow(self, query, from, recorder),
+            None => Trace::follow(self, query, from, &mut NoSteps),
+        }
     }
 }

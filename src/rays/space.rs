@@ -3,7 +3,7 @@
 use super::{Query, cone};
 use crate::format::Scene;
 use crate::mesh::Placement;
-use crate::num::{BOX_MARGIN, DIRECTION_SCALE, Point, Ray, RayT, U, Vec3};
+use crate::num::{BOX_MARGIN, DIRECTION_SCALE, Direction, Point, Ray, RayT, Start, U, Vec3};
 
 /// Where a model lies, and the box of all its vertices.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -112,21 +112,39 @@ impl ModelSpace {
             return None;
         }
 
-        let d = direction.map(|c| to_step(c * f64::from(DIRECTION_SCALE), self.zeros[1], f64::from(DIRECTION_SCALE)));
-        let length = d.iter().map(|&c| (c as f64) * (c as f64)).sum::<f64>().sqrt();
+        let (d, length) = self.rounded(direction);
         // Clamping keeps the point in the enlarged box, hence in 32 bits.
         let x: [i64; 3] =
             std::array::from_fn(|k| to_step((origin[k] + near * direction[k]).clamp(lo[k], hi[k]), self.zeros[0], f64::from(i32::MAX)));
         let radius = world.radius / self.placement.scale + near * world.tan_theta;
-        let ray = Ray {
-            origin: Point::new(x[0], x[1], x[2]),
-            direction: Vec3::new(d[0], d[1], d[2]),
-            cone: cone(delta, radius, world.tan_theta),
-        };
-        let scale = self.placement.scale;
-        let (start, step) = (near * scale, length * scale / 2f64.powi(32));
+        let ray = Ray { origin: Point::new(x[0], x[1], x[2]), direction: d, cone: cone(delta, radius, world.tan_theta) };
+        self.ranged(world, ray, near * self.placement.scale, length)
+    }
+
+    /// The same for a ray that leaves the model's surface at `start`, if there is one: it starts there, whatever the query's origin; `None` if it ends before, or has no direction.
+    pub fn enter_from(&self, world: &Query, start: Option<&Start>, delta: f64) -> Option<ModelRay> {
+        let Some(start) = start else { return self.enter(world, delta) };
+        let (direction, length) = self.rounded(unit(world.direction)?);
+        let cone = cone(delta, world.radius / self.placement.scale, world.tan_theta);
+        self.ranged(world, Ray { origin: start.point, direction, cone }, 0.0, length)
+    }
+
+    /// A direction of length 1 as rays have it, and its length then.
+    fn rounded(&self, direction: [f64; 3]) -> (Direction, f64) {
+        let d = direction.map(|c| to_step(c * f64::from(DIRECTION_SCALE), self.zeros[1], f64::from(DIRECTION_SCALE)));
+        (Vec3::new(d[0], d[1], d[2]), d.iter().map(|&c| (c as f64) * (c as f64)).sum::<f64>().sqrt())
+    }
+
+    /// With the steps of t that count; the ray starts `start` from the query's origin, its direction has this length.
+    fn ranged(&self, world: &Query, ray: Ray, start: f64, length: f64) -> Option<ModelRay> {
+        let step = length * self.placement.scale / 2f64.powi(32);
         let range = [steps_from(world.t_min, start, step), steps_to(world.t_max, start, step)?];
         Some(ModelRay { ray, start, step, range })
+    }
+
+    /// A direction in the world as rays have it; `None` for zero and for anything not finite.
+    pub fn direction(&self, world: [f64; 3]) -> Option<Direction> {
+        Some(self.rounded(unit(world)?).0)
     }
 }
 

@@ -4,13 +4,55 @@
 
 use crate::method::{Method, SurfaceHit, Tracer};
 use crate::rays::{RaySource, Sight};
-use crate::step::{Batch, Link, Recorder};
+use crate::step::{Batch, Link, Nodes, Recorder};
 use rayon::prelude::*;
 
 /// Batches traced at once: enough for many threads, and small beside a frame.
 const CHUNK: usize = 256;
 
-/// A frame to trace.
+/// Rays to trace, in batches that do not depend on each other.
+pub trait Frame: Sync {
+    /// Nodes that all rays begin with.
+    fn nodes(&self) -> Nodes;
+
+    /// How many batches there are.
+    fn batches(&self) -> usize;
+
+    /// Traces batches; one for each thread.
+    fn worker(&self) -> Box<dyn Worker + '_>;
+
+    /// Every batch numbers its own rays from 0, and they wait for none of another.
+    fn numbers_by_batch(&self) -> bool {
+        false
+    }
+
+    /// Traces all rays; gives them to `take`, in order, until it wants no more.
+    fn produce(&self, take: &mut dyn FnMut(Traced) -> bool) {
+        let (batches, mut rays) = (self.batches(), 0);
+        for first in (0..batches).step_by(CHUNK) {
+            let chunk = (first..batches.min(first + CHUNK)).into_par_iter();
+            let traced = chunk.map_init(|| self.worker(), |worker, batch| worker.batch(batch));
+            let (mut batches, hits): (Vec<_>, Vec<_>) = traced.unzip();
+            if self.numbers_by_batch() {
+                for batch in &mut batches {
+                    batch.number_from(rays);
+                    rays += batch.rays() as u64;
+                }
+            }
+            if !take(Traced { batches, hits: hits.concat() }) {
+                return;
+            }
+        }
+    }
+}
+
+/// Traces the batches of a frame.
+pub trait Worker {
+    /// The steps of a batch's rays, and what those of them met that pictures are made of.
+    fn batch(&mut self, batch: usize) -> (Batch, Vec<RayHit>);
+}
+
+/// The rays of one source as a frame.
 #[derive(Clone, Copy)]
 pub struct FrameRays<'a> {
     /// How rays find their hits; one that is hardware.
@@ -38,21 +80,28 @@ pub struct Traced {
     pub hits: Vec<RayHit>,
 }
 
-impl FrameRays<'_> {
-    /// Traces all rays; gives them to `take`, in order, until it wants no more.
-    pub fn produce(&self, mut take: impl FnMut(Traced) -> bool) {
-        let batches = self.rays.batches();
-        for first in (0..batches).step_by(CHUNK) {
-            let chunk = (first..batches.min(first + CHUNK)).into_par_iter();
-            let traced = chunk.map_init(|| self.method.tracer(self.sight), |tracer, batch| self.batch(&mut **tracer, batch));
-            let (batches, hits): (Vec<_>, Vec<_>) = traced.unzip();
-            if !take(Traced { batches, hits: hits.concat() }) {
-                return;
-            }
-        }
+/// Traces them.
+struct RayWorker<'a> {
+    rays: &'a dyn RaySource,
+    tracer: Box<dyn Tracer + 'a>,
+}
+
+impl Frame for FrameRays<'_> {
+    fn nodes(&self) -> Nodes {
+        self.method.map(self.sight).nodes()
     }
 
-    fn batch(&self, tracer: &mut dyn Tracer, batch: usize) -> (Batch, Vec<RayHit>) {
+    fn batches(&self) -> usize {
+        self.rays.batches()
+    }
+
+    fn worker(&self) -> Box<dyn Worker + '_> {
+        Box::new(RayWorker { rays: self.rays, tracer: self.method.tracer(self.sight) })
+    }
+}
+
+impl Worker for RayWorker<'_> {
+    fn batch(&mut self, batch: usize) -> (Batch, Vec<RayHit>) {
         let mut hits = Vec::new();
         let mut recorder = Recorder::default();
         let is_ordered = self.rays.is_ordered();
@@ -60,7 +109,7 @@ impl FrameRays<'_> {
             if is_ordered {
                 recorder.link(Link { number, after: query.after });
             }
-            hits.push(RayHit { ray: number, hit: tracer.recorded(query, &mut recorder) });
+            hits.push(RayHit { ray: number, hit: self.tracer.recorded(query, &mut recorder) });
         });
         (recorder.batch(), hits)
     }

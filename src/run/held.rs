@@ -1,7 +1,7 @@
 //! A frame traced once and kept, for replays one after the other.
 
 use super::simulate::replay;
-use super::{FrameRays, Job, Traced};
+use super::{Frame, Job, Traced};
 use crate::sim::replay::{Chunk, ReplayError, Run};
 use crate::step::Nodes;
 
@@ -13,14 +13,14 @@ pub struct HeldFrame {
 
 impl HeldFrame {
     /// Traces all rays of `frame`; `look` sees them, in order.
-    pub fn of(frame: &FrameRays<'_>, look: &mut dyn FnMut(&Traced)) -> Self {
+    pub fn of(frame: &dyn Frame, look: &mut dyn FnMut(&Traced)) -> Self {
         let mut chunks = Vec::new();
-        frame.produce(|traced| {
+        frame.produce(&mut |traced| {
             look(&traced);
             chunks.push(Chunk::from(traced.batches));
             true
         });
-        Self { nodes: frame.method.map(frame.sight).nodes(), chunks }
+        Self { nodes: frame.nodes(), chunks }
     }
 
     /// Runs them on a machine.

@@ -6,6 +6,6 @@ mod held;
 mod simulate;
 
 pub use cast::{HitRow, cast, write_hits};
-pub use frame::{FrameRays, RayHit, Traced};
+pub use frame::{Frame, FrameRays, RayHit, Traced, Worker};
 pub use held::HeldFrame;
 pub use simulate::{Compute, Job, check, simulate};

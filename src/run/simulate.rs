@@ -1,6 +1,6 @@
 //! A frame on machines: one functional pass, and a replay on each machine beside it.
 
-use super::{FrameRays, Traced};
+use super::{Frame, Traced};
 use crate::machine::Machine;
 use crate::sim::energy::EnergyModel;
 use crate::sim::replay::{self, Chunk, ChunkSource, ReplayError, Run, Running, Window};
@@ -74,9 +74,9 @@ fn threads_of_replay(replays: usize) -> usize {
 
 /// Runs the rays of `frame` for each of `jobs`. Rays are traced once; every replay has a thread of its own.
 /// `look` sees the rays, in order, before they go to the machines.
-pub fn simulate(frame: &FrameRays<'_>, jobs: &[Job], look: &mut dyn FnMut(&Traced)) -> Vec<Result<Run, ReplayError>> {
+pub fn simulate(frame: &dyn Frame, jobs: &[Job], look: &mut dyn FnMut(&Traced)) -> Vec<Result<Run, ReplayError>> {
     thread::scope(|scope| {
-        let nodes = frame.method.map(frame.sight).nodes();
+        let nodes = frame.nodes();
         let threads = threads_of_replay(jobs.len());
         let (senders, runs): (Vec<SyncSender<Chunk>>, Vec<_>) = jobs
             .iter()
@@ -85,7 +85,7 @@ pub fn simulate(frame: &FrameRays<'_>, jobs: &[Job], look: &mut dyn FnMut(&Trace
                 (sender, scope.spawn(move || replay(job, nodes, receiver.into_iter(), threads)))
             })
             .unzip();
-        frame.produce(|traced| {
+        frame.produce(&mut |traced| {
             look(&traced);
             let chunk = Chunk::from(traced.batches);
             // A replay that failed takes no more; the others go on.

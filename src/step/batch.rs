@@ -43,6 +43,14 @@ impl Batch {
         self.links.get(ray).copied()
     }
 
+    /// Numbers its rays from `first` on, as they were from 0.
+    pub fn number_from(&mut self, first: u64) {
+        for link in &mut self.links {
+            link.number += first;
+            link.after = link.after.map(|after| after + first);
+        }
+    }
+
     /// Number of rays.
     pub fn rays(&self) -> usize {
         self.ends.len()

@@ -6,7 +6,7 @@ use lodray::method::bvh::{self, NoStore};
 use lodray::method::lod::LodImage;
 use lodray::num::{Ray, VertexForm};
 use lodray::rays::{Camera, ModelSpace, Sight, View};
-use lodray::run::FrameRays;
+use lodray::run::{Frame, FrameRays};
 use lodray::sim::replay::{self, Chunk, Interval, Run, Running};
 use lodray::sim::unit::environment::run;
 use lodray::sim::unit::{Latency, SceneMemory, Traffic, TraversalUnit};
@@ -100,7 +100,7 @@ fn replayed(distance: f64) -> impl Fn(&Machine, usize) -> Run {
     let sight = Sight::new(&camera, &space, 1.0);
     let method = (bvh::METHOD.make)(&scene, &Knobs::default(), &NoStore).expect("a method on a scene");
     let mut chunks: Vec<Chunk> = Vec::new();
-    FrameRays { method: &*method, rays: &camera, sight: &sight }.produce(|traced| {
+    FrameRays { method: &*method, rays: &camera, sight: &sight }.produce(&mut |traced| {
         chunks.push(traced.batches.into());
         true
     });

@@ -7,6 +7,7 @@
 use super::GenerateError;
 use crate::mesh::{Surface, lattice};
 use rayon::prelude::*;
+use std::collections::HashMap;
 use std::f64::consts::FRAC_PI_2;
 
 /// Integer parameters of a point.
@@ -111,6 +112,49 @@ impl Base {
             }
         }
         Ok(Self { parameters, triangles })
+    }
+
+    /// An octahedron cut through its middle and pulled apart along y by `straight` steps each way, with walls of quads between: closed,
+    /// 8 k^2 + 16 k `straight` triangles, counter-clockwise from outside. |x| + |z| is `k` on the walls and falls to 0 towards both ends.
+    pub(super) fn capsule(k: u32, straight: u32) -> Result<Self, GenerateError> {
+        let mut body = Self::octahedron(k)?;
+        if straight == 0 {
+            return Ok(body);
+        }
+        let l = straight as i32;
+        let (rings, rim) = (2 * straight as usize + 1, 4 * k as usize);
+        let corners = std::mem::take(&mut body.parameters);
+        body.parameters = reserved(corners.len() + rim * (rings - 1))?;
+        let mut indices = HashMap::new();
+        let mut index = |p: Parameter| {
+            *indices.entry(p).or_insert_with(|| {
+                body.parameters.push(p);
+                body.parameters.len() as u32 - 1
+            })
+        };
+        let mut triangles = reserved(body.triangles.len() + 2 * rim * (rings - 1))?;
+        for t in body.triangles {
+            let t = t.map(|v| corners[v as usize]);
+            let upper = t.iter().any(|p| p[1] > 0);
+            triangles.push(t.map(|[x, y, z]| index([x, if upper { y + l } else { y - l }, z])));
+            // Below an edge of the upper half's rim there hangs a strip of quads; triangles of the rim have one edge on it.
+            for i in 0..3 {
+                let (a, b) = (t[i], t[(i + 1) % 3]);
+                if upper && a[1] == 0 && b[1] == 0 {
+                    for y in (-l..l).rev() {
+                        let [p, q] = [a, b].map(|c| [index([c[0], y + 1, c[2]]), index([c[0], y, c[2]])]);
+                        // Diagonals alternate, so that no direction is favoured.
+                        let even = (a[0] + y) % 2 == 0;
+                        triangles.extend(if even {
+                            [[q[0], p[0], p[1]], [q[0], p[1], q[1]]]
+                        } else {
+                            [[q[0], p[0], q[1]], [p[0], p[1], q[1]]]
+                        });
+                    }
+                }
+            }
+        }
+        Ok(Self { parameters: body.parameters, triangles })
     }
 
     /// Evaluates `shape` at the lattice points of all trees. The caller has checked the number of triangles.

@@ -38,7 +38,7 @@ pub(super) fn placed(g: u32, levels: u32, seed: u64, detail: f64, centre: [f64; 
 }
 
 /// One thread seen from the side: a smooth wave of period 2 and height -1..=1.
-fn thread(t: f64) -> f64 {
+pub(super) fn thread(t: f64) -> f64 {
     let (n, f) = noise::cell(t);
     let bump = 4.0 * f * (1.0 - f);
     if n & 1 == 0 { bump } else { -bump }

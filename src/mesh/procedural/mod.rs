@@ -8,15 +8,20 @@
 //! | `spikes` | 8 k^2 | 128, N = 4 | sphere with needles, closed |
 //! | `room` | 2 g^2 + 10 max(1, g/4)^2 | 2,688, N = 5 | a box with an open side around the cloth |
 //! | `wall` | 1,456 k^2 | 36,400, N = 4 | 182 displaced spheres side by side |
+//! | `pot` | 8 (k^2 + h^2 + 2 q (q + h + k)), h = k/2 and q = k/4 rounded up | 1,088, N = 5 | hammered teapot of four closed bodies |
+//! | `drape` | 2 g^2 | 2,048, N = 5 | a cloth over the pot, with folds and a fine weave |
 //!
 //! g and k are whole numbers from 1; of the possible counts the least at or above the wanted one is taken.
 
 mod base;
 mod cloth;
+mod drape;
 mod noise;
+mod pot;
 mod room;
 mod sphere;
 mod spikes;
+mod spline;
 mod terrain;
 mod wall;
 
@@ -45,11 +50,15 @@ pub enum Scene {
     Room,
     /// 182 displaced spheres side by side.
     Wall,
+    /// Hammered teapot: four closed bodies that reach into each other.
+    Pot,
+    /// Cloth over the pot, in the same coordinates.
+    Drape,
 }
 
 impl Scene {
     /// All scenes.
-    pub const ALL: [Self; 6] = [Self::Terrain, Self::Cloth, Self::Sphere, Self::Spikes, Self::Room, Self::Wall];
+    pub const ALL: [Self; 8] = [Self::Terrain, Self::Cloth, Self::Sphere, Self::Spikes, Self::Room, Self::Wall, Self::Pot, Self::Drape];
 
     /// Its name in options and files.
     pub const fn name(self) -> &'static str {
@@ -60,6 +69,8 @@ impl Scene {
             Self::Spikes => "spikes",
             Self::Room => "room",
             Self::Wall => "wall",
+            Self::Pot => "pot",
+            Self::Drape => "drape",
         }
     }
 
@@ -67,7 +78,7 @@ impl Scene {
     pub const fn default_levels(self) -> u32 {
         match self {
             Self::Terrain => 7,
-            Self::Cloth | Self::Sphere | Self::Room => 5,
+            Self::Cloth | Self::Sphere | Self::Room | Self::Pot | Self::Drape => 5,
             Self::Spikes | Self::Wall => 4,
         }
     }
@@ -76,10 +87,11 @@ impl Scene {
     pub const fn default_base(self) -> u32 {
         match self {
             Self::Terrain | Self::Sphere => 512,
-            Self::Cloth => 2_048,
+            Self::Cloth | Self::Drape => 2_048,
             Self::Spikes => 128,
             Self::Room => 2_688,
             Self::Wall => 36_400,
+            Self::Pot => 1_088,
         }
     }
 
@@ -88,17 +100,18 @@ impl Scene {
         match self {
             Self::Terrain => 0.55,
             Self::Sphere | Self::Wall => 0.45,
-            Self::Cloth | Self::Spikes | Self::Room => 0.5,
+            Self::Cloth | Self::Spikes | Self::Room | Self::Pot | Self::Drape => 0.5,
         }
     }
 
     /// Base triangles with grid size `n` (g or k of the table in the module's head).
-    const fn trees(self, n: u32) -> u64 {
+    fn trees(self, n: u32) -> u64 {
         let square = n as u64 * n as u64;
         match self {
-            Self::Terrain | Self::Cloth => 2 * square,
+            Self::Terrain | Self::Cloth | Self::Drape => 2 * square,
             Self::Sphere | Self::Spikes => 8 * square,
             Self::Wall => 8 * wall::MODELS as u64 * square,
+            Self::Pot => pot::trees(n),
             Self::Room => {
                 let wall = room::wall_quads(n) as u64;
                 2 * square + 10 * wall * wall
@@ -133,8 +146,8 @@ pub struct Options {
     pub base: Option<u32>,
     /// Any number; another seed gives another scene of the kind.
     pub seed: u64,
-    /// Between 0 and 1, both excluded. `terrain`, `sphere` and `wall`: amplitude of an octave of noise relative to the one before. `cloth` and
-    /// `room`: height of the weave, `spikes`: length of the needles, both relative to the default's 0.5.
+    /// Between 0 and 1, both excluded. `terrain`, `sphere` and `wall`: amplitude of an octave of noise relative to the one before. `cloth`,
+    /// `room` and `drape`: height of the weave, `spikes`: length of the needles, `pot`: depth of the dimples, all relative to the default's 0.5.
     pub roughness: Option<f64>,
 }
 
@@ -228,6 +241,8 @@ pub fn generate(options: &Options) -> Result<Surface, GenerateError> {
         Scene::Spikes => spikes::generate(n, levels, seed, 2.0 * roughness),
         Scene::Room => room::generate(n, levels, seed, 2.0 * roughness),
         Scene::Wall => wall::generate(n, levels, seed, roughness),
+        Scene::Pot => pot::generate(n, levels, seed, 2.0 * roughness),
+        Scene::Drape => drape::generate(n, levels, seed, 2.0 * roughness),
     }
 }
 

@@ -2,7 +2,7 @@ use super::super::lattice::{self, LatticePoint};
 use super::*;
 use std::collections::HashMap;
 
-const ALL: [Scene; 6] = [Scene::Terrain, Scene::Cloth, Scene::Sphere, Scene::Spikes, Scene::Room, Scene::Wall];
+const ALL: [Scene; 8] = Scene::ALL;
 
 fn small(scene: Scene, base: u32, levels: u32) -> Surface {
     generate(&Options { base: Some(base), levels: Some(levels), ..Options::new(scene) }).expect("valid options")
@@ -90,6 +90,8 @@ fn defaults_have_their_sizes() {
         (Scene::Spikes, 128, 4, 32_768),
         (Scene::Room, 2_688, 5, 2_752_512),
         (Scene::Wall, 36_400, 4, 9_318_400),
+        (Scene::Pot, 1_088, 5, 1_114_112),
+        (Scene::Drape, 2_048, 5, 2_097_152),
     ] {
         let s = generate(&Options::new(scene)).expect("defaults are valid");
         assert_eq!((s.triangles.len(), s.levels, s.finest_triangles()), (trees, levels, triangles));
@@ -105,12 +107,16 @@ fn trees_meet_to_the_bit_for_any_base_and_levels() {
                 let s = small(scene, base, levels);
                 assert!(s.triangles.len() >= base as usize);
                 let (paired, open) = check(&s);
-                let closed = matches!(scene, Scene::Sphere | Scene::Spikes | Scene::Wall);
+                let closed = matches!(scene, Scene::Sphere | Scene::Spikes | Scene::Wall | Scene::Pot);
                 assert_eq!(open == 0, closed, "{scene:?}");
                 assert_eq!(2 * paired + open, 3 * s.triangles.len());
                 if closed {
                     // Euler: V - E + F = 2 for each body.
-                    let bodies = if scene == Scene::Wall { wall::MODELS as usize } else { 1 };
+                    let bodies = match scene {
+                        Scene::Wall => wall::MODELS as usize,
+                        Scene::Pot => pot::PARTS.len(),
+                        _ => 1,
+                    };
                     assert_eq!(s.base_vertices as usize + s.triangles.len(), paired + 2 * bodies);
                 }
             }
@@ -166,7 +172,13 @@ fn open_scenes_face_up_or_into_the_room() {
 
 #[test]
 fn normals_follow_the_surface() {
-    for (scene, base, levels, share) in [(Scene::Terrain, 512, 4, 0.8), (Scene::Cloth, 512, 4, 0.97), (Scene::Sphere, 128, 4, 0.9)] {
+    for (scene, base, levels, share) in [
+        (Scene::Terrain, 512, 4, 0.8),
+        (Scene::Cloth, 512, 4, 0.97),
+        (Scene::Sphere, 128, 4, 0.9),
+        (Scene::Pot, 512, 5, 0.97),
+        (Scene::Drape, 512, 5, 0.97),
+    ] {
         let s = small(scene, base, levels);
         let (mut good, mut all) = (0, 0);
         for tree in 0..s.triangles.len() {
@@ -222,6 +234,33 @@ fn shapes_are_those_described() {
         let s = generate(&room).expect("valid options");
         assert!(s.positions.iter().all(|p| p[0].abs() <= 1.0 && p[1].abs() <= 0.7 && p[2].abs() <= 1.0), "{seed}");
     }
+}
+
+#[test]
+fn the_pot_faces_outwards_and_stands_on_its_plane() {
+    let s = generate(&Options::new(Scene::Pot)).expect("defaults are valid");
+    // Volumes by body, signed by the triangles' sides.
+    let mut first = 0;
+    let mut volumes = Vec::new();
+    for part in pot::PARTS {
+        let count = part.trees(8) as usize;
+        let volume = (first..first + count).flat_map(|tree| (0..1 << 10).map(move |node| (tree, node))).map(|(tree, node)| {
+            let [a, b, c] = lattice::node(5, 5, node).map(|p| s.tree(tree)[lattice::index(5, p)]);
+            base::dot(a, base::cross(b, c)) / 6.0
+        });
+        volumes.push(volume.sum::<f64>());
+        first += count;
+    }
+    assert_eq!(first, s.triangles.len());
+    // Belly, lid, spout, handle.
+    for (volume, range) in volumes.iter().zip([0.05..0.15, 0.003..0.02, 0.001..0.01, 0.001..0.01]) {
+        assert!(range.contains(volume), "{volumes:?}");
+    }
+    let range = |k: usize| s.positions.iter().fold((f64::MAX, f64::MIN), |(l, h), p| (l.min(p[k]), h.max(p[k])));
+    let [(left, right), (low, high), (back, front)] = [0, 1, 2].map(range);
+    assert!((0.0..1e-3).contains(&low) && (0.5..0.6).contains(&high), "{low} {high}");
+    assert!((0.9..1.2).contains(&(right - left)) && (right + left).abs() < 0.1, "{left} {right}");
+    assert!((front + back).abs() < 0.01 && (0.6..0.7).contains(&(front - back)), "{back} {front}");
 }
 
 #[test]

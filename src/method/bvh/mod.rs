@@ -14,7 +14,7 @@ pub use leaves::{Leaf, LeafLayout, Leaves};
 pub use store::{NoStore, TreeStore};
 pub use trace::BvhTraverser;
 
-use super::{ClosestHit, Knob, Knobs, Method, MethodUnit, Registered, SurfaceHit, Trace, Tracer};
+use super::{ClosestHit, Departure, Knob, Knobs, Landing, Method, MethodUnit, Registered, SurfaceHit, Trace, Tracer};
 use crate::block::Operation;
 use crate::bvh::BvhError;
 use crate::format::Scene;
@@ -210,6 +210,19 @@ impl Trace for BvhTracer<'_> {
         let mut hit = ClosestHit::of(self.levels, &ray, query.any);
         self.traverser.trace(&ray.ray, steps, &mut hit);
         hit.surface(&ray)
+    }
+
+    fn follow<S: StepSink>(&mut self, query: &Query, from: Option<&Departure>, steps: &mut S) -> Option<Landing> {
+        let Some(ray) = self.space.enter_from(query, from.map(|from| &from.start), 1.0) else {
+            steps.step(Step::end(false, false));
+            return None;
+        };
+        let mut hit = ClosestHit::of(self.levels, &ray, query.any);
+        match from {
+            Some(from) => self.traverser.trace_from(&ray.ray, from, steps, &mut hit),
+            None => self.traverser.trace(&ray.ray, steps, &mut hit),
+        }
+        hit.landing(&ray, BvhTraverser::departure)
     }
 }
 

@@ -6,16 +6,18 @@ use crate::block::box_test32::{self, BoxTest32};
 use crate::block::child_sort;
 use crate::block::child_test::sort;
 use crate::block::ray_setup::{self, RaySetup};
-use crate::block::start_test::Below;
+use crate::block::start_setup::{self, StartSetup};
+use crate::block::start_test::{self, Below, StartTest};
 use crate::block::tri_test::{self, TriTest};
 use crate::bvh::BvhChild32;
 use crate::format::{BvhChild, BvhNode, ChildRef, SixNode};
 #[cfg(target_arch = "x86_64")]
 use crate::method::children::has_lanes;
 use crate::method::children::{bvh_children, coded_children, quarter, six_children};
+use crate::method::leave;
 use crate::method::stack::{Entry, Op, TraversalStack, push_nearest, push_sorted};
-use crate::method::{HitSink, TriangleId, is_beyond};
-use crate::num::{LINE_BYTES, Point, Ray, U, Wire};
+use crate::method::{Departure, Hit, HitSink, TriangleId, is_beyond};
+use crate::num::{LINE_BYTES, Point, Ray, Start, U, Vec3, Wire};
 use crate::step::{Act, Fetch, MemoryMap, Step, StepSink, TriangleRun};
 
 /// Traces rays through a full-resolution quad-BVH; keeps its stack from ray to ray.
@@ -63,23 +65,66 @@ impl<'a> BvhTraverser<'a> {
         self.trace_with(ray, steps, sink, |_| ());
     }
 
+    /// Traces `ray` from the surface: its origin is the whole point of `departure.start`.
+    pub fn trace_from<S: StepSink, H: HitSink>(&mut self, ray: &Ray, departure: &Departure, steps: &mut S, sink: &mut H) {
+        self.trace_as::<S, H, _, true>(ray, Some(departure), steps, sink, |_| ());
+    }
+
+    /// Where rays start that leave the surface at `hit`. All rays see one surface: none of them decides anything.
+    pub fn departure(hit: &Hit, corners: &[Point; 3]) -> Departure {
+        Departure { start: leave::start(corners, [hit.b0, hit.b1, hit.b2]), corners: *corners, prior: None, crowded: false }
+    }
+
     /// The same; every leaf read goes to `leaf` too.
     pub fn trace_with<S: StepSink, H: HitSink, L: FnMut(&Leaf)>(&mut self, ray: &Ray, steps: &mut S, sink: &mut H, leaf: L) {
+        self.trace_as::<S, H, L, false>(ray, None, steps, sink, leaf);
+    }
+
+    /// The same, compiled for rays that have a departure if they are ones `LEAVING` a surface.
+    #[inline(always)]
+    fn trace_as<S: StepSink, H: HitSink, L: FnMut(&Leaf), const LEAVING: bool>(
+        &mut self,
+        ray: &Ray,
+        departure: Option<&Departure>,
+        steps: &mut S,
+        sink: &mut H,
+        leaf: L,
+    ) {
         #[cfg(target_arch = "x86_64")]
         if has_lanes() {
             #[target_feature(enable = "avx2,bmi1,bmi2")]
-            fn lanes<S: StepSink, H: HitSink, L: FnMut(&Leaf)>(by: &mut BvhTraverser<'_>, ray: &Ray, steps: &mut S, sink: &mut H, leaf: L) {
-                by.run(ray, steps, sink, leaf);
+            fn lanes<S: StepSink, H: HitSink, L: FnMut(&Leaf), const LEAVING: bool>(
+                by: &mut BvhTraverser<'_>,
+                ray: &Ray,
+                departure: Option<&Departure>,
+                steps: &mut S,
+                sink: &mut H,
+                leaf: L,
+            ) {
+                by.run::<S, H, L, LEAVING>(ray, departure, steps, sink, leaf);
             }
             // SAFETY: the processor has them, as was just asked.
-            return unsafe { lanes(self, ray, steps, sink, leaf) };
+            return unsafe { lanes::<S, H, L, LEAVING>(self, ray, departure, steps, sink, leaf) };
         }
-        self.run(ray, steps, sink, leaf);
+        self.run::<S, H, L, LEAVING>(ray, departure, steps, sink, leaf);
     }
 
     #[inline(always)]
-    fn run<S: StepSink, H: HitSink>(&mut self, ray: &Ray, steps: &mut S, sink: &mut H, mut leaf: impl FnMut(&Leaf)) {
-        let setup = RaySetup::eval(&ray_setup::In { origin: ray.origin, direction: ray.direction });
+    fn run<S: StepSink, H: HitSink, L: FnMut(&Leaf), const LEAVING: bool>(
+        &mut self,
+        ray: &Ray,
+        departure: Option<&Departure>,
+        steps: &mut S,
+        sink: &mut H,
+        mut leaf: L,
+    ) {
+        let (start, setup) = match departure {
+            Some(from) if LEAVING => {
+                debug_assert_eq!(from.start.point, ray.origin);
+                (from.start, StartSetup::eval(&start_setup::In { start: from.start, direction: ray.direction }))
+            }
+            _ => (Start::default(), RaySetup::eval(&ray_setup::In { origin: ray.origin, direction: ray.direction })),
+        };
         self.stack.clear();
         let mut next = Some(Entry::default());
         loop {
@@ -95,12 +140,12 @@ impl<'a> BvhTraverser<'a> {
             };
             let index = entry.index.get() as usize;
             if entry.kind.get() == Entry::BVH_NODE {
-                next = self.node(&setup, index, steps, sink);
+                next = self.node::<S, H, LEAVING>(&setup, index, steps, sink);
             } else {
                 // Leaves keep their count in `level`, which trees need and leaves do not.
                 let own = self.leaves.leaf(index, entry.level.get() as usize + 1);
                 leaf(&own);
-                self.leaf(ray, &own, steps, sink);
+                self.leaf::<S, H, LEAVING>(ray, &start, &own, steps, sink);
             }
         }
         steps.step(Step::end(sink.found(), self.mapped));
@@ -116,7 +161,13 @@ impl<'a> BvhTraverser<'a> {
     }
 
     #[inline(always)]
-    fn node<S: StepSink, H: HitSink>(&mut self, setup: &ray_setup::Out, index: usize, steps: &mut S, sink: &H) -> Option<Entry> {
+    fn node<S: StepSink, H: HitSink, const LEAVING: bool>(
+        &mut self,
+        setup: &ray_setup::Out,
+        index: usize,
+        steps: &mut S,
+        sink: &H,
+    ) -> Option<Entry> {
         let t_max = sink.t_max();
         // Inner nodes and leaves have the kinds of their entries one lower.
         let waiting = |child: ChildRef| Entry {
@@ -146,6 +197,8 @@ impl<'a> BvhTraverser<'a> {
                 for k in 0..4 {
                     let BvhChild32 { child, lo, hi } = child(k);
                     if child.kind.get() != ChildRef::EMPTY {
+                        // What is ahead of a start is ahead of its whole point, if the box reaches as far down as the start's fraction can.
+                        let lo = if LEAVING { Vec3::new(lo.x.get() - 1, lo.y.get() - 1, lo.z.get() - 1) } else { lo };
                         let test = BoxTest32::eval(&box_test32::In { ray: *setup, t_max, lo, hi });
                         (tests.hit[k], tests.t_near[k]) = (test.hit, test.t_near);
                     }
@@ -169,7 +222,7 @@ impl<'a> BvhTraverser<'a> {
 
     /// Reads a leaf and tests its triangles.
     #[inline(always)]
-    fn leaf<S: StepSink, H: HitSink>(&mut self, ray: &Ray, leaf: &Leaf, steps: &mut S, sink: &mut H) {
+    fn leaf<S: StepSink, H: HitSink, const LEAVING: bool>(&mut self, ray: &Ray, start: &Start, leaf: &Leaf, steps: &mut S, sink: &mut H) {
         let mut place = 0;
         self.leaves.lines(leaf, |address| {
             let fetch = Fetch::new(LEAVES, self.map.line(LEAVES, self.before[LEAVES.place()] + address / LINE_BYTES), 1).at(place);
@@ -182,12 +235,17 @@ impl<'a> BvhTraverser<'a> {
         self.leaves.triangles(leaf, |points, id| {
             let corners = points.map(Point::from_i32);
             let [p0, p1, p2] = corners;
-            let test = TriTest::eval(&tri_test::In { origin: ray.origin, direction: ray.direction, p0, p1, p2 });
+            let start_test::Out { test, below } = if LEAVING {
+                StartTest::eval(&start_test::In { start: *start, direction: ray.direction, p0, p1, p2 })
+            } else {
+                let input = tri_test::In { origin: ray.origin, direction: ray.direction, p0, p1, p2 };
+                start_test::Out { test: TriTest::eval(&input), below: Below::default() }
+            };
             run.add(test.hit, steps);
             if test.hit {
                 let levels = self.levels;
                 let (tree, node) = (id >> (2 * levels), id & ((1 << (2 * levels)) - 1));
-                sink.offer(TriangleId { tree, level: levels, node }, &corners, &test, &Below::default());
+                sink.offer(TriangleId { tree, level: levels, node }, &corners, &test, &below);
             }
         });
         run.state(steps);

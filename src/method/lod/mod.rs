@@ -9,7 +9,7 @@ pub use prior::{Deciders, Prior};
 pub use trace::LodTraverser;
 
 use super::knob::{DELTA, ErrorKnob, octaves};
-use super::{ClosestHit, Knobs, Method, MethodUnit, Registered, SurfaceHit, Trace, Tracer};
+use super::{ClosestHit, Departure, Knobs, Landing, Method, MethodUnit, Registered, SurfaceHit, Trace, Tracer};
 use crate::block::Operation;
 use crate::format::Scene;
 use crate::rays::{ModelSpace, Query, Sight, is_full_detail};
@@ -90,5 +90,19 @@ impl<const COMPACT: bool, const FULL_DETAIL: bool> Trace for LodTracer<'_, COMPA
         let mut hit = ClosestHit::of(self.traverser.levels(), &ray, query.any);
         self.traverser.trace_as::<_, _, COMPACT, FULL_DETAIL, false>(&ray.ray, None, steps, &mut hit);
         hit.surface(&ray)
+    }
+
+    fn follow<S: StepSink>(&mut self, query: &Query, from: Option<&Departure>, steps: &mut S) -> Option<Landing> {
+        let Some(ray) = self.space.enter_from(query, from.map(|from| &from.start), self.delta) else {
+            steps.step(Step::end(false, false));
+            return None;
+        };
+        let mut hit = ClosestHit::of(self.traverser.levels(), &ray, query.any);
+        match from {
+            // Decisions of rays that tolerate nothing are the same by the rule for all.
+            Some(_) => self.traverser.trace_as::<_, _, COMPACT, false, true>(&ray.ray, from, steps, &mut hit),
+            None => self.traverser.trace_as::<_, _, COMPACT, FULL_DETAIL, false>(&ray.ray, None, steps, &mut hit),
+        }
+        hit.landing(&ray, |hit, corners| self.traverser.departure(&ray.ray, from, hit, corners))
     }
 }

@@ -77,9 +77,9 @@ impl<'a> LodTraverser<'a> {
     pub fn departure(&self, ray: &Ray, from: Option<&Departure>, hit: &Hit, corners: &[Point; 3]) -> Departure {
         let tree = hit.tree.get() as u32; // 28 bits
         let base = VertexData::from_words(&self.image.records[tree as usize][..4]).points();
-        let (prior, crowded) = Prior::after(ray, from.map(|from| &from.prior), tree, base);
+        let (prior, crowded) = Prior::after(ray, from.and_then(|from| from.prior.as_ref()), tree, base);
         let start = leave::start(corners, [hit.b0, hit.b1, hit.b2]);
-        Departure { start, corners: *corners, prior, crowded }
+        Departure { start, corners: *corners, prior: Some(prior), crowded }
     }
 
     /// The same, compiled for scenes of one form of vertices, for rays that tolerate nothing if they are of `FULL_DETAIL`, and for those that have a departure if they are
@@ -124,7 +124,7 @@ impl<'a> LodTraverser<'a> {
             Some(from) if LEAVES => {
                 debug_assert_eq!(from.start.point, ray.origin);
                 let setup = StartSetup::eval(&start_setup::In { start: from.start, direction: ray.direction });
-                (from.start, Some(&from.prior), setup)
+                (from.start, from.prior.as_ref(), setup)
             }
             _ => (Start::default(), None, RaySetup::eval(&ray_setup::In { origin: ray.origin, direction: ray.direction })),
         };

@@ -1,7 +1,7 @@
 //! The full-resolution mesh in `f64`: the truth that pictures are compared with. It is no hardware, and reads no memory.
 
 use super::hit::plane;
-use super::{Method, Registered, SurfaceHit, Trace, Tracer};
+use super::{Departure, Landing, Method, Registered, SurfaceHit, Trace, Tracer};
 use crate::golden::reference::Reference;
 use crate::rays::{ModelSpace, Query, Sight};
 use crate::step::{MemoryMap, Step, StepSink};
@@ -29,6 +29,11 @@ impl Method for Truth {
     fn tracer(&self, _: &Sight) -> Box<dyn Tracer + '_> {
         Box::new(self)
     }
+
+    /// Its hits are not exact.
+    fn leaves(&self) -> bool {
+        false
+    }
 }
 
 impl Trace for &Truth {
@@ -49,5 +54,10 @@ impl Trace for &Truth {
             front: hit.front,
             plane: plane(self.reference.corners(hit.tree, hit.full_node).map(|p| p.map(f64::from))),
         })
+    }
+
+    fn follow<S: StepSink>(&mut self, _: &Query, _: Option<&Departure>, steps: &mut S) -> Option<Landing> {
+        steps.step(Step::end(false, false));
+        None
     }
 }

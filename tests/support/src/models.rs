@@ -5,6 +5,7 @@ use lodray::{
     format::{self, Scene, SceneInfo},
     golden::{naive_bounds, naive_compact},
     mesh::{BoundKind, EdgeCodes, Hierarchy, Placement, Surface, lattice},
+    method::bvh::{FullBvh, FullOptions, LeafLayout, NodeBoxes, NodeOrder},
     num::{Cone, Direction, Point, Ray, U, Vec3, VertexForm, random, snap},
 };
 
@@ -225,4 +226,22 @@ pub fn scene_of(h: &Hierarchy) -> Scene {
     };
     let bvh = over_trees(&format::tree_boxes(h)).expect("at least one tree");
     format::encode(h, &surface, SceneInfo::default(), &bvh).expect("a valid model")
+}
+
+/// BVHs of every kind of nodes and leaves over the full resolution.
+pub fn full_bvhs(h: &Hierarchy) -> Vec<FullBvh> {
+    let variants = [
+        (NodeBoxes::Local, LeafLayout::Line, 4, NodeOrder::Depth),
+        (NodeBoxes::Codes, LeafLayout::Indexed, 2, NodeOrder::Treelets),
+        (NodeBoxes::Wide, LeafLayout::Packed, 1, NodeOrder::Depth),
+        (NodeBoxes::Local, LeafLayout::Block, 16, NodeOrder::Treelets),
+        (NodeBoxes::Wide, LeafLayout::Block, 8, NodeOrder::Treelets),
+        (NodeBoxes::Six, LeafLayout::Block, 16, NodeOrder::Treelets),
+        (NodeBoxes::Six, LeafLayout::Indexed, 1, NodeOrder::Depth),
+    ];
+    let build = |(boxes, layout, size, order)| {
+        let options = FullOptions { order, ..FullOptions::new(size, boxes, layout) };
+        FullBvh::build(h, &options).expect("a valid model")
+    };
+    variants.map(build).into()
 }

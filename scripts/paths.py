@@ -1,0 +1,240 @@
+#!/usr/bin/env python3
+"""Runs the experiments with paths that are not in the folder yet, and fills scripts/paper/paths.md with what they measured: writes docs/paths.md. Argument: the folder."""
+
+import json
+import math
+import re
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parent.parent
+LODRAY = ROOT / "target" / "release" / "lodray"
+TEMPLATE = ROOT / "scripts" / "paper" / "paths.md"
+MEASURED = ROOT / "scripts" / "paper" / "measured.json"
+IMAGES = ROOT / "docs" / "images"
+SCENES = ["room", "drape", "terrain"]
+
+# Ours and the baseline, in the paper's forms and at their best.
+FORMS = {
+    "paper": {
+        "generate": ["--bounds", "largest", "--vertices", "exact"],
+        "lod": ["--line-layout", "paper"],
+        "bvh": ["--node-boxes", "codes", "--leaf-layout", "line", "--leaf-size", "1"],
+    },
+    "best": {"generate": [], "lod": [], "bvh": []},
+}
+# What figure 17 leaves open, one at a time.
+BASE = {"size": "512x512", "samples": 1, "spread": 0.1, "eye": 3.4, "shadow": False, "levels": 5, "walls": None}
+OPEN = {
+    "size": ["256x256", "1024x1024"],
+    "samples": [4],
+    "spread": [0, 0.02, 0.05, 0.2, 0.5],
+    "eye": [0.9, 2.0, 6.0],
+    "shadow": [True],
+    "levels": [4, 6],
+}
+STARTS = ["exact", "independent", "1e-6", "1e-5", "1e-4", "1e-3", "1e-2"]
+DELTAS = ["4", "2", "1", "0.5", "0.25"]
+
+
+class Runs:
+    """Runs, each in a folder of its own that stays."""
+
+    def __init__(self, folder):
+        self.folder = folder
+        folder.mkdir(parents=True, exist_ok=True)
+
+    def scene(self, levels, form):
+        """The room as a scene file."""
+        path = self.folder / f"room-{levels}-{form}.lod"
+        if not path.exists():
+            run("generate", "room", "--levels", levels, *FORMS[form]["generate"], "-o", path)
+        return path
+
+    def room(self, of, form):
+        """A description of figure 17's scene."""
+        text = (ROOT / "scenes" / "room.toml").read_text()
+        scene = self.scene(of["levels"], form)
+        text = re.sub(r"generate = .*", f'file = "{scene.name}"', text)
+        text = re.sub(r"eye = .*", f"eye = [0.0, 0.05, {of['eye']}]", text)
+        text = re.sub(r"shadow_rays = .*", f"shadow_rays = {str(of['shadow']).lower()}", text)
+        path = self.folder / f"room-{of['levels']}-{of['eye']}-{of['shadow']}-{form}.toml"
+        path.write_text(text)
+        return path
+
+    def paths(self, name, *arguments):
+        """The figures of a run."""
+        folder = self.folder / name
+        if not (folder / "run.json").exists():
+            print(name, flush=True)
+            run("paths", *arguments, "-o", folder, "--force")
+        return json.loads((folder / "paths.json").read_text())
+
+    def bounces(self, of, form, method):
+        name = "figure17/" + "-".join(str(v) for v in of.values() if v is not None) + f"-{form}-{method}"
+        options = ["--size", of["size"], "--samples", of["samples"], "--diffuse-spread", of["spread"], "--machine", "haydel2023"]
+        return self.paths(name, self.room(of, form), *options, "--method", method, *FORMS[form][method])
+
+
+def run(*arguments):
+    subprocess.run([str(LODRAY), *map(str, arguments)], check=True, stdout=subprocess.DEVNULL)
+
+
+def table(head, rows):
+    lines = ["| " + " | ".join(head) + " |", "|" + "---|" * len(head)]
+    return "\n".join(lines + ["| " + " | ".join(map(str, row)) + " |" for row in rows])
+
+
+def gains(lod, bvh):
+    """Primary energy and time of the baseline over ours; and what each bounce adds."""
+    first = [bvh[0]["energy"] / lod[0]["energy"], bvh[0]["milliseconds"] / lod[0]["milliseconds"]]
+    return first + [b["added_milliseconds"] / a["added_milliseconds"] for a, b in zip(lod[1:], bvh[1:])]
+
+
+def factors(values):
+    return [f"{v:.1f}" for v in values]
+
+
+def figure17(runs):
+    rows = []
+    for form in FORMS:
+        lod, bvh = (runs.bounces(BASE, form, method) for method in ["lod", "bvh"])
+        for k, (a, b) in enumerate(zip(lod, bvh)):
+            energy = [f"{v[key] / 1000:.3f}" for v in (a, b) for key in ["energy"]]
+            time = [f"{v['milliseconds']:.4f}" for v in (a, b)]
+            added = [f"{v['added_milliseconds']:.4f}" for v in (a, b)]
+            rays = [f"{v['rays']:,}" for v in (a, b)]
+            ratio = f"{b['added_milliseconds'] / a['added_milliseconds']:.1f}"
+            rows.append([form, k, *rays, *energy, *time, *added, ratio, f"{b['added_energy'] / a['added_energy']:.1f}"])
+    head = ["forms", "bounces", "rays, ours", "BVH", "mJ, ours", "BVH", "ms, ours", "BVH", "added ms, ours", "BVH", "BVH adds, time", "energy"]
+    return table(head, rows)
+
+
+def opened(runs):
+    rows = []
+    choices = [("as above", BASE)] + [(f"{key} {value}", {**BASE, key: value}) for key, values in OPEN.items() for value in values]
+    for form in FORMS:
+        for name, of in choices:
+            rows.append([form, name, *factors(gains(*(runs.bounces(of, form, method) for method in ["lod", "bvh"])))])
+    return table(["forms", "what is changed", "primary energy", "primary time", "1st bounce", "2nd", "3rd"], rows)
+
+
+def described(scene):
+    return ROOT / "scenes" / f"{scene}.toml"
+
+
+def rule(runs):
+    rows = []
+    for scene in SCENES:
+        for starts in STARTS:
+            name = f"rule/{scene}-{starts}"
+            own = runs.paths(name, described(scene), "--compare", "--samples", 16, "--size", "384x288", "--starts", starts)
+            full, pixels = own["against_full"], own["against_full"]["pixels"]
+            psnr = full["image"]["psnr_db"]
+            wrong = [f"{pixels[key]:,}" for key in ["shadowed", "leaking"]] if pixels["pixels"] else ["–", "–"]
+            rows.append([scene, starts, f"{full['light']:.4f}", f"{psnr:.1f}", f"{pixels['pixels']:,}", *wrong])
+    for scene in SCENES:
+        for picture, starts in [("exact", "exact"), ("independent", "independent"), ("offset", "1e-4")]:
+            shutil.copy(runs.folder / f"rule/{scene}-{starts}/paths.png", IMAGES / f"paths-{scene}-{picture}.png")
+        shutil.copy(runs.folder / f"rule/{scene}-exact/full.png", IMAGES / f"paths-{scene}-full.png")
+    head = ["scene", "starts", "error of light", "picture, dB", "pixels with shadow rays", "in shadow, should not be", "in light, should not be"]
+    return table(head, rows)
+
+
+def ledger(runs):
+    """What docs/claims.md says of figure 17."""
+    measured = json.loads(MEASURED.read_text())
+    values = {}
+    for form in FORMS:
+        own = factors(gains(*(runs.bounces(BASE, form, method) for method in ["lod", "bvh"])))
+        values |= {f"paths_{form}_{name}": f"{value} times" for name, value in zip(["energy", "time", "first", "second", "third"], own)}
+    version = json.loads((runs.folder / "rule" / "room-exact" / "run.json").read_text())["lodray"]
+    measured["paths"] = {"sweeps": ["paths"], "version": version, "values": values}
+    MEASURED.write_text(json.dumps(measured, indent=1, sort_keys=True) + "\n")
+    subprocess.run([sys.executable, str(ROOT / "scripts" / "figures.py"), str(runs.folder)], check=True)
+
+
+def spread(runs):
+    rows = []
+    for value in ["0", "0.01", "0.02", "0.05", "0.1", "0.2", "0.5"]:
+        row = [value]
+        for scene in ["room", "terrain"]:
+            options = [described(scene), "--size", "256x192", "--diffuse-spread", value]
+            error = runs.paths(f"spread/{scene}-{value}-error", *options, "--samples", 16, "--compare")["against_full"]
+            cost = runs.paths(f"spread/{scene}-{value}-cost", *options, "--samples", 1, "--machine", "haydel2023")[-1]
+            row += [f"{error['light']:.4f}", f"{error['image']['psnr_db']:.1f}", f"{cost['milliseconds']:.4f}", f"{cost['energy'] / 1000:.3f}"]
+        rows.append(row)
+    one = ["error of light", "dB", "ms", "mJ"]
+    return table(["spread"] + [f"room: {v}" for v in one] + [f"terrain: {v}" for v in one], rows)
+
+
+def error_time(runs):
+    rows = []
+    for scene in ["room", "terrain"]:
+        ways = [("lod", ["--delta", delta], f"delta {delta}") for delta in DELTAS]
+        ways += [("discrete", ["--level", str(level)], f"level {level}") for level in [1, 2, 3, 4, 5]] + [("bvh", [], "")]
+        lines = {}
+        for method, options, knob in ways:
+            name = f"error-time/{scene}-{method}-{knob.replace(' ', '-')}"
+            options = [described(scene), "--size", "128x96", "--method", method, *options]
+            error = runs.paths(name + "-error", *options, "--samples", 64, "--converged", 512)["against_converged"]
+            cost = runs.paths(name + "-cost", *options, "--samples", 4, "--machine", "haydel2023")[-1]
+            # Of 64 paths a pixel, as many as the pictures have.
+            figures = [f"{cost['milliseconds'] * 16:.3f}", f"{cost['energy'] * 16 / 1000:.2f}", f"{cost['dram_bytes'] * 16 / 1e6:.1f}"]
+            lines.setdefault(method, []).append((cost["milliseconds"] * 16, error["light"]))
+            rows.append([scene, method, knob, f"{error['light']:.5f}", f"{error['image']['psnr_db']:.2f}", *figures])
+        (IMAGES / f"paths-error-time-{scene}.svg").write_text(diagram(f"{scene}.toml, haydel2023, compute free", lines))
+    return table(["scene", "method", "knob", "error of light", "picture, dB", "ms", "mJ", "MB of DRAM"], rows)
+
+
+def diagram(title, lines):
+    """Error against time, both logarithmic: an SVG of {name: [(ms, error)]}."""
+    colours = {"lod": "#0b6e99", "discrete": "#c77800", "bvh": "#555555"}
+    points = [point for line in lines.values() for point in line]
+    (left, right), (low, high) = ((min(axis), max(axis)) for axis in ([math.log10(p[k]) for p in points] for k in (0, 1)))
+    wide, tall, edge = 460, 320, 54
+    margin = [0.06 * (right - left) + 0.02, 0.06 * (high - low) + 0.02]
+
+    def place(ms, error):
+        x = (math.log10(ms) - left + margin[0]) / (right - left + 2 * margin[0])
+        y = (math.log10(error) - low + margin[1]) / (high - low + 2 * margin[1])
+        return edge + x * (wide - edge - 12), tall - edge - y * (tall - edge - 30)
+
+    out = [f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {wide} {tall}" font-family="sans-serif" font-size="11">']
+    out.append(f'<rect width="{wide}" height="{tall}" fill="white"/><text x="{edge}" y="18" font-size="13">{title}</text>')
+    out.append(f'<path d="M{edge},30V{tall - edge}H{wide - 12}" fill="none" stroke="black"/>')
+    steps = [m * 10.0**e for e in range(-8, 5) for m in (1, 2, 5)]
+    for v in steps:
+        if 10**left <= v <= 10**right:
+            x = place(v, 10**low)[0]
+            out.append(f'<text x="{x:.1f}" y="{tall - edge + 14}" text-anchor="middle">{v:g}</text><path d="M{x:.1f},{tall - edge}v4" stroke="black"/>')
+        if 10**low <= v <= 10**high:
+            y = place(10**left, v)[1]
+            out.append(f'<text x="{edge - 6}" y="{y + 4:.1f}" text-anchor="end">{v:g}</text><path d="M{edge},{y:.1f}h-4" stroke="black"/>')
+    out.append(f'<text x="{(wide + edge) / 2}" y="{tall - 14}" text-anchor="middle">ms of a picture of 64 paths a pixel</text>')
+    out.append(f'<text transform="translate(12,{(tall - edge) / 2 + 20}) rotate(-90)" text-anchor="middle">error of light</text>')
+    for k, (name, line) in enumerate(lines.items()):
+        at = [place(*point) for point in line]
+        path = "M" + "L".join(f"{x:.1f},{y:.1f}" for x, y in at)
+        out.append(f'<path d="{path}" fill="none" stroke="{colours[name]}" stroke-width="1.5"/>')
+        out.extend(f'<circle cx="{x:.1f}" cy="{y:.1f}" r="3" fill="{colours[name]}"/>' for x, y in at)
+        out.append(f'<text x="{wide - 70}" y="{42 + 15 * k}" fill="{colours[name]}">{name}</text>')
+    return "\n".join(out + ["</svg>\n"])
+
+
+def main():
+    runs = Runs(Path(sys.argv[1]))
+    parts = {"figure17": figure17, "open": opened, "rule": rule, "spread": spread, "error-time": error_time}
+    text = TEMPLATE.read_text()
+    for name, part in parts.items():
+        mark = "{{" + name + "}}"
+        if mark not in text:
+            sys.exit(f"paths: {TEMPLATE} has no {mark}")
+        text = text.replace(mark, part(runs))
+    (ROOT / "docs" / "paths.md").write_text(text)
+    ledger(runs)
+
+
+main()

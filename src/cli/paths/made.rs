@@ -1,0 +1,86 @@
+//! What a description comes to: models, a camera, a world.
+
+use crate::cli::build::{FormArgs, build_scene};
+use crate::cli::common::is_quiet;
+use crate::cli::generate;
+use crate::cli::output::{busy, check_normals, open, warn};
+use anyhow::{Context, ensure};
+use lodray::format::Scene;
+use lodray::mesh::{RemeshOptions, read, remesh};
+use lodray::method::Method;
+use lodray::paths::{Instance, ModelTable, Paths, Pose, SceneFile, SceneFileError, Starts, World};
+use lodray::rays::{Camera, ModelSpace, View};
+use std::path::Path;
+
+/// Reads a description; what is wrong with it is said in one line.
+pub fn description(path: &Path) -> anyhow::Result<SceneFile> {
+    SceneFile::read(path).map_err(|error| match error {
+        SceneFileError::Toml { file, source } => {
+            let picture = source.to_string();
+            anyhow::anyhow!("{file}: {}: {}", picture.lines().next().unwrap_or_default(), source.message())
+        }
+        other => other.into(),
+    })
+}
+
+/// The model of a table.
+pub fn load(model: &ModelTable, beside: &Path) -> anyhow::Result<Scene> {
+    if let Some(options) = model.generate {
+        return generate::make(&options.into(), FormArgs::default());
+    }
+    let path = beside.join(model.file.as_deref().unwrap_or_default());
+    if path.extension().is_some_and(|ending| ending == "lod") {
+        ensure!(model.levels.is_none(), "levels is of mesh files; {} has its own", path.display());
+        let scene = open(&path)?;
+        check_normals(&scene, "shading")?;
+        return Ok(scene);
+    }
+    let mesh = busy("reading", || read(&path))?;
+    let options = RemeshOptions { levels: model.levels.unwrap_or(5), ..RemeshOptions::default() };
+    let (surface, report) = busy("remeshing", || remesh(&mesh, &options, &|_, _, _| ())).with_context(|| path.display().to_string())?;
+    if let Some(lost) = report.warning.as_ref().filter(|_| !is_quiet()) {
+        warn(&format!("warning: {}: {lost}", path.display()));
+    }
+    let name = path.file_stem().map_or_else(String::new, |s| s.to_string_lossy().into_owned());
+    build_scene(&surface, &name, serde_json::json!({ "mesh": mesh.report, "remesh": report }), FormArgs::default())
+}
+
+/// The camera that was asked for.
+pub fn camera(file: &SceneFile, name: Option<&str>, scenes: &[Scene]) -> anyhow::Result<Camera> {
+    let known = || file.camera.iter().map(|camera| camera.name.as_str()).collect::<Vec<_>>().join(", ");
+    let table = file.camera(name).with_context(|| format!("there is no camera '{}'; there are: {}", name.unwrap_or_default(), known()))?;
+    let view = View { eye: Some(table.eye), target: Some(table.target), up: Some(table.up), fov: table.fov, ..View::default() };
+    Ok(Camera::new(&view, &ModelSpace::of(&scenes[0]), file.picture.width, file.picture.height)?)
+}
+
+/// The models through their methods.
+pub fn world<'a>(
+    file: &SceneFile,
+    scenes: &'a [Scene],
+    methods: &'a [Box<dyn Method + 'a>],
+    camera: &Camera,
+    delta: f64,
+    starts: Starts,
+) -> World<'a> {
+    let instances = file.model.iter().zip(scenes).zip(methods).map(|((model, scene), method)| {
+        let pose = Pose::new(model.rotate, model.scale, model.translate);
+        Instance::new(scene, &**method, pose, file.materials(model), camera, delta)
+    });
+    World { instances: instances.collect(), starts }
+}
+
+/// The paths of a description.
+pub fn paths<'a>(file: &'a SceneFile, world: &'a World<'a>, camera: Camera) -> Paths<'a> {
+    let picture = file.picture;
+    Paths {
+        world,
+        camera,
+        lights: &file.light,
+        environment: file.environment,
+        cones: file.cones,
+        depth: picture.depth,
+        shadow_rays: picture.shadow_rays,
+        samples: picture.samples,
+        seed: picture.seed,
+    }
+}

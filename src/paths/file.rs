@@ -1,0 +1,427 @@
+//! The description of a scene for path tracing: models, materials, lights, cameras, in TOML.
+
+use super::cone::Cones;
+use super::light::{Environment, Light};
+use super::material::Material;
+use crate::mesh::procedural;
+use serde::Deserialize;
+use std::collections::BTreeMap;
+use std::fs;
+use std::io;
+use std::path::Path;
+use thiserror::Error;
+
+/// Why a description was refused.
+#[derive(Debug, Error)]
+pub enum SceneFileError {
+    /// The file cannot be read.
+    #[error("{file}: {source}")]
+    Read {
+        /// Which.
+        file: String,
+        /// Why.
+        source: io::Error,
+    },
+    /// Not TOML, a key missing or unknown, or a value of the wrong type.
+    #[error("{file}: {source}")]
+    Toml {
+        /// Which.
+        file: String,
+        /// Where and why.
+        source: Box<toml::de::Error>,
+    },
+    /// A value that cannot be.
+    #[error("{file}: {key} {rule}")]
+    Invalid {
+        /// Which file.
+        file: String,
+        /// The key, dotted.
+        key: String,
+        /// What it must be, and what it is.
+        rule: String,
+    },
+}
+
+/// A whole scene.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct SceneFile {
+    /// What is rendered.
+    #[serde(default)]
+    pub picture: PictureTable,
+    /// How cones spread.
+    #[serde(default)]
+    pub cones: Cones,
+    /// Where from; the first is taken unless another is asked for.
+    pub camera: Vec<CameraTable>,
+    /// The models.
+    pub model: Vec<ModelTable>,
+    /// Materials by name.
+    #[serde(default)]
+    pub material: BTreeMap<String, Material>,
+    /// Lights.
+    #[serde(default)]
+    pub light: Vec<Light>,
+    /// What shines where nothing is.
+    pub environment: Option<Environment>,
+}
+
+/// What is rendered.
+#[derive(Clone, Copy, Debug, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct PictureTable {
+    /// Columns.
+    pub width: u32,
+    /// Rows.
+    pub height: u32,
+    /// Paths of a pixel.
+    pub samples: u32,
+    /// Bounces.
+    pub depth: u32,
+    /// Seed.
+    pub seed: u64,
+    /// Lights are asked for light.
+    pub shadow_rays: bool,
+    /// Of the picture for a screen: 2^exposure times as bright.
+    pub exposure: f64,
+}
+
+impl Default for PictureTable {
+    fn default() -> Self {
+        Self { width: 640, height: 480, samples: 16, depth: 3, seed: 0, shadow_rays: true, exposure: 0.0 }
+    }
+}
+
+/// A camera.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct CameraTable {
+    /// Its name.
+    #[serde(default)]
+    pub name: String,
+    /// Where it is.
+    pub eye: [f64; 3],
+    /// What it looks at.
+    pub target: [f64; 3],
+    /// What is up.
+    #[serde(default = "upwards")]
+    pub up: [f64; 3],
+    /// Degrees from bottom to top.
+    #[serde(default = "view_angle")]
+    pub fov: f64,
+}
+
+fn upwards() -> [f64; 3] {
+    [0.0, 1.0, 0.0]
+}
+
+fn view_angle() -> f64 {
+    crate::rays::DEFAULT_VIEW_ANGLE_DEGREES
+}
+
+/// A model: a file, or what is generated.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct ModelTable {
+    /// Scene file or mesh file, beside the description.
+    pub file: Option<String>,
+    /// Splits of a hierarchy over a mesh file.
+    pub levels: Option<u32>,
+    /// A procedural scene.
+    pub generate: Option<MeshTable>,
+    /// Name of the material of all its triangles.
+    pub material: Option<String>,
+    /// Names of materials by the number that the model gives them.
+    #[serde(default)]
+    pub materials: Vec<String>,
+    /// Degrees about x, then y, then z.
+    #[serde(default)]
+    pub rotate: [f64; 3],
+    /// Scale.
+    #[serde(default = "one")]
+    pub scale: f64,
+    /// Where its origin goes.
+    #[serde(default)]
+    pub translate: [f64; 3],
+}
+
+fn one() -> f64 {
+    1.0
+}
+
+/// A procedural scene.
+#[derive(Clone, Copy, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct MeshTable {
+    /// Which.
+    pub scene: procedural::Scene,
+    /// Splits.
+    pub levels: Option<u32>,
+    /// Wanted base triangles.
+    pub base: Option<u32>,
+    /// Seed.
+    #[serde(default)]
+    pub seed: u64,
+    /// Roughness.
+    pub roughness: Option<f64>,
+}
+
+impl From<MeshTable> for procedural::Options {
+    fn from(MeshTable { scene, levels, base, seed, roughness }: MeshTable) -> Self {
+        Self { scene, levels, base, seed, roughness }
+    }
+}
+
+/// What a number must be.
+type Rule = (&'static str, fn(f64) -> bool);
+
+const FINITE: Rule = ("must be a finite number", f64::is_finite);
+const POSITIVE: Rule = ("must be above 0 and finite", |v| v > 0.0 && v.is_finite());
+const NOT_NEGATIVE: Rule = ("must be at least 0 and finite", |v| v >= 0.0 && v.is_finite());
+const SHARE: Rule = ("must be from 0 to 1", |v| (0.0..=1.0).contains(&v));
+const ROUGHNESS: Rule = ("must be above 0 and at most 1", |v| v > 0.0 && v <= 1.0);
+const VIEW: Rule = ("must be above 0 and below 180 degrees", |v| v > 0.0 && v < 180.0);
+const HALF_ANGLE: Rule = ("must be above 0 and below 90 degrees", |v| v > 0.0 && v < 90.0);
+
+/// Most paths of a pixel, and most bounces.
+const MOST_SAMPLES: u32 = 1 << 20;
+const MOST_DEPTH: u32 = 64;
+
+/// Looks at values under their keys, and keeps the first that breaks its rule.
+#[derive(Default)]
+struct Checked(Option<(String, String)>);
+
+impl Checked {
+    fn fail(&mut self, key: impl Into<String>, rule: impl Into<String>) {
+        self.0.get_or_insert((key.into(), rule.into()));
+    }
+
+    fn number(&mut self, key: &str, value: f64, (rule, holds): Rule) {
+        if !holds(value) {
+            self.fail(key, format!("{rule}, but is {value}"));
+        }
+    }
+
+    fn triple(&mut self, key: &str, values: [f64; 3], rule: Rule) {
+        for (k, value) in values.into_iter().enumerate() {
+            self.number(&format!("{key}[{k}]"), value, rule);
+        }
+    }
+
+    /// A direction of any length.
+    fn direction(&mut self, key: &str, v: [f64; 3]) {
+        self.triple(key, v, FINITE);
+        if v == [0.0; 3] {
+            self.fail(key, "must not be zero");
+        }
+    }
+
+    fn whole(&mut self, key: &str, value: u32, least: u32, most: u32) {
+        if !(least..=most).contains(&value) {
+            self.fail(key, format!("must be from {least} to {most}, but is {value}"));
+        }
+    }
+}
+
+impl SceneFile {
+    /// Reads a description.
+    ///
+    /// # Errors
+    /// Names file and key.
+    pub fn read(path: &Path) -> Result<Self, SceneFileError> {
+        let file = path.display().to_string();
+        let text = fs::read_to_string(path).map_err(|source| SceneFileError::Read { file: file.clone(), source })?;
+        Self::parse(&text, &file)
+    }
+
+    /// Parses one; `file` is what errors call it.
+    ///
+    /// # Errors
+    /// Names file and key.
+    pub fn parse(text: &str, file: &str) -> Result<Self, SceneFileError> {
+        let own: Self = toml::from_str(text).map_err(|source| SceneFileError::Toml { file: file.to_owned(), source: Box::new(source) })?;
+        let mut checked = Checked::default();
+        own.check(&mut checked);
+        match checked.0 {
+            Some((key, rule)) => Err(SceneFileError::Invalid { file: file.to_owned(), key, rule }),
+            None => Ok(own),
+        }
+    }
+
+    /// The camera of this name, or the first.
+    pub fn camera(&self, name: Option<&str>) -> Option<&CameraTable> {
+        name.map_or(self.camera.first(), |name| self.camera.iter().find(|own| own.name == name))
+    }
+
+    fn check(&self, to: &mut Checked) {
+        let PictureTable { width, height, samples, depth, exposure, .. } = self.picture;
+        to.whole("picture.width", width, 1, crate::rays::MAX_SIDE);
+        to.whole("picture.height", height, 1, crate::rays::MAX_SIDE);
+        to.whole("picture.samples", samples, 1, MOST_SAMPLES);
+        to.whole("picture.depth", depth, 0, MOST_DEPTH);
+        to.number("picture.exposure", exposure, FINITE);
+        let Cones { diffuse, glossy, light, curvature } = self.cones;
+        for (key, value) in [("diffuse", diffuse), ("glossy", glossy), ("light", light), ("curvature", curvature)] {
+            to.number(&format!("cones.{key}"), value, NOT_NEGATIVE);
+        }
+        if self.camera.is_empty() {
+            to.fail("camera", "must have at least one");
+        }
+        for (k, camera) in self.camera.iter().enumerate() {
+            let key = |name: &str| format!("camera[{k}].{name}");
+            to.triple(&key("eye"), camera.eye, FINITE);
+            to.triple(&key("target"), camera.target, FINITE);
+            to.direction(&key("up"), camera.up);
+            to.number(&key("fov"), camera.fov, VIEW);
+            if self.camera[..k].iter().any(|before| before.name == camera.name) {
+                to.fail(key("name"), format!("must differ from the others', but '{}' is there twice", camera.name));
+            }
+        }
+        if self.model.is_empty() {
+            to.fail("model", "must have at least one");
+        }
+        self.model.iter().enumerate().for_each(|(k, model)| self.check_model(to, k, model));
+        for (name, material) in &self.material {
+            check_material(to, &format!("material.{name}"), material);
+        }
+        self.light.iter().enumerate().for_each(|(k, light)| check_light(to, &format!("light[{k}]"), light));
+        if let Some(Environment { zenith, horizon, ground, up }) = self.environment {
+            for (key, colour) in [("zenith", zenith), ("horizon", horizon), ("ground", ground)] {
+                to.triple(&format!("environment.{key}"), colour, NOT_NEGATIVE);
+            }
+            to.direction("environment.up", up);
+        }
+        if self.light.is_empty() && self.environment.is_none() {
+            to.fail("light", "must have at least one, or there must be an environment");
+        }
+    }
+
+    fn check_model(&self, to: &mut Checked, k: usize, model: &ModelTable) {
+        let key = |name: &str| format!("model[{k}].{name}");
+        if model.file.is_some() == model.generate.is_some() {
+            to.fail(format!("model[{k}]"), "must have one of file and generate");
+        }
+        if let Some(generate) = model.generate
+            && let Err(error) = procedural::Options::from(generate).check()
+        {
+            to.fail(key("generate"), format!("cannot be: {error}"));
+        }
+        if let Some(levels) = model.levels {
+            to.whole(&key("levels"), levels, 0, crate::num::MAX_LEVELS);
+            if model.file.is_none() {
+                to.fail(key("levels"), "is of mesh files; what is generated has its own");
+            }
+        }
+        to.triple(&key("rotate"), model.rotate, FINITE);
+        to.number(&key("scale"), model.scale, POSITIVE);
+        to.triple(&key("translate"), model.translate, FINITE);
+        if model.material.is_some() && !model.materials.is_empty() {
+            to.fail(key("materials"), "must not be there beside material");
+        }
+        for name in model.material.iter().chain(&model.materials) {
+            if !self.material.contains_key(name) {
+                to.fail(key("material"), format!("must be the name of a material, but is '{name}'"));
+            }
+        }
+    }
+
+    /// The materials of a model, by number; its own colours, scattered evenly, if it names none.
+    pub fn materials(&self, model: &ModelTable) -> Vec<Material> {
+        let named: Vec<_> = model.material.iter().chain(&model.materials).filter_map(|name| self.material.get(name).copied()).collect();
+        if named.is_empty() { vec![Material::Diffuse { albedo: None }] } else { named }
+    }
+}
+
+fn check_material(to: &mut Checked, key: &str, material: &Material) {
+    match *material {
+        Material::Diffuse { albedo } => to.triple(&format!("{key}.albedo"), albedo.unwrap_or_default(), SHARE),
+        Material::Mirror { reflectance } => to.triple(&format!("{key}.reflectance"), reflectance, SHARE),
+        Material::Glossy { reflectance, roughness, albedo } => {
+            to.triple(&format!("{key}.reflectance"), reflectance, SHARE);
+            to.triple(&format!("{key}.albedo"), albedo, SHARE);
+            to.number(&format!("{key}.roughness"), roughness, ROUGHNESS);
+        }
+    }
+}
+
+fn check_light(to: &mut Checked, key: &str, light: &Light) {
+    match *light {
+        Light::Point { position, intensity } => {
+            to.triple(&format!("{key}.position"), position, FINITE);
+            to.triple(&format!("{key}.intensity"), intensity, NOT_NEGATIVE);
+        }
+        Light::Area { corner, along, across, radiance } => {
+            to.triple(&format!("{key}.corner"), corner, FINITE);
+            to.direction(&format!("{key}.along"), along);
+            to.direction(&format!("{key}.across"), across);
+            to.triple(&format!("{key}.radiance"), radiance, NOT_NEGATIVE);
+            let [a, b] = [along, across].map(glam::DVec3::from_array);
+            if a.cross(b) == glam::DVec3::ZERO {
+                to.fail(key, "must have an area: along and across must not be parallel");
+            }
+        }
+        Light::Sun { direction, half_angle, irradiance } => {
+            to.direction(&format!("{key}.direction"), direction);
+            to.number(&format!("{key}.half_angle"), half_angle, HALF_ANGLE);
+            to.triple(&format!("{key}.irradiance"), irradiance, NOT_NEGATIVE);
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const GOOD: &str = r#"
+[[camera]]
+eye = [0, 0, 5]
+target = [0, 0, 0]
+[[model]]
+generate = { scene = "sphere", levels = 2 }
+material = "clay"
+[material.clay]
+kind = "glossy"
+reflectance = [0.04, 0.04, 0.04]
+roughness = 0.5
+albedo = [0.5, 0.4, 0.3]
+[[light]]
+kind = "point"
+position = [1, 2, 3]
+intensity = [1, 1, 1]
+"#;
+
+    #[test]
+    fn a_scene_is_read_with_its_defaults() {
+        let scene = SceneFile::parse(GOOD, "a.toml").unwrap();
+        assert_eq!((scene.picture.width, scene.picture.depth, scene.cones), (640, 3, Cones::default()));
+        assert_eq!(scene.materials(&scene.model[0]), vec![scene.material["clay"]]);
+        assert!(scene.camera(None).is_some() && scene.camera(Some("side")).is_none());
+    }
+
+    #[test]
+    fn each_bad_value_is_named_with_file_and_key() {
+        for (from, to, wanted) in [
+            ("eye = [0, 0, 5]", "eye = [0, nan, 5]", "a.toml: camera[0].eye[1] must be a finite number, but is NaN"),
+            (
+                "target = [0, 0, 0]",
+                "target = [0, 0, 0]\nfov = 180",
+                "a.toml: camera[0].fov must be above 0 and below 180 degrees, but is 180",
+            ),
+            ("roughness = 0.5", "roughness = 0", "a.toml: material.clay.roughness must be above 0 and at most 1, but is 0"),
+            ("\"clay\"\n", "\"gold\"\n", "a.toml: model[0].material must be the name of a material, but is 'gold'"),
+            ("levels = 2", "levels = 11", "a.toml: model[0].generate cannot be: 11 levels are too many: 0 to 10 are possible"),
+            ("generate", "file = \"a.obj\"\ngenerate", "a.toml: model[0] must have one of file and generate"),
+            ("intensity = [1, 1, 1]", "intensity = [1, -1, 1]", "a.toml: light[0].intensity[1] must be at least 0 and finite, but is -1"),
+            ("material = \"clay\"", "material = \"clay\"\nscale = 0", "a.toml: model[0].scale must be above 0 and finite, but is 0"),
+        ] {
+            assert!(GOOD.contains(from), "{from}");
+            assert_eq!(SceneFile::parse(&GOOD.replace(from, to), "a.toml").unwrap_err().to_string(), wanted);
+        }
+        for (from, to, wanted) in
+            [("albedo", "albeda", "albeda"), ("\"point\"", "\"lamp\"", "lamp"), ("[[camera]]", "[[camara]]", "camara")]
+        {
+            let error = SceneFile::parse(&GOOD.replace(from, to), "a.toml").unwrap_err().to_string();
+            assert!(error.starts_with("a.toml: TOML parse error at line ") && error.contains(wanted), "{error}");
+        }
+    }
+}

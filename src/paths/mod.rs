@@ -1,0 +1,24 @@
+//! Path tracing: pictures whose rays go on where they hit, with shadows, mirrors and light from surface to surface (paper section 3.8, figures 14 to 17).
+//!
+//! One path: a camera makes a ray; [`World`] finds what it meets among the models, each with a method of its own; a [`Material`] scatters it, lights are
+//! asked for what they send there, and the next ray leaves exactly where the last one hit ([`Starts`]). Cones go along ([`PathCone`]). Shading is `f64` and
+//! `f32`: what is exact is where rays start and what they meet.
+
+mod cone;
+mod file;
+mod film;
+mod integrate;
+mod light;
+mod material;
+mod random;
+mod rays;
+mod world;
+
+pub use cone::{Cones, PathCone};
+pub use file::{CameraTable, MeshTable, ModelTable, PictureTable, SceneFile, SceneFileError};
+pub use film::{Film, FilmError, LightCount, light_count, picture_error};
+pub use integrate::{PathCounts, PathTracer, Paths};
+pub use light::{Environment, Light};
+pub use material::Material;
+pub use rays::PathFrame;
+pub use world::{Instance, Pose, Starts, World};

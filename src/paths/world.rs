@@ -1,0 +1,242 @@
+//! Models where a scene has them, and what a ray meets among them.
+
+use super::cone::PathCone;
+use super::material::Material;
+use crate::format::Scene;
+use crate::method::leave::side;
+use crate::method::{Departure, Landing, Method, Tracer};
+use crate::rays::{Camera, ModelSpace, Query, Sight};
+use crate::step::{Link, Recorder};
+use glam::{DMat3, DVec3, EulerRot};
+use std::cmp::Ordering;
+
+/// Base colour of a model without any.
+const GREY: DVec3 = DVec3::splat(0.8);
+
+/// Where a model is put: turned, scaled, moved.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Pose {
+    turn: DMat3,
+    scale: f64,
+    translate: DVec3,
+}
+
+impl Pose {
+    /// Turned by so many degrees about x, then y, then z; scaled, above 0; moved.
+    pub fn new(degrees: [f64; 3], scale: f64, translate: [f64; 3]) -> Self {
+        let [x, y, z] = degrees.map(f64::to_radians);
+        Self { turn: DMat3::from_euler(EulerRot::ZYX, z, y, x), scale, translate: DVec3::from_array(translate) }
+    }
+
+    /// A place of the scene in the model's own world.
+    fn place(&self, p: DVec3) -> DVec3 {
+        self.turn.transpose() * ((p - self.translate) / self.scale)
+    }
+
+    /// A direction.
+    fn direction(&self, d: DVec3) -> DVec3 {
+        self.turn.transpose() * d
+    }
+
+    /// A direction of the model's in the scene.
+    fn back(&self, d: DVec3) -> DVec3 {
+        self.turn * d
+    }
+}
+
+/// How rays start that leave a surface.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Starts {
+    /// Exactly where the surface was hit, and level of detail there as the rays before saw it: the rule of paper section 3.8.
+    Exact,
+    /// Exactly there, but each ray decides for itself.
+    Independent,
+    /// This far above the surface, in bounding radii of the model, as common renderers do; each ray decides for itself.
+    Offset(f64),
+}
+
+/// A model in a scene.
+pub struct Instance<'a> {
+    /// The model.
+    pub scene: &'a Scene,
+    /// How rays find it.
+    pub method: &'a dyn Method,
+    /// Where it is.
+    pub pose: Pose,
+    /// Materials by the number that the model gives each triangle; the last one for all beyond.
+    pub materials: Vec<Material>,
+    space: ModelSpace,
+    sight: Sight,
+}
+
+impl<'a> Instance<'a> {
+    /// A model, for rays of `camera` at quality `delta`. It needs a material.
+    pub fn new(scene: &'a Scene, method: &'a dyn Method, pose: Pose, materials: Vec<Material>, camera: &Camera, delta: f64) -> Self {
+        let space = ModelSpace::of(scene);
+        let least_radius = camera.tan_theta * space.distance_to(pose.place(camera.eye).to_array()) / space.placement.scale;
+        Self { scene, method, pose, materials, space, sight: Sight { delta, least_radius } }
+    }
+
+    /// What its rays see of it.
+    pub fn sight(&self) -> &Sight {
+        &self.sight
+    }
+
+    /// Half the diagonal of its box, in the scene.
+    pub fn radius(&self) -> f64 {
+        self.space.radius() * self.pose.scale
+    }
+
+    /// Centre of its box, in the scene.
+    pub fn centre(&self) -> DVec3 {
+        self.pose.turn * DVec3::from_array(self.space.centre()) * self.pose.scale + self.pose.translate
+    }
+}
+
+/// A ray in the scene.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct WorldRay {
+    pub origin: DVec3,
+    /// Length 1.
+    pub direction: DVec3,
+    pub cone: PathCone,
+    /// Nothing farther counts.
+    pub t_max: f64,
+    /// Any hit serves.
+    pub any: bool,
+}
+
+/// What a ray met.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Met {
+    pub instance: usize,
+    pub distance: f64,
+    pub landing: Landing,
+}
+
+/// The surface there, as shading needs it; its normal in the scene, on the side that the ray came from.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Surface {
+    pub normal: DVec3,
+    pub colour: DVec3,
+    pub material: Material,
+    /// 1 / radius, positive where it bulges towards the ray.
+    pub curvature: f64,
+}
+
+/// The steps of rays, kept, and who waits for whom.
+#[derive(Default)]
+pub(super) struct Listener {
+    pub recorder: Recorder,
+    /// The next ray's number.
+    pub number: u64,
+}
+
+/// All models.
+pub struct World<'a> {
+    /// They, at least one.
+    pub instances: Vec<Instance<'a>>,
+    /// How rays leave them.
+    pub starts: Starts,
+}
+
+impl<'a> World<'a> {
+    /// A tracer for each model; for one thread.
+    pub fn tracers(&self) -> Vec<Box<dyn Tracer + '_>> {
+        self.instances.iter().map(|own| own.method.tracer(&own.sight)).collect()
+    }
+
+    /// What `ray` meets first, or at all; it starts at `from`, a hit of that model, if there is one. The listener hears the ray once for each model, behind ray `after`.
+    pub(super) fn trace(
+        &self,
+        tracers: &mut [Box<dyn Tracer + '_>],
+        ray: &WorldRay,
+        from: Option<(usize, &Departure)>,
+        mut listener: Option<(&mut Listener, Option<u64>)>,
+    ) -> Option<Met> {
+        let mut best: Option<Met> = None;
+        for (k, (own, tracer)) in self.instances.iter().zip(tracers).enumerate() {
+            let mut own_from = from.filter(|&(of, _)| of == k).map(|(_, from)| *from);
+            let mut origin = ray.origin;
+            match self.starts {
+                Starts::Exact => {}
+                Starts::Independent => own_from = own_from.map(|from| Departure { prior: None, ..from }),
+                Starts::Offset(radii) => {
+                    if let Some((of, from)) = from {
+                        origin += self.instances[of].above(from, ray.direction) * (radii * self.instances[of].radius());
+                    }
+                    own_from = None;
+                }
+            }
+            let scale = own.pose.scale;
+            let farthest = best.map_or(ray.t_max, |best| best.distance);
+            let query = Query {
+                any: ray.any,
+                ..Query::new(own.pose.place(origin).to_array(), own.pose.direction(ray.direction).to_array())
+                    .with_cone(ray.cone.radius / scale, ray.cone.spread)
+                    .between(0.0, farthest / scale)
+            };
+            let recorder = listener.as_mut().map(|(listener, after)| {
+                listener.recorder.link(Link { number: listener.number, after: *after });
+                listener.number += 1;
+                &mut listener.recorder
+            });
+            if let Some(landing) = tracer.follow(&query, own_from.as_ref(), recorder) {
+                let distance = landing.surface.distance * scale;
+                if best.is_none_or(|best| distance < best.distance) {
+                    best = Some(Met { instance: k, distance, landing });
+                }
+                if ray.any {
+                    break;
+                }
+            }
+        }
+        best
+    }
+
+    /// Whether rays along `direction` leave `met` to the side that the ray before came from: exact where starts are.
+    pub(super) fn leaves(&self, met: &Met, direction: DVec3) -> bool {
+        let (own, departure) = (&self.instances[met.instance], &met.landing.departure);
+        let wanted = if met.landing.surface.front { Ordering::Greater } else { Ordering::Less };
+        own.space.direction(own.pose.direction(direction).to_array()).is_some_and(|d| side(&departure.corners, d) == wanted)
+    }
+
+    /// The surface that a ray along `direction` met.
+    pub(super) fn surface(&self, met: &Met, direction: DVec3) -> Surface {
+        let (own, hit) = (&self.instances[met.instance], &met.landing.surface);
+        let turn = if hit.front { 1.0 } else { -1.0 };
+        let shading = own.pose.back(hit.normal(own.scene).as_dvec3()) * turn;
+        let plane = hit.plane_normal().map_or(shading, |plane| own.pose.back(plane.as_dvec3()) * turn);
+        // Where level of detail shows another side than the full resolution has, the surface that is shown counts.
+        let faces = |n: DVec3| n.dot(direction) < 0.0;
+        let shading = if shading.dot(plane) < 0.0 { -shading } else { shading };
+        let normal = if faces(shading) { shading } else { plane };
+        let number = own.scene.record(hit.tree as usize).material.get() as usize; // 16 bits
+        let colour = own.scene.colour(number as u16).map_or(GREY, |c| DVec3::from_array(c.map(f64::from)));
+        let material = own.materials[number.min(own.materials.len() - 1)];
+        Surface { normal, colour, material, curvature: own.curvature(met) * turn }
+    }
+}
+
+impl Instance<'_> {
+    /// The side of a triangle that `direction` leads to, as a normal in the scene.
+    fn above(&self, from: &Departure, direction: DVec3) -> DVec3 {
+        let [a, b, c] = from.corners.map(|p| DVec3::from_array(p.get().map(|c| c as f64)));
+        let normal = self.pose.back((b - a).cross(c - a).normalize_or_zero());
+        if normal.dot(direction) < 0.0 { -normal } else { normal }
+    }
+
+    /// Curvature of the surface where it was hit, from normals at the corners of the triangle that was met, in the scene; positive where the front bulges.
+    fn curvature(&self, met: &Met) -> f64 {
+        let (hit, scene) = (&met.landing.surface, self.scene);
+        let (tree, level, levels) = (hit.tree as usize, u32::from(hit.level), scene.levels());
+        let corners = scene.triangle(tree, level, hit.node as usize).map(|p| DVec3::from_array(p.map(f64::from)));
+        let normals =
+            crate::mesh::lattice::node(levels, level, hit.node).map(|point| DVec3::from_array(scene.normal_at(tree, point).map(f64::from)));
+        let bend = |i: usize, j: usize| {
+            let way = corners[j] - corners[i];
+            if way == DVec3::ZERO { 0.0 } else { (normals[j] - normals[i]).dot(way) / way.length_squared() }
+        };
+        (bend(0, 1) + bend(1, 2) + bend(2, 0)) / (3.0 * self.space.placement.scale * self.pose.scale)
+    }
+}

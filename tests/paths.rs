@@ -1,0 +1,327 @@
+//! Path tracing: light where it is known, the same at any number of threads and any way to ask for light, rays as machines get them, and descriptions that are refused.
+
+use assert_cmd::Command;
+use lodray::format::Scene;
+use lodray::mesh::procedural::{self, Options};
+use lodray::method::bvh::{self, NoStore};
+use lodray::method::{Knobs, Method, discrete, lod, reference};
+use lodray::paths::{Environment, Film, Instance, Light, Material, PathFrame, Paths, Pose, Starts, World, light_count, picture_error};
+use lodray::rays::{Camera, ModelSpace, View};
+use lodray::run::{Frame, Traced};
+use lodray_test_support::models::build;
+use std::collections::HashSet;
+use std::fs;
+use std::path::Path;
+
+const WHITE: [f64; 3] = [1.0; 3];
+const EVERYWHERE: Environment = Environment { zenith: WHITE, horizon: WHITE, ground: WHITE, up: [0.0, 1.0, 0.0] };
+
+fn generated(scene: procedural::Scene, levels: u32, base: u32) -> Scene {
+    let options = Options { levels: Some(levels), base: Some(base), ..Options::new(scene) };
+    build(&procedural::generate(&options).expect("a surface"))
+}
+
+fn made<'a>(scene: &'a Scene, method: &'static lodray::method::Registered) -> Box<dyn Method + 'a> {
+    (method.make)(scene, &Knobs::default(), &NoStore).expect("a method on a scene")
+}
+
+fn camera(scene: &Scene, eye: [f64; 3], size: u32) -> Camera {
+    let view = View { eye: Some(eye), target: Some([0.0; 3]), fov: 40.0, ..View::default() };
+    Camera::new(&view, &ModelSpace::of(scene), size, size).expect("a camera")
+}
+
+/// A picture of one model at the origin.
+struct Shot<'a> {
+    scene: &'a Scene,
+    method: &'a dyn Method,
+    material: Material,
+    pose: Pose,
+    camera: Camera,
+    delta: f64,
+    starts: Starts,
+}
+
+impl Shot<'_> {
+    fn with<R>(
+        &self,
+        lights: &[Light],
+        environment: Option<Environment>,
+        change: impl FnOnce(&mut Paths<'_>),
+        then: impl FnOnce(&Paths<'_>) -> R,
+    ) -> R {
+        let own = Instance::new(self.scene, self.method, self.pose, vec![self.material], &self.camera, self.delta);
+        let world = World { instances: vec![own], starts: self.starts };
+        let cones = Default::default();
+        let mut paths =
+            Paths { world: &world, camera: self.camera, lights, environment, cones, depth: 3, shadow_rays: true, samples: 16, seed: 1 };
+        change(&mut paths);
+        then(&paths)
+    }
+
+    fn film(&self, lights: &[Light], environment: Option<Environment>, change: impl FnOnce(&mut Paths<'_>)) -> Film {
+        self.with(lights, environment, change, |paths| Film::of(paths, &|| ()))
+    }
+}
+
+fn unturned() -> Pose {
+    Pose::new([0.0; 3], 1.0, [0.0; 3])
+}
+
+fn mean(film: &Film) -> f32 {
+    film.light.iter().map(|c| c.element_sum() / 3.0).sum::<f32>() / film.light.len() as f32
+}
+
+/// In light that comes from everywhere a surface that swallows nothing cannot be seen; however it is asked for.
+#[test]
+fn what_swallows_nothing_is_not_seen_in_even_light() {
+    let scene = generated(procedural::Scene::Sphere, 3, 128);
+    for method in [&lod::METHOD, &bvh::METHOD, &bvh::METHOD_SIX, &bvh::METHOD_WIDE, &discrete::METHOD] {
+        let method = made(&scene, method);
+        let shot = Shot {
+            scene: &scene,
+            method: &*method,
+            material: Material::Diffuse { albedo: Some(WHITE) },
+            pose: unturned(),
+            camera: camera(&scene, [0.0, 0.0, 4.0], 24),
+            delta: 1.0,
+            starts: Starts::Exact,
+        };
+        for shadow_rays in [false, true] {
+            let film = shot.film(&[], Some(EVERYWHERE), |paths| (paths.depth, paths.shadow_rays) = (24, shadow_rays));
+            // What shading normals swallow at edges is all that is missing.
+            let found = mean(&film);
+            assert!((0.97..1.01).contains(&found), "{shadow_rays}: {found}");
+            assert!(film.counts.hits[0] > 24 * 24 * 16 / 4 && film.counts.crowded == 0);
+        }
+    }
+}
+
+fn lights() -> [Light; 3] {
+    [
+        Light::Area { corner: [-1.0, 2.5, -1.0], along: [2.0, 0.0, 0.0], across: [0.0, 0.0, 2.0], radiance: [3.0, 2.0, 1.0] },
+        Light::Sun { direction: [1.0, 1.0, 0.4], half_angle: 8.0, irradiance: [1.0, 2.0, 3.0] },
+        Light::Point { position: [0.5, 2.0, 2.0], intensity: [1.0; 3] },
+    ]
+}
+
+/// Shadow rays and rays that run into lights are two ways to one picture.
+#[test]
+fn light_is_the_same_whether_it_is_asked_for_or_found() {
+    let scene = generated(procedural::Scene::Room, 3, 300);
+    let method = made(&scene, &lod::METHOD);
+    let glossy = Material::Glossy { reflectance: [0.3; 3], roughness: 0.7, albedo: [0.5; 3] };
+    for material in [Material::Diffuse { albedo: None }, glossy] {
+        let camera = camera(&scene, [0.0, 0.0, 3.4], 16);
+        let shot = Shot { scene: &scene, method: &*method, material, pose: unturned(), camera, delta: 1.0, starts: Starts::Exact };
+        // A point is found by no ray.
+        let found = |shadow_rays| {
+            let film = shot.film(&lights()[..2], Some(EVERYWHERE), |paths| {
+                (paths.depth, paths.shadow_rays, paths.samples) = (2, shadow_rays, 400);
+            });
+            mean(&film)
+        };
+        // Without shadow rays the last hit gets no light: it is one bounce less.
+        let (asked, ran_into) = (found(true), {
+            let film =
+                shot.film(&lights()[..2], Some(EVERYWHERE), |paths| (paths.depth, paths.shadow_rays, paths.samples) = (3, false, 400));
+            mean(&film)
+        });
+        assert!((asked / ran_into - 1.0).abs() < 0.02, "{material:?}: {asked} {ran_into}");
+    }
+}
+
+/// A scene turned, scaled and moved with its camera and lights is the same picture, but for roundings.
+#[test]
+fn a_pose_is_what_it_says() {
+    let scene = generated(procedural::Scene::Sphere, 2, 128);
+    let method = made(&scene, &lod::METHOD);
+    let material = Material::Diffuse { albedo: Some([0.5; 3]) };
+    let sun = |direction| [Light::Sun { direction, half_angle: 1.0, irradiance: WHITE }];
+    let plain = Shot {
+        scene: &scene,
+        method: &*method,
+        material,
+        pose: unturned(),
+        camera: camera(&scene, [0.0, 0.0, 4.0], 48),
+        delta: f64::INFINITY,
+        starts: Starts::Exact,
+    };
+    let one = plain.film(&sun([0.3, 0.2, 1.0]), None, |paths| paths.depth = 0);
+    // By 90 degrees about y, +z becomes +x.
+    let view = View { eye: Some([3.0 + 8.0, 5.0, -1.0]), target: Some([3.0, 5.0, -1.0]), fov: 40.0, ..View::default() };
+    let camera = Camera::new(&view, &ModelSpace::of(&scene), 48, 48).expect("a camera");
+    let turned = Shot { pose: Pose::new([0.0, 90.0, 0.0], 2.0, [3.0, 5.0, -1.0]), camera, ..plain };
+    let other = turned.film(&sun([1.0, 0.2, -0.3]), None, |paths| paths.depth = 0);
+    assert!(mean(&one) > 0.03 && picture_error(&one, &other) < 1e-3, "{} {}", mean(&one), picture_error(&one, &other));
+}
+
+#[test]
+fn films_do_not_depend_on_threads_and_do_on_seeds() {
+    let scene = generated(procedural::Scene::Terrain, 4, 32);
+    let method = made(&scene, &lod::METHOD);
+    let material = Material::Diffuse { albedo: None };
+    let camera = camera(&scene, [0.6, 0.9, 1.2], 32);
+    let shot = Shot { scene: &scene, method: &*method, material, pose: unturned(), camera, delta: 1.0, starts: Starts::Exact };
+    let film = |seed, threads: usize| {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("a pool");
+        pool.install(|| shot.film(&lights(), Some(EVERYWHERE), |paths| paths.seed = seed))
+    };
+    let one = film(1, 1);
+    for threads in [2, 3, 7] {
+        let other = film(1, threads);
+        assert!(one.light == other.light && one.lit == other.lit && one.counts == other.counts);
+    }
+    assert!(one.light != film(2, 1).light);
+}
+
+/// The rule is what keeps shadows right: each ray deciding for itself puts lit pixels into shadow; a start above the surface trades those for light that leaks.
+#[test]
+fn decisions_of_the_rays_before_keep_light_where_it_is() {
+    let scene = generated(procedural::Scene::Terrain, 6, 128);
+    let method = made(&scene, &lod::METHOD);
+    let material = Material::Diffuse { albedo: Some([0.5; 3]) };
+    let sun = [Light::Sun { direction: [-1.0, 0.35, -0.3], half_angle: 0.5, irradiance: WHITE }];
+    let camera = camera(&scene, [0.2, 1.0, 2.2], 96);
+    let shot = |starts, delta| {
+        let shot = Shot { scene: &scene, method: &*method, material, pose: unturned(), camera, delta, starts };
+        shot.film(&sun, None, |paths| (paths.depth, paths.samples) = (0, 4))
+    };
+    let truth = shot(Starts::Exact, f64::INFINITY);
+    let [exact, independent, high] =
+        [Starts::Exact, Starts::Independent, Starts::Offset(0.03)].map(|starts| light_count(&shot(starts, 1.0), &truth));
+    println!("exact {exact:?}, independent {independent:?}, high {high:?}");
+    assert!(exact.pixels > 3_000 && 50 * exact.shadowed < exact.pixels, "{exact:?}");
+    assert!(independent.shadowed > 15 * (exact.shadowed + 1), "{independent:?} {exact:?}");
+    // What leaks with the rule is what coarser shapes no longer hide.
+    assert!(2 * high.leaking > 3 * exact.leaking, "{high:?} {exact:?}");
+    // At full resolution there is nothing to decide.
+    let same = shot(Starts::Independent, f64::INFINITY);
+    assert!(same.light == truth.light);
+}
+
+/// A machine gets the rays that a picture has, each behind the one that it waits for.
+#[test]
+fn frames_have_the_rays_of_pictures() {
+    let scene = generated(procedural::Scene::Room, 3, 300);
+    for method in [&lod::METHOD, &bvh::METHOD] {
+        let method = made(&scene, method);
+        let material = Material::Diffuse { albedo: None };
+        let camera = camera(&scene, [0.0, 0.0, 3.4], 40);
+        let shot = Shot { scene: &scene, method: &*method, material, pose: unturned(), camera, delta: 1.0, starts: Starts::Exact };
+        let change = |paths: &mut Paths<'_>| paths.samples = 2;
+        let film = shot.film(&lights(), None, change);
+        let (mut numbers, mut waiting, mut rays) = (HashSet::new(), 0, 0u64);
+        shot.with(&lights(), None, change, |paths| {
+            let frame = PathFrame::new(paths).expect("one model");
+            frame.produce(&mut |Traced { batches, .. }| {
+                for batch in &batches {
+                    for ray in 0..batch.rays() {
+                        let link = batch.link(ray).expect("a link");
+                        assert!(numbers.insert(link.number) && link.number == rays, "numbers go up by one");
+                        assert!(link.after.is_none_or(|after| after < link.number && numbers.contains(&after)));
+                        waiting += u64::from(link.after.is_some());
+                        rays += 1;
+                    }
+                }
+                true
+            });
+        });
+        assert_eq!((rays, rays - waiting), (film.counts.all(), 40 * 40 * 2));
+    }
+}
+
+#[test]
+fn what_has_no_exact_hits_says_so() {
+    let scene = generated(procedural::Scene::Sphere, 1, 8);
+    assert!(!made(&scene, &reference::METHOD).leaves() && made(&scene, &lod::METHOD).leaves());
+}
+
+fn lodray(folder: &Path) -> Command {
+    let mut command = Command::cargo_bin("lodray").expect("the program");
+    command.current_dir(folder);
+    command
+}
+
+const ROOM: &str = r#"
+[picture]
+width = 24
+height = 16
+samples = 4
+depth = 2
+[[camera]]
+name = "front"
+eye = [0, 0, 3.4]
+target = [0, 0, 0]
+[[model]]
+generate = { scene = "room", levels = 2, base = 100 }
+[environment]
+zenith = [1, 1, 1]
+horizon = [1, 1, 1]
+ground = [1, 1, 1]
+"#;
+
+#[test]
+fn a_description_becomes_pictures_and_figures() {
+    let folder = tempfile::tempdir().expect("a folder");
+    fs::write(folder.path().join("room.toml"), ROOM).expect("a file");
+    let run = |arguments: &[&str]| lodray(folder.path()).arg("paths").args(arguments).assert().success().get_output().stdout.clone();
+    run(&["room.toml", "-o", "a", "--compare", "--converged", "8"]);
+    let figures: serde_json::Value = serde_json::from_slice(&run(&["room.toml", "-o", "b", "--json"])).expect("JSON");
+    assert_eq!((figures["counts"]["rays"][0].as_u64(), figures["depth"].as_u64()), (Some(24 * 16 * 4), Some(2)));
+    let read = |name: &str| fs::read(folder.path().join(name)).expect("a file");
+    for name in ["paths.png", "paths.exr"] {
+        assert_eq!(read(&format!("a/{name}")), read(&format!("b/{name}")), "{name}");
+    }
+    let png = image::open(folder.path().join("a/full.png")).expect("a picture");
+    assert_eq!((png.width(), png.height()), (24, 16));
+    let light = exr::prelude::read_first_rgba_layer_from_file(
+        folder.path().join("a/paths.exr"),
+        |size, _| vec![[0f32; 3]; size.area()],
+        |pixels, at, (r, g, b, _): (f32, f32, f32, f32)| pixels[at.y() * 24 + at.x()] = [r, g, b],
+    );
+    let light = light.expect("light").layer_data.channel_data.pixels;
+    assert!(light.iter().flatten().all(|c| c.is_finite() && *c >= 0.0) && light.iter().flatten().any(|c| *c > 0.1));
+
+    let bounces: serde_json::Value =
+        serde_json::from_slice(&run(&["room.toml", "-o", "c", "--machine", "haydel2023", "--json"])).expect("JSON");
+    let of = |k: usize, key: &str| bounces[k][key].as_f64().expect("a number");
+    assert_eq!(bounces.as_array().map(Vec::len), Some(3));
+    for k in 1..3 {
+        assert!(of(k, "rays") > of(k - 1, "rays") && of(k, "energy") > of(k - 1, "energy"));
+        assert!((of(k, "milliseconds") - of(k - 1, "milliseconds") - of(k, "added_milliseconds")).abs() < 1e-12);
+    }
+}
+
+#[test]
+fn bad_descriptions_are_one_line_that_names_file_and_key() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let cases = [
+        ("fov = 1", "[picture]", "[picture]\nfov = 1", "unknown field `fov`"),
+        ("scale", "[[model]]", "[[model]]\nscale = -2", "a.toml: model[0].scale must be above 0 and finite, but is -2"),
+        ("levels", "levels = 2", "levels = 12", "a.toml: model[0].generate cannot be: 12 levels are too many"),
+        ("eye", "eye = [0, 0, 3.4]", "eye = [0, 0, 0]", "a.toml: "),
+        ("file", "generate = { scene = \"room\", levels = 2, base = 100 }", "file = \"none.lod\"", "none.lod"),
+    ];
+    for (name, from, to, wanted) in cases {
+        assert!(ROOM.contains(from));
+        fs::write(folder.path().join("a.toml"), ROOM.replace(from, to)).expect("a file");
+        let output = lodray(folder.path()).args(["paths", "a.toml", "-o", "out"]).assert().failure().get_output().clone();
+        let text = String::from_utf8(output.stderr).expect("text");
+        assert!(text.contains(wanted) && text.contains("a.toml") && text.starts_with("error: "), "{name}: {text}");
+        assert!(!folder.path().join("out").exists(), "{name}");
+    }
+    fs::write(folder.path().join("a.toml"), ROOM).expect("a file");
+    for (arguments, wanted) in [
+        (["--camera", "side"], "there is no camera 'side'; there are: front"),
+        (["--starts", "-1"], "'-1' is not exact, independent, or a number from 0 on"),
+        (["--machine", "none"], "there is no machine none"),
+    ] {
+        let output = lodray(folder.path()).args(["paths", "a.toml", "-o", "out"]).args(arguments).assert().failure().get_output().clone();
+        let text = String::from_utf8(output.stderr).expect("text");
+        assert!(text.contains(wanted), "{text}");
+    }
+    let two = format!("{ROOM}\n[[model]]\ngenerate = {{ scene = \"sphere\", levels = 1, base = 8 }}\n");
+    fs::write(folder.path().join("a.toml"), two).expect("a file");
+    let output = lodray(folder.path()).args(["paths", "a.toml", "--machine", "haydel2023"]).assert().failure().get_output().clone();
+    assert!(String::from_utf8(output.stderr).expect("text").contains("a.toml has 2 models, and the memory of a machine holds one"));
+}
