@@ -2,12 +2,14 @@
 
 /// The closest hit of one ray so far, and the way from its numerators to the hit record.
 ///
-/// A result of `hit_select` that is closer takes the place of the hit before; without one `t_max_o` is the largest t. At the end b1 and b2 come from two divisions,
+/// A result of `hit_select` that is closer takes the place of the hit before, where it counts: not before `t_min_i`, nor beyond the largest t, which `t_max_o` is without one. At the end b1 and b2 come from two divisions,
 /// b0 = 2^31 - b1 - b2 follows in the cycle of `sum_i`, and `bary_map` gives the full-resolution triangle. No reset: `clear_i` comes first.
 module closest_hit (
   input  logic                               clk_i,
   input  logic [3:0]                         levels_i,
   input  logic                               clear_i,
+  input  logic [lod_pkg::RAY_T_W-1:0]        t_min_i,
+  input  logic [lod_pkg::RAY_T_W-1:0]        largest_t_i,
   output logic                               known_o,
   output logic [lod_pkg::RAY_T_W-1:0]        t_max_o,
   output logic [lod_pkg::FULL_ID_W-1:0]      id_o,
@@ -22,9 +24,13 @@ module closest_hit (
   input  logic [lod_pkg::EDGE_FUNCTION_W-1:0] v_i,
   input  logic [lod_pkg::EDGE_FUNCTION_W-1:0] w_i,
   input  logic [lod_pkg::EDGE_FUNCTION_W-1:0] det_i,
+  input  logic [lod_pkg::FRACTION_W-1:0]      v_below_i,
+  input  logic [lod_pkg::FRACTION_W-1:0]      w_below_i,
+  // It is the closest now.
+  output logic                               closer_o,
   // Barycentrics: the division of v, or of w.
   input  logic                               divide_v_i,
-  output lod_pkg::hit_divide_in_t            divide_o,
+  output lod_pkg::start_divide_in_t          divide_o,
   input  logic                               divide_valid_i,
   input  logic [1:0]                         divide_what_i,
   input  lod_pkg::hit_divide_out_t           divide_i,
@@ -55,15 +61,18 @@ module closest_hit (
 
   assign {known_o, t_max_o, id_o} = {known_q, t_max_q, id_q};
 
+  // Where all t count there is nothing to compare.
+  assign closer_o = select_valid_i && select_i.closer && (lod_pkg::SECONDARY == 0 || (t_i >= t_min_i && t_i <= t_max_q));
+
   always_ff @(posedge clk_i) begin
     if (clear_i) begin
       known_q <= 1'b0;
-      t_max_q <= '1;
-    end else if (select_valid_i && select_i.closer) begin
+      t_max_q <= largest_t_i;
+    end else if (closer_o) begin
       known_q <= 1'b1;
       t_max_q <= t_i;
     end
-    if (select_valid_i && select_i.closer) begin
+    if (closer_o) begin
       id_q    <= select_i.id;
       tree_q  <= tree_i;
       front_q <= front_i;
@@ -76,7 +85,7 @@ module closest_hit (
   assign quotient_of_v = divide_valid_i && divide_what_i == lod_pkg::DIVIDE_FOR_V;
   assign quotient_of_w = divide_valid_i && divide_what_i == lod_pkg::DIVIDE_FOR_W;
   always_ff @(posedge clk_i) begin
-    if (select_valid_i && select_i.closer) {v_q, w_q, det_q} <= {EDGE_W'(v_i >> ZEROS), EDGE_W'(w_i >> ZEROS), EDGE_W'(det_i >> ZEROS)};
+    if (closer_o) {v_q, w_q, det_q} <= {EDGE_W'(v_i >> ZEROS), EDGE_W'(w_i >> ZEROS), EDGE_W'(det_i >> ZEROS)};
     else begin
       // An edge function is at most det, so quotients are at most 2^32; their last bit is dropped: 32 bits.
       if (quotient_of_v) v_q[lod_pkg::BARY_W-1:0] <= divide_i.quotient[lod_pkg::BARY_W:1];
@@ -87,10 +96,24 @@ module closest_hit (
     end
   end
 
+  // What v and w have below whole numbers.
+  logic [lod_pkg::FRACTION_W-1:0] low;
+  if (lod_pkg::SECONDARY != 0) begin : g_below
+    logic [lod_pkg::FRACTION_W-1:0] v_below_q, w_below_q;
+    always_ff @(posedge clk_i) begin
+      if (closer_o) {v_below_q, w_below_q} <= {v_below_i, w_below_i};
+    end
+    assign low = divide_v_i ? v_below_q : w_below_q;
+  end else begin : g_whole
+    logic unused_below;
+    assign low          = '0;
+    assign unused_below = ^{v_below_i, w_below_i, t_min_i};
+  end
+
   // Edge functions fit a numerator of t: 96 bits of 99.
   logic [EDGE_W-1:0] numerator;
   assign numerator = divide_v_i ? v_q : w_q;
-  assign divide_o  = {lod_pkg::T_NUMERATOR_W'(numerator) << ZEROS, lod_pkg::EDGE_FUNCTION_W'(det_q) << ZEROS};
+  assign divide_o  = {lod_pkg::T_NUMERATOR_W'(numerator) << ZEROS, low, lod_pkg::EDGE_FUNCTION_W'(det_q) << ZEROS};
 
   // Level and node, where trees have any but their roots.
   logic [3:0]                       level;
@@ -99,7 +122,7 @@ module closest_hit (
     logic [3:0]                      level_q;
     logic [lod_pkg::KEPT_NODE_W-1:0] node_q;
     always_ff @(posedge clk_i) begin
-      if (select_valid_i && select_i.closer) {level_q, node_q} <= {level_i, node_i};
+      if (closer_o) {level_q, node_q} <= {level_i, node_i};
     end
     assign {level, node} = {level_q, lod_pkg::NODE_INDEX_W'(node_q)};
   end else begin : g_root

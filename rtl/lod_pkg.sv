@@ -26,6 +26,7 @@ package lod_pkg;
   localparam int unsigned EXACT_VERTICES = 1;       // they can be stored as they are
   localparam int unsigned COORDINATE_ZEROS = 0;     // zero bits at the bottom of every coordinate, which it leaves out
   localparam int unsigned DIRECTION_ZEROS = 0;      // of every component of a direction
+  localparam int unsigned SECONDARY = 0;            // rays can start on a surface, count hits of a range of t only, and end at any of them
 
   // Widths (docs/numbers.md).
   localparam int unsigned RAY_T_W = 35;                                         // t in steps of 2^-32
@@ -777,6 +778,31 @@ package lod_pkg;
   } ray_in_t;
   localparam int unsigned RAY_IN_W = 32 + RAY_W;
 
+  // What a ray has that starts on a surface or wants less than the closest hit: comes with the ray, to hardware for such rays (secondary); other hardware does not look at it. Of a primary ray all is 0 but `t_max`, which has all bits.
+  typedef struct packed {
+    logic [RAY_T_W-1:0] t_min;   // The smallest t that counts.
+    logic [RAY_T_W-1:0] t_max;   // The largest t that counts.
+    logic any;                   // Any hit serves: the ray ends with the closest of the first triangles tested together of which one is met.
+    logic [2:0][30:0] fraction;  // What its start has beyond the ray's origin, in steps of 2^-31 units.
+    logic prior;                 // Rays before it decide about levels around its start; all that follows is theirs.
+    logic [27:0] last;           // Base triangle of the last hit.
+    point_t a0;                  // Its corner p0.
+    point_t a1;                  // Its corner p1.
+    point_t a2;                  // Its corner p2.
+    logic [2:0] by_second;       // Of its edges (p1, p2), (p2, p0), (p0, p1): the second ray decides, not the first.
+    ray_t first;                 // The ray that decides inside it, and about its other edges.
+    ray_t second;                // The second ray.
+  } secondary_in_t;
+  localparam int unsigned SECONDARY_IN_W = RAY_T_W + RAY_T_W + 1 + 3 * 31 + 1 + 28 + POINT_W + POINT_W + POINT_W + 3 + RAY_W + RAY_W;
+
+  // Corners of the triangle of a hit, as it was tested: what the exact start of rays from there is made of.
+  typedef struct packed {
+    point_t p0;  // Its corner p0.
+    point_t p1;  // Its corner p1.
+    point_t p2;  // Its corner p2.
+  } corners_t;
+  localparam int unsigned CORNERS_W = POINT_W + POINT_W + POINT_W;
+
   // A ray traced.
   typedef struct packed {
     logic [31:0] tag;   // The ray's tag.
@@ -814,18 +840,20 @@ package lod_pkg;
     CHILD_WAIT  = 5'd6,
     PUSH        = 5'd7,
     POP         = 5'd8,
-    LOD         = 5'd9,
-    LOD_WAIT    = 5'd10,
-    MORPH       = 5'd11,
-    MORPH_WAIT  = 5'd12,
-    TRI         = 5'd13,
-    DIVIDE_V    = 5'd14,
-    DIVIDE_W    = 5'd15,
-    DIVIDE_WAIT = 5'd16,
-    SUM         = 5'd17,
-    MAP         = 5'd18,
-    MAP_WAIT    = 5'd19,
-    DONE        = 5'd20
+    DECIDE      = 5'd9,
+    DECIDE_WAIT = 5'd10,
+    LOD         = 5'd11,
+    LOD_WAIT    = 5'd12,
+    MORPH       = 5'd13,
+    MORPH_WAIT  = 5'd14,
+    TRI         = 5'd15,
+    DIVIDE_V    = 5'd16,
+    DIVIDE_W    = 5'd17,
+    DIVIDE_WAIT = 5'd18,
+    SUM         = 5'd19,
+    MAP         = 5'd20,
+    MAP_WAIT    = 5'd21,
+    DONE        = 5'd22
   } context_state_t;
 
   // What a context fetches.
@@ -953,11 +981,16 @@ package lod_pkg;
 
   // A hit on its way to the closest.
   typedef struct packed {
+    below_t below;                // What its numerators have below whole numbers: 0 where all rays start at whole points, and kept nowhere.
     logic [CONTEXT_W-1:0] owner;  // Its context.
     logic [1:0] number;           // Which of the context's triangles.
     tri_test_out_t test;          // Its numerators.
   } queued_hit_t;
-  localparam int unsigned QUEUED_HIT_W = CONTEXT_W + 2 + TRI_TEST_OUT_W;
+  localparam int unsigned QUEUED_HIT_W = BELOW_W + CONTEXT_W + 2 + TRI_TEST_OUT_W;
+  localparam int unsigned KEPT_HIT_W = QUEUED_HIT_W - (1 - SECONDARY) * BELOW_W;
+
+  // The hit port's word, with the corners of the triangle in front where rays can start on it.
+  localparam int unsigned TOLD_W = HIT_OUT_W + SECONDARY * CORNERS_W;
 
 endpackage
 

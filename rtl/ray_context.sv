@@ -18,9 +18,10 @@ module ray_context (
   output logic                             idle_o,
   input  logic                             take_i,
   input  lod_pkg::ray_in_t                 ray_i,
-  // ray_setup.
+  input  lod_pkg::secondary_in_t           secondary_i,
+  // ray_setup, or start_setup.
   output logic                             setup_request_o,
-  output lod_pkg::ray_setup_in_t           setup_o,
+  output lod_pkg::start_setup_in_t         setup_o,
   input  logic                             setup_grant_i,
   input  logic                             setup_valid_i,
   input  lod_pkg::ray_setup_out_t          setup_i,
@@ -40,9 +41,15 @@ module ray_context (
   input  logic                             child_grant_i,
   input  logic                             child_valid_i,
   input  lod_pkg::child_test_out_t         child_i,
-  // lod_test.
+  // tree_deciders.
+  output logic                             decide_request_o,
+  output lod_pkg::tree_deciders_in_t       decide_o,
+  input  logic                             decide_grant_i,
+  input  logic                             decide_valid_i,
+  input  lod_pkg::tree_deciders_out_t      decide_i,
+  // lod_test, or lod_test_by.
   output logic                             lod_request_o,
-  output lod_pkg::lod_test_in_t            lod_o,
+  output lod_pkg::lod_test_by_in_t         lod_o,
   input  logic                             lod_grant_i,
   input  logic                             lod_valid_i,
   input  lod_pkg::lod_test_out_t           lod_i,
@@ -57,10 +64,10 @@ module ray_context (
   input  lod_pkg::tessellate_out_t         morph_i,
   input  logic                             morph_beyond_i,
   input  logic [15:0]                      morph_bits_i,
-  // tri_test; `number_o` tells the triangles of a context apart.
+  // tri_test, or start_test; `number_o` tells the triangles of a context apart.
   output logic                             tri_request_o,
   output logic [1:0]                       tri_number_o,
-  output lod_pkg::tri_test_in_t            tri_o,
+  output lod_pkg::start_test_in_t          tri_o,
   input  logic                             tri_grant_i,
   input  logic                             tri_miss_i,
   // hit_select: `hit_number_i` is the triangle that t belongs to; its numerators follow with the result.
@@ -71,10 +78,10 @@ module ray_context (
   input  lod_pkg::hit_select_out_t         select_i,
   input  logic [lod_pkg::RAY_T_W-1:0]      chosen_t_i,
   input  lod_pkg::queued_hit_t             chosen_i,
-  // hit_divide, for the barycentrics; `divide_what_i` and `divide_valid_i` tell results apart.
+  // hit_divide, or start_divide, for the barycentrics; `divide_what_i` and `divide_valid_i` tell results apart.
   output logic                             divide_request_o,
   output logic [1:0]                       divide_what_o,
-  output lod_pkg::hit_divide_in_t          divide_o,
+  output lod_pkg::start_divide_in_t        divide_o,
   input  logic                             divide_grant_i,
   input  logic                             divide_valid_i,
   input  logic [1:0]                       divide_what_i,
@@ -88,6 +95,7 @@ module ray_context (
   // Hit out: the hit itself means nothing without `found`.
   output logic                             hit_request_o,
   output lod_pkg::hit_out_t                hit_o,
+  output lod_pkg::corners_t                corners_o,
   input  logic                             hit_grant_i
 );
 
@@ -96,6 +104,8 @@ module ray_context (
   localparam bit SPLITTING = lod_pkg::STORED_LEVELS != 0;
   localparam bit CHOOSING = lod_pkg::LOD_TEST != 0;
   localparam bit MAPPING = lod_pkg::HIT_MAPPING != 0;
+  localparam bit SECONDARY = lod_pkg::SECONDARY != 0;
+  localparam bit DECIDING = SECONDARY && CHOOSING;
   // A vertex at full resolution and, where it is another, as morphed.
   localparam int unsigned CORNER_W = (CHOOSING ? 2 : 1) * lod_pkg::KEPT_POINT_W;
   localparam int unsigned SPLITS = lod_pkg::SPLIT_TRIANGLES;
@@ -178,14 +188,37 @@ module ray_context (
   logic [lod_pkg::FULL_ID_W-1:0] best_id;
   lod_pkg::hit_t                 best;
 
+  // What a ray has besides, where rays can start on a surface: its start below whole units, the smallest t that counts, and whether any hit serves.
+  logic [3*lod_pkg::FRACTION_W-1:0] fraction;
+  logic [lod_pkg::RAY_T_W-1:0]         t_min, largest_t;
+  logic                                any;
+  if (SECONDARY) begin : g_start
+    logic [3*lod_pkg::FRACTION_W-1:0] fraction_q;
+    logic [lod_pkg::RAY_T_W-1:0]         t_min_q;
+    logic                                any_q;
+    always_ff @(posedge clk_i) begin
+      if (take_i) {fraction_q, t_min_q, any_q} <= {secondary_i.fraction, secondary_i.t_min, secondary_i.any};
+    end
+    assign {fraction, t_min, any} = {fraction_q, t_min_q, any_q};
+    assign largest_t              = secondary_i.t_max;
+  end else begin : g_whole
+    logic unused_start;
+    assign {fraction, t_min, any} = '0;
+    assign largest_t              = '1;
+    assign unused_start           = ^{secondary_i.t_min, secondary_i.t_max, secondary_i.any, secondary_i.fraction};
+  end
+
+  logic closer;
   closest_hit u_closest (
     .clk_i,
     .levels_i(scene_i.levels),
-    .clear_i(setup_valid_i),
+    .clear_i(take_i), .t_min_i(t_min), .largest_t_i(largest_t),
     .known_o(known), .t_max_o(t_max), .id_o(best_id),
     .select_valid_i, .select_i,
     .t_i(chosen_t_i), .tree_i(tree_q), .level_i(hit_level), .node_i(chosen_node),
     .front_i(chosen_i.test.front), .v_i(chosen_i.test.v), .w_i(chosen_i.test.w), .det_i(chosen_i.test.det),
+    .v_below_i(chosen_i.below.v), .w_below_i(chosen_i.below.w),
+    .closer_o(closer),
     .divide_v_i(state_q == lod_pkg::DIVIDE_V), .divide_o,
     .divide_valid_i, .divide_what_i, .divide_i,
     .sum_i(state_q == lod_pkg::SUM),
@@ -195,7 +228,7 @@ module ray_context (
 
   // ---- Stack and split triangles ----
 
-  logic                  push, pop, drop, stop, stack_empty, stack_full;
+  logic                  push, pop, drop, stop, enough, stack_empty, stack_full;
   lod_pkg::stack_entry_t top, child_entry;
 
   traversal_stack u_stack (
@@ -206,7 +239,9 @@ module ray_context (
   );
 
   assign push = state_q == lod_pkg::PUSH && count_q > 3'd1 && !stop;
-  assign pop  = state_q == lod_pkg::POP && !stack_empty && !stop;
+  assign pop  = state_q == lod_pkg::POP && !stack_empty && !enough && !stop;
+  // Nothing more is wanted.
+  assign enough = any && known;
   // 17 + 18 bits against 35.
   assign drop = {top.t_near, lod_pkg::T_NEAR_TO_T_SHIFT'(0)} > t_max;
 
@@ -243,7 +278,9 @@ module ray_context (
   lod_pkg::direction_t direction_whole;
   assign origin_whole    = lod_pkg::whole_point(origin_q);
   assign direction_whole = lod_pkg::whole_direction(direction_q);
-  assign setup_o         = {origin_whole, direction_whole};
+  lod_pkg::start_t start;
+  assign start   = {origin_whole, fraction};
+  assign setup_o = {start, direction_whole};
 
   assign fetch_request_o = state_q == lod_pkg::FETCH && want_q != '0 && error_q == lod_pkg::ERROR_NONE;
   assign fetch_epoch_o   = epoch_q;
@@ -282,6 +319,56 @@ module ray_context (
   assign child_o = {lod_pkg::whole_setup(setup_q), t_max, present, group_there, origin, halves, exponents, planes,
                     whole_f0, whole_f1, whole_f2, whole_g0, whole_g1, whole_g2, whole_p0, whole_p1, whole_p2, whole_q0, whole_q1, whole_q2};
 
+  // The rays before this one that decide about levels around its start, and who decides here: in the tree, and about the node's edges.
+  lod_pkg::ray_t            first, second;
+  lod_pkg::node_deciders_out_t by;
+  logic                     prior;
+  if (DECIDING) begin : g_deciders
+    localparam int unsigned CONE_W = lod_pkg::START_RADIUS != 0 ? lod_pkg::CONE_W : lod_pkg::CONE_W - 53;
+    lod_pkg::kept_point_t     first_origin_q, second_origin_q, a0_q, a1_q, a2_q;
+    lod_pkg::kept_direction_t first_direction_q, second_direction_q;
+    logic [CONE_W-1:0]        first_cone_q, second_cone_q;
+    logic [lod_pkg::INDEX_W-1:0] last_q;
+    logic [2:0]               by_second_q;
+    logic                     prior_q;
+    always_ff @(posedge clk_i) begin
+      if (take_i) begin
+        {prior_q, by_second_q, last_q} <= {secondary_i.prior, secondary_i.by_second, lod_pkg::INDEX_W'(secondary_i.last)};
+        {a0_q, a1_q, a2_q}  <= {lod_pkg::keep_point(secondary_i.a0), lod_pkg::keep_point(secondary_i.a1), lod_pkg::keep_point(secondary_i.a2)};
+        first_origin_q      <= lod_pkg::keep_point(secondary_i.first.origin);
+        first_direction_q   <= lod_pkg::keep_direction(secondary_i.first.direction);
+        first_cone_q        <= CONE_W'(secondary_i.first.cone);
+        second_origin_q     <= lod_pkg::keep_point(secondary_i.second.origin);
+        second_direction_q  <= lod_pkg::keep_direction(secondary_i.second.direction);
+        second_cone_q       <= CONE_W'(secondary_i.second.cone);
+      end
+    end
+    lod_pkg::point_t a0, a1, a2;
+    assign {a0, a1, a2} = {lod_pkg::whole_point(a0_q), lod_pkg::whole_point(a1_q), lod_pkg::whole_point(a2_q)};
+    assign first        = {lod_pkg::whole_point(first_origin_q), lod_pkg::whole_direction(first_direction_q), lod_pkg::CONE_W'(first_cone_q)};
+    assign second       = {lod_pkg::whole_point(second_origin_q), lod_pkg::whole_direction(second_direction_q), lod_pkg::CONE_W'(second_cone_q)};
+    assign prior        = prior_q;
+    assign decide_o     = {28'(last_q), a0, a1, a2, by_second_q, 28'(tree_q), whole_f0, whole_f1, whole_f2};
+
+    // None until a tree's are known; of a node they are there when it is tested.
+    lod_pkg::tree_deciders_out_t tree_deciders_q;
+    lod_pkg::node_deciders_in_t  node_in;
+    always_ff @(posedge clk_i) begin
+      if (take_i) tree_deciders_q <= '0;
+      else if (decide_valid_i) tree_deciders_q <= decide_i;
+    end
+    assign node_in = {decide_valid_i ? decide_i : tree_deciders_q, level, lod_pkg::NODE_INDEX_W'(node)};
+    node_deciders #(.TAG_W(1)) u_node_deciders (
+      .clk_i, .rst_ni, .valid_i(1'b1), .ready_o(), .in_i(node_in), .tag_i(1'b0), .valid_o(), .ready_i(1'b1), .out_o(by), .tag_o()
+    );
+  end else begin : g_no_deciders
+    logic unused_deciders;
+    assign {first, second, by, prior, decide_o} = '0;
+    assign unused_deciders = ^{secondary_i.prior, secondary_i.last, secondary_i.a0, secondary_i.a1, secondary_i.a2, secondary_i.by_second,
+                               secondary_i.first, secondary_i.second, decide_i};
+  end
+  assign decide_request_o = DECIDING && state_q == lod_pkg::DECIDE;
+
   // The cone, as far as it counts; without a choice of levels, whether the ray is of no detail.
   lod_pkg::cone_t cone;
   logic           no_detail;
@@ -307,7 +394,7 @@ module ray_context (
   end
 
   assign lod_request_o = CHOOSING && state_q == lod_pkg::LOD;
-  assign lod_o         = {origin_whole, direction_whole, cone, whole_p0, whole_p1, whole_p2, e0, e1, e2, scene_i.scale};
+  assign lod_o         = {origin_whole, direction_whole, cone, first, second, by, whole_p0, whole_p1, whole_p2, e0, e1, e2, scene_i.scale};
 
   // It is known whether the node's triangle serves: from the LOD test, or at once.
   logic decided, refine;
@@ -337,7 +424,28 @@ module ray_context (
   assign tested0  = own0 ? whole_p0 : next_q[1] ? (next_q[0] ? whole_q0 : whole_q1) : whole_q2;
   assign tested1  = own1 ? whole_p1 : next_q[1] ? (next_q[0] ? whole_q1 : whole_q0) : whole_q2;
   assign tested2  = own2 ? whole_p2 : next_q[0] ? (next_q[1] ? whole_q2 : whole_q0) : whole_q1;
-  assign tri_o    = {origin_whole, direction_whole, tested0, tested1, tested2};
+  assign tri_o    = {start, direction_whole, tested0, tested1, tested2};
+
+  // The corners of the closest hit, chosen likewise.
+  if (SECONDARY) begin : g_corners
+    logic                 met0, met1, met2;
+    lod_pkg::kept_point_t corner0_q, corner1_q, corner2_q;
+    assign met0 = !four_q || chosen_i.number == 2'd0;
+    assign met1 = !four_q || chosen_i.number == 2'd1;
+    assign met2 = !four_q || chosen_i.number == 2'd2;
+    always_ff @(posedge clk_i) begin
+      if (closer) begin
+        corner0_q <= met0 ? p0 : chosen_i.number[1] ? (chosen_i.number[0] ? q0 : q1) : q2;
+        corner1_q <= met1 ? p1 : chosen_i.number[1] ? (chosen_i.number[0] ? q1 : q0) : q2;
+        corner2_q <= met2 ? p2 : chosen_i.number[0] ? (chosen_i.number[1] ? q2 : q0) : q1;
+      end
+    end
+    assign corners_o = {lod_pkg::whole_point(corner0_q), lod_pkg::whole_point(corner1_q), lod_pkg::whole_point(corner2_q)};
+  end else begin : g_no_corners
+    logic unused_closer;
+    assign corners_o     = '0;
+    assign unused_closer = closer;
+  end
 
   assign select_o    = {scene_i.levels, known, t_max, best_id, hit_t_i, 28'(tree_q), hit_level, lod_pkg::NODE_INDEX_W'(hit_node)};
 
@@ -436,7 +544,7 @@ module ray_context (
       lod_pkg::FETCH: begin
         case (fetch_q)
           lod_pkg::NODE:   if (record_there) state_d = lod_pkg::CHILD;
-          lod_pkg::RECORD: if (record_there) state_d = (record.depth == '0) ? lod_pkg::TRI : lod_pkg::LOD;
+          lod_pkg::RECORD: if (record_there) state_d = (record.depth == '0) ? lod_pkg::TRI : DECIDING && prior ? lod_pkg::DECIDE : lod_pkg::LOD;
           // The group may still be under way.
           lod_pkg::VERTEX: if (want_q == '0 && !waiting_q[1]) state_d = lod_pkg::MORPH;
           default:         if (record_there) state_d = lod_pkg::CHILD;  // GROUP
@@ -449,9 +557,11 @@ module ray_context (
         else if (count_q == 3'd0) state_d = lod_pkg::POP;
       end
       lod_pkg::POP: begin
-        if (stack_empty) state_d = known ? lod_pkg::DIVIDE_V : lod_pkg::DONE;
+        if (stack_empty || enough) state_d = known ? lod_pkg::DIVIDE_V : lod_pkg::DONE;
         else if (!drop) state_d = lod_pkg::VISIT;
       end
+      lod_pkg::DECIDE:      if (decide_grant_i) state_d = lod_pkg::DECIDE_WAIT;
+      lod_pkg::DECIDE_WAIT: if (decide_valid_i) state_d = lod_pkg::LOD;
       lod_pkg::LOD, lod_pkg::LOD_WAIT: begin
         if (decided) state_d = !refine ? lod_pkg::TRI : compact_root ? lod_pkg::MORPH : lod_pkg::FETCH;
         else if (lod_grant_i) state_d = lod_pkg::LOD_WAIT;

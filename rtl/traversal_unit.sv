@@ -19,9 +19,11 @@ module traversal_unit #(
   input  logic                     valid_i,
   output logic                     ready_o,
   input  lod_pkg::ray_in_t         in_i,
+  input  lod_pkg::secondary_in_t   secondary_i,
   output logic                     valid_o,
   input  logic                     ready_i,
   output lod_pkg::hit_out_t        out_o,
+  output lod_pkg::corners_t        corners_o,
   output logic                     mem_valid_o,
   input  logic                     mem_ready_i,
   output lod_pkg::memory_request_t mem_o,
@@ -32,6 +34,8 @@ module traversal_unit #(
 
   localparam int unsigned N = CONTEXTS;
   localparam int unsigned CONTEXT_W = lod_pkg::CONTEXT_W;
+  localparam bit SECONDARY = lod_pkg::SECONDARY != 0;
+  localparam bit DECIDING = SECONDARY && lod_pkg::LOD_TEST != 0;
 
   if (CONTEXTS < 1 || CONTEXTS > lod_pkg::MAX_CONTEXTS) begin : g_illegal_contexts
     $error("traversal_unit: CONTEXTS = %0d, must be 1 to %0d", CONTEXTS, lod_pkg::MAX_CONTEXTS);
@@ -72,23 +76,34 @@ module traversal_unit #(
   // ---- Requests of the contexts, and the winners' operands ----
 
   logic [N-1:0] setup_request, setup_grant;
-  logic [N-1:0][lod_pkg::RAY_SETUP_IN_W-1:0] setup_data;
+  logic [N-1:0][lod_pkg::START_SETUP_IN_W-1:0] setup_data;
   logic setup_in_valid, setup_in_ready, setup_valid;
-  lod_pkg::ray_setup_in_t setup_in;
+  lod_pkg::start_setup_in_t setup_in;
   lod_pkg::ray_setup_out_t setup_out;
   logic [CONTEXT_W-1:0] setup_in_tag, setup_tag;
 
-  shared_input #(.N(N), .W(lod_pkg::RAY_SETUP_IN_W)) u_setup_input (
+  shared_input #(.N(N), .W(lod_pkg::START_SETUP_IN_W)) u_setup_input (
     .clk_i, .rst_ni,
     .request_i(setup_request), .data_i(setup_data), .grant_o(setup_grant),
     .valid_o(setup_in_valid), .ready_i(setup_in_ready), .data_o(setup_in), .index_o(setup_in_tag)
   );
 
-  ray_setup #(.TAG_W(CONTEXT_W)) u_ray_setup (
-    .clk_i, .rst_ni,
-    .valid_i(setup_in_valid), .ready_o(setup_in_ready), .in_i(setup_in), .tag_i(setup_in_tag),
-    .valid_o(setup_valid), .ready_i(1'b1), .out_o(setup_out), .tag_o(setup_tag)
-  );
+  // Where all rays start at whole points, what the operands have for others is 0.
+  if (SECONDARY) begin : g_start_setup
+    start_setup #(.TAG_W(CONTEXT_W)) u_start_setup (
+      .clk_i, .rst_ni,
+      .valid_i(setup_in_valid), .ready_o(setup_in_ready), .in_i(setup_in), .tag_i(setup_in_tag),
+      .valid_o(setup_valid), .ready_i(1'b1), .out_o(setup_out), .tag_o(setup_tag)
+    );
+  end else begin : g_ray_setup
+    logic unused_fraction;
+    assign unused_fraction = ^setup_in.start.fraction;
+    ray_setup #(.TAG_W(CONTEXT_W)) u_ray_setup (
+      .clk_i, .rst_ni,
+      .valid_i(setup_in_valid), .ready_o(setup_in_ready), .in_i({setup_in.start.point, setup_in.direction}), .tag_i(setup_in_tag),
+      .valid_o(setup_valid), .ready_i(1'b1), .out_o(setup_out), .tag_o(setup_tag)
+    );
+  end
 
   logic [N-1:0] child_request, child_grant;
   logic [N-1:0][lod_pkg::CHILD_TEST_IN_W-1:0] child_data;
@@ -109,23 +124,59 @@ module traversal_unit #(
     .valid_o(child_valid), .ready_i(1'b1), .out_o(child_out), .tag_o(child_tag)
   );
 
+  logic [N-1:0] decide_request, decide_grant;
+  logic [N-1:0][lod_pkg::TREE_DECIDERS_IN_W-1:0] decide_data;
+  logic decide_valid;
+  lod_pkg::tree_deciders_out_t decide_out;
+  logic [CONTEXT_W-1:0] decide_tag;
+
+  if (DECIDING) begin : g_deciders
+    logic decide_in_valid, decide_in_ready;
+    lod_pkg::tree_deciders_in_t decide_in;
+    logic [CONTEXT_W-1:0] decide_in_tag;
+    shared_input #(.N(N), .W(lod_pkg::TREE_DECIDERS_IN_W)) u_decide_input (
+      .clk_i, .rst_ni,
+      .request_i(decide_request), .data_i(decide_data), .grant_o(decide_grant),
+      .valid_o(decide_in_valid), .ready_i(decide_in_ready), .data_o(decide_in), .index_o(decide_in_tag)
+    );
+    tree_deciders #(.TAG_W(CONTEXT_W)) u_tree_deciders (
+      .clk_i, .rst_ni,
+      .valid_i(decide_in_valid), .ready_o(decide_in_ready), .in_i(decide_in), .tag_i(decide_in_tag),
+      .valid_o(decide_valid), .ready_i(1'b1), .out_o(decide_out), .tag_o(decide_tag)
+    );
+  end else begin : g_no_deciders
+    logic unused_decide;
+    assign {decide_grant, decide_valid, decide_out, decide_tag} = '0;
+    assign unused_decide = ^{decide_request, decide_data};
+  end
+
   logic [N-1:0] lod_request, lod_grant;
-  logic [N-1:0][lod_pkg::LOD_TEST_IN_W-1:0] lod_data;
+  logic [N-1:0][lod_pkg::LOD_TEST_BY_IN_W-1:0] lod_data;
   logic lod_in_valid, lod_in_ready, lod_valid;
-  lod_pkg::lod_test_in_t lod_in;
+  lod_pkg::lod_test_by_in_t lod_in;
   lod_pkg::lod_test_out_t lod_out;
   logic [CONTEXT_W-1:0] lod_in_tag, lod_tag;
 
-  shared_input #(.N(N), .W(lod_pkg::LOD_TEST_IN_W)) u_lod_input (
+  shared_input #(.N(N), .W(lod_pkg::LOD_TEST_BY_IN_W)) u_lod_input (
     .clk_i, .rst_ni,
     .request_i(lod_request), .data_i(lod_data), .grant_o(lod_grant),
     .valid_o(lod_in_valid), .ready_i(lod_in_ready), .data_o(lod_in), .index_o(lod_in_tag)
   );
 
-  if (lod_pkg::LOD_TEST != 0) begin : g_lod_test
-    lod_test #(.TAG_W(CONTEXT_W)) u_lod_test (
+  if (DECIDING) begin : g_lod_test_by
+    lod_test_by #(.TAG_W(CONTEXT_W)) u_lod_test_by (
       .clk_i, .rst_ni,
       .valid_i(lod_in_valid), .ready_o(lod_in_ready), .in_i(lod_in), .tag_i(lod_in_tag),
+      .valid_o(lod_valid), .ready_i(1'b1), .out_o(lod_out), .tag_o(lod_tag)
+    );
+  end else if (lod_pkg::LOD_TEST != 0) begin : g_lod_test
+    lod_pkg::lod_test_in_t own_in;
+    logic unused_others;
+    assign own_in        = {lod_in.ray, lod_in.p0, lod_in.p1, lod_in.p2, lod_in.e0, lod_in.e1, lod_in.e2, lod_in.scale};
+    assign unused_others = ^{lod_in.first, lod_in.second, lod_in.by};
+    lod_test #(.TAG_W(CONTEXT_W)) u_lod_test (
+      .clk_i, .rst_ni,
+      .valid_i(lod_in_valid), .ready_o(lod_in_ready), .in_i(own_in), .tag_i(lod_in_tag),
       .valid_o(lod_valid), .ready_i(1'b1), .out_o(lod_out), .tag_o(lod_tag)
     );
   end else begin : g_no_lod_test
@@ -263,14 +314,15 @@ module traversal_unit #(
 
   // ---- Triangles: the tag carries the triangle's number too ----
 
-  localparam int unsigned TRI_W = 2 + lod_pkg::TRI_TEST_IN_W;
+  localparam int unsigned TRI_W = 2 + lod_pkg::START_TEST_IN_W;
 
   logic [N-1:0] tri_request, tri_grant;
   logic [N-1:0][TRI_W-1:0] tri_data;
   logic tri_in_valid, tri_in_ready, tri_valid;
   logic [1:0] tri_in_number, tri_number;
-  lod_pkg::tri_test_in_t tri_in;
+  lod_pkg::start_test_in_t tri_in;
   lod_pkg::tri_test_out_t tri_out;
+  lod_pkg::below_t tri_below;
   logic [CONTEXT_W-1:0] tri_in_tag, tri_owner;
 
   shared_input #(.N(N), .W(TRI_W)) u_tri_input (
@@ -279,34 +331,49 @@ module traversal_unit #(
     .valid_o(tri_in_valid), .ready_i(tri_in_ready), .data_o({tri_in_number, tri_in}), .index_o(tri_in_tag)
   );
 
-  tri_test #(.TAG_W(lod_pkg::PLACE_TAG_W), .EDGES_PER_CYCLE(EDGES_PER_CYCLE)) u_tri_test (
-    .clk_i, .rst_ni,
-    .valid_i(tri_in_valid), .ready_o(tri_in_ready), .in_i(tri_in), .tag_i({tri_in_tag, tri_in_number}),
-    .valid_o(tri_valid), .ready_i(1'b1), .out_o(tri_out), .tag_o({tri_owner, tri_number})
-  );
+  if (SECONDARY) begin : g_start_test
+    start_test #(.TAG_W(lod_pkg::PLACE_TAG_W), .EDGES_PER_CYCLE(EDGES_PER_CYCLE)) u_start_test (
+      .clk_i, .rst_ni,
+      .valid_i(tri_in_valid), .ready_o(tri_in_ready), .in_i(tri_in), .tag_i({tri_in_tag, tri_in_number}),
+      .valid_o(tri_valid), .ready_i(1'b1), .out_o({tri_out, tri_below}), .tag_o({tri_owner, tri_number})
+    );
+  end else begin : g_tri_test
+    lod_pkg::tri_test_in_t whole_in;
+    logic unused_fraction;
+    assign whole_in        = {tri_in.start.point, tri_in.direction, tri_in.p0, tri_in.p1, tri_in.p2};
+    assign unused_fraction = ^tri_in.start.fraction;
+    assign tri_below       = '0;
+    tri_test #(.TAG_W(lod_pkg::PLACE_TAG_W), .EDGES_PER_CYCLE(EDGES_PER_CYCLE)) u_tri_test (
+      .clk_i, .rst_ni,
+      .valid_i(tri_in_valid), .ready_o(tri_in_ready), .in_i(whole_in), .tag_i({tri_in_tag, tri_in_number}),
+      .valid_o(tri_valid), .ready_i(1'b1), .out_o(tri_out), .tag_o({tri_owner, tri_number})
+    );
+  end
 
   // ---- Hits wait for their division ----
 
   logic queue_pop, queue_empty;
-  lod_pkg::queued_hit_t met, head, candidate_q, chosen_q;
+  lod_pkg::queued_hit_t head, chosen;
+  logic [lod_pkg::KEPT_HIT_W-1:0] kept_head, candidate_q, chosen_q;
 
-  assign met = {tri_owner, tri_number, tri_out};
+  assign head   = lod_pkg::QUEUED_HIT_W'(kept_head);
+  assign chosen = lod_pkg::QUEUED_HIT_W'(chosen_q);
 
-  hit_queue #(.W(lod_pkg::QUEUED_HIT_W), .DEPTH(4 * CONTEXTS)) u_queue (
+  hit_queue #(.W(lod_pkg::KEPT_HIT_W), .DEPTH(4 * CONTEXTS)) u_queue (
     .clk_i, .rst_ni,
-    .push_i(tri_valid && tri_out.hit), .data_i(met),
-    .pop_i(queue_pop), .data_o(head), .empty_o(queue_empty)
+    .push_i(tri_valid && tri_out.hit), .data_i(lod_pkg::KEPT_HIT_W'({tri_below, tri_owner, tri_number, tri_out})),
+    .pop_i(queue_pop), .data_o(kept_head), .empty_o(queue_empty)
   );
 
   // ---- Divisions: waiting hits first, then barycentrics of finished rays ----
 
-  localparam int unsigned DIVIDE_W = 2 + lod_pkg::HIT_DIVIDE_IN_W;
+  localparam int unsigned DIVIDE_W = 2 + lod_pkg::START_DIVIDE_IN_W;
 
   logic [N-1:0] divide_request, divide_grant;
   logic [N-1:0][DIVIDE_W-1:0] divide_data;
   logic own_valid, divide_in_ready, divide_valid;
   logic [1:0] own_what, divide_what, divide_number;
-  lod_pkg::hit_divide_in_t own_in, divide_in;
+  lod_pkg::start_divide_in_t own_in, divide_in;
   lod_pkg::hit_divide_out_t divide_out;
   logic [CONTEXT_W-1:0] own_tag, divide_owner;
   logic [lod_pkg::DIVIDE_TAG_W-1:0] divide_in_tag;
@@ -317,15 +384,25 @@ module traversal_unit #(
     .valid_o(own_valid), .ready_i(divide_in_ready && queue_empty), .data_o({own_what, own_in}), .index_o(own_tag)
   );
 
-  assign divide_in     = queue_empty ? own_in : {head.test.t_num, head.test.det};
+  assign divide_in     = queue_empty ? own_in : {head.test.t_num, head.below.t, head.test.det};
   assign divide_in_tag = queue_empty ? {own_what, own_tag, 2'd0} : {lod_pkg::DIVIDE_FOR_T, head.owner, head.number};
   assign queue_pop     = divide_in_ready && !queue_empty;
 
-  hit_divide #(.TAG_W(lod_pkg::DIVIDE_TAG_W)) u_hit_divide (
-    .clk_i, .rst_ni,
-    .valid_i(own_valid || !queue_empty), .ready_o(divide_in_ready), .in_i(divide_in), .tag_i(divide_in_tag),
-    .valid_o(divide_valid), .ready_i(1'b1), .out_o(divide_out), .tag_o({divide_what, divide_owner, divide_number})
-  );
+  if (SECONDARY) begin : g_start_divide
+    start_divide #(.TAG_W(lod_pkg::DIVIDE_TAG_W)) u_start_divide (
+      .clk_i, .rst_ni,
+      .valid_i(own_valid || !queue_empty), .ready_o(divide_in_ready), .in_i(divide_in), .tag_i(divide_in_tag),
+      .valid_o(divide_valid), .ready_i(1'b1), .out_o(divide_out), .tag_o({divide_what, divide_owner, divide_number})
+    );
+  end else begin : g_hit_divide
+    logic unused_low;
+    assign unused_low = ^divide_in.low;
+    hit_divide #(.TAG_W(lod_pkg::DIVIDE_TAG_W)) u_hit_divide (
+      .clk_i, .rst_ni,
+      .valid_i(own_valid || !queue_empty), .ready_o(divide_in_ready), .in_i({divide_in.numerator, divide_in.denominator}), .tag_i(divide_in_tag),
+      .valid_o(divide_valid), .ready_i(1'b1), .out_o(divide_out), .tag_o({divide_what, divide_owner, divide_number})
+    );
+  end
 
   // ---- Is it the closest? The hit follows its division, and then its comparison ----
 
@@ -352,7 +429,7 @@ module traversal_unit #(
   );
 
   always_ff @(posedge clk_i) begin
-    if (queue_pop) candidate_q <= head;
+    if (queue_pop) candidate_q <= kept_head;
     if (t_valid) begin
       chosen_q   <= candidate_q;
       chosen_t_q <= divide_out.quotient;
@@ -363,22 +440,39 @@ module traversal_unit #(
 
   logic [N-1:0] hit_request, hit_grant;
   logic [N-1:0][lod_pkg::HIT_OUT_W-1:0] hit_data;
+  logic [N-1:0][lod_pkg::CORNERS_W-1:0] corners_data;
+  logic [N-1:0][lod_pkg::TOLD_W-1:0] told_data;
+  localparam int unsigned ALL_TOLD_W = lod_pkg::CORNERS_W + lod_pkg::HIT_OUT_W;
   logic hit_in_valid, hit_in_ready;
-  lod_pkg::hit_out_t hit_in, hit_told;
+  lod_pkg::hit_out_t hit_in;
+  lod_pkg::corners_t corners_in;
+  lod_pkg::corners_t corners_told;
+  lod_pkg::hit_out_t hit_told;
+  logic [ALL_TOLD_W-1:0] told_in, told_out;
+  logic [lod_pkg::TOLD_W-1:0] told_chosen, told_q;
 
-  shared_input #(.N(N), .W(lod_pkg::HIT_OUT_W)) u_hit_input (
+  for (genvar k = 0; k < N; k++) begin : g_told
+    assign told_data[k] = lod_pkg::TOLD_W'({corners_data[k], hit_data[k]});
+  end
+
+  shared_input #(.N(N), .W(lod_pkg::TOLD_W)) u_hit_input (
     .clk_i, .rst_ni,
-    .request_i(hit_request), .data_i(hit_data), .grant_o(hit_grant),
-    .valid_o(hit_in_valid), .ready_i(hit_in_ready), .data_o(hit_in), .index_o()
+    .request_i(hit_request), .data_i(told_data), .grant_o(hit_grant),
+    .valid_o(hit_in_valid), .ready_i(hit_in_ready), .data_o(told_chosen), .index_o()
   );
 
   // All zero if nothing was met.
-  assign hit_told = {hit_in.tag, hit_in.error, hit_in.found, hit_in.found ? hit_in.hit : lod_pkg::HIT_W'(0)};
-  pipe_stage #(.W(lod_pkg::HIT_OUT_W)) u_hit_stage (
+  assign told_in              = ALL_TOLD_W'(told_chosen);
+  assign {corners_in, hit_in} = told_in;
+  assign corners_told         = hit_in.found ? corners_in : lod_pkg::CORNERS_W'(0);
+  assign hit_told             = {hit_in.tag, hit_in.error, hit_in.found, hit_in.found ? hit_in.hit : lod_pkg::HIT_W'(0)};
+  pipe_stage #(.W(lod_pkg::TOLD_W)) u_hit_stage (
     .clk_i, .rst_ni,
-    .valid_i(hit_in_valid), .ready_o(hit_in_ready), .data_i(hit_told),
-    .valid_o, .ready_i, .data_o(out_o)
+    .valid_i(hit_in_valid), .ready_o(hit_in_ready), .data_i(lod_pkg::TOLD_W'({corners_told, hit_told})),
+    .valid_o, .ready_i, .data_o(told_q)
   );
+  assign told_out           = ALL_TOLD_W'(told_q);
+  assign {corners_o, out_o} = told_out;
 
   // ---- The contexts ----
 
@@ -387,11 +481,13 @@ module traversal_unit #(
 
     ray_context u_context (
       .clk_i, .rst_ni, .scene_i, .fits_i(fits), .flush_i, .tick_i(tick),
-      .idle_o(idle[k]), .take_i(take[k]), .ray_i(in_i),
+      .idle_o(idle[k]), .take_i(take[k]), .ray_i(in_i), .secondary_i,
       .setup_request_o(setup_request[k]), .setup_o(setup_data[k]), .setup_grant_i(setup_grant[k]),
       .setup_valid_i(setup_valid && setup_tag == ME), .setup_i(setup_out),
       .child_request_o(child_request[k]), .child_o(child_data[k]), .child_grant_i(child_grant[k]),
       .child_valid_i(child_valid && child_tag == ME), .child_i(child_out),
+      .decide_request_o(decide_request[k]), .decide_o(decide_data[k]), .decide_grant_i(decide_grant[k]),
+      .decide_valid_i(decide_valid && decide_tag == ME), .decide_i(decide_out),
       .lod_request_o(lod_request[k]), .lod_o(lod_data[k]), .lod_grant_i(lod_grant[k]),
       .lod_valid_i(lod_valid && lod_tag == ME), .lod_i(lod_out),
       .morph_request_o(morph_request[k]), .morph_o(morph_data[k][MORPH_W-1:257]), .morph_line_o(morph_data[k][256:1]), .morph_half_o(morph_data[k][0]),
@@ -408,11 +504,11 @@ module traversal_unit #(
       .tri_miss_i(tri_valid && !tri_out.hit && tri_owner == ME),
       .hit_number_i(divide_number), .hit_t_i(divide_out.quotient), .select_o(select_data[k]),
       .select_valid_i(select_valid && select_owner == ME), .select_i(select_out),
-      .chosen_t_i(chosen_t_q), .chosen_i(chosen_q),
+      .chosen_t_i(chosen_t_q), .chosen_i(chosen),
       .divide_request_o(divide_request[k]), .divide_what_o(divide_data[k][DIVIDE_W-1:DIVIDE_W-2]),
       .divide_o(divide_data[k][DIVIDE_W-3:0]), .divide_grant_i(divide_grant[k]),
       .divide_valid_i(divide_valid && divide_owner == ME), .divide_what_i(divide_what), .divide_i(divide_out),
-      .hit_request_o(hit_request[k]), .hit_o(hit_data[k]), .hit_grant_i(hit_grant[k])
+      .hit_request_o(hit_request[k]), .hit_o(hit_data[k]), .corners_o(corners_data[k]), .hit_grant_i(hit_grant[k])
     );
   end
 

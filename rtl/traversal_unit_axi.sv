@@ -18,9 +18,11 @@ module traversal_unit_axi #(
   input  logic                          valid_i,
   output logic                          ready_o,
   input  lod_pkg::ray_in_t              in_i,
+  input  lod_pkg::secondary_in_t        secondary_i,
   output logic                          valid_o,
   input  logic                          ready_i,
   output lod_pkg::hit_out_t             out_o,
+  output lod_pkg::corners_t             corners_o,
   // Some read has no answer yet; an answer of this cycle had an error.
   output logic                          reads_busy_o,
   output logic                          read_error_o,
@@ -47,8 +49,8 @@ module traversal_unit_axi #(
 
   traversal_unit #(.CONTEXTS(CONTEXTS), .EDGES_PER_CYCLE(EDGES_PER_CYCLE)) u_unit (
     .clk_i, .rst_ni, .scene_i, .flush_i, .busy_o,
-    .valid_i, .ready_o, .in_i,
-    .valid_o, .ready_i, .out_o,
+    .valid_i, .ready_o, .in_i, .secondary_i,
+    .valid_o, .ready_i, .out_o, .corners_o,
     .mem_valid_o(request_valid), .mem_ready_i(request_ready), .mem_o(request),
     .mem_valid_i(answer_valid), .mem_ready_o(), .mem_i(answer)
   );

@@ -256,6 +256,18 @@ def boxes(data, values):
     values["boxes_l1"], values["boxes_dram"] = span(shares["l1"], percent), span(shares["dram"], percent)
 
 
+def forms(own, former, values):
+    """What compressed nodes and leaves are worth to the baseline."""
+    rows = []
+    for scene in own.each("scene"):
+        for eye in own.each("eye", scene=scene):
+            before = former.find(scene=scene, eye=eye, method="bvh")["result"]
+            now = {name: own.find(scene=scene, eye=eye, method=method)["result"] for method, name in [("bvh", "4-wide"), ("bvh6", "6-wide")]}
+            best = min(now, key=lambda name: now[name]["cycles"])
+            rows.append([scene, f"{eye:.2f}", f"{before['cycles']:,}", *(f"{of['cycles']:,}" for of in now.values()), percent(1 - now[best]["cycles"] / before["cycles"]), percent(1 - now[best]["dram"]["bytes"] / before["dram"]["bytes"])])
+    values["forms"] = table(["scene", "eye at", "cycles before", "4-wide now", "6-wide now", "fewer cycles, the better", "fewer bytes of DRAM"], rows)
+
+
 def units(free, charged, values):
     rows = []
     radii_of_all = free.each("radii")
@@ -389,6 +401,7 @@ PARTS = [
     (search, ["search"]),
     (causes, ["causes"]),
     (boxes, ["boxes"]),
+    (forms, ["forms", "former"]),
     (units, ["free", "units"]),
     (balance, ["balance", "balance-free"]),
     (lambda data, values: over_machines(data, values, "sensitivity"), ["sensitivity"]),

@@ -3,7 +3,7 @@
 use lodray::block::tri_test::{EdgeFunction, TNumerator, TriTest};
 use lodray::block::{self, Block, Timing};
 use lodray::format::{BvhNode, Displacements, L0Record, SiblingGroup, VertexData};
-use lodray::hardware::ports::{HitOut, MemoryAnswer, MemoryRequest, RayIn, SceneConfig};
+use lodray::hardware::ports::{Corners, HitOut, MemoryAnswer, MemoryRequest, RayIn, SceneConfig, SecondaryIn};
 use lodray::hardware::{Fetch, MAX_CONTEXTS, RayError, State};
 use lodray::method::{self, Entry, Hit};
 use lodray::num::{self, Box16, Field, Layout, Wire};
@@ -74,6 +74,8 @@ fn rust_side() -> (Vec<BlockTwin>, Vec<StructTwin>) {
         twin::<Hit>("hit_t"),
         twin::<SceneConfig>("scene_config_t"),
         twin::<RayIn>("ray_in_t"),
+        twin::<SecondaryIn>("secondary_in_t"),
+        twin::<Corners>("corners_t"),
         twin::<HitOut>("hit_out_t"),
         twin::<MemoryRequest>("memory_request_t"),
         twin::<MemoryAnswer>("memory_answer_t"),
@@ -339,7 +341,9 @@ fn the_unit_has_the_ports_of_the_cycle_model() {
         [
             ("scene_i", "lod_pkg::scene_config_t"),
             ("in_i", "lod_pkg::ray_in_t"),
+            ("secondary_i", "lod_pkg::secondary_in_t"),
             ("out_o", "lod_pkg::hit_out_t"),
+            ("corners_o", "lod_pkg::corners_t"),
             ("mem_o", "lod_pkg::memory_request_t"),
             ("mem_i", "lod_pkg::memory_answer_t"),
         ]

@@ -114,18 +114,14 @@ fn light_is_the_same_whether_it_is_asked_for_or_found() {
         let camera = camera(&scene, [0.0, 0.0, 3.4], 16);
         let shot = Shot { scene: &scene, method: &*method, material, pose: unturned(), camera, delta: 1.0, starts: Starts::Exact };
         // A point is found by no ray.
-        let found = |shadow_rays| {
+        let light = |shadow_rays, depth| {
             let film = shot.film(&lights()[..2], Some(EVERYWHERE), |paths| {
-                (paths.depth, paths.shadow_rays, paths.samples) = (2, shadow_rays, 400);
+                (paths.depth, paths.shadow_rays, paths.samples) = (depth, shadow_rays, 400);
             });
             mean(&film)
         };
         // Without shadow rays the last hit gets no light: it is one bounce less.
-        let (asked, ran_into) = (found(true), {
-            let film =
-                shot.film(&lights()[..2], Some(EVERYWHERE), |paths| (paths.depth, paths.shadow_rays, paths.samples) = (3, false, 400));
-            mean(&film)
-        });
+        let (asked, ran_into) = (light(true, 2), light(false, 3));
         assert!((asked / ran_into - 1.0).abs() < 0.02, "{material:?}: {asked} {ran_into}");
     }
 }

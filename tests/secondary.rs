@@ -9,6 +9,7 @@ use lodray::method::{ClosestHit, Crossings, Departure, Knobs};
 use lodray::num::{Cone, Direction, Point, Ray, VertexForm};
 use lodray::rays::{ModelSpace, Query, Sight};
 use lodray::step::{NoSteps, Recorder};
+use lodray_test_support::bounces::{leaving, scaled};
 use lodray_test_support::models::{Rng, ball, cone, full_bvhs, model, scene_of, terrain, with_vertices};
 use lodray_test_support::plain::plain;
 use std::cmp::Ordering;
@@ -32,44 +33,8 @@ struct Follow<'a> {
     seen: Seen,
 }
 
-const LENGTH: f64 = ((1 << 30) - 1) as f64;
-
-fn scaled(v: [f64; 3]) -> [i64; 3] {
-    let length = v.iter().map(|c| c * c).sum::<f64>().sqrt();
-    v.map(|c| (c / length * LENGTH).round() as i64)
-}
-
 fn direction(v: [i64; 3]) -> Direction {
     Direction::new(v[0], v[1], v[2])
-}
-
-/// A direction from a triangle: anywhere, along its plane or nearly, along an axis, or at another point.
-fn leaving(rng: &mut Rng, corners: &[Point; 3], from: Point, at: [i64; 3]) -> Direction {
-    let [a, b, c] = corners.map(|p| p.get().map(|v| v as f64));
-    let e: [f64; 3] = std::array::from_fn(|k| (b[k] - a[k]) * rng.signed() + (c[k] - a[k]) * rng.signed());
-    let mut d = match rng.below(6) {
-        0 if e.iter().any(|&c| c != 0.0) => {
-            let mut d = scaled(e);
-            d[rng.below(3) as usize] += rng.below(5) as i64 - 2;
-            d
-        }
-        1 => {
-            let mut d = [0; 3];
-            d[rng.below(3) as usize] = if rng.below(2) == 0 { 1 << 29 } else { -(1 << 29) };
-            d
-        }
-        2 | 3 => {
-            let x = from.get();
-            let d: [f64; 3] = std::array::from_fn(|k| (at[k] - x[k]) as f64);
-            if d == [0.0; 3] { [1 << 29, 0, 0] } else { scaled(d) }
-        }
-        _ => scaled([rng.signed(), rng.signed(), rng.signed() + 1e-9]),
-    };
-    d = d.map(|c| c.clamp(-((1 << 30) - 1), (1 << 30) - 1));
-    if d.iter().map(|c| c * c).sum::<i64>() > 1 << 60 {
-        d = d.map(|c| c / 2);
-    }
-    direction(d)
 }
 
 impl Follow<'_> {

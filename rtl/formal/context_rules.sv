@@ -12,10 +12,10 @@ module context_rules #(
   input  logic                        rst_ni,
   input  logic                        idle_i,
   input  logic                        take_i,
-  // Blocks in which a context has one operation at most: ray_setup, child_test, lod_test, tessellate, bary_map.
-  input  logic [4:0]                  request_i,
-  input  logic [4:0]                  grant_i,
-  input  logic [4:0]                  valid_i,
+  // Blocks in which a context has one operation at most: tree_deciders, ray_setup, child_test, lod_test, tessellate, bary_map; or, for rays from a surface, those in their places.
+  input  logic [5:0]                  request_i,
+  input  logic [5:0]                  grant_i,
+  input  logic [5:0]                  valid_i,
   input  logic                        line_request_i,
   input  logic                        line_place_i,
   input  logic [lod_pkg::EPOCH_W-1:0] epoch_i,
@@ -37,7 +37,7 @@ module context_rules #(
   input  logic                        hit_grant_i,
   // Reset has been; which blocks have an operation of the context; lines asked for and not there, by place; triangles asked for and without a verdict; the divisions of v and w.
   output logic                        live_o,
-  output logic [4:0]                  inside_o,
+  output logic [5:0]                  inside_o,
   output logic [1:0]                  asked_o,
   output logic [2:0]                  tested_o,
   output logic [3:0]                  numbers_o,
@@ -46,7 +46,7 @@ module context_rules #(
 );
 
   logic                        live_q, v_q, w_q;
-  logic [4:0]                  inside_q;
+  logic [5:0]                  inside_q;
   logic [1:0]                  asked_q, asks, comes;
   logic [2:0]                  tested_q;
   logic [3:0]                  numbers_q;  // of triangles given since there were none

@@ -1,14 +1,14 @@
   // Inside ray_context: in every state it waits for what it has asked for and has not got, and asks for no more than there is room for.
   logic       live, v_inside, w_inside;
-  logic [4:0] inside;
+  logic [5:0] inside;
   logic [1:0] asked;
   logic [2:0] tested;
   logic [3:0] numbers;
   context_rules #(.OF_CONTEXT(1)) u_rules (
     .clk_i, .rst_ni, .idle_i(idle_o), .take_i,
-    .request_i({setup_request_o, child_request_o, lod_request_o, morph_request_o, map_request_o}),
-    .grant_i({setup_grant_i, child_grant_i, lod_grant_i, morph_grant_i, map_grant_i}),
-    .valid_i({setup_valid_i, child_valid_i, lod_valid_i, morph_valid_i, map_valid_i}),
+    .request_i({decide_request_o, setup_request_o, child_request_o, lod_request_o, morph_request_o, map_request_o}),
+    .grant_i({decide_grant_i, setup_grant_i, child_grant_i, lod_grant_i, morph_grant_i, map_grant_i}),
+    .valid_i({decide_valid_i, setup_valid_i, child_valid_i, lod_valid_i, morph_valid_i, map_valid_i}),
     .line_request_i(fetch_request_o), .line_place_i(fetch_place_o), .epoch_i(fetch_epoch_o), .line_grant_i(fetch_grant_i),
     .line_valid_i, .line_valid_place_i(line_i.tag[1:0]), .line_valid_epoch_i(line_i.epoch),
     .tri_request_i(tri_request_o), .tri_number_i(tri_number_o), .tri_grant_i, .tri_miss_i, .select_valid_i,
@@ -43,9 +43,11 @@
   always_comb begin
     if (live) begin
       assert (state_q <= lod_pkg::DONE);
+      // Nobody decides for a ray where no ray starts on a surface.
+      assert (DECIDING || (state_q != lod_pkg::DECIDE && state_q != lod_pkg::DECIDE_WAIT));
       assert (!\u_stack.stale_q  || state_q == lod_pkg::PUSH || state_q == lod_pkg::VISIT || state_q == lod_pkg::DONE || state_q == lod_pkg::IDLE);
       // Who waits for a block's result has its one operation there, and nobody else has.
-      assert (inside == {state_q == lod_pkg::SETUP_WAIT, state_q == lod_pkg::CHILD_WAIT, state_q == lod_pkg::LOD_WAIT, state_q == lod_pkg::MORPH_WAIT, state_q == lod_pkg::MAP_WAIT});
+      assert (inside == {state_q == lod_pkg::DECIDE_WAIT, state_q == lod_pkg::SETUP_WAIT, state_q == lod_pkg::CHILD_WAIT, state_q == lod_pkg::LOD_WAIT, state_q == lod_pkg::MORPH_WAIT, state_q == lod_pkg::MAP_WAIT});
       // Triangles: a node's one or its children's four are sent, in turn, or still to be sent; those sent have a verdict or are waited for.
       assert (tested == (state_q == lod_pkg::TRI ? pending_q : 3'd0));
       if (state_q == lod_pkg::TRI) begin

@@ -33,8 +33,10 @@
       lod_pkg::MORPH:       begin steps = STEPS_W'(26) + entries_left + lines_left; waits = !morph_grant_i; end
       lod_pkg::LOD_WAIT:    begin steps = STEPS_W'(47) + entries_left; waits = !lod_valid_i; end
       lod_pkg::LOD:         begin steps = STEPS_W'(48) + entries_left; waits = !lod_grant_i && !decided; end
+      lod_pkg::DECIDE_WAIT: begin steps = STEPS_W'(49) + entries_left; waits = !decide_valid_i; end
+      lod_pkg::DECIDE:      begin steps = STEPS_W'(50) + entries_left; waits = !decide_grant_i; end
       lod_pkg::FETCH:       begin
-        steps = (fetch_q == lod_pkg::VERTEX ? STEPS_W'(27) : fetch_q == lod_pkg::RECORD ? STEPS_W'(49) : STEPS_W'(19)) + entries_left + lines_left;
+        steps = (fetch_q == lod_pkg::VERTEX ? STEPS_W'(27) : fetch_q == lod_pkg::RECORD ? STEPS_W'(51) : STEPS_W'(19)) + entries_left + lines_left;
         waits = !fetched && !line_moves;
       end
       lod_pkg::DIVIDE_V:    begin stage = 3'd1; steps = STEPS_W'(7); waits = !divide_grant_i; end
@@ -70,9 +72,9 @@
       assert (!steps_q || left < left_before_q);
       assert (!waits_q || left <= left_before_q);
       // A bound: the stack and what is left of one visit.
-      assert (32'(steps) <= lod_pkg::STACK_ENTRIES + 59 && 32'(entries_left) <= lod_pkg::STACK_ENTRIES);
+      assert (32'(steps) <= lod_pkg::STACK_ENTRIES + 61 && 32'(entries_left) <= lod_pkg::STACK_ENTRIES);
       // Who waits asks for something now, or has asked for it and not got it.
-      assert (!waits || setup_request_o || fetch_request_o || child_request_o || lod_request_o || morph_request_o || tri_request_o || divide_request_o || map_request_o || hit_request_o
+      assert (!waits || decide_request_o || setup_request_o || fetch_request_o || child_request_o || lod_request_o || morph_request_o || tri_request_o || divide_request_o || map_request_o || hit_request_o
               || inside != '0 || asked != '0 || tested != '0 || w_inside);
       // Each visit counts, and there is none after the last.
       assert (!visits_now_q || (visits_before_q == '0 ? state_q == lod_pkg::DONE && error_q != lod_pkg::ERROR_NONE : visits_q == visits_before_q - 32'd1));

@@ -1,6 +1,6 @@
   // Inside traversal_unit, its contexts and blocks free but for what each keeps to: results go to whom they are for, and no queue overflows.
   logic [N-1:0] live, v_inside, w_inside;
-  logic [N-1:0][4:0] inside;
+  logic [N-1:0][5:0] inside;
   logic [N-1:0][2:0] tested;
   logic [N-1:0][3:0] numbers;
 
@@ -9,9 +9,9 @@
     localparam logic [CONTEXT_W-1:0] ME = CONTEXT_W'(k);
     context_rules #(.OF_CONTEXT(0)) u_rules (
       .clk_i, .rst_ni, .idle_i(idle[k]), .take_i(take[k]),
-      .request_i({setup_request[k], child_request[k], lod_request[k], morph_request[k], map_request[k]}),
-      .grant_i({setup_grant[k], child_grant[k], lod_grant[k], morph_grant[k], map_grant[k]}),
-      .valid_i({setup_valid && setup_tag == ME, child_valid && child_tag == ME, lod_valid && lod_tag == ME, morph_valid && morph_tag == ME, map_valid && map_tag == ME}),
+      .request_i({decide_request[k], setup_request[k], child_request[k], lod_request[k], morph_request[k], map_request[k]}),
+      .grant_i({decide_grant[k], setup_grant[k], child_grant[k], lod_grant[k], morph_grant[k], map_grant[k]}),
+      .valid_i({decide_valid && decide_tag == ME, setup_valid && setup_tag == ME, child_valid && child_tag == ME, lod_valid && lod_tag == ME, morph_valid && morph_tag == ME, map_valid && map_tag == ME}),
       .line_request_i(fetch_request[k]), .line_place_i(fetch_data[k][FETCH_W-1]), .epoch_i(fetch_data[k][FETCH_W-2 -: lod_pkg::EPOCH_W]), .line_grant_i(fetch_grant[k]),
       .line_valid_i(mem_valid_i && mem_i.tag[7:2] == 6'(ME)), .line_valid_place_i(mem_i.tag[1:0]), .line_valid_epoch_i(mem_i.epoch),
       .tri_request_i(tri_request[k]), .tri_number_i(tri_data[k][TRI_W-1:TRI_W-2]), .tri_grant_i(tri_grant[k]),
@@ -38,22 +38,25 @@
   // Hits in the queue, in the division and in hit_select.
   localparam int unsigned PLACES = 4 * N;
   localparam int unsigned PLACE_W = $clog2(PLACES);
-  (* hierconn *) logic [PLACES-1:0][lod_pkg::QUEUED_HIT_W-1:0] \u_queue.items ;
+  (* hierconn *) logic [PLACES-1:0][lod_pkg::KEPT_HIT_W-1:0] \u_queue.items ;
   (* hierconn *) logic [PLACE_W-1:0] \u_queue.head_q , \u_queue.tail_q ;
   (* hierconn *) logic [$clog2(PLACES+1)-1:0] \u_queue.len_q ;
-  (* hierconn *) logic \u_hit_divide.busy_q ;
-  (* hierconn *) logic [lod_pkg::DIVIDE_TAG_W-1:0] \u_hit_divide.tag_q ;
-  (* hierconn *) logic [$clog2(lod_pkg::HIT_DIVIDE_LATENCY)-1:0] \u_hit_divide.steps_left_q ;
+  (* hierconn *) logic \g_hit_divide.u_hit_divide.busy_q ;
+  (* hierconn *) logic [lod_pkg::DIVIDE_TAG_W-1:0] \g_hit_divide.u_hit_divide.tag_q ;
+  (* hierconn *) logic [$clog2(lod_pkg::HIT_DIVIDE_LATENCY)-1:0] \g_hit_divide.u_hit_divide.steps_left_q ;
   (* hierconn *) logic \u_hit_select.valid_tree , \u_hit_select.valid_id ;
   (* hierconn *) logic [CONTEXT_W-1:0] \u_hit_select.tag_tree , \u_hit_select.tag_id ;
 
   logic [1:0]           dividing_what;
   logic [CONTEXT_W-1:0] dividing_owner;
   logic [1:0]           dividing_number;
-  assign {dividing_what, dividing_owner, dividing_number} = \u_hit_divide.tag_q ;
+  assign {dividing_what, dividing_owner, dividing_number} = \g_hit_divide.u_hit_divide.tag_q ;
+
+  lod_pkg::queued_hit_t candidate;
+  assign candidate = lod_pkg::QUEUED_HIT_W'(candidate_q);
 
   int unsigned steps_left;
-  assign steps_left = \u_hit_divide.busy_q ? 32'(\u_hit_divide.steps_left_q ) : 32'd100;
+  assign steps_left = \g_hit_divide.u_hit_divide.busy_q ? 32'(\g_hit_divide.u_hit_divide.steps_left_q ) : 32'd100;
 
   // Cycles since a tick.
   logic [lod_pkg::ANSWER_LIMIT_W-1:0] since_q;
@@ -71,7 +74,7 @@
     in_queue     = '0;
     item         = '0;
     for (int unsigned i = 0; i < PLACES; i++) begin
-      item = \u_queue.items [i];
+      item = lod_pkg::QUEUED_HIT_W'(\u_queue.items [i]);
       if (32'(PLACE_W'(PLACE_W'(i) - \u_queue.head_q )) < 32'(\u_queue.len_q )) begin
         if (32'(item.owner) >= N) owners_known = 1'b0;
         for (int unsigned k = 0; k < N; k++) if (32'(item.owner) == k) queued[k] = queued[k] + 8'd1;
@@ -80,7 +83,7 @@
     for (int unsigned k = 0; k < N; k++) in_queue = in_queue + queued[k];
     for (int unsigned k = 0; k < N; k++) begin
       somewhere[k] = 8'(in_tri[k][0]) + 8'(in_tri[k][1]) + 8'(in_tri[k][2]) + 8'(in_tri[k][3]) + 8'(queued[k])
-                   + 8'(\u_hit_divide.busy_q && dividing_what == lod_pkg::DIVIDE_FOR_T && 32'(dividing_owner) == k)
+                   + 8'(\g_hit_divide.u_hit_divide.busy_q && dividing_what == lod_pkg::DIVIDE_FOR_T && 32'(dividing_owner) == k)
                    + 8'(\u_hit_select.valid_tree && 32'(\u_hit_select.tag_tree ) == k) + 8'(\u_hit_select.valid_id && 32'(\u_hit_select.tag_id ) == k) + 8'(select_valid && 32'(select_owner) == k);
     end
   end
@@ -91,17 +94,17 @@
       assert (32'(\u_queue.len_q ) == 32'(in_queue));
       // What the contexts count is what the blocks have.
       for (int unsigned k = 0; k < N; k++) begin
-        assert (inside[k] == {in_setup[k], in_child[k], in_lod[k], in_morph[k], in_map[k]});
+        assert (inside[k] == {1'b0, in_setup[k], in_child[k], in_lod[k], in_morph[k], in_map[k]});
         assert (8'(tested[k]) == somewhere[k]);
         assert ((in_tri[k] & ~numbers[k]) == '0);
-        assert (v_inside[k] == (\u_hit_divide.busy_q && dividing_what == lod_pkg::DIVIDE_FOR_V && 32'(dividing_owner) == k));
-        assert (w_inside[k] == (\u_hit_divide.busy_q && dividing_what == lod_pkg::DIVIDE_FOR_W && 32'(dividing_owner) == k));
+        assert (v_inside[k] == (\g_hit_divide.u_hit_divide.busy_q && dividing_what == lod_pkg::DIVIDE_FOR_V && 32'(dividing_owner) == k));
+        assert (w_inside[k] == (\g_hit_divide.u_hit_divide.busy_q && dividing_what == lod_pkg::DIVIDE_FOR_W && 32'(dividing_owner) == k));
       end
       // The numerators that a context takes with a comparison are those of its hit: the next one comes later.
-      assert (!(\u_hit_divide.busy_q && dividing_what == lod_pkg::DIVIDE_FOR_T) || (candidate_q.owner == dividing_owner && candidate_q.number == dividing_number));
-      assert (!\u_hit_select.valid_tree || (chosen_q.owner == \u_hit_select.tag_tree && steps_left >= lod_pkg::HIT_DIVIDE_LATENCY - 1));
-      assert (!\u_hit_select.valid_id || (chosen_q.owner == \u_hit_select.tag_id && steps_left >= lod_pkg::HIT_DIVIDE_LATENCY - 2));
-      assert (!select_valid || (chosen_q.owner == select_owner && steps_left >= lod_pkg::HIT_DIVIDE_LATENCY - 3));
+      assert (!(\g_hit_divide.u_hit_divide.busy_q && dividing_what == lod_pkg::DIVIDE_FOR_T) || (candidate.owner == dividing_owner && candidate.number == dividing_number));
+      assert (!\u_hit_select.valid_tree || (chosen.owner == \u_hit_select.tag_tree && steps_left >= lod_pkg::HIT_DIVIDE_LATENCY - 1));
+      assert (!\u_hit_select.valid_id || (chosen.owner == \u_hit_select.tag_id && steps_left >= lod_pkg::HIT_DIVIDE_LATENCY - 2));
+      assert (!select_valid || (chosen.owner == select_owner && steps_left >= lod_pkg::HIT_DIVIDE_LATENCY - 3));
       // Ticks go on: at most as many cycles without one as the limit says.
       assert (since_q == ticks_q && (tick || since_q < scene_i.answer_limit));
     end

@@ -12,9 +12,11 @@ module traversal_unit_rules (
   input logic                     valid_i,
   input logic                     ready_o,
   input lod_pkg::ray_in_t         in_i,
+  input lod_pkg::secondary_in_t   secondary_i,
   input logic                     valid_o,
   input logic                     ready_i,
   input lod_pkg::hit_out_t        out_o,
+  input lod_pkg::corners_t        corners_o,
   input logic                     mem_valid_o,
   input logic                     mem_ready_i,
   input lod_pkg::memory_request_t mem_o,
@@ -27,7 +29,9 @@ module traversal_unit_rules (
   // What stood at the ports in the cycle before and was not taken.
   logic                     ray_waits_q, hit_waits_q, request_waits_q;
   lod_pkg::ray_in_t         ray_q;
+  lod_pkg::secondary_in_t   secondary_q;
   lod_pkg::hit_out_t        hit_q;
+  lod_pkg::corners_t        corners_q;
   lod_pkg::memory_request_t request_q;
   lod_pkg::scene_config_t   scene_q;
   // Rays taken whose hits were not, and by tag the epochs that an answer is due for, also one that never comes.
@@ -41,6 +45,7 @@ module traversal_unit_rules (
 
   always_ff @(posedge clk_i) begin
     {ray_q, hit_q, request_q, scene_q} <= {in_i, out_o, mem_o, scene_i};
+    {secondary_q, corners_q}           <= {secondary_i, corners_o};
     if (!rst_ni) begin
       {ray_waits_q, hit_waits_q, request_waits_q} <= '0;
       rays_q <= '0;
@@ -63,8 +68,8 @@ module traversal_unit_rules (
 
   always_ff @(posedge clk_i) begin
     if (rst_ni) begin
-      assert (!ray_waits_q || (valid_i && in_i == ray_q)) else $error("in_i: a ray was withdrawn or changed before it was taken");
-      assert (!hit_waits_q || (valid_o && out_o == hit_q)) else $error("out_o: a hit was withdrawn or changed before it was taken");
+      assert (!ray_waits_q || (valid_i && in_i == ray_q && (lod_pkg::SECONDARY == 0 || secondary_i == secondary_q))) else $error("in_i: a ray was withdrawn or changed before it was taken");
+      assert (!hit_waits_q || (valid_o && out_o == hit_q && corners_o == corners_q)) else $error("out_o: a hit was withdrawn or changed before it was taken");
       assert (!request_waits_q || (mem_valid_o && mem_o == request_q)) else $error("mem_o: a request was withdrawn or changed before it was taken");
       assert (!busy_o || scene_i == scene_q) else $error("scene_i: it changed while a ray was under way");
       assert (!mem_valid_i || due_q[answer_tag_i[15:8]][answer_tag_i[7:0]]) else $error("mem_i: an answer without a request, or to one from before a reset");
@@ -79,7 +84,7 @@ module traversal_unit_rules (
 endmodule
 
 bind traversal_unit traversal_unit_rules u_rules (
-  .clk_i, .rst_ni, .scene_i, .busy_o, .valid_i, .ready_o, .in_i, .valid_o, .ready_i, .out_o, .mem_valid_o, .mem_ready_i, .mem_o, .mem_valid_i, .mem_ready_o,
+  .clk_i, .rst_ni, .scene_i, .busy_o, .valid_i, .ready_o, .in_i, .secondary_i, .valid_o, .ready_i, .out_o, .corners_o, .mem_valid_o, .mem_ready_i, .mem_o, .mem_valid_i, .mem_ready_o,
   .answer_tag_i({mem_i.tag, mem_i.epoch})
 );
 

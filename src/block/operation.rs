@@ -14,9 +14,14 @@ use super::child_test::ChildTest;
 use super::hit_divide::HitDivide;
 use super::hit_select::HitSelect;
 use super::lod_test::LodTest;
+use super::lod_test_by::LodTestBy;
 use super::node_address::NodeAddress;
 use super::ray_setup::RaySetup;
+use super::start_divide::StartDivide;
+use super::start_setup::StartSetup;
+use super::start_test::StartTest;
 use super::tessellate::Tessellate;
+use super::tree_deciders::TreeDeciders;
 use super::tri_test::TriTest;
 use super::{Form, Timing, parts::Parts};
 
@@ -24,7 +29,8 @@ use super::{Form, Timing, parts::Parts};
 macro_rules! of_block {
     ($operation:expr, $block:ident => $value:expr) => {
         of_block!($operation, $block => $value; RaySetup, NodeAddress, ChildTest, LodTest, Tessellate, TriTest, HitDivide, HitSelect,
-            BaryMap, ChildBoxes, BoxDecode, BoxTest, BoxTest32, ChildSort, BoundDecode, BoxDecode8, ChildSort6)
+            BaryMap, ChildBoxes, BoxDecode, BoxTest, BoxTest32, ChildSort, BoundDecode, BoxDecode8, ChildSort6, TreeDeciders, LodTestBy, StartSetup,
+            StartTest, StartDivide)
     };
     ($operation:expr, $block:ident => $value:expr; $($name:ident),+) => {
         match $operation {
@@ -73,11 +79,21 @@ pub enum Operation {
     BoxDecode8,
     /// Six children ordered.
     ChildSort6,
+    /// Which ray decides in a tree.
+    TreeDeciders,
+    /// Does a triangle serve, where other rays may decide about its edges.
+    LodTestBy,
+    /// Constants of a ray from an exact start.
+    StartSetup,
+    /// A triangle and a ray from an exact start.
+    StartTest,
+    /// A quotient of its hit.
+    StartDivide,
 }
 
 impl Operation {
     /// Every operation.
-    pub const ALL: [Self; 17] = [
+    pub const ALL: [Self; 22] = [
         Self::RaySetup,
         Self::NodeAddress,
         Self::ChildTest,
@@ -95,6 +111,11 @@ impl Operation {
         Self::BoundDecode,
         Self::BoxDecode8,
         Self::ChildSort6,
+        Self::TreeDeciders,
+        Self::LodTestBy,
+        Self::StartSetup,
+        Self::StartTest,
+        Self::StartDivide,
     ];
 
     /// Its number in [`Operation::ALL`].

@@ -71,7 +71,8 @@ impl Block for TreeDeciders {
     type Out = Out;
     fn parts(_: &Form) -> Parts {
         // Which corners are the same points, whether the triangles are, and `second`; then the deciders.
-        let registers = Registers::stage(9 + 1 + 3 + TAG) + Registers::stage(Out::WIDTH + TAG);
+        // Inside of a triangle the second viewer never decides.
+        let registers = Registers::stage(9 + 1 + 3 + TAG) + Registers::stage(Out::WIDTH + TAG).without(1);
         Parts { products: vec![], add_bits: 9 * Point::WIDTH + TREE, select_bits: 3 * 3 * 2 + Out::WIDTH, registers }
     }
     #[inline]

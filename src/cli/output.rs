@@ -57,6 +57,12 @@ pub fn explain(command: &str) -> anyhow::Result<()> {
     remark(&format!("(lodray help {command} explains the words)"))
 }
 
+/// What a TOML reader complains of, in one line: its error is several, with a picture of the place; the first and the last of it say all.
+pub fn toml_in_one_line(file: &str, error: &toml::de::Error) -> anyhow::Error {
+    let picture = error.to_string();
+    anyhow::anyhow!("{file}: {}: {}", picture.lines().next().unwrap_or_default(), error.message())
+}
+
 /// Says on standard error what a user should know of a run that went well.
 pub fn warn(text: &str) {
     use std::io::Write;

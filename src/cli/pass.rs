@@ -2,7 +2,7 @@
 
 use super::args::Change;
 use super::method::Chosen;
-use super::output::progress;
+use super::output::{progress, toml_in_one_line};
 use lodray::format::Scene;
 use lodray::machine::{Machine, MachineError};
 use lodray::method::Method;
@@ -83,13 +83,10 @@ pub fn is_path(name: &str) -> bool {
     path.components().count() > 1 || path.extension().is_some_and(|e| e == "toml")
 }
 
-/// An error of the TOML reader is several lines, with a picture of the place; the first and the last of it say all.
+/// What is wrong with a machine, in one line.
 fn in_one_line(error: MachineError) -> anyhow::Error {
     match error {
-        MachineError::Toml { file, source } => {
-            let picture = source.to_string();
-            anyhow::anyhow!("{file}: {}: {}", picture.lines().next().unwrap_or_default(), source.message())
-        }
+        MachineError::Toml { file, source } => toml_in_one_line(&file, &source),
         MachineError::NotShipped { name, .. } if !name.contains('/') => {
             let name = name.trim_end_matches(".toml");
             anyhow::anyhow!("there is no machine {name}; there are: {}; a file's name ends in .toml", Machine::all_shipped().join(", "))

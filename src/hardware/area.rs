@@ -31,18 +31,20 @@ pub fn context_gates(hardware: &Hardware, has_levels: bool) -> f64 {
 
 /// Gate equivalents of one unit: its blocks, of the default sizes, and its contexts. None if a block was not measured.
 pub fn unit_gates(unit: MethodUnit, hardware: &Hardware) -> Option<f64> {
-    let blocks: f64 = hardware.blocks(unit.blocks).map(|&operation| block_gates(operation, hardware)).sum::<Option<f64>>()?;
+    let blocks: f64 = hardware.blocks(unit.blocks).map(|operation| block_gates(operation, hardware)).sum::<Option<f64>>()?;
     Some(blocks + hardware.contexts as f64 * context_gates(hardware, unit.has_levels))
 }
 
 fn block_gates(operation: Operation, hardware: &Hardware) -> Option<f64> {
     let (own, default) = (hardware.form(), Hardware::DEFAULT.form());
     let parameter = match operation {
-        Operation::LodTest => ("EDGES_PER_CYCLE", own.lod_edges_per_cycle.count(), default.lod_edges_per_cycle.count()),
-        Operation::TriTest => ("EDGES_PER_CYCLE", own.edges_per_cycle.count(), default.edges_per_cycle.count()),
+        Operation::LodTest | Operation::LodTestBy => {
+            ("EDGES_PER_CYCLE", own.lod_edges_per_cycle.count(), default.lod_edges_per_cycle.count())
+        }
+        Operation::TriTest | Operation::StartTest => ("EDGES_PER_CYCLE", own.edges_per_cycle.count(), default.edges_per_cycle.count()),
         Operation::ChildTest => ("BOXES_PER_CYCLE", own.boxes_per_cycle.count(), default.boxes_per_cycle.count()),
-        Operation::HitDivide => ("DIVIDE_BITS", own.divide_bits, default.divide_bits),
-        Operation::RaySetup => ("SETUP_BITS", own.setup_bits, default.setup_bits),
+        Operation::HitDivide | Operation::StartDivide => ("DIVIDE_BITS", own.divide_bits, default.divide_bits),
+        Operation::RaySetup | Operation::StartSetup => ("SETUP_BITS", own.setup_bits, default.setup_bits),
         _ => ("", 0, 0),
     };
     let form = if let (name, value, usual) = parameter

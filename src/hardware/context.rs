@@ -2,9 +2,9 @@
 
 use super::Hardware;
 use super::ports::{Epoch, HitOut, MemoryAnswer, RayIn, SceneConfig};
-use crate::block::{bary_map, child_test, hit_select, lod_test, parts::Registers, ray_setup};
+use crate::block::{bary_map, child_test, hit_select, lod_test, node_deciders, parts::Registers, ray_setup, tree_deciders};
 use crate::method::Entry;
-use crate::num::{Bary, BoundCode, Cone, Field, RayT, Wire};
+use crate::num::{Bary, BoundCode, Cone, Field, Ray, RayT, START_BITS, Wire};
 
 /// Bits of an index in a stack entry of any hardware, of a node at the ports, of a level, and of a count up to four.
 const INDEX: u32 = 28;
@@ -65,7 +65,19 @@ impl Hardware {
     /// Those of them that are in no memory.
     pub fn context_flip_flops(&self, has_levels: bool) -> u32 {
         let triangles = if has_levels { self.triangles() } else { 2 * self.triangle() };
-        self.place() + triangles + self.stack_length(has_levels) + self.lines() + self.bounds() + self.closest()
+        let secondary = if self.secondary { self.secondary(has_levels) } else { 0 };
+        self.place() + triangles + self.stack_length(has_levels) + self.lines() + self.bounds() + self.closest() + secondary
+    }
+
+    /// What only rays from a surface have: fraction of the start, the smallest t, and whether any hit serves; of the closest hit the corners, and what two numerators have below whole
+    /// numbers; and of who decides about levels: whether anyone does, the last hit's triangle with its corners and edges, two rays, and who it is in this tree and at this node.
+    fn secondary(&self, has_levels: bool) -> u32 {
+        let own = 3 * START_BITS + RayT::WIDTH + 1 + self.triangle() + 2 * START_BITS;
+        // Of a stage, with a tag of one bit and whether it is full.
+        let node = node_deciders::Out::WIDTH + 2;
+        let viewer = Ray::WIDTH - Cone::WIDTH + self.cone();
+        let deciders = 1 + self.index_bits + self.triangle() + 3 + 2 * viewer + tree_deciders::Out::WIDTH + node;
+        own + if has_levels && self.has_deciders() { deciders } else { 0 }
     }
 
     /// Its memories: the stack, and the banks of the triangles on the way down a tree.
@@ -97,12 +109,15 @@ impl Hardware {
     /// Ray, and its constants for the box tests: origin, direction, and moment. Of the cone its start may be left out, or all but whether the ray is of no detail.
     fn ray(&self) -> u32 {
         let zeros = self.coordinate_zeros + self.direction_zeros;
-        let cone = match (self.stored_levels() > 0, self.lod_test) {
+        RayIn::WIDTH - Cone::WIDTH + self.cone() + ray_setup::Out::WIDTH - 3 * (zeros + zeros + zeros)
+    }
+
+    fn cone(&self) -> u32 {
+        match (self.stored_levels() > 0, self.lod_test) {
             (true, true) => Cone::WIDTH - if self.start_radius { 0 } else { CONE_OFFSET },
             (true, false) => 1,
             (false, _) => 0,
-        };
-        RayIn::WIDTH - Cone::WIDTH + cone + ray_setup::Out::WIDTH - 3 * (zeros + zeros + zeros)
+        }
     }
 
     /// A stack entry: of a tree's node, if trees have any, with level and codes.

@@ -72,6 +72,8 @@ pub struct Hardware {
     pub coordinate_zeros: u32,
     /// Bits at the bottom of the components of directions that it leaves out likewise: 0 to 14.
     pub direction_zeros: u32,
+    /// Rays can start on a surface, count only hits within a range of t, and end at any of them ([`ports::SecondaryIn`]). It leaves out no bits of coordinates and directions.
+    pub secondary: bool,
 }
 
 impl Default for Hardware {
@@ -113,6 +115,7 @@ impl Hardware {
         exact_vertices: true,
         coordinate_zeros: 0,
         direction_zeros: 0,
+        secondary: false,
     };
 
     /// The fewest levels: a tree of one split has no nodes below its root, and no register for its triangles.
@@ -155,8 +158,9 @@ impl Hardware {
             ("index_bits", u64::from(self.index_bits), u64::from(self.node_bits()), u64::from(MOST_INDEX_BITS)),
             ("line_bits", u64::from(self.line_bits), 1, u64::from(MOST_INDEX_BITS)),
             ("compact_vertices", u64::from(self.compact_vertices), u64::from(!self.exact_vertices), 1),
-            ("coordinate_zeros", u64::from(self.coordinate_zeros), 0, u64::from(BOX_SHIFT)),
-            ("direction_zeros", u64::from(self.direction_zeros), 0, u64::from(MOST_DIRECTION_ZEROS)),
+            // A ray that starts on a surface has all bits.
+            ("coordinate_zeros", u64::from(self.coordinate_zeros), 0, u64::from(if self.secondary { 0 } else { BOX_SHIFT })),
+            ("direction_zeros", u64::from(self.direction_zeros), 0, u64::from(if self.secondary { 0 } else { MOST_DIRECTION_ZEROS })),
         ];
         match fields.into_iter().find(|(_, value, least, most)| !(least..=most).contains(&value)) {
             Some((field, value, least, most)) => Err(HardwareError { field, least, most, value }),
@@ -217,18 +221,35 @@ impl Hardware {
         2 * if levels == 0 { 1 } else { levels }
     }
 
-    /// Whether a unit of this hardware has such a block.
+    /// Rays from a surface have others decide about levels around their start: the hardware is for such rays, and chooses levels.
+    pub const fn has_deciders(&self) -> bool {
+        self.secondary && self.chooses_levels()
+    }
+
+    /// The block of this hardware that does what this one does: where rays can start on a surface, one for exact starts.
+    pub const fn block(&self, operation: Operation) -> Operation {
+        match operation {
+            Operation::RaySetup if self.secondary => Operation::StartSetup,
+            Operation::LodTest if self.secondary => Operation::LodTestBy,
+            Operation::TriTest if self.secondary => Operation::StartTest,
+            Operation::HitDivide if self.secondary => Operation::StartDivide,
+            _ => operation,
+        }
+    }
+
+    /// Whether a unit of this hardware has a block that does this.
     pub const fn has(&self, operation: Operation) -> bool {
         match operation {
-            Operation::LodTest => self.chooses_levels(),
+            Operation::LodTest | Operation::LodTestBy => self.chooses_levels(),
+            Operation::TreeDeciders => self.has_deciders(),
             Operation::Tessellate => self.stored_levels() > 0,
             Operation::BaryMap => self.hit_mapping,
             _ => true,
         }
     }
 
-    /// Those of these blocks that it has: of several for the boxes of a node as many as test side by side.
-    pub fn blocks<'a>(&self, blocks: &'a [Operation]) -> impl Iterator<Item = &'a Operation> {
+    /// What it has for these blocks: of several for the boxes of a node as many as test side by side.
+    pub fn blocks<'a>(&self, blocks: &'a [Operation]) -> impl Iterator<Item = Operation> + use<'a> {
         let hardware = *self;
         let is_of_boxes =
             |operation| matches!(operation, Operation::BoxDecode | Operation::BoxDecode8 | Operation::BoxTest | Operation::BoxTest32);
@@ -240,7 +261,7 @@ impl Hardware {
                 let all = blocks.iter().filter(|&&other| other == operation).count() as u32;
                 hardware.has(operation) && (!is_of_boxes(operation) || before < hardware.boxes_per_cycle.side_by_side(all))
             })
-            .map(|(_, operation)| operation)
+            .map(move |(_, &operation)| hardware.block(operation))
     }
 
     /// Timing of a block.
@@ -287,6 +308,10 @@ mod tests {
         assert_eq!(wrong(Hardware { setup_bits: 0, ..default }), "hardware: setup_bits must be 1 to 3, but is 0");
         assert_eq!(wrong(Hardware { coordinate_zeros: 17, ..default }), "hardware: coordinate_zeros must be 0 to 16, but is 17");
         assert_eq!(wrong(Hardware { direction_zeros: 15, ..default }), "hardware: direction_zeros must be 0 to 14, but is 15");
+        assert_eq!(
+            wrong(Hardware { coordinate_zeros: 1, secondary: true, ..default }),
+            "hardware: coordinate_zeros must be 0 to 0, but is 1"
+        );
         assert_eq!(wrong(Hardware { contexts: 0, ..default }), "hardware: contexts must be 1 to 64, but is 0");
         assert_eq!(wrong(Hardware { contexts: 5, context_bits: 2, ..default }), "hardware: contexts must be 1 to 4, but is 5");
     }

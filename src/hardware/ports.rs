@@ -1,8 +1,9 @@
 //! What goes in and out of the traversal unit, as bits.
 
 use super::RayError;
-use crate::method::Hit;
-use crate::num::{BoundScale, LineAddress, Ray, U, wire_struct};
+use crate::method::lod::Prior;
+use crate::method::{Departure, Hit};
+use crate::num::{BoundScale, LineAddress, Point, Ray, RayT, START_BITS, U, wire_struct};
 
 /// Number of a context's rays, modulo 2^8: what tells their lines apart.
 pub type Epoch = U<8>;
@@ -42,6 +43,66 @@ wire_struct! {
         tag: U<32>,
         /// The ray in model space.
         ray: Ray,
+    }
+}
+
+wire_struct! {
+    /// What a ray has that starts on a surface or wants less than the closest hit: comes with the ray, to hardware for such rays ([`Hardware::secondary`](super::Hardware::secondary));
+    /// other hardware does not look at it. Of a primary ray all is 0 but `t_max`, which has all bits.
+    pub struct SecondaryIn {
+        /// The smallest t that counts.
+        t_min: RayT,
+        /// The largest t that counts.
+        t_max: RayT,
+        /// Any hit serves: the ray ends with the closest of the first triangles tested together of which one is met.
+        any: bool,
+        /// What its start has beyond the ray's origin, in steps of 2^-31 units.
+        fraction: [U<START_BITS>; 3],
+        /// Rays before it decide about levels around its start; all that follows is theirs.
+        prior: bool,
+        /// Base triangle of the last hit.
+        last: U<28>,
+        /// Its corner p0.
+        a0: Point,
+        /// Its corner p1.
+        a1: Point,
+        /// Its corner p2.
+        a2: Point,
+        /// Of its edges (p1, p2), (p2, p0), (p0, p1): the second ray decides, not the first.
+        by_second: [bool; 3],
+        /// The ray that decides inside it, and about its other edges.
+        first: Ray,
+        /// The second ray.
+        second: Ray,
+    }
+}
+
+wire_struct! {
+    /// Corners of the triangle of a hit, as it was tested: what the exact start of rays from there is made of.
+    pub struct Corners {
+        /// Its corner p0.
+        p0: Point,
+        /// Its corner p1.
+        p1: Point,
+        /// Its corner p2.
+        p2: Point,
+    }
+}
+
+impl SecondaryIn {
+    /// That of a primary ray.
+    pub fn primary() -> Self {
+        Self { t_max: RayT::MAX, ..Self::default() }
+    }
+
+    /// That of a ray that leaves a surface, if it does, of whose hits those from the first to the last of `range` count, and one is enough if `any`.
+    pub fn of(departure: Option<&Departure>, range: [RayT; 2], any: bool) -> Self {
+        let [t_min, t_max] = range;
+        let own = Self { t_min, t_max, any, ..Self::default() };
+        let Some(&Departure { start, prior, .. }) = departure else { return own };
+        let from = Self { fraction: start.fraction, ..own };
+        let Some(Prior { tree, corners: [a0, a1, a2], viewers: [first, second], second: by_second }) = prior else { return from };
+        Self { prior: true, last: U::new(u64::from(tree)), a0, a1, a2, by_second, first, second, ..from }
     }
 }
 

@@ -39,6 +39,8 @@ states! {
     ChildWait = "CHILD_WAIT",
     Push = "PUSH",
     Pop = "POP",
+    Decide = "DECIDE",
+    DecideWait = "DECIDE_WAIT",
     Lod = "LOD",
     LodWait = "LOD_WAIT",
     Morph = "MORPH",

@@ -118,7 +118,8 @@ impl Machine {
             Some(Value::Table(inner)) => {
                 return Err(wrong(format!("a table, not a value; its values are {}", names(inner.iter()))));
             }
-            _ => Value::String(value.to_owned()),
+            // Nothing that can be left out is a text that says so.
+            _ => value.parse().map_or_else(|_| Value::String(value.to_owned()), Value::Boolean),
         };
         table.insert(leaf.to_owned(), parsed);
         let changed: Self = root.try_into().map_err(|error: toml::de::Error| wrong(error.message().to_owned()))?;

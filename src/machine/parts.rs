@@ -112,6 +112,9 @@ pub struct Units {
     /// Boxes of a node of four that are tested in a cycle: 4, 2 or 1.
     #[serde(default = "Units::boxes_per_cycle")]
     pub boxes_per_cycle: u32,
+    /// Rays can start on a surface: blocks for exact starts, and for rays that decide for others.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub secondary: bool,
     /// A unit of a plan: what the keys above do not say is as there. Machine files have none.
     #[serde(skip)]
     pub like: Option<Hardware>,
@@ -133,6 +136,7 @@ impl Units {
             boxes_per_cycle,
             divide_bits,
             setup_bits,
+            secondary: self.secondary || usual.secondary,
             ..usual
         }
     }

@@ -1,7 +1,7 @@
 //! The description of a scene for path tracing: models, materials, lights, cameras, in TOML.
 
 use super::cone::Cones;
-use super::light::{Environment, Light};
+use super::light::{Environment, Light, upwards};
 use super::material::Material;
 use crate::mesh::procedural;
 use serde::Deserialize;
@@ -111,10 +111,6 @@ pub struct CameraTable {
     pub fov: f64,
 }
 
-fn upwards() -> [f64; 3] {
-    [0.0, 1.0, 0.0]
-}
-
 fn view_angle() -> f64 {
     crate::rays::DEFAULT_VIEW_ANGLE_DEGREES
 }
@@ -183,9 +179,10 @@ const ROUGHNESS: Rule = ("must be above 0 and at most 1", |v| v > 0.0 && v <= 1.
 const VIEW: Rule = ("must be above 0 and below 180 degrees", |v| v > 0.0 && v < 180.0);
 const HALF_ANGLE: Rule = ("must be above 0 and below 90 degrees", |v| v > 0.0 && v < 90.0);
 
-/// Most paths of a pixel, and most bounces.
-const MOST_SAMPLES: u32 = 1 << 20;
-const MOST_DEPTH: u32 = 64;
+/// Most paths of a pixel.
+pub const MOST_SAMPLES: u32 = 1 << 20;
+/// Most bounces.
+pub const MOST_DEPTH: u32 = 64;
 
 /// Looks at values under their keys, and keeps the first that breaks its rule.
 #[derive(Default)]

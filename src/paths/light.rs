@@ -54,7 +54,8 @@ pub struct Environment {
     pub up: [f64; 3],
 }
 
-fn upwards() -> [f64; 3] {
+/// Up, if nothing says so.
+pub(super) fn upwards() -> [f64; 3] {
     [0.0, 1.0, 0.0]
 }
 

@@ -15,7 +15,7 @@ mod rays;
 mod world;
 
 pub use cone::{Cones, PathCone};
-pub use file::{CameraTable, MeshTable, ModelTable, PictureTable, SceneFile, SceneFileError};
+pub use file::{CameraTable, MOST_DEPTH, MOST_SAMPLES, MeshTable, ModelTable, PictureTable, SceneFile, SceneFileError};
 pub use film::{Film, FilmError, LightCount, light_count, picture_error};
 pub use integrate::{PathCounts, PathTracer, Paths};
 pub use light::{Environment, Light};

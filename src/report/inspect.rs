@@ -86,6 +86,7 @@ fn act(text: &mut String, act: Act, edges: Option<&Edges>) -> std::fmt::Result {
         Act::LocalChildren { met } => write!(text, "l{met}"),
         Act::WideChildren { met } => write!(text, "w{met}"),
         Act::SixChildren { met } => write!(text, "b{met}"),
+        Act::Decide => write!(text, "y"),
         Act::LodTest { refine } => {
             text.push(if refine { 'r' } else { 's' });
             let Some(Edges { level, node, states: [s0, s1, s2] }) = edges else { return Ok(()) };

@@ -8,13 +8,15 @@
 //! | `LocalChildren` | the same with 16-bit boxes that are stored in steps from their node's corner | four `box_decode`, four `box_test`, `child_sort` |
 //! | `WideChildren` | the same with 32-bit boxes | four `box_test32`, `child_sort` |
 //! | `SixChildren` | six children of a node with 16-bit boxes that are stored in finer steps from its corner are tested | six `box_decode8`, six `box_test`, `child_sort6` |
+//! | `Decide` | who decides about levels in the tree that is entered | `tree_deciders` |
 //! | `LodTest` | does a triangle serve | `lod_test` |
 //! | `Tessellate` | the inserted vertices of a triangle are morphed | `tessellate` |
 //! | `Triangles` | triangle tests; bit k of `hits`: the k-th is met | `tri_test`, and of those met `hit_divide` and `hit_select` |
 //! | `Pop` | a node is taken from the stack, and `dropped` if it lies behind the closest hit | |
 //! | `End` | the ray is done; a hit was `found` or not, and is `mapped` to the full resolution | two `hit_divide`, `bary_map` if mapped |
 //!
-//! Each line asked for takes a `node_address`, and each ray begins with a `ray_setup`.
+//! Each line asked for takes a `node_address`, and each ray begins with a `ray_setup`. Hardware for rays that start on a surface has blocks of its own for some of these
+//! ([`Hardware::block`](crate::hardware::Hardware::block)).
 
 use super::{SectionId, StepSink};
 use crate::block::{Operation, Operations};
@@ -76,6 +78,7 @@ pub enum Act {
     LocalChildren { met: u32 },
     WideChildren { met: u32 },
     SixChildren { met: u32 },
+    Decide,
     LodTest { refine: bool },
     Tessellate,
     Triangles { count: u32, hits: u32 },
@@ -162,6 +165,7 @@ impl Step {
                 add(Operation::BoxTest, 6);
                 add(Operation::ChildSort6, 1);
             }
+            Act::Decide => add(Operation::TreeDeciders, 1),
             Act::LodTest { .. } => add(Operation::LodTest, 1),
             Act::Tessellate => add(Operation::Tessellate, 1),
             Act::Triangles { count, hits } => {
@@ -241,6 +245,7 @@ mod tests {
             Step::on(fetch, Act::LocalChildren { met: 1 }),
             Step::on(fetch, Act::Children { met: 1 }),
             Step::on(fetch, Act::SixChildren { met: 6 }),
+            Step::of(Act::Decide),
             Step::of(Act::LodTest { refine: true }),
             Step::on(fetch, Act::Tessellate),
             Step::of(Act::Triangles { count: 5, hits: 0b10110 }),
@@ -267,6 +272,7 @@ mod tests {
             ("child_sort", 3),
             ("box_decode8", 6),
             ("child_sort6", 1),
+            ("tree_deciders", 1),
         ];
         assert_eq!(some, wanted);
     }

@@ -37,6 +37,7 @@ const END: u64 = 7;
 const PLAIN_CHILDREN: u64 = 8;
 const LOCAL_CHILDREN: u64 = 9;
 const SIX_CHILDREN: u64 = 10;
+const DECIDE: u64 = 11;
 
 /// A step, as whoever only reads its lines sees it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -71,6 +72,7 @@ impl StepWord {
             Act::LocalChildren { met } => (LOCAL_CHILDREN, met, false, false, 0),
             Act::WideChildren { met } => (WIDE_CHILDREN, met, false, false, 0),
             Act::SixChildren { met } => (SIX_CHILDREN, met, false, false, 0),
+            Act::Decide => (DECIDE, 0, false, false, 0),
             Act::LodTest { refine } => (LOD_TEST, 0, refine, false, 0),
             Act::Tessellate => (TESSELLATE, 0, false, false, 0),
             Act::Triangles { count, hits } => (TRIANGLES, count, false, false, hits),
@@ -120,6 +122,7 @@ impl StepWord {
             LOCAL_CHILDREN => Act::LocalChildren { met: number },
             WIDE_CHILDREN => Act::WideChildren { met: number },
             SIX_CHILDREN => Act::SixChildren { met: number },
+            DECIDE => Act::Decide,
             LOD_TEST => Act::LodTest { refine: flag },
             TESSELLATE => Act::Tessellate,
             TRIANGLES => Act::Triangles { count: number, hits: upper },
@@ -165,6 +168,7 @@ mod tests {
             Act::LocalChildren { met: 2 },
             Act::WideChildren { met: 0 },
             Act::SixChildren { met: 6 },
+            Act::Decide,
             Act::LodTest { refine: true },
             Act::LodTest { refine: false },
             Act::Tessellate,

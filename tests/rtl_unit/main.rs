@@ -4,6 +4,7 @@
 mod early;
 mod limits;
 mod port;
+mod secondary;
 mod wave;
 
 use lodray::block::EdgesPerCycle;
@@ -47,6 +48,7 @@ impl UnitPort for SideBySide {
             let port = match () {
                 () if model.ready != rtl.ready => "ready_o",
                 () if model.hit != rtl.hit => "valid_o, out_o",
+                () if model.corners != rtl.corners => "corners_o",
                 () if model.busy != rtl.busy => "busy_o",
                 () => "mem_valid_o, mem_o",
             };

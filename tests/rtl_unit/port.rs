@@ -1,7 +1,7 @@
 //! The RTL of the unit behind the ports of the model.
 
 use lodray::hardware::Hardware;
-use lodray::hardware::ports::{HitOut, MemoryAnswer, MemoryRequest, RayIn, SceneConfig};
+use lodray::hardware::ports::{Corners, HitOut, MemoryAnswer, MemoryRequest, RayIn, SceneConfig, SecondaryIn};
 use lodray::num::Wire;
 use lodray::sim::unit::environment::UnitPort;
 use lodray::sim::unit::{Inputs, Outputs};
@@ -35,6 +35,8 @@ pub struct Rtl {
     hit: (PortId, PortId),
     mem: (PortId, PortId),
     ray_in: (PortId, PortId),
+    secondary: PortId,
+    corners: PortId,
     hit_ready: PortId,
     mem_ready: PortId,
     answer: (PortId, PortId),
@@ -55,6 +57,8 @@ impl Rtl {
             hit: (output(&sim, "valid_o", 1), output(&sim, "out_o", HitOut::WIDTH)),
             mem: (output(&sim, "mem_valid_o", 1), output(&sim, "mem_o", MemoryRequest::WIDTH)),
             ray_in: (input(&sim, "valid_i", 1), input(&sim, "in_i", RayIn::WIDTH)),
+            secondary: input(&sim, "secondary_i", SecondaryIn::WIDTH),
+            corners: output(&sim, "corners_o", Corners::WIDTH),
             hit_ready: input(&sim, "ready_i", 1),
             mem_ready: input(&sim, "mem_ready_i", 1),
             answer: (input(&sim, "mem_valid_i", 1), input(&sim, "mem_i", MemoryAnswer::WIDTH)),
@@ -91,13 +95,16 @@ impl UnitPort for Rtl {
         // All of them come from registers, so they stand before the inputs of this cycle.
         let hit = if self.sim.peek(self.hit.0) { Some(self.sim.peek(self.hit.1)) } else { None };
         let mem = if self.sim.peek(self.mem.0) { Some(self.sim.peek(self.mem.1)) } else { None };
-        Outputs { ready: self.sim.peek(self.ready), hit, mem, busy: self.sim.peek(self.busy) }
+        // Beside no hit they are any.
+        let corners = if hit.is_some() { self.sim.peek(self.corners) } else { Corners::default() };
+        Outputs { ready: self.sim.peek(self.ready), hit, corners, mem, busy: self.sim.peek(self.busy) }
     }
 
     fn tick(&mut self, inputs: &Inputs) {
         self.sim.poke(self.flush, &inputs.flush);
         self.sim.poke(self.ray_in.0, &inputs.ray.is_some());
         self.sim.poke(self.ray_in.1, &inputs.ray.unwrap_or_default());
+        self.sim.poke(self.secondary, &inputs.secondary);
         self.sim.poke(self.hit_ready, &inputs.hit_ready);
         self.sim.poke(self.mem_ready, &inputs.mem_ready);
         self.sim.poke(self.answer.0, &inputs.answer.is_some());

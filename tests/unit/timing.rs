@@ -2,14 +2,16 @@
 
 use lodray::block::{BoxesPerCycle, EdgesPerCycle};
 use lodray::hardware::Hardware;
+use lodray::hardware::ports::SecondaryIn;
 use lodray::mesh::Hierarchy;
-use lodray::method::lod::LodImage;
+use lodray::method::lod::{LodImage, LodTraverser};
 use lodray::num::{Ray, VertexForm};
 use lodray::sim::timing::UnitTiming;
-use lodray::sim::unit::environment::{RunReport, UnitPort, run};
+use lodray::sim::unit::environment::{RunReport, UnitPort, run, run_secondary};
 use lodray::sim::unit::{Inputs, Latency, Outputs, SceneMemory, Stall, Traffic, TraversalUnit};
 use lodray::step::{Act, Batch, Fetch, SectionId, Step};
-use lodray_test_support::hardware::{OTHERS, form_for, most_levels, ray_for, scene_for};
+use lodray_test_support::bounces::{Bounce, next, steps_of_bounces};
+use lodray_test_support::hardware::{OTHERS, SECONDARIES, form_for, most_levels, ray_for, scene_for};
 use lodray_test_support::models::{Rng, any_rays, ball, coarsened, model, octahedron, scene_of, terrain, with_vertices, with_zeros};
 use lodray_test_support::timing::{Smooth, Timed, steps_of};
 
@@ -26,9 +28,15 @@ impl<U: UnitPort> Noting<U> {
     }
 
     fn run(&mut self, memory: &SceneMemory<'_>, traffic: &Traffic, rays: &[Ray]) -> RunReport {
-        let mut report = run(self, memory, traffic, rays).expect("a run without errors");
+        self.run_secondary(memory, traffic, rays, &[])
+    }
+
+    fn run_secondary(&mut self, memory: &SceneMemory<'_>, traffic: &Traffic, rays: &[Ray], secondary: &[SecondaryIn]) -> RunReport {
+        let mut report = run_secondary(self, memory, traffic, rays, secondary).expect("a run without errors");
         // What is met is the model's alone.
-        report.rays.iter_mut().for_each(|ray| ray.hit.hit = Default::default());
+        for ray in &mut report.rays {
+            (ray.hit.hit, ray.corners) = Default::default();
+        }
         report
     }
 }
@@ -138,6 +146,40 @@ fn equals_the_cycle_model_in_every_cycle() {
     }
     println!("{rays_compared} rays and {requests} requests are equal; {found} hits; {ticks} ticks in {cycles} cycles");
     assert!(rays_compared > 100_000 && requests > 1_000_000 && found > 10_000 && refused > 100_000 && ticks < cycles);
+}
+
+#[test]
+fn rays_from_a_surface_take_the_cycles_of_the_model() {
+    let (mut compared, mut decided) = (0u64, 0u64);
+    for (number, (name, h)) in models().iter().enumerate() {
+        let fits = |config: &&Hardware| h.levels <= most_levels(config) && form_for(config, h.vertices) == h.vertices;
+        for config in SECONDARIES.iter().filter(fits) {
+            let scene = scene_for(config, h);
+            let (image, decoded) = (LodImage::of(&scene), scene.decode());
+            let (memory, mut traverser) = (SceneMemory::new(image, 1000), LodTraverser::new(image));
+            let mut rng = Rng(number as u64);
+            let first = any_rays(h, 20, number as u64);
+            let mut bounces: Vec<Bounce> = first.iter().enumerate().map(|(k, ray)| Bounce::primary(ray_for(config, ray, k))).collect();
+            for _ in 0..3 {
+                let (rays, secondary): (Vec<_>, Vec<_>) = bounces.iter().map(|bounce| (bounce.ray, bounce.secondary())).unzip();
+                let batch = steps_of_bounces(image, &bounces);
+                for traffic in traffics() {
+                    let what = format!("{name}, {config:?}, {traffic:?}");
+                    let mut model = Noting::new(TraversalUnit::new(*config, memory.config()));
+                    let expected = model.run_secondary(&memory, &traffic, &rays, &secondary);
+                    let mut timed = Noting::new(Timed::new(*config, &memory, &batch, true));
+                    assert_eq!(timed.run(&memory, &traffic, &rays), expected, "{what}");
+                    assert_eq!(timed.requests, model.requests, "{what}");
+                    assert_eq!(timed.unit.unit.counts(expected.cycles), model.unit.counts(), "{what}");
+                    compared += rays.len() as u64;
+                }
+                decided += secondary.iter().filter(|of| of.prior).count() as u64;
+                bounces = next(config, &decoded, &mut traverser, &bounces, &mut rng);
+            }
+        }
+    }
+    println!("{compared} rays are equal; {decided} with rays before them");
+    assert!(compared > 5_000 && decided > 500);
 }
 
 #[test]

@@ -3,7 +3,7 @@
 use crate::cli::build::{FormArgs, build_scene};
 use crate::cli::common::is_quiet;
 use crate::cli::generate;
-use crate::cli::output::{busy, check_normals, open, warn};
+use crate::cli::output::{busy, check_normals, open, toml_in_one_line, warn};
 use anyhow::{Context, ensure};
 use lodray::format::Scene;
 use lodray::mesh::{RemeshOptions, read, remesh};
@@ -15,10 +15,7 @@ use std::path::Path;
 /// Reads a description; what is wrong with it is said in one line.
 pub fn description(path: &Path) -> anyhow::Result<SceneFile> {
     SceneFile::read(path).map_err(|error| match error {
-        SceneFileError::Toml { file, source } => {
-            let picture = source.to_string();
-            anyhow::anyhow!("{file}: {}: {}", picture.lines().next().unwrap_or_default(), source.message())
-        }
+        SceneFileError::Toml { file, source } => toml_in_one_line(&file, &source),
         other => other.into(),
     })
 }

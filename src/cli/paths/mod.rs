@@ -11,9 +11,11 @@ use super::method::{Chosen, MachineMethod};
 use super::names::named;
 use super::output::{print_json, progress, write_file};
 use anyhow::{Context, ensure};
-use lodray::method::lod;
-use lodray::paths::{Film, LightCount, PathCounts, Paths, Starts, light_count, picture_error};
+use lodray::format::Scene;
+use lodray::method::{Method, lod};
+use lodray::paths::{Film, LightCount, MOST_DEPTH, MOST_SAMPLES, PathCounts, Paths, SceneFile, Starts, light_count, picture_error};
 use lodray::picture::{ImageError, compare, save_png};
+use lodray::rays::Camera;
 use lodray::run::Compute;
 use made::{camera, description, load, paths, world};
 use serde::Serialize;
@@ -51,10 +53,10 @@ pub struct Args {
     #[arg(long, value_name = "WxH")]
     size: Option<Size>,
     /// Paths of a pixel, in place of the description's
-    #[arg(long, value_name = "N", value_parser = whole::<u32>(1..=1 << 20), allow_negative_numbers = true)]
+    #[arg(long, value_name = "N", value_parser = whole::<u32>(1..=MOST_SAMPLES.into()), allow_negative_numbers = true)]
     samples: Option<u32>,
     /// Bounces, in place of the description's
-    #[arg(long, value_name = "N", value_parser = whole::<u32>(0..=64), allow_negative_numbers = true)]
+    #[arg(long, value_name = "N", value_parser = whole::<u32>(0..=MOST_DEPTH.into()), allow_negative_numbers = true)]
     depth: Option<u32>,
     /// Seed, in place of the description's
     #[arg(long, value_name = "N", value_parser = seed(), allow_negative_numbers = true)]
@@ -69,7 +71,7 @@ pub struct Args {
     #[arg(long)]
     compare: bool,
     /// Also full resolution by other paths, so many of a pixel, and the error to it
-    #[arg(long, value_name = "N", value_parser = whole::<u32>(1..=1 << 20), allow_negative_numbers = true)]
+    #[arg(long, value_name = "N", value_parser = whole::<u32>(1..=MOST_SAMPLES.into()), allow_negative_numbers = true)]
     converged: Option<u32>,
     /// Simulate the paths on a machine, the name of one that comes with the program or a file, in place of a picture, at all depths from 0 on: what each bounce adds; for scenes of one model
     #[arg(long, value_name = "NAME|FILE", conflicts_with_all = ["compare", "converged"])]
@@ -134,10 +136,9 @@ struct Against {
     pixels: Option<LightCount>,
 }
 
-pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
+/// The description with what the command line says in its place.
+fn overruled(args: &Args) -> anyhow::Result<SceneFile> {
     let mut file = description(&args.scene)?;
-    let beside = args.scene.parent().unwrap_or(Path::new(""));
-    let shown = args.scene.display();
     if let Some(Size(width, height)) = args.size {
         (file.picture.width, file.picture.height) = (width, height);
     }
@@ -145,12 +146,26 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
     file.picture.depth = args.depth.unwrap_or(file.picture.depth);
     file.picture.seed = args.seed.unwrap_or(file.picture.seed);
     file.cones.diffuse = args.diffuse_spread.unwrap_or(file.cones.diffuse);
-    let named: Vec<_> = file.model.iter().filter_map(|model| model.file.as_ref()).map(|name| beside.join(name)).collect();
-    for (k, model) in file.model.iter().enumerate() {
-        let missing = model.file.as_ref().map(|name| beside.join(name)).filter(|path| !path.is_file());
-        ensure!(missing.is_none(), "{shown}: model[{k}].file: there is no file {}", missing.unwrap_or_default().display());
-    }
-    let inputs: Vec<&Path> = named.iter().map(PathBuf::as_path).chain([args.scene.as_path()]).collect();
+    Ok(file)
+}
+
+/// The files that the description names, beside its own; each is there.
+fn model_files(args: &Args, file: &SceneFile, beside: &Path) -> anyhow::Result<Vec<PathBuf>> {
+    let names = file.model.iter().enumerate().filter_map(|(k, model)| Some((k, beside.join(model.file.as_ref()?))));
+    names
+        .map(|(k, path)| {
+            ensure!(path.is_file(), "{}: model[{k}].file: there is no file {}", args.scene.display(), path.display());
+            Ok(path)
+        })
+        .collect()
+}
+
+pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
+    let file = overruled(args)?;
+    let beside = args.scene.parent().unwrap_or(Path::new(""));
+    let shown = args.scene.display();
+    let models = model_files(args, &file, beside)?;
+    let inputs: Vec<&Path> = models.iter().map(PathBuf::as_path).chain([args.scene.as_path()]).collect();
     let mut names = vec![FIGURES];
     names.extend(if args.machine.is_none() { &[PICTURE, LIGHT][..] } else { &[RESULTS] });
     if args.compare || args.converged.is_some() {
@@ -165,84 +180,132 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
         .collect::<anyhow::Result<Vec<_>>>()?;
     let camera = camera(&file, args.camera.as_deref(), &scenes).with_context(|| shown.to_string())?;
     let cache = Cache::new(&args.cache, None)?;
-    let made = |chosen: &Chosen| scenes.iter().map(|scene| Ok(chosen.make(scene, &cache)?.0)).collect::<anyhow::Result<Vec<_>>>();
-    let methods = made(&args.method.0)?;
-    ensure!(methods.iter().all(|method| method.leaves()), "--method {}: rays cannot leave its surface", args.method.0.method.name);
-    let own = world(&file, &scenes, &methods, &camera, args.method.0.delta(), args.starts);
-    let paths = paths(&file, &own, camera);
+    let subject = Subject { args, file: &file, scenes: &scenes, camera, cache: &cache, folder: &folder };
+    match &args.machine {
+        Some(name) => {
+            let bounces = subject.simulate(name)?;
+            folder.finish()?;
+            if args.json { print_json(&bounces)? } else { print::bounces(&bounces)? }
+        }
+        None => {
+            let report = subject.picture()?;
+            folder.finish()?;
+            if args.json { print_json(&report)? } else { print::report(&report, &args.out)? }
+        }
+    }
+    Ok(ExitCode::SUCCESS)
+}
 
-    if let Some(name) = &args.machine {
-        let machine = super::pass::machine(name, &args.set, "--set").with_context(|| format!("--machine {name}"))?;
-        let results = machine::run(&paths, &args.method.0, &scenes[0], &machine, args.compute, &shown.to_string())?;
+/// What there is to trace, and where its files go.
+struct Subject<'a> {
+    args: &'a Args,
+    file: &'a SceneFile,
+    scenes: &'a [Scene],
+    camera: Camera,
+    cache: &'a Cache,
+    folder: &'a RunFolder,
+}
+
+impl<'a> Subject<'a> {
+    /// The models by the method that was asked for.
+    fn methods(&self) -> anyhow::Result<Vec<Box<dyn Method + 'a>>> {
+        let chosen = &self.args.method.0;
+        let methods = self.made(chosen)?;
+        ensure!(methods.iter().all(|method| method.leaves()), "--method {}: rays cannot leave its surface", chosen.method.name);
+        Ok(methods)
+    }
+
+    fn made(&self, chosen: &Chosen) -> anyhow::Result<Vec<Box<dyn Method + 'a>>> {
+        self.scenes.iter().map(|scene| Ok(chosen.make(scene, self.cache)?.0)).collect()
+    }
+
+    /// What each bounce costs on the machine of that name.
+    fn simulate(&self, name: &str) -> anyhow::Result<Vec<machine::Bounces>> {
+        let Self { args, file, scenes, camera, folder, .. } = *self;
+        let chosen = &args.method.0;
+        let methods = self.methods()?;
+        let own = world(file, scenes, &methods, &camera, chosen.delta(), args.starts);
+        let mut machine = super::pass::machine(name, &args.set, "--set").with_context(|| format!("--machine {name}"))?;
+        // Paths need such units, whatever the machine's are for.
+        machine.description.units.secondary = true;
+        let shown = args.scene.display().to_string();
+        let results = machine::run(&paths(file, &own, camera), chosen, &scenes[0], &machine, args.compute, &shown)?;
         let bounces = machine::bounces(&results);
         let write = |name: &str, text: String| write_file(&folder.staging().join(name), text + "\n");
         write(FIGURES, serde_json::to_string_pretty(&bounces)?)?;
         write(RESULTS, serde_json::to_string_pretty(&results)?)?;
-        folder.finish()?;
-        return if args.json { print_json(&bounces) } else { print::bounces(&bounces) }.map(|()| ExitCode::SUCCESS);
+        Ok(bounces)
     }
 
-    let exposure = file.picture.exposure;
-    let start = Instant::now();
-    let film = shoot(&paths, "tracing");
-    let seconds = start.elapsed().as_secs_f64();
-    let save = |film: &Film, picture: &str, light: &str, what: &str| -> anyhow::Result<()> {
-        let notes = [("Software", format!("lodray {}", env!("CARGO_PKG_VERSION"))), ("Description", what.to_owned())];
-        let notes = notes.map(|(key, text)| (key.to_owned(), text));
-        save_png(&film.image(exposure), &notes, &folder.staging().join(picture))?;
-        Ok(film.save_exr(&notes[0].1, what, &folder.staging().join(light))?)
-    };
-    save(&film, PICTURE, LIGHT, args.method.0.method.name)?;
+    /// The picture, and how far it is from full resolution.
+    fn picture(&self) -> anyhow::Result<Report> {
+        let Self { args, file, scenes, camera, folder, .. } = *self;
+        let chosen = &args.method.0;
+        let methods = self.methods()?;
+        let own = world(file, scenes, &methods, &camera, chosen.delta(), args.starts);
+        let start = Instant::now();
+        let film = shoot(&paths(file, &own, camera), "tracing");
+        let seconds = start.elapsed().as_secs_f64();
+        self.save(&film, PICTURE, LIGHT, chosen.method.name)?;
 
-    let mut report = Report {
-        method: args.method.0.method.name,
-        delta: args.method.0.delta(),
-        starts: match args.starts {
-            Starts::Exact => "exact".to_owned(),
-            Starts::Independent => "independent".to_owned(),
-            Starts::Offset(radii) => radii.to_string(),
-        },
-        size: camera.pixels(),
-        samples: file.picture.samples,
-        depth: file.picture.depth,
-        seed: file.picture.seed,
-        diffuse_spread: file.cones.diffuse,
-        counts: film.counts.clone(),
-        seconds,
-        against_full: None,
-        against_converged: None,
-    };
-    if args.compare || args.converged.is_some() {
-        let finest = Chosen::plain(&lod::METHOD);
-        let methods = made(&finest)?;
-        let full = world(&file, &scenes, &methods, &camera, f64::INFINITY, Starts::Exact);
-        let same = Paths { world: &full, ..made::paths(&file, &full, camera) };
+        let mut report = Report {
+            method: chosen.method.name,
+            delta: chosen.delta(),
+            starts: match args.starts {
+                Starts::Exact => "exact".to_owned(),
+                Starts::Independent => "independent".to_owned(),
+                Starts::Offset(radii) => radii.to_string(),
+            },
+            size: camera.pixels(),
+            samples: file.picture.samples,
+            depth: file.picture.depth,
+            seed: file.picture.seed,
+            diffuse_spread: file.cones.diffuse,
+            counts: film.counts.clone(),
+            seconds,
+            against_full: None,
+            against_converged: None,
+        };
+        if args.compare || args.converged.is_some() {
+            self.compare(&film, &mut report)?;
+        }
+        write_file(&folder.staging().join(FIGURES), serde_json::to_string_pretty(&report)? + "\n")?;
+        Ok(report)
+    }
+
+    /// How far the film is from full resolution by the same paths and by others.
+    fn compare(&self, film: &Film, report: &mut Report) -> anyhow::Result<()> {
+        let Self { args, file, scenes, camera, .. } = *self;
+        let methods = self.made(&Chosen::plain(&lod::METHOD))?;
+        let full = world(file, scenes, &methods, &camera, f64::INFINITY, Starts::Exact);
+        let same = paths(file, &full, camera);
+        let exposure = file.picture.exposure;
         let against = |truth: &Film, samples: u32, by_same: bool| Against {
             samples,
-            light: picture_error(&film, truth),
+            light: picture_error(film, truth),
             image: compare(&film.image(exposure), &truth.image(exposure)),
-            pixels: by_same.then(|| light_count(&film, truth)),
+            pixels: by_same.then(|| light_count(film, truth)),
         };
         if args.compare {
             let truth = shoot(&same, "tracing full resolution");
-            save(&truth, FULL_PICTURE, FULL_LIGHT, "full resolution")?;
+            self.save(&truth, FULL_PICTURE, FULL_LIGHT, "full resolution")?;
             report.against_full = Some(against(&truth, same.samples, true));
         }
         if let Some(samples) = args.converged {
-            let other = Paths { samples, seed: same.seed ^ OTHER_SEED, ..same };
-            let truth = shoot(&other, "tracing full resolution, converged");
-            save(&truth, FULL_PICTURE, FULL_LIGHT, "full resolution, converged")?;
+            let truth = shoot(&Paths { samples, seed: same.seed ^ OTHER_SEED, ..same }, "tracing full resolution, converged");
+            self.save(&truth, FULL_PICTURE, FULL_LIGHT, "full resolution, converged")?;
             report.against_converged = Some(against(&truth, samples, false));
         }
+        Ok(())
     }
-    write_file(&folder.staging().join(FIGURES), serde_json::to_string_pretty(&report)? + "\n")?;
-    folder.finish()?;
-    if args.json {
-        print_json(&report)?;
-    } else {
-        print::report(&report, &args.out)?;
+
+    /// Writes a film as a picture and as light.
+    fn save(&self, film: &Film, picture: &str, light: &str, what: &str) -> anyhow::Result<()> {
+        let notes = [("Software", format!("lodray {}", env!("CARGO_PKG_VERSION"))), ("Description", what.to_owned())];
+        let notes = notes.map(|(key, text)| (key.to_owned(), text));
+        save_png(&film.image(self.file.picture.exposure), &notes, &self.folder.staging().join(picture))?;
+        Ok(film.save_exr(&notes[0].1, what, &self.folder.staging().join(light))?)
     }
-    Ok(ExitCode::SUCCESS)
 }
 
 fn shoot(paths: &Paths<'_>, what: &str) -> Film {

@@ -105,7 +105,12 @@ pub(super) fn print(hardware: &Hardware, out: &mut String) {
     .put("COMPACT_VERTICES", u32::from(hardware.compact_vertices), "inserted vertices can be displacements")
     .put("EXACT_VERTICES", u32::from(hardware.exact_vertices), "they can be stored as they are")
     .put("COORDINATE_ZEROS", hardware.coordinate_zeros, "zero bits at the bottom of every coordinate, which it leaves out")
-    .put("DIRECTION_ZEROS", hardware.direction_zeros, "of every component of a direction");
+    .put("DIRECTION_ZEROS", hardware.direction_zeros, "of every component of a direction")
+    .put(
+        "SECONDARY",
+        u32::from(hardware.secondary),
+        "rays can start on a surface, count hits of a range of t only, and end at any of them",
+    );
     let form = hardware.form();
     let [edge_stages, t_stages] = form.edge_product_stages();
     let edges_at = |edges_per_cycle| TriTest::timing(&Form { edges_per_cycle, ..form });

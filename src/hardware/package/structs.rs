@@ -2,7 +2,7 @@
 
 use crate::block::{self, Block};
 use crate::format::{BvhNode, Displacements, L0Record, SiblingGroup, VertexData};
-use crate::hardware::ports::{HitOut, MemoryAnswer, MemoryRequest, RayIn, SceneConfig};
+use crate::hardware::ports::{Corners, HitOut, MemoryAnswer, MemoryRequest, RayIn, SceneConfig, SecondaryIn};
 use crate::method::{Entry, Hit};
 use crate::num::{self, Box16, Field, Layout, Wire};
 use std::fmt::Write;
@@ -88,6 +88,8 @@ pub(super) fn all() -> Vec<Struct> {
         of::<Hit>("hit"),
         of::<SceneConfig>("scene_config"),
         of::<RayIn>("ray_in"),
+        of::<SecondaryIn>("secondary_in"),
+        of::<Corners>("corners"),
         of::<HitOut>("hit_out"),
         of::<MemoryRequest>("memory_request"),
         of::<MemoryAnswer>("memory_answer"),

@@ -104,11 +104,16 @@
 
   // A hit on its way to the closest.
   typedef struct packed {
+    below_t below;                // What its numerators have below whole numbers: 0 where all rays start at whole points, and kept nowhere.
     logic [CONTEXT_W-1:0] owner;  // Its context.
     logic [1:0] number;           // Which of the context's triangles.
     tri_test_out_t test;          // Its numerators.
   } queued_hit_t;
-  localparam int unsigned QUEUED_HIT_W = CONTEXT_W + 2 + TRI_TEST_OUT_W;
+  localparam int unsigned QUEUED_HIT_W = BELOW_W + CONTEXT_W + 2 + TRI_TEST_OUT_W;
+  localparam int unsigned KEPT_HIT_W = QUEUED_HIT_W - (1 - SECONDARY) * BELOW_W;
+
+  // The hit port's word, with the corners of the triangle in front where rays can start on it.
+  localparam int unsigned TOLD_W = HIT_OUT_W + SECONDARY * CORNERS_W;
 
 endpackage
 

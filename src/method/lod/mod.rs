@@ -32,6 +32,7 @@ pub static METHOD: Registered = Registered {
             Operation::HitDivide,
             Operation::HitSelect,
             Operation::BaryMap,
+            Operation::TreeDeciders,
         ],
         has_levels: true,
     }),

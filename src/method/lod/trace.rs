@@ -189,8 +189,9 @@ impl<S: StepSink, H: HitSink, const COMPACT: bool, const FULL_DETAIL: bool, cons
         let record = &self.image.records[tree];
         self.tree = TreeAt { index: tree as u32, lines: L0Record::line_tree(&record[4..]) }; // an index of 28 bits
         let p = VertexData::from_words(&record[..4]).points();
-        if LEAVES {
-            self.deciders = self.prior.map_or(Deciders::default(), |prior| prior.deciders(tree as u32, &p));
+        if LEAVES && let Some(prior) = self.prior.filter(|_| self.tree.lines.depth > 0) {
+            self.steps.step(Step::of(Act::Decide));
+            self.deciders = prior.deciders(tree as u32, &p);
         }
         let L0Record { e0, e1, e2, .. } = L0Record::from_words(&record[4..]);
         self.tree_node(0, 0, [p, p], [e0, e1, e2])

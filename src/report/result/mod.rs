@@ -112,6 +112,7 @@ impl SimResult {
         // Where compute takes no time there are no units.
         let unit = method.unit.filter(|_| setup.compute == Compute::Units);
         let parts = Parts { machine, dram: &dram, compute: setup.compute };
+        let hardware = machine.units.config();
         let mut channels = ChannelCounts::default();
         run.channels.iter().for_each(|channel| channels.add(channel));
         let roofline = parts.roofline(&Done { counts, channels: &channels, operations: Some(&run.operations), cycles: run.cycles });
@@ -150,7 +151,7 @@ impl SimResult {
                 .units
                 .as_ref()
                 .map(|counts| UnitsResult::new(counts, u64::from(machine.cores.groups) * u64::from(machine.units.per_group))),
-            operations: run.operations.iter().filter(|&(_, n)| n > 0).map(|(o, n)| (o.name().to_owned(), n)).collect(),
+            operations: run.operations.iter().filter(|&(_, n)| n > 0).map(|(o, n)| (hardware.block(o).name().to_owned(), n)).collect(),
             intervals,
             dram,
             setup,

@@ -92,12 +92,13 @@ impl Parts<'_> {
         if self.compute == Compute::Free {
             return Vec::new();
         }
-        let (units, form) = (&self.machine.units, self.machine.units.config().form());
+        let (units, hardware) = (&self.machine.units, self.machine.units.config());
+        let form = hardware.form();
         let all = f64::from(self.machine.cores.groups * units.per_group);
         let of = |operation| operations.get(operation);
         // Operations, and the cycles that they take. Nodes of all kinds go through `child_test`: those of a BVH count as their sorts.
         let taken = |block: Operation| {
-            let interval = u64::from(block.timing(&form).interval);
+            let interval = u64::from(hardware.block(block).timing(&form).interval);
             match block {
                 Operation::ChildTest => {
                     let [fours, sixes] = [of(Operation::ChildTest) + of(Operation::ChildSort), of(Operation::ChildSort6)];

@@ -28,6 +28,7 @@ const fn part(state: State) -> &'static str {
         State::Visit | State::Push | State::Pop => "stack",
         State::Fetch => Cause::NAMES[Cause::Port as usize],
         State::Child | State::ChildWait => "child_test",
+        State::Decide | State::DecideWait => "tree_deciders",
         State::Lod | State::LodWait => "lod_test",
         State::Morph | State::MorphWait => "tessellate",
         State::Tri => "tri_test",

@@ -76,7 +76,7 @@ impl BlockTable {
         if !hardware.has(operation) {
             return 0.0;
         }
-        let parts = operation.parts(&hardware.form());
+        let parts = hardware.block(operation).parts(&hardware.form());
         let prices = &self.operations;
         let logic = products(&parts) * prices.multiply_32_pj / (WORD * WORD) + f64::from(parts.add_bits) * prices.add_32_pj / WORD;
         let written = f64::from(parts.registers.written);
@@ -87,7 +87,7 @@ impl BlockTable {
     /// Leakage of a traversal unit, in mW.
     pub fn unit_leakage_mw(&self, unit: MethodUnit, hardware: &Hardware) -> f64 {
         let prices = &self.operations;
-        let of_block = |&operation: &Operation| {
+        let of_block = |operation: Operation| {
             let form = hardware.form();
             let (parts, cycles) = (operation.parts(&form), f64::from(operation.timing(&form).interval));
             let logic = products(&parts) * prices.multiply_32_mw / (WORD * WORD)

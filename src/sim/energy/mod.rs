@@ -113,13 +113,18 @@ impl EnergyModel {
         })
     }
 
+    /// The block that does it.
+    fn name(&self, operation: Operation) -> &'static str {
+        self.hardware.block(operation).name()
+    }
+
     /// What each thing costs that `counts` counts; the memory's commands are priced by its own model.
     pub fn prices(&self, counts: &EnergyCounts) -> Prices {
         let (l1, l2) = (&self.l1, &self.l2);
         let blocks = self.blocks.as_ref();
         let occurred = counts.operations.iter().filter(|&(_, count)| count > 0);
         let priced =
-            |(operation, _): (Operation, u64)| Some((operation.name().to_owned(), blocks?.operation_pj(operation, &self.hardware)));
+            |(operation, _): (Operation, u64)| Some((self.name(operation).to_owned(), blocks?.operation_pj(operation, &self.hardware)));
         let units = blocks.zip(counts.unit);
         Prices {
             l1_read: l1.read,
@@ -141,7 +146,8 @@ impl EnergyModel {
         let mw_to_pj = counts.cycles as f64 / self.cycles_per_second * PJ_PER_MW_S;
         let prices = self.prices(counts);
         let of = |count: u64, price: f64| count as f64 * price;
-        let compute = |(operation, count): (Operation, u64)| Some((operation.name(), of(count, *prices.operations.get(operation.name())?)));
+        let compute =
+            |(operation, count): (Operation, u64)| Some((self.name(operation), of(count, *prices.operations.get(self.name(operation))?)));
         EnergyReport {
             unit: self.unit,
             l1_read: of(counts.l1_reads, prices.l1_read),

@@ -66,6 +66,11 @@ impl<R: Steps> UnitTiming<R> {
                 self.states[State::Push as usize] += push;
                 self.onward(who, result + 1 + push, now);
             }
+            Resource::Decide => {
+                self.left(State::Decide, who, now + 1);
+                self.states[State::DecideWait as usize] += result - now;
+                self.onward(who, result + 1, now);
+            }
             Resource::Lod => {
                 self.left(State::Lod, who, now + 1);
                 self.states[State::LodWait as usize] += result - now;
@@ -213,6 +218,9 @@ impl<R: Steps> UnitTiming<R> {
             | Act::SixChildren { .. } => {
                 context.enter(State::Child, at);
             }
+            // Hardware without such rays takes them as if each decided for itself.
+            Act::Decide if !self.has_deciders => return Some(at),
+            Act::Decide => context.enter(State::Decide, at),
             // A context sees itself which edges are open, where rays are of full detail or of none.
             Act::LodTest { .. } if !self.chooses_levels => {
                 self.states[State::Lod as usize] += 1;

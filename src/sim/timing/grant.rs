@@ -13,6 +13,7 @@ impl<R: Steps> UnitTiming<R> {
             State::Setup => Resource::Setup,
             State::Fetch => Resource::Fetch,
             State::Child => Resource::Child,
+            State::Decide => Resource::Decide,
             State::Lod => Resource::Lod,
             State::Morph => Resource::Morph,
             State::Tri => Resource::Tri,

@@ -5,7 +5,6 @@ use super::hits::HitQueue;
 use super::ports::{LineRequest, Ports, Steps, untag};
 use super::station::Station;
 use super::wheel::{Wheel, bits};
-use crate::block::Timing;
 use crate::block::bary_map::BaryMap;
 use crate::block::box_decode::BoxDecode;
 use crate::block::box_decode8::BoxDecode8;
@@ -14,13 +13,11 @@ use crate::block::box_test32::BoxTest32;
 use crate::block::child_sort::ChildSort;
 use crate::block::child_sort6::ChildSort6;
 use crate::block::child_test::ChildTest;
-use crate::block::hit_divide::HitDivide;
 use crate::block::hit_select::HitSelect;
-use crate::block::lod_test::LodTest;
 use crate::block::node_address::NodeAddress;
-use crate::block::ray_setup::RaySetup;
 use crate::block::tessellate::Tessellate;
-use crate::block::tri_test::TriTest;
+use crate::block::tree_deciders::TreeDeciders;
+use crate::block::{Operation, Timing};
 use crate::hardware::{Hardware, MAX_CONTEXTS};
 use crate::sim::unit::{Arbiter, Resource, State};
 use std::collections::VecDeque;
@@ -40,13 +37,16 @@ pub struct UnitTiming<R> {
     /// By resource.
     pub(super) stations: [Station; Resource::COUNT],
     pub(super) select: Station,
+    /// Names of its setup, its LOD test, its triangle test and its division.
+    pub(super) fitted: [&'static str; 4],
     /// The test of a node whose 16-bit boxes are stored as they are, of one that stores steps, of one with 32-bit boxes, and of one of six.
     pub(super) plain_node: Timing,
     pub(super) local_node: Timing,
     pub(super) wide_node: Timing,
     pub(super) six_node: Timing,
-    /// The hardware has a LOD test, and a map of hits.
+    /// The hardware has a LOD test, one by other rays, and a map of hits.
     pub(super) chooses_levels: bool,
+    pub(super) has_deciders: bool,
     pub(super) hit_mapping: bool,
     pub(super) idle: u64,
     /// Requests on their way through `node_address`, and since when.
@@ -83,14 +83,16 @@ impl<R: Steps> UnitTiming<R> {
             let interval = config.boxes_per_cycle.passes(children);
             Timing { latency: latency + interval - 1, interval }
         };
+        let fitted = |operation| config.block(operation).timing(&config.form());
         let timing = |resource| match resource {
-            Resource::Setup => config.timing::<RaySetup>(),
+            Resource::Setup => fitted(Operation::RaySetup),
             Resource::Fetch => config.timing::<NodeAddress>(),
             Resource::Child => config.timing::<ChildTest>(),
-            Resource::Lod => config.timing::<LodTest>(),
+            Resource::Decide => config.timing::<TreeDeciders>(),
+            Resource::Lod => fitted(Operation::LodTest),
             Resource::Morph => config.timing::<Tessellate>(),
-            Resource::Tri => config.timing::<TriTest>(),
-            Resource::Divide => config.timing::<HitDivide>(),
+            Resource::Tri => fitted(Operation::TriTest),
+            Resource::Divide => fitted(Operation::HitDivide),
             Resource::Map => config.timing::<BaryMap>(),
             Resource::Hit => Timing::pipelined(1),
         };
@@ -102,12 +104,14 @@ impl<R: Steps> UnitTiming<R> {
             since: Default::default(),
             asked: 0,
             stations: Resource::ALL.map(|resource| Station::new(timing(resource))),
+            fitted: [Operation::RaySetup, Operation::LodTest, Operation::TriTest, Operation::HitDivide].map(|of| config.block(of).name()),
             select: Station::new(config.timing::<HitSelect>()),
             plain_node: node(4, latency(&[test, sort])),
             local_node: node(4, latency(&[decode, test, sort])),
             wide_node: node(4, latency(&[test32, sort])),
             six_node: node(6, latency(&[decode8, test, sort6])),
             chooses_levels: config.chooses_levels(),
+            has_deciders: config.has_deciders(),
             hit_mapping: config.hit_mapping,
             idle: u64::MAX >> (MAX_CONTEXTS - config.contexts),
             requests: VecDeque::new(),

@@ -4,9 +4,12 @@ use super::register::Register;
 use crate::block::bary_map::{self, NodeIndex};
 use crate::block::hit_divide;
 use crate::block::hit_select::{self, FullId};
-use crate::block::tri_test::{self, EdgeFunction, TNumerator};
+use crate::block::start_divide;
+use crate::block::start_test::{self, Below};
+use crate::block::tri_test::{EdgeFunction, TNumerator};
+use crate::hardware::ports::Corners;
 use crate::method::Hit;
-use crate::num::{BARY_ONE, Bary, RayT, U};
+use crate::num::{BARY_ONE, Bary, Point, RayT, U};
 
 /// A triangle that was met.
 #[derive(Clone, Copy, Debug, Default)]
@@ -16,7 +19,7 @@ pub struct Met {
     /// Which of the context's triangles.
     pub number: u16,
     /// Its numerators.
-    pub test: tri_test::Out,
+    pub test: start_test::Out,
 }
 
 /// Registers of the closest hit.
@@ -32,6 +35,9 @@ pub struct Closest {
     v: EdgeFunction,
     w: EdgeFunction,
     det: EdgeFunction,
+    /// What v and w have below whole numbers.
+    below: Below,
+    pub corners: Corners,
     b0: Bary,
     b1: Bary,
     b2: Bary,
@@ -39,26 +45,37 @@ pub struct Closest {
 }
 
 impl Closest {
-    /// Nothing yet.
-    pub fn clear(&mut self) {
+    /// Nothing yet, and nothing beyond `t_max` counts.
+    pub fn clear(&mut self, t_max: RayT) {
         self.known.set(false);
-        self.t_max.set(RayT::MAX);
+        self.t_max.set(t_max);
     }
 
-    /// Takes a hit that was compared if it is closer.
-    pub fn select(&mut self, select: &hit_select::Out, t: RayT, [tree, level, node]: [u64; 3], test: &tri_test::Out) {
-        if select.closer {
+    /// Takes a hit that was compared if it is closer, and not before `t_min` or beyond the largest t.
+    pub fn select(
+        &mut self,
+        select: &hit_select::Out,
+        [t_min, t]: [RayT; 2],
+        [tree, level, node]: [u64; 3],
+        test: &start_test::Out,
+        corners: [Point; 3],
+    ) {
+        if select.closer && t >= t_min && t <= self.t_max.get() {
             self.known.set(true);
             self.t_max.set(t);
             self.id.set(select.id);
             (self.tree, self.level, self.node) = (U::new(tree), U::new(level), U::new(node));
-            (self.front, self.v, self.w, self.det) = (test.front, test.v, test.w, test.det);
+            let &start_test::Out { test, below } = test;
+            (self.front, self.v, self.w, self.det, self.below) = (test.front, test.v, test.w, test.det, below);
+            let [p0, p1, p2] = corners;
+            self.corners = Corners { p0, p1, p2 };
         }
     }
 
     /// Operands of the division of v, or of w.
-    pub fn divide_in(&self, v: bool) -> hit_divide::In {
-        hit_divide::In { numerator: TNumerator::new(if v { self.v } else { self.w }.get()), denominator: self.det }
+    pub fn divide_in(&self, v: bool) -> start_divide::In {
+        let (numerator, low) = if v { (self.v, self.below.v) } else { (self.w, self.below.w) };
+        start_divide::In { numerator: TNumerator::new(numerator.get()), low, denominator: self.det }
     }
 
     /// The quotient of v, or of w.

@@ -7,9 +7,10 @@ use super::closest::{Closest, Met};
 use super::register::Register;
 use super::wires::{Cycle, DIVIDE_FOR_T, DIVIDE_FOR_V, DIVIDE_FOR_W};
 use crate::block::bary_map::NodeIndex;
-use crate::block::{child_test, lod_test, ray_setup, tessellate::child_triangle};
+use crate::block::node_deciders::{self, NodeDeciders};
+use crate::block::{Block, child_test, lod_test, ray_setup, tessellate::child_triangle, tree_deciders};
 use crate::format::{L0Record, VertexData};
-use crate::hardware::ports::{Epoch, RayIn, SceneConfig};
+use crate::hardware::ports::{Epoch, RayIn, SceneConfig, SecondaryIn};
 use crate::hardware::{Fetch, Hardware, RayError, State};
 use crate::method::{Entry, Op, TraversalStack, is_beyond};
 use crate::num::{BoundCode, Point, Ray, S_ONE, U, Wire};
@@ -34,6 +35,11 @@ pub struct Context {
     pub fetch: Register<Fetch>,
     pub tag: U<32>,
     pub ray: Ray,
+    /// What it has besides, where rays can start on a surface; else that of a primary ray.
+    pub secondary: SecondaryIn,
+    /// Who decides in the tree, and about the node's edges.
+    pub deciders: tree_deciders::Out,
+    pub by: [tree_deciders::Decider; 3],
     pub setup: ray_setup::Out,
     pub entry: Register<Entry>,
     pub tree: Register<U<28>>,
@@ -84,16 +90,20 @@ pub struct Context {
     /// Its hardware has a LOD test, and a map of hits.
     pub chooses_levels: bool,
     hit_mapping: bool,
+    /// Rays can start on a surface, and others decide for them.
+    from_surface: bool,
+    has_deciders: bool,
 }
 
 impl Context {
     /// An idle context of this hardware.
     pub fn new(hardware: &Hardware) -> Self {
         let splits = vec![Split::default(); hardware.split_triangles() as usize].into();
-        let &Hardware { hit_mapping, index_bits, line_bits, coordinate_zeros, .. } = hardware;
+        let &Hardware { hit_mapping, index_bits, line_bits, coordinate_zeros, secondary: from_surface, .. } = hardware;
         let (room, stored_levels) = (hardware.stack_entries() as usize, u64::from(hardware.stored_levels()));
-        let chooses_levels = hardware.chooses_levels();
-        Self { splits, room, stored_levels, index_bits, line_bits, coordinate_zeros, chooses_levels, hit_mapping, ..Self::default() }
+        let (chooses_levels, has_deciders) = (hardware.chooses_levels(), hardware.has_deciders());
+        let of_hardware = Self { index_bits, line_bits, coordinate_zeros, chooses_levels, hit_mapping, ..Self::default() };
+        Self { splits, room, stored_levels, from_surface, has_deciders, secondary: SecondaryIn::primary(), ..of_hardware }
     }
 
     /// The node's children are as deep as the tree: triangles, not nodes.
@@ -136,7 +146,6 @@ impl Context {
             State::SetupWait => match cycle.setup.result(me) {
                 Some(setup) => {
                     self.setup = *setup;
-                    self.closest.clear();
                     self.stack.clear();
                     self.stand_at(Entry::default());
                     self.visits_left.set(scene.visits);
@@ -166,6 +175,15 @@ impl Context {
             },
             State::Push => self.push(),
             State::Pop => self.pop(),
+            State::Decide => self.when(cycle.decide.granted(me), State::DecideWait),
+            State::DecideWait => match cycle.decide.result(me) {
+                Some(&deciders) => {
+                    self.deciders = deciders;
+                    self.look_up_deciders();
+                    State::Lod
+                }
+                None => State::DecideWait,
+            },
             State::Lod if !self.chooses_levels => self.decided(scene, self.extreme()),
             State::Lod => self.when(cycle.lod.granted(me), State::LodWait),
             State::LodWait => match cycle.lod.result(me) {
@@ -238,6 +256,11 @@ impl Context {
     /// A ray comes. What the one before still waited for comes too late, if at all.
     fn take(&mut self, ray: &RayIn, cycle: &Cycle) -> State {
         (self.tag, self.ray) = (ray.tag, ray.ray);
+        if self.from_surface {
+            self.secondary = cycle.secondary;
+        }
+        self.deciders = tree_deciders::Out::default();
+        self.closest.clear(self.secondary.t_max);
         (self.want, self.waiting) = (0, 0);
         self.error = if cycle.flush {
             Some(RayError::Aborted)
@@ -247,6 +270,12 @@ impl Context {
             Some(RayError::Scene)
         };
         if self.error.is_some() { State::Done } else { State::Setup }
+    }
+
+    /// Who decides about the edges of the node.
+    fn look_up_deciders(&mut self) {
+        let input = node_deciders::In { tree: self.deciders, level: self.level.get(), node: self.node.get() };
+        self.by = NodeDeciders::eval(&input).by;
     }
 
     /// The next state: `to` when something happened.
@@ -287,6 +316,7 @@ impl Context {
             }
             Entry::TREE => {
                 self.tree.set(entry.index);
+                self.by = self.deciders.edges;
                 self.fetch.set(Fetch::Record);
                 self.want = 0b11;
                 State::Fetch
@@ -300,6 +330,7 @@ impl Context {
                 let child = entry.index.get() as usize & 3;
                 self.f.set(child_triangle(parent.f, parent.g, child));
                 self.p.set(child_triangle(parent.p, parent.q, child));
+                self.look_up_deciders();
                 State::Lod
             }
         }
@@ -326,7 +357,11 @@ impl Context {
             // Where entries have codes the root's are kept in its own.
             self.entry.set(Entry { e0, e1, e2, ..self.entry.get() });
         }
-        if depth == U::ZERO { self.enter_triangles(false) } else { State::Lod }
+        match depth {
+            U::ZERO => self.enter_triangles(false),
+            _ if self.has_deciders && self.secondary.prior => State::Decide,
+            _ => State::Lod,
+        }
     }
 
     fn push(&mut self) -> State {
@@ -346,8 +381,12 @@ impl Context {
     }
 
     fn pop(&mut self) -> State {
+        let known = self.closest.known.get();
+        if self.secondary.any && known {
+            return State::DivideV;
+        }
         match self.stack.step(Op::Pop) {
-            None if self.closest.known.get() => State::DivideV,
+            None if known => State::DivideV,
             None => State::Done,
             Some(top) if is_beyond(top.t_near, self.closest.t_max.get()) => State::Pop,
             Some(top) => {
@@ -374,12 +413,12 @@ impl Context {
             self.next.set(U::new((self.next.get().get() + 1) & 3));
             pending += 1;
         }
-        if cycle.tri.result(me).is_some_and(|test| !test.hit) {
+        if cycle.tri.result(me).is_some_and(|out| !out.test.hit) {
             pending -= 1;
         }
         if let Some((select, t, Met { number, test, .. })) = cycle.select.result(me) {
-            let id = self.triangle_id(*number);
-            self.closest.select(select, *t, id, test);
+            let (id, corners) = (self.triangle_id(*number), self.triangle(usize::from(*number)));
+            self.closest.select(select, [self.secondary.t_min, *t], id, test, corners);
             pending -= 1;
         }
         self.pending.set(U::new(pending));

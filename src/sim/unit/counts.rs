@@ -6,13 +6,10 @@ use super::register::BlockCounts;
 use crate::block::Block;
 use crate::block::bary_map::BaryMap;
 use crate::block::child_test::ChildTest;
-use crate::block::hit_divide::HitDivide;
 use crate::block::hit_select::HitSelect;
-use crate::block::lod_test::LodTest;
 use crate::block::node_address::NodeAddress;
-use crate::block::ray_setup::RaySetup;
 use crate::block::tessellate::Tessellate;
-use crate::block::tri_test::TriTest;
+use crate::block::tree_deciders::TreeDeciders;
 use crate::hardware::State;
 
 /// What a unit did.
@@ -49,17 +46,20 @@ impl UnitCounts {
 impl TraversalUnit {
     /// What it did so far.
     pub fn counts(&self) -> UnitCounts {
-        let blocks = vec![
-            (RaySetup::NAME, self.ray_setup.counts()),
+        let mut blocks = vec![
+            self.ray_setup.counts(),
             (NodeAddress::NAME, self.node_address.counts()),
             (ChildTest::NAME, self.child_test.counts()),
-            (LodTest::NAME, self.lod_test.counts()),
+            self.lod_test.counts(),
             (Tessellate::NAME, self.tessellate.counts()),
-            (TriTest::NAME, self.tri_test.counts()),
-            (HitDivide::NAME, self.hit_divide.counts()),
+            self.tri_test.counts(),
+            self.hit_divide.counts(),
             (HitSelect::NAME, self.hit_select.counts()),
             (BaryMap::NAME, self.bary_map.counts()),
         ];
+        if self.hardware.has_deciders() {
+            blocks.push((TreeDeciders::NAME, self.tree_deciders.counts()));
+        }
         UnitCounts { cycles: self.cycles, states: self.states, blocks, longest_queue: self.longest_queue }
     }
 

@@ -8,7 +8,7 @@ use super::error::UnitError;
 use super::memory::SceneMemory;
 use super::traffic::Traffic;
 use super::{Inputs, Outputs, TraversalUnit};
-use crate::hardware::ports::{HitOut, MemoryAnswer, MemoryRequest, RayIn};
+use crate::hardware::ports::{Corners, HitOut, MemoryAnswer, MemoryRequest, RayIn, SecondaryIn};
 use crate::num::{Ray, U};
 use std::cmp::Reverse;
 use std::collections::BinaryHeap;
@@ -44,6 +44,8 @@ pub struct RayReport {
     pub done: u64,
     /// The hit.
     pub hit: HitOut,
+    /// Corners of its triangle, from hardware whose rays can start there.
+    pub corners: Corners,
 }
 
 impl RayReport {
@@ -74,7 +76,21 @@ const PATIENCE: u64 = 10_000;
 /// # Errors
 /// The unit did something that it must not do.
 pub fn run(unit: &mut impl UnitPort, memory: &SceneMemory<'_>, traffic: &Traffic, rays: &[Ray]) -> Result<RunReport, UnitError> {
-    let mut around = Environment::new(memory, traffic, rays);
+    run_secondary(unit, memory, traffic, rays, &[])
+}
+
+/// The same for rays that have more than primary ones, as far as `secondary` goes.
+///
+/// # Errors
+/// The unit did something that it must not do.
+pub fn run_secondary(
+    unit: &mut impl UnitPort,
+    memory: &SceneMemory<'_>,
+    traffic: &Traffic,
+    rays: &[Ray],
+    secondary: &[SecondaryIn],
+) -> Result<RunReport, UnitError> {
+    let mut around = Environment::new(memory, traffic, rays, secondary);
     while around.done < rays.len() {
         let outputs = unit.outputs();
         let inputs = around.inputs();
@@ -102,6 +118,7 @@ struct Environment<'a> {
     memory: &'a SceneMemory<'a>,
     traffic: &'a Traffic,
     rays: &'a [Ray],
+    secondary: &'a [SecondaryIn],
     cycle: u64,
     ways: Vec<Way>,
     /// Rays taken, and hits taken.
@@ -123,11 +140,12 @@ struct Environment<'a> {
 type MemoryRequestBits = (u64, u64, u64);
 
 impl<'a> Environment<'a> {
-    fn new(memory: &'a SceneMemory<'a>, traffic: &'a Traffic, rays: &'a [Ray]) -> Self {
+    fn new(memory: &'a SceneMemory<'a>, traffic: &'a Traffic, rays: &'a [Ray], secondary: &'a [SecondaryIn]) -> Self {
         Self {
             memory,
             traffic,
             rays,
+            secondary,
             cycle: 0,
             ways: vec![Way::Waiting; rays.len()],
             next: 0,
@@ -148,6 +166,7 @@ impl<'a> Environment<'a> {
         self.offering |= self.next < self.rays.len() && !self.traffic.ray_gap.at(cycle);
         let ray = || RayIn { tag: U::new(self.next as u64), ray: self.rays[self.next] };
         let ray = self.offering.then(ray);
+        let secondary = self.secondary.get(self.next).copied().unwrap_or_else(SecondaryIn::primary);
         let due = self.due.peek().is_some_and(|Reverse((due, ..))| *due <= cycle);
         let answer = if due { self.due.pop() } else { None };
         let answer = answer.and_then(|Reverse((_, _, (tag, epoch, address)))| {
@@ -157,7 +176,7 @@ impl<'a> Environment<'a> {
             self.memory.line(U::new(address)).map(|line| MemoryAnswer { tag, epoch, error: false, line })
         });
         let (hit_ready, mem_ready) = (!self.traffic.hit_stall.at(cycle), !self.traffic.memory_stall.at(cycle));
-        Inputs { ray, hit_ready, mem_ready, answer, flush: false }
+        Inputs { ray, secondary, hit_ready, mem_ready, answer, flush: false }
     }
 
     fn check_held(&self, outputs: &Outputs) -> Result<(), UnitError> {
@@ -165,7 +184,7 @@ impl<'a> Environment<'a> {
         if self.held.mem.is_some() && outputs.mem != self.held.mem {
             return not_held("memory");
         }
-        if self.held.hit.is_some() && outputs.hit != self.held.hit {
+        if self.held.hit.is_some() && (outputs.hit, outputs.corners) != (self.held.hit, self.held.corners) {
             return not_held("hit");
         }
         Ok(())
@@ -185,7 +204,7 @@ impl<'a> Environment<'a> {
             }
         }
         let (hit, mem) = (outputs.hit.filter(|_| !inputs.hit_ready), outputs.mem.filter(|_| !inputs.mem_ready));
-        self.held = Outputs { hit, mem, ..Outputs::default() };
+        self.held = Outputs { hit, mem, corners: outputs.corners, ..Outputs::default() };
         self.waited[0] += u64::from(self.held.mem.is_some());
         self.waited[1] += u64::from(self.held.hit.is_some());
         if let Some(request) = outputs.mem.filter(|_| inputs.mem_ready) {
@@ -193,7 +212,7 @@ impl<'a> Environment<'a> {
             moved = true;
         }
         if let Some(hit) = outputs.hit.filter(|_| inputs.hit_ready) {
-            self.finish(hit)?;
+            self.finish(hit, outputs.corners)?;
             moved = true;
         }
         Ok(moved)
@@ -213,12 +232,12 @@ impl<'a> Environment<'a> {
         Ok(())
     }
 
-    fn finish(&mut self, hit: HitOut) -> Result<(), UnitError> {
+    fn finish(&mut self, hit: HitOut, corners: Corners) -> Result<(), UnitError> {
         let (cycle, tag) = (self.cycle, hit.tag.get());
         // A tag has 32 bits.
         let way = self.ways.get_mut(tag as usize).ok_or(UnitError::StrayHit { cycle, tag })?;
         let Way::Taken(taken) = *way else { return Err(UnitError::StrayHit { cycle, tag }) };
-        *way = Way::Done(RayReport { taken, done: cycle, hit });
+        *way = Way::Done(RayReport { taken, done: cycle, hit, corners });
         self.done += 1;
         Ok(())
     }

@@ -11,6 +11,7 @@ mod context;
 mod counts;
 pub mod environment;
 mod error;
+mod fitted;
 mod memory;
 mod operands;
 pub mod ray_trace;

@@ -3,11 +3,13 @@
 use super::context::Context;
 use super::wires::{DIVIDE_FOR_V, DIVIDE_FOR_W};
 use crate::block::tessellate::child_triangle;
-use crate::block::{bary_map, child_test, hit_divide, hit_select, lod_test, node_address, ray_setup, tessellate, tri_test};
+use crate::block::{
+    bary_map, child_test, hit_select, lod_test, lod_test_by, node_address, start_divide, start_setup, start_test, tessellate, tree_deciders,
+};
 use crate::format::{Displacements, L0Record, VertexData};
-use crate::hardware::ports::{HitOut, SceneConfig};
+use crate::hardware::ports::{Corners, HitOut, SceneConfig, SecondaryIn};
 use crate::hardware::{Fetch, RayError, State};
-use crate::num::{LineAddress, PADDING_BITS, Point, RayT, U, Wire};
+use crate::num::{LineAddress, PADDING_BITS, Point, RayT, Start, U, Wire};
 
 /// Zero bits at the bottom of every stored coordinate.
 const PADDING: u64 = PADDING_BITS as u64;
@@ -18,6 +20,7 @@ pub enum Resource {
     Setup,
     Fetch,
     Child,
+    Decide,
     Lod,
     Morph,
     Tri,
@@ -29,7 +32,7 @@ pub enum Resource {
 impl Resource {
     /// All, by number.
     pub const ALL: [Self; Self::COUNT] =
-        [Self::Setup, Self::Fetch, Self::Child, Self::Lod, Self::Morph, Self::Tri, Self::Divide, Self::Map, Self::Hit];
+        [Self::Setup, Self::Fetch, Self::Child, Self::Decide, Self::Lod, Self::Morph, Self::Tri, Self::Divide, Self::Map, Self::Hit];
     /// How many there are.
     pub const COUNT: usize = Self::Hit as usize + 1;
 }
@@ -41,6 +44,7 @@ impl Context {
             State::Setup => ask(Resource::Setup),
             State::Fetch if self.want != 0 && self.error.is_none() => ask(Resource::Fetch),
             State::Child if self.waiting & 0b01 == 0 && self.error.is_none() => ask(Resource::Child),
+            State::Decide => ask(Resource::Decide),
             State::Lod if self.chooses_levels => ask(Resource::Lod),
             State::Morph => ask(Resource::Morph),
             State::Tri if self.left.get().get() != 0 => ask(Resource::Tri),
@@ -56,9 +60,14 @@ impl Context {
         u16::from(want & 0b10 != 0 && (self.fetch.get() == Fetch::Vertex || want & 0b01 == 0))
     }
 
-    /// Operands of `ray_setup`.
-    pub fn setup_in(&self) -> ray_setup::In {
-        ray_setup::In { origin: self.ray.origin, direction: self.ray.direction }
+    /// Where the ray starts.
+    fn start(&self) -> Start {
+        Start { point: self.ray.origin, fraction: self.secondary.fraction }
+    }
+
+    /// Operands of `ray_setup` or `start_setup`.
+    pub fn setup_in(&self) -> start_setup::In {
+        start_setup::In { start: self.start(), direction: self.ray.direction }
     }
 
     /// Operands of `node_address`.
@@ -92,10 +101,18 @@ impl Context {
         self.children_in()
     }
 
-    /// Operands of `lod_test`.
-    pub fn lod_in(&self, scene: &SceneConfig) -> lod_test::In {
+    /// Operands of `tree_deciders`.
+    pub fn decide_in(&self) -> tree_deciders::In {
+        let SecondaryIn { last, a0, a1, a2, by_second, .. } = self.secondary;
+        let ([p0, p1, p2], tree) = (self.f.get(), self.tree.get());
+        tree_deciders::In { last, a0, a1, a2, second: by_second, tree, p0, p1, p2 }
+    }
+
+    /// Operands of `lod_test` or `lod_test_by`.
+    pub fn lod_in(&self, scene: &SceneConfig) -> lod_test_by::In {
         let ([p0, p1, p2], [e0, e1, e2]) = (self.p.get(), self.e);
-        lod_test::In { ray: self.ray, p0, p1, p2, e0, e1, e2, scale: scene.scale }
+        let SecondaryIn { first, second, .. } = self.secondary;
+        lod_test_by::In { ray: self.ray, first, second, by: self.by, p0, p1, p2, e0, e1, e2, scale: scene.scale }
     }
 
     /// Operands of `tessellate`.
@@ -121,15 +138,20 @@ impl Context {
         }
     }
 
-    /// Operands of `tri_test`.
-    pub fn tri_in(&self) -> tri_test::In {
+    /// Corners of triangle `number`: of this node, or of its child of that number.
+    pub fn triangle(&self, number: usize) -> [Point; 3] {
         let p = self.p.get();
-        let [p0, p1, p2] = if self.four.get() { child_triangle(p, self.q.get(), self.next.get().get() as usize) } else { p };
-        tri_test::In { origin: self.ray.origin, direction: self.ray.direction, p0, p1, p2 }
+        if self.four.get() { child_triangle(p, self.q.get(), number) } else { p }
     }
 
-    /// What the context divides, and the operands of `hit_divide`.
-    pub fn divide_in(&self) -> (u16, hit_divide::In) {
+    /// Operands of `tri_test` or `start_test`.
+    pub fn tri_in(&self) -> start_test::In {
+        let [p0, p1, p2] = self.triangle(self.next.get().get() as usize); // two bits
+        start_test::In { start: self.start(), direction: self.ray.direction, p0, p1, p2 }
+    }
+
+    /// What the context divides, and the operands of `hit_divide` or `start_divide`.
+    pub fn divide_in(&self) -> (u16, start_divide::In) {
         let v = self.state == State::DivideV;
         (if v { DIVIDE_FOR_V } else { DIVIDE_FOR_W }, self.closest.divide_in(v))
     }
@@ -146,12 +168,12 @@ impl Context {
         self.closest.map_in(scene.levels)
     }
 
-    /// The ray's hit, once it is done.
-    pub fn hit_out(&self) -> HitOut {
+    /// The ray's hit, once it is done, and where rays can start there the corners of its triangle.
+    pub fn hit_out(&self) -> (HitOut, Corners) {
         let error = RayError::code(self.error);
         match self.closest.hit().filter(|_| self.error.is_none()) {
-            Some(hit) => HitOut { tag: self.tag, error, found: true, hit },
-            None => HitOut { tag: self.tag, error, ..HitOut::default() },
+            Some(hit) => (HitOut { tag: self.tag, error, found: true, hit }, self.closest.corners),
+            None => (HitOut { tag: self.tag, error, ..HitOut::default() }, Corners::default()),
         }
     }
 }

@@ -2,7 +2,7 @@
 
 use super::environment::UnitPort;
 use super::{Inputs, Outputs, SceneMemory, TraversalUnit};
-use crate::block::{lod_test, tri_test};
+use crate::block::{lod_test, start_test};
 use crate::hardware::State;
 use crate::hardware::ports::HitOut;
 use crate::method::{Entry, Op, is_beyond};
@@ -150,7 +150,7 @@ impl<'a> RayTrace<'a> {
         let (state, entry) = (context.state, context.entry.get());
         let [level, node] = [context.level.get().get(), context.node.get().get()];
         let popped = context.stack.clone().step(Op::Pop);
-        let triangle = |(test, tag): (tri_test::Out, u16)| {
+        let triangle = |(start_test::Out { test, .. }, tag): (start_test::Out, u16)| {
             let [_, level, node] = context.triangle_id(tag & 3);
             TraceEvent::Triangle { level, node, met: test.hit }
         };

@@ -3,19 +3,21 @@
 use super::arbiter::Arbiter;
 use super::closest::Met;
 use super::context::Context;
+use super::fitted::Fitted;
 use super::operands::Resource;
 use super::register::{Pipeline, Register, Stage};
 use super::wires::{Cycle, DIVIDE_FOR_T, Link, Quotient, Served, Wires};
 use crate::block::bary_map::BaryMap;
 use crate::block::child_test::ChildTest;
-use crate::block::hit_divide::{self, HitDivide};
 use crate::block::hit_select::HitSelect;
-use crate::block::lod_test::LodTest;
+use crate::block::lod_test_by::LodTestBy;
 use crate::block::node_address::{self, NodeAddress};
-use crate::block::ray_setup::RaySetup;
+use crate::block::start_divide::{self, StartDivide};
+use crate::block::start_setup::StartSetup;
+use crate::block::start_test::{self, StartTest};
 use crate::block::tessellate::Tessellate;
-use crate::block::tri_test::TriTest;
-use crate::hardware::ports::{Epoch, HitOut, MemoryAnswer, MemoryRequest, RayIn, SceneConfig};
+use crate::block::tree_deciders::TreeDeciders;
+use crate::hardware::ports::{Corners, Epoch, HitOut, MemoryAnswer, MemoryRequest, RayIn, SceneConfig, SecondaryIn};
 use crate::hardware::{Hardware, State};
 use crate::num::{RayT, U, Wire};
 use std::collections::VecDeque;
@@ -27,6 +29,8 @@ pub struct Outputs {
     pub ready: bool,
     /// `valid_o` and `out_o`.
     pub hit: Option<HitOut>,
+    /// `corners_o`, with the hit; all 0 where rays cannot start there.
+    pub corners: Corners,
     /// `mem_valid_o` and `mem_o`.
     pub mem: Option<MemoryRequest>,
     /// `busy_o`: some ray is under way, or something waits at a port.
@@ -38,6 +42,8 @@ pub struct Outputs {
 pub struct Inputs {
     /// `valid_i` and `in_i`.
     pub ray: Option<RayIn>,
+    /// `secondary_i`, with the ray.
+    pub secondary: SecondaryIn,
     /// `ready_i`.
     pub hit_ready: bool,
     /// `mem_ready_i`.
@@ -50,19 +56,20 @@ pub struct Inputs {
 
 /// The unit.
 pub struct TraversalUnit {
-    hardware: Hardware,
+    pub(super) hardware: Hardware,
     pub(super) scene: SceneConfig,
     /// Cycles since the last tick of the limit of answers.
     ticks: u64,
     pub(super) contexts: Vec<Context>,
     arbiters: [Arbiter; Resource::COUNT],
-    pub(super) ray_setup: Pipeline<RaySetup>,
+    pub(super) ray_setup: Fitted<StartSetup>,
     pub(super) node_address: Pipeline<NodeAddress>,
     pub(super) child_test: Pipeline<ChildTest>,
-    pub(super) lod_test: Pipeline<LodTest>,
+    pub(super) tree_deciders: Pipeline<TreeDeciders>,
+    pub(super) lod_test: Fitted<LodTestBy>,
     pub(super) tessellate: Pipeline<Tessellate>,
-    pub(super) tri_test: Pipeline<TriTest>,
-    pub(super) hit_divide: Pipeline<HitDivide>,
+    pub(super) tri_test: Fitted<StartTest>,
+    pub(super) hit_divide: Fitted<StartDivide>,
     pub(super) hit_select: Pipeline<HitSelect>,
     pub(super) bary_map: Pipeline<BaryMap>,
     /// Hits on their way from the triangle test to the division.
@@ -71,7 +78,7 @@ pub struct TraversalUnit {
     candidate: Register<Met>,
     pub(super) chosen: Register<(Met, RayT)>,
     /// The hit port's register.
-    pub(super) hit: Stage<HitOut>,
+    pub(super) hit: Stage<(HitOut, Corners)>,
     pub(super) cycles: u64,
     pub(super) states: [u64; State::Done as usize + 1],
     pub(super) longest_queue: usize,
@@ -90,13 +97,14 @@ impl TraversalUnit {
             ticks: 0,
             contexts: vec![Context::new(&config); config.contexts],
             arbiters: Default::default(),
-            ray_setup: Pipeline::new(&config),
+            ray_setup: Fitted::new(&config),
             node_address: Pipeline::new(&config),
             child_test: Pipeline::new(&config),
-            lod_test: Pipeline::new(&config),
+            tree_deciders: Pipeline::new(&config),
+            lod_test: Fitted::new(&config),
             tessellate: Pipeline::new(&config),
-            tri_test: Pipeline::new(&config),
-            hit_divide: Pipeline::new(&config),
+            tri_test: Fitted::new(&config),
+            hit_divide: Fitted::new(&config),
             hit_select: Pipeline::new(&config),
             bary_map: Pipeline::new(&config),
             queue: VecDeque::new(),
@@ -127,10 +135,11 @@ impl TraversalUnit {
             epoch: Epoch::wrapping(tag.into()),
             address: out.address,
         };
-        let (hit, mem) = (self.hit.offered(), self.node_address.offered().map(request));
+        let ((hit, corners), mem) = (self.hit.offered().unzip(), self.node_address.offered().map(request));
         Outputs {
             ready: self.contexts.iter().any(|c| c.state == State::Idle),
             hit,
+            corners: corners.filter(|_| self.hardware.secondary).unwrap_or_default(),
             mem,
             busy: self.contexts.iter().any(|c| c.state != State::Idle) || hit.is_some() || mem.is_some(),
         }
@@ -167,10 +176,11 @@ impl TraversalUnit {
         let numbered = |k: usize, number: u16| (k as u16) << 2 | number;
 
         let queue_empty = self.queue.is_empty();
-        let divide_ready = self.hit_divide.ready(true);
+        let divide_ready = self.hit_divide.ready();
         let divide = match self.queue.front() {
             Some(head) => {
-                let input = hit_divide::In { numerator: head.test.t_num, denominator: head.test.det };
+                let start_test::Out { test, below } = head.test;
+                let input = start_divide::In { numerator: test.t_num, low: below.t, denominator: test.det };
                 let tag = DIVIDE_FOR_T << 8 | numbered(head.owner, head.number);
                 Link { input: Some((input, tag)), ready: divide_ready, winner: None }
             }
@@ -185,14 +195,15 @@ impl TraversalUnit {
         });
         Wires {
             take: inputs.ray.and_then(|_| self.contexts.iter().position(|c| c.state == State::Idle)),
-            setup: self.link(winner(Resource::Setup), self.ray_setup.ready(true), |c, k| (c.setup_in(), k as u16)),
+            setup: self.link(winner(Resource::Setup), self.ray_setup.ready(), |c, k| (c.setup_in(), k as u16)),
             fetch: self.link(winner(Resource::Fetch), self.node_address.ready(inputs.mem_ready), |c, k| {
                 (c.fetch_in(scene), numbered(k, c.place_of(c.want)) << Epoch::WIDTH | c.epoch.get() as u16)
             }),
             child: self.link(winner(Resource::Child), self.child_test.ready(true), |c, k| (c.child_in(), k as u16)),
-            lod: self.link(winner(Resource::Lod), self.lod_test.ready(true), |c, k| (c.lod_in(scene), k as u16)),
+            decide: self.link(winner(Resource::Decide), self.tree_deciders.ready(true), |c, k| (c.decide_in(), k as u16)),
+            lod: self.link(winner(Resource::Lod), self.lod_test.ready(), |c, k| (c.lod_in(scene), k as u16)),
             morph: self.link(winner(Resource::Morph), self.tessellate.ready(true), |c, k| (c.morph_in(scene), k as u16)),
-            tri: self.link(winner(Resource::Tri), self.tri_test.ready(true), |c, k| {
+            tri: self.link(winner(Resource::Tri), self.tri_test.ready(), |c, k| {
                 let number = c.next.get().get() as u16; // two bits
                 (c.tri_in(), numbered(k, number))
             }),
@@ -216,12 +227,14 @@ impl TraversalUnit {
         let tick = self.ticks >= self.scene.answer_limit.get();
         let cycle = Cycle {
             ray: w.take.zip(inputs.ray),
+            secondary: inputs.secondary,
             fits: self.hardware.takes(&self.scene),
             flush: inputs.flush,
             tick,
             setup: Served { granted: w.setup.granted(), result: self.ray_setup.offered().map(|(out, tag)| (plain(tag), out)) },
             fetch: Served { granted: w.fetch.granted(), result: inputs.answer.map(|a| (a.tag.get() as usize >> 2, a)) }, // 8 bits
             child: Served { granted: w.child.granted(), result: self.child_test.offered().map(|(out, tag)| (plain(tag), out)) },
+            decide: Served { granted: w.decide.granted(), result: self.tree_deciders.offered().map(|(out, tag)| (plain(tag), out)) },
             lod: Served { granted: w.lod.granted(), result: self.lod_test.offered().map(|(out, tag)| (plain(tag), out)) },
             morph: Served { granted: w.morph.granted(), result: self.tessellate.offered().map(|(out, tag)| (plain(tag), out)) },
             tri: Served { granted: w.tri.granted(), result: tri.map(|(out, tag)| (owner(tag), out)) },
@@ -250,6 +263,7 @@ impl TraversalUnit {
             (Resource::Setup, w.setup.granted()),
             (Resource::Fetch, w.fetch.granted()),
             (Resource::Child, w.child.granted()),
+            (Resource::Decide, w.decide.granted()),
             (Resource::Lod, w.lod.granted()),
             (Resource::Morph, w.morph.granted()),
             (Resource::Tri, w.tri.granted()),
@@ -275,19 +289,20 @@ impl TraversalUnit {
             self.candidate.set(head);
         }
         if let Some((test, tag)) = tri
-            && test.hit
+            && test.test.hit
         {
             self.queue.push_back(Met { owner: owner(tag), number: tag & 3, test });
             self.longest_queue = self.longest_queue.max(self.queue.len());
         }
 
-        self.ray_setup.tick(input(&w.setup), true);
+        self.ray_setup.tick(input(&w.setup));
         self.node_address.tick(input(&w.fetch), inputs.mem_ready);
         self.child_test.tick(input(&w.child), true);
-        self.lod_test.tick(input(&w.lod), true);
+        self.tree_deciders.tick(input(&w.decide), true);
+        self.lod_test.tick(input(&w.lod));
         self.tessellate.tick(input(&w.morph), true);
-        self.tri_test.tick(input(&w.tri), true);
-        self.hit_divide.tick(input(&w.divide), true);
+        self.tri_test.tick(input(&w.tri));
+        self.hit_divide.tick(input(&w.divide));
         self.hit_select.tick(input(&w.select), true);
         self.bary_map.tick(input(&w.map), true);
         self.hit.tick(w.hit.input.map(|(hit, _)| hit), inputs.hit_ready);

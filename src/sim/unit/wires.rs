@@ -1,8 +1,11 @@
 //! What runs over the wires between contexts and blocks in one cycle.
 
 use super::closest::Met;
-use crate::block::{bary_map, child_test, hit_divide, hit_select, lod_test, node_address, ray_setup, tessellate, tri_test};
-use crate::hardware::ports::{HitOut, MemoryAnswer, RayIn};
+use crate::block::{
+    bary_map, child_test, hit_divide, hit_select, lod_test, lod_test_by, node_address, ray_setup, start_divide, start_setup, start_test,
+    tessellate, tree_deciders,
+};
+use crate::hardware::ports::{Corners, HitOut, MemoryAnswer, RayIn, SecondaryIn};
 use crate::num::RayT;
 
 /// What a division is for: the upper two bits of its tag.
@@ -33,18 +36,19 @@ impl<I> Link<I> {
 pub struct Wires {
     /// The context that takes a ray.
     pub take: Option<usize>,
-    pub setup: Link<ray_setup::In>,
+    pub setup: Link<start_setup::In>,
     pub fetch: Link<node_address::In>,
     pub child: Link<child_test::In>,
-    pub lod: Link<lod_test::In>,
+    pub decide: Link<tree_deciders::In>,
+    pub lod: Link<lod_test_by::In>,
     pub morph: Link<tessellate::In>,
-    pub tri: Link<tri_test::In>,
-    pub divide: Link<hit_divide::In>,
+    pub tri: Link<start_test::In>,
+    pub divide: Link<start_divide::In>,
     /// The head of the hit queue goes to the division.
     pub queue_pop: bool,
     pub select: Link<hit_select::In>,
     pub map: Link<bary_map::In>,
-    pub hit: Link<HitOut>,
+    pub hit: Link<(HitOut, Corners)>,
 }
 
 /// A resource as contexts see it: whose request it takes in this cycle, and whose result comes.
@@ -77,6 +81,7 @@ pub struct Quotient {
 #[derive(Clone, Debug)]
 pub struct Cycle {
     pub ray: Option<(usize, RayIn)>,
+    pub secondary: SecondaryIn,
     /// The scene is one for this hardware.
     pub fits: bool,
     /// Every ray under way ends.
@@ -87,9 +92,10 @@ pub struct Cycle {
     /// Its results are memory lines.
     pub fetch: Served<MemoryAnswer>,
     pub child: Served<child_test::Out>,
+    pub decide: Served<tree_deciders::Out>,
     pub lod: Served<lod_test::Out>,
     pub morph: Served<tessellate::Out>,
-    pub tri: Served<tri_test::Out>,
+    pub tri: Served<start_test::Out>,
     pub divide: Served<Quotient>,
     /// With the hit that was compared, and its t.
     pub select: Served<(hit_select::Out, RayT, Met)>,

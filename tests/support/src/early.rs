@@ -6,7 +6,7 @@ use crate::models::{any_rays, ball, terrain, with_vertices};
 use crate::plain::plain;
 use lodray::format::{BvhNode, ChildRef, L0Record, Scene, VertexData};
 use lodray::golden::exact::Exact;
-use lodray::hardware::ports::{AnswerLimit, HitOut, MemoryAnswer, MemoryRequest, RayIn, SceneConfig};
+use lodray::hardware::ports::{AnswerLimit, HitOut, MemoryAnswer, MemoryRequest, RayIn, SceneConfig, SecondaryIn};
 use lodray::hardware::{Hardware, RayError};
 use lodray::mesh::Hierarchy;
 use lodray::method::lod::LodImage;
@@ -73,7 +73,7 @@ fn cycle<E: Exposed>(
     {
         due.lines.push((due.now + LATENCY, MemoryAnswer { tag: request.tag, epoch: request.epoch, error, line }));
     }
-    unit.tick(&Inputs { ray, hit_ready: true, mem_ready: true, answer, flush });
+    unit.tick(&Inputs { ray, hit_ready: true, mem_ready: true, answer, flush, secondary: SecondaryIn::primary() });
     due.now += 1;
     (outputs.hit, outputs.ready && ray.is_some())
 }

@@ -82,8 +82,32 @@ pub const SHALLOW: Hardware = Hardware {
 /// For base meshes alone: nothing is split, and every hit is where it is.
 pub const FLAT: Hardware =
     Hardware { fewer_stored_levels: Some(0), lod_test: false, start_radius: false, hit_mapping: false, contexts: 2, ..Hardware::DEFAULT };
+/// For rays from a surface too.
+pub const SECONDARY: Hardware = Hardware { contexts: 3, context_bits: 2, secondary: true, ..Hardware::DEFAULT };
+/// The same with all edges and boxes at once, other steps of divisions, cones from points, compact vertices and fewer bits of every number.
+pub const SECONDARY_AT_ONCE: Hardware = Hardware {
+    levels: 6,
+    contexts: 6,
+    context_bits: 3,
+    edges_per_cycle: EdgesPerCycle::Three,
+    lod_edges_per_cycle: EdgesPerCycle::Three,
+    boxes_per_cycle: BoxesPerCycle::Four,
+    divide_bits: 1,
+    setup_bits: 2,
+    index_bits: 15,
+    line_bits: 18,
+    start_radius: false,
+    exact_vertices: false,
+    secondary: true,
+    ..Hardware::DEFAULT
+};
+/// Of full detail or none: no ray decides for another.
+pub const SECONDARY_FULL_DETAIL: Hardware = Hardware { levels: 4, divide_bits: 2, lod_test: false, secondary: true, ..Hardware::DEFAULT };
+/// All for rays from a surface.
+pub const SECONDARIES: [Hardware; 3] = [SECONDARY, SECONDARY_AT_ONCE, SECONDARY_FULL_DETAIL];
 /// The others.
-pub const OTHERS: [Hardware; 7] = [SMALL, MIDDLE, NARROW, NARROWER_BY_FEW, FULL_DETAIL, SHALLOW, FLAT];
+pub const OTHERS: [Hardware; 10] =
+    [SMALL, MIDDLE, NARROW, NARROWER_BY_FEW, FULL_DETAIL, SHALLOW, FLAT, SECONDARY, SECONDARY_AT_ONCE, SECONDARY_FULL_DETAIL];
 /// The most levels of the models that such hardware is for.
 pub fn most_levels(hardware: &Hardware) -> u32 {
     if hardware.hit_mapping { hardware.levels } else { hardware.stored_levels() }

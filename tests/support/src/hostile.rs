@@ -7,7 +7,7 @@ use crate::plain::plain;
 use lodray::format::{BvhNode, ChildRef, Scene};
 use lodray::golden::ExactHit;
 use lodray::golden::exact::Exact;
-use lodray::hardware::ports::{AnswerLimit, HitOut, MemoryAnswer, MemoryRequest, RayIn, SceneConfig};
+use lodray::hardware::ports::{AnswerLimit, HitOut, MemoryAnswer, MemoryRequest, RayIn, SceneConfig, SecondaryIn};
 use lodray::hardware::{Hardware, RayError};
 use lodray::mesh::most_zeros;
 use lodray::method::Hit;
@@ -297,7 +297,8 @@ impl<'a> Hostile<'a> {
             self.next_tag += 1;
         }
         let (hit_ready, mem_ready) = (!stalls || self.rng.below(4) > 0, !stalls || self.rng.below(4) > 0);
-        let inputs = Inputs { ray: self.offered.map(|(ray, _)| ray), hit_ready, mem_ready, answer: self.answer(unit), flush };
+        let (ray, answer) = (self.offered.map(|(ray, _)| ray), self.answer(unit));
+        let inputs = Inputs { ray, hit_ready, mem_ready, answer, flush, secondary: SecondaryIn::primary() };
 
         if let Some(hit) = outputs.hit.filter(|_| hit_ready) {
             self.finish(&hit);

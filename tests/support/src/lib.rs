@@ -1,6 +1,7 @@
 //! Small models, surfaces and rays for the tests and benchmarks of lodray, a reader of the RTL's declarations, and the program as tests run it.
 #![allow(missing_docs)] // the names say what is made
 
+pub mod bounces;
 pub mod early;
 pub mod hardware;
 pub mod hostile;

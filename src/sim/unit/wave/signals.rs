@@ -1,10 +1,11 @@
 //! The signals of the waveform: names, widths and values, in one walk over the unit.
 
 use crate::block::{Block, child_test, hit_select, lod_test};
-use crate::hardware::ports::{Epoch, HitOut, MemoryAnswer, MemoryRequest, RayIn, SceneConfig};
+use crate::hardware::ports::{Corners, Epoch, HitOut, MemoryAnswer, MemoryRequest, RayIn, SceneConfig, SecondaryIn};
 use crate::method::{Entry, STACK_ENTRIES};
 use crate::num::{BitVec, Layout, Point, Wire};
 use crate::sim::unit::context::Context;
+use crate::sim::unit::fitted::{Fitted, ForSecondary};
 use crate::sim::unit::register::Pipeline;
 use crate::sim::unit::wires::{Link, Wires};
 use crate::sim::unit::{Inputs, TraversalUnit};
@@ -114,9 +115,15 @@ pub fn walk(unit: &TraversalUnit, inputs: &Inputs, wires: &Wires, to: &mut impl 
     to.signal("valid_i", Vector::flag(inputs.ray.is_some()));
     to.signal("ready_o", Vector::flag(outputs.ready));
     typed::<RayIn>(to, "in_i", &Vector::offer(inputs.ray.as_ref()));
+    if unit.hardware.secondary {
+        typed::<SecondaryIn>(to, "secondary_i", &Vector::offer(inputs.ray.as_ref().map(|_| &inputs.secondary)));
+    }
     to.signal("valid_o", Vector::flag(outputs.hit.is_some()));
     to.signal("ready_i", Vector::flag(inputs.hit_ready));
     typed::<HitOut>(to, "out_o", &Vector::register(outputs.hit));
+    if unit.hardware.secondary {
+        typed::<Corners>(to, "corners_o", &Vector::register(outputs.hit.map(|_| outputs.corners)));
+    }
     to.signal("mem_valid_o", Vector::flag(outputs.mem.is_some()));
     to.signal("mem_ready_i", Vector::flag(inputs.mem_ready));
     typed::<MemoryRequest>(to, "mem_o", &Vector::register(outputs.mem));
@@ -132,16 +139,19 @@ pub fn walk(unit: &TraversalUnit, inputs: &Inputs, wires: &Wires, to: &mut impl 
         to.leave();
     }
 
-    block(to, &unit.ray_setup, &wires.setup, 6);
+    fitted(to, &unit.ray_setup, &wires.setup, 6);
     block_waiting(to, &unit.node_address, &wires.fetch, 8 + Epoch::WIDTH, inputs.mem_ready);
     children(to, unit, wires);
-    block(to, &unit.lod_test, &wires.lod, 6);
+    if unit.hardware.has_deciders() {
+        block(to, &unit.tree_deciders, &wires.decide, 6);
+    }
+    fitted(to, &unit.lod_test, &wires.lod, 6);
     block(to, &unit.tessellate, &wires.morph, 6);
-    block(to, &unit.tri_test, &wires.tri, 8);
+    fitted(to, &unit.tri_test, &wires.tri, 8);
     to.enter("u_queue");
     to.signal("len_q", Vector::number(unit.queue.len() as u64, counter_width(4 * unit.contexts.len())));
     to.leave();
-    block(to, &unit.hit_divide, &wires.divide, 10);
+    fitted(to, &unit.hit_divide, &wires.divide, 10);
     comparison(to, unit, wires);
     block(to, &unit.bary_map, &wires.map, 6);
     to.leave();
@@ -186,6 +196,22 @@ where
     B::Out: Copy,
 {
     block_waiting(to, pipeline, link, tag_width, true);
+}
+
+/// A block of which there are two forms, in the one that the unit has.
+fn fitted<B: ForSecondary>(to: &mut impl Visitor, block_of: &Fitted<B>, link: &Link<B::In>, tag_width: u32)
+where
+    B::Out: Copy,
+    <B::Primary as Block>::Out: Copy,
+{
+    match block_of {
+        Fitted::Primary(of) => {
+            let &Link { ref input, ready, winner } = link;
+            let input = input.as_ref().map(|(input, tag)| (B::of_primary(input), *tag));
+            block(to, of, &Link { input, ready, winner }, tag_width);
+        }
+        Fitted::Secondary(of) => block(to, of, link, tag_width),
+    }
 }
 
 fn block_waiting<B: Block>(to: &mut impl Visitor, pipeline: &Pipeline<B>, link: &Link<B::In>, tag_width: u32, consumer_ready: bool)
