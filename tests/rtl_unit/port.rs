@@ -20,8 +20,9 @@ fn model(config: Hardware) -> Arc<Model> {
     } else {
         build.hardware(&config).unwrap_or_else(|error| panic!("{error}"))
     };
-    // The waveform's test needs the unit of one context too.
-    let build = if config == Hardware::one_context() { build.trace() } else { build };
+    // The waveform's test needs units of one context too.
+    let traced = Hardware { secondary: config.secondary, ..Hardware::one_context() };
+    let build = if config == traced { build.trace() } else { build };
     build.model().unwrap_or_else(|error| panic!("{error}"))
 }
 

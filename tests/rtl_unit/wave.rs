@@ -15,7 +15,21 @@ use vcd::{Command, IdCode, Parser, ScopeItem, Value};
 struct Waveform(BTreeMap<String, Vec<Vec<Value>>>);
 
 /// Generate blocks of the RTL around what hardware can lack: the model has no such scopes.
-const OPTIONAL: [&str; 5] = ["g_place", "g_morphed", "g_lod_test", "g_tessellate", "g_bary_map"];
+const OPTIONAL: [&str; 13] = [
+    "g_place",
+    "g_morphed",
+    "g_ray_setup",
+    "g_start_setup",
+    "g_deciders",
+    "g_lod_test",
+    "g_lod_test_by",
+    "g_tessellate",
+    "g_tri_test",
+    "g_start_test",
+    "g_hit_divide",
+    "g_start_divide",
+    "g_bary_map",
+];
 
 fn paths(items: &[ScopeItem], within: &str, to: &mut Vec<(String, IdCode, usize)>) {
     for item in items {
@@ -68,8 +82,7 @@ impl Waveform {
 }
 
 /// Compares the waveforms of one ray; gives signals, cycles and bits compared.
-fn compare(memory: &SceneMemory<'_>, latency: u32, ray: &Ray, seed: u64) -> (usize, u64, u64) {
-    let config = Hardware::one_context();
+fn compare(config: Hardware, memory: &SceneMemory<'_>, latency: u32, ray: &Ray, seed: u64) -> (usize, u64, u64) {
     let mut model = Waves::new(TraversalUnit::new(config, memory.config())).expect("a waveform");
     let expected = one_ray(&mut model, memory, latency, ray).expect("a ray");
     let cycles = model.cycles();
@@ -105,8 +118,10 @@ fn the_waveforms_of_model_and_rtl_are_equal() {
     for (number, h) in [compact(ball(4, 0.4, 1)), terrain(2, 2, 0.4, 2), ball(0, 0.4, 3), compact(ball(1, 0.4, 4))].iter().enumerate() {
         let scene = scene_of(h);
         let memory = SceneMemory::new(LodImage::of(&scene), 0);
-        for ray in any_rays(h, 8, number as u64) {
-            let (s, c, b) = compare(&memory, 17, &ray, number as u64 + 1);
+        // Of primary rays, in hardware for them alone and for others too.
+        let hardware = [false, true].map(|secondary| Hardware { secondary, ..Hardware::one_context() });
+        for (ray, config) in any_rays(h, 8, number as u64).iter().zip(hardware.into_iter().cycle()) {
+            let (s, c, b) = compare(config, &memory, 17, ray, number as u64 + 1);
             (signals, cycles, bits) = (s, cycles + c, bits + b);
         }
     }

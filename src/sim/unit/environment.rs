@@ -166,7 +166,8 @@ impl<'a> Environment<'a> {
         self.offering |= self.next < self.rays.len() && !self.traffic.ray_gap.at(cycle);
         let ray = || RayIn { tag: U::new(self.next as u64), ray: self.rays[self.next] };
         let ray = self.offering.then(ray);
-        let secondary = self.secondary.get(self.next).copied().unwrap_or_else(SecondaryIn::primary);
+        let secondary = || self.secondary.get(self.next).copied().unwrap_or_else(SecondaryIn::primary);
+        let secondary = if ray.is_some() { secondary() } else { SecondaryIn::default() };
         let due = self.due.peek().is_some_and(|Reverse((due, ..))| *due <= cycle);
         let answer = if due { self.due.pop() } else { None };
         let answer = answer.and_then(|Reverse((_, _, (tag, epoch, address)))| {
