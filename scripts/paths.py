@@ -34,6 +34,7 @@ OPEN = {
     "eye": [0.9, 2.0, 6.0],
     "shadow": [True],
     "levels": [4, 6],
+    "walls": [1, 4, 16],
 }
 STARTS = ["exact", "independent", "1e-6", "1e-5", "1e-4", "1e-3", "1e-2"]
 DELTAS = ["4", "2", "1", "0.5", "0.25"]
@@ -46,21 +47,22 @@ class Runs:
         self.folder = folder
         folder.mkdir(parents=True, exist_ok=True)
 
-    def scene(self, levels, form):
+    def scene(self, levels, walls, form):
         """The room as a scene file."""
-        path = self.folder / f"room-{levels}-{form}.lod"
+        path = self.folder / f"room-{levels}-{walls}-{form}.lod"
         if not path.exists():
-            run("generate", "room", "--levels", levels, *FORMS[form]["generate"], "-o", path)
+            own = ["--walls", walls] if walls else []
+            run("generate", "room", "--levels", levels, *own, *FORMS[form]["generate"], "-o", path)
         return path
 
     def room(self, of, form):
         """A description of figure 17's scene."""
         text = (ROOT / "scenes" / "room.toml").read_text()
-        scene = self.scene(of["levels"], form)
+        scene = self.scene(of["levels"], of["walls"], form)
         text = re.sub(r"generate = .*", f'file = "{scene.name}"', text)
         text = re.sub(r"eye = .*", f"eye = [0.0, 0.05, {of['eye']}]", text)
         text = re.sub(r"shadow_rays = .*", f"shadow_rays = {str(of['shadow']).lower()}", text)
-        path = self.folder / f"room-{of['levels']}-{of['eye']}-{of['shadow']}-{form}.toml"
+        path = self.folder / f"room-{of['levels']}-{of['walls']}-{of['eye']}-{of['shadow']}-{form}.toml"
         path.write_text(text)
         return path
 

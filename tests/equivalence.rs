@@ -222,7 +222,7 @@ proptest! {
 
 #[test]
 fn a_tracer_of_full_detail_takes_the_same_steps() {
-    let options = |scene| Options { scene, levels: Some(4), base: Some(32), seed: 5, roughness: None };
+    let options = |scene| Options { levels: Some(4), base: Some(32), seed: 5, ..Options::new(scene) };
     for (scene, form) in [procedural::Scene::Terrain, procedural::Scene::Spikes, procedural::Scene::Wall]
         .into_iter()
         .flat_map(|scene| VertexForm::ALL.map(|form| (scene, form)))

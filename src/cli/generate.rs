@@ -5,7 +5,7 @@ use super::build::{FormArgs, build_scene, finish};
 use super::names::named;
 use super::output::{busy, check_target};
 use lodray::format;
-use lodray::mesh::procedural::{MAX_TREES, Options, Scene, generate};
+use lodray::mesh::procedural::{MAX_TREES, MAX_WALLS, Options, Scene, generate};
 use std::path::PathBuf;
 use std::process::ExitCode;
 
@@ -26,6 +26,9 @@ pub struct Args {
     /// Terrain, sphere and wall: amplitude of each octave relative to the one before; others: amount of fine detail. Between 0 and 1
     #[arg(long, value_parser = share, allow_hyphen_values = true)]
     roughness: Option<f64>,
+    /// Quads along each wall of a room (default: a quarter of those across its cloth)
+    #[arg(long, value_name = "QUADS", value_parser = whole::<u32>(1..=MAX_WALLS.into()), allow_negative_numbers = true)]
+    walls: Option<u32>,
     #[command(flatten)]
     form: FormArgs,
     /// Scene file to write
@@ -38,7 +41,8 @@ pub struct Args {
 
 pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
     check_target(&args.out, &[])?;
-    let options = Options { scene: args.scene, levels: args.levels, base: args.base, seed: args.seed, roughness: args.roughness };
+    let options =
+        Options { scene: args.scene, levels: args.levels, base: args.base, seed: args.seed, roughness: args.roughness, walls: args.walls };
     finish(&make(&options, args.form)?, &args.out, args.json)
 }
 

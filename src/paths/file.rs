@@ -160,11 +160,13 @@ pub struct MeshTable {
     pub seed: u64,
     /// Roughness.
     pub roughness: Option<f64>,
+    /// Quads along each wall of a room.
+    pub walls: Option<u32>,
 }
 
 impl From<MeshTable> for procedural::Options {
-    fn from(MeshTable { scene, levels, base, seed, roughness }: MeshTable) -> Self {
-        Self { scene, levels, base, seed, roughness }
+    fn from(MeshTable { scene, levels, base, seed, roughness, walls }: MeshTable) -> Self {
+        Self { scene, levels, base, seed, roughness, walls }
     }
 }
 

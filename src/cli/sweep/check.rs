@@ -212,6 +212,7 @@ fn scene(source: &ListText<'_>, list: &List, spanned: &Spanned<SceneEntry>, fold
                 base: value(&entry.base),
                 seed: entry.seed.as_ref().map_or(0, |seed| *seed.get_ref()),
                 roughness: entry.roughness.as_ref().map(|roughness| *roughness.get_ref()),
+                walls: None,
             };
             generate::check(&options).map_err(|why| source.wrong(spanned.span(), format!("scene: {}", one_line(&why))))?;
             let bounds = entry.bounds.as_ref().or(list.bounds.as_ref()).map_or_else(BoundKind::default, |bounds| *bounds.get_ref());

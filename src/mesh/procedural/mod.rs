@@ -104,8 +104,8 @@ impl Scene {
         }
     }
 
-    /// Base triangles with grid size `n` (g or k of the table in the module's head).
-    fn trees(self, n: u32) -> u64 {
+    /// Base triangles with grid size `n` (g or k of the table in the module's head), and of a room with so many quads along a wall, if they are said.
+    fn trees(self, n: u32, walls: Option<u32>) -> u64 {
         let square = n as u64 * n as u64;
         match self {
             Self::Terrain | Self::Cloth | Self::Drape => 2 * square,
@@ -113,7 +113,7 @@ impl Scene {
             Self::Wall => 8 * wall::MODELS as u64 * square,
             Self::Pot => pot::trees(n),
             Self::Room => {
-                let wall = room::wall_quads(n) as u64;
+                let wall = u64::from(walls.unwrap_or(room::wall_quads(n)));
                 2 * square + 10 * wall * wall
             }
         }
@@ -125,7 +125,7 @@ impl Scene {
         let (mut low, mut high) = (1, 1 << 16);
         while low < high {
             let middle = (low + high) / 2;
-            if self.trees(middle) >= u64::from(base) {
+            if self.trees(middle, None) >= u64::from(base) {
                 high = middle;
             } else {
                 low = middle + 1;
@@ -149,12 +149,18 @@ pub struct Options {
     /// Between 0 and 1, both excluded. `terrain`, `sphere` and `wall`: amplitude of an octave of noise relative to the one before. `cloth`,
     /// `room` and `drape`: height of the weave, `spikes`: length of the needles, `pot`: depth of the dimples, all relative to the default's 0.5.
     pub roughness: Option<f64>,
+    /// `room` alone: quads along each wall, 1 to [`MAX_WALLS`]; a quarter of those across the cloth if none.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub walls: Option<u32>,
 }
+
+/// Most quads along a wall of a room.
+pub const MAX_WALLS: u32 = 1 << 10;
 
 impl Options {
     /// The scene at its default size, seed 0.
     pub const fn new(scene: Scene) -> Self {
-        Self { scene, levels: None, base: None, seed: 0, roughness: None }
+        Self { scene, levels: None, base: None, seed: 0, roughness: None, walls: None }
     }
 
     /// What these options come to.
@@ -175,15 +181,20 @@ impl Options {
         if !(roughness > 0.0 && roughness < 1.0) {
             return Err(GenerateError::Roughness(roughness));
         }
+        if let Some(walls) = self.walls
+            && (scene != Scene::Room || walls == 0 || walls > MAX_WALLS)
+        {
+            return Err(GenerateError::Walls { scene, walls });
+        }
         let n = scene.grid(wanted);
-        let trees = scene.trees(n);
+        let trees = scene.trees(n, self.walls);
         if trees > MAX_TREES {
             return Err(GenerateError::Base(trees));
         }
         if trees << (2 * levels) > MAX_TRIANGLES {
             return Err(GenerateError::Triangles { trees, levels });
         }
-        Ok(Shape { n, levels, roughness })
+        Ok(Shape { n, levels, roughness, walls: self.walls.unwrap_or(room::wall_quads(n)) })
     }
 }
 
@@ -196,6 +207,8 @@ pub struct Shape {
     levels: u32,
     /// Between 0 and 1.
     roughness: f64,
+    /// Quads along a wall of a room.
+    walls: u32,
 }
 
 /// Why a scene cannot be generated.
@@ -210,6 +223,14 @@ pub enum GenerateError {
     /// Roughness out of range.
     #[error("roughness {0} is not between 0 and 1")]
     Roughness(f64),
+    /// Walls of a scene that has none, or no such number.
+    #[error("{walls} quads along a wall of {}: 1 to {MAX_WALLS} are possible, of room", .scene.name())]
+    Walls {
+        /// The scene.
+        scene: Scene,
+        /// What was asked for.
+        walls: u32,
+    },
     /// The scene would be too large.
     #[error("{trees} base triangles with {levels} levels are more than {MAX_TRIANGLES} triangles")]
     Triangles {
@@ -231,7 +252,7 @@ pub enum GenerateError {
 /// # Errors
 /// As [`Options::check`], or the machine has too little memory.
 pub fn generate(options: &Options) -> Result<Surface, GenerateError> {
-    let Shape { n, levels, roughness } = options.check()?;
+    let Shape { n, levels, roughness, walls } = options.check()?;
     let scene = options.scene;
     let seed = options.seed;
     match scene {
@@ -239,7 +260,7 @@ pub fn generate(options: &Options) -> Result<Surface, GenerateError> {
         Scene::Cloth => cloth::generate(n, levels, seed, 2.0 * roughness),
         Scene::Sphere => sphere::generate(n, levels, seed, roughness),
         Scene::Spikes => spikes::generate(n, levels, seed, 2.0 * roughness),
-        Scene::Room => room::generate(n, levels, seed, 2.0 * roughness),
+        Scene::Room => room::generate(n, walls, levels, seed, 2.0 * roughness),
         Scene::Wall => wall::generate(n, levels, seed, roughness),
         Scene::Pot => pot::generate(n, levels, seed, 2.0 * roughness),
         Scene::Drape => drape::generate(n, levels, seed, 2.0 * roughness),

@@ -49,10 +49,10 @@ impl Shape for Wall {
     }
 }
 
-/// A room around a cloth of `g` by `g` quads.
-pub(super) fn generate(g: u32, levels: u32, seed: u64, detail: f64) -> Result<Surface, GenerateError> {
+/// A room of `walls` quads along each wall around a cloth of `g` by `g` quads.
+pub(super) fn generate(g: u32, walls: u32, levels: u32, seed: u64, detail: f64) -> Result<Surface, GenerateError> {
     let mut room = cloth::placed(g, levels, seed, detail, CLOTH.0, CLOTH.1)?;
-    let w = wall_quads(g) as i32;
+    let w = walls as i32; // below 2^12 (`Options::check`)
     let trees = room.triangles.len() + SIDES.len() * 2 * (w * w) as usize;
     room.materials = reserved(trees)?;
     room.materials.resize(room.triangles.len(), 3);

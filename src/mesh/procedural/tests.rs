@@ -130,9 +130,9 @@ fn the_least_count_at_or_above_is_taken() {
     for scene in ALL {
         for base in 1..3_000 {
             let n = scene.grid(base);
-            assert!(scene.trees(n) >= u64::from(base) && (n == 1 || scene.trees(n - 1) < u64::from(base)));
+            assert!(scene.trees(n, None) >= u64::from(base) && (n == 1 || scene.trees(n - 1, None) < u64::from(base)));
         }
-        assert_eq!(scene.trees(scene.grid(scene.default_base())), u64::from(scene.default_base()));
+        assert_eq!(scene.trees(scene.grid(scene.default_base()), None), u64::from(scene.default_base()));
     }
 }
 
@@ -148,6 +148,22 @@ fn closed_scenes_face_outwards() {
             }
         }
     }
+}
+
+#[test]
+fn walls_of_a_room_are_as_fine_as_is_said() {
+    let room = |walls| Options { levels: Some(1), base: Some(168), walls, ..Options::new(Scene::Room) };
+    let count = |walls| generate(&room(walls)).unwrap().triangles.len();
+    // A cloth of eight by eight quads, and ten triangles, two on each of five walls, for each quad of a wall.
+    assert_eq!([None, Some(1), Some(2), Some(5)].map(count), [128 + 40, 128 + 10, 128 + 40, 128 + 250]);
+    let plain = serde_json::to_string(&room(None)).unwrap();
+    assert!(!plain.contains("walls"), "{plain}");
+    let wrong = |options: Options| options.check().unwrap_err().to_string();
+    assert_eq!(wrong(room(Some(0))), "0 quads along a wall of room: 1 to 1024 are possible, of room");
+    assert_eq!(
+        wrong(Options { walls: Some(3), ..Options::new(Scene::Cloth) }),
+        "3 quads along a wall of cloth: 1 to 1024 are possible, of room"
+    );
 }
 
 #[test]
