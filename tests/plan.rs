@@ -14,7 +14,7 @@ use lodray_test_support::program::{Desk, USAGE};
 use lodray_test_support::surfaces::scene_with;
 
 fn made(scene: procedural::Scene, levels: u32, vertices: VertexForm) -> Scene {
-    let options = Options { scene, levels: Some(levels), base: Some(32), seed: 5, roughness: None };
+    let options = Options { levels: Some(levels), base: Some(32), seed: 5, ..Options::new(scene) };
     scene_with(&procedural::generate(&options).expect("a surface"), BoundKind::Total, vertices)
 }
 
