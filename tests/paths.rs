@@ -286,6 +286,13 @@ fn a_description_becomes_pictures_and_figures() {
         assert!(of(k, "rays") > of(k - 1, "rays") && of(k, "energy") > of(k - 1, "energy"));
         assert!((of(k, "milliseconds") - of(k - 1, "milliseconds") - of(k, "added_milliseconds")).abs() < 1e-12);
     }
+    // On units for rays from surfaces, whose blocks are others.
+    let results: serde_json::Value =
+        serde_json::from_slice(&fs::read(folder.path().join("c/result.json")).expect("results")).expect("JSON");
+    assert_eq!(results[2]["setup"]["machine"]["description"]["units"]["secondary"], true);
+    let operations = &results[2]["operations"];
+    assert!(operations["start_test"].as_u64() > Some(0) && operations["tree_deciders"].as_u64() > Some(0), "{operations}");
+    assert!(operations["tri_test"].is_null() && results[2]["energy"]["prices"]["operations"]["start_test"].as_f64() > Some(0.0));
 }
 
 #[test]

@@ -219,6 +219,11 @@ fn overrides_change_one_value() {
     machine.set("units.boxes_per_cycle", "1").unwrap();
     let Hardware { divide_bits, setup_bits, boxes_per_cycle, .. } = machine.units.config();
     assert_eq!([divide_bits, setup_bits, boxes_per_cycle.count()], [2, 1, 1]);
+    assert!(!machine.units.config().secondary);
+    machine.set("units.secondary", "true").unwrap();
+    assert!(machine.units.config().secondary);
+    let error = machine.set("units.secondary", "yes").unwrap_err().to_string();
+    assert!(error.contains("units.secondary") && error.contains("boolean"), "{error}");
     let error = machine.set("units.boxes_per_cycle", "3").unwrap_err().to_string();
     assert!(error.contains("units.boxes_per_cycle must be 4, 2 or 1, but is 3"), "{error}");
 }
