@@ -65,13 +65,13 @@ impl Hardware {
     /// Those of them that are in no memory.
     pub fn context_flip_flops(&self, has_levels: bool) -> u32 {
         let triangles = if has_levels { self.triangles() } else { 2 * self.triangle() };
-        let secondary = if self.secondary { self.from_surface(has_levels) } else { 0 };
+        let secondary = if self.secondary { self.secondary_registers(has_levels) } else { 0 };
         self.place() + triangles + self.stack_length(has_levels) + self.lines() + self.bounds() + self.closest() + secondary
     }
 
     /// What only rays from a surface have: fraction of the start, the smallest t, and whether any hit serves; of the closest hit the corners, and what two numerators have below whole
     /// numbers; and of who decides about levels: whether anyone does, the last hit's triangle with its corners and edges, two rays, and who it is in this tree and at this node.
-    fn from_surface(&self, has_levels: bool) -> u32 {
+    fn secondary_registers(&self, has_levels: bool) -> u32 {
         let own = 3 * START_BITS + RayT::WIDTH + 1 + self.triangle() + 2 * START_BITS;
         // Of a stage, with a tag of one bit and whether it is full.
         let node = node_deciders::Out::WIDTH + 2;
