@@ -292,7 +292,7 @@ fn a_description_becomes_pictures_and_figures() {
     assert_eq!(results[2]["setup"]["machine"]["description"]["units"]["secondary"], true);
     let operations = &results[2]["operations"];
     assert!(operations["start_test"].as_u64() > Some(0) && operations["tree_deciders"].as_u64() > Some(0), "{operations}");
-    assert!(operations["tri_test"].is_null() && results[2]["energy"]["prices"]["operations"]["start_test"].as_f64() > Some(0.0));
+    assert!(operations["tri_test"].is_null() && results[2]["energy"]["compute"]["operations"]["start_test"].as_f64() > Some(0.0));
 }
 
 #[test]

@@ -146,8 +146,11 @@ impl EnergyModel {
         let mw_to_pj = counts.cycles as f64 / self.cycles_per_second * PJ_PER_MW_S;
         let prices = self.prices(counts);
         let of = |count: u64, price: f64| count as f64 * price;
-        let compute =
-            |(operation, count): (Operation, u64)| Some((self.name(operation), of(count, *prices.operations.get(self.name(operation))?)));
+        let occurred = counts.operations.iter().filter(|&(_, count)| count > 0);
+        let compute = |(operation, count): (Operation, u64)| {
+            let name = self.name(operation);
+            Some((name, of(count, *prices.operations.get(name)?)))
+        };
         EnergyReport {
             unit: self.unit,
             l1_read: of(counts.l1_reads, prices.l1_read),
@@ -156,7 +159,7 @@ impl EnergyModel {
             l2_read: of(counts.l2_reads, prices.l2_read),
             l2_fill: of(counts.l2_fills, prices.l2_fill),
             l2_leakage: prices.l2_leakage_mw * mw_to_pj,
-            compute: counts.operations.iter().filter_map(compute).collect(),
+            compute: occurred.filter_map(compute).collect(),
             unit_leakage: prices.units_leakage_mw * mw_to_pj,
             unit_clock: of(counts.cycles, prices.units_clock),
             dram: match self.dram_line {
