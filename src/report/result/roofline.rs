@@ -109,7 +109,7 @@ impl Parts<'_> {
         };
         // Of all blocks that contexts share, which our own unit has, those with something to do.
         let blocks = lod::METHOD.unit.into_iter().flat_map(|unit| unit.blocks);
-        blocks.filter(|&&block| taken(block).0 > 0).map(|&block| (block.name(), taken(block).1 as f64 / all)).collect()
+        blocks.filter(|&&block| taken(block).0 > 0).map(|&block| (hardware.block(block).name(), taken(block).1 as f64 / all)).collect()
     }
 
     /// Cycles of the cores in a clock of the memory.
