@@ -36,8 +36,8 @@ fn every_list_names_every_file_in_order() {
 
 #[test]
 fn constraints_name_every_port() {
-    constraints_name_ports("traversal_unit", 17);
-    constraints_name_ports("traversal_unit_axi", 29);
+    constraints_name_ports("traversal_unit", 19);
+    constraints_name_ports("traversal_unit_axi", 31);
 }
 
 /// The constraints of a top name its ports, so many.

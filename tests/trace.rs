@@ -50,7 +50,7 @@ fn waveform_and_save_files_stand_side_by_side() {
     for words in ["[dumpfile] \"ray.vcd\"", "^1 ray.states\ntraversal_unit.g_context[0].u_context.state_q[4:0]\n", "-Level_of_detail\n"] {
         assert!(gtkw.contains(words), "{words}");
     }
-    assert!(text("ray.states").starts_with("00 IDLE\n01 SETUP\n") && text("ray.states").ends_with("14 DONE\n"));
+    assert!(text("ray.states").starts_with("00 IDLE\n01 SETUP\n") && text("ray.states").ends_with("16 DONE\n"));
     assert!(text("ray.sucl").contains("variable_add traversal_unit.g_context[0].u_context.lod_q.s0\n"));
     assert_eq!(fs::read_dir(desk).unwrap().count(), 5, "left-over files");
 

@@ -186,6 +186,7 @@ pub fn of_less(hardware: &Hardware) -> Coarsen<Tessellate> {
     match (hardware.compact_vertices, hardware.exact_vertices, hardware.chooses_levels()) {
         (true, true, false) => |i, _| open(i),
         (true, false, false) => |i, _| formed(open(i), true),
+        (true, false, true) => |i, _| formed(i, true),
         (false, true, true) => |i, _| formed(i, false),
         _ => unreachable!("{hardware:?}"),
     }
