@@ -8,7 +8,7 @@ use crate::{
 use lodray::block::{self, Block};
 use lodray::hardware::Hardware;
 use lodray::num::U;
-use lodray_test_support::hardware::{FULL_DETAIL, LESS, MIDDLE, OTHERS, SHALLOW, SMALL};
+use lodray_test_support::hardware::{FULL_DETAIL, MIDDLE, OTHERS, SHALLOW, SMALL};
 use std::fmt::Debug;
 use tb::Mode;
 
