@@ -198,6 +198,23 @@ def why(run, folder):
     return table(["scene", "radii", "setting", "mean level", "nodes a hit", "LOD tests a hit", "lines a hit", "time, us", "twice the banks"], rows)
 
 
+def hierarchy(folder):
+    """Nodes that rays visit at full detail, ours and a BVH's over the same triangles, on terrains with and without anything to morph below the base mesh."""
+    rows = []
+    for relief, roughness in [("none", "0.000001"), ("0.45", "0.45"), ("0.6", "0.6")]:
+        file = folder / f"hierarchy-{roughness}.lod"
+        if not file.is_file():
+            words = ["generate", "terrain", "--levels", "6", "--roughness", roughness, "-o", file, "--quiet"]
+            subprocess.run([ROOT / "target" / "release" / "lodray", *words], check=True)
+        ours = None
+        for words, setting in [(["--method", OURS, "--delta", "inf"], "ours")] + [(["--method", "discrete", "--level", "6", "--leaf-size", str(n)], f"BVH, leaves of {n}") for n in (16, 4, 1)]:
+            shot = lodray("render", str(file), "--size", "512x512", "--distance", "1.5", *words, "--json", "-o", str(folder / "why"), "--force")["stats"]
+            nodes = shot["nodes"] / shot["hits"]
+            ours = ours or nodes
+            rows.append([relief, setting, f"{nodes:.1f}", f"{shot['triangles'] / shot['hits']:.1f}", f"{sum(kind['read'] for kind in shot['lines']) / shot['hits']:.1f}", f"{ours / nodes:.2f}"])
+    return table(["relief below the base mesh", "setting", "nodes a hit", "triangles a hit", "lines a hit", "our nodes over its"], rows)
+
+
 def plain(name):
     return "-".join(part for part in re.sub(r"[^A-Za-z0-9.]", "-", name).split("-") if part)
 
@@ -225,6 +242,7 @@ def main():
         "summary_requests": summary(knobs, error, [0.25, 0.5, 1.0, 2.0], "free", "l1-requests"),
         "summary_flip": summary(knobs, "flip-mean", [0.01, 0.02, 0.05, 0.1], "free", "time"),
         "why": why(knobs, folder),
+        "hierarchy": hierarchy(folder),
         "half_units": at_level(units, error, 0.5, "units"),
         "structures": structures(knobs, units),
         "viewed": by_samples(samples, flip),
@@ -244,4 +262,5 @@ def main():
     (ROOT / "docs" / "error-time.md").write_text(text)
 
 
-main()
+if __name__ == "__main__":
+    main()
