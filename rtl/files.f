@@ -52,6 +52,7 @@ start_edges_serial.sv
 start_setup.sv
 start_test.sv
 tessellate.sv
+three_passes.sv
 traversal_stack.sv
 traversal_unit.sv
 traversal_unit_axi.sv

@@ -48,20 +48,9 @@ module lod_edges_serial #(
   logic [2:0][CODE_W-1:0]               codes_q;
   lod_pkg::bound_scale_t                scale_q;
   logic [TAG_W-1:0]                     tag_q;
-  logic                                 busy_q, ready_pass;
-  logic [PASS_W-1:0]                    pass_q;
-  assign ready_o = !busy_q || (ready_pass && pass_q == 2);
-  always_ff @(posedge clk_i) begin
-    if (!rst_ni) begin
-      busy_q <= 1'b0;
-      pass_q <= '0;
-    end else if (ready_o) begin
-      busy_q <= valid_i;
-      pass_q <= '0;
-    end else if (ready_pass) begin
-      pass_q <= pass_q + 1;
-    end
-  end
+  logic                                 busy, ready_pass;
+  logic [PASS_W-1:0]                    pass;
+  three_passes u_passes (.clk_i, .rst_ni, .valid_i, .ready_o, .busy_o(busy), .ready_i(ready_pass), .pass_o(pass));
   always_ff @(posedge clk_i) begin
     if (ready_o && valid_i) begin
       corners_q                                       <= {corners_i[0], corners_i[2], corners_i[1]};
@@ -76,7 +65,7 @@ module lod_edges_serial #(
   logic [L_W-1:0]     l;
   logic               valid_along, ready_along;
   dot_product #(.A_W(W), .B_W(COMPONENT_W), .SUM_W(ALONG_W)) u_along (
-    .clk_i, .rst_ni, .valid_i(busy_q), .ready_o(ready_pass), .a_i(corners_q[0]), .b_i(direction_q),
+    .clk_i, .rst_ni, .valid_i(busy), .ready_o(ready_pass), .a_i(corners_q[0]), .b_i(direction_q),
     .valid_o(valid_along), .ready_i(ready_along), .sum_o(along)
   );
   assign l = along[ALONG_W-1 -: L_W];
@@ -88,7 +77,7 @@ module lod_edges_serial #(
   logic [PASS_W-1:0]   pass_along;
   logic [BESIDE_W-1:0] beside_along;
   pipe_delay #(.W(PASS_W + BESIDE_W), .STAGES(ALONG_LATENCY), .SKIDS(64'd1 << (ALONG_LATENCY - 3))) u_beside (
-    .clk_i, .rst_ni, .valid_i(busy_q), .ready_o(), .data_i({pass_q, cone_q, codes_q, scale_q, tag_q}),
+    .clk_i, .rst_ni, .valid_i(busy), .ready_o(), .data_i({pass, cone_q, codes_q, scale_q, tag_q}),
     .valid_o(), .ready_i(ready_along), .data_o({pass_along, beside_along})
   );
 
@@ -106,21 +95,12 @@ module lod_edges_serial #(
   logic [2:0][CODE_W-1:0] edge_codes_q;
   lod_pkg::bound_scale_t  edge_scale_q;
   logic [TAG_W-1:0]       edge_tag_q;
-  logic                   edge_busy_q, ready_edge, edge_free;
-  logic [PASS_W-1:0]      edge_pass_q;
-  assign edge_free   = !edge_busy_q || (ready_edge && edge_pass_q == 2);
+  logic                   edge_busy, ready_edge, edge_free;
+  logic [PASS_W-1:0]      edge_pass;
   assign ready_along = edge_free || !last_along;
-  always_ff @(posedge clk_i) begin
-    if (!rst_ni) begin
-      edge_busy_q <= 1'b0;
-      edge_pass_q <= '0;
-    end else if (edge_free) begin
-      edge_busy_q <= valid_along && last_along;
-      edge_pass_q <= '0;
-    end else if (ready_edge) begin
-      edge_pass_q <= edge_pass_q + 1;
-    end
-  end
+  three_passes u_edge_passes (
+    .clk_i, .rst_ni, .valid_i(valid_along && last_along), .ready_o(edge_free), .busy_o(edge_busy), .ready_i(ready_edge), .pass_o(edge_pass)
+  );
   always_ff @(posedge clk_i) begin
     if (edge_free && valid_along && last_along) begin
       edge_l_q                                               <= {l, l2_q, l1_q};
@@ -139,7 +119,7 @@ module lod_edges_serial #(
   assign a = edge_l_q[0];
   assign b = edge_l_q[1];
   pipe_skid #(.W(L_W + CONE_W)) u_nearer (
-    .clk_i, .rst_ni, .valid_i(edge_busy_q), .ready_o(ready_edge), .data_i({a < b ? a : b, edge_cone_q}),
+    .clk_i, .rst_ni, .valid_i(edge_busy), .ready_o(ready_edge), .data_i({a < b ? a : b, edge_cone_q}),
     .valid_o(valid_nearer), .ready_i(ready_nearer), .data_o({nearer_q, nearer_cone_q})
   );
 
@@ -154,7 +134,7 @@ module lod_edges_serial #(
   lod_pkg::bound_decode_out_t bound;
   logic                       valid_code, ready_code;
   pipe_delay #(.W(CODE_W + SCALE_W), .STAGES(LIMITS_LATENCY - lod_pkg::BOUND_DECODE_LATENCY), .SKIDS(64'd1)) u_code (
-    .clk_i, .rst_ni, .valid_i(edge_busy_q), .ready_o(), .data_i({edge_codes_q[0], edge_scale_q}),
+    .clk_i, .rst_ni, .valid_i(edge_busy), .ready_o(), .data_i({edge_codes_q[0], edge_scale_q}),
     .valid_o(valid_code), .ready_i(ready_code), .data_o(code)
   );
   bound_decode #(.TAG_W(1)) u_bound (
@@ -172,7 +152,7 @@ module lod_edges_serial #(
   pipe_delay #(
     .W(PASS_W + TAG_W), .STAGES(LIMITS_LATENCY + lod_pkg::EDGE_OPENING_LATENCY), .SKIDS(64'd1 | 64'd1 << LIMITS_LATENCY)
   ) u_tag (
-    .clk_i, .rst_ni, .valid_i(edge_busy_q), .ready_o(), .data_i({edge_pass_q, edge_tag_q}),
+    .clk_i, .rst_ni, .valid_i(edge_busy), .ready_o(), .data_i({edge_pass, edge_tag_q}),
     .valid_o(), .ready_i(ready_state), .data_o({pass_state, tag_o})
   );
 

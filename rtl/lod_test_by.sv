@@ -88,20 +88,9 @@ module lod_test_by #(
     logic [3*EDGE_W-1:0]   edges_q;
     lod_pkg::bound_scale_t scale_q;
     logic [TAG_W-1:0]      tag_q;
-    logic                  busy_q, ready_pass;
-    logic [PASS_W-1:0]     pass_q;
-    assign ready_o = !busy_q || (ready_pass && pass_q == 2);
-    always_ff @(posedge clk_i) begin
-      if (!rst_ni) begin
-        busy_q <= 1'b0;
-        pass_q <= '0;
-      end else if (ready_o) begin
-        busy_q <= valid_i;
-        pass_q <= '0;
-      end else if (ready_pass) begin
-        pass_q <= pass_q + 1;
-      end
-    end
+    logic                  busy, ready_pass;
+    logic [PASS_W-1:0]     pass;
+    three_passes u_passes (.clk_i, .rst_ni, .valid_i, .ready_o, .busy_o(busy), .ready_i(ready_pass), .pass_o(pass));
     always_ff @(posedge clk_i) begin
       if (ready_o && valid_i) {edges_q, scale_q, tag_q} <= {edges, in_i.scale, tag_i};
       else if (ready_pass) edges_q[2*EDGE_W-1:0] <= edges_q[3*EDGE_W-1:EDGE_W];
@@ -115,12 +104,12 @@ module lod_test_by #(
     logic [S_W-1:0]                   state;
     assign {a, b, direction, cone, code} = edges_q[EDGE_W-1:0];
     lod_edge_by u_edge (
-      .clk_i, .rst_ni, .valid_i(busy_q), .ready_o(ready_pass), .a_i(a), .b_i(b), .direction_i(direction), .cone_i(cone),
+      .clk_i, .rst_ni, .valid_i(busy), .ready_o(ready_pass), .a_i(a), .b_i(b), .direction_i(direction), .cone_i(cone),
       .code_i(code), .scale_i(scale_q), .valid_o(valid_state), .ready_i(ready_state), .open_o(open_state), .s_o(state)
     );
     logic [PASS_W-1:0] pass_state;
     pipe_delay #(.W(PASS_W + TAG_W), .STAGES(EDGE_LATENCY), .SKIDS(EDGE_SKIDS)) u_tag (
-      .clk_i, .rst_ni, .valid_i(busy_q), .ready_o(), .data_i({pass_q, tag_q}),
+      .clk_i, .rst_ni, .valid_i(busy), .ready_o(), .data_i({pass, tag_q}),
       .valid_o(), .ready_i(ready_state), .data_o({pass_state, tag})
     );
 

@@ -51,22 +51,10 @@ module start_edges_serial #(
   logic [3*F_W-1:0]    f_q;
   lod_pkg::direction_t d_q;
   logic [TAG_W-1:0]    tag_q;
-  logic                busy_q, ready_pass;
-  logic [PASS_W-1:0]   pass_q;
+  logic                busy, ready_pass;
+  logic [PASS_W-1:0]   pass;
 
-  assign ready_o = !busy_q || (ready_pass && pass_q == 2);
-
-  always_ff @(posedge clk_i) begin
-    if (!rst_ni) begin
-      busy_q <= 1'b0;
-      pass_q <= '0;
-    end else if (ready_o) begin
-      busy_q <= valid_i;
-      pass_q <= '0;
-    end else if (ready_pass) begin
-      pass_q <= pass_q + 1;
-    end
-  end
+  three_passes u_passes (.clk_i, .rst_ni, .valid_i, .ready_o, .busy_o(busy), .ready_i(ready_pass), .pass_o(pass));
 
   always_ff @(posedge clk_i) begin
     if (ready_o && valid_i) begin
@@ -83,7 +71,7 @@ module start_edges_serial #(
   logic              valid_normal, ready_normal, valid_value, ready_value, tie, unused_ready;
   logic [EDGE_W-1:0] value;
   start_edge u_edge (
-    .clk_i, .rst_ni, .valid_i(busy_q), .ready_o(ready_pass), .p_i(b_q), .q_i(c_q), .f_i(f_q), .d_i(d_q),
+    .clk_i, .rst_ni, .valid_i(busy), .ready_o(ready_pass), .p_i(b_q), .q_i(c_q), .f_i(f_q), .d_i(d_q),
     .valid_normal_o(valid_normal), .ready_normal_o(unused_ready), .normal_o(normal), .exact_o(exact),
     .valid_o(valid_value), .ready_i(ready_value), .value_o(value), .tie_o(tie)
   );
@@ -91,13 +79,13 @@ module start_edges_serial #(
   // Components of A and f that this pass takes to t_num: x, y, z in passes 0, 1, 2, in which the turning triangle has a at a_q, c_q, b_q.
   logic [W-1:0]   a_k, a_k_beside;
   logic [F_W-1:0] f_k, f_k_beside;
-  assign a_k = pass_q == 0 ? a_q[2*W +: W] : pass_q == 1 ? c_q[W +: W] : b_q[0 +: W];
-  assign f_k = pass_q == 0 ? f_q[2*F_W +: F_W] : pass_q == 1 ? f_q[F_W +: F_W] : f_q[0 +: F_W];
+  assign a_k = pass == 0 ? a_q[2*W +: W] : pass == 1 ? c_q[W +: W] : b_q[0 +: W];
+  assign f_k = pass == 0 ? f_q[2*F_W +: F_W] : pass == 1 ? f_q[F_W +: F_W] : f_q[0 +: F_W];
 
   logic [PASS_W-1:0] pass_normal;
   logic [TAG_W-1:0]  tag_normal;
   pipe_delay #(.W(W + F_W + PASS_W + TAG_W), .STAGES(NORMAL_LATENCY), .SKIDS(64'd1 << (NORMAL_LATENCY - 2))) u_beside_normal (
-    .clk_i, .rst_ni, .valid_i(busy_q), .ready_o(), .data_i({a_k, f_k, pass_q, tag_q}),
+    .clk_i, .rst_ni, .valid_i(busy), .ready_o(), .data_i({a_k, f_k, pass, tag_q}),
     .valid_o(), .ready_i(ready_normal), .data_o({a_k_beside, f_k_beside, pass_normal, tag_normal})
   );
 

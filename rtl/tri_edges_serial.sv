@@ -45,22 +45,10 @@ module tri_edges_serial #(
   logic [3*W-1:0]                  a_q, b_q, c_q;
   logic [lod_pkg::KEPT_DIRECTION_W-1:0] d_q;
   logic [TAG_W-1:0]                tag_q;
-  logic                            busy_q, ready_pass;
-  logic [PASS_W-1:0]               pass_q;
+  logic                            busy, ready_pass;
+  logic [PASS_W-1:0]               pass;
 
-  assign ready_o = !busy_q || (ready_pass && pass_q == 2);
-
-  always_ff @(posedge clk_i) begin
-    if (!rst_ni) begin
-      busy_q <= 1'b0;
-      pass_q <= '0;
-    end else if (ready_o) begin
-      busy_q <= valid_i;
-      pass_q <= '0;
-    end else if (ready_pass) begin
-      pass_q <= pass_q + 1;
-    end
-  end
+  three_passes u_passes (.clk_i, .rst_ni, .valid_i, .ready_o, .busy_o(busy), .ready_i(ready_pass), .pass_o(pass));
 
   always_ff @(posedge clk_i) begin
     if (ready_o && valid_i) begin
@@ -76,19 +64,19 @@ module tri_edges_serial #(
   logic              valid_value, ready_value, tie;
   logic [EDGE_W-1:0] value;
   edge_function u_edge (
-    .clk_i, .rst_ni, .valid_i(busy_q), .ready_o(ready_pass), .p_i(b_q), .q_i(c_q), .d_i(d_q), .normal_o(normal),
+    .clk_i, .rst_ni, .valid_i(busy), .ready_o(ready_pass), .p_i(b_q), .q_i(c_q), .d_i(d_q), .normal_o(normal),
     .valid_o(valid_value), .ready_i(ready_value), .value_o(value), .tie_o(tie)
   );
 
   // Component of a that this pass adds to t_num: x, y, z in passes 0, 1, 2, in which the turning triangle has a at a_q, c_q, b_q.
   logic [W-1:0] a_k, a_k_beside;
-  assign a_k = pass_q == 0 ? a_q[2*W +: W] : pass_q == 1 ? c_q[W +: W] : b_q[0 +: W];
+  assign a_k = pass == 0 ? a_q[2*W +: W] : pass == 1 ? c_q[W +: W] : b_q[0 +: W];
 
   logic              valid_normal, ready_normal;
   logic [PASS_W-1:0] pass_normal;
   logic [TAG_W-1:0]  tag_normal;
   pipe_delay #(.W(W + PASS_W + TAG_W), .STAGES(CROSS_LATENCY), .SKIDS(64'd1 << (CROSS_LATENCY - 1))) u_beside_cross (
-    .clk_i, .rst_ni, .valid_i(busy_q), .ready_o(), .data_i({a_k, pass_q, tag_q}),
+    .clk_i, .rst_ni, .valid_i(busy), .ready_o(), .data_i({a_k, pass, tag_q}),
     .valid_o(valid_normal), .ready_i(ready_normal), .data_o({a_k_beside, pass_normal, tag_normal})
   );
 

@@ -105,7 +105,7 @@ class Gates:
     """Units in gates: their blocks as synthesis has them, and their contexts by the model of their area."""
 
     def __init__(self, options):
-        self.options = types.SimpleNamespace(seeds=1, no_place=options.no_place, no_gates=False, jobs=options.jobs)
+        self.options = types.SimpleNamespace(seeds=1, no_place=options.no_place, no_fpga=options.no_place, no_gates=False, jobs=options.jobs)
 
     def unit(self, plan, **facts):
         """The unit of a plan, with these facts in place of its own."""

@@ -52,6 +52,7 @@ def parse():
     parser.add_argument("block", nargs="*", help="module of rtl/ (tri_test-EDGES_PER_CYCLE=3 gives a parameter); all blocks if none is named")
     parser.add_argument("--seeds", type=int, default=3, metavar="N", help="place and route N times and take the median clock (default 3)")
     parser.add_argument("--no-place", action="store_true", help="leave place and route out")
+    parser.add_argument("--no-fpga", action="store_true", help="leave the FPGA out: generic gates alone")
     parser.add_argument("--no-gates", action="store_true", help="leave the generic gates out")
     parser.add_argument("--paths", action="store_true", help="print the longest path of the slowest seed of each block")
     parser.add_argument("--jobs", type=int, default=os.cpu_count(), metavar="N", help="tools at work at once (default: one per core)")
@@ -64,11 +65,13 @@ def parse():
         parser.error(f"--fpga must be 1 to 64 contexts, but is {options.fpga}")
     if options.seeds < 1 or options.jobs < 1:
         parser.error("--seeds and --jobs must be at least 1")
-    if options.doc and (options.block or options.no_place or options.no_gates):
+    if options.no_fpga and options.no_gates:
+        parser.error("--no-fpga and --no-gates leave nothing")
+    if options.doc and (options.block or options.no_place or options.no_fpga or options.no_gates):
         parser.error("--doc writes the whole table: name no block and leave nothing out")
     if options.plan and (options.block or options.doc or options.check):
         parser.error("--plan is of a whole unit: it has its own blocks, no place in docs/hardware.md, and its tests are those of cargo test")
-    if options.fpga is not None and (options.fpga < 1 or options.block or options.doc or options.check or options.plan or options.no_place):
+    if options.fpga is not None and (options.fpga < 1 or options.block or options.doc or options.check or options.plan or options.no_place or options.no_fpga):
         parser.error("--fpga is the whole unit, of at least one context: of all else it takes --seeds and --paths alone")
     if options.check and options.no_gates:
         parser.error("--check needs the gates")
@@ -87,7 +90,8 @@ class Run:
         with concurrent.futures.ThreadPoolExecutor(self.options.jobs) as pool:
             for block in wanted:
                 self.figures[block.name] = {}
-                self.start(pool, block, "ecp5", ecp5.synthesise)
+                if not self.options.no_fpga:
+                    self.start(pool, block, "ecp5", ecp5.synthesise)
                 if not self.options.no_gates:
                     self.start(pool, block, "gates", gates.synthesise)
             try:

@@ -7,7 +7,7 @@
   logic [BESIDE_ALL_W-1:0] beside_q, edge_beside_q;
   logic                    handed;
   initial live_q = 1'b0;
-  assign handed = busy_q && pass_q == 2 && ready_pass;
+  assign handed = busy && pass == 2 && ready_pass;
   always_ff @(posedge clk_i) begin
     if (!rst_ni) begin
       {live_q, held_q, edge_held_q} <= 3'b100;
@@ -45,32 +45,32 @@
 
   always_comb begin
     if (live_q) begin
-      assert (busy_q == held_q && edge_busy_q == edge_held_q && pass_q <= 2 && edge_pass_q <= 2);
+      assert (busy == held_q && edge_busy == edge_held_q && pass <= 2 && edge_pass <= 2);
       assert (ready_o == (!held_q || handed));
       if (held_q) begin
         assert ({direction_q, cone_q, codes_q, scale_q, tag_q} == beside_q);
-        assert (corners_q[0] == order[pass_q]);
-        assert (pass_q == 2 || corners_q[1] == order[pass_q+1]);
-        assert (pass_q != 0 || corners_q[2] == order[2]);
-        assert (pass_q == 0 || l2_q == far[pass_q-1]);
-        assert (pass_q != 2 || l1_q == far[0]);
+        assert (corners_q[0] == order[pass]);
+        assert (pass == 2 || corners_q[1] == order[pass+1]);
+        assert (pass != 0 || corners_q[2] == order[2]);
+        assert (pass == 0 || l2_q == far[pass-1]);
+        assert (pass != 2 || l1_q == far[0]);
       end
       if (edge_held_q) begin
         assert ({edge_cone_q, edge_scale_q, edge_tag_q} == {edge_cone, edge_scale, edge_tag});
-        assert (edge_l_q[0] == near[edge_pass_q] && edge_l_q[1] == near[edge_pass_q == 2 ? 0 : edge_pass_q+1]);
-        assert (edge_l_q[2] == near[edge_pass_q == 0 ? 2 : edge_pass_q-1]);
-        assert (edge_codes_q[0] == codes[edge_pass_q]);
-        assert (edge_pass_q == 2 || edge_codes_q[1] == codes[edge_pass_q+1]);
-        assert (edge_pass_q != 0 || edge_codes_q[2] == codes[2]);
-        assert (edge_pass_q == 0 || {open1_q, s1_q} == {wanted[edge_pass_q-1] != '0, wanted[edge_pass_q-1]});
-        assert (edge_pass_q != 2 || {open0_q, s0_q} == {wanted[0] != '0, wanted[0]});
+        assert (edge_l_q[0] == near[edge_pass] && edge_l_q[1] == near[edge_pass == 2 ? 0 : edge_pass+1]);
+        assert (edge_l_q[2] == near[edge_pass == 0 ? 2 : edge_pass-1]);
+        assert (edge_codes_q[0] == codes[edge_pass]);
+        assert (edge_pass == 2 || edge_codes_q[1] == codes[edge_pass+1]);
+        assert (edge_pass != 0 || edge_codes_q[2] == codes[2]);
+        assert (edge_pass == 0 || {open1_q, s1_q} == {wanted[edge_pass-1] != '0, wanted[edge_pass-1]});
+        assert (edge_pass != 2 || {open0_q, s0_q} == {wanted[0] != '0, wanted[0]});
       end
       // A triangle's states come out together, in their places and with its own tag.
-      assert (valid_o == (edge_held_q && edge_pass_q == 2));
+      assert (valid_o == (edge_held_q && edge_pass == 2));
       if (valid_o) begin
         assert (tag_o == edge_tag && s_o == wanted && open_o == (wanted != '0));
       end
     end
     cover (live_q && valid_o && ready_i && handed && valid_i && s_o[0] != s_o[1] && s_o[1] != s_o[2]);
-    cover (live_q && valid_o && !ready_i && held_q && pass_q == 2);
+    cover (live_q && valid_o && !ready_i && held_q && pass == 2);
   end
