@@ -43,3 +43,22 @@ impl Block for StartDivide {
         HitDivide::with(&hit_divide::In { numerator, denominator }, low)
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::num::{RayT, WU};
+    use num_bigint::BigUint;
+    use proptest::prelude::*;
+
+    proptest! {
+        #[test]
+        fn what_is_below_whole_numbers_counts(n in 0u128..1 << 99, low in 0u64..1 << 31, d in 1u128..1 << 96, sn in 0u32..99, sd in 0u32..96) {
+            let (n, d) = (n >> sn, (d >> sd).max(1));
+            let exact = ((BigUint::from(n) << START_BITS) + low) * 2u32 / BigUint::from(d);
+            let wanted = exact.min(BigUint::from(RayT::MAX.get()));
+            let out = StartDivide::eval(&In { numerator: WU::new(n), low: U::new(low), denominator: WU::new(d) });
+            prop_assert_eq!(BigUint::from(out.quotient.get()), wanted);
+        }
+    }
+}
