@@ -33,8 +33,8 @@ ACCOUNTS = ("src/block/operation.rs", "src/block/parts/")
 # Binaries and filters of their tests, in the order in which they are asked; {module} is the path of the mutated file's module.
 LIB = "lodray"
 STAGES = {
-    "block": [(LIB, "{module}::"), (LIB, ""), ("box_test", ""), ("tri_test", ""), ("equivalence", ""), ("unit", ""), ("rtl", "{name}::")],
-    "golden": [(LIB, "{module}::"), (LIB, ""), ("golden", ""), ("bounds", ""), ("watertight", ""), ("equivalence", "")],
+    "block": [(LIB, "{module}::"), (LIB, ""), ("box_test", ""), ("tri_test", ""), ("secondary", ""), ("equivalence", ""), ("unit", ""), ("rtl", "{name}::")],
+    "golden": [(LIB, "{module}::"), (LIB, ""), ("golden", ""), ("bounds", ""), ("secondary", ""), ("watertight", ""), ("equivalence", "")],
 }
 
 # Modules whose unit tests are built: blocks, golden traverser, what these use, and what their tests compare with. All others would take most of the time.

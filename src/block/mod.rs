@@ -203,6 +203,11 @@ mod tests {
     use super::*;
 
     #[test]
+    fn edges_a_cycle_are_one_or_three() {
+        assert_eq!([0, 1, 2, 3, 4].map(|count| EdgesPerCycle::new(count).map(EdgesPerCycle::count)), [None, Some(1), None, Some(3), None]);
+    }
+
+    #[test]
     fn boxes_a_cycle_are_one_two_or_four() {
         assert_eq!(
             [0, 1, 2, 3, 4, 5].map(|count| BoxesPerCycle::new(count).map(BoxesPerCycle::count)),

@@ -9,7 +9,7 @@ use syn::visit::{self, Visit};
 use syn::{Attribute, BinOp, Block, Expr, ImplItem, Item, Lit, Pat, ReturnType, Signature, Type, UnOp};
 
 /// Functions of blocks that say what they take and how long, not what they compute.
-const ACCOUNTS: [&str; 3] = ["parts", "timing", "arithmetic"];
+const ACCOUNTS: [&str; 4] = ["parts", "timing", "arithmetic", "edge_arithmetic"];
 /// Types of such accounts.
 const ACCOUNT_TYPES: [&str; 3] = ["Parts", "Registers", "Timing"];
 
