@@ -104,6 +104,8 @@ mod tests {
         let start = inside(OWN, [1 << 30, 1 << 29, 1 << 29]);
         let upright = [[16, 0, -8], [16, 64, -8], [16, 16, 64]];
         assert!(holds_another(start, OWN, upright) && !holds_another(start, OWN, OWN));
+        // One corner in the plane of its own does not make it lie there.
+        assert!(holds_another(start, OWN, [[16, 0, 0], upright[1], upright[2]]));
         assert!(!holds_another(start, OWN, upright.map(|[x, y, z]| [x + 1, y, z])));
         assert!(!holds_another(start, OWN, upright.map(|[x, y, z]| [x, y + 32, z])));
     }
