@@ -28,6 +28,7 @@ framed_box.sv
 hit_divide.sv
 hit_queue.sv
 hit_select.sv
+link_register.sv
 limb_sum.sv
 lod_edge_by.sv
 lod_edges_parallel.sv
@@ -44,6 +45,7 @@ pipe_stage.sv
 ray_context.sv
 ray_setup.sv
 shared_input.sv
+shared_output.sv
 split_triangles.sv
 start_divide.sv
 start_edge.sv

@@ -3,7 +3,8 @@
 /// First in, first out: hits on their way from the triangle test to the division.
 ///
 /// `data_o` is the oldest item, valid while `empty_o` is low; a pop drops it at the end of the cycle. An item pushed is seen from the next cycle on. The caller never has
-/// more than `DEPTH` items under way, so there is no full flag. Only pointers and length are reset.
+/// more than `DEPTH` items under way, so there is no full flag. A memory with one write and one clocked read port, never at the same place in one cycle: with a pop the item behind is read, and one
+/// that finds nothing before it is kept beside the memory too. Only pointers and length are reset.
 module hit_queue #(
   parameter int unsigned W = 1,
   parameter int unsigned DEPTH = 4
@@ -26,12 +27,22 @@ module hit_queue #(
   localparam int unsigned LEN_W = $clog2(DEPTH + 1);
   localparam logic [INDEX_W-1:0] LAST = INDEX_W'(DEPTH - 1);
 
+  // On an FPGA not in block RAMs: few and wide, and late.
+  (* ram_style = "distributed" *)
   logic [W-1:0]       items_q [DEPTH];
+  logic [W-1:0]       read_q;
+  logic [W-1:0]       direct_q;
+  // The oldest item was never behind another.
+  logic               is_direct_q;
   logic [INDEX_W-1:0] head_q;
   logic [INDEX_W-1:0] tail_q;
   logic [LEN_W-1:0]   len_q;
+  logic [INDEX_W-1:0] behind;
+  logic               direct;
 
-  assign data_o  = items_q[head_q];
+  assign behind  = (head_q == LAST) ? '0 : head_q + INDEX_W'(1);
+  assign direct  = empty_o || (pop_i && len_q == LEN_W'(1));
+  assign data_o  = is_direct_q ? direct_q : read_q;
   assign empty_o = len_q == '0;
 
   always_ff @(posedge clk_i) begin
@@ -41,7 +52,7 @@ module hit_queue #(
       len_q  <= '0;
     end else begin
       if (push_i) tail_q <= (tail_q == LAST) ? '0 : tail_q + INDEX_W'(1);
-      if (pop_i) head_q <= (head_q == LAST) ? '0 : head_q + INDEX_W'(1);
+      if (pop_i) head_q <= behind;
       if (push_i && !pop_i) len_q <= len_q + LEN_W'(1);
       if (pop_i && !push_i) len_q <= len_q - LEN_W'(1);
     end
@@ -49,6 +60,9 @@ module hit_queue #(
 
   always_ff @(posedge clk_i) begin
     if (push_i) items_q[tail_q] <= data_i;
+    if (pop_i) read_q <= items_q[behind];
+    if (push_i && direct) direct_q <= data_i;
+    if (pop_i || empty_o) is_direct_q <= direct;
   end
 
   always_ff @(posedge clk_i) begin

@@ -17,6 +17,7 @@ package lod_pkg;
   localparam int unsigned DIVIDE_BITS = 3;          // bits of a quotient that hit_divide finds in a cycle, if its parameter does not say otherwise
   localparam int unsigned SETUP_BITS = 3;           // of each reciprocal that ray_setup finds, likewise
   localparam int unsigned BOXES_PER_CYCLE = 2;      // boxes that child_test tests in a cycle, if its parameter does not say otherwise
+  localparam int unsigned LINK_REGISTERS = 0;       // between contexts and blocks: 0, 1 for operands, or 2 for results and answers of memory too
   localparam int unsigned INDEX_W = 28;             // of the number of a quad-BVH node, of a tree, and of a node, where it is kept
   localparam int unsigned LINE_W = 28;              // of the numbers of a tree's first sibling group and vertex line
   localparam int unsigned LOD_TEST = 1;             // levels of detail are chosen, and triangles morphed: 1, or 0 if all rays are of full detail or of none

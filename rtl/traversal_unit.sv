@@ -4,6 +4,7 @@
 ///
 /// `CONTEXTS` ray contexts (state machines) share one of each block; docs/traversal-unit.md gives every state, arbitration and port rule, and
 /// `src/sim/unit` is the cycle model. A result always has a place, so no block ever waits for its consumer; only the memory and hit ports stall.
+/// Between contexts and blocks, and from memory's answers to contexts, are wires, or `lod_pkg::LINK_REGISTERS` registers.
 /// Memory: one 32-byte line a request, any latency and order of answers, at most two outstanding a ray; answers are always taken.
 /// Hits: smaller t first, then smaller triangle; every field as at full resolution (paper section 3.6).
 /// Every ray that is taken gives exactly one hit, whatever memory holds or does; one that cannot go on gives an error (docs/integration.md).
@@ -36,6 +37,7 @@ module traversal_unit #(
   localparam int unsigned CONTEXT_W = lod_pkg::CONTEXT_W;
   localparam bit SECONDARY = lod_pkg::SECONDARY != 0;
   localparam bit DECIDING = SECONDARY && lod_pkg::LOD_TEST != 0;
+  localparam int unsigned SETUP_INTERVAL = SECONDARY ? lod_pkg::START_SETUP_INTERVAL : lod_pkg::RAY_SETUP_INTERVAL;
 
   if (CONTEXTS < 1 || CONTEXTS > lod_pkg::MAX_CONTEXTS) begin : g_illegal_contexts
     $error("traversal_unit: CONTEXTS = %0d, must be 1 to %0d", CONTEXTS, lod_pkg::MAX_CONTEXTS);
@@ -77,12 +79,12 @@ module traversal_unit #(
 
   logic [N-1:0] setup_request, setup_grant;
   logic [N-1:0][lod_pkg::START_SETUP_IN_W-1:0] setup_data;
-  logic setup_in_valid, setup_in_ready, setup_valid;
+  logic setup_in_valid, setup_in_ready, setup_made_valid, setup_valid;
   lod_pkg::start_setup_in_t setup_in;
-  lod_pkg::ray_setup_out_t setup_out;
-  logic [CONTEXT_W-1:0] setup_in_tag, setup_tag;
+  lod_pkg::ray_setup_out_t setup_made, setup_out;
+  logic [CONTEXT_W-1:0] setup_in_tag, setup_made_tag, setup_tag;
 
-  shared_input #(.N(N), .W(lod_pkg::START_SETUP_IN_W)) u_setup_input (
+  shared_input #(.N(N), .W(lod_pkg::START_SETUP_IN_W), .INTERVAL(SETUP_INTERVAL)) u_setup_input (
     .clk_i, .rst_ni,
     .request_i(setup_request), .data_i(setup_data), .grant_o(setup_grant),
     .valid_o(setup_in_valid), .ready_i(setup_in_ready), .data_o(setup_in), .index_o(setup_in_tag)
@@ -93,7 +95,7 @@ module traversal_unit #(
     start_setup #(.TAG_W(CONTEXT_W)) u_start_setup (
       .clk_i, .rst_ni,
       .valid_i(setup_in_valid), .ready_o(setup_in_ready), .in_i(setup_in), .tag_i(setup_in_tag),
-      .valid_o(setup_valid), .ready_i(1'b1), .out_o(setup_out), .tag_o(setup_tag)
+      .valid_o(setup_made_valid), .ready_i(1'b1), .out_o(setup_made), .tag_o(setup_made_tag)
     );
   end else begin : g_ray_setup
     logic unused_fraction;
@@ -101,18 +103,24 @@ module traversal_unit #(
     ray_setup #(.TAG_W(CONTEXT_W)) u_ray_setup (
       .clk_i, .rst_ni,
       .valid_i(setup_in_valid), .ready_o(setup_in_ready), .in_i({setup_in.start.point, setup_in.direction}), .tag_i(setup_in_tag),
-      .valid_o(setup_valid), .ready_i(1'b1), .out_o(setup_out), .tag_o(setup_tag)
+      .valid_o(setup_made_valid), .ready_i(1'b1), .out_o(setup_made), .tag_o(setup_made_tag)
     );
   end
 
+  shared_output #(.W(lod_pkg::RAY_SETUP_OUT_W)) u_setup_output (
+    .clk_i, .rst_ni,
+    .valid_i(setup_made_valid), .out_i(setup_made), .tag_i(setup_made_tag),
+    .valid_o(setup_valid), .out_o(setup_out), .tag_o(setup_tag)
+  );
+
   logic [N-1:0] child_request, child_grant;
   logic [N-1:0][lod_pkg::CHILD_TEST_IN_W-1:0] child_data;
-  logic child_in_valid, child_in_ready, child_valid;
+  logic child_in_valid, child_in_ready, child_made_valid, child_valid;
   lod_pkg::child_test_in_t child_in;
-  lod_pkg::child_test_out_t child_out;
-  logic [CONTEXT_W-1:0] child_in_tag, child_tag;
+  lod_pkg::child_test_out_t child_made, child_out;
+  logic [CONTEXT_W-1:0] child_in_tag, child_made_tag, child_tag;
 
-  shared_input #(.N(N), .W(lod_pkg::CHILD_TEST_IN_W)) u_child_input (
+  shared_input #(.N(N), .W(lod_pkg::CHILD_TEST_IN_W), .INTERVAL(4 / lod_pkg::BOXES_PER_CYCLE)) u_child_input (
     .clk_i, .rst_ni,
     .request_i(child_request), .data_i(child_data), .grant_o(child_grant),
     .valid_o(child_in_valid), .ready_i(child_in_ready), .data_o(child_in), .index_o(child_in_tag)
@@ -121,20 +129,26 @@ module traversal_unit #(
   child_test #(.TAG_W(CONTEXT_W)) u_child_test (
     .clk_i, .rst_ni,
     .valid_i(child_in_valid), .ready_o(child_in_ready), .in_i(child_in), .tag_i(child_in_tag),
-    .valid_o(child_valid), .ready_i(1'b1), .out_o(child_out), .tag_o(child_tag)
+    .valid_o(child_made_valid), .ready_i(1'b1), .out_o(child_made), .tag_o(child_made_tag)
+  );
+
+  shared_output #(.W(lod_pkg::CHILD_TEST_OUT_W)) u_child_output (
+    .clk_i, .rst_ni,
+    .valid_i(child_made_valid), .out_i(child_made), .tag_i(child_made_tag),
+    .valid_o(child_valid), .out_o(child_out), .tag_o(child_tag)
   );
 
   logic [N-1:0] decide_request, decide_grant;
   logic [N-1:0][lod_pkg::TREE_DECIDERS_IN_W-1:0] decide_data;
-  logic decide_valid;
-  lod_pkg::tree_deciders_out_t decide_out;
-  logic [CONTEXT_W-1:0] decide_tag;
+  logic decide_made_valid, decide_valid;
+  lod_pkg::tree_deciders_out_t decide_made, decide_out;
+  logic [CONTEXT_W-1:0] decide_made_tag, decide_tag;
 
   if (DECIDING) begin : g_deciders
     logic decide_in_valid, decide_in_ready;
     lod_pkg::tree_deciders_in_t decide_in;
     logic [CONTEXT_W-1:0] decide_in_tag;
-    shared_input #(.N(N), .W(lod_pkg::TREE_DECIDERS_IN_W)) u_decide_input (
+    shared_input #(.N(N), .W(lod_pkg::TREE_DECIDERS_IN_W), .INTERVAL(1)) u_decide_input (
       .clk_i, .rst_ni,
       .request_i(decide_request), .data_i(decide_data), .grant_o(decide_grant),
       .valid_o(decide_in_valid), .ready_i(decide_in_ready), .data_o(decide_in), .index_o(decide_in_tag)
@@ -142,22 +156,28 @@ module traversal_unit #(
     tree_deciders #(.TAG_W(CONTEXT_W)) u_tree_deciders (
       .clk_i, .rst_ni,
       .valid_i(decide_in_valid), .ready_o(decide_in_ready), .in_i(decide_in), .tag_i(decide_in_tag),
-      .valid_o(decide_valid), .ready_i(1'b1), .out_o(decide_out), .tag_o(decide_tag)
+      .valid_o(decide_made_valid), .ready_i(1'b1), .out_o(decide_made), .tag_o(decide_made_tag)
     );
   end else begin : g_no_deciders
     logic unused_decide;
-    assign {decide_grant, decide_valid, decide_out, decide_tag} = '0;
+    assign {decide_grant, decide_made_valid, decide_made, decide_made_tag} = '0;
     assign unused_decide = ^{decide_request, decide_data};
   end
 
+  shared_output #(.W(lod_pkg::TREE_DECIDERS_OUT_W)) u_decide_output (
+    .clk_i, .rst_ni,
+    .valid_i(decide_made_valid), .out_i(decide_made), .tag_i(decide_made_tag),
+    .valid_o(decide_valid), .out_o(decide_out), .tag_o(decide_tag)
+  );
+
   logic [N-1:0] lod_request, lod_grant;
   logic [N-1:0][lod_pkg::LOD_TEST_BY_IN_W-1:0] lod_data;
-  logic lod_in_valid, lod_in_ready, lod_valid;
+  logic lod_in_valid, lod_in_ready, lod_made_valid, lod_valid;
   lod_pkg::lod_test_by_in_t lod_in;
-  lod_pkg::lod_test_out_t lod_out;
-  logic [CONTEXT_W-1:0] lod_in_tag, lod_tag;
+  lod_pkg::lod_test_out_t lod_made, lod_out;
+  logic [CONTEXT_W-1:0] lod_in_tag, lod_made_tag, lod_tag;
 
-  shared_input #(.N(N), .W(lod_pkg::LOD_TEST_BY_IN_W)) u_lod_input (
+  shared_input #(.N(N), .W(lod_pkg::LOD_TEST_BY_IN_W), .INTERVAL(3 / lod_pkg::LOD_EDGES_PER_CYCLE)) u_lod_input (
     .clk_i, .rst_ni,
     .request_i(lod_request), .data_i(lod_data), .grant_o(lod_grant),
     .valid_o(lod_in_valid), .ready_i(lod_in_ready), .data_o(lod_in), .index_o(lod_in_tag)
@@ -167,7 +187,7 @@ module traversal_unit #(
     lod_test_by #(.TAG_W(CONTEXT_W)) u_lod_test_by (
       .clk_i, .rst_ni,
       .valid_i(lod_in_valid), .ready_o(lod_in_ready), .in_i(lod_in), .tag_i(lod_in_tag),
-      .valid_o(lod_valid), .ready_i(1'b1), .out_o(lod_out), .tag_o(lod_tag)
+      .valid_o(lod_made_valid), .ready_i(1'b1), .out_o(lod_made), .tag_o(lod_made_tag)
     );
   end else if (lod_pkg::LOD_TEST != 0) begin : g_lod_test
     lod_pkg::lod_test_in_t own_in;
@@ -177,13 +197,19 @@ module traversal_unit #(
     lod_test #(.TAG_W(CONTEXT_W)) u_lod_test (
       .clk_i, .rst_ni,
       .valid_i(lod_in_valid), .ready_o(lod_in_ready), .in_i(own_in), .tag_i(lod_in_tag),
-      .valid_o(lod_valid), .ready_i(1'b1), .out_o(lod_out), .tag_o(lod_tag)
+      .valid_o(lod_made_valid), .ready_i(1'b1), .out_o(lod_made), .tag_o(lod_made_tag)
     );
   end else begin : g_no_lod_test
     logic unused_lod;
-    assign {lod_in_ready, lod_valid, lod_out, lod_tag} = '0;
+    assign {lod_in_ready, lod_made_valid, lod_made, lod_made_tag} = '0;
     assign unused_lod = ^{lod_in_valid, lod_in, lod_in_tag};
   end
+
+  shared_output #(.W(lod_pkg::LOD_TEST_OUT_W)) u_lod_output (
+    .clk_i, .rst_ni,
+    .valid_i(lod_made_valid), .out_i(lod_made), .tag_i(lod_made_tag),
+    .valid_o(lod_valid), .out_o(lod_out), .tag_o(lod_tag)
+  );
 
   // The vertices are taken out of their line once the context is chosen.
   localparam int unsigned MORPH_OWN_W = lod_pkg::TESSELLATE_IN_W - 3 * lod_pkg::POINT_W;
@@ -194,12 +220,12 @@ module traversal_unit #(
   logic [MORPH_OWN_W-1:0] morph_own;
   logic [255:0] morph_line;
   logic morph_half;
-  logic morph_in_valid, morph_in_ready, morph_valid;
+  logic morph_in_valid, morph_in_ready, morph_made_valid, morph_valid;
   lod_pkg::tessellate_in_t morph_in;
-  lod_pkg::tessellate_out_t morph_out;
-  logic [CONTEXT_W-1:0] morph_in_tag, morph_tag;
+  lod_pkg::tessellate_out_t morph_made, morph_out;
+  logic [CONTEXT_W-1:0] morph_in_tag, morph_made_tag, morph_tag;
 
-  shared_input #(.N(N), .W(MORPH_W)) u_morph_input (
+  shared_input #(.N(N), .W(MORPH_W), .INTERVAL(1)) u_morph_input (
     .clk_i, .rst_ni,
     .request_i(morph_request), .data_i(morph_data), .grant_o(morph_grant),
     .valid_o(morph_in_valid), .ready_i(morph_in_ready), .data_o({morph_own, morph_line, morph_half}), .index_o(morph_in_tag)
@@ -228,13 +254,19 @@ module traversal_unit #(
     tessellate #(.TAG_W(CONTEXT_W)) u_tessellate (
       .clk_i, .rst_ni,
       .valid_i(morph_in_valid), .ready_o(morph_in_ready), .in_i(morph_in), .tag_i(morph_in_tag),
-      .valid_o(morph_valid), .ready_i(1'b1), .out_o(morph_out), .tag_o(morph_tag)
+      .valid_o(morph_made_valid), .ready_i(1'b1), .out_o(morph_made), .tag_o(morph_made_tag)
     );
   end else begin : g_no_tessellate
     logic unused_morph;
-    assign {morph_in_ready, morph_valid, morph_out, morph_tag} = '0;
+    assign {morph_in_ready, morph_made_valid, morph_made, morph_made_tag} = '0;
     assign unused_morph = ^{morph_in_valid, morph_in, morph_in_tag};
   end
+
+  shared_output #(.W(lod_pkg::TESSELLATE_OUT_W)) u_morph_output (
+    .clk_i, .rst_ni,
+    .valid_i(morph_made_valid), .out_i(morph_made), .tag_i(morph_made_tag),
+    .valid_o(morph_valid), .out_o(morph_out), .tag_o(morph_tag)
+  );
 
   // What a context asks of the inserted vertices that come, as it keeps them: whether one is beyond the largest coordinate, and the bits that may have to be 0.
   lod_pkg::point_t come0, come1, come2;
@@ -249,12 +281,12 @@ module traversal_unit #(
 
   logic [N-1:0] map_request, map_grant;
   logic [N-1:0][lod_pkg::BARY_MAP_IN_W-1:0] map_data;
-  logic map_in_valid, map_in_ready, map_valid;
+  logic map_in_valid, map_in_ready, map_made_valid, map_valid;
   lod_pkg::bary_map_in_t map_in;
-  lod_pkg::bary_map_out_t map_out;
-  logic [CONTEXT_W-1:0] map_in_tag, map_tag;
+  lod_pkg::bary_map_out_t map_made, map_out;
+  logic [CONTEXT_W-1:0] map_in_tag, map_made_tag, map_tag;
 
-  shared_input #(.N(N), .W(lod_pkg::BARY_MAP_IN_W)) u_map_input (
+  shared_input #(.N(N), .W(lod_pkg::BARY_MAP_IN_W), .INTERVAL(1)) u_map_input (
     .clk_i, .rst_ni,
     .request_i(map_request), .data_i(map_data), .grant_o(map_grant),
     .valid_o(map_in_valid), .ready_i(map_in_ready), .data_o(map_in), .index_o(map_in_tag)
@@ -264,13 +296,19 @@ module traversal_unit #(
     bary_map #(.TAG_W(CONTEXT_W)) u_bary_map (
       .clk_i, .rst_ni,
       .valid_i(map_in_valid), .ready_o(map_in_ready), .in_i(map_in), .tag_i(map_in_tag),
-      .valid_o(map_valid), .ready_i(1'b1), .out_o(map_out), .tag_o(map_tag)
+      .valid_o(map_made_valid), .ready_i(1'b1), .out_o(map_made), .tag_o(map_made_tag)
     );
   end else begin : g_no_bary_map
     logic unused_map;
-    assign {map_in_ready, map_valid, map_out, map_tag} = '0;
+    assign {map_in_ready, map_made_valid, map_made, map_made_tag} = '0;
     assign unused_map = ^{map_in_valid, map_in, map_in_tag};
   end
+
+  shared_output #(.W(lod_pkg::BARY_MAP_OUT_W)) u_map_output (
+    .clk_i, .rst_ni,
+    .valid_i(map_made_valid), .out_i(map_made), .tag_i(map_made_tag),
+    .valid_o(map_valid), .out_o(map_out), .tag_o(map_tag)
+  );
 
   // ---- Memory: requests carry the place of their line and the epoch of their ray besides the operands ----
 
@@ -308,6 +346,14 @@ module traversal_unit #(
   // 16 at most, in a scene that fits.
   assign line_misplaced = lod_pkg::misplaced(corner0, zeros[4:0]) || lod_pkg::misplaced(corner1, zeros[4:0]) || lod_pkg::misplaced(corner2, zeros[4:0]);
 
+  logic                    line_valid, line_is_misplaced;
+  lod_pkg::memory_answer_t line;
+  shared_output #(.W(lod_pkg::MEMORY_ANSWER_W), .TAG_W(1)) u_line_output (
+    .clk_i, .rst_ni,
+    .valid_i(mem_valid_i), .out_i(mem_i), .tag_i(line_misplaced),
+    .valid_o(line_valid), .out_o(line), .tag_o(line_is_misplaced)
+  );
+
   // The port has room for the number of any context that there can be.
   assign mem_o       = {8'(fetch_tag), fetch_epoch, fetch_out.address};
   assign mem_ready_o = 1'b1;
@@ -318,14 +364,15 @@ module traversal_unit #(
 
   logic [N-1:0] tri_request, tri_grant;
   logic [N-1:0][TRI_W-1:0] tri_data;
-  logic tri_in_valid, tri_in_ready, tri_valid;
+  logic tri_in_valid, tri_in_ready, tri_made_valid, tri_valid;
   logic [1:0] tri_in_number, tri_number;
   lod_pkg::start_test_in_t tri_in;
-  lod_pkg::tri_test_out_t tri_out;
-  lod_pkg::below_t tri_below;
+  lod_pkg::tri_test_out_t tri_made, tri_out;
+  lod_pkg::below_t tri_made_below, tri_below;
   logic [CONTEXT_W-1:0] tri_in_tag, tri_owner;
+  logic [lod_pkg::PLACE_TAG_W-1:0] tri_made_tag;
 
-  shared_input #(.N(N), .W(TRI_W)) u_tri_input (
+  shared_input #(.N(N), .W(TRI_W), .INTERVAL(3 / EDGES_PER_CYCLE)) u_tri_input (
     .clk_i, .rst_ni,
     .request_i(tri_request), .data_i(tri_data), .grant_o(tri_grant),
     .valid_o(tri_in_valid), .ready_i(tri_in_ready), .data_o({tri_in_number, tri_in}), .index_o(tri_in_tag)
@@ -335,20 +382,26 @@ module traversal_unit #(
     start_test #(.TAG_W(lod_pkg::PLACE_TAG_W), .EDGES_PER_CYCLE(EDGES_PER_CYCLE)) u_start_test (
       .clk_i, .rst_ni,
       .valid_i(tri_in_valid), .ready_o(tri_in_ready), .in_i(tri_in), .tag_i({tri_in_tag, tri_in_number}),
-      .valid_o(tri_valid), .ready_i(1'b1), .out_o({tri_out, tri_below}), .tag_o({tri_owner, tri_number})
+      .valid_o(tri_made_valid), .ready_i(1'b1), .out_o({tri_made, tri_made_below}), .tag_o(tri_made_tag)
     );
   end else begin : g_tri_test
     lod_pkg::tri_test_in_t whole_in;
     logic unused_fraction;
     assign whole_in        = {tri_in.start.point, tri_in.direction, tri_in.p0, tri_in.p1, tri_in.p2};
     assign unused_fraction = ^tri_in.start.fraction;
-    assign tri_below       = '0;
+    assign tri_made_below  = '0;
     tri_test #(.TAG_W(lod_pkg::PLACE_TAG_W), .EDGES_PER_CYCLE(EDGES_PER_CYCLE)) u_tri_test (
       .clk_i, .rst_ni,
       .valid_i(tri_in_valid), .ready_o(tri_in_ready), .in_i(whole_in), .tag_i({tri_in_tag, tri_in_number}),
-      .valid_o(tri_valid), .ready_i(1'b1), .out_o(tri_out), .tag_o({tri_owner, tri_number})
+      .valid_o(tri_made_valid), .ready_i(1'b1), .out_o(tri_made), .tag_o(tri_made_tag)
     );
   end
+
+  shared_output #(.W(lod_pkg::START_TEST_OUT_W), .TAG_W(lod_pkg::PLACE_TAG_W)) u_tri_output (
+    .clk_i, .rst_ni,
+    .valid_i(tri_made_valid), .out_i({tri_made, tri_made_below}), .tag_i(tri_made_tag),
+    .valid_o(tri_valid), .out_o({tri_out, tri_below}), .tag_o({tri_owner, tri_number})
+  );
 
   // ---- Hits wait for their division ----
 
@@ -498,7 +551,7 @@ module traversal_unit #(
       .fetch_request_o(fetch_request[k]), .fetch_place_o(fetch_data[k][FETCH_W-1]),
       .fetch_epoch_o(fetch_data[k][FETCH_W-2 -: lod_pkg::EPOCH_W]),
       .fetch_o(fetch_data[k][lod_pkg::NODE_ADDRESS_IN_W-1:0]), .fetch_grant_i(fetch_grant[k]),
-      .line_valid_i(mem_valid_i && mem_i.tag[7:2] == 6'(ME)), .line_i(mem_i), .line_misplaced_i(line_misplaced),
+      .line_valid_i(line_valid && line.tag[7:2] == 6'(ME)), .line_i(line), .line_misplaced_i(line_is_misplaced),
       .tri_request_o(tri_request[k]), .tri_number_o(tri_data[k][TRI_W-1:TRI_W-2]),
       .tri_o(tri_data[k][TRI_W-3:0]), .tri_grant_i(tri_grant[k]),
       .tri_miss_i(tri_valid && !tri_out.hit && tri_owner == ME),

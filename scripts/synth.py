@@ -31,7 +31,7 @@ def main():
         if options.paths:
             print_paths(wanted, figures)
         if options.check and not failures:
-            tested = [block for block in wanted if options.block or block.module in blocks.twins()]
+            tested = [block for block in wanted if options.block or block.module in blocks.twins() or block.module in check.OTHERS]
             for block in tested:
                 check.export(block, figures[block.name]["gates_at"])
             check.run(tested)
@@ -123,7 +123,8 @@ class Run:
             figures["mhz"] = [placed["mhz"] for placed in figures["placed"]]
             return
         figures[kind], figures[f"{kind}_at"] = result
-        if kind == "ecp5" and not self.options.no_place:
+        # That has a hardware of its own for an FPGA, and --fpga.
+        if kind == "ecp5" and not self.options.no_place and block.module != blocks.WHOLE:
             if not ecp5.fits(result[0]):
                 figures["mhz"] = "does not fit"
                 return

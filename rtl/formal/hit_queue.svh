@@ -42,6 +42,7 @@
       assert (len_q == inside_q && inside_q <= LEN_W'(DEPTH));
       assert (32'(head_q) < DEPTH && tail_q == at(inside_q));
       assert (!watching_q || items_q[at(ahead_q)] == watched_q);
+      assert (empty_o || data_o == items_q[head_q]);
     end
     cover (live_q && watching_q && ahead_q == '0 && pop_i && push_i && head_q == LAST);
     cover (live_q && inside_q == LEN_W'(DEPTH) && watching_q && ahead_q == LEN_W'(DEPTH - 1));

@@ -92,6 +92,7 @@
     if (live[0]) begin
       assert (owners_known && 32'(\u_queue.len_q ) <= PLACES && \u_queue.tail_q == PLACE_W'(\u_queue.head_q + \u_queue.len_q ));
       assert (32'(\u_queue.len_q ) == 32'(in_queue));
+      assert (queue_empty || kept_head == \u_queue.items [\u_queue.head_q ]);
       // What the contexts count is what the blocks have.
       for (int unsigned k = 0; k < N; k++) begin
         assert (inside[k] == {1'b0, in_setup[k], in_child[k], in_lod[k], in_morph[k], in_map[k]});

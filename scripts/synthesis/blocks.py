@@ -17,7 +17,8 @@ FORMS = {
     "ray_setup": [{}, {"SETUP_BITS": 2}, {"SETUP_BITS": 1}],
 }
 # Modules without a twin there that are worth a row.
-FURTHER = ["edge_function", "traversal_stack", "ray_context"]
+WHOLE = "traversal_unit"
+FURTHER = ["edge_function", "traversal_stack", "ray_context", WHOLE]
 # A memory: an array of registers that are written one word at a time.
 MEMORY = re.compile(r"^\s*logic (?:\[[^\]]*\] *)*\w+_q +\[", re.MULTILINE)
 

@@ -5,11 +5,14 @@ import re
 import subprocess
 
 from . import multipliers
+from .blocks import WHOLE
 from .gates import read_json
 from .tools import OUT, ROOT, Failure, write
 
 NETLISTS = OUT / "netlists"
 TRANSACTIONS = 20_000
+# Not tests of the module's name in tests/rtl, but a test of another suite.
+OTHERS = {WHOLE: ("rtl_unit", "a_frame_of_a_sphere")}
 
 
 def export(block, folder):
@@ -24,17 +27,27 @@ def export(block, folder):
 
 
 def run(blocks):
-    """Runs the blocks' tests, and only those, on the netlists."""
+    """Runs the blocks' tests, and only those, on the netlists; of the whole unit the frame that it renders."""
     modules = sorted({block.module for block in blocks})
-    untested = [module for module in modules if not (ROOT / "tests/rtl" / f"{module}.rs").is_file()]
+    untested = [module for module in modules if module not in OTHERS and not (ROOT / "tests/rtl" / f"{module}.rs").is_file()]
     if untested:
         raise Failure(f"no tests in tests/rtl for {', '.join(untested)}")
+    suites = [("rtl", [f"{module}::" for module in modules if module not in OTHERS])]
+    suites += [(suite, [test]) for module, (suite, test) in OTHERS.items() if module in modules]
+    for suite, tests in suites:
+        if tests:
+            play(suite, tests)
+
+
+def play(suite, tests):
+    """Runs these tests of a suite on the netlists, and sees to it that each of them was there."""
     settings = {"LODRAY_NETLISTS": str(NETLISTS), "LODRAY_TRANSACTIONS": str(TRANSACTIONS)}
-    command = ["cargo", "test", "--test", "rtl", "--", *(f"{module}::" for module in modules)]
+    command = ["cargo", "test", "--test", suite, "--", *tests]
     print(" ".join([*(f"{name}={value}" for name, value in settings.items()), *command]), flush=True)
     got = subprocess.run(command, cwd=ROOT, env={**os.environ, **settings}, capture_output=True, text=True)
-    passed = re.findall(r"^test (\w+)::\S+ \.\.\. ok$", got.stdout, re.MULTILINE)
-    missing = [module for module in modules if module not in passed]
+    passed = re.findall(r"^test (\S+) \.\.\. ok$", got.stdout, re.MULTILINE)
+    missing = [test for test in tests if not any(name.startswith(test) for name in passed)]
     if got.returncode != 0 or missing:
-        raise Failure(f"the tests of {', '.join(missing) or 'some block'} do not pass on the netlists:\n{got.stdout[-4000:]}{got.stderr[-2000:]}")
-    print(f"{len(passed)} tests of {len(modules)} blocks passed on their netlists, {TRANSACTIONS:,} transactions free-running and as many stalled each")
+        raise Failure(f"{', '.join(missing) or 'some test'} of tests/{suite} does not pass on the netlists:\n{got.stdout[-4000:]}{got.stderr[-2000:]}")
+    of_blocks = f", {TRANSACTIONS:,} transactions free-running and as many stalled each" if suite == "rtl" else ""
+    print(f"{len(passed)} tests of {', '.join(test.rstrip(':') for test in tests)} passed on the netlists{of_blocks}")

@@ -4,7 +4,7 @@ import os
 import subprocess
 
 from . import ecp5, report
-from .blocks import Block
+from .blocks import WHOLE, Block
 from .tools import OUT, ROOT, Failure
 
 ECPPACK = "yowasp-ecppack"
@@ -22,7 +22,7 @@ def unit(contexts):
     got = subprocess.run(["cargo", "test", "--quiet", "--test", "package"], cwd=ROOT, env={**os.environ, **settings}, capture_output=True, text=True)
     if got.returncode != 0 or not (ROOT / package).is_file():
         raise Failure(f"cargo test --test package: {got.stdout[-2000:]}{got.stderr[-2000:]}")
-    return Block("traversal_unit", (), str(package))
+    return Block(WHOLE, (), str(package))
 
 
 def run(contexts, seeds, paths, tools):

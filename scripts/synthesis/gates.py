@@ -1,13 +1,15 @@
 """A block in generic gates: gate equivalents, flip-flops, multipliers, logic depth, and the netlist for simulation."""
 
 import dataclasses
+import fnmatch
 import json
 import re
 
 from . import multipliers
+from .blocks import WHOLE
 from .tools import ROOT, YOSYS, Failure, kept
 
-LIMIT_S = 1800
+LIMIT_S = 3600
 
 # Areas in two-input NAND gates, as they are usual for standard cells of one drive strength.
 AREAS = {
@@ -21,6 +23,13 @@ MEMORY = {"bit": 1.0, "column": 12.0, "word": 4.0, "control": 250.0}
 ABC = "+strash;ifraig;scorr;dch,-f;map,-B,0.9;topo"
 # What Yosys says of a netlist that is not the design.
 SUSPECT = re.compile(r"implicitly declared|no driver|undriven|(?<!No )latch inferred|multiple conflicting drivers|found logic loop", re.IGNORECASE)
+
+
+# The parts of a whole unit: a word for each, and the names of its instances in rtl/traversal_unit.sv.
+PARTS = {
+    **{name: f"u_{name}" for name in ("ray_setup", "node_address", "child_test", "lod_test", "tessellate", "tri_test", "hit_divide", "hit_select", "bary_map")},
+    "contexts": "u_context", "arbiters and operands": "*_input", "hit_queue": "u_queue",
+}
 
 
 def script(block, folder):
@@ -39,9 +48,16 @@ def script(block, folder):
         # One flat module and the multipliers: registers that no output needs show only now. Wires of one bit simulate well.
         "flatten -noscopeinfo", "opt -nodffe -nosdff", "opt_clean", "splitnets", "opt_clean", "check -assert",
         *([f"json -o {folder}/memories.json t:$mem_v2"] if memories else []),
-        f"tee -q -o {folder}/stat.json stat -json", f"write_verilog -noattr {folder}/netlist.v",
+        f"tee -q -o {folder}/stat.json stat -json",
+        *(f"tee -q -o {folder}/part-{number}.json stat -json c:*{instance}.*" for number, instance in enumerate(parts(block).values())),
+        f"write_verilog -noattr {folder}/netlist.v",
         "setattr -mod -unset keep_hierarchy A:multiplier", "flatten -noscopeinfo", "opt_clean", "ltp -noff",
     ]
+
+
+def parts(block):
+    """The parts that are counted apart."""
+    return PARTS if block.module == WHOLE else {}
 
 
 def synthesise(block, tools):
@@ -57,7 +73,8 @@ def synthesise(block, tools):
             multipliers.verify(name, module)
         shapes = {name: multipliers.shape(module) for name, module in mapped.items()}
         memories = memories_of(read_json(folder / "memories.json")) if block.has_memories() else []
-        return measure(block.module, read_json(folder / "stat.json"), shapes, memories, log)
+        stats = [read_json(folder / f"part-{number}.json") for number in range(len(parts(block)))]
+        return measure(block, read_json(folder / "stat.json"), stats, shapes, memories, log)
 
     texts = [multipliers.MAP, multipliers.MODULES]
     # The same script whichever package it is: what the block uses of that is among its ingredients.
@@ -81,14 +98,15 @@ def refuse_suspect(log):
 
 
 def memories_of(netlist):
-    """Words and bits in a word of every memory of a flat netlist. A memory that is read without a clock, or by more than one, is none that the areas are for."""
+    """Name, words, bits in a word, and whether it is read with a clock, of every memory of a flat netlist. One that is read by more than one port is none that the areas are for."""
     found = []
     for module in netlist["modules"].values():
         for name, cell in module["cells"].items():
-            own = {key: int(value, 2) for key, value in cell["parameters"].items() if key in ("SIZE", "WIDTH", "RD_PORTS", "WR_PORTS", "RD_CLK_ENABLE")}
+            own = {key: int(value, 2) for key, value in cell["parameters"].items() if key in ("SIZE", "WIDTH", "RD_PORTS", "WR_PORTS", "RD_CLK_ENABLE", "RD_TRANSPARENCY_MASK")}
             if (own["RD_PORTS"], own["WR_PORTS"]) != (1, 1):
                 raise Failure(f"the memory {name} has {own['RD_PORTS']} read and {own['WR_PORTS']} write ports, not one of each")
-            found.append((own["SIZE"], own["WIDTH"], bool(own["RD_CLK_ENABLE"])))
+            # Of what is written in the same cycle a macro reads nothing.
+            found.append((name, own["SIZE"], own["WIDTH"], bool(own["RD_CLK_ENABLE"]) and not own["RD_TRANSPARENCY_MASK"]))
     return sorted(found)
 
 
@@ -99,10 +117,28 @@ def memory_area(words, width, clocked):
     return words * width * MEMORY["bit"] + width * MEMORY["column"] + words * MEMORY["word"] + MEMORY["control"]
 
 
-def measure(top, stat, shapes, memories, log):
-    """The figures out of Yosys' statistics and its longest path."""
+def measure(block, stat, stats, shapes, memories, log):
+    """The figures out of Yosys' statistics, of the whole and of its parts, and out of its longest path."""
     modules = {bare(name): module["num_cells_by_type"] for name, module in stat["modules"].items()}
-    cells = total(top, modules)
+    ge, flip_flops, products = area(total(block.module, modules), modules, shapes)
+    depth = re.findall(r"Longest topological path in \S+ \(length=(\d+)\)", log)
+    in_memories = sum(memory_area(*memory[1:]) for memory in memories)
+    made = {
+        "ge": round(ge + in_memories), "memory_ge": round(in_memories), "flip_flops": flip_flops, "memory_bits": sum(words * width for _, words, width, _ in memories),
+        "memories": [memory[1:] for memory in memories], "multipliers": products, "depth": int(depth[-1]),
+    }
+    for (name, instance), part in zip(parts(block).items(), stats):
+        cells = part["modules"].get(block.module) or part["modules"]["\\" + block.module]
+        of_part = total(block.module, {**modules, block.module: cells["num_cells_by_type"]})
+        bits = sum(words * width for memory, words, width, _ in memories if fnmatch.fnmatch(memory, f"*{instance}.*"))
+        own_memories = sum(memory_area(*memory[1:]) for memory in memories if fnmatch.fnmatch(memory[0], f"*{instance}.*"))
+        part_ge, part_flip_flops, part_products = area(of_part, modules, shapes)
+        made.setdefault("parts", {})[name] = {"ge": round(part_ge + own_memories), "flip_flops": part_flip_flops, "memory_bits": bits, "multipliers": sum(part_products.values())}
+    return made
+
+
+def area(cells, modules, shapes):
+    """Gate equivalents, flip-flops, and multipliers by shape, of cells by type; memories are not in it."""
     ge, flip_flops, products = 0.0, 0, {}
     for kind, count in cells.items():
         gate = re.fullmatch(r"\$_(DFFE|[A-Z0-9]+)_(?:PP?_)?", kind)
@@ -114,12 +150,7 @@ def measure(top, stat, shapes, memories, log):
             products[shape] = products.get(shape, 0) + count
         elif kind not in modules and kind != "$mem_v2":
             raise Failure(f"Yosys left a cell that is no gate: {kind}")
-    depth = re.findall(r"Longest topological path in \S+ \(length=(\d+)\)", log)
-    in_memories = sum(memory_area(*memory) for memory in memories)
-    return {
-        "ge": round(ge + in_memories), "memory_ge": round(in_memories), "flip_flops": flip_flops, "memory_bits": sum(words * width for words, width, _ in memories), "memories": memories,
-        "multipliers": products, "depth": int(depth[-1]),
-    }
+    return ge, flip_flops, products
 
 
 def total(top, modules):

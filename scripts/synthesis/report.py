@@ -1,5 +1,6 @@
 """The table of figures, on a terminal and in docs/hardware.md."""
 
+from .blocks import WHOLE
 from .tools import NEXTPNR, ROOT, YOSYS, Failure, write
 
 DOC = ROOT / "docs/hardware.md"
@@ -46,12 +47,30 @@ def share(figures):
     return f"One of each block of a traversal unit has {unit:,} GE together; what level of detail adds to it ({parts}) is {added:,} of these, {100 * added / unit:.0f} %."
 
 
+def whole(figures):
+    """The unit and its parts as they are in it: lines of a table, and what its blocks have together."""
+    unit = figures[WHOLE]["gates"]
+    parts = unit["parts"]
+    others = {key: unit[key] - sum(part[key] for part in parts.values()) for key in ("ge", "flip_flops", "memory_bits")}
+    others["multipliers"] = sum(unit["multipliers"].values()) - sum(part["multipliers"] for part in parts.values())
+    rows = [*parts.items(), ("what is left", others), ("**together**", {**unit, "multipliers": sum(unit["multipliers"].values())})]
+    lines = [[f"`{name}`" if name in UNIT or name == "hit_queue" else name, *(f"{part[key]:,}" for key in ("ge", "flip_flops", "memory_bits", "multipliers"))] for name, part in rows]
+    blocks = sum(parts[name]["ge"] for name in UNIT)
+    return lines, f"One of each block has {blocks:,} GE in the unit, where results always have a place and some operands' bits are always 0."
+
+
+def table(headings, rows):
+    """Lines of a table in Markdown, words on the left and figures on the right."""
+    return ["| " + " | ".join(words) + " |" for words in [headings, ["---", *["---:"] * (len(headings) - 1)], *rows]]
+
+
 def markdown(rows, figures, versions, seeds):
     """The table, what follows from it and what made it."""
-    marks = ["---", *["---:"] * (len(HEADINGS) - 1)]
-    lines = ["| " + " | ".join(words) + " |" for words in [HEADINGS, marks, *([f"`{row[0]}`", *row[1:]] for row in rows)]]
+    lines = table(HEADINGS, [[f"`{row[0]}`", *row[1:]] for row in rows])
     made = f"`scripts/synth --doc`, {seeds} seed{'s' if seeds > 1 else ''}, {versions[YOSYS]}, {versions[NEXTPNR]}, LFE5U-85F in CABGA756, speed grade 6."
-    return "\n".join([*lines, "", made, "", share(figures)])
+    parts, blocks = whole(figures)
+    of_unit = table(["in a `traversal_unit` of four contexts", "GE", "flip-flops", "memory bits", "multipliers"], parts)
+    return "\n".join([*lines, "", made, "", share(figures), "", *of_unit, "", blocks])
 
 
 def document(rows, figures, versions, seeds):

@@ -53,6 +53,9 @@ pub struct Hardware {
     pub setup_bits: u32,
     /// Boxes that the test of four children tests in a cycle.
     pub boxes_per_cycle: BoxesPerCycle,
+    /// Registers between contexts and blocks: 0, 1 for operands, or 2 for results and for answers of memory too. Each makes the way a cycle longer, but for addresses and divisions; an FPGA
+    /// wants them.
+    pub link_registers: u32,
     /// Bits of the number of a quad-BVH node, of a tree, and of a node within its level, as a context keeps them: at most 28.
     pub index_bits: u32,
     /// Bits of the numbers of a tree's first sibling group and vertex line: at most 28.
@@ -106,6 +109,7 @@ impl Hardware {
         divide_bits: MOST_DIVIDE_BITS,
         setup_bits: MOST_DIVIDE_BITS,
         boxes_per_cycle: BoxesPerCycle::Two,
+        link_registers: 0,
         index_bits: MOST_INDEX_BITS,
         line_bits: MOST_INDEX_BITS,
         lod_test: true,
@@ -126,7 +130,8 @@ impl Hardware {
         Self { contexts: 1, ..Self::DEFAULT }
     }
 
-    /// A unit of so many contexts (1 to 64) that an LFE5U-85F has the multipliers for: one edge, one box and one bit of each division a cycle (`scripts/synth --fpga`).
+    /// A unit of so many contexts (1 to 64) that an LFE5U-85F has the multipliers for: one edge, one box and one bit of each division a cycle, and registers
+    /// on all ways between contexts and blocks (`scripts/synth --fpga`).
     pub const fn fpga(contexts: usize) -> Self {
         let context_bits = if contexts <= 2 { 1 } else { (contexts - 1).ilog2() + 1 };
         Self {
@@ -137,6 +142,7 @@ impl Hardware {
             divide_bits: 1,
             setup_bits: 1,
             boxes_per_cycle: BoxesPerCycle::One,
+            link_registers: 2,
             ..Self::DEFAULT
         }
     }
@@ -155,6 +161,7 @@ impl Hardware {
             ("contexts", self.contexts as u64, 1, 1 << self.context_bits.min(MAX_CONTEXT_BITS)),
             ("divide_bits", u64::from(self.divide_bits), 1, u64::from(MOST_DIVIDE_BITS)),
             ("setup_bits", u64::from(self.setup_bits), 1, u64::from(MOST_DIVIDE_BITS)),
+            ("link_registers", u64::from(self.link_registers), 0, 2),
             ("index_bits", u64::from(self.index_bits), u64::from(self.node_bits()), u64::from(MOST_INDEX_BITS)),
             ("line_bits", u64::from(self.line_bits), 1, u64::from(MOST_INDEX_BITS)),
             ("compact_vertices", u64::from(self.compact_vertices), u64::from(!self.exact_vertices), 1),
@@ -269,6 +276,16 @@ impl Hardware {
         B::timing(&self.form())
     }
 
+    /// The same from a context to the block and back.
+    pub const fn linked(&self, timing: Timing) -> Timing {
+        Timing { latency: timing.latency + self.link_registers, ..timing }
+    }
+
+    /// Results of blocks and answers of memory have a register on their way to the contexts.
+    pub const fn registers_results(&self) -> bool {
+        self.link_registers > 1
+    }
+
     /// Entries of a traversal stack.
     pub fn stack_entries(&self) -> u32 {
         self.fewer_stack_entries.unwrap_or_else(|| self.deepest_stack())
@@ -312,6 +329,7 @@ mod tests {
             wrong(Hardware { coordinate_zeros: 1, secondary: true, ..default }),
             "hardware: coordinate_zeros must be 0 to 0, but is 1"
         );
+        assert_eq!(wrong(Hardware { link_registers: 3, ..default }), "hardware: link_registers must be 0 to 2, but is 3");
         assert_eq!(wrong(Hardware { contexts: 0, ..default }), "hardware: contexts must be 1 to 64, but is 0");
         assert_eq!(wrong(Hardware { contexts: 5, context_bits: 2, ..default }), "hardware: contexts must be 1 to 4, but is 5");
     }

@@ -48,6 +48,7 @@ pub struct UnitTiming<R> {
     pub(super) chooses_levels: bool,
     pub(super) has_deciders: bool,
     pub(super) hit_mapping: bool,
+    registers_results: bool,
     pub(super) idle: u64,
     /// Requests on their way through `node_address`, and since when.
     pub(super) requests: VecDeque<(u64, LineRequest)>,
@@ -81,19 +82,19 @@ impl<R: Steps> UnitTiming<R> {
         // Where boxes go through fewer tests than there are, each pass but the first takes a cycle more, and so does the next node.
         let node = |children, latency: u32| {
             let interval = config.boxes_per_cycle.passes(children);
-            Timing { latency: latency + interval - 1, interval }
+            config.linked(Timing { latency: latency + interval - 1, interval })
         };
         let fitted = |operation| config.block(operation).timing(&config.form());
         let timing = |resource| match resource {
-            Resource::Setup => fitted(Operation::RaySetup),
+            Resource::Setup => config.linked(fitted(Operation::RaySetup)),
             Resource::Fetch => config.timing::<NodeAddress>(),
-            Resource::Child => config.timing::<ChildTest>(),
-            Resource::Decide => config.timing::<TreeDeciders>(),
-            Resource::Lod => fitted(Operation::LodTest),
-            Resource::Morph => config.timing::<Tessellate>(),
-            Resource::Tri => fitted(Operation::TriTest),
+            Resource::Child => config.linked(config.timing::<ChildTest>()),
+            Resource::Decide => config.linked(config.timing::<TreeDeciders>()),
+            Resource::Lod => config.linked(fitted(Operation::LodTest)),
+            Resource::Morph => config.linked(config.timing::<Tessellate>()),
+            Resource::Tri => config.linked(fitted(Operation::TriTest)),
             Resource::Divide => fitted(Operation::HitDivide),
-            Resource::Map => config.timing::<BaryMap>(),
+            Resource::Map => config.linked(config.timing::<BaryMap>()),
             Resource::Hit => Timing::pipelined(1),
         };
         Self {
@@ -113,6 +114,7 @@ impl<R: Steps> UnitTiming<R> {
             chooses_levels: config.chooses_levels(),
             has_deciders: config.has_deciders(),
             hit_mapping: config.hit_mapping,
+            registers_results: config.registers_results(),
             idle: u64::MAX >> (MAX_CONTEXTS - config.contexts),
             requests: VecDeque::new(),
             hits: HitQueue::default(),
@@ -155,7 +157,7 @@ impl<R: Steps> UnitTiming<R> {
         debug_assert!(now + 1 >= self.now, "an answer of cycle {now} comes too late");
         let (who, place) = untag(tag);
         self.now = self.now.max(now);
-        self.answered(who, place, now);
+        self.answered(who, place, now + u64::from(self.registers_results));
         self.next = self.next.into_iter().chain(self.wheel.next(self.now)).min();
         self.line_wait.take()
     }

@@ -81,6 +81,11 @@ where
         if hardware.secondary { Self::Secondary(Pipeline::new(hardware)) } else { Self::Primary(Pipeline::new(hardware)) }
     }
 
+    /// The same with the registers of its way from the contexts and back.
+    pub fn linked(hardware: &Hardware) -> Self {
+        if hardware.secondary { Self::Secondary(Pipeline::linked(hardware)) } else { Self::Primary(Pipeline::linked(hardware)) }
+    }
+
     /// Whether it would take an input in this cycle; its consumer is always ready.
     pub fn ready(&self) -> bool {
         match self {

@@ -85,7 +85,16 @@ where
 {
     /// An empty pipeline of the block's timing in this hardware.
     pub fn new(hardware: &Hardware) -> Self {
-        Self { timing: hardware.timing::<B>(), items: VecDeque::new(), wait: 0, counts: BlockCounts::default() }
+        Self::of(hardware.timing::<B>())
+    }
+
+    /// The same with the registers of its way from the contexts and back ([`Hardware::link_registers`]): as these hold nothing up, a longer pipeline.
+    pub fn linked(hardware: &Hardware) -> Self {
+        Self::of(hardware.linked(hardware.timing::<B>()))
+    }
+
+    fn of(timing: Timing) -> Self {
+        Self { timing, items: VecDeque::new(), wait: 0, counts: BlockCounts::default() }
     }
 
     /// Whether it would take an input in this cycle.

@@ -77,6 +77,8 @@ pub struct TraversalUnit {
     /// The hit in the division, and the one in the comparison with its t.
     candidate: Register<Met>,
     pub(super) chosen: Register<(Met, RayT)>,
+    /// An answer on its way to the contexts, where results have a register.
+    answer: Option<MemoryAnswer>,
     /// The hit port's register.
     pub(super) hit: Stage<(HitOut, Corners)>,
     pub(super) cycles: u64,
@@ -97,19 +99,20 @@ impl TraversalUnit {
             ticks: 0,
             contexts: vec![Context::new(&config); config.contexts],
             arbiters: Default::default(),
-            ray_setup: Fitted::new(&config),
+            ray_setup: Fitted::linked(&config),
             node_address: Pipeline::new(&config),
-            child_test: Pipeline::new(&config),
-            tree_deciders: Pipeline::new(&config),
-            lod_test: Fitted::new(&config),
-            tessellate: Pipeline::new(&config),
-            tri_test: Fitted::new(&config),
+            child_test: Pipeline::linked(&config),
+            tree_deciders: Pipeline::linked(&config),
+            lod_test: Fitted::linked(&config),
+            tessellate: Pipeline::linked(&config),
+            tri_test: Fitted::linked(&config),
             hit_divide: Fitted::new(&config),
             hit_select: Pipeline::new(&config),
-            bary_map: Pipeline::new(&config),
+            bary_map: Pipeline::linked(&config),
             queue: VecDeque::new(),
             candidate: Register::default(),
             chosen: Register::default(),
+            answer: None,
             hit: Stage::default(),
             cycles: 0,
             states: Default::default(),
@@ -225,6 +228,8 @@ impl TraversalUnit {
         let tri = self.tri_test.offered();
         let divided = self.hit_divide.offered();
         let tick = self.ticks >= self.scene.answer_limit.get();
+        let answer =
+            if self.hardware.registers_results() { std::mem::replace(&mut self.answer, inputs.answer) } else { inputs.answer };
         let cycle = Cycle {
             ray: w.take.zip(inputs.ray),
             secondary: inputs.secondary,
@@ -232,7 +237,7 @@ impl TraversalUnit {
             flush: inputs.flush,
             tick,
             setup: Served { granted: w.setup.granted(), result: self.ray_setup.offered().map(|(out, tag)| (plain(tag), out)) },
-            fetch: Served { granted: w.fetch.granted(), result: inputs.answer.map(|a| (a.tag.get() as usize >> 2, a)) }, // 8 bits
+            fetch: Served { granted: w.fetch.granted(), result: answer.map(|a| (a.tag.get() as usize >> 2, a)) }, // 8 bits
             child: Served { granted: w.child.granted(), result: self.child_test.offered().map(|(out, tag)| (plain(tag), out)) },
             decide: Served { granted: w.decide.granted(), result: self.tree_deciders.offered().map(|(out, tag)| (plain(tag), out)) },
             lod: Served { granted: w.lod.granted(), result: self.lod_test.offered().map(|(out, tag)| (plain(tag), out)) },

@@ -8,7 +8,8 @@ use lodray::mesh::Hierarchy;
 use lodray::num::{Ray, U, VertexForm};
 use lodray::rays::cone;
 
-/// Small: few levels, a stack for scenes of which is known how many can wait, two rays under way, one edge, one box and one bit of each division a cycle.
+/// Small: few levels, a stack for scenes of which is known how many can wait, two rays under way, one edge, one box and one bit of each division a cycle,
+/// registers on all ways between contexts and blocks.
 pub const SMALL: Hardware = Hardware {
     levels: 6,
     bvh_depth: 16,
@@ -20,9 +21,11 @@ pub const SMALL: Hardware = Hardware {
     divide_bits: 1,
     setup_bits: 1,
     boxes_per_cycle: BoxesPerCycle::One,
+    link_registers: 2,
     ..Hardware::DEFAULT
 };
-/// Between it and the default in depth, with more rays under way, not a power of two; all edges and boxes at once, and two bits of each division a cycle.
+/// Between it and the default in depth, with more rays under way, not a power of two; all edges and boxes at once, two bits of each division a cycle,
+/// and registers for operands.
 pub const MIDDLE: Hardware = Hardware {
     levels: 9,
     bvh_depth: 20,
@@ -33,6 +36,7 @@ pub const MIDDLE: Hardware = Hardware {
     boxes_per_cycle: BoxesPerCycle::Four,
     divide_bits: 2,
     setup_bits: 2,
+    link_registers: 1,
     ..Hardware::DEFAULT
 };
 /// For coordinates and directions of fewer bits: products of other limbs and other latencies than the default's; all edges at once, two boxes a cycle.
@@ -96,6 +100,7 @@ pub const SECONDARY_AT_ONCE: Hardware = Hardware {
     setup_bits: 2,
     index_bits: 15,
     line_bits: 18,
+    link_registers: 2,
     start_radius: false,
     exact_vertices: false,
     secondary: true,
