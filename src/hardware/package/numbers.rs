@@ -93,7 +93,11 @@ pub(super) fn print(hardware: &Hardware, out: &mut String) {
         hardware.boxes_per_cycle.count(),
         "boxes that child_test tests in a cycle, if its parameter does not say otherwise",
     )
-    .put("LINK_REGISTERS", hardware.link_registers, "between contexts and blocks: 0, 1 for operands, or 2 for results and answers of memory too")
+    .put(
+        "LINK_REGISTERS",
+        hardware.link_registers,
+        "between contexts and blocks: 0, 1 for operands, or 2 for results and answers of memory too",
+    )
     .put("INDEX_W", hardware.index_bits, "of the number of a quad-BVH node, of a tree, and of a node, where it is kept")
     .put("LINE_W", hardware.line_bits, "of the numbers of a tree's first sibling group and vertex line")
     .put(

@@ -228,8 +228,7 @@ impl TraversalUnit {
         let tri = self.tri_test.offered();
         let divided = self.hit_divide.offered();
         let tick = self.ticks >= self.scene.answer_limit.get();
-        let answer =
-            if self.hardware.registers_results() { std::mem::replace(&mut self.answer, inputs.answer) } else { inputs.answer };
+        let answer = if self.hardware.registers_results() { std::mem::replace(&mut self.answer, inputs.answer) } else { inputs.answer };
         let cycle = Cycle {
             ray: w.take.zip(inputs.ray),
             secondary: inputs.secondary,
