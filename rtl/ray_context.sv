@@ -230,6 +230,7 @@ module ray_context (
 
   logic                  push, pop, drop, stop, enough, stack_empty, stack_full;
   lod_pkg::stack_entry_t top, child_entry;
+  lod_pkg::ray_error_t   push_objection;
 
   traversal_stack u_stack (
     .clk_i, .rst_ni,
@@ -238,12 +239,13 @@ module ray_context (
     .pop_i(pop), .entry_o(top), .empty_o(stack_empty), .full_o(stack_full)
   );
 
-  assign push = state_q == lod_pkg::PUSH && count_q > 3'd1 && !stop;
-  assign pop  = state_q == lod_pkg::POP && !stack_empty && !enough && !stop;
+  // What would stop the context elsewhere has no part in these.
+  assign push = state_q == lod_pkg::PUSH && count_q > 3'd1 && push_objection == lod_pkg::ERROR_NONE && error_q == lod_pkg::ERROR_NONE;
+  assign pop  = state_q == lod_pkg::POP && !stack_empty && !enough && error_q == lod_pkg::ERROR_NONE;
   // Nothing more is wanted.
   assign enough = any && known;
-  // 17 + 18 bits against 35.
-  assign drop = {top.t_near, lod_pkg::T_NEAR_TO_T_SHIFT'(0)} > t_max;
+  // t_near 2^18 > t_max: what is below does not matter.
+  assign drop = top.t_near > t_max[lod_pkg::RAY_T_W-1:lod_pkg::T_NEAR_TO_T_SHIFT];
 
   // The inserted vertices that come now.
   lod_pkg::kept_point_t g0_now, g1_now, g2_now, q0_now, q1_now, q2_now;
@@ -474,6 +476,11 @@ module ray_context (
   // What the context cannot do in this cycle.
   lod_pkg::ray_error_t objection;
   always_comb begin
+    push_objection = lod_pkg::ERROR_NONE;
+    if (count_q != '0 && child_entry.index >> lod_pkg::INDEX_W != '0) push_objection = lod_pkg::ERROR_IMAGE;
+    else if (count_q > 3'd1 && stack_full) push_objection = lod_pkg::ERROR_STACK;
+  end
+  always_comb begin
     objection = lod_pkg::ERROR_NONE;
     case (state_q)
       lod_pkg::VISIT:      if (visits_q == '0) objection = lod_pkg::ERROR_VISITS;
@@ -481,10 +488,7 @@ module ray_context (
         if (record_there && (fetch_q == lod_pkg::NODE && wrong_node || fetch_q == lod_pkg::RECORD && wrong_record)) objection = lod_pkg::ERROR_IMAGE;
       end
       lod_pkg::MORPH_WAIT: if (morph_valid_i && wrong_vertices) objection = lod_pkg::ERROR_IMAGE;
-      lod_pkg::PUSH: begin
-        if (count_q != '0 && child_entry.index >> lod_pkg::INDEX_W != '0) objection = lod_pkg::ERROR_IMAGE;
-        else if (count_q > 3'd1 && stack_full) objection = lod_pkg::ERROR_STACK;
-      end
+      lod_pkg::PUSH:       objection = push_objection;
       default:             ;
     endcase
   end

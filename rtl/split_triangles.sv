@@ -46,7 +46,7 @@ module split_triangles #(
 
     always_ff @(posedge clk_i) begin
       if (write) words_q[write_place] <= written[k];
-      else if (read_i) word_q <= words_q[read_place];
+      if (read_i) word_q <= words_q[read_place];
     end
   end
 

@@ -38,6 +38,7 @@ module traversal_unit #(
   localparam bit SECONDARY = lod_pkg::SECONDARY != 0;
   localparam bit DECIDING = SECONDARY && lod_pkg::LOD_TEST != 0;
   localparam int unsigned SETUP_INTERVAL = SECONDARY ? lod_pkg::START_SETUP_INTERVAL : lod_pkg::RAY_SETUP_INTERVAL;
+  localparam int unsigned DIVIDE_INTERVAL = SECONDARY ? lod_pkg::START_DIVIDE_INTERVAL : lod_pkg::HIT_DIVIDE_INTERVAL;
 
   if (CONTEXTS < 1 || CONTEXTS > lod_pkg::MAX_CONTEXTS) begin : g_illegal_contexts
     $error("traversal_unit: CONTEXTS = %0d, must be 1 to %0d", CONTEXTS, lod_pkg::MAX_CONTEXTS);
@@ -424,12 +425,13 @@ module traversal_unit #(
 
   logic [N-1:0] divide_request, divide_grant;
   logic [N-1:0][DIVIDE_W-1:0] divide_data;
-  logic own_valid, divide_in_ready, divide_valid;
+  logic own_valid, divide_in_ready, divide_link_valid, divide_link_ready, divide_link_pop, divide_made_valid, divide_valid;
   logic [1:0] own_what, divide_what, divide_number;
-  lod_pkg::start_divide_in_t own_in, divide_in;
-  lod_pkg::hit_divide_out_t divide_out;
+  lod_pkg::start_divide_in_t own_in, divide_in, divide_link;
+  lod_pkg::hit_divide_out_t divide_made, divide_out;
   logic [CONTEXT_W-1:0] own_tag, divide_owner;
-  logic [lod_pkg::DIVIDE_TAG_W-1:0] divide_in_tag;
+  logic [lod_pkg::DIVIDE_TAG_W-1:0] divide_in_tag, divide_link_tag, divide_made_tag;
+  logic [lod_pkg::KEPT_HIT_W-1:0] divide_link_hit, candidate;
 
   shared_input #(.N(N), .W(DIVIDE_W)) u_divide_input (
     .clk_i, .rst_ni,
@@ -441,21 +443,44 @@ module traversal_unit #(
   assign divide_in_tag = queue_empty ? {own_what, own_tag, 2'd0} : {lod_pkg::DIVIDE_FOR_T, head.owner, head.number};
   assign queue_pop     = divide_in_ready && !queue_empty;
 
+  // The hit goes along, as far as the division.
+  if (lod_pkg::LINK_REGISTERS != 0) begin : g_divide_register
+    link_register #(.W(lod_pkg::START_DIVIDE_IN_W + lod_pkg::DIVIDE_TAG_W + lod_pkg::KEPT_HIT_W), .INTERVAL(DIVIDE_INTERVAL)) u_register (
+      .clk_i, .rst_ni,
+      .valid_i(own_valid || !queue_empty), .ready_o(divide_in_ready), .data_i({divide_in, divide_in_tag, kept_head}),
+      .valid_o(divide_link_valid), .ready_i(divide_link_ready), .data_o({divide_link, divide_link_tag, divide_link_hit})
+    );
+    assign divide_link_pop = divide_link_valid && divide_link_tag[lod_pkg::DIVIDE_TAG_W-1 -: 2] == lod_pkg::DIVIDE_FOR_T;
+  end else begin : g_divide_wires
+    assign divide_in_ready   = divide_link_ready;
+    assign divide_link_valid = own_valid || !queue_empty;
+    assign divide_link       = divide_in;
+    assign divide_link_tag   = divide_in_tag;
+    assign divide_link_hit   = kept_head;
+    assign divide_link_pop   = queue_pop;
+  end
+
   if (SECONDARY) begin : g_start_divide
     start_divide #(.TAG_W(lod_pkg::DIVIDE_TAG_W)) u_start_divide (
       .clk_i, .rst_ni,
-      .valid_i(own_valid || !queue_empty), .ready_o(divide_in_ready), .in_i(divide_in), .tag_i(divide_in_tag),
-      .valid_o(divide_valid), .ready_i(1'b1), .out_o(divide_out), .tag_o({divide_what, divide_owner, divide_number})
+      .valid_i(divide_link_valid), .ready_o(divide_link_ready), .in_i(divide_link), .tag_i(divide_link_tag),
+      .valid_o(divide_made_valid), .ready_i(1'b1), .out_o(divide_made), .tag_o(divide_made_tag)
     );
   end else begin : g_hit_divide
     logic unused_low;
-    assign unused_low = ^divide_in.low;
+    assign unused_low = ^divide_link.low;
     hit_divide #(.TAG_W(lod_pkg::DIVIDE_TAG_W)) u_hit_divide (
       .clk_i, .rst_ni,
-      .valid_i(own_valid || !queue_empty), .ready_o(divide_in_ready), .in_i({divide_in.numerator, divide_in.denominator}), .tag_i(divide_in_tag),
-      .valid_o(divide_valid), .ready_i(1'b1), .out_o(divide_out), .tag_o({divide_what, divide_owner, divide_number})
+      .valid_i(divide_link_valid), .ready_o(divide_link_ready), .in_i({divide_link.numerator, divide_link.denominator}), .tag_i(divide_link_tag),
+      .valid_o(divide_made_valid), .ready_i(1'b1), .out_o(divide_made), .tag_o(divide_made_tag)
     );
   end
+
+  shared_output #(.W(lod_pkg::HIT_DIVIDE_OUT_W + lod_pkg::KEPT_HIT_W), .TAG_W(lod_pkg::DIVIDE_TAG_W)) u_divide_output (
+    .clk_i, .rst_ni,
+    .valid_i(divide_made_valid), .out_i({divide_made, candidate_q}), .tag_i(divide_made_tag),
+    .valid_o(divide_valid), .out_o({divide_out, candidate}), .tag_o({divide_what, divide_owner, divide_number})
+  );
 
   // ---- Is it the closest? The hit follows its division, and then its comparison ----
 
@@ -482,9 +507,9 @@ module traversal_unit #(
   );
 
   always_ff @(posedge clk_i) begin
-    if (queue_pop) candidate_q <= kept_head;
+    if (divide_link_pop) candidate_q <= divide_link_hit;
     if (t_valid) begin
-      chosen_q   <= candidate_q;
+      chosen_q   <= candidate;
       chosen_t_q <= divide_out.quotient;
     end
   end

@@ -19,7 +19,7 @@ def main():
     try:
         tools = Tools()
         if options.fpga:
-            fpga.run(options.fpga, options.seeds, options.paths, tools)
+            fpga.run(options.fpga, options.seeds, options.paths, options.doc, tools)
             return
         unit = plan.read(options.plan) if options.plan else None
         wanted = unit.blocks() if unit else blocks.chosen(options.block) or blocks.every()
@@ -36,7 +36,10 @@ def main():
                 check.export(block, figures[block.name]["gates_at"])
             check.run(tested)
         if options.doc and not failures:
-            report.document(rows, figures, tools.versions, options.seeds)
+            if options.block:
+                report.document(f"scripts/synth {blocks.WHOLE}", report.whole(figures[blocks.WHOLE]["gates"], blocks.contexts(), tools.versions))
+            else:
+                report.document("scripts/synth", report.markdown(rows, figures, tools.versions, options.seeds))
     except Failure as why:
         sys.exit(f"scripts/synth: {why}")
     except KeyboardInterrupt:
@@ -59,7 +62,7 @@ def parse():
     parser.add_argument("--check", action="store_true", help="write the netlists to target/synth/netlists and run the blocks' own tests on them")
     parser.add_argument("--plan", metavar="PLAN", help="the unit of a plan (lodray plan -o): its blocks with the package that the plan prints, and what they and its contexts have together")
     parser.add_argument("--fpga", type=int, nargs="?", const=2, metavar="CONTEXTS", help="the whole unit for an LFE5U-85F, with that many contexts (default 2): placed, routed, and as a bitstream")
-    parser.add_argument("--doc", action="store_true", help="write the table into docs/hardware.md")
+    parser.add_argument("--doc", action="store_true", help=f"write the table into docs/hardware.md; with {blocks.WHOLE} the parts of the whole unit, with --fpga its clock")
     options = parser.parse_args()
     if options.fpga is not None and not 1 <= options.fpga <= 64:
         parser.error(f"--fpga must be 1 to 64 contexts, but is {options.fpga}")
@@ -67,12 +70,15 @@ def parse():
         parser.error("--seeds and --jobs must be at least 1")
     if options.no_fpga and options.no_gates:
         parser.error("--no-fpga and --no-gates leave nothing")
-    if options.doc and (options.block or options.no_place or options.no_fpga or options.no_gates):
-        parser.error("--doc writes the whole table: name no block and leave nothing out")
+    of_whole = options.block == [blocks.WHOLE]
+    if options.doc and not of_whole and (options.block or options.no_place or options.no_fpga or options.no_gates):
+        parser.error(f"--doc writes the whole table: name no block but {blocks.WHOLE}, and leave nothing out")
+    if options.doc and of_whole and options.no_gates:
+        parser.error(f"--doc {blocks.WHOLE} writes what the unit has in gates")
     if options.plan and (options.block or options.doc or options.check):
         parser.error("--plan is of a whole unit: it has its own blocks, no place in docs/hardware.md, and its tests are those of cargo test")
-    if options.fpga is not None and (options.fpga < 1 or options.block or options.doc or options.check or options.plan or options.no_place or options.no_fpga):
-        parser.error("--fpga is the whole unit, of at least one context: of all else it takes --seeds and --paths alone")
+    if options.fpga is not None and (options.fpga < 1 or options.block or options.check or options.plan or options.no_place or options.no_fpga):
+        parser.error("--fpga is the whole unit, of at least one context: of all else it takes --seeds, --paths and --doc alone")
     if options.check and options.no_gates:
         parser.error("--check needs the gates")
     return options

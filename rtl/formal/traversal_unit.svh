@@ -52,8 +52,8 @@
   logic [1:0]           dividing_number;
   assign {dividing_what, dividing_owner, dividing_number} = \g_hit_divide.u_hit_divide.tag_q ;
 
-  lod_pkg::queued_hit_t candidate;
-  assign candidate = lod_pkg::QUEUED_HIT_W'(candidate_q);
+  lod_pkg::queued_hit_t waiting;
+  assign waiting = lod_pkg::QUEUED_HIT_W'(candidate_q);
 
   int unsigned steps_left;
   assign steps_left = \g_hit_divide.u_hit_divide.busy_q ? 32'(\g_hit_divide.u_hit_divide.steps_left_q ) : 32'd100;
@@ -102,7 +102,7 @@
         assert (w_inside[k] == (\g_hit_divide.u_hit_divide.busy_q && dividing_what == lod_pkg::DIVIDE_FOR_W && 32'(dividing_owner) == k));
       end
       // The numerators that a context takes with a comparison are those of its hit: the next one comes later.
-      assert (!(\g_hit_divide.u_hit_divide.busy_q && dividing_what == lod_pkg::DIVIDE_FOR_T) || (candidate.owner == dividing_owner && candidate.number == dividing_number));
+      assert (!(\g_hit_divide.u_hit_divide.busy_q && dividing_what == lod_pkg::DIVIDE_FOR_T) || (waiting.owner == dividing_owner && waiting.number == dividing_number));
       assert (!\u_hit_select.valid_tree || (chosen.owner == \u_hit_select.tag_tree && steps_left >= lod_pkg::HIT_DIVIDE_LATENCY - 1));
       assert (!\u_hit_select.valid_id || (chosen.owner == \u_hit_select.tag_id && steps_left >= lod_pkg::HIT_DIVIDE_LATENCY - 2));
       assert (!select_valid || (chosen.owner == select_owner && steps_left >= lod_pkg::HIT_DIVIDE_LATENCY - 3));

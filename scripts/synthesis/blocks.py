@@ -83,6 +83,12 @@ def used(package, code):
     return [items[name] for name in sorted(needed)]
 
 
+def contexts():
+    """Contexts of the unit as rtl/ has it."""
+    package = (RTL / f"{PACKAGE}.sv").read_text(encoding="utf-8")
+    return int(re.search(r"localparam int unsigned CONTEXTS = (\d+);", package)[1])
+
+
 def twins():
     """The modules with a Rust twin."""
     return sorted(path.stem for path in (ROOT / "src/block").glob("*.rs") if path.stem not in ("mod", "operation"))

@@ -10,7 +10,7 @@ from .tools import OUT, ROOT, Failure
 ECPPACK = "yowasp-ecppack"
 TARGET_MHZ = 80
 # For a netlist of this size the other router takes an hour.
-PLACEMENT = ["--85k", "--package", "CABGA756", "--speed", "6", "--freq", TARGET_MHZ, "--timing-allow-fail", "--lpf-allow-unconstrained", "--router", "router2"]
+PLACEMENT = ["--85k", "--package", "CABGA756", "--speed", "8", "--placer", "static", "--freq", TARGET_MHZ, "--timing-allow-fail", "--lpf-allow-unconstrained", "--router", "router2"]
 LIMIT_S = 4 * 3600
 
 
@@ -25,8 +25,8 @@ def unit(contexts):
     return Block(WHOLE, (), str(package))
 
 
-def run(contexts, seeds, paths, tools):
-    """Synthesises the unit, places and routes it with each seed, and prints what came of it."""
+def run(contexts, seeds, paths, doc, tools):
+    """Synthesises the unit, places and routes it with each seed, and prints what came of it; with `doc` also into docs/hardware.md."""
     block = unit(contexts)
     size, netlist = ecp5.synthesise(block, tools)
     print(f"traversal_unit of {contexts} contexts: {size['luts']:,} LUTs, {size['flip_flops']:,} flip-flops, {size['dsps']} multipliers, {size['memories']} block RAMs", flush=True)
@@ -41,6 +41,8 @@ def run(contexts, seeds, paths, tools):
     if paths:
         for kind, delay, cell in min(placed, key=lambda made: made["mhz"])["path"]:
             print(f"  {kind:8} {delay:6.2f} ns  {cell}")
+    if doc:
+        report.document("scripts/synth --fpga", report.fpga(contexts, size, placed, PLACEMENT, tools.versions))
 
 
 def pack(folder, tools):

@@ -4,7 +4,6 @@ from .blocks import WHOLE
 from .tools import NEXTPNR, ROOT, YOSYS, Failure, write
 
 DOC = ROOT / "docs/hardware.md"
-BEGIN, END = "<!-- scripts/synth: begin -->", "<!-- scripts/synth: end -->"
 HEADINGS = ["block", "GE", "flip-flops", "memory bits", "multipliers", "depth", "LUTs", "ECP5 FFs", "DSPs", "MHz", "seeds"]
 
 
@@ -47,16 +46,28 @@ def share(figures):
     return f"One of each block of a traversal unit has {unit:,} GE together; what level of detail adds to it ({parts}) is {added:,} of these, {100 * added / unit:.0f} %."
 
 
-def whole(figures):
-    """The unit and its parts as they are in it: lines of a table, and what its blocks have together."""
-    unit = figures[WHOLE]["gates"]
-    parts = unit["parts"]
-    others = {key: unit[key] - sum(part[key] for part in parts.values()) for key in ("ge", "flip_flops", "memory_bits")}
-    others["multipliers"] = sum(unit["multipliers"].values()) - sum(part["multipliers"] for part in parts.values())
-    rows = [*parts.items(), ("what is left", others), ("**together**", {**unit, "multipliers": sum(unit["multipliers"].values())})]
-    lines = [[f"`{name}`" if name in UNIT or name == "hit_queue" else name, *(f"{part[key]:,}" for key in ("ge", "flip_flops", "memory_bits", "multipliers"))] for name, part in rows]
-    blocks = sum(parts[name]["ge"] for name in UNIT)
-    return lines, f"One of each block has {blocks:,} GE in the unit, where results always have a place and some operands' bits are always 0."
+def whole(gates, contexts, versions):
+    """The unit and its parts as they are in it, and what its blocks have together."""
+    parts, keys = gates["parts"], ("ge", "flip_flops", "memory_bits", "multipliers")
+    together = {**gates, "multipliers": sum(gates["multipliers"].values())}
+    others = {key: together[key] - sum(part[key] for part in parts.values()) for key in keys}
+    rows = [[f"`{name}`" if name in UNIT or name == "hit_queue" else name, *(f"{part[key]:,}" for key in keys)] for name, part in [*parts.items(), ("what is left", others), ("**together**", together)]]
+    blocks, own, chosen = sum(parts[name]["ge"] for name in UNIT), parts["contexts"]["ge"] / contexts, parts["arbiters and operands"]["ge"] / contexts
+    return "\n".join([
+        *table([f"in a `traversal_unit` of {contexts} contexts", "GE", "flip-flops", "memory bits", "multipliers"], rows), "",
+        f"`scripts/synth --doc {WHOLE}`, {versions[YOSYS]}, multipliers counted with their blocks.", "",
+        f"One of each block has {blocks:,} GE in the unit. A context has {own:,.0f} GE there, and arbiters and the choice of its operands {chosen:,.0f} more.",
+    ])
+
+
+def fpga(contexts, size, placed, options, versions):
+    """The unit on the FPGA: what it takes, and its clock with each seed."""
+    clocks = [made["mhz"] for made in placed]
+    return "\n".join([
+        *table(["contexts", "LUTs", "flip-flops", "multipliers", "block RAMs", "MHz, median", "of seeds 1 and on"], [[
+            str(contexts), f"{size['luts']:,}", f"{size['flip_flops']:,}", str(size["dsps"]), str(size["memories"]), f"{median(clocks):.1f}", " ".join(f"{clock:.1f}" for clock in clocks)]]),
+        "", f"`scripts/synth --fpga {contexts} --doc`, {versions[YOSYS]}, {versions[NEXTPNR]} (`{' '.join(map(str, options))}`).",
+    ])
 
 
 def table(headings, rows):
@@ -68,15 +79,14 @@ def markdown(rows, figures, versions, seeds):
     """The table, what follows from it and what made it."""
     lines = table(HEADINGS, [[f"`{row[0]}`", *row[1:]] for row in rows])
     made = f"`scripts/synth --doc`, {seeds} seed{'s' if seeds > 1 else ''}, {versions[YOSYS]}, {versions[NEXTPNR]}, LFE5U-85F in CABGA756, speed grade 6."
-    parts, blocks = whole(figures)
-    of_unit = table(["in a `traversal_unit` of four contexts", "GE", "flip-flops", "memory bits", "multipliers"], parts)
-    return "\n".join([*lines, "", made, "", share(figures), "", *of_unit, "", blocks])
+    return "\n".join([*lines, "", made, "", share(figures)])
 
 
-def document(rows, figures, versions, seeds):
-    """Puts the table between its marks in docs/hardware.md."""
-    text = DOC.read_text(encoding="utf-8")
-    if text.count(BEGIN) != 1 or text.count(END) != 1:
-        raise Failure(f"docs/hardware.md must hold the marks {BEGIN} and {END}, once each")
-    before, after = text.split(BEGIN)[0], text.split(END)[1]
-    write(DOC, f"{before}{BEGIN}\n{markdown(rows, figures, versions, seeds)}\n{END}{after}")
+def document(command, text):
+    """Puts what a command has measured between its marks in docs/hardware.md."""
+    begin, end = (f"<!-- {command}: {mark} -->" for mark in ("begin", "end"))
+    document = DOC.read_text(encoding="utf-8")
+    if document.count(begin) != 1 or document.count(end) != 1:
+        raise Failure(f"docs/hardware.md must hold the marks {begin} and {end}, once each")
+    before, after = document.split(begin)[0], document.split(end)[1]
+    write(DOC, f"{before}{begin}\n{text}\n{end}{after}")

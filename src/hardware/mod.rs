@@ -53,7 +53,7 @@ pub struct Hardware {
     pub setup_bits: u32,
     /// Boxes that the test of four children tests in a cycle.
     pub boxes_per_cycle: BoxesPerCycle,
-    /// Registers between contexts and blocks: 0, 1 for operands, or 2 for results and for answers of memory too. Each makes the way a cycle longer, but for addresses and divisions; an FPGA
+    /// Registers between contexts and blocks: 0, 1 for operands, or 2 for results and for answers of memory too. Each makes the way a cycle longer, but for addresses; an FPGA
     /// wants them.
     pub link_registers: u32,
     /// Bits of the number of a quad-BVH node, of a tree, and of a node within its level, as a context keeps them: at most 28.

@@ -93,7 +93,7 @@ impl<R: Steps> UnitTiming<R> {
             Resource::Lod => config.linked(fitted(Operation::LodTest)),
             Resource::Morph => config.linked(config.timing::<Tessellate>()),
             Resource::Tri => config.linked(fitted(Operation::TriTest)),
-            Resource::Divide => fitted(Operation::HitDivide),
+            Resource::Divide => config.linked(fitted(Operation::HitDivide)),
             Resource::Map => config.linked(config.timing::<BaryMap>()),
             Resource::Hit => Timing::pipelined(1),
         };

@@ -76,12 +76,7 @@ where
     B::Out: Copy,
     <B::Primary as Block>::Out: Copy,
 {
-    /// An empty pipeline, of the block that this hardware has.
-    pub fn new(hardware: &Hardware) -> Self {
-        if hardware.secondary { Self::Secondary(Pipeline::new(hardware)) } else { Self::Primary(Pipeline::new(hardware)) }
-    }
-
-    /// The same with the registers of its way from the contexts and back.
+    /// An empty pipeline, of the block that this hardware has, with the registers of its way from the contexts and back.
     pub fn linked(hardware: &Hardware) -> Self {
         if hardware.secondary { Self::Secondary(Pipeline::linked(hardware)) } else { Self::Primary(Pipeline::linked(hardware)) }
     }

@@ -74,8 +74,8 @@ pub struct TraversalUnit {
     pub(super) bary_map: Pipeline<BaryMap>,
     /// Hits on their way from the triangle test to the division.
     pub(super) queue: VecDeque<Met>,
-    /// The hit in the division, and the one in the comparison with its t.
-    candidate: Register<Met>,
+    /// Hits in the division, the oldest first, and the one in the comparison with its t.
+    dividing: VecDeque<Met>,
     pub(super) chosen: Register<(Met, RayT)>,
     /// An answer on its way to the contexts, where results have a register.
     answer: Option<MemoryAnswer>,
@@ -106,11 +106,11 @@ impl TraversalUnit {
             lod_test: Fitted::linked(&config),
             tessellate: Pipeline::linked(&config),
             tri_test: Fitted::linked(&config),
-            hit_divide: Fitted::new(&config),
+            hit_divide: Fitted::linked(&config),
             hit_select: Pipeline::new(&config),
             bary_map: Pipeline::linked(&config),
             queue: VecDeque::new(),
-            candidate: Register::default(),
+            dividing: VecDeque::new(),
             chosen: Register::default(),
             answer: None,
             hit: Stage::default(),
@@ -284,13 +284,14 @@ impl TraversalUnit {
         // A hit follows its division, and then its comparison.
         if let Some((out, tag)) = divided
             && tag >> 8 == DIVIDE_FOR_T
+            && let Some(met) = self.dividing.pop_front()
         {
-            self.chosen.set((self.candidate.get(), out.quotient));
+            self.chosen.set((met, out.quotient));
         }
         if w.queue_pop
             && let Some(head) = self.queue.pop_front()
         {
-            self.candidate.set(head);
+            self.dividing.push_back(head);
         }
         if let Some((test, tag)) = tri
             && test.test.hit
