@@ -176,17 +176,19 @@ def main():
     outside = {"axi_read_adapter": "adapter::", "traversal_unit_axi": "frame::"}
     cost = lambda top: sum(len(sources[m]) for m in closure(top, sources))
     unit = closure("traversal_unit", sources)
+    # Few models first, all of them only where these notice nothing.
+    of_unit = {of: [tests["rtl_unit"], *only] for of, only in (("rays", ["random_rays_under"]), ("unit", []))}
     plans = []
     for name in args.files or sources:
         holders = sorted((t for t in tops if name in closure(t, sources)), key=cost)
         tops_of = [own[name]] if name in own else holders
-        commands = {top: [tests["rtl"], f"{top}::"] for top in tops_of} or {"unit": [tests["rtl_unit"]]}
+        commands = {top: [tests["rtl"], f"{top}::"] for top in tops_of} or of_unit
         if name in outside:
             commands = {"axi": [tests["rtl_axi"], outside[name]]}
         if args.unit:
             if name not in unit:
                 continue
-            commands = {"unit": [tests["rtl_unit"]]}
+            commands = of_unit
         plans.append((name, drawn(name, sources[name], args.seed), commands))
 
     totals = {"killed": 0, "lint": 0, "lives": 0, "late": 0}
