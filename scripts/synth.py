@@ -19,7 +19,7 @@ def main():
     try:
         tools = Tools()
         if options.fpga:
-            fpga.run(options.fpga, options.seeds, options.paths, options.doc, tools)
+            fpga.run(options.fpga, options.seeds, options.jobs, options.paths, options.doc, tools)
             return
         unit = plan.read(options.plan) if options.plan else None
         wanted = unit.blocks() if unit else blocks.chosen(options.block) or blocks.every()

@@ -1,5 +1,6 @@
 """The whole traversal unit on a Lattice ECP5: as many contexts as asked for, placed and routed in the harness of the blocks, and written as a bitstream."""
 
+import concurrent.futures
 import os
 import subprocess
 
@@ -25,18 +26,26 @@ def unit(contexts):
     return Block(WHOLE, (), str(package))
 
 
-def run(contexts, seeds, paths, doc, tools):
+def run(contexts, seeds, jobs, paths, doc, tools):
     """Synthesises the unit, places and routes it with each seed, and prints what came of it; with `doc` also into docs/hardware.md."""
     block = unit(contexts)
     size, netlist = ecp5.synthesise(block, tools)
     print(f"traversal_unit of {contexts} contexts: {size['luts']:,} LUTs, {size['flip_flops']:,} flip-flops, {size['dsps']} multipliers, {size['memories']} block RAMs", flush=True)
     if not ecp5.fits(size):
         raise Failure(f"the FPGA has {ecp5.DSP_BLOCKS} multipliers")
-    placed = []
-    for seed in range(1, seeds + 1):
-        made, folder = ecp5.place(block, netlist, seed, tools, PLACEMENT, LIMIT_S, configuration=True)
-        placed.append(made)
-        print(f"seed {seed}: {made['mhz']} MHz, bitstream {pack(folder, tools)}", flush=True)
+    placed, failures = [], []
+    with concurrent.futures.ThreadPoolExecutor(jobs) as pool:
+        steps = [pool.submit(ecp5.place, block, netlist, seed, tools, PLACEMENT, LIMIT_S, configuration=True) for seed in range(1, seeds + 1)]
+        for seed, step in enumerate(steps, start=1):
+            try:
+                made, folder = step.result()
+            except Failure as why:
+                failures.append(f"seed {seed}: {why}")
+                continue
+            placed.append(made)
+            print(f"seed {seed}: {made['mhz']} MHz, bitstream {pack(folder, tools)}", flush=True)
+    if failures:
+        raise Failure("; ".join(failures))
     print(f"median {report.median([made['mhz'] for made in placed])} MHz")
     if paths:
         for kind, delay, cell in min(placed, key=lambda made: made["mhz"])["path"]:

@@ -130,11 +130,13 @@ impl Hardware {
         Self { contexts: 1, ..Self::DEFAULT }
     }
 
-    /// A unit of so many contexts (1 to 64) that an LFE5U-85F has the multipliers for: one edge, one box and one bit of each division a cycle, and registers
-    /// on all ways between contexts and blocks (`scripts/synth --fpga`).
+    /// A unit of so many contexts (1 to 64) for an LFE5U-85F (`scripts/synth --fpga`), for models of up to six levels below sixteen of a quad-BVH, on grids of 8 zero bits: one edge, one box and one
+    /// bit of each division a cycle, for its multipliers, and registers on all ways between contexts and blocks.
     pub const fn fpga(contexts: usize) -> Self {
         let context_bits = if contexts <= 2 { 1 } else { (contexts - 1).ilog2() + 1 };
         Self {
+            levels: 6,
+            bvh_depth: 16,
             contexts,
             context_bits,
             edges_per_cycle: EdgesPerCycle::One,
@@ -143,6 +145,8 @@ impl Hardware {
             setup_bits: 1,
             boxes_per_cycle: BoxesPerCycle::One,
             link_registers: 2,
+            coordinate_zeros: 8,
+            direction_zeros: 8,
             ..Self::DEFAULT
         }
     }

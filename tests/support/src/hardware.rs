@@ -110,9 +110,11 @@ pub const SECONDARY_AT_ONCE: Hardware = Hardware {
 pub const SECONDARY_FULL_DETAIL: Hardware = Hardware { levels: 4, divide_bits: 2, lod_test: false, secondary: true, ..Hardware::DEFAULT };
 /// All for rays from a surface.
 pub const SECONDARIES: [Hardware; 3] = [SECONDARY, SECONDARY_AT_ONCE, SECONDARY_FULL_DETAIL];
+/// The one that `scripts/synth --fpga` places.
+pub const FPGA: Hardware = Hardware::fpga(2);
 /// The others.
-pub const OTHERS: [Hardware; 10] =
-    [SMALL, MIDDLE, NARROW, NARROWER_BY_FEW, FULL_DETAIL, SHALLOW, FLAT, SECONDARY, SECONDARY_AT_ONCE, SECONDARY_FULL_DETAIL];
+pub const OTHERS: [Hardware; 11] =
+    [SMALL, MIDDLE, NARROW, NARROWER_BY_FEW, FULL_DETAIL, SHALLOW, FLAT, SECONDARY, SECONDARY_AT_ONCE, SECONDARY_FULL_DETAIL, FPGA];
 /// The most levels of the models that such hardware is for.
 pub fn most_levels(hardware: &Hardware) -> u32 {
     if hardware.hit_mapping { hardware.levels } else { hardware.stored_levels() }
