@@ -28,8 +28,8 @@ framed_box.sv
 hit_divide.sv
 hit_queue.sv
 hit_select.sv
-link_register.sv
 limb_sum.sv
+link_register.sv
 lod_edge_by.sv
 lod_edges_parallel.sv
 lod_edges_serial.sv
