@@ -19,6 +19,8 @@ FORMS = {
 # Modules without a twin there that are worth a row.
 WHOLE = "traversal_unit"
 FURTHER = ["edge_function", "traversal_stack", "ray_context", WHOLE]
+# What a traversal unit has one of each of.
+OF_UNIT = ["ray_setup", "node_address", "child_test", "lod_test", "tessellate", "tri_test", "hit_divide", "hit_select", "bary_map"]
 # A memory: an array of registers that are written one word at a time.
 MEMORY = re.compile(r"^\s*logic (?:\[[^\]]*\] *)*\w+_q +\[", re.MULTILINE)
 

@@ -6,7 +6,7 @@ import json
 import re
 
 from . import multipliers
-from .blocks import WHOLE
+from .blocks import OF_UNIT, WHOLE
 from .tools import ROOT, YOSYS, Failure, kept
 
 LIMIT_S = 3600
@@ -27,7 +27,7 @@ SUSPECT = re.compile(r"implicitly declared|no driver|undriven|(?<!No )latch infe
 
 # The parts of a whole unit: a word for each, and the names of its instances in rtl/traversal_unit.sv.
 PARTS = {
-    **{name: f"u_{name}" for name in ("ray_setup", "node_address", "child_test", "lod_test", "tessellate", "tri_test", "hit_divide", "hit_select", "bary_map")},
+    **{name: f"u_{name}" for name in OF_UNIT},
     "contexts": "u_context", "arbiters and operands": "*_input", "hit_queue": "u_queue",
 }
 

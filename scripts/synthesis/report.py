@@ -1,14 +1,13 @@
 """The table of figures, on a terminal and in docs/hardware.md."""
 
-from .blocks import WHOLE
+from .blocks import OF_UNIT, WHOLE
 from .tools import NEXTPNR, ROOT, YOSYS, Failure, write
 
 DOC = ROOT / "docs/hardware.md"
 HEADINGS = ["block", "GE", "flip-flops", "memory bits", "multipliers", "depth", "LUTs", "ECP5 FFs", "DSPs", "MHz", "seeds"]
 
 
-# What a traversal unit has one of each of, and what level of detail adds to it, as (block, how many).
-UNIT = ["ray_setup", "node_address", "child_test", "lod_test", "tessellate", "tri_test", "hit_divide", "hit_select", "bary_map"]
+# What level of detail adds to a traversal unit, as (block, how many).
 ADDED = [("lod_test", 1), ("tessellate", 1), ("child_boxes", 1), ("bary_map", 1)]
 
 
@@ -40,7 +39,7 @@ def plain(rows):
 
 def share(figures):
     """What level of detail adds to the blocks of a unit, in words."""
-    unit = sum(figures[name]["gates"]["ge"] for name in UNIT)
+    unit = sum(figures[name]["gates"]["ge"] for name in OF_UNIT)
     added = sum(count * figures[name]["gates"]["ge"] for name, count in ADDED)
     parts = ", ".join(f"{count} `{name}`" if count > 1 else f"`{name}`" for name, count in ADDED)
     return f"One of each block of a traversal unit has {unit:,} GE together; what level of detail adds to it ({parts}) is {added:,} of these, {100 * added / unit:.0f} %."
@@ -51,8 +50,8 @@ def whole(gates, contexts, versions):
     parts, keys = gates["parts"], ("ge", "flip_flops", "memory_bits", "multipliers")
     together = {**gates, "multipliers": sum(gates["multipliers"].values())}
     others = {key: together[key] - sum(part[key] for part in parts.values()) for key in keys}
-    rows = [[f"`{name}`" if name in UNIT or name == "hit_queue" else name, *(f"{part[key]:,}" for key in keys)] for name, part in [*parts.items(), ("what is left", others), ("**together**", together)]]
-    blocks, own, chosen = sum(parts[name]["ge"] for name in UNIT), parts["contexts"]["ge"] / contexts, parts["arbiters and operands"]["ge"] / contexts
+    rows = [[f"`{name}`" if name in OF_UNIT or name == "hit_queue" else name, *(f"{part[key]:,}" for key in keys)] for name, part in [*parts.items(), ("what is left", others), ("**together**", together)]]
+    blocks, own, chosen = sum(parts[name]["ge"] for name in OF_UNIT), parts["contexts"]["ge"] / contexts, parts["arbiters and operands"]["ge"] / contexts
     return "\n".join([
         *table([f"in a `traversal_unit` of {contexts} contexts", "GE", "flip-flops", "memory bits", "multipliers"], rows), "",
         f"`scripts/synth --doc {WHOLE}`, {versions[YOSYS]}, multipliers counted with their blocks.", "",
