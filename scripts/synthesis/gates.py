@@ -130,10 +130,12 @@ def measure(block, stat, stats, shapes, memories, log):
     for (name, instance), part in zip(parts(block).items(), stats):
         cells = part["modules"].get(block.module) or part["modules"]["\\" + block.module]
         of_part = total(block.module, {**modules, block.module: cells["num_cells_by_type"]})
-        bits = sum(words * width for memory, words, width, _ in memories if fnmatch.fnmatch(memory, f"*{instance}.*"))
-        own_memories = sum(memory_area(*memory[1:]) for memory in memories if fnmatch.fnmatch(memory[0], f"*{instance}.*"))
+        own = [memory[1:] for memory in memories if fnmatch.fnmatch(memory[0], f"*{instance}.*")]
         part_ge, part_flip_flops, part_products = area(of_part, modules, shapes)
-        made.setdefault("parts", {})[name] = {"ge": round(part_ge + own_memories), "flip_flops": part_flip_flops, "memory_bits": bits, "multipliers": sum(part_products.values())}
+        made.setdefault("parts", {})[name] = {
+            "ge": round(part_ge + sum(memory_area(*memory) for memory in own)), "flip_flops": part_flip_flops, "memories": own,
+            "memory_bits": sum(words * width for words, width, _ in own), "multipliers": sum(part_products.values()),
+        }
     return made
 
 

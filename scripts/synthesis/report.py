@@ -1,11 +1,14 @@
 """The table of figures, on a terminal and in docs/hardware.md."""
 
 from .blocks import OF_UNIT, WHOLE
+from .gates import memory_area
 from .tools import NEXTPNR, ROOT, YOSYS, Failure, write
 
 DOC = ROOT / "docs/hardware.md"
 HEADINGS = ["block", "GE", "flip-flops", "memory bits", "multipliers", "depth", "LUTs", "ECP5 FFs", "DSPs", "MHz", "seeds"]
 
+# Contexts of a unit that the cost of a unit is told for.
+MANY = 32
 
 # What level of detail adds to a traversal unit, as (block, how many).
 ADDED = [("lod_test", 1), ("tessellate", 1), ("child_boxes", 1), ("bary_map", 1)]
@@ -55,8 +58,17 @@ def whole(gates, contexts, versions):
     return "\n".join([
         *table([f"in a `traversal_unit` of {contexts} contexts", "GE", "flip-flops", "memory bits", "multipliers"], rows), "",
         f"`scripts/synth --doc {WHOLE}`, {versions[YOSYS]}, multipliers counted with their blocks.", "",
-        f"One of each block has {blocks:,} GE in the unit. A context has {own:,.0f} GE there, and arbiters and the choice of its operands {chosen:,.0f} more.",
+        f"One of each block has {blocks:,} GE in the unit. A context has {own:,.0f} GE there, and arbiters and the choice of its operands {chosen:,.0f} more. "
+        f"So a unit of {MANY} contexts has {larger(parts, contexts, others['ge']) / 1e6:.2f} million GE: blocks and what is left as here, contexts and operands {MANY} times, the memory of the queue as deep as that takes.",
     ])
+
+
+def larger(parts, contexts, others):
+    """GE of a unit with `MANY` contexts, from the parts of one with fewer."""
+    queue = parts["hit_queue"]
+    deeper = sum(memory_area(words * MANY // contexts, width, clocked) - memory_area(words, width, clocked) for words, width, clocked in queue["memories"])
+    each = (parts["contexts"]["ge"] + parts["arbiters and operands"]["ge"]) / contexts
+    return sum(parts[name]["ge"] for name in OF_UNIT) + MANY * each + queue["ge"] + deeper + others
 
 
 def fpga(contexts, size, placed, options, versions):
