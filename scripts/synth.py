@@ -36,10 +36,11 @@ def main():
                 check.export(block, figures[block.name]["gates_at"])
             check.run(tested)
         if options.doc and not failures:
-            if options.block:
-                report.document(f"scripts/synth {blocks.WHOLE}", report.whole(figures[blocks.WHOLE]["gates"], blocks.contexts(), tools.versions))
+            if options.block == [blocks.WHOLE]:
+                report.document(f"{report.BLOCKS} {blocks.WHOLE}", report.whole(figures[blocks.WHOLE]["gates"], blocks.contexts(), tools.versions))
             else:
-                report.document("scripts/synth", report.markdown(rows, figures, tools.versions, options.seeds))
+                # The whole unit has a table of its own.
+                report.document(report.BLOCKS, report.markdown([row for row in rows if row[0] != blocks.WHOLE], tools.versions, bool(options.block)))
     except Failure as why:
         sys.exit(f"scripts/synth: {why}")
     except KeyboardInterrupt:
@@ -62,7 +63,7 @@ def parse():
     parser.add_argument("--check", action="store_true", help="write the netlists to target/synth/netlists and run the blocks' own tests on them")
     parser.add_argument("--plan", metavar="PLAN", help="the unit of a plan (lodray plan -o): its blocks with the package that the plan prints, and what they and its contexts have together")
     parser.add_argument("--fpga", type=int, nargs="?", const=2, metavar="CONTEXTS", help="the whole unit for an LFE5U-85F, with that many contexts (default 2): placed, routed, and as a bitstream")
-    parser.add_argument("--doc", action="store_true", help=f"write the table into docs/hardware.md; with {blocks.WHOLE} the parts of the whole unit, with --fpga its clock")
+    parser.add_argument("--doc", action="store_true", help=f"write the table into docs/hardware.md, or the named blocks' rows of it; with {blocks.WHOLE} the parts of the whole unit, with --fpga its clock")
     options = parser.parse_args()
     if options.fpga is not None and not 1 <= options.fpga <= 64:
         parser.error(f"--fpga must be 1 to 64 contexts, but is {options.fpga}")
@@ -71,8 +72,13 @@ def parse():
     if options.no_fpga and options.no_gates:
         parser.error("--no-fpga and --no-gates leave nothing")
     of_whole = options.block == [blocks.WHOLE]
-    if options.doc and not of_whole and (options.block or options.no_place or options.no_fpga or options.no_gates):
-        parser.error(f"--doc writes the whole table: name no block but {blocks.WHOLE}, and leave nothing out")
+    if options.doc and not of_whole and (options.no_place or options.no_fpga or options.no_gates):
+        parser.error("--doc writes whole rows of the table: leave nothing out")
+    if options.doc and not of_whole:
+        rows = {block.name for block in blocks.every()} - {blocks.WHOLE}
+        others = [block.name for block in blocks.chosen(options.block) if block.name not in rows]
+        if others:
+            parser.error(f"--doc {others[0]}: the table of docs/hardware.md has no row of it; {blocks.WHOLE} goes by itself")
     if options.doc and of_whole and options.no_gates:
         parser.error(f"--doc {blocks.WHOLE} writes what the unit has in gates")
     if options.plan and (options.block or options.doc or options.check):

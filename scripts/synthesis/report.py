@@ -5,6 +5,8 @@ from .gates import memory_area
 from .tools import NEXTPNR, ROOT, YOSYS, Failure, write
 
 DOC = ROOT / "docs/hardware.md"
+# The command whose marks are around the table of blocks.
+BLOCKS = "scripts/synth"
 HEADINGS = ["block", "GE", "flip-flops", "memory bits", "multipliers", "depth", "LUTs", "ECP5 FFs", "DSPs", "MHz", "seeds"]
 
 # Contexts of a unit that the cost of a unit is told for.
@@ -40,10 +42,10 @@ def plain(rows):
     return "\n".join(line.rstrip() for line in lines)
 
 
-def share(figures):
-    """What level of detail adds to the blocks of a unit, in words."""
-    unit = sum(figures[name]["gates"]["ge"] for name in OF_UNIT)
-    added = sum(count * figures[name]["gates"]["ge"] for name, count in ADDED)
+def share(area):
+    """What level of detail adds to the blocks of a unit, in words, from the GE of each."""
+    unit = sum(area[name] for name in OF_UNIT)
+    added = sum(count * area[name] for name, count in ADDED)
     parts = ", ".join(f"{count} `{name}`" if count > 1 else f"`{name}`" for name, count in ADDED)
     return f"One of each block of a traversal unit has {unit:,} GE together; what level of detail adds to it ({parts}) is {added:,} of these, {100 * added / unit:.0f} %."
 
@@ -86,18 +88,39 @@ def table(headings, rows):
     return ["| " + " | ".join(words) + " |" for words in [headings, ["---", *["---:"] * (len(headings) - 1)], *rows]]
 
 
-def markdown(rows, figures, versions, seeds):
-    """The table, what follows from it and what made it."""
-    lines = table(HEADINGS, [[f"`{row[0]}`", *row[1:]] for row in rows])
-    made = f"`scripts/synth --doc`, {seeds} seed{'s' if seeds > 1 else ''}, {versions[YOSYS]}, {versions[NEXTPNR]}, LFE5U-85F in CABGA756, speed grade 6."
-    return "\n".join([*lines, "", made, "", share(figures)])
+def markdown(rows, versions, some):
+    """The table, what follows from it and what made it. With `some` these rows take their places in the table that is there, which must be of the same tools."""
+    made = f"`scripts/synth --doc`, {versions[YOSYS]}, {versions[NEXTPNR]}, LFE5U-85F in CABGA756, speed grade 6."
+    cells = {f"`{row[0]}`": row[1:] for row in rows}
+    if some:
+        standing = between(BLOCKS)
+        if made not in standing:
+            raise Failure("the table of docs/hardware.md was made with other versions of the tools: name no block, so that all rows are made again")
+        there = [line.strip("| ").split(" | ") for line in standing.splitlines() if line.startswith("| `")]
+        cells = {**{name: row for name, *row in there}, **cells}
+    unplaced = " A dash: not placed again since its RTL last changed." if any(row[-2] == "-" for row in cells.values()) else ""
+    area = {name.strip("`"): int(row[0].replace(",", "")) for name, row in cells.items()}
+    return "\n".join([*table(HEADINGS, [[name, *row] for name, row in cells.items()]), "", made + unplaced, "", share(area)])
+
+
+def between(command):
+    """What stands between a command's marks in docs/hardware.md."""
+    document = DOC.read_text(encoding="utf-8")
+    begin, end = marks(command, document)
+    return document.split(begin)[1].split(end)[0]
+
+
+def marks(command, document):
+    """A command's two marks, once each in the document."""
+    both = [f"<!-- {command}: {mark} -->" for mark in ("begin", "end")]
+    if any(document.count(mark) != 1 for mark in both):
+        raise Failure(f"docs/hardware.md must hold the marks {both[0]} and {both[1]}, once each")
+    return both
 
 
 def document(command, text):
     """Puts what a command has measured between its marks in docs/hardware.md."""
-    begin, end = (f"<!-- {command}: {mark} -->" for mark in ("begin", "end"))
     document = DOC.read_text(encoding="utf-8")
-    if document.count(begin) != 1 or document.count(end) != 1:
-        raise Failure(f"docs/hardware.md must hold the marks {begin} and {end}, once each")
+    begin, end = marks(command, document)
     before, after = document.split(begin)[0], document.split(end)[1]
     write(DOC, f"{before}{begin}\n{text}\n{end}{after}")
