@@ -1,5 +1,6 @@
 //! `rtl/lod_pkg.sv` is what the default hardware prints, byte for byte. With `LODRAY_REWRITE_PACKAGE` in the environment the file is written again
-//! (`scripts/package`). With `LODRAY_FPGA_PACKAGE` that of the hardware for an FPGA is written there, of `LODRAY_CONTEXTS` contexts (`scripts/synth --fpga`).
+//! (`scripts/package`). With `LODRAY_FPGA_PACKAGE` that of the hardware for an FPGA is written there, of `LODRAY_CONTEXTS` contexts
+//! with `LODRAY_LINK_REGISTERS` on their links (`scripts/synth --fpga`).
 
 use lodray::hardware::Hardware;
 
@@ -27,8 +28,9 @@ fn the_package_for_an_fpga_is_that_of_its_contexts() {
         assert_eq!(Hardware::fpga(contexts).validate(), Ok(()));
     }
     let Some(path) = std::env::var_os("LODRAY_FPGA_PACKAGE") else { return };
-    let contexts = std::env::var("LODRAY_CONTEXTS").map_or(2, |text| text.parse().expect("LODRAY_CONTEXTS: a number"));
-    let hardware = Hardware::fpga(contexts);
+    let number = |name: &str| std::env::var(name).ok().map(|text| text.parse::<u32>().unwrap_or_else(|_| panic!("{name}: {text:?} is no number")));
+    let standard = Hardware::fpga(number("LODRAY_CONTEXTS").unwrap_or(2) as usize);
+    let hardware = Hardware { link_registers: number("LODRAY_LINK_REGISTERS").unwrap_or(standard.link_registers), ..standard };
     hardware.validate().unwrap_or_else(|error| panic!("{error}"));
     std::fs::write(&path, hardware.package()).unwrap_or_else(|error| panic!("{}: {error}", path.display()));
 }

@@ -15,27 +15,28 @@ PLACEMENT = ["--85k", "--package", "CABGA756", "--speed", "8", "--placer", "stat
 LIMIT_S = 4 * 3600
 
 
-def unit(contexts):
-    """The unit with the package of the hardware that is for this FPGA (Hardware::fpga in src/hardware), as cargo writes it."""
-    package = OUT / "fpga" / f"contexts-{contexts}" / "lod_pkg.sv"
+def unit(contexts, links):
+    """The unit with the package of the hardware that is for this FPGA (Hardware::fpga in src/hardware), with so many registers on its links, as cargo writes it."""
+    package = OUT / "fpga" / f"contexts-{contexts}-links-{links}" / "lod_pkg.sv"
     (ROOT / package).parent.mkdir(parents=True, exist_ok=True)
-    settings = {"LODRAY_FPGA_PACKAGE": str(ROOT / package), "LODRAY_CONTEXTS": str(contexts)}
+    settings = {"LODRAY_FPGA_PACKAGE": str(ROOT / package), "LODRAY_CONTEXTS": str(contexts), "LODRAY_LINK_REGISTERS": str(links)}
     got = subprocess.run(["cargo", "test", "--quiet", "--test", "package"], cwd=ROOT, env={**os.environ, **settings}, capture_output=True, text=True)
     if got.returncode != 0 or not (ROOT / package).is_file():
         raise Failure(f"cargo test --test package: {got.stdout[-2000:]}{got.stderr[-2000:]}")
     return Block(WHOLE, (), str(package))
 
 
-def run(contexts, seeds, jobs, paths, doc, tools):
-    """Synthesises the unit, places and routes it with each seed, and prints what came of it; with `doc` also into docs/hardware.md."""
-    block = unit(contexts)
+def run(contexts, links, seeds, jobs, route, paths, doc, tools):
+    """Synthesises the unit, places and routes it with each seed, and prints what came of it; with `doc` also into docs/hardware.md. Without `route` it is only placed, and the clock what the placer expects."""
+    block = unit(contexts, links)
     size, netlist = ecp5.synthesise(block, tools)
     print(f"traversal_unit of {contexts} contexts: {size['luts']:,} LUTs, {size['flip_flops']:,} flip-flops, {size['dsps']} multipliers, {size['memories']} block RAMs", flush=True)
     if not ecp5.fits(size):
         raise Failure(f"the FPGA has {ecp5.DSP_BLOCKS} multipliers")
+    options = PLACEMENT if route else [*PLACEMENT, "--no-route"]
     placed, failures = [], []
     with concurrent.futures.ThreadPoolExecutor(jobs) as pool:
-        steps = [pool.submit(ecp5.place, block, netlist, seed, tools, PLACEMENT, LIMIT_S, configuration=True) for seed in range(1, seeds + 1)]
+        steps = [pool.submit(ecp5.place, block, netlist, seed, tools, options, LIMIT_S, configuration=route) for seed in range(1, seeds + 1)]
         for seed, step in enumerate(steps, start=1):
             try:
                 made, folder = step.result()
@@ -43,7 +44,7 @@ def run(contexts, seeds, jobs, paths, doc, tools):
                 failures.append(f"seed {seed}: {why}")
                 continue
             placed.append(made)
-            print(f"seed {seed}: {made['mhz']} MHz, bitstream {pack(folder, tools)}", flush=True)
+            print(f"seed {seed}: {made['mhz']} MHz, {f'bitstream {pack(folder, tools)}' if route else 'not routed'}", flush=True)
     if failures:
         raise Failure("; ".join(failures))
     print(f"median {report.median([made['mhz'] for made in placed])} MHz")
