@@ -653,9 +653,9 @@ module ray_context (
 
     split_triangles #(.W(CORNER_W), .LEVELS(SPLITS)) u_splits (
       .clk_i,
-      .write_i(root_comes || ((morph_grant_i || morph_valid_i) && !last_split)), .read_i(enter_root || enter_node),
-      .root_i(state_q == lod_pkg::FETCH), .split_i(state_q == lod_pkg::MORPH_WAIT),
-      .root_corners_i(roots_now), .inserted_i(inserted_now), .level_i(level), .parent_i(entry.level - 4'd1),
+      .root_write_i(root_comes), .root_corners_i(roots_now),
+      .corners_write_i(morph_grant_i && !last_split), .inserted_write_i(morph_valid_i && !last_split), .level_i(level), .inserted_i(inserted_now),
+      .read_i(enter_root || enter_node), .root_i(enter_root), .parent_i(entry.level - 4'd1),
       .child_i(entry.kind == lod_pkg::ENTRY_TREE_NODE ? entry.index[1:0] : 2'd3), .corners_o(node_corners)
     );
   end else begin : g_no_splits

@@ -4,21 +4,21 @@
 ///
 /// Child k < 3 of a triangle has its corner k where it is, and two inserted vertices; child 3 has all three of these. So bank i holds corner i and inserted vertex i of each level, and a node's
 /// triangle is one word of each bank: three narrow memories instead of one of twice their width, each with one write and one read port, never used in the same cycle.
-/// `corners_o` is there from the cycle after `read_i`, as long as `child_i` stands still. With `root_i` a root's corners are written or read, as its own child 3.
-/// A node that splits is written in two cycles: its corners, which are those at `corners_o`, and with `split_i` its inserted vertices. `root_i` and `split_i` choose among hundreds of
-/// bits: whoever asks has them at once, and what is late only in `write_i`. Nothing is reset.
+/// `corners_o` is there from the cycle after `read_i`, as long as `child_i` stands still. A root is written with `root_write_i` and read with `root_i`, as its own child 3.
+/// A node that splits is written in two cycles: its corners, which are those at `corners_o`, and its inserted vertices. Nothing is reset.
 module split_triangles #(
   parameter int unsigned W = 1,
   parameter int unsigned LEVELS = 1
 ) (
   input  logic              clk_i,
-  input  logic              write_i,
+  input  logic              root_write_i,
+  input  logic [2:0][W-1:0] root_corners_i,
+  input  logic              corners_write_i,
+  input  logic              inserted_write_i,
+  input  logic [3:0]        level_i,
+  input  logic [2:0][W-1:0] inserted_i,
   input  logic              read_i,
   input  logic              root_i,
-  input  logic              split_i,
-  input  logic [2:0][W-1:0] root_corners_i,
-  input  logic [2:0][W-1:0] inserted_i,
-  input  logic [3:0]        level_i,
   input  logic [3:0]        parent_i,
   input  logic [1:0]        child_i,
   output logic [2:0][W-1:0] corners_o
@@ -28,11 +28,13 @@ module split_triangles #(
   localparam int unsigned PLACES = ROOT + 1;
   localparam int unsigned PLACE_W = $clog2(PLACES);
 
+  logic               write;
   logic [PLACE_W-1:0] write_place;
   logic [2:0][W-1:0]  written, words;
 
-  assign write_place = root_i ? PLACE_W'(ROOT) : PLACE_W'({level_i, split_i});
-  assign written     = root_i ? root_corners_i : split_i ? inserted_i : corners_o;
+  assign write       = root_write_i || corners_write_i || inserted_write_i;
+  assign write_place = root_write_i ? PLACE_W'(ROOT) : PLACE_W'({level_i, inserted_write_i});
+  assign written     = root_write_i ? root_corners_i : inserted_write_i ? inserted_i : corners_o;
 
   for (genvar k = 0; k < 3; k++) begin : g_bank
     logic [W-1:0]       words_q [PLACES];
@@ -43,7 +45,7 @@ module split_triangles #(
     assign words[k]   = word_q;
 
     always_ff @(posedge clk_i) begin
-      if (write_i) words_q[write_place] <= written[k];
+      if (write) words_q[write_place] <= written[k];
       if (read_i) word_q <= words_q[read_place];
     end
   end
@@ -56,7 +58,7 @@ module split_triangles #(
   assign corners_o = {corner2, corner1, corner0};
 
   always_ff @(posedge clk_i) begin
-    assert (!(write_i && read_i));
+    assert (32'(root_write_i) + 32'(corners_write_i) + 32'(inserted_write_i) + 32'(read_i) <= 1);
   end
 
 endmodule

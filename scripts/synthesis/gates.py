@@ -82,6 +82,8 @@ def synthesise(block, tools):
     ingredients = {"block": block.ingredients(), "script": script(plain, "."), "map": texts, "tool": tools.versions[YOSYS], "areas": AREAS}
     if block.has_memories():
         ingredients["memory"] = MEMORY
+    if parts(block):
+        ingredients["parts"] = [*parts(block), "memories"]
     return kept(f"gates-{block.name}", ingredients, make)
 
 
