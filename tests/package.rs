@@ -28,7 +28,8 @@ fn the_package_for_an_fpga_is_that_of_its_contexts() {
         assert_eq!(Hardware::fpga(contexts).validate(), Ok(()));
     }
     let Some(path) = std::env::var_os("LODRAY_FPGA_PACKAGE") else { return };
-    let number = |name: &str| std::env::var(name).ok().map(|text| text.parse::<u32>().unwrap_or_else(|_| panic!("{name}: {text:?} is no number")));
+    let number =
+        |name: &str| std::env::var(name).ok().map(|text| text.parse::<u32>().unwrap_or_else(|_| panic!("{name}: {text:?} is no number")));
     let standard = Hardware::fpga(number("LODRAY_CONTEXTS").unwrap_or(2) as usize);
     let hardware = Hardware { link_registers: number("LODRAY_LINK_REGISTERS").unwrap_or(standard.link_registers), ..standard };
     hardware.validate().unwrap_or_else(|error| panic!("{error}"));
