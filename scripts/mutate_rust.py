@@ -25,6 +25,8 @@ from mutate import ROOT, by_turns, known_reasons, reason
 
 TARGET = pathlib.Path(os.environ.get("CARGO_TARGET_DIR", ROOT / "target")).absolute()
 TREE = ROOT / "target" / "mutants" / "tree"
+# Its own: cargo takes what is built from the copy for what is built from the tree itself, changed or not.
+BUILD = ROOT / "target" / "mutants" / "build"
 MEMORY = 8 << 30  # bytes of a test's address space: a loop that does not end may fill them
 
 # What only accounts for area and energy.
@@ -134,7 +136,7 @@ def blamed(message):
 def build(test):
     """Path of a test binary, and the numbers of the mutants that do not compile."""
     command = ["cargo", "test", "--no-run", "--message-format=json", "--quiet"] + (["--lib"] if test == LIB else ["--test", test])
-    run = subprocess.run(command, cwd=TREE, env=dict(os.environ, CARGO_TARGET_DIR=str(TARGET), CARGO_INCREMENTAL="0"), stdout=subprocess.PIPE, text=True)
+    run = subprocess.run(command, cwd=TREE, env=dict(os.environ, CARGO_TARGET_DIR=str(BUILD), CARGO_INCREMENTAL="0"), stdout=subprocess.PIPE, text=True)
     binary, invalid, unexplained = None, set(), []
     for message in map(json.loads, run.stdout.splitlines()):
         if message["reason"] == "compiler-artifact" and message["target"]["name"] == test and message["executable"]:
