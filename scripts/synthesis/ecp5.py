@@ -5,6 +5,7 @@ own, and these are folded into a second shift register, so that every path of th
 harness are synthesised apart and joined as netlists: what is counted is what is placed.
 """
 
+import collections
 import json
 import re
 
@@ -19,21 +20,27 @@ CLOCKED = ("clk_i", "rst_ni")
 PLACEMENT = ["--85k", "--package", "CABGA756", "--speed", "6", "--freq", TARGET_MHZ, "--timing-allow-fail", "--lpf-allow-unconstrained"]
 
 
-def synthesise(block, tools):
-    """Size of the block alone, and the path of its netlist."""
+def synthesise(block, tools, refinement=None):
+    """Size of the block alone, and the path of its netlist; with a refinement (refine.py) that of the refined one."""
+    options = " ".join(refinement.OPTIONS) if refinement else ""
 
     def script(folder):
-        return [*block.read(), "chformal -remove", f"synth_ecp5 -top {block.module} -json {folder}/netlist.json", f"tee -q -o {folder}/stat.json stat -json"]
+        return [*block.read(), "chformal -remove", f"synth_ecp5 -top {block.module} {options} -json {folder}/netlist.json"]
 
     def make(folder):
         (ROOT / folder / "script.ys").write_text("\n".join(script(folder)) + "\n", encoding="utf-8")
         refuse_suspect(tools.run(YOSYS, ["-s", folder / "script.ys"], folder / "log", SYNTHESIS_LIMIT_S))
-        cells = json.loads((ROOT / folder / "stat.json").read_text(encoding="utf-8"))["design"]["num_cells_by_type"]
+        path = ROOT / folder / "netlist.json"
+        if refinement:
+            refinement.refine(path, block.module)
+        module = json.loads(path.read_text(encoding="utf-8"))["modules"][block.module]
+        cells = collections.Counter(cell["type"] for cell in module["cells"].values())
         # As the FPGA has them: a carry cell takes two LUTs, one of distributed memory four and two for its address.
-        luts = cells.get("LUT4", 0) + 2 * cells.get("CCU2C", 0) + 6 * cells.get("TRELLIS_DPR16X4", 0)
-        return {"luts": luts, "flip_flops": cells.get("TRELLIS_FF", 0), "dsps": cells.get("MULT18X18D", 0), "memories": cells.get("DP16KD", 0)}
+        luts = cells["LUT4"] + 2 * cells["CCU2C"] + 6 * cells["TRELLIS_DPR16X4"]
+        return {"luts": luts, "flip_flops": cells["TRELLIS_FF"], "dsps": cells["MULT18X18D"], "memories": cells["DP16KD"]}
 
-    made, folder = kept(f"ecp5-{block.name}", {"block": block.ingredients(), "script": script("."), "tool": tools.versions[YOSYS]}, make)
+    ingredients = {"block": block.ingredients(), "script": script("."), "tool": tools.versions[YOSYS], "refinement": refinement.ingredients() if refinement else ""}
+    made, folder = kept(f"ecp5-{block.name}", ingredients, make)
     return made, folder / "netlist.json"
 
 

@@ -4,7 +4,7 @@ import concurrent.futures
 import os
 import subprocess
 
-from . import ecp5, report
+from . import ecp5, refine, report
 from .blocks import WHOLE, Block
 from .tools import OUT, ROOT, Failure
 
@@ -29,7 +29,7 @@ def unit(contexts, links):
 def run(contexts, links, seeds, jobs, route, paths, doc, tools):
     """Synthesises the unit, places and routes it with each seed, and prints what came of it; with `doc` also into docs/hardware.md. Without `route` it is only placed, and the clock what the placer expects."""
     block = unit(contexts, links)
-    size, netlist = ecp5.synthesise(block, tools)
+    size, netlist = ecp5.synthesise(block, tools, refine)
     print(f"traversal_unit of {contexts} contexts: {size['luts']:,} LUTs, {size['flip_flops']:,} flip-flops, {size['dsps']} multipliers, {size['memories']} block RAMs", flush=True)
     if not ecp5.fits(size):
         raise Failure(f"the FPGA has {ecp5.DSP_BLOCKS} multipliers")

@@ -1,0 +1,46 @@
+"""That a refined netlist does in every cycle what it did before (refine.py), for a block that has all that refinement looks for."""
+
+import json
+import shutil
+
+from . import refine
+from .blocks import Block
+from .tools import ROOT, YOSYS, Failure, kept
+
+# Multipliers with registers on both sides, and enables that many cells share.
+BLOCK = Block("multiplier", (("FACTOR_STAGES", 1),))
+# Its pipeline is five long.
+CYCLES = 8
+LIMIT_S = 1800
+MODELS = "scripts/synthesis/ecp5_models.v"
+
+
+def check(tools):
+    """Proves it with a solver for all inputs of so many cycles from registers that are all zero, and counts what was refined; fails if the two differ or nothing was refined."""
+
+    def script(folder):
+        return [
+            *(line for name in ("plain", "refined") for line in (f"read_json {folder}/{name}.json", f"rename {BLOCK.module} {name}")),
+            # Of the FPGA's cells LUTs and carries are as Yosys knows them.
+            "read_verilog -overwrite +/lattice/cells_sim_ecp5.v", f"read_verilog -overwrite {MODELS}", "setattr -mod -unset lib_whitebox =A:lib_whitebox=1",
+            "miter -equiv -make_outcmp plain refined both", "hierarchy -check -top both", "proc", "flatten", "async2sync", "setundef -undriven -zero", "opt -full",
+            f"sat -verify -tempinduct-baseonly -maxsteps {CYCLES} -set-init-zero -prove trigger 0 both",
+        ]
+
+    def make(folder):
+        synthesis = [*BLOCK.read(), "chformal -remove", f"synth_ecp5 -top {BLOCK.module} {' '.join(refine.OPTIONS)} -json {folder}/whole.json"]
+        (ROOT / folder / "synthesis.ys").write_text("\n".join(synthesis) + "\n", encoding="utf-8")
+        tools.run(YOSYS, ["-s", folder / "synthesis.ys"], folder / "synthesis.log", LIMIT_S)
+        module = json.loads((ROOT / folder / "whole.json").read_text(encoding="utf-8"))["modules"][BLOCK.module]
+        (ROOT / folder / "plain.json").write_text(json.dumps({"modules": {BLOCK.module: module}}), encoding="utf-8")
+        shutil.copyfile(ROOT / folder / "plain.json", ROOT / folder / "refined.json")
+        moved, copied = refine.refine(ROOT / folder / "refined.json", BLOCK.module)
+        if not moved or not copied:
+            raise Failure(f"{BLOCK.name} is no test of refinement: {moved} registers moved, {copied} copies")
+        (ROOT / folder / "script.ys").write_text("\n".join(script(folder)) + "\n", encoding="utf-8")
+        tools.run(YOSYS, ["-s", folder / "script.ys"], folder / "log", LIMIT_S)
+        return {"moved": moved, "copied": copied}
+
+    ingredients = {"block": BLOCK.ingredients(), "script": script("."), "models": (ROOT / MODELS).read_text(encoding="utf-8"), "refinement": refine.ingredients(), "tool": tools.versions[YOSYS]}
+    made, _ = kept("same", ingredients, make)
+    return made
