@@ -63,7 +63,7 @@ def parse():
     parser.add_argument("--check", action="store_true", help="write the netlists to target/synth/netlists and run the blocks' own tests on them")
     parser.add_argument("--plan", metavar="PLAN", help="the unit of a plan (lodray plan -o): its blocks with the package that the plan prints, and what they and its contexts have together")
     parser.add_argument("--fpga", type=int, nargs="?", const=2, metavar="CONTEXTS", help="the whole unit for an LFE5U-85F, with that many contexts (default 2): placed, routed, and as a bitstream")
-    parser.add_argument("--link-registers", type=int, default=0, metavar="N", help="with --fpga: registers between contexts and blocks, 0 to 2 (default 0)")
+    parser.add_argument("--link-registers", type=int, metavar="N", help="with --fpga: registers between contexts and blocks, 0 to 2 (default: as the hardware for an FPGA has them)")
     parser.add_argument("--no-route", action="store_true", help="with --fpga: place only, and tell the clock that the placer expects")
     parser.add_argument("--doc", action="store_true", help=f"write the table into docs/hardware.md, or the named blocks' rows of it; with {blocks.WHOLE} the parts of the whole unit, with --fpga its clock")
     options = parser.parse_args()
@@ -87,11 +87,11 @@ def parse():
         parser.error("--plan is of a whole unit: it has its own blocks, no place in docs/hardware.md, and its tests are those of cargo test")
     if options.fpga is not None and (options.block or options.check or options.plan or options.no_place or options.no_fpga):
         parser.error("--fpga is the whole unit: of all else it takes --seeds, --jobs, --link-registers, --no-route, --paths and --doc alone")
-    if options.fpga is None and (options.link_registers or options.no_route):
+    if options.fpga is None and (options.link_registers is not None or options.no_route):
         parser.error("--link-registers and --no-route go with --fpga")
-    if not 0 <= options.link_registers <= 2:
+    if options.link_registers is not None and not 0 <= options.link_registers <= 2:
         parser.error(f"--link-registers must be 0 to 2, but is {options.link_registers}")
-    if options.doc and (options.link_registers or options.no_route):
+    if options.doc and (options.link_registers is not None or options.no_route):
         parser.error("--doc writes the clock of the unit as it is by default, routed: without --link-registers and --no-route")
     if options.check and options.no_gates:
         parser.error("--check needs the gates")

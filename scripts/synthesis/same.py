@@ -7,7 +7,7 @@ from . import refine
 from .blocks import Block
 from .tools import ROOT, YOSYS, Failure, kept
 
-# Multipliers with registers on both sides, and enables that many cells share.
+# Multipliers with registers on both sides.
 BLOCK = Block("multiplier", (("FACTOR_STAGES", 1),))
 # Its pipeline is five long.
 CYCLES = 8
@@ -16,7 +16,7 @@ MODELS = "scripts/synthesis/ecp5_models.v"
 
 
 def check(tools):
-    """Proves it with a solver for all inputs of so many cycles from registers that are all zero, and counts what was refined; fails if the two differ or nothing was refined."""
+    """Proves it with a solver for all inputs of so many cycles from registers that are all zero, and counts the registers that moved; fails if the two differ or none did."""
 
     def script(folder):
         return [
@@ -34,12 +34,12 @@ def check(tools):
         module = json.loads((ROOT / folder / "whole.json").read_text(encoding="utf-8"))["modules"][BLOCK.module]
         (ROOT / folder / "plain.json").write_text(json.dumps({"modules": {BLOCK.module: module}}), encoding="utf-8")
         shutil.copyfile(ROOT / folder / "plain.json", ROOT / folder / "refined.json")
-        moved, copied = refine.refine(ROOT / folder / "refined.json", BLOCK.module)
-        if not moved or not copied:
-            raise Failure(f"{BLOCK.name} is no test of refinement: {moved} registers moved, {copied} copies")
+        moved = refine.refine(ROOT / folder / "refined.json", BLOCK.module)
+        if not moved:
+            raise Failure(f"{BLOCK.name} is no test of refinement: no register moved")
         (ROOT / folder / "script.ys").write_text("\n".join(script(folder)) + "\n", encoding="utf-8")
         tools.run(YOSYS, ["-s", folder / "script.ys"], folder / "log", LIMIT_S)
-        return {"moved": moved, "copied": copied}
+        return {"moved": moved}
 
     ingredients = {"block": BLOCK.ingredients(), "script": script("."), "models": (ROOT / MODELS).read_text(encoding="utf-8"), "refinement": refine.ingredients(), "tool": tools.versions[YOSYS]}
     made, _ = kept("same", ingredients, make)

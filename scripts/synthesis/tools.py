@@ -17,6 +17,10 @@ class Failure(Exception):
     """One line on why a step failed."""
 
 
+class Overtime(Failure):
+    """A step took longer than it may."""
+
+
 class Tools:
     """The tools of `target/tools`, or of the folder that LODRAY_TOOLS names."""
 
@@ -40,7 +44,7 @@ class Tools:
         try:
             got = subprocess.run([str(word) for word in command], cwd=ROOT, capture_output=True, text=True, errors="replace", timeout=limit)
         except subprocess.TimeoutExpired as why:
-            raise Failure(f"{name} took over {limit} s; see {log}") from why
+            raise Overtime(f"{name} took over {limit} s; see {log}") from why
         text = (ROOT / log).read_text(encoding="utf-8", errors="replace") if (ROOT / log).is_file() else ""
         if got.returncode != 0:
             errors = [line for line in (text + got.stdout + got.stderr).splitlines() if "ERROR" in line]
