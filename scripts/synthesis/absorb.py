@@ -27,6 +27,7 @@ def absorb(module):
     multipliers = {name: cell for name, cell in cells.items() if cell["type"] == MULTIPLIER}
 
     moved = {}  # (multiplier, parameter) -> its registers, by port
+    behind = set()
     for name, cell in multipliers.items():
         after = {}
         for port, bit in bits(cell, "P", PRODUCT_BITS):
@@ -34,9 +35,12 @@ def absorb(module):
                 after[port] = sinks[bit][0][0] if len(sinks[bit]) == 1 and sinks[bit][0][1] == "DI" and bit not in outside else None
         if after and all(after.values()) and control(cells, after.values()):
             moved[name, PRODUCT] = after
+            behind |= set(after.values())
+    for name, cell in multipliers.items():
         for factor, parameter in FACTORS.items():
             before = {port: register_of(cells, drivers.get(bit)) for port, bit in bits(cell, factor, FACTOR_BITS)}
-            if before and all(before.values()) and control(cells, before.values()):
+            # A register between two multipliers goes into the first.
+            if before and all(before.values()) and control(cells, before.values()) and behind.isdisjoint(before.values()):
                 moved[name, parameter] = before
 
     # A register that something else reads too would stay, and its multiplier would take its input from further away.

@@ -2,6 +2,7 @@
 
 import inspect
 import json
+import sys
 
 from . import absorb
 from .tools import write
@@ -12,13 +13,12 @@ OPTIONS = ("-nowidelut",)
 
 def ingredients():
     """All that a refined netlist depends on but for the netlist."""
-    return inspect.getsource(absorb)
+    return [inspect.getsource(module) for module in (absorb, sys.modules[__name__])]
 
 
 def refine(path, name):
-    """Refines the module of this name in a netlist's file, and leaves out the others, which are the FPGA's cells; how many registers moved into multipliers."""
+    """Refines the module of this name in a netlist's file; how many registers moved into multipliers."""
     netlist = json.loads(path.read_text(encoding="utf-8"))
-    module = netlist["modules"][name]
-    moved = absorb.absorb(module)
-    write(path, json.dumps({**netlist, "modules": {name: module}}))
+    moved = absorb.absorb(netlist["modules"][name])
+    write(path, json.dumps(netlist))
     return moved

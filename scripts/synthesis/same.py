@@ -3,9 +3,9 @@
 import json
 import shutil
 
-from . import refine
+from . import absorb, refine
 from .blocks import Block
-from .tools import ROOT, YOSYS, Failure, kept
+from .tools import ROOT, YOSYS, Failure, Tools, kept
 
 # Multipliers with registers on both sides.
 BLOCK = Block("multiplier", (("FACTOR_STAGES", 1),))
@@ -16,11 +16,13 @@ MODELS = "scripts/synthesis/ecp5_models.v"
 
 
 def check(tools):
-    """Proves it with a solver for all inputs of so many cycles from registers that are all zero, and counts the registers that moved; fails if the two differ or none did."""
+    """Proves it with a solver for all inputs of so many cycles from registers that are all zero, and counts the registers that moved; fails if the two differ, if none moved, or if the
+    solver does not notice an enable that is gone."""
 
-    def script(folder):
+    def script(folder, refined="refined"):
+        files = {"plain": "plain", "refined": refined}
         return [
-            *(line for name in ("plain", "refined") for line in (f"read_json {folder}/{name}.json", f"rename {BLOCK.module} {name}")),
+            *(line for name, file in files.items() for line in (f"read_json {folder}/{file}.json", f"rename {BLOCK.module} {name}")),
             # Of the FPGA's cells LUTs and carries are as Yosys knows them.
             "read_verilog -overwrite +/lattice/cells_sim_ecp5.v", f"read_verilog -overwrite {MODELS}", "setattr -mod -unset lib_whitebox =A:lib_whitebox=1",
             "miter -equiv -make_outcmp plain refined both", "hierarchy -check -top both", "proc", "flatten", "async2sync", "setundef -undriven -zero", "opt -full",
@@ -37,10 +39,33 @@ def check(tools):
         moved = refine.refine(ROOT / folder / "refined.json", BLOCK.module)
         if not moved:
             raise Failure(f"{BLOCK.name} is no test of refinement: no register moved")
-        (ROOT / folder / "script.ys").write_text("\n".join(script(folder)) + "\n", encoding="utf-8")
-        tools.run(YOSYS, ["-s", folder / "script.ys"], folder / "log", LIMIT_S)
-        return {"moved": moved}
+        solve(folder, "refined")
+        always_enabled(folder)
+        try:
+            solve(folder, "wrong")
+        except Failure as why:
+            if "proof did fail" in str(why):
+                return {"moved": moved}
+            raise
+        raise Failure(f"{BLOCK.name}: a product's register that is always enabled is not noticed")
+
+    def solve(folder, refined):
+        (ROOT / folder / f"{refined}.ys").write_text("\n".join(script(folder, refined)) + "\n", encoding="utf-8")
+        tools.run(YOSYS, ["-s", folder / f"{refined}.ys"], folder / f"{refined}.log", LIMIT_S)
 
     ingredients = {"block": BLOCK.ingredients(), "script": script("."), "models": (ROOT / MODELS).read_text(encoding="utf-8"), "refinement": refine.ingredients(), "tool": tools.versions[YOSYS]}
     made, _ = kept("same", ingredients, make)
     return made
+
+
+def always_enabled(folder):
+    """Writes the refined netlist with the enable of one product's register tied high."""
+    netlist = json.loads((ROOT / folder / "refined.json").read_text(encoding="utf-8"))
+    multipliers = (cell for cell in netlist["modules"][BLOCK.module]["cells"].values() if cell["type"] == absorb.MULTIPLIER)
+    multiplier = next(cell for cell in multipliers if f"{absorb.PRODUCT}_CE" in cell["parameters"])
+    multiplier["connections"][multiplier["parameters"][f"{absorb.PRODUCT}_CE"]] = ["1"]
+    (ROOT / folder / "wrong.json").write_text(json.dumps(netlist), encoding="utf-8")
+
+
+if __name__ == "__main__":
+    print(f"{check(Tools())['moved']} registers moved")
