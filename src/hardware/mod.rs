@@ -130,7 +130,7 @@ impl Hardware {
         Self { contexts: 1, ..Self::DEFAULT }
     }
 
-    /// A unit of so many contexts (1 to 64) for an LFE5U-85F (`scripts/synth --fpga`), for models of up to six levels below sixteen of a quad-BVH, on the coarsest grids that they have: one edge, one box and one
+    /// A unit of so many contexts (1 to 64) for an LFE5U-85F (`scripts/synth --fpga`), for models of up to six levels below sixteen of a quad-BVH, on grids of 8 zero bits: one edge, one box and one
     /// bit of each division a cycle, for its multipliers.
     pub const fn fpga(contexts: usize) -> Self {
         let context_bits = if contexts <= 2 { 1 } else { (contexts - 1).ilog2() + 1 };
@@ -144,8 +144,8 @@ impl Hardware {
             divide_bits: 1,
             setup_bits: 1,
             boxes_per_cycle: BoxesPerCycle::One,
-            coordinate_zeros: 10,
-            direction_zeros: 14,
+            coordinate_zeros: 8,
+            direction_zeros: 8,
             ..Self::DEFAULT
         }
     }
