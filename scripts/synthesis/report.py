@@ -79,7 +79,7 @@ def fpga(contexts, size, placed, options, versions):
     return "\n".join([
         *table(["contexts", "LUTs", "flip-flops", "multipliers", "block RAMs", "MHz, median", "of seeds 1 and on"], [[
             str(contexts), f"{size['luts']:,}", f"{size['flip_flops']:,}", str(size["dsps"]), str(size["memories"]), *([f"{median(clocks):.1f}" if median(clocks) else "not routed", " ".join(f"{clock:.1f}" if clock else "not routed" for clock in clocks)])]]),
-        "", f"`scripts/synth --fpga {contexts} --doc`, {versions[YOSYS]}, {versions[NEXTPNR]} (`{' '.join(map(str, options))}`).",
+        "", f"`scripts/synth --fpga {contexts} --seeds {len(clocks)} --doc`, {versions[YOSYS]}, {versions[NEXTPNR]} (`{' '.join(map(str, options))}`).",
     ])
 
 
