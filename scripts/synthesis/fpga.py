@@ -30,7 +30,7 @@ def unit(contexts, links):
 def run(contexts, links, seeds, jobs, route, paths, doc, tools):
     """Synthesises the unit, places and routes it with each seed, and prints what came of it; with `doc` also into docs/hardware.md. Without `route` it is only placed, and the clock what the placer expects.
 
-    A seed that the router does not come to an end with in time has no clock, and is slower than all others.
+    A seed that the router finds no way for, or does not come to an end with in time, has no clock, and is slower than all others.
     """
     proved = same.check(tools)
     print(f"refinement changes nothing: {proved['moved']} registers moved into the multipliers of {same.BLOCK.name}, the same in {same.CYCLES} cycles of any inputs", flush=True)
@@ -40,19 +40,24 @@ def run(contexts, links, seeds, jobs, route, paths, doc, tools):
     if not ecp5.fits(size):
         raise Failure(f"the FPGA has {ecp5.DSP_BLOCKS} multipliers")
     options = PLACEMENT if route else [*PLACEMENT, "--no-route"]
-    placed = []
+    placed, failures = [], []
     with concurrent.futures.ThreadPoolExecutor(jobs) as pool:
         steps = [pool.submit(ecp5.place, block, netlist, seed, tools, options, LIMIT_S, configuration=route) for seed in range(1, seeds + 1)]
         for seed, step in enumerate(steps, start=1):
             try:
                 made, folder = step.result()
-            except Overtime as why:
-                placed.append({"mhz": 0.0, "path": []})
-                print(f"seed {seed}: not routed ({why})", flush=True)
+            except Failure as why:
+                if isinstance(why, Overtime) or "Failed to route" in str(why):
+                    placed.append({"mhz": 0.0, "path": []})
+                    print(f"seed {seed}: not routed ({why})", flush=True)
+                else:
+                    failures.append(f"seed {seed}: {why}")
                 continue
             placed.append(made)
             print(f"seed {seed}: {made['mhz']} MHz, {f'bitstream {pack(folder, tools)}' if route else 'not routed'}", flush=True)
-    print(f"median {report.median([made['mhz'] for made in placed])} MHz")
+    if failures:
+        raise Failure("; ".join(failures))
+    print(f"median in MHz: {report.clock(report.median([made['mhz'] for made in placed]))}")
     if paths:
         for kind, delay, cell in min((made for made in placed if made["path"]), key=lambda made: made["mhz"], default={"path": []})["path"]:
             print(f"  {kind:8} {delay:6.2f} ns  {cell}")

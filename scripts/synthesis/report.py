@@ -73,12 +73,17 @@ def larger(parts, contexts, others):
     return sum(parts[name]["ge"] for name in OF_UNIT) + MANY * each + queue["ge"] + deeper + others
 
 
+def clock(mhz):
+    """A clock as a reader sees it; 0 is that of a seed that was not routed."""
+    return f"{mhz:.1f}" if mhz else "not routed"
+
+
 def fpga(contexts, size, placed, options, versions):
     """The unit on the FPGA: what it takes, and its clock with each seed."""
     clocks = [made["mhz"] for made in placed]
     return "\n".join([
         *table(["contexts", "LUTs", "flip-flops", "multipliers", "block RAMs", "MHz, median", "of seeds 1 and on"], [[
-            str(contexts), f"{size['luts']:,}", f"{size['flip_flops']:,}", str(size["dsps"]), str(size["memories"]), *([f"{median(clocks):.1f}" if median(clocks) else "not routed", " ".join(f"{clock:.1f}" if clock else "not routed" for clock in clocks)])]]),
+            str(contexts), f"{size['luts']:,}", f"{size['flip_flops']:,}", str(size["dsps"]), str(size["memories"]), clock(median(clocks)), ", ".join(map(clock, clocks))]]),
         "", f"`scripts/synth --fpga {contexts} --seeds {len(clocks)} --doc`, {versions[YOSYS]}, {versions[NEXTPNR]} (`{' '.join(map(str, options))}`).",
     ])
 
