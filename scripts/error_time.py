@@ -26,6 +26,8 @@ class Run:
         self.data = json.loads(path.read_text())
         self.views = self.data["views"]
         self.others = [m["name"] for m in self.data["methods"] if m["name"] != OURS]
+        self.rules = [m["name"] for m in self.data["methods"] if m["in_steps"]]
+        self.size = "x".join(map(str, self.views[0]["size"]))
 
     def scene(self, view):
         return self.data["scenes"][self.views[view]["scene"]]["name"]
@@ -51,8 +53,8 @@ def shown(value):
     return f"{value:.2f}" if value < 9.95 else f"{value:.0f}"
 
 
-def ratios(entry):
-    return {m["method"]: m for m in entry["methods"]}
+def ratios(entry, of="methods"):
+    return {m["method"]: m for m in entry[of]}
 
 
 def at_level(run, error, level, compute):
@@ -69,10 +71,13 @@ def at_level(run, error, level, compute):
             mark = "*" if entry.get("why") == "always below" else ""
             for method in run.others:
                 cells.append(shown(ratios(entry)[method]["ratio"]) + mark)
+            for method in run.rules:
+                rule = ratios(entry, "own_rule").get(method, {"ratio": None, "why": None})
+                cells.append(shown(rule["ratio"]) + ("+" if rule["why"] else ""))
         else:
             rows.append(cells)
     names = {"time": "time", "energy": "energy", "dram-lines": "DRAM"}
-    return table(["scene", "radii"] + [f"{names[c]}, {m}" for c in costs for m in run.others], rows)
+    return table(["scene", "radii"] + [f"{names[c]}, {m}" for c in costs for m in run.others + [f"{r} by its rule" for r in run.rules]], rows)
 
 
 def summary(run, error, levels, compute, cost):
@@ -176,7 +181,6 @@ def lodray(*words):
 def why(run, folder):
     """Ours at delta 1 beside the discrete level that is as far off: what their rays do, and their times on the machine and on one with twice the banks in its L1s."""
     rows = []
-    size = "x".join(map(str, run.data["options"]["size"]))
     for scene, roughness in [("terrain 0.45", "0.45"), ("terrain 0.6", "0.6")]:
         file = folder / f"{plain(scene)}.lod"
         if not file.is_file():
@@ -184,7 +188,7 @@ def why(run, folder):
         views = [view for view in range(len(run.views)) if run.scene(view) == scene]
         for view in (views[2], views[-2]):
             eye = ",".join(map(str, run.views[view]["eye"]))
-            camera = [str(file), "--eye", eye, "--target", "0,0,0", "--size", size]
+            camera = [str(file), "--eye", eye, "--target", "0,0,0", "--size", run.size]
             level = near(run, view, "discrete", 1)["choices"]["level"]
             for words, setting in [(["--method", OURS, "--delta", "1"], "ours, delta 1"), (["--method", "discrete", "--level", level], f"discrete, level {level}")]:
                 shot = lodray("render", *camera, *words, "--shading", "full", "--json", "-o", str(folder / "why"), "--force")["stats"]
@@ -249,9 +253,9 @@ def main():
         "few": few(samples),
         "brightness": by_samples(samples, brightness),
         "converged": converged(samples),
-        "size_knobs": "x".join(map(str, knobs.data["options"]["size"])),
-        "size_units": "x".join(map(str, units.data["options"]["size"])),
-        "size_samples": "x".join(map(str, samples.data["options"]["size"])),
+        "size_knobs": knobs.size,
+        "size_units": units.size,
+        "size_samples": samples.size,
         "program": knobs.data["program"],
     }
     text = TEMPLATE.read_text()

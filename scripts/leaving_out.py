@@ -173,7 +173,7 @@ def main():
 def errors(scenes, out):
     """The table of error-time."""
     within, distances = ",".join(map(str, WITHIN)), ",".join(map(str, DISTANCES))
-    views = ["--distances", distances, "--size", SIZE, "--samples", "1", "--methods", "lod", "--values", "delta=1", "--compute", "units"]
+    views = ["--distances", distances, "--size", SIZE, "--error-size", SIZE.split("x")[0], "--samples", "1", "--methods", "lod", "--values", "delta=1", "--compute", "units"]
     call("--quiet", "error-time", *[scene.file for scene in scenes], "-o", out, *views, "--most-samples", "0", "--no-host", "--within", within)
     document = json.loads((out / "error-time.json").read_text(encoding="utf-8"))
     heads = ["scene", "radii", "left out", "zeros of coordinates, directions", "error in pixels: mean", "99th percentile", "largest", "GE of a unit", "bytes a finest triangle", "time", "energy"]

@@ -73,6 +73,60 @@ fn errors_fall_along_the_knob_and_what_is_full_resolution_has_none() {
 }
 
 #[test]
+fn costs_are_of_the_whole_frame_and_errors_of_some_of_its_columns_and_rows() {
+    let desk = desk();
+    let of = |folder: &str, more: &str| -> Value {
+        desk.run(&format!("error-time a.lod -o {folder} --size 150x130 --distances 2 --samples 1 --values delta=1,4 --methods lod,bvh,discrete --compute free --most-samples 0 --no-host {more}"));
+        serde_json::from_str(&desk.text(&format!("{folder}/error-time.json"))).unwrap()
+    };
+    let (all, few) = (of("all", ""), of("few", "--error-size 40"));
+    for (document, every, pictures) in [(&all, 1, (150, 130)), (&few, 4, (37, 32))] {
+        let view = &document["views"][0];
+        assert_eq!((&view["size"], &view["every"]), (&serde_json::json!([150, 130]), &serde_json::json!(every)));
+        let file = desk.path(if every == 1 { "all" } else { "few" }).join(document["pictures"][0]["file"].as_str().unwrap());
+        assert_eq!(image::image_dimensions(file).unwrap(), pictures);
+    }
+    for (a, b) in points(&all, "lod").zip(points(&few, "lod")).chain(points(&all, "discrete").zip(points(&few, "discrete"))) {
+        assert_eq!((&a["setting"], &a["costs"]), (&b["setting"], &b["costs"]));
+        // A sixteenth of the rays, with the same cones: not far from the error of all of them.
+        let [a, b] = [a, b].map(|point| number(point, "/geometry/surface/mean"));
+        assert!((a - b).abs() <= 0.2 * a + 1e-9, "{a} {b}");
+    }
+    // Other sizes: those below the named one, and itself, which costs what its points say.
+    let sizes: Vec<&Value> = few["sizes"].as_array().unwrap().iter().collect();
+    let of_lod: Vec<_> = sizes.iter().filter(|size| size["method"] == "lod").map(|size| size["size"].clone()).collect();
+    assert_eq!((sizes.len(), of_lod), (6, vec![serde_json::json!([128, 128]), serde_json::json!([150, 130])]));
+    for size in sizes.iter().filter(|size| size["size"] == few["views"][0]["size"]) {
+        let same = few["points"].as_array().unwrap().iter().find(|p| p["method"] == size["method"] && p["is_default"] == true).unwrap();
+        assert_eq!((&same["setting"], number(same, "/costs/0/cycles")), (&size["setting"], number(size, "/costs/0/cycles")));
+    }
+    let alone = desk.json("simulate a.lod --size 128x128 --distance 2 --method discrete");
+    let discrete = sizes.iter().find(|size| size["method"] == "discrete" && size["size"][0] == 128).unwrap();
+    assert_eq!(discrete["costs"][0]["cycles"], alone["cycles"]);
+    for cost in ["time", "energy", "dram-lines"] {
+        let chart = desk.text(&format!("few/a-size-{cost}.svg"));
+        assert!(chart.contains("128x128, 150x130") && chart.contains("over ours"), "{cost}");
+    }
+    // The size is in the headlines.
+    for chart in ["a-surface-p99-time", "a-distance-time", "winners"] {
+        assert!(desk.text(&format!("few/{chart}.svg")).contains("150x130"), "{chart}");
+    }
+}
+
+#[test]
+fn the_terminal_ends_with_the_verdict_of_the_files() {
+    let desk = desk();
+    let said = desk.run(&format!("error-time a.lod -o d {QUICK} --compute free"));
+    let verdict = desk.text("d/verdict.txt");
+    assert!(said.trim_end().ends_with(verdict.trim_end()) && verdict.starts_with("48x48: the cheapest"), "{said}");
+    assert!(verdict.lines().all(|line| line.chars().count() <= 80), "{verdict}");
+    // Two views, although each was drawn with one sample a pixel and with four.
+    for cost in ["time", "energy", "DRAM lines"] {
+        assert!(verdict.contains(&format!("  {cost}, 2 views: ")), "{verdict}");
+    }
+}
+
+#[test]
 fn costs_at_equal_error_lie_between_the_settings_around_it() {
     let desk = desk();
     desk.run(&format!("error-time a.lod -o d {QUICK} --compute free"));
@@ -95,6 +149,27 @@ fn costs_at_equal_error_lie_between_the_settings_around_it() {
         assert!((number(bvh, "/ratio") - number(bvh, "/cost") / ours).abs() < 1e-12);
     }
     assert!(inside > 0, "nothing was interpolated");
+    // Of levels only those that exist: the cheapest that is near enough, and the one that the method chooses by itself.
+    let mut exist = 0;
+    for equal in document["equal_error"].as_array().unwrap().iter().filter(|e| e["error"] == "surface-p99" && e["cost"] == "energy") {
+        let levels = || points(&document, "discrete").filter(|p| p["view"] == equal["view"] && p["samples"] == equal["samples"]);
+        let near = |p: &&Value| number(p, "/geometry/surface/percentile_99") <= number(equal, "/level");
+        let least = levels().filter(near).map(|p| number(p, "/costs/0/energy/total")).reduce(f64::min);
+        let of = |list: &str| equal[list].as_array().unwrap().iter().find(|m| m["method"] == "discrete").unwrap().clone();
+        assert_eq!(of("methods")["cost"].as_f64(), least, "{equal}");
+        if let Some(setting) = of("methods")["setting"].as_str() {
+            exist += 1;
+            let level = levels().find(|p| p["setting"] == setting).unwrap();
+            assert_eq!((Some(number(level, "/costs/0/energy/total")), near(&level)), (least, true));
+        }
+        let own = levels().find(|p| p["is_default"] == true).unwrap();
+        assert_eq!(
+            (&of("own_rule")["setting"], of("own_rule")["cost"].as_f64()),
+            (&own["setting"], own.pointer("/costs/0/energy/total").unwrap().as_f64())
+        );
+        assert_eq!(of("own_rule")["why"].is_null(), near(&own), "{equal}");
+    }
+    assert!(exist > 4, "{exist}");
 }
 
 #[test]
@@ -190,6 +265,7 @@ fn what_is_wrong_is_refused_before_anything_is_traced() {
         ("a.lod --pixels-per-degree 0", &["1 to 1000"]),
         ("a.lod --size 8192x8192 --samples 4", &["--samples 4", "too many"]),
         ("a.lod --distances 0", &["distances"]),
+        ("a.lod --error-size 0", &["--error-size", "0 is not in 1.."]),
         ("a.lod --within 0", &["--within", "no number of pixels above 0"]),
         ("a.lod --within -1", &["--within", "'-1' is no number of pixels above 0"]),
         ("a.lod --within 0.1 --methods bvh", &["--within", "lod is none of the methods"]),

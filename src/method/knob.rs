@@ -48,6 +48,8 @@ pub struct ErrorKnob {
     pub knob: &'static Knob,
     /// Values that show the whole of it, from coarse to fine.
     pub values: fn() -> Vec<f64>,
+    /// There is nothing between these values.
+    pub in_steps: bool,
 }
 
 /// The sweep of a quality that a method follows gradually: octaves from 1/16 to 64.

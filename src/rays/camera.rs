@@ -79,12 +79,16 @@ pub struct Camera {
     pub(super) above: DVec3,
     /// Where the picture's rays begin, in samples to the right and down.
     pub(super) shift: [f64; 2],
+    /// The middle of the whole frame, in samples to the right and down.
+    pub(super) middle: [f64; 2],
     /// Columns of samples: of pixels, where a pixel has one.
     pub width: u32,
     /// Rows of samples.
     pub height: u32,
     /// Samples along a side of a pixel.
     pub samples: u32,
+    /// Of the frame's columns and rows of pixels it sees one in so many; 1 for all.
+    pub stride: u32,
     /// Tangent of the half angle of every pixel's cone: half a pixel at the picture's centre.
     pub tan_theta: f64,
 }
@@ -143,9 +147,11 @@ impl Camera {
             right: side * pixel,
             above: above * pixel,
             shift: [0.0; 2],
+            middle: [width, height].map(|n| 0.5 * f64::from(n)),
             width,
             height,
             samples: 1,
+            stride: 1,
             tan_theta: 0.5 * pixel,
         })
     }
@@ -173,11 +179,22 @@ impl Camera {
             right: self.right / scale,
             above: self.above / scale,
             shift: self.shift.map(|s| s * scale),
+            middle: self.middle.map(|s| s * scale),
             width: width as u32, // at most MAX_SIDE
             height: height as u32,
             samples: side,
             ..self
         })
+    }
+
+    /// Of the same frame the middle one in every `stride` columns and rows of pixels, each with its own samples and cone: a small picture of what the
+    /// large one has, pixel by pixel. A frame has one column and row at least.
+    #[must_use]
+    pub fn every(self, stride: u32) -> Self {
+        let [width, height] = self.pixels();
+        let stride = stride.clamp(1, width.min(height));
+        let [width, height] = [width, height].map(|n| n / stride * self.samples);
+        Self { width, height, stride: self.stride * stride, ..self }
     }
 
     /// The same with all rays moved by so many pixels to the right and down.
@@ -194,21 +211,23 @@ impl Camera {
 
     /// The ray through the centre of pixel (`x`, `y`), row 0 at the top.
     pub fn ray(&self, x: u32, y: u32) -> Query {
+        // The frame has at most 2^16 columns and rows of samples.
+        let [x, y] = [x, y].map(|n| (n / self.samples * self.stride + self.stride / 2) * self.samples + n % self.samples);
         self.ray_at(f64::from(x) + 0.5, f64::from(y) + 0.5)
     }
 
-    /// The ray through picture position (`x`, `y`) in pixels.
+    /// The ray through position (`x`, `y`) of the whole frame, in pixels.
     pub fn ray_at(&self, x: f64, y: f64) -> Query {
-        let [x, y] = [x + self.shift[0] - 0.5 * f64::from(self.width), y + self.shift[1] - 0.5 * f64::from(self.height)];
+        let [x, y] = [x + self.shift[0] - self.middle[0], y + self.shift[1] - self.middle[1]];
         let direction = self.forward + self.right * x - self.above * y;
         Query::new(self.eye.to_array(), direction.normalize().to_array()).with_cone(0.0, self.tan_theta)
     }
 
-    /// Where a direction forwards from the eye is in the picture, in pixels; the inverse of [`Self::ray_at`].
+    /// Where a direction forwards from the eye is in the whole frame, in pixels; the inverse of [`Self::ray_at`].
     fn project(&self, v: DVec3) -> [f64; 2] {
         let v = v / v.dot(self.forward);
         let along = |axis: DVec3| v.dot(axis) / axis.length_squared();
-        let [x, y] = [0.5 * f64::from(self.width) + along(self.right), 0.5 * f64::from(self.height) - along(self.above)];
+        let [x, y] = [self.middle[0] + along(self.right), self.middle[1] - along(self.above)];
         [x - self.shift[0], y - self.shift[1]]
     }
 
@@ -227,9 +246,10 @@ impl Camera {
         std::array::from_fn(|k| {
             let least = points.iter().map(|p| p[k]).fold(f64::INFINITY, f64::min);
             let most = points.iter().map(|p| p[k]).fold(f64::NEG_INFINITY, f64::max);
-            // A pixel more, for rounding.
-            let pixel = |v: f64| v.clamp(0.0, f64::from(sizes[k])) as u32; // at most MAX_SIDE
-            pixel(least.floor() - 1.0)..pixel(most.ceil() + 1.0)
+            // A pixel more, for rounding. Where the frame's pixels are left out, of one that is not all samples count.
+            let [own, step] = if self.stride == 1 { [1, 1] } else { [self.samples, self.samples * self.stride] }.map(f64::from);
+            let pixel = |v: f64| (v * own).clamp(0.0, f64::from(sizes[k])) as u32; // at most MAX_SIDE
+            pixel(((least.floor() - 1.0) / step).floor())..pixel(((most.ceil() + 1.0) / step).ceil())
         })
     }
 }
@@ -311,6 +331,28 @@ mod tests {
         }
         assert_eq!(one.with_samples(1), Ok(one));
         assert!(one.with_samples(0).is_err() && one.with_samples(1 << 12).is_err() && one.with_samples(1 << 31).is_err());
+    }
+
+    #[test]
+    fn every_so_many_columns_and_rows_have_the_rays_of_the_frame() {
+        let frame = Camera::new(&View { distance: Some(4.0), ..View::default() }, &space(), 32, 21).unwrap();
+        for (stride, pixels) in [(1, [32, 21]), (2, [16, 10]), (5, [6, 4]), (99, [1, 1])] {
+            let few = frame.every(stride);
+            assert_eq!((few.pixels(), few.tan_theta), (pixels, frame.tan_theta));
+            let stride = stride.min(21);
+            for (x, y) in [(0, 0), (pixels[0] / 2, pixels[1] / 3), (pixels[0] - 1, pixels[1] - 1)] {
+                assert_eq!(few.ray(x, y), frame.ray(x * stride + stride / 2, y * stride + stride / 2));
+                let [few, frame] = [few, frame].map(|camera| camera.with_samples(3).unwrap().shifted([0.5, 0.25]));
+                assert_eq!(few.ray(3 * x + 2, 3 * y), frame.ray(3 * (x * stride + stride / 2) + 2, 3 * (y * stride + stride / 2)));
+            }
+            // What misses outside of the frame's window misses outside of this one's.
+            let few = few.with_samples(2).unwrap();
+            let [columns, rows] = few.window(&space());
+            for (x, y) in (0..few.width).flat_map(|x| (0..few.height).map(move |y| (x, y))) {
+                assert!(columns.contains(&x) && rows.contains(&y) || space().enter(&few.ray(x, y), 1.0).is_none(), "{stride}: {x}, {y}");
+            }
+        }
+        assert_eq!((frame.every(1), frame.every(2).every(2).stride), (frame, 4));
     }
 
     #[test]

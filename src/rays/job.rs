@@ -6,7 +6,7 @@ use crate::format::JobView;
 use glam::DVec3;
 
 impl Camera {
-    /// Its rays at quality `delta`.
+    /// Its rays at quality `delta`, of a camera that sees its whole frame.
     pub fn job_view(&self, delta: f64) -> JobView {
         JobView {
             size: [self.width, self.height],
@@ -42,9 +42,11 @@ impl Camera {
             right,
             above,
             shift: view.shift,
+            middle: view.size.map(|n| 0.5 * f64::from(n)),
             width,
             height,
             samples: 1,
+            stride: 1,
             tan_theta: view.cone,
         })
     }

@@ -8,7 +8,7 @@ use std::path::Path;
 /// `error-time` of the scene in `a.lod`, into the desk's own folder.
 pub fn of(desk: &Desk) -> ErrorTime {
     desk.run(
-        "error-time a.lod -o . --size 96x96 --distances 0.7,2,6 --samples 1,4 --values delta=0.25,1,4 --most-samples 64 --no-host --within 0.0001,1 --quiet",
+        "error-time a.lod -o . --size 160x120 --error-size 80 --distances 0.7,2,6 --samples 1,4 --values delta=0.25,1,4 --most-samples 64 --no-host --within 0.0001,1 --quiet",
     );
     serde_json::from_str(&desk.text("error-time.json")).unwrap()
 }
@@ -37,7 +37,7 @@ pub fn enlarged(one: &ErrorTime, folder: &Path, scenes: usize, distances: usize,
         all.scenes.push(SceneEntry { name: format!("scene {scene}"), ..one.scenes[0].clone() });
         for k in 0..distances {
             let view = all.views.len();
-            all.views.push(ViewEntry { scene, distance: 0.5 * 2f64.powi(k as i32), size: [side, side], ..one.views[0].clone() });
+            all.views.push(ViewEntry { scene, distance: 0.5 * 2f64.powi(k as i32), size: [side, side], every: 1, ..one.views[0].clone() });
             all.points.extend(one.points.iter().filter(|p| p.view == 0).map(|p| Point { view, ..p.clone() }));
             all.traces.extend(one.traces.iter().filter(|t| t.view == 0).map(|t| TraceGrid { view, size: [side, side], ..t.clone() }));
             all.equal_error.extend(one.equal_error.iter().filter(|e| e.view == 0).map(|e| EqualError { view, ..e.clone() }));

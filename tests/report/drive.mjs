@@ -112,6 +112,40 @@ if (doc) {
   const parts = await page.evaluate(() => [...document.querySelectorAll("#parts [data-point]")].length);
   check(parts % 5 === 0 && parts > 0, `${parts} parts of energies`);
 
+  // The verdict: every view once, with the cheapest method that is near enough, from the document's own figures.
+  const fewestOf = Math.min(...doc.equal_error.map((e) => e.samples));
+  const near = doc.equal_error.filter((e) => e.error === "surface-p99" && e.level === 0.5 && e.samples === fewestOf && ["time", "energy", "dram-lines"].includes(e.cost));
+  const winnerOf = (e) => {
+    const rival = e.methods.filter((m) => m.cost != null).sort((a, b) => a.cost - b.cost)[0];
+    const over = rival && e.ours != null ? rival.cost / e.ours : null;
+    const best = over == null ? (e.ours != null ? "lod" : rival?.method ?? null) : Math.abs(over - 1) < 0.005 ? null : over < 1 ? rival.method : "lod";
+    return `${e.view} ${e.cost} ${best} ${over == null ? null : over.toPrecision(9)}`;
+  };
+  const map = await page.locator("#verdict td[data-view]").evaluateAll((all) => all.map((e) => `${e.dataset.view} ${e.dataset.cost} ${e.dataset.best ?? null} ${e.dataset.value == null ? null : Number(e.dataset.value).toPrecision(9)}`));
+  check(near.length > 0 && map.length === near.length && JSON.stringify([...map].sort()) === JSON.stringify(near.map(winnerOf).sort()), `the map of winners is ${map}, the document has ${near.map(winnerOf)}`);
+  check((await page.evaluate(() => document.querySelector("main").firstElementChild.id)) === "verdict", "the verdict does not head the page");
+  counts.winners = map.length;
+  // Cards: every rival with its range.
+  for (const cost of ["time", "energy", "dram-lines"]) {
+    for (const method of doc.methods.map((m) => m.name).filter((name) => name !== "lod")) {
+      const of = near.filter((e) => e.cost === cost && e.compute === "free" && doc.views[e.view].scene === 0).flatMap((e) => e.methods.filter((m) => m.method === method && m.ratio != null).map((m) => m.ratio));
+      const line = of.length ? await page.locator(`.glance [data-cost="${cost}"] [data-method="${method}"]`).textContent() : "";
+      check(!of.length || line.endsWith(`above 1 in ${of.filter((r) => r > 1).length} of ${of.length} view${of.length === 1 ? "" : "s"}`), `the card of ${cost} says '${line}' of ${method}, the document ${of}`);
+    }
+  }
+  // Sizes in the headlines; both sizes are told.
+  const frameSize = doc.views[0].size.join(" × ");
+  const headlines = await page.evaluate(() => [...document.querySelectorAll("main h2")].filter((e) => !["stability", "claims", "run"].includes(e.parentElement.id)).map((e) => e.textContent));
+  check(headlines.length > 4 && headlines.every((words) => words.endsWith(`, ${frameSize}`)), `a headline lacks the size: ${headlines}`);
+  check((await page.title()).includes(doc.views[0].size.join("x")), "the title lacks the size");
+  const both = await page.locator("#sizes").textContent();
+  check([frameSize, doc.views[0].size.map((n) => Math.floor(n / doc.views[0].every)).join(" × ")].every((words) => both.includes(words)), `the sizes are not told: ${both}`);
+  // By size of the frame.
+  const costBySize = [(c) => c.milliseconds, (c) => c.energy.total, (c) => c.dram_lines];
+  const free = (s) => s.costs.find((c) => c.machine === 0 && c.compute === "free");
+  const bySize = doc.sizes.filter((s) => s.method !== "lod").flatMap((s) => costBySize.map((of) => [s.size[0], of(free(s)) / of(free(doc.sizes.find((o) => o.method === "lod" && String(o.size) === String(s.size))))]));
+  check(bySize.length > 0 && same(sorted(bySize), sorted(await dots("size"))), "the diagram over size is not the document's");
+
   // At equal error.
   const ratios = await page.locator("#equal td[data-value]").evaluateAll((all) => all.map((e) => Number(e.dataset.value)));
   const level = 0.5;
@@ -120,7 +154,18 @@ if (doc) {
   const shownNow = await page.locator("#equal td[data-value]").evaluateAll((all) => all.map((e) => Number(e.dataset.value)));
   check(ratios.length > 0 && shownNow.length > 0, "no equal errors");
   const equal = doc.equal_error.filter((e) => doc.views[e.view].scene === 0 && e.samples === fewest && e.level === level && ["error", "cost", "compute"].every((key) => e[key] === doc.equal_error[0][key]));
-  check(equal.length > 0 && equal.every((e) => [e.ours, ...e.methods.flatMap((m) => [m.cost, m.ratio])].every((value) => value == null || shownNow.includes(value))), "equal errors are not the document's");
+  check(equal.length > 0 && equal.every((e) => [e.ours, ...[...e.methods, ...e.own_rule].flatMap((m) => [m.cost, m.ratio])].every((value) => value == null || shownNow.includes(value))), "equal errors are not the document's");
+  const rivals = [...doc.methods.filter((m) => m.name !== "lod").map((m) => m.name), ...doc.methods.filter((m) => m.in_steps).map((m) => `${m.name}, own rule`)];
+  const fits = (where) => page.evaluate((where) => [...document.querySelectorAll("#equal .scroll, #verdict .scroll")].every((e) => e.scrollWidth <= e.clientWidth) || where, where);
+  const heads = await page.locator("#equal thead th").allTextContents();
+  check(rivals.every((name) => heads.includes(name)), `at equal error ${heads}, and there are ${rivals}`);
+  check((await fits("")) === true, "the tables at equal error and of winners do not fit at 1400 pixels");
+  await page.emulateMedia({ media: "print" });
+  await page.setViewportSize({ width: 718, height: 1000 }); // A4 with margins
+  check((await fits("")) === true, "nor in print");
+  await page.emulateMedia({ media: "screen" });
+  await page.setViewportSize({ width: 1400, height: 900 });
+  await rendered();
   const missing = equal.filter((e) => e.ours == null).length;
   check((await page.locator("#equal .why").count()) >= missing, "no reason where there is no cost");
 

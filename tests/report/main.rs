@@ -2,10 +2,11 @@
 
 mod browser;
 mod document;
+mod verdict;
 
 use lodray::report::diagram::{csv, diagrams, latex};
 use lodray::report::error_time::{COSTS, ERRORS, ErrorTime, USUAL_COSTS, USUAL_ERRORS};
-use lodray::report::page::{Documents, PICTURE_BYTES, embed, page};
+use lodray::report::page::{Documents, PICTURE_BYTES, embed, page, template};
 use lodray_test_support::program::{Desk, FAILS, USAGE};
 use std::collections::HashSet;
 
@@ -140,6 +141,29 @@ fn diagrams_and_tables_are_files_that_others_read() {
     assert_eq!(table.lines().next().unwrap().split(',').count(), 8 + ERRORS.len() + COSTS.len());
     let tex = latex(&document);
     assert!(tex.contains("\\toprule") && tex.matches("\\begin{tabular}").count() == tex.matches("\\end{tabular}").count());
+}
+
+#[test]
+fn the_verdict_names_the_winner_ours_or_not() {
+    verdict::names_the_winner_ours_or_not(&desk().1);
+}
+
+/// What docs/report.md says where its screenshots are older than the page; `scripts/gallery` takes it away.
+const OLDER: &str = "The screenshots are of an older page.";
+
+#[test]
+fn screenshots_are_of_this_page_or_the_document_says_that_they_are_older() {
+    let docs = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("docs");
+    let read = |name: &str| std::fs::read_to_string(docs.join(name)).unwrap();
+    let made: serde_json::Value = serde_json::from_str(&read("images/report.json")).unwrap();
+    let claims = format!("{:016x}", xxhash_rust::xxh3::xxh3_64(read("claims.md").as_bytes()));
+    let is_new = made["template"] == template() && made["documents"]["claims.md"] == claims.as_str();
+    let says_older = read("report.md").lines().any(|line| line == OLDER);
+    assert!(is_new || says_older, "run scripts/gallery, or let docs/report.md say: {OLDER}");
+    assert!(!(is_new && says_older), "docs/report.md says that its screenshots are older than they are");
+    for picture in read("report.md").split("images/").skip(1).filter_map(|rest| rest.split_once(')')) {
+        assert!(docs.join("images").join(picture.0).exists(), "{}", picture.0);
+    }
 }
 
 #[test]

@@ -1,11 +1,10 @@
 //! What a view costs in error, area and bytes where a scene and a unit have no more than it needs.
 
-use super::measure::{Bench, Stage};
+use super::measure::{Bench, Cameras, Stage};
 use crate::cli::method::Chosen;
 use crate::cli::output::busy;
 use crate::cli::pass::Target;
 use crate::cli::plan::in_machine;
-use anyhow::Context;
 use image::RgbImage;
 use lodray::bvh::over_trees;
 use lodray::format::{Job, Scene};
@@ -39,7 +38,8 @@ impl Less {
 impl Bench<'_> {
     /// The view with lod as it is by default: all of the scene on the machines' own units; what the view needs on units for that; and the same on the coarsest grids within
     /// each of so many pixels. Nothing if none are asked for.
-    pub fn left_out(&self, camera: &Camera, full: &RgbImage, truth: &Frame) -> anyhow::Result<Vec<LeftOut>> {
+    pub fn left_out(&self, cameras: &Cameras, full: &RgbImage, truth: &Frame) -> anyhow::Result<Vec<LeftOut>> {
+        let camera = &cameras.frame;
         let within = &self.plan.within;
         // It is one of the methods where this is asked for.
         let lod = self.plan.jobs.methods.iter().find(|chosen| *chosen.method == lod::METHOD);
@@ -49,8 +49,8 @@ impl Bench<'_> {
         let seen = |what: String, grids: Option<Within>, [scene, all]: [&Scene; 2], targets: &[Target]| -> anyhow::Result<LeftOut> {
             let (space, method) = (ModelSpace::of(scene), chosen.make(scene, self.cache)?.0);
             let stage = Stage { scene, all, space: &space, method: &*method, chosen: &chosen, targets };
-            let seen = self.seen(&stage, camera, full, truth)?;
-            let geometry = seen.surface.context("one ray a pixel")?.errors;
+            let seen = self.seen(&stage, cameras, full)?;
+            let geometry = self.surface(&stage, &cameras.few, truth).errors;
             let point = self.point(&format!("delta {}", chosen.delta()), 1, &seen.results, seen.errors, geometry)?;
             let mut left = LeftOut {
                 what,

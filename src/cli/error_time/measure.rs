@@ -1,5 +1,6 @@
 //! A view, measured: every setting of every method against full resolution, with each number of samples, on every machine.
 
+use super::costs::{costs, simulated};
 use super::draw::{Converging, Subject, difference, luminance};
 use super::host::{Timed, host_times};
 use super::plain;
@@ -8,7 +9,7 @@ use super::row::{BuildTime, Measured};
 use crate::cli::cache::Cache;
 use crate::cli::method::Chosen;
 use crate::cli::output::{busy, progress};
-use crate::cli::pass::{Pass, PassRays, Target};
+use crate::cli::pass::Target;
 use crate::cli::pictures::shoot_with;
 use crate::cli::sweep::ViewJob;
 use crate::cli::workers::at_once;
@@ -16,10 +17,10 @@ use anyhow::Context;
 use image::RgbImage;
 use lodray::format::Scene;
 use lodray::mesh::FinestSurface;
-use lodray::method::{Method, SurfaceHit, reference};
-use lodray::picture::{Frame, FullResolution, PictureError, Sampled, Shader, SurfaceError, error_map, level_map, render, save_png};
+use lodray::method::{Method, reference};
+use lodray::picture::{Frame, FullResolution, PictureError, Shader, SurfaceError, error_map, level_map, render, sampled, save_png};
 use lodray::rays::{Camera, ModelSpace, Sight};
-use lodray::report::error_time::{Appearance, Converged, Costs, Energy, PictureEntry, Point, SceneEntry, Shift, TraceGrid, ViewEntry};
+use lodray::report::error_time::{Appearance, Converged, PictureEntry, Point, SceneEntry, Shift, TraceGrid, ViewEntry};
 use lodray::report::inspect;
 use lodray::report::result::SimResult;
 use std::path::Path;
@@ -43,6 +44,12 @@ pub struct Bench<'a> {
     surface: FinestSurface,
 }
 
+/// The camera of the whole frame, and that of the columns and rows of it whose errors are measured.
+pub(super) struct Cameras {
+    pub frame: Camera,
+    pub few: Camera,
+}
+
 /// What is traced, and on which machines.
 pub(super) struct Stage<'a> {
     pub scene: &'a Scene,
@@ -62,16 +69,12 @@ pub(super) struct Seen {
     pub errors: PictureError,
     /// On every machine.
     pub results: Vec<SimResult>,
-    /// If there was one sample a pixel.
-    pub surface: Option<Surface>,
 }
 
 /// A setting's surface.
-#[derive(Clone)]
 pub(super) struct Surface {
     pub errors: SurfaceError,
-    /// Of the setting by default, if it has levels, and of what was traced for itself.
-    frame: Option<Frame>,
+    frame: Frame,
 }
 
 /// A setting with its picture's errors still to be compared with the converged picture.
@@ -105,72 +108,75 @@ impl<'a> Bench<'a> {
         })
     }
 
-    /// Measures a view; pictures go to `folder`, their names begin with `prefix`.
-    pub fn view(&self, view: &ViewJob, folder: &Path, prefix: &str) -> anyhow::Result<Measured> {
-        let camera = view.camera(&self.space)?;
+    /// Measures a view; pictures go to `folder`, their names begin with `prefix`. What is simulated is the whole frame; errors and pictures are of some of its
+    /// columns and rows.
+    pub fn view(&self, view: &ViewJob, folder: &Path, prefix: &str, sizes: bool) -> anyhow::Result<Measured> {
+        let frame = view.camera(&self.space)?;
+        let few = frame.every(self.plan.measure.every(view.size));
         let subject = self.subject();
-        let truth = shoot_with(&*self.reference, &subject.shader, &self.space, [&camera; 2], f64::INFINITY, "full resolution");
-        let settings = self.settings(&camera)?;
-        let mut surfaces = Vec::new();
+        let truth = shoot_with(&*self.reference, &subject.shader, &self.space, [&few; 2], f64::INFINITY, "full resolution");
+        let settings = self.settings(&frame)?;
+        let surfaces: Vec<_> = settings.iter().map(|of| self.setting_surface(of, &few, &truth.frame)).collect();
         let mut book = PictureBook { folder, prefix, entries: Vec::new() };
         let (mut points, mut shift, mut unseen) = (Vec::new(), Vec::new(), Vec::new());
         let ppd = self.plan.measure.pixels_per_degree;
         let kept = self.plan.sides.iter().copied().filter(|&side| side <= MOST_KEPT).max();
         for &side in &self.plan.sides {
-            let camera = camera.with_samples(side)?;
+            let cameras = Cameras { frame: frame.with_samples(side)?, few: few.with_samples(side)? };
             let samples = side * side;
             let full = match side {
                 1 => truth.image.clone(),
-                _ => subject.draw(&*self.reference, &camera, f64::INFINITY, "full resolution").image(),
+                _ => subject.draw(&*self.reference, &cameras.few, f64::INFINITY, "full resolution").image(),
             };
-            let shifted = subject.draw(&*self.reference, &camera.shifted([0.5, 0.5]), f64::INFINITY, "shifted by half a pixel").image();
+            let moved = cameras.few.shifted([0.5, 0.5]);
+            let shifted = subject.draw(&*self.reference, &moved, f64::INFINITY, "shifted by half a pixel").image();
             shift.push(Shift { samples, picture: PictureError::of(&shifted, &full, ppd) });
             if kept == Some(side) {
                 book.add(&full, FULL, "full resolution", samples, "image")?;
             }
             let bar = progress(settings.len() as u64, "settings");
-            let seen = at_once(&settings, |setting| {
-                let seen = self.see(setting, &camera, &full, &truth.frame);
+            let seen = at_once(&settings, |(at, setting)| {
+                let seen = self.seen(&self.stage(*at, setting), &cameras, &full);
                 bar.inc(1);
                 seen
             });
             bar.finish_and_clear();
             let seen = seen.into_iter().collect::<anyhow::Result<Vec<_>>>()?;
-            if surfaces.is_empty() {
-                surfaces = self.surfaces(&settings, &seen, &camera.with_samples(1)?, &truth.frame);
-            }
-            for (((_, setting), surface), Seen { picture, luminance, errors, results, .. }) in settings.iter().zip(&surfaces).zip(seen) {
+            for (((_, setting), surface), Seen { picture, luminance, errors, results }) in settings.iter().zip(&surfaces).zip(seen) {
                 if kept == Some(side) && setting.is_default {
                     let name = setting.chosen.method.name;
                     book.add(&picture, name, &setting.words, samples, "image")?;
                     book.add(&error_map(&picture, &full), name, &setting.words, samples, "error")?;
-                    if let Some(frame) = &surface.frame {
-                        book.add(&level_map(frame), name, &setting.words, 1, "levels")?;
+                    if setting.has_levels() {
+                        book.add(&level_map(&surface.frame), name, &setting.words, 1, "levels")?;
                     }
                 }
-                points.push(self.point(&setting.words, samples, &results, errors, surface.errors)?);
+                let point = self.point(&setting.words, samples, &results, errors, surface.errors)?;
+                points.push(Point { is_default: setting.is_default, ..point });
                 if self.plan.measure.most_samples > 0 {
                     unseen.push(Unseen { point: points.len() - 1, picture, luminance });
                 }
             }
         }
-        let converged = self.converged(&camera, &mut points, &unseen)?;
+        let converged = self.converged(&few, &mut points, &unseen)?;
         Ok(Measured {
             scene: self.facts.clone(),
             view: ViewEntry {
                 scene: 0,
-                distance: camera.radii,
-                eye: camera.eye.to_array(),
-                size: [camera.width, camera.height],
+                distance: frame.radii,
+                eye: frame.eye.to_array(),
+                size: view.size,
+                every: few.stride,
                 converged,
                 shift,
             },
             points,
             pictures: book.entries,
-            traces: self.traces(&camera, &settings),
-            host: self.host(&camera, &settings),
+            traces: self.traces(&frame, &settings),
+            host: self.host(&frame, &settings),
             builds: self.builds.clone(),
-            left_out: self.left_out(&camera.with_samples(1)?, &truth.image, &truth.frame)?,
+            left_out: self.left_out(&Cameras { frame, few }, &truth.image, &truth.frame)?,
+            sizes: if sizes { self.sizes(view)? } else { Vec::new() },
         })
     }
 
@@ -183,6 +189,14 @@ impl<'a> Bench<'a> {
         Subject { shader: Shader::new(self.scene, &self.space, self.plan.measure.shading), space: &self.space }
     }
 
+    /// What each method does if nothing is chosen, with its number.
+    pub(super) fn defaults(&self, camera: &Camera) -> Vec<(usize, Setting)> {
+        let of = |(at, (base, method)): (usize, &(Chosen, Box<dyn Method + 'a>))| {
+            (at, Setting::usual(base, &**method, |delta| Sight::new(camera, &self.space, delta)))
+        };
+        self.methods.iter().enumerate().map(of).collect()
+    }
+
     /// All settings, with the number of their method.
     fn settings(&self, camera: &Camera) -> anyhow::Result<Vec<(usize, Setting)>> {
         let of = |(at, (base, method)): (usize, &(Chosen, Box<dyn Method + 'a>))| {
@@ -192,46 +206,22 @@ impl<'a> Bench<'a> {
         Ok(self.methods.iter().enumerate().map(of).collect::<anyhow::Result<Vec<_>>>()?.into_iter().flatten().collect())
     }
 
-    /// Traces a setting once.
-    fn see(&self, of: &(usize, Setting), camera: &Camera, full: &RgbImage, truth: &Frame) -> anyhow::Result<Seen> {
-        let (at, setting) = of;
-        let method = self.method(*at, setting);
-        let stage = Stage {
-            scene: self.scene,
-            all: self.scene,
-            space: &self.space,
-            chosen: &setting.chosen,
-            method,
-            targets: &self.plan.jobs.targets,
-        };
-        let mut seen = self.seen(&stage, camera, full, truth)?;
-        if let Some(surface) = seen.surface.as_mut().filter(|_| !setting.has_levels()) {
-            surface.frame = None;
-        }
-        Ok(seen)
+    pub(super) fn stage<'b>(&'b self, at: usize, setting: &'b Setting) -> Stage<'b> {
+        let (chosen, targets) = (&setting.chosen, &self.plan.jobs.targets);
+        Stage { scene: self.scene, all: self.scene, space: &self.space, chosen, method: self.method(at, setting), targets }
     }
 
-    /// Traces a stage once: its steps go to the machines, and what its rays meet makes the picture, whose errors are against `full`; with one ray a pixel, also the surface,
-    /// whose errors are against `truth`.
-    pub(super) fn seen(&self, stage: &Stage<'_>, camera: &Camera, full: &RgbImage, truth: &Frame) -> anyhow::Result<Seen> {
-        let &Stage { scene, all, space, chosen, method, targets } = stage;
-        let pass = Pass { scene, space, chosen, method, rays: PassRays::Camera(*camera) };
+    /// What a stage's frame costs on the machines, and its picture, whose errors are against `full`.
+    pub(super) fn seen(&self, stage: &Stage<'_>, cameras: &Cameras, full: &RgbImage) -> anyhow::Result<Seen> {
+        let &Stage { all, space, chosen, method, .. } = stage;
         let shader = Shader::new(all, space, self.plan.measure.shading);
-        let mut drawn = Sampled::new(camera);
-        let mut pixels = if camera.samples == 1 { vec![None; drawn.pixels.len()] } else { Vec::new() };
-        let outcomes = pass.watched(targets, &mut |traced| {
-            drawn.add(&shader, camera, &traced.hits);
-            if camera.samples == 1 {
-                traced.hits.iter().for_each(|of| pixels[of.ray as usize] = of.hit); // a pixel of the picture
-            }
-        })?;
+        let drawn = sampled(method, &shader, space, &cameras.few, chosen.delta(), &|| ());
         let picture = drawn.image();
         Ok(Seen {
             luminance: if self.plan.measure.most_samples > 0 { luminance(&drawn) } else { Vec::new() },
             errors: PictureError::of(&picture, full, self.plan.measure.pixels_per_degree),
             picture,
-            results: outcomes.into_iter().map(|outcome| Ok(outcome?.0)).collect::<anyhow::Result<_>>()?,
-            surface: (camera.samples == 1).then(|| self.surface(all, pixels, camera, truth)),
+            results: simulated(stage, &cameras.frame)?,
         })
     }
 
@@ -249,6 +239,7 @@ impl<'a> Bench<'a> {
             view: 0,
             method: facts.name.clone(),
             setting: words.to_owned(),
+            is_default: false,
             knobs: facts.knobs.clone(),
             choices: facts.choices.clone(),
             samples,
@@ -262,27 +253,18 @@ impl<'a> Bench<'a> {
         })
     }
 
-    /// The surfaces of all settings, by one ray a pixel, as more would see the same: those that were seen with one, or traced for it.
-    fn surfaces(&self, settings: &[(usize, Setting)], seen: &[Seen], camera: &Camera, truth: &Frame) -> Vec<Surface> {
-        let seen: Vec<_> = seen.iter().filter_map(|seen| seen.surface.clone()).collect();
-        if seen.len() == settings.len() {
-            return seen;
-        }
-        let of = |(at, setting): &(usize, Setting)| {
-            let bar = progress(u64::from(camera.height), "surface");
-            let frame = render(self.method(*at, setting), &self.space, camera, setting.chosen.delta(), &|| bar.inc(1)).0;
-            bar.finish_and_clear();
-            let surface = self.surface(self.scene, frame.pixels, camera, truth);
-            Surface { frame: surface.frame.filter(|_| setting.has_levels()), ..surface }
-        };
-        settings.iter().map(of).collect()
+    /// The surface of a setting, by one ray a pixel, as more would see the same.
+    fn setting_surface(&self, (at, setting): &(usize, Setting), few: &Camera, truth: &Frame) -> Surface {
+        self.surface(&self.stage(*at, setting), few, truth)
     }
 
-    /// What rays met of a scene: this one, or what is left of it.
-    fn surface(&self, scene: &Scene, pixels: Vec<Option<SurfaceHit>>, camera: &Camera, truth: &Frame) -> Surface {
+    /// What the rays of a stage meet, held against full resolution.
+    pub(super) fn surface(&self, stage: &Stage<'_>, few: &Camera, truth: &Frame) -> Surface {
+        let bar = progress(u64::from(few.height), "surface");
+        let frame = render(stage.method, stage.space, few, stage.chosen.delta(), &|| bar.inc(1)).0;
+        bar.finish_and_clear();
         let full = FullResolution { scene: self.scene, space: &self.space, surface: &self.surface, pixels: &truth.pixels };
-        let errors = SurfaceError::of(scene, &pixels, &full, camera, self.plan.measure.stride);
-        Surface { errors, frame: Some(Frame { width: camera.width, height: camera.height, pixels }) }
+        Surface { errors: SurfaceError::of(stage.all, &frame.pixels, &full, few, self.plan.measure.stride), frame }
     }
 
     /// Draws full resolution with more and more samples until its standard error is a quarter of the smallest error, or there are no more; then says how
@@ -344,29 +326,6 @@ impl<'a> Bench<'a> {
         });
         let timed: Vec<_> = timed.collect();
         busy("host times", || host_times(&timed, camera, &self.space, most))
-    }
-}
-
-fn costs(machine: usize, result: &SimResult) -> Costs {
-    let energy = &result.energy;
-    Costs {
-        machine,
-        compute: result.setup.compute.name().to_owned(),
-        cycles: result.cycles,
-        milliseconds: result.milliseconds,
-        energy: Energy {
-            unit: energy.unit.clone(),
-            total: energy.total,
-            l1: energy.l1.total,
-            l2: energy.l2.total,
-            dram: energy.dram.total,
-            compute: energy.compute.total,
-            leakage: energy.leakage.total,
-        },
-        dram_lines: result.dram.reads + result.dram.writes,
-        dram_bytes: (result.traffic.bytes_per_ray.dram * result.rays as f64).round() as u64,
-        l1_requests_per_ray: result.accesses_per_ray,
-        unit_gates: None,
     }
 }
 

@@ -1,5 +1,6 @@
 //! `error-time`: what an error costs, for every method: errors against simulated time, energy and traffic.
 
+mod costs;
 mod draw;
 mod host;
 mod less;
@@ -19,7 +20,8 @@ use lodray::hardware::unit_gates;
 use lodray::method::{find, lod};
 use lodray::report::diagram::{csv, diagrams, latex, left_out_csv};
 use lodray::report::error_time::{
-    ErrorTime, KIND, LeftOut, MethodEntry, Options, SceneEntry, USUAL_COSTS, USUAL_ERRORS, VERSION, equal_errors,
+    ErrorTime, KIND, LeftOut, MethodEntry, Options, SceneEntry, SizeCosts, USUAL_COSTS, USUAL_ERRORS, VERSION, equal_errors, verdict_text,
+    verdicts,
 };
 use lodray::report::page::{Documents, PICTURE_BYTES, embed};
 use lodray::report::results_version;
@@ -41,6 +43,8 @@ const TABLE: &str = "error-time.csv";
 const LEFT_OUT: &str = "left-out.csv";
 const LATEX: &str = "error-time.tex";
 const HOST: &str = "host-times.json";
+/// Which method is the cheapest at each view.
+const VERDICT: &str = "verdict.txt";
 const PAGE: &str = "report.html";
 
 /// Times on the host, by view.
@@ -55,7 +59,7 @@ struct HostTimes<'a> {
 pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
     let plan = args.plan()?;
     let inputs: Vec<_> = plan.jobs.files.iter().map(PathBuf::as_path).collect();
-    let mut folder = RunFolder::open(&args.out, [DOCUMENT, TABLE, LATEX, LEFT_OUT, HOST, PAGE], &inputs, &args.overrule)?;
+    let mut folder = RunFolder::open(&args.out, [DOCUMENT, TABLE, LATEX, LEFT_OUT, HOST, VERDICT, PAGE], &inputs, &args.overrule)?;
     let cache = Cache::new(&args.cache, Some(&args.out))?;
     let lines = args.out.join(LINES);
     check_target(&lines, &inputs)?;
@@ -67,7 +71,9 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
     let bar = progress(plan.views() as u64, "views");
     for scene in &plan.jobs.scenes {
         let views = scene.views.iter().enumerate();
-        let views: Vec<_> = views.map(|(k, view)| Ok((k, view, plan.key(scene, view)?))).collect::<anyhow::Result<_>>()?;
+        // Sizes of the frame are compared at one view: a near one, where they matter most.
+        let sized = (scene.views.len().max(1) - 1) / 3;
+        let views: Vec<_> = views.map(|(k, view)| Ok((k, view, plan.key(scene, view, k == sized)?))).collect::<anyhow::Result<_>>()?;
         keys.extend(views.iter().map(|(_, _, key)| key.clone()));
         let left: Vec<_> = views.into_iter().filter(|(_, _, key)| !done.contains(key)).collect();
         if left.is_empty() {
@@ -85,7 +91,7 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
         let bench = Bench::new(&plan, &made, entry(scene, &made), &cache)?;
         for (k, view, key) in &left {
             let prefix = format!("{}-{k}", plain(&scene.name));
-            let row = match bench.view(view, &args.out, &prefix) {
+            let row = match bench.view(view, &args.out, &prefix, *k == sized) {
                 Ok(measured) => ViewRow { key: key.clone(), measured: Some(measured), error: None },
                 Err(error) => failure(key, &error),
             };
@@ -101,12 +107,17 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
     }
     let document = document(&plan, &measured);
     write(folder.staging(), &document, &measured)?;
+    let verdict = verdict_text(&verdicts(&document));
+    write_file(&folder.staging().join(VERDICT), &verdict)?;
     page(&folder.staging().join(PAGE), document, &args.out, &inputs)?;
     folder.finish()?;
     let failed: Vec<_> = rows.of(&keys).filter_map(|row| Some((&row.key, row.error.as_ref()?))).collect();
     remark(&format!("{} views, {} failed; figures in {}", keys.len(), failed.len(), args.out.display()))?;
     for (key, why) in &failed {
         print_line(&format!("failed: {key}: {why}"))?;
+    }
+    if !verdict.is_empty() {
+        remark(verdict.trim_end())?;
     }
     Ok(if failed.is_empty() { ExitCode::SUCCESS } else { ExitCode::FAILURE })
 }
@@ -161,6 +172,8 @@ fn document(plan: &Plan, measured: &[&Measured]) -> ErrorTime {
         })
     });
     let mut left_out: Vec<LeftOut> = left_out.collect();
+    let sizes = measured.iter().enumerate().flat_map(|(view, of)| of.sizes.iter().cloned().map(move |size| SizeCosts { view, ..size }));
+    let mut sizes: Vec<SizeCosts> = sizes.collect();
     let machines = plan.machines();
     // A target is a machine with a way to compute; the same machine is listed once.
     for point in &mut points {
@@ -171,12 +184,13 @@ fn document(plan: &Plan, measured: &[&Measured]) -> ErrorTime {
                 unit.zip(machines.get(costs.machine)).and_then(|(unit, machine)| unit_gates(unit, &machine.description.units.config()));
         }
     }
-    for costs in left_out.iter_mut().flat_map(|left| &mut left.point.costs) {
+    for costs in left_out.iter_mut().map(|left| &mut left.point.costs).chain(sizes.iter_mut().map(|size| &mut size.costs)).flatten() {
         costs.machine = plan.machine_of(costs.machine, &machines);
     }
     let method = |chosen: &super::method::Chosen| MethodEntry {
         name: chosen.method.name.to_owned(),
         knob: chosen.method.error.map(|error| error.knob.name.to_owned()),
+        in_steps: chosen.method.error.is_some_and(|error| error.in_steps),
         help: chosen.method.help.to_owned(),
     };
     let mut document = ErrorTime {
@@ -184,7 +198,7 @@ fn document(plan: &Plan, measured: &[&Measured]) -> ErrorTime {
         version: VERSION,
         program: format!("lodray {}", results_version()),
         options: Options {
-            size: plan.jobs.scenes.first().and_then(|scene| scene.views.first()).map_or([0; 2], |view| view.size),
+            error_size: plan.measure.error_size,
             samples: plan.sides.iter().map(|side| side * side).collect(),
             shading: plan.measure.shading.name().to_owned(),
             pixels_per_degree: plan.measure.pixels_per_degree,
@@ -198,6 +212,7 @@ fn document(plan: &Plan, measured: &[&Measured]) -> ErrorTime {
         equal_error: Vec::new(),
         pictures,
         traces,
+        sizes,
         left_out,
     };
     document.equal_error = equal_errors(&document, lod::METHOD.name);

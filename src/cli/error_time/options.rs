@@ -14,7 +14,7 @@ use crate::cli::sweep::{Jobs, Origin, SceneJobs, ViewJob};
 use anyhow::{Context, ensure};
 use lodray::method::{METHODS, lod};
 use lodray::picture::{PIXELS_PER_DEGREE, Shading};
-use lodray::rays::{DEFAULT_VIEW_ANGLE_DEGREES, ModelSpace};
+use lodray::rays::{DEFAULT_VIEW_ANGLE_DEGREES, MAX_SIDE, ModelSpace};
 use lodray::run::{self, Compute};
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::PathBuf;
@@ -39,9 +39,12 @@ pub struct Args {
     pub out: PathBuf,
     #[command(flatten)]
     pub overrule: Overrule,
-    /// Picture size in pixels (default: 256x256; 128x128 with --quick)
-    #[arg(long, value_name = "WxH")]
-    size: Option<Size>,
+    /// Size of the frame whose costs are simulated, in pixels, which errors are in as well
+    #[arg(long, value_name = "WxH", default_value = "1920x1080")]
+    size: Size,
+    /// Errors and pictures are of every second, third, ... column and row of the frame, so that at most so many are left of each (default: 384; 192 with --quick)
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=i64::from(MAX_SIDE)))]
+    error_size: Option<u32>,
     /// Distances of the eye in bounding radii, with commas (default: eight from 1 to 64; 2, 8 and 32 with --quick)
     #[arg(long, value_name = "RADII", value_delimiter = ',', value_parser = radii)]
     distances: Vec<f64>,
@@ -60,7 +63,7 @@ pub struct Args {
     /// How compute is simulated, one or both with commas (default: both; free with --quick)
     #[arg(long, value_delimiter = ',', value_parser = named::<Compute>())]
     compute: Vec<Compute>,
-    /// Samples of a pixel, squares, with commas (default: 1,4,16,64; 1,4 with --quick)
+    /// Samples of a pixel, squares, with commas (default: 1,4; 1 with --quick)
     #[arg(long, value_name = "N", value_delimiter = ',', value_parser = samples)]
     samples: Vec<u32>,
     /// Normals that pictures are shaded with
@@ -79,7 +82,7 @@ pub struct Args {
     /// Do not time the host
     #[arg(long)]
     no_host: bool,
-    /// A first look within a minute: fewer distances, samples and values, smaller pictures
+    /// A first look: fewer distances, samples and values, smaller pictures, the same size of the frame
     #[arg(long)]
     quick: bool,
     #[command(flatten)]
@@ -144,19 +147,19 @@ impl Args {
         let mut sides = if !self.samples.is_empty() {
             self.samples.clone()
         } else if self.quick {
-            vec![1, 2]
+            vec![1]
         } else {
-            vec![1, 2, 4, 8]
+            vec![1, 2]
         };
         sides.sort_unstable();
         sides.dedup();
-        let size =
-            jobs.scenes.iter().flat_map(|scene| &scene.views).map(|view| view.size.into_iter().max().unwrap_or(1)).max().unwrap_or(1);
+        let error_size = self.error_size.unwrap_or(if self.quick { 192 } else { 384 });
         let measure = Measure {
             shading: self.shading,
             pixels_per_degree: self.pixels_per_degree,
+            error_size,
             // About 65,536 rays at most.
-            stride: size.div_ceil(256).max(1),
+            stride: error_size.div_ceil(256),
             most_samples: self.most_samples.unwrap_or(if self.quick { 8 } else { 32 }),
             host_rays: if self.no_host { 0 } else { 16_384 },
         };
@@ -174,7 +177,7 @@ impl Args {
 
     /// The jobs of the options.
     fn listed(&self) -> anyhow::Result<Jobs> {
-        let Size(width, height) = self.size.unwrap_or(if self.quick { Size(128, 128) } else { Size(256, 256) });
+        let Size(width, height) = self.size;
         let distances: &[f64] = match &self.distances[..] {
             [] if self.quick => &QUICK_DISTANCES,
             [] => &DISTANCES,

@@ -32,12 +32,21 @@ pub struct Measure {
     pub shading: Shading,
     /// Of the display that FLIP assumes.
     pub pixels_per_degree: f64,
-    /// One of so many columns and rows is held against the nearest point of the surface.
+    /// Most columns and rows of the frame of which errors and pictures are.
+    pub error_size: u32,
+    /// Of these one of so many is held against the nearest point of the surface.
     pub stride: u32,
     /// Most samples along a side of a converged picture's pixel; 0 for no such picture.
     pub most_samples: u32,
     /// Rays whose time on the host is taken; 0 for none.
     pub host_rays: u32,
+}
+
+impl Measure {
+    /// Errors and pictures are of one in so many columns and rows of a frame of this size.
+    pub fn every(&self, size: [u32; 2]) -> u32 {
+        size[0].max(size[1]).div_ceil(self.error_size).max(1)
+    }
 }
 
 /// A method with one value of its knob.
@@ -52,6 +61,25 @@ pub struct Setting {
 }
 
 impl Setting {
+    fn new(chosen: Chosen, method: &dyn Method, sight: &impl Fn(f64) -> Sight) -> Self {
+        let again = method.again(&chosen.knobs);
+        let choices = again.as_deref().unwrap_or(method).choices(&sight(chosen.delta()));
+        let facts = MethodFacts::new(chosen.method, &chosen.knobs, &choices, 0);
+        let chose: Vec<_> = choices.iter().map(|(name, value)| format!("{name} {value}")).collect();
+        let words = match chosen.method.error.filter(|_| chose.is_empty()) {
+            Some(ErrorKnob { knob, .. }) => format!("{} {}", knob.name, facts.knobs.get(knob.name).map_or("", String::as_str)),
+            None if chose.is_empty() => "full resolution".to_owned(),
+            None => chose.join(", "),
+        };
+        Self { chosen, method: again, words, is_default: false }
+    }
+
+    /// What a method does if nothing is chosen.
+    pub fn usual(base: &Chosen, method: &dyn Method, sight: impl Fn(f64) -> Sight) -> Self {
+        let knobs = base.method.error.map_or_else(|| base.knobs.clone(), |error| base.knobs.clone().without(error.knob));
+        Self { is_default: true, ..Self::new(Chosen { method: base.method, knobs }, method, &sight) }
+    }
+
     /// It is the usual one of a method with levels: without a knob every triangle is of the finest.
     pub fn has_levels(&self) -> bool {
         self.is_default && self.chosen.method.error.is_some()
@@ -61,20 +89,8 @@ impl Setting {
 impl Plan {
     /// The settings of a method for a view, from coarse to fine; those that choose the same for the frame once.
     pub fn settings(&self, base: &Chosen, method: &dyn Method, sight: impl Fn(f64) -> Sight) -> anyhow::Result<Vec<Setting>> {
-        let of = |chosen: Chosen| {
-            let again = method.again(&chosen.knobs);
-            let choices = again.as_deref().unwrap_or(method).choices(&sight(chosen.delta()));
-            let facts = MethodFacts::new(chosen.method, &chosen.knobs, &choices, 0);
-            let chose: Vec<_> = choices.iter().map(|(name, value)| format!("{name} {value}")).collect();
-            let words = match chosen.method.error.filter(|_| chose.is_empty()) {
-                Some(ErrorKnob { knob, .. }) => format!("{} {}", knob.name, facts.knobs.get(knob.name).map_or("", String::as_str)),
-                None if chose.is_empty() => "full resolution".to_owned(),
-                None => chose.join(", "),
-            };
-            (chosen, words, again)
-        };
-        let usual = base.method.error.map_or_else(|| base.knobs.clone(), |error| base.knobs.clone().without(error.knob));
-        let default = of(Chosen { method: base.method, knobs: usual }).1;
+        let of = |chosen: Chosen| Setting::new(chosen, method, &sight);
+        let default = Setting::usual(base, method, &sight).words;
         let all = match base.method.error {
             None => vec![of(base.clone())],
             Some(ErrorKnob { knob, .. }) => {
@@ -83,9 +99,8 @@ impl Plan {
             }
         };
         let mut seen = HashSet::new();
-        let new = |(chosen, words, method): (Chosen, String, Option<Box<dyn Method>>)| {
-            seen.insert(words.clone()).then(|| Setting { chosen, method, is_default: words == default, words })
-        };
+        let new =
+            |setting: Setting| seen.insert(setting.words.clone()).then(|| Setting { is_default: setting.words == default, ..setting });
         Ok(all.into_iter().filter_map(new).collect())
     }
 
@@ -141,7 +156,7 @@ impl Plan {
     }
 
     /// The name of a view's job, which changes with everything that its figures depend on, the program's own version at its end.
-    pub fn key(&self, scene: &SceneJobs, view: &ViewJob) -> anyhow::Result<String> {
+    pub fn key(&self, scene: &SceneJobs, view: &ViewJob, sizes: bool) -> anyhow::Result<String> {
         let mut inputs = String::new();
         let mut name = String::new();
         for chosen in &self.jobs.methods {
@@ -151,7 +166,7 @@ impl Plan {
             }
             inputs += &format!("{:?}", self.values(chosen));
         }
-        inputs += &format!("{:?} {:?} {}", self.sides, self.measure, self.trace_grid());
+        inputs += &format!("{:?} {:?} {} {sizes}", self.sides, self.measure, self.trace_grid());
         inputs += &self.within.iter().map(|pixels| format!(" within {pixels}")).collect::<String>();
         // As in a sweep: scene, place and size, and the version at the end.
         let place: Vec<_> = name.split(", ").take(3).collect();

@@ -1,7 +1,7 @@
 //! A view's line: all that was measured of it.
 
 use crate::cli::job_lines::JobLine;
-use lodray::report::error_time::{LeftOut, PictureEntry, Point, SceneEntry, TraceGrid, ViewEntry};
+use lodray::report::error_time::{LeftOut, PictureEntry, Point, SceneEntry, SizeCosts, TraceGrid, ViewEntry};
 use serde::{Deserialize, Serialize};
 
 /// A view. Numbers of scene, view and machine are those of this line alone: 0, 0, and the place among the machines.
@@ -35,6 +35,8 @@ pub struct Measured {
     pub builds: Vec<BuildTime>,
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub left_out: Vec<LeftOut>,
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub sizes: Vec<SizeCosts>,
 }
 
 /// Time to build what a method needs beyond the scene's file, on all threads.

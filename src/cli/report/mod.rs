@@ -93,5 +93,6 @@ pub fn titled(documents: Documents) -> Documents {
         few if few.len() <= 4 => format!(": {}", few.join(", ")),
         many => format!(" of {} scenes", many.len()),
     };
-    Documents { title: format!("{what}{names}"), ..documents }
+    let sizes = documents.error_time.as_ref().map_or_else(String::new, |document| format!(", {}", document.sizes_in_words(None)));
+    Documents { title: format!("{what}{names}{sizes}"), ..documents }
 }

@@ -20,7 +20,7 @@ pub static METHOD: Registered = Registered {
     name: "lod",
     help: "Locally adaptive level of detail",
     knobs: &[&DELTA, &LINE_LAYOUT],
-    error: Some(ErrorKnob { knob: &DELTA, values: octaves }),
+    error: Some(ErrorKnob { knob: &DELTA, values: octaves, in_steps: false }),
     unit: Some(MethodUnit {
         blocks: &[
             Operation::RaySetup,

@@ -58,8 +58,9 @@ pub(super) fn less(
     DistanceChart {
         title: format!("{}, with less in scene and unit", error.name),
         subtitle: format!(
-            "{}, delta 1; {}, compute {compute}: {}",
+            "{}, {}, delta 1; {}, compute {compute}: {}",
             document.scenes[scene].name,
+            document.sizes_in_words(Some(scene)),
             document.machines[machine].title(),
             what.join(", ")
         ),

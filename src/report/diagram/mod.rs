@@ -8,7 +8,9 @@ mod fault;
 mod less;
 mod marks;
 mod raster;
+mod size;
 mod table;
+mod winners;
 mod work;
 
 pub use distance::{DistanceChart, Line, Spot, gain};
@@ -16,24 +18,31 @@ pub use fault::DiagramFault;
 pub use raster::png;
 pub use table::{csv, latex, left_out_csv};
 
-use super::error_time::{CostMeasure, ErrorMeasure, ErrorTime, USUAL_ERRORS};
+use super::error_time::{CostMeasure, ErrorMeasure, ErrorTime, USUAL_ERRORS, verdicts};
 use rayon::prelude::*;
 
 /// File name and contents.
 pub type Files = Vec<(String, Vec<u8>)>;
 
-/// Diagrams of a document: for each scene and machine every error of `errors` against every cost of `costs`, small multiples by distance, and costs and errors by
-/// distance, each as SVG and as PNG. What nobody measured has no diagram.
+/// Diagrams of a document: the map of winners for each machine; for each scene and machine every error of `errors` against every cost of `costs`, small multiples by distance, costs and errors by
+/// distance, and costs by the frame's size, each as SVG and as PNG. What nobody measured has no diagram.
 ///
 /// # Errors
 /// A diagram that cannot be drawn.
 pub fn diagrams(document: &ErrorTime, errors: &[ErrorMeasure], costs: &[CostMeasure]) -> Result<Files, DiagramFault> {
     let mut drawings: Vec<(String, String)> = Vec::new();
+    let targets = document.targets();
+    let suffix = |machine: usize, compute: &str| {
+        if targets.len() == 1 { String::new() } else { format!("-{}-{compute}", document.machines[machine].label) }
+    };
+    for verdict in verdicts(document) {
+        drawings.push((plain(&format!("winners{}", suffix(verdict.machine, &verdict.compute))), winners::winners(&verdict)?));
+    }
     for (scene, entry) in document.scenes.iter().enumerate() {
-        for (machine, compute) in machines(document) {
-            let of = work::Of { document, scene, machine, compute: &compute };
-            let alone = document.machines.len() == 1 && machines(document).len() == 1;
-            let suffix = if alone { String::new() } else { format!("-{}-{compute}", document.machines[machine].label) };
+        for (machine, compute) in &targets {
+            let (machine, compute) = (*machine, compute.as_str());
+            let of = work::Of { document, scene, machine, compute };
+            let suffix = suffix(machine, compute);
             let mut add = |name: String, svg: Option<String>| drawings.extend(svg.map(|svg| (plain(&format!("{name}{suffix}")), svg)));
             for error in errors {
                 for cost in costs {
@@ -44,10 +53,13 @@ pub fn diagrams(document: &ErrorTime, errors: &[ErrorMeasure], costs: &[CostMeas
             for cost in costs {
                 add(format!("{}-distance-{}", entry.name, cost.id), of.costs_by_distance(cost)?);
             }
+            for measure in &size::MEASURES {
+                add(format!("{}-size-{}", entry.name, measure.id), size::by_size(document, scene, (machine, compute), measure)?);
+            }
             for measure in &less::MEASURES {
                 add(
                     format!("{}-left-out-{}", entry.name, measure.id),
-                    less::less(document, scene, (machine, &compute), measure, &USUAL_ERRORS[1])?,
+                    less::less(document, scene, (machine, compute), measure, &USUAL_ERRORS[1])?,
                 );
             }
         }
@@ -57,18 +69,6 @@ pub fn diagrams(document: &ErrorTime, errors: &[ErrorMeasure], costs: &[CostMeas
         Ok([(format!("{name}.svg"), svg.into_bytes()), (format!("{name}.png"), raster)])
     });
     Ok(files.collect::<Result<Vec<_>, DiagramFault>>()?.into_iter().flatten().collect())
-}
-
-/// Machines and kinds of compute that costs are of, in order.
-pub(super) fn machines(document: &ErrorTime) -> Vec<(usize, String)> {
-    let mut all: Vec<(usize, String)> = Vec::new();
-    for costs in document.points.iter().flat_map(|point| &point.costs) {
-        if !all.iter().any(|(machine, compute)| *machine == costs.machine && *compute == costs.compute) {
-            all.push((costs.machine, costs.compute.clone()));
-        }
-    }
-    all.sort();
-    all
 }
 
 /// A file's name of any text.

@@ -1,7 +1,7 @@
 //! Tables of a document: all points as CSV, and what methods cost at equal error as LaTeX.
 
 use super::canvas::short;
-use crate::report::error_time::{COSTS, ERRORS, EqualError, ErrorTime, Point};
+use crate::report::error_time::{COSTS, ERRORS, EqualCost, EqualError, ErrorTime, Point};
 use std::collections::BTreeMap;
 
 /// All points, a line for each machine that they have costs of.
@@ -70,28 +70,39 @@ pub fn latex(document: &ErrorTime) -> String {
         }
         let words = |text: &str| escaped(&text.replace('_', " "));
         let caption = format!(
-            "{}: {} where the {} is the same; samples per pixel: {samples}; {}, compute {}. In brackets the cost over ours.",
+            "{}, {}: {} where the {} is the same; samples per pixel: {samples}; {}, compute {}. In brackets the cost over ours; with an asterisk the error is larger.",
             escaped(&document.scenes[scene].name),
+            document.sizes_in_words(Some(scene)),
             words(&cost),
             words(&error),
             escaped(&document.machines[machine].title()),
             escaped(&compute)
         );
-        let head = methods.iter().map(|method| format!(" & {}", escaped(method))).collect::<String>();
+        // Those that chose a setting by themselves stand behind the others.
+        let mut rules: Vec<&str> = Vec::new();
+        for rule in rows.iter().flat_map(|row| &row.own_rule) {
+            if !rules.contains(&rule.method.as_str()) {
+                rules.push(&rule.method);
+            }
+        }
+        let head: String = methods.iter().map(|method| format!(" & {}", escaped(method))).collect();
+        let head = head + &rules.iter().map(|method| format!(" & {} by its own rule", escaped(method))).collect::<String>();
         text += &format!(
             "\\begin{{table}}\n\\centering\n\\caption{{{caption}}}\n\\begin{{tabular}}{{rrr{}}}\n\\toprule\n",
-            "r".repeat(methods.len())
+            "r".repeat(methods.len() + rules.len())
         );
         text += &format!("distance & level & ours{head} \\\\\n\\midrule\n");
         for row in rows {
-            let others = methods.iter().map(|name| {
-                let found = row.methods.iter().find(|method| method.method == *name);
-                match found.and_then(|method| Some((method.cost?, method.ratio))) {
-                    Some((cost, Some(ratio))) => format!(" & {} ({})", short(cost), short(ratio)),
-                    Some((cost, None)) => format!(" & {}", short(cost)),
-                    None => format!(" & {}", found.and_then(|method| method.why.as_deref()).map_or_else(|| "--".to_owned(), escaped)),
+            let cell = |of: Option<&EqualCost>, is_rule: bool| match of.and_then(|method| Some((method, method.cost?))) {
+                Some((EqualCost { ratio, why, .. }, cost)) => {
+                    let ratio = ratio.map_or_else(String::new, |ratio| format!(" ({})", short(ratio)));
+                    let further = if is_rule && why.is_some() { "$^*$" } else { "" };
+                    format!(" & {}{ratio}{further}", short(cost))
                 }
-            });
+                None => format!(" & {}", of.and_then(|method| method.why.as_deref()).map_or_else(|| "--".to_owned(), escaped)),
+            };
+            let others = methods.iter().map(|name| cell(row.methods.iter().find(|method| method.method == *name), false));
+            let others = others.chain(rules.iter().map(|name| cell(row.own_rule.iter().find(|method| method.method == *name), true)));
             let ours = row.ours.map_or_else(|| "--".to_owned(), short);
             text += &format!(
                 "{} & {} & {ours}{} \\\\\n",

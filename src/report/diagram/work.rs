@@ -58,9 +58,9 @@ impl<'a> Of<'a> {
 
     fn subtitle(&self) -> String {
         let samples = self.points().first().map_or(1, |(point, ..)| point.samples);
-        let [width, height] = self.document.options.size;
+        let size = self.document.sizes_in_words(Some(self.scene));
         let (scene, machine) = (&self.document.scenes[self.scene].name, self.document.machines[self.machine].title());
-        format!("{scene}, {width} x {height}, samples per pixel: {samples}; {machine}, compute {}", self.compute)
+        format!("{scene}, {size}, samples per pixel: {samples}; {machine}, compute {}", self.compute)
     }
 
     /// An error against a cost, a panel for each distance; none where it was not measured.

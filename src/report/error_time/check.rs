@@ -17,8 +17,8 @@ impl ErrorTime {
         let (scenes, machines, views) = (self.scenes.len(), self.machines.len(), self.views.len());
         for (k, view) in self.views.iter().enumerate() {
             names(format!("views[{k}].scene"), view.scene, "scenes", scenes)?;
-            if !(view.distance > 0.0 && view.distance.is_finite()) || view.size.contains(&0) {
-                return Err(format!("views[{k}]: distance and size must be above 0"));
+            if !(view.distance > 0.0 && view.distance.is_finite()) || view.size.contains(&0) || view.every == 0 {
+                return Err(format!("views[{k}]: distance, size and every must be above 0"));
             }
         }
         let points = self.points.iter().enumerate().map(|(k, point)| (format!("points[{k}]"), point));
@@ -27,6 +27,12 @@ impl ErrorTime {
             names(format!("{field}.view"), point.view, "views", views)?;
             for (j, costs) in point.costs.iter().enumerate() {
                 names(format!("{field}.costs[{j}].machine"), costs.machine, "machines", machines)?;
+            }
+        }
+        for (k, size) in self.sizes.iter().enumerate() {
+            names(format!("sizes[{k}].view"), size.view, "views", views)?;
+            for (j, costs) in size.costs.iter().enumerate() {
+                names(format!("sizes[{k}].costs[{j}].machine"), costs.machine, "machines", machines)?;
             }
         }
         for (k, equal) in self.equal_error.iter().enumerate() {

@@ -3,12 +3,12 @@
 use crate::picture::{PictureError, SurfaceError};
 use crate::report::result::MachineFacts;
 use serde::{Deserialize, Serialize};
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 /// What `kind` says of such a document.
 pub const KIND: &str = "error-time";
 /// Its version.
-pub const VERSION: u32 = 1;
+pub const VERSION: u32 = 2;
 
 /// Error against cost, of scenes, views, methods and machines.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -40,23 +40,48 @@ pub struct ErrorTime {
     /// The steps of a coarse grid of rays.
     #[serde(default)]
     pub traces: Vec<TraceGrid>,
+    /// What methods cost at other sizes of the frame.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub sizes: Vec<SizeCosts>,
     /// What scenes and units cost in error with less in them, if that was asked for.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub left_out: Vec<LeftOut>,
 }
 
+impl ErrorTime {
+    /// The frames' sizes in words, of one scene or of all, such as `1920x1080`.
+    pub fn sizes_in_words(&self, scene: Option<usize>) -> String {
+        let mut sizes: Vec<String> = Vec::new();
+        for view in self.views.iter().filter(|view| scene.is_none_or(|scene| view.scene == scene)) {
+            let [width, height] = view.size;
+            let words = format!("{width}x{height}");
+            if !sizes.contains(&words) {
+                sizes.push(words);
+            }
+        }
+        sizes.join(", ")
+    }
+
+    /// Machines and kinds of compute that costs are of, in order.
+    pub fn targets(&self) -> Vec<(usize, String)> {
+        let costs = self.points.iter().flat_map(|point| &point.costs);
+        let all: BTreeSet<_> = costs.map(|costs| (costs.machine, costs.compute.clone())).collect();
+        all.into_iter().collect()
+    }
+}
+
 /// What was asked for.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Options {
-    /// Columns and rows.
-    pub size: [u32; 2],
+    /// Most columns and rows of pictures, and of rays whose errors are measured.
+    pub error_size: u32,
     /// Samples per pixel.
     pub samples: Vec<u32>,
     /// How pictures are shaded.
     pub shading: String,
     /// Of the display that FLIP assumes.
     pub pixels_per_degree: f64,
-    /// One in so many rays is held against the nearest point of the full-resolution surface.
+    /// Of these rays one in so many columns and rows is held against the nearest point of the full-resolution surface.
     pub nearest_stride: u32,
 }
 
@@ -87,6 +112,9 @@ pub struct MethodEntry {
     /// The knob that was swept; absent if it has none.
     #[serde(default)]
     pub knob: Option<String>,
+    /// There is nothing between the knob's values.
+    #[serde(default)]
+    pub in_steps: bool,
     /// One line about it.
     pub help: String,
 }
@@ -100,8 +128,10 @@ pub struct ViewEntry {
     pub distance: f64,
     /// The eye.
     pub eye: [f64; 3],
-    /// Columns and rows.
+    /// Columns and rows of the frame: of what is simulated, and whose pixels errors are in.
     pub size: [u32; 2],
+    /// Errors and pictures are of the middle one in every so many columns and rows of the frame.
+    pub every: u32,
     /// The picture that stands for the truth of what a viewer sees, if there is one.
     #[serde(default)]
     pub converged: Option<Converged>,
@@ -137,6 +167,9 @@ pub struct Point {
     pub method: String,
     /// Its setting in words.
     pub setting: String,
+    /// It is the one that the method has if nothing is chosen.
+    #[serde(default)]
+    pub is_default: bool,
     /// Its knobs.
     #[serde(default)]
     pub knobs: BTreeMap<String, String>,
@@ -159,6 +192,21 @@ pub struct Point {
     /// How bright it is for the converged one.
     #[serde(default)]
     pub appearance: Option<Appearance>,
+    /// What it costs, by machine and kind of compute.
+    pub costs: Vec<Costs>,
+}
+
+/// A method as it is if nothing is chosen, on a view's frame of another size, one sample a pixel.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct SizeCosts {
+    /// Number of the view.
+    pub view: usize,
+    /// Columns and rows of the frame.
+    pub size: [u32; 2],
+    /// Name of the method.
+    pub method: String,
+    /// Its setting in words.
+    pub setting: String,
     /// What it costs, by machine and kind of compute.
     pub costs: Vec<Costs>,
 }
@@ -265,13 +313,19 @@ pub struct EqualError {
     pub machine: usize,
     /// How compute is simulated.
     pub compute: String,
-    /// Our cost, interpolated along the knob; absent if that would be outside of what was measured.
+    /// Our cost, as [`super::cost_at`] has it; absent if no setting is near enough.
     pub ours: Option<f64>,
+    /// Our setting that has it; absent where the cost lies between two.
+    #[serde(default)]
+    pub setting: Option<String>,
     /// What is to be said of it.
     #[serde(default)]
     pub why: Option<String>,
     /// The others.
     pub methods: Vec<EqualCost>,
+    /// Those of them whose knob has steps, at the setting that they have if nothing is chosen, whatever its error is: without hindsight.
+    #[serde(default)]
+    pub own_rule: Vec<EqualCost>,
 }
 
 /// What one method costs there.
@@ -279,6 +333,9 @@ pub struct EqualError {
 pub struct EqualCost {
     /// Name of the method.
     pub method: String,
+    /// The setting whose cost it is, where it is that of one.
+    #[serde(default)]
+    pub setting: Option<String>,
     /// Its cost.
     pub cost: Option<f64>,
     /// Its cost over ours.

@@ -20,10 +20,22 @@ const COMPARED: [&str; 4] = ["time", "energy", "dram-lines", "l1-requests"];
 /// A setting of a method: error and cost.
 pub type Pair = [f64; 2];
 
-/// The least cost at which a method's error is at most `level`, interpolated between neighbours of its sweep where the error passes it, on
-/// logarithmic scales, never outside of what was measured; and what is to be said of it.
-pub fn cost_at(sweep: &[Pair], level: f64) -> (Option<f64>, Option<&'static str>) {
-    let passes = sweep.windows(2).filter_map(|ends| {
+/// What a method costs at an error.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Reached {
+    /// The cost; absent if no setting is near enough.
+    pub cost: Option<f64>,
+    /// Which setting has it; absent where it lies between two.
+    pub setting: Option<usize>,
+    /// What is to be said of it.
+    pub why: Option<&'static str>,
+}
+
+/// The least cost at which a method's error is at most `level`. A knob whose values are `in_steps` has nothing between them: the cost is that of the cheapest
+/// setting that is near enough. Of any other it is interpolated between neighbours of the sweep where the error passes the level, on logarithmic scales,
+/// never outside of what was measured.
+pub fn cost_at(sweep: &[Pair], level: f64, in_steps: bool) -> Reached {
+    let between = |ends: &[Pair]| {
         let [[from, from_cost], [to, to_cost]] = [ends[0], ends[1]];
         let ((low, low_cost), (high, high_cost)) =
             if from <= to { ((from, from_cost), (to, to_cost)) } else { ((to, to_cost), (from, from_cost)) };
@@ -32,16 +44,17 @@ pub fn cost_at(sweep: &[Pair], level: f64) -> (Option<f64>, Option<&'static str>
             let part = (level / low).ln() / (high / low).ln();
             (low_cost.ln() + part * (high_cost / low_cost).ln()).exp()
         })
-    });
-    let measured = sweep.iter().filter(|[error, _]| *error <= level).map(|pair| pair[1]);
-    let least = passes.chain(measured).reduce(f64::min);
-    let said = if least.is_none() {
+    };
+    let passes = sweep.windows(2).filter(|_| !in_steps).filter_map(between).map(|cost| (cost, None));
+    let measured = sweep.iter().enumerate().filter(|(_, [error, _])| *error <= level).map(|(k, pair)| (pair[1], Some(k)));
+    let least = measured.chain(passes).reduce(|a, b| if b.0 < a.0 { b } else { a });
+    let why = if least.is_none() {
         Some(NOT_REACHED)
     } else {
         // Of a single setting nothing else can be said.
         (sweep.len() > 1 && sweep.iter().all(|[error, _]| *error <= level)).then_some(ALWAYS_BELOW)
     };
-    (least, said)
+    Reached { cost: least.map(|of| of.0), setting: least.and_then(|of| of.1), why }
 }
 
 /// Which of these no other beats in both, or equals in both and stands before.
@@ -93,18 +106,36 @@ fn compared(
     (error, levels): (&ErrorMeasure, &[f64]),
     cost: &CostMeasure,
 ) -> Vec<EqualError> {
-    let sweep = |method: &str| -> Vec<Pair> {
+    let pair = |point: &Point| Some([(error.of)(point)?, (cost.of)(point, point.costs.get(at)?)?]);
+    let sweep = |method: &str| -> Vec<(&Point, Pair)> {
         let of = points.iter().filter(|point| point.method == method);
-        of.filter_map(|point| Some([(error.of)(point)?, (cost.of)(point, point.costs.get(at)?)?])).collect()
+        of.filter_map(|&point| Some((point, pair(point)?))).collect()
     };
+    let reached = |sweep: &[(&Point, Pair)], level: f64, in_steps: bool| {
+        let reached = cost_at(&sweep.iter().map(|of| of.1).collect::<Vec<_>>(), level, in_steps);
+        (reached, reached.setting.map(|k| sweep[k].0.setting.clone()))
+    };
+    let steps = |name: &str| document.methods.iter().any(|method| method.name == name && method.in_steps);
     let own = sweep(ours);
     let others: Vec<_> = document.methods.iter().filter(|m| m.name != ours).map(|m| (&m.name, sweep(&m.name))).collect();
     let at_level = |&level: &f64| {
-        let (mine, said) = cost_at(&own, level);
-        let other = |(method, sweep): &(&String, Vec<Pair>)| {
-            let (theirs, said) = cost_at(sweep, level);
-            let ratio = theirs.zip(mine).filter(|(_, mine)| *mine > 0.0).map(|(theirs, mine)| theirs / mine);
-            EqualCost { method: (*method).clone(), cost: theirs, ratio, why: said.map(str::to_owned) }
+        let (mine, setting) = reached(&own, level, steps(ours));
+        let over = |theirs: Option<f64>| theirs.zip(mine.cost).filter(|(_, mine)| *mine > 0.0).map(|(theirs, mine)| theirs / mine);
+        let other = |(method, sweep): &(&String, Vec<(&Point, Pair)>)| {
+            let (theirs, setting) = reached(sweep, level, steps(method));
+            let why = theirs.why.map(str::to_owned);
+            EqualCost { method: (*method).clone(), setting, cost: theirs.cost, ratio: over(theirs.cost), why }
+        };
+        let rule = |(method, sweep): &(&String, Vec<(&Point, Pair)>)| {
+            let (point, [error, cost]) = sweep.iter().find(|(point, _)| point.is_default && steps(method))?;
+            let why = (*error > level).then(|| format!("{NOT_REACHED}: its error is {error:.3}"));
+            Some(EqualCost {
+                method: (*method).clone(),
+                setting: Some(point.setting.clone()),
+                cost: Some(*cost),
+                ratio: over(Some(*cost)),
+                why,
+            })
         };
         EqualError {
             view: key.view,
@@ -114,9 +145,11 @@ fn compared(
             cost: cost.id.to_owned(),
             machine: key.machine,
             compute: key.compute.to_owned(),
-            ours: mine,
-            why: said.map(str::to_owned),
+            ours: mine.cost,
+            setting,
+            why: mine.why.map(str::to_owned),
             methods: others.iter().map(other).collect(),
+            own_rule: others.iter().filter_map(rule).collect(),
         }
     };
     if own.is_empty() { Vec::new() } else { levels.iter().map(at_level).collect() }
@@ -128,19 +161,31 @@ mod tests {
 
     #[test]
     fn costs_are_interpolated_on_logarithmic_scales_and_only_inside() {
+        let cost_at = |sweep: &[Pair], level| cost_at(sweep, level, false);
+        let at = |cost, setting, why| Reached { cost, setting, why };
         let sweep = [[4.0, 1.0], [1.0, 4.0], [0.25, 16.0]];
-        let near = |(cost, said): (Option<f64>, Option<&str>), of: f64| (cost.unwrap() - of).abs() < 1e-12 && said.is_none();
+        let near = |of: Reached, cost: f64| (of.cost.unwrap() - cost).abs() < 1e-12 && of.why.is_none();
         assert!(near(cost_at(&sweep, 2.0), 2.0) && near(cost_at(&sweep, 0.5), 8.0) && near(cost_at(&sweep, 1.0), 4.0));
+        assert_eq!((cost_at(&sweep, 2.0).setting, cost_at(&sweep, 1.0).setting), (None, Some(1)));
         assert!(near(cost_at(&sweep, 0.25), 16.0));
-        assert_eq!(cost_at(&sweep, 0.2), (None, Some(NOT_REACHED)));
-        assert_eq!(cost_at(&sweep, 5.0), (Some(1.0), Some(ALWAYS_BELOW)));
+        assert_eq!(cost_at(&sweep, 0.2), at(None, None, Some(NOT_REACHED)));
+        assert_eq!(cost_at(&sweep, 5.0), at(Some(1.0), Some(0), Some(ALWAYS_BELOW)));
         // The least of what is near enough, whatever the sweep does in between; a full resolution is always near enough.
         let folded = [[4.0, 1.0], [1.0, 9.0], [2.0, 1.5]];
         assert!(near(cost_at(&folded, 2.0), 1.5));
-        assert_eq!(cost_at(&[[0.0, 7.0]], 0.5), (Some(7.0), None));
+        assert_eq!(cost_at(&[[0.0, 7.0]], 0.5), at(Some(7.0), Some(0), None));
         // From an error to none there is nothing in between.
-        assert_eq!(cost_at(&[[4.0, 1.0], [0.0, 9.0]], 1.0), (Some(9.0), None));
-        assert_eq!(cost_at(&[], 1.0), (None, Some(NOT_REACHED)));
+        assert_eq!(cost_at(&[[4.0, 1.0], [0.0, 9.0]], 1.0), at(Some(9.0), Some(1), None));
+        assert_eq!(cost_at(&[], 1.0), at(None, None, Some(NOT_REACHED)));
+    }
+
+    #[test]
+    fn between_steps_there_is_nothing() {
+        let sweep = [[4.0, 1.0], [1.0, 4.0], [0.25, 16.0], [0.0, 12.0]];
+        for (level, cost, setting) in [(3.99, 4.0, 1), (1.0, 4.0, 1), (0.99, 12.0, 3), (0.3, 12.0, 3), (0.0, 12.0, 3)] {
+            assert_eq!(cost_at(&sweep, level, true), Reached { cost: Some(cost), setting: Some(setting), why: None });
+        }
+        assert_eq!(cost_at(&sweep[..2], 0.5, true), Reached { cost: None, setting: None, why: Some(NOT_REACHED) });
     }
 
     #[test]

@@ -4,10 +4,12 @@ mod check;
 mod document;
 mod equal;
 mod measure;
+mod verdict;
 
 pub use document::{
     Appearance, Converged, Costs, Energy, EqualCost, EqualError, ErrorTime, KIND, LeftOut, MethodEntry, Options, PictureEntry, Point,
-    SceneEntry, Shift, TraceGrid, TracedHit, TracedRay, VERSION, ViewEntry,
+    SceneEntry, Shift, SizeCosts, TraceGrid, TracedHit, TracedRay, VERSION, ViewEntry,
 };
-pub use equal::{ALWAYS_BELOW, NOT_REACHED, Pair, cost_at, equal_errors, front};
+pub use equal::{ALWAYS_BELOW, NOT_REACHED, Pair, Reached, cost_at, equal_errors, front};
 pub use measure::{COSTS, CostMeasure, ERRORS, ErrorMeasure, USUAL_COSTS, USUAL_ERRORS};
+pub use verdict::{Row, Verdict, Winner, verdict_text, verdicts};

@@ -13,7 +13,7 @@ pub use ledger::{Ledger, ledger};
 pub use pictures::{Embedded, PICTURE_BYTES, PictureFault, embed};
 pub use stability::{Hunted, StabilityCase, StabilityReport, StabilityTally};
 
-use super::error_time::{COSTS, ERRORS, ErrorTime};
+use super::error_time::{COSTS, ERRORS, ErrorTime, verdicts};
 use super::palette;
 use crate::method::METHODS;
 use crate::picture::{HOTTEST, level_colour};
@@ -25,17 +25,19 @@ use serde::Serialize;
 use serde_json::{Value, json};
 use std::collections::{BTreeMap, BTreeSet};
 use std::io::{self, Write};
+use xxhash_rust::xxh3::xxh3_64;
 
 const SHELL: &str = include_str!("web/shell.html");
 const STYLE: &str = include_str!("web/style.css");
 /// In the order in which they stand in the page.
-const SCRIPTS: [&str; 9] = [
+const SCRIPTS: [&str; 10] = [
     include_str!("web/base.js"),
     include_str!("web/points.js"),
     include_str!("web/chart.js"),
     include_str!("web/work.js"),
     include_str!("web/limits.js"),
     include_str!("web/distance.js"),
+    include_str!("web/verdict.js"),
     include_str!("web/pictures.js"),
     include_str!("web/tables.js"),
     include_str!("web/main.js"),
@@ -66,6 +68,7 @@ pub fn page(documents: &Documents) -> io::Result<String> {
     // The larger parts last: what they hold is not looked through for names of others.
     let parts = [
         ("program", escaped(&program())),
+        ("template", template()),
         ("title", escaped(&documents.title)),
         ("style", STYLE.trim().to_owned()),
         ("vendor", vendor),
@@ -73,6 +76,14 @@ pub fn page(documents: &Documents) -> io::Result<String> {
         ("blocks", blocks),
     ];
     Ok(filled(SHELL, &parts))
+}
+
+/// Checksum of everything in a page but its figures: 64 bits, hexadecimal. Pages of one template look alike.
+pub fn template() -> String {
+    let colours = METHODS.iter().map(|method| format!("{:?}", palette::of(method.name))).collect::<String>();
+    let colours = format!("{colours}{:?}{:?}", palette::PARTS, palette::KINDS);
+    let parts = [SHELL, STYLE, &colours].into_iter().chain(SCRIPTS).chain(VENDOR.into_iter().flatten());
+    format!("{:016x}", xxh3_64(parts.collect::<String>().as_bytes()))
 }
 
 /// `shell` with its `{{names}}` replaced; what is put in is taken as it is.
@@ -109,6 +120,7 @@ fn data(documents: &Documents) -> io::Result<Value> {
         "program": program(),
         "palette": { "methods": methods, "parts": parts, "kinds": kinds, "levels": levels, "hottest": HOTTEST },
         "measures": measures(),
+        "verdicts": error_time.as_ref().map_or_else(Vec::new, verdicts),
         "error_time": serde_json::to_value(&error_time)?,
         "simulations": serde_json::to_value(&documents.simulations)?,
         "stability": serde_json::to_value(&documents.stability)?,

@@ -48,37 +48,12 @@ function globalControls(state) {
   return bar;
 }
 
-/** The figures that one would tell first. */
-function glance(state) {
-  const list = h("ul", { class: "glance" });
-  const draw = () => {
-    const points = state.points();
-    const shown = shownOf(points, settingsOf(points, {}));
-    const ours = shown.filter((p) => isOurs(p.method));
-    const gain = (cost) => ours.flatMap((p) => {
-      const base = shown.find((q) => q.method === "bvh" && q.samples === p.samples && place(q) === place(p));
-      const [ours, theirs] = [cost.of(p, costAt(p, state.machine)), base && cost.of(base, costAt(base, state.machine))];
-      return ours > 0 && theirs > 0 ? [{ p, gain: theirs / ours }] : [];
-    });
-    const cards = [["milliseconds", "time"], ["energy.total", "energy"], ["dram_lines", "DRAM lines"]].flatMap(([id, what]) => {
-      const gains = gain(COSTS.find((c) => c.id === id));
-      if (!gains.length) return [];
-      const [least, most] = [d3.least(gains, (g) => g.gain), d3.greatest(gains, (g) => g.gain)];
-      return [[gains.length === 1 ? times(most.gain) : `${times(least.gain)} to ${times(most.gain)}`, `${what} of the full-resolution BVH over ours at ${most.p.setting}${gains.length > 1 ? `: least from ${place(least.p)}, most from ${place(most.p)}` : ` from ${place(most.p)}`}`]];
-    });
-    const surface = errorMeasures().find((m) => m.id === "geometry.surface.percentile_99");
-    const errors = ours.map((p) => errorOf(p, surface)).filter((v) => v != null);
-    if (errors.length) cards.push([`${num(d3.max(errors), 2)} pixels`, `off the surface at the 99th percentile, the most of ${count(errors.length, "view")}`]);
-    if (page.error_time?.equal_error.length) {
-      const doc = page.error_time;
-      const half = doc.equal_error.filter((e) => doc.scenes[doc.views[e.view].scene].name === state.scene && e.error === "surface-p99" && e.level === 0.5 && e.cost === "time" && state.machine === target([doc.machines[e.machine].label, ...doc.machines[e.machine].set].join(" "), e.compute));
-      const ratios = half.flatMap((e) => e.methods.filter((m) => m.method === "bvh" && m.ratio != null).map((m) => m.ratio));
-      if (ratios.length) cards.push([`${ratios.filter((r) => r > 1).length} of ${ratios.length}`, "views in which ours takes less time than the full-resolution BVH, at half a pixel of error"]);
-    }
-    list.replaceChildren(...cards.map(([figure, words]) => h("li", {}, h("strong", {}, figure), h("span", {}, words))));
-  };
-  state.onChange(draw);
-  return list;
+/** The sizes of the frames stand in the headlines of what is of them. */
+function headlines(state, made) {
+  state.onChange(() => {
+    const size = sizeWords(state.all.filter((p) => p.scene === state.scene).map((p) => p.size));
+    made.forEach(([section, , ofFrames]) => ofFrames && section.querySelector("h2 .size").replaceChildren(size ? `, ${size}` : ""));
+  });
 }
 
 /** Light, dark, or as the system says. */
@@ -129,8 +104,10 @@ async function start() {
   const hasPoints = state.all.length > 0;
   const several = unique(state.all.map((p) => p.distance)).length > 1;
   const sections = [
+    ["verdict", "Verdict", verdictSection, page.verdicts.length > 0],
     ["work", "Error against cost", workSection, hasPoints && errorMeasures().some((m) => state.all.some((p) => errorOf(p, m) != null))],
     ["distance", "By distance", distanceSection, hasPoints && several],
+    ["size", "By size of the frame", sizeSection, unique((page.error_time?.sizes ?? []).map((s) => String(s.size))).length > 1],
     ["parts", "Energy and traffic", partsSection, hasPoints],
     ["pictures", "Pictures and rays", picturesSection, page.pictures.length > 0],
     ["equal", "At equal error", equalSection, page.error_time?.equal_error.length > 0],
@@ -142,11 +119,15 @@ async function start() {
   // Pictures are asked for from the diagrams before their own section is there.
   if (!page.pictures.length) state.showPicture = null;
   else state.showPicture = () => {};
-  const made = sections.map(([id, title, fill]) => [h("section", { id, "aria-labelledby": `${id}-title` }, h("h2", { id: `${id}-title` }, title)), fill]);
+  const withoutFrames = ["stability", "claims", "run"];
+  const made = sections.map(([id, title, fill]) => [h("section", { id, "aria-labelledby": `${id}-title` }, h("h2", { id: `${id}-title` }, title, h("span", { class: "size" }))), fill, !withoutFrames.includes(id)]);
   contents.append(...sections.map(([id, title]) => h("li", {}, h("a", { href: `#${id}` }, title))));
   document.getElementById("contents").replaceChildren(contents);
-  main.replaceChildren(...(hasPoints ? [glance(state), globalControls(state)] : []), ...made.map(([section]) => section));
+  // The verdict heads the page; what is chosen below is of the rest.
+  const head = made.filter(([section]) => section.id === "verdict").map(([section]) => section);
+  main.replaceChildren(...head, ...(page.error_time ? [sizesNote()] : []), ...(hasPoints ? [glance(state), globalControls(state)] : []), ...made.map(([section]) => section).filter((section) => !head.includes(section)));
   made.forEach(([section, fill]) => fill(section, state));
+  headlines(state, made);
   document.documentElement.dataset.ready = String(Math.round(performance.now()));
 }
 

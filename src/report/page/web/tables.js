@@ -16,25 +16,27 @@ function equalSection(section, state) {
     const costs = unique(all.map((e) => e.cost));
     pick("cost", costs);
     const rows = all.filter((e) => e.error === own.error && e.level === Number(own.level) && e.cost === own.cost).sort(by((e) => e.v.distance));
-    const methods = unique(rows.flatMap((e) => e.methods.map((m) => m.method)));
-    const of = (e, method) => e.methods.find((m) => m.method === method);
+    const others = ["methods", "own_rule"].flatMap((list) => unique(rows.flatMap((e) => e[list].map((m) => m.method))).map((method) => ({ name: list === "methods" ? method : `${method}, own rule`, of: (e) => e[list].find((m) => m.method === method) })));
     const set = (key) => (value) => ((own[key] = value), draw());
-    const costName = words(own.cost);
+    const why = (words) => (words ? h("span", { class: "why" }, words) : "");
+    /** A cost, the setting that has it, and what is to be said of it. */
+    const cost = (of) => (of?.cost == null ? why(of?.why ?? "–") : [num(of.cost, 4), why(of.setting), why(of.why)]);
     const columns = [
-      { name: "from (radii)", value: (e) => e.v.distance }, { name: "samples", value: (e) => e.samples }, { name: `lod: ${costName}`, value: (e) => e.ours, show: (e) => (e.ours == null ? h("span", { class: "why" }, e.why ?? "–") : num(e.ours, 4)) },
-      ...methods.flatMap((method) => [
-        { name: `${method}: ${costName}`, value: (e) => of(e, method)?.cost ?? null, show: (e) => (of(e, method)?.cost == null ? h("span", { class: "why" }, of(e, method)?.why ?? "–") : num(of(e, method).cost, 4)) },
-        { name: `${method} over lod`, value: (e) => of(e, method)?.ratio ?? null, show: (e) => (of(e, method)?.ratio == null ? "–" : h("span", { class: of(e, method).ratio > 1 ? "better" : "" }, times(of(e, method).ratio))) },
+      { name: "from (radii)", value: (e) => e.v.distance }, { name: "samples", value: (e) => e.samples }, { name: "lod", value: (e) => e.ours, show: (e) => cost({ ...e, cost: e.ours }) },
+      ...others.flatMap(({ name, of }) => [
+        { name, value: (e) => of(e)?.cost ?? null, show: (e) => cost(of(e)) },
+        { name: "over lod", value: (e) => of(e)?.ratio ?? null, show: (e) => (of(e)?.ratio == null ? "–" : h("span", { class: of(e).ratio > 1 ? "better" : "" }, times(of(e).ratio))) },
       ]),
     ];
-    const name = `At equal error, ${words(own.error)} ${own.level}, ${state.scene}`;
+    const name = `At equal error, ${words(own.error)} ${own.level}: ${words(own.cost)}, ${state.scene}, ${sizeWords(all.map((e) => e.v.size))}`;
     body.replaceChildren(
       h("div", { class: "controls" }, choice("Error", errors.map((e) => [e, words(e)]), own.error, set("error")), choice("Level", levels.map((l) => [l, num(l)]), own.level, set("level")), choice("Cost", costs.map((c) => [c, words(c)]), own.cost, set("cost"))),
+      h("h3", {}, name),
       scrolled(name, table(name, columns, rows)),
       h("div", { class: "data" }, h("button", { type: "button", "aria-label": `CSV of: ${name}`, onclick: () => save("equal-error.csv", "text/csv", csv(columns, rows)) }, "CSV")),
     );
   };
-  section.append(h("p", {}, "What each method costs where its error is the same as ours, interpolated along its knob inside what was measured, never outside (a method whose coarsest setting is nearer than that has that setting's cost). A ratio above 1, in bold, is how many times as much as ours it costs."), body);
+  section.append(h("p", {}, "What each method costs where its error is at most the one chosen. Delta can have any value: our cost is interpolated between the values that were measured, never outside of them. Discrete LOD has the cheapest of its levels that is near enough, as if one knew its error beforehand; its own rule chooses the level without that, and its column says where that is further off. A ratio above 1, in bold, is how many times as much as ours a method costs."), body);
   state.onChange(draw);
 }
 
@@ -102,7 +104,7 @@ function runSection(section) {
   const doc = page.error_time;
   if (doc) {
     const o = doc.options;
-    section.append(h("h3", {}, "Error against cost"), h("div", { class: "card" }, facts([["program", doc.program], ["size", o.size.join(" × ")], ["samples per pixel", o.samples.join(", ")], ["shading", o.shading], ["FLIP", `${num(o.pixels_per_degree, 4)} pixels per degree`], ["nearest surface", `one ray in ${o.nearest_stride}`]])));
+    section.append(h("h3", {}, "Error against cost"), h("div", { class: "card" }, facts([["program", doc.program], ["frames", sizeWords(doc.views.map((v) => v.size))], ["errors and pictures", unique(doc.views.map((v) => v.size.map((n) => Math.floor(n / v.every)).join(" × "))).join(", ") + " of their pixels"], ["samples per pixel", o.samples.join(", ")], ["shading", o.shading], ["FLIP", `${num(o.pixels_per_degree, 4)} pixels per degree`], ["nearest surface", `one ray in ${o.nearest_stride}`]])));
     section.append(scrolled("Scenes", table("Scenes", [["scene", "name"], ["file", "file"], ["hash", "hash"], ["splits", "levels"], ["base triangles", "base_triangles"], ["finest triangles", "finest_triangles"], ["bounds", "bounds"]].map(([name, key]) => ({ name, value: (s) => s[key] })), doc.scenes)));
     section.append(scrolled("Methods", table("Methods", [["method", "name"], ["knob", "knob"], ["what it is", "help"]].map(([name, key]) => ({ name, value: (m) => m[key] })), doc.methods)));
   }
