@@ -1,8 +1,7 @@
 //! The map of winners: rows of scenes and costs, columns from near to far; each cell has the colour and the name of the cheapest method, and how far ours is ahead or
 //! behind.
 
-use super::canvas::{FONT, TEXT, centred, svg};
-use super::distance::gain;
+use super::canvas::{Area, FONT, TEXT, centred, short, svg};
 use super::fault::{DiagramFault, wrong};
 use super::marks::colour;
 use crate::method::lod;
@@ -37,15 +36,13 @@ pub(super) fn winners(verdict: &Verdict) -> Result<String, DiagramFault> {
     })
 }
 
-fn cell(area: &super::canvas::Area<'_>, winner: &Winner, (left, top): (i32, i32)) -> Result<(), DiagramFault> {
+fn cell(area: &Area<'_>, winner: &Winner, (left, top): (i32, i32)) -> Result<(), DiagramFault> {
     let ink = winner.best.as_deref().map_or(RGBColor(92, 98, 108), |method| colour(&palette::of(method)));
     let corners = [(left + 2, top + 2), (left + CELL.0 - 2, top + CELL.1 - 2)];
     area.draw(&Rectangle::new(corners, ink.mix(0.16).filled())).map_err(wrong)?;
     area.draw(&Rectangle::new(corners, ink.stroke_width(1))).map_err(wrong)?;
     let middle = left + CELL.0 / 2;
-    let who = winner.best.as_deref().unwrap_or(if winner.over_ours.is_some() { "the same" } else { "none" });
-    let over = winner.over_ours.map_or_else(String::new, |over| format!(" {}", gain(over)));
-    area.draw(&Text::new(format!("{who}{over}"), (middle, top + 13), centred(TEXT - 1, &ink))).map_err(wrong)?;
-    let place = format!("{} radii", super::canvas::short(winner.distance));
+    area.draw(&Text::new(winner.name_and_ratio(), (middle, top + 13), centred(TEXT - 1, &ink))).map_err(wrong)?;
+    let place = format!("{} radii", short(winner.distance));
     area.draw(&Text::new(place, (middle, top + 27), centred(TEXT - 3, &RGBColor(70, 76, 86)))).map_err(wrong)
 }

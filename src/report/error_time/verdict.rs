@@ -91,15 +91,11 @@ impl Winner {
         Self { view: equal.view, distance: view.distance, size: view.size, best, setting, over_ours, note }
     }
 
-    /// The cell of the map, such as `2: discrete 0.54`.
-    fn words(&self) -> String {
-        let who = match &self.best {
-            Some(method) => method.as_str(),
-            None if self.over_ours.is_some() => DRAW,
-            None => "none",
-        };
-        let over = self.over_ours.map_or_else(String::new, |over| format!(" {}", ratio(over)));
-        format!("{}: {who}{over}", (self.distance * 1000.0).round() / 1000.0)
+    /// Who wins, and the ratio, such as `discrete 0.54`.
+    pub fn name_and_ratio(&self) -> String {
+        let over = self.over_ours.map(ratio);
+        let who = self.best.as_deref().unwrap_or(if over.is_some() { DRAW } else { "none" });
+        over.map_or_else(|| who.to_owned(), |over| format!("{who} {over}"))
     }
 }
 
@@ -193,7 +189,13 @@ pub fn verdict_text(verdicts: &[Verdict]) -> String {
         verdict.said.iter().for_each(|said| text += &wrapped(&format!("  {said}"), "    "));
         text += &wrapped("  radii: the cheapest, and the cheapest other's cost over lod's (below 1 lod is behind):", "    ");
         for row in &verdict.rows {
-            let cells: Vec<String> = row.winners.iter().map(|winner| winner.words().replace(' ', "\u{a0}")).collect();
+            let cells: Vec<String> = row
+                .winners
+                .iter()
+                .map(|winner| {
+                    format!("{}: {}", (winner.distance * 1000.0).round() / 1000.0, winner.name_and_ratio()).replace(' ', "\u{a0}")
+                })
+                .collect();
             text += &wrapped(&format!("  {}, {}: {}", row.scene, row.words, cells.join(", ")), "    ").replace('\u{a0}', " ");
         }
     }

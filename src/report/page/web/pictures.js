@@ -90,7 +90,7 @@ function picturesSection(section, state) {
       const box = frame.getBoundingClientRect();
       go([Math.floor(((event.clientX - box.left) / box.width) * view.size[0]), Math.floor(((event.clientY - box.top) / box.height) * view.size[1])]);
     });
-    const scaled = a.width < view.size[0] ? h("p", { class: "note" }, `Traced at ${view.size.join(" × ")}, embedded at ${a.width} × ${a.height}.`) : "";
+    const scaled = a.width < view.size[0] ? h("p", { class: "note" }, `Of a frame of ${view.size.join(" × ")}${view.every > 1 ? `, every ${ordinal(view.every)} column and row` : ""}; embedded at ${a.width} × ${a.height}.`) : "";
     const hasTraces = document.getElementById("traces") != null;
     body.replaceChildren(
       controls,

@@ -27,7 +27,7 @@ function winnersTable({ head, rows }) {
     const title = [w.setting, w.note].filter(Boolean).join("; ");
     return h(
       "td", { class: "winner", style: `--method:${paint}`, title: title || null, "data-view": w.view, "data-cost": row.cost, "data-best": w.best, "data-value": w.over_ours },
-      h("small", {}, `${num(w.distance)} radii`), h("span", {}, w.best ? swatch(w.best) : "", who), h("strong", {}, w.over_ours == null ? "" : times(w.over_ours)),
+      h("small", {}, `${num(w.distance)} radii`), h("span", {}, w.best ? swatch(w.best) : "", who), h("strong", {}, w.over_ours == null ? "" : w.over_ours < 9.995 ? w.over_ours.toFixed(2) : num(Math.round(w.over_ours))),
     );
   };
   const body = d3.groups(rows, (row) => row.scene).flatMap(([scene, of]) => of.map((row, k) => h(
@@ -69,7 +69,8 @@ function glance(state) {
     const equal = page.error_time?.equal_error.length ? "within half a pixel of the surface" : "at the settings by distance";
     const line = ([method, of]) => {
       const [least, most] = d3.extent(of, (r) => r.ratio);
-      return h("span", { "data-method": method }, swatch(method), `${method}: `, h("b", {}, times(least) === times(most) ? times(most) : `${times(least)} to ${times(most)}`), `, above 1 in ${of.filter((r) => r.ratio > 1).length} of ${count(of.length, "view")}`);
+      const range = times(least) === times(most) ? times(most) : `${times(least)} to ${times(most)}`;
+      return h("span", { "data-method": method }, swatch(method), h("span", {}, `${method} `, h("b", {}, range), `, above 1 in ${of.filter((r) => r.ratio > 1).length} of ${count(of.length, "view")}`));
     };
     const cards = [["time", "Time"], ["energy", "Energy"], ["dram-lines", "DRAM lines"]].flatMap(([cost, name]) => {
       const of = d3.groups(ratios.filter((r) => r.cost === cost), (r) => r.method);
