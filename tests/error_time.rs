@@ -90,7 +90,7 @@ fn costs_are_of_the_whole_frame_and_errors_of_some_of_its_columns_and_rows() {
         assert_eq!((&a["setting"], &a["costs"]), (&b["setting"], &b["costs"]));
         // A sixteenth of the rays, with the same cones: not far from the error of all of them.
         let [a, b] = [a, b].map(|point| number(point, "/geometry/surface/mean"));
-        assert!((a - b).abs() <= 0.2 * a + 1e-9, "{a} {b}");
+        assert!((a - b).abs() <= 0.25 * a + 1e-3, "{a} {b}");
     }
     // Other sizes: those below the named one, and itself, which costs what its points say.
     let sizes: Vec<&Value> = few["sizes"].as_array().unwrap().iter().collect();
@@ -100,7 +100,7 @@ fn costs_are_of_the_whole_frame_and_errors_of_some_of_its_columns_and_rows() {
         let same = few["points"].as_array().unwrap().iter().find(|p| p["method"] == size["method"] && p["is_default"] == true).unwrap();
         assert_eq!((&same["setting"], number(same, "/costs/0/cycles")), (&size["setting"], number(size, "/costs/0/cycles")));
     }
-    let alone = desk.json("simulate a.lod --size 128x128 --distance 2 --method discrete");
+    let alone = desk.json("simulate a.lod --size 128x128 --distance 2 --method discrete --compute free");
     let discrete = sizes.iter().find(|size| size["method"] == "discrete" && size["size"][0] == 128).unwrap();
     assert_eq!(discrete["costs"][0]["cycles"], alone["cycles"]);
     for cost in ["time", "energy", "dram-lines"] {
