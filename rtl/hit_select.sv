@@ -2,7 +2,8 @@
 
 /// Is a new hit closer than the closest so far? Twin of src/block/hit_select.rs.
 ///
-/// Smaller t first, then smaller id: the first full-resolution triangle below, tree 4^N + node 4^(N - level). Equal t and id: the same triangle, not closer.
+/// Smaller t first; at equal t a front face before a back face; then smaller id: the first full-resolution triangle below, tree 4^N + node 4^(N - level).
+/// Equal t and id: the same triangle, not closer.
 /// Legal: level <= levels <= MAX_LEVELS, node below 4^level, best_id below 2^28 4^MAX_LEVELS. Latency HIT_SELECT_LATENCY = 3, interval 1.
 module hit_select #(
   parameter int unsigned TAG_W = 8
@@ -26,12 +27,12 @@ module hit_select #(
     $error("hit_select: lod_pkg::HIT_SELECT_LATENCY must be 3");
   end
 
-  // Stage 1: distances compared, the tree at its place.
+  // Stage 1: distances and sides compared, the tree at its place.
   logic              nearer, level_with;
   logic [ID_W-1:0]   tree;
   logic [3:0]        below;
-  assign nearer     = !in_i.known || in_i.t < in_i.best_t;
-  assign level_with = in_i.t == in_i.best_t;
+  assign nearer     = !in_i.known || {in_i.t, !in_i.front} < {in_i.best_t, !in_i.best_front};
+  assign level_with = in_i.t == in_i.best_t && in_i.front == in_i.best_front;
   assign tree       = ID_W'(in_i.tree) << {in_i.levels, 1'b0};
   assign below      = in_i.levels - in_i.level;
 

@@ -529,13 +529,15 @@ package lod_pkg;
     logic [3:0] levels;             // Number of splits N.
     logic known;                    // There is a closest hit so far.
     logic [RAY_T_W-1:0] best_t;     // Its t.
+    logic best_front;               // It is on a front face.
     logic [FULL_ID_W-1:0] best_id;  // Its id.
     logic [RAY_T_W-1:0] t;          // t of the new hit.
+    logic front;                    // It is on a front face.
     logic [27:0] tree;              // Its base triangle.
     logic [3:0] level;              // Its level.
     logic [NODE_INDEX_W-1:0] node;  // Its node on that level.
   } hit_select_in_t;
-  localparam int unsigned HIT_SELECT_IN_W = 4 + 1 + RAY_T_W + FULL_ID_W + RAY_T_W + 28 + 4 + NODE_INDEX_W;
+  localparam int unsigned HIT_SELECT_IN_W = 4 + 1 + RAY_T_W + 1 + FULL_ID_W + RAY_T_W + 1 + 28 + 4 + NODE_INDEX_W;
 
   // Output of hit_select.
   typedef struct packed {

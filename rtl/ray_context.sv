@@ -70,8 +70,9 @@ module ray_context (
   output lod_pkg::start_test_in_t          tri_o,
   input  logic                             tri_grant_i,
   input  logic                             tri_miss_i,
-  // hit_select: `hit_number_i` is the triangle that t belongs to; its numerators follow with the result.
+  // hit_select: `hit_number_i` is the triangle that t belongs to, `hit_front_i` its side; its numerators follow with the result.
   input  logic [1:0]                       hit_number_i,
+  input  logic                             hit_front_i,
   input  logic [lod_pkg::RAY_T_W-1:0]      hit_t_i,
   output lod_pkg::hit_select_in_t          select_o,
   input  logic                             select_valid_i,
@@ -449,7 +450,7 @@ module ray_context (
     assign unused_closer = closer;
   end
 
-  assign select_o    = {scene_i.levels, known, t_max, best_id, hit_t_i, 28'(tree_q), hit_level, lod_pkg::NODE_INDEX_W'(hit_node)};
+  assign select_o    = {scene_i.levels, known, t_max, best.front, best_id, hit_t_i, hit_front_i, 28'(tree_q), hit_level, lod_pkg::NODE_INDEX_W'(hit_node)};
 
   assign divide_request_o = state_q == lod_pkg::DIVIDE_V || state_q == lod_pkg::DIVIDE_W;
   assign divide_what_o    = (state_q == lod_pkg::DIVIDE_V) ? lod_pkg::DIVIDE_FOR_V : lod_pkg::DIVIDE_FOR_W;

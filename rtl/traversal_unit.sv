@@ -407,7 +407,7 @@ module traversal_unit #(
   // ---- Hits wait for their division ----
 
   logic queue_pop, queue_empty;
-  lod_pkg::queued_hit_t head, chosen;
+  lod_pkg::queued_hit_t head, compared, chosen;
   logic [lod_pkg::KEPT_HIT_W-1:0] kept_head, candidate_q, chosen_q;
 
   assign head   = lod_pkg::QUEUED_HIT_W'(kept_head);
@@ -491,7 +491,8 @@ module traversal_unit #(
   logic [CONTEXT_W-1:0] select_owner;
   logic [lod_pkg::RAY_T_W-1:0] chosen_t_q;
 
-  assign t_valid = divide_valid && divide_what == lod_pkg::DIVIDE_FOR_T;
+  assign compared = lod_pkg::QUEUED_HIT_W'(candidate);
+  assign t_valid  = divide_valid && divide_what == lod_pkg::DIVIDE_FOR_T;
 
   always_comb begin
     select_in = '0;
@@ -580,7 +581,7 @@ module traversal_unit #(
       .tri_request_o(tri_request[k]), .tri_number_o(tri_data[k][TRI_W-1:TRI_W-2]),
       .tri_o(tri_data[k][TRI_W-3:0]), .tri_grant_i(tri_grant[k]),
       .tri_miss_i(tri_valid && !tri_out.hit && tri_owner == ME),
-      .hit_number_i(divide_number), .hit_t_i(divide_out.quotient), .select_o(select_data[k]),
+      .hit_number_i(divide_number), .hit_front_i(compared.test.front), .hit_t_i(divide_out.quotient), .select_o(select_data[k]),
       .select_valid_i(select_valid && select_owner == ME), .select_i(select_out),
       .chosen_t_i(chosen_t_q), .chosen_i(chosen),
       .divide_request_o(divide_request[k]), .divide_what_o(divide_data[k][DIVIDE_W-1:DIVIDE_W-2]),

@@ -42,9 +42,10 @@ pub struct ExactHit {
 }
 
 impl ExactHit {
-    /// The order of hits: smaller t, then smaller first full-resolution triangle.
-    fn order(&self, levels: u32) -> (u64, u64) {
-        (self.t, (u64::from(self.tree) << (2 * levels)) + (u64::from(self.node) << (2 * (levels - self.level))))
+    /// The order of hits: smaller t; of equal t the front before the back; then the smaller first full-resolution triangle.
+    fn order(&self, levels: u32) -> (u64, u8, u64) {
+        let side = if self.front { 0 } else { 1 };
+        (self.t, side, (u64::from(self.tree) << (2 * levels)) + (u64::from(self.node) << (2 * (levels - self.level))))
     }
 }
 

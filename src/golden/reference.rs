@@ -43,9 +43,9 @@ pub struct ReferenceHit {
 }
 
 impl ReferenceHit {
-    /// Closer, or as close and of smaller id.
+    /// Closer; or as close and in front, where the other is a back face; or of the same side too and of smaller id.
     fn before(&self, other: &Self) -> bool {
-        (self.t, self.tree, self.full_node) < (other.t, other.tree, other.full_node)
+        (self.t, !self.front, self.tree, self.full_node) < (other.t, !other.front, other.tree, other.full_node)
     }
 }
 

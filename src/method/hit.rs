@@ -74,7 +74,7 @@ pub fn is_beyond(t_near: TNear, t: RayT) -> bool {
     t_near.get() << T_NEAR_TO_T_SHIFT > t.get()
 }
 
-/// Keeps the closest hit: smaller t, then smaller id; or, if any serves, the closest of the first triangles tested together of which one is met.
+/// Keeps the closest hit: smaller t, at equal t a front face before a back face, then smaller id; or, if any serves, the closest of the first triangles tested together of which one is met.
 #[derive(Clone, Debug)]
 pub struct ClosestHit {
     levels: u32,
@@ -170,8 +170,10 @@ impl HitSink for ClosestHit {
             levels: U::new(u64::from(self.levels)),
             known: self.best.is_some(),
             best_t: self.t,
+            best_front: self.best.as_ref().is_some_and(|(_, _, test, _)| test.front),
             best_id: self.id,
             t,
+            front: test.front,
             tree: U::new(u64::from(id.tree)),
             level: U::new(u64::from(id.level)),
             node: U::new(u64::from(id.node)),

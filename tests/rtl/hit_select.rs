@@ -20,8 +20,10 @@ fn random(draw: &mut Draw) -> In {
         levels: U::new(levels),
         known: !draw.once_in(4),
         best_t: draw.bits(),
+        best_front: draw.once_in(2),
         best_id: U::new(best_id),
         t: draw.bits(),
+        front: draw.once_in(2),
         tree: draw.bits(),
         level: U::new(level),
         node: U::new(node),
@@ -29,10 +31,10 @@ fn random(draw: &mut Draw) -> In {
 }
 
 fn first(draw: &mut Draw) -> In {
-    In { known: false, best_t: U::ZERO, best_id: U::ZERO, ..random(draw) }
+    In { known: false, best_t: U::ZERO, best_front: true, best_id: U::ZERO, ..random(draw) }
 }
 
-/// A best hit of this t, and of the id of the new one plus `by`.
+/// A best hit of this t and of the same side, and of the id of the new one plus `by`.
 fn near(draw: &mut Draw, t: i64, by: i64) -> In {
     let input = random(draw);
     let (levels, level) = (input.levels.get(), input.level.get());
@@ -40,14 +42,21 @@ fn near(draw: &mut Draw, t: i64, by: i64) -> In {
     let best_id = id.saturating_add_signed(by).min((1 << id_bits(draw)) - 1);
     // Away from both ends, so that one more and one less exist.
     let t_new = input.t.get().clamp(1, U::<35>::MAX.get() - 1);
-    In { known: true, t: U::new(t_new), best_t: U::new(t_new.saturating_add_signed(t)), best_id: U::new(best_id), ..input }
+    let best_t = U::new(t_new.saturating_add_signed(t));
+    In { known: true, t: U::new(t_new), best_t, best_front: input.front, best_id: U::new(best_id), ..input }
+}
+
+/// The same of another side: the new one is on a front face if `front`.
+fn across(draw: &mut Draw, front: bool, t: i64, by: i64) -> In {
+    In { front, best_front: !front, ..near(draw, t, by) }
 }
 
 /// The best hit is on an ancestor or a descendant that begins with the same full-resolution triangle: the same id.
 fn relative(draw: &mut Draw) -> In {
     let input = random(draw);
     let (levels, level) = (input.levels.get(), draw.below(input.levels.get() + 1));
-    In { known: true, best_t: input.t, best_id: U::new(input.tree.get() << (2 * levels)), node: U::ZERO, level: U::new(level), ..input }
+    let best_id = U::new(input.tree.get() << (2 * levels));
+    In { known: true, best_t: input.t, best_front: input.front, best_id, node: U::ZERO, level: U::new(level), ..input }
 }
 
 /// The last triangle of all.
@@ -74,11 +83,18 @@ pub fn suite(levels: u64) -> Suite<HitSelect> {
             Is::all("equal t, smaller id so far", |d| near(d, 0, -1), |_, o| !o.closer),
             Is::all("t one step smaller, smaller id so far", |d| near(d, 1, -1), |_, o| o.closer),
             Is::all("t one step larger, larger id so far", |d| near(d, -1, 1), |_, o| !o.closer),
+            Is::all("equal t, front after back, larger id so far", |d| across(d, true, 0, 1), |_, o| o.closer),
+            Is::all("equal t, front after back, smaller id so far", |d| across(d, true, 0, -1), |_, o| o.closer),
+            Is::all("equal t, back after front, larger id so far", |d| across(d, false, 0, 1), |_, o| !o.closer),
+            Is::all("equal t, back after front, smaller id so far", |d| across(d, false, 0, -1), |_, o| !o.closer),
+            Is::all("back after front, t one step smaller", |d| across(d, false, 1, -1), |_, o| o.closer),
+            Is::all("front after back, t one step larger", |d| across(d, true, -1, 1), |_, o| !o.closer),
             Is::all("the largest id", last, |i, o| o.id.get() + 1 == 1 << (28 + 2 * i.levels.get())),
             Is::all("the same triangle on another level", relative, |i, o| i.best_id == o.id && !o.closer),
         ],
         vec![
-            ("smaller id at equal t", |i, o| i.known && i.t == i.best_t && o.closer),
+            ("smaller id at equal t", |i, o| i.known && i.t == i.best_t && i.front == i.best_front && o.closer),
+            ("another side at equal t", |i, o| i.known && i.t == i.best_t && o.closer == (i.front && !i.best_front)),
             ("the largest t", |i, o| i.t == U::MAX && !o.closer),
         ],
         vec![

@@ -31,7 +31,7 @@ pub struct Closest {
     tree: U<28>,
     level: U<4>,
     node: NodeIndex,
-    front: bool,
+    pub front: Register<bool>,
     v: EdgeFunction,
     w: EdgeFunction,
     det: EdgeFunction,
@@ -66,7 +66,8 @@ impl Closest {
             self.id.set(select.id);
             (self.tree, self.level, self.node) = (U::new(tree), U::new(level), U::new(node));
             let &start_test::Out { test, below } = test;
-            (self.front, self.v, self.w, self.det, self.below) = (test.front, test.v, test.w, test.det, below);
+            self.front.set(test.front);
+            (self.v, self.w, self.det, self.below) = (test.v, test.w, test.det, below);
             let [p0, p1, p2] = corners;
             self.corners = Corners { p0, p1, p2 };
         }
@@ -110,7 +111,7 @@ impl Closest {
     pub fn hit(&self) -> Option<Hit> {
         self.known.get().then(|| Hit {
             t: self.t_max.get(),
-            front: self.front,
+            front: self.front.get(),
             tree: self.tree,
             level: self.level,
             node: self.node,

@@ -156,11 +156,22 @@ impl Context {
         (if v { DIVIDE_FOR_V } else { DIVIDE_FOR_W }, self.closest.divide_in(v))
     }
 
-    /// Operands of `hit_select` for triangle `number`, met at `t`.
-    pub fn select_in(&self, scene: &SceneConfig, number: u16, t: RayT) -> hit_select::In {
+    /// Operands of `hit_select` for triangle `number`, whose front or back face was met at `t`.
+    pub fn select_in(&self, scene: &SceneConfig, number: u16, t: RayT, front: bool) -> hit_select::In {
         let [tree, level, node] = self.triangle_id(number);
-        let (known, best_t, best_id) = (self.closest.known.get(), self.closest.t_max.get(), self.closest.id.get());
-        hit_select::In { levels: scene.levels, known, best_t, best_id, t, tree: U::new(tree), level: U::new(level), node: U::new(node) }
+        let closest = &self.closest;
+        hit_select::In {
+            levels: scene.levels,
+            known: closest.known.get(),
+            best_t: closest.t_max.get(),
+            best_front: closest.front.get(),
+            best_id: closest.id.get(),
+            t,
+            front,
+            tree: U::new(tree),
+            level: U::new(level),
+            node: U::new(node),
+        }
     }
 
     /// Operands of `bary_map`.

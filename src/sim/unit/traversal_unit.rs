@@ -194,7 +194,8 @@ impl TraversalUnit {
         };
         let select = self.hit_divide.offered().filter(|&(_, tag)| tag >> 8 == DIVIDE_FOR_T).map(|(out, tag)| {
             let owner = usize::from(tag >> 2 & 63);
-            (self.contexts[owner].select_in(scene, tag & 3, out.quotient), tag >> 2 & 63)
+            let front = self.dividing.front().is_some_and(|met| met.test.test.front);
+            (self.contexts[owner].select_in(scene, tag & 3, out.quotient, front), tag >> 2 & 63)
         });
         Wires {
             take: inputs.ray.and_then(|_| self.contexts.iter().position(|c| c.state == State::Idle)),

@@ -259,7 +259,7 @@ fn children(to: &mut impl Visitor, unit: &TraversalUnit, wires: &Wires) {
     block_ports(to, &unit.child_test, link, [input, tag], true);
 }
 
-/// `hit_select` sees an id that is unknown before the first hit, and the tag of the division whether that is done or not.
+/// `hit_select` sees a side and an id that are unknown before the first hit, and the tag of the division whether that is done or not.
 fn comparison(to: &mut impl Visitor, unit: &TraversalUnit, wires: &Wires) {
     let link = &wires.select;
     let mut input = Vector::offer(link.input.as_ref().map(|(input, _)| input));
@@ -268,7 +268,7 @@ fn comparison(to: &mut impl Visitor, unit: &TraversalUnit, wires: &Wires) {
         owner = Vector::number((*tag).into(), 6);
         if unit.contexts[usize::from(*tag)].closest.id.known().is_none() {
             let behind = |name| hit_select::In::FIELDS.iter().rev().take_while(|field| field.name != name).map(|field| field.width).sum();
-            input = input.blur(behind("best_id"), hit_select::FullId::WIDTH);
+            input = input.blur(behind("best_id"), 1 + hit_select::FullId::WIDTH);
         }
     }
     block_ports(to, &unit.hit_select, link, [input, owner], true);
