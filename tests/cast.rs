@@ -1,14 +1,18 @@
 //! `cast` end to end: what the rays of a file meet, with every method, against the exact golden traverser and against each other.
 
 use lodray::format::Scene;
-use lodray::golden::Exact;
-use lodray::method::METHODS;
+use lodray::golden::{Exact, Leg};
 use lodray::method::bvh::NoStore;
+use lodray::method::leave::side;
+use lodray::method::{Departure, METHODS};
 use lodray::method::{Knobs, knob, lod};
 use lodray::rays::{ModelSpace, Query, RayFile, Sight};
 use lodray::run::{HitRow, cast};
 use lodray_test_support::models::{Rng, scene_of, terrain};
 use lodray_test_support::program::{Desk, FAILS, USAGE, write_rays};
+use npyz::WriterBuilder;
+use std::cmp::Ordering;
+use std::path::Path;
 
 /// Rays at a scene from around it, thin and wide.
 fn queries(space: &ModelSpace, count: usize, seed: u64) -> Vec<Query> {
@@ -206,5 +210,167 @@ fn files_of_rays_run_on_machines_and_wait_for_each_other_there() {
     desk.refused("simulate a.lod --rays none.npy", FAILS, &["none.npy: "]);
     for camera in ["--size 8x8", "--distance 2", "--view front", "--fov 20"] {
         desk.refused(&format!("simulate a.lod --rays free.npy {camera}"), USAGE, &["--rays"]);
+    }
+}
+
+/// Numbers that float32 has.
+fn single(v: [f64; 3]) -> [f64; 3] {
+    v.map(|v| f64::from(v as f32))
+}
+
+fn row(query: &Query) -> [f64; 12] {
+    let ([x, y, z], [dx, dy, dz]) = (query.origin, query.direction);
+    let after = query.after.map_or(-1.0, |after| after as f64);
+    [x, y, z, dx, dy, dz, query.radius, query.tan_theta, query.t_min, query.t_max, f64::from(u8::from(query.any)), after]
+}
+
+/// The same file, of float32.
+fn write_single(path: &Path, queries: &[Query]) {
+    let file = std::fs::File::create(path).unwrap();
+    let mut writer = npyz::WriteOptions::new().default_dtype().shape(&[queries.len() as u64, 12]).writer(file).begin_nd().unwrap();
+    writer.extend(queries.iter().flat_map(row).map(|v| v as f32)).unwrap();
+    writer.finish().unwrap();
+}
+
+fn write(desk: &Desk, name: &str, queries: &[Query]) {
+    write_rays(&desk.path(name), 12, &queries.iter().flat_map(row).collect::<Vec<_>>());
+}
+
+fn read(desk: &Desk, name: &str) -> Vec<HitRow> {
+    npyz::NpyFile::new(&desk.bytes(name)[..]).unwrap().into_vec().unwrap()
+}
+
+/// Follows the rays one by one, by the library and, for the first `golden`, by the exact traverser: the hits are theirs. A ray that leaves a closed body to the outside meets a front face or
+/// nothing, one that goes inside a back face; none meets what it leaves. How many there are, and how many meet something near.
+fn check_followed(scene: &Scene, method: &str, delta: f64, queries: &[Query], hits: &[HitRow], golden: usize) -> [u64; 2] {
+    let entry = METHODS.iter().find(|entry| entry.name == method).unwrap();
+    let made = (entry.make)(scene, &Knobs::default().with(&knob::DELTA, &delta.to_string()).unwrap(), &NoStore).unwrap();
+    let rays = RayFile::new(queries.to_vec());
+    let (h, space) = (scene.decode(), ModelSpace::of(scene));
+    let mut tracer = made.tracer(&Sight::new(&rays, &space, delta));
+    let exact = Exact::new(&h);
+    let (mut ends, mut legs): (Vec<Option<Departure>>, Vec<Vec<Leg>>) = (Vec::new(), Vec::new());
+    let (mut followed, mut near) = (0, 0);
+    for (number, (query, row)) in queries.iter().zip(hits).enumerate() {
+        let what = format!("{method}, ray {number}: {query:?} {row:?}");
+        let from = query.after.map(|after| ends[after as usize].expect("a hit"));
+        let landing = tracer.follow(query, from.as_ref(), None);
+        assert_eq!(landing.map_or(-1, |landing| landing.surface.tree.cast_signed()), row.tree, "{what}");
+        if let Some(landing) = &landing {
+            let surface = &landing.surface;
+            let (wanted, own) = ((surface.distance, surface.node, surface.front), (row.t, row.node.cast_unsigned(), row.front == 1));
+            assert_eq!((wanted, i32::from(surface.level)), (own, row.level), "{what}");
+        }
+        if let (Some(from), Some(after)) = (&from, query.after) {
+            let before = &hits[after as usize];
+            assert!((row.tree, row.level, row.node) != (before.tree, before.level, before.node), "it meets what it leaves: {what}");
+            let met = (row.tree >= 0).then_some(row.front == 1);
+            match side(&from.corners, space.direction(query.direction).unwrap()) {
+                Ordering::Greater => assert_ne!(met, Some(false), "outside, and a back face: {what}"),
+                Ordering::Less => assert_eq!(met, Some(false), "inside, and no back face: {what}"),
+                Ordering::Equal => {}
+            }
+            followed += 1;
+            near += u64::from(row.t < 1e-5 * space.radius());
+        }
+        if number < golden {
+            let before = query.after.map_or(Vec::new(), |after| legs[after as usize].clone());
+            let ray = space.enter_from(query, from.as_ref().map(|from| &from.start), delta);
+            let wanted = ray.as_ref().and_then(|ray| exact.trace_after(&before, &ray.ray));
+            assert_eq!(wanted.is_some(), row.tree >= 0, "{what}");
+            let mut path = before;
+            if let (Some(ray), Some(wanted)) = (ray, wanted) {
+                assert_eq!([row.tree, row.level, row.node].map(i32::cast_unsigned), [wanted.tree, wanted.level, wanted.node], "{what}");
+                assert_eq!((row.t, row.front == 1), (ray.distance(wanted.t), wanted.front), "{what}");
+                path.push(exact.leg(&path, &ray.ray, &wanted));
+            }
+            legs.push(path);
+        }
+        ends.push(landing.map(|landing| landing.departure));
+    }
+    [followed, near]
+}
+
+/// Rays that `cast` met something with, and rays from the very points that it wrote, three times over, on closed scenes. `LODRAY_RAYS` asks for that many of the latter over all scenes and methods.
+#[test]
+fn rays_that_follow_hits_neither_leak_nor_meet_what_they_leave() {
+    let total: usize = std::env::var("LODRAY_RAYS").map_or(12_000, |text| text.parse().expect("LODRAY_RAYS is a number"));
+    let desk = Desk::new(assert_cmd::cargo::cargo_bin!("lodray"));
+    let (mut all, mut close) = (0, 0);
+    for (seed, kind) in [(1, "sphere"), (2, "spikes")] {
+        desk.run(&format!("generate {kind} --levels 4 --base 128 --seed {seed} -o {kind}.lod"));
+        let scene = Scene::open(&desk.path(&format!("{kind}.lod"))).unwrap();
+        let space = ModelSpace::of(&scene);
+        for (method, delta) in [("lod", 1.0), ("bvh6", 1.0)] {
+            let mut rng = Rng(seed);
+            let mut paths: Vec<Query> = queries(&space, (total / 12).max(100), seed)
+                .into_iter()
+                .map(|query| Query {
+                    origin: single(query.origin),
+                    direction: single(query.direction),
+                    tan_theta: f64::from(query.tan_theta as f32),
+                    ..query
+                })
+                .collect();
+            let mut newest = 0;
+            // To the second hits twice, so that rays share a start.
+            for bounce in 0..3 {
+                write(&desk, "rays.npy", &paths);
+                desk.run(&format!("cast {kind}.lod rays.npy --method {method} -o hits.npy"));
+                let hits = read(&desk, "hits.npy");
+                let starts: Vec<_> = hits.iter().enumerate().skip(newest).filter(|(_, hit)| hit.tree >= 0).collect();
+                newest = paths.len();
+                for (after, hit) in starts {
+                    for _ in 0..[2, 2, 1][bounce] {
+                        let cone = [0.0, 1e-3 * space.radius(), 1e-3][rng.below(3) as usize];
+                        let next = Query::new(hit.point, single([(); 3].map(|()| rng.signed()))).with_cone(0.0, f64::from(cone as f32));
+                        paths.push(Query { after: Some(after as u64), ..next });
+                    }
+                }
+            }
+            write(&desk, "rays.npy", &paths);
+            let json = desk.json(&format!("cast {kind}.lod rays.npy --method {method} -o hits.npy"));
+            let hits = read(&desk, "hits.npy");
+            let [followed, near] = check_followed(&scene, method, delta, &paths, &hits, 2500);
+            assert_eq!((&json["followed"], &json["crowded"]), (&followed.into(), &0.into()));
+            println!("{kind}, {method}: {followed} rays from hits, {near} of which meet something within 1e-5 radii");
+            // Starts are those of the hits, whatever the roundings of the file, and whatever the number of threads.
+            write_single(&desk.path("single.npy"), &paths);
+            desk.run_on(1, &format!("cast {kind}.lod single.npy --method {method} -o single-hits.npy"));
+            assert_eq!(desk.bytes("hits.npy"), desk.bytes("single-hits.npy"), "{kind}, {method}");
+            all += followed;
+            close += near;
+        }
+    }
+    println!("{all} rays from hits, {close} of which meet something within 1e-5 radii; no leak");
+    assert!(all as usize > total / 2, "{all}");
+}
+
+#[test]
+fn rays_that_cannot_follow_are_one_clear_error() {
+    let desk = Desk::new(assert_cmd::cargo::cargo_bin!("lodray"));
+    desk.run("generate sphere --levels 3 --base 32 --seed 2 -o a.lod");
+    let space = ModelSpace::of(&Scene::open(&desk.path("a.lod")).unwrap());
+    let (centre, radius) = (space.centre(), space.radius());
+    let eye = [centre[0], centre[1], centre[2] + 4.0 * radius];
+    let first = Query::new(eye, [0.0, 0.0, -1.0]);
+    write(&desk, "first.npy", &[first]);
+    desk.run("cast a.lod first.npy -o hits.npy");
+    let point = read(&desk, "hits.npy")[0].point;
+    let next = |origin| Query { after: Some(0), ..Query::new(origin, [0.1, 0.2, 1.0]) };
+    let beside = [point[0] + 1e-3 * radius, point[1], point[2]];
+    write(&desk, "good.npy", &[first, next(point)]);
+    write(&desk, "beside.npy", &[first, next(point), next(beside)]);
+    write(&desk, "missed.npy", &[first, Query::new(eye, [0.0, 0.0, 1.0]), next(point), Query { after: Some(1), ..next(eye) }]);
+    let said = desk.run("cast a.lod good.npy -o out.npy");
+    assert_eq!(said.trim_end(), "out.npy: 2 rays, 1 hit, 1 start at an earlier hit");
+    let away = format!("beside.npy: ray 2: its origin is {:.2e}", 1e-3 * radius);
+    desk.refused("cast a.lod beside.npy -o out.npy", FAILS, &[&away[..away.len() - 4], "away from the hit of ray 0"]);
+    desk.refused("cast a.lod missed.npy -o out.npy", FAILS, &["missed.npy: ray 3: it starts at the hit of ray 1, which meets nothing"]);
+    desk.refused("cast a.lod good.npy --method reference -o out.npy", FAILS, &["--method reference: its hits are not exact"]);
+    for name in ["good", "beside", "missed"] {
+        for method in ["lod", "reference"] {
+            desk.run(&format!("cast a.lod {name}.npy --method {method} --follow false -o out.npy"));
+        }
     }
 }

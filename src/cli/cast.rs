@@ -7,7 +7,7 @@ use super::output::{check_normals, check_target, grouped, open_any, print_json, 
 use anyhow::Context;
 use lodray::format::write_and_rename;
 use lodray::rays::{ModelSpace, RayFile, RaySource, Sight};
-use lodray::run::{cast, write_hits};
+use lodray::run::{FollowError, Followed, cast, cast_following, write_hits};
 use serde_json::json;
 use std::collections::BTreeMap;
 use std::path::PathBuf;
@@ -26,6 +26,9 @@ pub struct Args {
     /// File for the hits (.npy)
     #[arg(short, long)]
     out: PathBuf,
+    /// Start a ray that names an earlier one (column 11) exactly at that one's hit; with false, at its own origin
+    #[arg(long, value_name = "true|false", action = clap::ArgAction::Set, default_value_t = true)]
+    follow: bool,
     /// Print the figures as JSON
     #[arg(long)]
     json: bool,
@@ -41,16 +44,40 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
     job::check_rays(&scene, &rays, chosen.delta())?;
     let (method, _) = chosen.make(&scene, &Cache::new(&args.cache, None)?)?;
     let sight = Sight::new(&rays, &ModelSpace::of(&scene), chosen.delta());
-    let bar = progress(rays.batches() as u64, "casting");
-    let hits = cast(&*method, &scene, &rays, &sight, &|batches| bar.inc(batches));
-    bar.finish_and_clear();
+    let Followed { hits, followed, crowded } = if args.follow && rays.is_ordered() {
+        let bar = progress(rays.rays(), "casting");
+        let met = cast_following(&*method, &scene, &rays, &sight, &|rays| bar.inc(rays));
+        bar.finish_and_clear();
+        met.map_err(|why| refusal(args, why))?
+    } else {
+        let bar = progress(rays.batches() as u64, "casting");
+        let hits = cast(&*method, &scene, &rays, &sight, &|batches| bar.inc(batches));
+        bar.finish_and_clear();
+        Followed { hits, followed: 0, crowded: 0 }
+    };
     write_and_rename(&args.out, |out| write_hits(&hits, out)).with_context(|| format!("cannot write {}", args.out.display()))?;
     let found = hits.iter().filter(|hit| hit.tree >= 0).count() as u64;
     if args.json {
         let choices: BTreeMap<_, _> = method.choices(&sight).into_iter().collect();
-        print_json(&json!({ "method": chosen.method.name, "choices": choices, "rays": rays.rays(), "hits": found }))?;
+        print_json(
+            &json!({ "method": chosen.method.name, "choices": choices, "rays": rays.rays(), "hits": found, "followed": followed, "crowded": crowded }),
+        )?;
     } else {
-        remark(&format!("{}: {} rays, {} hit", args.out.display(), grouped(rays.rays()), grouped(found)))?;
+        let starts = if followed > 0 { format!(", {} start at an earlier hit", grouped(followed)) } else { String::new() };
+        remark(&format!("{}: {} rays, {} hit{starts}", args.out.display(), grouped(rays.rays()), grouped(found)))?;
+        if crowded > 0 {
+            let what = "start where more than two rays decide about the level of detail, and may meet the surface beside their start";
+            remark(&format!("{} rays {what}", grouped(crowded)))?;
+        }
     }
     Ok(ExitCode::SUCCESS)
+}
+
+/// Rays that cannot follow others, and what to do.
+fn refusal(args: &Args, why: FollowError) -> anyhow::Error {
+    let off = "--follow false starts every ray at its own origin";
+    match why {
+        FollowError::NoStarts => anyhow::anyhow!("--method {}: {why} ({off})", args.method.chosen.method.name),
+        _ => anyhow::anyhow!("{}: {why} ({off})", args.rays.display()),
+    }
 }

@@ -94,8 +94,15 @@ Columns of the rays (an array of float32 or float64, 6, 8, 10, 11 or 12 columns)
                       the level of detail follows from the cone
   8, 9                nearest and farthest distance that counts (0, inf)
   10                  1: any hit serves; 0: the closest (0)
-  11                  number of the earlier ray behind whose end this one starts, -1: none (-1);
-                      hits do not depend on it, the time on a machine does
+  11                  number of the earlier ray at whose hit this one starts, -1: none (-1)
+
+A ray that names an earlier one starts exactly at that one's hit, not at the rounded point: it meets
+neither the triangle that it leaves nor anything behind it, and sees the surface there as the earlier
+ray saw it. Its distances are from there. Its origin in the file is checked: it may differ from the hit
+by 2^-20 of (the largest coordinate + the earlier ray's distance) and 16 steps of the model's grid,
+which is enough for points in float32. If the earlier ray meets nothing, or the origin lies elsewhere,
+cast ends with an error. --follow false starts every ray at its own origin, as simulate does. The
+method `reference` cannot follow.
 
 Fields of the hits (a structured array; numpy.load(FILE)['t']); where nothing is met, t is inf,
 whole numbers are -1 and all others nan:

@@ -9,7 +9,7 @@
 //! | 6, 7 | radius of the cone at the origin, and how much it grows per unit of length | 0, 0 |
 //! | 8, 9 | nearest and farthest distance that counts | 0, infinite |
 //! | 10 | 1 if any hit serves, 0 if it must be the closest | 0 |
-//! | 11 | number of the earlier row behind whose end the ray starts, -1 if none; 32-bit floats number 2^24 rows | -1 |
+//! | 11 | number of the earlier row at whose hit the ray starts (`cast`), or behind whose end (`simulate`), -1 if none; 32-bit floats number 2^24 rows | -1 |
 
 use super::{ModelSpace, Query, RaySource};
 use npyz::{DType, NpyFile, Order, TypeChar};

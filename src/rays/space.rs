@@ -3,7 +3,7 @@
 use super::{Query, cone};
 use crate::format::Scene;
 use crate::mesh::Placement;
-use crate::num::{BOX_MARGIN, DIRECTION_SCALE, Direction, Point, Ray, RayT, Start, U, Vec3};
+use crate::num::{BOX_MARGIN, DIRECTION_SCALE, Direction, Point, Ray, RayT, START_BITS, Start, U, Vec3};
 
 /// Where a model lies, and the box of all its vertices.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -66,6 +66,20 @@ impl ModelSpace {
         let margin = self.margin();
         let side = |k: usize, upper| if upper { f64::from(self.hi[k]) + margin } else { f64::from(self.lo[k]) - margin };
         std::array::from_fn(|corner| std::array::from_fn(|k| side(k, corner >> k & 1 == 1)))
+    }
+
+    /// Where a ray starts, in world space.
+    pub fn start(&self, start: &Start) -> [f64; 3] {
+        let (whole, step) = (start.point.get(), 2f64.powi(-(START_BITS as i32)));
+        std::array::from_fn(|k| {
+            let units = whole[k] as f64 + start.fraction[k].get() as f64 * step;
+            self.placement.offset[k] + self.placement.scale * units
+        })
+    }
+
+    /// The coarser of the steps of origins and of directions over the model, in world units.
+    pub fn step(&self) -> f64 {
+        self.placement.scale * f64::from(1u32 << self.zeros[0].max(self.zeros[1]))
     }
 
     /// A world position in units, not rounded.
@@ -236,6 +250,13 @@ mod tests {
         assert_eq!(enter(f64::NAN, f64::NAN).unwrap().0, [0, RayT::MAX.get()]);
         assert!(enter(0.0, m.start - 1.0).is_none(), "it ends before the model");
         assert_eq!(enter(1e300, f64::INFINITY).unwrap().0[0], RayT::MAX.get());
+    }
+
+    #[test]
+    fn starts_are_where_they_are_in_the_world() {
+        let start = Start { point: Point::new(4, -3, 0), fraction: [U::new(1 << 30), U::ZERO, U::new(1)] };
+        assert_eq!(space().start(&start), [12.25, -1.5, 0.5f64.powi(32)]);
+        assert_eq!((space().step(), ModelSpace { zeros: [3, 1], ..space() }.step()), (0.5, 4.0));
     }
 
     #[test]

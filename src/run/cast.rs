@@ -9,7 +9,7 @@ use rayon::prelude::*;
 use std::io::{self, Write};
 
 /// Where one ray met the surface: a row of [`write_hits`].
-#[derive(Clone, Copy, Debug, PartialEq, npyz::Serialize, npyz::AutoSerialize)]
+#[derive(Clone, Copy, Debug, PartialEq, npyz::Serialize, npyz::AutoSerialize, npyz::Deserialize)]
 pub struct HitRow {
     /// Distance from the origin in world units; infinite if nothing was met. What follows is then -1, or no number.
     pub t: f64,
@@ -35,7 +35,7 @@ pub struct HitRow {
 
 impl HitRow {
     /// Nothing was met.
-    const NONE: Self = Self {
+    pub(super) const NONE: Self = Self {
         t: f64::INFINITY,
         tree: -1,
         level: -1,
@@ -48,7 +48,7 @@ impl HitRow {
         front: -1,
     };
 
-    fn new(scene: &Scene, query: &Query, hit: &SurfaceHit) -> Self {
+    pub(super) fn new(scene: &Scene, query: &Query, hit: &SurfaceHit) -> Self {
         let direction = DVec3::from_array(query.direction);
         // Scaled first, so that squares neither overflow nor vanish.
         let direction = (direction / direction.abs().max_element()).normalize();
@@ -70,7 +70,8 @@ impl HitRow {
     }
 }
 
-/// What every ray of `source` meets, in their order, whatever the number of threads. `done` is told how many batches are done, from any thread.
+/// What every ray of `source` meets, in their order, whatever the number of threads, each from its own origin, whichever ray it names
+/// ([`cast_following`](super::cast_following) starts it there). `done` is told how many batches are done, from any thread.
 pub fn cast(method: &dyn Method, scene: &Scene, source: &dyn RaySource, sight: &Sight, done: &(dyn Fn(u64) + Sync)) -> Vec<HitRow> {
     let rows = (0..source.batches()).into_par_iter().map_init(
         || method.tracer(sight),

@@ -48,7 +48,7 @@ pub struct Args {
     compute: Compute,
     #[command(flatten)]
     camera: CameraArgs,
-    /// File of rays in place of a camera's (.npy); `cast --help` has the columns
+    /// File of rays in place of a camera's (.npy); `cast --help` has the columns. Each starts at its own origin; one that names an earlier ray waits for that
     #[arg(long, value_name = "FILE", conflicts_with_all = CameraArgs::ids())]
     rays: Option<PathBuf>,
     #[command(flatten)]
