@@ -1,7 +1,6 @@
 //! From outside a body the first hit is a front face, by every traverser: rays at vertices, edges and bodies a millionth as thin as they are wide.
 //! `LODRAY_RAYS` asks for that many rays (default 60,000).
 
-use lodray::block::Block;
 use lodray::block::hit_divide::{self, HitDivide};
 use lodray::block::start_test::Below;
 use lodray::block::tri_test;
