@@ -98,6 +98,8 @@ module axi_read_adapter #(
   // What an address has above the bus is dropped, and so is what a base has below a line.
   assign number      = base_i[ADDRESS_W-1:LINE_SHIFT] + NUMBER_W'(mem_i.address);
   assign mem_ready_o = request_ready && some_free;
+  logic [LINE_SHIFT-1:0] unused_base;
+  assign unused_base = base_i[LINE_SHIFT-1:0];
 
   pipe_skid #(.W(ID_W + NUMBER_W)) u_request (
     .clk_i, .rst_ni,

@@ -3,15 +3,14 @@
 mod cli;
 
 use clap::Parser;
-use std::io::Write;
 use std::process::ExitCode;
 
 fn main() -> ExitCode {
+    cli::set_color(cli::color(std::env::args_os().skip(1)));
     match cli::run(cli::Cli::parse()) {
         Ok(code) => code,
         Err(error) => {
-            // If nobody reads standard error there is nobody to tell; `eprintln` would panic.
-            let _ = writeln!(std::io::stderr(), "error: {}", one_line(&error));
+            cli::complain("error:", &one_line(&error));
             ExitCode::FAILURE
         }
     }

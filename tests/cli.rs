@@ -127,6 +127,9 @@ fn render_with_every_method() {
         let report = desk.json(&format!("render a.lod --method {method} --size 40x24 --distance 3 --compare -o {method}"));
         assert_eq!((&report["method"], &report["stats"]["rays"]), (&method.into(), &960.into()));
         assert!(report["stats"]["hits"].as_u64().unwrap() > 50);
+        for time in ["building", "tracing"] {
+            assert!(report["seconds"][time].as_f64().is_some_and(|seconds| seconds >= 0.0), "{time}: {report}");
+        }
         let rmse = report["error"]["rmse"].as_f64().unwrap();
         let limit = if method == "lod" { 40.0 } else { 2.0 };
         assert!(rmse <= limit, "{method}: {rmse}");
@@ -224,7 +227,12 @@ fn any_number_of_threads_gives_the_same_bytes() {
             "crack sphere.lod --rays 2000",
             "export sheet.lod -o sheet2.obj",
         ];
-        let said = commands.map(|args| desk.run_on(threads, args));
+        let said = commands.map(|args| {
+            let (code, out, err) = desk.run_on(threads, args);
+            // Times are not the same in two runs.
+            let is_time = |line: &&str| ["building", "tracing"].iter().any(|name| line.trim().starts_with(&format!("\"{name}\":")));
+            (code, out.lines().filter(|line| !is_time(line)).collect::<Vec<_>>().join("\n"), err)
+        });
         let pictures = [desk.files("a"), desk.files("b")];
         fs::remove_dir_all(desk.path("a")).unwrap();
         fs::remove_dir_all(desk.path("b")).unwrap();
@@ -311,6 +319,125 @@ fn refusals_name_option_value_and_limit() {
         assert!(code != 0 && text.starts_with("error: ") && text.contains(option) && text.contains(limit), "{args}: {text}");
     }
     assert_eq!(desk.files(".").len(), 1, "a refusal has written something");
+}
+
+/// Names of all subcommands, as the help lists them.
+fn commands(desk: &Desk) -> Vec<String> {
+    let help = desk.run("--help");
+    let listed = help.split("Commands:\n").nth(1).and_then(|text| text.split("\n\n").next()).unwrap();
+    let names = listed.lines().filter(|line| line.starts_with("  ") && !line.starts_with("   "));
+    let names: Vec<_> = names.map(|line| line.split_whitespace().next().unwrap().to_owned()).filter(|name| name != "help").collect();
+    assert!(names.len() >= 20 && names.contains(&"stability".to_owned()), "{names:?}");
+    names
+}
+
+/// What the program says in a terminal of 80 columns.
+fn narrow(desk: &Desk, args: &str) -> String {
+    let mut command = std::process::Command::new(assert_cmd::cargo::cargo_bin!("lodray"));
+    command.current_dir(desk.folder()).env("COLUMNS", "80").env("LODRAY_CACHE", "none").args(args.split_whitespace());
+    let output = command.output().unwrap();
+    assert!(output.status.success(), "{args}: {}", String::from_utf8_lossy(&output.stderr));
+    String::from_utf8(output.stdout).unwrap()
+}
+
+#[test]
+fn tables_and_help_fit_a_terminal_of_80_columns() {
+    let desk = empty();
+    desk.run("generate sphere --levels 2 --base 32 -o a.lod");
+    desk.run("simulate a.lod --size 16x16 -o sim");
+    for args in [
+        "render a.lod --size 16x16 --compare -o r",
+        "lines a.lod --size 16x16",
+        "simulate a.lod --size 16x16",
+        "simulate a.lod --size 16x16 --compute units",
+        "compare sim/result.json sim/result.json",
+        "crack a.lod --rays 1000",
+        "verify a.lod",
+        "plan a.lod",
+        "stability --case flat --rays 1000",
+    ] {
+        let (wide, narrow) = (desk.run(args), narrow(&desk, args));
+        let longest = narrow.lines().max_by_key(|line| line.chars().count()).unwrap();
+        assert!(longest.chars().count() <= 80, "{args}: {longest}");
+        // Nothing is lost, but times differ.
+        let figures = |text: &str| text.split_whitespace().collect::<std::collections::BTreeSet<_>>().len();
+        assert!(args.starts_with("render") || figures(&narrow) == figures(&wide), "{args}: {narrow}");
+    }
+    for command in commands(&desk) {
+        let help = narrow(&desk, &format!("{command} -h"));
+        let longest = help.lines().max_by_key(|line| line.chars().count()).unwrap();
+        assert!(longest.chars().count() <= 80, "{command}: {longest}");
+    }
+}
+
+#[test]
+fn colours_are_as_wanted() {
+    let desk = empty();
+    let has = |text: &str| text.contains('\u{1b}');
+    assert!(has(&desk.run("--help --color always")) && has(&desk.run("--color=always info --help")));
+    assert!(!has(&desk.run("--help --color never")) && !has(&desk.run("--help")));
+    // Errors of the program, of its command line, and where the choice itself is wrong.
+    for (args, code) in [("info none.lod", 1), ("info", 2)] {
+        assert!(has(&desk.hear(&format!("{args} --color always")).1), "{args}");
+        for never in ["", " --color never", " --color auto"] {
+            let (got, said) = desk.hear(&format!("{args}{never}"));
+            assert!(got == code && !has(&said) && said.starts_with("error: "), "{args}{never}: {said}");
+        }
+    }
+    assert_eq!(desk.hear("info --color purple a.lod").0, 2);
+}
+
+#[test]
+fn shells_and_man_know_every_command() {
+    let desk = empty();
+    let commands = commands(&desk);
+    for shell in ["bash", "zsh", "fish"] {
+        let script = desk.run(&format!("completions {shell}"));
+        assert!(commands.iter().all(|name| script.contains(name)) && script.contains("memory-latency"), "{shell}");
+    }
+    desk.refused("completions csh", 2, &["'csh'", "bash"]);
+    desk.run("man pages/man1");
+    let pages = desk.files("pages/man1");
+    for name in &commands {
+        let page = &pages[&format!("lodray-{name}.1")];
+        assert!(String::from_utf8_lossy(page).contains(".SH SYNOPSIS"), "{name}");
+    }
+    assert!(pages.contains_key("lodray.1"));
+}
+
+#[test]
+fn one_knob_has_one_text_and_no_method_is_listed_that_is_refused() {
+    let desk = empty();
+    let text = |command: &str| {
+        let help = desk.run(&format!("{command} --help"));
+        let after = help.split("--delta <DELTA>").nth(1).unwrap_or_else(|| panic!("{command}: {help}"));
+        after.split("[default").next().unwrap().split_whitespace().collect::<Vec<_>>().join(" ")
+    };
+    let words = text("render");
+    assert!(words.starts_with("Quality"), "{words}");
+    for command in ["trace", "lines", "cast", "plan", "simulate"] {
+        assert_eq!(text(command), words, "{command}");
+    }
+    assert!(desk.run("render --help").contains("- original:") && !desk.run("cast --help").contains("- original:"));
+    desk.refused("cast a.lod b.npy -o c.npy --method original", 2, &["'original'"]);
+}
+
+#[test]
+fn the_plan_of_a_view_prunes() {
+    let desk = empty();
+    desk.run("generate terrain --levels 4 --base 32 -o a.lod");
+    let said = desk.run("plan a.lod --distance 8,16 --size 64x64 -o plan.toml");
+    assert!(said.starts_with("a unit for this has ") && said.lines().next().unwrap().contains(" GE (gate equivalents): "), "{said}");
+    assert!(desk.run("prune a.lod --plan plan.toml -o small.lod").starts_with("2 views; "));
+    assert!(fs::metadata(desk.path("small.lod")).unwrap().len() < fs::metadata(desk.path("a.lod")).unwrap().len());
+    // The same as a list of jobs says.
+    let list = "size = \"64x64\"\ndistances = [8, 16]\nmethods = [\"lod\"]\n[[scene]]\nfile = \"a.lod\"\n[[machine]]\nname = \"packet\"\n";
+    desk.write("jobs.toml", list);
+    let [of_options, of_list] = ["a.lod --distance 8,16 --size 64x64", "--job jobs.toml"].map(|args| desk.json(&format!("plan {args}")));
+    assert_eq!((&of_options["unit"], &of_options["savings"]), (&of_list["unit"], &of_list["savings"]));
+    assert!(of_options["unit"]["gates"].as_f64() < of_options["full_unit"]["gates"].as_f64());
+    assert!(desk.run("plan a.lod --distance 8 --size 16x16 --speed").contains("speed: on "));
+    desk.refused("plan a.lod --speed", 1, &["--speed", "--distance", "--job"]);
 }
 
 #[test]

@@ -312,3 +312,27 @@ fn a_sweep_goes_on_in_its_folder() {
     assert!(!desk.names("out").iter().any(|name| name.ends_with(".svg")), "{:?}", desk.names("out"));
     desk.refused(&format!("{RENDER} -o out"), "out", "out holds a run of `sweep`, and `render` does not mix with it");
 }
+
+#[test]
+fn lines_that_no_run_has_made_are_not_taken_over() {
+    let desk = Desk::new();
+    desk.write(
+        "jobs.toml",
+        "size = \"8x8\"\ndistances = [2]\nmethods = [\"lod\"]\n[[scene]]\nfile = \"a.lod\"\n[[machine]]\nname = \"packet\"\n",
+    );
+    for (args, name) in [("sweep jobs.toml", "results.jsonl"), ("error-time a.lod", "views.jsonl")] {
+        let theirs = format!("{name}-of-others/{name}");
+        fs::create_dir(desk.path(&format!("{name}-of-others"))).unwrap();
+        desk.write(&theirs, "{\"theirs\": 1}\n");
+        desk.refused(
+            &format!("{args} -o {name}-of-others"),
+            &format!("{name}-of-others"),
+            "is there, and no run.json says that a run has made it",
+        );
+        assert_eq!(desk.files(&format!("{name}-of-others"))[name], b"{\"theirs\": 1}\n");
+    }
+    // With --force they are set aside, and nothing of them is lost.
+    let forced = desk.command("sweep jobs.toml -o results.jsonl-of-others --force").output().unwrap();
+    assert!(forced.status.success() && forced.stderr.starts_with(b"warning: "), "{forced:?}");
+    assert_eq!(desk.files("results.jsonl-of-others")["results.bad.jsonl"], b"{\"theirs\": 1}\n");
+}

@@ -86,6 +86,23 @@ fn every_module_is_clean_for_the_distributions_verilator() {
     }
 }
 
+/// Lints the whole design as docs/integration.md has it: the list of files as it is, without the rules that simulations bind.
+fn clean_for_an_integrator(verilator: &Verilator) {
+    let top = "traversal_unit_axi";
+    let words = format!("--lint-only -Wall rtl/lint.vlt -F rtl/files.f --top-module {top}");
+    let arguments: Vec<String> = words.split(' ').map(str::to_owned).collect();
+    verilator.run(top, &arguments).unwrap_or_else(|error| panic!("verilator {words}: {error}"));
+}
+
+#[test]
+fn the_list_of_files_is_clean_for_an_integrator() {
+    clean_for_an_integrator(&verilator());
+    match Verilator::of_distribution().unwrap_or_else(|error| panic!("{error}")) {
+        Some(older) => clean_for_an_integrator(&older),
+        None => eprintln!("*** the distribution has no Verilator: NOT linted with it ***"),
+    }
+}
+
 /// Hardware at the ends of what there can be, and the others that tests build.
 fn hardwares() -> Vec<Hardware> {
     let smallest = Hardware { levels: 2, bvh_depth: 1, contexts: 1, context_bits: 1, ..Hardware::default() };

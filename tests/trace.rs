@@ -47,7 +47,14 @@ fn waveform_and_save_files_stand_side_by_side() {
 
     let text = |name: &str| fs::read_to_string(desk.join(name)).unwrap();
     let gtkw = text("ray.gtkw");
-    for words in ["[dumpfile] \"ray.vcd\"", "^1 ray.states\ntraversal_unit.g_context[0].u_context.state_q[4:0]\n", "-Level_of_detail\n"] {
+    // GTKWave looks from the folder that it was started in: names are whole paths.
+    let whole = |name: &str| std::fs::canonicalize(desk).unwrap().join(name).display().to_string();
+    let (vcd_at, states_at) = (whole("ray.vcd"), whole("ray.states"));
+    for words in [
+        &format!("[dumpfile] \"{vcd_at}\"")[..],
+        &format!("^1 {states_at}\ntraversal_unit.g_context[0].u_context.state_q[4:0]\n"),
+        "-Level_of_detail\n",
+    ] {
         assert!(gtkw.contains(words), "{words}");
     }
     assert!(text("ray.states").starts_with("00 IDLE\n01 SETUP\n") && text("ray.states").ends_with("16 DONE\n"));

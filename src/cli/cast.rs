@@ -2,8 +2,8 @@
 
 use super::cache::{Cache, CacheArgs};
 use super::job;
-use super::method::PictureMethod;
-use super::output::{check_normals, check_target, grouped, open_any, print_json, progress, remark};
+use super::method::AnyMethod;
+use super::output::{check_normals, check_target, count, grouped, open_any, print_json, progress, remark};
 use anyhow::Context;
 use lodray::format::write_and_rename;
 use lodray::rays::{ModelSpace, RayFile, RaySource, Sight};
@@ -20,7 +20,7 @@ pub struct Args {
     /// Rays: an array of NumPy's (.npy), a row for each; the long help (--help) has the columns
     rays: PathBuf,
     #[command(flatten)]
-    method: PictureMethod,
+    method: AnyMethod,
     #[command(flatten)]
     cache: CacheArgs,
     /// File for the hits (.npy)
@@ -35,12 +35,11 @@ pub struct Args {
 }
 
 pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
-    anyhow::ensure!(!args.method.original, "--method original: cast rays at a scene made of it, with --method reference");
     check_target(&args.out, &[&args.scene, &args.rays])?;
     let scene = open_any(&args.scene)?;
     check_normals(&scene, "a hit's normal")?;
     let rays = RayFile::read(&args.rays)?;
-    let chosen = &args.method.chosen;
+    let chosen = &args.method.0;
     job::check_rays(&scene, &rays, chosen.delta())?;
     let (method, _) = chosen.make(&scene, &Cache::new(&args.cache, None)?)?;
     let sight = Sight::new(&rays, &ModelSpace::of(&scene), chosen.delta());
@@ -64,10 +63,10 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
         )?;
     } else {
         let starts = if followed > 0 { format!(", {} start at an earlier hit", grouped(followed)) } else { String::new() };
-        remark(&format!("{}: {} rays, {} hit{starts}", args.out.display(), grouped(rays.rays()), grouped(found)))?;
+        remark(&format!("{}: {}, {} hit{starts}", args.out.display(), count(rays.rays(), "ray"), grouped(found)))?;
         if crowded > 0 {
             let what = "start where more than two rays decide about the level of detail, and may meet the surface beside their start";
-            remark(&format!("{} rays {what}", grouped(crowded)))?;
+            remark(&format!("{} {what}", count(crowded, "ray")))?;
         }
     }
     Ok(ExitCode::SUCCESS)

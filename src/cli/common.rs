@@ -1,6 +1,8 @@
 //! What all subcommands have in common: threads, silence, and the command line as it was given.
 
 use super::args::whole;
+use super::terminal::set_color;
+use clap::ColorChoice;
 use std::sync::atomic::{AtomicBool, Ordering};
 
 /// Most threads: far above what a machine has, and far below where the system has none left.
@@ -16,6 +18,9 @@ pub struct Common {
     /// No progress and no closing remarks (where files went, what was built); tables, --json, warnings and errors remain
     #[arg(long, global = true)]
     quiet: bool,
+    /// Colours in help and errors: auto (on a terminal), always or never
+    #[arg(long, global = true, value_name = "WHEN", value_enum, default_value_t = ColorChoice::Auto, hide_possible_values = true)]
+    color: ColorChoice,
 }
 
 static QUIET: AtomicBool = AtomicBool::new(false);
@@ -23,6 +28,7 @@ static QUIET: AtomicBool = AtomicBool::new(false);
 impl Common {
     /// Sets them for this process.
     pub fn apply(&self) -> anyhow::Result<()> {
+        set_color(self.color);
         QUIET.store(self.quiet, Ordering::Relaxed);
         if let Some(threads) = self.threads {
             rayon::ThreadPoolBuilder::new().num_threads(threads).build_global()?;
@@ -50,7 +56,7 @@ impl Invocation {
         Self::new(std::env::args_os().skip(1).map(|word| word.to_string_lossy().into_owned()))
     }
 
-    /// Leaves out the folder (the record is in it), how many threads there are, where BVHs and a page go, what is printed, and what may be replaced.
+    /// Leaves out the folder (the record is in it), how many threads there are, where BVHs and a page go, what is printed and in which colours, and what may be replaced.
     fn new(words: impl IntoIterator<Item = String>) -> Self {
         let mut words = words.into_iter();
         let mut kept = Vec::new();
@@ -59,8 +65,8 @@ impl Invocation {
                 "--" => kept.extend(std::iter::once(word).chain(words.by_ref())),
                 "--quiet" | "--json" | "--force" => {}
                 // Their value is the next word.
-                "-o" | "--out" | "--threads" | "--at-once" | "--cache" | "--report" => drop(words.next()),
-                one if ["-o", "--out=", "--threads=", "--at-once=", "--cache=", "--report="]
+                "-o" | "--out" | "--threads" | "--color" | "--at-once" | "--cache" | "--report" => drop(words.next()),
+                one if ["-o", "--out=", "--threads=", "--color=", "--at-once=", "--cache=", "--report="]
                     .iter()
                     .any(|option| one.starts_with(option)) => {}
                 _ => kept.push(word),
@@ -89,6 +95,7 @@ mod tests {
             "render a.lod --out out --size 8x8 --force",
             "render a.lod --size 8x8 --out=out",
             "render a.lod --size 8x8 -o=out",
+            "--color never render a.lod --size 8x8 --color=always",
             "render --cache none a.lod --size 8x8 --cache=some",
         ] {
             assert_eq!(of(line), plain, "{line}");

@@ -1,6 +1,6 @@
 //! `compare`: two results of simulations side by side.
 
-use super::output::{grouped, print_json, print_line};
+use super::output::{count, grouped, print_json, print_table};
 use super::results::results;
 use super::simulate::amount;
 use anyhow::Context;
@@ -47,7 +47,7 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
     if args.json {
         print_json(&report)?
     } else {
-        print_line(&table(&report, unit_a))?
+        print_table(&table(&report, unit_a))?
     }
     Ok(ExitCode::SUCCESS)
 }
@@ -57,14 +57,15 @@ fn read(what: &str) -> anyhow::Result<SimResult> {
     let numbered = what.rsplit_once(':').and_then(|(path, n)| Some((path, Some(n.parse::<usize>().ok()?))));
     let (path, wanted) = numbered.filter(|_| !Path::new(what).exists()).unwrap_or((what, None));
     let text = std::fs::read_to_string(path).with_context(|| format!("cannot read {path}"))?;
-    let mut results = results(&text).with_context(|| format!("{path}: not results of a simulation"))?;
-    let count = results.len();
-    let number = match (wanted, count) {
+    let mut results = results(&text, path).with_context(|| format!("{path}: not results of a simulation"))?;
+    let among = results.len();
+    let has = || format!("{path}: has {}", count(among, "result"));
+    let number = match (wanted, among) {
         (Some(n), _) => n,
         (None, 1) => 1,
-        (None, _) => anyhow::bail!("{path}: has {count} results; name one, such as {path}:1"),
+        (None, _) => anyhow::bail!("{}; name one, such as {path}:1", has()),
     };
-    anyhow::ensure!((1..=count).contains(&number), "{path}: has {count} results, no number {number}");
+    anyhow::ensure!((1..=among).contains(&number), "{}, no number {number}", has());
     results.swap_remove(number - 1).map(|found| found.result).with_context(|| format!("{path}: job {number} failed, it has no result"))
 }
 

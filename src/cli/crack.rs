@@ -1,7 +1,7 @@
 //! `crack`: watertightness, measured.
 
 use super::args::{MAX_RAYS, seed, whole};
-use super::output::{busy, explain, grouped, open, print_json, print_line, progress};
+use super::output::{busy, count, explain, grouped, open, print_json, print_table, progress};
 use lodray::lab::crack::{Closedness, Row, closedness, measure};
 use lodray::method::lod::LodImage;
 use lodray::rays::ModelSpace;
@@ -51,7 +51,7 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
                 &format!("{name:<12}{:>14}{:>14}{:>14}{:>14}{:>8}{:>12}\n", cells[0], cells[1], cells[2], cells[3], r.odd, r.unbalanced);
         }
         let compared = if oriented { "front and back crossings compared" } else { "not consistently oriented: parity only" };
-        text += &format!("{} misses or double hits in {} rays ({compared})", report.breaches(), grouped(report.rays()));
+        text += &format!("{} misses or double hits in {} ({compared})", report.breaches(), count(report.rays(), "ray"));
         if let Some(number) = report.first_breach {
             text += &format!("; the first is ray {number} of seed {}", args.seed);
         }
@@ -61,7 +61,7 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
         } else if scene.levels() > 1 && count(|r| r.mixed_levels) == 0 {
             text += "\nnote: all triangles met were of one level (a flat model?), so edge states did not differ";
         }
-        print_line(&text)?;
+        print_table(&text)?;
         explain("crack")?;
     }
     Ok(if report.breaches() == 0 { ExitCode::SUCCESS } else { ExitCode::FAILURE })

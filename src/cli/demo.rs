@@ -5,7 +5,7 @@ use super::cache::Cache;
 use super::facts::Facts;
 use super::folder::{Overrule, RunFolder, one_run};
 use super::method::Chosen;
-use super::output::{busy, grouped, print_json, print_line, remark, write_file};
+use super::output::{busy, count, grouped, print_json, print_table, remark, write_file};
 use super::pictures::{Shot, shoot};
 use super::render::{Against, Comparison, compare_shots};
 use lodray::hardware::{Hardware, unit_gates};
@@ -110,7 +110,7 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
     if args.json {
         print_json(&rows)?
     } else {
-        print_line(&table)?;
+        print_table(&table)?;
         remark(&format!("pictures, table and plan in {}", args.out.display()))?;
     }
     Ok(ExitCode::SUCCESS)
@@ -174,7 +174,7 @@ fn saving(plan: &Plan, data: &Data) -> String {
     let (of, needed) = (gates(&full), gates(&own));
     format!(
         "a traversal unit for these views needs {} of {} levels, {} of {} nodes on a path, {} of {} stack entries\n\
-         without the rest its {} contexts are smaller: {} of {} gate equivalents, {} fewer\n\
+         without the rest its {} are smaller: {} of {} gate equivalents, {} fewer\n\
          their rays go down to level {} at most and read no more than {} of the scene's {} bytes, {} fewer",
         own.levels,
         full.levels,
@@ -182,7 +182,7 @@ fn saving(plan: &Plan, data: &Data) -> String {
         full.bvh_depth,
         own.stack_entries(),
         full.stack_entries(),
-        full.contexts,
+        count(full.contexts, "context"),
         grouped(needed),
         grouped(of),
         grouped(of - needed),

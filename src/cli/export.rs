@@ -1,7 +1,7 @@
 //! `export`: one level as a mesh.
 
 use super::args::levels;
-use super::output::{busy, check_target, grouped, open, print_json, remark};
+use super::output::{busy, check_target, count, grouped, open, print_json, remark};
 use anyhow::Context;
 use lodray::format::{export_level, write_and_rename};
 use std::path::PathBuf;
@@ -38,7 +38,7 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
             print_json(&serde_json::json!({ "level": level, "vertices": counts.vertices, "faces": counts.faces }))?;
             return Ok(ExitCode::SUCCESS);
         }
-        remark(&format!("{}: {} vertices, {} triangles", args.out.display(), grouped(counts.vertices), grouped(counts.faces)))?;
+        remark(&format!("{}: {} vertices, {}", args.out.display(), grouped(counts.vertices), count(counts.faces, "triangle")))?;
     }
     Ok(ExitCode::SUCCESS)
 }

@@ -17,7 +17,7 @@ pub struct Args {
     /// Number of 1-to-4 splits, 0 to 10
     #[arg(long, value_parser = levels(), allow_negative_numbers = true)]
     levels: Option<u32>,
-    /// Wanted number of base triangles; the next possible number is taken
+    /// Number of base triangles, rounded to the next possible one
     #[arg(long, value_name = "TRIANGLES", value_parser = whole::<u32>(1..=MAX_TREES), allow_negative_numbers = true)]
     base: Option<u32>,
     /// Seed

@@ -1,6 +1,6 @@
 //! `info`: what a scene file holds.
 
-use super::output::{grouped, open_any, plain, print_json, print_line};
+use super::output::{count, grouped, open_any, plain, print_json, print_line};
 use lodray::format::{JobRegion, JobView, Scene};
 use lodray::mesh::{BoundKind, Distance, TwoSidedDistance};
 use lodray::num::{PADDING_BITS, VertexForm};
@@ -161,7 +161,7 @@ fn summary(i: &Info<'_>) -> String {
         ("scene", i.name.to_owned()),
         (
             "triangles",
-            format!("{} at full resolution: {} base triangles, {splits}", grouped(i.finest_triangles), grouped(i.base_triangles)),
+            format!("{} at full resolution: {}, {splits}", grouped(i.finest_triangles), count(i.base_triangles, "base triangle")),
         ),
         (
             "file size",
@@ -214,7 +214,7 @@ fn summary(i: &Info<'_>) -> String {
 fn depths(trees: &[usize]) -> String {
     let some = trees.iter().enumerate().filter(|(_, trees)| **trees > 0);
     let of = |(levels, trees): (usize, &usize)| format!("{levels} ({})", grouped(*trees as u64));
-    format!("{} levels stored (of so many base triangles): no ray goes deeper", some.map(of).collect::<Vec<_>>().join(", "))
+    format!("levels stored: {} (of so many base triangles); no ray goes deeper", some.map(of).collect::<Vec<_>>().join(", "))
 }
 
 /// What displacement bounds mean for who chooses a delta.

@@ -2,7 +2,7 @@
 
 use super::folder::RunFolder;
 use super::json::fault;
-use super::output::{warn, write_file};
+use super::output::{count, warn, write_file};
 use anyhow::Context;
 use lodray::report::results_version;
 use serde::Serialize;
@@ -57,10 +57,11 @@ impl<L: JobLine> JobLines<L> {
             ));
         }
         if !old.is_empty() {
-            let count = if old.len() > 1 { format!("{} results are", old.len()) } else { "1 result is".to_owned() };
+            let verb = if old.len() > 1 { "are" } else { "is" };
             set_aside(&old_file, old.iter().copied())?;
             warn(&format!(
-                "note: {shown}: {count} another version's of the program; set aside in {}, their jobs are done again",
+                "note: {shown}: {} {verb} another version's of the program; set aside in {}, their jobs are done again",
+                count(old.len(), "result"),
                 old_file.display()
             ));
         }

@@ -2,7 +2,7 @@
 
 use super::args::{CameraArgs, radii};
 use super::cache::{Cache, CacheArgs, Lookup};
-use super::output::{explain, grouped, open, print_json, print_line, progress};
+use super::output::{explain, grouped, open, print_json, print_table, progress};
 use lodray::bvh::{BvhError, Options};
 use lodray::format::Scene;
 use lodray::mesh::Hierarchy;
@@ -17,7 +17,11 @@ use std::path::PathBuf;
 use std::process::ExitCode;
 use std::sync::Arc;
 
+/// Size of the frames: a quarter of the rays of a picture. Each is traced once for each tree of the table.
+const SIZE: &str = "512x512";
+
 #[derive(clap::Args)]
+#[command(mut_arg("size", |size| size.default_value(SIZE)))]
 pub struct Args {
     /// Scene file
     scene: PathBuf,
@@ -31,8 +35,7 @@ pub struct Args {
         conflicts_with = "distance"
     )]
     distances: Vec<f64>,
-    /// Quality
-    #[arg(long, default_value = "1", value_parser = knob::quality, allow_hyphen_values = true)]
+    #[arg(long, help = knob::DELTA.help, default_value = "1", value_parser = knob::quality, allow_hyphen_values = true)]
     delta: f64,
     /// Count the 32-bit-box BVH too
     #[arg(long)]
@@ -144,7 +147,7 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
     if args.json {
         print_json(&report)?
     } else {
-        print_line(&table(&report))?;
+        print_table(&table(&report))?;
         explain("lines")?;
     }
     Ok(ExitCode::SUCCESS)

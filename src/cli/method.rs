@@ -21,7 +21,11 @@ const ORIGINAL_HELP: &str =
 #[derive(Clone, Debug)]
 pub struct MachineMethod(pub Chosen);
 
-/// A method for pictures, with its knobs: also what is no hardware.
+/// Any method, with its knobs: also what is no hardware.
+#[derive(Clone, Debug)]
+pub struct AnyMethod(pub Chosen);
+
+/// A method for pictures, with its knobs: also the mesh that a scene is made from.
 #[derive(Clone, Debug)]
 pub struct PictureMethod {
     pub chosen: Chosen,
@@ -94,7 +98,7 @@ fn name(matches: &ArgMatches) -> &str {
     matches.get_one::<String>(METHOD).map_or(lod::METHOD.name, String::as_str)
 }
 
-/// The two kinds of options differ in which methods there are.
+/// The kinds of options differ in which methods there are.
 macro_rules! options {
     ($options:ident, $words:expr, $methods:expr, $from:expr) => {
         impl Args for $options {
@@ -120,6 +124,10 @@ macro_rules! options {
 
 options!(MachineMethod, machine_methods().map(|method| (method.name, method.help)), machine_methods(), |matches, knobs| {
     chosen(matches, name(matches), knobs).map(MachineMethod)
+});
+
+options!(AnyMethod, METHODS.iter().map(|method| (method.name, method.help)), METHODS.iter().copied(), |matches, knobs| {
+    chosen(matches, name(matches), knobs).map(AnyMethod)
 });
 
 options!(

@@ -30,13 +30,17 @@ mod prune;
 mod render;
 mod report;
 mod results;
+mod shell;
 mod simulate;
 mod stability;
 mod sweep;
+mod terminal;
 mod trace;
 mod verify;
 mod words;
 mod workers;
+
+pub use terminal::{color, complain, set_color};
 
 use clap::{Parser, Subcommand};
 use std::process::ExitCode;
@@ -63,9 +67,9 @@ enum Command {
     Info(info::Args),
     /// Audit a scene file: recompute every promise from the vertices
     Verify(verify::Args),
-    /// Tell what scenes and a job do not need of a traversal unit, and what leaving it out saves
+    /// Find what a traversal unit can leave out for some scenes and views, and what that saves
     Plan(plan::Args),
-    /// Take away the levels of a scene that no ray of a plan's job goes down to; the hits of its rays stay the same, others are refused
+    /// Remove the levels of a scene that no ray of a plan's views reaches; the hits of these rays stay the same, other rays are refused
     Prune(prune::Args),
     /// Render a scene
     #[command(after_long_help = words::RENDER)]
@@ -96,12 +100,17 @@ enum Command {
     /// Shoot rays at edges and vertices of a closed scene and count misses and double hits
     #[command(after_long_help = words::CRACK)]
     Crack(crack::Args),
-    /// Put stiff and extreme cases to the proof: misses, double hits, errors against exact arithmetic, overflows
+    /// Test stiff and extreme cases: misses, double hits, errors against exact arithmetic, overflows
     #[command(after_long_help = words::STABILITY)]
     Stability(stability::Args),
     /// Write one level of a scene as an OBJ mesh
     #[command(after_long_help = words::EXPORT)]
     Export(export::Args),
+    /// Print a script that completes commands and options in a shell
+    #[command(after_help = words::COMPLETIONS)]
+    Completions(shell::CompletionsArgs),
+    /// Write manual pages for man
+    Man(shell::ManArgs),
 }
 
 /// Runs the program; the exit code is that of a finding (a breach in an audit), errors are errors.
@@ -131,5 +140,7 @@ pub fn run(cli: Cli) -> anyhow::Result<ExitCode> {
         Command::Crack(args) => crack::run(&args),
         Command::Stability(args) => stability::run(&args),
         Command::Export(args) => export::run(&args),
+        Command::Completions(args) => shell::completions(&args),
+        Command::Man(args) => shell::man(&args),
     }
 }

@@ -1,6 +1,7 @@
 //! Output: progress on a terminal, JSON or text on standard output, files; and the opening of scenes.
 
 use super::common::is_quiet;
+use super::terminal::{columns, complain, fit};
 use anyhow::Context;
 use indicatif::{MultiProgress, ProgressBar, ProgressDrawTarget, ProgressStyle};
 use lodray::format::{Scene, remove_abandoned, temporary_beside, write_and_rename};
@@ -47,6 +48,11 @@ pub fn print_line(text: &str) -> anyhow::Result<()> {
     }
 }
 
+/// Prints a table, which fits the terminal.
+pub fn print_table(text: &str) -> anyhow::Result<()> {
+    print_line(&columns().map_or_else(|| text.to_owned(), |columns| fit(text, columns)))
+}
+
 /// Prints a closing remark, such as where files went, unless nobody wants any.
 pub fn remark(text: &str) -> anyhow::Result<()> {
     if is_quiet() { Ok(()) } else { print_line(text) }
@@ -65,9 +71,8 @@ pub fn toml_in_one_line(file: &str, error: &toml::de::Error) -> anyhow::Error {
 
 /// Says on standard error what a user should know of a run that went well.
 pub fn warn(text: &str) {
-    use std::io::Write;
-    // If nobody reads standard error there is nobody to tell.
-    let _ = writeln!(std::io::stderr(), "{text}");
+    let (label, rest) = text.split_once(' ').unwrap_or((text, ""));
+    complain(label, rest);
 }
 
 /// Writes a whole file; the error names it.
@@ -137,6 +142,13 @@ pub fn grouped(n: u64) -> String {
     out
 }
 
+/// `1 view`, `2 views`, `12,345 rays`: a number of things of which several end in s.
+pub fn count(n: impl TryInto<u64>, one: &str) -> String {
+    // No number of things is negative, or above 64 bits.
+    let n = n.try_into().unwrap_or(u64::MAX);
+    format!("{} {one}{}", grouped(n), if n == 1 { "" } else { "s" })
+}
+
 /// A number with four digits that count and no idle zeros.
 pub fn plain(value: f64) -> String {
     let size = value.abs();
@@ -154,6 +166,11 @@ mod tests {
     fn numbers_have_four_digits() {
         let shown = [0.0, 2.0, 0.5, -1.23456, 123.456, 98765.4, 0.000_123_456, 1e-9, 2.5e9, f64::INFINITY].map(super::plain);
         assert_eq!(shown, ["0", "2", "0.5", "-1.235", "123.5", "98765", "0.0001235", "1.000e-9", "2.500e9", "inf"]);
+    }
+
+    #[test]
+    fn one_thing_has_no_s() {
+        assert_eq!([0_u64, 1, 2, 12_345].map(|n| super::count(n, "ray")), ["0 rays", "1 ray", "2 rays", "12,345 rays"]);
     }
 
     #[test]

@@ -1,6 +1,6 @@
 //! `prune`: a scene without the levels that no ray of a plan's job goes down to, or on the coarser grids of a plan.
 
-use super::output::{busy, check_target, grouped, open, print_json, print_line, remark};
+use super::output::{busy, check_target, count, grouped, open, print_json, print_line, print_table, remark};
 use super::plan::read;
 use anyhow::Context;
 use lodray::bvh::over_trees;
@@ -16,10 +16,10 @@ use std::process::ExitCode;
 pub struct Args {
     /// Scene file
     scene: PathBuf,
-    /// Plan of a job (from lodray plan --job): the rays of its views and regions of this scene are those that the new file serves, to the bit; others it refuses
+    /// Plan with views or regions of this scene (from lodray plan): the new file serves their rays, to the bit, and refuses others
     #[arg(long)]
     plan: PathBuf,
-    /// Without shading normals too: for jobs that shade nothing, such as simulations; pictures of the new file are refused
+    /// Leave out shading normals too: enough for simulations; pictures of the new file are then refused
     #[arg(long)]
     no_normals: bool,
     /// File to write
@@ -85,7 +85,7 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
     if args.json {
         print_json(&figures)?;
     } else {
-        print_line(&figures.table())?;
+        print_table(&figures.table())?;
         remark(&format!("scene in {}", args.out.display()))?;
     }
     Ok(ExitCode::SUCCESS)
@@ -139,17 +139,17 @@ impl Figures {
     fn table(&self) -> String {
         let [before, after] = self.bytes.map(grouped);
         let [per_before, per_after] = self.bytes_per_finest_triangle;
-        let regions = if self.regions > 0 { format!(", {} regions", self.regions) } else { String::new() };
+        let regions = if self.regions > 0 { format!(", {}", count(self.regions, "region")) } else { String::new() };
         let mut text = format!(
-            "{} views{regions}; bytes of trees {before} -> {after}; for each triangle at full resolution {per_before:.3} -> {per_after:.3}",
-            self.views
+            "{}{regions}; bytes of trees {before} -> {after}; for each triangle at full resolution {per_before:.3} -> {per_after:.3}",
+            count(self.views, "view")
         );
         if let [before, 0] = self.bytes_of_normals {
             text += &format!("\nno normals: {} bytes less", grouped(before));
         }
         let [before, after] = &self.depths;
         for (levels, (before, after)) in before.iter().zip(after).enumerate().filter(|(_, (a, b))| **a + **b > 0) {
-            text += &format!("\n{:>10} -> {:>10} trees of {levels} levels", grouped(*before as u64), grouped(*after as u64));
+            text += &format!("\n{:>10} -> {:>10} trees of {}", grouped(*before as u64), grouped(*after as u64), count(levels, "level"));
         }
         text
     }

@@ -7,7 +7,7 @@ use super::folder::{Overrule, RunFolder, one_run};
 use super::job;
 use super::method::{Chosen, PictureMethod};
 use super::original::original;
-use super::output::{check_normals, explain, grouped, open, open_any, print_json, print_line, remark};
+use super::output::{check_normals, count, explain, grouped, open, open_any, print_json, print_table, remark};
 use super::pictures::{Shot, shoot_with};
 use anyhow::Context;
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
@@ -105,12 +105,9 @@ struct Report {
     eye: [f64; 3],
     /// Distance from the target in bounding radii.
     distance: f64,
-    /// Whether what the method needs was read from the cache; not in the JSON, which is the same for every run, nor are the times.
-    #[serde(skip)]
+    /// Whether what the method needs was read from the cache.
     cached: bool,
-    /// Building or reading what the method needs, and tracing.
-    #[serde(skip)]
-    seconds: [f64; 2],
+    seconds: Seconds,
     stats: FrameStats,
     per_ray: PerRay,
     /// What it was compared with.
@@ -118,6 +115,14 @@ struct Report {
     against: Option<Against>,
     #[serde(skip_serializing_if = "Option::is_none")]
     error: Option<Comparison>,
+}
+
+/// Times on the host: all of the figures that are not the same in every run.
+#[derive(Serialize)]
+struct Seconds {
+    /// Building what the method needs, or reading it from the cache.
+    building: f64,
+    tracing: f64,
 }
 
 /// Means over all rays of the frame.
@@ -205,7 +210,7 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
     let building = begun.elapsed().as_secs_f64();
     let begun = Instant::now();
     let shot = shown.shoot(&*method, args.shading, cameras, delta, "tracing");
-    let seconds = [building, begun.elapsed().as_secs_f64()];
+    let seconds = Seconds { building, tracing: begun.elapsed().as_secs_f64() };
     let choices = method.choices(&Sight::new(&camera, &shown.space, delta));
     drop(method);
 
@@ -263,7 +268,7 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
     if args.json {
         print_json(&report)?
     } else {
-        print_line(&table(&report))?;
+        print_table(&table(&report))?;
         explain("render")?;
         remark(&format!("pictures in {}", args.out.display()))?;
     }
@@ -309,8 +314,8 @@ pub fn compare_shots(shot: &Shot, truth: &Shot, scene: &Scene, camera: &Camera) 
 
 fn table(r: &Report) -> String {
     let making = if r.cached { "BVH read from the cache" } else { "building" };
-    let (rays, hits, [build, trace]) = (grouped(r.stats.rays), grouped(r.stats.hits), r.seconds);
-    let mut text = format!("{rays} rays, {hits} hit; {making} {build:.2} s, tracing {trace:.2} s\n");
+    let (rays, hits, Seconds { building, tracing }) = (count(r.stats.rays, "ray"), grouped(r.stats.hits), &r.seconds);
+    let mut text = format!("{rays}, {hits} hit; {making} {building:.2} s, tracing {tracing:.2} s\n");
     // The reference is no hardware, and reads none.
     if !r.stats.lines.is_empty() {
         text += &format!(

@@ -2,13 +2,13 @@
 
 use super::args::{CameraArgs, whole};
 use super::job;
-use super::output::{check_target, grouped, open_any, print_line, remark, write_file};
+use super::output::{check_target, count, open_any, print_line, remark, write_file};
 use super::plan;
 use anyhow::Context;
 use lodray::format::Scene;
 use lodray::hardware::Hardware;
 use lodray::hardware::ports::RayIn;
-use lodray::method::knob::quality;
+use lodray::method::knob::{DELTA, quality};
 use lodray::method::lod::LodImage;
 use lodray::num::{Ray, U, Wire};
 use lodray::rays::{Camera, ModelSpace};
@@ -27,18 +27,17 @@ pub struct Args {
     /// Pixel whose ray is followed; 0,0 is the upper left one
     #[arg(long, value_name = "X,Y", allow_hyphen_values = true)]
     pixel: Place,
-    /// Quality: 1 keeps a level's displacement under a pixel, 0 is the base mesh, inf full detail
-    #[arg(long, default_value = "1", value_parser = quality, allow_hyphen_values = true)]
+    #[arg(long, help = DELTA.help, default_value = "1", value_parser = quality, allow_hyphen_values = true)]
     delta: f64,
     #[command(flatten)]
     camera: CameraArgs,
     /// Cycles from a memory request to its answer
     #[arg(long, value_name = "CYCLES", default_value_t = 40, value_parser = whole::<u32>(1..=100_000), allow_negative_numbers = true)]
     memory_latency: u32,
-    /// Waveform (VCD); save files for GTKWave and Surfer are written beside it. "-": as --text
+    /// Waveform (VCD); save files for GTKWave and Surfer are written beside it; - is the same as --text
     #[arg(short, long, value_name = "FILE", required_unless_present_any = ["text", "ports"])]
     out: Option<PathBuf>,
-    /// The unit of a plan (from lodray plan), in place of the full one
+    /// Use the unit of this plan (from lodray plan -o) instead of the full one
     #[arg(long)]
     plan: Option<PathBuf>,
     /// What goes over the unit's ports, as JSON: scene_i for the scene's file as memory, in_i, out_o
@@ -105,17 +104,13 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
     if let Some(files) = files {
         let report = files.write(&bench)?;
         if !args.text {
-            let (ray, requests) = (&report.rays[0], grouped(report.requests));
+            let (ray, requests) = (&report.rays[0], count(report.requests, "memory line"));
             let found = match ray.hit.error() {
                 Some(error) => format!("ended early ({error})"),
                 None if ray.hit.found => "hit".to_owned(),
                 None => "miss".to_owned(),
             };
-            remark(&format!(
-                "{found} after {} cycles, {requests} memory lines; waveform in {}",
-                grouped(ray.cycles()),
-                files.vcd.display()
-            ))?;
+            remark(&format!("{found} after {}, {requests}; waveform in {}", count(ray.cycles(), "cycle"), files.vcd.display()))?;
         }
     }
     if let Some(path) = &args.ports {
@@ -171,7 +166,7 @@ fn text(bench: &Bench<'_>) -> anyhow::Result<String> {
     for (cycle, step) in trace.events() {
         text += &format!("{cycle:>8}  {step}\n");
     }
-    Ok(text + &format!("{} cycles, {} memory lines", grouped(report.rays[0].cycles()), grouped(report.requests)))
+    Ok(text + &format!("{}, {}", count(report.rays[0].cycles(), "cycle"), count(report.requests, "memory line")))
 }
 
 /// The waveform and its save files.
@@ -202,8 +197,9 @@ impl Files {
     fn write(&self, bench: &Bench<'_>) -> anyhow::Result<RunReport> {
         let mut waves = Waves::new(bench.unit())?;
         let report = one_ray(&mut waves, &bench.memory, bench.latency, &bench.ray)?;
-        let name = |path: &Path| path.file_name().unwrap_or_default().to_string_lossy().into_owned();
-        let gtkw = gtkwave_save(&name(&self.vcd), &name(&self.states), waves.widths());
+        // GTKWave looks for files from the folder that it was started in.
+        let whole = |path: &Path| Ok::<_, anyhow::Error>(std::path::absolute(path)?.to_string_lossy().into_owned());
+        let gtkw = gtkwave_save(&whole(&self.vcd)?, &whole(&self.states)?, waves.widths());
         let contents = [waves.finish()?, gtkw.into_bytes(), gtkwave_states().into_bytes(), surfer_commands().into_bytes()];
         for (path, content) in self.all().into_iter().zip(contents) {
             write_file(path, &content)?;

@@ -1,6 +1,6 @@
 //! `verify`: the audit.
 
-use super::output::{busy, grouped, open_any, print_json, print_line};
+use super::output::{busy, grouped, open_any, print_json, print_table};
 use lodray::format::audit::audit;
 use std::path::PathBuf;
 use std::process::ExitCode;
@@ -36,7 +36,7 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
             }
         }
         text += if report.passed() { "passed" } else { "FAILED" };
-        print_line(&text)?;
+        print_table(&text)?;
     }
     Ok(if report.passed() { ExitCode::SUCCESS } else { ExitCode::FAILURE })
 }

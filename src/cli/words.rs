@@ -114,6 +114,11 @@ whole numbers are -1 and all others nan:
   point, normal       in world space; the normal is interpolated at full resolution
   front               1: the front face is met, 0: the back";
 
+/// Of `completions`.
+pub const COMPLETIONS: &str = "\
+For this shell: source <(lodray completions bash)
+For all, with bash: lodray completions bash > ~/.local/share/bash-completion/completions/lodray";
+
 /// Of `export`.
 pub const EXPORT: &str = "\
 Faces are in the order of the scene's triangles: counted from 0, face number tree * 4^level + node is

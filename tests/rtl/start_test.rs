@@ -152,6 +152,38 @@ fn extreme(draw: &mut Draw) -> In {
     of(&case, Start { point: case.origin, fraction: [0; 3].map(|_| if draw.once_in(4) { U::ZERO } else { U::MAX }) })
 }
 
+/// Exactly through an edge of which p x q begins with 1 or -1, the least that decides a tie. The edge begins at the whole point, so p x q is f x (p - q).
+fn least_tie(draw: &mut Draw) -> In {
+    let f = [draw.between(0, 15), draw.between(0, 15), 1];
+    let one = draw.one_of(&[-1, 1]);
+    let along = if draw.once_in(4) { [one, 0, 0] } else { [draw.between(-8, 8), one, 0] };
+    let n = [-f[2] * along[1], f[2] * along[0], f[0] * along[1] - f[1] * along[0]];
+    // d.n = 0, and down to the edge.
+    let [any, y, z] = [draw.signed(1 << 20), draw.signed(1 << 20), draw.between(-1 << 20, -1)];
+    let d = if n[0] == 0 { [any, -z * n[2] * n[1], z] } else { [-n[0] * (y * n[1] + z * n[2]), y, z] };
+    let at = draw.point(POINT_MAX >> 1);
+    let size = (POINT_MAX >> 2) >> draw.below(29);
+    let beside = |by: [i64; 3]| [0, 1, 2].map(|k| at.get()[k] + by[k]);
+    let p = [at.get(), beside(along.map(|c| -c)), beside([0; 3].map(|_| draw.signed(size)))];
+    let start = Start { point: at, fraction: f.map(|f| U::new(f.cast_unsigned())) };
+    turned(draw, p, start, direction(d))
+}
+
+/// What decides each tie: the first component of p x q that is not 0, as its place, its value and the next component that is not 0.
+fn deciding(i: &In) -> impl Iterator<Item = (usize, [i128; 2])> {
+    let ties = edges(i).into_iter().filter(|(value, _)| *value == 0);
+    ties.filter_map(|(_, n)| {
+        let mut counting = n.into_iter().enumerate().filter(|(_, c)| *c != 0);
+        let (place, first) = counting.next()?;
+        Some((place, [first, counting.next().map_or(0, |(_, next)| next)]))
+    })
+}
+
+/// Whether a tie is decided by a 1 in this component, and would be decided otherwise without it.
+fn is_by_one(i: &In, component: usize) -> bool {
+    deciding(i).any(|(place, [first, next])| place == component && first == 1 && next < 0)
+}
+
 /// Exact d.(p x q) in steps of 2^-31 and p x q in the same, of the three edges.
 fn edges(i: &In) -> [(i128, [i128; 3]); 3] {
     let x = i.start.point.get();
@@ -196,6 +228,7 @@ pub fn suite() -> Suite<StartTest> {
             Is::some("the next sheet", next_sheet, |i, o| o.test.hit && o.test.t_num.get() << 20 < o.test.det.get() && !is_whole(i)),
             Is::some("a neighbour", neighbour, |_, o| o.test.hit),
             Is::all("no area", no_area, |_, o| !o.test.hit),
+            Is::all("the least tie", least_tie, |i, _| deciding(i).any(|(_, [first, _])| first.abs() == 1)),
             Is::all("the largest", extreme, |_, o| o.test.t_num.get() > 31 << 92 || !o.test.hit),
         ],
         vec![
@@ -205,6 +238,8 @@ pub fn suite() -> Suite<StartTest> {
             ("three ties", |i, _| ties(i) == 3 && !is_whole(i)),
             ("ties decided by y", |i, o| o.test.hit && edges(i).iter().any(|(v, n)| *v == 0 && n[0] == 0 && n[1] != 0)),
             ("ties decided by z", |i, o| o.test.hit && edges(i).iter().any(|(v, n)| *v == 0 && n[0] == 0 && n[1] == 0 && n[2] != 0)),
+            ("ties decided by 1 in x against y or z, hit", |i, o| o.test.hit && is_by_one(i, 0)),
+            ("ties decided by 1 in y against z, hit", |i, o| o.test.hit && is_by_one(i, 1)),
             ("met though the whole point's ray misses", |i, o| o.test.hit && !of_point(i).hit),
             ("missed though the whole point's ray meets", |i, o| !o.test.hit && of_point(i).hit),
             ("t below 1", |_, o| o.test.hit && o.test.t_num.get() == 0 && o.below.t != U::ZERO),

@@ -12,7 +12,7 @@ mod row;
 use super::cache::Cache;
 use super::folder::RunFolder;
 use super::job_lines::{JobLines, keep_aside};
-use super::output::{busy, check_normals, check_target, print_line, progress, remark, write_file};
+use super::output::{busy, check_normals, check_target, count, print_line, progress, remark, write_file};
 use super::report::{save, this_run, titled};
 use super::sweep::SceneJobs;
 use lodray::format::Scene;
@@ -63,6 +63,7 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
     let cache = Cache::new(&args.cache, Some(&args.out))?;
     let lines = args.out.join(LINES);
     check_target(&lines, &inputs)?;
+    folder.continues(LINES)?;
     let mut rows = JobLines::open(&lines)?;
     folder.keep(LINES)?;
     keep_aside(&mut folder, &lines)?;
@@ -112,7 +113,7 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
     page(&folder.staging().join(PAGE), document, &args.out, &inputs)?;
     folder.finish()?;
     let failed: Vec<_> = rows.of(&keys).filter_map(|row| Some((&row.key, row.error.as_ref()?))).collect();
-    remark(&format!("{} views, {} failed; figures in {}", keys.len(), failed.len(), args.out.display()))?;
+    remark(&format!("{}, {} failed; figures in {}", count(keys.len(), "view"), failed.len(), args.out.display()))?;
     for (key, why) in &failed {
         print_line(&format!("failed: {key}: {why}"))?;
     }

@@ -94,6 +94,11 @@ impl RunFolder {
         self.record.notes.push(text);
     }
 
+    /// Refuses a file that no run has made, which this one would go on with: it may be another program's.
+    pub fn continues(&self, name: &str) -> anyhow::Result<()> {
+        self.check_free(name)
+    }
+
     /// A file that the run writes in its place and that a later run goes on with, whatever becomes of this one.
     pub fn keep(&mut self, name: &str) -> anyhow::Result<()> {
         self.record.files.insert(name.to_owned());

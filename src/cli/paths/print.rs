@@ -2,7 +2,8 @@
 
 use super::Report;
 use super::machine::Bounces;
-use crate::cli::output::{grouped, print_line};
+use crate::cli::output::{count, grouped, print_table};
+use crate::cli::simulate::amount;
 use std::fmt::Write;
 use std::path::Path;
 
@@ -11,11 +12,11 @@ pub fn report(report: &Report, out: &Path) -> anyhow::Result<()> {
     let [width, height] = report.size;
     let all = report.counts.all();
     let mut text = format!(
-        "{}: {width}x{height}, {} paths a pixel, {} bounces; {} rays in {:.1} s, {} a second",
+        "{}: {width}x{height}, {} a pixel, {}; {} in {:.1} s, {} a second",
         out.display(),
-        report.samples,
-        report.depth,
-        grouped(all),
+        count(report.samples, "path"),
+        count(report.depth, "bounce"),
+        count(all, "ray"),
         report.seconds,
         grouped((all as f64 / report.seconds.max(1e-9)) as u64)
     );
@@ -27,18 +28,18 @@ pub fn report(report: &Report, out: &Path) -> anyhow::Result<()> {
     for (what, against) in [("full resolution by the same paths", &report.against_full), ("full resolution", &report.against_converged)] {
         let Some(against) = against else { continue };
         let psnr = against.image.psnr_db.map_or_else(|| "equal".to_owned(), |db| format!("{db:.2} dB"));
-        write!(text, "\nagainst {what} ({} paths a pixel): light {:.6}, picture {psnr}", against.samples, against.light)?;
+        write!(text, "\nagainst {what} ({} a pixel): light {:.6}, picture {psnr}", count(against.samples, "path"), against.light)?;
         if let Some(pixels) = against.pixels {
             write!(
                 text,
-                "; of {} pixels {} are in shadow that should not be, {} in light",
-                grouped(pixels.pixels),
+                "; of {} {} are in shadow that should not be, {} in light",
+                count(pixels.pixels, "pixel"),
                 grouped(pixels.shadowed),
                 grouped(pixels.leaking)
             )?;
         }
     }
-    print_line(&text)
+    print_table(&text)
 }
 
 /// What each bounce adds.
@@ -57,15 +58,15 @@ pub fn bounces(rows: &[Bounces]) -> anyhow::Result<()> {
     for row in rows {
         write!(
             text,
-            "\n{:>8} {:>14} {:>12.4} {:>16.4e} {:>14} {:>12.4} {:>16.4e}",
+            "\n{:>8} {:>14} {:>12.4} {:>16} {:>14} {:>12.4} {:>16}",
             row.bounces,
             grouped(row.rays),
             row.milliseconds,
-            row.energy,
+            amount(row.energy),
             grouped(row.added_rays),
             row.added_milliseconds,
-            row.added_energy
+            amount(row.added_energy)
         )?;
     }
-    print_line(&text)
+    print_table(&text)
 }

@@ -2,15 +2,17 @@
 
 mod speed;
 
+use super::args::{Size, radii};
 use super::method::Chosen;
-use super::output::{busy, check_target, open, print_json, print_line, remark, write_file};
-use super::sweep::{Jobs, ListText, SceneJobs};
+use super::output::{busy, check_target, count, grouped, open, print_json, print_line, print_table, remark, write_file};
+use super::sweep::{Jobs, ListText, Origin, SceneJobs, ViewJob};
 use anyhow::Context;
 use lodray::format::{Job, Scene};
-use lodray::hardware::{Hardware, context_gates};
-use lodray::method::lod;
+use lodray::hardware::{Hardware, context_gates, unit_gates};
+use lodray::method::knob::{DELTA, quality};
+use lodray::method::{Knobs, lod};
 use lodray::plan::{Data, Measure, Narrowest, Part, Plan, RayNeeds, Reach, Saving, Within, savings};
-use lodray::rays::{ModelSpace, RaySource};
+use lodray::rays::{DEFAULT_VIEW_ANGLE_DEGREES, ModelSpace, RaySource};
 use lodray::report::result::MachineFacts;
 use serde::Serialize;
 use speed::{Frames, SpeedArgs};
@@ -19,25 +21,33 @@ use std::process::ExitCode;
 
 #[derive(clap::Args)]
 pub struct Args {
-    /// Scene files that one unit is to serve, with any rays
+    /// Scene files that one unit shall serve: for any rays, or for the views of --distance
     #[arg(required_unless_present_any = ["job", "plan"], conflicts_with = "job")]
     scenes: Vec<PathBuf>,
-    /// What will be done: a list of jobs as for sweep, of which the scenes, the cameras or the regions that they stay in, and the qualities of lod count
+    /// List of jobs, as for sweep: its scenes, its cameras or the regions that they stay in, and its qualities of lod
     #[arg(long, value_name = "LIST")]
     job: Option<PathBuf>,
-    /// Also coarser grids of coordinates and directions, on which nothing that is seen moves by more than so many pixels: `prune` puts the scenes there
+    /// Plan only for views from these distances in bounding radii, with commas; the camera looks as in render
+    #[arg(long, value_name = "RADII", value_delimiter = ',', requires = "scenes", value_parser = radii, allow_hyphen_values = true)]
+    distance: Vec<f64>,
+    /// Picture size of these views in pixels
+    #[arg(long, value_name = "WxH", requires = "distance", default_value = "1024x1024", allow_hyphen_values = true)]
+    size: Size,
+    #[arg(long, help = DELTA.help, requires = "distance", default_value = "1", value_parser = quality, allow_hyphen_values = true)]
+    delta: f64,
+    /// Also find the coarsest grids of coordinates and directions that move nothing seen by more than this; `prune` puts scenes on them
     #[arg(long, value_name = "PIXELS", requires = "job", conflicts_with = "check", value_parser = pixels, allow_negative_numbers = true)]
     within: Option<f64>,
-    /// Take this plan, made before
+    /// Show this plan, or write its --package, instead of making one
     #[arg(long, value_name = "PLAN", conflicts_with_all = ["scenes", "job", "check", "out", "speed"])]
     plan: Option<PathBuf>,
     /// Write the plan (TOML) to this file
     #[arg(short, long)]
     out: Option<PathBuf>,
-    /// Write rtl/lod_pkg.sv of the unit to this file: with it in place of the other, the RTL is that unit
+    /// Write the unit's rtl/lod_pkg.sv to this file; with it, rtl/ is that unit
     #[arg(long, value_name = "FILE", conflicts_with = "check")]
     package: Option<PathBuf>,
-    /// Check the scenes (and the job's rays) against this plan in place of making one
+    /// Check the scenes (and the job's rays) against this plan instead of making one
     #[arg(long, value_name = "PLAN", conflicts_with = "out")]
     check: Option<PathBuf>,
     #[command(flatten)]
@@ -81,6 +91,8 @@ struct UnitFacts {
     direction_zeros: u32,
     /// Blocks of a traversal unit that it has.
     blocks: Vec<&'static str>,
+    /// Gate equivalents of the whole: one of each block, and the contexts.
+    gates: f64,
     /// Registers of a context, in bits.
     context_bits: u32,
     /// Gate equivalents of one, with its logic and its memories.
@@ -111,10 +123,16 @@ impl UnitFacts {
             coordinate_zeros: hardware.coordinate_zeros,
             direction_zeros: hardware.direction_zeros,
             blocks: blocks.map(|operation| operation.name()).collect(),
+            gates: gates(hardware),
             context_bits: hardware.context_registers(true).kept,
             context_gates: context_gates(hardware, true),
         }
     }
+}
+
+/// Gate equivalents of a unit: one of each block, and its contexts.
+fn gates(hardware: &Hardware) -> f64 {
+    lod::METHOD.unit.and_then(|unit| unit_gates(unit, hardware)).unwrap_or(0.0)
 }
 
 pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
@@ -125,17 +143,66 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
     if let Some(path) = &args.plan {
         return say(args, &read(path)?, None);
     }
-    let jobs = args.job.as_deref().map(Jobs::read).transpose()?;
+    let jobs = match &args.job {
+        Some(list) => Some(Jobs::read(list)?),
+        None if args.distance.is_empty() => None,
+        None => Some(seen(args)?),
+    };
+    anyhow::ensure!(jobs.is_some() || !args.speed.is_wanted(), "--speed: give the views, with --distance or as a list with --job");
     let given = args.check.as_deref().map(read).transpose()?;
     let mut frames = args.speed.frames()?;
     let (mut plan, data) = made(args, jobs.as_ref(), given.as_ref(), frames.as_mut())?;
     if given.is_some() {
         let scenes = plan.scenes.len();
-        remark(&format!("{scenes} {} the plan", if scenes == 1 { "scene fits" } else { "scenes fit" }))?;
+        remark(&format!("{} {} the plan", count(scenes, "scene"), if scenes == 1 { "fits" } else { "fit" }))?;
         return Ok(ExitCode::SUCCESS);
     }
     plan.speed = frames.map(|frames| frames.speed(&plan.hardware(&Hardware::default()))).transpose()?;
     say(args, &plan, Some(&data))
+}
+
+/// The scenes, seen from the distances of the command line.
+fn seen(args: &Args) -> anyhow::Result<Jobs> {
+    let Size(width, height) = args.size;
+    let camera = |&distance: &f64| ViewJob {
+        size: [width, height],
+        distance: Some(distance),
+        direction: None,
+        eye: None,
+        target: None,
+        up: None,
+        fov: DEFAULT_VIEW_ANGLE_DEGREES,
+    };
+    let views: Vec<_> = args.distance.iter().map(camera).collect();
+    let scene = |file: &PathBuf| SceneJobs {
+        name: file.display().to_string(),
+        origin: Origin::File(file.clone()),
+        content: 0,
+        views: views.clone(),
+        regions: Vec::new(),
+    };
+    let knobs = Knobs::default().with(&DELTA, &args.delta.to_string())?;
+    Ok(Jobs {
+        scenes: args.scenes.iter().map(scene).collect(),
+        methods: vec![Chosen { method: &lod::METHOD, knobs }],
+        targets: Vec::new(),
+        deltas: Vec::new(),
+        error: false,
+        intervals: false,
+        files: args.scenes.iter().cloned().collect(),
+    })
+}
+
+/// What all of a plan saves, in one line.
+fn total(plan: &Plan) -> String {
+    let full = gates(&plan.speed.as_ref().map_or(Hardware::default(), |speed| speed.own.config()));
+    let own = gates(&plan.hardware(&Hardware::default()));
+    let less = 100.0 * (1.0 - own / full);
+    format!(
+        "a unit for this has {} of {} GE (gate equivalents): {less:.1} % less",
+        grouped(own.round() as u64),
+        grouped(full.round() as u64)
+    )
 }
 
 /// Prints a plan and writes what was asked for.
@@ -146,7 +213,8 @@ fn say(args: &Args, plan: &Plan, data: Option<&Data>) -> anyhow::Result<ExitCode
         let (unit, full_unit) = (UnitFacts::of(&plan.hardware(&Hardware::default())), UnitFacts::of(&full));
         print_json(&Document { plan, data, savings: &savings, unit, full_unit })?;
     } else {
-        print_line(&table(&savings))?;
+        print_line(&total(plan))?;
+        print_table(&table(&savings))?;
         plan.speed.iter().try_for_each(|speed| print_line(&speed::words(speed)))?;
     }
     if let Some(out) = &args.out {
@@ -212,7 +280,7 @@ fn made(args: &Args, jobs: Option<&Jobs>, given: Option<&Plan>, mut frames: Opti
         all = Some(all.map_or(data, |all| all.with(data)));
         Ok(())
     };
-    for file in &args.scenes {
+    for file in args.scenes.iter().filter(|_| jobs.is_none()) {
         let scene = open(file)?;
         let measure = busy("measuring", || Measure::of(&scene));
         add(&file.display().to_string(), &measure, &scene.depths())?;

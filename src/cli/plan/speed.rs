@@ -3,7 +3,7 @@
 use crate::cli::args::{Change, Size};
 use crate::cli::cache::Cache;
 use crate::cli::method::Chosen;
-use crate::cli::output::{busy, progress};
+use crate::cli::output::{busy, count, progress};
 use crate::cli::pass::machine;
 use crate::cli::sweep::ViewJob;
 use anyhow::Context;
@@ -16,16 +16,16 @@ use lodray::run::{self, Compute, FrameRays, HeldFrame};
 
 #[derive(clap::Args)]
 pub struct SpeedArgs {
-    /// Find by simulation how small the machine's traversal units can be; holds the steps of all of the job's frames in memory
-    #[arg(long, conflicts_with_all = ["scenes", "check"])]
+    /// Find by simulation how small the machine's traversal units can be for the views of --distance or --job; keeps all their frames in memory
+    #[arg(long, conflicts_with = "check")]
     speed: bool,
-    /// Percent of the frame rate that the machine's memory allows that must be kept in every view
+    /// Frame rate to keep in every view, in percent of what the machine's memory allows
     #[arg(long, requires = "speed", value_name = "PERCENT", default_value = "95", value_parser = percent)]
     share: f64,
     /// Machine: the name of one that comes with the program, or a file
     #[arg(long, requires = "speed", value_name = "NAME|FILE", default_value = "haydel2023")]
     machine: String,
-    /// Change a value of the machine; what it says of its units is the most that they can have, such as units.per_group=8; may be repeated
+    /// Change a value of the machine, such as units.per_group=8, the most units that there can be; may be repeated
     #[arg(long, requires = "speed", value_name = "KEY=VALUE")]
     set: Vec<Change>,
     /// Size of the pictures that are simulated, in place of the job's
@@ -45,6 +45,11 @@ pub struct Frames<'a> {
 }
 
 impl SpeedArgs {
+    /// Whether somebody wants to know.
+    pub fn is_wanted(&self) -> bool {
+        self.speed
+    }
+
     /// Refuses a machine on which there are no frames; nothing if nobody wants to know.
     pub fn frames(&self) -> anyhow::Result<Option<Frames<'_>>> {
         if !self.speed {
@@ -83,7 +88,7 @@ impl Frames<'_> {
 pub fn words(speed: &Speed) -> String {
     let percent = |share: f64| format!("{:.1} %", 100.0 * share);
     let Speed { frames, frames_of_units, .. } = speed;
-    let s = if *frames == 1 { "" } else { "s" };
+    let frames = count(*frames as u64, "frame");
     let memory = match frames_of_units {
         0 => format!("{} or more of the frame rate that the memory allows", percent(speed.kept)),
         _ => format!(
@@ -93,5 +98,5 @@ pub fn words(speed: &Speed) -> String {
             percent(speed.kept_of_memory)
         ),
     };
-    format!("speed: on {}, {frames} frame{s}: {memory}", speed.machine)
+    format!("speed: on {}, {frames}: {memory}", speed.machine)
 }

@@ -53,7 +53,7 @@ fn add(all: &mut Documents, path: &Path) -> anyhow::Result<()> {
                 "stability"
             }
             Kind::Results => {
-                let found = results(&text).with_context(|| format!("{shown}: not results of a simulation"))?;
+                let found = results(&text, &shown.to_string()).with_context(|| format!("{shown}: not results of a simulation"))?;
                 all.simulations.extend(found.into_iter().flatten());
                 "simulations"
             }

@@ -12,7 +12,7 @@ use super::folder::{Overrule, RunFolder, one_run};
 use super::job;
 use super::method::MachineMethod;
 use super::names::named;
-use super::output::{check_target, explain, grouped, open_any, print_json, print_line, remark, warn, write_file};
+use super::output::{check_target, explain, grouped, open_any, print_json, print_table, remark, warn, write_file};
 use super::pass::{Pass, PassRays, Target, machine, machine_files};
 use super::plan;
 use super::report::PageArgs;
@@ -34,13 +34,13 @@ pub struct Args {
     scene: PathBuf,
     #[command(flatten)]
     method: MachineMethod,
-    /// Machine: the name of one that comes with the program, or a file; several, repeated or with commas, share the tracing
+    /// Machine: the name of a built-in one, or a file; several with commas
     #[arg(long, value_name = "NAME|FILE", value_delimiter = ',', default_value = "haydel2023")]
     machine: Vec<String>,
     /// Change a value of the machines, such as l1.bytes=32768; may be repeated
     #[arg(long, value_name = "KEY=VALUE")]
     set: Vec<Change>,
-    /// Traversal units of a plan (lodray plan -o), in energy, leakage and cycles; the scene and its rays must fit it
+    /// Simulate the traversal units of this plan (from lodray plan -o); the scene and its rays must fit it
     #[arg(long, value_name = "PLAN", conflicts_with = "rays")]
     plan: Option<PathBuf>,
     /// How compute is simulated
@@ -61,7 +61,7 @@ pub struct Args {
     /// File for a waveform (VCD) of the machine: queues, misses under way and cache events; needs --window
     #[arg(long, value_name = "FILE", requires = "window")]
     vcd: Option<PathBuf>,
-    /// Cycles of the waveform, first and last, counted from 0; the frame must have the first
+    /// First and last cycle of the waveform, counted from 0
     #[arg(long, value_name = "FROM:TO", requires = "vcd", value_parser = window)]
     window: Option<Window>,
     #[command(flatten)]
@@ -155,7 +155,7 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
         (true, [one]) => print_json(one)?,
         (true, several) => print_json(&several)?,
         (false, several) => {
-            print_line(&several.iter().map(table::table).collect::<Vec<_>>().join("\n\n"))?;
+            print_table(&several.iter().map(table::table).collect::<Vec<_>>().join("\n\n"))?;
             explain("simulate")?;
             if let Some(out) = &args.out {
                 remark(&format!("figures and plots in {}", out.display()))?;

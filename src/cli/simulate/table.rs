@@ -1,6 +1,6 @@
 //! A result as text.
 
-use crate::cli::output::grouped;
+use crate::cli::output::{count, grouped};
 use lodray::report::result::{CacheResult, SimResult};
 
 /// Columns of the name and of each figure.
@@ -72,9 +72,9 @@ fn head(r: &SimResult) -> String {
     let detail: String = details.iter().map(|d| if d.starts_with("delta") { format!(" at {d}") } else { format!(", {d}") }).collect();
     let machine = &setup.machine;
     format!(
-        "{}, {} triangles; {}{detail}; {}\n{} ({}), compute {}\n\n",
+        "{}, {}; {}{detail}; {}\n{} ({}), compute {}\n\n",
         setup.scene.name,
-        grouped(setup.scene.finest_triangles),
+        count(setup.scene.finest_triangles, "triangle"),
         setup.method.name,
         setup.rays_in_words(),
         machine.description.name,
@@ -101,9 +101,9 @@ fn memory(lines: &mut Lines, r: &SimResult) {
     let rates = [amount(dram.bytes_per_second * 1e-9), percent(dram.bandwidth_share), amount(dram.mean_queue_nanoseconds)];
     lines.line("", counts.into_iter().chain(rates));
     lines.0 += &format!(
-        "              {}: {} channels, {} GB/s at most; the busiest has {:.2} of the mean; {} cycles of misses before full queues\n",
+        "              {}: {}, {} GB/s at most; the busiest has {:.2} of the mean; {} cycles of misses before full queues\n",
         dram.device,
-        dram.channels.len(),
+        count(dram.channels.len(), "channel"),
         amount(dram.peak_bytes_per_second * 1e-9),
         dram.busiest_over_mean,
         grouped(dram.refused_cycles)
@@ -120,7 +120,7 @@ fn times(lines: &mut Lines, r: &SimResult) {
         Some(units) => {
             lines.line("contexts", ["wait for lines", "compute", "idle"]);
             lines.line("", [w.memory, w.compute, w.idle].map(percent));
-            lines.line(&format!("{} units", grouped(units.units)), ["operations", "utilisation", "busy", "refused"]);
+            lines.line(&count(units.units, "unit"), ["operations", "utilisation", "busy", "refused"]);
             for (name, block) in &units.blocks {
                 lines.line(
                     &format!("  {name}"),

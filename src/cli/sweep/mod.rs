@@ -14,7 +14,7 @@ use super::folder::{Overrule, RunFolder, one_run};
 use super::job;
 use super::job_lines::{JobLines, keep_aside};
 use super::method::Chosen;
-use super::output::{check_normals, check_target, print_line, remark, write_file};
+use super::output::{check_normals, check_target, count, print_line, remark, write_file};
 use super::pass::{Outcome, Pass, PassRays, Target};
 use super::pictures::{Shot, shoot};
 use super::render::compare_shots;
@@ -82,6 +82,7 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
     let cache = Cache::new(&args.cache, Some(&args.out))?;
     let lines = args.out.join(LINES);
     check_target(&lines, &inputs)?;
+    folder.continues(LINES)?;
     let rows = JobLines::open(&lines)?;
     folder.keep(LINES)?;
     keep_aside(&mut folder, &lines)?;
@@ -107,11 +108,15 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
     args.page.write(Documents { simulations, ..Documents::default() }, &inputs)?;
     let failed: Vec<_> = sweep.rows.of(&keys).filter(|row| row.error.is_some()).collect();
     let before = keys.iter().filter(|key| done.contains(*key)).count();
-    let jobs = |n: usize| format!("{n} {}", if n == 1 { "job" } else { "jobs" });
-    remark(&format!("{}, {before} of them done before, {} failed; results in {}", jobs(keys.len()), failed.len(), args.out.display()))?;
+    remark(&format!(
+        "{}, {before} of them done before, {} failed; results in {}",
+        count(keys.len(), "job"),
+        failed.len(),
+        args.out.display()
+    ))?;
     let others = done.len() - before;
     if others > 0 {
-        remark(&format!("{LINES} has results of {} more, which are not in the list", jobs(others)))?;
+        remark(&format!("{LINES} has results of {} more, which are not in the list", count(others, "job")))?;
     }
     for row in &failed {
         print_line(&format!("failed: {}: {}", row.key, row.error.as_deref().unwrap_or_default()))?;

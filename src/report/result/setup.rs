@@ -38,7 +38,7 @@ impl Setup {
             let place = view.distance.map_or_else(|| format!("{:?}", view.eye), |distance| format!("{distance} bounding radii"));
             format!("{}x{} rays from {place}", view.size[0], view.size[1])
         };
-        let of_file = |rays: &RayFileFacts| format!("{} rays of {}", rays.count, rays.file);
+        let of_file = |rays: &RayFileFacts| format!("{} {} of {}", rays.count, if rays.count == 1 { "ray" } else { "rays" }, rays.file);
         self.view.as_ref().map(of_view).or_else(|| self.rays.as_ref().map(of_file)).unwrap_or_default()
     }
 

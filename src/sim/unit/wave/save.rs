@@ -133,6 +133,8 @@ fn signals(rows: &'static [Row]) -> impl Iterator<Item = (String, &'static str)>
 }
 
 /// GTKWave's save file for the waveform in file `vcd`, whose signals have these widths; `states` is the file of [`gtkwave_states`].
+///
+/// GTKWave takes a relative path from the folder that it was started in, so both should be absolute.
 pub fn gtkwave_save(vcd: &str, states: &str, widths: &BTreeMap<String, u32>) -> String {
     let mut text = format!(
         "[*] One ray through traversal_unit (lodray trace)\n[dumpfile] \"{vcd}\"\n[timestart] 0\n[size] 1600 1000\n[pos] -1 -1\n*-9.0 0\n[signals_width] 260\n[sst_expanded] 0\n"

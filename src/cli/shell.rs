@@ -1,0 +1,40 @@
+//! `completions` and `man`: what shells and `man` know of the program, made from its command line.
+
+use super::Cli;
+use super::output::{print_line, remark};
+use anyhow::Context;
+use clap::CommandFactory;
+use clap_complete::Shell;
+use std::path::PathBuf;
+use std::process::ExitCode;
+
+const NAME: &str = "lodray";
+
+#[derive(clap::Args)]
+pub struct CompletionsArgs {
+    /// Shell
+    shell: Shell,
+}
+
+#[derive(clap::Args)]
+pub struct ManArgs {
+    /// Folder for the pages: lodray.1, and one for each command
+    folder: PathBuf,
+}
+
+/// Prints the script that completes commands and options in a shell.
+pub fn completions(args: &CompletionsArgs) -> anyhow::Result<ExitCode> {
+    let mut script = Vec::new();
+    clap_complete::generate(args.shell, &mut Cli::command(), NAME, &mut script);
+    print_line(String::from_utf8(script)?.trim_end())?;
+    Ok(ExitCode::SUCCESS)
+}
+
+/// Writes the manual pages.
+pub fn man(args: &ManArgs) -> anyhow::Result<ExitCode> {
+    let shown = args.folder.display();
+    std::fs::create_dir_all(&args.folder).with_context(|| format!("cannot make folder {shown}"))?;
+    clap_mangen::generate_to(Cli::command(), &args.folder).with_context(|| format!("cannot write to {shown}"))?;
+    remark(&format!("pages in {shown}: man -l {}", args.folder.join("lodray.1").display()))?;
+    Ok(ExitCode::SUCCESS)
+}
