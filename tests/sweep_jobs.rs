@@ -330,3 +330,25 @@ fn any_number_of_frames_at_once_gives_the_same_bytes() {
     let (code, text) = desk.hear("sweep jobs.toml -o no --at-once 0");
     assert!(code != 0 && text.contains("'0' is not a whole number from 1 to 1024"), "{text}");
 }
+
+#[test]
+fn a_last_line_that_was_cut_is_left_out_of_pages_and_comparisons() {
+    let desk = with_scene();
+    desk.write("jobs.toml", &format!("{HEAD}{SCENE}{CACHES}set = {{ \"l1.bytes\" = [16384, 32768] }}\n"));
+    assert_eq!(desk.run_on(0, "sweep jobs.toml -o out").0, 0);
+    let lines = desk.text("out/results.jsonl");
+    let [a, b, ..]: [&str; 4] = lines.lines().collect::<Vec<_>>().try_into().unwrap();
+    let cut = &b[..b.len() / 2];
+    desk.write("cut.jsonl", &format!("{a}\n{b}\n{cut}"));
+    for command in ["report cut.jsonl -o page.html", "compare cut.jsonl:1 cut.jsonl:2"] {
+        let (code, out, err) = desk.run_on(0, command);
+        assert!(code == 0 && !out.is_empty(), "{command}: {err}");
+        assert!(err.lines().all(|line| line.starts_with("warning: cut.jsonl: line 3, column ") && line.ends_with("is left out")), "{err}");
+        assert!(!err.is_empty(), "{command}");
+    }
+    // Whole but wrong, in the middle, or alone, it is an error.
+    for damaged in [format!("{a}\n{cut}\n"), format!("{a}\n{cut}\n{b}"), cut.to_owned()] {
+        desk.write("cut.jsonl", &damaged);
+        desk.refused("report cut.jsonl -o page.html", 1, &["cut.jsonl: not results of a simulation: line "]);
+    }
+}

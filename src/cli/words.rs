@@ -3,47 +3,66 @@
 /// Of `render`.
 pub const RENDER: &str = "\
 Words of the table:
-  bounding radius     half the diagonal of the model's box; distances are given in it
-  level               how often a base triangle is split: 0 is the base mesh, N full resolution;
-                      the mean is over the triangles that rays hit
-  nodes               groups of child boxes tested (four, of `bvh6` six); LOD tests: is a triangle fine enough for its ray
-  line                32 bytes of memory; read counts every time, distinct each line once
+  bounding radius     half the diagonal of the model's box; distances are given
+                      in it
+  level               how often a base triangle is split: 0 is the base mesh, N
+                      full resolution; the mean is over the triangles that rays
+                      hit
+  nodes               groups of child boxes tested (four, of `bvh6` six); LOD
+                      tests: is a triangle fine enough for its ray
+  line                32 bytes of memory; read counts every time, distinct each
+                      line once
   bvh_node, l0_record, bound_data, vertex_data, leaf
-                      what a line holds: boxes over triangles, a base triangle, how far the surface
-                      is from a triangle, vertices of finer levels, triangles of the BVH
-  RMSE, maximum       differences of the pictures, from 0 to 255; PSNR is the same in dB, more is better
+                      what a line holds: boxes over triangles, a base triangle,
+                      how far the surface is from a triangle, vertices of finer
+                      levels, triangles of the BVH
+  RMSE, maximum       differences of the pictures, from 0 to 255; PSNR is the
+                      same in dB, more is better
   coverage            pixels that see the model in one picture only
-  surface off         distance between the surfaces in pixels, where both pictures see one;
-                      null with --json if they do so nowhere";
+  surface off         distance between the surfaces in pixels, where both
+                      pictures see one; null with --json if they do so nowhere";
 
 /// Of `simulate`.
 pub const SIMULATE: &str = "\
 Words of the table:
-  bounding radius     half the diagonal of the model's box; distances are given in it
-  L1, L2              the caches: one L1 for each group of cores, one L2 for all, then DRAM
-  hits, misses        lines (32 bytes) found in a cache, and asked of the next one;
-                      merges: missing, but asked for already
-  conflicts           requests that waited because their bank of the cache was busy
-  waits, cycles       in a bank's queue; before a full queue; banks without a free miss register;
-                      on the crossbar between L1 and L2; each summed over all that waited
-  row hits            DRAM requests that found their row open; row misses: none was open;
-                      row conflicts: another had to be closed first
-  contexts            a place for one ray in flight; the shares say what they waited for
-  alone needs         cycles of the frame if only this part took time; the largest limits the frame
-  energy              of the frame in uJ (millionths of a joule), or in a unit of the machine's own
+  bounding radius     half the diagonal of the model's box; distances are given
+                      in it
+  L1, L2              the caches: one L1 for each group of cores, one L2 for
+                      all, then DRAM
+  hits, misses        lines (32 bytes) found in a cache, and asked of the next
+                      one; merges: missing, but asked for already
+  conflicts           requests that waited because their bank of the cache was
+                      busy
+  waits, cycles       in a bank's queue; before a full queue; banks without a
+                      free miss register; on the crossbar between L1 and L2;
+                      each summed over all that waited
+  row hits            DRAM requests that found their row open; row misses: none
+                      was open; row conflicts: another had to be closed first
+  contexts            a place for one ray in flight; the shares say what they
+                      waited for
+  alone needs         cycles of the frame if only this part took time; the
+                      largest limits the frame
+  energy              of the frame in uJ (millionths of a joule), or in a unit
+                      of the machine's own
   bvh_node, l0_record, bound_data, vertex_data, leaf
-                      what a line holds: boxes over triangles, a base triangle, how far the surface
-                      is from a triangle, vertices of finer levels, triangles of the BVH";
+                      what a line holds: boxes over triangles, a base triangle,
+                      how far the surface is from a triangle, vertices of finer
+                      levels, triangles of the BVH";
 
 /// Of `lines`.
 pub const LINES: &str = "\
 Words of the table:
-  bounding radius     half the diagonal of the model's box; distances are given in it
-  line                32 bytes of memory; the table counts the different ones that a frame reads
-  LOD, BVH            level of detail, against the full-resolution mesh with boxes of 16 or 32 bits;
-                      'n a leaf': triangles in a leaf, stored as --leaf-layout of render says
-  L0                  nodes over base triangles and their records: what every ray reads first
-  mean level          of the triangles that rays hit: 0 is the base mesh, N full resolution";
+  bounding radius     half the diagonal of the model's box; distances are given
+                      in it
+  line                32 bytes of memory; the table counts the different ones
+                      that a frame reads
+  LOD, BVH            level of detail, against the full-resolution mesh with
+                      boxes of 16 or 32 bits; 'n a leaf': triangles in a leaf,
+                      stored as --leaf-layout of render says
+  L0                  nodes over base triangles and their records: what every
+                      ray reads first
+  mean level          of the triangles that rays hit: 0 is the base mesh, N full
+                      resolution";
 
 /// Of `crack`.
 pub const CRACK: &str = "\
@@ -51,20 +70,24 @@ Words of the table:
   crossing            rays that met the surface at all
   axis-parallel       rays along an axis or in a plane of two
   mixed levels        rays that met triangles of two or more levels
-  odd                 rays that crossed a closed surface an odd number of times: a miss or a double hit
+  odd                 rays that crossed a closed surface an odd number of times:
+                      a miss or a double hit
   unbalanced          rays that went in and out a different number of times";
 
 /// Of `stability`.
 pub const STABILITY: &str = "\
 Words of the table:
   balanced            rays that went into a closed surface as often as out
-  golden              rays compared with the golden traverser, which computes exactly
+  golden              rays compared with the golden traverser, which computes
+                      exactly
   misses, doubles     crossings that are missing, and that are too many
   differ              hits that are not the golden traverser's in every field
   overflows           rays on which a number did not fit its stated width
-  t ulp, bary ulp     worst rounding of a hit's distance (steps of 2^-32) and barycentrics (2^-31)
+  t ulp, bary ulp     worst rounding of a hit's distance (steps of 2^-32) and
+                      barycentrics (2^-31)
   pixels              worst shift of a hit on the picture of a camera
-  breaches            misses, doubles, differences and overflows together: there should be none";
+  breaches            misses, doubles, differences and overflows together: there
+                      should be none";
 
 /// Of `paths`.
 pub const PATHS: &str = "\
@@ -117,9 +140,11 @@ whole numbers are -1 and all others nan:
 /// Of `completions`.
 pub const COMPLETIONS: &str = "\
 For this shell: source <(lodray completions bash)
-For all, with bash: lodray completions bash > ~/.local/share/bash-completion/completions/lodray";
+For all, with bash: lodray completions bash >
+~/.local/share/bash-completion/completions/lodray";
 
 /// Of `export`.
 pub const EXPORT: &str = "\
-Faces are in the order of the scene's triangles: counted from 0, face number tree * 4^level + node is
-node `node` of base triangle `tree`. At full resolution that number is the `triangle` of `lodray cast`.";
+Faces are in the order of the scene's triangles: counted from 0, face number
+tree * 4^level + node is node `node` of base triangle `tree`. At full resolution
+that number is the `triangle` of `lodray cast`.";
