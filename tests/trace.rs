@@ -48,7 +48,7 @@ fn waveform_and_save_files_stand_side_by_side() {
     let text = |name: &str| fs::read_to_string(desk.join(name)).unwrap();
     let gtkw = text("ray.gtkw");
     // GTKWave looks from the folder that it was started in: names are whole paths.
-    let whole = |name: &str| std::fs::canonicalize(desk).unwrap().join(name).display().to_string();
+    let whole = |name: &str| fs::canonicalize(desk).unwrap().join(name).display().to_string();
     let (vcd_at, states_at) = (whole("ray.vcd"), whole("ray.states"));
     for words in [
         &format!("[dumpfile] \"{vcd_at}\"")[..],
