@@ -76,7 +76,7 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
 fn refusal(args: &Args, why: FollowError) -> anyhow::Error {
     let off = "--follow false starts every ray at its own origin";
     match why {
-        FollowError::NoStarts => anyhow::anyhow!("--method {}: {why} ({off})", args.method.chosen.method.name),
+        FollowError::NoStarts => anyhow::anyhow!("--method {}: {why} ({off})", args.method.0.method.name),
         _ => anyhow::anyhow!("{}: {why} ({off})", args.rays.display()),
     }
 }
