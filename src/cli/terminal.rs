@@ -53,14 +53,19 @@ fn fits(lines: &[&str], columns: usize) -> bool {
     lines.iter().all(|line| line.chars().count() <= columns)
 }
 
-/// Of a block without empty lines. Where rows are indented, a line that is not begins a table of its own.
+/// Whether a line has columns. A paragraph, or the name of a part, has no gaps, and says nothing of where columns are.
+fn is_row(line: &str) -> bool {
+    line.trim().contains("  ")
+}
+
+/// Of a block without empty lines. Where rows are indented, a row that is not begins a table of its own.
 fn fit_block(block: &str, columns: usize) -> String {
     let lines: Vec<&str> = block.split('\n').collect();
     if fits(&lines, columns) {
         return block.to_owned();
     }
     let has_indented = lines.iter().any(|line| line.starts_with(' '));
-    let tables = lines.chunk_by(|_, next| !has_indented || next.starts_with(' '));
+    let tables = lines.chunk_by(|_, next| !has_indented || next.starts_with(' ') || !is_row(next));
     tables.map(|table| fit_table(table, columns)).collect::<Vec<_>>().join("\n")
 }
 
@@ -68,14 +73,22 @@ fn fit_table(lines: &[&str], columns: usize) -> String {
     if fits(lines, columns) {
         return lines.join("\n");
     }
-    // A paragraph has no gaps, and says nothing of where columns are.
-    let is_row = |line: &str| line.trim().contains("  ");
     let rows: Vec<Vec<char>> = lines.iter().filter(|line| is_row(line)).map(|line| line.chars().collect()).collect();
     let width = rows.iter().map(Vec::len).max().unwrap_or(0);
     let blank: Vec<bool> = (0..width).map(|at| rows.iter().all(|row| row.get(at).is_none_or(|&c| c == ' '))).collect();
-    let squeezed = GAPS.map(|gap| (0..width).filter(|&at| at < gap || !blank[at - gap..=at].iter().all(|&is| is)).collect::<Vec<_>>());
+    let indent = blank.iter().take_while(|&&is| is).count();
+    let squeezed = GAPS.map(|gap| {
+        let is_kept = |&at: &usize| at < indent.max(gap) || !blank[at - gap..=at].iter().all(|&is| is);
+        (0..width).filter(is_kept).collect::<Vec<_>>()
+    });
     let [wide, narrow] = squeezed;
-    let kept = if wide.len() <= columns { wide } else { narrow };
+    let kept = if width <= columns {
+        (0..width).collect()
+    } else if wide.len() <= columns {
+        wide
+    } else {
+        narrow
+    };
     let parts = parts(&kept, &blank, columns);
     let row = |line: &str, part: &[usize]| {
         let cells: Vec<char> = line.chars().collect();
@@ -97,8 +110,18 @@ fn fit_table(lines: &[&str], columns: usize) -> String {
 
 /// The places of characters in parts of at most so many, each of whole columns and with the first column before it.
 fn parts(kept: &[usize], blank: &[bool], columns: usize) -> Vec<Vec<usize>> {
-    let cells: Vec<&[usize]> = kept.chunk_by(|&at, &next| !(blank[at] && !blank[next])).collect();
+    let indent = kept.iter().take_while(|&&at| blank[at]).count();
+    // Columns are two blanks apart, words of a cell one: that is for cells that are too wide.
+    let cells = |apart: usize| -> Vec<&[usize]> {
+        let ends =
+            |at: usize, next: usize| !blank[next] && (at + 1).checked_sub(apart).is_some_and(|from| blank[from..=at].iter().all(|&is| is));
+        kept[indent..].chunk_by(|&at, &next| !ends(at, next)).collect()
+    };
+    let columns_apart = cells(2);
+    let widest = columns_apart.iter().skip(1).map(|cell| cell.len()).max().unwrap_or(0);
+    let cells = if indent + columns_apart.first().map_or(0, |name| name.len()) + widest <= columns { columns_apart } else { cells(1) };
     let Some((name, cells)) = cells.split_first() else { return vec![kept.to_vec()] };
+    let name = &kept[..indent + name.len()];
     let mut parts: Vec<Vec<usize>> = vec![name.to_vec()];
     for cell in cells {
         if let Some(part) = parts.last_mut() {
@@ -107,7 +130,7 @@ fn parts(kept: &[usize], blank: &[bool], columns: usize) -> Vec<Vec<usize>> {
                 continue;
             }
         }
-        parts.push([*name, cell].concat());
+        parts.push([name, cell].concat());
     }
     parts
 }
@@ -145,11 +168,21 @@ mod tests {
 
     #[test]
     fn columns_move_together_then_a_table_is_broken() {
-        let text = "name          first        second\n  ab             1,234             5";
+        let text = "name          first        second\n  ab          1,234             5";
         assert_eq!(fit(text, 30), "name  first  second\n  ab  1,234       5");
         assert_eq!(fit(text, 18), "name first second\n  ab 1,234      5");
         let broken = fit(text, 12);
         assert_eq!(broken, "name first\n  ab 1,234\nname second\n  ab      5");
+    }
+
+    #[test]
+    fn parts_of_a_table_share_its_columns_and_repeat_its_names() {
+        let text = "              needed   of   saves\nlevels\n  of a tree        3   10   many bits\n  stored           3   10   few";
+        let shown = fit(text, 22);
+        assert_eq!(
+            shown,
+            "            needed of\nlevels\n  of a tree      3 10\n  stored         3 10\n            saves\n  of a tree many bits\n  stored    few"
+        );
     }
 
     #[test]

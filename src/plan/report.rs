@@ -110,7 +110,7 @@ pub fn savings(plan: &Plan, full: &Hardware, data: Option<&Data>) -> Vec<Saving>
     let depth = without(Hardware { bvh_depth: own.bvh_depth, ..*full });
     table.add(Part::Structure, "quad-BVH depth", [own.bvh_depth, full.bvh_depth], "no path to a tree is longer", depth);
     let stack = without(Hardware { fewer_stack_entries: own.fewer_stack_entries, ..*full });
-    let reason = "siblings that can wait, on the path on which most can";
+    let reason = "the most siblings that can wait on a path";
     table.add(Part::Structure, "stack entries", [own.stack_entries(), full.stack_entries()], reason, stack);
     if context(&own) != context(full) {
         let (needed, of) = (context(&own).to_string(), context(full).to_string());
