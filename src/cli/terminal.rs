@@ -124,13 +124,10 @@ fn parts(kept: &[usize], blank: &[bool], columns: usize) -> Vec<Vec<usize>> {
     let name = &kept[..indent + name.len()];
     let mut parts: Vec<Vec<usize>> = vec![name.to_vec()];
     for cell in cells {
-        if let Some(part) = parts.last_mut() {
-            if part.len() + cell.len() <= columns || part.len() == name.len() {
-                part.extend_from_slice(cell);
-                continue;
-            }
+        match parts.last_mut() {
+            Some(part) if part.len() + cell.len() <= columns || part.len() == name.len() => part.extend_from_slice(cell),
+            _ => parts.push([name, cell].concat()),
         }
-        parts.push([name, cell].concat());
     }
     parts
 }
