@@ -214,7 +214,7 @@ fn summary(i: &Info<'_>) -> String {
 fn depths(trees: &[usize]) -> String {
     let some = trees.iter().enumerate().filter(|(_, trees)| **trees > 0);
     let of = |(levels, trees): (usize, &usize)| format!("{levels} ({})", grouped(*trees as u64));
-    format!("levels stored: {} (of so many base triangles); no ray goes deeper", some.map(of).collect::<Vec<_>>().join(", "))
+    format!("levels stored (base triangles with each depth): {}; no ray goes deeper", some.map(of).collect::<Vec<_>>().join(", "))
 }
 
 /// What displacement bounds mean for who chooses a delta.

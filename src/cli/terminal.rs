@@ -108,7 +108,7 @@ fn fit_table(lines: &[&str], columns: usize) -> String {
     out.join("\n")
 }
 
-/// The places of characters in parts of at most so many, each of whole columns and with the first column before it.
+/// Splits a table into parts that fit the width: each part has whole columns and repeats the first one.
 fn parts(kept: &[usize], blank: &[bool], columns: usize) -> Vec<Vec<usize>> {
     let indent = kept.iter().take_while(|&&at| blank[at]).count();
     // Columns are two blanks apart, words of a cell one: that is for cells that are too wide.

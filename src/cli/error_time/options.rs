@@ -14,7 +14,7 @@ use crate::cli::sweep::{Jobs, Origin, SceneJobs, ViewJob};
 use anyhow::{Context, ensure};
 use lodray::method::{METHODS, lod};
 use lodray::picture::{PIXELS_PER_DEGREE, Shading};
-use lodray::rays::{DEFAULT_VIEW_ANGLE_DEGREES, MAX_SIDE, ModelSpace};
+use lodray::rays::{MAX_SIDE, ModelSpace};
 use lodray::run::{self, Compute};
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::PathBuf;
@@ -42,7 +42,7 @@ pub struct Args {
     /// Size of the frame whose costs are simulated, in pixels, which errors are in as well
     #[arg(long, value_name = "WxH", default_value = "1920x1080")]
     size: Size,
-    /// Errors and pictures are of every second, third, ... column and row of the frame, so that at most so many are left of each (default: 384; 192 with --quick)
+    /// Most columns and rows of the frame that errors and pictures use, evenly spaced (default 384; 192 with --quick)
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=i64::from(MAX_SIDE)))]
     error_size: Option<u32>,
     /// Distances of the eye in bounding radii, with commas (default: eight from 1 to 64; 2, 8 and 32 with --quick)
@@ -183,15 +183,7 @@ impl Args {
             [] => &DISTANCES,
             given => given,
         };
-        let view = |&distance: &f64| ViewJob {
-            size: [width, height],
-            distance: Some(distance),
-            direction: None,
-            eye: None,
-            target: None,
-            up: None,
-            fov: DEFAULT_VIEW_ANGLE_DEGREES,
-        };
+        let view = |&distance: &f64| ViewJob::at([width, height], distance);
         let views: Vec<_> = distances.iter().map(view).collect();
         let mut scenes: Vec<SceneJobs> = Vec::new();
         for path in &self.scenes {

@@ -34,7 +34,7 @@ pub struct Measure {
     pub pixels_per_degree: f64,
     /// Most columns and rows of the frame of which errors and pictures are.
     pub error_size: u32,
-    /// Of these one of so many is held against the nearest point of the surface.
+    /// One ray in this many is compared with the nearest point of the surface.
     pub stride: u32,
     /// Most samples along a side of a converged picture's pixel; 0 for no such picture.
     pub most_samples: u32,
@@ -43,7 +43,7 @@ pub struct Measure {
 }
 
 impl Measure {
-    /// Errors and pictures are of one in so many columns and rows of a frame of this size.
+    /// Errors and pictures use every k-th column and row of a frame of this size.
     pub fn every(&self, size: [u32; 2]) -> u32 {
         size[0].max(size[1]).div_ceil(self.error_size).max(1)
     }

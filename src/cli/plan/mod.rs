@@ -12,7 +12,7 @@ use lodray::hardware::{Hardware, context_gates, unit_gates};
 use lodray::method::knob::{DELTA, quality};
 use lodray::method::{Knobs, lod};
 use lodray::plan::{Data, Measure, Narrowest, Part, Plan, RayNeeds, Reach, Saving, Within, savings};
-use lodray::rays::{DEFAULT_VIEW_ANGLE_DEGREES, ModelSpace, RaySource};
+use lodray::rays::{ModelSpace, RaySource};
 use lodray::report::result::MachineFacts;
 use serde::Serialize;
 use speed::{Frames, SpeedArgs};
@@ -164,15 +164,7 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
 /// The scenes, seen from the distances of the command line.
 fn seen(args: &Args) -> anyhow::Result<Jobs> {
     let Size(width, height) = args.size;
-    let camera = |&distance: &f64| ViewJob {
-        size: [width, height],
-        distance: Some(distance),
-        direction: None,
-        eye: None,
-        target: None,
-        up: None,
-        fov: DEFAULT_VIEW_ANGLE_DEGREES,
-    };
+    let camera = |&distance: &f64| ViewJob::at([width, height], distance);
     let views: Vec<_> = args.distance.iter().map(camera).collect();
     let scene = |file: &PathBuf| SceneJobs {
         name: file.display().to_string(),

@@ -15,7 +15,7 @@ use lodray::method::bvh::{LEAF_LAYOUT, LEAF_SIZE};
 use lodray::method::knob::DELTA;
 use lodray::method::lod;
 use lodray::num::VertexForm;
-use lodray::rays::{Camera, DEFAULT_DIRECTION, ModelSpace, View};
+use lodray::rays::{Camera, DEFAULT_DIRECTION, DEFAULT_VIEW_ANGLE_DEGREES, ModelSpace, View};
 use lodray::report::results_version;
 use lodray::sim::energy;
 use serde::Serialize;
@@ -101,6 +101,11 @@ impl SceneJobs {
 }
 
 impl ViewJob {
+    /// From this distance in bounding radii; the camera looks as in render.
+    pub fn at(size: [u32; 2], distance: f64) -> Self {
+        Self { size, distance: Some(distance), direction: None, eye: None, target: None, up: None, fov: DEFAULT_VIEW_ANGLE_DEGREES }
+    }
+
     /// The camera on a model.
     pub fn camera(&self, space: &ModelSpace) -> anyhow::Result<Camera> {
         let target = self.target.unwrap_or_else(|| space.centre());
