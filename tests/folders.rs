@@ -178,7 +178,8 @@ fn what_a_mesh_names_is_an_input_too() {
     });
     desk.write("a.gltf", &gltf.to_string());
     for (mesh, named) in [("a.obj", "my stone.mtl"), ("a.gltf", "the points.bin")] {
-        desk.run(&format!("render {mesh} --method original --size 8x8 -o out --force"));
+        let (code, said) = desk.hear(&format!("render {mesh} --method original --size 8x8 -o out --force"));
+        assert_eq!((code, said.contains("mtllib none.mtl: ")), (0, mesh == "a.obj"), "{said}");
         let inputs: Vec<_> = desk.record("out")["inputs"].as_array().unwrap().iter().map(|input| input["name"].clone()).collect();
         assert_eq!(inputs, [mesh, named]);
     }

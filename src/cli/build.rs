@@ -57,7 +57,10 @@ pub struct Args {
     crease_angle: f64,
     #[command(flatten)]
     form: FormArgs,
-    /// Make it an error, and write nothing, if the result is further from the mesh than --max-error or has triangles that face away from it
+    /// Make one vertex of those at open edges that are at most this far apart, in the mesh's own units
+    #[arg(long, value_name = "DISTANCE", value_parser = distance, allow_negative_numbers = true)]
+    weld: Option<f64>,
+    /// Make it an error, and write nothing, if the result is further from the mesh than --max-error or has triangles that face away from it, or if anything of the file is lost
     #[arg(long)]
     strict: bool,
     /// Scene file to write
@@ -77,6 +80,11 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
         Some(format) => Ok(read_as(source, format)?),
         None => Ok(read(source)?),
     })?;
+    let mesh = match args.weld {
+        Some(distance) => mesh.welded(distance).with_context(|| source.display().to_string())?,
+        None => mesh,
+    };
+    say(&mesh, source, args.strict)?;
     let options = RemeshOptions {
         levels: args.levels,
         base_triangles: args.base.map(|n| n as usize),
@@ -101,6 +109,26 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
     let scene = build_scene(&surface, &name, origin, args.form)?;
     drop(surface);
     finish(&scene, &args.out, args.json)
+}
+
+/// One line for each thing that was lost or changed when the mesh was read, and one for seams that could be closed; the first is an error if `strict`.
+fn say(mesh: &TriangleMesh, source: &Path, strict: bool) -> anyhow::Result<()> {
+    let seams = mesh
+        .seams()
+        .map(|seams| format!("{} of its {} open edges are seams: --weld {:e} closes them", seams.closed, seams.open, seams.distance));
+    for lost in mesh.warnings.iter().chain(&seams) {
+        anyhow::ensure!(!strict, "{}: {lost}", source.display());
+        warn(&format!("warning: {}: {lost}", source.display()));
+    }
+    Ok(())
+}
+
+/// A distance in the mesh's units.
+fn distance(s: &str) -> Result<f64, String> {
+    match s.parse::<f64>() {
+        Ok(v) if v > 0.0 && v.is_finite() => Ok(v),
+        _ => Err(format!("'{s}' is not a distance above 0")),
+    }
 }
 
 /// A largest error.

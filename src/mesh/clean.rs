@@ -25,6 +25,8 @@ pub struct TriangleMesh {
     pub colours: Vec<[f32; 3]>,
     /// What cleaning found and did.
     pub report: CleanReport,
+    /// What of a file was lost, or changed in a way that a reader should know, a line each.
+    pub warnings: Vec<String>,
 }
 
 /// Counts of what cleaning found, dropped and kept.
@@ -48,6 +50,14 @@ pub struct CleanReport {
     pub border_edges: usize,
     /// Edges of two kept triangles that run along it in the same direction.
     pub inconsistent_edges: usize,
+    /// Triangles that were turned around, to run as most of those do that are connected with them: see [`TriangleMesh::orient`].
+    #[serde(default, skip_serializing_if = "is_zero")]
+    pub turned_triangles: usize,
+}
+
+/// Most meshes need no line on it.
+fn is_zero(count: &usize) -> bool {
+    *count == 0
 }
 
 /// Why vertices and triangles do not make a mesh.
@@ -172,7 +182,15 @@ impl TriangleMesh {
         if kept_normals.iter().all(|n| *n == [[0.0; 3]; 3]) {
             kept_normals = Vec::new();
         }
-        Ok(TriangleMesh { positions, triangles: kept, normals: kept_normals, materials: kept_materials, colours, report })
+        Ok(TriangleMesh {
+            positions,
+            triangles: kept,
+            normals: kept_normals,
+            materials: kept_materials,
+            colours,
+            report,
+            warnings: Vec::new(),
+        })
     }
 }
 
@@ -230,7 +248,8 @@ fn compact(positions: &[[f64; 3]], triangles: &mut [[u32; 3]]) -> Vec<[f64; 3]> 
     kept
 }
 
-fn count_edges(triangles: &[[u32; 3]], report: &mut CleanReport) {
+pub(super) fn count_edges(triangles: &[[u32; 3]], report: &mut CleanReport) {
+    (report.border_edges, report.inconsistent_edges, report.non_manifold_edges) = (0, 0, 0);
     let mut edges: Vec<(u32, u32, bool)> = triangles
         .iter()
         .flat_map(|&[a, b, c]| [(a, b), (b, c), (c, a)])

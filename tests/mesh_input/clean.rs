@@ -27,6 +27,7 @@ fn cleaning_counts_what_it_drops_and_keeps() {
         non_manifold_edges: 1,
         border_edges: 6,
         inconsistent_edges: 0,
+        turned_triangles: 0,
     };
     assert_eq!(mesh.report, expected);
     assert_eq!(mesh.triangles, [[0, 1, 2], [0, 1, 3], [1, 0, 4]]);

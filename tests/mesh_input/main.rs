@@ -5,6 +5,7 @@ mod damaged;
 mod files;
 mod glb;
 mod gltf;
+mod lost;
 mod obj;
 mod ply;
 mod program;

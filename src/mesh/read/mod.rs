@@ -1,5 +1,6 @@
 //! Mesh files in: OBJ, PLY, glTF and STL, checked so that a bad file gives one error that names the place.
 
+mod beside;
 mod gltf;
 mod obj;
 mod ply;
@@ -98,6 +99,8 @@ struct Parts {
     normals: Vec<[[f32; 3]; 3]>,
     materials: Vec<u16>,
     colours: Vec<[f32; 3]>,
+    /// What of the file is not kept, a line each.
+    warnings: Vec<String>,
 }
 
 /// What is wrong and where, before the file's name is put in front.
@@ -127,7 +130,7 @@ pub fn named_files(path: &Path) -> Vec<PathBuf> {
     };
     let names = std::fs::read(path).map_or_else(|_| Vec::new(), |bytes| named(&bytes));
     let folder = path.parent().unwrap_or(Path::new(""));
-    let mut files: Vec<PathBuf> = names.into_iter().map(|name| folder.join(name)).filter(|file| file.is_file()).collect();
+    let mut files: Vec<PathBuf> = names.into_iter().map(|name| beside::place(folder, &name)).filter(|file| file.is_file()).collect();
     files.sort();
     files.dedup();
     files
@@ -136,9 +139,11 @@ pub fn named_files(path: &Path) -> Vec<PathBuf> {
 /// Reads and cleans a triangle mesh from a file, in the file's own units; its ending says which format it has: see [`MeshFormat`].
 ///
 /// OBJ: polygons are cut into triangles; diffuse colours are taken from the material library if it can be read. PLY: faces or triangle
-/// strips. glTF: all triangles of the default scene, as its nodes place them; meshes with skins or morph targets in their rest pose; base
-/// colour factors. STL: vertices at the same place become one. Normals at corners are kept where the format has them (not STL: its normals
-/// are those of the flat facets); textures and vertex colours are not.
+/// strips. glTF: all triangles of the default scene, as its nodes place them; morph targets with their default weights, meshes with skins in
+/// their rest pose; base colour factors. STL: vertices at the same place become one. Normals at corners are kept where the format has them (not STL: its normals
+/// are those of the flat facets); textures and vertex colours are not. Triangles that run the other way around than most of those around them are turned.
+/// What is lost, and what was turned, is in [`TriangleMesh::warnings`]. Devices are refused, pipes are taken; files that the mesh names must be
+/// regular files.
 ///
 /// # Errors
 /// One error that names the file and the line, element or field: see [`ReadError`].
@@ -157,7 +162,7 @@ pub fn read_as(path: &Path, format: MeshFormat) -> Result<TriangleMesh, ReadErro
     if path.is_dir() {
         return Err(io(std::io::ErrorKind::IsADirectory.into()));
     }
-    let bytes = std::fs::read(path).map_err(io)?;
+    let bytes = if is_device(path) { Err(std::io::Error::other("it is a device, not a file")) } else { std::fs::read(path) }.map_err(io)?;
     read_bytes(&bytes, format, path, path.parent().unwrap_or(Path::new("")))
 }
 
@@ -179,6 +184,23 @@ pub fn read_bytes(bytes: &[u8], format: MeshFormat, name: &Path, folder: &Path) 
         MeshFormat::Stl => stl::parse,
     };
     let parts = parse(bytes, folder).map_err(content)?;
-    TriangleMesh::with_normals(&parts.positions, &parts.triangles, &parts.normals, &parts.materials, parts.colours)
-        .map_err(|source| ReadError::Mesh { path: name.into(), source })
+    let mut mesh = TriangleMesh::with_normals(&parts.positions, &parts.triangles, &parts.normals, &parts.materials, parts.colours)
+        .map_err(|source| ReadError::Mesh { path: name.into(), source })?;
+    mesh.warnings = parts.warnings;
+    mesh.orient();
+    Ok(mesh)
+}
+
+/// True for what may have no end.
+fn is_device(path: &Path) -> bool {
+    #[cfg(unix)]
+    {
+        use std::os::unix::fs::FileTypeExt;
+        std::fs::metadata(path).is_ok_and(|about| about.file_type().is_char_device() || about.file_type().is_block_device())
+    }
+    #[cfg(not(unix))]
+    {
+        _ = path;
+        false
+    }
 }

@@ -1,7 +1,8 @@
 //! Wavefront OBJ. `tobj` parses; before it every line is checked here, because its errors name no line and it lets some faults pass.
 
 use super::super::clean::{is_coordinate, unit};
-use super::{Fault, Parts, fault, polygon, shown};
+use super::{Fault, Parts, beside, fault, polygon, shown};
+use std::cell::RefCell;
 use std::fmt::Write;
 use std::path::Path;
 
@@ -15,10 +16,23 @@ const TEXTURE: usize = 1;
 const NORMAL: usize = 2;
 
 pub(super) fn parse(bytes: &[u8], directory: &Path) -> Result<Parts, Fault> {
-    let text = Checker::default().check(bytes)?;
+    let (text, lost_normals) = Checker::default().check(bytes)?;
+    let warnings = RefCell::new(Vec::new());
     let options = tobj::LoadOptions { ignore_points: true, ignore_lines: true, ..Default::default() };
     let library = |name: &Path| {
-        let text = std::fs::read(directory.join(name)).map(|bytes| material_text(&bytes)).unwrap_or_default();
+        let name = name.to_string_lossy();
+        let all = beside::LARGEST_LIBRARY + 1;
+        let text = match beside::read(&beside::place(directory, &name), all, beside::LARGEST_LIBRARY) {
+            Ok(bytes) => material_text(&bytes),
+            Err(error) => {
+                let lost = format!("mtllib {}: {error}; its colours are missing", shown(&name));
+                let mut warnings = warnings.borrow_mut();
+                if !warnings.contains(&lost) {
+                    warnings.push(lost);
+                }
+                String::new()
+            }
+        };
         tobj::load_mtl_buf(&mut text.as_bytes())
     };
     let (models, materials) = match tobj::load_obj_buf(&mut text.as_bytes(), &options, library) {
@@ -29,7 +43,10 @@ pub(super) fn parse(bytes: &[u8], directory: &Path) -> Result<Parts, Fault> {
         Err(error) => return fault("faces", error),
     };
 
-    let mut parts = Parts::default();
+    let mut parts = Parts { warnings: warnings.take(), ..Parts::default() };
+    if lost_normals > 0 {
+        parts.warnings.push(format!("{lost_normals} of its normals (vn) are not finite: corners that name them have none"));
+    }
     let materials = materials.unwrap_or_default();
     if materials.len() >= usize::from(u16::MAX) {
         return fault("mtllib", format_args!("{} materials are more than the 65534 that can be kept", materials.len()));
@@ -87,12 +104,15 @@ struct Checker {
     /// Positions and normals so far, at their places in [`KINDS`].
     counts: [i64; 3],
     faces: usize,
+    /// Normals that are not finite.
+    lost_normals: usize,
     /// The largest index ahead of its vertex so far, and its line: legal as long as the vertex comes before the object ends.
     ahead: [(i64, usize); 3],
 }
 
 impl Checker {
-    fn check(mut self, bytes: &[u8]) -> Result<String, Fault> {
+    /// The lines, and how many normals are not finite.
+    fn check(mut self, bytes: &[u8]) -> Result<(String, usize), Fault> {
         if let Some(at) = bytes.iter().position(|&b| b == 0) {
             let line = 1 + bytes[..at].iter().filter(|&&b| b == b'\n').count();
             return fault(format_args!("line {line}"), "this is not text");
@@ -130,7 +150,7 @@ impl Checker {
                 return fault(format_args!("line {line}"), what);
             }
         }
-        Ok(self.out)
+        Ok((self.out, self.lost_normals))
     }
 
     fn line(&mut self, line: &str, number: usize) -> Result<(), String> {
@@ -139,7 +159,6 @@ impl Checker {
         let words: Vec<&str> = words.take_while(|w| !w.starts_with('#')).collect();
         match key {
             "v" => self.position(&words),
-            "vt" => self.texture(&words),
             "vn" => self.normal(&words),
             "f" => self.face(&words, number),
             "o" | "g" | "usemtl" | "mtllib" => {
@@ -159,22 +178,15 @@ impl Checker {
         if !matches!(words.len(), 3 | 4 | 6 | 7) {
             return Err(format!("v needs 3 coordinates, found {} numbers", words.len()));
         }
-        let values: Vec<f64> = words.iter().map(|w| number("v", w)).collect::<Result<_, _>>()?;
+        let kept = if words.len() == 4 { 4 } else { 3 };
+        let values: Vec<f64> = words[..kept].iter().map(|w| number("v", w)).collect::<Result<_, _>>()?;
         let weight = if words.len() == 4 { values[3] } else { 1.0 };
         if weight == 0.0 || !values[..3].iter().all(|v| is_coordinate(v / weight)) {
             return Err(format!("v: {} is not a usable position", shown(&words.join(" "))));
         }
-        let kept = if words.len() == 4 { 4 } else { 3 };
         _ = writeln!(self.out, "v {}", words[..kept].join(" "));
         self.counts[0] += 1;
         Ok(())
-    }
-
-    fn texture(&mut self, words: &[&str]) -> Result<(), String> {
-        if !(1..=3).contains(&words.len()) {
-            return Err(format!("vt needs 1 to 3 numbers, found {}", words.len()));
-        }
-        words.iter().try_for_each(|w| any_number("vt", w).map(|_| ()))
     }
 
     fn normal(&mut self, words: &[&str]) -> Result<(), String> {
@@ -184,6 +196,7 @@ impl Checker {
         let values: Vec<f64> = words.iter().map(|w| any_number("vn", w)).collect::<Result<_, _>>()?;
         // A normal without a direction is none; `tobj` need not see what it was.
         let usable = values.iter().all(|v| v.is_finite());
+        self.lost_normals += usize::from(!usable);
         _ = if usable { writeln!(self.out, "vn {}", words.join(" ")) } else { writeln!(self.out, "vn 0 0 0") };
         self.counts[NORMAL] += 1;
         Ok(())
@@ -240,8 +253,12 @@ fn number(key: &str, word: &str) -> Result<f64, String> {
     any_number(key, word).and_then(|v| if v.is_finite() { Ok(v) } else { Err(format!("{key}: {} is not finite", shown(word))) })
 }
 
-/// Infinite and NaN are taken.
+/// Infinite and NaN are taken, as C libraries write them too: `nan(ind)`, `-1.#IND`, `1.#INF`.
 fn any_number(key: &str, word: &str) -> Result<f64, String> {
+    let plain = word.trim_start_matches(['-', '+']).to_ascii_lowercase();
+    if plain.starts_with("nan(") && plain.ends_with(')') || plain.starts_with("1.#") {
+        return Ok(f64::NAN);
+    }
     word.parse().map_err(|_| format!("{key}: {} is not a number", shown(word)))
 }
 

@@ -1,13 +1,12 @@
 //! The bytes of a glTF file's buffers: within it or in files beside it, read when first asked for.
 
-use super::super::shown;
+use super::super::{beside, shown};
 use ::gltf::json::Root;
 use base64::Engine;
 use base64::alphabet::STANDARD;
 use base64::engine::{DecodePaddingMode, GeneralPurpose, GeneralPurposeConfig};
 use percent_encoding::percent_decode_str;
 use std::cell::OnceCell;
-use std::io::Read;
 use std::path::Path;
 
 /// What a URI begins with that holds the bytes themselves.
@@ -55,17 +54,8 @@ impl<'a> Buffers<'a> {
     }
 
     fn beside(&self, uri: &str, name: &str, promised: u64) -> Result<Vec<u8>, String> {
-        let path = self.folder.join(name);
-        let read = || {
-            let file = std::fs::File::open(&path)?;
-            if !file.metadata()?.is_file() {
-                return Err(std::io::Error::other("it is not an ordinary file"));
-            }
-            let mut bytes = Vec::new();
-            file.take(promised).read_to_end(&mut bytes)?;
-            Ok(bytes)
-        };
-        read().map_err(|error| format!("its file '{}': {error}", shown(uri)))
+        let path = beside::place(self.folder, name);
+        beside::read(&path, promised, beside::LARGEST_BUFFER).map_err(|error| format!("its file '{}': {error}", shown(uri)))
     }
 }
 

@@ -88,14 +88,20 @@ fn build(json: &[u8], bin: Option<&[u8]>, folder: &Path) -> Result<Parts, Fault>
         parts.colours = own.chain([NO_MATERIAL]).collect();
     }
     let mut builder = Builder { root: &root, reader: Reader::new(&root, bin, folder), parts, has_normals: false };
+    let mut skins = 0;
     for placed in nodes::placed(&root)? {
+        skins += usize::from(placed.has_skin);
         let Some(mesh) = root.meshes.get(placed.mesh) else {
             return fault(format_args!("node {}", placed.node), format_args!("mesh {} is not there", placed.mesh));
         };
         for (i, primitive) in mesh.primitives.iter().enumerate() {
             let place = format!("mesh {}, primitive {i}", placed.mesh);
-            builder.primitive(primitive, &placed, &place)?;
+            builder.primitive(primitive, mesh.weights.as_deref(), &placed, &place)?;
         }
+    }
+    if skins > 0 {
+        let nodes = if skins == 1 { "a node".into() } else { format!("{skins} nodes") };
+        builder.parts.warnings.push(format!("{nodes} with joints (skin): they are not applied, the mesh is in its rest pose"));
     }
     if builder.parts.triangles.is_empty() {
         return fault("scene", "there are no triangles in it");
@@ -133,7 +139,7 @@ struct Builder<'a> {
 }
 
 impl Builder<'_> {
-    fn primitive(&mut self, primitive: &Primitive, placed: &Placed, place: &str) -> Result<(), Fault> {
+    fn primitive(&mut self, primitive: &Primitive, weights: Option<&[f32]>, placed: &Placed, place: &str) -> Result<(), Fault> {
         let mode = match primitive.mode {
             Checked::Valid(Mode::Points | Mode::Lines | Mode::LineLoop | Mode::LineStrip) => return Ok(()),
             Checked::Valid(mode) => mode,
@@ -142,14 +148,16 @@ impl Builder<'_> {
         let Some(&positions) = primitive.attributes.get(&Checked::Valid(Semantic::Positions)) else {
             return fault(place, "it has no attribute POSITION");
         };
-        let positions = self.reader.vectors(positions, &format!("{place}, POSITION"))?;
-        let normals = match primitive.attributes.get(&Checked::Valid(Semantic::Normals)) {
+        let mut positions = self.reader.vectors(positions, &format!("{place}, POSITION"))?;
+        let mut normals = match primitive.attributes.get(&Checked::Valid(Semantic::Normals)) {
             Some(&normals) => Some(self.reader.vectors(normals, &format!("{place}, NORMAL"))?),
             None => None,
         };
         if let Some(n) = normals.as_ref().filter(|n| n.len() != positions.len()) {
             return fault(place, format_args!("it has {} positions and {} normals", positions.len(), n.len()));
         }
+        let weights = placed.weights.as_deref().or(weights);
+        self.morph(primitive, weights.unwrap_or_default(), &mut positions, normals.as_deref_mut(), place)?;
         let corners = match primitive.indices {
             Some(indices) => self.reader.indices(indices, positions.len(), &format!("{place}, indices"))?,
             None => (0..positions.len() as u32).collect(),
@@ -160,6 +168,40 @@ impl Builder<'_> {
             return fault(place, format_args!("with it there are more than {MAX_ITEMS} vertices or triangles"));
         }
         self.append(&positions, normals.as_deref(), &triangles, material, placed).or_else(|what| fault(place, what))
+    }
+
+    /// Moves positions and normals as the morph targets of a primitive say, each by its weight.
+    fn morph(
+        &mut self,
+        primitive: &Primitive,
+        weights: &[f32],
+        positions: &mut [[f64; 3]],
+        mut normals: Option<&mut [[f64; 3]]>,
+        place: &str,
+    ) -> Result<(), Fault> {
+        let targets = primitive.targets.as_deref().unwrap_or_default();
+        if !weights.is_empty() && weights.len() != targets.len() {
+            let lost =
+                format!("{place}: {} weights for {} morph targets: those without a partner are ignored", weights.len(), targets.len());
+            self.parts.warnings.push(lost);
+        }
+        for (i, (target, &weight)) in targets.iter().zip(weights).enumerate().filter(|(_, (_, weight))| **weight != 0.0) {
+            let mut add = |index: Option<Index<_>>, to: Option<&mut [[f64; 3]]>, name| {
+                let (Some(index), Some(to)) = (index, to) else { return Ok(()) };
+                let place = format!("{place}, target {i}, {name}");
+                let by = self.reader.vectors(index, &place)?;
+                if by.len() != to.len() {
+                    return fault(place, format_args!("it has {} items for {} vertices", by.len(), to.len()));
+                }
+                for (to, by) in to.iter_mut().zip(&by) {
+                    (0..3).for_each(|d| to[d] += f64::from(weight) * by[d]);
+                }
+                Ok(())
+            };
+            add(target.positions, Some(positions), "POSITION")?;
+            add(target.normals, normals.as_deref_mut(), "NORMAL")?;
+        }
+        Ok(())
     }
 
     fn material(&self, index: Option<Index<::gltf::json::Material>>, place: &str) -> Result<Option<u16>, Fault> {

@@ -10,6 +10,9 @@ pub(super) struct Placed {
     /// Its index; not checked.
     pub(super) mesh: usize,
     pub(super) transform: DMat4,
+    /// Weights of its morph targets, in place of the mesh's.
+    pub(super) weights: Option<Vec<f32>>,
+    pub(super) has_skin: bool,
 }
 
 /// All meshes of the default scene, or the first if none is the default, or of all nodes if there is no scene; parents before children.
@@ -33,7 +36,13 @@ pub(super) fn placed(root: &Root) -> Result<Vec<Placed>, Fault> {
             return fault(place, "its transform is not finite");
         }
         if let Some(mesh) = node.mesh {
-            found.push(Placed { node: number, mesh: mesh.value(), transform });
+            found.push(Placed {
+                node: number,
+                mesh: mesh.value(),
+                transform,
+                weights: node.weights.clone(),
+                has_skin: node.skin.is_some(),
+            });
         }
         todo.extend(children(node).iter().rev().map(|n| (n.value(), transform)));
     }
