@@ -103,11 +103,11 @@ fn nodes_place_meshes_and_mirrors_turn_them_around() {
     corner(&mesh, [2.0, 2.0, 1.0]);
     // A flat transform leaves nothing.
     glb.refuses("/nodes/0", json!({"mesh": 0, "scale": [0, 1, 0]}), &["no triangle is left of 2"]);
-    // A skin and morph targets stay in their rest pose.
+    // A skin stays in its rest pose; morph targets have their weights.
     let mut posed = glb.set("/nodes/0", json!({"mesh": 0, "skin": 0, "translation": [0, 1, 0], "weights": [1]}));
     posed.json["skins"] = json!([{"joints": [0]}]);
     posed.primitive()["targets"] = json!([{"POSITION": 0}]);
-    corner(&posed.mesh(), [2.0, 3.0, 1.0]);
+    corner(&posed.mesh(), [4.0, 5.0, 2.0]);
 }
 
 #[test]

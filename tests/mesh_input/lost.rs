@@ -71,11 +71,15 @@ fn mixed_winding_is_brought_to_one_way() {
     let reversed = |face: &str| face.split(' ').rev().collect::<Vec<_>>().join(" ");
     // Every choice of triangles that run the other way.
     for mask in 0..16u32 {
-        let text: String = (0..4).map(|k| format!("f {}\n", if mask >> k & 1 == 1 { reversed(faces[k]) } else { faces[k].into() })).collect();
+        let text: String =
+            (0..4).map(|k| format!("f {}\n", if mask >> k & 1 == 1 { reversed(faces[k]) } else { faces[k].into() })).collect();
         let mesh = files.read("a.obj", format!("{corners}{text}"));
         let wrong = mask.count_ones();
         let turned = if wrong == 4 { 0 } else { wrong.min(4 - wrong) } as usize;
-        assert_eq!((mesh.report.inconsistent_edges, mesh.report.turned_triangles, mesh.warnings.len()), (0, turned, usize::from(turned > 0)));
+        assert_eq!(
+            (mesh.report.inconsistent_edges, mesh.report.turned_triangles, mesh.warnings.len()),
+            (0, turned, usize::from(turned > 0))
+        );
         let [a, b, c] = mesh.triangles[1].map(|v| mesh.positions[v as usize]);
         // The second triangle lies in y = 0: outside is -y.
         let y = (b[2] - a[2]) * (c[0] - a[0]) - (b[0] - a[0]) * (c[2] - a[2]);

@@ -1,7 +1,7 @@
 //! Files that a mesh file names: read only if they are regular files of a size that makes sense, so that no device or pipe is waited for.
 
 use std::fs::File;
-use std::io::{Error, ErrorKind, Read};
+use std::io::{Error, Read};
 use std::path::{Path, PathBuf};
 
 /// Largest material library that is read, in bytes: 64 MiB.
@@ -21,11 +21,8 @@ pub(super) fn place(folder: &Path, name: &str) -> PathBuf {
 /// If it cannot be read, is no regular file or is larger than `largest`. Its kind is asked before it is opened: to open a pipe may wait for ever.
 pub(super) fn read(path: &Path, wanted: u64, largest: u64) -> std::io::Result<Vec<u8>> {
     let about = std::fs::metadata(path)?;
-    if about.is_dir() {
-        return Err(ErrorKind::IsADirectory.into());
-    }
     if !about.is_file() {
-        return Err(Error::other("it is not a regular file"));
+        return Err(Error::other("it is not an ordinary file"));
     }
     let mut bytes = Vec::new();
     File::open(path)?.take(wanted.min(largest + 1)).read_to_end(&mut bytes)?;

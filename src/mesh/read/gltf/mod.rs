@@ -186,7 +186,7 @@ impl Builder<'_> {
             self.parts.warnings.push(lost);
         }
         for (i, (target, &weight)) in targets.iter().zip(weights).enumerate().filter(|(_, (_, weight))| **weight != 0.0) {
-            let mut add = |index: Option<Index<_>>, to: Option<&mut [[f64; 3]]>, name| {
+            let add = |index: Option<Index<_>>, to: Option<&mut [[f64; 3]]>, name| {
                 let (Some(index), Some(to)) = (index, to) else { return Ok(()) };
                 let place = format!("{place}, target {i}, {name}");
                 let by = self.reader.vectors(index, &place)?;
