@@ -2,7 +2,6 @@
 //! of machines.
 
 use super::{Act, Step, StepSink, StepWord};
-use crate::block::{Operation, Operations};
 
 /// Rays that a group of cores takes at once: a tile of the picture, or 64 of a file.
 #[derive(Clone, Debug, Default)]
@@ -12,7 +11,6 @@ pub struct Batch {
     ends: Box<[u32]>,
     /// Number of each ray and of the one behind whose end it starts; empty if no ray of the frame waits for another.
     links: Box<[Link]>,
-    operations: Operations,
 }
 
 /// A ray's place among all rays of a frame.
@@ -30,11 +28,6 @@ impl Batch {
         let mut recorder = Recorder::default();
         rays.iter().flatten().for_each(|&step| recorder.step(step));
         recorder.batch()
-    }
-
-    /// What its rays have the hardware blocks do.
-    pub fn operations(&self) -> &Operations {
-        &self.operations
     }
 
     /// Number of ray `ray`, and what it starts behind; `None` if no ray of the frame waits for another.
@@ -96,10 +89,7 @@ impl Recorder {
     pub fn batch(self) -> Batch {
         assert_eq!(self.ends.last().map_or(0, |&end| end as usize), self.words.len(), "a ray without its end");
         assert!(self.links.is_empty() || self.links.len() == self.ends.len(), "a ray without its link");
-        let mut operations = Operations::default();
-        operations.add(Operation::RaySetup, self.ends.len() as u64);
-        self.words.iter().for_each(|word| word.step().count(&mut operations));
-        Batch { words: self.words.into(), ends: self.ends.into(), links: self.links.into(), operations }
+        Batch { words: self.words.into(), ends: self.ends.into(), links: self.links.into() }
     }
 }
 
@@ -127,8 +117,6 @@ mod tests {
             let words = &batch.words()[batch.start(k) as usize..batch.end(k) as usize];
             assert_eq!(words.iter().map(|word| word.step()).collect::<Vec<_>>(), *ray);
         }
-        let operations = [Operation::RaySetup, Operation::HitDivide, Operation::BaryMap].map(|operation| batch.operations().get(operation));
-        assert_eq!(operations, [3, 2, 0]);
     }
 
     #[test]

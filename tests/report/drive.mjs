@@ -109,7 +109,7 @@ if (doc) {
     check(Math.abs(costOf(base, "milliseconds") / y - gain) <= Math.max(0.051 * (gain < 9.95 ? 1 : 0), gain < 0.995 ? 0.0051 : 0, gain >= 9.95 ? 0.51 : 0), `gain ${gain} at ${distance}`);
   }
   // Energy by part.
-  const parts = await page.evaluate(() => [...document.querySelectorAll("#parts [data-point]")].length);
+  const parts = await page.evaluate(() => [...document.querySelectorAll("#parts svg[aria-label^='Energy by part'] [data-point]")].length);
   check(parts % 5 === 0 && parts > 0, `${parts} parts of energies`);
 
   // The verdict: every view once, with the cheapest method that is near enough, from the document's own figures.
@@ -203,6 +203,16 @@ if (doc) {
   check((await range.inputValue()) === "0", "Home does not move the slider");
   for (let k = 0; k < 5; k++) await page.keyboard.press("PageUp");
   check((await range.getAttribute("aria-valuetext")).includes("%"), "the slider does not say what it shows");
+  // Dragging moves it too, and chooses no pixel.
+  const pane = await page.locator("#pictures .slider").boundingBox();
+  const column = page.locator("#pictures").getByLabel("Column", { exact: true });
+  const pixel = await column.inputValue();
+  await page.mouse.move(pane.x + 0.3 * pane.width, pane.y + 0.5 * pane.height);
+  await page.mouse.down();
+  await page.mouse.move(pane.x + 0.5 * pane.width, pane.y + 0.5 * pane.height, { steps: 4 });
+  await page.mouse.move(pane.x + 0.75 * pane.width, pane.y + 0.5 * pane.height, { steps: 4 });
+  await page.mouse.up();
+  check(Math.abs(Number(await range.inputValue()) - 75) <= 1 && (await column.inputValue()) === pixel, "dragging does not move the slider alone");
   const sizes = await page.locator("#pictures .slider img").evaluateAll((all) => Promise.all(all.map((e) => e.decode().then(() => e.naturalWidth))));
   check(sizes.length === 2 && sizes.every((width) => width > 0), "a picture does not show");
   const left = page.locator("#pictures").getByLabel("Left picture", { exact: true });
@@ -249,6 +259,9 @@ if (isSweep) {
   const sums = await page.evaluate(() => [...document.querySelectorAll("#parts figure")].filter((f) => /^What held the rays/.test(f.querySelector("svg[aria-label]")?.getAttribute("aria-label") ?? "")).map((f) => [...f.querySelectorAll("[data-point]")].reduce((sum, e) => sum + Number(e.dataset.x), 0)));
   const methods = new Set(runs.map((r) => r.setup.method.name)).size;
   check(sums.length > 0 && sums.every((sum) => Math.abs(sum - 100 * methods) < 1e-6), `causes of ${methods} runs are ${sums} %`);
+  // Times and cycles are those of the results.
+  const bars = await page.evaluate(() => [...document.querySelectorAll("#parts svg[aria-label^='Time and cycles'] [data-point]")].map((e) => Number(e.dataset.x)));
+  check(bars.length > 0 && bars.every((ms) => runs.some((r) => r.milliseconds === ms)), "times are not those of the results");
   const details = page.locator("#parts details[data-table^='Limits and causes']");
   await details.locator("summary").click();
   await details.locator("td[data-value]").first().waitFor();
@@ -284,6 +297,11 @@ for (const [width, scheme] of [[1400, "light"], [1400, "dark"], [390, "light"], 
     await page.evaluate(() => document.querySelectorAll("details").forEach((d) => (d.open = true)));
   }
 }
+// On paper: light, colours as they are, and nothing that only a screen can use.
+await page.emulateMedia({ media: "print", colorScheme: "dark" });
+const paper = await page.evaluate(() => ({ ground: getComputedStyle(document.body).backgroundColor, exact: getComputedStyle(document.body).printColorAdjust, seen: [...document.querySelectorAll(".controls, nav, #theme, .data button")].filter((e) => getComputedStyle(e).display !== "none").length }));
+check(paper.ground === "rgb(255, 255, 255)" && paper.exact === "exact" && paper.seen === 0, `paper: ${JSON.stringify(paper)}`);
+await page.emulateMedia({ media: "screen", colorScheme: "dark" });
 // The button wins over the system.
 await page.setViewportSize({ width: 1400, height: 900 });
 const button = page.locator("#theme");

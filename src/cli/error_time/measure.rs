@@ -38,6 +38,8 @@ pub struct Bench<'a> {
     pub(super) space: ModelSpace,
     pub(super) cache: &'a Cache,
     facts: SceneEntry,
+    /// The scene's file, as commands name it; empty if it was generated.
+    path: String,
     methods: Vec<(Chosen, Box<dyn Method + 'a>)>,
     builds: Vec<BuildTime>,
     reference: Box<dyn Method + 'a>,
@@ -86,7 +88,7 @@ struct Unseen {
 
 impl<'a> Bench<'a> {
     /// Builds what the methods need.
-    pub fn new(plan: &'a Plan, scene: &'a Scene, facts: SceneEntry, cache: &'a Cache) -> anyhow::Result<Self> {
+    pub fn new(plan: &'a Plan, scene: &'a Scene, (facts, path): (SceneEntry, String), cache: &'a Cache) -> anyhow::Result<Self> {
         let (mut methods, mut builds) = (Vec::new(), Vec::new());
         for chosen in &plan.jobs.methods {
             let begun = Instant::now();
@@ -101,6 +103,7 @@ impl<'a> Bench<'a> {
             space: ModelSpace::of(scene),
             cache,
             facts,
+            path,
             methods,
             builds,
             reference: Chosen::plain(&reference::METHOD).make(scene, cache)?.0,
@@ -298,7 +301,7 @@ impl<'a> Bench<'a> {
     /// The steps of a grid of rays of each method, with the setting that it has by default.
     fn traces(&self, camera: &Camera, settings: &[(usize, Setting)]) -> Vec<TraceGrid> {
         // A scene that was generated has no file: commands name the one that it would be written to.
-        let file = if self.facts.file.is_empty() { format!("{}.lod", plain(&self.facts.name)) } else { self.facts.file.clone() };
+        let file = if self.path.is_empty() { format!("{}.lod", plain(&self.facts.name)) } else { self.path.clone() };
         let grid = |(at, setting): &(usize, Setting)| {
             let subject = inspect::Subject {
                 scene: self.scene,

@@ -89,7 +89,7 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
                 continue;
             }
         };
-        let bench = Bench::new(&plan, &made, entry(scene, &made), &cache)?;
+        let bench = Bench::new(&plan, &made, (entry(scene, &made), scene.path()), &cache)?;
         for (k, view, key) in &left {
             let prefix = format!("{}-{k}", plain(&scene.name));
             let row = match bench.view(view, &args.out, &prefix, *k == sized) {

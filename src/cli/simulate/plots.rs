@@ -2,6 +2,7 @@
 
 pub(in crate::cli) use super::units::{Unit, energy_unit, time_unit};
 use anyhow::anyhow;
+use lodray::report::palette::{ENERGY_PARTS, PARTS};
 use lodray::report::result::{IntervalPower, IntervalResult, SimResult};
 use plotters::coord::Shift;
 use plotters::prelude::*;
@@ -15,14 +16,19 @@ const CAPTION: i32 = 17;
 /// Columns right of a plot for its legend.
 pub(in crate::cli) const LEGEND: u32 = 110;
 
-// Distinct without red and green side by side.
-const L1: RGBColor = RGBColor(68, 119, 170);
-const L2: RGBColor = RGBColor(102, 204, 238);
-const DRAM: RGBColor = RGBColor(238, 153, 51);
-const COMPUTE: RGBColor = RGBColor(170, 51, 119);
-const LEAKAGE: RGBColor = RGBColor(170, 170, 170);
 /// In the order of the energy's parts.
-pub(in crate::cli) const COLOURS: [RGBColor; 5] = [L1, L2, DRAM, COMPUTE, LEAKAGE];
+pub(in crate::cli) const COLOURS: [RGBColor; ENERGY_PARTS] = [L1, L2, DRAM, COMPUTE, LEAKAGE];
+const L1: RGBColor = part(0);
+const L2: RGBColor = part(1);
+const DRAM: RGBColor = part(2);
+const COMPUTE: RGBColor = part(3);
+const LEAKAGE: RGBColor = part(4);
+
+/// The palette's colour of a part on paper.
+const fn part(of: usize) -> RGBColor {
+    let [red, green, blue] = PARTS[of].1;
+    RGBColor(red, green, blue)
+}
 
 /// Name, colour and power of a part.
 type Part = (&'static str, RGBColor, fn(&IntervalPower) -> f64);

@@ -14,7 +14,8 @@ use plotters::style::text_anchor::{HPos, Pos, VPos};
 const BAR: u32 = 38;
 const CHARACTER: u32 = 7;
 const GAP: u32 = 26;
-const TIME: RGBColor = RGBColor(68, 119, 170);
+/// Time is of no part of the machine.
+const TIME: RGBColor = RGBColor(70, 76, 86);
 
 /// A bar: its name, and its parts from the bottom up.
 struct Bar {

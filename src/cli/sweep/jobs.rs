@@ -91,7 +91,15 @@ impl SceneJobs {
         }
     }
 
-    /// Its file, without folders; nothing if it is generated.
+    /// Its file, as it was named from where the program runs; nothing if it is generated.
+    pub fn path(&self) -> String {
+        match &self.origin {
+            Origin::File(file) => file.display().to_string(),
+            Origin::Generate(_) => String::new(),
+        }
+    }
+
+    /// That file's name, without folders.
     pub fn file_name(&self) -> String {
         match &self.origin {
             Origin::File(file) => file.file_name().unwrap_or_default().to_string_lossy().into_owned(),

@@ -30,7 +30,7 @@ use xxhash_rust::xxh3::xxh3_64;
 const SHELL: &str = include_str!("web/shell.html");
 const STYLE: &str = include_str!("web/style.css");
 /// In the order in which they stand in the page.
-const SCRIPTS: [&str; 10] = [
+const SCRIPTS: [&str; 11] = [
     include_str!("web/base.js"),
     include_str!("web/points.js"),
     include_str!("web/chart.js"),
@@ -38,6 +38,7 @@ const SCRIPTS: [&str; 10] = [
     include_str!("web/limits.js"),
     include_str!("web/distance.js"),
     include_str!("web/verdict.js"),
+    include_str!("web/machine.js"),
     include_str!("web/pictures.js"),
     include_str!("web/tables.js"),
     include_str!("web/main.js"),
@@ -113,12 +114,13 @@ fn data(documents: &Documents) -> io::Result<Value> {
     names.extend(documents.simulations.iter().map(|simulation| simulation.result.setup.method.name.as_str()));
     let methods: BTreeMap<_, _> = names.into_iter().map(|name| (name, palette::of(name))).collect();
     let parts = palette::PARTS.map(|(name, light, dark)| json!({ "name": name, "light": light, "dark": dark }));
-    let kinds = palette::KINDS.map(|[light, dark]| json!({ "light": light, "dark": dark }));
+    let sections = palette::SECTIONS.map(|(name, light, dark)| json!({ "name": name, "light": light, "dark": dark }));
+    let things: BTreeMap<_, _> = palette::things().map(|(name, part, hatch)| (name, json!([palette::PARTS[part].0, hatch]))).collect();
     let levels: Vec<_> = (0..LEVELS).map(|level| level_colour(level, 0.7).0).collect();
     Ok(json!({
         "title": documents.title,
         "program": program(),
-        "palette": { "methods": methods, "parts": parts, "kinds": kinds, "levels": levels, "hottest": HOTTEST },
+        "palette": { "methods": methods, "parts": parts, "sections": sections, "things": things, "levels": levels, "hottest": HOTTEST },
         "measures": measures(),
         "verdicts": error_time.as_ref().map_or_else(Vec::new, verdicts),
         "error_time": serde_json::to_value(&error_time)?,

@@ -45,7 +45,7 @@ pub struct IntervalResult {
     pub l2_queue: f64,
     #[expect(missing_docs, reason = "above")]
     pub dram_queue: f64,
-    /// The part of the memory, or its way there, with the largest share ([`Roofline`](super::Roofline)), and that share.
+    /// The part of the machine with the largest share ([`Roofline`](super::Roofline)), and that share.
     pub limit: String,
     #[expect(missing_docs, reason = "above")]
     pub limit_share: f64,
@@ -54,7 +54,7 @@ pub struct IntervalResult {
     pub watts: Option<IntervalPower>,
 }
 
-/// Mean power of a stretch, in watts. Compute of a tile's rays counts from when the first of them begins.
+/// Mean power of a stretch, in watts.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct IntervalPower {
@@ -134,7 +134,7 @@ fn between(begin: &Interval, end: &Interval, model: &EnergyModel, parts: &Parts<
         ..ChannelCounts::default()
     };
     let mean = |cycles_of_all: u64| ratio(cycles_of_all as f64, cycles as f64);
-    let (limit, limit_share) = parts.largest(&Done { counts: &limiting, channels: &channels, operations: None, cycles });
+    let (limit, limit_share) = parts.largest(&Done { counts: &limiting, channels: &channels, operations: &counts.operations, cycles });
     IntervalResult {
         end: end.end,
         cycles,

@@ -21,9 +21,13 @@ pub use energy::{ComputeEnergy, DramParts, EnergyResult, LeakageEnergy, ReadFill
 pub use intervals::{IntervalPower, IntervalResult};
 pub use latency::{Distribution, LatencyResult};
 pub use memory::{CacheResult, ChannelResult, CrossbarResult, DramResult, WaitShares};
+#[cfg(test)]
+pub(in crate::report) use roofline::LIMITS;
 pub use roofline::{Bound, Roofline};
 pub use setup::{MachineFacts, MethodFacts, RayFileFacts, SceneFacts, Setup, ViewFacts};
 pub use stalls::StallResult;
+#[cfg(test)]
+pub(in crate::report) use stalls::part_of;
 pub use traffic::{KindResult, LevelBytes, TrafficResult};
 pub use units::{BlockResult, UnitsResult};
 
@@ -115,7 +119,7 @@ impl SimResult {
         let hardware = machine.units.config();
         let mut channels = ChannelCounts::default();
         run.channels.iter().for_each(|channel| channels.add(channel));
-        let roofline = parts.roofline(&Done { counts, channels: &channels, operations: Some(&run.operations), cycles: run.cycles });
+        let roofline = parts.roofline(&Done { counts, channels: &channels, operations: &run.operations, cycles: run.cycles });
         let intervals = intervals::intervals(&run.intervals, &model, &parts, unit);
         let dram_prices = DramPrices::new(&dram.device);
         let dram = DramResult::new(run, &dram, seconds);

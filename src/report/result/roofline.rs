@@ -27,6 +27,22 @@ pub struct Roofline {
     pub largest: String,
 }
 
+/// Names of the parts of every machine, in the order of a line's way.
+pub(in crate::report) const LIMITS: [&str; 12] = [
+    "l1_banks",
+    "l1_queues",
+    "l1_mshrs",
+    "crossbar_requests",
+    "crossbar_answers",
+    "l2_banks",
+    "l2_queues",
+    "l2_mshrs",
+    "dram_queues",
+    "dram_bus",
+    "dram_activates",
+    "dram_banks",
+];
+
 /// What one part would need.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -41,8 +57,7 @@ pub struct Bound {
 pub(super) struct Done<'a> {
     pub counts: &'a Counts,
     pub channels: &'a ChannelCounts,
-    /// None where it is not known when: they are counted as a tile begins.
-    pub operations: Option<&'a Operations>,
+    pub operations: &'a Operations,
     pub cycles: u64,
 }
 
@@ -70,21 +85,21 @@ impl Parts<'_> {
         let activate = (t.n_rrd_s as f64).max(t.n_faw as f64 / 4.0);
         let [groups, channel_count] = [cores.groups, dram.channels];
         let memory = [
-            ("l1_banks", per(counts.l1.requests, product(&[groups, l1.banks.min(ports)]))),
-            ("l1_queues", per(counts.l1.queued_cycles, product(&[groups, l1.banks, l1.queue]))),
-            ("l1_mshrs", per(counts.l1.register_cycles, product(&[groups, l1.banks, l1.mshrs]))),
-            ("crossbar_requests", per(counts.l2.requests, product(&[groups, crossbar.per_group]))),
-            ("crossbar_answers", per(counts.l1.fills, product(&[groups, crossbar.per_group]))),
+            per(counts.l1.requests, product(&[groups, l1.banks.min(ports)])),
+            per(counts.l1.queued_cycles, product(&[groups, l1.banks, l1.queue])),
+            per(counts.l1.register_cycles, product(&[groups, l1.banks, l1.mshrs])),
+            per(counts.l2.requests, product(&[groups, crossbar.per_group])),
+            per(counts.l1.fills, product(&[groups, crossbar.per_group])),
             // A bank takes one request a cycle, whatever it may be handed.
-            ("l2_banks", per(counts.l2.requests, f64::from(l2.banks))),
-            ("l2_queues", per(counts.l2.queued_cycles, product(&[l2.banks, l2.queue]))),
-            ("l2_mshrs", per(counts.l2.register_cycles, product(&[l2.banks, l2.mshrs]))),
-            ("dram_queues", clock * per(channels.queued_clocks, product(&[channel_count, dram.controller.read_queue.into()]))),
-            ("dram_bus", clock * per(channels.bus_clocks, f64::from(channel_count))),
-            ("dram_activates", clock * activate * per(channels.activates, product(&[channel_count, organisation.ranks]))),
-            ("dram_banks", clock * t.n_rc as f64 * per(channels.activates, product(&[channel_count, dram.device.banks()]))),
+            per(counts.l2.requests, f64::from(l2.banks)),
+            per(counts.l2.queued_cycles, product(&[l2.banks, l2.queue])),
+            per(counts.l2.register_cycles, product(&[l2.banks, l2.mshrs])),
+            clock * per(channels.queued_clocks, product(&[channel_count, dram.controller.read_queue.into()])),
+            clock * per(channels.bus_clocks, f64::from(channel_count)),
+            clock * activate * per(channels.activates, product(&[channel_count, organisation.ranks])),
+            clock * t.n_rc as f64 * per(channels.activates, product(&[channel_count, dram.device.banks()])),
         ];
-        memory.into_iter().chain(done.operations.map(|of| self.blocks(of)).unwrap_or_default()).collect()
+        LIMITS.into_iter().zip(memory).chain(self.blocks(done.operations)).collect()
     }
 
     /// Cycles that each block of the units would need, where there are any.

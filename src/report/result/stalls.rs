@@ -21,7 +21,7 @@ pub struct StallResult {
 }
 
 /// What a context does in a state, but for waiting for lines.
-const fn part(state: State) -> &'static str {
+pub(in crate::report) const fn part_of(state: State) -> &'static str {
     match state {
         State::Idle => "idle",
         State::Setup | State::SetupWait => "ray_setup",
@@ -54,7 +54,7 @@ impl StallResult {
                 // What contexts waited for lines in other states is with the lines.
                 for (&state, (&all, &late)) in State::ALL.iter().zip(states.iter().zip(&run.late)) {
                     if state != State::Fetch {
-                        add(part(state), all - late);
+                        add(part_of(state), all - late);
                     }
                 }
             }

@@ -9,6 +9,7 @@ use super::fed_ray::FedRay;
 use super::feed::Feed;
 use super::group_side::GroupSide;
 use super::prefetch::prefetch;
+use crate::block::{Operation, Operations};
 use crate::machine::Machine;
 use crate::step::{Act, Asking, Nodes, SectionId};
 use std::ops::Range;
@@ -78,6 +79,7 @@ pub struct FreeCores {
     /// Lines of nodes that cores hold for good.
     pinned: Range<u32>,
     under_way: u64,
+    operations: Operations,
 }
 
 impl FreeCores {
@@ -96,6 +98,7 @@ impl FreeCores {
             per_group: cores.per_group,
             pinned: nodes.lines_of(cores.pinned_nodes),
             under_way: 0,
+            operations: Operations::default(),
         }
     }
 
@@ -103,6 +106,7 @@ impl FreeCores {
         let group = context / self.rays_in_flight / self.per_group;
         let ray = self.feed.ray(group, now);
         self.under_way += u64::from(ray.is_some());
+        self.operations.add(Operation::RaySetup, ray.is_some().into());
         self.contexts[context as usize].ray = ray;
     }
 
@@ -118,14 +122,18 @@ impl FreeCores {
     fn asks(&mut self, context: u32, memory: &mut GroupSide) -> bool {
         let state = &mut self.contexts[context as usize];
         let Some(ray) = &mut state.ray else { return false };
+        // Lines of the steps so far are there: the blocks do what they do with them in this cycle.
+        ray.count(&mut self.operations);
         let counts = memory.counts_mut();
         let (mut count, mut steps) = (0, 0);
-        for word in ray.rest() {
+        for &word in ray.rest() {
             let Asking { first, mut lines, section, joins, ends } = word.asking();
             if ends {
                 if count > 0 {
                     break;
                 }
+                ray.skip(steps + 1);
+                ray.count(&mut self.operations);
                 counts.rays += 1;
                 counts.hits += u64::from(matches!(word.step().act, Act::End { found: true, .. }));
                 self.under_way -= 1;
@@ -267,6 +275,10 @@ impl FrontEnd for FreeCores {
 
     fn under_way(&self) -> u64 {
         self.under_way
+    }
+
+    fn operations(&self) -> Operations {
+        self.operations.clone()
     }
 
     fn describe(&self) -> String {

@@ -7,10 +7,8 @@
 //! whoever asks and finds nothing else.
 
 use super::fed_ray::FedRay;
-use super::intervals::Series;
 use super::messages::{Grant, Granted, Notice, Told};
 use super::order::Order;
-use crate::block::Operations;
 use crate::step::Batch;
 use std::collections::{BTreeSet, VecDeque};
 use std::sync::Arc;
@@ -61,9 +59,6 @@ pub struct Dispatcher<S> {
     /// Contexts of a group: rays that it is given at once, but for whole batches.
     contexts: usize,
     delay: u64,
-    /// What the rays of batches given have the hardware blocks do; over time.
-    pub operations: Operations,
-    pub over_time: Series<Operations>,
     /// For the groups.
     pub granted: Vec<Granted>,
 }
@@ -79,8 +74,6 @@ impl<S: ChunkSource> Dispatcher<S> {
             asking: BTreeSet::new(),
             contexts: contexts.max(1) as usize,
             delay,
-            operations: Operations::default(),
-            over_time: Series::new(),
             granted: Vec::new(),
         }
     }
@@ -88,7 +81,7 @@ impl<S: ChunkSource> Dispatcher<S> {
     /// Gives every group its first rays, in cycle 0.
     pub fn start(&mut self) {
         for group in 0..self.begun.len() as u32 {
-            match self.grant(group, 0) {
+            match self.grant(group) {
                 Some(grant) => self.granted.push(Granted { cycle: 0, group, grant }),
                 None => drop(self.asking.insert(group)),
             }
@@ -125,19 +118,19 @@ impl<S: ChunkSource> Dispatcher<S> {
             return false;
         }
         let at = cycle + self.delay;
-        let Some(grant) = self.grant(group, at) else { return false };
+        let Some(grant) = self.grant(group) else { return false };
         self.asking.remove(&group);
         self.granted.push(Granted { cycle: at, group, grant });
         true
     }
 
     /// Rays that waited for others of the group, else of the source, else any that waited.
-    fn grant(&mut self, group: u32, cycle: u64) -> Option<Grant> {
+    fn grant(&mut self, group: u32) -> Option<Grant> {
         let own = self.order.own(group, self.contexts);
         if !own.is_empty() {
             return Some(Grant::Rays(own));
         }
-        if let Some(grant) = self.fresh(group, cycle) {
+        if let Some(grant) = self.fresh(group) {
             return Some(grant);
         }
         let others = self.order.others(self.contexts);
@@ -145,14 +138,14 @@ impl<S: ChunkSource> Dispatcher<S> {
     }
 
     /// The group's next batch, or those of its rays that wait for nobody.
-    fn fresh(&mut self, group: u32, cycle: u64) -> Option<Grant> {
+    fn fresh(&mut self, group: u32) -> Option<Grant> {
         if self.order.holds_back(group) {
             return None;
         }
         loop {
             let (batch, first) = match self.begun[group as usize].take() {
                 Some(begun) => begun,
-                None => (self.batch(cycle)?, 0),
+                None => (self.batch()?, 0),
             };
             if batch.rays() > 0 && batch.link(0).is_none() {
                 return Some(Grant::Batch(batch));
@@ -178,16 +171,12 @@ impl<S: ChunkSource> Dispatcher<S> {
         }
     }
 
-    fn batch(&mut self, cycle: u64) -> Option<Arc<Batch>> {
+    fn batch(&mut self) -> Option<Arc<Batch>> {
         loop {
             if let Some((chunk, next)) = &mut self.open
                 && let Some(batch) = chunk.0.get(*next)
             {
                 *next += 1;
-                if let Some(end) = self.over_time.end_before(cycle) {
-                    self.over_time.note(end, self.operations.clone());
-                }
-                self.operations.join(batch.operations());
                 return Some(Arc::clone(batch));
             }
             self.open = None;

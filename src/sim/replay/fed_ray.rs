@@ -1,6 +1,7 @@
 //! A ray as a core has it: its steps, read one by one.
 
 use super::prefetch::prefetch;
+use crate::block::Operations;
 use crate::step::{Batch, Link, StepWord};
 use std::sync::Arc;
 
@@ -9,6 +10,8 @@ use std::sync::Arc;
 pub struct FedRay {
     batch: Arc<Batch>,
     at: u32,
+    /// The first step that has not had the blocks do what it does: see [`FedRay::count`].
+    counted: u32,
     /// Its number in the batch.
     ray: u32,
     /// The cycle in which it was taken.
@@ -19,7 +22,7 @@ impl FedRay {
     /// Ray number `ray` of `batch`.
     pub fn new(batch: Arc<Batch>, ray: u32) -> Self {
         let at = batch.start(ray as usize);
-        Self { batch, at, ray, started: 0 }
+        Self { batch, at, counted: at, ray, started: 0 }
     }
 
     /// Its next step; a ray ends with [`Act::End`](crate::step::Act::End), after which it has none.
@@ -38,6 +41,14 @@ impl FedRay {
     #[inline(always)]
     pub fn skip(&mut self, steps: u32) {
         self.at += steps;
+    }
+
+    /// Adds what the steps before the next have the blocks do, but for those that were added before.
+    #[inline]
+    pub fn count(&mut self, operations: &mut Operations) {
+        let steps = &self.batch.words()[self.counted as usize..self.at as usize];
+        steps.iter().for_each(|word| word.step().count(operations));
+        self.counted = self.at;
     }
 
     /// The steps behind the next are read soon.

@@ -1,7 +1,8 @@
 //! Groups of cores with their L1s, driven by events: the side of a replay that has no part in others of its kind.
 //!
 //! A request that misses everywhere: in its L1 bank at c (its turn in the queue), known as a miss at c + L1 latency; then it is the shared side's
-//! ([`shared_side`](super::shared_side)), which says when the line is written into the L1, from which all its waiters have it in that cycle. An L1 hit takes the L1's latency.
+//! ([`shared_side`](super::shared_side)), which says when the line is written into the L1. All its waiters have it in that cycle, or at the end of their own look-up where that
+//! is later. An L1 hit takes the L1's latency.
 //!
 //! Whoever cannot go on sleeps in a list and is woken by what makes room: nothing polls.
 
@@ -239,12 +240,18 @@ impl GroupSide {
 
     fn fill_l1(&mut self, register: u32, kind: EventKind) {
         let now = self.now();
-        let (wheel, told, slot, path) = (&mut self.wheel, &mut self.told, self.slot, &self.paths[register as usize]);
+        let (wheel, told, slot, path, latency) =
+            (&mut self.wheel, &mut self.told, self.slot, &self.paths[register as usize], self.l1.latency);
         let answer = |Waiter { waiter, before, since }: Waiter| {
+            let end = now.max(since + latency);
             let mut rest = Path::default();
-            rest.add_rest(path, now - since);
-            told[slot(waiter)] = in_front(rest, before).ended(now);
-            wheel.at(now, kind.class(), kind.event(waiter));
+            if end > now {
+                rest.add(Cause::L1LookUp, latency)
+            } else {
+                rest.add_rest(path, now - since)
+            }
+            told[slot(waiter)] = in_front(rest, before).ended(end);
+            wheel.at(end, kind.class(), kind.event(waiter));
         };
         self.l1.land(register, answer);
         if self.l1.free(register, now) {

@@ -24,7 +24,7 @@ pub struct Interval {
     pub channels: ChannelCounts,
     /// The memory's energy since the start of the run.
     pub dram: DramEnergy,
-    /// Operations of the blocks since the start of the run: those of a tile's rays count from when the first of them begins.
+    /// Operations of the blocks since the start of the run, each counted when it is begun; where compute takes no time, when the lines that it waits for are there.
     pub operations: Operations,
 }
 
@@ -112,11 +112,12 @@ impl Earlier for SharedCounts {
 pub fn join(
     groups: &[(Counts, Series<Counts>)],
     shared: (&SharedCounts, &Series<SharedCounts>),
-    operations: (&Operations, &Series<Operations>),
+    blocks: &[(Operations, Series<Operations>)],
     cycles: u64,
 ) -> Vec<Interval> {
-    let mut ends: Vec<u64> = groups.iter().flat_map(|side| side.1.ends()).chain(shared.1.ends()).chain(operations.1.ends()).collect();
-    let lengths = groups.iter().map(|side| side.1.length).chain([shared.1.length, operations.1.length]);
+    let mut ends: Vec<u64> =
+        groups.iter().flat_map(|side| side.1.ends()).chain(shared.1.ends()).chain(blocks.iter().flat_map(|side| side.1.ends())).collect();
+    let lengths = groups.iter().map(|side| side.1.length).chain(blocks.iter().map(|side| side.1.length)).chain([shared.1.length]);
     let mut length = lengths.max().unwrap_or(FIRST);
     let mut coarsen = |length: u64| {
         ends.iter_mut().for_each(|end| *end = *end / length * length);
@@ -134,7 +135,8 @@ pub fn join(
         let of = shared.1.before(before, shared.0);
         let mut counts = of.counts;
         groups.iter().for_each(|(all, series)| counts.add(&series.before(before, all)));
-        let operations = operations.1.before(before, operations.0);
+        let mut operations = Operations::default();
+        blocks.iter().for_each(|(all, series)| operations.join(&series.before(before, all)));
         Interval { end, counts, channels: of.channels, dram: of.dram, operations }
     };
     ends.iter().map(|&end| interval(end, false)).chain([interval(cycles, true)]).collect()

@@ -194,6 +194,8 @@ trait FrontEnd {
     fn answer(&mut self, waiter: u32, from: counts::Supplier, memory: &mut GroupSide);
     /// Rays taken that have not ended.
     fn under_way(&self) -> u64;
+    /// What its rays have had the blocks do so far.
+    fn operations(&self) -> Operations;
     /// What it does, for error messages.
     fn describe(&self) -> String;
 }
@@ -215,16 +217,19 @@ fn drive<F: FrontEnd + Send>(
     let mut wave = how.window.map(Wave::new);
     rounds::run(machine, &partitions, &mut shared, reply, &mut dispatcher, threads, wave.as_mut())?;
 
-    let (mut fronts, mut of_groups) = (Vec::new(), Vec::new());
+    let (mut fronts, mut of_groups, mut of_blocks) = (Vec::new(), Vec::new(), Vec::new());
+    let mut operations = Operations::default();
     let (mut latencies, mut l1_banks, mut cycles) = (Latencies::default(), Vec::new(), 0);
     for partition in partitions {
-        let Partition { front, side, .. } = partition.into_inner().expect("a replay's thread has panicked");
+        let Partition { front, side, operations: over_time, .. } = partition.into_inner().expect("a replay's thread has panicked");
         let (rays, misses, looked_up) = side.distributions();
         latencies.rays.join(rays);
         latencies.l1_misses.join(misses);
         l1_banks.extend(looked_up);
         cycles = cycles.max(side.last_end());
         of_groups.push((side.counts(), side.over_time));
+        operations.join(&front.operations());
+        of_blocks.push((front.operations(), over_time));
         fronts.push(front);
     }
     shared.end(cycles);
@@ -233,8 +238,7 @@ fn drive<F: FrontEnd + Send>(
     let mut counts = of_shared.counts;
     of_groups.iter().for_each(|side| counts.add(&side.0));
     let (channels, dram_clocks, dram) = (shared.dram().counts(), shared.dram().clocks(), shared.dram().energy());
-    let operations = dispatcher.operations;
-    let intervals = intervals::join(&of_groups, (&of_shared, &shared.over_time), (&operations, &dispatcher.over_time), cycles);
+    let intervals = intervals::join(&of_groups, (&of_shared, &shared.over_time), &of_blocks, cycles);
     let run = Run {
         cycles,
         channels,

@@ -10,9 +10,11 @@ use super::dispatch::{ChunkSource, Dispatcher};
 use super::error::ReplayError;
 use super::event::Happening;
 use super::group_side::GroupSide;
+use super::intervals::Series;
 use super::messages::{Fill, Granted, Miss, Told};
 use super::shared_side::SharedSide;
 use super::wave::{Look, Shown, Wave};
+use crate::block::Operations;
 use crate::machine::Machine;
 use std::sync::atomic::{AtomicBool, AtomicU64, AtomicUsize, Ordering};
 use std::sync::{Mutex, MutexGuard};
@@ -24,6 +26,8 @@ pub struct Partition<F> {
     pub front: F,
     /// Their L1s.
     pub side: GroupSide,
+    /// What their rays had the blocks do, over time.
+    pub operations: Series<Operations>,
     /// The first of them.
     first: u32,
 }
@@ -32,12 +36,12 @@ impl<F: FrontEnd> Partition<F> {
     /// Groups of `machine`, from `first` on.
     pub fn new(front: F, machine: &Machine, first: u32) -> Self {
         let side = GroupSide::new(machine, first, front.slots());
-        Self { front, side, first }
+        Self { front, side, operations: Series::new(), first }
     }
 
     /// Does all that happens before cycle `end`.
     fn run(&mut self, end: u64) {
-        let Self { front, side, .. } = self;
+        let Self { front, side, operations, .. } = self;
         loop {
             while let Some(happening) = side.take() {
                 front.prefetch(happening, side.soon(happening));
@@ -49,7 +53,12 @@ impl<F: FrontEnd> Partition<F> {
                 }
             }
             match side.next() {
-                Some(next) if next < end => side.go(next),
+                Some(next) if next < end => {
+                    if let Some(end) = operations.end_before(next) {
+                        operations.note(end, front.operations());
+                    }
+                    side.go(next);
+                }
                 _ => break,
             }
         }

@@ -4,8 +4,9 @@
 //! then memory. The answer goes through the group's answer port, and after `answer_cycles` the line is written into the L1. So without others in the way an L2 hit takes
 //! L1 + request + L2 + answer; a line from memory the same and memory's own time.
 //!
-//! A look-up of the L2 sees what comes while it is under way: a line that memory has at f is found by who looks it up from f - L2 latency on. So nothing that is asked for
-//! is answered sooner than the L2's latency later, and groups and the shared side can go on without each other for that long: see [`SharedSide::reply`].
+//! A look-up of the L2 sees what comes while it is under way: a line that memory has at f is ready for who looked it up at f - L2 latency or later at the end of its own
+//! look-up, whether it found the line or merged with its miss. So nothing that is asked for is answered sooner than the L2's latency later, and groups and the shared side can
+//! go on without each other for as long as [`SharedSide::reply`] says.
 
 use super::counts::{Counts, Supplier};
 use super::event::{EventKind, MOVES, SERVES, id};
@@ -296,8 +297,14 @@ impl SharedSide {
         let mut waiters = std::mem::take(&mut self.waiters);
         self.l2.land(register, |waiter| waiters.push(waiter));
         for Waiter { waiter, since, .. } in waiters.drain(..) {
-            self.asking[waiter as usize].path.add_rest(&self.paths[register as usize], ready - since);
-            self.answer_l1(waiter, ready, Supplier::Dram);
+            let looked_up = since + self.l2.latency;
+            let path = &mut self.asking[waiter as usize].path;
+            if looked_up > ready {
+                path.add(Cause::L2LookUp, self.l2.latency);
+            } else {
+                path.add_rest(&self.paths[register as usize], ready - since);
+            }
+            self.answer_l1(waiter, ready.max(looked_up), Supplier::Dram);
         }
         self.waiters = waiters;
         if ready > now { self.enter(ready, EventKind::FreeL2, register) } else { self.free_l2(register) }

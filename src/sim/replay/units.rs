@@ -11,6 +11,7 @@ use super::feed::Feed;
 use super::group_side::GroupSide;
 use super::slots::Slots;
 use super::stalls::Cause;
+use crate::block::Operations;
 use crate::machine::Machine;
 use crate::sim::timing::{LineRequest, Ports, Steps, UnitTiming};
 use crate::sim::unit::{State, UnitCounts};
@@ -189,6 +190,12 @@ impl FrontEnd for Units {
 
     fn under_way(&self) -> u64 {
         self.under_way
+    }
+
+    fn operations(&self) -> Operations {
+        let mut sum = Operations::default();
+        self.units.iter().for_each(|unit| sum.join(unit.timing.operations()));
+        sum
     }
 
     fn describe(&self) -> String {

@@ -6,8 +6,9 @@
 use super::context::ContextTiming;
 use super::ports::{LineRequest, Steps};
 use super::unit::UnitTiming;
+use crate::block::Operation;
 use crate::sim::unit::{Resource, State};
-use crate::step::Act;
+use crate::step::{Act, Step};
 
 impl<R: Steps> UnitTiming<R> {
     /// The idle context of the lowest number takes `ray`.
@@ -16,6 +17,7 @@ impl<R: Steps> UnitTiming<R> {
         self.idle &= self.idle - 1;
         let context = &mut self.contexts[who];
         *context = ContextTiming { ray: Some(ray), ..ContextTiming::idle() };
+        self.operations.add(Operation::RaySetup, 1);
         context.enter(State::Setup, now + 1);
         self.sleep(who, now);
     }
@@ -31,6 +33,7 @@ impl<R: Steps> UnitTiming<R> {
     /// `node_address` takes a line of context `who`; whether it wants more.
     pub(super) fn fetch(&mut self, who: usize, now: u64) -> (LineRequest, bool) {
         let context = &mut self.contexts[who];
+        self.operations.add(Operation::NodeAddress, 1);
         let request = context.ask_line(who, now);
         if context.owed == 0 {
             let (since, end) = self.fetched(who, now);
@@ -170,6 +173,7 @@ impl<R: Steps> UnitTiming<R> {
         let context = &mut self.contexts[who];
         if let Act::Triangles { count, hits } = context.step().act {
             context.advance();
+            Step::of(Act::Triangles { count, hits }).count(&mut self.operations);
             (context.left, context.hits) = (count, hits);
             context.owed += count;
         }
@@ -199,6 +203,7 @@ impl<R: Steps> UnitTiming<R> {
     /// The act of context `who` begins in cycle `at`: the cycle of its next step, or `None` if it asks for something first.
     fn act(&mut self, who: usize, at: u64, now: u64) -> Option<u64> {
         let context = &mut self.contexts[who];
+        Step::of(context.act).count(&mut self.operations);
         match context.act {
             Act::Fetch => return Some(at),
             Act::Pop { .. } => {

@@ -17,7 +17,7 @@ use crate::block::hit_select::HitSelect;
 use crate::block::node_address::NodeAddress;
 use crate::block::tessellate::Tessellate;
 use crate::block::tree_deciders::TreeDeciders;
-use crate::block::{Operation, Timing};
+use crate::block::{Operation, Operations, Timing};
 use crate::hardware::{Hardware, MAX_CONTEXTS};
 use crate::sim::unit::{Arbiter, Resource, State};
 use std::collections::VecDeque;
@@ -66,6 +66,8 @@ pub struct UnitTiming<R> {
     pub(super) port_cycles: u64,
     /// The wait that the line ended that came last, from when to when, if it did.
     pub(super) line_wait: Option<(u64, u64)>,
+    /// What contexts have had the blocks do, counted as each act begins.
+    pub(super) operations: Operations,
 }
 
 impl<R: Steps> UnitTiming<R> {
@@ -125,7 +127,13 @@ impl<R: Steps> UnitTiming<R> {
             late: Default::default(),
             port_cycles: 0,
             line_wait: None,
+            operations: Operations::default(),
         }
+    }
+
+    /// What its rays have had the blocks do so far.
+    pub fn operations(&self) -> &Operations {
+        &self.operations
     }
 
     /// A context is idle: a ray would be taken.

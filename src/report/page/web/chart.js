@@ -17,6 +17,35 @@ function swatch(method) {
   return span.firstChild;
 }
 
+/** Lines of each hatching in a square of 8, by its number; the first has none. */
+const HATCHES = ["", "M-2,2l4,-4M0,8l8,-8M6,10l4,-4", "M0,4h8", "M-2,6l4,4M0,0l8,8M6,-2l4,4", "M4,0v8", "M0,4h8M4,0v8", "M0,0l8,8M0,8l8,-8", "M1,2h2M5,6h2"];
+const hatchId = (part, hatch) => `hatch-${part}-${hatch}`;
+
+/** The patterns of every part of a machine. */
+function hatchings() {
+  const holder = h("div", { "aria-hidden": "true" });
+  const pattern = (part) => (lines, k) => `<pattern id="${hatchId(part, k)}" width="8" height="8" patternUnits="userSpaceOnUse"><rect width="8" height="8" fill="var(--part-${part})"/><path d="${lines}" fill="none" stroke="var(--ground)" stroke-width="1.6"/></pattern>`;
+  holder.innerHTML = `<svg width="0" height="0" style="position:absolute"><defs>${page.palette.parts.flatMap((p) => HATCHES.map(pattern(p.name))).join("")}</defs></svg>`;
+  return holder;
+}
+
+/** How what is waited for, or limits, is filled: the same wherever it stands on the page. */
+function fillOf(name) {
+  const [part, hatch] = page.palette.things[name] ?? ["leakage", 0];
+  return hatch === 0 ? `var(--part-${part})` : `url(#${hatchId(part, hatch)})`;
+}
+const sectionFill = (name) => (page.palette.sections.some((s) => s.name === name) ? `var(--section-${name})` : "var(--part-leakage)");
+
+/** A filled square and its name, for each. */
+function swatchKeys(label, names, fill) {
+  const square = (name) => {
+    const span = h("span", { "aria-hidden": "true", style: "display:inline-flex" });
+    span.innerHTML = `<svg width="20" height="15"><rect width="20" height="15" rx="3" style="fill:${fill(name)}"/></svg>`;
+    return span;
+  };
+  return h("ul", { class: "keys", "aria-label": label }, names.map((name) => h("li", {}, square(name), name)));
+}
+
 /** Which mark is which method. */
 const keys = (methods, more = []) => h("ul", { class: "keys", "aria-label": "Marks" }, methods.map((m) => h("li", {}, swatch(m), h("span", {}, m))), more.map((item) => h("li", {}, item)));
 

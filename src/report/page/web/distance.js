@@ -76,7 +76,7 @@ function distanceSection(section, state) {
       controls, keys(methods), few ? h("p", { class: "note" }, "All of these results are from one distance.") : "",
       h(
         "div", { class: "pair" },
-        h("div", {}, lineDiagram(costRows, { title: `${titled(cost.name, unit)}`, small: `${state.scene}; beside each point the gain over the full-resolution BVH`, x: label, state }), dataTable(`${cost.name} by distance, ${state.scene}`, [...columns(titled(cost.name, unit)), { name: "gain over bvh", value: (r) => r.gain, show: (r) => times(r.gain) }], costRows)),
+        h("div", {}, lineDiagram(costRows, { title: `${titled(cost.name, unit)}`, small: `${state.scene}; beside points, where there is room, the gain over the full-resolution BVH`, x: label, state }), dataTable(`${cost.name} by distance, ${state.scene}`, [...columns(titled(cost.name, unit)), { name: "gain over bvh", value: (r) => r.gain, show: (r) => times(r.gain) }], costRows)),
         errorRows.length ? h("div", {}, lineDiagram(errorRows, { title: titled(error.name, error.unit), small: state.scene, x: label, linear: error.linear, isError: true, state }), dataTable(`${error.name} by distance, ${state.scene}`, columns(titled(error.name, error.unit)), errorRows)) : "",
       ),
     );
@@ -144,7 +144,7 @@ function partsSection(section, state) {
     const shown = shownOf(points, chosen).filter((p) => costAt(p, state.machine));
     const unit = shown.map((p) => costAt(p, state.machine).energy.unit)[0] ?? "";
     const places = unique(shown.map(place));
-    const parts = page.palette.parts.map((p) => p.name);
+    const parts = page.palette.parts.slice(0, ENERGY_PARTS.length).map((p) => p.name);
     const partColours = parts.map((p) => `var(--part-${p})`);
     const rowsOf = (points) => points.flatMap((p) => ENERGY_PARTS.map((part, k) => ({ point: p, label: p.samples > 1 ? `${p.method} ×${p.samples}` : p.method, part: parts[k], value: costAt(p, state.machine).energy[part], total: costAt(p, state.machine).energy.total })));
     const charts = places.map((where) => {
@@ -168,16 +168,16 @@ function partsSection(section, state) {
         }),
       });
     });
-    const partKeys = h("ul", { class: "keys", "aria-label": "Parts" }, parts.map((part) => h("li", {}, h("span", { style: `width:.85rem;height:.85rem;border-radius:3px;background:var(--part-${part})`, "aria-hidden": "true" }), part)));
+    const partKeys = swatchKeys("Parts", parts, (part) => `var(--part-${part})`);
     const columns = [
       { name: "from", value: (p) => place(p) }, { name: "method", value: (p) => p.method }, { name: "setting", value: (p) => p.setting }, { name: `energy (${unit})`, value: (p) => costAt(p, state.machine).energy.total },
       ...ENERGY_PARTS.map((part, k) => ({ name: parts[k], value: (p) => costAt(p, state.machine).energy[part] })),
       { name: "DRAM lines", value: (p) => costAt(p, state.machine).dram_lines }, { name: "DRAM bytes", value: (p) => costAt(p, state.machine).dram_bytes }, { name: "L1 requests for each ray", value: (p) => costAt(p, state.machine).l1_requests_per_ray },
     ];
     const kinds = shown.flatMap((p) => (costAt(p, state.machine).traffic?.kinds ?? []).map((kind) => ({ point: p, ...kind })));
-    body.replaceChildren(h("h3", {}, "Energy"), partKeys, h("div", { class: "grid" }, charts), dataTable(`Energy and traffic, ${state.scene}`, columns, shown), traffic(kinds, state), limits(shown, state), overTime(shown, state));
+    body.replaceChildren(timeBars(shown, state), h("h3", {}, "Energy"), partKeys, h("div", { class: "grid" }, charts), dataTable(`Energy and traffic, ${state.scene}`, columns, shown), traffic(kinds, state), limits(shown, state), overTime(shown, state));
   };
-  section.append(h("p", {}, "The settings chosen above. Every distance has an axis of its own, as far views take a small part of what near ones take."), body);
+  section.append(h("p", {}, "The settings chosen above. Times and what runs over time have one axis everywhere; energy and traffic of every distance have an axis of their own, as far views take a small part of what near ones take."), body);
   state.onChange(draw);
 }
 
@@ -187,19 +187,18 @@ function traffic(kinds, state) {
   const names = unique(kinds.map((k) => k.kind));
   const levels = [["l1", "L1s"], ["l2", "L2"], ["dram", "DRAM"]];
   const rows = kinds.flatMap((k) => levels.map(([id, level]) => ({ level, kind: k.kind, value: k.bytes_per_ray[id], point: k.point, place: place(k.point), method: k.point.method })));
-  const hatch = (kind) => `var(--kind-${names.indexOf(kind) % 8})`;
   const charts = unique(rows.map((r) => r.place)).map((where) => {
     const here = rows.filter((r) => r.place === where).map((r) => ({ ...r, label: `${r.method}, ${r.level}`, x: r.value, y: 0, ...tipOf(r.point, [[`${r.kind}, ${r.level}`, `${num(r.value)} bytes for each ray`]]) }));
     const labels = unique(here.map((r) => r.label));
     return diagram({
       title: `from ${where}`.replace("from rays", "rays"), small: "bytes for each ray", rows: here, label: `Traffic by what lines hold from ${where}, ${state.scene}`,
       options: () => ({
-        height: 34 + 21 * labels.length, marginLeft: 100, marginRight: 20, marginTop: 4, marginBottom: 26, x: { label: null, ticks: 3, tickFormat: (v) => num(v) }, y: { label: null, domain: labels, padding: 0.25 }, color: { domain: names, range: names.map(hatch) },
+        height: 34 + 21 * labels.length, marginLeft: 100, marginRight: 20, marginTop: 4, marginBottom: 26, x: { label: null, ticks: 3, tickFormat: (v) => num(v) }, y: { label: null, domain: labels, padding: 0.25 }, color: { domain: names, range: names.map(sectionFill) },
         marks: [Plot.barX(here, { x: "value", y: "label", fill: "kind", className: "points", sort: null }), Plot.ruleX([0], { strokeOpacity: 0.5 })],
       }),
     });
   });
-  const kindKeys = h("ul", { class: "keys", "aria-label": "What lines hold" }, names.map((kind) => h("li", {}, h("span", { style: `width:.85rem;height:.85rem;border-radius:3px;background:${hatch(kind)}`, "aria-hidden": "true" }), kind)));
+  const kindKeys = swatchKeys("What lines hold", names, sectionFill);
   const columns = [
     { name: "from", value: (k) => place(k.point) }, { name: "method", value: (k) => k.point.method }, { name: "setting", value: (k) => k.point.setting }, { name: "lines hold", value: (k) => k.kind },
     { name: "L1 requests", value: (k) => k.l1 }, { name: "L2 requests", value: (k) => k.l2 }, { name: "DRAM lines", value: (k) => k.dram },
@@ -208,10 +207,44 @@ function traffic(kinds, state) {
   return h("div", {}, h("h3", {}, "Traffic by what lines hold"), kindKeys, h("div", { class: "grid" }, charts), dataTable(`Traffic by what lines hold, ${state.scene}`, columns, kinds));
 }
 
+/** Time and cycles of each method, all places on one axis. */
+function timeBars(shown, state) {
+  const longest = d3.max(shown, (p) => costAt(p, state.machine).milliseconds) || 1;
+  const rows = shown.map((p) => {
+    const { milliseconds, cycles } = costAt(p, state.machine);
+    return { point: p, label: p.samples > 1 ? `${p.method} ×${p.samples}` : p.method, place: place(p), cycles, method: p.method, x: milliseconds, y: 0, ...tipOf(p, [["time", `${num(milliseconds)} ms`], ["cycles", num(cycles)]]) };
+  });
+  const charts = unique(rows.map((r) => r.place)).map((where) => {
+    const here = rows.filter((r) => r.place === where);
+    const methods = unique(here.map((r) => r.method));
+    return diagram({
+      title: `from ${where}`.replace("from rays", "rays"), small: "ms; cycles beside the bars", rows: here, label: `Time and cycles from ${where}, ${state.scene}`,
+      options: (width) => ({
+        height: 34 + 27 * here.length, marginLeft: 78, marginRight: 112, marginTop: 4, marginBottom: 26,
+        x: { label: null, domain: [0, longest], ticks: Math.max(2, Math.floor(width / 130)), tickFormat: (v) => num(v) }, y: { label: null, domain: unique(here.map((r) => r.label)), padding: 0.28 }, color: { domain: methods, range: methods.map(colour) },
+        marks: [
+          Plot.barX(here, { x: "x", y: "label", fill: "method", className: "points", sort: null }),
+          Plot.text(here, { x: "x", y: "label", text: (r) => `${num(r.x)} ms, ${tick(r.cycles)}`, textAnchor: "start", dx: 5, fontSize: 11.5, fill: "currentColor" }),
+          Plot.ruleX([0], { strokeOpacity: 0.5 }),
+        ],
+      }),
+    });
+  });
+  const columns = [
+    { name: "from", value: (r) => r.place }, { name: "method", value: (r) => r.method }, { name: "setting", value: (r) => r.point.setting }, { name: "samples", value: (r) => r.point.samples },
+    { name: "time (ms)", value: (r) => r.x }, { name: "cycles", value: (r) => r.cycles },
+  ];
+  return h("div", {}, h("h3", {}, "Time"), h("div", { class: "grid" }, charts), dataTable(`Time and cycles, ${state.scene}`, columns, rows));
+}
+
 /** Power over time, where results have it. */
 function overTime(shown, state) {
   const runs = shown.filter((p) => costAt(p, state.machine).intervals?.some((i) => i.watts)).slice(0, 6);
   if (!runs.length) return "";
+  // One axis of time and one of power for all.
+  const end = d3.max(runs, (p) => costAt(p, state.machine).milliseconds);
+  const most = d3.max(runs.flatMap((p) => costAt(p, state.machine).intervals), (i) => d3.sum(ENERGY_PARTS, (part) => i.watts?.[part] ?? 0));
+  const parts = page.palette.parts.slice(0, ENERGY_PARTS.length).map((q) => q.name);
   const charts = runs.map((p) => {
     const c = costAt(p, state.machine);
     const ms = c.milliseconds / c.cycles;
@@ -219,10 +252,10 @@ function overTime(shown, state) {
     return diagram({
       title: `${p.method}, ${p.setting}`, small: `from ${place(p)}, W`, rows, label: `Power over time, ${p.method} ${p.setting}`,
       options: () => ({
-        height: 220, marginLeft: 46, marginBottom: 38, x: { label: "time (ms)", labelAnchor: "center", labelArrow: "none", ticks: 3, tickFormat: (v) => num(v) }, y: { label: null, grid: true, ticks: 4 }, color: { domain: page.palette.parts.map((q) => q.name), range: page.palette.parts.map((q) => `var(--part-${q.name})`) },
+        height: 220, marginLeft: 46, marginBottom: 38, x: { domain: [0, end], label: "time (ms)", labelAnchor: "center", labelArrow: "none", ticks: 3, tickFormat: (v) => num(v) }, y: { domain: [0, most || 1], label: null, grid: true, ticks: 4 }, color: { domain: parts, range: parts.map((q) => `var(--part-${q})`) },
         marks: [Plot.rectY(rows, Plot.stackY({ x1: "from", x2: "to", y: "y", fill: "part", inset: 0, className: "points" })), Plot.ruleY([0])],
       }),
     });
   });
-  return h("div", {}, h("h3", {}, "Power over time"), h("div", { class: "grid" }, charts));
+  return h("div", {}, h("h3", {}, "Power over time"), swatchKeys("Parts", parts, (q) => `var(--part-${q})`), h("div", { class: "grid" }, charts));
 }

@@ -4,8 +4,6 @@
 const MOST_CAUSES = 7;
 const REST = "all others";
 
-const swatchKeys = (label, names, colourOf) => h("ul", { class: "keys", "aria-label": label }, names.map((name) => h("li", {}, h("span", { style: `width:.85rem;height:.85rem;border-radius:3px;background:${colourOf(name)}`, "aria-hidden": "true" }), name)));
-
 /** Cycles that contexts had rays. */
 const heldCycles = (stalls) => stalls.context_cycles - (stalls.cycles.idle ?? 0);
 
@@ -19,7 +17,6 @@ function limits(shown, state) {
   const named = causes.length > MOST_CAUSES + 1 ? causes.slice(0, MOST_CAUSES) : causes;
   const names = named.length < causes.length ? [...named, REST] : named;
   const part = (run, name) => (name === REST ? d3.sum(causes.slice(named.length), (cause) => share(run, cause)) : share(run, name));
-  const colourOf = (name) => `var(--kind-${names.indexOf(name) % 8})`;
   const rows = runs.flatMap((run) => names.map((cause) => {
     const { point } = run;
     const value = 100 * part(run, cause);
@@ -31,7 +28,7 @@ function limits(shown, state) {
     return diagram({
       title: `from ${where}`.replace("from rays", "rays"), small: "% of the rays' cycles", rows: here, label: `What held the rays from ${where}, ${state.scene}`,
       options: () => ({
-        height: 34 + 27 * labels.length, marginLeft: 78, marginRight: 20, marginTop: 4, marginBottom: 26, x: { label: null, domain: [0, 100], ticks: 5 }, y: { label: null, domain: labels, padding: 0.28 }, color: { domain: names, range: names.map(colourOf) },
+        height: 34 + 27 * labels.length, marginLeft: 78, marginRight: 20, marginTop: 4, marginBottom: 26, x: { label: null, domain: [0, 100], ticks: 5 }, y: { label: null, domain: labels, padding: 0.28 }, color: { domain: names, range: names.map(fillOf) },
         marks: [Plot.barX(here, { x: "value", y: "label", fill: "cause", className: "points", sort: null }), Plot.ruleX([0], { strokeOpacity: 0.5 })],
       }),
     });
@@ -43,7 +40,7 @@ function limits(shown, state) {
     { name: "holds most", value: (r) => r.cost.stalls.largest }, ...causes.map((cause) => ({ name: `${cause}, % of the rays' cycles`, value: (r) => 100 * share(r, cause) })),
     { name: "a ray's latency (cycles): median", value: (r) => r.cost.latencies?.rays.median }, { name: "its 99th percentile", value: (r) => r.cost.latencies?.rays.percentile_99 }, { name: "its largest", value: (r) => r.cost.latencies?.rays.largest },
   ];
-  return h("div", {}, h("h3", {}, "What held the rays"), swatchKeys("Causes", names, colourOf), h("div", { class: "grid" }, charts), dataTable(`Limits and causes, ${state.scene}`, columns, runs), limitsOverTime(runs));
+  return h("div", {}, h("h3", {}, "What held the rays"), swatchKeys("Causes", names, fillOf), h("div", { class: "grid" }, charts), dataTable(`Limits and causes, ${state.scene}`, columns, runs), limitsOverTime(runs));
 }
 
 /** The limit that was nearest its bound in each stretch of time. */
@@ -51,17 +48,18 @@ function limitsOverTime(all) {
   const runs = all.filter(({ cost }) => cost.intervals.length > 1 && cost.intervals.every((i) => i.limit)).slice(0, 6);
   if (!runs.length) return "";
   const names = unique(runs.flatMap(({ cost }) => cost.intervals.map((i) => i.limit)));
-  const colourOf = (name) => `var(--kind-${names.indexOf(name) % 8})`;
+  // One axis of time for all: who takes longer is wider.
+  const end = d3.max(runs, ({ cost }) => cost.milliseconds);
   const charts = runs.map(({ point, cost }) => {
     const ms = cost.milliseconds / cost.cycles;
     const rows = cost.intervals.map((i) => ({ from: (i.end - i.cycles) * ms, to: i.end * ms, x: i.end * ms, y: 100 * i.limit_share, limit: i.limit, ...tipOf(point, [[i.limit, `${num(100 * i.limit_share)} % of its bound`], ["until", `${num(i.end * ms)} ms`]]) }));
     return diagram({
       title: `${point.method}, ${point.setting}`, small: `from ${place(point)}, % of its bound`, rows, label: `The largest limit over time, ${point.method} ${point.setting}`,
       options: () => ({
-        height: 220, marginLeft: 46, marginBottom: 38, x: { label: "time (ms)", labelAnchor: "center", labelArrow: "none", ticks: 3, tickFormat: (v) => num(v) }, y: { label: null, grid: true, ticks: 4, domain: [0, 100] }, color: { domain: names, range: names.map(colourOf) },
+        height: 220, marginLeft: 46, marginBottom: 38, x: { domain: [0, end], label: "time (ms)", labelAnchor: "center", labelArrow: "none", ticks: 3, tickFormat: (v) => num(v) }, y: { label: null, grid: true, ticks: 4, domain: [0, 100] }, color: { domain: names, range: names.map(fillOf) },
         marks: [Plot.rectY(rows, { x1: "from", x2: "to", y: "y", fill: "limit", inset: 0, className: "points" }), Plot.ruleY([0])],
       }),
     });
   });
-  return h("div", {}, h("h3", {}, "The largest limit over time"), swatchKeys("Limits", names, colourOf), h("div", { class: "grid" }, charts));
+  return h("div", {}, h("h3", {}, "The largest limit over time"), swatchKeys("Limits", names, fillOf), h("div", { class: "grid" }, charts));
 }

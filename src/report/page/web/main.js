@@ -85,13 +85,13 @@ function theme() {
 /** Colours of the palette as custom properties, for both grounds. */
 function colours() {
   const rgb = (c) => `rgb(${c.join(",")})`;
-  const { kinds } = page.palette;
   const rules = (ground) => [
     ...Object.entries(page.palette.methods).map(([name, style]) => `--method-${CSS.escape(name)}:${rgb(style[ground])};`),
     ...page.palette.parts.map((p) => `--part-${p.name}:${rgb(p[ground])};`),
-    ...kinds.map((kind, k) => `--kind-${k}:${rgb(kind[ground])};`),
+    ...page.palette.sections.map((s) => `--section-${s.name}:${rgb(s[ground])};`),
   ].join("");
-  document.head.append(h("style", {}, `:root{${rules("light")}}:root[data-theme="dark"]{${rules("dark")}}`));
+  document.head.append(h("style", {}, `:root{${rules("light")}}:root[data-theme="dark"]{${rules("dark")}}@media print{:root[data-theme="dark"]{${rules("light")}}}`));
+  document.body.append(hatchings());
 }
 
 async function start() {
@@ -108,7 +108,8 @@ async function start() {
     ["work", "Error against cost", workSection, hasPoints && errorMeasures().some((m) => state.all.some((p) => errorOf(p, m) != null))],
     ["distance", "By distance", distanceSection, hasPoints && several],
     ["size", "By size of the frame", sizeSection, unique((page.error_time?.sizes ?? []).map((s) => String(s.size))).length > 1],
-    ["parts", "Energy and traffic", partsSection, hasPoints],
+    ["parts", "Time, energy and traffic", partsSection, hasPoints],
+    ["machine", "By the machine", machineSection, variedKeys(state.all).length > 0],
     ["pictures", "Pictures and rays", picturesSection, page.pictures.length > 0],
     ["equal", "At equal error", equalSection, page.error_time?.equal_error.length > 0],
     ["left-out", "With less in scene and unit", leftOutSection, page.error_time?.left_out?.length > 0],

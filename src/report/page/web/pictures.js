@@ -84,9 +84,25 @@ function picturesSection(section, state) {
     };
     frame.setAttribute("tabindex", "0");
     frame.setAttribute("role", "group");
-    frame.setAttribute("aria-label", "The two pictures. Arrow keys or a click choose the pixel whose ray is shown.");
+    frame.setAttribute("aria-label", "The two pictures. Dragging moves the slider between them. Arrow keys or a click choose the pixel whose ray is shown.");
     frame.addEventListener("keydown", move);
+    // Dragging moves the slider; a click that did not drag chooses a pixel.
+    let [from, dragged] = [null, false];
+    frame.addEventListener("pointerdown", (event) => {
+      if (event.button !== 0) return;
+      [from, dragged] = [event.clientX, false];
+      frame.setPointerCapture(event.pointerId);
+    });
+    frame.addEventListener("pointermove", (event) => {
+      if (from == null || (!dragged && Math.abs(event.clientX - from) < 4)) return;
+      dragged = true;
+      const box = frame.getBoundingClientRect();
+      range.value = Math.max(0, Math.min(100, (100 * (event.clientX - box.left)) / box.width));
+      slide();
+    });
+    for (const end of ["pointerup", "pointercancel"]) frame.addEventListener(end, () => (from = null));
     frame.addEventListener("click", (event) => {
+      if (dragged) return;
       const box = frame.getBoundingClientRect();
       go([Math.floor(((event.clientX - box.left) / box.width) * view.size[0]), Math.floor(((event.clientY - box.top) / box.height) * view.size[1])]);
     });
@@ -97,7 +113,7 @@ function picturesSection(section, state) {
       h(
         "div", { class: "stage" },
         h("div", {}, frame, range, pictureLegend(a, view.scene), b.kind === a.kind ? "" : pictureLegend(b, view.scene), scaled),
-        hasTraces ? h("div", {}, h("h3", {}, "Pixel inspector"), h("p", { class: "note" }, "Click the picture, or move with the arrow keys when it has the focus. Rays were followed on a grid; the nearest is shown."), h("div", { class: "controls" }, control("Column", column), control("Row", row)), result) : "",
+        hasTraces ? h("div", {}, h("h3", {}, "Pixel inspector"), h("p", { class: "note" }, "Click the picture, or move with the arrow keys when it has the focus; dragging moves the slider. Rays were followed on a grid; the nearest is shown."), h("div", { class: "controls" }, control("Column", column), control("Row", row)), result) : "",
       ),
     );
     if (!hasTraces) spot.remove();

@@ -48,10 +48,10 @@ function workSection(section, state) {
     const more = [lineKey("", "front: nothing is better at less", 8, 0.22)];
     if (shown.some((r) => shiftOf(r.point, error) != null)) more.push(lineKey("7 4", "full resolution, camera shifted by half a pixel", 1.6));
     const axes = charts.length > 1 ? h("p", { class: "note" }, h("b", {}, "Upward: "), titled(error.name, error.unit), h("b", {}, "; rightward: "), titled(cost.name, costUnit(cost, points, state.machine)), error.linear ? "." : "; both logarithmic, the upward axis the same everywhere.") : "";
-    body.replaceChildren(controls, keys(methods, more), axes, h("div", { class: chosen.length === 1 ? "" : "grid" }, charts), dataTable(`${error.name} against ${cost.name}, ${state.scene}`, columns, shown));
+    body.replaceChildren(controls, keys(methods, more), axes, h("p", { class: "note" }, chosen.length === 1 ? "The number beside a mark of ours is its delta." : "One distance alone, chosen above, has the deltas beside our marks."), h("div", { class: chosen.length === 1 ? "" : "grid" }, charts), dataTable(`${error.name} against ${cost.name}, ${state.scene}`, columns, shown));
   };
   section.append(
-    h("p", {}, "Each mark is a method with one setting of its knob; further down is more exact, further left is cheaper. Filled marks lie on the front of all methods together, hollow ones are beaten by another. The number beside a mark is its delta."),
+    h("p", {}, "Each mark is a method with one setting of its knob; further down is more exact, further left is cheaper. Filled marks lie on the front of all methods together, hollow ones are beaten by another."),
     body,
   );
   state.onChange(draw);

@@ -3,6 +3,7 @@
 mod order;
 
 use super::*;
+use crate::block::Operation;
 use crate::num::Random;
 use crate::sim::dram::Dram;
 use crate::step::{Act, Batch, Fetch, MemoryMap, Section, SectionId, Step};
@@ -291,6 +292,33 @@ fn misses_of_one_line_merge_and_are_answered_together() {
 }
 
 #[test]
+fn a_miss_that_merges_is_answered_no_sooner_than_a_look_up_takes() {
+    // Memory reads a line in less time than the L2 looks one up. Both rays read line 5: the first in another group than the second, or in the same.
+    for (groups, per_group) in [(2, 1), (1, 2)] {
+        let keys = [("cores.groups", groups), ("cores.per_group", per_group), ("l1.latency_cycles", 7), ("l2.latency_cycles", 160)];
+        let machine = machine(&keys);
+        let sum = machine.l1.latency_cycles + machine.crossbar.request_cycles + machine.l2.latency_cycles + machine.crossbar.answer_cycles;
+        let hit = u64::from(if groups == 2 { sum } else { machine.l1.latency_cycles });
+        let reading = |line: u32, more: usize| vec![line; 1 + more];
+        let first = [reading(9, 3), vec![5]].concat();
+        let line_comes = run(&machine, std::slice::from_ref(&first)).cycles;
+        let mut look_ups_last = 0;
+        for more in 3..100 {
+            let asks = run(&machine, &[reading(8, more)]).cycles;
+            let both = [first.clone(), [reading(8, more), vec![5]].concat()];
+            // A batch for each group.
+            let chunks: Vec<_> = both.chunks(per_group as usize).map(rays).collect();
+            let run = run_free(&machine, nodes(), chunks.into_iter(), Running::default()).unwrap();
+            assert_eq!(run.cycles, line_comes.max(asks + hit), "{groups} groups, {more} reads before");
+            let merged = if groups == 2 { run.counts.l2.merges } else { run.counts.l1.merges };
+            look_ups_last += u64::from(merged > 0 && asks + hit > line_comes);
+            assert_eq!(run.counts.stalls.iter().sum::<u64>(), line_comes + line_comes.max(asks + hit));
+        }
+        assert!(look_ups_last > 0, "no ray merged while the line was about to come");
+    }
+}
+
+#[test]
 fn a_full_miss_register_holds_the_bank_back() {
     let lines: Vec<Vec<u32>> = (0..8).map(|ray| vec![ray * 64]).collect();
     let with = |mshrs, targets| {
@@ -407,6 +435,9 @@ fn silence_is_an_error_that_tells_what_everyone_does() {
         fn under_way(&self) -> u64 {
             1
         }
+        fn operations(&self) -> Operations {
+            Operations::default()
+        }
         fn describe(&self) -> String {
             "one context waits for ever".to_owned()
         }
@@ -440,6 +471,29 @@ fn neither_threads_nor_rounds_change_a_run() {
             // Every cycle is a round of its own.
             let window = Some(Window { from: 0, to: 9 });
             assert!(Run { wave: None, ..run(Running { window, threads: 1 }) } == one, "cycle by cycle");
+        }
+    }
+}
+
+#[test]
+fn operations_count_when_they_run() {
+    const READS: u64 = 400;
+    let machine = machine(&[]);
+    // Each ray reads lines from memory, one after the other, and tests a triangle with each: its tests are spread over its time.
+    let lines: Vec<Vec<u32>> = (0..8).map(|ray| (0..READS as u32).map(|k| (ray * READS as u32 + k) << 9).collect()).collect();
+    let free = run(&machine, &lines);
+    let units = run_units(&machine, std::iter::once(rays(&lines)), Running::default()).unwrap();
+    for run in [free, units] {
+        let tests = |operations: &Operations| operations.get(Operation::TriTest);
+        let of = |operation| run.operations.get(operation);
+        assert_eq!([of(Operation::RaySetup), of(Operation::NodeAddress), tests(&run.operations)], [8, 8 * READS, 8 * READS]);
+        let last = run.intervals.last().unwrap();
+        assert_eq!((last.end, &last.operations), (run.cycles, &run.operations), "all stretches together have all operations");
+        assert!(run.intervals.len() > 50, "{} stretches", run.intervals.len());
+        for two in run.intervals.windows(2) {
+            // Contexts wait for each line: in no stretch are there more tests than lines that came, and the last steps of each context.
+            let [added, came] = [tests(&two[1].operations) - tests(&two[0].operations), two[1].counts.l1.fills - two[0].counts.l1.fills];
+            assert!(added.abs_diff(came) <= 8, "cycle {}: {added} tests, {came} lines", two[1].end);
         }
     }
 }
