@@ -3,12 +3,13 @@
 
 import itertools
 import json
-import math
 import re
 import shutil
 import subprocess
 import sys
 from pathlib import Path
+
+from plot import diagram
 
 ROOT = Path(__file__).resolve().parent.parent
 LODRAY = ROOT / "target" / "release" / "lodray"
@@ -16,6 +17,9 @@ TEMPLATE = ROOT / "scripts" / "paper" / "paths.md"
 MEASURED = ROOT / "scripts" / "paper" / "measured.json"
 IMAGES = ROOT / "docs" / "images"
 SCENES = ["room", "drape", "terrain"]
+
+# Of the diagrams of error against time.
+AXES = ["time of a picture of 64 paths a pixel, ms", "error of light: mean squared relative error"]
 
 # Ours and the baseline, in the paper's forms and at their best.
 FORMS = {
@@ -197,43 +201,8 @@ def error_time(runs):
             figures = [f"{cost['milliseconds'] * 16:.3f}", f"{cost['energy'] * 16 / 1000:.2f}", f"{cost['dram_bytes'] * 16 / 1e6:.1f}"]
             lines.setdefault(method, []).append((cost["milliseconds"] * 16, error["light"]))
             rows.append([scene, method, knob, f"{error['light']:.5f}", f"{error['image']['psnr_db']:.2f}", *figures])
-        (IMAGES / f"paths-error-time-{scene}.svg").write_text(diagram(f"{scene}.toml, haydel2023, compute free", lines))
+        (IMAGES / f"paths-error-time-{scene}.svg").write_text(diagram(f"{scene}.toml, haydel2023, compute free", *AXES, lines))
     return table(["scene", "method", "knob", "error of light", "picture, dB", "ms", "mJ", "MB of DRAM"], rows)
-
-
-def diagram(title, lines):
-    """Error against time, both logarithmic: an SVG of {name: [(ms, error)]}."""
-    colours = {"lod": "#0b6e99", "discrete": "#c77800", "bvh": "#555555"}
-    points = [point for line in lines.values() for point in line]
-    (left, right), (low, high) = ((min(axis), max(axis)) for axis in ([math.log10(p[k]) for p in points] for k in (0, 1)))
-    wide, tall, edge = 460, 320, 54
-    margin = [0.06 * (right - left) + 0.02, 0.06 * (high - low) + 0.02]
-
-    def place(ms, error):
-        x = (math.log10(ms) - left + margin[0]) / (right - left + 2 * margin[0])
-        y = (math.log10(error) - low + margin[1]) / (high - low + 2 * margin[1])
-        return edge + x * (wide - edge - 12), tall - edge - y * (tall - edge - 30)
-
-    out = [f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {wide} {tall}" font-family="sans-serif" font-size="11">']
-    out.append(f'<rect width="{wide}" height="{tall}" fill="white"/><text x="{edge}" y="18" font-size="13">{title}</text>')
-    out.append(f'<path d="M{edge},30V{tall - edge}H{wide - 12}" fill="none" stroke="black"/>')
-    steps = [m * 10.0**e for e in range(-8, 5) for m in (1, 2, 5)]
-    for v in steps:
-        if 10**left <= v <= 10**right:
-            x = place(v, 10**low)[0]
-            out.append(f'<text x="{x:.1f}" y="{tall - edge + 14}" text-anchor="middle">{v:g}</text><path d="M{x:.1f},{tall - edge}v4" stroke="black"/>')
-        if 10**low <= v <= 10**high:
-            y = place(10**left, v)[1]
-            out.append(f'<text x="{edge - 6}" y="{y + 4:.1f}" text-anchor="end">{v:g}</text><path d="M{edge},{y:.1f}h-4" stroke="black"/>')
-    out.append(f'<text x="{(wide + edge) / 2}" y="{tall - 14}" text-anchor="middle">ms of a picture of 64 paths a pixel</text>')
-    out.append(f'<text transform="translate(12,{(tall - edge) / 2 + 20}) rotate(-90)" text-anchor="middle">error of light</text>')
-    for k, (name, line) in enumerate(lines.items()):
-        at = [place(*point) for point in line]
-        path = "M" + "L".join(f"{x:.1f},{y:.1f}" for x, y in at)
-        out.append(f'<path d="{path}" fill="none" stroke="{colours[name]}" stroke-width="1.5"/>')
-        out.extend(f'<circle cx="{x:.1f}" cy="{y:.1f}" r="3" fill="{colours[name]}"/>' for x, y in at)
-        out.append(f'<text x="{wide - 70}" y="{42 + 15 * k}" fill="{colours[name]}">{name}</text>')
-    return "\n".join(out + ["</svg>\n"])
 
 
 def main():
