@@ -82,7 +82,7 @@ pub fn page(documents: &Documents) -> io::Result<String> {
 /// Checksum of everything in a page but its figures: 64 bits, hexadecimal. Pages of one template look alike.
 pub fn template() -> String {
     let colours = METHODS.iter().map(|method| format!("{:?}", palette::of(method.name))).collect::<String>();
-    let colours = format!("{colours}{:?}{:?}", palette::PARTS, palette::KINDS);
+    let colours = format!("{colours}{:?}{:?}", palette::PARTS, palette::SECTIONS);
     let parts = [SHELL, STYLE, &colours].into_iter().chain(SCRIPTS).chain(VENDOR.into_iter().flatten());
     format!("{:016x}", xxh3_64(parts.collect::<String>().as_bytes()))
 }
