@@ -293,19 +293,21 @@ fn misses_of_one_line_merge_and_are_answered_together() {
 
 #[test]
 fn a_miss_that_merges_is_answered_no_sooner_than_a_look_up_takes() {
-    // Memory reads a line in less time than the L2 looks one up. Both rays read line 5: the first in another group than the second, or in the same.
+    // Memory reads a line in less time than the L2 looks one up. Both rays read line 5, the first in another group than the second, or in the same; what they
+    // read before that lies in other channels and banks, so that they meet there alone.
     for (groups, per_group) in [(2, 1), (1, 2)] {
-        let keys = [("cores.groups", groups), ("cores.per_group", per_group), ("l1.latency_cycles", 7), ("l2.latency_cycles", 160)];
+        let shape = [("cores.groups", groups), ("cores.per_group", per_group), ("crossbar.per_group", 4)];
+        let keys = [&shape[..], &[("l1.latency_cycles", 7), ("l2.latency_cycles", 160)]].concat();
         let machine = machine(&keys);
         let sum = machine.l1.latency_cycles + machine.crossbar.request_cycles + machine.l2.latency_cycles + machine.crossbar.answer_cycles;
         let hit = u64::from(if groups == 2 { sum } else { machine.l1.latency_cycles });
         let reading = |line: u32, more: usize| vec![line; 1 + more];
-        let first = [reading(9, 3), vec![5]].concat();
+        let first = [reading(73, 3), vec![5]].concat();
         let line_comes = run(&machine, std::slice::from_ref(&first)).cycles;
         let mut look_ups_last = 0;
         for more in 3..100 {
-            let asks = run(&machine, &[reading(8, more)]).cycles;
-            let both = [first.clone(), [reading(8, more), vec![5]].concat()];
+            let asks = run(&machine, &[reading(136, more)]).cycles;
+            let both = [first.clone(), [reading(136, more), vec![5]].concat()];
             // A batch for each group.
             let chunks: Vec<_> = both.chunks(per_group as usize).map(rays).collect();
             let run = run_free(&machine, nodes(), chunks.into_iter(), Running::default()).unwrap();
