@@ -68,16 +68,11 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
     job.unshaded = args.no_normals;
     let reach = Reach::of(&scene);
     for view in &job.views {
-        let delta = view.quality().with_context(|| format!("{shown}: views: delta '{}' is no number", view.delta))?;
+        let delta = view.quality().context("read as a number")?;
         let camera = Camera::of_job(view).with_context(|| format!("{shown}: views"))?;
         busy("looking at rays", || reach.add(&camera, delta));
     }
-    for region in &job.regions {
-        if let Some((field, must)) = region.wrong() {
-            anyhow::bail!("{shown}: regions: {field} must be {must}");
-        }
-        reach.add_region(region);
-    }
+    job.regions.iter().for_each(|region| reach.add_region(region));
     let (views, regions) = (job.views.len(), job.regions.len());
     let pruned = reach.pruned(job)?;
     pruned.save(&args.out)?;

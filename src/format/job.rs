@@ -1,5 +1,6 @@
 //! The rays that a scene was pruned for.
 
+use glam::DVec3;
 use serde::{Deserialize, Serialize};
 
 /// The rays of a camera at a quality: all that they follow from, so that equal views have equal rays to the bit.
@@ -30,6 +31,33 @@ impl JobView {
     /// The quality; none if the text is no number.
     pub fn quality(&self) -> Option<f64> {
         self.delta.parse().ok()
+    }
+
+    /// The field that no camera can have, and what it must be.
+    pub fn wrong(&self) -> Option<(&'static str, &'static str)> {
+        let finite = |v: &[f64]| v.iter().all(|c| c.is_finite());
+        let [forward, right, above] = [self.forward, self.right, self.above].map(DVec3::from_array);
+        // Directions as cameras make them are rounded to 53 bits.
+        let across = |step: DVec3| step.length() > 0.0 && step.normalize().dot(forward).abs() < 1e-9;
+        if self.size.contains(&0) {
+            Some(("size", "two numbers from 1 on"))
+        } else if self.quality().is_none_or(|delta| delta.is_nan() || delta < 0.0) {
+            Some(("delta", "a number from 0 on, or inf"))
+        } else if !finite(&self.eye) {
+            Some(("eye", "three finite numbers"))
+        } else if !(finite(&self.forward) && (forward.length() - 1.0).abs() < 1e-9) {
+            Some(("forward", "a direction of length 1"))
+        } else if !(finite(&self.right) && across(right)) {
+            Some(("right", "a step at right angles to forward"))
+        } else if !(finite(&self.above) && across(above) && above.normalize().dot(right.normalize()).abs() < 1e-9) {
+            Some(("above", "a step at right angles to forward and right"))
+        } else if !finite(&self.shift) {
+            Some(("shift", "two finite numbers"))
+        } else if !(self.cone >= 0.0 && self.cone.is_finite()) {
+            Some(("cone", "a finite number from 0 on"))
+        } else {
+            None
+        }
     }
 
     /// The fields in which the other differs, each with what it has there, the one that is easiest to understand first.

@@ -25,7 +25,7 @@ const MAX_CONTEXT_BITS: u32 = 6;
 /// The most contexts that a unit can have.
 pub const MAX_CONTEXTS: usize = 1 << MAX_CONTEXT_BITS;
 /// The most bits of a number of nodes, trees and lines of a section ([`L0Record`](crate::format::L0Record), [`BvhNode`](crate::format::BvhNode)).
-const MOST_INDEX_BITS: u32 = 28;
+pub(crate) const MOST_INDEX_BITS: u32 = 28;
 
 /// A hardware: `rtl/lod_pkg.sv` as it stands is that of the default.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -83,7 +83,8 @@ pub enum MachineError {
 }
 
 /// A value that breaks a rule, before the file is known.
-#[derive(Debug)]
+#[derive(Debug, Error)]
+#[error("{key} {rule}, but is {value}")]
 pub(crate) struct Breach {
     key: String,
     rule: String,

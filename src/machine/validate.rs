@@ -2,7 +2,7 @@
 
 use super::Machine;
 use super::error::Breach;
-use super::parts::{Cache, Memory, Tables};
+use super::parts::{Cache, Memory, Tables, Units};
 use crate::block::{BoxesPerCycle, EdgesPerCycle, MOST_DIVIDE_BITS};
 use crate::hardware::MAX_CONTEXTS;
 use crate::num::LINE_BYTES;
@@ -32,20 +32,10 @@ impl Machine {
             ("crossbar.answer_cycles", self.crossbar.answer_cycles, MOST),
             ("crossbar.per_bank", self.crossbar.per_bank, MOST),
             ("crossbar.per_group", self.crossbar.per_group, MOST),
-            ("units.per_group", self.units.per_group, MOST),
-            ("units.contexts", self.units.contexts, MAX_CONTEXTS as u32),
-            ("units.divide_bits", self.units.divide_bits, MOST_DIVIDE_BITS),
-            ("units.setup_bits", self.units.setup_bits, MOST_DIVIDE_BITS),
             ("dram.queue", self.dram.queue, MOST_QUEUED),
         ];
         counts.iter().try_for_each(|&(key, value, most)| count(key, value, most))?;
-        if BoxesPerCycle::new(self.units.boxes_per_cycle).is_none() {
-            return Err(Breach::new("units.boxes_per_cycle", "must be 4, 2 or 1", self.units.boxes_per_cycle));
-        }
-        let edges = [("units.edges_per_cycle", self.units.edges_per_cycle), ("units.lod_edges_per_cycle", self.units.lod_edges_per_cycle)];
-        if let Some((key, count)) = edges.into_iter().find(|&(_, count)| EdgesPerCycle::new(count).is_none()) {
-            return Err(Breach::new(key, "must be 3 or 1", count));
-        }
+        self.units.validate("units")?;
         self.l1.validate("l1")?;
         self.l2.validate("l2")?;
         if self.l1.bytes > self.l2.bytes {
@@ -53,6 +43,26 @@ impl Machine {
         }
         self.dram.validate()?;
         self.energy.validate()
+    }
+}
+
+impl Units {
+    /// `at` is where they stand, dotted.
+    pub(crate) fn validate(&self, at: &str) -> Result<(), Breach> {
+        let key = |name: &str| format!("{at}.{name}");
+        let counts = [
+            ("per_group", self.per_group, MOST),
+            ("contexts", self.contexts, MAX_CONTEXTS as u32),
+            ("divide_bits", self.divide_bits, MOST_DIVIDE_BITS),
+            ("setup_bits", self.setup_bits, MOST_DIVIDE_BITS),
+        ];
+        counts.iter().try_for_each(|&(name, value, most)| count(&key(name), value, most))?;
+        if BoxesPerCycle::new(self.boxes_per_cycle).is_none() {
+            return Err(Breach::new(&key("boxes_per_cycle"), "must be 4, 2 or 1", self.boxes_per_cycle));
+        }
+        let edges = [("edges_per_cycle", self.edges_per_cycle), ("lod_edges_per_cycle", self.lod_edges_per_cycle)];
+        let wrong = edges.into_iter().find(|&(_, count)| EdgesPerCycle::new(count).is_none());
+        wrong.map_or(Ok(()), |(name, count)| Err(Breach::new(&key(name), "must be 3 or 1", count)))
     }
 }
 

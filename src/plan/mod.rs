@@ -5,6 +5,7 @@
 
 mod data;
 mod measure;
+mod possible;
 mod rays;
 mod reach;
 mod region;
@@ -15,6 +16,7 @@ mod within;
 
 pub use data::Data;
 pub use measure::Measure;
+pub use possible::Impossible;
 pub use rays::RayNeeds;
 pub use reach::Reach;
 pub use report::{Part, Saving, savings};

@@ -256,7 +256,9 @@ pub fn check(plan: &Plan, path: &Path, scene: &Scene, rays: &dyn RaySource, delt
 /// A plan from its file.
 pub fn read(path: &Path) -> anyhow::Result<Plan> {
     let text = std::fs::read_to_string(path).with_context(|| format!("cannot read {}", path.display()))?;
-    ListText { path, text: &text }.parse()
+    let plan: Plan = ListText { path, text: &text }.parse()?;
+    plan.possible().with_context(|| path.display().to_string())?;
+    Ok(plan)
 }
 
 /// The plan of all scenes, or of all scenes of a list and their views; each is checked against the plan that was given. The views are traced for `frames`.
