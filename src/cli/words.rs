@@ -99,9 +99,10 @@ Keys of the description (scenes/*.toml are examples; every colour is linear):
   [[model]]           file (.lod, or a mesh with levels) or generate = { scene, levels, base, seed, roughness, walls };
                       material (a name) or materials (names by the model's own numbers);
                       rotate (degrees about x, y, z), scale, translate
-  [material.NAME]     kind = \"diffuse\" (albedo), \"glossy\" (reflectance, roughness, albedo) or \"mirror\" (reflectance)
+  [material.NAME]     kind = \"diffuse\" (albedo), \"glossy\" (reflectance, roughness, albedo), \"mirror\" (reflectance)
+                      or \"glass\" (index of refraction, roughness; 0 is smooth)
   [[light]]           kind = \"point\" (position, intensity), \"area\" (corner, along, across, radiance; shines to along x across)
-                      or \"sun\" (direction, half_angle in degrees, irradiance)
+                      or \"sun\" (direction, which points towards the sun, half_angle in degrees, irradiance)
   [environment]       zenith, horizon, ground (radiance), up
 
 Example: lodray paths scenes/room.toml --compare

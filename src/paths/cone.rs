@@ -3,7 +3,7 @@
 //! A cone's radius where a ray hits is its radius where the next one starts: what the LOD test sees is the width along the whole path. Its spread then
 //! depends on what scattered it.
 
-use super::material::Lobe;
+use super::bsdf::Lobe;
 use serde::Deserialize;
 
 /// How cones spread after a hit; tangents of half angles.
@@ -51,6 +51,10 @@ impl PathCone {
             Lobe::Mirror => mirrored,
             Lobe::Glossy => mirrored + by.glossy * alpha,
             Lobe::Diffuse => by.diffuse,
+            // Snell's law for small angles: a surface that bulges towards the ray gathers light where it gets denser behind it.
+            Lobe::Through { eta } => {
+                (self.spread / eta - curvature * by.curvature * radius * (1.0 - 1.0 / eta)).max(0.0) + by.glossy * alpha
+            }
         };
         Self { radius, spread }
     }
@@ -75,6 +79,9 @@ mod tests {
         assert_eq!(after(Lobe::Mirror, -3.0), PathCone { radius: 1.0, spread: 0.0 });
         assert_eq!(after(Lobe::Glossy, 0.0), PathCone { radius: 1.0, spread: 0.2 });
         assert_eq!(after(Lobe::Diffuse, 9.0), PathCone { radius: 1.0, spread: 0.7 });
+        let glass = |eta, curvature| cone.scattered(5.0, Lobe::Through { eta }, curvature, 0.0, &by).spread;
+        assert!((glass(2.0, 0.0) - 0.05).abs() < 1e-12 && (glass(0.5, 0.0) - 0.2).abs() < 1e-12 && glass(2.0, 0.2) == 0.0);
+        assert!((glass(2.0, -0.2) - 0.15).abs() < 1e-12);
         assert_eq!(cone.lit(5.0, 0.3, &by), PathCone { radius: 1.0, spread: 0.15 });
     }
 }

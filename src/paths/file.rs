@@ -4,6 +4,7 @@ use super::cone::Cones;
 use super::light::{Environment, Light, upwards};
 use super::material::Material;
 use crate::mesh::procedural;
+use glam::DVec3;
 use serde::Deserialize;
 use std::collections::BTreeMap;
 use std::fs;
@@ -174,10 +175,16 @@ impl From<MeshTable> for procedural::Options {
 type Rule = (&'static str, fn(f64) -> bool);
 
 const FINITE: Rule = ("must be a finite number", f64::is_finite);
-const POSITIVE: Rule = ("must be above 0 and finite", |v| v > 0.0 && v.is_finite());
+/// Far beyond any scene, and so near that squares, and squares of squares, of distances stay numbers.
+const PLACE: Rule = ("must be from -1e12 to 1e12", |v| v.abs() <= 1e12);
+const SCALE: Rule = ("must be from 1e-12 to 1e12", |v| (1e-12..=1e12).contains(&v));
+/// Light that goes through 64 bounces and into 32-bit floats, and comes from a point as near as a millionth, stays a number.
+const LIGHT: Rule = ("must be from 0 to 1e15", |v| (0.0..=1e15).contains(&v));
+const EXPOSURE: Rule = ("must be from -100 to 100", |v| v.abs() <= 100.0);
 const NOT_NEGATIVE: Rule = ("must be at least 0 and finite", |v| v >= 0.0 && v.is_finite());
 const SHARE: Rule = ("must be from 0 to 1", |v| (0.0..=1.0).contains(&v));
 const ROUGHNESS: Rule = ("must be above 0 and at most 1", |v| v > 0.0 && v <= 1.0);
+const INDEX: Rule = ("must be from 1.05 to 4", |v| (1.05..=4.0).contains(&v));
 const VIEW: Rule = ("must be above 0 and below 180 degrees", |v| v > 0.0 && v < 180.0);
 const HALF_ANGLE: Rule = ("must be above 0 and below 90 degrees", |v| v > 0.0 && v < 90.0);
 
@@ -258,7 +265,7 @@ impl SceneFile {
         to.whole("picture.height", height, 1, crate::rays::MAX_SIDE);
         to.whole("picture.samples", samples, 1, MOST_SAMPLES);
         to.whole("picture.depth", depth, 0, MOST_DEPTH);
-        to.number("picture.exposure", exposure, FINITE);
+        to.number("picture.exposure", exposure, EXPOSURE);
         let Cones { diffuse, glossy, light, curvature } = self.cones;
         for (key, value) in [("diffuse", diffuse), ("glossy", glossy), ("light", light), ("curvature", curvature)] {
             to.number(&format!("cones.{key}"), value, NOT_NEGATIVE);
@@ -268,9 +275,18 @@ impl SceneFile {
         }
         for (k, camera) in self.camera.iter().enumerate() {
             let key = |name: &str| format!("camera[{k}].{name}");
-            to.triple(&key("eye"), camera.eye, FINITE);
-            to.triple(&key("target"), camera.target, FINITE);
+            to.triple(&key("eye"), camera.eye, PLACE);
+            to.triple(&key("target"), camera.target, PLACE);
             to.direction(&key("up"), camera.up);
+            let [eye, target, up] = [camera.eye, camera.target, camera.up].map(DVec3::from_array);
+            match (target - eye).try_normalize() {
+                None => to.fail(key("eye"), format!("must be another place than target, but both are {:?}", camera.eye)),
+                // As nearly along the view as a camera refuses.
+                Some(view) if up.normalize_or_zero().cross(view).length() < 1e-9 => {
+                    to.fail(key("up"), format!("must not lie along the view, but is {:?}", camera.up));
+                }
+                Some(_) => {}
+            }
             to.number(&key("fov"), camera.fov, VIEW);
             if self.camera[..k].iter().any(|before| before.name == camera.name) {
                 to.fail(key("name"), format!("must differ from the others', but '{}' is there twice", camera.name));
@@ -286,7 +302,7 @@ impl SceneFile {
         self.light.iter().enumerate().for_each(|(k, light)| check_light(to, &format!("light[{k}]"), light));
         if let Some(Environment { zenith, horizon, ground, up }) = self.environment {
             for (key, colour) in [("zenith", zenith), ("horizon", horizon), ("ground", ground)] {
-                to.triple(&format!("environment.{key}"), colour, NOT_NEGATIVE);
+                to.triple(&format!("environment.{key}"), colour, LIGHT);
             }
             to.direction("environment.up", up);
         }
@@ -312,8 +328,8 @@ impl SceneFile {
             }
         }
         to.triple(&key("rotate"), model.rotate, FINITE);
-        to.number(&key("scale"), model.scale, POSITIVE);
-        to.triple(&key("translate"), model.translate, FINITE);
+        to.number(&key("scale"), model.scale, SCALE);
+        to.triple(&key("translate"), model.translate, PLACE);
         if model.material.is_some() && !model.materials.is_empty() {
             to.fail(key("materials"), "must not be there beside material");
         }
@@ -340,29 +356,35 @@ fn check_material(to: &mut Checked, key: &str, material: &Material) {
             to.triple(&format!("{key}.albedo"), albedo, SHARE);
             to.number(&format!("{key}.roughness"), roughness, ROUGHNESS);
         }
+        Material::Glass { index, roughness } => {
+            to.number(&format!("{key}.index"), index, INDEX);
+            to.number(&format!("{key}.roughness"), roughness, SHARE);
+        }
     }
 }
 
 fn check_light(to: &mut Checked, key: &str, light: &Light) {
     match *light {
         Light::Point { position, intensity } => {
-            to.triple(&format!("{key}.position"), position, FINITE);
-            to.triple(&format!("{key}.intensity"), intensity, NOT_NEGATIVE);
+            to.triple(&format!("{key}.position"), position, PLACE);
+            to.triple(&format!("{key}.intensity"), intensity, LIGHT);
         }
         Light::Area { corner, along, across, radiance } => {
-            to.triple(&format!("{key}.corner"), corner, FINITE);
-            to.direction(&format!("{key}.along"), along);
-            to.direction(&format!("{key}.across"), across);
-            to.triple(&format!("{key}.radiance"), radiance, NOT_NEGATIVE);
-            let [a, b] = [along, across].map(glam::DVec3::from_array);
-            if a.cross(b) == glam::DVec3::ZERO {
+            to.triple(&format!("{key}.corner"), corner, PLACE);
+            for (name, side) in [("along", along), ("across", across)] {
+                to.direction(&format!("{key}.{name}"), side);
+                to.triple(&format!("{key}.{name}"), side, PLACE);
+            }
+            to.triple(&format!("{key}.radiance"), radiance, LIGHT);
+            let [a, b] = [along, across].map(DVec3::from_array);
+            if a.cross(b) == DVec3::ZERO {
                 to.fail(key, "must have an area: along and across must not be parallel");
             }
         }
         Light::Sun { direction, half_angle, irradiance } => {
             to.direction(&format!("{key}.direction"), direction);
             to.number(&format!("{key}.half_angle"), half_angle, HALF_ANGLE);
-            to.triple(&format!("{key}.irradiance"), irradiance, NOT_NEGATIVE);
+            to.triple(&format!("{key}.irradiance"), irradiance, LIGHT);
         }
     }
 }
@@ -389,6 +411,9 @@ position = [1, 2, 3]
 intensity = [1, 1, 1]
 "#;
 
+    /// The material there.
+    const GLOSSY: &str = "kind = \"glossy\"\nreflectance = [0.04, 0.04, 0.04]\nroughness = 0.5\nalbedo = [0.5, 0.4, 0.3]";
+
     #[test]
     fn a_scene_is_read_with_its_defaults() {
         let scene = SceneFile::parse(GOOD, "a.toml").unwrap();
@@ -400,7 +425,7 @@ intensity = [1, 1, 1]
     #[test]
     fn each_bad_value_is_named_with_file_and_key() {
         for (from, to, wanted) in [
-            ("eye = [0, 0, 5]", "eye = [0, nan, 5]", "a.toml: camera[0].eye[1] must be a finite number, but is NaN"),
+            ("eye = [0, 0, 5]", "eye = [0, nan, 5]", "a.toml: camera[0].eye[1] must be from -1e12 to 1e12, but is NaN"),
             (
                 "target = [0, 0, 0]",
                 "target = [0, 0, 0]\nfov = 180",
@@ -410,8 +435,35 @@ intensity = [1, 1, 1]
             ("\"clay\"\n", "\"gold\"\n", "a.toml: model[0].material must be the name of a material, but is 'gold'"),
             ("levels = 2", "levels = 11", "a.toml: model[0].generate cannot be: 11 levels are too many: 0 to 10 are possible"),
             ("generate", "file = \"a.obj\"\ngenerate", "a.toml: model[0] must have one of file and generate"),
-            ("intensity = [1, 1, 1]", "intensity = [1, -1, 1]", "a.toml: light[0].intensity[1] must be at least 0 and finite, but is -1"),
-            ("material = \"clay\"", "material = \"clay\"\nscale = 0", "a.toml: model[0].scale must be above 0 and finite, but is 0"),
+            ("intensity = [1, 1, 1]", "intensity = [1, -1, 1]", "a.toml: light[0].intensity[1] must be from 0 to 1e15, but is -1"),
+            ("material = \"clay\"", "material = \"clay\"\nscale = 0", "a.toml: model[0].scale must be from 1e-12 to 1e12, but is 0"),
+            (
+                "eye = [0, 0, 5]",
+                "eye = [1e300, 0, 5]",
+                &format!("a.toml: camera[0].eye[0] must be from -1e12 to 1e12, but is 1{}", "0".repeat(300)),
+            ),
+            ("eye = [0, 0, 5]", "eye = [0, 0, 0]", "a.toml: camera[0].eye must be another place than target, but both are [0.0, 0.0, 0.0]"),
+            (
+                "target = [0, 0, 0]",
+                "target = [0, 0, 0]\nup = [0, 0, -2]",
+                "a.toml: camera[0].up must not lie along the view, but is [0.0, 0.0, -2.0]",
+            ),
+            ("target = [0, 0, 0]", "target = [0, 0, 0]\nup = [0, 0, 0]", "a.toml: camera[0].up must not be zero"),
+            ("target = [0, 0, 0]", "target = [0, inf, 0]", "a.toml: camera[0].target[1] must be from -1e12 to 1e12, but is inf"),
+            (
+                "intensity = [1, 1, 1]",
+                "intensity = [1, 1, 1e38]",
+                &format!("a.toml: light[0].intensity[2] must be from 0 to 1e15, but is {}", 1e38),
+            ),
+            ("intensity = [1, 1, 1]", "intensity = [nan, 1, 1]", "a.toml: light[0].intensity[0] must be from 0 to 1e15, but is NaN"),
+            (
+                "position = [1, 2, 3]",
+                "position = [1, -1e13, 3]",
+                "a.toml: light[0].position[1] must be from -1e12 to 1e12, but is -10000000000000",
+            ),
+            ("albedo = [0.5, 0.4, 0.3]", "albedo = [0.5, 1.4, 0.3]", "a.toml: material.clay.albedo[1] must be from 0 to 1, but is 1.4"),
+            (GLOSSY, "kind = \"glass\"\nindex = 1", "a.toml: material.clay.index must be from 1.05 to 4, but is 1"),
+            (GLOSSY, "kind = \"glass\"\nindex = 1.5\nroughness = 2", "a.toml: material.clay.roughness must be from 0 to 1, but is 2"),
         ] {
             assert!(GOOD.contains(from), "{from}");
             assert_eq!(SceneFile::parse(&GOOD.replace(from, to), "a.toml").unwrap_err().to_string(), wanted);

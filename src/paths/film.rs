@@ -71,10 +71,11 @@ impl Film {
 
     /// As a screen shows it: 2^`exposure` times as bright, bent like film (Narkowicz's fit of ACES), in sRGB.
     pub fn image(&self, exposure: f64) -> RgbImage {
-        let bent = |c: f32| (c * (2.51 * c + 0.03)) / (c * (2.43 * c + 0.59) + 0.14);
+        // In 64 bits, in which the square of anything is a number.
+        let bent = |c: f64| (c * (2.51 * c + 0.03)) / (c * (2.43 * c + 0.59) + 0.14);
         RgbImage::from_fn(self.width, self.height, |x, y| {
-            let light = self.light[(y * self.width + x) as usize] * exposure.exp2() as f32;
-            Rgb(light.to_array().map(|c| to_srgb(bent(c.max(0.0)))))
+            let light = self.light[(y * self.width + x) as usize].as_dvec3() * exposure.exp2();
+            Rgb(light.to_array().map(|c| to_srgb(bent(c.max(0.0)) as f32)))
         })
     }
 
@@ -128,8 +129,8 @@ pub fn light_count(film: &Film, truth: &Film) -> LightCount {
 
 /// Mean squared difference of linear pictures, relative to the truth's square and a hundredth: what is dark counts as what is bright.
 pub fn picture_error(film: &Film, truth: &Film) -> f64 {
-    let sum: f64 =
-        film.light.iter().zip(&truth.light).map(|(a, b)| f64::from((*a - *b).length_squared() / (b.length_squared() + 1e-2))).sum();
+    let pixels = film.light.iter().zip(&truth.light).map(|(a, b)| (a.as_dvec3(), b.as_dvec3()));
+    let sum: f64 = pixels.map(|(a, b)| (a - b).length_squared() / (b.length_squared() + 1e-2)).sum();
     sum / film.light.len().max(1) as f64
 }
 

@@ -29,7 +29,7 @@ pub struct Paths<'a> {
     pub environment: Option<Environment>,
     /// How cones spread.
     pub cones: Cones,
-    /// Bounces: 0 is what the camera sees, with its shadows.
+    /// Bounces: 0 is what the camera sees, with its shadows; where lights are asked, a mirror or glass at the last hit sends one more ray, which only looks for light.
     pub depth: u32,
     /// Lights are asked for light, by shadow rays; if not, scattered rays must run into it.
     pub shadow_rays: bool,
@@ -46,7 +46,7 @@ pub struct PathCounts {
     pub rays: Vec<u64>,
     /// Those that met something.
     pub hits: Vec<u64>,
-    /// Shadow rays of each bounce's hits.
+    /// Rays of each bounce's hits that only ask for light.
     pub shadow_rays: Vec<u64>,
     /// Those that something stopped.
     pub shadowed: Vec<u64>,
@@ -162,8 +162,15 @@ impl PathTracer<'_> {
         let heard = listener.as_mut().map(|listener| (&mut **listener, path.last));
         let from = path.from.as_ref().map(|(of, from)| (*of, from));
         let met = paths.world.trace(&mut self.tracers, &path.ray, from, heard);
-        self.counts.rays[bounce] += 1;
         self.run_into(path, met.as_ref());
+        if path.bounce > paths.depth {
+            // The ray behind the last hit asks for light alone, as a shadow ray does.
+            self.counts.shadow_rays[paths.depth as usize] += 1;
+            self.counts.shadowed[paths.depth as usize] += u64::from(met.is_some());
+            path.is_over = true;
+            return;
+        }
+        self.counts.rays[bounce] += 1;
         let Some(met) = met else {
             path.is_over = true;
             return;
@@ -175,7 +182,9 @@ impl PathTracer<'_> {
         if paths.shadow_rays {
             self.ask_lights(path, &met, &surface, position, listener, number);
         }
-        path.is_over = path.bounce == paths.depth || !self.scatter(path, &met, &surface, position);
+        // Of a mirror or glass lights cannot be asked at the last hit: one more ray looks for them.
+        let goes_on = path.bounce < paths.depth || (paths.shadow_rays && surface.bsdf.must_be_followed());
+        path.is_over = !goes_on || !self.scatter(path, &met, &surface, position);
         path.last = number;
         path.bounce += 1;
     }
@@ -207,7 +216,7 @@ impl PathTracer<'_> {
         &mut self,
         path: &mut Path,
         met: &Met,
-        surface: &Surface,
+        surface: &Surface<'_>,
         position: DVec3,
         mut listener: Option<&mut Listener>,
         number: Option<u64>,
@@ -217,19 +226,19 @@ impl PathTracer<'_> {
         for k in 0..=paths.lights.len() {
             let sent: Option<Sent> = match paths.lights.get(k) {
                 Some(light) => light.send(position, &mut path.random),
-                None => paths.environment.as_ref().map(|environment| environment.send(surface.normal, &mut path.random)),
+                None => paths.environment.as_ref().map(|environment| environment.send(surface.place.normal, &mut path.random)),
             };
             let Some(sent) = sent else { continue };
-            let (value, own) = surface.material.eval(surface.colour, surface.normal, view, sent.direction);
+            let (value, own) = surface.bsdf.eval(&surface.place, view, sent.direction);
             if value.max_element() <= 0.0 {
                 continue;
             }
-            // At the last hit no scattered ray could have found it.
+            // At the last hit no scattered ray could have found it, where none is followed.
             let share = match sent.pdf {
-                Some(pdf) if path.bounce < paths.depth => pdf / (pdf + own),
+                Some(pdf) if path.bounce < paths.depth || surface.bsdf.must_be_followed() => pdf / (pdf + own),
                 _ => 1.0,
             };
-            let reaches = paths.world.leaves(met, sent.direction) && {
+            let reaches = paths.world.leaves(met, sent.direction, surface.goes_through(sent.direction)) && {
                 let ray = WorldRay {
                     origin: position,
                     direction: sent.direction,
@@ -254,18 +263,18 @@ impl PathTracer<'_> {
     }
 
     /// Sends the path on; false if it is swallowed.
-    fn scatter(&self, path: &mut Path, met: &Met, surface: &Surface, position: DVec3) -> bool {
+    fn scatter(&self, path: &mut Path, met: &Met, surface: &Surface<'_>, position: DVec3) -> bool {
         let paths = self.paths;
-        let material = &surface.material;
-        let Some(scatter) = material.sample(surface.colour, surface.normal, -path.ray.direction, &mut path.random) else { return false };
-        if scatter.weight.max_element() <= 0.0 || !paths.world.leaves(met, scatter.direction) {
+        let Some(scatter) = surface.bsdf.sample(&surface.place, -path.ray.direction, &mut path.random) else { return false };
+        let through = surface.goes_through(scatter.direction);
+        if scatter.weight.max_element() <= 0.0 || !paths.world.leaves(met, scatter.direction, through) {
             return false;
         }
         path.weight *= scatter.weight;
-        let cone = path.ray.cone.scattered(met.distance, scatter.lobe, surface.curvature, material.alpha(), &paths.cones);
+        let cone = path.ray.cone.scattered(met.distance, scatter.lobe, surface.curvature, surface.alpha, &paths.cones);
         path.ray = WorldRay { origin: position, direction: scatter.direction.normalize(), cone, ..path.ray };
         path.from = Some((met.instance, met.landing.departure));
-        path.likely = scatter.pdf.map(|pdf| (pdf, surface.normal));
+        path.likely = scatter.pdf.map(|pdf| (pdf, surface.place.normal));
         true
     }
 }

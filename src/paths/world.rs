@@ -1,5 +1,6 @@
 //! Models where a scene has them, and what a ray meets among them.
 
+use super::bsdf::{Bsdf, Place};
 use super::cone::PathCone;
 use super::material::Material;
 use crate::format::Scene;
@@ -64,7 +65,7 @@ pub struct Instance<'a> {
     /// Where it is.
     pub pose: Pose,
     /// Materials by the number that the model gives each triangle; the last one for all beyond.
-    pub materials: Vec<Material>,
+    materials: Vec<(Material, Bsdf)>,
     space: ModelSpace,
     sight: Sight,
 }
@@ -74,6 +75,7 @@ impl<'a> Instance<'a> {
     pub fn new(scene: &'a Scene, method: &'a dyn Method, pose: Pose, materials: Vec<Material>, camera: &Camera, delta: f64) -> Self {
         let space = ModelSpace::of(scene);
         let least_radius = camera.tan_theta * space.distance_to(pose.place(camera.eye).to_array()) / space.placement.scale;
+        let materials = materials.into_iter().map(|material| (material, Bsdf::of(&material))).collect();
         Self { scene, method, pose, materials, space, sight: Sight { delta, least_radius } }
     }
 
@@ -116,12 +118,20 @@ pub(super) struct Met {
 
 /// The surface there, as shading needs it; its normal in the scene, on the side that the ray came from.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Surface {
-    pub normal: DVec3,
-    pub colour: DVec3,
-    pub material: Material,
+pub(super) struct Surface<'a> {
+    pub place: Place,
+    pub bsdf: &'a Bsdf,
+    /// Width of its distribution of microfacets.
+    pub alpha: f64,
     /// 1 / radius, positive where it bulges towards the ray.
     pub curvature: f64,
+}
+
+impl Surface<'_> {
+    /// A direction leads through it.
+    pub fn goes_through(&self, direction: DVec3) -> bool {
+        self.bsdf.is_clear() && self.place.normal.dot(direction) < 0.0
+    }
 }
 
 /// The steps of rays, kept, and who waits for whom.
@@ -194,15 +204,15 @@ impl<'a> World<'a> {
         best
     }
 
-    /// Whether rays along `direction` leave `met` to the side that the ray before came from: exact where starts are.
-    pub(super) fn leaves(&self, met: &Met, direction: DVec3) -> bool {
+    /// Whether rays along `direction` leave `met` to the side that the ray before came from, or `through` the surface to the other: exact where starts are.
+    pub(super) fn leaves(&self, met: &Met, direction: DVec3, through: bool) -> bool {
         let (own, departure) = (&self.instances[met.instance], &met.landing.departure);
-        let wanted = if met.landing.surface.front { Ordering::Greater } else { Ordering::Less };
+        let wanted = if met.landing.surface.front != through { Ordering::Greater } else { Ordering::Less };
         own.space.direction(own.pose.direction(direction).to_array()).is_some_and(|d| side(&departure.corners, d) == wanted)
     }
 
     /// The surface that a ray along `direction` met.
-    pub(super) fn surface(&self, met: &Met, direction: DVec3) -> Surface {
+    pub(super) fn surface(&self, met: &Met, direction: DVec3) -> Surface<'_> {
         let (own, hit) = (&self.instances[met.instance], &met.landing.surface);
         let turn = if hit.front { 1.0 } else { -1.0 };
         let shading = own.pose.back(hit.normal(own.scene).as_dvec3()) * turn;
@@ -213,8 +223,8 @@ impl<'a> World<'a> {
         let normal = if faces(shading) { shading } else { plane };
         let number = own.scene.record(hit.tree as usize).material.get() as usize; // 16 bits
         let colour = own.scene.colour(number as u16).map_or(GREY, |c| DVec3::from_array(c.map(f64::from)));
-        let material = own.materials[number.min(own.materials.len() - 1)];
-        Surface { normal, colour, material, curvature: own.curvature(met) * turn }
+        let (material, bsdf) = &own.materials[number.min(own.materials.len() - 1)];
+        Surface { place: Place { colour, normal, front: hit.front }, bsdf, alpha: material.alpha(), curvature: own.curvature(met) * turn }
     }
 }
 
