@@ -12,7 +12,7 @@ use lodray::hardware::{Hardware, context_gates, unit_gates};
 use lodray::method::knob::{DELTA, quality};
 use lodray::method::{Knobs, lod};
 use lodray::plan::{Data, Measure, Narrowest, Part, Plan, RayNeeds, Reach, Saving, Within, savings};
-use lodray::rays::{ModelSpace, RaySource};
+use lodray::rays::{Camera, ModelSpace, RaySource};
 use lodray::report::result::MachineFacts;
 use serde::Serialize;
 use speed::{Frames, SpeedArgs};
@@ -47,7 +47,7 @@ pub struct Args {
     /// Write the unit's rtl/lod_pkg.sv to this file; with it, rtl/ is that unit
     #[arg(long, value_name = "FILE", conflicts_with = "check")]
     package: Option<PathBuf>,
-    /// Check the scenes (and the job's rays) against this plan instead of making one
+    /// Check the scenes against this plan instead of making one, and the rays of --job or --distance; without these the views that the plan has of a scene
     #[arg(long, value_name = "PLAN", conflicts_with = "out")]
     check: Option<PathBuf>,
     #[command(flatten)]
@@ -152,9 +152,10 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
     let given = args.check.as_deref().map(read).transpose()?;
     let mut frames = args.speed.frames()?;
     let (mut plan, data) = made(args, jobs.as_ref(), given.as_ref(), frames.as_mut())?;
-    if given.is_some() {
+    if let Some(given) = &given {
         let scenes = plan.scenes.len();
-        remark(&format!("{} {} the plan", count(scenes, "scene"), if scenes == 1 { "fits" } else { "fit" }))?;
+        let rays = if given.rays.is_some() && plan.rays.is_some() { ", and so do the rays of the job" } else { "" };
+        remark(&format!("{} {} the plan{rays}", count(scenes, "scene"), if scenes == 1 { "fits" } else { "fit" }))?;
         return Ok(ExitCode::SUCCESS);
     }
     plan.speed = frames.map(|frames| frames.speed(&plan.hardware(&Hardware::default()))).transpose()?;
@@ -278,6 +279,7 @@ fn made(args: &Args, jobs: Option<&Jobs>, given: Option<&Plan>, mut frames: Opti
         let scene = open(file)?;
         let measure = busy("measuring", || Measure::of(&scene));
         add(&file.display().to_string(), &measure, &scene.depths())?;
+        given.map_or(Ok(()), |given| check_own_views(given, file, &scene, &measure))?;
     }
     let mut rays = Vec::new();
     let mut jobs_of = Vec::new();
@@ -309,6 +311,24 @@ fn made(args: &Args, jobs: Option<&Jobs>, given: Option<&Plan>, mut frames: Opti
     Ok((plan, all.context("no scene to plan for")?))
 }
 
+/// Checks the rays that a plan has of a scene, and says which they are.
+fn check_own_views(given: &Plan, file: &Path, scene: &Scene, measure: &Measure) -> anyhow::Result<()> {
+    if given.rays.is_none() {
+        return Ok(());
+    }
+    let (shown, name) = (file.display(), &scene.meta().name);
+    match given.job(name) {
+        Some(job) => {
+            given.check_rays(&format!("the plan's own job, on scene {shown},"), &needs_of(&job, measure, &Reach::of(scene))?)?;
+            let (views, regions) = (count(job.views.len(), "view"), count(job.regions.len(), "region"));
+            remark(&format!("{shown}: the rays of {views} and {regions} of the plan fit; others are not promised"))
+        }
+        None => remark(&format!(
+            "{shown}: the plan has no views of a scene named {name}; no rays were checked: give them with --job or --distance"
+        )),
+    }
+}
+
 /// The narrowest cones of all rays of a scene's job.
 fn narrowest(job: &SceneJobs, space: &ModelSpace) -> anyhow::Result<Narrowest> {
     let mut least = Narrowest::NONE;
@@ -324,24 +344,30 @@ fn narrowest(job: &SceneJobs, space: &ModelSpace) -> anyhow::Result<Narrowest> {
 /// What all rays of a scene's job need, at all qualities of the list, and the job; `reach` learns how deep they go.
 fn rays_of(job: &SceneJobs, lod: &[&Chosen], measure: &Measure, reach: &Reach, space: &ModelSpace) -> anyhow::Result<(RayNeeds, Job)> {
     anyhow::ensure!(!lod.is_empty(), "the list of jobs has no job of lod");
-    let (mut needs, mut of_job) = (RayNeeds::default(), Job::default());
+    let mut of_job = Job::default();
     for view in &job.views {
         let camera = view.camera(space).with_context(|| format!("scene {}", job.name))?;
-        for chosen in lod {
-            needs = needs.with(&busy("measuring rays", || measure.rays(&camera, chosen.delta())));
-            busy("looking at rays", || reach.add(&camera, chosen.delta()));
-            of_job.views.push(camera.job_view(chosen.delta()));
-        }
+        of_job.views.extend(lod.iter().map(|chosen| camera.job_view(chosen.delta())));
     }
-    let regions = job.regions.iter().flat_map(|region| lod.iter().map(|chosen| region.at(chosen.delta())));
-    of_job.regions.extend(regions);
-    of_job.regions.iter().for_each(|region| reach.add_region(region));
-    for region in &of_job.regions {
+    of_job.regions.extend(job.regions.iter().flat_map(|region| lod.iter().map(|chosen| region.at(chosen.delta()))));
+    Ok((needs_of(&of_job, measure, reach)?, of_job))
+}
+
+/// What all rays of a job need.
+fn needs_of(job: &Job, measure: &Measure, reach: &Reach) -> anyhow::Result<RayNeeds> {
+    let mut needs = RayNeeds::default();
+    for view in &job.views {
+        let (camera, delta) = (Camera::of_job(view)?, view.quality().context("delta is no number")?);
+        needs = needs.with(&busy("measuring rays", || measure.rays(&camera, delta)));
+        busy("looking at rays", || reach.add(&camera, delta));
+    }
+    job.regions.iter().for_each(|region| reach.add_region(region));
+    for region in &job.regions {
         needs = needs.with(&measure.region(region, reach.deepest()));
     }
     // What a ray can do in each tree says more than what it can in the whole model.
     needs.deepest_level = needs.deepest_level.min(reach.deepest());
-    Ok((needs, of_job))
+    Ok(needs)
 }
 
 /// A line for each saving, in columns.
