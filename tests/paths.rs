@@ -300,9 +300,10 @@ fn bad_descriptions_are_one_line_that_names_file_and_key() {
     let folder = tempfile::tempdir().expect("a folder");
     let cases = [
         ("fov = 1", "[picture]", "[picture]\nfov = 1", "unknown field `fov`"),
-        ("scale", "[[model]]", "[[model]]\nscale = -2", "a.toml: model[0].scale must be above 0 and finite, but is -2"),
+        ("scale", "[[model]]", "[[model]]\nscale = -2", "a.toml: model[0].scale must be from 1e-12 to 1e12, but is -2"),
         ("levels", "levels = 2", "levels = 12", "a.toml: model[0].generate cannot be: 12 levels are too many"),
-        ("eye", "eye = [0, 0, 3.4]", "eye = [0, 0, 0]", "a.toml: "),
+        ("eye", "eye = [0, 0, 3.4]", "eye = [0, 0, 0]", "a.toml: camera[0].eye must be another place than target"),
+        ("far", "eye = [0, 0, 3.4]", "eye = [1e300, 0, 0]", "a.toml: camera[0].eye[0] must be from -1e12 to 1e12"),
         ("file", "generate = { scene = \"room\", levels = 2, base = 100 }", "file = \"none.lod\"", "none.lod"),
     ];
     for (name, from, to, wanted) in cases {

@@ -157,6 +157,32 @@ fn a_plan_takes_its_scenes_and_refuses_others() {
     assert_eq!(document["plan"]["rays"]["lod-test"], false);
     assert_eq!(document["plan"]["rays"]["deepest-level"], 3);
     desk.run("plan --job jobs.toml -o full.toml");
+    // Without a job the plan's own views are looked at, and it is said which.
+    let shown = desk.run("plan rough.lod --check full.toml");
+    assert!(shown.contains("rough.lod: the rays of 1 view of the plan fit; others are not promised"), "{shown}");
+    desk.refused("plan round.lod --check full.toml", 1, &["round.lod", "does not fit the plan"]);
+    desk.write("shallow.toml", &desk.text("full.toml").replace("deepest-level = 3", "deepest-level = 2"));
+    desk.refused(
+        "plan rough.lod --check shallow.toml",
+        1,
+        &["the plan's own job, on scene rough.lod,", "deepest-level is 3, and the plan has 2"],
+    );
+    for (from, to, wanted) in [
+        ("delta = \"inf\"", "delta = \"nan\"", "full.toml: views.terrain[0].delta must be a number from 0 on, or inf"),
+        ("levels = 3", "levels = 99", "full.toml: scene.levels must be 0 to 10, but is 99"),
+        ("program = \"", "program = \"9", "full.toml: program must be a version up to "),
+    ] {
+        let text = desk.text("full.toml");
+        assert!(text.contains(from), "{from} in {text}");
+        desk.write("wrong/full.toml", &text.replacen(from, to, 1));
+        for command in [
+            "plan rough.lod --check wrong/full.toml",
+            "prune rough.lod --plan wrong/full.toml -o out.lod",
+            "simulate rough.lod --plan wrong/full.toml",
+        ] {
+            desk.refused(command, 1, &[wanted]);
+        }
+    }
     desk.write(
         "jobs.toml",
         "size = \"32x32\"\nmethods = [\"lod\"]\ndistances = [2]\n[[scene]]\nfile = \"rough.lod\"\n[[machine]]\nname = \"haydel2023\"\n",

@@ -320,8 +320,9 @@ fn check_own_views(given: &Plan, file: &Path, scene: &Scene, measure: &Measure) 
     match given.job(name) {
         Some(job) => {
             given.check_rays(&format!("the plan's own job, on scene {shown},"), &needs_of(&job, measure, &Reach::of(scene))?)?;
-            let (views, regions) = (count(job.views.len(), "view"), count(job.regions.len(), "region"));
-            remark(&format!("{shown}: the rays of {views} and {regions} of the plan fit; others are not promised"))
+            let parts = [(job.views.len(), "view"), (job.regions.len(), "region")].into_iter().filter(|&(n, _)| n > 0);
+            let parts = parts.map(|(n, one)| count(n, one)).collect::<Vec<_>>().join(" and ");
+            remark(&format!("{shown}: the rays of {parts} of the plan fit; others are not promised"))
         }
         None => remark(&format!(
             "{shown}: the plan has no views of a scene named {name}; no rays were checked: give them with --job or --distance"
