@@ -290,7 +290,7 @@ fn a_pruned_scene_serves_its_job_and_refuses_all_else() {
     desk.run("generate cloth --levels 2 --base 32 -o cloth.lod");
     desk.refused("prune cloth.lod --plan plan.toml -o no.lod", 1, &["called cloth", "sphere"]);
     desk.write("bad.toml", &desk.text("plan.toml").replace("delta = \"1\"", "delta = \"one\""));
-    desk.refused("prune ball.lod --plan bad.toml -o no.lod", 1, &["delta 'one'"]);
+    desk.refused("prune ball.lod --plan bad.toml -o no.lod", 1, &["bad.toml: views.sphere[0].delta must be a number from 0 on, or inf"]);
     assert!(!desk.path("no.lod").exists() && !desk.path("no").exists());
 }
 
@@ -349,7 +349,7 @@ fn a_scene_pruned_for_a_region_serves_all_rays_from_there() {
     desk.run("plan --job jobs.toml -o plan.toml");
     assert!(desk.text("plan.toml").contains("[[regions.sphere]]"), "{}", desk.text("plan.toml"));
     let shown = desk.run("prune ball.lod --plan plan.toml -o small.lod");
-    assert!(shown.contains("0 views, 1 regions") && shown.contains("trees of 4 levels"), "{shown}");
+    assert!(shown.contains("0 views, 1 region;") && shown.contains("trees of 4 levels"), "{shown}");
     assert!(desk.bytes("small.lod").len() < desk.bytes("ball.lod").len());
     assert!(desk.run("verify small.lod").contains("passed"));
     assert!(
