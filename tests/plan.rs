@@ -176,11 +176,9 @@ fn a_plan_takes_its_scenes_and_refuses_others() {
         let text = desk.text("full.toml");
         assert!(text.contains(from), "{from} in {text}");
         desk.write("wrong.toml", &text.replacen(from, to, 1));
-        for command in [
-            "plan rough.lod --check wrong.toml",
-            "prune rough.lod --plan wrong.toml -o out.lod",
-            "simulate rough.lod --plan wrong.toml",
-        ] {
+        for command in
+            ["plan rough.lod --check wrong.toml", "prune rough.lod --plan wrong.toml -o out.lod", "simulate rough.lod --plan wrong.toml"]
+        {
             desk.refused(command, 1, &[wanted]);
         }
     }
