@@ -8,8 +8,10 @@ use std::path::Path;
 use std::time::{Duration, Instant};
 
 fn main() {
-    println!("| mesh | triangles | base | finest | to the original, mean / largest % | from the original | flips | seconds |");
-    println!("|---|---|---|---|---|---|---|---|");
+    println!(
+        "| mesh | triangles | base | finest | to the original, mean / largest % | from the original | flips | folds, new, of the original | seconds |"
+    );
+    println!("|---|---|---|---|---|---|---|---|---|");
     for (name, mesh) in thin::shapes() {
         row(name, &mesh);
     }
@@ -38,13 +40,16 @@ fn row(name: &str, mesh: &TriangleMesh) {
     let Some(r) = report else { return };
     let distance = |d: lodray::mesh::Distance| format!("{:.5} / {:.3}", d.mean, d.max);
     println!(
-        "| {name} | {} | {} | {} | {} | {} | {} | {:.2} |",
+        "| {name} | {} | {} | {} | {} | {} | {} | {}, {}, {} | {:.2} |",
         mesh.triangles.len(),
         r.base_triangles,
         r.finest_triangles,
         distance(r.distance.to_original),
         distance(r.distance.from_original),
         r.flipped_triangles,
+        r.folds.edges,
+        r.folds.new,
+        r.folds.original,
         best.as_secs_f64()
     );
     if let Some(warning) = r.warning {

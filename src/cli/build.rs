@@ -9,7 +9,8 @@ use anyhow::Context;
 use lodray::bvh::over_trees;
 use lodray::format::{self, Scene, SceneInfo};
 use lodray::mesh::{
-    BoundKind, DEFAULT_CREASE_ANGLE, DEFAULT_MAX_ERROR, MeshFormat, RemeshOptions, Surface, TriangleMesh, read, read_as, read_bytes, remesh,
+    BoundKind, DEFAULT_CREASE_ANGLE, DEFAULT_MAX_ERROR, MeshFormat, RemeshOptions, RemeshReport, Surface, TriangleMesh, read, read_as,
+    read_bytes, remesh,
 };
 use lodray::num::{BOX_SHIFT, MOST_DIRECTION_ZEROS, VertexForm};
 use std::io::Read;
@@ -85,30 +86,74 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
         None => mesh,
     };
     say(&mesh, source, args.strict)?;
+    let name = source.file_stem().map_or_else(String::new, |s| s.to_string_lossy().into_owned());
     let options = RemeshOptions {
         levels: args.levels,
         base_triangles: args.base.map(|n| n as usize),
         max_error: args.max_error,
+        reserve: 0.0,
         crease_angle: args.crease_angle,
     };
+    let scene = within(&mesh, options, &name, args.form).map_err(|e| anyhow::anyhow!("{}: {e}", source.display()))?;
+    if let Some(lost) = scene.meta().origin["remesh"]["warning"].as_str().filter(|_| args.strict) {
+        anyhow::bail!("{}: {lost}", source.display());
+    }
+    finish(&scene, &args.out, args.json)
+}
+
+/// Remeshes, at most.
+const TRIES: u32 = 3;
+
+/// The scene of a mesh, stored vertices within the largest error too: as a rule there is room for what storing moves, otherwise it is made
+/// again with so much in reserve.
+fn within(mesh: &TriangleMesh, mut options: RemeshOptions, name: &str, form: FormArgs) -> anyhow::Result<Scene> {
+    let mut last = None;
+    for tried in 1..=TRIES {
+        let (surface, mut report) = match (remesh_with_progress(mesh, &options), last.take()) {
+            (Err(_), Some(scene)) => return Ok(scene),
+            (made, _) => made?,
+        };
+        let scene_of = |report: &RemeshReport| {
+            let origin = serde_json::json!({ "mesh": mesh.report, "remesh": report });
+            build_scene(&surface, name, origin, form)
+        };
+        let scene = scene_of(&report)?;
+        // Rounding to the grid is among the distances.
+        let moved = (info::moved_percent(&scene) - report.rounding).max(0.0);
+        let far = report.distance.to_original.max.max(report.distance.from_original.max) + moved;
+        if far <= options.max_error || report.warning.is_some() {
+            return Ok(scene);
+        }
+        report.warning = Some(format!(
+            "stored vertices are up to {far:.4} % of the diagonal away from the original (wanted: {} %), {moved:.4} % of it by storing; try --vertices exact",
+            options.max_error
+        ));
+        last = Some(scene_of(&report)?);
+        // What is moved depends a little on what is made.
+        options.reserve = 1.25 * moved;
+        if tried == TRIES || leaves_no_room(&options) {
+            break;
+        }
+    }
+    last.context("no scene")
+}
+
+/// Whether a base mesh of a given size, or a reserve beyond the error, makes another try useless.
+fn leaves_no_room(options: &RemeshOptions) -> bool {
+    options.base_triangles.is_some() || options.reserve >= options.max_error
+}
+
+fn remesh_with_progress(mesh: &TriangleMesh, options: &RemeshOptions) -> anyhow::Result<(Surface, RemeshReport)> {
     let bar = progress(1, "remeshing");
-    let (surface, report) = remesh(&mesh, &options, &|what, done, of| {
+    let made = remesh(mesh, options, &|what, done, of| {
         if bar.message() != what {
             bar.set_message(what.to_owned());
         }
         bar.set_length(of);
         bar.set_position(done);
-    })
-    .map_err(|e| anyhow::anyhow!("{}: {e}", source.display()))?;
+    });
     bar.finish_and_clear();
-    if let Some(lost) = report.warning.as_ref().filter(|_| args.strict) {
-        anyhow::bail!("{}: {lost}", source.display());
-    }
-    let name = source.file_stem().map_or_else(String::new, |s| s.to_string_lossy().into_owned());
-    let origin = serde_json::json!({ "mesh": mesh.report, "remesh": report });
-    let scene = build_scene(&surface, &name, origin, args.form)?;
-    drop(surface);
-    finish(&scene, &args.out, args.json)
+    Ok(made?)
 }
 
 /// One line for each thing that was lost or changed when the mesh was read, and one for seams that could be closed; the first is an error if `strict`.

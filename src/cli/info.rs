@@ -137,10 +137,15 @@ impl<'a> Info<'a> {
             parts,
             distance: serde_json::from_value(meta.origin["remesh"]["distance"].clone())
                 .ok()
-                .map(|distance| stored(distance, 100.0 * meta.moved / (2.0 * space.radius()))),
+                .map(|distance| stored(distance, moved_percent(scene))),
             origin: &meta.origin,
         }
     }
+}
+
+/// How far storing moved vertices at most, in percent of the diagonal.
+pub fn moved_percent(scene: &Scene) -> f64 {
+    100.0 * scene.meta().moved / (2.0 * ModelSpace::of(scene).radius())
 }
 
 /// Distances of the surface before it was rounded, to that which is stored: no point was moved by more than `moved` percent.

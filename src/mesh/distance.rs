@@ -153,6 +153,13 @@ impl Target {
         Some((triangle, closest_barycentrics(p, a, b, c)))
     }
 
+    /// How far one triangle is.
+    pub fn distance_to(&self, triangle: u32, p: Vec3) -> Option<f64> {
+        let (_, w) = self.closest_on(triangle, p)?;
+        let corners = self.corners[triangle as usize];
+        Some(((0..3).map(|k| corners[k] * w[k]).sum::<Vec3>() - p).length())
+    }
+
     /// How many triangles have no area.
     pub fn degenerate(&self) -> u64 {
         self.corners.par_iter().filter(|c| is_degenerate(c.map(|p| p.to_array()))).count() as u64

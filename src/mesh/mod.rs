@@ -29,6 +29,6 @@ pub use nearest::FinestSurface;
 pub use normals::{DEFAULT_CREASE_ANGLE, corner_normals};
 pub use quantise::{SurfaceError, most_zeros, quantise};
 pub use read::{MESH_ENDINGS, MeshFormat, ReadError, named_files, read, read_as, read_bytes};
-pub use remesh::{DEFAULT_MAX_ERROR, RemeshError, RemeshOptions, RemeshReport, Works, remesh};
+pub use remesh::{DEFAULT_MAX_ERROR, Folds, RemeshError, RemeshOptions, RemeshReport, Works, remesh};
 pub use surface::Surface;
 pub use weld::Seams;

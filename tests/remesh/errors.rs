@@ -18,6 +18,7 @@ fn thin_parts_tips_and_creases_are_kept() {
         assert!(d.to_original.max <= 0.3 && d.from_original.max <= 0.3, "{name}: {d:?}");
         assert!(d.to_original.found <= d.to_original.max && d.from_original.found <= d.from_original.max, "{name}: {d:?}");
         assert_eq!((report.flipped_triangles, report.degenerate_triangles, &report.warning), (0, 0, &None), "{name}: {report:?}");
+        assert_eq!(report.folds.new, 0, "{name}: {report:?}");
         assert!(report.base_triangles < original.triangles.len(), "{name}: {report:?}");
     }
 }
@@ -90,5 +91,64 @@ fn what_was_lost_is_said_in_one_line() {
     {
         let options = RemeshOptions { max_error, crease_angle, ..RemeshOptions::default() };
         assert!(matches!(remesh_quietly(&original, options), Err(RemeshError::Range { .. })), "{options:?}");
+    }
+}
+
+type Corners = [[f64; 3]; 3];
+
+fn normal([a, b, c]: Corners) -> [f64; 3] {
+    let [u, v]: [[f64; 3]; 2] = [b, c].map(|p| std::array::from_fn(|k| p[k] - a[k]));
+    std::array::from_fn(|k| u[(k + 1) % 3] * v[(k + 2) % 3] - u[(k + 2) % 3] * v[(k + 1) % 3])
+}
+
+fn dot(a: [f64; 3], b: [f64; 3]) -> f64 {
+    (0..3).map(|k| a[k] * b[k]).sum()
+}
+
+/// Triangles that face away from what is nearest to their middle, counted by looking at all triangles of the original for each.
+#[test]
+fn flips_are_those_that_somebody_else_counts() {
+    let (_, original) = thin::shapes().into_iter().find(|s| s.0 == "horn").unwrap();
+    let (surface, report) = run(&original, 2, 60);
+    let old: Vec<Corners> = original.triangles.iter().map(|t| t.map(|v| original.positions[v as usize])).collect();
+    let corners = |t: usize, n: u32| lattice::node(2, 2, n).map(|p| surface.tree(t)[lattice::index(2, p)]);
+    let mut flips = 0;
+    for triangle in (0..surface.triangles.len()).flat_map(|t| (0..16).map(move |n| corners(t, n))) {
+        let middle = std::array::from_fn(|k| triangle.iter().map(|p| p[k]).sum::<f64>() / 3.0);
+        let far: Vec<f64> = old.iter().map(|t| distance_to_triangle(middle, t)).collect();
+        let least = far.iter().copied().fold(f64::INFINITY, f64::min) * (1.0 + 1e-6);
+        let faces = old.iter().zip(&far).any(|(&t, &far)| far <= least && dot(normal(t), normal(triangle)) >= 0.0);
+        flips += u64::from(!faces);
+    }
+    assert_eq!(report.flipped_triangles, flips);
+    let said = report.warning.as_deref().is_some_and(|warning| warning.contains("away from the original, such as"));
+    assert!(flips > 0 && said, "{report:?}");
+}
+
+/// A sphere whose triangles have slivers that lie back on their neighbours, as scans do.
+#[test]
+fn slivers_of_a_scan_shade_no_more_than_themselves() {
+    let mut scan = sphere(16);
+    for t in (0..scan.triangles.len()).step_by(9) {
+        let [a, b, c] = scan.triangles[t];
+        let [p, q, r] = [a, b, c].map(|v| scan.positions[v as usize]);
+        // A little beyond the edge from a to b.
+        scan.positions.push(std::array::from_fn(|k| 0.52 * (p[k] + q[k]) - 0.04 * r[k]));
+        let inner = scan.positions.len() as u32 - 1;
+        scan.triangles[t] = [a, b, inner];
+        scan.triangles.extend([[b, c, inner], [c, a, inner]]);
+    }
+    let (surface, _) = fit(&scan, RemeshOptions { levels: 3, max_error: 1.0, ..RemeshOptions::default() });
+    let normals = |t: usize| &surface.normals[t * lattice::len(3)..][..lattice::len(3)];
+    for t in 0..surface.triangles.len() {
+        for node in 0..64 {
+            let at = lattice::node(3, 3, node).map(|p| lattice::index(3, p));
+            let face = normal(at.map(|i| surface.tree(t)[i]));
+            let length = dot(face, face).sqrt();
+            for i in at {
+                let cosine = dot(face, normals(t)[i].map(f64::from)) / length;
+                assert!(cosine > 0.3, "tree {t} node {node}: {cosine}");
+            }
+        }
     }
 }

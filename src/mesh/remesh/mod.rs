@@ -5,10 +5,11 @@
 //! 3. [`topology`] finds the base mesh's edges and, for those on a feature line, the piece of the line that each stands for.
 //! 4. [`split`] inserts vertices level by level: on feature lines by arc length, elsewhere by projection on the original surface.
 //! 5. [`settle`] moves vertices that were left beside the surface, or that fold it, to better places.
-//! 6. [`refine`] judges the result, and goes back to 2 with more vertices to keep where it falls short.
+//! 6. [`refine`] judges the result, with [`folds`] for what turns away from the original, and goes back to 2 with more vertices to keep where it falls short.
 //! 7. [`shading`] gives every vertex the normal of the point of the original that it stands for.
 
 mod decimate;
+mod folds;
 mod project;
 mod refine;
 mod settle;
@@ -22,8 +23,9 @@ use super::distance::{Distance, TwoSidedDistance, Vec3, mean_distances, percent}
 use super::farthest::Farthest;
 use super::{DEFAULT_CREASE_ANGLE, Surface, corner_normals, lattice};
 use crate::num::{MAX_LEVELS, PADDING_BITS};
+pub use folds::Folds;
 use rayon::prelude::*;
-use refine::{Fitted, Wanted};
+use refine::{Fitted, Turned, Wanted};
 use serde::{Deserialize, Serialize};
 use source::Source;
 use std::fmt;
@@ -44,6 +46,8 @@ pub struct RemeshOptions {
     pub base_triangles: Option<usize>,
     /// Largest distance between original and full-resolution result, both ways, in percent of the diagonal of the original's box.
     pub max_error: f64,
+    /// How much of `max_error`, in percent too, is left for what moves vertices afterwards (compact vertices).
+    pub reserve: f64,
     /// Edges that bend by more than this, in degrees, are creases: they stay sharp lines, and where the mesh has no normals of its own they
     /// are shaded so.
     pub crease_angle: f64,
@@ -51,7 +55,7 @@ pub struct RemeshOptions {
 
 impl Default for RemeshOptions {
     fn default() -> Self {
-        RemeshOptions { levels: 0, base_triangles: None, max_error: DEFAULT_MAX_ERROR, crease_angle: DEFAULT_CREASE_ANGLE }
+        RemeshOptions { levels: 0, base_triangles: None, max_error: DEFAULT_MAX_ERROR, reserve: 0.0, crease_angle: DEFAULT_CREASE_ANGLE }
     }
 }
 
@@ -77,12 +81,18 @@ pub struct RemeshReport {
     pub on_feature_lines: u64,
     /// Inserted vertices kept at the middle of their edge, or between that and the surface, because anything else folds the surface.
     pub midpoints_kept: u64,
-    /// Finest triangles that face away from the original surface at their corners; base triangles that are the original's own have none.
+    /// Finest triangles that face away from what is nearest to their middle on the original.
     pub flipped_triangles: u64,
+    /// Edges that fold by more than 150 degrees, in the finest level and in the original.
+    #[serde(default)]
+    pub folds: Folds,
     /// Finest triangles without area.
     pub degenerate_triangles: u64,
     /// Distances between the finest level and the original.
     pub distance: TwoSidedDistance,
+    /// What rounding to the format's grid has of the largest distances, in percent.
+    #[serde(skip)]
+    pub rounding: f64,
     /// What was lost, in one line, if the result is further from the original than `max_error` or has flipped triangles.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub warning: Option<String>,
@@ -194,8 +204,8 @@ pub fn remesh(
         return Err(RemeshError::NoBase);
     }
     let range = |name, value: f64, ok: bool, range| if ok { Ok(()) } else { Err(RemeshError::Range { name, value, range }) };
-    let error = options.max_error;
-    range("the largest error", error, error > 0.0 && error <= 100.0, "above 0 and at most 100 percent")?;
+    let error = options.max_error - options.reserve;
+    range("the largest error", options.max_error, error > 0.0 && options.max_error <= 100.0, "above 0 and at most 100 percent")?;
     let angle = options.crease_angle;
     range("the crease angle", angle, (0.0..=180.0).contains(&angle), "from 0 to 180 degrees")?;
     check(mesh)?;
@@ -203,7 +213,7 @@ pub fn remesh(
     let source = Source::new(mesh, angle.to_radians());
     let least = percent(source.diagonal) * (rounding(levels) + EXACT);
     if error < least {
-        return Err(RemeshError::Grid { wanted: error, levels, least: rounded_up(least) });
+        return Err(RemeshError::Grid { wanted: options.max_error, levels, least: rounded_up(least + options.reserve) });
     }
     let limit = (source.diagonal * error / 100.0 - rounding(levels)).max(0.0);
     let fitted = match options.base_triangles {
@@ -217,7 +227,7 @@ pub fn remesh(
         base_vertices: topology.vertices.len() as u32,
         triangles: topology.triangles.clone(),
         positions: to_world(&source, topology, &forest.positions, levels, mesh),
-        normals: shading::shade(&source, topology, forest, &corner_normals(mesh, angle)),
+        normals: shading::shade(&source, topology, forest, &corner_normals(mesh, angle), !mesh.normals.is_empty()),
         materials: topology.faces.iter().filter_map(|&t| mesh.materials.get(t as usize).copied()).collect(),
         colours: mesh.colours.clone(),
     };
@@ -225,19 +235,22 @@ pub fn remesh(
 
     progress("distance", 0, 1);
     let far = refine::measure(&source, &fitted, limit);
+    let turned = refine::turned(&source, &fitted, limit);
     let base_triangles = fitted.topology.triangles.len();
     let mut report = RemeshReport {
         base_triangles,
         wanted_base_triangles: options.base_triangles.filter(|&wanted| wanted < base_triangles),
         own_base_triangles: fitted.topology.own.iter().flatten().count(),
         finest_triangles: surface.finest_triangles(),
-        flipped_triangles: fitted.flips,
+        flipped_triangles: turned.flips,
+        folds: turned.folds,
         degenerate_triangles: fitted.target.degenerate(),
         distance: distances(&source, &fitted, &far, levels),
+        rounding: percent(source.diagonal) * rounding(levels),
         ..Default::default()
     };
     fitted.forest.count_methods(&fitted.topology, &mut report);
-    report.warning = warning(&source, &fitted, &far, options, mesh, &report);
+    report.warning = warning(&source, &turned, &far, options, mesh, &report);
     progress("distance", 1, 1);
     Ok((surface, report))
 }
@@ -268,7 +281,7 @@ fn distances(source: &Source, fitted: &Fitted, far: &[Farthest; 2], levels: u32)
 /// One line on what was lost, where, and what to try; none if nothing was.
 fn warning(
     source: &Source,
-    fitted: &Fitted,
+    turned: &Turned,
     far: &[Farthest; 2],
     options: &RemeshOptions,
     mesh: &TriangleMesh,
@@ -281,16 +294,22 @@ fn warning(
         format!("at ({x}, {y}, {z})")
     };
     let mut lost = Vec::new();
-    if to.max.max(from.max) > options.max_error {
+    if to.max.max(from.max) + options.reserve > options.max_error {
         let (worst, at) = if from.max > to.max { (from.max, far[1].at) } else { (to.max, far[0].at) };
+        let worst = worst + options.reserve;
         let worst = if worst < 0.01 { format!("{worst:.2e}") } else { format!("{worst:.3}") };
         lost.push(format!("it is up to {worst} % of the diagonal away from the original, {} (wanted: {} %)", place(at), options.max_error));
     }
-    if let Some(at) = fitted.flip {
+    if let Some(at) = turned.flip {
+        let flips = turned.flips;
+        let face = if flips == 1 { "faces" } else { "face" };
+        lost.push(format!("{flips} of its {} triangles {face} away from the original, such as {}", report.finest_triangles, place(at)));
+    }
+    if let Some(at) = turned.fold {
+        let edges = if turned.folds.new == 1 { "edge folds" } else { "edges fold" };
         lost.push(format!(
-            "{} of its {} triangles face away from the original, such as {}",
-            fitted.flips,
-            report.finest_triangles,
+            "{} of its {edges} by more than 150 degrees where the original has no fold, such as {}",
+            turned.folds.new,
             place(at)
         ));
     }
@@ -307,7 +326,7 @@ fn warning(
             if seams == 1 { "edge" } else { "edges" }
         ),
         _ if report.base_triangles < all / 2 && fits(2 * report.base_triangles) => format!("try --base {}", 2 * report.base_triangles),
-        _ if fitted.flip.is_some() => "the original folds there".to_owned(),
+        _ if turned.flip.is_some() => "the original folds there".to_owned(),
         // The original's own triangles split flat.
         _ if fits(all) => format!("try --base {all}, the mesh itself"),
         _ => "try fewer --levels".to_owned(),

@@ -7,7 +7,8 @@
 use super::super::distance::{Target, Vec3};
 use super::super::farthest::{Farthest, Vertices, farthest};
 use super::decimate::{Decimated, Decimator, Goal};
-use super::shading::{finest_corners, finest_origins, first_flipped, flipped};
+use super::folds::{Folds, folded, folds_of, new_folds};
+use super::shading::{finest_corners, finest_origins};
 use super::source::Source;
 use super::split::{Forest, split};
 use super::topology::Topology;
@@ -52,9 +53,6 @@ pub(super) struct Fitted {
     pub forest: Forest,
     /// The finest triangles.
     pub target: Target,
-    /// Triangles that face away from the original, and where there is one.
-    pub flips: u64,
-    pub flip: Option<Vec3>,
     /// How far the result is from the original at most, and the original from the result, if that was looked for.
     pub farthest: Option<[Farthest; 2]>,
 }
@@ -133,9 +131,37 @@ fn works(source: &Source, base: u64, levels: u32) -> Works {
 fn split_and_look(source: &Source, topology: Topology, levels: u32, progress: &dyn Fn(&str, u64, u64)) -> Fitted {
     let forest = split(source, &topology, levels, progress);
     let target = Target::grouped(finest_corners(&forest), 1 << (2 * levels.min(2)));
-    let flips: Vec<u64> = (0..topology.triangles.len()).into_par_iter().map(|t| flipped(&topology, &forest, t)).collect();
-    let flip = flips.iter().position(|&n| n > 0).and_then(|t| first_flipped(&forest, t));
-    Fitted { topology, forest, target, flips: flips.iter().sum(), flip, farthest: None }
+    Fitted { topology, forest, target, farthest: None }
+}
+
+/// What a result turns away from the original, and where.
+#[derive(Default)]
+pub(super) struct Turned {
+    pub flips: u64,
+    pub folds: Folds,
+    /// The middle of a flipped triangle, ...
+    pub flip: Option<Vec3>,
+    /// ... and that of an edge that folds anew.
+    pub fold: Option<Vec3>,
+}
+
+/// Looks for flips and folds in all of a result.
+pub(super) fn turned(source: &Source, fitted: &Fitted, limit: f64) -> Turned {
+    let Fitted { topology, forest, .. } = fitted;
+    let of_tree = |t: usize| {
+        let folds = folded(topology, forest, t);
+        (new_folds(source, &folds, limit), folds.len() as u64)
+    };
+    let trees: Vec<(Vec<Vec3>, u64)> = (0..topology.triangles.len()).into_par_iter().map(of_tree).collect();
+    let mut all = Turned { folds: Folds { original: folds_of(source), ..Folds::default() }, ..Turned::default() };
+    for (flips, (new, edges)) in forest.flipped.iter().zip(trees) {
+        all.flips += flips.len() as u64;
+        all.folds.edges += edges;
+        all.folds.new += new.len() as u64;
+        all.flip = all.flip.or(flips.first().copied());
+        all.fold = all.fold.or(new.first().copied());
+    }
+    all
 }
 
 /// How far the result is from the original at most, and the original from the result.
@@ -160,7 +186,9 @@ fn judge(source: &Source, fitted: &mut Fitted, limit: f64, whole: bool) -> Fault
     let per_tree = 1usize << (2 * forest.levels);
     let trees = topology.triangles.len();
     let too_far = |p: Vec3| source.target.closest(p, limit, |_| true).is_none();
-    let is_bad = |t: usize| flipped(topology, forest, t) > 0 || forest.strays(t).any(too_far);
+    let is_bad = |t: usize| {
+        !forest.flipped[t].is_empty() || forest.strays(t).any(too_far) || !new_folds(source, &folded(topology, forest, t), limit).is_empty()
+    };
     let mut faults: Faults = (0..trees).into_par_iter().map(|t| is_bad(t).then(Vec::new)).collect();
 
     // The tree that is closest to a vertex that is missed is to blame.

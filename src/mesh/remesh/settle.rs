@@ -6,12 +6,19 @@
 
 use super::super::distance::Vec3;
 use super::super::lattice::{self, LatticePoint};
+use super::folds;
 use super::project::{Method, Point};
 use super::split::{Splitter, side_point, triangles};
 use rayon::prelude::*;
 
 /// Passes over the vertices in question after each split, and as many with smoothing.
 const PASSES: usize = 16;
+
+/// Passes over the vertices of finest triangles that are bent away from the original.
+const STRAIGHTEN: usize = 8;
+
+/// Those are bent that turn from it by more than this cosine: 60 degrees.
+const STRAIGHT: f64 = 0.5;
 
 /// A triangle faces the surface if the cosine between its normal and the sum of those at its corners is at least this.
 const FACING: f64 = 0.3;
@@ -54,7 +61,7 @@ impl Splitter<'_> {
             places.dedup();
             dirty.fill(false);
             for place in places {
-                for t in self.move_one(points, place, smooth) {
+                for t in self.move_one(points, place, smooth, &|p, wings| turn_away(p, wings)) {
                     dirty[t as usize] = true;
                 }
             }
@@ -62,6 +69,61 @@ impl Splitter<'_> {
                 break;
             }
         }
+    }
+
+    /// Moves vertices of the finest triangles that are bent away from the original; for each tree the middles of those that still face away.
+    pub fn straighten(&self, points: &mut [Point]) -> Vec<Vec<Vec3>> {
+        let mut flipped = vec![Vec::new(); self.topology.triangles.len()];
+        let mut dirty = vec![true; flipped.len()];
+        let score = |p: Point, wings: &[Wing]| {
+            let away = |&[a, b]: &Wing| match folds::facing(self.source, [p, a, b]) {
+                cosine if cosine < 0.0 => 1.0 + STRAIGHT - cosine,
+                cosine => (STRAIGHT - cosine).max(0.0),
+            };
+            wings.iter().map(away).sum()
+        };
+        for pass in 0..=STRAIGHTEN {
+            let trees: Vec<usize> = (0..dirty.len()).filter(|&t| dirty[t]).collect();
+            let found: Vec<(Vec<Vec3>, Vec<Place>)> = trees.par_iter().map(|&t| self.turned(points, t)).collect();
+            let mut places = Vec::new();
+            for (t, (middles, at)) in trees.into_iter().zip(found) {
+                flipped[t] = middles;
+                places.extend(at);
+            }
+            if pass == STRAIGHTEN || places.is_empty() {
+                break;
+            }
+            places.sort_unstable();
+            places.dedup();
+            dirty.fill(false);
+            for place in places {
+                for t in self.move_one(points, place, true, &score) {
+                    dirty[t as usize] = true;
+                }
+            }
+        }
+        flipped
+    }
+
+    /// The middles of a tree's finest triangles that face away from the original, and what may move of the vertices of bent ones.
+    fn turned(&self, points: &[Point], t: usize) -> (Vec<Vec3>, Vec<Place>) {
+        // A triangle of the original faces as that does.
+        if self.topology.own[t].is_some() {
+            return Default::default();
+        }
+        let tree = &points[t * self.len..][..self.len];
+        let (mut middles, mut places) = (Vec::new(), Vec::new());
+        for corners in triangles(self.m, 1) {
+            let at = corners.map(|p| tree[self.index(p)]);
+            let cosine = folds::facing(self.source, at);
+            if cosine < 0.0 {
+                middles.push(at.map(|p| p.position).iter().sum::<Vec3>() / 3.0);
+            }
+            if cosine < STRAIGHT {
+                places.extend(corners.into_iter().filter_map(|p| self.place(t, p)));
+            }
+        }
+        (middles, places)
     }
 
     /// Vertices of this level beside the surface or in a triangle that faces away from it.
@@ -94,7 +156,7 @@ impl Splitter<'_> {
     }
 
     /// The trees of a vertex that was moved; none if it was not.
-    fn move_one(&self, points: &mut [Point], place: Place, smooth: bool) -> Vec<u32> {
+    fn move_one(&self, points: &mut [Point], place: Place, smooth: bool, turn: &dyn Fn(Point, &[Wing]) -> f64) -> Vec<u32> {
         let spots: Vec<(u32, LatticePoint)> = match place {
             Place::Vertex(v) => {
                 let around = &self.topology.around[v as usize];
@@ -116,7 +178,7 @@ impl Splitter<'_> {
             Place::Edge(edge, s) if !self.topology.edges[edge as usize].smooth => self.along_line(points, edge, s),
             _ => self.choices(now, &wings, patch, smooth),
         };
-        let Some(point) = best(now, choices, &wings) else { return Vec::new() };
+        let Some(point) = best(now, choices, &wings, turn) else { return Vec::new() };
         spots.iter().for_each(|&spot| points[index(spot)] = point);
         spots.into_iter().map(|spot| spot.0).collect()
     }
@@ -161,13 +223,13 @@ impl Splitter<'_> {
     }
 }
 
-/// The best of `choices`, if it is better than `now`.
-fn best(now: Point, choices: Vec<Point>, wings: &[Wing]) -> Option<Point> {
-    let scored = choices.into_iter().map(|c| (c, turn_away(c, wings)));
-    let (best, turn) = scored.min_by(|a, b| a.1.total_cmp(&b.1))?;
-    let turn_now = turn_away(now, wings);
-    let arrives = is_beside(&now) && !is_beside(&best) && turn <= turn_now;
-    (arrives || turn < turn_now - LEAST).then_some(best)
+/// The best of `choices` by how far triangles `turn` away, if it is better than `now`.
+fn best(now: Point, choices: Vec<Point>, wings: &[Wing], turn: &dyn Fn(Point, &[Wing]) -> f64) -> Option<Point> {
+    let scored = choices.into_iter().map(|c| (c, turn(c, wings)));
+    let (best, least) = scored.min_by(|a, b| a.1.total_cmp(&b.1))?;
+    let turn_now = turn(now, wings);
+    let arrives = is_beside(&now) && !is_beside(&best) && least <= turn_now;
+    (arrives || least < turn_now - LEAST).then_some(best)
 }
 
 fn is_beside(p: &Point) -> bool {

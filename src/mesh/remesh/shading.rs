@@ -1,16 +1,28 @@
-//! Normals of the finest level: those of the points of the original that its vertices stand for. And which triangles are folded.
+//! Normals of the finest level: those of the points of the original that its vertices stand for.
 
 use super::super::distance::Vec3;
-use super::super::lattice::{self, LatticePoint};
+use super::super::lattice;
 use super::source::Source;
 use super::split::{Forest, triangles};
 use super::topology::Topology;
 use rayon::prelude::*;
 
+/// Cosine of the angle between a vertex's normal and its faces from which the original has a bump there: 60 degrees.
+const BUMP: f64 = 0.5;
+
 /// One unit normal for each lattice point, interpolated from `corner_normals` of the original's triangles.
 ///
 /// A point on a crease has one normal in each tree, that of the tree's side.
-pub(super) fn shade(source: &Source, topology: &Topology, forest: &Forest, corner_normals: &[[[f32; 3]; 3]]) -> Vec<[f32; 3]> {
+///
+/// Where the mesh has no normals of its own (`own_normals`), a triangle of the original that turns away from the faces of the result is a bump
+/// smaller than these: a sliver of a scan, for instance, whose normal would darken all triangles around the vertex that lies on it.
+pub(super) fn shade(
+    source: &Source,
+    topology: &Topology,
+    forest: &Forest,
+    corner_normals: &[[[f32; 3]; 3]],
+    own_normals: bool,
+) -> Vec<[f32; 3]> {
     let (levels, len) = (forest.levels, lattice::len(forest.levels));
     let mut normals = vec![[0.0; 3]; forest.positions.len()];
     normals.par_chunks_exact_mut(len).enumerate().for_each(|(t, normals)| {
@@ -22,12 +34,19 @@ pub(super) fn shade(source: &Source, topology: &Topology, forest: &Forest, corne
                     forest.origin(t * len + i).or_else(|| one_side(source, topology.patches[t], forest.positions[t * len + i], faces[i]))
                 }
             };
-            let smooth = found.map(|(triangle, w)| {
+            let smooth = found.and_then(|(triangle, w)| {
                 let corners = corner_normals[triangle as usize];
-                (0..3).map(|k| Vec3::from(corners[k].map(f64::from)) * w[k]).sum::<Vec3>()
+                (0..3).map(|k| Vec3::from(corners[k].map(f64::from)) * w[k]).sum::<Vec3>().try_normalize()
             });
+            let face = faces[i].try_normalize();
             // Normals that cancel out leave the face's, or any.
-            let unit = smooth.and_then(Vec3::try_normalize).or(faces[i].try_normalize()).unwrap_or(Vec3::Z);
+            let unit = match (smooth, face) {
+                (Some(smooth), Some(face)) if !own_normals && smooth.dot(face) < BUMP => {
+                    let around = found.map(|(triangle, barycentrics)| source.normal_at(triangle, barycentrics));
+                    around.filter(|around| around.dot(face) > BUMP).unwrap_or(face)
+                }
+                _ => smooth.or(face).unwrap_or(Vec3::Z),
+            };
             *normal = unit.to_array().map(|v| v as f32);
         }
     });
@@ -57,27 +76,6 @@ fn one_side(source: &Source, patch: u32, p: Vec3, face: Vec3) -> Option<(u32, [f
         .or_else(|| source.target.closest(p, near, ours))
         .or_else(|| source.target.closest(p, 1e9, ours))?;
     Some((hit.triangle, hit.barycentrics))
-}
-
-/// Finest triangles of tree `t` that face away from the original at their corners. A tree that is a triangle of the original faces as that does.
-pub(super) fn flipped(topology: &Topology, forest: &Forest, t: usize) -> u64 {
-    if topology.own[t].is_some() {
-        return 0;
-    }
-    triangles(1 << forest.levels, 1).filter(|&corners| is_flipped(forest, t, corners)).count() as u64
-}
-
-/// A flipped triangle of tree `t`, for its place.
-pub(super) fn first_flipped(forest: &Forest, t: usize) -> Option<Vec3> {
-    let at = |p| forest.positions[t * lattice::len(forest.levels) + lattice::index(forest.levels, p)];
-    triangles(1 << forest.levels, 1).find(|&corners| is_flipped(forest, t, corners)).map(|[p, _, _]| at(p))
-}
-
-fn is_flipped(forest: &Forest, t: usize, corners: [LatticePoint; 3]) -> bool {
-    let [a, b, c] = corners.map(|p| t * lattice::len(forest.levels) + lattice::index(forest.levels, p));
-    let at = |i: usize| forest.positions[i];
-    let surface: Vec3 = [a, b, c].into_iter().map(|i| forest.surface_normal(i)).sum();
-    (at(b) - at(a)).cross(at(c) - at(a)).dot(surface) < 0.0
 }
 
 /// For each triangle of the finest level one of the original near it, in the order of [`finest_corners`]; `u32::MAX` where none is known.

@@ -114,8 +114,13 @@ impl Source {
 
     /// The smooth unit normal at a point of the surface.
     pub fn normal(&self, hit: &Hit) -> Vec3 {
-        let t = hit.triangle as usize;
-        let sum: Vec3 = (0..3).map(|k| self.wedge_normal[self.wedges[t][k] as usize] * hit.barycentrics[k]).sum();
+        self.normal_at(hit.triangle, hit.barycentrics)
+    }
+
+    /// The same for a triangle and barycentrics on it.
+    pub fn normal_at(&self, triangle: u32, barycentrics: [f64; 3]) -> Vec3 {
+        let t = triangle as usize;
+        let sum: Vec3 = (0..3).map(|k| self.wedge_normal[self.wedges[t][k] as usize] * barycentrics[k]).sum();
         sum.try_normalize().unwrap_or(self.face_normal[t])
     }
 }

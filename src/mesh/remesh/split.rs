@@ -23,6 +23,8 @@ const CRUSHED: f64 = 0.01;
 pub(super) struct Forest {
     pub levels: u32,
     pub positions: Vec<Vec3>,
+    /// For each tree the middles of finest triangles that face away from the original.
+    pub flipped: Vec<Vec<Vec3>>,
     points: Vec<Point>,
 }
 
@@ -84,9 +86,10 @@ pub(super) fn split(source: &Source, topology: &Topology, levels: u32, progress:
         splitter.unfold(&mut points);
         splitter.settle(&mut points);
     }
+    let flipped = splitter(1).straighten(&mut points);
     progress("levels", levels.into(), levels.into());
     let positions = points.par_iter().map(|p| p.position).collect();
-    Forest { levels, positions, points }
+    Forest { levels, positions, flipped, points }
 }
 
 /// One level's split.
@@ -265,11 +268,6 @@ impl Splitter<'_> {
 }
 
 impl Forest {
-    /// Normals of the original at all lattice points, zero on feature lines.
-    pub fn surface_normal(&self, i: usize) -> Vec3 {
-        self.points[i].normal
-    }
-
     /// The triangle of the original and the barycentrics of the point that a lattice point stands for, if they are known.
     pub fn origin(&self, i: usize) -> Option<(u32, [f64; 3])> {
         let point = &self.points[i];
