@@ -373,7 +373,7 @@ fn a_scene_pruned_for_a_region_serves_all_rays_from_there() {
     rays("out.npy", 6.1, 0.02);
     rays("thin.npy", 5.0, 1e-4);
     let cast = |scene: &str| desk.run(&format!("cast {scene}.lod in.npy -o {scene}.npy"));
-    assert!(["ball", "small"].iter().all(|scene| cast(scene).contains("1 rays, 1 hit")));
+    assert!(["ball", "small"].iter().all(|scene| cast(scene).contains("1 ray, 1 hit")));
     assert!(desk.bytes("ball.npy") == desk.bytes("small.npy"));
     desk.run("simulate small.lod --machine haydel2023 --rays in.npy --method lod");
     let refused = |args: &str, words: &[&str]| desk.refused(args, 1, &[&["pruned for rays from a region"], words].concat());
