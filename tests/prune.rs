@@ -393,7 +393,7 @@ fn a_scene_pruned_for_a_region_serves_all_rays_from_there() {
         desk.refused("plan --job wrong.toml", 1, &words);
     }
     desk.write("bad.toml", &desk.text("plan.toml").replace("delta = \"1\"", "delta = \"one\""));
-    desk.refused("prune ball.lod --plan bad.toml -o no.lod", 1, &["regions: delta must be"]);
+    desk.refused("prune ball.lod --plan bad.toml -o no.lod", 1, &["regions.sphere[0].delta must be"]);
     assert!(!desk.path("no.lod").exists() && !desk.path("no").exists());
 }
 
