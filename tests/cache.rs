@@ -62,7 +62,7 @@ fn results_are_the_same_with_and_without() {
         "render a.lod --method bvh --leaf-layout indexed --leaf-size 1 --size 40x30 --json -o out",
         "render a.lod --method bvh6 --size 40x30 --json -o out",
         SHOT,
-        "lines a.lod --size 24x16 --distances 1,4 --bvh32 --json",
+        "lines a.lod --size 24x16 --distances 1,4 --all --json",
     ]
     .into_iter()
     .enumerate()

@@ -151,7 +151,7 @@ fn render_with_every_method() {
 fn lines_by_distance() {
     let desk = empty();
     desk.run("generate terrain --levels 3 --base 32 -o a.lod");
-    let report = desk.json("lines a.lod --distances 1.5,6 --size 32x32 --bvh32");
+    let report = desk.json("lines a.lod --distances 1.5,6 --size 32x32 --all");
     assert_eq!(report["distances"], serde_json::json!([1.5, 6.0]));
     assert_eq!(report["rows"].as_array().unwrap().len(), 2 + 48);
     for field in ["ratio", "base_share", "mean_level"] {

@@ -16,9 +16,14 @@ const LAYOUTS: [&str; 4] = ["Indexed", "Packed", "Line", "Block"];
 fn every_layout_has_the_lines_of_its_own_frame() {
     let folder = tempfile::tempdir().unwrap();
     json(folder.path(), "generate terrain --levels 3 --base 128 --json -o a.lod");
-    let report = json(folder.path(), "lines a.lod --distances 1.5,5 --size 45x37 --bvh32 --json");
+    let report = json(folder.path(), "lines a.lod --distances 1.5,5 --size 45x37 --all --json");
     let rows = report["rows"].as_array().unwrap();
     assert_eq!(rows.len(), 2 + 36 + 12);
+    // Without `--all`, the three of these that need least.
+    let few = json(folder.path(), "lines a.lod --distances 1.5,5 --size 45x37 --json");
+    let few = few["rows"].as_array().unwrap();
+    assert_eq!(few.len(), 2 + 3);
+    assert!(few.iter().all(|row| rows.contains(row)));
     for (method, bits) in
         [("bvh --node-boxes local", "BVH 5"), ("bvh6", "BVH6 8"), ("bvh --node-boxes codes", "BVH 16"), ("bvh32", "BVH 32")]
     {

@@ -10,12 +10,16 @@ use rayon::prelude::*;
 /// Cosine of the angle between a vertex's normal and its faces from which the original has a bump there: 60 degrees.
 const BUMP: f64 = 0.5;
 
+/// The normal across the original's edges is the better one if its cosine is greater by this.
+const BETTER: f64 = 0.2;
+
 /// One unit normal for each lattice point, interpolated from `corner_normals` of the original's triangles.
 ///
 /// A point on a crease has one normal in each tree, that of the tree's side.
 ///
 /// Where the mesh has no normals of its own (`own_normals`), a triangle of the original that turns away from the faces of the result is a bump
-/// smaller than these: a sliver of a scan, for instance, whose normal would darken all triangles around the vertex that lies on it.
+/// smaller than these: a sliver of a scan, for instance, whose normal would darken all triangles around the vertex that lies on it. There the
+/// normal is that of the surface around, bounded by feature lines alone, or the faces'.
 pub(super) fn shade(
     source: &Source,
     topology: &Topology,
@@ -39,11 +43,12 @@ pub(super) fn shade(
                 (0..3).map(|k| Vec3::from(corners[k].map(f64::from)) * w[k]).sum::<Vec3>().try_normalize()
             });
             let face = faces[i].try_normalize();
+            let around = found.map(|(triangle, barycentrics)| source.normal_at(triangle, barycentrics));
             // Normals that cancel out leave the face's, or any.
-            let unit = match (smooth, face) {
-                (Some(smooth), Some(face)) if !own_normals && smooth.dot(face) < BUMP => {
-                    let around = found.map(|(triangle, barycentrics)| source.normal_at(triangle, barycentrics));
-                    around.filter(|around| around.dot(face) > BUMP).unwrap_or(face)
+            let unit = match (smooth, around, face) {
+                (Some(smooth), Some(around), Some(face)) if !own_normals => {
+                    let best = if around.dot(face) > smooth.dot(face) + BETTER { around } else { smooth };
+                    if best.dot(face) < BUMP { face } else { best }
                 }
                 _ => smooth.or(face).unwrap_or(Vec3::Z),
             };
