@@ -18,8 +18,7 @@ package lod_pkg;
   localparam int unsigned SETUP_BITS = 3;           // of each reciprocal that ray_setup finds, likewise
   localparam int unsigned BOXES_PER_CYCLE = 2;      // boxes that child_test tests in a cycle, if its parameter does not say otherwise
   localparam int unsigned LINK_REGISTERS = 0;       // between contexts and blocks: 0, 1 for operands, or 2 for results and answers of memory too
-  localparam int unsigned INDEX_W = 28;             // of the number of a quad-BVH node, of a tree, and of a node, where it is kept
-  localparam int unsigned LINE_W = 28;              // of the numbers of a tree's first sibling group and vertex line
+  localparam int unsigned INDEX_W = 28;             // of the number of a quad-BVH node, of a tree and its place, and of a node, where it is kept
   localparam int unsigned LOD_TEST = 1;             // levels of detail are chosen, and triangles morphed: 1, or 0 if all rays are of full detail or of none
   localparam int unsigned START_RADIUS = 1;         // cones can have a radius where their rays start
   localparam int unsigned HIT_MAPPING = 1;          // hits can be above the finest level
@@ -568,14 +567,15 @@ package lod_pkg;
   // Input of node_address.
   typedef struct packed {
     logic [LINE_ADDRESS_W-1:0] base;  // First line of the section.
-    logic [27:0] first;               // The tree's first line in it; 0 outside of trees.
+    logic [27:0] first;               // Lines of it before the first record.
+    logic [27:0] start;               // First record of the level; 0 outside of trees.
+    logic [27:0] place;               // The tree's place among those of the level; 0 outside of trees.
     logic [3:0] level;                // Level of the node within its tree; 0 outside of trees.
-    logic [27:0] index;               // Number of the record on its level.
-    logic pair;                       // Records have two lines.
-    logic halves;                     // Records have half a line.
-    logic half;                       // The second line of a pair; else 0.
+    logic [27:0] index;               // Number of the record in its tree on its level.
+    logic [1:0] scale;                // Records have 2^scale lines.
+    logic [1:0] low;                  // Which of them.
   } node_address_in_t;
-  localparam int unsigned NODE_ADDRESS_IN_W = LINE_ADDRESS_W + 28 + 4 + 28 + 1 + 1 + 1;
+  localparam int unsigned NODE_ADDRESS_IN_W = LINE_ADDRESS_W + 28 + 28 + 28 + 4 + 28 + 2 + 2;
 
   // Output of node_address.
   typedef struct packed {
@@ -719,8 +719,8 @@ package lod_pkg;
   // Second line of an L0 record.
   typedef struct packed {
     logic [3:0] depth;            // Levels of the tree that are stored, 0 to N: below them is nothing that a ray could want.
-    logic [27:0] group;           // Number of its first sibling group.
-    logic [27:0] vertices;        // Number of its first line of inserted vertices.
+    logic [27:0] place;           // Its place among the trees of each level (`layout.rs`).
+    logic [27:0] reserved;        // Zero.
     logic [27:0] source;          // Number of the base triangle in the mesh that the scene was made of.
     logic [15:0] material;        // Material index.
     logic [BOUND_CODE_W-1:0] e0;  // Code of edge (p1, p2) of the root; zero if depth is 0, like the others.
@@ -769,10 +769,12 @@ package lod_pkg;
     logic [LINE_ADDRESS_W-1:0] records;       // First line of the L0 records.
     logic [LINE_ADDRESS_W-1:0] bounds;        // First line of the bound data.
     logic [LINE_ADDRESS_W-1:0] vertices;      // First line of the vertex data.
+    logic [7:0][27:0] starts;                 // First sibling group of each level from 1 on.
+    logic [27:0] roots;                       // Trees that split: where exact vertices of inner nodes begin in the vertex data.
     logic [31:0] visits;                      // The most entries that a ray can visit: quad-BVH nodes, trees, and nodes of trees. A ray that would visit more is in a loop.
     logic [ANSWER_LIMIT_W-1:0] answer_limit;  // Cycles, less one, after which a line that is waited for counts as late if it has not come in as many more.
   } scene_config_t;
-  localparam int unsigned SCENE_CONFIG_W = 4 + 5 + 1 + BOUND_SCALE_W + LINE_ADDRESS_W + LINE_ADDRESS_W + LINE_ADDRESS_W + LINE_ADDRESS_W + 32 + ANSWER_LIMIT_W;
+  localparam int unsigned SCENE_CONFIG_W = 4 + 5 + 1 + BOUND_SCALE_W + LINE_ADDRESS_W + LINE_ADDRESS_W + LINE_ADDRESS_W + LINE_ADDRESS_W + 8 * 28 + 28 + 32 + ANSWER_LIMIT_W;
 
   // A ray to trace.
   typedef struct packed {

@@ -124,11 +124,11 @@ module ray_context (
   lod_pkg::kept_direction_t direction_q;
   lod_pkg::kept_setup_t     setup_q;
 
-  // Where it is: entry under visit; tree, how many of its levels are stored, its first sibling group and vertex line; node; its triangle with inserted vertices, at full resolution (f, g) and as morphed (p, q); bound codes and edge states.
+  // Where it is: entry under visit; tree, how many of its levels are stored, its place among those of each level; node; its triangle with inserted vertices, at full resolution (f, g) and as morphed (p, q); bound codes and edge states.
   logic [lod_pkg::KEPT_ENTRY_W-1:0] entry_q;
   lod_pkg::stack_entry_t            entry;
   logic [lod_pkg::INDEX_W-1:0]      tree_q;
-  logic [lod_pkg::LINE_W-1:0]       group, vertices;
+  logic [lod_pkg::INDEX_W-1:0]      place;
   logic [3:0]                       depth, level;
   logic [NODE_W-1:0]                node;
   lod_pkg::kept_point_t             f0, f1, f2, g0, g1, g2, p0, p1, p2, q0, q1, q2;
@@ -290,22 +290,33 @@ module ray_context (
   // Vertices before the group.
   assign fetch_place_o   = want_q[1] && (fetch_q == lod_pkg::VERTEX || !want_q[0]);
 
+  // Vertices lie as the groups do that their nodes are in.
+  logic        above;
+  logic [27:0] whole_node;
+  assign above      = fetch_place_o && level != '0;
+  assign whole_node = 28'(node);
+
   always_comb begin
     fetch_o       = '0;
     fetch_o.index = entry.index;
     case (fetch_q)
       lod_pkg::NODE: fetch_o.base = scene_i.nodes;
       lod_pkg::RECORD: begin
-        fetch_o.base = scene_i.records;
-        fetch_o.pair = 1'b1;
-        fetch_o.half = fetch_place_o;
+        fetch_o.base  = scene_i.records;
+        fetch_o.scale = 2'd1;
+        fetch_o.low   = {1'b0, fetch_place_o};
       end
       default: begin
-        fetch_o.base   = fetch_place_o ? scene_i.vertices : scene_i.bounds;
-        fetch_o.first  = 28'(fetch_place_o ? vertices : group);
-        fetch_o.level  = level;
-        fetch_o.index  = 28'(node);
-        fetch_o.halves = fetch_place_o && compact;
+        fetch_o.base  = fetch_place_o ? scene_i.vertices : scene_i.bounds;
+        fetch_o.place = 28'(place);
+        fetch_o.level = above ? level - 4'd1 : level;
+        fetch_o.index = above ? whole_node >> 2 : whole_node;
+        for (int unsigned k = 0; k < 8; k++) if (fetch_o.level == 4'(k + 1)) fetch_o.start = scene_i.starts[k];
+        if (above) begin
+          fetch_o.first = compact ? '0 : scene_i.roots;
+          fetch_o.scale = compact ? 2'd1 : 2'd2;
+          fetch_o.low   = compact ? {1'b0, whole_node[1]} : whole_node[1:0];
+        end
       end
     endcase
   end
@@ -464,11 +475,11 @@ module ray_context (
   logic record_there;
   assign record_there = want_q == '0 && waiting_q == '0;
 
-  // An L0 record that no scene of this configuration has: deeper, with lines beyond the bits that are kept of them, or with corners where there is none.
-  logic too_deep, lines_beyond, wrong_record, misplaced_q;
+  // An L0 record that no scene of this configuration has: deeper, with a place beyond the bits that are kept of it, or with corners where there is none.
+  logic too_deep, place_beyond, wrong_record, misplaced_q;
   assign too_deep     = record.depth > scene_i.levels || record.depth > 4'(lod_pkg::STORED_LEVELS);
-  assign lines_beyond = record.depth != '0 && (record.group | record.vertices) >> lod_pkg::LINE_W != '0;
-  assign wrong_record = too_deep || lines_beyond || misplaced_q;
+  assign place_beyond = record.depth != '0 && record.place >> lod_pkg::INDEX_W != '0;
+  assign wrong_record = too_deep || place_beyond || misplaced_q;
 
   // Inserted vertices likewise; a displacement can lead anywhere.
   logic wrong_vertices;
@@ -679,13 +690,13 @@ module ray_context (
 
   // Level, node, bound codes and what else only trees with splits have. A root has level and node 0, and its record's codes; a node those of its entry.
   if (SPLITTING) begin : g_place
-    logic [lod_pkg::LINE_W-1:0] group_q, vertices_q;
-    logic [3:0]                 depth_q;
+    logic [lod_pkg::INDEX_W-1:0] place_q;
+    logic [3:0]                  depth_q;
 
     always_ff @(posedge clk_i) begin
-      if (enter_root) {depth_q, group_q, vertices_q} <= {record.depth, lod_pkg::LINE_W'(record.group), lod_pkg::LINE_W'(record.vertices)};
+      if (enter_root) {depth_q, place_q} <= {record.depth, lod_pkg::INDEX_W'(record.place)};
     end
-    assign {depth, group, vertices} = {depth_q, group_q, vertices_q};
+    assign {depth, place} = {depth_q, place_q};
 
     // An entry is kept with its codes where trees have nodes: those of a root take the place of its own, which are 0.
     if (SPLITS > 0) begin : g_nodes
@@ -713,9 +724,9 @@ module ray_context (
     end
   end else begin : g_base
     logic unused_split;
-    assign {depth, group, vertices, level, node} = '0;
-    assign {e0, e1, e2, g0, g1, g2}              = '0;
-    assign unused_split                          = ^g_now;
+    assign {depth, place, level, node} = '0;
+    assign {e0, e1, e2, g0, g1, g2}    = '0;
+    assign unused_split                = ^g_now;
   end
 
   // The inserted vertices as morphed, and the states of the triangle's edges.

@@ -114,7 +114,7 @@ fn one_lowered_code_is_found(kind: BoundKind) {
             lowered += 1;
         }
         for place in 0..9 {
-            let at = 32 * good.tree_lines(tree).child_group(0, 0);
+            let at = 32 * good.level_starts().child_group(good.tree_lines(tree), 0, 0);
             let report = damaged(&good, BOUNDS, |b| change(b, at, |r: &mut SiblingGroup| lower(&mut r.codes[place])));
             found_by(&report, "bounds cover the true displacement");
             lowered += 1;
@@ -203,8 +203,8 @@ fn each_damage_is_found_by_its_check() {
     let levels = 6;
     let good = scene(&octahedron(levels));
     assert!(audit(&good).passed());
-    let group = 32 * good.tree_lines(3).child_group(1, 2);
-    let line = |level, node| 32 * good.tree_lines(5).vertex_line(VertexForm::Exact, level, node);
+    let group = 32 * good.level_starts().child_group(good.tree_lines(3), 1, 2);
+    let line = |level, node| 32 * good.level_starts().vertex_line(VertexForm::Exact, good.tree_lines(5), level, node);
 
     // Bit 4 of a coordinate, the lowest that is stored: no vertex of level 1 of 6 may have it.
     let nudge = |r: &mut VertexData| r.v1 = Vec3::new(r.v1.x.get() ^ 1, r.v1.y.get(), r.v1.z.get());
@@ -223,10 +223,9 @@ fn each_damage_is_found_by_its_check() {
     assert!(refused(NODES, &|b| change(b, 0, least)).contains("box inside out"));
     let place = |f: fn(&mut L0Record)| refused(RECORDS, &|b| change(b, 64 * 5 + 32, f));
     assert!(place(|r| r.depth = U::new(7)).contains("depth of tree 5 is 7"));
-    assert!(place(|r| r.depth = U::new(5)).contains("tree 6 has group"));
-    assert!(place(|r| r.group = U::new(r.group.get() + 1)).contains("tree 5 has group"));
-    assert!(place(|r| r.vertices = U::ZERO).contains("tree 5 has group"));
-    // The last tree: nothing comes behind it but the end of the sections.
+    assert!(place(|r| r.depth = U::new(5)).contains("place of tree 5 is 5, by the depths of all it is 7"));
+    assert!(place(|r| r.place = U::new(r.place.get() + 1)).contains("place of tree 5 is 6, by the depths of all it is 5"));
+    // The last tree keeps its place: only the ends of the sections tell.
     let last = |r: &mut L0Record| r.depth = U::new(5);
     assert!(refused(RECORDS, &|b| change(b, 64 * 7 + 32, last)).contains("but the trees have"));
 
@@ -234,6 +233,7 @@ fn each_damage_is_found_by_its_check() {
     found_by(&damaged(&good, VERTICES, |b| change(b, line(2, 1), |r: &mut VertexData| r.reserved = U::new(1))), reserved);
     found_by(&damaged(&good, BOUNDS, |b| change(b, group, |r: &mut SiblingGroup| r.reserved = U::new(1))), reserved);
     found_by(&damaged(&good, RECORDS, |b| b[31] |= 0x80), reserved);
+    found_by(&damaged(&good, RECORDS, |b| change(b, 32, |r: &mut L0Record| r.reserved = U::new(1))), reserved);
     // Exact vertices leave no displacements in the records.
     found_by(&damaged(&good, RECORDS, |b| b[64 + 32] = 1), reserved);
     found_by(&damaged(&good, NODES, |b| change(b, 0, |r: &mut BvhNode| r.reserved = U::new(1))), reserved);
@@ -266,7 +266,7 @@ fn each_damage_to_compact_vertices_is_found() {
     let levels = 4;
     let good = scene_with(&octahedron(levels), BoundKind::Largest, VertexForm::Compact);
     assert!(audit(&good).passed());
-    let half = |level, node| 32 * good.tree_lines(5).vertex_line(VertexForm::Compact, level, node) + 16 * (node % 2);
+    let half = |level, node| 32 * good.level_starts().vertex_line(VertexForm::Compact, good.tree_lines(5), level, node) + 16 * (node % 2);
     let record = 64 * 5 + 32;
     let nudge = |r: &mut Displacements| r.v1 = Vec3::new(r.v1.x.get() ^ 1, r.v1.y.get(), r.v1.z.get());
 
@@ -292,7 +292,7 @@ fn each_damage_to_compact_vertices_is_found() {
     let report = damaged(&good, RECORDS, |b| change(b, record, raise));
     found_by(&report, "all trees that share an edge hold the same code");
     let raise = |r: &mut SiblingGroup| r.codes[2] = U::new(r.codes[2].get() + 16);
-    let group = 32 * good.tree_lines(5).child_group(1, 2);
+    let group = 32 * good.level_starts().child_group(good.tree_lines(5), 1, 2);
     found_by(&damaged(&good, BOUNDS, |b| change(b, group, raise)), inside);
     // A displacement beyond what its code says, where its vertex is read first.
     let longest = |r: &mut Displacements| r.v0 = Vec3::new(-4096, r.v0.y.get(), r.v0.z.get());
@@ -346,7 +346,7 @@ fn finer_codes_above_coarser_are_found() {
     let good = scene(&s);
     assert!(audit(&good).passed());
     // e_0 of child 0 and of the centre child.
-    let group = 32 * good.tree_lines(0).child_group(0, 0);
+    let group = 32 * good.level_starts().child_group(good.tree_lines(0), 0, 0);
     let report = damaged(&good, BOUNDS, |b| change(b, group, |r: &mut SiblingGroup| r.codes[0] = U::new(255)));
     found_by(&report, "codes do not grow towards finer levels");
     assert_eq!(report.check("both sides of an edge hold the same code").unwrap().breaches, 0);

@@ -123,19 +123,25 @@ fn trees_are_as_deep_as_their_codes() {
         for (form, kind) in VertexForm::ALL.into_iter().flat_map(|form| BoundKind::ALL.map(|kind| (form, kind))) {
             let (h, scene) = (quantise(&surface, kind, form, 0).unwrap(), scene_with(&surface, kind, form));
             let (mut groups, mut lines) = (0, 0);
+            let mut depths = Vec::new();
             for tree in 0..scene.trees() {
                 let source = scene.record(tree).source.get() as usize;
                 let zero = |level: u32| {
                     (0..1u32 << (2 * level)).all(|node| h.node_codes(source, level, lattice::node(h.levels, level, node)) == [0; 3])
                 };
                 let depth = (0..=h.levels).find(|&level| (level..h.levels).all(zero)).unwrap();
-                let stored = scene.tree_lines(tree);
-                assert_eq!((stored.depth, stored.group, stored.vertices), (depth, groups, lines), "tree {tree}");
                 let inner: usize = (0..depth).map(|level| 1 << (2 * level)).sum();
                 let own = (0..depth.saturating_sub(1)).map(|level| 1 << (2 * level)).sum::<usize>();
                 groups += own;
                 lines += if form.is_compact() { 2 * own } else { inner };
                 seen[depth as usize] += 1;
+                depths.push(depth);
+            }
+            for (tree, &depth) in depths.iter().enumerate() {
+                // Behind all deeper ones, and those as deep before it.
+                let place = depths.iter().enumerate().filter(|&(other, of)| *of > depth || *of == depth && other < tree).count();
+                let stored = scene.tree_lines(tree);
+                assert_eq!((stored.depth, stored.place), (depth, place), "tree {tree}");
             }
             assert_eq!((scene.bounds().len(), scene.vertices().len()), (groups, lines));
         }
@@ -169,33 +175,40 @@ impl Words<'_> {
         std::array::from_fn(|v| std::array::from_fn(|c| 16 * field(v, c)))
     }
 
-    /// How many levels of the tree are stored, and its first group and vertex line.
-    fn stored(&self, tree: usize) -> [usize; 3] {
-        [[255, 252], [251, 224], [223, 196]].map(|field| bits(self.sections[2], 64, tree, field.map(|bit| 256 + bit)) as usize)
+    /// How many levels of the tree are stored, and its place.
+    fn stored(&self, tree: usize) -> [usize; 2] {
+        [[255, 252], [251, 224]].map(|field| bits(self.sections[2], 64, tree, field.map(|bit| 256 + bit)) as usize)
+    }
+
+    /// The group of the children of a node.
+    fn group(&self, tree: usize, level: usize, node: usize) -> usize {
+        let deeper = |m: usize| (0..self.sections[2].len() / 64).filter(|&tree| self.stored(tree)[0] > m).count();
+        let first: usize = (0..level).map(|m| 4usize.pow(m as u32) * deeper(m + 1)).sum();
+        first + 4usize.pow(level as u32) * self.stored(tree)[1] + node
     }
 
     /// Codes of e0, e1, e2.
     fn codes(&self, tree: usize, level: usize, node: usize) -> [u64; 3] {
-        let [depth, first, _] = self.stored(tree);
+        let [depth, _] = self.stored(tree);
         if level >= depth {
             return [0; 3];
         }
         if level == 0 {
             return [151, 143, 135].map(|high| bits(self.sections[2], 64, tree, [256 + high, 256 + high - 7]));
         }
-        let group = first + (4usize.pow(level as u32 - 1) - 1) / 3 + node / 4;
+        let group = self.group(tree, level - 1, node / 4);
         let places = [[0, 1, 2], [3, 4, 5], [6, 7, 8], [0, 4, 8]][node % 4];
         places.map(|place| bits(self.sections[3], 32, group, [190 + 8 * place, 183 + 8 * place]))
     }
 
     fn inserted(&self, tree: usize, level: usize, node: usize, p: [[i64; 3]; 3]) -> [[i64; 3]; 3] {
-        let before = (4usize.pow(level as u32) - 1) / 3 + node;
-        let [depth, _, first] = self.stored(tree);
+        let [depth, place] = self.stored(tree);
         if level >= depth {
             return std::array::from_fn(|v| std::array::from_fn(|c| (p[(v + 1) % 3][c] + p[(v + 2) % 3][c]) / 2));
         }
         if !self.compact {
-            let line = first + before;
+            let splitting = (0..self.sections[2].len() / 64).filter(|&tree| self.stored(tree)[0] > 0).count();
+            let line = if level == 0 { place } else { splitting + 4 * self.group(tree, level - 1, node / 4) + node % 4 };
             let field = |v: usize, c: usize| signed(self.sections[4], 32, line, [251 - 84 * v - 28 * c, 224 - 84 * v - 28 * c]);
             return std::array::from_fn(|v| std::array::from_fn(|c| 16 * field(v, c)));
         }
@@ -207,7 +220,7 @@ impl Words<'_> {
                 let d = if level == 0 {
                     signed(self.sections[2], 64, tree, at.map(|bit| 256 + bit))
                 } else {
-                    signed(self.sections[4], 16, 2 * first + before - 1, at)
+                    signed(self.sections[4], 16, 4 * self.group(tree, level - 1, node / 4) + node % 4, at)
                 };
                 (p[(v + 1) % 3][c] + p[(v + 2) % 3][c]) / 2 + d * (1 << exponent)
             })
@@ -320,10 +333,10 @@ fn truncated_long_foreign_and_newer_files_are_refused() {
     assert!(open(b"").unwrap_err().contains("magic"));
     assert!(open(b"solid ascii\nfacet normal 0 0 1").unwrap_err().contains("magic"));
     let mut newer = good.clone();
-    newer[8] = 4;
+    newer[8] = 5;
     lodray_test_support::surfaces::reseal(&mut newer);
     assert!(open(&newer).unwrap_err().contains("newer"));
-    for version in [1, 2] {
+    for version in [1, 2, 3] {
         let mut older = good.clone();
         older[8] = version;
         lodray_test_support::surfaces::reseal(&mut older);

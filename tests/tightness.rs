@@ -235,7 +235,7 @@ impl<'a> Lod<'a> {
     /// A node's inserted vertices as they are stored, and how many lines they are.
     fn stored(&self, TriangleId { tree, level, node }: TriangleId) -> ([Point; 3], u64) {
         let (tree, image) = (tree as usize, &self.image);
-        let line = || &image.vertices[self.lines(tree).vertex_line(image.form, level, node as usize)];
+        let line = || &image.vertices[image.starts.vertex_line(image.form, self.lines(tree), level, node as usize)];
         match image.form {
             VertexForm::Exact => (VertexData::from_words(line()).points(), 1),
             // With the record.
@@ -275,7 +275,7 @@ impl<'a> Lod<'a> {
         let stored = &self.trees[level as usize + 1][first..first + 4];
         let boxes: [Option<Bounds>; 4] =
             std::array::from_fn(|k| Some(stored[k].with(Bounds::around(corners[k][1].map(|p| p.get())).at_codes())));
-        let group = SiblingGroup::from_words(&self.image.bounds[lines.child_group(level, node as usize)]);
+        let group = SiblingGroup::from_words(&self.image.bounds[self.image.starts.child_group(lines, level, node as usize)]);
         walk.children(boxes, |walk, k| self.tree_node(walk, below(k), corners[k], group.codes_of(k)));
     }
 }

@@ -1,8 +1,7 @@
 //! Address of a memory line of a record (`docs/scene-format.md`).
 //!
-//! With i = (4^level - 1) / 3 + index: base + first + i for one-line records, base + first + 2i + half for two-line ones, base + first + (i - 1) / 2, rounded down, for records of half a
-//! line, of which the first level has none. Records outside of trees have first and level 0.
-//! Legal: level <= 9, above 0 for records of half a line; below 2^36, which the size of the sections keeps. Of an image that no scene has the sum wraps there.
+//! Record g = start + 4^level place + index, modulo 2^28, of 2^scale lines each: base + first + 2^scale g + low. Records outside of trees have start, place and level 0.
+//! Legal: level <= 8, index < 4^level or place 0, scale <= 2, low < 2^scale; below 2^36, which the size of the sections keeps. Of an image that no scene has the sums wrap there.
 
 use super::parts::{Parts, Registers, TAG};
 use super::{Block, Form, Timing};
@@ -13,18 +12,20 @@ wire_struct! {
     pub struct In {
         /// First line of the section.
         base: LineAddress,
-        /// The tree's first line in it; 0 outside of trees.
+        /// Lines of it before the first record.
         first: U<28>,
+        /// First record of the level; 0 outside of trees.
+        start: U<28>,
+        /// The tree's place among those of the level; 0 outside of trees.
+        place: U<28>,
         /// Level of the node within its tree; 0 outside of trees.
         level: U<4>,
-        /// Number of the record on its level.
+        /// Number of the record in its tree on its level.
         index: U<28>,
-        /// Records have two lines.
-        pair: bool,
-        /// Records have half a line.
-        halves: bool,
-        /// The second line of a pair; else 0.
-        half: bool,
+        /// Records have 2^scale lines.
+        scale: U<2>,
+        /// Which of them.
+        low: U<2>,
     }
 }
 
@@ -45,24 +46,20 @@ impl Block for NodeAddress {
     type In = In;
     type Out = Out;
     fn parts(_: &Form) -> Parts {
-        // A record's number: a level's start below 2^18 and 28 bits of index; of two-line records twice that.
-        const RECORD: u32 = 29;
-        let (line, address) = (RECORD + 1, LineAddress::WIDTH);
+        // A record's number has 28 bits; of four-line records four times that.
+        const RECORD: u32 = 28;
+        // Nine levels' shifts, three scales.
+        const SHIFTS: u32 = 4;
+        let (line, address) = (RECORD + 2, LineAddress::WIDTH);
         let registers = Registers::stage(line + address + TAG) + Registers::stage(address + TAG);
-        Parts { products: vec![], add_bits: RECORD + 2 * address, select_bits: 2 * line, registers }
+        Parts { products: vec![], add_bits: RECORD + 2 * address, select_bits: SHIFTS * RECORD + 2 * line, registers }
     }
     #[inline(always)]
     fn eval(i: &In) -> Out {
-        // (4^n - 1) / 3 = binary 0101..01 with n ones: below 2^17 for n <= 9.
-        let start = 0x5_5555 & ((1 << (2 * i.level.get())) - 1);
-        let record = start + i.index.get();
-        let line = if i.pair {
-            2 * record + u64::from(i.half)
-        } else if i.halves {
-            (record - 1) >> 1
-        } else {
-            record
-        };
+        const RECORDS: u64 = (1 << 28) - 1;
+        // The index has no bits where the place has.
+        let record = (i.start.get() + (i.place.get() << (2 * i.level.get()) | i.index.get())) & RECORDS;
+        let line = record << i.scale.get() | i.low.get();
         Out { address: LineAddress::wrapping(i.base.get() + i.first.get() + line) }
     }
 }
@@ -75,16 +72,30 @@ mod tests {
 
     #[test]
     fn agrees_with_the_layout() {
-        for level in 0..=9u32 {
+        let (trees, starts) = layout::places(&[3, 10, 0, 10, 1, 9, 4]);
+        for (tree, level) in trees.iter().flat_map(|&tree| (0..tree.depth).map(move |level| (tree, level))) {
             for node in [0, 1, (1usize << (2 * level)) - 1].into_iter().filter(|&node| node < 1 << (2 * level)) {
-                let (level_in, index) = (U::new(u64::from(level)), U::new(node as u64));
-                let input = In { base: U::new(60), first: U::new(40), level: level_in, index, pair: false, halves: false, half: false };
-                let line = |input: &In| NodeAddress::eval(input).address.get() as usize;
-                assert_eq!(line(&input), 100 + layout::vertex_line(VertexForm::Exact, 0, level, node));
-                assert_eq!(line(&input), 100 + layout::child_group(0, level, node));
-                assert_eq!(line(&In { pair: true, half: true, ..input }), 101 + 2 * layout::child_group(0, level, node));
+                let group = |level: u32, node: usize| In {
+                    base: U::new(100),
+                    start: U::new(starts.level(level as usize) as u64),
+                    place: U::new(tree.place as u64),
+                    level: U::new(u64::from(level)),
+                    index: U::new(node as u64),
+                    ..In::default()
+                };
+                let line = |input: &In| NodeAddress::eval(input).address.get() as usize - 100;
+                if level + 1 < tree.depth {
+                    assert_eq!(line(&group(level, node)), starts.child_group(tree, level, node));
+                }
                 if level > 0 {
-                    assert_eq!(line(&In { halves: true, ..input }), 100 + layout::vertex_line(VertexForm::Compact, 0, level, node));
+                    let siblings = group(level - 1, node / 4);
+                    let compact = In { scale: U::new(1), low: U::new(node as u64 / 2 % 2), ..siblings };
+                    assert_eq!(line(&compact), starts.vertex_line(VertexForm::Compact, tree, level, node));
+                    let first = U::new(starts.roots() as u64);
+                    let exact = In { first, scale: U::new(2), low: U::new(node as u64 % 4), ..siblings };
+                    assert_eq!(line(&exact), starts.vertex_line(VertexForm::Exact, tree, level, node));
+                } else {
+                    assert_eq!(line(&group(0, 0)), starts.vertex_line(VertexForm::Exact, tree, 0, 0));
                 }
             }
         }

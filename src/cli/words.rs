@@ -36,6 +36,10 @@ Words of the table:
   waits, cycles       in a bank's queue; before a full queue; banks without a
                       free miss register; on the crossbar between L1 and L2;
                       each summed over all that waited
+  cold, capacity,     misses of the L2 of lines read for the first time; that
+  conflict            a fully associative one would have too; that it would not
+  busiest set, bank   different lines of a set of the L2, and requests to a bank
+                      of DRAM, over the mean of all
   row hits            DRAM requests that found their row open; row misses: none
                       was open; row conflicts: another had to be closed first
   contexts            a place for one ray in flight; the shares say what they

@@ -37,7 +37,7 @@ impl Scene {
             let L0Record { e0, e1, e2, .. } = self.record(tree);
             [e0, e1, e2]
         } else {
-            SiblingGroup::line_codes(&self.bounds()[lines.child_group(level - 1, node >> 2)], node & 3)
+            SiblingGroup::line_codes(&self.bounds()[self.starts.child_group(lines, level - 1, node >> 2)], node & 3)
         };
         let [e0, e1, e2] = codes;
         [e0.get() as u8, e1.get() as u8, e2.get() as u8] // 8 bits
@@ -52,7 +52,7 @@ impl Scene {
             let middle = |a: [i32; 3], b: [i32; 3]| std::array::from_fn(|c| displaced(a[c], b[c], 0, 0));
             return [middle(p[1], p[2]), middle(p[2], p[0]), middle(p[0], p[1])];
         }
-        let line = |level| &self.vertices()[lines.vertex_line(meta.vertices, level, node)];
+        let line = |level| &self.vertices()[self.starts.vertex_line(meta.vertices, lines, level, node)];
         let steps = match (meta.vertices, level) {
             (VertexForm::Exact, _) => return VertexData::from_words(line(level)).points().map(units),
             (VertexForm::Compact, 0) => self.record(tree).split,

@@ -1,8 +1,9 @@
 //! Hierarchy to memory images, in parallel, straight into the image of the file.
 
+use super::layout::{self, LevelStarts};
 use super::scene::Image;
 use super::sections::{COUNT, FileSection, HEADER, checksum, place, write_header};
-use super::{Box16, Displacements, L0Record, Line, Meta, Scene, SceneError, SiblingGroup, TreeLines, VertexData, colour, layout, normal};
+use super::{Box16, Displacements, L0Record, Line, Meta, Scene, SceneError, SiblingGroup, TreeLines, VertexData, colour, normal};
 use crate::mesh::compact::{inserted_zero_bits, steps_of};
 use crate::mesh::lattice::{self, LatticePoint};
 use crate::mesh::{BoundKind, Hierarchy, Surface, SurfaceError, quantise};
@@ -92,15 +93,18 @@ pub fn encode(hierarchy: &Hierarchy, surface: &Surface, info: SceneInfo, bvh: &T
     if order.len() != trees || !order.iter().all(once) {
         return Err(SceneError::Build("quad-BVH does not hold every tree once".into()));
     }
+    let depths: Vec<u32> = order.par_iter().map(|&tree| hierarchy.depth(tree as usize)).collect();
+    let (trees_lines, starts) = layout::places(&depths);
+    if starts.groups() > 1 << 28 {
+        return Err(SceneError::Build(format!("{} sibling groups, more than 2^28: fewer splits or trees are needed", starts.groups())));
+    }
     let meta = meta(hierarchy, surface, info);
     let json = serde_json::to_vec(&meta).map_err(|e| SceneError::Build(format!("META: {e}")))?;
-    let depths: Vec<u32> = order.par_iter().map(|&tree| hierarchy.depth(tree as usize)).collect();
-    let (trees_lines, end) = tree_lines(meta.vertices, &depths);
     let lengths = FileSection::ALL.map(|section| match section {
         FileSection::Meta => json.len(),
         FileSection::Nodes => size_of_val(nodes.as_slice()),
-        FileSection::Bounds => size_of::<Line>() * end.group,
-        FileSection::Vertices => size_of::<Line>() * end.vertices,
+        FileSection::Bounds => size_of::<Line>() * starts.groups(),
+        FileSection::Vertices => size_of::<Line>() * starts.vertex_lines(meta.vertices),
         FileSection::Colours => 4 * surface.colours.len(),
         _ => Scene::section_lengths(&meta, section).unwrap_or(usize::MAX / 16), // too large to be had
     });
@@ -132,7 +136,7 @@ pub fn encode(hierarchy: &Hierarchy, surface: &Surface, info: SceneInfo, bvh: &T
     images.write(hierarchy, &surface.materials, order, &trees_lines)?;
 
     debug_assert_eq!(trees, meta.trees as usize);
-    Ok(sealed(image, ranges, meta))
+    Ok(sealed(image, ranges, meta, starts))
 }
 
 /// An image of sections of these lengths, all zero, and where they are.
@@ -144,29 +148,12 @@ pub(super) fn new_image(lengths: [usize; COUNT]) -> Result<(MmapMut, [Range<usiz
 }
 
 /// The scene of an image whose sections are filled: checksums and header are written.
-pub(super) fn sealed(mut image: MmapMut, ranges: [Range<usize>; COUNT], meta: Meta) -> Scene {
+pub(super) fn sealed(mut image: MmapMut, ranges: [Range<usize>; COUNT], meta: Meta, starts: LevelStarts) -> Scene {
     let mut sums = [0; COUNT];
     sums.par_iter_mut().zip(&ranges).for_each(|(sum, range)| *sum = checksum(&image[range.clone()]));
     let total = image.len();
     write_header(&mut image[..HEADER], total, &ranges, &sums);
-    Scene { image: Image::Owned(image), ranges, meta }
-}
-
-/// What is stored of trees of these depths, in their order; and where another's lines would begin.
-pub(super) fn tree_lines(form: VertexForm, depths: &[u32]) -> (Vec<TreeLines>, TreeLines) {
-    let mut next = TreeLines::default();
-    let mut place = |depth| {
-        let lines = TreeLines { depth, ..next };
-        next = lines.next(form);
-        lines
-    };
-    let all = depths.iter().map(|&depth| place(depth)).collect();
-    (all, next)
-}
-
-/// A first group or line of a tree has no number.
-pub(super) fn too_many_lines(tree: usize) -> SceneError {
-    SceneError::Build(format!("sibling groups or vertex lines of tree {tree} begin behind 2^28 others: fewer splits or trees are needed"))
+    Scene { image: Image::Owned(image), ranges, meta, starts }
 }
 
 fn meta(h: &Hierarchy, surface: &Surface, info: SceneInfo) -> Meta {
@@ -221,14 +208,38 @@ fn write_normals(surface: &Surface, order: &[u32], out: &mut [u32]) -> Result<()
     })
 }
 
-/// Lines in parts of these lengths.
-fn cut(mut lines: &mut [Line], lengths: impl Iterator<Item = usize>) -> Vec<&mut [Line]> {
-    let part = |length| {
-        let (part, rest) = std::mem::take(&mut lines).split_at_mut(length);
-        lines = rest;
-        part
-    };
-    lengths.map(part).collect()
+/// The parts of a section that belong to each tree, one for each of its levels: `lines(level)` of them, level by level in the order of the trees' places; of trees with
+/// a level where `has(depth, level)`.
+fn parts<'a>(
+    mut section: &'a mut [Line],
+    stored: &[TreeLines],
+    has: impl Fn(u32, u32) -> bool,
+    lines: impl Fn(u32) -> usize,
+) -> Vec<Vec<&'a mut [Line]>> {
+    let mut by_place: Vec<usize> = (0..stored.len()).collect();
+    by_place.sort_unstable_by_key(|&tree| stored[tree].place);
+    let mut parts: Vec<Vec<&mut [Line]>> = stored.iter().map(|tree| Vec::with_capacity(tree.depth as usize)).collect();
+    for level in 0..=layout::GROUP_LEVELS as u32 {
+        for &tree in by_place.iter().take_while(|&&tree| has(stored[tree].depth, level)) {
+            let (part, rest) = std::mem::take(&mut section).split_at_mut(lines(level));
+            parts[tree].push(part);
+            section = rest;
+        }
+    }
+    parts
+}
+
+/// The groups of each tree by the level of the nodes whose children they hold.
+pub(super) fn group_parts<'a>(section: &'a mut [Line], stored: &[TreeLines]) -> Vec<Vec<&'a mut [Line]>> {
+    parts(section, stored, |depth, level| level + 1 < depth, |level| 1 << (2 * level))
+}
+
+/// The vertex lines of each tree by level; of compact ones the first are those of level 1.
+pub(super) fn vertex_parts<'a>(form: VertexForm, section: &'a mut [Line], stored: &[TreeLines]) -> Vec<Vec<&'a mut [Line]>> {
+    match form {
+        VertexForm::Exact => parts(section, stored, |depth, level| level < depth, |level| 1 << (2 * level)),
+        VertexForm::Compact => parts(section, stored, |depth, level| level + 1 < depth, |level| 2 << (2 * level)),
+    }
 }
 
 /// The images of all trees.
@@ -241,8 +252,8 @@ struct Images<'a> {
 impl Images<'_> {
     /// Fills the record, sibling groups and vertices of every tree, of which so much is stored; the first is tree `order[0]` of the hierarchy.
     fn write(self, h: &Hierarchy, materials: &[u16], order: &[u32], stored: &[TreeLines]) -> Result<(), SceneError> {
-        let groups = cut(self.groups, stored.iter().map(|lines| lines.groups()));
-        let lines = cut(self.vertices, stored.iter().map(|lines| lines.vertex_lines(h.vertices)));
+        let groups = group_parts(self.groups, stored);
+        let lines = vertex_parts(h.vertices, self.vertices, stored);
         let trees = self.records.par_iter_mut().zip(order).zip(stored).zip(groups.into_par_iter().zip(lines));
         let bad = trees.find_map_first(|(((record, &tree), &stored), (groups, lines))| {
             let index = tree as usize;
@@ -252,8 +263,7 @@ impl Images<'_> {
                 material: U::new(u64::from(materials.get(index).copied().unwrap_or(0))),
                 ..L0Record::default()
             };
-            let Some(second) = source.of_tree(stored) else { return Some(too_many_lines(index)) };
-            writer.record(second, record);
+            writer.record(source.of_tree(stored), record);
             (!writer.fits).then(|| SceneError::Build(format!("tree {tree} has a vertex that its compact form cannot hold")))
         });
         bad.map_or(Ok(()), Err)
@@ -267,8 +277,10 @@ struct TreeWriter<'a> {
     tree: usize,
     /// Levels that are stored.
     depth: u32,
-    groups: &'a mut [Line],
-    lines: &'a mut [Line],
+    /// By level.
+    groups: Vec<&'a mut [Line]>,
+    /// By level.
+    lines: Vec<&'a mut [Line]>,
     /// Compact vertices are what the hierarchy has.
     fits: bool,
 }
@@ -305,14 +317,13 @@ impl TreeWriter<'_> {
             return span(p.map(|c| self.at(c)));
         }
         let q = lattice::midpoints(p).map(|c| self.at(c));
-        let number = layout::level_start(level) + node;
         match self.h.vertices {
-            VertexForm::Exact => VertexData::from_points(q).to_words(&mut self.lines[number]),
+            VertexForm::Exact => VertexData::from_points(q).to_words(&mut self.lines[level as usize][node]),
             // The root's are in its record.
             VertexForm::Compact if level == 0 => (),
             VertexForm::Compact => {
                 let half = self.displacements(level, p);
-                half.to_words(&mut self.lines[(number - 1) / 2][2 * (node & 1)..][..2]);
+                half.to_words(&mut self.lines[level as usize - 1][node / 2][2 * (node & 1)..][..2]);
             }
         }
         if level + 1 == self.depth {
@@ -320,7 +331,7 @@ impl TreeWriter<'_> {
         }
         let children: [_; 4] = std::array::from_fn(|k| lattice::child(p, k as u32)); // k < 4
         let spans: [Span; 4] = std::array::from_fn(|k| self.node(level + 1, 4 * node + k, children[k]));
-        self.group(level + 1, children, &spans).to_words(&mut self.groups[number]);
+        self.group(level + 1, children, &spans).to_words(&mut self.groups[level as usize][node]);
         spans.into_iter().fold(spans[0], join)
     }
 

@@ -2,7 +2,7 @@
 
 use super::scene::Image;
 use super::sections::{FileSection, checksum, read_header};
-use super::{BvhNode, ChildRef, L0Record, Meta, Scene, SceneError, TreeLines, VertexData, write_and_rename};
+use super::{BvhNode, ChildRef, L0Record, LevelStarts, Meta, Scene, SceneError, VertexData, layout, write_and_rename};
 use crate::mesh::most_zeros;
 use crate::num::{
     COORD_LIMIT, LINE_BYTES, MAX_BOUND_OFFSET, MAX_BVH_DEPTH, MAX_LEVELS, MOST_DIRECTION_ZEROS, PADDING_BITS, VertexForm, Wire,
@@ -74,36 +74,39 @@ impl Scene {
                 return Err(format!("section {}: length {length} is not a multiple of {size}", section.name()));
             }
         }
-        let scene = Self { image, ranges, meta };
-        scene.check_trees()?;
+        let mut scene = Self { image, ranges, meta, starts: LevelStarts::default() };
+        scene.starts = scene.check_trees()?;
         scene.check_indices()?;
         scene.check_values()?;
         Ok(scene)
     }
 
-    /// Sibling groups and vertices follow each other tree by tree, as many as the trees' depths say.
-    fn check_trees(&self) -> Result<(), String> {
+    /// Trees have their places, and as many sibling groups and vertices as their depths say; gives where levels begin.
+    fn check_trees(&self) -> Result<LevelStarts, String> {
         let (levels, form) = (self.levels(), self.meta.vertices);
-        let mut next = TreeLines::default();
-        for tree in 0..self.trees() {
-            let lines = self.tree_lines(tree);
-            if lines.depth > levels {
-                return Err(format!("section RECORDS: depth of tree {tree} is {}, above {levels} splits", lines.depth));
-            }
-            if (lines.group, lines.vertices) != (next.group, next.vertices) {
-                return Err(format!(
-                    "section RECORDS: tree {tree} has group {} and vertices {} as its first, and {} and {} are",
-                    lines.group, lines.vertices, next.group, next.vertices
-                ));
-            }
-            next = lines.next(form);
+        let depths = self.depths();
+        if let Some(tree) = depths.iter().position(|&depth| depth > levels) {
+            return Err(format!("section RECORDS: depth of tree {tree} is {}, above {levels} splits", depths[tree]));
         }
-        for (name, found, expected) in [("BOUNDS", self.bounds().len(), next.group), ("VERTICES", self.vertices().len(), next.vertices)] {
+        let (trees, starts) = layout::places(&depths);
+        if let Some((tree, own)) = trees.iter().enumerate().find(|&(tree, own)| *own != self.tree_lines(tree)) {
+            return Err(format!(
+                "section RECORDS: place of tree {tree} is {}, by the depths of all it is {}",
+                self.tree_lines(tree).place,
+                own.place
+            ));
+        }
+        for (name, found, expected) in
+            [("BOUNDS", self.bounds().len(), starts.groups()), ("VERTICES", self.vertices().len(), starts.vertex_lines(form))]
+        {
             if found != expected {
                 return Err(format!("section {name}: {found} lines, but the trees have {expected}"));
             }
         }
-        Ok(())
+        if starts.groups() > 1 << 28 {
+            return Err(format!("section BOUNDS: {} sibling groups, more than 2^28", starts.groups()));
+        }
+        Ok(starts)
     }
 
     /// Coordinates and frames are what the blocks take for granted, so that no width overflows.

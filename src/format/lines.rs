@@ -10,9 +10,8 @@
 //!
 //! The full-resolution BVHs with 16-bit boxes have nodes of four [`BvhChild`], 64 bytes.
 
-use super::layout;
 pub use crate::num::Box16;
-use crate::num::{BoundCode, BoxStep, Displacement, PADDING_BITS, Point, S, U, Vec3, VertexForm, Wire, box_steps, wire_struct};
+use crate::num::{BoundCode, BoxStep, Displacement, PADDING_BITS, Point, S, U, Vec3, Wire, box_steps, wire_struct};
 
 /// A memory line.
 pub type Line = [u64; 4];
@@ -120,10 +119,10 @@ wire_struct! {
     pub struct L0Record {
         /// Levels of the tree that are stored, 0 to N: below them is nothing that a ray could want.
         depth: U<4>,
-        /// Number of its first sibling group.
-        group: U<28>,
-        /// Number of its first line of inserted vertices.
-        vertices: U<28>,
+        /// Its place among the trees of each level (`layout.rs`).
+        place: U<28>,
+        /// Zero.
+        reserved: U<28>,
         /// Number of the base triangle in the mesh that the scene was made of.
         source: U<28>,
         /// Material index.
@@ -161,47 +160,13 @@ wire_struct! {
     }
 }
 
-/// What of a tree is stored, and from where on.
+/// What of a tree is stored, and where.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct TreeLines {
     /// Levels of it: all nodes of that level serve every ray, and none below is stored.
     pub depth: u32,
-    /// Its first sibling group.
-    pub group: usize,
-    /// Its first line of inserted vertices.
-    pub vertices: usize,
-}
-
-impl TreeLines {
-    /// Where the lines of the next tree begin, none of whose levels is stored yet.
-    #[must_use]
-    pub fn next(self, form: VertexForm) -> Self {
-        Self { depth: 0, group: self.group + self.groups(), vertices: self.vertices + self.vertex_lines(form) }
-    }
-
-    /// How many sibling groups it has.
-    #[inline]
-    pub fn groups(self) -> usize {
-        layout::sibling_groups(self.depth)
-    }
-
-    /// How many lines of inserted vertices.
-    #[inline]
-    pub fn vertex_lines(self, form: VertexForm) -> usize {
-        layout::vertex_lines(form, self.depth)
-    }
-
-    /// The sibling group of the children of node (`level`, `node`); `level` below the depth - 1.
-    #[inline(always)]
-    pub fn child_group(self, level: u32, node: usize) -> usize {
-        layout::child_group(self.group, level, node)
-    }
-
-    /// The vertex line of node (`level`, `node`); `level` below the depth, and not 0 if vertices are compact.
-    #[inline(always)]
-    pub fn vertex_line(self, form: VertexForm, level: u32, node: usize) -> usize {
-        layout::vertex_line(form, self.vertices, level, node)
-    }
+    /// Its place among the trees of each level ([`LevelStarts`](super::LevelStarts)).
+    pub place: usize,
 }
 
 impl L0Record {
@@ -209,15 +174,13 @@ impl L0Record {
     #[inline(always)]
     pub fn line_tree(line: &[u64]) -> TreeLines {
         const NUMBER: u64 = (1 << 28) - 1;
-        let [group, vertices] = [line[3] >> 32 & NUMBER, line[3] >> 4 & NUMBER].map(|first| first as usize); // 28 bits
-        TreeLines { depth: (line[3] >> 60) as u32, group, vertices } // 4 bits
+        TreeLines { depth: (line[3] >> 60) as u32, place: (line[3] >> 32 & NUMBER) as usize } // 4 and 28 bits
     }
 
-    /// The record of a tree of which this is stored; none if a number does not fit.
+    /// The record of a tree of which this is stored.
     #[must_use]
-    pub fn of_tree(self, lines: TreeLines) -> Option<Self> {
-        let number = |first: usize| (first < 1 << 28).then(|| U::new(first as u64));
-        Some(Self { depth: U::new(lines.depth.into()), group: number(lines.group)?, vertices: number(lines.vertices)?, ..self })
+    pub fn of_tree(self, lines: TreeLines) -> Self {
+        Self { depth: U::new(lines.depth.into()), place: U::new(lines.place as u64), ..self }
     }
 }
 
@@ -490,14 +453,6 @@ mod tests {
     }
 
     #[test]
-    fn a_tree_begins_where_28_bits_can_say() {
-        let last = (1 << 28) - 1;
-        let of = |group, vertices| L0Record::default().of_tree(TreeLines { depth: 10, group, vertices });
-        assert_eq!(of(last, last).map(|record| (record.group.get(), record.vertices.get())), Some((last as u64, last as u64)));
-        assert!(of(last + 1, 0).is_none() && of(0, last + 1).is_none());
-    }
-
-    #[test]
     fn vertex_lines_give_their_points_back() {
         let p = [[16, -32, 0x7FFE_0000], [-0x7FFE_0000, 0, 48], [1 << 20, -(1 << 20), 160]];
         let mut line = [0u64; 4];
@@ -522,7 +477,7 @@ mod tests {
         fn parts_of_lines_are_the_fields(line in prop::array::uniform4(any::<u64>())) {
             let (group, node) = (SiblingGroup::from_words(&line), BvhNode::from_words(&line));
             let (record, lines) = (L0Record::from_words(&line), L0Record::line_tree(&line));
-            prop_assert_eq!(record.of_tree(lines), Some(record));
+            prop_assert_eq!(record.of_tree(lines), record);
             for axis in 0..3 {
                 let step = |half: [bool; 3], exponents: [U<4>; 3]| BoxStep { half: half[axis], exponent: exponents[axis].get() as u32 };
                 prop_assert_eq!(SiblingGroup::line_steps(&line)[axis], step(group.halves, group.exponents));

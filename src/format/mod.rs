@@ -23,6 +23,7 @@ pub use decode::child_corners;
 pub use encode::{SceneInfo, TreeBvh, build, encode, tree_boxes};
 pub use export::{ExportCounts, export_level};
 pub use job::JobView;
+pub use layout::LevelStarts;
 pub use lines::{Box16, BvhChild, BvhNode, ChildRef, Displacements, L0Record, Line, SiblingGroup, SixNode, TreeLines, VertexData};
 pub use normal::{decode_normal, encode_normal};
 pub use region::{Beyond, Job, JobRegion};

@@ -1,15 +1,15 @@
-//! A scene with fewer levels of its trees: what is stored of a tree is breadth first, so that a part of it is its beginning.
+//! A scene with fewer levels of its trees.
 
-use super::encode::{new_image, sealed, too_many_lines, tree_lines};
+use super::encode::{group_parts, new_image, sealed, vertex_parts};
 use super::sections::FileSection;
-use super::{Displacements, Job, Line, Scene, SceneError};
+use super::{Displacements, Job, Line, Scene, SceneError, layout};
 use crate::num::{BoundCode, Wire};
 
 impl Scene {
     /// Bytes of L0 records, sibling groups and vertices of trees of these depths.
     pub fn bytes_of(&self, depths: &[u32]) -> u64 {
-        let (_, end) = tree_lines(self.meta().vertices, depths);
-        (size_of_val(self.records()) + size_of::<Line>() * (end.group + end.vertices)) as u64
+        let (_, starts) = layout::places(depths);
+        (size_of_val(self.records()) + size_of::<Line>() * (starts.groups() + starts.vertex_lines(self.meta().vertices))) as u64
     }
 
     /// The same scene with at most so many levels of each tree, for these rays alone: none of them goes deeper.
@@ -23,7 +23,7 @@ impl Scene {
         assert_eq!(depths.len(), self.trees());
         let depths: Vec<u32> = self.depths().into_iter().zip(depths).map(|(stored, &depth)| stored.min(depth)).collect();
         let form = self.meta().vertices;
-        let (trees, end) = tree_lines(form, &depths);
+        let (trees, starts) = layout::places(&depths);
         let mut meta = self.meta().clone();
         (meta.job, meta.regions) = (job.views, job.regions);
         meta.without_normals |= job.unshaded;
@@ -31,8 +31,8 @@ impl Scene {
         let json = serde_json::to_vec(&meta).map_err(|e| SceneError::Build(format!("META: {e}")))?;
         let lengths = FileSection::ALL.map(|section| match section {
             FileSection::Meta => json.len(),
-            FileSection::Bounds => size_of::<Line>() * end.group,
-            FileSection::Vertices => size_of::<Line>() * end.vertices,
+            FileSection::Bounds => size_of::<Line>() * starts.groups(),
+            FileSection::Vertices => size_of::<Line>() * starts.vertex_lines(form),
             FileSection::Normals => normals.len(),
             _ => self.section(section).len(),
         });
@@ -44,7 +44,7 @@ impl Scene {
                 FileSection::Records => {
                     for (tree, (record, &lines)) in bytemuck::cast_slice_mut::<u8, [u64; 8]>(out).iter_mut().zip(&trees).enumerate() {
                         *record = self.records()[tree];
-                        let mut second = self.record(tree).of_tree(lines).ok_or_else(|| too_many_lines(tree))?;
+                        let mut second = self.record(tree).of_tree(lines);
                         if lines.depth == 0 {
                             [second.e0, second.e1, second.e2] = [BoundCode::ZERO; 3];
                             second.split = Displacements::default();
@@ -54,13 +54,20 @@ impl Scene {
                 }
                 FileSection::Bounds | FileSection::Vertices => {
                     let out: &mut [Line] = bytemuck::cast_slice_mut(out);
-                    for (tree, lines) in trees.iter().enumerate() {
-                        let whole = self.tree_lines(tree);
-                        if section == FileSection::Bounds {
-                            out[lines.group..][..lines.groups()].copy_from_slice(&self.bounds()[whole.group..][..lines.groups()]);
-                        } else {
-                            let count = lines.vertex_lines(form);
-                            out[lines.vertices..][..count].copy_from_slice(&self.vertices()[whole.vertices..][..count]);
+                    let groups = section == FileSection::Bounds;
+                    let (parts, whole) =
+                        if groups { (group_parts(out, &trees), self.bounds()) } else { (vertex_parts(form, out, &trees), self.vertices()) };
+                    // Compact vertices begin at level 1.
+                    let top = u32::from(!groups && form.is_compact());
+                    for (tree, parts) in parts.into_iter().enumerate() {
+                        for (part, level) in parts.into_iter().zip(top..) {
+                            let tree = self.tree_lines(tree);
+                            let first = if groups {
+                                self.starts.child_group(tree, level, 0)
+                            } else {
+                                self.starts.vertex_line(form, tree, level, 0)
+                            };
+                            part.copy_from_slice(&whole[first..][..part.len()]);
                         }
                     }
                 }
@@ -68,6 +75,6 @@ impl Scene {
                 _ => out.copy_from_slice(self.section(section)),
             }
         }
-        Ok(sealed(image, ranges, meta))
+        Ok(sealed(image, ranges, meta, starts))
     }
 }

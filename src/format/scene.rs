@@ -1,7 +1,7 @@
 //! A scene: one byte image, owned or mapped from its file, read through typed slices.
 
 use super::sections::{COUNT, FileSection};
-use super::{JobRegion, JobView, L0Record, Line, TreeLines, normal};
+use super::{JobRegion, JobView, L0Record, LevelStarts, Line, TreeLines, normal};
 use crate::mesh::{BoundKind, Placement, SurfaceError, lattice};
 use crate::num::{BoundScale, LINE_BYTES, U, VertexForm};
 use memmap2::{Mmap, MmapMut};
@@ -125,6 +125,7 @@ pub struct Scene {
     pub(super) image: Image,
     pub(super) ranges: [Range<usize>; COUNT],
     pub(super) meta: Meta,
+    pub(super) starts: LevelStarts,
 }
 
 impl Scene {
@@ -161,10 +162,16 @@ impl Scene {
         bytemuck::cast_slice(self.section(FileSection::Records))
     }
 
-    /// What of a tree is stored, and from where on.
+    /// What of a tree is stored, and where.
     #[inline]
     pub fn tree_lines(&self, tree: usize) -> TreeLines {
         L0Record::line_tree(&self.records()[tree][4..])
+    }
+
+    /// Where the levels of all trees begin in [`Self::bounds`] and [`Self::vertices`].
+    #[inline]
+    pub fn level_starts(&self) -> &LevelStarts {
+        &self.starts
     }
 
     /// How many levels of each tree are stored.
@@ -179,12 +186,12 @@ impl Scene {
         trees
     }
 
-    /// Sibling groups ([`super::SiblingGroup`]), where [`TreeLines::child_group`] says.
+    /// Sibling groups ([`super::SiblingGroup`]), where [`LevelStarts::child_group`] says.
     pub fn bounds(&self) -> &[Line] {
         bytemuck::cast_slice(self.section(FileSection::Bounds))
     }
 
-    /// Inserted vertices ([`super::VertexData`] or two [`super::Displacements`]), where [`TreeLines::vertex_line`] says.
+    /// Inserted vertices ([`super::VertexData`] or two [`super::Displacements`]), where [`LevelStarts::vertex_line`] says.
     pub fn vertices(&self) -> &[Line] {
         bytemuck::cast_slice(self.section(FileSection::Vertices))
     }

@@ -6,7 +6,7 @@ use xxhash_rust::xxh3::xxh3_64;
 /// First bytes of every scene file; the line ends show a transfer as text.
 pub const MAGIC: [u8; 8] = *b"LODRAY\r\n";
 /// Version that this program writes, and the only one that it reads.
-pub const VERSION: u32 = 3;
+pub const VERSION: u32 = 4;
 /// Alignment of sections in bytes.
 pub const ALIGN: usize = 64;
 

@@ -16,7 +16,7 @@ const WORD: f64 = 4.0;
 const CONTROL: f64 = 250.0;
 
 /// The logic of a context, without registers and memories: of the default, as measured. Less hardware has less.
-const CONTEXT_LOGIC: f64 = 13_114.0;
+const CONTEXT_LOGIC: f64 = 13_555.0;
 
 /// Gate equivalents of a memory.
 fn memory_gates(memory: &Memory) -> f64 {

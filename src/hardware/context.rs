@@ -128,7 +128,7 @@ impl Hardware {
 
     /// State, ray, constants; the entry under visit, the node and what was found out about it; children and triangles to come.
     fn place(&self) -> u32 {
-        let tree = self.index_bits + if self.stored_levels() > 0 { LEVEL + 2 * self.line_bits } else { 0 };
+        let tree = self.index_bits + if self.stored_levels() > 0 { LEVEL + self.index_bits } else { 0 };
         // Where entries have them, level, node and codes are the entry's.
         let place = if self.stored_levels() > 0 && self.split_triangles() == 0 { 3 * BoundCode::WIDTH } else { 0 };
         let lod = if self.chooses_levels() { lod_test::Out::WIDTH } else { 0 };

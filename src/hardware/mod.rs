@@ -58,8 +58,6 @@ pub struct Hardware {
     pub link_registers: u32,
     /// Bits of the number of a quad-BVH node, of a tree, and of a node within its level, as a context keeps them: at most 28.
     pub index_bits: u32,
-    /// Bits of the numbers of a tree's first sibling group and vertex line: at most 28.
-    pub line_bits: u32,
     /// Levels of detail are chosen. Without it there is no LOD test and no morph, and rays are of full detail or of none ([`Cone::is_of_no_detail`](crate::num::Cone::is_of_no_detail)).
     pub lod_test: bool,
     /// Cones can have a radius where their rays start.
@@ -111,7 +109,6 @@ impl Hardware {
         boxes_per_cycle: BoxesPerCycle::Two,
         link_registers: 0,
         index_bits: MOST_INDEX_BITS,
-        line_bits: MOST_INDEX_BITS,
         lod_test: true,
         start_radius: true,
         hit_mapping: true,
@@ -166,7 +163,6 @@ impl Hardware {
             ("setup_bits", u64::from(self.setup_bits), 1, u64::from(MOST_DIVIDE_BITS)),
             ("link_registers", u64::from(self.link_registers), 0, 2),
             ("index_bits", u64::from(self.index_bits), u64::from(self.node_bits()), u64::from(MOST_INDEX_BITS)),
-            ("line_bits", u64::from(self.line_bits), 1, u64::from(MOST_INDEX_BITS)),
             ("compact_vertices", u64::from(self.compact_vertices), u64::from(!self.exact_vertices), 1),
             // A ray that starts on a surface has all bits.
             ("coordinate_zeros", u64::from(self.coordinate_zeros), 0, u64::from(if self.secondary { 0 } else { BOX_SHIFT })),

@@ -29,10 +29,21 @@ wire_struct! {
         bounds: LineAddress,
         /// First line of the vertex data.
         vertices: LineAddress,
+        /// First sibling group of each level from 1 on.
+        starts: [U<28>; 8],
+        /// Trees that split: where exact vertices of inner nodes begin in the vertex data.
+        roots: U<28>,
         /// The most entries that a ray can visit: quad-BVH nodes, trees, and nodes of trees. A ray that would visit more is in a loop.
         visits: U<32>,
         /// Cycles, less one, after which a line that is waited for counts as late if it has not come in as many more.
         answer_limit: AnswerLimit,
+    }
+}
+
+impl SceneConfig {
+    /// First sibling group of a level.
+    pub fn start(&self, level: u64) -> U<28> {
+        (level as usize).checked_sub(1).and_then(|at| self.starts.get(at)).copied().unwrap_or(U::ZERO) // four bits
     }
 }
 

@@ -163,12 +163,11 @@ impl Plan {
 
     /// A hardware with no more of these than the plan needs.
     fn features(&self, hardware: &Hardware) -> Hardware {
-        let SceneNeeds { bvh_node_bits, tree_bits, line_bits, compact, exact, .. } = self.scene;
+        let SceneNeeds { bvh_node_bits, tree_bits, compact, exact, .. } = self.scene;
         let any = RayNeeds { lod_test: true, hit_mapping: self.scene.levels > 0, start_radius: true, ..RayNeeds::default() };
         let rays = self.rays.unwrap_or(any);
         Hardware {
             index_bits: bvh_node_bits.max(tree_bits).clamp(hardware.node_bits(), hardware.index_bits),
-            line_bits: line_bits.clamp(1, hardware.line_bits),
             lod_test: rays.lod_test && hardware.lod_test,
             start_radius: rays.start_radius && hardware.start_radius,
             hit_mapping: rays.hit_mapping && hardware.hit_mapping,

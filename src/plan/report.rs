@@ -127,8 +127,7 @@ pub fn savings(plan: &Plan, full: &Hardware, data: Option<&Data>) -> Vec<Saving>
     table.bits("number of a quad-BVH node", [scene.bvh_node_bits, 28], "so many are there");
     table.bits("number of a tree", [scene.tree_bits, 28], "so many are there");
     table.add(Part::Numbers, "number of either, or of a node", [own.index_bits, 28], "the larger of both", index);
-    let line = besides(Hardware { line_bits: full.line_bits, ..own });
-    table.add(Part::Numbers, "number of a memory line", [scene.line_bits, 32], "so many have the scene's sections", line);
+    table.bits("number of a memory line", [scene.line_bits, 32], "so many have the scene's sections");
     table.bits("coordinate", [scene.coordinate_bits, 32], "none is larger");
     table.bits("box code of a frame", [scene.frame_bits, 16], "none is larger");
     table.bits("plane of a quad-BVH node", [scene.node_plane_bits, 5], "none is larger");

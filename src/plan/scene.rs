@@ -149,7 +149,7 @@ impl Met {
         if meta.vertices == VertexForm::Compact {
             let steps = match level {
                 0 => scene.record(tree).split,
-                _ => Displacements::half(&scene.vertices()[lines.vertex_line(meta.vertices, level, node)], node),
+                _ => Displacements::half(&scene.vertices()[scene.level_starts().vertex_line(meta.vertices, lines, level, node)], node),
             };
             for c in steps.steps().into_iter().flat_map(|v| v.get()) {
                 let c = c as i32; // 13 bits
@@ -159,7 +159,7 @@ impl Met {
             self.shift = codes.into_iter().map(|code| displacement_shift(meta.bound_scale(), code, zeros)).fold(self.shift, u32::max);
         }
         if level + 1 < lines.depth {
-            let group = SiblingGroup::from_words(&scene.bounds()[lines.child_group(level, node)]);
+            let group = SiblingGroup::from_words(&scene.bounds()[scene.level_starts().child_group(lines, level, node)]);
             self.group_planes = group.planes.iter().map(|plane| plane.get() as u32).fold(self.group_planes, u32::max); // 7 bits
             self.group_exponent = group.exponents.iter().map(|e| e.get() as u32).fold(self.group_exponent, u32::max); // 4 bits
             self.half |= group.halves.iter().any(|&half| half);

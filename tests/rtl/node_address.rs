@@ -2,19 +2,14 @@
 
 use crate::draw::Draw;
 use crate::suite::{Category, Suite};
-use lodray::block::Block;
 use lodray::block::node_address::{In, NodeAddress};
 use lodray::num::{MAX_LEVELS, U};
 use tb::Mode;
 
-/// Line of a record, from its section's first.
+/// Line of a record, from its section's first record.
 fn line(i: &In) -> u64 {
-    let record = ((1 << (2 * i.level.get())) - 1) / 3 + i.index.get();
-    match (i.pair, i.halves) {
-        (true, _) => 2 * record + u64::from(i.half),
-        (false, true) => (record - 1) / 2,
-        (false, false) => record,
-    }
+    let record = (i.start.get() + 4u64.pow(i.level.get() as u32) * i.place.get() + i.index.get()) % (1 << 28);
+    2u64.pow(i.scale.get() as u32) * record + i.low.get()
 }
 
 /// With a base that leaves room for it.
@@ -24,50 +19,50 @@ fn based(draw: &mut Draw, record: In) -> In {
 }
 
 fn record(draw: &mut Draw) -> In {
-    let pair = draw.once_in(2);
-    let record = In { index: draw.bits(), pair, half: pair && draw.once_in(2), ..In::default() };
+    let scale = draw.below(3);
+    let record = In { index: draw.bits(), scale: U::new(scale), low: U::new(draw.below(1 << scale)), ..In::default() };
     based(draw, record)
 }
 
+/// How many levels have sibling groups, of hardware for so many; one at least.
+fn group_levels(levels: u64) -> u64 {
+    (levels - 1).max(1)
+}
+
+/// Of a level that has sibling groups.
 fn node(draw: &mut Draw) -> In {
-    let level = draw.below(draw.levels);
+    let level = draw.below(group_levels(draw.levels));
     let index = if draw.once_in(4) { (1 << (2 * level)) - 1 } else { draw.below(1 << (2 * level)) };
+    let place = draw.below((1 << 28) >> (2 * level));
+    let room = (1 << 28) - (place << (2 * level)) - index;
     let first = if draw.once_in(4) { U::MAX } else { draw.bits() };
-    let node = In { first, level: U::new(level), index: U::new(index), ..record(draw) };
+    let node =
+        In { first, start: U::new(draw.below(room)), place: U::new(place), level: U::new(level), index: U::new(index), ..record(draw) };
     based(draw, node)
 }
 
-/// Below the root a node may have half a line.
-fn half_a_line(draw: &mut Draw) -> In {
-    let node = loop {
-        let node = node(draw);
-        if node.level > U::ZERO {
-            break node;
-        }
-    };
-    based(draw, In { pair: false, halves: true, half: false, ..node })
-}
-
-fn any_level(draw: &mut Draw) -> In {
-    let level = draw.below(draw.levels);
-    let node = In { first: draw.bits(), level: U::new(level), ..record(draw) };
-    let halves = level > 0 && !node.pair && draw.once_in(2);
-    based(draw, In { halves, ..node })
+/// What no scene has: sums wrap.
+fn anything(draw: &mut Draw) -> In {
+    let level = draw.below(group_levels(draw.levels));
+    let index = U::new(draw.below(1 << (2 * level)));
+    let record = In { first: draw.bits(), start: draw.bits(), place: draw.bits(), level: U::new(level), index, ..record(draw) };
+    based(draw, record)
 }
 
 fn top(draw: &mut Draw) -> In {
-    let record = any_level(draw);
+    let record = anything(draw);
     In { base: U::new(U::<36>::MAX.get() - record.first.get() - line(&record)), ..record }
 }
 
 fn bottom(draw: &mut Draw) -> In {
-    In { base: U::ZERO, ..any_level(draw) }
+    In { base: U::ZERO, ..anything(draw) }
 }
 
 fn legal(i: &In) -> bool {
-    i.level.get() <= 9
-        && (i.pair || !i.half)
-        && (!i.halves || (!i.pair && i.level > U::ZERO))
+    i.level.get() <= 8
+        && (i.place == U::ZERO || i.index.get() < 4u64.pow(i.level.get() as u32))
+        && i.scale.get() <= 2
+        && i.low.get() < 1 << i.scale.get()
         && i.base.get() + i.first.get() + line(i) <= U::<36>::MAX.get()
 }
 
@@ -80,23 +75,18 @@ pub fn suite(levels: u64) -> Suite<NodeAddress> {
         vec![
             Is::any("records", record),
             Is::any("nodes of trees", node),
-            Is::all("two nodes in a line", half_a_line, |i, o| NodeAddress::eval(&In { index: U::new(i.index.get() ^ 1), ..*i }) == *o),
-            Is::any("every index on every level", any_level),
+            Is::any("records beyond all scenes", anything),
             Is::all("top of memory", top, |_, o| o.address == U::MAX),
             Is::all("bottom of memory", bottom, |i, o| o.address.get() == i.first.get() + line(i)),
         ],
         vec![
             ("largest index", |i, _| i.index == U::MAX),
-            ("largest tree", |i, _| i.first == U::MAX),
+            ("largest place", |i, _| i.place == U::MAX),
             ("address 0", |_, o| o.address == U::ZERO),
         ],
         vec![
-            ("level", 0..=levels - 1, |i, _| i.level.get()),
-            (
-                "one line, first and second of two, half a line",
-                0..=3,
-                |i, _| if i.halves { 3 } else { u64::from(i.pair) + u64::from(i.half) },
-            ),
+            ("level", 0..=group_levels(levels) - 1, |i, _| i.level.get()),
+            ("line of one, two or four", 0..=6, |i, _| (1 << i.scale.get()) - 1 + i.low.get()),
         ],
     )
 }

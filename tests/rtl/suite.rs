@@ -78,11 +78,11 @@ pub fn fail<T>(error: impl Display) -> T {
     std::panic::resume_unwind(Box::new(()))
 }
 
-/// Transactions a block and mode.
+/// Transactions a block and mode: enough for every category, event and spread, and for what [`ALL_SEEN`] says; `scripts/nightly` has a million.
 pub fn transactions() -> u64 {
     match std::env::var("LODRAY_TRANSACTIONS") {
         Ok(value) => value.parse().unwrap_or_else(|_| fail(format!("LODRAY_TRANSACTIONS={value}: not a number"))),
-        Err(_) => 1_000_000,
+        Err(_) => 200_000,
     }
 }
 

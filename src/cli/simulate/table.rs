@@ -89,6 +89,11 @@ fn memory(lines: &mut Lines, r: &SimResult) {
     for (name, cache) in [("  L1", &r.l1), ("  L2", &r.l2)] {
         lines.line(name, counts(cache).into_iter().chain([percent(cache.hit_rate), grouped(cache.conflicts)]));
     }
+    if let Some(causes) = r.l2.causes {
+        lines.line("L2 misses", ["cold", "capacity", "conflict", "busiest set"]);
+        let over = r.l2.busiest_set_over_mean.map_or(String::new(), |over| format!("{over:.2} of mean"));
+        lines.line("", [causes.cold, causes.capacity, causes.conflict].map(grouped).into_iter().chain([over]));
+    }
     lines.line("waits, cycles", ["bank queue", "before it", "bank blocked", "crossbar"]);
     // Each row with the crossbar's way to it.
     for (name, cache, crossbar) in [("  L1", &r.l1, r.crossbar.answer_cycles), ("  L2", &r.l2, r.crossbar.request_cycles)] {
@@ -108,6 +113,9 @@ fn memory(lines: &mut Lines, r: &SimResult) {
         dram.busiest_over_mean,
         grouped(dram.refused_cycles)
     );
+    if let (Some(bank), Some(activates)) = (dram.busiest_bank_over_mean, dram.activates_per_thousand) {
+        lines.0 += &format!("              {activates:.0} rows opened for 1,000 requests; the busiest bank has {bank:.2} of the mean\n");
+    }
 }
 
 fn times(lines: &mut Lines, r: &SimResult) {

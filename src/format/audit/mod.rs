@@ -101,9 +101,10 @@ fn read(scene: &Scene) -> (tree::Lattices, Tallies) {
     let len = lattice::len(scene.levels());
     let mut lattices = tree::Lattices::new(scene.trees() * len);
     let per_tree = lattices.trees(len).zip(scene.records()).enumerate();
-    let known = known(scene);
-    let found =
-        per_tree.map(|(t, (lattice, record))| tree::read(scene, t, known[t], record, lattice)).reduce(Tallies::default, Tallies::join);
+    let (known, begins) = (known(scene), tree::Begins::of(scene));
+    let found = per_tree
+        .map(|(t, (lattice, record))| tree::read(scene, &begins, t, known[t], record, lattice))
+        .reduce(Tallies::default, Tallies::join);
     (lattices, found)
 }
 

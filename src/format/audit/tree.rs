@@ -120,11 +120,11 @@ fn each_inserted(levels: u32, level: u32, mut f: impl FnMut(usize, &[usize])) {
 }
 
 /// Reads a tree by recursion over its nodes, down to level `known`, and checks what can be checked on the way.
-pub(super) fn read(scene: &Scene, tree: usize, known: u32, record: &[u64; 8], lattice: Lattice<'_>) -> Tallies {
+pub(super) fn read(scene: &Scene, begins: &Begins, tree: usize, known: u32, record: &[u64; 8], lattice: Lattice<'_>) -> Tallies {
     let levels = scene.levels();
     let form = scene.meta().vertices;
     let second = L0Record::from_words(&record[4..]);
-    let (depth, counts) = (second.depth.get() as u32, Stored::of(form, second.depth.get() as u32)); // 4 bits
+    let depth = second.depth.get() as u32; // 4 bits
     let mut reader = Reader {
         tree,
         levels,
@@ -132,9 +132,11 @@ pub(super) fn read(scene: &Scene, tree: usize, known: u32, record: &[u64; 8], la
         known,
         form,
         offset: u64::from(scene.meta().bound_offset),
-        lines: &scene.vertices()[second.vertices.get() as usize..][..counts.lines as usize],
+        lines: scene.vertices(),
         split: second.split,
-        groups: &scene.bounds()[second.group.get() as usize..][..counts.groups as usize],
+        groups: scene.bounds(),
+        place: second.place.get() as usize, // 28 bits
+        begins,
         lattice,
         found: Tallies::default(),
     };
@@ -149,7 +151,7 @@ pub(super) fn read(scene: &Scene, tree: usize, known: u32, record: &[u64; 8], la
         VertexForm::Exact => second.split == Displacements::default(),
         VertexForm::Compact => second.split.reserved.get() == 0,
     };
-    reader.found.check(CheckKind::Reserved, splits, || format!("tree {tree}: second line of the L0 record"));
+    reader.found.check(CheckKind::Reserved, splits && second.reserved.get() == 0, || format!("tree {tree}: second line of the L0 record"));
 
     let points = corners.points().map(|p| p.get().map(|c| c as i32)); // 32 bits by their type
     let places = [(0, 0), (1 << levels, 0), (0, 1 << levels)];
@@ -170,8 +172,6 @@ pub(super) struct Stored {
     pub groups: u64,
     /// Records of vertices outside of the L0 record.
     pub vertices: u64,
-    /// Their lines.
-    lines: u64,
 }
 
 impl Stored {
@@ -179,8 +179,25 @@ impl Stored {
     pub fn of(form: VertexForm, depth: u32) -> Self {
         let inner = first(depth) as u64;
         let groups = if depth < 2 { 0 } else { (inner - 1) / 4 };
-        let (vertices, lines) = if form == VertexForm::Exact { (inner, inner) } else { (4 * groups, 2 * groups) };
-        Self { groups, vertices, lines }
+        Self { groups, vertices: if form == VertexForm::Exact { inner } else { 4 * groups } }
+    }
+}
+
+/// Where levels begin, counted anew from the records.
+pub(super) struct Begins {
+    /// Groups on the levels above, of all trees, for each level.
+    groups: Vec<usize>,
+    /// Trees that split.
+    splitting: usize,
+}
+
+impl Begins {
+    /// Of the trees of a scene.
+    pub fn of(scene: &Scene) -> Self {
+        let depths = scene.depths();
+        let deeper = |level: u32| depths.iter().filter(|&&depth| depth > level).count();
+        let above = |level: u32| (0..level).map(|above| 4usize.pow(above) * deeper(above + 1)).sum();
+        Self { groups: (0..scene.levels()).map(above).collect(), splitting: deeper(0) }
     }
 }
 
@@ -194,10 +211,15 @@ struct Reader<'a> {
     form: VertexForm,
     /// Added to every code but 0.
     offset: u64,
+    /// Of all trees.
     lines: &'a [[u64; 4]],
     /// The root's displacements.
     split: Displacements,
+    /// Of all trees.
     groups: &'a [[u64; 4]],
+    /// The tree's among those of each level.
+    place: usize,
+    begins: &'a Begins,
     lattice: Lattice<'a>,
     found: Tallies,
 }
@@ -205,6 +227,11 @@ struct Reader<'a> {
 type Place = (u32, u32);
 
 impl Reader<'_> {
+    /// Number of the group of a node's children.
+    fn number(&self, level: u32, node: usize) -> usize {
+        self.begins.groups[level as usize] + 4usize.pow(level) * self.place + node
+    }
+
     /// Checks a node and all below it; gives the box of its full-resolution vertices. `places` and `p` are its corners.
     fn node(&mut self, level: u32, node: usize, places: [Place; 3], p: [[i32; 3]; 3], codes: [u8; 3]) -> Span {
         let mut span = Span::around(p);
@@ -222,7 +249,7 @@ impl Reader<'_> {
             return (0..4).fold(span, |span, k| span.with(&self.node(level + 1, 4 * node + k, places_of(k), triangle_of(k), [0; 3])));
         }
         let tree = self.tree;
-        let group = SiblingGroup::from_words(&self.groups[first(level) + node]);
+        let group = SiblingGroup::from_words(&self.groups[self.number(level, node)]);
         self.found.check(CheckKind::Reserved, group.reserved.get() == 0, || format!("tree {tree}: group of node {node} of level {level}"));
         for k in 0..4 {
             let child = triangle_of(k);
@@ -249,7 +276,9 @@ impl Reader<'_> {
         }
         let name = || format!("tree {tree}: vertices of node {node} of level {level}");
         if self.form == VertexForm::Exact {
-            let line = VertexData::from_words(&self.lines[first(level) + node]);
+            // The roots' first; then by fours, as groups are.
+            let at = if level == 0 { self.place } else { self.begins.splitting + 4 * self.number(level - 1, node / 4) + node % 4 };
+            let line = VertexData::from_words(&self.lines[at]);
             self.found.check(CheckKind::Reserved, line.reserved.get() == 0, name);
             return line.points().map(|v| v.get().map(|c| c as i32)); // 32 bits by their type
         }
@@ -257,8 +286,8 @@ impl Reader<'_> {
         let d = if level == 0 {
             self.split
         } else {
-            let number = first(level) + node - 1;
-            let half = Displacements::from_words(&self.lines[number / 2][2 * (number % 2)..]);
+            let half = 4 * self.number(level - 1, node / 4) + node % 4;
+            let half = Displacements::from_words(&self.lines[half / 2][2 * (half % 2)..]);
             self.found.check(CheckKind::Reserved, half.reserved.get() == 0, name);
             half
         };

@@ -98,8 +98,7 @@ pub(super) fn print(hardware: &Hardware, out: &mut String) {
         hardware.link_registers,
         "between contexts and blocks: 0, 1 for operands, or 2 for results and answers of memory too",
     )
-    .put("INDEX_W", hardware.index_bits, "of the number of a quad-BVH node, of a tree, and of a node, where it is kept")
-    .put("LINE_W", hardware.line_bits, "of the numbers of a tree's first sibling group and vertex line")
+    .put("INDEX_W", hardware.index_bits, "of the number of a quad-BVH node, of a tree and its place, and of a node, where it is kept")
     .put(
         "LOD_TEST",
         u32::from(hardware.chooses_levels()),

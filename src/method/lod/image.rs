@@ -1,6 +1,7 @@
 //! The memory images of a model.
 
-use crate::format::{Line, Scene, TreeLines, layout};
+use super::order::LineOrder;
+use crate::format::{LevelStarts, Line, Scene, TreeLines, layout};
 use crate::method::Knob;
 use crate::num::{BoundScale, LINE_BYTES, VertexForm};
 use crate::step::{Fetch, MemoryMap, Section, SectionId};
@@ -26,6 +27,8 @@ pub enum LineLayout {
     /// Those that the paper has (section 4.3): nodes and sibling groups of two lines, inserted vertices of one, every group asked for with its vertices. The rays' ways
     /// and hits are the same; only addresses are others. For simulations of the paper's own figures.
     Paper,
+    /// Those of the images in another order, with room for all levels of all trees. Again only addresses are others.
+    Ordered(LineOrder),
 }
 
 impl LineLayout {
@@ -34,6 +37,10 @@ impl LineLayout {
         match name {
             "own" => Some(Self::Own),
             "paper" => Some(Self::Paper),
+            "tree" => Some(Self::Ordered(LineOrder::Tree)),
+            "coarse" => Some(Self::Ordered(LineOrder::Coarse)),
+            "blocks" => Some(Self::Ordered(LineOrder::Blocks)),
+            "veb" => Some(Self::Ordered(LineOrder::VanEmdeBoas)),
             _ => None,
         }
     }
@@ -46,11 +53,15 @@ pub static LINE_LAYOUT: Knob = Knob {
     help: "Memory lines that rays of lod ask for",
     default: Some("own"),
     words: &[
-        ("own", "Those of the scene: a node or group in one line, compact vertices in half a line"),
+        ("own", "Those of the scene, level by level: a node or group in one line, compact vertices in half a line"),
         ("paper", "Those of the paper's layout, for the same rays: a node or group in two lines, vertices in one"),
+        ("tree", "The scene's lines, but tree by tree"),
+        ("coarse", "Three levels over all trees, then what is below each of their nodes by itself"),
+        ("blocks", "Two levels of a tree together, these blocks level by level over all trees"),
+        ("veb", "Tree by tree, each in van Emde Boas' order"),
     ],
     of_frame: false,
-    allows: |value| LineLayout::named(value).map(drop).ok_or_else(|| format!("'{value}' is not own or paper")),
+    allows: |value| LineLayout::named(value).map(drop).ok_or_else(|| format!("'{value}' is not own, paper, tree, coarse, blocks or veb")),
 };
 
 /// A tree that a ray is in.
@@ -81,9 +92,12 @@ pub struct LodImage<'a> {
     pub bounds: &'a [Line],
     /// Inserted vertices.
     pub vertices: &'a [Line],
+    /// Where the levels of all trees begin in them.
+    pub starts: LevelStarts,
     /// Where their lines lie.
     pub map: MemoryMap,
     layout: LineLayout,
+    trees: usize,
 }
 
 impl<'a> LodImage<'a> {
@@ -97,13 +111,11 @@ impl<'a> LodImage<'a> {
         let (nodes, records, bounds, vertices) = (scene.nodes(), scene.records(), scene.bounds(), scene.vertices());
         let (levels, form) = (scene.levels(), scene.meta().vertices);
         let line = |lines: usize| LINE_BYTES * lines as u64;
-        let (pair, vertex_lines) = match layout {
-            LineLayout::Own => (1, vertices.len()),
-            LineLayout::Paper => (2, scene.trees() * layout::vertex_lines(VertexForm::Exact, levels)),
-        };
-        let groups = match layout {
-            LineLayout::Own => bounds.len(),
-            LineLayout::Paper => scene.trees() * layout::sibling_groups(levels),
+        let all = scene.trees() * layout::sibling_groups(levels);
+        let (pair, groups, vertex_lines) = match layout {
+            LineLayout::Own => (1, bounds.len(), vertices.len()),
+            LineLayout::Paper => (2, all, scene.trees() * layout::vertex_lines(VertexForm::Exact, levels)),
+            LineLayout::Ordered(_) => (1, all, scene.trees() * layout::vertex_lines(form, levels)),
         };
         let sections = [
             Section::of_bytes("bvh_node", line(pair * nodes.len())).of_base(),
@@ -122,22 +134,24 @@ impl<'a> LodImage<'a> {
             records,
             bounds,
             vertices,
+            starts: *scene.level_starts(),
             map,
             layout,
+            trees: scene.trees(),
         }
     }
 
     /// The inserted vertices of a root are in its L0 record, and rays ask for it alone.
     #[inline(always)]
     pub(super) fn root_has_split(&self) -> bool {
-        self.form.is_compact() && self.layout == LineLayout::Own
+        self.form.is_compact() && self.layout != LineLayout::Paper
     }
 
     /// The line or lines of quad-BVH node `index`.
     #[inline(always)]
     pub(super) fn node(&self, index: usize) -> Fetch {
         match self.layout {
-            LineLayout::Own => Fetch::new(NODES, self.map.line(NODES, index as u64), 1),
+            LineLayout::Own | LineLayout::Ordered(_) => Fetch::new(NODES, self.map.line(NODES, index as u64), 1),
             LineLayout::Paper => self.pair(NODES, index),
         }
     }
@@ -146,8 +160,9 @@ impl<'a> LodImage<'a> {
     #[inline(always)]
     pub(super) fn group(&self, tree: TreeAt, level: u32, node: usize) -> Fetch {
         match self.layout {
-            LineLayout::Own => Fetch::new(BOUNDS, self.map.line(BOUNDS, tree.lines.child_group(level, node) as u64), 1),
-            LineLayout::Paper => self.pair(BOUNDS, self.whole(tree).child_group(level, node)),
+            LineLayout::Own => Fetch::new(BOUNDS, self.map.line(BOUNDS, self.starts.child_group(tree.lines, level, node) as u64), 1),
+            LineLayout::Paper => self.pair(BOUNDS, self.ordered(LineOrder::Tree, tree, level, node)),
+            LineLayout::Ordered(order) => Fetch::new(BOUNDS, self.map.line(BOUNDS, self.ordered(order, tree, level, node) as u64), 1),
         }
     }
 
@@ -166,16 +181,19 @@ impl<'a> LodImage<'a> {
     #[inline(always)]
     pub(super) fn split(&self, tree: TreeAt, level: u32, node: usize) -> Fetch {
         let (line, place) = match self.layout {
-            LineLayout::Own => (tree.lines.vertex_line(self.form, level, node), 1),
-            LineLayout::Paper => (self.whole(tree).vertex_line(VertexForm::Exact, level, node), 2),
+            LineLayout::Own => (self.starts.vertex_line(self.form, tree.lines, level, node), 1),
+            LineLayout::Paper => (tree.index as usize * layout::level_start(self.levels) + layout::level_start(level) + node, 2),
+            // The vertices of four siblings follow each other as their groups do.
+            LineLayout::Ordered(order) if self.form.is_compact() => (2 * self.ordered(order, tree, level - 1, node / 4) + node % 4 / 2, 1),
+            LineLayout::Ordered(_) if level == 0 => (tree.index as usize, 1),
+            LineLayout::Ordered(order) => (self.trees + 4 * self.ordered(order, tree, level - 1, node / 4) + node % 4, 1),
         };
         Fetch::new(VERTICES, self.map.line(VERTICES, line as u64), 1).at(place)
     }
 
-    /// Where the lines of a tree would lie if all levels of all trees were stored, vertices as they are.
+    /// The group of the children of a node, in this order.
     #[inline(always)]
-    fn whole(&self, tree: TreeAt) -> TreeLines {
-        let (depth, index) = (self.levels, tree.index as usize);
-        TreeLines { depth, group: index * layout::sibling_groups(depth), vertices: index * layout::vertex_lines(VertexForm::Exact, depth) }
+    fn ordered(&self, order: LineOrder, tree: TreeAt, level: u32, node: usize) -> usize {
+        order.group(self.trees, self.levels - 1, tree.index as usize, level, node)
     }
 }

@@ -1,10 +1,12 @@
 //! Locally adaptive level of detail: a level chosen for each ray and each edge while it is traced (the paper's method).
 
 mod image;
+mod order;
 mod prior;
 mod trace;
 
 pub use image::{BOUNDS, LINE_LAYOUT, LineLayout, LodImage, NODES, RECORDS, VERTICES};
+pub use order::LineOrder;
 pub use prior::{Deciders, Prior};
 pub use trace::LodTraverser;
 

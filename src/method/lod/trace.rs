@@ -259,7 +259,7 @@ impl<S: StepSink, H: HitSink, const COMPACT: bool, const FULL_DETAIL: bool, cons
     fn stored(&self, level: u32, node: usize) -> [Point; 3] {
         let (image, tree) = (self.image, self.tree);
         let form = if COMPACT { VertexForm::Compact } else { VertexForm::Exact };
-        let line = |level| &image.vertices[tree.lines.vertex_line(form, level, node)];
+        let line = |level| &image.vertices[image.starts.vertex_line(form, tree.lines, level, node)];
         match (COMPACT, level) {
             (false, _) => VertexData::from_words(line(level)).points(),
             (true, 0) => L0Record::from_words(&image.records[tree.index as usize][4..]).split.steps(),
@@ -272,7 +272,7 @@ impl<S: StepSink, H: HitSink, const COMPACT: bool, const FULL_DETAIL: bool, cons
     fn tree_children(&mut self, level: u32, node: u32, split: &Split, joins: bool) -> Option<Entry> {
         let fetch = self.image.group(self.tree, level, node as usize);
         let fetch = if joins { fetch.joining() } else { fetch };
-        let line = &self.image.bounds[self.tree.lines.child_group(level, node as usize)];
+        let line = &self.image.bounds[self.image.starts.child_group(self.tree.lines, level, node as usize)];
         let tests = tree_children(&self.setup, self.sink.t_max(), line, split);
         self.steps.step(Step::on(fetch, Act::Children { met: tests.met() }));
         push_sorted(self.stack, &tests, |k| {

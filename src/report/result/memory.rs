@@ -3,7 +3,7 @@
 use super::ratio;
 use crate::num::LINE_BYTES;
 use crate::sim::dram::{ChannelCounts, DramConfig};
-use crate::sim::replay::{CacheCounts, Run, Waits};
+use crate::sim::replay::{CacheCounts, MissCauses, Run, Waits};
 use crate::sim::unit::{State, UnitCounts};
 use serde::{Deserialize, Serialize};
 
@@ -45,6 +45,12 @@ pub struct CacheResult {
     /// The same of groups.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub busiest_group_over_mean: Option<f64>,
+    /// Different lines of the busiest set over the mean of all, where that is known.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub busiest_set_over_mean: Option<f64>,
+    /// Misses by their cause, where that is known.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub causes: Option<MissCauses>,
 }
 
 impl CacheResult {
@@ -69,19 +75,28 @@ impl CacheResult {
             longest_queue,
             busiest_bank_over_mean: None,
             busiest_group_over_mean: None,
+            busiest_set_over_mean: None,
+            causes: None,
         }
+    }
+
+    /// The same of the L2 of so many sets, with why it missed, and different lines of the busiest set and of all.
+    pub(super) fn explained(self, (causes, (busiest, all)): (MissCauses, (u64, u64)), sets: u64) -> Self {
+        Self { busiest_set_over_mean: Some(ratio((busiest * sets) as f64, all as f64)), causes: Some(causes), ..self }
     }
 
     /// The same of the L1s, of which each of `groups` has its banks among `looked_up`.
     pub(super) fn of_groups(counts: &CacheCounts, cycles: u64, looked_up: &[u64], groups: u32) -> Self {
-        let over_mean = |each: &[u64]| {
-            let (most, all) = (each.iter().max().copied().unwrap_or(0), each.iter().sum::<u64>());
-            ratio((most * each.len() as u64) as f64, all as f64)
-        };
         let of_group: Vec<u64> = looked_up.chunks(looked_up.len() / groups as usize).map(|banks| banks.iter().sum()).collect();
         let (bank, group) = (Some(over_mean(looked_up)), Some(over_mean(&of_group)));
         Self { busiest_bank_over_mean: bank, busiest_group_over_mean: group, ..Self::new(counts, cycles) }
     }
+}
+
+/// The largest over the mean of all.
+fn over_mean(each: &[u64]) -> f64 {
+    let (most, all) = (each.iter().max().copied().unwrap_or(0), each.iter().sum::<u64>());
+    ratio((most * each.len() as u64) as f64, all as f64)
 }
 
 /// Waits for the crossbar's ports, in cycles summed over misses.
@@ -146,6 +161,12 @@ pub struct DramResult {
     pub refused_cycles: u64,
     /// Bytes of the busiest channel over the mean of all; 1 is balanced.
     pub busiest_over_mean: f64,
+    /// Requests to the busiest bank over the mean of all, where that is known.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub busiest_bank_over_mean: Option<f64>,
+    /// Rows opened for a thousand requests, where that is known.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub activates_per_thousand: Option<f64>,
     /// Channel by channel.
     pub channels: Vec<ChannelResult>,
 }
@@ -201,6 +222,8 @@ impl DramResult {
             mean_queue_nanoseconds: ratio((sum.queued_clocks * device.clock_ps) as f64 * 1e-3, lines(&sum) as f64),
             refused_cycles: run.counts.dram_refused_cycles,
             busiest_over_mean: ratio((busiest * channels.len() as u64) as f64, lines(&sum) as f64),
+            busiest_bank_over_mean: Some(over_mean(&run.dram_banks)),
+            activates_per_thousand: Some(ratio(1000.0 * sum.activates as f64, lines(&sum) as f64)),
             channels: channels
                 .iter()
                 .map(|counts| ChannelResult {

@@ -143,7 +143,7 @@ impl SimResult {
             hits: counts.hits,
             accesses_per_ray: ratio(counts.l1.requests as f64, counts.rays as f64),
             l1: CacheResult::of_groups(&counts.l1, run.cycles, &run.l1_banks, machine.cores.groups),
-            l2: CacheResult::new(&counts.l2, run.cycles),
+            l2: CacheResult::new(&counts.l2, run.cycles).explained(run.l2_causes, machine.l2.lines() / u64::from(machine.l2.ways)),
             crossbar: CrossbarResult { request_cycles: counts.crossbar_cycles, answer_cycles: counts.answer_cycles },
             waits: WaitShares::new(&counts.waits, run.units.as_ref(), run.cycles * setup.contexts()),
             energy: EnergyResult::new(&model.report(&energy_counts, &energy::dram_parts(&run.dram)), prices, seconds),

@@ -57,6 +57,8 @@ pub(super) struct Channel {
     pub(super) ages: u64,
     pub(super) next: Option<Choice>,
     pub counts: ChannelCounts,
+    /// Requests to each bank.
+    pub of_banks: Vec<u64>,
     pub trace: Option<Vec<Command>>,
 }
 
@@ -75,6 +77,7 @@ impl Channel {
             queues: [Queue::new(controller.read_queue, banks), Queue::new(controller.write_queue, banks)],
             controller: controller.clone(),
             kind: READ,
+            of_banks: vec![0; banks as usize],
             hits: vec![[NONE; 2]; banks as usize],
             overtaken: vec![0; banks as usize],
             open: 0,
@@ -114,6 +117,7 @@ impl Channel {
         let slot = self.queues[kind].push(bank, id, arrival, self.ages, row);
         self.ages += 1;
         self.counts.longest_queue = self.counts.longest_queue.max(self.waiting() as u64);
+        self.of_banks[bank] += 1;
         let woken = self.wake(bank, arrival);
         let first_hit = self.ranks.banks[bank].row == row && self.hits[bank][kind] == NONE;
         if first_hit {

@@ -150,6 +150,11 @@ impl Dram {
         self.channels.iter().map(|channel| channel.counts_at(clock)).collect()
     }
 
+    /// Requests to each bank, channel after channel.
+    pub fn requests_of_banks(&self) -> Vec<u64> {
+        self.channels.iter().flat_map(|channel| channel.of_banks.iter().copied()).collect()
+    }
+
     /// Energy of all channels up to the time of the last advance.
     pub fn energy(&self) -> DramEnergy {
         let (prices, clocks) = (DramPrices::new(&self.device), self.clocks());

@@ -1,5 +1,6 @@
 //! A level of cache: banks that each take a request per cycle, with a queue in front, tags, and registers for misses.
 
+use super::causes::{MissCauses, Shadow};
 use super::counts::CacheCounts;
 use super::mshr::{Entered, Mshrs, Waiter};
 use super::prefetch::prefetch;
@@ -80,6 +81,8 @@ pub struct Level {
     banks: Vec<Bank>,
     per_copy: u32,
     tags: Tags,
+    /// Why it misses, where that is asked.
+    shadow: Option<Shadow>,
     mshrs: Mshrs,
     mshrs_per_bank: u32,
     queue: usize,
@@ -101,6 +104,7 @@ impl Level {
             banks: vec![Bank::default(); banks as usize],
             per_copy: cache.banks,
             tags: Tags::new(cache, copies),
+            shadow: None,
             mshrs: Mshrs::new(banks, cache.mshrs, cache.targets),
             mshrs_per_bank: cache.mshrs,
             queue: cache.queue as usize,
@@ -109,6 +113,17 @@ impl Level {
             counts: CacheCounts::default(),
             latencies: Histogram::default(),
         }
+    }
+
+    /// The same single cache, which tells why it misses.
+    pub fn explaining(cache: &Cache) -> Self {
+        let sets = u64::from(cache.banks) * cache.sets_per_bank();
+        Self { shadow: Some(Shadow::new(cache.lines(), sets)), ..Self::new(cache, 1) }
+    }
+
+    /// Why it missed, and the different lines of the busiest set and of all.
+    pub fn causes(&self) -> (MissCauses, (u64, u64)) {
+        self.shadow.as_ref().map(|shadow| (shadow.causes(), shadow.busiest_set())).unwrap_or_default()
     }
 
     /// The bank of `line` in cache `copy`, counted through all.
@@ -149,6 +164,9 @@ impl Level {
         let state = &mut self.banks[bank as usize];
         if state.awake || state.free > now || !state.queue.is_empty() || !self.tags.look_up(bank, line) {
             return false;
+        }
+        if let Some(shadow) = &mut self.shadow {
+            shadow.look_up(line, false);
         }
         state.free = now + 1;
         state.looked_up += 1;
@@ -200,6 +218,9 @@ impl Level {
                 }
             }
         };
+        if let Some(shadow) = &mut self.shadow {
+            shadow.look_up(request.line, matches!(served, Served::Miss(_)));
+        }
         state.queue.pop_front();
         self.queued.goes(request.since);
         state.looked_up += 1;

@@ -11,6 +11,7 @@
 //!
 //! A run does not depend on its threads. Frames on several machines are several replays, fed by one functional pass.
 
+mod causes;
 mod cores;
 mod counts;
 mod dispatch;
@@ -37,6 +38,7 @@ mod wheel;
 #[cfg(test)]
 mod tests;
 
+pub use causes::MissCauses;
 pub use counts::{CacheCounts, Counts, KindTraffic, Waits};
 pub use dispatch::{Chunk, ChunkSource};
 pub use error::ReplayError;
@@ -103,8 +105,12 @@ pub struct Run {
     pub latencies: Latencies,
     /// Requests that each bank of the L1s looked up.
     pub l1_banks: Vec<u64>,
+    /// Why the L2 missed; different lines that fall into its busiest set, and into all.
+    pub l2_causes: (MissCauses, (u64, u64)),
     /// What each memory channel did.
     pub channels: Vec<ChannelCounts>,
+    /// Requests to each bank of the memory.
+    pub dram_banks: Vec<u64>,
     /// Command clocks of the memory.
     pub dram_clocks: u64,
     /// The memory's energy.
@@ -241,7 +247,9 @@ fn drive<F: FrontEnd + Send>(
     let intervals = intervals::join(&of_groups, (&of_shared, &shared.over_time), &of_blocks, cycles);
     let run = Run {
         cycles,
+        l2_causes: shared.l2_causes(),
         channels,
+        dram_banks: shared.dram().requests_of_banks(),
         dram_clocks,
         dram,
         counts,

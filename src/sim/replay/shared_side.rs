@@ -8,6 +8,7 @@
 //! look-up, whether it found the line or merged with its miss. So nothing that is asked for is answered sooner than the L2's latency later, and groups and the shared side can
 //! go on without each other for as long as [`SharedSide::reply`] says.
 
+use super::causes::MissCauses;
 use super::counts::{Counts, Supplier};
 use super::event::{EventKind, MOVES, SERVES, id};
 use super::intervals::{Series, SharedCounts};
@@ -107,7 +108,7 @@ impl SharedSide {
     /// The memory's configuration is impossible.
     pub fn new(machine: &Machine, dram: &DramConfig) -> Result<Self, DramError> {
         let groups = machine.cores.groups;
-        let l2 = Level::new(&machine.l2, 1);
+        let l2 = Level::explaining(&machine.l2);
         let registers = machine.l1.banks * machine.l1.mshrs;
         Ok(Self {
             wheel: Wheel::new(),
@@ -144,6 +145,11 @@ impl SharedSide {
 
     fn now(&self) -> u64 {
         self.wheel.now()
+    }
+
+    /// Why the L2 missed, and the different lines of its busiest set and of all.
+    pub fn l2_causes(&self) -> (MissCauses, (u64, u64)) {
+        self.l2.causes()
     }
 
     /// What was counted up to this cycle.

@@ -84,11 +84,11 @@ impl Context {
 
     /// The lines are no L0 record of this scene.
     fn is_no_record(&self, scene: &SceneConfig) -> bool {
-        let L0Record { depth, group, vertices, .. } = L0Record::from_words(&self.lines[1]);
+        let L0Record { depth, place, .. } = L0Record::from_words(&self.lines[1]);
         let deepest = scene.levels.get().min(self.stored_levels);
-        let lines_beyond = depth != U::ZERO && (group.get() | vertices.get()) >> self.line_bits != 0;
+        let place_beyond = depth != U::ZERO && place.get() >> self.index_bits != 0;
         let corners = VertexData::from_words(&self.lines[0]).points().map(|point| self.kept(point));
-        depth.get() > deepest || lines_beyond || misplaced(&corners, scene.levels.get() + scene.zeros.get())
+        depth.get() > deepest || place_beyond || misplaced(&corners, scene.levels.get() + scene.zeros.get())
     }
 
     /// The ray ends here: the context cannot go on, or must not and waits for no block.

@@ -43,10 +43,9 @@ pub struct Context {
     pub setup: ray_setup::Out,
     pub entry: Register<Entry>,
     pub tree: Register<U<28>>,
-    /// Of the tree: levels that are stored, and its first sibling group and vertex line.
+    /// Of the tree: levels that are stored, and its place among those of each level.
     pub depth: Register<U<4>>,
-    pub group: U<28>,
-    pub vertices: U<28>,
+    pub place: U<28>,
     pub level: Register<U<4>>,
     pub node: Register<NodeIndex>,
     /// Corners of the node's triangle and its inserted vertices, at full resolution and as morphed; bound codes and edge states.
@@ -85,7 +84,6 @@ pub struct Context {
     /// Of its hardware: levels that trees are stored to, bits of indices and of lines, zeros of coordinates.
     pub stored_levels: u64,
     pub index_bits: u32,
-    pub line_bits: u32,
     pub coordinate_zeros: u32,
     /// Its hardware has a LOD test, and a map of hits.
     pub chooses_levels: bool,
@@ -99,10 +97,10 @@ impl Context {
     /// An idle context of this hardware.
     pub fn new(hardware: &Hardware) -> Self {
         let splits = vec![Split::default(); hardware.split_triangles() as usize].into();
-        let &Hardware { hit_mapping, index_bits, line_bits, coordinate_zeros, secondary: from_surface, .. } = hardware;
+        let &Hardware { hit_mapping, index_bits, coordinate_zeros, secondary: from_surface, .. } = hardware;
         let (room, stored_levels) = (hardware.stack_entries() as usize, u64::from(hardware.stored_levels()));
         let (chooses_levels, has_deciders) = (hardware.chooses_levels(), hardware.has_deciders());
-        let of_hardware = Self { index_bits, line_bits, coordinate_zeros, chooses_levels, hit_mapping, ..Self::default() };
+        let of_hardware = Self { index_bits, coordinate_zeros, chooses_levels, hit_mapping, ..Self::default() };
         Self { splits, room, stored_levels, from_surface, has_deciders, secondary: SecondaryIn::primary(), ..of_hardware }
     }
 
@@ -349,9 +347,9 @@ impl Context {
         let corners = VertexData::from_words(&self.lines[0]).points().map(|point| self.kept(point));
         self.f.set(corners);
         self.p.set(corners);
-        let L0Record { depth, group, vertices, e0, e1, e2, .. } = L0Record::from_words(&self.lines[1]);
+        let L0Record { depth, place, e0, e1, e2, .. } = L0Record::from_words(&self.lines[1]);
         self.depth.set(depth);
-        (self.group, self.vertices) = (group, vertices);
+        self.place = place;
         self.e = [e0, e1, e2];
         if !self.splits.is_empty() {
             // Where entries have codes the root's are kept in its own.

@@ -1,6 +1,6 @@
 //! A scene's sections as the unit's memory, from some address on.
 
-use crate::format::{FileSection, Scene};
+use crate::format::{FileSection, LevelStarts, Scene};
 use crate::hardware::ports::{AnswerLimit, SceneConfig};
 use crate::method::lod::{BOUNDS, LodImage, NODES, RECORDS, VERTICES};
 use crate::num::{BoundScale, LINE_BYTES, LineAddress, U};
@@ -18,6 +18,7 @@ pub struct SceneMemory<'a> {
     scale: BoundScale,
     /// Words of each section, by its place.
     sections: [&'a [u64]; 4],
+    starts: LevelStarts,
     map: MemoryMap,
     /// Address of the map's first line.
     first: u64,
@@ -41,6 +42,7 @@ impl<'a> SceneMemory<'a> {
             compact: image.form.is_compact(),
             scale: image.scale,
             sections,
+            starts: image.starts,
             map: image.map,
             first,
         }
@@ -59,6 +61,8 @@ impl<'a> SceneMemory<'a> {
             records,
             bounds,
             vertices,
+            starts: std::array::from_fn(|k| U::new(self.starts.level(k + 1) as u64)),
+            roots: U::new(self.starts.roots() as u64),
             visits: U::new(self.visits()),
             answer_limit: AnswerLimit::MAX,
         }

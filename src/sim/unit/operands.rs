@@ -73,26 +73,35 @@ impl Context {
     /// Operands of `node_address`.
     pub fn fetch_in(&self, scene: &SceneConfig) -> node_address::In {
         let second = self.place_of(self.want) == 1;
-        let record = |base: LineAddress, pair: bool| node_address::In {
+        let record = |base: LineAddress, scale: u64| node_address::In {
             base,
             index: self.entry.get().index,
-            pair,
-            half: second,
+            scale: U::new(scale),
+            low: U::new(u64::from(second)),
             ..node_address::In::default()
         };
-        let of_tree = |base: LineAddress, first: U<28>, halves: bool| node_address::In {
+        let of_tree = |base: LineAddress, level: u64, node: u64| node_address::In {
             base,
-            first,
-            level: self.level.get(),
-            index: U::new(self.node.get().get()),
-            halves,
+            start: scene.start(level),
+            place: self.place,
+            level: U::new(level),
+            index: U::new(node),
             ..node_address::In::default()
         };
+        let (level, node) = (self.level.get().get(), self.node.get().get());
         match self.fetch.get() {
-            Fetch::Node => record(scene.nodes, false),
-            Fetch::Record => record(scene.records, true),
-            Fetch::Vertex if second => of_tree(scene.vertices, self.vertices, scene.compact),
-            Fetch::Vertex | Fetch::Group => of_tree(scene.bounds, self.group, false),
+            Fetch::Node => record(scene.nodes, 0),
+            Fetch::Record => record(scene.records, 1),
+            // Vertices lie as the groups do that their nodes are in.
+            Fetch::Vertex if second && level > 0 => {
+                let group = of_tree(scene.vertices, level - 1, node / 4);
+                match scene.compact {
+                    true => node_address::In { scale: U::new(1), low: U::new(node / 2 % 2), ..group },
+                    false => node_address::In { first: scene.roots, scale: U::new(2), low: U::new(node % 4), ..group },
+                }
+            }
+            Fetch::Vertex if second => of_tree(scene.vertices, 0, 0),
+            Fetch::Vertex | Fetch::Group => of_tree(scene.bounds, level, node),
         }
     }
 

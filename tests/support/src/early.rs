@@ -251,7 +251,7 @@ pub fn each_error<E: Exposed>(mut make: impl FnMut(Hardware, &SceneConfig) -> E)
     wrong(make, &desk, &scene, RayError::Image, |of, _, line| {
         if of == "bvh_node" { Some((everywhere(ChildRef::LEAF, 2, far), false)) } else { same(line) }
     });
-    let far = |record: &mut L0Record| record.vertices = U::new(1 << FULL_DETAIL.line_bits);
+    let far = |record: &mut L0Record| record.place = U::new(1 << FULL_DETAIL.index_bits);
     wrong(
         make,
         &desk,

@@ -67,7 +67,6 @@ pub const FULL_DETAIL: Hardware = Hardware {
     contexts: 3,
     context_bits: 2,
     index_bits: 15,
-    line_bits: 18,
     lod_test: false,
     exact_vertices: false,
     ..Hardware::DEFAULT
@@ -99,7 +98,6 @@ pub const SECONDARY_AT_ONCE: Hardware = Hardware {
     divide_bits: 1,
     setup_bits: 2,
     index_bits: 15,
-    line_bits: 18,
     link_registers: 2,
     start_radius: false,
     exact_vertices: false,
