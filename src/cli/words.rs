@@ -61,9 +61,10 @@ Words of the table:
   line                32 bytes of memory; the table counts the different ones
                       that a frame reads
   LOD, BVH            level of detail, against the full-resolution mesh in
-                      boxes of so many bits; 'n a leaf': triangles in a leaf,
-                      stored as --leaf-layout of render says
-  best BVH            of the rows, but those with boxes of 32 bits
+                      boxes whose planes have that many bits
+  n a leaf            most triangles in a leaf; before it the leaf's layout, as
+                      --leaf-layout of render has it
+  best BVH            the fewest lines of any row without 32-bit boxes
   L0                  nodes over base triangles and their records: what every
                       ray reads first
   mean level          of the triangles that rays hit: 0 is the base mesh, N full
