@@ -11,6 +11,7 @@ box_steps.sv
 box_test.sv
 box_test32.sv
 child_boxes.sv
+child_prisms.sv
 child_records.sv
 child_sort.sv
 child_sort6.sv
@@ -42,6 +43,8 @@ node_deciders.sv
 pipe_delay.sv
 pipe_skid.sv
 pipe_stage.sv
+prism_frame.sv
+prism_test.sv
 ray_context.sv
 ray_setup.sv
 shared_input.sv

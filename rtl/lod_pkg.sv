@@ -100,6 +100,8 @@ package lod_pkg;
   localparam int unsigned LOD_TEST_BY_3_LATENCY = 25;  // of the form with three
   localparam int unsigned NODE_ADDRESS_LATENCY = 2;
   localparam int unsigned NODE_DECIDERS_LATENCY = 1;
+  localparam int unsigned PRISM_FRAME_LATENCY = 6;
+  localparam int unsigned PRISM_TEST_LATENCY = 14;
   localparam int unsigned RAY_SETUP_LATENCY = 11;
   localparam int unsigned RAY_SETUP_INTERVAL = 11;
   localparam int unsigned START_DIVIDE_LATENCY = 13;
@@ -120,6 +122,8 @@ package lod_pkg;
   localparam int unsigned TRI_TEST_3_LATENCY = 18;     // of the form with three
   localparam int unsigned CHILD_TEST_LATENCY = 15;
   localparam int unsigned CHILD_TEST_INTERVAL = 2;
+  localparam int unsigned CHILD_PRISMS_LATENCY = 26;
+  localparam int unsigned CHILD_PRISMS_INTERVAL = 4;
 
   // Cycles of parts of blocks.
   localparam int unsigned ENTRY_DISTANCE_LATENCY = 5;  // of the box tests
@@ -196,6 +200,14 @@ package lod_pkg;
     logic signed [15:0] z;
   } code3_t;
   localparam int unsigned CODE3_W = 3 * 16;
+
+  // Local coordinates of a corner, mirrored.
+  typedef struct packed {
+    logic signed [10:0] x;
+    logic signed [10:0] y;
+    logic signed [10:0] z;
+  } local_t;
+  localparam int unsigned LOCAL_W = 3 * 11;
 
   // Moment of a ray: origin cross direction.
   typedef struct packed {
@@ -673,6 +685,60 @@ package lod_pkg;
     logic [EDGE_FUNCTION_W-1:0] denominator;  // Denominator, not 0.
   } start_divide_in_t;
   localparam int unsigned START_DIVIDE_IN_W = T_NUMERATOR_W + 31 + EDGE_FUNCTION_W;
+
+  // What the children of a node share.
+  typedef struct packed {
+    logic open;               // All children are met.
+    logic flipped;            // An odd number of axes is mirrored: below a triangle and above it change places.
+    logic [4:0] shift;        // Units of a local step: 2^shift.
+    logic [2:0][11:0] d;      // D, x first.
+    logic signed [12:0] u;    // Of the first corner across the ray.
+    logic signed [12:0] v;    // Likewise, of y.
+    logic signed [32:0] z;    // Of the first corner along z from the ray's origin, in units.
+    logic [12:0] soft_u;      // Most that morphed corners lie beside full-resolution ones, in quarters of a step.
+    logic [12:0] soft_v;      // Likewise.
+    logic [9:0] soft_z;       // Along z, in steps.
+    reciprocal_t reciprocal;  // Of d along z.
+  } frame_t;
+  localparam int unsigned FRAME_W = 1 + 1 + 5 + 3 * 12 + 13 + 13 + 33 + 13 + 13 + 10 + RECIPROCAL_W;
+
+  // Input of prism_frame.
+  typedef struct packed {
+    ray_setup_out_t ray;               // The ray's constants.
+    logic [5:0][POINT_W-1:0] full;     // Corners and inserted vertices of full resolution: p0, p1, p2, q0, q1, q2.
+    logic [5:0][POINT_W-1:0] morphed;  // The same as morphed for this ray.
+  } prism_frame_in_t;
+  localparam int unsigned PRISM_FRAME_IN_W = RAY_SETUP_OUT_W + 6 * POINT_W + 6 * POINT_W;
+
+  // Output of prism_frame.
+  typedef struct packed {
+    frame_t frame;              // What the children share.
+    logic [5:0][32:0] corners;  // The corners and inserted vertices in local coordinates.
+  } prism_frame_out_t;
+  localparam int unsigned PRISM_FRAME_OUT_W = FRAME_W + 6 * 33;
+
+  // Input of prism_test.
+  typedef struct packed {
+    frame_t frame;              // What the children share.
+    logic [RAY_T_W-1:0] t_max;  // t of the closest hit so far.
+    logic [2:0][32:0] corners;  // The child's corners.
+    logic [4:0][2:0] planes;    // Codes: reach beyond the edges (p1, p2), (p2, p0), (p0, p1), height below and above.
+    logic [2:0] reach;          // Exponent of reaches.
+    logic [3:0] height;         // Exponent of heights.
+  } prism_test_in_t;
+  localparam int unsigned PRISM_TEST_IN_W = FRAME_W + RAY_T_W + 3 * 33 + 5 * 3 + 3 + 4;
+
+  // Input of child_prisms.
+  typedef struct packed {
+    ray_setup_out_t ray;               // The ray's constants.
+    logic [RAY_T_W-1:0] t_max;         // t of the closest hit so far.
+    logic [2:0] reach;                 // Exponent of reaches; at its largest, all children are met.
+    logic [3:0] height;                // Exponent of heights.
+    logic [19:0][2:0] planes;          // Codes of child k at 5k to 5k + 4: reach beyond the edges (p1, p2), (p2, p0), (p0, p1), height below and above.
+    logic [5:0][POINT_W-1:0] full;     // Corners and inserted vertices of full resolution: p0, p1, p2, q0, q1, q2.
+    logic [5:0][POINT_W-1:0] morphed;  // The same as morphed for this ray.
+  } child_prisms_in_t;
+  localparam int unsigned CHILD_PRISMS_IN_W = RAY_SETUP_OUT_W + RAY_T_W + 3 + 4 + 20 * 3 + 6 * POINT_W + 6 * POINT_W;
 
   // What traversal needs of the four children of a tree's node: 32 bytes.
   typedef struct packed {

@@ -1,6 +1,6 @@
 //! The blocks' traversal equals the exact golden traverser in every field of every hit.
 
-use lodray::format::Scene;
+use lodray::format::{Scene, scene_prisms};
 use lodray::golden::exact::{Exact, ExactHit};
 use lodray::mesh::procedural::{self, Options};
 use lodray::mesh::{BoundKind, Hierarchy};
@@ -23,6 +23,8 @@ use proptest::prelude::*;
 struct Bench<'a> {
     golden: Exact<'a>,
     lod: LodTraverser<'a>,
+    /// The same with prisms in place of boxes.
+    prisms: LodTraverser<'a>,
     bvhs: Vec<BvhTraverser<'a>>,
     levels: u32,
 }
@@ -34,11 +36,17 @@ impl Bench<'_> {
         let mut closest = ClosestHit::new(self.levels);
         self.lod.trace(ray, &mut NoSteps, &mut closest);
         assert_eq!(closest.record().as_ref().map(plain), golden, "LOD, {ray:?}");
+        let mut by_prisms = ClosestHit::new(self.levels);
+        self.prisms.trace(ray, &mut NoSteps, &mut by_prisms);
+        assert_eq!(by_prisms.record(), closest.record(), "LOD by prisms, {ray:?}");
 
         let crossings = self.golden.crossings(ray);
         let mut counted = Crossings::default();
         self.lod.trace(ray, &mut NoSteps, &mut counted);
         assert_eq!((counted.front, counted.back), (crossings.front, crossings.back), "crossings, {ray:?}");
+        let mut by_prisms = Crossings::default();
+        self.prisms.trace(ray, &mut NoSteps, &mut by_prisms);
+        assert_eq!((by_prisms.front, by_prisms.back), (crossings.front, crossings.back), "crossings by prisms, {ray:?}");
 
         if !self.bvhs.is_empty() {
             let full = self.golden.trace_full(ray);
@@ -62,9 +70,11 @@ fn compare(h: &Hierarchy, with_bvhs: bool, rays: impl IntoIterator<Item = Ray>) 
     // Its trees have an order of their own.
     let h = &scene.decode();
     let full = if with_bvhs { full_bvhs(h) } else { Vec::new() };
+    let prisms = scene_prisms(&scene);
     let mut bench = Bench {
         golden: Exact::new(h),
         lod: LodTraverser::new(LodImage::of(&scene)),
+        prisms: LodTraverser::new(LodImage::of(&scene).bounded_by(&prisms)),
         bvhs: full.iter().map(BvhTraverser::new).collect(),
         levels: h.levels,
     };

@@ -33,7 +33,8 @@ fn twin<T: Wire>(name: impl Into<String>) -> StructTwin {
 /// The block whose output this one has: mostly itself.
 fn out_of(block: &str) -> &str {
     match block {
-        "box_test32" => "box_test",
+        "box_test32" | "prism_test" => "box_test",
+        "child_prisms" => "child_test",
         "lod_test_by" => "lod_test",
         "start_setup" => "ray_setup",
         "start_divide" => "hit_divide",
@@ -55,6 +56,7 @@ fn rust_side() -> (Vec<BlockTwin>, Vec<StructTwin>) {
         twin::<num::Direction>("direction_t"),
         twin::<num::Vec3<28>>("stored_point_t"),
         twin::<num::Displacement>("displacement_t"),
+        twin::<num::Vec3<11>>("local_t"),
         twin::<num::Vec3<16>>("code3_t"),
         twin::<num::Vec3<63>>("moment_t"),
         twin::<num::BoundScale>("bound_scale_t"),
@@ -62,6 +64,7 @@ fn rust_side() -> (Vec<BlockTwin>, Vec<StructTwin>) {
         twin::<num::Ray>("ray_t"),
         twin::<num::Start>("start_t"),
         twin::<block::start_test::Below>("below_t"),
+        twin::<block::prism_frame::Frame>("frame_t"),
         twin::<Box16>("box16_t"),
         twin::<block::ray_setup::Reciprocal>("reciprocal_t"),
         twin::<block::ray_setup::Axis>("axis_t"),
@@ -92,6 +95,7 @@ fn rust_side() -> (Vec<BlockTwin>, Vec<StructTwin>) {
         block::box_test::BoxTest,
         block::box_test32::BoxTest32,
         block::child_boxes::ChildBoxes,
+        block::child_prisms::ChildPrisms,
         block::child_sort::ChildSort,
         block::child_sort6::ChildSort6,
         block::child_test::ChildTest,
@@ -101,6 +105,8 @@ fn rust_side() -> (Vec<BlockTwin>, Vec<StructTwin>) {
         block::lod_test_by::LodTestBy,
         block::node_address::NodeAddress,
         block::node_deciders::NodeDeciders,
+        block::prism_frame::PrismFrame,
+        block::prism_test::PrismTest,
         block::ray_setup::RaySetup,
         block::start_divide::StartDivide,
         block::start_setup::StartSetup,

@@ -82,11 +82,13 @@ fn flip_flops(block: &str) -> u32 {
 #[test]
 fn what_is_kept_are_the_flip_flops_of_the_netlists() {
     // Bits that synthesis drops besides: products with a limb of one bit are no multiplications, and some signs repeat. At most 1 in 180.
-    let edge_function = 22;
+    let edge_function = 22i64;
     let besides = |block: &str| match block {
         "tri_test-EDGES_PER_CYCLE=3" => 3 * edge_function,
         "tri_test" => edge_function,
         "start_test" => 49,
+        // And a sign of each of its multipliers stays that repeats.
+        "child_prisms" => -4,
         // Signs of the direction and what they are taken with stand in `ray_setup` too.
         "start_setup" => 6,
         _ => 0,
@@ -106,7 +108,7 @@ fn what_is_kept_are_the_flip_flops_of_the_netlists() {
     ];
     for (name, registers) in named.into_iter().chain(further) {
         println!("{name}: {} declared, {} kept, {} in the netlist", registers.declared, registers.kept, flip_flops(name));
-        if registers.kept != flip_flops(name) + besides(name) {
+        if i64::from(registers.kept) != i64::from(flip_flops(name)) + besides(name) {
             wrong.push(format!("{name}: {} counted, {} in the netlist", registers.kept, flip_flops(name)));
         }
     }

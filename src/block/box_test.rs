@@ -57,9 +57,9 @@ fn narrow_product(a: i64, b: i64) -> i64 {
 
 /// Entry distance of one axis from `near`, 17 bits signed in steps of 2^16 units (box codes within +-32767); times an 18-bit mantissa: 35.
 #[inline(always)]
-pub(super) fn entry(axis: &Axis, near: i64) -> i64 {
-    let product = narrow_product(near.max(0), axis.reciprocal.mantissa.get().cast_signed()).cast_unsigned();
-    (product >> axis.reciprocal.shift.get()).cast_signed()
+pub(super) fn entry(reciprocal: Reciprocal, near: i64) -> i64 {
+    let product = narrow_product(near.max(0), reciprocal.mantissa.get().cast_signed()).cast_unsigned();
+    (product >> reciprocal.shift.get()).cast_signed()
 }
 
 /// `hit` and `t_near` together, with early termination. Without a branch: whether a box is hit is what no predictor knows.
@@ -165,7 +165,7 @@ impl Block for BoxTest {
             & pair(lo_x, dz, hi_z, dx, -c_zx);
         let ahead = (hi_x >= r.x.ceil.get()) & (hi_y >= r.y.ceil.get()) & (hi_z >= r.z.ceil.get());
 
-        let near = |axis: &Axis, lo: i64| entry(axis, lo - axis.ceil.get());
+        let near = |axis: &Axis, lo: i64| entry(axis.reciprocal, lo - axis.ceil.get());
         finish(planes & ahead, near(&r.x, lo_x).max(near(&r.y, lo_y)).max(near(&r.z, lo_z)), input.t_max)
     }
 }

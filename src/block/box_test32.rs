@@ -76,7 +76,7 @@ impl Block for BoxTest32 {
             & pair(near_x, dz, far_z, dx);
         let ahead = (far_x >= 0) & (far_y >= 0) & (far_z >= 0);
 
-        let near = |axis: &Axis, near: i64| entry(axis, near >> BOX_SHIFT);
+        let near = |axis: &Axis, near: i64| entry(axis.reciprocal, near >> BOX_SHIFT);
         finish(planes & ahead, near(&r.x, near_x).max(near(&r.y, near_y)).max(near(&r.z, near_z)), input.t_max)
     }
 }

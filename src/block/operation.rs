@@ -8,6 +8,7 @@ use super::box_decode8::BoxDecode8;
 use super::box_test::BoxTest;
 use super::box_test32::BoxTest32;
 use super::child_boxes::ChildBoxes;
+use super::child_prisms::ChildPrisms;
 use super::child_sort::ChildSort;
 use super::child_sort6::ChildSort6;
 use super::child_test::ChildTest;
@@ -30,7 +31,7 @@ macro_rules! of_block {
     ($operation:expr, $block:ident => $value:expr) => {
         of_block!($operation, $block => $value; RaySetup, NodeAddress, ChildTest, LodTest, Tessellate, TriTest, HitDivide, HitSelect,
             BaryMap, ChildBoxes, BoxDecode, BoxTest, BoxTest32, ChildSort, BoundDecode, BoxDecode8, ChildSort6, TreeDeciders, LodTestBy, StartSetup,
-            StartTest, StartDivide)
+            StartTest, StartDivide, ChildPrisms)
     };
     ($operation:expr, $block:ident => $value:expr; $($name:ident),+) => {
         match $operation {
@@ -89,11 +90,13 @@ pub enum Operation {
     StartTest,
     /// A quotient of its hit.
     StartDivide,
+    /// Four children of a tree's node by their prisms.
+    ChildPrisms,
 }
 
 impl Operation {
     /// Every operation.
-    pub const ALL: [Self; 22] = [
+    pub const ALL: [Self; 23] = [
         Self::RaySetup,
         Self::NodeAddress,
         Self::ChildTest,
@@ -116,6 +119,7 @@ impl Operation {
         Self::StartSetup,
         Self::StartTest,
         Self::StartDivide,
+        Self::ChildPrisms,
     ];
 
     /// Its number in [`Operation::ALL`].

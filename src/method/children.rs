@@ -6,12 +6,14 @@
 use crate::block::Block;
 use crate::block::box_test::{self, BoxTest};
 use crate::block::child_boxes::{Corners, Planes, boxed, framed, let_out, widened};
+use crate::block::child_prisms::{self, ChildPrisms};
 use crate::block::child_sort;
 use crate::block::child_sort6::{self, ChildSort6};
 use crate::block::child_test::{self, sort};
 use crate::block::ray_setup;
 use crate::format::{BvhChild, BvhNode, ChildRef, Line, SiblingGroup, SixNode};
-use crate::num::{Box16, BoxStep, RayT, TNear, Wire};
+use crate::num::prism::Prisms;
+use crate::num::{Box16, BoxStep, RayT, TNear, U, Wire};
 
 /// Whether the processor has what `#[target_feature(enable = "avx2,bmi1,bmi2")]` asks for.
 #[cfg(target_arch = "x86_64")]
@@ -104,6 +106,18 @@ pub(crate) fn tree_children(ray: &ray_setup::Out, t_max: RayT, line: &Line, spli
         tests.t_near[k] = test.t_near;
     }
     sort(&tests)
+}
+
+/// Tests and sorts the children of a tree's node with these prisms, whose triangles are `split`.
+#[inline(always)]
+pub(crate) fn prism_children(ray: &ray_setup::Out, t_max: RayT, prisms: &Prisms, split: &Split) -> child_test::Out {
+    let [full, morphed] = [&split.full, &split.morphed].map(|corners| {
+        let [[p0, ..], [_, p1, _], [_, _, p2], q] = [0, 1, 2, 3].map(|k| corners.child(k));
+        [p0, p1, p2, q[0], q[1], q[2]]
+    });
+    let planes = std::array::from_fn(|at| U::new(prisms.planes[at / 5][at % 5].into()));
+    let (reach, height) = (U::new(prisms.reach.into()), U::new(prisms.height.into()));
+    ChildPrisms::eval(&child_prisms::In { ray: *ray, t_max, reach, height, planes, full, morphed })
 }
 
 #[cfg(test)]

@@ -7,6 +7,7 @@ mod box16;
 mod displacement;
 mod fixed;
 mod formats;
+pub mod prism;
 pub mod random;
 mod round;
 mod step;

@@ -82,6 +82,7 @@ fn act(text: &mut String, act: Act, edges: Option<&Edges>) -> std::fmt::Result {
     match act {
         Act::Fetch => write!(text, "f"),
         Act::Children { met } => write!(text, "c{met}"),
+        Act::Prisms { met } => write!(text, "g{met}"),
         Act::PlainChildren { met } => write!(text, "p{met}"),
         Act::LocalChildren { met } => write!(text, "l{met}"),
         Act::WideChildren { met } => write!(text, "w{met}"),

@@ -4,6 +4,7 @@
 //! |---|---|---|
 //! | `Fetch` | nothing but the lines | |
 //! | `Children` | four children of a node whose boxes follow from those of its lines and, in trees, from its triangle, are tested, and `met` of them met | `child_test` |
+//! | `Prisms` | four children of a tree's node, whose prisms follow from its line and its triangle, are tested | `child_prisms` |
 //! | `PlainChildren` | the same with 16-bit boxes that are stored as they are | four `box_test`, `child_sort` |
 //! | `LocalChildren` | the same with 16-bit boxes that are stored in steps from their node's corner | four `box_decode`, four `box_test`, `child_sort` |
 //! | `WideChildren` | the same with 32-bit boxes | four `box_test32`, `child_sort` |
@@ -74,6 +75,7 @@ impl Fetch {
 pub enum Act {
     Fetch,
     Children { met: u32 },
+    Prisms { met: u32 },
     PlainChildren { met: u32 },
     LocalChildren { met: u32 },
     WideChildren { met: u32 },
@@ -103,6 +105,7 @@ impl Act {
     pub const fn met(self) -> Option<u32> {
         match self {
             Self::Children { met }
+            | Self::Prisms { met }
             | Self::PlainChildren { met }
             | Self::LocalChildren { met }
             | Self::WideChildren { met }
@@ -147,6 +150,7 @@ impl Step {
         match self.act {
             Act::Fetch | Act::Pop { .. } | Act::End { found: false, .. } => (),
             Act::Children { .. } => add(Operation::ChildTest, 1),
+            Act::Prisms { .. } => add(Operation::ChildPrisms, 1),
             Act::PlainChildren { .. } => {
                 add(Operation::BoxTest, 4);
                 add(Operation::ChildSort, 1);
@@ -245,6 +249,7 @@ mod tests {
             Step::on(fetch, Act::LocalChildren { met: 1 }),
             Step::on(fetch, Act::Children { met: 1 }),
             Step::on(fetch, Act::SixChildren { met: 6 }),
+            Step::of(Act::Prisms { met: 3 }),
             Step::of(Act::Decide),
             Step::of(Act::LodTest { refine: true }),
             Step::on(fetch, Act::Tessellate),
@@ -273,6 +278,7 @@ mod tests {
             ("box_decode8", 6),
             ("child_sort6", 1),
             ("tree_deciders", 1),
+            ("child_prisms", 1),
         ];
         assert_eq!(some, wanted);
     }

@@ -38,6 +38,7 @@ const PLAIN_CHILDREN: u64 = 8;
 const LOCAL_CHILDREN: u64 = 9;
 const SIX_CHILDREN: u64 = 10;
 const DECIDE: u64 = 11;
+const PRISMS: u64 = 12;
 
 /// A step, as whoever only reads its lines sees it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -68,6 +69,7 @@ impl StepWord {
         let (act, number, flag, mapped, hits) = match step.act {
             Act::Fetch => (FETCH, 0, false, false, 0),
             Act::Children { met } => (CHILDREN, met, false, false, 0),
+            Act::Prisms { met } => (PRISMS, met, false, false, 0),
             Act::PlainChildren { met } => (PLAIN_CHILDREN, met, false, false, 0),
             Act::LocalChildren { met } => (LOCAL_CHILDREN, met, false, false, 0),
             Act::WideChildren { met } => (WIDE_CHILDREN, met, false, false, 0),
@@ -118,6 +120,7 @@ impl StepWord {
         let act = match self.0 >> ACT & 15 {
             FETCH => Act::Fetch,
             CHILDREN => Act::Children { met: number },
+            PRISMS => Act::Prisms { met: number },
             PLAIN_CHILDREN => Act::PlainChildren { met: number },
             LOCAL_CHILDREN => Act::LocalChildren { met: number },
             WIDE_CHILDREN => Act::WideChildren { met: number },

@@ -11,6 +11,7 @@ mod box_test;
 mod box_test32;
 mod boxes;
 mod child_boxes;
+mod child_prisms;
 mod child_sort;
 mod child_sort6;
 mod child_test;

@@ -2,8 +2,8 @@
 
 use crate::suite::Suite;
 use crate::{
-    bary_map, bound_decode, box_decode, box_decode8, box_test, box_test32, child_boxes, child_sort, child_sort6, child_test, hit_divide,
-    hit_select, lod_test, node_address, ray_setup, tessellate, traversal_stack, tri_test,
+    bary_map, bound_decode, box_decode, box_decode8, box_test, box_test32, child_boxes, child_prisms, child_sort, child_sort6, child_test,
+    hit_divide, hit_select, lod_test, node_address, ray_setup, tessellate, traversal_stack, tri_test,
 };
 use lodray::block::{self, Block};
 use lodray::hardware::Hardware;
@@ -59,6 +59,7 @@ fn blocks_that_depend_on_features() {
     play(&[FULL_DETAIL], |_| {
         child_test::suite().coarsened(|i, _| block::child_test::In { p0: i.f0, p1: i.f1, p2: i.f2, q0: i.g0, q1: i.g1, q2: i.g2, ..i })
     });
+    play(&[FULL_DETAIL], |_| child_prisms::suite().coarsened(|i, _| block::child_prisms::In { morphed: i.full, ..i }));
 }
 
 #[test]
@@ -77,6 +78,7 @@ fn blocks_that_do_not() {
     play(&[SMALL], |_| box_test::suite());
     play(&[SMALL], |_| box_test32::suite());
     play(&[SMALL], |_| child_boxes::suite());
+    play(&[SMALL], |_| child_prisms::suite());
     play(&[SMALL], |_| child_sort::suite());
     play(&[SMALL], |_| child_sort6::suite());
     play(&[SMALL], |_| child_test::suite());

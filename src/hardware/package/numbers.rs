@@ -7,6 +7,7 @@ use crate::block::box_decode8::BoxDecode8;
 use crate::block::box_test::BoxTest;
 use crate::block::box_test32::BoxTest32;
 use crate::block::child_boxes::ChildBoxes;
+use crate::block::child_prisms::ChildPrisms;
 use crate::block::child_sort::ChildSort;
 use crate::block::child_sort6::ChildSort6;
 use crate::block::child_test::ChildTest;
@@ -16,6 +17,8 @@ use crate::block::lod_test::LodTest;
 use crate::block::lod_test_by::{self, LodTestBy};
 use crate::block::node_address::NodeAddress;
 use crate::block::node_deciders::NodeDeciders;
+use crate::block::prism_frame::PrismFrame;
+use crate::block::prism_test::PrismTest;
 use crate::block::ray_setup::RaySetup;
 use crate::block::start_divide::StartDivide;
 use crate::block::start_setup::StartSetup;
@@ -195,6 +198,8 @@ pub(super) fn print(hardware: &Hardware, out: &mut String) {
     .put("LOD_TEST_BY_3_LATENCY", LodTestBy::THREE_EDGES.latency, "of the form with three")
     .timing::<NodeAddress>(hardware)
     .timing::<NodeDeciders>(hardware)
+    .timing::<PrismFrame>(hardware)
+    .timing::<PrismTest>(hardware)
     .timing::<RaySetup>(hardware)
     .timing::<StartDivide>(hardware)
     .timing::<StartSetup>(hardware)
@@ -208,7 +213,8 @@ pub(super) fn print(hardware: &Hardware, out: &mut String) {
     .put("TRI_TEST_1_LATENCY", one.latency, "of the form with one edge a cycle")
     .put("TRI_TEST_1_INTERVAL", one.interval, "")
     .put("TRI_TEST_3_LATENCY", three.latency, "of the form with three")
-    .timing::<ChildTest>(hardware);
+    .timing::<ChildTest>(hardware)
+    .timing::<ChildPrisms>(hardware);
     let parts = Group::new("Cycles of parts of blocks.")
         .put("ENTRY_DISTANCE_LATENCY", parts::ENTRY_DISTANCE_LATENCY, "of the box tests")
         .put("EDGE_PRODUCT_STAGES", parts::EDGE_PRODUCT_STAGES, "registers of the products of a cross product")

@@ -8,7 +8,7 @@ use crate::num::{self, Box16, Field, Layout, Wire};
 use std::fmt::Write;
 
 /// Blocks that have the output of another.
-const SHARED: [&str; 4] = ["box_test32", "lod_test_by", "start_setup", "start_divide"];
+const SHARED: [&str; 6] = ["box_test32", "prism_test", "child_prisms", "lod_test_by", "start_setup", "start_divide"];
 
 /// A packed struct: its name without `_t`, its description and its fields.
 pub(super) struct Struct {
@@ -36,6 +36,7 @@ pub(super) fn all() -> Vec<Struct> {
         vector::<28>("stored_point", "Stored vertex: units / 16."),
         vector::<13>("displacement", "Displacement of a compact vertex from the midpoint of its edge, in steps."),
         vector::<16>("code3", "Corner of a box in steps of 2^16 units."),
+        vector::<11>("local", "Local coordinates of a corner, mirrored."),
         vector::<63>("moment", "Moment of a ray: origin cross direction."),
         of::<num::BoundScale>("bound_scale"),
         of::<num::Cone>("cone"),
@@ -78,6 +79,8 @@ pub(super) fn all() -> Vec<Struct> {
     );
     all.push(of::<block::start_test::Below>("below"));
     blocks!(block::start_test::StartTest, block::start_divide::StartDivide);
+    all.push(of::<block::prism_frame::Frame>("frame"));
+    blocks!(block::prism_frame::PrismFrame, block::prism_test::PrismTest, block::child_prisms::ChildPrisms);
     all.extend([
         of::<SiblingGroup>("sibling_group"),
         of::<BvhNode>("bvh_node"),

@@ -3,6 +3,7 @@
 use super::order::LineOrder;
 use crate::format::{LevelStarts, Line, Scene, TreeLines, layout};
 use crate::method::Knob;
+use crate::num::prism::Prisms;
 use crate::num::{BoundScale, LINE_BYTES, VertexForm};
 use crate::step::{Fetch, MemoryMap, Section, SectionId};
 
@@ -64,6 +65,20 @@ pub static LINE_LAYOUT: Knob = Knob {
     allows: |value| LineLayout::named(value).map(drop).ok_or_else(|| format!("'{value}' is not own, paper, tree, coarse, blocks or veb")),
 };
 
+/// What bounds the children of a tree's nodes.
+pub static NODE_BOUNDS: Knob = Knob {
+    name: "node-bounds",
+    value_name: "NODE_BOUNDS",
+    help: "Bounds of the children of nodes of trees in lod",
+    default: Some("boxes"),
+    words: &[
+        ("boxes", "Boxes along the axes, as the paper has them"),
+        ("prisms", "Prisms over their triangles (not stored yet: fitted when the scene is opened)"),
+    ],
+    of_frame: false,
+    allows: |value| if ["boxes", "prisms"].contains(&value) { Ok(()) } else { Err(format!("'{value}' is not boxes or prisms")) },
+};
+
 /// A tree that a ray is in.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct TreeAt {
@@ -98,6 +113,8 @@ pub struct LodImage<'a> {
     pub map: MemoryMap,
     layout: LineLayout,
     trees: usize,
+    /// Prisms of the children of each sibling group, if they bound them in place of its boxes.
+    pub(super) prisms: Option<&'a [Prisms]>,
 }
 
 impl<'a> LodImage<'a> {
@@ -138,7 +155,14 @@ impl<'a> LodImage<'a> {
             map,
             layout,
             trees: scene.trees(),
+            prisms: None,
         }
+    }
+
+    /// The same with prisms in place of the boxes of trees' nodes: of the children of each sibling group ([`scene_prisms`](crate::format::scene_prisms)).
+    #[must_use]
+    pub fn bounded_by(self, prisms: &'a [Prisms]) -> Self {
+        Self { prisms: Some(prisms), ..self }
     }
 
     /// The inserted vertices of a root are in its L0 record, and rays ask for it alone.

@@ -5,7 +5,7 @@ mod order;
 mod prior;
 mod trace;
 
-pub use image::{BOUNDS, LINE_LAYOUT, LineLayout, LodImage, NODES, RECORDS, VERTICES};
+pub use image::{BOUNDS, LINE_LAYOUT, LineLayout, LodImage, NODE_BOUNDS, NODES, RECORDS, VERTICES};
 pub use order::LineOrder;
 pub use prior::{Deciders, Prior};
 pub use trace::LodTraverser;
@@ -13,7 +13,8 @@ pub use trace::LodTraverser;
 use super::knob::{DELTA, ErrorKnob, octaves};
 use super::{ClosestHit, Departure, Knobs, Landing, Method, MethodUnit, Registered, SurfaceHit, Trace, Tracer};
 use crate::block::Operation;
-use crate::format::Scene;
+use crate::format::{Scene, scene_prisms};
+use crate::num::prism::Prisms;
 use crate::rays::{ModelSpace, Query, Sight, is_full_detail};
 use crate::step::{MemoryMap, Step, StepSink};
 
@@ -21,7 +22,7 @@ use crate::step::{MemoryMap, Step, StepSink};
 pub static METHOD: Registered = Registered {
     name: "lod",
     help: "Locally adaptive level of detail",
-    knobs: &[&DELTA, &LINE_LAYOUT],
+    knobs: &[&DELTA, &LINE_LAYOUT, &NODE_BOUNDS],
     error: Some(ErrorKnob { knob: &DELTA, values: octaves, in_steps: false }),
     unit: Some(MethodUnit {
         blocks: &[
@@ -44,6 +45,8 @@ pub static METHOD: Registered = Registered {
 /// The method on a scene.
 struct Lod<'a> {
     image: LodImage<'a>,
+    /// Of the children of each sibling group, if they bound them.
+    prisms: Option<Vec<Prisms>>,
     space: ModelSpace,
 }
 
@@ -51,13 +54,18 @@ impl<'a> Lod<'a> {
     fn of(scene: &'a Scene, knobs: &Knobs) -> Self {
         // Checked when it was chosen.
         let layout = knobs.get(&LINE_LAYOUT).and_then(LineLayout::named).unwrap_or_default();
-        Self { image: LodImage::with(scene, layout), space: ModelSpace::of(scene) }
+        let prisms = (knobs.get(&NODE_BOUNDS) == Some("prisms")).then(|| scene_prisms(scene));
+        Self { image: LodImage::with(scene, layout), prisms, space: ModelSpace::of(scene) }
     }
 }
 
 impl Lod<'_> {
     fn tracer_as<const COMPACT: bool, const FULL_DETAIL: bool>(&self, sight: &Sight) -> Box<dyn Tracer + '_> {
-        let (traverser, space, delta) = (LodTraverser::new(self.image), self.space, sight.delta);
+        let image = match &self.prisms {
+            Some(prisms) => self.image.bounded_by(prisms),
+            None => self.image,
+        };
+        let (traverser, space, delta) = (LodTraverser::new(image), self.space, sight.delta);
         Box::new(LodTracer::<COMPACT, FULL_DETAIL> { traverser, space, delta })
     }
 }

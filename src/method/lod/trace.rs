@@ -14,7 +14,7 @@ use crate::block::tri_test::{self, TriTest};
 use crate::format::{BvhNode, Displacements, L0Record, SiblingGroup, VertexData};
 #[cfg(target_arch = "x86_64")]
 use crate::method::children::has_lanes;
-use crate::method::children::{Split, bvh_children, tree_children};
+use crate::method::children::{Split, bvh_children, prism_children, tree_children};
 use crate::method::leave;
 use crate::method::stack::{Entry, Op, TraversalStack, push_sorted};
 use crate::method::{Departure, Hit, HitSink, TriangleId, is_beyond};
@@ -272,9 +272,20 @@ impl<S: StepSink, H: HitSink, const COMPACT: bool, const FULL_DETAIL: bool, cons
     fn tree_children(&mut self, level: u32, node: u32, split: &Split, joins: bool) -> Option<Entry> {
         let fetch = self.image.group(self.tree, level, node as usize);
         let fetch = if joins { fetch.joining() } else { fetch };
-        let line = &self.image.bounds[self.image.starts.child_group(self.tree.lines, level, node as usize)];
-        let tests = tree_children(&self.setup, self.sink.t_max(), line, split);
-        self.steps.step(Step::on(fetch, Act::Children { met: tests.met() }));
+        let group = self.image.starts.child_group(self.tree.lines, level, node as usize);
+        let line = &self.image.bounds[group];
+        let t_max = self.sink.t_max();
+        let (tests, act) = match self.image.prisms {
+            None => {
+                let tests = tree_children(&self.setup, t_max, line, split);
+                (tests, Act::Children { met: tests.met() })
+            }
+            Some(prisms) => {
+                let tests = prism_children(&self.setup, t_max, &prisms[group], split);
+                (tests, Act::Prisms { met: tests.met() })
+            }
+        };
+        self.steps.step(Step::on(fetch, act));
         push_sorted(self.stack, &tests, |k| {
             let [e0, e1, e2] = SiblingGroup::line_codes(line, k);
             Entry {

@@ -48,6 +48,7 @@ impl<R: Steps> UnitTiming<R> {
         let station = &mut self.stations[resource as usize];
         let context = &mut self.contexts[who];
         let result = match (resource, context.act) {
+            (Resource::Child, Act::Prisms { .. }) => station.take_for(self.prism_node, since, now),
             (Resource::Child, Act::PlainChildren { .. }) => station.take_for(self.plain_node, since, now),
             (Resource::Child, Act::LocalChildren { .. }) => station.take_for(self.local_node, since, now),
             (Resource::Child, Act::WideChildren { .. }) => station.take_for(self.wide_node, since, now),
@@ -217,6 +218,7 @@ impl<R: Steps> UnitTiming<R> {
                 context.enter(if found { State::DivideV } else { State::Done }, at + 1);
             }
             Act::Children { .. }
+            | Act::Prisms { .. }
             | Act::PlainChildren { .. }
             | Act::LocalChildren { .. }
             | Act::WideChildren { .. }

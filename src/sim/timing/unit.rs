@@ -10,6 +10,7 @@ use crate::block::box_decode::BoxDecode;
 use crate::block::box_decode8::BoxDecode8;
 use crate::block::box_test::BoxTest;
 use crate::block::box_test32::BoxTest32;
+use crate::block::child_prisms::ChildPrisms;
 use crate::block::child_sort::ChildSort;
 use crate::block::child_sort6::ChildSort6;
 use crate::block::child_test::ChildTest;
@@ -39,7 +40,8 @@ pub struct UnitTiming<R> {
     pub(super) select: Station,
     /// Names of its setup, its LOD test, its triangle test and its division.
     pub(super) fitted: [&'static str; 4],
-    /// The test of a node whose 16-bit boxes are stored as they are, of one that stores steps, of one with 32-bit boxes, and of one of six.
+    /// The test of a node whose children have prisms, of one whose 16-bit boxes are stored as they are, of one that stores steps, of one with 32-bit boxes, and of one of six.
+    pub(super) prism_node: Timing,
     pub(super) plain_node: Timing,
     pub(super) local_node: Timing,
     pub(super) wide_node: Timing,
@@ -109,6 +111,7 @@ impl<R: Steps> UnitTiming<R> {
             stations: Resource::ALL.map(|resource| Station::new(timing(resource))),
             fitted: [Operation::RaySetup, Operation::LodTest, Operation::TriTest, Operation::HitDivide].map(|of| config.block(of).name()),
             select: Station::new(config.timing::<HitSelect>()),
+            prism_node: config.linked(config.timing::<ChildPrisms>()),
             plain_node: node(4, latency(&[test, sort])),
             local_node: node(4, latency(&[decode, test, sort])),
             wide_node: node(4, latency(&[test32, sort])),

@@ -1,6 +1,7 @@
 mod geometry;
 
 use super::{BlockTable, CacheTable, EnergyCounts, EnergyModel, EnergyReport, EnergyUnit, Level, Operation};
+use crate::block::child_prisms::ChildPrisms;
 use crate::block::child_test::ChildTest;
 use crate::block::hit_divide::HitDivide;
 use crate::block::lod_test::LodTest;
@@ -216,6 +217,8 @@ fn cycles_of_a_blocks_hardware_are_its_interval() {
         let interval = match operation {
             Operation::RaySetup | Operation::StartSetup => RaySetup::TIMING.interval,
             Operation::HitDivide | Operation::StartDivide => HitDivide::TIMING.interval,
+            // Its prisms take turns whatever boxes do.
+            Operation::ChildPrisms => ChildPrisms::TIMING.interval,
             _ => 1,
         };
         assert_eq!(operation.timing(&WIDE.form()).interval, interval, "{}", operation.name());
@@ -242,7 +245,10 @@ fn cycles_of_a_blocks_hardware_are_its_interval() {
 #[test]
 fn turns_are_charged_where_they_are_taken() {
     let registers = |operation: Operation, hardware: &Hardware| operation.parts(&hardware.form()).registers;
-    for operation in Operation::ALL {
+    // The frame and the order of prisms are found once, each is tested in its turn.
+    let prisms = registers(Operation::ChildPrisms, &WIDE);
+    assert!(prisms.written < 4 * prisms.kept && prisms.written > 2 * prisms.kept);
+    for operation in Operation::ALL.into_iter().filter(|&operation| operation != Operation::ChildPrisms) {
         let of = registers(operation, &WIDE);
         let interval = operation.timing(&WIDE.form()).interval;
         assert_eq!(of.written, interval * of.kept, "{}", operation.name());
