@@ -7,7 +7,9 @@
 //! |---|---|
 //! | `f` | lines alone |
 //! | `c2`, `p2`, `l2`, `w2` | four children tested, 2 of them met: boxes of levels of detail, stored boxes of 16 bits, the same in steps from their node's corner, stored boxes of 32 bits |
-//! | `b` | where a tree's groups and vertices begin |
+//! | `g2` | four children of a tree's node tested by their prisms, 2 of them met |
+//! | `b2` | six children tested, 2 of them met |
+//! | `y` | which ray decides in the tree that is entered |
 //! | `r2.17:0.128.256` | LOD test of level 2 node 17 with these edge states of 256: refine |
 //! | `s2.17` | the same: its triangle serves |
 //! | `t` | the inserted vertices are morphed |

@@ -140,7 +140,7 @@ function picturesSection(section, state) {
 
 const nearestRay = (grid, [x, y]) => d3.minIndex(grid.rays, (r) => (r.pixel[0] - x) ** 2 + (r.pixel[1] - y) ** 2);
 
-const BOXES = { c: "boxes in steps, widened where morphed", p: "16-bit boxes", l: "16-bit boxes in steps", w: "32-bit boxes" };
+const BOXES = { c: "boxes in steps, widened where morphed", p: "16-bit boxes", l: "16-bit boxes in steps", w: "32-bit boxes", g: "prisms" };
 const ENDS = { h: "hit", m: "hit, mapped to full resolution", n: "nothing met" };
 
 /** A step's word in words; src/report/inspect.rs has the table. */
@@ -153,7 +153,7 @@ function stepOf(word, sections) {
   const where = number == null ? "" : ` of level ${level} node ${num(Number(number))}`;
   const edges = (states ?? "").split(".").map((s) => (Number(s) === 256 ? "1" : Number(s) === 0 ? "0" : `${s}/256`));
   const words = {
-    f: () => "lines read", b: () => "tree entered: where its groups and vertices begin", t: () => "inserted vertices morphed", o: () => "next node taken from the stack", d: () => "node from the stack dropped: it lies behind the closest hit",
+    f: () => "lines read", b: () => `six children tested, ${rest} met (boxes in finer steps)`, y: () => "which ray decides in this tree", t: () => "inserted vertices morphed", o: () => "next node taken from the stack", d: () => "node from the stack dropped: it lies behind the closest hit",
     r: () => `LOD test${where}: refine${states ? `, edge states ${edges.join(", ")}` : ""}`, s: () => `LOD test${where}: its triangle serves`,
     x: () => `${count(Number(node), "triangle")} tested, ${num([...Number(states).toString(2)].filter((b) => b === "1").length)} met`,
   };
