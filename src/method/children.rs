@@ -108,8 +108,8 @@ pub(crate) fn tree_children(ray: &ray_setup::Out, t_max: RayT, line: &Line, spli
     sort(&tests)
 }
 
-/// Tests and sorts the children of a tree's node with these prisms, whose triangles are `split`.
-#[inline(always)]
+/// Tests and sorts the children of a tree's node with these prisms, whose triangles are `split`. Apart from the loops of traversal, which are shorter without it.
+#[inline(never)]
 pub(crate) fn prism_children(ray: &ray_setup::Out, t_max: RayT, prisms: &Prisms, split: &Split) -> child_test::Out {
     let [full, morphed] = [&split.full, &split.morphed].map(|corners| {
         let [[p0, ..], [_, p1, _], [_, _, p2], q] = [0, 1, 2, 3].map(|k| corners.child(k));
