@@ -24,10 +24,10 @@ module child_boxes #(
 
   localparam int unsigned CODE_W = lod_pkg::CODE3_W / 3;
   localparam int unsigned POINT_W = lod_pkg::POINT_W / 3;
-  localparam int unsigned PLANE_W = 7;
+  localparam int unsigned PLANE_W = 5;
   // A floor, and whether anything was cut off: a ceiling is their sum, and ceilings are ordered as these are.
   localparam int unsigned EXACT_W = CODE_W + 1;
-  // Times 2 or 3: at most 381.
+  // Times 2 or 3: at most 93.
   localparam int unsigned PRODUCT_W = PLANE_W + 2;
   // A code and 16 bits of steps: within 2^17 in magnitude.
   localparam int unsigned SUM_W = CODE_W + 2;

@@ -22,7 +22,7 @@ fn check_kind(surface: &Surface, kind: BoundKind, form: VertexForm, name: &str) 
     // From points on their grids, with nothing else done to them.
     let m = 1 << surface.levels;
     let places = (0..=m).flat_map(|j| (0..=m - j).map(move |i| (i, j)));
-    let bits: Vec<u32> = places.map(|place| form.zero_bits(surface.levels - lattice::level_of(surface.levels, place), 0)).collect();
+    let bits: Vec<u32> = places.map(|place| form.zero_bits(surface.levels, lattice::level_of(surface.levels, place), 0)).collect();
     let on_grid = |(p, &bits): (&[f64; 3], &u32)| -> [i32; 3] {
         std::array::from_fn(|k| snap((p[k] - built.placement.offset[k]) / built.placement.scale, bits))
     };

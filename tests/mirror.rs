@@ -2,7 +2,7 @@
 
 use lodray::block::tri_test::{EdgeFunction, TNumerator, TriTest};
 use lodray::block::{self, Block, Timing};
-use lodray::format::{BvhNode, Displacements, L0Record, SiblingGroup, VertexData};
+use lodray::format::{BvhNode, Displacements, L0Record, SplitRecord, VertexData};
 use lodray::hardware::ports::{Corners, HitOut, MemoryAnswer, MemoryRequest, RayIn, SceneConfig, SecondaryIn};
 use lodray::hardware::{Fetch, MAX_CONTEXTS, RayError, State};
 use lodray::method::{self, Entry, Hit};
@@ -68,7 +68,7 @@ fn rust_side() -> (Vec<BlockTwin>, Vec<StructTwin>) {
         twin::<Box16>("box16_t"),
         twin::<block::ray_setup::Reciprocal>("reciprocal_t"),
         twin::<block::ray_setup::Axis>("axis_t"),
-        twin::<SiblingGroup>("sibling_group_t"),
+        twin::<SplitRecord>("split_record_t"),
         twin::<BvhNode>("bvh_node_t"),
         twin::<VertexData>("vertex_data_t"),
         twin::<Displacements>("displacements_t"),
@@ -282,7 +282,7 @@ fn states_have_the_same_names_and_numbers() {
     let package = package();
     let states: Vec<(String, u64)> = State::ALL.iter().map(|&state| (state.name().to_owned(), state as u64)).collect();
     let fetches =
-        [Fetch::Node, Fetch::Record, Fetch::Vertex, Fetch::Group].map(|fetch| (format!("{fetch:?}").to_uppercase(), fetch as u64));
+        [Fetch::Node, Fetch::Record, Fetch::Split].map(|fetch| (format!("{fetch:?}").to_uppercase(), fetch as u64));
     assert_eq!(package.enums["context_state_t"].1, states);
     assert_eq!(package.enums["fetch_t"].1, fetches);
     let errors = RayError::ALL.map(|error| (error.named().0.to_owned(), error as u64));

@@ -23,7 +23,7 @@ wire_struct! {
         /// Powers of two of these steps.
         exponents: [U<4>; 3],
         /// Steps of child k: lower x, y, z and upper x, y, z at 6k to 6k + 5.
-        planes: [U<7>; 24],
+        planes: [U<5>; 24],
         /// Corner p0 of full resolution.
         f0: Point,
         /// Corner p1 of full resolution.
@@ -186,7 +186,7 @@ pub fn boxed(planes: &Planes) -> [Box16; 4] {
 /// Bits of a box code, of a code with whether it is to be rounded up, of steps times two or three, of steps in codes, and of a code less or plus them.
 const CODE: u32 = 16;
 const STICKY: u32 = CODE + 1;
-const DOUBLED: u32 = 9;
+const DOUBLED: u32 = 7;
 const STEPS: u32 = 16;
 const SUM: u32 = CODE + 2;
 
@@ -228,8 +228,8 @@ impl Block for ChildBoxes {
         let mut reach = Planes::default();
         for (at, reach) in reach.iter_mut().enumerate() {
             let axis = at % 3;
-            // Below 2^24.
-            let steps = |plane: U<7>| box_steps(i.halves[axis], exponents[axis], plane.narrow().cast_unsigned()).cast_signed();
+            // Below 2^22.
+            let steps = |plane: U<5>| box_steps(i.halves[axis], exponents[axis], plane.narrow().cast_unsigned()).cast_signed();
             *reach = [0, 1, 2, 3].map(|k| steps(i.planes[6 * k + at]));
         }
         let planes = if i.tree {

@@ -30,7 +30,7 @@ wire_struct! {
         /// Powers of two of these steps.
         exponents: [U<4>; 3],
         /// Steps of child k: lower x, y, z and upper x, y, z at 6k to 6k + 5.
-        planes: [U<7>; 24],
+        planes: [U<5>; 24],
         /// Corner p0 of full resolution of the parent.
         f0: Point,
         /// Corner p1 of full resolution.

@@ -62,7 +62,7 @@ struct Info<'a> {
     base_grid: f64,
     base_bits_lost: u32,
     parts: Vec<Part>,
-    /// Bound and vertex data, L0 records included, per full-resolution triangle.
+    /// L0 records, splits and vertices per full-resolution triangle.
     hierarchy_bytes_per_triangle: f64,
     /// Distances to the original mesh in percent of its diagonal, where the scene was built from one.
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -104,8 +104,8 @@ impl<'a> Info<'a> {
         let parts = vec![
             part("quad-BVH nodes", size_of_val(scene.nodes())),
             part("L0 records", size_of_val(scene.records())),
-            part("bound data", size_of_val(scene.bounds())),
-            part("vertex data", size_of_val(scene.vertices())),
+            part("splits", size_of_val(scene.splits())),
+            part(if scene.meta().vertices.is_compact() { "last splits" } else { "vertices" }, size_of_val(scene.vertices())),
             part("normals", size_of_val(scene.normals())),
             part("base indices", size_of_val(scene.triangles())),
         ];
@@ -131,8 +131,8 @@ impl<'a> Info<'a> {
             centre: space.centre(),
             radius: space.radius(),
             unit: space.placement.scale,
-            base_grid: space.placement.scale * f64::from(1u32 << meta.vertices.zero_bits(scene.levels(), meta.coordinate_zeros)),
-            base_bits_lost: meta.vertices.zero_bits(scene.levels(), meta.coordinate_zeros) - PADDING_BITS,
+            base_grid: space.placement.scale * f64::from(1u32 << meta.vertices.zero_bits(scene.levels(), 0, meta.coordinate_zeros)),
+            base_bits_lost: meta.vertices.zero_bits(scene.levels(), 0, meta.coordinate_zeros) - PADDING_BITS,
             hierarchy_bytes_per_triangle: per(hierarchy),
             parts,
             distance: serde_json::from_value(meta.origin["remesh"]["distance"].clone())
@@ -264,7 +264,7 @@ fn verbose(i: &Info<'_>) -> String {
         text += &format!("{:<16}{:>16}{:>22.3}\n", p.name, grouped(p.bytes), p.per_finest_triangle);
     }
     text += &format!(
-        "bound and vertex data with L0 records (those of base triangles): {:.3} bytes per finest triangle\n",
+        "L0 records (those of base triangles), splits and vertices: {:.3} bytes per finest triangle\n",
         i.hierarchy_bytes_per_triangle
     );
     if let Some(d) = &i.distance {

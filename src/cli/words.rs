@@ -12,7 +12,7 @@ Words of the table:
                       tests: is a triangle fine enough for its ray
   line                32 bytes of memory; read counts every time, distinct each
                       line once
-  bvh_node, l0_record, bound_data, vertex_data, leaf
+  bvh_node, l0_record, split, vertex_data, leaf
                       what a line holds: boxes over triangles, a base triangle,
                       how far the surface is from a triangle, vertices of finer
                       levels, triangles of the BVH
@@ -48,7 +48,7 @@ Words of the table:
                       largest limits the frame
   energy              of the frame in uJ (millionths of a joule), or in a unit
                       of the machine's own
-  bvh_node, l0_record, bound_data, vertex_data, leaf
+  bvh_node, l0_record, split, vertex_data, leaf
                       what a line holds: boxes over triangles, a base triangle,
                       how far the surface is from a triangle, vertices of finer
                       levels, triangles of the BVH";

@@ -22,7 +22,7 @@ impl Scene {
         }
         let fine = self.by_source(&self.decode());
         let coarse = coarsen(&fine, zeros)?;
-        let order = self.sources();
+        let order = self.trees_by_source();
         let len = lattice::len(meta.levels);
         let normals = |tree: u32| self.normals()[tree as usize * len..][..len].iter().map(|&code| decode_normal(code));
         let surface = Surface {
@@ -31,8 +31,8 @@ impl Scene {
             triangles: fine.triangles.clone(),
             positions: fine.points.iter().map(|&p| fine.to_world(p)).collect(),
             normals: order.iter().flat_map(|&tree| normals(tree)).collect(),
-            materials: order.iter().map(|&tree| self.record(tree as usize).material.get() as u16).collect(), // 16 bits
-            colours: (0..self.colours().len()).filter_map(|k| self.colour(k as u16)).collect(),              // 16 bits name them
+            materials: order.iter().map(|&tree| self.material(tree as usize)).collect(),
+            colours: (0..self.colours().len()).filter_map(|k| self.colour(k as u16)).collect(), // 16 bits name them
         };
         let info = SceneInfo {
             name: meta.name.clone(),
@@ -48,9 +48,9 @@ impl Scene {
     }
 
     /// The tree of each base triangle of the mesh.
-    fn sources(&self) -> Vec<u32> {
+    fn trees_by_source(&self) -> Vec<u32> {
         let mut trees = vec![0; self.trees()];
-        (0..).zip(0..self.trees()).for_each(|(number, tree)| trees[self.record(tree).source.get() as usize] = number);
+        (0..).zip(0..self.trees()).for_each(|(number, tree)| trees[self.source(tree) as usize] = number);
         trees
     }
 
@@ -58,7 +58,7 @@ impl Scene {
     fn by_source(&self, h: &Hierarchy) -> Hierarchy {
         let (len, edges) = (lattice::len(h.levels), edges_of_tree(h.levels));
         let (mut points, mut codes) = (Vec::with_capacity(h.points.len()), Vec::with_capacity(h.bounds.codes.len()));
-        let order = self.sources();
+        let order = self.trees_by_source();
         for &tree in &order {
             let tree = tree as usize;
             points.extend_from_slice(&h.points[tree * len..][..len]);

@@ -1,6 +1,6 @@
 //! Memory images back to a hierarchy, and single triangles of full resolution.
 
-use super::{Displacements, L0Record, Scene, SiblingGroup, VertexData};
+use super::{Displacements, L0Record, Scene, SplitRecord, VertexData, has_split};
 use crate::mesh::compact::inserted_zero_bits;
 use crate::mesh::lattice::{self, LatticePoint};
 use crate::mesh::{EdgeCodes, Hierarchy, edge_index, edges_of_tree};
@@ -17,13 +17,17 @@ impl Scene {
     /// Base corners p0, p1, p2 of a tree in units.
     #[inline]
     pub fn corners(&self, tree: usize) -> [[i32; 3]; 3] {
-        VertexData::from_words(&self.records()[tree][..4]).points().map(units)
+        let points = match self.meta.vertices {
+            VertexForm::Exact => VertexData::from_words(&self.records()[2 * tree + 1]).points(),
+            VertexForm::Compact => self.record(tree).corners(),
+        };
+        points.map(units)
     }
 
-    /// Second line of a tree's L0 record.
+    /// A tree's L0 record.
     #[inline]
     pub fn record(&self, tree: usize) -> L0Record {
-        L0Record::from_words(&self.records()[tree][4..])
+        L0Record::from_words(self.record_line(tree))
     }
 
     /// Codes of edges e0, e1, e2 of node (`level`, `node`) of a tree, `level` below N or 0: 0 from the tree's depth on.
@@ -37,7 +41,7 @@ impl Scene {
             let L0Record { e0, e1, e2, .. } = self.record(tree);
             [e0, e1, e2]
         } else {
-            SiblingGroup::line_codes(&self.bounds()[self.starts.child_group(lines, level - 1, node >> 2)], node & 3)
+            SplitRecord::line_codes(&self.splits()[self.starts.split(lines, level - 1, node >> 2)], node & 3)
         };
         let [e0, e1, e2] = codes;
         [e0.get() as u8, e1.get() as u8, e2.get() as u8] // 8 bits
@@ -52,13 +56,11 @@ impl Scene {
             let middle = |a: [i32; 3], b: [i32; 3]| std::array::from_fn(|c| displaced(a[c], b[c], 0, 0));
             return [middle(p[1], p[2]), middle(p[2], p[0]), middle(p[0], p[1])];
         }
-        let line = |level| &self.vertices()[self.starts.vertex_line(meta.vertices, lines, level, node)];
-        let steps = match (meta.vertices, level) {
-            (VertexForm::Exact, _) => return VertexData::from_words(line(level)).points().map(units),
-            (VertexForm::Compact, 0) => self.record(tree).split,
-            (VertexForm::Compact, _) => Displacements::half(line(level), node),
-        };
-        let ([d0, d1, d2], [e0, e1, e2]) = (steps.steps(), self.node_codes(tree, level, node));
+        if meta.vertices == VertexForm::Exact {
+            let line = self.starts.vertex_line(meta.vertices, lines, level, node);
+            return VertexData::from_words(&self.vertices()[line]).points().map(units);
+        }
+        let ([d0, d1, d2], [e0, e1, e2]) = (self.displacements(tree, level, node), self.node_codes(tree, level, node));
         let (scale, zeros) = (meta.bound_scale(), inserted_zero_bits(meta.levels, level, meta.coordinate_zeros));
         let vertex = |a: [i32; 3], b: [i32; 3], by: Point, code: u8| {
             let (by, shift) = (units(by), displacement_shift(scale, code, zeros));
@@ -66,6 +68,16 @@ impl Scene {
             [coordinate(0), coordinate(1), coordinate(2)]
         };
         [vertex(p[1], p[2], d0, e0), vertex(p[2], p[0], d1, e1), vertex(p[0], p[1], d2, e2)]
+    }
+
+    /// Displacements of the inserted vertices of node (`level`, `node`) of a tree with compact vertices, `level` below its depth.
+    #[inline]
+    pub fn displacements(&self, tree: usize, level: u32, node: usize) -> [Point; 3] {
+        let lines = self.tree_lines(tree);
+        match has_split(lines.depth, level) {
+            true => SplitRecord::line_displacements(&self.splits()[self.starts.split(lines, level, node)]),
+            false => Displacements::line_half(&self.vertices()[self.starts.vertex_line(VertexForm::Compact, lines, level, node)], node),
+        }
     }
 
     /// Corners in units of node (`level`, `node`) of a tree, `level` at most N: reads the inserted vertices of each level above it.

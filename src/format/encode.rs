@@ -3,7 +3,7 @@
 use super::layout::{self, LevelStarts};
 use super::scene::Image;
 use super::sections::{COUNT, FileSection, HEADER, checksum, place, write_header};
-use super::{Box16, Displacements, L0Record, Line, Meta, Scene, SceneError, SiblingGroup, TreeLines, VertexData, colour, normal};
+use super::{Box16, Displacements, L0Record, Line, Meta, Scene, SceneError, SplitRecord, TreeLines, VertexData, colour, has_split, normal};
 use crate::mesh::compact::{inserted_zero_bits, steps_of};
 use crate::mesh::lattice::{self, LatticePoint};
 use crate::mesh::{BoundKind, Hierarchy, Surface, SurfaceError, quantise};
@@ -58,7 +58,7 @@ pub fn build<E: std::fmt::Display>(
 fn check_points(h: &Hierarchy) -> Result<(), SceneError> {
     let m = 1u32 << h.levels;
     let places: Vec<LatticePoint> = (0..=m).flat_map(|j| (0..=m - j).map(move |i| (i, j))).collect();
-    let zero_bits = |place| h.vertices.zero_bits(h.levels - lattice::level_of(h.levels, place), h.zeros);
+    let zero_bits = |place| h.vertices.zero_bits(h.levels, lattice::level_of(h.levels, place), h.zeros);
     let masks: Vec<i32> = places.iter().map(|&place| (1 << zero_bits(place)) - 1).collect();
     let fits = |p: &[i32; 3], mask: i32| p.iter().all(|c| c & mask == 0 && c.unsigned_abs() <= COORD_LIMIT.unsigned_abs());
     let bad = |points: &[[i32; 3]]| points.iter().zip(&masks).any(|(p, &mask)| !fits(p, mask));
@@ -94,17 +94,18 @@ pub fn encode(hierarchy: &Hierarchy, surface: &Surface, info: SceneInfo, bvh: &T
         return Err(SceneError::Build("quad-BVH does not hold every tree once".into()));
     }
     let depths: Vec<u32> = order.par_iter().map(|&tree| hierarchy.depth(tree as usize)).collect();
-    let (trees_lines, starts) = layout::places(&depths);
-    if starts.groups() > 1 << 28 {
-        return Err(SceneError::Build(format!("{} sibling groups, more than 2^28: fewer splits or trees are needed", starts.groups())));
+    let (trees_lines, starts) = layout::places(hierarchy.vertices, &depths);
+    if !starts.are_numbered(hierarchy.vertices) {
+        let (splits, lines) = (starts.splits(), starts.vertex_lines());
+        return Err(SceneError::Build(format!("{splits} splits and {lines} lines of vertices, more than 2^28: fewer levels or trees are needed")));
     }
     let meta = meta(hierarchy, surface, info);
     let json = serde_json::to_vec(&meta).map_err(|e| SceneError::Build(format!("META: {e}")))?;
     let lengths = FileSection::ALL.map(|section| match section {
         FileSection::Meta => json.len(),
         FileSection::Nodes => size_of_val(nodes.as_slice()),
-        FileSection::Bounds => size_of::<Line>() * starts.groups(),
-        FileSection::Vertices => size_of::<Line>() * starts.vertex_lines(meta.vertices),
+        FileSection::Splits => size_of::<Line>() * starts.splits(),
+        FileSection::Vertices => size_of::<Line>() * starts.vertex_lines(),
         FileSection::Colours => 4 * surface.colours.len(),
         _ => Scene::section_lengths(&meta, section).unwrap_or(usize::MAX / 16), // too large to be had
     });
@@ -118,11 +119,14 @@ pub fn encode(hierarchy: &Hierarchy, surface: &Surface, info: SceneInfo, bvh: &T
         (rest, taken) = (tail, range.end);
         section
     });
-    let [meta_out, nodes_out, records, bounds, vertices, normals, triangles, colours] = slices;
+    let [meta_out, nodes_out, records, splits, vertices, normals, triangles, sources, colours] = slices;
     meta_out.copy_from_slice(&json);
     nodes_out.copy_from_slice(bytemuck::cast_slice(nodes));
     let triangles: &mut [[u32; 3]] = bytemuck::cast_slice_mut(triangles);
     triangles.iter_mut().zip(order).for_each(|(out, &tree)| *out = hierarchy.triangles[tree as usize]);
+    let material = |tree: u32| surface.materials.get(tree as usize).copied().unwrap_or(0);
+    let sources: &mut [[u32; 2]] = bytemuck::cast_slice_mut(sources);
+    sources.iter_mut().zip(order).for_each(|(out, &tree)| *out = [tree, material(tree).into()]);
     for (out, colour) in bytemuck::cast_slice_mut::<u8, [u8; 4]>(colours).iter_mut().zip(&surface.colours) {
         let [r, g, b] = colour.map(colour::to_srgb);
         *out = [r, g, b, 255];
@@ -130,10 +134,10 @@ pub fn encode(hierarchy: &Hierarchy, surface: &Surface, info: SceneInfo, bvh: &T
     write_normals(surface, order, bytemuck::cast_slice_mut(normals))?;
     let images = Images {
         records: bytemuck::cast_slice_mut(records),
-        groups: bytemuck::cast_slice_mut(bounds),
+        splits: bytemuck::cast_slice_mut(splits),
         vertices: bytemuck::cast_slice_mut(vertices),
     };
-    images.write(hierarchy, &surface.materials, order, &trees_lines)?;
+    images.write(hierarchy, order, &trees_lines)?;
 
     debug_assert_eq!(trees, meta.trees as usize);
     Ok(sealed(image, ranges, meta, starts))
@@ -219,8 +223,8 @@ fn parts<'a>(
     let mut by_place: Vec<usize> = (0..stored.len()).collect();
     by_place.sort_unstable_by_key(|&tree| stored[tree].place);
     let mut parts: Vec<Vec<&mut [Line]>> = stored.iter().map(|tree| Vec::with_capacity(tree.depth as usize)).collect();
-    for level in 0..=layout::GROUP_LEVELS as u32 {
-        for &tree in by_place.iter().take_while(|&&tree| has(stored[tree].depth, level)) {
+    for level in 0..layout::SPLIT_LEVELS as u32 {
+        for &tree in by_place.iter().filter(|&&tree| has(stored[tree].depth, level)) {
             let (part, rest) = std::mem::take(&mut section).split_at_mut(lines(level));
             parts[tree].push(part);
             section = rest;
@@ -229,41 +233,34 @@ fn parts<'a>(
     parts
 }
 
-/// The groups of each tree by the level of the nodes whose children they hold.
-pub(super) fn group_parts<'a>(section: &'a mut [Line], stored: &[TreeLines]) -> Vec<Vec<&'a mut [Line]>> {
-    parts(section, stored, |depth, level| level + 1 < depth, |level| 1 << (2 * level))
+/// The splits of each tree by level.
+pub(super) fn split_parts<'a>(section: &'a mut [Line], stored: &[TreeLines]) -> Vec<Vec<&'a mut [Line]>> {
+    parts(section, stored, has_split, |level| 1 << (2 * level))
 }
 
-/// The vertex lines of each tree by level; of compact ones the first are those of level 1.
+/// The vertex lines of each tree by level; compact ones are of one level.
 pub(super) fn vertex_parts<'a>(form: VertexForm, section: &'a mut [Line], stored: &[TreeLines]) -> Vec<Vec<&'a mut [Line]>> {
-    match form {
-        VertexForm::Exact => parts(section, stored, |depth, level| level < depth, |level| 1 << (2 * level)),
-        VertexForm::Compact => parts(section, stored, |depth, level| level + 1 < depth, |level| 2 << (2 * level)),
-    }
+    parts(section, stored, |depth, level| layout::has_vertices(form, depth, level), |level| layout::vertex_lines_of_level(form, level))
 }
 
 /// The images of all trees.
 struct Images<'a> {
-    records: &'a mut [[u64; 8]],
-    groups: &'a mut [Line],
+    records: &'a mut [Line],
+    splits: &'a mut [Line],
     vertices: &'a mut [Line],
 }
 
 impl Images<'_> {
-    /// Fills the record, sibling groups and vertices of every tree, of which so much is stored; the first is tree `order[0]` of the hierarchy.
-    fn write(self, h: &Hierarchy, materials: &[u16], order: &[u32], stored: &[TreeLines]) -> Result<(), SceneError> {
-        let groups = group_parts(self.groups, stored);
+    /// Fills the record, splits and vertices of every tree, of which so much is stored; the first is tree `order[0]` of the hierarchy.
+    fn write(self, h: &Hierarchy, order: &[u32], stored: &[TreeLines]) -> Result<(), SceneError> {
+        let splits = split_parts(self.splits, stored);
         let lines = vertex_parts(h.vertices, self.vertices, stored);
-        let trees = self.records.par_iter_mut().zip(order).zip(stored).zip(groups.into_par_iter().zip(lines));
-        let bad = trees.find_map_first(|(((record, &tree), &stored), (groups, lines))| {
+        let records = self.records.par_chunks_mut(h.vertices.record_lines());
+        let trees = records.zip(order).zip(stored).zip(splits.into_par_iter().zip(lines));
+        let bad = trees.find_map_first(|(((record, &tree), &stored), (splits, lines))| {
             let index = tree as usize;
-            let mut writer = TreeWriter { h, points: h.tree(index), tree: index, depth: stored.depth, groups, lines, fits: true };
-            let source = L0Record {
-                source: U::new(u64::from(tree)),
-                material: U::new(u64::from(materials.get(index).copied().unwrap_or(0))),
-                ..L0Record::default()
-            };
-            writer.record(source.of_tree(stored), record);
+            let mut writer = TreeWriter { h, points: h.tree(index), tree: index, depth: stored.depth, splits, lines, fits: true };
+            writer.record(L0Record::default().of_tree(stored), record);
             (!writer.fits).then(|| SceneError::Build(format!("tree {tree} has a vertex that its compact form cannot hold")))
         });
         bad.map_or(Ok(()), Err)
@@ -278,8 +275,8 @@ struct TreeWriter<'a> {
     /// Levels that are stored.
     depth: u32,
     /// By level.
-    groups: Vec<&'a mut [Line]>,
-    /// By level.
+    splits: Vec<&'a mut [Line]>,
+    /// By level; compact ones of the last level alone.
     lines: Vec<&'a mut [Line]>,
     /// Compact vertices are what the hierarchy has.
     fits: bool,
@@ -293,16 +290,17 @@ fn span(points: [[i32; 3]; 3]) -> Span {
 }
 
 impl TreeWriter<'_> {
-    fn record(&mut self, mut record: L0Record, out: &mut [u64; 8]) {
+    fn record(&mut self, mut record: L0Record, out: &mut [Line]) {
         let p = lattice::root(self.h.levels);
-        VertexData::from_points(p.map(|c| self.at(c))).to_words(&mut out[..4]);
+        let corners = p.map(|c| self.at(c));
+        match out {
+            [_, line] => VertexData::from_points(corners).to_words(line),
+            _ => record = record.with_corners(corners),
+        }
         if self.depth > 0 {
             [record.e0, record.e1, record.e2] = self.h.node_codes(self.tree, 0, p).map(|c| U::new(u64::from(c)));
-            if self.h.vertices.is_compact() {
-                record.split = self.displacements(0, p);
-            }
         }
-        record.to_words(&mut out[4..]);
+        record.to_words(&mut out[0]);
         self.node(0, 0, p);
     }
 
@@ -317,27 +315,33 @@ impl TreeWriter<'_> {
             return span(p.map(|c| self.at(c)));
         }
         let q = lattice::midpoints(p).map(|c| self.at(c));
+        let mut split = SplitRecord::default();
         match self.h.vertices {
             VertexForm::Exact => VertexData::from_points(q).to_words(&mut self.lines[level as usize][node]),
-            // The root's are in its record.
-            VertexForm::Compact if level == 0 => (),
             VertexForm::Compact => {
-                let half = self.displacements(level, p);
-                half.to_words(&mut self.lines[level as usize - 1][node / 2][2 * (node & 1)..][..2]);
+                let displacements = self.displacements(level, p);
+                match has_split(self.depth, level) {
+                    true => split = split.with_displacements(displacements),
+                    false => displacements.to_words(&mut self.lines[0][node / 2][2 * (node & 1)..][..2]),
+                }
             }
         }
-        if level + 1 == self.depth {
-            return join(span(p.map(|c| self.at(c))), span(q));
+        let span = if level + 1 == self.depth {
+            join(span(p.map(|c| self.at(c))), span(q))
+        } else {
+            let children: [_; 4] = std::array::from_fn(|k| lattice::child(p, k as u32)); // k < 4
+            let spans: [Span; 4] = std::array::from_fn(|k| self.node(level + 1, 4 * node + k, children[k]));
+            split = self.with_children(split, level + 1, children, &spans);
+            spans.into_iter().fold(spans[0], join)
+        };
+        if has_split(self.depth, level) {
+            split.to_words(&mut self.splits[level as usize][node]);
         }
-        let children: [_; 4] = std::array::from_fn(|k| lattice::child(p, k as u32)); // k < 4
-        let spans: [Span; 4] = std::array::from_fn(|k| self.node(level + 1, 4 * node + k, children[k]));
-        self.group(level + 1, children, &spans).to_words(&mut self.groups[level as usize][node]);
-        spans.into_iter().fold(spans[0], join)
+        span
     }
 
-    /// The group of the nodes of `level` with these corners, the boxes of whose full-resolution triangles are `spans`.
-    fn group(&self, level: u32, children: [[LatticePoint; 3]; 4], spans: &[Span; 4]) -> SiblingGroup {
-        let mut group = SiblingGroup::default();
+    /// The split with these children of `level`, the boxes of whose full-resolution triangles are `spans`.
+    fn with_children(&self, mut split: SplitRecord, level: u32, children: [[LatticePoint; 3]; 4], spans: &[Span; 4]) -> SplitRecord {
         let excess: [[u32; 6]; 4] = std::array::from_fn(|k| {
             let codes = |[lo, hi]: Span| (lo.map(box_code_floor).map(i32::from), hi.map(box_code_ceil).map(i32::from));
             let ((lo, hi), (all_lo, all_hi)) = (codes(span(children[k].map(|c| self.at(c)))), codes(spans[k]));
@@ -346,20 +350,20 @@ impl TreeWriter<'_> {
         });
         for axis in 0..3 {
             let most = excess.iter().map(|child| child[axis].max(child[axis + 3])).max().unwrap_or(0);
-            let step = BoxStep::reaching(most, SiblingGroup::MOST);
-            (group.halves[axis], group.exponents[axis]) = (step.half, U::new(u64::from(step.exponent)));
+            let step = BoxStep::reaching(most, SplitRecord::MOST);
+            (split.halves[axis], split.exponents[axis]) = (step.half, U::new(u64::from(step.exponent)));
             for (k, child) in excess.iter().enumerate() {
                 for j in [axis, axis + 3] {
-                    group.planes[6 * k + j] = U::new(u64::from(step.above(child[j])));
+                    split.planes[6 * k + j] = U::new(u64::from(step.above(child[j])));
                 }
             }
         }
         for (k, &child) in children.iter().enumerate() {
-            for (place, code) in SiblingGroup::places_of(k).into_iter().zip(self.h.node_codes(self.tree, level, child)) {
-                group.codes[place] = U::new(u64::from(code));
+            for (place, code) in SplitRecord::places_of(k).into_iter().zip(self.h.node_codes(self.tree, level, child)) {
+                split.codes[place] = U::new(u64::from(code));
             }
         }
-        group
+        split
     }
 
     /// The inserted vertices of a node of `level` with corners `p` as displacements.

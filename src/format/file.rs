@@ -2,7 +2,7 @@
 
 use super::scene::Image;
 use super::sections::{FileSection, checksum, read_header};
-use super::{BvhNode, ChildRef, L0Record, LevelStarts, Meta, Scene, SceneError, VertexData, layout, write_and_rename};
+use super::{BvhNode, ChildRef, LevelStarts, Meta, Scene, SceneError, VertexData, layout, write_and_rename};
 use crate::mesh::most_zeros;
 use crate::num::{
     COORD_LIMIT, LINE_BYTES, MAX_BOUND_OFFSET, MAX_BVH_DEPTH, MAX_LEVELS, MOST_DIRECTION_ZEROS, PADDING_BITS, VertexForm, Wire,
@@ -58,7 +58,7 @@ impl Scene {
         let meta: Meta =
             serde_json::from_slice(&bytes[ranges[FileSection::Meta.slot()].clone()]).map_err(|e| format!("section META: {e}"))?;
         check_meta(&meta)?;
-        for section in [FileSection::Records, FileSection::Normals, FileSection::Triangles] {
+        for section in [FileSection::Records, FileSection::Normals, FileSection::Triangles, FileSection::Sources] {
             let found = ranges[section.slot()].len();
             if Self::section_lengths(&meta, section) != Some(found) {
                 let (name, trees, levels) = (section.name(), meta.trees, meta.levels);
@@ -67,7 +67,7 @@ impl Scene {
         }
         let line = LINE_BYTES as usize;
         for (section, size) in
-            [(FileSection::Nodes, line), (FileSection::Bounds, line), (FileSection::Vertices, line), (FileSection::Colours, 4)]
+            [(FileSection::Nodes, line), (FileSection::Splits, line), (FileSection::Vertices, line), (FileSection::Colours, 4)]
         {
             let length = ranges[section.slot()].len();
             if length % size != 0 {
@@ -81,14 +81,14 @@ impl Scene {
         Ok(scene)
     }
 
-    /// Trees have their places, and as many sibling groups and vertices as their depths say; gives where levels begin.
+    /// Trees have their places, and as many splits and vertices as their depths say; gives where levels begin.
     fn check_trees(&self) -> Result<LevelStarts, String> {
         let (levels, form) = (self.levels(), self.meta.vertices);
         let depths = self.depths();
         if let Some(tree) = depths.iter().position(|&depth| depth > levels) {
             return Err(format!("section RECORDS: depth of tree {tree} is {}, above {levels} splits", depths[tree]));
         }
-        let (trees, starts) = layout::places(&depths);
+        let (trees, starts) = layout::places(form, &depths);
         if let Some((tree, own)) = trees.iter().enumerate().find(|&(tree, own)| *own != self.tree_lines(tree)) {
             return Err(format!(
                 "section RECORDS: place of tree {tree} is {}, by the depths of all it is {}",
@@ -97,14 +97,14 @@ impl Scene {
             ));
         }
         for (name, found, expected) in
-            [("BOUNDS", self.bounds().len(), starts.groups()), ("VERTICES", self.vertices().len(), starts.vertex_lines(form))]
+            [("SPLITS", self.splits().len(), starts.splits()), ("VERTICES", self.vertices().len(), starts.vertex_lines())]
         {
             if found != expected {
                 return Err(format!("section {name}: {found} lines, but the trees have {expected}"));
             }
         }
-        if starts.groups() > 1 << 28 {
-            return Err(format!("section BOUNDS: {} sibling groups, more than 2^28", starts.groups()));
+        if !starts.are_numbered(form) {
+            return Err(format!("section SPLITS: {} splits and {} lines of vertices, more than 2^28", starts.splits(), starts.vertex_lines()));
         }
         Ok(starts)
     }
@@ -116,7 +116,8 @@ impl Scene {
             let VertexData { v0, v1, v2, .. } = VertexData::from_words(line);
             [v0, v1, v2].iter().any(|v| v.get().iter().any(|c| c.abs() > limit))
         };
-        if let Some(tree) = self.records().par_iter().position_first(|r| beyond(&r[..4])) {
+        let outside = |tree: &usize| self.corners(*tree).iter().flatten().any(|c| c.unsigned_abs() > COORD_LIMIT.unsigned_abs());
+        if let Some(tree) = (0..self.trees()).into_par_iter().find_first(outside) {
             return Err(format!("section RECORDS: tree {tree} has a coordinate beyond +-{COORD_LIMIT}"));
         }
         match self.meta.vertices {
@@ -129,7 +130,7 @@ impl Scene {
                 let bad = (0..self.trees()).into_par_iter().find_map_first(|tree| self.beyond_limit(tree).map(|at| (tree, at)));
                 if let Some((tree, (level, node))) = bad {
                     return Err(format!(
-                        "section VERTICES: tree {tree}: a displacement of node {node} of level {level} leads beyond +-{COORD_LIMIT} or off the grid"
+                        "tree {tree}: a displacement of node {node} of level {level} leads beyond +-{COORD_LIMIT} or off the grid"
                     ));
                 }
             }
@@ -152,7 +153,7 @@ impl Scene {
     /// The first node of a tree with compact vertices whose inserted vertices exceed the limit. Base corners that are not on their grid make midpoints that are no
     /// integers: those count too, as the root's.
     fn beyond_limit(&self, tree: usize) -> Option<(u32, usize)> {
-        let mask = (1 << VertexForm::Compact.zero_bits(self.levels(), self.meta.coordinate_zeros)) - 1;
+        let mask = (1 << VertexForm::Compact.zero_bits(self.levels(), 0, self.meta.coordinate_zeros)) - 1;
         let mut found = self.corners(tree).iter().flatten().any(|c| c & mask != 0).then_some((0, 0));
         // A tree whose vertices wrap at one node is not read any further below by anyone: the first is reported.
         // Middles of edges keep the limit.
@@ -172,9 +173,8 @@ impl Scene {
             return Err(format!("section TRIANGLES: tree {tree} needs three different vertices below {vertices}"));
         }
         let materials = self.colours().len().max(1); // without colours all are material 0
-        let bad = |r: &[u64; 8]| L0Record::from_words(&r[4..]).material.get() >= materials as u64;
-        if let Some(tree) = self.records().par_iter().position_first(bad) {
-            return Err(format!("section RECORDS: material of tree {tree} has no colour"));
+        if let Some(tree) = self.sources().par_iter().position_first(|&[_, material]| material as usize >= materials) {
+            return Err(format!("section SOURCES: material of tree {tree} has no colour"));
         }
         let nodes = self.nodes();
         let mut seen = vec![false; nodes.len()];

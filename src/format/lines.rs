@@ -3,35 +3,42 @@
 //! | record | size | at |
 //! |---|---|---|
 //! | quad-BVH node | a line: [`BvhNode`] | `nodes` |
-//! | L0 record | two lines: [`VertexData`] with p0, p1, p2; then [`L0Record`] | `records` |
-//! | sibling group | a line: [`SiblingGroup`] | `bounds` |
+//! | L0 record | a line: [`L0Record`]; if vertices are exact a second one: [`VertexData`] with p0, p1, p2 | `records` |
+//! | split of a node whose children are nodes | a line: [`SplitRecord`] | `splits` |
 //! | inserted vertices q0, q1, q2, exact | a line: [`VertexData`] | `vertices` |
-//! | the same, compact | half a line: [`Displacements`], an even sibling's in the lower half; a root's in its L0 record | `vertices` |
+//! | those of a last split, compact | half a line: [`Displacements`], an even sibling's in the lower half | `vertices` |
 //!
 //! The full-resolution BVHs with 16-bit boxes have nodes of four [`BvhChild`], 64 bytes.
 
 pub use crate::num::Box16;
-use crate::num::{BoundCode, BoxStep, Displacement, PADDING_BITS, Point, S, U, Vec3, Wire, box_steps, wire_struct};
+use crate::num::{BASE_ZERO_BITS, BoundCode, BoxStep, Displacement, PADDING_BITS, Point, S, U, Vec3, box_steps, wire_struct};
 
 /// A memory line.
 pub type Line = [u64; 4];
 
 wire_struct! {
-    /// What traversal needs of the four children of a tree's node: 32 bytes.
+    /// What traversal needs of a tree's node that splits into nodes: its inserted vertices, and of its four children bound codes and boxes. 32 bytes.
     ///
     /// A plane is how far the box of the full-resolution triangles below a child reaches beyond the box of its own full-resolution triangle, which whoever
-    /// reads the group has: [`box_steps`] of its axis.
-    pub struct SiblingGroup {
-        /// Zero.
-        reserved: U<1>,
-        /// Codes of the nine different edges: 3k, 3k + 1, 3k + 2 of e0, e1, e2 of child k < 3; child 3 has 0, 4 and 8 ([`SiblingGroup::codes_of`]).
+    /// reads the split has: [`box_steps`] of its axis.
+    pub struct SplitRecord {
+        /// Inserted vertex q0, if they are compact (else zero): its displacement from the midpoint of its edge between full-resolution corners, in steps of
+        /// [`displacement_shift`](crate::num::displacement_shift).
+        v0: Displacement,
+        /// The same of q1.
+        v1: Displacement,
+        /// Of q2.
+        v2: Displacement,
+        /// Codes of the nine different edges: 3k, 3k + 1, 3k + 2 of e0, e1, e2 of child k < 3; child 3 has 0, 4 and 8 ([`SplitRecord::codes_of`]).
         codes: [BoundCode; 9],
+        /// Zero.
+        reserved: U<4>,
         /// Steps along x, y, z are half as long again.
         halves: [bool; 3],
         /// Powers of two of these steps.
         exponents: [U<4>; 3],
         /// Child k: below in x, y, z and above in x, y, z at 6k to 6k + 5.
-        planes: [U<7>; 24],
+        planes: [U<2>; 24],
     }
 }
 
@@ -90,7 +97,7 @@ wire_struct! {
     pub struct VertexData {
         /// Zero.
         reserved: U<4>,
-        /// q0 (or p0 in an L0 record).
+        /// q0 (or p0 beside an L0 record).
         v0: Vec3<28>,
         /// q1 (or p1).
         v1: Vec3<28>,
@@ -100,8 +107,7 @@ wire_struct! {
 }
 
 wire_struct! {
-    /// Inserted vertices of a node, compact: displacements from the midpoints of the edges between its full-resolution corners, in steps of
-    /// [`displacement_shift`](crate::num::displacement_shift). 16 bytes.
+    /// Inserted vertices of a last split, compact: displacements as in a [`SplitRecord`]. 16 bytes.
     pub struct Displacements {
         /// Zero.
         reserved: U<11>,
@@ -115,26 +121,26 @@ wire_struct! {
 }
 
 wire_struct! {
-    /// Second line of an L0 record.
+    /// What traversal needs of a base triangle: 32 bytes.
     pub struct L0Record {
         /// Levels of the tree that are stored, 0 to N: below them is nothing that a ray could want.
         depth: U<4>,
         /// Its place among the trees of each level (`layout.rs`).
         place: U<28>,
-        /// Zero.
-        reserved: U<28>,
-        /// Number of the base triangle in the mesh that the scene was made of.
-        source: U<28>,
-        /// Material index.
-        material: U<16>,
         /// Code of edge (p1, p2) of the root; zero if depth is 0, like the others.
         e0: BoundCode,
         /// Code of edge (p2, p0).
         e1: BoundCode,
         /// Code of edge (p0, p1).
         e2: BoundCode,
-        /// Inserted vertices of the root, if it splits and the scene's are compact; else zero.
-        split: Displacements,
+        /// Zero.
+        reserved: U<2>,
+        /// Corner p0 in steps of 2^[`BASE_ZERO_BITS`] units, if vertices are compact; else zero, and the corners are in a second line.
+        p0: Vec3<22>,
+        /// Corner p1.
+        p1: Vec3<22>,
+        /// Corner p2.
+        p2: Vec3<22>,
     }
 }
 
@@ -170,9 +176,31 @@ pub struct TreeLines {
 }
 
 impl L0Record {
-    /// What of the tree is stored, from the record's second line.
+    /// The record of a tree with these corners, whose low [`BASE_ZERO_BITS`] bits are zero.
+    #[must_use]
+    pub fn with_corners(self, corners: [[i32; 3]; 3]) -> Self {
+        let [p0, p1, p2] = corners.map(|c| {
+            let [x, y, z] = c.map(|u| i64::from(u >> BASE_ZERO_BITS));
+            Vec3::new(x, y, z)
+        });
+        Self { p0, p1, p2, ..self }
+    }
+
+    /// Its corners in units.
     #[inline(always)]
-    pub fn line_tree(line: &[u64]) -> TreeLines {
+    pub fn corners(&self) -> [Point; 3] {
+        // 22 + 10 = 32 bits.
+        let pad = |v: Vec3<22>| Point {
+            x: S::new(v.x.get() << BASE_ZERO_BITS),
+            y: S::new(v.y.get() << BASE_ZERO_BITS),
+            z: S::new(v.z.get() << BASE_ZERO_BITS),
+        };
+        [pad(self.p0), pad(self.p1), pad(self.p2)]
+    }
+
+    /// What of the tree is stored, from the record's line.
+    #[inline(always)]
+    pub fn line_tree(line: &Line) -> TreeLines {
         const NUMBER: u64 = (1 << 28) - 1;
         TreeLines { depth: (line[3] >> 60) as u32, place: (line[3] >> 32 & NUMBER) as usize } // 4 and 28 bits
     }
@@ -203,8 +231,8 @@ impl ChildRef {
     }
 }
 
-/// Bits of a plane of a group and of a node: those of all planes lie at the bottom of their records.
-const GROUP_PLANE: u32 = 7;
+/// Bits of a plane of a split and of a node: those of all planes lie at the bottom of their records.
+const SPLIT_PLANE: u32 = 2;
 const NODE_PLANE: u32 = 5;
 
 /// The bits of a line from bit `at` on.
@@ -223,7 +251,7 @@ fn planes<const BITS: u32>(line: &Line) -> [[u32; 4]; 6] {
     let word = |k: u32| {
         let at = 6 * BITS * k;
         let from = (at / 8) as usize;
-        // At most 42 bits, from bit 6 on at the furthest; the last at byte 15.
+        // At most 30 bits, from bit 6 on at the furthest; the last at byte 11.
         u64::from_ne_bytes(std::array::from_fn(|j| bytes[from + j])) >> (at % 8)
     };
     let all = [word(0), word(1), word(2), word(3)];
@@ -244,9 +272,9 @@ fn steps(line: &Line, from: u32) -> [BoxStep; 3] {
     [step(0), step(1), step(2)]
 }
 
-impl SiblingGroup {
+impl SplitRecord {
     /// Most steps of a plane.
-    pub const MOST: u32 = (1 << GROUP_PLANE) - 1;
+    pub const MOST: u32 = (1 << SPLIT_PLANE) - 1;
 
     /// Where the codes of e0, e1, e2 of child `k` stand: those of child 3 are e0 of child 0, e1 of child 1 and e2 of child 2.
     #[inline(always)]
@@ -261,27 +289,42 @@ impl SiblingGroup {
         Self::places_of(k).map(|place| self.codes[place])
     }
 
-    /// The same from the group's line.
+    /// The same from the split's line.
     #[inline(always)]
     pub fn line_codes(line: &Line, k: usize) -> [BoundCode; 3] {
-        // Behind the planes and their steps, 72 bits up to the reserved one: read from memory as bytes, since which of them is what no predictor knows.
-        const FIRST: u32 = 24 * GROUP_PLANE + 15 - 128;
-        let bytes = ((u128::from(line[3]) << 64 | u128::from(line[2])) >> FIRST).to_le_bytes();
+        // Behind planes, steps and reserved bits, in the second and third word: read from memory as bytes, since which of them is what no predictor knows.
+        const FIRST: u32 = 24 * SPLIT_PLANE + 15 + 4 - 64;
+        let bytes = ((u128::from(line[2]) << 64 | u128::from(line[1])) >> FIRST).to_le_bytes();
         let [e0, e1, e2] = Self::places_of(k);
         let code = |place: usize| U::new(u64::from(bytes[place]));
         [code(e0), code(e1), code(e2)]
     }
 
-    /// Plane j of child k of the group's line at `[j][k]`.
+    /// Displacements of the inserted vertices, from the split's line.
     #[inline(always)]
-    pub fn line_planes(line: &Line) -> [[u32; 4]; 6] {
-        planes::<GROUP_PLANE>(line)
+    pub fn line_displacements(line: &Line) -> [Point; 3] {
+        // 117 bits from bit 139 on; the lowest bits are those of z of q2.
+        let all = (u128::from(line[3]) << 64 | u128::from(line[2])) >> 11;
+        displacements(all)
     }
 
-    /// Steps along x, y, z of the group's line.
+    /// Plane j of child k of the split's line at `[j][k]`.
+    #[inline(always)]
+    pub fn line_planes(line: &Line) -> [[u32; 4]; 6] {
+        planes::<SPLIT_PLANE>(line)
+    }
+
+    /// Steps along x, y, z of the split's line.
     #[inline(always)]
     pub fn line_steps(line: &Line) -> [BoxStep; 3] {
-        steps(line, 24 * GROUP_PLANE)
+        steps(line, 24 * SPLIT_PLANE)
+    }
+
+    /// The record of a split with these displacements.
+    #[must_use]
+    pub fn with_displacements(self, split: Displacements) -> Self {
+        let Displacements { v0, v1, v2, .. } = split;
+        Self { v0, v1, v2, ..self }
     }
 }
 
@@ -394,6 +437,15 @@ fn framed_bounds(origin: [i64; 3], halves: [bool; 3], exponents: [U<4>; 3], plan
     Box16::from_codes(corner(0), corner(3))
 }
 
+/// Steps of nine coordinates of 13 bits, z of the last vertex the lowest.
+#[inline(always)]
+fn displacements(all: u128) -> [Point; 3] {
+    // Sign-extended.
+    let step = |at: u32| S::new(((all >> (13 * at)) as i64) << 51 >> 51);
+    let point = |at: u32| Point { x: step(at + 2), y: step(at + 1), z: step(at) };
+    [point(6), point(3), point(0)]
+}
+
 impl Displacements {
     /// From steps of each vertex's coordinates, 13 bits each.
     pub fn from_steps(steps: [[i32; 3]; 3]) -> Self {
@@ -404,17 +456,11 @@ impl Displacements {
         Self { reserved: U::ZERO, v0, v1, v2 }
     }
 
-    /// Those of node `number` of a level, in the line that it shares with a sibling.
+    /// Steps of the vertices' coordinates of node `number` of a level, from the line that it shares with a sibling.
     #[inline(always)]
-    pub fn half(line: &Line, number: usize) -> Self {
-        Self::from_words(&line[2 * (number & 1)..][..2])
-    }
-
-    /// Steps of each vertex's coordinates.
-    #[inline(always)]
-    pub fn steps(&self) -> [Point; 3] {
-        let wide = |v: Displacement| Point { x: S::new(v.x.get()), y: S::new(v.y.get()), z: S::new(v.z.get()) };
-        [wide(self.v0), wide(self.v1), wide(self.v2)]
+    pub fn line_half(line: &Line, number: usize) -> [Point; 3] {
+        let at = 2 * (number & 1);
+        displacements(u128::from(line[at + 1]) << 64 | u128::from(line[at]))
     }
 }
 
@@ -440,11 +486,12 @@ impl VertexData {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::num::Wire;
     use proptest::prelude::*;
 
     #[test]
     fn records_have_their_stated_sizes() {
-        assert_eq!(SiblingGroup::WIDTH, 256);
+        assert_eq!(SplitRecord::WIDTH, 256);
         assert_eq!(BvhNode::WIDTH, 256);
         assert_eq!(VertexData::WIDTH, 256);
         assert_eq!(Displacements::WIDTH, 128);
@@ -468,26 +515,33 @@ mod tests {
             Displacements::from_steps(*steps).to_words(half);
         }
         for (k, steps) in steps.iter().enumerate() {
-            assert_eq!(Displacements::half(&line, k + 4).steps(), steps.map(Point::from_i32));
+            assert_eq!(Displacements::line_half(&line, k + 4), steps.map(Point::from_i32));
         }
     }
 
     proptest! {
         #[test]
         fn parts_of_lines_are_the_fields(line in prop::array::uniform4(any::<u64>())) {
-            let (group, node) = (SiblingGroup::from_words(&line), BvhNode::from_words(&line));
+            let (split, node) = (SplitRecord::from_words(&line), BvhNode::from_words(&line));
             let (record, lines) = (L0Record::from_words(&line), L0Record::line_tree(&line));
             prop_assert_eq!(record.of_tree(lines), record);
+            prop_assert_eq!(record.with_corners(record.corners().map(|p| p.get().map(|c| c as i32))), record);
+            let displacements = Displacements { reserved: U::ZERO, v0: split.v0, v1: split.v1, v2: split.v2 };
+            prop_assert_eq!(SplitRecord::line_displacements(&line), [split.v0, split.v1, split.v2].map(|v| {
+                let [x, y, z] = v.get();
+                Point { x: S::new(x), y: S::new(y), z: S::new(z) }
+            }));
+            prop_assert_eq!(split.with_displacements(displacements), split);
             for axis in 0..3 {
                 let step = |half: [bool; 3], exponents: [U<4>; 3]| BoxStep { half: half[axis], exponent: exponents[axis].get() as u32 };
-                prop_assert_eq!(SiblingGroup::line_steps(&line)[axis], step(group.halves, group.exponents));
+                prop_assert_eq!(SplitRecord::line_steps(&line)[axis], step(split.halves, split.exponents));
                 prop_assert_eq!(BvhNode::line_steps(&line)[axis], step(node.halves, node.exponents));
             }
             prop_assert_eq!(BvhNode::line_origin(&line).map(i64::from), node.origin.get());
             for k in 0..4 {
-                let own = |j: usize| (u64::from(SiblingGroup::line_planes(&line)[j][k]), u64::from(BvhNode::line_planes(&line)[j][k]));
-                prop_assert!((0..6).all(|j| own(j) == (group.planes[6 * k + j].get(), node.planes[6 * k + j].get())));
-                prop_assert_eq!(SiblingGroup::line_codes(&line, k), group.codes_of(k));
+                let own = |j: usize| (u64::from(SplitRecord::line_planes(&line)[j][k]), u64::from(BvhNode::line_planes(&line)[j][k]));
+                prop_assert!((0..6).all(|j| own(j) == (split.planes[6 * k + j].get(), node.planes[6 * k + j].get())));
+                prop_assert_eq!(SplitRecord::line_codes(&line, k), split.codes_of(k));
                 prop_assert_eq!(BvhNode::line_kind(&line, k), node.kinds[k].get());
                 prop_assert_eq!(BvhNode::line_child(&line, k), node.child(k));
             }

@@ -5,12 +5,12 @@ use crate::mesh::lattice::{self, LatticePoint};
 use crate::num::prism::{HEIGHT, MOST_HEIGHT, MOST_PLANE, OPEN, Prisms, area, child, local_corners, normal};
 use rayon::prelude::*;
 
-/// The prisms of all sibling groups of a scene, in their order.
+/// The prisms of the children of all splits of a scene, in their order.
 pub fn scene_prisms(scene: &Scene) -> Vec<Prisms> {
     let (hierarchy, starts) = (scene.decode(), scene.level_starts());
-    let mut all = vec![Prisms::default(); starts.groups()];
+    let mut all = vec![Prisms::default(); starts.splits()];
     let levels = scene.levels();
-    // One tree after the other in parallel, each with the places of its groups.
+    // One tree after the other in parallel, each with the places of its splits.
     let groups: Vec<Vec<(usize, Prisms)>> = (0..scene.trees())
         .into_par_iter()
         .map(|tree| {
@@ -20,7 +20,7 @@ pub fn scene_prisms(scene: &Scene) -> Vec<Prisms> {
             nodes
                 .map(|(level, node)| {
                     let p = lattice::node(levels, level, node);
-                    (starts.child_group(lines, level, node as usize), prisms(p, levels - level - 1, &at))
+                    (starts.split(lines, level, node as usize), prisms(p, levels - level - 1, &at))
                 })
                 .collect()
         })

@@ -1,15 +1,15 @@
 //! A scene with fewer levels of its trees.
 
-use super::encode::{group_parts, new_image, sealed, vertex_parts};
+use super::encode::{new_image, sealed, split_parts, vertex_parts};
 use super::sections::FileSection;
-use super::{Displacements, Job, Line, Scene, SceneError, layout};
-use crate::num::{BoundCode, Wire};
+use super::{Displacements, Job, Line, Scene, SceneError, SplitRecord, has_split, layout};
+use crate::num::{BoundCode, U, VertexForm, Wire};
 
 impl Scene {
-    /// Bytes of L0 records, sibling groups and vertices of trees of these depths.
+    /// Bytes of L0 records, splits and vertices of trees of these depths.
     pub fn bytes_of(&self, depths: &[u32]) -> u64 {
-        let (_, starts) = layout::places(depths);
-        (size_of_val(self.records()) + size_of::<Line>() * (starts.groups() + starts.vertex_lines(self.meta().vertices))) as u64
+        let (_, starts) = layout::places(self.meta().vertices, depths);
+        (size_of_val(self.records()) + size_of::<Line>() * (starts.splits() + starts.vertex_lines())) as u64
     }
 
     /// The same scene with at most so many levels of each tree, for these rays alone: none of them goes deeper.
@@ -23,7 +23,7 @@ impl Scene {
         assert_eq!(depths.len(), self.trees());
         let depths: Vec<u32> = self.depths().into_iter().zip(depths).map(|(stored, &depth)| stored.min(depth)).collect();
         let form = self.meta().vertices;
-        let (trees, starts) = layout::places(&depths);
+        let (trees, starts) = layout::places(form, &depths);
         let mut meta = self.meta().clone();
         (meta.job, meta.regions) = (job.views, job.regions);
         meta.without_normals |= job.unshaded;
@@ -31,8 +31,8 @@ impl Scene {
         let json = serde_json::to_vec(&meta).map_err(|e| SceneError::Build(format!("META: {e}")))?;
         let lengths = FileSection::ALL.map(|section| match section {
             FileSection::Meta => json.len(),
-            FileSection::Bounds => size_of::<Line>() * starts.groups(),
-            FileSection::Vertices => size_of::<Line>() * starts.vertex_lines(form),
+            FileSection::Splits => size_of::<Line>() * starts.splits(),
+            FileSection::Vertices => size_of::<Line>() * starts.vertex_lines(),
             FileSection::Normals => normals.len(),
             _ => self.section(section).len(),
         });
@@ -42,32 +42,34 @@ impl Scene {
             match section {
                 FileSection::Meta => out.copy_from_slice(&json),
                 FileSection::Records => {
-                    for (tree, (record, &lines)) in bytemuck::cast_slice_mut::<u8, [u64; 8]>(out).iter_mut().zip(&trees).enumerate() {
-                        *record = self.records()[tree];
-                        let mut second = self.record(tree).of_tree(lines);
+                    out.copy_from_slice(self.section(section));
+                    let records = bytemuck::cast_slice_mut::<u8, Line>(out).chunks_exact_mut(form.record_lines());
+                    for (tree, (record, &lines)) in records.zip(&trees).enumerate() {
+                        let mut own = self.record(tree).of_tree(lines);
                         if lines.depth == 0 {
-                            [second.e0, second.e1, second.e2] = [BoundCode::ZERO; 3];
-                            second.split = Displacements::default();
+                            [own.e0, own.e1, own.e2] = [BoundCode::ZERO; 3];
                         }
-                        second.to_words(&mut record[4..]);
+                        own.to_words(&mut record[0]);
                     }
                 }
-                FileSection::Bounds | FileSection::Vertices => {
-                    let out: &mut [Line] = bytemuck::cast_slice_mut(out);
-                    let groups = section == FileSection::Bounds;
-                    let (parts, whole) =
-                        if groups { (group_parts(out, &trees), self.bounds()) } else { (vertex_parts(form, out, &trees), self.vertices()) };
-                    // Compact vertices begin at level 1.
-                    let top = u32::from(!groups && form.is_compact());
-                    for (tree, parts) in parts.into_iter().enumerate() {
-                        for (part, level) in parts.into_iter().zip(top..) {
-                            let tree = self.tree_lines(tree);
-                            let first = if groups {
-                                self.starts.child_group(tree, level, 0)
-                            } else {
-                                self.starts.vertex_line(form, tree, level, 0)
-                            };
-                            part.copy_from_slice(&whole[first..][..part.len()]);
+                FileSection::Splits => {
+                    for (tree, (parts, own)) in split_parts(bytemuck::cast_slice_mut(out), &trees).into_iter().zip(&trees).enumerate() {
+                        for (part, level) in parts.into_iter().zip(0..) {
+                            let first = self.starts.split(self.tree_lines(tree), level, 0);
+                            part.copy_from_slice(&self.splits()[first..][..part.len()]);
+                            // A root that splits into triangles alone has no more than its vertices there.
+                            if own.depth == 1 {
+                                let SplitRecord { v0, v1, v2, .. } = SplitRecord::from_words(&part[0]);
+                                SplitRecord { v0, v1, v2, ..SplitRecord::default() }.to_words(&mut part[0]);
+                            }
+                        }
+                    }
+                }
+                FileSection::Vertices => {
+                    for (tree, (parts, own)) in vertex_parts(form, bytemuck::cast_slice_mut(out), &trees).into_iter().zip(&trees).enumerate() {
+                        let levels = (0..).filter(|&level| layout::has_vertices(form, own.depth, level));
+                        for (part, level) in parts.into_iter().zip(levels) {
+                            self.copy_vertices(tree, level, part);
                         }
                     }
                 }
@@ -76,5 +78,18 @@ impl Scene {
             }
         }
         Ok(sealed(image, ranges, meta, starts))
+    }
+
+    /// Fills the vertex lines of a level of a tree, which in this scene may lie in its splits.
+    fn copy_vertices(&self, tree: usize, level: u32, out: &mut [Line]) {
+        let (form, lines) = (self.meta().vertices, self.tree_lines(tree));
+        if form == VertexForm::Compact && has_split(lines.depth, level) {
+            for (half, split) in out.as_flattened_mut().chunks_exact_mut(2).zip(&self.splits()[self.starts.split(lines, level, 0)..]) {
+                let SplitRecord { v0, v1, v2, .. } = SplitRecord::from_words(split);
+                Displacements { reserved: U::ZERO, v0, v1, v2 }.to_words(half);
+            }
+        } else {
+            out.copy_from_slice(&self.vertices()[self.starts.vertex_line(form, lines, level, 0)..][..out.len()]);
+        }
     }
 }

@@ -157,18 +157,24 @@ impl Scene {
         bytemuck::cast_slice(self.section(FileSection::Nodes))
     }
 
-    /// L0 records, one per tree: a [`super::VertexData`] line (p0, p1, p2), then a [`super::L0Record`] line.
-    pub fn records(&self) -> &[[u64; 8]] {
+    /// L0 records: of each tree a [`L0Record`] line, and if vertices are exact a [`super::VertexData`] line (p0, p1, p2) behind it.
+    pub fn records(&self) -> &[Line] {
         bytemuck::cast_slice(self.section(FileSection::Records))
+    }
+
+    /// The first line of a tree's L0 record: a [`L0Record`].
+    #[inline]
+    pub fn record_line(&self, tree: usize) -> &Line {
+        &self.records()[tree * self.meta.vertices.record_lines()]
     }
 
     /// What of a tree is stored, and where.
     #[inline]
     pub fn tree_lines(&self, tree: usize) -> TreeLines {
-        L0Record::line_tree(&self.records()[tree][4..])
+        L0Record::line_tree(self.record_line(tree))
     }
 
-    /// Where the levels of all trees begin in [`Self::bounds`] and [`Self::vertices`].
+    /// Where the levels of all trees begin in [`Self::splits`] and [`Self::vertices`].
     #[inline]
     pub fn level_starts(&self) -> &LevelStarts {
         &self.starts
@@ -186,9 +192,9 @@ impl Scene {
         trees
     }
 
-    /// Sibling groups ([`super::SiblingGroup`]), where [`LevelStarts::child_group`] says.
-    pub fn bounds(&self) -> &[Line] {
-        bytemuck::cast_slice(self.section(FileSection::Bounds))
+    /// Splits ([`super::SplitRecord`]), where [`LevelStarts::split`] says.
+    pub fn splits(&self) -> &[Line] {
+        bytemuck::cast_slice(self.section(FileSection::Splits))
     }
 
     /// Inserted vertices ([`super::VertexData`] or two [`super::Displacements`]), where [`LevelStarts::vertex_line`] says.
@@ -204,6 +210,21 @@ impl Scene {
     /// Base vertex indices of each tree.
     pub fn triangles(&self) -> &[[u32; 3]] {
         bytemuck::cast_slice(self.section(FileSection::Triangles))
+    }
+
+    /// Number of a tree's base triangle in the mesh that the scene was made of.
+    pub fn source(&self, tree: usize) -> u32 {
+        self.sources()[tree][0]
+    }
+
+    /// Material of a tree.
+    pub fn material(&self, tree: usize) -> u16 {
+        self.sources()[tree][1] as u16 // checked: below 2^16
+    }
+
+    /// Number of its base triangle in the mesh, and material of each tree.
+    pub(super) fn sources(&self) -> &[[u32; 2]] {
+        bytemuck::cast_slice(self.section(FileSection::Sources))
     }
 
     /// Material colours: sRGB-encoded red, green, blue, and 255; may be empty.
@@ -226,9 +247,9 @@ impl Scene {
         u64::from(self.meta.trees) << (2 * self.meta.levels)
     }
 
-    /// Bytes of bound and vertex data, L0 records included, per full-resolution triangle.
+    /// Bytes of L0 records, splits and vertices per full-resolution triangle.
     pub fn bytes_per_triangle(&self) -> f64 {
-        let bytes: usize = [FileSection::Records, FileSection::Bounds, FileSection::Vertices].map(|s| self.section(s).len()).iter().sum();
+        let bytes: usize = [FileSection::Records, FileSection::Splits, FileSection::Vertices].map(|s| self.section(s).len()).iter().sum();
         bytes as f64 / self.finest_triangles() as f64
     }
 
@@ -250,11 +271,12 @@ impl Scene {
     pub(super) fn section_lengths(meta: &Meta, section: FileSection) -> Option<usize> {
         const LINE: usize = LINE_BYTES as usize;
         let per_tree = match section {
-            FileSection::Records => 2 * LINE,
+            FileSection::Records => meta.vertices.record_lines() * LINE,
             FileSection::Normals if meta.without_normals => 0,
             FileSection::Normals => 4 * lattice::len(meta.levels),
             FileSection::Triangles => 12,
-            FileSection::Meta | FileSection::Nodes | FileSection::Bounds | FileSection::Vertices | FileSection::Colours => return None,
+            FileSection::Sources => 8,
+            FileSection::Meta | FileSection::Nodes | FileSection::Splits | FileSection::Vertices | FileSection::Colours => return None,
         };
         per_tree.checked_mul(meta.trees as usize)
     }

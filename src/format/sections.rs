@@ -6,7 +6,7 @@ use xxhash_rust::xxh3::xxh3_64;
 /// First bytes of every scene file; the line ends show a transfer as text.
 pub const MAGIC: [u8; 8] = *b"LODRAY\r\n";
 /// Version that this program writes, and the only one that it reads.
-pub const VERSION: u32 = 4;
+pub const VERSION: u32 = 5;
 /// Alignment of sections in bytes.
 pub const ALIGN: usize = 64;
 
@@ -18,24 +18,35 @@ pub enum FileSection {
     Meta = 1,
     /// L0 quad-BVH nodes, a line each.
     Nodes = 2,
-    /// L0 records, 64 bytes per tree.
+    /// L0 records, a line or two per tree.
     Records = 3,
-    /// Sibling groups, a line each.
-    Bounds = 4,
-    /// Inserted vertices: lines, or lines of two halves.
+    /// Splits, a line each.
+    Splits = 4,
+    /// Inserted vertices: lines of all splits, or halves of lines of last splits.
     Vertices = 5,
     /// Octahedral normals, 4 bytes per lattice point.
     Normals = 6,
     /// Base vertex indices, 12 bytes per tree.
     Triangles = 7,
+    /// Number of the base triangle in its mesh, and its material, 8 bytes per tree.
+    Sources = 8,
     /// Material colours, 4 bytes each.
-    Colours = 8,
+    Colours = 9,
 }
 
 impl FileSection {
     /// All sections in file order.
-    pub const ALL: [Self; 8] =
-        [Self::Meta, Self::Nodes, Self::Records, Self::Bounds, Self::Vertices, Self::Normals, Self::Triangles, Self::Colours];
+    pub const ALL: [Self; 9] = [
+        Self::Meta,
+        Self::Nodes,
+        Self::Records,
+        Self::Splits,
+        Self::Vertices,
+        Self::Normals,
+        Self::Triangles,
+        Self::Sources,
+        Self::Colours,
+    ];
 
     /// Name for messages.
     pub fn name(self) -> &'static str {
@@ -43,10 +54,11 @@ impl FileSection {
             Self::Meta => "META",
             Self::Nodes => "NODES",
             Self::Records => "RECORDS",
-            Self::Bounds => "BOUNDS",
+            Self::Splits => "SPLITS",
             Self::Vertices => "VERTICES",
             Self::Normals => "NORMALS",
             Self::Triangles => "TRIANGLES",
+            Self::Sources => "SOURCES",
             Self::Colours => "COLOURS",
         }
     }
@@ -89,7 +101,7 @@ pub(super) fn write_header(header: &mut [u8], file_length: usize, ranges: &[Rang
     header.fill(0);
     header[..8].copy_from_slice(&MAGIC);
     header[8..12].copy_from_slice(&VERSION.to_le_bytes());
-    header[12..16].copy_from_slice(&(COUNT as u32).to_le_bytes()); // 8
+    header[12..16].copy_from_slice(&(COUNT as u32).to_le_bytes()); // 9
     header[16..24].copy_from_slice(&(file_length as u64).to_le_bytes());
     for ((section, range), (entry, sum)) in
         FileSection::ALL.iter().zip(ranges).zip(header[TABLE..].as_chunks_mut::<ENTRY>().0.iter_mut().zip(sums))

@@ -25,14 +25,14 @@ wire_struct! {
         nodes: LineAddress,
         /// First line of the L0 records.
         records: LineAddress,
-        /// First line of the bound data.
-        bounds: LineAddress,
+        /// First line of the splits.
+        splits: LineAddress,
         /// First line of the vertex data.
         vertices: LineAddress,
-        /// First sibling group of each level from 1 on.
-        starts: [U<28>; 8],
-        /// Trees that split: where exact vertices of inner nodes begin in the vertex data.
-        roots: U<28>,
+        /// First split of each level from 1 on.
+        split_starts: [U<28>; 8],
+        /// Exact vertices: first line of each level from 1 on. Compact ones: the two lines that the tree at place 0 would have for the first four nodes there, modulo 2^28.
+        vertex_starts: [U<28>; 9],
         /// The most entries that a ray can visit: quad-BVH nodes, trees, and nodes of trees. A ray that would visit more is in a loop.
         visits: U<32>,
         /// Cycles, less one, after which a line that is waited for counts as late if it has not come in as many more.
@@ -41,9 +41,18 @@ wire_struct! {
 }
 
 impl SceneConfig {
-    /// First sibling group of a level.
-    pub fn start(&self, level: u64) -> U<28> {
-        (level as usize).checked_sub(1).and_then(|at| self.starts.get(at)).copied().unwrap_or(U::ZERO) // four bits
+    /// First split of a level.
+    pub fn split_start(&self, level: u64) -> U<28> {
+        Self::of_level(&self.split_starts, level)
+    }
+
+    /// Where the vertices of a level begin.
+    pub fn vertex_start(&self, level: u64) -> U<28> {
+        Self::of_level(&self.vertex_starts, level)
+    }
+
+    fn of_level(starts: &[U<28>], level: u64) -> U<28> {
+        (level as usize).checked_sub(1).and_then(|at| starts.get(at)).copied().unwrap_or(U::ZERO) // four bits
     }
 }
 

@@ -118,8 +118,6 @@ pub enum Fetch {
     Node = 0,
     /// L0 record.
     Record = 1,
-    /// Inserted vertices and, but on the last split, the children's sibling group.
-    Vertex = 2,
-    /// The sibling group alone: the inserted vertices came with the L0 record.
-    Group = 3,
+    /// Split: of a node whose children are nodes its record, and inserted vertices where they are not in that.
+    Split = 2,
 }

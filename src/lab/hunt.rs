@@ -219,7 +219,7 @@ fn vertex_moved(h: &Hierarchy, random: &mut Random) -> Hierarchy {
     let levels: Vec<u32> = (0..=m).flat_map(|j| (0..=m - j).map(move |i| (i, j))).map(|p| lattice::level_of(h.levels, p)).collect();
     // All points in that place move, by the grid of the coarsest of them: then shared ones stay shared.
     let coarsest = h.points.iter().enumerate().filter(|(_, p)| **p == from).map(|(at, _)| levels[at % per_tree]).min().unwrap_or(0);
-    let step = 1i32 << h.vertices.zero_bits(h.levels - coarsest, h.zeros);
+    let step = 1i32 << h.vertices.zero_bits(h.levels, coarsest, h.zeros);
     let k = random.below(3) as usize;
     let to = from[k] + if random.below(2) == 0 { step } else { -step };
     if to.abs() <= COORD_LIMIT {

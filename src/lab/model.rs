@@ -35,7 +35,7 @@ impl Model {
         if vertices == VertexForm::Exact {
             // Trees have the order of the scene.
             let len = lattice::len(surface.levels);
-            let source = |tree: usize| model.scene.record(tree).source.get() as usize; // 28 bits
+            let source = |tree: usize| model.scene.source(tree) as usize; // 28 bits
             model.positions =
                 (0..model.scene.trees()).flat_map(|tree| surface.positions[source(tree) * len..][..len].iter().copied()).collect();
         }

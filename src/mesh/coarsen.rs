@@ -4,6 +4,7 @@ use super::bounds::edge_codes;
 use super::compact::compact;
 use super::quantise::{SurfaceError, most_zeros, snap_points};
 use super::{Hierarchy, SharedEdges};
+use crate::num::VertexForm;
 
 /// The hierarchy with `zeros` zero bits at the bottom of every coordinate.
 ///
@@ -29,7 +30,8 @@ pub fn coarsen(h: &Hierarchy, zeros: u32) -> Result<Hierarchy, SurfaceError> {
 /// How far a vertex moves at most where a hierarchy of `levels` splits gets `zeros` zero bits, in units: half the diagonal of a step of the base vertices' grid, and of compact
 /// displacements a diagonal of each level's.
 pub fn farthest(levels: u32, zeros: u32, is_compact: bool) -> f64 {
-    let base = f64::from(1u32 << (levels + zeros.max(crate::num::PADDING_BITS)));
+    let form = if is_compact { VertexForm::Compact } else { VertexForm::Exact };
+    let base = f64::from(1u32 << form.zero_bits(levels, 0, zeros));
     3f64.sqrt() * if is_compact { 1.5 } else { 0.5 } * base
 }
 
@@ -38,7 +40,6 @@ mod tests {
     use super::super::procedural::{Options, Scene, generate};
     use super::super::{BoundKind, lattice, quantise};
     use super::*;
-    use crate::num::VertexForm;
 
     #[test]
     fn points_keep_to_coarser_grids_bounds_hold_and_nothing_moves_further() {
@@ -56,7 +57,7 @@ mod tests {
                 let most = coarse.points.iter().zip(&fine.points).map(far).fold(0.0, f64::max);
                 assert!(most <= farthest(4, zeros, form.is_compact()), "{scene:?}: {most}");
                 for (point, place) in coarse.points.iter().zip(places.iter().cycle()) {
-                    let bits = form.zero_bits(4 - lattice::level_of(4, *place), zeros);
+                    let bits = form.zero_bits(4, lattice::level_of(4, *place), zeros);
                     assert!(point.iter().all(|c| c.trailing_zeros() >= bits), "{scene:?}: {point:?}");
                 }
                 // Bounds by their definition are no larger than those that it has.

@@ -11,7 +11,7 @@ use rayon::prelude::*;
 
 /// Zero bits of a compact vertex that a node of `level` inserts, in a model of which every coordinate has `zeros`.
 pub(crate) fn inserted_zero_bits(levels: u32, level: u32, zeros: u32) -> u32 {
-    VertexForm::Compact.zero_bits(levels - level - 1, zeros)
+    VertexForm::Compact.zero_bits(levels, level + 1, zeros)
 }
 
 /// The displacement of `q` from the midpoint of `a` and `b` in steps of 2^shift units.
@@ -23,14 +23,14 @@ pub(crate) fn steps_of(q: [i32; 3], a: [i32; 3], b: [i32; 3], shift: u32) -> [i3
 pub(super) fn compact(levels: u32, zeros: u32, points: &mut [[i32; 3]], bounds: &EdgeCodes) {
     let edges = edges_of_tree(levels);
     if edges == 0 {
-        points.iter_mut().for_each(|p| *p = p.map(|c| snap(f64::from(c), VertexForm::Compact.zero_bits(0, zeros))));
+        points.iter_mut().for_each(|p| *p = p.map(|c| snap(f64::from(c), VertexForm::Compact.zero_bits(0, 0, zeros))));
         return;
     }
     let trees = points.par_chunks_mut(lattice::len(levels)).zip(bounds.codes.par_chunks(edges));
     trees.for_each(|(points, codes)| {
         let mut moved = points.to_vec();
         for corner in lattice::root(levels).map(|place| lattice::index(levels, place)) {
-            moved[corner] = points[corner].map(|c| snap(f64::from(c), VertexForm::Compact.zero_bits(levels, zeros)));
+            moved[corner] = points[corner].map(|c| snap(f64::from(c), VertexForm::Compact.zero_bits(levels, 0, zeros)));
         }
         for level in 0..levels {
             for place @ [_, a, b] in lattice::inserted(levels, level) {
@@ -80,7 +80,7 @@ mod tests {
             let m = 1u32 << levels;
             let places: Vec<_> = (0..=m).flat_map(|j| (0..=m - j).map(move |i| (i, j))).collect();
             for (point, place) in before.points.iter_mut().zip(places.iter().cycle()) {
-                let bits = VertexForm::Compact.zero_bits(levels - lattice::level_of(levels, *place), 0);
+                let bits = VertexForm::Compact.zero_bits(levels, lattice::level_of(levels, *place), 0);
                 *point = point.map(|c| (c >> bits) << bits);
             }
             before.bounds = edge_codes(BoundKind::Total, levels, &before.points, &SharedEdges::new(&before.triangles));

@@ -196,7 +196,7 @@ pub(super) fn snap_points<P: Copy + Sync>(
     // The zero bits of each lattice point and what is inserted between what are the same for all trees.
     let m = 1 << levels;
     let zero_bits: Vec<u32> =
-        (0..=m).flat_map(|j| (0..=m - j).map(move |i| vertices.zero_bits(levels - lattice::level_of(levels, (i, j)), zeros))).collect();
+        (0..=m).flat_map(|j| (0..=m - j).map(move |i| vertices.zero_bits(levels, lattice::level_of(levels, (i, j)), zeros))).collect();
     let inserted: Vec<[usize; 3]> =
         (0..levels).flat_map(|level| lattice::inserted(levels, level)).map(|places| places.map(|p| lattice::index(levels, p))).collect();
     let mut points = vec![[0; 3]; places.len()];
@@ -300,7 +300,7 @@ mod tests {
             assert!(h.bounds.codes.iter().all(|&code| code == 0));
             assert_eq!((h.depth(0), h.depth(1)), (0, 0));
             // Half a step of the base vertices' grid, and a little of the middles.
-            let half = f64::from(1 << VertexForm::Compact.zero_bits(LEVELS, zeros)) / 2.0;
+            let half = f64::from(1 << VertexForm::Compact.zero_bits(LEVELS, 0, zeros)) / 2.0;
             let most = furthest(&surface, &h);
             assert!(most <= half + 1.0 && most > half / 8.0, "{most} of {half}");
         }
@@ -329,7 +329,7 @@ mod tests {
     fn exact_vertices_keep_to_their_grid() {
         let h = quantise(&tilted(None), BoundKind::Largest, VertexForm::Exact, 0).unwrap();
         for (point, place) in h.points.iter().zip(places().chain(places())) {
-            let bits = VertexForm::Exact.zero_bits(LEVELS - lattice::level_of(LEVELS, place), 0);
+            let bits = VertexForm::Exact.zero_bits(LEVELS, lattice::level_of(LEVELS, place), 0);
             assert!(point.iter().all(|c| c.trailing_zeros() >= bits), "{place:?}: {point:?}");
         }
         // With nothing finer than the padding no middle is off the grid.

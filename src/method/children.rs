@@ -11,7 +11,7 @@ use crate::block::child_sort;
 use crate::block::child_sort6::{self, ChildSort6};
 use crate::block::child_test::{self, sort};
 use crate::block::ray_setup;
-use crate::format::{BvhChild, BvhNode, ChildRef, Line, SiblingGroup, SixNode};
+use crate::format::{BvhChild, BvhNode, ChildRef, Line, SplitRecord, SixNode};
 use crate::num::prism::Prisms;
 use crate::num::{Box16, BoxStep, RayT, TNear, U, Wire};
 
@@ -94,11 +94,11 @@ pub(crate) fn six_children(ray: &ray_setup::Out, t_max: RayT, node: &SixNode) ->
     (ChildSort6::eval(&tests), tests.t_near)
 }
 
-/// Tests and sorts the children of the tree's node with sibling group `line`, whose triangles are `split`.
+/// Tests and sorts the children of the tree's node with split `line`, whose triangles are `split`.
 #[inline(always)]
 pub(crate) fn tree_children(ray: &ray_setup::Out, t_max: RayT, line: &Line, split: &Split) -> child_test::Out {
     let mut tests = child_sort::In::default();
-    let reach = reach(&SiblingGroup::line_steps(line), &SiblingGroup::line_planes(line));
+    let reach = reach(&SplitRecord::line_steps(line), &SplitRecord::line_planes(line));
     let boxes = widened(let_out(&reach, &split.full), &split.morphed);
     for (k, bounds) in boxed(&boxes).into_iter().enumerate() {
         let test = BoxTest::eval(&box_test::In { ray: *ray, t_max, bounds });
@@ -199,7 +199,7 @@ mod tests {
                 origin,
                 halves,
                 exponents,
-                planes: record.planes.map(|plane| U::new(plane.get())),
+                planes: record.planes,
                 ..child_test::In::default()
             };
             let wanted = ChildTest::eval(&of_node);
@@ -228,8 +228,9 @@ mod tests {
             let mut three = || [(); 3].map(|()| near());
             let full = [three(), three()];
             let morphed = if number % 2 == 0 { [three(), three()] } else { full };
-            let siblings = line(&mut random, |group: &mut SiblingGroup, _| group.exponents = exponents);
-            let SiblingGroup { halves, exponents, planes, .. } = SiblingGroup::from_words(&siblings);
+            let siblings = line(&mut random, |split: &mut SplitRecord, _| split.exponents = exponents);
+            let SplitRecord { halves, exponents, planes, .. } = SplitRecord::from_words(&siblings);
+            let planes = planes.map(|plane| U::new(plane.get()));
             let ([[f0, f1, f2], [g0, g1, g2]], [[p0, p1, p2], [q0, q1, q2]]) = (full, morphed);
             let [full, morphed] = [full, morphed].map(|[corners, inserted]| Corners::of(corners, inserted));
             let present = [true; 4];

@@ -9,7 +9,7 @@ use serde::{Deserialize, Serialize};
 pub enum VertexForm {
     /// Coordinates of 28 bits: a line for three.
     Exact,
-    /// Displacements of 13 bits a coordinate: half a line for three.
+    /// Displacements of 13 bits a coordinate: less than half a line for three.
     #[default]
     Compact,
 }
@@ -26,17 +26,28 @@ impl VertexForm {
         }
     }
 
+    /// Lines of an L0 record.
+    #[inline(always)]
+    pub const fn record_lines(self) -> usize {
+        match self {
+            Self::Exact => 2,
+            Self::Compact => 1,
+        }
+    }
+
     /// It is [`VertexForm::Compact`].
     pub fn is_compact(self) -> bool {
         self == Self::Compact
     }
 
-    /// Zero bits at the bottom of a vertex with `finer` levels below its own, in a model of which every coordinate has `zeros`.
-    pub fn zero_bits(self, finer: u32, zeros: u32) -> u32 {
+    /// Zero bits at the bottom of a vertex of `level` (0: of the base mesh), in a model of so many `levels` of which every coordinate has `zeros`.
+    pub fn zero_bits(self, levels: u32, level: u32, zeros: u32) -> u32 {
+        let finer = levels - level;
         match self {
             Self::Exact => (finer + zeros).max(super::PADDING_BITS),
             // Midpoints of finer levels keep the padding.
-            Self::Compact => finer + zeros.max(super::PADDING_BITS),
+            Self::Compact if level > 0 => finer + zeros.max(super::PADDING_BITS),
+            Self::Compact => (finer + zeros.max(super::PADDING_BITS)).max(super::BASE_ZERO_BITS),
         }
     }
 }

@@ -9,6 +9,8 @@ use super::{
 pub const COORD_LIMIT: i32 = 0x7FFE_0000;
 /// Zero bits at the bottom of every stored coordinate (28 of 32 bits are stored).
 pub const PADDING_BITS: u32 = 4;
+/// Zero bits at the bottom of base vertices of compact models: an L0 record has 22 bits a coordinate.
+pub const BASE_ZERO_BITS: u32 = 10;
 /// Largest number of 1-to-4 splits.
 pub const MAX_LEVELS: u32 = 10;
 /// Largest number of quad-BVH nodes on a path from the root to a leaf: what the traversal stack has room for.

@@ -221,7 +221,7 @@ impl<'a> World<'a> {
         let faces = |n: DVec3| n.dot(direction) < 0.0;
         let shading = if shading.dot(plane) < 0.0 { -shading } else { shading };
         let normal = if faces(shading) { shading } else { plane };
-        let number = own.scene.record(hit.tree as usize).material.get() as usize; // 16 bits
+        let number = usize::from(own.scene.material(hit.tree as usize));
         let colour = own.scene.colour(number as u16).map_or(GREY, |c| DVec3::from_array(c.map(f64::from)));
         let (material, bsdf) = &own.materials[number.min(own.materials.len() - 1)];
         Surface { place: Place { colour, normal, front: hit.front }, bsdf, alpha: material.alpha(), curvature: own.curvature(met) * turn }

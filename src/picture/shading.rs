@@ -123,7 +123,7 @@ impl<'a> Shader<'a> {
         let Some(hit) = hit else { return };
         light.hits += 1;
         let view = -DVec3::from_array(ray.direction).as_vec3();
-        let material = self.scene.record(hit.tree as usize).material.get() as u16;
+        let material = self.scene.material(hit.tree as usize);
         let colour = self.scene.colour(material).map_or(GREY, Vec3::from_array);
         let [cosine, weight] = self.cosine(ray, view, hit);
         light.sum += colour * lit(cosine) * weight;

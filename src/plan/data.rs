@@ -1,7 +1,7 @@
 //! What of a scene's data no ray of a job reads.
 
 use super::scene::Met;
-use crate::format::Scene;
+use crate::format::{Scene, has_split};
 use crate::num::{LINE_BYTES, VertexForm};
 use serde::Serialize;
 
@@ -10,7 +10,7 @@ use serde::Serialize;
 pub struct Data {
     /// Full-resolution triangles.
     pub triangles: u64,
-    /// L0 records, sibling groups and inserted vertices as they are stored.
+    /// L0 records, splits and inserted vertices as they are stored.
     pub stored: u64,
     /// Of them what a ray of some quality can read: what lies below a node with three codes of 0, in a tree that is deeper elsewhere, is read by none.
     pub above_flat: u64,
@@ -22,14 +22,11 @@ impl Data {
     pub(super) fn of(scene: &Scene, met: &Met, depths: &[u32]) -> Self {
         let (levels, form) = (scene.levels(), scene.meta().vertices);
         let records = size_of_val(scene.records()) as u64;
-        // Of a node that splits: its vertices, but for a root's that are in its record; and its children's group, but above the finest level.
-        let of = |level: u32| {
-            let vertices = match (form, level) {
-                (VertexForm::Exact, _) => LINE_BYTES,
-                (VertexForm::Compact, 0) => 0,
-                (VertexForm::Compact, _) => LINE_BYTES / 2,
-            };
-            vertices + if level + 1 < levels { LINE_BYTES } else { 0 }
+        // Of a node that splits: its split, which has compact vertices, and vertices elsewhere.
+        let of = |level: u32| match (form, has_split(levels, level)) {
+            (VertexForm::Exact, true) => 2 * LINE_BYTES,
+            (VertexForm::Exact, false) | (VertexForm::Compact, true) => LINE_BYTES,
+            (VertexForm::Compact, false) => LINE_BYTES / 2,
         };
         let above_flat = records + (0..levels).map(|level| met.splits[level as usize] * of(level)).sum::<u64>();
         Self { triangles: scene.finest_triangles(), stored: scene.bytes_of(&scene.depths()), above_flat, reached: scene.bytes_of(depths) }

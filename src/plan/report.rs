@@ -131,9 +131,9 @@ pub fn savings(plan: &Plan, full: &Hardware, data: Option<&Data>) -> Vec<Saving>
     table.bits("coordinate", [scene.coordinate_bits, 32], "none is larger");
     table.bits("box code of a frame", [scene.frame_bits, 16], "none is larger");
     table.bits("plane of a quad-BVH node", [scene.node_plane_bits, 5], "none is larger");
-    table.bits("plane of a sibling group", [scene.group_plane_bits, 7], "none is larger");
+    table.bits("plane of a split", [scene.split_plane_bits, 2], "none is larger");
     table.add(Part::Numbers, "exponent of a node's steps", [scene.node_exponent, 15], "none is larger", String::new());
-    table.add(Part::Numbers, "exponent of a group's steps", [scene.group_exponent, 15], "none is larger", String::new());
+    table.add(Part::Numbers, "exponent of a split's steps", [scene.split_exponent, 15], "none is larger", String::new());
     table.bits("bound code", [scene.code_bits, 8], "none is larger");
     table.bits("displacement bound", [scene.bound_bits, 33], "none is larger");
     table.bits("displacement", [scene.displacement_bits, 13], "none is larger");

@@ -1,7 +1,7 @@
 //! What a scene needs, measured on all its nodes.
 
 use super::{bits, needs, signed_bits};
-use crate::format::{BvhNode, ChildRef, Displacements, Scene, SiblingGroup, child_corners};
+use crate::format::{BvhNode, ChildRef, Scene, SplitRecord, child_corners};
 use crate::mesh::compact::inserted_zero_bits;
 use crate::num::{MAX_LEVELS, VertexForm, Wire, bound_decode, displacement_shift};
 use rayon::prelude::*;
@@ -32,10 +32,10 @@ needs! {
             node_plane_bits: u32,
             /// Largest exponent of a step of a quad-BVH node.
             node_exponent: u32,
-            /// Bits of a plane of a sibling group.
-            group_plane_bits: u32,
-            /// Largest exponent of a step of a sibling group.
-            group_exponent: u32,
+            /// Bits of a plane of a split.
+            split_plane_bits: u32,
+            /// Largest exponent of a step of a split.
+            split_exponent: u32,
             /// Some step is half as long again.
             half_steps: bool,
             /// Bits of a bound code.
@@ -77,8 +77,8 @@ pub(super) struct Met {
     pub stops_early: bool,
     displacement: [i32; 2],
     shift: u32,
-    group_planes: u32,
-    group_exponent: u32,
+    split_planes: u32,
+    split_exponent: u32,
     half: bool,
 }
 
@@ -93,8 +93,8 @@ impl Default for Met {
             stops_early: false,
             displacement: [0; 2],
             shift: 0,
-            group_planes: 0,
-            group_exponent: 0,
+            split_planes: 0,
+            split_exponent: 0,
             half: false,
         }
     }
@@ -123,8 +123,8 @@ impl Met {
         let [least, most] = other.displacement;
         self.displacement = [self.displacement[0].min(least), self.displacement[1].max(most)];
         self.shift = self.shift.max(other.shift);
-        self.group_planes = self.group_planes.max(other.group_planes);
-        self.group_exponent = self.group_exponent.max(other.group_exponent);
+        self.split_planes = self.split_planes.max(other.split_planes);
+        self.split_exponent = self.split_exponent.max(other.split_exponent);
         self.half |= other.half;
         self
     }
@@ -147,11 +147,7 @@ impl Met {
         let q = scene.inserted(tree, level, node, p);
         self.points(q);
         if meta.vertices == VertexForm::Compact {
-            let steps = match level {
-                0 => scene.record(tree).split,
-                _ => Displacements::half(&scene.vertices()[scene.level_starts().vertex_line(meta.vertices, lines, level, node)], node),
-            };
-            for c in steps.steps().into_iter().flat_map(|v| v.get()) {
+            for c in scene.displacements(tree, level, node).into_iter().flat_map(|v| v.get()) {
                 let c = c as i32; // 13 bits
                 self.displacement = [self.displacement[0].min(c), self.displacement[1].max(c)];
             }
@@ -159,10 +155,10 @@ impl Met {
             self.shift = codes.into_iter().map(|code| displacement_shift(meta.bound_scale(), code, zeros)).fold(self.shift, u32::max);
         }
         if level + 1 < lines.depth {
-            let group = SiblingGroup::from_words(&scene.bounds()[scene.level_starts().child_group(lines, level, node)]);
-            self.group_planes = group.planes.iter().map(|plane| plane.get() as u32).fold(self.group_planes, u32::max); // 7 bits
-            self.group_exponent = group.exponents.iter().map(|e| e.get() as u32).fold(self.group_exponent, u32::max); // 4 bits
-            self.half |= group.halves.iter().any(|&half| half);
+            let split = SplitRecord::from_words(&scene.splits()[scene.level_starts().split(lines, level, node)]);
+            self.split_planes = split.planes.iter().map(|plane| plane.get() as u32).fold(self.split_planes, u32::max); // 2 bits
+            self.split_exponent = split.exponents.iter().map(|e| e.get() as u32).fold(self.split_exponent, u32::max); // 4 bits
+            self.half |= split.halves.iter().any(|&half| half);
         }
         for k in 0..4 {
             self.node(scene, tree, (level + 1, 4 * node + k), child_corners(p, q, k));
@@ -230,7 +226,7 @@ impl SceneNeeds {
     pub(super) fn of(scene: &Scene, met: &Met) -> Self {
         let (nodes, levels, compact) = (Nodes::of(scene), scene.levels(), scene.meta().vertices.is_compact());
         let last = |count: usize| (count as u64).saturating_sub(1);
-        let lines = scene.nodes().len() + 2 * scene.records().len() + scene.bounds().len() + scene.vertices().len();
+        let lines = scene.nodes().len() + scene.records().len() + scene.splits().len() + scene.vertices().len();
         let code = met.codes.into_iter().max().unwrap_or(0);
         Self {
             levels,
@@ -244,8 +240,8 @@ impl SceneNeeds {
             frame_bits: signed_bits(nodes.frame[0], nodes.frame[1]),
             node_plane_bits: bits(nodes.planes.into()),
             node_exponent: nodes.exponent,
-            group_plane_bits: bits(met.group_planes.into()),
-            group_exponent: met.group_exponent,
+            split_plane_bits: bits(met.split_planes.into()),
+            split_exponent: met.split_exponent,
             half_steps: met.half || nodes.half,
             code_bits: bits(code.into()),
             bound_bits: bits(bound_decode(scene.meta().bound_scale(), code)),

@@ -127,7 +127,7 @@ pub fn things() -> impl Iterator<Item = (&'static str, usize, usize)> {
 pub const SECTIONS: [(&str, [u8; 3], [u8; 3]); 5] = [
     ("bvh_node", [11, 104, 185], [89, 175, 251]),
     ("l0_record", [214, 100, 23], [254, 160, 88]),
-    ("bound_data", [7, 117, 84], [69, 208, 163]),
+    ("split", [7, 117, 84], [69, 208, 163]),
     ("vertex_data", [128, 58, 157], [210, 154, 226]),
     ("leaf", [127, 98, 0], [223, 191, 65]),
 ];

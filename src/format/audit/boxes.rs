@@ -1,6 +1,6 @@
 //! Boxes: those of vertices, and those that lines store, worked out from the words of `docs/numbers.md`.
 
-use crate::format::{BvhNode, SiblingGroup};
+use crate::format::{BvhNode, SplitRecord};
 
 /// Codes of a box's corners, in steps of 2^16 units.
 pub(super) type Codes = [i64; 3];
@@ -37,10 +37,10 @@ fn steps(half: bool, exponent: u64, v: u64) -> i64 {
     (v.cast_signed() * halves * 2i64.pow(exponent as u32)).div_euclid(2) // 4 bits
 }
 
-/// The box of child `k` of a group: that of its own full-resolution triangle, rounded outwards, and its excess.
-pub(super) fn excess(group: &SiblingGroup, k: usize, triangle: [[i32; 3]; 3]) -> (Codes, Codes) {
+/// The box of child `k` of a split: that of its own full-resolution triangle, rounded outwards, and its excess.
+pub(super) fn excess(split: &SplitRecord, k: usize, triangle: [[i32; 3]; 3]) -> (Codes, Codes) {
     let own = Span::around(triangle);
-    let reach = |axis: usize, plane: usize| steps(group.halves[axis], group.exponents[axis].get(), group.planes[6 * k + plane].get());
+    let reach = |axis: usize, plane: usize| steps(split.halves[axis], split.exponents[axis].get(), split.planes[6 * k + plane].get());
     let lo = |axis: usize| i64::from(own.lo[axis]).div_euclid(65_536) - reach(axis, axis);
     let hi = |axis: usize| -(-i64::from(own.hi[axis])).div_euclid(65_536) + reach(axis, 3 + axis);
     (std::array::from_fn(|axis| lo(axis).max(-32_767)), std::array::from_fn(|axis| hi(axis).min(32_767)))

@@ -2,7 +2,7 @@
 
 use super::boxes::{Span, local};
 use super::tally::{CheckKind, Tallies};
-use crate::format::{BvhNode, L0Record, Scene};
+use crate::format::{BvhNode, Scene};
 use crate::num::Wire;
 
 /// Kinds of slots.
@@ -93,8 +93,8 @@ pub(super) fn check(scene: &Scene, trees: &[Span], found: &mut Tallies) {
 /// Each base triangle as it was given is that of one tree.
 pub(super) fn check_sources(scene: &Scene, found: &mut Tallies) {
     let mut uses = vec![0u32; scene.trees()];
-    for (tree, record) in scene.records().iter().enumerate() {
-        let source = L0Record::from_words(&record[4..]).source.get();
+    for tree in 0..scene.trees() {
+        let source = scene.source(tree);
         match uses.get_mut(source as usize) {
             Some(uses) => *uses += 1,
             None => found.check(CheckKind::Sources, false, || format!("tree {tree} is of base triangle {source}")),

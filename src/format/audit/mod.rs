@@ -10,9 +10,8 @@ mod edges;
 mod tally;
 mod tree;
 
-use super::{L0Record, Scene};
+use super::Scene;
 use crate::mesh::{BoundKind, edges_of_level, edges_of_tree, lattice};
-use crate::num::Wire;
 use boxes::Span;
 use edges::Edges;
 use rayon::prelude::*;
@@ -100,10 +99,10 @@ pub fn reading(scene: &Scene) -> Reading {
 fn read(scene: &Scene) -> (tree::Lattices, Tallies) {
     let len = lattice::len(scene.levels());
     let mut lattices = tree::Lattices::new(scene.trees() * len);
-    let per_tree = lattices.trees(len).zip(scene.records()).enumerate();
+    let per_tree = lattices.trees(len).enumerate();
     let (known, begins) = (known(scene), tree::Begins::of(scene));
     let found = per_tree
-        .map(|(t, (lattice, record))| tree::read(scene, &begins, t, known[t], record, lattice))
+        .map(|(t, lattice)| tree::read(scene, &begins, t, known[t], lattice))
         .reduce(Tallies::default, Tallies::join);
     (lattices, found)
 }
@@ -163,15 +162,15 @@ fn allowed(scene: &Scene) -> Vec<u64> {
 fn check_shading(scene: &Scene) -> Tallies {
     let len = lattice::len(scene.levels());
     let colours = scene.colours().len().max(1) as u64; // without colours all are material 0
-    let checked = scene.records().par_iter().enumerate().map(|(t, record)| {
+    let checked = (0..scene.trees()).into_par_iter().map(|t| {
         let mut found = Tallies::default();
         let normals = if scene.meta().without_normals { &[] } else { &scene.normals()[t * len..][..len] };
         for (point, &code) in normals.iter().enumerate() {
             let ok = (code & 0xFFFF) != 0x8000 && (code >> 16) != 0x8000;
             found.check(CheckKind::Normals, ok, || format!("tree {t}: normal {point} is {code:#010x}"));
         }
-        let material = L0Record::from_words(&record[4..]).material.get();
-        found.check(CheckKind::Materials, material < colours, || format!("tree {t}: material {material} of {colours}"));
+        let material = scene.material(t);
+        found.check(CheckKind::Materials, u64::from(material) < colours, || format!("tree {t}: material {material} of {colours}"));
         found
     });
     checked.reduce(Tallies::default, Tallies::join)
@@ -181,16 +180,17 @@ fn check_shading(scene: &Scene) -> Tallies {
 fn expected(scene: &Scene, known: &[u32], edges: &Edges, shared_corners: u64) -> [(CheckKind, u64); CHECKS.len()] {
     let form = scene.meta().vertices;
     let trees = scene.trees() as u64;
-    // What is stored, tree by tree. Of compact ones the root's vertices stand in its L0 record.
-    let [groups, vertices] = (0..scene.trees()).fold([0; 2], |[groups, vertices], tree| {
+    // What is stored, tree by tree.
+    let [groups, splits, vertices] = (0..scene.trees()).fold([0; 3], |[groups, splits, vertices], tree| {
         let own = tree::Stored::of(form, scene.record(tree).depth.get() as u32); // 4 bits
-        [groups + own.groups, vertices + own.vertices]
+        [groups + own.groups, splits + own.splits, vertices + own.vertices]
     });
+    let lines_of_records = if scene.meta().vertices.is_compact() { trees } else { 2 * trees };
     let sum = |of: fn(u32) -> u64| known.iter().map(|&levels| of(levels)).sum::<u64>();
     let shared = edges.places(known);
     let nodes = scene.nodes().len() as u64;
     [
-        (CheckKind::Reserved, 2 * trees + groups + vertices + 5 * nodes),
+        (CheckKind::Reserved, lines_of_records + splits + vertices + 5 * nodes),
         (CheckKind::Limit, sum(|n| 3 * (1 + inner(n)))),
         (CheckKind::LowBits, sum(|n| 3 * (1 + inner(n)))),
         (CheckKind::VerticesInTree, sum(|n| 3 * inner(n) - (lattice::len(n) as u64 - 3))),

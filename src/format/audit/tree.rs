@@ -4,7 +4,7 @@
 
 use super::boxes::{Span, excess};
 use super::tally::{CheckKind, Tallies};
-use crate::format::{Displacements, L0Record, Scene, SiblingGroup, VertexData};
+use crate::format::{Displacements, L0Record, Scene, SplitRecord, VertexData};
 use crate::mesh::{BoundKind, lattice};
 use crate::num::{COORD_LIMIT, LARGEST_BOUND, VertexForm, Wire, sqrt_ceil};
 use rayon::prelude::*;
@@ -120,11 +120,13 @@ fn each_inserted(levels: u32, level: u32, mut f: impl FnMut(usize, &[usize])) {
 }
 
 /// Reads a tree by recursion over its nodes, down to level `known`, and checks what can be checked on the way.
-pub(super) fn read(scene: &Scene, begins: &Begins, tree: usize, known: u32, record: &[u64; 8], lattice: Lattice<'_>) -> Tallies {
+pub(super) fn read(scene: &Scene, begins: &Begins, tree: usize, known: u32, lattice: Lattice<'_>) -> Tallies {
     let levels = scene.levels();
     let form = scene.meta().vertices;
-    let second = L0Record::from_words(&record[4..]);
-    let depth = second.depth.get() as u32; // 4 bits
+    // Exact vertices have a second line with the corners.
+    let lines = if form.is_compact() { 1 } else { 2 };
+    let record = L0Record::from_words(&scene.records()[lines * tree]);
+    let depth = record.depth.get() as u32; // 4 bits
     let mut reader = Reader {
         tree,
         levels,
@@ -133,9 +135,8 @@ pub(super) fn read(scene: &Scene, begins: &Begins, tree: usize, known: u32, reco
         form,
         offset: u64::from(scene.meta().bound_offset),
         lines: scene.vertices(),
-        split: second.split,
-        groups: scene.bounds(),
-        place: second.place.get() as usize, // 28 bits
+        splits: scene.splits(),
+        place: record.place.get() as usize, // 28 bits
         begins,
         lattice,
         found: Tallies::default(),
@@ -143,17 +144,17 @@ pub(super) fn read(scene: &Scene, begins: &Begins, tree: usize, known: u32, reco
     let [a, b, c] = scene.triangles()[tree];
     reader.found.check(CheckKind::BaseTriangles, a != b && b != c && c != a, || format!("tree {tree}: vertices {a}, {b}, {c}"));
 
-    let corners = VertexData::from_words(&record[..4]);
-    reader.found.check(CheckKind::Reserved, corners.reserved.get() == 0, || format!("tree {tree}: first line of the L0 record"));
-    let codes = [second.e0, second.e1, second.e2].map(|c| c.get() as u8); // 8 bits
-    let splits = match form {
-        _ if depth == 0 => codes == [0; 3] && second.split == Displacements::default(),
-        VertexForm::Exact => second.split == Displacements::default(),
-        VertexForm::Compact => second.split.reserved.get() == 0,
+    let codes = [record.e0, record.e1, record.e2].map(|c| c.get() as u8); // 8 bits
+    let own = [record.p0, record.p1, record.p2].map(|p| p.get());
+    let fine = record.reserved.get() == 0 && (depth > 0 || codes == [0; 3]) && (form.is_compact() || own == [[0; 3]; 3]);
+    reader.found.check(CheckKind::Reserved, fine, || format!("tree {tree}: L0 record"));
+    let points = if form.is_compact() {
+        own.map(|p| p.map(|c| (c * 1024) as i32)) // 22 bits
+    } else {
+        let corners = VertexData::from_words(&scene.records()[lines * tree + 1]);
+        reader.found.check(CheckKind::Reserved, corners.reserved.get() == 0, || format!("tree {tree}: corners of the L0 record"));
+        corners.points().map(|p| p.get().map(|c| c as i32)) // 32 bits by their type
     };
-    reader.found.check(CheckKind::Reserved, splits && second.reserved.get() == 0, || format!("tree {tree}: second line of the L0 record"));
-
-    let points = corners.points().map(|p| p.get().map(|c| c as i32)); // 32 bits by their type
     let places = [(0, 0), (1 << levels, 0), (0, 1 << levels)];
     // Vertices that nobody knows are somewhere in the tree.
     reader.lattice.points.fill(points[0]);
@@ -168,9 +169,11 @@ pub(super) fn read(scene: &Scene, begins: &Begins, tree: usize, known: u32, reco
 
 /// What is stored of a tree.
 pub(super) struct Stored {
-    /// Sibling groups.
+    /// Groups of four nodes.
     pub groups: u64,
-    /// Records of vertices outside of the L0 record.
+    /// Splits: of those that split into nodes, and of the root.
+    pub splits: u64,
+    /// Records of vertices outside of splits.
     pub vertices: u64,
 }
 
@@ -179,16 +182,21 @@ impl Stored {
     pub fn of(form: VertexForm, depth: u32) -> Self {
         let inner = first(depth) as u64;
         let groups = if depth < 2 { 0 } else { (inner - 1) / 4 };
-        Self { groups, vertices: if form == VertexForm::Exact { inner } else { 4 * groups } }
+        let splits = groups.max(inner.min(1));
+        Self { groups, splits, vertices: if form == VertexForm::Exact { inner } else { inner - splits } }
     }
 }
 
 /// Where levels begin, counted anew from the records.
 pub(super) struct Begins {
-    /// Groups on the levels above, of all trees, for each level.
-    groups: Vec<usize>,
-    /// Trees that split.
-    splitting: usize,
+    /// Splits on the levels above, of all trees, for each level.
+    splits: Vec<usize>,
+    /// Nodes that split on the levels above, of all trees, for each level.
+    nodes: Vec<usize>,
+    /// Nodes of last levels but roots on the levels above, of all trees, for each level.
+    last: Vec<usize>,
+    /// Trees that split on a deeper level, for each level.
+    deeper: Vec<usize>,
 }
 
 impl Begins {
@@ -196,8 +204,13 @@ impl Begins {
     pub fn of(scene: &Scene) -> Self {
         let depths = scene.depths();
         let deeper = |level: u32| depths.iter().filter(|&&depth| depth > level).count();
-        let above = |level: u32| (0..level).map(|above| 4usize.pow(above) * deeper(above + 1)).sum();
-        Self { groups: (0..scene.levels()).map(above).collect(), splitting: deeper(0) }
+        let above = |of: &dyn Fn(u32) -> usize| (0..scene.levels()).map(|level| (0..level).map(|above| 4usize.pow(above) * of(above)).sum()).collect();
+        Self {
+            splits: above(&|level| deeper(if level == 0 { 0 } else { level + 1 })),
+            nodes: above(&deeper),
+            last: above(&|level| if level == 0 { 0 } else { deeper(level) - deeper(level + 1) }),
+            deeper: (0..scene.levels()).map(|level| deeper(level + 1)).collect(),
+        }
     }
 }
 
@@ -213,10 +226,8 @@ struct Reader<'a> {
     offset: u64,
     /// Of all trees.
     lines: &'a [[u64; 4]],
-    /// The root's displacements.
-    split: Displacements,
     /// Of all trees.
-    groups: &'a [[u64; 4]],
+    splits: &'a [[u64; 4]],
     /// The tree's among those of each level.
     place: usize,
     begins: &'a Begins,
@@ -227,9 +238,11 @@ struct Reader<'a> {
 type Place = (u32, u32);
 
 impl Reader<'_> {
-    /// Number of the group of a node's children.
-    fn number(&self, level: u32, node: usize) -> usize {
-        self.begins.groups[level as usize] + 4usize.pow(level) * self.place + node
+    /// A node's split, if it has one.
+    fn split(&self, level: u32, node: usize) -> Option<SplitRecord> {
+        let has = self.depth > if level == 0 { 0 } else { level + 1 };
+        let number = self.begins.splits[level as usize] + 4usize.pow(level) * self.place + node;
+        has.then(|| SplitRecord::from_words(&self.splits[number]))
     }
 
     /// Checks a node and all below it; gives the box of its full-resolution vertices. `places` and `p` are its corners.
@@ -238,7 +251,8 @@ impl Reader<'_> {
         if level == self.known {
             return span;
         }
-        let (q_places, q) = self.inserted(level, node, places, p, codes);
+        let split = self.split(level, node);
+        let (q_places, q) = self.inserted(level, node, places, p, codes, split.as_ref());
         if level + 1 == self.known {
             return span.with(&Span::around(q));
         }
@@ -248,9 +262,7 @@ impl Reader<'_> {
         if level + 1 >= self.depth {
             return (0..4).fold(span, |span, k| span.with(&self.node(level + 1, 4 * node + k, places_of(k), triangle_of(k), [0; 3])));
         }
-        let tree = self.tree;
-        let group = SiblingGroup::from_words(&self.groups[self.number(level, node)]);
-        self.found.check(CheckKind::Reserved, group.reserved.get() == 0, || format!("tree {tree}: group of node {node} of level {level}"));
+        let (tree, group) = (self.tree, split.unwrap_or_default());
         for k in 0..4 {
             let child = triangle_of(k);
             // The centre child has one edge of each sibling: e0 of child 0, e1 of child 1, e2 of child 2.
@@ -268,35 +280,42 @@ impl Reader<'_> {
 
     /// The inserted vertices of a node as they are stored.
     #[inline]
-    fn stored(&mut self, level: u32, node: usize, p: [[i32; 3]; 3], codes: [u8; 3]) -> [[i32; 3]; 3] {
+    fn stored(&mut self, level: u32, node: usize, p: [[i32; 3]; 3], codes: [u8; 3], split: Option<&SplitRecord>) -> [[i32; 3]; 3] {
         let tree = self.tree;
         if level >= self.depth {
             let middle = |a: usize, b: usize| std::array::from_fn(|c| (i64::from(p[a][c]) + i64::from(p[b][c])).div_euclid(2) as i32); // between them
             return [middle(1, 2), middle(2, 0), middle(0, 1)];
         }
+        if let Some(split) = split {
+            // A root that splits into triangles alone has its vertices there and nothing of children; exact vertices are elsewhere.
+            let childless = SplitRecord { v0: split.v0, v1: split.v1, v2: split.v2, ..SplitRecord::default() };
+            let own = [split.v0, split.v1, split.v2].map(|v| v.get());
+            let fine = split.reserved.get() == 0 && (self.depth > 1 || *split == childless) && (self.form.is_compact() || own == [[0; 3]; 3]);
+            self.found.check(CheckKind::Reserved, fine, || format!("tree {tree}: split of node {node} of level {level}"));
+        }
         let name = || format!("tree {tree}: vertices of node {node} of level {level}");
+        let (before, place) = (4usize.pow(level) * self.place + node, level as usize);
         if self.form == VertexForm::Exact {
-            // The roots' first; then by fours, as groups are.
-            let at = if level == 0 { self.place } else { self.begins.splitting + 4 * self.number(level - 1, node / 4) + node % 4 };
-            let line = VertexData::from_words(&self.lines[at]);
+            let line = VertexData::from_words(&self.lines[self.begins.nodes[place] + before]);
             self.found.check(CheckKind::Reserved, line.reserved.get() == 0, name);
             return line.points().map(|v| v.get().map(|c| c as i32)); // 32 bits by their type
         }
-        // Two nodes share a line, the first of them in its low half; the root's are in the L0 record.
-        let d = if level == 0 {
-            self.split
-        } else {
-            let half = 4 * self.number(level - 1, node / 4) + node % 4;
-            let half = Displacements::from_words(&self.lines[half / 2][2 * (half % 2)..]);
-            self.found.check(CheckKind::Reserved, half.reserved.get() == 0, name);
-            half
+        let d = match split {
+            Some(split) => [split.v0, split.v1, split.v2],
+            None => {
+                // Two nodes share a line, the first of them in its low half; the trees that have these levels begin behind the deeper ones.
+                let half = self.begins.last[place] + before - 4usize.pow(level) * self.begins.deeper[place];
+                let half = Displacements::from_words(&self.lines[half / 2][2 * (half % 2)..]);
+                self.found.check(CheckKind::Reserved, half.reserved.get() == 0, name);
+                [half.v0, half.v1, half.v2]
+            }
         };
         let zero = self.levels - level + 3;
         std::array::from_fn(|k| {
             let (a, b) = (p[(k + 1) % 3], p[(k + 2) % 3]);
             let octave = (u64::from(codes[k]) + self.offset) / 16;
             let unit = 2i64.pow(zero.max(octave.saturating_sub(11) as u32)); // below 48
-            let d = [d.v0, d.v1, d.v2][k].get();
+            let d = d[k].get();
             std::array::from_fn(|c| {
                 let v = (i64::from(a[c]) + i64::from(b[c])).div_euclid(2) + d[c] * unit;
                 v.clamp(i32::MIN.into(), i32::MAX.into()) as i32 // beyond the limit if it had to be clamped
@@ -306,9 +325,17 @@ impl Reader<'_> {
 
     /// Checks the inserted vertices and codes of a node and gives the vertices.
     #[inline]
-    fn inserted(&mut self, level: u32, node: usize, places: [Place; 3], p: [[i32; 3]; 3], codes: [u8; 3]) -> ([Place; 3], [[i32; 3]; 3]) {
+    fn inserted(
+        &mut self,
+        level: u32,
+        node: usize,
+        places: [Place; 3],
+        p: [[i32; 3]; 3],
+        codes: [u8; 3],
+        split: Option<&SplitRecord>,
+    ) -> ([Place; 3], [[i32; 3]; 3]) {
         let (tree, levels) = (self.tree, self.levels);
-        let q = self.stored(level, node, p, codes);
+        let q = self.stored(level, node, p, codes, split);
         // The centre child's codes are its siblings': there is nothing to compare.
         let own_codes = level == 0 || node % 4 < 3;
         let mut q_places = places;

@@ -24,8 +24,7 @@ impl Hardware {
         let fetches = [
             ("NODE", Fetch::Node as u32, "quad-BVH node"),
             ("RECORD", Fetch::Record as u32, "L0 record"),
-            ("VERTEX", Fetch::Vertex as u32, "inserted vertices and, but on the last split, the children's sibling group"),
-            ("GROUP", Fetch::Group as u32, "the sibling group alone: the inserted vertices came with the L0 record"),
+            ("SPLIT", Fetch::Split as u32, "split: of a node whose children are nodes its record, and inserted vertices where they are not in that"),
         ];
         enumeration("What a context fetches.", "fetch_t", &fetches, &mut out);
         let error = |error: RayError| (error.named().0, error as u32, error.named().1);

@@ -1,7 +1,7 @@
 //! Packed structs from [`Wire`] types: names, order, widths and descriptions of the fields are those of the source.
 
 use crate::block::{self, Block};
-use crate::format::{BvhNode, Displacements, L0Record, SiblingGroup, VertexData};
+use crate::format::{BvhNode, Displacements, L0Record, SplitRecord, VertexData};
 use crate::hardware::ports::{Corners, HitOut, MemoryAnswer, MemoryRequest, RayIn, SceneConfig, SecondaryIn};
 use crate::method::{Entry, Hit};
 use crate::num::{self, Box16, Field, Layout, Wire};
@@ -34,6 +34,7 @@ pub(super) fn all() -> Vec<Struct> {
         vector::<32>("point", "Vertex position or ray origin in units."),
         vector::<31>("direction", "Ray direction: each component below 2^30 in magnitude."),
         vector::<28>("stored_point", "Stored vertex: units / 16."),
+        vector::<22>("stored_corner", "Stored corner of a base triangle of compact vertices: units / 1024."),
         vector::<13>("displacement", "Displacement of a compact vertex from the midpoint of its edge, in steps."),
         vector::<16>("code3", "Corner of a box in steps of 2^16 units."),
         vector::<11>("local", "Local coordinates of a corner, mirrored."),
@@ -82,7 +83,7 @@ pub(super) fn all() -> Vec<Struct> {
     all.push(of::<block::prism_frame::Frame>("frame"));
     blocks!(block::prism_frame::PrismFrame, block::prism_test::PrismTest, block::child_prisms::ChildPrisms);
     all.extend([
-        of::<SiblingGroup>("sibling_group"),
+        of::<SplitRecord>("split_record"),
         of::<BvhNode>("bvh_node"),
         of::<VertexData>("vertex_data"),
         of::<Displacements>("displacements"),

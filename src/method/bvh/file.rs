@@ -52,7 +52,7 @@ impl TreeKey {
             hash.update(&cost.to_bits().to_le_bytes());
         }
         // Codes say where compact vertices lie.
-        for section in [FileSection::Records, FileSection::Bounds, FileSection::Vertices] {
+        for section in [FileSection::Records, FileSection::Splits, FileSection::Vertices] {
             let bytes = scene.section(section);
             hash.update(&(bytes.len() as u64).to_le_bytes());
             hash.update(bytes);

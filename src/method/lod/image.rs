@@ -1,22 +1,22 @@
 //! The memory images of a model.
 
 use super::order::LineOrder;
-use crate::format::{LevelStarts, Line, Scene, TreeLines, layout};
+use crate::format::{L0Record, LevelStarts, Line, Scene, TreeLines, VertexData, has_split, layout};
 use crate::method::Knob;
 use crate::num::prism::Prisms;
-use crate::num::{BoundScale, LINE_BYTES, VertexForm};
+use crate::num::{BoundScale, LINE_BYTES, Point, VertexForm, Wire};
 use crate::step::{Fetch, MemoryMap, Section, SectionId};
 
 /// Quad-BVH nodes over base triangles.
 pub const NODES: SectionId = SectionId::new(0);
-/// L0 records: base triangle, the root's codes and, if they are compact, inserted vertices.
+/// L0 records: base triangle and the root's codes.
 pub const RECORDS: SectionId = SectionId::new(1);
-/// Sibling groups: boxes and bound codes.
-pub const BOUNDS: SectionId = SectionId::new(2);
-/// Inserted vertices.
+/// Splits: bound codes and boxes of the children, and compact inserted vertices.
+pub const SPLITS: SectionId = SectionId::new(2);
+/// Inserted vertices: exact ones, and compact ones of last splits.
 pub const VERTICES: SectionId = SectionId::new(3);
 
-/// Lines of an L0 record.
+/// Lines of a node, a record or a split in the paper's layout.
 const PAIR: u32 = 2;
 
 /// Whose lines rays ask for.
@@ -25,8 +25,8 @@ pub enum LineLayout {
     /// Those of the images.
     #[default]
     Own,
-    /// Those that the paper has (section 4.3): nodes and sibling groups of two lines, inserted vertices of one, every group asked for with its vertices. The rays' ways
-    /// and hits are the same; only addresses are others. For simulations of the paper's own figures.
+    /// Those that the paper has (section 4.3): nodes, records and the bounds of four children of two lines, inserted vertices of one, bounds asked for with the vertices. The rays'
+    /// ways and hits are the same; only addresses are others. For simulations of the paper's own figures.
     Paper,
     /// Those of the images in another order, with room for all levels of all trees. Again only addresses are others.
     Ordered(LineOrder),
@@ -54,8 +54,8 @@ pub static LINE_LAYOUT: Knob = Knob {
     help: "Memory lines that rays of lod ask for",
     default: Some("own"),
     words: &[
-        ("own", "Those of the scene, level by level: a node or group in one line, compact vertices in half a line"),
-        ("paper", "Those of the paper's layout, for the same rays: a node or group in two lines, vertices in one"),
+        ("own", "Those of the scene, level by level: a node, record or split in one line, a last split in half a line"),
+        ("paper", "Those of the paper's layout, for the same rays: a node, record or four children in two lines, vertices in one"),
         ("tree", "The scene's lines, but tree by tree"),
         ("coarse", "Three levels over all trees, then what is below each of their nodes by itself"),
         ("blocks", "Two levels of a tree together, these blocks level by level over all trees"),
@@ -101,11 +101,11 @@ pub struct LodImage<'a> {
     pub form: VertexForm,
     /// Quad-BVH nodes over base triangles; node 0 is the root.
     pub nodes: &'a [Line],
-    /// L0 records, one per tree.
-    pub records: &'a [[u64; 8]],
-    /// Sibling groups.
-    pub bounds: &'a [Line],
-    /// Inserted vertices.
+    /// L0 records, of one or two lines each.
+    pub records: &'a [Line],
+    /// Splits.
+    pub splits: &'a [Line],
+    /// Inserted vertices that are not in splits.
     pub vertices: &'a [Line],
     /// Where the levels of all trees begin in them.
     pub starts: LevelStarts,
@@ -113,7 +113,7 @@ pub struct LodImage<'a> {
     pub map: MemoryMap,
     layout: LineLayout,
     trees: usize,
-    /// Prisms of the children of each sibling group, if they bound them in place of its boxes.
+    /// Prisms of the children of each split, if they bound them in place of its boxes.
     pub(super) prisms: Option<&'a [Prisms]>,
 }
 
@@ -125,19 +125,22 @@ impl<'a> LodImage<'a> {
 
     /// The same, whose rays ask for these lines.
     pub fn with(scene: &'a Scene, layout: LineLayout) -> Self {
-        let (nodes, records, bounds, vertices) = (scene.nodes(), scene.records(), scene.bounds(), scene.vertices());
+        let (nodes, records, splits, vertices) = (scene.nodes(), scene.records(), scene.splits(), scene.vertices());
         let (levels, form) = (scene.levels(), scene.meta().vertices);
         let line = |lines: usize| LINE_BYTES * lines as u64;
-        let all = scene.trees() * layout::sibling_groups(levels);
-        let (pair, groups, vertex_lines) = match layout {
-            LineLayout::Own => (1, bounds.len(), vertices.len()),
-            LineLayout::Paper => (2, all, scene.trees() * layout::vertex_lines(VertexForm::Exact, levels)),
-            LineLayout::Ordered(_) => (1, all, scene.trees() * layout::vertex_lines(form, levels)),
+        let all = |of: usize| scene.trees() * of;
+        // In other orders there is room for all levels of all trees.
+        let (pair, split_lines, vertex_lines) = match layout {
+            LineLayout::Own => (1, splits.len(), vertices.len()),
+            LineLayout::Paper => (2, all(layout::split_lines(levels)), all(layout::vertex_lines(VertexForm::Exact, levels))),
+            LineLayout::Ordered(_) if form.is_compact() => (1, all(layout::split_lines(levels)), 2 * all(layout::split_lines(levels))),
+            LineLayout::Ordered(_) => (1, all(layout::split_lines(levels)), all(layout::vertex_lines(form, levels))),
         };
+        let record_lines = if layout == LineLayout::Paper { 2 * scene.trees() } else { records.len() };
         let sections = [
             Section::of_bytes("bvh_node", line(pair * nodes.len())).of_base(),
-            Section::of_bytes("l0_record", size_of_val(records) as u64).of_base(),
-            Section::of_bytes("bound_data", line(pair * groups)),
+            Section::of_bytes("l0_record", line(record_lines)).of_base(),
+            Section::of_bytes("split", line(pair * split_lines)),
             Section::of_bytes("vertex_data", line(vertex_lines)),
         ];
         let map = MemoryMap::new(&sections, Some((NODES, pair as u32))) // 1 or 2
@@ -149,7 +152,7 @@ impl<'a> LodImage<'a> {
             form,
             nodes,
             records,
-            bounds,
+            splits,
             vertices,
             starts: *scene.level_starts(),
             map,
@@ -159,16 +162,31 @@ impl<'a> LodImage<'a> {
         }
     }
 
-    /// The same with prisms in place of the boxes of trees' nodes: of the children of each sibling group ([`scene_prisms`](crate::format::scene_prisms)).
+    /// The same with prisms in place of the boxes of trees' nodes: of the children of each split ([`scene_prisms`](crate::format::scene_prisms)).
     #[must_use]
     pub fn bounded_by(self, prisms: &'a [Prisms]) -> Self {
         Self { prisms: Some(prisms), ..self }
     }
 
-    /// The inserted vertices of a root are in its L0 record, and rays ask for it alone.
+    /// A tree's L0 record.
     #[inline(always)]
-    pub(super) fn root_has_split(&self) -> bool {
-        self.form.is_compact() && self.layout != LineLayout::Paper
+    pub fn record(&self, tree: usize) -> &'a Line {
+        &self.records[tree * self.form.record_lines()]
+    }
+
+    /// A tree's corners.
+    #[inline(always)]
+    pub fn corners(&self, tree: usize) -> [Point; 3] {
+        match self.form {
+            VertexForm::Exact => VertexData::from_words(&self.records[2 * tree + 1]).points(),
+            VertexForm::Compact => L0Record::from_words(&self.records[tree]).corners(),
+        }
+    }
+
+    /// The inserted vertices of a node of a tree of this depth come with its split.
+    #[inline(always)]
+    pub(super) fn split_has_vertices(&self, depth: u32, level: u32) -> bool {
+        self.form.is_compact() && self.layout != LineLayout::Paper && has_split(depth, level)
     }
 
     /// The line or lines of quad-BVH node `index`.
@@ -180,20 +198,24 @@ impl<'a> LodImage<'a> {
         }
     }
 
-    /// The line or lines of the sibling group of the children of a node.
+    /// The line or lines of a node's split.
     #[inline(always)]
-    pub(super) fn group(&self, tree: TreeAt, level: u32, node: usize) -> Fetch {
+    pub(super) fn split(&self, tree: TreeAt, level: u32, node: usize) -> Fetch {
         match self.layout {
-            LineLayout::Own => Fetch::new(BOUNDS, self.map.line(BOUNDS, self.starts.child_group(tree.lines, level, node) as u64), 1),
-            LineLayout::Paper => self.pair(BOUNDS, self.ordered(LineOrder::Tree, tree, level, node)),
-            LineLayout::Ordered(order) => Fetch::new(BOUNDS, self.map.line(BOUNDS, self.ordered(order, tree, level, node) as u64), 1),
+            LineLayout::Own => Fetch::new(SPLITS, self.map.line(SPLITS, self.starts.split(tree.lines, level, node) as u64), 1),
+            LineLayout::Paper => self.pair(SPLITS, self.ordered(LineOrder::Tree, tree, level, node)),
+            LineLayout::Ordered(order) => Fetch::new(SPLITS, self.map.line(SPLITS, self.ordered(order, tree, level, node) as u64), 1),
         }
     }
 
-    /// Both lines of L0 record `index`.
+    /// The line or lines of L0 record `index`.
     #[inline(always)]
     pub(super) fn l0_record(&self, index: usize) -> Fetch {
-        self.pair(RECORDS, index)
+        if self.form.is_compact() && self.layout != LineLayout::Paper {
+            Fetch::new(RECORDS, self.map.line(RECORDS, index as u64), 1)
+        } else {
+            self.pair(RECORDS, index)
+        }
     }
 
     #[inline(always)]
@@ -201,13 +223,13 @@ impl<'a> LodImage<'a> {
         Fetch::new(section, self.map.line(section, 2 * index as u64), PAIR)
     }
 
-    /// The line with the inserted vertices of a node, which is not a root that has them in its record.
+    /// The line with the inserted vertices of a node, where [they do not come with its split](Self::split_has_vertices).
     #[inline(always)]
-    pub(super) fn split(&self, tree: TreeAt, level: u32, node: usize) -> Fetch {
+    pub(super) fn inserted(&self, tree: TreeAt, level: u32, node: usize) -> Fetch {
         let (line, place) = match self.layout {
             LineLayout::Own => (self.starts.vertex_line(self.form, tree.lines, level, node), 1),
             LineLayout::Paper => (tree.index as usize * layout::level_start(self.levels) + layout::level_start(level) + node, 2),
-            // The vertices of four siblings follow each other as their groups do.
+            // The vertices of four siblings follow each other as their parents' splits do.
             LineLayout::Ordered(order) if self.form.is_compact() => (2 * self.ordered(order, tree, level - 1, node / 4) + node % 4 / 2, 1),
             LineLayout::Ordered(_) if level == 0 => (tree.index as usize, 1),
             LineLayout::Ordered(order) => (self.trees + 4 * self.ordered(order, tree, level - 1, node / 4) + node % 4, 1),
@@ -215,9 +237,9 @@ impl<'a> LodImage<'a> {
         Fetch::new(VERTICES, self.map.line(VERTICES, line as u64), 1).at(place)
     }
 
-    /// The group of the children of a node, in this order.
+    /// The split of a node, in this order.
     #[inline(always)]
     fn ordered(&self, order: LineOrder, tree: TreeAt, level: u32, node: usize) -> usize {
-        order.group(self.trees, self.levels - 1, tree.index as usize, level, node)
+        order.split(self.trees, (self.levels - 1).max(1), tree.index as usize, level, node)
     }
 }

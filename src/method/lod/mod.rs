@@ -5,7 +5,7 @@ mod order;
 mod prior;
 mod trace;
 
-pub use image::{BOUNDS, LINE_LAYOUT, LineLayout, LodImage, NODE_BOUNDS, NODES, RECORDS, VERTICES};
+pub use image::{LINE_LAYOUT, LineLayout, LodImage, NODE_BOUNDS, NODES, RECORDS, SPLITS, VERTICES};
 pub use order::LineOrder;
 pub use prior::{Deciders, Prior};
 pub use trace::LodTraverser;

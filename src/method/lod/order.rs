@@ -1,8 +1,8 @@
-//! Orders in which the sibling groups of all trees could lie instead: numbers of groups, if all levels of all trees are stored.
+//! Orders in which the splits of all trees could lie instead: their numbers, if all levels of all trees are stored.
 
 use crate::format::layout::level_start;
 
-/// An order of groups.
+/// An order of splits.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum LineOrder {
     /// Tree by tree, each level by level.
@@ -19,8 +19,8 @@ pub enum LineOrder {
 const COARSE: u32 = 3;
 
 impl LineOrder {
-    /// Number of the group of the children of node (`level`, `node`) of `tree`, of `trees` trees that have groups on `levels` levels.
-    pub fn group(self, trees: usize, levels: u32, tree: usize, level: u32, node: usize) -> usize {
+    /// Number of the split of node (`level`, `node`) of `tree`, of `trees` trees that have splits on `levels` levels.
+    pub fn split(self, trees: usize, levels: u32, tree: usize, level: u32, node: usize) -> usize {
         // Its place among the subtrees of so many levels whose roots are on level `top`.
         let below = |top: u32, levels: u32| {
             let under = 2 * (level - top);
@@ -65,7 +65,7 @@ mod tests {
         for (order, levels, trees) in orders.into_iter().flat_map(|order| (1..=6).map(move |levels| (order, levels, 3))) {
             let mut numbers: Vec<usize> = (0..trees)
                 .flat_map(|tree| (0..levels).flat_map(move |level| (0..1 << (2 * level)).map(move |node| (tree, level, node))))
-                .map(|(tree, level, node)| order.group(trees, levels, tree, level, node))
+                .map(|(tree, level, node)| order.split(trees, levels, tree, level, node))
                 .collect();
             numbers.sort_unstable();
             assert!(numbers.into_iter().eq(0..trees * level_start(levels)), "{order:?}, {levels} levels");

@@ -11,7 +11,7 @@ use crate::block::start_setup::{self, StartSetup};
 use crate::block::start_test::{self, Below, StartTest};
 use crate::block::tessellate::{self, Tessellate, child_triangle};
 use crate::block::tri_test::{self, TriTest};
-use crate::format::{BvhNode, Displacements, L0Record, SiblingGroup, VertexData};
+use crate::format::{BvhNode, Displacements, L0Record, SplitRecord, VertexData, has_split};
 #[cfg(target_arch = "x86_64")]
 use crate::method::children::has_lanes;
 use crate::method::children::{Split, bvh_children, prism_children, tree_children};
@@ -76,7 +76,7 @@ impl<'a> LodTraverser<'a> {
     /// Where rays start that leave the surface where `ray` hit it, and what they need of it and the rays before it; `from` is where `ray` started.
     pub fn departure(&self, ray: &Ray, from: Option<&Departure>, hit: &Hit, corners: &[Point; 3]) -> Departure {
         let tree = hit.tree.get() as u32; // 28 bits
-        let base = VertexData::from_words(&self.image.records[tree as usize][..4]).points();
+        let base = self.image.corners(tree as usize);
         let (prior, crowded) = Prior::after(ray, from.and_then(|from| from.prior.as_ref()), tree, base);
         let start = leave::start(corners, [hit.b0, hit.b1, hit.b2]);
         Departure { start, corners: *corners, prior: Some(prior), crowded }
@@ -186,14 +186,15 @@ impl<S: StepSink, H: HitSink, const COMPACT: bool, const FULL_DETAIL: bool, cons
     #[inline(always)]
     fn root(&mut self, tree: usize) -> Option<Entry> {
         self.steps.step(Step::on(self.image.l0_record(tree), Act::Fetch).visiting());
-        let record = &self.image.records[tree];
-        self.tree = TreeAt { index: tree as u32, lines: L0Record::line_tree(&record[4..]) }; // an index of 28 bits
-        let p = VertexData::from_words(&record[..4]).points();
+        let line = self.image.record(tree);
+        self.tree = TreeAt { index: tree as u32, lines: L0Record::line_tree(line) }; // an index of 28 bits
+        let record = L0Record::from_words(line);
+        let p = if COMPACT { record.corners() } else { self.image.corners(tree) };
         if LEAVES && let Some(prior) = self.prior.filter(|_| self.tree.lines.depth > 0) {
             self.steps.step(Step::of(Act::Decide));
             self.deciders = prior.deciders(tree as u32, &p);
         }
-        let L0Record { e0, e1, e2, .. } = L0Record::from_words(&record[4..]);
+        let L0Record { e0, e1, e2, .. } = record;
         self.tree_node(0, 0, [p, p], [e0, e1, e2])
     }
 
@@ -218,12 +219,12 @@ impl<S: StepSink, H: HitSink, const COMPACT: bool, const FULL_DETAIL: bool, cons
             return None;
         }
 
-        let alone = level == 0 && self.image.root_has_split();
-        self.steps.step(if alone {
-            Step::of(Act::Tessellate)
-        } else {
-            Step::on(self.image.split(self.tree, level, node as usize), Act::Tessellate)
-        });
+        let at_once = self.image.split_has_vertices(depth, level);
+        let fetch = match at_once {
+            true => self.image.split(self.tree, level, node as usize),
+            false => self.image.inserted(self.tree, level, node as usize),
+        };
+        self.steps.step(Step::on(fetch, Act::Tessellate));
         let [v0, v1, v2] = self.stored(level, node as usize);
         let (scale, zeros) = (self.image.scale, self.image.zeros);
         let grid = U::new(u64::from(self.image.levels - level - 1 + zeros));
@@ -239,7 +240,7 @@ impl<S: StepSink, H: HitSink, const COMPACT: bool, const FULL_DETAIL: bool, cons
         }
         let split = Split { full: Corners::of(f, g), morphed: Corners::of(p, q) };
         self.splits[level as usize] = split;
-        self.tree_children(level, node, &split, !alone)
+        self.tree_children(level, node, &split, at_once)
     }
 
     /// The LOD test of a node, by the rays that decide about its edges.
@@ -257,23 +258,20 @@ impl<S: StepSink, H: HitSink, const COMPACT: bool, const FULL_DETAIL: bool, cons
     /// The inserted vertices of a node as they are stored.
     #[inline(always)]
     fn stored(&self, level: u32, node: usize) -> [Point; 3] {
-        let (image, tree) = (self.image, self.tree);
-        let form = if COMPACT { VertexForm::Compact } else { VertexForm::Exact };
-        let line = |level| &image.vertices[image.starts.vertex_line(form, tree.lines, level, node)];
-        match (COMPACT, level) {
-            (false, _) => VertexData::from_words(line(level)).points(),
-            (true, 0) => L0Record::from_words(&image.records[tree.index as usize][4..]).split.steps(),
-            (true, _) => Displacements::half(line(level), node).steps(),
+        let (image, lines) = (self.image, self.tree.lines);
+        let line = |form| &image.vertices[image.starts.vertex_line(form, lines, level, node)];
+        match COMPACT {
+            false => VertexData::from_words(line(VertexForm::Exact)).points(),
+            true if has_split(lines.depth, level) => SplitRecord::line_displacements(&image.splits[image.starts.split(lines, level, node)]),
+            true => Displacements::line_half(line(VertexForm::Compact), node),
         }
     }
 
-    /// Tests the boxes of the four children of a node; their group was asked for together with the inserted vertices if it `joins` them.
+    /// Tests the boxes of the four children of a node; its split is there if it came `at_once` with the inserted vertices, or else was asked for with them.
     #[inline(always)]
-    fn tree_children(&mut self, level: u32, node: u32, split: &Split, joins: bool) -> Option<Entry> {
-        let fetch = self.image.group(self.tree, level, node as usize);
-        let fetch = if joins { fetch.joining() } else { fetch };
-        let group = self.image.starts.child_group(self.tree.lines, level, node as usize);
-        let line = &self.image.bounds[group];
+    fn tree_children(&mut self, level: u32, node: u32, split: &Split, at_once: bool) -> Option<Entry> {
+        let number = self.image.starts.split(self.tree.lines, level, node as usize);
+        let line = &self.image.splits[number];
         let t_max = self.sink.t_max();
         let (tests, act) = match self.image.prisms {
             None => {
@@ -281,13 +279,16 @@ impl<S: StepSink, H: HitSink, const COMPACT: bool, const FULL_DETAIL: bool, cons
                 (tests, Act::Children { met: tests.met() })
             }
             Some(prisms) => {
-                let tests = prism_children(&self.setup, t_max, &prisms[group], split);
+                let tests = prism_children(&self.setup, t_max, &prisms[number], split);
                 (tests, Act::Prisms { met: tests.met() })
             }
         };
-        self.steps.step(Step::on(fetch, act));
+        self.steps.step(match at_once {
+            true => Step::of(act),
+            false => Step::on(self.image.split(self.tree, level, node as usize).joining(), act),
+        });
         push_sorted(self.stack, &tests, |k| {
-            let [e0, e1, e2] = SiblingGroup::line_codes(line, k);
+            let [e0, e1, e2] = SplitRecord::line_codes(line, k);
             Entry {
                 t_near: TNear::ZERO,
                 kind: U::new(Entry::TREE_NODE),

@@ -5,7 +5,7 @@
 
 use super::context::Context;
 use super::wires::Cycle;
-use crate::format::{BvhNode, L0Record, VertexData};
+use crate::format::{BvhNode, L0Record};
 use crate::hardware::ports::{MemoryAnswer, SceneConfig};
 use crate::hardware::{Fetch, RayError, State};
 use crate::num::{COORD_LIMIT, Point, S, U, Vec3, Wire};
@@ -55,7 +55,7 @@ impl Context {
             State::Fetch if !self.waits_for_memory() => match self.fetch.get() {
                 Fetch::Node => is(self.is_no_node(), RayError::Image),
                 Fetch::Record => is(self.is_no_record(scene), RayError::Image),
-                Fetch::Vertex | Fetch::Group => None,
+                Fetch::Split => None,
             },
             State::MorphWait => {
                 let out = cycle.morph.result(me)?;
@@ -84,10 +84,10 @@ impl Context {
 
     /// The lines are no L0 record of this scene.
     fn is_no_record(&self, scene: &SceneConfig) -> bool {
-        let L0Record { depth, place, .. } = L0Record::from_words(&self.lines[1]);
+        let L0Record { depth, place, .. } = L0Record::from_words(&self.lines[0]);
         let deepest = scene.levels.get().min(self.stored_levels);
         let place_beyond = depth != U::ZERO && place.get() >> self.index_bits != 0;
-        let corners = VertexData::from_words(&self.lines[0]).points().map(|point| self.kept(point));
+        let corners = self.record_corners(scene);
         depth.get() > deepest || place_beyond || misplaced(&corners, scene.levels.get() + scene.zeros.get())
     }
 

@@ -109,9 +109,18 @@ impl Context {
         self.level.get().get() + 1 == self.depth.get().get()
     }
 
-    /// The node is a compact model's root: its inserted vertices came with its record.
-    pub fn compact_root(&self, scene: &SceneConfig) -> bool {
-        scene.compact && self.level.get() == U::ZERO
+    /// The node is one of a compact model that has a split: its inserted vertices are there.
+    pub fn split_has_vertices(&self, scene: &SceneConfig) -> bool {
+        scene.compact && (!self.last_split() || self.level.get() == U::ZERO)
+    }
+
+    /// The corners in the line buffers, which hold an L0 record.
+    pub fn record_corners(&self, scene: &SceneConfig) -> [Point; 3] {
+        let corners = match scene.compact {
+            true => L0Record::from_words(&self.lines[0]).corners(),
+            false => VertexData::from_words(&self.lines[1]).points(),
+        };
+        corners.map(|point| self.kept(point))
     }
 
     /// Tree, level and node of triangle `number`: of this node, or its child of that number.
@@ -152,14 +161,15 @@ impl Context {
                 }
                 None => State::SetupWait,
             },
-            State::Visit => self.visit(),
+            State::Visit => self.visit(scene),
             State::Fetch => {
                 let there = want == 0 && waiting == 0;
                 match self.fetch.get() {
-                    Fetch::Node | Fetch::Group => self.when(there, State::Child),
-                    Fetch::Record if there => self.enter_tree(),
+                    Fetch::Node => self.when(there, State::Child),
+                    Fetch::Record if there => self.enter_tree(scene),
                     Fetch::Record => State::Fetch,
-                    Fetch::Vertex => self.when(want == 0 && waiting & 0b10 == 0, State::Morph),
+                    // The split may still be under way where the vertices are elsewhere.
+                    Fetch::Split => self.when(want == 0 && waiting & if scene.compact { 0b11 } else { 0b10 } == 0, State::Morph),
                 }
             }
             State::Child => self.when(cycle.child.granted(me), State::ChildWait),
@@ -200,13 +210,7 @@ impl Context {
                         self.enter_triangles(true)
                     } else {
                         self.splits[self.level.get().get() as usize] = Split { f: self.f.get(), p: self.p.get(), g, q };
-                        if self.compact_root(scene) {
-                            self.fetch.set(Fetch::Group);
-                            self.want = 0b01;
-                            State::Fetch
-                        } else {
-                            State::Child
-                        }
+                        State::Child
                     }
                 }
                 None => State::MorphWait,
@@ -294,16 +298,18 @@ impl Context {
         self.lod.set(lod);
         if !lod.refine {
             self.enter_triangles(false)
-        } else if self.compact_root(scene) {
-            State::Morph
         } else {
-            self.fetch.set(Fetch::Vertex);
-            self.want = if self.last_split() { 0b10 } else { 0b11 };
+            self.fetch.set(Fetch::Split);
+            self.want = match self.split_has_vertices(scene) {
+                true => 0b01,
+                false if self.last_split() => 0b10,
+                false => 0b11,
+            };
             State::Fetch
         }
     }
 
-    fn visit(&mut self) -> State {
+    fn visit(&mut self, scene: &SceneConfig) -> State {
         let entry = self.entry.get();
         self.visits_left.set(U::new(self.visits_left.get().get() - 1));
         match entry.kind.get() {
@@ -316,7 +322,7 @@ impl Context {
                 self.tree.set(entry.index);
                 self.by = self.deciders.edges;
                 self.fetch.set(Fetch::Record);
-                self.want = 0b11;
+                self.want = if scene.compact { 0b01 } else { 0b11 };
                 State::Fetch
             }
             _ => {
@@ -341,13 +347,13 @@ impl Context {
         self.p.forget();
     }
 
-    fn enter_tree(&mut self) -> State {
+    fn enter_tree(&mut self, scene: &SceneConfig) -> State {
         self.level.set(U::ZERO);
         self.node.set(U::ZERO);
-        let corners = VertexData::from_words(&self.lines[0]).points().map(|point| self.kept(point));
+        let corners = self.record_corners(scene);
         self.f.set(corners);
         self.p.set(corners);
-        let L0Record { depth, place, e0, e1, e2, .. } = L0Record::from_words(&self.lines[1]);
+        let L0Record { depth, place, e0, e1, e2, .. } = L0Record::from_words(&self.lines[0]);
         self.depth.set(depth);
         self.place = place;
         self.e = [e0, e1, e2];

@@ -2,7 +2,7 @@
 
 use crate::format::{FileSection, LevelStarts, Scene};
 use crate::hardware::ports::{AnswerLimit, SceneConfig};
-use crate::method::lod::{BOUNDS, LodImage, NODES, RECORDS, VERTICES};
+use crate::method::lod::{LodImage, NODES, RECORDS, SPLITS, VERTICES};
 use crate::num::{BoundScale, LINE_BYTES, LineAddress, U};
 use crate::step::{MemoryMap, SectionId};
 
@@ -33,7 +33,7 @@ impl<'a> SceneMemory<'a> {
         let mut sections: [&[u64]; 4] = [&[]; 4];
         sections[NODES.place()] = image.nodes.as_flattened();
         sections[RECORDS.place()] = image.records.as_flattened();
-        sections[BOUNDS.place()] = image.bounds.as_flattened();
+        sections[SPLITS.place()] = image.splits.as_flattened();
         sections[VERTICES.place()] = image.vertices.as_flattened();
         assert!(first + image.map.lines() <= LineAddress::MAX.get(), "the model does not fit the address space");
         Self {
@@ -50,7 +50,7 @@ impl<'a> SceneMemory<'a> {
 
     /// What the unit is told of the model.
     pub fn config(&self) -> SceneConfig {
-        let [nodes, records, bounds, vertices] = [NODES, RECORDS, BOUNDS, VERTICES].map(|section| self.address(self.map.first(section)));
+        let [nodes, records, splits, vertices] = [NODES, RECORDS, SPLITS, VERTICES].map(|section| self.address(self.map.first(section)));
         let (levels, zeros) = (U::new(u64::from(self.levels)), U::new(u64::from(self.zeros)));
         SceneConfig {
             levels,
@@ -59,10 +59,10 @@ impl<'a> SceneMemory<'a> {
             scale: self.scale,
             nodes,
             records,
-            bounds,
+            splits,
             vertices,
-            starts: std::array::from_fn(|k| U::new(self.starts.level(k + 1) as u64)),
-            roots: U::new(self.starts.roots() as u64),
+            split_starts: std::array::from_fn(|k| U::new(self.starts.split_level(k + 1) as u64)),
+            vertex_starts: std::array::from_fn(|k| U::wrapping(self.starts.vertex_level(k + 1) as u64)),
             visits: U::new(self.visits()),
             answer_limit: AnswerLimit::MAX,
         }
@@ -71,7 +71,7 @@ impl<'a> SceneMemory<'a> {
     /// The most entries that a ray can visit: each node of the quad-BVH, each tree and each node of a tree has one parent and is visited once.
     fn visits(&self) -> u64 {
         let lines = |section: SectionId| self.sections[section.place()].len() as u64 / WORDS;
-        lines(NODES) + lines(RECORDS) / 2 + 4 * lines(BOUNDS)
+        lines(NODES) + lines(RECORDS) + 4 * lines(SPLITS)
     }
 
     /// Section and line within it of an address; `None` outside of all.
@@ -104,7 +104,7 @@ pub fn file_config(scene: &Scene) -> SceneConfig {
     SceneConfig {
         nodes: first(FileSection::Nodes),
         records: first(FileSection::Records),
-        bounds: first(FileSection::Bounds),
+        splits: first(FileSection::Splits),
         vertices: first(FileSection::Vertices),
         ..SceneMemory::new(LodImage::of(scene), 0).config()
     }

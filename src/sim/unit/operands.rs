@@ -6,7 +6,7 @@ use crate::block::tessellate::child_triangle;
 use crate::block::{
     bary_map, child_test, hit_select, lod_test, lod_test_by, node_address, start_divide, start_setup, start_test, tessellate, tree_deciders,
 };
-use crate::format::{Displacements, L0Record, VertexData};
+use crate::format::{Displacements, SplitRecord, VertexData};
 use crate::hardware::ports::{Corners, HitOut, SceneConfig, SecondaryIn};
 use crate::hardware::{Fetch, RayError, State};
 use crate::num::{LineAddress, PADDING_BITS, Point, RayT, Start, U, Wire};
@@ -57,7 +57,7 @@ impl Context {
 
     /// Place of the line to send for next among those wanted: of a split the inserted vertices first.
     pub fn place_of(&self, want: u8) -> u16 {
-        u16::from(want & 0b10 != 0 && (self.fetch.get() == Fetch::Vertex || want & 0b01 == 0))
+        u16::from(want & 0b10 != 0 && (self.fetch.get() == Fetch::Split || want & 0b01 == 0))
     }
 
     /// Where the ray starts.
@@ -80,9 +80,9 @@ impl Context {
             low: U::new(u64::from(second)),
             ..node_address::In::default()
         };
-        let of_tree = |base: LineAddress, level: u64, node: u64| node_address::In {
+        let of_tree = |base: LineAddress, start: U<28>, level: u64, node: u64| node_address::In {
             base,
-            start: scene.start(level),
+            start,
             place: self.place,
             level: U::new(level),
             index: U::new(node),
@@ -91,17 +91,15 @@ impl Context {
         let (level, node) = (self.level.get().get(), self.node.get().get());
         match self.fetch.get() {
             Fetch::Node => record(scene.nodes, 0),
-            Fetch::Record => record(scene.records, 1),
-            // Vertices lie as the groups do that their nodes are in.
-            Fetch::Vertex if second && level > 0 => {
-                let group = of_tree(scene.vertices, level - 1, node / 4);
-                match scene.compact {
-                    true => node_address::In { scale: U::new(1), low: U::new(node / 2 % 2), ..group },
-                    false => node_address::In { first: scene.roots, scale: U::new(2), low: U::new(node % 4), ..group },
-                }
-            }
-            Fetch::Vertex if second => of_tree(scene.vertices, 0, 0),
-            Fetch::Vertex | Fetch::Group => of_tree(scene.bounds, level, node),
+            Fetch::Record => record(scene.records, u64::from(!scene.compact)),
+            // Four siblings' compact vertices have two lines, which lie as their parents' splits do. Only nodes below a root have such.
+            Fetch::Split if second && scene.compact => node_address::In {
+                scale: U::new(1),
+                low: U::new(node / 2 % 2),
+                ..of_tree(scene.vertices, scene.vertex_start(level), level.wrapping_sub(1) & 15, node / 4)
+            },
+            Fetch::Split if second => of_tree(scene.vertices, scene.vertex_start(level), level, node),
+            Fetch::Split => of_tree(scene.splits, scene.split_start(level), level, node),
         }
     }
 
@@ -135,15 +133,14 @@ impl Context {
         tessellate::In { compact, grid, padding, scale, e0, e1, e2, s0, s1, s2, f0, f1, f2, p0, p1, p2, v0, v1, v2 }
     }
 
-    /// What line buffer 1 holds of the node's inserted vertices: themselves, or of a compact model their displacements.
+    /// What the line buffers hold of the node's inserted vertices: themselves, or of a compact model their displacements.
     fn inserted(&self, scene: &SceneConfig) -> [Point; 3] {
-        let line = &self.lines[1];
-        if self.compact_root(scene) {
-            L0Record::from_words(line).split.steps()
+        if self.split_has_vertices(scene) {
+            SplitRecord::line_displacements(&self.lines[0])
         } else if scene.compact {
-            Displacements::half(line, self.node.get().get() as usize & 1).steps()
+            Displacements::line_half(&self.lines[1], self.node.get().get() as usize & 1)
         } else {
-            VertexData::from_words(line).points().map(|point| self.kept(point))
+            VertexData::from_words(&self.lines[1]).points().map(|point| self.kept(point))
         }
     }
 

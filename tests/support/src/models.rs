@@ -84,7 +84,7 @@ pub fn with_zeros(zeros: u32, mut h: Hierarchy) -> Hierarchy {
 fn regrid(form: VertexForm, h: &mut Hierarchy) {
     let m = 1u32 << h.levels;
     let places = (0..=m).flat_map(|j| (0..=m - j).map(move |i| (i, j)));
-    let bits: Vec<u32> = places.map(|place| form.zero_bits(h.levels - lattice::level_of(h.levels, place), h.zeros)).collect();
+    let bits: Vec<u32> = places.map(|place| form.zero_bits(h.levels, lattice::level_of(h.levels, place), h.zeros)).collect();
     for (point, &bits) in h.points.iter_mut().zip(bits.iter().cycle()) {
         *point = point.map(|v| snap(f64::from(v), bits));
     }
