@@ -2,7 +2,7 @@
 
 /// The four children in one memory line: their boxes as `child_test` takes them, and one of them as a stack entry.
 ///
-/// The line is a quad-BVH node (`tree_i` low) or the sibling group of the children of node `node_i` on `level_i` (`tree_i` high). The entry is that of the child
+/// The line is a quad-BVH node (`tree_i` low) or the split of node `node_i` on `level_i` (`tree_i` high). The entry is that of the child
 /// at place `count_i` - 1 of the order; it means nothing while `count_i` is 0. Combinational.
 module child_records (
   input  logic                              tree_i,
@@ -18,7 +18,7 @@ module child_records (
   output lod_pkg::code3_t                   origin_o,
   output logic [2:0]                        halves_o,
   output logic [2:0][3:0]                   exponents_o,
-  output logic [23:0][6:0]                  planes_o,
+  output logic [23:0][4:0]                  planes_o,
   output lod_pkg::stack_entry_t             entry_o
 );
 
@@ -27,11 +27,11 @@ module child_records (
   localparam logic [1:0] LEAF = 2'd2;
 
   lod_pkg::bvh_node_t      node;
-  lod_pkg::sibling_group_t group;
+  lod_pkg::split_record_t split;
   logic [1:0]              place, child;
 
   assign node  = line_i;
-  assign group = line_i;
+  assign split = line_i;
   // 0 to 3 while count_i is 1 to 4, when it is used.
   assign place = 2'(count_i - 3'd1);
   assign child = order_i[place];
@@ -42,13 +42,13 @@ module child_records (
     for (int unsigned k = 0; k < 4; k++) if (node.kinds[k] == 2'd3) wrong_o = 1'b1;
   end
 
-  // A group's boxes have no frame of their own; a node's planes are narrower.
+  // A split's boxes have no frame of their own, and its planes are narrower.
   assign origin_o    = tree_i ? '0 : node.origin;
-  assign halves_o    = tree_i ? group.halves : node.halves;
-  assign exponents_o = tree_i ? group.exponents : node.exponents;
+  assign halves_o    = tree_i ? split.halves : node.halves;
+  assign exponents_o = tree_i ? split.exponents : node.exponents;
   always_comb begin
     for (int unsigned k = 0; k < 4; k++) present_o[k] = tree_i || node.kinds[k] != EMPTY;
-    for (int unsigned k = 0; k < 24; k++) planes_o[k] = tree_i ? group.planes[k] : {2'd0, node.planes[k]};
+    for (int unsigned k = 0; k < 24; k++) planes_o[k] = tree_i ? {3'd0, split.planes[k]} : node.planes[k];
   end
 
   // Inner children are consecutive nodes and leaves consecutive trees, in the order of their slots: how many there are before this child.
@@ -74,10 +74,10 @@ module child_records (
       entry_o.index = 28'({node_i, child});
       // The edges of child 3 are those opposite the node's corners in the others.
       unique case (child)
-        2'd0: {entry_o.e2, entry_o.e1, entry_o.e0} = group.codes[2:0];
-        2'd1: {entry_o.e2, entry_o.e1, entry_o.e0} = group.codes[5:3];
-        2'd2: {entry_o.e2, entry_o.e1, entry_o.e0} = group.codes[8:6];
-        2'd3: {entry_o.e2, entry_o.e1, entry_o.e0} = {group.codes[8], group.codes[4], group.codes[0]};
+        2'd0: {entry_o.e2, entry_o.e1, entry_o.e0} = split.codes[2:0];
+        2'd1: {entry_o.e2, entry_o.e1, entry_o.e0} = split.codes[5:3];
+        2'd2: {entry_o.e2, entry_o.e1, entry_o.e0} = split.codes[8:6];
+        2'd3: {entry_o.e2, entry_o.e1, entry_o.e0} = {split.codes[8], split.codes[4], split.codes[0]};
       endcase
     end else begin
       // Inner nodes and leaves have the kinds of their entries one lower; empty slots are never hit.

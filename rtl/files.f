@@ -4,6 +4,7 @@ arbiter.sv
 axi_read_adapter.sv
 bary_map.sv
 bary_step.sv
+base_corners.sv
 bound_decode.sv
 box_decode.sv
 box_decode8.sv

@@ -22,8 +22,8 @@ package lod_pkg;
   localparam int unsigned LOD_TEST = 1;             // levels of detail are chosen, and triangles morphed: 1, or 0 if all rays are of full detail or of none
   localparam int unsigned START_RADIUS = 1;         // cones can have a radius where their rays start
   localparam int unsigned HIT_MAPPING = 1;          // hits can be above the finest level
-  localparam int unsigned COMPACT_VERTICES = 1;     // inserted vertices can be displacements
-  localparam int unsigned EXACT_VERTICES = 1;       // they can be stored as they are
+  localparam int unsigned COMPACT_VERTICES = 1;     // inserted vertices can be displacements, and L0 records of one line
+  localparam int unsigned EXACT_VERTICES = 1;       // they can be stored as they are, and L0 records have two lines
   localparam int unsigned COORDINATE_ZEROS = 0;     // zero bits at the bottom of every coordinate, which it leaves out
   localparam int unsigned DIRECTION_ZEROS = 0;      // of every component of a direction
   localparam int unsigned SECONDARY = 0;            // rays can start on a surface, count hits of a range of t only, and end at any of them
@@ -184,6 +184,14 @@ package lod_pkg;
     logic signed [27:0] z;
   } stored_point_t;
   localparam int unsigned STORED_POINT_W = 3 * 28;
+
+  // Stored corner of a base triangle of compact vertices: units / 1024.
+  typedef struct packed {
+    logic signed [21:0] x;
+    logic signed [21:0] y;
+    logic signed [21:0] z;
+  } stored_corner_t;
+  localparam int unsigned STORED_CORNER_W = 3 * 22;
 
   // Displacement of a compact vertex from the midpoint of its edge, in steps.
   typedef struct packed {
@@ -362,7 +370,7 @@ package lod_pkg;
     code3_t origin;              // Lower corner of a quad-BVH node's frame.
     logic [2:0] halves;          // Steps along x, y, z are half as long again.
     logic [2:0][3:0] exponents;  // Powers of two of these steps.
-    logic [23:0][6:0] planes;    // Steps of child k: lower x, y, z and upper x, y, z at 6k to 6k + 5.
+    logic [23:0][4:0] planes;    // Steps of child k: lower x, y, z and upper x, y, z at 6k to 6k + 5.
     point_t f0;                  // Corner p0 of full resolution.
     point_t f1;                  // Corner p1 of full resolution.
     point_t f2;                  // Corner p2 of full resolution.
@@ -376,7 +384,7 @@ package lod_pkg;
     point_t q1;                  // On (p2, p0).
     point_t q2;                  // On (p0, p1).
   } child_boxes_in_t;
-  localparam int unsigned CHILD_BOXES_IN_W = 1 + CODE3_W + 3 + 3 * 4 + 24 * 7 + POINT_W + POINT_W + POINT_W + POINT_W + POINT_W + POINT_W + POINT_W + POINT_W + POINT_W + POINT_W + POINT_W + POINT_W;
+  localparam int unsigned CHILD_BOXES_IN_W = 1 + CODE3_W + 3 + 3 * 4 + 24 * 5 + POINT_W + POINT_W + POINT_W + POINT_W + POINT_W + POINT_W + POINT_W + POINT_W + POINT_W + POINT_W + POINT_W + POINT_W;
 
   // Output of child_boxes.
   typedef struct packed {
@@ -477,7 +485,7 @@ package lod_pkg;
     code3_t origin;              // Lower corner of a quad-BVH node's frame.
     logic [2:0] halves;          // Steps along x, y, z are half as long again.
     logic [2:0][3:0] exponents;  // Powers of two of these steps.
-    logic [23:0][6:0] planes;    // Steps of child k: lower x, y, z and upper x, y, z at 6k to 6k + 5.
+    logic [23:0][4:0] planes;    // Steps of child k: lower x, y, z and upper x, y, z at 6k to 6k + 5.
     point_t f0;                  // Corner p0 of full resolution of the parent.
     point_t f1;                  // Corner p1 of full resolution.
     point_t f2;                  // Corner p2 of full resolution.
@@ -491,7 +499,7 @@ package lod_pkg;
     point_t q1;                  // On (p2, p0).
     point_t q2;                  // On (p0, p1).
   } child_test_in_t;
-  localparam int unsigned CHILD_TEST_IN_W = RAY_SETUP_OUT_W + RAY_T_W + 4 + 1 + CODE3_W + 3 + 3 * 4 + 24 * 7 + POINT_W + POINT_W + POINT_W + POINT_W + POINT_W + POINT_W + POINT_W + POINT_W + POINT_W + POINT_W + POINT_W + POINT_W;
+  localparam int unsigned CHILD_TEST_IN_W = RAY_SETUP_OUT_W + RAY_T_W + 4 + 1 + CODE3_W + 3 + 3 * 4 + 24 * 5 + POINT_W + POINT_W + POINT_W + POINT_W + POINT_W + POINT_W + POINT_W + POINT_W + POINT_W + POINT_W + POINT_W + POINT_W;
 
   // Output of child_test.
   typedef struct packed {
@@ -579,15 +587,14 @@ package lod_pkg;
   // Input of node_address.
   typedef struct packed {
     logic [LINE_ADDRESS_W-1:0] base;  // First line of the section.
-    logic [27:0] first;               // Lines of it before the first record.
-    logic [27:0] start;               // First record of the level; 0 outside of trees.
+    logic [27:0] start;               // First record of the level, or where the tree at place 0 would have it; 0 outside of trees.
     logic [27:0] place;               // The tree's place among those of the level; 0 outside of trees.
     logic [3:0] level;                // Level of the node within its tree; 0 outside of trees.
     logic [27:0] index;               // Number of the record in its tree on its level.
-    logic [1:0] scale;                // Records have 2^scale lines.
-    logic [1:0] low;                  // Which of them.
+    logic scale;                      // Records have 2^scale lines.
+    logic low;                        // Which of them.
   } node_address_in_t;
-  localparam int unsigned NODE_ADDRESS_IN_W = LINE_ADDRESS_W + 28 + 28 + 28 + 4 + 28 + 2 + 2;
+  localparam int unsigned NODE_ADDRESS_IN_W = LINE_ADDRESS_W + 28 + 28 + 4 + 28 + 1 + 1;
 
   // Output of node_address.
   typedef struct packed {
@@ -740,15 +747,18 @@ package lod_pkg;
   } child_prisms_in_t;
   localparam int unsigned CHILD_PRISMS_IN_W = RAY_SETUP_OUT_W + RAY_T_W + 3 + 4 + 20 * 3 + 6 * POINT_W + 6 * POINT_W;
 
-  // What traversal needs of the four children of a tree's node: 32 bytes.
+  // What traversal needs of a tree's node that splits into nodes: its inserted vertices, and of its four children bound codes and boxes. 32 bytes.
   typedef struct packed {
-    logic reserved;                       // Zero.
+    displacement_t v0;                    // Inserted vertex q0, if they are compact (else zero): its displacement from the midpoint of its edge between full-resolution corners, in steps of displacement_shift.
+    displacement_t v1;                    // The same of q1.
+    displacement_t v2;                    // Of q2.
     logic [8:0][BOUND_CODE_W-1:0] codes;  // Codes of the nine different edges: 3k, 3k + 1, 3k + 2 of e0, e1, e2 of child k < 3; child 3 has 0, 4 and 8 (codes_of).
+    logic [3:0] reserved;                 // Zero.
     logic [2:0] halves;                   // Steps along x, y, z are half as long again.
     logic [2:0][3:0] exponents;           // Powers of two of these steps.
-    logic [23:0][6:0] planes;             // Child k: below in x, y, z and above in x, y, z at 6k to 6k + 5.
-  } sibling_group_t;
-  localparam int unsigned SIBLING_GROUP_W = 1 + 9 * BOUND_CODE_W + 3 + 3 * 4 + 24 * 7;
+    logic [23:0][1:0] planes;             // Child k: below in x, y, z and above in x, y, z at 6k to 6k + 5.
+  } split_record_t;
+  localparam int unsigned SPLIT_RECORD_W = DISPLACEMENT_W + DISPLACEMENT_W + DISPLACEMENT_W + 9 * BOUND_CODE_W + 4 + 3 + 3 * 4 + 24 * 2;
 
   // A quad-BVH node: 32 bytes. Its boxes lie in a frame of its own: box_steps of their axis from its origin.
   typedef struct packed {
@@ -767,13 +777,13 @@ package lod_pkg;
   // Three points of 28-bit coordinates (the stored part: units / 16): one 32-byte line.
   typedef struct packed {
     logic [3:0] reserved;  // Zero.
-    stored_point_t v0;     // q0 (or p0 in an L0 record).
+    stored_point_t v0;     // q0 (or p0 beside an L0 record).
     stored_point_t v1;     // q1 (or p1).
     stored_point_t v2;     // q2 (or p2).
   } vertex_data_t;
   localparam int unsigned VERTEX_DATA_W = 4 + STORED_POINT_W + STORED_POINT_W + STORED_POINT_W;
 
-  // Inserted vertices of a node, compact: displacements from the midpoints of the edges between its full-resolution corners, in steps of displacement_shift. 16 bytes.
+  // Inserted vertices of a last split, compact: displacements as in a split_record. 16 bytes.
   typedef struct packed {
     logic [10:0] reserved;  // Zero.
     displacement_t v0;      // Of q0.
@@ -782,19 +792,19 @@ package lod_pkg;
   } displacements_t;
   localparam int unsigned DISPLACEMENTS_W = 11 + DISPLACEMENT_W + DISPLACEMENT_W + DISPLACEMENT_W;
 
-  // Second line of an L0 record.
+  // What traversal needs of a base triangle: 32 bytes.
   typedef struct packed {
     logic [3:0] depth;            // Levels of the tree that are stored, 0 to N: below them is nothing that a ray could want.
     logic [27:0] place;           // Its place among the trees of each level (`layout.rs`).
-    logic [27:0] reserved;        // Zero.
-    logic [27:0] source;          // Number of the base triangle in the mesh that the scene was made of.
-    logic [15:0] material;        // Material index.
     logic [BOUND_CODE_W-1:0] e0;  // Code of edge (p1, p2) of the root; zero if depth is 0, like the others.
     logic [BOUND_CODE_W-1:0] e1;  // Code of edge (p2, p0).
     logic [BOUND_CODE_W-1:0] e2;  // Code of edge (p0, p1).
-    displacements_t split;        // Inserted vertices of the root, if it splits and the scene's are compact; else zero.
+    logic [1:0] reserved;         // Zero.
+    stored_corner_t p0;           // Corner p0 in steps of 2^BASE_ZERO_BITS units, if vertices are compact; else zero, and the corners are in a second line.
+    stored_corner_t p1;           // Corner p1.
+    stored_corner_t p2;           // Corner p2.
   } l0_record_t;
-  localparam int unsigned L0_RECORD_W = 4 + 28 + 28 + 28 + 16 + BOUND_CODE_W + BOUND_CODE_W + BOUND_CODE_W + DISPLACEMENTS_W;
+  localparam int unsigned L0_RECORD_W = 4 + 28 + BOUND_CODE_W + BOUND_CODE_W + BOUND_CODE_W + 2 + STORED_CORNER_W + STORED_CORNER_W + STORED_CORNER_W;
 
   // One waiting node.
   typedef struct packed {
@@ -833,14 +843,14 @@ package lod_pkg;
     bound_scale_t scale;                      // Scale of the displacement bounds.
     logic [LINE_ADDRESS_W-1:0] nodes;         // First line of the quad-BVH's nodes.
     logic [LINE_ADDRESS_W-1:0] records;       // First line of the L0 records.
-    logic [LINE_ADDRESS_W-1:0] bounds;        // First line of the bound data.
+    logic [LINE_ADDRESS_W-1:0] splits;        // First line of the splits.
     logic [LINE_ADDRESS_W-1:0] vertices;      // First line of the vertex data.
-    logic [7:0][27:0] starts;                 // First sibling group of each level from 1 on.
-    logic [27:0] roots;                       // Trees that split: where exact vertices of inner nodes begin in the vertex data.
+    logic [7:0][27:0] split_starts;           // First split of each level from 1 on.
+    logic [8:0][27:0] vertex_starts;          // Exact vertices: first line of each level from 1 on. Compact ones: the two lines that the tree at place 0 would have for the first four nodes there, modulo 2^28.
     logic [31:0] visits;                      // The most entries that a ray can visit: quad-BVH nodes, trees, and nodes of trees. A ray that would visit more is in a loop.
     logic [ANSWER_LIMIT_W-1:0] answer_limit;  // Cycles, less one, after which a line that is waited for counts as late if it has not come in as many more.
   } scene_config_t;
-  localparam int unsigned SCENE_CONFIG_W = 4 + 5 + 1 + BOUND_SCALE_W + LINE_ADDRESS_W + LINE_ADDRESS_W + LINE_ADDRESS_W + LINE_ADDRESS_W + 8 * 28 + 28 + 32 + ANSWER_LIMIT_W;
+  localparam int unsigned SCENE_CONFIG_W = 4 + 5 + 1 + BOUND_SCALE_W + LINE_ADDRESS_W + LINE_ADDRESS_W + LINE_ADDRESS_W + LINE_ADDRESS_W + 8 * 28 + 9 * 28 + 32 + ANSWER_LIMIT_W;
 
   // A ray to trace.
   typedef struct packed {
@@ -931,8 +941,7 @@ package lod_pkg;
   typedef enum logic [1:0] {
     NODE   = 2'd0,  // quad-BVH node
     RECORD = 2'd1,  // L0 record
-    VERTEX = 2'd2,  // inserted vertices and, but on the last split, the children's sibling group
-    GROUP  = 2'd3   // the sibling group alone: the inserted vertices came with the L0 record
+    SPLIT  = 2'd2   // split: of a node whose children are nodes its record, and inserted vertices where they are not in that
   } fetch_t;
 
   // Why a ray ended early.

@@ -2,8 +2,8 @@
 
 /// Address of a memory line of a record. Twin of src/block/node_address.rs.
 ///
-/// Record g = start + 4^level place + index, modulo 2^28, of 2^scale lines each: base + first + 2^scale g + low. Records outside of trees have start, place and level 0.
-/// Legal: level <= 8, index < 4^level or place 0, scale <= 2, low < 2^scale; result below 2^36, which the size of the sections keeps. Latency NODE_ADDRESS_LATENCY = 2, interval 1.
+/// Record g = start + 4^level place + index, modulo 2^28, of 2^scale lines each: base + 2^scale g + low. Records outside of trees have start, place and level 0.
+/// Legal: level <= 9, index < 4^level or place 0, low < 2^scale; result below 2^36, which the size of the sections keeps. Latency NODE_ADDRESS_LATENCY = 2, interval 1.
 module node_address #(
   parameter int unsigned TAG_W = 8
 ) (
@@ -21,7 +21,7 @@ module node_address #(
 
   localparam int unsigned ADDRESS_W = lod_pkg::LINE_ADDRESS_W;
   localparam int unsigned RECORD_W = 28;
-  localparam int unsigned LINE_W = RECORD_W + 2;
+  localparam int unsigned LINE_W = RECORD_W + 1;
   if (lod_pkg::NODE_ADDRESS_LATENCY != 2) begin : g_illegal_latency
     $error("node_address: lod_pkg::NODE_ADDRESS_LATENCY must be 2");
   end
@@ -34,12 +34,10 @@ module node_address #(
 
   logic                 valid_line, ready_line;
   logic [LINE_W-1:0]    line_q;
-  logic [ADDRESS_W-1:0] base, base_q, address;
+  logic [ADDRESS_W-1:0] base_q, address;
   logic [TAG_W-1:0]     tag_line;
-  // No carry: the section's lines have addresses.
-  assign base = in_i.base + ADDRESS_W'(in_i.first);
   pipe_stage #(.W(LINE_W + ADDRESS_W + TAG_W)) u_line (
-    .clk_i, .rst_ni, .valid_i, .ready_o, .data_i({line, base, tag_i}),
+    .clk_i, .rst_ni, .valid_i, .ready_o, .data_i({line, in_i.base, tag_i}),
     .valid_o(valid_line), .ready_i(ready_line), .data_o({line_q, base_q, tag_line})
   );
 

@@ -33,7 +33,8 @@ module ray_context (
   input  logic                             fetch_grant_i,
   input  logic                             line_valid_i,
   input  lod_pkg::memory_answer_t          line_i,
-  // The corners in this line, if it is the first of an L0 record, are none of such a scene.
+  // The corners in this line, if it has those of a base triangle; whether they are none of such a scene.
+  input  logic [3*lod_pkg::KEPT_POINT_W-1:0] line_corners_i,
   input  logic                             line_misplaced_i,
   // child_test.
   output logic                             child_request_o,
@@ -53,11 +54,11 @@ module ray_context (
   input  logic                             lod_grant_i,
   input  logic                             lod_valid_i,
   input  lod_pkg::lod_test_out_t           lod_i,
-  // tessellate: its operands but for the vertices, the line that these are in, and in which half of it compact ones are. Of the inserted vertices that come, whether one lies beyond the
+  // tessellate: its operands but for the vertices, what these are in, and whether compact ones are in its upper half. Of the inserted vertices that come, whether one lies beyond the
   // largest coordinate, and their lowest bits together.
   output logic                             morph_request_o,
   output logic [lod_pkg::TESSELLATE_IN_W-3*lod_pkg::POINT_W-1:0] morph_o,
-  output logic [255:0]                     morph_line_o,
+  output logic [3*lod_pkg::STORED_POINT_W-1:0] morph_line_o,
   output logic                             morph_half_o,
   input  logic                             morph_grant_i,
   input  logic                             morph_valid_i,
@@ -112,6 +113,8 @@ module ray_context (
   localparam int unsigned SPLITS = lod_pkg::SPLIT_TRIANGLES;
   // Three inserted vertices.
   localparam int unsigned G_W = 3 * lod_pkg::KEPT_POINT_W;
+  // Three stored points, or two times three displacements.
+  localparam int unsigned LINE1_W = 3 * lod_pkg::STORED_POINT_W;
 
   // ---- Registers ----
 
@@ -136,10 +139,11 @@ module ray_context (
   lod_pkg::lod_test_out_t           lod;
   assign entry = lod_pkg::whole_entry(entry_q);
 
-  // Lines asked for and not yet sent, sent and not yet there, and there: a node, a sibling group or the corners of a record; the rest of the record or vertices, and when `tessellate` has
+  // Lines asked for and not yet sent, sent and not yet there, and there: a node, a record or a split; exact corners or vertices, or compact ones of a last split, and when `tessellate` has
   // taken these, what it gave for them at full resolution, as far as a line has room.
-  logic [1:0]   want_q, waiting_q;
-  logic [255:0] line0_q, line1_q;
+  logic [1:0]          want_q, waiting_q;
+  logic [255:0]        line0_q;
+  logic [LINE1_W-1:0]  line1_q;
 
   // Number of the ray among the context's: its lines come back with it. Why it ends early, how many entries it may still visit, and whether a tick has passed
   // since something came that it waits for.
@@ -160,18 +164,15 @@ module ray_context (
   // ---- Records in the line buffers ----
 
   lod_pkg::l0_record_t record;
-  assign record = line1_q;
+  assign record = line0_q;
 
-  logic group_there, compact, compact_root;
-  // Line 0 is a sibling group.
-  assign group_there  = fetch_q == lod_pkg::VERTEX || fetch_q == lod_pkg::GROUP;
-  // Its vertices come with its record: only the group is fetched, later.
-  assign compact      = lod_pkg::EXACT_VERTICES == 0 || (lod_pkg::COMPACT_VERTICES != 0 && scene_i.compact);
-  assign compact_root = compact && level == '0;
-
-  logic last_split;
+  logic last_split, split_there, compact, vertices_in_split;
   // depth <= STORED_LEVELS and level < depth where this is used.
-  assign last_split = level + 4'd1 == depth;
+  assign last_split        = level + 4'd1 == depth;
+  // Line 0 is a split.
+  assign split_there       = fetch_q == lod_pkg::SPLIT;
+  assign compact           = lod_pkg::EXACT_VERTICES == 0 || (lod_pkg::COMPACT_VERTICES != 0 && scene_i.compact);
+  assign vertices_in_split = compact && (!last_split || level == '0);
 
   // ---- Closest hit ----
 
@@ -262,10 +263,10 @@ module ray_context (
   lod_pkg::code3_t  origin;
   logic [2:0]       halves;
   logic [2:0][3:0]  exponents;
-  logic [23:0][6:0] planes;
+  logic [23:0][4:0] planes;
 
   child_records u_children (
-    .tree_i(group_there),
+    .tree_i(split_there),
     .line_i(line0_q),
     .level_i(level), .node_i(node),
     .count_i(count_q), .order_i(sorted_q.order), .t_near_i(sorted_q.t_near),
@@ -287,13 +288,13 @@ module ray_context (
 
   assign fetch_request_o = state_q == lod_pkg::FETCH && want_q != '0 && error_q == lod_pkg::ERROR_NONE;
   assign fetch_epoch_o   = epoch_q;
-  // Vertices before the group.
-  assign fetch_place_o   = want_q[1] && (fetch_q == lod_pkg::VERTEX || !want_q[0]);
+  // Vertices before the split.
+  assign fetch_place_o   = want_q[1] && (fetch_q == lod_pkg::SPLIT || !want_q[0]);
 
-  // Vertices lie as the groups do that their nodes are in.
-  logic        above;
+  // Four siblings' compact vertices have two lines, which lie as their parents' splits do. Only nodes below a root have such.
+  logic        in_twos;
   logic [27:0] whole_node;
-  assign above      = fetch_place_o && level != '0;
+  assign in_twos    = fetch_place_o && compact;
   assign whole_node = 28'(node);
 
   always_comb begin
@@ -303,19 +304,21 @@ module ray_context (
       lod_pkg::NODE: fetch_o.base = scene_i.nodes;
       lod_pkg::RECORD: begin
         fetch_o.base  = scene_i.records;
-        fetch_o.scale = 2'd1;
-        fetch_o.low   = {1'b0, fetch_place_o};
+        fetch_o.scale = !compact;
+        fetch_o.low   = fetch_place_o;
       end
       default: begin
-        fetch_o.base  = fetch_place_o ? scene_i.vertices : scene_i.bounds;
+        fetch_o.base  = fetch_place_o ? scene_i.vertices : scene_i.splits;
         fetch_o.place = 28'(place);
-        fetch_o.level = above ? level - 4'd1 : level;
-        fetch_o.index = above ? whole_node >> 2 : whole_node;
-        for (int unsigned k = 0; k < 8; k++) if (fetch_o.level == 4'(k + 1)) fetch_o.start = scene_i.starts[k];
-        if (above) begin
-          fetch_o.first = compact ? '0 : scene_i.roots;
-          fetch_o.scale = compact ? 2'd1 : 2'd2;
-          fetch_o.low   = compact ? {1'b0, whole_node[1]} : whole_node[1:0];
+        fetch_o.level = in_twos ? level - 4'd1 : level;
+        fetch_o.index = in_twos ? whole_node >> 2 : whole_node;
+        fetch_o.scale = in_twos;
+        fetch_o.low   = in_twos && whole_node[1];
+        for (int unsigned k = 0; k < 9; k++) begin
+          if (fetch_place_o && level == 4'(k + 1)) fetch_o.start = scene_i.vertex_starts[k];
+        end
+        for (int unsigned k = 0; k < 8; k++) begin
+          if (!fetch_place_o && level == 4'(k + 1)) fetch_o.start = scene_i.split_starts[k];
         end
       end
     endcase
@@ -330,7 +333,7 @@ module ray_context (
   assign {whole_p0, whole_p1, whole_p2} = {lod_pkg::whole_point(p0), lod_pkg::whole_point(p1), lod_pkg::whole_point(p2)};
   assign {whole_q0, whole_q1, whole_q2} = {lod_pkg::whole_point(q0), lod_pkg::whole_point(q1), lod_pkg::whole_point(q2)};
 
-  assign child_o = {lod_pkg::whole_setup(setup_q), t_max, present, group_there, origin, halves, exponents, planes,
+  assign child_o = {lod_pkg::whole_setup(setup_q), t_max, present, split_there, origin, halves, exponents, planes,
                     whole_f0, whole_f1, whole_f2, whole_g0, whole_g1, whole_g2, whole_p0, whole_p1, whole_p2, whole_q0, whole_q1, whole_q2};
 
   // The rays before this one that decide about levels around its start, and who decides here: in the tree, and about the node's edges.
@@ -422,9 +425,12 @@ module ray_context (
   assign grid         = scene_i.levels - level - 4'd1 + scene_i.zeros[3:0];
   assign morph_o      = {compact, grid, scene_i.zeros >= 5'd4 ? 3'd0 : 3'd4 - scene_i.zeros[2:0], scene_i.scale, e0, e1, e2, lod.s0, lod.s1, lod.s2,
                          whole_f0, whole_f1, whole_f2, whole_p0, whole_p1, whole_p2};
-  assign morph_line_o = line1_q;
-  // Two siblings share a line; the root's are in the lower half of its record's.
-  assign morph_half_o = node[0];
+  // Displacements are the first in a split; of last splits two siblings share a line.
+  localparam int unsigned DISPLACEMENTS_W = 3 * lod_pkg::DISPLACEMENT_W;
+  logic [DISPLACEMENTS_W-1:0] low_line;
+  assign low_line     = vertices_in_split ? line0_q[255 -: DISPLACEMENTS_W] : line1_q[DISPLACEMENTS_W-1:0];
+  assign morph_line_o = {line1_q[LINE1_W-1:DISPLACEMENTS_W], low_line};
+  assign morph_half_o = !vertices_in_split && node[0];
 
   assign tri_request_o = state_q == lod_pkg::TRI && left_q != '0;
   assign tri_number_o  = next_q;
@@ -561,9 +567,8 @@ module ray_context (
         case (fetch_q)
           lod_pkg::NODE:   if (record_there) state_d = lod_pkg::CHILD;
           lod_pkg::RECORD: if (record_there) state_d = (record.depth == '0) ? lod_pkg::TRI : DECIDING && prior ? lod_pkg::DECIDE : lod_pkg::LOD;
-          // The group may still be under way.
-          lod_pkg::VERTEX: if (want_q == '0 && !waiting_q[1]) state_d = lod_pkg::MORPH;
-          default:         if (record_there) state_d = lod_pkg::CHILD;  // GROUP
+          // SPLIT: it may still be under way where the vertices are elsewhere.
+          default:         if (want_q == '0 && !waiting_q[1] && !(compact && waiting_q[0])) state_d = lod_pkg::MORPH;
         endcase
       end
       lod_pkg::CHILD:      if (child_grant_i) state_d = lod_pkg::CHILD_WAIT;
@@ -579,11 +584,11 @@ module ray_context (
       lod_pkg::DECIDE:      if (decide_grant_i) state_d = lod_pkg::DECIDE_WAIT;
       lod_pkg::DECIDE_WAIT: if (decide_valid_i) state_d = lod_pkg::LOD;
       lod_pkg::LOD, lod_pkg::LOD_WAIT: begin
-        if (decided) state_d = !refine ? lod_pkg::TRI : compact_root ? lod_pkg::MORPH : lod_pkg::FETCH;
+        if (decided) state_d = refine ? lod_pkg::FETCH : lod_pkg::TRI;
         else if (lod_grant_i) state_d = lod_pkg::LOD_WAIT;
       end
       lod_pkg::MORPH:       if (morph_grant_i) state_d = lod_pkg::MORPH_WAIT;
-      lod_pkg::MORPH_WAIT:  if (morph_valid_i) state_d = last_split ? lod_pkg::TRI : compact_root ? lod_pkg::FETCH : lod_pkg::CHILD;
+      lod_pkg::MORPH_WAIT:  if (morph_valid_i) state_d = last_split ? lod_pkg::TRI : lod_pkg::CHILD;
       lod_pkg::TRI:         if (left_q == '0 && pending_q == '0) state_d = lod_pkg::POP;
       lod_pkg::DIVIDE_V:    if (divide_grant_i) state_d = lod_pkg::DIVIDE_W;
       lod_pkg::DIVIDE_W:    if (divide_grant_i) state_d = lod_pkg::DIVIDE_WAIT;
@@ -620,6 +625,11 @@ module ray_context (
   assign enter_root = state_q == lod_pkg::FETCH && fetch_q == lod_pkg::RECORD && record_there;
   assign enter_node = state_q == lod_pkg::VISIT && entry.kind == lod_pkg::ENTRY_TREE_NODE;
 
+  // The line with its corners comes.
+  logic corners_come, root_comes;
+  assign corners_come = compact ? arrived[0] : arrived[1];
+  assign root_comes   = state_q == lod_pkg::FETCH && fetch_q == lod_pkg::RECORD && corners_come;
+
   // A tree's entry with the bound codes that only its record has.
   lod_pkg::stack_entry_t root_entry;
   always_comb begin
@@ -640,17 +650,11 @@ module ray_context (
 
   // Its triangle, at full resolution (f) and as morphed (p): a root's as it is.
   if (SPLITS > 0) begin : g_splits
-    lod_pkg::vertex_data_t corners_now;
     lod_pkg::kept_point_t  root0_now, root1_now, root2_now;
-    logic                  root_comes;
     logic [3*CORNER_W-1:0] roots_now, inserted_now, node_corners;
 
     // A root's corners go to the memory as they come, so that they can be read when the whole record is there.
-    assign corners_now = line_i.line;
-    assign root0_now   = lod_pkg::keep_point({corners_now.v0.x, 4'd0, corners_now.v0.y, 4'd0, corners_now.v0.z, 4'd0});
-    assign root1_now   = lod_pkg::keep_point({corners_now.v1.x, 4'd0, corners_now.v1.y, 4'd0, corners_now.v1.z, 4'd0});
-    assign root2_now   = lod_pkg::keep_point({corners_now.v2.x, 4'd0, corners_now.v2.y, 4'd0, corners_now.v2.z, 4'd0});
-    assign root_comes  = state_q == lod_pkg::FETCH && fetch_q == lod_pkg::RECORD && arrived[0];
+    assign {root2_now, root1_now, root0_now} = line_corners_i;
 
     if (CHOOSING) begin : g_both
       assign roots_now    = {root2_now, root2_now, root1_now, root1_now, root0_now, root0_now};
@@ -672,17 +676,11 @@ module ray_context (
     );
   end else begin : g_no_splits
     // There are roots alone.
-    logic                  unused_node;
-    lod_pkg::vertex_data_t corners;
-    lod_pkg::kept_point_t  f0_q, f1_q, f2_q;
-    assign unused_node = enter_node;
-    assign corners     = line0_q;
+    logic                 unused_node;
+    lod_pkg::kept_point_t f0_q, f1_q, f2_q;
+    assign unused_node = ^{enter_root, enter_node};
     always_ff @(posedge clk_i) begin
-      if (enter_root) begin
-        f0_q <= lod_pkg::keep_point({corners.v0.x, 4'd0, corners.v0.y, 4'd0, corners.v0.z, 4'd0});
-        f1_q <= lod_pkg::keep_point({corners.v1.x, 4'd0, corners.v1.y, 4'd0, corners.v1.z, 4'd0});
-        f2_q <= lod_pkg::keep_point({corners.v2.x, 4'd0, corners.v2.y, 4'd0, corners.v2.z, 4'd0});
-      end
+      if (root_comes) {f2_q, f1_q, f0_q} <= line_corners_i;
     end
     assign {f0, f1, f2} = {f0_q, f1_q, f2_q};
     assign {p0, p1, p2} = {f0_q, f1_q, f2_q};
@@ -713,10 +711,10 @@ module ray_context (
     end
 
     // Inserted vertices at full resolution: what the line has no room for.
-    if (G_W > 256) begin : g_rest
-      logic [G_W-257:0] rest_q;
+    if (G_W > LINE1_W) begin : g_rest
+      logic [G_W-LINE1_W-1:0] rest_q;
       always_ff @(posedge clk_i) begin
-        if (morph_valid_i) rest_q <= g_now[G_W-1:256];
+        if (morph_valid_i) rest_q <= g_now[G_W-1:LINE1_W];
       end
       assign {g0, g1, g2} = {rest_q, line1_q};
     end else begin : g_all
@@ -749,9 +747,6 @@ module ray_context (
 
   // ---- Lines ----
 
-  logic fetch_group;
-  assign fetch_group = morph_valid_i && compact_root && !last_split;
-
   always_ff @(posedge clk_i) begin
     if (!rst_ni) begin
       want_q    <= '0;
@@ -763,22 +758,21 @@ module ray_context (
     end else begin
       waiting_q <= (waiting_q | granted) & ~arrived;
       if (state_q == lod_pkg::VISIT && entry.kind == lod_pkg::ENTRY_BVH_NODE) want_q <= 2'b01;
-      else if (state_q == lod_pkg::VISIT && entry.kind == lod_pkg::ENTRY_TREE) want_q <= 2'b11;
-      else if (decided && refine && !compact_root) want_q <= last_split ? 2'b10 : 2'b11;
-      else if (fetch_group) want_q <= 2'b01;
+      else if (state_q == lod_pkg::VISIT && entry.kind == lod_pkg::ENTRY_TREE) want_q <= compact ? 2'b01 : 2'b11;
+      else if (decided && refine) want_q <= vertices_in_split ? 2'b01 : last_split ? 2'b10 : 2'b11;
       else want_q <= want_q & ~granted;
     end
   end
 
   always_ff @(posedge clk_i) begin
-    if (arrived[0]) {line0_q, misplaced_q} <= {line_i.line, line_misplaced_i};
+    if (arrived[0]) line0_q <= line_i.line;
+    if (corners_come) misplaced_q <= line_misplaced_i;
     // Vertices come before `tessellate` is asked.
-    if (arrived[1]) line1_q <= line_i.line;
-    else if (SPLITTING && morph_valid_i) line1_q <= 256'(g_now);
+    if (arrived[1]) line1_q <= LINE1_W'(line_i.line);
+    else if (SPLITTING && morph_valid_i) line1_q <= LINE1_W'(g_now);
     if (state_q == lod_pkg::VISIT && entry.kind == lod_pkg::ENTRY_BVH_NODE) fetch_q <= lod_pkg::NODE;
     else if (state_q == lod_pkg::VISIT && entry.kind == lod_pkg::ENTRY_TREE) fetch_q <= lod_pkg::RECORD;
-    else if (decided && refine && !compact_root) fetch_q <= lod_pkg::VERTEX;
-    else if (fetch_group) fetch_q <= lod_pkg::GROUP;
+    else if (decided && refine) fetch_q <= lod_pkg::SPLIT;
   end
 
   // ---- Children and triangles ----

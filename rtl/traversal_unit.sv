@@ -62,7 +62,7 @@ module traversal_unit #(
   logic [5:0] zeros;
   assign zeros = 6'(scene_i.levels) + 6'(scene_i.zeros);
   assign fits  = scene_i.levels <= 4'(lod_pkg::SCENE_LEVELS) && 6'(scene_i.zeros) + 6'd1 > 6'(lod_pkg::COORDINATE_ZEROS) && zeros <= 6'(lod_pkg::BOX_SHIFT)
-              && (lod_pkg::STORED_LEVELS == 0 || (scene_i.compact ? lod_pkg::COMPACT_VERTICES != 0 : lod_pkg::EXACT_VERTICES != 0))
+              && (scene_i.compact ? lod_pkg::COMPACT_VERTICES != 0 : lod_pkg::EXACT_VERTICES != 0)
               && scene_i.scale.offset <= lod_pkg::BOUND_SCALE_W'(lod_pkg::MAX_BOUND_OFFSET);
 
   // ---- Ticks of the limit of answers, the same for all contexts: what is waited for through two of them is late ----
@@ -214,12 +214,13 @@ module traversal_unit #(
 
   // The vertices are taken out of their line once the context is chosen.
   localparam int unsigned MORPH_OWN_W = lod_pkg::TESSELLATE_IN_W - 3 * lod_pkg::POINT_W;
-  localparam int unsigned MORPH_W = MORPH_OWN_W + 256 + 1;
+  localparam int unsigned MORPH_LINE_W = 3 * lod_pkg::STORED_POINT_W;
+  localparam int unsigned MORPH_W = MORPH_OWN_W + MORPH_LINE_W + 1;
 
   logic [N-1:0] morph_request, morph_grant;
   logic [N-1:0][MORPH_W-1:0] morph_data;
   logic [MORPH_OWN_W-1:0] morph_own;
-  logic [255:0] morph_line;
+  logic [MORPH_LINE_W-1:0] morph_line;
   logic morph_half;
   logic morph_in_valid, morph_in_ready, morph_made_valid, morph_valid;
   lod_pkg::tessellate_in_t morph_in;
@@ -235,8 +236,8 @@ module traversal_unit #(
   lod_pkg::vertex_data_t   inserted;
   lod_pkg::displacements_t displacements;
   logic [3*lod_pkg::POINT_W-1:0] morph_vertices;
-  assign inserted      = morph_line;
-  assign displacements = morph_half ? morph_line[255:128] : morph_line[127:0];
+  assign inserted      = 256'(morph_line);
+  assign displacements = 128'(morph_line >> (morph_half ? 128 : 0));
   always_comb begin
     // The first bit of the operands: displacements.
     if (morph_own[MORPH_OWN_W-1]) begin
@@ -337,15 +338,12 @@ module traversal_unit #(
   );
 
   // Corners of an L0 record, in the line that comes: beyond the largest coordinate, or with fewer zero bits than levels and zeros.
-  lod_pkg::vertex_data_t corners;
-  lod_pkg::point_t       corner0, corner1, corner2;
-  logic                  line_misplaced;
-  assign corners        = mem_i.line;
-  assign corner0        = lod_pkg::whole_point(lod_pkg::keep_point({corners.v0.x, 4'd0, corners.v0.y, 4'd0, corners.v0.z, 4'd0}));
-  assign corner1        = lod_pkg::whole_point(lod_pkg::keep_point({corners.v1.x, 4'd0, corners.v1.y, 4'd0, corners.v1.z, 4'd0}));
-  assign corner2        = lod_pkg::whole_point(lod_pkg::keep_point({corners.v2.x, 4'd0, corners.v2.y, 4'd0, corners.v2.z, 4'd0}));
+  lod_pkg::kept_point_t corner0, corner1, corner2;
+  logic                 line_misplaced;
+  base_corners u_corners (.compact_i(scene_i.compact), .line_i(mem_i.line), .corner0_o(corner0), .corner1_o(corner1), .corner2_o(corner2));
   // 16 at most, in a scene that fits.
-  assign line_misplaced = lod_pkg::misplaced(corner0, zeros[4:0]) || lod_pkg::misplaced(corner1, zeros[4:0]) || lod_pkg::misplaced(corner2, zeros[4:0]);
+  assign line_misplaced = lod_pkg::misplaced(lod_pkg::whole_point(corner0), zeros[4:0]) || lod_pkg::misplaced(lod_pkg::whole_point(corner1), zeros[4:0])
+                       || lod_pkg::misplaced(lod_pkg::whole_point(corner2), zeros[4:0]);
 
   logic                    line_valid, line_is_misplaced;
   lod_pkg::memory_answer_t line;
@@ -353,6 +351,12 @@ module traversal_unit #(
     .clk_i, .rst_ni,
     .valid_i(mem_valid_i), .out_i(mem_i), .tag_i(line_misplaced),
     .valid_o(line_valid), .out_o(line), .tag_o(line_is_misplaced)
+  );
+
+  // The same corners as contexts take them.
+  lod_pkg::kept_point_t line_corner0, line_corner1, line_corner2;
+  base_corners u_line_corners (
+    .compact_i(scene_i.compact), .line_i(line.line), .corner0_o(line_corner0), .corner1_o(line_corner1), .corner2_o(line_corner2)
   );
 
   // The port has room for the number of any context that there can be.
@@ -569,7 +573,8 @@ module traversal_unit #(
       .decide_valid_i(decide_valid && decide_tag == ME), .decide_i(decide_out),
       .lod_request_o(lod_request[k]), .lod_o(lod_data[k]), .lod_grant_i(lod_grant[k]),
       .lod_valid_i(lod_valid && lod_tag == ME), .lod_i(lod_out),
-      .morph_request_o(morph_request[k]), .morph_o(morph_data[k][MORPH_W-1:257]), .morph_line_o(morph_data[k][256:1]), .morph_half_o(morph_data[k][0]),
+      .morph_request_o(morph_request[k]), .morph_o(morph_data[k][MORPH_W-1:MORPH_LINE_W+1]), .morph_line_o(morph_data[k][MORPH_LINE_W:1]),
+      .morph_half_o(morph_data[k][0]),
       .morph_grant_i(morph_grant[k]),
       .morph_valid_i(morph_valid && morph_tag == ME), .morph_i(morph_out), .morph_beyond_i(morph_beyond), .morph_bits_i(morph_bits),
       .map_request_o(map_request[k]), .map_o(map_data[k]), .map_grant_i(map_grant[k]),
@@ -578,6 +583,7 @@ module traversal_unit #(
       .fetch_epoch_o(fetch_data[k][FETCH_W-2 -: lod_pkg::EPOCH_W]),
       .fetch_o(fetch_data[k][lod_pkg::NODE_ADDRESS_IN_W-1:0]), .fetch_grant_i(fetch_grant[k]),
       .line_valid_i(line_valid && line.tag[7:2] == 6'(ME)), .line_i(line), .line_misplaced_i(line_is_misplaced),
+      .line_corners_i({line_corner2, line_corner1, line_corner0}),
       .tri_request_o(tri_request[k]), .tri_number_o(tri_data[k][TRI_W-1:TRI_W-2]),
       .tri_o(tri_data[k][TRI_W-3:0]), .tri_grant_i(tri_grant[k]),
       .tri_miss_i(tri_valid && !tri_out.hit && tri_owner == ME),

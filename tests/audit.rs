@@ -2,7 +2,7 @@
 
 use lodray::bvh::over_trees;
 use lodray::format::audit::{AuditReport, audit};
-use lodray::format::{BvhNode, Displacements, L0Record, Scene, SceneError, SiblingGroup, VertexData, encode, export_level, tree_boxes};
+use lodray::format::{BvhNode, Displacements, L0Record, Scene, SceneError, SplitRecord, VertexData, encode, export_level, tree_boxes};
 use lodray::mesh::{BoundKind, Surface, edge_index, lattice, quantise};
 use lodray::num::{BoundCode, U, Vec3, VertexForm, Wire, bound_decode};
 use lodray_test_support::cases;
@@ -43,8 +43,8 @@ fn ten_levels_and_unused_base_vertices_work() {
 
 #[test]
 fn bytes_per_triangle_keep_to_the_promise() {
-    // A vertex line for three triangles, or half a line, and a group's line for twelve.
-    for (form, most) in VertexForm::ALL.into_iter().zip([13.4, 8.05]) {
+    // A split's line for twelve triangles; besides that a vertex line for three, or half a line for four.
+    for (form, most) in VertexForm::ALL.into_iter().zip([13.4, 6.7]) {
         let bytes = scene_with(&grid(7, 1), BoundKind::Largest, form).bytes_per_triangle();
         assert!(bytes <= most, "{form:?}: {bytes}");
     }
@@ -89,9 +89,10 @@ fn change<T: Wire>(bytes: &mut [u8], at: usize, f: impl Fn(&mut T)) {
 const META: usize = 1;
 const NODES: usize = 2;
 const RECORDS: usize = 3;
-const BOUNDS: usize = 4;
+const SPLITS: usize = 4;
 const VERTICES: usize = 5;
 const NORMALS: usize = 6;
+const SOURCES: usize = 8;
 
 #[test]
 fn one_lowered_code_is_found_wherever_it_stands() {
@@ -108,14 +109,14 @@ fn one_lowered_code_is_found(kind: BoundKind) {
     for tree in 0..good.trees() {
         for side in 0..3 {
             let report = damaged(&good, RECORDS, |b| {
-                change(b, 64 * tree + 32, |r: &mut L0Record| lower([&mut r.e0, &mut r.e1, &mut r.e2][side]));
+                change(b, 64 * tree, |r: &mut L0Record| lower([&mut r.e0, &mut r.e1, &mut r.e2][side]));
             });
             found_by(&report, "bounds cover the true displacement");
             lowered += 1;
         }
         for place in 0..9 {
-            let at = 32 * good.level_starts().child_group(good.tree_lines(tree), 0, 0);
-            let report = damaged(&good, BOUNDS, |b| change(b, at, |r: &mut SiblingGroup| lower(&mut r.codes[place])));
+            let at = 32 * good.level_starts().split(good.tree_lines(tree), 0, 0);
+            let report = damaged(&good, SPLITS, |b| change(b, at, |r: &mut SplitRecord| lower(&mut r.codes[place])));
             found_by(&report, "bounds cover the true displacement");
             lowered += 1;
         }
@@ -169,16 +170,16 @@ fn a_box_one_step_too_small_is_found() {
         };
         // Whichever plane it is.
         for plane in 0..24 {
-            let (at, ()) = first(section(BOUNDS), |r: &SiblingGroup| (r.planes[plane].get() > 0).then_some(()));
+            let (at, ()) = first(section(SPLITS), |r: &SplitRecord| (r.planes[plane].get() > 0).then_some(()));
             let report =
-                damaged(&good, BOUNDS, |b| change(b, at, |r: &mut SiblingGroup| r.planes[plane] = U::new(r.planes[plane].get() - 1)));
+                damaged(&good, SPLITS, |b| change(b, at, |r: &mut SplitRecord| r.planes[plane] = U::new(r.planes[plane].get() - 1)));
             found_by(&report, "boxes contain all full-resolution vertices below");
         }
         for axis in 0..3 {
-            let long = |r: &SiblingGroup| (r.exponents[axis].get() > 0).then_some(());
-            let (at, ()) = first(section(BOUNDS), long);
-            let shorten = |r: &mut SiblingGroup| r.exponents[axis] = U::new(r.exponents[axis].get() - 1);
-            found_by(&damaged(&good, BOUNDS, |b| change(b, at, shorten)), "boxes contain all full-resolution vertices below");
+            let long = |r: &SplitRecord| (r.exponents[axis].get() > 0).then_some(());
+            let (at, ()) = first(section(SPLITS), long);
+            let shorten = |r: &mut SplitRecord| r.exponents[axis] = U::new(r.exponents[axis].get() - 1);
+            found_by(&damaged(&good, SPLITS, |b| change(b, at, shorten)), "boxes contain all full-resolution vertices below");
             // Node 0 has four nodes, node 1 two leaves.
             for (at, name) in [(0, INNER_BOXES), (32, LEAF_BOXES)] {
                 let up = |r: &mut BvhNode, plane: usize| r.planes[plane] = U::new(r.planes[plane].get() + 1);
@@ -203,7 +204,7 @@ fn each_damage_is_found_by_its_check() {
     let levels = 6;
     let good = scene(&octahedron(levels));
     assert!(audit(&good).passed());
-    let group = 32 * good.level_starts().child_group(good.tree_lines(3), 1, 2);
+    let group = 32 * good.level_starts().split(good.tree_lines(3), 1, 2);
     let line = |level, node| 32 * good.level_starts().vertex_line(VertexForm::Exact, good.tree_lines(5), level, node);
 
     // Bit 4 of a coordinate, the lowest that is stored: no vertex of level 1 of 6 may have it.
@@ -211,31 +212,32 @@ fn each_damage_is_found_by_its_check() {
     found_by(&damaged(&good, VERTICES, |b| change(b, line(0, 0), nudge)), "low bits of the level's grid are zero");
     let across = "vertices are equal in all trees that share them";
     found_by(&damaged(&good, VERTICES, |b| change(b, line(0, 0), nudge)), across);
-    found_by(&damaged(&good, RECORDS, |b| change(b, 64, |r: &mut VertexData| r.v0 = Vec3::new(r.v0.x.get() ^ 64, 0, 0))), across);
+    found_by(&damaged(&good, RECORDS, |b| change(b, 64 + 32, |r: &mut VertexData| r.v0 = Vec3::new(r.v0.x.get() ^ 64, 0, 0))), across);
     // The centre child's vertices are all stored by its siblings too.
     let inside = "inserted vertices are equal on both sides of an edge";
     found_by(&damaged(&good, VERTICES, |b| change(b, line(1, 3), nudge)), inside);
     let outside = |r: &mut VertexData| r.v0 = Vec3::new((1 << 27) - 64, 0, 0);
     let refused = |kind, f: &dyn Fn(&mut [u8])| reopened(&good, kind, f).expect_err("refused").to_string();
     assert!(refused(VERTICES, &|b| change(b, line(1, 3), outside)).contains("coordinate beyond"));
-    assert!(refused(RECORDS, &|b| change(b, 64, outside)).contains("coordinate beyond"));
+    assert!(refused(RECORDS, &|b| change(b, 64 + 32, outside)).contains("coordinate beyond"));
     let least = |r: &mut BvhNode| r.origin = Vec3::new(0, -32_768, 0);
     assert!(refused(NODES, &|b| change(b, 0, least)).contains("box inside out"));
-    let place = |f: fn(&mut L0Record)| refused(RECORDS, &|b| change(b, 64 * 5 + 32, f));
+    let place = |f: fn(&mut L0Record)| refused(RECORDS, &|b| change(b, 64 * 5, f));
     assert!(place(|r| r.depth = U::new(7)).contains("depth of tree 5 is 7"));
     assert!(place(|r| r.depth = U::new(5)).contains("place of tree 5 is 5, by the depths of all it is 7"));
     assert!(place(|r| r.place = U::new(r.place.get() + 1)).contains("place of tree 5 is 6, by the depths of all it is 5"));
     // The last tree keeps its place: only the ends of the sections tell.
     let last = |r: &mut L0Record| r.depth = U::new(5);
-    assert!(refused(RECORDS, &|b| change(b, 64 * 7 + 32, last)).contains("but the trees have"));
+    assert!(refused(RECORDS, &|b| change(b, 64 * 7, last)).contains("but the trees have"));
 
     let reserved = "reserved bits and empty slots are zero";
     found_by(&damaged(&good, VERTICES, |b| change(b, line(2, 1), |r: &mut VertexData| r.reserved = U::new(1))), reserved);
-    found_by(&damaged(&good, BOUNDS, |b| change(b, group, |r: &mut SiblingGroup| r.reserved = U::new(1))), reserved);
-    found_by(&damaged(&good, RECORDS, |b| b[31] |= 0x80), reserved);
-    found_by(&damaged(&good, RECORDS, |b| change(b, 32, |r: &mut L0Record| r.reserved = U::new(1))), reserved);
-    // Exact vertices leave no displacements in the records.
-    found_by(&damaged(&good, RECORDS, |b| b[64 + 32] = 1), reserved);
+    found_by(&damaged(&good, SPLITS, |b| change(b, group, |r: &mut SplitRecord| r.reserved = U::new(1))), reserved);
+    found_by(&damaged(&good, RECORDS, |b| b[63] |= 0x80), reserved);
+    found_by(&damaged(&good, RECORDS, |b| change(b, 0, |r: &mut L0Record| r.reserved = U::new(1))), reserved);
+    // Exact vertices leave no corners in the first lines of records, and no displacements in splits.
+    found_by(&damaged(&good, RECORDS, |b| b[64] = 1), reserved);
+    found_by(&damaged(&good, SPLITS, |b| change(b, group, |r: &mut SplitRecord| r.v2 = Vec3::new(0, 0, 1))), reserved);
     found_by(&damaged(&good, NODES, |b| change(b, 0, |r: &mut BvhNode| r.reserved = U::new(1))), reserved);
     // Node 1 has two empty slots and no nodes, node 0 no leaves.
     found_by(&damaged(&good, NODES, |b| change(b, 32, |r: &mut BvhNode| r.planes[23] = U::new(1))), reserved);
@@ -244,14 +246,14 @@ fn each_damage_is_found_by_its_check() {
     found_by(&damaged(&good, NODES, |b| change(b, 0, |r: &mut BvhNode| r.first_leaf = U::new(1))), reserved);
 
     // Raised codes still cover: only equality and order break.
-    let raise = |b: &mut [u8]| change(b, 32, |r: &mut L0Record| r.e0 = U::new(255));
+    let raise = |b: &mut [u8]| change(b, 0, |r: &mut L0Record| r.e0 = U::new(255));
     found_by(&damaged(&good, RECORDS, raise), "all trees that share an edge hold the same code");
     // Half of the edge that the node shares with its centre sibling.
-    let raise = |b: &mut [u8]| change(b, group, |r: &mut SiblingGroup| r.codes[2] = U::new(255));
-    found_by(&damaged(&good, BOUNDS, raise), "both sides of an edge hold the same code");
+    let raise = |b: &mut [u8]| change(b, group, |r: &mut SplitRecord| r.codes[2] = U::new(255));
+    found_by(&damaged(&good, SPLITS, raise), "both sides of an edge hold the same code");
 
-    let again = |r: &mut L0Record| r.source = U::new((r.source.get() + 1) % 8);
-    found_by(&damaged(&good, RECORDS, |b| change(b, 32, again)), "trees are the given base triangles, each once");
+    // The number of the first tree's base triangle.
+    found_by(&damaged(&good, SOURCES, |b| b[0] = (b[0] + 1) % 8), "trees are the given base triangles, each once");
 
     found_by(&damaged(&good, NORMALS, |b| b[100..104].copy_from_slice(&[0, 0x80, 0, 0])), "normals are present");
     let report = damaged(&good, META, |b| {
@@ -266,44 +268,52 @@ fn each_damage_to_compact_vertices_is_found() {
     let levels = 4;
     let good = scene_with(&octahedron(levels), BoundKind::Largest, VertexForm::Compact);
     assert!(audit(&good).passed());
-    let half = |level, node| 32 * good.level_starts().vertex_line(VertexForm::Compact, good.tree_lines(5), level, node) + 16 * (node % 2);
-    let record = 64 * 5 + 32;
-    let nudge = |r: &mut Displacements| r.v1 = Vec3::new(r.v1.x.get() ^ 1, r.v1.y.get(), r.v1.z.get());
+    let half = |node| 32 * good.level_starts().vertex_line(VertexForm::Compact, good.tree_lines(5), levels - 1, node) + 16 * (node % 2);
+    let split = |level, node| 32 * good.level_starts().split(good.tree_lines(5), level, node);
+    let record = 32 * 5;
+    let nudge = |r: &mut SplitRecord| r.v1 = Vec3::new(r.v1.x.get() ^ 1, r.v1.y.get(), r.v1.z.get());
+    let nudge_last = |r: &mut Displacements| r.v1 = Vec3::new(r.v1.x.get() ^ 1, r.v1.y.get(), r.v1.z.get());
 
     // A root's vertices lie on three base edges, the centre child's inside its tree.
     let across = "vertices are equal in all trees that share them";
-    found_by(&damaged(&good, RECORDS, |b| change(b, record, |r: &mut L0Record| nudge(&mut r.split))), across);
+    found_by(&damaged(&good, SPLITS, |b| change(b, split(0, 0), nudge)), across);
     let inside = "inserted vertices are equal on both sides of an edge";
-    found_by(&damaged(&good, VERTICES, |b| change(b, half(1, 3), nudge)), inside);
+    found_by(&damaged(&good, SPLITS, |b| change(b, split(1, 3), nudge)), inside);
     // What lies below a moved vertex is put on it: it is another one too.
-    let report = damaged(&good, VERTICES, |b| change(b, half(1, 3), nudge));
+    let report = damaged(&good, SPLITS, |b| change(b, split(1, 3), nudge));
     assert!(report.check(inside).unwrap().breaches > 1, "{report}");
-    for (level, node) in [(1, 0), (2, 5), (3, 62), (3, 63)] {
-        assert!(!damaged(&good, VERTICES, |b| change(b, half(level, node), nudge)).passed(), "{level} {node}");
+    for (level, node) in [(1, 0), (2, 5)] {
+        assert!(!damaged(&good, SPLITS, |b| change(b, split(level, node), nudge)).passed(), "{level} {node}");
+    }
+    for node in [62, 63] {
+        assert!(!damaged(&good, VERTICES, |b| change(b, half(node), nudge_last)).passed(), "{node}");
     }
 
     let reserved = "reserved bits and empty slots are zero";
-    found_by(&damaged(&good, VERTICES, |b| change(b, half(2, 6), |r: &mut Displacements| r.reserved = U::new(1))), reserved);
-    found_by(&damaged(&good, VERTICES, |b| change(b, half(2, 7), |r: &mut Displacements| r.reserved = U::new(1024))), reserved);
-    found_by(&damaged(&good, RECORDS, |b| change(b, record, |r: &mut L0Record| r.split.reserved = U::new(1))), reserved);
+    found_by(&damaged(&good, VERTICES, |b| change(b, half(6), |r: &mut Displacements| r.reserved = U::new(1))), reserved);
+    found_by(&damaged(&good, VERTICES, |b| change(b, half(7), |r: &mut Displacements| r.reserved = U::new(1024))), reserved);
+    found_by(&damaged(&good, SPLITS, |b| change(b, split(1, 2), |r: &mut SplitRecord| r.reserved = U::new(8))), reserved);
 
     // A code of the next octave has longer steps.
     let raise = |r: &mut L0Record| r.e0 = U::new((r.e0.get() + 16).min(255));
     let report = damaged(&good, RECORDS, |b| change(b, record, raise));
     found_by(&report, "all trees that share an edge hold the same code");
-    let raise = |r: &mut SiblingGroup| r.codes[2] = U::new(r.codes[2].get() + 16);
-    let group = 32 * good.level_starts().child_group(good.tree_lines(5), 1, 2);
-    found_by(&damaged(&good, BOUNDS, |b| change(b, group, raise)), inside);
+    let raise = |r: &mut SplitRecord| r.codes[2] = U::new(r.codes[2].get() + 16);
+    found_by(&damaged(&good, SPLITS, |b| change(b, split(1, 2), raise)), inside);
     // A displacement beyond what its code says, where its vertex is read first.
     let longest = |r: &mut Displacements| r.v0 = Vec3::new(-4096, r.v0.y.get(), r.v0.z.get());
-    found_by(&damaged(&good, VERTICES, |b| change(b, half(3, 60), longest)), "bounds cover the true displacement");
+    found_by(&damaged(&good, VERTICES, |b| change(b, half(60), longest)), "bounds cover the true displacement");
 
     let refused = |kind, f: &dyn Fn(&mut [u8])| reopened(&good, kind, f).expect_err("refused").to_string();
-    let far = |r: &mut L0Record| r.split.v0 = Vec3::new(-4096, 4095, -4096);
-    let message = refused(RECORDS, &|b| (0..8).for_each(|tree| change(b, 64 * tree + 32, far)));
+    let far = |r: &mut SplitRecord| r.v0 = Vec3::new(-4096, 4095, -4096);
+    let message = refused(SPLITS, &|b| (0..8).for_each(|tree| change(b, 32 * tree, far)));
     assert!(message.contains("leads beyond"), "{message}");
-    let nudge = |r: &mut VertexData| r.v0 = Vec3::new(r.v0.x.get() ^ 1, r.v0.y.get(), r.v0.z.get());
-    assert!(refused(RECORDS, &|b| change(b, 64 * 5, nudge)).contains("off the grid"));
+    // Twelve zero bits of each corner's coordinates are needed, ten are not stored.
+    let good = scene_with(&octahedron(8), BoundKind::Largest, VertexForm::Compact);
+    let nudge = |r: &mut L0Record| r.p0 = Vec3::new(r.p0.x.get() ^ 1, r.p0.y.get(), r.p0.z.get());
+    let refused = |kind, f: &dyn Fn(&mut [u8])| reopened(&good, kind, f).expect_err("refused").to_string();
+    let message = refused(RECORDS, &|b| change(b, record, nudge));
+    assert!(message.contains("off the grid"), "{message}");
 }
 
 #[test]
@@ -346,8 +356,8 @@ fn finer_codes_above_coarser_are_found() {
     let good = scene(&s);
     assert!(audit(&good).passed());
     // e_0 of child 0 and of the centre child.
-    let group = 32 * good.level_starts().child_group(good.tree_lines(0), 0, 0);
-    let report = damaged(&good, BOUNDS, |b| change(b, group, |r: &mut SiblingGroup| r.codes[0] = U::new(255)));
+    let group = 32 * good.level_starts().split(good.tree_lines(0), 0, 0);
+    let report = damaged(&good, SPLITS, |b| change(b, group, |r: &mut SplitRecord| r.codes[0] = U::new(255)));
     found_by(&report, "codes do not grow towards finer levels");
     assert_eq!(report.check("both sides of an edge hold the same code").unwrap().breaches, 0);
     assert_eq!(report.check("bounds cover the true displacement").unwrap().breaches, 0);

@@ -55,6 +55,7 @@ fn rust_side() -> (Vec<BlockTwin>, Vec<StructTwin>) {
         twin::<num::Point>("point_t"),
         twin::<num::Direction>("direction_t"),
         twin::<num::Vec3<28>>("stored_point_t"),
+        twin::<num::Vec3<22>>("stored_corner_t"),
         twin::<num::Displacement>("displacement_t"),
         twin::<num::Vec3<11>>("local_t"),
         twin::<num::Vec3<16>>("code3_t"),
@@ -281,8 +282,7 @@ fn widths_limits_and_timings_are_the_same() {
 fn states_have_the_same_names_and_numbers() {
     let package = package();
     let states: Vec<(String, u64)> = State::ALL.iter().map(|&state| (state.name().to_owned(), state as u64)).collect();
-    let fetches =
-        [Fetch::Node, Fetch::Record, Fetch::Split].map(|fetch| (format!("{fetch:?}").to_uppercase(), fetch as u64));
+    let fetches = [Fetch::Node, Fetch::Record, Fetch::Split].map(|fetch| (format!("{fetch:?}").to_uppercase(), fetch as u64));
     assert_eq!(package.enums["context_state_t"].1, states);
     assert_eq!(package.enums["fetch_t"].1, fetches);
     let errors = RayError::ALL.map(|error| (error.named().0.to_owned(), error as u64));

@@ -1,14 +1,14 @@
 //! Scenes that are pruned for a job: the hits of its rays are the same to the bit in every field, by each traverser; the audit takes them; other rays are refused.
 
 use lodray::format::audit::audit;
-use lodray::format::{Job, JobRegion, Scene, VertexData};
+use lodray::format::{Job, JobRegion, Scene};
 use lodray::golden::exact::Exact;
 use lodray::hardware::Hardware;
 use lodray::mesh::Surface;
 use lodray::mesh::procedural::{self, Options, generate};
 use lodray::method::lod::{LodImage, LodTraverser};
 use lodray::method::{ClosestHit, Hit};
-use lodray::num::{Random, Ray, VertexForm, Wire};
+use lodray::num::{Random, Ray, VertexForm};
 use lodray::plan::{Measure, Plan, Reach};
 use lodray::rays::{Camera, ModelSpace, Query, RaySource, View};
 use lodray::sim::unit::environment::run;
@@ -198,7 +198,7 @@ fn only_levels_are_taken_away() {
     );
     assert_eq!((pruned.meta().lo, pruned.meta().hi, pruned.levels()), (scene.meta().lo, scene.meta().hi, 4));
     for tree in 0..scene.trees() {
-        assert_eq!(VertexData::from_words(&pruned.records()[tree][..4]), VertexData::from_words(&scene.records()[tree][..4]));
+        assert_eq!(pruned.corners(tree), scene.corners(tree));
         let depth = pruned.tree_lines(tree).depth;
         for level in 0..4 {
             for node in 0..1 << (2 * level) {

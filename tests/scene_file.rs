@@ -37,8 +37,8 @@ fn images_decode_to_the_hierarchy_that_they_were_made_from() {
                     is_decoded(&scene, &hierarchy);
                     let back = scene.decode();
                     for tree in 0..scene.trees() {
-                        let source = scene.record(tree).source.get() as usize;
-                        assert_eq!(scene.record(tree).material.get(), source as u64 % 2);
+                        let source = scene.source(tree) as usize;
+                        assert_eq!(usize::from(scene.material(tree)), source % 2);
                         for i in 0..1usize << (2 * levels) {
                             let places = lattice::node(levels, levels, i as u32);
                             let expected = places.map(|p| back.tree(tree)[lattice::index(levels, p)]);
@@ -71,7 +71,7 @@ fn is_decoded(scene: &Scene, hierarchy: &Hierarchy) {
     assert_eq!((back.vertices, back.bounds.kind, back.bounds.scale), (hierarchy.vertices, hierarchy.bounds.kind, hierarchy.bounds.scale));
     let mut seen = vec![false; scene.trees()];
     for tree in 0..scene.trees() {
-        let source = scene.record(tree).source.get() as usize;
+        let source = scene.source(tree) as usize;
         assert!(!std::mem::replace(&mut seen[source], true));
         assert_eq!(back.triangles[tree], hierarchy.triangles[source]);
         assert!(back.tree(tree) == hierarchy.tree(source) && back.codes(tree) == hierarchy.codes(source), "tree {tree}");
@@ -122,18 +122,19 @@ fn trees_are_as_deep_as_their_codes() {
     for surface in [flat, made(Kind::Room), made(Kind::Terrain), octahedron(4), fan(0)] {
         for (form, kind) in VertexForm::ALL.into_iter().flat_map(|form| BoundKind::ALL.map(|kind| (form, kind))) {
             let (h, scene) = (quantise(&surface, kind, form, 0).unwrap(), scene_with(&surface, kind, form));
-            let (mut groups, mut lines) = (0, 0);
+            let (mut splits, mut lines) = (0, 0);
             let mut depths = Vec::new();
             for tree in 0..scene.trees() {
-                let source = scene.record(tree).source.get() as usize;
+                let source = scene.source(tree) as usize;
                 let zero = |level: u32| {
                     (0..1u32 << (2 * level)).all(|node| h.node_codes(source, level, lattice::node(h.levels, level, node)) == [0; 3])
                 };
                 let depth = (0..=h.levels).find(|&level| (level..h.levels).all(zero)).unwrap();
                 let inner: usize = (0..depth).map(|level| 1 << (2 * level)).sum();
-                let own = (0..depth.saturating_sub(1)).map(|level| 1 << (2 * level)).sum::<usize>();
-                groups += own;
-                lines += if form.is_compact() { 2 * own } else { inner };
+                // All nodes that split but those of the last level, which has half lines where vertices are compact; a root always.
+                let last = if depth < 2 { 0 } else { 1usize << (2 * (depth - 1)) };
+                splits += inner - last;
+                lines += if form.is_compact() { last / 2 } else { inner };
                 seen[depth as usize] += 1;
                 depths.push(depth);
             }
@@ -143,7 +144,7 @@ fn trees_are_as_deep_as_their_codes() {
                 let stored = scene.tree_lines(tree);
                 assert_eq!((stored.depth, stored.place), (depth, place), "tree {tree}");
             }
-            assert_eq!((scene.bounds().len(), scene.vertices().len()), (groups, lines));
+            assert_eq!((scene.splits().len(), scene.vertices().len()), (splits, lines));
         }
     }
     assert!(seen.iter().all(|&trees| trees > 0), "{seen:?}");
@@ -163,27 +164,42 @@ fn signed(bytes: &[u8], size: usize, at: usize, field: [usize; 2]) -> i64 {
 
 /// Full-resolution triangles by the words of docs/scene-format.md and nothing else.
 struct Words<'a> {
-    sections: [&'a [u8]; 8],
+    sections: [&'a [u8]; 9],
     levels: usize,
     compact: bool,
     offset: u64,
 }
 
 impl Words<'_> {
+    /// Bytes of an L0 record, and how many there are.
+    fn records(&self) -> [usize; 2] {
+        let size = if self.compact { 32 } else { 64 };
+        [size, self.sections[2].len() / size]
+    }
+
     fn corners(&self, tree: usize) -> [[i64; 3]; 3] {
-        let field = |v: usize, c: usize| signed(self.sections[2], 64, tree, [251 - 84 * v - 28 * c, 224 - 84 * v - 28 * c]);
-        std::array::from_fn(|v| std::array::from_fn(|c| 16 * field(v, c)))
+        let [size, _] = self.records();
+        std::array::from_fn(|v| {
+            std::array::from_fn(|c| match self.compact {
+                true => 1024 * signed(self.sections[2], size, tree, [197 - 66 * v - 22 * c, 176 - 66 * v - 22 * c]),
+                false => 16 * signed(self.sections[2], size, tree, [507 - 84 * v - 28 * c, 480 - 84 * v - 28 * c]),
+            })
+        })
     }
 
     /// How many levels of the tree are stored, and its place.
     fn stored(&self, tree: usize) -> [usize; 2] {
-        [[255, 252], [251, 224]].map(|field| bits(self.sections[2], 64, tree, field.map(|bit| 256 + bit)) as usize)
+        [[255, 252], [251, 224]].map(|field| bits(self.sections[2], self.records()[0], tree, field) as usize)
     }
 
-    /// The group of the children of a node.
-    fn group(&self, tree: usize, level: usize, node: usize) -> usize {
-        let deeper = |m: usize| (0..self.sections[2].len() / 64).filter(|&tree| self.stored(tree)[0] > m).count();
-        let first: usize = (0..level).map(|m| 4usize.pow(m as u32) * deeper(m + 1)).sum();
+    /// The trees that are deeper than that.
+    fn deeper(&self, than: usize) -> usize {
+        (0..self.records()[1]).filter(|&tree| self.stored(tree)[0] > than).count()
+    }
+
+    /// A node's split.
+    fn split(&self, tree: usize, level: usize, node: usize) -> usize {
+        let first: usize = (0..level).map(|m| 4usize.pow(m as u32) * self.deeper(if m == 0 { 0 } else { m + 1 })).sum();
         first + 4usize.pow(level as u32) * self.stored(tree)[1] + node
     }
 
@@ -194,11 +210,11 @@ impl Words<'_> {
             return [0; 3];
         }
         if level == 0 {
-            return [151, 143, 135].map(|high| bits(self.sections[2], 64, tree, [256 + high, 256 + high - 7]));
+            return [223, 215, 207].map(|high| bits(self.sections[2], self.records()[0], tree, [high, high - 7]));
         }
-        let group = self.group(tree, level - 1, node / 4);
+        let split = self.split(tree, level - 1, node / 4);
         let places = [[0, 1, 2], [3, 4, 5], [6, 7, 8], [0, 4, 8]][node % 4];
-        places.map(|place| bits(self.sections[3], 32, group, [190 + 8 * place, 183 + 8 * place]))
+        places.map(|place| bits(self.sections[3], 32, split, [74 + 8 * place, 67 + 8 * place]))
     }
 
     fn inserted(&self, tree: usize, level: usize, node: usize, p: [[i64; 3]; 3]) -> [[i64; 3]; 3] {
@@ -206,21 +222,25 @@ impl Words<'_> {
         if level >= depth {
             return std::array::from_fn(|v| std::array::from_fn(|c| (p[(v + 1) % 3][c] + p[(v + 2) % 3][c]) / 2));
         }
+        let four = |level: usize| 4usize.pow(level as u32);
         if !self.compact {
-            let splitting = (0..self.sections[2].len() / 64).filter(|&tree| self.stored(tree)[0] > 0).count();
-            let line = if level == 0 { place } else { splitting + 4 * self.group(tree, level - 1, node / 4) + node % 4 };
+            let line = (0..level).map(|m| four(m) * self.deeper(m)).sum::<usize>() + four(level) * place + node;
             let field = |v: usize, c: usize| signed(self.sections[4], 32, line, [251 - 84 * v - 28 * c, 224 - 84 * v - 28 * c]);
             return std::array::from_fn(|v| std::array::from_fn(|c| 16 * field(v, c)));
         }
         let codes = self.codes(tree, level, node);
+        let half = || {
+            let of_level = |m: usize| self.deeper(m) - self.deeper(m + 1);
+            (1..level).map(|m| four(m) * of_level(m)).sum::<usize>() + four(level) * (place - self.deeper(level + 1)) + node
+        };
         std::array::from_fn(|v| {
             let exponent = (self.levels - level + 3).max((((codes[v] + self.offset) / 16) as usize).saturating_sub(11));
             std::array::from_fn(|c| {
-                let at = [116 - 39 * v - 13 * c, 104 - 39 * v - 13 * c];
-                let d = if level == 0 {
-                    signed(self.sections[2], 64, tree, at.map(|bit| 256 + bit))
+                let at = |highest: usize| [highest - 39 * v - 13 * c, highest - 12 - 39 * v - 13 * c];
+                let d = if level == 0 || level + 1 < depth {
+                    signed(self.sections[3], 32, self.split(tree, level, node), at(255))
                 } else {
-                    signed(self.sections[4], 16, 4 * self.group(tree, level - 1, node / 4) + node % 4, at)
+                    signed(self.sections[4], 16, half(), at(116))
                 };
                 (p[(v + 1) % 3][c] + p[(v + 2) % 3][c]) / 2 + d * (1 << exponent)
             })
@@ -254,7 +274,7 @@ fn the_words_of_the_document_are_enough_to_read_a_scene() {
             for form in VertexForm::ALL {
                 let scene = build_with(&surface, form);
                 let bytes = scene.bytes();
-                let sections: [&[u8]; 8] = std::array::from_fn(|k| {
+                let sections: [&[u8]; 9] = std::array::from_fn(|k| {
                     let (offset, length) = lodray_test_support::surfaces::section(bytes, k + 1);
                     &bytes[offset..offset + length]
                 });
@@ -267,8 +287,8 @@ fn the_words_of_the_document_are_enough_to_read_a_scene() {
                 };
                 let mut nodes = 0;
                 for tree in 0..meta["trees"].as_u64().unwrap() as usize {
-                    assert_eq!(bits(words.sections[2], 64, tree, [256 + 195, 256 + 168]), scene.record(tree).source.get());
-                    assert_eq!(bits(words.sections[2], 64, tree, [256 + 167, 256 + 152]), scene.record(tree).material.get());
+                    let source = |field| bits(words.sections[7], 8, tree, field);
+                    assert_eq!([source([31, 0]), source([63, 32])], [u64::from(scene.source(tree)), u64::from(scene.material(tree))]);
                     words.each(tree, 0, 0, words.corners(tree), &mut |level, node, p, codes| {
                         nodes += 1;
                         assert_eq!(scene.triangle(tree, level as u32, node).map(|p| p.map(i64::from)), p);
@@ -313,7 +333,9 @@ fn every_flipped_bit_is_noticed() {
         bytes[at] ^= 1 << (at % 8);
         assert!(open(&bytes).is_err(), "byte {at}");
     }
-    for (kind, name) in ["META", "NODES", "RECORDS", "BOUNDS", "VERTICES", "NORMALS", "TRIANGLES", "COLOURS"].into_iter().enumerate() {
+    for (kind, name) in
+        ["META", "NODES", "RECORDS", "SPLITS", "VERTICES", "NORMALS", "TRIANGLES", "SOURCES", "COLOURS"].into_iter().enumerate()
+    {
         let (offset, length) = lodray_test_support::surfaces::section(&good, kind + 1);
         let mut bytes = good.clone();
         bytes[offset + length / 2] ^= 0x10;
@@ -333,10 +355,10 @@ fn truncated_long_foreign_and_newer_files_are_refused() {
     assert!(open(b"").unwrap_err().contains("magic"));
     assert!(open(b"solid ascii\nfacet normal 0 0 1").unwrap_err().contains("magic"));
     let mut newer = good.clone();
-    newer[8] = 5;
+    newer[8] = 6;
     lodray_test_support::surfaces::reseal(&mut newer);
     assert!(open(&newer).unwrap_err().contains("newer"));
-    for version in [1, 2, 3] {
+    for version in [1, 2, 3, 4] {
         let mut older = good.clone();
         older[8] = version;
         lodray_test_support::surfaces::reseal(&mut older);
@@ -365,7 +387,7 @@ fn resealed_nonsense_is_refused_with_section_and_field() {
         f(&mut bytes);
         let sum_header_only = |bytes: &mut [u8]| {
             bytes[24..32].fill(0);
-            let sum = xxhash_rust::xxh3::xxh3_64(&bytes[..320]);
+            let sum = xxhash_rust::xxh3::xxh3_64(&bytes[..352]);
             bytes[24..32].copy_from_slice(&sum.to_le_bytes());
         };
         sum_header_only(&mut bytes);
@@ -377,7 +399,7 @@ fn resealed_nonsense_is_refused_with_section_and_field() {
         (broken(&|b| word(b, entry + 8, vertices as u64 + 4)), ["VERTICES", "misaligned"]),
         (broken(&|b| word(b, entry + 8, vertices as u64 - 64)), ["VERTICES", "offset"]),
         (broken(&|b| word(b, entry + 16, u64::MAX)), ["VERTICES", "past the end"]),
-        (broken(&|b| word(b, entry, 9)), ["section table", "kind 9"]),
+        (broken(&|b| word(b, entry, 10)), ["section table", "kind 10"]),
         (with_meta(&good, "\"levels\":2", "\"levels\":3").unwrap_err(), ["NORMALS", "3 splits"]),
         (with_meta(&good, "\"trees\":8", "\"trees\":7").unwrap_err(), ["RECORDS", "length"]),
         (with_meta(&good, "\"base_vertices\":6", "\"base_vertices\":5").unwrap_err(), ["TRIANGLES", "below 5"]),

@@ -11,7 +11,7 @@ use lodray::block::start_test::Below;
 use lodray::block::tessellate::{self, Tessellate, child_triangle};
 use lodray::block::tri_test::{self, TriTest};
 use lodray::bvh::BvhChild32;
-use lodray::format::{BvhChild, BvhNode, ChildRef, Displacements, L0Record, Line, SiblingGroup, SixNode, TreeLines, VertexData};
+use lodray::format::{BvhChild, BvhNode, ChildRef, Displacements, L0Record, Line, SixNode, SplitRecord, TreeLines, VertexData, has_split};
 use lodray::mesh::{Hierarchy, lattice};
 use lodray::method::bvh::{self, BvhTraverser, FullBvh, FullNodes, FullOptions, LeafLayout, NodeBoxes};
 use lodray::method::lod::{self, LodImage, LodTraverser};
@@ -77,12 +77,12 @@ fn down(reached: &[i64], codes: i64) -> i64 {
     reached[reached.partition_point(|&r| r <= codes) - 1]
 }
 
-/// Boxes of four siblings, `own` those of their triangles and `all` those of what is below, as a group holds them: by how far they reach beyond their triangles, in 127 steps.
+/// Boxes of four siblings, `own` those of their triangles and `all` those of what is below, as a split holds them: by how far they reach beyond their triangles, in three steps.
 fn in_excess(own: &[Bounds], all: &[Bounds]) -> Vec<Bounds> {
     let corners = |b: &[Bounds]| b.iter().map(|b| b.at_codes().codes()).collect::<Vec<_>>();
     let (own, all) = (corners(own), corners(all));
     let excess = |k: usize, axis: usize| [own[k].0[axis] - all[k].0[axis], all[k].1[axis] - own[k].1[axis]];
-    let steps: [Vec<i64>; 3] = std::array::from_fn(|axis| reached((0..4).flat_map(|k| excess(k, axis)).max().expect("four of them"), 127));
+    let steps: [Vec<i64>; 3] = std::array::from_fn(|axis| reached((0..4).flat_map(|k| excess(k, axis)).max().expect("four of them"), 3));
     let stored = |k: usize| {
         Bounds::of_codes(
             std::array::from_fn(|axis| own[k].0[axis] - up(&steps[axis], excess(k, axis)[0])),
@@ -218,29 +218,26 @@ impl<'a> Lod<'a> {
     }
 
     fn tree<H: HitSink>(&self, walk: &mut Walk<'_, H>, tree: usize) {
-        walk.reads(lod::RECORDS, 2);
-        let p = VertexData::from_words(&self.image.records[tree][..4]).points();
-        let L0Record { e0, e1, e2, .. } = self.record(tree);
+        walk.reads(lod::RECORDS, if self.image.form == VertexForm::Compact { 1 } else { 2 });
+        let p = self.image.corners(tree);
+        let L0Record { e0, e1, e2, .. } = L0Record::from_words(self.image.record(tree));
         self.tree_node(walk, TriangleId { tree: tree as u32, level: 0, node: 0 }, [p, p], [e0, e1, e2]);
     }
 
     fn lines(&self, tree: usize) -> TreeLines {
-        L0Record::line_tree(&self.image.records[tree][4..])
+        L0Record::line_tree(self.image.record(tree))
     }
 
-    fn record(&self, tree: usize) -> L0Record {
-        L0Record::from_words(&self.image.records[tree][4..])
-    }
-
-    /// A node's inserted vertices as they are stored, and how many lines they are.
+    /// A node's inserted vertices as they are stored, and how many lines they have besides the split.
     fn stored(&self, TriangleId { tree, level, node }: TriangleId) -> ([Point; 3], u64) {
-        let (tree, image) = (tree as usize, &self.image);
-        let line = || &image.vertices[image.starts.vertex_line(image.form, self.lines(tree), level, node as usize)];
+        let (image, lines) = (&self.image, self.lines(tree as usize));
+        let line = || &image.vertices[image.starts.vertex_line(image.form, lines, level, node as usize)];
         match image.form {
             VertexForm::Exact => (VertexData::from_words(line()).points(), 1),
-            // With the record.
-            VertexForm::Compact if level == 0 => (self.record(tree).split.steps(), 0),
-            VertexForm::Compact => (Displacements::half(line(), node as usize).steps(), 1),
+            VertexForm::Compact if has_split(lines.depth, level) => {
+                (SplitRecord::line_displacements(&image.splits[image.starts.split(lines, level, node as usize)]), 0)
+            }
+            VertexForm::Compact => (Displacements::line_half(line(), node as usize), 1),
         }
     }
 
@@ -259,6 +256,8 @@ impl<'a> Lod<'a> {
         }
         let ([v0, v1, v2], read) = self.stored(id);
         walk.reads(lod::VERTICES, read);
+        // A root's split is read even if there are triangles alone below it, where it has the vertices.
+        walk.reads(lod::SPLITS, u64::from(level + 1 < lines.depth || read == 0));
         let (compact, grid) = (self.image.form == VertexForm::Compact, U::new(u64::from(levels - level - 1)));
         let padding = U::new(4);
         let lod_test::Out { s0, s1, s2, .. } = lod;
@@ -270,13 +269,12 @@ impl<'a> Lod<'a> {
         if level + 1 == lines.depth {
             return (0..4).for_each(|k| walk.triangle(below(k), corners[k][1]));
         }
-        walk.reads(lod::BOUNDS, 1);
         let first = ((tree as usize) << (2 * (level + 1))) + 4 * node as usize;
         let stored = &self.trees[level as usize + 1][first..first + 4];
         let boxes: [Option<Bounds>; 4] =
             std::array::from_fn(|k| Some(stored[k].with(Bounds::around(corners[k][1].map(|p| p.get())).at_codes())));
-        let group = SiblingGroup::from_words(&self.image.bounds[self.image.starts.child_group(lines, level, node as usize)]);
-        walk.children(boxes, |walk, k| self.tree_node(walk, below(k), corners[k], group.codes_of(k)));
+        let record = SplitRecord::from_words(&self.image.splits[self.image.starts.split(lines, level, node as usize)]);
+        walk.children(boxes, |walk, k| self.tree_node(walk, below(k), corners[k], record.codes_of(k)));
     }
 }
 

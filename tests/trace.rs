@@ -118,7 +118,7 @@ fn ports_are_those_of_a_unit_over_the_scenes_file() {
     for (first, section) in [
         (config.nodes, bytes_of(scene.nodes().as_flattened())),
         (config.records, bytes_of(scene.records().as_flattened())),
-        (config.bounds, bytes_of(scene.bounds().as_flattened())),
+        (config.splits, bytes_of(scene.splits().as_flattened())),
         (config.vertices, bytes_of(scene.vertices().as_flattened())),
     ] {
         assert!(!section.is_empty() && at(first.get(), section.len()) == section);

@@ -22,9 +22,9 @@
   assign traverses = state_q >= lod_pkg::VISIT && state_q <= lod_pkg::TRI;
   assign finishes  = state_q >= lod_pkg::DIVIDE_V && state_q <= lod_pkg::DONE;
 
-  // Vertices come with a sibling group.
-  logic with_group;
-  assign with_group = fetch_q == lod_pkg::VERTEX && !last_split && !compact_root;
+  // A split is fetched, and vertices besides.
+  logic with_split;
+  assign with_split = fetch_q == lod_pkg::SPLIT && !last_split && !compact;
 
   logic [2:0] all, sent;
   assign all  = four_q ? 3'd4 : 3'd1;
@@ -59,12 +59,13 @@
       assert (w_inside == (state_q == lod_pkg::DIVIDE_WAIT));
       // Lines: those waited for are those that this ray asked for and has not got, each once; none is wanted that is waited for.
       if (traverses) assert (waiting_q == asked && (want_q & waiting_q) == '0);
-      // They are fetched in FETCH, but a sibling group comes as late as CHILD, and only where there is one.
+      // They are fetched in FETCH, but a split whose vertices are elsewhere comes as late as CHILD.
       if (state_q <= lod_pkg::TRI && state_q != lod_pkg::IDLE) begin
         assert (want_q == '0 || state_q == lod_pkg::FETCH);
         assert (!waiting_q[1] || state_q == lod_pkg::FETCH);
-        assert (!waiting_q[0] || state_q == lod_pkg::FETCH || ((state_q == lod_pkg::MORPH || state_q == lod_pkg::MORPH_WAIT || state_q == lod_pkg::CHILD) && with_group));
-        assert (!(state_q == lod_pkg::FETCH && fetch_q == lod_pkg::VERTEX && (want_q[0] || waiting_q[0])) || with_group);
+        assert (!waiting_q[0] || state_q == lod_pkg::FETCH || ((state_q == lod_pkg::MORPH || state_q == lod_pkg::MORPH_WAIT || state_q == lod_pkg::CHILD) && with_split));
+        assert (!(state_q == lod_pkg::FETCH && fetch_q == lod_pkg::SPLIT && (want_q[0] || waiting_q[0])) || with_split || vertices_in_split);
+        assert (!(state_q == lod_pkg::FETCH && fetch_q == lod_pkg::SPLIT && (want_q[1] || waiting_q[1])) || !vertices_in_split);
       end
     end
     cover (live && state_q == lod_pkg::FETCH && error_q == lod_pkg::ERROR_LATE && asked == 2'b01);

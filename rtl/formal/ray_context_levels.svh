@@ -52,7 +52,7 @@
   // In a tree, or between trees and quad-BVH nodes.
   logic line_matters, in_tree;
   assign line_matters = state_q == lod_pkg::FETCH || state_q == lod_pkg::CHILD || state_q == lod_pkg::CHILD_WAIT || state_q == lod_pkg::PUSH;
-  assign in_tree      = (state_q >= lod_pkg::LOD && state_q <= lod_pkg::MORPH_WAIT) || (line_matters && group_there);
+  assign in_tree      = (state_q >= lod_pkg::LOD && state_q <= lod_pkg::MORPH_WAIT) || (line_matters && split_there);
 
   always_comb begin
     if (live && traverses) begin
@@ -66,18 +66,18 @@
       // A node under visit, and where it is.
       if (in_tree) assert (level < depth && depth <= scene_i.levels && depth <= 4'(lod_pkg::STORED_LEVELS));
       if (state_q == lod_pkg::VISIT && entry.kind == lod_pkg::ENTRY_TREE_NODE) assert (entry.level != '0 && entry.level < depth && depth <= scene_i.levels && depth <= 4'(lod_pkg::STORED_LEVELS));
-      // Who tessellates has fetched vertices, or has them from the record; children are of a node or a group.
-      if ((state_q == lod_pkg::MORPH || state_q == lod_pkg::MORPH_WAIT) && !compact_root) assert (fetch_q == lod_pkg::VERTEX);
+      // Who tessellates has fetched vertices; children are of a node or a split.
+      if (state_q == lod_pkg::MORPH || state_q == lod_pkg::MORPH_WAIT) assert (fetch_q == lod_pkg::SPLIT);
       if (line_matters && state_q != lod_pkg::FETCH) assert (fetch_q != lod_pkg::RECORD);
-      if (line_matters && state_q != lod_pkg::FETCH && !group_there) assert (!wrong_node);
+      if (line_matters && state_q != lod_pkg::FETCH && !split_there) assert (!wrong_node);
       // Children under way are there, and what is visited is of a kind that there is.
       if (state_q == lod_pkg::PUSH) assert (count_q <= 3'd4 && sorted_are_there);
       if (state_q == lod_pkg::VISIT) assert (entry.kind != 2'd3);
-      // Only nodes that split into nodes have a group.
-      if (line_matters && group_there && (state_q != lod_pkg::FETCH || fetch_q == lod_pkg::GROUP)) assert (!last_split);
+      // Only nodes that split into nodes have children to test.
+      if (line_matters && split_there && state_q != lod_pkg::FETCH) assert (!last_split);
       // No node of a tree waits while another is looked for.
       if (state_q == lod_pkg::VISIT && entry.kind != lod_pkg::ENTRY_TREE_NODE) assert (!some_node);
-      if (line_matters && !group_there) assert (!some_node);
+      if (line_matters && !split_there) assert (!some_node);
       // The split triangles that are written and read are there.
       if (morph_valid_i && !last_split) assert (32'(level) < SPLITS);
       if (enter_node) assert (32'(entry.level) - 1 < SPLITS);

@@ -157,15 +157,15 @@ mod tests {
         let mut met = [0; 5];
         for number in 0..2_000 {
             let mut random = Random::of(5, number);
-            let mut input = In { t_max: RayT::MAX, exponents: [U::new(5); 3], ..In::default() };
+            let mut input = In { t_max: RayT::MAX, exponents: [U::new(7); 3], ..In::default() };
             let corner = [(); 3].map(|()| random.within(8_000));
             input.origin = Vec3::new(corner[0], corner[1], corner[2]);
             input.present = [(); 4].map(|()| random.below(4) > 0);
             for (at, plane) in input.planes.iter_mut().enumerate() {
-                let (upper, step) = (at % 6 >= 3, random.below(64));
-                *plane = U::new(if upper { 64 + step } else { step });
+                let (upper, step) = (at % 6 >= 3, random.below(16));
+                *plane = U::new(if upper { 16 + step } else { step });
             }
-            // From outside through the frame, whose steps are 32 codes, or past it.
+            // From outside through the frame, whose steps are 128 codes, or past it.
             let d = [(); 3].map(|()| random.within(1 << 28));
             let x: [i64; 3] = std::array::from_fn(|k| ((corner[k] + 2_048 + random.within(2_500)) << 16) - 4 * d[k]);
             let (origin, direction) = (Point::new(x[0], x[1], x[2]), Direction::new(d[0], d[1], d[2]));

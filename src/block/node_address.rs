@@ -91,7 +91,9 @@ mod tests {
                         let wanted = match form {
                             VertexForm::Exact => record(start, level, node),
                             // Two lines for four siblings.
-                            VertexForm::Compact => In { scale: U::new(1), low: U::new(node as u64 / 2 % 2), ..record(start, level - 1, node / 4) },
+                            VertexForm::Compact => {
+                                In { scale: U::new(1), low: U::new(node as u64 / 2 % 2), ..record(start, level - 1, node / 4) }
+                            }
                         };
                         assert_eq!(line(&wanted), starts.vertex_line(form, tree, level, node), "{form:?} {tree:?} {level} {node}");
                     }

@@ -39,7 +39,7 @@ struct Figures {
     trees: usize,
     /// Trees of each number of levels, from none on: before and after.
     depths: [Vec<usize>; 2],
-    /// L0 records, bounds and vertices: before and after, and for each full-resolution triangle.
+    /// L0 records, splits and vertices: before and after, and for each full-resolution triangle.
     bytes: [u64; 2],
     bytes_per_finest_triangle: [f64; 2],
     /// Shading normals.

@@ -97,7 +97,9 @@ pub fn encode(hierarchy: &Hierarchy, surface: &Surface, info: SceneInfo, bvh: &T
     let (trees_lines, starts) = layout::places(hierarchy.vertices, &depths);
     if !starts.are_numbered(hierarchy.vertices) {
         let (splits, lines) = (starts.splits(), starts.vertex_lines());
-        return Err(SceneError::Build(format!("{splits} splits and {lines} lines of vertices, more than 2^28: fewer levels or trees are needed")));
+        return Err(SceneError::Build(format!(
+            "{splits} splits and {lines} lines of vertices, more than 2^28: fewer levels or trees are needed"
+        )));
     }
     let meta = meta(hierarchy, surface, info);
     let json = serde_json::to_vec(&meta).map_err(|e| SceneError::Build(format!("META: {e}")))?;

@@ -104,7 +104,11 @@ impl Scene {
             }
         }
         if !starts.are_numbered(form) {
-            return Err(format!("section SPLITS: {} splits and {} lines of vertices, more than 2^28", starts.splits(), starts.vertex_lines()));
+            return Err(format!(
+                "section SPLITS: {} splits and {} lines of vertices, more than 2^28",
+                starts.splits(),
+                starts.vertex_lines()
+            ));
         }
         Ok(starts)
     }

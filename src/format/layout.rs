@@ -73,7 +73,8 @@ pub struct LevelStarts {
 impl LevelStarts {
     /// Of so many trees of each depth, from 0 to at most 10.
     pub fn new(form: VertexForm, trees_by_depth: &[usize]) -> Self {
-        let trees = |has: &dyn Fn(u32) -> bool| (0..).zip(trees_by_depth).filter(|&(depth, _)| has(depth)).map(|(_, trees)| trees).sum::<usize>();
+        let trees =
+            |has: &dyn Fn(u32) -> bool| (0..).zip(trees_by_depth).filter(|&(depth, _)| has(depth)).map(|(_, trees)| trees).sum::<usize>();
         let mut starts = Self::default();
         for level in 0..SPLIT_LEVELS {
             let number = level as u32; // at most 9
@@ -188,6 +189,9 @@ mod tests {
         assert_eq!([0, 1, 2, 3].map(|level| starts.split_level(level)), [0, 3, 3 + 2 * 4, 3 + 2 * 4 + 2 * 16]);
         assert_eq!(starts.split(trees[2], 2, 5), 3 + 2 * 4 + 16 + 5);
         // The tree of two levels first: two lines for the four children of its root. Then those of level 3, of which 64 nodes have 32 lines a tree.
-        assert_eq!([starts.vertex_line(VertexForm::Compact, trees[0], 1, 3), starts.vertex_line(VertexForm::Compact, trees[2], 3, 2)], [1, 2 + 32 + 1]);
+        assert_eq!(
+            [starts.vertex_line(VertexForm::Compact, trees[0], 1, 3), starts.vertex_line(VertexForm::Compact, trees[2], 3, 2)],
+            [1, 2 + 32 + 1]
+        );
     }
 }

@@ -66,7 +66,9 @@ impl Scene {
                     }
                 }
                 FileSection::Vertices => {
-                    for (tree, (parts, own)) in vertex_parts(form, bytemuck::cast_slice_mut(out), &trees).into_iter().zip(&trees).enumerate() {
+                    for (tree, (parts, own)) in
+                        vertex_parts(form, bytemuck::cast_slice_mut(out), &trees).into_iter().zip(&trees).enumerate()
+                    {
                         let levels = (0..).filter(|&level| layout::has_vertices(form, own.depth, level));
                         for (part, level) in parts.into_iter().zip(levels) {
                             self.copy_vertices(tree, level, part);

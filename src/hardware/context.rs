@@ -19,8 +19,9 @@ const FETCH: u32 = 2;
 const CHILD: u32 = 2;
 /// Bits of a cone's offset.
 const CONE_OFFSET: u32 = 53;
-/// Lines that a context waits for at most.
+/// Lines that a context waits for at most, and bits that it keeps of the second: three stored points, or two times three displacements.
 const LINES: u32 = 2;
+const SECOND_LINE: u32 = 3 * 3 * 28;
 /// Whether a tick has passed since something came; and whether what was read of the stack is no longer its top.
 const STALE: u32 = 1;
 /// Whether a line has corners where there are none.
@@ -99,10 +100,10 @@ impl Hardware {
         self.triangle() / 3 * if self.chooses_levels() { 2 } else { 1 }
     }
 
-    /// Triangles outside of memories: a root's where there are roots alone, and inserted vertices as morphed, and of those at full resolution what a line has no room for.
+    /// Triangles outside of memories: a root's where there are roots alone, and inserted vertices as morphed, and of those at full resolution what the second line has no room for.
     fn triangles(&self) -> u32 {
         let root = if self.split_triangles() > 0 { 0 } else { self.triangle() };
-        let rest = if self.stored_levels() > 0 { self.triangle().saturating_sub(width(MemoryAnswer::FIELDS, "line")) } else { 0 };
+        let rest = if self.stored_levels() > 0 { self.triangle().saturating_sub(SECOND_LINE) } else { 0 };
         root + rest + if self.chooses_levels() { self.triangle() } else { 0 }
     }
 
@@ -157,7 +158,7 @@ impl Hardware {
 
     /// The lines, which of them are wanted and waited for, and whose they are.
     fn lines(&self) -> u32 {
-        LINES * width(MemoryAnswer::FIELDS, "line") + MISPLACED + 2 * LINES + Epoch::WIDTH
+        width(MemoryAnswer::FIELDS, "line") + SECOND_LINE + MISPLACED + 2 * LINES + Epoch::WIDTH
     }
 
     /// What bounds the ray's way: its error, how many entries it may still visit, and whether a line is late.

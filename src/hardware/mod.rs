@@ -64,9 +64,9 @@ pub struct Hardware {
     pub start_radius: bool,
     /// Hits can be above the finest level, and are mapped to it.
     pub hit_mapping: bool,
-    /// Inserted vertices can be displacements.
+    /// Inserted vertices can be displacements, and L0 records of one line.
     pub compact_vertices: bool,
-    /// They can be stored as they are.
+    /// They can be stored as they are, and L0 records have two lines.
     pub exact_vertices: bool,
     /// Bits at the bottom of all coordinates that it leaves out, as they are 0 in the scenes that it is for: 0 to 16. Vertices, morphed triangles and origins
     /// have at least as many ([`Meta::coordinate_zeros`](crate::format::Meta::coordinate_zeros)).
@@ -217,7 +217,7 @@ impl Hardware {
         levels <= u64::from(self.scene_levels())
             && zeros >= u64::from(self.coordinate_zeros)
             && levels + zeros <= u64::from(BOX_SHIFT)
-            && (has_form || self.stored_levels() == 0)
+            && has_form
             && scene.scale.offset.get() <= MAX_BOUND_OFFSET
     }
 

@@ -11,7 +11,7 @@ use crate::block::child_sort;
 use crate::block::child_sort6::{self, ChildSort6};
 use crate::block::child_test::{self, sort};
 use crate::block::ray_setup;
-use crate::format::{BvhChild, BvhNode, ChildRef, Line, SplitRecord, SixNode};
+use crate::format::{BvhChild, BvhNode, ChildRef, Line, SixNode, SplitRecord};
 use crate::num::prism::Prisms;
 use crate::num::{Box16, BoxStep, RayT, TNear, U, Wire};
 
@@ -228,7 +228,9 @@ mod tests {
             let mut three = || [(); 3].map(|()| near());
             let full = [three(), three()];
             let morphed = if number % 2 == 0 { [three(), three()] } else { full };
-            let siblings = line(&mut random, |split: &mut SplitRecord, _| split.exponents = exponents);
+            // Three steps at most: longer ones.
+            let longer = exponents.map(|e| U::new((e.get() + 5).min(15)));
+            let siblings = line(&mut random, |split: &mut SplitRecord, _| split.exponents = longer);
             let SplitRecord { halves, exponents, planes, .. } = SplitRecord::from_words(&siblings);
             let planes = planes.map(|plane| U::new(plane.get()));
             let ([[f0, f1, f2], [g0, g1, g2]], [[p0, p1, p2], [q0, q1, q2]]) = (full, morphed);

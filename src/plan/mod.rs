@@ -171,7 +171,7 @@ impl Plan {
             lod_test: rays.lod_test && hardware.lod_test,
             start_radius: rays.start_radius && hardware.start_radius,
             hit_mapping: rays.hit_mapping && hardware.hit_mapping,
-            compact_vertices: compact || !exact,
+            compact_vertices: compact,
             exact_vertices: exact,
             ..*hardware
         }

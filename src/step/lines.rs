@@ -37,7 +37,7 @@ impl LineSets {
     /// Distinct lines touched, by the place of their section.
     pub fn counts(&self) -> [u64; MAX_SECTIONS] {
         let mut counts = [0; MAX_SECTIONS];
-        // A section may be empty: a scene without splits has no bound data.
+        // A section may be empty: a scene of base triangles alone has no splits.
         for (id, section) in self.map.sections().filter(|(_, section)| section.lines > 0) {
             let first = u64::from(self.map.first(id));
             let words = (first / 64..(first + section.lines).div_ceil(64)).map(|at| {

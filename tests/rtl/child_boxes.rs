@@ -79,13 +79,13 @@ fn unmoved(i: &In) -> In {
 
 /// Let out to both ends of the range.
 fn far_out(draw: &mut Draw) -> In {
-    In { exponents: [U::MAX; 3], planes: [0; 24].map(|_| U::new(4 + draw.below(124))), ..random(draw) }
+    In { exponents: [U::MAX; 3], planes: [0; 24].map(|_| U::new(4 + draw.below(28))), ..random(draw) }
 }
 
 /// The excess ends where the morphed triangle does, or a code beside.
 fn level(draw: &mut Draw) -> In {
     let input = tree(draw, |draw| point([0; 3].map(|_| draw.signed(LIMIT / 2))));
-    let by = draw.between(0, 127);
+    let by = draw.between(0, 31);
     let (halves, exponents) = ([false; 3], [U::ZERO; 3]);
     // All corners in the same place, and morphed by as much, in codes.
     let from = input.f0.get().map(|v| v >> 16 << 16);
@@ -97,7 +97,7 @@ fn level(draw: &mut Draw) -> In {
 
 fn node(draw: &mut Draw) -> In {
     let origin = Vec3::new(draw.signed(MOST), draw.signed(MOST), draw.signed(MOST));
-    let planes = [0; 24].map(|_| U::new(draw.bits::<5>().get()));
+    let planes = [0; 24].map(|_| draw.bits());
     // Whatever the registers of a triangle hold.
     let [full, morphed] = [0; 2].map(|_| [0; 6].map(|_| point([0; 3].map(|_| draw.between(i32::MIN.into(), i32::MAX.into())))));
     with_points(In { tree: false, origin, planes, ..random(draw) }, full, morphed)

@@ -14,44 +14,37 @@ fn line(i: &In) -> u64 {
 
 /// With a base that leaves room for it.
 fn based(draw: &mut Draw, record: In) -> In {
-    let most = U::<36>::MAX.get() - record.first.get() - line(&record);
+    let most = U::<36>::MAX.get() - line(&record);
     In { base: U::new(draw.bits::<36>().get().min(most)), ..record }
 }
 
 fn record(draw: &mut Draw) -> In {
-    let scale = draw.below(3);
+    let scale = draw.below(2);
     let record = In { index: draw.bits(), scale: U::new(scale), low: U::new(draw.below(1 << scale)), ..In::default() };
     based(draw, record)
 }
 
-/// How many levels have sibling groups, of hardware for so many; one at least.
-fn group_levels(levels: u64) -> u64 {
-    (levels - 1).max(1)
-}
-
-/// Of a level that has sibling groups.
+/// Of a level that can have nodes that split.
 fn node(draw: &mut Draw) -> In {
-    let level = draw.below(group_levels(draw.levels));
+    let level = draw.below(draw.levels);
     let index = if draw.once_in(4) { (1 << (2 * level)) - 1 } else { draw.below(1 << (2 * level)) };
     let place = draw.below((1 << 28) >> (2 * level));
     let room = (1 << 28) - (place << (2 * level)) - index;
-    let first = if draw.once_in(4) { U::MAX } else { draw.bits() };
-    let node =
-        In { first, start: U::new(draw.below(room)), place: U::new(place), level: U::new(level), index: U::new(index), ..record(draw) };
+    let node = In { start: U::new(draw.below(room)), place: U::new(place), level: U::new(level), index: U::new(index), ..record(draw) };
     based(draw, node)
 }
 
 /// What no scene has: sums wrap.
 fn anything(draw: &mut Draw) -> In {
-    let level = draw.below(group_levels(draw.levels));
+    let level = draw.below(draw.levels);
     let index = U::new(draw.below(1 << (2 * level)));
-    let record = In { first: draw.bits(), start: draw.bits(), place: draw.bits(), level: U::new(level), index, ..record(draw) };
+    let record = In { start: draw.bits(), place: draw.bits(), level: U::new(level), index, ..record(draw) };
     based(draw, record)
 }
 
 fn top(draw: &mut Draw) -> In {
     let record = anything(draw);
-    In { base: U::new(U::<36>::MAX.get() - record.first.get() - line(&record)), ..record }
+    In { base: U::new(U::<36>::MAX.get() - line(&record)), ..record }
 }
 
 fn bottom(draw: &mut Draw) -> In {
@@ -59,11 +52,10 @@ fn bottom(draw: &mut Draw) -> In {
 }
 
 fn legal(i: &In) -> bool {
-    i.level.get() <= 8
+    i.level.get() <= 9
         && (i.place == U::ZERO || i.index.get() < 4u64.pow(i.level.get() as u32))
-        && i.scale.get() <= 2
         && i.low.get() < 1 << i.scale.get()
-        && i.base.get() + i.first.get() + line(i) <= U::<36>::MAX.get()
+        && i.base.get() + line(i) <= U::<36>::MAX.get()
 }
 
 type Is = Category<NodeAddress>;
@@ -77,17 +69,14 @@ pub fn suite(levels: u64) -> Suite<NodeAddress> {
             Is::any("nodes of trees", node),
             Is::any("records beyond all scenes", anything),
             Is::all("top of memory", top, |_, o| o.address == U::MAX),
-            Is::all("bottom of memory", bottom, |i, o| o.address.get() == i.first.get() + line(i)),
+            Is::all("bottom of memory", bottom, |i, o| o.address.get() == line(i)),
         ],
         vec![
             ("largest index", |i, _| i.index == U::MAX),
             ("largest place", |i, _| i.place == U::MAX),
             ("address 0", |_, o| o.address == U::ZERO),
         ],
-        vec![
-            ("level", 0..=group_levels(levels) - 1, |i, _| i.level.get()),
-            ("line of one, two or four", 0..=6, |i, _| (1 << i.scale.get()) - 1 + i.low.get()),
-        ],
+        vec![("level", 0..=levels - 1, |i, _| i.level.get()), ("line of one or two", 0..=2, |i, _| (1 << i.scale.get()) - 1 + i.low.get())],
     )
 }
 

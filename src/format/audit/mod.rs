@@ -101,9 +101,7 @@ fn read(scene: &Scene) -> (tree::Lattices, Tallies) {
     let mut lattices = tree::Lattices::new(scene.trees() * len);
     let per_tree = lattices.trees(len).enumerate();
     let (known, begins) = (known(scene), tree::Begins::of(scene));
-    let found = per_tree
-        .map(|(t, lattice)| tree::read(scene, &begins, t, known[t], lattice))
-        .reduce(Tallies::default, Tallies::join);
+    let found = per_tree.map(|(t, lattice)| tree::read(scene, &begins, t, known[t], lattice)).reduce(Tallies::default, Tallies::join);
     (lattices, found)
 }
 

@@ -204,7 +204,9 @@ impl Begins {
     pub fn of(scene: &Scene) -> Self {
         let depths = scene.depths();
         let deeper = |level: u32| depths.iter().filter(|&&depth| depth > level).count();
-        let above = |of: &dyn Fn(u32) -> usize| (0..scene.levels()).map(|level| (0..level).map(|above| 4usize.pow(above) * of(above)).sum()).collect();
+        let above = |of: &dyn Fn(u32) -> usize| {
+            (0..scene.levels()).map(|level| (0..level).map(|above| 4usize.pow(above) * of(above)).sum()).collect()
+        };
         Self {
             splits: above(&|level| deeper(if level == 0 { 0 } else { level + 1 })),
             nodes: above(&deeper),
@@ -290,7 +292,8 @@ impl Reader<'_> {
             // A root that splits into triangles alone has its vertices there and nothing of children; exact vertices are elsewhere.
             let childless = SplitRecord { v0: split.v0, v1: split.v1, v2: split.v2, ..SplitRecord::default() };
             let own = [split.v0, split.v1, split.v2].map(|v| v.get());
-            let fine = split.reserved.get() == 0 && (self.depth > 1 || *split == childless) && (self.form.is_compact() || own == [[0; 3]; 3]);
+            let fine =
+                split.reserved.get() == 0 && (self.depth > 1 || *split == childless) && (self.form.is_compact() || own == [[0; 3]; 3]);
             self.found.check(CheckKind::Reserved, fine, || format!("tree {tree}: split of node {node} of level {level}"));
         }
         let name = || format!("tree {tree}: vertices of node {node} of level {level}");

@@ -24,7 +24,11 @@ impl Hardware {
         let fetches = [
             ("NODE", Fetch::Node as u32, "quad-BVH node"),
             ("RECORD", Fetch::Record as u32, "L0 record"),
-            ("SPLIT", Fetch::Split as u32, "split: of a node whose children are nodes its record, and inserted vertices where they are not in that"),
+            (
+                "SPLIT",
+                Fetch::Split as u32,
+                "split: of a node whose children are nodes its record, and inserted vertices where they are not in that",
+            ),
         ];
         enumeration("What a context fetches.", "fetch_t", &fetches, &mut out);
         let error = |error: RayError| (error.named().0, error as u32, error.named().1);

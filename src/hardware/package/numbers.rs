@@ -109,8 +109,8 @@ pub(super) fn print(hardware: &Hardware, out: &mut String) {
     )
     .put("START_RADIUS", u32::from(hardware.start_radius), "cones can have a radius where their rays start")
     .put("HIT_MAPPING", u32::from(hardware.hit_mapping), "hits can be above the finest level")
-    .put("COMPACT_VERTICES", u32::from(hardware.compact_vertices), "inserted vertices can be displacements")
-    .put("EXACT_VERTICES", u32::from(hardware.exact_vertices), "they can be stored as they are")
+    .put("COMPACT_VERTICES", u32::from(hardware.compact_vertices), "inserted vertices can be displacements, and L0 records of one line")
+    .put("EXACT_VERTICES", u32::from(hardware.exact_vertices), "they can be stored as they are, and L0 records have two lines")
     .put("COORDINATE_ZEROS", hardware.coordinate_zeros, "zero bits at the bottom of every coordinate, which it leaves out")
     .put("DIRECTION_ZEROS", hardware.direction_zeros, "of every component of a direction")
     .put(

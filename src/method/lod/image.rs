@@ -28,6 +28,9 @@ pub enum LineLayout {
     /// Those that the paper has (section 4.3): nodes, records and the bounds of four children of two lines, inserted vertices of one, bounds asked for with the vertices. The rays'
     /// ways and hits are the same; only addresses are others. For simulations of the paper's own figures.
     Paper,
+    /// Those of the images, but with compact vertices in lines apart from their splits, half a line each; an L0 record has two lines, and the root's vertices in it. So the files of
+    /// this program had them before their version 5.
+    Apart,
     /// Those of the images in another order, with room for all levels of all trees. Again only addresses are others.
     Ordered(LineOrder),
 }
@@ -38,6 +41,7 @@ impl LineLayout {
         match name {
             "own" => Some(Self::Own),
             "paper" => Some(Self::Paper),
+            "apart" => Some(Self::Apart),
             "tree" => Some(Self::Ordered(LineOrder::Tree)),
             "coarse" => Some(Self::Ordered(LineOrder::Coarse)),
             "blocks" => Some(Self::Ordered(LineOrder::Blocks)),
@@ -56,13 +60,16 @@ pub static LINE_LAYOUT: Knob = Knob {
     words: &[
         ("own", "Those of the scene, level by level: a node, record or split in one line, a last split in half a line"),
         ("paper", "Those of the paper's layout, for the same rays: a node, record or four children in two lines, vertices in one"),
+        ("apart", "The scene's, but a record in two lines, and compact vertices apart from their splits"),
         ("tree", "The scene's lines, but tree by tree"),
         ("coarse", "Three levels over all trees, then what is below each of their nodes by itself"),
         ("blocks", "Two levels of a tree together, these blocks level by level over all trees"),
         ("veb", "Tree by tree, each in van Emde Boas' order"),
     ],
     of_frame: false,
-    allows: |value| LineLayout::named(value).map(drop).ok_or_else(|| format!("'{value}' is not own, paper, tree, coarse, blocks or veb")),
+    allows: |value| {
+        LineLayout::named(value).map(drop).ok_or_else(|| format!("'{value}' is not own, paper, apart, tree, coarse, blocks or veb"))
+    },
 };
 
 /// What bounds the children of a tree's nodes.
@@ -78,6 +85,17 @@ pub static NODE_BOUNDS: Knob = Knob {
     of_frame: false,
     allows: |value| if ["boxes", "prisms"].contains(&value) { Ok(()) } else { Err(format!("'{value}' is not boxes or prisms")) },
 };
+
+/// With what the inserted vertices of a node come.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum With {
+    /// The L0 record.
+    Record,
+    /// The node's split.
+    Split,
+    /// Nothing else: they are asked for themselves.
+    Nothing,
+}
 
 /// A tree that a ray is in.
 #[derive(Clone, Copy, Debug, Default)]
@@ -132,11 +150,13 @@ impl<'a> LodImage<'a> {
         // In other orders there is room for all levels of all trees.
         let (pair, split_lines, vertex_lines) = match layout {
             LineLayout::Own => (1, splits.len(), vertices.len()),
+            LineLayout::Apart if form.is_compact() => (1, splits.len(), 2 * splits.len()),
+            LineLayout::Apart => (1, splits.len(), vertices.len()),
             LineLayout::Paper => (2, all(layout::split_lines(levels)), all(layout::vertex_lines(VertexForm::Exact, levels))),
             LineLayout::Ordered(_) if form.is_compact() => (1, all(layout::split_lines(levels)), 2 * all(layout::split_lines(levels))),
             LineLayout::Ordered(_) => (1, all(layout::split_lines(levels)), all(layout::vertex_lines(form, levels))),
         };
-        let record_lines = if layout == LineLayout::Paper { 2 * scene.trees() } else { records.len() };
+        let record_lines = if matches!(layout, LineLayout::Paper | LineLayout::Apart) { 2 * scene.trees() } else { records.len() };
         let sections = [
             Section::of_bytes("bvh_node", line(pair * nodes.len())).of_base(),
             Section::of_bytes("l0_record", line(record_lines)).of_base(),
@@ -183,17 +203,22 @@ impl<'a> LodImage<'a> {
         }
     }
 
-    /// The inserted vertices of a node of a tree of this depth come with its split.
+    /// With what a ray asks for the inserted vertices of a node of a tree of this depth.
     #[inline(always)]
-    pub(super) fn split_has_vertices(&self, depth: u32, level: u32) -> bool {
-        self.form.is_compact() && self.layout != LineLayout::Paper && has_split(depth, level)
+    pub(super) fn vertices_with(&self, depth: u32, level: u32) -> With {
+        match self.layout {
+            _ if !self.form.is_compact() => With::Nothing,
+            LineLayout::Own | LineLayout::Ordered(_) if has_split(depth, level) => With::Split,
+            LineLayout::Apart if level == 0 => With::Record,
+            _ => With::Nothing,
+        }
     }
 
     /// The line or lines of quad-BVH node `index`.
     #[inline(always)]
     pub(super) fn node(&self, index: usize) -> Fetch {
         match self.layout {
-            LineLayout::Own | LineLayout::Ordered(_) => Fetch::new(NODES, self.map.line(NODES, index as u64), 1),
+            LineLayout::Own | LineLayout::Apart | LineLayout::Ordered(_) => Fetch::new(NODES, self.map.line(NODES, index as u64), 1),
             LineLayout::Paper => self.pair(NODES, index),
         }
     }
@@ -202,7 +227,9 @@ impl<'a> LodImage<'a> {
     #[inline(always)]
     pub(super) fn split(&self, tree: TreeAt, level: u32, node: usize) -> Fetch {
         match self.layout {
-            LineLayout::Own => Fetch::new(SPLITS, self.map.line(SPLITS, self.starts.split(tree.lines, level, node) as u64), 1),
+            LineLayout::Own | LineLayout::Apart => {
+                Fetch::new(SPLITS, self.map.line(SPLITS, self.starts.split(tree.lines, level, node) as u64), 1)
+            }
             LineLayout::Paper => self.pair(SPLITS, self.ordered(LineOrder::Tree, tree, level, node)),
             LineLayout::Ordered(order) => Fetch::new(SPLITS, self.map.line(SPLITS, self.ordered(order, tree, level, node) as u64), 1),
         }
@@ -211,7 +238,7 @@ impl<'a> LodImage<'a> {
     /// The line or lines of L0 record `index`.
     #[inline(always)]
     pub(super) fn l0_record(&self, index: usize) -> Fetch {
-        if self.form.is_compact() && self.layout != LineLayout::Paper {
+        if self.form.is_compact() && matches!(self.layout, LineLayout::Own | LineLayout::Ordered(_)) {
             Fetch::new(RECORDS, self.map.line(RECORDS, index as u64), 1)
         } else {
             self.pair(RECORDS, index)
@@ -223,11 +250,12 @@ impl<'a> LodImage<'a> {
         Fetch::new(section, self.map.line(section, 2 * index as u64), PAIR)
     }
 
-    /// The line with the inserted vertices of a node, where [they do not come with its split](Self::split_has_vertices).
+    /// The line with the inserted vertices of a node, where [they come with nothing else](Self::vertices_with).
     #[inline(always)]
     pub(super) fn inserted(&self, tree: TreeAt, level: u32, node: usize) -> Fetch {
         let (line, place) = match self.layout {
-            LineLayout::Own => (self.starts.vertex_line(self.form, tree.lines, level, node), 1),
+            LineLayout::Apart if self.form.is_compact() => (2 * self.starts.split(tree.lines, level - 1, node / 4) + node % 4 / 2, 1),
+            LineLayout::Own | LineLayout::Apart => (self.starts.vertex_line(self.form, tree.lines, level, node), 1),
             LineLayout::Paper => (tree.index as usize * layout::level_start(self.levels) + layout::level_start(level) + node, 2),
             // The vertices of four siblings follow each other as their parents' splits do.
             LineLayout::Ordered(order) if self.form.is_compact() => (2 * self.ordered(order, tree, level - 1, node / 4) + node % 4 / 2, 1),

@@ -45,7 +45,7 @@ pub static METHOD: Registered = Registered {
 /// The method on a scene.
 struct Lod<'a> {
     image: LodImage<'a>,
-    /// Of the children of each sibling group, if they bound them.
+    /// Of the children of each split, if they bound them.
     prisms: Option<Vec<Prisms>>,
     space: ModelSpace,
 }

@@ -1,6 +1,6 @@
 //! The traversal loop of the paper's figure 9: quad-BVH over base triangles, then tessellation trees with an LOD test at every node.
 
-use super::image::{LodImage, TreeAt};
+use super::image::{LodImage, TreeAt, With};
 use super::prior::{Deciders, Prior};
 use crate::block::Block;
 use crate::block::child_boxes::Corners;
@@ -219,12 +219,12 @@ impl<S: StepSink, H: HitSink, const COMPACT: bool, const FULL_DETAIL: bool, cons
             return None;
         }
 
-        let at_once = self.image.split_has_vertices(depth, level);
-        let fetch = match at_once {
-            true => self.image.split(self.tree, level, node as usize),
-            false => self.image.inserted(self.tree, level, node as usize),
-        };
-        self.steps.step(Step::on(fetch, Act::Tessellate));
+        let with = self.image.vertices_with(depth, level);
+        self.steps.step(match with {
+            With::Record => Step::of(Act::Tessellate),
+            With::Split => Step::on(self.image.split(self.tree, level, node as usize), Act::Tessellate),
+            With::Nothing => Step::on(self.image.inserted(self.tree, level, node as usize), Act::Tessellate),
+        });
         let [v0, v1, v2] = self.stored(level, node as usize);
         let (scale, zeros) = (self.image.scale, self.image.zeros);
         let grid = U::new(u64::from(self.image.levels - level - 1 + zeros));
@@ -240,7 +240,7 @@ impl<S: StepSink, H: HitSink, const COMPACT: bool, const FULL_DETAIL: bool, cons
         }
         let split = Split { full: Corners::of(f, g), morphed: Corners::of(p, q) };
         self.splits[level as usize] = split;
-        self.tree_children(level, node, &split, at_once)
+        self.tree_children(level, node, &split, with)
     }
 
     /// The LOD test of a node, by the rays that decide about its edges.
@@ -267,9 +267,9 @@ impl<S: StepSink, H: HitSink, const COMPACT: bool, const FULL_DETAIL: bool, cons
         }
     }
 
-    /// Tests the boxes of the four children of a node; its split is there if it came `at_once` with the inserted vertices, or else was asked for with them.
+    /// Tests the boxes of the four children of a node, whose inserted vertices came `with` that.
     #[inline(always)]
-    fn tree_children(&mut self, level: u32, node: u32, split: &Split, at_once: bool) -> Option<Entry> {
+    fn tree_children(&mut self, level: u32, node: u32, split: &Split, with: With) -> Option<Entry> {
         let number = self.image.starts.split(self.tree.lines, level, node as usize);
         let line = &self.image.splits[number];
         let t_max = self.sink.t_max();
@@ -283,9 +283,11 @@ impl<S: StepSink, H: HitSink, const COMPACT: bool, const FULL_DETAIL: bool, cons
                 (tests, Act::Prisms { met: tests.met() })
             }
         };
-        self.steps.step(match at_once {
-            true => Step::of(act),
-            false => Step::on(self.image.split(self.tree, level, node as usize).joining(), act),
+        let fetch = || self.image.split(self.tree, level, node as usize);
+        self.steps.step(match with {
+            With::Split => Step::of(act),
+            With::Record => Step::on(fetch(), act),
+            With::Nothing => Step::on(fetch().joining(), act),
         });
         push_sorted(self.stack, &tests, |k| {
             let [e0, e1, e2] = SplitRecord::line_codes(line, k);

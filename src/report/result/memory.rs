@@ -258,7 +258,7 @@ pub struct WaitShares {
 }
 
 impl WaitShares {
-    /// Where compute takes no time, contexts only wait; a traversal unit's wait for lines in `FETCH` (and, for some of the bound data, in `CHILD`).
+    /// Where compute takes no time, contexts only wait; a traversal unit's wait for lines in `FETCH` (and, for splits of exact vertices, in `CHILD`).
     pub(super) fn new(waits: &Waits, units: Option<&UnitCounts>, context_cycles: u64) -> Self {
         let share = |cycles: u64| ratio(cycles as f64, context_cycles as f64);
         let (memory, idle) = match units {

@@ -4,7 +4,7 @@ use crate::hardware::{FULL_DETAIL, ray_for, scene_for};
 use crate::hostile::{Exposed, everywhere};
 use crate::models::{any_rays, ball, terrain, with_vertices};
 use crate::plain::plain;
-use lodray::format::{BvhNode, ChildRef, L0Record, Scene, VertexData};
+use lodray::format::{BvhNode, ChildRef, L0Record, Scene, SplitRecord, VertexData};
 use lodray::golden::exact::Exact;
 use lodray::hardware::ports::{AnswerLimit, HitOut, MemoryAnswer, MemoryRequest, RayIn, SceneConfig, SecondaryIn};
 use lodray::hardware::{Hardware, RayError};
@@ -178,6 +178,23 @@ fn corner(line: Line, x: i64) -> Option<(Line, bool)> {
     corners(line, |corners| corners.v1.x = S::new(x))
 }
 
+fn split(line: Line, change: impl Fn(&mut SplitRecord)) -> Option<(Line, bool)> {
+    let mut words = line.map(U::get);
+    let mut split = SplitRecord::from_words(&words);
+    change(&mut split);
+    split.to_words(&mut words);
+    plain_line(words)
+}
+
+/// The corner p1 of an L0 record, `x` in 16 units.
+fn base_corner(form: VertexForm, at: u64, line: Line, x: i64) -> Option<(Line, bool)> {
+    match form {
+        VertexForm::Compact => record(line, |record| record.p1.x = S::new(x >> 6)),
+        VertexForm::Exact if at & 1 == 1 => corner(line, x),
+        VertexForm::Exact => Some((line, false)),
+    }
+}
+
 /// Every error, by each way that leads to it.
 pub fn each_error<E: Exposed>(mut make: impl FnMut(Hardware, &SceneConfig) -> E) {
     let make = &mut make;
@@ -186,7 +203,7 @@ pub fn each_error<E: Exposed>(mut make: impl FnMut(Hardware, &SceneConfig) -> E)
         let scene = desk.scene();
         let same = |line| Some((line, false));
 
-        for section in ["bvh_node", "l0_record", "bound_data", "vertex_data"] {
+        for section in ["bvh_node", "l0_record", "split", "vertex_data"] {
             wrong(make, &desk, &scene, RayError::Memory, |of, _, line| Some((line, of == section)));
             let cycles = wrong(make, &desk, &scene, RayError::Late, |of, _, line| (of != section).then_some((line, false)));
             assert!((LIMIT + 1..2 * LIMIT + 2000).contains(&cycles), "{section}: late after {cycles} cycles");
@@ -198,14 +215,16 @@ pub fn each_error<E: Exposed>(mut make: impl FnMut(Hardware, &SceneConfig) -> E)
             wrong(make, &desk, &scene, image, |of, _, line| if of == "bvh_node" { node(line, change) } else { same(line) });
         }
         let deep = |record: &mut L0Record| record.depth = U::new(4);
-        wrong(make, &desk, &scene, image, |of, at, line| if of == "l0_record" && at & 1 == 1 { record(line, deep) } else { same(line) });
+        wrong(make, &desk, &scene, image, |of, at, line| {
+            if of == "l0_record" && (form.is_compact() || at & 1 == 0) { record(line, deep) } else { same(line) }
+        });
         // Beyond the largest coordinate, and off the grid of corners.
         for x in [i32::MAX >> 4, i32::MIN >> 4] {
             let x = i64::from(x);
-            wrong(make, &desk, &scene, image, |of, at, line| if of == "l0_record" && at & 1 == 0 { corner(line, x) } else { same(line) });
+            wrong(make, &desk, &scene, image, |of, at, line| if of == "l0_record" { base_corner(form, at, line, x) } else { same(line) });
         }
         let coarse = SceneConfig { zeros: U::new(8), ..scene };
-        wrong(make, &desk, &coarse, image, |of, at, line| if of == "l0_record" && at & 1 == 0 { corner(line, 1 << 6) } else { same(line) });
+        wrong(make, &desk, &coarse, image, |of, at, line| if of == "l0_record" { base_corner(form, at, line, 1 << 6) } else { same(line) });
         match form {
             VertexForm::Exact => {
                 wrong(make, &desk, &scene, image, |of, _, line| if of == "vertex_data" { corner(line, -(1 << 27)) } else { same(line) });
@@ -213,15 +232,13 @@ pub fn each_error<E: Exposed>(mut make: impl FnMut(Hardware, &SceneConfig) -> E)
             VertexForm::Compact => {
                 // Corners where no coordinate can be larger, and steps from there.
                 let far = |record: &mut L0Record| {
+                    let x = S::new(i64::from(COORD_LIMIT >> 10));
                     (record.e0, record.e1, record.e2) = (U::new(1), U::new(1), U::new(1));
-                    record.split.v0.x = S::new(1000);
+                    (record.p0.x, record.p1.x, record.p2.x) = (x, x, x);
                 };
-                wrong(make, &desk, &scene, image, |of, at, line| match (of, at & 1) {
-                    ("l0_record", 0) => corners(line, |corners| {
-                        let x = S::new(i64::from(COORD_LIMIT >> 4));
-                        (corners.v0.x, corners.v1.x, corners.v2.x) = (x, x, x);
-                    }),
-                    ("l0_record", _) => record(line, far),
+                wrong(make, &desk, &scene, image, |of, _, line| match of {
+                    "l0_record" => record(line, far),
+                    "split" => split(line, |split| split.v0.x = S::new(1000)),
                     _ => same(line),
                 });
             }
@@ -252,13 +269,7 @@ pub fn each_error<E: Exposed>(mut make: impl FnMut(Hardware, &SceneConfig) -> E)
         if of == "bvh_node" { Some((everywhere(ChildRef::LEAF, 2, far), false)) } else { same(line) }
     });
     let far = |record: &mut L0Record| record.place = U::new(1 << FULL_DETAIL.index_bits);
-    wrong(
-        make,
-        &desk,
-        &scene,
-        RayError::Image,
-        |of, at, line| if of == "l0_record" && at & 1 == 1 { record(line, far) } else { same(line) },
-    );
+    wrong(make, &desk, &scene, RayError::Image, |of, _, line| if of == "l0_record" { record(line, far) } else { same(line) });
     wrong(make, &desk, &SceneConfig { compact: false, ..scene }, RayError::Scene, |_, _, line| same(line));
 }
 

@@ -263,7 +263,7 @@ impl<'a> Hostile<'a> {
             2 => SceneConfig { compact: !scene.compact, ..scene },
             3 => SceneConfig { visits: U::new(self.rng.below(20)), ..scene },
             4 => SceneConfig { scale: lodray::num::BoundScale { offset: U::new(self.rng.below(512)) }, ..scene },
-            5 => SceneConfig { nodes: U::new(self.rng.below(1 << 36)), bounds: U::MAX, ..scene },
+            5 => SceneConfig { nodes: U::new(self.rng.below(1 << 36)), splits: U::MAX, ..scene },
             6 => SceneConfig { visits: U::MAX, ..scene },
             _ => return self.change(unit, stage, scene, true),
         };

@@ -128,7 +128,7 @@ pub fn scene_with(surface: &Surface, bounds: BoundKind, vertices: VertexForm) ->
         .expect("a valid surface")
 }
 
-/// Offset and length of section `kind` (1 to 8) in a scene file, as `docs/scene-format.md` says.
+/// Offset and length of section `kind` (1 to 9) in a scene file, as `docs/scene-format.md` says.
 pub fn section(bytes: &[u8], kind: usize) -> (usize, usize) {
     let entry = 64 + 32 * (kind - 1);
     let word = |at: usize| u64::from_le_bytes(bytes[at..at + 8].try_into().unwrap()) as usize;
@@ -137,12 +137,12 @@ pub fn section(bytes: &[u8], kind: usize) -> (usize, usize) {
 
 /// Makes all checksums right again.
 pub fn reseal(bytes: &mut [u8]) {
-    for kind in 1..=8 {
+    for kind in 1..=9 {
         let (offset, length) = section(bytes, kind);
         let sum = xxhash_rust::xxh3::xxh3_64(&bytes[offset..offset + length]);
         bytes[64 + 32 * (kind - 1) + 24..][..8].copy_from_slice(&sum.to_le_bytes());
     }
     bytes[24..32].fill(0);
-    let sum = xxhash_rust::xxh3::xxh3_64(&bytes[..64 + 32 * 8]);
+    let sum = xxhash_rust::xxh3::xxh3_64(&bytes[..64 + 32 * 9]);
     bytes[24..32].copy_from_slice(&sum.to_le_bytes());
 }

@@ -103,11 +103,7 @@ const GROUPS: &[(&str, &[Row])] = &[
         "Addresses",
         &[
             (UNIT, BITS, &["u_node_address.valid_i", "u_node_address.ready_o"]),
-            (
-                UNIT,
-                HEX,
-                &["u_node_address.in_i.base", "u_node_address.in_i.first", "u_node_address.in_i.start", "u_node_address.in_i.place"],
-            ),
+            (UNIT, HEX, &["u_node_address.in_i.base", "u_node_address.in_i.start", "u_node_address.in_i.place"]),
             (UNIT, DECIMAL, &["u_node_address.in_i.level", "u_node_address.in_i.index"]),
         ],
     ),
