@@ -135,7 +135,7 @@ fn a_run_has_consistent_figures() {
         "alone needs",
         "latency",
         "mean W",
-        "vertex_data",
+        "split",
         "read the L0 part",
     ] {
         assert!(text.contains(word), "no {word} in:\n{text}");

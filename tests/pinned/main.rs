@@ -6,6 +6,7 @@ use lodray::format::Scene;
 use lodray::machine::Machine;
 use lodray::method::bvh::NoStore;
 use lodray::method::{Knobs, METHODS, find};
+use lodray::num::VertexForm;
 use lodray::rays::{Camera, ModelSpace, Sight, View};
 use lodray::report::result::{MachineFacts, MethodFacts, SceneFacts, Setup, SimResult, ViewFacts};
 use lodray::report::results_version;
@@ -13,7 +14,7 @@ use lodray::run::{Compute, FrameRays, Job, simulate};
 use lodray::sim::dram::{ChannelCounts, DramEnergy};
 use lodray::sim::replay::Run;
 use lodray::sim::unit::UnitCounts;
-use lodray_test_support::models::{scene_of, terrain};
+use lodray_test_support::models::{scene_of, terrain, with_vertices};
 use serde_json::{Value, json};
 use std::path::{Path, PathBuf};
 use xxhash_rust::xxh3::xxh3_64;
@@ -31,23 +32,30 @@ struct Pin {
     machine: &'static str,
     compute: Compute,
     distance: f64,
+    vertices: VertexForm,
 }
 
 impl Pin {
     const fn new(name: &'static str, method: &'static str, machine: &'static str, compute: Compute, distance: f64) -> Self {
-        Self { name, method, knobs: &[], machine, compute, distance }
+        Self { name, method, knobs: &[], machine, compute, distance, vertices: VertexForm::Exact }
     }
 
     const fn with(self, knobs: &'static [(&'static str, &'static str)]) -> Self {
         Self { knobs, ..self }
     }
+
+    const fn compact(self) -> Self {
+        Self { vertices: VertexForm::Compact, ..self }
+    }
 }
 
-const PINS: [Pin; 11] = [
+const PINS: [Pin; 13] = [
     Pin::new("lod-free", "lod", "haydel2023", Compute::Free, 1.2),
     Pin::new("lod-paper", "lod", "haydel2023", Compute::Free, 1.2).with(&[("line-layout", "paper")]),
     Pin::new("lod-units", "lod", "haydel2023", Compute::Units, 2.0),
     Pin::new("lod-units-gpu", "lod", "turing2018", Compute::Units, 0.7),
+    Pin::new("lod-compact-free", "lod", "haydel2023", Compute::Free, 1.2).compact(),
+    Pin::new("lod-compact-units", "lod", "haydel2023", Compute::Units, 2.0).compact(),
     Pin::new("lod-packet", "lod", "packet", Compute::Free, 4.0),
     Pin::new("bvh-free", "bvh", "haydel2023-ddr3", Compute::Free, 1.2),
     Pin::new("bvh-units", "bvh", "haydel2023", Compute::Units, 2.0).with(&[
@@ -177,11 +185,11 @@ fn differences(place: &str, pinned: &Value, now: &Value, found: &mut Vec<String>
 
 #[test]
 fn frames_are_as_they_were() {
-    let scene = scene_of(&terrain(8, 5, 0.6, 11));
+    let [exact, compact] = VertexForm::ALL.map(|form| scene_of(&with_vertices(form, terrain(8, 5, 0.6, 11))));
     let rewrite = std::env::var_os(REWRITE).is_some();
     let mut moved = Vec::new();
     for pin in &PINS {
-        let now = pin.figures(&scene);
+        let now = pin.figures(if pin.vertices.is_compact() { &compact } else { &exact });
         let file = pin.file();
         if rewrite {
             let text = serde_json::to_string_pretty(&now).expect("JSON") + "\n";
