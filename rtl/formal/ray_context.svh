@@ -22,9 +22,10 @@
   assign traverses = state_q >= lod_pkg::VISIT && state_q <= lod_pkg::TRI;
   assign finishes  = state_q >= lod_pkg::DIVIDE_V && state_q <= lod_pkg::DONE;
 
-  // A split is fetched, and vertices besides.
-  logic with_split;
-  assign with_split = fetch_q == lod_pkg::SPLIT && !last_split && !compact;
+  // A split is fetched, or vertices; and a split with vertices elsewhere.
+  logic of_split, with_split;
+  assign of_split   = fetch_q != lod_pkg::NODE && fetch_q != lod_pkg::RECORD;
+  assign with_split = of_split && !last_split && !compact;
 
   logic [2:0] all, sent;
   assign all  = four_q ? 3'd4 : 3'd1;
@@ -64,8 +65,8 @@
         assert (want_q == '0 || state_q == lod_pkg::FETCH);
         assert (!waiting_q[1] || state_q == lod_pkg::FETCH);
         assert (!waiting_q[0] || state_q == lod_pkg::FETCH || ((state_q == lod_pkg::MORPH || state_q == lod_pkg::MORPH_WAIT || state_q == lod_pkg::CHILD) && with_split));
-        assert (!(state_q == lod_pkg::FETCH && fetch_q == lod_pkg::SPLIT && (want_q[0] || waiting_q[0])) || with_split || vertices_in_split);
-        assert (!(state_q == lod_pkg::FETCH && fetch_q == lod_pkg::SPLIT && (want_q[1] || waiting_q[1])) || !vertices_in_split);
+        assert (!(state_q == lod_pkg::FETCH && of_split && (want_q[0] || waiting_q[0])) || with_split || vertices_in_split);
+        assert (!(state_q == lod_pkg::FETCH && of_split && (want_q[1] || waiting_q[1])) || !vertices_in_split);
       end
     end
     cover (live && state_q == lod_pkg::FETCH && error_q == lod_pkg::ERROR_LATE && asked == 2'b01);

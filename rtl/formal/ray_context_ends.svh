@@ -36,7 +36,7 @@
       lod_pkg::DECIDE_WAIT: begin steps = STEPS_W'(49) + entries_left; waits = !decide_valid_i; end
       lod_pkg::DECIDE:      begin steps = STEPS_W'(50) + entries_left; waits = !decide_grant_i; end
       lod_pkg::FETCH:       begin
-        steps = (fetch_q == lod_pkg::VERTEX ? STEPS_W'(27) : fetch_q == lod_pkg::RECORD ? STEPS_W'(51) : STEPS_W'(19)) + entries_left + lines_left;
+        steps = (of_split ? STEPS_W'(27) : fetch_q == lod_pkg::RECORD ? STEPS_W'(51) : STEPS_W'(19)) + entries_left + lines_left;
         waits = !fetched && !line_moves;
       end
       lod_pkg::DIVIDE_V:    begin stage = 3'd1; steps = STEPS_W'(7); waits = !divide_grant_i; end
@@ -54,7 +54,7 @@
   // A line is granted, comes or is late: an error is kept, or ends the ray now.
   logic line_moves, fetched;
   assign line_moves = granted != '0 || arrived != '0 || tick_i || error_q != lod_pkg::ERROR_NONE;
-  assign fetched    = fetch_q == lod_pkg::VERTEX ? want_q == '0 && !waiting_q[1] : record_there;
+  assign fetched    = of_split ? want_q == '0 && !waiting_q[1] && !(compact && waiting_q[0]) : record_there;
 
   logic [3+32+STEPS_W-1:0] left, left_before_q;
   logic                    steps_q, waits_q, visits_now_q;

@@ -68,6 +68,7 @@
       if (state_q == lod_pkg::VISIT && entry.kind == lod_pkg::ENTRY_TREE_NODE) assert (entry.level != '0 && entry.level < depth && depth <= scene_i.levels && depth <= 4'(lod_pkg::STORED_LEVELS));
       // Who tessellates has fetched vertices; children are of a node or a split.
       if (state_q == lod_pkg::MORPH || state_q == lod_pkg::MORPH_WAIT) assert (fetch_q == lod_pkg::SPLIT);
+      if (line_matters) assert (fetch_q <= lod_pkg::SPLIT);
       if (line_matters && state_q != lod_pkg::FETCH) assert (fetch_q != lod_pkg::RECORD);
       if (line_matters && state_q != lod_pkg::FETCH && !split_there) assert (!wrong_node);
       // Children under way are there, and what is visited is of a kind that there is.
