@@ -94,7 +94,7 @@ fn scenes() {
         ("flipped.lod", "flipped.lod: section"),
         (
             "old.lod",
-            "old.lod: version: 1 is older than 4, the only one that this program reads; make the scene again with build or generate",
+            "old.lod: version: 1 is older than 5, the only one that this program reads; make the scene again with build or generate",
         ),
     ];
     let commands = ["info", "verify", "crack", "lines --size 8x8", "render --size 8x8 -o new", "export -o new.obj"];
