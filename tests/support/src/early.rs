@@ -150,46 +150,23 @@ fn plain_line(words: [u64; 4]) -> Option<(Line, bool)> {
     Some((words.map(U::new), false))
 }
 
-fn node(line: Line, change: impl Fn(&mut BvhNode)) -> Option<(Line, bool)> {
+/// The line with what it holds changed.
+fn changed<T: Wire>(line: Line, change: impl Fn(&mut T)) -> Option<(Line, bool)> {
     let mut words = line.map(U::get);
-    let mut node = BvhNode::from_words(&words);
-    change(&mut node);
-    node.to_words(&mut words);
-    plain_line(words)
-}
-
-fn record(line: Line, change: impl Fn(&mut L0Record)) -> Option<(Line, bool)> {
-    let mut words = line.map(U::get);
-    let mut record = L0Record::from_words(&words);
+    let mut record = T::from_words(&words);
     change(&mut record);
     record.to_words(&mut words);
     plain_line(words)
 }
 
-fn corners(line: Line, change: impl Fn(&mut VertexData)) -> Option<(Line, bool)> {
-    let mut words = line.map(U::get);
-    let mut corners = VertexData::from_words(&words);
-    change(&mut corners);
-    corners.to_words(&mut words);
-    plain_line(words)
-}
-
 fn corner(line: Line, x: i64) -> Option<(Line, bool)> {
-    corners(line, |corners| corners.v1.x = S::new(x))
-}
-
-fn split(line: Line, change: impl Fn(&mut SplitRecord)) -> Option<(Line, bool)> {
-    let mut words = line.map(U::get);
-    let mut split = SplitRecord::from_words(&words);
-    change(&mut split);
-    split.to_words(&mut words);
-    plain_line(words)
+    changed(line, |corners: &mut VertexData| corners.v1.x = S::new(x))
 }
 
 /// The corner p1 of an L0 record, `x` in 16 units.
 fn base_corner(form: VertexForm, at: u64, line: Line, x: i64) -> Option<(Line, bool)> {
     match form {
-        VertexForm::Compact => record(line, |record| record.p1.x = S::new(x >> 6)),
+        VertexForm::Compact => changed(line, |record: &mut L0Record| record.p1.x = S::new(x >> 6)),
         VertexForm::Exact if at & 1 == 1 => corner(line, x),
         VertexForm::Exact => Some((line, false)),
     }
@@ -212,11 +189,11 @@ pub fn each_error<E: Exposed>(mut make: impl FnMut(Hardware, &SceneConfig) -> E)
         let image = RayError::Image;
         type Change = fn(&mut BvhNode);
         for change in [(|node| node.kinds[2] = U::new(3)) as Change, |node| node.origin = Vec3::new(0, -32_768, 0)] {
-            wrong(make, &desk, &scene, image, |of, _, line| if of == "bvh_node" { node(line, change) } else { same(line) });
+            wrong(make, &desk, &scene, image, |of, _, line| if of == "bvh_node" { changed(line, change) } else { same(line) });
         }
         let deep = |record: &mut L0Record| record.depth = U::new(4);
         wrong(make, &desk, &scene, image, |of, at, line| {
-            if of == "l0_record" && (form.is_compact() || at & 1 == 0) { record(line, deep) } else { same(line) }
+            if of == "l0_record" && (form.is_compact() || at & 1 == 0) { changed(line, deep) } else { same(line) }
         });
         // Beyond the largest coordinate, and off the grid of corners.
         for x in [i32::MAX >> 4, i32::MIN >> 4] {
@@ -237,8 +214,8 @@ pub fn each_error<E: Exposed>(mut make: impl FnMut(Hardware, &SceneConfig) -> E)
                     (record.p0.x, record.p1.x, record.p2.x) = (x, x, x);
                 };
                 wrong(make, &desk, &scene, image, |of, _, line| match of {
-                    "l0_record" => record(line, far),
-                    "split" => split(line, |split| split.v0.x = S::new(1000)),
+                    "l0_record" => changed(line, far),
+                    "split" => changed(line, |split: &mut SplitRecord| split.v0.x = S::new(1000)),
                     _ => same(line),
                 });
             }
@@ -269,7 +246,7 @@ pub fn each_error<E: Exposed>(mut make: impl FnMut(Hardware, &SceneConfig) -> E)
         if of == "bvh_node" { Some((everywhere(ChildRef::LEAF, 2, far), false)) } else { same(line) }
     });
     let far = |record: &mut L0Record| record.place = U::new(1 << FULL_DETAIL.index_bits);
-    wrong(make, &desk, &scene, RayError::Image, |of, _, line| if of == "l0_record" { record(line, far) } else { same(line) });
+    wrong(make, &desk, &scene, RayError::Image, |of, _, line| if of == "l0_record" { changed(line, far) } else { same(line) });
     wrong(make, &desk, &SceneConfig { compact: false, ..scene }, RayError::Scene, |_, _, line| same(line));
 }
 
