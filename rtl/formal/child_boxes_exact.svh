@@ -39,9 +39,9 @@
   always_comb begin
     assume (legal == '1);
     assert (tag_o == tag_i && valid_o == valid_i && ready_o == ready_i);
-    cover (in_i.tree && out_o.bounds[0][32 +: 16] == 16'd32766 && in_i.planes[3] == 7'd9);
-    cover (in_i.tree && out_o.bounds[3][80 +: 16] == 16'h8001 && in_i.planes[18] == 7'd127 && in_i.exponents[0] == 4'd8);
-    cover (in_i.tree && in_i.halves[1] && in_i.exponents[1] == '0 && in_i.planes[7] == 7'd3 && out_o.bounds[1][64 +: 16] == 16'd100);
+    cover (in_i.tree && out_o.bounds[0][32 +: 16] == 16'd32766 && in_i.planes[3] == 5'd9);
+    cover (in_i.tree && out_o.bounds[3][80 +: 16] == 16'h8001 && in_i.planes[18] == 5'd31 && in_i.exponents[0] == 4'd10);
+    cover (in_i.tree && in_i.halves[1] && in_i.exponents[1] == '0 && in_i.planes[7] == 5'd3 && out_o.bounds[1][64 +: 16] == 16'd100);
     cover (!in_i.tree && out_o.bounds[2][0 +: 16] == 16'd32767 && out_o.bounds[2][48 +: 16] == 16'h8001);
   end
 
