@@ -1,7 +1,7 @@
 //! `info`: what a scene file holds.
 
 use super::output::{count, grouped, open_any, plain, print_json, print_line};
-use lodray::format::{JobRegion, JobView, Scene};
+use lodray::format::{FileSection, JobRegion, JobView, Scene};
 use lodray::mesh::{BoundKind, Distance, TwoSidedDistance};
 use lodray::num::{PADDING_BITS, VertexForm};
 use lodray::rays::ModelSpace;
@@ -108,6 +108,7 @@ impl<'a> Info<'a> {
             part(if scene.meta().vertices.is_compact() { "last splits" } else { "vertices" }, size_of_val(scene.vertices())),
             part("normals", size_of_val(scene.normals())),
             part("base indices", size_of_val(scene.triangles())),
+            part("base numbers, materials", scene.section(FileSection::Sources).len()),
         ];
         let hierarchy: u64 = parts[1..4].iter().map(|p| p.bytes).sum();
         let meta = scene.meta();
