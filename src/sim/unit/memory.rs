@@ -71,7 +71,8 @@ impl<'a> SceneMemory<'a> {
     /// The most entries that a ray can visit: each node of the quad-BVH, each tree and each node of a tree has one parent and is visited once.
     fn visits(&self) -> u64 {
         let lines = |section: SectionId| self.sections[section.place()].len() as u64 / WORDS;
-        lines(NODES) + lines(RECORDS) + 4 * lines(SPLITS)
+        let trees = lines(RECORDS) / if self.compact { 1 } else { 2 };
+        lines(NODES) + trees + 4 * lines(SPLITS)
     }
 
     /// Section and line within it of an address; `None` outside of all.
