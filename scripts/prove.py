@@ -3,6 +3,8 @@
 A property is a module of rtl/formal around a block, or a fragment that is set inside one (`inside`), with immediate assert, assume and cover. Per property:
 the asserts hold in every case that the assumptions leave; every cover is reached under them, so that they leave something; and each mutant, one small change
 of the RTL, breaks an assert. Yosys writes each case as SMT-LIB, z3 decides it. Exit code 1 if anything fails, takes too long, or a mutant lives.
+
+What is proved is written to rtl/formal/proved.txt, with a digest of all that the proof depends on, and is not proved again until that changes.
 """
 
 import argparse
@@ -11,7 +13,7 @@ import os
 import sys
 import time
 
-from proving import document, properties
+from proving import document, ledger, properties
 from proving.solve import Solver
 from proving.tools import Failure, Tools
 
@@ -28,12 +30,22 @@ def main():
         tools = Tools()
         solver = Solver(tools, options.keep)
         started = time.monotonic()
-        results = run(solver, wanted, options.jobs)
+        proved = ledger.load()
+        digests = {one.name: ledger.digest(one, solver) for one in wanted}
+        # Who names a property wants to see it proved.
+        again = options.all or options.name
+        left = [one for one in wanted if again or proved.get(one.name) != digests[one.name]]
+        results = run(solver, left, options.jobs)
+        good = {result.property.name for result in results if not result.complaints}
+        ledger.write(every, proved | {name: digests[name] for name in good})
     except Failure as why:
         sys.exit(f"scripts/prove: {why}")
     except KeyboardInterrupt:
         sys.exit("scripts/prove: stopped")
-    print(document.report(results))
+    if results:
+        print(document.report(results))
+    if len(left) < len(wanted):
+        print(f"{len(wanted) - len(left)} properties were proved already, and nothing that they depend on has changed (--all proves them anew)")
     wrong = [line for result in results for line in result.complaints]
     wrong += [] if options.name else document.stale(every)
     for line in wrong:
@@ -67,6 +79,7 @@ def parse():
     """The command line."""
     parser = argparse.ArgumentParser(prog="scripts/prove", description=__doc__.split("\n", maxsplit=1)[0])
     parser.add_argument("name", nargs="*", help="properties to prove (default: all)")
+    parser.add_argument("--all", action="store_true", help="prove also what was proved and has not changed")
     parser.add_argument("--jobs", type=int, default=os.cpu_count(), metavar="N", help="tools at work at once (default: one per core)")
     parser.add_argument("--keep", action="store_true", help="keep the SMT-LIB files under target/prove")
     parser.add_argument("--doc", action="store_true", help="write the table of docs/formal.md from the properties and prove nothing")

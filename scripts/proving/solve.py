@@ -88,11 +88,8 @@ class Solver:
         got, _ = self.ask(model, "mutant", query, one.limit)
         return {"sat": "rejected", "unsat": "lives"}.get(got, got), ""
 
-    def model(self, one, variant, mutant=None):
-        """Yosys' view of the property, with or without a mutant."""
-        folder = OUT / one.name / variant
-        shutil.rmtree(ROOT / folder, ignore_errors=True)
-        (ROOT / folder).mkdir(parents=True)
+    def texts(self, one, mutant=None):
+        """The modules that a property is made of, with or without a mutant: their texts by name."""
         texts = dict(self.rtl)
         for change in one.narrow + ((mutant,) if mutant else ()):
             texts[change.file] = change.apply(texts[change.file])
@@ -112,12 +109,20 @@ class Solver:
             wire = (FORMAL / "elastic_stub.sv").read_text(encoding="utf-8")
             for register in ("pipe_stage", "pipe_skid"):
                 texts[register] = wire.replace("module elastic ", f"module {register} ")
-        files = ["lod_pkg", *(name for name in closure([one.top], texts) if name != "lod_pkg")]
-        if mutant and mutant.file not in files:
+        names = ["lod_pkg", *(name for name in closure([one.top], texts) if name != "lod_pkg")]
+        if mutant and mutant.file not in names:
             raise Failure(f"{one.name} does not contain {mutant.file}, the file of its mutant")
-        for name in files:
-            (ROOT / folder / f"{name}.sv").write_text(texts[name], encoding="utf-8")
-        self.yosys(one, folder, [str(folder / f"{name}.sv") for name in files])
+        return {name: texts[name] for name in names}
+
+    def model(self, one, variant, mutant=None):
+        """Yosys' view of the property, with or without a mutant."""
+        folder = OUT / one.name / variant
+        shutil.rmtree(ROOT / folder, ignore_errors=True)
+        (ROOT / folder).mkdir(parents=True)
+        texts = self.texts(one, mutant)
+        for name, text in texts.items():
+            (ROOT / folder / f"{name}.sv").write_text(text, encoding="utf-8")
+        self.yosys(one, folder, [str(folder / f"{name}.sv") for name in texts])
         return Model(one, folder, (ROOT / folder / "model.smt2").read_text(encoding="utf-8"))
 
     def yosys(self, one, folder, files):
