@@ -35,8 +35,8 @@ ACCOUNTS = ("src/block/operation.rs", "src/block/parts/")
 # Binaries and filters of their tests, in the order in which they are asked; {module} is the path of the mutated file's module.
 LIB = "lodray"
 STAGES = {
-    "block": [(LIB, "{module}::"), (LIB, ""), ("box_test", ""), ("tri_test", ""), ("secondary", ""), ("equivalence", ""), ("unit", ""), ("rtl", "{name}::")],
-    "golden": [(LIB, "{module}::"), (LIB, ""), ("golden", ""), ("bounds", ""), ("secondary", ""), ("watertight", ""), ("equivalence", "")],
+    "block": [(LIB, "{module}::"), (LIB, ""), ("hits", "box_test::"), ("hits", "tri_test::"), ("hits", "secondary::"), ("hits", "equivalence::"), ("hardware", "unit::"), ("rtl", "{name}::")],
+    "golden": [(LIB, "{module}::"), (LIB, ""), ("hits", "golden::"), ("hits", "bounds::"), ("hits", "secondary::"), ("hits", "watertight::"), ("hits", "equivalence::")],
 }
 
 # Modules whose unit tests are built: blocks, golden traverser, what these use, and what their tests compare with. All others would take most of the time.
@@ -260,7 +260,7 @@ def main():
                 continue
             failed = tests.noticed(number, mutants[number], test, filters)
             if failed:
-                by = "late" if failed == "late" else test if test != LIB else "own tests" if filters else "unit tests"
+                by = "late" if failed == "late" else (filters if test == "hits" else test).removesuffix("::") if test != LIB else "own tests" if filters else "unit tests"
                 tell(by, number, failed)
                 alive.remove(number)
     unexplained = 0

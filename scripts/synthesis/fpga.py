@@ -21,9 +21,9 @@ def unit(contexts, links):
     package = OUT / "fpga" / "-".join([f"contexts-{contexts}", *([] if links is None else [f"links-{links}"])]) / "lod_pkg.sv"
     (ROOT / package).parent.mkdir(parents=True, exist_ok=True)
     settings = {"LODRAY_FPGA_PACKAGE": str(ROOT / package), "LODRAY_CONTEXTS": str(contexts), **({} if links is None else {"LODRAY_LINK_REGISTERS": str(links)})}
-    got = subprocess.run(["cargo", "test", "--quiet", "--test", "package"], cwd=ROOT, env={**os.environ, **settings}, capture_output=True, text=True)
+    got = subprocess.run(["cargo", "test", "--quiet", "--test", "hardware", "package::"], cwd=ROOT, env={**os.environ, **settings}, capture_output=True, text=True)
     if got.returncode != 0 or not (ROOT / package).is_file():
-        raise Failure(f"cargo test --test package: {got.stdout[-2000:]}{got.stderr[-2000:]}")
+        raise Failure(f"cargo test --test hardware package:: {got.stdout[-2000:]}{got.stderr[-2000:]}")
     return Block(WHOLE, (), str(package))
 
 

@@ -7,8 +7,8 @@ use std::sync::{Condvar, LazyLock, Mutex, PoisonError};
 use xxhash_rust::xxh3::Xxh3;
 
 const FLAGS: [&str; 6] = ["-std=c++17", "-fPIC", "-w", "-fvisibility=hidden", "-DVL_TIME_CONTEXT", "-DVM_SC=0"];
-/// For what runs in every cycle, and for what runs once.
-const FAST: &str = "-O3";
+/// For what runs in every cycle, and for what runs once. With more the compiler takes longer than the usual tests save.
+const FAST: &str = "-O1";
 const SLOW: &str = "-O0";
 /// How the names of files end that run once.
 const SLOW_ENDING: &str = "__Slow.cpp";

@@ -1,6 +1,6 @@
 //! What blocks are made of: their arithmetic, their registers, and what they share in `rtl/` (multipliers, widths between stages, cycles of parts).
 //!
-//! The counts stand beside each block ([`Block::parts`](super::Block::parts)), as formulas in the widths of its types; `tests/registers.rs` holds the registers
+//! The counts stand beside each block ([`Block::parts`](super::Block::parts)), as formulas in the widths of its types; `tests/hardware/registers.rs` holds the registers
 //! against those that the RTL declares, and against the netlists of `docs/hardware.md`.
 
 mod divide;

@@ -74,7 +74,7 @@ fn blocks_and_contexts_declare_the_registers_that_are_counted() {
 
 /// Flip-flops of the generic netlist of a block, as `scripts/synth --doc` wrote them.
 fn flip_flops(block: &str) -> u32 {
-    let table = include_str!("../docs/hardware.md");
+    let table = include_str!("../../docs/hardware.md");
     let row = table.lines().find(|line| line.starts_with(&format!("| `{block}` |"))).unwrap_or_else(|| panic!("no row for {block}"));
     row.split('|').nth(3).and_then(|cell| cell.trim().replace(',', "").parse().ok()).unwrap_or_else(|| panic!("no number in {row}"))
 }

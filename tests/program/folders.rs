@@ -90,9 +90,9 @@ fn a_record_says_what_was_run() {
     desk.run(&format!("{RENDER} --json --threads 3 -o one --compare"));
     assert!(desk.files("one") == desk.files("far/two"));
 
-    desk.write("own/mine.toml", include_str!("../machines/haydel2023.toml"));
-    desk.write("own/energy/cacti22.toml", include_str!("../machines/energy/cacti22.toml"));
-    desk.write("own/energy/cacti22.csv", include_str!("../machines/energy/cacti22.csv"));
+    desk.write("own/mine.toml", include_str!("../../machines/haydel2023.toml"));
+    desk.write("own/energy/cacti22.toml", include_str!("../../machines/energy/cacti22.toml"));
+    desk.write("own/energy/cacti22.csv", include_str!("../../machines/energy/cacti22.csv"));
     desk.run("simulate a.lod --size 8x8 --machine own/mine.toml,packet -o sim");
     let inputs = desk.record("sim")["inputs"].clone();
     let names: Vec<_> = inputs.as_array().unwrap().iter().map(|input| input["name"].as_str().unwrap()).collect();

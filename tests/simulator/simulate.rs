@@ -172,7 +172,7 @@ fn files_are_the_same_at_any_number_of_threads() {
 #[test]
 fn several_machines_at_once_are_one_at_a_time() {
     let desk = with_scene();
-    let own = include_str!("../machines/haydel2023.toml").replace("name = \"Haydel 2023\"", "name = \"Mine\"");
+    let own = include_str!("../../machines/haydel2023.toml").replace("name = \"Haydel 2023\"", "name = \"Mine\"");
     desk.write("mine.toml", &own);
     let together = desk.json(&format!("{SHOT} --machine haydel2023 --machine mine.toml,packet --set l1.bytes=32768"));
     for (k, machine) in ["haydel2023", "mine.toml", "packet"].into_iter().enumerate() {
@@ -397,7 +397,7 @@ const MACHINE: &str = "[[machine]]\nname = \"packet\"\nset = { \"cores.rays_in_f
 #[test]
 fn a_sweep_goes_on_where_it_was() {
     let desk = with_scene();
-    desk.write("jobs.toml", include_str!("../docs/jobs-example.toml"));
+    desk.write("jobs.toml", include_str!("../../docs/jobs-example.toml"));
     let said = desk.run("sweep jobs.toml -o out");
     assert!(said.contains("36 jobs, 0 of them done before, 0 failed"), "{said}");
     let (lines, table) = (desk.text("out/results.jsonl"), desk.text("out/results.csv"));
@@ -478,7 +478,7 @@ fn two_results_side_by_side() {
 #[test]
 fn a_waveform_replaces_no_input() {
     let desk = with_scene();
-    let machine = include_str!("../machines/packet.toml");
+    let machine = include_str!("../../machines/packet.toml");
     desk.write("m.toml", machine);
     desk.refused("simulate a.lod --size 8x8 --machine m.toml --vcd m.toml --window 0:5", FAILS, &["m.toml"]);
     desk.refused("simulate a.lod --size 8x8 --machine m.toml --vcd a.lod --window 0:5", FAILS, &["a.lod"]);

@@ -14,6 +14,7 @@ use lodray_test_support::bounces::{Bounce, next, steps_of_bounces};
 use lodray_test_support::hardware::{OTHERS, SECONDARIES, form_for, most_levels, ray_for, scene_for};
 use lodray_test_support::models::{Rng, any_rays, ball, coarsened, model, octahedron, scene_of, terrain, with_vertices, with_zeros};
 use lodray_test_support::timing::{Smooth, Timed, steps_of};
+use rayon::prelude::*;
 
 /// A unit, noting its requests: cycle, tag, address.
 struct Noting<U> {
@@ -102,50 +103,81 @@ fn models() -> Vec<(String, Hierarchy)> {
     VertexForm::ALL.into_iter().flat_map(in_form).collect()
 }
 
-#[test]
-fn equals_the_cycle_model_in_every_cycle() {
-    let [mut rays_compared, mut requests, mut cycles, mut ticks, mut found, mut refused] = [0u64; 6];
-    for (number, (name, h)) in models().iter().enumerate() {
-        let any = any_rays(h, 40, number as u64);
-        let fits = |config: &Hardware| h.levels <= most_levels(config) && form_for(config, h.vertices) == h.vertices;
-        for config in configs().into_iter().chain(OTHERS).filter(fits) {
-            // Of as many zeros as the hardware leaves out.
-            let zeros = [config.coordinate_zeros, config.direction_zeros];
-            let scene = match config.coordinate_zeros {
-                0 => scene_for(&config, h),
-                zeros => scene_for(&config, &with_vertices(h.vertices, with_zeros(zeros, h.clone()))),
-            };
-            let image = LodImage::of(&scene);
-            let memory = SceneMemory::new(image, 1000);
-            let rays: Vec<Ray> = any.iter().enumerate().map(|(k, ray)| ray_for(&config, &coarsened(ray, zeros), k)).collect();
-            let batch = steps_of(image, &rays);
-            for traffic in traffics() {
-                let what = format!("{name}, {config:?}, {traffic:?}");
-                let mut model = Noting::new(TraversalUnit::new(config, memory.config()));
-                let expected = model.run(&memory, &traffic, &rays);
-                for skip in [false, true] {
-                    let mut timed = Noting::new(Timed::new(config, &memory, &batch, skip));
-                    let report = timed.run(&memory, &traffic, &rays);
-                    for (k, (ray, expected)) in report.rays.iter().zip(&expected.rays).enumerate() {
-                        assert_eq!((ray.taken, ray.done), (expected.taken, expected.done), "{what}, skip {skip}: ray {k}");
-                    }
-                    assert_eq!(report, expected, "{what}, skip {skip}");
-                    assert_eq!(timed.requests, model.requests, "{what}, skip {skip}");
-                    assert_eq!(timed.unit.unit.counts(report.cycles), model.unit.counts(), "{what}, skip {skip}");
-                    rays_compared += report.rays.len() as u64;
-                    requests += report.requests;
-                    if skip {
-                        cycles += report.cycles;
-                        ticks += timed.unit.ticks;
-                    }
-                }
-                found += expected.rays.iter().filter(|ray| ray.hit.found).count() as u64;
-                refused += expected.waited.iter().sum::<u64>();
-            }
+/// What a comparison has seen: rays, requests, cycles and ticks of runs that skip, hits, and hits that were refused.
+#[derive(Default)]
+struct Seen {
+    rays: u64,
+    requests: u64,
+    cycles: u64,
+    ticks: u64,
+    found: u64,
+    refused: u64,
+}
+
+impl Seen {
+    fn and(self, other: Self) -> Self {
+        Self {
+            rays: self.rays + other.rays,
+            requests: self.requests + other.requests,
+            cycles: self.cycles + other.cycles,
+            ticks: self.ticks + other.ticks,
+            found: self.found + other.found,
+            refused: self.refused + other.refused,
         }
     }
-    println!("{rays_compared} rays and {requests} requests are equal; {found} hits; {ticks} ticks in {cycles} cycles");
-    assert!(rays_compared > 100_000 && requests > 1_000_000 && found > 10_000 && refused > 100_000 && ticks < cycles);
+}
+
+/// One model by all hardware that is for it, each under three of the traffics in turns: over all models each hardware meets all of them. `scripts/nightly` (`LODRAY_CYCLES`) takes all.
+fn every_cycle_of(number: usize, name: &str, h: &Hierarchy) -> Seen {
+    let mut seen = Seen::default();
+    let any = any_rays(h, 40, number as u64);
+    let fits = |config: &Hardware| h.levels <= most_levels(config) && form_for(config, h.vertices) == h.vertices;
+    for config in configs().into_iter().chain(OTHERS).filter(fits) {
+        // Of as many zeros as the hardware leaves out.
+        let zeros = [config.coordinate_zeros, config.direction_zeros];
+        let scene = match config.coordinate_zeros {
+            0 => scene_for(&config, h),
+            zeros => scene_for(&config, &with_vertices(h.vertices, with_zeros(zeros, h.clone()))),
+        };
+        let image = LodImage::of(&scene);
+        let memory = SceneMemory::new(image, 1000);
+        let rays: Vec<Ray> = any.iter().enumerate().map(|(k, ray)| ray_for(&config, &coarsened(ray, zeros), k)).collect();
+        let batch = steps_of(image, &rays);
+        let (each, taken) = (traffics(), if std::env::var_os("LODRAY_CYCLES").is_some() { traffics().len() } else { 3 });
+        for traffic in each.iter().cycle().skip(3 * number).take(taken) {
+            let what = format!("{name}, {config:?}, {traffic:?}");
+            let mut model = Noting::new(TraversalUnit::new(config, memory.config()));
+            let expected = model.run(&memory, traffic, &rays);
+            for skip in [false, true] {
+                let mut timed = Noting::new(Timed::new(config, &memory, &batch, skip));
+                let report = timed.run(&memory, traffic, &rays);
+                for (k, (ray, expected)) in report.rays.iter().zip(&expected.rays).enumerate() {
+                    assert_eq!((ray.taken, ray.done), (expected.taken, expected.done), "{what}, skip {skip}: ray {k}");
+                }
+                assert_eq!(report, expected, "{what}, skip {skip}");
+                assert_eq!(timed.requests, model.requests, "{what}, skip {skip}");
+                assert_eq!(timed.unit.unit.counts(report.cycles), model.unit.counts(), "{what}, skip {skip}");
+                seen.rays += report.rays.len() as u64;
+                seen.requests += report.requests;
+                if skip {
+                    seen.cycles += report.cycles;
+                    seen.ticks += timed.unit.ticks;
+                }
+            }
+            seen.found += expected.rays.iter().filter(|ray| ray.hit.found).count() as u64;
+            seen.refused += expected.waited.iter().sum::<u64>();
+        }
+    }
+    seen
+}
+
+#[test]
+fn equals_the_cycle_model_in_every_cycle() {
+    let models = models();
+    let each = models.par_iter().enumerate().map(|(number, (name, h))| every_cycle_of(number, name, h));
+    let Seen { rays, requests, cycles, ticks, found, refused } = each.reduce(Seen::default, Seen::and);
+    println!("{rays} rays and {requests} requests are equal; {found} hits; {ticks} ticks in {cycles} cycles; {refused} refused");
+    assert!(rays > 100_000 && requests > 1_000_000 && found > 10_000 && refused > 100_000 && ticks < cycles);
 }
 
 #[test]

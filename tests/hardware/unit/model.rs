@@ -15,6 +15,7 @@ use lodray::sim::unit::{Inputs, Latency, Outputs, SceneMemory, Stall, Traffic, T
 use lodray::step::{Step, StepCounts, StepSink};
 use lodray_test_support::models::{any_rays, ball, model, octahedron, scene_of, terrain, with_vertices};
 use lodray_test_support::plain::plain;
+use rayon::prelude::*;
 
 /// Lines in the order of their reading, and counts.
 struct Lines<'a> {
@@ -131,8 +132,8 @@ fn simulate(memory: &SceneMemory<'_>, config: Hardware, traffic: &Traffic, rays:
 
 #[test]
 fn equals_the_functional_and_the_golden_traverser() {
-    let (mut traced, mut met, mut cycles) = (0u64, 0u64, 0u64);
-    for (number, Model { name, h, first_line }) in models().iter().enumerate() {
+    let each = |(number, Model { name, h, first_line }): (usize, &Model)| {
+        let (mut traced, mut cycles) = (0u64, 0u64);
         let scene = scene_of(h);
         // With the numbers that its trees have in the scene.
         let h = &scene.decode();
@@ -175,8 +176,11 @@ fn equals_the_functional_and_the_golden_traverser() {
                 cycles += report.cycles;
             }
         }
-        met += expected.iter().filter(|e| e.0.is_some()).count() as u64;
-    }
+        [traced, cycles, expected.iter().filter(|e| e.0.is_some()).count() as u64]
+    };
+    let models = models();
+    let sums = models.par_iter().enumerate().map(each);
+    let [traced, cycles, met] = sums.reduce(|| [0; 3], |a, b| std::array::from_fn(|k| a[k] + b[k]));
     println!("{traced} rays in {cycles} cycles; {met} of the different rays met something");
     assert!(met > 800, "only {met} rays met anything");
 }

@@ -1,4 +1,4 @@
-//! What the documents say of a block's cycles is what README.md's table says, which `tests/mirror.rs` holds against Rust and RTL.
+//! What the documents say of a block's cycles is what README.md's table says, which `tests/hardware/mirror.rs` holds against Rust and RTL.
 
 use std::collections::BTreeMap;
 use std::fs;

@@ -9,11 +9,11 @@ use lodray::num::{COORD_LIMIT, VertexForm};
 use lodray::rays::ModelSpace;
 use lodray_test_support::models::{ball, build, build_with, model, octahedron, scene_of, with_vertices};
 
-/// Rays over all models; `LODRAY_RAYS` asks for more.
+/// Rays over all models; `LODRAY_RAYS` asks for more, `scripts/nightly` for a hundred million.
 fn total() -> u64 {
     match std::env::var("LODRAY_RAYS") {
         Ok(text) => text.parse().expect("LODRAY_RAYS is a number"),
-        Err(_) => 10_000_000,
+        Err(_) => 2_000_000,
     }
 }
 

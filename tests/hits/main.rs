@@ -1,0 +1,17 @@
+//! Numbers, and what rays hit: exact arithmetic, the golden traverser, and whatever must give the same hits.
+
+mod bounds;
+mod box_test;
+mod entering;
+mod equivalence;
+mod golden;
+mod plan;
+mod promise;
+mod prune;
+mod quantise;
+mod secondary;
+mod stability;
+mod tightness;
+mod tri_test;
+mod watertight;
+mod within;

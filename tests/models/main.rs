@@ -1,0 +1,11 @@
+//! Meshes, scenes, pictures and paths.
+
+mod appearance;
+mod audit;
+mod cast;
+mod mesh_input;
+mod paths;
+mod picture_error;
+mod pictures;
+mod remesh;
+mod scene_file;

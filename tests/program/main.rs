@@ -1,0 +1,7 @@
+//! The program as typed, and the house that it stands in.
+
+mod bad_input;
+mod cli;
+mod exactness;
+mod folders;
+mod layers;

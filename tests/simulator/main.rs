@@ -1,0 +1,8 @@
+//! What machines cost: lines, frames, sweeps, traces.
+
+mod cache;
+mod error_time;
+mod lines;
+mod simulate;
+mod sweep_jobs;
+mod trace;
