@@ -37,7 +37,9 @@ def main():
         left = [one for one in wanted if again or proved.get(one.name) != digests[one.name]]
         results = run(solver, left, options.jobs)
         good = {result.property.name for result in results if not result.complaints}
-        ledger.write(every, proved | {name: digests[name] for name in good})
+        # What fails now is not proved, whatever was written before.
+        kept = {name: digest for name, digest in proved.items() if name not in {one.name for one in left}}
+        ledger.write(every, kept | {name: digests[name] for name in good})
     except Failure as why:
         sys.exit(f"scripts/prove: {why}")
     except KeyboardInterrupt:
