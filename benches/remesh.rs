@@ -28,7 +28,7 @@ fn main() {
 }
 
 fn row(name: &str, mesh: &TriangleMesh) {
-    let options = RemeshOptions { levels: 5, ..RemeshOptions::default() };
+    let options = RemeshOptions { levels: Some(5), ..RemeshOptions::default() };
     let mut best = Duration::MAX;
     let mut report = None;
     for _ in 0..3 {

@@ -35,7 +35,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     let space = ModelSpace::of(&scene);
     let camera = Camera::new(&View { distance: Some(2.0), ..View::default() }, &space, 64, 64)?;
     let sight = Sight::new(&camera, &space, 1.0);
-    for registered in METHODS {
+    for registered in METHODS.iter().filter(|method| !method.of_input) {
         let method = (registered.make)(&scene, &Knobs::default(), &NoStore)?;
         let mut tracer = method.tracer(&sight);
         let mut runs = Runs::default();

@@ -133,6 +133,9 @@ impl Options {
 /// Why a quad-BVH could not be built.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Error)]
 pub enum BvhError {
+    /// A tree over the input mesh of a scene, which is not at hand.
+    #[error("the mesh that the scene was made from is not at hand")]
+    NoInput,
     /// No primitives.
     #[error("a quad-BVH needs at least one primitive")]
     Empty,

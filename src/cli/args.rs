@@ -124,7 +124,7 @@ pub struct CameraArgs {
     #[arg(long, value_enum, conflicts_with_all = ["yaw", "pitch"])]
     view: Option<NamedView>,
     /// Degrees around the up axis, -360 to 360: 0 is the front (the side of +z; with --up z that of -y), 90 the side of +x (default: 0 if --pitch is given)
-    #[arg(long, value_name = "DEGREES", value_parser = yaw, allow_hyphen_values = true)]
+    #[arg(long, value_name = "DEGREES", value_parser = degrees, allow_hyphen_values = true)]
     yaw: Option<f64>,
     /// Degrees above the model, -90 to 90: 90 looks straight down, the front at the lower border (default: 0 if --yaw is given)
     #[arg(long, value_name = "DEGREES", value_parser = pitch, allow_hyphen_values = true)]
@@ -151,6 +151,14 @@ impl CameraArgs {
             (Some(named), ..) => Some(named.angles()),
         };
         let view = angles.map_or(view, |(yaw, pitch)| view.around(yaw, pitch));
+        Ok(Camera::new(&view, space, self.size.0, self.size.1)?)
+    }
+}
+
+impl CameraArgs {
+    /// The camera at `eye`, looking at `target`.
+    pub fn at(&self, space: &ModelSpace, eye: [f64; 3], target: [f64; 3]) -> anyhow::Result<Camera> {
+        let view = View { eye: Some(eye), target: Some(target), up: self.up.map(|up| up.0), fov: self.fov, ..View::default() };
         Ok(Camera::new(&view, space, self.size.0, self.size.1)?)
     }
 }
@@ -189,7 +197,8 @@ fn fov(s: &str) -> Result<f64, String> {
     number(s, |v| v > 0.0 && v < 180.0, "between 0 and 180 degrees")
 }
 
-fn yaw(s: &str) -> Result<f64, String> {
+/// A turn.
+pub fn degrees(s: &str) -> Result<f64, String> {
     number(s, |v| v.abs() <= 360.0, "from -360 to 360 degrees")
 }
 
@@ -253,7 +262,9 @@ mod tests {
         );
         assert!(radii("0.5").is_ok() && radii("0").is_err() && radii("-1").is_err() && radii("nan").is_err() && radii("1e300").is_err());
         assert!(fov("40").is_ok() && fov("0").is_err() && fov("180").is_err() && fov("nan").is_err());
-        assert!(yaw("-360").is_ok() && yaw("361").is_err() && pitch("90").is_ok() && pitch("-91").is_err() && pitch("inf").is_err());
+        assert!(
+            degrees("-360").is_ok() && degrees("361").is_err() && pitch("90").is_ok() && pitch("-91").is_err() && pitch("inf").is_err()
+        );
         for good in ["1", "10"] {
             assert!(whole::<u32>(1..=10)(good).is_ok(), "{good}");
         }

@@ -3,6 +3,7 @@
 use super::args::{levels, whole};
 use super::common::is_quiet;
 use super::info;
+use super::input::{self, InputFile};
 use super::names::named;
 use super::output::{busy, check_target, print_line, progress, warn};
 use anyhow::Context;
@@ -44,9 +45,9 @@ pub struct Args {
     /// Format of the mesh, whatever the file's ending; files that it names are looked for beside it, for standard input in the current folder
     #[arg(long, value_parser = named::<MeshFormat>(), required_if_eq("mesh", STDIN))]
     format: Option<MeshFormat>,
-    /// Number of 1-to-4 splits, 0 to 10
-    #[arg(long, default_value_t = 5, value_parser = levels(), allow_negative_numbers = true)]
-    levels: u32,
+    /// Number of 1-to-4 splits, 0 to 10 (default: as many as give the finest level once to twice the mesh's triangles; more triangles only where --max-error needs them)
+    #[arg(long, value_parser = levels(), allow_negative_numbers = true)]
+    levels: Option<u32>,
     /// Largest distance between mesh and result, both ways, in percent of the diagonal of the mesh's box: decides how fine the base mesh is
     #[arg(long, value_name = "PERCENT", default_value_t = DEFAULT_MAX_ERROR, value_parser = percent, allow_negative_numbers = true)]
     max_error: f64,
@@ -94,7 +95,8 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
         reserve: 0.0,
         crease_angle: args.crease_angle,
     };
-    let scene = within(&mesh, options, &name, args.form).map_err(|e| anyhow::anyhow!("{}: {e}", source.display()))?;
+    let file = (!stdin).then(|| InputFile::of(source, args.weld)).transpose()?;
+    let scene = within(&mesh, options, &name, args.form, file.as_ref()).map_err(|e| anyhow::anyhow!("{}: {e}", source.display()))?;
     if let Some(lost) = scene.meta().origin["remesh"]["warning"].as_str().filter(|_| args.strict) {
         anyhow::bail!("{}: {lost}", source.display());
     }
@@ -106,7 +108,7 @@ const TRIES: u32 = 3;
 
 /// The scene of a mesh, stored vertices within the largest error too: as a rule there is room for what storing moves, otherwise it is made
 /// again with so much in reserve.
-fn within(mesh: &TriangleMesh, mut options: RemeshOptions, name: &str, form: FormArgs) -> anyhow::Result<Scene> {
+fn within(mesh: &TriangleMesh, mut options: RemeshOptions, name: &str, form: FormArgs, file: Option<&InputFile>) -> anyhow::Result<Scene> {
     let mut last = None;
     for tried in 1..=TRIES {
         let (surface, mut report) = match (remesh_with_progress(mesh, &options), last.take()) {
@@ -114,7 +116,10 @@ fn within(mesh: &TriangleMesh, mut options: RemeshOptions, name: &str, form: For
             (made, _) => made?,
         };
         let scene_of = |report: &RemeshReport| {
-            let origin = serde_json::json!({ "mesh": mesh.report, "remesh": report });
+            let mut origin = serde_json::json!({ "mesh": mesh.report, "remesh": report });
+            if let Some(file) = file {
+                origin[input::FILE] = serde_json::to_value(file)?;
+            }
             build_scene(&surface, name, origin, form)
         };
         let scene = scene_of(&report)?;

@@ -23,7 +23,7 @@ pub struct Args {
     /// Seed
     #[arg(long, default_value_t = 0, value_parser = seed(), allow_negative_numbers = true)]
     seed: u64,
-    /// Terrain, sphere and wall: amplitude of each octave relative to the one before; others: amount of fine detail. Between 0 and 1
+    /// Terrain, sphere, wall and street: amplitude of each octave relative to the one before; others: amount of fine detail. Between 0 and 1
     #[arg(long, value_parser = share, allow_hyphen_values = true)]
     roughness: Option<f64>,
     /// Quads along each wall of a room (default: a quarter of those across its cloth)

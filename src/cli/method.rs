@@ -45,6 +45,11 @@ pub fn machine_methods() -> impl Iterator<Item = &'static Registered> {
     METHODS.iter().copied().filter(|method| method.unit.is_some())
 }
 
+/// The methods whose triangles are the scene's own.
+fn own_methods() -> impl Iterator<Item = &'static Registered> {
+    METHODS.iter().copied().filter(|method| !method.of_input)
+}
+
 /// Every knob of these methods, once.
 fn knobs(methods: impl Iterator<Item = &'static Registered>) -> Vec<&'static Knob> {
     let mut knobs: Vec<&Knob> = Vec::new();
@@ -126,14 +131,14 @@ options!(MachineMethod, machine_methods().map(|method| (method.name, method.help
     chosen(matches, name(matches), knobs).map(MachineMethod)
 });
 
-options!(AnyMethod, METHODS.iter().map(|method| (method.name, method.help)), METHODS.iter().copied(), |matches, knobs| {
+options!(AnyMethod, own_methods().map(|method| (method.name, method.help)), own_methods(), |matches, knobs| {
     chosen(matches, name(matches), knobs).map(AnyMethod)
 });
 
 options!(
     PictureMethod,
-    METHODS.iter().map(|method| (method.name, method.help)).chain([(ORIGINAL, ORIGINAL_HELP)]),
-    METHODS.iter().copied(),
+    own_methods().map(|method| (method.name, method.help)).chain([(ORIGINAL, ORIGINAL_HELP)]),
+    own_methods(),
     |matches, knobs| {
         let name = name(matches);
         let original = name == ORIGINAL;

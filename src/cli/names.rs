@@ -105,6 +105,7 @@ impl Named for Scene {
             Self::Spikes => "Sphere with needles far longer than its edges, closed",
             Self::Room => "Box with an open side around the cloth",
             Self::Wall => "182 displaced spheres side by side",
+            Self::Street => "64 displaced spheres in two rows along z, seen from an end near to far, closed",
             Self::Pot => "Hammered teapot, closed",
             Self::Drape => "Cloth over the pot, with folds and a fine weave",
         }

@@ -6,7 +6,7 @@ use super::output::{progress, toml_in_one_line};
 use lodray::format::Scene;
 use lodray::machine::{Machine, MachineError};
 use lodray::method::Method;
-use lodray::rays::{Camera, ModelSpace, RayFile, RaySource, Sight};
+use lodray::rays::{Camera, CameraPath, ModelSpace, RayFile, RaySource, Sight};
 use lodray::report::result::{MachineFacts, MethodFacts, RayFileFacts, SceneFacts, Setup, SimResult, ViewFacts};
 use lodray::run::{Compute, FrameRays, Job, Traced, simulate};
 use lodray::sim::energy;
@@ -27,6 +27,8 @@ pub struct Pass<'a> {
 pub enum PassRays {
     /// A camera's.
     Camera(Camera),
+    /// Those of a camera that moves, frame after frame.
+    Path(CameraPath),
     /// A file's, and its path.
     File(RayFile, PathBuf),
 }
@@ -36,6 +38,7 @@ impl PassRays {
     pub fn source(&self) -> &dyn RaySource {
         match self {
             Self::Camera(camera) => camera,
+            Self::Path(path) => path,
             Self::File(rays, _) => rays,
         }
     }
@@ -125,11 +128,16 @@ impl Pass<'_> {
         let method = MethodFacts::new(method, knobs, &self.method.choices(sight), bytes);
         let (view, rays) = match &self.rays {
             PassRays::Camera(camera) => (Some(ViewFacts::new(camera)), None),
+            PassRays::Path(path) => (path.cameras().first().map(ViewFacts::new), None),
             PassRays::File(rays, path) => {
                 let file = path.file_name().unwrap_or_default().to_string_lossy().into_owned();
                 (None, Some(RayFileFacts { file, count: rays.rays() }))
             }
         };
-        Setup { scene: SceneFacts::from(self.scene), method, view, rays, compute: target.compute, machine: target.machine.clone() }
+        let frames = match &self.rays {
+            PassRays::Path(path) => Some(path.cameras().len() as u32), // few: an option's
+            _ => None,
+        };
+        Setup { scene: SceneFacts::from(self.scene), method, view, frames, rays, compute: target.compute, machine: target.machine.clone() }
     }
 }

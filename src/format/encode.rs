@@ -159,7 +159,7 @@ pub(super) fn sealed(mut image: MmapMut, ranges: [Range<usize>; COUNT], meta: Me
     sums.par_iter_mut().zip(&ranges).for_each(|(sum, range)| *sum = checksum(&image[range.clone()]));
     let total = image.len();
     write_header(&mut image[..HEADER], total, &ranges, &sums);
-    Scene { image: Image::Owned(image), ranges, meta, starts }
+    Scene { image: Image::Owned(image), ranges, meta, starts, input: None }
 }
 
 fn meta(h: &Hierarchy, surface: &Surface, info: SceneInfo) -> Meta {

@@ -74,7 +74,7 @@ impl Scene {
                 return Err(format!("section {}: length {length} is not a multiple of {size}", section.name()));
             }
         }
-        let mut scene = Self { image, ranges, meta, starts: LevelStarts::default() };
+        let mut scene = Self { image, ranges, meta, starts: LevelStarts::default(), input: None };
         scene.starts = scene.check_trees()?;
         scene.check_indices()?;
         scene.check_values()?;

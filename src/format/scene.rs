@@ -126,12 +126,25 @@ pub struct Scene {
     pub(super) ranges: [Range<usize>; COUNT],
     pub(super) meta: Meta,
     pub(super) starts: LevelStarts,
+    /// The mesh that it was made from, where somebody has it at hand; files do not hold it.
+    pub(super) input: Option<Box<Scene>>,
 }
 
 impl Scene {
     /// What the images do not say themselves.
     pub fn meta(&self) -> &Meta {
         &self.meta
+    }
+
+    /// The same with the mesh that it was made from at hand, as a scene of no splits whose vertices are exact.
+    #[must_use]
+    pub fn with_input(self, input: Self) -> Self {
+        Self { input: Some(Box::new(input)), ..self }
+    }
+
+    /// The mesh that it was made from, if somebody has it at hand.
+    pub fn input(&self) -> Option<&Self> {
+        self.input.as_deref()
     }
 
     /// The whole file image.

@@ -12,7 +12,7 @@ mod validate;
 mod tests;
 
 pub use error::MachineError;
-pub use parts::{Cache, Cores, Crossbar, Memory, Tables, Units};
+pub use parts::{Cache, Cores, Crossbar, Index, Memory, Tables, Units};
 
 pub(crate) use error::{Breach, LineFault};
 

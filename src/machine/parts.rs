@@ -42,6 +42,25 @@ impl Cores {
     }
 }
 
+/// Which bits of a line's number choose the bank and the set of a cache.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Index {
+    /// The lowest choose the bank, the next the set.
+    #[default]
+    Sliced,
+    /// The exclusive or of these with all bits above them, taken in pieces of the same width: lines that a power of two parts spread over all sets.
+    Xor,
+}
+
+impl Index {
+    /// Whether it is the default, which files leave out.
+    #[allow(clippy::trivially_copy_pass_by_ref)] // serde passes a reference
+    fn is_sliced(&self) -> bool {
+        *self == Self::Sliced
+    }
+}
+
 /// A level of cache: what a group has of the first, the machine of the second. Lines go round the banks.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -62,6 +81,9 @@ pub struct Cache {
     pub targets: u32,
     /// Requests that may wait in front of a bank.
     pub queue: u32,
+    /// How a line's number chooses bank and set.
+    #[serde(default, skip_serializing_if = "Index::is_sliced")]
+    pub index: Index,
 }
 
 impl Cache {

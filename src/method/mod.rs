@@ -50,6 +50,8 @@ pub struct Registered {
     pub knobs: &'static [&'static Knob],
     /// The knob by which error is traded for cost; none if there is no error to trade.
     pub error: Option<ErrorKnob>,
+    /// Its triangles are those of the mesh that the scene was made from, which must be at hand ([`Scene::input`]).
+    pub of_input: bool,
     /// A unit for its rays; none if it is no hardware.
     pub unit: Option<MethodUnit>,
     /// Builds what it needs for a scene.

@@ -3,8 +3,16 @@
 use super::{Registered, bvh, discrete, lod, reference};
 
 /// Every method, in the order in which help names them.
-pub const METHODS: &[&Registered] =
-    &[&lod::METHOD, &bvh::METHOD, &bvh::METHOD_SIX, &bvh::METHOD_WIDE, &discrete::METHOD, &reference::METHOD];
+pub const METHODS: &[&Registered] = &[
+    &lod::METHOD,
+    &bvh::METHOD,
+    &bvh::METHOD_SIX,
+    &bvh::METHOD_WIDE,
+    &discrete::METHOD,
+    &bvh::METHOD_INPUT,
+    &bvh::METHOD_INPUT_SIX,
+    &reference::METHOD,
+];
 
 /// The method of this name.
 pub fn find(name: &str) -> Option<&'static Registered> {

@@ -1,6 +1,7 @@
 //! Rays as they are asked for: a [`Query`] in the world, from a camera or a file, and its way into the model's integers.
 
 mod camera;
+mod camera_path;
 mod cone;
 mod file;
 mod job;
@@ -10,6 +11,7 @@ mod source;
 mod space;
 
 pub use camera::{Camera, CameraError, DEFAULT_DIRECTION, DEFAULT_VIEW_ANGLE_DEGREES, MAX_PIXELS, MAX_SIDE, View};
+pub use camera_path::CameraPath;
 pub use cone::{cone, is_full_detail};
 pub use file::{RayFile, RayFileError};
 pub use query::Query;

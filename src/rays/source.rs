@@ -21,6 +21,11 @@ pub trait RaySource: Sync {
         false
     }
 
+    /// The first batches of the frames behind the first, in order: rays of a frame come when all of the frames before have ended.
+    fn frame_starts(&self) -> Vec<usize> {
+        Vec::new()
+    }
+
     /// A radius, in world units, that no ray's cone falls below within the model's box: the cone's at the box's distance from the ray's origin.
     fn least_radius(&self, space: &ModelSpace) -> f64;
 }

@@ -39,22 +39,20 @@ const fn style(light: [u8; 3], dark: [u8; 3], mark: Mark) -> Style {
 }
 
 /// Methods by name.
-const KNOWN: [(&str, Style); 7] = [
+const KNOWN: [(&str, Style); 9] = [
     ("lod", style([15, 107, 189], [76, 173, 248], Mark::Circle)),
     ("bvh", style([193, 76, 2], [252, 154, 84], Mark::Square)),
     ("bvh6", style([155, 20, 89], [240, 123, 174], Mark::Star)),
     ("bvh32", style([128, 57, 158], [197, 149, 220], Mark::Diamond)),
     ("discrete", style([14, 131, 97], [65, 206, 160], Mark::Triangle)),
+    ("input-bvh", style([142, 113, 48], [228, 195, 71], Mark::Wye)),
+    ("input-bvh6", style([13, 99, 124], [137, 206, 230], Mark::Cross)),
     ("reference", style([82, 89, 101], [188, 193, 204], Mark::Times)),
     ("full", style([82, 89, 101], [188, 193, 204], Mark::Times)),
 ];
 
 /// For methods that came later.
-const OTHERS: [Style; 3] = [
-    style([142, 113, 48], [228, 195, 71], Mark::Wye),
-    style([13, 99, 124], [137, 206, 230], Mark::Cross),
-    style([105, 90, 46], [204, 190, 138], Mark::Diamond),
-];
+const OTHERS: [Style; 1] = [style([105, 90, 46], [204, 190, 138], Mark::Diamond)];
 
 /// How the method of this name is drawn.
 pub fn of(method: &str) -> Style {

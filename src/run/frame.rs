@@ -4,6 +4,7 @@
 
 use crate::method::{Method, SurfaceHit, Tracer};
 use crate::rays::{RaySource, Sight};
+use crate::sim::replay::Chunk;
 use crate::step::{Batch, Link, Nodes, Recorder};
 use rayon::prelude::*;
 
@@ -21,6 +22,11 @@ pub trait Frame: Sync {
     /// Traces batches; one for each thread.
     fn worker(&self) -> Box<dyn Worker + '_>;
 
+    /// The first batches of the frames behind the first, in order, where it is several frames after one another.
+    fn frame_starts(&self) -> Vec<usize> {
+        Vec::new()
+    }
+
     /// Every batch numbers its own rays from 0, and they wait for none of another.
     fn numbers_by_batch(&self) -> bool {
         false
@@ -28,9 +34,13 @@ pub trait Frame: Sync {
 
     /// Traces all rays; gives them to `take`, in order, until it wants no more.
     fn produce(&self, take: &mut dyn FnMut(Traced) -> bool) {
-        let (batches, mut rays) = (self.batches(), 0);
-        for first in (0..batches).step_by(CHUNK) {
-            let chunk = (first..batches.min(first + CHUNK)).into_par_iter();
+        let (batches, starts, mut rays) = (self.batches(), self.frame_starts(), 0);
+        let mut first = 0;
+        while first < batches {
+            // A chunk is of one frame.
+            let next_frame = starts.iter().copied().find(|&start| start > first).unwrap_or(batches);
+            let end = next_frame.min(first + CHUNK);
+            let chunk = (first..end).into_par_iter();
             let traced = chunk.map_init(|| self.worker(), |worker, batch| worker.batch(batch));
             let (mut batches, hits): (Vec<_>, Vec<_>) = traced.unzip();
             if self.numbers_by_batch() {
@@ -39,9 +49,10 @@ pub trait Frame: Sync {
                     rays += batch.rays() as u64;
                 }
             }
-            if !take(Traced { batches, hits: hits.concat() }) {
+            if !take(Traced { batches, hits: hits.concat(), begins_frame: starts.contains(&first) }) {
                 return;
             }
+            first = end;
         }
     }
 }
@@ -78,6 +89,16 @@ pub struct Traced {
     pub batches: Vec<Batch>,
     /// What the rays met, in the same order.
     pub hits: Vec<RayHit>,
+    /// They are the first of a frame behind another.
+    pub begins_frame: bool,
+}
+
+impl Traced {
+    /// The steps, for a replay.
+    pub fn chunk(self) -> Chunk {
+        let chunk = Chunk::from(self.batches);
+        if self.begins_frame { chunk.beginning_frame() } else { chunk }
+    }
 }
 
 /// Traces them.
@@ -93,6 +114,10 @@ impl Frame for FrameRays<'_> {
 
     fn batches(&self) -> usize {
         self.rays.batches()
+    }
+
+    fn frame_starts(&self) -> Vec<usize> {
+        self.rays.frame_starts()
     }
 
     fn worker(&self) -> Box<dyn Worker + '_> {

@@ -17,7 +17,7 @@ impl HeldFrame {
         let mut chunks = Vec::new();
         frame.produce(&mut |traced| {
             look(&traced);
-            chunks.push(Chunk::from(traced.batches));
+            chunks.push(traced.chunk());
             true
         });
         Self { nodes: frame.nodes(), chunks }

@@ -87,7 +87,7 @@ pub fn simulate(frame: &dyn Frame, jobs: &[Job], look: &mut dyn FnMut(&Traced)) 
             .unzip();
         frame.produce(&mut |traced| {
             look(&traced);
-            let chunk = Chunk::from(traced.batches);
+            let chunk = traced.chunk();
             // A replay that failed takes no more; the others go on.
             senders.iter().filter(|sender| sender.send(Chunk::clone(&chunk)).is_ok()).count() > 0
         });

@@ -43,7 +43,7 @@ fn remeshed_box() -> Scene {
     let quads = [[0, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [2, 6, 7, 3], [0, 4, 6, 2], [1, 3, 7, 5]];
     let triangles: Vec<[u32; 3]> = quads.iter().flat_map(|q| [[q[0], q[1], q[2]], [q[0], q[2], q[3]]]).collect();
     let mesh = TriangleMesh::from_parts(&positions, &triangles, &[], Vec::new()).expect("a box");
-    let (surface, _) = remesh(&mesh, &RemeshOptions { levels: 3, ..RemeshOptions::default() }, &|_, _, _| ()).expect("remeshed");
+    let (surface, _) = remesh(&mesh, &RemeshOptions { levels: Some(3), ..RemeshOptions::default() }, &|_, _, _| ()).expect("remeshed");
     build(&surface)
 }
 

@@ -106,6 +106,7 @@ impl Pin {
             scene: SceneFacts::from(scene),
             method: MethodFacts::new(entry, &knobs, &method.choices(&sight), 0),
             view: Some(ViewFacts::new(&camera)),
+            frames: None,
             rays: None,
             compute: self.compute,
             machine: MachineFacts { label: self.machine.to_owned(), set: Vec::new(), description: machine },

@@ -2,6 +2,8 @@
 
 mod cache;
 mod error_time;
+mod frames;
+mod input;
 mod lines;
 mod simulate;
 mod sweep_jobs;

@@ -17,7 +17,7 @@ use anyhow::Context;
 use image::RgbImage;
 use lodray::format::Scene;
 use lodray::mesh::FinestSurface;
-use lodray::method::{Method, reference};
+use lodray::method::{Method, find, reference};
 use lodray::picture::{Frame, FullResolution, PictureError, Shader, SurfaceError, error_map, level_map, render, sampled, save_png};
 use lodray::rays::{Camera, ModelSpace, Sight};
 use lodray::report::error_time::{Appearance, Converged, PictureEntry, Point, SceneEntry, Shift, TraceGrid, ViewEntry};
@@ -42,8 +42,41 @@ pub struct Bench<'a> {
     path: String,
     methods: Vec<(Chosen, Box<dyn Method + 'a>)>,
     builds: Vec<BuildTime>,
+    /// Full resolution: the input where that is at hand, else the finest level.
+    truth: Truth<'a>,
+    /// The finest level, where full resolution is another.
+    finest: Option<Truth<'a>>,
+}
+
+/// A surface that errors are against.
+pub(super) struct Truth<'a> {
+    scene: &'a Scene,
+    space: ModelSpace,
     reference: Box<dyn Method + 'a>,
     surface: FinestSurface,
+}
+
+impl<'a> Truth<'a> {
+    /// All triangles of a scene.
+    fn of(scene: &'a Scene, cache: &Cache) -> anyhow::Result<Self> {
+        Ok(Self {
+            scene,
+            space: ModelSpace::of(scene),
+            reference: Chosen::plain(&reference::METHOD).make(scene, cache)?.0,
+            surface: busy("full-resolution surface", || FinestSurface::new(&scene.decode())),
+        })
+    }
+
+    /// What each pixel's ray meets of it.
+    fn frame(&self, camera: &Camera) -> Frame {
+        render(&*self.reference, &self.space, camera, f64::INFINITY, &|| ()).0
+    }
+
+    /// How far a stage's frame is from it.
+    fn errors(&self, of: &Scene, frame: &Frame, truth: &Frame, camera: &Camera, stride: u32) -> SurfaceError {
+        let full = FullResolution { scene: self.scene, space: &self.space, surface: &self.surface, pixels: &truth.pixels };
+        SurfaceError::of(of, &frame.pixels, &full, camera, stride)
+    }
 }
 
 /// The camera of the whole frame, and that of the columns and rows of it whose errors are measured.
@@ -91,6 +124,9 @@ impl<'a> Bench<'a> {
     pub fn new(plan: &'a Plan, scene: &'a Scene, (facts, path): (SceneEntry, String), cache: &'a Cache) -> anyhow::Result<Self> {
         let (mut methods, mut builds) = (Vec::new(), Vec::new());
         for chosen in &plan.jobs.methods {
+            if chosen.method.of_input && scene.input().is_none() {
+                continue;
+            }
             let begun = Instant::now();
             let (method, from_cache) = chosen.make(scene, cache)?;
             let seconds = begun.elapsed().as_secs_f64();
@@ -106,8 +142,8 @@ impl<'a> Bench<'a> {
             path,
             methods,
             builds,
-            reference: Chosen::plain(&reference::METHOD).make(scene, cache)?.0,
-            surface: busy("full-resolution surface", || FinestSurface::new(&scene.decode())),
+            truth: Truth::of(scene.input().unwrap_or(scene), cache)?,
+            finest: scene.input().map(|_| Truth::of(scene, cache)).transpose()?,
         })
     }
 
@@ -117,7 +153,8 @@ impl<'a> Bench<'a> {
         let frame = view.camera(&self.space)?;
         let few = frame.every(self.plan.measure.every(view.size));
         let subject = self.subject();
-        let truth = shoot_with(&*self.reference, &subject.shader, &self.space, [&few; 2], f64::INFINITY, "full resolution");
+        let truth = shoot_with(&*self.truth.reference, &subject.shader, &self.truth.space, [&few; 2], f64::INFINITY, "full resolution");
+        let finest = self.finest.as_ref().map(|finest| (finest, finest.frame(&few)));
         let settings = self.settings(&frame)?;
         let surfaces: Vec<_> = settings.iter().map(|of| self.setting_surface(of, &few, &truth.frame)).collect();
         let mut book = PictureBook { folder, prefix, entries: Vec::new() };
@@ -129,10 +166,10 @@ impl<'a> Bench<'a> {
             let samples = side * side;
             let full = match side {
                 1 => truth.image.clone(),
-                _ => subject.draw(&*self.reference, &cameras.few, f64::INFINITY, "full resolution").image(),
+                _ => subject.draw(&*self.truth.reference, &cameras.few, f64::INFINITY, "full resolution").image(),
             };
             let moved = cameras.few.shifted([0.5, 0.5]);
-            let shifted = subject.draw(&*self.reference, &moved, f64::INFINITY, "shifted by half a pixel").image();
+            let shifted = subject.draw(&*self.truth.reference, &moved, f64::INFINITY, "shifted by half a pixel").image();
             shift.push(Shift { samples, picture: PictureError::of(&shifted, &full, ppd) });
             if kept == Some(side) {
                 book.add(&full, FULL, "full resolution", samples, "image")?;
@@ -155,7 +192,10 @@ impl<'a> Bench<'a> {
                     }
                 }
                 let point = self.point(&setting.words, samples, &results, errors, surface.errors)?;
-                points.push(Point { is_default: setting.is_default, ..point });
+                let of_finest = finest.as_ref().filter(|_| !setting.chosen.method.of_input);
+                let of_finest =
+                    of_finest.map(|(finest, truth)| finest.errors(self.scene, &surface.frame, truth, &few, self.plan.measure.stride));
+                points.push(Point { is_default: setting.is_default, finest: of_finest, ..point });
                 if self.plan.measure.most_samples > 0 {
                     unseen.push(Unseen { point: points.len() - 1, picture, luminance });
                 }
@@ -189,7 +229,7 @@ impl<'a> Bench<'a> {
     }
 
     fn subject(&self) -> Subject<'_> {
-        Subject { shader: Shader::new(self.scene, &self.space, self.plan.measure.shading), space: &self.space }
+        Subject { shader: Shader::new(self.truth.scene, &self.truth.space, self.plan.measure.shading), space: &self.truth.space }
     }
 
     /// What each method does if nothing is chosen, with its number.
@@ -211,7 +251,9 @@ impl<'a> Bench<'a> {
 
     pub(super) fn stage<'b>(&'b self, at: usize, setting: &'b Setting) -> Stage<'b> {
         let (chosen, targets) = (&setting.chosen, &self.plan.jobs.targets);
-        Stage { scene: self.scene, all: self.scene, space: &self.space, chosen, method: self.method(at, setting), targets }
+        // Truth is the input wherever a method is over it.
+        let (scene, space) = if chosen.method.of_input { (self.truth.scene, &self.truth.space) } else { (self.scene, &self.space) };
+        Stage { scene, all: scene, space, chosen, method: self.method(at, setting), targets }
     }
 
     /// What a stage's frame costs on the machines, and its picture, whose errors are against `full`.
@@ -226,6 +268,12 @@ impl<'a> Bench<'a> {
             picture,
             results: simulated(stage, &cameras.frame)?,
         })
+    }
+
+    /// The triangles that a method is over.
+    fn triangles(&self, method: &str) -> u64 {
+        let of_input = find(method).is_some_and(|method| method.of_input);
+        if of_input { self.truth.scene.finest_triangles() } else { self.facts.finest_triangles }
     }
 
     /// What was measured of a setting with so many samples.
@@ -247,8 +295,9 @@ impl<'a> Bench<'a> {
             choices: facts.choices.clone(),
             samples,
             bytes: facts.bytes,
-            bytes_per_triangle: facts.bytes as f64 / self.facts.finest_triangles as f64,
+            bytes_per_triangle: facts.bytes as f64 / self.triangles(&facts.name) as f64,
             geometry,
+            finest: None,
             picture,
             viewed: None,
             appearance: None,
@@ -266,8 +315,7 @@ impl<'a> Bench<'a> {
         let bar = progress(u64::from(few.height), "surface");
         let frame = render(stage.method, stage.space, few, stage.chosen.delta(), &|| bar.inc(1)).0;
         bar.finish_and_clear();
-        let full = FullResolution { scene: self.scene, space: &self.space, surface: &self.surface, pixels: &truth.pixels };
-        Surface { errors: SurfaceError::of(stage.all, &frame.pixels, &full, few, self.plan.measure.stride), frame }
+        Surface { errors: self.truth.errors(stage.all, &frame, truth, few, self.plan.measure.stride), frame }
     }
 
     /// Draws full resolution with more and more samples until its standard error is a quarter of the smallest error, or there are no more; then says how
@@ -280,7 +328,7 @@ impl<'a> Bench<'a> {
             return Ok(None);
         }
         loop {
-            let Converging { picture: drawn, standard_error } = subject.converging(&*self.reference, camera, side)?;
+            let Converging { picture: drawn, standard_error } = subject.converging(&*self.truth.reference, camera, side)?;
             let picture = drawn.image();
             let errors = unseen.iter().map(|unseen| difference(&unseen.picture, &picture));
             let smallest = errors.filter(|&error| error > 0.0).fold(f64::INFINITY, f64::min);

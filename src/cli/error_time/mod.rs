@@ -82,7 +82,12 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
         }
         let failure =
             |key: &String, error: &anyhow::Error| ViewRow { key: key.clone(), measured: None, error: Some(crate::one_line(error)) };
-        let made = match scene.open().and_then(|made| check_normals(&made, "a picture").map(|()| made)) {
+        let open = || {
+            let made = scene.open()?;
+            check_normals(&made, "a picture")?;
+            args.with_input(made, &scene.path())
+        };
+        let made = match open() {
             Ok(made) => made,
             Err(error) => {
                 left.iter().try_for_each(|(_, _, key)| rows.add(failure(key, &error)))?;
@@ -138,6 +143,7 @@ fn entry(jobs: &SceneJobs, scene: &Scene) -> SceneEntry {
         base_triangles: scene.trees() as u64,
         finest_triangles: scene.finest_triangles(),
         bounds: scene.meta().bounds.name().to_owned(),
+        input_triangles: scene.input().map(Scene::finest_triangles),
     }
 }
 

@@ -4,20 +4,22 @@ use super::plan::{Measure, Plan};
 use crate::cli::args::{Change, Size, radii};
 use crate::cli::cache::CacheArgs;
 use crate::cli::folder::{Overrule, one_run};
+use crate::cli::input::{FILE, InputArgs, mesh_of};
 use crate::cli::method::{Chosen, Listed, machine_methods};
 use crate::cli::names::named;
-use crate::cli::output::open;
+use crate::cli::output::{open, remark};
 use crate::cli::pass::{Target, machine, machine_files};
 use crate::cli::plan::pixels;
 use crate::cli::render::shading;
 use crate::cli::sweep::{Jobs, Origin, SceneJobs, ViewJob};
 use anyhow::{Context, ensure};
+use lodray::format::Scene;
 use lodray::method::{METHODS, lod};
 use lodray::picture::{PIXELS_PER_DEGREE, Shading};
 use lodray::rays::{MAX_SIDE, ModelSpace};
 use lodray::run::{self, Compute};
 use std::collections::{BTreeMap, BTreeSet};
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use xxhash_rust::xxh3::xxh3_64;
 
 /// Eight distances, the nearest just outside of the model, in bounding radii.
@@ -86,6 +88,8 @@ pub struct Args {
     #[arg(long)]
     quick: bool,
     #[command(flatten)]
+    pub input: InputArgs,
+    #[command(flatten)]
     pub cache: CacheArgs,
 }
 
@@ -125,6 +129,20 @@ fn pixels_per_degree(s: &str) -> Result<f64, String> {
 }
 
 impl Args {
+    /// A scene with the mesh that it was built from at hand, where that can be found. It must be there if methods over it were named.
+    pub fn with_input(&self, scene: Scene, path: &str) -> anyhow::Result<Scene> {
+        match mesh_of(&scene, Path::new(path), &self.input) {
+            Ok(input) => Ok(scene.with_input(input)),
+            Err(why) if self.methods.iter().any(|Listed(method)| method.of_input) => Err(why),
+            // A scene that was made from no mesh is its own full resolution.
+            Err(_) if scene.meta().origin[FILE].is_null() => Ok(scene),
+            Err(why) => {
+                remark(&format!("note: errors are against the finest level, and no BVH is over the input mesh: {why:#}"))?;
+                Ok(scene)
+            }
+        }
+    }
+
     /// What is to be measured; every mistake is found before anything is traced.
     pub fn plan(&self) -> anyhow::Result<Plan> {
         let (mut jobs, deltas) = match &self.jobs {

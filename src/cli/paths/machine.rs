@@ -55,6 +55,7 @@ pub fn run(
             scene: SceneFacts::from(scene),
             method: MethodFacts::new(chosen.method, &chosen.knobs, &own.method.choices(own.sight()), map.bytes()),
             view: None,
+            frames: None,
             rays: Some(RayFileFacts { file: file.to_owned(), count: rays }),
             compute,
             machine: machine.clone(),

@@ -34,7 +34,7 @@ pub fn load(model: &ModelTable, beside: &Path) -> anyhow::Result<Scene> {
     }
     let mesh = busy("reading", || read(&path))?;
     mesh.warnings.iter().for_each(|lost| warn(&format!("warning: {}: {lost}", path.display())));
-    let options = RemeshOptions { levels: model.levels.unwrap_or(5), ..RemeshOptions::default() };
+    let options = RemeshOptions { levels: model.levels, ..RemeshOptions::default() };
     let (surface, report) = busy("remeshing", || remesh(&mesh, &options, &|_, _, _| ())).with_context(|| path.display().to_string())?;
     if let Some(lost) = report.warning.as_ref().filter(|_| !is_quiet()) {
         warn(&format!("warning: {}: {lost}", path.display()));

@@ -1,4 +1,4 @@
-//! `simulate`: a frame on one or more machines.
+//! `simulate`: a frame, or several after one another, on one or more machines.
 
 mod files;
 pub(super) mod plots;
@@ -9,6 +9,8 @@ use super::args::{CameraArgs, Change};
 use super::cache::{Cache, CacheArgs};
 use super::common::is_quiet;
 use super::folder::{Overrule, RunFolder, one_run};
+use super::frames::FrameArgs;
+use super::input::{InputArgs, with_input};
 use super::job;
 use super::method::MachineMethod;
 use super::names::named;
@@ -48,18 +50,22 @@ pub struct Args {
     compute: Compute,
     #[command(flatten)]
     camera: CameraArgs,
+    #[command(flatten)]
+    frames: FrameArgs,
     /// File of rays in place of a camera's (.npy); `cast --help` has the columns. Each starts at its own origin; one that names an earlier ray waits for that
-    #[arg(long, value_name = "FILE", conflicts_with_all = CameraArgs::ids())]
+    #[arg(long, value_name = "FILE", conflicts_with_all = CameraArgs::ids().into_iter().chain(FrameArgs::ids()))]
     rays: Option<PathBuf>,
     #[command(flatten)]
     cache: CacheArgs,
+    #[command(flatten)]
+    input: InputArgs,
     /// Folder for the figures as JSON, what happened over time as CSV, and plots as SVG
     #[arg(short, long, long_help = one_run("Folder for the figures as JSON, what happened over time as CSV, and plots as SVG"))]
     out: Option<PathBuf>,
     #[command(flatten)]
     overrule: Overrule,
     /// File for a waveform (VCD) of the machine: queues, misses under way and cache events; needs --window
-    #[arg(long, value_name = "FILE", requires = "window")]
+    #[arg(long, value_name = "FILE", requires = "window", conflicts_with_all = FrameArgs::ids())]
     vcd: Option<PathBuf>,
     /// First and last cycle of the waveform, counted from 0
     #[arg(long, value_name = "FROM:TO", requires = "vcd", value_parser = window)]
@@ -104,17 +110,24 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
     }
     let read =
         args.machine.iter().zip(&machines).map(|(name, machine)| machine_files(name, machine)).collect::<Result<Vec<_>, _>>()?.concat();
-    let inputs: Vec<_> = std::iter::once(&args.scene).chain(&args.rays).chain(&args.plan).chain(&read).map(PathBuf::as_path).collect();
+    let inputs: Vec<_> = std::iter::once(&args.scene)
+        .chain(&args.rays)
+        .chain(args.frames.input())
+        .chain(&args.input.mesh)
+        .chain(&args.plan)
+        .chain(&read)
+        .map(PathBuf::as_path)
+        .collect();
     if let Some(vcd) = &args.vcd {
         anyhow::ensure!(machines.len() == 1, "--vcd: takes one machine, not {}", machines.len());
         check_target(vcd, &inputs)?;
     }
     args.page.check(&inputs)?;
-    let scene = open_any(&args.scene)?;
+    let scene = with_input(open_any(&args.scene)?, &args.scene, &args.input, [&args.method.0])?;
     let space = ModelSpace::of(&scene);
     let rays = match &args.rays {
         Some(path) => PassRays::File(RayFile::read(path)?, path.clone()),
-        None => PassRays::Camera(args.camera.camera(&space, None)?),
+        None => args.frames.rays(&args.camera, &space)?,
     };
     let labels: Vec<_> = machines.iter().map(|machine| machine.label.as_str()).collect();
     let files = Files::new(&labels);
@@ -126,6 +139,7 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
     match &rays {
         PassRays::File(rays, _) => job::check_rays(&scene, rays, chosen.delta())?,
         PassRays::Camera(camera) => job::check(&scene, camera, chosen.delta())?,
+        PassRays::Path(path) => path.cameras().iter().try_for_each(|camera| job::check(&scene, camera, chosen.delta()))?,
     }
     if let Some(plan) = &plan {
         anyhow::ensure!(chosen.method.name == "lod", "--plan: is of units for lod, not for {}", chosen.method.name);

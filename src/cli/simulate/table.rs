@@ -51,6 +51,7 @@ pub fn table(r: &SimResult) -> String {
     lines.line("frame", ["cycles", "ms", "frames/s", "rays", "hits", "accesses/ray"]);
     let frame = [grouped(r.cycles), amount(r.milliseconds), amount(r.frames_per_second)];
     lines.line("", frame.into_iter().chain([grouped(r.rays), grouped(r.hits), amount(r.accesses_per_ray)]));
+    frames(&mut lines, r);
     lines.gap();
     memory(&mut lines, r);
     lines.gap();
@@ -63,6 +64,27 @@ pub fn table(r: &SimResult) -> String {
         lines.0 += "note: no ray meets the model's box, so nothing is read\n";
     }
     lines.0.trim_end().to_owned()
+}
+
+/// What frames took one after another, or which part of a single one few rays had for themselves.
+fn frames(lines: &mut Lines, r: &SimResult) {
+    let energy = format!("energy, {}", r.energy.unit);
+    let figures = |[cycles, bytes, energy]: [f64; 3], stragglers: f64| {
+        [grouped(cycles.round() as u64), grouped(bytes.round() as u64), amount(energy), percent(stragglers)] // counts are not negative
+    };
+    match (r.warm, r.frames.as_slice()) {
+        (Some(warm), [first, ..]) => {
+            lines.gap();
+            lines.line("one frame", ["cycles", "DRAM bytes", &energy, "stragglers"]);
+            lines.line("  first", figures([first.cycles as f64, first.dram_bytes as f64, first.energy], first.stragglers));
+            let [from, to] = warm.frames;
+            lines.line(&format!("  {from} to {to}"), figures([warm.cycles, warm.dram_bytes, warm.energy], warm.stragglers));
+        }
+        (None, [one]) => {
+            lines.0 += &format!("              {} of its cycles with rays in fewer than half of the contexts\n", percent(one.stragglers));
+        }
+        _ => (),
+    }
 }
 
 fn head(r: &SimResult) -> String {

@@ -11,6 +11,7 @@ use super::args::whole;
 use super::cache::{Cache, CacheArgs};
 use super::common::MAX_THREADS;
 use super::folder::{Overrule, RunFolder, one_run};
+use super::input::{InputArgs, with_input};
 use super::job;
 use super::job_lines::{JobLines, keep_aside};
 use super::method::Chosen;
@@ -25,7 +26,7 @@ use lodray::method::{Method, reference};
 use lodray::rays::{Camera, ModelSpace};
 use lodray::report::page::{Documents, ImageFigures, Simulation};
 use std::collections::HashSet;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use std::sync::{Arc, Mutex, PoisonError};
 
@@ -54,6 +55,8 @@ pub struct Args {
     #[command(flatten)]
     overrule: Overrule,
     #[command(flatten)]
+    input: InputArgs,
+    #[command(flatten)]
     cache: CacheArgs,
     #[command(flatten)]
     page: PageArgs,
@@ -69,6 +72,7 @@ struct Group<'a> {
 /// What is left to do.
 struct Sweep<'a> {
     jobs: &'a Jobs,
+    input: &'a InputArgs,
     cache: &'a Cache,
     at_once: usize,
     rows: JobLines<Row>,
@@ -89,7 +93,7 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
     let done = rows.done();
     // Each machine's replay is a thread's work.
     let at_once = args.at_once.unwrap_or_else(|| rayon::current_num_threads().div_ceil(jobs.targets.len().max(1)));
-    let mut sweep = Sweep { jobs: &jobs, cache: &cache, at_once, rows };
+    let mut sweep = Sweep { jobs: &jobs, input: &args.input, cache: &cache, at_once, rows };
     let mut keys = Vec::new();
     for scene in &jobs.scenes {
         let groups = sweep.groups(scene, &done, &mut keys)?;
@@ -151,7 +155,8 @@ impl<'a> Sweep<'a> {
         if groups.is_empty() {
             return Ok(());
         }
-        let made = match scene.open() {
+        let opened = scene.open().and_then(|made| with_input(made, Path::new(&scene.path()), self.input, &self.jobs.methods));
+        let made = match opened {
             Ok(made) => made,
             Err(error) => return groups.iter().try_for_each(|group| self.failed(scene, group, &error)),
         };
@@ -207,6 +212,11 @@ impl<'a> Workshop<'a> {
         job::check(self.scene, &camera, group.chosen.delta())?;
         if self.jobs.error {
             check_normals(self.scene, "the error of a picture")?;
+            let name = group.chosen.method.name;
+            anyhow::ensure!(
+                !group.chosen.method.of_input,
+                "error: a sweep has no errors of {name}, whose triangles are not the scene's: error-time has"
+            );
         }
         let method = self.made(group.chosen)?;
         let image = if self.jobs.error { Some(self.image_error(group, &*method, &camera)?) } else { None };

@@ -8,6 +8,7 @@
 //! | `spikes` | 8 k^2 | 128, N = 4 | sphere with needles, closed |
 //! | `room` | 2 g^2 + 10 max(1, g/4)^2 | 2,688, N = 5 | a box with an open side around the cloth |
 //! | `wall` | 1,456 k^2 | 36,400, N = 4 | 182 displaced spheres side by side |
+//! | `street` | 512 k^2 | 4,608, N = 5 | 64 displaced spheres in two rows, near to far |
 //! | `pot` | 8 (k^2 + h^2 + 2 q (q + h + k)), h = k/2 and q = k/4 rounded up | 1,088, N = 5 | hammered teapot of four closed bodies |
 //! | `drape` | 2 g^2 | 2,048, N = 5 | a cloth over the pot, with folds and a fine weave |
 //!
@@ -15,6 +16,7 @@
 
 mod base;
 mod cloth;
+mod copies;
 mod drape;
 mod noise;
 mod pot;
@@ -22,6 +24,7 @@ mod room;
 mod sphere;
 mod spikes;
 mod spline;
+mod street;
 mod terrain;
 mod wall;
 
@@ -50,6 +53,8 @@ pub enum Scene {
     Room,
     /// 182 displaced spheres side by side.
     Wall,
+    /// 64 displaced spheres in two rows, near to far.
+    Street,
     /// Hammered teapot: four closed bodies that reach into each other.
     Pot,
     /// Cloth over the pot, in the same coordinates.
@@ -58,7 +63,8 @@ pub enum Scene {
 
 impl Scene {
     /// All scenes.
-    pub const ALL: [Self; 8] = [Self::Terrain, Self::Cloth, Self::Sphere, Self::Spikes, Self::Room, Self::Wall, Self::Pot, Self::Drape];
+    pub const ALL: [Self; 9] =
+        [Self::Terrain, Self::Cloth, Self::Sphere, Self::Spikes, Self::Room, Self::Wall, Self::Street, Self::Pot, Self::Drape];
 
     /// Its name in options and files.
     pub const fn name(self) -> &'static str {
@@ -69,6 +75,7 @@ impl Scene {
             Self::Spikes => "spikes",
             Self::Room => "room",
             Self::Wall => "wall",
+            Self::Street => "street",
             Self::Pot => "pot",
             Self::Drape => "drape",
         }
@@ -78,7 +85,7 @@ impl Scene {
     pub const fn default_levels(self) -> u32 {
         match self {
             Self::Terrain => 7,
-            Self::Cloth | Self::Sphere | Self::Room | Self::Pot | Self::Drape => 5,
+            Self::Cloth | Self::Sphere | Self::Room | Self::Street | Self::Pot | Self::Drape => 5,
             Self::Spikes | Self::Wall => 4,
         }
     }
@@ -91,6 +98,7 @@ impl Scene {
             Self::Spikes => 128,
             Self::Room => 2_688,
             Self::Wall => 36_400,
+            Self::Street => 4_608,
             Self::Pot => 1_088,
         }
     }
@@ -99,7 +107,7 @@ impl Scene {
     pub const fn default_roughness(self) -> f64 {
         match self {
             Self::Terrain => 0.55,
-            Self::Sphere | Self::Wall => 0.45,
+            Self::Sphere | Self::Wall | Self::Street => 0.45,
             Self::Cloth | Self::Spikes | Self::Room | Self::Pot | Self::Drape => 0.5,
         }
     }
@@ -111,6 +119,7 @@ impl Scene {
             Self::Terrain | Self::Cloth | Self::Drape => 2 * square,
             Self::Sphere | Self::Spikes => 8 * square,
             Self::Wall => 8 * wall::MODELS as u64 * square,
+            Self::Street => 8 * street::MODELS as u64 * square,
             Self::Pot => pot::trees(n),
             Self::Room => {
                 let wall = u64::from(walls.unwrap_or(room::wall_quads(n)));
@@ -146,7 +155,7 @@ pub struct Options {
     pub base: Option<u32>,
     /// Any number; another seed gives another scene of the kind.
     pub seed: u64,
-    /// Between 0 and 1, both excluded. `terrain`, `sphere` and `wall`: amplitude of an octave of noise relative to the one before. `cloth`,
+    /// Between 0 and 1, both excluded. `terrain`, `sphere`, `wall` and `street`: amplitude of an octave of noise relative to the one before. `cloth`,
     /// `room` and `drape`: height of the weave, `spikes`: length of the needles, `pot`: depth of the dimples, all relative to the default's 0.5.
     pub roughness: Option<f64>,
     /// `room` alone: quads along each wall, 1 to [`MAX_WALLS`]; a quarter of those across the cloth if none.
@@ -262,6 +271,7 @@ pub fn generate(options: &Options) -> Result<Surface, GenerateError> {
         Scene::Spikes => spikes::generate(n, levels, seed, 2.0 * roughness),
         Scene::Room => room::generate(n, walls, levels, seed, 2.0 * roughness),
         Scene::Wall => wall::generate(n, levels, seed, roughness),
+        Scene::Street => street::generate(n, levels, seed, roughness),
         Scene::Pot => pot::generate(n, levels, seed, 2.0 * roughness),
         Scene::Drape => drape::generate(n, levels, seed, 2.0 * roughness),
     }

@@ -2,7 +2,7 @@ use super::super::lattice::{self, LatticePoint};
 use super::*;
 use std::collections::HashMap;
 
-const ALL: [Scene; 8] = Scene::ALL;
+const ALL: [Scene; 9] = Scene::ALL;
 
 fn small(scene: Scene, base: u32, levels: u32) -> Surface {
     generate(&Options { base: Some(base), levels: Some(levels), ..Options::new(scene) }).expect("valid options")
@@ -90,6 +90,7 @@ fn defaults_have_their_sizes() {
         (Scene::Spikes, 128, 4, 32_768),
         (Scene::Room, 2_688, 5, 2_752_512),
         (Scene::Wall, 36_400, 4, 9_318_400),
+        (Scene::Street, 4_608, 5, 4_718_592),
         (Scene::Pot, 1_088, 5, 1_114_112),
         (Scene::Drape, 2_048, 5, 2_097_152),
     ] {
@@ -107,13 +108,14 @@ fn trees_meet_to_the_bit_for_any_base_and_levels() {
                 let s = small(scene, base, levels);
                 assert!(s.triangles.len() >= base as usize);
                 let (paired, open) = check(&s);
-                let closed = matches!(scene, Scene::Sphere | Scene::Spikes | Scene::Wall | Scene::Pot);
+                let closed = matches!(scene, Scene::Sphere | Scene::Spikes | Scene::Wall | Scene::Street | Scene::Pot);
                 assert_eq!(open == 0, closed, "{scene:?}");
                 assert_eq!(2 * paired + open, 3 * s.triangles.len());
                 if closed {
                     // Euler: V - E + F = 2 for each body.
                     let bodies = match scene {
                         Scene::Wall => wall::MODELS as usize,
+                        Scene::Street => street::MODELS as usize,
                         Scene::Pot => pot::PARTS.len(),
                         _ => 1,
                     };

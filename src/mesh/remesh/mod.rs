@@ -23,6 +23,7 @@ use super::distance::{Distance, TwoSidedDistance, Vec3, mean_distances, percent}
 use super::farthest::Farthest;
 use super::{DEFAULT_CREASE_ANGLE, Surface, corner_normals, lattice};
 use crate::num::{MAX_LEVELS, PADDING_BITS};
+use decimate::Decimator;
 pub use folds::Folds;
 use rayon::prelude::*;
 use refine::{Fitted, Turned, Wanted};
@@ -40,8 +41,8 @@ pub const DEFAULT_MAX_ERROR: f64 = 0.3;
 /// What to make of a mesh.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RemeshOptions {
-    /// Number of splits N, 0 to [`MAX_LEVELS`].
-    pub levels: u32,
+    /// Number of splits N, 0 to [`MAX_LEVELS`]; by default as many as make finest triangles about as many as the input's.
+    pub levels: Option<u32>,
     /// Wanted number of base triangles (never more than the input); by default as few as keep within `max_error`.
     pub base_triangles: Option<usize>,
     /// Largest distance between original and full-resolution result, both ways, in percent of the diagonal of the original's box.
@@ -55,7 +56,7 @@ pub struct RemeshOptions {
 
 impl Default for RemeshOptions {
     fn default() -> Self {
-        RemeshOptions { levels: 0, base_triangles: None, max_error: DEFAULT_MAX_ERROR, reserve: 0.0, crease_angle: DEFAULT_CREASE_ANGLE }
+        RemeshOptions { levels: None, base_triangles: None, max_error: DEFAULT_MAX_ERROR, reserve: 0.0, crease_angle: DEFAULT_CREASE_ANGLE }
     }
 }
 
@@ -196,8 +197,7 @@ pub fn remesh(
     options: &RemeshOptions,
     progress: &dyn Fn(&str, u64, u64),
 ) -> Result<(Surface, RemeshReport), RemeshError> {
-    let levels = options.levels;
-    if levels > MAX_LEVELS {
+    if let Some(levels) = options.levels.filter(|&levels| levels > MAX_LEVELS) {
         return Err(RemeshError::Levels { levels });
     }
     if options.base_triangles == Some(0) {
@@ -211,15 +211,26 @@ pub fn remesh(
     check(mesh)?;
 
     let source = Source::new(mesh, angle.to_radians());
-    let least = percent(source.diagonal) * (rounding(levels) + EXACT);
-    if error < least {
-        return Err(RemeshError::Grid { wanted: options.max_error, levels, least: rounded_up(least + options.reserve) });
-    }
-    let limit = (source.diagonal * error / 100.0 - rounding(levels)).max(0.0);
-    let fitted = match options.base_triangles {
-        Some(wanted) => refine::force(&source, wanted.min(mesh.triangles.len()), levels, progress)?,
-        None => refine::fit(&source, &Wanted { levels, limit }, progress)?,
+    let limit = |levels| {
+        let least = percent(source.diagonal) * (rounding(levels) + EXACT);
+        if error < least {
+            return Err(RemeshError::Grid { wanted: options.max_error, levels, least: rounded_up(least + options.reserve) });
+        }
+        Ok((source.diagonal * error / 100.0 - rounding(levels)).max(0.0))
     };
+    let (levels, fitted) = match (options.levels, options.base_triangles.map(|wanted| wanted.min(mesh.triangles.len()))) {
+        (Some(levels), None) => {
+            let wanted = Wanted { levels, base: 0, limit: limit(levels)? };
+            (levels, refine::fit(&source, &mut Decimator::new(&source), &wanted, progress)?)
+        }
+        (None, None) => refine::fit_by_need(&source, &limit, progress)?,
+        (levels, Some(base)) => {
+            let levels = levels.unwrap_or_else(|| refine::levels_for(base as u64, mesh.triangles.len() as u64));
+            limit(levels)?;
+            (levels, refine::force(&source, base, levels, progress)?)
+        }
+    };
+    let limit = limit(levels)?;
     let Fitted { topology, forest, .. } = &fitted;
     progress("normals", 0, 1);
     let surface = Surface {
@@ -250,7 +261,7 @@ pub fn remesh(
         ..Default::default()
     };
     fitted.forest.count_methods(&fitted.topology, &mut report);
-    report.warning = warning(&source, &turned, &far, options, mesh, &report);
+    report.warning = warning(&source, &turned, &far, options, mesh, &report, levels);
     progress("distance", 1, 1);
     Ok((surface, report))
 }
@@ -286,6 +297,7 @@ fn warning(
     options: &RemeshOptions,
     mesh: &TriangleMesh,
     report: &RemeshReport,
+    levels: u32,
 ) -> Option<String> {
     let (to, from) = (&report.distance.to_original, &report.distance.from_original);
     let place = |p: Vec3| {
@@ -318,7 +330,7 @@ fn warning(
     }
     let seams = mesh.report.non_manifold_edges + mesh.report.inconsistent_edges;
     let all = mesh.triangles.len();
-    let fits = |base: usize| base as u64 <= refine::most_base(options.levels);
+    let fits = |base: usize| base as u64 <= refine::most_base(levels);
     let try_this = match options.base_triangles {
         Some(base) if base < all => "leave --base out, or try a larger one".to_owned(),
         _ if seams > 0 => format!(

@@ -12,7 +12,7 @@ use super::shading::{finest_corners, finest_origins};
 use super::source::Source;
 use super::split::{Forest, split};
 use super::topology::Topology;
-use super::{DEFAULT_MAX_ERROR, MAX_TRIANGLES, RemeshError, Works};
+use super::{DEFAULT_MAX_ERROR, MAX_LEVELS, MAX_TRIANGLES, RemeshError, Works};
 use rayon::prelude::*;
 
 /// How far removal goes by itself: a little beyond where it goes well, as what goes wrong is mended.
@@ -43,6 +43,8 @@ const RINGS: u32 = 4;
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Wanted {
     pub levels: u32,
+    /// Base triangles, at least.
+    pub base: usize,
     /// Largest distance between original and result, in units of the box.
     pub limit: f64,
 }
@@ -55,22 +57,82 @@ pub(super) struct Fitted {
     pub target: Target,
     /// How far the result is from the original at most, and the original from the result, if that was looked for.
     pub farthest: Option<[Farthest; 2]>,
+    /// Nothing was found to be wrong with it; false if nobody looked.
+    pub is_mended: bool,
+}
+
+/// Levels that make `base` triangles at least as many as the original's.
+pub(super) fn levels_for(base: u64, original: u64) -> u32 {
+    (0..MAX_LEVELS).find(|levels| base << (2 * levels) >= original).unwrap_or(MAX_LEVELS)
+}
+
+/// What a tree costs beside its finest triangles, in bytes of so many of these: scenes of one original with 1 to 4 levels have 60 to 75 bytes for a tree and 9 for a finest triangle.
+const TREE: u64 = 8;
+
+fn cost(base: u64, levels: u32) -> u64 {
+    (base << (2 * levels)) + TREE * base
+}
+
+/// The levels, and the base mesh for them, that need the fewest bytes of those whose finest triangles are as many as the original's or more; one level at least where the
+/// original has any triangles to spare. `limit` gives the largest distance for so many levels, in units of the box.
+///
+/// Levels are tried from the most that removal as far as it goes well leaves enough triangles for. With fewer levels, removal stops at enough triangles, and the largest error may need more
+/// or fewer: a level less is tried as long as that can be better.
+///
+/// # Errors
+/// As [`fit`], or of `limit`.
+pub(super) fn fit_by_need(
+    source: &Source,
+    limit: &dyn Fn(u32) -> Result<f64, RemeshError>,
+    progress: &dyn Fn(&str, u64, u64),
+) -> Result<(u32, Fitted), RemeshError> {
+    let mut decimator = Decimator::new(source);
+    let original = source.wedges.len() as u64;
+    let free = decimator.run(&[FREE], &vec![false; source.positions.len()]).wedges.len();
+    let (mut levels, mut base) = (levels_for(free as u64, original), 0);
+    let mut best: Option<((bool, u64), (u32, Fitted))> = None;
+    loop {
+        let fitted = limit(levels).and_then(|limit| fit(source, &mut decimator, &Wanted { levels, base, limit }, progress));
+        let (cost_of, fitted) = match (fitted, best.take()) {
+            (Err(_), Some((_, best))) => return Ok(best),
+            (fitted, before) => {
+                let fitted = fitted?;
+                let cost_of = (!fitted.is_mended, cost(fitted.topology.triangles.len() as u64, levels));
+                match before {
+                    Some((least, best)) if least <= cost_of => return Ok(best),
+                    _ => (cost_of, (levels, fitted)),
+                }
+            }
+        };
+        levels = levels.saturating_sub(1);
+        base = original.div_ceil(1 << (2 * levels)) as usize; // as many as the original at most
+        let (is_faulty, least) = cost_of;
+        if levels == 0 || !is_faulty && cost(base as u64, levels) >= least {
+            return Ok(fitted);
+        }
+        best = Some((cost_of, fitted));
+    }
 }
 
 /// The base mesh with as few triangles as will do.
 ///
 /// # Errors
 /// If with these levels it would make more than [`MAX_TRIANGLES`].
-pub(super) fn fit(source: &Source, wanted: &Wanted, progress: &dyn Fn(&str, u64, u64)) -> Result<Fitted, RemeshError> {
+pub(super) fn fit(
+    source: &Source,
+    decimator: &mut Decimator,
+    wanted: &Wanted,
+    progress: &dyn Fn(&str, u64, u64),
+) -> Result<Fitted, RemeshError> {
+    let goal = Goal { triangles: wanted.base, ..FREE };
     let mut keep = vec![false; source.positions.len()];
     // How often each triangle of the original was at fault.
     let mut strikes = vec![0u32; source.wedges.len()];
-    let mut decimator = Decimator::new(source);
     let (mut at, mut left, mut rounds) = (wanted.levels.min(TRIAL_LEVELS), ROUNDS, 0);
     loop {
         rounds += 1;
         progress("base mesh", rounds.min(ROUNDS - 1).into(), ROUNDS.into());
-        let base = decimator.run(&[FREE], &keep);
+        let base = decimator.run(&[goal], &keep);
         let count = base.wedges.len() as u64;
         if count > most_base(wanted.levels) {
             // The first base mesh has as few as there can be without a loss of shape, whatever the largest error.
@@ -91,6 +153,7 @@ pub(super) fn fit(source: &Source, wanted: &Wanted, progress: &dyn Fn(&str, u64,
         }
         if at == wanted.levels {
             progress("base mesh", ROUNDS.into(), ROUNDS.into());
+            fitted.is_mended = faultless;
             return Ok(fitted);
         }
         (at, left) = (wanted.levels, LAST_ROUNDS);
@@ -131,7 +194,7 @@ fn works(source: &Source, base: u64, levels: u32) -> Works {
 fn split_and_look(source: &Source, topology: Topology, levels: u32, progress: &dyn Fn(&str, u64, u64)) -> Fitted {
     let forest = split(source, &topology, levels, progress);
     let target = Target::grouped(finest_corners(&forest), 1 << (2 * levels.min(2)));
-    Fitted { topology, forest, target, farthest: None }
+    Fitted { topology, forest, target, farthest: None, is_mended: false }
 }
 
 /// What a result turns away from the original, and where.

@@ -11,7 +11,7 @@ use rayon::prelude::*;
 const BUMP: f64 = 0.5;
 
 /// The normal across the original's edges is the better one if its cosine is greater by this.
-const BETTER: f64 = 0.2;
+const BETTER: f64 = 0.03;
 
 /// One unit normal for each lattice point, interpolated from `corner_normals` of the original's triangles.
 ///

@@ -110,6 +110,7 @@ pub static METHOD: Registered = Registered {
     help: "Quad-BVH of the full-resolution mesh, boxes of up to 16 bits",
     knobs: &[&NODE_BOXES, &NODE_ORDER, &LEAF_LAYOUT, &LEAF_SIZE],
     error: None,
+    of_input: false,
     unit: Some(MethodUnit { blocks: UNIT, has_levels: false }),
     make: |scene, knobs, store| Bvh::of(scene, knobs, None, store),
 };
@@ -133,6 +134,7 @@ pub static METHOD_SIX: Registered = Registered {
     help: "BVH of six children a node, in 64 bytes, with boxes in steps of 8 bits",
     knobs: &[&NODE_ORDER, &LEAF_LAYOUT, &LEAF_SIZE],
     error: None,
+    of_input: false,
     unit: Some(MethodUnit { blocks: UNIT_OF_SIX, has_levels: false }),
     make: |scene, knobs, store| Bvh::of(scene, knobs, Some(NodeBoxes::Six), store),
 };
@@ -143,8 +145,31 @@ pub static METHOD_WIDE: Registered = Registered {
     help: "The same with 32-bit boxes",
     knobs: &[&NODE_ORDER, &LEAF_LAYOUT, &LEAF_SIZE],
     error: None,
+    of_input: false,
     unit: Some(MethodUnit { blocks: &unit(Operation::BoxTest32), has_levels: false }),
     make: |scene, knobs, store| Bvh::of(scene, knobs, Some(NodeBoxes::Wide), store),
+};
+
+/// [`METHOD`] over the mesh that the scene was made from: what somebody traces who has that mesh and no levels of detail.
+pub static METHOD_INPUT: Registered = Registered {
+    name: "input-bvh",
+    help: "bvh over the triangles of the mesh that the scene was built from",
+    knobs: METHOD.knobs,
+    error: None,
+    of_input: true,
+    unit: METHOD.unit,
+    make: |scene, knobs, store| Bvh::of(scene.input().ok_or(BvhError::NoInput)?, knobs, None, store),
+};
+
+/// [`METHOD_SIX`] over that mesh.
+pub static METHOD_INPUT_SIX: Registered = Registered {
+    name: "input-bvh6",
+    help: "bvh6 over the triangles of the mesh that the scene was built from",
+    knobs: METHOD_SIX.knobs,
+    error: None,
+    of_input: true,
+    unit: METHOD_SIX.unit,
+    make: |scene, knobs, store| Bvh::of(scene.input().ok_or(BvhError::NoInput)?, knobs, Some(NodeBoxes::Six), store),
 };
 
 impl FullOptions {

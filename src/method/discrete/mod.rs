@@ -41,6 +41,7 @@ pub static METHOD: Registered = Registered {
     knobs: &[&DELTA, &LEVEL, &NODE_BOXES, &NODE_ORDER, &LEAF_LAYOUT, &LEAF_SIZE],
     // Every level: by quality it has the finest alone where the eye is within the model's box.
     error: Some(ErrorKnob { knob: &LEVEL, values: || (0..=MAX_LEVELS).map(f64::from).collect(), in_steps: true }),
+    of_input: false,
     unit: Some(MethodUnit {
         blocks: &{
             // As for a BVH, and a hit on a coarse triangle is mapped to the full resolution.

@@ -24,6 +24,7 @@ pub static METHOD: Registered = Registered {
     help: "Locally adaptive level of detail",
     knobs: &[&DELTA, &LINE_LAYOUT, &NODE_BOUNDS],
     error: Some(ErrorKnob { knob: &DELTA, values: octaves, in_steps: false }),
+    of_input: false,
     unit: Some(MethodUnit {
         blocks: &[
             Operation::RaySetup,

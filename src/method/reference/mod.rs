@@ -12,6 +12,7 @@ pub static METHOD: Registered = Registered {
     help: "f64, full resolution: the truth",
     knobs: &[],
     error: None,
+    of_input: false,
     unit: None,
     make: |scene, _, _| Ok(Box::new(Truth { reference: Reference::new(&scene.decode()), space: ModelSpace::of(scene) })),
 };

@@ -102,6 +102,9 @@ pub struct SceneEntry {
     pub finest_triangles: u64,
     /// What its displacement bounds cover.
     pub bounds: String,
+    /// Triangles of the mesh that it was built from, which errors are then against; absent where that is not at hand, and errors are against the finest level.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub input_triangles: Option<u64>,
 }
 
 /// A method.
@@ -180,10 +183,13 @@ pub struct Point {
     pub samples: u32,
     /// Size of its memory in bytes.
     pub bytes: u64,
-    /// The same for each finest triangle.
+    /// The same for each finest triangle, or for each triangle of the input where the method is over that.
     pub bytes_per_triangle: f64,
-    /// How far its surface is from that of full resolution.
+    /// How far its surface is from that of full resolution: of the input where that is at hand, else of the finest level.
     pub geometry: SurfaceError,
+    /// How far its surface is from the finest level's, where full resolution is the input's; absent for methods over the input.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub finest: Option<SurfaceError>,
     /// How far its picture is from full resolution with the same samples.
     pub picture: PictureError,
     /// How far its picture is from the converged one.

@@ -7,7 +7,7 @@ use crate::block::Operations;
 use crate::method::MethodUnit;
 use crate::num::LINE_BYTES;
 use crate::sim::dram::{ChannelCounts, DramEnergy};
-use crate::sim::energy::{EnergyCounts, EnergyModel, EnergyUnit};
+use crate::sim::energy::{EnergyCounts, EnergyModel, EnergyReport, EnergyUnit};
 use crate::sim::replay::{CacheCounts, Counts, Interval};
 use serde::{Deserialize, Serialize};
 
@@ -72,15 +72,45 @@ pub struct IntervalPower {
 
 /// The stretches of a run whose traversal units have the blocks `unit`.
 pub(super) fn intervals(cumulative: &[Interval], model: &EnergyModel, parts: &Parts<'_>, unit: Option<MethodUnit>) -> Vec<IntervalResult> {
-    let zero = Interval {
+    let zero = zero();
+    let begins = std::iter::once(&zero).chain(cumulative);
+    begins.zip(cumulative).map(|(begin, end)| between(begin, end, model, parts, unit)).collect()
+}
+
+/// What was counted between two cycles, and its energy; what leaks does so for `cycles`.
+pub(super) fn energy_between(
+    begin: &Interval,
+    end: &Interval,
+    cycles: u64,
+    model: &EnergyModel,
+    unit: Option<MethodUnit>,
+) -> (EnergyCounts, EnergyReport) {
+    let added = |of: fn(&Interval) -> u64| of(end) - of(begin);
+    let counts = EnergyCounts {
+        cycles,
+        l1_reads: added(|i| i.counts.l1.requests),
+        l1_fills: added(|i| i.counts.l1.fills),
+        l2_reads: added(|i| i.counts.l2.requests),
+        l2_fills: added(|i| i.counts.l2.fills),
+        dram_lines: added(|i| i.channels.reads + i.channels.writes),
+        operations: end.operations.since(&begin.operations),
+        unit,
+    };
+    let [before, after] = [begin, end].map(|interval| dram_parts(&interval.dram));
+    let dram: Vec<_> = before.into_iter().zip(after).map(|((name, before), (_, after))| (name, after - before)).collect();
+    let energy = model.report(&counts, &dram);
+    (counts, energy)
+}
+
+/// Before the first cycle.
+pub(super) fn zero() -> Interval {
+    Interval {
         end: 0,
         counts: Counts::default(),
         channels: ChannelCounts::default(),
         dram: DramEnergy::default(),
         operations: Operations::default(),
-    };
-    let begins = std::iter::once(&zero).chain(cumulative);
-    begins.zip(cumulative).map(|(begin, end)| between(begin, end, model, parts, unit)).collect()
+    }
 }
 
 fn between(begin: &Interval, end: &Interval, model: &EnergyModel, parts: &Parts<'_>, unit: Option<MethodUnit>) -> IntervalResult {
@@ -88,19 +118,7 @@ fn between(begin: &Interval, end: &Interval, model: &EnergyModel, parts: &Parts<
     let cycles = added(|i| i.end);
     let lines = added(|i| i.channels.reads + i.channels.writes);
     let (l1_requests, l2_requests) = (added(|i| i.counts.l1.requests), added(|i| i.counts.l2.requests));
-    let counts = EnergyCounts {
-        cycles,
-        l1_reads: l1_requests,
-        l1_fills: added(|i| i.counts.l1.fills),
-        l2_reads: l2_requests,
-        l2_fills: added(|i| i.counts.l2.fills),
-        dram_lines: lines,
-        operations: end.operations.since(&begin.operations),
-        unit,
-    };
-    let [before, after] = [begin, end].map(|interval| dram_parts(&interval.dram));
-    let dram: Vec<_> = before.into_iter().zip(after).map(|((name, before), (_, after))| (name, after - before)).collect();
-    let energy = model.report(&counts, &dram);
+    let (counts, energy) = energy_between(begin, end, cycles, model, unit);
     // Picojoules in a time to watts.
     let watts = |pj: f64| pj * 1e-12 * f64::from(parts.machine.cores.clock_mhz) * 1e6 / cycles as f64;
     let power = || IntervalPower {

@@ -8,6 +8,7 @@
 //! - `intervals`: the same over time.
 
 mod energy;
+mod frames;
 mod intervals;
 mod latency;
 mod memory;
@@ -18,6 +19,7 @@ mod traffic;
 mod units;
 
 pub use energy::{ComputeEnergy, DramParts, EnergyResult, LeakageEnergy, ReadFill};
+pub use frames::{FrameResult, WarmFrames};
 pub use intervals::{IntervalPower, IntervalResult};
 pub use latency::{Distribution, LatencyResult};
 pub use memory::{CacheResult, ChannelResult, CrossbarResult, DramResult, WaitShares};
@@ -54,7 +56,7 @@ pub enum ResultError {
     Memory(#[from] ReplayError),
 }
 
-/// What a frame took on a machine.
+/// What a frame, or several after one another, took on a machine: figures are of all of them where nothing else is said.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct SimResult {
@@ -97,6 +99,12 @@ pub struct SimResult {
     pub units: Option<UnitsResult>,
     /// Operations of the hardware blocks, by block; those that occurred.
     pub operations: BTreeMap<String, u64>,
+    /// Frame by frame, where several came after one another, and of a single one.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub frames: Vec<FrameResult>,
+    /// The mean of the second half of several frames, whose caches hold what the frames before left.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub warm: Option<WarmFrames>,
     /// Over time; may be left out of tables of many runs.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub intervals: Vec<IntervalResult>,
@@ -121,6 +129,7 @@ impl SimResult {
         run.channels.iter().for_each(|channel| channels.add(channel));
         let roofline = parts.roofline(&Done { counts, channels: &channels, operations: &run.operations, cycles: run.cycles });
         let intervals = intervals::intervals(&run.intervals, &model, &parts, unit);
+        let frames = frames::frames(&run.frames, &model, unit);
         let dram_prices = DramPrices::new(&dram.device);
         let dram = DramResult::new(run, &dram, seconds);
         let energy_counts = EnergyCounts {
@@ -138,7 +147,7 @@ impl SimResult {
         Ok(Self {
             cycles: run.cycles,
             milliseconds: seconds * 1e3,
-            frames_per_second: ratio(1.0, seconds),
+            frames_per_second: ratio(run.frames.len() as f64, seconds),
             rays: counts.rays,
             hits: counts.hits,
             accesses_per_ray: ratio(counts.l1.requests as f64, counts.rays as f64),
@@ -156,6 +165,8 @@ impl SimResult {
                 .as_ref()
                 .map(|counts| UnitsResult::new(counts, u64::from(machine.cores.groups) * u64::from(machine.units.per_group))),
             operations: run.operations.iter().filter(|&(_, n)| n > 0).map(|(o, n)| (hardware.block(o).name().to_owned(), n)).collect(),
+            warm: frames::warm(&frames),
+            frames,
             intervals,
             dram,
             setup,

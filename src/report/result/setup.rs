@@ -22,6 +22,9 @@ pub struct Setup {
     /// The camera; absent if the rays are a file's.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub view: Option<ViewFacts>,
+    /// Frames after one another that the camera moves through, where there are several; `view` is the first.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub frames: Option<u32>,
     /// The file of rays, if they are of one.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub rays: Option<RayFileFacts>,
@@ -36,7 +39,8 @@ impl Setup {
     pub fn rays_in_words(&self) -> String {
         let of_view = |view: &ViewFacts| {
             let place = view.distance.map_or_else(|| format!("{:?}", view.eye), |distance| format!("{distance} bounding radii"));
-            format!("{}x{} rays from {place}", view.size[0], view.size[1])
+            let frames = self.frames.map_or(String::new(), |frames| format!("{frames} frames of "));
+            format!("{frames}{}x{} rays from {place}", view.size[0], view.size[1])
         };
         let of_file = |rays: &RayFileFacts| format!("{} {} of {}", rays.count, if rays.count == 1 { "ray" } else { "rays" }, rays.file);
         self.view.as_ref().map(of_view).or_else(|| self.rays.as_ref().map(of_file)).unwrap_or_default()

@@ -2,7 +2,9 @@
 //!
 //! Written from the most significant part to the least, `:` between them: `row:rank:bank:column:group:channel`. A part may
 //! be split: with a number it takes that many bits, without one those that no number takes: `row:rank:bank:column:group:column1:channel`.
-//! The rightmost piece of a part has its lowest bits. Lines beyond the capacity wrap around.
+//! The rightmost piece of a part has its lowest bits. A piece that ends in `^` is hashed: its bits are the exclusive or with the row's lowest bits, as memory
+//! controllers do so that rows that a power of two parts lie in different banks: `row:rank:group^:bank^:channel^:column`. Of several the rightmost takes the row's
+//! lowest bits, the next those above, and so on; bits that the row does not have are 0. Lines beyond the capacity wrap around.
 
 use super::device::Organisation;
 use super::error::{DramError, invalid};
@@ -20,6 +22,8 @@ pub const STREAM_MAPPING: &str = "row:rank:bank:column:group:channel";
 const PARTS: [&str; 6] = ["channel", "rank", "group", "bank", "row", "column"];
 
 const CHANNEL: usize = 0;
+const ROW: usize = 4;
+const COLUMN: usize = 5;
 
 /// Where a line is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -39,18 +43,30 @@ pub struct Place {
 }
 
 /// Some bits of a line number that are bits of a part.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Debug)]
 struct Piece {
     part: usize,
     from: u32,
     mask: u64,
+    to: u32,
+    /// Which bits of the line's number, the row's, are added without carry; none where the piece is not hashed.
+    hash: Vec<RowBit>,
+}
+
+/// A bit of the row that is added to a bit of another part.
+#[derive(Clone, Copy, Debug)]
+struct RowBit {
+    /// In the line's number.
+    from: u32,
+    /// In the part.
     to: u32,
 }
 
 impl Piece {
     /// These bits of a line number, in their place within the part.
     fn bits_of(&self, line: u64) -> u32 {
-        ((line >> self.from & self.mask) as u32) << self.to // at most 24 bits
+        let bits = ((line >> self.from & self.mask) as u32) << self.to; // at most 24 bits
+        self.hash.iter().fold(bits, |bits, row| bits ^ ((line >> row.from & 1) as u32) << row.to)
     }
 }
 
@@ -79,26 +95,34 @@ impl Mapping {
         let mut tokens = Vec::new();
         let mut rest = sizes.map(|size| Some(size.ilog2())); // of each part, what no number takes; none once a token took it
         for token in text.rsplit(':') {
+            let (token, hashed) = token.strip_suffix('^').map_or((token, false), |token| (token, true));
             let name = token.trim_end_matches(|c: char| c.is_ascii_digit());
             let part = PARTS.iter().position(|&part| part == name).ok_or_else(|| wrong(format!("{token:?} is no part")))?;
             let number = &token[name.len()..];
             let bits =
                 if number.is_empty() { None } else { Some(number.parse::<u32>().map_err(|_| wrong(format!("{token:?}: too many bits")))?) };
-            tokens.push((part, bits));
+            if hashed && (part == ROW || part == COLUMN) {
+                return Err(wrong(format!("{} cannot be hashed with bits of the row", PARTS[part])));
+            }
+            tokens.push((part, bits, hashed));
         }
-        for &(part, bits) in &tokens {
+        for &(part, bits, _) in &tokens {
             let (Some(left), Some(bits)) = (rest[part].as_mut(), bits) else { continue };
             *left = left.checked_sub(bits).ok_or_else(|| wrong(format!("{} has only {} bits", PARTS[part], sizes[part].ilog2())))?;
         }
         let mut used = [0u32; PARTS.len()];
         let mut pieces = Vec::new();
         let mut from = 0;
-        for (part, bits) in tokens {
+        let mut hashed = Vec::new();
+        for (part, bits, is_hashed) in tokens {
             let bits = match bits {
                 Some(bits) => bits,
                 None => rest[part].take().ok_or_else(|| wrong(format!("{} stands twice without a number", PARTS[part])))?,
             };
-            pieces.push(Piece { part, from, mask: (1 << bits) - 1, to: used[part] });
+            if is_hashed {
+                hashed.push(pieces.len());
+            }
+            pieces.push(Piece { part, from, mask: (1 << bits) - 1, to: used[part], hash: Vec::new() });
             used[part] += bits;
             from += bits;
         }
@@ -107,6 +131,16 @@ impl Mapping {
             if used[part] != all {
                 return Err(wrong(format!("{} of {all} bits of {name} stand", used[part])));
             }
+        }
+        // The row's bits in the line's number, the lowest first.
+        let mut rows: Vec<&Piece> = pieces.iter().filter(|piece| piece.part == ROW).collect();
+        rows.sort_by_key(|piece| piece.to);
+        let mut rows =
+            rows.iter().flat_map(|piece| (0..piece.mask.count_ones()).map(|bit| piece.from + bit)).collect::<Vec<_>>().into_iter();
+        for at in hashed {
+            let piece = &mut pieces[at];
+            let bits = piece.to..piece.to + piece.mask.count_ones();
+            piece.hash = bits.zip(&mut rows).map(|(to, from)| RowBit { from, to }).collect();
         }
         pieces.retain(|piece| piece.mask != 0);
         pieces.sort_by_key(|piece| piece.part != CHANNEL);
@@ -185,6 +219,8 @@ mod tests {
             STREAM_MAPPING,
             "row:bank:column:channel:rank:group",
             "row:column2:rank:bank:column:group:channel1:column1:channel",
+            "row:rank:group^:bank^:channel^:column",
+            "rank^:row2:bank^:column:row:channel^:group",
         ] {
             let mapping = Mapping::new(text, 4, &SMALL).unwrap();
             let places: HashSet<_> = (0..mapping.lines()).map(|line| format!("{:?}", mapping.place(line))).collect();
@@ -202,11 +238,24 @@ mod tests {
     }
 
     #[test]
+    fn hashed_parts_take_row_bits_from_the_right() {
+        let mapping = Mapping::new("row:rank:group^:bank^:channel^:column", 4, &SMALL).unwrap();
+        // Columns have four bits, channels two, banks two, groups and ranks one: the row begins at bit 10. It has three bits: two for the channel, one for the bank.
+        let zero = Place { channel: 0, rank: 0, group: 0, bank: 0, row: 0, column: 0 };
+        assert_eq!(mapping.place(1 << 10), Place { row: 1, channel: 1, ..zero });
+        assert_eq!(mapping.place(1 << 10 | 1 << 4), Place { row: 1, ..zero });
+        assert_eq!(mapping.place(2 << 10), Place { row: 2, channel: 2, ..zero });
+        assert_eq!(mapping.place(4 << 10), Place { row: 4, bank: 1, ..zero });
+    }
+
+    #[test]
     fn errors_say_what_is_wrong() {
         assert!(error("row:rank:bank:column:group").contains("0 of 2 bits of channel stand"));
         assert!(error("row:rank:bank:colum:group:channel").contains("\"colum\" is no part"));
         assert!(error("row:rank:bank:column:group:channel3").contains("channel has only 2 bits"));
         assert!(error("row:row:rank:bank:column:group:channel").contains("row stands twice without a number"));
+        assert!(error("row^:rank:bank:column:group:channel").contains("row cannot be hashed"));
+        assert!(error("row:rank:bank:column^:group:channel").contains("column cannot be hashed"));
         assert!(error("row:rank:bank:column3:group:channel").contains("3 of 4 bits of column stand"));
         assert!(error("").contains("is no part"));
         assert!(Mapping::new(DEFAULT_MAPPING, 3, &SMALL).unwrap_err().to_string().contains("channels must be a power of two"));

@@ -52,9 +52,9 @@ impl Shadow {
         }
     }
 
-    /// The real cache looked up `line`, and asked the next level for it if it `missed`.
+    /// The real cache looked up `line`, which belongs to `set`, and asked the next level for it if it `missed`.
     #[inline]
-    pub fn look_up(&mut self, line: u32, missed: bool) {
+    pub fn look_up(&mut self, line: u32, set: u32, missed: bool) {
         let at = line as usize;
         if at >= self.lines.len() {
             self.lines.resize((at + 1).next_power_of_two(), UNSEEN);
@@ -67,8 +67,7 @@ impl Shadow {
         };
         *cause += u64::from(missed);
         if known == UNSEEN {
-            let sets = self.sets.len() - 1;
-            self.sets[at & sets] += 1;
+            self.sets[set as usize] += 1;
         }
         let slot = match known {
             UNSEEN | GONE => self.take(line),
@@ -129,14 +128,24 @@ impl Shadow {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::machine::Cache;
+    use crate::machine::{Cache, Index};
     use crate::num::Random;
     use crate::sim::replay::tags::Tags;
 
     #[test]
     fn causes_are_those_by_counting() {
         let (lines, ways) = (64, 2);
-        let cache = Cache { bytes: lines * 32, ways, banks: 1, line_bytes: 32, latency_cycles: 1, mshrs: 1, targets: 1, queue: 1 };
+        let cache = Cache {
+            bytes: lines * 32,
+            ways,
+            banks: 1,
+            line_bytes: 32,
+            latency_cycles: 1,
+            mshrs: 1,
+            targets: 1,
+            queue: 1,
+            index: Index::Sliced,
+        };
         let mut tags = Tags::new(&cache, 1);
         let mut shadow = Shadow::new(lines, lines / u64::from(ways));
         let mut random = Random::new(1);
@@ -154,7 +163,7 @@ mod tests {
                     (true, true) => counted.conflict += 1,
                 }
             }
-            shadow.look_up(line, !hit);
+            shadow.look_up(line, tags.set_of_all(line), !hit);
             history.push(line);
         }
         assert_eq!(shadow.causes(), counted);

@@ -15,11 +15,21 @@ use std::sync::Arc;
 
 /// Batches that were traced together.
 #[derive(Clone)]
-pub struct Chunk(Arc<[Arc<Batch>]>);
+pub struct Chunk {
+    batches: Arc<[Arc<Batch>]>,
+    begins_frame: bool,
+}
+
+impl Chunk {
+    /// The same as the first of another frame: its rays, and those behind them, wait until all rays before have ended. Caches and memory stay as they are.
+    pub fn beginning_frame(self) -> Self {
+        Self { begins_frame: true, ..self }
+    }
+}
 
 impl FromIterator<Batch> for Chunk {
     fn from_iter<I: IntoIterator<Item = Batch>>(batches: I) -> Self {
-        Self(batches.into_iter().map(Arc::new).collect())
+        Self { batches: batches.into_iter().map(Arc::new).collect(), begins_frame: false }
     }
 }
 
@@ -35,7 +45,7 @@ impl<const N: usize> From<[Batch; N]> for Chunk {
     }
 }
 
-/// Gives the chunks of a frame in order.
+/// Gives the chunks of a frame, or of frames after each other, in order.
 pub trait ChunkSource {
     /// The next one; `None` after the last. May wait for it.
     fn next(&mut self) -> Option<Chunk>;
@@ -52,6 +62,8 @@ pub struct Dispatcher<S> {
     source: S,
     /// The chunk that batches come from, and its next.
     open: Option<(Chunk, usize)>,
+    /// The first chunk of the next frame, while rays of this one are under way.
+    next_frame: Option<Chunk>,
     /// By group, what is left of a batch whose rays wait for others: its next ray.
     begun: Vec<Option<(Arc<Batch>, u32)>>,
     order: Order,
@@ -69,6 +81,7 @@ impl<S: ChunkSource> Dispatcher<S> {
         Self {
             source,
             open: None,
+            next_frame: None,
             begun: vec![None; groups as usize],
             order: Order::new(groups),
             asking: BTreeSet::new(),
@@ -174,13 +187,33 @@ impl<S: ChunkSource> Dispatcher<S> {
     fn batch(&mut self) -> Option<Arc<Batch>> {
         loop {
             if let Some((chunk, next)) = &mut self.open
-                && let Some(batch) = chunk.0.get(*next)
+                && let Some(batch) = chunk.batches.get(*next)
             {
                 *next += 1;
                 return Some(Arc::clone(batch));
             }
             self.open = None;
-            self.open = Some((self.source.next()?, 0));
+            if self.next_frame.is_some() {
+                return None;
+            }
+            let chunk = self.source.next()?;
+            if chunk.begins_frame {
+                self.next_frame = Some(chunk);
+            } else {
+                self.open = Some((chunk, 0));
+            }
         }
+    }
+
+    /// All rays given have ended, the last in cycle `end`, and every group has asked for more. If there is another frame, gives them its rays, and the cycle in which they have them.
+    pub fn go_to_next_frame(&mut self, end: u64) -> Option<u64> {
+        let chunk = self.next_frame.take()?;
+        self.open = Some((chunk, 0));
+        // Rays of another frame have numbers of their own.
+        self.order = Order::new(self.begun.len() as u32);
+        for group in 0..self.begun.len() as u32 {
+            self.serve(group, end);
+        }
+        Some(end + self.delay)
     }
 }

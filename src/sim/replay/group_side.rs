@@ -55,15 +55,17 @@ pub struct GroupSide {
     slot: fn(u32) -> usize,
     /// Cycles of rays from their start to their end.
     rays: Histogram,
-    /// The cycle in which the last of them ended.
-    last_end: u64,
+    /// The cycles in which the last of them ended, the latest last, at most so many.
+    last_ends: VecDeque<u64>,
+    most_ends: usize,
     /// For the shared side.
     pub misses: Vec<Miss>,
 }
 
 impl GroupSide {
-    /// Idle groups from `first` on, as many as `machine` has. Of so many waiters at once the way of the last line is kept, and the function says where.
-    pub fn new(machine: &Machine, first: u32, (slots, slot): (usize, fn(u32) -> usize)) -> Self {
+    /// Idle groups from `first` on, as many as `machine` has. Of so many waiters at once the way of the last line is kept, and the function says where. When the last `ends` rays
+    /// ended is kept, or of one.
+    pub fn new(machine: &Machine, first: u32, (slots, slot): (usize, fn(u32) -> usize), ends: usize) -> Self {
         let groups = machine.cores.groups;
         let l1 = Level::new(&machine.l1, groups);
         Self {
@@ -75,7 +77,8 @@ impl GroupSide {
             told: vec![Path::default(); slots],
             slot,
             rays: Histogram::default(),
-            last_end: 0,
+            last_ends: VecDeque::new(),
+            most_ends: ends.max(1),
             first,
             first_register: first * machine.l1.banks * machine.l1.mshrs,
             l1,
@@ -94,7 +97,8 @@ impl GroupSide {
         self.counts_at(self.now())
     }
 
-    fn counts_at(&self, cycle: u64) -> Counts {
+    /// What was counted up to `cycle`, this one or one until which nothing happens.
+    pub fn counts_at(&self, cycle: u64) -> Counts {
         Counts { l1: self.l1.counts_at(cycle), ..self.counts }
     }
 
@@ -126,14 +130,17 @@ impl GroupSide {
     /// A ray ends in this cycle that began in cycle `started`.
     #[inline]
     pub fn ray_ends(&mut self, started: u64) {
-        self.last_end = self.now();
+        if self.last_ends.len() == self.most_ends {
+            self.last_ends.pop_front();
+        }
+        self.last_ends.push_back(self.now());
         let cycles = self.now() - started;
         self.rays.add(cycles);
     }
 
-    /// The cycle in which the last ray ended.
-    pub fn last_end(&self) -> u64 {
-        self.last_end
+    /// The cycles in which the last rays ended, the latest last; none if none has.
+    pub fn last_ends(&self) -> &VecDeque<u64> {
+        &self.last_ends
     }
 
     /// Latencies of rays, and of misses of the L1s; and the requests that each bank of them looked up.

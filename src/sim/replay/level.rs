@@ -166,7 +166,7 @@ impl Level {
             return false;
         }
         if let Some(shadow) = &mut self.shadow {
-            shadow.look_up(line, false);
+            shadow.look_up(line, self.tags.set_of_all(line), false);
         }
         state.free = now + 1;
         state.looked_up += 1;
@@ -219,7 +219,7 @@ impl Level {
             }
         };
         if let Some(shadow) = &mut self.shadow {
-            shadow.look_up(request.line, matches!(served, Served::Miss(_)));
+            shadow.look_up(request.line, self.tags.set_of_all(request.line), matches!(served, Served::Miss(_)));
         }
         state.queue.pop_front();
         self.queued.goes(request.since);

@@ -43,6 +43,7 @@ pub use counts::{CacheCounts, Counts, KindTraffic, Waits};
 pub use dispatch::{Chunk, ChunkSource};
 pub use error::ReplayError;
 pub use intervals::Interval;
+pub use rounds::FrameRun;
 pub use stalls::{CAUSES, Cause, Histogram, Stalls};
 pub use wave::Window;
 
@@ -91,7 +92,7 @@ impl Default for Running {
 /// What a run gave.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Run {
-    /// Cycles from the first ray's start to the last one's end.
+    /// Cycles from the first ray's start to the last one's end, of all frames.
     pub cycles: u64,
     /// What was counted.
     pub counts: Counts,
@@ -115,6 +116,8 @@ pub struct Run {
     pub dram_clocks: u64,
     /// The memory's energy.
     pub dram: DramEnergy,
+    /// The frames, one after another.
+    pub frames: Vec<FrameRun>,
     /// The same over time.
     pub intervals: Vec<Interval>,
     /// The waveform of the window asked for.
@@ -219,26 +222,26 @@ fn drive<F: FrontEnd + Send>(
     let mut shared = SharedSide::new(machine, &dram).map_err(|source| ReplayError::Dram { file: machine.dram.device.clone(), source })?;
     let mut dispatcher = Dispatcher::new(source, machine.cores.groups, contexts, u64::from(machine.l1.latency_cycles) + reply);
     let threads = if how.window.is_some() { 1 } else { how.threads.max(1) };
-    let partitions = partitions(machine, threads, make);
+    let half = (machine.cores.groups as usize * contexts as usize).div_ceil(2);
+    let partitions = partitions(machine, threads, half, make);
     let mut wave = how.window.map(Wave::new);
-    rounds::run(machine, &partitions, &mut shared, reply, &mut dispatcher, threads, wave.as_mut())?;
+    let frames = rounds::run(machine, &partitions, &mut shared, reply, &mut dispatcher, threads, half, wave.as_mut())?;
+    let cycles = frames.last().map_or(0, |frame| frame.end.end);
 
     let (mut fronts, mut of_groups, mut of_blocks) = (Vec::new(), Vec::new(), Vec::new());
     let mut operations = Operations::default();
-    let (mut latencies, mut l1_banks, mut cycles) = (Latencies::default(), Vec::new(), 0);
+    let (mut latencies, mut l1_banks) = (Latencies::default(), Vec::new());
     for partition in partitions {
         let Partition { front, side, operations: over_time, .. } = partition.into_inner().expect("a replay's thread has panicked");
         let (rays, misses, looked_up) = side.distributions();
         latencies.rays.join(rays);
         latencies.l1_misses.join(misses);
         l1_banks.extend(looked_up);
-        cycles = cycles.max(side.last_end());
         of_groups.push((side.counts(), side.over_time));
         operations.join(&front.operations());
         of_blocks.push((front.operations(), over_time));
         fronts.push(front);
     }
-    shared.end(cycles);
     latencies.l2_misses = shared.latencies().clone();
     let of_shared = shared.counts();
     let mut counts = of_shared.counts;
@@ -258,21 +261,22 @@ fn drive<F: FrontEnd + Send>(
         late: [0; State::ALL.len()],
         latencies,
         l1_banks,
+        frames,
         intervals,
         wave: wave.map(Wave::into_bytes),
     };
     Ok((run, fronts))
 }
 
-/// The groups of `machine`, divided into at most so many partitions.
-fn partitions<F: FrontEnd>(machine: &Machine, most: usize, make: impl Fn(&Machine, u32) -> F) -> Vec<Mutex<Partition<F>>> {
+/// The groups of `machine`, divided into at most so many partitions, of each of which the last `ends` of its rays are kept.
+fn partitions<F: FrontEnd>(machine: &Machine, most: usize, ends: usize, make: impl Fn(&Machine, u32) -> F) -> Vec<Mutex<Partition<F>>> {
     let groups = machine.cores.groups;
     let count = groups.min(most as u32);
     let first = |partition: u32| (u64::from(partition) * u64::from(groups) / u64::from(count)) as u32; // at most `groups`
     let partition = |at: u32| {
         let mut part = machine.clone();
         part.cores.groups = first(at + 1) - first(at);
-        Mutex::new(Partition::new(make(&part, first(at)), &part, first(at)))
+        Mutex::new(Partition::new(make(&part, first(at)), &part, first(at), ends))
     };
     (0..count).map(partition).collect()
 }

@@ -10,7 +10,7 @@ use super::dispatch::{ChunkSource, Dispatcher};
 use super::error::ReplayError;
 use super::event::Happening;
 use super::group_side::GroupSide;
-use super::intervals::Series;
+use super::intervals::{Interval, Series, SharedCounts};
 use super::messages::{Fill, Granted, Miss, Told};
 use super::shared_side::SharedSide;
 use super::wave::{Look, Shown, Wave};
@@ -33,9 +33,9 @@ pub struct Partition<F> {
 }
 
 impl<F: FrontEnd> Partition<F> {
-    /// Groups of `machine`, from `first` on.
-    pub fn new(front: F, machine: &Machine, first: u32) -> Self {
-        let side = GroupSide::new(machine, first, front.slots());
+    /// Groups of `machine`, from `first` on; when the last `ends` of their rays ended is kept.
+    pub fn new(front: F, machine: &Machine, first: u32, ends: usize) -> Self {
+        let side = GroupSide::new(machine, first, front.slots(), ends);
         Self { front, side, operations: Series::new(), first }
     }
 
@@ -167,6 +167,17 @@ impl<'a, F: FrontEnd> Team<'a, F> {
     }
 }
 
+/// A frame on a machine, behind others whose lines the caches still hold.
+#[derive(Clone, Debug, PartialEq)]
+pub struct FrameRun {
+    /// The cycle in which it began.
+    pub start: u64,
+    /// The cycle from which on fewer than half of the contexts have rays.
+    pub half: u64,
+    /// What had been counted when its last ray ended, since the start of the run.
+    pub end: Interval,
+}
+
 /// How long rounds are.
 #[derive(Clone, Copy)]
 struct Pace {
@@ -187,7 +198,10 @@ impl Pace {
     }
 }
 
-/// Runs `partitions` with the shared side and the dispatcher until no ray is left, on so many threads; every cycle alone if there is a wave.
+/// Runs `partitions` with the shared side and the dispatcher until no ray is left, on so many threads; every cycle alone if there is a wave. Gives the frames that ended.
+///
+/// `half` is how many contexts are half of them.
+#[expect(clippy::too_many_arguments, reason = "the parts of a machine")]
 pub fn run<F: FrontEnd + Send>(
     machine: &Machine,
     partitions: &[Mutex<Partition<F>>],
@@ -195,8 +209,9 @@ pub fn run<F: FrontEnd + Send>(
     reply: u64,
     dispatcher: &mut Dispatcher<impl ChunkSource>,
     threads: usize,
+    half: usize,
     wave: Option<&mut Wave>,
-) -> Result<(), ReplayError> {
+) -> Result<Vec<FrameRun>, ReplayError> {
     let team = Team::new(partitions);
     thread::scope(|scope| {
         let _over = Over(&team.over);
@@ -207,7 +222,7 @@ pub fn run<F: FrontEnd + Send>(
         let firsts: Vec<u32> = (0..partitions.len()).map(|partition| team.lock(partition).first).collect();
         let partition_of = (0..machine.cores.groups).map(|group| firsts.partition_point(|&first| first <= group) - 1).collect();
         let is_alone = threads == 1 || wave.is_some();
-        Rounds { machine, team: &team, pace, shared, dispatcher, partition_of, is_alone }.run(wave)
+        Rounds { machine, team: &team, pace, shared, dispatcher, partition_of, half, is_alone }.run(wave)
     })
 }
 
@@ -220,6 +235,7 @@ struct Rounds<'a, 'b, F, S> {
     dispatcher: &'a mut Dispatcher<S>,
     /// By group.
     partition_of: Vec<usize>,
+    half: usize,
     is_alone: bool,
 }
 
@@ -233,7 +249,9 @@ struct Between {
 }
 
 impl<F: FrontEnd, S: ChunkSource> Rounds<'_, '_, F, S> {
-    fn run(mut self, mut wave: Option<&mut Wave>) -> Result<(), ReplayError> {
+    fn run(mut self, mut wave: Option<&mut Wave>) -> Result<Vec<FrameRun>, ReplayError> {
+        let mut frames: Vec<FrameRun> = Vec::new();
+        let mut start = 0;
         let (mut misses, mut told): (Vec<Miss>, Vec<Told>) = (Vec::new(), Vec::new());
         let mut fills: Vec<Vec<Fill>> = vec![Vec::new(); self.team.partitions.len()];
         self.dispatcher.start();
@@ -241,7 +259,17 @@ impl<F: FrontEnd, S: ChunkSource> Rounds<'_, '_, F, S> {
         // Cycle 0 has begun, and the grants of it are events of it.
         between.groups = 0;
         let mut done = 0;
-        while between.is_busy {
+        loop {
+            if !between.is_busy {
+                let frame = self.frame(start);
+                let end = frame.end.end;
+                frames.push(frame);
+                // Not before `done`: a round ends no later than the way back of what happened last.
+                let Some(next) = self.dispatcher.go_to_next_frame(end) else { return Ok(frames) };
+                start = next;
+                between = self.deliver(&mut fills);
+                continue;
+            }
             let next = between.groups.min(between.shared);
             if next == u64::MAX {
                 return Err(self.deadlock());
@@ -271,7 +299,25 @@ impl<F: FrontEnd, S: ChunkSource> Rounds<'_, '_, F, S> {
             }
             done = end;
         }
-        Ok(())
+    }
+
+    /// The frame that began in cycle `start`, all of whose rays have ended.
+    fn frame(&mut self, start: u64) -> FrameRun {
+        let partitions: Vec<_> = (0..self.team.partitions.len()).map(|partition| self.team.lock(partition)).collect();
+        let mut ends: Vec<u64> =
+            partitions.iter().flat_map(|partition| partition.side.last_ends()).copied().filter(|&end| end >= start).collect();
+        ends.sort_unstable();
+        let end = ends.last().copied().unwrap_or(start);
+        let half = ends.len().checked_sub(self.half).map_or(start, |at| ends[at]);
+        self.shared.end(end);
+        let SharedCounts { mut counts, channels, dram } = self.shared.counts();
+        let mut operations = Operations::default();
+        for partition in partitions {
+            let side = &partition.side;
+            counts.add(&side.counts_at(end.max(side.now())));
+            operations.join(&partition.front.operations());
+        }
+        FrameRun { start, half, end: Interval { end, counts, channels, dram, operations } }
     }
 
     /// What the groups told, in the order of cycles and groups.

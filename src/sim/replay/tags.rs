@@ -1,12 +1,12 @@
 //! Which lines a level of cache holds: sets of lines, the most recently used first.
 
 use super::prefetch::prefetch;
-use crate::machine::Cache;
+use crate::machine::{Cache, Index};
 
 /// No line.
 const EMPTY: u32 = u32::MAX;
 
-/// The tags of all banks of a level. Lines go round the banks, then round the sets of a bank.
+/// The tags of all banks of a level. Lines go round the banks, then round the sets of a bank; where the index is hashed, the bits above are folded into both.
 #[derive(Clone, Debug)]
 pub struct Tags {
     /// Lines of set after set.
@@ -14,6 +14,7 @@ pub struct Tags {
     ways: usize,
     set_bits: u32,
     bank_bits: u32,
+    hashed: bool,
 }
 
 impl Tags {
@@ -21,19 +22,33 @@ impl Tags {
     pub fn new(cache: &Cache, copies: u32) -> Self {
         let lines = vec![EMPTY; cache.lines() as usize * copies as usize];
         // Banks and sets are powers of two: machine descriptions are checked.
-        Self { lines, ways: cache.ways as usize, set_bits: cache.sets_per_bank().trailing_zeros(), bank_bits: cache.banks.trailing_zeros() }
+        Self {
+            lines,
+            ways: cache.ways as usize,
+            set_bits: cache.sets_per_bank().trailing_zeros(),
+            bank_bits: cache.banks.trailing_zeros(),
+            hashed: cache.index == Index::Xor,
+        }
+    }
+
+    /// The set of a line among those of all banks of one copy: the bank in its lowest bits.
+    #[inline(always)]
+    pub fn set_of_all(&self, line: u32) -> u32 {
+        let bits = self.bank_bits + self.set_bits;
+        let index = if self.hashed { fold(line, bits) } else { line };
+        index & ((1 << bits) - 1) // caches have fewer than 2^31 sets
     }
 
     /// The bank of a line, among those of one copy.
     #[inline]
     pub fn bank(&self, line: u32) -> u32 {
-        line & ((1 << self.bank_bits) - 1)
+        self.set_of_all(line) & ((1 << self.bank_bits) - 1)
     }
 
     /// Where the set of `line` begins.
     #[inline(always)]
     fn from(&self, bank: u32, line: u32) -> usize {
-        let set = line >> self.bank_bits & ((1 << self.set_bits) - 1);
+        let set = self.set_of_all(line) >> self.bank_bits;
         (((bank as usize) << self.set_bits) + set as usize) * self.ways
     }
 
@@ -70,6 +85,18 @@ impl Tags {
     }
 }
 
+/// The exclusive or of the pieces of `bits` bits of a line's number, in its lowest bits.
+#[inline]
+fn fold(line: u32, bits: u32) -> u32 {
+    let mut folded = 0;
+    let mut rest = line;
+    while rest != 0 && bits != 0 {
+        folded ^= rest;
+        rest = rest.checked_shr(bits).unwrap_or(0);
+    }
+    folded
+}
+
 /// Puts `line` in front of the others, of which the last goes. (Sets are small: a loop beats a copy.)
 #[inline(always)]
 fn push_front(set: &mut [u32], line: u32) {
@@ -85,7 +112,7 @@ mod tests {
     use crate::num::Random;
 
     fn cache(bytes: u64, ways: u32, banks: u32) -> Cache {
-        Cache { bytes, ways, banks, line_bytes: 32, latency_cycles: 1, mshrs: 1, targets: 1, queue: 1 }
+        Cache { bytes, ways, banks, line_bytes: 32, latency_cycles: 1, mshrs: 1, targets: 1, queue: 1, index: Index::Sliced }
     }
 
     #[test]
@@ -101,6 +128,25 @@ mod tests {
         tags.fill(2, 4);
         assert!(tags.look_up(2, 0) && !tags.look_up(2, 2) && tags.look_up(2, 4));
         assert!(!tags.look_up(0, 0), "copies do not share");
+    }
+
+    #[test]
+    fn a_hashed_index_spreads_lines_that_a_power_of_two_parts() {
+        let geometry = cache(32 * 32 * 2, 2, 4);
+        let sliced = Tags::new(&geometry, 1);
+        let hashed = Tags::new(&Cache { index: Index::Xor, ..geometry }, 1);
+        let sets =
+            |tags: &Tags, lines: &[u32]| lines.iter().map(|&line| tags.set_of_all(line)).collect::<std::collections::HashSet<_>>().len();
+        // 32 sets, banks and all.
+        let strided: Vec<u32> = (0..32).map(|line| line << 5).collect();
+        assert_eq!((sets(&sliced, &strided), sets(&hashed, &strided)), (1, 32));
+        // Neighbours stay apart, wherever they begin.
+        for from in [0u32, 1 << 5, 0b1_1010_0110 << 5] {
+            let neighbours: Vec<u32> = (from..from + 32).collect();
+            assert_eq!(sets(&hashed, &neighbours), 32);
+        }
+        // By hand: 10_10110 and 1 above it are 10110 ^ 00010, in bank 0 and set 5 of it.
+        assert_eq!((hashed.set_of_all(0b10_10110), hashed.bank(0b10_10110)), (0b10100, 0));
     }
 
     #[test]

@@ -13,7 +13,7 @@ fn thin_parts_tips_and_creases_are_kept() {
             (0, 0, 0),
             "{name}"
         );
-        let (_, report) = fit(&original, RemeshOptions { levels: 4, ..RemeshOptions::default() });
+        let (_, report) = fit(&original, RemeshOptions { levels: Some(4), ..RemeshOptions::default() });
         let d = report.distance;
         assert!(d.to_original.max <= 0.3 && d.from_original.max <= 0.3, "{name}: {d:?}");
         assert!(d.to_original.found <= d.to_original.max && d.from_original.found <= d.from_original.max, "{name}: {d:?}");
@@ -28,7 +28,7 @@ fn a_smaller_error_takes_a_finer_base_and_is_kept() {
     let (_, original) = thin::shapes().into_iter().find(|s| s.0 == "claw").unwrap();
     let mut before = 0;
     for max_error in [2.0, 0.5, 0.1] {
-        let (_, report) = fit(&original, RemeshOptions { levels: 3, max_error, ..RemeshOptions::default() });
+        let (_, report) = fit(&original, RemeshOptions { levels: Some(3), max_error, ..RemeshOptions::default() });
         let d = report.distance;
         assert!(d.to_original.max <= max_error && d.from_original.max <= max_error && report.warning.is_none(), "{max_error}: {report:?}");
         assert!(report.base_triangles >= before && (max_error > 0.1 || report.base_triangles > before), "{max_error}: {report:?}");
@@ -40,8 +40,8 @@ fn a_smaller_error_takes_a_finer_base_and_is_kept() {
 fn no_point_is_further_than_the_largest_distance_says() {
     let (_, original) = thin::shapes().into_iter().find(|s| s.0 == "gem").unwrap();
     for options in [
-        RemeshOptions { levels: 2, base_triangles: Some(8), ..Default::default() },
-        RemeshOptions { levels: 2, max_error: 3.0, ..Default::default() },
+        RemeshOptions { levels: Some(2), base_triangles: Some(8), ..Default::default() },
+        RemeshOptions { levels: Some(2), max_error: 3.0, ..Default::default() },
     ] {
         let (surface, report) = fit(&original, options);
         let old: Vec<[[f64; 3]; 3]> = original.triangles.iter().map(|t| t.map(|v| original.positions[v as usize])).collect();
@@ -70,7 +70,7 @@ fn no_point_is_further_than_the_largest_distance_says() {
 fn a_bound_does_not_loosen_with_a_larger_error_than_the_default() {
     let original = sphere(12);
     let bounds = [0.3, 5.0, 100.0].map(|max_error| {
-        let d = fit(&original, RemeshOptions { levels: 3, base_triangles: Some(200), max_error, ..Default::default() }).1.distance;
+        let d = fit(&original, RemeshOptions { levels: Some(3), base_triangles: Some(200), max_error, ..Default::default() }).1.distance;
         assert!(d.to_original.found <= d.to_original.max && d.from_original.found <= d.from_original.max, "{d:?}");
         [d.to_original.max, d.from_original.max]
     });
@@ -89,7 +89,7 @@ fn what_was_lost_is_said_in_one_line() {
     for (max_error, crease_angle) in
         [(0.0, 50.0), (-1.0, 50.0), (f64::NAN, 50.0), (101.0, 50.0), (0.3, -1.0), (0.3, 181.0), (0.3, f64::NAN)]
     {
-        let options = RemeshOptions { max_error, crease_angle, ..RemeshOptions::default() };
+        let options = RemeshOptions { levels: Some(0), max_error, crease_angle, ..RemeshOptions::default() };
         assert!(matches!(remesh_quietly(&original, options), Err(RemeshError::Range { .. })), "{options:?}");
     }
 }
@@ -138,7 +138,7 @@ fn slivers_of_a_scan_shade_no_more_than_themselves() {
         scan.triangles[t] = [a, b, inner];
         scan.triangles.extend([[b, c, inner], [c, a, inner]]);
     }
-    let (surface, _) = fit(&scan, RemeshOptions { levels: 3, max_error: 1.0, ..RemeshOptions::default() });
+    let (surface, _) = fit(&scan, RemeshOptions { levels: Some(3), max_error: 1.0, ..RemeshOptions::default() });
     let normals = |t: usize| &surface.normals[t * lattice::len(3)..][..lattice::len(3)];
     for t in 0..surface.triangles.len() {
         for node in 0..64 {

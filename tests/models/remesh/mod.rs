@@ -84,10 +84,11 @@ fn remesh_quietly(mesh: &TriangleMesh, options: RemeshOptions) -> Result<(Surfac
 }
 
 fn run(mesh: &TriangleMesh, levels: u32, base: usize) -> (Surface, RemeshReport) {
-    let result = remesh(mesh, &RemeshOptions { levels, base_triangles: Some(base), ..RemeshOptions::default() }, &|_, done, total| {
-        assert!(done <= total)
-    })
-    .unwrap();
+    let result =
+        remesh(mesh, &RemeshOptions { levels: Some(levels), base_triangles: Some(base), ..RemeshOptions::default() }, &|_, done, total| {
+            assert!(done <= total)
+        })
+        .unwrap();
     check(&result.0);
     assert_eq!(result.1.base_triangles, result.0.triangles.len());
     assert_eq!(result.1.finest_triangles, result.0.finest_triangles());

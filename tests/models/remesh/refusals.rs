@@ -8,11 +8,13 @@ use lodray_test_support::thin;
 fn wrong_requests_are_refused() {
     let original = cube(2);
     let ask = |levels, base_triangles| {
-        remesh_quietly(&original, RemeshOptions { levels, base_triangles, ..RemeshOptions::default() }).map(|_| ()).unwrap_err()
+        remesh_quietly(&original, RemeshOptions { levels: Some(levels), base_triangles, ..RemeshOptions::default() })
+            .map(|_| ())
+            .unwrap_err()
     };
     assert_eq!(ask(11, None), RemeshError::Levels { levels: 11 });
     assert_eq!(ask(1, Some(0)), RemeshError::NoBase);
-    let big = remesh_quietly(&sphere(20), RemeshOptions { levels: 10, base_triangles: Some(4000), ..RemeshOptions::default() })
+    let big = remesh_quietly(&sphere(20), RemeshOptions { levels: Some(10), base_triangles: Some(4000), ..RemeshOptions::default() })
         .map(|_| ())
         .unwrap_err();
     let RemeshError::TooMany { levels: 10, base, works, .. } = big.clone() else { panic!("{big}") };
@@ -22,7 +24,7 @@ fn wrong_requests_are_refused() {
         big.to_string().contains("--levels 7") && big.to_string().contains("--base 64") && !big.to_string().contains("max-error"),
         "{big}"
     );
-    let options = RemeshOptions { levels: 0, ..RemeshOptions::default() };
+    let options = RemeshOptions { levels: Some(0), ..RemeshOptions::default() };
     let refuse = |mesh: &TriangleMesh| assert!(matches!(remesh_quietly(mesh, options), Err(RemeshError::BadMesh { .. })));
     refuse(&TriangleMesh::default());
     let mut bad = original.clone();
@@ -39,7 +41,7 @@ fn wrong_requests_are_refused() {
 #[test]
 fn levels_that_leave_no_room_for_the_base_are_refused_with_those_that_do() {
     let (_, original) = thin::shapes().into_iter().find(|s| s.0 == "claw").unwrap();
-    let ask = |levels| remesh_quietly(&original, RemeshOptions { levels, ..RemeshOptions::default() }).map(|r| r.1);
+    let ask = |levels| remesh_quietly(&original, RemeshOptions { levels: Some(levels), ..RemeshOptions::default() }).map(|r| r.1);
     let Err(refusal @ RemeshError::NeedsBase { base, levels: 10, works }) = ask(10) else { panic!("no refusal") };
     let levels = works.levels.unwrap();
     assert!(
@@ -58,7 +60,7 @@ fn a_base_is_advised_only_where_removal_comes_that_far() {
     let faces = |k: u32| [[0, 2, 1], [0, 1, 3], [1, 2, 3], [2, 0, 3]].map(|t| t.map(|v| 4 * k + v));
     let original = mesh(&positions, &(0..50).flat_map(faces).collect::<Vec<_>>());
     for base_triangles in [None, Some(10)] {
-        let options = RemeshOptions { levels: 10, base_triangles, ..RemeshOptions::default() };
+        let options = RemeshOptions { levels: Some(10), base_triangles, ..RemeshOptions::default() };
         let refusal = remesh_quietly(&original, options).map(|_| ()).unwrap_err();
         let (RemeshError::TooMany { works, .. } | RemeshError::NeedsBase { works, .. }) = &refusal else { panic!("{refusal}") };
         assert_eq!((works.levels, works.base, works.error), (Some(9), None, false), "{refusal}");
@@ -70,8 +72,9 @@ fn a_base_is_advised_only_where_removal_comes_that_far() {
 fn what_rounding_to_the_grid_takes_is_refused_and_no_more() {
     let original = cube(2);
     for levels in [0, 3, 8, 10] {
-        let ask =
-            |max_error| remesh_quietly(&original, RemeshOptions { levels, max_error, base_triangles: Some(48), ..Default::default() });
+        let ask = |max_error| {
+            remesh_quietly(&original, RemeshOptions { levels: Some(levels), max_error, base_triangles: Some(48), ..Default::default() })
+        };
         let Err(refusal @ RemeshError::Grid { wanted, least, .. }) = ask(1e-7) else { panic!("no refusal") };
         assert!(wanted < least && least < 1e-4 && refusal.to_string().contains(&format!("--max-error of {least} or more")), "{refusal}");
         assert!(ask(0.99 * least).is_err());

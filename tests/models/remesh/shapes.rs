@@ -130,7 +130,7 @@ fn any_number_of_threads_gives_the_same_bytes() {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
         pool.install(|| {
             let (s, r) =
-                remesh_quietly(&original, RemeshOptions { levels: 3, base_triangles: Some(50), ..RemeshOptions::default() }).unwrap();
+                remesh_quietly(&original, RemeshOptions { levels: Some(3), base_triangles: Some(50), ..RemeshOptions::default() }).unwrap();
             (s.positions, s.normals, s.triangles, r)
         })
     };
@@ -167,7 +167,7 @@ fn a_border_between_materials_stays_where_it_is() {
     let materials: Vec<u16> = plain.triangles.iter().map(|t| upper(t).into()).collect();
     let original =
         TriangleMesh::from_parts(&plain.positions, &plain.triangles, &materials, vec![[1.0, 0.0, 0.0], [0.0, 0.0, 1.0]]).unwrap();
-    let (surface, report) = fit(&original, RemeshOptions { levels: 4, ..RemeshOptions::default() });
+    let (surface, report) = fit(&original, RemeshOptions { levels: Some(4), ..RemeshOptions::default() });
     assert!(report.base_triangles < original.triangles.len() / 4, "{report:?}");
     // Every finest triangle lies where the original has its colour.
     let at = |t: &[u32; 3]| t.map(|v| original.positions[v as usize]);
@@ -199,7 +199,7 @@ fn normals_are_those_of_the_points_that_vertices_stand_for() {
         });
         far.fold(0.0f64, f64::max)
     };
-    let options = |crease_angle| RemeshOptions { levels: 3, crease_angle, ..RemeshOptions::default() };
+    let options = |crease_angle| RemeshOptions { levels: Some(3), crease_angle, ..RemeshOptions::default() };
     let (round, _) = fit(&drum, options(50.0));
     let (faceted, _) = fit(&drum, options(40.0));
     // The vertices of the original inside a side have that side's normal, a quarter of 45 degrees from round.

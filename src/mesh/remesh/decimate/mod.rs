@@ -85,7 +85,8 @@ impl<'a> Decimator<'a> {
 
     /// Removes vertices, but none of `keep`, until one goal after the other is reached or allows no more.
     pub fn run(&mut self, goals: &[Goal], keep: &[bool]) -> Decimated {
-        let kept = |mesh: &Mesh| mesh.removed.iter().zip(keep).all(|(&removed, &keep)| removed == 0 || !keep);
+        let least = goals.first().map_or(0, |goal| goal.triangles);
+        let kept = |mesh: &Mesh| mesh.count >= least && mesh.removed.iter().zip(keep).all(|(&removed, &keep)| removed == 0 || !keep);
         let valid = self.stages.iter().take_while(|mesh| kept(mesh)).count();
         self.stages.truncate(valid);
         let mut mesh = self.stages.last().cloned().unwrap_or_else(|| Mesh::new(self.source));

@@ -563,3 +563,5 @@ fn the_last_stretch_has_the_last_cycle() {
     }
     assert!([1023, 0, 1].iter().all(|end| ends.contains(end)), "{} ends", ends.len());
 }
+
+mod frames;

@@ -1,0 +1,175 @@
+#!/usr/bin/env python3
+"""Runs the frames of scripts/errors/fair.toml warm, and fills the tables of README.md, docs/error-time.md and scripts/errors/document.md. Arguments: the program, the bunny's mesh, the folder of scripts/fair."""
+
+import json
+import statistics
+import subprocess
+import sys
+import tomllib
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parent.parent
+FRAMES, TURN = 4, 3
+# Of the list of jobs what `simulate` takes as options.
+OPTIONS = ["--size", "1920x1080", "--machine", "haydel2023", "--compute", "free"]
+
+
+class Frames:
+    """What error-time measured, and the same frames warm."""
+
+    def __init__(self, program, mesh, folder):
+        self.program, self.mesh, self.folder = program, mesh, folder
+        self.data = json.loads((folder / "frames" / "error-time.json").read_text())
+        jobs = tomllib.loads((ROOT / "scripts" / "errors" / "fair.toml").read_text())
+        self.sets = [f"{key}={value}" for key, value in jobs["machine"][0]["set"].items()]
+        self.scenes = {scene.get("name", scene.get("generate")): scene for scene in jobs["scene"]}
+        self.cache = folder / "warm.json"
+        self.warm_runs = json.loads(self.cache.read_text()) if self.cache.is_file() else {}
+
+    def scene(self, view):
+        return self.data["scenes"][self.data["views"][view]["scene"]]
+
+    def points(self, view, *methods):
+        return [point for point in self.data["points"] if point["view"] == view and point["method"] in methods]
+
+    def file(self, name):
+        """A scene's file, generated where it is not there."""
+        scene = self.scenes[name]
+        if "file" in scene:
+            return ROOT / "scripts" / "errors" / scene["file"]
+        path = self.folder / f"{name.replace(',', '').replace(' ', '-')}.lod"
+        if not path.is_file():
+            options = [f"--{key}={scene[key]}" for key in ("base", "levels", "roughness") if key in scene]
+            subprocess.run([self.program, "generate", scene["generate"], *options, "-o", path], check=True, capture_output=True)
+        return path
+
+    def warm(self, view, point):
+        """The point's frame behind others, the camera turning."""
+        entry, scene = self.data["views"][view], self.scene(view)["name"]
+        target = self.scenes[scene].get("target")
+        place = ["--distance", str(round(entry["distance"], 6))] if target is None else ["--eye=" + ",".join(map(str, entry["eye"])), "--target=" + ",".join(map(str, target))]
+        knobs = [f"--{name}={value}" for name, value in {**point["knobs"], **point["choices"]}.items() if name in ("delta", "level")]
+        command = ["simulate", str(self.file(scene)), "--method", point["method"], *knobs, *place, *OPTIONS]
+        command += [f"--set={change}" for change in self.sets] + ["--frames", str(FRAMES), "--turn", str(TURN), "--json"]
+        command += ["--mesh", self.mesh] if point["method"].startswith("input") else []
+        key = " ".join([self.data["program"], *command])
+        if key not in self.warm_runs:
+            result = json.loads(subprocess.run([self.program, *command], check=True, capture_output=True, text=True).stdout)
+            self.warm_runs[key] = {"warm": result["warm"], "first": result["frames"][0]}
+            self.cache.write_text(json.dumps(self.warm_runs))
+        return self.warm_runs[key]
+
+    def rivals(self, view):
+        """Name and point of ours and of what it is compared with; BVHs by time."""
+        cycles = lambda point: point["costs"][0]["cycles"]
+        error = lambda point: point["geometry"]["surface"]["percentile_99"]
+        ours = next(iter(self.points(view, "lod")))
+        levels = self.points(view, "discrete")
+        near = [point for point in levels if error(point) <= error(ours)]
+        bvhs = self.points(view, "input-bvh", "input-bvh6") or self.points(view, "bvh", "bvh6")
+        yield "ours", ours
+        yield "BVH", min(bvhs, key=cycles)
+        yield "discrete, its rule", next(point for point in levels if point["is_default"])
+        yield "discrete, hindsight", min(near, key=cycles) if near else None
+
+
+def shown(value):
+    return f"{value:.2f}" if value < 9.95 else f"{value:,.0f}"
+
+
+def table(head, rows, left):
+    lines = ["| " + " | ".join(head) + " |", "|" + "---|" * left + "---:|" * (len(head) - left)]
+    return "\n".join(lines + ["| " + " | ".join(map(str, row)) + " |" for row in rows])
+
+
+def costs(point):
+    cost = point["costs"][0]
+    return [cost["cycles"], cost["energy"]["total"], cost["dram_bytes"]]
+
+
+def place(frames, view):
+    name = frames.scene(view)["name"]
+    return name if "target" in frames.scenes[name] else f"{name}, {frames.data['views'][view]['distance']:.3g} radii"
+
+
+def absolute(frames):
+    """Everything, for each view and method."""
+    rows = []
+    for view in range(len(frames.data["views"])):
+        for name, point in frames.rivals(view):
+            if point is None:
+                rows.append([place(frames, view), name, *["none is near enough"] + [""] * 8])
+                continue
+            cycles, energy, dram = costs(point)
+            surface = point["geometry"]["surface"]
+            run = frames.warm(view, point)
+            setting = "" if name == "ours" else f" ({point['method'] if name == 'BVH' else point['setting']})"
+            warm = run["warm"]
+            rows.append(
+                [place(frames, view), name + setting, f"{point['costs'][0]['milliseconds'] * 1e3:.1f}", f"{energy:,.0f}", f"{dram / 1e3:,.0f}", f"{point['bytes_per_triangle']:.1f}"]
+                + [f"{surface['percentile_99']:.2f}", f"{warm['cycles'] / cycles * point['costs'][0]['milliseconds'] * 1e3:.1f}", f"{warm['energy']:,.0f}", f"{100 * run['first']['stragglers']:.0f} / {100 * warm['stragglers']:.0f} %"]
+            )
+    head = ["view", "method", "time, us", "energy, uJ", "DRAM, KB", "bytes a triangle", "error, pixels", "warm: time", "energy", "stragglers"]
+    return table(head, rows, 2)
+
+
+def ratios(frames):
+    """Theirs over ours, cold and warm."""
+    rows, columns = [], [[] for _ in range(12)]
+    for view in range(len(frames.data["views"])):
+        points = dict(frames.rivals(view))
+        ours, warm = costs(points["ours"]), frames.warm(view, points["ours"])["warm"]
+        row = []
+        for name in ["BVH", "discrete, its rule", "discrete, hindsight"]:
+            point = points[name]
+            if point is None:
+                row += [None] * 4
+                continue
+            theirs, run = costs(point), frames.warm(view, point)["warm"]
+            row += [theirs[0] / ours[0], theirs[1] / ours[1], run["cycles"] / warm["cycles"], run["energy"] / warm["energy"]]
+        for column, value in zip(columns, row):
+            column += [] if value is None else [value]
+        rows.append([place(frames, view), *("-" if value is None else shown(value) for value in row)])
+    rows.append(["median", *(shown(statistics.median(column)) for column in columns)])
+    what = ["time", "energy", "warm time", "warm energy"]
+    head = ["view", *[f"BVH: {what[0]}", *what[1:]], *[f"discrete, its rule: {what[0]}", *what[1:]], *[f"in hindsight: {what[0]}", *what[1:]]]
+    return table(head, rows, 1)
+
+
+def front(frames):
+    """README's: time and energy of ours, and what others take of that."""
+    rows = []
+    for view in range(len(frames.data["views"])):
+        points = dict(frames.rivals(view))
+        ours = points["ours"]
+        cycles, energy, dram = costs(ours)
+        over = lambda point: "-" if point is None else " / ".join(shown(theirs / own) for theirs, own in zip(costs(point), [cycles, energy, dram]))
+        rows.append(
+            [place(frames, view), f"{ours['costs'][0]['milliseconds'] * 1e3:.1f} us, {energy:,.0f} uJ, {dram / 1e3:,.0f} KB", over(points["BVH"]), over(points["discrete, its rule"]), over(points["discrete, hindsight"])]
+            + [f"{ours['geometry']['surface']['percentile_99']:.2f}"]
+        )
+    return table(["view", "ours", "best BVH of the mesh", "discrete LOD, its own rule", "discrete, in hindsight", "our error, pixels"], rows, 2)
+
+
+def put(path, name, text):
+    """Replaces what stands between two marks of a document."""
+    begin, end = f"<!-- {name}: by scripts/fair -->\n", f"\n<!-- {name}: end -->"
+    whole = path.read_text()
+    if begin not in whole or end not in whole:
+        sys.exit(f"fair: {path} has no marks of {name}")
+    head, rest = whole.split(begin)
+    path.write_text(head + begin + text + end + rest.split(end, 1)[1])
+
+
+def main():
+    program, mesh, folder = Path(sys.argv[1]).resolve(), str(Path(sys.argv[2]).resolve()), Path(sys.argv[3])
+    frames = Frames(program, mesh, folder)
+    values = {"absolute": absolute(frames), "ratios": ratios(frames)}
+    for path in [ROOT / "docs" / "error-time.md", ROOT / "scripts" / "errors" / "document.md"]:
+        for name, text in values.items():
+            put(path, name, text)
+    put(ROOT / "README.md", "front", front(frames))
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,96 @@
+//! The mesh file that a scene was built from: recorded by `build`, found again by name and hash.
+
+use super::build::{FormArgs, build_scene};
+use super::method::Chosen;
+use super::output::busy;
+use anyhow::Context;
+use lodray::format::Scene;
+use lodray::mesh::{DEFAULT_CREASE_ANGLE, Surface, corner_normals, read};
+use lodray::num::VertexForm;
+use serde::{Deserialize, Serialize};
+use std::path::{Path, PathBuf};
+use xxhash_rust::xxh3::xxh3_64;
+
+/// Where the record lies in a scene's origin.
+pub const FILE: &str = "file";
+
+/// What `build` records of its mesh file.
+#[derive(Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct InputFile {
+    /// Its name, without folders.
+    name: String,
+    /// Of its bytes.
+    xxh3: String,
+    /// Vertices at open edges that are at most this far apart were made one.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    weld: Option<f64>,
+}
+
+#[derive(clap::Args)]
+pub struct InputArgs {
+    /// Mesh file that a scene was built from, for methods over it (default: the file of that name beside the scene, or in the current folder); it must be the same file; may be repeated
+    #[arg(long, value_name = "FILE")]
+    pub mesh: Vec<PathBuf>,
+}
+
+impl InputFile {
+    /// That of a mesh file which was welded so.
+    pub fn of(path: &Path, weld: Option<f64>) -> anyhow::Result<Self> {
+        let bytes = std::fs::read(path).with_context(|| path.display().to_string())?;
+        Ok(Self { name: path.file_name().unwrap_or_default().to_string_lossy().into_owned(), xxh3: hash(&bytes), weld })
+    }
+
+    /// The first of the files that it is; those that were named, else the ones of its name beside the scene and here.
+    fn find(&self, scene: &Path, named: &[PathBuf]) -> Option<PathBuf> {
+        let beside = [scene.parent().unwrap_or(Path::new("")).join(&self.name), PathBuf::from(&self.name)];
+        let candidates = if named.is_empty() { &beside[..] } else { named };
+        candidates.iter().find(|path| path.is_file() && std::fs::read(path).is_ok_and(|bytes| hash(&bytes) == self.xxh3)).cloned()
+    }
+
+    /// The mesh as a scene of its own triangles, vertices exact.
+    fn scene(&self, path: &Path) -> anyhow::Result<Scene> {
+        let mesh = busy("reading the input mesh", || read(path))?;
+        let mesh = match self.weld {
+            Some(distance) => mesh.welded(distance).with_context(|| path.display().to_string())?,
+            None => mesh,
+        };
+        let surface = Surface::of_mesh(&mesh, &corner_normals(&mesh, DEFAULT_CREASE_ANGLE));
+        let form = FormArgs { vertices: VertexForm::Exact, ..FormArgs::default() };
+        build_scene(&surface, &self.name, serde_json::Value::Null, form).with_context(|| path.display().to_string())
+    }
+}
+
+fn hash(bytes: &[u8]) -> String {
+    format!("{:016x}", xxh3_64(bytes))
+}
+
+/// The scene with the mesh that it was built from at hand, if one of the methods needs it.
+///
+/// # Errors
+/// The scene does not say which mesh that is, or it is not where it is looked for.
+pub fn with_input<'a>(scene: Scene, path: &Path, args: &InputArgs, methods: impl IntoIterator<Item = &'a Chosen>) -> anyhow::Result<Scene> {
+    match methods.into_iter().find(|chosen| chosen.method.of_input) {
+        Some(chosen) => match mesh_of(&scene, path, args) {
+            Ok(input) => Ok(scene.with_input(input)),
+            Err(why) => Err(why.context(format!("--method {}", chosen.method.name))),
+        },
+        None => Ok(scene),
+    }
+}
+
+/// The mesh that a scene was built from.
+///
+/// # Errors
+/// As [`with_input`].
+pub fn mesh_of(scene: &Scene, path: &Path, args: &InputArgs) -> anyhow::Result<Scene> {
+    let record = &scene.meta().origin[FILE];
+    anyhow::ensure!(!record.is_null(), "{}: was not built from a mesh file, or by an older lodray", path.display());
+    let file = InputFile::deserialize(record).with_context(|| format!("{}: origin", path.display()))?;
+    let found = file.find(path, &args.mesh).with_context(|| {
+        let place =
+            if args.mesh.is_empty() { "neither beside it nor in the current folder; name it with --mesh" } else { "none of --mesh" };
+        format!("{} was built from {}, and that very file is {place}", path.display(), file.name)
+    })?;
+    file.scene(&found)
+}

@@ -1,0 +1,101 @@
+//! Methods over the mesh that a scene was built from.
+
+use lodray_test_support::program::{Desk, FAILS, USAGE};
+use serde_json::Value;
+
+/// A bumpy sphere of 2,048 triangles.
+fn mesh(bump: f64) -> String {
+    let (columns, rows) = (32, 32);
+    let mut text = String::new();
+    for row in 0..=rows {
+        for column in 0..columns {
+            let (a, b) =
+                (f64::from(row) * std::f64::consts::PI / f64::from(rows), f64::from(column) * std::f64::consts::TAU / f64::from(columns));
+            let r = 1.0 + bump * (7.0 * a).sin() * (5.0 * b).cos();
+            text += &format!("v {} {} {}\n", r * a.sin() * b.cos(), r * a.cos(), r * a.sin() * b.sin());
+        }
+    }
+    let at = |row: i32, column: i32| row * columns + column % columns + 1;
+    for row in 0..rows {
+        for column in 0..columns {
+            text += &format!("f {} {} {}\n", at(row, column), at(row, column + 1), at(row + 1, column));
+            text += &format!("f {} {} {}\n", at(row, column + 1), at(row + 1, column + 1), at(row + 1, column));
+        }
+    }
+    text
+}
+
+fn desk() -> Desk {
+    let desk = Desk::new(assert_cmd::cargo::cargo_bin!("lodray"));
+    desk.write("ball.obj", &mesh(0.05));
+    desk.run("build ball.obj --levels 3 -o ball.lod");
+    desk
+}
+
+fn figures(result: &Value) -> Vec<&Value> {
+    ["cycles", "rays", "hits", "l1", "l2", "dram", "energy"].map(|key| &result[key]).to_vec()
+}
+
+#[test]
+fn a_bvh_over_the_input_is_that_of_a_scene_which_is_the_mesh() {
+    let desk = desk();
+    desk.run("build ball.obj --levels 0 --base 100000 --vertices exact -o whole.lod");
+    for (of_input, of_finest) in [("input-bvh", "bvh"), ("input-bvh6", "bvh6")] {
+        let view = "--size 64x48 --eye 1,2,3 --target 0,0,0 --json";
+        let ours: Value = serde_json::from_str(&desk.run(&format!("simulate ball.lod --method {of_input} {view}"))).unwrap();
+        let theirs: Value = serde_json::from_str(&desk.run(&format!("simulate whole.lod --method {of_finest} {view}"))).unwrap();
+        assert_eq!(figures(&ours), figures(&theirs), "{of_input}");
+        assert_eq!((&ours["setup"]["method"]["name"], &ours["setup"]["scene"]["levels"]), (&of_input.into(), &3.into()));
+    }
+}
+
+#[test]
+fn the_mesh_is_found_by_name_and_hash_or_named() {
+    let desk = desk();
+    let shot = "simulate ball.lod --method input-bvh --size 16x12";
+    let here = desk.json(shot);
+    desk.run("build ball.obj --levels 3 -o other.lod");
+    std::fs::create_dir(desk.path("away")).unwrap();
+    std::fs::rename(desk.path("ball.obj"), desk.path("away/mesh.obj")).unwrap();
+    desk.refused(shot, FAILS, &["--method input-bvh", "ball.lod was built from ball.obj", "name it with --mesh"]);
+    assert_eq!(figures(&desk.json(&format!("{shot} --mesh away/mesh.obj"))), figures(&here));
+    // Another mesh of that name is not it.
+    desk.write("ball.obj", &mesh(0.06));
+    desk.refused(shot, FAILS, &["that very file is neither beside it"]);
+    desk.refused(&format!("{shot} --mesh ball.obj"), FAILS, &["none of --mesh"]);
+    desk.run("generate sphere --levels 2 -o made.lod");
+    desk.refused("simulate made.lod --method input-bvh --size 16x12", FAILS, &["made.lod", "was not built from a mesh file"]);
+    desk.refused("cast ball.lod rays.npy --method input-bvh -o hits.npy", USAGE, &["input-bvh"]);
+}
+
+#[test]
+fn errors_are_against_the_input_where_it_is_at_hand() {
+    let desk = desk();
+    let measured = |out: &str, words: &str| -> Value {
+        let (code, said) =
+            desk.hear(&format!("error-time ball.lod -o {out} --quick --size 96x96 --distances 2 --most-samples 0 --no-host {words}"));
+        assert_eq!(code, 0, "{said}");
+        serde_json::from_str(&desk.text(&format!("{out}/error-time.json"))).unwrap()
+    };
+    let with = measured("with", "");
+    let points = with["points"].as_array().unwrap();
+    let of = |method: &str| points.iter().filter(|point| point["method"] == *method).collect::<Vec<_>>();
+    // Those at a pole have no area.
+    assert_eq!(with["scenes"][0]["input_triangles"], 2016);
+    // The input is its own full resolution but for rounding; the finest level is not the input.
+    let most = |point: &Value, against: &str| point[against]["surface"]["maximum"].as_f64().unwrap();
+    for point in of("input-bvh") {
+        assert!(most(point, "geometry") < 1e-3 && point["finest"].is_null(), "{point}");
+    }
+    for point in of("bvh") {
+        assert!(most(point, "geometry") > 10.0 * most(point, "finest"), "{point}");
+    }
+    assert!(!of("lod").is_empty() && of("lod").iter().all(|point| !point["finest"].is_null()));
+    std::fs::remove_file(desk.path("ball.obj")).unwrap();
+    let without = measured("without", "");
+    let points = without["points"].as_array().unwrap();
+    assert!(points.iter().all(|point| point["finest"].is_null() && !point["method"].as_str().unwrap().starts_with("input")));
+    assert!(without["scenes"][0]["input_triangles"].is_null());
+    let (code, said) = desk.hear("error-time ball.lod -o named --quick --methods lod,input-bvh --no-host");
+    assert!(code != 0 && said.contains("that very file is neither beside it"), "{said}");
+}
