@@ -1,20 +1,26 @@
-//! `demo`: a built-in scene from three distances, LOD beside BVH and full resolution, and what a traversal unit for these views can leave out.
+//! `demo`: a built-in scene from three distances: what ours, the best BVH and discrete level of detail cost there, and what a traversal unit for these views can leave out.
 
 use super::build::{FormArgs, build_scene};
 use super::cache::Cache;
-use super::facts::Facts;
 use super::folder::{Overrule, RunFolder, one_run};
 use super::method::Chosen;
 use super::output::{busy, count, grouped, print_json, print_table, remark, write_file};
+use super::pass::{Pass, PassRays, Target, machine};
 use super::pictures::{Shot, shoot};
-use super::render::{Against, Comparison, compare_shots};
+use super::report;
+use super::simulate::amount;
+use anyhow::Context;
+use lodray::format::Scene;
 use lodray::hardware::{Hardware, unit_gates};
-use lodray::mesh::procedural::{Options, Scene, generate};
-use lodray::method::knob::DELTA;
-use lodray::method::{Registered, bvh, lod, reference};
-use lodray::picture::Shading;
+use lodray::mesh::FinestSurface;
+use lodray::mesh::procedural::{Options, Scene as Procedural, generate};
+use lodray::method::{Method, bvh, discrete, lod, reference};
+use lodray::picture::{FullResolution, Sheet, SurfaceError, save_png};
 use lodray::plan::{Data, Measure, Plan, RayNeeds, Reach};
 use lodray::rays::{Camera, ModelSpace, View};
+use lodray::report::page::{Documents, Simulation};
+use lodray::report::result::SimResult;
+use lodray::run::Compute;
 use serde::Serialize;
 use std::path::PathBuf;
 use std::process::ExitCode;
@@ -25,16 +31,17 @@ const DISTANCES: [(&str, f64); 3] = [("near", 0.6), ("middle", 2.0), ("far", 8.0
 const SIDE: u32 = 512;
 /// Quality of level of detail.
 const QUALITY: f64 = 1.0;
+const MACHINE: &str = "haydel2023";
+/// Of the columns and rows of a frame, one in so many is held against the nearest point of the surface.
+const STRIDE: u32 = 2;
 const TABLE: &str = "table.txt";
-/// What a unit for the views needs.
-const PLAN: &str = "plan.toml";
-/// Pictures of each view.
-const PICTURES: [&str; 8] = ["lod-image", "lod-levels", "lod-error", "bvh-image", "bvh-levels", "bvh-error", "full-image", "full-levels"];
+const SHEET: &str = "sheet.png";
+const PAGE: &str = "report.html";
 
 #[derive(clap::Args)]
 pub struct Args {
-    /// Folder for pictures, table and plan
-    #[arg(short, long, default_value = "out/demo", long_help = one_run("Folder for pictures, table and plan"))]
+    /// Folder for the table, a sheet of pictures and a page
+    #[arg(short, long, default_value = "out/demo", long_help = one_run("Folder for the table, a sheet of pictures and a page"))]
     out: PathBuf,
     #[command(flatten)]
     overrule: Overrule,
@@ -43,128 +50,179 @@ pub struct Args {
     json: bool,
 }
 
+/// A method in a view.
 #[derive(Serialize)]
 struct Row {
     view: &'static str,
     distance: f64,
-    method: &'static str,
-    distinct_lines: u64,
-    lines_per_ray: f64,
-    nodes_per_ray: f64,
-    triangles_per_ray: f64,
-    mean_level: f64,
-    error: Comparison,
+    method: String,
+    microseconds: f64,
+    energy_uj: f64,
+    dram_bytes: u64,
+    bytes_per_triangle: f64,
+    /// 99 of 100 hits are nearer to the full-resolution surface, in pixels.
+    error_pixels: f64,
+}
+
+/// The scene, and full resolution to hold everything against.
+struct Stage {
+    scene: Scene,
+    space: ModelSpace,
+    surface: FinestSurface,
+}
+
+/// What a method gave in a view.
+struct Outcome {
+    name: &'static str,
+    shot: Shot,
+    result: SimResult,
+    error: f64,
+}
+
+impl Stage {
+    fn outcome(&self, chosen: &Chosen, method: &dyn Method, camera: &Camera, truth: &Shot) -> anyhow::Result<Outcome> {
+        let name = chosen.method.name;
+        let shot = shoot(method, &self.scene, &self.space, camera, QUALITY, name);
+        let full = FullResolution { scene: &self.scene, space: &self.space, surface: &self.surface, pixels: &truth.frame.pixels };
+        let error =
+            SurfaceError::of(&self.scene, &shot.frame.pixels, &full, camera, STRIDE).surface.map_or(0.0, |error| error.percentile_99);
+        let pass = Pass { scene: &self.scene, space: &self.space, chosen, method, rays: PassRays::Camera(*camera) };
+        let target = Target { machine: machine(MACHINE, &[], "")?, compute: Compute::Free, window: None };
+        let (result, _) = pass.run(&[target])?.pop().context("no result")??;
+        Ok(Outcome { name, shot, result, error })
+    }
 }
 
 pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
-    let pictures = DISTANCES.iter().flat_map(|(view, _)| PICTURES.map(|picture| format!("{view}-{picture}.png")));
-    let names: Vec<_> = pictures.chain([TABLE, PLAN].map(str::to_owned)).collect();
-    let folder = RunFolder::open(&args.out, names.iter().map(String::as_str), &[], &args.overrule)?;
+    let folder = RunFolder::open(&args.out, [TABLE, SHEET, PAGE], &[], &args.overrule)?;
     let out = folder.staging();
-    let options = Options { levels: Some(LEVELS), ..Options::new(Scene::Terrain) };
+    let options = Options { levels: Some(LEVELS), ..Options::new(Procedural::Terrain) };
     let surface = busy("generating", || generate(&options))?;
     let scene = build_scene(&surface, "terrain", serde_json::json!({ "generate": options }), FormArgs::default())?;
-    let space = ModelSpace::of(&scene);
-    let methods: [&Registered; 3] = [&lod::METHOD, &bvh::METHOD, &reference::METHOD];
-    let made = methods.iter().map(|method| Chosen::plain(method).make(&scene, &Cache::NONE)).collect::<anyhow::Result<Vec<_>>>()?;
+    let surface = busy("full-resolution surface", || FinestSurface::new(&scene.decode()));
+    let stage = Stage { space: ModelSpace::of(&scene), surface, scene };
+    let (scene, space) = (&stage.scene, &stage.space);
+    let make = |chosen: Chosen| chosen.make(scene, &Cache::NONE).map(|(method, _)| (chosen, method));
+    let truth = make(Chosen::plain(&reference::METHOD))?.1;
+    let whole = [&lod::METHOD, &bvh::METHOD, &bvh::METHOD_SIX, &discrete::METHOD].map(|method| make(Chosen::plain(method)));
+    let [ours, bvh, bvh6, rule] = whole;
+    let (ours, bvhs, rule) = (ours?, [bvh?, bvh6?], rule?);
+    let level = |level: u32| -> anyhow::Result<_> {
+        let knobs = rule.0.knobs.clone().with(&discrete::LEVEL, &level.to_string())?;
+        let method = rule.1.again(&knobs).context("no method of a level")?;
+        Ok((Chosen { method: rule.0.method, knobs }, method))
+    };
+    let levels = (0..=LEVELS).map(level).collect::<anyhow::Result<Vec<_>>>()?;
 
-    let (mut rows, mut rays) = (Vec::new(), RayNeeds::default());
-    let (measure, reach) = (Measure::of(&scene), Reach::of(&scene));
+    let (mut rows, mut simulations, mut sheet, mut rays) = (Vec::new(), Vec::new(), Sheet::default(), RayNeeds::default());
+    let (measure, reach) = (Measure::of(scene), Reach::of(scene));
     for (view, distance) in DISTANCES {
-        let camera = Camera::new(&View { distance: Some(distance), ..View::default() }, &space, SIDE, SIDE)?;
+        let camera = Camera::new(&View { distance: Some(distance), ..View::default() }, space, SIDE, SIDE)?;
         rays = rays.with(&measure.rays(&camera, QUALITY));
         reach.add(&camera, QUALITY);
-        let shots: Vec<_> =
-            methods.iter().zip(&made).map(|(method, (made, _))| shoot(&**made, &scene, &space, &camera, QUALITY, method.name)).collect();
-        let full = &shots[2];
-        for (method, shot) in methods.iter().zip(&shots) {
-            let is_truth = *method == &reference::METHOD;
-            let error = (!is_truth).then(|| compare_shots(shot, full, &scene, &camera));
-            let facts = Facts {
-                scene: &scene.meta().name,
-                method: method.name,
-                delta: method.has(DELTA.name).then_some(QUALITY),
-                choices: &[],
-                shading: (Shading::Full, 1),
-                camera: &camera,
-                stats: &shot.stats,
-                error: error.as_ref().map(|error| (Against::FullResolution, error)),
-            };
-            let prefix = format!("{view}-{}-", if is_truth { "full" } else { method.name });
-            shot.save(out, &prefix, &facts)?;
-            shot.levels(&scene).save(out, &prefix, &facts)?;
-            if let Some(error) = &error {
-                shot.error(&full.image).save(out, &prefix, &facts)?;
-                rows.push(row(view, distance, method.name, shot, error.clone()));
-            }
+        let full = shoot(&*truth, scene, space, &camera, f64::INFINITY, "full resolution");
+        let outcome = |(chosen, method): &(Chosen, Box<dyn Method + '_>)| stage.outcome(chosen, &**method, &camera, &full);
+        let own = outcome(&ours)?;
+        let best = bvhs.iter().map(outcome).collect::<anyhow::Result<Vec<_>>>()?.into_iter().min_by_key(|bvh| bvh.result.cycles);
+        let rule = outcome(&rule)?;
+        let levels = levels.iter().map(outcome).collect::<anyhow::Result<Vec<_>>>()?;
+        let near = levels.into_iter().filter(|level| level.error <= own.error).min_by_key(|level| level.result.cycles);
+        sheet.add(&format!("{view}: ours"), &own.shot.image, None);
+        for map in [own.shot.levels(scene), own.shot.error(&full.image)] {
+            sheet.add(&format!("{view}: {}", map.name), &map.image, Some(map.legend));
+        }
+        let chose = |outcome: &Outcome| {
+            outcome.result.setup.method.choices.iter().map(|(name, value)| format!("{name} {value}")).collect::<String>()
+        };
+        let named = [
+            Some((format!("ours, delta {QUALITY}"), own)),
+            best.map(|best| (format!("best BVH ({})", best.name), best)),
+            Some((format!("discrete, own rule ({})", chose(&rule)), rule)),
+            near.map(|near| (format!("discrete, hindsight ({})", chose(&near)), near)),
+        ];
+        for (method, Outcome { result, error, .. }) in named.into_iter().flatten() {
+            rows.push(row(view, distance, &method, &result, error, scene.finest_triangles()));
+            simulations.push(Simulation { scene: Some(format!("terrain, {view}")), result, image: None });
         }
     }
 
     let mut plan = Plan::new(true);
     plan.add(&scene.meta().name, &measure.needs());
     plan.add_rays(&rays);
-    let table = table(&rows, scene.finest_triangles()) + "\n\n" + &saving(&plan, &measure.data(&reach.depths()));
+    let table = format!("{}\n\n{}\n\n{}", table(&rows, scene), sentence(&rows), saving(&plan, &measure.data(&reach.depths())));
     write_file(&out.join(TABLE), format!("{table}\n"))?;
-    write_file(&out.join(PLAN), toml::to_string(&plan)?)?;
+    let heading = format!("terrain, {} triangles, ours at delta {QUALITY}, {SIDE}x{SIDE}", grouped(scene.finest_triangles()));
+    save_png(&sheet.draw(&heading, &[]), &[], &out.join(SHEET)).with_context(|| format!("cannot write {SHEET}"))?;
+    report::save(&out.join(PAGE), &report::titled(Documents { simulations, runs: vec![report::this_run(&[])?], ..Documents::default() }))?;
     folder.finish()?;
     if args.json {
         print_json(&rows)?
     } else {
         print_table(&table)?;
-        remark(&format!("pictures, table and plan in {}", args.out.display()))?;
+        remark(&format!("table, sheet of pictures and page in {}", args.out.display()))?;
     }
     Ok(ExitCode::SUCCESS)
 }
 
-fn row(view: &'static str, distance: f64, method: &'static str, shot: &Shot, error: Comparison) -> Row {
-    let stats = &shot.stats;
-    let mean = |n: u64| n as f64 / stats.rays as f64;
+fn row(view: &'static str, distance: f64, method: &str, result: &SimResult, error: f64, triangles: u64) -> Row {
     Row {
         view,
         distance,
-        method,
-        distinct_lines: stats.distinct_lines(),
-        lines_per_ray: mean(stats.lines_read()),
-        nodes_per_ray: mean(stats.nodes),
-        triangles_per_ray: mean(stats.triangles),
-        mean_level: stats.mean_level,
-        error,
+        method: method.to_owned(),
+        microseconds: 1e3 * result.milliseconds,
+        energy_uj: result.energy.total,
+        dram_bytes: result.dram.bytes,
+        bytes_per_triangle: result.setup.method.bytes as f64 / triangles as f64,
+        error_pixels: error,
     }
 }
 
-fn table(rows: &[Row], triangles: u64) -> String {
+fn table(rows: &[Row], scene: &Scene) -> String {
     let mut text = format!(
-        "terrain, {} triangles at full resolution, {SIDE}x{SIDE} rays; errors against full resolution\n{:<8}{:>9}{:>8}{:>16}{:>11}{:>11}{:>15}{:>12}{:>9}{:>10}{:>12}\n",
-        grouped(triangles),
+        "terrain, {} triangles; frames of {SIDE}x{SIDE} on {MACHINE}, compute free\n{:<7}{:>6}  {:<34}{:>9}{:>12}{:>10}{:>16}{:>15}\n",
+        grouped(scene.finest_triangles()),
         "view",
-        "distance",
+        "radii",
         "method",
-        "distinct lines",
-        "lines/ray",
-        "nodes/ray",
-        "triangles/ray",
-        "mean level",
-        "RMSE",
-        "PSNR",
-        "pixels off"
+        "time, us",
+        "energy, uJ",
+        "DRAM, KB",
+        "bytes/triangle",
+        "error, pixels"
     );
     for r in rows {
         text += &format!(
-            "{:<8}{:>9}{:>8}{:>16}{:>11.2}{:>11.2}{:>15.2}{:>12.2}{:>9.3}{:>10}{:>12}\n",
+            "{:<7}{:>6}  {:<34}{:>9}{:>12}{:>10}{:>16.1}{:>15.2}\n",
             r.view,
             r.distance,
             r.method,
-            grouped(r.distinct_lines),
-            r.lines_per_ray,
-            r.nodes_per_ray,
-            r.triangles_per_ray,
-            r.mean_level,
-            r.error.image.rmse,
-            r.error.image.psnr_db.map_or("inf".to_owned(), |p| format!("{p:.1} dB")),
-            r.error.geometry_pixels.map_or("-".to_owned(), |g| format!("{:.3}", g.mean))
+            amount(r.microseconds),
+            amount(r.energy_uj),
+            grouped(r.dram_bytes / 1000),
+            r.bytes_per_triangle,
+            r.error_pixels
         );
     }
     text.trim_end().to_owned()
+}
+
+/// What the table shows, in one sentence.
+fn sentence(rows: &[Row]) -> String {
+    let times = |begin: &str| {
+        let of =
+            |view: &str, begin: &str| rows.iter().find(|row| row.view == view && row.method.starts_with(begin)).map(|row| row.microseconds);
+        let over = |(view, _): (&str, f64)| match (of(view, begin), of(view, "ours")) {
+            (Some(theirs), Some(ours)) => format!("{:.2}", theirs / ours),
+            _ => "-".to_owned(),
+        };
+        DISTANCES.map(over).join(" / ")
+    };
+    format!(
+        "Near / middle / far, times over ours: the best BVH {}, discrete level of detail by its own rule {}, and by the level that nobody knows before the frame, the cheapest with no more error than ours, {}.",
+        times("best BVH"),
+        times("discrete, own rule"),
+        times("discrete, hindsight")
+    )
 }
 
 /// What a unit for the views can leave out, and what of the scene they do not read.

@@ -48,7 +48,7 @@ impl Sheet {
         self.panels.push(Panel { title: title.to_owned(), picture, legend });
     }
 
-    /// The sheet: a heading, all pictures, and the figures (label and value) in the last place.
+    /// The sheet: a heading, all pictures, and the figures (label and value), if there are any, in the last place.
     pub fn draw(&self, heading: &str, figures: &[(String, String)]) -> RgbImage {
         let wide = self.panels.iter().map(|p| cell_width(&p.picture)).max().unwrap_or(SMALL);
         let font = Font::of_width(wide);
@@ -58,7 +58,8 @@ impl Sheet {
         let talls: Vec<u32> =
             self.panels.iter().map(|p| line + p.picture.height() + p.legend.as_ref().map_or(0, RgbImage::height)).collect();
         // The figures come last, below a line without a title: a few dozen lines.
-        let talls: Vec<u32> = talls.into_iter().chain([line * (figures.len() as u32 + 1)]).collect();
+        let of_figures = (!figures.is_empty()).then_some(line * (figures.len() as u32 + 1));
+        let talls: Vec<u32> = talls.into_iter().chain(of_figures).collect();
         let rows = |columns: u32| talls.chunks(columns as usize).map(|row| row.iter().max().unwrap_or(&0) + gap);
 
         let cells = talls.len() as u32; // a handful
@@ -84,7 +85,7 @@ impl Sheet {
                 let _ = sheet.copy_from(legend, x, y + line + panel.picture.height());
             }
         }
-        let [x, y] = place(cells - 1);
+        let [x, y] = place(cells.saturating_sub(1));
         for ((label, value), y) in figures.iter().zip((y + line..).step_by(line as usize)) {
             font.draw(&mut sheet, [x, y], label, FAINT);
             font.draw(&mut sheet, [x + font.width(LABEL), y], &cut(value, wide / font.width(1) - LABEL), INK);

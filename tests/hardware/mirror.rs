@@ -379,11 +379,12 @@ fn names_of_modules_and_ports_follow_the_convention() {
 
 #[test]
 fn the_readme_states_the_timings() {
-    let readme = std::fs::read_to_string(tb::root().join("README.md")).expect("README.md");
+    let readme = std::fs::read_to_string(tb::root().join("rtl/README.md")).expect("rtl/README.md");
     for block in rust_side().0 {
         let start = format!("| `{}` |", block.name);
-        let row = readme.lines().find(|line| line.starts_with(&start)).unwrap_or_else(|| panic!("README.md has no row for {}", block.name));
+        let row =
+            readme.lines().find(|line| line.starts_with(&start)).unwrap_or_else(|| panic!("rtl/README.md has no row for {}", block.name));
         let stated = format!("| {} | {} |", block.timing.latency, block.timing.interval);
-        assert!(row.ends_with(&stated), "README.md says of {}: {row}; it should end with {stated}", block.name);
+        assert!(row.ends_with(&stated), "rtl/README.md says of {}: {row}; it should end with {stated}", block.name);
     }
 }

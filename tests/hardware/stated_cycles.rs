@@ -1,4 +1,4 @@
-//! What the documents say of a block's cycles is what README.md's table says, which `tests/hardware/mirror.rs` holds against Rust and RTL.
+//! What the documents say of a block's cycles is what the table of rtl/README.md says, which `tests/hardware/mirror.rs` holds against Rust and RTL.
 
 use std::collections::BTreeMap;
 use std::fs;
@@ -10,7 +10,7 @@ fn root() -> &'static Path {
 
 /// Latency and interval by block.
 fn table() -> BTreeMap<String, [u32; 2]> {
-    let readme = fs::read_to_string(root().join("README.md")).expect("README.md");
+    let readme = fs::read_to_string(root().join("rtl/README.md")).expect("rtl/README.md");
     let row = |line: &str| {
         let cells: Vec<&str> = line.trim_matches('|').split('|').map(str::trim).collect();
         let [name, _, latency, interval] = cells[..] else { return None };

@@ -189,25 +189,34 @@ fn export_is_read_again() {
 }
 
 #[test]
-fn demo_writes_pictures_a_table_and_a_plan() {
+fn demo_compares_four_methods_at_three_distances_on_a_sheet_and_a_page() {
     let desk = empty();
     let rows: Value = desk.json("demo --out new/demo");
-    let views: Vec<_> = rows.as_array().unwrap().iter().map(|r| (r["view"].as_str().unwrap(), r["method"].as_str().unwrap())).collect();
-    assert_eq!(views, ["near", "middle", "far"].map(|v| [(v, "lod"), (v, "bvh")]).concat());
+    let rows = rows.as_array().unwrap();
+    let number = |row: &Value, key: &str| row[key].as_f64().unwrap();
+    for view in ["near", "middle", "far"] {
+        let of = |begin: &str| rows.iter().find(|row| row["view"] == view && row["method"].as_str().unwrap().starts_with(begin));
+        let [ours, bvh, rule] = ["ours, delta 1", "best BVH (bvh", "discrete, own rule (level"].map(|begin| of(begin).unwrap());
+        // What there is to see: ours reads less than full resolution, has fewer bytes, and an error below what delta promises.
+        assert!(
+            number(ours, "dram_bytes") < number(bvh, "dram_bytes")
+                && number(ours, "bytes_per_triangle") < number(bvh, "bytes_per_triangle")
+        );
+        assert!(number(bvh, "error_pixels") < 0.01 && number(ours, "error_pixels") < 1.5 && number(rule, "microseconds") > 0.0);
+        if let Some(hindsight) = of("discrete, hindsight (level") {
+            assert!(number(hindsight, "error_pixels") <= number(ours, "error_pixels"));
+        }
+    }
     let names: Vec<String> = desk.files("new/demo").into_keys().collect();
-    assert_eq!(names.iter().filter(|n| n.ends_with("-image.png")).count(), 9);
-    assert_eq!(names.iter().filter(|n| n.ends_with("-levels.png")).count(), 9);
-    assert_eq!(names.iter().filter(|n| n.ends_with("-lod-error.png")).count(), 3);
-    // What a unit for the views leaves out ends the table, and is the plan's.
-    let (table, plan) = (desk.text("new/demo/table.txt"), desk.text("new/demo/plan.toml"));
+    assert_eq!(names, ["report.html", "run.json", "sheet.png", "table.txt"]);
+    // One sentence, and what a unit for the views leaves out.
+    let table = desk.text("new/demo/table.txt");
+    assert!(
+        table.contains("Near / middle / far, times over ours: the best BVH ") && table.contains("their rays go down to level"),
+        "{table}"
+    );
     assert!(table.contains("a traversal unit for these views needs 5 of 10 levels") && table.contains(" gate equivalents, "), "{table}");
-    let level = plan.lines().find_map(|line| line.strip_prefix("deepest-level = ")).expect("a level");
-    assert!(table.contains(&format!("their rays go down to level {level} at most")), "{table}");
-    assert!(names.contains(&"plan.toml".to_owned()));
-    // Maps have their legends below.
-    let size = |name: &str| image::image_dimensions(desk.path("new/demo").join(name)).unwrap();
-    assert_eq!(size("far-lod-image.png"), (512, 512));
-    assert!(["far-lod-levels.png", "far-lod-error.png"].iter().all(|name| size(name).0 == 512 && size(name).1 > 512));
+    assert!(image::image_dimensions(desk.path("new/demo/sheet.png")).unwrap().0 > 900);
 }
 
 #[test]
