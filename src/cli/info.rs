@@ -1,5 +1,6 @@
 //! `info`: what a scene file holds.
 
+use super::input::FILE;
 use super::output::{count, grouped, open_any, plain, print_json, print_line};
 use lodray::format::{FileSection, JobRegion, JobView, Scene};
 use lodray::mesh::{BoundKind, Distance, TwoSidedDistance};
@@ -163,8 +164,12 @@ fn summary(i: &Info<'_>) -> String {
         levels => format!("each split {levels} times into 4"),
     };
     let [width, height, depth] = i.size.map(plain);
-    let mut lines = vec![
-        ("scene", i.name.to_owned()),
+    let mut lines = vec![("scene", i.name.to_owned())];
+    if let Some(read) = i.origin["mesh"]["triangles_read"].as_u64() {
+        let file = i.origin[FILE]["name"].as_str().map_or_else(String::new, |name| format!(" of {name}"));
+        lines.push(("mesh", format!("{}{file}", count(read as usize, "triangle"))));
+    }
+    lines.extend([
         (
             "triangles",
             format!("{} at full resolution: {}, {splits}", grouped(i.finest_triangles), count(i.base_triangles, "base triangle")),
@@ -180,7 +185,7 @@ fn summary(i: &Info<'_>) -> String {
         ("model size", format!("{width} x {height} x {depth} (width x height x depth, in the units of its coordinates)")),
         ("bounds", format!("{}: {}", i.bounds.name(), promise(i.bounds))),
         ("vertices", format!("{}: none is further than {} from its place on the surface", i.vertices.name(), plain(i.moved))),
-    ];
+    ]);
     if let Some(d) = &i.distance {
         let mean = percent(d.to_original.mean.max(d.from_original.mean));
         let max = at_most(d.to_original.max.max(d.from_original.max));

@@ -70,6 +70,42 @@ fn a_path_of_keys_is_the_turn_that_it_describes_and_threads_change_nothing() {
 }
 
 #[test]
+fn error_time_has_what_a_warm_frame_costs() {
+    let desk = desk();
+    let options = "--quick --size 64x64 --distances 3 --compute free --methods lod,discrete --most-samples 0 --no-host";
+    let measured = |out: &str, words: &str| -> Value {
+        let (code, said) = desk.hear(&format!("error-time a.lod -o {out} {options} {words}"));
+        assert_eq!(code, 0, "{said}");
+        serde_json::from_str(&desk.text(&format!("{out}/error-time.json"))).unwrap()
+    };
+    let costs =
+        |document: &Value| -> Vec<Value> { document["points"].as_array().unwrap().iter().map(|point| point["costs"][0].clone()).collect() };
+    let document = measured("warm", "--frames 4 --turn 5");
+    let own = document["points"].as_array().unwrap().iter().find(|point| point["method"] == "lod" && point["is_default"] == true).unwrap();
+    let simulated = desk.json("simulate a.lod --size 64x64 --distance 3 --frames 4 --turn 5");
+    let warm = &own["costs"][0]["warm"];
+    assert_eq!(
+        (number(warm, "energy"), 32.0 * number(warm, "dram_lines")),
+        (number(&simulated["warm"], "energy"), number(&simulated["warm"], "dram_bytes"))
+    );
+    assert!(
+        (number(warm, "milliseconds") * 2e6 - number(&simulated["warm"], "cycles")).abs() < 1e-6 * number(&simulated["warm"], "cycles")
+    );
+    let header = desk.text("warm/error-time.csv").lines().next().unwrap().to_owned();
+    assert!(["warm_time", "warm_energy", "warm_dram_lines"].iter().all(|name| header.contains(name)), "{header}");
+    // Without frames nothing else changes.
+    let strip = |costs: Vec<Value>| -> Vec<Value> {
+        let without = |mut cost: Value| {
+            cost.as_object_mut().unwrap().remove("warm");
+            cost
+        };
+        costs.into_iter().map(without).collect()
+    };
+    let cold = costs(&measured("cold", ""));
+    assert!(cold.iter().all(|cost| cost["warm"].is_null()) && strip(costs(&document)) == cold);
+}
+
+#[test]
 fn frames_that_cannot_be_are_refused() {
     let desk = desk();
     let shot = "simulate a.lod --size 16x12";

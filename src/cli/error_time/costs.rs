@@ -4,18 +4,34 @@ use super::measure::{Bench, Stage};
 use crate::cli::pass::{Pass, PassRays};
 use crate::cli::sweep::ViewJob;
 use crate::cli::workers::at_once;
-use lodray::rays::Camera;
-use lodray::report::error_time::{Costs, Energy, SizeCosts};
+use lodray::num::LINE_BYTES;
+use lodray::rays::{Camera, CameraPath};
+use lodray::report::error_time::{Costs, Energy, SizeCosts, WarmCosts};
 use lodray::report::result::SimResult;
 
 /// Sizes of the frame at which methods are compared, where they are no larger than the view's own, which is the last.
 const SIZES: [[u32; 2]; 5] = [[128, 128], [256, 256], [512, 512], [1024, 1024], [1920, 1080]];
 
-/// The results of a stage on its machines.
-pub(super) fn simulated(stage: &Stage<'_>, frame: &Camera) -> anyhow::Result<Vec<SimResult>> {
+/// Frames after one another: how many, and how far the camera turns between them, in degrees.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Turning {
+    pub frames: u32,
+    pub degrees: f64,
+}
+
+/// The results of a stage on its machines; if there is a turn, with what a warm frame takes.
+pub(super) fn simulated(stage: &Stage<'_>, frame: &Camera, turning: Option<Turning>) -> anyhow::Result<Vec<SimResult>> {
     let &Stage { scene, space, chosen, method, targets, .. } = stage;
-    let pass = Pass { scene, space, chosen, method, rays: PassRays::Camera(*frame) };
-    pass.watched(targets, &mut |_| ())?.into_iter().map(|outcome| Ok(outcome?.0)).collect()
+    let run = |rays| -> anyhow::Result<Vec<SimResult>> {
+        let pass = Pass { scene, space, chosen, method, rays };
+        pass.watched(targets, &mut |_| ())?.into_iter().map(|outcome| Ok(outcome?.0)).collect()
+    };
+    let mut results = run(PassRays::Camera(*frame))?;
+    if let Some(Turning { frames, degrees }) = turning {
+        let several = run(PassRays::Path(CameraPath::turning(frame, frames, degrees)))?;
+        results.iter_mut().zip(several).for_each(|(result, several)| result.warm = several.warm);
+    }
+    Ok(results)
 }
 
 /// Those of [`SIZES`] with fewer pixels than `own`, and `own`.
@@ -31,7 +47,7 @@ impl Bench<'_> {
         for size in sizes(view.size) {
             let frame = ViewJob { size, ..view.clone() }.camera(&self.space)?;
             let defaults = self.defaults(&frame);
-            let results = at_once(&defaults, |(at, setting)| simulated(&self.stage(*at, setting), &frame));
+            let results = at_once(&defaults, |(at, setting)| simulated(&self.stage(*at, setting), &frame, None));
             for ((_, setting), results) in defaults.iter().zip(results) {
                 all.push(SizeCosts {
                     view: 0,
@@ -67,6 +83,11 @@ pub(super) fn costs(machine: usize, result: &SimResult) -> Costs {
         dram_bytes: (result.traffic.bytes_per_ray.dram * result.rays as f64).round() as u64,
         l1_requests_per_ray: result.accesses_per_ray,
         unit_gates: None,
+        warm: result.warm.map(|warm| WarmCosts {
+            milliseconds: warm.cycles / (f64::from(result.setup.machine.description.cores.clock_mhz) * 1e3),
+            energy: warm.energy,
+            dram_lines: warm.dram_bytes / LINE_BYTES as f64,
+        }),
     }
 }
 

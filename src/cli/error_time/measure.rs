@@ -266,7 +266,7 @@ impl<'a> Bench<'a> {
             luminance: if self.plan.measure.most_samples > 0 { luminance(&drawn) } else { Vec::new() },
             errors: PictureError::of(&picture, full, self.plan.measure.pixels_per_degree),
             picture,
-            results: simulated(stage, &cameras.frame)?,
+            results: simulated(stage, &cameras.frame, self.plan.turning)?,
         })
     }
 

@@ -1,5 +1,6 @@
 //! What is to be measured: scenes, views, methods with the values of their knobs, machines, samples.
 
+use super::costs::Turning;
 use crate::cli::method::Chosen;
 use crate::cli::sweep::{Jobs, SceneJobs, ViewJob};
 use lodray::method::{ErrorKnob, Method};
@@ -18,6 +19,8 @@ pub struct Plan {
     /// Samples along a side of a pixel.
     pub sides: Vec<u32>,
     pub measure: Measure,
+    /// Frames after one another, if warm ones are wanted.
+    pub turning: Option<Turning>,
     /// What may be left out of scenes and units: whatever moves nothing by more than so many pixels.
     pub within: Vec<f64>,
 }
@@ -167,6 +170,7 @@ impl Plan {
             inputs += &format!("{:?}", self.values(chosen));
         }
         inputs += &format!("{:?} {:?} {} {sizes}", self.sides, self.measure, self.trace_grid());
+        inputs += &self.turning.map_or_else(String::new, |turning| format!(" {turning:?}"));
         inputs += &self.within.iter().map(|pixels| format!(" within {pixels}")).collect::<String>();
         // As in a sweep: scene, place and size, and the version at the end.
         let place: Vec<_> = name.split(", ").take(3).collect();

@@ -281,6 +281,20 @@ pub struct Costs {
     /// Area of a traversal unit for the method, in gate equivalents; absent where no area is known.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub unit_gates: Option<f64>,
+    /// The same frame behind others, if that was measured.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub warm: Option<WarmCosts>,
+}
+
+/// A frame behind others whose lines the caches still hold: the mean of the second half of some frames of a camera that turns.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct WarmCosts {
+    /// Milliseconds.
+    pub milliseconds: f64,
+    /// Energy, in the unit of the frame's.
+    pub energy: f64,
+    /// Lines of memory read and written.
+    pub dram_lines: f64,
 }
 
 /// Energy by part, all of it in `unit`.

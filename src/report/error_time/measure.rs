@@ -110,13 +110,16 @@ const ENERGY: CostMeasure = CostMeasure { id: "energy", name: "energy", of: |_, 
 const LINES: CostMeasure = cost("dram-lines", "DRAM lines", |_, c| Some(c.dram_lines as f64));
 
 /// All costs.
-pub const COSTS: [CostMeasure; 7] = [
+pub const COSTS: [CostMeasure; 10] = [
     TIME,
     ENERGY,
     LINES,
     cost("cycles", "cycles", |_, c| Some(c.cycles as f64)),
     cost("l1-requests", "L1 requests for each ray", |_, c| Some(c.l1_requests_per_ray)),
     cost("bytes-per-triangle", "bytes for each finest triangle", |p, _| Some(p.bytes_per_triangle)),
+    cost("warm-time", "time of a warm frame, ms", |_, c| c.warm.map(|warm| warm.milliseconds)),
+    CostMeasure { id: "warm-energy", name: "energy of a warm frame", of: |_, c| c.warm.map(|warm| warm.energy), is_energy: true },
+    cost("warm-dram-lines", "DRAM lines of a warm frame", |_, c| c.warm.map(|warm| warm.dram_lines)),
     cost("unit-gates", "area of a traversal unit, gate equivalents", |_, c| c.unit_gates),
 ];
 

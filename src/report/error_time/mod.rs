@@ -8,7 +8,7 @@ mod verdict;
 
 pub use document::{
     Appearance, Converged, Costs, Energy, EqualCost, EqualError, ErrorTime, KIND, LeftOut, MethodEntry, Options, PictureEntry, Point,
-    SceneEntry, Shift, SizeCosts, TraceGrid, TracedHit, TracedRay, VERSION, ViewEntry,
+    SceneEntry, Shift, SizeCosts, TraceGrid, TracedHit, TracedRay, VERSION, ViewEntry, WarmCosts,
 };
 pub use equal::{ALWAYS_BELOW, NOT_REACHED, Pair, Reached, cost_at, equal_errors, front};
 pub use measure::{COSTS, CostMeasure, ERRORS, ErrorMeasure, USUAL_COSTS, USUAL_ERRORS};
