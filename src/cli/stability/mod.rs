@@ -17,7 +17,7 @@ use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 /// Rays of the usual run, which takes about a minute, and of the long one.
-const USUAL: u64 = 25_000_000;
+const USUAL: u64 = 12_000_000;
 const LONG: u64 = 1_000_000_000;
 /// Steps of the hunt for each so many rays.
 const RAYS_PER_STEP: u64 = 200;
@@ -26,7 +26,7 @@ const RAYS_PER_STEP: u64 = 200;
 pub struct Args {
     /// Scene file: runs the families of rays on it instead of the built-in cases
     scene: Option<PathBuf>,
-    /// Rays over all cases (default 25 million: about a minute on two cores; docs/stability.md shows what 100 million give)
+    /// Rays over all cases (default 12 million: about a minute on two cores; docs/stability.md shows what 100 million give)
     #[arg(long, value_parser = whole::<u64>(1..=MAX_RAYS), allow_negative_numbers = true, conflicts_with = "long")]
     rays: Option<u64>,
     /// 1,000 million rays: an hour or more

@@ -89,9 +89,12 @@ pub(super) fn fit_by_need(
     let mut decimator = Decimator::new(source);
     let original = source.wedges.len() as u64;
     let free = decimator.run(&[FREE], &vec![false; source.positions.len()]).wedges.len();
-    let (mut levels, mut base) = (levels_for(free as u64, original), 0);
+    let mut levels = levels_for(free as u64, original);
     let mut best: Option<((bool, u64), (u32, Fitted))> = None;
+    // As many as the original at most.
+    let enough = |levels: u32| original.div_ceil(1 << (2 * levels)) as usize;
     loop {
+        let base = enough(levels);
         let fitted = limit(levels).and_then(|limit| fit(source, &mut decimator, &Wanted { levels, base, limit }, progress));
         let (cost_of, fitted) = match (fitted, best.take()) {
             (Err(_), Some((_, best))) => return Ok(best),
@@ -105,9 +108,8 @@ pub(super) fn fit_by_need(
             }
         };
         levels = levels.saturating_sub(1);
-        base = original.div_ceil(1 << (2 * levels)) as usize; // as many as the original at most
         let (is_faulty, least) = cost_of;
-        if levels == 0 || !is_faulty && cost(base as u64, levels) >= least {
+        if levels == 0 || !is_faulty && cost(enough(levels) as u64, levels) >= least {
             return Ok(fitted);
         }
         best = Some((cost_of, fitted));
@@ -124,7 +126,8 @@ pub(super) fn fit(
     wanted: &Wanted,
     progress: &dyn Fn(&str, u64, u64),
 ) -> Result<Fitted, RemeshError> {
-    let goal = Goal { triangles: wanted.base, ..FREE };
+    // The last removal takes two triangles at once.
+    let goal = Goal { triangles: wanted.base + usize::from(wanted.base > 0), ..FREE };
     let mut keep = vec![false; source.positions.len()];
     // How often each triangle of the original was at fault.
     let mut strikes = vec![0u32; source.wedges.len()];

@@ -1,6 +1,7 @@
 //! The remesher on small meshes made here.
 
 mod errors;
+mod levels;
 mod refusals;
 mod shapes;
 
