@@ -200,6 +200,7 @@ fn document(plan: &Plan, measured: &[&Measured]) -> ErrorTime {
         in_steps: chosen.method.error.is_some_and(|error| error.in_steps),
         help: chosen.method.help.to_owned(),
     };
+    let is_measured = |chosen: &super::method::Chosen| points.iter().any(|point| point.method == chosen.method.name);
     let mut document = ErrorTime {
         kind: KIND.to_owned(),
         version: VERSION,
@@ -213,7 +214,8 @@ fn document(plan: &Plan, measured: &[&Measured]) -> ErrorTime {
         },
         scenes,
         machines,
-        methods: plan.jobs.methods.iter().map(method).collect(),
+        // Those over the input are of no scene that was generated.
+        methods: plan.jobs.methods.iter().filter(|chosen| is_measured(chosen)).map(method).collect(),
         views,
         points,
         equal_error: Vec::new(),
