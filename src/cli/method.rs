@@ -175,8 +175,14 @@ impl Chosen {
         Ok((made, lookup.was_read()))
     }
 
-    /// Refuses a method that needs the full resolution on a scene that was pruned for a job.
+    /// Refuses a method that needs the full resolution on a scene that was pruned for a job, and one over an input mesh that is not at hand.
     pub fn check(&self, scene: &Scene) -> anyhow::Result<()> {
+        let name = self.method.name;
+        anyhow::ensure!(
+            !self.method.of_input || scene.input().is_some(),
+            "--method {name}: the mesh that {} was built from is not at hand; simulate, sweep and error-time look for it",
+            scene.meta().name
+        );
         let whole = scene.meta().is_whole();
         anyhow::ensure!(
             whole || self.method == &lod::METHOD,
