@@ -32,7 +32,7 @@ const SIDE: u32 = 512;
 /// Quality of level of detail.
 const QUALITY: f64 = 1.0;
 const MACHINE: &str = "haydel2023";
-/// Of the columns and rows of a frame, one in so many is held against the nearest point of the surface.
+/// Errors are measured in every second column and row.
 const STRIDE: u32 = 2;
 const TABLE: &str = "table.txt";
 const SHEET: &str = "sheet.png";

@@ -6,21 +6,50 @@ use super::pass::PassRays;
 use anyhow::Context;
 use clap::Args;
 use glam::DVec3;
-use lodray::rays::{CameraPath, ModelSpace};
+use lodray::rays::{Camera, CameraPath, ModelSpace};
 use serde::Deserialize;
 use std::path::PathBuf;
 
 /// Frames, at most.
 const MOST: u64 = 10_000;
 
-#[derive(Args)]
-pub struct FrameArgs {
-    /// Frames after one another, each with the caches as the one before left them; results also have the mean of their second half
+/// A camera that turns from frame to frame.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Turning {
+    /// Frames, 2 or more.
+    pub frames: u32,
+    /// Degrees between them.
+    pub degrees: f64,
+}
+
+impl Turning {
+    /// The frames that begin with `camera`.
+    pub fn path(self, camera: &Camera) -> CameraPath {
+        CameraPath::turning(camera, self.frames, self.degrees)
+    }
+}
+
+#[derive(Args, Clone, Copy)]
+pub struct TurnArgs {
+    /// Frames after one another; each finds the caches as the one before left them. Their second half gives the cost of a warm frame
     #[arg(long, value_name = "N", default_value_t = 1, value_parser = whole::<u32>(1..=MOST), allow_negative_numbers = true)]
     frames: u32,
     /// Degrees that the camera turns about its target from frame to frame, counter-clockwise from above
     #[arg(long, value_name = "DEGREES", default_value_t = 3.0, value_parser = degrees, allow_hyphen_values = true)]
     turn: f64,
+}
+
+impl TurnArgs {
+    /// The turn, if there are several frames.
+    pub fn turning(self) -> Option<Turning> {
+        (self.frames > 1).then_some(Turning { frames: self.frames, degrees: self.turn })
+    }
+}
+
+#[derive(Args)]
+pub struct FrameArgs {
+    #[command(flatten)]
+    turn: TurnArgs,
     /// Way of the camera in place of a turn: a TOML file of [[key]] tables, each with an eye and, where it is not the camera's, a target. Frames are spread evenly over it
     #[arg(long, value_name = "FILE", conflicts_with = "turn", requires = "frames")]
     path: Option<PathBuf>,
@@ -52,18 +81,13 @@ impl FrameArgs {
         self.path.as_ref()
     }
 
-    /// Whether there are several frames.
-    pub fn are_several(&self) -> bool {
-        self.frames > 1
-    }
-
     /// The rays of the camera, in one frame or more.
     pub fn rays(&self, camera: &CameraArgs, space: &ModelSpace) -> anyhow::Result<PassRays> {
-        Ok(match &self.path {
-            Some(file) => PassRays::Path(self.along(file, camera, space)?),
-            None if self.are_several() => PassRays::Path(CameraPath::turning(&camera.camera(space, None)?, self.frames, self.turn)),
-            None => PassRays::Camera(camera.camera(space, None)?),
-        })
+        if let Some(file) = &self.path {
+            return Ok(PassRays::Path(self.along(file, camera, space)?));
+        }
+        let camera = camera.camera(space, None)?;
+        Ok(self.turn.turning().map_or(PassRays::Camera(camera), |turning| PassRays::Path(turning.path(&camera))))
     }
 
     fn along(&self, file: &PathBuf, camera: &CameraArgs, space: &ModelSpace) -> anyhow::Result<CameraPath> {
@@ -71,15 +95,16 @@ impl FrameArgs {
         let text = std::fs::read_to_string(file).with_context(named)?;
         let keys = toml::from_str::<PathFile>(&text).map_err(|error| toml_in_one_line(&named(), &error))?.key;
         anyhow::ensure!(keys.len() > 1, "{}: key: a path has two [[key]] tables or more", named());
-        anyhow::ensure!(self.are_several(), "--path: needs --frames of 2 or more");
+        let frames = self.turn.frames;
+        anyhow::ensure!(frames > 1, "--path: needs --frames of 2 or more");
         let target = camera.camera(space, None)?.target.to_array();
         let points: Vec<_> = keys.iter().map(|key| [key.eye, key.target.unwrap_or(target)].map(DVec3::from_array)).collect();
         let frame = |frame: u32| {
-            let way = f64::from(frame) / f64::from(self.frames - 1) * (points.len() - 1) as f64;
+            let way = f64::from(frame) / f64::from(frames - 1) * (points.len() - 1) as f64;
             let from = (way as usize).min(points.len() - 2);
             let [eye, target] = std::array::from_fn(|k| points[from][k].lerp(points[from + 1][k], way - from as f64).to_array());
             camera.at(space, eye, target).with_context(|| format!("{}: frame {}", named(), frame + 1))
         };
-        Ok(CameraPath::new((0..self.frames).map(frame).collect::<anyhow::Result<_>>()?))
+        Ok(CameraPath::new((0..frames).map(frame).collect::<anyhow::Result<_>>()?))
     }
 }

@@ -1,23 +1,17 @@
 //! What frames cost on the machines: of a view's own size, and of others.
 
 use super::measure::{Bench, Stage};
+use crate::cli::frames::Turning;
 use crate::cli::pass::{Pass, PassRays};
 use crate::cli::sweep::ViewJob;
 use crate::cli::workers::at_once;
 use lodray::num::LINE_BYTES;
-use lodray::rays::{Camera, CameraPath};
+use lodray::rays::Camera;
 use lodray::report::error_time::{Costs, Energy, SizeCosts, WarmCosts};
 use lodray::report::result::SimResult;
 
 /// Sizes of the frame at which methods are compared, where they are no larger than the view's own, which is the last.
 const SIZES: [[u32; 2]; 5] = [[128, 128], [256, 256], [512, 512], [1024, 1024], [1920, 1080]];
-
-/// Frames after one another: how many, and how far the camera turns between them, in degrees.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Turning {
-    pub frames: u32,
-    pub degrees: f64,
-}
 
 /// The results of a stage on its machines; if there is a turn, with what a warm frame takes.
 pub(super) fn simulated(stage: &Stage<'_>, frame: &Camera, turning: Option<Turning>) -> anyhow::Result<Vec<SimResult>> {
@@ -27,8 +21,8 @@ pub(super) fn simulated(stage: &Stage<'_>, frame: &Camera, turning: Option<Turni
         pass.watched(targets, &mut |_| ())?.into_iter().map(|outcome| Ok(outcome?.0)).collect()
     };
     let mut results = run(PassRays::Camera(*frame))?;
-    if let Some(Turning { frames, degrees }) = turning {
-        let several = run(PassRays::Path(CameraPath::turning(frame, frames, degrees)))?;
+    if let Some(turning) = turning {
+        let several = run(PassRays::Path(turning.path(frame)))?;
         results.iter_mut().zip(several).for_each(|(result, several)| result.warm = several.warm);
     }
     Ok(results)

@@ -1,10 +1,10 @@
 //! Options of `error-time`.
 
-use super::costs::Turning;
 use super::plan::{Measure, Plan};
-use crate::cli::args::{Change, Size, degrees, radii, whole};
+use crate::cli::args::{Change, Size, radii};
 use crate::cli::cache::CacheArgs;
 use crate::cli::folder::{Overrule, one_run};
+use crate::cli::frames::TurnArgs;
 use crate::cli::input::{FILE, InputArgs, mesh_of};
 use crate::cli::method::{Chosen, Listed, machine_methods};
 use crate::cli::names::named;
@@ -82,12 +82,8 @@ pub struct Args {
     /// pixels, with commas
     #[arg(long, value_name = "PIXELS", value_delimiter = ',', value_parser = pixels, allow_negative_numbers = true)]
     within: Vec<f64>,
-    /// Also what a frame costs behind others, caches kept: the mean of the second half of so many frames of a camera that turns
-    #[arg(long, value_name = "N", default_value_t = 1, value_parser = whole::<u32>(1..=10_000), allow_negative_numbers = true)]
-    frames: u32,
-    /// Degrees that the camera turns about its target from frame to frame
-    #[arg(long, value_name = "DEGREES", default_value_t = 3.0, value_parser = degrees, allow_hyphen_values = true)]
-    turn: f64,
+    #[command(flatten)]
+    turn: TurnArgs,
     /// Do not time the host
     #[arg(long)]
     no_host: bool,
@@ -195,8 +191,7 @@ impl Args {
         let mut within = self.within.clone();
         within.sort_unstable_by(f64::total_cmp);
         within.dedup();
-        let turning = (self.frames > 1).then_some(Turning { frames: self.frames, degrees: self.turn });
-        let plan = Plan { jobs, values, sides, measure, turning, within };
+        let plan = Plan { jobs, values, sides, measure, turning: self.turn.turning(), within };
         plan.check()?;
         Ok(plan)
     }

@@ -1,6 +1,6 @@
 //! What is to be measured: scenes, views, methods with the values of their knobs, machines, samples.
 
-use super::costs::Turning;
+use crate::cli::frames::Turning;
 use crate::cli::method::Chosen;
 use crate::cli::sweep::{Jobs, SceneJobs, ViewJob};
 use lodray::method::{ErrorKnob, Method};
