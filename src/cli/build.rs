@@ -95,7 +95,9 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
         reserve: 0.0,
         crease_angle: args.crease_angle,
     };
-    let file = (!stdin).then(|| InputFile::of(source, args.weld)).transpose()?;
+    // A pipe cannot be read twice, nor found again.
+    let format = args.format.or_else(|| MeshFormat::of(source)).filter(|_| !stdin && source.is_file());
+    let file = format.map(|format| InputFile::of(source, format, args.weld)).transpose()?;
     let scene = within(&mesh, options, &name, args.form, file.as_ref()).map_err(|e| anyhow::anyhow!("{}: {e}", source.display()))?;
     if let Some(lost) = scene.meta().origin["remesh"]["warning"].as_str().filter(|_| args.strict) {
         anyhow::bail!("{}: {lost}", source.display());

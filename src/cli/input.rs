@@ -5,7 +5,7 @@ use super::method::Chosen;
 use super::output::busy;
 use anyhow::Context;
 use lodray::format::Scene;
-use lodray::mesh::{DEFAULT_CREASE_ANGLE, Surface, corner_normals, read};
+use lodray::mesh::{DEFAULT_CREASE_ANGLE, MeshFormat, Surface, corner_normals, read_as};
 use lodray::num::VertexForm;
 use serde::{Deserialize, Serialize};
 use std::path::{Path, PathBuf};
@@ -22,6 +22,8 @@ pub struct InputFile {
     name: String,
     /// Of its bytes.
     xxh3: String,
+    /// Its format, whatever its name ends in.
+    format: MeshFormat,
     /// Vertices at open edges that are at most this far apart were made one.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     weld: Option<f64>,
@@ -35,10 +37,10 @@ pub struct InputArgs {
 }
 
 impl InputFile {
-    /// That of a mesh file which was welded so.
-    pub fn of(path: &Path, weld: Option<f64>) -> anyhow::Result<Self> {
+    /// That of a mesh file of this format which was welded so.
+    pub fn of(path: &Path, format: MeshFormat, weld: Option<f64>) -> anyhow::Result<Self> {
         let bytes = std::fs::read(path).with_context(|| path.display().to_string())?;
-        Ok(Self { name: path.file_name().unwrap_or_default().to_string_lossy().into_owned(), xxh3: hash(&bytes), weld })
+        Ok(Self { name: path.file_name().unwrap_or_default().to_string_lossy().into_owned(), xxh3: hash(&bytes), format, weld })
     }
 
     /// The first of the files that it is; those that were named, else the ones of its name beside the scene and here.
@@ -50,7 +52,7 @@ impl InputFile {
 
     /// The mesh as a scene of its own triangles, vertices exact.
     fn scene(&self, path: &Path) -> anyhow::Result<Scene> {
-        let mesh = busy("reading the input mesh", || read(path))?;
+        let mesh = busy("reading the input mesh", || read_as(path, self.format))?;
         let mesh = match self.weld {
             Some(distance) => mesh.welded(distance).with_context(|| path.display().to_string())?,
             None => mesh,

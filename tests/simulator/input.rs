@@ -59,6 +59,11 @@ fn the_mesh_is_found_by_name_and_hash_or_named() {
     std::fs::rename(desk.path("ball.obj"), desk.path("away/mesh.obj")).unwrap();
     desk.refused(shot, FAILS, &["--method input-bvh", "ball.lod was built from ball.obj", "name it with --mesh"]);
     assert_eq!(figures(&desk.json(&format!("{shot} --mesh away/mesh.obj"))), figures(&here));
+    // Its format is known, whatever it is called.
+    std::fs::copy(desk.path("away/mesh.obj"), desk.path("mesh.data")).unwrap();
+    assert_eq!(figures(&desk.json(&format!("{shot} --mesh mesh.data"))), figures(&here));
+    desk.run("build mesh.data --format obj --levels 3 -o data.lod");
+    assert_eq!(figures(&desk.json("simulate data.lod --method input-bvh --size 16x12")), figures(&here));
     // Another mesh of that name is not it.
     desk.write("ball.obj", &mesh(0.06));
     desk.refused(shot, FAILS, &["that very file is neither beside it"]);
