@@ -186,6 +186,40 @@ def lenient(frames, more):
     return f"Levels differ by a factor of two in error or more, so that the cheapest that is no worse is often better than ours. Were {100 * more:.0f} % more error than ours allowed, it would take {shown(statistics.median(times))} of our time and {shown(statistics.median(energies))} of our energy in the median, cold, and more time than ours in {ahead} of {len(times)} views."
 
 
+def chunks(frames, folder):
+    """Levels by object and by chunk over ours: with the rule at delta 1, and in hindsight."""
+    runs = {chunk: json.loads((folder / f"chunks-{chunk}" / "error-time.json").read_text()) for chunk in ["object", *"2345"]}
+    error = lambda point: point["geometry"]["surface"]["percentile_99"]
+    rows = []
+    for view in range(len(frames.data["views"])):
+        same = lambda other: all(other[key] == frames.data["views"][view][key] for key in ("eye", "size"))
+        points = []
+        for chunk, run in runs.items():
+            for number, other in enumerate(run["views"]):
+                if same(other) and run["scenes"][other["scene"]]["hash"] == frames.scene(view)["hash"]:
+                    points += [(chunk, point) for point in run["points"] if point["view"] == number]
+        if not points:
+            continue
+        ours = frames.points(view, "lod")[0]
+        cycles = lambda entry: entry[1]["costs"][0]["cycles"]
+        rule = [entry for entry in points if float(entry[1]["knobs"]["delta"]) == 1]
+        by_object = [entry for entry in rule if entry[0] == "object"]
+        by_chunk = [entry for entry in rule if entry[0] != "object"]
+        near = [entry for entry in points if error(entry[1]) <= error(ours)]
+        for name, entries in [("own rule, objects", by_object), ("own rule, chunks", by_chunk), ("in hindsight", near)]:
+            if not entries:
+                rows.append([place(frames, view), name, *["none is near enough"] + [""] * 6])
+                continue
+            chunk, point = min(entries, key=cycles)
+            over = [theirs / own for theirs, own in zip(costs(point), costs(ours))]
+            what = "objects" if chunk == "object" else f"{chunk} splits"
+            rows.append(
+                [place(frames, view), name, f"{what}, delta {point['knobs']['delta']}", *map(shown, over), f"{error(point):.2f} / {error(ours):.2f}"]
+                + [f"{int(point['choices']['triangles']):,}", f"{int(point['choices']['open edges']):,}"]
+            )
+    return table(["view", "levels", "chunk", "time", "energy", "DRAM", "error / ours, pixels", "triangles", "open edges"], rows, 3)
+
+
 def front(frames):
     """README's: time and energy of ours, and what others take of that."""
     rows = []
@@ -216,6 +250,7 @@ def main():
     frames = Frames(program, mesh, folder)
     values = {"absolute": absolute(frames), "ratios": ratios(frames) + "\n\n" + lenient(frames, 0.25) + "\n\n" + small(Frames(program, mesh, folder, "small"))}
     values["units"] = by_units(Frames(program, mesh, folder, "units", "fair-units.toml"))
+    values["chunks"] = chunks(frames, folder)
     for path in [ROOT / "docs" / "error-time.md", ROOT / "scripts" / "errors" / "document.md"]:
         for name, text in values.items():
             put(path, name, text)

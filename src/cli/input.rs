@@ -2,7 +2,7 @@
 
 use super::build::{FormArgs, build_scene};
 use super::method::Chosen;
-use super::output::busy;
+use super::output::{busy, remark};
 use anyhow::Context;
 use lodray::format::Scene;
 use lodray::mesh::{DEFAULT_CREASE_ANGLE, MeshFormat, Surface, corner_normals, read_as};
@@ -79,6 +79,17 @@ pub fn with_input<'a>(scene: Scene, path: &Path, args: &InputArgs, methods: impl
         },
         None => Ok(scene),
     }
+}
+
+/// The scene with the mesh that it was built from at hand, where that can be found; where it cannot, a line says what is `without` it.
+pub fn with_input_if_found(scene: Scene, path: &Path, args: &InputArgs, without: &str) -> anyhow::Result<Scene> {
+    match mesh_of(&scene, path, args) {
+        Ok(input) => return Ok(scene.with_input(input)),
+        // A scene that was made from no mesh is its own full resolution.
+        Err(_) if scene.meta().origin[FILE].is_null() => {}
+        Err(why) => remark(&format!("note: {without}: {why:#}"))?,
+    }
+    Ok(scene)
 }
 
 /// The mesh that a scene was built from.

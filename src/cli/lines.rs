@@ -1,8 +1,10 @@
-//! `lines`: the distinct 32-byte lines that a frame touches, by distance, LOD against full-resolution BVH layouts.
+//! `lines`: the distinct 32-byte lines that a frame touches, by distance, LOD against full-resolution BVH layouts, over the finest level and over the mesh that it was built from.
 
 use super::args::{CameraArgs, radii};
 use super::cache::{Cache, CacheArgs, Lookup};
+use super::input::{InputArgs, with_input_if_found};
 use super::output::{explain, grouped, open, print_json, print_table, progress};
+use indicatif::ProgressBar;
 use lodray::bvh::{BvhError, Options};
 use lodray::format::Scene;
 use lodray::mesh::Hierarchy;
@@ -11,7 +13,7 @@ use lodray::method::bvh::{
 };
 use lodray::method::{Knobs, knob, lod};
 use lodray::picture::{FrameStats, distinct_lines, render};
-use lodray::rays::{ModelSpace, Sight};
+use lodray::rays::{Camera, ModelSpace, Sight};
 use serde::Serialize;
 use std::path::PathBuf;
 use std::process::ExitCode;
@@ -43,6 +45,8 @@ pub struct Args {
     #[command(flatten)]
     camera: CameraArgs,
     #[command(flatten)]
+    input: InputArgs,
+    #[command(flatten)]
     cache: CacheArgs,
     /// Print the figures as JSON
     #[arg(long)]
@@ -66,6 +70,9 @@ struct Report {
     rows: Vec<Row>,
     /// Best BVH with boxes of up to 16 bits over LOD.
     ratio: Vec<f64>,
+    /// The same of those over the mesh that the scene was built from, if that is at hand.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    ratio_of_mesh: Option<Vec<f64>>,
 }
 
 /// Boxes, largest number of triangles of a leaf, and leaf layouts that are counted: blocks in nodes of local boxes, since one of these had the
@@ -83,12 +90,13 @@ fn layouts(all: bool) -> Vec<(NodeBoxes, u32, &'static [LeafLayout])> {
 
 pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
     let cache = Cache::new(&args.cache, None)?;
-    let scene = open(&args.scene)?;
+    let scene = with_input_if_found(open(&args.scene)?, &args.scene, &args.input, "no BVH of the mesh is counted")?;
     let space = ModelSpace::of(&scene);
     let cameras = args.distances.iter().map(|&d| args.camera.camera(&space, Some(d))).collect::<Result<Vec<_>, _>>()?;
     let layouts = layouts(args.all);
     let rows = cameras.iter().map(|camera| u64::from(camera.height)).sum::<u64>();
-    let frames = 2 + layouts.iter().map(|(_, _, leaves)| leaves.len() as u64).sum::<u64>();
+    let over = 1 + u64::from(scene.input().is_some());
+    let frames = 2 + over * layouts.iter().map(|(_, _, leaves)| leaves.len() as u64).sum::<u64>();
     let bar = progress(frames * rows, "tracing");
 
     let method = (lod::METHOD.make)(&scene, &Knobs::default(), &NoStore)?;
@@ -103,39 +111,13 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
         Row { structure: "LOD".to_owned(), distinct_lines: distinct(&lod) },
         Row { structure: "LOD structure at full detail".to_owned(), distinct_lines: distinct(&count(f64::INFINITY)) },
     ];
-    let hierarchy = scene.decode();
-    let mut trees = Trees::new(&scene, &cache, &hierarchy);
-    let mut best = vec![u64::MAX; cameras.len()];
-    for (boxes, size, leaves) in layouts {
-        let options = |layout| FullOptions::new(size, boxes, layout);
-        // Layouts of one tree are counted together.
-        for group in leaves.chunk_by(|&a, &b| options(a).tree == options(b).tree) {
-            bar.set_message("building the BVH");
-            let bvh = trees.bvh(&options(group[0]))?;
-            let others = group[1..].iter().map(|&layout| trees.leaves(layout)).collect::<Result<Vec<_>, _>>()?;
-            let others: Vec<_> = others.iter().map(AsRef::as_ref).collect();
-            bar.set_message("tracing");
-            let steps = group.len() as u64;
-            let frame = |camera| distinct_lines(&bvh, &others, &space, camera, &|rows| bar.inc(steps * rows));
-            let frames: Vec<_> = cameras.iter().map(frame).collect();
-            for (k, layout) in group.iter().enumerate() {
-                let lines: Vec<u64> = frames.iter().map(|frame| frame[k]).collect();
-                if boxes != NodeBoxes::Wide {
-                    best.iter_mut().zip(&lines).for_each(|(b, &n)| *b = n.min(*b));
-                }
-                let nodes = match boxes {
-                    NodeBoxes::Local => "BVH 5-bit",
-                    NodeBoxes::Six => "BVH6 8-bit",
-                    NodeBoxes::Codes => "BVH 16-bit",
-                    NodeBoxes::Wide => "BVH 32-bit",
-                };
-                rows.push(Row { structure: format!("{nodes}, {layout:?}, {size} a leaf"), distinct_lines: lines });
-            }
-        }
-    }
+    let subject = Subject { cameras: &cameras, layouts: &layouts, cache: &cache, bar: &bar };
+    let best = subject.count(&scene, "", &mut rows)?;
+    let of_mesh = scene.input().map(|input| subject.count(input, " of the mesh", &mut rows)).transpose()?;
     bar.finish_and_clear();
 
-    let ratio = best.iter().zip(&rows[0].distinct_lines).map(|(&b, &l)| b as f64 / l.max(1) as f64).collect();
+    let over_lod = |best: &[u64]| best.iter().zip(&rows[0].distinct_lines).map(|(&b, &l)| b as f64 / l.max(1) as f64).collect();
+    let (ratio, ratio_of_mesh) = (over_lod(&best), of_mesh.as_deref().map(over_lod));
     let map = cameras.first().map(|camera| method.map(&Sight::new(camera, &space, args.delta))).unwrap_or_default();
     let base = |s: &FrameStats| {
         let is_base = |kind: &str| map.sections().any(|(_, section)| section.base && section.name == kind);
@@ -149,6 +131,7 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
         mean_level: lod.iter().map(|s| s.mean_level).collect(),
         rows,
         ratio,
+        ratio_of_mesh,
     };
     if args.json {
         print_json(&report)?
@@ -157,6 +140,51 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
         explain("lines")?;
     }
     Ok(ExitCode::SUCCESS)
+}
+
+/// What is counted of BVHs.
+struct Subject<'a> {
+    cameras: &'a [Camera],
+    layouts: &'a [(NodeBoxes, u32, &'static [LeafLayout])],
+    cache: &'a Cache,
+    bar: &'a ProgressBar,
+}
+
+impl Subject<'_> {
+    /// Counts the lines of every BVH over the finest triangles of `scene`; gives the fewest, those of wide boxes aside.
+    fn count(&self, scene: &Scene, of: &str, rows: &mut Vec<Row>) -> Result<Vec<u64>, BvhError> {
+        let (hierarchy, space, bar) = (scene.decode(), ModelSpace::of(scene), self.bar);
+        let mut trees = Trees::new(scene, self.cache, &hierarchy);
+        let mut best = vec![u64::MAX; self.cameras.len()];
+        for &(boxes, size, leaves) in self.layouts {
+            let options = |layout| FullOptions::new(size, boxes, layout);
+            // Layouts of one tree are counted together.
+            for group in leaves.chunk_by(|&a, &b| options(a).tree == options(b).tree) {
+                bar.set_message("building the BVH");
+                let bvh = trees.bvh(&options(group[0]))?;
+                let others = group[1..].iter().map(|&layout| trees.leaves(layout)).collect::<Result<Vec<_>, _>>()?;
+                let others: Vec<_> = others.iter().map(AsRef::as_ref).collect();
+                bar.set_message("tracing");
+                let steps = group.len() as u64;
+                let frame = |camera| distinct_lines(&bvh, &others, &space, camera, &|rows| bar.inc(steps * rows));
+                let frames: Vec<_> = self.cameras.iter().map(frame).collect();
+                for (k, layout) in group.iter().enumerate() {
+                    let lines: Vec<u64> = frames.iter().map(|frame| frame[k]).collect();
+                    if boxes != NodeBoxes::Wide {
+                        best.iter_mut().zip(&lines).for_each(|(b, &n)| *b = n.min(*b));
+                    }
+                    let nodes = match boxes {
+                        NodeBoxes::Local => "BVH 5-bit",
+                        NodeBoxes::Six => "BVH6 8-bit",
+                        NodeBoxes::Codes => "BVH 16-bit",
+                        NodeBoxes::Wide => "BVH 32-bit",
+                    };
+                    rows.push(Row { structure: format!("{nodes}{of}, {layout:?}, {size} a leaf"), distinct_lines: lines });
+                }
+            }
+        }
+        Ok(best)
+    }
 }
 
 /// BVHs over a scene that share what they can: the binary tree that all collapse, the nodes of layouts of equal cost, and the triangles.
@@ -216,9 +244,10 @@ impl<'a> Trees<'a> {
 }
 
 fn table(r: &Report) -> String {
+    let width = r.rows.iter().map(|row| row.structure.len() + 1).max().unwrap_or(0).max(32);
     let line = |name: &str, cells: Vec<String>| {
         let cells: String = cells.iter().map(|c| format!("{c:>13}")).collect();
-        format!("{name:<32}{cells}\n")
+        format!("{name:<width$}{cells}\n")
     };
     let decimals = |v: &[f64]| v.iter().map(|x| format!("{x:.2}")).collect::<Vec<_>>();
     let mut text = line("distance (bounding radii)", r.distances.iter().map(f64::to_string).collect());
@@ -226,6 +255,9 @@ fn table(r: &Report) -> String {
         text += &line(&row.structure, row.distinct_lines.iter().map(|&n| grouped(n)).collect());
     }
     text += &line("best BVH / LOD", decimals(&r.ratio));
+    if let Some(ratio) = &r.ratio_of_mesh {
+        text += &line("best BVH of the mesh / LOD", decimals(ratio));
+    }
     text += &line("share of L0 in LOD's lines", decimals(&r.base_share));
     text += &line("mean level", decimals(&r.mean_level));
     text.trim_end().to_owned()

@@ -5,6 +5,7 @@
 
 pub mod bvh;
 mod children;
+pub mod chunked;
 pub mod discrete;
 mod hit;
 pub mod knob;

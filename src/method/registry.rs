@@ -1,6 +1,6 @@
 //! All methods.
 
-use super::{Registered, bvh, discrete, lod, reference};
+use super::{Registered, bvh, chunked, discrete, lod, reference};
 
 /// Every method, in the order in which help names them.
 pub const METHODS: &[&Registered] = &[
@@ -9,6 +9,7 @@ pub const METHODS: &[&Registered] = &[
     &bvh::METHOD_SIX,
     &bvh::METHOD_WIDE,
     &discrete::METHOD,
+    &chunked::METHOD,
     &bvh::METHOD_INPUT,
     &bvh::METHOD_INPUT_SIX,
     &reference::METHOD,

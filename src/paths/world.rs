@@ -6,7 +6,7 @@ use super::material::Material;
 use crate::format::Scene;
 use crate::method::leave::side;
 use crate::method::{Departure, Landing, Method, Tracer};
-use crate::rays::{Camera, ModelSpace, Query, Sight};
+use crate::rays::{Camera, Eyes, ModelSpace, Query, Sight};
 use crate::step::{Link, Recorder};
 use glam::{DMat3, DVec3, EulerRot};
 use std::cmp::Ordering;
@@ -74,9 +74,11 @@ impl<'a> Instance<'a> {
     /// A model, for rays of `camera` at quality `delta`. It needs a material.
     pub fn new(scene: &'a Scene, method: &'a dyn Method, pose: Pose, materials: Vec<Material>, camera: &Camera, delta: f64) -> Self {
         let space = ModelSpace::of(scene);
-        let least_radius = camera.tan_theta * space.distance_to(pose.place(camera.eye).to_array()) / space.placement.scale;
+        let eye = pose.place(camera.eye).to_array();
+        let least_radius = camera.tan_theta * space.distance_to(eye) / space.placement.scale;
+        let eyes = Eyes { lo: eye, hi: eye, radius: 0.0, tan_theta: camera.tan_theta }.in_units(&space);
         let materials = materials.into_iter().map(|material| (material, Bsdf::of(&material))).collect();
-        Self { scene, method, pose, materials, space, sight: Sight { delta, least_radius } }
+        Self { scene, method, pose, materials, space, sight: Sight { delta, least_radius, eyes } }
     }
 
     /// What its rays see of it.

@@ -1,6 +1,6 @@
 //! A camera that moves: frames after one another.
 
-use super::{Camera, ModelSpace, Query, RaySource};
+use super::{Camera, Eyes, ModelSpace, Query, RaySource};
 use glam::{DQuat, DVec3};
 
 /// The frames of a camera that moves, in order; at least one.
@@ -86,6 +86,11 @@ impl RaySource for CameraPath {
     /// Of all frames: what a method chooses once, it chooses for all of them.
     fn least_radius(&self, space: &ModelSpace) -> f64 {
         self.cameras.iter().map(|camera| camera.least_radius(space)).fold(f64::INFINITY, f64::min)
+    }
+
+    /// Of all frames, as above.
+    fn eyes(&self) -> Eyes {
+        self.cameras.iter().map(RaySource::eyes).fold(Eyes::NOWHERE, Eyes::with)
     }
 }
 

@@ -28,6 +28,59 @@ pub trait RaySource: Sync {
 
     /// A radius, in world units, that no ray's cone falls below within the model's box: the cone's at the box's distance from the ray's origin.
     fn least_radius(&self, space: &ModelSpace) -> f64;
+
+    /// Where its rays start.
+    fn eyes(&self) -> Eyes;
+}
+
+/// Where the rays of a frame start, and how their cones widen; in world units, or in those of a model.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Eyes {
+    /// Lower corner of the box of all origins.
+    pub lo: [f64; 3],
+    /// Upper corner.
+    pub hi: [f64; 3],
+    /// Least radius of a cone at its origin.
+    pub radius: f64,
+    /// Least tangent of the angle between the axis of a cone and its side.
+    pub tan_theta: f64,
+}
+
+impl Eyes {
+    /// Rays that may start anywhere, however thin.
+    pub const ANYWHERE: Self = Self { lo: [f64::NEG_INFINITY; 3], hi: [f64::INFINITY; 3], radius: 0.0, tan_theta: 0.0 };
+
+    /// No rays.
+    pub const NOWHERE: Self = Self { lo: [f64::INFINITY; 3], hi: [f64::NEG_INFINITY; 3], radius: f64::INFINITY, tan_theta: f64::INFINITY };
+
+    /// Those of a ray.
+    pub fn of(query: &Query) -> Self {
+        Self { lo: query.origin, hi: query.origin, radius: query.radius, tan_theta: query.tan_theta }
+    }
+
+    /// Both.
+    #[must_use]
+    pub fn with(self, other: Self) -> Self {
+        let each = |of: fn(f64, f64) -> f64, a: [f64; 3], b: [f64; 3]| std::array::from_fn(|k| of(a[k], b[k]));
+        Self {
+            lo: each(f64::min, self.lo, other.lo),
+            hi: each(f64::max, self.hi, other.hi),
+            radius: self.radius.min(other.radius),
+            tan_theta: self.tan_theta.min(other.tan_theta),
+        }
+    }
+
+    /// The same in units of a model.
+    #[must_use]
+    pub fn in_units(self, space: &ModelSpace) -> Self {
+        Self { lo: space.to_units(self.lo), hi: space.to_units(self.hi), radius: self.radius / space.placement.scale, ..self }
+    }
+
+    /// A radius that no ray's cone falls below within this box, all of it in the same units.
+    pub fn least_radius(&self, lo: [f64; 3], hi: [f64; 3]) -> f64 {
+        let beside: [f64; 3] = std::array::from_fn(|k| (lo[k] - self.hi[k]).max(self.lo[k] - hi[k]).max(0.0));
+        self.radius + self.tan_theta * beside.iter().map(|d| d * d).sum::<f64>().sqrt()
+    }
 }
 
 /// What a method may choose by once for all rays of a frame.
@@ -37,12 +90,14 @@ pub struct Sight {
     pub delta: f64,
     /// A radius that no ray's cone falls below within the model's box, in units of the model.
     pub least_radius: f64,
+    /// Where rays start, in units of the model: for what chooses by parts of the model.
+    pub eyes: Eyes,
 }
 
 impl Sight {
     /// What the rays of `source` see of a model at this quality.
     pub fn new(source: &dyn RaySource, space: &ModelSpace, delta: f64) -> Self {
-        Self { delta, least_radius: source.least_radius(space) / space.placement.scale }
+        Self { delta, least_radius: source.least_radius(space) / space.placement.scale, eyes: source.eyes().in_units(space) }
     }
 }
 
@@ -69,6 +124,11 @@ impl RaySource for Camera {
 
     fn least_radius(&self, space: &ModelSpace) -> f64 {
         self.tan_theta * space.distance_to(self.eye.to_array())
+    }
+
+    fn eyes(&self) -> Eyes {
+        let eye = self.eye.to_array();
+        Eyes { lo: eye, hi: eye, radius: 0.0, tan_theta: self.tan_theta }
     }
 }
 

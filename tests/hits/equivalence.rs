@@ -26,7 +26,7 @@ struct Bench<'a> {
     lod: LodTraverser<'a>,
     /// The same with prisms in place of boxes.
     prisms: LodTraverser<'a>,
-    bvhs: Vec<BvhTraverser<'a>>,
+    bvhs: Vec<BvhTraverser>,
     levels: u32,
 }
 

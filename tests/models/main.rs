@@ -3,6 +3,7 @@
 mod appearance;
 mod audit;
 mod cast;
+mod chunked;
 mod mesh_input;
 mod paths;
 mod picture_error;

@@ -5,7 +5,7 @@ use crate::cli::args::{Change, Size, radii};
 use crate::cli::cache::CacheArgs;
 use crate::cli::folder::{Overrule, one_run};
 use crate::cli::frames::TurnArgs;
-use crate::cli::input::{FILE, InputArgs, mesh_of};
+use crate::cli::input::{InputArgs, mesh_of, with_input_if_found};
 use crate::cli::method::{Chosen, Listed, machine_methods};
 use crate::cli::names::named;
 use crate::cli::output::{open, remark};
@@ -134,16 +134,12 @@ fn pixels_per_degree(s: &str) -> Result<f64, String> {
 impl Args {
     /// A scene with the mesh that it was built from at hand, where that can be found. It must be there if methods over it were named.
     pub fn with_input(&self, scene: Scene, path: &str) -> anyhow::Result<Scene> {
-        match mesh_of(&scene, Path::new(path), &self.input) {
-            Ok(input) => Ok(scene.with_input(input)),
-            Err(why) if self.methods.iter().any(|Listed(method)| method.of_input) => Err(why),
-            // A scene that was made from no mesh is its own full resolution.
-            Err(_) if scene.meta().origin[FILE].is_null() => Ok(scene),
-            Err(why) => {
-                remark(&format!("note: errors are against the finest level, and no BVH is over the input mesh: {why:#}"))?;
-                Ok(scene)
-            }
+        if self.methods.iter().any(|Listed(method)| method.of_input) {
+            let input = mesh_of(&scene, Path::new(path), &self.input)?;
+            return Ok(scene.with_input(input));
         }
+        let without = "errors are against the finest level, and no BVH is over the input mesh";
+        with_input_if_found(scene, Path::new(path), &self.input, without)
     }
 
     /// What is to be measured; every mistake is found before anything is traced.

@@ -1,9 +1,9 @@
-//! The baseline: a BVH over the full-resolution triangles of a hierarchy.
+//! The baseline: a BVH over the full-resolution triangles of a hierarchy; or over others that cover it.
 //!
 //! Trees of different options over one hierarchy differ in how the same binary tree is collapsed: [`FullBuilder`] makes that once. Their leaves hold
 //! the triangles in the same order, so that BVHs may share them.
 
-use super::finest::Finest;
+use super::cut::Corners;
 use super::leaves::{BlockSize, MOST_LINES, MOST_TRIANGLES, block_lines};
 use super::{LeafLayout, Leaves};
 use crate::bvh::build::{Binary, Prim, binary_tree};
@@ -152,7 +152,7 @@ pub struct FullTree {
     /// Number of splits N of the hierarchy.
     pub(super) levels: u32,
     pub(super) nodes: Arc<FullNodes>,
-    /// Full-resolution triangle ids in leaf order, each once.
+    /// Ids of its triangles ([`cut_id`](super::cut_id)) in leaf order, each once.
     pub(super) ids: Vec<u32>,
     /// Sizes of its leaf blocks in that order, if its leaves are blocks.
     pub(super) blocks: Vec<BlockSize>,
@@ -187,25 +187,42 @@ impl FullTree {
     }
 }
 
-/// Builds trees over a hierarchy, with whatever options.
+/// Builds trees over triangles of a hierarchy, with whatever options.
 pub struct FullBuilder<'a> {
-    mesh: Finest<'a>,
+    mesh: Corners<'a>,
     /// In leaf order.
     prims: Vec<Prim>,
     binary: Binary,
 }
 
 impl<'a> FullBuilder<'a> {
-    /// Builds the binary tree.
+    /// Builds the binary tree over the finest triangles.
     ///
     /// # Errors
     /// No or too many triangles, too many levels, points missing or beyond the coordinate limit.
     pub fn new(hierarchy: &'a Hierarchy) -> Result<Self, BvhError> {
-        let mesh = Finest::new(hierarchy)?;
-        let mut prims = mesh.primitives();
+        let mesh = Corners::new(hierarchy)?;
+        let prims = mesh.primitives(0..mesh.count() as u32); // at most 2^28
+        Ok(Self::of(mesh, prims))
+    }
+
+    /// Builds it over the triangles of a cut, by the ids of [`cut_id`](super::cut_id).
+    ///
+    /// # Errors
+    /// Those of [`FullBuilder::new`], and triangles that do not cover the hierarchy.
+    pub fn of_cut(hierarchy: &'a Hierarchy, ids: Vec<u32>) -> Result<Self, BvhError> {
+        let mesh = Corners::new(hierarchy)?;
+        if !mesh.are_covered_by(&ids) {
+            return Err(BvhError::OtherHierarchy);
+        }
+        let prims = mesh.primitives(ids);
+        Ok(Self::of(mesh, prims))
+    }
+
+    fn of(mesh: Corners<'a>, mut prims: Vec<Prim>) -> Self {
         // For nodes of four children and of six alike.
         let binary = binary_tree(&mut prims, MAX_DEPTH_OF_SIX);
-        Ok(Self { mesh, prims, binary })
+        Self { mesh, prims, binary }
     }
 
     /// Takes a binary tree over the finest triangles, by their ids, that something else built.
@@ -213,8 +230,8 @@ impl<'a> FullBuilder<'a> {
     /// # Errors
     /// Those of [`FullBuilder::new`], and a tree that is none over all of them or has a path of more than 40 nodes.
     pub fn with_binary(hierarchy: &'a Hierarchy, tree: &[BinaryNode]) -> Result<Self, BvhError> {
-        let mesh = Finest::new(hierarchy)?;
-        let (prims, binary) = adopt(&mesh.primitives(), tree, MAX_DEPTH_OF_SIX).ok_or(BvhError::ForeignTree)?;
+        let mesh = Corners::new(hierarchy)?;
+        let (prims, binary) = adopt(&mesh.primitives(0..mesh.count() as u32), tree, MAX_DEPTH_OF_SIX).ok_or(BvhError::ForeignTree)?;
         Ok(Self { mesh, prims, binary })
     }
 
@@ -338,7 +355,7 @@ impl<'a> FullBuilder<'a> {
     }
 }
 
-/// BVH over the full-resolution triangles of a hierarchy; leaf references count slots of `leaves`. BVHs may share both parts.
+/// BVH over triangles of a hierarchy; leaf references count slots of `leaves`. BVHs may share both parts.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct FullBvh {
     /// Number of splits N of the hierarchy.

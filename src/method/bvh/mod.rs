@@ -1,13 +1,14 @@
 //! BVH over the full-resolution mesh: the baseline (paper section 6.1). Nodes have four children and boxes of 16-bit codes, or of 5 bits in a frame of their
 //! own, or of 32 bits; or six children and boxes of 8 bits in a frame.
 
+mod cut;
 mod file;
-mod finest;
 mod full;
 mod leaves;
 mod store;
 mod trace;
 
+pub use cut::{check_hierarchy, cut_id, cut_triangle, level_ids};
 pub use file::TreeKey;
 pub use full::{FullBuilder, FullBvh, FullNodes, FullOptions, FullTree, NodeBoxes, NodeOrder};
 pub use leaves::{Leaf, LeafLayout, Leaves};
@@ -211,21 +212,21 @@ impl Method for Bvh {
     }
 }
 
-/// Rays through a BVH of the triangles of one level.
-pub(super) struct BvhTracer<'a> {
-    traverser: BvhTraverser<'a>,
+/// Rays through a BVH of triangles of a hierarchy.
+pub(super) struct BvhTracer {
+    traverser: BvhTraverser,
     space: ModelSpace,
     /// Number of splits N of the scene.
     levels: u32,
 }
 
-impl<'a> BvhTracer<'a> {
-    pub fn new(traverser: BvhTraverser<'a>, space: ModelSpace, levels: u32) -> Self {
+impl BvhTracer {
+    pub fn new(traverser: BvhTraverser, space: ModelSpace, levels: u32) -> Self {
         Self { traverser, space, levels }
     }
 }
 
-impl Trace for BvhTracer<'_> {
+impl Trace for BvhTracer {
     fn trace<S: StepSink>(&mut self, query: &Query, steps: &mut S) -> Option<SurfaceHit> {
         // Its triangles are what they are, whatever the quality.
         let Some(ray) = self.space.enter(query, 1.0) else {

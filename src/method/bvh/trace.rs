@@ -1,6 +1,6 @@
 //! The baseline: the full-resolution mesh under a quad-BVH, built from the same blocks (paper section 6.1).
 
-use super::{FullBvh, FullNodes, LEAVES, Leaf, Leaves, NODES, bvh_map, node_lines};
+use super::{FullBvh, FullNodes, LEAVES, Leaf, Leaves, NODES, bvh_map, cut_triangle, node_lines};
 use crate::block::Block;
 use crate::block::box_test32::{self, BoxTest32};
 use crate::block::child_sort;
@@ -16,15 +16,16 @@ use crate::method::children::has_lanes;
 use crate::method::children::{bvh_children, coded_children, quarter, six_children};
 use crate::method::leave;
 use crate::method::stack::{Entry, Op, TraversalStack, push_nearest, push_sorted};
-use crate::method::{Departure, Hit, HitSink, TriangleId, is_beyond};
+use crate::method::{Departure, Hit, HitSink, is_beyond};
 use crate::num::{LINE_BYTES, Point, Ray, Start, U, Vec3, Wire};
 use crate::step::{Act, Fetch, MemoryMap, Step, StepSink, TriangleRun};
+use std::sync::Arc;
 
-/// Traces rays through a full-resolution quad-BVH; keeps its stack from ray to ray.
-pub struct BvhTraverser<'a> {
+/// Traces rays through a BVH; keeps its stack from ray to ray.
+pub struct BvhTraverser {
     levels: u32,
-    nodes: &'a FullNodes,
-    leaves: &'a Leaves,
+    nodes: Arc<FullNodes>,
+    leaves: Arc<Leaves>,
     map: MemoryMap,
     /// Lines of other BVHs before its own, in each section.
     before: [u64; 2],
@@ -33,14 +34,14 @@ pub struct BvhTraverser<'a> {
     stack: TraversalStack,
 }
 
-impl<'a> BvhTraverser<'a> {
+impl BvhTraverser {
     /// A traverser of `bvh`.
-    pub fn new(bvh: &'a FullBvh) -> Self {
+    pub fn new(bvh: &FullBvh) -> Self {
         let map = bvh_map(&[bvh]);
         Self {
             levels: bvh.levels,
-            nodes: &bvh.nodes,
-            leaves: &bvh.leaves,
+            nodes: Arc::clone(&bvh.nodes),
+            leaves: Arc::clone(&bvh.leaves),
             map,
             before: [0; 2],
             mapped: false,
@@ -48,11 +49,16 @@ impl<'a> BvhTraverser<'a> {
         }
     }
 
+    /// A traverser of a `bvh` of coarse triangles: hits are mapped to the finest.
+    pub(in crate::method) fn of_coarse(bvh: &FullBvh) -> Self {
+        Self { mapped: true, ..Self::new(bvh) }
+    }
+
     /// A traverser of a level's `bvh` in the memory `all` of the BVHs of all levels, behind those of `before`; hits are mapped to the finest.
-    pub(in crate::method) fn behind(bvh: &'a FullBvh, all: MemoryMap, before: &MemoryMap) -> Self {
+    pub(in crate::method) fn behind(bvh: &FullBvh, all: MemoryMap, before: &MemoryMap) -> Self {
         let mut lines = [0; 2];
         before.sections().zip(&mut lines).for_each(|((_, section), lines)| *lines = section.lines);
-        Self { map: all, before: lines, mapped: true, ..Self::new(bvh) }
+        Self { map: all, before: lines, ..Self::of_coarse(bvh) }
     }
 
     /// Number of splits N of the hierarchy below which the mesh lies.
@@ -94,7 +100,7 @@ impl<'a> BvhTraverser<'a> {
         if has_lanes() {
             #[target_feature(enable = "avx2,bmi1,bmi2")]
             fn lanes<S: StepSink, H: HitSink, L: FnMut(&Leaf), const LEAVING: bool>(
-                by: &mut BvhTraverser<'_>,
+                by: &mut BvhTraverser,
                 ray: &Ray,
                 departure: Option<&Departure>,
                 steps: &mut S,
@@ -176,9 +182,9 @@ impl<'a> BvhTraverser<'a> {
             index: child.index,
             ..Entry::default()
         };
-        let lines = node_lines(self.nodes);
+        let lines = node_lines(&self.nodes);
         let fetch = Fetch::new(NODES, self.map.line(NODES, self.before[NODES.place()] + u64::from(lines) * index as u64), lines);
-        match self.nodes {
+        match &*self.nodes {
             FullNodes::Local(nodes) => {
                 let line = &nodes[index];
                 let tests = bvh_children(setup, t_max, line);
@@ -243,9 +249,7 @@ impl<'a> BvhTraverser<'a> {
             };
             run.add(test.hit, steps);
             if test.hit {
-                let levels = self.levels;
-                let (tree, node) = (id >> (2 * levels), id & ((1 << (2 * levels)) - 1));
-                sink.offer(TriangleId { tree, level: levels, node }, &corners, &test, &below);
+                sink.offer(cut_triangle(self.levels, id), &corners, &test, &below);
             }
         });
         run.state(steps);

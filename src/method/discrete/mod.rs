@@ -7,7 +7,7 @@ mod levels;
 
 use super::bvh::{
     BvhTracer, BvhTraverser, FullBuilder, FullBvh, FullOptions, LEAF_LAYOUT, LEAF_SIZE, NODE_BOXES, NODE_ORDER, TreeKey, TreeStore, UNIT,
-    bvh_map,
+    bvh_map, level_ids,
 };
 use super::knob::{DELTA, ErrorKnob};
 use super::{Knob, Knobs, Method, MethodUnit, Registered, Tracer};
@@ -17,7 +17,8 @@ use crate::format::Scene;
 use crate::num::MAX_LEVELS;
 use crate::rays::{ModelSpace, Sight};
 use crate::step::MemoryMap;
-use levels::{at_level, largest_bounds};
+
+use levels::largest_bounds;
 use std::sync::Arc;
 
 /// The level for all rays.
@@ -79,10 +80,10 @@ impl Discrete {
         let options = FullOptions::chosen(knobs, None);
         let hierarchy = scene.decode();
         let bvh = |level| {
-            let own = at_level(&hierarchy, level);
             let key = || TreeKey::new(scene, &options, level);
-            let tree = store.tree(&key, own.finest_triangles(), &mut || FullBuilder::new(&own)?.tree(&options))?;
-            tree.with_leaves(&own, options.layout)
+            let triangles = (scene.trees() as u64) << (2 * level);
+            let build = &mut || FullBuilder::of_cut(&hierarchy, level_ids(&hierarchy, level))?.tree(&options);
+            store.tree(&key, triangles, build)?.with_leaves(&hierarchy, options.layout)
         };
         let levels = scene.levels();
         Ok(Box::new(Self {

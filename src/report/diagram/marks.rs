@@ -25,6 +25,11 @@ impl Shape {
             Mark::Triangle => outline(&[(0, -r - 1), (r, s), (-r, s)]),
             Mark::Diamond => outline(&[(0, -r - 2), (r, 0), (0, r + 2), (-r, 0)]),
             Mark::Wye => outline(&[(0, r + 1), (r, -s), (-r, -s)]),
+            Mark::Pentagram => outline(&[0, 1, 2, 3, 4, 5, 6, 7, 8, 9].map(|k: i32| {
+                // Ten corners, every second one nearer to the middle.
+                let (angle, far) = (f64::from(k) * std::f64::consts::PI / 5.0, f64::from(r) * if k % 2 == 0 { 1.4 } else { 0.6 });
+                ((far * angle.sin()).round() as i32, (-far * angle.cos()).round() as i32)
+            })),
             Mark::Cross => lines(&[[(-r, 0), (r, 0)], [(0, -r), (0, r)]]),
             Mark::Times => lines(&[[(-s, -s), (s, s)], [(-s, s), (s, -s)]]),
             Mark::Star => lines(&[[(-r, 0), (r, 0)], [(-s, -s), (s, s)], [(-s, s), (s, -s)], [(0, -r), (0, r)]]),

@@ -7,11 +7,11 @@
 //! | line | 32 per triangle | one line of 28-bit coordinates |
 //! | block | 32, 64, 96 or 128 per leaf | its lines ([`block`]) |
 //!
-//! The full-resolution triangle id of each slot is kept beside the layout and charged to none: a design would look it up once per final hit.
+//! The id of each slot's triangle is kept beside the layout and charged to none: a design would look it up once per final hit.
 
 mod block;
 
-use super::finest::Finest;
+use super::cut::Corners;
 use crate::bvh::{BvhError, MAX_LEAF};
 use crate::format::{Line, VertexData};
 use crate::mesh::{Hierarchy, lattice};
@@ -84,7 +84,7 @@ pub struct Leaf {
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Leaves {
     storage: Storage,
-    /// Full-resolution triangle id of each slot.
+    /// Id of each slot's triangle ([`cut_id`](super::cut_id)).
     ids: Vec<u32>,
 }
 
@@ -104,13 +104,13 @@ enum Storage {
 }
 
 impl Leaves {
-    /// Stores the full-resolution triangles `ids` of a hierarchy, each of them once, in this order; `blocks` are the sizes of leaf blocks, if they are the layout.
+    /// Stores triangles of a hierarchy that cover it, each once, in this order; `blocks` are the sizes of leaf blocks, if they are the layout.
     ///
     /// # Errors
     /// A hierarchy that does not add up, or of other triangles.
     pub(super) fn new(hierarchy: &Hierarchy, ids: Vec<u32>, layout: LeafLayout, blocks: &[BlockSize]) -> Result<Self, BvhError> {
-        let mesh = &Finest::new(hierarchy)?;
-        if ids.len() != mesh.count() || ids.par_iter().any(|&id| id as usize >= mesh.count()) {
+        let mesh = &Corners::new(hierarchy)?;
+        if !mesh.are_covered_by(&ids) {
             return Err(BvhError::OtherHierarchy);
         }
         let storage = match layout {
@@ -149,7 +149,7 @@ impl Leaves {
         self.ids.is_empty()
     }
 
-    /// The triangle in `slot` (below [`Leaves::len`]) in units, read from its stored form, and its full-resolution id.
+    /// The triangle in `slot` (below [`Leaves::len`]) in units, read from its stored form, and its id.
     #[inline]
     pub fn triangle(&self, slot: usize) -> ([[i32; 3]; 3], u32) {
         let corners = match &self.storage {
@@ -255,7 +255,7 @@ impl Leaves {
 }
 
 /// Blocks of these sizes; none if they do not hold these triangles.
-fn in_blocks(mesh: &Finest<'_>, ids: &[u32], sizes: &[BlockSize]) -> Option<Storage> {
+fn in_blocks(mesh: &Corners<'_>, ids: &[u32], sizes: &[BlockSize]) -> Option<Storage> {
     let firsts: Vec<u32> = sizes
         .iter()
         .scan(0, |next, size| {
@@ -288,7 +288,7 @@ fn flat([a, b, c]: [[i32; 3]; 3]) -> [i32; 9] {
 }
 
 /// Shares the vertices: those inside a tree by their place in its lattice, those on the borders of trees by position.
-fn indexed(mesh: &Finest<'_>, ids: &[u32]) -> Storage {
+fn indexed(mesh: &Corners<'_>, ids: &[u32]) -> Storage {
     const UNUSED: u32 = u32::MAX;
     let m = 1u32 << mesh.levels;
     let border = |k: u32| [(k, 0), (0, k), (m - k, k)].map(|c| lattice::index(mesh.levels, c));
@@ -309,7 +309,7 @@ fn indexed(mesh: &Finest<'_>, ids: &[u32]) -> Storage {
     }
     drop(shared);
 
-    let mut triples: Vec<[u32; 3]> = ids.par_iter().map(|&id| mesh.corners(id).map(|c| same[c as usize])).collect();
+    let mut triples: Vec<[u32; 3]> = ids.par_iter().map(|&id| mesh.of(id).map(|c| same[c as usize])).collect();
     drop(same);
     let mut renamed = vec![UNUSED; mesh.points.len()];
     let mut vertices = Vec::new();

@@ -1,0 +1,122 @@
+//! Discrete level of detail by object or by chunk, as engines have it: each takes the level that its own distance tolerates, by the rule of `discrete`.
+//!
+//! Chunks of a surface are triangles of the hierarchy, split so many times: large ones far away, small ones near (chunked level of detail, Ulrich 2002). Where
+//! neighbours differ in level the surface has seams that rays pass through: nothing hides them here, they are counted.
+//!
+//! All triangles of a frame stand under one BVH, which is made for the frame and costs it nothing: less than any engine pays, which keeps one for each chunk and
+//! level and a BVH over those.
+
+mod chunks;
+
+pub use chunks::{ChunkShape, Chunks};
+
+use super::bvh::{
+    BvhTracer, BvhTraverser, FullBuilder, FullBvh, FullOptions, LEAF_LAYOUT, LEAF_SIZE, NODE_BOXES, NODE_ORDER, bvh_map, check_hierarchy,
+};
+use super::knob::{DELTA, ErrorKnob, octaves};
+use super::{Knob, Knobs, Method, Registered, Tracer, discrete};
+use crate::bvh::BvhError;
+use crate::format::Scene;
+use crate::mesh::Hierarchy;
+use crate::num::MAX_LEVELS;
+use crate::rays::{ModelSpace, Sight};
+use crate::step::MemoryMap;
+use std::sync::{Mutex, PoisonError};
+
+/// What chooses its level by itself.
+pub static CHUNK: Knob = Knob {
+    name: "chunk",
+    value_name: "CHUNK",
+    help: "What has a level of its own in the chunked method: object, or how often the triangles of the hierarchy are split that make a chunk, 1 to 10",
+    default: Some("4"),
+    words: &[],
+    of_frame: false,
+    allows: |value| shape(value).map(drop).ok_or_else(|| format!("'{value}' is not object, or a number of splits from 1 to {MAX_LEVELS}")),
+};
+
+fn shape(value: &str) -> Option<ChunkShape> {
+    let splits = || value.parse().ok().filter(|splits| (1..=MAX_LEVELS).contains(splits)).map(ChunkShape::Splits);
+    if value == "object" { Some(ChunkShape::Object) } else { splits() }
+}
+
+/// The method.
+pub static METHOD: Registered = Registered {
+    name: "chunked",
+    help: "Discrete levels of detail by object or chunk: each has a level for the frame, and seams to its neighbours",
+    knobs: &[&DELTA, &CHUNK, &NODE_BOXES, &NODE_ORDER, &LEAF_LAYOUT, &LEAF_SIZE],
+    error: Some(ErrorKnob { knob: &DELTA, values: octaves, in_steps: false }),
+    of_input: false,
+    unit: discrete::METHOD.unit,
+    make: |scene, knobs, _| Ok(Box::new(Chunked::of(scene, knobs)?)),
+};
+
+/// BVHs of so many frames are kept.
+const KEPT: usize = 16;
+
+/// The method on a scene.
+struct Chunked {
+    hierarchy: Hierarchy,
+    chunks: Chunks,
+    options: FullOptions,
+    space: ModelSpace,
+    /// Of what was seen last, the latest at the end.
+    made: Mutex<Vec<(Sight, FullBvh)>>,
+}
+
+impl Chunked {
+    fn of(scene: &Scene, knobs: &Knobs) -> Result<Self, BvhError> {
+        let hierarchy = scene.decode();
+        check_hierarchy(&hierarchy)?;
+        // Checked when it was chosen.
+        let shape = knobs.get(&CHUNK).and_then(shape).unwrap_or(ChunkShape::Object);
+        Ok(Self {
+            chunks: Chunks::new(&hierarchy, shape),
+            hierarchy,
+            options: FullOptions::chosen(knobs, None),
+            space: ModelSpace::of(scene),
+            made: Mutex::default(),
+        })
+    }
+
+    /// The BVH of a frame.
+    fn bvh(&self, sight: &Sight) -> FullBvh {
+        let mut made = self.made.lock().unwrap_or_else(PoisonError::into_inner);
+        if let Some((_, bvh)) = made.iter().find(|(of, _)| of == sight) {
+            return bvh.clone();
+        }
+        let build = || {
+            let ids = self.chunks.chosen(&self.hierarchy, sight);
+            let tree = FullBuilder::of_cut(&self.hierarchy, ids)?.tree(&self.options)?;
+            tree.with_leaves(&self.hierarchy, self.options.layout)
+        };
+        // By threads of its own: those that trace wait for it here, and would wait for themselves if they took part.
+        let apart = || match rayon::ThreadPoolBuilder::new().build() {
+            Ok(pool) => pool.install(build),
+            Err(_) => build(),
+        };
+        let bvh = std::thread::scope(|scope| scope.spawn(apart).join());
+        let bvh = bvh.expect("no panic").expect("the hierarchy was checked, and triangles of a cut are no more than its finest");
+        if made.len() == KEPT {
+            made.remove(0);
+        }
+        made.push((*sight, bvh.clone()));
+        bvh
+    }
+}
+
+impl Method for Chunked {
+    fn map(&self, sight: &Sight) -> MemoryMap {
+        bvh_map(&[&self.bvh(sight)])
+    }
+
+    fn tracer(&self, sight: &Sight) -> Box<dyn Tracer + '_> {
+        let bvh = self.bvh(sight);
+        Box::new(BvhTracer::new(BvhTraverser::of_coarse(&bvh), self.space, self.hierarchy.levels))
+    }
+
+    fn choices(&self, sight: &Sight) -> Vec<(&'static str, String)> {
+        let (chunks, seams) = self.chunks.seams(&self.hierarchy, sight);
+        let triangles = self.chunks.chosen(&self.hierarchy, sight).len();
+        [("chunks", chunks), ("triangles", triangles), ("open edges", seams)].map(|(name, count)| (name, count.to_string())).to_vec()
+    }
+}
