@@ -3,17 +3,16 @@
 use super::args::{levels, whole};
 use super::common::is_quiet;
 use super::info;
-use super::input::{self, InputFile};
+use super::input::{FILE, InputFile};
 use super::names::named;
 use super::output::{busy, check_target, print_line, progress, warn};
 use anyhow::Context;
-use lodray::bvh::over_trees;
-use lodray::format::{self, Scene, SceneInfo};
+use lodray::format::Scene;
 use lodray::mesh::{
-    BoundKind, DEFAULT_CREASE_ANGLE, DEFAULT_MAX_ERROR, MeshFormat, RemeshOptions, RemeshReport, Surface, TriangleMesh, read, read_as,
-    read_bytes, remesh,
+    BoundKind, DEFAULT_CREASE_ANGLE, DEFAULT_MAX_ERROR, MeshFormat, RemeshOptions, TriangleMesh, read, read_as, read_bytes,
 };
 use lodray::num::{BOX_SHIFT, MOST_DIRECTION_ZEROS, VertexForm};
+use lodray::scene::{BuildError, BuildOptions};
 use std::io::Read;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
@@ -36,6 +35,14 @@ pub struct FormArgs {
     /// Zero bits at the bottom of the directions of rays, 0 to 14
     #[arg(long, value_name = "BITS", default_value_t = 0, value_parser = whole::<u32>(0..=u64::from(MOST_DIRECTION_ZEROS)), allow_negative_numbers = true)]
     pub direction_zeros: u32,
+}
+
+impl FormArgs {
+    /// What a scene of its own triangles is built with.
+    pub fn options(self) -> BuildOptions {
+        let Self { bounds, vertices, coordinate_zeros, direction_zeros } = self;
+        BuildOptions { bounds, vertices, coordinate_zeros, direction_zeros, ..BuildOptions::own_triangles() }
+    }
 }
 
 #[derive(clap::Args)]
@@ -87,72 +94,31 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
         None => mesh,
     };
     say(&mesh, source, args.strict)?;
-    let name = source.file_stem().map_or_else(String::new, |s| s.to_string_lossy().into_owned());
-    let options = RemeshOptions {
+    // A pipe cannot be read twice, nor found again.
+    let format = args.format.or_else(|| MeshFormat::of(source)).filter(|_| !stdin && source.is_file());
+    let mut origin = serde_json::Map::new();
+    if let Some(format) = format {
+        origin.insert(FILE.to_owned(), serde_json::to_value(InputFile::of(source, format, args.weld)?)?);
+    }
+    let remesh = RemeshOptions {
         levels: args.levels,
         base_triangles: args.base.map(|n| n as usize),
         max_error: args.max_error,
         reserve: 0.0,
         crease_angle: args.crease_angle,
     };
-    // A pipe cannot be read twice, nor found again.
-    let format = args.format.or_else(|| MeshFormat::of(source)).filter(|_| !stdin && source.is_file());
-    let file = format.map(|format| InputFile::of(source, format, args.weld)).transpose()?;
-    let scene = within(&mesh, options, &name, args.form, file.as_ref()).map_err(|e| anyhow::anyhow!("{}: {e}", source.display()))?;
+    let name = source.file_stem().map_or_else(String::new, |s| s.to_string_lossy().into_owned());
+    let options = BuildOptions { remesh: Some(remesh), name, origin, ..args.form.options() };
+    let scene = with_progress(&mesh, &options).with_context(|| source.display().to_string())?;
     if let Some(lost) = scene.meta().origin["remesh"]["warning"].as_str().filter(|_| args.strict) {
         anyhow::bail!("{}: {lost}", source.display());
     }
     finish(&scene, &args.out, args.json)
 }
 
-/// Remeshes, at most.
-const TRIES: u32 = 3;
-
-/// The scene of a mesh, stored vertices within the largest error too: as a rule there is room for what storing moves, otherwise it is made
-/// again with so much in reserve.
-fn within(mesh: &TriangleMesh, mut options: RemeshOptions, name: &str, form: FormArgs, file: Option<&InputFile>) -> anyhow::Result<Scene> {
-    let mut last = None;
-    for tried in 1..=TRIES {
-        let (surface, mut report) = match (remesh_with_progress(mesh, &options), last.take()) {
-            (Err(_), Some(scene)) => return Ok(scene),
-            (made, _) => made?,
-        };
-        let scene_of = |report: &RemeshReport| {
-            let mut origin = serde_json::json!({ "mesh": mesh.report, "remesh": report });
-            if let Some(file) = file {
-                origin[input::FILE] = serde_json::to_value(file)?;
-            }
-            build_scene(&surface, name, origin, form)
-        };
-        let scene = scene_of(&report)?;
-        // Rounding to the grid is among the distances.
-        let moved = (info::moved_percent(&scene) - report.rounding).max(0.0);
-        let far = report.distance.to_original.max.max(report.distance.from_original.max) + moved;
-        if far <= options.max_error || report.warning.is_some() {
-            return Ok(scene);
-        }
-        report.warning = Some(format!(
-            "stored vertices are up to {far:.4} % of the diagonal away from the original (wanted: {} %), {moved:.4} % of it by storing; try --vertices exact",
-            options.max_error
-        ));
-        last = Some(scene_of(&report)?);
-        // What is moved depends a little on what is made.
-        options.reserve = 1.25 * moved;
-        if tried == TRIES || leaves_no_room(&options) {
-            break;
-        }
-    }
-    last.context("no scene")
-}
-
-/// Whether a base mesh of a given size, or a reserve beyond the error, makes another try useless.
-fn leaves_no_room(options: &RemeshOptions) -> bool {
-    options.base_triangles.is_some() || options.reserve >= options.max_error
-}
-
-fn remesh_with_progress(mesh: &TriangleMesh, options: &RemeshOptions) -> anyhow::Result<(Surface, RemeshReport)> {
+fn with_progress(mesh: &TriangleMesh, options: &BuildOptions) -> Result<Scene, BuildError> {
     let bar = progress(1, "remeshing");
-    let made = remesh(mesh, options, &|what, done, of| {
+    let made = Scene::of_mesh(mesh, options, &|what, done, of| {
         if bar.message() != what {
             bar.set_message(what.to_owned());
         }
@@ -160,7 +126,7 @@ fn remesh_with_progress(mesh: &TriangleMesh, options: &RemeshOptions) -> anyhow:
         bar.set_position(done);
     });
     bar.finish_and_clear();
-    Ok(made?)
+    made
 }
 
 /// One line for each thing that was lost or changed when the mesh was read, and one for seams that could be closed; the first is an error if `strict`.
@@ -203,13 +169,6 @@ fn read_stdin(format: MeshFormat, name: &Path) -> anyhow::Result<TriangleMesh> {
     let mut bytes = Vec::new();
     std::io::stdin().lock().read_to_end(&mut bytes).context("cannot read standard input")?;
     Ok(read_bytes(&bytes, format, name, Path::new(""))?)
-}
-
-/// The scene of a surface; `origin` says how it was made.
-pub fn build_scene(surface: &Surface, name: &str, origin: serde_json::Value, form: FormArgs) -> anyhow::Result<Scene> {
-    let FormArgs { bounds, vertices, coordinate_zeros, direction_zeros } = form;
-    let info = SceneInfo { name: name.to_owned(), origin, bounds, vertices, coordinate_zeros, direction_zeros, moved: 0.0 };
-    Ok(busy("encoding", || format::build(surface, info, over_trees))?)
 }
 
 /// Saves a new scene and says what it holds.

@@ -1,8 +1,9 @@
 //! `demo`: a built-in scene from three distances: what ours, the best BVH and discrete level of detail cost there, and what a traversal unit for these views can leave out.
 
-use super::build::{FormArgs, build_scene};
+use super::build::FormArgs;
 use super::cache::Cache;
 use super::folder::{Overrule, RunFolder, one_run};
+use super::generate;
 use super::method::Chosen;
 use super::output::{busy, count, grouped, print_json, print_table, remark, write_file};
 use super::pass::{Pass, PassRays, Target, machine};
@@ -13,7 +14,7 @@ use anyhow::Context;
 use lodray::format::Scene;
 use lodray::hardware::{Hardware, unit_gates};
 use lodray::mesh::FinestSurface;
-use lodray::mesh::procedural::{Options, Scene as Procedural, generate};
+use lodray::mesh::procedural::{Options, Scene as Procedural};
 use lodray::method::{Method, bvh, discrete, lod, reference};
 use lodray::picture::{FullResolution, Sheet, SurfaceError, save_png};
 use lodray::plan::{Data, Measure, Plan, RayNeeds, Reach};
@@ -97,8 +98,7 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
     let folder = RunFolder::open(&args.out, [TABLE, SHEET, PAGE], &[], &args.overrule)?;
     let out = folder.staging();
     let options = Options { levels: Some(LEVELS), ..Options::new(Procedural::Terrain) };
-    let surface = busy("generating", || generate(&options))?;
-    let scene = build_scene(&surface, "terrain", serde_json::json!({ "generate": options }), FormArgs::default())?;
+    let scene = generate::make(&options, FormArgs::default())?;
     let surface = busy("full-resolution surface", || FinestSurface::new(&scene.decode()));
     let stage = Stage { space: ModelSpace::of(&scene), surface, scene };
     let (scene, space) = (&stage.scene, &stage.space);
@@ -121,7 +121,7 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
         rays = rays.with(&measure.rays(&camera, QUALITY));
         reach.add(&camera, QUALITY);
         let full = shoot(&*truth, scene, space, &camera, f64::INFINITY, "full resolution");
-        let outcome = |(chosen, method): &(Chosen, Box<dyn Method + '_>)| stage.outcome(chosen, &**method, &camera, &full);
+        let outcome = |(chosen, method): &(Chosen, Box<dyn Method>)| stage.outcome(chosen, &**method, &camera, &full);
         let own = outcome(&ours)?;
         let best = bvhs.iter().map(outcome).collect::<anyhow::Result<Vec<_>>>()?.into_iter().min_by_key(|bvh| bvh.result.cycles);
         let rule = outcome(&rule)?;

@@ -1,11 +1,12 @@
 //! `generate`: a procedural scene.
 
 use super::args::{levels, seed, whole};
-use super::build::{FormArgs, build_scene, finish};
+use super::build::{FormArgs, finish};
 use super::names::named;
 use super::output::{busy, check_target};
 use lodray::format;
 use lodray::mesh::procedural::{MAX_TREES, MAX_WALLS, Options, Scene, generate};
+use lodray::scene::BuildOptions;
 use std::path::PathBuf;
 use std::process::ExitCode;
 
@@ -50,8 +51,8 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
 pub fn make(options: &Options, form: FormArgs) -> anyhow::Result<format::Scene> {
     check(options)?;
     let surface = busy("generating", || generate(options))?;
-    let origin = serde_json::json!({ "generate": options });
-    build_scene(&surface, options.scene.name(), origin, form)
+    let form = BuildOptions { name: options.scene.name().to_owned(), ..form.options() }.with_origin("generate", serde_json::json!(options));
+    Ok(busy("encoding", || format::Scene::of_surface(&surface, &form))?)
 }
 
 /// Refuses what cannot be generated, before any work is done.

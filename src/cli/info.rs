@@ -6,6 +6,7 @@ use lodray::format::{FileSection, JobRegion, JobView, Scene};
 use lodray::mesh::{BoundKind, Distance, TwoSidedDistance};
 use lodray::num::{PADDING_BITS, VertexForm};
 use lodray::rays::ModelSpace;
+use lodray::scene::moved_percent;
 use serde::Serialize;
 use std::path::PathBuf;
 use std::process::ExitCode;
@@ -143,11 +144,6 @@ impl<'a> Info<'a> {
             origin: &meta.origin,
         }
     }
-}
-
-/// How far storing moved vertices at most, in percent of the diagonal.
-pub fn moved_percent(scene: &Scene) -> f64 {
-    100.0 * scene.meta().moved / (2.0 * ModelSpace::of(scene).radius())
 }
 
 /// Distances of the surface before it was rounded, to that which is stored: no point was moved by more than `moved` percent.

@@ -1,12 +1,11 @@
 //! The mesh file that a scene was built from: recorded by `build`, found again by name and hash.
 
-use super::build::{FormArgs, build_scene};
 use super::method::Chosen;
 use super::output::{busy, remark};
 use anyhow::Context;
 use lodray::format::Scene;
-use lodray::mesh::{DEFAULT_CREASE_ANGLE, MeshFormat, Surface, corner_normals, read_as};
-use lodray::num::VertexForm;
+use lodray::mesh::{MeshFormat, read_as};
+use lodray::scene::BuildOptions;
 use serde::{Deserialize, Serialize};
 use std::path::{Path, PathBuf};
 use xxhash_rust::xxh3::xxh3_64;
@@ -57,14 +56,19 @@ impl InputFile {
             Some(distance) => mesh.welded(distance).with_context(|| path.display().to_string())?,
             None => mesh,
         };
-        let surface = Surface::of_mesh(&mesh, &corner_normals(&mesh, DEFAULT_CREASE_ANGLE));
-        let form = FormArgs { vertices: VertexForm::Exact, ..FormArgs::default() };
-        build_scene(&surface, &self.name, serde_json::Value::Null, form).with_context(|| path.display().to_string())
+        let options = BuildOptions { name: self.name.clone(), ..BuildOptions::own_triangles() };
+        busy("encoding", || Scene::of_mesh(&mesh, &options, &|_, _, _| ())).with_context(|| path.display().to_string())
     }
 }
 
 fn hash(bytes: &[u8]) -> String {
     format!("{:016x}", xxh3_64(bytes))
+}
+
+/// Whether the mesh that a scene file was built from is at hand.
+pub fn is_found(scene: &Path, args: &InputArgs) -> bool {
+    let record = Scene::open(scene).ok().and_then(|scene| InputFile::deserialize(&scene.meta().origin[FILE]).ok());
+    record.is_some_and(|file| file.find(scene, &args.mesh).is_some())
 }
 
 /// The scene with the mesh that it was built from at hand, if one of the methods needs it.

@@ -167,7 +167,7 @@ impl Chosen {
     }
 
     /// Builds what it needs for a scene, or takes it from the cache, and whether all was taken.
-    pub fn make<'a>(&self, scene: &'a Scene, cache: &Cache) -> anyhow::Result<(Box<dyn Method + 'a>, bool)> {
+    pub fn make(&self, scene: &Scene, cache: &Cache) -> anyhow::Result<(Box<dyn Method>, bool)> {
         self.check(scene)?;
         let lookup = Lookup::new(cache);
         let what = format!("building what {} needs", self.method.name);

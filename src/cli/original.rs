@@ -1,10 +1,10 @@
 //! An input mesh as it is: what `render --method original` shows, and `--mesh` compares with.
 
-use super::build::{FormArgs, build_scene};
 use super::output::{busy, warn};
 use anyhow::Context;
 use lodray::format::Scene;
-use lodray::mesh::{DEFAULT_CREASE_ANGLE, Surface, corner_normals, read};
+use lodray::mesh::read;
+use lodray::scene::BuildOptions;
 use std::path::Path;
 
 /// The scene of a mesh file: its own triangles, normals and colours, nothing simplified and nothing split.
@@ -16,7 +16,7 @@ pub fn original(path: &Path) -> anyhow::Result<Scene> {
     );
     let mesh = busy("reading", || read(path))?;
     mesh.warnings.iter().for_each(|lost| warn(&format!("warning: {}: {lost}", path.display())));
-    let surface = Surface::of_mesh(&mesh, &corner_normals(&mesh, DEFAULT_CREASE_ANGLE));
-    let name = path.file_stem().unwrap_or_default().to_string_lossy();
-    build_scene(&surface, &name, serde_json::Value::Null, FormArgs::default()).with_context(|| path.display().to_string())
+    let name = path.file_stem().unwrap_or_default().to_string_lossy().into_owned();
+    let options = BuildOptions { name, ..BuildOptions::own_triangles() };
+    busy("encoding", || Scene::of_mesh(&mesh, &options, &|_, _, _| ())).with_context(|| path.display().to_string())
 }

@@ -11,6 +11,7 @@ use crate::num::{BoxStep, COORD_LIMIT, U, VertexForm, Wire, box_code_ceil, box_c
 use memmap2::MmapMut;
 use rayon::prelude::*;
 use std::ops::Range;
+use std::sync::Arc;
 
 /// What a scene says about itself.
 #[derive(Clone, Debug, Default)]
@@ -159,7 +160,7 @@ pub(super) fn sealed(mut image: MmapMut, ranges: [Range<usize>; COUNT], meta: Me
     sums.par_iter_mut().zip(&ranges).for_each(|(sum, range)| *sum = checksum(&image[range.clone()]));
     let total = image.len();
     write_header(&mut image[..HEADER], total, &ranges, &sums);
-    Scene { image: Image::Owned(image), ranges, meta, starts, input: None }
+    Scene { image: Arc::new(Image::Owned(image)), ranges, meta, starts, input: None }
 }
 
 fn meta(h: &Hierarchy, surface: &Surface, info: SceneInfo) -> Meta {

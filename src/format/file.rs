@@ -11,6 +11,7 @@ use memmap2::Mmap;
 use rayon::prelude::*;
 use std::fs::File;
 use std::path::Path;
+use std::sync::Arc;
 
 impl Scene {
     /// Writes the scene to `path`: under a temporary name in the same directory, then renamed, so that no half-written file is ever found there.
@@ -45,10 +46,7 @@ impl Scene {
 
     /// Checks a file image. The error names section and field.
     fn from_image(image: Image) -> Result<Self, String> {
-        let bytes: &[u8] = match &image {
-            Image::Owned(m) => m,
-            Image::Mapped(m) => m,
-        };
+        let bytes = image.bytes();
         let (ranges, sums) = read_header(bytes)?;
         let bad =
             FileSection::ALL.par_iter().zip(&ranges).zip(&sums).find_first(|((_, range), sum)| checksum(&bytes[(*range).clone()]) != **sum);
@@ -74,7 +72,7 @@ impl Scene {
                 return Err(format!("section {}: length {length} is not a multiple of {size}", section.name()));
             }
         }
-        let mut scene = Self { image, ranges, meta, starts: LevelStarts::default(), input: None };
+        let mut scene = Self { image: Arc::new(image), ranges, meta, starts: LevelStarts::default(), input: None };
         scene.starts = scene.check_trees()?;
         scene.check_indices()?;
         scene.check_values()?;

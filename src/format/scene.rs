@@ -8,6 +8,7 @@ use memmap2::{Mmap, MmapMut};
 use serde::{Deserialize, Serialize};
 use std::ops::Range;
 use std::path::PathBuf;
+use std::sync::Arc;
 use thiserror::Error;
 
 #[cfg(target_endian = "big")]
@@ -119,15 +120,24 @@ pub(super) enum Image {
     Mapped(Mmap),
 }
 
-/// Memory images of one model and what belongs to them. Slices are looked up in the image at each call: take them out of hot loops.
-#[derive(Debug)]
+impl Image {
+    pub fn bytes(&self) -> &[u8] {
+        match self {
+            Self::Owned(m) => m,
+            Self::Mapped(m) => m,
+        }
+    }
+}
+
+/// Memory images of one model and what belongs to them. A clone is of the same memory. Slices are looked up in the image at each call: take them out of hot loops.
+#[derive(Clone, Debug)]
 pub struct Scene {
-    pub(super) image: Image,
+    pub(super) image: Arc<Image>,
     pub(super) ranges: [Range<usize>; COUNT],
     pub(super) meta: Meta,
     pub(super) starts: LevelStarts,
     /// The mesh that it was made from, where somebody has it at hand; files do not hold it.
-    pub(super) input: Option<Box<Scene>>,
+    pub(super) input: Option<Arc<Scene>>,
 }
 
 impl Scene {
@@ -139,7 +149,7 @@ impl Scene {
     /// The same with the mesh that it was made from at hand, as a scene of no splits whose vertices are exact.
     #[must_use]
     pub fn with_input(self, input: Self) -> Self {
-        Self { input: Some(Box::new(input)), ..self }
+        Self { input: Some(Arc::new(input)), ..self }
     }
 
     /// The mesh that it was made from, if somebody has it at hand.
@@ -149,10 +159,7 @@ impl Scene {
 
     /// The whole file image.
     pub fn bytes(&self) -> &[u8] {
-        match &self.image {
-            Image::Owned(m) => m,
-            Image::Mapped(m) => m,
-        }
+        self.image.bytes()
     }
 
     /// Bytes of a section.

@@ -60,9 +60,9 @@ pub struct Registered {
 }
 
 /// Builds what a method needs for a scene.
-pub type Make = for<'a> fn(&'a Scene, &Knobs, &dyn TreeStore) -> Result<Box<dyn Method + 'a>, BvhError>;
+pub type Make = fn(&Scene, &Knobs, &dyn TreeStore) -> Result<Box<dyn Method>, BvhError>;
 
-/// A method with what it needs for one scene.
+/// A method with what it needs for one scene: it may be kept, sent to other threads, and outlive whatever it was made from.
 pub trait Method: Send + Sync {
     /// Its memory, for rays that see `sight`; empty if it has none in hardware.
     fn map(&self, sight: &Sight) -> MemoryMap;

@@ -1,27 +1,11 @@
 //! What paths bring to a picture.
 
 use super::integrate::{PathCounts, Paths};
-use crate::format::{to_srgb, write_and_rename};
-use exr::image::pixel_vec::PixelVec;
-use exr::prelude::{Image, ImageAttributes, Layer, LayerAttributes, SpecificChannels, Text, WritableImage};
+use crate::format::to_srgb;
 use glam::{DVec3, Vec3};
 use image::{Rgb, RgbImage};
 use rayon::prelude::*;
 use serde::Serialize;
-use std::io::{self, Cursor};
-use std::path::Path;
-use thiserror::Error;
-
-/// A picture cannot be written.
-#[derive(Debug, Error)]
-pub enum FilmError {
-    /// The file.
-    #[error(transparent)]
-    Write(#[from] io::Error),
-    /// Its contents.
-    #[error("{0}")]
-    Exr(#[from] exr::error::Error),
-}
 
 /// A picture of paths, linear.
 pub struct Film {
@@ -77,27 +61,6 @@ impl Film {
             let light = self.light[(y * self.width + x) as usize].as_dvec3() * exposure.exp2();
             Rgb(light.to_array().map(|c| to_srgb(bent(c.max(0.0)) as f32)))
         })
-    }
-
-    /// Writes the light as OpenEXR, 32-bit floats; it says what it is.
-    ///
-    /// # Errors
-    /// It cannot be written.
-    pub fn save_exr(&self, software: &str, what: &str, path: &Path) -> Result<(), FilmError> {
-        let pixels = PixelVec::new((self.width as usize, self.height as usize), self.light.iter().map(|c| (c.x, c.y, c.z)).collect());
-        let channels = SpecificChannels::rgb(pixels);
-        // Attributes of other names would be written in any order.
-        let own = LayerAttributes {
-            software_name: Some(Text::from(software)),
-            comments: Some(Text::from(what)),
-            ..LayerAttributes::named("lodray")
-        };
-        let size = exr::math::Vec2(self.width as usize, self.height as usize);
-        let layer = Layer::new(size, own, exr::image::Encoding::SMALL_LOSSLESS, channels);
-        let image = Image::new(ImageAttributes::with_size(size), layer);
-        let mut bytes = Cursor::new(Vec::new());
-        image.write().non_parallel().to_buffered(&mut bytes)?;
-        Ok(write_and_rename(path, |out| out.write_all(bytes.get_ref()))?)
     }
 }
 

@@ -6,6 +6,8 @@
 
 mod bsdf;
 mod cone;
+#[cfg(feature = "exr")]
+mod exr;
 mod file;
 mod film;
 mod integrate;
@@ -16,8 +18,10 @@ mod rays;
 mod world;
 
 pub use cone::{Cones, PathCone};
+#[cfg(feature = "exr")]
+pub use exr::ExrError;
 pub use file::{CameraTable, MOST_DEPTH, MOST_SAMPLES, MeshTable, ModelTable, PictureTable, SceneFile, SceneFileError};
-pub use film::{Film, FilmError, LightCount, light_count, picture_error};
+pub use film::{Film, LightCount, light_count, picture_error};
 pub use integrate::{PathCounts, PathTracer, Paths};
 pub use light::{Environment, Light};
 pub use material::Material;

@@ -1,5 +1,6 @@
 //! Measurements over whole scenes and frames, and the page that shows them.
 
+#[cfg(feature = "diagrams")]
 pub mod diagram;
 pub mod error_time;
 pub mod inspect;

@@ -8,5 +8,6 @@ mod mesh_input;
 mod paths;
 mod picture_error;
 mod pictures;
+mod programs;
 mod remesh;
 mod scene_file;

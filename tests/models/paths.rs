@@ -21,7 +21,7 @@ fn generated(scene: procedural::Scene, levels: u32, base: u32) -> Scene {
     build(&procedural::generate(&options).expect("a surface"))
 }
 
-fn made<'a>(scene: &'a Scene, method: &'static lodray::method::Registered) -> Box<dyn Method + 'a> {
+fn made(scene: &Scene, method: &'static lodray::method::Registered) -> Box<dyn Method> {
     (method.make)(scene, &Knobs::default(), &NoStore).expect("a method on a scene")
 }
 

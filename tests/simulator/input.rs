@@ -96,6 +96,7 @@ fn errors_are_against_the_input_where_it_is_at_hand() {
         assert!(most(point, "geometry") > 10.0 * most(point, "finest"), "{point}");
     }
     assert!(!of("lod").is_empty() && of("lod").iter().all(|point| !point["finest"].is_null()));
+    let mesh = desk.text("ball.obj");
     std::fs::remove_file(desk.path("ball.obj")).unwrap();
     let without = measured("without", "");
     let points = without["points"].as_array().unwrap();
@@ -103,4 +104,37 @@ fn errors_are_against_the_input_where_it_is_at_hand() {
     assert!(without["scenes"][0]["input_triangles"].is_null());
     let (code, said) = desk.hear("error-time ball.lod -o named --quick --methods lod,input-bvh --no-host");
     assert!(code != 0 && said.contains("that very file is neither beside it"), "{said}");
+    // A run that goes on does not keep what it measured before the mesh was there.
+    std::fs::write(desk.path("ball.obj"), mesh).unwrap();
+    assert_eq!(measured("without", "")["scenes"][0]["input_triangles"], 2016);
+}
+
+#[test]
+fn lines_of_bvhs_over_the_mesh_stand_beside_those_over_the_finest_level() {
+    let desk = desk();
+    let rows = |words: &str| -> Value {
+        let (code, said) = desk.hear(&format!("lines ball.lod --distances 2 --size 32x32 --json {words}"));
+        assert_eq!(code, 0, "{said}");
+        serde_json::from_str(&said).unwrap()
+    };
+    let with = rows("");
+    let names: Vec<_> = with["rows"].as_array().unwrap().iter().map(|row| row["structure"].as_str().unwrap().to_owned()).collect();
+    assert_eq!(names.iter().filter(|name| name.contains(" of the mesh, ")).count(), 3, "{names:?}");
+    assert_eq!(names.len(), 8);
+    // Nearly those of a scene that is the mesh: its box is a little another, and so is the eye's place.
+    let lines = |report: &Value, name: &str| {
+        let row = report["rows"].as_array().unwrap().iter().find(|row| row["structure"] == name).cloned();
+        row.unwrap_or_else(|| panic!("no {name}"))["distinct_lines"][0].as_f64().unwrap()
+    };
+    desk.run("build ball.obj --levels 0 --base 100000 --vertices exact -o whole.lod");
+    std::fs::remove_file(desk.path("ball.obj")).unwrap();
+    let own: Value = serde_json::from_str(&desk.hear("lines whole.lod --distances 2 --size 32x32 --json --quiet").1).unwrap();
+    for size in [4, 8, 16] {
+        let (with, own) = (
+            lines(&with, &format!("BVH 5-bit of the mesh, Block, {size} a leaf")),
+            lines(&own, &format!("BVH 5-bit, Block, {size} a leaf")),
+        );
+        assert!((with / own - 1.0).abs() < 0.05, "{size}: {with}, {own}");
+    }
+    assert!(with["ratio_of_mesh"][0].as_f64().unwrap() > 0.0 && own["ratio_of_mesh"].is_null());
 }

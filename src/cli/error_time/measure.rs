@@ -40,7 +40,7 @@ pub struct Bench<'a> {
     facts: SceneEntry,
     /// The scene's file, as commands name it; empty if it was generated.
     path: String,
-    methods: Vec<(Chosen, Box<dyn Method + 'a>)>,
+    methods: Vec<(Chosen, Box<dyn Method>)>,
     builds: Vec<BuildTime>,
     /// Full resolution: the input where that is at hand, else the finest level.
     truth: Truth<'a>,
@@ -52,7 +52,7 @@ pub struct Bench<'a> {
 pub(super) struct Truth<'a> {
     scene: &'a Scene,
     space: ModelSpace,
-    reference: Box<dyn Method + 'a>,
+    reference: Box<dyn Method>,
     surface: FinestSurface,
 }
 
@@ -234,7 +234,7 @@ impl<'a> Bench<'a> {
 
     /// What each method does if nothing is chosen, with its number.
     pub(super) fn defaults(&self, camera: &Camera) -> Vec<(usize, Setting)> {
-        let of = |(at, (base, method)): (usize, &(Chosen, Box<dyn Method + 'a>))| {
+        let of = |(at, (base, method)): (usize, &(Chosen, Box<dyn Method>))| {
             (at, Setting::usual(base, &**method, |delta| Sight::new(camera, &self.space, delta)))
         };
         self.methods.iter().enumerate().map(of).collect()
@@ -242,7 +242,7 @@ impl<'a> Bench<'a> {
 
     /// All settings, with the number of their method.
     fn settings(&self, camera: &Camera) -> anyhow::Result<Vec<(usize, Setting)>> {
-        let of = |(at, (base, method)): (usize, &(Chosen, Box<dyn Method + 'a>))| {
+        let of = |(at, (base, method)): (usize, &(Chosen, Box<dyn Method>))| {
             let settings = self.plan.settings(base, &**method, |delta| Sight::new(camera, &self.space, delta))?;
             Ok(settings.into_iter().map(|setting| (at, setting)).collect::<Vec<_>>())
         };

@@ -11,6 +11,7 @@ mod row;
 
 use super::cache::Cache;
 use super::folder::RunFolder;
+use super::input::is_found;
 use super::job_lines::{JobLines, keep_aside};
 use super::output::{busy, check_normals, check_target, count, print_line, progress, remark, write_file};
 use super::report::{save, this_run, titled};
@@ -74,7 +75,9 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
         let views = scene.views.iter().enumerate();
         // Sizes of the frame are compared at one view: a near one, where they matter most.
         let sized = (scene.views.len().max(1) - 1) / 3;
-        let views: Vec<_> = views.map(|(k, view)| Ok((k, view, plan.key(scene, view, k == sized)?))).collect::<anyhow::Result<_>>()?;
+        let found = is_found(Path::new(&scene.path()), &args.input);
+        let key = |view, k| plan.key(scene, view, k == sized, found);
+        let views: Vec<_> = views.map(|(k, view)| Ok((k, view, key(view, k)?))).collect::<anyhow::Result<_>>()?;
         keys.extend(views.iter().map(|(_, _, key)| key.clone()));
         let left: Vec<_> = views.into_iter().filter(|(_, _, key)| !done.contains(key)).collect();
         if left.is_empty() {

@@ -8,7 +8,7 @@ use crate::cli::frames::TurnArgs;
 use crate::cli::input::{InputArgs, mesh_of, with_input_if_found};
 use crate::cli::method::{Chosen, Listed, machine_methods};
 use crate::cli::names::named;
-use crate::cli::output::{open, remark};
+use crate::cli::output::open;
 use crate::cli::pass::{Target, machine, machine_files};
 use crate::cli::plan::pixels;
 use crate::cli::render::shading;

@@ -158,8 +158,9 @@ impl Plan {
         self.values.get(error.knob.name).cloned().unwrap_or_else(own)
     }
 
-    /// The name of a view's job, which changes with everything that its figures depend on, the program's own version at its end.
-    pub fn key(&self, scene: &SceneJobs, view: &ViewJob, sizes: bool) -> anyhow::Result<String> {
+    /// The name of a view's job, which changes with everything that its figures depend on, the program's own version at its end: also with whether errors are
+    /// against the mesh that the scene was built from.
+    pub fn key(&self, scene: &SceneJobs, view: &ViewJob, sizes: bool, against_mesh: bool) -> anyhow::Result<String> {
         let mut inputs = String::new();
         let mut name = String::new();
         for chosen in &self.jobs.methods {
@@ -172,6 +173,7 @@ impl Plan {
         inputs += &format!("{:?} {:?} {} {sizes}", self.sides, self.measure, self.trace_grid());
         inputs += &self.turning.map_or_else(String::new, |turning| format!(" {turning:?}"));
         inputs += &self.within.iter().map(|pixels| format!(" within {pixels}")).collect::<String>();
+        inputs += if against_mesh { " against the mesh" } else { "" };
         // As in a sweep: scene, place and size, and the version at the end.
         let place: Vec<_> = name.split(", ").take(3).collect();
         let version = name.rsplit(' ').next().unwrap_or_default();

@@ -1,15 +1,16 @@
 //! What a description comes to: models, a camera, a world.
 
-use crate::cli::build::{FormArgs, build_scene};
+use crate::cli::build::FormArgs;
 use crate::cli::common::is_quiet;
 use crate::cli::generate;
 use crate::cli::output::{busy, check_normals, open, toml_in_one_line, warn};
 use anyhow::{Context, ensure};
 use lodray::format::Scene;
-use lodray::mesh::{RemeshOptions, read, remesh};
+use lodray::mesh::{RemeshOptions, read};
 use lodray::method::Method;
 use lodray::paths::{Instance, ModelTable, Paths, Pose, SceneFile, SceneFileError, Starts, World};
 use lodray::rays::{Camera, ModelSpace, View};
+use lodray::scene::BuildOptions;
 use std::path::Path;
 
 /// Reads a description; what is wrong with it is said in one line.
@@ -34,13 +35,14 @@ pub fn load(model: &ModelTable, beside: &Path) -> anyhow::Result<Scene> {
     }
     let mesh = busy("reading", || read(&path))?;
     mesh.warnings.iter().for_each(|lost| warn(&format!("warning: {}: {lost}", path.display())));
-    let options = RemeshOptions { levels: model.levels, ..RemeshOptions::default() };
-    let (surface, report) = busy("remeshing", || remesh(&mesh, &options, &|_, _, _| ())).with_context(|| path.display().to_string())?;
-    if let Some(lost) = report.warning.as_ref().filter(|_| !is_quiet()) {
+    let name = path.file_stem().map_or_else(String::new, |s| s.to_string_lossy().into_owned());
+    let remesh = Some(RemeshOptions { levels: model.levels, ..RemeshOptions::default() });
+    let options = BuildOptions { name, remesh, ..BuildOptions::default() };
+    let scene = busy("remeshing", || Scene::of_mesh(&mesh, &options, &|_, _, _| ())).with_context(|| path.display().to_string())?;
+    if let Some(lost) = scene.meta().origin["remesh"]["warning"].as_str().filter(|_| !is_quiet()) {
         warn(&format!("warning: {}: {lost}", path.display()));
     }
-    let name = path.file_stem().map_or_else(String::new, |s| s.to_string_lossy().into_owned());
-    build_scene(&surface, &name, serde_json::json!({ "mesh": mesh.report, "remesh": report }), FormArgs::default())
+    Ok(scene)
 }
 
 /// The camera that was asked for.
@@ -55,7 +57,7 @@ pub fn camera(file: &SceneFile, name: Option<&str>, scenes: &[Scene]) -> anyhow:
 pub fn world<'a>(
     file: &SceneFile,
     scenes: &'a [Scene],
-    methods: &'a [Box<dyn Method + 'a>],
+    methods: &'a [Box<dyn Method>],
     camera: &Camera,
     delta: f64,
     starts: Starts,

@@ -206,16 +206,16 @@ struct Subject<'a> {
     folder: &'a RunFolder,
 }
 
-impl<'a> Subject<'a> {
+impl Subject<'_> {
     /// The models by the method that was asked for.
-    fn methods(&self) -> anyhow::Result<Vec<Box<dyn Method + 'a>>> {
+    fn methods(&self) -> anyhow::Result<Vec<Box<dyn Method>>> {
         let chosen = &self.args.method.0;
         let methods = self.made(chosen)?;
         ensure!(methods.iter().all(|method| method.leaves()), "--method {}: rays cannot leave its surface", chosen.method.name);
         Ok(methods)
     }
 
-    fn made(&self, chosen: &Chosen) -> anyhow::Result<Vec<Box<dyn Method + 'a>>> {
+    fn made(&self, chosen: &Chosen) -> anyhow::Result<Vec<Box<dyn Method>>> {
         self.scenes.iter().map(|scene| Ok(chosen.make(scene, self.cache)?.0)).collect()
     }
 

@@ -194,19 +194,19 @@ struct Workshop<'a> {
     scene: &'a Scene,
     space: ModelSpace,
     /// Methods by all that what they need depends on, which is not their quality. Who makes one keeps the others waiting: all threads are at it.
-    built: Mutex<Vec<(Chosen, Arc<dyn Method + 'a>)>>,
+    built: Mutex<Vec<(Chosen, Arc<dyn Method>)>>,
     /// Pictures are taken one after the other, each by all threads.
-    truth: Mutex<Truth<'a>>,
+    truth: Mutex<Truth>,
 }
 
 /// The reference, and its picture of the last view.
 #[derive(Default)]
-struct Truth<'a> {
-    reference: Option<Box<dyn Method + 'a>>,
+struct Truth {
+    reference: Option<Box<dyn Method>>,
     last: Option<(ViewJob, Shot)>,
 }
 
-impl<'a> Workshop<'a> {
+impl Workshop<'_> {
     fn group(&self, group: &Group<'_>) -> anyhow::Result<Vec<Row>> {
         let camera = group.view.camera(&self.space)?;
         job::check(self.scene, &camera, group.chosen.delta())?;
@@ -235,13 +235,13 @@ impl<'a> Workshop<'a> {
     }
 
     /// The method that is made for these choices, now or before.
-    fn made(&self, chosen: &Chosen) -> anyhow::Result<Arc<dyn Method + 'a>> {
+    fn made(&self, chosen: &Chosen) -> anyhow::Result<Arc<dyn Method>> {
         let key = Chosen { knobs: chosen.knobs.clone().of_scene(chosen.method.knobs), ..*chosen };
         let mut built = self.built.lock().unwrap_or_else(PoisonError::into_inner);
         if let Some((_, method)) = built.iter().find(|(of, _)| *of == key) {
             return Ok(Arc::clone(method));
         }
-        let method: Arc<dyn Method + 'a> = Arc::from(chosen.make(self.scene, self.cache)?.0);
+        let method: Arc<dyn Method> = Arc::from(chosen.make(self.scene, self.cache)?.0);
         built.push((key, Arc::clone(&method)));
         Ok(method)
     }

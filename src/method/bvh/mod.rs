@@ -193,7 +193,7 @@ struct Bvh {
 }
 
 impl Bvh {
-    fn of<'a>(scene: &Scene, knobs: &Knobs, boxes: Option<NodeBoxes>, store: &dyn TreeStore) -> Result<Box<dyn Method + 'a>, BvhError> {
+    fn of(scene: &Scene, knobs: &Knobs, boxes: Option<NodeBoxes>, store: &dyn TreeStore) -> Result<Box<dyn Method>, BvhError> {
         let options = FullOptions::chosen(knobs, boxes);
         let hierarchy = scene.decode();
         let key = || TreeKey::new(scene, &options, scene.levels());

@@ -76,7 +76,7 @@ fn chosen(knobs: &Knobs, finest: u32) -> Option<usize> {
 }
 
 impl Discrete {
-    fn of<'a>(scene: &Scene, knobs: &Knobs, store: &dyn TreeStore) -> Result<Box<dyn Method + 'a>, BvhError> {
+    fn of(scene: &Scene, knobs: &Knobs, store: &dyn TreeStore) -> Result<Box<dyn Method>, BvhError> {
         let options = FullOptions::chosen(knobs, None);
         let hierarchy = scene.decode();
         let bvh = |level| {

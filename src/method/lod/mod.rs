@@ -44,40 +44,45 @@ pub static METHOD: Registered = Registered {
 };
 
 /// The method on a scene.
-struct Lod<'a> {
-    image: LodImage<'a>,
+struct Lod {
+    scene: Scene,
+    layout: LineLayout,
     /// Of the children of each split, if they bound them.
     prisms: Option<Vec<Prisms>>,
     space: ModelSpace,
 }
 
-impl<'a> Lod<'a> {
-    fn of(scene: &'a Scene, knobs: &Knobs) -> Self {
+impl Lod {
+    fn of(scene: &Scene, knobs: &Knobs) -> Self {
         // Checked when it was chosen.
         let layout = knobs.get(&LINE_LAYOUT).and_then(LineLayout::named).unwrap_or_default();
         let prisms = (knobs.get(&NODE_BOUNDS) == Some("prisms")).then(|| scene_prisms(scene));
-        Self { image: LodImage::with(scene, layout), prisms, space: ModelSpace::of(scene) }
+        Self { scene: scene.clone(), layout, prisms, space: ModelSpace::of(scene) }
     }
 }
 
-impl Lod<'_> {
+impl Lod {
+    fn image(&self) -> LodImage<'_> {
+        LodImage::with(&self.scene, self.layout)
+    }
+
     fn tracer_as<const COMPACT: bool, const FULL_DETAIL: bool>(&self, sight: &Sight) -> Box<dyn Tracer + '_> {
         let image = match &self.prisms {
-            Some(prisms) => self.image.bounded_by(prisms),
-            None => self.image,
+            Some(prisms) => self.image().bounded_by(prisms),
+            None => self.image(),
         };
         let (traverser, space, delta) = (LodTraverser::new(image), self.space, sight.delta);
         Box::new(LodTracer::<COMPACT, FULL_DETAIL> { traverser, space, delta })
     }
 }
 
-impl Method for Lod<'_> {
+impl Method for Lod {
     fn map(&self, _: &Sight) -> MemoryMap {
-        self.image.map
+        self.image().map
     }
 
     fn tracer(&self, sight: &Sight) -> Box<dyn Tracer + '_> {
-        match (self.image.form.is_compact(), is_full_detail(sight.delta)) {
+        match (self.scene.meta().vertices.is_compact(), is_full_detail(sight.delta)) {
             (true, true) => self.tracer_as::<true, true>(sight),
             (true, false) => self.tracer_as::<true, false>(sight),
             (false, true) => self.tracer_as::<false, true>(sight),

@@ -1,0 +1,87 @@
+//! Methods by name, and rays cast with them.
+
+use crate::bvh::BvhError;
+use crate::format::Scene;
+use crate::method::bvh::NoStore;
+use crate::method::{KnobError, Knobs, METHODS, Method, Registered, find};
+use crate::rays::{ModelSpace, RaySource, Sight};
+use crate::run::{HitRow, cast};
+use thiserror::Error;
+
+/// A way to find hits that there is not.
+#[derive(Debug, Error)]
+pub enum MethodError {
+    /// No method has this name.
+    #[error("there is no method '{0}', but: {names}", names = METHODS.iter().map(|method| method.name).collect::<Vec<_>>().join(", "))]
+    Unknown(String),
+    /// The method has no such knob.
+    #[error("{name} has no knob '{knob}', but: {names}", name = method.name, names = method.knobs.iter().map(|knob| knob.name).collect::<Vec<_>>().join(", "))]
+    NoKnob {
+        /// The method.
+        method: &'static Registered,
+        /// The name.
+        knob: String,
+    },
+    /// The knob has no such value.
+    #[error(transparent)]
+    Value(#[from] KnobError),
+    /// What it needs cannot be built.
+    #[error(transparent)]
+    Bvh(#[from] BvhError),
+}
+
+/// A way to find hits in a scene, with what it needs for that. It keeps the scene.
+pub struct SceneMethod {
+    scene: Scene,
+    registered: &'static Registered,
+    knobs: Knobs,
+    method: Box<dyn Method>,
+}
+
+impl Scene {
+    /// The method of this name, with its knobs as they are by default: [`METHODS`] has all.
+    ///
+    /// # Errors
+    /// There is none of this name, or what it needs cannot be built.
+    pub fn method(&self, name: &str) -> Result<SceneMethod, MethodError> {
+        self.method_with(name, &[])
+    }
+
+    /// The same with some knobs turned: names and values as the options of the program have them, such as `("delta", "0.5")`.
+    ///
+    /// # Errors
+    /// Besides, a knob that it does not have, or no such value.
+    pub fn method_with(&self, name: &str, knobs: &[(&str, &str)]) -> Result<SceneMethod, MethodError> {
+        let registered = find(name).ok_or_else(|| MethodError::Unknown(name.to_owned()))?;
+        let mut turned = Knobs::default();
+        for &(name, value) in knobs {
+            let knob = registered.knobs.iter().find(|knob| knob.name == name);
+            turned.set(knob.ok_or_else(|| MethodError::NoKnob { method: registered, knob: name.to_owned() })?, value)?;
+        }
+        let method = (registered.make)(self, &turned, &NoStore)?;
+        Ok(SceneMethod { scene: self.clone(), registered, knobs: turned, method })
+    }
+}
+
+impl SceneMethod {
+    /// What every ray meets, in their order, by all threads; a ray's cone says which detail it needs ([`Query::with_cone`](crate::rays::Query::with_cone)).
+    pub fn cast(&self, rays: &dyn RaySource) -> Vec<HitRow> {
+        let sight = Sight::new(rays, &ModelSpace::of(&self.scene), self.knobs.delta());
+        cast(&*self.method, &self.scene, rays, &sight, &|_| ())
+    }
+
+    /// The scene.
+    pub fn scene(&self) -> &Scene {
+        &self.scene
+    }
+
+    /// Its entry in the registry.
+    pub fn registered(&self) -> &'static Registered {
+        self.registered
+    }
+
+    /// The method itself, for frames on machines.
+    pub fn method(&self) -> &dyn Method {
+        &*self.method
+    }
+}
