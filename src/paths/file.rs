@@ -142,12 +142,19 @@ pub struct ModelTable {
     pub translate: [f64; 3],
 }
 
+impl ModelTable {
+    /// It is the same model as another, whatever its place and materials.
+    pub fn is_of(&self, other: &Self) -> bool {
+        (&self.file, self.levels, self.generate) == (&other.file, other.levels, other.generate)
+    }
+}
+
 fn one() -> f64 {
     1.0
 }
 
 /// A procedural scene.
-#[derive(Clone, Copy, Debug, Deserialize)]
+#[derive(Clone, Copy, Debug, Deserialize, PartialEq)]
 #[serde(deny_unknown_fields)]
 pub struct MeshTable {
     /// Which.

@@ -4,6 +4,7 @@
 //! asked for what they send there, and the next ray leaves exactly where the last one hit ([`Starts`]). Cones go along ([`PathCone`]). Shading is `f64` and
 //! `f32`: what is exact is where rays start and what they meet.
 
+mod boxes;
 mod bsdf;
 mod cone;
 #[cfg(feature = "exr")]

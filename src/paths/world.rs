@@ -1,5 +1,6 @@
 //! Models where a scene has them, and what a ray meets among them.
 
+use super::boxes::{Bounds, BoxTree};
 use super::bsdf::{Bsdf, Place};
 use super::cone::PathCone;
 use super::material::Material;
@@ -91,6 +92,15 @@ impl<'a> Instance<'a> {
         self.space.radius() * self.pose.scale
     }
 
+    /// Its box, in the scene: outside of it rays do not meet the model.
+    fn bounds(&self) -> Bounds {
+        let placement = self.space.placement;
+        Bounds::around(self.space.enlarged().map(|corner| {
+            let own = DVec3::from_array(placement.offset) + DVec3::from_array(corner) * placement.scale;
+            self.pose.turn * own * self.pose.scale + self.pose.translate
+        }))
+    }
+
     /// Centre of its box, in the scene.
     pub fn centre(&self) -> DVec3 {
         self.pose.turn * DVec3::from_array(self.space.centre()) * self.pose.scale + self.pose.translate
@@ -150,15 +160,27 @@ pub struct World<'a> {
     pub instances: Vec<Instance<'a>>,
     /// How rays leave them.
     pub starts: Starts,
+    boxes: BoxTree,
 }
 
 impl<'a> World<'a> {
+    /// These models, at least one.
+    ///
+    /// # Panics
+    /// There is none.
+    pub fn new(instances: Vec<Instance<'a>>, starts: Starts) -> Self {
+        assert!(!instances.is_empty(), "a world needs a model");
+        let boxes: Vec<_> = instances.iter().map(Instance::bounds).collect();
+        Self { instances, starts, boxes: BoxTree::new(&boxes) }
+    }
+
     /// A tracer for each model; for one thread.
     pub fn tracers(&self) -> Vec<Box<dyn Tracer + '_>> {
         self.instances.iter().map(|own| own.method.tracer(&own.sight)).collect()
     }
 
-    /// What `ray` meets first, or at all; it starts at `from`, a hit of that model, if there is one. The listener hears the ray once for each model, behind ray `after`.
+    /// What `ray` meets first, or at all: of models that it meets at the same distance the first. It starts at `from`, a hit of that model, if there is one.
+    /// The listener hears the ray once for each model, behind ray `after`; without one, only models are asked whose boxes the ray enters before what it has met.
     pub(super) fn trace(
         &self,
         tracers: &mut [Box<dyn Tracer + '_>],
@@ -166,19 +188,19 @@ impl<'a> World<'a> {
         from: Option<(usize, &Departure)>,
         mut listener: Option<(&mut Listener, Option<u64>)>,
     ) -> Option<Met> {
+        let listens = listener.is_some();
+        let mut origin = ray.origin;
+        if let (Starts::Offset(radii), Some((of, from))) = (self.starts, from) {
+            origin += self.instances[of].above(from, ray.direction) * (radii * self.instances[of].radius());
+        }
         let mut best: Option<Met> = None;
-        for (k, (own, tracer)) in self.instances.iter().zip(tracers).enumerate() {
+        let mut visit = |k: usize| {
+            let (own, tracer) = (&self.instances[k], &mut tracers[k]);
             let mut own_from = from.filter(|&(of, _)| of == k).map(|(_, from)| *from);
-            let mut origin = ray.origin;
             match self.starts {
                 Starts::Exact => {}
                 Starts::Independent => own_from = own_from.map(|from| Departure { prior: None, ..from }),
-                Starts::Offset(radii) => {
-                    if let Some((of, from)) = from {
-                        origin += self.instances[of].above(from, ray.direction) * (radii * self.instances[of].radius());
-                    }
-                    own_from = None;
-                }
+                Starts::Offset(_) => own_from = None,
             }
             let scale = own.pose.scale;
             let farthest = best.map_or(ray.t_max, |best| best.distance);
@@ -195,13 +217,21 @@ impl<'a> World<'a> {
             });
             if let Some(landing) = tracer.follow(&query, own_from.as_ref(), recorder) {
                 let distance = landing.surface.distance * scale;
-                if best.is_none_or(|best| distance < best.distance) {
+                if best.is_none_or(|best| distance < best.distance || distance == best.distance && k < best.instance) {
                     best = Some(Met { instance: k, distance, landing });
                 }
-                if ray.any {
+            }
+            // Whoever takes any has it.
+            best.map_or(ray.t_max, |best| if ray.any { f64::NEG_INFINITY } else { best.distance })
+        };
+        if listens {
+            for k in 0..self.instances.len() {
+                if visit(k) == f64::NEG_INFINITY {
                     break;
                 }
             }
+        } else {
+            self.boxes.each(origin, ray.direction, ray.t_max, visit);
         }
         best
     }

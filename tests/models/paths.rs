@@ -4,14 +4,17 @@ use assert_cmd::Command;
 use lodray::format::Scene;
 use lodray::mesh::procedural::{self, Options};
 use lodray::method::bvh::{self, NoStore};
-use lodray::method::{Knobs, Method, discrete, lod, reference};
+use lodray::method::{Departure, Knobs, Landing, Method, SurfaceHit, Tracer, discrete, lod, reference};
 use lodray::paths::{Environment, Film, Instance, Light, Material, PathFrame, Paths, Pose, Starts, World, light_count, picture_error};
-use lodray::rays::{Camera, ModelSpace, View};
+use lodray::rays::{Camera, ModelSpace, Query, Sight, View};
 use lodray::run::{Frame, Traced};
+use lodray::step::{LineCounter, MemoryMap, Recorder, StepSink};
 use lodray_test_support::models::build;
 use std::collections::HashSet;
 use std::fs;
 use std::path::Path;
+use std::sync::atomic::AtomicU64;
+use std::sync::atomic::Ordering::Relaxed;
 
 const WHITE: [f64; 3] = [1.0; 3];
 const EVERYWHERE: Environment = Environment { zenith: WHITE, horizon: WHITE, ground: WHITE, up: [0.0, 1.0, 0.0] };
@@ -50,7 +53,7 @@ impl Shot<'_> {
         then: impl FnOnce(&Paths<'_>) -> R,
     ) -> R {
         let own = Instance::new(self.scene, self.method, self.pose, vec![self.material], &self.camera, self.delta);
-        let world = World { instances: vec![own], starts: self.starts };
+        let world = World::new(vec![own], self.starts);
         let cones = Default::default();
         let mut paths =
             Paths { world: &world, camera: self.camera, lights, environment, cones, depth: 3, shadow_rays: true, samples: 16, seed: 1 };
@@ -224,6 +227,79 @@ fn frames_have_the_rays_of_pictures() {
         });
         assert_eq!((rays, rays - waiting), (film.counts.all(), 40 * 40 * 2));
     }
+}
+
+/// A method that counts how often its tracers are asked.
+struct Counting<'a> {
+    method: &'a dyn Method,
+    asked: &'a AtomicU64,
+}
+
+struct CountingTracer<'a> {
+    tracer: Box<dyn Tracer + 'a>,
+    asked: &'a AtomicU64,
+}
+
+impl Method for Counting<'_> {
+    fn map(&self, sight: &Sight) -> MemoryMap {
+        self.method.map(sight)
+    }
+
+    fn tracer(&self, sight: &Sight) -> Box<dyn Tracer + '_> {
+        Box::new(CountingTracer { tracer: self.method.tracer(sight), asked: self.asked })
+    }
+}
+
+impl Tracer for CountingTracer<'_> {
+    fn hit(&mut self, query: &Query) -> Option<SurfaceHit> {
+        self.tracer.hit(query)
+    }
+    fn counted(&mut self, query: &Query, counter: &mut LineCounter<'_>) -> Option<SurfaceHit> {
+        self.tracer.counted(query, counter)
+    }
+    fn recorded(&mut self, query: &Query, recorder: &mut Recorder) -> Option<SurfaceHit> {
+        self.tracer.recorded(query, recorder)
+    }
+    fn heard(&mut self, query: &Query, steps: &mut dyn StepSink) -> Option<SurfaceHit> {
+        self.tracer.heard(query, steps)
+    }
+    fn follow(&mut self, query: &Query, from: Option<&Departure>, recorder: Option<&mut Recorder>) -> Option<Landing> {
+        self.asked.fetch_add(1, Relaxed);
+        self.tracer.follow(query, from, recorder)
+    }
+}
+
+/// Sixteen balls side by side: rays ask those whose boxes they enter, and meet what they would meet if they asked all, whatever the order of the models.
+#[test]
+fn rays_ask_only_models_whose_boxes_they_enter() {
+    let scene = generated(procedural::Scene::Sphere, 3, 128);
+    let method = made(&scene, &lod::METHOD);
+    let asked = AtomicU64::new(0);
+    let counting = Counting { method: &*method, asked: &asked };
+    let view = View { eye: Some([2.0, 6.0, 14.0]), target: Some([0.0; 3]), fov: 40.0, ..View::default() };
+    let camera = Camera::new(&view, &ModelSpace::of(&scene), 64, 64).expect("a camera");
+    let film = |order: &dyn Fn(usize) -> usize| {
+        let instance = |k: usize| {
+            let k = order(k);
+            let [x, z] = [k % 4, k / 4].map(|k| 2.5 * k as f64 - 3.75);
+            let pose = Pose::new([0.0, 20.0 * k as f64, 0.0], 1.0 + 0.02 * k as f64, [x, 0.0, z]);
+            Instance::new(&scene, &counting, pose, vec![Material::Diffuse { albedo: None }], &camera, 1.0)
+        };
+        let world = World::new((0..16).map(instance).collect(), Starts::Exact);
+        let (lights, cones) = (lights(), Default::default());
+        let environment = Some(EVERYWHERE);
+        Film::of(
+            &Paths { world: &world, camera, lights: &lights, environment, cones, depth: 2, shadow_rays: true, samples: 4, seed: 1 },
+            &|| (),
+        )
+    };
+    let forward = film(&|k| k);
+    let visits = asked.swap(0, Relaxed);
+    let backward = film(&|k| 15 - k);
+    assert_eq!((visits, &forward.light), (asked.load(Relaxed), &backward.light));
+    let rays = forward.counts.all();
+    let met: u64 = forward.counts.hits.iter().sum();
+    assert!(met > 10_000 && visits > met && visits < 3 * rays, "{met} hits of {rays} rays, which asked {visits} models of {}", 16 * rays);
 }
 
 #[test]

@@ -12,6 +12,7 @@ use lodray::paths::{Instance, ModelTable, Paths, Pose, SceneFile, SceneFileError
 use lodray::rays::{Camera, ModelSpace, View};
 use lodray::scene::BuildOptions;
 use std::path::Path;
+use std::sync::Arc;
 
 /// Reads a description; what is wrong with it is said in one line.
 pub fn description(path: &Path) -> anyhow::Result<SceneFile> {
@@ -57,7 +58,7 @@ pub fn camera(file: &SceneFile, name: Option<&str>, scenes: &[Scene]) -> anyhow:
 pub fn world<'a>(
     file: &SceneFile,
     scenes: &'a [Scene],
-    methods: &'a [Box<dyn Method>],
+    methods: &'a [Arc<dyn Method>],
     camera: &Camera,
     delta: f64,
     starts: Starts,
@@ -66,7 +67,7 @@ pub fn world<'a>(
         let pose = Pose::new(model.rotate, model.scale, model.translate);
         Instance::new(scene, &**method, pose, file.materials(model), camera, delta)
     });
-    World { instances: instances.collect(), starts }
+    World::new(instances.collect(), starts)
 }
 
 /// The paths of a description.

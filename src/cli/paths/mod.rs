@@ -21,6 +21,7 @@ use made::{camera, description, load, paths, world};
 use serde::Serialize;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
+use std::sync::Arc;
 use std::time::Instant;
 
 /// The pictures.
@@ -172,12 +173,15 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
         names.extend([FULL_PICTURE, FULL_LIGHT]);
     }
     let folder = RunFolder::open(&args.out, names, &inputs, &args.overrule)?;
-    let scenes = file
-        .model
-        .iter()
-        .enumerate()
-        .map(|(k, model)| load(model, beside).with_context(|| format!("{shown}: model[{k}]")))
-        .collect::<anyhow::Result<Vec<_>>>()?;
+    let mut scenes: Vec<Scene> = Vec::new();
+    for (k, model) in file.model.iter().enumerate() {
+        // What stands in several places is loaded once.
+        let scene = match file.model[..k].iter().position(|before| model.is_of(before)) {
+            Some(before) => scenes[before].clone(),
+            None => load(model, beside).with_context(|| format!("{shown}: model[{k}]"))?,
+        };
+        scenes.push(scene);
+    }
     let camera = camera(&file, args.camera.as_deref(), &scenes).with_context(|| shown.to_string())?;
     let cache = Cache::new(&args.cache, None)?;
     let subject = Subject { args, file: &file, scenes: &scenes, camera, cache: &cache, folder: &folder };
@@ -208,15 +212,24 @@ struct Subject<'a> {
 
 impl Subject<'_> {
     /// The models by the method that was asked for.
-    fn methods(&self) -> anyhow::Result<Vec<Box<dyn Method>>> {
+    fn methods(&self) -> anyhow::Result<Vec<Arc<dyn Method>>> {
         let chosen = &self.args.method.0;
         let methods = self.made(chosen)?;
         ensure!(methods.iter().all(|method| method.leaves()), "--method {}: rays cannot leave its surface", chosen.method.name);
         Ok(methods)
     }
 
-    fn made(&self, chosen: &Chosen) -> anyhow::Result<Vec<Box<dyn Method>>> {
-        self.scenes.iter().map(|scene| Ok(chosen.make(scene, self.cache)?.0)).collect()
+    /// The same by another; models of several places have one.
+    fn made(&self, chosen: &Chosen) -> anyhow::Result<Vec<Arc<dyn Method>>> {
+        let mut methods: Vec<Arc<dyn Method>> = Vec::new();
+        for (k, (model, scene)) in self.file.model.iter().zip(self.scenes).enumerate() {
+            let method = match self.file.model[..k].iter().position(|before| model.is_of(before)) {
+                Some(before) => Arc::clone(&methods[before]),
+                None => Arc::from(chosen.make(scene, self.cache)?.0),
+            };
+            methods.push(method);
+        }
+        Ok(methods)
     }
 
     /// What each bounce costs on the machine of that name.

@@ -1,0 +1,164 @@
+//! Which models a ray may meet, nearest first: a binary tree over their boxes.
+
+use glam::DVec3;
+
+/// A box around a model, in the scene.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Bounds {
+    pub lo: DVec3,
+    pub hi: DVec3,
+}
+
+impl Bounds {
+    /// The smallest box around points, and a little more: as much as sums of their sizes and places are rounded by, many times over.
+    pub fn around(points: impl IntoIterator<Item = DVec3>) -> Self {
+        let start = Self { lo: DVec3::INFINITY, hi: DVec3::NEG_INFINITY };
+        let all = points.into_iter().fold(start, |all, p| Self { lo: all.lo.min(p), hi: all.hi.max(p) });
+        let more = 1e-9 * (all.lo.abs().max(all.hi.abs()) + (all.hi - all.lo)).max_element();
+        Self { lo: all.lo - more, hi: all.hi + more }
+    }
+
+    fn with(self, other: Self) -> Self {
+        Self { lo: self.lo.min(other.lo), hi: self.hi.max(other.hi) }
+    }
+
+    /// Where a ray enters it, if that is not beyond `t_max`.
+    fn entered(&self, origin: DVec3, inverse: DVec3, t_max: f64) -> Option<f64> {
+        let (mut near, mut far) = (0.0f64, t_max);
+        for k in 0..3 {
+            if inverse[k].is_infinite() {
+                if origin[k] < self.lo[k] || origin[k] > self.hi[k] {
+                    return None;
+                }
+                continue;
+            }
+            let (a, b) = ((self.lo[k] - origin[k]) * inverse[k], (self.hi[k] - origin[k]) * inverse[k]);
+            near = near.max(a.min(b));
+            far = far.min(a.max(b));
+        }
+        // Both are rounded.
+        (near <= far * (1.0 + 1e-12)).then_some(near)
+    }
+}
+
+/// A node: a model, or two nodes.
+#[derive(Clone, Copy, Debug)]
+enum Below {
+    Model(usize),
+    Two(usize, usize),
+}
+
+/// The tree; its root is the last node.
+#[derive(Clone, Debug)]
+pub(super) struct BoxTree {
+    nodes: Vec<(Bounds, Below)>,
+}
+
+impl BoxTree {
+    /// Over some boxes, at least one.
+    pub fn new(boxes: &[Bounds]) -> Self {
+        let mut tree = Self { nodes: Vec::with_capacity(2 * boxes.len()) };
+        let mut order: Vec<usize> = (0..boxes.len()).collect();
+        tree.build(boxes, &mut order);
+        tree
+    }
+
+    /// Halves at the middle of the longest side of the box of all centres.
+    fn build(&mut self, boxes: &[Bounds], order: &mut [usize]) -> usize {
+        let node = match *order {
+            [model] => (boxes[model], Below::Model(model)),
+            _ => {
+                let centre = |model: usize| boxes[model].lo + boxes[model].hi;
+                let of_centres = order.iter().map(|&model| Bounds { lo: centre(model), hi: centre(model) }).reduce(Bounds::with);
+                let sides = of_centres.map_or(DVec3::ZERO, |all| all.hi - all.lo);
+                let axis = (0..3).rev().max_by(|&a, &b| sides[a].total_cmp(&sides[b])).unwrap_or(0);
+                let half = order.len() / 2;
+                order.select_nth_unstable_by(half, |&a, &b| centre(a)[axis].total_cmp(&centre(b)[axis]).then(a.cmp(&b)));
+                let (lower, upper) = order.split_at_mut(half);
+                let two = [self.build(boxes, lower), self.build(boxes, upper)];
+                (self.nodes[two[0]].0.with(self.nodes[two[1]].0), Below::Two(two[0], two[1]))
+            }
+        };
+        self.nodes.push(node);
+        self.nodes.len() - 1
+    }
+
+    /// Gives `visit` the models whose boxes the ray enters, the nearest box first; it says beyond what distance nothing is wanted any more.
+    pub fn each(&self, origin: DVec3, direction: DVec3, mut t_max: f64, mut visit: impl FnMut(usize) -> f64) {
+        let inverse = direction.recip();
+        let entered = |node: usize, t_max: f64| self.nodes[node].0.entered(origin, inverse, t_max).map(|near| (near, node));
+        let mut waiting: Vec<(f64, usize)> = entered(self.nodes.len() - 1, t_max).into_iter().collect();
+        while let Some((near, node)) = waiting.pop() {
+            if near > t_max {
+                continue;
+            }
+            match self.nodes[node].1 {
+                Below::Model(model) => t_max = visit(model),
+                Below::Two(a, b) => {
+                    let mut two: Vec<_> = [a, b].into_iter().filter_map(|node| entered(node, t_max)).collect();
+                    two.sort_unstable_by(|a, b| b.0.total_cmp(&a.0).then(a.1.cmp(&b.1)));
+                    waiting.extend(two);
+                }
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Numbers from 0 to 1, the same every time.
+    fn numbers(mut state: u64) -> impl FnMut() -> f64 {
+        move || {
+            state = state.wrapping_mul(0x5851_F42D_4C95_7F2D).wrapping_add(0x1405_7B7E_F767_814F);
+            (state >> 11) as f64 / (1u64 << 53) as f64
+        }
+    }
+
+    #[test]
+    fn every_box_that_a_ray_enters_is_visited_once_and_no_other() {
+        let mut next = numbers(1);
+        for count in [1, 2, 3, 16, 200] {
+            let mut point = |of: f64| DVec3::new(next() - 0.5, next() - 0.5, next() - 0.5) * of;
+            let boxes: Vec<_> = (0..count).map(|_| point(10.0)).map(|at| Bounds::around([at, at + DVec3::splat(0.7)])).collect();
+            let tree = BoxTree::new(&boxes);
+            let (mut visits, mut early) = (0, 0);
+            for ray in 0..500 {
+                let (origin, mut direction) = (point(12.0), point(1.0));
+                direction[ray % 4 % 3] *= f64::from(u8::from(ray % 4 != 3));
+                let t_max = if ray % 2 == 0 { f64::INFINITY } else { 8.0 };
+                let mut seen = Vec::new();
+                tree.each(origin, direction, t_max, |model| {
+                    seen.push(model);
+                    t_max
+                });
+                let near = |model: usize| boxes[model].entered(origin, direction.recip(), t_max);
+                assert!(seen.is_sorted_by(|&a, &b| near(a) <= near(b)), "the nearest first");
+                visits += seen.len();
+                // By points along the ray, with all of the axes that it does not leave.
+                let inside = |model: usize, t: f64| {
+                    let p = origin + direction * t;
+                    (boxes[model].lo.cmple(p) & p.cmple(boxes[model].hi)).all()
+                };
+                for model in 0..count {
+                    let met = (0..800).any(|step| inside(model, f64::from(step) * 0.05) && f64::from(step) * 0.05 <= t_max);
+                    assert!(!met || seen.contains(&model), "{model} of {count} is left out");
+                }
+                let mut ordered = seen.clone();
+                ordered.sort_unstable();
+                ordered.dedup();
+                assert_eq!(ordered.len(), seen.len());
+                // Nothing is wanted behind the first.
+                let mut fewer = 0;
+                tree.each(origin, direction, t_max, |model| {
+                    fewer += 1;
+                    near(model).unwrap_or(0.0)
+                });
+                early += usize::from(fewer < seen.len());
+            }
+            assert!(visits > 0 || count < 16, "{count}: {visits}");
+            assert!(early > 0 || count < 16, "{count}: {early}");
+        }
+    }
+}
