@@ -7,24 +7,24 @@
 mod boxes;
 mod bsdf;
 mod cone;
-#[cfg(feature = "exr")]
-mod exr;
 mod file;
 mod film;
 mod integrate;
 mod light;
 mod material;
+#[cfg(feature = "exr")]
+mod open_exr;
 mod random;
 mod rays;
 mod world;
 
 pub use cone::{Cones, PathCone};
-#[cfg(feature = "exr")]
-pub use exr::ExrError;
 pub use file::{CameraTable, MOST_DEPTH, MOST_SAMPLES, MeshTable, ModelTable, PictureTable, SceneFile, SceneFileError};
 pub use film::{Film, LightCount, light_count, picture_error};
 pub use integrate::{PathCounts, PathTracer, Paths};
 pub use light::{Environment, Light};
 pub use material::Material;
+#[cfg(feature = "exr")]
+pub use open_exr::ExrError;
 pub use rays::PathFrame;
 pub use world::{Instance, Pose, Starts, World};

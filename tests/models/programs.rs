@@ -29,7 +29,7 @@ fn every_method_finds_the_front_of_a_cube_by_the_cubes_own_triangles() {
         for hit in scene.method(method.name).unwrap().cast(&rays) {
             assert!((hit.t - 4.0).abs() < 1e-8 && hit.front == 1, "{}: {hit:?}", method.name);
             // The side at z = 1 is the second.
-            assert!([2, 3].contains(&hit.triangle), "{}: {hit:?}", method.name);
+            assert!([2, 3].contains(&scene.source(hit.tree.cast_unsigned() as usize)), "{}: {hit:?}", method.name);
         }
     }
 }

@@ -203,7 +203,7 @@ const OF_FEATURES: [(&str, &[&str]); 10] = [
     ("clap_complete", &[]),
     ("clap_mangen", &[]),
     ("etcetera", &[]),
-    ("exr", &["paths::exr"]),
+    ("exr", &["paths::open_exr"]),
     ("indicatif", &[]),
     ("plotters", &["report::diagram"]),
     ("resvg", &["report::diagram"]),

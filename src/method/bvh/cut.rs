@@ -84,14 +84,7 @@ impl<'a> Corners<'a> {
 
     /// Whether triangles of these ids cover as much as the finest ones.
     pub fn are_covered_by(&self, ids: &[u32]) -> bool {
-        let is_one = |&id: &u32| {
-            id >> NUMBER_BITS <= self.levels && {
-                let triangle = cut_triangle(self.levels, id);
-                (triangle.tree as usize) < self.trees && cut_id(self.levels, triangle) == id
-            }
-        };
-        let below = |id: &u32| 1 << (2 * (id >> NUMBER_BITS));
-        ids.par_iter().all(is_one) && ids.par_iter().map(below).sum::<usize>() == self.count()
+        are_of_one_hierarchy(self.levels, ids) && covered(ids) == self.count()
     }
 
     /// Indices of the corners of a triangle among all points, which number fewer than 2^30.
@@ -110,6 +103,20 @@ impl<'a> Corners<'a> {
     /// What a BVH of these triangles is built of.
     pub fn primitives(&self, ids: impl IntoParallelIterator<Item = u32, Iter: IndexedParallelIterator>) -> Vec<Prim> {
         ids.into_par_iter().map(|id| Prim::new(&Box32::of_triangle(self.triangle(id)), id)).collect()
+    }
+}
+
+/// How many finest triangles lie below these.
+fn covered(ids: &[u32]) -> usize {
+    ids.par_iter().map(|id| 1 << (2 * (id >> NUMBER_BITS))).sum()
+}
+
+/// Whether these are ids of a hierarchy of `levels` splits that has no more triangles than they cover.
+pub(super) fn are_of_one_hierarchy(levels: u32, ids: &[u32]) -> bool {
+    let is_legal = |&id: &u32| levels <= MAX_LEVELS && id >> NUMBER_BITS <= levels && cut_id(levels, cut_triangle(levels, id)) == id;
+    ids.par_iter().all(is_legal) && {
+        let count = covered(ids);
+        ids.par_iter().all(|id| ((id & ((1 << NUMBER_BITS) - 1)) as usize) < count)
     }
 }
 

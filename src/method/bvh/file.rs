@@ -15,6 +15,7 @@
 //!
 //! All numbers are little-endian. A file is a shortcut, not a source: whatever is not as it should be makes it none.
 
+use super::cut::are_of_one_hierarchy;
 use super::{FullNodes, FullOptions, FullTree, LeafLayout};
 use crate::bvh::{BvhChild32, MAX_DEPTH, MAX_DEPTH_OF_SIX, Node6, Node16, Node32, Options};
 use crate::format::{BvhChild, BvhNode, ChildRef, FileSection, Line, Scene, SixNode};
@@ -123,8 +124,7 @@ impl FullTree {
     fn is_sound(&self) -> bool {
         let triangles = self.ids.len() as u64;
         let count = self.nodes.len();
-        // Their ids are checked where leaves are made of them.
-        if count == 0 {
+        if count == 0 || !are_of_one_hierarchy(self.levels, &self.ids) {
             return false;
         }
         // Of each line of leaf blocks the lines of the block that begins there, or 0.
@@ -292,10 +292,12 @@ mod tests {
             let options = FullOptions::new(size, NodeBoxes::Local, layout);
             xxh3_64(&file(&builder.tree(&options).unwrap()))
         };
-        let six = FullOptions::new(16, NodeBoxes::Six, LeafLayout::Block);
-        assert_eq!(xxh3_64(&file(&builder.tree(&six).unwrap())), 0x7338735074289ac5);
+        let six = xxh3_64(&file(&builder.tree(&FullOptions::new(16, NodeBoxes::Six, LeafLayout::Block)).unwrap()));
         let sums = [(1, LeafLayout::Indexed), (2, LeafLayout::Line), (4, LeafLayout::Line), (16, LeafLayout::Block)].map(of);
-        assert_eq!((VERSION, sums), (3, [0xf369c247788c18e, 0xd08305be03852c77, 0x10b4048ebe679560, 0x60b7969f2ea66fe6]));
+        assert_eq!(
+            (VERSION, six, sums),
+            (4, 0x7338735074289ac5, [0xf369c247788c18e, 0xd08305be03852c77, 0x10b4048ebe679560, 0x60b7969f2ea66fe6])
+        );
     }
 
     proptest! {
