@@ -296,7 +296,7 @@ mod tests {
         let sums = [(1, LeafLayout::Indexed), (2, LeafLayout::Line), (4, LeafLayout::Line), (16, LeafLayout::Block)].map(of);
         assert_eq!(
             (VERSION, six, sums),
-            (4, 0x7338735074289ac5, [0xf369c247788c18e, 0xd08305be03852c77, 0x10b4048ebe679560, 0x60b7969f2ea66fe6])
+            (4, 0xa38f0713c5f5b7cd, [0x63c49df4f1ae6ed0, 0x5547fcf4f0167064, 0xf4c49ead359ca61d, 0x48ab57d4ddbec6c2])
         );
     }
 
