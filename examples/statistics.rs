@@ -1,10 +1,8 @@
 //! Statistics of one's own, from the steps that a traversal states: how many entries of their stacks rays drop, method by method. `cargo run --release --example statistics`.
 
-use lodray::bvh::over_trees;
-use lodray::format::{self, SceneInfo};
+use lodray::format::Scene;
 use lodray::mesh::procedural::{self, Options};
-use lodray::method::bvh::NoStore;
-use lodray::method::{Knobs, METHODS};
+use lodray::method::METHODS;
 use lodray::rays::{Camera, ModelSpace, Sight, View};
 use lodray::step::{Act, Step, StepSink};
 use std::error::Error;
@@ -30,14 +28,13 @@ impl StepSink for Runs {
 }
 
 fn main() -> Result<(), Box<dyn Error>> {
-    let surface = procedural::generate(&Options { levels: Some(4), ..Options::new(procedural::Scene::Terrain) })?;
-    let scene = format::build(&surface, SceneInfo::default(), over_trees)?;
+    let scene = Scene::generate(&Options { levels: Some(4), ..Options::new(procedural::Scene::Terrain) })?;
     let space = ModelSpace::of(&scene);
     let camera = Camera::new(&View { distance: Some(2.0), ..View::default() }, &space, 64, 64)?;
     let sight = Sight::new(&camera, &space, 1.0);
     for registered in METHODS.iter().filter(|method| !method.of_input) {
-        let method = (registered.make)(&scene, &Knobs::default(), &NoStore)?;
-        let mut tracer = method.tracer(&sight);
+        let method = scene.method(registered.name)?;
+        let mut tracer = method.method().tracer(&sight);
         let mut runs = Runs::default();
         for (x, y) in (0..camera.height).flat_map(|y| (0..camera.width).map(move |x| (x, y))) {
             tracer.heard(&camera.ray(x, y), &mut runs);

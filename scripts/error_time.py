@@ -12,6 +12,7 @@ from pathlib import Path
 ROOT = Path(__file__).resolve().parent.parent
 TEMPLATE = ROOT / "scripts" / "errors" / "document.md"
 OURS = "lod"
+OVER_MESH = ["input-bvh", "input-bvh6"]
 DIAGRAM = "surface-p99-time"
 
 
@@ -69,15 +70,21 @@ def at_level(run, error, level, compute):
                 break
             entry = found[0]
             mark = "*" if entry.get("why") == "always below" else ""
-            for method in run.others:
-                cells.append(shown(ratios(entry)[method]["ratio"]) + mark)
+            of = ratios(entry)
+            ratio = lambda method: of.get(method, {"ratio": None})["ratio"]
+            # Over the user's mesh where there is one.
+            over = [method for method in OVER_MESH if ratio(method) is not None] or ["bvh", "bvh6"]
+            bvhs = [ratio(method) for method in over if ratio(method) is not None]
+            cells.append(shown(min(bvhs, default=None)) + mark)
+            for method in run.rules:
+                cells.append(shown(ratio(method)) + mark)
             for method in run.rules:
                 rule = ratios(entry, "own_rule").get(method, {"ratio": None, "why": None})
                 cells.append(shown(rule["ratio"]) + ("+" if rule["why"] else ""))
         else:
             rows.append(cells)
     names = {"time": "time", "energy": "energy", "dram-lines": "DRAM"}
-    return table(["scene", "radii"] + [f"{names[c]}, {m}" for c in costs for m in run.others + [f"{r} by its rule" for r in run.rules]], rows)
+    return table(["scene", "radii"] + [f"{names[c]}, {m}" for c in costs for m in ["BVH"] + run.rules + [f"{r} by its rule" for r in run.rules]], rows)
 
 
 def summary(run, error, levels, compute, cost):

@@ -6,7 +6,7 @@ use super::folder::{Overrule, RunFolder, one_run};
 use super::generate;
 use super::method::Chosen;
 use super::output::{busy, count, grouped, print_json, print_table, remark, write_file};
-use super::pass::{Pass, PassRays, Target, machine};
+use super::pass::{self, machine};
 use super::pictures::{Shot, shoot};
 use super::report;
 use super::simulate::amount;
@@ -22,6 +22,7 @@ use lodray::rays::{Camera, ModelSpace, View};
 use lodray::report::page::{Documents, Simulation};
 use lodray::report::result::SimResult;
 use lodray::run::Compute;
+use lodray::scene::{Pass, PassRays, Target};
 use serde::Serialize;
 use std::path::PathBuf;
 use std::process::ExitCode;
@@ -87,9 +88,16 @@ impl Stage {
         let full = FullResolution { scene: &self.scene, space: &self.space, surface: &self.surface, pixels: &truth.frame.pixels };
         let error =
             SurfaceError::of(&self.scene, &shot.frame.pixels, &full, camera, STRIDE).surface.map_or(0.0, |error| error.percentile_99);
-        let pass = Pass { scene: &self.scene, space: &self.space, chosen, method, rays: PassRays::Camera(*camera) };
+        let pass = Pass {
+            scene: &self.scene,
+            space: &self.space,
+            registered: chosen.method,
+            knobs: &chosen.knobs,
+            method,
+            rays: PassRays::Camera(*camera),
+        };
         let target = Target { machine: machine(MACHINE, &[], "")?, compute: Compute::Free, window: None };
-        let (result, _) = pass.run(&[target])?.pop().context("no result")??;
+        let (result, _) = pass::run(&pass, &[target]).pop().context("no result")??;
         Ok(Outcome { name, shot, result, error })
     }
 }

@@ -2,11 +2,11 @@
 
 use super::args::{CameraArgs, degrees, whole};
 use super::output::toml_in_one_line;
-use super::pass::PassRays;
 use anyhow::Context;
 use clap::Args;
 use glam::DVec3;
 use lodray::rays::{Camera, CameraPath, ModelSpace};
+use lodray::scene::PassRays;
 use serde::Deserialize;
 use std::path::PathBuf;
 

@@ -2,6 +2,7 @@
 
 use crate::bvh::over_trees;
 use crate::format::{self, Scene, SceneError, SceneInfo};
+use crate::mesh::procedural::{self, GenerateError};
 use crate::mesh::{
     BoundKind, DEFAULT_CREASE_ANGLE, MeshError, RemeshError, RemeshOptions, RemeshReport, Surface, TriangleMesh, corner_normals, remesh,
 };
@@ -63,6 +64,9 @@ pub enum BuildError {
     /// It is none.
     #[error(transparent)]
     Mesh(#[from] MeshError),
+    /// It cannot be generated.
+    #[error(transparent)]
+    Generate(#[from] GenerateError),
     /// It cannot be remeshed so.
     #[error(transparent)]
     Remesh(#[from] RemeshError),
@@ -81,6 +85,16 @@ impl Scene {
     /// An index out of range, a coordinate that is not finite, no triangle; a mesh that cannot be remeshed so; more triangles than there can be.
     pub fn build(vertices: &[[f64; 3]], faces: &[[u32; 3]], options: &BuildOptions) -> Result<Self, BuildError> {
         Self::of_mesh(&TriangleMesh::from_parts(vertices, faces, &[], Vec::new())?, options, &|_, _, _| ())
+    }
+
+    /// A procedural scene.
+    ///
+    /// # Errors
+    /// Options that cannot be, or more triangles than there can be.
+    pub fn generate(options: &procedural::Options) -> Result<Self, BuildError> {
+        let surface = procedural::generate(options)?;
+        let form = BuildOptions { name: options.scene.name().to_owned(), vertices: VertexForm::default(), ..BuildOptions::own_triangles() };
+        Ok(Self::of_surface(&surface, &form.with_origin("generate", json!(options)))?)
     }
 
     /// The scene of a mesh. `progress` is told what is being done, and how many steps of it are done, of how many.

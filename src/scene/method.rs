@@ -80,7 +80,12 @@ impl SceneMethod {
         self.registered
     }
 
-    /// The method itself, for frames on machines.
+    /// Its knobs, those that were turned.
+    pub fn knobs(&self) -> &Knobs {
+        &self.knobs
+    }
+
+    /// The method itself.
     pub fn method(&self) -> &dyn Method {
         &*self.method
     }

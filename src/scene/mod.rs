@@ -1,4 +1,4 @@
-//! Scenes for programs: built from a mesh or opened, ways to find hits made by name, rays cast.
+//! Scenes for programs: built from a mesh or opened, ways to find hits made by name, rays cast, frames simulated.
 //!
 //! ```no_run
 //! use lodray::format::Scene;
@@ -15,6 +15,8 @@
 
 mod build;
 mod method;
+mod simulate;
 
 pub use build::{BuildError, BuildOptions, moved_percent};
 pub use method::{MethodError, SceneMethod};
+pub use simulate::{Outcome, Pass, PassRays, SimulateError, Target};

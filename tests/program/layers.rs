@@ -27,11 +27,11 @@ const FLOORS: [&str; 24] = [
     "sim::replay",
     "sim",
     "run",
-    "scene",
     "plan",
     "picture",
     "paths",
     "report",
+    "scene",
     "lab",
 ];
 

@@ -2,13 +2,13 @@
 
 use super::measure::{Bench, Stage};
 use crate::cli::frames::Turning;
-use crate::cli::pass::{Pass, PassRays};
 use crate::cli::sweep::ViewJob;
 use crate::cli::workers::at_once;
 use lodray::num::LINE_BYTES;
 use lodray::rays::Camera;
 use lodray::report::error_time::{Costs, Energy, SizeCosts, WarmCosts};
 use lodray::report::result::SimResult;
+use lodray::scene::{Pass, PassRays};
 
 /// Sizes of the frame at which methods are compared, where they are no larger than the view's own, which is the last.
 const SIZES: [[u32; 2]; 5] = [[128, 128], [256, 256], [512, 512], [1024, 1024], [1920, 1080]];
@@ -17,8 +17,8 @@ const SIZES: [[u32; 2]; 5] = [[128, 128], [256, 256], [512, 512], [1024, 1024], 
 pub(super) fn simulated(stage: &Stage<'_>, frame: &Camera, turning: Option<Turning>) -> anyhow::Result<Vec<SimResult>> {
     let &Stage { scene, space, chosen, method, targets, .. } = stage;
     let run = |rays| -> anyhow::Result<Vec<SimResult>> {
-        let pass = Pass { scene, space, chosen, method, rays };
-        pass.watched(targets, &mut |_| ())?.into_iter().map(|outcome| Ok(outcome?.0)).collect()
+        let pass = Pass { scene, space, registered: chosen.method, knobs: &chosen.knobs, method, rays };
+        pass.run(targets, &mut |_| ()).into_iter().map(|outcome| Ok(outcome?.0)).collect()
     };
     let mut results = run(PassRays::Camera(*frame))?;
     if let Some(turning) = turning {

@@ -3,7 +3,6 @@
 use super::measure::{Bench, Cameras, Stage};
 use crate::cli::method::Chosen;
 use crate::cli::output::busy;
-use crate::cli::pass::Target;
 use crate::cli::plan::in_machine;
 use image::RgbImage;
 use lodray::bvh::over_trees;
@@ -14,6 +13,7 @@ use lodray::picture::Frame;
 use lodray::plan::{Measure, Narrowest, Plan, Reach, Within};
 use lodray::rays::{Camera, ModelSpace};
 use lodray::report::error_time::LeftOut;
+use lodray::scene::Target;
 
 /// A scene with less in it, and its unit.
 struct Less {

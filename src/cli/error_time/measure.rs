@@ -9,7 +9,6 @@ use super::row::{BuildTime, Measured};
 use crate::cli::cache::Cache;
 use crate::cli::method::Chosen;
 use crate::cli::output::{busy, progress};
-use crate::cli::pass::Target;
 use crate::cli::pictures::shoot_with;
 use crate::cli::sweep::ViewJob;
 use crate::cli::workers::at_once;
@@ -23,6 +22,7 @@ use lodray::rays::{Camera, ModelSpace, Sight};
 use lodray::report::error_time::{Appearance, Converged, PictureEntry, Point, SceneEntry, Shift, TraceGrid, ViewEntry};
 use lodray::report::inspect;
 use lodray::report::result::SimResult;
+use lodray::scene::Target;
 use std::path::Path;
 use std::time::Instant;
 

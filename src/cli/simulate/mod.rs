@@ -15,7 +15,7 @@ use super::job;
 use super::method::MachineMethod;
 use super::names::named;
 use super::output::{check_target, explain, grouped, open_any, print_json, print_table, remark, warn, write_file};
-use super::pass::{Pass, PassRays, Target, machine, machine_files};
+use super::pass::{self, machine, machine_files};
 use super::plan;
 use super::report::PageArgs;
 use anyhow::Context;
@@ -24,6 +24,7 @@ use lodray::rays::{ModelSpace, RayFile};
 use lodray::report::page::{Documents, Simulation};
 use lodray::report::result::SimResult;
 use lodray::run::{self, Compute};
+use lodray::scene::{Pass, PassRays, Target};
 use lodray::sim::replay::Window;
 use std::path::PathBuf;
 use std::process::ExitCode;
@@ -146,9 +147,9 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
         plan::check(plan, &args.scene, &scene, rays.source(), chosen.delta())?;
     }
     let (method, _) = chosen.make(&scene, &Cache::new(&args.cache, args.out.as_deref())?)?;
-    let pass = Pass { scene: &scene, space: &space, chosen, method: &*method, rays };
+    let pass = Pass { scene: &scene, space: &space, registered: chosen.method, knobs: &chosen.knobs, method: &*method, rays };
     let targets: Vec<_> = machines.into_iter().map(|machine| Target { machine, compute: args.compute, window: args.window }).collect();
-    let outcomes = pass.run(&targets)?.into_iter().collect::<anyhow::Result<Vec<_>>>()?;
+    let outcomes = pass::run(&pass, &targets).into_iter().collect::<Result<Vec<_>, _>>()?;
     let (results, mut waves): (Vec<SimResult>, Vec<_>) = outcomes.into_iter().unzip();
     if let (Some(window), Some(result)) = (&args.window, results.first()) {
         check_window(*window, result.cycles.saturating_sub(1))?;

@@ -16,7 +16,7 @@ use super::job;
 use super::job_lines::{JobLines, keep_aside};
 use super::method::Chosen;
 use super::output::{check_normals, check_target, count, print_line, remark, write_file};
-use super::pass::{Outcome, Pass, PassRays, Target};
+use super::pass;
 use super::pictures::{Shot, shoot};
 use super::render::compare_shots;
 use super::report::PageArgs;
@@ -25,6 +25,7 @@ use lodray::format::Scene;
 use lodray::method::{Method, reference};
 use lodray::rays::{Camera, ModelSpace};
 use lodray::report::page::{Documents, ImageFigures, Simulation};
+use lodray::scene::{Outcome, Pass, PassRays, Target};
 use std::collections::HashSet;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
@@ -220,10 +221,17 @@ impl Workshop<'_> {
         }
         let method = self.made(group.chosen)?;
         let image = if self.jobs.error { Some(self.image_error(group, &*method, &camera)?) } else { None };
-        let pass = Pass { scene: self.scene, space: &self.space, chosen: group.chosen, method: &*method, rays: PassRays::Camera(camera) };
+        let pass = Pass {
+            scene: self.scene,
+            space: &self.space,
+            registered: group.chosen.method,
+            knobs: &group.chosen.knobs,
+            method: &*method,
+            rays: PassRays::Camera(camera),
+        };
         let targets: Vec<_> = group.jobs.iter().map(|(_, target)| target.clone()).collect();
         let row = |(result, (key, _)): (Outcome, &(String, Target))| match result {
-            Err(error) => failure(key, &error),
+            Err(error) => failure(key, &error.into()),
             Ok((mut result, _)) => {
                 if !self.jobs.intervals {
                     result.intervals = Vec::new();
@@ -231,7 +239,7 @@ impl Workshop<'_> {
                 Row { key: key.clone(), scene: String::new(), result: Some(result), image, error: None }
             }
         };
-        Ok(pass.run(&targets)?.into_iter().zip(&group.jobs).map(row).collect())
+        Ok(pass::run(&pass, &targets).into_iter().zip(&group.jobs).map(row).collect())
     }
 
     /// The method that is made for these choices, now or before.
