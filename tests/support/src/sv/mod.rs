@@ -1,14 +1,10 @@
-//! As much of SystemVerilog as `rtl/` uses: the package's numbers, structs and enums, and the heads of modules.
+//! As much of SystemVerilog as `rtl/` uses for the heads of its modules.
 
 mod donts;
-mod expression;
 mod module;
-mod package;
-mod tokens;
 
 pub use donts::donts;
 pub use module::{Module, Port};
-pub use package::{Package, Shape, StructField};
 
 /// What is wrong, with the place it is at.
 pub type Result<T> = std::result::Result<T, String>;
