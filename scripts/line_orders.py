@@ -1,4 +1,4 @@
-"""Orders in which the lines of a scene could lie: cycles, energy and DRAM reads with each (haydel2023, compute free, delta 1) over those where each tree lies whole.
+"""Orders in which the lines of a scene could lie: cycles, energy and DRAM reads with each (haydel2023, compute free, delta 1) over those in the first (as a rule: each tree whole).
 
 Terrains are generated; scans can be added as scene files. What rays hit is the same in all orders.
 """
@@ -20,6 +20,7 @@ def main():
     parser = argparse.ArgumentParser(prog="scripts/line-orders", description=__doc__.split("\n", maxsplit=1)[0])
     parser.add_argument("--program", default="target/release/lodray", help="lodray, built (default target/release/lodray)")
     parser.add_argument("--size", default="1024x1024", help="size of the frames (default 1024x1024)")
+    parser.add_argument("--method", default="lod", help="method whose lines are ordered (default lod)")
     parser.add_argument("--knob", default="line-layout", help="option of simulate that is varied (default line-layout)")
     parser.add_argument("--orders", default=",".join(ORDERS), help="its values, the first being what others are measured by")
     parser.add_argument("--scene", action="append", default=[], help="scene file, seen from 1.5, 4 and 16 radii; may be repeated")
@@ -28,7 +29,7 @@ def main():
 
     def simulate(scene, distance, order):
         command = [program, "simulate", scene, "--machine", "haydel2023", "--compute", "free", "--distance", distance]
-        command += ["--size", args.size, f"--{args.knob}", order, "--json"]
+        command += ["--method", args.method, "--size", args.size, f"--{args.knob}", order, "--json"]
         result = json.loads(subprocess.run(command, check=True, capture_output=True, text=True).stdout)
         return [result["cycles"], result["energy"]["total"], result["dram"]["reads"]]
 

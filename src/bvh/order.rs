@@ -1,6 +1,6 @@
-//! Another order of a tree's nodes in memory: by treelets, parts of the tree that a ray is likely to go through together.
+//! Other orders of a tree's nodes in memory. In all of them siblings stay side by side and behind their parents, and the root stays first.
 
-use super::{Child, WideNode};
+use super::{Child, MAX_DEPTH, MAX_DEPTH_OF_SIX, WideNode};
 use std::cmp::Reverse;
 use std::collections::BinaryHeap;
 
@@ -30,11 +30,14 @@ impl Siblings {
     }
 }
 
-/// The nodes in treelets of at most `size` nodes, at least `W`: each begins with siblings and goes on with those of largest area that are next below it, as
-/// long as they fit. Treelets follow each other depth first. Siblings stay side by side and behind their parents; the root stays first.
+/// The root as siblings.
+const ROOT: Siblings = Siblings { area: 0, first: Reverse(0), count: 1 };
+
+/// The nodes in treelets of at most `size` nodes, at least `W`, parts of the tree that a ray is likely to go through together: each begins with siblings and
+/// goes on with those of largest area that are next below it, as long as they fit. Treelets follow each other depth first.
 pub(crate) fn by_treelets<const W: usize>(nodes: &[WideNode<W>], size: usize) -> Vec<WideNode<W>> {
     let mut order: Vec<u32> = Vec::with_capacity(nodes.len());
-    let mut begins = vec![Siblings { area: 0, first: Reverse(0), count: 1 }];
+    let mut begins = vec![ROOT];
     while let Some(begin) = begins.pop() {
         let end = order.len() + size;
         let mut next = BinaryHeap::from([begin]);
@@ -54,9 +57,47 @@ pub(crate) fn by_treelets<const W: usize>(nodes: &[WideNode<W>], size: usize) ->
         rest.sort_unstable_by_key(|siblings| siblings.first);
         begins.extend(rest);
     }
+    moved(nodes, &order)
+}
+
+/// The nodes level by level: what far rays read of all of the tree is one piece.
+pub(crate) fn by_levels<const W: usize>(nodes: &[WideNode<W>]) -> Vec<WideNode<W>> {
+    let mut order: Vec<u32> = vec![0];
+    let mut at = 0;
+    while at < order.len() {
+        if let Some(Siblings { first: Reverse(first), count, .. }) = Siblings::below(&nodes[order[at] as usize]) {
+            order.extend(first..first + count);
+        }
+        at += 1;
+    }
+    moved(nodes, &order)
+}
+
+/// Van Emde Boas' order: the upper half of the levels, then each subtree below them, each part again so. Whatever the size of a line or a row, few of them have
+/// a path.
+pub(crate) fn by_halves<const W: usize>(nodes: &[WideNode<W>]) -> Vec<WideNode<W>> {
+    /// Puts so many levels of what begins with `siblings`; gives what is next below.
+    fn put<const W: usize>(nodes: &[WideNode<W>], siblings: Siblings, levels: u32, order: &mut Vec<u32>) -> Vec<Siblings> {
+        if levels == 1 {
+            let Siblings { first: Reverse(first), count, .. } = siblings;
+            order.extend(first..first + count);
+            return (first..first + count).filter_map(|at| Siblings::below(&nodes[at as usize])).collect();
+        }
+        let upper = put(nodes, siblings, levels / 2, order);
+        upper.into_iter().flat_map(|below| put(nodes, below, levels - levels / 2, order)).collect()
+    }
+    let mut order = Vec::with_capacity(nodes.len());
+    // As many as no path has.
+    let below = put(nodes, ROOT, 2 * MAX_DEPTH.max(MAX_DEPTH_OF_SIX).next_power_of_two(), &mut order);
+    debug_assert!(below.is_empty() && order.len() == nodes.len());
+    moved(nodes, &order)
+}
+
+/// The nodes in this order.
+fn moved<const W: usize>(nodes: &[WideNode<W>], order: &[u32]) -> Vec<WideNode<W>> {
     let mut places = vec![0; nodes.len()];
     order.iter().zip(0..).for_each(|(&at, place)| places[at as usize] = place);
-    let moved = |&at: &u32| {
+    let node = |&at: &u32| {
         let mut node = nodes[at as usize];
         for child in &mut node.children {
             if let Child::Inner(below) = child {
@@ -65,7 +106,7 @@ pub(crate) fn by_treelets<const W: usize>(nodes: &[WideNode<W>], size: usize) ->
         }
         node
     };
-    order.iter().map(moved).collect()
+    order.iter().map(node).collect()
 }
 
 #[cfg(test)]
@@ -101,8 +142,39 @@ mod tests {
     }
 
     #[test]
+    fn levels_and_halves_hold_the_same_tree() {
+        let cube = |k: i32| {
+            let corner = [k.wrapping_mul(7919) % 5000, k.wrapping_mul(104_729) % 5000, k % 70].map(|c| c * 16);
+            Box32 { lo: corner, hi: corner.map(|c| c + 640) }
+        };
+        let boxes: Vec<Box32> = (0..20_000).map(cube).collect();
+        let tree = build(&boxes, &Options::with_leaf(2)).unwrap();
+        for nodes in [by_levels(&tree.nodes), by_halves(&tree.nodes)] {
+            assert_eq!(nodes.len(), tree.nodes.len());
+            assert!(nodes != tree.nodes);
+            let moved = QuadTree { nodes, order: tree.order.clone() };
+            assert_eq!(check(&moved, &boxes), Ok(()));
+            for (at, node) in moved.nodes.iter().enumerate() {
+                let inner: Vec<u32> = node.children.iter().filter_map(|c| if let Child::Inner(c) = c { Some(*c) } else { None }).collect();
+                assert!(inner.windows(2).all(|pair| pair[1] == pair[0] + 1) && inner.iter().all(|&c| c as usize > at));
+            }
+        }
+        // Level by level, depths never fall.
+        let nodes = by_levels(&tree.nodes);
+        let mut depths = vec![0; nodes.len()];
+        for (at, node) in nodes.iter().enumerate() {
+            for child in &node.children {
+                if let Child::Inner(below) = child {
+                    depths[*below as usize] = depths[at] + 1;
+                }
+            }
+        }
+        assert!(depths.is_sorted());
+    }
+
+    #[test]
     fn a_root_alone_stays() {
         let tree = build(&[Box32::default()], &Options::with_leaf(1)).unwrap();
-        assert!(by_treelets(&tree.nodes, 4) == tree.nodes);
+        assert!([by_treelets(&tree.nodes, 4), by_levels(&tree.nodes), by_halves(&tree.nodes)].iter().all(|nodes| *nodes == tree.nodes));
     }
 }

@@ -9,7 +9,7 @@ use super::{LeafLayout, Leaves};
 use crate::bvh::build::{Binary, Prim, binary_tree};
 use crate::bvh::collapse::{self, BinaryTree};
 use crate::bvh::foreign::adopt;
-use crate::bvh::order::by_treelets;
+use crate::bvh::order::{by_halves, by_levels, by_treelets};
 use crate::bvh::plan::LeafCost;
 use crate::bvh::{
     BinaryNode, BvhError, Child, Costs, MAX_DEPTH, MAX_DEPTH_OF_SIX, Node6, Node16, Node32, Options, WideNode, check_count, check_options,
@@ -61,6 +61,10 @@ pub enum NodeOrder {
     Depth,
     /// By treelets that fill a row of DRAM: 2 KB.
     Treelets,
+    /// Level by level.
+    Levels,
+    /// Van Emde Boas': the upper half of the levels, then what is below each of their nodes, each again so.
+    VanEmdeBoas,
 }
 
 impl NodeOrder {
@@ -69,6 +73,8 @@ impl NodeOrder {
         match name {
             "depth" => Some(Self::Depth),
             "treelets" => Some(Self::Treelets),
+            "levels" => Some(Self::Levels),
+            "veb" => Some(Self::VanEmdeBoas),
             _ => None,
         }
     }
@@ -300,8 +306,11 @@ impl<'a> FullBuilder<'a> {
         depth: u32,
     ) -> Result<(Vec<WideNode<W>>, (Vec<u32>, Vec<BlockSize>)), BvhError> {
         let mut nodes = self.nodes(options, depth, |n: &WideNode<W>| *n)?;
-        if options.order == NodeOrder::Treelets {
-            nodes = by_treelets(&nodes, TREELET_BYTES / options.boxes.node_bytes());
+        match options.order {
+            NodeOrder::Depth => {}
+            NodeOrder::Treelets => nodes = by_treelets(&nodes, TREELET_BYTES / options.boxes.node_bytes()),
+            NodeOrder::Levels => nodes = by_levels(&nodes),
+            NodeOrder::VanEmdeBoas => nodes = by_halves(&nodes),
         }
         let ids: Vec<u32> = self.prims.par_iter().map(|p| p.id).collect();
         let ids = side_by_side(&mut nodes, &ids);

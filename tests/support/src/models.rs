@@ -233,9 +233,9 @@ pub fn full_bvhs(h: &Hierarchy) -> Vec<FullBvh> {
     let variants = [
         (NodeBoxes::Local, LeafLayout::Line, 4, NodeOrder::Depth),
         (NodeBoxes::Codes, LeafLayout::Indexed, 2, NodeOrder::Treelets),
-        (NodeBoxes::Wide, LeafLayout::Packed, 1, NodeOrder::Depth),
+        (NodeBoxes::Wide, LeafLayout::Packed, 1, NodeOrder::Levels),
         (NodeBoxes::Local, LeafLayout::Block, 16, NodeOrder::Treelets),
-        (NodeBoxes::Wide, LeafLayout::Block, 8, NodeOrder::Treelets),
+        (NodeBoxes::Wide, LeafLayout::Block, 8, NodeOrder::VanEmdeBoas),
         (NodeBoxes::Six, LeafLayout::Block, 16, NodeOrder::Treelets),
         (NodeBoxes::Six, LeafLayout::Indexed, 1, NodeOrder::Depth),
     ];
