@@ -3,7 +3,7 @@
 use crate::bvh::BvhError;
 use crate::format::Scene;
 use crate::method::bvh::NoStore;
-use crate::method::{KnobError, Knobs, METHODS, Method, Registered, find};
+use crate::method::{KnobError, Knobs, METHODS, Method, Registered, find, lod};
 use crate::rays::{ModelSpace, RaySource, Sight};
 use crate::run::{HitRow, cast};
 use thiserror::Error;
@@ -25,6 +25,9 @@ pub enum MethodError {
     /// The knob has no such value.
     #[error(transparent)]
     Value(#[from] KnobError),
+    /// The scene was pruned for a job.
+    #[error("the scene was pruned for a job: {0} needs the full resolution, and there is but what lod's rays read")]
+    Pruned(&'static str),
     /// What it needs cannot be built.
     #[error(transparent)]
     Bvh(#[from] BvhError),
@@ -57,6 +60,9 @@ impl Scene {
         for &(name, value) in knobs {
             let knob = registered.knobs.iter().find(|knob| knob.name == name);
             turned.set(knob.ok_or_else(|| MethodError::NoKnob { method: registered, knob: name.to_owned() })?, value)?;
+        }
+        if !self.meta().is_whole() && registered.name != lod::METHOD.name {
+            return Err(MethodError::Pruned(registered.name));
         }
         let method = (registered.make)(self, &turned, &NoStore)?;
         Ok(SceneMethod { scene: self.clone(), registered, knobs: turned, method })
