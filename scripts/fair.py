@@ -202,7 +202,7 @@ def lenient(frames, more):
 
 def chunks(frames, folder):
     """Levels by object and by chunk over ours: with the rule at delta 1, and in hindsight."""
-    runs = {chunk: json.loads((folder / f"chunks-{chunk}" / "error-time.json").read_text()) for chunk in ["object", *"2345"]}
+    runs = {chunk: json.loads((folder / f"chunks-{chunk}" / "error-time.json").read_text()) for chunk in ["object", *"12345"]}
     error = lambda point: point["geometry"]["surface"]["percentile_99"]
     rows = []
     for view in range(len(frames.data["views"])):

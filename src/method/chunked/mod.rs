@@ -28,7 +28,7 @@ pub static CHUNK: Knob = Knob {
     name: "chunk",
     value_name: "CHUNK",
     help: "What has a level of its own in the chunked method: object, or how often the triangles of the hierarchy are split that make a chunk, 1 to 10",
-    default: Some("4"),
+    default: Some("2"),
     words: &[],
     of_frame: false,
     allows: |value| shape(value).map(drop).ok_or_else(|| format!("'{value}' is not object, or a number of splits from 1 to {MAX_LEVELS}")),
