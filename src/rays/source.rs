@@ -164,4 +164,20 @@ mod tests {
         let inside = Camera::new(&View { eye: Some([2.0, 1.0, 3.0]), ..view }, &space, 4, 4).unwrap();
         assert_eq!(Sight::new(&inside, &space, 2.0).least_radius, 0.0);
     }
+
+    #[test]
+    fn no_cone_of_any_eye_is_thinner_within_a_box() {
+        let near = Eyes::of(&Query::new([3.0, 0.0, 0.0], [1.0, 0.0, 0.0]).with_cone(0.5, 0.1));
+        let far = Eyes::of(&Query::new([0.0, 9.0, 0.0], [1.0, 0.0, 0.0]).with_cone(0.25, 0.2));
+        let unit = ([-1.0; 3], [1.0; 3]);
+        let radius = |eyes: Eyes| eyes.least_radius(unit.0, unit.1);
+        assert_eq!([radius(near), radius(far)], [0.5 + 0.1 * 2.0, 0.25 + 0.2 * 8.0]);
+        // The box of both holds the unit box's middle: what is left is the least of each.
+        let both = near.with(far);
+        assert_eq!((both, radius(both)), (Eyes { lo: [0.0; 3], hi: [3.0, 9.0, 0.0], radius: 0.25, tan_theta: 0.1 }, 0.25));
+        assert_eq!(near.with(Eyes::NOWHERE), near);
+        assert_eq!((radius(Eyes::ANYWHERE), radius(Eyes::NOWHERE)), (0.0, f64::INFINITY));
+        let space = ModelSpace { placement: Placement { offset: [1.0, 0.0, 0.0], scale: 0.5 }, lo: [0; 3], hi: [1; 3], zeros: [0; 2] };
+        assert_eq!(near.in_units(&space), Eyes { lo: [4.0, 0.0, 0.0], hi: [4.0, 0.0, 0.0], radius: 1.0, tan_theta: 0.1 });
+    }
 }
