@@ -216,7 +216,9 @@ def chunks(frames, folder):
             continue
         ours = frames.points(view, "lod")[0]
         cycles = lambda entry: entry[1]["costs"][0]["cycles"]
-        rule = [entry for entry in points if float(entry[1]["knobs"]["delta"]) == 1]
+        # Settings that choose the same stand once, with the first delta: at delta 1 that of the largest up to it.
+        delta = lambda entry: float(entry[1]["knobs"]["delta"])
+        rule = [max((entry for entry in points if entry[0] == chunk and delta(entry) <= 1), key=delta) for chunk in runs]
         by_object = [entry for entry in rule if entry[0] == "object"]
         by_chunk = [entry for entry in rule if entry[0] != "object"]
         near = [entry for entry in points if error(entry[1]) <= error(ours)]
@@ -226,7 +228,7 @@ def chunks(frames, folder):
                 continue
             chunk, point = min(entries, key=cycles)
             over = [theirs / own for theirs, own in zip(costs(point), costs(ours))]
-            what = "objects" if chunk == "object" else f"{chunk} splits"
+            what = "objects" if chunk == "object" else "1 split" if chunk == "1" else f"{chunk} splits"
             rows.append(
                 [place(frames, view), name, f"{what}, delta {point['knobs']['delta']}", *map(shown, over), f"{error(point):.2f} / {error(ours):.2f}"]
                 + [f"{int(point['choices']['triangles']):,}", f"{int(point['choices']['open edges']):,}"]
