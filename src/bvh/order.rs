@@ -73,8 +73,8 @@ pub(crate) fn by_levels<const W: usize>(nodes: &[WideNode<W>]) -> Vec<WideNode<W
     moved(nodes, &order)
 }
 
-/// Van Emde Boas' order: the upper half of the levels, then each subtree below them, each part again so. Whatever the size of a line or a row, few of them have
-/// a path.
+/// Van Emde Boas' order: the upper levels, then each subtree below them, each part again so, cut at powers of two of levels. Whatever the size of a line or a
+/// row, few of them have a path.
 pub(crate) fn by_halves<const W: usize>(nodes: &[WideNode<W>]) -> Vec<WideNode<W>> {
     /// Puts so many levels of what begins with `siblings`; gives what is next below.
     fn put<const W: usize>(nodes: &[WideNode<W>], siblings: Siblings, levels: u32, order: &mut Vec<u32>) -> Vec<Siblings> {

@@ -64,9 +64,10 @@ Words of the table:
                       boxes whose planes have that many bits
   n a leaf            most triangles in a leaf; before it the leaf's layout, as
                       --leaf-layout of render has it
-  best BVH            the fewest lines of any row without 32-bit boxes
   of the mesh         over the triangles of the mesh file that the scene was
                       built from, not over the finest level
+  best BVH            the fewest lines of any row over the finest level without
+                      32-bit boxes; best BVH of the mesh, of any over the mesh
   L0                  nodes over base triangles and their records: what every
                       ray reads first
   mean level          of the triangles that rays hit: 0 is the base mesh, N full

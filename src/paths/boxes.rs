@@ -96,7 +96,7 @@ impl BoxTree {
                 Below::Model(model) => t_max = visit(model),
                 Below::Two(a, b) => {
                     let mut two: Vec<_> = [a, b].into_iter().filter_map(|node| entered(node, t_max)).collect();
-                    two.sort_unstable_by(|a, b| b.0.total_cmp(&a.0).then(a.1.cmp(&b.1)));
+                    two.sort_unstable_by(|a, b| b.0.total_cmp(&a.0).then(b.1.cmp(&a.1)));
                     waiting.extend(two);
                 }
             }

@@ -16,13 +16,13 @@ pub struct PathFrame<'a> {
 impl<'a> PathFrame<'a> {
     /// The paths as rays; `None` if the scene has several models: a machine's memory holds one.
     pub fn new(paths: &'a Paths<'a>) -> Option<Self> {
-        (paths.world.instances.len() == 1).then_some(Self { paths })
+        (paths.world.instances().len() == 1).then_some(Self { paths })
     }
 }
 
 impl Frame for PathFrame<'_> {
     fn nodes(&self) -> Nodes {
-        let own = &self.paths.world.instances[0];
+        let own = &self.paths.world.instances()[0];
         own.method.map(own.sight()).nodes()
     }
 

@@ -7,7 +7,7 @@ use super::material::Material;
 use crate::format::Scene;
 use crate::method::leave::side;
 use crate::method::{Departure, Landing, Method, Tracer};
-use crate::rays::{Camera, Eyes, ModelSpace, Query, Sight};
+use crate::rays::{Camera, Eye, ModelSpace, Query, Sight};
 use crate::step::{Link, Recorder};
 use glam::{DMat3, DVec3, EulerRot};
 use std::cmp::Ordering;
@@ -77,7 +77,7 @@ impl<'a> Instance<'a> {
         let space = ModelSpace::of(scene);
         let eye = pose.place(camera.eye).to_array();
         let least_radius = camera.tan_theta * space.distance_to(eye) / space.placement.scale;
-        let eyes = Eyes { lo: eye, hi: eye, radius: 0.0, tan_theta: camera.tan_theta }.in_units(&space);
+        let eyes = vec![Eye::at(eye, camera.tan_theta).in_units(&space)];
         let materials = materials.into_iter().map(|material| (material, Bsdf::of(&material))).collect();
         Self { scene, method, pose, materials, space, sight: Sight { delta, least_radius, eyes } }
     }
@@ -157,7 +157,7 @@ pub(super) struct Listener {
 /// All models.
 pub struct World<'a> {
     /// They, at least one.
-    pub instances: Vec<Instance<'a>>,
+    instances: Vec<Instance<'a>>,
     /// How rays leave them.
     pub starts: Starts,
     boxes: BoxTree,
@@ -172,6 +172,11 @@ impl<'a> World<'a> {
         assert!(!instances.is_empty(), "a world needs a model");
         let boxes: Vec<_> = instances.iter().map(Instance::bounds).collect();
         Self { instances, starts, boxes: BoxTree::new(&boxes) }
+    }
+
+    /// They, in their order.
+    pub fn instances(&self) -> &[Instance<'a>] {
+        &self.instances
     }
 
     /// A tracer for each model; for one thread.
@@ -208,7 +213,8 @@ impl<'a> World<'a> {
                 any: ray.any,
                 ..Query::new(own.pose.place(origin).to_array(), own.pose.direction(ray.direction).to_array())
                     .with_cone(ray.cone.radius / scale, ray.cone.spread)
-                    .between(0.0, farthest / scale)
+                    // What is as far as the best is rounded once more on its way to steps: a hair farther, and the comparison below decides.
+                    .between(0.0, farthest * (1.0 + 1e-12) / scale)
             };
             let recorder = listener.as_mut().map(|(listener, after)| {
                 listener.recorder.link(Link { number: listener.number, after: *after });

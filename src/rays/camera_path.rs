@@ -1,6 +1,6 @@
 //! A camera that moves: frames after one another.
 
-use super::{Camera, Eyes, ModelSpace, Query, RaySource};
+use super::{Camera, Eye, ModelSpace, Query, RaySource};
 use glam::{DQuat, DVec3};
 
 /// The frames of a camera that moves, in order; at least one.
@@ -89,8 +89,8 @@ impl RaySource for CameraPath {
     }
 
     /// Of all frames, as above.
-    fn eyes(&self) -> Eyes {
-        self.cameras.iter().map(RaySource::eyes).fold(Eyes::NOWHERE, Eyes::with)
+    fn eyes(&self, space: &ModelSpace) -> Vec<Eye> {
+        self.cameras.iter().flat_map(|camera| camera.eyes(space)).collect()
     }
 }
 

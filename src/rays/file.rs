@@ -11,7 +11,7 @@
 //! | 10 | 1 if any hit serves, 0 if it must be the closest | 0 |
 //! | 11 | number of the earlier row at whose hit the ray starts (`cast`), or behind whose end (`simulate`), -1 if none; 32-bit floats number 2^24 rows | -1 |
 
-use super::{Eyes, ModelSpace, Query, RaySource};
+use super::{Eye, ModelSpace, Query, RaySource};
 use npyz::{DType, NpyFile, Order, TypeChar};
 use rayon::prelude::*;
 use std::fs::File;
@@ -181,8 +181,9 @@ impl RaySource for RayFile {
         self.queries.par_iter().filter(meets).map(radius).reduce(|| f64::INFINITY, f64::min)
     }
 
-    fn eyes(&self) -> Eyes {
-        self.queries.par_iter().map(Eyes::of).reduce(|| Eyes::NOWHERE, Eyes::with)
+    fn eyes(&self, space: &ModelSpace) -> Vec<Eye> {
+        let meets = |query: &&Query| space.enter(query, 1.0).is_some();
+        vec![self.queries.par_iter().filter(meets).map(Eye::of).reduce(|| Eye::NOWHERE, Eye::with)]
     }
 }
 

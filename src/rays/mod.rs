@@ -15,5 +15,5 @@ pub use camera_path::CameraPath;
 pub use cone::{cone, is_full_detail};
 pub use file::{RayFile, RayFileError};
 pub use query::Query;
-pub use source::{Eyes, RaySource, Sight};
+pub use source::{Eye, RaySource, Sight};
 pub use space::{ModelRay, ModelSpace};

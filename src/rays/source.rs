@@ -29,14 +29,14 @@ pub trait RaySource: Sync {
     /// A radius, in world units, that no ray's cone falls below within the model's box: the cone's at the box's distance from the ray's origin.
     fn least_radius(&self, space: &ModelSpace) -> f64;
 
-    /// Where its rays start.
-    fn eyes(&self) -> Eyes;
+    /// Where its rays start that meet the model's box, in world units: one for each camera.
+    fn eyes(&self, space: &ModelSpace) -> Vec<Eye>;
 }
 
-/// Where the rays of a frame start, and how their cones widen; in world units, or in those of a model.
+/// Where some rays start, and how their cones widen; in world units, or in those of a model.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Eyes {
-    /// Lower corner of the box of all origins.
+pub struct Eye {
+    /// Lower corner of the box of their origins.
     pub lo: [f64; 3],
     /// Upper corner.
     pub hi: [f64; 3],
@@ -46,19 +46,24 @@ pub struct Eyes {
     pub tan_theta: f64,
 }
 
-impl Eyes {
+impl Eye {
     /// Rays that may start anywhere, however thin.
     pub const ANYWHERE: Self = Self { lo: [f64::NEG_INFINITY; 3], hi: [f64::INFINITY; 3], radius: 0.0, tan_theta: 0.0 };
 
     /// No rays.
     pub const NOWHERE: Self = Self { lo: [f64::INFINITY; 3], hi: [f64::NEG_INFINITY; 3], radius: f64::INFINITY, tan_theta: f64::INFINITY };
 
-    /// Those of a ray.
+    /// That of a ray.
     pub fn of(query: &Query) -> Self {
         Self { lo: query.origin, hi: query.origin, radius: query.radius, tan_theta: query.tan_theta }
     }
 
-    /// Both.
+    /// That of a camera's rays, from one point.
+    pub fn at(point: [f64; 3], tan_theta: f64) -> Self {
+        Self { lo: point, hi: point, radius: 0.0, tan_theta }
+    }
+
+    /// Both as one.
     #[must_use]
     pub fn with(self, other: Self) -> Self {
         let each = |of: fn(f64, f64) -> f64, a: [f64; 3], b: [f64; 3]| std::array::from_fn(|k| of(a[k], b[k]));
@@ -84,20 +89,26 @@ impl Eyes {
 }
 
 /// What a method may choose by once for all rays of a frame.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Sight {
     /// Quality of the level of detail: 0 the base mesh, infinite full detail; what it promises: `docs/error-bound.md`.
     pub delta: f64,
     /// A radius that no ray's cone falls below within the model's box, in units of the model.
     pub least_radius: f64,
     /// Where rays start, in units of the model: for what chooses by parts of the model.
-    pub eyes: Eyes,
+    pub eyes: Vec<Eye>,
 }
 
 impl Sight {
     /// What the rays of `source` see of a model at this quality.
     pub fn new(source: &dyn RaySource, space: &ModelSpace, delta: f64) -> Self {
-        Self { delta, least_radius: source.least_radius(space) / space.placement.scale, eyes: source.eyes().in_units(space) }
+        let eyes = source.eyes(space).into_iter().map(|eye| eye.in_units(space)).collect();
+        Self { delta, least_radius: source.least_radius(space) / space.placement.scale, eyes }
+    }
+
+    /// A radius that no ray's cone falls below within this part of the model, in its units.
+    pub fn least_radius_in(&self, lo: [f64; 3], hi: [f64; 3]) -> f64 {
+        self.eyes.iter().map(|eye| eye.least_radius(lo, hi)).fold(f64::INFINITY, f64::min)
     }
 }
 
@@ -126,9 +137,8 @@ impl RaySource for Camera {
         self.tan_theta * space.distance_to(self.eye.to_array())
     }
 
-    fn eyes(&self) -> Eyes {
-        let eye = self.eye.to_array();
-        Eyes { lo: eye, hi: eye, radius: 0.0, tan_theta: self.tan_theta }
+    fn eyes(&self, _: &ModelSpace) -> Vec<Eye> {
+        vec![Eye::at(self.eye.to_array(), self.tan_theta)]
     }
 }
 
@@ -167,17 +177,17 @@ mod tests {
 
     #[test]
     fn no_cone_of_any_eye_is_thinner_within_a_box() {
-        let near = Eyes::of(&Query::new([3.0, 0.0, 0.0], [1.0, 0.0, 0.0]).with_cone(0.5, 0.1));
-        let far = Eyes::of(&Query::new([0.0, 9.0, 0.0], [1.0, 0.0, 0.0]).with_cone(0.25, 0.2));
+        let near = Eye::of(&Query::new([3.0, 0.0, 0.0], [1.0, 0.0, 0.0]).with_cone(0.5, 0.1));
+        let far = Eye::of(&Query::new([0.0, 9.0, 0.0], [1.0, 0.0, 0.0]).with_cone(0.25, 0.2));
         let unit = ([-1.0; 3], [1.0; 3]);
-        let radius = |eyes: Eyes| eyes.least_radius(unit.0, unit.1);
+        let radius = |eyes: Eye| eyes.least_radius(unit.0, unit.1);
         assert_eq!([radius(near), radius(far)], [0.5 + 0.1 * 2.0, 0.25 + 0.2 * 8.0]);
         // The box of both holds the unit box's middle: what is left is the least of each.
         let both = near.with(far);
-        assert_eq!((both, radius(both)), (Eyes { lo: [0.0; 3], hi: [3.0, 9.0, 0.0], radius: 0.25, tan_theta: 0.1 }, 0.25));
-        assert_eq!(near.with(Eyes::NOWHERE), near);
-        assert_eq!((radius(Eyes::ANYWHERE), radius(Eyes::NOWHERE)), (0.0, f64::INFINITY));
+        assert_eq!((both, radius(both)), (Eye { lo: [0.0; 3], hi: [3.0, 9.0, 0.0], radius: 0.25, tan_theta: 0.1 }, 0.25));
+        assert_eq!(near.with(Eye::NOWHERE), near);
+        assert_eq!((radius(Eye::ANYWHERE), radius(Eye::NOWHERE)), (0.0, f64::INFINITY));
         let space = ModelSpace { placement: Placement { offset: [1.0, 0.0, 0.0], scale: 0.5 }, lo: [0; 3], hi: [1; 3], zeros: [0; 2] };
-        assert_eq!(near.in_units(&space), Eyes { lo: [4.0, 0.0, 0.0], hi: [4.0, 0.0, 0.0], radius: 1.0, tan_theta: 0.1 });
+        assert_eq!(near.in_units(&space), Eye { lo: [4.0, 0.0, 0.0], hi: [4.0, 0.0, 0.0], radius: 1.0, tan_theta: 0.1 });
     }
 }

@@ -6,7 +6,7 @@ use crate::mesh::procedural::{self, GenerateError};
 use crate::mesh::{
     BoundKind, DEFAULT_CREASE_ANGLE, MeshError, RemeshError, RemeshOptions, RemeshReport, Surface, TriangleMesh, corner_normals, remesh,
 };
-use crate::num::VertexForm;
+use crate::num::{MOST_DIRECTION_ZEROS, VertexForm};
 use crate::rays::ModelSpace;
 use serde_json::{Value, json};
 use thiserror::Error;
@@ -149,6 +149,9 @@ impl Scene {
     /// The surface is not fit, or has more triangles than there can be.
     pub fn of_surface(surface: &Surface, options: &BuildOptions) -> Result<Self, SceneError> {
         let BuildOptions { bounds, vertices, coordinate_zeros, direction_zeros, .. } = *options;
+        if direction_zeros > MOST_DIRECTION_ZEROS {
+            return Err(SceneError::Build(format!("direction_zeros: {direction_zeros} is more than {MOST_DIRECTION_ZEROS}")));
+        }
         let origin = if options.origin.is_empty() { Value::Null } else { Value::Object(options.origin.clone()) };
         let info = SceneInfo { name: options.name.clone(), origin, bounds, vertices, coordinate_zeros, direction_zeros, moved: 0.0 };
         format::build(surface, info, over_trees)

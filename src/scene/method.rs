@@ -71,6 +71,8 @@ impl Scene {
 
 impl SceneMethod {
     /// What every ray meets, in their order, by all threads; a ray's cone says which detail it needs ([`Query::with_cone`](crate::rays::Query::with_cone)).
+    /// Each starts at its own origin, whichever ray it names as the one before ([`cast_following`](crate::run::cast_following) starts it there). Of a scene that
+    /// was pruned for a job, hits are right for that job's rays alone.
     pub fn cast(&self, rays: &dyn RaySource) -> Vec<HitRow> {
         let sight = Sight::new(rays, &ModelSpace::of(&self.scene), self.knobs.delta());
         cast(&*self.method, &self.scene, rays, &sight, &|_| ())

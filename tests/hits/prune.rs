@@ -10,7 +10,7 @@ use lodray::method::lod::{LodImage, LodTraverser};
 use lodray::method::{ClosestHit, Hit};
 use lodray::num::{Random, Ray, VertexForm};
 use lodray::plan::{Measure, Plan, Reach};
-use lodray::rays::{Camera, Eyes, ModelSpace, Query, RaySource, View};
+use lodray::rays::{Camera, Eye, ModelSpace, Query, RaySource, View};
 use lodray::sim::unit::environment::run;
 use lodray::sim::unit::{Latency, SceneMemory, Traffic, TraversalUnit};
 use lodray::step::NoSteps;
@@ -182,8 +182,8 @@ impl RaySource for One {
     fn least_radius(&self, _: &ModelSpace) -> f64 {
         0.0
     }
-    fn eyes(&self) -> Eyes {
-        Eyes::of(&self.0)
+    fn eyes(&self, _: &ModelSpace) -> Vec<Eye> {
+        vec![Eye::of(&self.0)]
     }
 }
 

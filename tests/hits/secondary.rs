@@ -7,7 +7,7 @@ use lodray::method::leave;
 use lodray::method::lod::{self, LodImage, LodTraverser};
 use lodray::method::{ClosestHit, Crossings, Departure, Knobs};
 use lodray::num::{Cone, Direction, Point, Ray, VertexForm};
-use lodray::rays::{Eyes, ModelSpace, Query, Sight};
+use lodray::rays::{Eye, ModelSpace, Query, Sight};
 use lodray::step::{NoSteps, Recorder};
 use lodray_test_support::bounces::{leaving, scaled};
 use lodray_test_support::models::{Rng, ball, cone, full_bvhs, model, scene_of, terrain, with_vertices};
@@ -244,7 +244,7 @@ fn tracers_follow_golden_paths() {
         let golden = Exact::new(h);
         for (method, delta) in [(&lod::METHOD, 1.0), (&lod::METHOD, f64::INFINITY), (&bvh::METHOD, f64::INFINITY)] {
             let method = (method.make)(&scene, &Knobs::default(), &NoStore).expect("a method on a scene");
-            let mut tracer = method.tracer(&Sight { delta, least_radius: 0.0, eyes: Eyes::ANYWHERE });
+            let mut tracer = method.tracer(&Sight { delta, least_radius: 0.0, eyes: vec![Eye::ANYWHERE] });
             let mut rng = Rng(seed);
             for _ in 0..150 {
                 let eye = [0, 1, 2].map(|k| space.centre()[k] + 3.0 * space.radius() * rng.signed());

@@ -8,7 +8,7 @@ use lodray::method::bvh::{NoStore, cut_triangle, level_ids};
 use lodray::method::chunked::{CHUNK, ChunkShape, Chunks, METHOD};
 use lodray::method::{ClosestHit, HitSink, Knobs, TriangleId, knob};
 use lodray::num::{Point, bound_decode};
-use lodray::rays::{Eyes, ModelSpace, Query, RayFile, Sight};
+use lodray::rays::{Eye, ModelSpace, Query, RayFile, Sight};
 use lodray::run::cast;
 use lodray_test_support::models::{Rng, ball, scene_of, terrain};
 use std::collections::BTreeMap;
@@ -18,8 +18,8 @@ fn sight(h: &Hierarchy, at: [f64; 3], tan_theta: f64, delta: f64) -> Sight {
     let space = ModelSpace::of(&scene_of(h));
     let size = space.radius() / space.placement.scale;
     let eye = at.map(|v| v * size);
-    let eyes = Eyes { lo: eye, hi: eye, radius: 0.0, tan_theta };
-    Sight { delta, least_radius: eyes.least_radius(space.lo.map(f64::from), space.hi.map(f64::from)), eyes }
+    let eye = Eye::at(eye, tan_theta);
+    Sight { delta, least_radius: eye.least_radius(space.lo.map(f64::from), space.hi.map(f64::from)), eyes: vec![eye] }
 }
 
 fn models() -> [(&'static str, Hierarchy); 3] {
@@ -112,7 +112,7 @@ fn a_chunk_is_as_coarse_as_its_nearest_point_tolerates() {
                         most = most.max(bound_decode(h.bounds.scale, code));
                     }
                 }
-                most as f64 <= 2.0 * seen.eyes.least_radius(lo.map(f64::from), hi.map(f64::from))
+                most as f64 <= 2.0 * seen.least_radius_in(lo.map(f64::from), hi.map(f64::from))
             };
             for id in chunks.chosen(&h, &seen) {
                 let of = cut_triangle(h.levels, id);

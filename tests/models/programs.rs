@@ -43,6 +43,8 @@ fn a_mesh_is_remeshed_within_the_error_that_was_asked_for() {
     let scene = Scene::build(&vertices, &triangles, &options).unwrap();
     assert_eq!((scene.meta().name.as_str(), scene.levels(), scene.trees()), ("ball", 3, 8));
     assert!(moved_percent(&scene) < 0.1 && scene.meta().origin["remesh"]["warning"].is_null());
+    let wrong = Scene::build(&vertices, &triangles, &BuildOptions { direction_zeros: 20, ..options.clone() }).unwrap_err().to_string();
+    assert_eq!(wrong, "scene: direction_zeros: 20 is more than 14");
     let wrong = Scene::build(&vertices, &[[0, 1, 6]], &options).unwrap_err().to_string();
     assert_eq!(wrong, "triangle 0: vertex index 6 is out of range (there are 6 vertices)");
 }

@@ -196,7 +196,7 @@ fn the_key_names_every_test() {
 }
 
 /// Crates that the library alone does without (features of `Cargo.toml`), and the modules besides the program that may use them.
-const OF_FEATURES: [(&str, &[&str]); 10] = [
+const OF_FEATURES: [(&str, &[&str]); 11] = [
     ("anstream", &[]),
     ("anyhow", &[]),
     ("clap", &[]),
@@ -207,6 +207,7 @@ const OF_FEATURES: [(&str, &[&str]); 10] = [
     ("indicatif", &[]),
     ("plotters", &["report::diagram"]),
     ("resvg", &["report::diagram"]),
+    ("terminal_size", &[]),
 ];
 
 #[test]

@@ -37,7 +37,7 @@ pub fn run(
     run::check(&machine.description, compute)?;
     let result = |depth| {
         let paths = Paths { depth, ..*paths };
-        let count = paths.world.instances.len();
+        let count = paths.world.instances().len();
         let frame = PathFrame::new(&paths)
             .with_context(|| format!("--machine: {file} has {count} models, and the memory of a machine holds one"))?;
         let job = Job { machine: machine.description.clone(), compute, window: None };
@@ -49,7 +49,7 @@ pub fn run(
         });
         bar.finish_and_clear();
         let run = runs.remove(0)?;
-        let own = &paths.world.instances[0];
+        let own = &paths.world.instances()[0];
         let map = own.method.map(own.sight());
         let setup = Setup {
             scene: SceneFacts::from(scene),

@@ -13,13 +13,13 @@ use rayon::prelude::*;
 /// Bits of the number of a finest triangle; `check_count` sees that they suffice.
 const NUMBER_BITS: u32 = 28;
 
-/// The id of a triangle of a hierarchy of `levels` splits.
+/// The id of a triangle of a hierarchy of `levels` splits, which has its level.
 pub fn cut_id(levels: u32, of: TriangleId) -> u32 {
     let above = levels - of.level;
     above << NUMBER_BITS | of.tree << (2 * levels) | of.node << (2 * above)
 }
 
-/// The triangle of an id of [`cut_id`].
+/// The triangle of an id of [`cut_id`] with the same `levels`.
 #[inline(always)]
 pub fn cut_triangle(levels: u32, id: u32) -> TriangleId {
     let (above, number) = (id >> NUMBER_BITS, id & ((1 << NUMBER_BITS) - 1));
@@ -27,7 +27,7 @@ pub fn cut_triangle(levels: u32, id: u32) -> TriangleId {
     TriangleId { tree: number >> per_tree, level: levels - above, node: (number & ((1 << per_tree) - 1)) >> (2 * above) }
 }
 
-/// All triangles of a level, by their ids.
+/// All triangles of a level that the hierarchy has, by their ids.
 pub fn level_ids(hierarchy: &Hierarchy, level: u32) -> Vec<u32> {
     let triangles = (0..).take(hierarchy.triangles.len());
     let ids = triangles.flat_map(|tree| (0..1 << (2 * level)).map(move |node| TriangleId { tree, level, node }));
@@ -98,6 +98,16 @@ impl<'a> Corners<'a> {
     #[inline]
     pub fn triangle(&self, id: u32) -> [[i32; 3]; 3] {
         self.of(id).map(|c| self.points[c as usize])
+    }
+
+    /// Whether triangles of these ids cover each finest triangle once.
+    pub fn are_covered_once_by(&self, ids: &[u32]) -> bool {
+        let number = |id: u32| id & ((1 << NUMBER_BITS) - 1);
+        let mut sorted = ids.to_vec();
+        sorted.par_sort_unstable_by_key(|&id| number(id));
+        // Where one ends the next begins.
+        let meet = sorted.windows(2).all(|two| number(two[0]) + (1 << (2 * (two[0] >> NUMBER_BITS))) == number(two[1]));
+        self.are_covered_by(ids) && meet
     }
 
     /// What a BVH of these triangles is built of.

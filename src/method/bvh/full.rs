@@ -63,7 +63,7 @@ pub enum NodeOrder {
     Treelets,
     /// Level by level.
     Levels,
-    /// Van Emde Boas': the upper half of the levels, then what is below each of their nodes, each again so.
+    /// Van Emde Boas': the upper levels, then what is below each of their nodes, each again so.
     VanEmdeBoas,
 }
 
@@ -215,10 +215,10 @@ impl<'a> FullBuilder<'a> {
     /// Builds it over the triangles of a cut, by the ids of [`cut_id`](super::cut_id).
     ///
     /// # Errors
-    /// Those of [`FullBuilder::new`], and triangles that do not cover the hierarchy.
+    /// Those of [`FullBuilder::new`], and triangles that do not cover the hierarchy, each part once.
     pub fn of_cut(hierarchy: &'a Hierarchy, ids: Vec<u32>) -> Result<Self, BvhError> {
         let mesh = Corners::new(hierarchy)?;
-        if !mesh.are_covered_by(&ids) {
+        if !mesh.are_covered_once_by(&ids) {
             return Err(BvhError::OtherHierarchy);
         }
         let prims = mesh.primitives(ids);

@@ -78,7 +78,7 @@ pub static NODE_ORDER: Knob = Knob {
         ("depth", "Depth first, siblings together"),
         ("treelets", "By treelets of 2 KB, a row of DRAM, that grow along the largest boxes"),
         ("levels", "Level by level"),
-        ("veb", "Van Emde Boas' order: the upper half of the levels, then each part below, each again so"),
+        ("veb", "Van Emde Boas' order: the upper levels, then each part below, each again so"),
     ],
     of_frame: false,
     allows: |value| NodeOrder::named(value).map(drop).ok_or_else(|| format!("'{value}' is not depth, treelets, levels or veb")),

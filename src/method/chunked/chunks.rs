@@ -48,7 +48,10 @@ pub struct Chunks {
 }
 
 impl Chunks {
-    /// The chunks of a hierarchy.
+    /// The chunks of a hierarchy that has its points and bounds.
+    ///
+    /// # Panics
+    /// It lacks some.
     pub fn new(hierarchy: &Hierarchy, shape: ChunkShape) -> Self {
         let levels = hierarchy.levels;
         let last = match shape {
@@ -103,8 +106,7 @@ impl Chunks {
             }
         });
         if self.shape == ChunkShape::Object {
-            let objects: HashSet<u32> = self.objects.iter().copied().collect();
-            chunks = objects.len();
+            chunks = self.extents[0].len();
         }
         edges.par_sort_unstable();
         (chunks, edges.chunk_by(|a, b| a == b).filter(|same| same.len() == 1).count())
@@ -114,7 +116,7 @@ impl Chunks {
     fn each(&self, hierarchy: &Hierarchy, sight: &Sight, mut of: impl FnMut(TriangleId, u32)) {
         let tolerated = |extent: &Extent, level: u32| {
             let [lo, hi] = [extent.bounds.lo, extent.bounds.hi].map(|corner| corner.map(f64::from));
-            let tolerance = if sight.delta > 0.0 { 2.0 * sight.eyes.least_radius(lo, hi) / sight.delta } else { f64::INFINITY };
+            let tolerance = if sight.delta > 0.0 { 2.0 * sight.least_radius_in(lo, hi) / sight.delta } else { f64::INFINITY };
             // The finest level has no codes.
             level == self.levels || bound_decode(hierarchy.bounds.scale, extent.codes[level as usize]) as f64 <= tolerance
         };
@@ -126,20 +128,18 @@ impl Chunks {
                 (0..self.trees).zip(&self.objects).for_each(|(tree, &object)| of(root(tree), of_object[object as usize]));
             }
             ChunkShape::Splits(splits) => {
-                let last = self.extents.len() as u32 - 1; // at most 10
                 let mut waiting: Vec<TriangleId> = (0..self.trees).rev().map(root).collect();
                 while let Some(chunk) = waiting.pop() {
                     let extent = &self.extents[chunk.level as usize][((chunk.tree as usize) << (2 * chunk.level)) + chunk.node as usize];
                     let finest = (chunk.level + splits).min(self.levels);
                     // Base triangles may be split less often.
                     let coarsest = if chunk.level == 0 { 0 } else { finest };
-                    if let Some(level) = (coarsest..=finest).find(|&level| tolerated(extent, level)) {
-                        of(chunk, level);
-                    } else if chunk.level == last {
-                        of(chunk, finest);
-                    } else {
-                        let child = |k| TriangleId { level: chunk.level + 1, node: 4 * chunk.node + k, ..chunk };
-                        waiting.extend((0..4).rev().map(child));
+                    match (coarsest..=finest).find(|&level| tolerated(extent, level)) {
+                        Some(level) => of(chunk, level),
+                        // Where its last level is the finest, that is tolerated.
+                        None => {
+                            waiting.extend((0..4).rev().map(|k| TriangleId { level: chunk.level + 1, node: 4 * chunk.node + k, ..chunk }))
+                        }
                     }
                 }
             }

@@ -4,7 +4,7 @@
 //! neighbours differ in level the surface has seams that rays pass through: nothing hides them here, they are counted.
 //!
 //! All triangles of a frame stand under one BVH, which is made for the frame and costs it nothing: less than any engine pays, which keeps one for each chunk and
-//! level and a BVH over those.
+//! level and a BVH over those. Its bytes are those of the frame's BVH alone. Frames after one another have one choice, by the nearest of their eyes.
 
 mod chunks;
 
@@ -42,7 +42,7 @@ fn shape(value: &str) -> Option<ChunkShape> {
 /// The method.
 pub static METHOD: Registered = Registered {
     name: "chunked",
-    help: "Discrete levels of detail by object or chunk: each has a level for the frame, and seams to its neighbours",
+    help: "Discrete levels of detail by object or chunk: each has a level for the frame, and seams to its neighbours; its bytes are of the frame's BVH alone",
     knobs: &[&DELTA, &CHUNK, &NODE_BOXES, &NODE_ORDER, &LEAF_LAYOUT, &LEAF_SIZE],
     error: Some(ErrorKnob { knob: &DELTA, values: octaves, in_steps: false }),
     of_input: false,
@@ -50,8 +50,8 @@ pub static METHOD: Registered = Registered {
     make: |scene, knobs, _| Ok(Box::new(Chunked::of(scene, knobs)?)),
 };
 
-/// BVHs of so many frames are kept.
-const KEPT: usize = 16;
+/// Triangles in all of BVHs that are kept for other frames: some 20 bytes each.
+const KEPT: usize = 1 << 25;
 
 /// The method on a scene.
 struct Chunked {
@@ -81,25 +81,30 @@ impl Chunked {
     /// The BVH of a frame.
     fn bvh(&self, sight: &Sight) -> FullBvh {
         let mut made = self.made.lock().unwrap_or_else(PoisonError::into_inner);
-        if let Some((_, bvh)) = made.iter().find(|(of, _)| of == sight) {
-            return bvh.clone();
+        if let Some(at) = made.iter().position(|(of, _)| of == sight) {
+            let seen = made.remove(at);
+            let bvh = seen.1.clone();
+            made.push(seen);
+            return bvh;
         }
         let build = || {
             let ids = self.chunks.chosen(&self.hierarchy, sight);
             let tree = FullBuilder::of_cut(&self.hierarchy, ids)?.tree(&self.options)?;
             tree.with_leaves(&self.hierarchy, self.options.layout)
         };
-        // By threads of its own: those that trace wait for it here, and would wait for themselves if they took part.
-        let apart = || match rayon::ThreadPoolBuilder::new().build() {
-            Ok(pool) => pool.install(build),
-            Err(_) => build(),
-        };
+        // By as many threads of its own: those that trace wait for it here, and would wait for themselves if they took part.
+        let threads = rayon::current_num_threads();
+        let apart = || rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("threads can be made").install(build);
         let bvh = std::thread::scope(|scope| scope.spawn(apart).join());
         let bvh = bvh.expect("no panic").expect("the hierarchy was checked, and triangles of a cut are no more than its finest");
-        if made.len() == KEPT {
-            made.remove(0);
-        }
-        made.push((*sight, bvh.clone()));
+        let mut kept = bvh.leaves.len();
+        let newest = made.iter().rev().take_while(|(_, bvh)| {
+            kept += bvh.leaves.len();
+            kept <= KEPT
+        });
+        let others = made.len() - newest.count();
+        made.drain(..others);
+        made.push((sight.clone(), bvh.clone()));
         bvh
     }
 }

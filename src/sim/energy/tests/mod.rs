@@ -380,7 +380,9 @@ fn the_documented_units_are_the_tables() {
     );
     assert!(documented.contains(&line), "{line}");
     let thousands = |bits: u32| format!("{},{:03} |", bits / 1000, bits % 1000);
-    for (name, has_levels) in [("`lod`", true), ("`bvh`", false), ("`discrete`", false), ("`bvh32`", false), ("`bvh6`", false)] {
+    for (name, has_levels) in
+        [("`lod`", true), ("`bvh`", false), ("`discrete`", false), ("`chunked`", false), ("`bvh32`", false), ("`bvh6`", false)]
+    {
         let row = documented.lines().find(|line| line.starts_with(&format!("| {name} |"))).expect("a row");
         assert!(row.ends_with(&thousands(sixteen.context_registers(has_levels).kept)), "{row}");
     }
