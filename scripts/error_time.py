@@ -188,14 +188,12 @@ def lodray(*words):
 def why(run, folder):
     """Ours at delta 1 beside the discrete level that is as far off: what their rays do, and their times on the machine and on one with twice the banks in its L1s."""
     rows = []
-    for scene, roughness in [("terrain 0.45", "0.45"), ("terrain 0.6", "0.6")]:
-        file = folder / f"{plain(scene)}.lod"
-        if not file.is_file():
-            subprocess.run([ROOT / "target" / "release" / "lodray", "generate", "terrain", "--roughness", roughness, "-o", file, "--quiet"], check=True)
+    for scene in ["terrain 0.45", "terrain 0.6"]:
+        file = scene_file(folder, scene)
         views = [view for view in range(len(run.views)) if run.scene(view) == scene]
         for view in (views[2], views[-2]):
             eye = ",".join(map(str, run.views[view]["eye"]))
-            camera = [str(file), "--eye", eye, "--target", "0,0,0", "--size", run.size]
+            camera = [file, "--eye", eye, "--target", "0,0,0", "--size", run.size]
             level = near(run, view, "discrete", 1)["choices"]["level"]
             for words, setting in [(["--method", OURS, "--delta", "1"], "ours, delta 1"), (["--method", "discrete", "--level", level], f"discrete, level {level}")]:
                 shot = lodray("render", *camera, *words, "--shading", "full", "--json", "-o", str(folder / "why"), "--force")["stats"]
@@ -209,6 +207,35 @@ def why(run, folder):
     return table(["scene", "radii", "setting", "mean level", "nodes a hit", "LOD tests a hit", "lines a hit", "time, us", "twice the banks"], rows)
 
 
+def scene_file(folder, name):
+    """A generated scene of scripts/errors/knobs.toml as a file."""
+    file = folder / f"{plain(name)}.lod"
+    if not file.is_file():
+        what, *roughness = name.split()
+        words = ["generate", what, *(["--roughness", *roughness] if roughness else []), "-o", file, "--quiet"]
+        subprocess.run([ROOT / "target" / "release" / "lodray", *words], check=True)
+    return str(file)
+
+
+def far(run, folder):
+    """Where discrete LOD takes less than 0.6 of our time at half a pixel: ours at delta 1, the level that is as far off, and the same level with a line for each triangle, as ours has it."""
+    rows = []
+    machine = run.data["machines"][0]
+    for view in range(len(run.views)):
+        found = run.equal(view=view, error="surface-p99", level=0.5, cost="time", compute="free")
+        ratio = ratios(found[0]).get("discrete", {}).get("ratio") if found else None
+        scene = run.scene(view)
+        if ratio is None or ratio >= 0.6 or scene in ("bunny", "igea"):
+            continue
+        camera = [scene_file(folder, scene), "--eye", ",".join(map(str, run.views[view]["eye"])), "--target", "0,0,0", "--size", run.size, "--json"]
+        camera += [f"--set={change}" for change in machine["set"]]
+        level = ["--method", "discrete", "--level", near(run, view, "discrete", 1)["choices"]["level"]]
+        runs = [lodray("simulate", *camera, *words) for words in (["--delta", "1"], level, [*level, "--leaf-layout", "line", "--leaf-size", "1"])]
+        rows.append([scene, run.place(view), level[-1], *(f"{r['cycles']:,}" for r in runs), *(f"{r['dram']['reads']:,}" for r in runs)])
+    what = ["ours", "discrete", "a line a triangle"]
+    return table(["scene", "radii", "level", *(f"{cost}: {name}" for cost in ("cycles", "DRAM lines") for name in what)], rows)
+
+
 def hierarchy(folder):
     """Nodes that rays visit at full detail, ours and a BVH's over the same triangles, on terrains with and without anything to morph below the base mesh."""
     rows = []
@@ -218,7 +245,7 @@ def hierarchy(folder):
             words = ["generate", "terrain", "--levels", "6", "--roughness", roughness, "-o", file, "--quiet"]
             subprocess.run([ROOT / "target" / "release" / "lodray", *words], check=True)
         ours = None
-        for words, setting in [(["--method", OURS, "--delta", "inf"], "ours")] + [(["--method", "discrete", "--level", "6", "--leaf-size", str(n)], f"BVH, leaves of {n}") for n in (16, 4, 1)]:
+        for words, setting in [(["--method", OURS, "--delta", "inf"], "ours"), (["--method", OURS, "--delta", "inf", "--node-bounds", "prisms"], "ours, prisms")] + [(["--method", "discrete", "--level", "6", "--leaf-size", str(n)], f"BVH, leaves of {n}") for n in (16, 4, 1)]:
             shot = lodray("render", str(file), "--size", "512x512", "--distance", "1.5", *words, "--json", "-o", str(folder / "why"), "--force")["stats"]
             nodes = shot["nodes"] / shot["hits"]
             ours = ours or nodes
@@ -254,6 +281,7 @@ def main():
         "summary_flip": summary(knobs, "flip-mean", [0.01, 0.02, 0.05, 0.1], "free", "time"),
         "why": why(knobs, folder),
         "hierarchy": hierarchy(folder),
+        "far": far(knobs, folder),
         "half_units": at_level(units, error, 0.5, "units"),
         "structures": structures(knobs, units),
         "viewed": by_samples(samples, flip),
