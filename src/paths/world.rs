@@ -288,3 +288,41 @@ impl Instance<'_> {
         (bend(0, 1) + bend(1, 2) + bend(2, 0)) / (3.0 * self.space.placement.scale * self.pose.scale)
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::mesh::procedural::{self, Options};
+    use crate::method::bvh::NoStore;
+    use crate::method::{Knobs, lod};
+    use crate::rays::View;
+
+    /// Models at one place, in a tree of boxes with others: every ray meets the one that the scene has first, wherever that stands in the tree.
+    #[test]
+    fn of_models_at_one_distance_the_first_is_met() {
+        let scene = Scene::generate(&Options { levels: Some(2), base: Some(128), ..Options::new(procedural::Scene::Sphere) }).unwrap();
+        let method = (lod::METHOD.make)(&scene, &Knobs::default(), &NoStore).unwrap();
+        let camera = Camera::new(&View::default(), &ModelSpace::of(&scene), 8, 8).unwrap();
+        let pose = Pose::new([10.0, 20.0, 30.0], 0.7, [0.01, 0.02, 0.03]);
+        let apart = |x: f64| Pose::new([0.0; 3], 0.5, [x, 4.0, 0.0]);
+        let mut met = 0;
+        for poses in [vec![pose, pose], vec![pose, apart(2.0), pose], vec![apart(-2.0), pose, pose, apart(2.0), pose]] {
+            let first = poses.iter().position(|of| *of == pose).unwrap();
+            let instances =
+                poses.iter().map(|&of| Instance::new(&scene, &*method, of, vec![Material::Diffuse { albedo: None }], &camera, 1.0));
+            let world = World::new(instances.collect(), Starts::Exact);
+            let mut tracers = world.tracers();
+            for k in 0..400 {
+                let [x, y] = [k % 20, k / 20].map(|v| 0.07 * f64::from(v) - 0.65);
+                let (origin, direction) = (DVec3::new(3.0, y, x), DVec3::new(-1.0, 0.1 * y, -0.2 * x).normalize());
+                let cone = PathCone { radius: 0.0, spread: 1e-3 };
+                let ray = WorldRay { origin, direction, cone, t_max: f64::INFINITY, any: false };
+                if let Some(hit) = world.trace(&mut tracers, &ray, None, None) {
+                    assert_eq!(hit.instance, first, "ray {k} of {} models", poses.len());
+                    met += 1;
+                }
+            }
+        }
+        assert!(met > 500, "{met}");
+    }
+}

@@ -302,39 +302,6 @@ fn rays_ask_only_models_whose_boxes_they_enter() {
     assert!(met > 5_000 && visits > met && visits < 2 * rays, "{met} hits of {rays} rays, which asked {visits} models of {}", 16 * rays);
 }
 
-/// Two models at one place, a black one and a white one: all that is seen is of the one that the scene has first.
-#[test]
-fn of_models_at_one_place_the_first_is_seen() {
-    let scene = generated(procedural::Scene::Sphere, 3, 128);
-    let method = made(&scene, &lod::METHOD);
-    let camera = camera(&scene, [0.3, 0.4, 4.0], 48);
-    let white = Material::Diffuse { albedo: Some([1.0; 3]) };
-    let black = Material::Diffuse { albedo: Some([0.0; 3]) };
-    let film = |materials: &[Material]| {
-        let pose = Pose::new([10.0, 20.0, 30.0], 0.7, [0.01, 0.02, 0.03]);
-        let instances = materials.iter().map(|&material| Instance::new(&scene, &*method, pose, vec![material], &camera, 1.0));
-        let world = World::new(instances.collect(), Starts::Exact);
-        let cones = Default::default();
-        Film::of(
-            &Paths {
-                world: &world,
-                camera,
-                lights: &lights(),
-                environment: Some(EVERYWHERE),
-                cones,
-                depth: 0,
-                shadow_rays: true,
-                samples: 4,
-                seed: 1,
-            },
-            &|| (),
-        )
-    };
-    assert_eq!(film(&[white, black]).light, film(&[white]).light);
-    assert_eq!(film(&[black, white]).light, film(&[black]).light);
-    assert_ne!(film(&[black]).light, film(&[white]).light);
-}
-
 #[test]
 fn what_has_no_exact_hits_says_so() {
     let scene = generated(procedural::Scene::Sphere, 1, 8);
