@@ -56,7 +56,7 @@ pub enum SimulateError {
     Replay(#[from] ReplayError),
     /// Its figures cannot be had.
     #[error(transparent)]
-    Result(#[from] ResultError),
+    Result(#[from] Box<ResultError>),
 }
 
 /// The figures of a run, and its waveform (VCD) if one was wanted.
@@ -85,7 +85,8 @@ impl Pass<'_> {
         let runs = simulate(&frame, &jobs, look);
         let result = |(target, run): (&Target, Result<Run, ReplayError>)| {
             let run = run?;
-            Ok((SimResult::new(self.setup(target, &sight, map.bytes()), self.registered, &map, &run)?, run.wave))
+            let result = SimResult::new(self.setup(target, &sight, map.bytes()), self.registered, &map, &run).map_err(Box::new)?;
+            Ok((result, run.wave))
         };
         targets.iter().zip(runs).map(result).collect()
     }
