@@ -114,13 +114,17 @@ mod tests {
     use super::*;
     use crate::bvh::{Box32, Options, QuadTree, build, check};
 
-    #[test]
-    fn treelets_hold_the_same_tree() {
+    fn cubes() -> Vec<Box32> {
         let cube = |k: i32| {
             let corner = [k.wrapping_mul(7919) % 5000, k.wrapping_mul(104_729) % 5000, k % 70].map(|c| c * 16);
             Box32 { lo: corner, hi: corner.map(|c| c + 640) }
         };
-        let boxes: Vec<Box32> = (0..20_000).map(cube).collect();
+        (0..20_000).map(cube).collect()
+    }
+
+    #[test]
+    fn treelets_hold_the_same_tree() {
+        let boxes = cubes();
         let tree = build(&boxes, &Options::with_leaf(2)).unwrap();
         for size in [4, 5, 32, 1 << 20] {
             let nodes = by_treelets(&tree.nodes, size);
@@ -143,11 +147,7 @@ mod tests {
 
     #[test]
     fn levels_and_halves_hold_the_same_tree() {
-        let cube = |k: i32| {
-            let corner = [k.wrapping_mul(7919) % 5000, k.wrapping_mul(104_729) % 5000, k % 70].map(|c| c * 16);
-            Box32 { lo: corner, hi: corner.map(|c| c + 640) }
-        };
-        let boxes: Vec<Box32> = (0..20_000).map(cube).collect();
+        let boxes = cubes();
         let tree = build(&boxes, &Options::with_leaf(2)).unwrap();
         for nodes in [by_levels(&tree.nodes), by_halves(&tree.nodes)] {
             assert_eq!(nodes.len(), tree.nodes.len());
