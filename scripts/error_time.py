@@ -217,23 +217,45 @@ def scene_file(folder, name):
     return str(file)
 
 
-def far(run, folder):
-    """Where discrete LOD takes less than 0.6 of our time at half a pixel: ours at delta 1, the level that is as far off, and the same level with a line for each triangle, as ours has it."""
-    rows = []
-    machine = run.data["machines"][0]
+def lost(run, compute):
+    """Views, their cameras and their levels where discrete LOD takes less than 0.6 of our time at half a pixel; with ours and the ratio as the tables have them. Of generated scenes alone."""
     for view in range(len(run.views)):
-        found = run.equal(view=view, error="surface-p99", level=0.5, cost="time", compute="free")
-        ratio = ratios(found[0]).get("discrete", {}).get("ratio") if found else None
-        scene = run.scene(view)
-        if ratio is None or ratio >= 0.6 or scene in ("bunny", "igea"):
-            continue
-        camera = [scene_file(folder, scene), "--eye", ",".join(map(str, run.views[view]["eye"])), "--target", "0,0,0", "--size", run.size, "--json"]
-        camera += [f"--set={change}" for change in machine["set"]]
-        level = ["--method", "discrete", "--level", near(run, view, "discrete", 1)["choices"]["level"]]
-        runs = [lodray("simulate", *camera, *words) for words in (["--delta", "1"], level, [*level, "--leaf-layout", "line", "--leaf-size", "1"])]
-        rows.append([scene, run.place(view), level[-1], *(f"{r['cycles']:,}" for r in runs), *(f"{r['dram']['reads']:,}" for r in runs)])
-    what = ["ours", "discrete", "a line a triangle"]
-    return table(["scene", "radii", "level", *(f"{cost}: {name}" for cost in ("cycles", "DRAM lines") for name in what)], rows)
+        for entry in run.equal(view=view, error="surface-p99", level=0.5, cost="time", compute=compute):
+            level = ratios(entry).get("discrete", {"ratio": None})
+            if level["ratio"] is None or level["ratio"] >= 0.6 or run.scene(view) in ("bunny", "igea"):
+                continue
+            machine = run.data["machines"][entry["machine"]]
+            eye = ",".join(map(str, run.views[view]["eye"]))
+            camera = ["--eye", eye, "--target", "0,0,0", "--size", run.size, *(f"--set={change}" for change in machine["set"]), "--json"]
+            cycles = round(entry["ours"] * 1e3 * machine["description"]["cores"]["clock_mhz"])
+            yield view, camera, level["setting"].split()[1], cycles, level["ratio"]
+
+
+def far(run, folder):
+    """Those of compute that takes no time: ours at half a pixel, the level, and the same level with a line for each triangle, as ours has it."""
+    rows = []
+    for view, camera, level, ours, ratio in lost(run, "free"):
+        discrete = [scene_file(folder, run.scene(view)), *camera, "--compute", "free", "--method", "discrete", "--level", level]
+        runs = [lodray("simulate", *discrete, *words) for words in ([], ["--leaf-layout", "line", "--leaf-size", "1"])]
+        lines = run.equal(view=view, error="surface-p99", level=0.5, cost="dram-lines", compute="free")[0]["ours"]
+        rows.append([run.scene(view), run.place(view), level, f"{ours:,}", *(f"{r['cycles']:,}" for r in runs), shown(ratio), shown(runs[1]["cycles"] / ours), f"{lines:,.0f}", *(f"{r['dram']['reads']:,}" for r in runs)])
+    head = [*(f"cycles: {name}" for name in ("ours", "discrete", "a line a triangle")), "over ours", "a line a triangle", *(f"DRAM lines: {name}" for name in ("ours", "discrete", "a line a triangle"))]
+    return table(["scene", "radii", "level", *head], rows)
+
+
+def near_units(run, folder):
+    """Those by units: ours at delta 1 and the level, as the unit is, with LOD tests and boxes of a node that take a cycle, and with compute that takes no time."""
+    eased = [f"--set=units.{change}" for change in ("lod_edges_per_cycle=3", "boxes_per_cycle=4")]
+    rows = []
+    for view, camera, level, _, _ in lost(run, "units"):
+        file = scene_file(folder, run.scene(view))
+        cells = []
+        for words in (["--compute", "units"], ["--compute", "units", *eased], ["--compute", "free"]):
+            runs = [lodray("simulate", file, *camera, *words, *method) for method in (["--delta", "1"], ["--method", "discrete", "--level", level])]
+            cells += [f"{runs[0]['cycles']:,}", f"{runs[1]['cycles']:,}", shown(runs[1]["cycles"] / runs[0]["cycles"])]
+        rows.append([run.scene(view), run.place(view), level, *cells])
+    what = ["as it is", "tests of a cycle", "compute free"]
+    return table(["scene", "radii", "level", *(f"{name}: {column}" for name in what for column in ("ours", "discrete", "ratio"))], rows)
 
 
 def hierarchy(folder):
@@ -282,6 +304,7 @@ def main():
         "why": why(knobs, folder),
         "hierarchy": hierarchy(folder),
         "far": far(knobs, folder),
+        "near_units": near_units(units, folder),
         "half_units": at_level(units, error, 0.5, "units"),
         "structures": structures(knobs, units),
         "viewed": by_samples(samples, flip),

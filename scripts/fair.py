@@ -39,7 +39,7 @@ class Frames:
             return ROOT / "scripts" / "errors" / scene["file"]
         path = self.folder / f"{name.replace(',', '').replace(' ', '-')}.lod"
         if not path.is_file():
-            options = [f"--{key}={scene[key]}" for key in ("base", "levels", "roughness") if key in scene]
+            options = [f"--{key}={scene[key]}" for key in ("base", "levels", "roughness", "width") if key in scene]
             subprocess.run([self.program, "generate", scene["generate"], *options, "-o", path], check=True, capture_output=True)
         return path
 

@@ -30,6 +30,9 @@ pub struct Args {
     /// Quads along each wall of a room (default: a quarter of those across its cloth)
     #[arg(long, value_name = "QUADS", value_parser = whole::<u32>(1..=MAX_WALLS.into()), allow_negative_numbers = true)]
     walls: Option<u32>,
+    /// World units across a terrain: heights stay, so that a wider one is flatter (default 2)
+    #[arg(long, value_name = "UNITS", allow_negative_numbers = true)]
+    width: Option<f64>,
     #[command(flatten)]
     form: FormArgs,
     /// Scene file to write
@@ -42,8 +45,15 @@ pub struct Args {
 
 pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
     check_target(&args.out, &[])?;
-    let options =
-        Options { scene: args.scene, levels: args.levels, base: args.base, seed: args.seed, roughness: args.roughness, walls: args.walls };
+    let options = Options {
+        scene: args.scene,
+        levels: args.levels,
+        base: args.base,
+        seed: args.seed,
+        roughness: args.roughness,
+        walls: args.walls,
+        width: args.width,
+    };
     finish(&make(&options, args.form)?, &args.out, args.json)
 }
 

@@ -105,7 +105,7 @@ Keys of the description (scenes/*.toml are examples; every colour is linear):
                       shadow_rays (lights are asked for light; true), exposure (steps of 2; 0)
   [cones]             how cones spread after a hit: diffuse, glossy, light, curvature
   [[camera]]          name, eye, target, up (0, 1, 0), fov (degrees from bottom to top)
-  [[model]]           file (.lod, or a mesh with levels) or generate = { scene, levels, base, seed, roughness, walls };
+  [[model]]           file (.lod, or a mesh with levels) or generate = { scene, levels, base, seed, roughness, walls, width };
                       material (a name) or materials (names by the model's own numbers);
                       rotate (degrees about x, y, z), scale, translate
   [material.NAME]     kind = \"diffuse\" (albedo), \"glossy\" (reflectance, roughness, albedo), \"mirror\" (reflectance)

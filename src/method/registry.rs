@@ -12,6 +12,7 @@ pub const METHODS: &[&Registered] = &[
     &chunked::METHOD,
     &bvh::METHOD_INPUT,
     &bvh::METHOD_INPUT_SIX,
+    &bvh::METHOD_INPUT_WIDE,
     &reference::METHOD,
 ];
 

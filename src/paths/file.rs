@@ -170,11 +170,13 @@ pub struct MeshTable {
     pub roughness: Option<f64>,
     /// Quads along each wall of a room.
     pub walls: Option<u32>,
+    /// World units across a terrain.
+    pub width: Option<f64>,
 }
 
 impl From<MeshTable> for procedural::Options {
-    fn from(MeshTable { scene, levels, base, seed, roughness, walls }: MeshTable) -> Self {
-        Self { scene, levels, base, seed, roughness, walls }
+    fn from(MeshTable { scene, levels, base, seed, roughness, walls, width }: MeshTable) -> Self {
+        Self { scene, levels, base, seed, roughness, walls, width }
     }
 }
 

@@ -19,6 +19,7 @@ pub enum Mark {
     Wye,
     Times,
     Pentagram,
+    GreekCross,
 }
 
 /// How a method is drawn.
@@ -40,7 +41,7 @@ const fn style(light: [u8; 3], dark: [u8; 3], mark: Mark) -> Style {
 }
 
 /// Methods by name.
-const KNOWN: [(&str, Style); 10] = [
+const KNOWN: [(&str, Style); 11] = [
     ("lod", style([15, 107, 189], [76, 173, 248], Mark::Circle)),
     ("bvh", style([193, 76, 2], [252, 154, 84], Mark::Square)),
     ("bvh6", style([155, 20, 89], [240, 123, 174], Mark::Star)),
@@ -49,6 +50,7 @@ const KNOWN: [(&str, Style); 10] = [
     ("chunked", style([48, 32, 120], [132, 108, 252], Mark::Pentagram)),
     ("input-bvh", style([142, 113, 48], [228, 195, 71], Mark::Wye)),
     ("input-bvh6", style([13, 99, 124], [137, 206, 230], Mark::Cross)),
+    ("input-bvh32", style([78, 30, 0], [168, 120, 90], Mark::GreekCross)),
     ("reference", style([82, 89, 101], [188, 193, 204], Mark::Times)),
     ("full", style([82, 89, 101], [188, 193, 204], Mark::Times)),
 ];

@@ -9,7 +9,8 @@ const { chromium } = require("playwright-core");
 const axe = readFileSync(require.resolve("axe-core/axe.min.js"), "utf8");
 const text = documentFile && documentFile !== "-" ? readFileSync(documentFile, "utf8") : "";
 const isSweep = text && documentFile.endsWith(".jsonl");
-const doc = text && !isSweep ? JSON.parse(text) : null;
+const isResult = text && documentFile.endsWith("result.json");
+const doc = text && !isSweep && !isResult ? JSON.parse(text) : null;
 const runs = isSweep ? text.trim().split("\n").map((line) => JSON.parse(line).result) : [];
 
 const faults = [];
@@ -273,6 +274,21 @@ if (isSweep) {
     check(values.every((v) => cells.some((c) => Math.abs(c - v) <= 1e-9 * Math.abs(v))), `the table lacks a limit or a cause of ${r.setup.method.name}`);
     check(words.includes(r.roofline.largest) && words.includes(r.stalls.largest), `the table does not name what limits ${r.setup.method.name}`);
     counts.cells += values.length;
+  }
+}
+
+if (isResult) {
+  // Every frame of a run, by every cost.
+  const { frames } = JSON.parse(text);
+  const choice = page.locator("#frames").getByLabel("Of each frame", { exact: true });
+  const costs = await choice.locator("option").evaluateAll((all) => all.map((o) => o.value));
+  check(frames.length > 2 && costs.length > 4, `${frames.length} frames, ${costs.length} costs`);
+  for (const cost of costs) {
+    await choice.selectOption(cost);
+    await rendered(60);
+    const [wanted, shown] = [frames.map((frame, k) => [k + 1, frame[cost]]), sorted(await dots("frames"))];
+    check(same(wanted, shown), `${cost} of the frames is ${shown}, and should be ${wanted}`);
+    counts.points += shown.length;
   }
 }
 

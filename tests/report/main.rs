@@ -85,6 +85,16 @@ fn the_same_results_give_the_same_page_and_other_commands_write_theirs() {
 }
 
 #[test]
+fn frames_after_one_another_stand_one_by_one() {
+    let (desk, _) = desk();
+    desk.run("simulate a.lod --size 32x32 --frames 4 --turn 20 --report frames.html -o frames --quiet");
+    if let Some(found) = browser::drive(&desk.path("frames.html"), Some(&desk.path("frames/result.json"))) {
+        assert!(found.faults.is_empty(), "{:#?}", found.faults);
+        assert!(found.counts["points"] >= 20);
+    }
+}
+
+#[test]
 fn a_command_of_the_inspector_follows_its_ray() {
     let (desk, document) = desk();
     let grid = document.traces.iter().find(|grid| grid.method == "lod" && grid.view == 1).unwrap();

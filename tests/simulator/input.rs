@@ -40,7 +40,7 @@ fn figures(result: &Value) -> Vec<&Value> {
 fn a_bvh_over_the_input_is_that_of_a_scene_which_is_the_mesh() {
     let desk = desk();
     desk.run("build ball.obj --levels 0 --base 100000 --vertices exact -o whole.lod");
-    for (of_input, of_finest) in [("input-bvh", "bvh"), ("input-bvh6", "bvh6")] {
+    for (of_input, of_finest) in [("input-bvh", "bvh"), ("input-bvh6", "bvh6"), ("input-bvh32", "bvh32")] {
         let view = "--size 64x48 --eye 1,2,3 --target 0,0,0 --json";
         let ours: Value = serde_json::from_str(&desk.run(&format!("simulate ball.lod --method {of_input} {view}"))).unwrap();
         let theirs: Value = serde_json::from_str(&desk.run(&format!("simulate whole.lod --method {of_finest} {view}"))).unwrap();

@@ -194,6 +194,7 @@ fn scene(source: &ListText<'_>, list: &List, spanned: &Spanned<SceneEntry>, fold
                 place(entry.base.as_ref().map(Spanned::span), "base"),
                 place(entry.seed.as_ref().map(Spanned::span), "seed"),
                 place(entry.roughness.as_ref().map(Spanned::span), "roughness"),
+                place(entry.width.as_ref().map(Spanned::span), "width"),
                 place(entry.bounds.as_ref().map(Spanned::span), "bounds"),
                 place(entry.vertices.as_ref().map(Spanned::span), "vertices"),
             ];
@@ -214,6 +215,7 @@ fn scene(source: &ListText<'_>, list: &List, spanned: &Spanned<SceneEntry>, fold
                 seed: entry.seed.as_ref().map_or(0, |seed| *seed.get_ref()),
                 roughness: entry.roughness.as_ref().map(|roughness| *roughness.get_ref()),
                 walls: None,
+                width: entry.width.as_ref().map(|width| *width.get_ref()),
             };
             generate::check(&options).map_err(|why| source.wrong(spanned.span(), format!("scene: {}", one_line(&why))))?;
             let bounds = entry.bounds.as_ref().or(list.bounds.as_ref()).map_or_else(BoundKind::default, |bounds| *bounds.get_ref());

@@ -55,6 +55,8 @@ pub struct SceneEntry {
     pub base: Maybe<u32>,
     pub seed: Maybe<u64>,
     pub roughness: Maybe<f64>,
+    /// World units across a terrain.
+    pub width: Maybe<f64>,
     pub bounds: Maybe<BoundKind>,
     pub vertices: Maybe<VertexForm>,
     pub size: Maybe<String>,

@@ -161,15 +161,20 @@ pub struct Options {
     /// `room` alone: quads along each wall, 1 to [`MAX_WALLS`]; a quarter of those across the cloth if none.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub walls: Option<u32>,
+    /// `terrain` alone: world units across, [`WIDTHS`]; 2 if none. Heights stay, so that a wider one is flatter.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub width: Option<f64>,
 }
 
 /// Most quads along a wall of a room.
 pub const MAX_WALLS: u32 = 1 << 10;
+/// Widths of a terrain.
+pub const WIDTHS: std::ops::RangeInclusive<f64> = 0.5..=1024.0;
 
 impl Options {
     /// The scene at its default size, seed 0.
     pub const fn new(scene: Scene) -> Self {
-        Self { scene, levels: None, base: None, seed: 0, roughness: None, walls: None }
+        Self { scene, levels: None, base: None, seed: 0, roughness: None, walls: None, width: None }
     }
 
     /// What these options come to.
@@ -194,6 +199,11 @@ impl Options {
             && (scene != Scene::Room || walls == 0 || walls > MAX_WALLS)
         {
             return Err(GenerateError::Walls { scene, walls });
+        }
+        if let Some(width) = self.width
+            && (scene != Scene::Terrain || !WIDTHS.contains(&width))
+        {
+            return Err(GenerateError::Width { scene, width });
         }
         let n = scene.grid(wanted);
         let trees = scene.trees(n, self.walls);
@@ -240,6 +250,14 @@ pub enum GenerateError {
         /// What was asked for.
         walls: u32,
     },
+    /// Width of a scene that has its own, or no such width.
+    #[error("a {} {width} wide: {} to {} are possible, of terrain", .scene.name(), WIDTHS.start(), WIDTHS.end())]
+    Width {
+        /// The scene.
+        scene: Scene,
+        /// What was asked for.
+        width: f64,
+    },
     /// The scene would be too large.
     #[error("{trees} base triangles with {levels} levels are more than {MAX_TRIANGLES} triangles")]
     Triangles {
@@ -265,7 +283,7 @@ pub fn generate(options: &Options) -> Result<Surface, GenerateError> {
     let scene = options.scene;
     let seed = options.seed;
     match scene {
-        Scene::Terrain => terrain::generate(n, levels, seed, roughness),
+        Scene::Terrain => terrain::generate(n, levels, seed, roughness, options.width.unwrap_or(terrain::WIDTH)),
         Scene::Cloth => cloth::generate(n, levels, seed, 2.0 * roughness),
         Scene::Sphere => sphere::generate(n, levels, seed, roughness),
         Scene::Spikes => spikes::generate(n, levels, seed, 2.0 * roughness),

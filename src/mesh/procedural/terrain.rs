@@ -1,4 +1,4 @@
-//! `terrain`: a fractal heightfield over a square of width 2 centred at the origin, y up.
+//! `terrain`: a fractal heightfield over a square of width 2, or as asked for, centred at the origin, y up.
 //!
 //! Height is a sum of octaves of gradient noise: 2 cells across for the first, twice as many for each further one down to the finest
 //! lattice spacing, amplitude times the gain from one to the next. From the fourth on they are also weaker in valleys than on peaks, by
@@ -10,6 +10,8 @@ use super::base::{Base, Parameter, Shape};
 use super::noise::{self, Cell2};
 use crate::mesh::Surface;
 
+/// World units across, where nothing else is asked for.
+pub(super) const WIDTH: f64 = 2.0;
 /// Height of the first octave per unit of noise, world units.
 const AMPLITUDE: f64 = 0.44;
 /// How much peaks are sharpened and valleys flattened: height = h + SHARPEN h^2, which is monotone for |h| < 1 / (2 SHARPEN).
@@ -35,11 +37,14 @@ struct Terrain {
     octaves: Vec<Octave>,
     /// Finest steps across.
     steps: i32,
+    /// World units across for each of [`WIDTH`].
+    stretch: f64,
 }
 
-/// Terrain of `g` by `g` quads.
-pub(super) fn generate(g: u32, levels: u32, seed: u64, gain: f64) -> Result<Surface, GenerateError> {
-    Base::grid(g)?.tessellate(levels, &Terrain::new(g << levels, seed, gain))
+/// Terrain of `g` by `g` quads, `width` across.
+pub(super) fn generate(g: u32, levels: u32, seed: u64, gain: f64, width: f64) -> Result<Surface, GenerateError> {
+    let terrain = Terrain { stretch: width / WIDTH, ..Terrain::new(g << levels, seed, gain) };
+    Base::grid(g)?.tessellate(levels, &terrain)
 }
 
 impl Terrain {
@@ -73,7 +78,7 @@ impl Terrain {
                 octave
             })
             .collect();
-        Self { octaves, steps: steps as i32 }
+        Self { octaves, steps: steps as i32, stretch: 1.0 }
     }
 
     /// Exactly one value for each whole parameter, -1..=1.
@@ -82,7 +87,7 @@ impl Terrain {
         f64::from(2 * p - self.steps) / f64::from(self.steps)
     }
 
-    /// Height over a place in the square, for choosing where to be.
+    /// Height over a place in the unstretched square, for choosing where to be.
     fn height(&self, p: [f64; 2]) -> f64 {
         let (mut position, mut normal) = ([[0.0; 3]], [[0.0; 3]]);
         self.block(&[p], &mut position, &mut normal);
@@ -164,8 +169,8 @@ impl Terrain {
             let ([c, cx, cz], [f, fx, fz]) = (coarse[k], fine[k]);
             let (w, dw) = weight(c);
             let (h, factor) = (c + w * f, 1.0 + dw * f);
-            *position = [places[k][0], h + SHARPEN * h * h, places[k][1]];
-            let steeper = 1.0 + 2.0 * SHARPEN * h;
+            *position = [self.stretch * places[k][0], h + SHARPEN * h * h, self.stretch * places[k][1]];
+            let steeper = (1.0 + 2.0 * SHARPEN * h) / self.stretch;
             let (dx, dz) = (steeper * (cx * factor + w * fx), steeper * (cz * factor + w * fz));
             let scale = 1.0 / (1.0 + dx * dx + dz * dz).sqrt();
             *normal = [-dx * scale, scale, -dz * scale].map(|c| c as f32);
@@ -186,7 +191,12 @@ mod tests {
 
     #[test]
     fn normals_are_the_derivatives() {
-        let mut terrain = Terrain::new(128, 4, 0.55);
+        for stretch in [1.0, 32.0] {
+            check_normals(Terrain { stretch, ..Terrain::new(128, 4, 0.55) });
+        }
+    }
+
+    fn check_normals(mut terrain: Terrain) {
         // The finest octave does not count towards normals.
         terrain.octaves.last_mut().expect("octaves").amplitude = 0.0;
         let e = 1e-6;
@@ -194,8 +204,8 @@ mod tests {
             let [x, z] = [0, 1].map(|axis| 2.0 * noise::unit(noise::hash(9, [n, axis, 0])) - 1.0);
             let (mut position, mut normal) = ([[0.0; 3]], [[0.0; 3]]);
             terrain.block(&[[x, z]], &mut position, &mut normal);
-            let dx = (terrain.height([x + e, z]) - terrain.height([x - e, z])) / (2.0 * e);
-            let dz = (terrain.height([x, z + e]) - terrain.height([x, z - e])) / (2.0 * e);
+            let dx = (terrain.height([x + e, z]) - terrain.height([x - e, z])) / (2.0 * e * terrain.stretch);
+            let dz = (terrain.height([x, z + e]) - terrain.height([x, z - e])) / (2.0 * e * terrain.stretch);
             let [a, b, c] = normal[0].map(f64::from);
             assert!((a / b + dx).abs() < 1e-3 && (c / b + dz).abs() < 1e-3, "{a} {b} {c} {dx} {dz}");
         }
@@ -204,7 +214,7 @@ mod tests {
     #[test]
     fn splits_and_gain_change_the_detail_and_not_the_mountains() {
         let base = |levels, gain| {
-            let s = generate(16, levels, 1, gain).expect("a small terrain");
+            let s = generate(16, levels, 1, gain, WIDTH).expect("a small terrain");
             (0..s.triangles.len()).map(|t| s.tree(t)[0][1]).collect::<Vec<_>>()
         };
         let reference = base(5, 0.55);

@@ -169,6 +169,21 @@ fn walls_of_a_room_are_as_fine_as_is_said() {
 }
 
 #[test]
+fn a_terrain_is_as_wide_as_is_said_and_as_high_as_ever() {
+    let terrain = |width| Options { levels: Some(2), base: Some(32), width, ..Options::new(Scene::Terrain) };
+    let points = |width| {
+        let s = generate(&terrain(width)).unwrap();
+        (0..s.triangles.len()).flat_map(|t| s.tree(t).to_vec()).collect::<Vec<_>>()
+    };
+    let wide: Vec<_> = points(None).iter().map(|&[x, y, z]| [32.0 * x, y, 32.0 * z]).collect();
+    assert_eq!(points(Some(64.0)), wide);
+    assert_eq!(points(Some(2.0)), points(None));
+    let wrong = |options: Options| options.check().unwrap_err().to_string();
+    assert_eq!(wrong(Options { width: Some(3.0), ..Options::new(Scene::Cloth) }), "a cloth 3 wide: 0.5 to 1024 are possible, of terrain");
+    assert!(wrong(terrain(Some(f64::NAN))).starts_with("a terrain NaN wide"));
+}
+
+#[test]
 fn open_scenes_face_up_or_into_the_room() {
     let facing = |s: &Surface, tree: usize| {
         let [a, b, c] = lattice::root(s.levels).map(|p| s.tree(tree)[lattice::index(s.levels, p)]);

@@ -175,6 +175,17 @@ pub static METHOD_INPUT_SIX: Registered = Registered {
     make: |scene, knobs, store| Bvh::of(scene.input().ok_or(BvhError::NoInput)?, knobs, Some(NodeBoxes::Six), store),
 };
 
+/// [`METHOD_WIDE`] over that mesh.
+pub static METHOD_INPUT_WIDE: Registered = Registered {
+    name: "input-bvh32",
+    help: "bvh32 over the triangles of the mesh that the scene was built from",
+    knobs: METHOD_WIDE.knobs,
+    error: None,
+    of_input: true,
+    unit: METHOD_WIDE.unit,
+    make: |scene, knobs, store| Bvh::of(scene.input().ok_or(BvhError::NoInput)?, knobs, Some(NodeBoxes::Wide), store),
+};
+
 impl FullOptions {
     /// Those that were chosen; boxes that are a method's own are not.
     pub fn chosen(knobs: &Knobs, boxes: Option<NodeBoxes>) -> Self {

@@ -30,6 +30,10 @@ impl Shape {
                 let (angle, far) = (f64::from(k) * std::f64::consts::PI / 5.0, f64::from(r) * if k % 2 == 0 { 1.4 } else { 0.6 });
                 ((far * angle.sin()).round() as i32, (-far * angle.cos()).round() as i32)
             })),
+            Mark::GreekCross => {
+                let (a, b) = (r / 3, r + 1);
+                outline(&[(-a, -b), (a, -b), (a, -a), (b, -a), (b, a), (a, a), (a, b), (-a, b), (-a, a), (-b, a), (-b, -a), (-a, -a)])
+            }
             Mark::Cross => lines(&[[(-r, 0), (r, 0)], [(0, -r), (0, r)]]),
             Mark::Times => lines(&[[(-s, -s), (s, s)], [(-s, s), (s, -s)]]),
             Mark::Star => lines(&[[(-r, 0), (r, 0)], [(-s, -s), (s, s)], [(-s, s), (s, -s)], [(0, -r), (0, r)]]),

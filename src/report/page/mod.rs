@@ -30,7 +30,7 @@ use xxhash_rust::xxh3::xxh3_64;
 const SHELL: &str = include_str!("web/shell.html");
 const STYLE: &str = include_str!("web/style.css");
 /// In the order in which they stand in the page.
-const SCRIPTS: [&str; 11] = [
+const SCRIPTS: [&str; 12] = [
     include_str!("web/base.js"),
     include_str!("web/points.js"),
     include_str!("web/chart.js"),
@@ -39,6 +39,7 @@ const SCRIPTS: [&str; 11] = [
     include_str!("web/distance.js"),
     include_str!("web/verdict.js"),
     include_str!("web/machine.js"),
+    include_str!("web/frames.js"),
     include_str!("web/pictures.js"),
     include_str!("web/tables.js"),
     include_str!("web/main.js"),

@@ -110,6 +110,7 @@ async function start() {
     ["size", "By size of the frame", sizeSection, unique((page.error_time?.sizes ?? []).map((s) => String(s.size))).length > 1],
     ["parts", "Time, energy and traffic", partsSection, hasPoints],
     ["machine", "By the machine", machineSection, variedKeys(state.all).length > 0],
+    ["frames", "Frame by frame", framesSection, ofSeveralFrames().length > 0],
     ["pictures", "Pictures and rays", picturesSection, page.pictures.length > 0],
     ["equal", "At equal error", equalSection, page.error_time?.equal_error.length > 0],
     ["left-out", "With less in scene and unit", leftOutSection, page.error_time?.left_out?.length > 0],
