@@ -176,7 +176,7 @@ EQUAL = 1.005
 
 
 def search(data, values):
-    """Of all settings that come within 2 % of the BVH's least cycles those with the fewest miss registers; of these the one with the least cycles, or one that is equal to half a percent."""
+    """Of all settings without hashing that come within 2 % of the BVH's least cycles those with the fewest miss registers; of these the one with the least cycles, or one that is equal to half a percent."""
     found = {}
     for row in data.rows:
         found.setdefault(facts(row)["set"], {}).setdefault(facts(row)["method"], []).append(row["result"])
@@ -189,8 +189,10 @@ def search(data, values):
         hashed = [name for name, level in (("L1", l1), ("L2", l2)) if level.get("index") == "xor"]
         places = ", ".join([f"`{machine['dram']['mapping']}`", *(f"{name} hashed" for name in hashed)])
         entries.append((mean["bvh"], mean["lod"], registers, places, l1["mshrs"], l2["mshrs"]))
-    least = min(entries)[0]
-    best = min((e for e in entries if e[0] <= WITHIN * least), key=lambda e: (e[2], e[0]))
+    # The paper's machine says nothing of hashing: what that gives is said, and not taken.
+    sliced = [e for e in entries if "^" not in e[3] and "hashed" not in e[3]]
+    least = min(sliced)[0]
+    best = min((e for e in sliced if e[0] <= WITHIN * least), key=lambda e: (e[2], e[0]))
     shipped = tomllib.loads((ROOT / "machines" / "haydel2023.toml").read_text())
     chosen = next(e for e in entries if e[3:] == (f"`{shipped['dram']['mapping']}`", shipped["l1"]["mshrs"], shipped["l2"]["mshrs"]))
     if chosen[2] > best[2] or chosen[0] > EQUAL * best[0]:
@@ -203,6 +205,8 @@ def search(data, values):
     rows = [[e[3], e[4], e[5], f"{e[2]:,}", f"{e[0] / authors[0]:.3f}{name(e)}".replace(" **", " (chosen)"), f"{e[1] / authors[1]:.3f}"] for e in sorted(shown)]
     values["search"] = table(["mapping, hashed sets", "L1 MSHRs of a bank", "of the L2", "registers", "cycles of the BVH", "of the LOD"], rows)
     values["search_count"] = str(len(entries))
+    hashed = min(set(entries) - set(sliced))
+    values["search_hashed"] = f"Hashed ({hashed[3]}) the BVH takes {hashed[0] / chosen[0]:.3f} of the chosen setting's cycles, ours {hashed[1] / chosen[1]:.3f}"
     most = max(entries, key=lambda e: (e[2], -e[0]))
     values["search_most"] = f"{100 - 100 * most[0] / chosen[0]:.1f} %"
     values["search_bvh"], values["search_lod"] = f"{chosen[0] / authors[0]:.2f}", f"{chosen[1] / authors[1]:.2f}"
