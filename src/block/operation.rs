@@ -144,9 +144,27 @@ impl Operation {
     }
 }
 
+/// Most kinds of [`Work`] of a method.
+pub const MAX_WORKS: usize = 16;
+
+/// An operation that no block of the RTL does, such as one of work before a frame. Its energy is that of a block made of the same (`docs/energy.md`); it takes no time.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Work {
+    /// Its name in reports.
+    pub name: &'static str,
+    /// Its products: how many, bits of one factor, bits of the other.
+    pub products: &'static [[u32; 3]],
+    /// Bits added or compared.
+    pub add_bits: u32,
+    /// Bits selected, one of two.
+    pub select_bits: u32,
+    /// Bits of registers written.
+    pub written_bits: u32,
+}
+
 /// How many of each.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
-pub struct Operations([u64; Operation::ALL.len()]);
+pub struct Operations([u64; Operation::ALL.len()], [u64; MAX_WORKS]);
 
 impl Operations {
     /// Counts `count` more of `operation`.
@@ -154,16 +172,32 @@ impl Operations {
         self.0[operation.number()] += count;
     }
 
+    /// Counts `count` more of a method's own, by number.
+    ///
+    /// # Panics
+    /// The number is not below [`MAX_WORKS`].
+    pub fn add_work(&mut self, work: usize, count: u64) {
+        self.1[work] += count;
+    }
+
+    /// How many of a method's own there were, by number.
+    pub fn works(&self) -> &[u64; MAX_WORKS] {
+        &self.1
+    }
+
     /// Counts all of `other` too.
     pub fn join(&mut self, other: &Self) {
         self.0.iter_mut().zip(other.0).for_each(|(count, more)| *count += more);
+        self.1.iter_mut().zip(other.1).for_each(|(count, more)| *count += more);
     }
 
     /// What was counted since `earlier`, which is part of it.
     pub fn since(&self, earlier: &Self) -> Self {
         let mut counts = self.0;
         counts.iter_mut().zip(earlier.0).for_each(|(count, before)| *count -= before);
-        Self(counts)
+        let mut works = self.1;
+        works.iter_mut().zip(earlier.1).for_each(|(count, before)| *count -= before);
+        Self(counts, works)
     }
 
     /// How many of `operation`.

@@ -24,11 +24,11 @@ pub use registry::{METHODS, find};
 pub use stack::{Entry, Op, STACK_ENTRIES, TraversalStack};
 pub use tracer::{Trace, Tracer};
 
-use crate::block::Operation;
+use crate::block::{Operation, Work};
 use crate::bvh::BvhError;
 use crate::format::Scene;
 use crate::rays::Sight;
-use crate::step::MemoryMap;
+use crate::step::{Batch, MemoryMap};
 use bvh::TreeStore;
 use std::fmt;
 
@@ -39,6 +39,15 @@ pub struct MethodUnit {
     pub blocks: &'static [Operation],
     /// A context keeps split triangles, and its stack levels and bound codes.
     pub has_levels: bool,
+}
+
+/// What computes for a method's rays.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Computing {
+    /// Their units; none where compute takes no time.
+    pub unit: Option<MethodUnit>,
+    /// Operations of its own.
+    pub works: &'static [Work],
 }
 
 /// A method in the registry.
@@ -55,6 +64,8 @@ pub struct Registered {
     pub of_input: bool,
     /// A unit for its rays; none if it is no hardware.
     pub unit: Option<MethodUnit>,
+    /// Operations of its own that no block does, by the number that steps name them by; few methods have any.
+    pub works: &'static [Work],
     /// Builds what it needs for a scene.
     pub make: Make,
 }
@@ -80,10 +91,25 @@ pub trait Method: Send + Sync {
         None
     }
 
+    /// What is to be done before the rays of a frame, the first being 0, as pieces of work whose steps read, write, and do operations of its own: all rays wait until all is done.
+    /// None where there is nothing to do, as for a frame of which all is still there.
+    fn before(&self, _sight: &Sight, _frame: usize) -> Option<Box<dyn Before + '_>> {
+        None
+    }
+
     /// What it chose for these rays, beyond its knobs: name and value.
     fn choices(&self, _sight: &Sight) -> Vec<(&'static str, String)> {
         Vec::new()
     }
+}
+
+/// Work before a frame, in batches that do not wait for each other.
+pub trait Before: Sync {
+    /// How many.
+    fn batches(&self) -> usize;
+
+    /// The steps of a batch ([`Recorder::work`](crate::step::Recorder::work)).
+    fn batch(&self, batch: usize) -> Batch;
 }
 
 impl Registered {

@@ -89,6 +89,7 @@ fn act(text: &mut String, act: Act, edges: Option<&Edges>) -> std::fmt::Result {
         Act::LocalChildren { met } => write!(text, "l{met}"),
         Act::WideChildren { met } => write!(text, "w{met}"),
         Act::SixChildren { met } => write!(text, "b{met}"),
+        Act::Work { work, count } => write!(text, "k{work}:{count}"),
         Act::Decide => write!(text, "y"),
         Act::LodTest { refine } => {
             text.push(if refine { 'r' } else { 's' });
@@ -105,8 +106,8 @@ fn act(text: &mut String, act: Act, edges: Option<&Edges>) -> std::fmt::Result {
 }
 
 fn lines(text: &mut String, fetch: &Fetch) -> std::fmt::Result {
-    let Fetch { section, line, lines, joins, .. } = *fetch;
-    write!(text, "@{}{}.{line}.{lines}", if joins { "+" } else { "" }, section.place())
+    let Fetch { section, line, lines, joins, stores, .. } = *fetch;
+    write!(text, "@{}{}{}.{line}.{lines}", if joins { "+" } else { "" }, if stores { "=" } else { "" }, section.place())
 }
 
 /// The steps of rays in the middles of `grid` cells of the picture, columns and rows; at most one for each pixel. The caller fills in `view` and `setting`.

@@ -2,7 +2,7 @@
 //!
 //! Batches are given in order, in chunks, and whoever takes them holds the next chunks back: memory is bounded by what waits, not by the frame.
 
-use crate::method::{Method, SurfaceHit, Tracer};
+use crate::method::{Before, Method, SurfaceHit, Tracer};
 use crate::rays::{RaySource, Sight};
 use crate::sim::replay::Chunk;
 use crate::step::{Batch, Link, Nodes, Recorder};
@@ -27,6 +27,11 @@ pub trait Frame: Sync {
         Vec::new()
     }
 
+    /// What is to be done before the rays of a frame, the first being 0.
+    fn before(&self, _frame: usize) -> Option<Box<dyn Before + '_>> {
+        None
+    }
+
     /// Every batch numbers its own rays from 0, and they wait for none of another.
     fn numbers_by_batch(&self) -> bool {
         false
@@ -35,8 +40,26 @@ pub trait Frame: Sync {
     /// Traces all rays; gives them to `take`, in order, until it wants no more.
     fn produce(&self, take: &mut dyn FnMut(Traced) -> bool) {
         let (batches, starts, mut rays) = (self.batches(), self.frame_starts(), 0);
-        let mut first = 0;
+        let (mut first, mut frame, mut has_begun) = (0, 0, false);
         while first < batches {
+            let mut begins_frame = starts.contains(&first);
+            frame += usize::from(begins_frame);
+            if (begins_frame || first == 0)
+                && let Some(before) = self.before(frame)
+            {
+                let work = before.batches();
+                for from in (0..work).step_by(CHUNK) {
+                    let batches: Vec<_> = (from..work.min(from + CHUNK)).into_par_iter().map(|batch| before.batch(batch)).collect();
+                    let begins_frame = from == 0 && has_begun;
+                    if !take(Traced { batches, hits: Vec::new(), begins_frame, is_before: true }) {
+                        return;
+                    }
+                    has_begun = true;
+                }
+                // The rays wait for all of it.
+                begins_frame |= work > 0;
+            }
+            has_begun = true;
             // A chunk is of one frame.
             let next_frame = starts.iter().copied().find(|&start| start > first).unwrap_or(batches);
             let end = next_frame.min(first + CHUNK);
@@ -49,7 +72,7 @@ pub trait Frame: Sync {
                     rays += batch.rays() as u64;
                 }
             }
-            if !take(Traced { batches, hits: hits.concat(), begins_frame: starts.contains(&first) }) {
+            if !take(Traced { batches, hits: hits.concat(), begins_frame, is_before: false }) {
                 return;
             }
             first = end;
@@ -89,14 +112,17 @@ pub struct Traced {
     pub batches: Vec<Batch>,
     /// What the rays met, in the same order.
     pub hits: Vec<RayHit>,
-    /// They are the first of a frame behind another.
+    /// They are the first of a frame behind another, or behind work before it.
     pub begins_frame: bool,
+    /// They are work before a frame, and no rays.
+    pub is_before: bool,
 }
 
 impl Traced {
     /// The steps, for a replay.
     pub fn chunk(self) -> Chunk {
         let chunk = Chunk::from(self.batches);
+        let chunk = if self.is_before { chunk.before_frame() } else { chunk };
         if self.begins_frame { chunk.beginning_frame() } else { chunk }
     }
 }
@@ -118,6 +144,10 @@ impl Frame for FrameRays<'_> {
 
     fn frame_starts(&self) -> Vec<usize> {
         self.rays.frame_starts()
+    }
+
+    fn before(&self, frame: usize) -> Option<Box<dyn Before + '_>> {
+        self.method.before(self.sight, frame)
     }
 
     fn worker(&self) -> Box<dyn Worker + '_> {

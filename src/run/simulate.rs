@@ -78,11 +78,20 @@ pub fn simulate(frame: &dyn Frame, jobs: &[Job], look: &mut dyn FnMut(&Traced)) 
     thread::scope(|scope| {
         let nodes = frame.nodes();
         let threads = threads_of_replay(jobs.len());
+        let has_work = jobs.iter().any(|job| job.compute == Compute::Units) && frame.before(0).is_some();
         let (senders, runs): (Vec<SyncSender<Chunk>>, Vec<_>) = jobs
             .iter()
             .map(|job| {
                 let (sender, receiver): (_, Receiver<Chunk>) = sync_channel(AHEAD);
-                (sender, scope.spawn(move || replay(job, nodes, receiver.into_iter(), threads)))
+                (
+                    sender,
+                    scope.spawn(move || {
+                        if has_work && job.compute == Compute::Units {
+                            return Err(ReplayError::WorkByUnits);
+                        }
+                        replay(job, nodes, receiver.into_iter(), threads)
+                    }),
+                )
             })
             .unzip();
         frame.produce(&mut |traced| {

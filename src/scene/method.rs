@@ -55,7 +55,14 @@ impl Scene {
     /// # Errors
     /// Besides, a knob that it does not have, or no such value.
     pub fn method_with(&self, name: &str, knobs: &[(&str, &str)]) -> Result<SceneMethod, MethodError> {
-        let registered = find(name).ok_or_else(|| MethodError::Unknown(name.to_owned()))?;
+        self.method_of(find(name).ok_or_else(|| MethodError::Unknown(name.to_owned()))?, knobs)
+    }
+
+    /// The same of a method that need not be in [`METHODS`], such as one of your own.
+    ///
+    /// # Errors
+    /// As above, but for the name.
+    pub fn method_of(&self, registered: &'static Registered, knobs: &[(&str, &str)]) -> Result<SceneMethod, MethodError> {
         let mut turned = Knobs::default();
         for &(name, value) in knobs {
             let knob = registered.knobs.iter().find(|knob| knob.name == name);

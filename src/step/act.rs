@@ -1,4 +1,4 @@
-//! A step of a ray: lines that are asked for, and what the hardware does.
+//! A step of a ray: lines that are read or written, and what the hardware does.
 //!
 //! | act | what it stands for | operations |
 //! |---|---|---|
@@ -13,6 +13,7 @@
 //! | `LodTest` | does a triangle serve | `lod_test` |
 //! | `Tessellate` | the inserted vertices of a triangle are morphed | `tessellate` |
 //! | `Triangles` | triangle tests; bit k of `hits`: the k-th is met | `tri_test`, and of those met `hit_divide` and `hit_select` |
+//! | `Work` | `count` operations that no block of the RTL does, of number `work` among the method's own | these |
 //! | `Pop` | a node is taken from the stack, and `dropped` if it lies behind the closest hit | |
 //! | `End` | the ray is done; a hit was `found` or not, and is `mapped` to the full resolution | two `hit_divide`, `bary_map` if mapped |
 //!
@@ -45,13 +46,15 @@ pub struct Fetch {
     /// They are asked for together with those of the step before: nothing of that step need be there. Behind any act but `Fetch`, a unit asks for one such step
     /// together with that act's, as it has one register for it.
     pub joins: bool,
+    /// They are written, whole, and not read: nothing is fetched for them, and the ray goes on when the L2 has them.
+    pub stores: bool,
 }
 
 impl Fetch {
     /// `lines` lines of `section` from `line` on, the first of their record, and not asked for with any others.
     #[inline(always)]
     pub const fn new(section: SectionId, line: u32, lines: u32) -> Self {
-        Self { section, line, lines, place: 0, joins: false }
+        Self { section, line, lines, place: 0, joins: false, stores: false }
     }
 
     /// The same at another place of the record.
@@ -66,6 +69,13 @@ impl Fetch {
     #[must_use]
     pub const fn joining(self) -> Self {
         Self { joins: true, ..self }
+    }
+
+    /// The same lines, written.
+    #[inline(always)]
+    #[must_use]
+    pub const fn storing(self) -> Self {
+        Self { stores: true, ..self }
     }
 }
 
@@ -84,6 +94,7 @@ pub enum Act {
     LodTest { refine: bool },
     Tessellate,
     Triangles { count: u32, hits: u32 },
+    Work { work: u32, count: u32 },
     Pop { dropped: bool },
     End { found: bool, mapped: bool },
 }
@@ -93,7 +104,7 @@ pub enum Act {
 pub struct Step {
     /// With this step the ray visits a node: the one that it kept from its last test, or took from the stack.
     pub visits: bool,
-    /// The lines; `Triangles` and `End` have none.
+    /// The lines; `Triangles`, `Work` and `End` have none.
     pub fetch: Option<Fetch>,
     /// The act.
     pub act: Act,
@@ -169,6 +180,7 @@ impl Step {
                 add(Operation::BoxTest, 6);
                 add(Operation::ChildSort6, 1);
             }
+            Act::Work { work, count } => operations.add_work(work as usize, count.into()),
             Act::Decide => add(Operation::TreeDeciders, 1),
             Act::LodTest { .. } => add(Operation::LodTest, 1),
             Act::Tessellate => add(Operation::Tessellate, 1),

@@ -11,6 +11,8 @@ pub struct Batch {
     ends: Box<[u32]>,
     /// Number of each ray and of the one behind whose end it starts; empty if no ray of the frame waits for another.
     links: Box<[Link]>,
+    /// They are no rays, but work before a frame.
+    is_work: bool,
 }
 
 /// A ray's place among all rays of a frame.
@@ -42,6 +44,11 @@ impl Batch {
             link.number += first;
             link.after = link.after.map(|after| after + first);
         }
+    }
+
+    /// They are no rays, but pieces of work before a frame: nothing is set up for them, and none is counted as a ray.
+    pub fn is_work(&self) -> bool {
+        self.is_work
     }
 
     /// Number of rays.
@@ -89,7 +96,12 @@ impl Recorder {
     pub fn batch(self) -> Batch {
         assert_eq!(self.ends.last().map_or(0, |&end| end as usize), self.words.len(), "a ray without its end");
         assert!(self.links.is_empty() || self.links.len() == self.ends.len(), "a ray without its link");
-        Batch { words: self.words.into(), ends: self.ends.into(), links: self.links.into() }
+        Batch { words: self.words.into(), ends: self.ends.into(), links: self.links.into(), is_work: false }
+    }
+
+    /// The same, of pieces of work before a frame in place of rays.
+    pub fn work(self) -> Batch {
+        Batch { is_work: true, ..self.batch() }
     }
 }
 

@@ -2,13 +2,14 @@
 //!
 //! | bits | what |
 //! |---|---|
-//! | 63:32 | the first line, or `hits` |
+//! | 63:32 | the first line, `hits`, or the `count` of work |
 //! | 31:28 | act |
-//! | 27:22 | `met` or `count` |
+//! | 27:22 | `met`, `count` or `work` |
 //! | 21 | `refine`, `dropped` or `found` |
 //! | 20 | `mapped` |
 //! | 19:17 | section |
 //! | 16:14 | lines; 0 if none are asked for |
+//! | 12 | stores |
 //! | 11 | joins |
 //! | 10 | visits |
 //! | 9:0 | place |
@@ -22,6 +23,7 @@ const FLAG: u32 = 21;
 const MAPPED: u32 = 20;
 const SECTION: u32 = 17;
 const LINES: u32 = 14;
+const STORES: u32 = 12;
 const JOINS: u32 = 11;
 const VISITS: u32 = 10;
 const PLACE: u32 = 0;
@@ -39,6 +41,7 @@ const LOCAL_CHILDREN: u64 = 9;
 const SIX_CHILDREN: u64 = 10;
 const DECIDE: u64 = 11;
 const PRISMS: u64 = 12;
+const WORK: u64 = 13;
 
 /// A step, as whoever only reads its lines sees it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -51,6 +54,8 @@ pub struct Asking {
     pub section: SectionId,
     /// They are asked for together with those before.
     pub joins: bool,
+    /// They are written.
+    pub stores: bool,
     /// The ray ends.
     pub ends: bool,
 }
@@ -63,7 +68,7 @@ impl StepWord {
     /// The word.
     ///
     /// # Panics
-    /// More lines than [`MAX_FETCH_LINES`] or none, more tests than [`MAX_RUN`], a place beyond [`MAX_PLACES`], or tests of triangles or the end together with lines.
+    /// More lines than [`MAX_FETCH_LINES`] or none, more tests than [`MAX_RUN`], a place beyond [`MAX_PLACES`], or tests of triangles, work or the end together with lines.
     #[inline(always)]
     pub fn pack(step: Step) -> Self {
         let (act, number, flag, mapped, hits) = match step.act {
@@ -78,6 +83,7 @@ impl StepWord {
             Act::LodTest { refine } => (LOD_TEST, 0, refine, false, 0),
             Act::Tessellate => (TESSELLATE, 0, false, false, 0),
             Act::Triangles { count, hits } => (TRIANGLES, count, false, false, hits),
+            Act::Work { work, count } => (WORK, work, false, false, count),
             Act::Pop { dropped } => (POP, 0, dropped, false, 0),
             Act::End { found, mapped } => (END, 0, found, mapped, 0),
         };
@@ -85,13 +91,14 @@ impl StepWord {
         let mut word = act << ACT | u64::from(number) << NUMBER | u64::from(flag) << FLAG | u64::from(mapped) << MAPPED;
         word |= u64::from(step.visits) << VISITS | u64::from(hits) << UPPER;
         if let Some(fetch) = step.fetch {
-            let fits = (1..=MAX_FETCH_LINES).contains(&fetch.lines) && fetch.place < MAX_PLACES && act != TRIANGLES && act != END;
+            let fits = (1..=MAX_FETCH_LINES).contains(&fetch.lines) && fetch.place < MAX_PLACES && !matches!(act, TRIANGLES | WORK | END);
             assert!(fits, "{step:?}: more than a step holds");
             word |= u64::from(fetch.line) << UPPER
                 | (fetch.section.place() as u64) << SECTION
                 | u64::from(fetch.lines) << LINES
                 | u64::from(fetch.place) << PLACE
-                | u64::from(fetch.joins) << JOINS;
+                | u64::from(fetch.joins) << JOINS
+                | u64::from(fetch.stores) << STORES;
         }
         Self(word)
     }
@@ -109,6 +116,7 @@ impl StepWord {
             lines: self.bits(LINES, 7),
             section: SectionId::new(self.bits(SECTION, 7) as usize),
             joins: self.bits(JOINS, 1) == 1,
+            stores: self.bits(STORES, 1) == 1,
             ends: self.0 >> ACT & 15 == END,
         }
     }
@@ -129,6 +137,7 @@ impl StepWord {
             LOD_TEST => Act::LodTest { refine: flag },
             TESSELLATE => Act::Tessellate,
             TRIANGLES => Act::Triangles { count: number, hits: upper },
+            WORK => Act::Work { work: number, count: upper },
             POP => Act::Pop { dropped: flag },
             _ => Act::End { found: flag, mapped: self.bits(MAPPED, 1) == 1 },
         };
@@ -138,6 +147,7 @@ impl StepWord {
             lines: self.bits(LINES, 7),
             place: self.bits(PLACE, u64::from(MAX_PLACES) - 1),
             joins: self.bits(JOINS, 1) == 1,
+            stores: self.bits(STORES, 1) == 1,
         };
         Step { visits: self.bits(VISITS, 1) == 1, fetch: (fetch.lines > 0).then_some(fetch), act }
     }
@@ -157,8 +167,8 @@ mod tests {
         let word = StepWord::pack(step);
         assert_eq!(word.step(), step);
         let asking = word.asking();
-        let fetch = step.fetch.map(|f| (f.line, f.lines, f.section, f.joins));
-        assert_eq!((asking.lines > 0).then_some((asking.first, asking.lines, asking.section, asking.joins)), fetch);
+        let fetch = step.fetch.map(|f| (f.line, f.lines, f.section, f.joins, f.stores));
+        assert_eq!((asking.lines > 0).then_some((asking.first, asking.lines, asking.section, asking.joins, asking.stores)), fetch);
         assert_eq!(asking.ends, matches!(step.act, Act::End { .. }));
     }
 
@@ -188,6 +198,7 @@ mod tests {
                 lines: 1 + k as u32 % MAX_FETCH_LINES,
                 place: k as u32 * 93 % MAX_PLACES,
                 joins: k % 2 == 0,
+                stores: k % 3 == 0,
             };
             same(Step::of(act));
             same(Step::of(act).visiting());
@@ -195,6 +206,9 @@ mod tests {
                 same(Step::on(fetch, act));
                 same(Step::on(fetch, act).visiting());
             }
+        }
+        for work in [0, 15] {
+            same(Step::of(Act::Work { work, count: u32::MAX - work }));
         }
         for (count, hits) in [(1, 1), (4, 0), (32, u32::MAX), (32, 1 << 31)] {
             same(Step::of(Act::Triangles { count, hits }));
@@ -211,6 +225,7 @@ mod tests {
             Step::on(Fetch { lines: 0, ..fetch }, Act::Fetch),
             Step::on(Fetch { place: MAX_PLACES, ..fetch }, Act::Fetch),
             Step::on(fetch, Act::Triangles { count: 1, hits: 1 }),
+            Step::on(fetch, Act::Work { work: 0, count: 1 }),
             Step::on(fetch, Act::End { found: true, mapped: true }),
         ];
         for step in bad {

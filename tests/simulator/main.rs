@@ -5,6 +5,7 @@ mod error_time;
 mod frames;
 mod input;
 mod lines;
+mod own_method;
 mod simulate;
 mod sweep_jobs;
 mod trace;

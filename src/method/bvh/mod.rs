@@ -115,6 +115,7 @@ pub static METHOD: Registered = Registered {
     error: None,
     of_input: false,
     unit: Some(MethodUnit { blocks: UNIT, has_levels: false }),
+    works: &[],
     make: |scene, knobs, store| Bvh::of(scene, knobs, None, store),
 };
 
@@ -139,6 +140,7 @@ pub static METHOD_SIX: Registered = Registered {
     error: None,
     of_input: false,
     unit: Some(MethodUnit { blocks: UNIT_OF_SIX, has_levels: false }),
+    works: &[],
     make: |scene, knobs, store| Bvh::of(scene, knobs, Some(NodeBoxes::Six), store),
 };
 
@@ -150,6 +152,7 @@ pub static METHOD_WIDE: Registered = Registered {
     error: None,
     of_input: false,
     unit: Some(MethodUnit { blocks: &unit(Operation::BoxTest32), has_levels: false }),
+    works: &[],
     make: |scene, knobs, store| Bvh::of(scene, knobs, Some(NodeBoxes::Wide), store),
 };
 
@@ -161,6 +164,7 @@ pub static METHOD_INPUT: Registered = Registered {
     error: None,
     of_input: true,
     unit: METHOD.unit,
+    works: &[],
     make: |scene, knobs, store| Bvh::of(scene.input().ok_or(BvhError::NoInput)?, knobs, None, store),
 };
 
@@ -172,6 +176,7 @@ pub static METHOD_INPUT_SIX: Registered = Registered {
     error: None,
     of_input: true,
     unit: METHOD_SIX.unit,
+    works: &[],
     make: |scene, knobs, store| Bvh::of(scene.input().ok_or(BvhError::NoInput)?, knobs, Some(NodeBoxes::Six), store),
 };
 
@@ -183,6 +188,7 @@ pub static METHOD_INPUT_WIDE: Registered = Registered {
     error: None,
     of_input: true,
     unit: METHOD_WIDE.unit,
+    works: &[],
     make: |scene, knobs, store| Bvh::of(scene.input().ok_or(BvhError::NoInput)?, knobs, Some(NodeBoxes::Wide), store),
 };
 

@@ -47,6 +47,7 @@ pub static METHOD: Registered = Registered {
     error: Some(ErrorKnob { knob: &DELTA, values: octaves, in_steps: false }),
     of_input: false,
     unit: discrete::METHOD.unit,
+    works: &[],
     make: |scene, knobs, _| Ok(Box::new(Chunked::of(scene, knobs)?)),
 };
 

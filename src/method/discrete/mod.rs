@@ -52,6 +52,7 @@ pub static METHOD: Registered = Registered {
         },
         has_levels: false,
     }),
+    works: &[],
     make: |scene, knobs, store| Discrete::of(scene, knobs, store),
 };
 

@@ -40,6 +40,7 @@ pub static METHOD: Registered = Registered {
         ],
         has_levels: true,
     }),
+    works: &[],
     make: |scene, knobs, _| Ok(Box::new(Lod::of(scene, knobs))),
 };
 

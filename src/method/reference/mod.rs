@@ -14,6 +14,7 @@ pub static METHOD: Registered = Registered {
     error: None,
     of_input: false,
     unit: None,
+    works: &[],
     make: |scene, _, _| Ok(Box::new(Truth { reference: Reference::new(&scene.decode()), space: ModelSpace::of(scene) })),
 };
 

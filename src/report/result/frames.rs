@@ -3,7 +3,7 @@
 use super::energy::unit_of;
 use super::intervals::{energy_between, zero};
 use super::ratio;
-use crate::method::MethodUnit;
+use crate::method::Computing;
 use crate::num::LINE_BYTES;
 use crate::sim::energy::EnergyModel;
 use crate::sim::replay::FrameRun;
@@ -17,6 +17,9 @@ pub struct FrameResult {
     pub start: u64,
     /// Cycles from there to its last ray's end.
     pub cycles: u64,
+    /// The part of all this that was work before its rays, where there was any.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub before: Option<BeforeResult>,
     /// Share of these, at its end, in which fewer than half of the contexts have rays.
     pub stragglers: f64,
     /// Rays shot.
@@ -27,6 +30,22 @@ pub struct FrameResult {
     pub l1_misses: u64,
     /// Misses of the L2.
     pub l2_misses: u64,
+    /// Bytes read and written in memory.
+    pub dram_bytes: u64,
+    /// Energy, in the result's unit.
+    pub energy: f64,
+}
+
+/// Work before the rays of a frame: they wait until all of it is done.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct BeforeResult {
+    /// Cycles until the rays begin.
+    pub cycles: u64,
+    /// Requests to the L1s, stores among them.
+    pub l1_requests: u64,
+    /// Lines written.
+    pub stores: u64,
     /// Bytes read and written in memory.
     pub dram_bytes: u64,
     /// Energy, in the result's unit.
@@ -49,16 +68,33 @@ pub struct WarmFrames {
     pub energy: f64,
 }
 
-/// The frames of a run whose traversal units have the blocks `unit`.
-pub(super) fn frames(runs: &[FrameRun], model: &EnergyModel, unit: Option<MethodUnit>) -> Vec<FrameResult> {
+/// The frames of a run that `of` computes for.
+pub(super) fn frames(runs: &[FrameRun], model: &EnergyModel, of: Computing) -> Vec<FrameResult> {
     let zero = zero();
-    let begins = std::iter::once(&zero).chain(runs.iter().map(|run| &run.end));
-    let frame = |(begin, run): (_, &FrameRun)| {
-        let cycles = run.end.end - run.start;
-        let (counts, energy) = energy_between(begin, &run.end, cycles, model, unit);
-        FrameResult {
-            start: run.start,
+    let (mut frames, mut begin, mut before) = (Vec::new(), &zero, None);
+    for run in runs {
+        if run.is_before {
+            before = Some(run);
+            continue;
+        }
+        let start = before.map_or(run.start, |work| work.start);
+        let cycles = run.end.end - start;
+        let (counts, energy) = energy_between(begin, &run.end, cycles, model, of);
+        let work = |work: &FrameRun| {
+            let cycles = run.start - work.start;
+            let (counts, energy) = energy_between(begin, &work.end, cycles, model, of);
+            BeforeResult {
+                cycles,
+                l1_requests: counts.l1_reads,
+                stores: work.end.counts.l1.stores - begin.counts.l1.stores,
+                dram_bytes: counts.dram_lines * LINE_BYTES,
+                energy: energy.total() * unit_of(energy.unit).0,
+            }
+        };
+        frames.push(FrameResult {
+            start,
             cycles,
+            before: before.take().map(work),
             stragglers: ratio((run.end.end - run.half) as f64, cycles as f64),
             rays: run.end.counts.rays - begin.counts.rays,
             l1_requests: counts.l1_reads,
@@ -66,9 +102,10 @@ pub(super) fn frames(runs: &[FrameRun], model: &EnergyModel, unit: Option<Method
             l2_misses: run.end.counts.l2.misses - begin.counts.l2.misses,
             dram_bytes: counts.dram_lines * LINE_BYTES,
             energy: energy.total() * unit_of(energy.unit).0,
-        }
-    };
-    begins.zip(runs).map(frame).collect()
+        });
+        begin = &run.end;
+    }
+    frames
 }
 
 /// The mean of the second half of some frames; none of a single one.

@@ -4,7 +4,7 @@ use super::energy::dram_parts;
 use super::ratio;
 use super::roofline::{Done, Parts};
 use crate::block::Operations;
-use crate::method::MethodUnit;
+use crate::method::Computing;
 use crate::num::LINE_BYTES;
 use crate::sim::dram::{ChannelCounts, DramEnergy};
 use crate::sim::energy::{EnergyCounts, EnergyModel, EnergyReport, EnergyUnit};
@@ -70,11 +70,11 @@ pub struct IntervalPower {
     pub leakage: f64,
 }
 
-/// The stretches of a run whose traversal units have the blocks `unit`.
-pub(super) fn intervals(cumulative: &[Interval], model: &EnergyModel, parts: &Parts<'_>, unit: Option<MethodUnit>) -> Vec<IntervalResult> {
+/// The stretches of a run that `of` computes for.
+pub(super) fn intervals(cumulative: &[Interval], model: &EnergyModel, parts: &Parts<'_>, of: Computing) -> Vec<IntervalResult> {
     let zero = zero();
     let begins = std::iter::once(&zero).chain(cumulative);
-    begins.zip(cumulative).map(|(begin, end)| between(begin, end, model, parts, unit)).collect()
+    begins.zip(cumulative).map(|(begin, end)| between(begin, end, model, parts, of)).collect()
 }
 
 /// What was counted between two cycles, and its energy; what leaks does so for `cycles`.
@@ -83,18 +83,19 @@ pub(super) fn energy_between(
     end: &Interval,
     cycles: u64,
     model: &EnergyModel,
-    unit: Option<MethodUnit>,
+    of: Computing,
 ) -> (EnergyCounts, EnergyReport) {
     let added = |of: fn(&Interval) -> u64| of(end) - of(begin);
     let counts = EnergyCounts {
         cycles,
-        l1_reads: added(|i| i.counts.l1.requests),
-        l1_fills: added(|i| i.counts.l1.fills),
-        l2_reads: added(|i| i.counts.l2.requests),
-        l2_fills: added(|i| i.counts.l2.fills),
+        l1_reads: added(|i| i.counts.l1.read()),
+        l1_fills: added(|i| i.counts.l1.written()),
+        l2_reads: added(|i| i.counts.l2.read()),
+        l2_fills: added(|i| i.counts.l2.written()),
         dram_lines: added(|i| i.channels.reads + i.channels.writes),
         operations: end.operations.since(&begin.operations),
-        unit,
+        unit: of.unit,
+        works: of.works,
     };
     let [before, after] = [begin, end].map(|interval| dram_parts(&interval.dram));
     let dram: Vec<_> = before.into_iter().zip(after).map(|((name, before), (_, after))| (name, after - before)).collect();
@@ -113,12 +114,12 @@ pub(super) fn zero() -> Interval {
     }
 }
 
-fn between(begin: &Interval, end: &Interval, model: &EnergyModel, parts: &Parts<'_>, unit: Option<MethodUnit>) -> IntervalResult {
+fn between(begin: &Interval, end: &Interval, model: &EnergyModel, parts: &Parts<'_>, of: Computing) -> IntervalResult {
     let added = |of: fn(&Interval) -> u64| of(end) - of(begin);
     let cycles = added(|i| i.end);
     let lines = added(|i| i.channels.reads + i.channels.writes);
     let (l1_requests, l2_requests) = (added(|i| i.counts.l1.requests), added(|i| i.counts.l2.requests));
-    let (counts, energy) = energy_between(begin, end, cycles, model, unit);
+    let (counts, energy) = energy_between(begin, end, cycles, model, of);
     // Picojoules in a time to watts.
     let watts = |pj: f64| pj * 1e-12 * f64::from(parts.machine.cores.clock_mhz) * 1e6 / cycles as f64;
     let power = || IntervalPower {
@@ -132,7 +133,8 @@ fn between(begin: &Interval, end: &Interval, model: &EnergyModel, parts: &Parts<
     let limiting = Counts {
         l1: CacheCounts {
             requests: l1_requests,
-            fills: counts.l1_fills,
+            fills: added(|i| i.counts.l1.fills),
+            stores: added(|i| i.counts.l1.stores),
             register_cycles: added(|i| i.counts.l1.register_cycles),
             queued_cycles: added(|i| i.counts.l1.queued_cycles),
             ..CacheCounts::default()

@@ -7,11 +7,17 @@ use crate::sim::replay::{CacheCounts, MissCauses, Run, Waits};
 use crate::sim::unit::{State, UnitCounts};
 use serde::{Deserialize, Serialize};
 
+/// What few methods do is not in results of all others.
+#[expect(clippy::trivially_copy_pass_by_ref, reason = "as serde calls it")]
+pub(super) fn is_zero(count: &u64) -> bool {
+    *count == 0
+}
+
 /// A level of cache.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct CacheResult {
-    /// Requests looked up: hits, misses and merges.
+    /// Requests looked up: hits, misses, merges and stores.
     pub requests: u64,
     /// Found.
     pub hits: u64,
@@ -21,8 +27,20 @@ pub struct CacheResult {
     pub merges: u64,
     /// Hits of all requests.
     pub hit_rate: f64,
-    /// Lines written.
+    /// Lines written that were read from the next level.
     pub fills: u64,
+    /// Requests to write a line, of methods that write.
+    #[serde(default, skip_serializing_if = "is_zero")]
+    pub stores: u64,
+    /// Lines that stores have written here.
+    #[serde(default, skip_serializing_if = "is_zero")]
+    pub updates: u64,
+    /// Written lines that memory did not have at the end.
+    #[serde(default, skip_serializing_if = "is_zero")]
+    pub dirty_lines: u64,
+    /// Written lines that went on to memory to make room.
+    #[serde(default, skip_serializing_if = "is_zero")]
+    pub write_backs: u64,
     /// Requests that waited for their bank.
     pub conflicts: u64,
     /// Their cycles.
@@ -57,7 +75,7 @@ impl CacheResult {
     /// What a level did in `cycles`.
     pub(super) fn new(counts: &CacheCounts, cycles: u64) -> Self {
         let CacheCounts { requests, hits, misses, merges, fills, conflicts, queued_cycles, refused_cycles, blocked_cycles, .. } = *counts;
-        let CacheCounts { register_cycles, most_registers, longest_queue, .. } = *counts;
+        let CacheCounts { register_cycles, most_registers, longest_queue, stores, updates, write_backs, .. } = *counts;
         Self {
             requests,
             hits,
@@ -65,6 +83,10 @@ impl CacheResult {
             merges,
             hit_rate: ratio(hits as f64, requests as f64),
             fills,
+            stores,
+            updates,
+            write_backs,
+            dirty_lines: 0,
             conflicts,
             queued_cycles,
             blocked_cycles,

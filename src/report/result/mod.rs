@@ -19,7 +19,7 @@ mod traffic;
 mod units;
 
 pub use energy::{ComputeEnergy, DramParts, EnergyResult, LeakageEnergy, ReadFill};
-pub use frames::{FrameResult, WarmFrames};
+pub use frames::{BeforeResult, FrameResult, WarmFrames};
 pub use intervals::{IntervalPower, IntervalResult};
 pub use latency::{Distribution, LatencyResult};
 pub use memory::{CacheResult, ChannelResult, CrossbarResult, DramResult, WaitShares};
@@ -34,7 +34,7 @@ pub use traffic::{KindResult, LevelBytes, TrafficResult};
 pub use units::{BlockResult, UnitsResult};
 
 use crate::machine::MachineError;
-use crate::method::Registered;
+use crate::method::{Computing, Registered};
 use crate::run::Compute;
 use crate::sim::dram::{ChannelCounts, DramPrices};
 use crate::sim::energy::{EnergyCounts, EnergyModel};
@@ -122,37 +122,41 @@ impl SimResult {
         let seconds = run.cycles as f64 / (f64::from(machine.cores.clock_mhz) * 1e6);
         let counts = &run.counts;
         // Where compute takes no time there are no units.
-        let unit = method.unit.filter(|_| setup.compute == Compute::Units);
+        let of = Computing { unit: method.unit.filter(|_| setup.compute == Compute::Units), works: method.works };
         let parts = Parts { machine, dram: &dram, compute: setup.compute };
         let hardware = machine.units.config();
         let mut channels = ChannelCounts::default();
         run.channels.iter().for_each(|channel| channels.add(channel));
         let roofline = parts.roofline(&Done { counts, channels: &channels, operations: &run.operations, cycles: run.cycles });
-        let intervals = intervals::intervals(&run.intervals, &model, &parts, unit);
-        let frames = frames::frames(&run.frames, &model, unit);
+        let intervals = intervals::intervals(&run.intervals, &model, &parts, of);
+        let frames = frames::frames(&run.frames, &model, of);
         let dram_prices = DramPrices::new(&dram.device);
         let dram = DramResult::new(run, &dram, seconds);
         let energy_counts = EnergyCounts {
             cycles: run.cycles,
-            l1_reads: counts.l1.requests,
-            l1_fills: counts.l1.fills,
-            l2_reads: counts.l2.requests,
-            l2_fills: counts.l2.fills,
+            l1_reads: counts.l1.read(),
+            l1_fills: counts.l1.written(),
+            l2_reads: counts.l2.read(),
+            l2_fills: counts.l2.written(),
             dram_lines: dram.reads + dram.writes,
             operations: run.operations.clone(),
-            unit,
+            unit: of.unit,
+            works: of.works,
         };
+        let l2 = CacheResult::new(&counts.l2, run.cycles).explained(run.l2_causes, machine.l2.lines() / u64::from(machine.l2.ways));
         let mut prices = model.prices(&energy_counts);
+        let blocks = run.operations.iter().filter(|&(_, n)| n > 0).map(|(o, n)| (hardware.block(o).name().to_owned(), n));
+        let works = energy_counts.works().map(|(work, n)| (work.name.to_owned(), n));
         prices.dram = prices.dram_line.is_none().then_some(dram_prices);
         Ok(Self {
             cycles: run.cycles,
             milliseconds: seconds * 1e3,
-            frames_per_second: ratio(run.frames.len() as f64, seconds),
+            frames_per_second: ratio(frames.len() as f64, seconds),
             rays: counts.rays,
             hits: counts.hits,
             accesses_per_ray: ratio(counts.l1.requests as f64, counts.rays as f64),
             l1: CacheResult::of_groups(&counts.l1, run.cycles, &run.l1_banks, machine.cores.groups),
-            l2: CacheResult::new(&counts.l2, run.cycles).explained(run.l2_causes, machine.l2.lines() / u64::from(machine.l2.ways)),
+            l2: CacheResult { dirty_lines: run.dirty_lines, ..l2 },
             crossbar: CrossbarResult { request_cycles: counts.crossbar_cycles, answer_cycles: counts.answer_cycles },
             waits: WaitShares::new(&counts.waits, run.units.as_ref(), run.cycles * setup.contexts()),
             energy: EnergyResult::new(&model.report(&energy_counts, &energy::dram_parts(&run.dram)), prices, seconds),
@@ -164,7 +168,7 @@ impl SimResult {
                 .units
                 .as_ref()
                 .map(|counts| UnitsResult::new(counts, u64::from(machine.cores.groups) * u64::from(machine.units.per_group))),
-            operations: run.operations.iter().filter(|&(_, n)| n > 0).map(|(o, n)| (hardware.block(o).name().to_owned(), n)).collect(),
+            operations: blocks.chain(works).collect(),
             warm: frames::warm(&frames),
             frames,
             intervals,

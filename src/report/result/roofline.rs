@@ -89,7 +89,8 @@ impl Parts<'_> {
             per(counts.l1.queued_cycles, product(&[groups, l1.banks, l1.queue])),
             per(counts.l1.register_cycles, product(&[groups, l1.banks, l1.mshrs])),
             per(counts.l2.requests, product(&[groups, crossbar.per_group])),
-            per(counts.l1.fills, product(&[groups, crossbar.per_group])),
+            // Lines, and word that stores have arrived.
+            per(counts.l1.fills + counts.l1.stores, product(&[groups, crossbar.per_group])),
             // A bank takes one request a cycle, whatever it may be handed.
             per(counts.l2.requests, f64::from(l2.banks)),
             per(counts.l2.queued_cycles, product(&[l2.banks, l2.queue])),

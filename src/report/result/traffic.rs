@@ -1,5 +1,6 @@
 //! Lines by what they hold.
 
+use super::memory::is_zero;
 use super::ratio;
 use crate::num::LINE_BYTES;
 use crate::sim::replay::KindTraffic;
@@ -43,6 +44,9 @@ pub struct KindResult {
     pub l2: u64,
     /// Lines read from memory.
     pub dram: u64,
+    /// Lines written to memory, of methods that write.
+    #[serde(default, skip_serializing_if = "is_zero")]
+    pub written: u64,
     /// Bytes for each ray.
     pub bytes_per_ray: LevelBytes,
 }
@@ -51,14 +55,24 @@ impl TrafficResult {
     /// Of a method with this memory.
     pub(super) fn new(map: &MemoryMap, traffic: &[KindTraffic; MAX_SECTIONS], rays: u64) -> Self {
         let bytes = |lines: u64| ratio((lines * LINE_BYTES) as f64, rays as f64);
-        let level_bytes = |t: &KindTraffic| LevelBytes { l1: bytes(t.l1), l2: bytes(t.l2), dram: bytes(t.dram) };
-        let sum =
-            traffic.iter().fold(KindTraffic::default(), |a, b| KindTraffic { l1: a.l1 + b.l1, l2: a.l2 + b.l2, dram: a.dram + b.dram });
+        let level_bytes = |t: &KindTraffic| LevelBytes { l1: bytes(t.l1), l2: bytes(t.l2), dram: bytes(t.dram + t.written) };
+        let sum = traffic.iter().fold(KindTraffic::default(), |a, b| KindTraffic {
+            l1: a.l1 + b.l1,
+            l2: a.l2 + b.l2,
+            dram: a.dram + b.dram,
+            written: a.written + b.written,
+        });
         let base = map.sections().filter(|(_, section)| section.base).map(|(id, _)| traffic[id.place()].l1);
         let l0_share_of_l1 = base.reduce(|a, b| a + b).map(|lines| ratio(lines as f64, sum.l1 as f64));
         let kinds = map.sections().map(|(id, section)| (section.name, &traffic[id.place()])).filter(|(_, t)| t.l1 > 0);
-        let kinds =
-            kinds.map(|(name, t)| KindResult { kind: name.to_owned(), l1: t.l1, l2: t.l2, dram: t.dram, bytes_per_ray: level_bytes(t) });
+        let kinds = kinds.map(|(name, t)| KindResult {
+            kind: name.to_owned(),
+            l1: t.l1,
+            l2: t.l2,
+            dram: t.dram,
+            written: t.written,
+            bytes_per_ray: level_bytes(t),
+        });
         Self { bytes_per_ray: level_bytes(&sum), l0_share_of_l1, kinds: kinds.collect() }
     }
 }

@@ -5,8 +5,8 @@
 //! The block leaks as much hardware as it has: P / c, A / c, S / c and R.
 
 use super::caches::not_negative;
-use crate::block::Operation;
-use crate::block::parts::Parts;
+use crate::block::parts::{Parts, Registers};
+use crate::block::{Operation, Work};
 use crate::hardware::Hardware;
 use crate::machine::{Breach, MachineError, from_toml};
 use crate::method::MethodUnit;
@@ -76,9 +76,19 @@ impl BlockTable {
         if !hardware.has(operation) {
             return 0.0;
         }
-        let parts = hardware.block(operation).parts(&hardware.form());
+        self.parts_pj(&hardware.block(operation).parts(&hardware.form()))
+    }
+
+    /// Energy of an operation that no block does, in pJ: that of a block of the same parts.
+    pub fn work_pj(&self, work: &Work) -> f64 {
+        let registers = Registers { written: work.written_bits, ..Registers::default() };
+        let (products, add_bits, select_bits) = (work.products.to_vec(), work.add_bits, work.select_bits);
+        self.parts_pj(&Parts { products, add_bits, select_bits, registers })
+    }
+
+    fn parts_pj(&self, parts: &Parts) -> f64 {
         let prices = &self.operations;
-        let logic = products(&parts) * prices.multiply_32_pj / (WORD * WORD) + f64::from(parts.add_bits) * prices.add_32_pj / WORD;
+        let logic = products(parts) * prices.multiply_32_pj / (WORD * WORD) + f64::from(parts.add_bits) * prices.add_32_pj / WORD;
         let written = f64::from(parts.registers.written);
         let cells = f64::from(parts.select_bits) * prices.select_32_pj / WORD + written * prices.register_pj;
         logic * self.scale.from_45 + cells * self.scale.from_40

@@ -24,7 +24,7 @@ pub use geometry::{Geometry, Level};
 pub use prices::Prices;
 pub use report::EnergyReport;
 
-use crate::block::{Operation, Operations};
+use crate::block::{Operation, Operations, Work};
 use crate::hardware::Hardware;
 use crate::machine::{Breach, Machine, MachineError};
 use crate::method::MethodUnit;
@@ -51,6 +51,15 @@ pub struct EnergyCounts {
     pub operations: Operations,
     /// A traversal unit, which leaks and is clocked for the whole frame. None where compute takes no time.
     pub unit: Option<MethodUnit>,
+    /// What the method's own operations are, by number.
+    pub works: &'static [Work],
+}
+
+impl EnergyCounts {
+    /// The method's own operations that occurred, and how often.
+    pub fn works(&self) -> impl Iterator<Item = (&'static Work, u64)> + '_ {
+        self.works.iter().zip(self.operations.works().iter().copied()).filter(|&(_, count)| count > 0)
+    }
 }
 
 /// The energies of a machine.
@@ -125,6 +134,7 @@ impl EnergyModel {
         let occurred = counts.operations.iter().filter(|&(_, count)| count > 0);
         let priced =
             |(operation, _): (Operation, u64)| Some((self.name(operation).to_owned(), blocks?.operation_pj(operation, &self.hardware)));
+        let works = counts.works().filter_map(|(work, _)| Some((work.name.to_owned(), blocks?.work_pj(work))));
         let units = blocks.zip(counts.unit);
         Prices {
             l1_read: l1.read,
@@ -135,7 +145,7 @@ impl EnergyModel {
             l2_leakage_mw: l2.leakage_mw(),
             dram_line: self.dram_line,
             dram: None,
-            operations: occurred.filter_map(priced).collect(),
+            operations: occurred.filter_map(priced).chain(works).collect(),
             units_leakage_mw: units.map_or(0.0, |(table, unit)| self.units * table.unit_leakage_mw(unit, &self.hardware)),
             units_clock: units.map_or(0.0, |(table, unit)| self.units * table.unit_clock_pj(unit, &self.hardware)),
         }
@@ -151,6 +161,7 @@ impl EnergyModel {
             let name = self.name(operation);
             Some((name, of(count, *prices.operations.get(name)?)))
         };
+        let works = counts.works().filter_map(|(work, count)| Some((work.name, of(count, *prices.operations.get(work.name)?))));
         EnergyReport {
             unit: self.unit,
             l1_read: of(counts.l1_reads, prices.l1_read),
@@ -159,7 +170,7 @@ impl EnergyModel {
             l2_read: of(counts.l2_reads, prices.l2_read),
             l2_fill: of(counts.l2_fills, prices.l2_fill),
             l2_leakage: prices.l2_leakage_mw * mw_to_pj,
-            compute: occurred.filter_map(compute).collect(),
+            compute: occurred.filter_map(compute).chain(works).collect(),
             unit_leakage: prices.units_leakage_mw * mw_to_pj,
             unit_clock: of(counts.cycles, prices.units_clock),
             dram: match self.dram_line {

@@ -4,7 +4,7 @@
 
 use super::FrontEnd;
 use super::counts::Supplier;
-use super::event::{Asked, Happening};
+use super::event::{Ask, Asked, Happening};
 use super::fed_ray::FedRay;
 use super::feed::Feed;
 use super::group_side::GroupSide;
@@ -40,6 +40,8 @@ struct CoreContext {
     come: u8,
     /// The next with lines to ask for, of those of its port.
     next: u32,
+    /// Bit k: the k-th line is written.
+    stores: u16,
     lines: [u32; MOST_LINES],
     sections: [SectionId; MOST_LINES],
 }
@@ -87,8 +89,19 @@ impl FreeCores {
     pub fn new(machine: &Machine, first: u32, nodes: Nodes) -> Self {
         let cores = &machine.cores;
         let (lines, sections) = ([0; MOST_LINES], [SectionId::default(); MOST_LINES]);
-        let context =
-            CoreContext { ray: None, ready: 0, since: 0, from: Supplier::L1, count: 0, sent: 0, come: 0, next: NONE, lines, sections };
+        let context = CoreContext {
+            ray: None,
+            ready: 0,
+            since: 0,
+            from: Supplier::L1,
+            count: 0,
+            sent: 0,
+            come: 0,
+            next: NONE,
+            stores: 0,
+            lines,
+            sections,
+        };
         let port = CorePort { free: 0, first: NONE, last: NONE, awake: false };
         Self {
             feed: Feed::new(first, cores.groups, contexts_of_group(machine)),
@@ -106,7 +119,7 @@ impl FreeCores {
         let group = context / self.rays_in_flight / self.per_group;
         let ray = self.feed.ray(group, now);
         self.under_way += u64::from(ray.is_some());
-        self.operations.add(Operation::RaySetup, ray.is_some().into());
+        self.operations.add(Operation::RaySetup, ray.as_ref().is_some_and(|ray| !ray.is_work()).into());
         self.contexts[context as usize].ray = ray;
     }
 
@@ -125,23 +138,23 @@ impl FreeCores {
         // Lines of the steps so far are there: the blocks do what they do with them in this cycle.
         ray.count(&mut self.operations);
         let counts = memory.counts_mut();
-        let (mut count, mut steps) = (0, 0);
+        let (mut count, mut steps, mut written) = (0, 0, 0);
         for &word in ray.rest() {
-            let Asking { first, mut lines, section, joins, ends } = word.asking();
+            let Asking { first, mut lines, section, joins, stores, ends } = word.asking();
             if ends {
                 if count > 0 {
                     break;
                 }
                 ray.skip(steps + 1);
                 ray.count(&mut self.operations);
-                counts.rays += 1;
+                counts.rays += u64::from(!ray.is_work());
                 counts.hits += u64::from(matches!(word.step().act, Act::End { found: true, .. }));
                 self.under_way -= 1;
-                memory.ray_ends(ray.started);
+                memory.ray_ends(ray.started, ray.is_work());
                 self.feed.ended(ray, context / self.rays_in_flight / self.per_group, memory.now());
                 return false;
             }
-            if self.pinned.contains(&first) {
+            if self.pinned.contains(&first) && !stores {
                 lines = 0;
             }
             if count > 0 && (!joins || count + lines as usize > MOST_LINES) {
@@ -150,12 +163,13 @@ impl FreeCores {
             steps += 1;
             for line in first..first + lines {
                 (state.lines[count], state.sections[count]) = (line, section);
+                written |= u16::from(stores) << count;
                 count += 1;
             }
             counts.traffic[section.place()].l1 += u64::from(lines);
         }
         ray.skip(steps);
-        (state.count, state.sent, state.come, state.ready) = (count as u8, 0, 0, 0);
+        (state.count, state.sent, state.come, state.ready, state.stores) = (count as u8, 0, 0, 0, written);
         (state.since, state.from, state.next) = (memory.now(), Supplier::L1, NONE);
         let port = context / self.rays_in_flight;
         let state = &mut self.ports[port as usize];
@@ -187,13 +201,13 @@ impl FreeCores {
         }
         let asking = &mut self.contexts[context as usize];
         let sent = asking.sent as usize;
-        let (line, section) = (asking.lines[sent], asking.sections[sent]);
+        let ask = Ask { line: asking.lines[sent], section: asking.sections[sent], stores: asking.stores >> sent & 1 == 1 };
         asking.sent += 1;
         if asking.sent == asking.count {
             state.first = asking.next;
         }
         state.free = memory.now() + 1;
-        let asked = memory.request(port / self.per_group, port, context, line, section);
+        let asked = memory.request(port / self.per_group, port, context, ask);
         if let Asked::Comes(cycle) = asked {
             memory.look_up(context, cycle);
             asking.comes(context, cycle, memory);

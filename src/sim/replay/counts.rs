@@ -10,10 +10,15 @@ pub trait Earlier: Clone {
     fn earlier(&mut self, cycles: u64);
 }
 
+/// What few methods do is not in documents of all others.
+fn is_zero(count: &u64) -> bool {
+    *count == 0
+}
+
 /// A level of cache.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
 pub struct CacheCounts {
-    /// Requests looked up.
+    /// Requests looked up: hits, misses, merges and stores.
     pub requests: u64,
     /// Found.
     pub hits: u64,
@@ -21,8 +26,17 @@ pub struct CacheCounts {
     pub misses: u64,
     /// Not found, but asked for already.
     pub merges: u64,
-    /// Lines written.
+    /// Lines written that were read from the next level.
     pub fills: u64,
+    /// Requests to write a line.
+    #[serde(skip_serializing_if = "is_zero")]
+    pub stores: u64,
+    /// Lines that stores have written here: those that it had, and where what is written stays, all.
+    #[serde(skip_serializing_if = "is_zero")]
+    pub updates: u64,
+    /// Lines written to memory, for others.
+    #[serde(skip_serializing_if = "is_zero")]
+    pub write_backs: u64,
     /// Requests that waited for their bank.
     pub conflicts: u64,
     /// Their cycles in its queue.
@@ -46,6 +60,16 @@ pub struct CacheCounts {
 }
 
 impl CacheCounts {
+    /// Lines read out of it: one for each request, and what goes back to memory.
+    pub fn read(&self) -> u64 {
+        self.requests + self.write_backs
+    }
+
+    /// Lines written into it.
+    pub fn written(&self) -> u64 {
+        self.fills + self.updates
+    }
+
     /// Adds what another side counted.
     pub fn add(&mut self, other: &Self) {
         let Self {
@@ -54,6 +78,9 @@ impl CacheCounts {
             misses,
             merges,
             fills,
+            stores,
+            updates,
+            write_backs,
             conflicts,
             queued_cycles,
             refused_cycles,
@@ -69,6 +96,9 @@ impl CacheCounts {
         *misses += other.misses;
         *merges += other.merges;
         *fills += other.fills;
+        *stores += other.stores;
+        *updates += other.updates;
+        *write_backs += other.write_backs;
         *conflicts += other.conflicts;
         *queued_cycles += other.queued_cycles;
         *refused_cycles += other.refused_cycles;
@@ -109,6 +139,9 @@ pub struct KindTraffic {
     pub l2: u64,
     /// Lines read from memory.
     pub dram: u64,
+    /// Lines written to memory.
+    #[serde(skip_serializing_if = "is_zero")]
+    pub written: u64,
 }
 
 /// Cycles of the contexts that hold rays, by what they wait for: from asking for the lines of a step to having the last of them, by where that came from.
@@ -184,6 +217,7 @@ impl Counts {
             sum.l1 += more.l1;
             sum.l2 += more.l2;
             sum.dram += more.dram;
+            sum.written += more.written;
         }
     }
 }

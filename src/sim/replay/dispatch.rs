@@ -18,6 +18,7 @@ use std::sync::Arc;
 pub struct Chunk {
     batches: Arc<[Arc<Batch>]>,
     begins_frame: bool,
+    is_before: bool,
 }
 
 impl Chunk {
@@ -25,11 +26,16 @@ impl Chunk {
     pub fn beginning_frame(self) -> Self {
         Self { begins_frame: true, ..self }
     }
+
+    /// The same as work that the rays of a frame wait for: the frame's first chunk is to begin one.
+    pub fn before_frame(self) -> Self {
+        Self { is_before: true, ..self }
+    }
 }
 
 impl FromIterator<Batch> for Chunk {
     fn from_iter<I: IntoIterator<Item = Batch>>(batches: I) -> Self {
-        Self { batches: batches.into_iter().map(Arc::new).collect(), begins_frame: false }
+        Self { batches: batches.into_iter().map(Arc::new).collect(), begins_frame: false, is_before: false }
     }
 }
 
@@ -71,6 +77,8 @@ pub struct Dispatcher<S> {
     /// Contexts of a group: rays that it is given at once, but for whole batches.
     contexts: usize,
     delay: u64,
+    /// What was given last is work before a frame.
+    pub is_before: bool,
     /// For the groups.
     pub granted: Vec<Granted>,
 }
@@ -87,6 +95,7 @@ impl<S: ChunkSource> Dispatcher<S> {
             asking: BTreeSet::new(),
             contexts: contexts.max(1) as usize,
             delay,
+            is_before: false,
             granted: Vec::new(),
         }
     }
@@ -200,6 +209,7 @@ impl<S: ChunkSource> Dispatcher<S> {
             if chunk.begins_frame {
                 self.next_frame = Some(chunk);
             } else {
+                self.is_before = chunk.is_before;
                 self.open = Some((chunk, 0));
             }
         }
@@ -208,6 +218,7 @@ impl<S: ChunkSource> Dispatcher<S> {
     /// All rays given have ended, the last in cycle `end`, and every group has asked for more. If there is another frame, gives them its rays, and the cycle in which they have them.
     pub fn go_to_next_frame(&mut self, end: u64) -> Option<u64> {
         let chunk = self.next_frame.take()?;
+        self.is_before = chunk.is_before;
         self.open = Some((chunk, 0));
         // Rays of another frame have numbers of their own.
         self.order = Order::new(self.begun.len() as u32);

@@ -31,6 +31,9 @@ pub enum ReplayError {
     /// Traversal units hold no nodes.
     #[error("cores.pinned_nodes = {0}: must be 0 where compute takes time; traversal units hold no nodes")]
     PinnedNodes(u32),
+    /// Traversal units do rays alone.
+    #[error("the method does work before a frame, which traversal units cannot: simulate it with compute free")]
+    WorkByUnits,
     /// The waveform's writer.
     #[error("waveform: {0}")]
     Wave(#[from] std::io::Error),

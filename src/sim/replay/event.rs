@@ -1,6 +1,7 @@
 //! What happens in the memory hierarchy, and what others are told of it.
 
 use super::counts::Supplier;
+use crate::step::SectionId;
 
 /// Bits of the number of who has an event; its kind stands above.
 const ID_BITS: u32 = 28;
@@ -88,6 +89,17 @@ const KINDS: [EventKind; 15] = [
     EventKind::Miss,
     EventKind::Grant,
 ];
+
+/// A request for a line.
+#[derive(Clone, Copy, Debug)]
+pub struct Ask {
+    /// Which.
+    pub line: u32,
+    /// What it holds.
+    pub section: SectionId,
+    /// It is written: the answer says that the L2 has it.
+    pub stores: bool,
+}
 
 /// What became of a request.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -25,6 +25,12 @@ impl FedRay {
         Self { batch, at, counted: at, ray, started: 0 }
     }
 
+    /// It is no ray, but work before a frame.
+    #[inline(always)]
+    pub fn is_work(&self) -> bool {
+        self.batch.is_work()
+    }
+
     /// Its next step; a ray ends with [`Act::End`](crate::step::Act::End), after which it has none.
     #[inline(always)]
     pub fn peek(&self) -> StepWord {

@@ -7,7 +7,7 @@
 //! Whoever cannot go on sleeps in a list and is woken by what makes room: nothing polls.
 
 use super::counts::{Counts, Supplier};
-use super::event::{ANSWERS, Asked, EventKind, FAR, GRANTS, Happening, MOVES, NEAR, SERVES, WAKES, id};
+use super::event::{ANSWERS, Ask, Asked, EventKind, FAR, GRANTS, Happening, MOVES, NEAR, SERVES, WAKES, id};
 use super::intervals::Series;
 use super::level::{CacheRequest, Level, Served};
 use super::messages::{Fill, Miss};
@@ -15,7 +15,6 @@ use super::mshr::Waiter;
 use super::stalls::{Cause, Histogram, Path};
 use super::wheel::Wheel;
 use crate::machine::Machine;
-use crate::step::SectionId;
 use std::collections::VecDeque;
 
 /// A request that no queue has room for: its port, and since when.
@@ -127,15 +126,17 @@ impl GroupSide {
         self.told[(self.slot)(waiter)].look_up(latency, end);
     }
 
-    /// A ray ends in this cycle that began in cycle `started`.
+    /// A ray ends in this cycle that began in cycle `started`, or a piece of work.
     #[inline]
-    pub fn ray_ends(&mut self, started: u64) {
+    pub fn ray_ends(&mut self, started: u64, is_work: bool) {
         if self.last_ends.len() == self.most_ends {
             self.last_ends.pop_front();
         }
         self.last_ends.push_back(self.now());
-        let cycles = self.now() - started;
-        self.rays.add(cycles);
+        if !is_work {
+            let cycles = self.now() - started;
+            self.rays.add(cycles);
+        }
     }
 
     /// The cycles in which the last rays ended, the latest last; none if none has.
@@ -170,15 +171,15 @@ impl GroupSide {
         self.wheel.at(cycle, kind.class(), kind.event(id));
     }
 
-    /// `port` of `group` asks for `line` of `section`, of which `waiter` is told; it is counted by whoever asks.
+    /// `port` of `group` asks for a line, of which `waiter` is told; it is counted by whoever asks.
     #[inline]
-    pub fn request(&mut self, group: u32, port: u32, waiter: u32, line: u32, section: SectionId) -> Asked {
+    pub fn request(&mut self, group: u32, port: u32, waiter: u32, Ask { line, section, stores }: Ask) -> Asked {
         let now = self.now();
         let bank = self.l1.bank(group, line);
-        if self.l1.hit_now(bank, line, now) {
+        if !stores && self.l1.hit_now(bank, line, now) {
             return Asked::Comes(now + self.l1.latency);
         }
-        let request = CacheRequest { waiter, line, section, since: now, held: 0, blocked: 0 };
+        let request = CacheRequest { waiter, line, section, stores, since: now, held: 0, blocked: 0 };
         if !self.l1.has_room(bank, 0) || !self.held[bank as usize].is_empty() {
             self.held[bank as usize].push_back(Held { port, request });
             return Asked::Held;
@@ -219,8 +220,8 @@ impl GroupSide {
             Served::Merged => (),
             Served::Miss(register) => {
                 let group = self.first + self.l1.copy(bank);
-                let (line, section) = (self.l1.line(register), self.l1.section(register));
-                self.misses.push(Miss { cycle: known, group, register: self.first_register + register, line, section });
+                let ask = Ask { line: self.l1.line(register), section: self.l1.section(register), stores: self.l1.stores(register) };
+                self.misses.push(Miss { cycle: known, group, register: self.first_register + register, ask });
             }
         }
         if let Some(held) = self.held[bank as usize].pop_front() {

@@ -9,7 +9,7 @@ use super::tags::Tags;
 use crate::machine::Cache;
 use crate::sim::dram::Standing;
 use crate::step::SectionId;
-use std::collections::VecDeque;
+use std::collections::{HashMap, VecDeque};
 
 /// A request in front of a bank.
 #[derive(Clone, Copy, Debug)]
@@ -20,6 +20,8 @@ pub struct CacheRequest {
     pub line: u32,
     /// What it holds.
     pub section: SectionId,
+    /// It is written.
+    pub stores: bool,
     /// The cycle since when it waits in the queue.
     pub since: u64,
     /// Cycles that it waited before the queue, which was full.
@@ -81,6 +83,10 @@ pub struct Level {
     banks: Vec<Bank>,
     per_copy: u32,
     tags: Tags,
+    /// Lines that it has and memory has not, and what they hold, where it keeps what is written; none where that goes through it to the next level.
+    dirty: Option<HashMap<u32, SectionId>>,
+    /// Such lines that had to go, for whoever writes them to memory.
+    pub written_back: Vec<(u32, SectionId)>,
     /// Why it misses, where that is asked.
     shadow: Option<Shadow>,
     mshrs: Mshrs,
@@ -104,6 +110,8 @@ impl Level {
             banks: vec![Bank::default(); banks as usize],
             per_copy: cache.banks,
             tags: Tags::new(cache, copies),
+            dirty: None,
+            written_back: Vec::new(),
             shadow: None,
             mshrs: Mshrs::new(banks, cache.mshrs, cache.targets),
             mshrs_per_bank: cache.mshrs,
@@ -115,10 +123,10 @@ impl Level {
         }
     }
 
-    /// The same single cache, which tells why it misses.
+    /// The same single cache, which keeps what is written and tells why it misses.
     pub fn explaining(cache: &Cache) -> Self {
         let sets = u64::from(cache.banks) * cache.sets_per_bank();
-        Self { shadow: Some(Shadow::new(cache.lines(), sets)), ..Self::new(cache, 1) }
+        Self { dirty: Some(HashMap::new()), shadow: Some(Shadow::new(cache.lines(), sets)), ..Self::new(cache, 1) }
     }
 
     /// Why it missed, and the different lines of the busiest set and of all.
@@ -145,6 +153,11 @@ impl Level {
     /// The line of a miss register.
     pub fn line(&self, register: u32) -> u32 {
         self.mshrs.line(register)
+    }
+
+    /// Whether a miss register is a store's.
+    pub fn stores(&self, register: u32) -> bool {
+        self.mshrs.stores(register)
     }
 
     /// What the line of a miss register holds.
@@ -199,11 +212,20 @@ impl Level {
         let still = state.blocked_cycles(now) - request.blocked;
         let turn = now - request.since - still;
         let before = [request.held, turn as u32, still as u32]; // a wait of 2^32 cycles does not end
-        let served = if self.tags.look_up(bank, request.line) {
+        let waiter = Waiter { waiter: request.waiter, before, since: now };
+        let served = if request.stores {
+            match self.store(bank, &request, waiter) {
+                Some(served) => served,
+                None => {
+                    self.banks[bank as usize].blocked = Some(now);
+                    return None;
+                }
+            }
+        } else if self.tags.look_up(bank, request.line) {
             self.counts.hits += 1;
             Served::Hit
         } else {
-            match self.mshrs.enter(bank, request.line, request.section, Waiter { waiter: request.waiter, before, since: now }) {
+            match self.mshrs.enter(bank, request.line, request.section, waiter) {
                 Entered::New { slot } => {
                     self.counts.misses += 1;
                     Served::Miss(bank * self.mshrs_per_bank + slot)
@@ -218,9 +240,10 @@ impl Level {
                 }
             }
         };
-        if let Some(shadow) = &mut self.shadow {
+        if let Some(shadow) = self.shadow.as_mut().filter(|_| !request.stores) {
             shadow.look_up(request.line, self.tags.set_of_all(request.line), matches!(served, Served::Miss(_)));
         }
+        let state = &mut self.banks[bank as usize];
         state.queue.pop_front();
         self.queued.goes(request.since);
         state.looked_up += 1;
@@ -232,11 +255,57 @@ impl Level {
         Some(Look { waiter: request.waiter, before, served, again: state.awake })
     }
 
-    /// The line of `register` is written: from now on it is found; who waits for it is given to `answer`, and nobody joins them.
+    /// A line is written. Where what is written goes on to the next level, a register keeps it until that has it; where it stays, it takes a place as one that was read does,
+    /// unless a read of it is under way, whose place it will have. `None` if there is no room.
+    fn store(&mut self, bank: u32, request: &CacheRequest, waiter: Waiter) -> Option<Served> {
+        let CacheRequest { line, section, .. } = *request;
+        let is_there = self.tags.look_up(bank, line);
+        let Some(dirty) = &mut self.dirty else {
+            let Entered::New { slot } = self.mshrs.enter_store(bank, line, section, waiter) else { return None };
+            self.counts.stores += 1;
+            self.counts.updates += u64::from(is_there);
+            return Some(Served::Miss(bank * self.mshrs_per_bank + slot));
+        };
+        let is_under_way = !is_there && self.mshrs.is_open(bank, line);
+        if is_under_way && self.mshrs.enter(bank, line, section, waiter) == Entered::Full {
+            return None;
+        }
+        dirty.insert(line, section);
+        self.counts.stores += 1;
+        self.counts.updates += 1;
+        if is_under_way {
+            return Some(Served::Merged);
+        }
+        if !is_there {
+            self.place(bank, line);
+        }
+        Some(Served::Hit)
+    }
+
+    /// Gives a line a place; the one that goes for it is written back if memory does not have it.
+    #[inline]
+    fn place(&mut self, bank: u32, line: u32) {
+        let gone = self.tags.fill(bank, line);
+        if let Some(dirty) = self.dirty.as_mut().filter(|dirty| !dirty.is_empty())
+            && let Some((line, section)) = gone.and_then(|gone| dirty.remove_entry(&gone))
+        {
+            self.counts.write_backs += 1;
+            self.written_back.push((line, section));
+        }
+    }
+
+    /// Lines that it has and memory has not.
+    pub fn dirty_lines(&self) -> u64 {
+        self.dirty.as_ref().map_or(0, |dirty| dirty.len() as u64)
+    }
+
+    /// The line of `register` is written: from now on it is found, but for a store's, which the next level has; who waits for it is given to `answer`, and nobody joins them.
     pub fn land(&mut self, register: u32, answer: impl FnMut(Waiter)) {
-        self.tags.fill(self.bank_of(register), self.mshrs.line(register));
+        if !self.mshrs.stores(register) {
+            self.place(self.bank_of(register), self.mshrs.line(register));
+            self.counts.fills += 1;
+        }
         self.mshrs.land(register, answer);
-        self.counts.fills += 1;
     }
 
     /// `register`, whose line was written, is free in cycle `now`. True if the bank was blocked and is to be served now.

@@ -1,13 +1,13 @@
 //! What the sides of a replay tell each other: groups with their L1s, the side they share (crossbar, L2, memory), and the dispatcher of rays.
 
-use super::event::EventKind;
+use super::event::{Ask, EventKind};
 use super::fed_ray::FedRay;
 use super::stalls::Path;
-use crate::step::{Batch, SectionId};
+use crate::step::Batch;
 use std::collections::VecDeque;
 use std::sync::Arc;
 
-/// A miss of an L1, for the crossbar.
+/// A miss or a store of an L1, for the crossbar.
 #[derive(Clone, Copy, Debug)]
 pub struct Miss {
     /// The cycle in which it is known.
@@ -16,10 +16,8 @@ pub struct Miss {
     pub group: u32,
     /// The L1's register that keeps it, through all groups.
     pub register: u32,
-    /// The line.
-    pub line: u32,
-    /// What it holds.
-    pub section: SectionId,
+    /// The line, read or written.
+    pub ask: Ask,
 }
 
 /// A line for an L1.

@@ -108,6 +108,8 @@ pub struct Run {
     pub l1_banks: Vec<u64>,
     /// Why the L2 missed; different lines that fall into its busiest set, and into all.
     pub l2_causes: (MissCauses, (u64, u64)),
+    /// Lines that the L2 had and memory had not at the end.
+    pub dirty_lines: u64,
     /// What each memory channel did.
     pub channels: Vec<ChannelCounts>,
     /// Requests to each bank of the memory.
@@ -251,6 +253,7 @@ fn drive<F: FrontEnd + Send>(
     let run = Run {
         cycles,
         l2_causes: shared.l2_causes(),
+        dirty_lines: shared.dirty_lines(),
         channels,
         dram_banks: shared.dram().requests_of_banks(),
         dram_clocks,

@@ -18,6 +18,8 @@ struct Miss {
     first: u32,
     last: u32,
     waiting: u32,
+    /// It is a store: nobody joins it.
+    stores: bool,
     /// The cycle in which it was entered.
     since: u64,
 }
@@ -80,7 +82,7 @@ impl Mshrs {
         let count = banks as usize * per_bank as usize;
         let miss = |register: u32| {
             let next = if (register + 1).is_multiple_of(per_bank) { NONE } else { register + 1 };
-            Miss { line: CLOSED, section: SectionId::default(), first: next, last: NONE, waiting: 0, since: 0 }
+            Miss { line: CLOSED, section: SectionId::default(), first: next, last: NONE, waiting: 0, stores: false, since: 0 }
         };
         Self {
             misses: (0..count as u32).map(miss).collect(),
@@ -113,20 +115,42 @@ impl Mshrs {
             miss.waiting += 1;
             return Entered::Merged;
         }
+        let entered =
+            self.enter_alone(bank, Miss { line, section, first: NONE, last: NONE, waiting: 1, stores: false, since: waiter.since }, waiter);
+        if let Entered::New { slot } = entered {
+            self.open[from + slot as usize] = line;
+        }
+        entered
+    }
+
+    /// `waiter` of `bank` writes `line` of `section`: a register that nobody joins.
+    #[inline]
+    pub fn enter_store(&mut self, bank: u32, line: u32, section: SectionId, waiter: Waiter) -> Entered {
+        self.enter_alone(bank, Miss { line, section, first: NONE, last: NONE, waiting: 1, stores: true, since: waiter.since }, waiter)
+    }
+
+    /// Whether `line` is asked for and may be joined.
+    pub fn is_open(&self, bank: u32, line: u32) -> bool {
+        let from = bank as usize * self.per_bank;
+        self.in_use[bank as usize] > 0 && position(&self.open[from..from + self.per_bank], line).is_some()
+    }
+
+    /// The next free register of `bank`, for a miss of `waiter`'s.
+    #[inline]
+    fn enter_alone(&mut self, bank: u32, miss: Miss, waiter: Waiter) -> Entered {
         let register = self.free[bank as usize];
         if register == NONE {
             return Entered::Full;
         }
         let link = self.link(waiter);
-        let miss = &mut self.misses[register as usize];
-        self.free[bank as usize] = miss.first;
-        *miss = Miss { line, section, first: link, last: link, waiting: 1, since: waiter.since };
-        self.open[register as usize] = line;
+        let state = &mut self.misses[register as usize];
+        self.free[bank as usize] = state.first;
+        *state = Miss { first: link, last: link, ..miss };
         let in_use = &mut self.in_use[bank as usize];
         *in_use += 1;
         self.most = self.most.max(*in_use);
         self.standing.comes(waiter.since);
-        Entered::New { slot: register - from as u32 }
+        Entered::New { slot: register - bank * self.per_bank as u32 }
     }
 
     fn link(&mut self, waiter: Waiter) -> u32 {
@@ -143,6 +167,11 @@ impl Mshrs {
     /// The line of register `register`, counted through all banks.
     pub fn line(&self, register: u32) -> u32 {
         self.misses[register as usize].line
+    }
+
+    /// Whether `register` is a store's.
+    pub fn stores(&self, register: u32) -> bool {
+        self.misses[register as usize].stores
     }
 
     /// What that line holds.

@@ -174,6 +174,8 @@ pub struct FrameRun {
     pub start: u64,
     /// The cycle from which on fewer than half of the contexts have rays.
     pub half: u64,
+    /// It is work that the rays of the next wait for, and no frame.
+    pub is_before: bool,
     /// What had been counted when its last ray ended, since the start of the run.
     pub end: Interval,
 }
@@ -317,7 +319,7 @@ impl<F: FrontEnd, S: ChunkSource> Rounds<'_, '_, F, S> {
             counts.add(&side.counts_at(end.max(side.now())));
             operations.join(&partition.front.operations());
         }
-        FrameRun { start, half, end: Interval { end, counts, channels, dram, operations } }
+        FrameRun { start, half, is_before: self.dispatcher.is_before, end: Interval { end, counts, channels, dram, operations } }
     }
 
     /// What the groups told, in the order of cycles and groups.

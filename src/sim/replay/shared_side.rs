@@ -59,11 +59,15 @@ struct Door {
 const OF_DRAM: [Cause; 6] =
     [Cause::DramBank, Cause::DramConflict, Cause::DramActivate, Cause::DramOpening, Cause::DramBus, Cause::DramAccess];
 
+/// The number of writes at memory; reads have their register's.
+const WRITE: u64 = u64::MAX;
+
 /// A register of an L1 whose miss is under way.
 #[derive(Clone, Copy, Debug, Default)]
 struct Asking {
     line: u32,
     section: SectionId,
+    stores: bool,
     path: Path,
 }
 
@@ -89,6 +93,8 @@ pub struct SharedSide {
     /// Registers of the L2 whose channel's queue is full, by channel, and since when.
     refused: Vec<VecDeque<(u32, u64)>>,
     refused_count: usize,
+    /// The same of lines to be written, which nobody waits for.
+    unwritten: Vec<VecDeque<(u32, SectionId)>>,
     /// Room for the waiters of a line.
     waiters: Vec<Waiter>,
     /// The cycle in which memory is to be looked at again.
@@ -128,6 +134,7 @@ impl SharedSide {
             doors: vec![Door::default(); machine.l2.banks as usize],
             refused: vec![VecDeque::new(); dram.channels as usize],
             refused_count: 0,
+            unwritten: vec![VecDeque::new(); dram.channels as usize],
             waiters: Vec::new(),
             dram_next: None,
             fills: Vec::new(),
@@ -163,6 +170,11 @@ impl SharedSide {
         SharedCounts { counts: Counts { l2: self.l2.counts_at(cycle), ..self.counts }, channels, dram: self.dram.energy() }
     }
 
+    /// Lines that the L2 has and memory has not, those on their way there among them.
+    pub fn dirty_lines(&self) -> u64 {
+        self.l2.dirty_lines() + self.unwritten.iter().map(|lines| lines.len() as u64).sum::<u64>()
+    }
+
     /// Latencies of misses of the L2.
     pub fn latencies(&self) -> &Histogram {
         &self.l2.latencies
@@ -182,7 +194,7 @@ impl SharedSide {
     pub fn comes(&mut self, miss: &Miss) {
         assert!(miss.cycle > self.now(), "a miss of cycle {} comes too late", miss.cycle);
         let path = Path::begin(Cause::L1LookUp, self.l1_latency);
-        self.asking[miss.register as usize] = Asking { line: miss.line, section: miss.section, path };
+        self.asking[miss.register as usize] = Asking { line: miss.ask.line, section: miss.ask.section, stores: miss.ask.stores, path };
         self.enter(miss.cycle, EventKind::Miss, miss.register);
     }
 
@@ -246,11 +258,11 @@ impl SharedSide {
     }
 
     fn arrive_l2(&mut self, register: u32) {
-        let (line, section) = (self.asking[register as usize].line, self.asking[register as usize].section);
+        let Asking { line, section, stores, .. } = self.asking[register as usize];
         let bank = self.l2.bank(0, line);
         self.doors[bank as usize].coming -= 1;
         self.counts.traffic[section.place()].l2 += 1;
-        let request = CacheRequest { waiter: register, line, section, since: self.now(), held: 0, blocked: 0 };
+        let request = CacheRequest { waiter: register, line, section, stores, since: self.now(), held: 0, blocked: 0 };
         match self.l2.enqueue(bank, request) {
             Some(cycle) if cycle <= self.now() => self.serve_l2(bank),
             Some(cycle) => self.enter(cycle, EventKind::ServeL2, bank),
@@ -280,6 +292,7 @@ impl SharedSide {
                 self.enter(known, EventKind::PushDram, register);
             }
         }
+        self.write_back();
         if let Some((group, since)) = self.doors[bank as usize].asleep.pop_front() {
             self.l2.counts.refused_cycles += now - since;
             self.send(group, bank);
@@ -302,6 +315,7 @@ impl SharedSide {
         let (now, ready) = (self.now(), self.ready[register as usize]);
         let mut waiters = std::mem::take(&mut self.waiters);
         self.l2.land(register, |waiter| waiters.push(waiter));
+        self.write_back();
         for Waiter { waiter, since, .. } in waiters.drain(..) {
             let looked_up = since + self.l2.latency;
             let path = &mut self.asking[waiter as usize].path;
@@ -334,6 +348,29 @@ impl SharedSide {
         self.read_dram(register, line);
     }
 
+    /// Lines that the L2 had to give up go to memory: in the cycle in which it gave them up, though their data would take as long as a look-up.
+    fn write_back(&mut self) {
+        while let Some((line, section)) = self.l2.written_back.pop() {
+            self.unwritten[self.dram.channel(line.into()) as usize].push_back((line, section));
+            self.write_dram();
+        }
+    }
+
+    /// Writes what there is room for.
+    fn write_dram(&mut self) {
+        for channel in 0..self.unwritten.len() {
+            while let Some(&(line, section)) = self.unwritten[channel].front() {
+                if !self.dram.accepts(line.into(), true) {
+                    break;
+                }
+                self.unwritten[channel].pop_front();
+                self.counts.traffic[section.place()].written += 1;
+                self.dram.push(self.cores.start_ps(self.now()), line.into(), WRITE, true);
+                self.dram_next = self.dram.next_event().map(|ps| self.cores.cycle_at(ps));
+            }
+        }
+    }
+
     fn read_dram(&mut self, register: u32, line: u64) {
         self.counts.traffic[self.l2.section(register).place()].dram += 1;
         self.pushed[register as usize] = self.now();
@@ -347,6 +384,9 @@ impl SharedSide {
         let (cores, wheel, paths, clock_ps) = (&self.cores, &mut self.wheel, &mut self.paths, self.dram.clock_ps());
         let (pushed, ready, latency) = (&self.pushed, &mut self.ready, self.l2.latency);
         self.dram.advance_by_way(cores.start_ps(now), &mut |register, way| {
+            if register == WRITE {
+                return; // nobody waits for it
+            }
             let fill = cores.cycle_at(way.end() * clock_ps).max(now);
             let path = &mut paths[register as usize];
             let mut from = pushed[register as usize];
@@ -361,6 +401,9 @@ impl SharedSide {
         });
         if self.refused_count > 0 {
             self.push_refused();
+        }
+        if self.l2.counts.write_backs > 0 {
+            self.write_dram();
         }
         self.dram_next = self.dram.next_event().map(|ps| self.cores.cycle_at(ps));
     }
@@ -447,10 +490,11 @@ impl SharedSide {
     pub fn show(&self, show: &mut Shown<'_>) {
         let (queued, misses) = self.l2.occupancy(0);
         let asleep = self.doors.iter().map(|door| door.asleep.len()).sum();
+        let unwritten = self.unwritten.iter().map(VecDeque::len).sum();
         for (name, value) in [("l2_queued", queued), ("l2_misses_under_way", misses), ("groups_held_back", asleep)] {
             show("l2", name, value as u64);
         }
-        for (name, value) in [("waiting", self.dram.waiting()), ("held_back", self.refused_count)] {
+        for (name, value) in [("waiting", self.dram.waiting()), ("held_back", self.refused_count), ("writes_held_back", unwritten)] {
             show("dram", name, value as u64);
         }
     }

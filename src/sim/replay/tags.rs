@@ -77,11 +77,11 @@ impl Tags {
         true
     }
 
-    /// Writes `line` in place of its set's least recently used.
+    /// Writes `line` in place of its set's least recently used, which it gives if there was one.
     #[inline]
-    pub fn fill(&mut self, bank: u32, line: u32) {
+    pub fn fill(&mut self, bank: u32, line: u32) -> Option<u32> {
         let set = self.set(bank, line);
-        push_front(set, line);
+        Some(push_front(set, line)).filter(|&gone| gone != EMPTY)
     }
 }
 
@@ -97,13 +97,14 @@ fn fold(line: u32, bits: u32) -> u32 {
     folded
 }
 
-/// Puts `line` in front of the others, of which the last goes. (Sets are small: a loop beats a copy.)
+/// Puts `line` in front of the others, of which the last goes: that. (Sets are small: a loop beats a copy.)
 #[inline(always)]
-fn push_front(set: &mut [u32], line: u32) {
+fn push_front(set: &mut [u32], line: u32) -> u32 {
     let mut moved = line;
     for held in set {
         std::mem::swap(held, &mut moved);
     }
+    moved
 }
 
 #[cfg(test)]

@@ -5,7 +5,7 @@
 
 use super::FrontEnd;
 use super::counts::Supplier;
-use super::event::Asked;
+use super::event::{Ask, Asked};
 use super::fed_ray::FedRay;
 use super::feed::Feed;
 use super::group_side::GroupSide;
@@ -243,7 +243,7 @@ impl Ports for Surroundings<'_> {
         Some(ray)
     }
 
-    fn request(&mut self, LineRequest { tag, line, section }: LineRequest) -> bool {
+    fn request(&mut self, LineRequest { tag, line, section, stores }: LineRequest) -> bool {
         match *self.port {
             RequestPort::Held => false,
             RequestPort::Taken => {
@@ -253,7 +253,7 @@ impl Ports for Surroundings<'_> {
             RequestPort::Free => {
                 let waiter = self.id << TAG_BITS | u32::from(tag);
                 self.memory.counts_mut().traffic[section.place()].l1 += 1;
-                match self.memory.request(self.group, 2 * self.id + 1, waiter, line, section) {
+                match self.memory.request(self.group, 2 * self.id + 1, waiter, Ask { line, section, stores }) {
                     Asked::Comes(cycle) => {
                         self.memory.look_up(waiter, cycle);
                         self.memory.answer_at(cycle, waiter, Supplier::L1);
@@ -271,7 +271,7 @@ impl Ports for Surroundings<'_> {
         counts.rays += 1;
         counts.hits += u64::from(found);
         *self.under_way -= 1;
-        self.memory.ray_ends(ray.started);
+        self.memory.ray_ends(ray.started, false);
         self.feed.ended(ray, self.group, self.memory.now());
         true
     }

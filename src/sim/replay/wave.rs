@@ -33,14 +33,15 @@ pub(super) struct Wave {
 }
 
 /// Counts whose growth in a cycle is shown.
-type Events = [u64; 8];
+type Events = [u64; 10];
 
 /// Their names.
-const EVENTS: [&str; 8] = ["l1_hits", "l1_misses", "l1_merges", "l2_hits", "l2_misses", "l2_merges", "dram_reads", "rays_done"];
+const EVENTS: [&str; 10] =
+    ["l1_hits", "l1_misses", "l1_merges", "stores", "l2_hits", "l2_misses", "l2_merges", "write_backs", "dram_reads", "rays_done"];
 
 fn events(c: &Counts) -> Events {
     let reads = c.traffic.iter().map(|kind| kind.dram).sum();
-    [c.l1.hits, c.l1.misses, c.l1.merges, c.l2.hits, c.l2.misses, c.l2.merges, reads, c.rays]
+    [c.l1.hits, c.l1.misses, c.l1.merges, c.l1.stores, c.l2.hits, c.l2.misses, c.l2.merges, c.l2.write_backs, reads, c.rays]
 }
 
 /// Takes a signal: its scope, name and value.

@@ -206,7 +206,7 @@ impl<R: Steps> UnitTiming<R> {
         let context = &mut self.contexts[who];
         Step::of(context.act).count(&mut self.operations);
         match context.act {
-            Act::Fetch => return Some(at),
+            Act::Fetch | Act::Work { .. } => return Some(at),
             Act::Pop { .. } => {
                 self.states[State::Pop as usize] += 1;
                 return Some(at + 1);

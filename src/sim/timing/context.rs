@@ -16,11 +16,12 @@ pub struct ContextTiming<R> {
     /// What it waits for in `FETCH` or `TRI` without knowing the cycle, and the last known cycle.
     pub owed: u32,
     pub ready: u64,
-    /// Lines still to be asked for: how many, the next, its place in the record, and what it holds.
+    /// Lines still to be asked for: how many, the next, its place in the record, what it holds, and whether they are written.
     pub want: u32,
     pub line: u32,
     pub place: u32,
     pub section: SectionId,
+    pub stores: bool,
     /// Lines of the next step, asked for with those of this one.
     pub later: Later,
     /// Triangles still to be tested, and which of them are met.
@@ -78,6 +79,7 @@ impl<R: Steps> ContextTiming<R> {
             line: 0,
             place: 0,
             section: SectionId::default(),
+            stores: false,
             later: Later::default(),
             left: 0,
             hits: 0,
@@ -121,13 +123,14 @@ impl<R: Steps> ContextTiming<R> {
 
     #[inline(always)]
     fn want(&mut self, fetch: Fetch) {
-        (self.section, self.line, self.want, self.place) = (fetch.section, fetch.line, fetch.lines, fetch.place);
+        (self.section, self.line, self.want, self.place, self.stores) = (fetch.section, fetch.line, fetch.lines, fetch.place, fetch.stores);
     }
 
     /// The line to ask for next, by context number `me`, which is granted in cycle `now`; and whether more are wanted.
     #[inline]
     pub fn ask_line(&mut self, me: usize, now: u64) -> (LineRequest, bool) {
-        let request = LineRequest { tag: tag(me, self.place as u16), line: self.line, section: self.section }; // places have ten bits
+        let tag = tag(me, self.place as u16); // places have ten bits
+        let request = LineRequest { tag, line: self.line, section: self.section, stores: self.stores };
         self.line += 1;
         self.place += 1;
         self.want -= 1;

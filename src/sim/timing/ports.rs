@@ -59,6 +59,8 @@ pub struct LineRequest {
     pub line: u32,
     /// What it holds.
     pub section: SectionId,
+    /// It is written.
+    pub stores: bool,
 }
 
 /// The tag of the line at `place`, below 1024, of a record that `context` asks for.

@@ -1,6 +1,7 @@
 //! Machines small enough to be worked out by hand.
 
 mod order;
+mod stores;
 
 use super::*;
 use crate::block::Operation;
@@ -340,9 +341,14 @@ fn conserved(run: &Run) {
     let (l1, l2) = (run.counts.l1, run.counts.l2);
     let traffic = |of: fn(&KindTraffic) -> u64| run.counts.traffic.iter().map(of).sum::<u64>();
     let reads: u64 = run.channels.iter().map(|channel| channel.reads).sum();
-    assert_eq!(l1.requests, l1.hits + l1.misses + l1.merges);
-    assert_eq!(l2.requests, l2.hits + l2.misses + l2.merges);
-    assert_eq!((l1.misses, l1.misses, l1.requests), (l2.requests, l1.fills, traffic(|t| t.l1)));
+    assert_eq!(l1.requests, l1.hits + l1.misses + l1.merges + l1.stores);
+    assert_eq!(l2.requests, l2.hits + l2.misses + l2.merges + l2.stores);
+    assert_eq!((l1.misses + l1.stores, l1.misses, l1.requests), (l2.requests, l1.fills, traffic(|t| t.l1)));
+    // Stores go through the L1 to the L2, and from there to memory when their place is needed, or stay.
+    let writes: u64 = run.channels.iter().map(|channel| channel.writes).sum();
+    assert_eq!((l1.stores, l2.stores, l1.write_backs), (l2.stores, l2.updates, 0));
+    let unwritten = l2.write_backs - traffic(|t| t.written);
+    assert!(writes <= traffic(|t| t.written) && l2.write_backs + run.dirty_lines - unwritten <= l2.stores);
     assert_eq!((l2.misses, l2.misses, l2.requests), (reads, l2.fills, traffic(|t| t.l2)));
     assert_eq!(reads, traffic(|t| t.dram));
     let last = run.intervals.last().unwrap();

@@ -1,0 +1,65 @@
+//! The example of a method with work before its frames.
+
+#[expect(dead_code, reason = "its main")]
+#[path = "../../examples/own_method.rs"]
+mod example;
+
+use lodray::format::Scene;
+use lodray::machine::Machine;
+use lodray::mesh::procedural::{self, Options};
+use lodray::method::{Registered, chunked};
+use lodray::rays::{Camera, CameraPath, ModelSpace, View};
+use lodray::report::result::SimResult;
+use lodray::run::Compute;
+use lodray::scene::{PassRays, SceneMethod};
+
+fn street() -> (Scene, Camera) {
+    let scene = Scene::generate(&Options { levels: Some(2), base: Some(2000), ..Options::new(procedural::Scene::Street) }).unwrap();
+    let view = View { distance: Some(3.0), ..View::default() };
+    let camera = Camera::new(&view, &ModelSpace::of(&scene), 64, 64).unwrap();
+    (scene, camera)
+}
+
+fn of(scene: &Scene, method: &'static Registered) -> SceneMethod {
+    scene.method_of(method, &[("chunk", "object")]).unwrap()
+}
+
+fn run(method: &SceneMethod, rays: PassRays, compute: Compute) -> SimResult {
+    method.simulate(rays, &Machine::shipped("haydel2023").unwrap(), "haydel2023", compute).unwrap()
+}
+
+#[test]
+fn work_before_a_frame_is_charged_apart_and_its_lines_are_found_by_the_rays() {
+    let (scene, camera) = street();
+    let [free, charged] =
+        [&chunked::METHOD, &example::METHOD].map(|method| run(&of(&scene, method), PassRays::Camera(camera), Compute::Free));
+    assert!(free.frames[0].before.is_none() && free.l1.stores == 0 && !free.operations.contains_key("unpack_line"));
+    let frame = charged.frames[0];
+    let before = frame.before.unwrap();
+    // Every line of nodes and leaves is written, once.
+    let map_bytes = free.setup.method.bytes;
+    assert_eq!(before.stores * 32, map_bytes);
+    assert_eq!([charged.l1.stores, charged.l2.stores], [before.stores; 2]);
+    // The same rays, which find in the L2 what was written there.
+    assert_eq!([charged.rays, charged.hits], [free.rays, free.hits]);
+    let reads = |r: &SimResult, kind: &str| r.traffic.kinds.iter().find(|k| k.kind == kind).map_or(0, |k| k.dram);
+    assert!(reads(&free, "bvh_node") > 0 && reads(&charged, "bvh_node") == 0 && reads(&charged, "packed") > 0);
+    // A frame is its work and its rays; energy likewise, and the work's own operations are among it.
+    assert_eq!((charged.frames.len(), frame.start, frame.cycles), (1, 0, charged.cycles));
+    assert!(before.cycles > 0 && before.cycles < frame.cycles && before.energy > 0.0 && before.energy < frame.energy);
+    let compute = charged.energy.compute.operations["unpack_line"];
+    assert!(compute > 0.0 && (frame.energy - charged.energy.total).abs() < 1e-9 * frame.energy, "{compute}");
+    assert_eq!(charged.operations["unpack_line"] % 4, 0);
+}
+
+#[test]
+fn what_stays_costs_nothing_in_the_next_frame_and_units_refuse_such_work() {
+    let (scene, camera) = street();
+    let method = of(&scene, &example::METHOD);
+    let result = run(&method, PassRays::Path(CameraPath::turning(&camera, 3, 2.0)), Compute::Free);
+    assert_eq!(result.frames.iter().map(|frame| frame.before.is_some()).collect::<Vec<_>>(), [true, false, false]);
+    assert!(result.frames[1].cycles < result.frames[0].cycles);
+    let why =
+        method.simulate(PassRays::Camera(camera), &Machine::shipped("haydel2023").unwrap(), "haydel2023", Compute::Units).unwrap_err();
+    assert!(why.to_string().contains("work before a frame"), "{why}");
+}
