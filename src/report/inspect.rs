@@ -83,12 +83,7 @@ impl StepSink for Words<'_> {
 fn act(text: &mut String, act: Act, edges: Option<&Edges>) -> std::fmt::Result {
     match act {
         Act::Fetch => write!(text, "f"),
-        Act::Children { met } => write!(text, "c{met}"),
-        Act::Prisms { met } => write!(text, "g{met}"),
-        Act::PlainChildren { met } => write!(text, "p{met}"),
-        Act::LocalChildren { met } => write!(text, "l{met}"),
-        Act::WideChildren { met } => write!(text, "w{met}"),
-        Act::SixChildren { met } => write!(text, "b{met}"),
+        Act::Children { shape, met } => write!(text, "{}{met}", shape.facts().letter),
         Act::Work { work, count } => write!(text, "k{work}:{count}"),
         Act::Decide => write!(text, "y"),
         Act::LodTest { refine } => {
@@ -177,7 +172,7 @@ fn quoted(word: &str) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::step::SectionId;
+    use crate::step::{NodeShape, SectionId};
 
     #[test]
     fn steps_are_written_as_the_table_says() {
@@ -185,7 +180,7 @@ mod tests {
         let mut words = Words { text: String::new(), edges: edges.iter() };
         let fetch = Fetch::new(SectionId::new(1), 40, 2);
         let steps = [
-            Step::on(fetch, Act::Children { met: 2 }).visiting(),
+            Step::on(fetch, Act::Children { shape: NodeShape::Tree, met: 2 }).visiting(),
             Step::on(fetch.joining(), Act::Fetch),
             Step::of(Act::LodTest { refine: true }),
             Step::of(Act::Tessellate),
@@ -195,9 +190,9 @@ mod tests {
             Step::of(Act::Pop { dropped: false }),
             Step::of(Act::Pop { dropped: true }),
             Step::on(fetch, Act::Fetch),
-            Step::of(Act::PlainChildren { met: 0 }),
-            Step::of(Act::LocalChildren { met: 1 }),
-            Step::of(Act::WideChildren { met: 4 }),
+            Step::of(Act::Children { shape: NodeShape::Plain, met: 0 }),
+            Step::of(Act::Children { shape: NodeShape::Local, met: 1 }),
+            Step::of(Act::Children { shape: NodeShape::Wide, met: 4 }),
             Step::end(true, true),
             Step::end(true, false),
             Step::end(false, true),

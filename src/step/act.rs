@@ -3,12 +3,7 @@
 //! | act | what it stands for | operations |
 //! |---|---|---|
 //! | `Fetch` | nothing but the lines | |
-//! | `Children` | four children of a node whose boxes follow from those of its lines and, in trees, from its triangle, are tested, and `met` of them met | `child_test` |
-//! | `Prisms` | four children of a tree's node, whose prisms follow from its line and its triangle, are tested | `child_prisms` |
-//! | `PlainChildren` | the same with 16-bit boxes that are stored as they are | four `box_test`, `child_sort` |
-//! | `LocalChildren` | the same with 16-bit boxes that are stored in steps from their node's corner | four `box_decode`, four `box_test`, `child_sort` |
-//! | `WideChildren` | the same with 32-bit boxes | four `box_test32`, `child_sort` |
-//! | `SixChildren` | six children of a node with 16-bit boxes that are stored in finer steps from its corner are tested | six `box_decode8`, six `box_test`, `child_sort6` |
+//! | `Children` | the children of a node of some shape ([`NodeShape`]) are tested, and `met` of them met | the shape's |
 //! | `Decide` | who decides about levels in the tree that is entered | `tree_deciders` |
 //! | `LodTest` | does a triangle serve | `lod_test` |
 //! | `Tessellate` | the inserted vertices of a triangle are morphed | `tessellate` |
@@ -20,7 +15,7 @@
 //! Each line asked for takes a `node_address`, and each ray begins with a `ray_setup`. Hardware for rays that start on a surface has blocks of its own for some of these
 //! ([`Hardware::block`](crate::hardware::Hardware::block)).
 
-use super::{SectionId, StepSink};
+use super::{NodeShape, SectionId, StepSink};
 use crate::block::{Operation, Operations};
 
 /// Most lines of a fetch: three bits count them.
@@ -84,12 +79,7 @@ impl Fetch {
 #[expect(missing_docs, reason = "the table above")]
 pub enum Act {
     Fetch,
-    Children { met: u32 },
-    Prisms { met: u32 },
-    PlainChildren { met: u32 },
-    LocalChildren { met: u32 },
-    WideChildren { met: u32 },
-    SixChildren { met: u32 },
+    Children { shape: NodeShape, met: u32 },
     Decide,
     LodTest { refine: bool },
     Tessellate,
@@ -115,12 +105,7 @@ impl Act {
     #[inline(always)]
     pub const fn met(self) -> Option<u32> {
         match self {
-            Self::Children { met }
-            | Self::Prisms { met }
-            | Self::PlainChildren { met }
-            | Self::LocalChildren { met }
-            | Self::WideChildren { met }
-            | Self::SixChildren { met } => Some(met),
+            Self::Children { met, .. } => Some(met),
             _ => None,
         }
     }
@@ -160,26 +145,7 @@ impl Step {
         }
         match self.act {
             Act::Fetch | Act::Pop { .. } | Act::End { found: false, .. } => (),
-            Act::Children { .. } => add(Operation::ChildTest, 1),
-            Act::Prisms { .. } => add(Operation::ChildPrisms, 1),
-            Act::PlainChildren { .. } => {
-                add(Operation::BoxTest, 4);
-                add(Operation::ChildSort, 1);
-            }
-            Act::LocalChildren { .. } => {
-                add(Operation::BoxDecode, 4);
-                add(Operation::BoxTest, 4);
-                add(Operation::ChildSort, 1);
-            }
-            Act::WideChildren { .. } => {
-                add(Operation::BoxTest32, 4);
-                add(Operation::ChildSort, 1);
-            }
-            Act::SixChildren { .. } => {
-                add(Operation::BoxDecode8, 6);
-                add(Operation::BoxTest, 6);
-                add(Operation::ChildSort6, 1);
-            }
+            Act::Children { shape, .. } => shape.facts().path.iter().for_each(|&(operation, count)| add(operation, count)),
             Act::Work { work, count } => operations.add_work(work as usize, count.into()),
             Act::Decide => add(Operation::TreeDeciders, 1),
             Act::LodTest { .. } => add(Operation::LodTest, 1),
@@ -256,12 +222,12 @@ mod tests {
         let fetch = Fetch::new(SectionId::new(0), 0, 4);
         let mut operations = Operations::default();
         let steps = [
-            Step::on(fetch, Act::WideChildren { met: 1 }),
-            Step::on(fetch, Act::PlainChildren { met: 1 }),
-            Step::on(fetch, Act::LocalChildren { met: 1 }),
-            Step::on(fetch, Act::Children { met: 1 }),
-            Step::on(fetch, Act::SixChildren { met: 6 }),
-            Step::of(Act::Prisms { met: 3 }),
+            Step::on(fetch, Act::Children { shape: NodeShape::Wide, met: 1 }),
+            Step::on(fetch, Act::Children { shape: NodeShape::Plain, met: 1 }),
+            Step::on(fetch, Act::Children { shape: NodeShape::Local, met: 1 }),
+            Step::on(fetch, Act::Children { shape: NodeShape::Tree, met: 1 }),
+            Step::on(fetch, Act::Children { shape: NodeShape::Six, met: 6 }),
+            Step::of(Act::Children { shape: NodeShape::Prisms, met: 3 }),
             Step::of(Act::Decide),
             Step::of(Act::LodTest { refine: true }),
             Step::on(fetch, Act::Tessellate),

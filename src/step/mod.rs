@@ -2,6 +2,7 @@
 //!
 //! - `section`: the sections of a method's memory, and where their lines lie.
 //! - `act`: a step: lines asked for, and what the hardware does with them.
+//! - `shape`: the kinds of nodes, as a table.
 //! - `word`: a step in 64 bits.
 //! - `sink`: who is told: nobody, counters, or
 //! - `lines`: which lines were touched.
@@ -13,6 +14,7 @@ mod act;
 mod batch;
 mod lines;
 mod section;
+mod shape;
 mod sink;
 mod word;
 
@@ -20,5 +22,6 @@ pub use act::{Act, Fetch, MAX_FETCH_LINES, MAX_PLACES, MAX_RUN, Step, TriangleRu
 pub use batch::{Batch, Link, Recorder};
 pub use lines::{LineCounter, LineSets};
 pub use section::{MAX_SECTIONS, MapError, MemoryMap, Nodes, Section, SectionId};
+pub use shape::{NodeShape, ShapeFacts};
 pub use sink::{NoSteps, StepCounts, StepSink};
 pub use word::{Asking, StepWord};

@@ -3,10 +3,10 @@
 //! | bits | what |
 //! |---|---|
 //! | 63:32 | the first line, `hits`, or the `count` of work |
-//! | 31:28 | act |
+//! | 31:28 | act; of `Children` 8 and the three lower bits of the shape |
 //! | 27:22 | `met`, `count` or `work` |
-//! | 21 | `refine`, `dropped` or `found` |
-//! | 20 | `mapped` |
+//! | 21 | `refine`, `dropped`, `found`, or bit 3 of the shape |
+//! | 20 | `mapped`, or bit 4 of the shape |
 //! | 19:17 | section |
 //! | 16:14 | lines; 0 if none are asked for |
 //! | 12 | stores |
@@ -14,7 +14,7 @@
 //! | 10 | visits |
 //! | 9:0 | place |
 
-use super::{Act, Fetch, MAX_FETCH_LINES, MAX_PLACES, MAX_RUN, SectionId, Step};
+use super::{Act, Fetch, MAX_FETCH_LINES, MAX_PLACES, MAX_RUN, NodeShape, SectionId, Step};
 
 const UPPER: u32 = 32;
 const ACT: u32 = 28;
@@ -29,19 +29,15 @@ const VISITS: u32 = 10;
 const PLACE: u32 = 0;
 
 const FETCH: u64 = 0;
-const CHILDREN: u64 = 1;
-const WIDE_CHILDREN: u64 = 2;
+const WORK: u64 = 1;
+const DECIDE: u64 = 2;
 const LOD_TEST: u64 = 3;
 const TESSELLATE: u64 = 4;
 const TRIANGLES: u64 = 5;
 const POP: u64 = 6;
 const END: u64 = 7;
-const PLAIN_CHILDREN: u64 = 8;
-const LOCAL_CHILDREN: u64 = 9;
-const SIX_CHILDREN: u64 = 10;
-const DECIDE: u64 = 11;
-const PRISMS: u64 = 12;
-const WORK: u64 = 13;
+/// With the three lower bits of a node's shape in place of the zeros.
+const CHILDREN: u64 = 8;
 
 /// A step, as whoever only reads its lines sees it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -73,12 +69,9 @@ impl StepWord {
     pub fn pack(step: Step) -> Self {
         let (act, number, flag, mapped, hits) = match step.act {
             Act::Fetch => (FETCH, 0, false, false, 0),
-            Act::Children { met } => (CHILDREN, met, false, false, 0),
-            Act::Prisms { met } => (PRISMS, met, false, false, 0),
-            Act::PlainChildren { met } => (PLAIN_CHILDREN, met, false, false, 0),
-            Act::LocalChildren { met } => (LOCAL_CHILDREN, met, false, false, 0),
-            Act::WideChildren { met } => (WIDE_CHILDREN, met, false, false, 0),
-            Act::SixChildren { met } => (SIX_CHILDREN, met, false, false, 0),
+            Act::Children { shape, met } => {
+                (CHILDREN | u64::from(shape as u8 & 7), met, shape as u8 >> 3 & 1 == 1, shape as u8 >> 4 == 1, 0)
+            }
             Act::Decide => (DECIDE, 0, false, false, 0),
             Act::LodTest { refine } => (LOD_TEST, 0, refine, false, 0),
             Act::Tessellate => (TESSELLATE, 0, false, false, 0),
@@ -127,19 +120,17 @@ impl StepWord {
         let (number, flag, upper) = (self.bits(NUMBER, 63), self.bits(FLAG, 1) == 1, (self.0 >> UPPER) as u32);
         let act = match self.0 >> ACT & 15 {
             FETCH => Act::Fetch,
-            CHILDREN => Act::Children { met: number },
-            PRISMS => Act::Prisms { met: number },
-            PLAIN_CHILDREN => Act::PlainChildren { met: number },
-            LOCAL_CHILDREN => Act::LocalChildren { met: number },
-            WIDE_CHILDREN => Act::WideChildren { met: number },
-            SIX_CHILDREN => Act::SixChildren { met: number },
             DECIDE => Act::Decide,
             LOD_TEST => Act::LodTest { refine: flag },
             TESSELLATE => Act::Tessellate,
             TRIANGLES => Act::Triangles { count: number, hits: upper },
             WORK => Act::Work { work: number, count: upper },
             POP => Act::Pop { dropped: flag },
-            _ => Act::End { found: flag, mapped: self.bits(MAPPED, 1) == 1 },
+            END => Act::End { found: flag, mapped: self.bits(MAPPED, 1) == 1 },
+            children => {
+                let shape = (children & 7) as u32 | u32::from(flag) << 3 | self.bits(MAPPED, 1) << 4; // five bits
+                Act::Children { shape: NodeShape::of_number(shape), met: number }
+            }
         };
         let fetch = Fetch {
             section: SectionId::new(self.bits(SECTION, 7) as usize),
@@ -176,11 +167,6 @@ mod tests {
     fn words_give_back_their_steps() {
         let acts = [
             Act::Fetch,
-            Act::Children { met: 4 },
-            Act::PlainChildren { met: 3 },
-            Act::LocalChildren { met: 2 },
-            Act::WideChildren { met: 0 },
-            Act::SixChildren { met: 6 },
             Act::Decide,
             Act::LodTest { refine: true },
             Act::LodTest { refine: false },
@@ -191,7 +177,8 @@ mod tests {
             Act::End { found: true, mapped: true },
             Act::End { found: false, mapped: true },
         ];
-        for (k, act) in acts.into_iter().enumerate() {
+        let children = NodeShape::ALL.into_iter().zip(0..).map(|(shape, met)| Act::Children { shape, met });
+        for (k, act) in acts.into_iter().chain(children).enumerate() {
             let fetch = Fetch {
                 section: SectionId::new(k % 8),
                 line: u32::MAX - k as u32,
@@ -220,7 +207,7 @@ mod tests {
         let fetch = Fetch::new(SectionId::new(1), 3, 1);
         let bad = [
             Step::of(Act::Triangles { count: MAX_RUN + 1, hits: 0 }),
-            Step::of(Act::Children { met: 33 }),
+            Step::of(Act::Children { shape: NodeShape::Tree, met: 33 }),
             Step::on(Fetch { lines: MAX_FETCH_LINES + 1, ..fetch }, Act::Fetch),
             Step::on(Fetch { lines: 0, ..fetch }, Act::Fetch),
             Step::on(Fetch { place: MAX_PLACES, ..fetch }, Act::Fetch),

@@ -18,7 +18,7 @@ use crate::method::leave;
 use crate::method::stack::{Entry, Op, TraversalStack, push_nearest, push_sorted};
 use crate::method::{Departure, Hit, HitSink, is_beyond};
 use crate::num::{LINE_BYTES, Point, Ray, Start, U, Vec3, Wire};
-use crate::step::{Act, Fetch, MemoryMap, Step, StepSink, TriangleRun};
+use crate::step::{Act, Fetch, MemoryMap, NodeShape, Step, StepSink, TriangleRun};
 use std::sync::Arc;
 
 /// Traces rays through a BVH; keeps its stack from ray to ray.
@@ -188,13 +188,13 @@ impl BvhTraverser {
             FullNodes::Local(nodes) => {
                 let line = &nodes[index];
                 let tests = bvh_children(setup, t_max, line);
-                steps.step(Step::on(fetch, Act::LocalChildren { met: tests.met() }).visiting());
+                steps.step(Step::on(fetch, Act::Children { shape: NodeShape::Local, met: tests.met() }).visiting());
                 push_sorted(&mut self.stack, &tests, |k| waiting(BvhNode::line_child(line, k)))
             }
             FullNodes::Boxes16(nodes) => {
                 let child = |k| quarter::<BvhChild>(&nodes[index], k);
                 let tests = coded_children(setup, t_max, &nodes[index]);
-                steps.step(Step::on(fetch, Act::PlainChildren { met: tests.met() }).visiting());
+                steps.step(Step::on(fetch, Act::Children { shape: NodeShape::Plain, met: tests.met() }).visiting());
                 push_sorted(&mut self.stack, &tests, |k| waiting(child(k).child))
             }
             FullNodes::Boxes32(nodes) => {
@@ -210,14 +210,14 @@ impl BvhTraverser {
                     }
                 }
                 let tests = sort(&tests);
-                steps.step(Step::on(fetch, Act::WideChildren { met: tests.met() }).visiting());
+                steps.step(Step::on(fetch, Act::Children { shape: NodeShape::Wide, met: tests.met() }).visiting());
                 push_sorted(&mut self.stack, &tests, |k| waiting(child(k).child))
             }
             FullNodes::Six(nodes) => {
                 let node = SixNode::from_words(&nodes[index]);
                 let (tests, t_near) = six_children(setup, t_max, &node);
                 let met = tests.count.get() as usize;
-                steps.step(Step::on(fetch, Act::SixChildren { met: met as u32 }).visiting()); // at most 6
+                steps.step(Step::on(fetch, Act::Children { shape: NodeShape::Six, met: met as u32 }).visiting()); // at most 6
                 push_nearest(&mut self.stack, met, |place| {
                     let k = tests.order[place].get() as usize;
                     Entry { t_near: t_near[k], ..waiting(node.child(k)) }

@@ -19,7 +19,7 @@ use crate::method::leave;
 use crate::method::stack::{Entry, Op, TraversalStack, push_sorted};
 use crate::method::{Departure, Hit, HitSink, TriangleId, is_beyond};
 use crate::num::{BoundCode, MAX_LEVELS, PADDING_BITS, Point, Ray, Start, TNear, U, VertexForm, Wire};
-use crate::step::{Act, Step, StepSink, TriangleRun};
+use crate::step::{Act, NodeShape, Step, StepSink, TriangleRun};
 
 /// Traces rays through one image; keeps its stack from ray to ray.
 pub struct LodTraverser<'a> {
@@ -174,7 +174,7 @@ impl<S: StepSink, H: HitSink, const COMPACT: bool, const FULL_DETAIL: bool, cons
     fn bvh_node(&mut self, index: usize) -> Option<Entry> {
         let line = &self.image.nodes[index];
         let tests = bvh_children(&self.setup, self.sink.t_max(), line);
-        self.steps.step(Step::on(self.image.node(index), Act::Children { met: tests.met() }).visiting());
+        self.steps.step(Step::on(self.image.node(index), Act::Children { shape: NodeShape::Tree, met: tests.met() }).visiting());
         push_sorted(self.stack, &tests, |k| {
             let child = BvhNode::line_child(line, k);
             // Inner nodes and leaves have the kinds of their entries one lower.
@@ -276,11 +276,11 @@ impl<S: StepSink, H: HitSink, const COMPACT: bool, const FULL_DETAIL: bool, cons
         let (tests, act) = match self.image.prisms {
             None => {
                 let tests = tree_children(&self.setup, t_max, line, split);
-                (tests, Act::Children { met: tests.met() })
+                (tests, Act::Children { shape: NodeShape::Tree, met: tests.met() })
             }
             Some(prisms) => {
                 let tests = prism_children(&self.setup, t_max, &prisms[number], split);
-                (tests, Act::Prisms { met: tests.met() })
+                (tests, Act::Children { shape: NodeShape::Prisms, met: tests.met() })
             }
         };
         let fetch = || self.image.split(self.tree, level, node as usize);

@@ -17,6 +17,7 @@ use super::error_time::{COSTS, ERRORS, ErrorTime, verdicts};
 use super::palette;
 use crate::method::METHODS;
 use crate::picture::{HOTTEST, level_colour};
+use crate::step::NodeShape;
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD as BASE64;
 use flate2::Compression;
@@ -123,6 +124,7 @@ fn data(documents: &Documents) -> io::Result<Value> {
         "program": program(),
         "palette": { "methods": methods, "parts": parts, "sections": sections, "things": things, "levels": levels, "hottest": HOTTEST },
         "measures": measures(),
+        "shapes": shapes(),
         "verdicts": error_time.as_ref().map_or_else(Vec::new, verdicts),
         "error_time": serde_json::to_value(&error_time)?,
         "simulations": serde_json::to_value(&documents.simulations)?,
@@ -132,6 +134,11 @@ fn data(documents: &Documents) -> io::Result<Value> {
         "documents": serde_json::to_value(&documents.documents)?,
         "pictures": serde_json::to_value(&documents.pictures)?,
     }))
+}
+
+/// Kinds of nodes by their letters: children, and what bounds them.
+fn shapes() -> BTreeMap<char, Value> {
+    NodeShape::ALL.map(NodeShape::facts).map(|facts| (facts.letter, json!([facts.children, facts.words]))).into()
 }
 
 /// What errors and costs of equal-error tables are called.

@@ -48,11 +48,7 @@ impl<R: Steps> UnitTiming<R> {
         let station = &mut self.stations[resource as usize];
         let context = &mut self.contexts[who];
         let result = match (resource, context.act) {
-            (Resource::Child, Act::Prisms { .. }) => station.take_for(self.prism_node, since, now),
-            (Resource::Child, Act::PlainChildren { .. }) => station.take_for(self.plain_node, since, now),
-            (Resource::Child, Act::LocalChildren { .. }) => station.take_for(self.local_node, since, now),
-            (Resource::Child, Act::WideChildren { .. }) => station.take_for(self.wide_node, since, now),
-            (Resource::Child, Act::SixChildren { .. }) => station.take_for(self.six_node, since, now),
+            (Resource::Child, Act::Children { shape, .. }) => station.take_for(self.nodes[shape as usize], since, now),
             _ => station.take(since, now),
         };
         match resource {
@@ -217,14 +213,7 @@ impl<R: Steps> UnitTiming<R> {
                 (context.found, context.mapped) = (found, mapped);
                 context.enter(if found { State::DivideV } else { State::Done }, at + 1);
             }
-            Act::Children { .. }
-            | Act::Prisms { .. }
-            | Act::PlainChildren { .. }
-            | Act::LocalChildren { .. }
-            | Act::WideChildren { .. }
-            | Act::SixChildren { .. } => {
-                context.enter(State::Child, at);
-            }
+            Act::Children { .. } => context.enter(State::Child, at),
             // Hardware without such rays takes them as if each decided for itself.
             Act::Decide if !self.has_deciders => return Some(at),
             Act::Decide => context.enter(State::Decide, at),

@@ -6,13 +6,6 @@ use super::ports::{LineRequest, Ports, Steps, untag};
 use super::station::Station;
 use super::wheel::{Wheel, bits};
 use crate::block::bary_map::BaryMap;
-use crate::block::box_decode::BoxDecode;
-use crate::block::box_decode8::BoxDecode8;
-use crate::block::box_test::BoxTest;
-use crate::block::box_test32::BoxTest32;
-use crate::block::child_prisms::ChildPrisms;
-use crate::block::child_sort::ChildSort;
-use crate::block::child_sort6::ChildSort6;
 use crate::block::child_test::ChildTest;
 use crate::block::hit_select::HitSelect;
 use crate::block::node_address::NodeAddress;
@@ -21,6 +14,7 @@ use crate::block::tree_deciders::TreeDeciders;
 use crate::block::{Operation, Operations, Timing};
 use crate::hardware::{Hardware, MAX_CONTEXTS};
 use crate::sim::unit::{Arbiter, Resource, State};
+use crate::step::NodeShape;
 use std::collections::VecDeque;
 
 /// A unit that takes rays as their steps.
@@ -40,12 +34,8 @@ pub struct UnitTiming<R> {
     pub(super) select: Station,
     /// Names of its setup, its LOD test, its triangle test and its division.
     pub(super) fitted: [&'static str; 4],
-    /// The test of a node whose children have prisms, of one whose 16-bit boxes are stored as they are, of one that stores steps, of one with 32-bit boxes, and of one of six.
-    pub(super) prism_node: Timing,
-    pub(super) plain_node: Timing,
-    pub(super) local_node: Timing,
-    pub(super) wide_node: Timing,
-    pub(super) six_node: Timing,
+    /// The test of a node, by its shape.
+    pub(super) nodes: [Timing; NodeShape::ALL.len()],
     /// The hardware has a LOD test, one by other rays, and a map of hits.
     pub(super) chooses_levels: bool,
     pub(super) has_deciders: bool,
@@ -79,13 +69,15 @@ impl<R: Steps> UnitTiming<R> {
     /// There is no such hardware ([`Hardware::validate`]).
     pub fn new(config: Hardware) -> Self {
         config.validate().unwrap_or_else(|error| panic!("{error}"));
-        let latency = |parts: &[u32]| parts.iter().sum::<u32>();
-        let [decode, decode8] = [config.timing::<BoxDecode>().latency, config.timing::<BoxDecode8>().latency];
-        let [test, test32] = [config.timing::<BoxTest>().latency, config.timing::<BoxTest32>().latency];
-        let [sort, sort6] = [config.timing::<ChildSort>().latency, config.timing::<ChildSort6>().latency];
-        // Where boxes go through fewer tests than there are, each pass but the first takes a cycle more, and so does the next node.
-        let node = |children, latency: u32| {
-            let interval = config.boxes_per_cycle.passes(children);
+        let node = |shape: NodeShape| {
+            let facts = shape.facts();
+            let timing = |&(operation, _): &(Operation, u32)| operation.timing(&config.form());
+            if let [alone] = facts.path {
+                return config.linked(timing(alone));
+            }
+            let latency: u32 = facts.path.iter().map(|step| timing(step).latency).sum();
+            // Where boxes go through fewer tests than there are, each pass but the first takes a cycle more, and so does the next node.
+            let interval = config.boxes_per_cycle.passes(facts.children);
             config.linked(Timing { latency: latency + interval - 1, interval })
         };
         let fitted = |operation| config.block(operation).timing(&config.form());
@@ -111,11 +103,7 @@ impl<R: Steps> UnitTiming<R> {
             stations: Resource::ALL.map(|resource| Station::new(timing(resource))),
             fitted: [Operation::RaySetup, Operation::LodTest, Operation::TriTest, Operation::HitDivide].map(|of| config.block(of).name()),
             select: Station::new(config.timing::<HitSelect>()),
-            prism_node: config.linked(config.timing::<ChildPrisms>()),
-            plain_node: node(4, latency(&[test, sort])),
-            local_node: node(4, latency(&[decode, test, sort])),
-            wide_node: node(4, latency(&[test32, sort])),
-            six_node: node(6, latency(&[decode8, test, sort6])),
+            nodes: NodeShape::ALL.map(node),
             chooses_levels: config.chooses_levels(),
             has_deciders: config.has_deciders(),
             hit_mapping: config.hit_mapping,

@@ -9,7 +9,7 @@ use lodray::num::{Ray, VertexForm};
 use lodray::sim::timing::UnitTiming;
 use lodray::sim::unit::environment::{RunReport, UnitPort, run, run_secondary};
 use lodray::sim::unit::{Inputs, Latency, Outputs, SceneMemory, Stall, Traffic, TraversalUnit};
-use lodray::step::{Act, Batch, Fetch, SectionId, Step};
+use lodray::step::{Act, Batch, Fetch, NodeShape, SectionId, Step};
 use lodray_test_support::bounces::{Bounce, next, steps_of_bounces};
 use lodray_test_support::hardware::{OTHERS, SECONDARIES, form_for, most_levels, ray_for, scene_for};
 use lodray_test_support::models::{Rng, any_rays, ball, coarsened, model, octahedron, scene_of, terrain, with_vertices, with_zeros};
@@ -264,10 +264,10 @@ impl Boxes {
 /// A visit of a node.
 fn node(line: u32, met: u32, boxes: Boxes) -> Step {
     let act = match boxes {
-        Boxes::Local => Act::LocalChildren { met },
-        Boxes::Plain => Act::PlainChildren { met },
-        Boxes::Wide => Act::WideChildren { met },
-        Boxes::Six => Act::SixChildren { met },
+        Boxes::Local => Act::Children { shape: NodeShape::Local, met },
+        Boxes::Plain => Act::Children { shape: NodeShape::Plain, met },
+        Boxes::Wide => Act::Children { shape: NodeShape::Wide, met },
+        Boxes::Six => Act::Children { shape: NodeShape::Six, met },
     };
     Step::on(Fetch::new(NODES, line, boxes.lines()), act).visiting()
 }

@@ -140,7 +140,6 @@ function picturesSection(section, state) {
 
 const nearestRay = (grid, [x, y]) => d3.minIndex(grid.rays, (r) => (r.pixel[0] - x) ** 2 + (r.pixel[1] - y) ** 2);
 
-const BOXES = { c: "boxes in steps, widened where morphed", p: "16-bit boxes", l: "16-bit boxes in steps", w: "32-bit boxes", g: "prisms" };
 const ENDS = { h: "hit", m: "hit, mapped to full resolution", n: "nothing met" };
 
 /** A step's word in words; src/report/inspect.rs has the table. */
@@ -153,11 +152,12 @@ function stepOf(word, sections) {
   const where = number == null ? "" : ` of level ${level} node ${num(Number(number))}`;
   const edges = (states ?? "").split(".").map((s) => (Number(s) === 256 ? "1" : Number(s) === 0 ? "0" : `${s}/256`));
   const words = {
-    f: () => "lines read", b: () => `six children tested, ${rest} met (boxes in finer steps)`, y: () => "which ray decides in this tree", k: () => `${count(Number(states), "operation")} of the method’s own`, t: () => "inserted vertices morphed", o: () => "next node taken from the stack", d: () => "node from the stack dropped: it lies behind the closest hit",
+    f: () => "lines read", y: () => "which ray decides in this tree", k: () => `${count(Number(states), "operation")} of the method’s own`, t: () => "inserted vertices morphed", o: () => "next node taken from the stack", d: () => "node from the stack dropped: it lies behind the closest hit",
     r: () => `LOD test${where}: refine${states ? `, edge states ${edges.join(", ")}` : ""}`, s: () => `LOD test${where}: its triangle serves`,
     x: () => `${count(Number(node), "triangle")} tested, ${num([...Number(states).toString(2)].filter((b) => b === "1").length)} met`,
   };
-  const text = BOXES[letter] ? `four children tested, ${rest} met (${BOXES[letter]})` : ENDS[letter] ?? words[letter]?.() ?? word;
+  const [children, bounds] = page.shapes[letter] ?? [];
+  const text = bounds ? `${children} children tested, ${rest} met (${bounds})` : ENDS[letter] ?? words[letter]?.() ?? word;
   const match = fetch && /^(\+?)(=?)(\d+)\.(\d+)\.(\d+)$/.exec(fetch);
   const lines = match && { together: match[1] === "+", stores: match[2] === "=", section: sections[match[3]] ?? match[3], first: Number(match[4]), count: Number(match[5]) };
   return { visits, letter, text, lines, tests: letter === "x" ? Number(node) : 0 };

@@ -7,7 +7,7 @@ use super::*;
 use crate::block::Operation;
 use crate::num::Random;
 use crate::sim::dram::Dram;
-use crate::step::{Act, Batch, Fetch, MemoryMap, Section, SectionId, Step};
+use crate::step::{Act, Batch, Fetch, MemoryMap, NodeShape, Section, SectionId, Step};
 use std::collections::HashSet;
 
 /// One core, and the keys that are set.
@@ -156,11 +156,11 @@ fn a_chase_in_memory_takes_the_way_and_the_memorys_own_time() {
 fn pinned_nodes_are_not_asked_for() {
     type Test = fn(u32) -> Act;
     let tests: [(Test, u32); 5] = [
-        (|met| Act::Children { met }, 1),
-        (|met| Act::LocalChildren { met }, 1),
-        (|met| Act::PlainChildren { met }, 2),
-        (|met| Act::WideChildren { met }, 4),
-        (|met| Act::SixChildren { met }, 2),
+        (|met| Act::Children { shape: NodeShape::Tree, met }, 1),
+        (|met| Act::Children { shape: NodeShape::Local, met }, 1),
+        (|met| Act::Children { shape: NodeShape::Plain, met }, 2),
+        (|met| Act::Children { shape: NodeShape::Wide, met }, 4),
+        (|met| Act::Children { shape: NodeShape::Six, met }, 2),
     ];
     for (test, lines) in tests {
         let sections = ["node", "leaf"].map(|name| Section::of_bytes(name, 64 * 32));
