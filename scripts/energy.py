@@ -64,9 +64,12 @@ def parts(result, machines):
     sums = {}
     for level, copies in (("l1", machine["cores"]["groups"]), ("l2", 1)):
         read, fill, leakage = row(machines, table, level, machine[level])
-        yield f"{level}.read", energy[level]["read"], result[level]["requests"] * read * scale
-        yield f"{level}.fill", energy[level]["fill"], result[level]["fills"] * fill * scale
-        sums[level] = result[level]["requests"] * read + result[level]["fills"] * fill
+        # Methods that write have more than requests and fills.
+        reads = result[level]["requests"] + result[level].get("write_backs", 0)
+        writes = result[level]["fills"] + result[level].get("updates", 0)
+        yield f"{level}.read", energy[level]["read"], reads * read * scale
+        yield f"{level}.fill", energy[level]["fill"], writes * fill * scale
+        sums[level] = reads * read + writes * fill
         # A milliwatt is a picojoule in a nanosecond.
         sums[f"leakage.{level}"] = copies * machine[level]["banks"] * leakage * nanoseconds
         yield f"leakage.{level}", energy["leakage"][level], sums[f"leakage.{level}"] * scale

@@ -12,6 +12,9 @@ use lodray::rays::{Camera, CameraPath, ModelSpace, View};
 use lodray::report::result::SimResult;
 use lodray::run::Compute;
 use lodray::scene::{PassRays, SceneMethod};
+use lodray_test_support::program::Desk;
+use std::path::Path;
+use std::process::Command;
 
 fn street() -> (Scene, Camera) {
     let scene = Scene::generate(&Options { levels: Some(2), base: Some(2000), ..Options::new(procedural::Scene::Street) }).unwrap();
@@ -50,6 +53,16 @@ fn work_before_a_frame_is_charged_apart_and_its_lines_are_found_by_the_rays() {
     let compute = charged.energy.compute.operations["unpack_line"];
     assert!(compute > 0.0 && (frame.energy - charged.energy.total).abs() < 1e-9 * frame.energy, "{compute}");
     assert_eq!(charged.operations["unpack_line"] % 4, 0);
+    // What is written costs as much as what is filled: by the result's own prices, and by the script that takes them from the tables.
+    let (l2, energy) = (charged.l2, &charged.energy);
+    assert_eq!(l2.updates, before.stores);
+    let fill = (l2.fills + l2.updates) as f64 * energy.prices.l2_fill * 1e-6;
+    assert!(energy.unit == "uJ" && (energy.l2.fill - fill).abs() < 1e-9 * fill);
+    let desk = Desk::new(env!("CARGO_BIN_EXE_lodray"));
+    desk.write("result.json", &serde_json::to_string(&charged).unwrap());
+    let script = Path::new(env!("CARGO_MANIFEST_DIR")).join("scripts/energy.py");
+    let out = Command::new("python3").arg(script).arg(desk.path("result.json")).output().unwrap();
+    assert!(out.status.success(), "{}{}", String::from_utf8_lossy(&out.stdout), String::from_utf8_lossy(&out.stderr));
 }
 
 #[test]
