@@ -9,6 +9,8 @@ import subprocess
 import sys
 from pathlib import Path
 
+from markdown import table
+
 ROOT = Path(__file__).resolve().parent.parent
 TEMPLATE = ROOT / "scripts" / "errors" / "document.md"
 OURS = "lod"
@@ -41,11 +43,6 @@ class Run:
 
     def points(self, **keys):
         return [p for p in self.data["points"] if all(p[k] == v for k, v in keys.items())]
-
-
-def table(head, rows):
-    lines = ["| " + " | ".join(head) + " |", "|" + "---|" * 2 + "---:|" * (len(head) - 2)]
-    return "\n".join(lines + ["| " + " | ".join(map(str, row)) + " |" for row in rows])
 
 
 def shown(value):
@@ -84,7 +81,7 @@ def at_level(run, error, level, compute):
         else:
             rows.append(cells)
     names = {"time": "time", "energy": "energy", "dram-lines": "DRAM"}
-    return table(["scene", "radii"] + [f"{names[c]}, {m}" for c in costs for m in ["BVH"] + run.rules + [f"{r} by its rule" for r in run.rules]], rows)
+    return table(["scene", "radii"] + [f"{names[c]}, {m}" for c in costs for m in ["BVH"] + run.rules + [f"{r} by its rule" for r in run.rules]], rows, 2)
 
 
 def summary(run, error, levels, compute, cost):
@@ -97,7 +94,7 @@ def summary(run, error, levels, compute, cost):
             if found:
                 middle = found[len(found) // 2]
                 rows.append([level, method, f"{sum(r > 1 for r in found)} of {len(found)}", f"{found[0]:.2f}", f"{middle:.2f}", f"{found[-1]:.2f}"])
-    return table(["error", "method", "ours is cheaper in", "least ratio", "median", "largest"], rows)
+    return table(["error", "method", "ours is cheaper in", "least ratio", "median", "largest"], rows, 2)
 
 
 def near(run, view, method, samples):
@@ -128,7 +125,7 @@ def by_samples(run, value):
     for view in range(len(run.views)):
         points = [compared(run, samples, view) for samples in counts]
         rows.append([run.scene(view), run.place(view)] + [value(of[k]) if of[k] else "-" for k in range(len(COMPARED)) for of in points])
-    return table(["scene", "radii"] + [f"{name}, {n}" for name in COMPARED for n in counts], rows)
+    return table(["scene", "radii"] + [f"{name}, {n}" for name in COMPARED for n in counts], rows, 2)
 
 
 def flip(point):
@@ -155,7 +152,7 @@ def few(run):
             times = sorted(f["costs"][0]["milliseconds"] / o["costs"][0]["milliseconds"] for o, f in pairs)
             if errors:
                 rows.append([samples, setting, f"{sum(e < 1 for e in errors)} of {len(errors)}"] + [f"{e:.2f}" for e in (errors[0], errors[len(errors) // 2], errors[-1])] + [shown(times[len(times) // 2])])
-    return table(["samples", "setting", "nearer than full resolution in", "least FLIP over its", "median", "largest", "its time over ours, median"], rows)
+    return table(["samples", "setting", "nearer than full resolution in", "least FLIP over its", "median", "largest", "its time over ours, median"], rows, 2)
 
 
 def converged(run):
@@ -176,7 +173,7 @@ def structures(run, units):
         gates = next((c["unit_gates"] for p in units.points(method=method) for c in p["costs"] if c.get("unit_gates")), None)
         rows.append([method, f"{bytes_each[0]:.0f} to {bytes_each[-1]:.0f}" if f"{bytes_each[0]:.0f}" != f"{bytes_each[-1]:.0f}" else f"{bytes_each[0]:.0f}", f"{gates / 1e6:.2f}" if gates else "-"])
     contexts = units.data["machines"][0]["description"]["units"]["contexts"]
-    return table(["method", "bytes for each finest triangle", f"unit with {contexts} contexts, million gate equivalents"], rows)
+    return table(["method", "bytes for each finest triangle", f"unit with {contexts} contexts, million gate equivalents"], rows, 2)
 
 
 def lodray(*words):
@@ -204,7 +201,7 @@ def why(run, folder):
                 each = lambda count: f"{count / shot['hits']:.1f}"
                 lines = sum(kind["read"] for kind in shot["lines"])
                 rows.append([scene, run.place(view), setting, f"{shot['mean_level']:.2f}", each(shot["nodes"]), each(shot["lod_tests"]), each(lines)] + [f"{1000 * t:.1f}" for t in times])
-    return table(["scene", "radii", "setting", "mean level", "nodes a hit", "LOD tests a hit", "lines a hit", "time, us", "twice the banks"], rows)
+    return table(["scene", "radii", "setting", "mean level", "nodes a hit", "LOD tests a hit", "lines a hit", "time, us", "twice the banks"], rows, 2)
 
 
 def scene_file(folder, name):
@@ -240,7 +237,7 @@ def far(run, folder):
         lines = run.equal(view=view, error="surface-p99", level=0.5, cost="dram-lines", compute="free")[0]["ours"]
         rows.append([run.scene(view), run.place(view), level, f"{ours:,}", *(f"{r['cycles']:,}" for r in runs), shown(ratio), shown(runs[1]["cycles"] / ours), f"{lines:,.0f}", *(f"{r['dram']['reads']:,}" for r in runs)])
     head = [*(f"cycles: {name}" for name in ("ours", "discrete", "a line a triangle")), "over ours", "a line a triangle", *(f"DRAM lines: {name}" for name in ("ours", "discrete", "a line a triangle"))]
-    return table(["scene", "radii", "level", *head], rows)
+    return table(["scene", "radii", "level", *head], rows, 2)
 
 
 def near_units(run, folder):
@@ -255,7 +252,7 @@ def near_units(run, folder):
             cells += [f"{runs[0]['cycles']:,}", f"{runs[1]['cycles']:,}", shown(runs[1]["cycles"] / runs[0]["cycles"])]
         rows.append([run.scene(view), run.place(view), level, *cells])
     what = ["as it is", "tests of a cycle", "compute free"]
-    return table(["scene", "radii", "level", *(f"{name}: {column}" for name in what for column in ("ours", "discrete", "ratio"))], rows)
+    return table(["scene", "radii", "level", *(f"{name}: {column}" for name in what for column in ("ours", "discrete", "ratio"))], rows, 2)
 
 
 def hierarchy(folder):
@@ -272,7 +269,7 @@ def hierarchy(folder):
             nodes = shot["nodes"] / shot["hits"]
             ours = ours or nodes
             rows.append([relief, setting, f"{nodes:.1f}", f"{shot['triangles'] / shot['hits']:.1f}", f"{sum(kind['read'] for kind in shot['lines']) / shot['hits']:.1f}", f"{ours / nodes:.2f}"])
-    return table(["relief below the base mesh", "setting", "nodes a hit", "triangles a hit", "lines a hit", "our nodes over its"], rows)
+    return table(["relief below the base mesh", "setting", "nodes a hit", "triangles a hit", "lines a hit", "our nodes over its"], rows, 2)
 
 
 def plain(name):

@@ -8,6 +8,8 @@ import sys
 import tomllib
 from pathlib import Path
 
+from markdown import put, table
+
 ROOT = Path(__file__).resolve().parent.parent
 FRAMES, TURN = 4, 3
 # Of the list of jobs what `simulate` takes as options.
@@ -75,11 +77,6 @@ class Frames:
 
 def shown(value):
     return f"{value:.2f}" if value < 9.95 else f"{value:,.0f}"
-
-
-def table(head, rows, left):
-    lines = ["| " + " | ".join(head) + " |", "|" + "---|" * left + "---:|" * (len(head) - left)]
-    return "\n".join(lines + ["| " + " | ".join(map(str, row)) + " |" for row in rows])
 
 
 def costs(point):
@@ -252,14 +249,9 @@ def front(frames):
     return table(["view, radii", "ours: us/uJ/KB", "best BVH of the mesh", "discrete LOD, own rule", "discrete, in hindsight", "our error, pixels"], rows, 1)
 
 
-def put(path, name, text):
-    """Replaces what stands between two marks of a document."""
-    begin, end = f"<!-- {name}: by scripts/fair -->\n", f"<!-- {name}: end -->"
-    whole = path.read_text()
-    if begin not in whole or end not in whole:
-        sys.exit(f"fair: {path} has no marks of {name}")
-    head, rest = whole.split(begin)
-    path.write_text(head + begin + text + "\n" + end + rest.split(end, 1)[1])
+def fill(path, name, text):
+    """A table of a document."""
+    put(path, f"<!-- {name}: by scripts/fair -->", f"<!-- {name}: end -->", text)
 
 
 def main():
@@ -270,10 +262,10 @@ def main():
     values["chunks"] = chunks(frames, folder)
     for path in [ROOT / "docs" / "error-time.md", ROOT / "scripts" / "errors" / "document.md"]:
         for name, text in values.items():
-            put(path, name, text)
-    put(ROOT / "README.md", "front", front(frames))
+            fill(path, name, text)
+    fill(ROOT / "README.md", "front", front(frames))
     for path in [ROOT / "docs" / "claims.md", ROOT / "scripts" / "paper" / "claims.md"]:
-        put(path, "warm", warm(frames))
+        fill(path, "warm", warm(frames))
 
 
 if __name__ == "__main__":

@@ -11,6 +11,8 @@ import sys
 import tomllib
 from pathlib import Path
 
+from markdown import table
+
 ROOT = Path(__file__).resolve().parent.parent
 TEMPLATE = ROOT / "scripts" / "paper" / "claims.md"
 MEASURED = ROOT / "scripts" / "paper" / "measured.json"
@@ -90,11 +92,6 @@ def share_of(row, kind, level):
     return sum(k[level] for k in kinds if k["kind"] == kind) / sum(k[level] for k in kinds)
 
 
-def table(head, rows):
-    lines = ["| " + " | ".join(head) + " |", "|" + "---|" + "---:|" * (len(head) - 1)]
-    return "\n".join(lines + ["| " + " | ".join(map(str, row)) + " |" for row in rows])
-
-
 def figure11(data, values):
     rows, largest, boxes, nodes, following = [], {}, {}, {}, []
     for scene in data.each("scene"):
@@ -116,7 +113,7 @@ def figure11(data, values):
                     following.append((gain[0], active[1] / active[0]))
             rows.append(cells)
     values["peaks"] = "; ".join(peaks(data, scene) for scene in data.each("scene"))
-    values["figure11"] = table(["scene", "eye at", "energy, DDR3", "time", "DRAM lines", "energy, GDDR5", "time"], rows)
+    values["figure11"] = table(["scene", "eye at", "energy, DDR3", "time", "DRAM lines", "energy, GDDR5", "time"], rows, 1)
     for (machine, what), all_of_them in largest.items():
         name = "ddr3" if machine.endswith("ddr3") else "gddr5"
         value, scene, eye = max(all_of_them)
@@ -156,7 +153,7 @@ def best(data, indexed, treelets, paper, values):
             error = f"{lod['image']['geometry_pixels_mean']:.2f}"
             rows.append([scene, f"{eye:.2f}", hits(lod), times(time[0][1]), time[1], times(energy[0][0]), times(dram[0][2]), row_hits(lod), row_hits(time[2]), beside, error])
     head = ["scene", "eye at", "rays that hit", "time", "best baseline", "energy", "DRAM lines", "row hits, ours", "row hits, baseline", "time, paper-like baseline", "surface off, pixels"]
-    values["best"] = table(head, rows)
+    values["best"] = table(head, rows, 1)
     values["best_six"] = span(six)
     values["best_treelets"] = span(by_treelets)
     for what, all_of_them in gain_of.items():
@@ -203,7 +200,7 @@ def search(data, values):
     shown |= {e for e in entries if e[3] == chosen[3] and e[4] == chosen[4]}
     name = lambda e: " **" if e == chosen else ""
     rows = [[e[3], e[4], e[5], f"{e[2]:,}", f"{e[0] / authors[0]:.3f}{name(e)}".replace(" **", " (chosen)"), f"{e[1] / authors[1]:.3f}"] for e in sorted(shown)]
-    values["search"] = table(["mapping, hashed sets", "L1 MSHRs of a bank", "of the L2", "registers", "cycles of the BVH", "of the LOD"], rows)
+    values["search"] = table(["mapping, hashed sets", "L1 MSHRs of a bank", "of the L2", "registers", "cycles of the BVH", "of the LOD"], rows, 1)
     values["search_count"] = str(len(entries))
     hashed = min(set(entries) - set(sliced))
     values["search_hashed"] = f"Hashed ({hashed[3]}) the BVH takes {hashed[0] / chosen[0]:.3f} of the chosen setting's cycles, ours {hashed[1] / chosen[1]:.3f}"
@@ -238,7 +235,7 @@ def causes(data, values):
     for scene in near:
         rows.append(cells(f"{scene}: the loss, to the L1s' banks", "16 banks for 4, in L1s of 32 KB both", cycles(scene, set=larger.format(4)), cycles(scene, set=larger.format(16))))
     head = ["put down to", "turned off by", "cycles, ours", "BVH", "gain", "without it, ours", "BVH", "gain", "of it goes", ""]
-    values["causes"] = table(head, rows)
+    values["causes"] = table(head, rows, 1)
     values["cause_part"] = percent(PART)
     values["far_hits"] = hits(data.find(scene="cloth, far", machine="haydel2023", set="", method="lod"))
     values["middle_hits"] = hits(data.find(scene="cloth, far, its middle", machine="haydel2023", set="", method="lod"))
@@ -247,7 +244,7 @@ def causes(data, values):
         fast = "cores.clock_mhz=20"
         lod, bvh = (data.find(scene=scene, machine="haydel2023", set=fast, method=m)["result"] for m in ["lod", "bvh"])
         rows.append([scene, times(bvh["l1"]["requests"] / lod["l1"]["requests"]), times(bvh["cycles"] / lod["cycles"])])
-    values["near_requests"] = table(["", "L1 requests, BVH over ours", "gain in time, a memory a hundred times as fast"], rows)
+    values["near_requests"] = table(["", "L1 requests, BVH over ours", "gain in time, a memory a hundred times as fast"], rows, 1)
 
 
 def boxes(data, values):
@@ -271,7 +268,7 @@ def forms(own, former, values):
             now = {name: own.find(scene=scene, eye=eye, method=method)["result"] for method, name in [("bvh", "4-wide"), ("bvh6", "6-wide")]}
             best = min(now, key=lambda name: now[name]["cycles"])
             rows.append([scene, f"{eye:.2f}", f"{before['cycles']:,}", *(f"{of['cycles']:,}" for of in now.values()), percent(1 - now[best]["cycles"] / before["cycles"]), percent(1 - now[best]["dram"]["bytes"] / before["dram"]["bytes"])])
-    values["forms"] = table(["scene", "eye at", "cycles before", "4-wide now", "6-wide now", "fewer cycles, the better", "fewer bytes of DRAM"], rows)
+    values["forms"] = table(["scene", "eye at", "cycles before", "4-wide now", "6-wide now", "fewer cycles, the better", "fewer bytes of DRAM"], rows, 1)
 
 
 def units(free, charged, values):
@@ -296,7 +293,7 @@ def units(free, charged, values):
     head = ["units per group", "contexts", "rays per core"]
     for radii in radii_of_all:
         head += [f"time at {radii:g} radii", "kept", "energy", "kept", "our largest stall"]
-    values["units"] = table(head, [cells for *_, cells in sorted(rows, key=lambda row: row[:2])])
+    values["units"] = table(head, [cells for *_, cells in sorted(rows, key=lambda row: row[:2])], 1)
     rows = []
     for name in free.each("set"):
         cells = [name.split("=")[1]]
@@ -304,7 +301,7 @@ def units(free, charged, values):
             cells += [times(g) for g in free_gains(radii, name)]
         rows.append(cells)
     head = ["rays per core"] + [f"{what} at {radii:g} radii" for radii in radii_of_all for what in ["energy", "time", "DRAM lines"]]
-    values["free"] = table(head, rows)
+    values["free"] = table(head, rows, 1)
 
 
 # Blocks of a unit, and which parameter of the RTL and which number of its package each key of a machine is.
@@ -355,7 +352,7 @@ def balance(charged, free, values):
     head = ["machine", "units of a group", "edges", "of lod_test", "boxes", "bits of hit_divide", "of ray_setup", "GE, one of each block"]
     for radii in charged.each("radii"):
         head += [f"our cycles, {radii:g} radii", "gain kept", "GE for a million rays/s"]
-    values["balance"] = table(head, rows)
+    values["balance"] = table(head, rows, 1)
     edges, lod_edges, boxes, divide, setup = min(prices, key=lambda way: geometric_mean(prices[way]))
     values["balance_best"] = f"edges {edges} and {lod_edges}, boxes {boxes}, bits {divide} and {setup}"
 
@@ -379,7 +376,7 @@ def over_machines(data, values, name):
             rows.append(cells)
     rows.append(["**range**"] + ["**" + " / ".join(span(ranges[scene, eye, what]) for what in ["time", "energy", "dram"]) + "**" for scene, eye in places])
     values[f"{name}_machines"] = str(len(rows) - 1)
-    values[name] = table(["machine"] + [f"{scene}, {eye:.2f}" for scene, eye in places], rows)
+    values[name] = table(["machine"] + [f"{scene}, {eye:.2f}" for scene, eye in places], rows, 1)
     of_rows = lambda place: [span([100 * pair[k] for pair in row_hits_of[place]], lambda share: f"{share:.0f}") + " %" for k in (0, 1)]
     values[f"{name}_ranges"] = [[scene, f"{eye:.2f}", hit[scene, eye]] + [span(ranges[scene, eye, what]) for what in ["time", "energy", "dram"]] + of_rows((scene, eye)) for scene, eye in places]
 
@@ -391,13 +388,13 @@ def base_part(data, values):
         r = data.find(scene=scene, radii=radii, set=name)["result"]
         share = 100 * r["traffic"]["l0_share_of_l1"]
         rows.append([f"{scene}, {radii:g} radii", pinned, f"{share:.0f} %", f"{r['accesses_per_ray']:.2f}", f"{r['cycles']:,}", f"{r['energy']['total']:,.0f}", f"{r['dram']['reads']:,}"])
-    values["l0"] = table(["scene", "nodes pinned", "L0 part of L1 requests", "requests per ray", "cycles", "energy, uJ", "DRAM lines"], rows)
+    values["l0"] = table(["scene", "nodes pinned", "L0 part of L1 requests", "requests per ray", "cycles", "energy, uJ", "DRAM lines"], rows, 1)
 
 
 def headline(values):
     """Ranges over machines beside each other: reasonable ones, and those that hold the baselines back."""
     rows = [ours + starved[3:6] for ours, starved in zip(values.pop("sensitivity_ranges"), values.pop("starved_ranges"))]
-    values["machine_ranges"] = table(["scene", "eye at", "rays that hit", "time", "energy", "DRAM lines", "row hits, ours", "row hits, baseline", "time, held back", "energy", "DRAM lines"], rows)
+    values["machine_ranges"] = table(["scene", "eye at", "rays that hit", "time", "energy", "DRAM lines", "row hits, ours", "row hits, baseline", "time, held back", "energy", "DRAM lines"], rows, 1)
 
 
 # What is measured, and by which sweeps.

@@ -11,6 +11,7 @@ import subprocess
 import types
 from pathlib import Path
 
+from markdown import put
 from synth import Run
 from synthesis import plan as synthesis
 from synthesis.blocks import Block
@@ -149,7 +150,7 @@ def main():
     options.folder.mkdir(parents=True, exist_ok=True)
     names = [name for name in [*GENERATED, *MESHES] if not options.only or name in options.only]
     if options.errors:
-        put(errors([Scene(name, options) for name in names], options.folder / "errors"), "errors")
+        fill(errors([Scene(name, options) for name in names], options.folder / "errors"), "errors")
         return
     gates, rows = Gates(options), []
     for name in names:
@@ -167,7 +168,7 @@ def main():
         rows.append({"scene": "all of them", "unit": gates.unit(together), "wide": wide, "kept": speed(together)["kept"]})
     print(table(rows))
     if not options.only:
-        put(table(rows), f"within {options.within:g}" if options.within else "lossless")
+        fill(table(rows), f"within {options.within:g}" if options.within else "lossless")
 
 
 def errors(scenes, out):
@@ -252,13 +253,9 @@ def cells(unit, wide, full):
     ])
 
 
-def put(text, name):
-    """A table between its marks."""
-    begin, end = (f"<!-- scripts/leaving-out: {name}: {mark} -->" for mark in ["begin", "end"])
-    document = DOC.read_text(encoding="utf-8")
-    if begin not in document:
-        raise SystemExit(f"scripts/leaving-out: {DOC} has no marks for {name}")
-    DOC.write_text(re.sub(f"{re.escape(begin)}.*{re.escape(end)}", f"{begin}\n{text}\n{end}", document, flags=re.DOTALL), encoding="utf-8")
+def fill(text, name):
+    """A table of the document."""
+    put(DOC, f"<!-- scripts/leaving-out: {name}: begin -->", f"<!-- scripts/leaving-out: {name}: end -->", text)
 
 
 if __name__ == "__main__":

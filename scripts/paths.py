@@ -9,6 +9,7 @@ import subprocess
 import sys
 from pathlib import Path
 
+from markdown import table
 from plot import diagram
 
 ROOT = Path(__file__).resolve().parent.parent
@@ -89,11 +90,6 @@ def run(*arguments):
     subprocess.run([str(LODRAY), *map(str, arguments)], check=True, stdout=subprocess.DEVNULL)
 
 
-def table(head, rows):
-    lines = ["| " + " | ".join(head) + " |", "|" + "---|" * len(head)]
-    return "\n".join(lines + ["| " + " | ".join(map(str, row)) + " |" for row in rows])
-
-
 def gains(lod, bvh):
     """Primary energy and time of the baseline over ours; and what each bounce adds."""
     first = [bvh[0]["energy"] / lod[0]["energy"], bvh[0]["milliseconds"] / lod[0]["milliseconds"]]
@@ -116,7 +112,7 @@ def figure17(runs):
             ratio = f"{b['added_milliseconds'] / a['added_milliseconds']:.1f}"
             rows.append([form, k, *rays, *energy, *time, *added, ratio, f"{b['added_energy'] / a['added_energy']:.1f}"])
     head = ["forms", "bounces", "rays, ours", "BVH", "mJ, ours", "BVH", "ms, ours", "BVH", "added ms, ours", "BVH", "BVH adds, time", "energy"]
-    return table(head, rows)
+    return table(head, rows, len(head))
 
 
 def opened(runs):
@@ -125,7 +121,8 @@ def opened(runs):
     for form in FORMS:
         for name, of in choices:
             rows.append([form, name, *factors(gains(*(runs.bounces(of, form, method) for method in ["lod", "bvh"])))])
-    return table(["forms", "what is changed", "primary energy", "primary time", "1st bounce", "2nd", "3rd"], rows)
+    head = ["forms", "what is changed", "primary energy", "primary time", "1st bounce", "2nd", "3rd"]
+    return table(head, rows, len(head))
 
 
 def described(scene):
@@ -151,7 +148,7 @@ def rule(runs):
             shutil.copy(runs.folder / f"rule/{scene}-{starts}/paths.png", IMAGES / f"paths-{scene}-{picture}.png")
         shutil.copy(runs.folder / f"rule/{scene}-exact/full.png", IMAGES / f"paths-{scene}-full.png")
     head = ["scene", "starts", "error of light", "picture, dB", "pixels with shadow rays", "in shadow, should not be", "in light, should not be"]
-    return table(head, rows)
+    return table(head, rows, len(head))
 
 
 def ledger(runs):
@@ -183,7 +180,8 @@ def spread(runs):
             row += [f"{error['light']:.4f}", f"{error['image']['psnr_db']:.1f}", f"{cost['milliseconds']:.4f}", f"{cost['energy'] / 1000:.3f}"]
         rows.append(row)
     one = ["error of light", "dB", "ms", "mJ"]
-    return table(["spread"] + [f"room: {v}" for v in one] + [f"terrain: {v}" for v in one], rows)
+    head = ["spread"] + [f"room: {v}" for v in one] + [f"terrain: {v}" for v in one]
+    return table(head, rows, len(head))
 
 
 def error_time(runs):
@@ -202,7 +200,8 @@ def error_time(runs):
             lines.setdefault(method, []).append((cost["milliseconds"] * 16, error["light"]))
             rows.append([scene, method, knob, f"{error['light']:.5f}", f"{error['image']['psnr_db']:.2f}", *figures])
         (IMAGES / f"paths-error-time-{scene}.svg").write_text(diagram(f"{scene}.toml, haydel2023, compute free", *AXES, lines))
-    return table(["scene", "method", "knob", "error of light", "picture, dB", "ms", "mJ", "MB of DRAM"], rows)
+    head = ["scene", "method", "knob", "error of light", "picture, dB", "ms", "mJ", "MB of DRAM"]
+    return table(head, rows, len(head))
 
 
 def main():
