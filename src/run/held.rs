@@ -1,6 +1,6 @@
 //! A frame traced once and kept, for replays one after the other.
 
-use super::simulate::replay;
+use super::simulate::{refuse, replay};
 use super::{Frame, Job, Traced};
 use crate::sim::replay::{Chunk, ReplayError, Run};
 use crate::step::Nodes;
@@ -9,25 +9,28 @@ use crate::step::Nodes;
 pub struct HeldFrame {
     nodes: Nodes,
     chunks: Vec<Chunk>,
+    has_work: bool,
 }
 
 impl HeldFrame {
     /// Traces all rays of `frame`; `look` sees them, in order.
     pub fn of(frame: &dyn Frame, look: &mut dyn FnMut(&Traced)) -> Self {
-        let mut chunks = Vec::new();
+        let (mut chunks, mut has_work) = (Vec::new(), false);
         frame.produce(&mut |traced| {
             look(&traced);
+            has_work |= traced.is_before;
             chunks.push(traced.chunk());
             true
         });
-        Self { nodes: frame.nodes(), chunks }
+        Self { nodes: frame.nodes(), chunks, has_work }
     }
 
     /// Runs them on a machine.
     ///
     /// # Errors
-    /// The machine is impossible or too large, or nothing happens any more while rays are under way.
+    /// The machine is impossible or too large, its units were to do work before a frame, or nothing happens any more while rays are under way.
     pub fn run(&self, job: &Job) -> Result<Run, ReplayError> {
+        refuse(job, self.has_work)?;
         replay(job, self.nodes, self.chunks.iter().cloned(), 1)
     }
 }

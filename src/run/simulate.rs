@@ -55,6 +55,11 @@ pub fn check(machine: &Machine, compute: Compute) -> Result<(), ReplayError> {
     replay::check(machine, compute == Compute::Units)
 }
 
+/// Refuses traversal units work before a frame, which they cannot do.
+pub(super) fn refuse(job: &Job, has_work: bool) -> Result<(), ReplayError> {
+    if has_work && job.compute == Compute::Units { Err(ReplayError::WorkByUnits) } else { Ok(()) }
+}
+
 /// Runs steps for a job on so many threads; their rays begin with `nodes`.
 pub(super) fn replay(job: &Job, nodes: Nodes, source: impl ChunkSource, threads: usize) -> Result<Run, ReplayError> {
     let how = Running { window: job.window, threads };
@@ -86,9 +91,7 @@ pub fn simulate(frame: &dyn Frame, jobs: &[Job], look: &mut dyn FnMut(&Traced)) 
                 (
                     sender,
                     scope.spawn(move || {
-                        if has_work && job.compute == Compute::Units {
-                            return Err(ReplayError::WorkByUnits);
-                        }
+                        refuse(job, has_work)?;
                         replay(job, nodes, receiver.into_iter(), threads)
                     }),
                 )
