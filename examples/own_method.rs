@@ -1,4 +1,4 @@
-//! A method of your own, with work before each frame: levels by object as `chunked` chooses them for the frame's eyes, but their BVH does not fall from the sky. It is unpacked
+//! A method of your own, with work before a frame: levels by object as `chunked` chooses them for the frame's eyes, but their BVH does not fall from the sky. It is unpacked
 //! on the machine: packed triangles are read, nodes and leaves are written, and rays wait for that. `cargo run --release --example own_method`.
 
 use lodray::block::Work;

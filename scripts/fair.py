@@ -164,7 +164,7 @@ def small(frames):
     size = "x".join(map(str, frames.data["views"][0]["size"]))
     return (
         f"The size of the frame decides as much. At {size}, cold, in the median: the best BVH takes {median('BVH')} of our time and energy, discrete LOD by its own rule {median('discrete, its rule')}, "
-        f"in hindsight {median('discrete, hindsight')}; in the views with depth the BVH takes {' and '.join(deep)} of our time."
+        f"in hindsight {median('discrete, hindsight')}; in the views with depth the BVH takes {', '.join(deep)} of our time."
     )
 
 

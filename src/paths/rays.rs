@@ -2,6 +2,7 @@
 
 use super::integrate::{Path, PathTracer, Paths};
 use super::world::Listener;
+use crate::method::Before;
 use crate::rays::RaySource;
 use crate::run::{Frame, RayHit, Worker};
 use crate::step::{Batch, Nodes};
@@ -32,6 +33,11 @@ impl Frame for PathFrame<'_> {
 
     fn worker(&self) -> Box<dyn Worker + '_> {
         Box::new(PathWorker { tracer: self.paths.tracer(), paths: self.paths })
+    }
+
+    fn before(&self, frame: usize) -> Option<Box<dyn Before + '_>> {
+        let own = &self.paths.world.instances()[0];
+        own.method.before(own.sight(), frame)
     }
 
     fn numbers_by_batch(&self) -> bool {

@@ -1,11 +1,12 @@
 //! The steps of a coarse grid of rays, for a report in which one clicks on a picture and sees what its ray did.
 //!
 //! A ray's steps are words with a space between; each is an act, and behind `@` the lines that it asks for (section, number of the first line, how many).
-//! `*` before a word: a node's visit begins. `+` before the lines: asked for together with those of the step before.
+//! `*` before a word: a node's visit begins. `+` before the lines: asked for together with those of the step before; `=`: written.
 //!
 //! | word | act |
 //! |---|---|
 //! | `f` | lines alone |
+//! | `k0:5` | five operations of the method's own, of its number 0 |
 //! | `c2`, `p2`, `l2`, `w2` | four children tested, 2 of them met: boxes of levels of detail, stored boxes of 16 bits, the same in steps from their node's corner, stored boxes of 32 bits |
 //! | `g2` | four children of a tree's node tested by their prisms, 2 of them met |
 //! | `b2` | six children tested, 2 of them met |
@@ -193,12 +194,16 @@ mod tests {
             Step::of(Act::Children { shape: NodeShape::Plain, met: 0 }),
             Step::of(Act::Children { shape: NodeShape::Local, met: 1 }),
             Step::of(Act::Children { shape: NodeShape::Wide, met: 4 }),
+            Step::of(Act::Children { shape: NodeShape::Prisms, met: 3 }),
+            Step::of(Act::Children { shape: NodeShape::Six, met: 6 }),
+            Step::on(fetch.storing(), Act::Fetch),
+            Step::of(Act::Work { work: 0, count: 5 }),
             Step::end(true, true),
             Step::end(true, false),
             Step::end(false, true),
         ];
         steps.into_iter().for_each(|step| words.step(step));
-        assert_eq!(words.text, "*c2@1.40.2 f@+1.40.2 r2.17:0.128.256 t s3.4 s x4:5 o d f@1.40.2 p0 l1 w4 m h n");
+        assert_eq!(words.text, "*c2@1.40.2 f@+1.40.2 r2.17:0.128.256 t s3.4 s x4:5 o d f@1.40.2 p0 l1 w4 g3 b6 f@=1.40.2 k0:5 m h n");
     }
 
     #[test]

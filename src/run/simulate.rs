@@ -83,7 +83,9 @@ pub fn simulate(frame: &dyn Frame, jobs: &[Job], look: &mut dyn FnMut(&Traced)) 
     thread::scope(|scope| {
         let nodes = frame.nodes();
         let threads = threads_of_replay(jobs.len());
-        let has_work = jobs.iter().any(|job| job.compute == Compute::Units) && frame.before(0).is_some();
+        let frames = 0..=frame.frame_starts().len();
+        let mut works = frames.filter_map(|of| frame.before(of)).map(|work| work.batches() > 0);
+        let has_work = jobs.iter().any(|job| job.compute == Compute::Units) && works.any(|is| is);
         let (senders, runs): (Vec<SyncSender<Chunk>>, Vec<_>) = jobs
             .iter()
             .map(|job| {

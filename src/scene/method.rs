@@ -1,11 +1,13 @@
 //! Methods by name, and rays cast with them.
 
+use crate::block::{MAX_WORKS, Operation};
 use crate::bvh::BvhError;
 use crate::format::Scene;
 use crate::method::bvh::NoStore;
 use crate::method::{KnobError, Knobs, METHODS, Method, Registered, find, lod};
 use crate::rays::{ModelSpace, RaySource, Sight};
 use crate::run::{HitRow, cast};
+use std::collections::HashSet;
 use thiserror::Error;
 
 /// A way to find hits that there is not.
@@ -62,7 +64,13 @@ impl Scene {
     ///
     /// # Errors
     /// As above, but for the name.
+    ///
+    /// # Panics
+    /// It has more operations of its own than [`MAX_WORKS`], or two of one name, or one with the name of a block.
     pub fn method_of(&self, registered: &'static Registered, knobs: &[(&str, &str)]) -> Result<SceneMethod, MethodError> {
+        let works: HashSet<_> = registered.works.iter().map(|work| work.name).collect();
+        let is_new = Operation::ALL.into_iter().all(|block| !works.contains(block.name()));
+        assert!(works.len() == registered.works.len() && works.len() <= MAX_WORKS && is_new, "{}: its operations", registered.name);
         let mut turned = Knobs::default();
         for &(name, value) in knobs {
             let knob = registered.knobs.iter().find(|knob| knob.name == name);

@@ -25,7 +25,7 @@ pub struct StepCounts {
     pub lod_tests: u64,
     /// Triangle tests.
     pub triangles: u64,
-    /// Lines read, by the place of their section.
+    /// Lines read or written, by the place of their section.
     pub lines: [u64; MAX_SECTIONS],
 }
 

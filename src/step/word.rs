@@ -15,6 +15,7 @@
 //! | 9:0 | place |
 
 use super::{Act, Fetch, MAX_FETCH_LINES, MAX_PLACES, MAX_RUN, NodeShape, SectionId, Step};
+use crate::block::MAX_WORKS;
 
 const UPPER: u32 = 32;
 const ACT: u32 = 28;
@@ -80,7 +81,8 @@ impl StepWord {
             Act::Pop { dropped } => (POP, 0, dropped, false, 0),
             Act::End { found, mapped } => (END, 0, found, mapped, 0),
         };
-        assert!(number <= MAX_RUN, "{step:?}: more than a step holds");
+        let most = if act == WORK { MAX_WORKS as u32 - 1 } else { MAX_RUN };
+        assert!(number <= most, "{step:?}: more than a step holds");
         let mut word = act << ACT | u64::from(number) << NUMBER | u64::from(flag) << FLAG | u64::from(mapped) << MAPPED;
         word |= u64::from(step.visits) << VISITS | u64::from(hits) << UPPER;
         if let Some(fetch) = step.fetch {
@@ -213,6 +215,7 @@ mod tests {
             Step::on(Fetch { place: MAX_PLACES, ..fetch }, Act::Fetch),
             Step::on(fetch, Act::Triangles { count: 1, hits: 1 }),
             Step::on(fetch, Act::Work { work: 0, count: 1 }),
+            Step::of(Act::Work { work: 16, count: 1 }),
             Step::on(fetch, Act::End { found: true, mapped: true }),
         ];
         for step in bad {

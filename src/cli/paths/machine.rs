@@ -44,7 +44,8 @@ pub fn run(
         let bar = progress(frame.batches() as u64, "simulating");
         let mut rays = 0;
         let mut runs = simulate(&frame, &[job], &mut |traced| {
-            rays += traced.batches.iter().map(|batch| batch.rays() as u64).sum::<u64>();
+            let batches = traced.batches.iter().filter(|batch| !batch.is_work());
+            rays += batches.map(|batch| batch.rays() as u64).sum::<u64>();
             bar.inc(traced.batches.len() as u64);
         });
         bar.finish_and_clear();

@@ -310,9 +310,12 @@ impl Level {
 
     /// `register`, whose line was written, is free in cycle `now`. True if the bank was blocked and is to be served now.
     pub fn free(&mut self, register: u32, now: u64) -> bool {
+        let is_store = self.mshrs.stores(register);
         let taken = now - self.mshrs.free(register);
         self.counts.register_cycles += taken;
-        self.latencies.add(taken);
+        if !is_store {
+            self.latencies.add(taken);
+        }
         let bank = self.bank_of(register);
         let bank = &mut self.banks[bank as usize];
         let Some(since) = bank.blocked.take() else { return false };

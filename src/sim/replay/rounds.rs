@@ -309,7 +309,7 @@ impl<F: FrontEnd, S: ChunkSource> Rounds<'_, '_, F, S> {
         let mut ends: Vec<u64> =
             partitions.iter().flat_map(|partition| partition.side.last_ends()).copied().filter(|&end| end >= start).collect();
         ends.sort_unstable();
-        let end = ends.last().copied().unwrap_or(start);
+        let end = self.shared.drain(ends.last().copied().unwrap_or(start));
         let half = ends.len().checked_sub(self.half).map_or(start, |at| ends[at]);
         self.shared.end(end);
         let SharedCounts { mut counts, channels, dram } = self.shared.counts();

@@ -95,6 +95,9 @@ pub struct SharedSide {
     refused_count: usize,
     /// The same of lines to be written, which nobody waits for.
     unwritten: Vec<VecDeque<(u32, SectionId)>>,
+    /// Lines of both that are not in memory yet, and the latest cycle in which one was.
+    writing: u64,
+    written: u64,
     /// Room for the waiters of a line.
     waiters: Vec<Waiter>,
     /// The cycle in which memory is to be looked at again.
@@ -135,6 +138,8 @@ impl SharedSide {
             refused: vec![VecDeque::new(); dram.channels as usize],
             refused_count: 0,
             unwritten: vec![VecDeque::new(); dram.channels as usize],
+            writing: 0,
+            written: 0,
             waiters: Vec::new(),
             dram_next: None,
             fills: Vec::new(),
@@ -170,9 +175,21 @@ impl SharedSide {
         SharedCounts { counts: Counts { l2: self.l2.counts_at(cycle), ..self.counts }, channels, dram: self.dram.energy() }
     }
 
-    /// Lines that the L2 has and memory has not, those on their way there among them.
+    /// Lines that the L2 has and memory has not.
     pub fn dirty_lines(&self) -> u64 {
-        self.l2.dirty_lines() + self.unwritten.iter().map(|lines| lines.len() as u64).sum::<u64>()
+        self.l2.dirty_lines()
+    }
+
+    /// All rays have ended, the last in cycle `end`: goes on until what the L2 gave up is in memory. The cycle in which it is; `end` if nothing was on its way any more.
+    pub fn drain(&mut self, end: u64) -> u64 {
+        while self.writing > 0 {
+            self.cycle();
+            match self.next() {
+                Some(next) => self.go(next),
+                None => unreachable!("writes that wait are events of the memory"),
+            }
+        }
+        end.max(self.written)
     }
 
     /// Latencies of misses of the L2.
@@ -351,6 +368,7 @@ impl SharedSide {
     /// Lines that the L2 had to give up go to memory: in the cycle in which it gave them up, though their data would take as long as a look-up.
     fn write_back(&mut self) {
         while let Some((line, section)) = self.l2.written_back.pop() {
+            self.writing += 1;
             self.unwritten[self.dram.channel(line.into()) as usize].push_back((line, section));
             self.write_dram();
         }
@@ -383,11 +401,15 @@ impl SharedSide {
         let now = self.now();
         let (cores, wheel, paths, clock_ps) = (&self.cores, &mut self.wheel, &mut self.paths, self.dram.clock_ps());
         let (pushed, ready, latency) = (&self.pushed, &mut self.ready, self.l2.latency);
+        let (writing, written) = (&mut self.writing, &mut self.written);
         self.dram.advance_by_way(cores.start_ps(now), &mut |register, way| {
-            if register == WRITE {
-                return; // nobody waits for it
-            }
             let fill = cores.cycle_at(way.end() * clock_ps).max(now);
+            if register == WRITE {
+                // Nobody waits for it.
+                *writing -= 1;
+                *written = fill.max(*written);
+                return;
+            }
             let path = &mut paths[register as usize];
             let mut from = pushed[register as usize];
             for (cause, end) in OF_DRAM.into_iter().zip(way.ends) {
@@ -402,7 +424,7 @@ impl SharedSide {
         if self.refused_count > 0 {
             self.push_refused();
         }
-        if self.l2.counts.write_backs > 0 {
+        if self.writing > 0 {
             self.write_dram();
         }
         self.dram_next = self.dram.next_event().map(|ps| self.cores.cycle_at(ps));

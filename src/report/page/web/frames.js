@@ -16,10 +16,11 @@ function framesSection(section) {
       const [name, method] = [scene ?? setup.scene.name, setup.method.name];
       const title = [method, settingOf(setup.method)].join(", ");
       const machine = target([setup.machine.label, ...setup.machine.set].join(" "), setup.compute);
-      return result.frames.map((frame, k) => ({ x: k + 1, y: frame[cost], frame, run, name, method, machine, setting: settingOf(setup.method), unit: result.energy.unit, title, lines: [["scene", name], ["machine", machine], ["frame", num(k + 1)], ...FRAME_COSTS.map(([key, what]) => [key === "energy" ? titled(what, result.energy.unit) : what, num(frame[key])])] }));
+      return result.frames.map((frame, k) => ({ x: k + 1, y: frame[cost], frame, run, name, method, machine, setting: settingOf(setup.method), unit: result.energy.unit, title, lines: [["scene", name], ["machine", machine], ["frame", num(k + 1)], ...FRAME_COSTS.map(([key, what]) => [key === "energy" ? titled(what, result.energy.unit) : what, num(frame[key])]), ...(frame.before ? [["cycles before its rays", num(frame.before.cycles)]] : [])] }));
     });
     const methods = unique(rows.map((r) => r.method));
-    const shown = titled(FRAME_COSTS.find(([key]) => key === cost)[1], cost === "energy" ? rows[0].unit : "");
+    const units = unique(rows.map((r) => r.unit)).join(" or ");
+    const shown = titled(FRAME_COSTS.find(([key]) => key === cost)[1], cost === "energy" ? units : "");
     const charts = unique(rows.map((r) => r.name)).map((name) => {
       const here = rows.filter((r) => r.name === name);
       return diagram({
@@ -36,7 +37,7 @@ function framesSection(section) {
     });
     const columns = [
       { name: "scene", value: (r) => r.name }, { name: "method", value: (r) => r.method }, { name: "setting", value: (r) => r.setting }, { name: "machine", value: (r) => r.machine }, { name: "frame", value: (r) => r.x },
-      ...FRAME_COSTS.map(([key, what]) => ({ name: key === "energy" ? titled(what, rows[0].unit) : what, value: (r) => r.frame[key] })),
+      ...FRAME_COSTS.map(([key, what]) => ({ name: key === "energy" ? titled(what, units) : what, value: (r) => r.frame[key] })),
     ];
     body.replaceChildren(h("div", { class: "controls" }, choice("Of each frame", FRAME_COSTS.map(([key, what]) => [key, what]), cost, (value) => ((cost = value), draw()))), keys(methods), h("div", { class: "grid" }, charts), dataTable("Frame by frame", columns, rows));
   };

@@ -152,14 +152,14 @@ function stepOf(word, sections) {
   const where = number == null ? "" : ` of level ${level} node ${num(Number(number))}`;
   const edges = (states ?? "").split(".").map((s) => (Number(s) === 256 ? "1" : Number(s) === 0 ? "0" : `${s}/256`));
   const words = {
-    f: () => "lines read", y: () => "which ray decides in this tree", k: () => `${count(Number(states), "operation")} of the method’s own`, t: () => "inserted vertices morphed", o: () => "next node taken from the stack", d: () => "node from the stack dropped: it lies behind the closest hit",
+    f: () => (fetch?.includes("=") ? "lines written" : "lines read"), y: () => "which ray decides in this tree", k: () => `${count(Number(states), "operation")} of the method’s own`, t: () => "inserted vertices morphed", o: () => "next node taken from the stack", d: () => "node from the stack dropped: it lies behind the closest hit",
     r: () => `LOD test${where}: refine${states ? `, edge states ${edges.join(", ")}` : ""}`, s: () => `LOD test${where}: its triangle serves`,
     x: () => `${count(Number(node), "triangle")} tested, ${num([...Number(states).toString(2)].filter((b) => b === "1").length)} met`,
   };
   const [children, bounds] = page.shapes[letter] ?? [];
   const text = bounds ? `${children} children tested, ${rest} met (${bounds})` : ENDS[letter] ?? words[letter]?.() ?? word;
-  const match = fetch && /^(\+?)(=?)(\d+)\.(\d+)\.(\d+)$/.exec(fetch);
-  const lines = match && { together: match[1] === "+", stores: match[2] === "=", section: sections[match[3]] ?? match[3], first: Number(match[4]), count: Number(match[5]) };
+  const match = fetch && /^(\+?)=?(\d+)\.(\d+)\.(\d+)$/.exec(fetch);
+  const lines = match && { together: match[1] === "+", section: sections[match[2]] ?? match[2], first: Number(match[3]), count: Number(match[4]) };
   return { visits, letter, text, lines, tests: letter === "x" ? Number(node) : 0 };
 }
 
@@ -178,7 +178,7 @@ function rayCard(grid, ray) {
     "article", { class: "ray", "data-method": grid.method, "data-pixel": ray.pixel.join(",") },
     h("h4", { style: "margin:0;display:flex;gap:.45rem;align-items:center" }, swatch(grid.method), `${grid.method}, ${grid.setting}: pixel ${ray.pixel.join(", ")}`),
     h("dl", {}, facts.map(([a, b]) => h("div", {}, h("dt", {}, a), h("dd", {}, b)))),
-    h("ol", { class: "steps", tabindex: "0", role: "list", "aria-label": `Steps of ${grid.method}` }, steps.map((s) => h("li", { class: s.visits ? "visit" : null }, s.text, s.lines ? h("span", { class: "lines" }, `; ${s.lines.together ? "with it " : ""}${s.lines.stores ? "written: " : ""}${range(s.lines)} of ${s.lines.section}`) : null))),
+    h("ol", { class: "steps", tabindex: "0", role: "list", "aria-label": `Steps of ${grid.method}` }, steps.map((s) => h("li", { class: s.visits ? "visit" : null }, s.text, s.lines ? h("span", { class: "lines" }, `; ${s.lines.together ? "with it " : ""}${range(s.lines)} of ${s.lines.section}`) : null))),
     command ? h("div", { class: "command" }, h("code", {}, command), copy) : h("p", { class: "note" }, "lodray trace follows rays of lod only."),
   );
 }

@@ -347,8 +347,10 @@ fn conserved(run: &Run) {
     // Stores go through the L1 to the L2, and from there to memory when their place is needed, or stay.
     let writes: u64 = run.channels.iter().map(|channel| channel.writes).sum();
     assert_eq!((l1.stores, l2.stores, l1.write_backs), (l2.stores, l2.updates, 0));
-    let unwritten = l2.write_backs - traffic(|t| t.written);
-    assert!(writes <= traffic(|t| t.written) && l2.write_backs + run.dirty_lines - unwritten <= l2.stores);
+    assert_eq!([writes, traffic(|t| t.written)], [l2.write_backs; 2]);
+    assert!(l2.write_backs + run.dirty_lines <= l2.stores);
+    let count = |histogram: &Histogram| histogram.steps().map(|step| step.1).sum::<u64>();
+    assert_eq!([count(&run.latencies.l1_misses), count(&run.latencies.l2_misses)], [l1.misses, l2.misses]);
     assert_eq!((l2.misses, l2.misses, l2.requests), (reads, l2.fills, traffic(|t| t.l2)));
     assert_eq!(reads, traffic(|t| t.dram));
     let last = run.intervals.last().unwrap();
