@@ -236,7 +236,7 @@ def far(run, folder):
         runs = [lodray("simulate", *discrete, *words) for words in ([], ["--leaf-layout", "line", "--leaf-size", "1"])]
         lines = run.equal(view=view, error="surface-p99", level=0.5, cost="dram-lines", compute="free")[0]["ours"]
         rows.append([run.scene(view), run.place(view), level, f"{ours:,}", *(f"{r['cycles']:,}" for r in runs), shown(ratio), shown(runs[1]["cycles"] / ours), f"{lines:,.0f}", *(f"{r['dram']['reads']:,}" for r in runs)])
-    head = [*(f"cycles: {name}" for name in ("ours", "discrete", "a line a triangle")), "over ours", "a line a triangle", *(f"DRAM lines: {name}" for name in ("ours", "discrete", "a line a triangle"))]
+    head = [*(f"cycles: {name}" for name in ("ours", "discrete", "a line a triangle")), "over ours: discrete", "over ours: a line a triangle", *(f"DRAM lines: {name}" for name in ("ours", "discrete", "a line a triangle"))]
     return table(["scene", "radii", "level", *head], rows, 2)
 
 

@@ -81,6 +81,8 @@ mod tests {
             let same =
                 NodeShape::ALL.into_iter().filter(|other| other.facts().letter == facts.letter || other.facts().words == facts.words);
             assert_eq!(same.count(), 1, "{shape:?}");
+            // Letters of other acts (`report/inspect.rs`).
+            assert!(!"fkyrstxodhmn".contains(facts.letter), "{shape:?}");
             assert!(facts.path.iter().all(|&(_, times)| times == 1 || times == facts.children), "{shape:?}");
         }
     }

@@ -65,7 +65,7 @@ impl StepWord {
     /// The word.
     ///
     /// # Panics
-    /// More lines than [`MAX_FETCH_LINES`] or none, more tests than [`MAX_RUN`], a place beyond [`MAX_PLACES`], or tests of triangles, work or the end together with lines.
+    /// More lines than [`MAX_FETCH_LINES`] or none, more tests than [`MAX_RUN`], work beyond [`MAX_WORKS`], a place beyond [`MAX_PLACES`], or tests of triangles, work or the end together with lines.
     #[inline(always)]
     pub fn pack(step: Step) -> Self {
         let (act, number, flag, mapped, hits) = match step.act {

@@ -349,7 +349,7 @@ fn a_waveform_of_the_machine_is_written() {
     let desk = with_scene();
     desk.run(&format!("{SHOT} --vcd a.vcd --window 100:200"));
     let text = desk.text("a.vcd");
-    for name in ["l1_hits", "dram_reads", "group_0", "l1_misses_under_way", "l2_queued"] {
+    for name in ["l1_hits", "l1_stores", "l2_write_backs", "dram_reads", "group_0", "l1_misses_under_way", "l2_queued"] {
         assert!(text.contains(name), "{name}");
     }
     // What is beyond the end is left out, and that is said.

@@ -15,7 +15,7 @@ use serde::{Deserialize, Serialize};
 pub struct FrameResult {
     /// The cycle in which it began.
     pub start: u64,
-    /// Cycles from there to its last ray's end.
+    /// Cycles from there to its last ray's end, and until lines that had to go are in memory.
     pub cycles: u64,
     /// The part of all this that was work before its rays, where there was any.
     #[serde(default, skip_serializing_if = "Option::is_none")]

@@ -149,6 +149,7 @@ fn between(begin: &Interval, end: &Interval, model: &EnergyModel, parts: &Parts<
     };
     let channels = ChannelCounts {
         queued_clocks: added(|i| i.channels.queued_clocks),
+        writes: added(|i| i.channels.writes),
         bus_clocks: added(|i| i.channels.bus_clocks),
         activates: added(|i| i.channels.activates),
         ..ChannelCounts::default()

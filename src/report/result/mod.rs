@@ -115,6 +115,9 @@ impl SimResult {
     ///
     /// # Errors
     /// The machine's energy tables or its memory cannot be read.
+    ///
+    /// # Panics
+    /// Steps name operations that the method does not have.
     pub fn new(setup: Setup, method: &Registered, map: &MemoryMap, run: &Run) -> Result<Self, ResultError> {
         let machine = &setup.machine.description;
         let model = EnergyModel::new(machine)?;
@@ -144,6 +147,8 @@ impl SimResult {
             works: of.works,
         };
         let l2 = CacheResult::new(&counts.l2, run.cycles).explained(run.l2_causes, machine.l2.lines() / u64::from(machine.l2.ways));
+        let unknown: u64 = run.operations.works().iter().skip(method.works.len()).sum();
+        assert_eq!(unknown, 0, "{}: operations that it does not have", method.name);
         let mut prices = model.prices(&energy_counts);
         let blocks = run.operations.iter().filter(|&(_, n)| n > 0).map(|(o, n)| (hardware.block(o).name().to_owned(), n));
         let works = energy_counts.works().map(|(work, n)| (work.name.to_owned(), n));

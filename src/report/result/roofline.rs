@@ -82,6 +82,9 @@ impl Parts<'_> {
         let per = |count: u64, rate: f64| count as f64 / rate;
         let clock = self.cycles_per_clock();
         let (t, organisation) = (&dram.device.timing, &dram.device.organisation);
+        // Writes have a queue of their own, which counts where there are any.
+        let writes = if channels.writes > 0 { dram.controller.write_queue } else { 0 };
+        let places = u32::from(dram.controller.read_queue) + u32::from(writes);
         let activate = (t.n_rrd_s as f64).max(t.n_faw as f64 / 4.0);
         let [groups, channel_count] = [cores.groups, dram.channels];
         let memory = [
@@ -95,7 +98,7 @@ impl Parts<'_> {
             per(counts.l2.requests, f64::from(l2.banks)),
             per(counts.l2.queued_cycles, product(&[l2.banks, l2.queue])),
             per(counts.l2.register_cycles, product(&[l2.banks, l2.mshrs])),
-            clock * per(channels.queued_clocks, product(&[channel_count, dram.controller.read_queue.into()])),
+            clock * per(channels.queued_clocks, product(&[channel_count, places])),
             clock * per(channels.bus_clocks, f64::from(channel_count)),
             clock * activate * per(channels.activates, product(&[channel_count, organisation.ranks])),
             clock * t.n_rc as f64 * per(channels.activates, product(&[channel_count, dram.device.banks()])),

@@ -6,7 +6,7 @@ use serde::{Deserialize, Serialize};
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct MissCauses {
-    /// Of lines read for the first time.
+    /// Of lines read for the first time, which no store brought.
     pub cold: u64,
     /// That a fully associative cache of as many lines, the least recently used of which goes, would have too.
     pub capacity: u64,
@@ -23,7 +23,7 @@ pub struct Shadow {
     slots: Vec<Slot>,
     /// Slots that lines may have.
     room: usize,
-    /// Lines read, by set.
+    /// Lines read or written, by set.
     sets: Vec<u32>,
     causes: MissCauses,
 }

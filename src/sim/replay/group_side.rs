@@ -328,6 +328,11 @@ impl GroupSide {
         self.l1.occupancy(group)
     }
 
+    /// The L1s hold no lines any more.
+    pub fn empty(&mut self) {
+        self.l1.empty();
+    }
+
     /// What is not at rest, for error messages.
     pub fn describe(&self) -> String {
         self.l1.describe("L1")

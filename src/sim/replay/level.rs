@@ -240,7 +240,7 @@ impl Level {
                 }
             }
         };
-        if let Some(shadow) = self.shadow.as_mut().filter(|_| !request.stores) {
+        if let Some(shadow) = &mut self.shadow {
             shadow.look_up(request.line, self.tags.set_of_all(request.line), matches!(served, Served::Miss(_)));
         }
         let state = &mut self.banks[bank as usize];
@@ -292,6 +292,12 @@ impl Level {
             self.counts.write_backs += 1;
             self.written_back.push((line, section));
         }
+    }
+
+    /// Holds no lines any more; what was written has gone on to the next level.
+    pub fn empty(&mut self) {
+        debug_assert!(self.dirty.is_none(), "what is written would be lost");
+        self.tags.clear();
     }
 
     /// Lines that it has and memory has not.

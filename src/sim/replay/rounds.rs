@@ -265,6 +265,10 @@ impl<F: FrontEnd, S: ChunkSource> Rounds<'_, '_, F, S> {
             if !between.is_busy {
                 let frame = self.frame(start);
                 let end = frame.end.end;
+                if frame.is_before {
+                    // L1s do not hear of what others write: they begin anew, as between programs of a GPU.
+                    (0..self.team.partitions.len()).for_each(|partition| self.team.lock(partition).side.empty());
+                }
                 frames.push(frame);
                 // Not before `done`: a round ends no later than the way back of what happened last.
                 let Some(next) = self.dispatcher.go_to_next_frame(end) else { return Ok(frames) };

@@ -64,6 +64,11 @@ impl Tags {
         prefetch(&self.lines, self.from(bank, line));
     }
 
+    /// Holds nothing any more.
+    pub fn clear(&mut self) {
+        self.lines.fill(EMPTY);
+    }
+
     /// Whether `bank`, counted through all copies, holds `line`, which becomes its set's most recently used.
     #[inline]
     pub fn look_up(&mut self, bank: u32, line: u32) -> bool {

@@ -37,7 +37,7 @@ type Events = [u64; 10];
 
 /// Their names.
 const EVENTS: [&str; 10] =
-    ["l1_hits", "l1_misses", "l1_merges", "stores", "l2_hits", "l2_misses", "l2_merges", "write_backs", "dram_reads", "rays_done"];
+    ["l1_hits", "l1_misses", "l1_merges", "l1_stores", "l2_hits", "l2_misses", "l2_merges", "l2_write_backs", "dram_reads", "rays_done"];
 
 fn events(c: &Counts) -> Events {
     let reads = c.traffic.iter().map(|kind| kind.dram).sum();

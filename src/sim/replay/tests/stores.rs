@@ -130,3 +130,38 @@ fn rays_wait_for_all_work_before_their_frame() {
     let alone = run_free(&machine, nodes(), [Chunk::from([mixed(&[vec![(3, false)]])])].into_iter(), Running::default()).unwrap();
     assert_eq!((alone.frames.len(), alone.frames[0].start), (1, 0));
 }
+
+/// Work that writes these lines, one after the other, and no ray.
+fn writing(lines: std::ops::Range<u32>) -> Chunk {
+    let mut recorder = crate::step::Recorder::default();
+    for line in lines {
+        crate::step::StepSink::step(&mut recorder, Step::on(Fetch::new(LEAVES, line, 1).storing(), Act::Fetch));
+    }
+    crate::step::StepSink::step(&mut recorder, Step::end(false, false));
+    Chunk::from([recorder.work()]).before_frame()
+}
+
+#[test]
+fn work_ends_when_what_had_to_go_is_in_memory() {
+    let machine = machine(&[("l2.banks", 1), ("l2.ways", 4), ("l2.bytes", 64 * 32)]);
+    let frame = Chunk::from([mixed(&[vec![(0, false)]])]).beginning_frame();
+    let run = run_free(&machine, nodes(), [writing(0..400), frame].into_iter(), Running::default()).unwrap();
+    conserved(&run);
+    let work = &run.frames[0];
+    assert_eq!((work.end.counts.l2.write_backs, work.end.channels.writes), (400 - 64, 400 - 64));
+    // Its stores alone, one after the other, are through before.
+    let (there, back) = way(&machine);
+    assert!(work.end.end > 400 * (there + back), "{}", work.end.end);
+    // The first line has gone to memory, and is read from there.
+    assert_eq!((run.counts.l2.misses, run.dirty_lines), (1, 63));
+}
+
+#[test]
+fn a_ray_finds_no_line_in_its_l1_that_work_has_written_since() {
+    let machine = machine(&[]);
+    let frame = || Chunk::from([mixed(&[vec![(5, false)]])]).beginning_frame();
+    let chunks = [Chunk::from([mixed(&[vec![(5, false)]])]), writing(5..6).beginning_frame(), frame()];
+    let run = run_free(&machine, nodes(), chunks.into_iter(), Running::default()).unwrap();
+    conserved(&run);
+    assert_eq!((run.counts.l1.misses, run.counts.l1.hits, run.counts.l2.hits), (2, 0, 1));
+}
