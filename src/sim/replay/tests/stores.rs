@@ -121,8 +121,8 @@ fn rays_wait_for_all_work_before_their_frame() {
     // Work is no ray, and nothing is set up for it; its own operations count.
     assert_eq!((run.counts.rays, run.operations.get(Operation::RaySetup), run.operations.works()[2]), (2, 2, 15));
     assert_eq!(run.latencies.rays.steps().map(|step| step.1).sum::<u64>(), 2);
-    // The first frame finds in the L2 what was written before it, and only then begins.
-    assert_eq!((run.counts.l2.hits, run.counts.l2.misses), (1, 1));
+    // The first frame finds in the L2 what was written before it, and only then begins; the second finds both lines there, as its L1 is empty again.
+    assert_eq!((run.counts.l2.hits, run.counts.l2.misses, run.counts.l1.hits), (3, 1, 0));
     for two in run.frames.windows(2) {
         assert!(two[0].end.end < two[1].start);
     }
@@ -143,7 +143,7 @@ fn writing(lines: std::ops::Range<u32>) -> Chunk {
 
 #[test]
 fn work_ends_when_what_had_to_go_is_in_memory() {
-    let machine = machine(&[("l2.banks", 1), ("l2.ways", 4), ("l2.bytes", 64 * 32)]);
+    let machine = machine(&[("l1.banks", 1), ("l1.ways", 1), ("l1.bytes", 64), ("l2.banks", 1), ("l2.ways", 4), ("l2.bytes", 64 * 32)]);
     let frame = Chunk::from([mixed(&[vec![(0, false)]])]).beginning_frame();
     let run = run_free(&machine, nodes(), [writing(0..400), frame].into_iter(), Running::default()).unwrap();
     conserved(&run);
