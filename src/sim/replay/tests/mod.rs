@@ -365,25 +365,27 @@ fn wandering(rays: usize, steps: usize) -> Vec<Vec<u32>> {
     (0..rays).map(|_| (0..steps).map(|_| if draw(3) == 0 { draw(40_000) } else { draw(600) }).collect()).collect()
 }
 
+/// One place in everything that has places.
+const LITTLE: &[(&str, u32)] = &[
+    ("l1.mshrs", 1),
+    ("l1.targets", 1),
+    ("l1.queue", 1),
+    ("l2.mshrs", 1),
+    ("l2.targets", 1),
+    ("l2.queue", 1),
+    ("l2.banks", 1),
+    ("dram.queue", 1),
+    ("dram.channels", 1),
+];
+
 #[test]
 fn nothing_is_lost_and_nothing_stands_still_however_little_room_there_is() {
     let lines = wandering(200, 40);
-    let little: &[(&str, u32)] = &[
-        ("l1.mshrs", 1),
-        ("l1.targets", 1),
-        ("l1.queue", 1),
-        ("l2.mshrs", 1),
-        ("l2.targets", 1),
-        ("l2.queue", 1),
-        ("l2.banks", 1),
-        ("dram.queue", 1),
-        ("dram.channels", 1),
-    ];
     for rays_in_flight in [1, 4] {
         let shape = [("cores.groups", 4), ("cores.per_group", 4), ("cores.rays_in_flight", rays_in_flight)];
         let roomy = run(&machine(&shape), &lines);
         conserved(&roomy);
-        let tight = run(&machine(&[&shape, little].concat()), &lines);
+        let tight = run(&machine(&[&shape, LITTLE].concat()), &lines);
         conserved(&tight);
         assert!(tight.cycles > 2 * roomy.cycles, "{} and {}", tight.cycles, roomy.cycles);
         for counts in [tight.counts.l1, tight.counts.l2] {

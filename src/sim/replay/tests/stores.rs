@@ -75,17 +75,7 @@ fn stores_among_reads_are_the_same_with_any_threads_and_never_stand_still() {
     let rays: Vec<Vec<(u32, bool)>> =
         (0..200).map(|_| (0..40).map(|_| (random.below(3000) as u32, random.below(2) == 0)).collect()).collect();
     let shape = [("cores.groups", 4), ("cores.per_group", 4), ("cores.rays_in_flight", 4), ("l2.bytes", 64 * 1024)];
-    let little = [
-        ("l1.mshrs", 1),
-        ("l1.targets", 1),
-        ("l1.queue", 1),
-        ("l2.mshrs", 1),
-        ("l2.targets", 1),
-        ("l2.queue", 1),
-        ("dram.queue", 1),
-        ("dram.channels", 1),
-    ];
-    for sets in [shape.to_vec(), [&shape[..], &little].concat()] {
+    for sets in [shape.to_vec(), [&shape[..], LITTLE].concat()] {
         let one = run_mixed(&machine(&sets), &rays, 1);
         conserved(&one);
         assert!(one.counts.l2.write_backs > 100 && one.counts.rays == 200, "{:?}", one.counts.l2);
