@@ -201,6 +201,14 @@ package lod_pkg;
   } displacement_t;
   localparam int unsigned DISPLACEMENT_W = 3 * 13;
 
+  // Its leading bits, in a last split of short vertices.
+  typedef struct packed {
+    logic signed [6:0] x;
+    logic signed [6:0] y;
+    logic signed [6:0] z;
+  } short_displacement_t;
+  localparam int unsigned SHORT_DISPLACEMENT_W = 3 * 7;
+
   // Corner of a box in steps of 2^16 units.
   typedef struct packed {
     logic signed [15:0] x;
@@ -792,6 +800,14 @@ package lod_pkg;
   } displacements_t;
   localparam int unsigned DISPLACEMENTS_W = 11 + DISPLACEMENT_W + DISPLACEMENT_W + DISPLACEMENT_W;
 
+  // Inserted vertices of a last split, short: the leading bits of displacements, of which the others are zero. 63 bits.
+  typedef struct packed {
+    short_displacement_t v0;  // Of q0.
+    short_displacement_t v1;  // Of q1.
+    short_displacement_t v2;  // Of q2.
+  } short_displacements_t;
+  localparam int unsigned SHORT_DISPLACEMENTS_W = SHORT_DISPLACEMENT_W + SHORT_DISPLACEMENT_W + SHORT_DISPLACEMENT_W;
+
   // What traversal needs of a base triangle: 32 bytes.
   typedef struct packed {
     logic [3:0] depth;            // Levels of the tree that are stored, 0 to N: below them is nothing that a ray could want.
@@ -840,17 +856,18 @@ package lod_pkg;
     logic [3:0] levels;                       // Number of splits N.
     logic [4:0] zeros;                        // Zero bits at the bottom of all coordinates: of morphed triangles too, and of the rays' origins.
     logic compact;                            // Inserted vertices are stored as displacements from the midpoints of their edges.
+    logic short_splits;                       // Those of last splits have 7 bits a coordinate. Of no meaning where vertices are no displacements.
     bound_scale_t scale;                      // Scale of the displacement bounds.
     logic [LINE_ADDRESS_W-1:0] nodes;         // First line of the quad-BVH's nodes.
     logic [LINE_ADDRESS_W-1:0] records;       // First line of the L0 records.
     logic [LINE_ADDRESS_W-1:0] splits;        // First line of the splits.
     logic [LINE_ADDRESS_W-1:0] vertices;      // First line of the vertex data.
     logic [7:0][27:0] split_starts;           // First split of each level from 1 on.
-    logic [8:0][27:0] vertex_starts;          // Exact vertices: first line of each level from 1 on. Compact ones: the two lines that the tree at place 0 would have for the first four nodes there, modulo 2^28.
+    logic [8:0][27:0] vertex_starts;          // Exact vertices: first line of each level from 1 on. Compact ones: the two lines, or short ones the line, that the tree at place 0 would have for the first four nodes there, modulo 2^28.
     logic [31:0] visits;                      // The most entries that a ray can visit: quad-BVH nodes, trees, and nodes of trees. A ray that would visit more is in a loop.
     logic [ANSWER_LIMIT_W-1:0] answer_limit;  // Cycles, less one, after which a line that is waited for counts as late if it has not come in as many more.
   } scene_config_t;
-  localparam int unsigned SCENE_CONFIG_W = 4 + 5 + 1 + BOUND_SCALE_W + LINE_ADDRESS_W + LINE_ADDRESS_W + LINE_ADDRESS_W + LINE_ADDRESS_W + 8 * 28 + 9 * 28 + 32 + ANSWER_LIMIT_W;
+  localparam int unsigned SCENE_CONFIG_W = 4 + 5 + 1 + 1 + BOUND_SCALE_W + LINE_ADDRESS_W + LINE_ADDRESS_W + LINE_ADDRESS_W + LINE_ADDRESS_W + 8 * 28 + 9 * 28 + 32 + ANSWER_LIMIT_W;
 
   // A ray to trace.
   typedef struct packed {

@@ -54,12 +54,13 @@ module ray_context (
   input  logic                             lod_grant_i,
   input  logic                             lod_valid_i,
   input  lod_pkg::lod_test_out_t           lod_i,
-  // tessellate: its operands but for the vertices, what these are in, and whether compact ones are in its upper half. Of the inserted vertices that come, whether one lies beyond the
-  // largest coordinate, and their lowest bits together.
+  // tessellate: its operands but for the vertices, what these are in, and of compact ones the place: of short ones the node among its siblings, else whether they are in the upper half.
+  // Of the inserted vertices that come, whether one lies beyond the largest coordinate, and their lowest bits together.
   output logic                             morph_request_o,
   output logic [lod_pkg::TESSELLATE_IN_W-3*lod_pkg::POINT_W-1:0] morph_o,
   output logic [3*lod_pkg::STORED_POINT_W-1:0] morph_line_o,
-  output logic                             morph_half_o,
+  output logic                             morph_short_o,
+  output logic [1:0]                       morph_place_o,
   input  logic                             morph_grant_i,
   input  logic                             morph_valid_i,
   input  lod_pkg::tessellate_out_t         morph_i,
@@ -291,11 +292,11 @@ module ray_context (
   // Vertices before the split.
   assign fetch_place_o   = want_q[1] && (fetch_q == lod_pkg::SPLIT || !want_q[0]);
 
-  // Four siblings' compact vertices have two lines, which lie as their parents' splits do. Only nodes below a root have such.
-  logic        in_twos;
+  // Four siblings' compact vertices have two lines, short ones one, which lie as their parents' splits do. Only nodes below a root have such.
+  logic        of_siblings;
   logic [27:0] whole_node;
-  assign in_twos    = fetch_place_o && compact;
-  assign whole_node = 28'(node);
+  assign of_siblings = fetch_place_o && compact;
+  assign whole_node  = 28'(node);
 
   always_comb begin
     fetch_o       = '0;
@@ -310,10 +311,10 @@ module ray_context (
       default: begin
         fetch_o.base  = fetch_place_o ? scene_i.vertices : scene_i.splits;
         fetch_o.place = 28'(place);
-        fetch_o.level = in_twos ? level - 4'd1 : level;
-        fetch_o.index = in_twos ? whole_node >> 2 : whole_node;
-        fetch_o.scale = in_twos;
-        fetch_o.low   = in_twos && whole_node[1];
+        fetch_o.level = of_siblings ? level - 4'd1 : level;
+        fetch_o.index = of_siblings ? whole_node >> 2 : whole_node;
+        fetch_o.scale = of_siblings && !scene_i.short_splits;
+        fetch_o.low   = of_siblings && !scene_i.short_splits && whole_node[1];
         for (int unsigned k = 0; k < 9; k++) begin
           if (fetch_place_o && level == 4'(k + 1)) fetch_o.start = scene_i.vertex_starts[k];
         end
@@ -425,12 +426,13 @@ module ray_context (
   assign grid         = scene_i.levels - level - 4'd1 + scene_i.zeros[3:0];
   assign morph_o      = {compact, grid, scene_i.zeros >= 5'd4 ? 3'd0 : 3'd4 - scene_i.zeros[2:0], scene_i.scale, e0, e1, e2, lod.s0, lod.s1, lod.s2,
                          whole_f0, whole_f1, whole_f2, whole_p0, whole_p1, whole_p2};
-  // Displacements are the first in a split; of last splits two siblings share a line.
+  // Displacements are the first in a split; of last splits two siblings share a line, or if they are short four.
   localparam int unsigned DISPLACEMENTS_W = 3 * lod_pkg::DISPLACEMENT_W;
   logic [DISPLACEMENTS_W-1:0] low_line;
   assign low_line     = vertices_in_split ? line0_q[255 -: DISPLACEMENTS_W] : line1_q[DISPLACEMENTS_W-1:0];
   assign morph_line_o = {line1_q[LINE1_W-1:DISPLACEMENTS_W], low_line};
-  assign morph_half_o = !vertices_in_split && node[0];
+  assign morph_short_o = compact && scene_i.short_splits && !vertices_in_split;
+  assign morph_place_o = vertices_in_split ? 2'd0 : {scene_i.short_splits && node[1], node[0]};
 
   assign tri_request_o = state_q == lod_pkg::TRI && left_q != '0;
   assign tri_number_o  = next_q;

@@ -215,13 +215,14 @@ module traversal_unit #(
   // The vertices are taken out of their line once the context is chosen.
   localparam int unsigned MORPH_OWN_W = lod_pkg::TESSELLATE_IN_W - 3 * lod_pkg::POINT_W;
   localparam int unsigned MORPH_LINE_W = 3 * lod_pkg::STORED_POINT_W;
-  localparam int unsigned MORPH_W = MORPH_OWN_W + MORPH_LINE_W + 1;
+  localparam int unsigned MORPH_W = MORPH_OWN_W + MORPH_LINE_W + 3;
 
   logic [N-1:0] morph_request, morph_grant;
   logic [N-1:0][MORPH_W-1:0] morph_data;
   logic [MORPH_OWN_W-1:0] morph_own;
   logic [MORPH_LINE_W-1:0] morph_line;
-  logic morph_half;
+  logic morph_short;
+  logic [1:0] morph_place;
   logic morph_in_valid, morph_in_ready, morph_made_valid, morph_valid;
   lod_pkg::tessellate_in_t morph_in;
   lod_pkg::tessellate_out_t morph_made, morph_out;
@@ -230,14 +231,21 @@ module traversal_unit #(
   shared_input #(.N(N), .W(MORPH_W), .INTERVAL(1)) u_morph_input (
     .clk_i, .rst_ni,
     .request_i(morph_request), .data_i(morph_data), .grant_o(morph_grant),
-    .valid_o(morph_in_valid), .ready_i(morph_in_ready), .data_o({morph_own, morph_line, morph_half}), .index_o(morph_in_tag)
+    .valid_o(morph_in_valid), .ready_i(morph_in_ready), .data_o({morph_own, morph_line, morph_short, morph_place}), .index_o(morph_in_tag)
   );
 
   lod_pkg::vertex_data_t   inserted;
-  lod_pkg::displacements_t displacements;
+  lod_pkg::displacements_t halved, displacements;
+  lod_pkg::short_displacements_t sibling;
+  logic [1:0][lod_pkg::SHORT_DISPLACEMENTS_W-1:0] low_siblings, high_siblings;
   logic [3*lod_pkg::POINT_W-1:0] morph_vertices;
   assign inserted      = 256'(morph_line);
-  assign displacements = 128'(morph_line >> (morph_half ? 128 : 0));
+  assign halved        = 128'(morph_line >> (morph_place[0] ? 128 : 0));
+  assign {high_siblings, low_siblings} = morph_line;
+  assign sibling       = morph_place[1] ? high_siblings[morph_place[0]] : low_siblings[morph_place[0]];
+  assign displacements = morph_short ? {11'd0, sibling.v0.x, 6'd0, sibling.v0.y, 6'd0, sibling.v0.z, 6'd0,
+                                        sibling.v1.x, 6'd0, sibling.v1.y, 6'd0, sibling.v1.z, 6'd0,
+                                        sibling.v2.x, 6'd0, sibling.v2.y, 6'd0, sibling.v2.z, 6'd0} : halved;
   always_comb begin
     // The first bit of the operands: displacements.
     if (morph_own[MORPH_OWN_W-1]) begin
@@ -573,8 +581,8 @@ module traversal_unit #(
       .decide_valid_i(decide_valid && decide_tag == ME), .decide_i(decide_out),
       .lod_request_o(lod_request[k]), .lod_o(lod_data[k]), .lod_grant_i(lod_grant[k]),
       .lod_valid_i(lod_valid && lod_tag == ME), .lod_i(lod_out),
-      .morph_request_o(morph_request[k]), .morph_o(morph_data[k][MORPH_W-1:MORPH_LINE_W+1]), .morph_line_o(morph_data[k][MORPH_LINE_W:1]),
-      .morph_half_o(morph_data[k][0]),
+      .morph_request_o(morph_request[k]), .morph_o(morph_data[k][MORPH_W-1:MORPH_LINE_W+3]), .morph_line_o(morph_data[k][MORPH_LINE_W+2:3]),
+      .morph_short_o(morph_data[k][2]), .morph_place_o(morph_data[k][1:0]),
       .morph_grant_i(morph_grant[k]),
       .morph_valid_i(morph_valid && morph_tag == ME), .morph_i(morph_out), .morph_beyond_i(morph_beyond), .morph_bits_i(morph_bits),
       .map_request_o(map_request[k]), .map_o(map_data[k]), .map_grant_i(map_grant[k]),

@@ -90,7 +90,8 @@ mod tests {
                         let start = starts.vertex_level(level as usize);
                         let wanted = match form {
                             VertexForm::Exact => record(start, level, node),
-                            // Two lines for four siblings.
+                            // One line for four siblings, or two.
+                            VertexForm::Short => record(start, level - 1, node / 4),
                             VertexForm::Compact => {
                                 In { scale: U::new(1), low: U::new(node as u64 / 2 % 2), ..record(start, level - 1, node / 4) }
                             }

@@ -86,6 +86,9 @@ impl Named for VertexForm {
             Self::Compact => {
                 "13 bits of the displacement from the edge's midpoint: half a line, and each vertex moved by up to 1/2048 of its edge's bound"
             }
+            Self::Short => {
+                "As compact, but 7 bits in last splits: a quarter of a line, and each vertex there moved by up to 1/32 of its edge's bound"
+            }
         }
     }
 }

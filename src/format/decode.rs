@@ -1,6 +1,6 @@
 //! Memory images back to a hierarchy, and single triangles of full resolution.
 
-use super::{Displacements, L0Record, Scene, SplitRecord, VertexData, has_split};
+use super::{Displacements, L0Record, Line, Scene, ShortLine, SplitRecord, VertexData, has_split};
 use crate::mesh::compact::inserted_zero_bits;
 use crate::mesh::lattice::{self, LatticePoint};
 use crate::mesh::{EdgeCodes, Hierarchy, edge_index, edges_of_tree};
@@ -19,7 +19,7 @@ impl Scene {
     pub fn corners(&self, tree: usize) -> [[i32; 3]; 3] {
         let points = match self.meta.vertices {
             VertexForm::Exact => VertexData::from_words(&self.records()[2 * tree + 1]).points(),
-            VertexForm::Compact => self.record(tree).corners(),
+            VertexForm::Compact | VertexForm::Short => self.record(tree).corners(),
         };
         points.map(units)
     }
@@ -76,7 +76,10 @@ impl Scene {
         let lines = self.tree_lines(tree);
         match has_split(lines.depth, level) {
             true => SplitRecord::line_displacements(&self.splits()[self.starts.split(lines, level, node)]),
-            false => Displacements::line_half(&self.vertices()[self.starts.vertex_line(VertexForm::Compact, lines, level, node)], node),
+            false => {
+                let form = self.meta.vertices;
+                last_displacements(form, &self.vertices()[self.starts.vertex_line(form, lines, level, node)], node)
+            }
         }
     }
 
@@ -165,6 +168,12 @@ impl Scene {
             }
         }
     }
+}
+
+/// Steps of the inserted vertices of node `node` of a last level, of this compact form, from the line that has them.
+#[inline(always)]
+pub fn last_displacements(form: VertexForm, line: &Line, node: usize) -> [Point; 3] {
+    if form == VertexForm::Short { ShortLine::line_steps(line, node) } else { Displacements::line_half(line, node) }
 }
 
 /// The corners of child `k` of a triangle `p` with inserted vertices `q`.

@@ -3,7 +3,10 @@
 use super::layout::{self, LevelStarts};
 use super::scene::Image;
 use super::sections::{COUNT, FileSection, HEADER, checksum, place, write_header};
-use super::{Box16, Displacements, L0Record, Line, Meta, Scene, SceneError, SplitRecord, TreeLines, VertexData, colour, has_split, normal};
+use super::{
+    Box16, Displacements, L0Record, Line, Meta, Scene, SceneError, ShortDisplacements, ShortLine, SplitRecord, TreeLines, VertexData,
+    colour, has_split, normal,
+};
 use crate::mesh::compact::{inserted_zero_bits, steps_of};
 use crate::mesh::lattice::{self, LatticePoint};
 use crate::mesh::{BoundKind, Hierarchy, Surface, SurfaceError, quantise};
@@ -321,10 +324,11 @@ impl TreeWriter<'_> {
         let mut split = SplitRecord::default();
         match self.h.vertices {
             VertexForm::Exact => VertexData::from_points(q).to_words(&mut self.lines[level as usize][node]),
-            VertexForm::Compact => {
+            VertexForm::Compact | VertexForm::Short => {
                 let displacements = self.displacements(level, p);
                 match has_split(self.depth, level) {
                     true => split = split.with_displacements(displacements),
+                    false if self.h.vertices == VertexForm::Short => self.short(&displacements, node),
                     false => displacements.to_words(&mut self.lines[0][node / 2][2 * (node & 1)..][..2]),
                 }
             }
@@ -341,6 +345,17 @@ impl TreeWriter<'_> {
             split.to_words(&mut self.splits[level as usize][node]);
         }
         span
+    }
+
+    /// Writes the displacements of a last split to the line that it shares with its siblings.
+    fn short(&mut self, displacements: &Displacements, node: usize) {
+        let short = ShortDisplacements::of(displacements);
+        let Displacements { v0, v1, v2, .. } = displacements;
+        self.fits &= [v0, v1, v2].into_iter().zip(short.steps()).all(|(own, kept)| own.get() == kept.get());
+        let line = &mut self.lines[0][node / 4];
+        let mut all = ShortLine::from_words(&line[..]);
+        all.siblings[node & 3] = short;
+        all.to_words(line);
     }
 
     /// The split with these children of `level`, the boxes of whose full-resolution triangles are `spans`.

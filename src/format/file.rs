@@ -128,7 +128,7 @@ impl Scene {
                     return Err(format!("section VERTICES: line {line} has a coordinate beyond +-{COORD_LIMIT}"));
                 }
             }
-            VertexForm::Compact => {
+            VertexForm::Compact | VertexForm::Short => {
                 let bad = (0..self.trees()).into_par_iter().find_map_first(|tree| self.beyond_limit(tree).map(|at| (tree, at)));
                 if let Some((tree, (level, node))) = bad {
                     return Err(format!(

@@ -6,7 +6,7 @@
 //! A root has a split if its tree is deeper than 0, another node (n, i) if it is deeper than n + 1: below a **last split**, one of level depth - 1, are triangles alone.
 //!
 //! Inserted vertices, if they are exact, lie the same way, with all nodes that split. If they are compact they are in the splits, and those of last splits but roots' in
-//! lines of two halves: level by level, the trees whose last level it is by their places, node (n, i) in half i mod 2.
+//! lines apart: level by level, the trees whose last level it is by their places; two siblings share a line, node (n, i) in half i mod 2, or if they are short four.
 
 use super::TreeLines;
 use crate::num::VertexForm;
@@ -28,8 +28,8 @@ pub const fn split_lines(depth: u32) -> usize {
 pub const fn vertex_lines(form: VertexForm, depth: u32) -> usize {
     match form {
         VertexForm::Exact => level_start(depth),
-        VertexForm::Compact if depth < 2 => 0,
-        VertexForm::Compact => 2 << (2 * (depth - 2)),
+        VertexForm::Compact | VertexForm::Short if depth < 2 => 0,
+        VertexForm::Compact | VertexForm::Short => form.sibling_lines() << (2 * (depth - 2)),
     }
 }
 
@@ -44,7 +44,7 @@ pub const fn has_split(depth: u32, level: u32) -> bool {
 pub const fn has_vertices(form: VertexForm, depth: u32, level: u32) -> bool {
     match form {
         VertexForm::Exact => level < depth,
-        VertexForm::Compact => level > 0 && level + 1 == depth,
+        VertexForm::Compact | VertexForm::Short => level > 0 && level + 1 == depth,
     }
 }
 
@@ -52,7 +52,7 @@ pub const fn has_vertices(form: VertexForm, depth: u32, level: u32) -> bool {
 pub const fn vertex_lines_of_level(form: VertexForm, level: u32) -> usize {
     match form {
         VertexForm::Exact => 1 << (2 * level),
-        VertexForm::Compact => 2 << (2 * (level - 1)),
+        VertexForm::Compact | VertexForm::Short => form.sibling_lines() << (2 * (level - 1)),
     }
 }
 
@@ -64,7 +64,8 @@ pub const SPLIT_LEVELS: usize = 10;
 pub struct LevelStarts {
     /// First split of each level; behind the last level with any, their number.
     splits: [usize; SPLIT_LEVELS + 1],
-    /// Line of inserted vertices of the tree at place 0 of each level, in twos if vertices are compact; it may be one below 0 then, as the trees of a level do not begin at place 0.
+    /// Line of inserted vertices of the tree at place 0 of each level, if vertices are compact in lines of four siblings; it may be one below 0 then, as the trees of a level do not begin
+    /// at place 0.
     vertices: [usize; SPLIT_LEVELS],
     /// Lines of inserted vertices.
     vertex_lines: usize,
@@ -81,8 +82,10 @@ impl LevelStarts {
             starts.splits[level + 1] = starts.splits[level] + (trees(&|depth| has_split(depth, number)) << (2 * level));
             starts.vertices[level] = match form {
                 VertexForm::Exact => starts.vertex_lines,
-                VertexForm::Compact if level == 0 => 0,
-                VertexForm::Compact => (starts.vertex_lines / 2).wrapping_sub(trees(&|depth| depth > number + 1) << (2 * (level - 1))),
+                VertexForm::Compact | VertexForm::Short if level == 0 => 0,
+                VertexForm::Compact | VertexForm::Short => {
+                    (starts.vertex_lines / form.sibling_lines()).wrapping_sub(trees(&|depth| depth > number + 1) << (2 * (level - 1)))
+                }
             };
             let lines = trees(&|depth| has_vertices(form, depth, number));
             starts.vertex_lines += if lines == 0 { 0 } else { lines * vertex_lines_of_level(form, number) };
@@ -95,7 +98,7 @@ impl LevelStarts {
         self.splits[level]
     }
 
-    /// Where the vertices of a level begin: of exact ones the first line, of compact ones the two lines that the tree at place 0 would have (modulo the size of a word).
+    /// Where the vertices of a level begin: of exact ones the first line, of compact ones the lines of four siblings that the tree at place 0 would have (modulo the size of a word).
     pub fn vertex_level(&self, level: usize) -> usize {
         self.vertices[level]
     }
@@ -110,9 +113,9 @@ impl LevelStarts {
         self.vertex_lines
     }
 
-    /// All have numbers of 28 bits: splits, and lines of exact vertices or twos of compact ones.
+    /// All have numbers of 28 bits: splits, and lines of exact vertices, or those of four siblings of compact ones.
     pub(super) fn are_numbered(&self, form: VertexForm) -> bool {
-        let vertices = if form.is_compact() { self.vertex_lines / 2 } else { self.vertex_lines };
+        let vertices = if form.is_compact() { self.vertex_lines / form.sibling_lines() } else { self.vertex_lines };
         self.splits().max(vertices) <= 1 << 28
     }
 
@@ -129,6 +132,7 @@ impl LevelStarts {
         match form {
             VertexForm::Exact => start + (tree.place << (2 * level)) + node,
             VertexForm::Compact => 2 * start.wrapping_add((tree.place << (2 * (level - 1))) + node / 4) + node % 4 / 2,
+            VertexForm::Short => start.wrapping_add((tree.place << (2 * (level - 1))) + node / 4),
         }
     }
 }
@@ -159,8 +163,7 @@ mod tests {
         for form in VertexForm::ALL {
             let (trees, starts) = places(form, &depths);
             let (mut splits, mut places_of_vertices) = (Vec::new(), Vec::new());
-            // Compact vertices have half a line.
-            let per_line = if form.is_compact() { 2 } else { 1 };
+            let per_line = 4 / form.sibling_lines();
             for &tree in &trees {
                 for (level, node) in (0..tree.depth).flat_map(|level| (0..1usize << (2 * level)).map(move |node| (level, node))) {
                     if has_split(tree.depth, level) {

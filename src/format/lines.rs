@@ -7,11 +7,15 @@
 //! | split of a node whose children are nodes | a line: [`SplitRecord`] | `splits` |
 //! | inserted vertices q0, q1, q2, exact | a line: [`VertexData`] | `vertices` |
 //! | those of a last split, compact | half a line: [`Displacements`], an even sibling's in the lower half | `vertices` |
+//! | those of four siblings that are last splits, short | a line: [`ShortLine`] | `vertices` |
 //!
 //! The full-resolution BVHs with 16-bit boxes have nodes of four [`BvhChild`], 64 bytes.
 
 pub use crate::num::Box16;
-use crate::num::{BASE_ZERO_BITS, BoundCode, BoxStep, Displacement, PADDING_BITS, Point, S, U, Vec3, box_steps, wire_struct};
+use crate::num::{
+    BASE_ZERO_BITS, BoundCode, BoxStep, Displacement, PADDING_BITS, Point, S, SHORT_BITS, SHORT_SHIFT, U, Vec3, Wire, box_steps,
+    wire_struct,
+};
 
 /// A memory line.
 pub type Line = [u64; 4];
@@ -117,6 +121,28 @@ wire_struct! {
         v1: Displacement,
         /// Of q2.
         v2: Displacement,
+    }
+}
+
+wire_struct! {
+    /// Inserted vertices of a last split, short: the leading bits of displacements, of which the others are zero. 63 bits.
+    pub struct ShortDisplacements {
+        /// Of q0.
+        v0: Vec3<SHORT_BITS>,
+        /// Of q1.
+        v1: Vec3<SHORT_BITS>,
+        /// Of q2.
+        v2: Vec3<SHORT_BITS>,
+    }
+}
+
+wire_struct! {
+    /// Those of four siblings that are last splits: 32 bytes.
+    pub struct ShortLine {
+        /// Zero.
+        reserved: U<4>,
+        /// Of each sibling.
+        siblings: [ShortDisplacements; 4],
     }
 }
 
@@ -464,6 +490,40 @@ impl Displacements {
     }
 }
 
+impl ShortDisplacements {
+    /// From displacements whose lowest bits are zero.
+    pub fn of(of: &Displacements) -> Self {
+        let short = |v: Displacement| {
+            let [x, y, z] = v.get().map(|c| c >> SHORT_SHIFT);
+            Vec3::new(x, y, z)
+        };
+        Self { v0: short(of.v0), v1: short(of.v1), v2: short(of.v2) }
+    }
+
+    /// Steps of the vertices' coordinates.
+    #[inline(always)]
+    pub fn steps(&self) -> [Point; 3] {
+        let whole = |v: Vec3<SHORT_BITS>| {
+            let [x, y, z] = v.get().map(|c| c << SHORT_SHIFT);
+            Point { x: S::new(x), y: S::new(y), z: S::new(z) }
+        };
+        [whole(self.v0), whole(self.v1), whole(self.v2)]
+    }
+}
+
+impl ShortLine {
+    /// Steps of the vertices' coordinates of node `number` of a level, from the line that it shares with its siblings.
+    #[inline(always)]
+    pub fn line_steps(line: &Line, number: usize) -> [Point; 3] {
+        let at = ShortDisplacements::WIDTH * (number & 3) as u32; // 0 to 189
+        let all = bits(line, at);
+        // Sign-extended, with zeros below.
+        let step = |at: u32| S::new(((all >> (SHORT_BITS * at)) << (64 - SHORT_BITS)).cast_signed() >> (64 - SHORT_BITS) << SHORT_SHIFT);
+        let point = |at: u32| Point { x: step(at + 2), y: step(at + 1), z: step(at) };
+        [point(6), point(3), point(0)]
+    }
+}
+
 impl VertexData {
     /// From three stored points (their low 4 bits zero).
     pub fn from_points(p: [[i32; 3]; 3]) -> Self {
@@ -495,6 +555,7 @@ mod tests {
         assert_eq!(BvhNode::WIDTH, 256);
         assert_eq!(VertexData::WIDTH, 256);
         assert_eq!(Displacements::WIDTH, 128);
+        assert_eq!((ShortDisplacements::WIDTH, ShortLine::WIDTH), (63, 256));
         assert_eq!(L0Record::WIDTH, 256);
         assert_eq!(BvhChild::WIDTH, 128);
     }
@@ -516,6 +577,23 @@ mod tests {
         }
         for (k, steps) in steps.iter().enumerate() {
             assert_eq!(Displacements::line_half(&line, k + 4), steps.map(Point::from_i32));
+        }
+    }
+
+    #[test]
+    fn siblings_in_a_line_are_told_apart() {
+        let steps: [[[i32; 3]; 3]; 4] = [
+            [[64, -64, 4032], [-4096, 320, 0], [448, 0, -576]],
+            [[-64, 128, -4032], [0, 0, 0], [704, -768, 832]],
+            [[-4096; 3], [4032; 3], [-4096; 3]],
+            [[0, 0, 64], [0, -64, 0], [4032, 0, -4096]],
+        ];
+        let mut line = [0u64; 4];
+        ShortLine { reserved: U::ZERO, siblings: steps.map(|of| ShortDisplacements::of(&Displacements::from_steps(of))) }
+            .to_words(&mut line);
+        for (k, steps) in steps.iter().enumerate() {
+            let wanted = steps.map(Point::from_i32);
+            assert_eq!((ShortLine::line_steps(&line, k + 8), ShortLine::from_words(&line).siblings[k].steps()), (wanted, wanted));
         }
     }
 

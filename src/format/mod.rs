@@ -20,12 +20,15 @@ mod sections;
 mod staging;
 
 pub use colour::to_srgb;
-pub use decode::child_corners;
+pub use decode::{child_corners, last_displacements};
 pub use encode::{SceneInfo, TreeBvh, build, encode, tree_boxes};
 pub use export::{ExportCounts, export_level};
 pub use job::JobView;
 pub use layout::{LevelStarts, has_split};
-pub use lines::{Box16, BvhChild, BvhNode, ChildRef, Displacements, L0Record, Line, SixNode, SplitRecord, TreeLines, VertexData};
+pub use lines::{
+    Box16, BvhChild, BvhNode, ChildRef, Displacements, L0Record, Line, ShortDisplacements, ShortLine, SixNode, SplitRecord, TreeLines,
+    VertexData,
+};
 pub use normal::{decode_normal, encode_normal};
 pub use prisms::scene_prisms;
 pub use region::{Beyond, Job, JobRegion};

@@ -2,13 +2,21 @@
 
 use super::encode::{new_image, sealed, split_parts, vertex_parts};
 use super::sections::FileSection;
-use super::{Displacements, Job, Line, Scene, SceneError, SplitRecord, has_split, layout};
+use super::{Displacements, Job, Line, Meta, Scene, SceneError, SplitRecord, has_split, layout};
 use crate::num::{BoundCode, U, VertexForm, Wire};
 
 impl Scene {
+    /// The form of vertices with so many levels of each tree. Where a tree loses levels, vertices that were in splits are in last splits, where short ones have no room.
+    fn form_at(&self, depths: &[u32]) -> VertexForm {
+        match self.meta().vertices {
+            VertexForm::Short if self.depths() != depths => VertexForm::Compact,
+            form => form,
+        }
+    }
+
     /// Bytes of L0 records, splits and vertices of trees of these depths.
     pub fn bytes_of(&self, depths: &[u32]) -> u64 {
-        let (_, starts) = layout::places(self.meta().vertices, depths);
+        let (_, starts) = layout::places(self.form_at(depths), depths);
         (size_of_val(self.records()) + size_of::<Line>() * (starts.splits() + starts.vertex_lines())) as u64
     }
 
@@ -22,9 +30,9 @@ impl Scene {
     pub fn pruned(&self, depths: &[u32], job: Job) -> Result<Self, SceneError> {
         assert_eq!(depths.len(), self.trees());
         let depths: Vec<u32> = self.depths().into_iter().zip(depths).map(|(stored, &depth)| stored.min(depth)).collect();
-        let form = self.meta().vertices;
+        let form = self.form_at(&depths);
         let (trees, starts) = layout::places(form, &depths);
-        let mut meta = self.meta().clone();
+        let mut meta = Meta { vertices: form, ..self.meta().clone() };
         (meta.job, meta.regions) = (job.views, job.regions);
         meta.without_normals |= job.unshaded;
         let normals = if meta.without_normals { &[] } else { self.section(FileSection::Normals) };
@@ -71,7 +79,7 @@ impl Scene {
                     {
                         let levels = (0..).filter(|&level| layout::has_vertices(form, own.depth, level));
                         for (part, level) in parts.into_iter().zip(levels) {
-                            self.copy_vertices(tree, level, part);
+                            self.copy_vertices(form, tree, level, part);
                         }
                     }
                 }
@@ -83,9 +91,14 @@ impl Scene {
     }
 
     /// Fills the vertex lines of a level of a tree, which in this scene may lie in its splits.
-    fn copy_vertices(&self, tree: usize, level: u32, out: &mut [Line]) {
-        let (form, lines) = (self.meta().vertices, self.tree_lines(tree));
-        if form == VertexForm::Compact && has_split(lines.depth, level) {
+    fn copy_vertices(&self, form: VertexForm, tree: usize, level: u32, out: &mut [Line]) {
+        let (stored, lines) = (self.meta().vertices, self.tree_lines(tree));
+        if form == VertexForm::Compact && stored == VertexForm::Short && !has_split(lines.depth, level) {
+            for (node, half) in out.as_flattened_mut().chunks_exact_mut(2).enumerate() {
+                let steps = self.displacements(tree, level, node).map(|v| v.get().map(|c| c as i32)); // 13 bits
+                Displacements::from_steps(steps).to_words(half);
+            }
+        } else if form == VertexForm::Compact && has_split(lines.depth, level) {
             for (half, split) in out.as_flattened_mut().chunks_exact_mut(2).zip(&self.splits()[self.starts.split(lines, level, 0)..]) {
                 let SplitRecord { v0, v1, v2, .. } = SplitRecord::from_words(split);
                 Displacements { reserved: U::ZERO, v0, v1, v2 }.to_words(half);

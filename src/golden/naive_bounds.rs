@@ -22,7 +22,7 @@ const MOST: u64 = {
 
 /// An inserted vertex, the same for all trees that share it.
 #[derive(Clone, Copy, PartialEq, Eq, Hash, Debug)]
-enum Inserted {
+pub(super) enum Inserted {
     /// On the base edge of these two base vertices, so many steps of 2^-N from the smaller one.
     OnBaseEdge(u32, u32, u32),
     /// In the interior of this tree.
@@ -103,7 +103,7 @@ pub(super) fn for_each_edge(h: &Hierarchy, level: u32, mut visit: impl FnMut(u32
 }
 
 /// The identity of an inserted vertex; never called for a base vertex.
-fn identify(h: &Hierarchy, tree: u32, (i, j): LatticePoint) -> Inserted {
+pub(super) fn identify(h: &Hierarchy, tree: u32, (i, j): LatticePoint) -> Inserted {
     let m = 1u32 << h.levels;
     let weights = [m - i - j, i, j];
     match weights.iter().position(|&w| w == 0) {

@@ -19,6 +19,8 @@ wire_struct! {
         zeros: U<5>,
         /// Inserted vertices are stored as displacements from the midpoints of their edges.
         compact: bool,
+        /// Those of last splits have 7 bits a coordinate. Of no meaning where vertices are no displacements.
+        short_splits: bool,
         /// Scale of the displacement bounds.
         scale: BoundScale,
         /// First line of the quad-BVH's nodes.
@@ -31,7 +33,7 @@ wire_struct! {
         vertices: LineAddress,
         /// First split of each level from 1 on.
         split_starts: [U<28>; 8],
-        /// Exact vertices: first line of each level from 1 on. Compact ones: the two lines that the tree at place 0 would have for the first four nodes there, modulo 2^28.
+        /// Exact vertices: first line of each level from 1 on. Compact ones: the two lines, or short ones the line, that the tree at place 0 would have for the first four nodes there, modulo 2^28.
         vertex_starts: [U<28>; 9],
         /// The most entries that a ray can visit: quad-BVH nodes, trees, and nodes of trees. A ray that would visit more is in a loop.
         visits: U<32>,

@@ -122,7 +122,10 @@ impl HitSink for Seen {
 pub struct Judge<'a> {
     pub(super) model: &'a Model,
     pub(super) golden: &'a Exact<'a>,
-    pub(super) traverser: LodTraverser<'a>,
+    /// With boxes and with prisms around trees' nodes: what rays meet is the same.
+    traversers: [LodTraverser<'a>; 2],
+    /// Which of them has the ray.
+    turn: usize,
     /// Every how many rays the golden traverser is asked.
     pub(super) every: u64,
 }
@@ -130,11 +133,20 @@ pub struct Judge<'a> {
 impl<'a> Judge<'a> {
     /// A judge that compares every `every`-th ray with `golden`, the exact traverser of the same model.
     pub fn new(model: &'a Model, golden: &'a Exact<'a>, every: u64) -> Self {
-        Self { model, golden, traverser: LodTraverser::new(LodImage::of(&model.scene)), every }
+        let image = LodImage::of(&model.scene);
+        let traversers = [image, image.bounded_by(&model.prisms)].map(LodTraverser::new);
+        Self { model, golden, traversers, turn: 0, every }
+    }
+
+    /// The traverser of this ray.
+    pub(super) fn traverser(&mut self) -> &mut LodTraverser<'a> {
+        &mut self.traversers[self.turn]
     }
 
     /// Shoots and judges ray `number`.
     pub fn shoot(&mut self, number: u64, shot: &Shot) -> Tally {
+        // Of rays that are compared with the golden traverser and of all others, every other one.
+        self.turn = ((number / self.every.max(2)) ^ number) as usize & 1;
         guarded(number, || {
             let mut tally = Tally { rays: 1, ..Tally::default() };
             self.judge(number, shot, &mut tally);
@@ -160,7 +172,7 @@ impl<'a> Judge<'a> {
 
     fn seen(&mut self, ray: &Ray) -> Seen {
         let mut seen = Seen::default();
-        self.traverser.trace(ray, &mut NoSteps, &mut seen);
+        self.traverser().trace(ray, &mut NoSteps, &mut seen);
         seen
     }
 
@@ -200,7 +212,7 @@ impl<'a> Judge<'a> {
             tally.doubles += u64::from(found.saturating_sub(wanted));
         }
         let mut closest = ClosestHit::new(self.model.hierarchy.levels);
-        self.traverser.trace(&shot.ray, &mut NoSteps, &mut closest);
+        self.traverser().trace(&shot.ray, &mut NoSteps, &mut closest);
         let hit = closest.record();
         let exact = self.golden.trace_exactly(&shot.ray);
         let (Some(hit), Some((golden, fractions))) = (hit, exact) else {

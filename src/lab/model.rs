@@ -6,6 +6,7 @@ use crate::golden::{naive_bounds, naive_compact};
 use crate::lab::crack::{Closedness, closedness};
 use crate::mesh::{BoundKind, Hierarchy, Surface, lattice};
 use crate::num::VertexForm;
+use crate::num::prism::Prisms;
 use crate::rays::ModelSpace;
 
 /// A model of the lab.
@@ -14,6 +15,8 @@ pub struct Model {
     pub name: String,
     /// The memory images.
     pub scene: Scene,
+    /// What bounds the children of its splits, if prisms do.
+    pub prisms: Vec<Prisms>,
     /// The same as integers, for the golden traverser.
     pub hierarchy: Hierarchy,
     /// World to units.
@@ -48,10 +51,16 @@ impl Model {
     /// Those of [`format::encode`]: a point off its grid or beyond the limit.
     pub fn of_hierarchy(name: impl Into<String>, mut hierarchy: Hierarchy) -> Result<Self, SceneError> {
         naive_bounds(&mut hierarchy);
-        if hierarchy.vertices == VertexForm::Compact {
-            naive_compact(&mut hierarchy);
+        let (form, depths) = (hierarchy.vertices, |h: &Hierarchy| (0..h.triangles.len()).map(|tree| h.depth(tree)).collect::<Vec<_>>());
+        while form.is_compact() {
+            let before = depths(&hierarchy);
+            naive_compact(form, &mut hierarchy);
             // Of the points as they are now, so that the same points give the same model: no displacement has grown, so they stay where they are.
             naive_bounds(&mut hierarchy);
+            // Trees that became less deep have other last splits, where short vertices lose more.
+            if form == VertexForm::Compact || depths(&hierarchy) == before {
+                break;
+            }
         }
         let surface = Surface {
             levels: hierarchy.levels,
@@ -67,8 +76,8 @@ impl Model {
     /// Takes a scene as it is.
     pub fn of_scene(name: impl Into<String>, scene: Scene) -> Self {
         let hierarchy = scene.decode();
-        let (space, closed) = (ModelSpace::of(&scene), closedness(&hierarchy.triangles));
-        Self { name: name.into(), scene, hierarchy, space, closed, positions: Vec::new() }
+        let (space, closed, prisms) = (ModelSpace::of(&scene), closedness(&hierarchy.triangles), format::scene_prisms(&scene));
+        Self { name: name.into(), scene, prisms, hierarchy, space, closed, positions: Vec::new() }
     }
 
     /// How far rounding to units moved the point with barycentrics `bary` (2^31 = 1) of full-resolution triangle `node` of `tree`, in world units;

@@ -120,13 +120,13 @@ impl Judge<'_> {
     fn departure(&mut self, ray: &Ray, from: Option<&Departure>) -> Option<Departure> {
         let mut closest = ClosestHit::new(self.model.hierarchy.levels);
         self.crossed(ray, from, &mut closest);
-        Some(self.traverser.departure(ray, from, &closest.record()?, &closest.corners()?))
+        Some(self.traverser().departure(ray, from, &closest.record()?, &closest.corners()?))
     }
 
     fn crossed(&mut self, ray: &Ray, from: Option<&Departure>, sink: &mut impl crate::method::HitSink) {
         match from {
-            Some(from) => self.traverser.trace_from(ray, from, &mut NoSteps, sink),
-            None => self.traverser.trace(ray, &mut NoSteps, sink),
+            Some(from) => self.traverser().trace_from(ray, from, &mut NoSteps, sink),
+            None => self.traverser().trace(ray, &mut NoSteps, sink),
         }
     }
 

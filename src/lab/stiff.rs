@@ -16,7 +16,7 @@ pub enum Scale {
     Full,
 }
 
-/// Each of these with exact and with compact vertices.
+/// Each of these with vertices of each form.
 fn list(models: impl IntoIterator<Item = (String, Surface)>) -> Result<Vec<Model>, SceneError> {
     let both = |(name, surface): (String, Surface)| {
         VertexForm::ALL.map(|form| Model::of_surface(format!("{name}, {} vertices", form.name()), &surface, form))
@@ -257,7 +257,7 @@ pub(super) fn adversary(random: &mut Random) -> Result<Model, SceneError> {
         // Nearly flat, with displacement of a few steps of the grid.
         _ => surface(levels, &base, |p| [0, 1, 2].map(|k| p.flat[k] + (3.0 * p.noise(seed)[k]).round() * 2f64.powi(-26))),
     };
-    let form = VertexForm::ALL[random.below(2) as usize];
+    let form = VertexForm::ALL[random.below(3) as usize];
     // By way of its integers, as a kept ray's model is made again.
     Model::of_hierarchy("hunted", quantise(&surface, BoundKind::Largest, form, 0)?)
 }

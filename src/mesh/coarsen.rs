@@ -9,7 +9,7 @@ use crate::num::VertexForm;
 /// The hierarchy with `zeros` zero bits at the bottom of every coordinate.
 ///
 /// Compact vertices keep their codes: each base vertex goes to the nearest point of its grid, and displacements lose what is less than a step where steps get longer. So none
-/// gets longer, and every bound that held still holds. Exact ones go to the nearest points of their grids, and get the bounds of that.
+/// gets longer, and every bound that held still holds. Short ones become compact, as longer steps in few bits would lose much more. Exact ones go to the nearest points of their grids, and get the bounds of that.
 ///
 /// # Errors
 /// [`SurfaceError::Zeros`]: more than there is room for.
@@ -19,7 +19,8 @@ pub fn coarsen(h: &Hierarchy, zeros: u32) -> Result<Hierarchy, SurfaceError> {
     }
     let mut coarse = Hierarchy { zeros: zeros.max(h.zeros), ..h.clone() };
     if h.vertices.is_compact() {
-        compact(h.levels, coarse.zeros, &mut coarse.points, &coarse.bounds);
+        coarse.vertices = VertexForm::Compact;
+        compact(coarse.vertices, h.levels, coarse.zeros, &mut coarse.points, &coarse.bounds, &SharedEdges::new(&h.triangles));
     } else {
         coarse.points = snap_points(h.levels, h.vertices, coarse.zeros, &h.points, |p| p.map(f64::from));
         coarse.bounds = edge_codes(h.bounds.kind, h.levels, &coarse.points, &SharedEdges::new(&h.triangles));

@@ -3,10 +3,14 @@
 //! Displacements are those of the points as they were, rounded towards zero, and the points are put together again from the base down. So no displacement gets longer,
 //! and every bound that held still holds. A vertex inserted by split n is moved by at most sqrt(3) (e_1 + ... + e_n) units more than the base vertices were,
 //! e_k the largest step of level k.
+//!
+//! Short ones lose more in last splits, whose displacements have few bits. A vertex on a base edge does if it is in a last split of any tree there, so that all trees have it alike.
 
-use super::hierarchy::edge_index;
+use super::borders::SharedEdges;
+use super::hierarchy::{depth, edge_index};
+use super::lattice::LatticePoint;
 use super::{EdgeCodes, edges_of_tree, lattice};
-use crate::num::{COORD_LIMIT, VertexForm, displaced, displacement_shift, displacement_steps, snap};
+use crate::num::{COORD_LIMIT, VertexForm, displaced, displacement_shift, displacement_steps, short_steps, snap};
 use rayon::prelude::*;
 
 /// Zero bits of a compact vertex that a node of `level` inserts, in a model of which every coordinate has `zeros`.
@@ -19,15 +23,40 @@ pub(crate) fn steps_of(q: [i32; 3], a: [i32; 3], b: [i32; 3], shift: u32) -> [i3
     std::array::from_fn(|c| displacement_steps(i64::from(q[c]) - (i64::from(a[c]) + i64::from(b[c])) / 2, shift))
 }
 
-/// Moves every inserted vertex to where its compact form has it, and base vertices to their grid. Points are on grids as fine or finer, and codes cover their displacements.
-pub(super) fn compact(levels: u32, zeros: u32, points: &mut [[i32; 3]], bounds: &EdgeCodes) {
+/// The levels whose inserted vertices have few bits, bit n for level n: on a tree's three sides and inside of it.
+type ShortLevels = [u16; 4];
+
+/// The side of a tree on which an inserted vertex lies, or 3 if it lies inside.
+fn side(levels: u32, (i, j): LatticePoint) -> usize {
+    match (i, j) {
+        (i, j) if i + j == 1 << levels => 0,
+        (0, _) => 1,
+        (_, 0) => 2,
+        _ => 3,
+    }
+}
+
+/// The short levels of each tree: those of last splits, but of roots. (Level 9 is the last that splits.)
+fn short_levels(levels: u32, bounds: &EdgeCodes, shared: &SharedEdges) -> Vec<ShortLevels> {
+    let own = |codes: &[u8]| [if depth(levels, codes) < 2 { 0 } else { 1 << (depth(levels, codes) - 1) }; 4];
+    let mut all: Vec<ShortLevels> = bounds.codes.par_chunks(edges_of_tree(levels)).map(own).collect();
+    for uses in shared.edges() {
+        let of_edge = uses.iter().fold(0, |of_edge, of| of_edge | all[of.tree as usize][3]);
+        uses.iter().for_each(|of| all[of.tree as usize][usize::from(of.side)] = of_edge);
+    }
+    all
+}
+
+/// Moves every inserted vertex to where this compact form has it, and base vertices to their grid. Points are on grids as fine or finer, and codes cover their displacements.
+pub(super) fn compact(form: VertexForm, levels: u32, zeros: u32, points: &mut [[i32; 3]], bounds: &EdgeCodes, shared: &SharedEdges) {
     let edges = edges_of_tree(levels);
     if edges == 0 {
         points.iter_mut().for_each(|p| *p = p.map(|c| snap(f64::from(c), VertexForm::Compact.zero_bits(0, 0, zeros))));
         return;
     }
-    let trees = points.par_chunks_mut(lattice::len(levels)).zip(bounds.codes.par_chunks(edges));
-    trees.for_each(|(points, codes)| {
+    let short = if form == VertexForm::Short { short_levels(levels, bounds, shared) } else { vec![[0; 4]; bounds.codes.len() / edges] };
+    let trees = points.par_chunks_mut(lattice::len(levels)).zip(bounds.codes.par_chunks(edges)).zip(short);
+    trees.for_each(|((points, codes), short)| {
         let mut moved = points.to_vec();
         for corner in lattice::root(levels).map(|place| lattice::index(levels, place)) {
             moved[corner] = points[corner].map(|c| snap(f64::from(c), VertexForm::Compact.zero_bits(levels, 0, zeros)));
@@ -37,8 +66,14 @@ pub(super) fn compact(levels: u32, zeros: u32, points: &mut [[i32; 3]], bounds: 
                 let [own, ends @ ..] = place.map(|place| lattice::index(levels, place));
                 let shift =
                     displacement_shift(bounds.scale, codes[edge_index(levels, level, a, b)], inserted_zero_bits(levels, level, zeros));
-                let steps = steps_of(points[own], points[ends[0]], points[ends[1]], shift);
-                moved[own] = std::array::from_fn(|c| within(moved[ends[0]][c], moved[ends[1]][c], steps[c], shift));
+                let (steps, is_short) =
+                    (steps_of(points[own], points[ends[0]], points[ends[1]], shift), short[side(levels, place[0])] >> level & 1 == 1);
+                moved[own] = std::array::from_fn(|c| {
+                    // Of a short one that would pass the limit nothing is left.
+                    let (a, b, of) = (moved[ends[0]][c], moved[ends[1]][c], if is_short { short_steps(steps[c]) } else { steps[c] });
+                    let kept = within(a, b, of, shift);
+                    if is_short && kept != displaced(a, b, of, shift) { displaced(a, b, 0, shift) } else { kept }
+                });
             }
         }
         points.copy_from_slice(&moved);
@@ -64,7 +99,7 @@ mod tests {
     use crate::num::bound_decode;
 
     /// Twice the displacement of the vertex on an edge, and the edge's code.
-    fn displacement(h: &Hierarchy, tree: usize, level: u32, p: [lattice::LatticePoint; 3], edge: usize) -> ([i64; 3], u8) {
+    fn displacement(h: &Hierarchy, tree: usize, level: u32, p: [LatticePoint; 3], edge: usize) -> ([i64; 3], u8) {
         let points = h.tree(tree);
         let at = |place| points[lattice::index(h.levels, place)].map(i64::from);
         let (a, b, q) = (at(p[(edge + 1) % 3]), at(p[(edge + 2) % 3]), at(lattice::midpoints(p)[edge]));
@@ -85,7 +120,7 @@ mod tests {
             }
             before.bounds = edge_codes(BoundKind::Total, levels, &before.points, &SharedEdges::new(&before.triangles));
             let mut after = before.clone();
-            compact(levels, 0, &mut after.points, &after.bounds);
+            compact(VertexForm::Compact, levels, 0, &mut after.points, &after.bounds, &SharedEdges::new(&after.triangles));
 
             let (mut reach, mut shorter) = (0.0, 0);
             for level in 0..levels {

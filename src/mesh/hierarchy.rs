@@ -125,6 +125,12 @@ pub fn edge_index(levels: u32, level: u32, a: LatticePoint, b: LatticePoint) -> 
     edges_of_tree(level) + 3 * upward + side
 }
 
+/// The depth of a tree with these codes ([`Hierarchy::depth`]).
+pub(super) fn depth(levels: u32, codes: &[u8]) -> u32 {
+    let last = codes.iter().rposition(|&code| code != 0);
+    last.map_or(0, |last| (1..=levels).find(|&level| last < edges_of_tree(level)).unwrap_or(levels))
+}
+
 impl Hierarchy {
     /// Points of one tree, in lattice order.
     #[inline]
@@ -150,9 +156,7 @@ impl Hierarchy {
     /// How many levels of a tree any ray could want: the least level from which on all codes are 0, as every triangle there serves. What is inserted below lies exactly
     /// on the middles of its edges: a bound of 0 is that of no displacement at all.
     pub fn depth(&self, tree: usize) -> u32 {
-        let codes = self.codes(tree);
-        let last = codes.iter().rposition(|&code| code != 0);
-        last.map_or(0, |last| (1..=self.levels).find(|&level| last < edges_of_tree(level)).unwrap_or(self.levels))
+        depth(self.levels, self.codes(tree))
     }
 
     /// World position of a point in units.

@@ -117,7 +117,7 @@ pub fn quantise(surface: &Surface, kind: BoundKind, vertices: VertexForm, zeros:
     check_shared_points(surface, &points, &shared)?;
     let bounds = edge_codes(kind, surface.levels, &points, &shared);
     if vertices.is_compact() {
-        compact(surface.levels, zeros, &mut points, &bounds);
+        compact(vertices, surface.levels, zeros, &mut points, &bounds, &shared);
     }
     let Surface { levels, base_vertices, .. } = *surface;
     Ok(Hierarchy { levels, placement, base_vertices, triangles: surface.triangles.clone(), points, bounds, vertices, zeros })

@@ -1,6 +1,6 @@
 //! Compact vertices: an inserted vertex as its displacement from the midpoint of its edge, in steps that follow from the edge's bound code.
 
-use super::BoundScale;
+use super::{BoundScale, SHORT_SHIFT};
 use serde::{Deserialize, Serialize};
 
 /// How a scene stores its inserted vertices. The default is what scenes are made with where nobody asks.
@@ -12,17 +12,20 @@ pub enum VertexForm {
     /// Displacements of 13 bits a coordinate: less than half a line for three.
     #[default]
     Compact,
+    /// The same, but of [`SHORT_BITS`](super::SHORT_BITS) bits in last splits, of which four then share a line.
+    Short,
 }
 
 impl VertexForm {
-    /// Both.
-    pub const ALL: [Self; 2] = [Self::Exact, Self::Compact];
+    /// All.
+    pub const ALL: [Self; 3] = [Self::Exact, Self::Compact, Self::Short];
 
     /// Its name in options and files.
     pub const fn name(self) -> &'static str {
         match self {
             Self::Exact => "exact",
             Self::Compact => "compact",
+            Self::Short => "short",
         }
     }
 
@@ -31,13 +34,24 @@ impl VertexForm {
     pub const fn record_lines(self) -> usize {
         match self {
             Self::Exact => 2,
-            Self::Compact => 1,
+            Self::Compact | Self::Short => 1,
         }
     }
 
-    /// It is [`VertexForm::Compact`].
-    pub fn is_compact(self) -> bool {
-        self == Self::Compact
+    /// Lines of the inserted vertices of four siblings that are last splits, apart from what else they have.
+    #[inline(always)]
+    pub const fn sibling_lines(self) -> usize {
+        match self {
+            Self::Exact => 4,
+            Self::Compact => 2,
+            Self::Short => 1,
+        }
+    }
+
+    /// Vertices are stored as displacements: [`VertexForm::Compact`] or [`VertexForm::Short`].
+    #[inline(always)]
+    pub const fn is_compact(self) -> bool {
+        matches!(self, Self::Compact | Self::Short)
     }
 
     /// Zero bits at the bottom of a vertex of `level` (0: of the base mesh), in a model of so many `levels` of which every coordinate has `zeros`.
@@ -46,8 +60,8 @@ impl VertexForm {
         match self {
             Self::Exact => (finer + zeros).max(super::PADDING_BITS),
             // Midpoints of finer levels keep the padding.
-            Self::Compact if level > 0 => finer + zeros.max(super::PADDING_BITS),
-            Self::Compact => (finer + zeros.max(super::PADDING_BITS)).max(super::BASE_ZERO_BITS),
+            Self::Compact | Self::Short if level > 0 => finer + zeros.max(super::PADDING_BITS),
+            Self::Compact | Self::Short => (finer + zeros.max(super::PADDING_BITS)).max(super::BASE_ZERO_BITS),
         }
     }
 }
@@ -65,6 +79,12 @@ pub fn displacement_shift(scale: BoundScale, code: u8, zero_bits: u32) -> u32 {
 pub fn displacement_steps(units: i64, shift: u32) -> i32 {
     let steps = units.unsigned_abs() >> shift;
     (if units < 0 { -steps.cast_signed() } else { steps.cast_signed() }) as i32 // at most 4095 in magnitude
+}
+
+/// What is left of a displacement's steps where they have [`SHORT_BITS`](super::SHORT_BITS) bits: the leading ones, rounded towards zero.
+#[inline]
+pub fn short_steps(steps: i32) -> i32 {
+    steps / (1 << SHORT_SHIFT) * (1 << SHORT_SHIFT)
 }
 
 /// A coordinate of the vertex that lies `steps` of 2^shift units from the midpoint of `a` and `b`, whose sum is even. What leads beyond 32 bits, in no scene
@@ -92,6 +112,7 @@ mod tests {
         assert_eq!(displacement_steps(-4095, 4), -255);
         assert_eq!(displacement_steps(4095, 4), 255);
         assert_eq!(displaced(-32, 64, -3, 4), 16 - 48);
+        assert_eq!([4095, 64, 63, 0, -63, -64, -4095].map(short_steps), [4032, 64, 0, 0, 0, -64, -4032]);
     }
 
     proptest! {

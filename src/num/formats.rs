@@ -35,6 +35,11 @@ pub const MAX_BOUND_OFFSET: u64 = 272;
 /// Largest shift of a compact vertex's displacement: that of the largest bound, or the zero bits of the coarsest inserted vertex.
 pub const MAX_DISPLACEMENT_SHIFT: u32 = 21;
 
+/// Bits of a displacement's component in last splits of short ones.
+pub const SHORT_BITS: u32 = 7;
+/// The lowest bits of a displacement that these leave out.
+pub const SHORT_SHIFT: u32 = <U<13> as Wire>::WIDTH - SHORT_BITS;
+
 /// Bytes of a memory line.
 pub const LINE_BYTES: u64 = 32;
 

@@ -16,7 +16,7 @@ mod wire;
 
 pub use bits::{BitReader, BitVec, BitWriter};
 pub use box16::Box16;
-pub use displacement::{VertexForm, displaced, displacement_shift, displacement_steps};
+pub use displacement::{VertexForm, displaced, displacement_shift, displacement_steps, short_steps};
 pub use fixed::{S, U, WS, WU};
 pub use formats::*;
 pub use random::Random;

@@ -25,8 +25,9 @@ impl Data {
         // Of a node that splits: its split, which has compact vertices, and vertices elsewhere.
         let of = |level: u32| match (form, has_split(levels, level)) {
             (VertexForm::Exact, true) => 2 * LINE_BYTES,
-            (VertexForm::Exact, false) | (VertexForm::Compact, true) => LINE_BYTES,
+            (VertexForm::Exact, false) | (VertexForm::Compact | VertexForm::Short, true) => LINE_BYTES,
             (VertexForm::Compact, false) => LINE_BYTES / 2,
+            (VertexForm::Short, false) => LINE_BYTES / 4,
         };
         let above_flat = records + (0..levels).map(|level| met.splits[level as usize] * of(level)).sum::<u64>();
         Self { triangles: scene.finest_triangles(), stored: scene.bytes_of(&scene.depths()), above_flat, reached: scene.bytes_of(depths) }

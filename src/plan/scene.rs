@@ -3,7 +3,7 @@
 use super::{bits, needs, signed_bits};
 use crate::format::{BvhNode, ChildRef, Scene, SplitRecord, child_corners};
 use crate::mesh::compact::inserted_zero_bits;
-use crate::num::{MAX_LEVELS, VertexForm, Wire, bound_decode, displacement_shift};
+use crate::num::{MAX_LEVELS, Wire, bound_decode, displacement_shift};
 use rayon::prelude::*;
 
 needs! {
@@ -146,7 +146,7 @@ impl Met {
         self.splits[level as usize] += 1;
         let q = scene.inserted(tree, level, node, p);
         self.points(q);
-        if meta.vertices == VertexForm::Compact {
+        if meta.vertices.is_compact() {
             for c in scene.displacements(tree, level, node).into_iter().flat_map(|v| v.get()) {
                 let c = c as i32; // 13 bits
                 self.displacement = [self.displacement[0].min(c), self.displacement[1].max(c)];

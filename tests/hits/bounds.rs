@@ -30,8 +30,8 @@ fn check_kind(surface: &Surface, kind: BoundKind, form: VertexForm, name: &str) 
     flatten(surface, &built, &bits, &mut points);
     let mut plain = Hierarchy { points, ..built.clone() };
     naive_bounds(&mut plain);
-    if form == VertexForm::Compact {
-        naive_compact(&mut plain);
+    if form.is_compact() {
+        naive_compact(form, &mut plain);
     }
     assert_eq!(built.bounds.scale, plain.bounds.scale, "{name}");
     let differing = built.bounds.codes.iter().zip(&plain.bounds.codes).position(|(a, b)| a != b);

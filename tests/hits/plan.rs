@@ -57,8 +57,12 @@ fn widths_are_those_of_what_rays_can_read() {
         assert!(points.iter().any(|c| c % (2 << needs.vertex_zeros) != 0), "{name}");
         assert_eq!(needs.code_bits, u8::BITS - code.leading_zeros(), "{name}");
         assert_eq!((needs.levels, needs.compact, needs.exact), (3, form.is_compact(), !form.is_compact()));
-        // Splits of 32 bytes on levels 0 and 1; vertices of 32 bytes each, or of 16 on the last level.
-        let (record, vertices) = if form.is_compact() { (32, 16 * splits[2]) } else { (64, 32 * splits.iter().sum::<u64>()) };
+        // Splits of 32 bytes on levels 0 and 1; vertices of 32 bytes each, or of 16 or 8 on the last level.
+        let (record, vertices) = match form {
+            VertexForm::Exact => (64, 32 * splits.iter().sum::<u64>()),
+            VertexForm::Compact => (32, 16 * splits[2]),
+            VertexForm::Short => (32, 8 * splits[2]),
+        };
         assert_eq!(data.above_flat, record * h.triangles.len() as u64 + 32 * (splits[0] + splits[1]) + vertices, "{name}");
         assert!(data.above_flat <= data.stored && data.reached == data.stored, "{name}");
         assert_eq!(data.stored as f64, scene.bytes_per_triangle() * scene.finest_triangles() as f64);

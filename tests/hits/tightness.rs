@@ -11,7 +11,9 @@ use lodray::block::start_test::Below;
 use lodray::block::tessellate::{self, Tessellate, child_triangle};
 use lodray::block::tri_test::{self, TriTest};
 use lodray::bvh::BvhChild32;
-use lodray::format::{BvhChild, BvhNode, ChildRef, Displacements, L0Record, Line, SixNode, SplitRecord, TreeLines, VertexData, has_split};
+use lodray::format::{
+    BvhChild, BvhNode, ChildRef, Displacements, L0Record, Line, ShortLine, SixNode, SplitRecord, TreeLines, VertexData, has_split,
+};
 use lodray::mesh::{Hierarchy, lattice};
 use lodray::method::bvh::{self, BvhTraverser, FullBvh, FullNodes, FullOptions, LeafLayout, NodeBoxes};
 use lodray::method::lod::{self, LodImage, LodTraverser};
@@ -218,7 +220,7 @@ impl<'a> Lod<'a> {
     }
 
     fn tree<H: HitSink>(&self, walk: &mut Walk<'_, H>, tree: usize) {
-        walk.reads(lod::RECORDS, if self.image.form == VertexForm::Compact { 1 } else { 2 });
+        walk.reads(lod::RECORDS, self.image.form.record_lines() as u64);
         let p = self.image.corners(tree);
         let L0Record { e0, e1, e2, .. } = L0Record::from_words(self.image.record(tree));
         self.tree_node(walk, TriangleId { tree: tree as u32, level: 0, node: 0 }, [p, p], [e0, e1, e2]);
@@ -234,10 +236,11 @@ impl<'a> Lod<'a> {
         let line = || &image.vertices[image.starts.vertex_line(image.form, lines, level, node as usize)];
         match image.form {
             VertexForm::Exact => (VertexData::from_words(line()).points(), 1),
-            VertexForm::Compact if has_split(lines.depth, level) => {
+            VertexForm::Compact | VertexForm::Short if has_split(lines.depth, level) => {
                 (SplitRecord::line_displacements(&image.splits[image.starts.split(lines, level, node as usize)]), 0)
             }
             VertexForm::Compact => (Displacements::line_half(line(), node as usize), 1),
+            VertexForm::Short => (ShortLine::line_steps(line(), node as usize), 1),
         }
     }
 
@@ -258,7 +261,7 @@ impl<'a> Lod<'a> {
         walk.reads(lod::VERTICES, read);
         // A root's split is read even if there are triangles alone below it, where it has the vertices.
         walk.reads(lod::SPLITS, u64::from(level + 1 < lines.depth || read == 0));
-        let (compact, grid) = (self.image.form == VertexForm::Compact, U::new(u64::from(levels - level - 1)));
+        let (compact, grid) = (self.image.form.is_compact(), U::new(u64::from(levels - level - 1)));
         let padding = U::new(4);
         let lod_test::Out { s0, s1, s2, .. } = lod;
         let t =
@@ -435,7 +438,7 @@ fn every_box_that_is_visited_is_met_and_no_other() {
     for seed in 0..10u64 {
         let levels = seed as u32 % 5;
         let roughness = [0.05, 0.4, 1.5][seed as usize % 3];
-        let form = VertexForm::ALL[seed as usize % 2];
+        let form = VertexForm::ALL[seed as usize % 3];
         for h in [ball(levels, roughness, seed), terrain(3, levels, roughness, seed)] {
             let h = with_vertices(form, h);
             compare(&h, &any_rays(&h, 400, seed), &mut lod, &mut full);

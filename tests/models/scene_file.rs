@@ -57,7 +57,12 @@ fn images_decode_to_the_hierarchy_that_they_were_made_from() {
                     });
                     let moved = scene.meta().moved;
                     assert!((moved - most).abs() <= 1e-12 * size, "{form:?}: {moved}, {most}");
-                    assert!(moved < if form == VertexForm::Exact { 1e-6 } else { 1e-3 } * size, "{form:?}: {moved} of {size}");
+                    let most = match form {
+                        VertexForm::Exact => 1e-6,
+                        VertexForm::Compact => 1e-3,
+                        VertexForm::Short => 1e-2,
+                    };
+                    assert!(moved < most * size, "{form:?}: {moved} of {size}");
                 }
             }
         }
@@ -131,10 +136,14 @@ fn trees_are_as_deep_as_their_codes() {
                 };
                 let depth = (0..=h.levels).find(|&level| (level..h.levels).all(zero)).unwrap();
                 let inner: usize = (0..depth).map(|level| 1 << (2 * level)).sum();
-                // All nodes that split but those of the last level, which has half lines where vertices are compact; a root always.
+                // All nodes that split but those of the last level, which has half lines where vertices are compact, quarters where they are short; a root always.
                 let last = if depth < 2 { 0 } else { 1usize << (2 * (depth - 1)) };
                 splits += inner - last;
-                lines += if form.is_compact() { last / 2 } else { inner };
+                lines += match form {
+                    VertexForm::Exact => inner,
+                    VertexForm::Compact => last / 2,
+                    VertexForm::Short => last / 4,
+                };
                 seen[depth as usize] += 1;
                 depths.push(depth);
             }
@@ -167,6 +176,7 @@ struct Words<'a> {
     sections: [&'a [u8]; 9],
     levels: usize,
     compact: bool,
+    short: bool,
     offset: u64,
 }
 
@@ -239,6 +249,9 @@ impl Words<'_> {
                 let at = |highest: usize| [highest - 39 * v - 13 * c, highest - 12 - 39 * v - 13 * c];
                 let d = if level == 0 || level + 1 < depth {
                     signed(self.sections[3], 32, self.split(tree, level, node), at(255))
+                } else if self.short {
+                    let low = 63 * (node % 4) + 56 - 21 * v - 7 * c;
+                    64 * signed(self.sections[4], 32, half() / 4, [low + 6, low])
                 } else {
                     signed(self.sections[4], 16, half(), at(116))
                 };
@@ -282,7 +295,8 @@ fn the_words_of_the_document_are_enough_to_read_a_scene() {
                 let words = Words {
                     sections,
                     levels: meta["levels"].as_u64().unwrap() as usize,
-                    compact: meta["vertices"] == "compact",
+                    compact: meta["vertices"] != "exact",
+                    short: meta["vertices"] == "short",
                     offset: meta["bound_offset"].as_u64().unwrap(),
                 };
                 let mut nodes = 0;

@@ -186,7 +186,7 @@ fn differences(place: &str, pinned: &Value, now: &Value, found: &mut Vec<String>
 
 #[test]
 fn frames_are_as_they_were() {
-    let [exact, compact] = VertexForm::ALL.map(|form| scene_of(&with_vertices(form, terrain(8, 5, 0.6, 11))));
+    let [exact, compact] = [VertexForm::Exact, VertexForm::Compact].map(|form| scene_of(&with_vertices(form, terrain(8, 5, 0.6, 11))));
     let rewrite = std::env::var_os(REWRITE).is_some();
     let mut moved = Vec::new();
     for pin in &PINS {

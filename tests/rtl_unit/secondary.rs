@@ -41,7 +41,7 @@ fn random_paths_under_random_traffic() {
         let levels = rng.below(u64::from(most_levels(&config).min(5) + 1)) as u32;
         let roughness = [0.05, 0.4, 1.5][rng.below(3) as usize];
         let h = if rng.below(2) == 0 { ball(levels, roughness, seed) } else { terrain(2, levels, roughness, seed) };
-        let h = with_vertices(form_for(&config, VertexForm::ALL[rng.below(2) as usize]), h);
+        let h = with_vertices(form_for(&config, VertexForm::ALL[rng.below(3) as usize]), h);
         let scene = scene_for(&config, &h);
         let h = scene.decode();
         let mut traverser = LodTraverser::new(LodImage::of(&scene));

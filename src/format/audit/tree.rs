@@ -4,7 +4,7 @@
 
 use super::boxes::{Span, excess};
 use super::tally::{CheckKind, Tallies};
-use crate::format::{Displacements, L0Record, Scene, SplitRecord, VertexData};
+use crate::format::{Displacements, L0Record, Scene, ShortLine, SplitRecord, VertexData};
 use crate::mesh::{BoundKind, lattice};
 use crate::num::{COORD_LIMIT, LARGEST_BOUND, VertexForm, Wire, sqrt_ceil};
 use rayon::prelude::*;
@@ -304,13 +304,21 @@ impl Reader<'_> {
             return line.points().map(|v| v.get().map(|c| c as i32)); // 32 bits by their type
         }
         let d = match split {
-            Some(split) => [split.v0, split.v1, split.v2],
+            Some(split) => [split.v0, split.v1, split.v2].map(|v| v.get()),
+            None if self.form == VertexForm::Short => {
+                // Four nodes share a line, from its low bits on, with a 64th of what steps have.
+                let four = self.begins.last[place] + before - 4usize.pow(level) * self.begins.deeper[place];
+                let line = ShortLine::from_words(&self.lines[four / 4]);
+                self.found.check(CheckKind::Reserved, line.reserved.get() == 0, name);
+                let own = line.siblings[four % 4];
+                [own.v0, own.v1, own.v2].map(|v| v.get().map(|c| 64 * c))
+            }
             None => {
                 // Two nodes share a line, the first of them in its low half; the trees that have these levels begin behind the deeper ones.
                 let half = self.begins.last[place] + before - 4usize.pow(level) * self.begins.deeper[place];
                 let half = Displacements::from_words(&self.lines[half / 2][2 * (half % 2)..]);
                 self.found.check(CheckKind::Reserved, half.reserved.get() == 0, name);
-                [half.v0, half.v1, half.v2]
+                [half.v0, half.v1, half.v2].map(|v| v.get())
             }
         };
         let zero = self.levels - level + 3;
@@ -318,7 +326,7 @@ impl Reader<'_> {
             let (a, b) = (p[(k + 1) % 3], p[(k + 2) % 3]);
             let octave = (u64::from(codes[k]) + self.offset) / 16;
             let unit = 2i64.pow(zero.max(octave.saturating_sub(11) as u32)); // below 48
-            let d = d[k].get();
+            let d = d[k];
             std::array::from_fn(|c| {
                 let v = (i64::from(a[c]) + i64::from(b[c])).div_euclid(2) + d[c] * unit;
                 v.clamp(i32::MIN.into(), i32::MAX.into()) as i32 // beyond the limit if it had to be clamped
@@ -374,7 +382,7 @@ impl Reader<'_> {
         let within = v.iter().all(|c| (-COORD_LIMIT..=COORD_LIMIT).contains(c));
         self.found.check(CheckKind::Limit, within, || format!("{} is {v:?}", name()));
         // Exact ones end in the four zero bits that are not stored, whatever their grid; compact ones have them besides it.
-        let bits = self.levels - level + if self.form == VertexForm::Compact { 4 } else { 0 };
+        let bits = self.levels - level + if self.form.is_compact() { 4 } else { 0 };
         let low = (1i32 << bits) - 1;
         self.found.check(CheckKind::LowBits, v.iter().all(|c| c & low == 0), || format!("{} is {v:?}", name()));
     }

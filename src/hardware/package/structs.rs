@@ -1,7 +1,7 @@
 //! Packed structs from [`Wire`] types: names, order, widths and descriptions of the fields are those of the source.
 
 use crate::block::{self, Block};
-use crate::format::{BvhNode, Displacements, L0Record, SplitRecord, VertexData};
+use crate::format::{BvhNode, Displacements, L0Record, ShortDisplacements, SplitRecord, VertexData};
 use crate::hardware::ports::{Corners, HitOut, MemoryAnswer, MemoryRequest, RayIn, SceneConfig, SecondaryIn};
 use crate::method::{Entry, Hit};
 use crate::num::{self, Box16, Field, Layout, Wire};
@@ -36,6 +36,7 @@ pub(super) fn all() -> Vec<Struct> {
         vector::<28>("stored_point", "Stored vertex: units / 16."),
         vector::<22>("stored_corner", "Stored corner of a base triangle of compact vertices: units / 1024."),
         vector::<13>("displacement", "Displacement of a compact vertex from the midpoint of its edge, in steps."),
+        vector::<7>("short_displacement", "Its leading bits, in a last split of short vertices."),
         vector::<16>("code3", "Corner of a box in steps of 2^16 units."),
         vector::<11>("local", "Local coordinates of a corner, mirrored."),
         vector::<63>("moment", "Moment of a ray: origin cross direction."),
@@ -87,6 +88,7 @@ pub(super) fn all() -> Vec<Struct> {
         of::<BvhNode>("bvh_node"),
         of::<VertexData>("vertex_data"),
         of::<Displacements>("displacements"),
+        of::<ShortDisplacements>("short_displacements"),
         of::<L0Record>("l0_record"),
         of::<Entry>("stack_entry"),
         of::<Hit>("hit"),

@@ -46,6 +46,7 @@ impl LineLayout {
             "coarse" => Some(Self::Ordered(LineOrder::Coarse)),
             "blocks" => Some(Self::Ordered(LineOrder::Blocks)),
             "veb" => Some(Self::Ordered(LineOrder::VanEmdeBoas)),
+            "morton" => Some(Self::Ordered(LineOrder::Morton)),
             _ => None,
         }
     }
@@ -65,10 +66,11 @@ pub static LINE_LAYOUT: Knob = Knob {
         ("coarse", "Three levels over all trees, then what is below each of their nodes by itself"),
         ("blocks", "Two levels of a tree together, these blocks level by level over all trees"),
         ("veb", "Tree by tree, each in van Emde Boas' order"),
+        ("morton", "Level by level, trees along a Morton curve"),
     ],
     of_frame: false,
     allows: |value| {
-        LineLayout::named(value).map(drop).ok_or_else(|| format!("'{value}' is not own, paper, apart, tree, coarse, blocks or veb"))
+        LineLayout::named(value).map(drop).ok_or_else(|| format!("'{value}' is not own, paper, apart, tree, coarse, blocks, veb or morton"))
     },
 };
 
@@ -131,6 +133,8 @@ pub struct LodImage<'a> {
     pub map: MemoryMap,
     layout: LineLayout,
     trees: usize,
+    /// Places of trees in an order that is not theirs.
+    ranks: Option<&'a [u32]>,
     /// Prisms of the children of each split, if they bound them in place of its boxes.
     pub(super) prisms: Option<&'a [Prisms]>,
 }
@@ -153,7 +157,9 @@ impl<'a> LodImage<'a> {
             LineLayout::Apart if form.is_compact() => (1, splits.len(), 2 * splits.len()),
             LineLayout::Apart => (1, splits.len(), vertices.len()),
             LineLayout::Paper => (2, all(layout::split_lines(levels)), all(layout::vertex_lines(VertexForm::Exact, levels))),
-            LineLayout::Ordered(_) if form.is_compact() => (1, all(layout::split_lines(levels)), 2 * all(layout::split_lines(levels))),
+            LineLayout::Ordered(_) if form.is_compact() => {
+                (1, all(layout::split_lines(levels)), form.sibling_lines() * all(layout::split_lines(levels)))
+            }
             LineLayout::Ordered(_) => (1, all(layout::split_lines(levels)), all(layout::vertex_lines(form, levels))),
         };
         let record_lines = if matches!(layout, LineLayout::Paper | LineLayout::Apart) { 2 * scene.trees() } else { records.len() };
@@ -178,6 +184,7 @@ impl<'a> LodImage<'a> {
             map,
             layout,
             trees: scene.trees(),
+            ranks: None,
             prisms: None,
         }
     }
@@ -186,6 +193,12 @@ impl<'a> LodImage<'a> {
     #[must_use]
     pub fn bounded_by(self, prisms: &'a [Prisms]) -> Self {
         Self { prisms: Some(prisms), ..self }
+    }
+
+    /// The same with trees in these places ([`morton_ranks`](super::order::morton_ranks)), where the layout is an order.
+    #[must_use]
+    pub fn ranked_by(self, ranks: &'a [u32]) -> Self {
+        Self { ranks: Some(ranks), ..self }
     }
 
     /// A tree's L0 record.
@@ -199,7 +212,7 @@ impl<'a> LodImage<'a> {
     pub fn corners(&self, tree: usize) -> [Point; 3] {
         match self.form {
             VertexForm::Exact => VertexData::from_words(&self.records[2 * tree + 1]).points(),
-            VertexForm::Compact => L0Record::from_words(&self.records[tree]).corners(),
+            VertexForm::Compact | VertexForm::Short => L0Record::from_words(&self.records[tree]).corners(),
         }
     }
 
@@ -258,8 +271,11 @@ impl<'a> LodImage<'a> {
             LineLayout::Own | LineLayout::Apart => (self.starts.vertex_line(self.form, tree.lines, level, node), 1),
             LineLayout::Paper => (tree.index as usize * layout::level_start(self.levels) + layout::level_start(level) + node, 2),
             // The vertices of four siblings follow each other as their parents' splits do.
-            LineLayout::Ordered(order) if self.form.is_compact() => (2 * self.ordered(order, tree, level - 1, node / 4) + node % 4 / 2, 1),
-            LineLayout::Ordered(_) if level == 0 => (tree.index as usize, 1),
+            LineLayout::Ordered(order) if self.form.is_compact() => {
+                let lines = self.form.sibling_lines();
+                (lines * self.ordered(order, tree, level - 1, node / 4) + node % 4 * lines / 4, 1)
+            }
+            LineLayout::Ordered(_) if level == 0 => (self.place(tree), 1),
             LineLayout::Ordered(order) => (self.trees + 4 * self.ordered(order, tree, level - 1, node / 4) + node % 4, 1),
         };
         Fetch::new(VERTICES, self.map.line(VERTICES, line as u64), 1).at(place)
@@ -268,6 +284,12 @@ impl<'a> LodImage<'a> {
     /// The split of a node, in this order.
     #[inline(always)]
     fn ordered(&self, order: LineOrder, tree: TreeAt, level: u32, node: usize) -> usize {
-        order.split(self.trees, (self.levels - 1).max(1), tree.index as usize, level, node)
+        order.split(self.trees, (self.levels - 1).max(1), self.place(tree), level, node)
+    }
+
+    /// The place of a tree in an order that is not that of the images.
+    #[inline(always)]
+    fn place(&self, tree: TreeAt) -> usize {
+        self.ranks.map_or(tree.index, |ranks| ranks[tree.index as usize]) as usize
     }
 }

@@ -6,7 +6,7 @@ mod prior;
 mod trace;
 
 pub use image::{LINE_LAYOUT, LineLayout, LodImage, NODE_BOUNDS, NODES, RECORDS, SPLITS, VERTICES};
-pub use order::LineOrder;
+pub use order::{LineOrder, morton_ranks};
 pub use prior::{Deciders, Prior};
 pub use trace::LodTraverser;
 
@@ -50,6 +50,8 @@ struct Lod {
     layout: LineLayout,
     /// Of the children of each split, if they bound them.
     prisms: Option<Vec<Prisms>>,
+    /// Places of trees, if they have an order of their own.
+    ranks: Option<Vec<u32>>,
     space: ModelSpace,
 }
 
@@ -58,13 +60,18 @@ impl Lod {
         // Checked when it was chosen.
         let layout = knobs.get(&LINE_LAYOUT).and_then(LineLayout::named).unwrap_or_default();
         let prisms = (knobs.get(&NODE_BOUNDS) == Some("prisms")).then(|| scene_prisms(scene));
-        Self { scene: scene.clone(), layout, prisms, space: ModelSpace::of(scene) }
+        let ranks = (layout == LineLayout::Ordered(LineOrder::Morton)).then(|| morton_ranks(scene));
+        Self { scene: scene.clone(), layout, prisms, ranks, space: ModelSpace::of(scene) }
     }
 }
 
 impl Lod {
     fn image(&self) -> LodImage<'_> {
-        LodImage::with(&self.scene, self.layout)
+        let image = LodImage::with(&self.scene, self.layout);
+        match &self.ranks {
+            Some(ranks) => image.ranked_by(ranks),
+            None => image,
+        }
     }
 
     fn tracer_as<const COMPACT: bool, const FULL_DETAIL: bool>(&self, sight: &Sight) -> Box<dyn Tracer + '_> {

@@ -1,6 +1,8 @@
 //! Orders in which the splits of all trees could lie instead: their numbers, if all levels of all trees are stored.
 
+use crate::format::Scene;
 use crate::format::layout::level_start;
+use crate::num::BOX_SHIFT;
 
 /// An order of splits.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -13,13 +15,34 @@ pub enum LineOrder {
     Blocks,
     /// Tree by tree, each in van Emde Boas' order: the upper half of its levels, then the lower half below each of their nodes in turn, and so on within these.
     VanEmdeBoas,
+    /// Level by level over all trees, which have the places of [`morton_ranks`].
+    Morton,
+}
+
+/// The rank of each tree along a Morton curve through the middles of their corners, in steps of 2^16 units.
+pub fn morton_ranks(scene: &Scene) -> Vec<u32> {
+    let code = |tree: usize| {
+        let corners = scene.corners(tree);
+        (0..3).fold(0u64, |code, axis| {
+            let sum: i64 = corners.iter().map(|p| i64::from(p[axis])).sum();
+            let place = ((sum / 3) >> BOX_SHIFT) + (1 << 15); // 16 bits
+            (0..16).fold(code, |code, bit| code | (place as u64 >> bit & 1) << (3 * bit + axis))
+        })
+    };
+    let mut trees: Vec<(u64, u32)> = (0..scene.trees()).map(|tree| (code(tree), tree as u32)).collect(); // at most 2^28
+    trees.sort_unstable();
+    let mut ranks = vec![0; trees.len()];
+    for (rank, (_, tree)) in (0..).zip(trees) {
+        ranks[tree as usize] = rank;
+    }
+    ranks
 }
 
 /// Levels that [`LineOrder::Coarse`] has over all trees.
 const COARSE: u32 = 3;
 
 impl LineOrder {
-    /// Number of the split of node (`level`, `node`) of `tree`, of `trees` trees that have splits on `levels` levels.
+    /// Number of the split of node (`level`, `node`) of the tree of place `tree`, of `trees` trees that have splits on `levels` levels.
     pub fn split(self, trees: usize, levels: u32, tree: usize, level: u32, node: usize) -> usize {
         // Its place among the subtrees of so many levels whose roots are on level `top`.
         let below = |top: u32, levels: u32| {
@@ -37,6 +60,7 @@ impl LineOrder {
                 above(top) + below(top, (levels - top).min(2))
             }
             Self::VanEmdeBoas => tree * level_start(levels) + van_emde_boas(levels, level, node),
+            Self::Morton => above(level) + below(level, 1),
         }
     }
 }
@@ -61,7 +85,7 @@ mod tests {
 
     #[test]
     fn every_number_once() {
-        let orders = [LineOrder::Tree, LineOrder::Coarse, LineOrder::Blocks, LineOrder::VanEmdeBoas];
+        let orders = [LineOrder::Tree, LineOrder::Coarse, LineOrder::Blocks, LineOrder::VanEmdeBoas, LineOrder::Morton];
         for (order, levels, trees) in orders.into_iter().flat_map(|order| (1..=6).map(move |levels| (order, levels, 3))) {
             let mut numbers: Vec<usize> = (0..trees)
                 .flat_map(|tree| (0..levels).flat_map(move |level| (0..1 << (2 * level)).map(move |node| (tree, level, node))))

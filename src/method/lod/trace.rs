@@ -11,7 +11,7 @@ use crate::block::start_setup::{self, StartSetup};
 use crate::block::start_test::{self, Below, StartTest};
 use crate::block::tessellate::{self, Tessellate, child_triangle};
 use crate::block::tri_test::{self, TriTest};
-use crate::format::{BvhNode, Displacements, L0Record, SplitRecord, VertexData, has_split};
+use crate::format::{BvhNode, L0Record, SplitRecord, VertexData, has_split, last_displacements};
 #[cfg(target_arch = "x86_64")]
 use crate::method::children::has_lanes;
 use crate::method::children::{Split, bvh_children, prism_children, tree_children};
@@ -60,7 +60,7 @@ impl<'a> LodTraverser<'a> {
     /// Traces `ray`: every triangle that serves the ray and is met goes to `sink`, every step to `steps`.
     pub fn trace<S: StepSink, H: HitSink>(&mut self, ray: &Ray, steps: &mut S, sink: &mut H) {
         match self.image.form {
-            VertexForm::Compact => self.trace_as::<S, H, true, false, false>(ray, None, steps, sink),
+            VertexForm::Compact | VertexForm::Short => self.trace_as::<S, H, true, false, false>(ray, None, steps, sink),
             VertexForm::Exact => self.trace_as::<S, H, false, false, false>(ray, None, steps, sink),
         }
     }
@@ -68,7 +68,7 @@ impl<'a> LodTraverser<'a> {
     /// Traces `ray` from the surface: its origin is the whole point of `departure.start`, and what it needs of the rays before it is there.
     pub fn trace_from<S: StepSink, H: HitSink>(&mut self, ray: &Ray, departure: &Departure, steps: &mut S, sink: &mut H) {
         match self.image.form {
-            VertexForm::Compact => self.trace_as::<S, H, true, false, true>(ray, Some(departure), steps, sink),
+            VertexForm::Compact | VertexForm::Short => self.trace_as::<S, H, true, false, true>(ray, Some(departure), steps, sink),
             VertexForm::Exact => self.trace_as::<S, H, false, false, true>(ray, Some(departure), steps, sink),
         }
     }
@@ -259,11 +259,11 @@ impl<S: StepSink, H: HitSink, const COMPACT: bool, const FULL_DETAIL: bool, cons
     #[inline(always)]
     fn stored(&self, level: u32, node: usize) -> [Point; 3] {
         let (image, lines) = (self.image, self.tree.lines);
-        let line = |form| &image.vertices[image.starts.vertex_line(form, lines, level, node)];
+        let line = || &image.vertices[image.starts.vertex_line(image.form, lines, level, node)];
         match COMPACT {
-            false => VertexData::from_words(line(VertexForm::Exact)).points(),
+            false => VertexData::from_words(line()).points(),
             true if has_split(lines.depth, level) => SplitRecord::line_displacements(&image.splits[image.starts.split(lines, level, node)]),
-            true => Displacements::line_half(line(VertexForm::Compact), node),
+            true => last_displacements(image.form, line(), node),
         }
     }
 

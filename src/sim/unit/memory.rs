@@ -3,7 +3,7 @@
 use crate::format::{FileSection, LevelStarts, Scene};
 use crate::hardware::ports::{AnswerLimit, SceneConfig};
 use crate::method::lod::{LodImage, NODES, RECORDS, SPLITS, VERTICES};
-use crate::num::{BoundScale, LINE_BYTES, LineAddress, U};
+use crate::num::{BoundScale, LINE_BYTES, LineAddress, U, VertexForm};
 use crate::step::{MemoryMap, SectionId};
 
 /// Words of a line.
@@ -14,7 +14,7 @@ const WORDS: u64 = 4;
 pub struct SceneMemory<'a> {
     levels: u32,
     zeros: u32,
-    compact: bool,
+    form: VertexForm,
     scale: BoundScale,
     /// Words of each section, by its place.
     sections: [&'a [u64]; 4],
@@ -39,7 +39,7 @@ impl<'a> SceneMemory<'a> {
         Self {
             levels: image.levels,
             zeros: image.zeros,
-            compact: image.form.is_compact(),
+            form: image.form,
             scale: image.scale,
             sections,
             starts: image.starts,
@@ -55,7 +55,8 @@ impl<'a> SceneMemory<'a> {
         SceneConfig {
             levels,
             zeros,
-            compact: self.compact,
+            compact: self.form.is_compact(),
+            short_splits: self.form == VertexForm::Short,
             scale: self.scale,
             nodes,
             records,
@@ -71,7 +72,7 @@ impl<'a> SceneMemory<'a> {
     /// The most entries that a ray can visit: each node of the quad-BVH, each tree and each node of a tree has one parent and is visited once.
     fn visits(&self) -> u64 {
         let lines = |section: SectionId| self.sections[section.place()].len() as u64 / WORDS;
-        let trees = lines(RECORDS) / if self.compact { 1 } else { 2 };
+        let trees = lines(RECORDS) / self.form.record_lines() as u64;
         lines(NODES) + trees + 4 * lines(SPLITS)
     }
 

@@ -6,10 +6,10 @@ use crate::block::tessellate::child_triangle;
 use crate::block::{
     bary_map, child_test, hit_select, lod_test, lod_test_by, node_address, start_divide, start_setup, start_test, tessellate, tree_deciders,
 };
-use crate::format::{Displacements, SplitRecord, VertexData};
+use crate::format::{SplitRecord, VertexData, last_displacements};
 use crate::hardware::ports::{Corners, HitOut, SceneConfig, SecondaryIn};
 use crate::hardware::{Fetch, RayError, State};
-use crate::num::{LineAddress, PADDING_BITS, Point, RayT, Start, U, Wire};
+use crate::num::{LineAddress, PADDING_BITS, Point, RayT, Start, U, VertexForm, Wire};
 
 /// Zero bits at the bottom of every stored coordinate.
 const PADDING: u64 = PADDING_BITS as u64;
@@ -92,10 +92,10 @@ impl Context {
         match self.fetch.get() {
             Fetch::Node => record(scene.nodes, 0),
             Fetch::Record => record(scene.records, u64::from(!scene.compact)),
-            // Four siblings' compact vertices have two lines, which lie as their parents' splits do. Only nodes below a root have such.
+            // Four siblings' compact vertices have two lines, short ones one, which lie as their parents' splits do. Only nodes below a root have such.
             Fetch::Split if second && scene.compact => node_address::In {
-                scale: U::new(1),
-                low: U::new(node / 2 % 2),
+                scale: U::new(u64::from(!scene.short_splits)),
+                low: U::new(if scene.short_splits { 0 } else { node / 2 % 2 }),
                 ..of_tree(scene.vertices, scene.vertex_start(level), level.wrapping_sub(1) & 15, node / 4)
             },
             Fetch::Split if second => of_tree(scene.vertices, scene.vertex_start(level), level, node),
@@ -138,7 +138,11 @@ impl Context {
         if self.split_has_vertices(scene) {
             SplitRecord::line_displacements(&self.lines[0])
         } else if scene.compact {
-            Displacements::line_half(&self.lines[1], self.node.get().get() as usize & 1)
+            last_displacements(
+                if scene.short_splits { VertexForm::Short } else { VertexForm::Compact },
+                &self.lines[1],
+                self.node.get().get() as usize,
+            )
         } else {
             VertexData::from_words(&self.lines[1]).points().map(|point| self.kept(point))
         }

@@ -166,7 +166,7 @@ fn corner(line: Line, x: i64) -> Option<(Line, bool)> {
 /// The corner p1 of an L0 record, `x` in 16 units.
 fn base_corner(form: VertexForm, at: u64, line: Line, x: i64) -> Option<(Line, bool)> {
     match form {
-        VertexForm::Compact => changed(line, |record: &mut L0Record| record.p1.x = S::new(x >> 6)),
+        VertexForm::Compact | VertexForm::Short => changed(line, |record: &mut L0Record| record.p1.x = S::new(x >> 6)),
         VertexForm::Exact if at & 1 == 1 => corner(line, x),
         VertexForm::Exact => Some((line, false)),
     }
@@ -206,7 +206,7 @@ pub fn each_error<E: Exposed>(mut make: impl FnMut(Hardware, &SceneConfig) -> E)
             VertexForm::Exact => {
                 wrong(make, &desk, &scene, image, |of, _, line| if of == "vertex_data" { corner(line, -(1 << 27)) } else { same(line) });
             }
-            VertexForm::Compact => {
+            VertexForm::Compact | VertexForm::Short => {
                 // Corners where no coordinate can be larger, and steps from there.
                 let far = |record: &mut L0Record| {
                     let x = S::new(i64::from(COORD_LIMIT >> 10));

@@ -123,10 +123,12 @@ pub fn form_for(hardware: &Hardware, wanted: VertexForm) -> VertexForm {
     match (hardware.compact_vertices, hardware.exact_vertices) {
         (true, true) => wanted,
         (compact, _) => {
-            if compact {
-                VertexForm::Compact
-            } else {
+            if !compact {
                 VertexForm::Exact
+            } else if wanted.is_compact() {
+                wanted
+            } else {
+                VertexForm::Compact
             }
         }
     }

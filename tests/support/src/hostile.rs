@@ -54,7 +54,7 @@ impl Stage {
         let levels = rng.below(u64::from(most_levels(config).min(4) + 1)) as u32;
         let h = if rng.below(2) == 0 { ball(levels, 0.4, seed) } else { terrain(2, levels, 0.4, seed) };
         let zeros = config.coordinate_zeros.min(most_zeros(levels));
-        let h = with_vertices(form_for(config, VertexForm::ALL[rng.below(2) as usize]), with_zeros(zeros, h));
+        let h = with_vertices(form_for(config, VertexForm::ALL[rng.below(3) as usize]), with_zeros(zeros, h));
         let rays = any_rays(&h, 40, seed);
         let as_taken = |(k, ray)| ray_for(config, &coarsened(ray, [zeros, config.direction_zeros]), k);
         let rays: Vec<Ray> = rays.iter().enumerate().map(as_taken).collect();

@@ -101,9 +101,9 @@ pub fn coarsened(ray: &Ray, zeros: [u32; 2]) -> Ray {
 
 /// The same model with vertices of this form: to have them compact its points go to the coarser grids of that form, and bounds are those of that.
 pub fn with_vertices(form: VertexForm, mut h: Hierarchy) -> Hierarchy {
-    if form == VertexForm::Compact {
+    if form.is_compact() {
         regrid(form, &mut h);
-        naive_compact(&mut h);
+        naive_compact(form, &mut h);
     }
     h
 }
