@@ -3,7 +3,7 @@
 
 use super::{Box32, Child, QuadNode, WideNode};
 use crate::format::{Box16, BvhChild, BvhNode, ChildRef, Line, SixNode};
-use crate::num::{BoxStep, COORD_LIMIT, U, Vec3, Wire, box_code_ceil, box_code_floor, wire_struct};
+use crate::num::{BoxStep, U, Vec3, Wire, box_code_ceil, box_code_floor, wire_struct};
 
 /// A node with 16-bit boxes: four [`BvhChild`] of 16 bytes, child k in words 2k and 2k + 1.
 pub type Node16 = [u64; 8];
@@ -33,9 +33,9 @@ fn reference(c: Child) -> ChildRef {
     }
 }
 
-fn box16(b: &Box32) -> Box16 {
-    // Boxes keep to the coordinate limit; the minimum only spells it out for the addition in `box_code_ceil`.
-    Box16::from_codes(b.lo.map(box_code_floor), b.hi.map(|v| box_code_ceil(v.min(COORD_LIMIT))))
+pub(super) fn box16(b: &Box32) -> Box16 {
+    // Boxes keep to the coordinate limit, or a few units more where they are turned: `box_code_ceil` adds without overflow.
+    Box16::from_codes(b.lo.map(box_code_floor), b.hi.map(box_code_ceil))
 }
 
 /// The node with its boxes rounded outwards to 16-bit codes. It keeps to the limits of [`super::build()`]: indices below 2^28, leaves of 1 to 4.
@@ -68,11 +68,13 @@ pub fn encode_line(node: &QuadNode) -> Line {
     line
 }
 
-/// The node of six children: its boxes rounded outwards to 16-bit codes and then to 255 steps of the node's frame. The same limits as for [`encode_line`].
-pub fn encode6(node: &WideNode<6>) -> Node6 {
+/// The node of six children: its boxes rounded outwards to 16-bit codes and then to 255 steps of the node's frame, which is turned by a
+/// [`Rotation`](crate::num::Rotation) of this number. The same limits as for [`encode_line`].
+pub fn encode6(node: &WideNode<6>, rotation: u32) -> Node6 {
     let Framed { kinds, counts, firsts, origin, steps, planes } = Framed::of(node, SixNode::MOST);
     let out = SixNode {
-        reserved: [U::ZERO; 3],
+        reserved: [U::ZERO; 2],
+        rotation: U::new(u64::from(rotation)),
         kinds,
         counts,
         first_node: firsts[0],
@@ -142,6 +144,7 @@ pub fn encode32(node: &QuadNode) -> Node32 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::num::COORD_LIMIT;
     use proptest::prelude::*;
 
     fn node<const W: usize>(corners: Vec<([i32; 3], [i32; 3])>) -> WideNode<W> {
@@ -193,7 +196,7 @@ mod tests {
             corners in prop::collection::vec((prop::array::uniform3(-COORD_LIMIT..=COORD_LIMIT), prop::array::uniform3(-COORD_LIMIT..=COORD_LIMIT)), 1..=6), bits in 0u32..20
         ) {
             let node: WideNode<6> = node(corners.into_iter().map(|(a, b)| (a.map(|c| c >> bits), b.map(|c| c >> bits))).collect());
-            let stored = SixNode::from_words(&encode6(&node));
+            let stored = SixNode::from_words(&encode6(&node, 0));
             let used = node.children.iter().take_while(|c| **c != Child::Empty).count();
             let all: Vec<_> = node.boxes[..used].iter().map(box16).collect();
             for k in 0..6 {

@@ -11,6 +11,7 @@ pub(crate) mod collapse;
 mod encode;
 pub(crate) mod foreign;
 pub(crate) mod order;
+pub(crate) mod orient;
 pub(crate) mod plan;
 
 pub use check::{Defect, check, sah_cost};
@@ -165,6 +166,9 @@ pub enum BvhError {
     /// A tree over other triangles than those of the hierarchy.
     #[error("the tree was built over another hierarchy")]
     OtherHierarchy,
+    /// Boxes that nodes of such a number of children do not have.
+    #[error("boxes are local or codes in nodes of four children, and local or oriented in nodes of six")]
+    NodeBoxes,
     /// A hierarchy with more splits than the format allows.
     #[error("{0} levels: a hierarchy has at most 10")]
     Levels(u32),

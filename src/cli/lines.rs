@@ -176,6 +176,7 @@ impl Subject<'_> {
                     let nodes = match boxes {
                         NodeBoxes::Local => "BVH 5-bit",
                         NodeBoxes::Six => "BVH6 8-bit",
+                        NodeBoxes::Oriented => "BVH6 8-bit oriented",
                         NodeBoxes::Codes => "BVH 16-bit",
                         NodeBoxes::Wide => "BVH 32-bit",
                     };

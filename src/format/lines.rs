@@ -13,7 +13,7 @@
 
 pub use crate::num::Box16;
 use crate::num::{
-    BASE_ZERO_BITS, BoundCode, BoxStep, Displacement, PADDING_BITS, Point, S, SHORT_BITS, SHORT_SHIFT, U, Vec3, Wire, box_steps,
+    BASE_ZERO_BITS, BoundCode, BoxStep, Displacement, PADDING_BITS, Point, ROTATION_BITS, S, SHORT_BITS, SHORT_SHIFT, U, Vec3, Wire, box_steps,
     wire_struct,
 };
 
@@ -76,7 +76,9 @@ wire_struct! {
     /// A node of six children of a full-resolution BVH: 64 bytes. As a [`BvhNode`], with planes of 8 bits.
     pub struct SixNode {
         /// Zero.
-        reserved: [U<27>; 3],
+        reserved: [U<37>; 2],
+        /// Frame that its boxes lie in, by number; 0 is that of all coordinates.
+        rotation: U<ROTATION_BITS>,
         /// Kind of each child: 0 empty, 1 inner node, 2 leaf.
         kinds: [U<2>; 6],
         /// Leaf: number of triangles, or lines of its block, minus one; else 0.

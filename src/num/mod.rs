@@ -9,6 +9,7 @@ mod fixed;
 mod formats;
 pub mod prism;
 pub mod random;
+mod rotation;
 mod round;
 mod step;
 mod vec3;
@@ -20,6 +21,7 @@ pub use displacement::{VertexForm, displaced, displacement_shift, displacement_s
 pub use fixed::{S, U, WS, WU};
 pub use formats::*;
 pub use random::Random;
+pub use rotation::{LET_OUT, ROTATION_BITS, ROTATIONS, Rotation};
 pub use round::*;
 pub use step::{BoxStep, box_steps};
 pub use vec3::Vec3;

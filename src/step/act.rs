@@ -227,6 +227,7 @@ mod tests {
             Step::on(fetch, Act::Children { shape: NodeShape::Local, met: 1 }),
             Step::on(fetch, Act::Children { shape: NodeShape::Tree, met: 1 }),
             Step::on(fetch, Act::Children { shape: NodeShape::Six, met: 6 }),
+            Step::on(fetch, Act::Children { shape: NodeShape::Turned, met: 6 }),
             Step::of(Act::Children { shape: NodeShape::Prisms, met: 3 }),
             Step::of(Act::Decide),
             Step::of(Act::LodTest { refine: true }),
@@ -241,7 +242,8 @@ mod tests {
         steps.iter().for_each(|step| step.count(&mut operations));
         let some: Vec<_> = operations.iter().filter(|&(_, n)| n > 0).map(|(operation, n)| (operation.name(), n)).collect();
         let wanted = [
-            ("node_address", 28),
+            ("ray_setup", 1),
+            ("node_address", 32),
             ("child_test", 1),
             ("lod_test", 1),
             ("tessellate", 1),
@@ -250,11 +252,11 @@ mod tests {
             ("hit_select", 3),
             ("bary_map", 1),
             ("box_decode", 4),
-            ("box_test", 14),
+            ("box_test", 20),
             ("box_test32", 4),
             ("child_sort", 3),
-            ("box_decode8", 6),
-            ("child_sort6", 1),
+            ("box_decode8", 12),
+            ("child_sort6", 2),
             ("tree_deciders", 1),
             ("child_prisms", 1),
         ];

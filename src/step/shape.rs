@@ -18,6 +18,8 @@ pub enum NodeShape {
     Wide,
     /// 16-bit boxes of six children that are stored in finer steps from the node's corner.
     Six,
+    /// The same in a frame that the ray is first turned into.
+    Turned,
 }
 
 /// A line of the table.
@@ -35,7 +37,7 @@ pub struct ShapeFacts {
 
 impl NodeShape {
     /// All, in the order of their numbers.
-    pub const ALL: [Self; 6] = [Self::Tree, Self::Prisms, Self::Plain, Self::Local, Self::Wide, Self::Six];
+    pub const ALL: [Self; 7] = [Self::Tree, Self::Prisms, Self::Plain, Self::Local, Self::Wide, Self::Six, Self::Turned];
 
     /// The shape's line of the table.
     #[inline(always)]
@@ -56,6 +58,12 @@ impl NodeShape {
                 words: "16-bit boxes in finer steps",
                 children: 6,
                 path: &[(Operation::BoxDecode8, 6), (Operation::BoxTest, 6), (Operation::ChildSort6, 1)],
+            },
+            ShapeFacts {
+                letter: 'e',
+                words: "16-bit boxes in finer steps, in another frame than those before",
+                children: 6,
+                path: &[(Operation::RaySetup, 1), (Operation::BoxDecode8, 6), (Operation::BoxTest, 6), (Operation::ChildSort6, 1)],
             },
         ];
         const FACTS: &[ShapeFacts; NodeShape::ALL.len()] = &TABLE;

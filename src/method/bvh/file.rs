@@ -19,7 +19,7 @@ use super::cut::are_of_one_hierarchy;
 use super::{FullNodes, FullOptions, FullTree, LeafLayout};
 use crate::bvh::{BvhChild32, MAX_DEPTH, MAX_DEPTH_OF_SIX, Node6, Node16, Node32, Options};
 use crate::format::{BvhChild, BvhNode, ChildRef, FileSection, Line, Scene, SixNode};
-use crate::num::Wire;
+use crate::num::{ROTATIONS, Wire};
 use std::io::{self, Read, Write};
 use std::sync::Arc;
 use xxhash_rust::xxh3::Xxh3Default;
@@ -133,6 +133,9 @@ impl FullTree {
         if !self.blocks.is_empty() && self.blocks.iter().map(|size| u64::from(size.triangles())).sum::<u64>() != triangles {
             return false;
         }
+        if !self.nodes.have_frames() {
+            return false;
+        }
         let mut depths = vec![0u8; count];
         depths[0] = 1;
         (0..count).all(|at| {
@@ -182,6 +185,14 @@ impl FullNodes {
         }
     }
 
+    /// Whether every node names a frame that there is.
+    fn have_frames(&self) -> bool {
+        match self {
+            Self::Six(nodes) => nodes.iter().all(|node| (SixNode::from_words(node).rotation.get() as usize) < ROTATIONS),
+            Self::Local(_) | Self::Boxes16(_) | Self::Boxes32(_) => true,
+        }
+    }
+
     /// Most nodes on a path from the root.
     fn most_depth(&self) -> u32 {
         if matches!(self, Self::Six(_)) { MAX_DEPTH_OF_SIX } else { MAX_DEPTH }
@@ -207,12 +218,13 @@ mod tests {
     use crate::bvh::check::synthetic_terrain;
     use crate::method::bvh::leaves::BlockSize;
     use crate::method::bvh::{FullBuilder, NodeBoxes};
+    use crate::num::U;
     use proptest::prelude::*;
     use xxhash_rust::xxh3::xxh3_64;
 
     const KEY: TreeKey = TreeKey(7 << 100 | 3);
 
-    const ALL: [NodeBoxes; 4] = [NodeBoxes::Local, NodeBoxes::Codes, NodeBoxes::Wide, NodeBoxes::Six];
+    const ALL: [NodeBoxes; 5] = [NodeBoxes::Local, NodeBoxes::Codes, NodeBoxes::Wide, NodeBoxes::Six, NodeBoxes::Oriented];
 
     const LAYOUTS: [LeafLayout; 2] = [LeafLayout::Line, LeafLayout::Block];
 
@@ -271,8 +283,16 @@ mod tests {
         let mut wrong = sound.clone();
         wrong.ids[7] = 288;
         assert!(read(&file(&wrong)).is_none());
+        // A frame that there is none of.
+        let mut tree = tree(NodeBoxes::Oriented, LeafLayout::Block);
+        assert!(read(&file(&tree)).is_some());
+        let FullNodes::Six(nodes) = Arc::make_mut(&mut tree.nodes) else { panic!("6") };
+        let mut node = SixNode::from_words(&nodes[1]);
+        node.rotation = U::new(ROTATIONS as u64);
+        node.to_words(&mut nodes[1]);
+        assert!(read(&file(&tree)).is_none());
         // Blocks of other sizes than leaves say, or of fewer triangles.
-        let sound = tree(NodeBoxes::Local, LeafLayout::Block);
+        let sound = self::tree(NodeBoxes::Local, LeafLayout::Block);
         let with = |at: usize, size: BlockSize| {
             let mut tree = sound.clone();
             tree.blocks[at] = size;

@@ -10,6 +10,7 @@ use crate::bvh::build::{Binary, Prim, binary_tree};
 use crate::bvh::collapse::{self, BinaryTree};
 use crate::bvh::foreign::adopt;
 use crate::bvh::order::{by_halves, by_levels, by_treelets};
+use crate::bvh::orient::{Leaves as Below, orient};
 use crate::bvh::plan::LeafCost;
 use crate::bvh::{
     BinaryNode, BvhError, Child, Costs, MAX_DEPTH, MAX_DEPTH_OF_SIX, Node6, Node16, Node32, Options, WideNode, check_count, check_options,
@@ -31,6 +32,8 @@ pub enum NodeBoxes {
     Wide,
     /// Of six children, not four: steps of 8 bits in a frame of the node's own, 64 bytes.
     Six,
+    /// The same, but the frame is turned by whichever of a few rotations suits the node.
+    Oriented,
 }
 
 impl NodeBoxes {
@@ -38,7 +41,7 @@ impl NodeBoxes {
     pub const fn node_bytes(self) -> usize {
         match self {
             Self::Local => 32,
-            Self::Codes | Self::Six => 64,
+            Self::Codes | Self::Six | Self::Oriented => 64,
             Self::Wide => 128,
         }
     }
@@ -48,6 +51,15 @@ impl NodeBoxes {
         match name {
             "local" => Some(Self::Local),
             "codes" => Some(Self::Codes),
+            _ => None,
+        }
+    }
+
+    /// Those in nodes of six, of this name.
+    pub fn named_of_six(name: &str) -> Option<Self> {
+        match name {
+            "local" => Some(Self::Six),
+            "oriented" => Some(Self::Oriented),
             _ => None,
         }
     }
@@ -247,7 +259,7 @@ impl<'a> FullBuilder<'a> {
     /// Illegal options.
     pub fn sah_cost(&self, options: &FullOptions) -> Result<f64, BvhError> {
         match options.boxes {
-            NodeBoxes::Six => self.collapsed(options, |source: &BinaryTree<'_, 6>| source.cost()),
+            NodeBoxes::Six | NodeBoxes::Oriented => self.collapsed(options, |source: &BinaryTree<'_, 6>| source.cost()),
             NodeBoxes::Local | NodeBoxes::Codes | NodeBoxes::Wide => self.collapsed(options, |source: &BinaryTree<'_, 4>| source.cost()),
         }
     }
@@ -266,7 +278,14 @@ impl<'a> FullBuilder<'a> {
             NodeBoxes::Wide if as_collapsed => all(FullNodes::Boxes32(self.nodes(options, MAX_DEPTH, encode32)?), (ids(), Vec::new())),
             NodeBoxes::Six => {
                 let (nodes, rest) = self.laid_out::<6>(options, MAX_DEPTH_OF_SIX)?;
-                all(FullNodes::Six(nodes.par_iter().map(encode6).collect()), rest)
+                all(FullNodes::Six(nodes.par_iter().map(|node| encode6(node, 0)).collect()), rest)
+            }
+            NodeBoxes::Oriented => {
+                let (mut nodes, ids) = self.in_order::<6>(options, MAX_DEPTH_OF_SIX)?;
+                let rotations = self.orient(options, &mut nodes, &ids);
+                let blocks = self.blocks(options, &mut nodes, &ids)?;
+                let nodes = nodes.par_iter().zip(rotations).map(|(node, rotation)| encode6(node, rotation));
+                all(FullNodes::Six(nodes.collect()), (ids, blocks))
             }
             NodeBoxes::Local | NodeBoxes::Codes | NodeBoxes::Wide => {
                 let (nodes, rest) = self.laid_out(options, MAX_DEPTH)?;
@@ -305,6 +324,13 @@ impl<'a> FullBuilder<'a> {
         options: &FullOptions,
         depth: u32,
     ) -> Result<(Vec<WideNode<W>>, (Vec<u32>, Vec<BlockSize>)), BvhError> {
+        let (mut nodes, ids) = self.in_order(options, depth)?;
+        let blocks = self.blocks(options, &mut nodes, &ids)?;
+        Ok((nodes, (ids, blocks)))
+    }
+
+    /// The nodes in their order, and the triangles of those of each side by side.
+    fn in_order<const W: usize>(&self, options: &FullOptions, depth: u32) -> Result<(Vec<WideNode<W>>, Vec<u32>), BvhError> {
         let mut nodes = self.nodes(options, depth, |n: &WideNode<W>| *n)?;
         match options.order {
             NodeOrder::Depth => {}
@@ -314,8 +340,26 @@ impl<'a> FullBuilder<'a> {
         }
         let ids: Vec<u32> = self.prims.par_iter().map(|p| p.id).collect();
         let ids = side_by_side(&mut nodes, &ids);
-        let blocks = if options.layout == LeafLayout::Block { self.to_blocks(&mut nodes, &ids)? } else { Vec::new() };
-        Ok((nodes, (ids, blocks)))
+        Ok((nodes, ids))
+    }
+
+    /// The sizes of the blocks of the leaves of such nodes, if they are any; the leaves then have the lines of their blocks in place of their triangles.
+    fn blocks<const W: usize>(&self, options: &FullOptions, nodes: &mut [WideNode<W>], ids: &[u32]) -> Result<Vec<BlockSize>, BvhError> {
+        if options.layout == LeafLayout::Block { self.to_blocks(nodes, ids) } else { Ok(Vec::new()) }
+    }
+
+    /// Turns the boxes of such nodes, each node's into a frame of its own, and says which.
+    fn orient(&self, options: &FullOptions, nodes: &mut [WideNode<6>], ids: &[u32]) -> Vec<u32> {
+        let Costs { node: node_cost, primitive, line } = options.tree.costs;
+        let own = |first: u32, count: u8| &ids[first as usize..][..usize::from(count)];
+        let is_block = options.layout == LeafLayout::Block;
+        let lines = |ids: &[u32]| if is_block { self.lines(ids.iter().copied()).unwrap_or(0) } else { 0 };
+        let leaves = Below {
+            corners: &|first, count, corners| corners.extend(own(first, count).iter().flat_map(|&id| self.mesh.triangle(id))),
+            cost: &|first, count| primitive * f64::from(count) + line * f64::from(lines(own(first, count))),
+            node_cost,
+        };
+        orient(nodes, &leaves)
     }
 
     /// Lines of the block of some triangles.

@@ -16,7 +16,7 @@ pub use store::{NoStore, TreeStore};
 pub use trace::BvhTraverser;
 
 use super::{ClosestHit, Departure, Knob, Knobs, Landing, Method, MethodUnit, Registered, SurfaceHit, Trace, Tracer};
-use crate::block::Operation;
+use crate::block::{Operation, Work};
 use crate::bvh::BvhError;
 use crate::format::Scene;
 use crate::rays::{ModelSpace, Query, Sight};
@@ -61,11 +61,15 @@ pub static NODE_BOXES: Knob = Knob {
     help: "Boxes of a BVH's nodes",
     default: Some("local"),
     words: &[
-        ("local", "Steps of 5 bits in a frame of the node's own, a node in 32 bytes"),
-        ("codes", "Codes of 16 bits, a node in 64 bytes, as in the paper"),
+        ("local", "Steps in a frame of the node's own: of 5 bits, a node in 32 bytes; in nodes of six of 8 bits"),
+        ("codes", "Codes of 16 bits, a node in 64 bytes, as in the paper; not in nodes of six"),
+        ("oriented", "In nodes of six: as local, but the frame is turned by one of 125 rotations"),
     ],
     of_frame: false,
-    allows: |value| NodeBoxes::named(value).map(drop).ok_or_else(|| format!("'{value}' is not local or codes")),
+    allows: |value| {
+        let boxes = NodeBoxes::named(value).or(NodeBoxes::named_of_six(value));
+        boxes.map(drop).ok_or_else(|| format!("'{value}' is not local, codes or oriented"))
+    },
 };
 
 /// Where nodes lie.
@@ -116,7 +120,7 @@ pub static METHOD: Registered = Registered {
     of_input: false,
     unit: Some(MethodUnit { blocks: UNIT, has_levels: false }),
     works: &[],
-    make: |scene, knobs, store| Bvh::of(scene, knobs, None, store),
+    make: |scene, knobs, store| Bvh::of(scene, knobs, NodeBoxes::named, store),
 };
 
 /// Operations of a unit for nodes of six.
@@ -132,16 +136,32 @@ const UNIT_OF_SIX: &[Operation] = &{
     operations
 };
 
+/// A ray is turned: nine products of its origin and as many of its direction, their sums, and that of rounding to nearest. The ray in its frame is written.
+///
+/// No block does this yet. Its constants in the frame are those of a `ray_setup`, which [`NodeShape::Turned`](crate::step::NodeShape::Turned) has.
+const TURN: Work = Work {
+    name: "turn",
+    products: &[[9, ORIGIN, FACTOR], [9, COMPONENT, FACTOR]],
+    add_bits: 3 * 2 * (ORIGIN + FACTOR) + 3 * 3 * (COMPONENT + FACTOR),
+    select_bits: 0,
+    written_bits: 3 * (ORIGIN + COMPONENT),
+};
+
+/// Bits of a coordinate of an origin, of a component of a direction, and of a number of a [`Rotation`](crate::num::Rotation).
+const ORIGIN: u32 = 32;
+const COMPONENT: u32 = 31;
+const FACTOR: u32 = 8;
+
 /// The method with nodes of six children.
 pub static METHOD_SIX: Registered = Registered {
     name: "bvh6",
     help: "BVH of six children a node, in 64 bytes, with boxes in steps of 8 bits",
-    knobs: &[&NODE_ORDER, &LEAF_LAYOUT, &LEAF_SIZE],
+    knobs: &[&NODE_BOXES, &NODE_ORDER, &LEAF_LAYOUT, &LEAF_SIZE],
     error: None,
     of_input: false,
     unit: Some(MethodUnit { blocks: UNIT_OF_SIX, has_levels: false }),
-    works: &[],
-    make: |scene, knobs, store| Bvh::of(scene, knobs, Some(NodeBoxes::Six), store),
+    works: &[TURN],
+    make: |scene, knobs, store| Bvh::of(scene, knobs, NodeBoxes::named_of_six, store),
 };
 
 /// The method with 32-bit boxes.
@@ -153,7 +173,7 @@ pub static METHOD_WIDE: Registered = Registered {
     of_input: false,
     unit: Some(MethodUnit { blocks: &unit(Operation::BoxTest32), has_levels: false }),
     works: &[],
-    make: |scene, knobs, store| Bvh::of(scene, knobs, Some(NodeBoxes::Wide), store),
+    make: |scene, knobs, store| Bvh::of(scene, knobs, |_| Some(NodeBoxes::Wide), store),
 };
 
 /// [`METHOD`] over the mesh that the scene was made from: what somebody traces who has that mesh and no levels of detail.
@@ -165,7 +185,7 @@ pub static METHOD_INPUT: Registered = Registered {
     of_input: true,
     unit: METHOD.unit,
     works: &[],
-    make: |scene, knobs, store| Bvh::of(scene.input().ok_or(BvhError::NoInput)?, knobs, None, store),
+    make: |scene, knobs, store| Bvh::of(scene.input().ok_or(BvhError::NoInput)?, knobs, NodeBoxes::named, store),
 };
 
 /// [`METHOD_SIX`] over that mesh.
@@ -176,8 +196,8 @@ pub static METHOD_INPUT_SIX: Registered = Registered {
     error: None,
     of_input: true,
     unit: METHOD_SIX.unit,
-    works: &[],
-    make: |scene, knobs, store| Bvh::of(scene.input().ok_or(BvhError::NoInput)?, knobs, Some(NodeBoxes::Six), store),
+    works: METHOD_SIX.works,
+    make: |scene, knobs, store| Bvh::of(scene.input().ok_or(BvhError::NoInput)?, knobs, NodeBoxes::named_of_six, store),
 };
 
 /// [`METHOD_WIDE`] over that mesh.
@@ -189,19 +209,24 @@ pub static METHOD_INPUT_WIDE: Registered = Registered {
     of_input: true,
     unit: METHOD_WIDE.unit,
     works: &[],
-    make: |scene, knobs, store| Bvh::of(scene.input().ok_or(BvhError::NoInput)?, knobs, Some(NodeBoxes::Wide), store),
+    make: |scene, knobs, store| Bvh::of(scene.input().ok_or(BvhError::NoInput)?, knobs, |_| Some(NodeBoxes::Wide), store),
 };
 
+/// The boxes of this name, if a method's nodes can have such boxes.
+pub type NamedBoxes = fn(&str) -> Option<NodeBoxes>;
+
 impl FullOptions {
-    /// Those that were chosen; boxes that are a method's own are not.
-    pub fn chosen(knobs: &Knobs, boxes: Option<NodeBoxes>) -> Self {
+    /// Those that were chosen. `boxes` says which boxes a method's nodes have by a name of [`NODE_BOXES`].
+    ///
+    /// # Errors
+    /// Its nodes have no such boxes.
+    pub fn chosen(knobs: &Knobs, boxes: NamedBoxes) -> Result<Self, BvhError> {
+        let boxes = knobs.get(&NODE_BOXES).and_then(boxes).ok_or(BvhError::NodeBoxes)?;
         // Checked when they were chosen.
-        let named = || knobs.get(&NODE_BOXES).and_then(NodeBoxes::named).unwrap_or(NodeBoxes::Local);
-        let boxes = boxes.unwrap_or_else(named);
         let layout = knobs.get(&LEAF_LAYOUT).and_then(LeafLayout::named).unwrap_or(LeafLayout::Block);
         let size = knobs.get(&LEAF_SIZE).and_then(|size| size.parse().ok()).unwrap_or(16);
         let order = knobs.get(&NODE_ORDER).and_then(NodeOrder::named).unwrap_or_default();
-        Self { order, ..Self::new(size, boxes, layout) }
+        Ok(Self { order, ..Self::new(size, boxes, layout) })
     }
 }
 
@@ -212,8 +237,8 @@ struct Bvh {
 }
 
 impl Bvh {
-    fn of(scene: &Scene, knobs: &Knobs, boxes: Option<NodeBoxes>, store: &dyn TreeStore) -> Result<Box<dyn Method>, BvhError> {
-        let options = FullOptions::chosen(knobs, boxes);
+    fn of(scene: &Scene, knobs: &Knobs, boxes: NamedBoxes, store: &dyn TreeStore) -> Result<Box<dyn Method>, BvhError> {
+        let options = FullOptions::chosen(knobs, boxes)?;
         let hierarchy = scene.decode();
         let key = || TreeKey::new(scene, &options, scene.levels());
         let tree = store.tree(&key, scene.finest_triangles(), &mut || FullBuilder::new(&hierarchy)?.tree(&options))?;

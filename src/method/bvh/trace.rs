@@ -17,9 +17,28 @@ use crate::method::children::{bvh_children, coded_children, quarter, six_childre
 use crate::method::leave;
 use crate::method::stack::{Entry, Op, TraversalStack, push_nearest, push_sorted};
 use crate::method::{Departure, Hit, HitSink, is_beyond};
-use crate::num::{LINE_BYTES, Point, Ray, Start, U, Vec3, Wire};
+use crate::num::{LINE_BYTES, Point, Ray, Rotation, Start, U, Vec3, Wire};
 use crate::step::{Act, Fetch, MemoryMap, NodeShape, Step, StepSink, TriangleRun};
 use std::sync::Arc;
+
+/// A ray in the frame that it was last turned into.
+struct Turned {
+    rotation: u32,
+    setup: ray_setup::Out,
+}
+
+impl Turned {
+    /// Turns `ray` into the frame of this number, and says whether it was in another one. The ray as it is is kept elsewhere, so number 0 turns nothing.
+    #[inline(always)]
+    fn turn(&mut self, rotation: u32, ray: &Ray) -> bool {
+        let turns = rotation != 0 && rotation != self.rotation;
+        if turns {
+            let (origin, direction) = Rotation::numbered(rotation).ray(ray.origin, ray.direction);
+            *self = Self { rotation, setup: RaySetup::eval(&ray_setup::In { origin, direction }) };
+        }
+        turns
+    }
+}
 
 /// Traces rays through a BVH; keeps its stack from ray to ray.
 pub struct BvhTraverser {
@@ -131,6 +150,7 @@ impl BvhTraverser {
             }
             _ => (Start::default(), RaySetup::eval(&ray_setup::In { origin: ray.origin, direction: ray.direction })),
         };
+        let mut turned = Turned { rotation: 0, setup };
         self.stack.clear();
         let mut next = Some(Entry::default());
         loop {
@@ -146,7 +166,7 @@ impl BvhTraverser {
             };
             let index = entry.index.get() as usize;
             if entry.kind.get() == Entry::BVH_NODE {
-                next = self.node::<S, H, LEAVING>(&setup, index, steps, sink);
+                next = self.node::<S, H, LEAVING>(ray, &setup, &mut turned, index, steps, sink);
             } else {
                 // Leaves keep their count in `level`, which trees need and leaves do not.
                 let own = self.leaves.leaf(index, entry.level.get() as usize + 1);
@@ -169,7 +189,9 @@ impl BvhTraverser {
     #[inline(always)]
     fn node<S: StepSink, H: HitSink, const LEAVING: bool>(
         &mut self,
+        ray: &Ray,
         setup: &ray_setup::Out,
+        turned: &mut Turned,
         index: usize,
         steps: &mut S,
         sink: &H,
@@ -215,9 +237,15 @@ impl BvhTraverser {
             }
             FullNodes::Six(nodes) => {
                 let node = SixNode::from_words(&nodes[index]);
+                let turns = turned.turn(node.rotation.get() as u32, ray);
+                let setup = if node.rotation == U::ZERO { setup } else { &turned.setup };
                 let (tests, t_near) = six_children(setup, t_max, &node);
                 let met = tests.count.get() as usize;
-                steps.step(Step::on(fetch, Act::Children { shape: NodeShape::Six, met: met as u32 }).visiting()); // at most 6
+                let shape = if turns { NodeShape::Turned } else { NodeShape::Six };
+                steps.step(Step::on(fetch, Act::Children { shape, met: met as u32 }).visiting()); // at most 6
+                if turns {
+                    steps.step(Step::of(Act::Work { work: 0, count: 1 }));
+                }
                 push_nearest(&mut self.stack, met, |place| {
                     let k = tests.order[place].get() as usize;
                     Entry { t_near: t_near[k], ..waiting(node.child(k)) }

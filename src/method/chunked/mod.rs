@@ -11,7 +11,8 @@ mod chunks;
 pub use chunks::{ChunkShape, Chunks};
 
 use super::bvh::{
-    BvhTracer, BvhTraverser, FullBuilder, FullBvh, FullOptions, LEAF_LAYOUT, LEAF_SIZE, NODE_BOXES, NODE_ORDER, bvh_map, check_hierarchy,
+    BvhTracer, BvhTraverser, FullBuilder, FullBvh, FullOptions, LEAF_LAYOUT, LEAF_SIZE, NODE_BOXES, NODE_ORDER, NodeBoxes, bvh_map,
+    check_hierarchy,
 };
 use super::knob::{DELTA, ErrorKnob, octaves};
 use super::{Knob, Knobs, Method, Registered, Tracer, discrete};
@@ -73,7 +74,7 @@ impl Chunked {
         Ok(Self {
             chunks: Chunks::new(&hierarchy, shape),
             hierarchy,
-            options: FullOptions::chosen(knobs, None),
+            options: FullOptions::chosen(knobs, NodeBoxes::named)?,
             space: ModelSpace::of(scene),
             made: Mutex::default(),
         })

@@ -6,8 +6,8 @@
 mod levels;
 
 use super::bvh::{
-    BvhTracer, BvhTraverser, FullBuilder, FullBvh, FullOptions, LEAF_LAYOUT, LEAF_SIZE, NODE_BOXES, NODE_ORDER, TreeKey, TreeStore, UNIT,
-    bvh_map, level_ids,
+    BvhTracer, BvhTraverser, FullBuilder, FullBvh, FullOptions, LEAF_LAYOUT, LEAF_SIZE, NODE_BOXES, NODE_ORDER, NodeBoxes, TreeKey,
+    TreeStore, UNIT, bvh_map, level_ids,
 };
 use super::knob::{DELTA, ErrorKnob};
 use super::{Knob, Knobs, Method, MethodUnit, Registered, Tracer};
@@ -78,7 +78,7 @@ fn chosen(knobs: &Knobs, finest: u32) -> Option<usize> {
 
 impl Discrete {
     fn of(scene: &Scene, knobs: &Knobs, store: &dyn TreeStore) -> Result<Box<dyn Method>, BvhError> {
-        let options = FullOptions::chosen(knobs, None);
+        let options = FullOptions::chosen(knobs, NodeBoxes::named)?;
         let hierarchy = scene.decode();
         let bvh = |level| {
             let key = || TreeKey::new(scene, &options, level);

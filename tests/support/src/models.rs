@@ -238,6 +238,8 @@ pub fn full_bvhs(h: &Hierarchy) -> Vec<FullBvh> {
         (NodeBoxes::Wide, LeafLayout::Block, 8, NodeOrder::VanEmdeBoas),
         (NodeBoxes::Six, LeafLayout::Block, 16, NodeOrder::Treelets),
         (NodeBoxes::Six, LeafLayout::Indexed, 1, NodeOrder::Depth),
+        (NodeBoxes::Oriented, LeafLayout::Block, 16, NodeOrder::Levels),
+        (NodeBoxes::Oriented, LeafLayout::Line, 1, NodeOrder::Depth),
     ];
     let build = |(boxes, layout, size, order)| {
         let options = FullOptions { order, ..FullOptions::new(size, boxes, layout) };
