@@ -44,6 +44,7 @@ pub const ROTATIONS: usize = {
 ///
 /// Boxes look the same when axes are exchanged or turned around. So a frame is one of the turns that no exchange makes smaller. Their Rodrigues vectors (the axis times
 /// the tangent of half the angle) lie in a cube of half width tan(22.5 degrees) = 0.414. The set is a grid of 5 x 5 x 5 in it, in steps of 1/6.
+/// (Opposite corners of the grid give one frame with its axes exchanged. The other 117 are all different.)
 static ALL: [Rotation; ROTATIONS] = {
     let mut all = [Rotation { rows: [[ONE, 0, 0], [0, ONE, 0], [0, 0, ONE]] }; ROTATIONS];
     let mut next = 1;
@@ -119,7 +120,7 @@ impl Rotation {
         (Point::new(x, y, z), Direction::new(dx, dy, dz))
     }
 
-    /// How much longer distances along each axis are in units of the frame: 0.57 to 1.
+    /// What a distance of 1 along each axis is in units of the frame: 0.57 to 1.
     pub fn lengths(&self) -> [f64; 3] {
         self.rows.map(|row| (row.iter().map(|c| c * c).sum::<i64>() as f64).sqrt() / ONE as f64)
     }
