@@ -148,7 +148,7 @@ fn area(bounds: &Box32, lengths: &[f64; 3]) -> f64 {
 mod tests {
     use super::*;
     use crate::bvh::build::Prim;
-    use crate::bvh::{MAX_DEPTH_OF_SIX, Options, build_nodes, encode6};
+    use crate::bvh::{MAX_DEPTH_OF_SIX, Options, build_nodes, encode6, side_by_side};
     use crate::format::SixNode;
     use crate::num::{COORD_LIMIT, Random, Wire};
 
@@ -175,7 +175,9 @@ mod tests {
 
     fn tree(triangles: &[Triangle]) -> (Vec<WideNode<6>>, Vec<u32>) {
         let prims = (0..).zip(triangles).map(|(k, p)| Prim::new(&Box32::of_triangle(*p), k)).collect();
-        build_nodes(prims, &Options::with_leaf(2), MAX_DEPTH_OF_SIX, |node: &WideNode<6>| *node).unwrap()
+        let (mut nodes, order) = build_nodes(prims, &Options::with_leaf(2), MAX_DEPTH_OF_SIX, |node: &WideNode<6>| *node).unwrap();
+        let order = side_by_side(&mut nodes, &order);
+        (nodes, order)
     }
 
     fn oriented(triangles: &[Triangle]) -> (Vec<WideNode<6>>, Vec<u32>, Vec<u32>) {
