@@ -13,8 +13,8 @@
 
 pub use crate::num::Box16;
 use crate::num::{
-    BASE_ZERO_BITS, BoundCode, BoxStep, Displacement, PADDING_BITS, Point, ROTATION_BITS, S, SHORT_BITS, SHORT_SHIFT, U, Vec3, Wire, box_steps,
-    wire_struct,
+    BASE_ZERO_BITS, BoundCode, BoxStep, Displacement, PADDING_BITS, Point, ROTATION_BITS, S, SHORT_BITS, SHORT_SHIFT, U, Vec3, Wire,
+    box_steps, wire_struct,
 };
 
 /// A memory line.
