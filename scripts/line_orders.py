@@ -10,7 +10,7 @@ import subprocess
 import tempfile
 from pathlib import Path
 
-ORDERS = ["tree", "veb", "coarse", "blocks", "morton", "own"]
+ORDERS = ["tree", "veb", "coarse", "blocks", "own"]
 TERRAINS = ["0.45", "0.55", "0.6"]
 DISTANCES = ["0.8", "1.6", "3", "6", "12"]
 

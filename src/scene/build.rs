@@ -128,9 +128,11 @@ impl Scene {
             if far <= remeshing.max_error || report.warning.is_some() {
                 return Ok(scene);
             }
+            let finer = if options.vertices == VertexForm::Short { VertexForm::Compact } else { VertexForm::Exact };
             report.warning = Some(format!(
-                "stored vertices are up to {far:.4} % of the diagonal away from the original (wanted: {} %), {moved:.4} % of it by storing; try --vertices exact",
-                remeshing.max_error
+                "stored vertices are up to {far:.4} % of the diagonal away from the original (wanted: {} %), {moved:.4} % of it by storing; try --vertices {}",
+                remeshing.max_error,
+                finer.name()
             ));
             let scene = made(&report)?;
             // What is moved depends a little on what is made.
