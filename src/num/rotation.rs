@@ -140,7 +140,7 @@ mod tests {
 
     #[test]
     fn frames_are_nearly_orthogonal_and_all_different() {
-        assert!(ROTATIONS <= 1 << ROTATION_BITS);
+        const { assert!(ROTATIONS <= 1 << ROTATION_BITS) };
         assert_eq!(ALL[0].lengths(), [1.0; 3]);
         for (k, one) in all().enumerate() {
             assert!(all().skip(k + 1).all(|other| other != one), "{k}");
