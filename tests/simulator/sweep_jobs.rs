@@ -50,7 +50,10 @@ fn a_mistake_is_named_with_its_place_before_anything_runs() {
         (scene("bounds = \"total\""), "line 6: scene: bounds goes with generate"),
         (scene("vertices = \"exact\""), "line 6: scene: vertices goes with generate"),
         (format!("{HEAD}bounds = \"sum\"\n{SCENE}{MACHINE}"), "line 4: unknown variant `sum`, expected `largest` or `total`"),
-        (format!("{HEAD}vertices = \"half\"\n{SCENE}{MACHINE}"), "line 4: unknown variant `half`, expected one of `exact`, `compact`, `short`"),
+        (
+            format!("{HEAD}vertices = \"half\"\n{SCENE}{MACHINE}"),
+            "line 4: unknown variant `half`, expected one of `exact`, `compact`, `short`",
+        ),
         (scene("generate = \"wall\""), "line 5: scene: has both file and generate"),
         (scene("eyes = [[0, 1, 2]]\ndistances = [3]"), "line 7: scene: eyes are in place of distances"),
         (format!("{HEAD}{SCENE}{SCENE}{MACHINE}"), "line 6: scene: there is another of the name \"a\""),
