@@ -34,7 +34,7 @@ pub mod tessellate;
 pub mod tree_deciders;
 pub mod tri_test;
 
-pub use operation::{MAX_WORKS, Operation, Operations, Work};
+pub use operation::{INSTANCE, INSTANCE_TRANSFORM, MAX_WORKS, Operation, Operations, Work};
 
 use crate::num::{MAX_LEVELS, Wire};
 use parts::Parts;

@@ -144,8 +144,15 @@ impl Operation {
     }
 }
 
-/// Most kinds of [`Work`] of a method.
+/// Kinds of [`Work`] that steps can name: those of a method, and [`INSTANCE_TRANSFORM`].
 pub const MAX_WORKS: usize = 16;
+
+/// The number of the [`Work`] that rays through several models have, whatever the method: behind all of the method's own.
+pub const INSTANCE: u32 = 15;
+
+/// A ray's origin and direction in the space of a model: two products of a 3 x 3 matrix and a vector in 32 bits, and what is added.
+pub static INSTANCE_TRANSFORM: Work =
+    Work { name: "instance_transform", products: &[[18, 32, 32]], add_bits: 15 * 64, select_bits: 0, written_bits: 2 * 3 * 32 };
 
 /// An operation that no block of the RTL does, such as one of work before a frame. Its energy is that of a block made of the same (`docs/energy.md`); it takes no time.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]

@@ -4,18 +4,19 @@ use super::cache::{Cache, CacheArgs};
 use super::job;
 use super::method::AnyMethod;
 use super::output::{check_normals, check_target, count, grouped, open_any, print_json, progress, remark};
+use super::paths::made;
 use anyhow::Context;
 use lodray::format::write_and_rename;
 use lodray::rays::{ModelSpace, RayFile, RaySource, Sight};
-use lodray::run::{FollowError, Followed, cast, cast_following, write_hits};
+use lodray::run::{FollowError, Followed, HitRow, cast, cast_following, write_hits};
 use serde_json::json;
 use std::collections::BTreeMap;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 #[derive(clap::Args)]
 pub struct Args {
-    /// Scene file
+    /// Scene file, or the description of several models (TOML; `paths --help` has the keys)
     scene: PathBuf,
     /// Rays: an array of NumPy's (.npy), a row for each; the long help (--help) has the columns
     rays: PathBuf,
@@ -35,6 +36,9 @@ pub struct Args {
 }
 
 pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
+    if args.scene.extension().is_some_and(|ending| ending == "toml") {
+        return several(args);
+    }
     check_target(&args.out, &[&args.scene, &args.rays])?;
     let scene = open_any(&args.scene)?;
     check_normals(&scene, "a hit's normal")?;
@@ -54,8 +58,7 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
         bar.finish_and_clear();
         Followed { hits, followed: 0, crowded: 0 }
     };
-    write_and_rename(&args.out, |out| write_hits(&hits, out)).with_context(|| format!("cannot write {}", args.out.display()))?;
-    let found = hits.iter().filter(|hit| hit.tree >= 0).count() as u64;
+    let found = write(args, &hits)?;
     if args.json {
         let choices: BTreeMap<_, _> = method.choices(&sight).into_iter().collect();
         print_json(
@@ -70,6 +73,38 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
         }
     }
     Ok(ExitCode::SUCCESS)
+}
+
+/// Rays among several models.
+fn several(args: &Args) -> anyhow::Result<ExitCode> {
+    let file = made::description(&args.scene)?;
+    let models = made::model_files(&args.scene, &file)?;
+    let inputs: Vec<&Path> = models.iter().chain([&args.scene, &args.rays]).map(PathBuf::as_path).collect();
+    check_target(&args.out, &inputs)?;
+    let rays = RayFile::read(&args.rays)?;
+    let starts = "among several models every ray starts at its own origin: --follow false says so";
+    anyhow::ensure!(!(args.follow && rays.is_ordered()), "{}: some rays name earlier ones; {starts}", args.rays.display());
+    let scenes = made::scenes(&args.scene, &file)?;
+    let (chosen, cache) = (&args.method.0, Cache::new(&args.cache, None)?);
+    scenes.iter().try_for_each(|scene| job::check_rays(scene, &rays, chosen.delta()))?;
+    let methods = made::methods(&file, &scenes, chosen, &cache)?;
+    let bar = progress(rays.batches() as u64, "casting");
+    let hits = made::unshaded(&file, &scenes, &methods, chosen.delta()).cast(&rays, &|batches| bar.inc(batches));
+    bar.finish_and_clear();
+    let found = write(args, &hits)?;
+    if args.json {
+        print_json(&json!({ "method": chosen.method.name, "models": scenes.len(), "rays": rays.rays(), "hits": found }))?;
+    } else {
+        let among = count(scenes.len() as u64, "model");
+        remark(&format!("{}: {} among {among}, {} hit", args.out.display(), count(rays.rays(), "ray"), grouped(found)))?;
+    }
+    Ok(ExitCode::SUCCESS)
+}
+
+/// Writes the hits; how many there are.
+fn write(args: &Args, hits: &[HitRow]) -> anyhow::Result<u64> {
+    write_and_rename(&args.out, |out| write_hits(hits, out)).with_context(|| format!("cannot write {}", args.out.display()))?;
+    Ok(hits.iter().filter(|hit| hit.tree >= 0).count() as u64)
 }
 
 /// Rays that cannot follow others, and what to do.

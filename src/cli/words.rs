@@ -145,7 +145,8 @@ whole numbers are -1 and all others nan:
   barycentrics, finest_barycentrics
                       weights of the corners of either triangle
   point, normal       in world space; the normal is interpolated at full resolution
-  front               1: the front face is met, 0: the back";
+  front               1: the front face is met, 0: the back
+  instance            model that is met, of a description of several; 0 of a scene file";
 
 /// Of `completions`.
 pub const COMPLETIONS: &str = "\

@@ -4,16 +4,21 @@ use super::{Departure, Landing, SurfaceHit};
 use crate::rays::Query;
 use crate::step::{LineCounter, NoSteps, Recorder, Step, StepSink};
 
-/// What a method's tracer does, for any listener; compiled for each.
+/// What a method's tracer does, for any listener; compiled for each. It neither begins a ray nor ends it: a ray may go on in another model.
 pub trait Trace {
-    /// What `query` meets first, or, if any hit serves, meets; every step goes to `steps`, the last one being the end.
+    /// What `query` meets first, or, if any hit serves, meets; every step goes to `steps`, but for the ray's end.
     fn trace<S: StepSink>(&mut self, query: &Query, steps: &mut S) -> Option<SurfaceHit>;
 
     /// The same for a ray whose path may go on; it starts at `from`, a hit of this method, if there is one, whatever the query's origin.
     fn follow<S: StepSink>(&mut self, query: &Query, from: Option<&Departure>, steps: &mut S) -> Option<Landing>;
+
+    /// Its hits are mapped to the full resolution when a ray ends ([`Act::End`](crate::step::Act::End)).
+    fn is_mapped(&self) -> bool;
 }
 
 /// Any method's tracer: one call for each ray decides which method it is, and none for each step.
+///
+/// All but [`Tracer::enter`] are for a whole ray, whose last step is its end.
 pub trait Tracer {
     /// Nobody listens.
     fn hit(&mut self, query: &Query) -> Option<SurfaceHit>;
@@ -26,6 +31,10 @@ pub trait Tracer {
     /// A ray of a path, which starts at `from` if the path has hit something; its steps are kept if there is a recorder. Nothing from a method that does not
     /// [`leave`](super::Method::leaves) its surface.
     fn follow(&mut self, query: &Query, from: Option<&Departure>, recorder: Option<&mut Recorder>) -> Option<Landing>;
+    /// The same for a ray through several models that enters this one: it does not end here.
+    fn enter(&mut self, query: &Query, from: Option<&Departure>, steps: &mut dyn StepSink) -> Option<Landing>;
+    /// Its hits are mapped to the full resolution when a ray ends ([`Act::End`](crate::step::Act::End)).
+    fn is_mapped(&self) -> bool;
 }
 
 /// A listener behind a reference.
@@ -42,18 +51,32 @@ impl<T: Trace> Tracer for T {
         self.trace(query, &mut NoSteps)
     }
     fn counted(&mut self, query: &Query, counter: &mut LineCounter<'_>) -> Option<SurfaceHit> {
-        self.trace(query, counter)
+        whole(self, query, counter)
     }
     fn recorded(&mut self, query: &Query, recorder: &mut Recorder) -> Option<SurfaceHit> {
-        self.trace(query, recorder)
+        whole(self, query, recorder)
     }
     fn heard(&mut self, query: &Query, steps: &mut dyn StepSink) -> Option<SurfaceHit> {
-        self.trace(query, &mut Heard(steps))
+        whole(self, query, &mut Heard(steps))
     }
     fn follow(&mut self, query: &Query, from: Option<&Departure>, recorder: Option<&mut Recorder>) -> Option<Landing> {
-        match recorder {
-            Some(recorder) => Trace::follow(self, query, from, recorder),
-            None => Trace::follow(self, query, from, &mut NoSteps),
-        }
+        let Some(recorder) = recorder else { return Trace::follow(self, query, from, &mut NoSteps) };
+        let landing = Trace::follow(self, query, from, recorder);
+        recorder.step(Step::end(landing.is_some(), Trace::is_mapped(self)));
+        landing
     }
+    fn enter(&mut self, query: &Query, from: Option<&Departure>, steps: &mut dyn StepSink) -> Option<Landing> {
+        Trace::follow(self, query, from, &mut Heard(steps))
+    }
+    fn is_mapped(&self) -> bool {
+        Trace::is_mapped(self)
+    }
+}
+
+/// A ray from its first step to its end.
+#[inline(always)]
+fn whole<T: Trace, S: StepSink>(tracer: &mut T, query: &Query, steps: &mut S) -> Option<SurfaceHit> {
+    let hit = tracer.trace(query, steps);
+    steps.step(Step::end(hit.is_some(), tracer.is_mapped()));
+    hit
 }

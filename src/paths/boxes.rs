@@ -1,4 +1,4 @@
-//! Which models a ray may meet: a binary tree over their boxes.
+//! Which models a ray may meet: a tree over their boxes, four children a node.
 
 use glam::DVec3;
 
@@ -10,12 +10,12 @@ pub(super) struct Bounds {
 }
 
 impl Bounds {
-    /// The smallest box around points, and a little more: as much as sums of their sizes and places are rounded by, many times over.
+    /// The smallest box around points, and a little more: as much as sums of their sizes and places are rounded by, many times over. Its planes are floats of 32 bits, as nodes have them.
     pub fn around(points: impl IntoIterator<Item = DVec3>) -> Self {
         let start = Self { lo: DVec3::INFINITY, hi: DVec3::NEG_INFINITY };
         let all = points.into_iter().fold(start, |all, p| Self { lo: all.lo.min(p), hi: all.hi.max(p) });
         let more = 1e-9 * (all.lo.abs().max(all.hi.abs()) + (all.hi - all.lo)).max_element();
-        Self { lo: all.lo - more, hi: all.hi + more }
+        Self { lo: floor32(all.lo - more), hi: -floor32(-(all.hi + more)) }
     }
 
     fn with(self, other: Self) -> Self {
@@ -41,67 +41,109 @@ impl Bounds {
     }
 }
 
-/// A node: a model, or two nodes.
+/// Rounded down to floats of 32 bits.
+fn floor32(p: DVec3) -> DVec3 {
+    DVec3::from_array(p.to_array().map(|v| {
+        let near = v as f32;
+        f64::from(if f64::from(near) > v { near.next_down() } else { near })
+    }))
+}
+
+/// What stands below a node.
 #[derive(Clone, Copy, Debug)]
 enum Below {
     Model(usize),
-    Two(usize, usize),
+    Node(usize),
 }
 
-/// The tree; its root is the last node.
+/// What a ray does in the tree.
+#[derive(Clone, Copy, Debug)]
+pub(super) enum Walk {
+    /// It tests the children of a node, and enters so many of their boxes.
+    Node { node: usize, met: u32 },
+    /// It takes what waits; `dropped` if that lies behind what it has met.
+    Pop { dropped: bool },
+    /// It comes to a model.
+    Model(usize),
+}
+
+/// Children of a node.
+const WIDTH: usize = 4;
+
+/// The tree; its root is node 0.
 #[derive(Clone, Debug)]
 pub(super) struct BoxTree {
-    nodes: Vec<(Bounds, Below)>,
+    nodes: Vec<Vec<(Bounds, Below)>>,
 }
 
 impl BoxTree {
     /// Over some boxes, at least one.
     pub fn new(boxes: &[Bounds]) -> Self {
-        let mut tree = Self { nodes: Vec::with_capacity(2 * boxes.len()) };
+        let mut tree = Self { nodes: Vec::new() };
         let mut order: Vec<usize> = (0..boxes.len()).collect();
-        tree.build(boxes, &mut order);
+        tree.node(boxes, &mut order);
         tree
     }
 
-    /// Halves at the middle of the longest side of the box of all centres.
-    fn build(&mut self, boxes: &[Bounds], order: &mut [usize]) -> usize {
-        let node = match *order {
-            [model] => (boxes[model], Below::Model(model)),
-            _ => {
-                let centre = |model: usize| boxes[model].lo + boxes[model].hi;
-                let of_centres = order.iter().map(|&model| Bounds { lo: centre(model), hi: centre(model) }).reduce(Bounds::with);
-                let sides = of_centres.map_or(DVec3::ZERO, |all| all.hi - all.lo);
-                let axis = (0..3).rev().max_by(|&a, &b| sides[a].total_cmp(&sides[b])).unwrap_or(0);
-                let half = order.len() / 2;
-                order.select_nth_unstable_by(half, |&a, &b| centre(a)[axis].total_cmp(&centre(b)[axis]).then(a.cmp(&b)));
-                let (lower, upper) = order.split_at_mut(half);
-                let two = [self.build(boxes, lower), self.build(boxes, upper)];
-                (self.nodes[two[0]].0.with(self.nodes[two[1]].0), Below::Two(two[0], two[1]))
-            }
-        };
-        self.nodes.push(node);
-        self.nodes.len() - 1
+    /// How many nodes it has.
+    pub fn nodes(&self) -> usize {
+        self.nodes.len()
     }
 
-    /// Gives `visit` the models whose boxes the ray enters, of two halves the nearer first; it says beyond what distance nothing is wanted any more.
-    pub fn each(&self, origin: DVec3, direction: DVec3, mut t_max: f64, mut visit: impl FnMut(usize) -> f64) {
-        let inverse = direction.recip();
-        let entered = |node: usize, t_max: f64| self.nodes[node].0.entered(origin, inverse, t_max).map(|near| (near, node));
-        let mut waiting: Vec<(f64, usize)> = entered(self.nodes.len() - 1, t_max).into_iter().collect();
-        while let Some((near, node)) = waiting.pop() {
-            if near > t_max {
-                continue;
+    /// A node over these boxes, and all below it.
+    fn node(&mut self, boxes: &[Bounds], order: &mut [usize]) -> usize {
+        let own = self.nodes.len();
+        self.nodes.push(Vec::with_capacity(WIDTH));
+        let (lower, upper) = halve(boxes, order);
+        for half in [lower, upper] {
+            let (lower, upper) = halve(boxes, half);
+            for part in [lower, upper] {
+                let Some(bounds) = part.iter().map(|&model| boxes[model]).reduce(Bounds::with) else { continue };
+                let below = if let [model] = *part { Below::Model(model) } else { Below::Node(self.node(boxes, part)) };
+                self.nodes[own].push((bounds, below));
             }
-            match self.nodes[node].1 {
-                Below::Model(model) => t_max = visit(model),
-                Below::Two(a, b) => {
-                    let mut two: Vec<_> = [a, b].into_iter().filter_map(|node| entered(node, t_max)).collect();
-                    two.sort_unstable_by(|a, b| b.0.total_cmp(&a.0).then(b.1.cmp(&a.1)));
-                    waiting.extend(two);
+        }
+        own
+    }
+
+    /// Tells `on` what the ray does, nearest first; it answers a model with the distance beyond which nothing is wanted any more: none at all, if that is minus infinity.
+    pub fn each(&self, origin: DVec3, direction: DVec3, mut t_max: f64, mut on: impl FnMut(Walk) -> Option<f64>) {
+        let inverse = direction.recip();
+        let mut waiting: Vec<(f64, Below)> = Vec::new();
+        let mut next = Some(Below::Node(0));
+        while t_max > f64::NEG_INFINITY {
+            match next.take() {
+                Some(Below::Model(model)) => t_max = on(Walk::Model(model)).unwrap_or(t_max),
+                Some(Below::Node(node)) => {
+                    let entered = |&(bounds, below): &(Bounds, Below)| Some((bounds.entered(origin, inverse, t_max)?, below));
+                    let first = waiting.len();
+                    waiting.extend(self.nodes[node].iter().filter_map(entered));
+                    on(Walk::Node { node, met: (waiting.len() - first) as u32 }); // at most four
+                    waiting[first..].sort_by(|a, b| b.0.total_cmp(&a.0));
+                    // The nearest goes on at once.
+                    next = if waiting.len() > first { waiting.pop().map(|(_, below)| below) } else { None };
+                }
+                None => {
+                    let Some((near, below)) = waiting.pop() else { break };
+                    on(Walk::Pop { dropped: near > t_max });
+                    next = (near <= t_max).then_some(below);
                 }
             }
         }
     }
+}
+
+/// Halves at the middle of the longest side of the box of all centres; of one, or none, there is no other half.
+fn halve<'a>(boxes: &[Bounds], order: &'a mut [usize]) -> (&'a mut [usize], &'a mut [usize]) {
+    let centre = |model: usize| boxes[model].lo + boxes[model].hi;
+    let of_centres = order.iter().map(|&model| Bounds { lo: centre(model), hi: centre(model) }).reduce(Bounds::with);
+    let sides = of_centres.map_or(DVec3::ZERO, |all| all.hi - all.lo);
+    let axis = (0..3).rev().max_by(|&a, &b| sides[a].total_cmp(&sides[b])).unwrap_or(0);
+    let half = order.len().div_ceil(2);
+    if half < order.len() {
+        order.select_nth_unstable_by(half, |&a, &b| centre(a)[axis].total_cmp(&centre(b)[axis]).then(a.cmp(&b)));
+    }
+    order.split_at_mut(half)
 }
 
 #[cfg(test)]
@@ -129,9 +171,10 @@ mod tests {
                 direction[ray % 4 % 3] *= f64::from(u8::from(ray % 4 != 3));
                 let t_max = if ray % 2 == 0 { f64::INFINITY } else { 8.0 };
                 let mut seen = Vec::new();
-                tree.each(origin, direction, t_max, |model| {
+                tree.each(origin, direction, t_max, |walk| {
+                    let Walk::Model(model) = walk else { return None };
                     seen.push(model);
-                    t_max
+                    Some(t_max)
                 });
                 let near = |model: usize| boxes[model].entered(origin, direction.recip(), t_max);
                 visits += seen.len();
@@ -150,10 +193,11 @@ mod tests {
                 assert_eq!(ordered.len(), seen.len());
                 // If nothing is wanted behind the nearest that was found, the nearest of all is found.
                 let (mut fewer, mut nearest) = (0, f64::INFINITY);
-                tree.each(origin, direction, t_max, |model| {
+                tree.each(origin, direction, t_max, |walk| {
+                    let Walk::Model(model) = walk else { return None };
                     fewer += 1;
                     nearest = nearest.min(near(model).unwrap_or(0.0));
-                    nearest
+                    Some(nearest)
                 });
                 assert_eq!(nearest, seen.iter().filter_map(|&model| near(model)).fold(f64::INFINITY, f64::min));
                 early += usize::from(fewer < seen.len());

@@ -129,6 +129,7 @@ impl<'a> Paths<'a> {
                 origin: DVec3::from_array(query.origin),
                 direction: DVec3::from_array(query.direction),
                 cone: PathCone { radius: query.radius, spread: query.tan_theta },
+                t_min: 0.0,
                 t_max: f64::INFINITY,
                 any: false,
             },
@@ -155,7 +156,7 @@ impl PathTracer<'_> {
     }
 
     /// Traces a path's next ray and what its hit asks for.
-    pub(super) fn advance(&mut self, path: &mut Path, mut listener: Option<&mut Listener>) {
+    pub(super) fn advance(&mut self, path: &mut Path, mut listener: Option<&mut Listener<'_>>) {
         let paths = self.paths;
         let bounce = path.bounce as usize;
         let number = listener.as_ref().map(|listener| listener.number);
@@ -218,7 +219,7 @@ impl PathTracer<'_> {
         met: &Met,
         surface: &Surface<'_>,
         position: DVec3,
-        mut listener: Option<&mut Listener>,
+        mut listener: Option<&mut Listener<'_>>,
         number: Option<u64>,
     ) {
         let paths = self.paths;
@@ -243,6 +244,7 @@ impl PathTracer<'_> {
                     origin: position,
                     direction: sent.direction,
                     cone: path.ray.cone.lit(met.distance, sent.spread, &paths.cones),
+                    t_min: 0.0,
                     t_max: sent.distance * (1.0 - SHORT),
                     any: true,
                 };

@@ -6,12 +6,14 @@
 
 mod boxes;
 mod bsdf;
+mod cast;
 mod cone;
 mod file;
 mod film;
 mod integrate;
 mod light;
 mod material;
+mod memory;
 #[cfg(feature = "exr")]
 mod open_exr;
 mod random;
@@ -24,6 +26,7 @@ pub use film::{Film, LightCount, light_count, picture_error};
 pub use integrate::{PathCounts, PathTracer, Paths};
 pub use light::{Environment, Light};
 pub use material::Material;
+pub use memory::WorldMemory;
 #[cfg(feature = "exr")]
 pub use open_exr::ExrError;
 pub use rays::PathFrame;

@@ -1,30 +1,39 @@
 //! The rays of paths for the simulator: a bounce starts when its hit is known.
 
 use super::integrate::{Path, PathTracer, Paths};
+use super::memory::WorldMemory;
 use super::world::Listener;
 use crate::method::Before;
 use crate::rays::RaySource;
 use crate::run::{Frame, RayHit, Worker};
-use crate::step::{Batch, Nodes};
+use crate::step::{Batch, MapError, MemoryMap, Nodes};
 
-/// Paths of a scene of one model as a frame for machines.
+/// Paths of a scene as a frame for machines.
 ///
 /// A batch has the paths of a tile of pixels: first all rays of the camera, then all that leave their hits, and so on. A ray waits for the one behind whose hit it starts.
 pub struct PathFrame<'a> {
     paths: &'a Paths<'a>,
+    memory: WorldMemory,
 }
 
 impl<'a> PathFrame<'a> {
-    /// The paths as rays; `None` if the scene has several models: a machine's memory holds one.
-    pub fn new(paths: &'a Paths<'a>) -> Option<Self> {
-        (paths.world.instances().len() == 1).then_some(Self { paths })
+    /// The paths as rays.
+    ///
+    /// # Errors
+    /// The models have more lines than can be numbered.
+    pub fn new(paths: &'a Paths<'a>) -> Result<Self, MapError> {
+        Ok(Self { paths, memory: paths.world.memory()? })
+    }
+
+    /// Where the lines of all models lie.
+    pub fn map(&self) -> &MemoryMap {
+        self.memory.map()
     }
 }
 
 impl Frame for PathFrame<'_> {
     fn nodes(&self) -> Nodes {
-        let own = &self.paths.world.instances()[0];
-        own.method.map(own.sight()).nodes()
+        self.memory.map().nodes()
     }
 
     fn batches(&self) -> usize {
@@ -32,12 +41,18 @@ impl Frame for PathFrame<'_> {
     }
 
     fn worker(&self) -> Box<dyn Worker + '_> {
-        Box::new(PathWorker { tracer: self.paths.tracer(), paths: self.paths })
+        Box::new(PathWorker { tracer: self.paths.tracer(), paths: self.paths, memory: &self.memory })
     }
 
     fn before(&self, frame: usize) -> Option<Box<dyn Before + '_>> {
-        let own = &self.paths.world.instances()[0];
-        own.method.before(own.sight(), frame)
+        let instances = self.paths.world.instances().iter().enumerate();
+        let works = instances.filter_map(|(k, own)| Some(self.memory.before(k, own.method.before(own.sight(), frame)?)));
+        let works: Vec<_> = works.collect();
+        (!works.is_empty()).then(|| Box::new(AllBefore(works)) as Box<dyn Before>)
+    }
+
+    fn models(&self) -> usize {
+        self.paths.world.instances().len()
     }
 
     fn numbers_by_batch(&self) -> bool {
@@ -45,8 +60,28 @@ impl Frame for PathFrame<'_> {
     }
 }
 
+/// Work of several models before a frame, one model after the other.
+struct AllBefore<'a>(Vec<Box<dyn Before + 'a>>);
+
+impl Before for AllBefore<'_> {
+    fn batches(&self) -> usize {
+        self.0.iter().map(|own| own.batches()).sum()
+    }
+
+    fn batch(&self, mut batch: usize) -> Batch {
+        for own in &self.0 {
+            match batch.checked_sub(own.batches()) {
+                Some(rest) => batch = rest,
+                None => return own.batch(batch),
+            }
+        }
+        panic!("no such batch")
+    }
+}
+
 struct PathWorker<'a> {
     paths: &'a Paths<'a>,
+    memory: &'a WorldMemory,
     tracer: PathTracer<'a>,
 }
 
@@ -58,7 +93,7 @@ impl Worker for PathWorker<'_> {
             let [x, y] = [number % width, number / width].map(|at| at as u32); // within the picture
             under_way.extend((0..paths.samples).map(|sample| paths.start(x, y, sample)));
         });
-        let mut listener = Listener::default();
+        let mut listener = Listener::new(self.memory);
         while !under_way.is_empty() {
             under_way.iter_mut().for_each(|path| self.tracer.advance(path, Some(&mut listener)));
             under_way.retain(|path| !path.is_over);

@@ -1,14 +1,15 @@
 //! Models where a scene has them, and what a ray meets among them.
 
-use super::boxes::{Bounds, BoxTree};
+use super::boxes::{Bounds, BoxTree, Walk};
 use super::bsdf::{Bsdf, Place};
 use super::cone::PathCone;
 use super::material::Material;
+use super::memory::WorldMemory;
 use crate::format::Scene;
 use crate::method::leave::side;
 use crate::method::{Departure, Landing, Method, Tracer};
 use crate::rays::{Camera, Eye, ModelSpace, Query, Sight};
-use crate::step::{Link, Recorder};
+use crate::step::{Link, MapError, Recorder, Step, StepSink};
 use glam::{DMat3, DVec3, EulerRot};
 use std::cmp::Ordering;
 
@@ -41,7 +42,7 @@ impl Pose {
     }
 
     /// A direction of the model's in the scene.
-    fn back(&self, d: DVec3) -> DVec3 {
+    pub(super) fn back(&self, d: DVec3) -> DVec3 {
         self.turn * d
     }
 }
@@ -78,8 +79,17 @@ impl<'a> Instance<'a> {
         let eye = pose.place(camera.eye).to_array();
         let least_radius = camera.tan_theta * space.distance_to(eye) / space.placement.scale;
         let eyes = vec![Eye::at(eye, camera.tan_theta).in_units(&space)];
+        Self::seen(scene, method, pose, materials, Sight { delta, least_radius, eyes })
+    }
+
+    /// A model, for rays that may start anywhere, however thin, and are not shaded.
+    pub fn for_any_ray(scene: &'a Scene, method: &'a dyn Method, pose: Pose, delta: f64) -> Self {
+        Self::seen(scene, method, pose, Vec::new(), Sight { delta, least_radius: 0.0, eyes: vec![Eye::ANYWHERE] })
+    }
+
+    fn seen(scene: &'a Scene, method: &'a dyn Method, pose: Pose, materials: Vec<Material>, sight: Sight) -> Self {
         let materials = materials.into_iter().map(|material| (material, Bsdf::of(&material))).collect();
-        Self { scene, method, pose, materials, space, sight: Sight { delta, least_radius, eyes } }
+        Self { scene, method, pose, materials, space: ModelSpace::of(scene), sight }
     }
 
     /// What its rays see of it.
@@ -114,6 +124,8 @@ pub(super) struct WorldRay {
     /// Length 1.
     pub direction: DVec3,
     pub cone: PathCone,
+    /// Nothing nearer counts.
+    pub t_min: f64,
     /// Nothing farther counts.
     pub t_max: f64,
     /// Any hit serves.
@@ -147,11 +159,24 @@ impl Surface<'_> {
 }
 
 /// The steps of rays, kept, and who waits for whom.
-#[derive(Default)]
-pub(super) struct Listener {
+pub(super) struct Listener<'a> {
     pub recorder: Recorder,
     /// The next ray's number.
     pub number: u64,
+    memory: &'a WorldMemory,
+}
+
+impl<'a> Listener<'a> {
+    /// Has heard nothing yet.
+    pub fn new(memory: &'a WorldMemory) -> Self {
+        Self { recorder: Recorder::default(), number: 0, memory }
+    }
+
+    /// The next ray begins, behind ray `after`.
+    fn begin(&mut self, after: Option<u64>) {
+        self.recorder.link(Link { number: self.number, after });
+        self.number += 1;
+    }
 }
 
 /// All models.
@@ -184,22 +209,34 @@ impl<'a> World<'a> {
         self.instances.iter().map(|own| own.method.tracer(&own.sight)).collect()
     }
 
-    /// What `ray` meets first, or at all: of models that it meets at the same distance the first. It starts at `from`, a hit of that model, if there is one.
-    /// The listener hears the ray once for each model, behind ray `after`; without one, only models are asked whose boxes the ray enters before what it has met.
+    /// The models' memories as one.
+    ///
+    /// # Errors
+    /// They have more lines than can be numbered.
+    pub fn memory(&self) -> Result<WorldMemory, MapError> {
+        WorldMemory::new(&self.instances, self.boxes.nodes())
+    }
+
+    /// What `ray` meets first, or at all: of models that it meets at the same distance the first. Distances are those of the scene, each rounded from the t of its model; within a
+    /// model t decides, exactly. It starts at `from`, a hit of that model, if there is one. It comes to those models whose boxes it enters before what it has met, nearest first.
+    /// The listener hears the ray, behind ray `after`.
     pub(super) fn trace(
         &self,
         tracers: &mut [Box<dyn Tracer + '_>],
         ray: &WorldRay,
         from: Option<(usize, &Departure)>,
-        mut listener: Option<(&mut Listener, Option<u64>)>,
+        listener: Option<(&mut Listener<'_>, Option<u64>)>,
     ) -> Option<Met> {
-        let listens = listener.is_some();
+        let mut listener = listener.map(|(listener, after)| {
+            listener.begin(after);
+            listener
+        });
         let mut origin = ray.origin;
         if let (Starts::Offset(radii), Some((of, from))) = (self.starts, from) {
             origin += self.instances[of].above(from, ray.direction) * (radii * self.instances[of].radius());
         }
         let mut best: Option<Met> = None;
-        let mut visit = |k: usize| {
+        let mut enter = |k: usize, listener: &mut Option<&mut Listener<'_>>| {
             let (own, tracer) = (&self.instances[k], &mut tracers[k]);
             let mut own_from = from.filter(|&(of, _)| of == k).map(|(_, from)| *from);
             match self.starts {
@@ -214,14 +251,13 @@ impl<'a> World<'a> {
                 ..Query::new(own.pose.place(origin).to_array(), own.pose.direction(ray.direction).to_array())
                     .with_cone(ray.cone.radius / scale, ray.cone.spread)
                     // What is as far as the best is rounded once more on its way to steps: a hair farther, and the comparison below decides.
-                    .between(0.0, farthest * (1.0 + 1e-12) / scale)
+                    .between(ray.t_min / scale, farthest * (1.0 + 1e-12) / scale)
             };
-            let recorder = listener.as_mut().map(|(listener, after)| {
-                listener.recorder.link(Link { number: listener.number, after: *after });
-                listener.number += 1;
-                &mut listener.recorder
-            });
-            if let Some(landing) = tracer.follow(&query, own_from.as_ref(), recorder) {
+            let landing = match listener {
+                Some(listener) => tracer.enter(&query, own_from.as_ref(), &mut listener.memory.steps_of(k, &mut listener.recorder)),
+                None => tracer.follow(&query, own_from.as_ref(), None),
+            };
+            if let Some(landing) = landing {
                 let distance = landing.surface.distance * scale;
                 if best.is_none_or(|best| distance < best.distance || distance == best.distance && k < best.instance) {
                     best = Some(Met { instance: k, distance, landing });
@@ -230,14 +266,20 @@ impl<'a> World<'a> {
             // Whoever takes any has it.
             best.map_or(ray.t_max, |best| if ray.any { f64::NEG_INFINITY } else { best.distance })
         };
-        if listens {
-            for k in 0..self.instances.len() {
-                if visit(k) == f64::NEG_INFINITY {
-                    break;
-                }
-            }
+        if self.instances.len() == 1 {
+            // There is no tree over one model, and its space is the ray's.
+            enter(0, &mut listener);
         } else {
-            self.boxes.each(origin, ray.direction, ray.t_max, visit);
+            self.boxes.each(origin, ray.direction, ray.t_max, |walk| {
+                if let Some(listener) = &mut listener {
+                    listener.memory.walk(walk, &mut listener.recorder);
+                }
+                let Walk::Model(k) = walk else { return None };
+                Some(enter(k, &mut listener))
+            });
+        }
+        if let Some(listener) = listener {
+            listener.recorder.step(Step::end(best.is_some(), tracers[0].is_mapped()));
         }
         best
     }
@@ -316,7 +358,7 @@ mod tests {
                 let [x, y] = [k % 20, k / 20].map(|v| 0.07 * f64::from(v) - 0.65);
                 let (origin, direction) = (DVec3::new(3.0, y, x), DVec3::new(-1.0, 0.1 * y, -0.2 * x).normalize());
                 let cone = PathCone { radius: 0.0, spread: 1e-3 };
-                let ray = WorldRay { origin, direction, cone, t_max: f64::INFINITY, any: false };
+                let ray = WorldRay { origin, direction, cone, t_min: 0.0, t_max: f64::INFINITY, any: false };
                 if let Some(hit) = world.trace(&mut tracers, &ray, None, None) {
                     assert_eq!(hit.instance, first, "ray {k} of {} models", poses.len());
                     met += 1;

@@ -31,11 +31,13 @@ pub struct HitRow {
     pub normal: [f32; 3],
     /// 1 if the front face was met, 0 if the back.
     pub front: i32,
+    /// The model that was met, in a scene of several: its place among them, counted from 0.
+    pub instance: i32,
 }
 
 impl HitRow {
     /// Nothing was met.
-    pub(super) const NONE: Self = Self {
+    pub(crate) const NONE: Self = Self {
         t: f64::INFINITY,
         tree: -1,
         level: -1,
@@ -46,9 +48,10 @@ impl HitRow {
         point: [f64::NAN; 3],
         normal: [f32::NAN; 3],
         front: -1,
+        instance: -1,
     };
 
-    pub(super) fn new(scene: &Scene, query: &Query, hit: &SurfaceHit) -> Self {
+    pub(crate) fn new(scene: &Scene, query: &Query, hit: &SurfaceHit) -> Self {
         let direction = DVec3::from_array(query.direction);
         // Scaled first, so that squares neither overflow nor vanish.
         let direction = (direction / direction.abs().max_element()).normalize();
@@ -66,6 +69,7 @@ impl HitRow {
             point: point.to_array(),
             normal: hit.normal(scene).to_array(),
             front: i32::from(hit.front),
+            instance: 0,
         }
     }
 }

@@ -32,6 +32,11 @@ pub trait Frame: Sync {
         None
     }
 
+    /// Models among which its rays go from one space to the next.
+    fn models(&self) -> usize {
+        1
+    }
+
     /// Every batch numbers its own rays from 0, and they wait for none of another.
     fn numbers_by_batch(&self) -> bool {
         false

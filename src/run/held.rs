@@ -10,6 +10,7 @@ pub struct HeldFrame {
     nodes: Nodes,
     chunks: Vec<Chunk>,
     has_work: bool,
+    models: usize,
 }
 
 impl HeldFrame {
@@ -22,15 +23,15 @@ impl HeldFrame {
             chunks.push(traced.chunk());
             true
         });
-        Self { nodes: frame.nodes(), chunks, has_work }
+        Self { nodes: frame.nodes(), chunks, has_work, models: frame.models() }
     }
 
     /// Runs them on a machine.
     ///
     /// # Errors
-    /// The machine is impossible or too large, its units were to do work before a frame, or nothing happens any more while rays are under way.
+    /// The machine is impossible or too large, its units were to do what they cannot ([`ReplayError::WorkByUnits`], [`ReplayError::ModelsByUnits`]), or nothing happens any more while rays are under way.
     pub fn run(&self, job: &Job) -> Result<Run, ReplayError> {
-        refuse(job, self.has_work)?;
+        refuse(job, self.has_work, self.models)?;
         replay(job, self.nodes, self.chunks.iter().cloned(), 1)
     }
 }

@@ -55,9 +55,13 @@ pub fn check(machine: &Machine, compute: Compute) -> Result<(), ReplayError> {
     replay::check(machine, compute == Compute::Units)
 }
 
-/// Refuses traversal units work before a frame, which they cannot do.
-pub(super) fn refuse(job: &Job, has_work: bool) -> Result<(), ReplayError> {
-    if has_work && job.compute == Compute::Units { Err(ReplayError::WorkByUnits) } else { Ok(()) }
+/// Refuses traversal units what they cannot do: work before a frame, and rays through several models.
+pub(super) fn refuse(job: &Job, has_work: bool, models: usize) -> Result<(), ReplayError> {
+    match job.compute {
+        Compute::Units if has_work => Err(ReplayError::WorkByUnits),
+        Compute::Units if models > 1 => Err(ReplayError::ModelsByUnits(models)),
+        _ => Ok(()),
+    }
 }
 
 /// Runs steps for a job on so many threads; their rays begin with `nodes`.
@@ -81,7 +85,7 @@ fn threads_of_replay(replays: usize) -> usize {
 /// `look` sees the rays, in order, before they go to the machines.
 pub fn simulate(frame: &dyn Frame, jobs: &[Job], look: &mut dyn FnMut(&Traced)) -> Vec<Result<Run, ReplayError>> {
     thread::scope(|scope| {
-        let nodes = frame.nodes();
+        let (nodes, models) = (frame.nodes(), frame.models());
         let threads = threads_of_replay(jobs.len());
         let frames = 0..=frame.frame_starts().len();
         let mut works = frames.filter_map(|of| frame.before(of)).map(|work| work.batches() > 0);
@@ -93,7 +97,7 @@ pub fn simulate(frame: &dyn Frame, jobs: &[Job], look: &mut dyn FnMut(&Traced)) 
                 (
                     sender,
                     scope.spawn(move || {
-                        refuse(job, has_work)?;
+                        refuse(job, has_work, models)?;
                         replay(job, nodes, receiver.into_iter(), threads)
                     }),
                 )

@@ -1,7 +1,7 @@
 //! Rays as their steps. Which lines a ray reads does not depend on when they come, so rays are traced once, in parallel, and their steps replayed on any number
 //! of machines.
 
-use super::{Act, Step, StepSink, StepWord};
+use super::{Act, Moved, Step, StepSink, StepWord};
 
 /// Rays that a group of cores takes at once: a tile of the picture, or 64 of a file.
 #[derive(Clone, Debug, Default)]
@@ -44,6 +44,15 @@ impl Batch {
             link.number += first;
             link.after = link.after.map(|after| after + first);
         }
+    }
+
+    /// The same with all lines moved.
+    #[must_use]
+    pub fn moved(mut self, by: &Moved) -> Self {
+        for word in &mut self.words {
+            *word = StepWord::pack(by.step(word.step()));
+        }
+        self
     }
 
     /// They are no rays, but pieces of work before a frame: nothing is set up for them, and none is counted as a ray.

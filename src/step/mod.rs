@@ -21,7 +21,7 @@ mod word;
 pub use act::{Act, Fetch, MAX_FETCH_LINES, MAX_PLACES, MAX_RUN, Step, TriangleRun};
 pub use batch::{Batch, Link, Recorder};
 pub use lines::{LineCounter, LineSets};
-pub use section::{MAX_SECTIONS, MapError, MemoryMap, Nodes, Section, SectionId};
+pub use section::{MAX_SECTIONS, MapError, MemoryMap, Moved, Nodes, Section, SectionId};
 pub use shape::{NodeShape, ShapeFacts};
 pub use sink::{NoSteps, StepCounts, StepSink};
 pub use word::{Asking, StepWord};

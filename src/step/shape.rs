@@ -20,6 +20,8 @@ pub enum NodeShape {
     Six,
     /// The same in a frame that the ray is first turned into.
     Turned,
+    /// A model where it stands: the ray goes on in the model's own space.
+    Instance,
 }
 
 /// A line of the table.
@@ -37,7 +39,7 @@ pub struct ShapeFacts {
 
 impl NodeShape {
     /// All, in the order of their numbers.
-    pub const ALL: [Self; 7] = [Self::Tree, Self::Prisms, Self::Plain, Self::Local, Self::Wide, Self::Six, Self::Turned];
+    pub const ALL: [Self; 8] = [Self::Tree, Self::Prisms, Self::Plain, Self::Local, Self::Wide, Self::Six, Self::Turned, Self::Instance];
 
     /// The shape's line of the table.
     #[inline(always)]
@@ -65,6 +67,7 @@ impl NodeShape {
                 children: 6,
                 path: &[(Operation::RaySetup, 1), (Operation::BoxDecode8, 6), (Operation::BoxTest, 6), (Operation::ChildSort6, 1)],
             },
+            ShapeFacts { letter: 'i', words: "a model in a space of its own", children: 1, path: &[(Operation::RaySetup, 1)] },
         ];
         const FACTS: &[ShapeFacts; NodeShape::ALL.len()] = &TABLE;
         &FACTS[self as usize]

@@ -1,15 +1,18 @@
 //! Path tracing: light where it is known, the same at any number of threads and any way to ask for light, rays as machines get them, and descriptions that are refused.
 
 use assert_cmd::Command;
+use lodray::block::{INSTANCE, Operation};
 use lodray::format::Scene;
+use lodray::machine::Machine;
 use lodray::mesh::procedural::{self, Options};
 use lodray::method::bvh::{self, NoStore};
 use lodray::method::{Departure, Knobs, Landing, Method, SurfaceHit, Tracer, discrete, lod, reference};
 use lodray::paths::{Environment, Film, Instance, Light, Material, PathFrame, Paths, Pose, Starts, World, light_count, picture_error};
-use lodray::rays::{Camera, ModelSpace, Query, Sight, View};
-use lodray::run::{Frame, Traced};
-use lodray::step::{LineCounter, MemoryMap, Recorder, StepSink};
-use lodray_test_support::models::build;
+use lodray::rays::{Camera, ModelSpace, Query, RayFile, RaySource, Sight, View};
+use lodray::run::{Compute, Frame, Job, Traced, simulate};
+use lodray::step::{Act, LineCounter, MemoryMap, NodeShape, Recorder, Step, StepSink};
+use lodray_test_support::models::{Rng, build};
+use lodray_test_support::program::write_rays;
 use std::collections::HashSet;
 use std::fs;
 use std::path::Path;
@@ -267,6 +270,171 @@ impl Tracer for CountingTracer<'_> {
         self.asked.fetch_add(1, Relaxed);
         self.tracer.follow(query, from, recorder)
     }
+    fn enter(&mut self, query: &Query, from: Option<&Departure>, steps: &mut dyn StepSink) -> Option<Landing> {
+        self.asked.fetch_add(1, Relaxed);
+        self.tracer.enter(query, from, steps)
+    }
+    fn is_mapped(&self) -> bool {
+        self.tracer.is_mapped()
+    }
+}
+
+/// Two models in sixteen places, side by side: `order` says which stands where in the list.
+fn places<'a>(
+    scenes: &'a [Scene; 2],
+    methods: &'a [Box<dyn Method>; 2],
+    camera: &Camera,
+    order: impl Fn(usize) -> usize,
+) -> Vec<Instance<'a>> {
+    let instance = |k: usize| {
+        let k = order(k);
+        let [x, z] = [k % 4, k / 4].map(|k| 2.5 * k as f64 - 3.75);
+        let pose = Pose::new([0.0, 20.0 * k as f64, 0.0], 1.0 + 0.02 * k as f64, [x, 0.0, z]);
+        Instance::new(&scenes[k % 2], &*methods[k % 2], pose, vec![Material::Diffuse { albedo: None }], camera, 1.0)
+    };
+    (0..16).map(instance).collect()
+}
+
+/// A machine gets the rays that a picture has of several models too: each goes through the tree over them and on into those whose boxes it enters, and ends once.
+#[test]
+fn rays_go_through_several_models_on_a_machine() {
+    let scenes = [generated(procedural::Scene::Sphere, 3, 128), generated(procedural::Scene::Spikes, 2, 100)];
+    let view = View { eye: Some([2.0, 6.0, 14.0]), target: Some([0.0; 3]), fov: 40.0, ..View::default() };
+    let camera = Camera::new(&view, &ModelSpace::of(&scenes[0]), 32, 32).expect("a camera");
+    let machine = Machine::shipped("haydel2023").expect("a machine");
+    for registered in [&lod::METHOD, &bvh::METHOD, &bvh::METHOD_SIX, &discrete::METHOD] {
+        let methods = [0, 1].map(|k: usize| made(&scenes[k], registered));
+        let world = World::new(places(&scenes, &methods, &camera, |k| k), Starts::Exact);
+        let (lights, cones) = (lights(), Default::default());
+        let paths =
+            Paths { world: &world, camera, lights: &lights, environment: None, cones, depth: 1, shadow_rays: true, samples: 2, seed: 1 };
+        let film = Film::of(&paths, &|| ());
+        let hits = film.counts.hits.iter().chain(&film.counts.shadowed).sum::<u64>();
+
+        // Two models lie there once each, section by section, and then the tree and the sixteen places.
+        let frame = PathFrame::new(&paths).expect("lines that can be numbered");
+        let sections: Vec<_> = frame.map().sections().map(|(_, section)| section).collect();
+        let [own, tree] = [&sections[..sections.len() - 2], &sections[sections.len() - 2..]];
+        assert_eq!(tree.iter().map(|section| (section.name, section.lines)).collect::<Vec<_>>(), [("scene_node", 20), ("instance", 32)]);
+        let maps = [0, 1].map(|k: usize| methods[k].map(world.instances()[k].sight()));
+        for (k, section) in own.iter().enumerate() {
+            let lines: Vec<_> = maps.iter().map(|map| map.sections().nth(k).expect("a section").1).collect();
+            assert!(lines.iter().all(|own| own.name == section.name));
+            assert_eq!(section.lines, lines.iter().map(|own| own.lines.next_multiple_of(4)).sum::<u64>());
+        }
+
+        // Each ray: the tree first, a step into each model, one end; every line is of the section that it says.
+        let (mut rays, mut entered) = (0, 0);
+        frame.produce(&mut |Traced { batches, .. }| {
+            for batch in &batches {
+                for ray in 0..batch.rays() {
+                    let words = &batch.words()[batch.start(ray) as usize..batch.end(ray) as usize];
+                    let steps: Vec<Step> = words.iter().map(|word| word.step()).collect();
+                    assert!(matches!(steps[0].act, Act::Children { shape: NodeShape::Wide, .. }), "{:?}", steps[0]);
+                    assert_eq!(steps.iter().filter(|step| matches!(step.act, Act::End { .. })).count(), 1);
+                    let places = steps.iter().filter(|step| matches!(step.act, Act::Children { shape: NodeShape::Instance, .. }));
+                    let transforms = steps.iter().filter(|step| matches!(step.act, Act::Work { work: INSTANCE, count: 1 })).count();
+                    assert_eq!(places.clone().count(), transforms);
+                    entered += transforms as u64;
+                    for fetch in steps.iter().filter_map(|step| step.fetch) {
+                        for line in fetch.line..fetch.line + fetch.lines {
+                            assert_eq!(frame.map().locate(line.into()).map(|(id, _)| id), Some(fetch.section));
+                        }
+                    }
+                    rays += 1;
+                }
+            }
+            true
+        });
+        assert_eq!(rays, film.counts.all());
+        assert!(entered > rays / 2 && entered < 3 * rays, "{entered} of {rays}");
+
+        // A set-up for each ray, and one for each model that it enters; the same on one thread and on three.
+        let job = Job { machine: machine.clone(), compute: Compute::Free, window: None };
+        let run = |threads| {
+            let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("a pool");
+            pool.install(|| simulate(&frame, std::slice::from_ref(&job), &mut |_| ())).remove(0).expect("a run")
+        };
+        let one = run(1);
+        assert_eq!((one.counts.rays, one.counts.hits), (rays, hits));
+        assert_eq!((one.operations.get(Operation::RaySetup), one.operations.works()[INSTANCE as usize]), (rays + entered, entered));
+        assert_eq!(one, run(3));
+        let units = Job { compute: Compute::Units, ..job.clone() };
+        let refused = simulate(&frame, &[units], &mut |_| ()).remove(0).expect_err("units hold one model");
+        assert!(refused.to_string().starts_with("the scene has 16 models"), "{refused}");
+    }
+}
+
+/// Rays of a file meet the nearest of what each model alone would show them, and say which.
+#[test]
+fn cast_names_the_model_that_is_met() {
+    let scenes = [generated(procedural::Scene::Sphere, 3, 128), generated(procedural::Scene::Spikes, 2, 100)];
+    let methods = [0, 1].map(|k: usize| made(&scenes[k], &lod::METHOD));
+    let camera = camera(&scenes[0], [0.0, 0.0, 4.0], 8);
+    let all = || places(&scenes, &methods, &camera, |k| k);
+    let mut rng = Rng(7);
+    let mut point = |of: f64| -> [f64; 3] { std::array::from_fn(|_| of * rng.signed()) };
+    let queries: Vec<_> = (0..3000)
+        .map(|k| {
+            let (from, at) = (point(9.0), point(4.0));
+            let direction = std::array::from_fn(|c| at[c] - from[c]);
+            Query {
+                any: k % 5 == 0,
+                ..Query::new(from, direction).with_cone(0.0, 1e-3).between([0.0, 2.0][k % 2], [f64::INFINITY, 9.0][k % 3 % 2])
+            }
+        })
+        .collect();
+    let rays = RayFile::new(queries.clone());
+    let rows = World::new(all(), Starts::Exact).cast(&rays, &|_| ());
+    let alone: Vec<Vec<_>> = all().into_iter().map(|own| World::new(vec![own], Starts::Exact).cast(&rays, &|_| ())).collect();
+    let (mut seen, mut hits) = (HashSet::new(), 0);
+    for (k, row) in rows.iter().enumerate() {
+        let nearest = alone.iter().map(|rows| rows[k].t).fold(f64::INFINITY, f64::min);
+        assert_eq!(row.t.is_finite(), nearest.is_finite(), "ray {k}");
+        let Ok(instance) = usize::try_from(row.instance) else { continue };
+        let own = &alone[instance][k];
+        assert!(
+            own.instance == 0 && (row.t, row.tree, row.triangle) == (own.t, own.tree, own.triangle) && row.normal == own.normal,
+            "ray {k}"
+        );
+        assert!(queries[k].any || row.t == nearest, "ray {k}: {} {nearest}", row.t);
+        assert!(row.t >= queries[k].t_min && row.t <= queries[k].t_max);
+        seen.insert(instance);
+        hits += 1;
+    }
+    assert!(hits > 1000 && seen.len() == 16, "{hits}, {}", seen.len());
+}
+
+/// One model in one place is what it was without a tree: its own memory and steps.
+#[test]
+fn a_scene_of_one_model_has_no_tree() {
+    let scene = generated(procedural::Scene::Sphere, 3, 128);
+    let method = made(&scene, &lod::METHOD);
+    let camera = camera(&scene, [0.0, 0.0, 4.0], 16);
+    let material = Material::Diffuse { albedo: None };
+    let shot = Shot { scene: &scene, method: &*method, material, pose: unturned(), camera, delta: 1.0, starts: Starts::Exact };
+    shot.with(
+        &[],
+        Some(EVERYWHERE),
+        |paths| (paths.depth, paths.samples, paths.shadow_rays) = (0, 1, false),
+        |paths| {
+            let frame = PathFrame::new(paths).expect("few lines");
+            let sight = paths.world.instances()[0].sight();
+            assert_eq!(*frame.map(), method.map(sight));
+            let (mut words, mut tracer) = (Vec::new(), method.tracer(sight));
+            frame.produce(&mut |traced| {
+                words.extend(traced.batches.iter().flat_map(|batch| batch.words().to_vec()));
+                true
+            });
+            let mut recorder = Recorder::default();
+            (0..camera.batches()).for_each(|batch| {
+                camera.batch(batch, &mut |_, query| {
+                    tracer.recorded(query, &mut recorder);
+                })
+            });
+            assert_eq!(words, recorder.batch().words());
+        },
+    );
 }
 
 /// Sixteen balls side by side: rays ask those whose boxes they enter, and meet what they would meet if they asked all, whatever the order of the models.
@@ -402,6 +570,19 @@ fn bad_descriptions_are_one_line_that_names_file_and_key() {
     }
     let two = format!("{ROOM}\n[[model]]\ngenerate = {{ scene = \"sphere\", levels = 1, base = 8 }}\n");
     fs::write(folder.path().join("a.toml"), two).expect("a file");
-    let output = lodray(folder.path()).args(["paths", "a.toml", "--machine", "haydel2023"]).assert().failure().get_output().clone();
-    assert!(String::from_utf8(output.stderr).expect("text").contains("a.toml has 2 models, and the memory of a machine holds one"));
+    let by = |compute| lodray(folder.path()).args(["paths", "a.toml", "--machine", "haydel2023", "--json", "--compute", compute]).assert();
+    let output = by("units").failure().get_output().clone();
+    assert!(String::from_utf8(output.stderr).expect("text").contains("the scene has 2 models, and rays of traversal units go through one"));
+    by("free").success();
+    let result: serde_json::Value =
+        serde_json::from_slice(&fs::read(folder.path().join("out/paths/result.json")).expect("results")).expect("JSON");
+    write_rays(&folder.path().join("rays.npy"), 6, &[0.0, 0.0, 3.4, 0.0, 0.0, -1.0, 0.0, 9.0, 3.4, 0.0, 1.0, 0.0]);
+    let cast = ["cast", "a.toml", "rays.npy", "-o", "hits.npy", "--json"];
+    let output = lodray(folder.path()).args(cast).assert().success().get_output().clone();
+    let figures: serde_json::Value = serde_json::from_slice(&output.stdout).expect("JSON");
+    assert_eq!([&figures["models"], &figures["rays"], &figures["hits"]].map(serde_json::Value::as_u64), [Some(2), Some(2), Some(1)]);
+    let of = &result[2]["setup"]["scene"];
+    assert_eq!((of["name"].as_str(), of["base_triangles"].as_u64()), (Some("a.toml, 2 models"), Some(116)), "{of}");
+    let of = &result[2]["operations"];
+    assert!(of["instance_transform"].as_u64() > Some(0) && of["ray_setup"].as_u64() > of["instance_transform"].as_u64(), "{of}");
 }

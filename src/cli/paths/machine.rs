@@ -29,7 +29,7 @@ pub struct Bounces {
 pub fn run(
     paths: &Paths<'_>,
     chosen: &Chosen,
-    scene: &Scene,
+    scenes: &[Scene],
     machine: &MachineFacts,
     compute: Compute,
     file: &str,
@@ -37,9 +37,7 @@ pub fn run(
     run::check(&machine.description, compute)?;
     let result = |depth| {
         let paths = Paths { depth, ..*paths };
-        let count = paths.world.instances().len();
-        let frame = PathFrame::new(&paths)
-            .with_context(|| format!("--machine: {file} has {count} models, and the memory of a machine holds one"))?;
+        let frame = PathFrame::new(&paths).with_context(|| format!("--machine: {file}"))?;
         let job = Job { machine: machine.description.clone(), compute, window: None };
         let bar = progress(frame.batches() as u64, "simulating");
         let mut rays = 0;
@@ -51,9 +49,9 @@ pub fn run(
         bar.finish_and_clear();
         let run = runs.remove(0)?;
         let own = &paths.world.instances()[0];
-        let map = own.method.map(own.sight());
+        let map = *frame.map();
         let setup = Setup {
-            scene: SceneFacts::from(scene),
+            scene: SceneFacts::of_models(file, scenes),
             method: MethodFacts::new(chosen.method, &chosen.knobs, &own.method.choices(own.sight()), map.bytes()),
             view: None,
             frames: None,

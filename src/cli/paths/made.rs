@@ -1,8 +1,10 @@
 //! What a description comes to: models, a camera, a world.
 
 use crate::cli::build::FormArgs;
+use crate::cli::cache::Cache;
 use crate::cli::common::is_quiet;
 use crate::cli::generate;
+use crate::cli::method::Chosen;
 use crate::cli::output::{busy, check_normals, open, toml_in_one_line, warn};
 use anyhow::{Context, ensure};
 use lodray::format::Scene;
@@ -11,7 +13,7 @@ use lodray::method::Method;
 use lodray::paths::{Instance, ModelTable, Paths, Pose, SceneFile, SceneFileError, Starts, World};
 use lodray::rays::{Camera, ModelSpace, View};
 use lodray::scene::BuildOptions;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 /// Reads a description; what is wrong with it is said in one line.
@@ -22,8 +24,62 @@ pub fn description(path: &Path) -> anyhow::Result<SceneFile> {
     })
 }
 
+/// The files that a description names, beside its own; each is there.
+pub fn model_files(description: &Path, file: &SceneFile) -> anyhow::Result<Vec<PathBuf>> {
+    let beside = beside(description);
+    let names = file.model.iter().enumerate().filter_map(|(k, model)| Some((k, beside.join(model.file.as_ref()?))));
+    names
+        .map(|(k, path)| {
+            ensure!(path.is_file(), "{}: model[{k}].file: there is no file {}", description.display(), path.display());
+            Ok(path)
+        })
+        .collect()
+}
+
+fn beside(description: &Path) -> &Path {
+    description.parent().unwrap_or(Path::new(""))
+}
+
+/// The models of a description, in its order. What stands in several places is loaded once.
+pub fn scenes(description: &Path, file: &SceneFile) -> anyhow::Result<Vec<Scene>> {
+    let mut scenes: Vec<Scene> = Vec::new();
+    for (k, model) in file.model.iter().enumerate() {
+        let scene = match file.model[..k].iter().position(|before| model.is_of(before)) {
+            Some(before) => scenes[before].clone(),
+            None => load(model, beside(description)).with_context(|| format!("{}: model[{k}]", description.display()))?,
+        };
+        scenes.push(scene);
+    }
+    Ok(scenes)
+}
+
+/// The models by a method whose hits rays can leave. What stands in several places is built once.
+pub fn methods(file: &SceneFile, scenes: &[Scene], chosen: &Chosen, cache: &Cache) -> anyhow::Result<Vec<Arc<dyn Method>>> {
+    let mut methods: Vec<Arc<dyn Method>> = Vec::new();
+    for (k, (model, scene)) in file.model.iter().zip(scenes).enumerate() {
+        let method = match file.model[..k].iter().position(|before| model.is_of(before)) {
+            Some(before) => Arc::clone(&methods[before]),
+            None => Arc::from(chosen.make(scene, cache)?.0),
+        };
+        methods.push(method);
+    }
+    ensure!(methods.iter().all(|method| method.leaves()), "--method {}: rays cannot leave its surface", chosen.method.name);
+    Ok(methods)
+}
+
+/// The models for rays from anywhere that are not shaded.
+pub fn unshaded<'a>(file: &SceneFile, scenes: &'a [Scene], methods: &'a [Arc<dyn Method>], delta: f64) -> World<'a> {
+    let instances = file.model.iter().zip(scenes).zip(methods);
+    let instances = instances.map(|((model, scene), method)| Instance::for_any_ray(scene, &**method, pose(model), delta));
+    World::new(instances.collect(), Starts::Exact)
+}
+
+fn pose(model: &ModelTable) -> Pose {
+    Pose::new(model.rotate, model.scale, model.translate)
+}
+
 /// The model of a table.
-pub fn load(model: &ModelTable, beside: &Path) -> anyhow::Result<Scene> {
+fn load(model: &ModelTable, beside: &Path) -> anyhow::Result<Scene> {
     if let Some(options) = model.generate {
         return generate::make(&options.into(), FormArgs::default());
     }
@@ -63,10 +119,12 @@ pub fn world<'a>(
     delta: f64,
     starts: Starts,
 ) -> World<'a> {
-    let instances = file.model.iter().zip(scenes).zip(methods).map(|((model, scene), method)| {
-        let pose = Pose::new(model.rotate, model.scale, model.translate);
-        Instance::new(scene, &**method, pose, file.materials(model), camera, delta)
-    });
+    let instances = file
+        .model
+        .iter()
+        .zip(scenes)
+        .zip(methods)
+        .map(|((model, scene), method)| Instance::new(scene, &**method, pose(model), file.materials(model), camera, delta));
     World::new(instances.collect(), starts)
 }
 

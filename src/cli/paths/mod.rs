@@ -1,7 +1,7 @@
 //! `paths`: a picture by path tracing, from the description of a scene.
 
 mod machine;
-mod made;
+pub(super) mod made;
 mod print;
 
 use super::args::{Change, Size, seed, whole};
@@ -10,14 +10,15 @@ use super::folder::{Overrule, RunFolder, one_run};
 use super::method::{Chosen, MachineMethod};
 use super::names::named;
 use super::output::{print_json, progress, write_file};
-use anyhow::{Context, ensure};
+use anyhow::Context;
 use lodray::format::Scene;
 use lodray::method::{Method, lod};
 use lodray::paths::{Film, LightCount, MOST_DEPTH, MOST_SAMPLES, PathCounts, Paths, SceneFile, Starts, light_count, picture_error};
 use lodray::picture::{ImageError, compare, save_png};
 use lodray::rays::Camera;
 use lodray::run::Compute;
-use made::{camera, description, load, paths, world};
+use made::{camera, paths, world};
+use made::{description, methods, model_files, scenes};
 use serde::Serialize;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
@@ -74,7 +75,7 @@ pub struct Args {
     /// Also full resolution by other paths, so many of a pixel, and the error to it
     #[arg(long, value_name = "N", value_parser = whole::<u32>(1..=MOST_SAMPLES.into()), allow_negative_numbers = true)]
     converged: Option<u32>,
-    /// Simulate the paths on a machine, the name of one that comes with the program or a file, in place of a picture, at all depths from 0 on: what each bounce adds; for scenes of one model
+    /// Simulate the paths on a machine, the name of one that comes with the program or a file, in place of a picture, at all depths from 0 on: what each bounce adds; of several models only where compute is free
     #[arg(long, value_name = "NAME|FILE", conflicts_with_all = ["compare", "converged"])]
     machine: Option<String>,
     /// Change a value of the machine, such as l1.bytes=32768; may be repeated
@@ -150,22 +151,10 @@ fn overruled(args: &Args) -> anyhow::Result<SceneFile> {
     Ok(file)
 }
 
-/// The files that the description names, beside its own; each is there.
-fn model_files(args: &Args, file: &SceneFile, beside: &Path) -> anyhow::Result<Vec<PathBuf>> {
-    let names = file.model.iter().enumerate().filter_map(|(k, model)| Some((k, beside.join(model.file.as_ref()?))));
-    names
-        .map(|(k, path)| {
-            ensure!(path.is_file(), "{}: model[{k}].file: there is no file {}", args.scene.display(), path.display());
-            Ok(path)
-        })
-        .collect()
-}
-
 pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
     let file = overruled(args)?;
-    let beside = args.scene.parent().unwrap_or(Path::new(""));
     let shown = args.scene.display();
-    let models = model_files(args, &file, beside)?;
+    let models = model_files(&args.scene, &file)?;
     let inputs: Vec<&Path> = models.iter().map(PathBuf::as_path).chain([args.scene.as_path()]).collect();
     let mut names = vec![FIGURES];
     names.extend(if args.machine.is_none() { &[PICTURE, LIGHT][..] } else { &[RESULTS] });
@@ -173,15 +162,7 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
         names.extend([FULL_PICTURE, FULL_LIGHT]);
     }
     let folder = RunFolder::open(&args.out, names, &inputs, &args.overrule)?;
-    let mut scenes: Vec<Scene> = Vec::new();
-    for (k, model) in file.model.iter().enumerate() {
-        // What stands in several places is loaded once.
-        let scene = match file.model[..k].iter().position(|before| model.is_of(before)) {
-            Some(before) => scenes[before].clone(),
-            None => load(model, beside).with_context(|| format!("{shown}: model[{k}]"))?,
-        };
-        scenes.push(scene);
-    }
+    let scenes = scenes(&args.scene, &file)?;
     let camera = camera(&file, args.camera.as_deref(), &scenes).with_context(|| shown.to_string())?;
     let cache = Cache::new(&args.cache, None)?;
     let subject = Subject { args, file: &file, scenes: &scenes, camera, cache: &cache, folder: &folder };
@@ -213,23 +194,12 @@ struct Subject<'a> {
 impl Subject<'_> {
     /// The models by the method that was asked for.
     fn methods(&self) -> anyhow::Result<Vec<Arc<dyn Method>>> {
-        let chosen = &self.args.method.0;
-        let methods = self.made(chosen)?;
-        ensure!(methods.iter().all(|method| method.leaves()), "--method {}: rays cannot leave its surface", chosen.method.name);
-        Ok(methods)
+        self.made(&self.args.method.0)
     }
 
-    /// The same by another; models of several places have one.
+    /// The same by another.
     fn made(&self, chosen: &Chosen) -> anyhow::Result<Vec<Arc<dyn Method>>> {
-        let mut methods: Vec<Arc<dyn Method>> = Vec::new();
-        for (k, (model, scene)) in self.file.model.iter().zip(self.scenes).enumerate() {
-            let method = match self.file.model[..k].iter().position(|before| model.is_of(before)) {
-                Some(before) => Arc::clone(&methods[before]),
-                None => Arc::from(chosen.make(scene, self.cache)?.0),
-            };
-            methods.push(method);
-        }
-        Ok(methods)
+        methods(self.file, self.scenes, chosen, self.cache)
     }
 
     /// What each bounce costs on the machine of that name.
@@ -242,7 +212,7 @@ impl Subject<'_> {
         // Paths need such units, whatever the machine's are for.
         machine.description.units.secondary = true;
         let shown = args.scene.display().to_string();
-        let results = machine::run(&paths(file, &own, camera), chosen, &scenes[0], &machine, args.compute, &shown)?;
+        let results = machine::run(&paths(file, &own, camera), chosen, scenes, &machine, args.compute, &shown)?;
         let bounces = machine::bounces(&results);
         let write = |name: &str, text: String| write_file(&folder.staging().join(name), text + "\n");
         write(FIGURES, serde_json::to_string_pretty(&bounces)?)?;

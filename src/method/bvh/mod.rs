@@ -20,7 +20,7 @@ use crate::block::{Operation, Work};
 use crate::bvh::BvhError;
 use crate::format::Scene;
 use crate::rays::{ModelSpace, Query, Sight};
-use crate::step::{MemoryMap, Section, SectionId, Step, StepSink};
+use crate::step::{MemoryMap, Section, SectionId, StepSink};
 
 /// Nodes.
 pub const NODES: SectionId = SectionId::new(0);
@@ -273,26 +273,21 @@ impl BvhTracer {
 impl Trace for BvhTracer {
     fn trace<S: StepSink>(&mut self, query: &Query, steps: &mut S) -> Option<SurfaceHit> {
         // Its triangles are what they are, whatever the quality.
-        let Some(ray) = self.space.enter(query, 1.0) else {
-            steps.step(Step::end(false, false));
-            return None;
-        };
+        let ray = self.space.enter(query, 1.0)?;
         let mut hit = ClosestHit::of(self.levels, &ray, query.any);
-        self.traverser.trace(&ray.ray, steps, &mut hit);
+        self.traverser.descend(&ray.ray, None, steps, &mut hit);
         hit.surface(&ray)
     }
 
     fn follow<S: StepSink>(&mut self, query: &Query, from: Option<&Departure>, steps: &mut S) -> Option<Landing> {
-        let Some(ray) = self.space.enter_from(query, from.map(|from| &from.start), 1.0) else {
-            steps.step(Step::end(false, false));
-            return None;
-        };
+        let ray = self.space.enter_from(query, from.map(|from| &from.start), 1.0)?;
         let mut hit = ClosestHit::of(self.levels, &ray, query.any);
-        match from {
-            Some(from) => self.traverser.trace_from(&ray.ray, from, steps, &mut hit),
-            None => self.traverser.trace(&ray.ray, steps, &mut hit),
-        }
+        self.traverser.descend(&ray.ray, from, steps, &mut hit);
         hit.landing(&ray, BvhTraverser::departure)
+    }
+
+    fn is_mapped(&self) -> bool {
+        self.traverser.is_mapped()
     }
 }
 

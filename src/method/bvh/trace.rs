@@ -85,14 +85,28 @@ impl BvhTraverser {
         self.levels
     }
 
-    /// Traces `ray`: every triangle met goes to `sink`, every step to `steps`.
+    /// Its hits are on coarse triangles, and are mapped to the finest.
+    pub fn is_mapped(&self) -> bool {
+        self.mapped
+    }
+
+    /// Traces `ray` from its beginning to its end: every triangle met goes to `sink`, every step to `steps`.
     pub fn trace<S: StepSink, H: HitSink>(&mut self, ray: &Ray, steps: &mut S, sink: &mut H) {
         self.trace_with(ray, steps, sink, |_| ());
     }
 
     /// Traces `ray` from the surface: its origin is the whole point of `departure.start`.
     pub fn trace_from<S: StepSink, H: HitSink>(&mut self, ray: &Ray, departure: &Departure, steps: &mut S, sink: &mut H) {
-        self.trace_as::<S, H, _, true>(ray, Some(departure), steps, sink, |_| ());
+        self.descend(ray, Some(departure), steps, sink);
+        steps.step(Step::end(sink.found(), self.mapped));
+    }
+
+    /// Either without the ray's end: it may go on elsewhere.
+    pub fn descend<S: StepSink, H: HitSink>(&mut self, ray: &Ray, departure: Option<&Departure>, steps: &mut S, sink: &mut H) {
+        match departure {
+            Some(_) => self.trace_as::<S, H, _, true>(ray, departure, steps, sink, |_| ()),
+            None => self.trace_as::<S, H, _, false>(ray, None, steps, sink, |_| ()),
+        }
     }
 
     /// Where rays start that leave the surface at `hit`. All rays see one surface: none of them decides anything.
@@ -100,12 +114,13 @@ impl BvhTraverser {
         Departure { start: leave::start(corners, [hit.b0, hit.b1, hit.b2]), corners: *corners, prior: None, crowded: false }
     }
 
-    /// The same; every leaf read goes to `leaf` too.
+    /// As [`BvhTraverser::trace`]; every leaf read goes to `leaf` too.
     pub fn trace_with<S: StepSink, H: HitSink, L: FnMut(&Leaf)>(&mut self, ray: &Ray, steps: &mut S, sink: &mut H, leaf: L) {
         self.trace_as::<S, H, L, false>(ray, None, steps, sink, leaf);
+        steps.step(Step::end(sink.found(), self.mapped));
     }
 
-    /// The same, compiled for rays that have a departure if they are ones `LEAVING` a surface.
+    /// The same without the ray's end, compiled for rays that have a departure if they are ones `LEAVING` a surface.
     #[inline(always)]
     fn trace_as<S: StepSink, H: HitSink, L: FnMut(&Leaf), const LEAVING: bool>(
         &mut self,
@@ -174,7 +189,6 @@ impl BvhTraverser {
                 self.leaf::<S, H, LEAVING>(ray, &start, &own, steps, sink);
             }
         }
-        steps.step(Step::end(sink.found(), self.mapped));
     }
 
     /// Takes the next entry from the stack; `None` if there is none, or it lies behind the closest hit.

@@ -16,7 +16,7 @@ use crate::block::Operation;
 use crate::format::{Scene, scene_prisms};
 use crate::num::prism::Prisms;
 use crate::rays::{ModelSpace, Query, Sight, is_full_detail};
-use crate::step::{MemoryMap, Step, StepSink};
+use crate::step::{MemoryMap, StepSink};
 
 /// The method.
 pub static METHOD: Registered = Registered {
@@ -108,20 +108,14 @@ struct LodTracer<'a, const COMPACT: bool, const FULL_DETAIL: bool> {
 
 impl<const COMPACT: bool, const FULL_DETAIL: bool> Trace for LodTracer<'_, COMPACT, FULL_DETAIL> {
     fn trace<S: StepSink>(&mut self, query: &Query, steps: &mut S) -> Option<SurfaceHit> {
-        let Some(ray) = self.space.enter(query, self.delta) else {
-            steps.step(Step::end(false, false));
-            return None;
-        };
+        let ray = self.space.enter(query, self.delta)?;
         let mut hit = ClosestHit::of(self.traverser.levels(), &ray, query.any);
         self.traverser.trace_as::<_, _, COMPACT, FULL_DETAIL, false>(&ray.ray, None, steps, &mut hit);
         hit.surface(&ray)
     }
 
     fn follow<S: StepSink>(&mut self, query: &Query, from: Option<&Departure>, steps: &mut S) -> Option<Landing> {
-        let Some(ray) = self.space.enter_from(query, from.map(|from| &from.start), self.delta) else {
-            steps.step(Step::end(false, false));
-            return None;
-        };
+        let ray = self.space.enter_from(query, from.map(|from| &from.start), self.delta)?;
         let mut hit = ClosestHit::of(self.traverser.levels(), &ray, query.any);
         match from {
             // Decisions of rays that tolerate nothing are the same by the rule for all.
@@ -129,5 +123,9 @@ impl<const COMPACT: bool, const FULL_DETAIL: bool> Trace for LodTracer<'_, COMPA
             None => self.traverser.trace_as::<_, _, COMPACT, FULL_DETAIL, false>(&ray.ray, None, steps, &mut hit),
         }
         hit.landing(&ray, |hit, corners| self.traverser.departure(&ray.ray, from, hit, corners))
+    }
+
+    fn is_mapped(&self) -> bool {
+        true
     }
 }

@@ -57,12 +57,14 @@ impl<'a> LodTraverser<'a> {
         self.image.levels
     }
 
-    /// Traces `ray`: every triangle that serves the ray and is met goes to `sink`, every step to `steps`.
+    /// Traces `ray` from its beginning to its end: every triangle that serves the ray and is met goes to `sink`, every step to `steps`.
     pub fn trace<S: StepSink, H: HitSink>(&mut self, ray: &Ray, steps: &mut S, sink: &mut H) {
         match self.image.form {
             VertexForm::Compact | VertexForm::Short => self.trace_as::<S, H, true, false, false>(ray, None, steps, sink),
             VertexForm::Exact => self.trace_as::<S, H, false, false, false>(ray, None, steps, sink),
         }
+        // A hit on a coarse triangle is mapped to the full resolution.
+        steps.step(Step::end(sink.found(), true));
     }
 
     /// Traces `ray` from the surface: its origin is the whole point of `departure.start`, and what it needs of the rays before it is there.
@@ -71,6 +73,7 @@ impl<'a> LodTraverser<'a> {
             VertexForm::Compact | VertexForm::Short => self.trace_as::<S, H, true, false, true>(ray, Some(departure), steps, sink),
             VertexForm::Exact => self.trace_as::<S, H, false, false, true>(ray, Some(departure), steps, sink),
         }
+        steps.step(Step::end(sink.found(), true));
     }
 
     /// Where rays start that leave the surface where `ray` hit it, and what they need of it and the rays before it; `from` is where `ray` started.
@@ -82,8 +85,8 @@ impl<'a> LodTraverser<'a> {
         Departure { start, corners: *corners, prior: Some(prior), crowded }
     }
 
-    /// The same, compiled for scenes of one form of vertices, for rays that tolerate nothing if they are of `FULL_DETAIL`, and for those that have a departure if they are
-    /// ones that `LEAVES` a surface.
+    /// The same without the ray's end, compiled for scenes of one form of vertices, for rays that tolerate nothing if they are of `FULL_DETAIL`, and for those that have a
+    /// departure if they are ones that `LEAVES` a surface.
     #[inline(always)]
     pub(super) fn trace_as<S: StepSink, H: HitSink, const COMPACT: bool, const FULL_DETAIL: bool, const LEAVES: bool>(
         &mut self,
@@ -147,9 +150,6 @@ impl<'a> LodTraverser<'a> {
             journey.steps.step(Step::of(Act::Pop { dropped }));
             next = (!dropped).then_some(entry);
         }
-        // A hit on a coarse triangle is mapped to the full resolution.
-        let found = journey.sink.found();
-        journey.steps.step(Step::end(found, true));
     }
 }
 

@@ -4,7 +4,7 @@ use super::hit::plane;
 use super::{Departure, Landing, Method, Registered, SurfaceHit, Trace, Tracer};
 use crate::golden::reference::Reference;
 use crate::rays::{ModelSpace, Query, Sight};
-use crate::step::{MemoryMap, Step, StepSink};
+use crate::step::{MemoryMap, StepSink};
 
 /// The method.
 pub static METHOD: Registered = Registered {
@@ -39,12 +39,10 @@ impl Method for Truth {
 }
 
 impl Trace for &Truth {
-    fn trace<S: StepSink>(&mut self, query: &Query, steps: &mut S) -> Option<SurfaceHit> {
+    fn trace<S: StepSink>(&mut self, query: &Query, _: &mut S) -> Option<SurfaceHit> {
         let scale = self.space.placement.scale;
         let [near, far] = [query.t_min, query.t_max].map(|t| t / scale);
-        let hit = self.reference.trace_between(self.space.to_units(query.origin), query.direction, [near, far]);
-        steps.step(Step::end(hit.is_some(), false));
-        let hit = hit?;
+        let hit = self.reference.trace_between(self.space.to_units(query.origin), query.direction, [near, far])?;
         Some(SurfaceHit {
             distance: hit.t * scale,
             tree: hit.tree,
@@ -58,8 +56,11 @@ impl Trace for &Truth {
         })
     }
 
-    fn follow<S: StepSink>(&mut self, _: &Query, _: Option<&Departure>, steps: &mut S) -> Option<Landing> {
-        steps.step(Step::end(false, false));
+    fn follow<S: StepSink>(&mut self, _: &Query, _: Option<&Departure>, _: &mut S) -> Option<Landing> {
         None
+    }
+
+    fn is_mapped(&self) -> bool {
+        false
     }
 }

@@ -82,6 +82,23 @@ impl From<&Scene> for SceneFacts {
     }
 }
 
+impl SceneFacts {
+    /// Those of models that are in `file` together, each as often as it stands somewhere; at least one.
+    pub fn of_models(file: &str, models: &[Scene]) -> Self {
+        let all: Vec<Self> = models.iter().map(Self::from).collect();
+        if let [alone] = &all[..] {
+            return alone.clone();
+        }
+        Self {
+            name: format!("{file}, {} models", all.len()),
+            levels: all.iter().map(|own| own.levels).max().unwrap_or(0),
+            base_triangles: all.iter().map(|own| own.base_triangles).sum(),
+            finest_triangles: all.iter().map(|own| own.finest_triangles).sum(),
+            bounds: all.first().map_or_else(BoundKind::unnamed, |own| own.bounds),
+        }
+    }
+}
+
 /// What a method is.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]

@@ -24,7 +24,7 @@ pub use geometry::{Geometry, Level};
 pub use prices::Prices;
 pub use report::EnergyReport;
 
-use crate::block::{Operation, Operations, Work};
+use crate::block::{INSTANCE, INSTANCE_TRANSFORM, Operation, Operations, Work};
 use crate::hardware::Hardware;
 use crate::machine::{Breach, Machine, MachineError};
 use crate::method::MethodUnit;
@@ -56,9 +56,11 @@ pub struct EnergyCounts {
 }
 
 impl EnergyCounts {
-    /// The method's own operations that occurred, and how often.
+    /// Operations that no block does, and how often they occurred: the method's own, and those of rays through several models.
     pub fn works(&self) -> impl Iterator<Item = (&'static Work, u64)> + '_ {
-        self.works.iter().zip(self.operations.works().iter().copied()).filter(|&(_, count)| count > 0)
+        let counts = self.operations.works();
+        let shared = (&INSTANCE_TRANSFORM, counts[INSTANCE as usize]);
+        self.works.iter().zip(counts.iter().copied()).chain([shared]).filter(|&(_, count)| count > 0)
     }
 }
 

@@ -34,6 +34,9 @@ pub enum ReplayError {
     /// Traversal units do rays alone.
     #[error("the method does work before a frame, which traversal units cannot: simulate it with compute free")]
     WorkByUnits,
+    /// The rays of a traversal unit stay in the space of one model.
+    #[error("the scene has {0} models, and rays of traversal units go through one: simulate it with compute free")]
+    ModelsByUnits(usize),
     /// The waveform's writer.
     #[error("waveform: {0}")]
     Wave(#[from] std::io::Error),
