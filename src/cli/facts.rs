@@ -1,7 +1,7 @@
 //! What a picture says of itself: in its file, and on the contact sheet.
 
+use super::comparison::{Against, Comparison};
 use super::output::{grouped, plain};
-use super::render::{Against, Comparison};
 use lodray::picture::{FrameStats, Shading};
 use lodray::rays::Camera;
 

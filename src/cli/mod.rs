@@ -6,6 +6,7 @@ mod cache;
 mod cast;
 mod common;
 mod compare;
+mod comparison;
 mod crack;
 mod demo;
 mod error_time;
@@ -44,7 +45,7 @@ mod workers;
 
 pub use terminal::{color, complain, set_color};
 
-use clap::{Parser, Subcommand};
+use clap::{CommandFactory, Parser, Subcommand};
 use std::process::ExitCode;
 
 /// Level of detail for ray tracing hardware, bit for bit.
@@ -142,7 +143,7 @@ pub fn run(cli: Cli) -> anyhow::Result<ExitCode> {
         Command::Crack(args) => crack::run(&args),
         Command::Stability(args) => stability::run(&args),
         Command::Export(args) => export::run(&args),
-        Command::Completions(args) => shell::completions(&args),
-        Command::Man(args) => shell::man(&args),
+        Command::Completions(args) => shell::completions(&args, Cli::command()),
+        Command::Man(args) => shell::man(&args, Cli::command()),
     }
 }

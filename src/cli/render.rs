@@ -2,6 +2,7 @@
 
 use super::args::CameraArgs;
 use super::cache::{Cache, CacheArgs};
+use super::comparison::{Against, Comparison};
 use super::facts::Facts;
 use super::folder::{Overrule, RunFolder, one_run};
 use super::job;
@@ -15,35 +16,13 @@ use image::RgbImage;
 use lodray::format::Scene;
 use lodray::method::knob::DELTA;
 use lodray::method::{Method, SurfaceHit, reference};
-use lodray::picture::{
-    FrameStats, GeometricError, ImageError, KindCount, Shader, Shading, Sheet, compare, geometric_error, save_png, view_cosine,
-};
+use lodray::picture::{FrameStats, KindCount, Shader, Shading, Sheet, compare, geometric_error, save_png, view_cosine};
 use lodray::rays::{Camera, ModelSpace, Sight};
 use serde::Serialize;
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use std::time::Instant;
-
-/// What a picture is compared with.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
-#[serde(rename_all = "snake_case")]
-pub enum Against {
-    /// The scene's own finest triangles.
-    FullResolution,
-    /// The mesh that it was made from.
-    Original,
-}
-
-impl Against {
-    /// What to call it in text.
-    pub const fn name(self) -> &'static str {
-        match self {
-            Self::FullResolution => "full resolution",
-            Self::Original => "the original",
-        }
-    }
-}
 
 /// The contact sheet.
 const SHEET: &str = "sheet.png";
@@ -144,16 +123,6 @@ struct KindPerRay {
     lines_read: f64,
     bytes_read: f64,
     distinct_lines: f64,
-}
-
-#[derive(Clone, Serialize)]
-pub struct Comparison {
-    #[serde(flatten)]
-    pub image: ImageError,
-    /// Pixels that hit in one picture only.
-    pub coverage_differs: u64,
-    /// Distance between the surfaces in pixels; null in JSON if no pixel hits in both pictures.
-    pub geometry_pixels: Option<GeometricError>,
 }
 
 /// Geometry to trace.

@@ -1,6 +1,7 @@
 //! What a view costs in error, area and bytes where a scene and a unit have no more than it needs.
 
-use super::measure::{Bench, Cameras, Stage};
+use super::measure::Bench;
+use super::stage::{Cameras, Stage};
 use crate::cli::method::Chosen;
 use crate::cli::output::busy;
 use crate::cli::plan::in_machine;

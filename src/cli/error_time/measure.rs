@@ -3,9 +3,10 @@
 use super::costs::{costs, simulated};
 use super::draw::{Converging, Subject, difference, luminance};
 use super::host::{Timed, host_times};
-use super::plain;
+use super::names::plain;
 use super::plan::{Plan, Setting};
 use super::row::{BuildTime, Measured};
+use super::stage::{Cameras, Stage};
 use crate::cli::cache::Cache;
 use crate::cli::method::Chosen;
 use crate::cli::output::{busy, progress};
@@ -22,7 +23,6 @@ use lodray::rays::{Camera, ModelSpace, Sight};
 use lodray::report::error_time::{Appearance, Converged, PictureEntry, Point, SceneEntry, Shift, TraceGrid, ViewEntry};
 use lodray::report::inspect;
 use lodray::report::result::SimResult;
-use lodray::scene::Target;
 use std::path::Path;
 use std::time::Instant;
 
@@ -77,23 +77,6 @@ impl<'a> Truth<'a> {
         let full = FullResolution { scene: self.scene, space: &self.space, surface: &self.surface, pixels: &truth.pixels };
         SurfaceError::of(of, &frame.pixels, &full, camera, stride)
     }
-}
-
-/// The camera of the whole frame, and that of the columns and rows of it whose errors are measured.
-pub(super) struct Cameras {
-    pub frame: Camera,
-    pub few: Camera,
-}
-
-/// What is traced, and on which machines.
-pub(super) struct Stage<'a> {
-    pub scene: &'a Scene,
-    /// The same with all its levels: facets are shaded, and normals found, at full resolution.
-    pub all: &'a Scene,
-    pub space: &'a ModelSpace,
-    pub chosen: &'a Chosen,
-    pub method: &'a dyn Method,
-    pub targets: &'a [Target],
 }
 
 /// A setting's picture, and what it cost.

@@ -5,9 +5,12 @@ mod draw;
 mod host;
 mod less;
 mod measure;
+mod names;
 mod options;
 mod plan;
 mod row;
+mod sizes;
+mod stage;
 
 use super::cache::Cache;
 use super::folder::RunFolder;
@@ -27,6 +30,7 @@ use lodray::report::error_time::{
 use lodray::report::page::{Documents, PICTURE_BYTES, embed};
 use lodray::report::results_version;
 use measure::Bench;
+use names::plain;
 use plan::Plan;
 use row::{Measured, ViewRow};
 use serde::Serialize;
@@ -129,12 +133,6 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
         remark(verdict.trim_end())?;
     }
     Ok(if failed.is_empty() { ExitCode::SUCCESS } else { ExitCode::FAILURE })
-}
-
-/// Letters, digits and single dashes: a part of a file's name.
-fn plain(name: &str) -> String {
-    let plain: String = name.chars().map(|c| if c.is_ascii_alphanumeric() || c == '.' { c } else { '-' }).collect();
-    plain.split('-').filter(|part| !part.is_empty()).collect::<Vec<_>>().join("-")
 }
 
 fn entry(jobs: &SceneJobs, scene: &Scene) -> SceneEntry {

@@ -1,5 +1,6 @@
 //! `paths`: a picture by path tracing, from the description of a scene.
 
+mod figures;
 mod machine;
 mod made;
 mod print;
@@ -11,14 +12,14 @@ use super::method::{Chosen, MachineMethod};
 use super::names::named;
 use super::output::{print_json, progress, write_file};
 use anyhow::{Context, ensure};
+use figures::{Against, Report};
 use lodray::format::Scene;
 use lodray::method::{Method, lod};
-use lodray::paths::{Film, LightCount, MOST_DEPTH, MOST_SAMPLES, PathCounts, Paths, SceneFile, Starts, light_count, picture_error};
-use lodray::picture::{ImageError, compare, save_png};
+use lodray::paths::{Film, MOST_DEPTH, MOST_SAMPLES, Paths, SceneFile, Starts, light_count, picture_error};
+use lodray::picture::{compare, save_png};
 use lodray::rays::Camera;
 use lodray::run::Compute;
 use made::{camera, description, load, paths, world};
-use serde::Serialize;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use std::sync::Arc;
@@ -103,38 +104,6 @@ fn starts(s: &str) -> Result<Starts, String> {
         "independent" => Ok(Starts::Independent),
         other => not_negative(other).map(Starts::Offset).map_err(|_| format!("'{s}' is not exact, independent, or a number from 0 on")),
     }
-}
-
-#[derive(Serialize)]
-struct Report {
-    method: &'static str,
-    delta: f64,
-    starts: String,
-    size: [u32; 2],
-    samples: u32,
-    depth: u32,
-    seed: u64,
-    diffuse_spread: f64,
-    counts: PathCounts,
-    #[serde(skip)]
-    seconds: f64,
-    #[serde(skip_serializing_if = "Option::is_none")]
-    against_full: Option<Against>,
-    #[serde(skip_serializing_if = "Option::is_none")]
-    against_converged: Option<Against>,
-}
-
-/// How far a picture is from another.
-#[derive(Serialize)]
-struct Against {
-    samples: u32,
-    /// Mean squared relative error of the light.
-    light: f64,
-    /// Of the picture for a screen.
-    image: ImageError,
-    /// Pixels whose first hits have the wrong light; only by the same paths.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pixels: Option<LightCount>,
 }
 
 /// The description with what the command line says in its place.

@@ -1,6 +1,6 @@
 //! Figures of paths as text.
 
-use super::Report;
+use super::figures::Report;
 use super::machine::Bounces;
 use crate::cli::output::{count, grouped, print_table};
 use crate::cli::simulate::amount;
