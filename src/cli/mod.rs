@@ -1,6 +1,7 @@
 //! The command line: one file per subcommand.
 
 mod args;
+mod bars;
 mod build;
 mod cache;
 mod cast;
@@ -18,21 +19,18 @@ mod generate;
 mod info;
 mod input;
 mod job;
-mod job_lines;
-mod json;
 mod lines;
+mod machines;
 mod method;
 mod names;
 mod original;
 mod output;
-mod pass;
 mod paths;
 mod pictures;
 mod plan;
 mod prune;
 mod render;
 mod report;
-mod results;
 mod shell;
 mod simulate;
 mod stability;
@@ -41,7 +39,6 @@ mod terminal;
 mod trace;
 mod verify;
 mod words;
-mod workers;
 
 pub use terminal::{color, complain, set_color};
 

@@ -1,15 +1,16 @@
 //! `render`: one view of a scene through one method.
 
 use super::args::CameraArgs;
-use super::cache::{Cache, CacheArgs};
+use super::cache::CacheArgs;
 use super::comparison::{Against, Comparison};
 use super::facts::Facts;
 use super::folder::{Overrule, RunFolder, one_run};
 use super::job;
-use super::method::{Chosen, PictureMethod};
+use super::method::PictureMethod;
 use super::original::original;
-use super::output::{check_normals, count, explain, grouped, open, open_any, print_json, print_table, remark};
+use super::output::{check_normals, explain, open, open_any, print_json, print_table, remark};
 use super::pictures::{Shot, shoot_with};
+use crate::cli::bars::Bars;
 use anyhow::Context;
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use image::RgbImage;
@@ -18,6 +19,8 @@ use lodray::method::knob::DELTA;
 use lodray::method::{Method, SurfaceHit, reference};
 use lodray::picture::{FrameStats, KindCount, Shader, Shading, Sheet, compare, geometric_error, save_png, view_cosine};
 use lodray::rays::{Camera, ModelSpace, Sight};
+use lodray::study::Chosen;
+use lodray::study::{count, grouped};
 use serde::Serialize;
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
@@ -170,12 +173,12 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
     let names = pictures.into_iter().take(4 + usize::from(args.compare));
     let inputs: Vec<_> = std::iter::once(&args.scene).chain(&args.mesh).map(PathBuf::as_path).collect();
     let folder = RunFolder::open(&args.out, names, &inputs, &args.overrule)?;
-    let cache = Cache::new(&args.cache, Some(&args.out))?;
+    let cache = args.cache.cache(Some(&args.out))?;
 
     let shown = mesh.as_ref().filter(|_| args.method.original).unwrap_or(&seen);
     let begun = Instant::now();
     let (chosen, delta) = (&args.method.chosen, args.method.chosen.delta());
-    let (method, cached) = chosen.make(&shown.scene, &cache)?;
+    let (method, cached) = chosen.make(&shown.scene, &cache, &Bars)?;
     let building = begun.elapsed().as_secs_f64();
     let begun = Instant::now();
     let shot = shown.shoot(&*method, args.shading, cameras, delta, "tracing");
@@ -185,7 +188,7 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
 
     let truth = if args.compare {
         let (against, of) = mesh.as_ref().map_or((Against::FullResolution, &seen), |mesh| (Against::Original, mesh));
-        let (reference, _) = Chosen::plain(&reference::METHOD).make(&of.scene, &cache)?;
+        let (reference, _) = Chosen::plain(&reference::METHOD).make(&of.scene, &cache, &Bars)?;
         let truth = of.shoot(&*reference, args.shading, cameras, delta, against.name());
         let error = compare_shots(&shot, &truth, &of.scene, &camera);
         Some((against, truth.image, error))

@@ -14,7 +14,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 /// The floors, lowest first: each a module with all below it, but for those that have a line of their own.
-const FLOORS: [&str; 24] = [
+const FLOORS: [&str; 25] = [
     "num",
     "block",
     "mesh",
@@ -38,6 +38,7 @@ const FLOORS: [&str; 24] = [
     "paths",
     "report",
     "scene",
+    "study",
     "lab",
 ];
 

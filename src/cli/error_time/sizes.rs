@@ -3,8 +3,8 @@
 use super::costs::{costs, simulated};
 use super::measure::Bench;
 use crate::cli::sweep::ViewJob;
-use crate::cli::workers::at_once;
 use lodray::report::error_time::SizeCosts;
+use lodray::study::at_once;
 
 /// Sizes of the frame at which methods are compared, where they are no larger than the view's own, which is the last.
 const SIZES: [[u32; 2]; 5] = [[128, 128], [256, 256], [512, 512], [1024, 1024], [1920, 1080]];

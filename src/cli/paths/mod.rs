@@ -6,11 +6,12 @@ mod made;
 mod print;
 
 use super::args::{Change, Size, seed, whole};
-use super::cache::{Cache, CacheArgs};
+use super::cache::CacheArgs;
 use super::folder::{Overrule, RunFolder, one_run};
-use super::method::{Chosen, MachineMethod};
+use super::method::MachineMethod;
 use super::names::named;
 use super::output::{print_json, progress, write_file};
+use crate::cli::bars::Bars;
 use anyhow::{Context, ensure};
 use figures::{Against, Report};
 use lodray::format::Scene;
@@ -19,6 +20,8 @@ use lodray::paths::{Film, MOST_DEPTH, MOST_SAMPLES, Paths, SceneFile, Starts, li
 use lodray::picture::{compare, save_png};
 use lodray::rays::Camera;
 use lodray::run::Compute;
+use lodray::study::Cache;
+use lodray::study::Chosen;
 use made::{camera, description, load, paths, world};
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
@@ -152,7 +155,7 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
         scenes.push(scene);
     }
     let camera = camera(&file, args.camera.as_deref(), &scenes).with_context(|| shown.to_string())?;
-    let cache = Cache::new(&args.cache, None)?;
+    let cache = args.cache.cache(None)?;
     let subject = Subject { args, file: &file, scenes: &scenes, camera, cache: &cache, folder: &folder };
     match &args.machine {
         Some(name) => {
@@ -194,7 +197,7 @@ impl Subject<'_> {
         for (k, (model, scene)) in self.file.model.iter().zip(self.scenes).enumerate() {
             let method = match self.file.model[..k].iter().position(|before| model.is_of(before)) {
                 Some(before) => Arc::clone(&methods[before]),
-                None => Arc::from(chosen.make(scene, self.cache)?.0),
+                None => Arc::from(chosen.make(scene, self.cache, &Bars)?.0),
             };
             methods.push(method);
         }
@@ -207,7 +210,7 @@ impl Subject<'_> {
         let chosen = &args.method.0;
         let methods = self.methods()?;
         let own = world(file, scenes, &methods, &camera, chosen.delta(), args.starts);
-        let mut machine = super::pass::machine(name, &args.set, "--set").with_context(|| format!("--machine {name}"))?;
+        let mut machine = super::machines::machine(name, &args.set, "--set").with_context(|| format!("--machine {name}"))?;
         // Paths need such units, whatever the machine's are for.
         machine.description.units.secondary = true;
         let shown = args.scene.display().to_string();

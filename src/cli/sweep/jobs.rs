@@ -2,7 +2,6 @@
 
 use crate::cli::build::FormArgs;
 use crate::cli::generate::make;
-use crate::cli::method::Chosen;
 use crate::cli::output::open_any;
 use lodray::format::{JobRegion, Scene};
 use lodray::mesh::{BoundKind, procedural};
@@ -15,6 +14,7 @@ use lodray::rays::{Camera, DEFAULT_DIRECTION, DEFAULT_VIEW_ANGLE_DEGREES, ModelS
 use lodray::report::results_version;
 use lodray::scene::Target;
 use lodray::sim::energy;
+use lodray::study::Chosen;
 use serde::Serialize;
 use std::collections::BTreeSet;
 use std::path::PathBuf;
