@@ -5,7 +5,7 @@
 //! [`mod@format`] (memory images and the scene file), [`bvh`] (the quad-BVH), [`step`] (what rays do, as steps), [`rays`] (queries, cameras,
 //! files of rays), [`method`] (ways to find hits, built from blocks), [`hardware`] (its sizes as one value), [`machine`] (descriptions),
 //! [`sim`] (the cycle level; its [`sim::dram`] lies below [`machine`]), [`run`] (rays cast, frames on machines), [`plan`] (what a scene and a job do not need), [`picture`], [`paths`] (path tracing), [`report`]
-//! (figures), [`scene`] (scenes for programs), [`lab`] (stiff cases, and a hunt for counterexamples).
+//! (figures), [`scene`] (scenes for programs), [`study`] (measuring: errors against costs, sweeps), [`lab`] (stiff cases, and a hunt for counterexamples).
 //! Apart from them stands [`golden`]: the plain exact traverser and the `f64` reference that everything is checked against.
 //!
 //! One ray's journey: a camera makes it in `f64`; [`rays::ModelSpace`] moves it to the model's box and rounds it once to a
@@ -33,3 +33,4 @@ pub mod run;
 pub mod scene;
 pub mod sim;
 pub mod step;
+pub mod study;

@@ -10,6 +10,8 @@ pub(crate) mod check;
 pub(crate) mod collapse;
 mod encode;
 pub(crate) mod foreign;
+mod node;
+mod options;
 pub(crate) mod order;
 pub(crate) mod orient;
 pub(crate) mod plan;
@@ -17,9 +19,10 @@ pub(crate) mod plan;
 pub use check::{Defect, check, sah_cost};
 pub use encode::{BvhChild32, Node6, Node16, Node32, encode_line, encode6, encode16, encode32};
 pub use foreign::BinaryNode;
+pub use node::{Box32, Child, QuadNode, WideNode};
+pub use options::{Collapse, Costs, Options};
 
 use crate::format::{Box16, TreeBvh};
-use crate::num::COORD_LIMIT;
 use rayon::prelude::*;
 use thiserror::Error;
 
@@ -32,104 +35,6 @@ const _: () = assert!(5 * MAX_DEPTH_OF_SIX <= 3 * (crate::num::MAX_BVH_DEPTH + c
 pub const MAX_LEAF: u32 = 4;
 /// Largest number of primitives: references hold 28 bits.
 pub const MAX_PRIMITIVES: usize = 1 << 28;
-
-/// A box in units: `lo <= hi`, both at most [`COORD_LIMIT`] in magnitude.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
-pub struct Box32 {
-    /// Lower corner.
-    pub lo: [i32; 3],
-    /// Upper corner.
-    pub hi: [i32; 3],
-}
-
-impl Box32 {
-    /// The smallest box around three points.
-    #[inline]
-    pub fn of_triangle(p: [[i32; 3]; 3]) -> Self {
-        Self {
-            lo: std::array::from_fn(|k| p[0][k].min(p[1][k]).min(p[2][k])),
-            hi: std::array::from_fn(|k| p[0][k].max(p[1][k]).max(p[2][k])),
-        }
-    }
-
-    /// The smallest box around both.
-    #[inline]
-    #[must_use]
-    pub fn union(&self, other: &Self) -> Self {
-        Self { lo: std::array::from_fn(|k| self.lo[k].min(other.lo[k])), hi: std::array::from_fn(|k| self.hi[k].max(other.hi[k])) }
-    }
-
-    /// Whether `inner` lies in this box, borders included.
-    #[inline]
-    pub fn contains(&self, inner: &Self) -> bool {
-        (0..3).all(|k| self.lo[k] <= inner.lo[k] && inner.hi[k] <= self.hi[k])
-    }
-
-    /// Half the surface area, in square units; a flat box may have none.
-    #[inline]
-    pub fn half_area(&self) -> f64 {
-        // f64 before the difference: it needs 33 bits.
-        let [x, y, z]: [f64; 3] = std::array::from_fn(|k| f64::from(self.hi[k]) - f64::from(self.lo[k]));
-        x * y + y * z + z * x
-    }
-
-    fn is_legal(&self) -> bool {
-        (0..3).all(|k| -COORD_LIMIT <= self.lo[k] && self.lo[k] <= self.hi[k] && self.hi[k] <= COORD_LIMIT)
-    }
-}
-
-/// How the binary tree becomes a quad tree.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
-pub enum Collapse {
-    /// The cheapest of all collapses of the binary tree, by dynamic programming.
-    #[default]
-    Optimal,
-    /// Opens the child of largest area until there are four; leaves as large as allowed. For comparison.
-    Greedy,
-}
-
-/// What the surface area heuristic counts, relative to each other.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Costs {
-    /// One visit of a node: up to two 32-byte lines, four box tests.
-    pub node: f64,
-    /// One triangle of a leaf: one line or a little more, one triangle test; of a leaf block the test alone.
-    pub primitive: f64,
-    /// One line of a leaf block.
-    pub line: f64,
-}
-
-impl Default for Costs {
-    /// By lines read, which is what the energy follows: two for a node, one for a triangle.
-    fn default() -> Self {
-        Self { node: 1.0, primitive: 0.5, line: 0.0 }
-    }
-}
-
-/// How a quad-BVH is built.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Options {
-    /// Largest number of primitives of a leaf: 1 to 4, or 16 where leaves are blocks.
-    pub max_leaf: u32,
-    /// Collapse to four children.
-    pub collapse: Collapse,
-    /// Costs of the heuristic, both positive and finite.
-    pub costs: Costs,
-}
-
-impl Options {
-    /// Leaves of at most `max_leaf` primitives, optimal collapse, default costs.
-    pub fn with_leaf(max_leaf: u32) -> Self {
-        Self { max_leaf, collapse: Collapse::default(), costs: Costs::default() }
-    }
-
-    /// What a leaf of some primitives costs for each unit of its area, if it may be one: where all leaves up to the largest may.
-    pub(crate) fn leaf_cost(&self) -> impl Fn(&[build::Prim]) -> Option<f64> + Sync + use<> {
-        let Self { max_leaf, costs, .. } = *self;
-        // 1 to 4: exact in f64.
-        move |prims| (prims.len() <= max_leaf as usize).then_some(costs.primitive * prims.len() as f64)
-    }
-}
 
 /// Why a quad-BVH could not be built.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Error)]
@@ -173,41 +78,6 @@ pub enum BvhError {
     #[error("{0} levels: a hierarchy has at most 10")]
     Levels(u32),
 }
-
-/// What a child of a node is.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
-pub enum Child {
-    /// An unused slot; always after the used ones.
-    #[default]
-    Empty,
-    /// Another node.
-    Inner(u32),
-    /// Primitives `order[first..first + count]`.
-    Leaf {
-        /// Position of the first in the order; of a leaf block, its first line.
-        first: u32,
-        /// Number of primitives, 1 to 4; of a leaf block, its lines.
-        count: u8,
-    },
-}
-
-/// A node: up to `W` children and their boxes.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct WideNode<const W: usize> {
-    /// The boxes, all zero in an empty slot.
-    pub boxes: [Box32; W],
-    /// The children.
-    pub children: [Child; W],
-}
-
-impl<const W: usize> Default for WideNode<W> {
-    fn default() -> Self {
-        Self { boxes: [Box32::default(); W], children: [Child::Empty; W] }
-    }
-}
-
-/// A node of a quad-BVH.
-pub type QuadNode = WideNode<4>;
 
 /// A BVH of `W` children a node; node 0 is the root.
 ///

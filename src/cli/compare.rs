@@ -1,10 +1,12 @@
 //! `compare`: two results of simulations side by side.
 
-use super::output::{count, grouped, print_json, print_table};
-use super::results::results;
+use super::output::{print_json, print_table};
 use super::simulate::amount;
+use crate::cli::bars::Bars;
 use anyhow::Context;
 use lodray::report::result::SimResult;
+use lodray::study::results;
+use lodray::study::{count, grouped};
 use serde::Serialize;
 use std::path::Path;
 use std::process::ExitCode;
@@ -57,7 +59,7 @@ fn read(what: &str) -> anyhow::Result<SimResult> {
     let numbered = what.rsplit_once(':').and_then(|(path, n)| Some((path, Some(n.parse::<usize>().ok()?))));
     let (path, wanted) = numbered.filter(|_| !Path::new(what).exists()).unwrap_or((what, None));
     let text = std::fs::read_to_string(path).with_context(|| format!("cannot read {path}"))?;
-    let mut results = results(&text, path).with_context(|| format!("{path}: not results of a simulation"))?;
+    let mut results = results(&text, path, &Bars).with_context(|| format!("{path}: not results of a simulation"))?;
     let among = results.len();
     let has = || format!("{path}: has {}", count(among, "result"));
     let number = match (wanted, among) {

@@ -1,10 +1,11 @@
 //! `crack`: watertightness, measured.
 
 use super::args::{MAX_RAYS, seed, whole};
-use super::output::{busy, count, explain, grouped, open, print_json, print_table, progress};
+use super::output::{busy, explain, open, print_json, print_table, progress};
 use lodray::lab::crack::{Closedness, Row, closedness, measure};
 use lodray::method::lod::LodImage;
 use lodray::rays::ModelSpace;
+use lodray::study::{count, grouped};
 use std::path::PathBuf;
 use std::process::ExitCode;
 

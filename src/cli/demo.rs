@@ -1,15 +1,14 @@
 //! `demo`: a built-in scene from three distances: what ours, the best BVH and discrete level of detail cost there, and what a traversal unit for these views can leave out.
 
 use super::build::FormArgs;
-use super::cache::Cache;
 use super::folder::{Overrule, RunFolder, one_run};
 use super::generate;
-use super::method::Chosen;
-use super::output::{busy, count, grouped, print_json, print_table, remark, write_file};
-use super::pass::{self, machine};
+use super::machines::machine;
+use super::output::{busy, print_json, print_table, remark, write_file};
 use super::pictures::{Shot, shoot};
 use super::report;
 use super::simulate::amount;
+use crate::cli::bars::Bars;
 use anyhow::Context;
 use lodray::format::Scene;
 use lodray::hardware::{Hardware, unit_gates};
@@ -23,6 +22,9 @@ use lodray::report::page::{Documents, Simulation};
 use lodray::report::result::SimResult;
 use lodray::run::Compute;
 use lodray::scene::{Pass, PassRays, Target};
+use lodray::study::Cache;
+use lodray::study::Chosen;
+use lodray::study::{count, grouped};
 use serde::Serialize;
 use std::path::PathBuf;
 use std::process::ExitCode;
@@ -97,7 +99,7 @@ impl Stage {
             rays: PassRays::Camera(*camera),
         };
         let target = Target { machine: machine(MACHINE, &[], "")?, compute: Compute::Free, window: None };
-        let (result, _) = pass::run(&pass, &[target]).pop().context("no result")??;
+        let (result, _) = lodray::study::simulate(&pass, &[target], &Bars).pop().context("no result")??;
         Ok(Outcome { name, shot, result, error })
     }
 }
@@ -110,7 +112,7 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
     let surface = busy("full-resolution surface", || FinestSurface::new(&scene.decode()));
     let stage = Stage { space: ModelSpace::of(&scene), surface, scene };
     let (scene, space) = (&stage.scene, &stage.space);
-    let make = |chosen: Chosen| chosen.make(scene, &Cache::NONE).map(|(method, _)| (chosen, method));
+    let make = |chosen: Chosen| chosen.make(scene, &Cache::NONE, &Bars).map(|(method, _)| (chosen, method));
     let truth = make(Chosen::plain(&reference::METHOD))?.1;
     let whole = [&lod::METHOD, &bvh::METHOD, &bvh::METHOD_SIX, &discrete::METHOD].map(|method| make(Chosen::plain(method)));
     let [ours, bvh, bvh6, rule] = whole;

@@ -1,9 +1,10 @@
 //! `export`: one level as a mesh.
 
 use super::args::levels;
-use super::output::{busy, check_target, count, grouped, open, print_json, remark};
+use super::output::{busy, check_target, open, print_json, remark};
 use anyhow::Context;
 use lodray::format::{export_level, write_and_rename};
+use lodray::study::{count, grouped};
 use std::path::PathBuf;
 use std::process::ExitCode;
 

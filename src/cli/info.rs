@@ -1,12 +1,13 @@
 //! `info`: what a scene file holds.
 
 use super::input::FILE;
-use super::output::{count, grouped, open_any, plain, print_json, print_line};
+use super::output::{open_any, plain, print_json, print_line};
 use lodray::format::{FileSection, JobRegion, JobView, Scene};
 use lodray::mesh::{BoundKind, Distance, TwoSidedDistance};
 use lodray::num::{PADDING_BITS, VertexForm};
 use lodray::rays::ModelSpace;
 use lodray::scene::moved_percent;
+use lodray::study::{count, grouped};
 use serde::Serialize;
 use std::path::PathBuf;
 use std::process::ExitCode;

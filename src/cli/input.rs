@@ -1,11 +1,11 @@
 //! The mesh file that a scene was built from: recorded by `build`, found again by name and hash.
 
-use super::method::Chosen;
 use super::output::{busy, remark};
 use anyhow::Context;
 use lodray::format::Scene;
 use lodray::mesh::{MeshFormat, read_as};
 use lodray::scene::BuildOptions;
+use lodray::study::Chosen;
 use serde::{Deserialize, Serialize};
 use std::path::{Path, PathBuf};
 use xxhash_rust::xxh3::xxh3_64;

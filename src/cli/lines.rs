@@ -1,9 +1,10 @@
 //! `lines`: the distinct 32-byte lines that a frame touches, by distance, LOD against full-resolution BVH layouts, over the finest level and over the mesh that it was built from.
 
 use super::args::{CameraArgs, radii};
-use super::cache::{Cache, CacheArgs, Lookup};
+use super::cache::CacheArgs;
 use super::input::{InputArgs, with_input_if_found};
-use super::output::{explain, grouped, open, print_json, print_table, progress};
+use super::output::{explain, open, print_json, print_table, progress};
+use crate::cli::bars::Bars;
 use indicatif::ProgressBar;
 use lodray::bvh::{BvhError, Options};
 use lodray::format::Scene;
@@ -14,6 +15,8 @@ use lodray::method::bvh::{
 use lodray::method::{Knobs, knob, lod};
 use lodray::picture::{FrameStats, distinct_lines, render};
 use lodray::rays::{Camera, ModelSpace, Sight};
+use lodray::study::grouped;
+use lodray::study::{Cache, Lookup};
 use serde::Serialize;
 use std::path::PathBuf;
 use std::process::ExitCode;
@@ -89,7 +92,7 @@ fn layouts(all: bool) -> Vec<(NodeBoxes, u32, &'static [LeafLayout])> {
 }
 
 pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
-    let cache = Cache::new(&args.cache, None)?;
+    let cache = args.cache.cache(None)?;
     let scene = with_input_if_found(open(&args.scene)?, &args.scene, &args.input, "no BVH of the mesh is counted")?;
     let space = ModelSpace::of(&scene);
     let cameras = args.distances.iter().map(|&d| args.camera.camera(&space, Some(d))).collect::<Result<Vec<_>, _>>()?;
@@ -217,7 +220,7 @@ impl<'a> Trees<'a> {
             return Ok(Arc::clone(tree));
         }
         let key = || TreeKey::new(self.scene, options, self.scene.levels());
-        let tree = Lookup::new(self.cache).tree(&key, self.scene.finest_triangles(), &mut || {
+        let tree = Lookup::new(self.cache, &Bars).tree(&key, self.scene.finest_triangles(), &mut || {
             let builder = match self.builder.take() {
                 Some(builder) => builder,
                 None => FullBuilder::new(self.hierarchy)?,

@@ -1,12 +1,9 @@
 //! Options of methods, from the registry: which method, and its knobs.
 
-use super::cache::{Cache, Lookup};
-use super::output::busy;
-use anyhow::Context;
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser, ValueParser};
 use clap::{Arg, ArgMatches, Args, Command, FromArgMatches};
-use lodray::format::Scene;
-use lodray::method::{Knob, Knobs, METHODS, Method, Registered, find, lod};
+use lodray::method::{Knob, Knobs, METHODS, Registered, find, lod};
+use lodray::study::Chosen;
 use serde::de::Error as _;
 use serde::{Deserialize, Deserializer};
 
@@ -31,13 +28,6 @@ pub struct PictureMethod {
     pub chosen: Chosen,
     /// The mesh that the scene was made from is wanted, in the reference's arithmetic.
     pub original: bool,
-}
-
-/// A method and its knobs.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Chosen {
-    pub method: &'static Registered,
-    pub knobs: Knobs,
 }
 
 /// The methods that have hardware.
@@ -152,45 +142,6 @@ impl PictureMethod {
     /// Its name in options and reports.
     pub fn name(&self) -> &'static str {
         if self.original { ORIGINAL } else { self.chosen.method.name }
-    }
-}
-
-impl Chosen {
-    /// A method with its knobs as they are by default.
-    pub fn plain(method: &'static Registered) -> Self {
-        Self { method, knobs: Knobs::default() }
-    }
-
-    /// Quality of its level of detail.
-    pub fn delta(&self) -> f64 {
-        self.knobs.delta()
-    }
-
-    /// Builds what it needs for a scene, or takes it from the cache, and whether all was taken.
-    pub fn make(&self, scene: &Scene, cache: &Cache) -> anyhow::Result<(Box<dyn Method>, bool)> {
-        self.check(scene)?;
-        let lookup = Lookup::new(cache);
-        let what = format!("building what {} needs", self.method.name);
-        let made = busy(&what, || (self.method.make)(scene, &self.knobs, &lookup)).with_context(|| what.clone())?;
-        Ok((made, lookup.was_read()))
-    }
-
-    /// Refuses a method that needs the full resolution on a scene that was pruned for a job, and one over an input mesh that is not at hand.
-    pub fn check(&self, scene: &Scene) -> anyhow::Result<()> {
-        let name = self.method.name;
-        anyhow::ensure!(
-            !self.method.of_input || scene.input().is_some(),
-            "--method {name}: the mesh that {} was built from is not at hand; simulate, sweep and error-time look for it",
-            scene.meta().name
-        );
-        let whole = scene.meta().is_whole();
-        anyhow::ensure!(
-            whole || self.method == &lod::METHOD,
-            "scene {} was pruned for a job: method: {} needs the full resolution, and there is but what lod's rays read",
-            scene.meta().name,
-            self.method.name
-        );
-        Ok(())
     }
 }
 

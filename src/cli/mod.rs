@@ -1,11 +1,13 @@
 //! The command line: one file per subcommand.
 
 mod args;
+mod bars;
 mod build;
 mod cache;
 mod cast;
 mod common;
 mod compare;
+mod comparison;
 mod crack;
 mod demo;
 mod error_time;
@@ -17,21 +19,18 @@ mod generate;
 mod info;
 mod input;
 mod job;
-mod job_lines;
-mod json;
 mod lines;
+mod machines;
 mod method;
 mod names;
 mod original;
 mod output;
-mod pass;
 mod paths;
 mod pictures;
 mod plan;
 mod prune;
 mod render;
 mod report;
-mod results;
 mod shell;
 mod simulate;
 mod stability;
@@ -40,11 +39,10 @@ mod terminal;
 mod trace;
 mod verify;
 mod words;
-mod workers;
 
 pub use terminal::{color, complain, set_color};
 
-use clap::{Parser, Subcommand};
+use clap::{CommandFactory, Parser, Subcommand};
 use std::process::ExitCode;
 
 /// Level of detail for ray tracing hardware, bit for bit.
@@ -142,7 +140,7 @@ pub fn run(cli: Cli) -> anyhow::Result<ExitCode> {
         Command::Crack(args) => crack::run(&args),
         Command::Stability(args) => stability::run(&args),
         Command::Export(args) => export::run(&args),
-        Command::Completions(args) => shell::completions(&args),
-        Command::Man(args) => shell::man(&args),
+        Command::Completions(args) => shell::completions(&args, Cli::command()),
+        Command::Man(args) => shell::man(&args, Cli::command()),
     }
 }

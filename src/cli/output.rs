@@ -23,12 +23,18 @@ pub fn progress(steps: u64, what: &str) -> ProgressBar {
     PROGRESS.add(ProgressBar::new(steps)).with_style(style).with_message(what.to_owned())
 }
 
-/// Does work of unknown length; a spinner says what on a terminal.
-pub fn busy<T>(what: &str, work: impl FnOnce() -> T) -> T {
+/// A spinner for work of unknown length.
+pub fn spinner(what: &str) -> ProgressBar {
     let spinner = PROGRESS.add(ProgressBar::no_length()).with_style(ProgressStyle::default_spinner()).with_message(what.to_owned());
     if !spinner.is_hidden() {
         spinner.enable_steady_tick(Duration::from_millis(100));
     }
+    spinner
+}
+
+/// Does work of unknown length; a spinner says what on a terminal.
+pub fn busy<T>(what: &str, work: impl FnOnce() -> T) -> T {
+    let spinner = spinner(what);
     let done = work();
     spinner.finish_and_clear();
     done
@@ -129,26 +135,6 @@ pub fn check_target(path: &Path, inputs: &[&Path]) -> anyhow::Result<()> {
     Ok(())
 }
 
-/// 12345678 as "12,345,678".
-pub fn grouped(n: u64) -> String {
-    let digits = n.to_string();
-    let mut out = String::new();
-    for (i, c) in digits.chars().enumerate() {
-        if i > 0 && (digits.len() - i).is_multiple_of(3) {
-            out.push(',');
-        }
-        out.push(c);
-    }
-    out
-}
-
-/// `1 view`, `2 views`, `12,345 rays`: a number of things of which several end in s.
-pub fn count(n: impl TryInto<u64>, one: &str) -> String {
-    // No number of things is negative, or above 64 bits.
-    let n = n.try_into().unwrap_or(u64::MAX);
-    format!("{} {one}{}", grouped(n), if n == 1 { "" } else { "s" })
-}
-
 /// A number with four digits that count and no idle zeros.
 pub fn plain(value: f64) -> String {
     let size = value.abs();
@@ -166,15 +152,5 @@ mod tests {
     fn numbers_have_four_digits() {
         let shown = [0.0, 2.0, 0.5, -1.23456, 123.456, 98765.4, 0.000_123_456, 1e-9, 2.5e9, f64::INFINITY].map(super::plain);
         assert_eq!(shown, ["0", "2", "0.5", "-1.235", "123.5", "98765", "0.0001235", "1.000e-9", "2.500e9", "inf"]);
-    }
-
-    #[test]
-    fn one_thing_has_no_s() {
-        assert_eq!([0_u64, 1, 2, 12_345].map(|n| super::count(n, "ray")), ["0 rays", "1 ray", "2 rays", "12,345 rays"]);
-    }
-
-    #[test]
-    fn digits_are_grouped() {
-        assert_eq!([0, 999, 1000, 8_388_608].map(super::grouped), ["0", "999", "1,000", "8,388,608"]);
     }
 }

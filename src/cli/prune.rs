@@ -1,12 +1,13 @@
 //! `prune`: a scene without the levels that no ray of a plan's job goes down to, or on the coarser grids of a plan.
 
-use super::output::{busy, check_target, count, grouped, open, print_json, print_line, print_table, remark};
+use super::output::{busy, check_target, open, print_json, print_line, print_table, remark};
 use super::plan::read;
 use anyhow::Context;
 use lodray::bvh::over_trees;
 use lodray::format::Scene;
 use lodray::plan::{Reach, Within};
 use lodray::rays::Camera;
+use lodray::study::{count, grouped};
 use serde::Serialize;
 use std::collections::BTreeSet;
 use std::path::PathBuf;

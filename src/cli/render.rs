@@ -1,49 +1,31 @@
 //! `render`: one view of a scene through one method.
 
 use super::args::CameraArgs;
-use super::cache::{Cache, CacheArgs};
+use super::cache::CacheArgs;
+use super::comparison::{Against, Comparison};
 use super::facts::Facts;
 use super::folder::{Overrule, RunFolder, one_run};
 use super::job;
-use super::method::{Chosen, PictureMethod};
+use super::method::PictureMethod;
 use super::original::original;
-use super::output::{check_normals, count, explain, grouped, open, open_any, print_json, print_table, remark};
+use super::output::{check_normals, explain, open, open_any, print_json, print_table, remark};
 use super::pictures::{Shot, shoot_with};
+use crate::cli::bars::Bars;
 use anyhow::Context;
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use image::RgbImage;
 use lodray::format::Scene;
 use lodray::method::knob::DELTA;
 use lodray::method::{Method, SurfaceHit, reference};
-use lodray::picture::{
-    FrameStats, GeometricError, ImageError, KindCount, Shader, Shading, Sheet, compare, geometric_error, save_png, view_cosine,
-};
+use lodray::picture::{FrameStats, KindCount, Shader, Shading, Sheet, compare, geometric_error, save_png, view_cosine};
 use lodray::rays::{Camera, ModelSpace, Sight};
+use lodray::study::Chosen;
+use lodray::study::{count, grouped};
 use serde::Serialize;
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use std::time::Instant;
-
-/// What a picture is compared with.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
-#[serde(rename_all = "snake_case")]
-pub enum Against {
-    /// The scene's own finest triangles.
-    FullResolution,
-    /// The mesh that it was made from.
-    Original,
-}
-
-impl Against {
-    /// What to call it in text.
-    pub const fn name(self) -> &'static str {
-        match self {
-            Self::FullResolution => "full resolution",
-            Self::Original => "the original",
-        }
-    }
-}
 
 /// The contact sheet.
 const SHEET: &str = "sheet.png";
@@ -146,16 +128,6 @@ struct KindPerRay {
     distinct_lines: f64,
 }
 
-#[derive(Clone, Serialize)]
-pub struct Comparison {
-    #[serde(flatten)]
-    pub image: ImageError,
-    /// Pixels that hit in one picture only.
-    pub coverage_differs: u64,
-    /// Distance between the surfaces in pixels; null in JSON if no pixel hits in both pictures.
-    pub geometry_pixels: Option<GeometricError>,
-}
-
 /// Geometry to trace.
 struct Subject {
     scene: Scene,
@@ -201,12 +173,12 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
     let names = pictures.into_iter().take(4 + usize::from(args.compare));
     let inputs: Vec<_> = std::iter::once(&args.scene).chain(&args.mesh).map(PathBuf::as_path).collect();
     let folder = RunFolder::open(&args.out, names, &inputs, &args.overrule)?;
-    let cache = Cache::new(&args.cache, Some(&args.out))?;
+    let cache = args.cache.cache(Some(&args.out))?;
 
     let shown = mesh.as_ref().filter(|_| args.method.original).unwrap_or(&seen);
     let begun = Instant::now();
     let (chosen, delta) = (&args.method.chosen, args.method.chosen.delta());
-    let (method, cached) = chosen.make(&shown.scene, &cache)?;
+    let (method, cached) = chosen.make(&shown.scene, &cache, &Bars)?;
     let building = begun.elapsed().as_secs_f64();
     let begun = Instant::now();
     let shot = shown.shoot(&*method, args.shading, cameras, delta, "tracing");
@@ -216,7 +188,7 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
 
     let truth = if args.compare {
         let (against, of) = mesh.as_ref().map_or((Against::FullResolution, &seen), |mesh| (Against::Original, mesh));
-        let (reference, _) = Chosen::plain(&reference::METHOD).make(&of.scene, &cache)?;
+        let (reference, _) = Chosen::plain(&reference::METHOD).make(&of.scene, &cache, &Bars)?;
         let truth = of.shoot(&*reference, args.shading, cameras, delta, against.name());
         let error = compare_shots(&shot, &truth, &of.scene, &camera);
         Some((against, truth.image, error))

@@ -1,9 +1,8 @@
 //! `completions` and `man`: what shells and `man` know of the program, made from its command line.
 
-use super::Cli;
 use super::output::{print_line, remark};
 use anyhow::Context;
-use clap::CommandFactory;
+use clap::Command;
 use clap_complete::Shell;
 use std::path::PathBuf;
 use std::process::ExitCode;
@@ -22,19 +21,19 @@ pub struct ManArgs {
     folder: PathBuf,
 }
 
-/// Prints the script that completes commands and options in a shell.
-pub fn completions(args: &CompletionsArgs) -> anyhow::Result<ExitCode> {
+/// Prints the script that completes commands and options of `program` in a shell.
+pub fn completions(args: &CompletionsArgs, mut program: Command) -> anyhow::Result<ExitCode> {
     let mut script = Vec::new();
-    clap_complete::generate(args.shell, &mut Cli::command(), NAME, &mut script);
+    clap_complete::generate(args.shell, &mut program, NAME, &mut script);
     print_line(String::from_utf8(script)?.trim_end())?;
     Ok(ExitCode::SUCCESS)
 }
 
-/// Writes the manual pages.
-pub fn man(args: &ManArgs) -> anyhow::Result<ExitCode> {
+/// Writes the manual pages of `program`.
+pub fn man(args: &ManArgs, program: Command) -> anyhow::Result<ExitCode> {
     let shown = args.folder.display();
     std::fs::create_dir_all(&args.folder).with_context(|| format!("cannot make folder {shown}"))?;
-    clap_mangen::generate_to(Cli::command(), &args.folder).with_context(|| format!("cannot write to {shown}"))?;
+    clap_mangen::generate_to(program, &args.folder).with_context(|| format!("cannot write to {shown}"))?;
     remark(&format!("pages in {shown}: man -l {}", args.folder.join("lodray.1").display()))?;
     Ok(ExitCode::SUCCESS)
 }

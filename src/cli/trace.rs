@@ -2,7 +2,7 @@
 
 use super::args::{CameraArgs, whole};
 use super::job;
-use super::output::{check_target, count, open_any, print_line, remark, write_file};
+use super::output::{check_target, open_any, print_line, remark, write_file};
 use super::plan;
 use anyhow::Context;
 use lodray::format::Scene;
@@ -16,6 +16,7 @@ use lodray::sim::unit::environment::RunReport;
 use lodray::sim::unit::ray_trace::RayTrace;
 use lodray::sim::unit::wave::{Waves, gtkwave_save, gtkwave_states, one_ray, surfer_commands};
 use lodray::sim::unit::{SceneMemory, TraversalUnit, file_config};
+use lodray::study::count;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use std::str::FromStr;

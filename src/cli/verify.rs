@@ -1,7 +1,8 @@
 //! `verify`: the audit.
 
-use super::output::{busy, grouped, open_any, print_json, print_table};
+use super::output::{busy, open_any, print_json, print_table};
 use lodray::format::audit::audit;
+use lodray::study::grouped;
 use std::path::PathBuf;
 use std::process::ExitCode;
 

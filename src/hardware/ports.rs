@@ -1,8 +1,7 @@
 //! What goes in and out of the traversal unit, as bits.
 
 use super::RayError;
-use crate::method::lod::Prior;
-use crate::method::{Departure, Hit};
+use crate::method::{Departure, Hit, Prior};
 use crate::num::{BoundScale, LineAddress, Point, Ray, RayT, START_BITS, U, wire_struct};
 
 /// Number of a context's rays, modulo 2^8: what tells their lines apart.

@@ -1,6 +1,6 @@
 //! Hits: what a traversal returns, and what it does with each triangle that the ray meets.
 
-use super::lod::Prior;
+use super::prior::Prior;
 use crate::block::Block;
 use crate::block::bary_map::{self, BaryMap, NodeIndex};
 use crate::block::hit_divide::{self, HitDivide};

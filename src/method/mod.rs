@@ -11,7 +11,9 @@ mod hit;
 pub mod knob;
 pub mod leave;
 pub mod lod;
+mod mesh_bvh;
 mod normal;
+mod prior;
 pub mod reference;
 mod registry;
 mod stack;
@@ -20,6 +22,7 @@ mod tracer;
 pub(crate) use children::{bvh_boxes, bvh_children};
 pub use hit::{ClosestHit, Crossings, Departure, Hit, HitSink, Landing, SurfaceHit, TriangleId, is_beyond};
 pub use knob::{ErrorKnob, Knob, KnobError, Knobs};
+pub use prior::{Deciders, Prior};
 pub use registry::{METHODS, find};
 pub use stack::{Entry, Op, STACK_ENTRIES, TraversalStack};
 pub use tracer::{Trace, Tracer};
@@ -29,7 +32,7 @@ use crate::bvh::BvhError;
 use crate::format::Scene;
 use crate::rays::Sight;
 use crate::step::{Batch, MemoryMap};
-use bvh::TreeStore;
+use mesh_bvh::TreeStore;
 use std::fmt;
 
 /// What a traversal unit for a method's rays is made of.

@@ -5,6 +5,7 @@
 
 mod data;
 mod measure;
+mod needs;
 mod possible;
 mod rays;
 mod reach;
@@ -30,17 +31,6 @@ use crate::num::{BOX_SHIFT, MOST_DIRECTION_ZEROS};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 use thiserror::Error;
-
-/// Bits of a number that counts up to `most`: none for 0.
-pub(crate) fn bits(most: u64) -> u32 {
-    u64::BITS - most.leading_zeros()
-}
-
-/// Bits of a two's complement number that holds `least` to `most`: none if both are 0.
-pub(crate) fn signed_bits(least: i64, most: i64) -> u32 {
-    let magnitude = |v: i64| bits((if v < 0 { !v } else { v }).cast_unsigned());
-    if least == 0 && most == 0 { 0 } else { magnitude(least).max(magnitude(most)) + 1 }
-}
 
 /// What is needed for some scenes and a job, as `lodray plan` writes it.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -229,54 +219,9 @@ fn fits<T: Serialize>(what: &str, planned: &T, needs: &T) -> Result<(), Misfit> 
     Ok(())
 }
 
-/// Declares needs: for each field the most of two, of fields that end in `zeros` the least.
-macro_rules! needs {
-    ($(#[$doc:meta])* pub struct $name:ident {
-        most { $($(#[$mdoc:meta])* $most:ident: $mty:ty,)* }
-        least { $($(#[$ldoc:meta])* $least:ident,)* }
-    }) => {
-        $(#[$doc])*
-        #[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
-        #[serde(deny_unknown_fields, rename_all = "kebab-case")]
-        pub struct $name {
-            $($(#[$mdoc])* pub $most: $mty,)*
-            $($(#[$ldoc])* pub $least: u32,)*
-        }
-
-        impl Default for $name {
-            /// Of nothing: 0 in all, and zeros as many as there can be.
-            fn default() -> Self {
-                Self { $($most: Default::default(),)* $($least: $crate::plan::ALL_ZEROS,)* }
-            }
-        }
-
-        impl $name {
-            /// What serves both.
-            #[must_use]
-            pub fn with(&self, other: &Self) -> Self {
-                Self { $($most: self.$most.max(other.$most),)* $($least: self.$least.min(other.$least),)* }
-            }
-        }
-    };
-}
-pub(crate) use needs;
-
-/// Zeros at the bottom of no number at all.
-pub(crate) const ALL_ZEROS: u32 = 32;
-
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn bits_by_hand() {
-        assert_eq!([0, 1, 2, 255, 256].map(bits), [0, 1, 2, 8, 9]);
-        assert_eq!(signed_bits(0, 0), 0);
-        assert_eq!(
-            [signed_bits(-1, 0), signed_bits(0, 1), signed_bits(-128, 127), signed_bits(-129, 0), signed_bits(0, 128)],
-            [1, 2, 8, 9, 9]
-        );
-    }
 
     #[test]
     fn each_field_one_too_narrow_is_named() {

@@ -1,6 +1,7 @@
 //! Whether a plan that somebody else may have written is one that this program can take.
 
-use super::{ALL_ZEROS, Plan, Speed, Within, numbers};
+use super::needs::ALL_ZEROS;
+use super::{Plan, Speed, Within, numbers};
 use crate::format::{JobRegion, JobView};
 use crate::hardware::MOST_INDEX_BITS;
 use crate::method::STACK_ENTRIES;

@@ -1,7 +1,7 @@
 //! What the rays of a job need, measured on each of them.
 
+use super::needs::{ALL_ZEROS, bits, needs, signed_bits};
 use super::scene::Met;
-use super::{bits, needs, signed_bits};
 use crate::block::Block;
 use crate::block::lod_test::{self, LodTest};
 use crate::format::{JobRegion, Scene};
@@ -97,7 +97,7 @@ impl RayNeeds {
                     cone_offset_bits: bits(cone.offset.get()),
                     cone_slope_bits: bits(cone.slope.get()),
                     cone_shift: cone.shift.get() as u32, // 6 bits
-                    direction_zeros: ones(direction.get()).trailing_zeros().min(super::ALL_ZEROS),
+                    direction_zeros: ones(direction.get()).trailing_zeros().min(ALL_ZEROS),
                 });
             });
             needs

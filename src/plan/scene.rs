@@ -1,6 +1,6 @@
 //! What a scene needs, measured on all its nodes.
 
-use super::{bits, needs, signed_bits};
+use super::needs::{bits, needs, signed_bits};
 use crate::format::{BvhNode, ChildRef, Scene, SplitRecord, child_corners};
 use crate::mesh::compact::inserted_zero_bits;
 use crate::num::{MAX_LEVELS, Wire, bound_decode, displacement_shift};

@@ -1,15 +1,9 @@
 //! The pinhole camera.
 
-use super::{ModelSpace, Query, orbit};
+use super::{DEFAULT_DIRECTION, ModelSpace, Query, View, orbit};
 use glam::DVec3;
 use std::ops::Range;
 use thiserror::Error;
-
-/// The paper's camera: focal length 35 on a sensor of height 24.
-pub const DEFAULT_VIEW_ANGLE_DEGREES: f64 = 37.849_288_832_102_47;
-
-/// From the target to the eye if nothing says so, where up is +y.
-pub const DEFAULT_DIRECTION: [f64; 3] = [0.35, 0.5, 1.0];
 
 /// Room around the model's bounding sphere where the eye is placed so that all of it is seen, in radii.
 const MARGIN: f64 = 0.02;
@@ -21,30 +15,6 @@ const FARTHEST: f64 = 1e6;
 pub const MAX_SIDE: u32 = 1 << 16;
 /// Most pixels of a picture: traced pixels and their shading then stay below 8 GB.
 pub const MAX_PIXELS: u64 = 1 << 26;
-
-/// Where to look from; what is `None` is chosen to suit the model.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct View {
-    /// Eye; by default in `direction` from the target.
-    pub eye: Option<[f64; 3]>,
-    /// From the target to the eye, any length, where `eye` is `None`; by default [`DEFAULT_DIRECTION`], turned with `up`.
-    pub direction: Option<[f64; 3]>,
-    /// Target; by default the centre of the model's box.
-    pub target: Option<[f64; 3]>,
-    /// Up; (0, 1, 0) by default.
-    pub up: Option<[f64; 3]>,
-    /// Distance from target to eye in bounding radii, where `eye` is `None` or only gives the direction; by default the smallest (rounded up to
-    /// hundredths) at which the picture holds the whole bounding sphere.
-    pub distance: Option<f64>,
-    /// Vertical view angle in degrees.
-    pub fov: f64,
-}
-
-impl Default for View {
-    fn default() -> Self {
-        Self { eye: None, direction: None, target: None, up: None, distance: None, fov: DEFAULT_VIEW_ANGLE_DEGREES }
-    }
-}
 
 /// A view that cannot be.
 #[derive(Clone, Debug, Error, PartialEq)]
@@ -302,6 +272,7 @@ fn half_tangent(fov: f64) -> f64 {
 mod tests {
     use super::*;
     use crate::mesh::Placement;
+    use crate::rays::DEFAULT_VIEW_ANGLE_DEGREES;
 
     fn space() -> ModelSpace {
         let side = 1 << 20;

@@ -9,11 +9,13 @@ mod orbit;
 mod query;
 mod source;
 mod space;
+mod view;
 
-pub use camera::{Camera, CameraError, DEFAULT_DIRECTION, DEFAULT_VIEW_ANGLE_DEGREES, MAX_PIXELS, MAX_SIDE, View};
+pub use camera::{Camera, CameraError, MAX_PIXELS, MAX_SIDE};
 pub use camera_path::CameraPath;
 pub use cone::{cone, is_full_detail};
 pub use file::{RayFile, RayFileError};
 pub use query::Query;
 pub use source::{Eye, RaySource, Sight};
 pub use space::{ModelRay, ModelSpace};
+pub use view::{DEFAULT_DIRECTION, DEFAULT_VIEW_ANGLE_DEGREES, View};

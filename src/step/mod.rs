@@ -13,14 +13,16 @@
 mod act;
 mod batch;
 mod lines;
+mod run;
 mod section;
 mod shape;
 mod sink;
 mod word;
 
-pub use act::{Act, Fetch, MAX_FETCH_LINES, MAX_PLACES, MAX_RUN, Step, TriangleRun};
+pub use act::{Act, Fetch, MAX_FETCH_LINES, MAX_PLACES, Step};
 pub use batch::{Batch, Link, Recorder};
 pub use lines::{LineCounter, LineSets};
+pub use run::{MAX_RUN, TriangleRun};
 pub use section::{MAX_SECTIONS, MapError, MemoryMap, Moved, Nodes, Section, SectionId};
 pub use shape::{NodeShape, ShapeFacts};
 pub use sink::{NoSteps, StepCounts, StepSink};

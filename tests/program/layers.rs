@@ -1,14 +1,20 @@
-//! The house stands: no floor of `src/` uses one above it, and no two files of a folder use each other.
+//! The house stands: no floor of `src/` uses one above it, and no files use each other in a circle.
+//!
+//! A file uses another if it names an item that the other defines, by whatever imports and re-exports the name comes (`lodray_test_support::house`). So a part that names an
+//! item of its folder's `mod.rs` uses that, and a `mod.rs` uses the parts whose items its own code names; one that only shows them (`pub use part::Item`) does not.
+//! A circle is a set of files each of which uses all others, directly or by way of others, and likewise a set of parts of one folder, each file or folder in it as a whole.
+//! What methods and fields belong to is not known here: only names count.
 //!
 //! What counts is the program's own code; tests within a file may look up. The lists of exceptions can only shrink: one that is no longer needed fails too.
 
-use lodray_test_support::rust::{code, paths, without_tests};
-use std::collections::{BTreeMap, BTreeSet};
+use lodray_test_support::house::{House, is_within};
+use lodray_test_support::rust::code;
+use std::collections::BTreeSet;
 use std::fs;
 use std::path::{Path, PathBuf};
 
 /// The floors, lowest first: each a module with all below it, but for those that have a line of their own.
-const FLOORS: [&str; 24] = [
+const FLOORS: [&str; 25] = [
     "num",
     "block",
     "mesh",
@@ -32,6 +38,7 @@ const FLOORS: [&str; 24] = [
     "paths",
     "report",
     "scene",
+    "study",
     "lab",
 ];
 
@@ -41,8 +48,11 @@ const UPWARD: [(&str, &str); 0] = [];
 /// What stands apart, and all that it may use.
 const APART: (&str, [&str; 2]) = ("golden", ["num", "mesh"]);
 
-/// Files that use each other.
-const CIRCLES: [(&str, &str); 0] = [];
+/// Files that use each other in a circle.
+const CIRCLES: [&[&str]; 0] = [];
+
+/// Parts of folders that do, but stand in the list of floors one by one.
+const CIRCLES_OF_PARTS: [(&str, &[&str]); 1] = [("", &["machine", "sim"])];
 
 fn source() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("src")
@@ -63,73 +73,33 @@ fn files(folder: &Path, all: &mut Vec<PathBuf>) {
 /// A file's module: `format/audit/mod.rs` is `format::audit`.
 fn module(file: &Path) -> String {
     let parts = file.strip_prefix(source()).expect("a file of src").with_extension("");
-    let names: Vec<_> = parts.iter().map(|part| part.to_string_lossy().into_owned()).filter(|part| part != "mod").collect();
+    let names: Vec<_> =
+        parts.iter().map(|part| part.to_string_lossy().into_owned()).filter(|part| part != "mod" && part != "lib").collect();
     names.join("::")
 }
 
-/// The library's modules, and those that each of them uses.
-struct House {
-    uses: BTreeMap<String, BTreeSet<String>>,
+/// All of `src/` but tests: library and program are one crate here, whose root is the empty name.
+fn read() -> House {
+    let mut all = Vec::new();
+    files(&source(), &mut all);
+    let text = |file: &PathBuf| (module(file), fs::read_to_string(file).expect("a text"));
+    let is_test = |name: &String| name.split("::").any(|part| part == "tests");
+    House::new(&all.iter().map(text).filter(|(name, _)| !is_test(name)).collect())
 }
 
-impl House {
-    fn new(texts: &BTreeMap<String, String>) -> Self {
-        let names: BTreeSet<&str> = texts.keys().map(String::as_str).collect();
-        let uses = texts.iter().map(|(name, text)| {
-            let text = without_tests(&code(text));
-            let used = paths(&text).iter().filter_map(|path| resolved(name, path, &names)).filter(|used| used != name).collect();
-            (name.clone(), used)
-        });
-        Self { uses: uses.collect() }
-    }
-
-    fn read() -> Self {
-        let mut all = Vec::new();
-        files(&source(), &mut all);
-        let text = |file: &PathBuf| (module(file), fs::read_to_string(file).expect("a text"));
-        let of_library = |name: &String| !["lib", "main", "cli"].contains(&name.split("::").next().unwrap_or_default());
-        let is_test = |name: &String| name.split("::").any(|part| part == "tests");
-        Self::new(&all.iter().map(text).filter(|(name, _)| of_library(name) && !is_test(name)).collect())
-    }
-
-    fn arrows(&self) -> impl Iterator<Item = (&str, &str)> {
-        self.uses.iter().flat_map(|(from, used)| used.iter().map(|to| (from.as_str(), to.as_str())))
-    }
-
-    /// Arrows upward: who, and the floor.
-    fn upward<'a>(&'a self, floors: &'a [&str]) -> BTreeSet<(&'a str, &'a str)> {
-        let ups = self.arrows().filter_map(|(from, to)| {
-            let (low, high) = (floor(floors, from), floor(floors, to));
-            (high > low).then(|| (from, floors[high]))
-        });
-        ups.collect()
-    }
-
-    /// Pairs of files that use each other.
-    fn circles(&self) -> BTreeSet<(&str, &str)> {
-        self.arrows().filter(|&(from, to)| from < to && self.uses[to].contains(from)).collect()
-    }
+/// Arrows between modules of the library.
+fn library(house: &House) -> impl Iterator<Item = (&str, &str)> {
+    let is_program = |name: &str| name == "main" || is_within(name, "cli");
+    house.arrows().filter(move |(from, _)| !is_program(from))
 }
 
-/// The module that a path of `name` leads into; `None` if that is the crate itself.
-fn resolved(name: &str, path: &[&str], names: &BTreeSet<&str>) -> Option<String> {
-    let mut at: Vec<&str> = if path[0] == "crate" { Vec::new() } else { name.split("::").collect() };
-    for part in path {
-        match *part {
-            "crate" | "self" => (),
-            "super" => _ = at.pop(),
-            part => at.push(part),
-        }
-    }
-    // An item of a module, or of one that it shows.
-    while !at.is_empty() && !names.contains(at.join("::").as_str()) {
-        at.pop();
-    }
-    (!at.is_empty()).then(|| at.join("::"))
-}
-
-fn is_within(module: &str, outer: &str) -> bool {
-    module.strip_prefix(outer).is_some_and(|rest| rest.is_empty() || rest.starts_with("::"))
+/// Arrows upward: who, and the floor.
+fn upward<'a>(arrows: impl Iterator<Item = (&'a str, &'a str)>, floors: &[&'a str]) -> BTreeSet<(&'a str, &'a str)> {
+    let ups = arrows.filter_map(|(from, to)| {
+        let (low, high) = (floor(floors, from), floor(floors, to));
+        (high > low).then(|| (from, floors[high]))
+    });
+    ups.collect()
 }
 
 /// The floor of a module: the longest line of the list that names it or what it is in.
@@ -140,27 +110,28 @@ fn floor(floors: &[&str], module: &str) -> usize {
 
 #[test]
 fn no_floor_uses_one_above() {
-    let house = House::read();
-    let count = house.arrows().count();
-    println!("{count} arrows between {} files", house.uses.len());
-    assert!(count > 400 && house.uses.len() > 150, "{count} arrows of {} files", house.uses.len());
-    assert_eq!(house.upward(&FLOORS), BTreeSet::from(UPWARD));
+    let house = read();
+    let count = library(&house).count();
+    println!("{count} arrows between files of the library, {} files in all", house.files());
+    assert!(count > 400 && house.files() > 400, "{count} arrows, {} files", house.files());
+    assert_eq!(upward(library(&house), &FLOORS), BTreeSet::from(UPWARD));
 }
 
 #[test]
 fn what_stands_apart_uses_little() {
-    let house = House::read();
+    let house = read();
     let (apart, allowed) = APART;
-    let strange: Vec<_> = house
-        .arrows()
+    let strange: Vec<_> = library(&house)
         .filter(|(from, to)| is_within(from, apart) && ![apart, allowed[0], allowed[1]].iter().any(|a| is_within(to, a)))
         .collect();
     assert!(strange.is_empty(), "{strange:?}");
 }
 
 #[test]
-fn no_two_files_use_each_other() {
-    assert_eq!(House::read().circles(), BTreeSet::from(CIRCLES));
+fn no_files_use_each_other_in_a_circle() {
+    let house = read();
+    assert_eq!(house.circles(), CIRCLES.iter().map(|set| set.to_vec()).collect());
+    assert_eq!(house.circles_of_parts(), CIRCLES_OF_PARTS.iter().map(|(folder, set)| ((*folder).to_owned(), set.to_vec())).collect());
 }
 
 #[test]
@@ -228,33 +199,77 @@ fn the_library_does_without_what_the_program_needs() {
     }
 }
 
+/// A house of modules and their texts.
+fn house<const N: usize>(texts: [(&str, &str); N]) -> House {
+    House::new(&texts.map(|(name, text)| (name.to_owned(), text.to_owned())).into())
+}
+
 #[test]
 fn arrows_are_seen_wherever_they_stand() {
-    let text = |name: &str, text: &str| (name.to_owned(), text.to_owned());
-    let house = House::new(&BTreeMap::from([
-        text("low", "// use crate::high;\nconst TEXT: &str = \"crate::high\"; mod part;"),
-        text(
+    let house = house([
+        ("", "pub mod low; pub mod middle; pub mod high;"),
+        ("low", "// use crate::high;\nconst TEXT: &str = \"crate::high::f\"; pub mod part; pub mod other; pub struct Own;"),
+        (
             "low::part",
-            "use super::other::Thing;\nfn f<'a>(x: &'a str) -> char { '\"' }\n#[cfg(test)]\nmod tests { use crate::high::In; }",
+            "use super::other::Thing;\npub struct A; pub struct More;\nfn f<'a>(x: &'a Thing) -> char { '\"' }\n#[cfg(test)]\nmod tests { use crate::high::In; }",
         ),
-        text("low::other", "pub struct Thing(r#\"crate::high \"#, super::part::More);"),
-        text("middle", "pub(in crate::high) struct S; use crate::{low::{self, part::{A, B}}, high::deep::Item};\nuse std::fmt;"),
-        text("high", "pub(crate) fn f() -> crate::low::Item { super::middle::g() }"),
-        text("high::deep", "/* crate::low */ use super::super::low::other as o;"),
-    ]));
+        ("low::other", "pub struct Thing(super::part::More); fn g(part: u32) -> u32 { assert_eq!(part, crate::high::deep::ITEM.x); part }"),
+        (
+            "middle",
+            "pub(in crate::high) struct S; use crate::{low::{self, part::{A}}, high::deep::*};\nuse std::fmt; fn g(a: A) { low::other::Thing; Item { a } }",
+        ),
+        ("high", "pub mod deep; wire! { pub struct In { x: u32 } } pub(crate) fn f() -> crate::low::Own { super::middle::S }"),
+        (
+            "high::deep",
+            "/* crate::low */ pub struct Item; pub static ITEM: Item = Item; use super::super::low::other::Thing as o; #[serde(with = \"super::f\")] struct T;",
+        ),
+    ]);
     let arrows: Vec<_> = house.arrows().collect();
     let wanted = [
         ("high", "low"),
         ("high", "middle"),
+        ("high::deep", "high"),
         ("high::deep", "low::other"),
+        ("low::other", "high::deep"),
         ("low::other", "low::part"),
         ("low::part", "low::other"),
         ("middle", "high::deep"),
-        ("middle", "low"),
+        ("middle", "low::other"),
         ("middle", "low::part"),
     ];
     assert_eq!(arrows, wanted);
-    assert_eq!(house.upward(&["low", "middle", "high"]), BTreeSet::from([("middle", "high")]));
-    assert_eq!(house.upward(&["low", "high", "middle", "high::deep"]), BTreeSet::from([("high", "middle"), ("middle", "high::deep")]));
-    assert_eq!(house.circles(), BTreeSet::from([("low::other", "low::part")]));
+    let up = |floors: &[&'static str]| upward(house.arrows(), floors);
+    assert_eq!(up(&["low", "middle", "high"]), BTreeSet::from([("low::other", "high"), ("middle", "high")]));
+}
+
+#[test]
+fn circles_of_any_length_are_found_through_what_others_show() {
+    // Each shows what the next defines, and names it by the folder that shows it again.
+    let two = house([
+        ("", "pub mod a; pub mod b; pub use a::A as Shown; pub use b::*;"),
+        ("a", "pub struct A(crate::B);"),
+        ("b", "pub struct B; fn f(_: super::Shown) {}"),
+    ]);
+    assert_eq!(two.circles(), BTreeSet::from([vec!["a", "b"]]));
+    let three = house([
+        ("folder", "mod a; mod b; mod c; pub use a::A; pub use b::B; pub use c::C;"),
+        ("folder::a", "use super::B; pub struct A(B);"),
+        ("folder::b", "pub struct B(super::C);"),
+        ("folder::c", "pub enum C { None } fn f() -> usize { size_of::<super::A>() }"),
+    ]);
+    assert_eq!(three.circles(), BTreeSet::from([vec!["folder::a", "folder::b", "folder::c"]]));
+    // A folder's own file and a part of it.
+    let part = house([("folder", "mod part; pub struct Own; fn f() { part::g() }"), ("folder::part", "pub fn g() { super::Own; }")]);
+    assert_eq!(part.circles(), BTreeSet::from([vec!["folder", "folder::part"]]));
+    let shows = house([("folder", "mod part; pub struct Own; pub use part::g;"), ("folder::part", "pub fn g() { super::Own; }")]);
+    assert_eq!(shows.circles(), BTreeSet::new());
+    // Two folders, though no two of their files.
+    let folders = house([
+        ("", "mod a; mod b;"),
+        ("a", "pub mod low; pub mod high;"),
+        ("a::low", "pub struct A;"),
+        ("a::high", "use crate::b::B; fn f(_: B) {}"),
+        ("b", "use super::a::low::A; pub struct B(A);"),
+    ]);
+    assert_eq!((folders.circles(), folders.circles_of_parts()), (BTreeSet::new(), BTreeSet::from([(String::new(), vec!["a", "b"])])));
 }

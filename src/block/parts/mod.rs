@@ -8,7 +8,7 @@ mod multiplier;
 mod registers;
 
 pub(super) use divide::DivisorMultiples;
-pub use multiplier::{LIMB, cross_product_latency, dot_product_latency, multiplier_latency};
+pub use multiplier::{EDGE_PRODUCT_STAGES, LIMB, cross_product_latency, dot_product_latency, multiplier_latency};
 pub(super) use multiplier::{Multiplier, cross_product, dot_product};
 pub use registers::Registers;
 
@@ -98,8 +98,6 @@ pub const DISTANCE: u32 = Form::FULL.relative() + Form::FULL.component() - 30;
 /// D of the LOD test, clamped to this width.
 pub const TOLERANCE: u32 = 34;
 
-/// Registers of the products of an edge function, where nothing beside them takes longer.
-pub const EDGE_PRODUCT_STAGES: u32 = 2;
 /// Cycles of `entry_distance`: factors, products, the shift, and the largest of three.
 pub const ENTRY_DISTANCE_LATENCY: u32 = 5;
 /// Cycles of `tri_decide`: signs, decision, numbers.

@@ -5,6 +5,9 @@ use super::Registers;
 /// A factor is cut into limbs of so many bits, the highest signed with up to one more.
 pub const LIMB: u32 = 17;
 
+/// Registers of the products of an edge function, where nothing beside them takes longer.
+pub const EDGE_PRODUCT_STAGES: u32 = 2;
+
 /// Limbs of a signed factor of `width` bits.
 pub(super) const fn limbs(width: u32) -> u32 {
     if width <= LIMB + 1 { 1 } else { (width - 1).div_ceil(LIMB) }
@@ -25,9 +28,9 @@ pub const fn dot_product_latency(a: u32, b: u32) -> u32 {
     1 + multiplier_latency(a, b) + 2
 }
 
-/// Cycles of `cross_product`: factors, products in [`EDGE_PRODUCT_STAGES`](super::EDGE_PRODUCT_STAGES), differences.
+/// Cycles of `cross_product`: factors, products in [`EDGE_PRODUCT_STAGES`], differences.
 pub const fn cross_product_latency(width: u32) -> u32 {
-    1 + super::EDGE_PRODUCT_STAGES - 1 + multiplier_latency(width, width) + 1
+    1 + EDGE_PRODUCT_STAGES - 1 + multiplier_latency(width, width) + 1
 }
 
 /// A `multiplier`: signed factors of `a` and `b` bits, with registers beside them, and what is read of the product.
@@ -114,6 +117,6 @@ pub(in crate::block) fn dot_product(a: u32, b: u32, sum: u32, product_stages: u3
 
 /// `cross_product`: six products and three differences.
 pub(in crate::block) fn cross_product(width: u32) -> Registers {
-    let product = Multiplier { product_stages: super::EDGE_PRODUCT_STAGES, ..Multiplier::new(width, width).near() };
+    let product = Multiplier { product_stages: EDGE_PRODUCT_STAGES, ..Multiplier::new(width, width).near() };
     6 * product.registers() + Registers::skid(3 * 2 * width)
 }

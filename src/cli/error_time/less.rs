@@ -1,7 +1,8 @@
 //! What a view costs in error, area and bytes where a scene and a unit have no more than it needs.
 
-use super::measure::{Bench, Cameras, Stage};
-use crate::cli::method::Chosen;
+use super::measure::Bench;
+use super::stage::{Cameras, Stage};
+use crate::cli::bars::Bars;
 use crate::cli::output::busy;
 use crate::cli::plan::in_machine;
 use image::RgbImage;
@@ -14,6 +15,7 @@ use lodray::plan::{Measure, Narrowest, Plan, Reach, Within};
 use lodray::rays::{Camera, ModelSpace};
 use lodray::report::error_time::LeftOut;
 use lodray::scene::Target;
+use lodray::study::Chosen;
 
 /// A scene with less in it, and its unit.
 struct Less {
@@ -47,7 +49,7 @@ impl Bench<'_> {
         let knobs = base.method.error.map_or_else(|| base.knobs.clone(), |error| base.knobs.clone().without(error.knob));
         let chosen = Chosen { method: base.method, knobs };
         let seen = |what: String, grids: Option<Within>, [scene, all]: [&Scene; 2], targets: &[Target]| -> anyhow::Result<LeftOut> {
-            let (space, method) = (ModelSpace::of(scene), chosen.make(scene, self.cache)?.0);
+            let (space, method) = (ModelSpace::of(scene), chosen.make(scene, self.cache, &Bars)?.0);
             let stage = Stage { scene, all, space: &space, method: &*method, chosen: &chosen, targets };
             let seen = self.seen(&stage, cameras, full)?;
             let geometry = self.surface(&stage, &cameras.few, truth).errors;

@@ -3,15 +3,14 @@
 use super::costs::{costs, simulated};
 use super::draw::{Converging, Subject, difference, luminance};
 use super::host::{Timed, host_times};
-use super::plain;
+use super::names::plain;
 use super::plan::{Plan, Setting};
 use super::row::{BuildTime, Measured};
-use crate::cli::cache::Cache;
-use crate::cli::method::Chosen;
+use super::stage::{Cameras, Stage};
+use crate::cli::bars::Bars;
 use crate::cli::output::{busy, progress};
 use crate::cli::pictures::shoot_with;
 use crate::cli::sweep::ViewJob;
-use crate::cli::workers::at_once;
 use anyhow::Context;
 use image::RgbImage;
 use lodray::format::Scene;
@@ -22,7 +21,9 @@ use lodray::rays::{Camera, ModelSpace, Sight};
 use lodray::report::error_time::{Appearance, Converged, PictureEntry, Point, SceneEntry, Shift, TraceGrid, ViewEntry};
 use lodray::report::inspect;
 use lodray::report::result::SimResult;
-use lodray::scene::Target;
+use lodray::study::Cache;
+use lodray::study::Chosen;
+use lodray::study::at_once;
 use std::path::Path;
 use std::time::Instant;
 
@@ -62,7 +63,7 @@ impl<'a> Truth<'a> {
         Ok(Self {
             scene,
             space: ModelSpace::of(scene),
-            reference: Chosen::plain(&reference::METHOD).make(scene, cache)?.0,
+            reference: Chosen::plain(&reference::METHOD).make(scene, cache, &Bars)?.0,
             surface: busy("full-resolution surface", || FinestSurface::new(&scene.decode())),
         })
     }
@@ -77,23 +78,6 @@ impl<'a> Truth<'a> {
         let full = FullResolution { scene: self.scene, space: &self.space, surface: &self.surface, pixels: &truth.pixels };
         SurfaceError::of(of, &frame.pixels, &full, camera, stride)
     }
-}
-
-/// The camera of the whole frame, and that of the columns and rows of it whose errors are measured.
-pub(super) struct Cameras {
-    pub frame: Camera,
-    pub few: Camera,
-}
-
-/// What is traced, and on which machines.
-pub(super) struct Stage<'a> {
-    pub scene: &'a Scene,
-    /// The same with all its levels: facets are shaded, and normals found, at full resolution.
-    pub all: &'a Scene,
-    pub space: &'a ModelSpace,
-    pub chosen: &'a Chosen,
-    pub method: &'a dyn Method,
-    pub targets: &'a [Target],
 }
 
 /// A setting's picture, and what it cost.
@@ -128,7 +112,7 @@ impl<'a> Bench<'a> {
                 continue;
             }
             let begun = Instant::now();
-            let (method, from_cache) = chosen.make(scene, cache)?;
+            let (method, from_cache) = chosen.make(scene, cache, &Bars)?;
             let seconds = begun.elapsed().as_secs_f64();
             builds.push(BuildTime { method: chosen.method.name.to_owned(), seconds, from_cache });
             methods.push((chosen.clone(), method));

@@ -5,17 +5,19 @@ mod draw;
 mod host;
 mod less;
 mod measure;
+mod names;
 mod options;
 mod plan;
 mod row;
+mod sizes;
+mod stage;
 
-use super::cache::Cache;
 use super::folder::RunFolder;
 use super::input::is_found;
-use super::job_lines::{JobLines, keep_aside};
-use super::output::{busy, check_normals, check_target, count, print_line, progress, remark, write_file};
+use super::output::{busy, check_normals, check_target, print_line, progress, remark, write_file};
 use super::report::{save, this_run, titled};
 use super::sweep::SceneJobs;
+use crate::cli::bars::Bars;
 use lodray::format::Scene;
 use lodray::hardware::unit_gates;
 use lodray::method::{find, lod};
@@ -26,7 +28,10 @@ use lodray::report::error_time::{
 };
 use lodray::report::page::{Documents, PICTURE_BYTES, embed};
 use lodray::report::results_version;
+use lodray::study::JobLines;
+use lodray::study::count;
 use measure::Bench;
+use names::plain;
 use plan::Plan;
 use row::{Measured, ViewRow};
 use serde::Serialize;
@@ -61,13 +66,13 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
     let plan = args.plan()?;
     let inputs: Vec<_> = plan.jobs.files.iter().map(PathBuf::as_path).collect();
     let mut folder = RunFolder::open(&args.out, [DOCUMENT, TABLE, LATEX, LEFT_OUT, HOST, VERDICT, PAGE], &inputs, &args.overrule)?;
-    let cache = Cache::new(&args.cache, Some(&args.out))?;
+    let cache = args.cache.cache(Some(&args.out))?;
     let lines = args.out.join(LINES);
     check_target(&lines, &inputs)?;
     folder.continues(LINES)?;
-    let mut rows = JobLines::open(&lines)?;
+    let mut rows = JobLines::open(&lines, &Bars)?;
     folder.keep(LINES)?;
-    keep_aside(&mut folder, &lines)?;
+    folder.keep_aside(&lines)?;
     let done = rows.done();
     let mut keys = Vec::new();
     let bar = progress(plan.views() as u64, "views");
@@ -131,12 +136,6 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
     Ok(if failed.is_empty() { ExitCode::SUCCESS } else { ExitCode::FAILURE })
 }
 
-/// Letters, digits and single dashes: a part of a file's name.
-fn plain(name: &str) -> String {
-    let plain: String = name.chars().map(|c| if c.is_ascii_alphanumeric() || c == '.' { c } else { '-' }).collect();
-    plain.split('-').filter(|part| !part.is_empty()).collect::<Vec<_>>().join("-")
-}
-
 fn entry(jobs: &SceneJobs, scene: &Scene) -> SceneEntry {
     SceneEntry {
         name: jobs.name.clone(),
@@ -197,13 +196,13 @@ fn document(plan: &Plan, measured: &[&Measured]) -> ErrorTime {
     for costs in left_out.iter_mut().map(|left| &mut left.point.costs).chain(sizes.iter_mut().map(|size| &mut size.costs)).flatten() {
         costs.machine = plan.machine_of(costs.machine, &machines);
     }
-    let method = |chosen: &super::method::Chosen| MethodEntry {
+    let method = |chosen: &lodray::study::Chosen| MethodEntry {
         name: chosen.method.name.to_owned(),
         knob: chosen.method.error.map(|error| error.knob.name.to_owned()),
         in_steps: chosen.method.error.is_some_and(|error| error.in_steps),
         help: chosen.method.help.to_owned(),
     };
-    let is_measured = |chosen: &super::method::Chosen| points.iter().any(|point| point.method == chosen.method.name);
+    let is_measured = |chosen: &lodray::study::Chosen| points.iter().any(|point| point.method == chosen.method.name);
     let mut document = ErrorTime {
         kind: KIND.to_owned(),
         version: VERSION,

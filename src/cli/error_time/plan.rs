@@ -1,12 +1,12 @@
 //! What is to be measured: scenes, views, methods with the values of their knobs, machines, samples.
 
 use crate::cli::frames::Turning;
-use crate::cli::method::Chosen;
 use crate::cli::sweep::{Jobs, SceneJobs, ViewJob};
 use lodray::method::{ErrorKnob, Method};
 use lodray::picture::Shading;
 use lodray::rays::{MAX_PIXELS, MAX_SIDE, Sight};
 use lodray::report::result::{MachineFacts, MethodFacts};
+use lodray::study::Chosen;
 use std::collections::{BTreeMap, HashSet};
 use xxhash_rust::xxh3::xxh3_64;
 

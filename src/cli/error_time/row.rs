@@ -1,7 +1,7 @@
 //! A view's line: all that was measured of it.
 
-use crate::cli::job_lines::JobLine;
 use lodray::report::error_time::{LeftOut, PictureEntry, Point, SceneEntry, SizeCosts, TraceGrid, ViewEntry};
+use lodray::study::JobLine;
 use serde::{Deserialize, Serialize};
 
 /// A view. Numbers of scene, view and machine are those of this line alone: 0, 0, and the place among the machines.

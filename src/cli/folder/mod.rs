@@ -10,6 +10,7 @@ use super::output::check_target;
 use anyhow::{Context, anyhow, ensure};
 use lodray::format::Staging;
 use lodray::mesh::named_files;
+use lodray::study::aside;
 use std::collections::BTreeSet;
 use std::fs;
 use std::io::ErrorKind;
@@ -104,6 +105,12 @@ impl RunFolder {
         self.record.files.insert(name.to_owned());
         self.made.stay();
         self.unfinished()
+    }
+
+    /// Lists the files beside the lines of `path` in which lines were set aside.
+    pub fn keep_aside(&mut self, path: &Path) -> anyhow::Result<()> {
+        let names = aside(path).into_iter().filter(|file| file.exists());
+        names.filter_map(|file| file.file_name().map(|name| name.to_string_lossy().into_owned())).try_for_each(|name| self.keep(&name))
     }
 
     /// A file that no record lists is not replaced.

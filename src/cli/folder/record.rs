@@ -1,10 +1,10 @@
 //! The record of a run: what was asked for, of what, and which files it made.
 
 use crate::cli::common::Invocation;
-use crate::cli::json::fault_at;
 use crate::cli::output::write_file;
 use anyhow::{Context, anyhow};
 use lodray::report::page::{RunFacts, RunInput};
+use lodray::study::fault_at;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeSet;
 use std::fs::File;

@@ -1,12 +1,12 @@
 //! Paths on a machine, at every number of bounces.
 
-use crate::cli::method::Chosen;
 use crate::cli::output::progress;
 use anyhow::Context;
 use lodray::format::Scene;
 use lodray::paths::{PathFrame, Paths};
 use lodray::report::result::{MachineFacts, MethodFacts, RayFileFacts, SceneFacts, Setup, SimResult};
 use lodray::run::{self, Compute, Frame, Job, simulate};
+use lodray::study::Chosen;
 use serde::Serialize;
 
 /// What so many bounces cost, and what the last of them adds.

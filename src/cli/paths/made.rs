@@ -1,10 +1,9 @@
 //! What a description comes to: models, a camera, a world.
 
+use crate::cli::bars::Bars;
 use crate::cli::build::FormArgs;
-use crate::cli::cache::Cache;
 use crate::cli::common::is_quiet;
 use crate::cli::generate;
-use crate::cli::method::Chosen;
 use crate::cli::output::{busy, check_normals, open, toml_in_one_line, warn};
 use anyhow::{Context, ensure};
 use lodray::format::Scene;
@@ -13,6 +12,7 @@ use lodray::method::Method;
 use lodray::paths::{Instance, ModelTable, Paths, Pose, SceneFile, SceneFileError, Starts, World};
 use lodray::rays::{Camera, ModelSpace, View};
 use lodray::scene::BuildOptions;
+use lodray::study::{Cache, Chosen};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
@@ -59,7 +59,7 @@ pub fn methods(file: &SceneFile, scenes: &[Scene], chosen: &Chosen, cache: &Cach
     for (k, (model, scene)) in file.model.iter().zip(scenes).enumerate() {
         let method = match file.model[..k].iter().position(|before| model.is_of(before)) {
             Some(before) => Arc::clone(&methods[before]),
-            None => Arc::from(chosen.make(scene, cache)?.0),
+            None => Arc::from(chosen.make(scene, cache, &Bars)?.0),
         };
         methods.push(method);
     }

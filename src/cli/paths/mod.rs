@@ -1,25 +1,27 @@
 //! `paths`: a picture by path tracing, from the description of a scene.
 
+mod figures;
 mod machine;
 pub(super) mod made;
 mod print;
 
 use super::args::{Change, Size, seed, whole};
-use super::cache::{Cache, CacheArgs};
+use super::cache::CacheArgs;
 use super::folder::{Overrule, RunFolder, one_run};
-use super::method::{Chosen, MachineMethod};
+use super::method::MachineMethod;
 use super::names::named;
 use super::output::{print_json, progress, write_file};
 use anyhow::Context;
+use figures::{Against, Report};
 use lodray::format::Scene;
 use lodray::method::{Method, lod};
-use lodray::paths::{Film, LightCount, MOST_DEPTH, MOST_SAMPLES, PathCounts, Paths, SceneFile, Starts, light_count, picture_error};
-use lodray::picture::{ImageError, compare, save_png};
+use lodray::paths::{Film, MOST_DEPTH, MOST_SAMPLES, Paths, SceneFile, Starts, light_count, picture_error};
+use lodray::picture::{compare, save_png};
 use lodray::rays::Camera;
 use lodray::run::Compute;
-use made::{camera, paths, world};
-use made::{description, methods, model_files, scenes};
-use serde::Serialize;
+use lodray::study::Cache;
+use lodray::study::Chosen;
+use made::{camera, description, methods, model_files, paths, scenes, world};
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use std::sync::Arc;
@@ -106,38 +108,6 @@ fn starts(s: &str) -> Result<Starts, String> {
     }
 }
 
-#[derive(Serialize)]
-struct Report {
-    method: &'static str,
-    delta: f64,
-    starts: String,
-    size: [u32; 2],
-    samples: u32,
-    depth: u32,
-    seed: u64,
-    diffuse_spread: f64,
-    counts: PathCounts,
-    #[serde(skip)]
-    seconds: f64,
-    #[serde(skip_serializing_if = "Option::is_none")]
-    against_full: Option<Against>,
-    #[serde(skip_serializing_if = "Option::is_none")]
-    against_converged: Option<Against>,
-}
-
-/// How far a picture is from another.
-#[derive(Serialize)]
-struct Against {
-    samples: u32,
-    /// Mean squared relative error of the light.
-    light: f64,
-    /// Of the picture for a screen.
-    image: ImageError,
-    /// Pixels whose first hits have the wrong light; only by the same paths.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pixels: Option<LightCount>,
-}
-
 /// The description with what the command line says in its place.
 fn overruled(args: &Args) -> anyhow::Result<SceneFile> {
     let mut file = description(&args.scene)?;
@@ -164,7 +134,7 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
     let folder = RunFolder::open(&args.out, names, &inputs, &args.overrule)?;
     let scenes = scenes(&args.scene, &file)?;
     let camera = camera(&file, args.camera.as_deref(), &scenes).with_context(|| shown.to_string())?;
-    let cache = Cache::new(&args.cache, None)?;
+    let cache = args.cache.cache(None)?;
     let subject = Subject { args, file: &file, scenes: &scenes, camera, cache: &cache, folder: &folder };
     match &args.machine {
         Some(name) => {
@@ -208,7 +178,7 @@ impl Subject<'_> {
         let chosen = &args.method.0;
         let methods = self.methods()?;
         let own = world(file, scenes, &methods, &camera, chosen.delta(), args.starts);
-        let mut machine = super::pass::machine(name, &args.set, "--set").with_context(|| format!("--machine {name}"))?;
+        let mut machine = super::machines::machine(name, &args.set, "--set").with_context(|| format!("--machine {name}"))?;
         // Paths need such units, whatever the machine's are for.
         machine.description.units.secondary = true;
         let shown = args.scene.display().to_string();

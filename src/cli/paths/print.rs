@@ -1,9 +1,10 @@
 //! Figures of paths as text.
 
-use super::Report;
+use super::figures::Report;
 use super::machine::Bounces;
-use crate::cli::output::{count, grouped, print_table};
+use crate::cli::output::print_table;
 use crate::cli::simulate::amount;
+use lodray::study::{count, grouped};
 use std::fmt::Write;
 use std::path::Path;
 

@@ -3,8 +3,7 @@
 mod speed;
 
 use super::args::{Size, radii};
-use super::method::Chosen;
-use super::output::{busy, check_target, count, grouped, open, print_json, print_line, print_table, remark, write_file};
+use super::output::{busy, check_target, open, print_json, print_line, print_table, remark, write_file};
 use super::sweep::{Jobs, ListText, Origin, SceneJobs, ViewJob};
 use anyhow::Context;
 use lodray::format::{Job, Scene};
@@ -14,6 +13,8 @@ use lodray::method::{Knobs, lod};
 use lodray::plan::{Data, Measure, Narrowest, Part, Plan, RayNeeds, Reach, Saving, Within, savings};
 use lodray::rays::{Camera, ModelSpace, RaySource};
 use lodray::report::result::MachineFacts;
+use lodray::study::Chosen;
+use lodray::study::{count, grouped};
 use serde::Serialize;
 use speed::{Frames, SpeedArgs};
 use std::path::{Path, PathBuf};

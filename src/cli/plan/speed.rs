@@ -1,10 +1,9 @@
 //! How fast units must be: the frames of a job on a machine.
 
 use crate::cli::args::{Change, Size};
-use crate::cli::cache::Cache;
-use crate::cli::method::Chosen;
-use crate::cli::output::{busy, count, progress};
-use crate::cli::pass::machine;
+use crate::cli::bars::Bars;
+use crate::cli::machines::machine;
+use crate::cli::output::{busy, progress};
 use crate::cli::sweep::ViewJob;
 use anyhow::Context;
 use lodray::format::Scene;
@@ -13,6 +12,9 @@ use lodray::plan::Speed;
 use lodray::rays::{ModelSpace, RaySource, Sight};
 use lodray::report::result::MachineFacts;
 use lodray::run::{self, Compute, FrameRays, HeldFrame};
+use lodray::study::Cache;
+use lodray::study::Chosen;
+use lodray::study::count;
 
 #[derive(clap::Args)]
 pub struct SpeedArgs {
@@ -67,7 +69,7 @@ impl Frames<'_> {
     pub fn trace(&mut self, scene: &Scene, view: &ViewJob, chosen: &Chosen) -> anyhow::Result<()> {
         let (space, size) = (ModelSpace::of(scene), self.args.speed_size.map_or(view.size, |Size(width, height)| [width, height]));
         let camera = ViewJob { size, ..view.clone() }.camera(&space)?;
-        let (method, _) = chosen.make(scene, &Cache::NONE)?;
+        let (method, _) = chosen.make(scene, &Cache::NONE, &Bars)?;
         let sight = Sight::new(&camera, &space, chosen.delta());
         let bar = progress(camera.batches() as u64, "tracing");
         let frame = FrameRays { method: &*method, rays: &camera, sight: &sight };

@@ -4,9 +4,10 @@ mod read;
 
 use super::common::Invocation;
 use super::folder::Input;
-use super::output::{check_target, grouped, remark, write_file};
+use super::output::{check_target, remark, write_file};
 use anyhow::Context;
 use lodray::report::page::{Documents, RunFacts, page};
+use lodray::study::grouped;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 

@@ -1,12 +1,13 @@
 //! Results of every kind, read from their files.
 
+use crate::cli::bars::Bars;
 use crate::cli::folder::{Input, Record};
-use crate::cli::json::fault_at;
 use crate::cli::output::busy;
-use crate::cli::results::results;
 use anyhow::{Context, ensure};
 use lodray::report::error_time::{ErrorTime, KIND};
 use lodray::report::page::{DocumentFacts, Documents, PICTURE_BYTES, RunInput, embed, ledger};
+use lodray::study::fault_at;
+use lodray::study::results;
 use serde::de::DeserializeOwned;
 use std::path::Path;
 
@@ -53,7 +54,7 @@ fn add(all: &mut Documents, path: &Path) -> anyhow::Result<()> {
                 "stability"
             }
             Kind::Results => {
-                let found = results(&text, &shown.to_string()).with_context(|| format!("{shown}: not results of a simulation"))?;
+                let found = results(&text, &shown.to_string(), &Bars).with_context(|| format!("{shown}: not results of a simulation"))?;
                 all.simulations.extend(found.into_iter().flatten());
                 "simulations"
             }

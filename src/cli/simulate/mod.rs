@@ -6,18 +6,19 @@ mod table;
 mod units;
 
 use super::args::{CameraArgs, Change};
-use super::cache::{Cache, CacheArgs};
+use super::cache::CacheArgs;
 use super::common::is_quiet;
 use super::folder::{Overrule, RunFolder, one_run};
 use super::frames::FrameArgs;
 use super::input::{InputArgs, with_input};
 use super::job;
+use super::machines::{machine, machine_files};
 use super::method::MachineMethod;
 use super::names::named;
-use super::output::{check_target, explain, grouped, open_any, print_json, print_table, remark, warn, write_file};
-use super::pass::{self, machine, machine_files};
+use super::output::{check_target, explain, open_any, print_json, print_table, remark, warn, write_file};
 use super::plan;
 use super::report::PageArgs;
+use crate::cli::bars::Bars;
 use anyhow::Context;
 use files::Files;
 use lodray::rays::{ModelSpace, RayFile};
@@ -26,6 +27,7 @@ use lodray::report::result::SimResult;
 use lodray::run::{self, Compute};
 use lodray::scene::{Pass, PassRays, Target};
 use lodray::sim::replay::Window;
+use lodray::study::grouped;
 use std::path::PathBuf;
 use std::process::ExitCode;
 
@@ -146,10 +148,10 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
         anyhow::ensure!(chosen.method.name == "lod", "--plan: is of units for lod, not for {}", chosen.method.name);
         plan::check(plan, &args.scene, &scene, rays.source(), chosen.delta())?;
     }
-    let (method, _) = chosen.make(&scene, &Cache::new(&args.cache, args.out.as_deref())?)?;
+    let (method, _) = chosen.make(&scene, &args.cache.cache(args.out.as_deref())?, &Bars)?;
     let pass = Pass { scene: &scene, space: &space, registered: chosen.method, knobs: &chosen.knobs, method: &*method, rays };
     let targets: Vec<_> = machines.into_iter().map(|machine| Target { machine, compute: args.compute, window: args.window }).collect();
-    let outcomes = pass::run(&pass, &targets).into_iter().collect::<Result<Vec<_>, _>>()?;
+    let outcomes = lodray::study::simulate(&pass, &targets, &Bars).into_iter().collect::<Result<Vec<_>, _>>()?;
     let (results, mut waves): (Vec<SimResult>, Vec<_>) = outcomes.into_iter().unzip();
     if let (Some(window), Some(result)) = (&args.window, results.first()) {
         check_window(*window, result.cycles.saturating_sub(1))?;

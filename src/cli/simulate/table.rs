@@ -1,7 +1,7 @@
 //! A result as text.
 
-use crate::cli::output::{count, grouped};
 use lodray::report::result::{CacheResult, SimResult};
+use lodray::study::{count, grouped};
 
 /// Columns of the name and of each figure.
 const NAME: usize = 14;

@@ -1,7 +1,7 @@
 //! The table, for the terminal and for documents.
 
-use crate::cli::output::grouped;
 use lodray::lab::{Goal, Hunt, Report, Tally};
+use lodray::study::grouped;
 
 const HEAD: [&str; 11] = ["case", "rays", "balanced", "golden", "misses", "doubles", "differ", "overflows", "t ulp", "bary ulp", "pixels"];
 

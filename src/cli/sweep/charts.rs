@@ -2,11 +2,11 @@
 //! written at each point; of one, bars of its methods side by side; of one view with one method, bars of its machines.
 
 use super::labels::{Setting, labels};
-use super::rows::Row;
 use crate::cli::simulate::plots::{COLOURS, FONT, LEGEND, TEXT, energy_unit, legend, svg, tick, time_unit, top, wrong};
 use lodray::method::bvh;
 use lodray::report::diagram::{DistanceChart, Line, Spot};
 use lodray::report::result::SimResult;
+use lodray::study::Row;
 use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, Pos, VPos};
 

@@ -5,10 +5,11 @@ use super::jobs::{Generated, Jobs, Origin, RegionJob, SceneJobs, ViewJob};
 use super::list::{List, ListText, MachineEntry, Maybe, RegionEntry, SceneEntry, Spanned};
 use crate::cli::args::{CameraArgs, Change, Size, radii};
 use crate::cli::generate;
-use crate::cli::method::{Chosen, Listed, machine_methods};
+use crate::cli::machines::{is_path, machine, machine_files};
+use crate::cli::method::{Listed, machine_methods};
 use crate::cli::output::open_any;
-use crate::cli::pass::{is_path, machine, machine_files};
 use crate::one_line;
+use anyhow::Context;
 use clap::Args as _;
 use lodray::mesh::{BoundKind, Placement, procedural};
 use lodray::method::bvh::{LEAF_LAYOUT, LEAF_SIZE};
@@ -18,14 +19,34 @@ use lodray::num::VertexForm;
 use lodray::rays::{Camera, DEFAULT_VIEW_ANGLE_DEGREES, ModelSpace};
 use lodray::run::{self, Compute};
 use lodray::scene::Target;
+use lodray::study::Chosen;
 use std::collections::{BTreeSet, HashSet};
 use std::error::Error as _;
 use std::ops::Range;
 use std::path::{Path, PathBuf};
 use xxhash_rust::xxh3::xxh3_64;
 
+impl Jobs {
+    /// Reads and checks a list; every error names the file.
+    pub fn read(path: &Path) -> anyhow::Result<Self> {
+        let text = std::fs::read_to_string(path).with_context(|| format!("cannot read {}", path.display()))?;
+        jobs(&ListText { path, text: &text })
+    }
+
+    /// Reads and checks a list of pictures: regions have none.
+    pub fn of_views(path: &Path) -> anyhow::Result<Self> {
+        let jobs = Self::read(path)?;
+        match jobs.scenes.iter().find(|scene| !scene.regions.is_empty()) {
+            Some(scene) => {
+                anyhow::bail!("{}: scene {}: regions are for lodray plan; pictures need distances or eyes", path.display(), scene.name)
+            }
+            None => Ok(jobs),
+        }
+    }
+}
+
 /// The jobs of a list.
-pub fn jobs(source: &ListText<'_>) -> anyhow::Result<Jobs> {
+fn jobs(source: &ListText<'_>) -> anyhow::Result<Jobs> {
     let list: List = source.parse()?;
     // Before the first table, where the list's own keys stand.
     let top = || 0..0;

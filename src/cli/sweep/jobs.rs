@@ -1,12 +1,8 @@
 //! The jobs of a list.
 
-use super::check;
-use super::list::ListText;
 use crate::cli::build::FormArgs;
 use crate::cli::generate::make;
-use crate::cli::method::Chosen;
 use crate::cli::output::open_any;
-use anyhow::Context;
 use lodray::format::{JobRegion, Scene};
 use lodray::mesh::{BoundKind, procedural};
 use lodray::method::Knob;
@@ -18,9 +14,10 @@ use lodray::rays::{Camera, DEFAULT_DIRECTION, DEFAULT_VIEW_ANGLE_DEGREES, ModelS
 use lodray::report::results_version;
 use lodray::scene::Target;
 use lodray::sim::energy;
+use lodray::study::Chosen;
 use serde::Serialize;
 use std::collections::BTreeSet;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use xxhash_rust::xxh3::xxh3_64;
 
 /// Where a scene comes from.
@@ -141,23 +138,6 @@ pub struct Jobs {
 }
 
 impl Jobs {
-    /// Reads and checks a list; every error names the file.
-    pub fn read(path: &Path) -> anyhow::Result<Self> {
-        let text = std::fs::read_to_string(path).with_context(|| format!("cannot read {}", path.display()))?;
-        check::jobs(&ListText { path, text: &text })
-    }
-
-    /// Reads and checks a list of pictures: regions have none.
-    pub fn of_views(path: &Path) -> anyhow::Result<Self> {
-        let jobs = Self::read(path)?;
-        match jobs.scenes.iter().find(|scene| !scene.regions.is_empty()) {
-            Some(scene) => {
-                anyhow::bail!("{}: scene {}: regions are for lodray plan; pictures need distances or eyes", path.display(), scene.name)
-            }
-            None => Ok(jobs),
-        }
-    }
-
     /// Leaves one of each method's qualities.
     pub fn each_method_once(&mut self) {
         let mut seen = BTreeSet::new();

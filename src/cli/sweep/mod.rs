@@ -5,27 +5,28 @@ mod check;
 mod jobs;
 mod labels;
 mod list;
-mod rows;
 
 use super::args::whole;
-use super::cache::{Cache, CacheArgs};
+use super::cache::CacheArgs;
 use super::common::MAX_THREADS;
 use super::folder::{Overrule, RunFolder, one_run};
 use super::input::{InputArgs, with_input};
 use super::job;
-use super::job_lines::{JobLines, keep_aside};
-use super::method::Chosen;
-use super::output::{check_normals, check_target, count, print_line, remark, write_file};
-use super::pass;
+use super::output::{check_normals, check_target, print_line, remark, write_file};
 use super::pictures::{Shot, shoot};
 use super::render::compare_shots;
 use super::report::PageArgs;
-use super::workers::in_order;
+use crate::cli::bars::Bars;
 use lodray::format::Scene;
 use lodray::method::{Method, reference};
 use lodray::rays::{Camera, ModelSpace};
 use lodray::report::page::{Documents, ImageFigures, Simulation};
 use lodray::scene::{Outcome, Pass, PassRays, Target};
+use lodray::study::Cache;
+use lodray::study::Chosen;
+use lodray::study::JobLines;
+use lodray::study::count;
+use lodray::study::in_order;
 use std::collections::HashSet;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
@@ -33,8 +34,7 @@ use std::sync::{Arc, Mutex, PoisonError};
 
 pub use jobs::{Jobs, Origin, SceneJobs, ViewJob};
 pub use list::ListText;
-pub use rows::Row;
-use rows::csv;
+use lodray::study::{Row, csv};
 
 const LINES: &str = "results.jsonl";
 const TABLE: &str = "results.csv";
@@ -84,13 +84,13 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
     let inputs: Vec<_> = std::iter::once(&args.jobs).chain(&jobs.files).map(PathBuf::as_path).collect();
     args.page.check(&inputs)?;
     let mut folder = RunFolder::open(&args.out, [TABLE], &inputs, &args.overrule)?;
-    let cache = Cache::new(&args.cache, Some(&args.out))?;
+    let cache = args.cache.cache(Some(&args.out))?;
     let lines = args.out.join(LINES);
     check_target(&lines, &inputs)?;
     folder.continues(LINES)?;
-    let rows = JobLines::open(&lines)?;
+    let rows = JobLines::open(&lines, &Bars)?;
     folder.keep(LINES)?;
-    keep_aside(&mut folder, &lines)?;
+    folder.keep_aside(&lines)?;
     let done = rows.done();
     // Each machine's replay is a thread's work.
     let at_once = args.at_once.unwrap_or_else(|| rayon::current_num_threads().div_ceil(jobs.targets.len().max(1)));
@@ -172,7 +172,7 @@ impl<'a> Sweep<'a> {
         let work = |group: &Group<'_>| workshop.group(group);
         in_order(groups, self.at_once, work, |group, rows| match rows {
             Err(error) => self.failed(scene, group, &error),
-            Ok(rows) => rows.into_iter().try_for_each(|row| self.rows.add(Row { scene: scene.name.clone(), ..row })),
+            Ok(rows) => rows.into_iter().try_for_each(|row| Ok(self.rows.add(Row { scene: scene.name.clone(), ..row })?)),
         })
     }
 
@@ -239,7 +239,7 @@ impl Workshop<'_> {
                 Row { key: key.clone(), scene: String::new(), result: Some(result), image, error: None }
             }
         };
-        Ok(pass::run(&pass, &targets).into_iter().zip(&group.jobs).map(row).collect())
+        Ok(lodray::study::simulate(&pass, &targets, &Bars).into_iter().zip(&group.jobs).map(row).collect())
     }
 
     /// The method that is made for these choices, now or before.
@@ -249,7 +249,7 @@ impl Workshop<'_> {
         if let Some((_, method)) = built.iter().find(|(of, _)| *of == key) {
             return Ok(Arc::clone(method));
         }
-        let method: Arc<dyn Method> = Arc::from(chosen.make(self.scene, self.cache)?.0);
+        let method: Arc<dyn Method> = Arc::from(chosen.make(self.scene, self.cache, &Bars)?.0);
         built.push((key, Arc::clone(&method)));
         Ok(method)
     }
@@ -260,7 +260,7 @@ impl Workshop<'_> {
         let Truth { reference, last } = &mut *truth;
         let reference = match reference {
             Some(reference) => reference,
-            None => reference.insert(Chosen::plain(&reference::METHOD).make(self.scene, self.cache)?.0),
+            None => reference.insert(Chosen::plain(&reference::METHOD).make(self.scene, self.cache, &Bars)?.0),
         };
         let full = match last {
             Some((of, full)) if *of == *view => full,

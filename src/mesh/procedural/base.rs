@@ -4,11 +4,18 @@
 //! corners', in units of 1/M of a base parameter, exactly. A shape computes positions from these integers alone, so a point on a shared
 //! base edge gets the same bits from every tree.
 
-use super::GenerateError;
 use crate::mesh::{Surface, lattice};
 use rayon::prelude::*;
 use std::collections::HashMap;
 use std::f64::consts::FRAC_PI_2;
+
+/// The machine has too little memory.
+#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+#[error("no memory for {bytes} bytes")]
+pub struct NoMemory {
+    /// Size of the piece that could not be had.
+    pub bytes: u64,
+}
 
 /// Integer parameters of a point.
 pub(super) type Parameter = [i32; 3];
@@ -37,22 +44,22 @@ pub(super) struct Base {
 }
 
 /// Adds `more` to `v`, or fails if there is no such memory.
-pub(super) fn append<T: Copy>(v: &mut Vec<T>, more: &[T]) -> Result<(), GenerateError> {
-    v.try_reserve_exact(more.len()).map_err(|_| GenerateError::Memory { bytes: size_of_val(more) as u64 })?;
+pub(super) fn append<T: Copy>(v: &mut Vec<T>, more: &[T]) -> Result<(), NoMemory> {
+    v.try_reserve_exact(more.len()).map_err(|_| NoMemory { bytes: size_of_val(more) as u64 })?;
     v.extend_from_slice(more);
     Ok(())
 }
 
 /// An empty vector with room for `len`, or an error if there is no such memory.
-pub(super) fn reserved<T>(len: usize) -> Result<Vec<T>, GenerateError> {
+pub(super) fn reserved<T>(len: usize) -> Result<Vec<T>, NoMemory> {
     let mut v = Vec::new();
-    v.try_reserve_exact(len).map_err(|_| GenerateError::Memory { bytes: (len as u64).saturating_mul(size_of::<T>() as u64) })?;
+    v.try_reserve_exact(len).map_err(|_| NoMemory { bytes: (len as u64).saturating_mul(size_of::<T>() as u64) })?;
     Ok(v)
 }
 
 impl Base {
     /// `g` by `g` quads of parameters (x, z, 0), 0..=g each, counter-clockwise seen from +y. Diagonals alternate, so that no direction is favoured.
-    pub(super) fn grid(g: u32) -> Result<Self, GenerateError> {
+    pub(super) fn grid(g: u32) -> Result<Self, NoMemory> {
         let side = g as usize;
         let mut parameters = reserved((side + 1) * (side + 1))?;
         parameters.extend((0..=g as i32).flat_map(|z| (0..=g as i32).map(move |x| [x, z, 0])));
@@ -69,7 +76,7 @@ impl Base {
 
     /// An octahedron each of whose edges has `k` steps: 8 k^2 triangles, closed, counter-clockwise from outside.
     /// Parameters are the points with |x| + |y| + |z| = k.
-    pub(super) fn octahedron(k: u32) -> Result<Self, GenerateError> {
+    pub(super) fn octahedron(k: u32) -> Result<Self, NoMemory> {
         let (n, steps) = (k as i32, k as usize);
         let mut parameters = reserved(4 * steps * steps + 2)?;
         // Ring after ring from +z to -z, each counter-clockwise from +x: the order that `index` computes.
@@ -116,7 +123,7 @@ impl Base {
 
     /// An octahedron cut through its middle and pulled apart along y by `straight` steps each way, with walls of quads between: closed,
     /// 8 k^2 + 16 k `straight` triangles, counter-clockwise from outside. |x| + |z| is `k` on the walls and falls to 0 towards both ends.
-    pub(super) fn capsule(k: u32, straight: u32) -> Result<Self, GenerateError> {
+    pub(super) fn capsule(k: u32, straight: u32) -> Result<Self, NoMemory> {
         let mut body = Self::octahedron(k)?;
         if straight == 0 {
             return Ok(body);
@@ -158,7 +165,7 @@ impl Base {
     }
 
     /// Evaluates `shape` at the lattice points of all trees. The caller has checked the number of triangles.
-    pub(super) fn tessellate(self, levels: u32, shape: &impl Shape) -> Result<Surface, GenerateError> {
+    pub(super) fn tessellate(self, levels: u32, shape: &impl Shape) -> Result<Surface, NoMemory> {
         let len = lattice::len(levels);
         let points = len * self.triangles.len();
         // Asked for together first, so that a size that cannot be had is an error and not an abort; fresh zeros are then free until touched.

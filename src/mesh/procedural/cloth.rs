@@ -3,8 +3,7 @@
 //! The top is flat, the sides hang down almost flat, and the spare cloth at the corners flares out in folds. Everything carries a
 //! plain weave far finer than the folds, so that flat parts need detail only from very near.
 
-use super::GenerateError;
-use super::base::{Base, Parameter, Shape, cross, normal_or};
+use super::base::{Base, NoMemory, Parameter, Shape, cross, normal_or};
 use super::noise;
 use crate::mesh::Surface;
 
@@ -27,12 +26,12 @@ pub(super) struct Cloth {
 }
 
 /// Cloth of `g` by `g` quads in its own place.
-pub(super) fn generate(g: u32, levels: u32, seed: u64, detail: f64) -> Result<Surface, GenerateError> {
+pub(super) fn generate(g: u32, levels: u32, seed: u64, detail: f64) -> Result<Surface, NoMemory> {
     placed(g, levels, seed, detail, [0.0; 3], 1.0)
 }
 
 /// Cloth of `g` by `g` quads scaled and then moved.
-pub(super) fn placed(g: u32, levels: u32, seed: u64, detail: f64, centre: [f64; 3], scale: f64) -> Result<Surface, GenerateError> {
+pub(super) fn placed(g: u32, levels: u32, seed: u64, detail: f64, centre: [f64; 3], scale: f64) -> Result<Surface, NoMemory> {
     let cloth = Cloth { steps: (g << levels) as i32, seed: noise::stream(seed, 1), detail, centre, scale };
     Base::grid(g)?.tessellate(levels, &cloth)
 }

@@ -1,11 +1,10 @@
 //! One model many times in one mesh: what repeated bodies cost without instances.
 
-use super::GenerateError;
-use super::base::{append, reserved};
+use super::base::{NoMemory, append, reserved};
 use crate::mesh::Surface;
 
 /// `model` once around each of `centres`, in units of the model, all of it scaled by `scale`.
-pub(super) fn copies(model: &Surface, centres: &[[f64; 3]], scale: f64) -> Result<Surface, GenerateError> {
+pub(super) fn copies(model: &Surface, centres: &[[f64; 3]], scale: f64) -> Result<Surface, NoMemory> {
     let count = centres.len();
     let mut all = Surface {
         levels: model.levels,

@@ -4,8 +4,7 @@
 //! sides between them. The sheet is laid onto an outline turned round the pot's axis, all of it outside of the pot; folds lead only
 //! further out. They stand for the cloth that a sheet has too much of where the outline is narrower than the sheet is far.
 
-use super::GenerateError;
-use super::base::{Base, Parameter, Shape, cross, normal_or};
+use super::base::{Base, NoMemory, Parameter, Shape, cross, normal_or};
 use super::cloth::thread;
 use super::noise;
 use super::spline::spline;
@@ -52,7 +51,7 @@ struct Drape {
 }
 
 /// A drape of `g` by `g` quads.
-pub(super) fn generate(g: u32, levels: u32, seed: u64, detail: f64) -> Result<Surface, GenerateError> {
+pub(super) fn generate(g: u32, levels: u32, seed: u64, detail: f64) -> Result<Surface, NoMemory> {
     Base::grid(g)?.tessellate(levels, &Drape { steps: (g << levels) as i32, seed: noise::stream(seed, 5), detail })
 }
 

@@ -28,6 +28,8 @@ mod street;
 mod terrain;
 mod wall;
 
+pub use base::NoMemory;
+
 use super::Surface;
 use crate::num::MAX_LEVELS;
 use serde::{Deserialize, Serialize};
@@ -267,11 +269,8 @@ pub enum GenerateError {
         levels: u32,
     },
     /// The machine has too little memory.
-    #[error("no memory for {bytes} bytes")]
-    Memory {
-        /// Size of the piece that could not be had.
-        bytes: u64,
-    },
+    #[error(transparent)]
+    Memory(#[from] NoMemory),
 }
 
 /// Makes a scene.
@@ -282,7 +281,7 @@ pub fn generate(options: &Options) -> Result<Surface, GenerateError> {
     let Shape { n, levels, roughness, walls } = options.check()?;
     let scene = options.scene;
     let seed = options.seed;
-    match scene {
+    let surface = match scene {
         Scene::Terrain => terrain::generate(n, levels, seed, roughness, options.width.unwrap_or(terrain::WIDTH)),
         Scene::Cloth => cloth::generate(n, levels, seed, 2.0 * roughness),
         Scene::Sphere => sphere::generate(n, levels, seed, roughness),
@@ -292,7 +291,8 @@ pub fn generate(options: &Options) -> Result<Surface, GenerateError> {
         Scene::Street => street::generate(n, levels, seed, roughness),
         Scene::Pot => pot::generate(n, levels, seed, 2.0 * roughness),
         Scene::Drape => drape::generate(n, levels, seed, 2.0 * roughness),
-    }
+    };
+    Ok(surface?)
 }
 
 #[cfg(test)]

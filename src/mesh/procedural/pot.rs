@@ -4,8 +4,7 @@
 //! belly and lid. The spout's outline turns back over its lip and down into the mouth. Dimples and a finer grain go inwards only, so
 //! the pot stays on its plane and within its outlines.
 
-use super::GenerateError;
-use super::base::{Base, Parameter, Shape, append, cross, direction, dot, normal_or, reserved, unit};
+use super::base::{Base, NoMemory, Parameter, Shape, append, cross, direction, dot, normal_or, reserved, unit};
 use super::noise;
 use super::spline::spline;
 use crate::mesh::Surface;
@@ -147,7 +146,7 @@ pub(super) fn trees(n: u32) -> u64 {
 }
 
 /// A pot with `n` base steps from the belly's ends to its middle; `detail` scales dimples and grain.
-pub(super) fn generate(n: u32, levels: u32, seed: u64, detail: f64) -> Result<Surface, GenerateError> {
+pub(super) fn generate(n: u32, levels: u32, seed: u64, detail: f64) -> Result<Surface, NoMemory> {
     let mut pot = Surface { levels, triangles: reserved(trees(n) as usize)?, ..Surface::default() };
     for part in PARTS {
         let (ends, straight) = (part.size)(n);

@@ -2,8 +2,7 @@
 //!
 //! Materials: 0 white (floor, ceiling, back), 1 red (left, x = -1), 2 green (right, x = 1), 3 blue (cloth).
 
-use super::GenerateError;
-use super::base::{Base, Parameter, Shape, append, reserved};
+use super::base::{Base, NoMemory, Parameter, Shape, append, reserved};
 use super::cloth;
 use crate::mesh::Surface;
 use std::collections::HashMap;
@@ -50,7 +49,7 @@ impl Shape for Wall {
 }
 
 /// A room of `walls` quads along each wall around a cloth of `g` by `g` quads.
-pub(super) fn generate(g: u32, walls: u32, levels: u32, seed: u64, detail: f64) -> Result<Surface, GenerateError> {
+pub(super) fn generate(g: u32, walls: u32, levels: u32, seed: u64, detail: f64) -> Result<Surface, NoMemory> {
     let mut room = cloth::placed(g, levels, seed, detail, CLOTH.0, CLOTH.1)?;
     let w = walls as i32; // below 2^12 (`Options::check`)
     let trees = room.triangles.len() + SIDES.len() * 2 * (w * w) as usize;

@@ -1,7 +1,6 @@
 //! `sphere`: a closed surface around the origin, radius about 1, displaced outwards and inwards by a few per cent to a quarter by fractal noise.
 
-use super::GenerateError;
-use super::base::{Base, Parameter, Shape, direction, dot, normal_or};
+use super::base::{Base, NoMemory, Parameter, Shape, direction, dot, normal_or};
 use super::noise;
 use crate::mesh::Surface;
 
@@ -17,7 +16,7 @@ struct Sphere {
 }
 
 /// A displaced octahedron sphere with `k` base steps along an edge.
-pub(super) fn generate(k: u32, levels: u32, seed: u64, gain: f64) -> Result<Surface, GenerateError> {
+pub(super) fn generate(k: u32, levels: u32, seed: u64, gain: f64) -> Result<Surface, NoMemory> {
     let steps = k << levels;
     // Cells not much smaller than triangles: `steps` of these span a quarter circle, about 1.6.
     let octaves = steps.ilog2().max(1);

@@ -3,8 +3,7 @@
 //! A case for bounds and boxes rather than for the eye. The needles of fine levels are as long as those of coarse ones, so the finer the
 //! level, the more edge lengths an inserted vertex jumps. The surface is closed and consistently wound; needles may cross each other.
 
-use super::GenerateError;
-use super::base::{Base, Parameter, Shape, direction, dot, normal_or};
+use super::base::{Base, NoMemory, Parameter, Shape, direction, dot, normal_or};
 use super::noise;
 use crate::mesh::Surface;
 
@@ -21,7 +20,7 @@ struct Spikes {
 }
 
 /// A sphere with needles with `k` base steps along an edge of its octahedron.
-pub(super) fn generate(k: u32, levels: u32, seed: u64, detail: f64) -> Result<Surface, GenerateError> {
+pub(super) fn generate(k: u32, levels: u32, seed: u64, detail: f64) -> Result<Surface, NoMemory> {
     Base::octahedron(k)?.tessellate(levels, &Spikes { seed: noise::stream(seed, 3), detail, steps: (k << levels) as i32 })
 }
 

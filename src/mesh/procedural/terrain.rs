@@ -5,8 +5,7 @@
 //! a smooth factor that follows the first three. Each octave is turned against the one before (so that no axis shows) and has its own
 //! offset (so that the zeros of noise do not fall on lattice points). More splits add octaves and change none of the others.
 
-use super::GenerateError;
-use super::base::{Base, Parameter, Shape};
+use super::base::{Base, NoMemory, Parameter, Shape};
 use super::noise::{self, Cell2};
 use crate::mesh::Surface;
 
@@ -42,7 +41,7 @@ struct Terrain {
 }
 
 /// Terrain of `g` by `g` quads, `width` across.
-pub(super) fn generate(g: u32, levels: u32, seed: u64, gain: f64, width: f64) -> Result<Surface, GenerateError> {
+pub(super) fn generate(g: u32, levels: u32, seed: u64, gain: f64, width: f64) -> Result<Surface, NoMemory> {
     let terrain = Terrain { stretch: width / WIDTH, ..Terrain::new(g << levels, seed, gain) };
     Base::grid(g)?.tessellate(levels, &terrain)
 }

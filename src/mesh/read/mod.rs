@@ -1,15 +1,18 @@
 //! Mesh files in: OBJ, PLY, glTF and STL, checked so that a bad file gives one error that names the place.
 
 mod beside;
+mod fault;
 mod gltf;
 mod obj;
+mod parts;
 mod ply;
 mod polygon;
 mod stl;
 
 use super::clean::{MeshError, TriangleMesh};
+use fault::{Fault, fault, shown};
+use parts::Parts;
 use serde::{Deserialize, Serialize};
-use std::fmt::Display;
 use std::path::{Path, PathBuf};
 
 /// Kinds of mesh files.
@@ -88,36 +91,6 @@ pub enum ReadError {
         /// What is wrong.
         source: MeshError,
     },
-}
-
-/// What a file's parser hands to cleaning.
-#[derive(Default)]
-struct Parts {
-    positions: Vec<[f64; 3]>,
-    triangles: Vec<[u32; 3]>,
-    /// For each triangle; empty if there are none.
-    normals: Vec<[[f32; 3]; 3]>,
-    materials: Vec<u16>,
-    colours: Vec<[f32; 3]>,
-    /// What of the file is not kept, a line each.
-    warnings: Vec<String>,
-}
-
-/// What is wrong and where, before the file's name is put in front.
-#[derive(Debug)]
-struct Fault {
-    place: String,
-    what: String,
-}
-
-/// What a file has at some place, for a message: its beginning, on one line; a file of another kind may hold anything.
-fn shown(text: &str) -> String {
-    let (begin, more) = text.trim().char_indices().nth(80).map_or((text.trim(), ""), |(at, _)| (&text.trim()[..at], "..."));
-    format!("{}{more}", begin.escape_debug())
-}
-
-fn fault<T>(place: impl Display, what: impl Display) -> Result<T, Fault> {
-    Err(Fault { place: place.to_string(), what: what.to_string() })
 }
 
 /// The files beside a mesh file that are read with it, as far as they are there: material libraries of OBJ, buffers of glTF. None of a file

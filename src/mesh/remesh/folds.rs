@@ -10,7 +10,6 @@ use super::project::Point;
 use super::source::Source;
 use super::split::{Forest, side_point};
 use super::topology::Topology;
-use serde::{Deserialize, Serialize};
 
 /// Cosine of the angle between the normals of two triangles from which their edge is folded: 150 degrees.
 const FOLDED: f64 = -0.866_025_403_784_438_6;
@@ -20,17 +19,6 @@ const ALIKE: f64 = 0.5;
 
 /// Triangles of the original are equally near if their distances differ by less than this part, or by this in units of the box.
 const SAME: f64 = 1e-6;
-
-/// Edges that fold, in the result and in the original. One of the original stands for many of a result that splits it.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
-pub struct Folds {
-    /// Edges of the finest level that fold by more than 150 degrees.
-    pub edges: u64,
-    /// Those of them where the original, within the largest error, does not face both ways.
-    pub new: u64,
-    /// Edges of the original that fold by more than 150 degrees.
-    pub original: u64,
-}
 
 /// Edges of the original that fold.
 pub(super) fn folds_of(source: &Source) -> u64 {

@@ -9,182 +9,32 @@
 //! 7. [`shading`] gives every vertex the normal of the point of the original that it stands for.
 
 mod decimate;
+mod error;
 mod folds;
+mod options;
 mod project;
 mod refine;
+mod report;
 mod settle;
 mod shading;
 mod source;
 mod split;
 mod topology;
 
+pub use error::{RemeshError, Works};
+pub use options::{DEFAULT_MAX_ERROR, RemeshOptions};
+pub use report::{Folds, RemeshReport};
+
 use super::clean::TriangleMesh;
 use super::distance::{Distance, TwoSidedDistance, Vec3, mean_distances, percent};
 use super::farthest::Farthest;
-use super::{DEFAULT_CREASE_ANGLE, Surface, corner_normals, lattice};
+use super::{Surface, corner_normals, lattice};
 use crate::num::{MAX_LEVELS, PADDING_BITS};
 use decimate::Decimator;
-pub use folds::Folds;
 use rayon::prelude::*;
 use refine::{Fitted, Turned, Wanted};
-use serde::{Deserialize, Serialize};
 use source::Source;
-use std::fmt;
 use topology::Topology;
-
-/// Most finest triangles that are made: they need about 12 GB while they are.
-const MAX_TRIANGLES: u64 = 1 << 26;
-
-/// How far result and original may be apart if nothing is said, in percent of the diagonal.
-pub const DEFAULT_MAX_ERROR: f64 = 0.3;
-
-/// What to make of a mesh.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct RemeshOptions {
-    /// Number of splits N, 0 to [`MAX_LEVELS`]; by default as many as make finest triangles about as many as the input's.
-    pub levels: Option<u32>,
-    /// Wanted number of base triangles (never more than the input); by default as few as keep within `max_error`.
-    pub base_triangles: Option<usize>,
-    /// Largest distance between original and full-resolution result, both ways, in percent of the diagonal of the original's box.
-    pub max_error: f64,
-    /// How much of `max_error`, in percent too, is left for what moves vertices afterwards (compact vertices).
-    pub reserve: f64,
-    /// Edges that bend by more than this, in degrees, are creases: they stay sharp lines, and where the mesh has no normals of its own they
-    /// are shaded so.
-    pub crease_angle: f64,
-}
-
-impl Default for RemeshOptions {
-    fn default() -> Self {
-        RemeshOptions { levels: None, base_triangles: None, max_error: DEFAULT_MAX_ERROR, reserve: 0.0, crease_angle: DEFAULT_CREASE_ANGLE }
-    }
-}
-
-/// What remeshing made, and how well it fits.
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
-pub struct RemeshReport {
-    /// Base triangles reached.
-    pub base_triangles: usize,
-    /// Base triangles wanted, if the surface's connections and feature lines did not allow so few.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub wanted_base_triangles: Option<usize>,
-    /// Base triangles that are triangles of the original: they split flat.
-    pub own_base_triangles: usize,
-    /// Triangles of the finest level.
-    pub finest_triangles: u64,
-    /// Inserted vertices put where a line along the interpolated normal meets the original surface.
-    pub projected_by_ray: u64,
-    /// Inserted vertices put at the closest point of the original surface.
-    pub by_closest_point: u64,
-    /// Inserted vertices of base triangles that are triangles of the original.
-    pub on_own_triangles: u64,
-    /// Inserted vertices put on a border or crease of the original, by arc length.
-    pub on_feature_lines: u64,
-    /// Inserted vertices kept at the middle of their edge, or between that and the surface, because anything else folds the surface.
-    pub midpoints_kept: u64,
-    /// Finest triangles that face away from what is nearest to their middle on the original.
-    pub flipped_triangles: u64,
-    /// Edges that fold by more than 150 degrees, in the finest level and in the original.
-    #[serde(default)]
-    pub folds: Folds,
-    /// Finest triangles without area.
-    pub degenerate_triangles: u64,
-    /// Distances between the finest level and the original.
-    pub distance: TwoSidedDistance,
-    /// What rounding to the format's grid has of the largest distances, in percent.
-    #[serde(skip)]
-    pub rounding: f64,
-    /// What was lost, in one line, if the result is further from the original than `max_error` or has flipped triangles.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub warning: Option<String>,
-}
-
-/// Why a mesh was not remeshed.
-#[derive(Clone, Debug, PartialEq, thiserror::Error)]
-pub enum RemeshError {
-    /// Too many splits.
-    #[error("{levels} levels are more than the {MAX_LEVELS} there can be")]
-    Levels {
-        /// What was asked for.
-        levels: u32,
-    },
-    /// A base mesh of no triangles was asked for.
-    #[error("a base mesh needs at least one triangle")]
-    NoBase,
-    /// The result would not fit in memory.
-    #[error("{base} base triangles and {levels} levels make {triangles} triangles, more than the {MAX_TRIANGLES} there can be{works}")]
-    TooMany {
-        /// Base triangles reached.
-        base: u64,
-        /// Number of splits.
-        levels: u32,
-        /// What they would make.
-        triangles: u64,
-        /// What would do.
-        works: Works,
-    },
-    /// The base mesh that the original needs would not fit in memory with so many splits.
-    #[error("this mesh needs {base} base triangles or more, too many for {levels} levels: {MAX_TRIANGLES} triangles in all fit{works}")]
-    NeedsBase {
-        /// Base triangles needed.
-        base: u64,
-        /// Number of splits.
-        levels: u32,
-        /// What would do.
-        works: Works,
-    },
-    /// A limit that cannot be.
-    #[error("{name} is {value}, but must be {range}")]
-    Range {
-        /// Which option.
-        name: &'static str,
-        /// What was asked for.
-        value: f64,
-        /// What can be.
-        range: &'static str,
-    },
-    /// A largest error that rounding to the format's grid alone may take.
-    #[error(
-        "no result is sure to be within {wanted} % of the diagonal, as rounding to the grid of {levels} levels alone may take more: give a --max-error of {least} or more"
-    )]
-    Grid {
-        /// What was asked for, in percent of the diagonal.
-        wanted: f64,
-        /// Number of splits.
-        levels: u32,
-        /// What can be met.
-        least: f64,
-    },
-    /// The mesh breaks a promise of [`TriangleMesh`].
-    #[error("the mesh cannot be remeshed, it has {what}")]
-    BadMesh {
-        /// What is wrong with it.
-        what: &'static str,
-    },
-}
-
-/// What does not make too many triangles; shown as advice.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Works {
-    /// The most splits of the same base mesh, if it fits at all.
-    pub levels: Option<u32>,
-    /// Base triangles to ask for with the same splits, if removal comes that far.
-    pub base: Option<u64>,
-    /// Whether the base mesh is what the largest error asks for: a larger one may need less.
-    pub error: bool,
-}
-
-impl fmt::Display for Works {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let ways = [
-            self.levels.map(|levels| format!("with --levels {levels} at most")),
-            self.base.map(|base| format!("with --base {base}, whatever is lost")),
-            self.error.then(|| "maybe with a larger --max-error".to_owned()),
-        ];
-        let ways: Vec<String> = ways.into_iter().flatten().collect();
-        if ways.is_empty() { Ok(()) } else { write!(f, "; there is room {}", ways.join(", or ")) }
-    }
-}
 
 /// Remeshes `mesh` as `options` say; `progress` is called with a stage's name, what is done of it and its total.
 ///

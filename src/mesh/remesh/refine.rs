@@ -7,12 +7,15 @@
 use super::super::distance::{Target, Vec3};
 use super::super::farthest::{Farthest, Vertices, farthest};
 use super::decimate::{Decimated, Decimator, Goal};
-use super::folds::{Folds, folded, folds_of, new_folds};
+use super::error::{MAX_TRIANGLES, RemeshError, Works};
+use super::folds::{folded, folds_of, new_folds};
+use super::options::DEFAULT_MAX_ERROR;
+use super::report::Folds;
 use super::shading::{finest_corners, finest_origins};
 use super::source::Source;
 use super::split::{Forest, split};
 use super::topology::Topology;
-use super::{DEFAULT_MAX_ERROR, MAX_LEVELS, MAX_TRIANGLES, RemeshError, Works};
+use crate::num::MAX_LEVELS;
 use rayon::prelude::*;
 
 /// How far removal goes by itself: a little beyond where it goes well, as what goes wrong is mended.

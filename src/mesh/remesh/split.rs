@@ -4,8 +4,8 @@
 
 use super::super::distance::Vec3;
 use super::super::lattice::{self, LatticePoint};
-use super::RemeshReport;
 use super::project::{Method, Point, insert};
+use super::report::RemeshReport;
 use super::source::Source;
 use super::topology::{Edge, Topology};
 use rayon::prelude::*;

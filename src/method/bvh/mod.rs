@@ -1,18 +1,14 @@
 //! BVH over the full-resolution mesh: the baseline (paper section 6.1). Nodes have four children and boxes of 16-bit codes, or of 5 bits in a frame of their
 //! own, or of 32 bits; or six children and boxes of 8 bits in a frame.
 
-mod cut;
-mod file;
-mod full;
-mod leaves;
-mod store;
+mod map;
 mod trace;
 
-pub use cut::{check_hierarchy, cut_id, cut_triangle, level_ids};
-pub use file::TreeKey;
-pub use full::{FullBuilder, FullBvh, FullNodes, FullOptions, FullTree, NodeBoxes, NodeOrder};
-pub use leaves::{Leaf, LeafLayout, Leaves};
-pub use store::{NoStore, TreeStore};
+pub use super::mesh_bvh::{
+    FullBuilder, FullBvh, FullNodes, FullOptions, FullTree, Leaf, LeafLayout, Leaves, NoStore, NodeBoxes, NodeOrder, TreeKey, TreeStore,
+    check_hierarchy, cut_id, cut_triangle, level_ids,
+};
+pub use map::{LEAVES, NODES, bvh_map};
 pub use trace::BvhTraverser;
 
 use super::{ClosestHit, Departure, Knob, Knobs, Landing, Method, MethodUnit, Registered, SurfaceHit, Trace, Tracer};
@@ -20,12 +16,7 @@ use crate::block::{Operation, Work};
 use crate::bvh::BvhError;
 use crate::format::Scene;
 use crate::rays::{ModelSpace, Query, Sight};
-use crate::step::{MemoryMap, Section, SectionId, StepSink};
-
-/// Nodes.
-pub const NODES: SectionId = SectionId::new(0);
-/// Triangles: index triples and vertices, packed triangles, triangle lines or leaf blocks.
-pub const LEAVES: SectionId = SectionId::new(1);
+use crate::step::{MemoryMap, StepSink};
 
 /// How leaf triangles lie in memory.
 pub static LEAF_LAYOUT: Knob = Knob {
@@ -288,25 +279,5 @@ impl Trace for BvhTracer {
 
     fn is_mapped(&self) -> bool {
         self.traverser.is_mapped()
-    }
-}
-
-/// The memory of some BVHs with boxes of one kind: the nodes of all, then the leaves of all.
-///
-/// # Panics
-/// They have more lines than can be numbered: more than 2^28 triangles.
-pub fn bvh_map(bvhs: &[&FullBvh]) -> MemoryMap {
-    let sum = |bytes: fn(&FullBvh) -> u64| bvhs.iter().map(|bvh| bytes(bvh).next_multiple_of(crate::num::LINE_BYTES)).sum();
-    let sections = [Section::of_bytes("bvh_node", sum(|bvh| bvh.nodes.bytes())), Section::of_bytes("leaf", sum(|bvh| bvh.leaves.bytes()))];
-    let lines = bvhs.first().map_or(1, |bvh| node_lines(&bvh.nodes));
-    MemoryMap::new(&sections, Some((NODES, lines))).expect("at most 2^28 triangles, of at most eight lines each with their nodes")
-}
-
-/// Lines of a node.
-fn node_lines(nodes: &FullNodes) -> u32 {
-    match nodes {
-        FullNodes::Local(_) => 1,
-        FullNodes::Boxes16(_) | FullNodes::Six(_) => 2,
-        FullNodes::Boxes32(_) => 4,
     }
 }

@@ -1,6 +1,6 @@
 //! The baseline: the full-resolution mesh under a quad-BVH, built from the same blocks (paper section 6.1).
 
-use super::{FullBvh, FullNodes, LEAVES, Leaf, Leaves, NODES, bvh_map, cut_triangle, node_lines};
+use super::map::{LEAVES, NODES, bvh_map, node_lines};
 use crate::block::Block;
 use crate::block::box_test32::{self, BoxTest32};
 use crate::block::child_sort;
@@ -15,6 +15,7 @@ use crate::format::{BvhChild, BvhNode, ChildRef, SixNode};
 use crate::method::children::has_lanes;
 use crate::method::children::{bvh_children, coded_children, quarter, six_children};
 use crate::method::leave;
+use crate::method::mesh_bvh::{FullBvh, FullNodes, Leaf, Leaves, cut_triangle};
 use crate::method::stack::{Entry, Op, TraversalStack, push_nearest, push_sorted};
 use crate::method::{Departure, Hit, HitSink, is_beyond};
 use crate::num::{LINE_BYTES, Point, Ray, Rotation, Start, U, Vec3, Wire};

@@ -2,12 +2,10 @@
 
 mod image;
 mod order;
-mod prior;
 mod trace;
 
 pub use image::{LINE_LAYOUT, LineLayout, LodImage, NODE_BOUNDS, NODES, RECORDS, SPLITS, VERTICES};
 pub use order::{LineOrder, morton_ranks};
-pub use prior::{Deciders, Prior};
 pub use trace::LodTraverser;
 
 use super::knob::{DELTA, ErrorKnob, octaves};

@@ -1,7 +1,6 @@
 //! The traversal loop of the paper's figure 9: quad-BVH over base triangles, then tessellation trees with an LOD test at every node.
 
 use super::image::{LodImage, TreeAt, With};
-use super::prior::{Deciders, Prior};
 use crate::block::Block;
 use crate::block::child_boxes::Corners;
 use crate::block::lod_test::{self, LodTest};
@@ -17,7 +16,7 @@ use crate::method::children::has_lanes;
 use crate::method::children::{Split, bvh_children, prism_children, tree_children};
 use crate::method::leave;
 use crate::method::stack::{Entry, Op, TraversalStack, push_sorted};
-use crate::method::{Departure, Hit, HitSink, TriangleId, is_beyond};
+use crate::method::{Deciders, Departure, Hit, HitSink, Prior, TriangleId, is_beyond};
 use crate::num::{BoundCode, MAX_LEVELS, PADDING_BITS, Point, Ray, Start, TNear, U, VertexForm, Wire};
 use crate::step::{Act, NodeShape, Step, StepSink, TriangleRun};
 

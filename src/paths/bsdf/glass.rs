@@ -5,7 +5,7 @@
 
 use super::albedo::{Curve, refracting};
 use super::facets::{Facets, fresnel, refracted};
-use super::{Lobe, Local};
+use super::lobe::{Lobe, Local};
 use crate::num::Random;
 use crate::paths::random::{cosine_direction, cosine_pdf, share};
 use glam::DVec3;

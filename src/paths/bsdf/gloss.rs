@@ -5,7 +5,7 @@
 
 use super::albedo::Mirrored;
 use super::facets::{Facets, schlick};
-use super::{Lobe, Local};
+use super::lobe::{Lobe, Local};
 use crate::num::Random;
 use crate::paths::random::{cosine_direction, cosine_pdf, share};
 use glam::DVec3;

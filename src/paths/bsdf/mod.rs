@@ -4,6 +4,7 @@ mod albedo;
 mod facets;
 mod glass;
 mod gloss;
+mod lobe;
 
 use super::material::Material;
 use super::random::{basis, cosine_direction, cosine_pdf};
@@ -12,23 +13,9 @@ use facets::schlick;
 use glam::DVec3;
 use glass::Glass;
 use gloss::Gloss;
+pub(super) use lobe::Lobe;
+use lobe::Local;
 use std::f64::consts::PI;
-
-/// Which way light is scattered.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) enum Lobe {
-    /// Evenly.
-    Diffuse,
-    /// About the mirror's direction.
-    Glossy,
-    /// In the mirror's direction alone.
-    Mirror,
-    /// Through the surface, behind which the index of refraction is `eta` times as large.
-    Through {
-        /// Above 0.
-        eta: f64,
-    },
-}
 
 /// A scattered ray.
 #[derive(Clone, Copy, Debug)]
@@ -39,14 +26,6 @@ pub(super) struct Scatter {
     /// Likelihood per solid angle; none where the direction is the only one.
     pub pdf: Option<f64>,
     pub lobe: Lobe,
-}
-
-/// The same where the normal is (0, 0, 1).
-pub(super) struct Local {
-    pub light: DVec3,
-    weight: DVec3,
-    pdf: Option<f64>,
-    lobe: Lobe,
 }
 
 /// A place on a surface.

@@ -1,6 +1,6 @@
 //! The energy of a frame, split: what is spent on accesses and operations by place, and leakage apart.
 
-use super::ratio;
+use super::ratio::ratio;
 use crate::sim::dram::DramEnergy;
 use crate::sim::energy::{EnergyReport, EnergyUnit, Prices};
 use serde::{Deserialize, Serialize};

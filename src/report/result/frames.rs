@@ -2,7 +2,7 @@
 
 use super::energy::unit_of;
 use super::intervals::{energy_between, zero};
-use super::ratio;
+use super::ratio::ratio;
 use crate::method::Computing;
 use crate::num::LINE_BYTES;
 use crate::sim::energy::EnergyModel;

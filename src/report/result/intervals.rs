@@ -1,7 +1,7 @@
 //! A run over time: what each stretch of cycles added.
 
 use super::energy::dram_parts;
-use super::ratio;
+use super::ratio::ratio;
 use super::roofline::{Done, Parts};
 use crate::block::Operations;
 use crate::method::Computing;

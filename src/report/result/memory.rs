@@ -1,6 +1,6 @@
 //! Caches, crossbar and DRAM, and what contexts waited for.
 
-use super::ratio;
+use super::ratio::ratio;
 use crate::num::LINE_BYTES;
 use crate::sim::dram::{ChannelCounts, DramConfig};
 use crate::sim::replay::{CacheCounts, MissCauses, Run, Waits};

@@ -12,6 +12,7 @@ mod frames;
 mod intervals;
 mod latency;
 mod memory;
+mod ratio;
 mod roofline;
 mod setup;
 mod stalls;
@@ -41,6 +42,7 @@ use crate::sim::dram::{ChannelCounts, DramPrices};
 use crate::sim::energy::{EnergyCounts, EnergyModel};
 use crate::sim::replay::{ReplayError, Run, dram_of};
 use crate::step::MemoryMap;
+use ratio::ratio;
 use roofline::{Done, Parts};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
@@ -182,9 +184,4 @@ impl SimResult {
             setup,
         })
     }
-}
-
-/// `a` of `b`; 0 if there is no `b`, as JSON has no infinities.
-fn ratio(a: f64, b: f64) -> f64 {
-    if b == 0.0 { 0.0 } else { a / b }
 }

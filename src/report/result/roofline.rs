@@ -1,6 +1,6 @@
 //! What each part of the machine would need for its share of the frame, if nothing else took time: the largest share names the limit.
 
-use super::ratio;
+use super::ratio::ratio;
 use crate::block::{Operation, Operations};
 use crate::machine::Machine;
 use crate::method::lod;

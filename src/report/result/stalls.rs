@@ -1,6 +1,6 @@
 //! What contexts did with each of their cycles.
 
-use super::ratio;
+use super::ratio::ratio;
 use crate::sim::replay::{Cause, Run};
 use crate::sim::unit::{State, UnitCounts};
 use serde::{Deserialize, Serialize};

@@ -1,7 +1,7 @@
 //! Lines by what they hold.
 
 use super::memory::is_zero;
-use super::ratio;
+use super::ratio::ratio;
 use crate::num::LINE_BYTES;
 use crate::sim::replay::KindTraffic;
 use crate::step::{MAX_SECTIONS, MemoryMap};

@@ -1,6 +1,6 @@
 //! What the traversal units did.
 
-use super::ratio;
+use super::ratio::ratio;
 use crate::sim::unit::{State, UnitCounts};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;

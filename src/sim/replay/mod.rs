@@ -19,6 +19,7 @@ mod error;
 mod event;
 mod fed_ray;
 mod feed;
+mod front_end;
 mod group_side;
 mod intervals;
 mod level;
@@ -54,9 +55,7 @@ use crate::machine::Machine;
 use crate::step::Nodes;
 use cores::FreeCores;
 use dispatch::Dispatcher;
-use event::Happening;
-use feed::Feed;
-use group_side::GroupSide;
+use front_end::FrontEnd;
 use rounds::Partition;
 use shared_side::SharedSide;
 use std::sync::Mutex;
@@ -183,32 +182,6 @@ pub fn run_units(machine: &Machine, source: impl ChunkSource, how: Running) -> R
         run.counts.stalls[Cause::Port as usize] += port;
     }
     Ok(run)
-}
-
-/// Who asks the memory hierarchy for lines: the cores or units of a partition's groups.
-trait FrontEnd {
-    /// Of how many waiters at once the way of the last line is kept, and where each one's is.
-    fn slots(&self) -> (usize, fn(u32) -> usize);
-    /// The rays of its groups.
-    fn feed(&mut self) -> &mut Feed;
-    /// A group has rays again, or its first.
-    fn granted(&mut self, group: u32, memory: &mut GroupSide);
-    /// The cycle it asked for has come, or its held request was taken.
-    fn wake(&mut self, id: u32, memory: &mut GroupSide);
-    /// `waiter`'s line comes from the L1 in `cycle`.
-    fn comes(&mut self, waiter: u32, cycle: u64, memory: &mut GroupSide) {
-        memory.answer_at(cycle, waiter, counts::Supplier::L1);
-    }
-    /// What happens soon to those, far ahead and near, is like `happening`.
-    fn prefetch(&self, _happening: Happening, _soon: [Option<u32>; 2]) {}
-    /// A line came for `waiter`.
-    fn answer(&mut self, waiter: u32, from: counts::Supplier, memory: &mut GroupSide);
-    /// Rays taken that have not ended.
-    fn under_way(&self) -> u64;
-    /// What its rays have had the blocks do so far.
-    fn operations(&self) -> Operations;
-    /// What it does, for error messages.
-    fn describe(&self) -> String;
 }
 
 /// Runs the rays of `source` on `machine` with a front end for each partition of its groups, which have so many contexts each. Gives the front ends too.

@@ -5,6 +5,7 @@ pub mod bounces;
 pub mod early;
 pub mod hardware;
 pub mod hostile;
+pub mod house;
 pub mod models;
 pub mod plain;
 pub mod program;

@@ -1,4 +1,4 @@
-//! Enough of Rust's text for tests that look at the source: code without comments, bodies of functions, and paths to other modules.
+//! Enough of Rust's text for tests that look at the source: code without comments, bodies of functions, and calls.
 
 /// `text` without comments and without what stands in strings and characters, each replaced by blanks; line breaks stay.
 pub fn code(text: &str) -> String {
@@ -150,47 +150,4 @@ pub fn calls(code: &str) -> impl Iterator<Item = &str> {
         let end = if is_macro { at + 1 } else { at };
         (!name.is_empty() && (found == "(" || is_macro)).then(|| &code[at - before..end])
     })
-}
-
-/// All paths in what [`code`] gave that begin with `crate` or `super`, lists of `use` taken apart.
-pub fn paths(code: &str) -> Vec<Vec<&str>> {
-    let mut all = Vec::new();
-    for start in ["crate::", "super::"] {
-        for (at, _) in code.match_indices(start) {
-            let before = &code[..at];
-            // Not in the middle of a word or of another path, nor where it says who may see something.
-            if !before.ends_with("::") && !before.ends_with("(in ") && !before.bytes().last().is_some_and(is_word) {
-                expand(Vec::new(), &code[at..], &mut all);
-            }
-        }
-    }
-    all
-}
-
-fn expand<'a>(mut path: Vec<&'a str>, text: &'a str, all: &mut Vec<Vec<&'a str>>) {
-    let text = text.trim_start();
-    if text.starts_with('{') {
-        let list = bracketed(text, 0);
-        let (mut depth, mut from) = (0, 1);
-        for (at, b) in list.bytes().enumerate() {
-            depth += i32::from(b == b'{') - i32::from(b == b'}');
-            if (b == b',' && depth == 1) || depth == 0 {
-                if !list[from..at].trim().is_empty() {
-                    expand(path.clone(), &list[from..at], all);
-                }
-                from = at + 1;
-            }
-        }
-        return;
-    }
-    let length = text.bytes().take_while(|&b| is_word(b)).count();
-    if length > 0 {
-        path.push(&text[..length]);
-    }
-    match text[length..].strip_prefix("::") {
-        Some(rest) if length > 0 && rest.starts_with(|c: char| c == '{' || c == '*' || c == '_' || c.is_ascii_alphabetic()) => {
-            expand(path, rest, all)
-        }
-        _ => all.push(path),
-    }
 }

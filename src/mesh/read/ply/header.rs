@@ -1,9 +1,8 @@
 //! The header of a PLY file. `ply-rs-bw` parses; before it every line is checked here, so that an error says in plain words what is wrong.
 
 use super::super::{Fault, fault, shown};
-use super::Row;
 use ply_rs_bw::parser::{Parser, Reader};
-use ply_rs_bw::ply::{ElementDef, Header, PropertyDef, PropertyType, ScalarType};
+use ply_rs_bw::ply::{DefaultElement, ElementDef, Header, PropertyDef, PropertyType, ScalarType};
 use std::collections::HashSet;
 
 const WHOLE: [&str; 12] = ["char", "uchar", "short", "ushort", "int", "uint", "int8", "uint8", "int16", "uint16", "int32", "uint32"];
@@ -23,7 +22,7 @@ pub(super) fn parse(bytes: &[u8]) -> Result<(Header, &[u8], usize), Fault> {
         rest = tail;
         let end = checker.line(&String::from_utf8_lossy(line), number).or_else(|what| fault(place, what))?;
         if end {
-            let header = match Parser::<Row>::new().read_header(&mut Reader::new(checker.out.as_bytes())) {
+            let header = match Parser::<DefaultElement>::new().read_header(&mut Reader::new(checker.out.as_bytes())) {
                 Ok(header) => header,
                 Err(_) => return fault("header", "a line or a name in it has a form that is not known"),
             };

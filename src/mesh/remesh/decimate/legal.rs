@@ -2,7 +2,7 @@
 //! field of heights.
 
 use super::super::super::distance::{Vec3, closest_barycentrics};
-use super::{Goal, Mesh, other};
+use super::state::{Goal, Mesh, other};
 
 /// Least quality of a new triangle (1 is equilateral, 0 has no area), unless one is no better now.
 const LEAST_QUALITY: f64 = 0.3;

@@ -12,25 +12,17 @@
 
 mod legal;
 mod quadric;
+mod state;
 
 use super::super::distance::Vec3;
 use super::source::Source;
 use legal::Changed;
 use quadric::{Cost, Quadric};
+pub(super) use state::Goal;
+use state::{Known, Mesh, other};
 use std::cmp::Reverse;
 use std::collections::BinaryHeap;
 use std::sync::Arc;
-
-/// How far removal goes.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Goal {
-    /// It stops at this many triangles.
-    pub triangles: usize,
-    /// Cosine of the largest angle between a triangle and those of the original over it.
-    pub facing: f64,
-    /// Largest distance between them, in lengths of the triangle's longest side.
-    pub distance: f64,
-}
 
 /// Triangles of the original known over each triangle, at most, ...
 const MOST_OVER: usize = 8;
@@ -118,17 +110,6 @@ impl<'a> Decimator<'a> {
     }
 }
 
-/// What the queue knows of a vertex.
-#[derive(Clone, Copy, PartialEq, Eq)]
-enum Known {
-    /// It is not in there.
-    Nothing,
-    /// Its cost.
-    Cost,
-    /// What was its cost before something changed around it: found out again when it is its turn.
-    Stale,
-}
-
 /// Where a vertex may be pulled.
 enum Freedom {
     /// It stays.
@@ -137,33 +118,6 @@ enum Freedom {
     Line,
     /// Into any neighbour.
     Any,
-}
-
-/// The mesh in the making. A triangle keeps the number, and so the patch, of one of the original.
-#[derive(Clone)]
-struct Mesh<'a> {
-    source: &'a Source,
-    keep: Vec<bool>,
-    triangles: Vec<[u32; 3]>,
-    wedges: Vec<[u32; 3]>,
-    alive: Vec<bool>,
-    count: usize,
-    over: Vec<Vec<u32>>,
-    /// Triangles around each vertex.
-    around: Vec<Vec<u32>>,
-    /// Neighbours of each vertex along feature lines.
-    lines: Vec<Vec<u32>>,
-    quadrics: Vec<Quadric>,
-    /// What each vertex's quadric gives at the vertex.
-    own_cost: Vec<f64>,
-    /// Vertices by cost, each once at most.
-    queue: BinaryHeap<Reverse<(Cost, u32)>>,
-    /// What is known of each vertex's cost.
-    known: Vec<Known>,
-    removed: Vec<u32>,
-    removals: u32,
-    /// For each triangle of the original its middle.
-    middles: Arc<Vec<Vec3>>,
 }
 
 impl<'a> Mesh<'a> {
@@ -348,10 +302,4 @@ fn thinned(mut all: Vec<u32>, most: usize) -> Vec<u32> {
         all = (0..most).map(|k| all[(k as f64 * step) as usize]).collect();
     }
     all
-}
-
-/// The two corners that are not `v`.
-fn other(tri: [u32; 3], v: u32) -> [u32; 2] {
-    let k = tri.iter().position(|&w| w == v).unwrap_or(0);
-    [tri[(k + 1) % 3], tri[(k + 2) % 3]]
 }

@@ -3,6 +3,8 @@
 mod order;
 mod stores;
 
+use super::feed::Feed;
+use super::group_side::GroupSide;
 use super::*;
 use crate::block::Operation;
 use crate::num::Random;

@@ -216,8 +216,8 @@ fn checksum(parts: &[&[u8]]) -> u128 {
 mod tests {
     use super::*;
     use crate::bvh::check::synthetic_terrain;
-    use crate::method::bvh::leaves::BlockSize;
-    use crate::method::bvh::{FullBuilder, NodeBoxes};
+    use crate::method::mesh_bvh::leaves::BlockSize;
+    use crate::method::mesh_bvh::{FullBuilder, NodeBoxes};
     use crate::num::U;
     use proptest::prelude::*;
     use xxhash_rust::xxh3::xxh3_64;

@@ -1,10 +1,9 @@
-//! Machines by name, and frames on them: what `simulate` and `sweep` share.
+//! Machines by name.
 
 use super::args::Change;
-use super::output::{progress, toml_in_one_line};
+use super::output::toml_in_one_line;
 use lodray::machine::{Machine, MachineError};
 use lodray::report::result::MachineFacts;
-use lodray::scene::{Outcome, Pass, Target};
 use lodray::sim::energy;
 use std::path::{Path, PathBuf};
 
@@ -48,12 +47,4 @@ fn in_one_line(error: MachineError) -> anyhow::Error {
         }
         other => other.into(),
     }
-}
-
-/// Traces the rays of a pass once and replays them on every target; a bar shows how far it is.
-pub fn run(pass: &Pass<'_>, targets: &[Target]) -> Vec<Outcome> {
-    let bar = progress(pass.rays.source().batches() as u64, "simulating");
-    let outcomes = pass.run(targets, &mut |traced| bar.inc(traced.batches.len() as u64));
-    bar.finish_and_clear();
-    outcomes
 }

@@ -1,8 +1,8 @@
 //! A job's line, and the table of all at the end.
 
-use crate::cli::job_lines::JobLine;
-use lodray::report::page::ImageFigures;
-use lodray::report::result::SimResult;
+use super::job_lines::JobLine;
+use crate::report::page::ImageFigures;
+use crate::report::result::SimResult;
 use serde::{Deserialize, Serialize};
 
 /// One job's line.

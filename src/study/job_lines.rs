@@ -1,16 +1,17 @@
 //! What was done of a list of jobs: one line of JSON for each, so that a run that is started again goes on.
 
-use super::folder::RunFolder;
-use super::json::fault;
-use super::output::{count, warn, write_file};
-use anyhow::Context;
-use lodray::report::results_version;
+use super::fault::fault;
+use super::progress::Progress;
+use super::words::count;
+use crate::format::write_and_rename;
+use crate::report::results_version;
 use serde::Serialize;
 use serde::de::DeserializeOwned;
 use std::collections::{HashMap, HashSet};
 use std::fs::{File, OpenOptions};
-use std::io::Write;
+use std::io::{self, Write};
 use std::path::{Path, PathBuf};
+use thiserror::Error;
 
 /// A job's line.
 pub trait JobLine: Serialize + DeserializeOwned {
@@ -19,6 +20,30 @@ pub trait JobLine: Serialize + DeserializeOwned {
 
     /// The job was done; one that failed is done again.
     fn has_result(&self) -> bool;
+}
+
+/// Lines that cannot be kept.
+#[derive(Debug, Error)]
+pub enum LinesError {
+    /// The file cannot be read.
+    #[error("cannot read {}", path.display())]
+    Read {
+        /// The file.
+        path: PathBuf,
+        /// Why.
+        source: io::Error,
+    },
+    /// It cannot be written.
+    #[error("cannot write {}", path.display())]
+    Write {
+        /// The file.
+        path: PathBuf,
+        /// Why.
+        source: io::Error,
+    },
+    /// A line that JSON cannot say.
+    #[error(transparent)]
+    Json(#[from] serde_json::Error),
 }
 
 /// The file of lines.
@@ -31,10 +56,13 @@ pub struct JobLines<L> {
 impl<L: JobLine> JobLines<L> {
     /// Opens the file, or makes it. Lines that are none of a job's, whole, or results of another version of the program, are set aside in files beside it;
     /// what they stood for is done again, and so are jobs that failed.
-    pub fn open(path: &Path) -> anyhow::Result<Self> {
+    ///
+    /// # Errors
+    /// A file cannot be read or written.
+    pub fn open(path: &Path, progress: &dyn Progress) -> Result<Self, LinesError> {
         let shown = path.display();
         let [bad_file, old_file] = aside(path);
-        let bytes = if path.exists() { std::fs::read(path).with_context(|| format!("cannot read {shown}"))? } else { Vec::new() };
+        let bytes = if path.exists() { read(path)? } else { Vec::new() };
         let mut rows = Vec::new();
         let (mut bad, mut old) = (Vec::new(), Vec::new());
         let mut dropped = !bytes.is_empty() && !bytes.ends_with(b"\n");
@@ -49,7 +77,7 @@ impl<L: JobLine> JobLines<L> {
         if let Some((number, _, why)) = bad.first() {
             let others = if bad.len() > 1 { format!(" (and {} more)", bad.len() - 1) } else { String::new() };
             set_aside(&bad_file, bad.iter().map(|of| of.1))?;
-            warn(&format!(
+            progress.note(&format!(
                 "warning: {shown}: line {number}{others} is no result: {} (column {}); set aside in {}, its job is done again",
                 fault(why),
                 why.column(),
@@ -59,17 +87,18 @@ impl<L: JobLine> JobLines<L> {
         if !old.is_empty() {
             let verb = if old.len() > 1 { "are" } else { "is" };
             set_aside(&old_file, old.iter().copied())?;
-            warn(&format!(
+            progress.note(&format!(
                 "note: {shown}: {} {verb} another version's of the program; set aside in {}, their jobs are done again",
                 count(old.len(), "result"),
                 old_file.display()
             ));
         }
         if dropped || !bad.is_empty() || !old.is_empty() {
-            let lines = rows.iter().map(|row| Ok(serde_json::to_string(row)? + "\n")).collect::<anyhow::Result<String>>()?;
-            write_file(path, lines)?;
+            let lines = rows.iter().map(|row| Ok(serde_json::to_string(row)? + "\n")).collect::<Result<String, serde_json::Error>>()?;
+            write(path, lines.as_bytes())?;
         }
-        let file = OpenOptions::new().create(true).append(true).open(path).with_context(|| format!("cannot write {shown}"))?;
+        let file = OpenOptions::new().create(true).append(true).open(path);
+        let file = file.map_err(|source| LinesError::Write { path: path.to_owned(), source })?;
         Ok(Self { path: path.to_owned(), file, lines: rows })
     }
 
@@ -79,10 +108,13 @@ impl<L: JobLine> JobLines<L> {
     }
 
     /// Adds a line, whole, in one write.
-    pub fn add(&mut self, line: L) -> anyhow::Result<()> {
+    ///
+    /// # Errors
+    /// The file cannot be written.
+    pub fn add(&mut self, line: L) -> Result<(), LinesError> {
         let text = serde_json::to_string(&line)? + "\n";
         let write = self.file.write_all(text.as_bytes()).and_then(|()| self.file.sync_data());
-        write.with_context(|| format!("cannot write {}", self.path.display()))?;
+        write.map_err(|source| LinesError::Write { path: self.path.clone(), source })?;
         self.lines.push(line);
         Ok(())
     }
@@ -101,23 +133,24 @@ fn is_of_this_version(key: &str) -> bool {
 
 /// The files beside a file of lines that have what were none, and those of other versions of the program: `results.bad.jsonl` and `results.old.jsonl`
 /// beside `results.jsonl`.
-fn aside(path: &Path) -> [PathBuf; 2] {
+pub fn aside(path: &Path) -> [PathBuf; 2] {
     ["bad.jsonl", "old.jsonl"].map(|ending| path.with_extension(ending))
 }
 
-/// Lists those of `path` that there are among the files of a run's folder.
-pub fn keep_aside(folder: &mut RunFolder, path: &Path) -> anyhow::Result<()> {
-    let names = aside(path).into_iter().filter(|file| file.exists());
-    names.filter_map(|file| file.file_name().map(|name| name.to_string_lossy().into_owned())).try_for_each(|name| folder.keep(&name))
-}
-
 /// Keeps lines in a file, behind those of before.
-fn set_aside<'a>(aside: &Path, lines: impl Iterator<Item = &'a [u8]>) -> anyhow::Result<()> {
-    let mut bytes =
-        if aside.exists() { std::fs::read(aside).with_context(|| format!("cannot read {}", aside.display()))? } else { Vec::new() };
+fn set_aside<'a>(aside: &Path, lines: impl Iterator<Item = &'a [u8]>) -> Result<(), LinesError> {
+    let mut bytes = if aside.exists() { read(aside)? } else { Vec::new() };
     for line in lines {
         bytes.extend_from_slice(line);
         bytes.push(b'\n');
     }
-    write_file(aside, &bytes)
+    write(aside, &bytes)
+}
+
+fn read(path: &Path) -> Result<Vec<u8>, LinesError> {
+    std::fs::read(path).map_err(|source| LinesError::Read { path: path.to_owned(), source })
+}
+
+fn write(path: &Path, bytes: &[u8]) -> Result<(), LinesError> {
+    write_and_rename(path, |out| out.write_all(bytes)).map_err(|source| LinesError::Write { path: path.to_owned(), source })
 }

@@ -2,7 +2,7 @@ use super::*;
 use crate::bvh::check::synthetic_terrain;
 use crate::bvh::{BvhChild32, BvhError};
 use crate::format::{BvhChild, ChildRef};
-use crate::method::bvh::{FullBvh, FullNodes, FullOptions, NodeBoxes};
+use crate::method::mesh_bvh::{FullBvh, FullNodes, FullOptions, NodeBoxes};
 use std::collections::BTreeSet;
 
 const LAYOUTS: [LeafLayout; 4] = [LeafLayout::Indexed, LeafLayout::Packed, LeafLayout::Line, LeafLayout::Block];

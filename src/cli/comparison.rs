@@ -1,0 +1,35 @@
+//! How far a picture is from the one that it is compared with.
+
+use lodray::picture::{GeometricError, ImageError};
+use serde::Serialize;
+
+/// What a picture is compared with.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Against {
+    /// The scene's own finest triangles.
+    FullResolution,
+    /// The mesh that it was made from.
+    Original,
+}
+
+impl Against {
+    /// What to call it in text.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::FullResolution => "full resolution",
+            Self::Original => "the original",
+        }
+    }
+}
+
+/// Differences of two pictures of one view.
+#[derive(Clone, Serialize)]
+pub struct Comparison {
+    #[serde(flatten)]
+    pub image: ImageError,
+    /// Pixels that hit in one picture only.
+    pub coverage_differs: u64,
+    /// Distance between the surfaces in pixels; null in JSON if no pixel hits in both pictures.
+    pub geometry_pixels: Option<GeometricError>,
+}

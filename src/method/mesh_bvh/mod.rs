@@ -1,0 +1,13 @@
+//! BVHs over the triangles of a hierarchy: built, with their leaves, as files, and kept.
+
+mod cut;
+mod file;
+mod full;
+mod leaves;
+mod store;
+
+pub use cut::{check_hierarchy, cut_id, cut_triangle, level_ids};
+pub use file::TreeKey;
+pub use full::{FullBuilder, FullBvh, FullNodes, FullOptions, FullTree, NodeBoxes, NodeOrder};
+pub use leaves::{Leaf, LeafLayout, Leaves};
+pub use store::{NoStore, TreeStore};
