@@ -7,6 +7,7 @@ pub mod bvh;
 mod children;
 pub mod chunked;
 pub mod discrete;
+pub mod grid;
 mod hit;
 pub mod knob;
 pub mod leave;
