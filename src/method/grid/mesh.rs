@@ -1,7 +1,7 @@
 //! Grid primitives in memory (paper section 2.1): tuples, radii, and vertices by where they lie.
 
-use super::pattern::{Pattern, Preliminary, first_of_depth, inside, on_side, points, within};
-use super::sphere::radius;
+use super::bounds::{Bounding, Bounds, groups};
+use super::pattern::{Pattern, Preliminary, inside, on_side, points, within};
 use super::top::{Top, Width};
 use super::tuple::{Source, Tuple, share};
 use crate::bvh::{Box32, BvhError};
@@ -15,8 +15,8 @@ use rayon::prelude::*;
 pub const NODES: SectionId = SectionId::new(0);
 /// Tuples, 24 bytes each.
 pub const TUPLES: SectionId = SectionId::new(1);
-/// Radii, 4 bytes each: those of a primitive together, breadth first, without its root's.
-pub const RADII: SectionId = SectionId::new(2);
+/// Bounds of the nodes of primitives, four siblings together: those of a primitive one behind the other, breadth first, its root has none.
+pub const BOUNDS: SectionId = SectionId::new(2);
 /// Vertices at corners.
 pub const CORNERS: SectionId = SectionId::new(3);
 /// Vertices on boundaries.
@@ -61,8 +61,10 @@ pub fn float_nearest(v: i32) -> i32 {
 pub struct GridOptions {
     /// Splits K of a primitive, 0 to 4, but no more than the hierarchy has.
     pub splits: u32,
-    /// The finest levels without spheres.
+    /// The finest levels without bounds.
     pub left_out: u32,
+    /// What bounds the others.
+    pub bounding: Bounding,
     /// Nodes over primitives.
     pub width: Width,
     /// Vertices.
@@ -71,7 +73,7 @@ pub struct GridOptions {
 
 impl Default for GridOptions {
     fn default() -> Self {
-        Self { splits: 4, left_out: 2, width: Width::Four, points: PointForm::Float }
+        Self { splits: 4, left_out: 2, bounding: Bounding::Spheres, width: Width::Four, points: PointForm::Float }
     }
 }
 
@@ -82,7 +84,7 @@ pub struct GridMesh {
     pub levels: u32,
     /// The grid of each.
     pub pattern: Pattern,
-    /// Levels with spheres.
+    /// Levels with bounds.
     pub bounded: u32,
     /// Tree and node of each primitive, in leaf order. Charged to none, as are those of a BVH: a design would look them up once for each hit.
     pub ids: Vec<(u32, u32)>,
@@ -91,7 +93,8 @@ pub struct GridMesh {
     /// The nodes above.
     pub top: Top,
     tuples: Vec<Tuple>,
-    radii: Vec<f32>,
+    /// Of the children of its nodes.
+    pub bounds: Bounds,
     corners: Vec<[i32; 3]>,
     boundaries: Vec<[i32; 3]>,
     insides: Vec<[i32; 3]>,
@@ -122,31 +125,20 @@ impl GridMesh {
 
         let natural = |k: usize| ((k >> (2 * level)) as u32, (k & ((1 << (2 * level)) - 1)) as u32); // at most 2^28
         let count = hierarchy.triangles.len() << (2 * level);
-        let bounds = |k: usize| {
+        let extent = |k: usize| {
             let grown = vertices(natural(k)).fold(([i32::MAX; 3], [i32::MIN; 3]), |(lo, hi), p| {
                 (std::array::from_fn(|c| p[c].min(lo[c])), std::array::from_fn(|c| p[c].max(hi[c])))
             });
             Box32 { lo: grown.0, hi: grown.1 }
         };
-        let boxes: Vec<Box32> = (0..count).into_par_iter().map(bounds).collect();
+        let boxes: Vec<Box32> = (0..count).into_par_iter().map(extent).collect();
         let (top, order) = Top::new(&boxes, options.width);
-        let boxes = order.par_iter().map(|&k| boxes[k as usize]).collect();
+        let boxes: Vec<_> = order.par_iter().map(|&k| boxes[k as usize]).collect();
         let ids: Vec<_> = order.par_iter().map(|&k| natural(k as usize)).collect();
         drop(order);
 
         let bounded = splits - options.left_out.min(splits);
-        let tree = BoundTree::new(splits, bounded);
-        let mut radii = vec![0.0; count * tree.len()];
-        if bounded > 0 {
-            radii.par_chunks_mut(tree.len() * CHUNK).zip(ids.par_chunks(CHUNK)).for_each(|(radii, ids)| {
-                let mut own = Vec::new();
-                for (radii, &id) in radii.chunks_mut(tree.len()).zip(ids) {
-                    own.clear();
-                    own.extend(vertices(id));
-                    tree.fill(&own, radii);
-                }
-            });
-        }
+        let bounds = Bounds::new(options.bounding, splits, bounded, count, |primitive, to| to.extend(vertices(ids[primitive])));
 
         let shared = share(hierarchy, splits, &ids);
         let gather = |of: &[Source]| of.par_iter().map(|&(tree, at)| stored(tree, at)).collect::<Vec<_>>();
@@ -167,14 +159,14 @@ impl GridMesh {
         let sections = [
             Section::of_bytes("bvh_node", top.len() as u64 * u64::from(top.lines()) * LINE_BYTES),
             Section::of_bytes("tuple", count as u64 * TUPLE_BYTES),
-            Section::of_bytes("radius", radii.len() as u64 * 4),
+            Section::of_bytes(options.bounding.section(), bounds.bytes()),
             of_vertices("corner", corners.len()),
             of_vertices("boundary", boundaries.len()),
             of_vertices("inside", insides.len()),
         ];
         let map = MemoryMap::new(&sections, Some((NODES, top.lines()))).expect("at most 2^28 triangles of fewer than 16 bytes each");
         let tuples = shared.tuples;
-        Ok(Self { levels, pattern, bounded, ids, boxes, top, tuples, radii, corners, boundaries, insides, form, map })
+        Ok(Self { levels, pattern, bounded, ids, boxes, top, tuples, bounds, corners, boundaries, insides, form, map })
     }
 
     /// The memory.
@@ -186,6 +178,11 @@ impl GridMesh {
     #[inline(always)]
     pub fn tuple(&self, primitive: usize) -> &Tuple {
         &self.tuples[primitive]
+    }
+
+    /// All vertices: at corners, on boundaries, inside.
+    pub fn vertices(&self) -> [&[[i32; 3]]; 3] {
+        [&self.corners, &self.boundaries, &self.insides]
     }
 
     /// How many boundaries there are.
@@ -214,18 +211,25 @@ impl GridMesh {
         }
     }
 
-    /// Radii of the children of a node of a primitive, breadth first, all with spheres.
+    /// The place of the bounds of a node's children among all, breadth first.
     #[inline(always)]
-    pub fn child_radii(&self, primitive: usize, node: usize) -> [f32; 4] {
-        let first = primitive * bounds_of(self.bounded) + 4 * node;
-        [self.radii[first], self.radii[first + 1], self.radii[first + 2], self.radii[first + 3]]
+    pub fn group(&self, primitive: usize, node: usize) -> usize {
+        debug_assert!(node < groups(self.bounded));
+        primitive * groups(self.bounded) + node
     }
 
-    /// The line of the radii of a node's children.
+    /// The lines of the bounds of a group.
     #[inline(always)]
-    pub fn radius_line(&self, primitive: usize, node: usize) -> u32 {
-        // Four are 16 bytes, so none straddles.
-        self.map.line(RADII, (primitive * bounds_of(self.bounded) + 4 * node) as u64 * 4 / LINE_BYTES)
+    pub fn group_fetch(&self, group: usize) -> Fetch {
+        let bytes = self.bounds.kind().bytes();
+        self.fetch(BOUNDS, group as u64 * bytes, bytes)
+    }
+
+    /// The lines of some bytes of a section.
+    #[inline(always)]
+    fn fetch(&self, section: SectionId, first: u64, bytes: u64) -> Fetch {
+        let [first, last] = [first, first + bytes - 1].map(|at| self.map.line(section, at / LINE_BYTES));
+        Fetch::new(section, first, last - first + 1)
     }
 
     /// The lines of a vertex: the first, and the last.
@@ -239,51 +243,13 @@ impl GridMesh {
     /// The lines of a tuple.
     #[inline(always)]
     pub fn tuple_fetch(&self, primitive: usize) -> Fetch {
-        let first = primitive as u64 * TUPLE_BYTES;
-        let [first, last] = [first, first + TUPLE_BYTES - 1].map(|at| self.map.line(TUPLES, at / LINE_BYTES));
-        Fetch::new(TUPLES, first, last - first + 1)
+        self.fetch(TUPLES, primitive as u64 * TUPLE_BYTES, TUPLE_BYTES)
     }
 }
 
 /// Bytes of a tuple.
 pub const TUPLE_BYTES: u64 = size_of::<Tuple>() as u64;
 const _: () = assert!(TUPLE_BYTES == 24);
-
-/// Spheres of a primitive of which so many levels have some: those of depth 1 to `bounded`.
-#[inline(always)]
-pub const fn bounds_of(bounded: u32) -> usize {
-    first_of_depth(bounded + 1) - 1
-}
-
-/// Of each node with a sphere, the corners and all vertices of its triangle, by place in the lattice's order.
-struct BoundTree {
-    nodes: Vec<([usize; 3], Vec<usize>)>,
-}
-
-impl BoundTree {
-    fn new(splits: u32, bounded: u32) -> Self {
-        let nodes = (1..=bounded).flat_map(|depth| (0..1u32 << (2 * depth)).map(move |node| (depth, node)));
-        let place = |at| lattice::index(splits, at);
-        let nodes = nodes.map(|(depth, node)| {
-            let p = lattice::node(splits, depth, node);
-            let below = splits - depth;
-            (p.map(place), points(below).map(|at| place(within(p, below, at))).collect())
-        });
-        Self { nodes: nodes.collect() }
-    }
-
-    fn len(&self) -> usize {
-        self.nodes.len()
-    }
-
-    /// The radii over vertices in the lattice's order (equation 2).
-    fn fill(&self, vertices: &[[i32; 3]], radii: &mut [f32]) {
-        for ((corners, below), to) in self.nodes.iter().zip(radii) {
-            let sum = std::array::from_fn(|k| corners.iter().map(|&at| i64::from(vertices[at][k])).sum());
-            *to = radius(sum, below.iter().map(|&at| vertices[at]));
-        }
-    }
-}
 
 #[cfg(test)]
 mod tests {
@@ -300,10 +266,5 @@ mod tests {
             [(1 << 30) + 32, (1 << 30) + 96, (1 << 30) + 48, -(1 << 30) - 16].map(float_nearest),
             [1 << 30, (1 << 30) + 128, (1 << 30) + 64, -(1 << 30)]
         );
-    }
-
-    #[test]
-    fn spheres_of_a_primitive_are_counted() {
-        assert_eq!([0, 1, 2, 3, 4].map(bounds_of), [0, 4, 20, 84, 340]);
     }
 }

@@ -2,7 +2,9 @@
 //! hierarchy, with a complete 4-ary tree of spheres and vertices that are stored once (docs/baselines.md, "Grid primitives").
 
 mod binary;
+mod bounds;
 mod caps;
+mod float;
 mod mesh;
 mod pattern;
 mod sphere;
@@ -11,7 +13,9 @@ mod trace;
 mod tuple;
 mod works;
 
+pub use bounds::{Bounding, Bounds};
 pub use caps::{Caps, Displacements, open_edges};
+pub use float::{FloatGrid, FloatHit};
 pub use mesh::{GridMesh, GridOptions, PointForm};
 pub use pattern::Preliminary;
 pub use top::{Top, Width};
@@ -45,16 +49,40 @@ pub static GRID_LEVELS: Knob = Knob {
     allows: |value| number(value, 1).map(drop).ok_or_else(|| format!("'{value}' is not a number of splits from 1 to 4")),
 };
 
-/// How many of the finest levels have no spheres.
+/// How many of the finest levels have no bounds.
 pub static GRID_LEFT_OUT: Knob = Knob {
     name: "grid-left-out",
     value_name: "LEVELS",
-    help: "How many of the finest levels of a grid have no spheres, 0 to 4; all triangles there are tested",
+    help: "How many of the finest levels of a grid have no bounds, 0 to 4; all triangles there are tested",
     default: Some("2"),
     words: &[],
     of_frame: false,
     allows: |value| number(value, 0).map(drop).ok_or_else(|| format!("'{value}' is not a number of levels from 0 to 4")),
 };
+
+/// What bounds nodes below primitives.
+pub static GRID_BOUNDS: Knob = Knob {
+    name: "grid-bounds",
+    value_name: "BOUNDS",
+    help: "Bounds of the nodes of a grid's trees",
+    default: Some("spheres"),
+    words: &[
+        ("spheres", "As the paper has them: a radius each, the centre is computed"),
+        ("boxes", "As nodes of bvh have them, 32 bytes for four"),
+        ("prisms", "Prisms over the triangles, 9 bytes for four"),
+    ],
+    of_frame: false,
+    allows: |value| bounding(value).map(drop).ok_or_else(|| format!("'{value}' is not spheres, boxes or prisms")),
+};
+
+fn bounding(value: &str) -> Option<Bounding> {
+    match value {
+        "spheres" => Some(Bounding::Spheres),
+        "boxes" => Some(Bounding::Boxes),
+        "prisms" => Some(Bounding::Prisms),
+        _ => None,
+    }
+}
 
 /// Children of nodes over primitives.
 pub static GRID_NODES: Knob = Knob {
@@ -135,7 +163,7 @@ impl Cap {
 pub static METHOD: Registered = Registered {
     name: "grid",
     help: "Grid primitives: coarse triangles that are split alike, vertices shared, each with a tree of spheres",
-    knobs: &[&DELTA, &CAP, &GRID_LEVELS, &GRID_LEFT_OUT, &GRID_NODES, &GRID_POINTS],
+    knobs: &[&DELTA, &CAP, &GRID_LEVELS, &GRID_LEFT_OUT, &GRID_BOUNDS, &GRID_NODES, &GRID_POINTS],
     error: Some(ErrorKnob { knob: &CAP, values: || (0..=MOST_SPLITS).map(f64::from).collect(), in_steps: true }),
     of_input: false,
     // Nodes of four, and hits on coarse triangles are mapped. Spheres and indices are works of its own, which take a unit no time.
@@ -152,6 +180,7 @@ impl GridOptions {
         Self {
             splits: knobs.get(&GRID_LEVELS).and_then(|value| number(value, 1)).unwrap_or(default.splits),
             left_out: knobs.get(&GRID_LEFT_OUT).and_then(|value| number(value, 0)).unwrap_or(default.left_out),
+            bounding: knobs.get(&GRID_BOUNDS).and_then(bounding).unwrap_or(default.bounding),
             width: knobs.get(&GRID_NODES).and_then(width).unwrap_or(default.width),
             points: knobs.get(&GRID_POINTS).and_then(points).unwrap_or(default.points),
         }

@@ -4,8 +4,9 @@
 //! needs more than once it asks for once, all together.
 
 use super::binary::PairNode;
+use super::bounds::Bounds;
 use super::caps::Caps;
-use super::mesh::{GridMesh, NODES, RADII, bounds_of};
+use super::mesh::{GridMesh, NODES};
 use super::pattern::{LeafPattern, Preliminary, first_of_depth};
 use super::sphere::{SphereRay, Spheres, in_t};
 use super::top::Top;
@@ -13,6 +14,8 @@ use super::tuple::Tuple;
 use super::works::{INDEX, PAIR, SORT, SPHERE};
 use crate::block::Block;
 use crate::block::box_test32::{self, BoxTest32};
+use crate::block::child_boxes::Corners;
+use crate::block::child_test;
 use crate::block::ray_setup::{self, RaySetup};
 use crate::block::start_setup::{self, StartSetup};
 use crate::block::start_test::{self, Below, StartTest};
@@ -20,7 +23,7 @@ use crate::block::tri_test::{self, TriTest};
 use crate::format::{BvhNode, ChildRef, SixNode};
 #[cfg(target_arch = "x86_64")]
 use crate::method::children::has_lanes;
-use crate::method::children::{bvh_children, six_children};
+use crate::method::children::{Split, bvh_children, prism_children, six_children};
 use crate::method::stack::{Entry, Op, TraversalStack, push_nearest, push_sorted};
 use crate::method::{Departure, HitSink, TriangleId, is_beyond};
 use crate::num::prism::child;
@@ -31,7 +34,7 @@ use std::sync::Arc;
 /// A node of a primitive's tree that waits.
 #[derive(Clone, Copy, Debug, Default)]
 struct Waiting {
-    /// No hit in its sphere lies before.
+    /// No hit in its bounds lies before.
     near: f64,
     /// Breadth first.
     node: u16,
@@ -283,7 +286,7 @@ impl GridTraverser {
                 continue;
             }
             // At most four, nearest first.
-            let (children, met) = spheres(&mesh, shot, primitive, &tuple, node, steps, sink);
+            let (children, met) = children(&mesh, shot, primitive, &tuple, node, steps, sink);
             for &(near, k) in children[..met].iter().skip(1).rev() {
                 stack[count] = Waiting { near, node: (4 * node + 1 + k) as u16, depth: depth as u8 + 1 }; // at most 340 nodes
                 count += 1;
@@ -357,9 +360,12 @@ fn ask(mesh: &GridMesh, primitive: usize, tuple: &Tuple, vertex: Preliminary, li
     }
 }
 
-/// Tests the spheres of a node's children: those that are met, nearest first, as (near, child), and how many.
+/// Children of a node that are met, nearest first, as (near, child), and how many.
+type Found = ([(f64, usize); 4], usize);
+
+/// Tests the bounds of a node's children.
 #[inline(always)]
-fn spheres<S: StepSink, H: HitSink>(
+fn children<S: StepSink, H: HitSink>(
     mesh: &GridMesh,
     shot: &Shot<'_>,
     primitive: usize,
@@ -367,20 +373,56 @@ fn spheres<S: StepSink, H: HitSink>(
     node: usize,
     steps: &mut S,
     sink: &H,
-) -> ([(f64, usize); 4], usize) {
-    debug_assert!(4 * node < bounds_of(mesh.bounded));
+) -> Found {
+    let group = mesh.group(primitive, node);
+    if let Bounds::Boxes(lines) = &mesh.bounds {
+        let tests = bvh_children(&shot.setup, sink.t_max(), &lines[group]);
+        steps.step(Step::on(mesh.group_fetch(group), Act::Children { shape: NodeShape::Local, met: tests.met() }).visiting());
+        return of_tests(&tests);
+    }
     let own = mesh.pattern.node(node);
     if is_heard::<S>() {
         let mut lines = Lines::new();
-        lines.add(RADII, mesh.radius_line(primitive, node));
+        let bounds = mesh.group_fetch(group);
+        (bounds.line..bounds.line + bounds.lines).for_each(|line| lines.add(bounds.section, line));
         own.iter().for_each(|&vertex| ask(mesh, primitive, tuple, vertex, &mut lines));
         steps.step(Step::of(Act::Work { work: INDEX, count: 6 }));
         lines.state(true, steps);
-        steps.step(Step::of(Act::Work { work: SPHERE, count: 4 }));
-        steps.step(Step::of(Act::Work { work: SORT, count: 1 }));
     }
-    let points = own.map(|vertex| mesh.vertex(primitive, tuple, vertex).map(f64::from));
-    let mut tested = Spheres { radii: mesh.child_radii(primitive, node), ..Spheres::default() };
+    let points = own.map(|vertex| mesh.vertex(primitive, tuple, vertex));
+    match &mesh.bounds {
+        Bounds::Spheres(radii) => {
+            steps.step(Step::of(Act::Work { work: SPHERE, count: 4 }));
+            steps.step(Step::of(Act::Work { work: SORT, count: 1 }));
+            spheres(shot, sink, &points, radii[group])
+        }
+        Bounds::Prisms(prisms) => {
+            let [p0, p1, p2, q0, q1, q2] = points.map(Point::from_i32);
+            let corners = Corners::of([p0, p1, p2], [q0, q1, q2]);
+            let tests = prism_children(&shot.setup, sink.t_max(), &prisms[group], &Split { full: corners, morphed: corners });
+            steps.step(Step::of(Act::Children { shape: NodeShape::Prisms, met: tests.met() }));
+            of_tests(&tests)
+        }
+        Bounds::Boxes(_) => unreachable!("tested above"),
+    }
+}
+
+/// What tests by blocks say.
+#[inline(always)]
+fn of_tests(tests: &child_test::Out) -> Found {
+    let at = |place: usize| {
+        let k = tests.order[place].get() as usize;
+        // In steps of 2^-14 of t: exact.
+        (tests.t_near[k].get() as f64 * 2f64.powi(-14), k)
+    };
+    ([0, 1, 2, 3].map(at), tests.count.get() as usize)
+}
+
+/// Tests spheres.
+#[inline(always)]
+fn spheres<H: HitSink>(shot: &Shot<'_>, sink: &H, points: &[[i32; 3]; 6], radii: [f32; 4]) -> Found {
+    let points = points.map(|p| p.map(f64::from));
+    let mut tested = Spheres { radii, ..Spheres::default() };
     for k in 0..4 {
         let [a, b, c] = child(&points, k);
         for axis in 0..3 {
