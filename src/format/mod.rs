@@ -30,6 +30,7 @@ pub use lines::{
     VertexData,
 };
 pub use normal::{decode_normal, encode_normal};
+pub(crate) use prisms::node_prisms;
 pub use prisms::scene_prisms;
 pub use region::{Beyond, Job, JobRegion};
 pub use replace::{remove_abandoned, temporary_beside, write_and_rename};

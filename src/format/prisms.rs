@@ -20,7 +20,7 @@ pub fn scene_prisms(scene: &Scene) -> Vec<Prisms> {
             nodes
                 .map(|(level, node)| {
                     let p = lattice::node(levels, level, node);
-                    (starts.split(lines, level, node as usize), prisms(p, levels - level - 1, &at))
+                    (starts.split(lines, level, node as usize), node_prisms(p, levels - level - 1, &at))
                 })
                 .collect()
         })
@@ -45,7 +45,7 @@ fn cross(a: [i64; 3], b: [i64; 3]) -> [i64; 3] {
 }
 
 /// Prisms of the children of the node with corners `p`, below each of which are `below` levels; `at` gives full-resolution vertices.
-fn prisms(p: [LatticePoint; 3], below: u32, at: &impl Fn(LatticePoint) -> [i32; 3]) -> Prisms {
+pub(crate) fn node_prisms(p: [LatticePoint; 3], below: u32, at: &impl Fn(LatticePoint) -> [i32; 3]) -> Prisms {
     let q = lattice::midpoints(p);
     let corners = [p[0], p[1], p[2], q[0], q[1], q[2]].map(at);
     let (local, shift) = local_corners(&corners);
@@ -166,7 +166,7 @@ mod tests {
             };
             let at = |place| points[lattice::index(levels, place)];
             let p = lattice::root(levels);
-            let prisms = prisms(p, levels - 1, &at);
+            let prisms = node_prisms(p, levels - 1, &at);
             let q = lattice::midpoints(p);
             let (local, shift) = local_corners(&[p[0], p[1], p[2], q[0], q[1], q[2]].map(at));
             prop_assume!(u32::from(prisms.reach) != OPEN);

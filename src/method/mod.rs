@@ -7,6 +7,8 @@ pub mod bvh;
 mod children;
 pub mod chunked;
 pub mod discrete;
+pub mod floats;
+pub mod grid;
 mod hit;
 pub mod knob;
 pub mod leave;

@@ -1,6 +1,6 @@
 //! All methods.
 
-use super::{Registered, bvh, chunked, discrete, lod, reference};
+use super::{Registered, bvh, chunked, discrete, grid, lod, reference};
 
 /// Every method, in the order in which help names them.
 pub const METHODS: &[&Registered] = &[
@@ -10,6 +10,7 @@ pub const METHODS: &[&Registered] = &[
     &bvh::METHOD_WIDE,
     &discrete::METHOD,
     &chunked::METHOD,
+    &grid::METHOD,
     &bvh::METHOD_INPUT,
     &bvh::METHOD_INPUT_SIX,
     &bvh::METHOD_INPUT_WIDE,

@@ -5,6 +5,7 @@ mod box_test;
 mod entering;
 mod equivalence;
 mod golden;
+mod grid;
 mod plan;
 mod promise;
 mod prune;

@@ -1,0 +1,219 @@
+"""Grid primitives beside the BVH of the full resolution and ours: bytes a triangle, seconds to build, rays a second on one thread (`cargo bench --bench grid`), lines, cycles and energy on haydel2023 with compute free (`lodray simulate`), and the same at equal error (`lodray error-time`).
+
+Writes tables between the marks of docs/baselines.md, and of docs/claims.md and its template.
+"""
+
+import argparse
+import json
+import os
+import re
+import statistics
+import subprocess
+import tempfile
+from pathlib import Path
+
+from markdown import put, table
+
+ROOT = Path(__file__).resolve().parent.parent
+LEVELS = [1, 2, 3, 4]
+# Knobs of the variants that are simulated at full detail, and what they are called.
+VARIANTS = [
+    ("binary nodes", {"grid-nodes": "2"}),
+    ("nodes of four", {"grid-nodes": "4"}),
+    ("nodes of six", {"grid-nodes": "6"}),
+    ("packed vertices", {"grid-points": "packed"}),
+    *((f"{out} levels left out", {"grid-left-out": str(out)}) for out in (0, 1, 3, 4)),
+    ("boxes", {"grid-bounds": "boxes"}),
+    ("prisms", {"grid-bounds": "prisms"}),
+    *((f"{levels} levels", {"grid-levels": str(levels)}) for levels in (1, 2, 3)),
+]
+
+
+def number(value, digits=3):
+    """A number with so many digits that count, with commas where it is large."""
+    if value >= 10 ** (digits - 1):
+        return f"{value:,.0f}"
+    return f"{value:.{digits}g}"
+
+
+def among(values):
+    """The least and the most of some numbers."""
+    low, high = number(min(values)), number(max(values))
+    return low if low == high else f"{low} to {high}"
+
+
+class Runs:
+    """What is run, and what of it is kept for later runs."""
+
+    def __init__(self, args):
+        self.args = args
+        self.program = Path(args.program).resolve()
+        self.out = Path(args.out)
+        self.out.mkdir(parents=True, exist_ok=True)
+
+    def json(self, *words):
+        """What the program says as JSON, from the folder if it is there."""
+        kept = self.out / (re.sub(r"[^\w.=-]+", "_", "_".join(map(str, words)))[-180:] + ".json")
+        if not kept.exists():
+            said = subprocess.run([self.program, *words, "--json"], check=True, capture_output=True, text=True).stdout
+            part = kept.with_suffix(".part")
+            part.write_text(said, encoding="utf-8")
+            part.rename(kept)
+        return json.loads(kept.read_text(encoding="utf-8"))
+
+    def bench(self, scenes):
+        """The lines of the benchmark, scene by scene."""
+        kept = self.out / "bench.jsonl"
+        if not kept.exists():
+            found = subprocess.run(["cargo", "bench", "--quiet", "--bench", "grid", "--", *(scene.resolve() for scene in scenes)], check=True, capture_output=True, text=True, cwd=ROOT, env={**os.environ, "LODRAY_GRID_SIZE": self.args.size.split("x")[0]})
+            part = kept.with_suffix(".part")
+            part.write_text(found.stdout, encoding="utf-8")
+            part.rename(kept)
+        return [json.loads(line) for line in kept.read_text(encoding="utf-8").splitlines()]
+
+    def error_time(self, scene, knobs, methods):
+        """The figures of a scene, with these knobs."""
+        folder = self.out / ("error-time-" + "-".join([scene.stem, *methods, *knobs.values()]))
+        if not (folder / "error-time.json").exists():
+            with tempfile.NamedTemporaryFile("w", suffix=".toml", dir=self.out, delete=False) as jobs:
+                quoted = lambda values: "[" + ", ".join(f'"{value}"' for value in values) + "]"
+                jobs.write(f'size = "{self.args.size}"\nmethods = {quoted(methods)}\ncompute = ["free"]\n')
+                jobs.write("".join(f'[knobs]\n"{name}" = "{value}"\n' for name, value in knobs.items()))
+                jobs.write(f'[[scene]]\nfile = "{scene.resolve()}"\ndistances = [{", ".join(self.args.distances)}]\n[[machine]]\nname = "haydel2023"\n')
+            try:
+                subprocess.run([self.program, "--quiet", "error-time", "--jobs", jobs.name, "-o", folder, "--samples", "1", "--most-samples", "0", "--no-host", "--error-size", "192"], check=True, capture_output=True)
+            finally:
+                Path(jobs.name).unlink()
+        return json.loads((folder / "error-time.json").read_text(encoding="utf-8"))
+
+
+def bytes_of(line):
+    """Bytes a finest triangle."""
+    return sum(line["bytes"].values()) / line["triangles"]
+
+
+def find(lines, scene, **wanted):
+    """The line of the benchmark with these values."""
+    return next(line for line in lines if line["scene"] == scene and line["of"] == "grid" and all(line[key] == value for key, value in wanted.items()))
+
+
+def bench_tables(lines):
+    """Bytes, seconds and rates, and rows of the ledger."""
+    scenes = list(dict.fromkeys(line["scene"] for line in lines))
+    bvh = {line["scene"]: line for line in lines if line["of"] == "bvh"}
+    whole = lambda scene, levels, nodes=2, out=None, points="float": find(lines, scene, levels=levels, left_out=min(levels, 2) if out is None else out, nodes=nodes, points=points)
+    forms = [("all radii", 2, 0, "float"), ("two levels left out", 2, None, "float"), ("nodes of four, two left out", 4, None, "float"), ("the same with packed vertices", 4, None, "packed")]
+    rows = [[name, *(among([bytes_of(whole(scene, levels, nodes, out, points)) for scene in scenes]) for levels in LEVELS)] for name, nodes, out, points in forms]
+    out = [table(["bytes a triangle", *(f"{n} level{'s' * (n > 1)}" for n in LEVELS)], rows, 1)]
+    rows = []
+    for levels in LEVELS:
+        for left in range(levels + 1):
+            own = {scene: whole(scene, levels, 4, left) for scene in scenes}
+            two = {scene: whole(scene, levels, 2, left) for scene in scenes}
+            rate = lambda of: statistics.median(bvh[scene]["seconds"] / of[scene]["seconds"] for scene in scenes)
+            rows.append([levels, left, f"{rate(own):.2f}", f"{rate(two):.2f}", number(statistics.median(two[scene]["rays"] / two[scene]["float_seconds"] / 1e6 for scene in scenes)), number(statistics.median(own[scene]["build"] for scene in scenes)), f"{statistics.median(bvh[scene]['build'] / own[scene]['build'] for scene in scenes):.1f}"])
+    out.append(table(["levels", "left out", "rays a second over `bvh`'s, nodes of four", "binary nodes", "million rays a second in floats", "seconds to build", "`bvh`'s over that"], rows, 0))
+    boundary = [line["bytes"]["boundary"] / sum(line["bytes"][name] for name in ("corner", "boundary", "inside")) for line in (whole(scene, 3) for scene in scenes)]
+    best = {levels: min(range(levels + 1), key=lambda left: statistics.median(whole(scene, levels, 2, left)["float_seconds"] for scene in scenes)) for levels in LEVELS}
+    speed = lambda levels: among([100 * (bvh[scene]["seconds"] / whole(scene, levels, 2)["seconds"] - 1) for scene in scenes])
+    build = lambda levels: among([bvh[scene]["build"] / whole(scene, levels, 2)["build"] for scene in scenes])
+    bare = among([bytes_of(whole(scene, 4, 2, 4)) for scene in scenes])
+    two = among([bytes_of(whole(scene, 4, 2)) for scene in scenes])
+    four = among([bytes_of(whole(scene, 4, 4)) for scene in scenes])
+    ledger = [
+        ["6.3 bytes a triangle at four levels", f"{four} with nodes of four and two levels left out; {two} with binary nodes of a line; {bare} with these and no radii at all", "vertices alone are 6 bytes, tuples 0.09, radii of two levels 0.31: with two levels left out 6.3 leaves too little for nodes, with none bounded it does not"],
+        ["boundary vertices are about a third of geometry (three levels)", among(boundary), "3 (M - 1) / 2 of M^2 / 2 vertices a primitive, M = 8"],
+        ["4.5 times fewer bytes than its reference", f"{among([bytes_of(bvh[scene]) / bytes_of(whole(scene, 4, 4)) for scene in scenes])} times fewer than `bvh` at its best", "its reference pads leaves and has full floats; `bvh` has leaf blocks"],
+        *([f"trace speed against its reference at level {levels}: {paper}", f"{speed(levels)} % against `bvh`, exact, one thread", "another reference and another machine: SIMD tests of four boxes for `bvh`, exact triangle tests for both"] for levels, paper in zip(LEVELS, ["0 to +28 %", "+10 to -39 %", "-16 to -68 %", "-55 to -85 %"])),
+        ["builds 42 times as fast as full SAH at three levels, 383 times at four", f"{build(3)} times and {build(4)} times as fast as `bvh`, which bins", "ours bins with 16 bins and two threads, and reads the whole hierarchy to find boxes of primitives"],
+        ["two levels without spheres are best", "in floats, levels left out at 1 to 4 levels: " + ", ".join(str(best[levels]) for levels in LEVELS), "medians over the scenes"],
+    ]
+    return out, ledger
+
+
+def simulated(runs, scenes):
+    """Every variant at full detail, over `bvh`."""
+    figures = lambda made: [made["cycles"], made["energy"]["total"], made["dram"]["reads"], made["accesses_per_ray"]]
+    rows, per = [], {}
+    for scene in scenes:
+        for distance in runs.args.distances:
+            frame = ["simulate", scene, "--machine", "haydel2023", "--compute", "free", "--distance", distance, "--size", runs.args.size]
+            base = figures(runs.json(*frame, "--method", "bvh"))
+            for name, knobs in VARIANTS:
+                words = [word for knob, value in knobs.items() for word in (f"--{knob}", value)]
+                own = figures(runs.json(*frame, "--method", "grid", *words))
+                per.setdefault(name, []).append([a / b for a, b in zip(own, base)])
+    for name, ratios in per.items():
+        columns = list(zip(*ratios))
+        rows.append([name, *(f"{statistics.median(column):.2f}" for column in columns), f"{min(columns[0]):.2f} to {max(columns[0]):.2f}"])
+    return table(["grid over `bvh`", "cycles", "energy", "DRAM reads", "requests a ray", "cycles, least and most"], rows, 1)
+
+
+def equal_error(runs, scenes):
+    """Ours by ray, whole levels, and grids with a cap, at the error that ours has at delta 1."""
+    rows = []
+    for scene in scenes:
+        ours = runs.error_time(scene, {}, ["lod", "discrete", "grid", "bvh"])
+        boxes = runs.error_time(scene, {"grid-bounds": "boxes"}, ["grid"])
+        by_distance = runs.error_time(scene, {"cap": "distance"}, ["grid"]) if runs.args.by_distance else None
+        for view, of in enumerate(ours["views"]):
+            points = [point for point in ours["points"] if point["view"] == view]
+            error = lambda point: point["geometry"]["surface"]["percentile_99"]
+            lod = next(point for point in points if point["method"] == "lod" and point["is_default"])
+            cost = lambda point: point["costs"][0]["cycles"]
+            limit = max(error(lod), 1e-9)
+
+            def serves(method, among_points):
+                fit = [point for point in among_points if point["method"] == method and error(point) <= limit]
+                return min(fit, key=cost, default=None)
+
+            def over(point):
+                if point is None:
+                    return ["none", "", "", ""]
+                a, b = point["costs"][0], lod["costs"][0]
+                return [point["setting"].split(",")[0] if point["method"] == "discrete" else "cap " + point["knobs"].get("cap", ""), *(f"{x / y:.2f}" for x, y in ((a["cycles"], b["cycles"]), (a["energy"]["total"], b["energy"]["total"]), (a["dram_lines"], b["dram_lines"])))]
+
+            grid = serves("grid", points)
+            of_boxes = serves("grid", [point for point in boxes["points"] if point["view"] == view])
+            row = [scene.stem, f"{of['distance']:g}", f"{limit:.2f}", *over(serves("discrete", points)), *over(grid), *over(of_boxes)[1:2]]
+            if by_distance is not None:
+                own = next((point for point in by_distance["points"] if point["view"] == view and point["knobs"].get("cap") == "distance"), None)
+                row += [dict(own["choices"]).get("open edges", "") if own else ""]
+            rows.append(row)
+    head = ["scene", "radii", "surface off, 99th percentile, pixels", "whole level", "cycles", "energy", "DRAM lines", "grid", "cycles", "energy", "DRAM lines", "with boxes, cycles"]
+    head += ["open edges by distance"] if runs.args.by_distance else []
+    return table(head, rows, 1)
+
+
+def main():
+    """Runs all of it, and writes the tables."""
+    parser = argparse.ArgumentParser(prog="scripts/grid", description=__doc__.split("\n", maxsplit=1)[0])
+    parser.add_argument("--program", default="target/release/lodray", help="lodray, built (default target/release/lodray)")
+    parser.add_argument("--size", default="512x512", help="size of the frames (default 512x512)")
+    parser.add_argument("--distances", type=lambda text: text.split(","), default=["1.5", "4", "16"], help="distances of the eye in radii, with commas (default 1.5,4,16)")
+    parser.add_argument("--out", default="target/grid", help="folder in which what was run is kept; a run that is started again goes on with it (default target/grid)")
+    parser.add_argument("--no-bench", action="store_true", help="leave bytes, building and rays a second out")
+    parser.add_argument("--no-frames", action="store_true", help="leave the simulated frames out")
+    parser.add_argument("--by-distance", action="store_true", help="also count the open edges of caps by distance")
+    parser.add_argument("--print", action="store_true", help="print the tables, and leave the documents alone")
+    parser.add_argument("scene", nargs="+", type=Path, help="scene files (generate, build)")
+    args = parser.parse_args()
+    runs = Runs(args)
+    texts, ledger = {}, None
+    if not args.no_bench:
+        tables, ledger = bench_tables(runs.bench(args.scene))
+        texts["bench"] = "\n\n".join(tables)
+    if not args.no_frames:
+        texts["frames"] = simulated(runs, args.scene) + "\n\n" + equal_error(runs, args.scene)
+    rows = ledger and table(["paper", "measured", "difference, and why"], ledger, 3)
+    if args.print:
+        print("\n\n".join([*texts.values(), *([rows] if rows else [])]))
+        return
+    for name, text in texts.items():
+        put(ROOT / "docs" / "baselines.md", f"<!-- grid {name} -->", f"<!-- grid {name} end -->", text)
+    for path in [ROOT / "docs" / "claims.md", ROOT / "scripts" / "paper" / "claims.md"] if rows else []:
+        put(path, "<!-- grid ledger -->", "<!-- grid ledger end -->", rows)
+
+
+if __name__ == "__main__":
+    main()
