@@ -1,10 +1,10 @@
 //! The memory of several models on a machine, and the steps of rays that go from one to the next.
 
 use super::boxes::Walk;
-use super::world::Instance;
 use crate::block::INSTANCE;
 use crate::method::{Before, Method};
-use crate::step::{Act, Batch, Fetch, MapError, MemoryMap, Moved, NodeShape, Section, SectionId, Step, StepSink};
+use crate::rays::Sight;
+use crate::step::{Act, Batch, Fetch, MapError, MemoryMap, Moved, NodeShape, Section, SectionId, Step, StepSink, joined};
 
 /// Lines of a node of the tree over the models: four boxes of six floats of 32 bits, and what each holds.
 const NODE_LINES: u32 = 4;
@@ -22,30 +22,28 @@ pub struct WorldMemory {
 }
 
 impl WorldMemory {
-    /// The memory of these instances, over which there is a tree of so many nodes.
+    /// The memory of instances by their methods and what is seen of them; over them there is a tree of so many nodes.
     ///
     /// # Errors
     /// They have more lines than can be numbered.
-    pub(super) fn new(instances: &[Instance<'_>], nodes: usize) -> Result<Self, MapError> {
-        let map_of = |own: &Instance<'_>| own.method.map(own.sight());
-        if let [alone] = instances {
-            return Ok(Self { map: map_of(alone), moved: vec![Moved::default()], tree: None });
+    pub(super) fn new(instances: &[(&dyn Method, &Sight)], nodes: usize) -> Result<Self, MapError> {
+        if let [(method, sight)] = instances {
+            return Ok(Self { map: method.map(sight), moved: vec![Moved::default()], tree: None });
         }
-        let mut models: Vec<&Instance<'_>> = Vec::new();
-        let mut model_of = Vec::new();
-        for own in instances {
-            let is_same = |other: &&Instance<'_>| std::ptr::addr_eq::<dyn Method, dyn Method>(other.method, own.method);
-            model_of.push(models.iter().position(is_same).unwrap_or(models.len()));
-            if model_of.last() == Some(&models.len()) {
-                models.push(own);
+        let (mut models, mut maps, mut model_of) = (Vec::<&dyn Method>::new(), Vec::new(), Vec::new());
+        for &(method, sight) in instances {
+            let known = models.iter().position(|&other| std::ptr::addr_eq(other, method));
+            model_of.push(known.unwrap_or(models.len()));
+            if known.is_none() {
+                models.push(method);
+                maps.push(method.map(sight));
             }
         }
-        let maps: Vec<_> = models.into_iter().map(map_of).collect();
         let own = maps.first().map_or(0, |map| map.sections().count());
         let section = |name, count: usize, lines: u32| Section { name, lines: count as u64 * u64::from(lines), base: true };
         let more = [section("scene_node", nodes, NODE_LINES), section("instance", instances.len(), INSTANCE_LINES)];
         let tree = [own, own + 1].map(SectionId::new);
-        let (map, moved) = MemoryMap::joined(&maps, &more, (tree[0], NODE_LINES))?;
+        let (map, moved) = joined(&maps, &more, (tree[0], NODE_LINES))?;
         Ok(Self { map, moved: model_of.into_iter().map(|model| moved[model]).collect(), tree: Some(tree) })
     }
 

@@ -214,7 +214,8 @@ impl<'a> World<'a> {
     /// # Errors
     /// They have more lines than can be numbered.
     pub fn memory(&self) -> Result<WorldMemory, MapError> {
-        WorldMemory::new(&self.instances, self.boxes.nodes())
+        let seen: Vec<_> = self.instances.iter().map(|own| (own.method, &own.sight)).collect();
+        WorldMemory::new(&seen, self.boxes.nodes())
     }
 
     /// What `ray` meets first, or at all: of models that it meets at the same distance the first. Distances are those of the scene, each rounded from the t of its model; within a

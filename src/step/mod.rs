@@ -12,6 +12,7 @@
 
 mod act;
 mod batch;
+mod joined;
 mod lines;
 mod run;
 mod section;
@@ -21,9 +22,10 @@ mod word;
 
 pub use act::{Act, Fetch, MAX_FETCH_LINES, MAX_PLACES, Step};
 pub use batch::{Batch, Link, Recorder};
+pub use joined::{Moved, joined};
 pub use lines::{LineCounter, LineSets};
 pub use run::{MAX_RUN, TriangleRun};
-pub use section::{MAX_SECTIONS, MapError, MemoryMap, Moved, Nodes, Section, SectionId};
+pub use section::{MAX_SECTIONS, MapError, MemoryMap, Nodes, Section, SectionId};
 pub use shape::{NodeShape, ShapeFacts};
 pub use sink::{NoSteps, StepCounts, StepSink};
 pub use word::{Asking, StepWord};

@@ -1,6 +1,5 @@
 //! The sections of a method's memory, one behind the other: the only place that decides where a line lies.
 
-use super::{Fetch, Step};
 use std::ops::Range;
 use thiserror::Error;
 
@@ -8,7 +7,7 @@ use thiserror::Error;
 pub const MAX_SECTIONS: usize = 8;
 
 /// Sections begin at multiples of this many lines, so that no node straddles what begins with its first line.
-const ALIGNMENT: u64 = 4;
+pub(super) const ALIGNMENT: u64 = 4;
 
 /// A section, by its place among those of its method.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash)]
@@ -73,20 +72,6 @@ impl Nodes {
     }
 }
 
-/// How far the lines of a memory are moved in one that holds several, section by section.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Moved([u32; MAX_SECTIONS]);
-
-impl Moved {
-    /// A step on the moved lines.
-    #[inline(always)]
-    #[must_use]
-    pub fn step(&self, step: Step) -> Step {
-        let fetch = |fetch: Fetch| Fetch { line: fetch.line + self.0[fetch.section.place()], ..fetch };
-        Step { fetch: step.fetch.map(fetch), ..step }
-    }
-}
-
 /// A method's memory has lines without a number.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Error)]
 #[error("a memory of {0} lines: they are numbered with 32 bits")]
@@ -131,36 +116,6 @@ impl MemoryMap {
     pub fn from_node(self, root: u32, count: u32) -> Self {
         let Nodes { first, lines, .. } = self.nodes;
         Self { nodes: Nodes { first: first + root * lines, lines, count }, ..self }
-    }
-
-    /// One memory for those of several models, of one method: each section holds the parts of all in their order, and `more` sections follow. Rays begin with the first node of a
-    /// section whose nodes have so many lines each. With it how far each model's lines are moved.
-    ///
-    /// # Errors
-    /// There are more lines than 32 bits can number.
-    ///
-    /// # Panics
-    /// The memories have different sections, or with `more` there are more than [`MAX_SECTIONS`].
-    pub fn joined(maps: &[Self], more: &[Section], nodes: (SectionId, u32)) -> Result<(Self, Vec<Moved>), MapError> {
-        let names = |map: &Self| map.sections().map(|(_, section)| section.name).collect::<Vec<_>>();
-        assert!(maps.windows(2).all(|two| names(&two[0]) == names(&two[1])), "memories of one method");
-        let mut sections: Vec<Section> = maps.first().map_or_else(Vec::new, |map| map.sections().map(|(_, section)| section).collect());
-        let mut before = vec![[0; MAX_SECTIONS]; maps.len()];
-        for (k, section) in sections.iter_mut().enumerate() {
-            section.lines = 0;
-            for (map, before) in maps.iter().zip(&mut before) {
-                before[k] = section.lines;
-                section.lines = (section.lines + map.sections[k].lines).next_multiple_of(ALIGNMENT);
-            }
-        }
-        sections.extend(more);
-        let all = Self::new(&sections, Some(nodes))?;
-        // What is joined lies no earlier than it did, and below 2^32.
-        let moved = |(map, before): (&Self, &[u64; MAX_SECTIONS])| {
-            Moved(std::array::from_fn(|k| if k < map.count { all.first[k] + before[k] as u32 - map.first[k] } else { 0 }))
-        };
-        let moved = maps.iter().zip(&before).map(moved).collect();
-        Ok((all, moved))
     }
 
     /// The nodes that rays begin with.
@@ -213,7 +168,6 @@ impl MemoryMap {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::step::Act;
 
     const fn section(name: &'static str, lines: u64) -> Section {
         Section { name, lines, base: false }
@@ -232,29 +186,6 @@ mod tests {
         assert_eq!((map.bytes(), map.nodes()), (32 * 19, Nodes { first: 0, lines: 2, count: 3 }));
         assert_eq!([0, 2, 9].map(|n| map.nodes().lines_of(n)), [0..0, 0..4, 0..6]);
         assert_eq!(map.from_node(1, 2).nodes().lines_of(1), 2..4);
-    }
-
-    #[test]
-    fn memories_of_models_are_joined_section_by_section() {
-        let own = |a, b| MemoryMap::new(&[section("a", a), section("b", b)], Some((SectionId::new(0), 2))).unwrap();
-        let maps = [own(6, 4), own(3, 9), own(0, 1)];
-        let (all, moved) = MemoryMap::joined(&maps, &[section("top", 5)], (SectionId::new(2), 4)).unwrap();
-        assert_eq!(all.sections().map(|(_, s)| (s.name, s.lines)).collect::<Vec<_>>(), [("a", 12), ("b", 20), ("top", 5)]);
-        assert_eq!(all.nodes(), Nodes { first: 32, lines: 4, count: 1 });
-        // Every line of every model has its own place, in its own section.
-        let mut seen = std::collections::HashSet::new();
-        for (map, moved) in maps.iter().zip(&moved) {
-            for (id, section) in map.sections() {
-                for line in 0..section.lines {
-                    let step = moved.step(Step::on(Fetch::new(id, map.line(id, line), 1), Act::Fetch));
-                    let at = step.fetch.unwrap().line;
-                    assert!(seen.insert(at) && all.locate(at.into()).unwrap().0 == id);
-                }
-            }
-        }
-        assert_eq!(seen.len(), 6 + 4 + 3 + 9 + 1);
-        assert_eq!(moved[0].step(Step::end(true, false)), Step::end(true, false));
-        assert_eq!(MemoryMap::joined(&[own(1, 1 << 31), own(1, 1 << 31)], &[], (SectionId::new(0), 1)), Err(MapError((1 << 32) + 8)));
     }
 
     #[test]
