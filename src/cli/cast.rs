@@ -1,14 +1,15 @@
 //! `cast`: what the rays of a file meet.
 
 use super::cache::CacheArgs;
-use super::job;
 use super::method::AnyMethod;
-use super::output::{check_normals, check_target, open_any, print_json, progress, remark};
+use super::output::{check_target, open_any, print_json, progress, remark};
 use crate::cli::bars::Bars;
 use anyhow::Context;
 use lodray::format::write_and_rename;
 use lodray::rays::{ModelSpace, RayFile, RaySource, Sight};
 use lodray::run::{FollowError, Followed, cast, cast_following, write_hits};
+use lodray::study::pruned;
+use lodray::study::pruned::check_normals;
 use lodray::study::{count, grouped};
 use serde_json::json;
 use std::collections::BTreeMap;
@@ -42,7 +43,7 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
     check_normals(&scene, "a hit's normal")?;
     let rays = RayFile::read(&args.rays)?;
     let chosen = &args.method.0;
-    job::check_rays(&scene, &rays, chosen.delta())?;
+    pruned::check_rays(&scene, &rays, chosen.delta())?;
     let (method, _) = chosen.make(&scene, &args.cache.cache(None)?, &Bars)?;
     let sight = Sight::new(&rays, &ModelSpace::of(&scene), chosen.delta());
     let Followed { hits, followed, crowded } = if args.follow && rays.is_ordered() {

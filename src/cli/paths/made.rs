@@ -3,7 +3,7 @@
 use crate::cli::build::FormArgs;
 use crate::cli::common::is_quiet;
 use crate::cli::generate;
-use crate::cli::output::{busy, check_normals, open, toml_in_one_line, warn};
+use crate::cli::output::{busy, open, toml_in_one_line, warn};
 use anyhow::{Context, ensure};
 use lodray::format::Scene;
 use lodray::mesh::{RemeshOptions, read};
@@ -11,6 +11,7 @@ use lodray::method::Method;
 use lodray::paths::{Instance, ModelTable, Paths, Pose, SceneFile, SceneFileError, Starts, World};
 use lodray::rays::{Camera, ModelSpace, View};
 use lodray::scene::BuildOptions;
+use lodray::study::pruned::check_normals;
 use std::path::Path;
 use std::sync::Arc;
 
