@@ -1,15 +1,16 @@
 //! `cast`: what the rays of a file meet.
 
 use super::cache::CacheArgs;
-use super::job;
 use super::method::AnyMethod;
-use super::output::{check_normals, check_target, open_any, print_json, progress, remark};
+use super::output::{check_target, open_any, print_json, progress, remark};
 use super::paths::made;
 use crate::cli::bars::Bars;
 use anyhow::Context;
 use lodray::format::write_and_rename;
 use lodray::rays::{ModelSpace, RayFile, RaySource, Sight};
 use lodray::run::{FollowError, Followed, HitRow, cast, cast_following, write_hits};
+use lodray::study::pruned;
+use lodray::study::pruned::check_normals;
 use lodray::study::{count, grouped};
 use serde_json::json;
 use std::collections::BTreeMap;
@@ -46,7 +47,7 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
     check_normals(&scene, "a hit's normal")?;
     let rays = RayFile::read(&args.rays)?;
     let chosen = &args.method.0;
-    job::check_rays(&scene, &rays, chosen.delta())?;
+    pruned::check_rays(&scene, &rays, chosen.delta())?;
     let (method, _) = chosen.make(&scene, &args.cache.cache(None)?, &Bars)?;
     let sight = Sight::new(&rays, &ModelSpace::of(&scene), chosen.delta());
     let Followed { hits, followed, crowded } = if args.follow && rays.is_ordered() {
@@ -88,7 +89,7 @@ fn several(args: &Args) -> anyhow::Result<ExitCode> {
     anyhow::ensure!(!(args.follow && rays.is_ordered()), "{}: some rays name earlier ones; {starts}", args.rays.display());
     let scenes = made::scenes(&args.scene, &file)?;
     let (chosen, cache) = (&args.method.0, args.cache.cache(None)?);
-    scenes.iter().try_for_each(|scene| job::check_rays(scene, &rays, chosen.delta()))?;
+    scenes.iter().try_for_each(|scene| pruned::check_rays(scene, &rays, chosen.delta()))?;
     let methods = made::methods(&file, &scenes, chosen, &cache)?;
     let bar = progress(rays.batches() as u64, "casting");
     let hits = made::unshaded(&file, &scenes, &methods, chosen.delta()).cast(&rays, &|batches| bar.inc(batches));

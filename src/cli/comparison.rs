@@ -1,6 +1,5 @@
 //! How far a picture is from the one that it is compared with.
 
-use lodray::picture::{GeometricError, ImageError};
 use serde::Serialize;
 
 /// What a picture is compared with.
@@ -21,15 +20,4 @@ impl Against {
             Self::Original => "the original",
         }
     }
-}
-
-/// Differences of two pictures of one view.
-#[derive(Clone, Serialize)]
-pub struct Comparison {
-    #[serde(flatten)]
-    pub image: ImageError,
-    /// Pixels that hit in one picture only.
-    pub coverage_differs: u64,
-    /// Distance between the surfaces in pixels; null in JSON if no pixel hits in both pictures.
-    pub geometry_pixels: Option<GeometricError>,
 }

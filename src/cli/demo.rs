@@ -1,14 +1,14 @@
 //! `demo`: a built-in scene from three distances: what ours, the best BVH and discrete level of detail cost there, and what a traversal unit for these views can leave out.
 
+use super::bars::Bars;
 use super::build::FormArgs;
 use super::folder::{Overrule, RunFolder, one_run};
 use super::generate;
 use super::machines::machine;
 use super::output::{busy, print_json, print_table, remark, write_file};
-use super::pictures::{Shot, shoot};
+use super::pictures::{error, levels as level_map};
 use super::report;
 use super::simulate::amount;
-use crate::cli::bars::Bars;
 use anyhow::Context;
 use lodray::format::Scene;
 use lodray::hardware::{Hardware, unit_gates};
@@ -24,6 +24,7 @@ use lodray::run::Compute;
 use lodray::scene::{Pass, PassRays, Target};
 use lodray::study::Cache;
 use lodray::study::Chosen;
+use lodray::study::Shot;
 use lodray::study::{count, grouped};
 use serde::Serialize;
 use std::path::PathBuf;
@@ -86,7 +87,7 @@ struct Outcome {
 impl Stage {
     fn outcome(&self, chosen: &Chosen, method: &dyn Method, camera: &Camera, truth: &Shot) -> anyhow::Result<Outcome> {
         let name = chosen.method.name;
-        let shot = shoot(method, &self.scene, &self.space, camera, QUALITY, name);
+        let shot = Shot::plain(method, &self.scene, &self.space, camera, QUALITY, (name, &Bars));
         let full = FullResolution { scene: &self.scene, space: &self.space, surface: &self.surface, pixels: &truth.frame.pixels };
         let error =
             SurfaceError::of(&self.scene, &shot.frame.pixels, &full, camera, STRIDE).surface.map_or(0.0, |error| error.percentile_99);
@@ -130,7 +131,7 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
         let camera = Camera::new(&View { distance: Some(distance), ..View::default() }, space, SIDE, SIDE)?;
         rays = rays.with(&measure.rays(&camera, QUALITY));
         reach.add(&camera, QUALITY);
-        let full = shoot(&*truth, scene, space, &camera, f64::INFINITY, "full resolution");
+        let full = Shot::plain(&*truth, scene, space, &camera, f64::INFINITY, ("full resolution", &Bars));
         let outcome = |(chosen, method): &(Chosen, Box<dyn Method>)| stage.outcome(chosen, &**method, &camera, &full);
         let own = outcome(&ours)?;
         let best = bvhs.iter().map(outcome).collect::<anyhow::Result<Vec<_>>>()?.into_iter().min_by_key(|bvh| bvh.result.cycles);
@@ -138,7 +139,7 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
         let levels = levels.iter().map(outcome).collect::<anyhow::Result<Vec<_>>>()?;
         let near = levels.into_iter().filter(|level| level.error <= own.error).min_by_key(|level| level.result.cycles);
         sheet.add(&format!("{view}: ours"), &own.shot.image, None);
-        for map in [own.shot.levels(scene), own.shot.error(&full.image)] {
+        for map in [level_map(&own.shot, scene), error(&own.shot, &full.image)] {
             sheet.add(&format!("{view}: {}", map.name), &map.image, Some(map.legend));
         }
         let chose = |outcome: &Outcome| {

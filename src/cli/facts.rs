@@ -1,9 +1,10 @@
 //! What a picture says of itself: in its file, and on the contact sheet.
 
-use super::comparison::{Against, Comparison};
+use super::comparison::Against;
 use super::output::plain;
 use lodray::picture::{FrameStats, Shading};
 use lodray::rays::Camera;
+use lodray::study::Comparison;
 use lodray::study::grouped;
 
 /// A picture's origin and figures.

@@ -5,29 +5,14 @@ use super::output::toml_in_one_line;
 use anyhow::Context;
 use clap::Args;
 use glam::DVec3;
-use lodray::rays::{Camera, CameraPath, ModelSpace};
+use lodray::rays::{CameraPath, ModelSpace};
 use lodray::scene::PassRays;
+use lodray::study::Turning;
 use serde::Deserialize;
 use std::path::PathBuf;
 
 /// Frames, at most.
 const MOST: u64 = 10_000;
-
-/// A camera that turns from frame to frame.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Turning {
-    /// Frames, 2 or more.
-    pub frames: u32,
-    /// Degrees between them.
-    pub degrees: f64,
-}
-
-impl Turning {
-    /// The frames that begin with `camera`.
-    pub fn path(self, camera: &Camera) -> CameraPath {
-        CameraPath::turning(camera, self.frames, self.degrees)
-    }
-}
 
 #[derive(Args, Clone, Copy)]
 pub struct TurnArgs {

@@ -18,7 +18,6 @@ mod frames;
 mod generate;
 mod info;
 mod input;
-mod job;
 mod lines;
 mod machines;
 mod method;

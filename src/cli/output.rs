@@ -6,6 +6,7 @@ use anyhow::Context;
 use indicatif::{MultiProgress, ProgressBar, ProgressDrawTarget, ProgressStyle};
 use lodray::format::{Scene, remove_abandoned, temporary_beside, write_and_rename};
 use lodray::mesh::MeshFormat;
+use lodray::study::pruned::check_normals;
 use serde::Serialize;
 use std::path::Path;
 use std::sync::LazyLock;
@@ -98,17 +99,7 @@ pub fn open(path: &Path) -> anyhow::Result<Scene> {
     Ok(scene)
 }
 
-/// Refuses a scene without normals, for what needs them.
-pub fn check_normals(scene: &Scene, what: &str) -> anyhow::Result<()> {
-    anyhow::ensure!(
-        !scene.meta().without_normals,
-        "scene {} was pruned without its normals, and {what} needs them: rays can be simulated on it",
-        scene.meta().name
-    );
-    Ok(())
-}
-
-/// Opens a scene file, which may have been pruned for a job: whoever traces rays on it asks `job::check` first. The error names the file, and for a mesh says how to
+/// Opens a scene file, which may have been pruned for a job: whoever traces rays on it asks `study::pruned::check` first. The error names the file, and for a mesh says how to
 /// make a scene of it.
 pub fn open_any(path: &Path) -> anyhow::Result<Scene> {
     busy("opening", || Scene::open(path)).or_else(|error| {

@@ -1,25 +1,28 @@
 //! `render`: one view of a scene through one method.
 
 use super::args::CameraArgs;
+use super::bars::Bars;
 use super::cache::CacheArgs;
-use super::comparison::{Against, Comparison};
+use super::comparison::Against;
 use super::facts::Facts;
 use super::folder::{Overrule, RunFolder, one_run};
-use super::job;
 use super::method::PictureMethod;
 use super::original::original;
-use super::output::{check_normals, explain, open, open_any, print_json, print_table, remark};
-use super::pictures::{Shot, shoot_with};
-use crate::cli::bars::Bars;
+use super::output::{explain, open, open_any, print_json, print_table, remark};
+use super::pictures::{error, levels, normals, save_shot};
 use anyhow::Context;
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use image::RgbImage;
 use lodray::format::Scene;
 use lodray::method::knob::DELTA;
-use lodray::method::{Method, SurfaceHit, reference};
-use lodray::picture::{FrameStats, KindCount, Shader, Shading, Sheet, compare, geometric_error, save_png, view_cosine};
+use lodray::method::{Method, reference};
+use lodray::picture::{FrameStats, KindCount, Shader, Shading, Sheet, save_png};
 use lodray::rays::{Camera, ModelSpace, Sight};
 use lodray::study::Chosen;
+use lodray::study::Comparison;
+use lodray::study::Shot;
+use lodray::study::pruned;
+use lodray::study::pruned::check_normals;
 use lodray::study::{count, grouped};
 use serde::Serialize;
 use std::collections::BTreeMap;
@@ -141,7 +144,7 @@ impl Subject {
 
     /// The frame of the first camera, the picture of the other.
     fn shoot(&self, method: &dyn Method, shading: Shading, cameras: [&Camera; 2], delta: f64, what: &str) -> Shot {
-        shoot_with(method, &Shader::new(&self.scene, &self.space, shading), &self.space, cameras, delta, what)
+        Shot::of(method, &Shader::new(&self.scene, &self.space, shading), &self.space, cameras, delta, (what, &Bars))
     }
 }
 
@@ -162,9 +165,9 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
     let camera = args.camera.camera(&seen.space, None)?;
     let samples = camera.with_samples(args.samples).context("--samples")?;
     let cameras = [&camera, &samples];
-    cameras.into_iter().try_for_each(|rays| job::check(&seen.scene, rays, args.method.chosen.delta()))?;
+    cameras.into_iter().try_for_each(|rays| pruned::check(&seen.scene, rays, args.method.chosen.delta()))?;
     check_normals(&seen.scene, "a picture")?;
-    job::check_shading(&seen.scene, args.shading)?;
+    pruned::check_shading(&seen.scene, args.shading)?;
     args.method.chosen.check(&seen.scene)?;
     if args.compare && mesh.is_none() {
         Chosen::plain(&reference::METHOD).check(&seen.scene)?;
@@ -190,7 +193,7 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
         let (against, of) = mesh.as_ref().map_or((Against::FullResolution, &seen), |mesh| (Against::Original, mesh));
         let (reference, _) = Chosen::plain(&reference::METHOD).make(&of.scene, &cache, &Bars)?;
         let truth = of.shoot(&*reference, args.shading, cameras, delta, against.name());
-        let error = compare_shots(&shot, &truth, &of.scene, &camera);
+        let error = shot.compared(&truth, &of.scene, &camera);
         Some((against, truth.image, error))
     } else {
         None
@@ -250,15 +253,15 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
 /// Saves all pictures and the contact sheet, one after the other: large ones take much memory.
 fn save(shot: &Shot, truth: Option<(Against, &RgbImage)>, scene: &Scene, facts: &Facts<'_>, out: &Path) -> anyhow::Result<()> {
     let mut sheet = Sheet::default();
-    shot.save(out, "", facts)?;
+    save_shot(shot, out, "", facts)?;
     sheet.add(facts.method, &shot.image, None);
     if let Some((against, truth)) = truth {
         sheet.add(against.name(), truth, None);
-        let error = shot.error(truth);
+        let error = error(shot, truth);
         error.save(out, "", facts)?;
         sheet.add(&format!("difference to {}", against.name()), &error.image, Some(error.legend));
     }
-    for map in [Shot::levels, Shot::normals] {
+    for map in [levels, normals] {
         let map = map(shot, scene);
         map.save(out, "", facts)?;
         sheet.add(map.name, &map.image, Some(map.legend));
@@ -271,17 +274,6 @@ fn save(shot: &Shot, truth: Option<(Against, &RgbImage)>, scene: &Scene, facts: 
 fn kind_per_ray(k: &KindCount, rays: u64) -> KindPerRay {
     let mean = |n: u64| n as f64 / rays as f64;
     KindPerRay { kind: k.kind, lines_read: mean(k.read), bytes_read: 32.0 * mean(k.read), distinct_lines: mean(k.distinct) }
-}
-
-/// Compares a picture with the true one.
-pub fn compare_shots(shot: &Shot, truth: &Shot, scene: &Scene, camera: &Camera) -> Comparison {
-    let differs = shot.frame.pixels.iter().zip(&truth.frame.pixels).filter(|(a, b)| a.is_some() != b.is_some()).count();
-    let cosine = |index, pixel: &SurfaceHit| f64::from(view_cosine(scene, camera, index, pixel));
-    Comparison {
-        image: compare(&shot.image, &truth.image),
-        coverage_differs: differs as u64,
-        geometry_pixels: geometric_error(&shot.frame, &truth.frame, camera, cosine),
-    }
 }
 
 fn table(r: &Report) -> String {

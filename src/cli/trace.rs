@@ -1,7 +1,6 @@
 //! `trace`: one ray through the traversal unit, cycle by cycle.
 
 use super::args::{CameraArgs, whole};
-use super::job;
 use super::output::{check_target, open_any, print_line, remark, write_file};
 use super::plan;
 use anyhow::Context;
@@ -17,6 +16,7 @@ use lodray::sim::unit::ray_trace::RayTrace;
 use lodray::sim::unit::wave::{Waves, gtkwave_save, gtkwave_states, one_ray, surfer_commands};
 use lodray::sim::unit::{SceneMemory, TraversalUnit, file_config};
 use lodray::study::count;
+use lodray::study::pruned;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use std::str::FromStr;
@@ -79,7 +79,7 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
     let scene = open_any(&args.scene)?;
     let space = ModelSpace::of(&scene);
     let camera = args.camera.camera(&space, None)?;
-    job::check(&scene, &camera, args.delta)?;
+    pruned::check(&scene, &camera, args.delta)?;
     let Place(x, y) = args.pixel;
     let (width, height) = (camera.width, camera.height);
     anyhow::ensure!(

@@ -1,6 +1,5 @@
 //! Options of `error-time`.
 
-use super::plan::{Measure, Plan};
 use crate::cli::args::{Change, Size, radii};
 use crate::cli::cache::CacheArgs;
 use crate::cli::folder::{Overrule, one_run};
@@ -12,7 +11,7 @@ use crate::cli::names::named;
 use crate::cli::output::open;
 use crate::cli::plan::pixels;
 use crate::cli::render::shading;
-use crate::cli::sweep::{Jobs, Origin, SceneJobs, ViewJob};
+use crate::cli::sweep::read_views;
 use anyhow::{Context, ensure};
 use lodray::format::Scene;
 use lodray::method::{METHODS, lod};
@@ -20,7 +19,7 @@ use lodray::picture::{PIXELS_PER_DEGREE, Shading};
 use lodray::rays::{MAX_SIDE, ModelSpace};
 use lodray::run::{self, Compute};
 use lodray::scene::Target;
-use lodray::study::Chosen;
+use lodray::study::{Chosen, ErrorTimePlan, Jobs, Measure, Origin, SceneJobs, ViewJob};
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 use xxhash_rust::xxh3::xxh3_64;
@@ -145,10 +144,10 @@ impl Args {
     }
 
     /// What is to be measured; every mistake is found before anything is traced.
-    pub fn plan(&self) -> anyhow::Result<Plan> {
+    pub fn plan(&self) -> anyhow::Result<ErrorTimePlan> {
         let (mut jobs, deltas) = match &self.jobs {
             Some(list) => {
-                let mut jobs = Jobs::of_views(list)?;
+                let mut jobs = read_views(list)?;
                 jobs.files.insert(list.clone());
                 let deltas = std::mem::take(&mut jobs.deltas);
                 (jobs, deltas)
@@ -176,11 +175,8 @@ impl Args {
         let measure = Measure {
             shading: self.shading,
             pixels_per_degree: self.pixels_per_degree,
-            error_size,
-            // About 65,536 rays at most.
-            stride: error_size.div_ceil(256),
-            most_samples: self.most_samples.unwrap_or(if self.quick { 8 } else { 32 }),
             host_rays: if self.no_host { 0 } else { 16_384 },
+            ..Measure::of(error_size, self.most_samples.unwrap_or(if self.quick { 8 } else { 32 }))
         };
         ensure!(
             self.within.is_empty() || jobs.methods.iter().any(|chosen| *chosen.method == lod::METHOD),
@@ -189,7 +185,7 @@ impl Args {
         let mut within = self.within.clone();
         within.sort_unstable_by(f64::total_cmp);
         within.dedup();
-        let plan = Plan { jobs, values, sides, measure, turning: self.turn.turning(), within };
+        let plan = ErrorTimePlan { jobs, values, sides, measure, turning: self.turn.turning(), within };
         plan.check()?;
         Ok(plan)
     }
@@ -238,6 +234,6 @@ impl Args {
             [] => machine_methods().map(Chosen::plain).collect(),
             given => given.iter().map(|&Listed(method)| Chosen::plain(method)).collect(),
         };
-        Ok(Jobs { scenes, methods, targets, deltas: Vec::new(), error: false, intervals: false, files })
+        Ok(Jobs { files, ..Jobs::new(scenes, methods, targets) })
     }
 }

@@ -4,7 +4,7 @@ mod speed;
 
 use super::args::{Size, radii};
 use super::output::{busy, check_target, open, print_json, print_line, print_table, remark, write_file};
-use super::sweep::{Jobs, ListText, Origin, SceneJobs, ViewJob};
+use super::sweep::{ListText, open_scene, read_jobs};
 use anyhow::Context;
 use lodray::format::{Job, Scene};
 use lodray::hardware::{Hardware, context_gates, unit_gates};
@@ -12,8 +12,8 @@ use lodray::method::knob::{DELTA, quality};
 use lodray::method::{Knobs, lod};
 use lodray::plan::{Data, Measure, Narrowest, Part, Plan, RayNeeds, Reach, Saving, Within, savings};
 use lodray::rays::{Camera, ModelSpace, RaySource};
-use lodray::report::result::MachineFacts;
 use lodray::study::Chosen;
+use lodray::study::{Jobs, Origin, SceneJobs, ViewJob};
 use lodray::study::{count, grouped};
 use serde::Serialize;
 use speed::{Frames, SpeedArgs};
@@ -143,7 +143,7 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
         return say(args, &read(path)?, None);
     }
     let jobs = match &args.job {
-        Some(list) => Some(Jobs::read(list)?),
+        Some(list) => Some(read_jobs(list)?),
         None if args.distance.is_empty() => None,
         None => Some(seen(args)?),
     };
@@ -225,19 +225,6 @@ pub fn pixels(s: &str) -> Result<f64, String> {
     s.parse().ok().filter(|v: &f64| *v > 0.0 && v.is_finite()).ok_or_else(|| format!("'{s}' is no number of pixels above 0"))
 }
 
-/// Has a machine's units as the plan of this file has them.
-pub fn in_machine(plan: &Plan, name: &str, machine: &mut MachineFacts) {
-    let units = &mut machine.description.units;
-    let own = plan.hardware(&units.config());
-    // Contexts, edges, boxes and bits of a cycle are the machine's own where no frame was simulated.
-    (units.contexts, units.edges_per_cycle) = (own.contexts as u32, own.edges_per_cycle.count()); // at most 64
-    units.lod_edges_per_cycle = own.lod_edges_per_cycle.count();
-    units.boxes_per_cycle = own.boxes_per_cycle.count();
-    (units.divide_bits, units.setup_bits) = (own.divide_bits, own.setup_bits);
-    units.like = Some(own);
-    machine.set.push(format!("plan={name}"));
-}
-
 /// Refuses a scene or rays that a plan is too narrow for.
 pub fn check(plan: &Plan, path: &Path, scene: &Scene, rays: &dyn RaySource, delta: f64) -> anyhow::Result<()> {
     let measure = busy("measuring", || Measure::of(scene));
@@ -283,7 +270,7 @@ fn made(args: &Args, jobs: Option<&Jobs>, given: Option<&Plan>, mut frames: Opti
     let mut rays = Vec::new();
     let mut jobs_of = Vec::new();
     for job in jobs.iter().flat_map(|jobs| &jobs.scenes) {
-        let scene = job.open()?;
+        let scene = open_scene(job)?;
         let measure = busy("measuring", || Measure::of(&scene));
         let lod = jobs.map_or_else(Vec::new, Jobs::lod);
         let reach = Reach::of(&scene);

@@ -4,7 +4,6 @@ use crate::cli::args::{Change, Size};
 use crate::cli::bars::Bars;
 use crate::cli::machines::machine;
 use crate::cli::output::{busy, progress};
-use crate::cli::sweep::ViewJob;
 use anyhow::Context;
 use lodray::format::Scene;
 use lodray::hardware::Hardware;
@@ -14,6 +13,7 @@ use lodray::report::result::MachineFacts;
 use lodray::run::{self, Compute, FrameRays, HeldFrame};
 use lodray::study::Cache;
 use lodray::study::Chosen;
+use lodray::study::ViewJob;
 use lodray::study::count;
 
 #[derive(clap::Args)]

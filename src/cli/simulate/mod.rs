@@ -11,7 +11,6 @@ use super::common::is_quiet;
 use super::folder::{Overrule, RunFolder, one_run};
 use super::frames::FrameArgs;
 use super::input::{InputArgs, with_input};
-use super::job;
 use super::machines::{machine, machine_files};
 use super::method::MachineMethod;
 use super::names::named;
@@ -28,6 +27,8 @@ use lodray::run::{self, Compute};
 use lodray::scene::{Pass, PassRays, Target};
 use lodray::sim::replay::Window;
 use lodray::study::grouped;
+use lodray::study::in_machine;
+use lodray::study::pruned;
 use std::path::PathBuf;
 use std::process::ExitCode;
 
@@ -105,7 +106,7 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
     let mut machines = args.machine.iter().map(read).collect::<anyhow::Result<Vec<_>>>()?;
     let plan = args.plan.as_deref().map(plan::read).transpose()?;
     if let (Some(plan), Some(path)) = (&plan, &args.plan) {
-        machines.iter_mut().for_each(|machine| plan::in_machine(plan, &path.display().to_string(), machine));
+        machines.iter_mut().for_each(|machine| in_machine(plan, &path.display().to_string(), machine));
     }
     for (k, machine) in machines.iter().enumerate() {
         run::check(&machine.description, args.compute).with_context(|| format!("--machine {}", args.machine[k]))?;
@@ -140,9 +141,9 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
 
     let chosen = &args.method.0;
     match &rays {
-        PassRays::File(rays, _) => job::check_rays(&scene, rays, chosen.delta())?,
-        PassRays::Camera(camera) => job::check(&scene, camera, chosen.delta())?,
-        PassRays::Path(path) => path.cameras().iter().try_for_each(|camera| job::check(&scene, camera, chosen.delta()))?,
+        PassRays::File(rays, _) => pruned::check_rays(&scene, rays, chosen.delta())?,
+        PassRays::Camera(camera) => pruned::check(&scene, camera, chosen.delta())?,
+        PassRays::Path(path) => path.cameras().iter().try_for_each(|camera| pruned::check(&scene, camera, chosen.delta()))?,
     }
     if let Some(plan) = &plan {
         anyhow::ensure!(chosen.method.name == "lod", "--plan: is of units for lod, not for {}", chosen.method.name);

@@ -1,16 +1,16 @@
 //! From the list to jobs. Everything is looked at before the first job runs, so that a mistake in the last line does not cost the hours before it:
 //! values and their ranges, scene files, machines with their tables, and cameras.
 
-use super::jobs::{Generated, Jobs, Origin, RegionJob, SceneJobs, ViewJob};
 use super::list::{List, ListText, MachineEntry, Maybe, RegionEntry, SceneEntry, Spanned};
 use crate::cli::args::{CameraArgs, Change, Size, radii};
+use crate::cli::build::FormArgs;
 use crate::cli::generate;
 use crate::cli::machines::{is_path, machine, machine_files};
 use crate::cli::method::{Listed, machine_methods};
 use crate::cli::output::open_any;
-use crate::one_line;
 use anyhow::Context;
 use clap::Args as _;
+use lodray::format::Scene;
 use lodray::mesh::{BoundKind, Placement, procedural};
 use lodray::method::bvh::{LEAF_LAYOUT, LEAF_SIZE};
 use lodray::method::knob::DELTA;
@@ -20,27 +20,37 @@ use lodray::rays::{Camera, DEFAULT_VIEW_ANGLE_DEGREES, ModelSpace};
 use lodray::run::{self, Compute};
 use lodray::scene::Target;
 use lodray::study::Chosen;
+use lodray::study::one_line;
+use lodray::study::{Generated, Jobs, Origin, RegionJob, SceneJobs, ViewError, ViewJob};
 use std::collections::{BTreeSet, HashSet};
 use std::error::Error as _;
 use std::ops::Range;
 use std::path::{Path, PathBuf};
 use xxhash_rust::xxh3::xxh3_64;
 
-impl Jobs {
-    /// Reads and checks a list; every error names the file.
-    pub fn read(path: &Path) -> anyhow::Result<Self> {
-        let text = std::fs::read_to_string(path).with_context(|| format!("cannot read {}", path.display()))?;
-        jobs(&ListText { path, text: &text })
-    }
+/// Reads and checks a list; every error names the file.
+pub fn read_jobs(path: &Path) -> anyhow::Result<Jobs> {
+    let text = std::fs::read_to_string(path).with_context(|| format!("cannot read {}", path.display()))?;
+    jobs(&ListText { path, text: &text })
+}
 
-    /// Reads and checks a list of pictures: regions have none.
-    pub fn of_views(path: &Path) -> anyhow::Result<Self> {
-        let jobs = Self::read(path)?;
-        match jobs.scenes.iter().find(|scene| !scene.regions.is_empty()) {
-            Some(scene) => {
-                anyhow::bail!("{}: scene {}: regions are for lodray plan; pictures need distances or eyes", path.display(), scene.name)
-            }
-            None => Ok(jobs),
+/// Reads and checks a list of pictures: regions have none.
+pub fn read_views(path: &Path) -> anyhow::Result<Jobs> {
+    let jobs = read_jobs(path)?;
+    match jobs.scenes.iter().find(|scene| !scene.regions.is_empty()) {
+        Some(scene) => {
+            anyhow::bail!("{}: scene {}: regions are for lodray plan; pictures need distances or eyes", path.display(), scene.name)
+        }
+        None => Ok(jobs),
+    }
+}
+
+/// Opens or generates a scene; says what is done, and what can be done about what fails.
+pub fn open_scene(scene: &SceneJobs) -> anyhow::Result<Scene> {
+    match &scene.origin {
+        Origin::File(file) => open_any(file),
+        Origin::Generate(made) => {
+            generate::make(&made.options, FormArgs { bounds: made.bounds, vertices: made.vertices, ..FormArgs::default() })
         }
     }
 }
@@ -177,7 +187,7 @@ fn machines(
     let name = needed(source, name.as_ref(), "machine: name", entry.span())?;
     // A file is relative to the list.
     let path = if is_path(name.get_ref()) { folder.join(name.get_ref()).display().to_string() } else { name.get_ref().clone() };
-    machine(&path, &[], "set").map_err(|why| source.wrong(name.span(), format!("machine {}: {}", name.get_ref(), one_line(&why))))?;
+    machine(&path, &[], "set").map_err(|why| source.wrong(name.span(), format!("machine {}: {}", name.get_ref(), one_line(&*why))))?;
     // Every combination of the values, the last key's changing fastest.
     let mut variants = vec![Vec::new()];
     for (key, values) in set {
@@ -193,7 +203,7 @@ fn machines(
     let place = set.values().next().map_or_else(|| name.span(), Spanned::span);
     let (mut targets, mut files) = (Vec::new(), BTreeSet::new());
     for variant in &variants {
-        let wrong = |why: anyhow::Error| source.wrong(place.clone(), format!("machine {}: {}", name.get_ref(), one_line(&why)));
+        let wrong = |why: anyhow::Error| source.wrong(place.clone(), format!("machine {}: {}", name.get_ref(), one_line(&*why)));
         let machine = machine(&path, variant, "set").map_err(wrong)?;
         for &compute in compute {
             run::check(&machine.description, compute).map_err(|why| wrong(why.into()))?;
@@ -223,7 +233,7 @@ fn scene(source: &ListText<'_>, list: &List, spanned: &Spanned<SceneEntry>, fold
                 return Err(source.wrong(place, format!("scene: {key} goes with generate, not with file")));
             }
             let path = folder.join(file.get_ref());
-            let scene = open_any(&path).map_err(|why| source.wrong(file.span(), format!("scene: {}", one_line(&why))))?;
+            let scene = open_any(&path).map_err(|why| source.wrong(file.span(), format!("scene: {}", one_line(&*why))))?;
             let name = file.get_ref().file_stem().unwrap_or_default().to_string_lossy().into_owned();
             (Origin::File(path), name, xxh3_64(scene.bytes()), ModelSpace::of(&scene))
         }
@@ -238,7 +248,7 @@ fn scene(source: &ListText<'_>, list: &List, spanned: &Spanned<SceneEntry>, fold
                 walls: None,
                 width: entry.width.as_ref().map(|width| *width.get_ref()),
             };
-            generate::check(&options).map_err(|why| source.wrong(spanned.span(), format!("scene: {}", one_line(&why))))?;
+            generate::check(&options).map_err(|why| source.wrong(spanned.span(), format!("scene: {}", one_line(&*why))))?;
             let bounds = entry.bounds.as_ref().or(list.bounds.as_ref()).map_or_else(BoundKind::default, |bounds| *bounds.get_ref());
             let vertices = entry.vertices.as_ref().or(list.vertices.as_ref()).map_or_else(VertexForm::default, |form| *form.get_ref());
             (Origin::Generate(Generated { options, bounds, vertices }), format!("{:?}", kind.get_ref()).to_lowercase(), 0, stand_in())
@@ -250,7 +260,7 @@ fn scene(source: &ListText<'_>, list: &List, spanned: &Spanned<SceneEntry>, fold
     let views = views(source, list, spanned)?;
     let regions = regions(source, list, spanned)?;
     for view in &views {
-        let wrong = |why: anyhow::Error| source.wrong(spanned.span(), format!("scene {name}: {}", one_line(&why)));
+        let wrong = |why: ViewError| source.wrong(spanned.span(), format!("scene {name}: {}", one_line(&why)));
         view.camera(&space).map_err(wrong)?;
     }
     Ok(SceneJobs { name, origin, content, views, regions })

@@ -1,7 +1,7 @@
 //! A view's line: all that was measured of it.
 
-use lodray::report::error_time::{LeftOut, PictureEntry, Point, SceneEntry, SizeCosts, TraceGrid, ViewEntry};
-use lodray::study::JobLine;
+use crate::report::error_time::{LeftOut, PictureEntry, Point, SceneEntry, SizeCosts, TraceGrid, ViewEntry};
+use crate::study::JobLine;
 use serde::{Deserialize, Serialize};
 
 /// A view. Numbers of scene, view and machine are those of this line alone: 0, 0, and the place among the machines.
@@ -22,10 +22,15 @@ pub struct ViewRow {
 #[derive(Clone, Debug, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Measured {
+    /// The scene.
     pub scene: SceneEntry,
+    /// The view.
     pub view: ViewEntry,
+    /// Settings of methods, with errors and costs.
     pub points: Vec<Point>,
+    /// Pictures that were saved.
     pub pictures: Vec<PictureEntry>,
+    /// Steps of some rays of each method.
     pub traces: Vec<TraceGrid>,
     /// Times on the host, which differ from run to run.
     #[serde(default)]
@@ -33,8 +38,10 @@ pub struct Measured {
     /// The same of what methods build.
     #[serde(default)]
     pub builds: Vec<BuildTime>,
+    /// What it costs with less in the scene, if that was asked for.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub left_out: Vec<LeftOut>,
+    /// What frames of other sizes cost, of one view of each scene.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub sizes: Vec<SizeCosts>,
 }

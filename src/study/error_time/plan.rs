@@ -1,23 +1,25 @@
 //! What is to be measured: scenes, views, methods with the values of their knobs, machines, samples.
 
-use crate::cli::frames::Turning;
-use crate::cli::sweep::{Jobs, SceneJobs, ViewJob};
-use lodray::method::{ErrorKnob, Method};
-use lodray::picture::Shading;
-use lodray::rays::{MAX_PIXELS, MAX_SIDE, Sight};
-use lodray::report::result::{MachineFacts, MethodFacts};
-use lodray::study::Chosen;
+use crate::method::{ErrorKnob, Method};
+use crate::picture::{PIXELS_PER_DEGREE, Shading};
+use crate::rays::{MAX_PIXELS, MAX_SIDE, Sight};
+use crate::report::result::{MachineFacts, MethodFacts};
+use crate::study::Chosen;
+use crate::study::StudyError;
+use crate::study::Turning;
+use crate::study::{Jobs, SceneJobs, ViewJob};
 use std::collections::{BTreeMap, HashSet};
 use xxhash_rust::xxh3::xxh3_64;
 
 /// Everything that is asked for.
-pub struct Plan {
+pub struct ErrorTimePlan {
     /// Scenes, views and machines; each method once, with the knobs that are not swept.
     pub jobs: Jobs,
     /// Values of error knobs, by name of the knob; others have the method's own.
     pub values: BTreeMap<String, Vec<String>>,
     /// Samples along a side of a pixel.
     pub sides: Vec<u32>,
+    /// How errors are measured.
     pub measure: Measure,
     /// Frames after one another, if warm ones are wanted.
     pub turning: Option<Turning>,
@@ -45,7 +47,27 @@ pub struct Measure {
     pub host_rays: u32,
 }
 
+impl Default for Measure {
+    /// As the program has it.
+    fn default() -> Self {
+        Self::of(384, 32)
+    }
+}
+
 impl Measure {
+    /// Errors of so many columns and rows at most, and so many samples along a side of a converged picture's pixel; all else as by default.
+    pub fn of(error_size: u32, most_samples: u32) -> Self {
+        Self {
+            shading: Shading::default(),
+            pixels_per_degree: PIXELS_PER_DEGREE,
+            error_size,
+            // About 65,536 rays at most.
+            stride: error_size.div_ceil(256),
+            most_samples,
+            host_rays: 16_384,
+        }
+    }
+
     /// Errors and pictures use every k-th column and row of a frame of this size.
     pub fn every(&self, size: [u32; 2]) -> u32 {
         size[0].max(size[1]).div_ceil(self.error_size).max(1)
@@ -53,7 +75,7 @@ impl Measure {
 }
 
 /// A method with one value of its knob.
-pub struct Setting {
+pub(super) struct Setting {
     pub chosen: Chosen,
     /// The method with it, if another than the one that was made for the scene.
     pub method: Option<Box<dyn Method>>,
@@ -89,16 +111,22 @@ impl Setting {
     }
 }
 
-impl Plan {
+impl ErrorTimePlan {
+    /// These jobs, measured as the program does it: with one and four samples a pixel, and every method's own values of its knob.
+    pub fn new(mut jobs: Jobs) -> Self {
+        jobs.each_method_once();
+        Self { jobs, values: BTreeMap::new(), sides: vec![1, 2], measure: Measure::default(), turning: None, within: Vec::new() }
+    }
+
     /// The settings of a method for a view, from coarse to fine; those that choose the same for the frame once.
-    pub fn settings(&self, base: &Chosen, method: &dyn Method, sight: impl Fn(f64) -> Sight) -> anyhow::Result<Vec<Setting>> {
+    pub(super) fn settings(&self, base: &Chosen, method: &dyn Method, sight: impl Fn(f64) -> Sight) -> Result<Vec<Setting>, StudyError> {
         let of = |chosen: Chosen| Setting::new(chosen, method, &sight);
         let default = Setting::usual(base, method, &sight).words;
         let all = match base.method.error {
             None => vec![of(base.clone())],
             Some(ErrorKnob { knob, .. }) => {
                 let with = |value: &String| Ok(of(Chosen { method: base.method, knobs: base.knobs.clone().with(knob, value)? }));
-                self.values(base).iter().map(with).collect::<anyhow::Result<Vec<_>>>()?
+                self.values(base).iter().map(with).collect::<Result<Vec<_>, StudyError>>()?
             }
         };
         let mut seen = HashSet::new();
@@ -108,17 +136,16 @@ impl Plan {
     }
 
     /// Refuses more samples than there can be, before anything is traced.
-    pub fn check(&self) -> anyhow::Result<()> {
+    ///
+    /// # Errors
+    /// There are.
+    pub fn check(&self) -> Result<(), StudyError> {
         let most = u64::from(self.sides.iter().copied().max().unwrap_or(1));
         for view in self.jobs.scenes.iter().flat_map(|scene| &scene.views) {
             let [width, height] = view.size.map(|n| u64::from(n) * most);
-            anyhow::ensure!(
-                width.max(height) <= u64::from(MAX_SIDE) && width * height <= MAX_PIXELS,
-                "--samples {}: too many for pictures of {}x{}: {MAX_PIXELS} in all, {MAX_SIDE} along a side",
-                most * most,
-                view.size[0],
-                view.size[1]
-            );
+            if width.max(height) > u64::from(MAX_SIDE) || width * height > MAX_PIXELS {
+                return Err(StudyError::Samples { samples: most * most, size: view.size });
+            }
         }
         Ok(())
     }
@@ -129,7 +156,7 @@ impl Plan {
     }
 
     /// Columns and rows of the grid of rays whose steps a page has: fewer where there are many views.
-    pub fn trace_grid(&self) -> u32 {
+    pub(super) fn trace_grid(&self) -> u32 {
         let each = MOST_TRACES / (self.views() * self.jobs.methods.len()).max(1);
         u32::try_from(each.isqrt()).unwrap_or(u32::MAX).clamp(4, 16)
     }
@@ -146,7 +173,7 @@ impl Plan {
     }
 
     /// The number of a target's machine among `machines`.
-    pub fn machine_of(&self, target: usize, machines: &[MachineFacts]) -> usize {
+    pub(super) fn machine_of(&self, target: usize, machines: &[MachineFacts]) -> usize {
         let machine = self.jobs.targets.get(target).map(|target| &target.machine);
         machines.iter().position(|of| Some(of) == machine).unwrap_or(0)
     }
@@ -160,7 +187,7 @@ impl Plan {
 
     /// The name of a view's job, which changes with everything that its figures depend on, the program's own version at its end: also with whether errors are
     /// against the mesh that the scene was built from.
-    pub fn key(&self, scene: &SceneJobs, view: &ViewJob, sizes: bool, against_mesh: bool) -> anyhow::Result<String> {
+    pub(super) fn key(&self, scene: &SceneJobs, view: &ViewJob, sizes: bool, against_mesh: bool) -> Result<String, StudyError> {
         let mut inputs = String::new();
         let mut name = String::new();
         for chosen in &self.jobs.methods {

@@ -2,9 +2,10 @@
 
 use super::costs::{costs, simulated};
 use super::measure::Bench;
-use crate::cli::sweep::ViewJob;
-use lodray::report::error_time::SizeCosts;
-use lodray::study::at_once;
+use crate::report::error_time::SizeCosts;
+use crate::study::StudyError;
+use crate::study::ViewJob;
+use crate::study::at_once;
 
 /// Sizes of the frame at which methods are compared, where they are no larger than the view's own, which is the last.
 const SIZES: [[u32; 2]; 5] = [[128, 128], [256, 256], [512, 512], [1024, 1024], [1920, 1080]];
@@ -17,7 +18,7 @@ fn sizes(own: [u32; 2]) -> Vec<[u32; 2]> {
 
 impl Bench<'_> {
     /// What each method costs as it is if nothing is chosen, at several sizes of a view's frame.
-    pub(super) fn sizes(&self, view: &ViewJob) -> anyhow::Result<Vec<SizeCosts>> {
+    pub(super) fn sizes(&self, view: &ViewJob) -> Result<Vec<SizeCosts>, StudyError> {
         let mut all = Vec::new();
         for size in sizes(view.size) {
             let frame = ViewJob { size, ..view.clone() }.camera(&self.space)?;

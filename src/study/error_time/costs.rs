@@ -1,17 +1,18 @@
 //! What frames cost on the machines.
 
 use super::stage::Stage;
-use crate::cli::frames::Turning;
-use lodray::num::LINE_BYTES;
-use lodray::rays::Camera;
-use lodray::report::error_time::{Costs, Energy, WarmCosts};
-use lodray::report::result::SimResult;
-use lodray::scene::{Pass, PassRays};
+use crate::num::LINE_BYTES;
+use crate::rays::Camera;
+use crate::report::error_time::{Costs, Energy, WarmCosts};
+use crate::report::result::SimResult;
+use crate::scene::{Pass, PassRays};
+use crate::study::StudyError;
+use crate::study::Turning;
 
 /// The results of a stage on its machines; if there is a turn, with what a warm frame takes.
-pub(super) fn simulated(stage: &Stage<'_>, frame: &Camera, turning: Option<Turning>) -> anyhow::Result<Vec<SimResult>> {
+pub(super) fn simulated(stage: &Stage<'_>, frame: &Camera, turning: Option<Turning>) -> Result<Vec<SimResult>, StudyError> {
     let &Stage { scene, space, chosen, method, targets, .. } = stage;
-    let run = |rays| -> anyhow::Result<Vec<SimResult>> {
+    let run = |rays| -> Result<Vec<SimResult>, StudyError> {
         let pass = Pass { scene, space, registered: chosen.method, knobs: &chosen.knobs, method, rays };
         pass.run(targets, &mut |_| ()).into_iter().map(|outcome| Ok(outcome?.0)).collect()
     };

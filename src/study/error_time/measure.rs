@@ -4,26 +4,25 @@ use super::costs::{costs, simulated};
 use super::draw::{Converging, Subject, difference, luminance};
 use super::host::{Timed, host_times};
 use super::names::plain;
-use super::plan::{Plan, Setting};
+use super::plan::{ErrorTimePlan, Setting};
 use super::row::{BuildTime, Measured};
 use super::stage::{Cameras, Stage};
-use crate::cli::bars::Bars;
-use crate::cli::output::{busy, progress};
-use crate::cli::pictures::shoot_with;
-use crate::cli::sweep::ViewJob;
-use anyhow::Context;
+use crate::format::Scene;
+use crate::mesh::FinestSurface;
+use crate::method::{Method, find, reference};
+use crate::picture::{Frame, FullResolution, PictureError, Shader, SurfaceError, error_map, level_map, render, sampled, save_png};
+use crate::rays::{Camera, ModelSpace, Sight};
+use crate::report::error_time::{Appearance, Converged, PictureEntry, Point, SceneEntry, Shift, TraceGrid, ViewEntry};
+use crate::report::inspect;
+use crate::report::result::SimResult;
+use crate::study::Cache;
+use crate::study::Chosen;
+use crate::study::Shot;
+use crate::study::StudyError;
+use crate::study::ViewJob;
+use crate::study::at_once;
+use crate::study::{Progress, busy};
 use image::RgbImage;
-use lodray::format::Scene;
-use lodray::mesh::FinestSurface;
-use lodray::method::{Method, find, reference};
-use lodray::picture::{Frame, FullResolution, PictureError, Shader, SurfaceError, error_map, level_map, render, sampled, save_png};
-use lodray::rays::{Camera, ModelSpace, Sight};
-use lodray::report::error_time::{Appearance, Converged, PictureEntry, Point, SceneEntry, Shift, TraceGrid, ViewEntry};
-use lodray::report::inspect;
-use lodray::report::result::SimResult;
-use lodray::study::Cache;
-use lodray::study::Chosen;
-use lodray::study::at_once;
 use std::path::Path;
 use std::time::Instant;
 
@@ -34,10 +33,11 @@ const MOST_KEPT: u32 = 4;
 
 /// A scene with everything that measuring it needs.
 pub struct Bench<'a> {
-    pub(super) plan: &'a Plan,
+    pub(super) plan: &'a ErrorTimePlan,
     pub(super) scene: &'a Scene,
     pub(super) space: ModelSpace,
     pub(super) cache: &'a Cache,
+    pub(super) progress: &'a dyn Progress,
     facts: SceneEntry,
     /// The scene's file, as commands name it; empty if it was generated.
     path: String,
@@ -59,12 +59,12 @@ pub(super) struct Truth<'a> {
 
 impl<'a> Truth<'a> {
     /// All triangles of a scene.
-    fn of(scene: &'a Scene, cache: &Cache) -> anyhow::Result<Self> {
+    fn of(scene: &'a Scene, cache: &Cache, progress: &dyn Progress) -> Result<Self, StudyError> {
         Ok(Self {
             scene,
             space: ModelSpace::of(scene),
-            reference: Chosen::plain(&reference::METHOD).make(scene, cache, &Bars)?.0,
-            surface: busy("full-resolution surface", || FinestSurface::new(&scene.decode())),
+            reference: Chosen::plain(&reference::METHOD).make(scene, cache, progress)?.0,
+            surface: busy(progress, "full-resolution surface", || FinestSurface::new(&scene.decode())),
         })
     }
 
@@ -105,14 +105,19 @@ struct Unseen {
 
 impl<'a> Bench<'a> {
     /// Builds what the methods need.
-    pub fn new(plan: &'a Plan, scene: &'a Scene, (facts, path): (SceneEntry, String), cache: &'a Cache) -> anyhow::Result<Self> {
+    pub fn new(
+        plan: &'a ErrorTimePlan,
+        scene: &'a Scene,
+        (facts, path): (SceneEntry, String),
+        (cache, progress): (&'a Cache, &'a dyn Progress),
+    ) -> Result<Self, StudyError> {
         let (mut methods, mut builds) = (Vec::new(), Vec::new());
         for chosen in &plan.jobs.methods {
             if chosen.method.of_input && scene.input().is_none() {
                 continue;
             }
             let begun = Instant::now();
-            let (method, from_cache) = chosen.make(scene, cache, &Bars)?;
+            let (method, from_cache) = chosen.make(scene, cache, progress)?;
             let seconds = begun.elapsed().as_secs_f64();
             builds.push(BuildTime { method: chosen.method.name.to_owned(), seconds, from_cache });
             methods.push((chosen.clone(), method));
@@ -122,22 +127,24 @@ impl<'a> Bench<'a> {
             scene,
             space: ModelSpace::of(scene),
             cache,
+            progress,
             facts,
             path,
             methods,
             builds,
-            truth: Truth::of(scene.input().unwrap_or(scene), cache)?,
-            finest: scene.input().map(|_| Truth::of(scene, cache)).transpose()?,
+            truth: Truth::of(scene.input().unwrap_or(scene), cache, progress)?,
+            finest: scene.input().map(|_| Truth::of(scene, cache, progress)).transpose()?,
         })
     }
 
     /// Measures a view; pictures go to `folder`, their names begin with `prefix`. What is simulated is the whole frame; errors and pictures are of some of its
     /// columns and rows.
-    pub fn view(&self, view: &ViewJob, folder: &Path, prefix: &str, sizes: bool) -> anyhow::Result<Measured> {
+    pub fn view(&self, view: &ViewJob, folder: &Path, prefix: &str, sizes: bool) -> Result<Measured, StudyError> {
         let frame = view.camera(&self.space)?;
         let few = frame.every(self.plan.measure.every(view.size));
         let subject = self.subject();
-        let truth = shoot_with(&*self.truth.reference, &subject.shader, &self.truth.space, [&few; 2], f64::INFINITY, "full resolution");
+        let told = ("full resolution", self.progress);
+        let truth = Shot::of(&*self.truth.reference, &subject.shader, &self.truth.space, [&few; 2], f64::INFINITY, told);
         let finest = self.finest.as_ref().map(|finest| (finest, finest.frame(&few)));
         let settings = self.settings(&frame)?;
         let surfaces: Vec<_> = settings.iter().map(|of| self.setting_surface(of, &few, &truth.frame)).collect();
@@ -158,14 +165,14 @@ impl<'a> Bench<'a> {
             if kept == Some(side) {
                 book.add(&full, FULL, "full resolution", samples, "image")?;
             }
-            let bar = progress(settings.len() as u64, "settings");
+            let bar = self.progress.begin("settings", Some(settings.len() as u64));
             let seen = at_once(&settings, |(at, setting)| {
                 let seen = self.seen(&self.stage(*at, setting), &cameras, &full);
-                bar.inc(1);
+                bar.step(1);
                 seen
             });
-            bar.finish_and_clear();
-            let seen = seen.into_iter().collect::<anyhow::Result<Vec<_>>>()?;
+            drop(bar);
+            let seen = seen.into_iter().collect::<Result<Vec<_>, StudyError>>()?;
             for (((_, setting), surface), Seen { picture, luminance, errors, results }) in settings.iter().zip(&surfaces).zip(seen) {
                 if kept == Some(side) && setting.is_default {
                     let name = setting.chosen.method.name;
@@ -213,7 +220,11 @@ impl<'a> Bench<'a> {
     }
 
     fn subject(&self) -> Subject<'_> {
-        Subject { shader: Shader::new(self.truth.scene, &self.truth.space, self.plan.measure.shading), space: &self.truth.space }
+        Subject {
+            progress: self.progress,
+            shader: Shader::new(self.truth.scene, &self.truth.space, self.plan.measure.shading),
+            space: &self.truth.space,
+        }
     }
 
     /// What each method does if nothing is chosen, with its number.
@@ -225,12 +236,12 @@ impl<'a> Bench<'a> {
     }
 
     /// All settings, with the number of their method.
-    fn settings(&self, camera: &Camera) -> anyhow::Result<Vec<(usize, Setting)>> {
+    fn settings(&self, camera: &Camera) -> Result<Vec<(usize, Setting)>, StudyError> {
         let of = |(at, (base, method)): (usize, &(Chosen, Box<dyn Method>))| {
             let settings = self.plan.settings(base, &**method, |delta| Sight::new(camera, &self.space, delta))?;
             Ok(settings.into_iter().map(|setting| (at, setting)).collect::<Vec<_>>())
         };
-        Ok(self.methods.iter().enumerate().map(of).collect::<anyhow::Result<Vec<_>>>()?.into_iter().flatten().collect())
+        Ok(self.methods.iter().enumerate().map(of).collect::<Result<Vec<_>, StudyError>>()?.into_iter().flatten().collect())
     }
 
     pub(super) fn stage<'b>(&'b self, at: usize, setting: &'b Setting) -> Stage<'b> {
@@ -241,7 +252,7 @@ impl<'a> Bench<'a> {
     }
 
     /// What a stage's frame costs on the machines, and its picture, whose errors are against `full`.
-    pub(super) fn seen(&self, stage: &Stage<'_>, cameras: &Cameras, full: &RgbImage) -> anyhow::Result<Seen> {
+    pub(super) fn seen(&self, stage: &Stage<'_>, cameras: &Cameras, full: &RgbImage) -> Result<Seen, StudyError> {
         let &Stage { all, space, chosen, method, .. } = stage;
         let shader = Shader::new(all, space, self.plan.measure.shading);
         let drawn = sampled(method, &shader, space, &cameras.few, chosen.delta(), &|| ());
@@ -268,8 +279,8 @@ impl<'a> Bench<'a> {
         results: &[SimResult],
         picture: PictureError,
         geometry: SurfaceError,
-    ) -> anyhow::Result<Point> {
-        let facts = &results.first().context("no machine")?.setup.method;
+    ) -> Result<Point, StudyError> {
+        let facts = &results.first().ok_or(StudyError::NoMachine)?.setup.method;
         Ok(Point {
             view: 0,
             method: facts.name.clone(),
@@ -296,15 +307,15 @@ impl<'a> Bench<'a> {
 
     /// What the rays of a stage meet, held against full resolution.
     pub(super) fn surface(&self, stage: &Stage<'_>, few: &Camera, truth: &Frame) -> Surface {
-        let bar = progress(u64::from(few.height), "surface");
-        let frame = render(stage.method, stage.space, few, stage.chosen.delta(), &|| bar.inc(1)).0;
-        bar.finish_and_clear();
+        let bar = self.progress.begin("surface", Some(u64::from(few.height)));
+        let frame = render(stage.method, stage.space, few, stage.chosen.delta(), &|| bar.step(1)).0;
+        drop(bar);
         Surface { errors: self.truth.errors(stage.all, &frame, truth, few, self.plan.measure.stride), frame }
     }
 
     /// Draws full resolution with more and more samples until its standard error is a quarter of the smallest error, or there are no more; then says how
     /// far every picture is from it. None if none is wanted.
-    fn converged(&self, camera: &Camera, points: &mut [Point], unseen: &[Unseen]) -> anyhow::Result<Option<Converged>> {
+    fn converged(&self, camera: &Camera, points: &mut [Point], unseen: &[Unseen]) -> Result<Option<Converged>, StudyError> {
         let most = self.plan.measure.most_samples;
         let subject = self.subject();
         let mut side = 2 * self.plan.sides.iter().copied().max().unwrap_or(1).max(2);
@@ -360,7 +371,7 @@ impl<'a> Bench<'a> {
             delta: setting.chosen.delta(),
         });
         let timed: Vec<_> = timed.collect();
-        busy("host times", || host_times(&timed, camera, &self.space, most))
+        busy(self.progress, "host times", || host_times(&timed, camera, &self.space, most))
     }
 }
 
@@ -372,10 +383,10 @@ struct PictureBook<'a> {
 }
 
 impl PictureBook<'_> {
-    fn add(&mut self, picture: &RgbImage, method: &str, setting: &str, samples: u32, kind: &str) -> anyhow::Result<()> {
+    fn add(&mut self, picture: &RgbImage, method: &str, setting: &str, samples: u32, kind: &str) -> Result<(), StudyError> {
         let file = format!("{}-{method}-{kind}.png", self.prefix);
         let path = self.folder.join(&file);
-        save_png(picture, &[], &path).with_context(|| format!("cannot write {}", path.display()))?;
+        save_png(picture, &[], &path).map_err(|source| StudyError::Picture { path, source })?;
         let [method, setting, kind] = [method, setting, kind].map(str::to_owned);
         self.entries.push(PictureEntry { view: 0, method, setting, samples, kind, file });
         Ok(())

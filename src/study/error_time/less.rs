@@ -2,20 +2,20 @@
 
 use super::measure::Bench;
 use super::stage::{Cameras, Stage};
-use crate::cli::bars::Bars;
-use crate::cli::output::busy;
-use crate::cli::plan::in_machine;
+use crate::bvh::over_trees;
+use crate::format::{Job, Scene};
+use crate::hardware::unit_gates;
+use crate::method::lod;
+use crate::picture::Frame;
+use crate::plan::{Measure, Narrowest, Plan, Reach, Within};
+use crate::rays::{Camera, ModelSpace};
+use crate::report::error_time::LeftOut;
+use crate::report::result::MachineFacts;
+use crate::scene::Target;
+use crate::study::Chosen;
+use crate::study::StudyError;
+use crate::study::busy;
 use image::RgbImage;
-use lodray::bvh::over_trees;
-use lodray::format::{Job, Scene};
-use lodray::hardware::unit_gates;
-use lodray::method::lod;
-use lodray::picture::Frame;
-use lodray::plan::{Measure, Narrowest, Plan, Reach, Within};
-use lodray::rays::{Camera, ModelSpace};
-use lodray::report::error_time::LeftOut;
-use lodray::scene::Target;
-use lodray::study::Chosen;
 
 /// A scene with less in it, and its unit.
 struct Less {
@@ -25,7 +25,7 @@ struct Less {
 
 impl Less {
     /// What the rays of a camera read of a scene, and the unit for that.
-    fn of(scene: &Scene, camera: &Camera, delta: f64) -> anyhow::Result<Self> {
+    fn of(scene: &Scene, camera: &Camera, delta: f64) -> Result<Self, StudyError> {
         let reach = Reach::of(scene);
         reach.add(camera, delta);
         let scene = reach.pruned(Job { views: vec![camera.job_view(delta)], ..Job::default() })?;
@@ -40,7 +40,7 @@ impl Less {
 impl Bench<'_> {
     /// The view with lod as it is by default: all of the scene on the machines' own units; what the view needs on units for that; and the same on the coarsest grids within
     /// each of so many pixels. Nothing if none are asked for.
-    pub fn left_out(&self, cameras: &Cameras, full: &RgbImage, truth: &Frame) -> anyhow::Result<Vec<LeftOut>> {
+    pub fn left_out(&self, cameras: &Cameras, full: &RgbImage, truth: &Frame) -> Result<Vec<LeftOut>, StudyError> {
         let camera = &cameras.frame;
         let within = &self.plan.within;
         // It is one of the methods where this is asked for.
@@ -48,8 +48,8 @@ impl Bench<'_> {
         let Some(base) = lod.filter(|_| !within.is_empty()) else { return Ok(Vec::new()) };
         let knobs = base.method.error.map_or_else(|| base.knobs.clone(), |error| base.knobs.clone().without(error.knob));
         let chosen = Chosen { method: base.method, knobs };
-        let seen = |what: String, grids: Option<Within>, [scene, all]: [&Scene; 2], targets: &[Target]| -> anyhow::Result<LeftOut> {
-            let (space, method) = (ModelSpace::of(scene), chosen.make(scene, self.cache, &Bars)?.0);
+        let seen = |what: String, grids: Option<Within>, [scene, all]: [&Scene; 2], targets: &[Target]| -> Result<LeftOut, StudyError> {
+            let (space, method) = (ModelSpace::of(scene), chosen.make(scene, self.cache, self.progress)?.0);
             let stage = Stage { scene, all, space: &space, method: &*method, chosen: &chosen, targets };
             let seen = self.seen(&stage, cameras, full)?;
             let geometry = self.surface(&stage, &cameras.few, truth).errors;
@@ -68,8 +68,8 @@ impl Bench<'_> {
         };
         let own = &self.plan.jobs.targets;
         let mut all = vec![seen("whole".to_owned(), None, [self.scene; 2], own)?];
-        let mut add = |what: String, grids: Option<Within>, scene: &Scene| -> anyhow::Result<()> {
-            let less = busy("leaving out", || Less::of(scene, camera, chosen.delta()))?;
+        let mut add = |what: String, grids: Option<Within>, scene: &Scene| -> Result<(), StudyError> {
+            let less = busy(self.progress, "leaving out", || Less::of(scene, camera, chosen.delta()))?;
             let mut targets = own.clone();
             targets.iter_mut().for_each(|target| in_machine(&less.plan, &what, &mut target.machine));
             all.push(seen(what, grids, [&less.scene, scene], &targets)?);
@@ -78,9 +78,23 @@ impl Bench<'_> {
         add("lossless".to_owned(), None, self.scene)?;
         for &pixels in within {
             let grids = Within::of(self.scene, &Narrowest::of(&self.space, camera), pixels);
-            let coarse = busy("coarser grids", || self.scene.coarsened([grids.coordinate_zeros, grids.direction_zeros], over_trees))?;
+            let coarse =
+                busy(self.progress, "coarser grids", || self.scene.coarsened([grids.coordinate_zeros, grids.direction_zeros], over_trees))?;
             add(format!("within {pixels}"), Some(grids), &coarse)?;
         }
         Ok(all)
     }
+}
+
+/// Has a machine's units as the plan of this file has them.
+pub fn in_machine(plan: &Plan, name: &str, machine: &mut MachineFacts) {
+    let units = &mut machine.description.units;
+    let own = plan.hardware(&units.config());
+    // Contexts, edges, boxes and bits of a cycle are the machine's own where no frame was simulated.
+    (units.contexts, units.edges_per_cycle) = (own.contexts as u32, own.edges_per_cycle.count()); // at most 64
+    units.lod_edges_per_cycle = own.lod_edges_per_cycle.count();
+    units.boxes_per_cycle = own.boxes_per_cycle.count();
+    (units.divide_bits, units.setup_bits) = (own.divide_bits, own.setup_bits);
+    units.like = Some(own);
+    machine.set.push(format!("plan={name}"));
 }

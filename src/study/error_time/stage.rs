@@ -1,10 +1,10 @@
 //! What is traced, and from where.
 
-use lodray::format::Scene;
-use lodray::method::Method;
-use lodray::rays::{Camera, ModelSpace};
-use lodray::scene::Target;
-use lodray::study::Chosen;
+use crate::format::Scene;
+use crate::method::Method;
+use crate::rays::{Camera, ModelSpace};
+use crate::scene::Target;
+use crate::study::Chosen;
 
 /// What is traced, and on which machines.
 pub(super) struct Stage<'a> {

@@ -1,8 +1,8 @@
 //! Time on the host: a sample of a view's rays, one thread, settings in turns so that what else runs on the machine meets all of them.
 
 use super::row::HostTime;
-use lodray::method::Method;
-use lodray::rays::{Camera, ModelSpace, Query, Sight};
+use crate::method::Method;
+use crate::rays::{Camera, ModelSpace, Query, Sight};
 use std::time::Instant;
 
 /// How often each setting has its turn.

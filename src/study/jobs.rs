@@ -1,20 +1,18 @@
 //! The jobs of a list.
 
-use crate::cli::build::FormArgs;
-use crate::cli::generate::make;
-use crate::cli::output::open_any;
-use lodray::format::{JobRegion, Scene};
-use lodray::mesh::{BoundKind, procedural};
-use lodray::method::Knob;
-use lodray::method::bvh::{LEAF_LAYOUT, LEAF_SIZE};
-use lodray::method::knob::DELTA;
-use lodray::method::lod;
-use lodray::num::VertexForm;
-use lodray::rays::{Camera, DEFAULT_DIRECTION, DEFAULT_VIEW_ANGLE_DEGREES, ModelSpace, View};
-use lodray::report::results_version;
-use lodray::scene::Target;
-use lodray::sim::energy;
-use lodray::study::Chosen;
+use super::error::{StudyError, ViewError};
+use crate::format::{JobRegion, Scene};
+use crate::mesh::{BoundKind, procedural};
+use crate::method::Knob;
+use crate::method::bvh::{LEAF_LAYOUT, LEAF_SIZE};
+use crate::method::knob::DELTA;
+use crate::method::lod;
+use crate::num::VertexForm;
+use crate::rays::{Camera, DEFAULT_DIRECTION, DEFAULT_VIEW_ANGLE_DEGREES, ModelSpace, View};
+use crate::report::results_version;
+use crate::scene::{BuildError, BuildOptions, Target};
+use crate::sim::energy;
+use crate::study::Chosen;
 use serde::Serialize;
 use std::collections::BTreeSet;
 use std::path::PathBuf;
@@ -24,35 +22,46 @@ use xxhash_rust::xxh3::xxh3_64;
 #[derive(Clone, Debug, PartialEq, Serialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Origin {
+    /// A scene file.
     File(PathBuf),
+    /// It is generated.
     Generate(Generated),
 }
 
 /// What is generated, and in which form.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Generated {
+    /// Which scene.
     #[serde(flatten)]
     pub options: procedural::Options,
-    /// A job of the paper's bounds is the same as when there were no others.
+    /// What displacement bounds cover.
+    // A job of the paper's bounds is the same as when there were no others.
     #[serde(skip_serializing_if = "BoundKind::is_unnamed")]
     pub bounds: BoundKind,
+    /// How inserted vertices are stored.
     pub vertices: VertexForm,
 }
 
 /// A scene and what to see of it.
 pub struct SceneJobs {
+    /// Its name among the jobs.
     pub name: String,
+    /// Where it comes from.
     pub origin: Origin,
     /// Checksum of its file.
     pub content: u64,
+    /// Cameras.
     pub views: Vec<ViewJob>,
+    /// Boxes that cameras stay in; a plan alone has some.
     pub regions: Vec<RegionJob>,
 }
 
 /// A box in the world that cameras stay in, and their cones.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RegionJob {
+    /// Lower corner.
     pub lo: [f64; 3],
+    /// Upper corner.
     pub hi: [f64; 3],
     /// Tangent of the half angle.
     pub cone: f64,
@@ -69,22 +78,40 @@ impl RegionJob {
 /// A camera, before the scene is there.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct ViewJob {
+    /// Columns and rows of pixels.
     pub size: [u32; 2],
     /// In bounding radii from the target; the eye is then only a direction.
     pub distance: Option<f64>,
+    /// From the target toward the eye.
     pub direction: Option<[f64; 3]>,
+    /// The eye.
     pub eye: Option<[f64; 3]>,
+    /// Where it looks; by default the middle of the model's box.
     pub target: Option<[f64; 3]>,
+    /// What is up; by default +y.
     pub up: Option<[f64; 3]>,
+    /// Vertical view angle in degrees.
     pub fov: f64,
 }
 
 impl SceneJobs {
+    /// A scene of which nothing is to be seen yet; a file that is to be known again by its bytes needs their checksum besides.
+    pub fn new(name: &str, origin: Origin) -> Self {
+        Self { name: name.to_owned(), origin, content: 0, views: Vec::new(), regions: Vec::new() }
+    }
+
     /// Opens or generates it.
-    pub fn open(&self) -> anyhow::Result<Scene> {
+    ///
+    /// # Errors
+    /// There is no such scene.
+    pub fn open(&self) -> Result<Scene, BuildError> {
         match &self.origin {
-            Origin::File(file) => open_any(file),
-            Origin::Generate(made) => make(&made.options, FormArgs { bounds: made.bounds, vertices: made.vertices, ..FormArgs::default() }),
+            Origin::File(file) => Ok(Scene::open(file)?),
+            Origin::Generate(made) => {
+                let Generated { options, bounds, vertices } = *made;
+                let form = BuildOptions { name: options.scene.name().to_owned(), bounds, vertices, ..BuildOptions::own_triangles() };
+                Ok(Scene::of_surface(&procedural::generate(&options)?, &form.with_origin("generate", serde_json::json!(options)))?)
+            }
         }
     }
 
@@ -112,32 +139,43 @@ impl ViewJob {
     }
 
     /// The camera on a model.
-    pub fn camera(&self, space: &ModelSpace) -> anyhow::Result<Camera> {
+    ///
+    /// # Errors
+    /// There is no such camera.
+    pub fn camera(&self, space: &ModelSpace) -> Result<Camera, ViewError> {
         let target = self.target.unwrap_or_else(|| space.centre());
         let toward = self.direction.map(|d| std::array::from_fn(|k| target[k] + d[k]));
         // Whatever is up: a job's view is that of its keys alone.
         let direction = Some(DEFAULT_DIRECTION);
         let view = View { eye: self.eye.or(toward), direction, target: self.target, up: self.up, distance: self.distance, fov: self.fov };
-        // A list has keys where the command line has options.
-        Camera::new(&view, space, self.size[0], self.size[1]).map_err(|why| anyhow::anyhow!(why.to_string().replace("--", "")))
+        Ok(Camera::new(&view, space, self.size[0], self.size[1])?)
     }
 }
 
 /// All jobs: each view of each scene, with each method, on each target.
 pub struct Jobs {
+    /// Scenes with their views.
     pub scenes: Vec<SceneJobs>,
     /// Methods, with each of their qualities; a BVH has but one.
     pub methods: Vec<Chosen>,
+    /// Machines, each with a way to compute.
     pub targets: Vec<Target>,
     /// The qualities of the list, if it has some.
     pub deltas: Vec<String>,
+    /// Pictures are compared with full resolution.
     pub error: bool,
+    /// Results keep their figures over time.
     pub intervals: bool,
     /// Files of scenes and machines.
     pub files: BTreeSet<PathBuf>,
 }
 
 impl Jobs {
+    /// Each view of these scenes, with each method, on each target: without errors of pictures, and without figures over time.
+    pub fn new(scenes: Vec<SceneJobs>, methods: Vec<Chosen>, targets: Vec<Target>) -> Self {
+        Self { scenes, methods, targets, deltas: Vec::new(), error: false, intervals: false, files: BTreeSet::new() }
+    }
+
     /// Leaves one of each method's qualities.
     pub fn each_method_once(&mut self) {
         let mut seen = BTreeSet::new();
@@ -150,7 +188,10 @@ impl Jobs {
     }
 
     /// The names of all jobs, in order.
-    pub fn keys(&self) -> anyhow::Result<Vec<String>> {
+    ///
+    /// # Errors
+    /// As [`Self::key`].
+    pub fn keys(&self) -> Result<Vec<String>, StudyError> {
         let mut keys = Vec::new();
         for scene in &self.scenes {
             for view in &scene.views {
@@ -165,7 +206,10 @@ impl Jobs {
     }
 
     /// Name of a job that changes with everything that its result depends on, the program's own version at its end.
-    pub fn key(&self, scene: &SceneJobs, view: &ViewJob, chosen: &Chosen, target: &Target) -> anyhow::Result<String> {
+    ///
+    /// # Errors
+    /// A file of the machine cannot be read.
+    pub fn key(&self, scene: &SceneJobs, view: &ViewJob, chosen: &Chosen, target: &Target) -> Result<String, StudyError> {
         let machine = &target.machine.description;
         let mut inputs = serde_json::to_vec(&(view, &scene.origin, &machine, self.error, self.intervals))?;
         let tables = energy::files(machine)?;
