@@ -103,7 +103,8 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
                     tell("grid", own);
                     if nodes == 4 && left_out == splits.min(2) {
                         let mut packed = of("packed");
-                        packed["bytes"] = json!(sections(GridMesh::build(&h, &GridOptions { points: PointForm::Packed, ..options })?.map()));
+                        packed["bytes"] =
+                            json!(sections(GridMesh::build(&h, &GridOptions { points: PointForm::Packed, ..options })?.map()));
                         tell("grid", packed);
                     }
                 }
