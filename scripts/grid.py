@@ -21,7 +21,7 @@ VARIANTS = [
     ("binary nodes", {"grid-nodes": "2"}),
     ("nodes of four", {"grid-nodes": "4"}),
     ("nodes of six", {"grid-nodes": "6"}),
-    ("packed vertices", {"grid-points": "packed"}),
+    ("float vertices", {"grid-points": "float"}),
     *((f"{out} levels left out", {"grid-left-out": str(out)}) for out in (0, 1, 3, 4)),
     ("boxes", {"grid-bounds": "boxes"}),
     ("prisms", {"grid-bounds": "prisms"}),

@@ -16,6 +16,9 @@ Words of the table:
                       what a line holds: boxes over triangles, a base triangle,
                       how far the surface is from a triangle, vertices of finer
                       levels, triangles of the BVH
+  tuple, radius (box, prism), corner, boundary, inside
+                      what a line of a grid holds: where vertices of a primitive
+                      are, bounds of its nodes, vertices by where they lie
   RMSE, maximum       differences of the pictures, from 0 to 255; PSNR is the
                       same in dB, more is better
   coverage            pixels that see the model in one picture only
@@ -51,7 +54,10 @@ Words of the table:
   bvh_node, l0_record, split, vertex_data, leaf
                       what a line holds: boxes over triangles, a base triangle,
                       how far the surface is from a triangle, vertices of finer
-                      levels, triangles of the BVH";
+                      levels, triangles of the BVH
+  tuple, radius (box, prism), corner, boundary, inside
+                      what a line of a grid holds: where vertices of a primitive
+                      are, bounds of its nodes, vertices by where they lie";
 
 /// Of `lines`.
 pub const LINES: &str = "\

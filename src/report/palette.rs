@@ -20,6 +20,7 @@ pub enum Mark {
     Times,
     Pentagram,
     GreekCross,
+    Hexagon,
 }
 
 /// How a method is drawn.
@@ -41,13 +42,14 @@ const fn style(light: [u8; 3], dark: [u8; 3], mark: Mark) -> Style {
 }
 
 /// Methods by name.
-const KNOWN: [(&str, Style); 11] = [
+const KNOWN: [(&str, Style); 12] = [
     ("lod", style([15, 107, 189], [76, 173, 248], Mark::Circle)),
     ("bvh", style([193, 76, 2], [252, 154, 84], Mark::Square)),
     ("bvh6", style([155, 20, 89], [240, 123, 174], Mark::Star)),
     ("bvh32", style([128, 57, 158], [197, 149, 220], Mark::Diamond)),
     ("discrete", style([14, 131, 97], [65, 206, 160], Mark::Triangle)),
     ("chunked", style([48, 32, 120], [132, 108, 252], Mark::Pentagram)),
+    ("grid", style([13, 60, 47], [191, 255, 0], Mark::Hexagon)),
     ("input-bvh", style([142, 113, 48], [228, 195, 71], Mark::Wye)),
     ("input-bvh6", style([13, 99, 124], [137, 206, 230], Mark::Cross)),
     ("input-bvh32", style([78, 30, 0], [168, 120, 90], Mark::GreekCross)),

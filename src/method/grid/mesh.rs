@@ -73,7 +73,7 @@ pub struct GridOptions {
 
 impl Default for GridOptions {
     fn default() -> Self {
-        Self { splits: 4, left_out: 2, bounding: Bounding::Spheres, width: Width::Four, points: PointForm::Float }
+        Self { splits: 4, left_out: 2, bounding: Bounding::Spheres, width: Width::Four, points: PointForm::Packed }
     }
 }
 
@@ -157,7 +157,7 @@ impl GridMesh {
         let form = options.points;
         let of_vertices = |name, count: usize| Section::of_bytes(name, (count as u64 * form.bits()).div_ceil(8));
         let sections = [
-            Section::of_bytes("bvh_node", top.len() as u64 * u64::from(top.lines()) * LINE_BYTES),
+            Section::of_bytes("bvh_node", top.count() as u64 * u64::from(top.lines()) * LINE_BYTES),
             Section::of_bytes("tuple", count as u64 * TUPLE_BYTES),
             Section::of_bytes(options.bounding.section(), bounds.bytes()),
             of_vertices("corner", corners.len()),

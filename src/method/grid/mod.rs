@@ -1,9 +1,11 @@
 //! Grid primitives (von Buelow, "GPU Ray Tracing of Triangular Grid Primitives", 2024): a BVH over coarse triangles, each of which is a grid that follows the 1-to-4 splits of the
 //! hierarchy, with a complete 4-ary tree of spheres and vertices that are stored once (docs/baselines.md, "Grid primitives").
 
+mod asked;
 mod binary;
 mod bounds;
 mod caps;
+mod children;
 mod float;
 mod mesh;
 mod pattern;
@@ -113,10 +115,10 @@ pub static GRID_POINTS: Knob = Knob {
     name: "grid-points",
     value_name: "FORM",
     help: "Vertices of a grid",
-    default: Some("float"),
+    default: Some("packed"),
     words: &[
-        ("float", "Three 32-bit floats, as the paper has them: coordinates are rounded to 24 bits"),
         ("packed", "Three coordinates of 28 bits, 84 bits in all: nothing is lost"),
+        ("float", "Three 32-bit floats, as the paper has them: coordinates are rounded to 24 bits"),
     ],
     of_frame: false,
     allows: |value| points(value).map(drop).ok_or_else(|| format!("'{value}' is not float or packed")),

@@ -49,7 +49,7 @@ impl Top {
     }
 
     /// How many nodes there are.
-    pub fn len(&self) -> usize {
+    pub fn count(&self) -> usize {
         match self {
             Self::Two(nodes) => nodes.len(),
             Self::Four(nodes) => nodes.len(),

@@ -3,19 +3,18 @@
 //! The stack holds the number of a node alone, so each visit of a node reads all six vertices of its four triangles, by their final indices, and the four radii. Lines that a visit
 //! needs more than once it asks for once, all together.
 
+use super::asked::{Lines, ask, is_heard};
 use super::binary::PairNode;
-use super::bounds::Bounds;
 use super::caps::Caps;
+use super::children::{Shot, children};
 use super::mesh::{GridMesh, NODES};
-use super::pattern::{LeafPattern, Preliminary, first_of_depth};
-use super::sphere::{SphereRay, Spheres, in_t};
+use super::pattern::{LeafPattern, first_of_depth};
+use super::sphere::{SphereRay, in_t};
 use super::top::Top;
 use super::tuple::Tuple;
-use super::works::{INDEX, PAIR, SORT, SPHERE};
+use super::works::{INDEX, PAIR};
 use crate::block::Block;
 use crate::block::box_test32::{self, BoxTest32};
-use crate::block::child_boxes::Corners;
-use crate::block::child_test;
 use crate::block::ray_setup::{self, RaySetup};
 use crate::block::start_setup::{self, StartSetup};
 use crate::block::start_test::{self, Below, StartTest};
@@ -23,12 +22,11 @@ use crate::block::tri_test::{self, TriTest};
 use crate::format::{BvhNode, ChildRef, SixNode};
 #[cfg(target_arch = "x86_64")]
 use crate::method::children::has_lanes;
-use crate::method::children::{Split, bvh_children, prism_children, six_children};
+use crate::method::children::{bvh_children, six_children};
 use crate::method::stack::{Entry, Op, TraversalStack, push_nearest, push_sorted};
 use crate::method::{Departure, HitSink, TriangleId, is_beyond};
-use crate::num::prism::child;
 use crate::num::{Point, Ray, Start, U, Vec3, Wire};
-use crate::step::{Act, Fetch, NodeShape, SectionId, Step, StepSink, TriangleRun};
+use crate::step::{Act, Fetch, NodeShape, Step, StepSink, TriangleRun};
 use std::sync::Arc;
 
 /// A node of a primitive's tree that waits.
@@ -54,50 +52,6 @@ pub struct GridTraverser {
     mapped: bool,
     stack: TraversalStack,
     points: Vec<Point>,
-}
-
-/// Whether anybody listens: who keeps nothing has no state.
-const fn is_heard<S: StepSink>() -> bool {
-    size_of::<S>() > 0
-}
-
-/// Lines that one visit asks for, each once.
-struct Lines {
-    lines: [(SectionId, u32); 2 * 153 + 1],
-    count: usize,
-}
-
-impl Lines {
-    #[inline(always)]
-    fn new() -> Self {
-        Self { lines: [(SectionId::new(0), 0); 2 * 153 + 1], count: 0 }
-    }
-
-    #[inline(always)]
-    fn add(&mut self, section: SectionId, line: u32) {
-        if self.lines[..self.count].iter().all(|of| of.1 != line) {
-            self.lines[self.count] = (section, line);
-            self.count += 1;
-        }
-    }
-
-    /// Tells of them: they are asked for together, and with the first the visit begins if it is one.
-    fn state<S: StepSink>(&self, visits: bool, steps: &mut S) {
-        for (place, &(section, line)) in self.lines[..self.count].iter().enumerate() {
-            let fetch = Fetch::new(section, line, 1).at(place as u32); // below 2^10
-            let is_first = place == 0;
-            let fetch = if is_first { fetch } else { fetch.joining() };
-            steps.step(Step { visits: visits && is_first, ..Step::on(fetch, Act::Fetch) });
-        }
-    }
-}
-
-/// A ray as all tests take it.
-struct Shot<'a> {
-    ray: &'a Ray,
-    start: Start,
-    setup: ray_setup::Out,
-    spheres: SphereRay,
 }
 
 impl GridTraverser {
@@ -169,6 +123,7 @@ impl GridTraverser {
         };
         let shot = Shot { ray, start, setup, spheres: SphereRay::new(ray.origin, ray.direction) };
         self.stack.clear();
+        let mesh = Arc::clone(&self.mesh);
         let mut next = self.root(steps);
         loop {
             if sink.is_done() {
@@ -185,7 +140,7 @@ impl GridTraverser {
             if entry.kind.get() == Entry::BVH_NODE {
                 next = self.node::<S, H, LEAVING>(&shot, index, steps, sink);
             } else {
-                self.primitive::<S, H, LEAVING>(&shot, index, steps, sink);
+                self.primitive::<S, H, LEAVING>(&mesh, &shot, index, steps, sink);
             }
         }
     }
@@ -267,8 +222,14 @@ impl GridTraverser {
 
     /// Goes through the tree of a primitive.
     #[inline(always)]
-    fn primitive<S: StepSink, H: HitSink, const LEAVING: bool>(&mut self, shot: &Shot<'_>, primitive: usize, steps: &mut S, sink: &mut H) {
-        let mesh = Arc::clone(&self.mesh);
+    fn primitive<S: StepSink, H: HitSink, const LEAVING: bool>(
+        &mut self,
+        mesh: &GridMesh,
+        shot: &Shot<'_>,
+        primitive: usize,
+        steps: &mut S,
+        sink: &mut H,
+    ) {
         steps.step(Step::on(mesh.tuple_fetch(primitive), Act::Fetch).visiting());
         let tuple = *mesh.tuple(primitive);
         let cap = self.caps.of(primitive) as usize;
@@ -293,14 +254,14 @@ impl GridTraverser {
             };
             let (node, depth) = (usize::from(waiting.node), u32::from(waiting.depth));
             if depth == end {
-                self.leaf::<S, H, LEAVING>(&mesh, shot, (primitive, &tuple), cap, node - first_of_depth(depth), steps, sink);
+                self.leaf::<S, H, LEAVING>(mesh, shot, (primitive, &tuple), cap, node - first_of_depth(depth), steps, sink);
                 if sink.is_done() {
                     break;
                 }
                 continue;
             }
             // At most four, nearest first.
-            let (children, met) = children(&mesh, shot, primitive, &tuple, node, steps, sink);
+            let (children, met) = children(mesh, shot, primitive, &tuple, node, steps, sink);
             for &(near, k) in children[..met].iter().skip(1).rev() {
                 stack[count] = Waiting { near, node: (4 * node + 1 + k) as u16, depth: depth as u8 + 1 }; // at most 340 nodes
                 count += 1;
@@ -361,99 +322,4 @@ fn of_pair(nodes: &[PairNode], at: usize) -> Entry {
     let node = &nodes[at];
     let (kind, index) = if node.skip == 0 { (Entry::TREE, node.leaf as usize) } else { (Entry::BVH_NODE, at) };
     Entry { kind: U::new(kind), index: U::new(index as u64), ..Entry::default() }
-}
-
-/// Adds the lines of a vertex.
-#[inline(always)]
-fn ask(mesh: &GridMesh, primitive: usize, tuple: &Tuple, vertex: Preliminary, lines: &mut Lines) {
-    let (section, index) = mesh.place(primitive, tuple, vertex);
-    let [first, last] = mesh.vertex_lines(section, index);
-    lines.add(section, first);
-    if last != first {
-        lines.add(section, last);
-    }
-}
-
-/// Children of a node that are met, nearest first, as (near, child), and how many.
-type Found = ([(f64, usize); 4], usize);
-
-/// Tests the bounds of a node's children.
-#[inline(always)]
-fn children<S: StepSink, H: HitSink>(
-    mesh: &GridMesh,
-    shot: &Shot<'_>,
-    primitive: usize,
-    tuple: &Tuple,
-    node: usize,
-    steps: &mut S,
-    sink: &H,
-) -> Found {
-    let group = mesh.group(primitive, node);
-    if let Bounds::Boxes(lines) = &mesh.bounds {
-        let tests = bvh_children(&shot.setup, sink.t_max(), &lines[group]);
-        steps.step(Step::on(mesh.group_fetch(group), Act::Children { shape: NodeShape::Local, met: tests.met() }).visiting());
-        return of_tests(&tests);
-    }
-    let own = mesh.pattern.node(node);
-    if is_heard::<S>() {
-        let mut lines = Lines::new();
-        let bounds = mesh.group_fetch(group);
-        (bounds.line..bounds.line + bounds.lines).for_each(|line| lines.add(bounds.section, line));
-        own.iter().for_each(|&vertex| ask(mesh, primitive, tuple, vertex, &mut lines));
-        steps.step(Step::of(Act::Work { work: INDEX, count: 6 }));
-        lines.state(true, steps);
-    }
-    let points = own.map(|vertex| mesh.vertex(primitive, tuple, vertex));
-    match &mesh.bounds {
-        Bounds::Spheres(radii) => {
-            steps.step(Step::of(Act::Work { work: SPHERE, count: 4 }));
-            steps.step(Step::of(Act::Work { work: SORT, count: 1 }));
-            spheres(shot, sink, &points, radii[group])
-        }
-        Bounds::Prisms(prisms) => {
-            let [p0, p1, p2, q0, q1, q2] = points.map(Point::from_i32);
-            let corners = Corners::of([p0, p1, p2], [q0, q1, q2]);
-            let tests = prism_children(&shot.setup, sink.t_max(), &prisms[group], &Split { full: corners, morphed: corners });
-            steps.step(Step::of(Act::Children { shape: NodeShape::Prisms, met: tests.met() }));
-            of_tests(&tests)
-        }
-        Bounds::Boxes(_) => unreachable!("tested above"),
-    }
-}
-
-/// What tests by blocks say.
-#[inline(always)]
-fn of_tests(tests: &child_test::Out) -> Found {
-    let at = |place: usize| {
-        let k = tests.order[place].get() as usize;
-        // In steps of 2^-14 of t: exact.
-        (tests.t_near[k].get() as f64 * 2f64.powi(-14), k)
-    };
-    ([0, 1, 2, 3].map(at), tests.count.get() as usize)
-}
-
-/// Tests spheres.
-#[inline(always)]
-fn spheres<H: HitSink>(shot: &Shot<'_>, sink: &H, points: &[[i32; 3]; 6], radii: [f32; 4]) -> Found {
-    let points = points.map(|p| p.map(f64::from));
-    let mut tested = Spheres { radii, ..Spheres::default() };
-    for k in 0..4 {
-        let [a, b, c] = child(&points, k);
-        for axis in 0..3 {
-            // Exact: below 2^33.
-            tested.sums[axis][k] = a[axis] + b[axis] + c[axis];
-        }
-    }
-    let met = shot.spheres.test(sink.t_max(), &tested);
-    let (mut sorted, mut count) = ([(0.0, 0); 4], 0);
-    for k in (0..4).filter(|&k| met.hit[k]) {
-        let mut at = count;
-        while at > 0 && sorted[at - 1].0 > met.near[k] {
-            sorted[at] = sorted[at - 1];
-            at -= 1;
-        }
-        sorted[at] = (met.near[k], k);
-        count += 1;
-    }
-    (sorted, count)
 }

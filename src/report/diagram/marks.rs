@@ -34,6 +34,10 @@ impl Shape {
                 let (a, b) = (r / 3, r + 1);
                 outline(&[(-a, -b), (a, -b), (a, -a), (b, -a), (b, a), (a, a), (a, b), (-a, b), (-a, a), (-b, a), (-b, -a), (-a, -a)])
             }
+            Mark::Hexagon => outline(&[0, 1, 2, 3, 4, 5].map(|k: i32| {
+                let (angle, far) = (f64::from(k) * std::f64::consts::PI / 3.0, f64::from(r) * 1.1);
+                ((far * angle.sin()).round() as i32, (-far * angle.cos()).round() as i32)
+            })),
             Mark::Cross => lines(&[[(-r, 0), (r, 0)], [(0, -r), (0, r)]]),
             Mark::Times => lines(&[[(-s, -s), (s, s)], [(-s, s), (s, -s)]]),
             Mark::Star => lines(&[[(-r, 0), (r, 0)], [(-s, -s), (s, s)], [(-s, s), (s, -s)], [(0, -r), (0, r)]]),
