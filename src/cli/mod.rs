@@ -20,6 +20,9 @@ mod job;
 mod job_lines;
 mod json;
 mod lines;
+mod loop_scene;
+mod memory;
+mod mesh;
 mod method;
 mod names;
 mod original;
@@ -61,7 +64,7 @@ pub struct Cli {
 enum Command {
     /// Render a built-in scene from three distances, LOD beside BVH and full resolution
     Demo(demo::Args),
-    /// Make a procedural scene
+    /// Make a procedural scene, or a smooth one of a mesh by Loop subdivision
     Generate(generate::Args),
     /// Make a scene from a mesh (OBJ, PLY, glTF, GLB or STL)
     Build(build::Args),

@@ -20,6 +20,7 @@ pub enum Mark {
     Times,
     Pentagram,
     GreekCross,
+    Hexagon,
 }
 
 /// How a method is drawn.
@@ -41,11 +42,12 @@ const fn style(light: [u8; 3], dark: [u8; 3], mark: Mark) -> Style {
 }
 
 /// Methods by name.
-const KNOWN: [(&str, Style); 11] = [
+const KNOWN: [(&str, Style); 12] = [
     ("lod", style([15, 107, 189], [76, 173, 248], Mark::Circle)),
     ("bvh", style([193, 76, 2], [252, 154, 84], Mark::Square)),
     ("bvh6", style([155, 20, 89], [240, 123, 174], Mark::Star)),
     ("bvh32", style([128, 57, 158], [197, 149, 220], Mark::Diamond)),
+    ("binary16", style([41, 82, 2], [188, 253, 40], Mark::Hexagon)),
     ("discrete", style([14, 131, 97], [65, 206, 160], Mark::Triangle)),
     ("chunked", style([48, 32, 120], [132, 108, 252], Mark::Pentagram)),
     ("input-bvh", style([142, 113, 48], [228, 195, 71], Mark::Wye)),

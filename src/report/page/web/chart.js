@@ -1,10 +1,18 @@
 // Diagrams: Observable Plot draws, and every point is reached by pointer and by keyboard.
 
 /** Shapes of marks that Plot does not have by these names. */
-const SYMBOLS = { circle: "circle", square: "square", triangle: "triangle", diamond: "diamond", cross: "plus", star: "asterisk", wye: "wye", times: "times", pentagram: "star", greekcross: "cross" };
+const SYMBOLS = { circle: "circle", square: "square", triangle: "triangle", diamond: "diamond", cross: "plus", star: "asterisk", wye: "wye", times: "times", pentagram: "star", greekcross: "cross", hexagon: "hexagon" };
 const colour = (method) => `var(--method-${CSS.escape(method)})`;
 const symbol = (method) => SYMBOLS[page.palette.methods[method]?.mark] ?? "circle";
-const D3_SYMBOLS = { circle: d3.symbolCircle, square: d3.symbolSquare, triangle: d3.symbolTriangle, diamond: d3.symbolDiamond, plus: d3.symbolPlus, asterisk: d3.symbolAsterisk, wye: d3.symbolWye, times: d3.symbolTimes, star: d3.symbolStar, cross: d3.symbolCross };
+/** A hexagon of this area, which d3 does not have. */
+const HEXAGON = {
+  draw(context, size) {
+    const r = Math.sqrt(size / 2.6);
+    for (let k = 0; k < 6; k++) context[k ? "lineTo" : "moveTo"](r * Math.cos((k * Math.PI) / 3), r * Math.sin((k * Math.PI) / 3));
+    context.closePath();
+  },
+};
+const D3_SYMBOLS = { circle: d3.symbolCircle, square: d3.symbolSquare, triangle: d3.symbolTriangle, diamond: d3.symbolDiamond, plus: d3.symbolPlus, asterisk: d3.symbolAsterisk, wye: d3.symbolWye, times: d3.symbolTimes, star: d3.symbolStar, cross: d3.symbolCross, hexagon: HEXAGON };
 const STROKED = new Set(["plus", "asterisk", "times"]);
 
 /** A method's mark as a small drawing. */
