@@ -20,7 +20,7 @@ pub enum Mark {
     Times,
     Pentagram,
     GreekCross,
-    Hexagon,
+    Hourglass,
 }
 
 /// How a method is drawn.
@@ -47,7 +47,7 @@ const KNOWN: [(&str, Style); 12] = [
     ("bvh", style([193, 76, 2], [252, 154, 84], Mark::Square)),
     ("bvh6", style([155, 20, 89], [240, 123, 174], Mark::Star)),
     ("bvh32", style([128, 57, 158], [197, 149, 220], Mark::Diamond)),
-    ("binary16", style([41, 82, 2], [188, 253, 40], Mark::Hexagon)),
+    ("binary16", style([123, 16, 248], [234, 56, 172], Mark::Hourglass)),
     ("discrete", style([14, 131, 97], [65, 206, 160], Mark::Triangle)),
     ("chunked", style([48, 32, 120], [132, 108, 252], Mark::Pentagram)),
     ("input-bvh", style([142, 113, 48], [228, 195, 71], Mark::Wye)),
