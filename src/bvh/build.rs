@@ -9,7 +9,7 @@
 use super::Box32;
 use rayon::prelude::*;
 
-/// Bins per axis.
+/// Bins per axis, where nothing else is asked for.
 const BINS: usize = 16;
 /// Largest range whose splits are all tried.
 const SWEEP: usize = 6;
@@ -99,9 +99,9 @@ impl Extent {
 pub(crate) struct Node {
     /// Box of everything below.
     pub bounds: Box32,
-    /// Position where the lower range is split; unused if that is one primitive.
+    /// Position where the lower range is split; unused if that is a leaf.
     pub left: u32,
-    /// Position where the upper range is split; unused if that is one primitive.
+    /// Position where the upper range is split; unused if that is a leaf.
     pub right: u32,
     /// Most binary nodes on a path down from here, this one included.
     pub height: u8,
@@ -110,7 +110,7 @@ pub(crate) struct Node {
 /// What a subtree tells its parent.
 struct Below {
     bounds: Box32,
-    /// Where it is split; unused for one primitive.
+    /// Where it is split; unused for a leaf.
     split: u32,
     height: u8,
 }
@@ -124,18 +124,24 @@ pub(crate) struct Binary {
 /// Builds the tree over `prims` (not empty), which are put into leaf order.
 /// Paths hold at most `2 * depth` binary nodes, which must suffice for a balanced tree.
 pub(crate) fn binary_tree(prims: &mut [Prim], depth: u32) -> Binary {
+    binary_tree_of::<BINS>(prims, depth, 1)
+}
+
+/// The same with so many bins, and leaves of up to `leaf` primitives, 1 or more, which are not split further: their nodes are unused.
+pub(crate) fn binary_tree_of<const BINS: usize>(prims: &mut [Prim], depth: u32, leaf: usize) -> Binary {
     let mut nodes = vec![Node::default(); prims.len() - 1];
-    let root = subtree(prims, &mut nodes, 0, 2 * depth).split;
+    let root = subtree::<BINS>(prims, &mut nodes, 0, 2 * depth, leaf).split;
     Binary { nodes, root }
 }
 
 /// `begin`: position of the first of `prims` in the whole; `depth`: binary nodes allowed on a path from here.
-fn subtree(prims: &mut [Prim], nodes: &mut [Node], begin: u32, depth: u32) -> Below {
-    if let [p] = prims {
-        return Below { bounds: p.bounds(), split: begin, height: 0 };
-    }
+fn subtree<const BINS: usize>(prims: &mut [Prim], nodes: &mut [Node], begin: u32, depth: u32, leaf: usize) -> Below {
     let count = prims.len();
-    let mut mid = split(prims);
+    if count <= leaf {
+        let bounds = prims[1..].iter().fold(prims[0].bounds(), |all, prim| all.union(&prim.bounds()));
+        return Below { bounds, split: begin, height: 0 };
+    }
+    let mut mid = split::<BINS>(prims);
     // Each half must fit below a balanced tree of the remaining depth; `count` itself does.
     let room = 1usize << (depth.saturating_sub(1)).min(40);
     if mid.max(count - mid) > room {
@@ -146,8 +152,8 @@ fn subtree(prims: &mut [Prim], nodes: &mut [Node], begin: u32, depth: u32) -> Be
     let (node, upper_nodes) = rest.split_at_mut(1);
     let below = depth.saturating_sub(1);
     let middle = begin + mid as u32; // positions are at most 2^28
-    let mut left = || subtree(lower, lower_nodes, begin, below);
-    let mut right = || subtree(upper, upper_nodes, middle, below);
+    let mut left = || subtree::<BINS>(lower, lower_nodes, begin, below, leaf);
+    let mut right = || subtree::<BINS>(upper, upper_nodes, middle, below, leaf);
     let (l, r) = if count > PARALLEL { rayon::join(left, right) } else { (left(), right()) };
 
     let bounds = l.bounds.union(&r.bounds);
@@ -157,11 +163,11 @@ fn subtree(prims: &mut [Prim], nodes: &mut [Node], begin: u32, depth: u32) -> Be
 }
 
 /// Puts the primitives (at least two) into two parts and returns the size of the first, which is neither 0 nor all.
-fn split(prims: &mut [Prim]) -> usize {
+fn split<const BINS: usize>(prims: &mut [Prim]) -> usize {
     match prims.len() {
         2 => 1,
         n if n <= SWEEP => sweep(prims),
-        _ => binned(prims),
+        _ => binned::<BINS>(prims),
     }
 }
 
@@ -212,16 +218,16 @@ fn sweep(prims: &mut [Prim]) -> usize {
 
 /// Bins of the three axes.
 #[derive(Clone)]
-struct Bins {
+struct Bins<const BINS: usize> {
     extents: [[Extent; BINS]; 3],
     counts: [[u32; BINS]; 3],
 }
 
-impl Bins {
+impl<const BINS: usize> Bins<BINS> {
     const EMPTY: Self = Self { extents: [[Extent::EMPTY; BINS]; 3], counts: [[0; BINS]; 3] };
 
     #[inline(always)]
-    fn add(&mut self, prims: &[Prim], grid: &Grid) {
+    fn add(&mut self, prims: &[Prim], grid: &Grid<BINS>) {
         for p in prims {
             let [lo, hi] = p.corners();
             let bins = grid.bins(std::array::from_fn(|k| lo[k] + hi[k]));
@@ -273,12 +279,12 @@ impl Bins {
 }
 
 /// Maps centroids to bins.
-struct Grid {
+struct Grid<const BINS: usize> {
     origin: Lanes,
     scale: Lanes,
 }
 
-impl Grid {
+impl<const BINS: usize> Grid<BINS> {
     fn new(centroids: &Extent) -> Self {
         let scale = |k: usize| {
             let width = centroids.hi[k] - centroids.lo[k];
@@ -305,26 +311,26 @@ fn centroids(prims: &[Prim]) -> Extent {
 }
 
 /// Splits at the best border between bins.
-fn binned(prims: &mut [Prim]) -> usize {
+fn binned<const BINS: usize>(prims: &mut [Prim]) -> usize {
     // Minima, maxima and sums of integers do not depend on the order in which threads deliver them.
     let (grid, best) = if prims.len() > PARALLEL_BINS {
         let both = |mut a: Extent, b: Extent| {
             a.grow(b.lo, b.hi);
             a
         };
-        let grid = Grid::new(&prims.par_chunks(CHUNK).map(centroids).reduce(|| Extent::EMPTY, both));
+        let grid = Grid::<BINS>::new(&prims.par_chunks(CHUNK).map(centroids).reduce(|| Extent::EMPTY, both));
         let filled = prims.par_chunks(CHUNK).fold(
-            || Bins::EMPTY,
+            || Bins::<BINS>::EMPTY,
             |mut bins, chunk| {
                 bins.add(chunk, &grid);
                 bins
             },
         );
-        let best = filled.reduce(|| Bins::EMPTY, |a, b| a.merge(&b)).best();
+        let best = filled.reduce(|| Bins::<BINS>::EMPTY, |a, b| a.merge(&b)).best();
         (grid, best)
     } else {
-        let grid = Grid::new(&centroids(prims));
-        let mut bins = Bins::EMPTY;
+        let grid = Grid::<BINS>::new(&centroids(prims));
+        let mut bins = Bins::<BINS>::EMPTY;
         bins.add(prims, &grid);
         (grid, bins.best())
     };

@@ -4,21 +4,16 @@ use super::args::{levels, whole};
 use super::common::is_quiet;
 use super::info;
 use super::input::{FILE, InputFile};
+use super::mesh::{MeshArgs, Source};
 use super::names::named;
 use super::output::{busy, check_target, print_line, progress, warn};
 use anyhow::Context;
 use lodray::format::Scene;
-use lodray::mesh::{
-    BoundKind, DEFAULT_CREASE_ANGLE, DEFAULT_MAX_ERROR, MeshFormat, RemeshOptions, TriangleMesh, read, read_as, read_bytes,
-};
+use lodray::mesh::{BoundKind, DEFAULT_CREASE_ANGLE, DEFAULT_MAX_ERROR, RemeshOptions, TriangleMesh};
 use lodray::num::{BOX_SHIFT, MOST_DIRECTION_ZEROS, VertexForm};
 use lodray::scene::{BuildError, BuildOptions};
-use std::io::Read;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
-
-/// What stands for standard input.
-const STDIN: &str = "-";
 
 /// How a scene is stored.
 #[derive(clap::Args, Clone, Copy, Default)]
@@ -49,9 +44,8 @@ impl FormArgs {
 pub struct Args {
     /// Mesh file: OBJ, PLY, glTF, GLB or STL; - for standard input
     mesh: PathBuf,
-    /// Format of the mesh, whatever the file's ending; files that it names are looked for beside it, for standard input in the current folder
-    #[arg(long, value_parser = named::<MeshFormat>(), required_if_eq("mesh", STDIN))]
-    format: Option<MeshFormat>,
+    #[command(flatten)]
+    reading: MeshArgs,
     /// Number of 1-to-4 splits, 0 to 10 (default: as many as give the finest level once to twice the mesh's triangles; more triangles only where --max-error needs them)
     #[arg(long, value_parser = levels(), allow_negative_numbers = true)]
     levels: Option<u32>,
@@ -66,9 +60,6 @@ pub struct Args {
     crease_angle: f64,
     #[command(flatten)]
     form: FormArgs,
-    /// Make one vertex of those at open edges that are at most this far apart, in the mesh's own units
-    #[arg(long, value_name = "DISTANCE", value_parser = distance, allow_negative_numbers = true)]
-    weld: Option<f64>,
     /// Make it an error, and write nothing, if the result is further from the mesh than --max-error or has triangles that face away from it, or if anything of the file is lost
     #[arg(long)]
     strict: bool,
@@ -81,24 +72,12 @@ pub struct Args {
 }
 
 pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
-    let stdin = args.mesh.as_os_str() == STDIN;
-    let source = if stdin { Path::new("stdin") } else { &args.mesh };
-    check_target(&args.out, (!stdin).then_some(source).as_slice())?;
-    let mesh = busy("reading", || match args.format {
-        Some(format) if stdin => read_stdin(format, source),
-        Some(format) => Ok(read_as(source, format)?),
-        None => Ok(read(source)?),
-    })?;
-    let mesh = match args.weld {
-        Some(distance) => mesh.welded(distance).with_context(|| source.display().to_string())?,
-        None => mesh,
-    };
-    say(&mesh, source, args.strict)?;
-    // A pipe cannot be read twice, nor found again.
-    let format = args.format.or_else(|| MeshFormat::of(source)).filter(|_| !stdin && source.is_file());
+    let source = Source::new(&args.mesh);
+    check_target(&args.out, source.files())?;
+    let mesh = args.reading.read(&source, args.strict)?;
     let mut origin = serde_json::Map::new();
-    if let Some(format) = format {
-        origin.insert(FILE.to_owned(), serde_json::to_value(InputFile::of(source, format, args.weld)?)?);
+    if let Some((format, weld)) = args.reading.found_again(&source) {
+        origin.insert(FILE.to_owned(), serde_json::to_value(InputFile::of(source.path, format, weld)?)?);
     }
     let remesh = RemeshOptions {
         levels: args.levels,
@@ -107,11 +86,10 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
         reserve: 0.0,
         crease_angle: args.crease_angle,
     };
-    let name = source.file_stem().map_or_else(String::new, |s| s.to_string_lossy().into_owned());
-    let options = BuildOptions { remesh: Some(remesh), name, origin, ..args.form.options() };
-    let scene = with_progress(&mesh, &options).with_context(|| source.display().to_string())?;
+    let options = BuildOptions { remesh: Some(remesh), name: source.name(), origin, ..args.form.options() };
+    let scene = with_progress(&mesh, &options).with_context(|| source.path.display().to_string())?;
     if let Some(lost) = scene.meta().origin["remesh"]["warning"].as_str().filter(|_| args.strict) {
-        anyhow::bail!("{}: {lost}", source.display());
+        anyhow::bail!("{}: {lost}", source.path.display());
     }
     finish(&scene, &args.out, args.json)
 }
@@ -129,26 +107,6 @@ fn with_progress(mesh: &TriangleMesh, options: &BuildOptions) -> Result<Scene, B
     made
 }
 
-/// One line for each thing that was lost or changed when the mesh was read, and one for seams that could be closed; the first is an error if `strict`.
-fn say(mesh: &TriangleMesh, source: &Path, strict: bool) -> anyhow::Result<()> {
-    let seams = mesh
-        .seams()
-        .map(|seams| format!("{} of its {} open edges are seams: --weld {:e} closes them", seams.closed, seams.open, seams.distance));
-    for lost in mesh.warnings.iter().chain(&seams) {
-        anyhow::ensure!(!strict, "{}: {lost}", source.display());
-        warn(&format!("warning: {}: {lost}", source.display()));
-    }
-    Ok(())
-}
-
-/// A distance in the mesh's units.
-fn distance(s: &str) -> Result<f64, String> {
-    match s.parse::<f64>() {
-        Ok(v) if v > 0.0 && v.is_finite() => Ok(v),
-        _ => Err(format!("'{s}' is not a distance above 0")),
-    }
-}
-
 /// A largest error.
 fn percent(s: &str) -> Result<f64, String> {
     match s.trim_end_matches('%').parse::<f64>() {
@@ -163,12 +121,6 @@ fn crease(s: &str) -> Result<f64, String> {
         Ok(v) if (0.0..=180.0).contains(&v) => Ok(v),
         _ => Err(format!("'{s}' is not from 0 to 180 degrees")),
     }
-}
-
-fn read_stdin(format: MeshFormat, name: &Path) -> anyhow::Result<TriangleMesh> {
-    let mut bytes = Vec::new();
-    std::io::stdin().lock().read_to_end(&mut bytes).context("cannot read standard input")?;
-    Ok(read_bytes(&bytes, format, name, Path::new(""))?)
 }
 
 /// Saves a new scene and says what it holds.

@@ -19,7 +19,10 @@ mod generate;
 mod info;
 mod input;
 mod lines;
+mod loop_scene;
 mod machines;
+mod memory;
+mod mesh;
 mod method;
 mod names;
 mod original;
@@ -58,7 +61,7 @@ pub struct Cli {
 enum Command {
     /// Render a built-in scene from three distances, LOD beside BVH and full resolution
     Demo(demo::Args),
-    /// Make a procedural scene
+    /// Make a procedural scene, or a smooth one of a mesh by Loop subdivision
     Generate(generate::Args),
     /// Make a scene from a mesh (OBJ, PLY, glTF, GLB or STL)
     Build(build::Args),

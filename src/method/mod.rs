@@ -3,6 +3,7 @@
 //! Whatever runs a method knows it by the traits here and by its entry in [`METHODS`]; adding one touches its folder and that line. What methods share lies
 //! beside the folders: children of a node tested and sorted, hits kept, the stack.
 
+pub mod binary16;
 pub mod bvh;
 mod children;
 pub mod chunked;

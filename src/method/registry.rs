@@ -1,6 +1,6 @@
 //! All methods.
 
-use super::{Registered, bvh, chunked, discrete, grid, lod, reference};
+use super::{Registered, binary16, bvh, chunked, discrete, grid, lod, reference};
 
 /// Every method, in the order in which help names them.
 pub const METHODS: &[&Registered] = &[
@@ -8,6 +8,7 @@ pub const METHODS: &[&Registered] = &[
     &bvh::METHOD,
     &bvh::METHOD_SIX,
     &bvh::METHOD_WIDE,
+    &binary16::METHOD,
     &discrete::METHOD,
     &chunked::METHOD,
     &grid::METHOD,

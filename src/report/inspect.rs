@@ -194,6 +194,7 @@ mod tests {
             Step::of(Act::Children { shape: NodeShape::Plain, met: 0 }),
             Step::of(Act::Children { shape: NodeShape::Local, met: 1 }),
             Step::of(Act::Children { shape: NodeShape::Wide, met: 4 }),
+            Step::of(Act::Children { shape: NodeShape::Pair, met: 2 }),
             Step::of(Act::Children { shape: NodeShape::Prisms, met: 3 }),
             Step::of(Act::Children { shape: NodeShape::Six, met: 6 }),
             Step::of(Act::Children { shape: NodeShape::Turned, met: 5 }),
@@ -204,7 +205,7 @@ mod tests {
             Step::end(false, true),
         ];
         steps.into_iter().for_each(|step| words.step(step));
-        assert_eq!(words.text, "*c2@1.40.2 f@+1.40.2 r2.17:0.128.256 t s3.4 s x4:5 o d f@1.40.2 p0 l1 w4 g3 b6 e5 f@=1.40.2 k0:5 m h n");
+        assert_eq!(words.text, "*c2@1.40.2 f@+1.40.2 r2.17:0.128.256 t s3.4 s x4:5 o d f@1.40.2 p0 l1 w4 z2 g3 b6 e5 f@=1.40.2 k0:5 m h n");
     }
 
     #[test]

@@ -21,6 +21,7 @@ pub enum Mark {
     Pentagram,
     GreekCross,
     Hexagon,
+    Hourglass,
 }
 
 /// How a method is drawn.
@@ -42,11 +43,12 @@ const fn style(light: [u8; 3], dark: [u8; 3], mark: Mark) -> Style {
 }
 
 /// Methods by name.
-const KNOWN: [(&str, Style); 12] = [
+const KNOWN: [(&str, Style); 13] = [
     ("lod", style([15, 107, 189], [76, 173, 248], Mark::Circle)),
     ("bvh", style([193, 76, 2], [252, 154, 84], Mark::Square)),
     ("bvh6", style([155, 20, 89], [240, 123, 174], Mark::Star)),
     ("bvh32", style([128, 57, 158], [197, 149, 220], Mark::Diamond)),
+    ("binary16", style([123, 16, 248], [234, 56, 172], Mark::Hourglass)),
     ("discrete", style([14, 131, 97], [65, 206, 160], Mark::Triangle)),
     ("chunked", style([48, 32, 120], [132, 108, 252], Mark::Pentagram)),
     ("grid", style([13, 60, 47], [191, 255, 0], Mark::Hexagon)),

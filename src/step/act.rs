@@ -170,6 +170,7 @@ mod tests {
         let mut operations = Operations::default();
         let steps = [
             Step::on(fetch, Act::Children { shape: NodeShape::Wide, met: 1 }),
+            Step::on(fetch, Act::Children { shape: NodeShape::Pair, met: 2 }),
             Step::on(fetch, Act::Children { shape: NodeShape::Plain, met: 1 }),
             Step::on(fetch, Act::Children { shape: NodeShape::Local, met: 1 }),
             Step::on(fetch, Act::Children { shape: NodeShape::Tree, met: 1 }),
@@ -190,7 +191,7 @@ mod tests {
         let some: Vec<_> = operations.iter().filter(|&(_, n)| n > 0).map(|(operation, n)| (operation.name(), n)).collect();
         let wanted = [
             ("ray_setup", 1),
-            ("node_address", 32),
+            ("node_address", 36),
             ("child_test", 1),
             ("lod_test", 1),
             ("tessellate", 1),
@@ -200,8 +201,8 @@ mod tests {
             ("bary_map", 1),
             ("box_decode", 4),
             ("box_test", 20),
-            ("box_test32", 4),
-            ("child_sort", 3),
+            ("box_test32", 6),
+            ("child_sort", 4),
             ("box_decode8", 12),
             ("child_sort6", 2),
             ("tree_deciders", 1),

@@ -16,6 +16,8 @@ pub enum NodeShape {
     Local,
     /// 32-bit boxes.
     Wide,
+    /// 32-bit boxes of two children.
+    Pair,
     /// 16-bit boxes of six children that are stored in finer steps from the node's corner.
     Six,
     /// The same in a frame that the ray is first turned into.
@@ -39,7 +41,8 @@ pub struct ShapeFacts {
 
 impl NodeShape {
     /// All, in the order of their numbers.
-    pub const ALL: [Self; 8] = [Self::Tree, Self::Prisms, Self::Plain, Self::Local, Self::Wide, Self::Six, Self::Turned, Self::Instance];
+    pub const ALL: [Self; 9] =
+        [Self::Tree, Self::Prisms, Self::Plain, Self::Local, Self::Wide, Self::Pair, Self::Six, Self::Turned, Self::Instance];
 
     /// The shape's line of the table.
     #[inline(always)]
@@ -55,6 +58,12 @@ impl NodeShape {
                 path: &[(Operation::BoxDecode, 4), (Operation::BoxTest, 4), (Operation::ChildSort, 1)],
             },
             ShapeFacts { letter: 'w', words: "32-bit boxes", children: 4, path: &[(Operation::BoxTest32, 4), (Operation::ChildSort, 1)] },
+            ShapeFacts {
+                letter: 'z',
+                words: "32-bit boxes of two children",
+                children: 2,
+                path: &[(Operation::BoxTest32, 2), (Operation::ChildSort, 1)],
+            },
             ShapeFacts {
                 letter: 'b',
                 words: "16-bit boxes in finer steps",

@@ -56,6 +56,38 @@ fn generate_and_info() {
 }
 
 #[test]
+fn loop_surfaces_of_meshes() {
+    let desk = empty();
+    fs::write(desk.path("sheet.obj"), sheet(6)).unwrap();
+    let made = desk.json("generate loop sheet.obj --levels 4 -o sheet.lod");
+    assert_eq!((&made["name"], &made["levels"], &made["base_triangles"]), (&"sheet".into(), &4.into(), &72.into()));
+    assert_eq!(made["origin"]["generate"], serde_json::json!({ "scene": "loop", "levels": 4 }));
+    assert_eq!(made["origin"]["mesh"]["triangles_read"], 72);
+    // It was not built from that mesh: a BVH over it would hold another surface.
+    assert!(made["origin"]["file"].is_null());
+    assert!(desk.run("verify sheet.lod").ends_with("passed\n"));
+    for threads in [1, 2, 3] {
+        desk.run(&format!("generate loop sheet.obj --levels 4 --threads {threads} -o again.lod"));
+        assert!(fs::read(desk.path("again.lod")).unwrap() == fs::read(desk.path("sheet.lod")).unwrap(), "{threads} threads");
+    }
+    // Levels and forms as those of other scenes.
+    assert_eq!(desk.json("generate loop sheet.obj -o default.lod")["levels"], 3);
+    let exact = desk.json("generate loop sheet.obj --levels 2 --vertices exact --coordinate-zeros 4 -o exact.lod");
+    assert_eq!((&exact["vertices"], &exact["levels"]), (&"exact".into(), &2.into()));
+    // What the surface does not keep is said, or refused.
+    fs::write(desk.path("shaded.obj"), "v 0 0 0\nv 1 0 0\nv 0 1 0\nvn 0 0 1\nf 1//1 2//1 3//1\n").unwrap();
+    let (code, said) = desk.hear("generate loop shaded.obj -o shaded.lod --quiet");
+    assert!(code == 0 && said == "warning: shaded.obj: its shading normals are not kept: the subdivided surface has its own\n", "{said}");
+    let (code, said) = desk.hear("generate loop shaded.obj --strict -o none.lod");
+    assert!(code == 1 && said.starts_with("error: shaded.obj: its shading normals") && !desk.path("none.lod").exists(), "{said}");
+    // A seam is said with what closes it, and closed.
+    fs::write(desk.path("seam.obj"), "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 1 0 1e-6\nv 0 1 1e-6\nv 1 1 0\nf 1 2 3\nf 4 6 5\n").unwrap();
+    let (_, said) = desk.hear("generate loop seam.obj -o seam.lod --quiet");
+    assert!(said.contains("open edges are seams: --weld "), "{said}");
+    assert_eq!(desk.json("generate loop seam.obj --weld 1e-5 -o seam.lod")["base_vertices"], 4);
+}
+
+#[test]
 fn displacement_bounds_are_named_wherever_a_scene_is_told_of() {
     let desk = empty();
     for kind in ["largest", "total"] {

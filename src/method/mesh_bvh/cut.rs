@@ -43,7 +43,7 @@ pub fn check_hierarchy(hierarchy: &Hierarchy) -> Result<(), BvhError> {
 }
 
 /// The triangles of a hierarchy, on every level.
-pub(super) struct Corners<'a> {
+pub(in crate::method) struct Corners<'a> {
     pub points: &'a [[i32; 3]],
     pub trees: usize,
     pub levels: u32,

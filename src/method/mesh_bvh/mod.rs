@@ -6,8 +6,10 @@ mod full;
 mod leaves;
 mod store;
 
+pub(super) use cut::Corners;
 pub use cut::{check_hierarchy, cut_id, cut_triangle, level_ids};
 pub use file::TreeKey;
 pub use full::{FullBuilder, FullBvh, FullNodes, FullOptions, FullTree, NodeBoxes, NodeOrder};
+pub(super) use leaves::shared_vertices;
 pub use leaves::{Leaf, LeafLayout, Leaves};
 pub use store::{NoStore, TreeStore};

@@ -30,6 +30,7 @@ impl Shape {
                 let (angle, far) = (f64::from(k) * std::f64::consts::PI / 5.0, f64::from(r) * if k % 2 == 0 { 1.4 } else { 0.6 });
                 ((far * angle.sin()).round() as i32, (-far * angle.cos()).round() as i32)
             })),
+            Mark::Hourglass => outline(&[(-s, -r), (s, -r), (-s, r), (s, r)]),
             Mark::GreekCross => {
                 let (a, b) = (r / 3, r + 1);
                 outline(&[(-a, -b), (a, -b), (a, -a), (b, -a), (b, a), (a, a), (a, b), (-a, b), (-a, a), (-b, a), (-b, -a), (-a, -a)])

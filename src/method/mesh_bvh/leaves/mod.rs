@@ -114,7 +114,10 @@ impl Leaves {
             return Err(BvhError::OtherHierarchy);
         }
         let storage = match layout {
-            LeafLayout::Indexed => indexed(mesh, &ids),
+            LeafLayout::Indexed => {
+                let (triples, vertices) = shared_vertices(mesh, &ids);
+                Storage::Indexed { triples, vertices }
+            }
             LeafLayout::Packed => Storage::Packed(ids.par_iter().map(|&id| flat(mesh.triangle(id))).collect()),
             LeafLayout::Line => {
                 let line = |&id: &u32| {
@@ -287,8 +290,9 @@ fn flat([a, b, c]: [[i32; 3]; 3]) -> [i32; 9] {
     [a[0], a[1], a[2], b[0], b[1], b[2], c[0], c[1], c[2]]
 }
 
-/// Shares the vertices: those inside a tree by their place in its lattice, those on the borders of trees by position.
-fn indexed(mesh: &Corners<'_>, ids: &[u32]) -> Storage {
+/// An index triple for each of these triangles, in their order, and the vertices that they share, in the order in which they are first used: those inside a tree by their place in its
+/// lattice, those on the borders of trees by position.
+pub(in crate::method) fn shared_vertices(mesh: &Corners<'_>, ids: &[u32]) -> (Vec<[u32; 3]>, Vec<[i32; 3]>) {
     const UNUSED: u32 = u32::MAX;
     let m = 1u32 << mesh.levels;
     let border = |k: u32| [(k, 0), (0, k), (m - k, k)].map(|c| lattice::index(mesh.levels, c));
@@ -321,7 +325,7 @@ fn indexed(mesh: &Corners<'_>, ids: &[u32]) -> Storage {
         }
         *v = renamed[at];
     }
-    Storage::Indexed { triples, vertices }
+    (triples, vertices)
 }
 
 #[cfg(test)]

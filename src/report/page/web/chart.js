@@ -1,7 +1,18 @@
 // Diagrams: Observable Plot draws, and every point is reached by pointer and by keyboard.
 
-/** Shapes of marks that Plot does not have by these names. */
-const SYMBOLS = { circle: "circle", square: "square", triangle: "triangle", diamond: "diamond", cross: "plus", star: "asterisk", wye: "wye", times: "times", pentagram: "star", greekcross: "cross", hexagon: "hexagon" };
+/** Two triangles that meet in a point, of this area: neither Plot nor D3 has such a symbol. */
+const HOURGLASS = {
+  draw(context, size) {
+    const s = Math.sqrt(size / 2);
+    context.moveTo(-s, -s);
+    context.lineTo(s, -s);
+    context.lineTo(-s, s);
+    context.lineTo(s, s);
+    context.closePath();
+  },
+};
+/** Marks as Plot has them. */
+const SYMBOLS = { circle: "circle", square: "square", triangle: "triangle", diamond: "diamond", cross: "plus", star: "asterisk", wye: "wye", times: "times", pentagram: "star", greekcross: "cross", hexagon: "hexagon", hourglass: HOURGLASS };
 const colour = (method) => `var(--method-${CSS.escape(method)})`;
 const symbol = (method) => SYMBOLS[page.palette.methods[method]?.mark] ?? "circle";
 const D3_SYMBOLS = { circle: d3.symbolCircle, square: d3.symbolSquare, triangle: d3.symbolTriangle, diamond: d3.symbolDiamond, plus: d3.symbolPlus, asterisk: d3.symbolAsterisk, wye: d3.symbolWye, times: d3.symbolTimes, star: d3.symbolStar, cross: d3.symbolCross };
@@ -10,7 +21,7 @@ const STROKED = new Set(["plus", "asterisk", "times"]);
 /** A method's mark as a small drawing. */
 function swatch(method) {
   const name = symbol(method);
-  const path = d3.symbol(D3_SYMBOLS[name], 62)();
+  const path = d3.symbol(D3_SYMBOLS[name] ?? name, 62)();
   const paint = STROKED.has(name) ? `fill="none" stroke="${colour(method)}" stroke-width="2.2"` : `fill="${colour(method)}"`;
   const span = h("span", { "aria-hidden": "true" });
   span.innerHTML = `<svg width="16" height="16" viewBox="-8 -8 16 16"><path d="${path}" ${paint}/></svg>`;
