@@ -119,6 +119,7 @@ Keys of the description (scenes/*.toml are examples; every colour is linear):
   [[light]]           kind = \"point\" (position, intensity), \"area\" (corner, along, across, radiance; shines to along x across)
                       or \"sun\" (direction, which points towards the sun, half_angle in degrees, irradiance)
   [environment]       zenith, horizon, ground (radiance), up
+  With --machine, lines of several models have two kinds more: scene_node, boxes over models, and instance, where one stands.
 
 Example: lodray paths scenes/room.toml --compare
 ";
