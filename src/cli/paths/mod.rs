@@ -20,8 +20,7 @@ use lodray::paths::{Film, MOST_DEPTH, MOST_SAMPLES, Paths, SceneFile, Starts, li
 use lodray::picture::{compare, save_png};
 use lodray::rays::Camera;
 use lodray::run::Compute;
-use lodray::study::Cache;
-use lodray::study::Chosen;
+use lodray::study::{Cache, Chosen};
 use made::{camera, description, load, paths, world};
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
