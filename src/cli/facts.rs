@@ -4,8 +4,7 @@ use super::comparison::Against;
 use super::output::plain;
 use lodray::picture::{FrameStats, Shading};
 use lodray::rays::Camera;
-use lodray::study::Comparison;
-use lodray::study::grouped;
+use lodray::study::{Comparison, grouped};
 
 /// A picture's origin and figures.
 pub struct Facts<'a> {

@@ -15,8 +15,7 @@ use lodray::method::bvh::{
 use lodray::method::{Knobs, knob, lod};
 use lodray::picture::{FrameStats, distinct_lines, render};
 use lodray::rays::{Camera, ModelSpace, Sight};
-use lodray::study::grouped;
-use lodray::study::{Cache, Lookup};
+use lodray::study::{Cache, Lookup, grouped};
 use serde::Serialize;
 use std::path::PathBuf;
 use std::process::ExitCode;

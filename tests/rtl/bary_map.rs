@@ -5,7 +5,6 @@ use crate::suite::{Category, Suite};
 use lodray::block::Block;
 use lodray::block::bary_map::{BaryMap, In, Out};
 use lodray::num::{BARY_ONE, MAX_LEVELS, U};
-use tb::Mode;
 
 const HALF: u64 = BARY_ONE / 2;
 
@@ -108,12 +107,4 @@ pub fn suite(levels: u64) -> Suite<BaryMap> {
     )
 }
 
-#[test]
-fn free_running() {
-    suite(u64::from(MAX_LEVELS)).run(Mode::Free);
-}
-
-#[test]
-fn stalled() {
-    suite(u64::from(MAX_LEVELS)).run(Mode::Stalled);
-}
+crate::suite::modes!(suite(u64::from(MAX_LEVELS)));

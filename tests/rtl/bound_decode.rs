@@ -4,7 +4,6 @@ use crate::draw::Draw;
 use crate::suite::{Category, Suite};
 use lodray::block::bound_decode::{BoundDecode, In};
 use lodray::num::{BoundScale, MAX_BOUND_OFFSET, U};
-use tb::Mode;
 
 fn random(draw: &mut Draw) -> In {
     In { code: U::new(draw.below(256)), scale: draw.scale() }
@@ -70,12 +69,4 @@ pub fn suite() -> Suite<BoundDecode> {
     )
 }
 
-#[test]
-fn free_running() {
-    suite().run(Mode::Free);
-}
-
-#[test]
-fn stalled() {
-    suite().run(Mode::Stalled);
-}
+crate::suite::modes!(suite());

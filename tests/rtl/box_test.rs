@@ -6,7 +6,6 @@ use crate::suite::{Category, Suite};
 use lodray::block::Block;
 use lodray::block::box_test::{BoxTest, In};
 use lodray::num::{Box16, RayT, T_NEAR_TO_T_SHIFT, TNear, U};
-use tb::Mode;
 
 const SHIFT: u32 = 16;
 
@@ -81,12 +80,4 @@ pub fn suite() -> Suite<BoxTest> {
     )
 }
 
-#[test]
-fn free_running() {
-    suite().run(Mode::Free);
-}
-
-#[test]
-fn stalled() {
-    suite().run(Mode::Stalled);
-}
+crate::suite::modes!(suite());

@@ -7,7 +7,6 @@ use crate::suite::{Category, Suite};
 use lodray::block::Block;
 use lodray::block::box_test32::{BoxTest32, In};
 use lodray::num::{RayT, T_NEAR_TO_T_SHIFT, TNear, U};
-use tb::Mode;
 
 const SHIFT: u32 = 0;
 
@@ -73,12 +72,4 @@ pub fn suite() -> Suite<BoxTest32> {
     )
 }
 
-#[test]
-fn free_running() {
-    suite().run(Mode::Free);
-}
-
-#[test]
-fn stalled() {
-    suite().run(Mode::Stalled);
-}
+crate::suite::modes!(suite());

@@ -6,7 +6,6 @@ use crate::suite::{Category, Suite};
 use lodray::block::child_boxes::{ChildBoxes, In, Out};
 use lodray::block::tessellate::child_triangle;
 use lodray::num::{Box16, COORD_LIMIT, Point, U, Vec3};
-use tb::Mode;
 
 const LIMIT: i64 = 0x7FFE_0000;
 const _: () = assert!(LIMIT == COORD_LIMIT as i64);
@@ -217,12 +216,4 @@ pub fn suite() -> Suite<ChildBoxes> {
     )
 }
 
-#[test]
-fn free_running() {
-    suite().run(Mode::Free);
-}
-
-#[test]
-fn stalled() {
-    suite().run(Mode::Stalled);
-}
+crate::suite::modes!(suite());

@@ -8,7 +8,7 @@ use lodray::block::child_test::{ChildTest, In, Out};
 use lodray::block::ray_setup::{self, RaySetup};
 use lodray::block::{Block, BoxesPerCycle};
 use lodray::num::{Box16, BoxStep, COORD_LIMIT, Direction, Point, RayT, T_NEAR_TO_T_SHIFT, TNear, U, Vec3};
-use tb::{Build, Mode};
+use tb::Build;
 
 fn setup(origin: Point, direction: Direction) -> ray_setup::Out {
     RaySetup::eval(&ray_setup::In { origin, direction })
@@ -229,32 +229,6 @@ fn with(boxes: BoxesPerCycle) -> Suite<ChildTest> {
     Suite { build, timing: ChildTest::with_boxes(boxes), ..suite() }
 }
 
-#[test]
-fn four_boxes_per_cycle_free_running() {
-    with(BoxesPerCycle::Four).run(Mode::Free);
-}
-
-#[test]
-fn four_boxes_per_cycle_stalled() {
-    with(BoxesPerCycle::Four).run(Mode::Stalled);
-}
-
-#[test]
-fn two_boxes_per_cycle_free_running() {
-    with(BoxesPerCycle::Two).run(Mode::Free);
-}
-
-#[test]
-fn two_boxes_per_cycle_stalled() {
-    with(BoxesPerCycle::Two).run(Mode::Stalled);
-}
-
-#[test]
-fn one_box_per_cycle_free_running() {
-    with(BoxesPerCycle::One).run(Mode::Free);
-}
-
-#[test]
-fn one_box_per_cycle_stalled() {
-    with(BoxesPerCycle::One).run(Mode::Stalled);
-}
+crate::suite::modes!(four_boxes_per_cycle: with(BoxesPerCycle::Four));
+crate::suite::modes!(two_boxes_per_cycle: with(BoxesPerCycle::Two));
+crate::suite::modes!(one_box_per_cycle: with(BoxesPerCycle::One));

@@ -4,7 +4,6 @@ use crate::draw::Draw;
 use crate::suite::{Category, Suite};
 use lodray::block::hit_select::{HitSelect, In};
 use lodray::num::{MAX_LEVELS, U};
-use tb::Mode;
 
 /// Bits of the ids that the hardware has: 28 of the tree and two of each level.
 fn id_bits(draw: &Draw) -> u64 {
@@ -105,12 +104,4 @@ pub fn suite(levels: u64) -> Suite<HitSelect> {
     )
 }
 
-#[test]
-fn free_running() {
-    suite(u64::from(MAX_LEVELS)).run(Mode::Free);
-}
-
-#[test]
-fn stalled() {
-    suite(u64::from(MAX_LEVELS)).run(Mode::Stalled);
-}
+crate::suite::modes!(suite(u64::from(MAX_LEVELS)));

@@ -7,7 +7,7 @@ use lodray::block::bound_decode::{self, BoundDecode};
 use lodray::block::lod_test::{In, LodTest, Out};
 use lodray::block::{Block, Timing};
 use lodray::num::{BoundCode, BoundScale, Cone, Point, Ray, S_ONE, U};
-use tb::{Build, Mode};
+use tb::Build;
 
 /// Bound, distance l, displacement before its clamp, and state of edge `k`.
 struct Edge {
@@ -233,30 +233,5 @@ fn with(edges_per_cycle: u32, timing: Timing) -> Suite<LodTest> {
     Suite { build: Build::block::<LodTest>().parameter("EDGES_PER_CYCLE", edges_per_cycle), timing, ..suite() }
 }
 
-fn three_edges() -> Suite<LodTest> {
-    with(3, LodTest::THREE_EDGES)
-}
-
-fn one_edge() -> Suite<LodTest> {
-    with(1, LodTest::ONE_EDGE)
-}
-
-#[test]
-fn three_edges_per_cycle_free_running() {
-    three_edges().run(Mode::Free);
-}
-
-#[test]
-fn three_edges_per_cycle_stalled() {
-    three_edges().run(Mode::Stalled);
-}
-
-#[test]
-fn one_edge_per_cycle_free_running() {
-    one_edge().run(Mode::Free);
-}
-
-#[test]
-fn one_edge_per_cycle_stalled() {
-    one_edge().run(Mode::Stalled);
-}
+crate::suite::modes!(three_edges_per_cycle: with(3, LodTest::THREE_EDGES));
+crate::suite::modes!(one_edge_per_cycle: with(1, LodTest::ONE_EDGE));

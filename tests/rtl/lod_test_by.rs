@@ -7,7 +7,7 @@ use lodray::block::lod_test::LodTest;
 use lodray::block::lod_test_by::{In, LodTestBy};
 use lodray::block::{self, Block, Timing};
 use lodray::num::{Ray, U};
-use tb::{Build, Mode};
+use tb::Build;
 
 /// The triangle of a case of the one-ray test, whose ray is one of the three; the others are any.
 fn around(draw: &mut Draw, case: &block::lod_test::In, mut others: impl FnMut(&mut Draw) -> Ray) -> In {
@@ -92,30 +92,5 @@ fn with(edges_per_cycle: u32, timing: Timing) -> Suite<LodTestBy> {
     Suite { build: Build::block::<LodTestBy>().parameter("EDGES_PER_CYCLE", edges_per_cycle), timing, ..suite() }
 }
 
-fn three_edges() -> Suite<LodTestBy> {
-    with(3, LodTestBy::THREE_EDGES)
-}
-
-fn one_edge() -> Suite<LodTestBy> {
-    with(1, LodTestBy::ONE_EDGE)
-}
-
-#[test]
-fn three_edges_per_cycle_free_running() {
-    three_edges().run(Mode::Free);
-}
-
-#[test]
-fn three_edges_per_cycle_stalled() {
-    three_edges().run(Mode::Stalled);
-}
-
-#[test]
-fn one_edge_per_cycle_free_running() {
-    one_edge().run(Mode::Free);
-}
-
-#[test]
-fn one_edge_per_cycle_stalled() {
-    one_edge().run(Mode::Stalled);
-}
+crate::suite::modes!(three_edges_per_cycle: with(3, LodTestBy::THREE_EDGES));
+crate::suite::modes!(one_edge_per_cycle: with(1, LodTestBy::ONE_EDGE));

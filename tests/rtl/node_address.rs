@@ -4,7 +4,6 @@ use crate::draw::Draw;
 use crate::suite::{Category, Suite};
 use lodray::block::node_address::{In, NodeAddress};
 use lodray::num::{MAX_LEVELS, U};
-use tb::Mode;
 
 /// Line of a record, from its section's first record.
 fn line(i: &In) -> u64 {
@@ -80,12 +79,4 @@ pub fn suite(levels: u64) -> Suite<NodeAddress> {
     )
 }
 
-#[test]
-fn free_running() {
-    suite(u64::from(MAX_LEVELS)).run(Mode::Free);
-}
-
-#[test]
-fn stalled() {
-    suite(u64::from(MAX_LEVELS)).run(Mode::Stalled);
-}
+crate::suite::modes!(suite(u64::from(MAX_LEVELS)));

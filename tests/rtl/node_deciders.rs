@@ -5,7 +5,6 @@ use crate::suite::{Category, Suite};
 use lodray::block::node_deciders::{In, NodeDeciders};
 use lodray::block::tree_deciders;
 use lodray::num::U;
-use tb::Mode;
 
 fn of(draw: &mut Draw, level: u64, node: u64) -> In {
     let decider = |draw: &mut Draw| U::new(draw.below(4));
@@ -59,12 +58,4 @@ pub fn suite() -> Suite<NodeDeciders> {
     )
 }
 
-#[test]
-fn free_running() {
-    suite().run(Mode::Free);
-}
-
-#[test]
-fn stalled() {
-    suite().run(Mode::Stalled);
-}
+crate::suite::modes!(suite());

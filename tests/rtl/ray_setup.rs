@@ -6,7 +6,7 @@ use crate::suite::{Category, Suite};
 use lodray::block::ray_setup::{In, RaySetup};
 use lodray::block::{Block, Form};
 use lodray::num::Direction;
-use tb::{Build, Mode};
+use tb::Build;
 
 fn with(draw: &mut Draw, direction: Direction) -> In {
     In { origin: draw.point(POINT_MAX), direction }
@@ -128,32 +128,6 @@ fn of_bits(bits: u32) -> Suite<RaySetup> {
     Suite { build: Build::block::<RaySetup>().parameter("SETUP_BITS", bits as usize), timing, ..suite() }
 }
 
-#[test]
-fn three_bits_per_cycle_free_running() {
-    suite().run(Mode::Free);
-}
-
-#[test]
-fn three_bits_per_cycle_stalled() {
-    suite().run(Mode::Stalled);
-}
-
-#[test]
-fn two_bits_per_cycle_free_running() {
-    of_bits(2).run(Mode::Free);
-}
-
-#[test]
-fn two_bits_per_cycle_stalled() {
-    of_bits(2).run(Mode::Stalled);
-}
-
-#[test]
-fn one_bit_per_cycle_free_running() {
-    of_bits(1).run(Mode::Free);
-}
-
-#[test]
-fn one_bit_per_cycle_stalled() {
-    of_bits(1).run(Mode::Stalled);
-}
+crate::suite::modes!(three_bits_per_cycle: suite());
+crate::suite::modes!(two_bits_per_cycle: of_bits(2));
+crate::suite::modes!(one_bit_per_cycle: of_bits(1));

@@ -7,7 +7,7 @@ use lodray::block::hit_divide::HitDivide;
 use lodray::block::start_divide::{In, StartDivide};
 use lodray::block::{self, Block, Form};
 use lodray::num::{START_BITS, U, WU};
-use tb::{Build, Mode};
+use tb::Build;
 
 fn low(draw: &mut Draw) -> U<START_BITS> {
     match draw.below(4) {
@@ -91,32 +91,6 @@ fn of_bits(bits: u32) -> Suite<StartDivide> {
     Suite { build: Build::block::<StartDivide>().parameter("DIVIDE_BITS", bits as usize), timing, ..suite() }
 }
 
-#[test]
-fn three_bits_per_cycle_free_running() {
-    suite().run(Mode::Free);
-}
-
-#[test]
-fn three_bits_per_cycle_stalled() {
-    suite().run(Mode::Stalled);
-}
-
-#[test]
-fn two_bits_per_cycle_free_running() {
-    of_bits(2).run(Mode::Free);
-}
-
-#[test]
-fn two_bits_per_cycle_stalled() {
-    of_bits(2).run(Mode::Stalled);
-}
-
-#[test]
-fn one_bit_per_cycle_free_running() {
-    of_bits(1).run(Mode::Free);
-}
-
-#[test]
-fn one_bit_per_cycle_stalled() {
-    of_bits(1).run(Mode::Stalled);
-}
+crate::suite::modes!(three_bits_per_cycle: suite());
+crate::suite::modes!(two_bits_per_cycle: of_bits(2));
+crate::suite::modes!(one_bit_per_cycle: of_bits(1));

@@ -7,7 +7,7 @@ use lodray::block::ray_setup::RaySetup;
 use lodray::block::start_setup::{In, StartSetup};
 use lodray::block::{self, Block, Form};
 use lodray::num::{START_BITS, Start, U};
-use tb::{Build, Mode};
+use tb::Build;
 
 /// 31 bits of each coordinate: none, the least, the most, any.
 pub fn fraction(draw: &mut Draw) -> [U<START_BITS>; 3] {
@@ -83,22 +83,5 @@ fn of_bits(bits: u32) -> Suite<StartSetup> {
     Suite { build: Build::block::<StartSetup>().parameter("SETUP_BITS", bits as usize), timing, ..suite() }
 }
 
-#[test]
-fn three_bits_per_cycle_free_running() {
-    suite().run(Mode::Free);
-}
-
-#[test]
-fn three_bits_per_cycle_stalled() {
-    suite().run(Mode::Stalled);
-}
-
-#[test]
-fn one_bit_per_cycle_free_running() {
-    of_bits(1).run(Mode::Free);
-}
-
-#[test]
-fn one_bit_per_cycle_stalled() {
-    of_bits(1).run(Mode::Stalled);
-}
+crate::suite::modes!(three_bits_per_cycle: suite());
+crate::suite::modes!(one_bit_per_cycle: of_bits(1));

@@ -10,7 +10,7 @@ use lodray::block::tri_test::TriTest;
 use lodray::block::{self, Block, Timing};
 use lodray::method::leave;
 use lodray::num::{BARY_ONE, Bary, Direction, Point, START_BITS, Start, U};
-use tb::{Build, Mode};
+use tb::Build;
 
 /// One unit.
 const ONE: i128 = 1 << START_BITS;
@@ -259,30 +259,5 @@ fn with(edges_per_cycle: u32, timing: Timing) -> Suite<StartTest> {
     Suite { build: Build::block::<StartTest>().parameter("EDGES_PER_CYCLE", edges_per_cycle), timing, ..suite() }
 }
 
-fn three_edges() -> Suite<StartTest> {
-    with(3, StartTest::THREE_EDGES)
-}
-
-fn one_edge() -> Suite<StartTest> {
-    with(1, StartTest::ONE_EDGE)
-}
-
-#[test]
-fn three_edges_per_cycle_free_running() {
-    three_edges().run(Mode::Free);
-}
-
-#[test]
-fn three_edges_per_cycle_stalled() {
-    three_edges().run(Mode::Stalled);
-}
-
-#[test]
-fn one_edge_per_cycle_free_running() {
-    one_edge().run(Mode::Free);
-}
-
-#[test]
-fn one_edge_per_cycle_stalled() {
-    one_edge().run(Mode::Stalled);
-}
+crate::suite::modes!(three_edges_per_cycle: with(3, StartTest::THREE_EDGES));
+crate::suite::modes!(one_edge_per_cycle: with(1, StartTest::ONE_EDGE));

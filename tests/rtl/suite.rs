@@ -8,6 +8,29 @@ use std::ops::RangeInclusive;
 use std::time::Instant;
 use tb::{Build, Mode, Plan, check_block};
 
+/// The tests of a block's suite, free-running and with random stalls; of one of several in a module of its own.
+macro_rules! modes {
+    ($name:ident: $suite:expr) => {
+        mod $name {
+            use super::*;
+
+            crate::suite::modes!($suite);
+        }
+    };
+    ($suite:expr) => {
+        #[test]
+        fn free_running() {
+            $suite.run(tb::Mode::Free);
+        }
+
+        #[test]
+        fn stalled() {
+            $suite.run(tb::Mode::Stalled);
+        }
+    };
+}
+pub(crate) use modes;
+
 /// Events and spreads are looked for in so many inputs from the first on, and then in one of sixteen: they take long.
 const ALL_SEEN: u64 = 50_000;
 

@@ -6,7 +6,6 @@ use crate::suite::{Category, Coarsen, Suite};
 use lodray::block::tessellate::{In, Out, Tessellate};
 use lodray::hardware::Hardware;
 use lodray::num::{BoundCode, COORD_LIMIT, EdgeState, MAX_BOUND_OFFSET, MAX_DISPLACEMENT_SHIFT, MAX_LEVELS, Point, S_ONE, U};
-use tb::Mode;
 
 const LIMIT: i64 = 0x7FFE_0000;
 const _: () = assert!(LIMIT == COORD_LIMIT as i64);
@@ -235,12 +234,4 @@ pub fn suite(levels: u64, zeros: u64) -> Suite<Tessellate> {
     )
 }
 
-#[test]
-fn free_running() {
-    suite(u64::from(MAX_LEVELS), 0).run(Mode::Free);
-}
-
-#[test]
-fn stalled() {
-    suite(u64::from(MAX_LEVELS), 0).run(Mode::Stalled);
-}
+crate::suite::modes!(suite(u64::from(MAX_LEVELS), 0));

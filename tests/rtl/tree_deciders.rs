@@ -4,7 +4,6 @@ use crate::draw::{Draw, POINT_MAX};
 use crate::suite::{Category, Suite};
 use lodray::block::tree_deciders::{In, TreeDeciders};
 use lodray::num::{Point, U};
-use tb::Mode;
 
 /// Triangles of these corners.
 fn of(draw: &mut Draw, [a0, a1, a2]: [Point; 3], [p0, p1, p2]: [Point; 3]) -> In {
@@ -89,12 +88,4 @@ pub fn suite() -> Suite<TreeDeciders> {
     )
 }
 
-#[test]
-fn free_running() {
-    suite().run(Mode::Free);
-}
-
-#[test]
-fn stalled() {
-    suite().run(Mode::Stalled);
-}
+crate::suite::modes!(suite());

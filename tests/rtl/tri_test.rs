@@ -6,7 +6,7 @@ use crate::suite::{Category, Suite};
 use lodray::block::Timing;
 use lodray::block::tri_test::{In, TriTest};
 use lodray::num::{Direction, Point};
-use tb::{Build, Mode};
+use tb::Build;
 
 /// Corners of the exact cases are multiples of 2^FINE, so that points between them with weights of 2^-FINE are whole.
 const FINE: u32 = 8;
@@ -318,30 +318,5 @@ fn with(edges_per_cycle: u32, timing: Timing) -> Suite<TriTest> {
     Suite { build: Build::block::<TriTest>().parameter("EDGES_PER_CYCLE", edges_per_cycle), timing, ..suite() }
 }
 
-fn three_edges() -> Suite<TriTest> {
-    with(3, TriTest::THREE_EDGES)
-}
-
-fn one_edge() -> Suite<TriTest> {
-    with(1, TriTest::ONE_EDGE)
-}
-
-#[test]
-fn three_edges_per_cycle_free_running() {
-    three_edges().run(Mode::Free);
-}
-
-#[test]
-fn three_edges_per_cycle_stalled() {
-    three_edges().run(Mode::Stalled);
-}
-
-#[test]
-fn one_edge_per_cycle_free_running() {
-    one_edge().run(Mode::Free);
-}
-
-#[test]
-fn one_edge_per_cycle_stalled() {
-    one_edge().run(Mode::Stalled);
-}
+crate::suite::modes!(three_edges_per_cycle: with(3, TriTest::THREE_EDGES));
+crate::suite::modes!(one_edge_per_cycle: with(1, TriTest::ONE_EDGE));

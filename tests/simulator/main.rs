@@ -7,5 +7,6 @@ mod input;
 mod lines;
 mod own_method;
 mod simulate;
+mod study;
 mod sweep_jobs;
 mod trace;

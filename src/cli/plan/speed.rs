@@ -11,10 +11,7 @@ use lodray::plan::Speed;
 use lodray::rays::{ModelSpace, RaySource, Sight};
 use lodray::report::result::MachineFacts;
 use lodray::run::{self, Compute, FrameRays, HeldFrame};
-use lodray::study::Cache;
-use lodray::study::Chosen;
-use lodray::study::ViewJob;
-use lodray::study::count;
+use lodray::study::{Cache, Chosen, ViewJob, count};
 
 #[derive(clap::Args)]
 pub struct SpeedArgs {

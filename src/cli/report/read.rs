@@ -6,8 +6,7 @@ use crate::cli::output::busy;
 use anyhow::{Context, ensure};
 use lodray::report::error_time::{ErrorTime, KIND};
 use lodray::report::page::{DocumentFacts, Documents, PICTURE_BYTES, RunInput, embed, ledger};
-use lodray::study::fault_at;
-use lodray::study::results;
+use lodray::study::{fault_at, results};
 use serde::de::DeserializeOwned;
 use std::path::Path;
 

@@ -26,9 +26,7 @@ use lodray::report::result::SimResult;
 use lodray::run::{self, Compute};
 use lodray::scene::{Pass, PassRays, Target};
 use lodray::sim::replay::Window;
-use lodray::study::grouped;
-use lodray::study::in_machine;
-use lodray::study::pruned;
+use lodray::study::{grouped, in_machine, pruned};
 use std::path::PathBuf;
 use std::process::ExitCode;
 

@@ -6,8 +6,7 @@ use crate::rays::Camera;
 use crate::report::error_time::{Costs, Energy, WarmCosts};
 use crate::report::result::SimResult;
 use crate::scene::{Pass, PassRays};
-use crate::study::StudyError;
-use crate::study::Turning;
+use crate::study::{StudyError, Turning};
 
 /// The results of a stage on its machines; if there is a turn, with what a warm frame takes.
 pub(super) fn simulated(stage: &Stage<'_>, frame: &Camera, turning: Option<Turning>) -> Result<Vec<SimResult>, StudyError> {

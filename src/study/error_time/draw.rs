@@ -3,8 +3,7 @@
 use crate::method::Method;
 use crate::picture::{Sampled, Shader, compare, sampled};
 use crate::rays::{Camera, ModelSpace};
-use crate::study::Progress;
-use crate::study::StudyError;
+use crate::study::{Progress, StudyError};
 use image::RgbImage;
 
 /// What is drawn.

@@ -12,9 +12,7 @@ use crate::rays::{Camera, ModelSpace};
 use crate::report::error_time::LeftOut;
 use crate::report::result::MachineFacts;
 use crate::scene::Target;
-use crate::study::Chosen;
-use crate::study::StudyError;
-use crate::study::busy;
+use crate::study::{Chosen, StudyError, busy};
 use image::RgbImage;
 
 /// A scene with less in it, and its unit.

@@ -4,10 +4,7 @@ use crate::method::{ErrorKnob, Method};
 use crate::picture::{PIXELS_PER_DEGREE, Shading};
 use crate::rays::{MAX_PIXELS, MAX_SIDE, Sight};
 use crate::report::result::{MachineFacts, MethodFacts};
-use crate::study::Chosen;
-use crate::study::StudyError;
-use crate::study::Turning;
-use crate::study::{Jobs, SceneJobs, ViewJob};
+use crate::study::{Chosen, Jobs, SceneJobs, StudyError, Turning, ViewJob};
 use std::collections::{BTreeMap, HashSet};
 use xxhash_rust::xxh3::xxh3_64;
 

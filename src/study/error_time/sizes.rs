@@ -3,9 +3,7 @@
 use super::costs::{costs, simulated};
 use super::measure::Bench;
 use crate::report::error_time::SizeCosts;
-use crate::study::StudyError;
-use crate::study::ViewJob;
-use crate::study::at_once;
+use crate::study::{StudyError, ViewJob, at_once};
 
 /// Sizes of the frame at which methods are compared, where they are no larger than the view's own, which is the last.
 const SIZES: [[u32; 2]; 5] = [[128, 128], [256, 256], [512, 512], [1024, 1024], [1920, 1080]];
