@@ -1,4 +1,4 @@
-//! A binary BVH whose leaves have sixteen places for triangles: what von Buelow et al. measure their grids of triangles against ("Triangular grid primitives", 2024, section 3.1).
+//! A binary BVH whose leaves have sixteen places for triangles: what von Buelow measures grids of triangles against ("GPU Ray Tracing of Triangular Grid Primitives", 2024, section 3.1).
 //!
 //! The surface area heuristic over 256 bins splits triangles until no more than 16 are left. Nodes have boxes of full precision and stand depth first; leaves are padded to 16 index triples, so that
 //! nothing points to them; vertices are shared, 12 bytes each. A ray tests the boxes of both children of a node and goes on with the nearer one.

@@ -179,25 +179,27 @@ fn hits_are_those_of_the_quad_bvh_and_of_full_detail_in_every_field() {
             // A path that leaves the surface, to either side.
             let mut random = Random::of(4, number as u64);
             let [mut from, mut from_quad, mut from_full] = [None, None, None];
-            let mut next = *query;
+            let (mut next, mut is_finest) = (*query, true);
             for _ in 0..4 {
                 let landing = own.follow(&next, from.as_ref(), None);
                 let wanted = quad.follow(&next, from_quad.as_ref(), None);
-                let of_full = full.follow(&next, from_full.as_ref(), None);
                 assert_eq!(landing, wanted, "{name}: {next:?}");
-                if of_full.is_none_or(|landing| u32::from(landing.surface.level) == scene.levels()) {
-                    assert_eq!(landing.map(|landing| landing.surface), of_full.map(|landing| landing.surface), "{name}: {next:?}");
-                } else {
-                    break;
+                if is_finest {
+                    let of_full = full.follow(&next, from_full.as_ref(), None);
+                    is_finest = of_full.is_none_or(|landing| u32::from(landing.surface.level) == scene.levels());
+                    if is_finest {
+                        assert_eq!(landing.map(|landing| landing.surface), of_full.map(|landing| landing.surface), "{name}: {next:?}");
+                    }
+                    from_full = of_full.map(|landing| landing.departure);
                 }
-                let Some((landing, of_full)) = landing.zip(of_full) else { break };
+                let Some(landing) = landing else { break };
                 bounces += u32::from(from.is_some());
-                (from, from_quad, from_full) = (Some(landing.departure), wanted.map(|landing| landing.departure), Some(of_full.departure));
+                (from, from_quad) = (Some(landing.departure), wanted.map(|landing| landing.departure));
                 next = Query::new([0.0; 3], [(); 3].map(|()| random.signed()));
             }
         }
         println!("{name}: {hits} hits, {bounces} on the way from others, {finest} of finest triangles");
-        assert!(hits > 700 && bounces > 200 && finest > 500, "{name}: {hits}, {bounces}, {finest}");
+        assert!(hits > 500 && bounces > 200 && finest > 100, "{name}: {hits}, {bounces}, {finest}");
     }
 }
 
