@@ -58,7 +58,7 @@ impl Net {
     /// The net that one split makes of it: vertices keep their numbers, and those on edges follow in the order of edges.
     pub fn split(&self) -> Self {
         let first = self.positions.len() as u32;
-        let mut positions = self.weighted(|n| loop_weight(n), 1.0 / 8.0);
+        let mut positions = self.weighted(loop_weight, 1.0 / 8.0);
         let mut opposite = vec![[0.0; 3]; self.edges.len()];
         for (triangle, sides) in self.triangles.iter().zip(&self.sides) {
             for (&corner, &side) in triangle.iter().zip(sides) {

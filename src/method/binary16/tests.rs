@@ -224,7 +224,7 @@ fn steps_say_what_is_read() {
             assert_eq!(map.locate(fetch.line.into()).map(|(section, _)| section), Some(fetch.section));
             visits += usize::from(step.visits);
             if fetch.section == LEAVES {
-                assert!(step.visits && !fetch.joins && (fetch.line - map.first(LEAVES)) % 6 == 0 && fetch.lines <= 6);
+                assert!(step.visits && !fetch.joins && (fetch.line - map.first(LEAVES)).is_multiple_of(6) && fetch.lines <= 6);
                 let rest = steps[k + 1..].iter().take_while(|step| step.fetch.is_some_and(|fetch| fetch.section == VERTICES));
                 let rest: Vec<_> = rest.filter_map(|step| step.fetch).collect();
                 assert!(!rest.is_empty() && !rest[0].joins && rest[1..].iter().all(|fetch| fetch.joins));
