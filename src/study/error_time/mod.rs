@@ -31,7 +31,7 @@ use xxhash_rust::xxh3::xxh3_64;
 
 /// Measures the views of `plan` that `rows` has not yet, and adds a row for each; pictures go to `folder`. `is_input_found` says whether the mesh that a scene was
 /// built from is at hand, which errors are against then. Gives the names of all views of the plan, in its order: [`JobLines::of`] finds their rows, and
-/// [`document`] makes one of them.
+/// [`document()`] makes one of them.
 ///
 /// # Errors
 /// A row cannot be written, or what the methods of a scene need cannot be built. What fails of a view is a row of its own.
