@@ -1,10 +1,11 @@
-//! Grid primitives on this processor: bytes, seconds to build, and rays a second on one thread, beside the full-resolution BVH. One line of JSON for each.
+//! Grid primitives on this processor: bytes, seconds to build, and rays a second on one thread, beside the full-resolution BVH and the binary BVH that is their reference. One line of JSON for each.
 //!
 //! `cargo bench --bench grid -- SCENE.lod...`; `scripts/grid` makes tables of it. `LODRAY_GRID_SIZE` is the side of the frame (default 512), `LODRAY_GRID_DISTANCE` the camera's distance
 //! in radii (default 1.5).
 
 use lodray::format::Scene;
 use lodray::method::ClosestHit;
+use lodray::method::binary16::{self, FloatTree, Traverser, Tree};
 use lodray::method::bvh::{BvhTraverser, FullBvh, FullOptions, LeafLayout, NodeBoxes, bvh_map};
 use lodray::method::floats::FloatRay;
 use lodray::method::grid::{Caps, FloatGrid, GridMesh, GridOptions, GridTraverser, PointForm, Width};
@@ -74,6 +75,25 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         tell("bvh", json!({"build": build, "seconds": seconds, "hits": hits, "bytes": sections(&bvh_map(&[&bvh]))}));
         drop(traverser);
         drop(bvh);
+
+        let (build, tree) = best(|| Tree::new(&h));
+        let tree = tree?;
+        let mut traverser = Traverser::new(&tree, binary16::memory(&tree));
+        let (seconds, hits) = rate(&rays, |ray| {
+            let mut hit = ClosestHit::new(h.levels);
+            traverser.trace(ray, None, &mut NoSteps, &mut hit);
+            hit.record().is_some()
+        });
+        let mut float = FloatTree::new(&tree);
+        let (float_seconds, float_hits) = best(|| float.hits(&floats));
+        let bytes = sections(&binary16::memory(&tree));
+        tell(
+            "binary16",
+            json!({"build": build, "seconds": seconds, "hits": hits, "float_seconds": float_seconds, "float_hits": float_hits, "bytes": bytes}),
+        );
+        drop(traverser);
+        drop(float);
+        drop(tree);
 
         for splits in 1..=4 {
             for left_out in 0..=splits {
