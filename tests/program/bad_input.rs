@@ -176,7 +176,7 @@ fn numbers() {
         ("generate sphere --roughness 2 -o new.lod", USAGE, "'2' for '--roughness"),
         ("generate sphere good.obj -o new.lod", FAILS, "sphere is made of no mesh, only loop is"),
         ("generate sphere --weld 0.1 -o new.lod", USAGE, "MESH"),
-        ("generate loop -o new.lod", USAGE, "<MESH>"),
+        ("generate loop -o new.lod", USAGE, "MESH"),
         ("generate loop missing.obj -o new.lod", FAILS, "missing.obj: No such file"),
         ("generate loop nan.obj -o new.lod", FAILS, "nan.obj: line 2: v: nan is not finite"),
         ("generate loop good.lod -o new.lod", FAILS, "good.lod: unknown kind of mesh file"),
