@@ -16,7 +16,14 @@ use std::path::PathBuf;
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 // A list has keys where the command line has options.
 #[error("{}", .0.to_string().replace("--", ""))]
-pub struct ViewError(#[from] CameraError);
+pub struct ViewError(CameraError);
+
+// The camera's own words would be said again as a cause.
+impl From<CameraError> for ViewError {
+    fn from(error: CameraError) -> Self {
+        Self(error)
+    }
+}
 
 /// Why something was not measured.
 #[derive(Debug, thiserror::Error)]

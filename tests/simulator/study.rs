@@ -103,7 +103,7 @@ fn a_job_is_that_of_a_sweep_and_what_fails_is_a_row() {
     let desk = with_scene();
     desk.write(
         "jobs.toml",
-        "size = \"16x16\"\ndistances = [4]\nmethods = [\"lod\", \"bvh\"]\n[[scene]]\nfile = \"a.lod\"\n[[machine]]\nname = \"packet\"\ncompute = [\"free\"]\n",
+        "size = \"16x16\"\ndistances = [4]\nmethods = [\"lod\", \"bvh\"]\ncompute = [\"free\"]\n[[scene]]\nfile = \"a.lod\"\n[[machine]]\nname = \"packet\"\n",
     );
     desk.run("sweep jobs.toml -o by-program");
     let (told, jobs) = (Told::default(), jobs(&desk.path("a.lod")));

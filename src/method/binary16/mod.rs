@@ -5,29 +5,22 @@
 //! Triangles, and so hits, are those of [`bvh`](super::bvh). [`Tree`] is the structure, [`Traverser`] has its rays.
 
 mod float;
+mod map;
 #[cfg(test)]
 mod tests;
 mod trace;
 mod tree;
 
 pub use float::FloatTree;
+pub use map::memory;
 pub use trace::Traverser;
 pub use tree::Tree;
 
 use super::bvh::BvhTraverser;
 use super::{ClosestHit, Departure, Landing, Method, MethodUnit, Registered, SurfaceHit, Trace, Tracer};
 use crate::block::Operation;
-use crate::num::LINE_BYTES;
 use crate::rays::{ModelSpace, Query, Sight};
-use crate::step::{MemoryMap, Section, SectionId, StepSink};
-use tree::{LEAF_LINES, NODE_LINES, TRIPLE_BYTES};
-
-/// Nodes.
-const NODES: SectionId = SectionId::new(0);
-/// Index triples of leaves.
-const LEAVES: SectionId = SectionId::new(1);
-/// Vertices.
-const VERTICES: SectionId = SectionId::new(2);
+use crate::step::{MemoryMap, StepSink};
 
 /// Operations of a unit for its rays: the boxes of both children at once, then their order.
 const UNIT: [Operation; 8] = [
@@ -77,20 +70,6 @@ impl Method for Binary16 {
             ("bytes a triangle", share(self.tree.bytes(), triangles)),
         ]
     }
-}
-
-/// Where the lines of a tree lie.
-///
-/// # Panics
-/// It has more than can be numbered: more than 2^28 triangles.
-pub fn memory(tree: &Tree) -> MemoryMap {
-    let sections = [
-        Section::of_bytes("bvh_node", NODE_LINES * LINE_BYTES * tree.nodes.len() as u64),
-        Section::of_bytes("leaf", LEAF_LINES * LINE_BYTES * tree.leaves() as u64),
-        Section::of_bytes("vertex_data", TRIPLE_BYTES * tree.vertices.len() as u64),
-    ];
-    // Of each of at most 2^28 triangles at worst a leaf of six lines, two nodes and two lines of vertices.
-    MemoryMap::new(&sections, Some((NODES, NODE_LINES as u32))).expect("fewer than 2^32 lines")
 }
 
 /// Its rays.

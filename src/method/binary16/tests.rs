@@ -1,5 +1,6 @@
 //! The structure read back, its bytes and lines, and its hits against those of other methods.
 
+use super::map::{LEAVES, VERTICES};
 use super::tree::{Kind, LEAF};
 use super::*;
 use crate::bvh::Box32;

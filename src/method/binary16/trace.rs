@@ -1,7 +1,7 @@
 //! Rays through the structure: the nearer child first, boxes and triangles exact.
 
+use super::map::{LEAVES, NODES, VERTICES};
 use super::tree::{Kind, LEAF, LEAF_LINES, NODE_LINES, TRIPLE_BYTES, Tree};
-use super::{LEAVES, NODES, VERTICES};
 use crate::block::Block;
 use crate::block::box_test32::{self, BoxTest32};
 use crate::block::child_sort;
