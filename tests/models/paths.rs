@@ -584,5 +584,5 @@ fn bad_descriptions_are_one_line_that_names_file_and_key() {
     let of = &result[2]["setup"]["scene"];
     assert_eq!((of["name"].as_str(), of["base_triangles"].as_u64()), (Some("a.toml, 2 models"), Some(116)), "{of}");
     let of = &result[2]["operations"];
-    assert!(of["instance_transform"].as_u64() > Some(0) && of["ray_setup"].as_u64() > of["instance_transform"].as_u64(), "{of}");
+    assert!(of["instance_transform"].as_u64() > Some(0) && of["start_setup"].as_u64() > of["instance_transform"].as_u64(), "{of}");
 }
