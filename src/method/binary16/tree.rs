@@ -65,7 +65,7 @@ pub struct Tree {
     pub levels: u32,
     /// Nodes, depth first; the first is the root.
     pub nodes: Vec<Node>,
-    /// Indices of the vertices of triangles, [`LEAF`] triples for each leaf.
+    /// Indices of the vertices of triangles, 16 triples for each leaf.
     pub triples: Vec<[u32; 3]>,
     /// Vertices, in the order in which leaves first use them.
     pub vertices: Vec<[i32; 3]>,
@@ -78,7 +78,7 @@ pub struct Tree {
 }
 
 impl Tree {
-    /// Builds it: the surface area heuristic over 256 bins down to [`LEAF`] triangles, split until none has more.
+    /// Builds it: the surface area heuristic over 256 bins down to 16 triangles, split until none has more.
     ///
     /// # Errors
     /// No or too many triangles, too many levels, points missing or beyond the coordinate limit.
