@@ -6,7 +6,7 @@ use crate::cli::folder::{Overrule, one_run};
 use crate::cli::frames::TurnArgs;
 use crate::cli::input::{InputArgs, mesh_of, with_input_if_found};
 use crate::cli::machines::{machine, machine_files};
-use crate::cli::method::{Listed, machine_methods};
+use crate::cli::method::{Listed, compared_methods, machine_methods};
 use crate::cli::names::named;
 use crate::cli::output::open;
 use crate::cli::plan::pixels;
@@ -52,7 +52,7 @@ pub struct Args {
     /// Distances of the eye in bounding radii, with commas (default: eight from 1 to 64; 2, 8 and 32 with --quick)
     #[arg(long, value_name = "RADII", value_delimiter = ',', value_parser = radii)]
     distances: Vec<f64>,
-    /// Methods, with commas (default: all that are hardware)
+    /// Methods, with commas (default: all that are hardware, but binary16)
     #[arg(long, value_name = "METHOD", value_delimiter = ',', value_parser = method)]
     methods: Vec<Listed>,
     /// Values of a knob by which methods trade error for cost, such as delta=0.5,1,2, in place of their own sweep; may be repeated
@@ -231,7 +231,7 @@ impl Args {
             files.extend(machine_files(name, &machine)?);
         }
         let methods: Vec<_> = match &self.methods[..] {
-            [] => machine_methods().map(Chosen::plain).collect(),
+            [] => compared_methods().map(Chosen::plain).collect(),
             given => given.iter().map(|&Listed(method)| Chosen::plain(method)).collect(),
         };
         Ok(Jobs { files, ..Jobs::new(scenes, methods, targets) })

@@ -11,8 +11,16 @@ const HOURGLASS = {
     context.closePath();
   },
 };
+/** A hexagon of this area. */
+const HEXAGON = {
+  draw(context, size) {
+    const r = Math.sqrt((2 * size) / (3 * Math.sqrt(3)));
+    for (let k = 0; k < 6; k++) context[k === 0 ? "moveTo" : "lineTo"](r * Math.sin((k * Math.PI) / 3), -r * Math.cos((k * Math.PI) / 3));
+    context.closePath();
+  },
+};
 /** Marks as Plot has them. */
-const SYMBOLS = { circle: "circle", square: "square", triangle: "triangle", diamond: "diamond", cross: "plus", star: "asterisk", wye: "wye", times: "times", pentagram: "star", greekcross: "cross", hexagon: "hexagon", hourglass: HOURGLASS };
+const SYMBOLS = { circle: "circle", square: "square", triangle: "triangle", diamond: "diamond", cross: "plus", star: "asterisk", wye: "wye", times: "times", pentagram: "star", greekcross: "cross", hexagon: HEXAGON, hourglass: HOURGLASS };
 const colour = (method) => `var(--method-${CSS.escape(method)})`;
 const symbol = (method) => SYMBOLS[page.palette.methods[method]?.mark] ?? "circle";
 const D3_SYMBOLS = { circle: d3.symbolCircle, square: d3.symbolSquare, triangle: d3.symbolTriangle, diamond: d3.symbolDiamond, plus: d3.symbolPlus, asterisk: d3.symbolAsterisk, wye: d3.symbolWye, times: d3.symbolTimes, star: d3.symbolStar, cross: d3.symbolCross };
