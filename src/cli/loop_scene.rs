@@ -22,8 +22,8 @@ pub fn make(source: &Source, reading: &MeshArgs, levels: u32, form: FormArgs, st
     let triangles = mesh.triangles.len() as u64;
     let name = || source.path.display().to_string();
     check_loop(triangles, levels).with_context(name)?;
-    // Measured: the last net, its limit, and the surface together at their peak.
-    const BYTES_PER_TRIANGLE: u64 = 100;
+    // The last net, its limit and the surface together at their peak: 101 were measured on a scan of 69,451 triangles, split three times.
+    const BYTES_PER_TRIANGLE: u64 = 105;
     check_memory(levels, triangles << (2 * levels), BYTES_PER_TRIANGLE, "take fewer levels or a smaller mesh").with_context(name)?;
     let surface = busy("subdividing", || loop_surface(&mesh, levels)).with_context(name)?;
     let form = BuildOptions { name: source.name(), ..form.options() }
