@@ -2,7 +2,7 @@
 
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser, ValueParser};
 use clap::{Arg, ArgMatches, Args, Command, FromArgMatches};
-use lodray::method::{Knob, Knobs, METHODS, Registered, binary16, find, lod};
+use lodray::method::{Knob, Knobs, METHODS, Registered, binary16, find, grid, lod};
 use lodray::study::Chosen;
 use serde::de::Error as _;
 use serde::{Deserialize, Deserializer};
@@ -35,9 +35,9 @@ pub fn machine_methods() -> impl Iterator<Item = &'static Registered> {
     METHODS.iter().copied().filter(|method| method.unit.is_some())
 }
 
-/// Those that are compared where none is named: without the one that is there for a paper's ratios alone.
+/// Those that are compared where none is named: without the system of a paper on grids and its reference, whose sweeps take long and whose columns no page has room for.
 pub fn compared_methods() -> impl Iterator<Item = &'static Registered> {
-    machine_methods().filter(|&method| *method != binary16::METHOD)
+    machine_methods().filter(|&method| *method != binary16::METHOD && *method != grid::METHOD)
 }
 
 /// The methods whose triangles are the scene's own.

@@ -50,7 +50,7 @@ fn a_large_page_is_light_and_opens_soon() {
     let (desk, document) = desk();
     let large = document::enlarged(&document, desk.folder(), 3, 8, 512);
     let pictures = embed(&large.pictures, desk.folder(), PICTURE_BYTES).unwrap();
-    assert_eq!(pictures.len(), 3 * 8 * 20);
+    assert_eq!(pictures.len(), 3 * 8 * 16);
     let text = page(&Documents { title: "large".to_owned(), error_time: Some(large), pictures, ..Documents::default() }).unwrap();
     assert!(text.len() < 10_000_000, "{} bytes", text.len());
     desk.write("large.html", &text);
