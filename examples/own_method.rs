@@ -6,7 +6,7 @@ use lodray::bvh::BvhError;
 use lodray::format::Scene;
 use lodray::machine::Machine;
 use lodray::mesh::procedural::{self, Options};
-use lodray::method::{Before, Knobs, Method, Registered, Tracer, bvh::TreeStore, chunked};
+use lodray::method::{Before, Knobs, Method, Over, Registered, Tracer, bvh::TreeStore, chunked};
 use lodray::rays::{Camera, ModelSpace, Sight, View};
 use lodray::run::Compute;
 use lodray::scene::PassRays;
@@ -25,7 +25,7 @@ pub static METHOD: Registered = Registered {
     help: "Levels by object, unpacked before the frame",
     knobs: chunked::METHOD.knobs,
     error: chunked::METHOD.error,
-    of_input: false,
+    over: Over::Scene,
     unit: None,
     works: &[Work { name: "unpack_line", products: &[[12, 16, 16]], add_bits: 12 * 32, select_bits: 256, written_bits: 256 }],
     make: |scene, knobs, store| Unpacked::of(scene, knobs, store),

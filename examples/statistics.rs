@@ -32,7 +32,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     let space = ModelSpace::of(&scene);
     let camera = Camera::new(&View { distance: Some(2.0), ..View::default() }, &space, 64, 64)?;
     let sight = Sight::new(&camera, &space, 1.0);
-    for registered in METHODS.iter().filter(|method| !method.of_input) {
+    for registered in METHODS.iter().filter(|method| !method.of_input()) {
         let method = scene.method(registered.name)?;
         let mut tracer = method.method().tracer(&sight);
         let mut runs = Runs::default();

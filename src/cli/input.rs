@@ -4,6 +4,7 @@ use super::output::{busy, remark};
 use anyhow::Context;
 use lodray::format::Scene;
 use lodray::mesh::{MeshFormat, read_as};
+use lodray::method::Over;
 use lodray::scene::BuildOptions;
 use lodray::study::Chosen;
 use serde::{Deserialize, Serialize};
@@ -71,16 +72,18 @@ pub fn is_found(scene: &Path, args: &InputArgs) -> bool {
     record.is_some_and(|file| file.find(scene, &args.mesh).is_some())
 }
 
-/// The scene with the mesh that it was built from at hand, if one of the methods needs it.
+/// The scene with the mesh that it was built from at hand, if one of the methods needs it, or takes it where it is found.
 ///
 /// # Errors
 /// The scene does not say which mesh that is, or it is not where it is looked for.
 pub fn with_input<'a>(scene: Scene, path: &Path, args: &InputArgs, methods: impl IntoIterator<Item = &'a Chosen>) -> anyhow::Result<Scene> {
-    match methods.into_iter().find(|chosen| chosen.method.of_input) {
+    let mut takes = false;
+    match methods.into_iter().inspect(|chosen| takes |= chosen.method.over == Over::Either).find(|chosen| chosen.method.of_input()) {
         Some(chosen) => match mesh_of(&scene, path, args) {
             Ok(input) => Ok(scene.with_input(input)),
             Err(why) => Err(why.context(format!("--method {}", chosen.method.name))),
         },
+        None if takes => with_input_if_found(scene, path, args, "clusters are of the finest level"),
         None => Ok(scene),
     }
 }

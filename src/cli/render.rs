@@ -140,7 +140,7 @@ impl Subject {
 
     /// The frame of the first camera, the picture of the other.
     fn shoot(&self, method: &dyn Method, shading: Shading, cameras: [&Camera; 2], delta: f64, what: &str) -> Shot {
-        Shot::of(method, &Shader::new(&self.scene, &self.space, shading), &self.space, cameras, delta, (what, &Bars))
+        Shot::of(method, &Shader::new(method.surface(&self.scene), &self.space, shading), &self.space, cameras, delta, (what, &Bars))
     }
 }
 
@@ -183,6 +183,7 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
     let shot = shown.shoot(&*method, args.shading, cameras, delta, "tracing");
     let seconds = Seconds { building, tracing: begun.elapsed().as_secs_f64() };
     let choices = method.choices(&Sight::new(&camera, &shown.space, delta));
+    let surface = method.surface(&shown.scene).clone();
     drop(method);
 
     let truth = if args.compare {
@@ -205,7 +206,7 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
         error: truth.as_ref().map(|(against, _, error)| (*against, error)),
     };
     let true_image = truth.as_ref().map(|(against, image, _)| (*against, image));
-    save(&shot, true_image, &shown.scene, &facts, folder.staging())?;
+    save(&shot, true_image, &surface, &facts, folder.staging())?;
     folder.finish()?;
 
     let (against, error) = truth.map(|(against, _, error)| (against, error)).unzip();

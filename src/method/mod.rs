@@ -7,6 +7,7 @@ pub mod binary16;
 pub mod bvh;
 mod children;
 pub mod chunked;
+pub mod cluster;
 pub mod discrete;
 pub mod floats;
 pub mod grid;
@@ -17,6 +18,7 @@ pub mod lod;
 mod mesh_bvh;
 mod normal;
 mod prior;
+mod recent;
 pub mod reference;
 mod registry;
 mod stack;
@@ -56,6 +58,17 @@ pub struct Computing {
     pub works: &'static [Work],
 }
 
+/// Whose triangles a method is over.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Over {
+    /// The scene's own.
+    Scene,
+    /// Those of the mesh that the scene was made from, which must be at hand ([`Scene::input`]).
+    Input,
+    /// Those of that mesh if it is at hand, otherwise the scene's finest.
+    Either,
+}
+
 /// A method in the registry.
 pub struct Registered {
     /// Its name in options and reports.
@@ -66,8 +79,8 @@ pub struct Registered {
     pub knobs: &'static [&'static Knob],
     /// The knob by which error is traded for cost; none if there is no error to trade.
     pub error: Option<ErrorKnob>,
-    /// Its triangles are those of the mesh that the scene was made from, which must be at hand ([`Scene::input`]).
-    pub of_input: bool,
+    /// Whose triangles it is over.
+    pub over: Over,
     /// A unit for its rays; none if it is no hardware.
     pub unit: Option<MethodUnit>,
     /// Operations of its own that no block does, by the number that steps name them by; few methods have any.
@@ -86,6 +99,11 @@ pub trait Method: Send + Sync {
 
     /// Traces one ray after the other; one for each thread.
     fn tracer(&self, sight: &Sight) -> Box<dyn Tracer + '_>;
+
+    /// The scene whose triangles its hits name, with their normals and materials: `scene`, for which it was made, where they are that one's.
+    fn surface<'a>(&'a self, scene: &'a Scene) -> &'a Scene {
+        scene
+    }
 
     /// Rays may start on the surface that it finds, exactly where others met it ([`Tracer::follow`]).
     fn leaves(&self) -> bool {
@@ -119,6 +137,11 @@ pub trait Before: Sync {
 }
 
 impl Registered {
+    /// It is over the mesh that a scene was made from, which must be at hand.
+    pub fn of_input(&self) -> bool {
+        self.over == Over::Input
+    }
+
     /// It has a knob of this name.
     pub fn has(&self, knob: &str) -> bool {
         self.knobs.iter().any(|own| own.name == knob)

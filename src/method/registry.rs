@@ -1,6 +1,6 @@
 //! All methods.
 
-use super::{Registered, binary16, bvh, chunked, discrete, grid, lod, reference};
+use super::{Registered, binary16, bvh, chunked, cluster, discrete, grid, lod, reference};
 
 /// Every method, in the order in which help names them.
 pub const METHODS: &[&Registered] = &[
@@ -12,6 +12,8 @@ pub const METHODS: &[&Registered] = &[
     &discrete::METHOD,
     &chunked::METHOD,
     &grid::METHOD,
+    &cluster::METHOD,
+    &cluster::METHOD_PAPER,
     &bvh::METHOD_INPUT,
     &bvh::METHOD_INPUT_SIX,
     &bvh::METHOD_INPUT_WIDE,

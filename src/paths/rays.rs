@@ -40,7 +40,7 @@ impl Frame for PathFrame<'_> {
         self.paths.camera.batches()
     }
 
-    fn worker(&self) -> Box<dyn Worker + '_> {
+    fn worker(&self, _: usize) -> Box<dyn Worker + '_> {
         Box::new(PathWorker { tracer: self.paths.tracer(), paths: self.paths, memory: &self.memory })
     }
 

@@ -8,7 +8,7 @@ use super::memory::WorldMemory;
 use crate::format::Scene;
 use crate::method::leave::side;
 use crate::method::{Departure, Landing, Method, Tracer};
-use crate::rays::{Camera, Eye, ModelSpace, Query, Sight};
+use crate::rays::{Camera, Eye, ModelSpace, Query, Sight, ViewCone};
 use crate::step::{Link, MapError, Recorder, Step, StepSink};
 use glam::{DMat3, DVec3, EulerRot};
 use std::cmp::Ordering;
@@ -60,7 +60,7 @@ pub enum Starts {
 
 /// A model in a scene.
 pub struct Instance<'a> {
-    /// The model.
+    /// The model, as the triangles have it that rays find ([`Method::surface`]).
     pub scene: &'a Scene,
     /// How rays find it.
     pub method: &'a dyn Method,
@@ -78,18 +78,20 @@ impl<'a> Instance<'a> {
         let space = ModelSpace::of(scene);
         let eye = pose.place(camera.eye).to_array();
         let least_radius = camera.tan_theta * space.distance_to(eye) / space.placement.scale;
-        let eyes = vec![Eye::at(eye, camera.tan_theta).in_units(&space)];
-        Self::seen(scene, method, pose, materials, Sight { delta, least_radius, eyes })
+        let view = camera.view_cone();
+        let view = ViewCone { axis: pose.direction(DVec3::from_array(view.axis)).to_array(), ..view };
+        let eyes = vec![Eye::at(eye, camera.tan_theta).looking(view).in_units(&space)];
+        Self::seen(scene, method, pose, materials, Sight { delta, least_radius, eyes, frame: None })
     }
 
     /// A model, for rays that may start anywhere, however thin, and are not shaded.
     pub fn for_any_ray(scene: &'a Scene, method: &'a dyn Method, pose: Pose, delta: f64) -> Self {
-        Self::seen(scene, method, pose, Vec::new(), Sight { delta, least_radius: 0.0, eyes: vec![Eye::ANYWHERE] })
+        Self::seen(scene, method, pose, Vec::new(), Sight { delta, least_radius: 0.0, eyes: vec![Eye::ANYWHERE], frame: None })
     }
 
     fn seen(scene: &'a Scene, method: &'a dyn Method, pose: Pose, materials: Vec<Material>, sight: Sight) -> Self {
         let materials = materials.into_iter().map(|material| (material, Bsdf::of(&material))).collect();
-        Self { scene, method, pose, materials, space: ModelSpace::of(scene), sight }
+        Self { scene: method.surface(scene), method, pose, materials, space: ModelSpace::of(scene), sight }
     }
 
     /// What its rays see of it.

@@ -1,6 +1,6 @@
 //! The pinhole camera.
 
-use super::{DEFAULT_DIRECTION, ModelSpace, Query, View, orbit};
+use super::{DEFAULT_DIRECTION, ModelSpace, Query, View, ViewCone, orbit};
 use glam::DVec3;
 use std::ops::Range;
 use thiserror::Error;
@@ -124,6 +124,14 @@ impl Camera {
             stride: 1,
             tan_theta: 0.5 * pixel,
         })
+    }
+
+    /// A cone around all its rays.
+    pub fn view_cone(&self) -> ViewCone {
+        // From the middle of the whole frame to its borders.
+        let side = |k: usize| self.middle[k] + self.shift[k].abs();
+        let tangent = (side(0) * self.right.length()).hypot(side(1) * self.above.length());
+        ViewCone { axis: self.forward.to_array(), tangent }
     }
 
     /// Tangent of the half angle of the cones of a camera that sees so many degrees from bottom to top in so many rows of pixels.

@@ -16,6 +16,6 @@ pub use camera_path::CameraPath;
 pub use cone::{cone, is_full_detail};
 pub use file::{RayFile, RayFileError};
 pub use query::Query;
-pub use source::{Eye, RaySource, Sight};
+pub use source::{Eye, RaySource, Sight, ViewCone};
 pub use space::{ModelRay, ModelSpace};
 pub use view::{DEFAULT_DIRECTION, DEFAULT_VIEW_ANGLE_DEGREES, View};

@@ -44,23 +44,55 @@ pub struct Eye {
     pub radius: f64,
     /// Least tangent of the angle between the axis of a cone and its side.
     pub tan_theta: f64,
+    /// All that they may see, if they start from one point and do not go in all directions.
+    pub view: Option<ViewCone>,
+}
+
+/// A cone around all directions of some rays.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ViewCone {
+    /// Its axis, of length 1.
+    pub axis: [f64; 3],
+    /// Tangent of the angle between the axis and its side.
+    pub tangent: f64,
+}
+
+impl ViewCone {
+    /// Whether a sphere lies outside of the cone from `apex`, all of it.
+    pub fn misses(&self, apex: [f64; 3], centre: [f64; 3], radius: f64) -> bool {
+        let to: [f64; 3] = std::array::from_fn(|k| centre[k] - apex[k]);
+        let along: f64 = (0..3).map(|k| to[k] * self.axis[k]).sum();
+        let squared: f64 = to.iter().map(|c| c * c).sum();
+        let beside = (squared - along * along).max(0.0).sqrt();
+        // Distance from the cone's side, outwards; or from the apex, where that is nearest.
+        let is_behind = along + self.tangent * beside <= 0.0;
+        let distance = if is_behind { squared.sqrt() } else { (beside - self.tangent * along) / self.tangent.hypot(1.0) };
+        distance > radius
+    }
 }
 
 impl Eye {
     /// Rays that may start anywhere, however thin.
-    pub const ANYWHERE: Self = Self { lo: [f64::NEG_INFINITY; 3], hi: [f64::INFINITY; 3], radius: 0.0, tan_theta: 0.0 };
+    pub const ANYWHERE: Self = Self { lo: [f64::NEG_INFINITY; 3], hi: [f64::INFINITY; 3], radius: 0.0, tan_theta: 0.0, view: None };
 
     /// No rays.
-    pub const NOWHERE: Self = Self { lo: [f64::INFINITY; 3], hi: [f64::NEG_INFINITY; 3], radius: f64::INFINITY, tan_theta: f64::INFINITY };
+    pub const NOWHERE: Self =
+        Self { lo: [f64::INFINITY; 3], hi: [f64::NEG_INFINITY; 3], radius: f64::INFINITY, tan_theta: f64::INFINITY, view: None };
 
     /// That of a ray.
     pub fn of(query: &Query) -> Self {
-        Self { lo: query.origin, hi: query.origin, radius: query.radius, tan_theta: query.tan_theta }
+        Self { lo: query.origin, hi: query.origin, radius: query.radius, tan_theta: query.tan_theta, view: None }
     }
 
     /// That of a camera's rays, from one point.
     pub fn at(point: [f64; 3], tan_theta: f64) -> Self {
-        Self { lo: point, hi: point, radius: 0.0, tan_theta }
+        Self { lo: point, hi: point, radius: 0.0, tan_theta, view: None }
+    }
+
+    /// The same of rays that all lie in this cone from that point.
+    #[must_use]
+    pub fn looking(self, view: ViewCone) -> Self {
+        Self { view: Some(view), ..self }
     }
 
     /// Both as one.
@@ -72,6 +104,7 @@ impl Eye {
             hi: each(f64::max, self.hi, other.hi),
             radius: self.radius.min(other.radius),
             tan_theta: self.tan_theta.min(other.tan_theta),
+            view: None,
         }
     }
 
@@ -95,15 +128,29 @@ pub struct Sight {
     pub delta: f64,
     /// A radius that no ray's cone falls below within the model's box, in units of the model.
     pub least_radius: f64,
-    /// Where rays start, in units of the model: for what chooses by parts of the model.
+    /// Where rays start, in units of the model: for what chooses by parts of the model. Of frames after one another, one for each.
     pub eyes: Vec<Eye>,
+    /// The frame whose rays are traced, where it is one of several, the first being 0: for what chooses anew for each.
+    pub frame: Option<usize>,
 }
 
 impl Sight {
     /// What the rays of `source` see of a model at this quality.
     pub fn new(source: &dyn RaySource, space: &ModelSpace, delta: f64) -> Self {
         let eyes = source.eyes(space).into_iter().map(|eye| eye.in_units(space)).collect();
-        Self { delta, least_radius: source.least_radius(space) / space.placement.scale, eyes }
+        Self { delta, least_radius: source.least_radius(space) / space.placement.scale, eyes, frame: None }
+    }
+
+    /// The same for the rays of one frame of several.
+    #[must_use]
+    pub fn of_frame(&self, frame: usize) -> Self {
+        Self { frame: Some(frame), ..self.clone() }
+    }
+
+    /// The same for all frames.
+    #[must_use]
+    pub fn whole(&self) -> Self {
+        Self { frame: None, ..self.clone() }
     }
 
     /// A radius that no ray's cone falls below within this part of the model, in its units.
@@ -138,7 +185,7 @@ impl RaySource for Camera {
     }
 
     fn eyes(&self, _: &ModelSpace) -> Vec<Eye> {
-        vec![Eye::at(self.eye.to_array(), self.tan_theta)]
+        vec![Eye::at(self.eye.to_array(), self.tan_theta).looking(self.view_cone())]
     }
 }
 
@@ -184,10 +231,31 @@ mod tests {
         assert_eq!([radius(near), radius(far)], [0.5 + 0.1 * 2.0, 0.25 + 0.2 * 8.0]);
         // The box of both holds the unit box's middle: what is left is the least of each.
         let both = near.with(far);
-        assert_eq!((both, radius(both)), (Eye { lo: [0.0; 3], hi: [3.0, 9.0, 0.0], radius: 0.25, tan_theta: 0.1 }, 0.25));
+        assert_eq!((both, radius(both)), (Eye { lo: [0.0; 3], hi: [3.0, 9.0, 0.0], radius: 0.25, tan_theta: 0.1, view: None }, 0.25));
         assert_eq!(near.with(Eye::NOWHERE), near);
         assert_eq!((radius(Eye::ANYWHERE), radius(Eye::NOWHERE)), (0.0, f64::INFINITY));
         let space = ModelSpace { placement: Placement { offset: [1.0, 0.0, 0.0], scale: 0.5 }, lo: [0; 3], hi: [1; 3], zeros: [0; 2] };
-        assert_eq!(near.in_units(&space), Eye { lo: [4.0, 0.0, 0.0], hi: [4.0, 0.0, 0.0], radius: 1.0, tan_theta: 0.1 });
+        assert_eq!(near.in_units(&space), Eye { lo: [4.0, 0.0, 0.0], hi: [4.0, 0.0, 0.0], radius: 1.0, tan_theta: 0.1, view: None });
+    }
+
+    #[test]
+    fn a_camera_sees_nothing_outside_of_its_cone() {
+        let space = ModelSpace { placement: Placement { offset: [0.0; 3], scale: 1.0 }, lo: [-10; 3], hi: [10; 3], zeros: [0; 2] };
+        let view = View { eye: Some([0.0, 0.0, 50.0]), target: Some([0.0; 3]), ..View::default() };
+        for camera in [Camera::new(&view, &space, 31, 9).unwrap(), Camera::new(&view, &space, 9, 31).unwrap()] {
+            let cone = camera.view_cone();
+            let apex = camera.eye.to_array();
+            for pixel in 0..31 * 9 {
+                let direction = camera.ray(pixel % camera.width, pixel / camera.width).direction;
+                let point = std::array::from_fn(|k| apex[k] + 7.0 * direction[k]);
+                assert!(!cone.misses(apex, point, 1e-9));
+            }
+            // A pixel at a corner lies on its side but for half a pixel.
+            let corner = camera.ray(0, 0).direction;
+            let along: f64 = (0..3).map(|k| corner[k] * cone.axis[k]).sum();
+            assert!((along.powi(-2) - 1.0).sqrt() > 0.85 * cone.tangent);
+            assert!(cone.misses(apex, [0.0, 0.0, 60.0], 9.9) && !cone.misses(apex, [0.0, 0.0, 60.0], 10.1));
+            assert!(cone.misses(apex, [1000.0, 0.0, 49.0], 10.0));
+        }
     }
 }

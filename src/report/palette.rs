@@ -22,6 +22,8 @@ pub enum Mark {
     GreekCross,
     Hexagon,
     Hourglass,
+    Bowtie,
+    Bar,
 }
 
 /// How a method is drawn.
@@ -43,7 +45,7 @@ const fn style(light: [u8; 3], dark: [u8; 3], mark: Mark) -> Style {
 }
 
 /// Methods by name.
-const KNOWN: [(&str, Style); 13] = [
+const KNOWN: [(&str, Style); 15] = [
     ("lod", style([15, 107, 189], [76, 173, 248], Mark::Circle)),
     ("bvh", style([193, 76, 2], [252, 154, 84], Mark::Square)),
     ("bvh6", style([155, 20, 89], [240, 123, 174], Mark::Star)),
@@ -52,6 +54,8 @@ const KNOWN: [(&str, Style); 13] = [
     ("discrete", style([14, 131, 97], [65, 206, 160], Mark::Triangle)),
     ("chunked", style([48, 32, 120], [132, 108, 252], Mark::Pentagram)),
     ("grid", style([13, 60, 47], [191, 255, 0], Mark::Hexagon)),
+    ("cluster", style([24, 2, 35], [255, 253, 246], Mark::Bowtie)),
+    ("cluster-paper", style([84, 56, 202], [225, 85, 7], Mark::Bar)),
     ("input-bvh", style([142, 113, 48], [228, 195, 71], Mark::Wye)),
     ("input-bvh6", style([13, 99, 124], [137, 206, 230], Mark::Cross)),
     ("input-bvh32", style([78, 30, 0], [168, 120, 90], Mark::GreekCross)),

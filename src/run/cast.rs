@@ -77,6 +77,7 @@ impl HitRow {
 /// What every ray of `source` meets, in their order, whatever the number of threads, each from its own origin, whichever ray it names
 /// ([`cast_following`](super::cast_following) starts it there). `done` is told how many batches are done, from any thread.
 pub fn cast(method: &dyn Method, scene: &Scene, source: &dyn RaySource, sight: &Sight, done: &(dyn Fn(u64) + Sync)) -> Vec<HitRow> {
+    let scene = method.surface(scene);
     let rows = (0..source.batches()).into_par_iter().map_init(
         || method.tracer(sight),
         |tracer, batch| {

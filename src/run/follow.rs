@@ -74,8 +74,13 @@ pub fn cast_following(
         return Err(FollowError::NoStarts);
     }
     let queries = rays.queries();
-    let mut all =
-        Follow { scene, space: ModelSpace::of(scene), queries, hits: vec![HitRow::NONE; queries.len()], places: vec![0; queries.len()] };
+    let mut all = Follow {
+        scene: method.surface(scene),
+        space: ModelSpace::of(scene),
+        queries,
+        hits: vec![HitRow::NONE; queries.len()],
+        places: vec![0; queries.len()],
+    };
     let mut is_followed = vec![false; queries.len()];
     queries.iter().filter_map(|query| query.after).for_each(|after| is_followed[after as usize] = true);
     let (mut followed, mut crowded, mut ends) = (0, 0, Vec::new());

@@ -19,8 +19,8 @@ pub trait Frame: Sync {
     /// How many batches there are.
     fn batches(&self) -> usize;
 
-    /// Traces batches; one for each thread.
-    fn worker(&self) -> Box<dyn Worker + '_>;
+    /// Traces batches of a frame, the first being 0; one for each thread.
+    fn worker(&self, frame: usize) -> Box<dyn Worker + '_>;
 
     /// The first batches of the frames behind the first, in order, where it is several frames after one another.
     fn frame_starts(&self) -> Vec<usize> {
@@ -69,7 +69,7 @@ pub trait Frame: Sync {
             let next_frame = starts.iter().copied().find(|&start| start > first).unwrap_or(batches);
             let end = next_frame.min(first + CHUNK);
             let chunk = (first..end).into_par_iter();
-            let traced = chunk.map_init(|| self.worker(), |worker, batch| worker.batch(batch));
+            let traced = chunk.map_init(|| self.worker(frame), |worker, batch| worker.batch(batch));
             let (mut batches, hits): (Vec<_>, Vec<_>) = traced.unzip();
             if self.numbers_by_batch() {
                 for batch in &mut batches {
@@ -155,8 +155,10 @@ impl Frame for FrameRays<'_> {
         self.method.before(self.sight, frame)
     }
 
-    fn worker(&self) -> Box<dyn Worker + '_> {
-        Box::new(RayWorker { rays: self.rays, tracer: self.method.tracer(self.sight) })
+    fn worker(&self, frame: usize) -> Box<dyn Worker + '_> {
+        let is_one = self.rays.frame_starts().is_empty();
+        let tracer = if is_one { self.method.tracer(self.sight) } else { self.method.tracer(&self.sight.of_frame(frame)) };
+        Box::new(RayWorker { rays: self.rays, tracer })
     }
 }
 

@@ -74,7 +74,7 @@ impl Chosen {
     /// It is one.
     pub fn check(&self, scene: &Scene) -> Result<(), ChosenError> {
         let (method, name) = (self.method.name, || scene.meta().name.clone());
-        if self.method.of_input && scene.input().is_none() {
+        if self.method.of_input() && scene.input().is_none() {
             return Err(ChosenError::NoInput { method, scene: name() });
         }
         if !scene.meta().is_whole() && self.method != &lod::METHOD {

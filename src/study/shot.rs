@@ -36,7 +36,7 @@ impl Shot {
     /// Traces and shades one view with one sample in each pixel, by full-resolution normals: pictures of all methods, and of all reports, compare. `told` says what
     /// is done, and whom.
     pub fn plain(method: &dyn Method, scene: &Scene, space: &ModelSpace, camera: &Camera, delta: f64, told: (&str, &dyn Progress)) -> Self {
-        Self::of(method, &Shader::new(scene, space, Shading::Full), space, [camera; 2], delta, told)
+        Self::of(method, &Shader::new(method.surface(scene), space, Shading::Full), space, [camera; 2], delta, told)
     }
 
     /// Traces one view: the frame with one ray in each pixel of the first camera, and the picture with the samples of the other.

@@ -138,7 +138,7 @@ impl Workshop<'_> {
         pruned::check(self.scene, &camera, group.chosen.delta())?;
         if self.jobs.error {
             check_normals(self.scene, "the error of a picture")?;
-            if group.chosen.method.of_input {
+            if group.chosen.method.of_input() {
                 return Err(StudyError::OtherTriangles(group.chosen.method.name));
             }
         }

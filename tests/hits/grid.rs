@@ -276,7 +276,7 @@ fn caps_have_the_hits_of_their_triangles_and_count_open_edges() {
             let mesh = Arc::new(GridMesh::build(&h, &options).unwrap());
             let size = f64::from(1 << 28);
             let eye = Eye::at([1.1 * size, 0.3 * size, 0.9 * size], 2e-3);
-            let sight = |delta| Sight { delta, least_radius: 0.0, eyes: vec![eye] };
+            let sight = |delta| Sight { delta, least_radius: 0.0, eyes: vec![eye], frame: None };
             let displacements = Displacements::new(&h, &mesh);
             let mut all: Vec<Caps> = (0..=splits).map(Caps::Frame).collect();
             all.extend([0.1, 0.5, 2.0].map(|delta| Caps::Each(Arc::new(displacements.caps(&mesh, &sight(delta))))));

@@ -2,6 +2,7 @@
 
 mod bounds;
 mod box_test;
+mod cluster;
 mod entering;
 mod equivalence;
 mod golden;

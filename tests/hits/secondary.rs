@@ -244,7 +244,7 @@ fn tracers_follow_golden_paths() {
         let golden = Exact::new(h);
         for (method, delta) in [(&lod::METHOD, 1.0), (&lod::METHOD, f64::INFINITY), (&bvh::METHOD, f64::INFINITY)] {
             let method = (method.make)(&scene, &Knobs::default(), &NoStore).expect("a method on a scene");
-            let mut tracer = method.tracer(&Sight { delta, least_radius: 0.0, eyes: vec![Eye::ANYWHERE] });
+            let mut tracer = method.tracer(&Sight { delta, least_radius: 0.0, eyes: vec![Eye::ANYWHERE], frame: None });
             let mut rng = Rng(seed);
             for _ in 0..150 {
                 let eye = [0, 1, 2].map(|k| space.centre()[k] + 3.0 * space.radius() * rng.signed());

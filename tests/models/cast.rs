@@ -135,7 +135,7 @@ fn files_are_numpys_and_wrong_ones_are_one_clear_error() {
     let scene = Scene::open(&desk.path("a.lod")).unwrap();
     let rows: Vec<f64> = queries(&ModelSpace::of(&scene), 300, 4).iter().flat_map(|q| q.origin.into_iter().chain(q.direction)).collect();
     write_rays(&desk.path("rays.npy"), 6, &rows);
-    for method in METHODS.iter().filter(|method| !method.of_input).map(|method| method.name) {
+    for method in METHODS.iter().filter(|method| !method.of_input()).map(|method| method.name) {
         let said = desk.run(&format!("cast a.lod rays.npy --method {method} -o {method}.npy"));
         assert!(said.starts_with(&format!("{method}.npy: 300 rays, ")), "{said}");
         let bytes = std::fs::read(desk.path(&format!("{method}.npy"))).unwrap();

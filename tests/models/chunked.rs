@@ -19,7 +19,7 @@ fn sight(h: &Hierarchy, at: [f64; 3], tan_theta: f64, delta: f64) -> Sight {
     let size = space.radius() / space.placement.scale;
     let eye = at.map(|v| v * size);
     let eye = Eye::at(eye, tan_theta);
-    Sight { delta, least_radius: eye.least_radius(space.lo.map(f64::from), space.hi.map(f64::from)), eyes: vec![eye] }
+    Sight { delta, least_radius: eye.least_radius(space.lo.map(f64::from), space.hi.map(f64::from)), eyes: vec![eye], frame: None }
 }
 
 fn models() -> [(&'static str, Hierarchy); 3] {

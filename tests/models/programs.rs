@@ -25,7 +25,7 @@ fn every_method_finds_the_front_of_a_cube_by_the_cubes_own_triangles() {
     let scene = Scene::build(&vertices, &faces, &BuildOptions::own_triangles()).unwrap();
     assert_eq!((scene.trees(), scene.levels()), (12, 0));
     let rays = straight(31);
-    for method in METHODS.iter().filter(|method| !method.of_input) {
+    for method in METHODS.iter().filter(|method| !method.of_input()) {
         for hit in scene.method(method.name).unwrap().cast(&rays) {
             assert!((hit.t - 4.0).abs() < 1e-8 && hit.front == 1, "{}: {hit:?}", method.name);
             // The side at z = 1 is the second.
@@ -54,7 +54,7 @@ fn methods_outlive_their_scene_and_go_to_other_threads() {
     let (vertices, faces) = cube();
     let methods: Vec<_> = {
         let scene = Scene::build(&vertices, &faces, &BuildOptions::own_triangles()).unwrap();
-        METHODS.iter().filter(|method| !method.of_input).map(|method| scene.method(method.name).unwrap()).collect()
+        METHODS.iter().filter(|method| !method.of_input()).map(|method| scene.method(method.name).unwrap()).collect()
     };
     let threads: Vec<_> = methods.into_iter().map(|method| std::thread::spawn(move || method.cast(&straight(9)).len())).collect();
     assert!(threads.into_iter().all(|thread| thread.join().unwrap() == 81));

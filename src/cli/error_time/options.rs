@@ -52,7 +52,7 @@ pub struct Args {
     /// Distances of the eye in bounding radii, with commas (default: eight from 1 to 64; 2, 8 and 32 with --quick)
     #[arg(long, value_name = "RADII", value_delimiter = ',', value_parser = radii)]
     distances: Vec<f64>,
-    /// Methods, with commas (default: all that are hardware, but grid and binary16)
+    /// Methods, with commas (default: all that are hardware, but grids, binary16 and clusters)
     #[arg(long, value_name = "METHOD", value_delimiter = ',', value_parser = method)]
     methods: Vec<Listed>,
     /// Values of a knob by which methods trade error for cost, such as delta=0.5,1,2, in place of their own sweep; may be repeated
@@ -135,7 +135,7 @@ fn pixels_per_degree(s: &str) -> Result<f64, String> {
 impl Args {
     /// A scene with the mesh that it was built from at hand, where that can be found. It must be there if methods over it were named.
     pub fn with_input(&self, scene: Scene, path: &str) -> anyhow::Result<Scene> {
-        if self.methods.iter().any(|Listed(method)| method.of_input) {
+        if self.methods.iter().any(|Listed(method)| method.of_input()) {
             let input = mesh_of(&scene, Path::new(path), &self.input)?;
             return Ok(scene.with_input(input));
         }

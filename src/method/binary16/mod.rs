@@ -17,7 +17,7 @@ pub use trace::Traverser;
 pub use tree::Tree;
 
 use super::bvh::BvhTraverser;
-use super::{ClosestHit, Departure, Landing, Method, MethodUnit, Registered, SurfaceHit, Trace, Tracer};
+use super::{ClosestHit, Departure, Landing, Method, MethodUnit, Over, Registered, SurfaceHit, Trace, Tracer};
 use crate::block::Operation;
 use crate::rays::{ModelSpace, Query, Sight};
 use crate::step::{MemoryMap, StepSink};
@@ -40,7 +40,7 @@ pub static METHOD: Registered = Registered {
     help: "Binary BVH of the full-resolution mesh, 32-bit boxes, leaves padded to 16 indexed triangles",
     knobs: &[],
     error: None,
-    of_input: false,
+    over: Over::Scene,
     unit: Some(MethodUnit { blocks: &UNIT, has_levels: false }),
     works: &[],
     make: |scene, _, _| Ok(Box::new(Binary16 { tree: Tree::new(&scene.decode())?, space: ModelSpace::of(scene) })),

@@ -11,7 +11,7 @@ pub use super::mesh_bvh::{
 pub use map::{LEAVES, NODES, bvh_map};
 pub use trace::BvhTraverser;
 
-use super::{ClosestHit, Departure, Knob, Knobs, Landing, Method, MethodUnit, Registered, SurfaceHit, Trace, Tracer};
+use super::{ClosestHit, Departure, Knob, Knobs, Landing, Method, MethodUnit, Over, Registered, SurfaceHit, Trace, Tracer};
 use crate::block::{Operation, Work};
 use crate::bvh::BvhError;
 use crate::format::Scene;
@@ -108,7 +108,7 @@ pub static METHOD: Registered = Registered {
     help: "Quad-BVH of the full-resolution mesh, boxes of up to 16 bits",
     knobs: &[&NODE_BOXES, &NODE_ORDER, &LEAF_LAYOUT, &LEAF_SIZE],
     error: None,
-    of_input: false,
+    over: Over::Scene,
     unit: Some(MethodUnit { blocks: UNIT, has_levels: false }),
     works: &[],
     make: |scene, knobs, store| Bvh::of(scene, knobs, NodeBoxes::named, store),
@@ -149,7 +149,7 @@ pub static METHOD_SIX: Registered = Registered {
     help: "BVH of six children a node, in 64 bytes, with boxes in steps of 8 bits",
     knobs: &[&NODE_BOXES, &NODE_ORDER, &LEAF_LAYOUT, &LEAF_SIZE],
     error: None,
-    of_input: false,
+    over: Over::Scene,
     unit: Some(MethodUnit { blocks: UNIT_OF_SIX, has_levels: false }),
     works: &[TURN],
     make: |scene, knobs, store| Bvh::of(scene, knobs, NodeBoxes::named_of_six, store),
@@ -161,7 +161,7 @@ pub static METHOD_WIDE: Registered = Registered {
     help: "The same with 32-bit boxes",
     knobs: &[&NODE_ORDER, &LEAF_LAYOUT, &LEAF_SIZE],
     error: None,
-    of_input: false,
+    over: Over::Scene,
     unit: Some(MethodUnit { blocks: &unit(Operation::BoxTest32), has_levels: false }),
     works: &[],
     make: |scene, knobs, store| Bvh::of(scene, knobs, |_| Some(NodeBoxes::Wide), store),
@@ -173,7 +173,7 @@ pub static METHOD_INPUT: Registered = Registered {
     help: "bvh over the triangles of the mesh that the scene was built from",
     knobs: METHOD.knobs,
     error: None,
-    of_input: true,
+    over: Over::Input,
     unit: METHOD.unit,
     works: &[],
     make: |scene, knobs, store| Bvh::of(scene.input().ok_or(BvhError::NoInput)?, knobs, NodeBoxes::named, store),
@@ -185,7 +185,7 @@ pub static METHOD_INPUT_SIX: Registered = Registered {
     help: "bvh6 over the triangles of the mesh that the scene was built from",
     knobs: METHOD_SIX.knobs,
     error: None,
-    of_input: true,
+    over: Over::Input,
     unit: METHOD_SIX.unit,
     works: METHOD_SIX.works,
     make: |scene, knobs, store| Bvh::of(scene.input().ok_or(BvhError::NoInput)?, knobs, NodeBoxes::named_of_six, store),
@@ -197,7 +197,7 @@ pub static METHOD_INPUT_WIDE: Registered = Registered {
     help: "bvh32 over the triangles of the mesh that the scene was built from",
     knobs: METHOD_WIDE.knobs,
     error: None,
-    of_input: true,
+    over: Over::Input,
     unit: METHOD_WIDE.unit,
     works: &[],
     make: |scene, knobs, store| Bvh::of(scene.input().ok_or(BvhError::NoInput)?, knobs, |_| Some(NodeBoxes::Wide), store),

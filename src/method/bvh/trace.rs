@@ -74,6 +74,11 @@ impl BvhTraverser {
         Self { mapped: true, ..Self::new(bvh) }
     }
 
+    /// A traverser of `bvh` in a memory that has more sections behind those of the BVH.
+    pub(in crate::method) fn within(bvh: &FullBvh, all: MemoryMap) -> Self {
+        Self { map: all, ..Self::new(bvh) }
+    }
+
     /// A traverser of a level's `bvh` in the memory `all` of the BVHs of all levels, behind those of `before`; hits are mapped to the finest.
     pub(in crate::method) fn behind(bvh: &FullBvh, all: MemoryMap, before: &MemoryMap) -> Self {
         let mut lines = [0; 2];

@@ -15,14 +15,15 @@ use super::bvh::{
     check_hierarchy,
 };
 use super::knob::{DELTA, ErrorKnob, octaves};
-use super::{Knob, Knobs, Method, Registered, Tracer, discrete};
+use super::recent::Recent;
+use super::{Knob, Knobs, Method, Over, Registered, Tracer, discrete};
 use crate::bvh::BvhError;
 use crate::format::Scene;
 use crate::mesh::Hierarchy;
 use crate::num::MAX_LEVELS;
 use crate::rays::{ModelSpace, Sight};
 use crate::step::MemoryMap;
-use std::sync::{Mutex, PoisonError};
+use std::sync::Arc;
 
 /// What chooses its level by itself.
 pub static CHUNK: Knob = Knob {
@@ -46,7 +47,7 @@ pub static METHOD: Registered = Registered {
     help: "Discrete levels of detail by object or chunk: each has a level for the frame, and seams to its neighbours; its bytes are of the frame's BVH alone",
     knobs: &[&DELTA, &CHUNK, &NODE_BOXES, &NODE_ORDER, &LEAF_LAYOUT, &LEAF_SIZE],
     error: Some(ErrorKnob { knob: &DELTA, values: octaves, in_steps: false }),
-    of_input: false,
+    over: Over::Scene,
     unit: discrete::METHOD.unit,
     works: &[],
     make: |scene, knobs, _| Ok(Box::new(Chunked::of(scene, knobs)?)),
@@ -61,8 +62,8 @@ struct Chunked {
     chunks: Chunks,
     options: FullOptions,
     space: ModelSpace,
-    /// Of what was seen last, the latest at the end.
-    made: Mutex<Vec<(Sight, FullBvh)>>,
+    /// The BVHs of what was seen last.
+    made: Recent<FullBvh>,
 }
 
 impl Chunked {
@@ -76,38 +77,19 @@ impl Chunked {
             hierarchy,
             options: FullOptions::chosen(knobs, NodeBoxes::named)?,
             space: ModelSpace::of(scene),
-            made: Mutex::default(),
+            made: Recent::new(|bvh| bvh.leaves.len(), KEPT),
         })
     }
 
-    /// The BVH of a frame.
-    fn bvh(&self, sight: &Sight) -> FullBvh {
-        let mut made = self.made.lock().unwrap_or_else(PoisonError::into_inner);
-        if let Some(at) = made.iter().position(|(of, _)| of == sight) {
-            let seen = made.remove(at);
-            let bvh = seen.1.clone();
-            made.push(seen);
-            return bvh;
-        }
-        let build = || {
+    /// The BVH of all frames.
+    fn bvh(&self, sight: &Sight) -> Arc<FullBvh> {
+        let sight = &sight.whole();
+        self.made.get(sight, || {
             let ids = self.chunks.chosen(&self.hierarchy, sight);
-            let tree = FullBuilder::of_cut(&self.hierarchy, ids)?.tree(&self.options)?;
-            tree.with_leaves(&self.hierarchy, self.options.layout)
-        };
-        // By as many threads of its own: those that trace wait for it here, and would wait for themselves if they took part.
-        let threads = rayon::current_num_threads();
-        let apart = || rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("threads can be made").install(build);
-        let bvh = std::thread::scope(|scope| scope.spawn(apart).join());
-        let bvh = bvh.expect("no panic").expect("the hierarchy was checked, and triangles of a cut are no more than its finest");
-        let mut kept = bvh.leaves.len();
-        let newest = made.iter().rev().take_while(|(_, bvh)| {
-            kept += bvh.leaves.len();
-            kept <= KEPT
-        });
-        let others = made.len() - newest.count();
-        made.drain(..others);
-        made.push((sight.clone(), bvh.clone()));
-        bvh
+            let tree = FullBuilder::of_cut(&self.hierarchy, ids).and_then(|builder| builder.tree(&self.options));
+            let bvh = tree.and_then(|tree| tree.with_leaves(&self.hierarchy, self.options.layout));
+            bvh.expect("the hierarchy was checked, and triangles of a cut are no more than its finest")
+        })
     }
 }
 

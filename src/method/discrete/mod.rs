@@ -10,7 +10,7 @@ use super::bvh::{
     TreeStore, UNIT, bvh_map, level_ids,
 };
 use super::knob::{DELTA, ErrorKnob};
-use super::{Knob, Knobs, Method, MethodUnit, Registered, Tracer};
+use super::{Knob, Knobs, Method, MethodUnit, Over, Registered, Tracer};
 use crate::block::Operation;
 use crate::bvh::BvhError;
 use crate::format::Scene;
@@ -42,7 +42,7 @@ pub static METHOD: Registered = Registered {
     knobs: &[&DELTA, &LEVEL, &NODE_BOXES, &NODE_ORDER, &LEAF_LAYOUT, &LEAF_SIZE],
     // Every level: by quality it has the finest alone where the eye is within the model's box.
     error: Some(ErrorKnob { knob: &LEVEL, values: || (0..=MAX_LEVELS).map(f64::from).collect(), in_steps: true }),
-    of_input: false,
+    over: Over::Scene,
     unit: Some(MethodUnit {
         blocks: &{
             // As for a BVH, and a hit on a coarse triangle is mapped to the full resolution.

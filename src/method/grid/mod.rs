@@ -26,7 +26,7 @@ pub use tuple::Tuple;
 
 use super::bvh::BvhTraverser;
 use super::knob::{DELTA, ErrorKnob};
-use super::{ClosestHit, Departure, Knob, Knobs, Landing, Method, Registered, SurfaceHit, Trace, Tracer, discrete};
+use super::{ClosestHit, Departure, Knob, Knobs, Landing, Method, Over, Registered, SurfaceHit, Trace, Tracer, discrete};
 use crate::bvh::BvhError;
 use crate::format::Scene;
 use crate::rays::{ModelSpace, Query, Sight};
@@ -167,7 +167,7 @@ pub static METHOD: Registered = Registered {
     help: "Grid primitives: coarse triangles that are split alike, vertices shared, each with a tree of spheres",
     knobs: &[&DELTA, &CAP, &GRID_LEVELS, &GRID_LEFT_OUT, &GRID_BOUNDS, &GRID_NODES, &GRID_POINTS],
     error: Some(ErrorKnob { knob: &CAP, values: || (0..=MOST_SPLITS).map(f64::from).collect(), in_steps: true }),
-    of_input: false,
+    over: Over::Scene,
     // Nodes of four, and hits on coarse triangles are mapped. Spheres and indices are works of its own, which take a unit no time.
     unit: discrete::METHOD.unit,
     works: works::WORKS,
@@ -219,6 +219,7 @@ impl Grid {
             (Cap::Distance, None) => return Caps::Frame(splits),
             (Cap::Distance, Some(displacements)) => displacements,
         };
+        let sight = &sight.whole();
         let mut seen = self.seen.lock().unwrap_or_else(PoisonError::into_inner);
         if let Some((_, caps)) = seen.iter().find(|(of, _)| of == sight) {
             return caps.clone();

@@ -9,7 +9,7 @@ pub use order::{LineOrder, morton_ranks};
 pub use trace::LodTraverser;
 
 use super::knob::{DELTA, ErrorKnob, octaves};
-use super::{ClosestHit, Departure, Knobs, Landing, Method, MethodUnit, Registered, SurfaceHit, Trace, Tracer};
+use super::{ClosestHit, Departure, Knobs, Landing, Method, MethodUnit, Over, Registered, SurfaceHit, Trace, Tracer};
 use crate::block::Operation;
 use crate::format::{Scene, scene_prisms};
 use crate::num::prism::Prisms;
@@ -22,7 +22,7 @@ pub static METHOD: Registered = Registered {
     help: "Locally adaptive level of detail",
     knobs: &[&DELTA, &LINE_LAYOUT, &NODE_BOUNDS],
     error: Some(ErrorKnob { knob: &DELTA, values: octaves, in_steps: false }),
-    of_input: false,
+    over: Over::Scene,
     unit: Some(MethodUnit {
         blocks: &[
             Operation::RaySetup,

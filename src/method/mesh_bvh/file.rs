@@ -172,7 +172,7 @@ impl FullNodes {
     }
 
     /// The children of a node; those beyond the fourth are empty where nodes have four.
-    fn children(&self, at: usize) -> [ChildRef; 6] {
+    pub(in crate::method) fn children(&self, at: usize) -> [ChildRef; 6] {
         let four = |child: &dyn Fn(usize) -> ChildRef| std::array::from_fn(|k| if k < 4 { child(k) } else { ChildRef::default() });
         match self {
             Self::Local(nodes) => four(&|k| BvhNode::line_child(&nodes[at], k)),

@@ -1,7 +1,7 @@
 //! The full-resolution mesh in `f64`: the truth that pictures are compared with. It is no hardware, and reads no memory.
 
 use super::hit::plane;
-use super::{Departure, Landing, Method, Registered, SurfaceHit, Trace, Tracer};
+use super::{Departure, Landing, Method, Over, Registered, SurfaceHit, Trace, Tracer};
 use crate::golden::reference::Reference;
 use crate::rays::{ModelSpace, Query, Sight};
 use crate::step::{MemoryMap, StepSink};
@@ -12,7 +12,7 @@ pub static METHOD: Registered = Registered {
     help: "f64, full resolution: the truth",
     knobs: &[],
     error: None,
-    of_input: false,
+    over: Over::Scene,
     unit: None,
     works: &[],
     make: |scene, _, _| Ok(Box::new(Truth { reference: Reference::new(&scene.decode()), space: ModelSpace::of(scene) })),

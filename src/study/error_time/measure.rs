@@ -9,7 +9,7 @@ use super::row::{BuildTime, Measured};
 use super::stage::{Cameras, Stage};
 use crate::format::Scene;
 use crate::mesh::FinestSurface;
-use crate::method::{Method, find, reference};
+use crate::method::{Method, Over, find, reference};
 use crate::picture::{Frame, FullResolution, PictureError, Shader, SurfaceError, error_map, level_map, render, sampled, save_png};
 use crate::rays::{Camera, ModelSpace, Sight};
 use crate::report::error_time::{Appearance, Converged, PictureEntry, Point, SceneEntry, Shift, TraceGrid, ViewEntry};
@@ -107,7 +107,7 @@ impl<'a> Bench<'a> {
     ) -> Result<Self, StudyError> {
         let (mut methods, mut builds) = (Vec::new(), Vec::new());
         for chosen in &plan.jobs.methods {
-            if chosen.method.of_input && scene.input().is_none() {
+            if chosen.method.of_input() && scene.input().is_none() {
                 continue;
             }
             let begun = Instant::now();
@@ -167,7 +167,7 @@ impl<'a> Bench<'a> {
             });
             drop(bar);
             let seen = seen.into_iter().collect::<Result<Vec<_>, StudyError>>()?;
-            for (((_, setting), surface), Seen { picture, luminance, errors, results }) in settings.iter().zip(&surfaces).zip(seen) {
+            for (((at, setting), surface), Seen { picture, luminance, errors, results }) in settings.iter().zip(&surfaces).zip(seen) {
                 if kept == Some(side) && setting.is_default {
                     let name = setting.chosen.method.name;
                     book.add(&picture, name, &setting.words, samples, "image")?;
@@ -177,9 +177,9 @@ impl<'a> Bench<'a> {
                     }
                 }
                 let point = self.point(&setting.words, samples, &results, errors, surface.errors)?;
-                let of_finest = finest.as_ref().filter(|_| !setting.chosen.method.of_input);
-                let of_finest =
-                    of_finest.map(|(finest, truth)| finest.errors(self.scene, &surface.frame, truth, &few, self.plan.measure.stride));
+                let of_finest = finest.as_ref().filter(|_| setting.chosen.method.over == Over::Scene);
+                let own = self.method(*at, setting).surface(self.scene);
+                let of_finest = of_finest.map(|(finest, truth)| finest.errors(own, &surface.frame, truth, &few, self.plan.measure.stride));
                 points.push(Point { is_default: setting.is_default, finest: of_finest, ..point });
                 if self.plan.measure.most_samples > 0 {
                     unseen.push(Unseen { point: points.len() - 1, picture, luminance });
@@ -241,8 +241,9 @@ impl<'a> Bench<'a> {
     pub(super) fn stage<'b>(&'b self, at: usize, setting: &'b Setting) -> Stage<'b> {
         let (chosen, targets) = (&setting.chosen, &self.plan.jobs.targets);
         // Truth is the input wherever a method is over it.
-        let (scene, space) = if chosen.method.of_input { (self.truth.scene, &self.truth.space) } else { (self.scene, &self.space) };
-        Stage { scene, all: scene, space, chosen, method: self.method(at, setting), targets }
+        let (scene, space) = if chosen.method.of_input() { (self.truth.scene, &self.truth.space) } else { (self.scene, &self.space) };
+        let method = self.method(at, setting);
+        Stage { scene, all: method.surface(scene), space, chosen, method, targets }
     }
 
     /// What a stage's frame costs on the machines, and its picture, whose errors are against `full`.
@@ -261,8 +262,8 @@ impl<'a> Bench<'a> {
 
     /// The triangles that a method is over.
     fn triangles(&self, method: &str) -> u64 {
-        let of_input = find(method).is_some_and(|method| method.of_input);
-        if of_input { self.truth.scene.finest_triangles() } else { self.facts.finest_triangles }
+        let is_truth = find(method).is_some_and(|method| method.over != Over::Scene);
+        if is_truth { self.truth.scene.finest_triangles() } else { self.facts.finest_triangles }
     }
 
     /// What was measured of a setting with so many samples.

@@ -11,6 +11,24 @@ const HOURGLASS = {
     context.closePath();
   },
 };
+/** The same on its side. */
+const BOWTIE = {
+  draw(context, size) {
+    const s = Math.sqrt(size / 2);
+    context.moveTo(-s, -s);
+    context.lineTo(s, s);
+    context.lineTo(s, -s);
+    context.lineTo(-s, s);
+    context.closePath();
+  },
+};
+/** Twice as wide as high, of this area. */
+const BAR = {
+  draw(context, size) {
+    const s = Math.sqrt(size / 2);
+    context.rect(-s, -s / 2, 2 * s, s);
+  },
+};
 /** A hexagon of this area. */
 const HEXAGON = {
   draw(context, size) {
@@ -20,7 +38,7 @@ const HEXAGON = {
   },
 };
 /** Marks as Plot has them. */
-const SYMBOLS = { circle: "circle", square: "square", triangle: "triangle", diamond: "diamond", cross: "plus", star: "asterisk", wye: "wye", times: "times", pentagram: "star", greekcross: "cross", hexagon: HEXAGON, hourglass: HOURGLASS };
+const SYMBOLS = { circle: "circle", square: "square", triangle: "triangle", diamond: "diamond", cross: "plus", star: "asterisk", wye: "wye", times: "times", pentagram: "star", greekcross: "cross", hexagon: HEXAGON, hourglass: HOURGLASS, bowtie: BOWTIE, bar: BAR };
 const colour = (method) => `var(--method-${CSS.escape(method)})`;
 const symbol = (method) => SYMBOLS[page.palette.methods[method]?.mark] ?? "circle";
 const D3_SYMBOLS = { circle: d3.symbolCircle, square: d3.symbolSquare, triangle: d3.symbolTriangle, diamond: d3.symbolDiamond, plus: d3.symbolPlus, asterisk: d3.symbolAsterisk, wye: d3.symbolWye, times: d3.symbolTimes, star: d3.symbolStar, cross: d3.symbolCross };

@@ -1,0 +1,121 @@
+//! Clusters as they lie in memory: vertices of 16 bits a coordinate, triangles in pairs of four 8-bit indices.
+//!
+//! | bytes | what |
+//! |---|---|
+//! | 1 | vertices less one |
+//! | 1 | pairs less one |
+//! | 2 | nothing |
+//! | 6 each | vertices: x, y, z, little-endian |
+//! | 4 each | pairs: triangles (a, b, c) and (a, c, d); a triangle alone has d = a |
+//!
+//! Each begins with a line.
+
+use super::graph::{Cluster, Graph};
+use super::snapped::Place;
+use std::collections::HashMap;
+
+/// Most vertices of a cluster.
+pub const MOST: usize = 256;
+const HEADER: usize = 4;
+
+/// The pairs of some triangles: neighbours over an edge, each triangle once, one alone where no neighbour is left.
+pub fn pairs(triangles: &[[u32; 3]]) -> Vec<[u32; 4]> {
+    let mut over: HashMap<[u32; 2], usize> = HashMap::with_capacity(3 * triangles.len());
+    for (at, t) in triangles.iter().enumerate() {
+        for k in 0..3 {
+            over.insert([t[k], t[(k + 1) % 3]], at);
+        }
+    }
+    let mut is_paired = vec![false; triangles.len()];
+    // Whoever has the fewest neighbours left would be the best to begin with; in their order is nearly as good.
+    let mut out = Vec::with_capacity(triangles.len() / 2 + 1);
+    for (at, t) in triangles.iter().enumerate() {
+        if std::mem::replace(&mut is_paired[at], true) {
+            continue;
+        }
+        let neighbour = |k: usize| over.get(&[t[(k + 1) % 3], t[k]]).copied().filter(|&other| !is_paired[other]);
+        let Some((k, other)) = (0..3).find_map(|k| Some((k, neighbour(k)?))) else {
+            out.push([t[0], t[1], t[2], t[0]]);
+            continue;
+        };
+        is_paired[other] = true;
+        // The shared edge is from c to a.
+        let [c, a, b] = [t[k], t[(k + 1) % 3], t[(k + 2) % 3]];
+        let far = triangles[other].into_iter().find(|&v| v != a && v != c).unwrap_or(a);
+        out.push([a, b, c, far]);
+    }
+    out
+}
+
+/// The triangles of pairs.
+pub fn unpaired(pairs: &[[u32; 4]]) -> impl Iterator<Item = [u32; 3]> {
+    pairs.iter().flat_map(|&[a, b, c, d]| [Some([a, b, c]), (d != a).then_some([a, c, d])]).flatten()
+}
+
+/// A cluster's bytes.
+///
+/// # Panics
+/// It has more vertices or pairs than a cluster can have.
+pub fn pack(graph: &Graph, cluster: &Cluster) -> Vec<u8> {
+    let pairs = pairs(&graph.triangles[cluster.triangles()]);
+    let mut numbers: HashMap<u32, u8> = HashMap::new();
+    let mut vertices: Vec<Place> = Vec::new();
+    let mut indices = Vec::with_capacity(4 * pairs.len());
+    for vertex in pairs.iter().flatten() {
+        let number = numbers.entry(*vertex).or_insert_with(|| {
+            vertices.push(graph.places[*vertex as usize]);
+            u8::try_from(vertices.len() - 1).expect("at most 256 vertices")
+        });
+        indices.push(*number);
+    }
+    let mut bytes = Vec::with_capacity(HEADER + 6 * vertices.len() + indices.len());
+    bytes.extend([vertices.len() - 1, pairs.len() - 1].map(|count| u8::try_from(count).expect("at most 256")));
+    bytes.extend([0; 2]);
+    bytes.extend(vertices.iter().flatten().flat_map(|c| c.to_le_bytes()));
+    bytes.extend(indices);
+    bytes
+}
+
+/// Corners of the triangles of a packed cluster, as places.
+pub fn unpack(bytes: &[u8]) -> Vec<[Place; 3]> {
+    let [vertices, pairs] = [0, 1].map(|k| usize::from(bytes[k]) + 1);
+    let coordinate = |vertex: u32, k: usize| {
+        let at = HEADER + 6 * vertex as usize + 2 * k;
+        u16::from_le_bytes([bytes[at], bytes[at + 1]])
+    };
+    let indices = &bytes[HEADER + 6 * vertices..][..4 * pairs];
+    let pairs: Vec<[u32; 4]> = indices.chunks_exact(4).map(|pair| std::array::from_fn(|k| u32::from(pair[k]))).collect();
+    unpaired(&pairs).map(|t| t.map(|vertex| std::array::from_fn(|k| coordinate(vertex, k)))).collect()
+}
+
+/// Bytes of a cluster, its vertices, and where its first line lies among those of all.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Size {
+    /// Its first line.
+    pub first: u32,
+    /// Its bytes.
+    pub bytes: u32,
+    /// Its vertices.
+    pub vertices: u32,
+}
+
+/// The sizes of all clusters of a graph.
+pub fn sizes(graph: &Graph) -> Vec<Size> {
+    use rayon::prelude::*;
+    let own: Vec<(u32, u32)> = graph
+        .clusters
+        .par_iter()
+        .map(|cluster| {
+            let bytes = pack(graph, cluster);
+            (bytes.len() as u32, u32::from(bytes[0]) + 1) // a few thousand
+        })
+        .collect();
+    let mut first = 0;
+    own.into_iter()
+        .map(|(bytes, vertices)| {
+            let size = Size { first, bytes, vertices };
+            first += bytes.div_ceil(crate::num::LINE_BYTES as u32);
+            size
+        })
+        .collect()
+}
