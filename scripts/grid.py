@@ -1,4 +1,4 @@
-"""Grid primitives beside the BVH of the full resolution, the binary BVH that is their paper's reference (binary16), and ours: bytes a triangle, seconds to build, rays a second on one thread (`cargo bench --bench grid`), lines, cycles and energy on haydel2023 with compute free (`lodray simulate`), and the same at equal error (`lodray error-time`).
+"""Grid primitives beside the BVH of the full resolution, the binary BVH that is their paper's reference (binary16), and ours: bytes a triangle, seconds to build, rays a second on one thread (`cargo bench --bench grid`), lines, cycles and energy on haydel2023 with compute free (`lodray simulate`), the same at equal error (`lodray error-time`), and what deciding by ray has of that (`cargo bench --bench one_delta`).
 
 Writes tables between the marks of docs/baselines.md, and of docs/claims.md and its template.
 """
@@ -19,6 +19,8 @@ LEVELS = [1, 2, 3, 4]
 # What the paper says, row by row of the ledger.
 SPEED = [f"trace speed against its reference at level {level}: {paper}" for level, paper in zip(LEVELS, ["0 to +28 %", "+10 to -39 %", "-16 to -68 %", "-55 to -85 %"])]
 BUILD = "builds 42 times as fast as full SAH at three levels, 383 times at four"
+BUILD_WHY = "both on all threads of this processor, 256 bins"
+WORDS = {2: "two", 4: "four", 6: "six"}
 # Knobs of the variants that are simulated at full detail, and what they are called.
 VARIANTS = [
     ("binary nodes", {"grid-nodes": "2"}),
@@ -64,11 +66,12 @@ class Runs:
             part.rename(kept)
         return json.loads(kept.read_text(encoding="utf-8"))
 
-    def bench(self, scenes):
-        """The lines of the benchmark, scene by scene."""
-        kept = self.out / "bench.jsonl"
+    def bench(self, name, file, scenes, **variables):
+        """The lines of a benchmark, scene by scene."""
+        kept = self.out / file
         if not kept.exists():
-            found = subprocess.run(["cargo", "bench", "--quiet", "--bench", "grid", "--", *(scene.resolve() for scene in scenes)], check=True, capture_output=True, text=True, cwd=ROOT, env={**os.environ, "LODRAY_GRID_SIZE": self.args.size.split("x")[0]})
+            words = ["cargo", "bench", "--quiet", "--bench", name, "--", *(scene.resolve() for scene in scenes)]
+            found = subprocess.run(words, check=True, stdout=subprocess.PIPE, text=True, cwd=ROOT, env={**os.environ, "LODRAY_GRID_SIZE": self.args.size.split("x")[0], **variables})
             part = kept.with_suffix(".part")
             part.write_text(found.stdout, encoding="utf-8")
             part.rename(kept)
@@ -103,9 +106,9 @@ def bytes_tables(runs, scenes):
     rows = [[name, *(among(of(levels, out, nodes, points)) for levels in LEVELS)] for name, out, nodes, points in forms]
     reference, bvh = ([runs.json("simulate", scene, "--size", "16x16", "--compute", "free", "--method", method)["setup"]["method"]["bytes"] / runs.json("info", scene)["finest_triangles"] for scene in scenes] for method in ("binary16", "bvh"))
     ledger = [
-        ["6.3 bytes a triangle at four levels", f"{among(of(4, 2, 4))} with nodes of four and two levels left out, {among(of(4, 2))} with binary nodes, {among(of(4, 4))} with these and no radii at all", "closed surfaces have 6 bytes of vertices, 0.09 of tuples, 0.31 of radii of two levels and 0.25 of binary nodes; open borders add vertices"],
+        ["6.3 bytes a triangle at four levels", f"{among(of(4, 2, 4))} with nodes of four and two levels left out, {among(of(4, 2))} with binary nodes, {among(of(4, 4))} with these and no radii at all", "the paper does not say what its 6.3 are made of; closed surfaces have 6 bytes of vertices, 0.09 of tuples, 0.31 of radii of two levels and 0.25 of binary nodes; open borders add vertices"],
         ["the same with 28 bits a coordinate", among(of(4, 2, 4, "packed")), "not in the paper"],
-        ["4.5 times fewer bytes than its reference", f"{among([a / b for a, b in zip(reference, of(4, 2))])} times fewer than `binary16` ({among(reference)} bytes a triangle), {among([a / b for a, b in zip(bvh, of(4, 2))])} times fewer than `bvh`", "how full leaves of 16 are depends on the builder, and a node has 32 bytes in place of 28; `bvh` has leaf blocks that share vertices"],
+        ["4.5 times fewer bytes than its reference", f"{among([a / b for a, b in zip(reference, of(4, 2))])} times fewer than `binary16` ({among(reference)} bytes a triangle), {among([a / b for a, b in zip(bvh, of(4, 2))])} times fewer than `bvh`", f"the reference has the paper's size (4.5 x 6.3 = 28.4), so it is the grid that is larger: without radii, and with nodes of four, it has {among([a / b for a, b in zip(reference, of(4, 4, 4))])} times fewer; `bvh` has leaf blocks that share vertices"],
     ]
     return table(["bytes a triangle, by levels", *map(str, LEVELS)], rows, 1), ledger
 
@@ -115,30 +118,72 @@ def find(lines, scene, **wanted):
     return next(line for line in lines if line["scene"] == scene and line["of"] == "grid" and all(line[key] == value for key, value in wanted.items()))
 
 
-def bench_tables(lines):
-    """Bytes, seconds and rates, and rows of the ledger."""
+def percent(ratios):
+    """Least and most of some ratios, as what is gained or lost."""
+    low, high = f"{100 * (min(ratios) - 1):+.0f} %", f"{100 * (max(ratios) - 1):+.0f} %"
+    return low if low == high else f"{low} to {high}"
+
+
+def bench_tables(lines, large):
+    """Seconds and rates, and rows of the ledger."""
     scenes = list(dict.fromkeys(line["scene"] for line in lines))
     bvh, reference = ({line["scene"]: line for line in lines if line["of"] == method} for method in ("bvh", "binary16"))
     whole = lambda scene, levels, nodes=2, out=None, points="float": find(lines, scene, levels=levels, left_out=min(levels, 2) if out is None else out, nodes=nodes, points=points)
-    out, rows = [], []
+    rows = []
     for levels in LEVELS:
         for left in range(levels + 1):
             own = {scene: whole(scene, levels, 4, left) for scene in scenes}
             two = {scene: whole(scene, levels, 2, left) for scene in scenes}
             rate = lambda of: statistics.median(bvh[scene]["seconds"] / of[scene]["seconds"] for scene in scenes)
-            rows.append([levels, left, f"{rate(own):.2f}", f"{rate(two):.2f}", number(statistics.median(two[scene]["rays"] / two[scene]["float_seconds"] / 1e6 for scene in scenes)), number(statistics.median(own[scene]["build"] for scene in scenes)), f"{statistics.median(bvh[scene]['build'] / own[scene]['build'] for scene in scenes):.1f}"])
-    out.append(table(["levels", "left out", "rays a second over `bvh`'s, nodes of four", "binary nodes", "million rays a second in floats", "seconds to build", "`bvh`'s over that"], rows, 0))
+            rows.append([levels, left, f"{rate(own):.2f}", f"{rate(two):.2f}", number(statistics.median(two[scene]["rays"] / two[scene]["float_seconds"] / 1e6 for scene in scenes)), f"{statistics.median(reference[scene]['float_seconds'] / two[scene]['float_seconds'] for scene in scenes):.2f}", number(statistics.median(own[scene]["build"] for scene in scenes)), f"{statistics.median(bvh[scene]['build'] / own[scene]['build'] for scene in scenes):.1f}"])
+    out = [table(["levels", "left out", "rays a second over `bvh`'s, nodes of four", "binary nodes", "million rays a second in floats, binary nodes", "over `binary16`'s in floats", "seconds to build, nodes of four", "`bvh`'s over that"], rows, 0)]
     boundary = [line["bytes"]["boundary"] / sum(line["bytes"][name] for name in ("corner", "boundary", "inside")) for line in (whole(scene, 3) for scene in scenes)]
-    best = {levels: min(range(levels + 1), key=lambda left: statistics.median(whole(scene, levels, 2, left)["float_seconds"] for scene in scenes)) for levels in LEVELS}
-    speed = lambda levels, seconds: " to ".join(f"{100 * (of - 1):+.0f} %" for of in sorted(reference[scene][seconds] / whole(scene, levels, 2)[seconds] for scene in scenes)[:: max(len(scenes) - 1, 1)])
-    build = lambda levels: among([reference[scene]["build"] / whole(scene, levels, 2)["build"] for scene in scenes])
+    # In floats, against the reference with leaves of other sizes.
+    sizes = {16: {scene: reference[scene]["float_seconds"] for scene in scenes}}
+    for line in (line for line in lines if line["of"] == "leaves"):
+        sizes.setdefault(line["leaf"], {})[line["scene"]] = line["float_seconds"]
+    gain = {size: statistics.median(sizes[16][scene] / of[scene] for scene in scenes) for size, of in sizes.items()}
+    suits = max(gain, key=gain.get)
+    speed = lambda levels, size: percent([sizes[size][scene] / whole(scene, levels)["float_seconds"] for scene in scenes])
+    exact = lambda levels: percent([reference[scene]["seconds"] / whole(scene, levels)["seconds"] for scene in scenes])
+    # Of each level, rates by levels left out over the best.
+    rates = {levels: [statistics.median(min(whole(scene, levels, 2, out)["float_seconds"] for out in range(levels + 1)) / whole(scene, levels, 2, left)["float_seconds"] for scene in scenes) for left in range(levels + 1)] for levels in LEVELS}
+    build = lambda of, levels: among([next(line["build"] for line in of if line["of"] == "binary16" and line["scene"] == scene) / find(of, scene, levels=levels, left_out=2, nodes=2, points="float")["build"] for scene in dict.fromkeys(line["scene"] for line in of)])
+    leaves = f"the paper chose leaves of 16 on an RTX 2080 Ti; on a processor leaves of {suits} trace {gain[suits]:.2f} times as fast, and are the fair reference"
+    why = {1: leaves, 2: "as above", 3: "as above", 4: "as above"}
     ledger = [
         ["boundary vertices are about a third of geometry (three levels)", among(boundary), "3 (M - 1) / 2 of M^2 / 2 vertices a primitive, M = 8"],
-        *([paper, f"{speed(levels, 'float_seconds')} against `binary16`, both in floats on one thread; {speed(levels, 'seconds')} with exact tests", "a processor in place of an RTX 2080 Ti: no warps that go apart, and caches that hold more"] for levels, paper in zip(LEVELS, SPEED)),
-        [BUILD, f"{build(3)} times and {build(4)} times as fast as `binary16`", "both on all threads of this processor, 256 bins"],
-        ["two levels without spheres are best", "in floats, levels left out at 1 to 4 levels: " + ", ".join(str(best[levels]) for levels in LEVELS), "medians over the scenes"],
+        *([paper, f"{speed(levels, 16)} against `binary16`, both in floats on one thread; {speed(levels, suits)} against the same with leaves of {suits}; {exact(levels)} with exact tests", why[levels]] for levels, paper in zip(LEVELS, SPEED)),
+        [BUILD, f"{build(lines, 3)} times and {build(lines, 4)} times as fast as `binary16`" + (f"; of {large[0]['triangles'] / 1e6:.1f} M triangles {build(large, 3)} and {build(large, 4)} times" if large else ""), BUILD_WHY],
+        ["two levels without spheres are best", "in floats, the share of the best rate with 0, 1, ... left out: " + "; ".join(f"at {levels} {'level' if levels == 1 else 'levels'} " + ", ".join(f"{rate:.2f}" for rate in rates[levels]) for levels in LEVELS), "binary nodes, medians over the scenes; on a processor one and two are alike"],
     ]
+    if large:
+        names = {"bvh": "`bvh`", "binary16": "`binary16`"}
+        kept = [line for line in large if line["of"] in names or "build" in line]
+        base = next(line["build"] for line in large if line["of"] == "binary16")
+        row = lambda line: [names.get(line["of"]) or f"grid, {line['levels']} levels, nodes of {WORDS[line['nodes']]}", f"{line['build']:.2f}", f"{base / line['build']:.1f}", f"{sum(line['bytes'].values()) / line['triangles']:.2f}"]
+        out.append(table([f"building {large[0]['triangles']:,} triangles", "seconds", "`binary16`'s over that", "bytes a triangle"], [row(line) for line in kept], 1))
     return out, ledger
+
+
+def one_delta_table(lines):
+    """What deciding costs and brings: medians over the views, at full detail over `bvh`, at equal error over ours."""
+    names = {
+        "full": [("spheres", "grid, spheres"), ("boxes", "grid, boxes"), ("prisms", "grid, prisms"), ("lod", "our trees")],
+        "equal": [("spheres", "grid, one cap, spheres"), ("boxes", "grid, one cap, boxes"), ("prisms", "grid, one cap, prisms"), ("discrete", "a BVH of one level"), ("trees", "our trees, cut at one level"), ("radius", "our trees, one radius for all rays"), ("lod", "ours, by ray")],
+    }
+    keys = ["groups", "triangles", "requests", "dram_bytes", "cycles", "energy"]
+    rows = []
+    for at, base, title in (("full", "bvh", "full detail, over `bvh`"), ("equal", "lod", "the error of ours, over ours")):
+        view = lambda line: (line["scene"], line["distance"])
+        over = {view(line): line for line in lines if line["at"] == at and line["way"] == base}
+        for way, name in names[at]:
+            own = [line for line in lines if line["at"] == at and line["way"] == way]
+            ratios = [[line[key] / over[view(line)][key] for key in keys] for line in own]
+            columns = list(zip(*ratios))
+            most = f"{min(columns[4]):.2f} to {max(columns[4]):.2f}"
+            rows.append([title, name, *(f"{statistics.median(column):.2f}" for column in columns), most, f"{len(own)} of {len(over)}"])
+    return table(["at", "what", "groups of children tested", "triangles tested", "lines asked for", "bytes of DRAM", "cycles", "energy", "cycles, least and most", "views"], rows, 2)
 
 
 def simulated(runs, scenes):
@@ -201,8 +246,9 @@ def main():
     parser.add_argument("--size", default="512x512", help="size of the frames (default 512x512)")
     parser.add_argument("--distances", type=lambda text: text.split(","), default=["1.5", "4", "16"], help="distances of the eye in radii, with commas (default 1.5,4,16)")
     parser.add_argument("--out", default="target/grid", help="folder in which what was run is kept; a run that is started again goes on with it (default target/grid)")
-    parser.add_argument("--no-bench", action="store_true", help="leave building and rays a second out, and their rows of the ledger")
-    parser.add_argument("--no-frames", action="store_true", help="leave the simulated frames out")
+    parser.add_argument("--large", type=Path, help="scene file of which building alone is timed too")
+    parser.add_argument("--no-bench", action="store_true", help="leave building and rays a second out; the ledger stays as it is")
+    parser.add_argument("--no-frames", action="store_true", help="leave the simulated frames out; the ledger stays as it is")
     parser.add_argument("--print", action="store_true", help="print the tables, and leave the documents alone")
     parser.add_argument("scene", nargs="+", type=Path, help="scene files (generate, build)")
     args = parser.parse_args()
@@ -210,21 +256,23 @@ def main():
     text, ledger = bytes_tables(runs, args.scene)
     texts = {"bytes": text}
     if not args.no_bench:
-        tables, more = bench_tables(runs.bench(args.scene))
+        large = runs.bench("grid", "large.jsonl", [args.large], LODRAY_GRID_BUILD="1", LODRAY_GRID_SIZE="64") if args.large else []
+        tables, more = bench_tables(runs.bench("grid", "bench.jsonl", args.scene), large)
         texts["bench"], ledger = "\n\n".join(tables), ledger + more
-    else:
-        ledger += [[paper, "not measured yet", ""] for paper in (*SPEED, BUILD)]
     if not args.no_frames:
         best, frames = simulated(runs, args.scene)
         ledger.append(best)
         texts["frames"] = frames + "\n\n" + equal_error(runs, args.scene)
+        texts["decisions"] = one_delta_table(runs.bench("one_delta", "one-delta.jsonl", args.scene, LODRAY_GRID_DISTANCES=",".join(args.distances)))
     rows = table(["paper", "measured", "difference, and why"], ledger, 3)
     if args.print:
         print("\n\n".join([*texts.values(), rows]))
         return
     for name, text in texts.items():
         put(ROOT / "docs" / "baselines.md", f"<!-- grid {name} -->", f"<!-- grid {name} end -->", text)
-    for path in [ROOT / "docs" / "claims.md", ROOT / "scripts" / "paper" / "claims.md"]:
+    # Half a ledger says nothing.
+    is_whole = not (args.no_bench or args.no_frames)
+    for path in [ROOT / "docs" / "claims.md", ROOT / "scripts" / "paper" / "claims.md"] if is_whole else []:
         put(path, "<!-- grid ledger -->", "<!-- grid ledger end -->", rows)
 
 
