@@ -20,6 +20,15 @@ LEVELS = [1, 2, 3, 4]
 SPEED = [f"trace speed against its reference at level {level}: {paper}" for level, paper in zip(LEVELS, ["0 to +28 %", "+10 to -39 %", "-16 to -68 %", "-55 to -85 %"])]
 BUILD = "builds 42 times as fast as full SAH at three levels, 383 times at four"
 BUILD_WHY = "both on all threads of this processor, 256 bins"
+# Steps from grids to ours, each with one thing changed.
+STEPS = [
+    ("full", "spheres", "boxes", "full detail: spheres, then boxes"),
+    ("full", "boxes", "lod", "full detail: a grid with boxes, then our trees"),
+    ("equal", "spheres", "boxes", "spheres, then boxes"),
+    ("equal", "boxes", "trees", "a grid with boxes and one cap, then our trees cut at one level"),
+    ("equal", "trees", "radius", "one level, then as many as the surface needs for one radius"),
+    ("equal", "radius", "lod", "one radius for the frame, then each ray's own"),
+]
 WORDS = {2: "two", 4: "four", 6: "six"}
 # Knobs of the variants that are simulated at full detail, and what they are called.
 VARIANTS = [
@@ -166,24 +175,35 @@ def bench_tables(lines, large):
     return out, ledger
 
 
-def one_delta_table(lines):
-    """What deciding costs and brings: medians over the views, at full detail over `bvh`, at equal error over ours."""
+KEYS = ["groups", "triangles", "requests", "dram_bytes", "cycles", "energy"]
+HEAD = ["groups of children tested", "triangles tested", "lines asked for", "bytes of DRAM", "cycles", "energy", "cycles, least and most", "views"]
+
+
+def compared(name, pairs, views):
+    """A row: medians of the first of each pair over the second."""
+    columns = list(zip(*([a[key] / b[key] for key in KEYS] for a, b in pairs)))
+    return [name, *(f"{statistics.median(column):.2f}" for column in columns), f"{min(columns[4]):.2f} to {max(columns[4]):.2f}", f"{len(pairs)} of {views}"]
+
+
+def one_delta_tables(lines, near):
+    """What deciding costs and brings: ways beside one another, then step by step."""
     names = {
         "full": [("spheres", "grid, spheres"), ("boxes", "grid, boxes"), ("prisms", "grid, prisms"), ("lod", "our trees")],
-        "equal": [("spheres", "grid, one cap, spheres"), ("boxes", "grid, one cap, boxes"), ("prisms", "grid, one cap, prisms"), ("discrete", "a BVH of one level"), ("trees", "our trees, cut at one level"), ("radius", "our trees, one radius for all rays"), ("lod", "ours, by ray")],
+        "equal": [("spheres", "grid, one cap, spheres"), ("boxes", "grid, one cap, boxes"), ("prisms", "grid, one cap, prisms"), ("discrete", "a BVH of one level"), ("trees", "our trees, cut at one level"), ("radius", "our trees, one radius for all rays")],
     }
-    keys = ["groups", "triangles", "requests", "dram_bytes", "cycles", "energy"]
-    rows = []
-    for at, base, title in (("full", "bvh", "full detail, over `bvh`"), ("equal", "lod", "the error of ours, over ours")):
-        view = lambda line: (line["scene"], line["distance"])
-        over = {view(line): line for line in lines if line["at"] == at and line["way"] == base}
-        for way, name in names[at]:
-            own = [line for line in lines if line["at"] == at and line["way"] == way]
-            ratios = [[line[key] / over[view(line)][key] for key in keys] for line in own]
-            columns = list(zip(*ratios))
-            most = f"{min(columns[4]):.2f} to {max(columns[4]):.2f}"
-            rows.append([title, name, *(f"{statistics.median(column):.2f}" for column in columns), most, f"{len(own)} of {len(over)}"])
-    return table(["at", "what", "groups of children tested", "triangles tested", "lines asked for", "bytes of DRAM", "cycles", "energy", "cycles, least and most", "views"], rows, 2)
+
+    def pairs(lines, at, before, after):
+        by = {(line["at"], line["way"], line["scene"], line["distance"]): line for line in lines}
+        other = lambda line: by.get((at, after, line["scene"], line["distance"]))
+        return [(line, other(line)) for line in lines if (line["at"], line["way"]) == (at, before) and other(line)]
+
+    views = lambda lines: len({(line["scene"], line["distance"]) for line in lines})
+    ways = [[title, *compared(name, pairs(lines, at, way, base), views(lines))] for at, base, title in (("full", "bvh", "full detail, over `bvh`"), ("equal", "lod", "the error of ours, over ours by ray")) for way, name in names[at]]
+    steps = lambda lines: [compared(name, pairs(lines, at, before, after), views(lines)) for at, before, after, name in STEPS]
+    tables = [table(["at", "what", *HEAD], ways, 2), table(["one step: before over after", *HEAD], steps(lines), 1)]
+    if near:
+        tables.append(table(["the same from near to far", *HEAD], steps(near), 1))
+    return "\n\n".join(tables)
 
 
 def simulated(runs, scenes):
@@ -247,6 +267,7 @@ def main():
     parser.add_argument("--distances", type=lambda text: text.split(","), default=["1.5", "4", "16"], help="distances of the eye in radii, with commas (default 1.5,4,16)")
     parser.add_argument("--out", default="target/grid", help="folder in which what was run is kept; a run that is started again goes on with it (default target/grid)")
     parser.add_argument("--large", type=Path, help="scene file of which building alone is timed too")
+    parser.add_argument("--near", type=Path, help="scene file, a wide terrain, that is seen from 0.1 and 0.3 radii too")
     parser.add_argument("--no-bench", action="store_true", help="leave building and rays a second out; the ledger stays as it is")
     parser.add_argument("--no-frames", action="store_true", help="leave the simulated frames out; the ledger stays as it is")
     parser.add_argument("--print", action="store_true", help="print the tables, and leave the documents alone")
@@ -263,7 +284,9 @@ def main():
         best, frames = simulated(runs, args.scene)
         ledger.append(best)
         texts["frames"] = frames + "\n\n" + equal_error(runs, args.scene)
-        texts["decisions"] = one_delta_table(runs.bench("one_delta", "one-delta.jsonl", args.scene, LODRAY_GRID_DISTANCES=",".join(args.distances)))
+        lines = runs.bench("one_delta", "one-delta.jsonl", args.scene, LODRAY_GRID_DISTANCES=",".join(args.distances))
+        near = runs.bench("one_delta", "near.jsonl", [args.near], LODRAY_GRID_DISTANCES="0.1,0.3") if args.near else []
+        texts["decisions"] = one_delta_tables(lines, near)
     rows = table(["paper", "measured", "difference, and why"], ledger, 3)
     if args.print:
         print("\n\n".join([*texts.values(), rows]))
