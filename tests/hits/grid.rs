@@ -13,11 +13,11 @@ use lodray::method::grid::{Bounding, Caps, Displacements, GridMesh, GridOptions,
 use lodray::method::knob::DELTA;
 use lodray::method::lod::{LodImage, LodTraverser};
 use lodray::method::{ClosestHit, Departure, HitSink, Knobs, TriangleId};
-use lodray::num::{Cone, Point, Ray, VertexForm};
+use lodray::num::{Cone, Point, Ray, RayT, VertexForm};
 use lodray::rays::{Camera, Eye, ModelSpace, RaySource, Sight, View};
 use lodray::step::{NoSteps, StepCounts};
-use lodray_test_support::bounces::leaving;
-use lodray_test_support::models::{Rng, any_rays, ball, build_with, model, octahedron, scene_of, terrain, with_vertices, with_zeros};
+use lodray_test_support::bounces::{leaving, scaled};
+use lodray_test_support::models::{Rng, any_rays, ball, build_with, model, octahedron, ray, scene_of, terrain, with_vertices, with_zeros};
 use lodray_test_support::plain::plain;
 use rayon::prelude::*;
 use std::collections::{BTreeMap, BTreeSet};
@@ -326,6 +326,27 @@ fn hits_on_six_models_are_those_of_bvh_and_lod_from_cameras_and_surfaces() {
     }
     println!("{} models: {packed_rays:?}, floats {float_rays:?}", models.len());
     assert!(packed_rays.rays >= total() && float_rays.hits > total() / 4, "{packed_rays:?}, {float_rays:?}");
+}
+
+/// t ends at 8 lengths of the direction; what a short ray meets behind has the last t. The long comparison found that spheres were lost there.
+#[test]
+fn hits_behind_the_last_step_of_t_are_found() {
+    let h = terrain(3, 4, 0.5, 3);
+    let (mut truth, mut rng, mut last) = (bvh(&h), Rng(5), 0);
+    let mut grids: Vec<_> = options().map(|options| grid(&h, &options)).collect();
+    for _ in 0..3_000 {
+        let [mut from, to] = [(); 2].map(|()| h.points[rng.below(h.points.len() as u64) as usize].map(i64::from));
+        from[2] = 1 << 29;
+        let direction = scaled(std::array::from_fn(|k| (to[k] - from[k]) as f64)).map(|c| (c + c.signum()) / 2 + c.signum());
+        let ray = ray(from, direction, Cone::default());
+        let (mut a, mut b) = (ClosestHit::new(h.levels), ClosestHit::new(h.levels));
+        truth.trace(&ray, &mut NoSteps, &mut a);
+        let shape = rng.below(grids.len() as u64) as usize;
+        grids[shape].trace(&ray, &mut NoSteps, &mut b);
+        assert_eq!(b.record(), a.record(), "{ray:?}");
+        last += usize::from(a.record().is_some_and(|hit| hit.t == RayT::MAX));
+    }
+    assert!(last > 50, "{last}");
 }
 
 #[test]
