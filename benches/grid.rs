@@ -96,7 +96,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         drop(tree);
         let only_builds = std::env::var_os("LODRAY_GRID_BUILD").is_some();
         // What the paper's leaves of 16 are worth on a processor.
-        for leaf in [2, 4, 8].into_iter().filter(|_| !only_builds) {
+        for leaf in [2, 4, 8, 16].into_iter().filter(|_| !only_builds) {
             let mut float = FloatTree::with_leaves(&h, leaf)?;
             let (float_seconds, float_hits) = best(|| float.hits(&floats));
             tell("leaves", json!({"leaf": leaf, "float_seconds": float_seconds, "float_hits": float_hits}));

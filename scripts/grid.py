@@ -24,8 +24,10 @@ BUILD_WHY = "both on all threads of this processor, 256 bins"
 STEPS = [
     ("full", "spheres", "boxes", "full detail: spheres, then boxes"),
     ("full", "boxes", "lod", "full detail: a grid with boxes, then our trees"),
+    ("full", "prisms", "lod", "full detail: a grid with prisms, then our trees"),
     ("equal", "spheres", "boxes", "spheres, then boxes"),
     ("equal", "boxes", "trees", "a grid with boxes and one cap, then our trees cut at one level"),
+    ("equal", "trees", "discrete", "our trees cut at one level, then a BVH of that level"),
     ("equal", "trees", "radius", "one level, then as many as the surface needs for one radius"),
     ("equal", "radius", "lod", "one radius for the frame, then each ray's own"),
 ]
@@ -133,7 +135,7 @@ def percent(ratios):
     return low if low == high else f"{low} to {high}"
 
 
-def bench_tables(lines, large):
+def bench_tables(lines, builds):
     """Seconds and rates, and rows of the ledger."""
     scenes = list(dict.fromkeys(line["scene"] for line in lines))
     bvh, reference = ({line["scene"]: line for line in lines if line["of"] == method} for method in ("bvh", "binary16"))
@@ -147,31 +149,32 @@ def bench_tables(lines, large):
             rows.append([levels, left, f"{rate(own):.2f}", f"{rate(two):.2f}", number(statistics.median(two[scene]["rays"] / two[scene]["float_seconds"] / 1e6 for scene in scenes)), f"{statistics.median(reference[scene]['float_seconds'] / two[scene]['float_seconds'] for scene in scenes):.2f}", number(statistics.median(own[scene]["build"] for scene in scenes)), f"{statistics.median(bvh[scene]['build'] / own[scene]['build'] for scene in scenes):.1f}"])
     out = [table(["levels", "left out", "rays a second over `bvh`'s, nodes of four", "binary nodes", "million rays a second in floats, binary nodes", "over `binary16`'s in floats", "seconds to build, nodes of four", "`bvh`'s over that"], rows, 0)]
     boundary = [line["bytes"]["boundary"] / sum(line["bytes"][name] for name in ("corner", "boundary", "inside")) for line in (whole(scene, 3) for scene in scenes)]
-    # In floats, against the reference with leaves of other sizes.
-    sizes = {16: {scene: reference[scene]["float_seconds"] for scene in scenes}}
-    for line in (line for line in lines if line["of"] == "leaves"):
-        sizes.setdefault(line["leaf"], {})[line["scene"]] = line["float_seconds"]
-    gain = {size: statistics.median(sizes[16][scene] / of[scene] for scene in scenes) for size, of in sizes.items()}
-    suits = max(gain, key=gain.get)
-    speed = lambda levels, size: percent([sizes[size][scene] / whole(scene, levels)["float_seconds"] for scene in scenes])
+    # In floats, how much faster the reference is with leaves of other sizes.
+    sizes = {(line["scene"], line["leaf"]): line["float_seconds"] for line in lines if line["of"] == "leaves"}
+    gains = {leaf: {scene: sizes[scene, 16] / sizes[scene, leaf] for scene in scenes} for leaf in dict.fromkeys(leaf for _, leaf in sizes)}
+    suits = max(gains, key=lambda leaf: statistics.median(gains[leaf].values()))
+    speed = lambda levels, leaf: percent([reference[scene]["float_seconds"] / gains[leaf][scene] / whole(scene, levels)["float_seconds"] for scene in scenes])
     exact = lambda levels: percent([reference[scene]["seconds"] / whole(scene, levels)["seconds"] for scene in scenes])
     # Of each level, rates by levels left out over the best.
     rates = {levels: [statistics.median(min(whole(scene, levels, 2, out)["float_seconds"] for out in range(levels + 1)) / whole(scene, levels, 2, left)["float_seconds"] for scene in scenes) for left in range(levels + 1)] for levels in LEVELS}
-    build = lambda of, levels: among([next(line["build"] for line in of if line["of"] == "binary16" and line["scene"] == scene) / find(of, scene, levels=levels, left_out=2, nodes=2, points="float")["build"] for scene in dict.fromkeys(line["scene"] for line in of)])
-    leaves = f"the paper chose leaves of 16 on an RTX 2080 Ti; on a processor leaves of {suits} trace {gain[suits]:.2f} times as fast, and are the fair reference"
+    built = {}
+    for line in (line for line in builds if "build" in line):
+        built.setdefault((line["triangles"], line["scene"]), []).append(line)
+    of = lambda lines, **wanted: next(line for line in lines if all(line.get(key) == value for key, value in wanted.items()))["build"]
+    build = lambda levels: among([of(own, of="binary16") / of(own, of="grid", levels=levels, nodes=2) for own in built.values()])
+    leaves = f"the paper chose leaves of 16 on an RTX 2080 Ti; on a processor leaves of {suits} trace {statistics.median(gains[suits].values()):.2f} times as fast, and are the fair reference"
     why = {1: leaves, 2: "as above", 3: "as above", 4: "as above"}
     ledger = [
         ["boundary vertices are about a third of geometry (three levels)", among(boundary), "3 (M - 1) / 2 of M^2 / 2 vertices a primitive, M = 8"],
         *([paper, f"{speed(levels, 16)} against `binary16`, both in floats on one thread; {speed(levels, suits)} against the same with leaves of {suits}; {exact(levels)} with exact tests", why[levels]] for levels, paper in zip(LEVELS, SPEED)),
-        [BUILD, f"{build(lines, 3)} times and {build(lines, 4)} times as fast as `binary16`" + (f"; of {large[0]['triangles'] / 1e6:.1f} M triangles {build(large, 3)} and {build(large, 4)} times" if large else ""), BUILD_WHY],
+        [BUILD, f"{build(3)} times and {build(4)} times as fast as `binary16`, scenes of {min(built)[0] / 1e6:.1f} to {max(built)[0] / 1e6:.1f} M triangles", BUILD_WHY],
         ["two levels without spheres are best", "in floats, the share of the best rate with 0, 1, ... left out: " + "; ".join(f"at {levels} {'level' if levels == 1 else 'levels'} " + ", ".join(f"{rate:.2f}" for rate in rates[levels]) for levels in LEVELS), "binary nodes, medians over the scenes; on a processor one and two are alike"],
     ]
-    if large:
-        names = {"bvh": "`bvh`", "binary16": "`binary16`"}
-        kept = [line for line in large if line["of"] in names or "build" in line]
-        base = next(line["build"] for line in large if line["of"] == "binary16")
-        row = lambda line: [names.get(line["of"]) or f"grid, {line['levels']} levels, nodes of {WORDS[line['nodes']]}", f"{line['build']:.2f}", f"{base / line['build']:.1f}", f"{sum(line['bytes'].values()) / line['triangles']:.2f}"]
-        out.append(table([f"building {large[0]['triangles']:,} triangles", "seconds", "`binary16`'s over that", "bytes a triangle"], [row(line) for line in kept], 1))
+    names = {"bvh": "`bvh`", "binary16": "`binary16`"}
+    name = lambda line: names.get(line["of"]) or f"grid, {line['levels']} levels, nodes of {WORDS[line['nodes']]}"
+    # The largest scene alone.
+    rows = [[name(line), f"{line['build']:.2f}", f"{of(built[max(built)], of='binary16') / line['build']:.1f}", f"{sum(line['bytes'].values()) / line['triangles']:.2f}"] for line in built[max(built)]]
+    out.append(table([f"building {max(built)[0]:,} triangles", "seconds", "`binary16`'s over that", "bytes a triangle"], rows, 1))
     return out, ledger
 
 
@@ -277,8 +280,8 @@ def main():
     text, ledger = bytes_tables(runs, args.scene)
     texts = {"bytes": text}
     if not args.no_bench:
-        large = runs.bench("grid", "large.jsonl", [args.large], LODRAY_GRID_BUILD="1", LODRAY_GRID_SIZE="64") if args.large else []
-        tables, more = bench_tables(runs.bench("grid", "bench.jsonl", args.scene), large)
+        builds = runs.bench("grid", "build.jsonl", [*args.scene, *([args.large] if args.large else [])], LODRAY_GRID_BUILD="1", LODRAY_GRID_SIZE="64")
+        tables, more = bench_tables(runs.bench("grid", "bench.jsonl", args.scene), builds)
         texts["bench"], ledger = "\n\n".join(tables), ledger + more
     if not args.no_frames:
         best, frames = simulated(runs, args.scene)
