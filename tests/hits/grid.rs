@@ -334,7 +334,7 @@ fn hits_behind_the_last_step_of_t_are_found() {
     let h = terrain(3, 4, 0.5, 3);
     let (mut truth, mut rng, mut last) = (bvh(&h), Rng(5), 0);
     let mut grids: Vec<_> = options().map(|options| grid(&h, &options)).collect();
-    for _ in 0..3_000 {
+    for _ in 0..10_000 {
         let [mut from, to] = [(); 2].map(|()| h.points[rng.below(h.points.len() as u64) as usize].map(i64::from));
         from[2] = 1 << 29;
         let direction = scaled(std::array::from_fn(|k| (to[k] - from[k]) as f64)).map(|c| (c + c.signum()) / 2 + c.signum());
@@ -346,7 +346,7 @@ fn hits_behind_the_last_step_of_t_are_found() {
         assert_eq!(b.record(), a.record(), "{ray:?}");
         last += usize::from(a.record().is_some_and(|hit| hit.t == RayT::MAX));
     }
-    assert!(last > 50, "{last}");
+    assert!(last > 30, "{last}");
 }
 
 #[test]
