@@ -321,7 +321,7 @@ fn hits_on_six_models_are_those_of_bvh_and_lod_from_cameras_and_surfaces() {
         let pieces = total().div_ceil(models.len() * PIECE);
         let [packed, float] = (0..pieces).into_par_iter().map(piece).reduce(Default::default, |a, b| [a[0].and(b[0]), a[1].and(b[1])]);
         println!("{name}, {} triangles: {packed:?}, floats {float:?}, {:.1?}", h.finest_triangles(), start.elapsed());
-        assert!(packed.hits > packed.rays / 4 && packed.equal > packed.hits / 4, "{name}: {packed:?}");
+        assert!(packed.hits > packed.rays / 4 && packed.equal > packed.hits / 16, "{name}: {packed:?}");
         (packed_rays, float_rays) = (packed_rays.and(packed), float_rays.and(float));
     }
     println!("{} models: {packed_rays:?}, floats {float_rays:?}", models.len());
