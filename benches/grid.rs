@@ -1,7 +1,7 @@
 //! Grid primitives on this processor: bytes, seconds to build, and rays a second on one thread, beside the full-resolution BVH and the binary BVH that is their reference. One line of JSON for each.
 //!
 //! `cargo bench --bench grid -- SCENE.lod...`; `scripts/grid` makes tables of it. `LODRAY_GRID_SIZE` is the side of the frame (default 512), `LODRAY_GRID_DISTANCE` the camera's distance
-//! in radii (default 1.5).
+//! in radii (default 1.5). `LODRAY_GRID_BUILD=1` takes primitives of three and four levels with two left out alone: what it takes to build large scenes.
 
 use lodray::format::Scene;
 use lodray::method::ClosestHit;
@@ -94,9 +94,19 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         drop(traverser);
         drop(float);
         drop(tree);
+        let only_builds = std::env::var_os("LODRAY_GRID_BUILD").is_some();
+        // What the paper's leaves of 16 are worth on a processor.
+        for leaf in [2, 4, 8, 16].into_iter().filter(|_| !only_builds) {
+            let mut float = FloatTree::with_leaves(&h, leaf)?;
+            let (float_seconds, float_hits) = best(|| float.hits(&floats));
+            tell("leaves", json!({"leaf": leaf, "float_seconds": float_seconds, "float_hits": float_hits}));
+        }
 
         for splits in 1..=4 {
             for left_out in 0..=splits {
+                if only_builds && (splits < 3 || left_out != 2) {
+                    continue;
+                }
                 for (width, nodes) in [(Width::Two, 2), (Width::Four, 4), (Width::Six, 6)] {
                     // What is less telling is told once.
                     if nodes == 6 && (splits, left_out) != (4, 2) {

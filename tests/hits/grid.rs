@@ -7,20 +7,22 @@ use lodray::block::tri_test::{self, TriTest};
 use lodray::format::Scene;
 use lodray::golden::exact::Exact;
 use lodray::mesh::procedural::{self, Options};
-use lodray::mesh::{Hierarchy, lattice};
+use lodray::mesh::{Hierarchy, TriangleMesh, lattice, loop_surface};
 use lodray::method::bvh::{BvhTraverser, FullBvh, FullOptions, LeafLayout, NoStore, NodeBoxes};
 use lodray::method::grid::{Bounding, Caps, Displacements, GridMesh, GridOptions, GridTraverser, METHOD, PointForm, Width, open_edges};
 use lodray::method::knob::DELTA;
 use lodray::method::lod::{LodImage, LodTraverser};
 use lodray::method::{ClosestHit, Departure, HitSink, Knobs, TriangleId};
-use lodray::num::{Cone, Point, Ray, VertexForm};
+use lodray::num::{Cone, Point, Ray, RayT, VertexForm};
 use lodray::rays::{Camera, Eye, ModelSpace, RaySource, Sight, View};
 use lodray::step::{NoSteps, StepCounts};
-use lodray_test_support::bounces::leaving;
-use lodray_test_support::models::{Rng, any_rays, ball, build_with, model, scene_of, terrain, with_vertices, with_zeros};
+use lodray_test_support::bounces::{leaving, scaled};
+use lodray_test_support::models::{Rng, any_rays, ball, build_with, model, octahedron, ray, scene_of, terrain, with_vertices, with_zeros};
 use lodray_test_support::plain::plain;
+use rayon::prelude::*;
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
+use std::time::Instant;
 
 /// Five triangles around one edge, one of them turned, one degenerate in space, and a loose one.
 fn fan(levels: u32) -> Hierarchy {
@@ -182,6 +184,169 @@ fn hits_are_those_of_lod_at_full_detail_and_of_the_golden_traverser() {
     }
     println!("{hits} hits, {equal} on triangles of the finest level of both");
     assert!(hits > 8_000 && equal > hits / 3, "{hits}, {equal}");
+}
+
+/// Rays in all of the long comparison, primary and secondary; `LODRAY_RAYS` asks for a tenth of what closed models get, so `scripts/nightly` for ten million.
+fn total() -> usize {
+    match std::env::var("LODRAY_RAYS") {
+        Ok(text) => text.parse::<usize>().expect("LODRAY_RAYS is a number") / 10,
+        Err(_) => 60_000,
+    }
+}
+
+/// Six models; in their place scene files that `LODRAY_SCENES` names, with colons between.
+fn six_models() -> Vec<(String, Scene)> {
+    use procedural::Scene::{Cloth, Pot, Sphere, Spikes, Terrain};
+    if let Ok(files) = std::env::var("LODRAY_SCENES") {
+        return files.split(':').map(|file| (file.to_owned(), Scene::open(file.as_ref()).expect("a scene"))).collect();
+    }
+    let generated = [(Terrain, 5), (Cloth, 4), (Sphere, 4), (Spikes, 4), (Pot, 4)].map(|(kind, levels)| {
+        let options = Options { levels: Some(levels), base: Some(128), ..Options::new(kind) };
+        (format!("{kind:?}"), build_with(&procedural::generate(&options).expect("options"), VertexForm::Exact))
+    });
+    let (base, triangles) = octahedron();
+    let positions: Vec<[f64; 3]> = base.iter().map(|p| p.map(|c| c as f64)).collect();
+    let mesh = TriangleMesh::from_parts(&positions, &triangles, &[], Vec::new()).expect("an octahedron");
+    let smooth = build_with(&loop_surface(&mesh, 5).expect("few triangles"), VertexForm::Exact);
+    generated.into_iter().chain([("loop".to_owned(), smooth)]).collect()
+}
+
+/// What a comparison had.
+#[derive(Clone, Copy, Debug, Default)]
+struct Compared {
+    rays: usize,
+    hits: usize,
+    /// Hits that `lod` has on a triangle of the finest level too: equal in every field. The others are on flat triangles above it, with the same t and face.
+    equal: usize,
+}
+
+impl Compared {
+    fn and(self, other: Self) -> Self {
+        Self { rays: self.rays + other.rays, hits: self.hits + other.hits, equal: self.equal + other.equal }
+    }
+}
+
+/// A ray of a camera at a random distance, or one through or near a vertex.
+fn some_ray(rng: &mut Rng, h: &Hierarchy, space: &ModelSpace, cameras: &[Camera]) -> Ray {
+    if rng.below(2) == 0 {
+        let camera = &cameras[rng.below(cameras.len() as u64) as usize];
+        let [x, y] = [rng.unit(), rng.unit()].map(|at| at * f64::from(camera.width));
+        if let Some(entered) = space.enter(&camera.ray_at(x, y), f64::INFINITY) {
+            return entered.ray;
+        }
+    }
+    any_rays(h, 1, rng.draw())[0]
+}
+
+#[test]
+fn hits_on_six_models_are_those_of_bvh_and_lod_from_cameras_and_surfaces() {
+    const PIECE: usize = 5_000;
+    let shapes: Vec<GridOptions> = [
+        (4, 2, Bounding::Spheres, Width::Two),
+        (4, 2, Bounding::Spheres, Width::Four),
+        (4, 2, Bounding::Spheres, Width::Six),
+        (4, 1, Bounding::Boxes, Width::Four),
+        (3, 0, Bounding::Prisms, Width::Four),
+        (2, 2, Bounding::Spheres, Width::Two),
+    ]
+    .map(|(splits, left_out, bounding, width)| GridOptions { splits, left_out, bounding, width, points: PointForm::Packed })
+    .into();
+    let models = six_models();
+    let (mut packed_rays, mut float_rays) = (Compared::default(), Compared::default());
+    for (name, scene) in &models {
+        let start = Instant::now();
+        let (h, space) = (scene.decode(), ModelSpace::of(scene));
+        let near = |distance| Camera::new(&View { distance: Some(distance), ..View::default() }, &space, 1024, 1024).expect("a view");
+        let cameras = [0.4, 1.2, 2.5, 9.0].map(near);
+        let full = |h| FullBvh::build(h, &FullOptions::new(16, NodeBoxes::Local, LeafLayout::Block)).expect("a valid model");
+        let trees = [full(&h), full(&rounded(&h))];
+        let meshes = [PointForm::Packed, PointForm::Float].map(|points| -> Vec<Arc<GridMesh>> {
+            let built = shapes.iter().map(|shape| GridMesh::build(&h, &GridOptions { points, ..*shape }).expect("a valid model"));
+            built.map(Arc::new).collect()
+        });
+        let piece = |piece: usize| {
+            let mut rng = Rng(piece as u64 + 1);
+            let mut truths = trees.each_ref().map(BvhTraverser::new);
+            let of = |mesh: &Arc<GridMesh>| GridTraverser::new(Arc::clone(mesh), Caps::Frame(mesh.pattern.splits));
+            let mut grids = meshes.each_ref().map(|meshes| meshes.iter().map(of).collect::<Vec<_>>());
+            let mut lod = LodTraverser::new(LodImage::of(scene));
+            let mut compared = [Compared::default(); 2];
+            // Of packed points and of floats as many rays each.
+            while compared[0].rays < PIECE {
+                let ray = Ray { cone: Cone::default(), ..some_ray(&mut rng, &h, &space, &cameras) };
+                let shape = rng.below(shapes.len() as u64) as usize;
+                for form in 0..2 {
+                    let (truth, own, compared) = (&mut truths[form], &mut grids[form][shape], &mut compared[form]);
+                    let [mut wanted, mut found, mut by_lod] = [(); 3].map(|()| ClosestHit::new(h.levels));
+                    truth.trace(&ray, &mut NoSteps, &mut wanted);
+                    own.trace(&ray, &mut NoSteps, &mut found);
+                    assert_eq!(found.record(), wanted.record(), "{name}, {:?}, form {form}, {ray:?}", shapes[shape]);
+                    compared.rays += 1;
+                    let (Some(hit), Some(corners)) = (found.record(), found.corners()) else { continue };
+                    compared.hits += 1;
+                    let mut leaves = None;
+                    if form == 0 {
+                        lod.trace(&ray, &mut NoSteps, &mut by_lod);
+                        let other = by_lod.record().expect("a hit");
+                        assert_eq!((other.t, other.front, other.tree), (hit.t, hit.front, hit.tree), "{name}, {ray:?}");
+                        if other.level == hit.level {
+                            assert_eq!(other, hit, "{name}, {ray:?}");
+                            compared.equal += 1;
+                            leaves = Some(lod.departure(&ray, None, &other, &by_lod.corners().expect("a hit")));
+                        }
+                    }
+                    let from: Departure = BvhTraverser::departure(&hit, &corners);
+                    let at = h.points[rng.below(h.points.len() as u64) as usize].map(i64::from);
+                    let direction = leaving(&mut rng, &corners, from.start.point, at);
+                    let next = Ray { origin: from.start.point, direction, cone: Cone::default() };
+                    let [mut wanted, mut found, mut by_lod] = [(); 3].map(|()| ClosestHit::new(h.levels));
+                    truth.trace_from(&next, &from, &mut NoSteps, &mut wanted);
+                    own.trace_from(&next, &from, &mut NoSteps, &mut found);
+                    assert_eq!(found.record(), wanted.record(), "{name}, {:?}, form {form}, {from:?}, {next:?}", shapes[shape]);
+                    compared.rays += 1;
+                    compared.hits += usize::from(found.record().is_some());
+                    let Some(leaves) = leaves else { continue };
+                    assert_eq!((leaves.start, leaves.corners), (from.start, from.corners), "{name}, {ray:?}");
+                    lod.trace_from(&next, &leaves, &mut NoSteps, &mut by_lod);
+                    let [own, other] = [found.record(), by_lod.record()];
+                    assert_eq!(other.map(|hit| (hit.t, hit.front)), own.map(|hit| (hit.t, hit.front)), "{name}, {from:?}, {next:?}");
+                    if other.is_some_and(|hit| hit.level.get() == u64::from(h.levels)) {
+                        assert_eq!(other, own, "{name}, {from:?}, {next:?}");
+                        compared.equal += 1;
+                    }
+                }
+            }
+            compared
+        };
+        let pieces = total().div_ceil(models.len() * PIECE);
+        let [packed, float] = (0..pieces).into_par_iter().map(piece).reduce(Default::default, |a, b| [a[0].and(b[0]), a[1].and(b[1])]);
+        println!("{name}, {} triangles: {packed:?}, floats {float:?}, {:.1?}", h.finest_triangles(), start.elapsed());
+        assert!(packed.hits > packed.rays / 4 && packed.equal > packed.hits / 16, "{name}: {packed:?}");
+        (packed_rays, float_rays) = (packed_rays.and(packed), float_rays.and(float));
+    }
+    println!("{} models: {packed_rays:?}, floats {float_rays:?}", models.len());
+    assert!(packed_rays.rays >= total() && float_rays.hits > total() / 4, "{packed_rays:?}, {float_rays:?}");
+}
+
+/// t ends at 8 lengths of the direction; what a short ray meets behind has the last t. The long comparison found that spheres were lost there.
+#[test]
+fn hits_behind_the_last_step_of_t_are_found() {
+    let h = terrain(3, 4, 0.5, 3);
+    let (mut truth, mut rng, mut last) = (bvh(&h), Rng(5), 0);
+    let mut grids: Vec<_> = options().map(|options| grid(&h, &options)).collect();
+    for _ in 0..10_000 {
+        let [mut from, to] = [(); 2].map(|()| h.points[rng.below(h.points.len() as u64) as usize].map(i64::from));
+        from[2] = 1 << 29;
+        let direction = scaled(std::array::from_fn(|k| (to[k] - from[k]) as f64)).map(|c| (c + c.signum()) / 2 + c.signum());
+        let ray = ray(from, direction, Cone::default());
+        let (mut a, mut b) = (ClosestHit::new(h.levels), ClosestHit::new(h.levels));
+        truth.trace(&ray, &mut NoSteps, &mut a);
+        let shape = rng.below(grids.len() as u64) as usize;
+        grids[shape].trace(&ray, &mut NoSteps, &mut b);
+        assert_eq!(b.record(), a.record(), "{ray:?}");
+        last += usize::from(a.record().is_some_and(|hit| hit.t == RayT::MAX));
+    }
+    assert!(last > 30, "{last}");
 }
 
 #[test]

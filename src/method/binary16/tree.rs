@@ -75,6 +75,8 @@ pub struct Tree {
     pub triangles: usize,
     /// Every coordinate is a number of single precision, and stands in memory as one. Otherwise all are whole numbers of 32 bits.
     pub has_floats: bool,
+    /// Places for triangles in each leaf.
+    pub leaf: usize,
 }
 
 impl Tree {
@@ -83,10 +85,15 @@ impl Tree {
     /// # Errors
     /// No or too many triangles, too many levels, points missing or beyond the coordinate limit.
     pub fn new(hierarchy: &Hierarchy) -> Result<Self, BvhError> {
+        Self::with_leaves(hierarchy, LEAF)
+    }
+
+    /// The same down to `leaf` triangles, for whom does not ask for lines.
+    pub(super) fn with_leaves(hierarchy: &Hierarchy, leaf: usize) -> Result<Self, BvhError> {
         let mesh = Corners::new(hierarchy)?;
         let mut prims = mesh.primitives(0..mesh.count() as u32); // at most 2^28
-        let binary = binary_tree_of::<BINS>(&mut prims, MAX_DEPTH_OF_SIX, LEAF);
-        let mut layout = Layout { prims: &prims, binary: &binary, nodes: Vec::new(), firsts: Vec::new() };
+        let binary = binary_tree_of::<BINS>(&mut prims, MAX_DEPTH_OF_SIX, leaf);
+        let mut layout = Layout { prims: &prims, binary: &binary, leaf, nodes: Vec::new(), firsts: Vec::new() };
         layout.subtree(0, prims.len(), binary.root as usize);
         let Layout { nodes, firsts, .. } = layout;
         drop(binary);
@@ -94,22 +101,22 @@ impl Tree {
         drop(prims);
         let (packed, vertices) = shared_vertices(&mesh, &order);
         let ends = firsts.iter().skip(1).copied().chain([order.len()]);
-        let mut triples = Vec::with_capacity(LEAF * firsts.len());
-        let mut ids = Vec::with_capacity(LEAF * firsts.len());
+        let mut triples = Vec::with_capacity(leaf * firsts.len());
+        let mut ids = Vec::with_capacity(leaf * firsts.len());
         for (&first, end) in firsts.iter().zip(ends) {
             triples.extend_from_slice(&packed[first..end]);
             ids.extend_from_slice(&order[first..end]);
-            let padded = triples.len().next_multiple_of(LEAF);
+            let padded = triples.len().next_multiple_of(leaf);
             triples.resize(padded, PADDING);
             ids.resize(padded, 0);
         }
         let has_floats = vertices.iter().flatten().all(|&c| is_float(c));
-        Ok(Self { levels: hierarchy.levels, nodes, triples, vertices, ids, triangles: order.len(), has_floats })
+        Ok(Self { levels: hierarchy.levels, nodes, triples, vertices, ids, triangles: order.len(), has_floats, leaf })
     }
 
     /// How many leaves there are.
     pub fn leaves(&self) -> usize {
-        self.triples.len() / LEAF
+        self.triples.len() / self.leaf
     }
 
     /// Memory in bytes.
@@ -127,6 +134,8 @@ fn is_float(c: i32) -> bool {
 struct Layout<'a> {
     prims: &'a [Prim],
     binary: &'a Binary,
+    /// Most triangles of a leaf.
+    leaf: usize,
     nodes: Vec<Node>,
     /// Of each leaf the first of its primitives.
     firsts: Vec<usize>,
@@ -136,7 +145,7 @@ impl Layout<'_> {
     /// Appends what is over the primitives from `begin` to before `end`, which are split at `split` if they are more than a leaf holds.
     fn subtree(&mut self, begin: usize, end: usize, split: usize) {
         let count = end - begin;
-        if count <= LEAF {
+        if count <= self.leaf {
             let boxes = self.prims[begin..end].iter().map(Prim::bounds);
             let bounds = boxes.reduce(|all, own| all.union(&own)).unwrap_or_default();
             self.firsts.push(begin);

@@ -73,61 +73,110 @@ fn cost((bounds, count): Bin) -> f32 {
     bounds.map_or(0.0, |bounds| bounds.half_area() as f32) * count as f32
 }
 
+/// Ranges up to this size are looked through box by box, as most bins would be empty.
+const FEW: usize = 64;
+
+/// Boxes in bins along the range of their middles.
+struct Bins<'a> {
+    boxes: &'a [Box32],
+    ranges: [(i64, i64); 3],
+}
+
+impl<'a> Bins<'a> {
+    fn new(boxes: &'a [Box32], order: &[u32]) -> Self {
+        let range = |axis: usize| {
+            let middles = order.iter().map(|&k| middle(&boxes[k as usize], axis));
+            middles.fold((i64::MAX, i64::MIN), |(lo, hi), m| (lo.min(m), hi.max(m)))
+        };
+        Self { boxes, ranges: std::array::from_fn(range) }
+    }
+
+    fn of(&self, k: u32, axis: usize) -> usize {
+        let (lo, hi) = self.ranges[axis];
+        // Differences are below 2^33, so their product with 256 fits.
+        ((middle(&self.boxes[k as usize], axis) - lo) * BINS as i64 / (hi - lo + 1)) as usize
+    }
+
+    /// The cheapest border, as (cost, axis, first bin behind it); none if all are in one bin.
+    fn best(&self, order: &[u32]) -> Option<(f32, usize, usize)> {
+        let filled = |own: &[u32]| {
+            let mut bins = vec![[(None, 0); BINS]; 3];
+            for &k in own {
+                for (axis, bins) in bins.iter_mut().enumerate() {
+                    let at = &mut bins[self.of(k, axis)];
+                    *at = grown(*at, (Some(self.boxes[k as usize]), 1));
+                }
+            }
+            bins
+        };
+        let joined = |mut a: Vec<[Bin; BINS]>, b: Vec<[Bin; BINS]>| {
+            a.iter_mut().flatten().zip(b.into_iter().flatten()).for_each(|(a, b)| *a = grown(*a, b));
+            a
+        };
+        // Unions and counts do not depend on the order in which threads deliver them.
+        let bins = if order.len() > PARALLEL {
+            order.par_chunks(PARALLEL).map(filled).reduce(|| vec![[(None, 0); BINS]; 3], joined)
+        } else {
+            filled(order)
+        };
+        let mut best: Option<(f32, usize, usize)> = None;
+        for (axis, bins) in bins.iter().enumerate() {
+            let mut above = [0.0; BINS];
+            let mut behind = (None, 0);
+            for at in (1..BINS).rev() {
+                behind = grown(behind, bins[at]);
+                above[at] = cost(behind);
+            }
+            let mut before = (None, 0);
+            for at in 1..BINS {
+                before = grown(before, bins[at - 1]);
+                let total = cost(before) + above[at];
+                let parts = before.1 > 0 && (before.1 as usize) < order.len();
+                if parts && best.is_none_or(|(least, ..)| total < least) {
+                    best = Some((total, axis, at));
+                }
+            }
+        }
+        best
+    }
+
+    /// The same of [`FEW`] boxes at most: in the order of their bins.
+    fn best_of_few(&self, order: &[u32]) -> Option<(f32, usize, usize)> {
+        let count = order.len();
+        let mut best: Option<(f32, usize, usize)> = None;
+        let mut sorted = [(0, Box32::default()); FEW];
+        let mut above = [0.0; FEW];
+        for axis in 0..3 {
+            let sorted = &mut sorted[..count];
+            sorted.iter_mut().zip(order).for_each(|(to, &k)| *to = (self.of(k, axis), self.boxes[k as usize]));
+            sorted.sort_unstable_by_key(|of| of.0);
+            let mut behind = (None, 0);
+            for at in (1..count).rev() {
+                behind = grown(behind, (Some(sorted[at].1), 1));
+                above[at] = cost(behind);
+            }
+            let mut before = (None, 0);
+            for at in 1..count {
+                before = grown(before, (Some(sorted[at - 1].1), 1));
+                let total = cost(before) + above[at];
+                let parts = sorted[at - 1].0 < sorted[at].0;
+                if parts && best.is_none_or(|(least, ..)| total < least) {
+                    best = Some((total, axis, sorted[at - 1].0 + 1));
+                }
+            }
+        }
+        best
+    }
+}
+
 /// Puts the boxes, at least two, into two parts; gives the size of the first.
 fn split(boxes: &[Box32], order: &mut [u32]) -> usize {
-    let range = |axis: usize| {
-        let middles = order.iter().map(|&k| middle(&boxes[k as usize], axis));
-        middles.fold((i64::MAX, i64::MIN), |(lo, hi), m| (lo.min(m), hi.max(m)))
-    };
-    let ranges: [(i64, i64); 3] = std::array::from_fn(range);
-    let bin = |of: &Box32, axis: usize| {
-        let (lo, hi) = ranges[axis];
-        // Differences are below 2^33, so their product with 256 fits.
-        ((middle(of, axis) - lo) * BINS as i64 / (hi - lo + 1)) as usize
-    };
-    let filled = |own: &[u32]| {
-        let mut bins = vec![[(None, 0); BINS]; 3];
-        for &k in own {
-            let of = boxes[k as usize];
-            for (axis, bins) in bins.iter_mut().enumerate() {
-                let at = &mut bins[bin(&of, axis)];
-                *at = grown(*at, (Some(of), 1));
-            }
-        }
-        bins
-    };
-    let joined = |mut a: Vec<[Bin; BINS]>, b: Vec<[Bin; BINS]>| {
-        a.iter_mut().flatten().zip(b.into_iter().flatten()).for_each(|(a, b)| *a = grown(*a, b));
-        a
-    };
-    // Unions and counts do not depend on the order in which threads deliver them.
-    let bins = if order.len() > PARALLEL {
-        order.par_chunks(PARALLEL).map(filled).reduce(|| vec![[(None, 0); BINS]; 3], joined)
-    } else {
-        filled(order)
-    };
-    let mut best: Option<(f32, usize, usize)> = None;
-    for (axis, bins) in bins.iter().enumerate() {
-        let mut above = [0.0; BINS];
-        let mut behind = (None, 0);
-        for at in (1..BINS).rev() {
-            behind = grown(behind, bins[at]);
-            above[at] = cost(behind);
-        }
-        let mut before = (None, 0);
-        for at in 1..BINS {
-            before = grown(before, bins[at - 1]);
-            let total = cost(before) + above[at];
-            let parts = before.1 > 0 && (before.1 as usize) < order.len();
-            if parts && best.is_none_or(|(least, ..)| total < least) {
-                best = Some((total, axis, at));
-            }
-        }
-    }
+    let bins = Bins::new(boxes, order);
+    let best = if order.len() <= FEW { bins.best_of_few(order) } else { bins.best(order) };
     // All middles are one: any halves do.
     let Some((_, axis, border)) = best else { return order.len() / 2 };
-    order.sort_by_key(|&k| bin(&boxes[k as usize], axis) >= border);
-    order.partition_point(|&k| bin(&boxes[k as usize], axis) < border)
+    order.sort_by_key(|&k| bins.of(k, axis) >= border);
+    order.partition_point(|&k| bins.of(k, axis) < border)
 }
 
 #[cfg(test)]
@@ -149,6 +198,24 @@ mod tests {
         let (right, behind) = check(nodes, at + 1 + below, boxes, order, next, depth + 1);
         assert_eq!(node.bounds, left.union(&right));
         (node.bounds, 1 + below + behind)
+    }
+
+    #[test]
+    fn few_boxes_are_split_as_many_are() {
+        let mut random = Random::of(1, 2);
+        for _ in 0..2_000 {
+            let count = 2 + random.below(FEW as u64 - 1);
+            let bits = 1 + random.below(28);
+            let boxes: Vec<Box32> = (0..count)
+                .map(|_| {
+                    let lo = [(); 3].map(|()| random.within(1 << bits) as i32);
+                    Box32 { lo, hi: lo.map(|c| c + random.below(1 << 20) as i32) }
+                })
+                .collect();
+            let order: Vec<u32> = (0..count as u32).collect();
+            let bins = Bins::new(&boxes, &order);
+            assert_eq!(bins.best_of_few(&order), bins.best(&order), "{boxes:?}");
+        }
     }
 
     #[test]

@@ -61,10 +61,10 @@ pub struct Met {
     pub near: [f64; 4],
 }
 
-/// A t in steps of 2^-32.
+/// A t in steps of 2^-32. The last stands for all beyond it too: hits there have it.
 #[inline(always)]
 pub fn in_t(t: RayT) -> f64 {
-    t.get() as f64 * 2f64.powi(-32)
+    if t == RayT::MAX { f64::INFINITY } else { t.get() as f64 * 2f64.powi(-32) }
 }
 
 impl SphereRay {
@@ -125,6 +125,17 @@ mod tests {
             let r = radius_up(v);
             assert!(f64::from(r) >= v && (r == 0.0 || f64::from(r.next_down()) < v), "{v}");
         }
+    }
+
+    #[test]
+    fn spheres_beyond_the_last_t_are_met() {
+        let ray = SphereRay::new(Point::new(-(1 << 31) + 1, 0, 0), Direction::new((1 << 29) + 1, 0, 0));
+        let spheres = |x: i64| Spheres { sums: [[3.0 * x as f64; 4], [0.0; 4], [0.0; 4]], radii: [8.0; 4] };
+        let found = |x, t_max| ray.test(t_max, &spheres(x)).hit[0];
+        // t is 7.999 and 8.001.
+        let [near, far] = [7.999, 8.001].map(|t| (t * f64::from(1 << 29)) as i64 - (1 << 31));
+        assert!(found(near, RayT::MAX) && found(far, RayT::MAX));
+        assert!(found(near, RayT::new(RayT::MAX.get() - 1)) && !found(far, RayT::new(RayT::MAX.get() - 1)));
     }
 
     proptest! {
