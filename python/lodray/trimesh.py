@@ -214,17 +214,20 @@ class RayMeshIntersector:
         (lo, hi), step = self.mesh.bounds, self._step()
         those = np.flatnonzero(missed)
         those = those[_meets(origins[those], directions[those], lo - 4 * step, hi + 4 * step)]
+        # Two directions across each ray.
+        along = _unit(directions[those])
+        axis = np.zeros_like(along)
+        axis[np.arange(len(those)), np.abs(along).argmin(axis=1)] = 1.0
+        across = np.cross(along, axis)
+        across = step * _unit(across)
+        beside, start = np.cross(along, across), origins[those]
         for turn in _TURNS:
-            those = those[missed[those]]
+            left = missed[those]
+            if not left.all():
+                those, start, across, beside = those[left], start[left], across[left], beside[left]
             if len(those) == 0:
                 return
-            # Two directions across each ray.
-            along = _unit(directions[those])
-            axis = np.zeros_like(along)
-            axis[np.arange(len(those)), np.abs(along).argmin(axis=1)] = 1.0
-            across = _unit(np.cross(along, axis))
-            beside = np.cross(along, across)
-            yield origins[those] + step * (np.cos(turn) * across + np.sin(turn) * beside), those
+            yield start + np.cos(turn) * across + np.sin(turn) * beside, those
 
     def __getstate__(self) -> dict[str, Any]:
         # What was made is made again where it is needed.
