@@ -27,8 +27,11 @@ use std::sync::Arc;
 #[pyclass(name = "Scene", frozen, module = "lodray")]
 pub struct PyScene(pub Scene);
 
+/// Vertices, and three of them for each face.
+type Mesh = (Vec<[f64; 3]>, Vec<[u32; 3]>);
+
 /// Vertices and faces of NumPy's as the library takes them.
-fn mesh_of(vertices: &Bound<'_, PyAny>, faces: &Bound<'_, PyAny>) -> PyResult<(Vec<[f64; 3]>, Vec<[u32; 3]>)> {
+fn mesh_of(vertices: &Bound<'_, PyAny>, faces: &Bound<'_, PyAny>) -> PyResult<Mesh> {
     let vertices = contiguous("vertices", vertices, "f8")?;
     let faces = whole("faces", faces)?;
     let small = |face: &[i64; 3]| -> Option<[u32; 3]> {

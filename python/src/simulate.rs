@@ -39,7 +39,7 @@ impl Frame<'_, '_> {
             return Ok(PassRays::File(rays, PathBuf::from("rays")));
         }
         let camera = given(self.camera, &ModelSpace::of(scene))?;
-        if self.frames == 0 || self.frames > 10_000 || !(self.turn.abs() <= 360.0) {
+        if !(1..=10_000).contains(&self.frames) || !(-360.0..=360.0).contains(&self.turn) {
             return Err(refused(format!(
                 "frames, turn: {} and {}; 1 to 10000 frames, turned by -360 to 360 degrees",
                 self.frames, self.turn
