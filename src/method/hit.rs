@@ -83,7 +83,58 @@ pub struct ClosestHit {
     any: bool,
     t: RayT,
     id: FullId,
-    best: Option<(TriangleId, [Point; 3], tri_test::Out, Below)>,
+    best: Option<Met>,
+}
+
+/// A triangle that was met, with all that its hit is worked out from.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Met {
+    pub id: TriangleId,
+    pub corners: [Point; 3],
+    pub test: tri_test::Out,
+    pub below: Below,
+}
+
+impl Met {
+    /// Where along the ray.
+    #[inline(always)]
+    pub fn t(test: &tri_test::Out, below: &Below) -> RayT {
+        HitDivide::with(&hit_divide::In { numerator: test.t_num, denominator: test.det }, below.t).quotient
+    }
+
+    /// The hit record, in a hierarchy of `levels` splits: divides and maps.
+    fn record(&self, levels: u32, t: RayT) -> Hit {
+        let Self { id, test, below, .. } = self;
+        let weight = |edge: EdgeFunction, low| {
+            // An edge function is at most det: the quotient is at most 2^32 before its last bit is dropped.
+            let numerator = TNumerator::new(edge.get());
+            HitDivide::with(&hit_divide::In { numerator, denominator: test.det }, low).quotient.get() >> 1
+        };
+        let (b1, b2) = (weight(test.v, below.v), weight(test.w, below.w));
+        // Both were rounded down and v + w <= det.
+        let [b0, b1, b2] = [BARY_ONE - b1 - b2, b1, b2].map(Bary::new);
+        let node = U::new(u64::from(id.node));
+        let full = BaryMap::eval(&bary_map::In { levels: U::new(u64::from(levels - id.level)), node, b0, b1, b2 });
+        Hit {
+            t,
+            front: test.front,
+            tree: U::new(u64::from(id.tree)),
+            level: U::new(u64::from(id.level)),
+            node,
+            b0,
+            b1,
+            b2,
+            full_node: full.node,
+            full_b0: full.b0,
+            full_b1: full.b1,
+            full_b2: full.b2,
+        }
+    }
+
+    /// The same in the world.
+    pub fn surface(&self, levels: u32, t: RayT, ray: &ModelRay) -> SurfaceHit {
+        SurfaceHit::new(ray, &self.record(levels, t), plane(self.corners.map(|p| p.get().map(|c| c as f64))))
+    }
 }
 
 impl ClosestHit {
@@ -99,42 +150,17 @@ impl ClosestHit {
 
     /// Corners of the triangle of the hit, as it was tested.
     pub fn corners(&self) -> Option<[Point; 3]> {
-        self.best.as_ref().map(|(_, corners, ..)| *corners)
+        self.best.as_ref().map(|met| met.corners)
     }
 
     /// The hit record: divides and maps.
     pub fn record(&self) -> Option<Hit> {
-        let (id, _, test, below) = self.best.as_ref()?;
-        let weight = |edge: EdgeFunction, low| {
-            // An edge function is at most det: the quotient is at most 2^32 before its last bit is dropped.
-            let numerator = TNumerator::new(edge.get());
-            HitDivide::with(&hit_divide::In { numerator, denominator: test.det }, low).quotient.get() >> 1
-        };
-        let (b1, b2) = (weight(test.v, below.v), weight(test.w, below.w));
-        // Both were rounded down and v + w <= det.
-        let [b0, b1, b2] = [BARY_ONE - b1 - b2, b1, b2].map(Bary::new);
-        let node = U::new(u64::from(id.node));
-        let full = BaryMap::eval(&bary_map::In { levels: U::new(u64::from(self.levels - id.level)), node, b0, b1, b2 });
-        Some(Hit {
-            t: self.t,
-            front: test.front,
-            tree: U::new(u64::from(id.tree)),
-            level: U::new(u64::from(id.level)),
-            node,
-            b0,
-            b1,
-            b2,
-            full_node: full.node,
-            full_b0: full.b0,
-            full_b1: full.b1,
-            full_b2: full.b2,
-        })
+        Some(self.best.as_ref()?.record(self.levels, self.t))
     }
 
     /// The same in the world, with what pictures need beyond it. `ray` is the one that was traced.
     pub fn surface(&self, ray: &ModelRay) -> Option<SurfaceHit> {
-        let (_, corners, ..) = self.best.as_ref()?;
-        Some(SurfaceHit::new(ray, &self.record()?, plane(corners.map(|p| p.get().map(|c| c as f64)))))
+        Some(self.best.as_ref()?.surface(self.levels, self.t, ray))
     }
 }
 
@@ -162,7 +188,7 @@ impl HitSink for ClosestHit {
 
     #[inline(always)]
     fn offer(&mut self, id: TriangleId, corners: &[Point; 3], test: &tri_test::Out, below: &Below) {
-        let t = HitDivide::with(&hit_divide::In { numerator: test.t_num, denominator: test.det }, below.t).quotient;
+        let t = Met::t(test, below);
         if t < self.range[0] || t > self.range[1] {
             return;
         }
@@ -170,7 +196,7 @@ impl HitSink for ClosestHit {
             levels: U::new(u64::from(self.levels)),
             known: self.best.is_some(),
             best_t: self.t,
-            best_front: self.best.as_ref().is_some_and(|(_, _, test, _)| test.front),
+            best_front: self.best.as_ref().is_some_and(|met| met.test.front),
             best_id: self.id,
             t,
             front: test.front,
@@ -180,7 +206,7 @@ impl HitSink for ClosestHit {
         });
         if select.closer {
             (self.t, self.id) = (t, select.id);
-            self.best = Some((id, *corners, *test, *below));
+            self.best = Some(Met { id, corners: *corners, test: *test, below: *below });
         }
     }
 

@@ -3,6 +3,7 @@
 //! Whatever runs a method knows it by the traits here and by its entry in [`METHODS`]; adding one touches its folder and that line. What methods share lies
 //! beside the folders: children of a node tested and sorted, hits kept, the stack.
 
+mod all_hits;
 pub mod binary16;
 pub mod bvh;
 mod children;
@@ -24,6 +25,7 @@ mod registry;
 mod stack;
 mod tracer;
 
+pub use all_hits::AllHits;
 pub(crate) use children::{bvh_boxes, bvh_children};
 pub use hit::{ClosestHit, Crossings, Departure, Hit, HitSink, Landing, SurfaceHit, TriangleId, is_beyond};
 pub use knob::{ErrorKnob, Knob, KnobError, Knobs};

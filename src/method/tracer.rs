@@ -12,6 +12,11 @@ pub trait Trace {
     /// The same for a ray whose path may go on; it starts at `from`, a hit of this method, if there is one, whatever the query's origin.
     fn follow<S: StepSink>(&mut self, query: &Query, from: Option<&Departure>, steps: &mut S) -> Option<Landing>;
 
+    /// Adds every hit of a query to `hits`, nearest first, whether any would serve or not; false from a method that finds but the closest.
+    fn all(&mut self, _query: &Query, _hits: &mut Vec<SurfaceHit>) -> bool {
+        false
+    }
+
     /// Its hits are mapped to the full resolution when a ray ends ([`Act::End`](crate::step::Act::End)).
     fn is_mapped(&self) -> bool;
 }
@@ -33,6 +38,8 @@ pub trait Tracer {
     fn follow(&mut self, query: &Query, from: Option<&Departure>, recorder: Option<&mut Recorder>) -> Option<Landing>;
     /// The same for a ray through several models that enters this one: it does not end here.
     fn enter(&mut self, query: &Query, from: Option<&Departure>, steps: &mut dyn StepSink) -> Option<Landing>;
+    /// Adds every hit of a ray to `hits`, nearest first, whether any would serve or not; false from a method that finds but the closest.
+    fn all(&mut self, query: &Query, hits: &mut Vec<SurfaceHit>) -> bool;
     /// Its hits are mapped to the full resolution when a ray ends ([`Act::End`](crate::step::Act::End)).
     fn is_mapped(&self) -> bool;
 }
@@ -67,6 +74,9 @@ impl<T: Trace> Tracer for T {
     }
     fn enter(&mut self, query: &Query, from: Option<&Departure>, steps: &mut dyn StepSink) -> Option<Landing> {
         Trace::follow(self, query, from, &mut Heard(steps))
+    }
+    fn all(&mut self, query: &Query, hits: &mut Vec<SurfaceHit>) -> bool {
+        Trace::all(self, query, hits)
     }
     fn is_mapped(&self) -> bool {
         Trace::is_mapped(self)

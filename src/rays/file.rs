@@ -11,6 +11,8 @@
 //! | 10 | 1 if any hit serves, 0 if it must be the closest | 0 |
 //! | 11 | number of the earlier row at whose hit the ray starts (`cast`), or behind whose end (`simulate`), -1 if none; 32-bit floats number 2^24 rows | -1 |
 
+use super::rows::{BATCH, query};
+use super::source::{eye_of_all, least_radius_of_all};
 use super::{Eye, ModelSpace, Query, RaySource};
 use npyz::{DType, NpyFile, Order, TypeChar};
 use rayon::prelude::*;
@@ -18,9 +20,6 @@ use std::fs::File;
 use std::io::{self, BufReader, Read};
 use std::path::{Path, PathBuf};
 use thiserror::Error;
-
-/// Rays of a batch.
-const BATCH: usize = 64;
 
 /// Most rays of a file.
 const MOST: u64 = 1 << 28;
@@ -116,46 +115,6 @@ impl RayFile {
     }
 }
 
-/// The ray of a row.
-fn query(row: u64, cells: &[f64]) -> Result<Query, String> {
-    let three = |at: usize| [cells[at], cells[at + 1], cells[at + 2]];
-    let (origin, direction) = (three(0), three(3));
-    if !origin.iter().chain(&direction).all(|v| v.is_finite()) {
-        return Err("origin and direction must be finite numbers".to_owned());
-    }
-    if direction == [0.0; 3] {
-        return Err("the direction has no length".to_owned());
-    }
-    let mut query = Query::new(origin, direction);
-    if let Some(&[radius, tan_theta]) = cells.get(6..8) {
-        if !(radius >= 0.0 && tan_theta >= 0.0 && radius.is_finite() && tan_theta.is_finite()) {
-            return Err(format!("the cone must be two numbers of 0 or more, not {radius} and {tan_theta}"));
-        }
-        query = query.with_cone(radius, tan_theta);
-    }
-    if let Some(&[near, far]) = cells.get(8..10) {
-        // Not a number fails too.
-        if near.partial_cmp(&far).is_none_or(std::cmp::Ordering::is_gt) {
-            return Err(format!("the nearest distance must be at most the farthest, not {near} and {far}"));
-        }
-        query = query.between(near, far);
-    }
-    if let Some(&any) = cells.get(10) {
-        if any != 0.0 && any != 1.0 {
-            return Err(format!("column 10 must be 1 (any hit) or 0 (the closest), not {any}"));
-        }
-        query.any = any == 1.0;
-    }
-    if let Some(&after) = cells.get(11).filter(|&&after| after != -1.0) {
-        let earlier = after >= 0.0 && after.fract() == 0.0 && after < row as f64;
-        if !earlier {
-            return Err(format!("column 11 must be the number of an earlier ray, or -1, not {after}"));
-        }
-        query.after = Some(after as u64);
-    }
-    Ok(query)
-}
-
 impl RaySource for RayFile {
     fn rays(&self) -> u64 {
         self.queries.len() as u64
@@ -175,15 +134,11 @@ impl RaySource for RayFile {
     }
 
     fn least_radius(&self, space: &ModelSpace) -> f64 {
-        // Rays that pass beside the model have no say.
-        let meets = |query: &&Query| space.enter(query, 1.0).is_some();
-        let radius = |query: &Query| query.radius + query.tan_theta * space.distance_to(query.origin);
-        self.queries.par_iter().filter(meets).map(radius).reduce(|| f64::INFINITY, f64::min)
+        least_radius_of_all(self.queries.par_iter().copied(), space)
     }
 
     fn eyes(&self, space: &ModelSpace) -> Vec<Eye> {
-        let meets = |query: &&Query| space.enter(query, 1.0).is_some();
-        vec![self.queries.par_iter().filter(meets).map(Eye::of).reduce(|| Eye::NOWHERE, Eye::with)]
+        vec![eye_of_all(self.queries.par_iter().copied(), space)]
     }
 }
 

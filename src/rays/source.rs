@@ -1,6 +1,7 @@
 //! Where rays come from.
 
 use super::{Camera, ModelSpace, Query};
+use rayon::prelude::*;
 
 /// Columns and rows of a camera's tile.
 const TILE: u32 = 8;
@@ -119,6 +120,22 @@ impl Eye {
         let beside: [f64; 3] = std::array::from_fn(|k| (lo[k] - self.hi[k]).max(self.lo[k] - hi[k]).max(0.0));
         self.radius + self.tan_theta * beside.iter().map(|d| d * d).sum::<f64>().sqrt()
     }
+}
+
+/// Rays of a source that meet the model's box: those that pass beside it have no say.
+fn that_meet(queries: impl ParallelIterator<Item = Query>, space: &ModelSpace) -> impl ParallelIterator<Item = Query> {
+    queries.filter(|query| space.enter(query, 1.0).is_some())
+}
+
+/// [`RaySource::least_radius`] of rays that have nothing in common.
+pub(super) fn least_radius_of_all(queries: impl ParallelIterator<Item = Query>, space: &ModelSpace) -> f64 {
+    let radius = |query: Query| query.radius + query.tan_theta * space.distance_to(query.origin);
+    that_meet(queries, space).map(radius).reduce(|| f64::INFINITY, f64::min)
+}
+
+/// The eye of such rays.
+pub(super) fn eye_of_all(queries: impl ParallelIterator<Item = Query>, space: &ModelSpace) -> Eye {
+    that_meet(queries, space).map(|query| Eye::of(&query)).reduce(|| Eye::NOWHERE, Eye::with)
 }
 
 /// What a method may choose by once for all rays of a frame.

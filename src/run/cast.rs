@@ -1,12 +1,13 @@
 //! Hits of rays, as they are, for programs outside.
 
 use crate::format::Scene;
-use crate::method::{Method, SurfaceHit};
+use crate::method::{Crossings, Method, SurfaceHit, Tracer};
 use crate::rays::{Query, RaySource, Sight};
 use glam::DVec3;
 use npyz::WriterBuilder;
 use rayon::prelude::*;
 use std::io::{self, Write};
+use thiserror::Error;
 
 /// Where one ray met the surface: a row of [`write_hits`].
 #[derive(Clone, Copy, Debug, PartialEq, npyz::Serialize, npyz::AutoSerialize, npyz::Deserialize)]
@@ -78,23 +79,90 @@ impl HitRow {
 /// ([`cast_following`](super::cast_following) starts it there). `done` is told how many batches are done, from any thread.
 pub fn cast(method: &dyn Method, scene: &Scene, source: &dyn RaySource, sight: &Sight, done: &(dyn Fn(u64) + Sync)) -> Vec<HitRow> {
     let scene = method.surface(scene);
+    let row = |tracer: &mut dyn Tracer, query: &Query| tracer.hit(query).map_or(HitRow::NONE, |hit| HitRow::new(scene, query, &hit));
+    each_ray(method, source, sight, done, HitRow::NONE, row)
+}
+
+/// Whether every ray of `source` meets anything, in the same order.
+pub fn cast_any(method: &dyn Method, source: &dyn RaySource, sight: &Sight, done: &(dyn Fn(u64) + Sync)) -> Vec<bool> {
+    each_ray(method, source, sight, done, false, |tracer, query| tracer.hit(&Query { any: true, ..*query }).is_some())
+}
+
+/// A method that does not find all hits of a ray.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Error)]
+#[error("its hits are not exact: it finds the closest of a ray alone")]
+pub struct ClosestOnly;
+
+/// Every hit of every ray of `source`, nearest first, whether any would serve a ray or not.
+///
+/// # Errors
+/// The method finds but the closest.
+pub fn cast_all(
+    method: &dyn Method,
+    scene: &Scene,
+    source: &dyn RaySource,
+    sight: &Sight,
+    done: &(dyn Fn(u64) + Sync),
+) -> Result<Vec<Vec<HitRow>>, ClosestOnly> {
+    let scene = method.surface(scene);
+    all_of_each(method, source, sight, done, Vec::new(), |query, hits| hits.iter().map(|hit| HitRow::new(scene, query, hit)).collect())
+}
+
+/// How many fronts and backs every ray of `source` meets.
+///
+/// # Errors
+/// The method finds but the closest.
+pub fn cast_counting(
+    method: &dyn Method,
+    source: &dyn RaySource,
+    sight: &Sight,
+    done: &(dyn Fn(u64) + Sync),
+) -> Result<Vec<Crossings>, ClosestOnly> {
+    all_of_each(method, source, sight, done, Crossings::default(), |_, hits| {
+        let front = hits.iter().filter(|hit| hit.front).count() as u32; // at most as many as triangles
+        Crossings { front, back: hits.len() as u32 - front }
+    })
+}
+
+/// What `of` makes of all hits of every ray.
+fn all_of_each<T: Clone + Send + Sync>(
+    method: &dyn Method,
+    source: &dyn RaySource,
+    sight: &Sight,
+    done: &(dyn Fn(u64) + Sync),
+    none: T,
+    of: impl Fn(&Query, &[SurfaceHit]) -> T + Sync,
+) -> Result<Vec<T>, ClosestOnly> {
+    let each = each_ray(method, source, sight, done, Some(none), |tracer, query| {
+        let mut hits = Vec::new();
+        tracer.all(query, &mut hits).then(|| of(query, &hits))
+    });
+    each.into_iter().collect::<Option<Vec<_>>>().ok_or(ClosestOnly)
+}
+
+/// What `of` makes of every ray of a source, in their order; `none` stands where there is no ray.
+fn each_ray<T: Clone + Send + Sync>(
+    method: &dyn Method,
+    source: &dyn RaySource,
+    sight: &Sight,
+    done: &(dyn Fn(u64) + Sync),
+    none: T,
+    of: impl Fn(&mut dyn Tracer, &Query) -> T + Sync,
+) -> Vec<T> {
     let rows = (0..source.batches()).into_par_iter().map_init(
         || method.tracer(sight),
         |tracer, batch| {
             let mut rows = Vec::new();
-            source.batch(batch, &mut |number, query| {
-                let row = tracer.hit(query).map_or(HitRow::NONE, |hit| HitRow::new(scene, query, &hit));
-                rows.push((number, row));
-            });
+            source.batch(batch, &mut |number, query| rows.push((number, of(&mut **tracer, query))));
             done(1);
             rows
         },
     );
-    let mut hits = vec![HitRow::NONE; source.rays() as usize]; // it has as many
+    let mut all = vec![none; source.rays() as usize]; // it has as many
     for (number, row) in rows.collect::<Vec<_>>().into_iter().flatten() {
-        hits[number as usize] = row;
+        all[number as usize] = row;
     }
-    hits
+    all
 }
 
 /// Writes hits as a structured array of NumPy's (`.npy`), with the fields of [`HitRow`].

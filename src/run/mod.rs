@@ -6,7 +6,7 @@ mod frame;
 mod held;
 mod simulate;
 
-pub use cast::{HitRow, cast, write_hits};
+pub use cast::{ClosestOnly, HitRow, cast, cast_all, cast_any, cast_counting, write_hits};
 pub use follow::{FollowError, Followed, cast_following};
 pub use frame::{Frame, FrameRays, RayHit, Traced, Worker};
 pub use held::HeldFrame;

@@ -37,7 +37,7 @@ impl Default for BuildOptions {
 }
 
 impl BuildOptions {
-    /// The mesh's own triangles, each vertex within half a step of its place: the largest side of the mesh's box has some 2^31 steps.
+    /// The mesh's own triangles, each vertex within half a step of its place: the largest side of the mesh's box has some 2^28 steps.
     pub fn own_triangles() -> Self {
         Self {
             name: String::new(),

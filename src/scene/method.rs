@@ -4,9 +4,9 @@ use crate::block::{INSTANCE, Operation};
 use crate::bvh::BvhError;
 use crate::format::Scene;
 use crate::method::bvh::NoStore;
-use crate::method::{KnobError, Knobs, METHODS, Method, Registered, find, lod};
+use crate::method::{Crossings, KnobError, Knobs, METHODS, Method, Registered, find, lod};
 use crate::rays::{ModelSpace, RaySource, Sight};
-use crate::run::{HitRow, cast};
+use crate::run::{ClosestOnly, HitRow, cast, cast_all, cast_any, cast_counting};
 use std::collections::HashSet;
 use thiserror::Error;
 
@@ -89,8 +89,39 @@ impl SceneMethod {
     /// Each starts at its own origin, whichever ray it names as the one before ([`cast_following`](crate::run::cast_following) starts it there). Of a scene that
     /// was pruned for a job, hits are right for that job's rays alone.
     pub fn cast(&self, rays: &dyn RaySource) -> Vec<HitRow> {
-        let sight = Sight::new(rays, &ModelSpace::of(&self.scene), self.knobs.delta());
-        cast(&*self.method, &self.scene, rays, &sight, &|_| ())
+        cast(&*self.method, self.traced(), rays, &self.sight(rays), &|_| ())
+    }
+
+    /// Whether every ray meets anything.
+    pub fn meets(&self, rays: &dyn RaySource) -> Vec<bool> {
+        cast_any(&*self.method, rays, &self.sight(rays), &|_| ())
+    }
+
+    /// Every hit of every ray, nearest first. Of a closed surface each crossing is there once, also where a ray goes through an edge or a vertex.
+    ///
+    /// # Errors
+    /// The method finds but the closest, as `reference` does.
+    pub fn cast_all(&self, rays: &dyn RaySource) -> Result<Vec<Vec<HitRow>>, ClosestOnly> {
+        cast_all(&*self.method, self.traced(), rays, &self.sight(rays), &|_| ())
+    }
+
+    /// How many fronts and backs every ray meets.
+    ///
+    /// # Errors
+    /// As above.
+    pub fn crossings(&self, rays: &dyn RaySource) -> Result<Vec<Crossings>, ClosestOnly> {
+        cast_counting(&*self.method, rays, &self.sight(rays), &|_| ())
+    }
+
+    /// What rays see of the scene.
+    pub fn sight(&self, rays: &dyn RaySource) -> Sight {
+        Sight::new(rays, &ModelSpace::of(self.traced()), self.knobs.delta())
+    }
+
+    /// The scene whose triangles rays meet: that of the mesh that the scene was built from, if the method is over that.
+    pub fn traced(&self) -> &Scene {
+        // Such a method was made of it.
+        self.scene.input().filter(|_| self.registered.of_input()).unwrap_or(&self.scene)
     }
 
     /// The scene.

@@ -14,9 +14,11 @@
 //! ```
 
 mod build;
+mod given;
 mod method;
 mod simulate;
 
 pub use build::{BuildError, BuildOptions, moved_percent};
+pub use given::Given;
 pub use method::{MethodError, SceneMethod};
 pub use simulate::{Outcome, Pass, PassRays, SimulateError, Target};

@@ -274,6 +274,9 @@ impl Tracer for CountingTracer<'_> {
         self.asked.fetch_add(1, Relaxed);
         self.tracer.enter(query, from, steps)
     }
+    fn all(&mut self, query: &Query, hits: &mut Vec<SurfaceHit>) -> bool {
+        self.tracer.all(query, hits)
+    }
     fn is_mapped(&self) -> bool {
         self.tracer.is_mapped()
     }

@@ -17,10 +17,10 @@ pub use trace::Traverser;
 pub use tree::Tree;
 
 use super::bvh::BvhTraverser;
-use super::{ClosestHit, Departure, Landing, Method, MethodUnit, Over, Registered, SurfaceHit, Trace, Tracer};
+use super::{AllHits, ClosestHit, Departure, Landing, Method, MethodUnit, Over, Registered, SurfaceHit, Trace, Tracer};
 use crate::block::Operation;
 use crate::rays::{ModelSpace, Query, Sight};
-use crate::step::{MemoryMap, StepSink};
+use crate::step::{MemoryMap, NoSteps, StepSink};
 
 /// Operations of a unit for its rays: the boxes of both children at once, then their order.
 const UNIT: [Operation; 8] = [
@@ -103,6 +103,15 @@ impl Trace for Rays<'_> {
 
     fn follow<S: StepSink>(&mut self, query: &Query, from: Option<&Departure>, steps: &mut S) -> Option<Landing> {
         self.closest(query, from, steps, |hit, ray| hit.landing(ray, BvhTraverser::departure))
+    }
+
+    fn all(&mut self, query: &Query, hits: &mut Vec<SurfaceHit>) -> bool {
+        if let Some(ray) = self.space.enter(query, 1.0) {
+            let mut all = AllHits::of(self.levels, &ray);
+            self.traverser.descend(&ray.ray, None, &mut NoSteps, &mut all);
+            all.surfaces(&ray, hits);
+        }
+        true
     }
 
     fn is_mapped(&self) -> bool {

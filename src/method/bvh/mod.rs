@@ -11,12 +11,12 @@ pub use super::mesh_bvh::{
 pub use map::{LEAVES, NODES, bvh_map};
 pub use trace::BvhTraverser;
 
-use super::{ClosestHit, Departure, Knob, Knobs, Landing, Method, MethodUnit, Over, Registered, SurfaceHit, Trace, Tracer};
+use super::{AllHits, ClosestHit, Departure, Knob, Knobs, Landing, Method, MethodUnit, Over, Registered, SurfaceHit, Trace, Tracer};
 use crate::block::{Operation, Work};
 use crate::bvh::BvhError;
 use crate::format::Scene;
 use crate::rays::{ModelSpace, Query, Sight};
-use crate::step::{MemoryMap, StepSink};
+use crate::step::{MemoryMap, NoSteps, StepSink};
 
 /// How leaf triangles lie in memory.
 pub static LEAF_LAYOUT: Knob = Knob {
@@ -275,6 +275,15 @@ impl Trace for BvhTracer {
         let mut hit = ClosestHit::of(self.levels, &ray, query.any);
         self.traverser.descend(&ray.ray, from, steps, &mut hit);
         hit.landing(&ray, BvhTraverser::departure)
+    }
+
+    fn all(&mut self, query: &Query, hits: &mut Vec<SurfaceHit>) -> bool {
+        if let Some(ray) = self.space.enter(query, 1.0) {
+            let mut all = AllHits::of(self.levels, &ray);
+            self.traverser.descend(&ray.ray, None, &mut NoSteps, &mut all);
+            all.surfaces(&ray, hits);
+        }
+        true
     }
 
     fn is_mapped(&self) -> bool {

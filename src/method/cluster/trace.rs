@@ -2,9 +2,9 @@
 
 use super::frame::FrameBvh;
 use crate::method::bvh::BvhTraverser;
-use crate::method::{ClosestHit, Departure, Landing, SurfaceHit, Trace};
+use crate::method::{AllHits, ClosestHit, Departure, Landing, SurfaceHit, Trace};
 use crate::rays::{ModelSpace, Query};
-use crate::step::{MemoryMap, StepSink};
+use crate::step::{MemoryMap, NoSteps, StepSink};
 use std::sync::Arc;
 
 /// Traces rays through the BVH of a frame; a hit names its triangle among those of all clusters.
@@ -41,6 +41,16 @@ impl Trace for ClusterTracer {
         // All rays see one surface: none of them decides anything.
         let landing = hit.landing(&ray, BvhTraverser::departure)?;
         Some(Landing { surface: self.named(landing.surface), ..landing })
+    }
+
+    fn all(&mut self, query: &Query, hits: &mut Vec<SurfaceHit>) -> bool {
+        if let Some(ray) = self.space.enter(query, 1.0) {
+            let (mut all, first) = (AllHits::of(0, &ray), hits.len());
+            self.traverser.descend(&ray.ray, None, &mut NoSteps, &mut all);
+            all.surfaces(&ray, hits);
+            hits[first..].iter_mut().for_each(|hit| *hit = self.named(*hit));
+        }
+        true
     }
 
     fn is_mapped(&self) -> bool {

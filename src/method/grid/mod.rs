@@ -26,11 +26,11 @@ pub use tuple::Tuple;
 
 use super::bvh::BvhTraverser;
 use super::knob::{DELTA, ErrorKnob};
-use super::{ClosestHit, Departure, Knob, Knobs, Landing, Method, Over, Registered, SurfaceHit, Trace, Tracer, discrete};
+use super::{AllHits, ClosestHit, Departure, Knob, Knobs, Landing, Method, Over, Registered, SurfaceHit, Trace, Tracer, discrete};
 use crate::bvh::BvhError;
 use crate::format::Scene;
 use crate::rays::{ModelSpace, Query, Sight};
-use crate::step::{MemoryMap, StepSink};
+use crate::step::{MemoryMap, NoSteps, StepSink};
 use std::sync::{Arc, Mutex, PoisonError};
 
 /// Most splits of a primitive.
@@ -281,6 +281,15 @@ impl Trace for GridTracer {
         self.traverser.descend(&ray.ray, from, steps, &mut hit);
         // All rays see one surface: none of them decides anything.
         hit.landing(&ray, BvhTraverser::departure)
+    }
+
+    fn all(&mut self, query: &Query, hits: &mut Vec<SurfaceHit>) -> bool {
+        if let Some(ray) = self.space.enter(query, 1.0) {
+            let mut all = AllHits::of(self.levels, &ray);
+            self.traverser.descend(&ray.ray, None, &mut NoSteps, &mut all);
+            all.surfaces(&ray, hits);
+        }
+        true
     }
 
     fn is_mapped(&self) -> bool {

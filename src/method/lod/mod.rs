@@ -9,12 +9,12 @@ pub use order::{LineOrder, morton_ranks};
 pub use trace::LodTraverser;
 
 use super::knob::{DELTA, ErrorKnob, octaves};
-use super::{ClosestHit, Departure, Knobs, Landing, Method, MethodUnit, Over, Registered, SurfaceHit, Trace, Tracer};
+use super::{AllHits, ClosestHit, Departure, Knobs, Landing, Method, MethodUnit, Over, Registered, SurfaceHit, Trace, Tracer};
 use crate::block::Operation;
 use crate::format::{Scene, scene_prisms};
 use crate::num::prism::Prisms;
 use crate::rays::{ModelSpace, Query, Sight, is_full_detail};
-use crate::step::{MemoryMap, StepSink};
+use crate::step::{MemoryMap, NoSteps, StepSink};
 
 /// The method.
 pub static METHOD: Registered = Registered {
@@ -121,6 +121,15 @@ impl<const COMPACT: bool, const FULL_DETAIL: bool> Trace for LodTracer<'_, COMPA
             None => self.traverser.trace_as::<_, _, COMPACT, FULL_DETAIL, false>(&ray.ray, None, steps, &mut hit),
         }
         hit.landing(&ray, |hit, corners| self.traverser.departure(&ray.ray, from, hit, corners))
+    }
+
+    fn all(&mut self, query: &Query, hits: &mut Vec<SurfaceHit>) -> bool {
+        if let Some(ray) = self.space.enter(query, self.delta) {
+            let mut all = AllHits::of(self.traverser.levels(), &ray);
+            self.traverser.trace_as::<_, _, COMPACT, FULL_DETAIL, false>(&ray.ray, None, &mut NoSteps, &mut all);
+            all.surfaces(&ray, hits);
+        }
+        true
     }
 
     fn is_mapped(&self) -> bool {

@@ -1,0 +1,119 @@
+//! What an error costs.
+
+use crate::errors::{raised, refused};
+use crate::machine::machines;
+use crate::told::beside;
+use crate::values::{document as to_document, named, option};
+use lodray::format::Scene;
+use lodray::machine::Machine;
+use lodray::method::find;
+use lodray::report::result::MachineFacts;
+use lodray::run::{self, Compute};
+use lodray::scene::{MethodError, Target};
+use lodray::study::{
+    Cache, Chosen, ErrorTimePlan, JobLines, Jobs, Means, Measure, Measured, Origin, SceneJobs, StudyError, ViewJob, document,
+    error_time as measure,
+};
+use pyo3::prelude::*;
+use pyo3::types::PyDict;
+use std::collections::BTreeMap;
+use std::error::Error;
+use std::path::{Path, PathBuf};
+use xxhash_rust::xxh3::xxh3_64;
+
+/// Views that are done, as the program calls their file.
+const LINES: &str = "views.jsonl";
+
+/// What is to be measured.
+pub struct Study<'a, 'py> {
+    pub distances: Vec<f64>,
+    pub size: [u32; 2],
+    pub methods: Vec<String>,
+    pub compute: &'a str,
+    pub values: Option<&'a Bound<'py, PyDict>>,
+    pub samples: u32,
+    pub error_size: u32,
+    pub most_samples: u32,
+    pub out: Option<PathBuf>,
+}
+
+/// Samples along a side of a pixel, of so many in all.
+fn side(of: &str, samples: u32, least: u32) -> PyResult<u32> {
+    let side = samples.isqrt();
+    if side * side == samples && (least..=256).contains(&side) {
+        Ok(side)
+    } else {
+        Err(refused(format!("{of}: {samples} is no square from {least} to 65536")))
+    }
+}
+
+impl Study<'_, '_> {
+    fn plan(&self, scene: &Scene, machine: Option<&Bound<'_, PyAny>>) -> PyResult<ErrorTimePlan> {
+        let compute: Compute = named("compute", self.compute)?;
+        let usual = || -> Result<_, lodray::machine::MachineError> {
+            let label = "haydel2023";
+            Ok(vec![MachineFacts { label: label.to_owned(), set: Vec::new(), description: Machine::shipped(label)? }])
+        };
+        let on = machine.map_or_else(|| usual().map_err(raised), machines)?;
+        on.iter().try_for_each(|machine| run::check(&machine.description, compute)).map_err(raised)?;
+        let targets = on.into_iter().map(|machine| Target { machine, compute, window: None }).collect();
+        let method = |name: &String| {
+            let method = find(name).ok_or_else(|| raised(MethodError::Unknown(name.clone())))?;
+            if method.name == "reference" {
+                return Err(refused("methods: reference is what the others are compared with"));
+            }
+            Ok(Chosen::plain(method))
+        };
+        let methods = self.methods.iter().map(method).collect::<PyResult<Vec<_>>>()?;
+        let name = if scene.meta().name.is_empty() { "scene" } else { &scene.meta().name };
+        let views: Vec<_> = self.distances.iter().map(|&distance| ViewJob::at(self.size, distance)).collect();
+        let space = lodray::rays::ModelSpace::of(scene);
+        views.iter().try_for_each(|view| view.camera(&space).map(drop)).map_err(raised)?;
+        let origin = Origin::File(PathBuf::from(format!("{name}.lod")));
+        let jobs = SceneJobs { content: xxh3_64(scene.bytes()), views, ..SceneJobs::new(name, origin) };
+        let mut values = BTreeMap::new();
+        for (knob, of) in self.values.iter().flat_map(|values| values.iter()) {
+            let of = of.try_iter()?.map(|value| option(&value?)).collect::<PyResult<Vec<_>>>()?;
+            values.insert(knob.extract::<String>()?.replace('_', "-"), of);
+        }
+        let most = side("most_samples", self.most_samples, 0)?;
+        let plan = ErrorTimePlan {
+            values,
+            sides: vec![side("samples", self.samples, 1)?],
+            measure: Measure { host_rays: 0, ..Measure::of(self.error_size.max(1), most) },
+            ..ErrorTimePlan::new(Jobs::new(vec![jobs], methods, targets))
+        };
+        plan.check().map_err(raised)?;
+        Ok(plan)
+    }
+}
+
+/// Measures, and gives the document.
+pub fn error_time<'py>(
+    py: Python<'py>,
+    scene: &Scene,
+    study: Study<'_, 'py>,
+    machine: Option<&Bound<'py, PyAny>>,
+    progress: Option<&Bound<'py, PyAny>>,
+) -> PyResult<Bound<'py, PyAny>> {
+    let plan = study.plan(scene, machine)?;
+    let removed = tempfile::tempdir()?;
+    let folder: &Path = study.out.as_deref().unwrap_or(removed.path());
+    std::fs::create_dir_all(folder)?;
+    let made = beside(py, progress, |told| -> Result<_, Box<dyn Error + Send + Sync>> {
+        let mut rows = JobLines::open(&folder.join(LINES), told)?;
+        let open = |_: &SceneJobs| Ok(scene.clone());
+        let means = Means { cache: &Cache::NONE, open: &open, progress: told };
+        let keys = measure(&plan, &mut rows, folder, &|_| scene.input().is_some(), &means)?;
+        if let Some(why) = rows.of(&keys).find_map(|row| row.error.clone()) {
+            return Err(why.into());
+        }
+        let measured: Vec<&Measured> = rows.of(&keys).filter_map(|row| row.measured.as_ref()).collect();
+        Ok(document(&plan, &measured))
+    })?;
+    let made = made.map_err(|error| match error.downcast::<StudyError>() {
+        Ok(error) => raised(*error),
+        Err(error) => crate::errors::raised_by(&*error),
+    })?;
+    to_document(py, &made)
+}

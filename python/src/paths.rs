@@ -1,0 +1,167 @@
+//! Pictures by path tracing.
+
+use crate::arrays::shaped;
+use crate::errors::{raised, raised_by, refused};
+use crate::scene::PyScene;
+use crate::told::{Told, beside};
+use crate::values::{document, from_python, to_python};
+use lodray::format::Scene;
+use lodray::mesh::{RemeshOptions, read};
+use lodray::method::Method;
+use lodray::paths::{Film, Instance, MOST_DEPTH, MOST_SAMPLES, ModelTable, Paths, Pose, SceneFile, Starts, World};
+use lodray::rays::{Camera, ModelSpace, View};
+use lodray::scene::{BuildOptions, SceneMethod};
+use lodray::study::Progress;
+use lodray::study::pruned::check_normals;
+use pyo3::prelude::*;
+use pyo3::types::{PyDict, PyString};
+use std::error::Error;
+use std::path::{Path, PathBuf};
+
+type Words = Box<dyn Error + Send + Sync>;
+
+/// The description of a path, or of a dictionary, and what its files lie beside.
+fn description(of: &Bound<'_, PyAny>) -> PyResult<(SceneFile, PathBuf)> {
+    if of.is_instance_of::<PyDict>() {
+        let text = toml::to_string(&from_python("description", of)?).map_err(raised)?;
+        return Ok((SceneFile::parse(&text, "description").map_err(raised)?, PathBuf::new()));
+    }
+    let path: PathBuf = of.extract().map_err(|_| refused("description: neither a path nor a dictionary"))?;
+    let file = SceneFile::read(&path).map_err(raised)?;
+    Ok((file, path.parent().unwrap_or(Path::new("")).to_owned()))
+}
+
+/// The model of a table, as the program has it.
+fn load(model: &ModelTable, beside: &Path) -> Result<Scene, Words> {
+    if let Some(options) = model.generate {
+        return Ok(Scene::generate(&options.into())?);
+    }
+    let path = beside.join(model.file.as_deref().unwrap_or_default());
+    if path.extension().is_some_and(|ending| ending == "lod") {
+        return Ok(Scene::open(&path)?);
+    }
+    let name = path.file_stem().map_or_else(String::new, |stem| stem.to_string_lossy().into_owned());
+    let remesh = Some(RemeshOptions { levels: model.levels, ..RemeshOptions::default() });
+    Ok(Scene::of_mesh(&read(&path)?, &BuildOptions { name, remesh, ..BuildOptions::default() }, &|_, _, _| ())?)
+}
+
+/// How rays leave surfaces: exact, independent, or a number of bounding radii.
+fn starts(of: &Bound<'_, PyAny>) -> PyResult<Starts> {
+    match of.cast::<PyString>().ok().map(|text| text.to_string()).as_deref() {
+        Some("exact") => Ok(Starts::Exact),
+        Some("independent") => Ok(Starts::Independent),
+        _ => {
+            let radii = of.extract::<f64>().ok().filter(|radii| *radii >= 0.0 && radii.is_finite());
+            radii.map(Starts::Offset).ok_or_else(|| refused(format!("starts: {of} is not exact, independent, or a number from 0 on")))
+        }
+    }
+}
+
+/// A picture by path tracing: a dictionary of `image` (uint8 of shape (height, width, 3), sRGB), `light` (float32, the same shape, linear) and `counts`.
+///
+/// description: the path of a description of models, materials, lights and cameras (TOML; docs/paths.md has the keys), or the same as a dictionary.
+/// models: scenes in place of its models' files, one for each, in its order. camera: by its name; the first if None.
+/// size, samples, depth, seed: in place of the description's. starts: how rays leave surfaces, "exact", "independent", or so many bounding radii above.
+///
+/// Raises LodrayError: the description cannot be, with file and key; a model that cannot be read; a method whose surface rays cannot leave.
+#[pyfunction]
+#[pyo3(signature = (description, models=None, *, camera=None, size=None, samples=None, depth=None, seed=None, starts=None, method="lod", progress=None, **knobs))]
+#[expect(clippy::too_many_arguments, reason = "keywords of Python")]
+pub fn paths<'py>(
+    description: &Bound<'py, PyAny>,
+    models: Option<Vec<Bound<'py, PyScene>>>,
+    camera: Option<&str>,
+    size: Option<(u32, u32)>,
+    samples: Option<u32>,
+    depth: Option<u32>,
+    seed: Option<u64>,
+    starts: Option<&Bound<'py, PyAny>>,
+    method: &str,
+    progress: Option<&Bound<'py, PyAny>>,
+    knobs: Option<&Bound<'py, PyDict>>,
+) -> PyResult<Bound<'py, PyAny>> {
+    let py = description.py();
+    let (mut file, folder) = self::description(description)?;
+    let starts = starts.map_or(Ok(Starts::Exact), self::starts)?;
+    if let Some((width, height)) = size {
+        (file.picture.width, file.picture.height) = (width, height);
+    }
+    file.picture.samples = samples.unwrap_or(file.picture.samples);
+    file.picture.depth = depth.unwrap_or(file.picture.depth);
+    file.picture.seed = seed.unwrap_or(file.picture.seed);
+    if !(1..=MOST_SAMPLES).contains(&file.picture.samples) || file.picture.depth > MOST_DEPTH {
+        return Err(refused(format!("samples, depth: 1 to {MOST_SAMPLES} samples, at most {MOST_DEPTH} bounces")));
+    }
+    let given: Option<Vec<Scene>> = models.map(|models| models.iter().map(|scene| scene.get().0.clone()).collect());
+    if let Some(given) = given.as_ref().filter(|given| given.len() != file.model.len()) {
+        return Err(refused(format!("models: {} scenes for {} models", given.len(), file.model.len())));
+    }
+    let turned = crate::arrays::knobs(knobs)?;
+    let film = beside(py, progress, |told| film(&file, &folder, given, (camera, method, &turned, starts), told))?
+        .map_err(|error| raised_by(&*error))?;
+    let (width, height) = (film.width as usize, film.height as usize);
+    let all = PyDict::new(py);
+    all.set_item("image", shaped(py, film.image(file.picture.exposure).into_raw(), &[height, width, 3])?)?;
+    all.set_item("light", shaped(py, film.light.iter().flat_map(|light| light.to_array()).collect::<Vec<f32>>(), &[height, width, 3])?)?;
+    all.set_item("counts", document(py, &film.counts)?)?;
+    all.set_item("size", to_python(py, &serde_json::json!([width, height]))?)?;
+    Ok(all.into_any())
+}
+
+/// What is chosen of a picture.
+type Choice<'a> = (Option<&'a str>, &'a str, &'a [(String, String)], Starts);
+
+fn film(
+    file: &SceneFile,
+    folder: &Path,
+    given: Option<Vec<Scene>>,
+    (camera, method, knobs, starts): Choice<'_>,
+    told: &Told,
+) -> Result<Film, Words> {
+    let scenes = match given {
+        Some(given) => given,
+        None => {
+            let work = told.begin("reading models", Some(file.model.len() as u64));
+            let mut scenes: Vec<Scene> = Vec::new();
+            for (k, model) in file.model.iter().enumerate() {
+                // What stands in several places is loaded once.
+                let before = file.model[..k].iter().position(|before| model.is_of(before)).map(|before| scenes[before].clone());
+                scenes.push(before.map_or_else(|| load(model, folder), Ok).map_err(|error| format!("model[{k}]: {error}"))?);
+                work.step(1);
+            }
+            scenes
+        }
+    };
+    scenes.iter().try_for_each(|scene| check_normals(scene, "shading"))?;
+    let table = file.camera(camera).ok_or_else(|| format!("camera: there is no '{}'", camera.unwrap_or_default()))?;
+    let view = View { eye: Some(table.eye), target: Some(table.target), up: Some(table.up), fov: table.fov, ..View::default() };
+    let camera = Camera::new(&view, &ModelSpace::of(&scenes[0]), file.picture.width, file.picture.height)?;
+    let turned: Vec<_> = knobs.iter().map(|(name, value)| (name.as_str(), value.as_str())).collect();
+    let methods = scenes.iter().map(|scene| scene.method_with(method, &turned)).collect::<Result<Vec<SceneMethod>, _>>()?;
+    if methods.iter().any(|own| own.registered().of_input() || !own.method().leaves()) {
+        return Err(format!("method: no path goes on from what {method} meets").into());
+    }
+    let delta = methods[0].knobs().delta();
+    let instance = |((model, scene), own): ((&'_ ModelTable, _), _)| (model.clone(), scene, own);
+    let parts: Vec<(ModelTable, &Scene, &dyn Method)> =
+        file.model.iter().zip(&scenes).zip(methods.iter().map(SceneMethod::method)).map(instance).collect();
+    let instances = parts.iter().map(|(model, scene, method)| {
+        let pose = Pose::new(model.rotate, model.scale, model.translate);
+        Instance::new(scene, *method, pose, file.materials(model), &camera, delta)
+    });
+    let world = World::new(instances.collect(), starts);
+    let picture = file.picture;
+    let paths = Paths {
+        world: &world,
+        camera,
+        lights: &file.light,
+        environment: file.environment,
+        cones: file.cones,
+        depth: picture.depth,
+        shadow_rays: picture.shadow_rays,
+        samples: picture.samples,
+        seed: picture.seed,
+    };
+    let work = told.begin("tracing", Some(u64::from(camera.height)));
+    Ok(Film::of(&paths, &|| work.step(1)))
+}

@@ -1,0 +1,457 @@
+//! Scenes.
+
+use crate::arrays::{contiguous, knobs, shaped, triples};
+use crate::camera::{Place, PyCamera, camera};
+use crate::error_time::{Study, error_time};
+use crate::errors::{raised, refused};
+use crate::method::PySceneMethod;
+use crate::plan::plan;
+use crate::told::{Told, beside};
+use crate::values::{document, named, to_python};
+use lodray::format::audit::audit;
+use lodray::format::{Scene, export_level, write_and_rename};
+use lodray::mesh::procedural::Options;
+use lodray::mesh::{DEFAULT_CREASE_ANGLE, DEFAULT_MAX_ERROR, RemeshOptions, TriangleMesh, read};
+use lodray::rays::ModelSpace;
+use lodray::scene::BuildOptions;
+use pyo3::prelude::*;
+use pyo3::types::PyDict;
+use serde_json::{Value, json};
+use std::path::PathBuf;
+use std::sync::Arc;
+
+/// A model with its levels of detail, as the hardware reads it.
+///
+/// Made by `Scene.build` of a mesh, `Scene.exact` of the very triangles of a mesh, `Scene.generate`, or `Scene.open` of a file.
+/// A scene does not change, and may be used by several threads.
+#[pyclass(name = "Scene", frozen, module = "lodray")]
+pub struct PyScene(pub Scene);
+
+/// Vertices, and three of them for each face.
+type Mesh = (Vec<[f64; 3]>, Vec<[u32; 3]>);
+
+/// Vertices and faces of NumPy's as the library takes them.
+fn mesh_of(vertices: &Bound<'_, PyAny>, faces: &Bound<'_, PyAny>) -> PyResult<Mesh> {
+    let vertices = contiguous("vertices", vertices, "f8")?;
+    let faces = whole("faces", faces)?;
+    let small = |face: &[i64; 3]| -> Option<[u32; 3]> {
+        let [a, b, c] = face.map(|v| u32::try_from(v).ok());
+        Some([a?, b?, c?])
+    };
+    let each = triples::<i64>("faces", &faces)?.iter().enumerate();
+    let checked =
+        each.map(|(k, face)| small(face).ok_or_else(|| refused(format!("faces: face {k} is {face:?}, and indices are from 0 on"))));
+    Ok((triples::<f64>("vertices", &vertices)?.to_vec(), checked.collect::<PyResult<_>>()?))
+}
+
+/// An array of whole numbers.
+fn whole<'py>(of: &str, array: &Bound<'py, PyAny>) -> PyResult<numpy::PyReadonlyArrayDyn<'py, i64>> {
+    let array = array.py().import("numpy")?.call_method1("asarray", (array,))?;
+    let kind: String = array.getattr("dtype")?.getattr("kind")?.extract()?;
+    if kind != "i" && kind != "u" {
+        return Err(refused(format!("{of}: of type {}, not of whole numbers", array.getattr("dtype")?)));
+    }
+    contiguous(of, &array, "i8")
+}
+
+impl PyScene {
+    /// The method of this name with knobs turned.
+    fn made(&self, py: Python<'_>, name: &str, given: Option<&Bound<'_, PyDict>>) -> PyResult<PySceneMethod> {
+        let turned = knobs(given)?;
+        let made = beside(py, None, |_| {
+            let turned: Vec<_> = turned.iter().map(|(name, value)| (name.as_str(), value.as_str())).collect();
+            self.0.method_with(name, &turned)
+        })?;
+        Ok(PySceneMethod(Arc::new(made.map_err(raised)?)))
+    }
+}
+
+#[pymethods]
+impl PyScene {
+    /// Opens a scene file, as `lodray build` and `Scene.save` write them. It is checked, and mapped rather than read.
+    ///
+    /// Raises LodrayError: there is no such file, or it is damaged.
+    #[staticmethod]
+    fn open(py: Python<'_>, path: PathBuf) -> PyResult<Self> {
+        Ok(Self(beside(py, None, |_| Scene::open(&path))?.map_err(raised)?))
+    }
+
+    /// A scene of a mesh, with levels of detail.
+    ///
+    /// mesh: vertices, an array of shape (n, 3), with faces, whole numbers of shape (m, 3); or the path of an OBJ, PLY, glTF, GLB or STL file.
+    /// max_error: largest distance between mesh and result, both ways, in percent of the diagonal of the mesh's box.
+    /// levels: 1-to-4 splits, 0 to 10; as many as the mesh's triangles ask for if None.
+    /// base: a base mesh of so many triangles, whatever is lost.
+    /// crease_angle: edges that bend by more degrees stay sharp.
+    /// own_triangles: the mesh's triangles as base triangles that are not split; triangles without area and repeated ones are left out.
+    /// bounds, vertex_form: what displacement bounds cover (largest, total), and how inserted vertices are stored (compact, short, exact).
+    /// keep_mesh: keeps the mesh too, for the methods over it (input-bvh and others).
+    /// progress: called now and then as progress(what, done, of).
+    ///
+    /// Raises LodrayError: an index out of range, a coordinate that is not finite, no triangle, or a mesh that cannot be remeshed so.
+    #[staticmethod]
+    #[pyo3(signature = (mesh, faces=None, *, max_error=None, levels=None, base=None, crease_angle=None, own_triangles=false, bounds=None, vertex_form=None, name="", keep_mesh=false, progress=None))]
+    #[expect(clippy::too_many_arguments, reason = "keywords of Python")]
+    fn build(
+        mesh: &Bound<'_, PyAny>,
+        faces: Option<&Bound<'_, PyAny>>,
+        max_error: Option<f64>,
+        levels: Option<u32>,
+        base: Option<usize>,
+        crease_angle: Option<f64>,
+        own_triangles: bool,
+        bounds: Option<&str>,
+        vertex_form: Option<&str>,
+        name: &str,
+        keep_mesh: bool,
+        progress: Option<&Bound<'_, PyAny>>,
+    ) -> PyResult<Self> {
+        let py = mesh.py();
+        let source = match faces {
+            Some(faces) => Err(mesh_of(mesh, faces)?),
+            None => Ok(mesh.extract::<PathBuf>().map_err(|_| refused("faces: missing; without them the mesh is the path of a file"))?),
+        };
+        let (max_error, crease_angle) = (max_error.unwrap_or(DEFAULT_MAX_ERROR), crease_angle.unwrap_or(DEFAULT_CREASE_ANGLE));
+        if !(max_error > 0.0 && max_error <= 100.0) {
+            return Err(refused(format!("max_error: {max_error} is not above 0 and at most 100 percent")));
+        }
+        if !(0.0..=180.0).contains(&crease_angle) {
+            return Err(refused(format!("crease_angle: {crease_angle} is not from 0 to 180 degrees")));
+        }
+        let usual = if own_triangles { BuildOptions::own_triangles() } else { BuildOptions::default() };
+        let stem = source.as_ref().ok().and_then(|path| path.file_stem());
+        let stem = stem.map_or_else(String::new, |stem| stem.to_string_lossy().into_owned());
+        let options = BuildOptions {
+            name: if name.is_empty() { stem } else { name.to_owned() },
+            remesh: (!own_triangles).then_some(RemeshOptions { levels, base_triangles: base, max_error, reserve: 0.0, crease_angle }),
+            bounds: bounds.map_or(Ok(usual.bounds), |bounds| named("bounds", bounds))?,
+            vertices: vertex_form.map_or(Ok(usual.vertices), |form| named("vertex_form", form))?,
+            ..usual
+        };
+        let made = beside(py, progress, |told: &Told| {
+            let mesh = match &source {
+                Ok(path) => read(path).map_err(raised)?,
+                Err((vertices, faces)) => TriangleMesh::from_parts(vertices, faces, &[], Vec::new()).map_err(raised)?,
+            };
+            let scene = Scene::of_mesh(&mesh, &options, &|what, done, of| told.say(what, done, Some(of))).map_err(raised)?;
+            if !keep_mesh {
+                return Ok(scene);
+            }
+            let own = BuildOptions { name: options.name.clone(), ..BuildOptions::own_triangles() };
+            Ok(scene.with_input(Scene::of_mesh(&mesh, &own, &|_, _, _| ()).map_err(raised)?))
+        })?;
+        made.map(Self)
+    }
+
+    /// The scene of these very triangles, for exact rays: (scene, faces).
+    ///
+    /// vertices: an array of shape (n, 3); faces: whole numbers of shape (m, 3). None is split or left out, but those that have two
+    /// corners at one place, which no ray meets. faces[hits["triangle"]] are the faces that hits are on, of shape (number of hits,).
+    /// Vertices are within half a step of their places, of which the largest side of the mesh's box has 2^28.
+    ///
+    /// Raises LodrayError: an index out of range, a coordinate that is not finite, or no triangle.
+    #[staticmethod]
+    fn exact<'py>(vertices: &Bound<'py, PyAny>, faces: &Bound<'py, PyAny>) -> PyResult<(Self, Bound<'py, PyAny>)> {
+        let py = vertices.py();
+        let (vertices, faces) = mesh_of(vertices, faces)?;
+        let given = beside(py, None, |_| Scene::as_given(&vertices, &faces))?.map_err(raised)?;
+        let (count, faces) = (given.faces.len(), given.faces.into_iter().map(i64::from).collect());
+        Ok((Self(given.scene), shaped::<i64>(py, faces, &[count])?))
+    }
+
+    /// A procedural scene: terrain, cloth, sphere, spikes, room, wall, street, pot or drape.
+    ///
+    /// levels: 1-to-4 splits, 0 to 10; base: base triangles, rounded to what is possible; roughness: between 0 and 1;
+    /// walls: of a room, quads along each wall; width: of a terrain, world units across. What is None has the scene's own value.
+    ///
+    /// Raises LodrayError: there is no such scene, or a value is out of its range.
+    #[staticmethod]
+    #[pyo3(signature = (scene, *, levels=None, base=None, seed=0, roughness=None, walls=None, width=None))]
+    #[expect(clippy::too_many_arguments, reason = "keywords of Python")]
+    fn generate(
+        py: Python<'_>,
+        scene: &str,
+        levels: Option<u32>,
+        base: Option<u32>,
+        seed: u64,
+        roughness: Option<f64>,
+        walls: Option<u32>,
+        width: Option<f64>,
+    ) -> PyResult<Self> {
+        let options = Options { scene: named("scene", scene)?, levels, base, seed, roughness, walls, width };
+        Ok(Self(beside(py, None, |_| Scene::generate(&options))?.map_err(raised)?))
+    }
+
+    /// What the scene is: a dictionary of numbers, and how it was made (`origin`).
+    #[getter]
+    fn info<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        let (scene, space) = (&self.0, ModelSpace::of(&self.0));
+        let mut info = serde_json::to_value(scene.meta()).map_err(raised)?;
+        let size: [f64; 3] = std::array::from_fn(|k| space.placement.scale * (f64::from(space.hi[k]) - f64::from(space.lo[k])));
+        let more = json!({
+            "bytes": scene.bytes().len(),
+            "base_triangles": scene.trees(),
+            "finest_triangles": scene.finest_triangles(),
+            "trees_by_depth": scene.trees_by_depth(),
+            "hierarchy_bytes_per_triangle": scene.bytes_per_triangle(),
+            "size": size,
+            "centre": space.centre(),
+            "radius": space.radius(),
+            "unit": space.placement.scale,
+        });
+        if let (Value::Object(info), Value::Object(more)) = (&mut info, more) {
+            info.extend(more);
+        }
+        to_python(py, &info)
+    }
+
+    /// Checks everything that a scene promises: a dictionary with each check, and `passed`.
+    fn verify<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        let report = beside(py, None, |_| audit(&self.0))?;
+        let all = document(py, &report)?;
+        all.set_item("passed", report.passed())?;
+        Ok(all)
+    }
+
+    /// Writes the scene to a file, which `Scene.open` and the program read.
+    ///
+    /// Raises LodrayError: it cannot be written.
+    fn save(&self, py: Python<'_>, path: PathBuf) -> PyResult<()> {
+        beside(py, None, |_| self.0.save(&path))?.map_err(raised)
+    }
+
+    /// Writes a level as OBJ, the finest if None: a dictionary of how many vertices and faces there are.
+    ///
+    /// Raises LodrayError: there is no such level, or it cannot be written.
+    #[pyo3(signature = (path, level=None))]
+    fn export<'py>(&self, py: Python<'py>, path: PathBuf, level: Option<u32>) -> PyResult<Bound<'py, PyAny>> {
+        let level = level.unwrap_or(self.0.levels());
+        let counts = beside(py, None, |_| {
+            let mut counts = None;
+            let written = write_and_rename(&path, |out| {
+                counts = Some(export_level(&self.0, level, out)?);
+                Ok(())
+            });
+            written.map(|()| counts).map_err(|error| refused(format!("cannot write {}: {error}", path.display())))
+        })??;
+        document(py, &counts.map(|counts| json!({ "level": level, "vertices": counts.vertices, "faces": counts.faces })))
+    }
+
+    /// A way to find hits, to be used many times: lod, bvh and others (`lodray.methods()`), with its knobs as keywords, such as delta=0.5.
+    ///
+    /// Raises LodrayError: there is no such method or knob, or the scene lacks what it needs.
+    #[pyo3(signature = (name="lod", **knobs))]
+    fn method(&self, py: Python<'_>, name: &str, knobs: Option<&Bound<'_, PyDict>>) -> PyResult<PySceneMethod> {
+        self.made(py, name, knobs)
+    }
+
+    /// What every ray meets first: an array of lodray.HIT of shape (n,).
+    ///
+    /// rays, directions: origins in world units and directions of any length but 0, arrays of shape (n, 3), or one of them of shape (3,) for all;
+    /// or one array in place of both: of type lodray.RAY, or of rows of 6, 8, 10, 11 or 12 numbers as files of rays have them.
+    /// Contiguous arrays of float64 are not copied. Other threads of Python run meanwhile; they must not change the arrays.
+    /// radius, cone: of each ray's cone, the radius at its origin and the tangent of its half angle: what lod may leave out. 0 is full detail.
+    /// t_min, t_max: distances from the origin that count, in world units. Each is a number or an array of shape (n,).
+    /// follow: a ray that names an earlier one starts exactly at that one's hit.
+    /// knobs: those of the method, such as delta=0.5. `Scene.method` keeps what a method needs, so that it is made but once.
+    ///
+    /// A ray that meets nothing has t = inf, and -1 or no number elsewhere.
+    /// Raises LodrayError: a ray that cannot be, by its number.
+    #[pyo3(signature = (rays, directions=None, *, method="lod", radius=None, cone=None, t_min=None, t_max=None, follow=true, progress=None, **knobs))]
+    #[expect(clippy::too_many_arguments, reason = "keywords of Python")]
+    fn cast<'py>(
+        &self,
+        rays: &Bound<'py, PyAny>,
+        directions: Option<&Bound<'py, PyAny>>,
+        method: &str,
+        radius: Option<Bound<'py, PyAny>>,
+        cone: Option<Bound<'py, PyAny>>,
+        t_min: Option<Bound<'py, PyAny>>,
+        t_max: Option<Bound<'py, PyAny>>,
+        follow: bool,
+        progress: Option<&Bound<'py, PyAny>>,
+        knobs: Option<&Bound<'py, PyDict>>,
+    ) -> PyResult<Bound<'py, PyAny>> {
+        self.made(rays.py(), method, knobs)?.cast(rays, directions, radius, cone, t_min, t_max, follow, progress)
+    }
+
+    /// Every hit of every ray: (hits, ray), arrays of lodray.HIT and of int64, both of shape (number of hits,).
+    ///
+    /// They are in the order of the rays, and of each ray nearest first; ray says whose they are. Of a closed surface each crossing is
+    /// there once, also where a ray goes through an edge or a vertex. Arguments are those of `cast`.
+    /// Raises LodrayError: a ray that cannot be, or a method that finds but the closest (reference).
+    #[pyo3(signature = (rays, directions=None, *, method="lod", radius=None, cone=None, t_min=None, t_max=None, progress=None, **knobs))]
+    #[expect(clippy::too_many_arguments, reason = "keywords of Python")]
+    fn all_hits<'py>(
+        &self,
+        rays: &Bound<'py, PyAny>,
+        directions: Option<&Bound<'py, PyAny>>,
+        method: &str,
+        radius: Option<Bound<'py, PyAny>>,
+        cone: Option<Bound<'py, PyAny>>,
+        t_min: Option<Bound<'py, PyAny>>,
+        t_max: Option<Bound<'py, PyAny>>,
+        progress: Option<&Bound<'py, PyAny>>,
+        knobs: Option<&Bound<'py, PyDict>>,
+    ) -> PyResult<(Bound<'py, PyAny>, Bound<'py, PyAny>)> {
+        self.made(rays.py(), method, knobs)?.all_hits(rays, directions, radius, cone, t_min, t_max, progress)
+    }
+
+    /// Whether every ray meets anything: an array of bool of shape (n,). Arguments are those of `cast`.
+    #[pyo3(signature = (rays, directions=None, *, method="lod", radius=None, cone=None, t_min=None, t_max=None, progress=None, **knobs))]
+    #[expect(clippy::too_many_arguments, reason = "keywords of Python")]
+    fn occluded<'py>(
+        &self,
+        rays: &Bound<'py, PyAny>,
+        directions: Option<&Bound<'py, PyAny>>,
+        method: &str,
+        radius: Option<Bound<'py, PyAny>>,
+        cone: Option<Bound<'py, PyAny>>,
+        t_min: Option<Bound<'py, PyAny>>,
+        t_max: Option<Bound<'py, PyAny>>,
+        progress: Option<&Bound<'py, PyAny>>,
+        knobs: Option<&Bound<'py, PyDict>>,
+    ) -> PyResult<Bound<'py, PyAny>> {
+        self.made(rays.py(), method, knobs)?.occluded(rays, directions, radius, cone, t_min, t_max, progress)
+    }
+
+    /// How many fronts and backs every ray meets: an array of int64 of shape (n, 2). Arguments are those of `cast`.
+    ///
+    /// A ray that starts in a closed body meets one back more than fronts.
+    #[pyo3(signature = (rays, directions=None, *, method="lod", radius=None, cone=None, t_min=None, t_max=None, progress=None, **knobs))]
+    #[expect(clippy::too_many_arguments, reason = "keywords of Python")]
+    fn count<'py>(
+        &self,
+        rays: &Bound<'py, PyAny>,
+        directions: Option<&Bound<'py, PyAny>>,
+        method: &str,
+        radius: Option<Bound<'py, PyAny>>,
+        cone: Option<Bound<'py, PyAny>>,
+        t_min: Option<Bound<'py, PyAny>>,
+        t_max: Option<Bound<'py, PyAny>>,
+        progress: Option<&Bound<'py, PyAny>>,
+        knobs: Option<&Bound<'py, PyDict>>,
+    ) -> PyResult<Bound<'py, PyAny>> {
+        self.made(rays.py(), method, knobs)?.count(rays, directions, radius, cone, t_min, t_max, progress)
+    }
+
+    /// A camera on the scene.
+    ///
+    /// size: (width, height) in pixels, (1024, 1024) by default. distance: from the target in bounding radii; if None the picture just holds the whole scene.
+    /// eye, target, up: (x, y, z) in world units; the target is the scene's centre if None. With a distance, eye is only a direction.
+    /// yaw, pitch: degrees around the up axis and above, in place of an eye. fov: vertical view angle in degrees.
+    ///
+    /// Raises LodrayError: a value that leaves no view.
+    #[pyo3(signature = (*, size=(1024, 1024), distance=None, eye=None, target=None, up=None, yaw=None, pitch=None, fov=None))]
+    #[expect(clippy::too_many_arguments, reason = "keywords of Python")]
+    fn camera(
+        &self,
+        size: (u32, u32),
+        distance: Option<f64>,
+        eye: Option<[f64; 3]>,
+        target: Option<[f64; 3]>,
+        up: Option<[f64; 3]>,
+        yaw: Option<f64>,
+        pitch: Option<f64>,
+        fov: Option<f64>,
+    ) -> PyResult<PyCamera> {
+        camera(&ModelSpace::of(&self.0), [size.0, size.1], &Place { distance, eye, target, up, yaw, pitch, fov })
+    }
+
+    /// A picture of a camera's view, or what its rays met.
+    ///
+    /// what: "image", an array of uint8 of shape (height, width, 3), sRGB; "hits", an array of lodray.HIT of shape (height, width), whose fields
+    /// are distance (t), level, normal and more, pixel by pixel. samples: of a pixel of the image, a square. shading: full, level, weighted or facets.
+    /// Without a camera the picture just holds the whole scene.
+    #[pyo3(signature = (camera=None, *, what="image", samples=1, shading="facets", method="lod", progress=None, **knobs))]
+    #[expect(clippy::too_many_arguments, reason = "keywords of Python")]
+    fn render<'py>(
+        &self,
+        py: Python<'py>,
+        camera: Option<&Bound<'py, PyCamera>>,
+        what: &str,
+        samples: u32,
+        shading: &str,
+        method: &str,
+        progress: Option<&Bound<'py, PyAny>>,
+        knobs: Option<&Bound<'py, PyDict>>,
+    ) -> PyResult<Bound<'py, PyAny>> {
+        self.made(py, method, knobs)?.render(py, camera, what, samples, shading, progress)
+    }
+
+    /// What frames cost on a machine: time, energy, traffic, and what limits it, as a dictionary: what `lodray simulate --json` prints.
+    ///
+    /// machine: a Machine, the name of one, the path of a description or a dictionary; of a list of them the result is a list, of rays that
+    /// were traced once. rays: an array as for `cast`, in place of a camera's. compute: "free", or "units" for traversal units that take time.
+    /// frames, turn: so many frames after one another, the camera turned by so many degrees from one to the next.
+    ///
+    /// Raises LodrayError: a machine that cannot be, or on which the frame does not end.
+    #[pyo3(signature = (machine, camera=None, *, rays=None, method="lod", compute="free", frames=1, turn=3.0, progress=None, **knobs))]
+    #[expect(clippy::too_many_arguments, reason = "keywords of Python")]
+    fn simulate<'py>(
+        &self,
+        machine: &Bound<'py, PyAny>,
+        camera: Option<&Bound<'py, PyCamera>>,
+        rays: Option<&Bound<'py, PyAny>>,
+        method: &str,
+        compute: &str,
+        frames: u32,
+        turn: f64,
+        progress: Option<&Bound<'py, PyAny>>,
+        knobs: Option<&Bound<'py, PyDict>>,
+    ) -> PyResult<Bound<'py, PyAny>> {
+        self.made(machine.py(), method, knobs)?.simulate(machine, camera, rays, compute, frames, turn, progress)
+    }
+
+    /// What an error costs, for every method: the document that `lodray error-time` writes, as a dictionary.
+    ///
+    /// distances: of the eye in bounding radii. size: of the frame whose costs are simulated, (1920, 1080) pixels by default. methods: names, lod and bvh by default. machine: as for
+    /// `simulate`. compute: "free" or "units". values: of each knob by which methods trade error, such as {"delta": [0.5, 1, 2]}, in place of their own.
+    /// samples: of a pixel, a square. error_size: most columns and rows that errors are measured with. most_samples: of a pixel of the
+    /// picture that stands for what should be seen, a square; 0 for none. out: a folder for pictures and for views that are done, with which
+    /// a run that is started again goes on; one that is removed if None.
+    ///
+    /// `lodray.table` makes rows of the document for pandas and polars.
+    #[pyo3(signature = (distances, *, size=(1920, 1080), methods=vec!["lod".to_owned(), "bvh".to_owned()], machine=None, compute="free", values=None, samples=1, error_size=192, most_samples=0, out=None, progress=None))]
+    #[expect(clippy::too_many_arguments, reason = "keywords of Python")]
+    fn error_time<'py>(
+        &self,
+        py: Python<'py>,
+        distances: Vec<f64>,
+        size: (u32, u32),
+        methods: Vec<String>,
+        machine: Option<&Bound<'py, PyAny>>,
+        compute: &str,
+        values: Option<&Bound<'py, PyDict>>,
+        samples: u32,
+        error_size: u32,
+        most_samples: u32,
+        out: Option<PathBuf>,
+        progress: Option<&Bound<'py, PyAny>>,
+    ) -> PyResult<Bound<'py, PyAny>> {
+        let study = Study { distances, size: [size.0, size.1], methods, compute, values, samples, error_size, most_samples, out };
+        error_time(py, &self.0, study, machine, progress)
+    }
+
+    /// What a traversal unit for this scene needs, and what can be left out of it: a dictionary of `plan`, `savings` (a list of rows), `data`,
+    /// and the gates of the unit and of the full one.
+    ///
+    /// distances: the unit is for views from these distances in bounding radii only, of this size, (1024, 1024)
+    /// pixels by default, and quality; for any rays without them.
+    #[pyo3(signature = (distances=vec![], *, size=(1024, 1024), delta=1.0, progress=None))]
+    fn plan<'py>(
+        &self,
+        py: Python<'py>,
+        distances: Vec<f64>,
+        size: (u32, u32),
+        delta: f64,
+        progress: Option<&Bound<'py, PyAny>>,
+    ) -> PyResult<Bound<'py, PyAny>> {
+        plan(py, &self.0, &distances, [size.0, size.1], delta, progress)
+    }
+
+    fn __repr__(&self) -> String {
+        let (scene, name) = (&self.0, &self.0.meta().name);
+        format!("Scene('{name}', {} base triangles, {} levels)", scene.trees(), scene.levels())
+    }
+}

@@ -1,0 +1,104 @@
+"""Scenes: made, opened, written, described."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+from shapes import ball, cube
+
+import lodray
+
+
+def test_a_mesh_becomes_a_scene_with_levels(tmp_path: Path) -> None:
+    scene = lodray.Scene.build(*ball(48), max_error=1.0, levels=2, name="ball")
+    info = scene.info
+    assert info["name"] == "ball" and info["levels"] == 2
+    assert info["finest_triangles"] == info["base_triangles"] * 16
+    assert info["origin"]["remesh"]["distance"]["to_original"]["max"] <= 1.0
+    assert scene.verify()["passed"]
+    path = tmp_path / "ball.lod"
+    scene.save(path)
+    again = lodray.Scene.open(path)
+    assert again.info == info and repr(again) == repr(scene)
+    counts = again.export(tmp_path / "ball.obj", level=1)
+    assert counts["faces"] == 4 * info["base_triangles"]
+    lines = (tmp_path / "ball.obj").read_text().splitlines()
+    assert sum(line.startswith("f ") for line in lines) == counts["faces"]
+
+
+def test_a_file_of_a_mesh_keeps_its_name(tmp_path: Path) -> None:
+    lodray.Scene.build(*cube(), own_triangles=True).export(tmp_path / "box.obj")
+    scene = lodray.Scene.build(tmp_path / "box.obj", own_triangles=True)
+    assert scene.info["name"] == "box" and scene.info["base_triangles"] == 12
+
+
+def test_a_generated_scene_is_the_same_each_time() -> None:
+    scene = lodray.Scene.generate("terrain", levels=3, base=32, seed=7)
+    assert scene.info["origin"]["generate"]["seed"] == 7
+    rays = scene.camera(size=(32, 24), distance=2.0).rays().reshape(-1)
+    again = lodray.Scene.generate("terrain", levels=3, base=32, seed=7)
+    assert (scene.cast(rays)["t"] == again.cast(rays)["t"]).all()
+
+
+def test_methods_over_the_mesh_need_it() -> None:
+    with pytest.raises(lodray.LodrayError):
+        lodray.Scene.build(*ball(), max_error=2.0).method("input-bvh")
+    scene = lodray.Scene.build(*ball(), max_error=2.0, keep_mesh=True)
+    assert scene.cast([[0.0, 0.0, 3.0]], [0.0, 0.1, -1.0], method="input-bvh")["t"][0] < 3.0
+
+
+@pytest.mark.parametrize(
+    ("make", "said"),
+    [
+        (lambda: lodray.Scene.open("nowhere.lod"), "nowhere.lod"),
+        (lambda: lodray.Scene.build([[0, 0, 0]], [[0, 1, 2]]), "triangle 0: vertex index 1 is out of range"),
+        (lambda: lodray.Scene.build([[0, 0, np.nan]], [[0, 0, 0]]), "vertex 0"),
+        (lambda: lodray.Scene.build(np.zeros((3, 2)), [[0, 1, 2]]), "vertices: an array of shape [3, 2]"),
+        (lambda: lodray.Scene.build(np.zeros((3, 3)), [[0, 1, -2]]), "faces: face 0 is [0, 1, -2]"),
+        (lambda: lodray.Scene.build(np.zeros((3, 3)), [[0.0, 1.0, 2.0]]), "faces: of type float64"),
+        (lambda: lodray.Scene.build(np.zeros((3, 3)), [[0, 1, 2]]), "no triangle is left"),
+        (lambda: lodray.Scene.build(np.zeros((3, 3))), "faces: missing"),
+        (lambda: lodray.Scene.build(*cube(), max_error=0.0), "max_error: 0"),
+        (lambda: lodray.Scene.build(*cube(), bounds="some"), "bounds: "),
+        (lambda: lodray.Scene.generate("hills"), "scene: "),
+        (lambda: lodray.Scene.generate("terrain", levels=11), "11"),
+        (lambda: lodray.Scene.exact(np.zeros((3, 3)), [[0, 1, 2]]), "no triangle is left"),
+        (lambda: lodray.Scene.generate("sphere", levels=1, base=8).export("x.obj", level=3), "level 3"),
+    ],
+)
+def test_what_cannot_be_is_named(make: object, said: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(tmp_path)
+    with pytest.raises(lodray.LodrayError) as raised:
+        make()  # type: ignore[operator]
+    assert said in str(raised.value), raised.value
+    assert isinstance(raised.value, ValueError)
+
+
+def test_plans_say_what_a_unit_needs() -> None:
+    scene = lodray.Scene.generate("sphere", levels=3, base=32)
+    plan = scene.plan()
+    assert 0 < plan["gates"] <= plan["full_gates"] and plan["plan"]["scenes"] == ["sphere"]
+    far = scene.plan([64.0], size=(256, 256))
+    assert far["gates"] < plan["gates"] and far["plan"]["rays"]["deepest-level"] < 3
+    assert all(set(line) == {"part", "what", "needed", "full", "reason", "saved"} for line in far["savings"])
+
+
+def test_errors_against_time_are_rows_of_a_table(tmp_path: Path) -> None:
+    scene = lodray.Scene.generate("sphere", levels=3, base=32)
+    seen: list[str] = []
+    document = scene.error_time(
+        [2.0, 8.0],
+        size=(64, 48),
+        values={"delta": [1, 4]},
+        error_size=64,
+        out=tmp_path / "study",
+        progress=lambda what, done, of: seen.append(what),
+    )
+    rows = lodray.table(document)
+    assert {row["method"] for row in rows} == {"lod", "bvh"} and {row["distance"] for row in rows} == {2.0, 8.0}
+    assert all(row["milliseconds"] > 0 and row["energy.total"] > 0 for row in rows)
+    assert (tmp_path / "study" / "views.jsonl").is_file() and seen
+    again = scene.error_time([2.0, 8.0], size=(64, 48), values={"delta": [1, 4]}, error_size=64, out=tmp_path / "study")
+    assert again == document
