@@ -119,10 +119,11 @@ mod tests {
             for t in 0..=100i64 {
                 let point: [i32; 3] =
                     std::array::from_fn(|k| (i64::from(lo[k]) + t * (i64::from(hi[k]) - i64::from(lo[k])) / 100) as i32 & !15);
-                let back = grid.point(grid.nearest(point));
+                let back = grid.point(grid.nearest(point)).map(i64::from);
                 for k in 0..3 {
-                    assert!((back[k] - point[k]).abs() <= grid.step / 2 || point[k] > limit - grid.step, "{point:?} {back:?}");
-                    assert!(back[k].abs() <= limit && (back[k] - lo[k]) % 16 == 0);
+                    let (own, step) = (i64::from(point[k]), i64::from(grid.step));
+                    assert!((back[k] - own).abs() <= step / 2 || own > i64::from(limit) - step, "{point:?} {back:?}");
+                    assert!(back[k].abs() <= i64::from(limit) && (back[k] - i64::from(lo[k])) % 16 == 0);
                 }
             }
         }
