@@ -13,7 +13,7 @@ use lodray::format::{Scene, SceneInfo, build};
 use lodray::machine::Machine;
 use lodray::mesh::{FinestSurface, Surface, lattice};
 use lodray::method::knob::DELTA;
-use lodray::method::{Departure, Knob, Knobs, Landing, Method, Registered, SurfaceHit, Tracer, lod};
+use lodray::method::{Departure, Knob, Knobs, Landing, Method, Over, Registered, SurfaceHit, Tracer, lod};
 use lodray::picture::{FullResolution, SurfaceError, render};
 use lodray::rays::{Camera, ModelSpace, Query, Sight, View};
 use lodray::run::Compute;
@@ -40,7 +40,7 @@ static ONE_RADIUS: Registered = Registered {
     help: "Ours with one radius for all rays of a frame",
     knobs: &[&DELTA, &RADIUS],
     error: None,
-    of_input: false,
+    over: Over::Scene,
     unit: lod::METHOD.unit,
     works: &[],
     make: |scene, knobs, store| {
@@ -94,6 +94,9 @@ impl Tracer for Even<'_> {
     }
     fn enter(&mut self, query: &Query, from: Option<&Departure>, steps: &mut dyn StepSink) -> Option<Landing> {
         self.tracer.enter(&self.of(query), from, steps)
+    }
+    fn all(&mut self, query: &Query, hits: &mut Vec<SurfaceHit>) -> bool {
+        self.tracer.all(&self.of(query), hits)
     }
     fn is_mapped(&self) -> bool {
         self.tracer.is_mapped()
