@@ -12,13 +12,15 @@
 
 use super::graph::{Cluster, Graph};
 use super::snapped::Place;
+use rayon::prelude::*;
 use std::collections::HashMap;
 
 /// Most vertices of a cluster.
 pub const MOST: usize = 256;
 const HEADER: usize = 4;
 
-/// The pairs of some triangles: neighbours over an edge, each triangle once, one alone where no neighbour is left.
+/// The pairs of some triangles: neighbours over an edge, each triangle once, one alone where no neighbour is left. Whoever has the fewest free neighbours chooses first, and
+/// chooses the one that has the fewest, so that few are left alone.
 pub fn pairs(triangles: &[[u32; 3]]) -> Vec<[u32; 4]> {
     let mut over: HashMap<[u32; 2], usize> = HashMap::with_capacity(3 * triangles.len());
     for (at, t) in triangles.iter().enumerate() {
@@ -26,23 +28,37 @@ pub fn pairs(triangles: &[[u32; 3]]) -> Vec<[u32; 4]> {
             over.insert([t[k], t[(k + 1) % 3]], at);
         }
     }
+    // Of each its neighbours over its edges, itself where there is none.
+    let next = |(at, t): (usize, &[u32; 3])| [0, 1, 2].map(|k| over.get(&[t[(k + 1) % 3], t[k]]).copied().unwrap_or(at));
+    let neighbours: Vec<[usize; 3]> = triangles.par_iter().enumerate().map(next).collect();
+    let across = |at: usize, k: usize| Some(neighbours[at][k]).filter(|&other| other != at);
     let mut is_paired = vec![false; triangles.len()];
-    // Whoever has the fewest neighbours left would be the best to begin with; in their order is nearly as good.
+    let mut free: Vec<usize> = (0..triangles.len()).map(|at| (0..3).filter(|&k| across(at, k).is_some()).count()).collect();
+    let mut waiting: [Vec<usize>; 4] = Default::default();
+    (0..triangles.len()).rev().for_each(|at| waiting[free[at]].push(at));
     let mut out = Vec::with_capacity(triangles.len() / 2 + 1);
-    for (at, t) in triangles.iter().enumerate() {
+    while let Some(at) = (0..4).find_map(|count| waiting[count].pop()) {
         if std::mem::replace(&mut is_paired[at], true) {
             continue;
         }
-        let neighbour = |k: usize| over.get(&[t[(k + 1) % 3], t[k]]).copied().filter(|&other| !is_paired[other]);
-        let Some((k, other)) = (0..3).find_map(|k| Some((k, neighbour(k)?))) else {
+        let t = triangles[at];
+        let neighbour = |k: usize| across(at, k).filter(|&other| !is_paired[other]).map(|other| (free[other], k, other));
+        let chosen = (0..3).filter_map(neighbour).min();
+        if let Some((_, k, other)) = chosen {
+            is_paired[other] = true;
+            // The shared edge is from c to a.
+            let [c, a, b] = [t[k], t[(k + 1) % 3], t[(k + 2) % 3]];
+            let far = triangles[other].into_iter().find(|&v| v != a && v != c).unwrap_or(a);
+            out.push([a, b, c, far]);
+        } else {
             out.push([t[0], t[1], t[2], t[0]]);
-            continue;
-        };
-        is_paired[other] = true;
-        // The shared edge is from c to a.
-        let [c, a, b] = [t[k], t[(k + 1) % 3], t[(k + 2) % 3]];
-        let far = triangles[other].into_iter().find(|&v| v != a && v != c).unwrap_or(a);
-        out.push([a, b, c, far]);
+        }
+        for gone in [Some(at), chosen.map(|(.., other)| other)].into_iter().flatten() {
+            for other in (0..3).filter_map(|k| across(gone, k)).filter(|&other| !is_paired[other]) {
+                free[other] = free[other].saturating_sub(1);
+                waiting[free[other]].push(other);
+            }
+        }
     }
     out
 }
@@ -101,7 +117,6 @@ pub struct Size {
 
 /// The sizes of all clusters of a graph.
 pub fn sizes(graph: &Graph) -> Vec<Size> {
-    use rayon::prelude::*;
     let own: Vec<(u32, u32)> = graph
         .clusters
         .par_iter()

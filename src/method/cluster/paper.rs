@@ -18,6 +18,8 @@ const MOST_QUADS: usize = 128;
 const RADIUS: usize = 16;
 /// What a merged pair may keep of its triangles, at most.
 const STUCK: f64 = 0.85;
+/// Triangles that two clusters are simplified to, at most: half of theirs, and so few that one cluster holds them although not all find partners.
+const MOST_MERGED: usize = 2 * MOST_QUADS * 15 / 16;
 /// Merges of a cluster that come to nothing until it is left as it is.
 const TRIES: usize = 4;
 /// Binary nodes on a path of a BVH over quads, at most twice this.
@@ -183,7 +185,7 @@ fn merge(mesh: &Snapped, a: &Active, b: &Active) -> Merged {
         .collect();
     let positions: Vec<[f32; 3]> = own.iter().map(|&v| mesh.places[v as usize].map(f32::from)).collect();
     let vertices = VertexDataAdapter::new(bytemuck::cast_slice(&positions), size_of::<[f32; 3]>(), 0).expect("whole vertices");
-    let target = indices.len() / 6 * 3;
+    let target = (indices.len() / 6).min(MOST_MERGED) * 3;
     let mut error = 0.0;
     let options = SimplifyOptions::LockBorder | SimplifyOptions::ErrorAbsolute;
     let kept = simplify(&indices, &vertices, target, f32::MAX, options, Some(&mut error));
