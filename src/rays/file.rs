@@ -11,8 +11,8 @@
 //! | 10 | 1 if any hit serves, 0 if it must be the closest | 0 |
 //! | 11 | number of the earlier row at whose hit the ray starts (`cast`), or behind whose end (`simulate`), -1 if none; 32-bit floats number 2^24 rows | -1 |
 
+use super::eye::{eye_of_all, least_radius_of_all};
 use super::rows::{BATCH, query};
-use super::source::{eye_of_all, least_radius_of_all};
 use super::{Eye, ModelSpace, Query, RaySource};
 use npyz::{DType, NpyFile, Order, TypeChar};
 use rayon::prelude::*;

@@ -1,6 +1,6 @@
 //! Rays in arrays that somebody else keeps, column by column, and what a row of a file of rays says.
 
-use super::source::{eye_of_all, least_radius_of_all};
+use super::eye::{eye_of_all, least_radius_of_all};
 use super::{Eye, ModelSpace, Query, RaySource};
 use rayon::prelude::*;
 use thiserror::Error;

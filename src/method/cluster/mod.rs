@@ -1,7 +1,7 @@
 //! Cluster level of detail (Benthin and Peters, "Real-Time Ray Tracing of Micro-Poly Geometry with Hierarchical Level of Detail", 2023; meshoptimizer's `clusterlod`, which ships):
 //! small clusters of triangles, simplified in groups; those that suffice are chosen before a frame, unpacked, and a BVH is built over them (docs/baselines.md, "Clusters").
 //!
-//! Two graphs ([`shipped`], [`paper`]) and two measures of what suffices ([`cut`]); all else is one.
+//! Two graphs (`shipped.rs`, `paper.rs`) and two measures of what suffices ([`Rule`]); all else is one.
 
 mod before;
 mod cut;
