@@ -12,7 +12,7 @@ import subprocess
 import tempfile
 from pathlib import Path
 
-from markdown import put, table
+from markdown import among, number, put, table
 
 ROOT = Path(__file__).resolve().parent.parent
 CLUSTERS = ["cluster", "cluster-paper"]
@@ -26,19 +26,6 @@ PAPER = [("Thai", 16, 1.7, 2.4, 1.6), ("Rungholt", 40, 0.9, 5.9, 2.3), ("Landsca
 TURNS = ["0", "3", "180"]
 # GB/s of an Arc A770, and of haydel2023.
 BANDWIDTH = [560, 160]
-
-
-def number(value, digits=3):
-    """A number with so many digits that count, with commas where it is large."""
-    if value >= 10 ** (digits - 1):
-        return f"{value:,.0f}"
-    return f"{value:.{digits}g}"
-
-
-def among(values):
-    """The least and the most of some numbers."""
-    low, high = number(min(values)), number(max(values))
-    return low if low == high else f"{low} to {high}"
 
 
 class Runs:

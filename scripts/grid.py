@@ -12,7 +12,7 @@ import subprocess
 import tempfile
 from pathlib import Path
 
-from markdown import put, table
+from markdown import among, number, put, table
 
 ROOT = Path(__file__).resolve().parent.parent
 LEVELS = [1, 2, 3, 4]
@@ -43,19 +43,6 @@ VARIANTS = [
     ("prisms", {"grid-bounds": "prisms"}),
     *((f"{levels} levels", {"grid-levels": str(levels)}) for levels in (1, 2, 3)),
 ]
-
-
-def number(value, digits=3):
-    """A number with so many digits that count, with commas where it is large."""
-    if value >= 10 ** (digits - 1):
-        return f"{value:,.0f}"
-    return f"{value:.{digits}g}"
-
-
-def among(values):
-    """The least and the most of some numbers."""
-    low, high = number(min(values)), number(max(values))
-    return low if low == high else f"{low} to {high}"
 
 
 class Runs:
