@@ -105,6 +105,8 @@ pub struct Graph {
     pub groups: Vec<Group>,
     /// Triangles of the mesh.
     pub finest: usize,
+    /// Finest triangles of the scene that became none on the grid.
+    pub collapsed: usize,
 }
 
 /// What a builder says of a group.
@@ -120,7 +122,7 @@ pub(super) struct Made {
 impl Graph {
     /// Of groups, each behind those whose simplifications it holds.
     pub(super) fn new(mesh: Snapped, made: Vec<Made>) -> Self {
-        let Snapped { grid, places, triangles: own, .. } = mesh;
+        let Snapped { grid, places, triangles: own, collapsed, .. } = mesh;
         let (mut triangles, mut clusters, mut groups) = (Vec::new(), Vec::<Cluster>::new(), Vec::<Group>::with_capacity(made.len()));
         for (number, Made { clusters: own, mut error, sphere }) in (0..).zip(made) {
             let first = clusters.len() as u32;
@@ -146,7 +148,7 @@ impl Graph {
             sphere.radius *= 1.0 + 1e-9;
             groups.push(Group { first, count: clusters.len() as u32 - first, error, sphere, bounds });
         }
-        Self { grid, places, triangles, clusters, groups, finest: own.len() }
+        Self { grid, places, triangles, clusters, groups, finest: own.len(), collapsed }
     }
 
     /// Corners of a triangle, in units.

@@ -292,6 +292,7 @@ impl Method for Clusters {
             ("roots", roots),
             ("their triangles", coarsest),
         ];
-        counts.map(|(name, count)| (name, count.to_string())).to_vec()
+        let lost = (graph.collapsed > 0).then_some(("collapsed on the grid", graph.collapsed));
+        counts.into_iter().chain(lost).map(|(name, count)| (name, count.to_string())).collect()
     }
 }

@@ -107,19 +107,18 @@ fn bounds(mesh: &Snapped, triangles: &[[u32; 3]]) -> Box32 {
 
 /// Subtrees of up to 128 quads, and as many vertices as indices can number.
 fn first_clusters(mesh: &Snapped) -> Vec<Vec<[u32; 3]>> {
-    let quads = pairs(&mesh.triangles);
+    split(mesh, &pairs(&mesh.triangles))
+}
+
+/// Parts that fit clusters, by the tree of such quads.
+fn split(mesh: &Snapped, quads: &[[u32; 4]]) -> Vec<Vec<[u32; 3]>> {
+    if fits(quads) {
+        return vec![unpaired(quads).collect()];
+    }
     let bounds = |quad: &[u32; 4]| {
         let [a, b, c, d] = quad.map(|v| mesh.point(v));
         Box32::of_triangle([a, b, c]).union(&Box32::of_triangle([a, c, d]))
     };
-    split(&quads, &bounds)
-}
-
-/// Parts that fit clusters, by the tree of such quads.
-fn split(quads: &[[u32; 4]], bounds: &(dyn Fn(&[u32; 4]) -> Box32 + Sync)) -> Vec<Vec<[u32; 3]>> {
-    if fits(quads) {
-        return vec![unpaired(quads).collect()];
-    }
     let mut prims: Vec<Prim> = (0..).zip(quads).map(|(id, quad)| Prim::new(&bounds(quad), id)).collect();
     let tree = binary_tree(&mut prims, DEPTH);
     let ordered: Vec<[u32; 4]> = prims.iter().map(|prim| quads[prim.id as usize]).collect();
@@ -193,11 +192,7 @@ fn merge(mesh: &Snapped, a: &Active, b: &Active) -> Merged {
     if triangles.is_empty() || triangles.len() as f64 > STUCK * (indices.len() / 3) as f64 {
         return Merged::Failed;
     }
-    let bounds = |quad: &[u32; 4]| {
-        let [a, b, c, d] = quad.map(|v| mesh.point(v));
-        Box32::of_triangle([a, b, c]).union(&Box32::of_triangle([a, c, d]))
-    };
-    let parts = split(&pairs(&triangles), &bounds);
+    let parts = split(mesh, &pairs(&triangles));
     // More parts than there were: nothing is won.
     if parts.len() > 2 { Merged::Failed } else { Merged::Parts(parts, f64::from(error) * f64::from(mesh.grid.step)) }
 }
