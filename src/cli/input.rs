@@ -83,7 +83,7 @@ pub fn with_input<'a>(scene: Scene, path: &Path, args: &InputArgs, methods: impl
             Ok(input) => Ok(scene.with_input(input)),
             Err(why) => Err(why.context(format!("--method {}", chosen.method.name))),
         },
-        None if takes => with_input_if_found(scene, path, args, "clusters are of the finest level"),
+        None if takes => with_input_if_found(scene, path, args, "clusters and R-LODs are of the finest level"),
         None => Ok(scene),
     }
 }

@@ -231,6 +231,8 @@ pub struct Departure {
     pub prior: Option<Prior>,
     /// A third ray had decided about an edge there, and was dropped ([`Prior::after`]).
     pub crowded: bool,
+    /// Nothing as near as so many units counts for rays from here: by so much what was hit may be off, where it only stands for the surface.
+    pub clear: u32,
 }
 
 /// What a ray met whose path may go on.

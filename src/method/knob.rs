@@ -113,6 +113,26 @@ pub static DELTA: Knob = Knob {
     allows: |value| quality(value).map(drop),
 };
 
+/// How large something may be on screen where a coarser one stands for it.
+pub static PIXELS: Knob = Knob {
+    name: "pixels",
+    value_name: "PIXELS",
+    help: "Clusters: a group is replaced if the diagonal of its box is at most so many pixels (default 24 of cluster-paper, unless --error is given); R-LODs: a plane serves if its error is below that of so many pixels (default 4 of rlod)",
+    default: None,
+    words: &[],
+    of_frame: false,
+    allows: allows_pixels,
+};
+
+/// A number of pixels that was chosen.
+pub(super) fn pixels(value: &str) -> Option<f64> {
+    value.parse().ok().filter(|pixels: &f64| *pixels >= 0.0)
+}
+
+pub(super) fn allows_pixels(value: &str) -> Result<(), String> {
+    pixels(value).map(drop).ok_or_else(|| format!("'{value}' is not a number of pixels: 0 (full detail) to inf (the coarsest)"))
+}
+
 /// A quality: a number that is not negative, or `inf`.
 ///
 /// # Errors

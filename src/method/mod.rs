@@ -22,6 +22,7 @@ mod prior;
 mod recent;
 pub mod reference;
 mod registry;
+pub mod rlod;
 mod stack;
 mod tracer;
 

@@ -1,6 +1,6 @@
 //! All methods.
 
-use super::{Registered, binary16, bvh, chunked, cluster, discrete, grid, lod, reference};
+use super::{Registered, binary16, bvh, chunked, cluster, discrete, grid, lod, reference, rlod};
 
 /// Every method, in the order in which help names them.
 pub const METHODS: &[&Registered] = &[
@@ -14,6 +14,7 @@ pub const METHODS: &[&Registered] = &[
     &grid::METHOD,
     &cluster::METHOD,
     &cluster::METHOD_PAPER,
+    &rlod::METHOD,
     &bvh::METHOD_INPUT,
     &bvh::METHOD_INPUT_SIX,
     &bvh::METHOD_INPUT_WIDE,

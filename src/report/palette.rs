@@ -24,6 +24,7 @@ pub enum Mark {
     Hourglass,
     Bowtie,
     Bar,
+    Post,
 }
 
 /// How a method is drawn.
@@ -45,7 +46,7 @@ const fn style(light: [u8; 3], dark: [u8; 3], mark: Mark) -> Style {
 }
 
 /// Methods by name.
-const KNOWN: [(&str, Style); 15] = [
+const KNOWN: [(&str, Style); 16] = [
     ("lod", style([15, 107, 189], [76, 173, 248], Mark::Circle)),
     ("bvh", style([193, 76, 2], [252, 154, 84], Mark::Square)),
     ("bvh6", style([155, 20, 89], [240, 123, 174], Mark::Star)),
@@ -56,6 +57,7 @@ const KNOWN: [(&str, Style); 15] = [
     ("grid", style([13, 60, 47], [191, 255, 0], Mark::Hexagon)),
     ("cluster", style([24, 2, 35], [255, 253, 246], Mark::Bowtie)),
     ("cluster-paper", style([84, 56, 202], [225, 85, 7], Mark::Bar)),
+    ("rlod", style([74, 18, 82], [31, 161, 36], Mark::Post)),
     ("input-bvh", style([142, 113, 48], [228, 195, 71], Mark::Wye)),
     ("input-bvh6", style([13, 99, 124], [137, 206, 230], Mark::Cross)),
     ("input-bvh32", style([78, 30, 0], [168, 120, 90], Mark::GreekCross)),

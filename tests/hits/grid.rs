@@ -25,7 +25,7 @@ use std::sync::Arc;
 use std::time::Instant;
 
 /// Five triangles around one edge, one of them turned, one degenerate in space, and a loose one.
-fn fan(levels: u32) -> Hierarchy {
+pub fn fan(levels: u32) -> Hierarchy {
     let base = [[0, 0, -4], [0, 0, 4], [4, 0, 0], [0, 4, 1], [-4, 0, -1], [0, -4, 0], [3, 3, 3], [0, 0, 0]];
     let triangles = vec![[0, 1, 2], [0, 1, 3], [1, 0, 4], [0, 1, 5], [0, 1, 7], [2, 3, 6]];
     model(levels, &base, triangles, |p, level| {
@@ -36,7 +36,7 @@ fn fan(levels: u32) -> Hierarchy {
 }
 
 /// Two triangles over the same three base vertices, whose insides are apart: a pillow.
-fn pillow(levels: u32) -> Hierarchy {
+pub fn pillow(levels: u32) -> Hierarchy {
     let m = 1 << levels;
     let base = [[0, 0, 0], [4, 0, 0], [0, 4, 0]];
     let mut h = model(levels, &base, vec![[0, 1, 2], [0, 2, 1]], |p, _| p.map(|v| v as f64 * f64::from(1 << 27) / f64::from(m)));
@@ -64,7 +64,7 @@ fn options() -> impl Iterator<Item = GridOptions> {
     (1..=4).flat_map(all).filter(|&(splits, left_out, kind)| left_out < splits || kind == Bounding::Spheres).map(of)
 }
 
-fn bvh(h: &Hierarchy) -> BvhTraverser {
+pub fn bvh(h: &Hierarchy) -> BvhTraverser {
     BvhTraverser::new(&FullBvh::build(h, &FullOptions::new(16, NodeBoxes::Local, LeafLayout::Block)).expect("a valid model"))
 }
 
@@ -187,7 +187,7 @@ fn hits_are_those_of_lod_at_full_detail_and_of_the_golden_traverser() {
 }
 
 /// Rays in all of the long comparison, primary and secondary; `LODRAY_RAYS` asks for a tenth of what closed models get, so `scripts/nightly` for ten million.
-fn total() -> usize {
+pub fn total() -> usize {
     match std::env::var("LODRAY_RAYS") {
         Ok(text) => text.parse::<usize>().expect("LODRAY_RAYS is a number") / 10,
         Err(_) => 60_000,
@@ -195,7 +195,7 @@ fn total() -> usize {
 }
 
 /// Six models; in their place scene files that `LODRAY_SCENES` names, with colons between.
-fn six_models() -> Vec<(String, Scene)> {
+pub fn six_models() -> Vec<(String, Scene)> {
     use procedural::Scene::{Cloth, Pot, Sphere, Spikes, Terrain};
     if let Ok(files) = std::env::var("LODRAY_SCENES") {
         return files.split(':').map(|file| (file.to_owned(), Scene::open(file.as_ref()).expect("a scene"))).collect();
@@ -227,7 +227,7 @@ impl Compared {
 }
 
 /// A ray of a camera at a random distance, or one through or near a vertex.
-fn some_ray(rng: &mut Rng, h: &Hierarchy, space: &ModelSpace, cameras: &[Camera]) -> Ray {
+pub fn some_ray(rng: &mut Rng, h: &Hierarchy, space: &ModelSpace, cameras: &[Camera]) -> Ray {
     if rng.below(2) == 0 {
         let camera = &cameras[rng.below(cameras.len() as u64) as usize];
         let [x, y] = [rng.unit(), rng.unit()].map(|at| at * f64::from(camera.width));

@@ -11,6 +11,7 @@ mod plan;
 mod promise;
 mod prune;
 mod quantise;
+mod rlod;
 mod secondary;
 mod stability;
 mod tightness;

@@ -52,7 +52,7 @@ pub struct Args {
     /// Distances of the eye in bounding radii, with commas (default: eight from 1 to 64; 2, 8 and 32 with --quick)
     #[arg(long, value_name = "RADII", value_delimiter = ',', value_parser = radii)]
     distances: Vec<f64>,
-    /// Methods, with commas (default: all that are hardware, but grids, binary16 and clusters)
+    /// Methods, with commas (default: all that are hardware, but grids, binary16, clusters and R-LODs)
     #[arg(long, value_name = "METHOD", value_delimiter = ',', value_parser = method)]
     methods: Vec<Listed>,
     /// Values of a knob by which methods trade error for cost, such as delta=0.5,1,2, in place of their own sweep; may be repeated

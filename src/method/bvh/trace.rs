@@ -117,7 +117,7 @@ impl BvhTraverser {
 
     /// Where rays start that leave the surface at `hit`. All rays see one surface: none of them decides anything.
     pub fn departure(hit: &Hit, corners: &[Point; 3]) -> Departure {
-        Departure { start: leave::start(corners, [hit.b0, hit.b1, hit.b2]), corners: *corners, prior: None, crowded: false }
+        Departure { start: leave::start(corners, [hit.b0, hit.b1, hit.b2]), corners: *corners, prior: None, crowded: false, clear: 0 }
     }
 
     /// As [`BvhTraverser::trace`]; every leaf read goes to `leaf` too.

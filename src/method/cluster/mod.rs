@@ -25,7 +25,7 @@ pub use packed::{pack, pairs, unpack, unpaired};
 pub use snapped::{Grid, Place, Snapped};
 
 use super::bvh::{FullOptions, LEAF_LAYOUT, LEAF_SIZE, NODE_ORDER, NodeBoxes};
-use super::knob::ErrorKnob;
+use super::knob::{ErrorKnob, PIXELS, allows_pixels, pixels};
 use super::recent::{Recent, apart};
 use super::{Before, Knob, Knobs, Method, Over, Registered, Tracer, bvh};
 use crate::bvh::BvhError;
@@ -38,30 +38,11 @@ use std::sync::{Arc, OnceLock};
 use surface::{Corners, surface};
 use trace::ClusterTracer;
 
-fn pixels(value: &str) -> Option<f64> {
-    value.parse().ok().filter(|pixels: &f64| *pixels >= 0.0)
-}
-
-fn allows_pixels(value: &str) -> Result<(), String> {
-    pixels(value).map(drop).ok_or_else(|| format!("'{value}' is not a number of pixels: 0 (full detail) to inf (the coarsest)"))
-}
-
 /// What ships measures by.
 pub static ERROR: Knob = Knob {
     name: "error",
     value_name: "PIXELS",
     help: "Clusters: a group is replaced if the simplifier's error of it, which is no bound, is at most so many pixels (default 1 of cluster, unless --pixels is given)",
-    default: None,
-    words: &[],
-    of_frame: false,
-    allows: allows_pixels,
-};
-
-/// What the paper measures by.
-pub static PIXELS: Knob = Knob {
-    name: "pixels",
-    value_name: "PIXELS",
-    help: "Clusters: a group is replaced if the diagonal of its box is at most so many pixels (default 24 of cluster-paper, unless --error is given)",
     default: None,
     words: &[],
     of_frame: false,

@@ -81,7 +81,7 @@ impl<'a> LodTraverser<'a> {
         let base = self.image.corners(tree as usize);
         let (prior, crowded) = Prior::after(ray, from.and_then(|from| from.prior.as_ref()), tree, base);
         let start = leave::start(corners, [hit.b0, hit.b1, hit.b2]);
-        Departure { start, corners: *corners, prior: Some(prior), crowded }
+        Departure { start, corners: *corners, prior: Some(prior), crowded, clear: 0 }
     }
 
     /// The same without the ray's end, compiled for scenes of one form of vertices, for rays that tolerate nothing if they are of `FULL_DETAIL`, and for those that have a

@@ -33,6 +33,7 @@ impl Shape {
             Mark::Hourglass => outline(&[(-s, -r), (s, -r), (-s, r), (s, r)]),
             Mark::Bowtie => outline(&[(-r, -s), (r, s), (r, -s), (-r, s)]),
             Mark::Bar => outline(&[(-r - 1, -r / 2), (r + 1, -r / 2), (r + 1, r / 2), (-r - 1, r / 2)]),
+            Mark::Post => outline(&[(-r / 2, -r - 1), (r / 2, -r - 1), (r / 2, r + 1), (-r / 2, r + 1)]),
             Mark::GreekCross => {
                 let (a, b) = (r / 3, r + 1);
                 outline(&[(-a, -b), (a, -b), (a, -a), (b, -a), (b, a), (a, a), (a, b), (-a, b), (-a, a), (-b, a), (-b, -a), (-a, -a)])

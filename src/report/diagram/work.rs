@@ -83,24 +83,25 @@ impl<'a> Of<'a> {
                 methods.push(&dot.point.method);
             }
         }
-        let size = (PANEL.0 * columns.max(2) as u32, 54 + KEYS + PANEL.1 * rows as u32); // a few panels
+        let width = PANEL.0 * columns.max(2) as u32; // a few panels
+        let keys_at = Keys::new(width as i32, &methods);
+        let key_rows = KEYS * keys_at.rows();
+        let size = (width, 54 + key_rows + PANEL.1 * rows as u32);
         let title = format!("{}, against {}", capital(error.name), without_unit(cost.name));
         let shifts = dots.iter().filter_map(|dot| error.of_shift(dot.view, dot.point.samples));
         let least = ROUNDING * dots.iter().map(|dot| dot.y).fold(0.0, f64::max);
         // The same for all panels: they are compared.
         let shared = range(dots.iter().map(|dot| dot.y).filter(|y| *y > least).chain(shifts), 1.6);
         let drawing = svg(size, [&title, &self.subtitle()], |area| {
-            let (keys, panels) = area.split_vertically(KEYS);
-            let mut left = 14;
-            for method in &methods {
+            let (keys, panels) = area.split_vertically(key_rows);
+            for (method, &(left, top)) in methods.iter().zip(&keys_at.places) {
                 let style = palette::of(method);
                 let (colour, shape) = (colour(&style), Shape::of(style.mark, MARK));
-                shape.draw(&keys, (left + 6, 12), (0, 0), colour, true)?;
-                keys.draw(&Text::new((*method).to_owned(), (left + 18, 5), (FONT, TEXT))).map_err(wrong)?;
-                left += 46 + 8 * method.chars().count() as i32; // a short name
+                shape.draw(&keys, (left + 6, top + 12), (0, 0), colour, true)?;
+                keys.draw(&Text::new((*method).to_owned(), (left + 18, top + 5), (FONT, TEXT))).map_err(wrong)?;
             }
-            let more = "filled: on the front (grey); number: delta; dashed: camera shifted by half a pixel";
-            keys.draw(&Text::new(more.to_owned(), (left, 6), (FONT, TEXT - 2))).map_err(wrong)?;
+            let (left, top) = keys_at.more;
+            keys.draw(&Text::new(MORE.to_owned(), (left, top + 6), (FONT, TEXT - 2))).map_err(wrong)?;
             for (panel, &distance) in panels.split_evenly((rows, columns)).iter().zip(&distances) {
                 let here: Vec<_> = dots.iter().filter(|dot| dot.view.distance == distance).collect();
                 let x = Axis { range: range(here.iter().map(|dot| dot.x), 1.5), name: &self.cost_name(cost), ticks: None };
@@ -232,6 +233,37 @@ fn with_gains(mut lines: Vec<Line>) -> Vec<Line> {
         }
     }
     lines
+}
+
+/// What the legend says beside its marks.
+const MORE: &str = "filled: on the front (grey); number: delta; dashed: camera shifted by half a pixel";
+
+/// Where the keys of a legend lie, in rows that are no wider than the picture.
+struct Keys {
+    places: Vec<(i32, i32)>,
+    /// Where the words lie.
+    more: (i32, i32),
+}
+
+impl Keys {
+    fn new(width: i32, methods: &[&str]) -> Self {
+        let (mut left, mut top) = (14, 0);
+        let mut next = |own: i32| {
+            if left > 14 && left + own > width {
+                (left, top) = (14, top + KEYS as i32);
+            }
+            let at = (left, top);
+            left += own;
+            at
+        };
+        // A short name, and words in small letters.
+        let places = methods.iter().map(|method| next(46 + 8 * method.chars().count() as i32)).collect();
+        Self { places, more: next(5 * MORE.chars().count() as i32) }
+    }
+
+    fn rows(&self) -> u32 {
+        self.more.1 as u32 / KEYS + 1
+    }
 }
 
 /// Those that no other beats, by cost.

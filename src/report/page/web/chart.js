@@ -29,6 +29,13 @@ const BAR = {
     context.rect(-s, -s / 2, 2 * s, s);
   },
 };
+/** The same on its end. */
+const POST = {
+  draw(context, size) {
+    const s = Math.sqrt(size / 2);
+    context.rect(-s / 2, -s, s, 2 * s);
+  },
+};
 /** A hexagon of this area. */
 const HEXAGON = {
   draw(context, size) {
@@ -38,7 +45,7 @@ const HEXAGON = {
   },
 };
 /** Marks as Plot has them. */
-const SYMBOLS = { circle: "circle", square: "square", triangle: "triangle", diamond: "diamond", cross: "plus", star: "asterisk", wye: "wye", times: "times", pentagram: "star", greekcross: "cross", hexagon: HEXAGON, hourglass: HOURGLASS, bowtie: BOWTIE, bar: BAR };
+const SYMBOLS = { circle: "circle", square: "square", triangle: "triangle", diamond: "diamond", cross: "plus", star: "asterisk", wye: "wye", times: "times", pentagram: "star", greekcross: "cross", hexagon: HEXAGON, hourglass: HOURGLASS, bowtie: BOWTIE, bar: BAR, post: POST };
 const colour = (method) => `var(--method-${CSS.escape(method)})`;
 const symbol = (method) => SYMBOLS[page.palette.methods[method]?.mark] ?? "circle";
 const D3_SYMBOLS = { circle: d3.symbolCircle, square: d3.symbolSquare, triangle: d3.symbolTriangle, diamond: d3.symbolDiamond, plus: d3.symbolPlus, asterisk: d3.symbolAsterisk, wye: d3.symbolWye, times: d3.symbolTimes, star: d3.symbolStar, cross: d3.symbolCross };
