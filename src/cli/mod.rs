@@ -85,9 +85,9 @@ enum Command {
     Simulate(simulate::Args),
     /// Simulate many frames on many machines, from a list of jobs; what was interrupted goes on where it was
     Sweep(sweep::Args),
-    /// Put the shards of a sweep or of error-time together: what a run of all jobs would have written
+    /// Put the shards of a sweep, error-time or stability together: what a run of all jobs would have written
     Merge(merge::Args),
-    /// Write what runs a sweep or error-time in shards on a computing cluster: files for Slurm or Snakemake (the method `cluster` is another thing: simulate --method)
+    /// Write what runs a sweep, error-time or stability in shards on a computing cluster: files for Slurm or Snakemake (the method `cluster` is another thing: simulate --method)
     Cluster(cluster::Args),
     /// Put two results of simulations side by side
     #[command(after_long_help = words::SIMULATE)]
@@ -162,6 +162,7 @@ fn merged(args: &merge::Args) -> anyhow::Result<ExitCode> {
     match parsed(&merge::finished(args)?)? {
         Command::Sweep(args) => sweep::merge(&args),
         Command::ErrorTime(args) => error_time::merge(&args),
+        Command::Stability(args) => stability::merge(&args),
         _ => anyhow::bail!("merge: the shards are of a command that has none: only {SPLIT} have"),
     }
 }
@@ -174,12 +175,13 @@ fn planned(words: &[OsString]) -> anyhow::Result<shard::Planned> {
     match parsed(&words)? {
         Command::Sweep(args) => sweep::planned(&args),
         Command::ErrorTime(args) => error_time::planned(&args),
+        Command::Stability(args) => stability::planned(&args),
         _ => anyhow::bail!("only the jobs of {SPLIT} can be split into shards"),
     }
 }
 
 /// Commands that have shards.
-const SPLIT: &str = "sweep and error-time";
+const SPLIT: &str = "sweep, error-time and stability";
 
 /// A command line that is not this process's own.
 fn parsed(words: &[OsString]) -> anyhow::Result<Command> {

@@ -10,7 +10,7 @@ use super::pass::simulate;
 use super::progress::Progress;
 use super::pruned::{self, check_normals};
 use super::rows::Row;
-use super::shards::{Part, Piece, Spent, opening, rays};
+use super::shards::{Part, Piece, Pieces, Spent, opening, rays};
 use super::shot::Shot;
 use super::workers::in_order;
 use crate::format::Scene;
@@ -73,7 +73,7 @@ pub fn sweep_part(
 ///
 /// # Errors
 /// As [`Jobs::key`].
-pub fn sweep_pieces(jobs: &Jobs) -> Result<(Vec<Piece>, Vec<u64>), StudyError> {
+pub fn sweep_pieces(jobs: &Jobs) -> Result<Pieces, StudyError> {
     let mut pieces = Vec::new();
     // A picture and its reference besides the frame.
     let times = if jobs.error { 3 } else { 1 };
@@ -87,7 +87,7 @@ pub fn sweep_pieces(jobs: &Jobs) -> Result<(Vec<Piece>, Vec<u64>), StudyError> {
         }
     }
     let openings = jobs.scenes.iter().map(|scene| opening(scene, jobs.methods.iter().map(|chosen| chosen.method)));
-    Ok((pieces, openings.collect()))
+    Ok(Pieces { all: pieces, openings: openings.collect() })
 }
 
 impl<'a> Sweep<'a> {

@@ -44,7 +44,7 @@ pub struct Args {
     sbatch: Vec<String>,
     #[command(flatten)]
     overrule: Overrule,
-    /// Command whose jobs are split: sweep or error-time with its arguments, after --
+    /// Command whose jobs are split: sweep, error-time or stability with its arguments, after --
     #[arg(last = true, required = true, value_name = "COMMAND")]
     run: Vec<OsString>,
 }

@@ -7,14 +7,14 @@ use super::folder::RunFolder;
 use super::input::is_found;
 use super::output::{busy, check_target, print_line, remark, write_file};
 use super::report::{save, this_run, titled};
-use super::shard::{Planned, Split, Study};
+use super::shard::{Planned, Study};
 use super::sweep::open_scene;
 use anyhow::Context;
 use lodray::report::diagram::{csv, diagrams, latex, left_out_csv};
 use lodray::report::error_time::{ErrorTime, USUAL_COSTS, USUAL_ERRORS, verdict_text, verdicts};
 use lodray::report::page::{Documents, PICTURE_BYTES, embed};
 use lodray::study::pruned::check_normals;
-use lodray::study::shards::{FOLDER, Part, gathered};
+use lodray::study::shards::{FOLDER, Part, Pieces, gathered};
 use lodray::study::{
     BuildTime, ErrorTimePlan, HostTime, JobLines, Means, Measured, SceneJobs, ViewRow, count, document, error_time_part, error_time_pieces,
 };
@@ -50,7 +50,7 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
     let Some(share) = args.shard.share()? else {
         return results(args, &plan, |rows| work(args, &plan, Part::ALL, rows, &args.out));
     };
-    let study = Study { out: &args.out, lines: LINES, overrule: &args.overrule, split: split(args, &plan)? };
+    let study = Study { out: &args.out, lines: Some(args.out.join(LINES)), overrule: &args.overrule, pieces: pieces(args, &plan)? };
     let work = |part: Part<'_>, rows: &mut JobLines<ViewRow>, folder: &Path| work(args, &plan, part, rows, folder).map(drop);
     args.shard.run(share, &study, work, |row: &ViewRow| row.error.as_ref())
 }
@@ -58,8 +58,8 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
 /// Puts the shards of a run together.
 pub fn merge(args: &Args) -> anyhow::Result<ExitCode> {
     let plan = args.plan()?;
-    let keys: Vec<String> = split(args, &plan)?.pieces.into_iter().flat_map(|piece| piece.keys).collect();
-    let lines = gathered::<ViewRow>(&args.out, &args.out.join(LINES), &keys)?;
+    let keys: Vec<String> = pieces(args, &plan)?.all.into_iter().flat_map(|piece| piece.keys).collect();
+    let lines = gathered::<ViewRow>(&args.out, Some(&args.out.join(LINES)), &keys)?;
     results(args, &plan, |rows| {
         for picture in lines.lines().filter_map(|row| row.measured.as_ref()).flat_map(|measured| &measured.pictures) {
             let (from, to) = (args.out.join(FOLDER).join(&picture.file), args.out.join(&picture.file));
@@ -74,11 +74,11 @@ pub fn merge(args: &Args) -> anyhow::Result<ExitCode> {
 /// What shards of a run would do.
 pub fn planned(args: &Args) -> anyhow::Result<Planned> {
     let plan = args.plan()?;
-    Planned::new(&args.shard, &args.out, plan.jobs.files.iter().cloned().collect(), &split(args, &plan)?)
+    Planned::new(&args.shard, &args.out, plan.jobs.files.iter().cloned().collect(), pieces(args, &plan)?)
 }
 
-fn split<'a>(args: &Args, plan: &'a ErrorTimePlan) -> anyhow::Result<Split<'a>> {
-    Split::new(&plan.jobs.scenes, error_time_pieces(plan, &|scene| has_input(args, scene)))
+fn pieces(args: &Args, plan: &ErrorTimePlan) -> anyhow::Result<Pieces> {
+    Ok(error_time_pieces(plan, &|scene| has_input(args, scene))?)
 }
 
 /// Whether the mesh that a scene was built from is at hand.

@@ -8,8 +8,8 @@ use super::common::Invocation;
 use super::folder::{Overrule, earlier};
 use super::output::{print_line, remark};
 use anyhow::ensure;
-use lodray::study::shards::{Costs, FOLDER, Part, Piece, Shard, Share, shares};
-use lodray::study::{JobLine, JobLines, SceneJobs, StudyError, count};
+use lodray::study::shards::{Costs, FOLDER, Part, Pieces, Shard, Share, shares};
+use lodray::study::{JobLine, JobLines, count};
 use std::collections::HashSet;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
@@ -35,24 +35,14 @@ pub struct ShardArgs {
     costs: Option<PathBuf>,
 }
 
-/// The jobs of a study, to be split.
-pub struct Split<'a> {
-    /// Its scenes.
-    pub scenes: &'a [SceneJobs],
-    /// What is not split any further.
-    pub pieces: Vec<Piece>,
-    /// What opening each scene takes.
-    pub openings: Vec<u64>,
-}
-
 /// A study of which a shard is run.
 pub struct Study<'a> {
     /// Folder of its results.
     pub out: &'a Path,
-    /// Name of the file of lines of a whole run.
-    pub lines: &'a str,
+    /// File of lines of a whole run, if it has one.
+    pub lines: Option<PathBuf>,
     pub overrule: &'a Overrule,
-    pub split: Split<'a>,
+    pub pieces: Pieces,
 }
 
 fn share(text: &str) -> Result<Share, String> {
@@ -70,9 +60,9 @@ impl ShardArgs {
     }
 
     /// Costs of pieces and of openings, in nanoseconds.
-    fn costs(&self, split: &Split<'_>) -> anyhow::Result<(Vec<u64>, Vec<u64>)> {
+    fn costs(&self, pieces: &Pieces) -> anyhow::Result<(Vec<u64>, Vec<u64>)> {
         let costs = self.costs.as_deref().map(Costs::read).transpose()?.unwrap_or_default();
-        Ok(costs.of(&split.pieces, split.scenes, &split.openings))
+        Ok(costs.of(pieces))
     }
 
     /// Runs a shard of a study: `work` does the jobs of a part, adds their lines, and may put other files into a folder. `failed` says why a line's job failed.
@@ -93,13 +83,13 @@ impl ShardArgs {
                 costs.display()
             );
         }
-        let (costs, openings) = self.costs(&study.split)?;
-        let of = shares(&study.split.pieces, &costs, &openings, share.of).of;
-        let mine = study.split.pieces.iter().zip(of).filter(|(_, of)| of + 1 == share.number);
+        let (costs, openings) = self.costs(&study.pieces)?;
+        let of = shares(&study.pieces.all, &costs, &openings, share.of).of;
+        let mine = study.pieces.all.iter().zip(of).filter(|(_, of)| of + 1 == share.number);
         let mine: Vec<String> = mine.flat_map(|(piece, _)| piece.keys.iter().cloned()).collect();
         let mut shard = Shard::open(study.out, share, &Bars)?;
         record::write(shard.folder(), &invocation)?;
-        let done = shard.done(&study.out.join(study.lines))?;
+        let done = shard.done(study.lines.as_deref())?;
         let left: HashSet<String> = mine.iter().filter(|key| !done.contains(*key)).cloned().collect();
         let mut why = Vec::new();
         if !left.is_empty() || !shard.is_finished() {
@@ -118,14 +108,6 @@ impl ShardArgs {
         ))?;
         why.iter().try_for_each(|line| print_line(line))?;
         Ok(if why.is_empty() { ExitCode::SUCCESS } else { ExitCode::FAILURE })
-    }
-}
-
-impl<'a> Split<'a> {
-    /// Of pieces and openings as a study gives them.
-    pub fn new(scenes: &'a [SceneJobs], made: Result<(Vec<Piece>, Vec<u64>), StudyError>) -> anyhow::Result<Self> {
-        let (pieces, openings) = made?;
-        Ok(Self { scenes, pieces, openings })
     }
 }
 

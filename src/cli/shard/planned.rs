@@ -1,7 +1,7 @@
 //! What shards of a run would do, told before any is run.
 
-use super::{ShardArgs, Split};
-use lodray::study::shards::{Piece, shares};
+use super::ShardArgs;
+use lodray::study::shards::{Pieces, shares};
 use std::path::{Path, PathBuf};
 
 /// What shards of a run would do.
@@ -14,31 +14,30 @@ pub struct Planned {
     pub is_shard: bool,
     /// Where costs were measured, if they were.
     pub costs: Option<PathBuf>,
-    pieces: Vec<Piece>,
+    pieces: Pieces,
     costs_of: Vec<u64>,
     openings: Vec<u64>,
 }
 
 impl Planned {
-    pub fn new(args: &ShardArgs, out: &Path, inputs: Vec<PathBuf>, split: &Split<'_>) -> anyhow::Result<Self> {
-        let (costs_of, openings) = args.costs(split)?;
-        let (pieces, costs) = (split.pieces.clone(), args.costs.clone());
-        Ok(Self { out: out.to_owned(), inputs, is_shard: args.shard.is_some(), costs, pieces, costs_of, openings })
+    pub fn new(args: &ShardArgs, out: &Path, inputs: Vec<PathBuf>, pieces: Pieces) -> anyhow::Result<Self> {
+        let (costs_of, openings) = args.costs(&pieces)?;
+        Ok(Self { out: out.to_owned(), inputs, is_shard: args.shard.is_some(), costs: args.costs.clone(), pieces, costs_of, openings })
     }
 
     /// How many jobs there are.
     pub fn jobs(&self) -> usize {
-        self.pieces.iter().map(|piece| piece.keys.len()).sum()
+        self.pieces.all.iter().map(|piece| piece.keys.len()).sum()
     }
 
     /// How many parts there can be at most.
     pub fn pieces(&self) -> usize {
-        self.pieces.len()
+        self.pieces.all.len()
     }
 
     /// What the longest of so many shards takes over the mean of all, openings of scenes included.
     pub fn longest(&self, shards: usize) -> f64 {
-        let loads = shares(&self.pieces, &self.costs_of, &self.openings, shards).loads;
+        let loads = shares(&self.pieces.all, &self.costs_of, &self.openings, shards).loads;
         let (most, all) = (loads.iter().copied().max().unwrap_or(0), loads.iter().map(|&load| load as f64).sum::<f64>());
         if all > 0.0 { most as f64 * shards as f64 / all } else { 1.0 }
     }

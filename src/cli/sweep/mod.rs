@@ -13,7 +13,7 @@ use super::folder::{Overrule, RunFolder, one_run};
 use super::input::{InputArgs, with_input};
 use super::output::{check_target, print_line, remark, write_file};
 use super::report::PageArgs;
-use super::shard::{Planned, ShardArgs, Split, Study};
+use super::shard::{Planned, ShardArgs, Study};
 use anyhow::ensure;
 use lodray::report::page::{Documents, Simulation};
 use lodray::study::shards::{Part, gathered};
@@ -59,7 +59,7 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
         return results(args, &jobs, |rows| work(args, &jobs, Part::ALL, rows));
     };
     ensure!(!args.page.is_wanted(), "--report: a page is of all shards: lodray report makes it of what lodray merge writes");
-    let study = Study { out: &args.out, lines: LINES, overrule: &args.overrule, split: split(&jobs)? };
+    let study = Study { out: &args.out, lines: Some(args.out.join(LINES)), overrule: &args.overrule, pieces: sweep_pieces(&jobs)? };
     args.shard.run(share, &study, |part, rows, _| work(args, &jobs, part, rows).map(drop), |row: &Row| row.error.as_ref())
 }
 
@@ -67,7 +67,7 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
 pub fn merge(args: &Args) -> anyhow::Result<ExitCode> {
     let jobs = read_views(&args.jobs)?;
     let keys = jobs.keys()?;
-    let lines = gathered(&args.out, &args.out.join(LINES), &keys)?;
+    let lines = gathered(&args.out, Some(&args.out.join(LINES)), &keys)?;
     results(args, &jobs, |rows| {
         lines.add_to(rows, &keys)?;
         Ok(keys)
@@ -78,11 +78,7 @@ pub fn merge(args: &Args) -> anyhow::Result<ExitCode> {
 pub fn planned(args: &Args) -> anyhow::Result<Planned> {
     let jobs = read_views(&args.jobs)?;
     let inputs = std::iter::once(&args.jobs).chain(&jobs.files).cloned().collect();
-    Planned::new(&args.shard, &args.out, inputs, &split(&jobs)?)
-}
-
-fn split(jobs: &Jobs) -> anyhow::Result<Split<'_>> {
-    Split::new(&jobs.scenes, sweep_pieces(jobs))
+    Planned::new(&args.shard, &args.out, inputs, sweep_pieces(&jobs)?)
 }
 
 /// Does the jobs of a part that `rows` has not yet. Gives the names of all jobs.

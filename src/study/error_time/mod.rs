@@ -21,7 +21,7 @@ use super::error::{StudyError, one_line};
 use super::job_lines::JobLines;
 use super::jobs::SceneJobs;
 use super::means::Means;
-use super::shards::{Part, Piece, Spent, opening, rays};
+use super::shards::{Part, Piece, Pieces, Spent, opening, rays};
 use crate::format::Scene;
 use crate::report::error_time::SceneEntry;
 use measure::Bench;
@@ -103,7 +103,7 @@ pub fn error_time_part(
 ///
 /// # Errors
 /// As [`Jobs::key`](super::Jobs::key).
-pub fn error_time_pieces(plan: &ErrorTimePlan, is_input_found: &dyn Fn(&SceneJobs) -> bool) -> Result<(Vec<Piece>, Vec<u64>), StudyError> {
+pub fn error_time_pieces(plan: &ErrorTimePlan, is_input_found: &dyn Fn(&SceneJobs) -> bool) -> Result<Pieces, StudyError> {
     // Each setting is drawn with all its samples and traced for machines, and compared.
     let samples = plan.sides.iter().map(|&side| u64::from(side * side)).sum::<u64>() + 1;
     let mut pieces = Vec::new();
@@ -114,7 +114,7 @@ pub fn error_time_pieces(plan: &ErrorTimePlan, is_input_found: &dyn Fn(&SceneJob
         }
     }
     let openings = plan.jobs.scenes.iter().map(|scene| opening(scene, plan.jobs.methods.iter().map(|chosen| chosen.method)));
-    Ok((pieces, openings.collect()))
+    Ok(Pieces { all: pieces, openings: openings.collect() })
 }
 
 /// The view of a scene at which sizes of the frame are compared: a near one, where they matter most.

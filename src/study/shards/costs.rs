@@ -1,9 +1,8 @@
 //! What jobs took in an earlier run.
 
 use super::folder::{FOLDER, SECONDS, files, name_of};
-use super::piece::Piece;
+use super::piece::{Opening, Piece, Pieces};
 use super::took::Took;
-use crate::study::SceneJobs;
 use std::collections::HashMap;
 use std::fs;
 use std::io;
@@ -73,25 +72,24 @@ impl Costs {
         if costs.jobs.is_empty() { Err(CostsError::None(out.to_owned())) } else { Ok(costs) }
     }
 
-    /// Costs of pieces, in nanoseconds: as measured, or, of jobs that were not, their estimates, stretched as those of the measured ones were wrong. And of openings,
-    /// by scene.
-    pub fn of(&self, pieces: &[Piece], scenes: &[SceneJobs], openings: &[u64]) -> (Vec<u64>, Vec<u64>) {
+    /// Costs of pieces and of openings, in nanoseconds: as measured, or, of jobs that were not, their estimates, stretched as those of the measured ones were wrong.
+    pub fn of(&self, pieces: &Pieces) -> (Vec<u64>, Vec<u64>) {
+        let Pieces { all, openings } = pieces;
         let measured = |piece: &Piece| -> Option<u64> {
             let each = piece.keys.iter().map(|key| self.jobs.get(name_of(key)).map(Mean::get));
             each.sum()
         };
-        let known: Vec<_> = pieces.iter().map(measured).collect();
-        let both = || known.iter().zip(pieces).filter_map(|(known, piece)| Some(((*known)?, piece.estimate)));
+        let known: Vec<_> = all.iter().map(measured).collect();
+        let both = || known.iter().zip(all).filter_map(|(known, piece)| Some(((*known)?, piece.estimate)));
         let sum = |of: fn((u64, u64)) -> u64| both().map(of).map(u128::from).sum::<u128>();
         let (real, guessed) = (sum(|(known, _)| known), sum(|(_, estimate)| estimate));
         let stretched = |estimate: u64| match guessed {
             0 => estimate,
             _ => u64::try_from(u128::from(estimate) * real / guessed).unwrap_or(u64::MAX),
         };
-        let costs = known.iter().zip(pieces).map(|(known, piece)| known.unwrap_or_else(|| stretched(piece.estimate))).collect();
-        let opening =
-            |(scene, &estimate): (&SceneJobs, &u64)| self.openings.get(&scene.name).map_or_else(|| stretched(estimate), Mean::get);
-        (costs, scenes.iter().zip(openings).map(opening).collect())
+        let costs = known.iter().zip(all).map(|(known, piece)| known.unwrap_or_else(|| stretched(piece.estimate))).collect();
+        let opening = |of: &Opening| self.openings.get(&of.name).map_or_else(|| stretched(of.estimate), Mean::get);
+        (costs, openings.iter().map(opening).collect())
     }
 }
 
@@ -121,11 +119,12 @@ mod tests {
             keys: names.iter().map(|name| format!("{name} #0000000000000000 0.2.0-new")).collect(),
             estimate,
         };
-        let scene = |name: &str| SceneJobs::new(name, crate::study::Origin::File(PathBuf::new()));
-        let pieces = [piece(&["a", "b"], 5), piece(&["c"], 20), piece(&["b", "c"], 10), piece(&["b"], 3)];
+        let opening = |name: &str, estimate| Opening { name: name.to_owned(), estimate };
+        let all = vec![piece(&["a", "b"], 5), piece(&["c"], 20), piece(&["b", "c"], 10), piece(&["b"], 3)];
+        let pieces = Pieces { all, openings: vec![opening("s", 1), opening("t", 16)] };
         let second = 1_000_000_000;
-        let (jobs, openings) = costs.of(&pieces, &[scene("s"), scene("t")], &[1, 16]);
+        let (jobs, openings) = costs.of(&pieces);
         assert_eq!((jobs, openings), (vec![4 * second, 12_500_000_000, 6_250_000_000, second], vec![7 * second, 10 * second]));
-        assert_eq!(Costs::default().of(&pieces, &[], &[]).0, [5, 20, 10, 3]);
+        assert_eq!(Costs::default().of(&pieces), (vec![5, 20, 10, 3], vec![1, 16]));
     }
 }

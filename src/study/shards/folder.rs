@@ -96,15 +96,15 @@ impl Shard {
         self.folder.join(self.share.stem() + ending)
     }
 
-    /// Jobs that have a result, of any shard, however the jobs were split, or in the file of lines `whole` of a run that did them all.
+    /// Jobs that have a result, of any shard, however the jobs were split, or in the file of lines `whole`, if there is one, of a run that did them all.
     ///
     /// # Errors
     /// A file cannot be read.
-    pub fn done(&self, whole: &Path) -> Result<HashSet<String>, LinesError> {
+    pub fn done(&self, whole: Option<&Path>) -> Result<HashSet<String>, LinesError> {
         let mut done = HashSet::new();
         let wrong = |path: &Path, source| LinesError::Read { path: path.to_owned(), source };
         let own = line_files(&self.folder).map_err(|source| wrong(&self.folder, source))?;
-        for path in own.iter().chain([&whole.to_owned()]) {
+        for path in own.iter().map(PathBuf::as_path).chain(whole) {
             match read_done(path, &mut done) {
                 // Another shard has just renamed it: what is in it is that one's own, and not looked for here.
                 Err(error) if error.kind() == ErrorKind::NotFound => {}

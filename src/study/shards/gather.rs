@@ -44,16 +44,16 @@ fn in_words(shards: &[Share]) -> String {
 #[derive(Debug)]
 pub struct Gathered<L>(HashMap<String, L>);
 
-/// The lines of the jobs `keys` from the shards of `out`. Jobs that have a result in `whole`, the lines of a run that did them all, need none. A job that failed has a line
+/// The lines of the jobs `keys` from the shards of `out`. Jobs that have a result in `whole`, the lines of a run that did them all, if there are such, need none. A job that failed has a line
 /// as well, unless another shard had a result of it.
 ///
 /// # Errors
 /// A job has no line, or a file cannot be read.
-pub fn gathered<L: JobLine>(out: &Path, whole: &Path, keys: &[String]) -> Result<Gathered<L>, NotDone> {
+pub fn gathered<L: JobLine>(out: &Path, whole: Option<&Path>, keys: &[String]) -> Result<Gathered<L>, NotDone> {
     let folder = out.join(FOLDER);
     let wrong = |path: &Path, source| LinesError::Read { path: path.to_owned(), source };
     let mut done = HashSet::new();
-    if whole.exists() {
+    if let Some(whole) = whole.filter(|whole| whole.exists()) {
         read_done(whole, &mut done).map_err(|source| wrong(whole, source))?;
     }
     let wanted: HashSet<&str> = keys.iter().filter(|key| !done.contains(*key)).map(String::as_str).collect();
@@ -81,6 +81,11 @@ impl<L: JobLine> Gathered<L> {
     /// All of them, in no order.
     pub fn lines(&self) -> impl Iterator<Item = &L> {
         self.0.values()
+    }
+
+    /// All of them, in the order of `keys`.
+    pub fn in_order(mut self, keys: &[String]) -> Vec<L> {
+        keys.iter().filter_map(|key| self.0.remove(key)).collect()
     }
 
     /// Adds them to the lines of one run, in the order of `keys`, where those are not there yet: as if the run had done them all itself.

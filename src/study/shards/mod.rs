@@ -15,6 +15,6 @@ pub use costs::{Costs, CostsError};
 pub use folder::{FOLDER, Shard, Share};
 pub use gather::{Gathered, NotDone, gathered};
 pub use part::{Part, Spent};
-pub use piece::Piece;
+pub use piece::{Opening, Piece, Pieces};
 pub(super) use piece::{opening, rays};
 pub use split::{Shares, shares};

@@ -16,6 +16,24 @@ pub struct Piece {
     pub estimate: u64,
 }
 
+/// What a shard takes before the first job of a scene.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Opening {
+    /// The scene's name.
+    pub name: String,
+    /// What it takes, if nobody has measured it.
+    pub estimate: u64,
+}
+
+/// All jobs of a study, to be split.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Pieces {
+    /// In the order of the jobs.
+    pub all: Vec<Piece>,
+    /// By number of the scene.
+    pub openings: Vec<Opening>,
+}
+
 // Estimates are nanoseconds on one thread of the computer of docs/scale.md. Only their ratios matter: a shard that has cheap jobs gets more of them.
 /// A ray, traced and drawn.
 const RAY: u64 = 4_000;
@@ -34,8 +52,8 @@ pub fn rays(rays: u64, times: u64, targets: &[Target]) -> u64 {
     rays.saturating_mul(each)
 }
 
-/// What a shard takes before the first ray of a scene: what is generated is made, and BVHs are built where a method needs one.
-pub fn opening<'a>(scene: &SceneJobs, methods: impl Iterator<Item = &'a Registered>) -> u64 {
+/// What is generated is made, and BVHs are built where a method needs one.
+pub fn opening<'a>(scene: &SceneJobs, methods: impl Iterator<Item = &'a Registered>) -> Opening {
     let (triangles, made) = match &scene.origin {
         Origin::File(file) => (file.metadata().map_or(0, |of| of.len() / BYTES), 0),
         Origin::Generate(made) => {
@@ -47,5 +65,5 @@ pub fn opening<'a>(scene: &SceneJobs, methods: impl Iterator<Item = &'a Register
     };
     // Level of detail reads the scene as it is.
     let built = methods.filter(|method| !method.unit.is_some_and(|unit| unit.has_levels)).count() as u64;
-    triangles.saturating_mul(TRIANGLE).saturating_mul(made + built)
+    Opening { name: scene.name.clone(), estimate: triangles.saturating_mul(TRIANGLE).saturating_mul(made + built) }
 }
