@@ -75,8 +75,8 @@ pub fn sweep_part(
 /// As [`Jobs::key`].
 pub fn sweep_pieces(jobs: &Jobs) -> Result<Pieces, StudyError> {
     let mut pieces = Vec::new();
-    // A picture and its reference besides the frame.
-    let times = if jobs.error { 3 } else { 1 };
+    // A picture and its reference, which no machine replays, take about as long as the frame's own rays.
+    let times = if jobs.error { 2 } else { 1 };
     for (scene, of) in jobs.scenes.iter().enumerate() {
         for view in &of.views {
             let estimate = rays(view.size.map(u64::from).iter().product(), times, &jobs.targets);

@@ -11,8 +11,8 @@ use super::shard::{Planned, ShardArgs, Study};
 use anyhow::{Context, ensure};
 use lodray::lab::{CASES, Case, FILE_CASES, Figures, Hunt, LabLine, LabPlan, Model, WIDTHS_CHECKED};
 use lodray::report::page::Documents;
+use lodray::study::JobLines;
 use lodray::study::shards::{Part, gathered};
-use lodray::study::{JobLine, JobLines};
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use xxhash_rust::xxh3::xxh3_64;
@@ -68,8 +68,7 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
     ensure!(!args.json && !args.page.is_wanted(), "--shard: figures are of all shards: lodray merge writes them");
     let study = Study { out, lines: None, overrule: &args.overrule, pieces: plan.pieces() };
     let work = |part: Part<'_>, rows: &mut JobLines<LabLine>, _: &Path| {
-        let done = rows.done();
-        quietly(|| plan.measure(part, &|_, _| (), |line| if done.contains(line.key()) { Ok(()) } else { Ok(rows.add(line)?) }))
+        quietly(|| plan.measure(part, &|_, _| (), |line| -> anyhow::Result<()> { Ok(rows.add(line)?) }))
     };
     args.shard.run(share, &study, work, |_| None)
 }

@@ -102,15 +102,10 @@ impl Shard {
     /// A file cannot be read.
     pub fn done(&self, whole: Option<&Path>) -> Result<HashSet<String>, LinesError> {
         let mut done = HashSet::new();
-        let wrong = |path: &Path, source| LinesError::Read { path: path.to_owned(), source };
-        let own = line_files(&self.folder).map_err(|source| wrong(&self.folder, source))?;
-        for path in own.iter().map(PathBuf::as_path).chain(whole) {
-            match read_done(path, &mut done) {
-                // Another shard has just renamed it: what is in it is that one's own, and not looked for here.
-                Err(error) if error.kind() == ErrorKind::NotFound => {}
-                other => other.map_err(|source| wrong(path, source))?,
-            }
+        if let Some(whole) = whole.filter(|whole| whole.exists()) {
+            read_done(whole, &mut done).map_err(|source| LinesError::Read { path: whole.to_owned(), source })?;
         }
+        each_file(&self.folder, |path| read_done(path, &mut done))?;
         Ok(done)
     }
 
@@ -165,11 +160,23 @@ pub(super) fn files(folder: &Path, ending: &str) -> io::Result<Vec<PathBuf>> {
     Ok(all)
 }
 
-/// The files of lines of all shards, done or not.
-pub(super) fn line_files(folder: &Path) -> io::Result<Vec<PathBuf>> {
-    let mut all = files(folder, LINES)?;
-    all.retain(|path| share_of(path).is_some());
-    Ok(all)
+/// Reads the files of lines of all shards, done or not. If one is renamed meanwhile, because its shard has just ended, all are read again.
+pub(super) fn each_file(folder: &Path, mut read: impl FnMut(&Path) -> io::Result<()>) -> Result<Vec<PathBuf>, LinesError> {
+    let wrong = |path: &Path, source| LinesError::Read { path: path.to_owned(), source };
+    let mut tries = 0;
+    'again: loop {
+        tries += 1;
+        let mut all = files(folder, LINES).map_err(|source| wrong(folder, source))?;
+        all.retain(|path| share_of(path).is_some());
+        for path in &all {
+            match read(path) {
+                // A link that leads nowhere is no file that was renamed.
+                Err(error) if error.kind() == ErrorKind::NotFound && tries < 100 => continue 'again,
+                other => other.map_err(|source| wrong(path, source))?,
+            }
+        }
+        return Ok(all);
+    }
 }
 
 /// Whose lines a file has, and whether that shard is done.

@@ -1,6 +1,6 @@
 //! The lines of all shards together.
 
-use super::folder::{FOLDER, Share, line_files, read_done, share_of};
+use super::folder::{FOLDER, Share, each_file, read_done, share_of};
 use crate::study::job_lines::{JobLine, JobLines, LinesError};
 use crate::study::words::count;
 use std::collections::{BTreeMap, BTreeSet, HashMap, HashSet};
@@ -51,17 +51,14 @@ pub struct Gathered<L>(HashMap<String, L>);
 /// A job has no line, or a file cannot be read.
 pub fn gathered<L: JobLine>(out: &Path, whole: Option<&Path>, keys: &[String]) -> Result<Gathered<L>, NotDone> {
     let folder = out.join(FOLDER);
-    let wrong = |path: &Path, source| LinesError::Read { path: path.to_owned(), source };
     let mut done = HashSet::new();
     if let Some(whole) = whole.filter(|whole| whole.exists()) {
-        read_done(whole, &mut done).map_err(|source| wrong(whole, source))?;
+        read_done(whole, &mut done).map_err(|source| LinesError::Read { path: whole.to_owned(), source })?;
     }
     let wanted: HashSet<&str> = keys.iter().filter(|key| !done.contains(*key)).map(String::as_str).collect();
-    let files = line_files(&folder).map_err(|source| wrong(&folder, source))?;
     let mut lines: HashMap<String, L> = HashMap::new();
-    for path in &files {
-        let bytes = fs::read(path).map_err(|source| wrong(path, source))?;
-        for line in bytes.split(|&byte| byte == b'\n') {
+    let files = each_file(&folder, |path| {
+        for line in fs::read(path)?.split(|&byte| byte == b'\n') {
             // What is none stands for nothing: its job is missing, and told.
             let Ok(line) = serde_json::from_slice::<L>(line) else { continue };
             let is_better = lines.get(line.key()).is_none_or(|before| line.has_result() && !before.has_result());
@@ -69,7 +66,8 @@ pub fn gathered<L: JobLine>(out: &Path, whole: Option<&Path>, keys: &[String]) -
                 lines.insert(line.key().to_owned(), line);
             }
         }
-    }
+        Ok(())
+    })?;
     let left: Vec<&String> = keys.iter().filter(|key| wanted.contains(key.as_str()) && !lines.contains_key(*key)).collect();
     match left.first() {
         None => Ok(Gathered(lines)),

@@ -34,12 +34,12 @@ pub struct Pieces {
     pub openings: Vec<Opening>,
 }
 
-// Estimates are nanoseconds on one thread of the computer of docs/scale.md. Only their ratios matter: a shard that has cheap jobs gets more of them.
-/// A ray, traced and drawn.
+// Nanoseconds, about. Only their ratios matter: a shard that has cheap jobs gets more of them.
+/// A ray, traced.
 const RAY: u64 = 4_000;
 /// A ray, replayed on a machine where compute is free, and where it takes time.
-const REPLAYED: u64 = 3_000;
-const COMPUTED: u64 = 12_000;
+const REPLAYED: u64 = 4_000;
+const COMPUTED: u64 = 8_000;
 /// A triangle that is generated, or put into a BVH.
 const TRIANGLE: u64 = 800;
 /// Bytes of a scene's file for each of its finest triangles, about.
