@@ -169,9 +169,7 @@ fn merged(args: &merge::Args) -> anyhow::Result<ExitCode> {
 
 /// What shards of a command line would do.
 fn planned(words: &[OsString]) -> anyhow::Result<shard::Planned> {
-    // As the engine's files have it: whoever names threads again is told so.
-    let words: Vec<OsString> =
-        ["lodray", "--quiet", "--threads", "1"].map(OsString::from).into_iter().chain(words.iter().cloned()).collect();
+    let words: Vec<OsString> = std::iter::once("lodray".into()).chain(words.iter().cloned()).collect();
     match parsed(&words)? {
         Command::Sweep(args) => sweep::planned(&args),
         Command::ErrorTime(args) => error_time::planned(&args),
@@ -187,8 +185,10 @@ const SPLIT: &str = "sweep, error-time and stability";
 fn parsed(words: &[OsString]) -> anyhow::Result<Command> {
     Cli::try_parse_from(words).map(|cli| cli.command).map_err(|error| {
         let said = error.to_string();
-        let line = said.lines().next().unwrap_or_default().trim_start_matches("error: ");
+        // The message; usage follows behind an empty line.
+        let message: Vec<_> = said.lines().map(str::trim).take_while(|line| !line.is_empty()).collect();
+        let message = message.join(" ");
         let shown: Vec<_> = words.iter().map(|word| word.to_string_lossy()).collect();
-        anyhow::anyhow!("`{}`: {line}", shown.join(" "))
+        anyhow::anyhow!("`{}`: {}", shown.join(" "), message.trim_start_matches("error: "))
     })
 }

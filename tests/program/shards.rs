@@ -148,7 +148,7 @@ fn jobs_that_fail_are_told_as_by_one_run() {
     // A generated scene has no mesh that it was built from.
     desk.write("fail.toml", &JOBS.replace("\"bvh\"]", "\"input-bvh\"]"));
     let (code, told) = desk.hear("sweep fail.toml -o local");
-    assert_eq!((code, told.matches("failed: ").count()), (1, 8), "{told}");
+    assert_eq!((code, told.matches("failed: ").count()), (1, 24), "{told}");
     for _ in 0..2 {
         for k in 1..=2 {
             assert_eq!(desk.hear(&format!("sweep fail.toml -o out --shard {k}/2")).0, 1);
@@ -203,10 +203,14 @@ fn what_cannot_be_split_is_refused() {
     desk.refused(
         "cluster slurm --shards 2 -o new -- sweep jobs.toml",
         FAILS,
-        &["sweep jobs.toml`: the following required arguments were not provided"],
+        &["`lodray sweep jobs.toml`: the following required arguments were not provided: --out <OUT>"],
     );
     desk.refused("cluster slurm --shards 2 -o new -- sweep jobs.toml -o out --shard 1/2", FAILS, &["--shard: the files name each shard"]);
-    desk.refused("cluster slurm --shards 2 -o new -- sweep jobs.toml -o out --threads 4", FAILS, &["--threads <N>"]);
+    desk.refused(
+        "cluster slurm --shards 2 -o new -- sweep jobs.toml -o out --threads 4",
+        FAILS,
+        &["--threads: a shard has as many as --cpus says"],
+    );
     desk.refused("cluster snakemake --shards 2 --sbatch=-p=long -o new -- sweep jobs.toml -o out", FAILS, &["--sbatch: is for slurm"]);
     assert!(!desk.path("new").exists());
 }
@@ -278,7 +282,7 @@ fn files_for_slurm_do_what_they_say() {
         "-o",
         "my out",
     ]);
-    assert_eq!(said, "24 jobs in 5 shards, the longest 1.09 of the mean; sh 'my engine/submit'\n");
+    assert!(said.starts_with("24 jobs in 5 shards, the longest 1.") && said.ends_with(" of the mean; sh 'my engine/submit'\n"), "{said}");
     let shard = desk.text("my engine/shard.sbatch");
     for line in
         ["#SBATCH --array=1-5", "#SBATCH --cpus-per-task=2", "#SBATCH --mem=4000M", "#SBATCH --time=240", "#SBATCH --partition=long"]

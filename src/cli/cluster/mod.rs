@@ -98,6 +98,8 @@ fn option(text: &str) -> Result<String, String> {
 pub fn run(args: &Args, planned: impl Fn(&[OsString]) -> anyhow::Result<Planned>) -> anyhow::Result<ExitCode> {
     let run = planned(&args.run)?;
     ensure!(!run.is_shard, "--shard: the files name each shard; leave it out of the command");
+    let has_threads = args.run.iter().any(|word| word.to_string_lossy().split('=').next() == Some("--threads"));
+    ensure!(!has_threads, "--threads: a shard has as many as --cpus says; leave it out of the command");
     ensure!(args.engine == Engine::Slurm || args.sbatch.is_empty(), "--sbatch: is for slurm");
     if let Some(costs) = &run.costs {
         let is_own = same_file::is_same_file(costs, &run.out).unwrap_or(false);
