@@ -45,7 +45,7 @@ pub struct Args {
     #[command(flatten)]
     overrule: Overrule,
     /// Command whose jobs are split: sweep, error-time or stability with its arguments, after --
-    #[arg(last = true, required = true, value_name = "COMMAND")]
+    #[arg(last = true, required = true, value_name = "RUN")]
     run: Vec<OsString>,
 }
 
