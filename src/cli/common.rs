@@ -3,6 +3,8 @@
 use super::args::whole;
 use super::terminal::set_color;
 use clap::ColorChoice;
+use serde::{Deserialize, Serialize};
+use std::sync::OnceLock;
 use std::sync::atomic::{AtomicBool, Ordering};
 
 /// Most threads: far above what a machine has, and far below where the system has none left.
@@ -42,7 +44,12 @@ pub fn is_quiet() -> bool {
     QUIET.load(Ordering::Relaxed)
 }
 
+/// The command line of the run that this process finishes, if that is another than its own.
+static FINISHED: OnceLock<Invocation> = OnceLock::new();
+
 /// A command line, without what no file depends on.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
 pub struct Invocation {
     /// Subcommand.
     pub command: String,
@@ -51,12 +58,22 @@ pub struct Invocation {
 }
 
 impl Invocation {
-    /// That of this process.
+    /// That of this process, or of the run that it finishes.
     pub fn of_process() -> Self {
+        if let Some(finished) = FINISHED.get() {
+            return finished.clone();
+        }
         Self::new(std::env::args_os().skip(1).map(|word| word.to_string_lossy().into_owned()))
     }
 
-    /// Leaves out the folder (the record is in it), how many threads there are, where BVHs and a page go, what is printed and in which colours, and what may be replaced.
+    /// From here on this process finishes the run of that command line: its files say so.
+    pub fn finish(self) {
+        // A process finishes one run.
+        let _ = FINISHED.set(self);
+    }
+
+    /// Leaves out the folder (the record is in it), how many threads there are, which shard this is and what weighs it, where BVHs and a page go, what is printed and in which
+    /// colours, and what may be replaced.
     fn new(words: impl IntoIterator<Item = String>) -> Self {
         let mut words = words.into_iter();
         let mut kept = Vec::new();
@@ -65,8 +82,10 @@ impl Invocation {
                 "--" => kept.extend(std::iter::once(word).chain(words.by_ref())),
                 "--quiet" | "--json" | "--force" => {}
                 // Their value is the next word.
-                "-o" | "--out" | "--threads" | "--color" | "--at-once" | "--cache" | "--report" => drop(words.next()),
-                one if ["-o", "--out=", "--threads=", "--color=", "--at-once=", "--cache=", "--report="]
+                "-o" | "--out" | "--threads" | "--color" | "--at-once" | "--cache" | "--report" | "--shard" | "--costs" => {
+                    drop(words.next())
+                }
+                one if ["-o", "--out=", "--threads=", "--color=", "--at-once=", "--cache=", "--report=", "--shard=", "--costs="]
                     .iter()
                     .any(|option| one.starts_with(option)) => {}
                 _ => kept.push(word),
@@ -97,6 +116,7 @@ mod tests {
             "render a.lod --size 8x8 -o=out",
             "--color never render a.lod --size 8x8 --color=always",
             "render --cache none a.lod --size 8x8 --cache=some",
+            "render a.lod --shard 3/20 --size 8x8 --costs=before",
         ] {
             assert_eq!(of(line), plain, "{line}");
         }

@@ -5,6 +5,7 @@ mod bars;
 mod build;
 mod cache;
 mod cast;
+mod cluster;
 mod common;
 mod compare;
 mod comparison;
@@ -22,6 +23,7 @@ mod lines;
 mod loop_scene;
 mod machines;
 mod memory;
+mod merge;
 mod mesh;
 mod method;
 mod names;
@@ -33,6 +35,7 @@ mod plan;
 mod prune;
 mod render;
 mod report;
+mod shard;
 mod shell;
 mod simulate;
 mod stability;
@@ -45,6 +48,7 @@ mod words;
 pub use terminal::{color, complain, set_color};
 
 use clap::{CommandFactory, Parser, Subcommand};
+use std::ffi::OsString;
 use std::process::ExitCode;
 
 /// Level of detail for ray tracing hardware, bit for bit.
@@ -81,6 +85,10 @@ enum Command {
     Simulate(simulate::Args),
     /// Simulate many frames on many machines, from a list of jobs; what was interrupted goes on where it was
     Sweep(sweep::Args),
+    /// Put the shards of a sweep, error-time or stability together: what a run of all jobs would have written
+    Merge(merge::Args),
+    /// Write what runs a sweep, error-time or stability in shards on a computing cluster: files for Slurm or Snakemake (the method `cluster` is another thing: simulate --method)
+    Cluster(cluster::Args),
     /// Put two results of simulations side by side
     #[command(after_long_help = words::SIMULATE)]
     Compare(compare::Args),
@@ -132,6 +140,8 @@ pub fn run(cli: Cli) -> anyhow::Result<ExitCode> {
         Command::Render(args) => render::run(&args),
         Command::Simulate(args) => simulate::run(&args),
         Command::Sweep(args) => sweep::run(&args),
+        Command::Merge(args) => merged(&args),
+        Command::Cluster(args) => cluster::run(&args, planned),
         Command::Compare(args) => compare::run(&args),
         Command::ErrorTime(args) => error_time::run(&args),
         Command::Report(args) => report::run(&args),
@@ -145,4 +155,40 @@ pub fn run(cli: Cli) -> anyhow::Result<ExitCode> {
         Command::Completions(args) => shell::completions(&args, Cli::command()),
         Command::Man(args) => shell::man(&args, Cli::command()),
     }
+}
+
+/// Finishes the run whose shards are to be merged.
+fn merged(args: &merge::Args) -> anyhow::Result<ExitCode> {
+    match parsed(&merge::finished(args)?)? {
+        Command::Sweep(args) => sweep::merge(&args),
+        Command::ErrorTime(args) => error_time::merge(&args),
+        Command::Stability(args) => stability::merge(&args),
+        _ => anyhow::bail!("merge: the shards are of a command that has none: only {SPLIT} have"),
+    }
+}
+
+/// What shards of a command line would do.
+fn planned(words: &[OsString]) -> anyhow::Result<shard::Planned> {
+    let words: Vec<OsString> = std::iter::once("lodray".into()).chain(words.iter().cloned()).collect();
+    match parsed(&words)? {
+        Command::Sweep(args) => sweep::planned(&args),
+        Command::ErrorTime(args) => error_time::planned(&args),
+        Command::Stability(args) => stability::planned(&args),
+        _ => anyhow::bail!("only the jobs of {SPLIT} can be split into shards"),
+    }
+}
+
+/// Commands that have shards.
+const SPLIT: &str = "sweep, error-time and stability";
+
+/// A command line that is not this process's own.
+fn parsed(words: &[OsString]) -> anyhow::Result<Command> {
+    Cli::try_parse_from(words).map(|cli| cli.command).map_err(|error| {
+        let said = error.to_string();
+        // The message; usage follows behind an empty line.
+        let message: Vec<_> = said.lines().map(str::trim).take_while(|line| !line.is_empty()).collect();
+        let message = message.join(" ");
+        let shown: Vec<_> = words.iter().map(|word| word.to_string_lossy()).collect();
+        anyhow::anyhow!("`{}`: {}", shown.join(" "), message.trim_start_matches("error: "))
+    })
 }

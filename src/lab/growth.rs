@@ -11,7 +11,7 @@ use crate::method::lod::{LodImage, LodTraverser};
 use crate::num::{MAX_LEVELS, Random};
 use crate::step::NoSteps;
 use rayon::prelude::*;
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 /// Rays of each point of a curve.
 const RAYS: u64 = 20_000;
@@ -25,7 +25,7 @@ const NEAR: f64 = 0.01;
 const LEVELS: u32 = 4;
 
 /// Errors of one model from one distance.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Point {
     /// Splits N.
     pub levels: u32,
@@ -42,7 +42,7 @@ pub struct Point {
 }
 
 /// The two curves.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Growth {
     /// By number of splits, from 0.01 radii.
     pub by_levels: Vec<Point>,

@@ -16,14 +16,15 @@ use crate::golden::Exact;
 use crate::mesh::{Hierarchy, lattice};
 use crate::num::{COORD_LIMIT, Cone, DIRECTION_SCALE, Point, Random, Ray, U, Vec3};
 use rayon::prelude::*;
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
+use std::ops::Range;
 
 /// Steps of a climb, and of these with one model.
 const CLIMB: u64 = 1024;
 const SAME_MODEL: u64 = 256;
 
 /// What a hunt came to.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Hunt {
     /// Climbs begun.
     pub climbs: u64,
@@ -38,6 +39,11 @@ impl Hunt {
     /// Misses, double hits, differences and overflows.
     pub fn breaches(&self) -> u64 {
         self.tally.breaches()
+    }
+
+    /// Two parts of a hunt together, in either order.
+    pub fn with(self, b: Self) -> Self {
+        Self { climbs: self.climbs + b.climbs, tally: self.tally.with(&b.tally), found: keep(self.found.into_iter().chain(b.found)) }
     }
 }
 
@@ -93,7 +99,25 @@ impl Climb {
 /// # Errors
 /// A model cannot be built.
 pub fn hunt(given: Option<&Model>, steps: u64, seed: u64, progress: &(dyn Fn(u64) + Sync)) -> Result<Hunt, SceneError> {
-    let climbs = steps.div_ceil(CLIMB);
+    hunt_climbs(given, steps, 0..climbs(steps), seed, progress)
+}
+
+/// How many climbs so many steps are.
+pub fn climbs(steps: u64) -> u64 {
+    steps.div_ceil(CLIMB)
+}
+
+/// The same of some climbs of these steps: parts, put together by [`Hunt::with`], are the whole.
+///
+/// # Errors
+/// A model cannot be built.
+pub fn hunt_climbs(
+    given: Option<&Model>,
+    steps: u64,
+    climbs: Range<u64>,
+    seed: u64,
+    progress: &(dyn Fn(u64) + Sync),
+) -> Result<Hunt, SceneError> {
     let climb = |number: u64| -> Result<Climb, SceneError> {
         let mut random = Random::of(seed ^ 0x4855_4e54, number); // a stream apart from the cases'
         let made = if given.is_none() { Some(adversary(&mut random)?) } else { None };
@@ -140,18 +164,16 @@ pub fn hunt(given: Option<&Model>, steps: u64, seed: u64, progress: &(dyn Fn(u64
         Ok(climb)
     };
     // Folded in the order of climbs within each piece; what is kept does not depend on how they are cut.
-    let none = || Hunt { climbs: 0, tally: Tally::default(), found: Vec::new() };
     let add = |hunt: Hunt, climb: Climb| Hunt {
         climbs: hunt.climbs + 1,
         tally: hunt.tally.with(&climb.tally),
         found: keep(hunt.found.into_iter().chain(climb.breaches).chain(climb.best)),
     };
-    let join = |a: Hunt, b: Hunt| Hunt {
-        climbs: a.climbs + b.climbs,
-        tally: a.tally.with(&b.tally),
-        found: keep(a.found.into_iter().chain(b.found)),
-    };
-    (0..climbs).into_par_iter().map(climb).try_fold(none, |hunt, climb| Ok(add(hunt, climb?))).try_reduce(none, |a, b| Ok(join(a, b)))
+    climbs
+        .into_par_iter()
+        .map(climb)
+        .try_fold(Hunt::default, |hunt, climb| Ok(add(hunt, climb?)))
+        .try_reduce(Hunt::default, |a, b| Ok(a.with(b)))
 }
 
 /// Up to sixteen breaches, and the three nearest of each goal; ties go to the smaller record, so that the order of joining does not matter.

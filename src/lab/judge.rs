@@ -17,14 +17,14 @@ use crate::method::lod::{LodImage, LodTraverser};
 use crate::method::{ClosestHit, Hit, HitSink, TriangleId};
 use crate::num::{Direction, Point, Ray, RayT};
 use crate::step::NoSteps;
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 use std::panic::{AssertUnwindSafe, catch_unwind};
 
 /// Stated widths and plain integers are checked at run time in this build, so that an overflow is seen where it happens.
 pub const WIDTHS_CHECKED: bool = cfg!(debug_assertions);
 
 /// What rays have shown.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Tally {
     /// Rays tried.
     pub rays: u64,

@@ -10,13 +10,14 @@ use crate::golden::Exact;
 use crate::lab::crack::Closedness;
 use crate::num::Random;
 use rayon::prelude::*;
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
+use std::ops::Range;
 
 /// Rays of one batch: all of one model.
 const BATCH: u64 = 2048;
 
 /// One line of the table.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Row {
     /// Name of the case.
     pub case: String,
@@ -29,6 +30,13 @@ pub struct Row {
     pub tally: Tally,
     /// Largest distance that rounding to units moved a vertex, in units.
     pub vertex_loss: f64,
+}
+
+impl Row {
+    /// Two parts of a case together, in either order.
+    pub fn with(self, b: &Self) -> Self {
+        Self { tally: self.tally.with(&b.tally), vertex_loss: self.vertex_loss.max(b.vertex_loss), ..self }
+    }
 }
 
 /// The whole table.
@@ -72,6 +80,16 @@ pub fn run(case: &Case, scale: Scale, rays: u64, seed: u64, progress: &(dyn Fn(u
 
 /// Shoots `rays` rays of a case at these models, in turn.
 pub fn shoot(case: &Case, models: &[Model], rays: u64, seed: u64, progress: &(dyn Fn(u64) + Sync)) -> Row {
+    shoot_batches(case, models, rays, 0..batches(rays), seed, progress)
+}
+
+/// How many batches so many rays are.
+pub fn batches(rays: u64) -> u64 {
+    rays.div_ceil(BATCH)
+}
+
+/// The same of some batches of these rays: parts, put together by [`Row::with`], are the whole.
+pub fn shoot_batches(case: &Case, models: &[Model], rays: u64, batches: Range<u64>, seed: u64, progress: &(dyn Fn(u64) + Sync)) -> Row {
     let golden: Vec<Exact<'_>> = models.par_iter().map(|m| Exact::new(&m.hierarchy)).collect();
     // A case of its own stream: the same seed does not draw the same rays in all.
     let seed = case.name.bytes().fold(seed, |seed, c| Random::of(seed, u64::from(c)).next());
@@ -98,7 +116,7 @@ pub fn shoot(case: &Case, models: &[Model], rays: u64, seed: u64, progress: &(dy
         progress(end - batch * BATCH);
         sum
     };
-    let tally = (0..rays.div_ceil(BATCH)).into_par_iter().map(batch_of).reduce(Tally::default, |a, b| a.with(&b));
+    let tally = batches.into_par_iter().map(batch_of).reduce(Tally::default, |a, b| a.with(&b));
     let vertex_loss = models.iter().map(|m| m.vertex_loss().0).fold(0.0, f64::max);
     Row { case: case.name.to_owned(), about: case.about.to_owned(), models: models.len() as u64, tally, vertex_loss }
 }

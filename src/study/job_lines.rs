@@ -41,6 +41,14 @@ pub enum LinesError {
         /// Why.
         source: io::Error,
     },
+    /// It cannot be locked: two runs at once would mix their lines.
+    #[error("cannot lock {}", path.display())]
+    Lock {
+        /// The file.
+        path: PathBuf,
+        /// Why.
+        source: io::Error,
+    },
     /// A line that JSON cannot say.
     #[error(transparent)]
     Json(#[from] serde_json::Error),
@@ -112,10 +120,25 @@ impl<L: JobLine> JobLines<L> {
     /// # Errors
     /// The file cannot be written.
     pub fn add(&mut self, line: L) -> Result<(), LinesError> {
-        let text = serde_json::to_string(&line)? + "\n";
+        self.add_all(vec![line])
+    }
+
+    /// Adds lines, all in one write.
+    ///
+    /// # Errors
+    /// The file cannot be written; it has none of them then, also where a disk was full in the middle of one.
+    pub fn add_all(&mut self, lines: Vec<L>) -> Result<(), LinesError> {
+        let text = lines.iter().map(|line| Ok(serde_json::to_string(line)? + "\n")).collect::<Result<String, serde_json::Error>>()?;
+        let before = self.file.metadata().map(|of| of.len());
         let write = self.file.write_all(text.as_bytes()).and_then(|()| self.file.sync_data());
-        write.map_err(|source| LinesError::Write { path: self.path.clone(), source })?;
-        self.lines.push(line);
+        if let Err(source) = write {
+            if let Ok(before) = before {
+                // What cannot be cut off is set aside by the next run.
+                let _ = self.file.set_len(before);
+            }
+            return Err(LinesError::Write { path: self.path.clone(), source });
+        }
+        self.lines.extend(lines);
         Ok(())
     }
 
@@ -127,7 +150,7 @@ impl<L: JobLine> JobLines<L> {
 }
 
 /// Whether a job's result, by the job's name, is this version's of the program.
-fn is_of_this_version(key: &str) -> bool {
+pub(super) fn is_of_this_version(key: &str) -> bool {
     key.rsplit_once(' ').is_some_and(|(_, version)| version == results_version())
 }
 

@@ -46,6 +46,7 @@ mod progress;
 pub mod pruned;
 mod results;
 mod rows;
+pub mod shards;
 mod shot;
 mod sweep;
 mod turning;
@@ -55,7 +56,9 @@ mod workers;
 pub use cache::{Cache, LEAST_TRIANGLES, Lookup};
 pub use chosen::{Chosen, ChosenError};
 pub use error::{StudyError, ViewError, one_line};
-pub use error_time::{BuildTime, ErrorTimePlan, HostTime, Measure, Measured, ViewRow, document, error_time, in_machine};
+pub use error_time::{
+    BuildTime, ErrorTimePlan, HostTime, Measure, Measured, ViewRow, document, error_time, error_time_part, error_time_pieces, in_machine,
+};
 pub use fault::{fault, fault_at};
 pub use job_lines::{JobLine, JobLines, LinesError, aside};
 pub use jobs::{Generated, Jobs, Origin, RegionJob, SceneJobs, ViewJob};
@@ -65,7 +68,7 @@ pub use progress::{Progress, Silent, Work, busy};
 pub use results::{NoResult, results};
 pub use rows::{Row, csv};
 pub use shot::{Comparison, Shot};
-pub use sweep::sweep;
+pub use sweep::{sweep, sweep_part, sweep_pieces};
 pub use turning::Turning;
 pub use words::{count, grouped};
 pub use workers::{at_once, in_order};

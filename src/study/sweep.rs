@@ -10,6 +10,7 @@ use super::pass::simulate;
 use super::progress::Progress;
 use super::pruned::{self, check_normals};
 use super::rows::Row;
+use super::shards::{Part, Piece, Pieces, Spent, opening, rays};
 use super::shot::Shot;
 use super::workers::in_order;
 use crate::format::Scene;
@@ -20,6 +21,7 @@ use crate::scene::{Outcome, Pass, PassRays, Target};
 use std::collections::HashSet;
 use std::error::Error;
 use std::sync::{Arc, Mutex, PoisonError};
+use std::time::Instant;
 
 /// Jobs that share a functional pass: their keys and targets.
 struct Group<'a> {
@@ -34,6 +36,7 @@ struct Sweep<'a> {
     means: &'a Means<'a>,
     at_once: usize,
     rows: &'a mut JobLines<Row>,
+    part: Part<'a>,
 }
 
 /// Runs the jobs that `rows` has not yet, `at_once` frames at once, and adds a row for each, in their order. Gives the names of all jobs: [`JobLines::of`] finds their
@@ -42,14 +45,49 @@ struct Sweep<'a> {
 /// # Errors
 /// A row cannot be written, or a file of a machine cannot be read. What fails of a job is a row of its own.
 pub fn sweep(jobs: &Jobs, rows: &mut JobLines<Row>, at_once: usize, means: &Means<'_>) -> Result<Vec<String>, StudyError> {
+    sweep_part(jobs, Part::ALL, rows, at_once, means)
+}
+
+/// The same of some of the jobs: the others are left out, but their names are given as well.
+///
+/// # Errors
+/// As [`sweep`].
+pub fn sweep_part(
+    jobs: &Jobs,
+    part: Part<'_>,
+    rows: &mut JobLines<Row>,
+    at_once: usize,
+    means: &Means<'_>,
+) -> Result<Vec<String>, StudyError> {
     let done = rows.done();
-    let mut sweep = Sweep { jobs, means, at_once, rows };
+    let mut sweep = Sweep { jobs, means, at_once, rows, part };
     let mut keys = Vec::new();
     for scene in &jobs.scenes {
         let groups = sweep.groups(scene, &done, &mut keys)?;
         sweep.scene(scene, &groups)?;
     }
     Ok(keys)
+}
+
+/// The jobs in pieces that are not split any further, in their order, and what opening each scene takes: jobs that share a pass of rays are one piece.
+///
+/// # Errors
+/// As [`Jobs::key`].
+pub fn sweep_pieces(jobs: &Jobs) -> Result<Pieces, StudyError> {
+    let mut pieces = Vec::new();
+    // A picture and its reference, which no machine replays, take about as long as the frame's own rays.
+    let times = if jobs.error { 2 } else { 1 };
+    for (scene, of) in jobs.scenes.iter().enumerate() {
+        for view in &of.views {
+            let estimate = rays(view.size.map(u64::from).iter().product(), times, &jobs.targets);
+            for chosen in &jobs.methods {
+                let keys = jobs.targets.iter().map(|target| jobs.key(of, view, chosen, target)).collect::<Result<_, _>>()?;
+                pieces.push(Piece { scene, keys, estimate });
+            }
+        }
+    }
+    let openings = jobs.scenes.iter().map(|scene| opening(scene, jobs.methods.iter().map(|chosen| chosen.method)));
+    Ok(Pieces { all: pieces, openings: openings.collect() })
 }
 
 impl<'a> Sweep<'a> {
@@ -61,7 +99,7 @@ impl<'a> Sweep<'a> {
                 let mut jobs = Vec::new();
                 for target in &self.jobs.targets {
                     let key = self.jobs.key(scene, view, chosen, target)?;
-                    if !done.contains(&key) {
+                    if !done.contains(&key) && self.part.has(&key) {
                         jobs.push((key.clone(), target.clone()));
                     }
                     keys.push(key);
@@ -79,7 +117,9 @@ impl<'a> Sweep<'a> {
         if groups.is_empty() {
             return Ok(());
         }
+        let begun = Instant::now();
         let opened = (self.means.open)(scene);
+        (self.part.spent)(Spent::Opening(&scene.name), begun.elapsed());
         let made = match opened {
             Ok(made) => made,
             Err(error) => return groups.iter().try_for_each(|group| self.failed(scene, group, &*error)),
@@ -93,10 +133,19 @@ impl<'a> Sweep<'a> {
             built: Mutex::default(),
             truth: Mutex::default(),
         };
-        let work = |group: &Group<'_>| workshop.group(group);
-        in_order(groups, self.at_once, work, |group, rows| match rows {
-            Err(error) => self.failed(scene, group, &error),
-            Ok(rows) => rows.into_iter().try_for_each(|row| Ok(self.rows.add(Row { scene: scene.name.clone(), ..row })?)),
+        let work = |group: &Group<'_>| {
+            let begun = Instant::now();
+            (workshop.group(group), begun.elapsed())
+        };
+        in_order(groups, self.at_once, work, |group, (rows, time)| {
+            match rows {
+                Err(error) => self.failed(scene, group, &error)?,
+                Ok(rows) => rows.into_iter().try_for_each(|row| self.rows.add(Row { scene: scene.name.clone(), ..row }))?,
+            }
+            // They share one pass of rays: which of them took how much of it is no question.
+            let each = time / group.jobs.len().max(1) as u32;
+            group.jobs.iter().for_each(|(key, _)| (self.part.spent)(Spent::Job(key), each));
+            Ok(())
         })
     }
 

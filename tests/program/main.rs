@@ -5,3 +5,4 @@ mod cli;
 mod exactness;
 mod folders;
 mod layers;
+mod shards;

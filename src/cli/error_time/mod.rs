@@ -7,12 +7,17 @@ use super::folder::RunFolder;
 use super::input::is_found;
 use super::output::{busy, check_target, print_line, remark, write_file};
 use super::report::{save, this_run, titled};
+use super::shard::{Planned, Study};
 use super::sweep::open_scene;
+use anyhow::Context;
 use lodray::report::diagram::{csv, diagrams, latex, left_out_csv};
 use lodray::report::error_time::{ErrorTime, USUAL_COSTS, USUAL_ERRORS, verdict_text, verdicts};
 use lodray::report::page::{Documents, PICTURE_BYTES, embed};
 use lodray::study::pruned::check_normals;
-use lodray::study::{BuildTime, HostTime, JobLines, Means, Measured, SceneJobs, count, document, error_time};
+use lodray::study::shards::{FOLDER, Part, Pieces, gathered};
+use lodray::study::{
+    BuildTime, ErrorTimePlan, HostTime, JobLines, Means, Measured, SceneJobs, ViewRow, count, document, error_time_part, error_time_pieces,
+};
 use serde::Serialize;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
@@ -42,27 +47,79 @@ struct HostTimes<'a> {
 
 pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
     let plan = args.plan()?;
-    let inputs: Vec<_> = plan.jobs.files.iter().map(PathBuf::as_path).collect();
-    let mut folder = RunFolder::open(&args.out, [DOCUMENT, TABLE, LATEX, LEFT_OUT, HOST, VERDICT, PAGE], &inputs, &args.overrule)?;
+    let Some(share) = args.shard.share()? else {
+        return results(args, &plan, |rows| work(args, &plan, Part::ALL, rows, &args.out));
+    };
+    let study = Study { out: &args.out, lines: Some(args.out.join(LINES)), overrule: &args.overrule, pieces: pieces(args, &plan)? };
+    let work = |part: Part<'_>, rows: &mut JobLines<ViewRow>, folder: &Path| work(args, &plan, part, rows, folder).map(drop);
+    args.shard.run(share, &study, work, |row: &ViewRow| row.error.as_ref())
+}
+
+/// Puts the shards of a run together.
+pub fn merge(args: &Args) -> anyhow::Result<ExitCode> {
+    let plan = args.plan()?;
+    let keys: Vec<String> = pieces(args, &plan)?.all.into_iter().flat_map(|piece| piece.keys).collect();
+    let lines = gathered::<ViewRow>(&args.out, Some(&args.out.join(LINES)), &keys)?;
+    results(args, &plan, |rows| {
+        for picture in lines.lines().filter_map(|row| row.measured.as_ref()).flat_map(|measured| &measured.pictures) {
+            let (from, to) = (args.out.join(FOLDER).join(&picture.file), args.out.join(&picture.file));
+            let bytes = std::fs::read(&from).with_context(|| format!("cannot read {}", from.display()))?;
+            write_file(&to, bytes)?;
+        }
+        lines.add_to(rows, &keys)?;
+        Ok(keys)
+    })
+}
+
+/// What shards of a run would do.
+pub fn planned(args: &Args) -> anyhow::Result<Planned> {
+    let plan = args.plan()?;
+    Planned::new(&args.shard, &args.out, plan.jobs.files.iter().cloned().collect(), pieces(args, &plan)?)
+}
+
+fn pieces(args: &Args, plan: &ErrorTimePlan) -> anyhow::Result<Pieces> {
+    Ok(error_time_pieces(plan, &|scene| has_input(args, scene))?)
+}
+
+/// Whether the mesh that a scene was built from is at hand.
+fn has_input(args: &Args, scene: &SceneJobs) -> bool {
+    is_found(Path::new(&scene.path()), &args.input)
+}
+
+/// Measures the views of a part that `rows` has not yet; pictures go to `folder`. Gives the names of all views.
+fn work(args: &Args, plan: &ErrorTimePlan, part: Part<'_>, rows: &mut JobLines<ViewRow>, folder: &Path) -> anyhow::Result<Vec<String>> {
     let cache = args.cache.cache(Some(&args.out))?;
-    let lines = args.out.join(LINES);
-    check_target(&lines, &inputs)?;
-    folder.continues(LINES)?;
-    let mut rows = JobLines::open(&lines, &Bars)?;
-    folder.keep(LINES)?;
-    folder.keep_aside(&lines)?;
     let opened = |scene: &SceneJobs| {
         let made = open_scene(scene)?;
         check_normals(&made, "a picture")?;
         Ok(args.with_input(made, &scene.path())?)
     };
     let means = Means { cache: &cache, open: &opened, progress: &Bars };
-    let keys = error_time(&plan, &mut rows, &args.out, &|scene| is_found(Path::new(&scene.path()), &args.input), &means)?;
+    Ok(error_time_part(plan, part, rows, folder, &|scene| has_input(args, scene), &means)?)
+}
+
+/// The figures of all views, once `fill` has added the lines that are not there yet and told the names of all.
+fn results(
+    args: &Args,
+    plan: &ErrorTimePlan,
+    fill: impl FnOnce(&mut JobLines<ViewRow>) -> anyhow::Result<Vec<String>>,
+) -> anyhow::Result<ExitCode> {
+    let inputs: Vec<_> = plan.jobs.files.iter().map(PathBuf::as_path).collect();
+    let mut folder = RunFolder::open(&args.out, [DOCUMENT, TABLE, LATEX, LEFT_OUT, HOST, VERDICT, PAGE], &inputs, &args.overrule)?;
+    // Refused before there is a file of lines.
+    args.cache.cache(Some(&args.out))?;
+    let lines = args.out.join(LINES);
+    check_target(&lines, &inputs)?;
+    folder.continues(LINES)?;
+    let mut rows = JobLines::open(&lines, &Bars)?;
+    folder.keep(LINES)?;
+    folder.keep_aside(&lines)?;
+    let keys = fill(&mut rows)?;
     let measured: Vec<&Measured> = rows.of(&keys).filter_map(|row| row.measured.as_ref()).collect();
     for picture in measured.iter().flat_map(|measured| &measured.pictures) {
         folder.keep(&picture.file)?;
     }
-    let document = document(&plan, &measured);
+    let document = document(plan, &measured);
     write(folder.staging(), &document, &measured)?;
     let verdict = verdict_text(&verdicts(&document));
     write_file(&folder.staging().join(VERDICT), &verdict)?;

@@ -11,6 +11,7 @@ use crate::cli::names::named;
 use crate::cli::output::open;
 use crate::cli::plan::pixels;
 use crate::cli::render::shading;
+use crate::cli::shard::ShardArgs;
 use crate::cli::sweep::read_views;
 use anyhow::{Context, ensure};
 use lodray::format::Scene;
@@ -95,6 +96,8 @@ pub struct Args {
     pub input: InputArgs,
     #[command(flatten)]
     pub cache: CacheArgs,
+    #[command(flatten)]
+    pub shard: ShardArgs,
 }
 
 fn method(name: &str) -> Result<Listed, String> {

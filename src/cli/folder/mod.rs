@@ -67,18 +67,7 @@ impl RunFolder {
         let staging = Staging::open(path).with_context(|| format!("cannot write to {shown}"))?;
         let staging = staging.with_context(|| format!("{shown}: another run is writing to this folder"))?;
         let record = Record::new(Invocation::of_process(), inputs.iter().map(|input| Input::read(input)).collect::<anyhow::Result<_>>()?);
-        let before = match Record::read(path) {
-            // Then it is a file like any other.
-            Err(_) if force => None,
-            other => other.map_err(|error| anyhow!("{error:#}; take another folder, or --force to replace it"))?,
-        };
-        if let Some(before) = before.as_ref().filter(|_| !force) {
-            let (old, new) = (&before.command, &record.command);
-            ensure!(
-                old == new,
-                "{shown} holds a run of `{old}`, and `{new}` does not mix with it: take another folder, or --force to replace it"
-            );
-        }
+        let before = earlier(path, &record.command, overrule)?;
         let old = before.map_or_else(BTreeSet::new, |before| before.files);
         let folder = Self { path: path.to_owned(), staging, old, record, force, made };
         names.iter().try_for_each(|name| folder.check_free(name))?;
@@ -152,6 +141,22 @@ impl RunFolder {
         }
         self.record.write(&self.path)
     }
+}
+
+/// The record of the run whose folder it is, if there is one; refuses a folder of another command's run.
+pub fn earlier(path: &Path, command: &str, overrule: &Overrule) -> anyhow::Result<Option<Record>> {
+    let (shown, force) = (path.display(), overrule.force);
+    let before = match Record::read(path) {
+        // Then it is a file like any other.
+        Err(_) if force => None,
+        other => other.map_err(|error| anyhow!("{error:#}; take another folder, or --force to replace it"))?,
+    };
+    if let Some(old) = before.as_ref().map(|before| &before.command).filter(|old| !force && *old != command) {
+        anyhow::bail!(
+            "{shown} holds a run of `{old}`, and `{command}` does not mix with it: take another folder, or --force to replace it"
+        );
+    }
+    Ok(before)
 }
 
 /// Inputs, each with the files that are read with it.

@@ -33,6 +33,11 @@ pub struct PageArgs {
 }
 
 impl PageArgs {
+    /// Whether there is to be one.
+    pub fn is_wanted(&self) -> bool {
+        self.page.is_some()
+    }
+
     /// Refuses a file that cannot be written, or that is one of the inputs, before any work is done.
     pub fn check(&self, inputs: &[&Path]) -> anyhow::Result<()> {
         self.page.as_deref().map_or(Ok(()), |path| check_target(path, inputs))

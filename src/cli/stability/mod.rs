@@ -7,14 +7,15 @@ use super::args::{MAX_RAYS, seed, whole};
 use super::folder::{Overrule, RunFolder, one_run};
 use super::output::{busy, explain, open, print_json, print_table, progress, remark, write_file};
 use super::report::PageArgs;
-use lodray::lab::growth::{Growth, growth, rays as growth_rays};
-use lodray::lab::hunt::{Hunt, hunt};
-use lodray::lab::{CASES, Case, FILE_CASES, Model, Report, Scale, WIDTHS_CHECKED, suite};
-use lodray::num::MAX_LEVELS;
+use super::shard::{Planned, ShardArgs, Study};
+use anyhow::{Context, ensure};
+use lodray::lab::{CASES, Case, FILE_CASES, Figures, Hunt, LabLine, LabPlan, Model, WIDTHS_CHECKED};
 use lodray::report::page::Documents;
-use serde::Serialize;
+use lodray::study::JobLines;
+use lodray::study::shards::{Part, gathered};
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
+use xxhash_rust::xxh3::xxh3_64;
 
 /// Rays of the usual run, which takes about a minute, and of the long one.
 const USUAL: u64 = 12_000_000;
@@ -51,17 +52,8 @@ pub struct Args {
     overrule: Overrule,
     #[command(flatten)]
     page: PageArgs,
-}
-
-/// Everything measured.
-#[derive(Serialize)]
-struct Figures {
-    #[serde(flatten)]
-    report: Report,
-    #[serde(skip_serializing_if = "Option::is_none")]
-    hunt: Option<Hunt>,
-    #[serde(skip_serializing_if = "Option::is_none")]
-    growth: Option<Growth>,
+    #[command(flatten)]
+    shard: ShardArgs,
 }
 
 /// Files of `-o`.
@@ -70,20 +62,68 @@ const JSON: &str = "stability.json";
 const FOUND: &str = "found.json";
 
 pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
-    let all = if args.scene.is_some() { FILE_CASES } else { CASES };
-    let cases = chosen(all, &args.cases)?;
+    let plan = plan(args)?;
+    let Some(share) = args.shard.share()? else { return results(args, || measured(&plan)) };
+    let out = args.out.as_ref().context("--shard: needs a folder for the results (-o)")?;
+    ensure!(!args.json && !args.page.is_wanted(), "--shard: figures are of all shards: lodray merge writes them");
+    let study = Study { out, lines: None, overrule: &args.overrule, pieces: plan.pieces() };
+    let work = |part: Part<'_>, rows: &mut JobLines<LabLine>, _: &Path| {
+        quietly(|| plan.measure(part, &|_, _| (), |line| -> anyhow::Result<()> { Ok(rows.add(line)?) }))
+    };
+    args.shard.run(share, &study, work, |_| None)
+}
+
+/// Puts the shards of a run together.
+pub fn merge(args: &Args) -> anyhow::Result<ExitCode> {
+    let plan = plan(args)?;
+    let keys = plan.keys();
+    let out = args.out.as_deref().unwrap_or(Path::new(""));
+    let lines = gathered(out, None, &keys)?;
+    results(args, || Ok(plan.figures(lines.in_order(&keys))))
+}
+
+/// What shards of a run would do.
+pub fn planned(args: &Args) -> anyhow::Result<Planned> {
+    let out = args.out.as_ref().context("a folder for the results (-o) is missing")?;
+    Planned::new(&args.shard, out, args.scene.iter().cloned().collect(), plan(args)?.pieces())
+}
+
+fn plan(args: &Args) -> anyhow::Result<LabPlan<'static>> {
+    let cases = chosen(if args.scene.is_some() { FILE_CASES } else { CASES }, &args.cases)?;
     let given = args.scene.as_deref().map(model).transpose()?;
+    let rays = args.rays.unwrap_or(if args.long { LONG } else { USUAL });
+    let usual_steps = if args.cases.is_empty() { rays / RAYS_PER_STEP } else { 0 };
     // Curves are drawn of built-in models only.
+    let curves = args.out.is_some() && given.is_none();
+    Ok(LabPlan { cases, rays, given, steps: args.hunt.unwrap_or(usual_steps), curves, seed: args.seed })
+}
+
+/// Measures everything.
+fn measured(plan: &LabPlan<'_>) -> anyhow::Result<Figures> {
+    let bar = progress(plan.total(), "");
+    let told = |what: &str, n: u64| {
+        bar.set_message(what.to_owned());
+        bar.inc(n);
+    };
+    let mut lines = Vec::new();
+    quietly(|| {
+        plan.measure(Part::ALL, &told, |line| -> anyhow::Result<()> {
+            lines.push(line);
+            Ok(())
+        })
+    })?;
+    bar.finish_and_clear();
+    Ok(plan.figures(lines))
+}
+
+/// Writes and prints all figures.
+fn results(args: &Args, figures: impl FnOnce() -> anyhow::Result<Figures>) -> anyhow::Result<ExitCode> {
     let charts = if args.scene.is_none() { &[plots::LEVELS, plots::DISTANCE][..] } else { &[] };
     let names = [TABLE, JSON, FOUND].into_iter().chain(charts.iter().copied());
     let inputs: Vec<_> = args.scene.as_deref().into_iter().collect();
     args.page.check(&inputs)?;
     let folder = args.out.as_ref().map(|out| RunFolder::open(out, names, &inputs, &args.overrule)).transpose()?;
-    let rays = args.rays.unwrap_or(if args.long { LONG } else { USUAL });
-    let usual_steps = if args.cases.is_empty() { rays / RAYS_PER_STEP } else { 0 };
-    let steps = args.hunt.unwrap_or(usual_steps);
-
-    let figures = quietly(|| measure(args, &cases, given.as_slice(), rays, steps))?;
+    let figures = figures()?;
     let breaches = figures.report.total().breaches() + figures.hunt.as_ref().map_or(0, Hunt::breaches);
     if let Some(folder) = folder {
         write(folder.staging(), &figures)?;
@@ -104,7 +144,7 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
 }
 
 /// The cases of these names, or all.
-fn chosen<'a>(all: &'a [Case], names: &[String]) -> anyhow::Result<Vec<&'a Case>> {
+fn chosen(all: &'static [Case], names: &[String]) -> anyhow::Result<Vec<&'static Case>> {
     for name in names {
         let known = || all.iter().map(|case| case.name).collect::<Vec<_>>().join(", ");
         anyhow::ensure!(all.iter().any(|case| case.name == name), "--case {name}: there is no such case; there are {}", known());
@@ -112,9 +152,11 @@ fn chosen<'a>(all: &'a [Case], names: &[String]) -> anyhow::Result<Vec<&'a Case>
     Ok(all.iter().filter(|case| names.is_empty() || names.iter().any(|name| name == case.name)).collect())
 }
 
-fn model(path: &Path) -> anyhow::Result<Model> {
+/// The model of a scene's file, and the file's checksum.
+fn model(path: &Path) -> anyhow::Result<(Model, u64)> {
     let scene = open(path)?;
-    Ok(busy("decoding", || Model::of_scene(path.display().to_string(), scene)))
+    let content = xxh3_64(scene.bytes());
+    Ok((busy("decoding", || Model::of_scene(path.display().to_string(), scene)), content))
 }
 
 /// Does `work` without the messages of panics: a value that does not fit its width is one, and is counted.
@@ -127,27 +169,6 @@ fn quietly<T>(work: impl FnOnce() -> T) -> T {
     let done = work();
     std::panic::set_hook(usual);
     done
-}
-
-fn measure(args: &Args, cases: &[&Case], given: &[Model], rays: u64, steps: u64) -> anyhow::Result<Figures> {
-    let shares = suite::shares(cases, rays);
-    // Curves are drawn of built-in models only.
-    let curves = args.out.is_some() && given.is_empty();
-    let bar = progress(shares.iter().sum::<u64>() + steps + if curves { growth_rays(MAX_LEVELS) } else { 0 }, "");
-    let mut report = Report::new(args.seed);
-    for (case, rays) in cases.iter().zip(shares) {
-        bar.set_message(case.name);
-        report.rows.push(match given {
-            [] => suite::run(case, Scale::Full, rays, args.seed, &|n| bar.inc(n))?,
-            models => suite::shoot(case, models, rays, args.seed, &|n| bar.inc(n)),
-        });
-    }
-    bar.set_message("hunt");
-    let hunt = if steps > 0 { Some(hunt(given.first(), steps, args.seed, &|n| bar.inc(n))?) } else { None };
-    bar.set_message("growth");
-    let growth = if curves { Some(growth(MAX_LEVELS, args.seed, &|n| bar.inc(n))?) } else { None };
-    bar.finish_and_clear();
-    Ok(Figures { report, hunt, growth })
 }
 
 fn write(out: &Path, figures: &Figures) -> anyhow::Result<()> {

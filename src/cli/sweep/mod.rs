@@ -13,8 +13,11 @@ use super::folder::{Overrule, RunFolder, one_run};
 use super::input::{InputArgs, with_input};
 use super::output::{check_target, print_line, remark, write_file};
 use super::report::PageArgs;
+use super::shard::{Planned, ShardArgs, Study};
+use anyhow::ensure;
 use lodray::report::page::{Documents, Simulation};
-use lodray::study::{JobLines, Means, Row, SceneJobs, count, csv};
+use lodray::study::shards::{Part, gathered};
+use lodray::study::{JobLines, Jobs, Means, Row, SceneJobs, count, csv, sweep_part, sweep_pieces};
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
@@ -46,14 +49,57 @@ pub struct Args {
     cache: CacheArgs,
     #[command(flatten)]
     page: PageArgs,
+    #[command(flatten)]
+    shard: ShardArgs,
 }
 
 pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
     let jobs = read_views(&args.jobs)?;
+    let Some(share) = args.shard.share()? else {
+        return results(args, &jobs, |rows| work(args, &jobs, Part::ALL, rows));
+    };
+    ensure!(!args.page.is_wanted(), "--report: a page is of all shards: lodray report makes it of what lodray merge writes");
+    let study = Study { out: &args.out, lines: Some(args.out.join(LINES)), overrule: &args.overrule, pieces: sweep_pieces(&jobs)? };
+    args.shard.run(share, &study, |part, rows, _| work(args, &jobs, part, rows).map(drop), |row: &Row| row.error.as_ref())
+}
+
+/// Puts the shards of a run together.
+pub fn merge(args: &Args) -> anyhow::Result<ExitCode> {
+    let jobs = read_views(&args.jobs)?;
+    let keys = jobs.keys()?;
+    let lines = gathered(&args.out, Some(&args.out.join(LINES)), &keys)?;
+    results(args, &jobs, |rows| {
+        lines.add_to(rows, &keys)?;
+        Ok(keys)
+    })
+}
+
+/// What shards of a run would do.
+pub fn planned(args: &Args) -> anyhow::Result<Planned> {
+    let jobs = read_views(&args.jobs)?;
+    let inputs = std::iter::once(&args.jobs).chain(&jobs.files).cloned().collect();
+    Planned::new(&args.shard, &args.out, inputs, sweep_pieces(&jobs)?)
+}
+
+/// Does the jobs of a part that `rows` has not yet. Gives the names of all jobs.
+fn work(args: &Args, jobs: &Jobs, part: Part<'_>, rows: &mut JobLines<Row>) -> anyhow::Result<Vec<String>> {
+    let cache = args.cache.cache(Some(&args.out))?;
+    // Each machine's replay is a thread's work.
+    let at_once = args.at_once.unwrap_or_else(|| rayon::current_num_threads().div_ceil(jobs.targets.len().max(1)));
+    let opened = |scene: &SceneJobs| {
+        let made = open_scene(scene)?;
+        Ok(with_input(made, Path::new(&scene.path()), &args.input, &jobs.methods)?)
+    };
+    Ok(sweep_part(jobs, part, rows, at_once, &Means { cache: &cache, open: &opened, progress: &Bars })?)
+}
+
+/// The results of all jobs, once `fill` has added the lines that are not there yet and told the names of all.
+fn results(args: &Args, jobs: &Jobs, fill: impl FnOnce(&mut JobLines<Row>) -> anyhow::Result<Vec<String>>) -> anyhow::Result<ExitCode> {
     let inputs: Vec<_> = std::iter::once(&args.jobs).chain(&jobs.files).map(PathBuf::as_path).collect();
     args.page.check(&inputs)?;
     let mut folder = RunFolder::open(&args.out, [TABLE], &inputs, &args.overrule)?;
-    let cache = args.cache.cache(Some(&args.out))?;
+    // Refused before there is a file of lines.
+    args.cache.cache(Some(&args.out))?;
     let lines = args.out.join(LINES);
     check_target(&lines, &inputs)?;
     folder.continues(LINES)?;
@@ -61,13 +107,7 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
     folder.keep(LINES)?;
     folder.keep_aside(&lines)?;
     let done = rows.done();
-    // Each machine's replay is a thread's work.
-    let at_once = args.at_once.unwrap_or_else(|| rayon::current_num_threads().div_ceil(jobs.targets.len().max(1)));
-    let opened = |scene: &SceneJobs| {
-        let made = open_scene(scene)?;
-        Ok(with_input(made, Path::new(&scene.path()), &args.input, &jobs.methods)?)
-    };
-    let keys = lodray::study::sweep(&jobs, &mut rows, at_once, &Means { cache: &cache, open: &opened, progress: &Bars })?;
+    let keys = fill(&mut rows)?;
     write_file(&folder.staging().join(TABLE), csv(rows.of(&keys)))?;
     for (name, chart) in charts::charts(rows.of(&keys))? {
         write_file(&folder.staging().join(name), chart)?;
