@@ -18,6 +18,7 @@ use crate::{
     },
     num::Ray,
 };
+use std::borrow::Cow;
 use std::cell::RefCell;
 
 /// The closest hit.
@@ -73,19 +74,26 @@ pub struct Served {
 
 /// The exact traverser of one model.
 pub struct Exact<'a> {
-    model: &'a Hierarchy,
+    model: Cow<'a, Hierarchy>,
     boxes: Option<Boxes>,
+}
+
+impl Exact<'static> {
+    /// The same as [`Exact::new`], for whoever has no place to keep the model in.
+    pub fn owning(model: Hierarchy) -> Self {
+        Self { boxes: Some(Boxes::new(&model)), model: Cow::Owned(model) }
+    }
 }
 
 impl<'a> Exact<'a> {
     /// For a valid model: points on their levels' grids and bounds that hold.
     pub fn new(model: &'a Hierarchy) -> Self {
-        Self { model, boxes: Some(Boxes::new(model)) }
+        Self { model: Cow::Borrowed(model), boxes: Some(Boxes::new(model)) }
     }
 
     /// The same without boxes: every triangle of the surface is tested.
     pub fn without_culling(model: &'a Hierarchy) -> Self {
-        Self { model, boxes: None }
+        Self { model: Cow::Borrowed(model), boxes: None }
     }
 
     /// The closest hit on the surface that the ray's cone asks for.
@@ -93,7 +101,12 @@ impl<'a> Exact<'a> {
         self.closest(ray, true).map(|(hit, _)| hit)
     }
 
-    /// The same with the hit's distance and barycentrics before they were rounded.
+    /// The same among hits from the first to the last of these steps of t.
+    pub fn trace_between(&self, ray: &Ray, range: [u64; 2]) -> Option<ExactHit> {
+        self.closest_between(&self.walk(ray, true), range).map(|(hit, _)| hit)
+    }
+
+    /// The same as [`Self::trace`] with the hit's distance and barycentrics before they were rounded.
     pub fn trace_exactly(&self, ray: &Ray) -> Option<(ExactHit, Fractions)> {
         self.closest(ray, true)
     }
@@ -162,7 +175,7 @@ impl<'a> Exact<'a> {
     }
 
     fn walk(&self, ray: &Ray, lod: bool) -> Walk<'_> {
-        Walk { model: self.model, boxes: self.boxes.as_ref(), viewer: viewer(ray), before: &[], only: None, lod, watch: None }
+        Walk { model: &self.model, boxes: self.boxes.as_ref(), viewer: viewer(ray), before: &[], only: None, lod, watch: None }
     }
 
     fn walk_after<'b>(&'b self, before: &'b [Leg], ray: &Ray) -> Walk<'b> {
@@ -174,6 +187,10 @@ impl<'a> Exact<'a> {
     }
 
     fn closest_of(&self, walk: &Walk<'_>) -> Option<(ExactHit, Fractions)> {
+        self.closest_between(walk, [0, u64::MAX])
+    }
+
+    fn closest_between(&self, walk: &Walk<'_>, [first, last]: [u64; 2]) -> Option<(ExactHit, Fractions)> {
         let levels = self.model.levels;
         let mut best: Option<(ExactHit, Fractions)> = None;
         walk.run(&mut |at, met| {
@@ -181,6 +198,9 @@ impl<'a> Exact<'a> {
             let (full_node, full_bary) = hit_map::descend(at.node, bary, levels - at.level);
             let Served { tree, level, node, .. } = at;
             let hit = ExactHit { t: met.t(), tree, level, node, bary, full_node, full_bary, front: met.front };
+            if hit.t < first || hit.t > last {
+                return;
+            }
             if best.is_none_or(|(b, _)| hit.order(levels) < b.order(levels)) {
                 best = Some((hit, met.fractions()));
             }

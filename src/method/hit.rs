@@ -302,7 +302,7 @@ impl SurfaceHit {
     pub const NO_PLANE: u32 = 0x8000_8000;
 
     /// A hit of the integer ray of a query on a triangle of that `plane`.
-    fn new(ray: &ModelRay, hit: &Hit, plane: u32) -> Self {
+    pub fn new(ray: &ModelRay, hit: &Hit, plane: u32) -> Self {
         let weight = |b: Bary| (b.get() as f64 / BARY_ONE as f64) as f32;
         // Field widths are below 32 bits.
         let [tree, full_node, node] = [hit.tree.get(), hit.full_node.get(), hit.node.get()].map(|v| v as u32);

@@ -38,7 +38,7 @@ pub struct HitRow {
 
 impl HitRow {
     /// Nothing was met.
-    pub(crate) const NONE: Self = Self {
+    pub const NONE: Self = Self {
         t: f64::INFINITY,
         tree: -1,
         level: -1,
@@ -52,7 +52,8 @@ impl HitRow {
         instance: -1,
     };
 
-    pub(crate) fn new(scene: &Scene, query: &Query, hit: &SurfaceHit) -> Self {
+    /// The row of a hit of `query` in `scene`.
+    pub fn new(scene: &Scene, query: &Query, hit: &SurfaceHit) -> Self {
         let direction = DVec3::from_array(query.direction);
         // Scaled first, so that squares neither overflow nor vanish.
         let direction = (direction / direction.abs().max_element()).normalize();

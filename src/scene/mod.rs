@@ -15,10 +15,12 @@
 
 mod build;
 mod given;
+mod golden;
 mod method;
 mod simulate;
 
 pub use build::{BuildError, BuildOptions, moved_percent};
 pub use given::Given;
+pub use golden::{Golden, Judged};
 pub use method::{MethodError, SceneMethod};
 pub use simulate::{Outcome, Pass, PassRays, SimulateError, Target};
