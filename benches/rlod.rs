@@ -152,7 +152,9 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
             }
         }
         let depth = built(name, "order", &scene, &RlodOptions { order: KdOrder::Depth, ..usual })?;
-        [0.0, 4.0].map(|pixels| print(name, "order", frame.row(&depth, Metric { pixels, reach: REACH })));
+        for pixels in [0.0, 4.0] {
+            print(name, "order", frame.row(&depth, Metric { pixels, reach: REACH }));
+        }
         for every in [1, 2, 4] {
             let tree = built(name, "every", &scene, &with(every, usual.planes.weight))?;
             for pixels in [1.0, 4.0, 16.0] {
