@@ -96,8 +96,10 @@ fn golden_and_the_method_cast_the_same() {
         assert_eq!(lodray_method_cast_any(method, rays.as_ptr(), RAYS as u64, any.as_mut_ptr()), LODRAY_OK, "{}", why());
         assert_eq!(lodray_golden_cast_any(golden, rays.as_ptr(), RAYS as u64, 1.0, met.as_mut_ptr()), LODRAY_OK, "{}", why());
         let golden_rows: Vec<_> = wanted.iter().map(|wanted| wanted.hit).collect();
-        // As text, where no number is like any other.
-        assert_eq!(format!("{cast:?}"), format!("{golden_rows:?}"));
+        for (ray, (cast, golden)) in cast.iter().zip(&golden_rows).enumerate() {
+            // As text, where no number is like any other.
+            assert_eq!(format!("{cast:?}"), format!("{golden:?}"), "ray {ray}");
+        }
         assert_eq!(any, met);
         assert!(wanted.iter().zip(met).all(|(hit, met)| hit.out_o.found == met && (met == 1) == hit.hit.t.is_finite()));
         assert!(met.iter().map(|&met| usize::from(met)).sum::<usize>() > 100);
@@ -166,8 +168,8 @@ fn bits_are_the_structs() {
         // Word 3 of the line stands above word 0, then error, epoch and tag.
         assert_eq!((answer_bits[0], answer_bits[7], answer_bits[8]), (1, u32::MAX, 0xa5 << 9 | 0x3c << 1 | 1));
         let mut request = LodrayMemoryRequest::default();
-        assert_eq!(lodray_memory_request_from_bits([7, 0xa << 20 | 0x5 << 16 | 0x3c << 4].as_ptr(), &raw mut request), LODRAY_OK);
-        assert_eq!(request, LodrayMemoryRequest { tag: 0xa5 & 0xff, epoch: 0x3c, address: 7 }, "tag, epoch and 36 bits of line");
+        assert_eq!(lodray_memory_request_from_bits([7, 0xa5 << 12 | 0x3c << 4].as_ptr(), &raw mut request), LODRAY_OK);
+        assert_eq!(request, LodrayMemoryRequest { tag: 0xa5, epoch: 0x3c, address: 7 }, "tag, epoch and 36 bits of line");
         let mut config_bits = [0; LODRAY_SCENE_CONFIG_WORDS];
         assert_eq!(lodray_scene_config_bits(scene, config_bits.as_mut_ptr()), LODRAY_OK);
         assert_eq!(config_bits[0] & 0xf_ffff, config.answer_limit);
