@@ -94,9 +94,9 @@ impl Polygon {
         let from = |corner: &Corner| -> [f64; 3] { std::array::from_fn(|k| corner.at[k] - all[0].at[k]) };
         for two in all.windows(2).skip(1) {
             let (a, b) = (from(&two[0]), from(&two[1]));
-            for k in 0..3 {
+            for (k, sum) in sum.iter_mut().enumerate() {
                 let (i, j) = ((k + 1) % 3, (k + 2) % 3);
-                sum[k] += 0.5 * (a[i] * b[j] - a[j] * b[i]);
+                *sum += 0.5 * (a[i] * b[j] - a[j] * b[i]);
             }
         }
         sum

@@ -43,7 +43,7 @@ impl Moments {
         let normal = DVec3::from_array(polygon.area());
         let area = normal.length();
         let count = polygon.corners().count();
-        if !(area > 0.0) {
+        if area == 0.0 {
             return Self::default();
         }
         let corners = || polygon.corners().map(DVec3::from_array);
@@ -80,7 +80,7 @@ impl Moments {
 
     /// The plane that is nearest to all; none if there is no area.
     pub fn plane(&self) -> Option<Plane> {
-        if !(self.weight > 0.0) {
+        if self.weight == 0.0 {
             return None;
         }
         let (values, vectors) = eigen(self.spread.map(|sum| sum / self.weight));

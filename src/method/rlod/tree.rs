@@ -138,7 +138,7 @@ impl Tree {
     /// As [`Self::new`].
     pub fn over(hierarchy: &Hierarchy, colours: &(dyn Fn(u32) -> DVec3 + Sync), options: &RlodOptions) -> Result<Self, BvhError> {
         let corners = Corners::new(hierarchy)?;
-        let triangles: Vec<_> = level_ids(&hierarchy, hierarchy.levels).into_iter().map(|id| corners.triangle(id)).collect();
+        let triangles: Vec<_> = level_ids(hierarchy, hierarchy.levels).into_iter().map(|id| corners.triangle(id)).collect();
         let cell = triangles.iter().map(|&t| Box32::of_triangle(t)).reduce(|all, own| all.union(&own)).ok_or(BvhError::Empty)?;
         let raw = kd_tree(&triangles, &cell, options.costs);
         // 30 bits name a node, and a reference.
