@@ -154,7 +154,7 @@ fn jobs_that_fail_are_told_as_by_one_run() {
             assert_eq!(desk.hear(&format!("sweep fail.toml -o out --shard {k}/2")).0, 1);
         }
     }
-    assert_eq!(desk.hear("merge out"), (1, told.replace("local", "out")));
+    assert_eq!(desk.hear("merge out"), (1, told.replace("results in local", "results in out")));
     assert!(files(&desk, "out") == files(&desk, "local"));
 }
 

@@ -1,6 +1,6 @@
 //! Files for Slurm: an array of shards, a merge that waits for it, and what hands both in.
 
-use super::Plan;
+use super::plan::Plan;
 use super::words::quoted;
 
 /// Names and texts.

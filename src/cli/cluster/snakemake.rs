@@ -1,6 +1,6 @@
 //! A workflow for Snakemake: a rule whose jobs are the shards, and one that merges.
 
-use super::Plan;
+use super::plan::Plan;
 
 /// Names and texts.
 ///
