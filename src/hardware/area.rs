@@ -68,7 +68,7 @@ fn block_row(name: &str) -> Option<f64> {
 mod tests {
     use super::*;
     use crate::block::{BoxesPerCycle, EdgesPerCycle};
-    use crate::method::METHODS;
+    use crate::method::{METHODS, rlod};
 
     #[test]
     fn a_context_has_what_was_measured() {
@@ -86,7 +86,7 @@ mod tests {
             let unit = method.unit.unwrap();
             let [one, two] = [1, 2].map(|contexts| unit_gates(unit, &Hardware { contexts, ..Hardware::default() }).unwrap());
             let context = context_gates(&Hardware::default(), unit.has_levels);
-            assert!(one > 4e5 && (two - one - context).abs() < 1e-3, "{}: {one}, {two}", method.name);
+            assert!(one > 3e5 && (two - one - context).abs() < 1e-3, "{}: {one}, {two}", method.name);
             // Each way to do more in a cycle, and by how much it is larger at least.
             let of = |hardware: Hardware| unit_gates(unit, &hardware).unwrap();
             let larger = |least: f64, gates: &[f64]| {
@@ -97,8 +97,11 @@ mod tests {
             let boxes = BoxesPerCycle::ALL.map(|boxes_per_cycle| of(Hardware { boxes_per_cycle, ..default }));
             // Nodes of two children never have more than two boxes to test.
             let are_two = unit.blocks.iter().filter(|&&block| block == Operation::BoxTest32).count() == 2;
-            larger(6e4, if are_two { &boxes[..2] } else { &boxes });
+            // Nor does a kd-tree have any: its splits are works of its own.
+            let has_none = method.name == rlod::METHOD.name;
+            larger(6e4, if are_two { &boxes[..2] } else { &boxes[..if has_none { 1 } else { 3 }] });
             assert!(!are_two || boxes[1] == boxes[2], "{}: {boxes:?}", method.name);
+            assert!(!has_none || boxes == [boxes[0]; 3], "{}: {boxes:?}", method.name);
             larger(0.0, &[1, 2, 3].map(|bits| of(Hardware { divide_bits: bits, setup_bits: bits, ..default })));
             let lod = EdgesPerCycle::ALL.map(|lod_edges_per_cycle| of(Hardware { lod_edges_per_cycle, ..default }));
             if unit.blocks.contains(&Operation::LodTest) { larger(1e5, &lod) } else { assert_eq!(lod[0], lod[1]) }
