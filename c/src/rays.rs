@@ -126,7 +126,7 @@ impl LodrayRay {
 /// Rays at a pointer, checked.
 ///
 /// # Safety
-/// As of [`array`].
+/// As of [`array()`].
 pub(crate) unsafe fn rays_at<'a>(rays: *const LodrayRay, count: u64) -> Result<RayRows<'a>, Refused> {
     // SAFETY: the caller's promise.
     rows(unsafe { array("rays", rays, count) }?)
