@@ -73,7 +73,7 @@ impl<'a> Shot<'a> {
 
     /// Where it enters and leaves the cell of the root; not if it misses it.
     fn root(&self, tree: &Tree) -> Option<[f64; 2]> {
-        let [mut enters, mut leaves] = [0.0f64, self.ray.range[1].get() as f64];
+        let [mut enters, mut leaves] = [0.0f64, end(self.ray.range[1])];
         for k in 0..3 {
             let sides = [tree.cell.lo[k], tree.cell.hi[k]].map(|side| f64::from(side) - self.origin[k]);
             if self.direction[k] == 0.0 {
@@ -90,6 +90,11 @@ impl<'a> Shot<'a> {
         }
         (enters <= leaves).then_some([enters, leaves])
     }
+}
+
+/// Where a ray ends whose last step of t is this one: that stands for all beyond, too, which rays of short directions reach.
+fn end(t: RayT) -> f64 {
+    if t == RayT::MAX { f64::INFINITY } else { t.get() as f64 }
 }
 
 /// Traces rays through a tree; keeps its stack from ray to ray.
@@ -151,7 +156,7 @@ impl RlodTraverser {
     #[inline(always)]
     fn pop<S: StepSink, H: HitSink>(&mut self, steps: &mut S, sink: &H) -> Option<Waiting> {
         let waiting = self.stack.pop()?;
-        let dropped = waiting.enters > sink.t_max().get() as f64;
+        let dropped = waiting.enters > end(sink.t_max());
         steps.step(Step::of(Act::Pop { dropped }));
         (!dropped).then_some(waiting)
     }
@@ -226,7 +231,7 @@ impl RlodTraverser {
         let near = u32::from(shot.direction[axis] < 0.0);
         let crosses = apart * shot.steps[axis];
         let lost = shot.lost[axis] + LOST_SHARE * crosses.abs();
-        let leaves = waiting.leaves.min(sink.t_max().get() as f64);
+        let leaves = waiting.leaves.min(end(sink.t_max()));
         let [is_near, is_far] = [waiting.enters <= crosses + lost, leaves >= crosses - lost];
         let first = Waiting { node: left + near, leaves: waiting.leaves.min(crosses + lost), ..*waiting };
         let second = Waiting { node: left + 1 - near, enters: waiting.enters.max(crosses - lost), ..*waiting };
