@@ -78,7 +78,7 @@ def choices(lines):
     """Every choice swept: medians over the scenes at 16 pixels of error, beside what is usual."""
     usual = {(line["scene"]): line for line in lines if line["of"] == "pixels" and line["pixels"] == 16}
     rows = []
-    for of, key, words in [("reach", "reach", "reach"), ("every", "every", "R-LODs at every so many nodes"), ("weight", "weight", "weight of the deviation")]:
+    for of, key, words in [("reach", "reach", "reach"), ("every", "every", "nodes from R-LOD to R-LOD"), ("weight", "weight", "weight of the deviation")]:
         for value in sorted({line[key] for line in lines if line["of"] == of}):
             own = [line for line in lines if line["of"] == of and line[key] == value and line["pixels"] == 16]
             ratio = lambda what: f"{statistics.median(line[what] / usual[line['scene']][what] for line in own if usual[line['scene']][what]):.2f}"
@@ -144,7 +144,7 @@ def ledger(lines, args):
             ["22.42 to 13.6 nodes a ray over the sweep of pixels of error (256 M triangles, 512x512, 2x2 samples)", nodes, "to 256 pixels of error; the paper names no end. Models of 0.013 to 8.4 M triangles"],
             ["working set of 1,565 to 2 MB, in pages of 4 KB", pages, "the same shape: it shrinks by what the model is larger than what a picture can show; models here are smaller"],
             ["R-LODs take 2 to 5 % where none serves (870 k triangles)", f"{min(simulated_slower):.1f} to {max(simulated_slower):.1f} % in cycles of `haydel2023`; {min(slower):.1f} to {max(slower):.1f} % on this processor, within what runs differ", "nodes of 12 bytes for 8, of which fewer lie in a line and some in two: there is no time but memory's on that machine"],
-            ["33 % more storage than the kd-tree", f"{words} % of plain nodes, words and planes", "a word of 4 bytes on nodes of 8 is 50 % by itself, and a plane of 32 bytes for six nodes 67 %: the paper must count triangles as well"],
+            ["33 % more storage than the kd-tree", f"{words} % of plain nodes, words and planes", "the word alone adds 50 %, a plane of 32 bytes for six nodes 67 %; the paper must count triangles too"],
             ["planes are under 10 % of all", f"{planes} %", ""],
             ["2 to 20 times the frame rate, 20 to 50 where the working set leaves memory", faster, "rays a second on one thread, at the coarsest setting, the model in memory: what the paper gains most by, pages that are not read from a disk, does not occur"],
         ],

@@ -35,7 +35,7 @@ impl Planned {
         self.pieces.all.len()
     }
 
-    /// What the longest of so many shards takes over the mean of all, openings of scenes included.
+    /// The longest shard over the mean of all. Opening scenes counts.
     pub fn longest(&self, shards: usize) -> f64 {
         let loads = shares(&self.pieces.all, &self.costs_of, &self.openings, shards).loads;
         let (most, all) = (loads.iter().copied().max().unwrap_or(0), loads.iter().map(|&load| load as f64).sum::<f64>());
