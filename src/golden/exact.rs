@@ -101,7 +101,19 @@ impl<'a> Exact<'a> {
         self.closest(ray, true).map(|(hit, _)| hit)
     }
 
-    /// The same among hits from the first to the last of these steps of t.
+    /// The closest hit of `ray` on the surface that `packet` asks for, rays of which it is one: each edge is as open as the ray that wants it the most open has it.
+    pub fn trace_in_packet(&self, ray: &Ray, packet: &[Ray]) -> Option<ExactHit> {
+        let others: Vec<_> = packet.iter().map(viewer).collect();
+        self.closest_of(&Walk { others: &others, ..self.walk(ray, true) }).map(|(hit, _)| hit)
+    }
+
+    /// All its crossings of that surface.
+    pub fn crossings_in_packet(&self, ray: &Ray, packet: &[Ray]) -> Crossings {
+        let others: Vec<_> = packet.iter().map(viewer).collect();
+        count(&Walk { others: &others, ..self.walk(ray, true) })
+    }
+
+    /// The same as [`Self::trace`] among hits from the first to the last of these steps of t.
     pub fn trace_between(&self, ray: &Ray, range: [u64; 2]) -> Option<ExactHit> {
         self.closest_between(&self.walk(ray, true), range).map(|(hit, _)| hit)
     }
@@ -175,7 +187,7 @@ impl<'a> Exact<'a> {
     }
 
     fn walk(&self, ray: &Ray, lod: bool) -> Walk<'_> {
-        Walk { model: &self.model, boxes: self.boxes.as_ref(), viewer: viewer(ray), before: &[], only: None, lod, watch: None }
+        Walk { model: &self.model, boxes: self.boxes.as_ref(), viewer: viewer(ray), others: &[], before: &[], only: None, lod, watch: None }
     }
 
     fn walk_after<'b>(&'b self, before: &'b [Leg], ray: &Ray) -> Walk<'b> {
@@ -229,6 +241,8 @@ struct Walk<'a> {
     model: &'a Hierarchy,
     boxes: Option<&'a Boxes>,
     viewer: lod::Viewer,
+    /// The rays that decide with it, if it is one of a packet.
+    others: &'a [lod::Viewer],
     /// The rays before it, if it leaves the surface.
     before: &'a [Leg],
     /// Only what leads to this node, a level and its number there.
@@ -340,7 +354,8 @@ impl Walk<'_> {
             if let Some(watch) = self.watch {
                 watch.borrow_mut().note_lod(lod::margin(viewer, at.corners[(i + 1) % 3], at.corners[(i + 2) % 3], bound));
             }
-            lod::state(viewer, at.corners[(i + 1) % 3], at.corners[(i + 2) % 3], bound)
+            let state = |viewer| lod::state(viewer, at.corners[(i + 1) % 3], at.corners[(i + 2) % 3], bound);
+            self.others.iter().map(state).fold(state(viewer), i64::max)
         })
     }
 

@@ -5,15 +5,17 @@
 
 use crate::block::Block;
 use crate::block::box_test::{self, BoxTest};
+use crate::block::box_test32::{self, BoxTest32};
 use crate::block::child_boxes::{Corners, Planes, boxed, framed, let_out, widened};
 use crate::block::child_prisms::{self, ChildPrisms};
 use crate::block::child_sort;
 use crate::block::child_sort6::{self, ChildSort6};
 use crate::block::child_test::{self, sort};
 use crate::block::ray_setup;
+use crate::bvh::BvhChild32;
 use crate::format::{BvhChild, BvhNode, ChildRef, Line, SixNode, SplitRecord};
 use crate::num::prism::Prisms;
-use crate::num::{Box16, BoxStep, RayT, TNear, U, Wire};
+use crate::num::{Box16, BoxStep, RayT, TNear, U, Vec3, Wire};
 
 /// Whether the processor has what `#[target_feature(enable = "avx2,bmi1,bmi2")]` asks for.
 #[cfg(target_arch = "x86_64")]
@@ -82,6 +84,22 @@ pub(crate) fn coded_children(ray: &ray_setup::Out, t_max: RayT, group: &[u64; 8]
     sort(&tests)
 }
 
+/// Tests and sorts the children of the quad-BVH node `group` with boxes of 32 bits, for rays that leave a surface if `LEAVING`; an empty slot is never hit.
+#[inline(always)]
+pub(crate) fn wide_children<const LEAVING: bool>(ray: &ray_setup::Out, t_max: RayT, group: &[u64; 16]) -> child_test::Out {
+    let mut tests = child_sort::In::default();
+    for k in 0..4 {
+        let BvhChild32 { child, lo, hi } = BvhChild32::from_words(&group[4 * k..4 * k + 4]);
+        if child.kind.get() != ChildRef::EMPTY {
+            // What is ahead of a start is ahead of its whole point, if the box reaches as far down as the start's fraction can.
+            let lo = if LEAVING { Vec3::new(lo.x.get() - 1, lo.y.get() - 1, lo.z.get() - 1) } else { lo };
+            let test = BoxTest32::eval(&box_test32::In { ray: *ray, t_max, lo, hi });
+            (tests.hit[k], tests.t_near[k]) = (test.hit, test.t_near);
+        }
+    }
+    sort(&tests)
+}
+
 /// Tests and sorts the children of a node of six; an empty slot is never hit. With their entry distances.
 #[inline(always)]
 pub(crate) fn six_children(ray: &ray_setup::Out, t_max: RayT, node: &SixNode) -> (child_sort6::Out, [TNear; 6]) {
@@ -125,7 +143,7 @@ mod tests {
     use super::*;
     use crate::block::child_test::ChildTest;
     use crate::block::ray_setup::RaySetup;
-    use crate::num::{COORD_LIMIT, Direction, Point, Random, U, Vec3};
+    use crate::num::{COORD_LIMIT, Direction, Point, Random};
 
     const LIMIT: u64 = COORD_LIMIT as u64;
 

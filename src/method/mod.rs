@@ -18,6 +18,7 @@ pub mod leave;
 pub mod lod;
 mod mesh_bvh;
 mod normal;
+pub mod packet;
 mod prior;
 mod recent;
 pub mod reference;
@@ -33,7 +34,7 @@ pub use knob::{ErrorKnob, Knob, KnobError, Knobs};
 pub use prior::{Deciders, Prior};
 pub use registry::{METHODS, find};
 pub use stack::{Entry, Op, STACK_ENTRIES, TraversalStack};
-pub use tracer::{Trace, Tracer};
+pub use tracer::{Trace, Tracer, trace_together};
 
 use crate::block::{Operation, Work};
 use crate::bvh::BvhError;

@@ -2,7 +2,7 @@
 
 use super::{Departure, Landing, SurfaceHit};
 use crate::rays::Query;
-use crate::step::{LineCounter, NoSteps, Recorder, Step, StepSink};
+use crate::step::{Act, LineCounter, NoSteps, Recorder, Step, StepSink};
 
 /// What a method's tracer does, for any listener; compiled for each. It neither begins a ray nor ends it: a ray may go on in another model.
 pub trait Trace {
@@ -19,6 +19,16 @@ pub trait Trace {
 
     /// Its hits are mapped to the full resolution when a ray ends ([`Act::End`](crate::step::Act::End)).
     fn is_mapped(&self) -> bool;
+
+    /// How many rays it traces together.
+    fn lanes(&self) -> usize {
+        1
+    }
+
+    /// Traces rays together, at most [`lanes`](Self::lanes) of them; what each meets first is added to `hits`, in their order.
+    fn packet<S: StepSink>(&mut self, queries: &[Query], hits: &mut Vec<Option<SurfaceHit>>, steps: &mut S) {
+        hits.extend(queries.iter().map(|query| self.trace(query, steps)));
+    }
 }
 
 /// Any method's tracer: one call for each ray decides which method it is, and none for each step.
@@ -40,8 +50,23 @@ pub trait Tracer {
     fn enter(&mut self, query: &Query, from: Option<&Departure>, steps: &mut dyn StepSink) -> Option<Landing>;
     /// Adds every hit of a ray to `hits`, nearest first, whether any would serve or not; false from a method that finds but the closest.
     fn all(&mut self, query: &Query, hits: &mut Vec<SurfaceHit>) -> bool;
+    /// How many rays it traces together.
+    fn lanes(&self) -> usize {
+        1
+    }
+    /// Traces rays together, at most [`lanes`](Self::lanes) of them, to their end; what each meets first is added to `hits`, in their order.
+    fn packet(&mut self, queries: &[Query], hits: &mut Vec<Option<SurfaceHit>>, steps: &mut dyn StepSink) {
+        hits.extend(queries.iter().map(|query| self.heard(query, steps)));
+    }
     /// Its hits are mapped to the full resolution when a ray ends ([`Act::End`](crate::step::Act::End)).
     fn is_mapped(&self) -> bool;
+}
+
+/// What rays meet that follow each other, each as many together as the tracer takes.
+pub fn trace_together(tracer: &mut dyn Tracer, queries: &[Query], steps: &mut dyn StepSink) -> Vec<Option<SurfaceHit>> {
+    let mut hits = Vec::with_capacity(queries.len());
+    queries.chunks(tracer.lanes()).for_each(|packet| tracer.packet(packet, &mut hits, steps));
+    hits
 }
 
 /// A listener behind a reference.
@@ -77,6 +102,16 @@ impl<T: Trace> Tracer for T {
     }
     fn all(&mut self, query: &Query, hits: &mut Vec<SurfaceHit>) -> bool {
         Trace::all(self, query, hits)
+    }
+    fn lanes(&self) -> usize {
+        Trace::lanes(self)
+    }
+    fn packet(&mut self, queries: &[Query], hits: &mut Vec<Option<SurfaceHit>>, steps: &mut dyn StepSink) {
+        let (first, mut steps) = (hits.len(), Heard(steps));
+        Trace::packet(self, queries, hits, &mut steps);
+        let found = hits[first..].iter().flatten().count();
+        let end = Act::End { found: found as u32, mapped: Trace::is_mapped(self) }; // at most as many as a packet has
+        steps.step(Step::of(end).by(queries.len() as u32));
     }
     fn is_mapped(&self) -> bool {
         Trace::is_mapped(self)

@@ -1,8 +1,8 @@
 //! One ray per pixel through a method.
 
-use crate::method::{Method, SurfaceHit};
-use crate::rays::{Camera, ModelSpace, Sight};
-use crate::step::{LineCounter, LineSets, MemoryMap, Section, SectionId, StepCounts};
+use crate::method::{Method, SurfaceHit, Tracer, trace_together};
+use crate::rays::{Camera, ModelSpace, Query, RaySource, Sight, TILE};
+use crate::step::{LineCounter, LineSets, MemoryMap, Section, SectionId, StepCounts, StepSink};
 use rayon::prelude::*;
 use serde::Serialize;
 
@@ -61,7 +61,7 @@ impl FrameStats {
 
 /// Rays are traced in small tiles, so that what one reads is still in the cache for the next; a band of tiles is one unit of work.
 const TILE_COLUMNS: usize = 32;
-const TILE_ROWS: usize = 8;
+const TILE_ROWS: usize = TILE as usize;
 
 /// Traces one ray per pixel at quality `delta`; the frame, and what it took. `row_done` is called once for each finished row, from any thread.
 pub fn render(method: &dyn Method, space: &ModelSpace, camera: &Camera, delta: f64, row_done: &(dyn Fn() + Sync)) -> (Frame, FrameStats) {
@@ -78,6 +78,11 @@ pub fn render(method: &dyn Method, space: &ModelSpace, camera: &Camera, delta: f
             || method.tracer(&sight),
             |tracer, (band, rows)| {
                 let mut counter = LineCounter { counts: StepCounts::default(), sets: &sets };
+                if tracer.lanes() > 1 {
+                    packets(&mut **tracer, camera, band, &mut counter, &mut |at, _, hit| rows[at] = hit);
+                    (0..rows.len() / width).for_each(|_| row_done());
+                    return counter.counts;
+                }
                 // Rows and columns are below 2^16.
                 let seen = |row: usize| window_rows.contains(&((band * TILE_ROWS + row) as u32));
                 for left in columns.clone().step_by(TILE_COLUMNS) {
@@ -107,6 +112,29 @@ pub fn render(method: &dyn Method, space: &ModelSpace, camera: &Camera, delta: f
         mean_level: mean(pixels.iter().flatten().map(|p| f64::from(p.level))),
     };
     (Frame { width: camera.width, height: camera.height, pixels }, stats)
+}
+
+/// Traces the rays of a band of tiles in packets, those of the [tiles](RaySource::batch) that the simulator takes; `each` is told of every ray: its place in the band, row by row, its query, and its hit.
+pub(super) fn packets(
+    tracer: &mut dyn Tracer,
+    camera: &Camera,
+    band: usize,
+    steps: &mut dyn StepSink,
+    each: &mut dyn FnMut(usize, &Query, Option<SurfaceHit>),
+) {
+    let columns = camera.width.div_ceil(TILE) as usize;
+    let first = band * camera.width as usize * TILE as usize;
+    let (mut places, mut queries) = (Vec::new(), Vec::new());
+    for tile in band * columns..(band + 1) * columns {
+        places.clear();
+        queries.clear();
+        camera.batch(tile, &mut |number, query| {
+            places.push(number as usize - first);
+            queries.push(*query);
+        });
+        let hits = trace_together(tracer, &queries, steps);
+        places.iter().zip(&queries).zip(hits).for_each(|((&at, query), hit)| each(at, query, hit));
+    }
 }
 
 fn kind_counts(map: &MemoryMap, counts: &StepCounts, sets: &LineSets) -> Vec<KindCount> {

@@ -1,10 +1,12 @@
 //! Pictures with several samples in each pixel.
 
+use super::frame::packets;
 use super::shade::encoded;
 use super::shading::{Light, Shader};
 use crate::method::Method;
-use crate::rays::{Camera, ModelSpace, Sight};
+use crate::rays::{Camera, ModelSpace, Sight, TILE};
 use crate::run::RayHit;
+use crate::step::NoSteps;
 use image::RgbImage;
 use rayon::prelude::*;
 
@@ -71,6 +73,10 @@ pub fn sampled(
     let [columns, rows] = camera.window(space);
     let side = camera.samples;
     let mut picture = Sampled::new(camera);
+    if method.tracer(&sight).lanes() > 1 {
+        sampled_in_packets(method, shader, camera, &sight, &mut picture, row_done);
+        return picture;
+    }
     picture.pixels.par_chunks_mut(picture.width as usize).enumerate().for_each_init(
         || method.tracer(&sight),
         |tracer, (y, pixels)| {
@@ -88,4 +94,42 @@ pub fn sampled(
         },
     );
     picture
+}
+
+/// The same with rays in packets, which are of the tiles of a band of samples.
+fn sampled_in_packets(
+    method: &dyn Method,
+    shader: &Shader<'_>,
+    camera: &Camera,
+    sight: &Sight,
+    picture: &mut Sampled,
+    row_done: &(dyn Fn() + Sync),
+) {
+    let (width, side) = (camera.width as usize, camera.samples as usize);
+    // The fewest rows of pixels whose samples fill whole bands.
+    let rows = (1..=TILE as usize).find(|rows| (rows * side).is_multiple_of(TILE as usize)).unwrap_or(TILE as usize);
+    let bands = rows * side / TILE as usize;
+    picture.pixels.par_chunks_mut(rows * picture.width as usize).enumerate().for_each_init(
+        || method.tracer(sight),
+        |tracer, (chunk, pixels)| {
+            let mut hits = Vec::new();
+            for band in chunk * bands..((chunk + 1) * bands).min(camera.height.div_ceil(TILE) as usize) {
+                let first = hits.len();
+                let left = (camera.height as usize - band * TILE as usize).min(TILE as usize);
+                hits.resize(first + left * width, None);
+                packets(&mut **tracer, camera, band, &mut NoSteps, &mut |at, query, hit| hits[first + at] = Some((*query, hit)));
+            }
+            // Samples of a pixel in their order, as without packets.
+            let columns = width / side;
+            for (at, light) in pixels.iter_mut().enumerate() {
+                let (x, y) = (at % columns, at / columns);
+                for sample in (0..side * side).map(|k| (y * side + k / side) * width + x * side + k % side) {
+                    if let Some((query, hit)) = &hits[sample] {
+                        shader.add(light, query, hit.as_ref());
+                    }
+                }
+            }
+            (0..pixels.len() / columns).for_each(|_| row_done());
+        },
+    );
 }

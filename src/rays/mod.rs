@@ -20,6 +20,6 @@ pub use eye::{Eye, ViewCone};
 pub use file::{RayFile, RayFileError};
 pub use query::Query;
 pub use rows::{Column, RAY_COLUMNS, RayRows, RowError};
-pub use source::{RaySource, Sight};
+pub use source::{RaySource, Sight, TILE};
 pub use space::{ModelRay, ModelSpace};
 pub use view::{DEFAULT_DIRECTION, DEFAULT_VIEW_ANGLE_DEGREES, View};

@@ -96,8 +96,8 @@ fn act(text: &mut String, act: Act, edges: Option<&Edges>) -> std::fmt::Result {
         Act::Tessellate => write!(text, "t"),
         Act::Triangles { count, hits } => write!(text, "x{count}:{hits}"),
         Act::Pop { dropped } => write!(text, "{}", if dropped { 'd' } else { 'o' }),
-        Act::End { found: false, .. } => write!(text, "n"),
-        Act::End { found: true, mapped } => write!(text, "{}", if mapped { 'm' } else { 'h' }),
+        Act::End { found: 0, .. } => write!(text, "n"),
+        Act::End { mapped, .. } => write!(text, "{}", if mapped { 'm' } else { 'h' }),
     }
 }
 

@@ -1,8 +1,9 @@
 //! Hits of rays, as they are, for programs outside.
 
 use crate::format::Scene;
-use crate::method::{Crossings, Method, SurfaceHit, Tracer};
+use crate::method::{Crossings, Method, SurfaceHit, Tracer, trace_together};
 use crate::rays::{Query, RaySource, Sight};
+use crate::step::NoSteps;
 use glam::DVec3;
 use npyz::WriterBuilder;
 use rayon::prelude::*;
@@ -80,13 +81,27 @@ impl HitRow {
 /// ([`cast_following`](super::cast_following) starts it there). `done` is told how many batches are done, from any thread.
 pub fn cast(method: &dyn Method, scene: &Scene, source: &dyn RaySource, sight: &Sight, done: &(dyn Fn(u64) + Sync)) -> Vec<HitRow> {
     let scene = method.surface(scene);
-    let row = |tracer: &mut dyn Tracer, query: &Query| tracer.hit(query).map_or(HitRow::NONE, |hit| HitRow::new(scene, query, &hit));
-    each_ray(method, source, sight, done, HitRow::NONE, row)
+    let row = |query: &Query, hit: Option<SurfaceHit>| hit.map_or(HitRow::NONE, |hit| HitRow::new(scene, query, &hit));
+    let rows =
+        |tracer: &mut dyn Tracer, queries: &[Query]| queries.iter().zip(met(tracer, queries)).map(|(query, hit)| row(query, hit)).collect();
+    each_batch(method, source, sight, done, HitRow::NONE, rows)
 }
 
 /// Whether every ray of `source` meets anything, in the same order.
 pub fn cast_any(method: &dyn Method, source: &dyn RaySource, sight: &Sight, done: &(dyn Fn(u64) + Sync)) -> Vec<bool> {
-    each_ray(method, source, sight, done, false, |tracer, query| tracer.hit(&Query { any: true, ..*query }).is_some())
+    each_batch(method, source, sight, done, false, |tracer, queries| {
+        let any: Vec<_> = queries.iter().map(|query| Query { any: true, ..*query }).collect();
+        met(tracer, &any).iter().map(Option::is_some).collect()
+    })
+}
+
+/// What each ray meets; in packets where the tracer takes them, but for rays that start where others end.
+fn met(tracer: &mut dyn Tracer, queries: &[Query]) -> Vec<Option<SurfaceHit>> {
+    match tracer.lanes() {
+        1 => queries.iter().map(|query| tracer.hit(query)).collect(),
+        _ if queries.iter().any(|query| query.after.is_some()) => queries.iter().map(|query| tracer.hit(query)).collect(),
+        _ => trace_together(tracer, queries, &mut NoSteps),
+    }
 }
 
 /// A method that does not find all hits of a ray.
@@ -134,27 +149,33 @@ fn all_of_each<T: Clone + Send + Sync>(
     none: T,
     of: impl Fn(&Query, &[SurfaceHit]) -> T + Sync,
 ) -> Result<Vec<T>, ClosestOnly> {
-    let each = each_ray(method, source, sight, done, Some(none), |tracer, query| {
+    let one = |tracer: &mut dyn Tracer, query: &Query| {
         let mut hits = Vec::new();
         tracer.all(query, &mut hits).then(|| of(query, &hits))
-    });
+    };
+    let all = |tracer: &mut dyn Tracer, queries: &[Query]| queries.iter().map(|query| one(tracer, query)).collect();
+    let each = each_batch(method, source, sight, done, Some(none), all);
     each.into_iter().collect::<Option<Vec<_>>>().ok_or(ClosestOnly)
 }
 
-/// What `of` makes of every ray of a source, in their order; `none` stands where there is no ray.
-fn each_ray<T: Clone + Send + Sync>(
+/// What `of` makes of the rays of a source, batch by batch, in their order; `none` stands where there is no ray.
+fn each_batch<T: Clone + Send + Sync>(
     method: &dyn Method,
     source: &dyn RaySource,
     sight: &Sight,
     done: &(dyn Fn(u64) + Sync),
     none: T,
-    of: impl Fn(&mut dyn Tracer, &Query) -> T + Sync,
+    of: impl Fn(&mut dyn Tracer, &[Query]) -> Vec<T> + Sync,
 ) -> Vec<T> {
     let rows = (0..source.batches()).into_par_iter().map_init(
         || method.tracer(sight),
         |tracer, batch| {
-            let mut rows = Vec::new();
-            source.batch(batch, &mut |number, query| rows.push((number, of(&mut **tracer, query))));
+            let (mut numbers, mut queries) = (Vec::new(), Vec::new());
+            source.batch(batch, &mut |number, query| {
+                numbers.push(number);
+                queries.push(*query);
+            });
+            let rows: Vec<_> = numbers.into_iter().zip(of(&mut **tracer, &queries)).collect();
             done(1);
             rows
         },

@@ -2,7 +2,7 @@
 //!
 //! Batches are given in order, in chunks, and whoever takes them holds the next chunks back: memory is bounded by what waits, not by the frame.
 
-use crate::method::{Before, Method, SurfaceHit, Tracer};
+use crate::method::{Before, Method, SurfaceHit, Tracer, trace_together};
 use crate::rays::{RaySource, Sight};
 use crate::sim::replay::Chunk;
 use crate::step::{Batch, Link, Nodes, Recorder};
@@ -34,6 +34,11 @@ pub trait Frame: Sync {
 
     /// Models among which its rays go from one space to the next.
     fn models(&self) -> usize {
+        1
+    }
+
+    /// Rays that are traced together.
+    fn lanes(&self) -> usize {
         1
     }
 
@@ -155,6 +160,10 @@ impl Frame for FrameRays<'_> {
         self.method.before(self.sight, frame)
     }
 
+    fn lanes(&self) -> usize {
+        self.method.tracer(self.sight).lanes()
+    }
+
     fn worker(&self, frame: usize) -> Box<dyn Worker + '_> {
         let is_one = self.rays.frame_starts().is_empty();
         let tracer = if is_one { self.method.tracer(self.sight) } else { self.method.tracer(&self.sight.of_frame(frame)) };
@@ -167,6 +176,15 @@ impl Worker for RayWorker<'_> {
         let mut hits = Vec::new();
         let mut recorder = Recorder::default();
         let is_ordered = self.rays.is_ordered();
+        if self.tracer.lanes() > 1 && !is_ordered {
+            let (mut numbers, mut queries) = (Vec::new(), Vec::new());
+            self.rays.batch(batch, &mut |number, query| {
+                numbers.push(number);
+                queries.push(*query);
+            });
+            let found = trace_together(&mut *self.tracer, &queries, &mut recorder);
+            return (recorder.batch(), numbers.into_iter().zip(found).map(|(ray, hit)| RayHit { ray, hit }).collect());
+        }
         self.rays.batch(batch, &mut |number, query| {
             if is_ordered {
                 recorder.link(Link { number, after: query.after });

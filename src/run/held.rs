@@ -1,6 +1,6 @@
 //! A frame traced once and kept, for replays one after the other.
 
-use super::simulate::{refuse, replay};
+use super::simulate::{Demands, replay};
 use super::{Frame, Job, Traced};
 use crate::sim::replay::{Chunk, ReplayError, Run};
 use crate::step::Nodes;
@@ -9,8 +9,7 @@ use crate::step::Nodes;
 pub struct HeldFrame {
     nodes: Nodes,
     chunks: Vec<Chunk>,
-    has_work: bool,
-    models: usize,
+    demands: Demands,
 }
 
 impl HeldFrame {
@@ -23,15 +22,15 @@ impl HeldFrame {
             chunks.push(traced.chunk());
             true
         });
-        Self { nodes: frame.nodes(), chunks, has_work, models: frame.models() }
+        Self { nodes: frame.nodes(), chunks, demands: Demands { has_work, models: frame.models(), lanes: frame.lanes() } }
     }
 
     /// Runs them on a machine.
     ///
     /// # Errors
-    /// The machine is impossible or too large, its units were to do what they cannot ([`ReplayError::WorkByUnits`], [`ReplayError::ModelsByUnits`]), or nothing happens any more while rays are under way.
+    /// The machine is impossible or too large, its units were to do what they cannot ([`ReplayError::WorkByUnits`], [`ReplayError::ModelsByUnits`], [`ReplayError::PacketsByUnits`]), or nothing happens any more while rays are under way.
     pub fn run(&self, job: &Job) -> Result<Run, ReplayError> {
-        refuse(job, self.has_work, self.models)?;
+        self.demands.check(job)?;
         replay(job, self.nodes, self.chunks.iter().cloned(), 1)
     }
 }

@@ -55,12 +55,26 @@ pub fn check(machine: &Machine, compute: Compute) -> Result<(), ReplayError> {
     replay::check(machine, compute == Compute::Units)
 }
 
-/// Refuses traversal units what they cannot do: work before a frame, and rays through several models.
-pub(super) fn refuse(job: &Job, has_work: bool, models: usize) -> Result<(), ReplayError> {
-    match job.compute {
-        Compute::Units if has_work => Err(ReplayError::WorkByUnits),
-        Compute::Units if models > 1 => Err(ReplayError::ModelsByUnits(models)),
-        _ => Ok(()),
+/// What a frame asks of whoever runs it.
+#[derive(Clone, Copy)]
+pub(super) struct Demands {
+    /// Work before its rays.
+    pub has_work: bool,
+    /// Models that its rays go through.
+    pub models: usize,
+    /// Rays that are traced together.
+    pub lanes: usize,
+}
+
+impl Demands {
+    /// Refuses traversal units what they cannot do: work before a frame, rays through several models, and packets.
+    pub fn check(&self, job: &Job) -> Result<(), ReplayError> {
+        match job.compute {
+            Compute::Units if self.has_work => Err(ReplayError::WorkByUnits),
+            Compute::Units if self.models > 1 => Err(ReplayError::ModelsByUnits(self.models)),
+            Compute::Units if self.lanes > 1 => Err(ReplayError::PacketsByUnits(self.lanes)),
+            _ => Ok(()),
+        }
     }
 }
 
@@ -85,11 +99,12 @@ fn threads_of_replay(replays: usize) -> usize {
 /// `look` sees the rays, in order, before they go to the machines.
 pub fn simulate(frame: &dyn Frame, jobs: &[Job], look: &mut dyn FnMut(&Traced)) -> Vec<Result<Run, ReplayError>> {
     thread::scope(|scope| {
-        let (nodes, models) = (frame.nodes(), frame.models());
+        let nodes = frame.nodes();
         let threads = threads_of_replay(jobs.len());
         let frames = 0..=frame.frame_starts().len();
         let mut works = frames.filter_map(|of| frame.before(of)).map(|work| work.batches() > 0);
         let has_work = jobs.iter().any(|job| job.compute == Compute::Units) && works.any(|is| is);
+        let demands = Demands { has_work, models: frame.models(), lanes: frame.lanes() };
         let (senders, runs): (Vec<SyncSender<Chunk>>, Vec<_>) = jobs
             .iter()
             .map(|job| {
@@ -97,7 +112,7 @@ pub fn simulate(frame: &dyn Frame, jobs: &[Job], look: &mut dyn FnMut(&Traced)) 
                 (
                     sender,
                     scope.spawn(move || {
-                        refuse(job, has_work, models)?;
+                        demands.check(job)?;
                         replay(job, nodes, receiver.into_iter(), threads)
                     }),
                 )

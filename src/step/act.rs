@@ -10,9 +10,10 @@
 //! | `Triangles` | triangle tests; bit k of `hits`: the k-th is met | `tri_test`, and of those met `hit_divide` and `hit_select` |
 //! | `Work` | `count` operations that no block of the RTL does, of number `work` among the method's own | these |
 //! | `Pop` | a node is taken from the stack, and `dropped` if it lies behind the closest hit | |
-//! | `End` | the ray is done; a hit was `found` or not, and is `mapped` to the full resolution | two `hit_divide`, `bary_map` if mapped |
+//! | `End` | the ray is done, or those of a packet; `found` of them have a hit, which is `mapped` to the full resolution | for each found two `hit_divide`, `bary_map` if mapped |
 //!
-//! Each line asked for takes a `node_address`, and each ray begins with a `ray_setup`. Hardware for rays that start on a surface has blocks of its own for some of these
+//! Each line asked for takes a `node_address`, and each ray begins with a `ray_setup`. Rays of a packet take a step together: what tests a node, or asks whether a triangle
+//! serves, is done for each of its `lanes`; lines are asked for once, and a triangle is split once. Hardware for rays that start on a surface has blocks of its own for some of these
 //! ([`Hardware::block`](crate::hardware::Hardware::block)).
 
 use super::{NodeShape, SectionId};
@@ -83,7 +84,7 @@ pub enum Act {
     Triangles { count: u32, hits: u32 },
     Work { work: u32, count: u32 },
     Pop { dropped: bool },
-    End { found: bool, mapped: bool },
+    End { found: u32, mapped: bool },
 }
 
 /// A step: the lines it asks for, if any, and the act that follows when they and those of the steps before are there.
@@ -95,6 +96,8 @@ pub struct Step {
     pub fetch: Option<Fetch>,
     /// The act.
     pub act: Act,
+    /// Rays that take it together, 1 to [`MAX_RUN`](super::MAX_RUN): 1, or those of a packet.
+    pub lanes: u32,
 }
 
 impl Act {
@@ -112,13 +115,13 @@ impl Step {
     /// An act that needs no lines of its own.
     #[inline(always)]
     pub const fn of(act: Act) -> Self {
-        Self { visits: false, fetch: None, act }
+        Self { visits: false, fetch: None, act, lanes: 1 }
     }
 
     /// An act on lines.
     #[inline(always)]
     pub const fn on(fetch: Fetch, act: Act) -> Self {
-        Self { visits: false, fetch: Some(fetch), act }
+        Self { visits: false, fetch: Some(fetch), act, lanes: 1 }
     }
 
     /// The same as the first step of a node's visit.
@@ -128,10 +131,17 @@ impl Step {
         Self { visits: true, ..self }
     }
 
+    /// The same, taken by so many rays together.
+    #[inline(always)]
+    #[must_use]
+    pub const fn by(self, lanes: u32) -> Self {
+        Self { lanes, ..self }
+    }
+
     /// The end of a ray.
     #[inline(always)]
     pub const fn end(found: bool, mapped: bool) -> Self {
-        Self::of(Act::End { found, mapped })
+        Self::of(Act::End { found: found as u32, mapped })
     }
 
     /// Adds what it has the blocks do.
@@ -141,20 +151,22 @@ impl Step {
             add(Operation::NodeAddress, fetch.lines);
         }
         match self.act {
-            Act::Fetch | Act::Pop { .. } | Act::End { found: false, .. } => (),
-            Act::Children { shape, .. } => shape.facts().path.iter().for_each(|&(operation, count)| add(operation, count)),
+            Act::Fetch | Act::Pop { .. } => (),
+            Act::Children { shape, .. } => shape.facts().path.iter().for_each(|&(operation, count)| add(operation, self.lanes * count)),
             Act::Work { work, count } => operations.add_work(work as usize, count.into()),
             Act::Decide => add(Operation::TreeDeciders, 1),
-            Act::LodTest { .. } => add(Operation::LodTest, 1),
+            Act::LodTest { .. } => add(Operation::LodTest, self.lanes),
             Act::Tessellate => add(Operation::Tessellate, 1),
             Act::Triangles { count, hits } => {
                 add(Operation::TriTest, count);
                 add(Operation::HitDivide, hits.count_ones());
                 add(Operation::HitSelect, hits.count_ones());
             }
-            Act::End { found: true, mapped } => {
-                add(Operation::HitDivide, 2);
-                add(Operation::BaryMap, u32::from(mapped));
+            Act::End { found, mapped } => {
+                // Of a packet the first was set up when it began.
+                add(Operation::RaySetup, self.lanes - 1);
+                add(Operation::HitDivide, 2 * found);
+                add(Operation::BaryMap, if mapped { found } else { 0 });
             }
         }
     }
@@ -208,6 +220,33 @@ mod tests {
             ("tree_deciders", 1),
             ("child_prisms", 1),
         ];
+        assert_eq!(some, wanted);
+    }
+
+    #[test]
+    fn a_packet_asks_once_and_tests_for_each_of_its_rays() {
+        let fetch = Fetch::new(SectionId::new(0), 0, 2);
+        let mut operations = Operations::default();
+        let steps = [
+            Step::on(fetch, Act::Children { shape: NodeShape::Tree, met: 3 }).by(5),
+            Step::of(Act::LodTest { refine: true }).by(7),
+            Step::on(fetch, Act::Tessellate),
+            Step::of(Act::End { found: 4, mapped: true }).by(7),
+        ];
+        steps.iter().for_each(|step| step.count(&mut operations));
+        let some: Vec<_> = operations.iter().filter(|&(_, n)| n > 0).map(|(operation, n)| (operation.name(), n)).collect();
+        let mut wanted = [
+            ("ray_setup", 6),
+            ("node_address", 4),
+            ("child_test", 5),
+            ("lod_test", 7),
+            ("tessellate", 1),
+            ("hit_divide", 8),
+            ("bary_map", 4),
+        ];
+        let mut some = some;
+        some.sort_unstable();
+        wanted.sort_unstable();
         assert_eq!(some, wanted);
     }
 }

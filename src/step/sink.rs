@@ -19,9 +19,9 @@ impl StepSink for NoSteps {
 /// Counts what rays do.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct StepCounts {
-    /// Groups of child boxes tested: four, of `bvh6` six.
+    /// Groups of child boxes tested: four, of `bvh6` six; by each ray of a packet.
     pub nodes: u64,
-    /// LOD tests.
+    /// LOD tests, by each ray of a packet.
     pub lod_tests: u64,
     /// Triangle tests.
     pub triangles: u64,
@@ -47,9 +47,11 @@ impl StepSink for StepCounts {
         if let Some(fetch) = step.fetch {
             self.lines[fetch.section.place()] += u64::from(fetch.lines);
         }
-        self.nodes += u64::from(step.act.met().is_some());
+        if step.act.met().is_some() {
+            self.nodes += u64::from(step.lanes);
+        }
         match step.act {
-            Act::LodTest { .. } => self.lod_tests += 1,
+            Act::LodTest { .. } => self.lod_tests += u64::from(step.lanes),
             Act::Triangles { count, .. } => self.triangles += u64::from(count),
             _ => (),
         }

@@ -4,15 +4,16 @@
 //! |---|---|
 //! | 63:32 | the first line, `hits`, or the `count` of work |
 //! | 31:28 | act; of `Children` 8 and the three lower bits of the shape |
-//! | 27:22 | `met`, `count` or `work` |
-//! | 21 | `refine`, `dropped`, `found`, or bit 3 of the shape |
+//! | 27:22 | `met`, `count`, `work` or `found` |
+//! | 21 | `refine`, `dropped`, or bit 3 of the shape |
 //! | 20 | `mapped`, or bit 4 of the shape |
 //! | 19:17 | section |
 //! | 16:14 | lines; 0 if none are asked for |
+//! | 13 | taken by a packet |
 //! | 12 | stores |
 //! | 11 | joins |
 //! | 10 | visits |
-//! | 9:0 | place |
+//! | 9:0 | place; of a packet 9:5 its rays less one, 4:0 the place |
 
 use super::{Act, Fetch, MAX_FETCH_LINES, MAX_PLACES, MAX_RUN, NodeShape, SectionId, Step};
 use crate::block::MAX_WORKS;
@@ -24,10 +25,15 @@ const FLAG: u32 = 21;
 const MAPPED: u32 = 20;
 const SECTION: u32 = 17;
 const LINES: u32 = 14;
+const PACKET: u32 = 13;
 const STORES: u32 = 12;
 const JOINS: u32 = 11;
 const VISITS: u32 = 10;
+const LANES: u32 = 5;
 const PLACE: u32 = 0;
+
+/// Places of lines in a record that a packet reads.
+const PACKET_PLACES: u32 = 1 << LANES;
 
 const FETCH: u64 = 0;
 const WORK: u64 = 1;
@@ -65,7 +71,7 @@ impl StepWord {
     /// The word.
     ///
     /// # Panics
-    /// More lines than [`MAX_FETCH_LINES`] or none, more tests than [`MAX_RUN`], work beyond [`MAX_WORKS`], a place beyond [`MAX_PLACES`], or tests of triangles, work or the end together with lines.
+    /// More lines than [`MAX_FETCH_LINES`] or none, more tests than [`MAX_RUN`], work beyond [`MAX_WORKS`], a place beyond [`MAX_PLACES`] (of a packet 32), no rays or more than [`MAX_RUN`], or tests of triangles, work or the end together with lines.
     #[inline(always)]
     pub fn pack(step: Step) -> Self {
         let (act, number, flag, mapped, hits) = match step.act {
@@ -79,14 +85,19 @@ impl StepWord {
             Act::Triangles { count, hits } => (TRIANGLES, count, false, false, hits),
             Act::Work { work, count } => (WORK, work, false, false, count),
             Act::Pop { dropped } => (POP, 0, dropped, false, 0),
-            Act::End { found, mapped } => (END, 0, found, mapped, 0),
+            Act::End { found, mapped } => (END, found, false, mapped, 0),
         };
         let most = if act == WORK { MAX_WORKS as u32 - 1 } else { MAX_RUN };
         assert!(number <= most, "{step:?}: more than a step holds");
         let mut word = act << ACT | u64::from(number) << NUMBER | u64::from(flag) << FLAG | u64::from(mapped) << MAPPED;
         word |= u64::from(step.visits) << VISITS | u64::from(hits) << UPPER;
+        let places = if step.lanes == 1 { MAX_PLACES } else { PACKET_PLACES };
+        if step.lanes != 1 {
+            assert!((2..=MAX_RUN).contains(&step.lanes), "{step:?}: more than a step holds");
+            word |= 1 << PACKET | u64::from(step.lanes - 1) << LANES;
+        }
         if let Some(fetch) = step.fetch {
-            let fits = (1..=MAX_FETCH_LINES).contains(&fetch.lines) && fetch.place < MAX_PLACES && !matches!(act, TRIANGLES | WORK | END);
+            let fits = (1..=MAX_FETCH_LINES).contains(&fetch.lines) && fetch.place < places && !matches!(act, TRIANGLES | WORK | END);
             assert!(fits, "{step:?}: more than a step holds");
             word |= u64::from(fetch.line) << UPPER
                 | (fetch.section.place() as u64) << SECTION
@@ -128,21 +139,26 @@ impl StepWord {
             TRIANGLES => Act::Triangles { count: number, hits: upper },
             WORK => Act::Work { work: number, count: upper },
             POP => Act::Pop { dropped: flag },
-            END => Act::End { found: flag, mapped: self.bits(MAPPED, 1) == 1 },
+            END => Act::End { found: number, mapped: self.bits(MAPPED, 1) == 1 },
             children => {
                 let shape = (children & 7) as u32 | u32::from(flag) << 3 | self.bits(MAPPED, 1) << 4; // five bits
                 Act::Children { shape: NodeShape::of_number(shape), met: number }
             }
         };
+        let low = self.bits(PLACE, u64::from(MAX_PLACES) - 1);
+        let (lanes, place) = match self.bits(PACKET, 1) {
+            0 => (1, low),
+            _ => (1 + (low >> LANES), low & (PACKET_PLACES - 1)),
+        };
         let fetch = Fetch {
             section: SectionId::new(self.bits(SECTION, 7) as usize),
             line: upper,
             lines: self.bits(LINES, 7),
-            place: self.bits(PLACE, u64::from(MAX_PLACES) - 1),
+            place,
             joins: self.bits(JOINS, 1) == 1,
             stores: self.bits(STORES, 1) == 1,
         };
-        Step { visits: self.bits(VISITS, 1) == 1, fetch: (fetch.lines > 0).then_some(fetch), act }
+        Step { visits: self.bits(VISITS, 1) == 1, fetch: (fetch.lines > 0).then_some(fetch), act, lanes }
     }
 }
 
@@ -175,9 +191,9 @@ mod tests {
             Act::Tessellate,
             Act::Pop { dropped: true },
             Act::Pop { dropped: false },
-            Act::End { found: true, mapped: false },
-            Act::End { found: true, mapped: true },
-            Act::End { found: false, mapped: true },
+            Act::End { found: 1, mapped: false },
+            Act::End { found: 32, mapped: true },
+            Act::End { found: 0, mapped: true },
         ];
         let children = NodeShape::ALL.into_iter().zip(0..).map(|(shape, met)| Act::Children { shape, met });
         for (k, act) in acts.into_iter().chain(children).enumerate() {
@@ -191,9 +207,13 @@ mod tests {
             };
             same(Step::of(act));
             same(Step::of(act).visiting());
+            for lanes in [2, 17, 32] {
+                same(Step::of(act).by(lanes));
+            }
             if !matches!(act, Act::End { .. }) {
                 same(Step::on(fetch, act));
                 same(Step::on(fetch, act).visiting());
+                same(Step::on(Fetch { place: fetch.place % 32, ..fetch }, act).by(2 + k as u32).visiting());
             }
         }
         for work in [0, 15] {
@@ -216,7 +236,10 @@ mod tests {
             Step::on(fetch, Act::Triangles { count: 1, hits: 1 }),
             Step::on(fetch, Act::Work { work: 0, count: 1 }),
             Step::of(Act::Work { work: 16, count: 1 }),
-            Step::on(fetch, Act::End { found: true, mapped: true }),
+            Step::on(fetch, Act::End { found: 1, mapped: true }),
+            Step::of(Act::Tessellate).by(0),
+            Step::of(Act::Tessellate).by(MAX_RUN + 1),
+            Step::on(Fetch { place: 32, ..fetch }, Act::Fetch).by(2),
         ];
         for step in bad {
             assert!(std::panic::catch_unwind(|| StepWord::pack(step)).is_err(), "{step:?}");

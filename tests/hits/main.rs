@@ -7,6 +7,7 @@ mod entering;
 mod equivalence;
 mod golden;
 mod grid;
+mod packets;
 mod plan;
 mod promise;
 mod prune;

@@ -104,9 +104,7 @@ impl<'a> Tolerance<'a> {
     }
 }
 
-fn meet(h: &Hierarchy, ray: &Ray, cone: &Tolerance<'_>, traverser: &mut LodTraverser<'_>) -> Option<Met> {
-    let mut closest = ClosestHit::new(h.levels);
-    traverser.trace(ray, &mut NoSteps, &mut closest);
+fn meet(h: &Hierarchy, ray: &Ray, cone: &Tolerance<'_>, closest: &ClosestHit) -> Option<Met> {
     let hit = closest.record()?;
     let tree = hit.tree.get() as usize;
     let corners = lattice::node(h.levels, h.levels, hit.full_node.get() as u32);
@@ -128,12 +126,27 @@ fn promised(levels: u32, tolerance: f64, slope: f64) -> Option<f64> {
     (growth <= 0.2).then(|| (1.5 + 1.0 / 256.0 + 6.0 * growth) * tolerance + 3.0 * 2f64.powf(f64::from(levels)) + lost)
 }
 
-fn check(name: &str, h: &Hierarchy, (scene, surface): (&Scene, &FinestSurface), rays: impl Iterator<Item = Ray>) -> Seen {
+/// Rays with what each has hit, as many together as `lanes` says: alone, or as a packet.
+fn traced(h: &Hierarchy, scene: &Scene, lanes: usize, rays: &[Ray]) -> Vec<ClosestHit> {
     let mut traverser = LodTraverser::new(LodImage::of(scene));
+    let none = || ClosestHit::new(h.levels);
+    if lanes > 1 {
+        let packets = rays.chunks(lanes).map(|packet| traverser.trace_packet(packet, &mut NoSteps, packet.iter().map(|_| none())));
+        return packets.flatten().collect();
+    }
+    let alone = |ray| {
+        let mut closest = none();
+        traverser.trace(ray, &mut NoSteps, &mut closest);
+        closest
+    };
+    rays.iter().map(alone).collect()
+}
+
+fn check(name: &str, h: &Hierarchy, (scene, surface): (&Scene, &FinestSurface), lanes: usize, rays: &[Ray]) -> Seen {
     let mut seen = Seen::default();
-    for ray in rays {
+    for (&ray, closest) in rays.iter().zip(traced(h, scene, lanes, rays)) {
         let cone = Tolerance::of(&ray);
-        let Some(met) = meet(h, &ray, &cone, &mut traverser) else { continue };
+        let Some(met) = meet(h, &ray, &cone, &closest) else { continue };
         let (apart, tolerance) = (met.apart, met.tolerance);
         let Some(most) = promised(h.levels, tolerance, cone.slope) else { continue };
         let is_worse = tolerance >= 1000.0 && apart > tolerance * seen.worst.min(seen.nearest);
@@ -209,8 +222,8 @@ fn what_is_seen_is_within_one_and_a_half_tolerances() {
         let surface = FinestSurface::new(&h);
         let space = ModelSpace::of(&scene);
         let truth = (&scene, &surface);
-        let others = check(name, &h, truth, any_rays(&h, each as usize / 4, seed).into_iter());
-        let seen = check(name, &h, truth, views(&space, each * 3 / 4, seed)).and(&others);
+        let others = check(name, &h, truth, 1, &any_rays(&h, each as usize / 4, seed));
+        let seen = check(name, &h, truth, 1, &views(&space, each * 3 / 4, seed).collect::<Vec<_>>()).and(&others);
         let Seen { hits, worst, nearest, left_out, .. } = seen;
         println!("{name}: {hits} hits, worst {worst:.3} tolerances, {nearest:.3} from the nearest point; {left_out} left out");
         all = all.and(&seen);
@@ -223,6 +236,28 @@ fn what_is_seen_is_within_one_and_a_half_tolerances() {
     // Within twice of what was seen: no bound that says nothing.
     assert!(all.worst > 0.75 && all.nearest > 0.75, "worst {}, {} from the nearest point", all.worst, all.nearest);
     assert!(all.left_out <= all.hits / 1000, "{} left out", all.left_out);
+}
+
+/// A packet has the most detail that any of its rays asks for: each keeps its own promise, whatever rays go with it.
+#[test]
+fn rays_of_packets_see_within_their_own_tolerances() {
+    let rays = number("LODRAY_RAYS", 400_000) / 4;
+    let models = models(2);
+    let each = rays / models.len() as u64;
+    let mut all = Seen::default();
+    for (index, (name, make)) in models.iter().enumerate() {
+        let form = VertexForm::ALL[index % 3];
+        let scene = scene_of(&make(form));
+        let h = scene.decode();
+        let (surface, space) = (FinestSurface::new(&h), ModelSpace::of(&scene));
+        for lanes in [2, 32] {
+            let seen = check(name, &h, (&scene, &surface), lanes, &any_rays(&h, each as usize / 8, 3));
+            let views = check(name, &h, (&scene, &surface), lanes, &views(&space, each * 3 / 8, 3).collect::<Vec<_>>());
+            all = all.and(&seen).and(&views);
+        }
+    }
+    println!("{} hits, {} of them coarse, worst {:.3} tolerances", all.hits, all.coarse, all.worst);
+    assert!(all.hits > rays / 3 && all.coarse > all.hits / 100, "{} hits, {} of them coarse", all.hits, all.coarse);
 }
 
 /// By how much s may be rounded down.

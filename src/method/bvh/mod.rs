@@ -2,6 +2,7 @@
 //! own, or of 32 bits; or six children and boxes of 8 bits in a frame.
 
 mod map;
+mod packet;
 mod trace;
 
 pub use super::mesh_bvh::{
@@ -11,6 +12,7 @@ pub use super::mesh_bvh::{
 pub use map::{LEAVES, NODES, bvh_map};
 pub use trace::BvhTraverser;
 
+use super::packet::{PACKET, PacketOfQueries};
 use super::{AllHits, ClosestHit, Departure, Knob, Knobs, Landing, Method, MethodUnit, Over, Registered, SurfaceHit, Trace, Tracer};
 use crate::block::{Operation, Work};
 use crate::bvh::BvhError;
@@ -106,7 +108,7 @@ pub(super) const UNIT: &[Operation] = &{
 pub static METHOD: Registered = Registered {
     name: "bvh",
     help: "Quad-BVH of the full-resolution mesh, boxes of up to 16 bits",
-    knobs: &[&NODE_BOXES, &NODE_ORDER, &LEAF_LAYOUT, &LEAF_SIZE],
+    knobs: &[&NODE_BOXES, &NODE_ORDER, &LEAF_LAYOUT, &LEAF_SIZE, &PACKET],
     error: None,
     over: Over::Scene,
     unit: Some(MethodUnit { blocks: UNIT, has_levels: false }),
@@ -147,7 +149,7 @@ const FACTOR: u32 = 8;
 pub static METHOD_SIX: Registered = Registered {
     name: "bvh6",
     help: "BVH of six children a node, in 64 bytes, with boxes in steps of 8 bits",
-    knobs: &[&NODE_BOXES, &NODE_ORDER, &LEAF_LAYOUT, &LEAF_SIZE],
+    knobs: &[&NODE_BOXES, &NODE_ORDER, &LEAF_LAYOUT, &LEAF_SIZE, &PACKET],
     error: None,
     over: Over::Scene,
     unit: Some(MethodUnit { blocks: UNIT_OF_SIX, has_levels: false }),
@@ -159,7 +161,7 @@ pub static METHOD_SIX: Registered = Registered {
 pub static METHOD_WIDE: Registered = Registered {
     name: "bvh32",
     help: "The same with 32-bit boxes",
-    knobs: &[&NODE_ORDER, &LEAF_LAYOUT, &LEAF_SIZE],
+    knobs: &[&NODE_ORDER, &LEAF_LAYOUT, &LEAF_SIZE, &PACKET],
     error: None,
     over: Over::Scene,
     unit: Some(MethodUnit { blocks: &unit(Operation::BoxTest32), has_levels: false }),
@@ -225,6 +227,8 @@ impl FullOptions {
 struct Bvh {
     bvh: FullBvh,
     space: ModelSpace,
+    /// Rays that are traced together.
+    lanes: usize,
 }
 
 impl Bvh {
@@ -233,7 +237,8 @@ impl Bvh {
         let hierarchy = scene.decode();
         let key = || TreeKey::new(scene, &options, scene.levels());
         let tree = store.tree(&key, scene.finest_triangles(), &mut || FullBuilder::new(&hierarchy)?.tree(&options))?;
-        Ok(Box::new(Self { bvh: tree.with_leaves(&hierarchy, options.layout)?, space: ModelSpace::of(scene) }))
+        let bvh = tree.with_leaves(&hierarchy, options.layout)?;
+        Ok(Box::new(Self { bvh, space: ModelSpace::of(scene), lanes: super::packet::chosen(knobs) }))
     }
 }
 
@@ -243,7 +248,7 @@ impl Method for Bvh {
     }
 
     fn tracer(&self, _: &Sight) -> Box<dyn Tracer + '_> {
-        Box::new(BvhTracer::new(BvhTraverser::new(&self.bvh), self.space, self.bvh.levels))
+        Box::new(BvhTracer::new(BvhTraverser::new(&self.bvh), self.space, self.bvh.levels).in_packets(self.lanes))
     }
 }
 
@@ -253,11 +258,19 @@ pub(super) struct BvhTracer {
     space: ModelSpace,
     /// Number of splits N of the scene.
     levels: u32,
+    /// Rays that are traced together.
+    lanes: usize,
+    packet: PacketOfQueries,
 }
 
 impl BvhTracer {
     pub fn new(traverser: BvhTraverser, space: ModelSpace, levels: u32) -> Self {
-        Self { traverser, space, levels }
+        Self { traverser, space, levels, lanes: 1, packet: PacketOfQueries::default() }
+    }
+
+    /// The same with so many rays traced together.
+    pub fn in_packets(self, lanes: usize) -> Self {
+        Self { lanes, ..self }
     }
 }
 
@@ -288,5 +301,15 @@ impl Trace for BvhTracer {
 
     fn is_mapped(&self) -> bool {
         self.traverser.is_mapped()
+    }
+
+    fn lanes(&self) -> usize {
+        self.lanes
+    }
+
+    fn packet<S: StepSink>(&mut self, queries: &[Query], hits: &mut Vec<Option<SurfaceHit>>, steps: &mut S) {
+        self.packet.enter(queries, &self.space, 1.0, self.levels);
+        self.traverser.packet(&mut self.packet.packet, steps);
+        self.packet.hits(hits);
     }
 }

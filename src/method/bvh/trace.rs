@@ -2,9 +2,6 @@
 
 use super::map::{LEAVES, NODES, bvh_map, node_lines};
 use crate::block::Block;
-use crate::block::box_test32::{self, BoxTest32};
-use crate::block::child_sort;
-use crate::block::child_test::sort;
 use crate::block::ray_setup::{self, RaySetup};
 use crate::block::start_setup::{self, StartSetup};
 use crate::block::start_test::{self, Below, StartTest};
@@ -13,25 +10,37 @@ use crate::bvh::BvhChild32;
 use crate::format::{BvhChild, BvhNode, ChildRef, SixNode};
 #[cfg(target_arch = "x86_64")]
 use crate::method::children::has_lanes;
-use crate::method::children::{bvh_children, coded_children, quarter, six_children};
+use crate::method::children::{bvh_children, coded_children, quarter, six_children, wide_children};
 use crate::method::leave;
 use crate::method::mesh_bvh::{FullBvh, FullNodes, Leaf, Leaves, cut_triangle};
 use crate::method::stack::{Entry, Op, TraversalStack, push_nearest, push_sorted};
 use crate::method::{Departure, Hit, HitSink, is_beyond};
-use crate::num::{LINE_BYTES, Point, Ray, Rotation, Start, U, Vec3, Wire};
+use crate::num::{LINE_BYTES, Point, Ray, Rotation, Start, U, Wire};
 use crate::step::{Act, Fetch, MemoryMap, NodeShape, Step, StepSink, TriangleRun};
 use std::sync::Arc;
 
 /// A ray in the frame that it was last turned into.
-struct Turned {
+pub(super) struct Turned {
     rotation: u32,
-    setup: ray_setup::Out,
+    pub setup: ray_setup::Out,
+}
+
+/// The entry of a child that was met, but for its distance.
+#[inline(always)]
+pub(super) fn waiting(child: ChildRef) -> Entry {
+    // Inner nodes and leaves have the kinds of their entries one lower.
+    Entry { kind: U::new(child.kind.get() - 1), level: U::new(child.count.get()), index: child.index, ..Entry::default() }
 }
 
 impl Turned {
+    /// A ray as it is.
+    pub fn not(setup: &ray_setup::Out) -> Self {
+        Self { rotation: 0, setup: *setup }
+    }
+
     /// Turns `ray` into the frame of this number, and says whether it was in another one. The ray as it is is kept elsewhere, so number 0 turns nothing.
     #[inline(always)]
-    fn turn(&mut self, rotation: u32, ray: &Ray) -> bool {
+    pub fn turn(&mut self, rotation: u32, ray: &Ray) -> bool {
         let turns = rotation != 0 && rotation != self.rotation;
         if turns {
             let (origin, direction) = Rotation::numbered(rotation).ray(ray.origin, ray.direction);
@@ -43,9 +52,9 @@ impl Turned {
 
 /// Traces rays through a BVH; keeps its stack from ray to ray.
 pub struct BvhTraverser {
-    levels: u32,
-    nodes: Arc<FullNodes>,
-    leaves: Arc<Leaves>,
+    pub(super) levels: u32,
+    pub(super) nodes: Arc<FullNodes>,
+    pub(super) leaves: Arc<Leaves>,
     map: MemoryMap,
     /// Lines of other BVHs before its own, in each section.
     before: [u64; 2],
@@ -171,7 +180,7 @@ impl BvhTraverser {
             }
             _ => (Start::default(), RaySetup::eval(&ray_setup::In { origin: ray.origin, direction: ray.direction })),
         };
-        let mut turned = Turned { rotation: 0, setup };
+        let mut turned = Turned::not(&setup);
         self.stack.clear();
         let mut next = Some(Entry::default());
         loop {
@@ -217,15 +226,7 @@ impl BvhTraverser {
         sink: &H,
     ) -> Option<Entry> {
         let t_max = sink.t_max();
-        // Inner nodes and leaves have the kinds of their entries one lower.
-        let waiting = |child: ChildRef| Entry {
-            kind: U::new(child.kind.get() - 1),
-            level: U::new(child.count.get()),
-            index: child.index,
-            ..Entry::default()
-        };
-        let lines = node_lines(&self.nodes);
-        let fetch = Fetch::new(NODES, self.map.line(NODES, self.before[NODES.place()] + u64::from(lines) * index as u64), lines);
+        let fetch = self.fetch_node(index);
         match &*self.nodes {
             FullNodes::Local(nodes) => {
                 let line = &nodes[index];
@@ -241,17 +242,7 @@ impl BvhTraverser {
             }
             FullNodes::Boxes32(nodes) => {
                 let child = |k| BvhChild32::from_words(&nodes[index][4 * k..4 * k + 4]);
-                let mut tests = child_sort::In::default();
-                for k in 0..4 {
-                    let BvhChild32 { child, lo, hi } = child(k);
-                    if child.kind.get() != ChildRef::EMPTY {
-                        // What is ahead of a start is ahead of its whole point, if the box reaches as far down as the start's fraction can.
-                        let lo = if LEAVING { Vec3::new(lo.x.get() - 1, lo.y.get() - 1, lo.z.get() - 1) } else { lo };
-                        let test = BoxTest32::eval(&box_test32::In { ray: *setup, t_max, lo, hi });
-                        (tests.hit[k], tests.t_near[k]) = (test.hit, test.t_near);
-                    }
-                }
-                let tests = sort(&tests);
+                let tests = wide_children::<LEAVING>(setup, t_max, &nodes[index]);
                 steps.step(Step::on(fetch, Act::Children { shape: NodeShape::Wide, met: tests.met() }).visiting());
                 push_sorted(&mut self.stack, &tests, |k| waiting(child(k).child))
             }
@@ -274,9 +265,16 @@ impl BvhTraverser {
         }
     }
 
-    /// Reads a leaf and tests its triangles.
+    /// The lines of node `index`.
     #[inline(always)]
-    fn leaf<S: StepSink, H: HitSink, const LEAVING: bool>(&mut self, ray: &Ray, start: &Start, leaf: &Leaf, steps: &mut S, sink: &mut H) {
+    pub(super) fn fetch_node(&self, index: usize) -> Fetch {
+        let lines = node_lines(&self.nodes);
+        Fetch::new(NODES, self.map.line(NODES, self.before[NODES.place()] + u64::from(lines) * index as u64), lines)
+    }
+
+    /// Reads the lines of a leaf.
+    #[inline(always)]
+    pub(super) fn fetch_leaf<S: StepSink>(&self, leaf: &Leaf, steps: &mut S) {
         let mut place = 0;
         self.leaves.lines(leaf, |address| {
             let fetch = Fetch::new(LEAVES, self.map.line(LEAVES, self.before[LEAVES.place()] + address / LINE_BYTES), 1).at(place);
@@ -285,6 +283,12 @@ impl BvhTraverser {
             steps.step(Step { visits: first, ..Step::on(fetch, Act::Fetch) });
             place += 1;
         });
+    }
+
+    /// Reads a leaf and tests its triangles.
+    #[inline(always)]
+    fn leaf<S: StepSink, H: HitSink, const LEAVING: bool>(&mut self, ray: &Ray, start: &Start, leaf: &Leaf, steps: &mut S, sink: &mut H) {
+        self.fetch_leaf(leaf, steps);
         let mut run = TriangleRun::default();
         self.leaves.triangles(leaf, |points, id| {
             let corners = points.map(Point::from_i32);

@@ -10,6 +10,7 @@ use super::bvh::{
     TreeStore, UNIT, bvh_map, level_ids,
 };
 use super::knob::{DELTA, ErrorKnob};
+use super::packet::{self, PACKET};
 use super::{Knob, Knobs, Method, MethodUnit, Over, Registered, Tracer};
 use crate::block::Operation;
 use crate::bvh::BvhError;
@@ -39,7 +40,7 @@ pub static LEVEL: Knob = Knob {
 pub static METHOD: Registered = Registered {
     name: "discrete",
     help: "Discrete levels of detail: a quad-BVH of each level, one level for the whole frame",
-    knobs: &[&DELTA, &LEVEL, &NODE_BOXES, &NODE_ORDER, &LEAF_LAYOUT, &LEAF_SIZE],
+    knobs: &[&DELTA, &LEVEL, &NODE_BOXES, &NODE_ORDER, &LEAF_LAYOUT, &LEAF_SIZE, &PACKET],
     // Every level: by quality it has the finest alone where the eye is within the model's box.
     error: Some(ErrorKnob { knob: &LEVEL, values: || (0..=MAX_LEVELS).map(f64::from).collect(), in_steps: true }),
     over: Over::Scene,
@@ -61,6 +62,8 @@ struct Discrete {
     levels: Arc<Levels>,
     chosen: Option<usize>,
     space: ModelSpace,
+    /// Rays that are traced together.
+    lanes: usize,
 }
 
 /// All levels.
@@ -91,6 +94,7 @@ impl Discrete {
             levels: Arc::new(Levels { bvhs: (0..=levels).map(bvh).collect::<Result<_, _>>()?, bounds: largest_bounds(&hierarchy) }),
             chosen: chosen(knobs, levels),
             space: ModelSpace::of(scene),
+            lanes: packet::chosen(knobs),
         }))
     }
 
@@ -115,12 +119,12 @@ impl Method for Discrete {
         let before = bvh_map(&self.levels.bvhs[..level].iter().collect::<Vec<_>>());
         let all = bvh_map(&self.levels.bvhs.iter().collect::<Vec<_>>());
         let traverser = BvhTraverser::behind(&self.levels.bvhs[level], all, &before);
-        Box::new(BvhTracer::new(traverser, self.space, self.levels.bvhs.len() as u32 - 1)) // at most 10
+        Box::new(BvhTracer::new(traverser, self.space, self.levels.bvhs.len() as u32 - 1).in_packets(self.lanes)) // at most 10
     }
 
     fn again(&self, knobs: &Knobs) -> Option<Box<dyn Method>> {
         let finest = self.levels.bvhs.len() as u32 - 1; // at most 10
-        Some(Box::new(Self { levels: Arc::clone(&self.levels), chosen: chosen(knobs, finest), space: self.space }))
+        Some(Box::new(Self { levels: Arc::clone(&self.levels), chosen: chosen(knobs, finest), space: self.space, lanes: self.lanes }))
     }
 
     fn choices(&self, sight: &Sight) -> Vec<(&'static str, String)> {

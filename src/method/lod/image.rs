@@ -1,11 +1,14 @@
 //! The memory images of a model.
 
 use super::order::LineOrder;
-use crate::format::{L0Record, LevelStarts, Line, Scene, TreeLines, VertexData, has_split, layout};
+use crate::block::tessellate::{self, Tessellate};
+use crate::block::{Block, child_test, lod_test, ray_setup};
+use crate::format::{L0Record, LevelStarts, Line, Scene, SplitRecord, TreeLines, VertexData, has_split, last_displacements, layout};
 use crate::method::Knob;
+use crate::method::children::{Split, prism_children, tree_children};
 use crate::num::prism::Prisms;
-use crate::num::{BoundScale, LINE_BYTES, Point, VertexForm, Wire};
-use crate::step::{Fetch, MemoryMap, Section, SectionId};
+use crate::num::{BoundCode, BoundScale, LINE_BYTES, PADDING_BITS, Point, RayT, U, VertexForm, Wire};
+use crate::step::{Fetch, MemoryMap, NodeShape, Section, SectionId};
 
 /// Quad-BVH nodes over base triangles.
 pub const NODES: SectionId = SectionId::new(0);
@@ -279,6 +282,48 @@ impl<'a> LodImage<'a> {
             LineLayout::Ordered(order) => (self.trees + 4 * self.ordered(order, tree, level - 1, node / 4) + node % 4, 1),
         };
         Fetch::new(VERTICES, self.map.line(VERTICES, line as u64), 1).at(place)
+    }
+
+    /// The inserted vertices of a node as they are stored.
+    #[inline(always)]
+    fn stored<const COMPACT: bool>(&self, tree: TreeAt, level: u32, node: usize) -> [Point; 3] {
+        let lines = tree.lines;
+        let line = || &self.vertices[self.starts.vertex_line(self.form, lines, level, node)];
+        match COMPACT {
+            false => VertexData::from_words(line()).points(),
+            true if has_split(lines.depth, level) => SplitRecord::line_displacements(&self.splits[self.starts.split(lines, level, node)]),
+            true => last_displacements(self.form, line(), node),
+        }
+    }
+
+    /// The inserted vertices of a node, of full resolution and as `lod` has its edges morphed: its corners `f` and `p` are that too.
+    #[inline(always)]
+    pub(super) fn tessellated<const COMPACT: bool, const FULL_DETAIL: bool>(
+        &self,
+        tree: TreeAt,
+        level: u32,
+        node: u32,
+        codes: [BoundCode; 3],
+        lod: &lod_test::Out,
+        [f, p]: [[Point; 3]; 2],
+    ) -> tessellate::Out {
+        let [v0, v1, v2] = self.stored::<COMPACT>(tree, level, node as usize);
+        let (scale, zeros) = (self.scale, self.zeros);
+        let grid = U::new(u64::from(self.levels - level - 1 + zeros));
+        let (compact, padding) = (COMPACT, U::new(u64::from(PADDING_BITS.saturating_sub(zeros))));
+        let ([e0, e1, e2], [f0, f1, f2], [p0, p1, p2]) = (codes, f, p);
+        let lod_test::Out { s0, s1, s2, .. } = *lod;
+        let tessellate = if FULL_DETAIL { Tessellate::of_full_detail } else { Tessellate::eval };
+        tessellate(&tessellate::In { compact, grid, padding, scale, e0, e1, e2, s0, s1, s2, f0, f1, f2, p0, p1, p2, v0, v1, v2 })
+    }
+
+    /// Tests and sorts the children of the node whose split has this number, and whose triangles are `split`.
+    #[inline(always)]
+    pub(super) fn children(&self, number: usize, ray: &ray_setup::Out, t_max: RayT, split: &Split) -> (NodeShape, child_test::Out) {
+        match self.prisms {
+            None => (NodeShape::Tree, tree_children(ray, t_max, &self.splits[number], split)),
+            Some(prisms) => (NodeShape::Prisms, prism_children(ray, t_max, &prisms[number], split)),
+        }
     }
 
     /// The split of a node, in this order.

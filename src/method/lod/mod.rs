@@ -2,13 +2,16 @@
 
 mod image;
 mod order;
+mod packet;
 mod trace;
 
 pub use image::{LINE_LAYOUT, LineLayout, LodImage, NODE_BOUNDS, NODES, RECORDS, SPLITS, VERTICES};
 pub use order::{LineOrder, morton_ranks};
+use packet::PacketTrace;
 pub use trace::LodTraverser;
 
 use super::knob::{DELTA, ErrorKnob, octaves};
+use super::packet::{PACKET, PacketOfQueries};
 use super::{AllHits, ClosestHit, Departure, Knobs, Landing, Method, MethodUnit, Over, Registered, SurfaceHit, Trace, Tracer};
 use crate::block::Operation;
 use crate::format::{Scene, scene_prisms};
@@ -20,7 +23,7 @@ use crate::step::{MemoryMap, NoSteps, StepSink};
 pub static METHOD: Registered = Registered {
     name: "lod",
     help: "Locally adaptive level of detail",
-    knobs: &[&DELTA, &LINE_LAYOUT, &NODE_BOUNDS],
+    knobs: &[&DELTA, &LINE_LAYOUT, &NODE_BOUNDS, &PACKET],
     error: Some(ErrorKnob { knob: &DELTA, values: octaves, in_steps: false }),
     over: Over::Scene,
     unit: Some(MethodUnit {
@@ -51,6 +54,8 @@ struct Lod {
     /// Places of trees, if they have an order of their own.
     ranks: Option<Vec<u32>>,
     space: ModelSpace,
+    /// Rays that are traced together.
+    lanes: usize,
 }
 
 impl Lod {
@@ -59,7 +64,8 @@ impl Lod {
         let layout = knobs.get(&LINE_LAYOUT).and_then(LineLayout::named).unwrap_or_default();
         let prisms = (knobs.get(&NODE_BOUNDS) == Some("prisms")).then(|| scene_prisms(scene));
         let ranks = (layout == LineLayout::Ordered(LineOrder::Morton)).then(|| morton_ranks(scene));
-        Self { scene: scene.clone(), layout, prisms, ranks, space: ModelSpace::of(scene) }
+        let lanes = super::packet::chosen(knobs);
+        Self { scene: scene.clone(), layout, prisms, ranks, space: ModelSpace::of(scene), lanes }
     }
 }
 
@@ -78,7 +84,7 @@ impl Lod {
             None => self.image(),
         };
         let (traverser, space, delta) = (LodTraverser::new(image), self.space, sight.delta);
-        Box::new(LodTracer::<COMPACT, FULL_DETAIL> { traverser, space, delta })
+        Box::new(LodTracer::<COMPACT, FULL_DETAIL> { traverser, space, delta, lanes: self.lanes, packet: PacketOfQueries::default() })
     }
 }
 
@@ -102,6 +108,8 @@ struct LodTracer<'a, const COMPACT: bool, const FULL_DETAIL: bool> {
     traverser: LodTraverser<'a>,
     space: ModelSpace,
     delta: f64,
+    lanes: usize,
+    packet: PacketOfQueries,
 }
 
 impl<const COMPACT: bool, const FULL_DETAIL: bool> Trace for LodTracer<'_, COMPACT, FULL_DETAIL> {
@@ -134,5 +142,15 @@ impl<const COMPACT: bool, const FULL_DETAIL: bool> Trace for LodTracer<'_, COMPA
 
     fn is_mapped(&self) -> bool {
         true
+    }
+
+    fn lanes(&self) -> usize {
+        self.lanes
+    }
+
+    fn packet<S: StepSink>(&mut self, queries: &[Query], hits: &mut Vec<Option<SurfaceHit>>, steps: &mut S) {
+        self.packet.enter(queries, &self.space, self.delta, self.traverser.levels());
+        PacketTrace::<COMPACT, FULL_DETAIL>::run(self.traverser.image(), &mut self.packet.packet, steps);
+        self.packet.hits(hits);
     }
 }

@@ -8,16 +8,16 @@ use crate::block::node_deciders::{self, NodeDeciders};
 use crate::block::ray_setup::{self, RaySetup};
 use crate::block::start_setup::{self, StartSetup};
 use crate::block::start_test::{self, Below, StartTest};
-use crate::block::tessellate::{self, Tessellate, child_triangle};
+use crate::block::tessellate::child_triangle;
 use crate::block::tri_test::{self, TriTest};
-use crate::format::{BvhNode, L0Record, SplitRecord, VertexData, has_split, last_displacements};
+use crate::format::{BvhNode, L0Record, Line, SplitRecord};
 #[cfg(target_arch = "x86_64")]
 use crate::method::children::has_lanes;
-use crate::method::children::{Split, bvh_children, prism_children, tree_children};
+use crate::method::children::{Split, bvh_children};
 use crate::method::leave;
 use crate::method::stack::{Entry, Op, TraversalStack, push_sorted};
 use crate::method::{Deciders, Departure, Hit, HitSink, Prior, TriangleId, is_beyond};
-use crate::num::{BoundCode, MAX_LEVELS, PADDING_BITS, Point, Ray, Start, TNear, U, VertexForm, Wire};
+use crate::num::{BoundCode, MAX_LEVELS, Point, Ray, Start, TNear, U, VertexForm, Wire};
 use crate::step::{Act, NodeShape, Step, StepSink, TriangleRun};
 
 /// Traces rays through one image; keeps its stack from ray to ray.
@@ -26,6 +26,21 @@ pub struct LodTraverser<'a> {
     stack: TraversalStack,
     /// The triangles that the current node and its siblings on each level on the way to it are.
     splits: [Split; MAX_LEVELS as usize],
+}
+
+/// The entry of child `k` of a node with split `line`, but for its distance.
+#[inline(always)]
+pub(super) fn waiting(line: &Line, level: u32, node: u32, k: usize) -> Entry {
+    let [e0, e1, e2] = SplitRecord::line_codes(line, k);
+    Entry {
+        t_near: TNear::ZERO,
+        kind: U::new(Entry::TREE_NODE),
+        level: U::new(u64::from(level + 1)),
+        index: U::new(u64::from(4 * node) + k as u64),
+        e0,
+        e1,
+        e2,
+    }
 }
 
 /// One ray under way.
@@ -49,6 +64,11 @@ impl<'a> LodTraverser<'a> {
     /// A traverser of `image`, which must be consistent (a scene that was opened or built is).
     pub fn new(image: LodImage<'a>) -> Self {
         Self { image, stack: TraversalStack::default(), splits: Default::default() }
+    }
+
+    /// What it traces through.
+    pub(super) fn image(&self) -> &LodImage<'a> {
+        &self.image
     }
 
     /// Number of splits N of the image.
@@ -224,13 +244,7 @@ impl<S: StepSink, H: HitSink, const COMPACT: bool, const FULL_DETAIL: bool, cons
             With::Split => Step::on(self.image.split(self.tree, level, node as usize), Act::Tessellate),
             With::Nothing => Step::on(self.image.inserted(self.tree, level, node as usize), Act::Tessellate),
         });
-        let [v0, v1, v2] = self.stored(level, node as usize);
-        let (scale, zeros) = (self.image.scale, self.image.zeros);
-        let grid = U::new(u64::from(self.image.levels - level - 1 + zeros));
-        let (compact, padding) = (COMPACT, U::new(u64::from(PADDING_BITS.saturating_sub(zeros))));
-        let ([f0, f1, f2], lod_test::Out { s0, s1, s2, .. }) = (f, lod);
-        let tessellate = if FULL_DETAIL { Tessellate::of_full_detail } else { Tessellate::eval };
-        let t = tessellate(&tessellate::In { compact, grid, padding, scale, e0, e1, e2, s0, s1, s2, f0, f1, f2, p0, p1, p2, v0, v1, v2 });
+        let t = self.image.tessellated::<COMPACT, FULL_DETAIL>(self.tree, level, node, codes, &lod, [f, p]);
         let (g, q) = ([t.g0, t.g1, t.g2], [t.q0, t.q1, t.q2]);
 
         if level + 1 == depth {
@@ -254,52 +268,20 @@ impl<S: StepSink, H: HitSink, const COMPACT: bool, const FULL_DETAIL: bool, cons
         }
     }
 
-    /// The inserted vertices of a node as they are stored.
-    #[inline(always)]
-    fn stored(&self, level: u32, node: usize) -> [Point; 3] {
-        let (image, lines) = (self.image, self.tree.lines);
-        let line = || &image.vertices[image.starts.vertex_line(image.form, lines, level, node)];
-        match COMPACT {
-            false => VertexData::from_words(line()).points(),
-            true if has_split(lines.depth, level) => SplitRecord::line_displacements(&image.splits[image.starts.split(lines, level, node)]),
-            true => last_displacements(image.form, line(), node),
-        }
-    }
-
     /// Tests the boxes of the four children of a node, whose inserted vertices came `with` that.
     #[inline(always)]
     fn tree_children(&mut self, level: u32, node: u32, split: &Split, with: With) -> Option<Entry> {
         let number = self.image.starts.split(self.tree.lines, level, node as usize);
         let line = &self.image.splits[number];
-        let t_max = self.sink.t_max();
-        let (tests, act) = match self.image.prisms {
-            None => {
-                let tests = tree_children(&self.setup, t_max, line, split);
-                (tests, Act::Children { shape: NodeShape::Tree, met: tests.met() })
-            }
-            Some(prisms) => {
-                let tests = prism_children(&self.setup, t_max, &prisms[number], split);
-                (tests, Act::Children { shape: NodeShape::Prisms, met: tests.met() })
-            }
-        };
+        let (shape, tests) = self.image.children(number, &self.setup, self.sink.t_max(), split);
+        let act = Act::Children { shape, met: tests.met() };
         let fetch = || self.image.split(self.tree, level, node as usize);
         self.steps.step(match with {
             With::Split => Step::of(act),
             With::Record => Step::on(fetch(), act),
             With::Nothing => Step::on(fetch().joining(), act),
         });
-        push_sorted(self.stack, &tests, |k| {
-            let [e0, e1, e2] = SplitRecord::line_codes(line, k);
-            Entry {
-                t_near: TNear::ZERO,
-                kind: U::new(Entry::TREE_NODE),
-                level: U::new(u64::from(level + 1)),
-                index: U::new(u64::from(4 * node) + k as u64),
-                e0,
-                e1,
-                e2,
-            }
-        })
+        push_sorted(self.stack, &tests, |k| waiting(line, level, node, k))
     }
 
     /// Tests triangles of one level, the first of them of node `first`.

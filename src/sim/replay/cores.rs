@@ -11,7 +11,7 @@ use super::group_side::GroupSide;
 use super::prefetch::prefetch;
 use crate::block::{Operation, Operations};
 use crate::machine::Machine;
-use crate::step::{Act, Asking, Nodes, SectionId};
+use crate::step::{Act, Asking, Nodes, SectionId, Step};
 use std::ops::Range;
 
 /// Lines that a ray asks for at once; a leaf of more is read in parts.
@@ -147,8 +147,10 @@ impl FreeCores {
                 }
                 ray.skip(steps + 1);
                 ray.count(&mut self.operations);
-                counts.rays += u64::from(!ray.is_work());
-                counts.hits += u64::from(matches!(word.step().act, Act::End { found: true, .. }));
+                if let (Step { act: Act::End { found, .. }, lanes, .. }, false) = (word.step(), ray.is_work()) {
+                    counts.rays += u64::from(lanes);
+                    counts.hits += u64::from(found);
+                }
                 self.under_way -= 1;
                 memory.ray_ends(ray.started, ray.is_work());
                 self.feed.ended(ray, context / self.rays_in_flight / self.per_group, memory.now());

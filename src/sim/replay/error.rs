@@ -37,6 +37,9 @@ pub enum ReplayError {
     /// The rays of a traversal unit stay in the space of one model.
     #[error("the scene has {0} models, and rays of traversal units go through one: simulate it with compute free")]
     ModelsByUnits(usize),
+    /// Traversal units do rays one by one.
+    #[error("rays are traced {0} together, and traversal units take them one by one: simulate packets with compute free")]
+    PacketsByUnits(usize),
     /// The waveform's writer.
     #[error("waveform: {0}")]
     Wave(#[from] std::io::Error),

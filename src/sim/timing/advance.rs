@@ -210,8 +210,8 @@ impl<R: Steps> UnitTiming<R> {
             Act::End { found, mapped } => {
                 // It finds the stack empty, or wants nothing more of it.
                 self.states[State::Pop as usize] += 1;
-                (context.found, context.mapped) = (found, mapped);
-                context.enter(if found { State::DivideV } else { State::Done }, at + 1);
+                (context.found, context.mapped) = (found > 0, mapped);
+                context.enter(if found > 0 { State::DivideV } else { State::Done }, at + 1);
             }
             Act::Children { .. } => context.enter(State::Child, at),
             // Hardware without such rays takes them as if each decided for itself.

@@ -1,8 +1,9 @@
 //! Time on the host: a sample of a view's rays, one thread, settings in turns so that what else runs on the machine meets all of them.
 
 use super::row::HostTime;
-use crate::method::Method;
-use crate::rays::{Camera, ModelSpace, Query, Sight};
+use crate::method::{Method, trace_together};
+use crate::rays::{Camera, ModelSpace, Query, Sight, TILE};
+use crate::step::NoSteps;
 use std::time::Instant;
 
 /// How often each setting has its turn.
@@ -18,7 +19,6 @@ pub struct Timed<'a> {
 
 /// Times about `most` rays, evenly spread over the picture in tiles of 8 x 8, of each setting.
 pub fn host_times(settings: &[Timed<'_>], camera: &Camera, space: &ModelSpace, most: u32) -> Vec<HostTime> {
-    const TILE: u32 = 8;
     let tiles = u64::from(camera.width.div_ceil(TILE)) * u64::from(camera.height.div_ceil(TILE));
     let columns = u64::from(camera.width.div_ceil(TILE));
     let step = (tiles * u64::from(TILE * TILE)).div_ceil(u64::from(most)).max(1);
@@ -36,7 +36,10 @@ pub fn host_times(settings: &[Timed<'_>], camera: &Camera, space: &ModelSpace, m
     for _ in 0..TURNS {
         for (tracer, times) in tracers.iter_mut().zip(&mut times) {
             let begun = Instant::now();
-            let hits = queries.iter().filter(|query| tracer.hit(query).is_some()).count();
+            let hits = match tracer.lanes() {
+                1 => queries.iter().filter(|query| tracer.hit(query).is_some()).count(),
+                _ => trace_together(&mut **tracer, &queries, &mut NoSteps).iter().flatten().count(),
+            };
             std::hint::black_box(hits);
             times.push(begun.elapsed().as_secs_f64() * 1e9 / queries.len() as f64);
         }

@@ -9,7 +9,7 @@ use super::row::{BuildTime, Measured};
 use super::stage::{Cameras, Stage};
 use crate::format::Scene;
 use crate::mesh::FinestSurface;
-use crate::method::{Method, Over, find, reference};
+use crate::method::{Method, Over, find, packet, reference};
 use crate::picture::{Frame, FullResolution, PictureError, Shader, SurfaceError, error_map, level_map, render, sampled, save_png};
 use crate::rays::{Camera, ModelSpace, Sight};
 use crate::report::error_time::{Appearance, Converged, PictureEntry, Point, SceneEntry, Shift, TraceGrid, ViewEntry};
@@ -336,7 +336,7 @@ impl<'a> Bench<'a> {
         }
     }
 
-    /// The steps of a grid of rays of each method, with the setting that it has by default.
+    /// The steps of a grid of rays of each method, with the setting that it has by default; none of packets, which have no steps of one ray.
     fn traces(&self, camera: &Camera, settings: &[(usize, Setting)]) -> Vec<TraceGrid> {
         // A scene that was generated has no file: commands name the one that it would be written to.
         let file = if self.path.is_empty() { format!("{}.lod", plain(&self.facts.name)) } else { self.path.clone() };
@@ -351,7 +351,7 @@ impl<'a> Bench<'a> {
             };
             TraceGrid { setting: setting.words.clone(), ..inspect::rays(&subject, [self.plan.trace_grid(); 2]) }
         };
-        settings.iter().filter(|(_, setting)| setting.is_default).map(grid).collect()
+        settings.iter().filter(|(_, setting)| setting.is_default && packet::chosen(&setting.chosen.knobs) == 1).map(grid).collect()
     }
 
     fn host(&self, camera: &Camera, settings: &[(usize, Setting)]) -> Vec<super::row::HostTime> {
