@@ -25,6 +25,7 @@ pub mod reference;
 mod registry;
 pub mod rlod;
 mod stack;
+pub mod stochastic;
 mod tracer;
 
 pub use all_hits::AllHits;

@@ -1,6 +1,6 @@
 //! All methods.
 
-use super::{Registered, binary16, bvh, chunked, cluster, discrete, grid, lod, reference, rlod};
+use super::{Registered, binary16, bvh, chunked, cluster, discrete, grid, lod, reference, rlod, stochastic};
 
 /// Every method, in the order in which help names them.
 pub const METHODS: &[&Registered] = &[
@@ -10,6 +10,7 @@ pub const METHODS: &[&Registered] = &[
     &bvh::METHOD_WIDE,
     &binary16::METHOD,
     &discrete::METHOD,
+    &stochastic::METHOD,
     &chunked::METHOD,
     &grid::METHOD,
     &cluster::METHOD,

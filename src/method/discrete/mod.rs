@@ -67,10 +67,52 @@ struct Discrete {
 }
 
 /// All levels.
-struct Levels {
+pub(super) struct Levels {
     bvhs: Vec<FullBvh>,
     /// Largest displacement bound of each level's edges, in units; 0 for the finest.
-    bounds: Vec<u64>,
+    pub bounds: Vec<u64>,
+}
+
+impl Levels {
+    /// A BVH of each level of a scene.
+    ///
+    /// # Errors
+    /// The knobs do not go together, or a BVH cannot be built.
+    pub fn of(scene: &Scene, knobs: &Knobs, store: &dyn TreeStore) -> Result<Self, BvhError> {
+        let options = FullOptions::chosen(knobs, NodeBoxes::named)?;
+        let hierarchy = scene.decode();
+        let bvh = |level| {
+            let key = || TreeKey::new(scene, &options, level);
+            let triangles = (scene.trees() as u64) << (2 * level);
+            let build = &mut || FullBuilder::of_cut(&hierarchy, level_ids(&hierarchy, level))?.tree(&options);
+            store.tree(&key, triangles, build)?.with_leaves(&hierarchy, options.layout)
+        };
+        Ok(Self { bvhs: (0..=scene.levels()).map(bvh).collect::<Result<_, _>>()?, bounds: largest_bounds(&hierarchy) })
+    }
+
+    /// The finest.
+    pub fn finest(&self) -> usize {
+        self.bvhs.len() - 1
+    }
+
+    /// The displacement that is tolerated where the model is nearest, in units.
+    pub fn tolerance(&self, sight: &Sight) -> f64 {
+        if sight.delta > 0.0 { 2.0 * sight.least_radius / sight.delta } else { f64::INFINITY }
+    }
+
+    /// The memory of all, whose rays begin with the nodes of this one.
+    pub fn map(&self, level: usize) -> MemoryMap {
+        let nodes = |bvh: &FullBvh| bvh.nodes.len() as u32; // below 2^28
+        let before = self.bvhs[..level].iter().map(nodes).sum();
+        bvh_map(&self.bvhs.iter().collect::<Vec<_>>()).from_node(before, nodes(&self.bvhs[level]))
+    }
+
+    /// Traces rays through one.
+    pub fn tracer(&self, level: usize, space: ModelSpace) -> BvhTracer {
+        let before = bvh_map(&self.bvhs[..level].iter().collect::<Vec<_>>());
+        let all = bvh_map(&self.bvhs.iter().collect::<Vec<_>>());
+        BvhTracer::new(BvhTraverser::behind(&self.bvhs[level], all, &before), space, self.finest() as u32) // at most 10
+    }
 }
 
 /// The level that was chosen, of this many and a finest.
@@ -81,18 +123,9 @@ fn chosen(knobs: &Knobs, finest: u32) -> Option<usize> {
 
 impl Discrete {
     fn of(scene: &Scene, knobs: &Knobs, store: &dyn TreeStore) -> Result<Box<dyn Method>, BvhError> {
-        let options = FullOptions::chosen(knobs, NodeBoxes::named)?;
-        let hierarchy = scene.decode();
-        let bvh = |level| {
-            let key = || TreeKey::new(scene, &options, level);
-            let triangles = (scene.trees() as u64) << (2 * level);
-            let build = &mut || FullBuilder::of_cut(&hierarchy, level_ids(&hierarchy, level))?.tree(&options);
-            store.tree(&key, triangles, build)?.with_leaves(&hierarchy, options.layout)
-        };
-        let levels = scene.levels();
         Ok(Box::new(Self {
-            levels: Arc::new(Levels { bvhs: (0..=levels).map(bvh).collect::<Result<_, _>>()?, bounds: largest_bounds(&hierarchy) }),
-            chosen: chosen(knobs, levels),
+            levels: Arc::new(Levels::of(scene, knobs, store)?),
+            chosen: chosen(knobs, scene.levels()),
             space: ModelSpace::of(scene),
             lanes: packet::chosen(knobs),
         }))
@@ -100,7 +133,7 @@ impl Discrete {
 
     fn level(&self, sight: &Sight) -> usize {
         let bounds = &self.levels.bounds;
-        let tolerance = if sight.delta > 0.0 { 2.0 * sight.least_radius / sight.delta } else { f64::INFINITY };
+        let tolerance = self.levels.tolerance(sight);
         let serves = || bounds.iter().position(|&bound| bound as f64 <= tolerance);
         self.chosen.or_else(serves).unwrap_or(bounds.len() - 1)
     }
@@ -108,22 +141,15 @@ impl Discrete {
 
 impl Method for Discrete {
     fn map(&self, sight: &Sight) -> MemoryMap {
-        let level = self.level(sight);
-        let nodes = |bvh: &FullBvh| bvh.nodes.len() as u32; // below 2^28
-        let before = self.levels.bvhs[..level].iter().map(nodes).sum();
-        bvh_map(&self.levels.bvhs.iter().collect::<Vec<_>>()).from_node(before, nodes(&self.levels.bvhs[level]))
+        self.levels.map(self.level(sight))
     }
 
     fn tracer(&self, sight: &Sight) -> Box<dyn Tracer + '_> {
-        let level = self.level(sight);
-        let before = bvh_map(&self.levels.bvhs[..level].iter().collect::<Vec<_>>());
-        let all = bvh_map(&self.levels.bvhs.iter().collect::<Vec<_>>());
-        let traverser = BvhTraverser::behind(&self.levels.bvhs[level], all, &before);
-        Box::new(BvhTracer::new(traverser, self.space, self.levels.bvhs.len() as u32 - 1).in_packets(self.lanes)) // at most 10
+        Box::new(self.levels.tracer(self.level(sight), self.space).in_packets(self.lanes))
     }
 
     fn again(&self, knobs: &Knobs) -> Option<Box<dyn Method>> {
-        let finest = self.levels.bvhs.len() as u32 - 1; // at most 10
+        let finest = self.levels.finest() as u32; // at most 10
         Some(Box::new(Self { levels: Arc::clone(&self.levels), chosen: chosen(knobs, finest), space: self.space, lanes: self.lanes }))
     }
 
