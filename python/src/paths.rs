@@ -8,7 +8,7 @@ use crate::values::{document, from_python, to_python};
 use lodray::format::Scene;
 use lodray::mesh::{RemeshOptions, read};
 use lodray::method::Method;
-use lodray::paths::{Film, Instance, MOST_DEPTH, MOST_SAMPLES, ModelTable, Paths, Pose, SceneFile, Starts, World};
+use lodray::paths::{Film, Instance, MOST_DEPTH, MOST_SAMPLES, ModelTable, Paths, SceneFile, Starts, World};
 use lodray::rays::{Camera, ModelSpace, View};
 use lodray::scene::{BuildOptions, SceneMethod};
 use lodray::study::Progress;
@@ -142,12 +142,8 @@ fn film(
         return Err(format!("method: no path goes on from what {method} meets").into());
     }
     let delta = methods[0].knobs().delta();
-    let instance = |((model, scene), own): ((&'_ ModelTable, _), _)| (model.clone(), scene, own);
-    let parts: Vec<(ModelTable, &Scene, &dyn Method)> =
-        file.model.iter().zip(&scenes).zip(methods.iter().map(SceneMethod::method)).map(instance).collect();
-    let instances = parts.iter().map(|(model, scene, method)| {
-        let pose = Pose::new(model.rotate, model.scale, model.translate);
-        Instance::new(scene, *method, pose, file.materials(model), &camera, delta)
+    let instances = file.places().into_iter().map(|(k, pose)| {
+        Instance::new(&scenes[k], methods[k].method(), pose, file.materials(&file.model[k]), &camera, delta)
     });
     let world = World::new(instances.collect(), starts);
     let picture = file.picture;

@@ -2,7 +2,7 @@
 
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser, ValueParser};
 use clap::{Arg, ArgMatches, Args, Command, FromArgMatches};
-use lodray::method::{Knob, Knobs, METHODS, Registered, binary16, cluster, find, grid, lod, rlod};
+use lodray::method::{Knob, Knobs, METHODS, Registered, binary16, cluster, find, grid, lod, rlod, stochastic};
 use lodray::study::Chosen;
 use serde::de::Error as _;
 use serde::{Deserialize, Deserializer};
@@ -35,9 +35,10 @@ pub fn machine_methods() -> impl Iterator<Item = &'static Registered> {
     METHODS.iter().copied().filter(|method| method.unit.is_some())
 }
 
-/// Those that are compared where none is named: without the systems of papers on grids, clusters and R-LODs, whose sweeps take long and whose columns no page has room for.
+/// Those that are compared where none is named: without stochastic levels and the systems of papers on grids, clusters and R-LODs, whose sweeps take long and whose columns no page has room for.
 pub fn compared_methods() -> impl Iterator<Item = &'static Registered> {
-    const NAMED_ONLY: [&Registered; 5] = [&binary16::METHOD, &grid::METHOD, &cluster::METHOD, &cluster::METHOD_PAPER, &rlod::METHOD];
+    const NAMED_ONLY: [&Registered; 6] =
+        [&binary16::METHOD, &stochastic::METHOD, &grid::METHOD, &cluster::METHOD, &cluster::METHOD_PAPER, &rlod::METHOD];
     machine_methods().filter(|method| !NAMED_ONLY.contains(method))
 }
 

@@ -126,6 +126,11 @@ pub trait Method: Send + Sync {
         None
     }
 
+    /// Sights for which it gives the same number are seen alike: rays with either find the same, in the same memory. None where each sight may be seen in its own way.
+    fn alike(&self, _sight: &Sight) -> Option<u64> {
+        None
+    }
+
     /// What it chose for these rays, beyond its knobs: name and value.
     fn choices(&self, _sight: &Sight) -> Vec<(&'static str, String)> {
         Vec::new()

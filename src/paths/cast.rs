@@ -23,7 +23,7 @@ impl World<'_> {
                         let mut surface = met.landing.surface;
                         surface.distance = met.distance;
                         let row = HitRow::new(own.scene, query, &surface);
-                        let normal = own.pose.back(DVec3::from_array(row.normal.map(f64::from)));
+                        let normal = own.pose.normal(DVec3::from_array(row.normal.map(f64::from)));
                         // Few: a description's.
                         HitRow { instance: met.instance as i32, normal: normal.as_vec3().to_array(), ..row }
                     });

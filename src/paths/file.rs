@@ -3,8 +3,10 @@
 use super::cone::Cones;
 use super::light::{Environment, Light, upwards};
 use super::material::Material;
+use super::pose::Pose;
 use crate::mesh::procedural;
-use glam::DVec3;
+use crate::num::Random;
+use glam::{DMat3, DVec3};
 use serde::Deserialize;
 use std::collections::BTreeMap;
 use std::fs;
@@ -140,9 +142,75 @@ pub struct ModelTable {
     /// Where its origin goes.
     #[serde(default)]
     pub translate: [f64; 3],
+    /// Three rows of four in place of the three above: any map with an inverse, the last column being where the origin goes.
+    pub matrix: Option<[[f64; 4]; 3]>,
+    /// More of it, in a grid.
+    pub copies: Option<CopiesTable>,
+}
+
+/// A grid of copies of a model, each of which may stand a little elsewhere and be turned.
+#[derive(Clone, Copy, Debug, Deserialize, PartialEq)]
+#[serde(deny_unknown_fields)]
+pub struct CopiesTable {
+    /// How many along x, y and z; at most [`MOST_COPIES`] in all.
+    pub count: [u32; 3],
+    /// From one to the next along each axis.
+    pub step: [f64; 3],
+    /// Each is moved at random by at most such a part of a step along each axis.
+    #[serde(default)]
+    pub jitter: f64,
+    /// Each is turned at random about this axis; about none by default.
+    pub turn: Option<[f64; 3]>,
+    /// Each is scaled at random down to such a part.
+    #[serde(default = "one")]
+    pub least: f64,
+    /// Seed of all that is random.
+    #[serde(default)]
+    pub seed: u64,
+}
+
+/// Most copies of a model.
+pub const MOST_COPIES: u64 = 1 << 20;
+
+impl CopiesTable {
+    /// Where they stand, the first copy of the grid being the model's own place but for what is random.
+    fn poses(self) -> impl Iterator<Item = Pose> {
+        let [along, up, deep] = self.count;
+        let grid = (0..deep).flat_map(move |z| (0..up).flat_map(move |y| (0..along).map(move |x| [x, y, z])));
+        grid.zip(0..).map(move |(cell, number)| {
+            let mut random = Random::of(self.seed, number);
+            // From 0 to 1.
+            let mut part = || (random.next() >> 11) as f64 / (1u64 << 53) as f64;
+            let moved = [0, 1, 2].map(|k: usize| self.step[k] * (f64::from(cell[k]) + self.jitter * (2.0 * part() - 1.0)));
+            let scale = 1.0 - (1.0 - self.least) * part();
+            let turn = self.turn.map_or(DMat3::IDENTITY, |axis| {
+                DMat3::from_axis_angle(DVec3::from_array(axis).normalize(), part() * std::f64::consts::TAU)
+            });
+            Pose::turned(turn, scale, moved)
+        })
+    }
 }
 
 impl ModelTable {
+    /// Where it stands: once, or where each of its copies does.
+    ///
+    /// # Panics
+    /// Its matrix is no pose, which no description has that was read.
+    pub fn poses(&self) -> Vec<Pose> {
+        let own = match self.matrix {
+            Some(rows) => Pose::affine(rows).expect("checked when it was read"),
+            None => Pose::new(self.rotate, self.scale, self.translate),
+        };
+        match self.copies {
+            None => vec![own],
+            Some(copies) => {
+                // Turned and scaled about the model's own origin, wherever that stands.
+                let at = own.origin();
+                copies.poses().map(|copy| own.about(at, &copy)).collect()
+            }
+        }
+    }
+
     /// It is the same model as another, whatever its place and materials.
     pub fn is_of(&self, other: &Self) -> bool {
         (&self.file, self.levels, self.generate) == (&other.file, other.levels, other.generate)
@@ -336,6 +404,29 @@ impl SceneFile {
                 to.fail(key("levels"), "is of mesh files; what is generated has its own");
             }
         }
+        if let Some(rows) = model.matrix {
+            for (row, values) in rows.iter().enumerate() {
+                values.iter().enumerate().for_each(|(k, &value)| to.number(&key(&format!("matrix[{row}][{k}]")), value, PLACE));
+            }
+            if (model.rotate, model.scale, model.translate) != ([0.0; 3], 1.0, [0.0; 3]) {
+                to.fail(key("matrix"), "must not be there beside rotate, scale or translate");
+            }
+            if let Err(error) = Pose::affine(rows) {
+                to.fail(key("matrix"), error.to_string());
+            }
+        }
+        if let Some(CopiesTable { count, step, jitter, turn, least, .. }) = model.copies {
+            let all = count.iter().map(|&n| u64::from(n)).fold(1, u64::saturating_mul);
+            if all == 0 || all > MOST_COPIES {
+                to.fail(key("copies.count"), format!("must be from 1 to {MOST_COPIES} in all, but is {count:?}"));
+            }
+            to.triple(&key("copies.step"), step, PLACE);
+            to.number(&key("copies.jitter"), jitter, SHARE);
+            to.number(&key("copies.least"), least, ("must be above 0 and at most 1", |v| v > 0.0 && v <= 1.0));
+            if let Some(axis) = turn {
+                to.direction(&key("copies.turn"), axis);
+            }
+        }
         to.triple(&key("rotate"), model.rotate, FINITE);
         to.number(&key("scale"), model.scale, SCALE);
         to.triple(&key("translate"), model.translate, PLACE);
@@ -347,6 +438,11 @@ impl SceneFile {
                 to.fail(key("material"), format!("must be the name of a material, but is '{name}'"));
             }
         }
+    }
+
+    /// Where models stand: the number of each in its table, and its pose.
+    pub fn places(&self) -> Vec<(usize, Pose)> {
+        self.model.iter().enumerate().flat_map(|(k, model)| model.poses().into_iter().map(move |pose| (k, pose))).collect()
     }
 
     /// The materials of a model, by number; its own colours, scattered evenly, if it names none.

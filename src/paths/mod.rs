@@ -16,6 +16,7 @@ mod material;
 mod memory;
 #[cfg(feature = "exr")]
 mod open_exr;
+mod pose;
 mod random;
 mod rays;
 mod world;
@@ -29,5 +30,6 @@ pub use material::Material;
 pub use memory::WorldMemory;
 #[cfg(feature = "exr")]
 pub use open_exr::ExrError;
+pub use pose::{MOST_STRETCH, NoPose, Pose};
 pub use rays::PathFrame;
-pub use world::{Instance, Pose, Starts, World};
+pub use world::{Instance, Starts, World};

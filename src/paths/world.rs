@@ -5,47 +5,18 @@ use super::bsdf::{Bsdf, Place};
 use super::cone::PathCone;
 use super::material::Material;
 use super::memory::WorldMemory;
+use super::pose::Pose;
 use crate::format::Scene;
 use crate::method::leave::side;
 use crate::method::{Departure, Landing, Method, Tracer};
 use crate::rays::{Camera, Eye, ModelSpace, Query, Sight, ViewCone};
 use crate::step::{Link, MapError, Recorder, Step, StepSink};
-use glam::{DMat3, DVec3, EulerRot};
+use glam::DVec3;
 use std::cmp::Ordering;
+use std::collections::HashMap;
 
 /// Base colour of a model without any.
 const GREY: DVec3 = DVec3::splat(0.8);
-
-/// Where a model is put: turned, scaled, moved.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Pose {
-    turn: DMat3,
-    scale: f64,
-    translate: DVec3,
-}
-
-impl Pose {
-    /// Turned by so many degrees about x, then y, then z; scaled, above 0; moved.
-    pub fn new(degrees: [f64; 3], scale: f64, translate: [f64; 3]) -> Self {
-        let [x, y, z] = degrees.map(f64::to_radians);
-        Self { turn: DMat3::from_euler(EulerRot::ZYX, z, y, x), scale, translate: DVec3::from_array(translate) }
-    }
-
-    /// A place of the scene in the model's own world.
-    fn place(&self, p: DVec3) -> DVec3 {
-        self.turn.transpose() * ((p - self.translate) / self.scale)
-    }
-
-    /// A direction.
-    fn direction(&self, d: DVec3) -> DVec3 {
-        self.turn.transpose() * d
-    }
-
-    /// A direction of the model's in the scene.
-    pub(super) fn back(&self, d: DVec3) -> DVec3 {
-        self.turn * d
-    }
-}
 
 /// How rays start that leave a surface.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -77,10 +48,18 @@ impl<'a> Instance<'a> {
     pub fn new(scene: &'a Scene, method: &'a dyn Method, pose: Pose, materials: Vec<Material>, camera: &Camera, delta: f64) -> Self {
         let space = ModelSpace::of(scene);
         let eye = pose.place(camera.eye).to_array();
-        let least_radius = camera.tan_theta * space.distance_to(eye) / space.placement.scale;
-        let view = camera.view_cone();
-        let view = ViewCone { axis: pose.direction(DVec3::from_array(view.axis)).to_array(), ..view };
-        let eyes = vec![Eye::at(eye, camera.tan_theta).looking(view).in_units(&space)];
+        // The thinnest that a cone gets on its way to the model.
+        let tan_theta = camera.tan_theta / pose.squeezed();
+        let least_radius = tan_theta * space.distance_to(eye) / space.placement.scale;
+        let eye = Eye::at(eye, tan_theta);
+        // Of a stretched view there is no cone: it looks everywhere.
+        let eye = if pose.squeezed() == 1.0 {
+            let view = camera.view_cone();
+            eye.looking(ViewCone { axis: pose.direction(DVec3::from_array(view.axis)).to_array(), ..view })
+        } else {
+            eye
+        };
+        let eyes = vec![eye.in_units(&space)];
         Self::seen(scene, method, pose, materials, Sight { delta, least_radius, eyes, frame: None })
     }
 
@@ -101,7 +80,7 @@ impl<'a> Instance<'a> {
 
     /// Half the diagonal of its box, in the scene.
     pub fn radius(&self) -> f64 {
-        self.space.radius() * self.pose.scale
+        self.space.radius() * self.pose.scale()
     }
 
     /// Its box, in the scene: outside of it rays do not meet the model.
@@ -109,13 +88,13 @@ impl<'a> Instance<'a> {
         let placement = self.space.placement;
         Bounds::around(self.space.enlarged().map(|corner| {
             let own = DVec3::from_array(placement.offset) + DVec3::from_array(corner) * placement.scale;
-            self.pose.turn * own * self.pose.scale + self.pose.translate
+            self.pose.out(own)
         }))
     }
 
     /// Centre of its box, in the scene.
     pub fn centre(&self) -> DVec3 {
-        self.pose.turn * DVec3::from_array(self.space.centre()) * self.pose.scale + self.pose.translate
+        self.pose.out(DVec3::from_array(self.space.centre()))
     }
 }
 
@@ -188,6 +167,9 @@ pub struct World<'a> {
     /// How rays leave them.
     pub starts: Starts,
     boxes: BoxTree,
+    /// Instances that have a tracer of their own, and by instance the place of its tracer among these: what is seen alike of one model is traced by one.
+    traced: Vec<usize>,
+    tracer_of: Vec<usize>,
 }
 
 impl<'a> World<'a> {
@@ -198,7 +180,19 @@ impl<'a> World<'a> {
     pub fn new(instances: Vec<Instance<'a>>, starts: Starts) -> Self {
         assert!(!instances.is_empty(), "a world needs a model");
         let boxes: Vec<_> = instances.iter().map(Instance::bounds).collect();
-        Self { instances, starts, boxes: BoxTree::new(&boxes) }
+        let (mut known, mut traced) = (HashMap::new(), Vec::new());
+        let tracer_of = instances.iter().enumerate().map(|(k, own)| {
+            let mut new = || {
+                traced.push(k);
+                traced.len() - 1
+            };
+            match own.method.alike(&own.sight) {
+                Some(seen) => *known.entry((std::ptr::from_ref(own.method).cast::<()>(), seen)).or_insert_with(new),
+                None => new(),
+            }
+        });
+        let tracer_of = tracer_of.collect();
+        Self { instances, starts, boxes: BoxTree::new(&boxes), traced, tracer_of }
     }
 
     /// They, in their order.
@@ -206,9 +200,9 @@ impl<'a> World<'a> {
         &self.instances
     }
 
-    /// A tracer for each model; for one thread.
+    /// A tracer for each model, and for each way to see it; for one thread.
     pub fn tracers(&self) -> Vec<Box<dyn Tracer + '_>> {
-        self.instances.iter().map(|own| own.method.tracer(&own.sight)).collect()
+        self.traced.iter().map(|&k| self.instances[k].method.tracer(&self.instances[k].sight)).collect()
     }
 
     /// The models' memories as one.
@@ -240,19 +234,22 @@ impl<'a> World<'a> {
         }
         let mut best: Option<Met> = None;
         let mut enter = |k: usize, listener: &mut Option<&mut Listener<'_>>| {
-            let (own, tracer) = (&self.instances[k], &mut tracers[k]);
+            let (own, tracer) = (&self.instances[k], &mut tracers[self.tracer_of[k]]);
             let mut own_from = from.filter(|&(of, _)| of == k).map(|(_, from)| *from);
             match self.starts {
                 Starts::Exact => {}
                 Starts::Independent => own_from = own_from.map(|from| Departure { prior: None, ..from }),
                 Starts::Offset(_) => own_from = None,
             }
-            let scale = own.pose.scale;
+            let direction = own.pose.direction(ray.direction);
+            // Of the scene's lengths along the ray and across, how long they are in the model.
+            let pace = own.pose.pace(direction);
+            let scale = own.pose.scale() / pace;
             let farthest = best.map_or(ray.t_max, |best| best.distance);
             let query = Query {
                 any: ray.any,
-                ..Query::new(own.pose.place(origin).to_array(), own.pose.direction(ray.direction).to_array())
-                    .with_cone(ray.cone.radius / scale, ray.cone.spread)
+                ..Query::new(own.pose.place(origin).to_array(), direction.to_array())
+                    .with_cone(ray.cone.radius / own.pose.scale(), ray.cone.spread / pace)
                     // What is as far as the best is rounded once more on its way to steps: a hair farther, and the comparison below decides.
                     .between(ray.t_min / scale, farthest * (1.0 + 1e-12) / scale)
             };
@@ -298,8 +295,8 @@ impl<'a> World<'a> {
     pub(super) fn surface(&self, met: &Met, direction: DVec3) -> Surface<'_> {
         let (own, hit) = (&self.instances[met.instance], &met.landing.surface);
         let turn = if hit.front { 1.0 } else { -1.0 };
-        let shading = own.pose.back(hit.normal(own.scene).as_dvec3()) * turn;
-        let plane = hit.plane_normal().map_or(shading, |plane| own.pose.back(plane.as_dvec3()) * turn);
+        let shading = own.pose.normal(hit.normal(own.scene).as_dvec3()) * turn;
+        let plane = hit.plane_normal().map_or(shading, |plane| own.pose.normal(plane.as_dvec3()) * turn);
         // Where level of detail shows another side than the full resolution has, the surface that is shown counts.
         let faces = |n: DVec3| n.dot(direction) < 0.0;
         let shading = if shading.dot(plane) < 0.0 { -shading } else { shading };
@@ -315,7 +312,7 @@ impl Instance<'_> {
     /// The side of a triangle that `direction` leads to, as a normal in the scene.
     fn above(&self, from: &Departure, direction: DVec3) -> DVec3 {
         let [a, b, c] = from.corners.map(|p| DVec3::from_array(p.get().map(|c| c as f64)));
-        let normal = self.pose.back((b - a).cross(c - a).normalize_or_zero());
+        let normal = self.pose.normal((b - a).cross(c - a).normalize_or_zero());
         if normal.dot(direction) < 0.0 { -normal } else { normal }
     }
 
@@ -323,14 +320,14 @@ impl Instance<'_> {
     fn curvature(&self, met: &Met) -> f64 {
         let (hit, scene) = (&met.landing.surface, self.scene);
         let (tree, level, levels) = (hit.tree as usize, u32::from(hit.level), scene.levels());
-        let corners = scene.triangle(tree, level, hit.node as usize).map(|p| DVec3::from_array(p.map(f64::from)));
-        let normals =
-            crate::mesh::lattice::node(levels, level, hit.node).map(|point| DVec3::from_array(scene.normal_at(tree, point).map(f64::from)));
+        let corners = scene.triangle(tree, level, hit.node as usize).map(|p| self.pose.way(DVec3::from_array(p.map(f64::from))));
+        let normals = crate::mesh::lattice::node(levels, level, hit.node)
+            .map(|point| self.pose.normal(DVec3::from_array(scene.normal_at(tree, point).map(f64::from))));
         let bend = |i: usize, j: usize| {
             let way = corners[j] - corners[i];
             if way == DVec3::ZERO { 0.0 } else { (normals[j] - normals[i]).dot(way) / way.length_squared() }
         };
-        (bend(0, 1) + bend(1, 2) + bend(2, 0)) / (3.0 * self.space.placement.scale * self.pose.scale)
+        (bend(0, 1) + bend(1, 2) + bend(2, 0)) / (3.0 * self.space.placement.scale * self.pose.scale())
     }
 }
 

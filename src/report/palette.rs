@@ -25,6 +25,7 @@ pub enum Mark {
     Bowtie,
     Bar,
     Post,
+    Arrow,
 }
 
 /// How a method is drawn.
@@ -46,13 +47,14 @@ const fn style(light: [u8; 3], dark: [u8; 3], mark: Mark) -> Style {
 }
 
 /// Methods by name.
-const KNOWN: [(&str, Style); 16] = [
+const KNOWN: [(&str, Style); 17] = [
     ("lod", style([15, 107, 189], [76, 173, 248], Mark::Circle)),
     ("bvh", style([193, 76, 2], [252, 154, 84], Mark::Square)),
     ("bvh6", style([155, 20, 89], [240, 123, 174], Mark::Star)),
     ("bvh32", style([128, 57, 158], [197, 149, 220], Mark::Diamond)),
     ("binary16", style([123, 16, 248], [234, 56, 172], Mark::Hourglass)),
     ("discrete", style([14, 131, 97], [65, 206, 160], Mark::Triangle)),
+    ("stochastic", style([38, 5, 0], [129, 255, 188], Mark::Arrow)),
     ("chunked", style([48, 32, 120], [132, 108, 252], Mark::Pentagram)),
     ("grid", style([13, 60, 47], [191, 255, 0], Mark::Hexagon)),
     ("cluster", style([24, 2, 35], [255, 253, 246], Mark::Bowtie)),

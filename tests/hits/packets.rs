@@ -114,7 +114,7 @@ fn packets_at_edges_and_vertices_neither_miss_nor_hit_twice() {
 }
 
 /// Settings of every kind of node, and whether their rays see one surface whatever goes with them.
-const SETTINGS: [(&str, &[(&str, &str)]); 9] = [
+const SETTINGS: [(&str, &[(&str, &str)]); 10] = [
     ("lod", &[]),
     ("lod", &[("delta", "inf")]),
     ("lod", &[("node-bounds", "prisms"), ("delta", "inf")]),
@@ -124,20 +124,22 @@ const SETTINGS: [(&str, &[(&str, &str)]); 9] = [
     ("bvh6", &[]),
     ("bvh6", &[("node-boxes", "oriented")]),
     ("discrete", &[("level", "2")]),
+    ("stochastic", &[("mean-level", "2.5"), ("transition", "1")]),
 ];
 
-/// The methods with packets of so many rays, and their quality.
+/// A method with packets of so many rays, and its quality.
+fn made(scene: &lodray::format::Scene, lanes: usize, (name, chosen): (&str, &[(&str, &str)])) -> (Box<dyn Method>, f64, String) {
+    let registered = find(name).expect("a method");
+    let mut knobs = Knobs::default().with(&PACKET, &lanes.to_string()).expect("a packet");
+    for (knob, value) in chosen {
+        let knob = registered.knobs.iter().find(|own| own.name == *knob).expect("its knob");
+        knobs.set(knob, value).expect("its value");
+    }
+    ((registered.make)(scene, &knobs, &NoStore).expect("a method"), knobs.delta(), format!("{name} {chosen:?}"))
+}
+
 fn methods(scene: &lodray::format::Scene, lanes: usize) -> Vec<(Box<dyn Method>, f64, String)> {
-    let made = |&(name, chosen): &(&str, &[(&'static str, &str)])| {
-        let registered = find(name).expect("a method");
-        let mut knobs = Knobs::default().with(&PACKET, &lanes.to_string()).expect("a packet");
-        for (knob, value) in chosen {
-            let knob = registered.knobs.iter().find(|own| own.name == *knob).expect("its knob");
-            knobs.set(knob, value).expect("its value");
-        }
-        ((registered.make)(scene, &knobs, &NoStore).expect("a method"), knobs.delta(), format!("{name} {chosen:?}"))
-    };
-    SETTINGS.iter().map(made).collect()
+    SETTINGS.iter().map(|&setting| made(scene, lanes, setting)).collect()
 }
 
 fn queries(camera: &Camera, number: usize) -> Vec<Query> {
@@ -213,4 +215,39 @@ fn a_packet_asks_for_fewer_lines_and_does_the_tests_of_all_its_rays() {
         println!("{name}: {ratio:.3} of the lines, {:.3} of the tests of nodes", sum(&together, tests) as f64 / sum(&alone, tests) as f64);
         assert!(ratio < 0.25 && sum(&together, tests) >= sum(&alone, tests) * 9 / 10, "{name}: {ratio}");
     }
+}
+
+#[test]
+fn stochastic_levels_are_discrete_ones_of_which_each_ray_has_its_own() {
+    let scene = scene_of(&terrain(6, 4, 0.6, 5));
+    let space = ModelSpace::of(&scene);
+    let camera = Camera::new(&View { distance: Some(1.1), ..View::default() }, &space, 61, 43).expect("a camera");
+    let queries: Vec<Query> = (0..camera.batches()).flat_map(|batch| queries(&camera, batch)).collect();
+    let hits = |name, chosen: &[(&str, &str)]| {
+        let (method, delta, _) = made(&scene, 1, (name, chosen));
+        let mut tracer = method.tracer(&Sight::new(&camera, &space, delta));
+        queries.iter().map(|query| tracer.hit(query)).collect::<Vec<_>>()
+    };
+    let levels: Vec<_> = (0..=4).map(|level| hits("discrete", &[("level", &level.to_string())])).collect();
+    for (mean, level) in [("0", 0), ("1.2", 1), ("1.8", 2), ("4", 4), ("9.5", 4)] {
+        assert!(hits("stochastic", &[("mean-level", mean)]) == levels[level], "{mean}");
+    }
+    let [one, other] = ["0", "1"].map(|seed| hits("stochastic", &[("mean-level", "2.25"), ("transition", "1"), ("draw-seed", seed)]));
+    for drawn in [&one, &other] {
+        let both = drawn.iter().zip(&levels[2]).zip(&levels[3]);
+        assert!(both.clone().all(|((hit, coarse), fine)| hit == coarse || hit == fine));
+        let apart: Vec<_> = both.filter(|((_, coarse), fine)| coarse != fine).collect();
+        let finer = apart.iter().filter(|((hit, _), fine)| hit == fine).count() as f64 / apart.len() as f64;
+        assert!(apart.len() > 1000 && (0.2..0.3).contains(&finer), "{finer} of {}", apart.len());
+    }
+    assert!(one != other);
+    // By its own rule: finer from nearer, and where the quality is higher.
+    let mean = |distance, delta: &str| {
+        let camera = Camera::new(&View { distance: Some(distance), ..View::default() }, &space, 64, 64).expect("a camera");
+        let (method, delta, _) = made(&scene, 1, ("stochastic", &[("delta", delta)]));
+        let choices = method.choices(&Sight::new(&camera, &space, delta));
+        choices[0].1.parse::<f64>().expect("a level")
+    };
+    let [near, far, better] = [mean(1.5, "1"), mean(60.0, "1"), mean(60.0, "4")];
+    assert!(near > better && better > far && far < 4.0, "{near}, {far}, {better}");
 }

@@ -9,7 +9,7 @@ use anyhow::{Context, ensure};
 use lodray::format::Scene;
 use lodray::mesh::{RemeshOptions, read};
 use lodray::method::Method;
-use lodray::paths::{Instance, ModelTable, Paths, Pose, SceneFile, SceneFileError, Starts, World};
+use lodray::paths::{Instance, ModelTable, Paths, SceneFile, SceneFileError, Starts, World};
 use lodray::rays::{Camera, ModelSpace, View};
 use lodray::scene::BuildOptions;
 use lodray::study::pruned::check_normals;
@@ -70,13 +70,8 @@ pub fn methods(file: &SceneFile, scenes: &[Scene], chosen: &Chosen, cache: &Cach
 
 /// The models for rays from anywhere that are not shaded.
 pub fn unshaded<'a>(file: &SceneFile, scenes: &'a [Scene], methods: &'a [Arc<dyn Method>], delta: f64) -> World<'a> {
-    let instances = file.model.iter().zip(scenes).zip(methods);
-    let instances = instances.map(|((model, scene), method)| Instance::for_any_ray(scene, &**method, pose(model), delta));
+    let instances = file.places().into_iter().map(|(k, pose)| Instance::for_any_ray(&scenes[k], &*methods[k], pose, delta));
     World::new(instances.collect(), Starts::Exact)
-}
-
-fn pose(model: &ModelTable) -> Pose {
-    Pose::new(model.rotate, model.scale, model.translate)
 }
 
 /// The model of a table.
@@ -120,12 +115,8 @@ pub fn world<'a>(
     delta: f64,
     starts: Starts,
 ) -> World<'a> {
-    let instances = file
-        .model
-        .iter()
-        .zip(scenes)
-        .zip(methods)
-        .map(|((model, scene), method)| Instance::new(scene, &**method, pose(model), file.materials(model), camera, delta));
+    let place = |(k, pose): (usize, _)| Instance::new(&scenes[k], &*methods[k], pose, file.materials(&file.model[k]), camera, delta);
+    let instances = file.places().into_iter().map(place);
     World::new(instances.collect(), starts)
 }
 

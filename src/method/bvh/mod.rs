@@ -247,6 +247,10 @@ impl Method for Bvh {
         bvh_map(&[&self.bvh])
     }
 
+    fn alike(&self, _: &Sight) -> Option<u64> {
+        Some(0)
+    }
+
     fn tracer(&self, _: &Sight) -> Box<dyn Tracer + '_> {
         Box::new(BvhTracer::new(BvhTraverser::new(&self.bvh), self.space, self.bvh.levels).in_packets(self.lanes))
     }

@@ -148,6 +148,10 @@ impl Method for Discrete {
         Box::new(self.levels.tracer(self.level(sight), self.space).in_packets(self.lanes))
     }
 
+    fn alike(&self, sight: &Sight) -> Option<u64> {
+        Some(self.level(sight) as u64)
+    }
+
     fn again(&self, knobs: &Knobs) -> Option<Box<dyn Method>> {
         let finest = self.levels.finest() as u32; // at most 10
         Some(Box::new(Self { levels: Arc::clone(&self.levels), chosen: chosen(knobs, finest), space: self.space, lanes: self.lanes }))

@@ -93,6 +93,10 @@ impl Method for Lod {
         self.image().map
     }
 
+    fn alike(&self, sight: &Sight) -> Option<u64> {
+        Some(sight.delta.to_bits())
+    }
+
     fn tracer(&self, sight: &Sight) -> Box<dyn Tracer + '_> {
         match (self.scene.meta().vertices.is_compact(), is_full_detail(sight.delta)) {
             (true, true) => self.tracer_as::<true, true>(sight),

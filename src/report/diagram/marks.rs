@@ -34,6 +34,7 @@ impl Shape {
             Mark::Bowtie => outline(&[(-r, -s), (r, s), (r, -s), (-r, s)]),
             Mark::Bar => outline(&[(-r - 1, -r / 2), (r + 1, -r / 2), (r + 1, r / 2), (-r - 1, r / 2)]),
             Mark::Post => outline(&[(-r / 2, -r - 1), (r / 2, -r - 1), (r / 2, r + 1), (-r / 2, r + 1)]),
+            Mark::Arrow => outline(&[(-r, -r), (r + 1, 0), (-r, r), (-r / 3, 0)]),
             Mark::GreekCross => {
                 let (a, b) = (r / 3, r + 1);
                 outline(&[(-a, -b), (a, -b), (a, -a), (b, -a), (b, a), (a, a), (a, b), (-a, b), (-a, a), (-b, a), (-b, -a), (-a, -a)])

@@ -45,7 +45,17 @@ const HEXAGON = {
   },
 };
 /** Marks as Plot has them. */
-const SYMBOLS = { circle: "circle", square: "square", triangle: "triangle", diamond: "diamond", cross: "plus", star: "asterisk", wye: "wye", times: "times", pentagram: "star", greekcross: "cross", hexagon: HEXAGON, hourglass: HOURGLASS, bowtie: BOWTIE, bar: BAR, post: POST };
+const ARROW = {
+  draw(context, size) {
+    const r = Math.sqrt(size / 2.4);
+    context.moveTo(-r, -r);
+    context.lineTo(1.2 * r, 0);
+    context.lineTo(-r, r);
+    context.lineTo(-r / 3, 0);
+    context.closePath();
+  },
+};
+const SYMBOLS = { circle: "circle", square: "square", triangle: "triangle", diamond: "diamond", cross: "plus", star: "asterisk", wye: "wye", times: "times", pentagram: "star", greekcross: "cross", hexagon: HEXAGON, hourglass: HOURGLASS, bowtie: BOWTIE, bar: BAR, post: POST, arrow: ARROW };
 const colour = (method) => `var(--method-${CSS.escape(method)})`;
 const symbol = (method) => SYMBOLS[page.palette.methods[method]?.mark] ?? "circle";
 const D3_SYMBOLS = { circle: d3.symbolCircle, square: d3.symbolSquare, triangle: d3.symbolTriangle, diamond: d3.symbolDiamond, plus: d3.symbolPlus, asterisk: d3.symbolAsterisk, wye: d3.symbolWye, times: d3.symbolTimes, star: d3.symbolStar, cross: d3.symbolCross };
