@@ -100,7 +100,7 @@ impl Pose {
     }
 
     /// A place of the model in the scene.
-    pub(super) fn out(&self, p: DVec3) -> DVec3 {
+    pub fn out(&self, p: DVec3) -> DVec3 {
         self.turn * p * self.scale + self.translate
     }
 

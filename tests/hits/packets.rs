@@ -248,6 +248,6 @@ fn stochastic_levels_are_discrete_ones_of_which_each_ray_has_its_own() {
         let choices = method.choices(&Sight::new(&camera, &space, delta));
         choices[0].1.parse::<f64>().expect("a level")
     };
-    let [near, far, better] = [mean(1.5, "1"), mean(60.0, "1"), mean(60.0, "4")];
-    assert!(near > better && better > far && far < 4.0, "{near}, {far}, {better}");
+    let [near, far, better] = [mean(1.5, "1"), mean(4.0, "1"), mean(4.0, "4")];
+    assert!(near > far && better > far && far < 4.0, "{near}, {far}, {better}");
 }

@@ -15,7 +15,7 @@ use crate::method::children::{Split, bvh_children};
 use crate::method::packet::{Lanes, Packet, Waiting};
 use crate::method::stack::Entry;
 use crate::method::{HitSink, TriangleId};
-use crate::num::{BoundCode, MAX_LEVELS, Point, Ray, U, Wire};
+use crate::num::{BoundCode, MAX_LEVELS, Point, Ray, S_ONE, U, Wire};
 use crate::step::{Act, NodeShape, Step, StepSink, TriangleRun};
 
 impl LodTraverser<'_> {
@@ -106,10 +106,10 @@ impl<'a, const COMPACT: bool, const FULL_DETAIL: bool> PacketTrace<'a, COMPACT, 
             self.triangles(packet, lanes, (level, node), [p], steps);
             return None;
         }
-        let lod = self.lod_test(packet, p, codes);
+        let (lod, asked) = self.lod_test(packet, p, codes);
         // A tree's root was visited for its record.
         let act = Act::LodTest { refine: lod.refine };
-        steps.step(Step { visits: level > 0, ..Step::of(act) }.by(packet.lanes.len() as u32)); // at most 32
+        steps.step(Step { visits: level > 0, ..Step::of(act) }.by(asked));
         if !lod.refine {
             self.triangles(packet, lanes, (level, node), [p], steps);
             return None;
@@ -131,16 +131,27 @@ impl<'a, const COMPACT: bool, const FULL_DETAIL: bool> PacketTrace<'a, COMPACT, 
         self.children(packet, lanes, (level, node), with, steps)
     }
 
-    /// Each edge as open as any ray has it.
-    fn lod_test<H: HitSink>(&self, packet: &Packet<H>, [p0, p1, p2]: [Point; 3], [e0, e1, e2]: [BoundCode; 3]) -> lod_test::Out {
+    /// Each edge as open as any ray has it, and how many rays were asked: no more once all three are open.
+    fn lod_test<H: HitSink>(&self, packet: &Packet<H>, [p0, p1, p2]: [Point; 3], [e0, e1, e2]: [BoundCode; 3]) -> (lod_test::Out, u32) {
         let scale = self.image.scale;
         if FULL_DETAIL {
-            return LodTest::of_full_detail([e0, e1, e2], scale);
+            return (LodTest::of_full_detail([e0, e1, e2], scale), 1);
         }
-        packet.lanes.iter().fold(lod_test::Out::default(), |most, lane| {
+        let (mut most, mut asked) = (lod_test::Out::default(), 0);
+        for lane in &packet.lanes {
             let own = LodTest::eval(&lod_test::In { ray: lane.ray, p0, p1, p2, e0, e1, e2, scale });
-            lod_test::Out { refine: most.refine | own.refine, s0: most.s0.max(own.s0), s1: most.s1.max(own.s1), s2: most.s2.max(own.s2) }
-        })
+            most = lod_test::Out {
+                refine: most.refine | own.refine,
+                s0: most.s0.max(own.s0),
+                s1: most.s1.max(own.s1),
+                s2: most.s2.max(own.s2),
+            };
+            asked += 1;
+            if [most.s0, most.s1, most.s2].iter().all(|s| s.get() == S_ONE) {
+                break;
+            }
+        }
+        (most, asked)
     }
 
     /// Tests the four children of a node, whose inserted vertices came `with` that.
