@@ -14,6 +14,7 @@ mod demo;
 mod error_time;
 mod export;
 mod facts;
+mod fly;
 mod folder;
 mod frames;
 mod generate;
@@ -80,6 +81,8 @@ enum Command {
     /// Render a scene
     #[command(after_long_help = words::RENDER)]
     Render(render::Args),
+    /// Fly a camera through a scene: numbered pictures, and what pops from one to the next beyond what full resolution changes
+    Fly(fly::Args),
     /// Simulate a frame on a machine: time, caches, memory and energy
     #[command(after_long_help = words::SIMULATE)]
     Simulate(simulate::Args),
@@ -138,6 +141,7 @@ pub fn run(cli: Cli) -> anyhow::Result<ExitCode> {
         Command::Plan(args) => plan::run(&args),
         Command::Prune(args) => prune::run(&args),
         Command::Render(args) => render::run(&args),
+        Command::Fly(args) => fly::run(&args),
         Command::Simulate(args) => simulate::run(&args),
         Command::Sweep(args) => sweep::run(&args),
         Command::Merge(args) => merged(&args),

@@ -38,6 +38,7 @@ mod chosen;
 mod error;
 mod error_time;
 mod fault;
+mod fly;
 mod job_lines;
 mod jobs;
 mod means;
@@ -60,6 +61,7 @@ pub use error_time::{
     BuildTime, ErrorTimePlan, HostTime, Measure, Measured, ViewRow, document, error_time, error_time_part, error_time_pieces, in_machine,
 };
 pub use fault::{fault, fault_at};
+pub use fly::{Flown, Fly, fly};
 pub use job_lines::{JobLine, JobLines, LinesError, aside};
 pub use jobs::{Generated, Jobs, Origin, RegionJob, SceneJobs, ViewJob};
 pub use means::{Means, Open};
