@@ -9,7 +9,7 @@ use lodray::rays::{CameraPath, ModelSpace};
 use lodray::scene::PassRays;
 use lodray::study::Turning;
 use serde::Deserialize;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 /// Frames, at most.
 const MOST: u64 = 10_000;
@@ -69,27 +69,32 @@ impl FrameArgs {
     /// The rays of the camera, in one frame or more.
     pub fn rays(&self, camera: &CameraArgs, space: &ModelSpace) -> anyhow::Result<PassRays> {
         if let Some(file) = &self.path {
-            return Ok(PassRays::Path(self.along(file, camera, space)?));
+            return Ok(PassRays::Path(along(file, self.turn.frames, camera, space)?));
         }
         let camera = camera.camera(space, None)?;
         Ok(self.turn.turning().map_or(PassRays::Camera(camera), |turning| PassRays::Path(turning.path(&camera))))
     }
+}
 
-    fn along(&self, file: &PathBuf, camera: &CameraArgs, space: &ModelSpace) -> anyhow::Result<CameraPath> {
-        let named = || file.display().to_string();
-        let text = std::fs::read_to_string(file).with_context(named)?;
-        let keys = toml::from_str::<PathFile>(&text).map_err(|error| toml_in_one_line(&named(), &error))?.key;
-        anyhow::ensure!(keys.len() > 1, "{}: key: a path has two [[key]] tables or more", named());
-        let frames = self.turn.frames;
-        anyhow::ensure!(frames > 1, "--path: needs --frames of 2 or more");
-        let target = camera.camera(space, None)?.target.to_array();
-        let points: Vec<_> = keys.iter().map(|key| [key.eye, key.target.unwrap_or(target)].map(DVec3::from_array)).collect();
-        let frame = |frame: u32| {
-            let way = f64::from(frame) / f64::from(frames - 1) * (points.len() - 1) as f64;
-            let from = (way as usize).min(points.len() - 2);
-            let [eye, target] = std::array::from_fn(|k| points[from][k].lerp(points[from + 1][k], way - from as f64).to_array());
-            camera.at(space, eye, target).with_context(|| format!("{}: frame {}", named(), frame + 1))
-        };
-        Ok(CameraPath::new((0..frames).map(frame).collect::<anyhow::Result<_>>()?))
-    }
+/// Cameras along the way of a file, so many frames.
+pub fn along(file: &Path, frames: u32, camera: &CameraArgs, space: &ModelSpace) -> anyhow::Result<CameraPath> {
+    let named = || file.display().to_string();
+    let text = std::fs::read_to_string(file).with_context(named)?;
+    let keys = toml::from_str::<PathFile>(&text).map_err(|error| toml_in_one_line(&named(), &error))?.key;
+    anyhow::ensure!(keys.len() > 1, "{}: key: a path has two [[key]] tables or more", named());
+    anyhow::ensure!(frames > 1, "--path: needs --frames of 2 or more");
+    let target = camera.camera(space, None)?.target.to_array();
+    let points: Vec<_> = keys.iter().map(|key| [key.eye, key.target.unwrap_or(target)].map(DVec3::from_array)).collect();
+    between(&points, frames, camera, space).with_context(|| named())
+}
+
+/// Cameras at so many frames, spread evenly over the way from one of these eyes and targets, of which there are two or more, to the next.
+pub fn between(points: &[[DVec3; 2]], frames: u32, camera: &CameraArgs, space: &ModelSpace) -> anyhow::Result<CameraPath> {
+    let frame = |frame: u32| {
+        let way = f64::from(frame) / f64::from(frames.max(2) - 1) * (points.len() - 1) as f64;
+        let from = (way as usize).min(points.len() - 2);
+        let [eye, target] = std::array::from_fn(|k| points[from][k].lerp(points[from + 1][k], way - from as f64).to_array());
+        camera.at(space, eye, target).with_context(|| format!("frame {}", frame + 1))
+    };
+    Ok(CameraPath::new((0..frames).map(frame).collect::<anyhow::Result<_>>()?))
 }

@@ -113,7 +113,9 @@ Keys of the description (scenes/*.toml are examples; every colour is linear):
   [[camera]]          name, eye, target, up (0, 1, 0), fov (degrees from bottom to top)
   [[model]]           file (.lod, or a mesh with levels) or generate = { scene, levels, base, seed, roughness, walls, width };
                       material (a name) or materials (names by the model's own numbers);
-                      rotate (degrees about x, y, z), scale, translate
+                      rotate (degrees about x, y, z), scale, translate; or matrix, three rows of four, in place of these;
+                      copies = { count = [x, y, z], step = [x, y, z], jitter (parts of a step; 0), turn (an axis, at random
+                      about it), least (scale at random down to; 1), seed }
   [material.NAME]     kind = \"diffuse\" (albedo), \"glossy\" (reflectance, roughness, albedo), \"mirror\" (reflectance)
                       or \"glass\" (index of refraction, roughness; 0 is smooth)
   [[light]]           kind = \"point\" (position, intensity), \"area\" (corner, along, across, radiance; shines to along x across)

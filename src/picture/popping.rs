@@ -1,13 +1,19 @@
-//! What pops between two frames of a moving camera: what a method changes beyond what full resolution changes.
+//! What pops between two frames of a moving camera.
+//!
+//! A hit stands for a point of the full resolution, from which it is off by a little. While the camera moves, that little changes: smoothly where level of detail is continuous,
+//! at once where another level takes over. So what pops of the surface is how much it changes in a pixel that sees nearly the same point of the full resolution in both frames; what pixels
+//! at outlines see changes however little the camera moves, and is left out.
 
 use super::frame::Frame;
+use crate::format::Scene;
 use crate::method::SurfaceHit;
-use crate::rays::Camera;
+use crate::rays::{Camera, ModelSpace};
+use glam::DVec3;
 use image::RgbImage;
 use serde::{Deserialize, Serialize};
 
-/// Depths of neighbours within so many pixels belong to one surface.
-const SMOOTH: f64 = 8.0;
+/// How far apart two points of the full resolution may be that are nearly the same, in widths of a pixel, beyond how far the camera moved.
+const SAME: f64 = 1.0;
 
 /// What pops of one quantity, over the pixels that count.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
@@ -23,14 +29,14 @@ pub struct Pop {
 /// What pops from one frame to the next.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Pops {
-    /// Change of the depth of a pixel that full resolution does not have, in widths of a pixel there: 1 where it is as far as a pixel is wide.
-    pub depth: Pop,
-    /// The same of its colour, the largest of the three channels, in steps of 8 bits.
+    /// Change of how far, and which way, the surface is off the full resolution, in widths of a pixel there.
+    pub surface: Pop,
+    /// Change of the colour beyond that of full resolution, the largest of the three channels, in steps of 8 bits.
     pub colour: Pop,
     /// Pixels that count.
     pub pixels: u64,
-    /// Pixels at an outline, where full resolution has another depth in a neighbour, in either frame: what they see changes however little the camera moves.
-    pub outlines: u64,
+    /// Pixels that see the model in both frames, but other points of it.
+    pub left_out: u64,
 }
 
 impl Pop {
@@ -43,37 +49,51 @@ impl Pop {
     }
 }
 
-/// A frame with its picture.
-pub type Seen<'a> = (&'a Frame, &'a RgbImage);
+/// A frame of a method, its picture, and that of full resolution.
+#[derive(Clone, Copy)]
+pub struct Seen<'a> {
+    /// What its rays met.
+    pub frame: &'a Frame,
+    /// Its picture.
+    pub image: &'a RgbImage,
+    /// The picture of full resolution.
+    pub full: &'a RgbImage,
+    /// Where both were taken from.
+    pub camera: &'a Camera,
+}
 
-/// What pops from the first frame to the second of a method, whose rays and full resolution's are those of the two cameras.
-pub fn popping(own: [Seen<'_>; 2], full: [Seen<'_>; 2], cameras: [&Camera; 2]) -> Pops {
-    let (width, height) = (full[0].0.width as usize, full[0].0.height as usize);
-    let depth = |(frame, _): Seen<'_>, at: usize| frame.pixels[at].as_ref().map(|hit: &SurfaceHit| hit.distance);
-    let wide = |camera: &Camera, depth: f64| 2.0 * camera.tan_theta * depth;
-    // All neighbours, and the pixel, are of one surface in this frame.
-    let is_smooth = |seen: Seen<'_>, camera: &Camera, at: usize| {
-        let (x, y) = (at % width, at / width);
-        let Some(own) = depth(seen, at) else { return false };
-        let near = |v: usize, most: usize| v.saturating_sub(1)..(v + 2).min(most);
-        near(y, height).all(|y| {
-            near(x, width).all(|x| depth(seen, y * width + x).is_some_and(|other| (other - own).abs() <= SMOOTH * wide(camera, own)))
-        })
-    };
-    let (mut depths, mut colours, mut outlines) = (Vec::new(), Vec::new(), 0);
-    for at in 0..width * height {
-        let [Some(a), Some(b)] = full.map(|seen| depth(seen, at)) else { continue };
-        if !(0..2).all(|k| is_smooth(full[k], cameras[k], at)) {
-            outlines += 1;
+/// The point of the full resolution that a hit stands for, and how far the hit is off it.
+fn places(scene: &Scene, space: &ModelSpace, seen: &Seen<'_>, at: usize) -> Option<(DVec3, DVec3)> {
+    let hit: &SurfaceHit = seen.frame.pixels[at].as_ref()?;
+    let width = seen.frame.width as usize;
+    // Columns and rows are below 2^16.
+    let ray = seen.camera.ray((at % width) as u32, (at / width) as u32);
+    let met = DVec3::from_array(ray.origin) + DVec3::from_array(ray.direction).normalize() * hit.distance;
+    let corners = scene.full_resolution_triangle(hit.tree as usize, hit.full_node as usize);
+    let own: DVec3 = corners.iter().zip(hit.full_bary).map(|(p, b)| DVec3::from_array(p.map(f64::from)) * f64::from(b)).sum();
+    let full = DVec3::from_array(space.placement.offset) + own * space.placement.scale;
+    Some((full, met - full))
+}
+
+/// What pops from the first frame to the second, whose hits are on triangles of `scene`.
+pub fn popping(scene: &Scene, space: &ModelSpace, seen: [Seen<'_>; 2]) -> Pops {
+    let moved = (seen[1].camera.eye - seen[0].camera.eye).length();
+    let (mut surface, mut colours, mut left_out) = (Vec::new(), Vec::new(), 0);
+    for at in 0..seen[0].frame.pixels.len() {
+        let [Some((before, off_before)), Some((after, off_after))] = seen.map(|seen| places(scene, space, &seen, at)) else { continue };
+        let wide = 2.0 * seen[1].camera.tan_theta * (after - seen[1].camera.eye).length();
+        if (after - before).length() > SAME * wide + moved {
+            left_out += 1;
             continue;
         }
-        // A hole of the method's pops as far as anything can.
-        let [own_a, own_b] = own.map(|seen| depth(seen, at).unwrap_or(0.0));
-        depths.push(((own_b - own_a) - (b - a)).abs() / wide(cameras[1], b));
-        let colour = |(_, image): Seen<'_>| image.as_raw()[3 * at..3 * at + 3].iter().map(|&c| i32::from(c)).collect::<Vec<_>>();
-        let [own, full] = [own, full].map(|two| two.map(colour));
-        let channel = |k: usize| ((own[1][k] - own[0][k]) - (full[1][k] - full[0][k])).abs();
+        surface.push((off_after - off_before).length() / wide);
+        let change = |images: [&RgbImage; 2], k: usize| {
+            let [before, after] = images.map(|image| i32::from(image.as_raw()[3 * at + k]));
+            after - before
+        };
+        let (own, full) = (seen.map(|seen| seen.image), seen.map(|seen| seen.full));
+        let channel = |k| (change(own, k) - change(full, k)).abs();
         colours.push(f64::from((0..3).map(channel).max().unwrap_or(0)));
     }
-    Pops { pixels: depths.len() as u64, outlines, depth: Pop::of(depths), colour: Pop::of(colours) }
+    Pops { pixels: surface.len() as u64, left_out, surface: Pop::of(surface), colour: Pop::of(colours) }
 }

@@ -58,28 +58,6 @@ impl CameraPath {
     }
 }
 
-/// Eyes and targets of so many frames that go through these, evenly in time, on curves without corners (Catmull and Rom's); straight on before the first and behind the last. Two
-/// keys make a straight way, one stands still; none has no frames.
-pub fn flight(keys: &[[DVec3; 2]], frames: u32) -> Vec<[DVec3; 2]> {
-    let Some(last) = keys.len().checked_sub(1) else { return Vec::new() };
-    let at = |frame: u32| {
-        let along = f64::from(frame) / f64::from(frames.max(2) - 1) * last as f64;
-        // From a key to the next; the last frame is at the last key.
-        let from = (along as usize).min(last.saturating_sub(1));
-        let part = along - from as f64;
-        let curve = |of: usize| {
-            let key = |k: usize| keys[k.min(last)][of];
-            let (b, c) = (key(from), key(from + 1));
-            let a = if from == 0 { 2.0 * b - c } else { key(from - 1) };
-            let d = if from + 1 >= last { 2.0 * c - b } else { key(from + 2) };
-            let (two, three) = (part * part, part * part * part);
-            0.5 * (2.0 * b + (c - a) * part + (2.0 * a - 5.0 * b + 4.0 * c - d) * two + (3.0 * b - a - 3.0 * c + d) * three)
-        };
-        [curve(0), curve(1)]
-    };
-    (0..frames).map(at).collect()
-}
-
 impl RaySource for CameraPath {
     fn rays(&self) -> u64 {
         self.cameras.iter().map(RaySource::rays).sum()
@@ -127,22 +105,6 @@ mod tests {
             ModelSpace { placement: Placement { offset: [0.0; 3], scale: 0.1 }, lo: [-10, -20, -30], hi: [10, 20, 30], zeros: [0; 2] };
         let view = View { eye: Some([1.0, 2.0, 7.0]), target: Some([0.5, 0.0, 1.0]), up, ..View::default() };
         (Camera::new(&view, &space, 19, 13).unwrap(), space)
-    }
-
-    #[test]
-    fn a_flight_goes_through_its_keys_without_corners() {
-        let at = |v: [f64; 3]| DVec3::from_array(v);
-        let keys = [[0.0, 0.0, 0.0], [1.0, 2.0, 0.0], [3.0, 2.0, 1.0], [4.0, 0.0, 1.0]].map(|eye| [at(eye), DVec3::ONE]);
-        let frames = flight(&keys, 301);
-        assert_eq!(frames.len(), 301);
-        for (k, key) in keys.iter().enumerate() {
-            assert!((frames[100 * k][0] - key[0]).length() < 1e-12 && (frames[100 * k][1] - DVec3::ONE).length() < 1e-12);
-        }
-        let steps: Vec<_> = frames.windows(2).map(|two| two[1][0] - two[0][0]).collect();
-        assert!(steps.windows(2).all(|two| (two[1] - two[0]).length() < 0.01 * 3.0), "no step differs much from the one before");
-        let straight = flight(&keys[..2], 5);
-        assert!(straight.iter().zip(0..).all(|(frame, k)| (frame[0] - at([0.25, 0.5, 0.0]) * f64::from(k)).length() < 1e-12));
-        assert_eq!((flight(&keys[..1], 3), flight(&[], 3), flight(&keys, 1)), (vec![keys[0]; 3], vec![], vec![keys[0]]));
     }
 
     #[test]

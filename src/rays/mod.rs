@@ -14,7 +14,7 @@ mod space;
 mod view;
 
 pub use camera::{Camera, CameraError, MAX_PIXELS, MAX_SIDE};
-pub use camera_path::{CameraPath, flight};
+pub use camera_path::CameraPath;
 pub use cone::{cone, is_full_detail};
 pub use eye::{Eye, ViewCone};
 pub use file::{RayFile, RayFileError};

@@ -4,7 +4,7 @@ use super::progress::Progress;
 use super::shot::Shot;
 use crate::format::Scene;
 use crate::method::Method;
-use crate::picture::{Pops, popping};
+use crate::picture::{Pops, Seen, popping};
 use crate::rays::{Camera, ModelSpace, Sight};
 use serde::Serialize;
 
@@ -51,10 +51,10 @@ pub fn fly<E>(what: &Fly<'_>, progress: &dyn Progress, each: &mut dyn FnMut(usiz
         let now = [shot(what.method, what.delta), shot(what.full, f64::INFINITY)];
         each(frame, &now[0])?;
         let last = frame.checked_sub(1).map(|last| &what.cameras[last]);
-        let pops = before.as_ref().zip(last).map(|(then, last)| {
-            let [own, full] = [0, 1].map(|of: usize| [&then[of], &now[of]].map(|shot| (&shot.frame, &shot.image)));
-            popping(own, full, [last, camera])
-        });
+        let pops = before
+            .as_ref()
+            .zip(last)
+            .map(|(then, last)| popping(what.method.surface(what.scene), &space, [seen(then, last), seen(&now, camera)]));
         flown.push(Flown {
             frame,
             eye: camera.eye.to_array(),
@@ -67,4 +67,8 @@ pub fn fly<E>(what: &Fly<'_>, progress: &dyn Progress, each: &mut dyn FnMut(usiz
         bar.step(1);
     }
     Ok(flown)
+}
+
+fn seen<'a>([own, full]: &'a [Shot; 2], camera: &'a Camera) -> Seen<'a> {
+    Seen { frame: &own.frame, image: &own.image, full: &full.image, camera }
 }
