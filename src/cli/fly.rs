@@ -8,11 +8,10 @@ use super::frames::{along, between};
 use super::method::PictureMethod;
 use super::output::{open_any, print_json, print_table, remark};
 use anyhow::{Context, ensure};
-use lodray::method::lod;
 use lodray::picture::{Pops, save_png};
 use lodray::rays::{CameraPath, ModelSpace};
 use lodray::study::pruned::{self, check_normals};
-use lodray::study::{Chosen, Flown, Fly, count, fly};
+use lodray::study::{Flown, Fly, count, fly};
 use serde::Serialize;
 use std::path::PathBuf;
 use std::process::ExitCode;
@@ -75,7 +74,6 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
     let cameras = path.cameras();
     for camera in cameras {
         pruned::check(&scene, camera, delta)?;
-        pruned::check(&scene, camera, f64::INFINITY).context("colours pop beyond those of full resolution")?;
     }
     check_normals(&scene, "a picture")?;
     chosen.check(&scene)?;
@@ -85,8 +83,7 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
     let folder = RunFolder::open(&args.out, names, &inputs, &args.overrule)?;
     let cache = args.cache.cache(Some(&args.out))?;
     let (method, _) = chosen.make(&scene, &cache, &Bars)?;
-    let (full, _) = Chosen::plain(&lod::METHOD).make(&scene, &cache, &Bars)?;
-    let what = Fly { scene: &scene, method: &*method, full: &*full, delta, cameras };
+    let what = Fly { scene: &scene, method: &*method, delta, cameras };
     let frames = fly(&what, &Bars, &mut |frame, shot| {
         let Some(name) = pictures.get(frame) else { return Ok(()) };
         let path = folder.staging().join(name);
@@ -134,7 +131,7 @@ fn worst(frames: &[Flown]) -> Pops {
 }
 
 fn table(report: &Report) -> String {
-    let mut text = format!("{:>6} {:>8} {:>26} {:>26}\n", "", "", "surface pops, pixel widths", "colour pops, of 255");
+    let mut text = format!("{:>6} {:>8} {:>26} {:>26}\n", "", "", "surface pops, pixel widths", "colour pops, 0 to 255");
     text += &format!("{:>6} {:>8} {:>12} {:>13} {:>12} {:>13}  {}\n", "frame", "level", "99.9 %", "largest", "99.9 %", "largest", "chosen");
     for Flown { frame, mean_level, choices, pops, .. } in &report.frames {
         let chosen: Vec<_> = choices.iter().map(|(name, value)| format!("{name} {value}")).collect();

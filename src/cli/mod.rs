@@ -81,7 +81,7 @@ enum Command {
     /// Render a scene
     #[command(after_long_help = words::RENDER)]
     Render(render::Args),
-    /// Fly a camera through a scene: numbered pictures, and what pops from one to the next beyond what full resolution changes
+    /// Fly a camera through a scene: numbered pictures, and what pops from one to the next
     Fly(fly::Args),
     /// Simulate a frame on a machine: time, caches, memory and energy
     #[command(after_long_help = words::SIMULATE)]

@@ -25,7 +25,7 @@ pub use geometry::{GeometricError, geometric_error};
 pub use image::{ImageError, compare, save_png};
 pub use layouts::distinct_lines;
 pub use legend::Legend;
-pub use popping::{Pop, Pops, Seen, popping};
+pub use popping::{Pop, Pops, popping};
 pub use sampled::{Sampled, sampled};
 pub use shade::{HOTTEST, error_map, level_colour, level_map, normal_map, shaded, view_cosine};
 pub use shading::{Light, Shader, Shading};

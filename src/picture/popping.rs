@@ -1,19 +1,23 @@
 //! What pops between two frames of a moving camera.
 //!
-//! A hit stands for a point of the full resolution, from which it is off by a little. While the camera moves, that little changes: smoothly where level of detail is continuous,
-//! at once where another level takes over. So what pops of the surface is how much it changes in a pixel that sees nearly the same point of the full resolution in both frames; what pixels
-//! at outlines see changes however little the camera moves, and is left out.
+//! Wherever the first frame saw the surface, the second camera looks at that very place: where nothing has changed it is met there, exactly, as full resolution is. What pops is how far
+//! the surface is from it then, across the surface. It changes smoothly where level of detail is continuous, less the less the camera moves, and at once where another level takes over. At
+//! outlines the second camera may see another part of the model: places from which what is met is far are left out.
 
 use super::frame::Frame;
-use crate::format::Scene;
-use crate::method::SurfaceHit;
-use crate::rays::{Camera, ModelSpace};
+use super::shading::{Light, Shader};
+use crate::method::{Method, trace_together};
+use crate::rays::{Camera, Query, Sight};
+use crate::step::NoSteps;
 use glam::DVec3;
-use image::RgbImage;
+use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
-/// How far apart two points of the full resolution may be that are nearly the same, in widths of a pixel, beyond how far the camera moved.
-const SAME: f64 = 1.0;
+/// What is met farther along the ray, in widths of a pixel, is another part of the model.
+const FAR: f64 = 16.0;
+
+/// Pixels that go to a thread at once: as many packets.
+const CHUNK: usize = 1024;
 
 /// What pops of one quantity, over the pixels that count.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
@@ -29,13 +33,13 @@ pub struct Pop {
 /// What pops from one frame to the next.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Pops {
-    /// Change of how far, and which way, the surface is off the full resolution, in widths of a pixel there.
+    /// How far the surface moved, across itself, in widths of a pixel there.
     pub surface: Pop,
-    /// Change of the colour beyond that of full resolution, the largest of the three channels, in steps of 8 bits.
+    /// Change of the colour, the largest of the three channels, in linear light from 0 to 255.
     pub colour: Pop,
     /// Pixels that count.
     pub pixels: u64,
-    /// Pixels that see the model in both frames, but other points of it.
+    /// Pixels of the first frame whose places the second camera sees something else before or behind, or nothing.
     pub left_out: u64,
 }
 
@@ -49,51 +53,43 @@ impl Pop {
     }
 }
 
-/// A frame of a method, its picture, and that of full resolution.
-#[derive(Clone, Copy)]
-pub struct Seen<'a> {
-    /// What its rays met.
-    pub frame: &'a Frame,
-    /// Its picture.
-    pub image: &'a RgbImage,
-    /// The picture of full resolution.
-    pub full: &'a RgbImage,
-    /// Where both were taken from.
-    pub camera: &'a Camera,
-}
-
-/// The point of the full resolution that a hit stands for, and how far the hit is off it.
-fn places(scene: &Scene, space: &ModelSpace, seen: &Seen<'_>, at: usize) -> Option<(DVec3, DVec3)> {
-    let hit: &SurfaceHit = seen.frame.pixels[at].as_ref()?;
-    let width = seen.frame.width as usize;
-    // Columns and rows are below 2^16.
-    let ray = seen.camera.ray((at % width) as u32, (at / width) as u32);
-    let met = DVec3::from_array(ray.origin) + DVec3::from_array(ray.direction).normalize() * hit.distance;
-    let corners = scene.full_resolution_triangle(hit.tree as usize, hit.full_node as usize);
-    let own: DVec3 = corners.iter().zip(hit.full_bary).map(|(p, b)| DVec3::from_array(p.map(f64::from)) * f64::from(b)).sum();
-    let full = DVec3::from_array(space.placement.offset) + own * space.placement.scale;
-    Some((full, met - full))
-}
-
-/// What pops from the first frame to the second, whose hits are on triangles of `scene`.
-pub fn popping(scene: &Scene, space: &ModelSpace, seen: [Seen<'_>; 2]) -> Pops {
-    let moved = (seen[1].camera.eye - seen[0].camera.eye).length();
-    let (mut surface, mut colours, mut left_out) = (Vec::new(), Vec::new(), 0);
-    for at in 0..seen[0].frame.pixels.len() {
-        let [Some((before, off_before)), Some((after, off_after))] = seen.map(|seen| places(scene, space, &seen, at)) else { continue };
-        let wide = 2.0 * seen[1].camera.tan_theta * (after - seen[1].camera.eye).length();
-        if (after - before).length() > SAME * wide + moved {
-            left_out += 1;
-            continue;
-        }
-        surface.push((off_after - off_before).length() / wide);
-        let change = |images: [&RgbImage; 2], k: usize| {
-            let [before, after] = images.map(|image| i32::from(image.as_raw()[3 * at + k]));
-            after - before
-        };
-        let (own, full) = (seen.map(|seen| seen.image), seen.map(|seen| seen.full));
-        let channel = |k| (change(own, k) - change(full, k)).abs();
-        colours.push(f64::from((0..3).map(channel).max().unwrap_or(0)));
-    }
-    Pops { pixels: surface.len() as u64, left_out, surface: Pop::of(surface), colour: Pop::of(colours) }
+/// What pops of a method from `frame`, which the first camera took of it, to the second camera, whose rays see `sight`.
+pub fn popping(method: &dyn Method, shader: &Shader<'_>, frame: &Frame, cameras: [&Camera; 2], sight: &Sight) -> Pops {
+    let [first, second] = cameras;
+    let width = frame.width as usize;
+    let seen: Vec<usize> = (0..frame.pixels.len()).filter(|&at| frame.pixels[at].is_some()).collect();
+    let chunks = seen.par_chunks(CHUNK).map_init(
+        || method.tracer(sight),
+        |tracer, chunk| {
+            // Columns and rows are below 2^16.
+            let before =
+                chunk.iter().filter_map(|&at| Some((first.ray((at % width) as u32, (at / width) as u32), frame.pixels[at].as_ref()?)));
+            let before: Vec<_> = before.collect();
+            let place = |(ray, hit): &(Query, &crate::method::SurfaceHit)| {
+                DVec3::from_array(ray.origin) + DVec3::from_array(ray.direction).normalize() * hit.distance
+            };
+            let ways: Vec<DVec3> = before.iter().map(|before| place(before) - second.eye).collect();
+            let queries: Vec<Query> =
+                ways.iter().map(|way| Query::new(second.eye.to_array(), way.to_array()).with_cone(0.0, second.tan_theta)).collect();
+            let hits = trace_together(&mut **tracer, &queries, &mut NoSteps);
+            let (mut surface, mut colour) = (Vec::new(), Vec::new());
+            for (((old_ray, old), way), (ray, hit)) in before.iter().zip(&ways).zip(queries.iter().zip(&hits)) {
+                let wide = 2.0 * second.tan_theta * way.length();
+                let Some(hit) = hit.as_ref().filter(|hit| (hit.distance - way.length()).abs() <= FAR * wide) else { continue };
+                let across = hit.plane_normal().map_or(1.0, |plane| plane.as_dvec3().normalize().dot(way.normalize()).abs());
+                surface.push((hit.distance - way.length()).abs() * across / wide);
+                let [before, after] = [(old_ray, *old), (ray, hit)].map(|(ray, hit)| {
+                    let mut light = Light::default();
+                    shader.add(&mut light, ray, Some(hit));
+                    light.mean()
+                });
+                colour.push(255.0 * f64::from((after - before).abs().max_element()));
+            }
+            (surface, colour)
+        },
+    );
+    let (surface, colour): (Vec<_>, Vec<_>) = chunks.collect::<Vec<_>>().into_iter().unzip();
+    let (surface, colour) = (surface.concat(), colour.concat());
+    let pixels = surface.len() as u64;
+    Pops { pixels, left_out: seen.len() as u64 - pixels, surface: Pop::of(surface), colour: Pop::of(colour) }
 }

@@ -1,10 +1,10 @@
 //! A flight: frames of a camera that moves a little from one to the next, and what pops between them.
 
-use super::progress::Progress;
+use super::progress::{Progress, Silent};
 use super::shot::Shot;
 use crate::format::Scene;
 use crate::method::Method;
-use crate::picture::{Pops, Seen, popping};
+use crate::picture::{Pops, Shader, Shading, popping};
 use crate::rays::{Camera, ModelSpace, Sight};
 use serde::Serialize;
 
@@ -14,8 +14,6 @@ pub struct Fly<'a> {
     pub scene: &'a Scene,
     /// How its rays find their hits.
     pub method: &'a dyn Method,
-    /// Full resolution by any method.
-    pub full: &'a dyn Method,
     /// Quality.
     pub delta: f64,
     /// The frames' cameras, of one size.
@@ -40,35 +38,31 @@ pub struct Flown {
     pub pops: Option<Pops>,
 }
 
-/// Flies; `each` sees every frame as the method has it. `progress` is told of frames.
+/// Flies; `each` sees every frame. `progress` is told of frames.
+///
+/// # Errors
+/// What `each` says: the flight ends there.
 pub fn fly<E>(what: &Fly<'_>, progress: &dyn Progress, each: &mut dyn FnMut(usize, &Shot) -> Result<(), E>) -> Result<Vec<Flown>, E> {
-    let space = ModelSpace::of(what.scene);
-    let silent = super::progress::Silent;
+    let (space, method) = (ModelSpace::of(what.scene), what.method);
+    let shader = Shader::new(method.surface(what.scene), &space, Shading::Full);
     let bar = progress.begin("flying", Some(what.cameras.len() as u64));
-    let (mut flown, mut before): (Vec<Flown>, Option<[Shot; 2]>) = (Vec::new(), None);
+    let (mut flown, mut before): (Vec<Flown>, Option<Shot>) = (Vec::new(), None);
     for (frame, camera) in what.cameras.iter().enumerate() {
-        let shot = |method, delta| Shot::plain(method, what.scene, &space, camera, delta, ("", &silent));
-        let now = [shot(what.method, what.delta), shot(what.full, f64::INFINITY)];
-        each(frame, &now[0])?;
+        let now = Shot::plain(method, what.scene, &space, camera, what.delta, ("", &Silent));
+        each(frame, &now)?;
+        let sight = Sight::new(camera, &space, what.delta);
         let last = frame.checked_sub(1).map(|last| &what.cameras[last]);
-        let pops = before
-            .as_ref()
-            .zip(last)
-            .map(|(then, last)| popping(what.method.surface(what.scene), &space, [seen(then, last), seen(&now, camera)]));
+        let pops = before.as_ref().zip(last).map(|(then, last)| popping(method, &shader, &then.frame, [last, camera], &sight));
         flown.push(Flown {
             frame,
             eye: camera.eye.to_array(),
             moved: last.map_or(0.0, |last| (camera.eye - last.eye).length()),
-            mean_level: now[0].stats.mean_level,
-            choices: what.method.choices(&Sight::new(camera, &space, what.delta)),
+            mean_level: now.stats.mean_level,
+            choices: method.choices(&sight),
             pops,
         });
         before = Some(now);
         bar.step(1);
     }
     Ok(flown)
-}
-
-fn seen<'a>([own, full]: &'a [Shot; 2], camera: &'a Camera) -> Seen<'a> {
-    Seen { frame: &own.frame, image: &own.image, full: &full.image, camera }
 }
