@@ -24,6 +24,9 @@ use thiserror::Error;
 /// Most rays of a file.
 const MOST: u64 = 1 << 28;
 
+/// Most bytes of a header: one of an array of rays has a hundred or so.
+const MOST_HEADER: u32 = 1 << 16;
+
 /// Why a file of rays cannot be read.
 #[derive(Debug, Error)]
 #[error("{path}: {why}")]
@@ -38,6 +41,8 @@ enum Why {
     Io(io::Error),
     #[error("an array of {0}, where rays are rows of 6, 8, 10, 11 or 12 floats (float32 or float64)")]
     Shape(String),
+    #[error("a header of {0} bytes, where arrays of rays have at most 2^16")]
+    Header(u32),
     #[error("{0} rays: at most 2^28")]
     TooMany(u64),
     #[error("{0} rays of 12 columns of float32, which cannot number rays beyond 2^24: take float64")]
@@ -64,8 +69,16 @@ impl RayFile {
         Self::parse(BufReader::new(file)).map_err(wrong)
     }
 
-    fn parse(bytes: impl Read) -> Result<Self, Why> {
-        let file = NpyFile::new(bytes).map_err(|error| Why::Io(io::Error::new(error.kind(), format!("no array of NumPy's: {error}"))))?;
+    fn parse(mut bytes: impl Read) -> Result<Self, Why> {
+        // What the file says of its header's length is believed only if it is that of an array of rays.
+        let mut start = Vec::new();
+        bytes.by_ref().take(12).read_to_end(&mut start).map_err(Why::Io)?;
+        if let [0x93, b'N', b'U', b'M', b'P', b'Y', 2.., _, length @ ..] = &start[..]
+            && let Some(length) = length.first_chunk().map(|length| u32::from_le_bytes(*length)).filter(|length| *length > MOST_HEADER)
+        {
+            return Err(Why::Header(length));
+        }
+        let file = NpyFile::new(start.chain(bytes)).map_err(|error| Why::Io(io::Error::new(error.kind(), format!("no array of NumPy's: {error}"))))?;
         let (shape, order, dtype) = (file.shape().to_vec(), file.order(), file.dtype());
         let shown = || format!("shape {shape:?} and type {}", dtype.descr());
         let size = match &dtype {

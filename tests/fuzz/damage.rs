@@ -129,7 +129,7 @@ const NUMBERS: [&str; 38] = [
 ];
 
 /// What files nest, and what a repetition of is long.
-const DEEP: [&str; 14] = ["[", "{", "(", "{\"a\":", "[[", "\"", "a.", "[a.", "a={", "1 ", "/", "-", " ", "9"];
+const DEEP: [&str; 15] = ["1,", "[", "{", "(", "{\"a\":", "[[", "\"", "a.", "[a.", "a={", "1 ", "/", "-", " ", "9"];
 
 /// Binary numbers at the limits of what programs take for numbers.
 const VALUES: [u64; 22] = [
@@ -218,7 +218,7 @@ impl Edit {
         match self {
             _ if length == 0 => {}
             Self::Set(at, byte) => bytes[at.index(length)] = *byte,
-            Self::Flip(at, bit) => bytes[at.index(length)] ^= 1 << bit,
+            Self::Flip(at, bit) => bytes[at.index(length)] ^= 1u8 << *bit,
             Self::Insert(at, new) => put(bytes, *at, new.iter().copied()),
             Self::Remove(at, count) => {
                 let from = at.index(length);

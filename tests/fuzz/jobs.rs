@@ -24,7 +24,7 @@ fn lists_of_jobs() {
     round("jobs", &corpus(), Limit { bytes: 1 << 20, each: 100 }, |bytes| {
         fs::write(folder.path().join("jobs.toml"), bytes).unwrap();
         let script = format!(
-            "ulimit -v {KILOBYTES} -t {SECONDS}; exec \"$0\" cluster snakemake --shards 2 --force -o engine -- sweep jobs.toml -o out"
+            "ulimit -v {KILOBYTES}; ulimit -t {SECONDS}; exec \"$0\" cluster snakemake --shards 2 --force -o engine -- sweep jobs.toml -o out"
         );
         let mut command = Command::new("sh");
         command.arg("-c").arg(script).arg(program).current_dir(folder.path()).env("RAYON_NUM_THREADS", "1").env("LODRAY_CACHE", "none");
