@@ -73,12 +73,13 @@ impl RayFile {
         // What the file says of its header's length is believed only if it is that of an array of rays.
         let mut start = Vec::new();
         bytes.by_ref().take(12).read_to_end(&mut start).map_err(Why::Io)?;
-        if let [0x93, b'N', b'U', b'M', b'P', b'Y', 2.., _, length @ ..] = &start[..]
-            && let Some(length) = length.first_chunk().map(|length| u32::from_le_bytes(*length)).filter(|length| *length > MOST_HEADER)
-        {
+        let is_long = start.starts_with(b"\x93NUMPY") && start.get(6).is_some_and(|version| *version >= 2);
+        let length = start.get(8..).and_then(|length| length.first_chunk()).map(|length| u32::from_le_bytes(*length));
+        if let Some(length) = length.filter(|length| is_long && *length > MOST_HEADER) {
             return Err(Why::Header(length));
         }
-        let file = NpyFile::new(start.chain(bytes)).map_err(|error| Why::Io(io::Error::new(error.kind(), format!("no array of NumPy's: {error}"))))?;
+        let file = NpyFile::new(start.as_slice().chain(bytes))
+            .map_err(|error| Why::Io(io::Error::new(error.kind(), format!("no array of NumPy's: {error}"))))?;
         let (shape, order, dtype) = (file.shape().to_vec(), file.order(), file.dtype());
         let shown = || format!("shape {shape:?} and type {}", dtype.descr());
         let size = match &dtype {

@@ -272,7 +272,9 @@ impl Edit {
 pub fn damaged(corpus: &[File]) -> impl Strategy<Value = Damaged> + use<> {
     assert!(!corpus.is_empty());
     let corpus = corpus.to_vec();
-    (any::<Index>(), prop::collection::vec(edit(), 1..7)).prop_map(move |(which, edits)| {
+    // Most have one fault: others hide behind the first.
+    let edits = prop_oneof![2 => prop::collection::vec(edit(), 1), 1 => prop::collection::vec(edit(), 2..7)];
+    (any::<Index>(), edits).prop_map(move |(which, edits)| {
         let mut bytes = which.get(&corpus).bytes.clone();
         edits.iter().for_each(|edit| edit.apply(&corpus, &mut bytes));
         Damaged(bytes)

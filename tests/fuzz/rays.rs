@@ -23,7 +23,8 @@ fn corpus() -> Vec<File> {
     let rows = |columns: usize| (0..5).flat_map(|k| row(f64::from(k))[..columns].to_vec()).collect::<Vec<_>>();
     let mut following = rows(12);
     following[23] = 0.0;
-    let narrow: Vec<f32> = rows(8).iter().map(|v| *v as f32).collect();
+    // Column by column.
+    let narrow: Vec<f32> = (0..8).flat_map(|column| rows(8).into_iter().skip(column).step_by(8)).map(|v| v as f32).collect();
     let mut files: Vec<File> =
         [6, 8, 10, 11, 12].map(|columns| File::new("wide", array(columns as u64, npyz::Order::C, &rows(columns)))).to_vec();
     files.push(File::new("following", array(12, npyz::Order::C, &following)));

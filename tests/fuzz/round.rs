@@ -11,8 +11,9 @@ use std::time::{Duration, Instant};
 
 /// Whoever is slower than this hangs. Cases take milliseconds; a busy machine may make them wait.
 const HANGS: Duration = Duration::from_secs(20);
-/// Cases between two looks at the clock.
+/// Cases between two looks at the clock, and those of the shortest round.
 const CASES: u32 = 32;
+const FEWEST: u64 = 256;
 
 /// What a reader may hold in memory: some bytes, and so many for each byte of the file.
 #[derive(Clone, Copy)]
@@ -97,7 +98,8 @@ pub fn round(reader: &str, corpus: &[File], limit: Limit, read: impl Fn(&[u8]) -
     let strategy = damaged(corpus);
     let mut spent = Duration::ZERO;
     let mut first = true;
-    while spent < seconds {
+    let all = || taken.load(Ordering::Relaxed) + refused.load(Ordering::Relaxed);
+    while spent < seconds || all() < FEWEST {
         let _alone = alone();
         let start = Instant::now();
         if std::mem::take(&mut first) {

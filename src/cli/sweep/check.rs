@@ -194,7 +194,8 @@ fn machines(
     // A file is relative to the list.
     let path = if is_path(name.get_ref()) { folder.join(name.get_ref()).display().to_string() } else { name.get_ref().clone() };
     machine(&path, &[], "set").map_err(|why| source.wrong(name.span(), format!("machine {}: {}", name.get_ref(), one_line(&*why))))?;
-    let all = set.values().try_fold(1usize, |all, values| all.checked_mul(values.get_ref().all().len()).filter(|all| *all <= MOST_VARIANTS));
+    let all =
+        set.values().try_fold(1usize, |all, values| all.checked_mul(values.get_ref().all().len()).filter(|all| *all <= MOST_VARIANTS));
     if let (None, Some(values)) = (all, set.values().next()) {
         let why = format!("machine {}: set: more than {MOST_VARIANTS} combinations of values", name.get_ref());
         return Err(source.wrong(values.span(), why));
