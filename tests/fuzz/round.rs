@@ -93,7 +93,7 @@ pub fn round(reader: &str, corpus: &[File], limit: Limit, read: impl Fn(&[u8]) -
     let mut seed = [0; 32];
     seed[..8].copy_from_slice(&setting("LODRAY_FUZZ_SEED", 50.0).to_bits().to_le_bytes());
     let config = Config { cases: CASES, failure_persistence: None, max_shrink_iters: 2000, ..Config::default() };
-    let mut runner = TestRunner::new_with_rng(config, TestRng::from_seed(RngAlgorithm::ChaCha, &seed));
+    let mut seeds = TestRunner::new_with_rng(config.clone(), TestRng::from_seed(RngAlgorithm::ChaCha, &seed));
     let (taken, refused) = (AtomicU64::new(0), AtomicU64::new(0));
     let strategy = damaged(corpus);
     let mut spent = Duration::ZERO;
@@ -107,6 +107,8 @@ pub fn round(reader: &str, corpus: &[File], limit: Limit, read: impl Fn(&[u8]) -
                 assert!(tried(&file.bytes), "{reader}: {} of the corpus is refused", file.name);
             }
         }
+        // A runner runs its cases once.
+        let mut runner = TestRunner::new_with_rng(config.clone(), seeds.new_rng());
         let result = runner.run(&strategy, |file| {
             if tried(&file.0) { &taken } else { &refused }.fetch_add(1, Ordering::Relaxed);
             Ok::<(), TestCaseError>(())
