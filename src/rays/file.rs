@@ -73,10 +73,19 @@ impl RayFile {
         // What the file says of its header's length is believed only if it is that of an array of rays.
         let mut start = Vec::new();
         bytes.by_ref().take(12).read_to_end(&mut start).map_err(Why::Io)?;
-        let is_long = start.starts_with(b"\x93NUMPY") && start.get(6).is_some_and(|version| *version >= 2);
-        let length = start.get(8..).and_then(|length| length.first_chunk()).map(|length| u32::from_le_bytes(*length));
-        if let Some(length) = length.filter(|length| is_long && *length > MOST_HEADER) {
-            return Err(Why::Header(length));
+        if start.starts_with(b"\x93NUMPY") && start.len() == 12 {
+            let (from, length) = match start[6] {
+                0 | 1 => (10, u32::from(u16::from_le_bytes([start[8], start[9]]))),
+                _ => (12, u32::from_le_bytes([start[8], start[9], start[10], start[11]])),
+            };
+            if length > MOST_HEADER {
+                return Err(Why::Header(length));
+            }
+            let missing = (from + u64::from(length)).saturating_sub(12);
+            bytes.by_ref().take(missing).read_to_end(&mut start).map_err(Why::Io)?;
+            if !is_countable(&start[from as usize..]) {
+                return Err(Why::Shape("a shape that cannot be".to_owned()));
+            }
         }
         let file = NpyFile::new(start.as_slice().chain(bytes))
             .map_err(|error| Why::Io(io::Error::new(error.kind(), format!("no array of NumPy's: {error}"))))?;
@@ -129,6 +138,14 @@ impl RayFile {
     }
 }
 
+/// Whether the sizes of a header's shape have a product: the reader of arrays takes that for granted.
+fn is_countable(header: &[u8]) -> bool {
+    let text = String::from_utf8_lossy(header);
+    let shape = text.split_once("shape").and_then(|(_, rest)| rest.split_once('(')?.1.split_once(')')).map_or("", |(shape, _)| shape);
+    let sizes = shape.split(',').map(|size| size.trim().trim_end_matches('L')).filter(|size| !size.is_empty());
+    sizes.map(|size| size.parse::<u64>().ok()).try_fold(1u64, |all, size| all.checked_mul(size?.max(1))).is_some()
+}
+
 impl RaySource for RayFile {
     fn rays(&self) -> u64 {
         self.queries.len() as u64
@@ -160,6 +177,18 @@ impl RaySource for RayFile {
 mod tests {
     use super::*;
     use npyz::WriterBuilder;
+
+    #[test]
+    fn headers_that_promise_too_much_are_refused() {
+        let head = |version: u8, length: &[u8], text: &str| [b"\x93NUMPY", &[version, 0][..], length, text.as_bytes()].concat();
+        let why = |bytes: &[u8]| RayFile::parse(bytes).unwrap_err().to_string();
+        assert_eq!(why(&head(2, &[0xff; 4], "")), "a header of 4294967295 bytes, where arrays of rays have at most 2^16");
+        for shape in ["9223372036854775807, 8", "0, 9223372036854775807, 8", "99999999999999999999, 6"] {
+            let text = format!("{{'descr': '<f8', 'fortran_order': False, 'shape': ({shape}), }}\n");
+            let said = why(&head(1, &(text.len() as u16).to_le_bytes(), &text));
+            assert!(said.starts_with("an array of a shape that cannot be"), "{said}");
+        }
+    }
 
     fn array(shape: &[u64], order: Order, values: &[f64]) -> Vec<u8> {
         let mut bytes = Vec::new();

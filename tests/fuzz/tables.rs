@@ -15,9 +15,9 @@ fn shipped(folder: &str) -> Vec<File> {
     File::of(&Path::new(env!("CARGO_MANIFEST_DIR")).join(folder), "toml")
 }
 
-/// True for what was read; an error has to be in words.
+/// True for what was read; an error has to be in words, and may show the line.
 fn is_read<T, E: std::fmt::Display>(read: Result<T, E>) -> bool {
-    read.map_err(|error| assert!((10..2000).contains(&error.to_string().len()), "{error}")).is_ok()
+    read.map_err(|error| assert!(error.to_string().len() > 10, "{error}")).is_ok()
 }
 
 const LIMIT: Limit = Limit { bytes: 1 << 20, each: 300 };
