@@ -99,7 +99,7 @@ class Intersector:
         self._method = self._scene.method(method, **knobs)
 
     def cast(self, rays: Any) -> NDArray[np.void]:
-        """The hits of rays, as `Scene.cast` gives them: an array of `lodray.HIT`, with `t` in lengths of the rays' directions.
+        """The hits of rays, as `Scene.cast` gives them: an array of `lodray.HIT`, with `t` in world units.
 
         rays: a `mitsuba.Ray3f` or `RayDifferential3f`, of one ray or many.
         """
@@ -109,7 +109,9 @@ class Intersector:
         spread = [np.ascontiguousarray(np.broadcast_to(of, (many, 3))) for of in (origins, directions)]
         # What Mitsuba has for "no end" is the largest of its numbers.
         ends = np.where(t_max >= np.finfo(np.float32).max, np.inf, t_max)
-        return self._method.cast(*spread, radius=radius, cone=cone, t_max=np.broadcast_to(ends, many).copy())
+        # Mitsuba counts in lengths of directions.
+        ends = np.broadcast_to(ends * np.linalg.norm(directions, axis=1), many).copy()
+        return self._method.cast(*spread, radius=radius, cone=cone, t_max=ends)
 
     def ray_intersect(self, rays: Any) -> Any:
         """The surface interactions of rays: a `mitsuba.SurfaceInteraction3f`, of one ray in scalar variants, otherwise of as many as there are.
@@ -123,7 +125,7 @@ class Intersector:
         b1, b2 = self._weights(faces, hits["point"], met)
         owners = self._owners[faces]
         own = faces - self._first[owners]
-        t = np.where(met, hits["t"], np.inf)
+        t = np.where(met, hits["t"], np.inf) / np.linalg.norm(_columns(rays.d), axis=1)
         found = mi.PreliminaryIntersection3f()
         if mi.variant().startswith("scalar"):
             if len(hits) != 1:
