@@ -3,10 +3,17 @@
 use serde_json::Error;
 use serde_json::error::Category;
 
+/// Most characters of a name that are said.
+const LONGEST: usize = 80;
+
 /// What is wrong, without the place.
 pub fn fault(error: &Error) -> String {
     let message = error.to_string();
-    let field = || message.split('`').nth(1).unwrap_or_default();
+    let field = || {
+        let name = message.split('`').nth(1).unwrap_or_default();
+        // Whatever a file has there: its beginning tells which.
+        name.char_indices().nth(LONGEST).map_or_else(|| name.to_owned(), |(at, _)| format!("{}...", &name[..at]))
+    };
     match error.classify() {
         Category::Io => message,
         Category::Eof => "it ends too early".to_owned(),
@@ -40,6 +47,7 @@ mod tests {
             ("{\"_count\": 1,", "line 1, column 13: it ends too early"),
             ("rubbish", "line 1, column 1: it is not JSON"),
             ("{\"_count\": 1}", "line 1, column 13: the field _name is missing"),
+            (&format!("{{\"{}\": 1}}", "x".repeat(2000)), &format!("line 1, column 2003: there is no field {}...", "x".repeat(80))),
             ("{\n\"count\": 1}", "line 2, column 7: there is no field count"),
             ("{\"_count\": -1}", "line 1, column 13: a value is not of the kind or in the range that it should be"),
             ("[\"x\", 1]", "line 1, column 4: a value is not of the kind or in the range that it should be"),

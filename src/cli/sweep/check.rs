@@ -26,6 +26,11 @@ use std::ops::Range;
 use std::path::{Path, PathBuf};
 use xxhash_rust::xxh3::xxh3_64;
 
+/// Most jobs of a list, all of whose names are in memory at once.
+const MOST_JOBS: usize = 1 << 20;
+/// Most machines that one entry stands for.
+const MOST_VARIANTS: usize = 1 << 12;
+
 /// Reads and checks a list; every error names the file.
 pub fn read_jobs(path: &Path) -> anyhow::Result<Jobs> {
     let text = std::fs::read_to_string(path).with_context(|| format!("cannot read {}", path.display()))?;
@@ -100,6 +105,9 @@ fn jobs(source: &ListText<'_>) -> anyhow::Result<Jobs> {
         }
         scenes.push(jobs);
     }
+    let views: usize = scenes.iter().map(|scene| scene.views.len()).sum();
+    let all = views.checked_mul(methods.len()).and_then(|all| all.checked_mul(targets.len())).filter(|all| *all <= MOST_JOBS);
+    anyhow::ensure!(all.is_some(), "{}: more than {MOST_JOBS} jobs: share them among several lists", source.path.display());
     let deltas = list.deltas.as_ref().map_or_else(Vec::new, |deltas| deltas.get_ref().iter().map(ToString::to_string).collect());
     let jobs = Jobs { scenes, methods, targets, deltas, error: list.error, intervals: list.intervals, files };
     let mut seen = HashSet::new();
@@ -186,6 +194,12 @@ fn machines(
     // A file is relative to the list.
     let path = if is_path(name.get_ref()) { folder.join(name.get_ref()).display().to_string() } else { name.get_ref().clone() };
     machine(&path, &[], "set").map_err(|why| source.wrong(name.span(), format!("machine {}: {}", name.get_ref(), one_line(&*why))))?;
+    let all =
+        set.values().try_fold(1usize, |all, values| all.checked_mul(values.get_ref().all().len()).filter(|all| *all <= MOST_VARIANTS));
+    if let (None, Some(values)) = (all, set.values().next()) {
+        let why = format!("machine {}: set: more than {MOST_VARIANTS} combinations of values", name.get_ref());
+        return Err(source.wrong(values.span(), why));
+    }
     // Every combination of the values, the last key's changing fastest.
     let mut variants = vec![Vec::new()];
     for (key, values) in set {

@@ -8,8 +8,8 @@ use ::gltf::json::validation::Checked;
 use ::gltf::json::{Index, Root};
 use std::path::Path;
 
-/// Most items of an accessor that has no bytes for them: all but a few are zero.
-const MAX_ZEROS: u64 = 1 << 24;
+/// Most positions or indices of an accessor that has no bytes for them: all but a few are zero, so that few words can ask for much memory.
+pub(super) const MAX_ZEROS: usize = 1 << 16;
 
 pub(super) struct Reader<'a> {
     root: &'a Root,
@@ -21,14 +21,14 @@ impl<'a> Reader<'a> {
         Reader { root, buffers: Buffers::new(root, bin, folder) }
     }
 
-    /// Positions or normals.
-    pub(super) fn vectors(&self, index: Index<Accessor>, place: &str) -> Result<Vec<[f64; 3]>, Fault> {
+    /// Positions or normals; at most `zeros` if the accessor has no bytes for them.
+    pub(super) fn vectors(&self, index: Index<Accessor>, zeros: usize, place: &str) -> Result<Vec<[f64; 3]>, Fault> {
         let read = || {
             let accessor = self.accessor(index)?;
             if accessor.type_ != Checked::Valid(Type::Vec3) {
                 return Err("it is not of type VEC3".into());
             }
-            self.items::<3>(accessor, component(accessor)?)
+            self.items::<3>(accessor, component(accessor)?, zeros)
         };
         read().or_else(|what: String| fault(place, format_args!("accessor {}: {what}", index.value())))
     }
@@ -43,7 +43,7 @@ impl<'a> Reader<'a> {
             {
                 return Err("indices must be SCALAR and of 8, 16 or 32 bits without a sign".into());
             }
-            let values = self.items::<1>(accessor, kind)?;
+            let values = self.items::<1>(accessor, kind, MAX_ZEROS)?;
             if let Some((i, [v])) = values.iter().enumerate().find(|(_, [v])| *v >= count as f64) {
                 return Err(format!("item {i}: vertex index {v} is out of range, there are {count} vertices"));
             }
@@ -56,13 +56,13 @@ impl<'a> Reader<'a> {
         self.root.accessors.get(index.value()).ok_or_else(|| "it is not there".into())
     }
 
-    fn items<const N: usize>(&self, accessor: &Accessor, kind: ComponentType) -> Result<Vec<[f64; N]>, String> {
+    fn items<const N: usize>(&self, accessor: &Accessor, kind: ComponentType, zeros: usize) -> Result<Vec<[f64; N]>, String> {
         let count = accessor.count.0;
         let decode = |bytes: &[u8]| -> [f64; N] { std::array::from_fn(|k| number(kind, accessor.normalized, &bytes[k * kind.size()..])) };
         let mut items: Vec<[f64; N]> = match accessor.buffer_view {
             Some(view) => self.bytes(view, accessor.byte_offset.map_or(0, |o| o.0), count, N * kind.size())?.map(decode).collect(),
             None if accessor.sparse.is_none() => return Err("it has no bytes (no buffer view)".into()),
-            None if count > MAX_ZEROS => return Err(format!("it has no bytes for its {count} items")),
+            None if count > zeros as u64 => return Err(format!("it has no bytes for its {count} items")),
             None => vec![[0.0; N]; count as usize],
         };
         if let Some(sparse) = &accessor.sparse {

@@ -10,7 +10,7 @@ use super::{Fault, Parts, fault, shown};
 use ::gltf::json::mesh::{Mode, Primitive, Semantic};
 use ::gltf::json::validation::Checked;
 use ::gltf::json::{Index, Root};
-use accessor::Reader;
+use accessor::{MAX_ZEROS, Reader};
 use glam::{DMat3, DVec3};
 use nodes::Placed;
 use std::path::Path;
@@ -148,9 +148,9 @@ impl Builder<'_> {
         let Some(&positions) = primitive.attributes.get(&Checked::Valid(Semantic::Positions)) else {
             return fault(place, "it has no attribute POSITION");
         };
-        let mut positions = self.reader.vectors(positions, &format!("{place}, POSITION"))?;
+        let mut positions = self.reader.vectors(positions, MAX_ZEROS, &format!("{place}, POSITION"))?;
         let mut normals = match primitive.attributes.get(&Checked::Valid(Semantic::Normals)) {
-            Some(&normals) => Some(self.reader.vectors(normals, &format!("{place}, NORMAL"))?),
+            Some(&normals) => Some(self.reader.vectors(normals, positions.len(), &format!("{place}, NORMAL"))?),
             None => None,
         };
         if let Some(n) = normals.as_ref().filter(|n| n.len() != positions.len()) {
@@ -189,7 +189,7 @@ impl Builder<'_> {
             let add = |index: Option<Index<_>>, to: Option<&mut [[f64; 3]]>, name| {
                 let (Some(index), Some(to)) = (index, to) else { return Ok(()) };
                 let place = format!("{place}, target {i}, {name}");
-                let by = self.reader.vectors(index, &place)?;
+                let by = self.reader.vectors(index, to.len(), &place)?;
                 if by.len() != to.len() {
                     return fault(place, format_args!("it has {} items for {} vertices", by.len(), to.len()));
                 }
