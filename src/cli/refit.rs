@@ -7,6 +7,7 @@ use super::output::{busy, check_target, open, print_json, progress, remark};
 use anyhow::{Context, ensure};
 use lodray::format::{Grid, Refit, RefitOptions, Shading};
 use lodray::mesh::{Motion, PositionFrames, read_positions};
+use std::borrow::Cow;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
@@ -106,13 +107,13 @@ impl Frames {
         Ok(Self { sequence: is_sequence.then_some(positions.len() / vertices), positions, vertices, motion: None })
     }
 
-    fn at(&self, frame: usize) -> std::borrow::Cow<'_, [[f64; 3]]> {
+    fn at(&self, frame: usize) -> Cow<'_, [[f64; 3]]> {
         match self.motion {
             Some((motion, start)) => {
                 let time = start + frame as f64 / self.sequence.unwrap_or(1) as f64;
-                motion.at(&self.positions, time).into()
+                Cow::Owned(motion.at(&self.positions, time))
             }
-            None => self.positions[frame * self.vertices..][..self.vertices].into(),
+            None => Cow::Borrowed(&self.positions[frame * self.vertices..][..self.vertices]),
         }
     }
 }
