@@ -23,8 +23,13 @@ const PIECES: u64 = 64;
 const POSITION: u64 = 12;
 
 /// A vertex that inserts: its middle, its distance from that, its bound, its code, its steps; boxes that grow around it.
-const FIT: Work =
-    Work { name: "fit_vertex", products: &[[3, 32, 32]], add_bits: 3 * 3 * 32 + 6 * 32, select_bits: 6 * 32, written_bits: 3 * 13 + 8 + 6 * 2 };
+const FIT: Work = Work {
+    name: "fit_vertex",
+    products: &[[3, 32, 32]],
+    add_bits: 3 * 3 * 32 + 6 * 32,
+    select_bits: 6 * 32,
+    written_bits: 3 * 13 + 8 + 6 * 2,
+};
 /// A triangle that is stored, and boxes that grow around it.
 const STORE: Work = Work { name: "fit_triangle", products: &[], add_bits: 2 * 6 * 32, select_bits: 6 * 32, written_bits: 256 };
 

@@ -3,6 +3,7 @@
 use super::{Box32, Child, QuadNode, encode_line};
 use crate::format::{Box16, BvhNode, ChildRef, Line};
 use crate::num::Wire;
+use rayon::prelude::*;
 
 /// Nodes of one task: fewer are not worth a thread.
 const TASK: usize = 1 << 10;
@@ -25,6 +26,11 @@ pub fn refit_over_trees(nodes: &[Line], boxes: &[Box16]) -> Vec<Line> {
     refit(nodes, &|first, _| super::wide(&boxes[first as usize]))
 }
 
+/// The number of an inner child.
+fn inner(child: &Child) -> Option<usize> {
+    if let Child::Inner(index) = child { Some(*index as usize) } else { None }
+}
+
 fn children(line: &Line) -> [Child; 4] {
     let node = BvhNode::from_words(line);
     [0, 1, 2, 3].map(|k| {
@@ -42,36 +48,34 @@ fn children(line: &Line) -> [Child; 4] {
 /// otherwise.
 fn group(siblings: &mut [Line], below: &mut [Line], at: usize, leaf: &(impl Fn(u32, u32) -> Box32 + Sync)) -> Option<[Box32; 4]> {
     let all: Vec<[Child; 4]> = siblings.iter().map(children).collect();
-    // Where what is below each of them begins, and how many of that are its own children.
-    let inner = |of: &[Child; 4]| of.iter().filter_map(|c| if let Child::Inner(index) = c { Some(*index as usize) } else { None }).min();
-    let mut boxes = [Box32::default(); 4];
+    let first_inner = |of: &[Child; 4]| of.iter().filter_map(inner).min();
+    // What is below each of them, and the number of its first node.
     let mut parts = Vec::with_capacity(4);
     let (mut rest, mut from) = (below, at);
     for (k, of) in all.iter().enumerate() {
-        let Some(first) = inner(of) else {
-            parts.push((k, from, &mut [][..]));
-            continue;
+        let next = match first_inner(of) {
+            None => from,
+            Some(first) if first == from => all[k + 1..].iter().find_map(first_inner).unwrap_or(from + rest.len()),
+            Some(_) => return None,
         };
-        let next = all[k + 1..].iter().find_map(inner).unwrap_or(from + rest.len());
-        if first != from || next < from || next - from > rest.len() {
+        if next < from || next - from > rest.len() {
             return None;
         }
         let (own, others) = std::mem::take(&mut rest).split_at_mut(next - from);
-        parts.push((k, from, own));
+        parts.push((own, from));
         (rest, from) = (others, next);
     }
     if !rest.is_empty() {
         return None;
     }
-    let nodes = parts.into_iter().zip(siblings).zip(&all);
-    let one = |(((_, first, own), line), of): (((usize, usize, &mut [Line]), &mut Line), &[Child; 4])| node(line, of, own, first, leaf);
-    let work: Vec<_> = nodes.collect();
-    let done: Vec<Option<Box32>> = if work.iter().map(|((part, _), _)| part.2.len()).sum::<usize>() > TASK {
-        use rayon::prelude::*;
-        work.into_par_iter().map(one).collect()
+    let is_large = from - at > TASK;
+    let work: Vec<_> = siblings.iter_mut().zip(&all).zip(parts).collect();
+    let done: Vec<Option<Box32>> = if is_large {
+        work.into_par_iter().map(|((line, of), (own, first))| node(line, of, own, first, leaf)).collect()
     } else {
-        work.into_iter().map(one).collect()
+        work.into_iter().map(|((line, of), (own, first))| node(line, of, own, first, leaf)).collect()
     };
+    let mut boxes = [Box32::default(); 4];
     for (to, found) in boxes.iter_mut().zip(done) {
         *to = found?;
     }
@@ -115,7 +119,7 @@ fn in_turn(nodes: &[Line], leaf: &impl Fn(u32, u32) -> Box32) -> Vec<Line> {
     let mut order = vec![0];
     let mut at = 0;
     while at < order.len() {
-        order.extend(children(&nodes[order[at]]).iter().filter_map(|c| if let Child::Inner(index) = c { Some(*index as usize) } else { None }));
+        order.extend(children(&nodes[order[at]]).iter().filter_map(inner));
         at += 1;
     }
     let mut out = nodes.to_vec();
@@ -177,25 +181,27 @@ mod tests {
             let of = |child: &Child| match *child {
                 Child::Empty => Vec::new(),
                 Child::Inner(index) => below(tree, index as usize, boxes),
-                Child::Leaf { first, count } => {
-                    tree.order[first as usize..][..count.into()].iter().map(|&k| boxes[k as usize]).collect()
-                }
+                Child::Leaf { first, count } => tree.order[first as usize..][..count.into()].iter().map(|&k| boxes[k as usize]).collect(),
             };
             tree.nodes[at].children.iter().flat_map(of).collect()
         }
-        let moved: Vec<QuadNode> = tree.nodes.iter().map(|node| {
-            let of = |child: &Child| {
-                let own = match *child {
-                    Child::Empty => return Box32::default(),
-                    Child::Inner(index) => below(&tree, index as usize, &after),
-                    Child::Leaf { first, count } => {
-                        tree.order[first as usize..][..count.into()].iter().map(|&k| after[k as usize]).collect()
-                    }
+        let moved: Vec<QuadNode> = tree
+            .nodes
+            .iter()
+            .map(|node| {
+                let of = |child: &Child| {
+                    let own = match *child {
+                        Child::Empty => return Box32::default(),
+                        Child::Inner(index) => below(&tree, index as usize, &after),
+                        Child::Leaf { first, count } => {
+                            tree.order[first as usize..][..count.into()].iter().map(|&k| after[k as usize]).collect()
+                        }
+                    };
+                    own.into_iter().reduce(|a, b| a.union(&b)).unwrap()
                 };
-                own.into_iter().reduce(|a, b| a.union(&b)).unwrap()
-            };
-            QuadNode { boxes: node.children.each_ref().map(of), children: node.children }
-        }).collect();
+                QuadNode { boxes: node.children.each_ref().map(of), children: node.children }
+            })
+            .collect();
         let wanted: Vec<Line> = moved.iter().map(encode_line).collect();
         assert_eq!(fitted(&nodes, &tree.order, &after), wanted);
 

@@ -1,8 +1,8 @@
 //! Values of the library's that options take by name: the library has the names, and what `--help` says of each stands here.
 
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
-use lodray::mesh::procedural::Scene;
 use lodray::format::{Grid, Shading};
+use lodray::mesh::procedural::Scene;
 use lodray::mesh::{BoundKind, MeshFormat, Motion};
 use lodray::num::VertexForm;
 use lodray::run::Compute;

@@ -10,7 +10,6 @@ use super::sections::{COUNT, FileSection, place};
 use super::shading::SmoothShading;
 use super::{Box16, Line, Scene, SceneError, tree_boxes};
 use crate::mesh::{Hierarchy, SharedEdges, SurfaceError, first_not_finite, grid_holds, lattice, move_vertices};
-use rayon::prelude::*;
 use std::convert::Infallible;
 use std::sync::Arc;
 use thiserror::Error;

@@ -18,7 +18,8 @@ impl SmoothShading {
     pub fn of(scene: &Scene, numbers: &[u32]) -> Self {
         let (levels, len) = (scene.levels(), lattice::len(scene.levels()));
         let m = 1u32 << levels;
-        let mut border: Vec<u32> = (0..m).flat_map(|k| [(k, 0), (0, m - k), (m - k, k)]).map(|p| lattice::index(levels, p) as u32).collect();
+        let mut border: Vec<u32> =
+            (0..m).flat_map(|k| [(k, 0), (0, m - k), (m - k, k)]).map(|p| lattice::index(levels, p) as u32).collect();
         border.sort_unstable();
         let normals = scene.normals();
         let at = |place: u32| place as usize / border.len() * len + border[place as usize % border.len()] as usize;
@@ -50,10 +51,14 @@ impl SmoothShading {
                 *to = sums[at as usize];
             }
         });
-        let all: Vec<[f64; 3]> = self.starts.windows(2).map(|ends| {
-            let group = self.points[ends[0]..ends[1]].iter().map(|&place| at_border[place as usize]);
-            group.fold([0.0; 3], |sum, own| std::array::from_fn(|k| sum[k] + own[k]))
-        }).collect();
+        let all: Vec<[f64; 3]> = self
+            .starts
+            .windows(2)
+            .map(|ends| {
+                let group = self.points[ends[0]..ends[1]].iter().map(|&place| at_border[place as usize]);
+                group.fold([0.0; 3], |sum, own| std::array::from_fn(|k| sum[k] + own[k]))
+            })
+            .collect();
         for (ends, all) in self.starts.windows(2).zip(all) {
             for &place in &self.points[ends[0]..ends[1]] {
                 let (tree, own) = (place as usize / self.border.len(), place as usize % self.border.len());

@@ -87,8 +87,8 @@ fn within(a: i32, b: i32, steps: i32, shift: u32) -> i32 {
 #[cfg(test)]
 mod tests {
     use super::super::bounds::edge_codes;
-    use super::super::procedural::{Options, Scene, generate};
     use super::super::lattice::LatticePoint;
+    use super::super::procedural::{Options, Scene, generate};
     use super::super::{BoundKind, Hierarchy, SharedEdges, quantise};
     use super::*;
     use crate::num::bound_decode;

@@ -25,7 +25,8 @@ fn refitted(scene: &Scene) -> Vec<(String, Scene)> {
     let rest = refit.positions();
     let size = 2.0 * ModelSpace::of(scene).radius();
     let mut random = Random::new(3);
-    let mut noise = |amount: f64| rest.iter().map(|p| p.map(|c| c + amount * size * (random.next() as f64 / 2f64.powi(63) - 1.0))).collect();
+    let mut noise =
+        |amount: f64| rest.iter().map(|p| p.map(|c| c + amount * size * (random.next() as f64 / 2f64.powi(63) - 1.0))).collect();
     let mut moved = vec![
         ("noise".to_owned(), noise(0.3)),
         ("fine noise".to_owned(), noise(0.001)),

@@ -2,7 +2,7 @@
 
 use lodray::bvh::{over_trees, refit_over_trees};
 use lodray::format::audit::audit;
-use lodray::format::{Grid, RefitError, RefitOptions, Scene, Shading, TreeBvh, build, decode_normal, encode, tree_boxes};
+use lodray::format::{Grid, RefitError, RefitOptions, Scene, Shading, TreeBvh, build, decode_normal, encode, export_level, tree_boxes};
 use lodray::mesh::{BoundKind, Surface, lattice, quantise};
 use lodray::num::VertexForm;
 use lodray::num::random::Random;
@@ -48,6 +48,21 @@ fn built_anew(like: &Scene, surface: &Surface, kind: BoundKind, form: VertexForm
 
 fn forms() -> impl Iterator<Item = (BoundKind, VertexForm)> {
     BoundKind::ALL.into_iter().flat_map(|kind| VertexForm::ALL.map(|form| (kind, form)))
+}
+
+#[test]
+fn vertices_are_in_the_order_of_an_export() {
+    for (name, surface) in surfaces() {
+        let scene = scene_of(&surface, BoundKind::Total, VertexForm::Compact);
+        let mut text = Vec::new();
+        export_level(&scene, scene.levels(), &mut text).unwrap();
+        let text = String::from_utf8(text).unwrap();
+        let exported = text.lines().filter_map(|line| line.strip_prefix("v ")).map(|line| {
+            let mut words = line.split(' ').map(|word| word.parse::<f64>().unwrap());
+            [0; 3].map(|_| words.next().unwrap())
+        });
+        assert!(exported.eq(scene.refitting().unwrap().positions()), "{name}");
+    }
 }
 
 #[test]
@@ -111,7 +126,8 @@ fn every_form_passes_the_audit_after_jumps_one_after_the_other() {
                     let in_turn = refit.move_to(&to, options).unwrap();
                     let report = audit(in_turn);
                     assert!(report.passed(), "{name}, {form:?}, {jump}: {report}");
-                    let parts = [lodray::format::FileSection::Splits, lodray::format::FileSection::Vertices, lodray::format::FileSection::Records];
+                    let parts =
+                        [lodray::format::FileSection::Splits, lodray::format::FileSection::Vertices, lodray::format::FileSection::Records];
                     assert!(parts.into_iter().all(|part| in_turn.section(part) == once.section(part)), "{name}, {form:?}, {jump}");
                     assert!(shading == Shading::Keep || in_turn.bytes() == once.bytes(), "{name}, {form:?}, {jump}");
                 }
