@@ -179,7 +179,8 @@ pub(super) fn seal(image: &mut [u8], ranges: &[Range<usize>; COUNT]) {
 }
 
 fn meta(h: &Hierarchy, surface: &Surface, info: SceneInfo) -> Meta {
-    let ([lo, hi], moved) = extent(h, |tree, point| surface.tree(tree)[point]);
+    let len = lattice::len(h.levels);
+    let ([lo, hi], moved) = extent(h, |tree, point| surface.positions.get(tree * len + point).copied());
     Meta {
         name: info.name,
         program: env!("CARGO_PKG_VERSION").into(),
@@ -202,14 +203,15 @@ fn meta(h: &Hierarchy, surface: &Surface, info: SceneInfo) -> Meta {
     }
 }
 
-/// The box of all points, and how far one is at most from its place, in world units; `place` says where lattice point by index of a tree was.
-pub(super) fn extent(h: &Hierarchy, place: impl Fn(usize, usize) -> [f64; 3] + Sync) -> (Span, f64) {
+/// The box of all points, and how far one is at most from its place, in world units; `place` says where a point of a tree was, if anybody knows.
+pub(super) fn extent(h: &Hierarchy, place: impl Fn(usize, usize) -> Option<[f64; 3]> + Sync) -> (Span, f64) {
     let none = ([[i32::MAX; 3], [i32::MIN; 3]], 0.0);
     let both = |(a, far): (Span, f64), (b, other): (Span, f64)| (join(a, b), far.max(other));
     let of_tree = |(tree, points): (usize, &[[i32; 3]])| {
         points.iter().enumerate().fold(none, |all, (at, &p)| {
-            let (world, place) = (h.to_world(p), place(tree, at));
-            both(all, ([p, p], (0..3).map(|k| (world[k] - place[k]).powi(2)).sum::<f64>()))
+            let world = h.to_world(p);
+            let squared = place(tree, at).map_or(0.0, |place| (0..3).map(|k| (world[k] - place[k]).powi(2)).sum::<f64>());
+            both(all, ([p, p], squared))
         })
     };
     let (span, squared) = h.points.par_chunks(lattice::len(h.levels)).enumerate().map(of_tree).reduce(|| none, both);

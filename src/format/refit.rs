@@ -198,7 +198,7 @@ impl Refit {
         let (stored, starts) = places(h, &self.order)?;
         let nodes = (self.refit_nodes)(self.scene.nodes(), &tree_boxes(h));
         let len = lattice::len(h.levels);
-        let ([lo, hi], moved) = extent(h, |tree, point| positions[self.numbers[tree * len + point] as usize]);
+        let ([lo, hi], moved) = extent(h, |tree, point| Some(positions[self.numbers[tree * len + point] as usize]));
         let mut meta = self.scene.meta.clone();
         (meta.placement, meta.bound_offset) = (h.placement, h.bounds.scale.offset.get() as u32); // 9 bits
         (meta.lo, meta.hi, meta.moved) = (lo, hi, moved);
