@@ -15,12 +15,14 @@ mod options;
 pub(crate) mod order;
 pub(crate) mod orient;
 pub(crate) mod plan;
+mod refit;
 
 pub use check::{Defect, check, sah_cost};
 pub use encode::{BvhChild32, Node6, Node16, Node32, encode_line, encode6, encode16, encode32};
 pub use foreign::BinaryNode;
 pub use node::{Box32, Child, QuadNode, WideNode};
 pub use options::{Collapse, Costs, Options};
+pub use refit::{refit, refit_over_trees};
 
 use crate::format::{Box16, TreeBvh};
 use rayon::prelude::*;
@@ -136,11 +138,15 @@ pub(crate) fn side_by_side<const W: usize>(nodes: &mut [WideNode<W>], order: &[u
 /// # Errors
 /// No trees, too many, or a box that is inside out or uses the codes beyond +-32766.
 pub fn over_trees(boxes: &[Box16]) -> Result<TreeBvh, BvhError> {
-    // Codes have 16 bits, so code << 16 fits 32.
-    let wide = |b: &Box16| Box32 { lo: b.lo.get().map(|c| (c << 16) as i32), hi: b.hi.get().map(|c| (c << 16) as i32) };
     let boxes: Vec<Box32> = boxes.par_iter().map(wide).collect();
     let tree = build(&boxes, &Options::with_leaf(1))?.side_by_side();
     Ok(TreeBvh { nodes: tree.nodes.par_iter().map(encode_line).collect(), order: tree.order })
+}
+
+/// Planes in units.
+fn wide(b: &Box16) -> Box32 {
+    // Codes have 16 bits, so code << 16 fits 32.
+    Box32 { lo: b.lo.get().map(|c| (c << 16) as i32), hi: b.hi.get().map(|c| (c << 16) as i32) }
 }
 
 pub(crate) fn check_count(count: u64) -> Result<(), BvhError> {

@@ -34,6 +34,7 @@ mod paths;
 mod pictures;
 mod plan;
 mod prune;
+mod refit;
 mod render;
 mod report;
 mod shard;
@@ -78,6 +79,8 @@ enum Command {
     Plan(plan::Args),
     /// Remove the levels of a scene that no ray of a plan's views reaches; the hits of these rays stay the same, other rays are refused
     Prune(prune::Args),
+    /// Move the vertices of a scene: its trees stay, boxes and bounds are made anew; one scene, or one for each frame
+    Refit(refit::Args),
     /// Render a scene
     #[command(after_long_help = words::RENDER)]
     Render(render::Args),
@@ -140,6 +143,7 @@ pub fn run(cli: Cli) -> anyhow::Result<ExitCode> {
         Command::Verify(args) => verify::run(&args),
         Command::Plan(args) => plan::run(&args),
         Command::Prune(args) => prune::run(&args),
+        Command::Refit(args) => refit::run(&args),
         Command::Render(args) => render::run(&args),
         Command::Fly(args) => fly::run(&args),
         Command::Simulate(args) => simulate::run(&args),

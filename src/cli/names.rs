@@ -1,8 +1,9 @@
 //! Values of the library's that options take by name: the library has the names, and what `--help` says of each stands here.
 
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
+use lodray::format::{Grid, Shading};
 use lodray::mesh::procedural::Scene;
-use lodray::mesh::{BoundKind, MeshFormat};
+use lodray::mesh::{BoundKind, MeshFormat, Motion};
 use lodray::num::VertexForm;
 use lodray::run::Compute;
 
@@ -89,6 +90,52 @@ impl Named for VertexForm {
             Self::Short => {
                 "As compact, but 7 bits in last splits: a quarter of a line, and each vertex there moved by up to 1/32 of its edge's bound"
             }
+        }
+    }
+}
+
+impl Named for Motion {
+    const ALL: &'static [Self] = &Self::ALL;
+
+    fn name(self) -> &'static str {
+        self.name()
+    }
+
+    fn about(self) -> &'static str {
+        match self {
+            Self::Wave => "Two waves run along the longest side of the box",
+            Self::Twist => "The ends of the longest side turn around it",
+            Self::Breathe => "All grows and shrinks around the middle",
+        }
+    }
+}
+
+impl Named for Shading {
+    const ALL: &'static [Self] = &Self::ALL;
+
+    fn name(self) -> &'static str {
+        self.name()
+    }
+
+    fn about(self) -> &'static str {
+        match self {
+            Self::Smooth => "Anew from the facets around each vertex; sharp between trees where they were sharp",
+            Self::Keep => "As they were",
+        }
+    }
+}
+
+impl Named for Grid {
+    const ALL: &'static [Self] = &Self::ALL;
+
+    fn name(self) -> &'static str {
+        self.name()
+    }
+
+    fn about(self) -> &'static str {
+        match self {
+            Self::New => "Where a scene built from these positions has it: their box fills the range of coordinates",
+            Self::Keep => "Where it was, so that what does not move keeps its coordinates; new if a position is outside",
         }
     }
 }

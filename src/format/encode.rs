@@ -5,11 +5,11 @@ use super::scene::Image;
 use super::sections::{COUNT, FileSection, HEADER, checksum, place, write_header};
 use super::{
     Box16, Displacements, L0Record, Line, Meta, Scene, SceneError, ShortDisplacements, ShortLine, SplitRecord, TreeLines, VertexData,
-    colour, has_split, normal,
+    child_corners, colour, has_split, normal,
 };
 use crate::mesh::compact::{inserted_zero_bits, steps_of};
 use crate::mesh::lattice::{self, LatticePoint};
-use crate::mesh::{BoundKind, Hierarchy, Surface, SurfaceError, quantise};
+use crate::mesh::{BoundKind, Hierarchy, Surface, SurfaceError, edge_index, quantise};
 use crate::num::{BoxStep, COORD_LIMIT, U, VertexForm, Wire, box_code_ceil, box_code_floor, displaced, displacement_shift};
 use memmap2::MmapMut;
 use rayon::prelude::*;
@@ -97,14 +97,7 @@ pub fn encode(hierarchy: &Hierarchy, surface: &Surface, info: SceneInfo, bvh: &T
     if order.len() != trees || !order.iter().all(once) {
         return Err(SceneError::Build("quad-BVH does not hold every tree once".into()));
     }
-    let depths: Vec<u32> = order.par_iter().map(|&tree| hierarchy.depth(tree as usize)).collect();
-    let (trees_lines, starts) = layout::places(hierarchy.vertices, &depths);
-    if !starts.are_numbered(hierarchy.vertices) {
-        let (splits, lines) = (starts.splits(), starts.vertex_lines());
-        return Err(SceneError::Build(format!(
-            "{splits} splits and {lines} lines of vertices, more than 2^28: fewer levels or trees are needed"
-        )));
-    }
+    let (trees_lines, starts) = places(hierarchy, order)?;
     let meta = meta(hierarchy, surface, info);
     let json = serde_json::to_vec(&meta).map_err(|e| SceneError::Build(format!("META: {e}")))?;
     let lengths = FileSection::ALL.map(|section| match section {
@@ -117,15 +110,7 @@ pub fn encode(hierarchy: &Hierarchy, surface: &Surface, info: SceneInfo, bvh: &T
     });
     let (mut image, ranges) = new_image(lengths)?;
 
-    let mut rest = &mut image[..];
-    let mut taken = 0;
-    let slices: [&mut [u8]; COUNT] = ranges.clone().map(|range| {
-        let (head, tail) = std::mem::take(&mut rest).split_at_mut(range.end - taken);
-        let section = &mut head[range.start - taken..];
-        (rest, taken) = (tail, range.end);
-        section
-    });
-    let [meta_out, nodes_out, records, splits, vertices, normals, triangles, sources, colours] = slices;
+    let [meta_out, nodes_out, records, splits, vertices, normals, triangles, sources, colours] = slices(&mut image, &ranges);
     meta_out.copy_from_slice(&json);
     nodes_out.copy_from_slice(bytemuck::cast_slice(nodes));
     let triangles: &mut [[u32; 3]] = bytemuck::cast_slice_mut(triangles);
@@ -149,6 +134,28 @@ pub fn encode(hierarchy: &Hierarchy, surface: &Surface, info: SceneInfo, bvh: &T
     Ok(sealed(image, ranges, meta, starts))
 }
 
+/// What of each tree is stored, of trees in this order, and where the levels begin.
+pub(super) fn places(h: &Hierarchy, order: &[u32]) -> Result<(Vec<TreeLines>, LevelStarts), SceneError> {
+    let depths: Vec<u32> = order.par_iter().map(|&tree| h.depth(tree as usize)).collect();
+    let (lines, starts) = layout::places(h.vertices, &depths);
+    if starts.are_numbered(h.vertices) {
+        return Ok((lines, starts));
+    }
+    let (splits, lines) = (starts.splits(), starts.vertex_lines());
+    Err(SceneError::Build(format!("{splits} splits and {lines} lines of vertices, more than 2^28: fewer levels or trees are needed")))
+}
+
+/// The sections of an image.
+pub(super) fn slices<'a>(image: &'a mut [u8], ranges: &[Range<usize>; COUNT]) -> [&'a mut [u8]; COUNT] {
+    let (mut rest, mut taken) = (image, 0);
+    ranges.clone().map(|range| {
+        let (head, tail) = std::mem::take(&mut rest).split_at_mut(range.end - taken);
+        let section = &mut head[range.start - taken..];
+        (rest, taken) = (tail, range.end);
+        section
+    })
+}
+
 /// An image of sections of these lengths, all zero, and where they are.
 pub(super) fn new_image(lengths: [usize; COUNT]) -> Result<(MmapMut, [Range<usize>; COUNT]), SceneError> {
     let (ranges, total) = place(lengths);
@@ -159,18 +166,21 @@ pub(super) fn new_image(lengths: [usize; COUNT]) -> Result<(MmapMut, [Range<usiz
 
 /// The scene of an image whose sections are filled: checksums and header are written.
 pub(super) fn sealed(mut image: MmapMut, ranges: [Range<usize>; COUNT], meta: Meta, starts: LevelStarts) -> Scene {
-    let mut sums = [0; COUNT];
-    sums.par_iter_mut().zip(&ranges).for_each(|(sum, range)| *sum = checksum(&image[range.clone()]));
-    let total = image.len();
-    write_header(&mut image[..HEADER], total, &ranges, &sums);
+    seal(&mut image, &ranges);
     Scene { image: Arc::new(Image::Owned(image)), ranges, meta, starts, input: None }
 }
 
+/// Writes checksums and header.
+pub(super) fn seal(image: &mut [u8], ranges: &[Range<usize>; COUNT]) {
+    let mut sums = [0; COUNT];
+    sums.par_iter_mut().zip(ranges).for_each(|(sum, range)| *sum = checksum(&image[range.clone()]));
+    let total = image.len();
+    write_header(&mut image[..HEADER], total, ranges, &sums);
+}
+
 fn meta(h: &Hierarchy, surface: &Surface, info: SceneInfo) -> Meta {
-    type Corners = [[i32; 3]; 2];
-    let none: Corners = [[i32::MAX; 3], [i32::MIN; 3]];
-    let [lo, hi] = h.points.par_iter().fold(|| none, |b, &p| join(b, [p, p])).reduce(|| none, join);
-    let distance = |(&p, q): (&[i32; 3], &[f64; 3])| (0..3).map(|k| (h.to_world(p)[k] - q[k]).powi(2)).sum::<f64>().sqrt();
+    let len = lattice::len(h.levels);
+    let ([lo, hi], moved) = extent(h, |tree, point| surface.positions.get(tree * len + point).copied());
     Meta {
         name: info.name,
         program: env!("CARGO_PKG_VERSION").into(),
@@ -183,7 +193,7 @@ fn meta(h: &Hierarchy, surface: &Surface, info: SceneInfo) -> Meta {
         vertices: h.vertices,
         coordinate_zeros: h.zeros,
         direction_zeros: info.direction_zeros,
-        moved: info.moved + h.points.par_iter().zip(&surface.positions).map(distance).reduce(|| 0.0, f64::max),
+        moved: info.moved + moved,
         lo,
         hi,
         job: Vec::new(),
@@ -191,6 +201,22 @@ fn meta(h: &Hierarchy, surface: &Surface, info: SceneInfo) -> Meta {
         without_normals: false,
         origin: info.origin,
     }
+}
+
+/// The box of all points, and how far one is at most from its place, in world units; `place` says where a point of a tree was, if anybody knows.
+pub(super) fn extent(h: &Hierarchy, place: impl Fn(usize, usize) -> Option<[f64; 3]> + Sync) -> (Span, f64) {
+    let none = ([[i32::MAX; 3], [i32::MIN; 3]], 0.0);
+    let both = |(a, far): (Span, f64), (b, other): (Span, f64)| (join(a, b), far.max(other));
+    let of_tree = |(tree, points): (usize, &[[i32; 3]])| {
+        points.iter().enumerate().fold(none, |all, (at, &p)| {
+            let world = h.to_world(p);
+            let squared = place(tree, at).map_or(0.0, |place| (0..3).map(|k| (world[k] - place[k]).powi(2)).sum::<f64>());
+            both(all, ([p, p], squared))
+        })
+    };
+    let (span, squared) = h.points.par_chunks(lattice::len(h.levels)).enumerate().map(of_tree).reduce(|| none, both);
+    // The root of the largest is the largest root.
+    (span, squared.sqrt())
 }
 
 #[inline]
@@ -250,22 +276,22 @@ pub(super) fn vertex_parts<'a>(form: VertexForm, section: &'a mut [Line], stored
 }
 
 /// The images of all trees.
-struct Images<'a> {
-    records: &'a mut [Line],
-    splits: &'a mut [Line],
-    vertices: &'a mut [Line],
+pub(super) struct Images<'a> {
+    pub records: &'a mut [Line],
+    pub splits: &'a mut [Line],
+    pub vertices: &'a mut [Line],
 }
 
 impl Images<'_> {
     /// Fills the record, splits and vertices of every tree, of which so much is stored; the first is tree `order[0]` of the hierarchy.
-    fn write(self, h: &Hierarchy, order: &[u32], stored: &[TreeLines]) -> Result<(), SceneError> {
+    pub fn write(self, h: &Hierarchy, order: &[u32], stored: &[TreeLines]) -> Result<(), SceneError> {
         let splits = split_parts(self.splits, stored);
         let lines = vertex_parts(h.vertices, self.vertices, stored);
         let records = self.records.par_chunks_mut(h.vertices.record_lines());
         let trees = records.zip(order).zip(stored).zip(splits.into_par_iter().zip(lines));
         let bad = trees.find_map_first(|(((record, &tree), &stored), (splits, lines))| {
             let index = tree as usize;
-            let mut writer = TreeWriter { h, points: h.tree(index), tree: index, depth: stored.depth, splits, lines, fits: true };
+            let mut writer = TreeWriter { h, points: h.tree(index), codes: h.codes(index), depth: stored.depth, splits, lines, fits: true };
             writer.record(L0Record::default().of_tree(stored), record);
             (!writer.fits).then(|| SceneError::Build(format!("tree {tree} has a vertex that its compact form cannot hold")))
         });
@@ -277,7 +303,7 @@ impl Images<'_> {
 struct TreeWriter<'a> {
     h: &'a Hierarchy,
     points: &'a [[i32; 3]],
-    tree: usize,
+    codes: &'a [u8],
     /// Levels that are stored.
     depth: u32,
     /// By level.
@@ -295,37 +321,49 @@ fn span(points: [[i32; 3]; 3]) -> Span {
     points.iter().fold([points[0]; 2], |b, &p| join(b, [p, p]))
 }
 
+/// A node on the way: places and points of its corners, and the codes of its edges (0 where there are none).
+#[derive(Clone, Copy)]
+struct At {
+    places: [LatticePoint; 3],
+    points: [[i32; 3]; 3],
+    codes: [u8; 3],
+}
+
 impl TreeWriter<'_> {
     fn record(&mut self, mut record: L0Record, out: &mut [Line]) {
-        let p = lattice::root(self.h.levels);
-        let corners = p.map(|c| self.at(c));
+        let places = lattice::root(self.h.levels);
+        let points = places.map(|c| self.at(c));
         match out {
-            [_, line] => VertexData::from_points(corners).to_words(line),
-            _ => record = record.with_corners(corners),
+            [_, line] => VertexData::from_points(points).to_words(line),
+            _ => record = record.with_corners(points),
         }
-        if self.depth > 0 {
-            [record.e0, record.e1, record.e2] = self.h.node_codes(self.tree, 0, p).map(|c| U::new(u64::from(c)));
-        }
+        let codes = if self.depth > 0 { self.codes_of(0, places) } else { [0; 3] };
+        [record.e0, record.e1, record.e2] = codes.map(|c| U::new(u64::from(c)));
         record.to_words(&mut out[0]);
-        self.node(0, 0, p);
+        self.node(0, 0, At { places, points, codes });
     }
 
     fn at(&self, p: LatticePoint) -> [i32; 3] {
         self.points[lattice::index(self.h.levels, p)]
     }
 
-    /// Writes everything below node (`level`, `node`) with corners `p` and gives the box of its full-resolution triangles: where nothing more is stored, they lie in
-    /// its own.
-    fn node(&mut self, level: u32, node: usize, p: [LatticePoint; 3]) -> Span {
+    /// Codes of edges e0, e1, e2 of a node of `level` with these corners.
+    fn codes_of(&self, level: u32, p: [LatticePoint; 3]) -> [u8; 3] {
+        [[p[1], p[2]], [p[2], p[0]], [p[0], p[1]]].map(|[a, b]| self.codes[edge_index(self.h.levels, level, a, b)])
+    }
+
+    /// Writes everything below node (`level`, `node`) and gives the box of its full-resolution triangles: where nothing more is stored, they lie in its own.
+    fn node(&mut self, level: u32, node: usize, own: At) -> Span {
         if level == self.depth {
-            return span(p.map(|c| self.at(c)));
+            return span(own.points);
         }
-        let q = lattice::midpoints(p).map(|c| self.at(c));
+        let places = lattice::midpoints(own.places);
+        let q = places.map(|c| self.at(c));
         let mut split = SplitRecord::default();
         match self.h.vertices {
             VertexForm::Exact => VertexData::from_points(q).to_words(&mut self.lines[level as usize][node]),
             VertexForm::Compact | VertexForm::Short => {
-                let displacements = self.displacements(level, p);
+                let displacements = self.displacements(level, &own, q);
                 match has_split(self.depth, level) {
                     true => split = split.with_displacements(displacements),
                     false if self.h.vertices == VertexForm::Short => self.short(&displacements, node),
@@ -334,11 +372,14 @@ impl TreeWriter<'_> {
             }
         }
         let span = if level + 1 == self.depth {
-            join(span(p.map(|c| self.at(c))), span(q))
+            join(span(own.points), span(q))
         } else {
-            let children: [_; 4] = std::array::from_fn(|k| lattice::child(p, k as u32)); // k < 4
+            let children: [At; 4] = std::array::from_fn(|k| {
+                let places = lattice::child(own.places, k as u32); // k < 4
+                At { places, points: child_corners(own.points, q, k), codes: self.codes_of(level + 1, places) }
+            });
             let spans: [Span; 4] = std::array::from_fn(|k| self.node(level + 1, 4 * node + k, children[k]));
-            split = self.with_children(split, level + 1, children, &spans);
+            split = with_children(split, &children, &spans);
             spans.into_iter().fold(spans[0], join)
         };
         if has_split(self.depth, level) {
@@ -358,43 +399,44 @@ impl TreeWriter<'_> {
         all.to_words(line);
     }
 
-    /// The split with these children of `level`, the boxes of whose full-resolution triangles are `spans`.
-    fn with_children(&self, mut split: SplitRecord, level: u32, children: [[LatticePoint; 3]; 4], spans: &[Span; 4]) -> SplitRecord {
-        let excess: [[u32; 6]; 4] = std::array::from_fn(|k| {
-            let codes = |[lo, hi]: Span| (lo.map(box_code_floor).map(i32::from), hi.map(box_code_ceil).map(i32::from));
-            let ((lo, hi), (all_lo, all_hi)) = (codes(span(children[k].map(|c| self.at(c)))), codes(spans[k]));
-            // The triangle's corners are among the vertices below it.
-            std::array::from_fn(|j| (if j < 3 { lo[j] - all_lo[j] } else { all_hi[j - 3] - hi[j - 3] }).unsigned_abs())
-        });
-        for axis in 0..3 {
-            let most = excess.iter().map(|child| child[axis].max(child[axis + 3])).max().unwrap_or(0);
-            let step = BoxStep::reaching(most, SplitRecord::MOST);
-            (split.halves[axis], split.exponents[axis]) = (step.half, U::new(u64::from(step.exponent)));
-            for (k, child) in excess.iter().enumerate() {
-                for j in [axis, axis + 3] {
-                    split.planes[6 * k + j] = U::new(u64::from(step.above(child[j])));
-                }
-            }
-        }
-        for (k, &child) in children.iter().enumerate() {
-            for (place, code) in SplitRecord::places_of(k).into_iter().zip(self.h.node_codes(self.tree, level, child)) {
-                split.codes[place] = U::new(u64::from(code));
-            }
-        }
-        split
-    }
-
-    /// The inserted vertices of a node of `level` with corners `p` as displacements.
-    fn displacements(&mut self, level: u32, p: [LatticePoint; 3]) -> Displacements {
-        let codes = self.h.node_codes(self.tree, level, p);
-        let (points, q) = (p.map(|c| self.at(c)), lattice::midpoints(p).map(|c| self.at(c)));
+    /// The inserted vertices `q` of a node of `level` as displacements.
+    fn displacements(&mut self, level: u32, own: &At, q: [[i32; 3]; 3]) -> Displacements {
+        let zero_bits = inserted_zero_bits(self.h.levels, level, self.h.zeros);
         let steps = std::array::from_fn(|k| {
-            let (a, b) = (points[(k + 1) % 3], points[(k + 2) % 3]);
-            let shift = displacement_shift(self.h.bounds.scale, codes[k], inserted_zero_bits(self.h.levels, level, self.h.zeros));
+            let (a, b) = (own.points[(k + 1) % 3], own.points[(k + 2) % 3]);
+            let shift = displacement_shift(self.h.bounds.scale, own.codes[k], zero_bits);
             let steps = steps_of(q[k], a, b, shift);
             self.fits &= (0..3).all(|c| (-4096..4096).contains(&steps[c]) && displaced(a[c], b[c], steps[c], shift) == q[k][c]);
             steps.map(|c| c.clamp(-4096, 4095))
         });
         Displacements::from_steps(steps)
     }
+}
+
+/// The split with these children, the boxes of whose full-resolution triangles are `spans`.
+fn with_children(mut split: SplitRecord, children: &[At; 4], spans: &[Span; 4]) -> SplitRecord {
+    let excess: [[u32; 6]; 4] = std::array::from_fn(|k| {
+        let codes = |[lo, hi]: Span| (lo.map(box_code_floor).map(i32::from), hi.map(box_code_ceil).map(i32::from));
+        let ((lo, hi), (all_lo, all_hi)) = (codes(span(children[k].points)), codes(spans[k]));
+        // The triangle's corners are among the vertices below it.
+        std::array::from_fn(|j| (if j < 3 { lo[j] - all_lo[j] } else { all_hi[j - 3] - hi[j - 3] }).unsigned_abs())
+    });
+    for axis in 0..3 {
+        let most = excess.iter().map(|child| child[axis].max(child[axis + 3])).max().unwrap_or(0);
+        let step = BoxStep::reaching(most, SplitRecord::MOST);
+        (split.halves[axis], split.exponents[axis]) = (step.half, U::new(u64::from(step.exponent)));
+        // The fewest steps that reach: as many as there are too few.
+        let reached = std::array::from_fn::<u32, { SplitRecord::MOST as usize }, _>(|steps| step.codes(steps as u32));
+        for (k, child) in excess.iter().enumerate() {
+            for j in [axis, axis + 3] {
+                split.planes[6 * k + j] = U::new(reached.iter().filter(|&&codes| codes < child[j]).count() as u64);
+            }
+        }
+    }
+    for (k, child) in children.iter().enumerate() {
+        for (place, code) in SplitRecord::places_of(k).into_iter().zip(child.codes) {
+            split.codes[place] = U::new(u64::from(code));
+        }
+    }
+    split
 }

@@ -11,12 +11,15 @@ mod job;
 pub mod layout;
 mod lines;
 mod normal;
+mod numbering;
 mod prisms;
 mod prune;
+mod refit;
 mod region;
 mod replace;
 mod scene;
 mod sections;
+mod shading;
 mod staging;
 
 pub use colour::to_srgb;
@@ -32,6 +35,7 @@ pub use lines::{
 pub use normal::{decode_normal, encode_normal};
 pub(crate) use prisms::node_prisms;
 pub use prisms::scene_prisms;
+pub use refit::{Grid, Refit, RefitError, RefitNodes, RefitOptions, Shading};
 pub use region::{Beyond, Job, JobRegion};
 pub use replace::{remove_abandoned, temporary_beside, write_and_rename};
 pub use scene::{Meta, Scene, SceneError};

@@ -10,23 +10,28 @@ use rayon::prelude::*;
 
 /// The codes for these points (snapped, `lattice::len(levels)` per tree, equal on both sides of shared base edges).
 pub fn edge_codes(kind: BoundKind, levels: u32, points: &[[i32; 3]], shared: &SharedEdges) -> EdgeCodes {
-    let bounds = true_bounds(kind, levels, points, shared);
+    let mut codes = EdgeCodes { kind, ..EdgeCodes::default() };
+    write_codes(levels, points, shared, &mut codes, &mut Vec::new());
+    codes
+}
+
+/// The same into memory that there is; `bounds` is for use on the way.
+pub(super) fn write_codes(levels: u32, points: &[[i32; 3]], shared: &SharedEdges, codes: &mut EdgeCodes, bounds: &mut Vec<u64>) {
+    bounds.resize(points.len() / lattice::len(levels) * edges_of_tree(levels), 0);
+    true_bounds(codes.kind, levels, points, shared, bounds);
     let scale = bound_scale(bounds.par_iter().copied().max().unwrap_or(0));
-    EdgeCodes { kind, scale, codes: bounds.par_iter().map(|&b| bound_encode(scale, b)).collect() }
+    codes.scale = scale;
+    codes.codes.resize(bounds.len(), 0);
+    codes.codes.par_iter_mut().zip(&*bounds).with_min_len(1 << 12).for_each(|(code, &bound)| *code = bound_encode(scale, bound));
 }
 
 /// True bounds in units, stored as [`EdgeCodes`] says.
-fn true_bounds(kind: BoundKind, levels: u32, points: &[[i32; 3]], shared: &SharedEdges) -> Vec<u64> {
+fn true_bounds(kind: BoundKind, levels: u32, points: &[[i32; 3]], shared: &SharedEdges, bounds: &mut [u64]) {
     let (per_tree, edges) = (lattice::len(levels), edges_of_tree(levels));
-    if levels == 0 {
-        return Vec::new();
-    }
-    let mut bounds = vec![0; points.len() / per_tree * edges];
     for level in (0..levels).rev() {
         bounds.par_chunks_mut(edges).zip(points.par_chunks(per_tree)).for_each(|(b, p)| level_bounds(kind, levels, level, p, b));
-        merge_borders(level, edges, shared, &mut bounds);
+        merge_borders(level, edges, shared, bounds);
     }
-    bounds
 }
 
 /// Bounds of one level of one tree from the next finer level's.

@@ -22,7 +22,7 @@ pub fn coarsen(h: &Hierarchy, zeros: u32) -> Result<Hierarchy, SurfaceError> {
         coarse.vertices = VertexForm::Compact;
         compact(coarse.vertices, h.levels, coarse.zeros, &mut coarse.points, &coarse.bounds, &SharedEdges::new(&h.triangles));
     } else {
-        coarse.points = snap_points(h.levels, h.vertices, coarse.zeros, &h.points, |p| p.map(f64::from));
+        snap_points(h.levels, h.vertices, coarse.zeros, &h.points, |p| p.map(f64::from), &mut coarse.points);
         coarse.bounds = edge_codes(h.bounds.kind, h.levels, &coarse.points, &SharedEdges::new(&h.triangles));
     }
     Ok(coarse)

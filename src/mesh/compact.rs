@@ -7,8 +7,8 @@
 //! Short ones lose more in last splits, whose displacements have few bits. A vertex on a base edge does if it is in a last split of any tree there, so that all trees have it alike.
 
 use super::borders::SharedEdges;
-use super::hierarchy::{depth, edge_index};
-use super::lattice::LatticePoint;
+use super::hierarchy::depth;
+use super::lattice::Insertion;
 use super::{EdgeCodes, edges_of_tree, lattice};
 use crate::num::{COORD_LIMIT, VertexForm, displaced, displacement_shift, displacement_steps, short_steps, snap};
 use rayon::prelude::*;
@@ -25,16 +25,6 @@ pub(crate) fn steps_of(q: [i32; 3], a: [i32; 3], b: [i32; 3], shift: u32) -> [i3
 
 /// The levels whose inserted vertices have few bits, bit n for level n: on a tree's three sides and inside of it.
 type ShortLevels = [u16; 4];
-
-/// The side of a tree on which an inserted vertex lies, or 3 if it lies inside.
-fn side(levels: u32, (i, j): LatticePoint) -> usize {
-    match (i, j) {
-        (i, j) if i + j == 1 << levels => 0,
-        (0, _) => 1,
-        (_, 0) => 2,
-        _ => 3,
-    }
-}
 
 /// The short levels of each tree: those of last splits, but of roots. (Level 9 is the last that splits.)
 fn short_levels(levels: u32, bounds: &EdgeCodes, shared: &SharedEdges) -> Vec<ShortLevels> {
@@ -55,28 +45,32 @@ pub(super) fn compact(form: VertexForm, levels: u32, zeros: u32, points: &mut [[
         return;
     }
     let short = if form == VertexForm::Short { short_levels(levels, bounds, shared) } else { vec![[0; 4]; bounds.codes.len() / edges] };
+    let insertions = lattice::insertions(levels);
+    let corners = lattice::root(levels).map(|place| lattice::index(levels, place));
     let trees = points.par_chunks_mut(lattice::len(levels)).zip(bounds.codes.par_chunks(edges)).zip(short);
-    trees.for_each(|((points, codes), short)| {
-        let mut moved = points.to_vec();
-        for corner in lattice::root(levels).map(|place| lattice::index(levels, place)) {
+    trees.for_each_init(Vec::new, |moved: &mut Vec<[i32; 3]>, ((points, codes), short)| {
+        moved.clear();
+        moved.extend_from_slice(points);
+        for corner in corners {
             moved[corner] = points[corner].map(|c| snap(f64::from(c), VertexForm::Compact.zero_bits(levels, 0, zeros)));
         }
-        for level in 0..levels {
-            for place @ [_, a, b] in lattice::inserted(levels, level) {
-                let [own, ends @ ..] = place.map(|place| lattice::index(levels, place));
-                let shift =
-                    displacement_shift(bounds.scale, codes[edge_index(levels, level, a, b)], inserted_zero_bits(levels, level, zeros));
-                let (steps, is_short) =
-                    (steps_of(points[own], points[ends[0]], points[ends[1]], shift), short[side(levels, place[0])] >> level & 1 == 1);
+        let mut codes = codes.iter();
+        for (level, insertions) in (0..).zip(&insertions) {
+            let zero_bits = inserted_zero_bits(levels, level, zeros);
+            let shift_of = |code: u8| displacement_shift(bounds.scale, code, zero_bits);
+            for (&Insertion { own, ends, side }, &code) in insertions.iter().zip(codes.by_ref()) {
+                let (own, [a, b]) = (own as usize, ends.map(|end| end as usize));
+                let shift = shift_of(code);
+                let (steps, is_short) = (steps_of(points[own], points[a], points[b], shift), short[usize::from(side)] >> level & 1 == 1);
                 moved[own] = std::array::from_fn(|c| {
                     // Of a short one that would pass the limit nothing is left.
-                    let (a, b, of) = (moved[ends[0]][c], moved[ends[1]][c], if is_short { short_steps(steps[c]) } else { steps[c] });
+                    let (a, b, of) = (moved[a][c], moved[b][c], if is_short { short_steps(steps[c]) } else { steps[c] });
                     let kept = within(a, b, of, shift);
                     if is_short && kept != displaced(a, b, of, shift) { displaced(a, b, 0, shift) } else { kept }
                 });
             }
         }
-        points.copy_from_slice(&moved);
+        points.copy_from_slice(moved);
     });
 }
 
@@ -93,6 +87,7 @@ fn within(a: i32, b: i32, steps: i32, shift: u32) -> i32 {
 #[cfg(test)]
 mod tests {
     use super::super::bounds::edge_codes;
+    use super::super::lattice::LatticePoint;
     use super::super::procedural::{Options, Scene, generate};
     use super::super::{BoundKind, Hierarchy, SharedEdges, quantise};
     use super::*;

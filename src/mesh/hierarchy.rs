@@ -13,6 +13,13 @@ pub struct Placement {
     pub scale: f64,
 }
 
+impl Placement {
+    /// World position of a point in units.
+    pub fn to_world(&self, p: [i32; 3]) -> [f64; 3] {
+        std::array::from_fn(|k| self.offset[k] + self.scale * f64::from(p[k]))
+    }
+}
+
 /// What a displacement bound covers. The default is what scenes are made with where nobody asks; what rests on the paper's bounds asks for `Largest`.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
@@ -101,12 +108,8 @@ pub const fn edges_of_level(level: u32) -> usize {
 /// Number of edges of levels 0..`levels` of one tree.
 #[inline]
 pub const fn edges_of_tree(levels: u32) -> usize {
-    let (mut sum, mut n) = (0, 0);
-    while n < levels {
-        sum += edges_of_level(n);
-        n += 1;
-    }
-    sum
+    // The sum of 3 k (k + 1) / 2 over k = 1, 2, 4, ...: that of 4^n is (4^levels - 1) / 3, that of 2^n is 2^levels - 1.
+    ((1 << (2 * levels)) - 1 + 3 * ((1 << levels) - 1)) / 2
 }
 
 /// Index within a tree's codes of the edge of level `level` between two points of the full lattice of `levels` splits.
@@ -161,7 +164,7 @@ impl Hierarchy {
 
     /// World position of a point in units.
     pub fn to_world(&self, p: [i32; 3]) -> [f64; 3] {
-        std::array::from_fn(|k| self.placement.offset[k] + self.placement.scale * f64::from(p[k]))
+        self.placement.to_world(p)
     }
 
     /// Number of full-resolution triangles.
@@ -173,6 +176,11 @@ impl Hierarchy {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn edges_of_a_tree_are_those_of_its_levels() {
+        assert!((0..=10).all(|levels| edges_of_tree(levels) == (0..levels).map(edges_of_level).sum::<usize>()));
+    }
 
     #[test]
     fn every_edge_has_one_index() {

@@ -71,6 +71,32 @@ pub fn inserted(levels: u32, level: u32) -> impl Iterator<Item = [LatticePoint; 
     })
 }
 
+/// An inserted vertex and the ends of its edge as storage indices, and on which side of the tree it lies.
+#[derive(Clone, Copy, Debug)]
+pub struct Insertion {
+    /// The vertex.
+    pub own: u32,
+    /// The ends of its edge.
+    pub ends: [u32; 2],
+    /// The tree's side s, between corners s+1 and s+2 (modulo 3); 3 inside.
+    pub side: u8,
+}
+
+/// What the splits of a tree insert, level by level in the order of [`inserted`], which is that of the codes of their edges.
+pub fn insertions(levels: u32) -> Vec<Vec<Insertion>> {
+    let side = |(i, j): LatticePoint| match (i, j) {
+        (i, j) if i + j == 1 << levels => 0,
+        (0, _) => 1,
+        (_, 0) => 2,
+        _ => 3,
+    };
+    let one = |places: [LatticePoint; 3]| {
+        let [own, a, b] = places.map(|place| index(levels, place) as u32); // half a million points at most
+        Insertion { own, ends: [a, b], side: side(places[0]) }
+    };
+    (0..levels).map(|level| inserted(levels, level).map(one).collect()).collect()
+}
+
 const fn mid(a: LatticePoint, b: LatticePoint) -> LatticePoint {
     (a.0.midpoint(b.0), a.1.midpoint(b.1))
 }

@@ -1,9 +1,10 @@
 //! From a surface in world units to a hierarchy in integers: the placement, the snapping of each point, the bounds.
 
 use super::borders::SharedEdges;
-use super::bounds::edge_codes;
+use super::bounds::write_codes;
 use super::compact::compact;
-use super::{BoundKind, Hierarchy, Placement, Surface, lattice};
+use super::lattice::Insertion;
+use super::{BoundKind, EdgeCodes, Hierarchy, Placement, Surface, lattice};
 use crate::num::{BOX_SHIFT, COORD_LIMIT, MAX_LEVELS, VertexForm, snap};
 use rayon::prelude::*;
 use thiserror::Error;
@@ -109,18 +110,71 @@ pub fn quantise(surface: &Surface, kind: BoundKind, vertices: VertexForm, zeros:
         return Err(SurfaceError::Zeros { zeros, levels: surface.levels });
     }
     check_shape(surface)?;
-    let placement = placement(&surface.positions, lattice::len(surface.levels))?;
-    let Placement { offset, scale } = placement;
-    let units = |position: [f64; 3]| std::array::from_fn(|k| (position[k] - offset[k]) / scale);
-    let mut points = snap_points(surface.levels, vertices, zeros, &surface.positions, units);
-    let shared = SharedEdges::new(&surface.triangles);
-    check_shared_points(surface, &points, &shared)?;
-    let bounds = edge_codes(kind, surface.levels, &points, &shared);
-    if vertices.is_compact() {
-        compact(vertices, surface.levels, zeros, &mut points, &bounds, &shared);
+    let len = lattice::len(surface.levels);
+    if let Some(index) = first_not_finite(&surface.positions) {
+        return Err(SurfaceError::BadVector { field: "positions", index, tree: index / len, value: surface.positions[index] });
     }
     let Surface { levels, base_vertices, .. } = *surface;
-    Ok(Hierarchy { levels, placement, base_vertices, triangles: surface.triangles.clone(), points, bounds, vertices, zeros })
+    let mut h = Hierarchy {
+        levels,
+        placement: placement(&surface.positions)?,
+        base_vertices,
+        triangles: surface.triangles.clone(),
+        points: vec![[0; 3]; surface.positions.len()],
+        bounds: EdgeCodes { kind, ..EdgeCodes::default() },
+        vertices,
+        zeros,
+    };
+    let units = to_units(h.placement);
+    snap_points(levels, vertices, zeros, &surface.positions, units, &mut h.points);
+    let shared = SharedEdges::new(&h.triangles);
+    check_shared_points(surface, &h.points, &shared)?;
+    fit_codes(&mut h, &shared, &mut Vec::new());
+    Ok(h)
+}
+
+/// Moves the vertices of a hierarchy, in place: `numbers` has for each of its points which of these positions, all finite, it takes. Points that trees share have the same number in each. Everything is as
+/// [`quantise`] has it, the same form and kind, the placement anew unless one is given that holds all ([`grid_holds`]). `bounds` is memory for use on the way.
+///
+/// # Errors
+/// [`SurfaceError::Extent`]; nothing has changed then.
+pub fn move_vertices(
+    h: &mut Hierarchy,
+    shared: &SharedEdges,
+    numbers: &[u32],
+    positions: &[[f64; 3]],
+    kept: Option<Placement>,
+    bounds: &mut Vec<u64>,
+) -> Result<(), SurfaceError> {
+    h.placement = kept.map_or_else(|| placement(positions), Ok)?;
+    let units = to_units(h.placement);
+    snap_points(h.levels, h.vertices, h.zeros, numbers, |number| units(positions[number as usize]), &mut h.points);
+    fit_codes(h, shared, bounds);
+    Ok(())
+}
+
+/// Bounds of the points, and points as their form has them.
+fn fit_codes(h: &mut Hierarchy, shared: &SharedEdges, bounds: &mut Vec<u64>) {
+    write_codes(h.levels, &h.points, shared, &mut h.bounds, bounds);
+    if h.vertices.is_compact() {
+        compact(h.vertices, h.levels, h.zeros, &mut h.points, &h.bounds, shared);
+    }
+}
+
+/// World to units.
+fn to_units(Placement { offset, scale }: Placement) -> impl Fn([f64; 3]) -> [f64; 3] + Copy + Sync {
+    move |position| std::array::from_fn(|k| (position[k] - offset[k]) / scale)
+}
+
+/// Whether coordinates in this placement reach all positions.
+pub fn grid_holds(grid: Placement, positions: &[[f64; 3]]) -> bool {
+    let (units, limit) = (to_units(grid), f64::from(COORD_LIMIT));
+    positions.par_iter().with_min_len(1 << 12).all(|&p| units(p).iter().all(|c| c.abs() <= limit))
+}
+
+/// The first position that is not finite.
+pub fn first_not_finite(positions: &[[f64; 3]]) -> Option<usize> {
+    positions.par_iter().with_min_len(1 << 12).position_first(|p| !p.iter().all(|c| c.is_finite()))
 }
 
 /// The most zero bits at the bottom of every coordinate: base vertices have one more for each split, and boxes end at no more than 16.
@@ -164,14 +218,11 @@ fn check_shape(s: &Surface) -> Result<(), SurfaceError> {
 
 /// Places units so that the box of all positions is centred and its largest half extent comes to one unit less than [`COORD_LIMIT`]: then no
 /// rounding passes the limit, which lies on every level's grid.
-fn placement(positions: &[[f64; 3]], per_tree: usize) -> Result<Placement, SurfaceError> {
-    if let Some(index) = positions.par_iter().position_first(|p| !p.iter().all(|c| c.is_finite())) {
-        return Err(SurfaceError::BadVector { field: "positions", index, tree: index / per_tree, value: positions[index] });
-    }
+fn placement(positions: &[[f64; 3]]) -> Result<Placement, SurfaceError> {
     type Corners = [[f64; 3]; 2];
     let none: Corners = [[f64::INFINITY; 3], [f64::NEG_INFINITY; 3]];
     let join = |[a, b]: Corners, [c, d]: Corners| [std::array::from_fn(|k| a[k].min(c[k])), std::array::from_fn(|k| b[k].max(d[k]))];
-    let [lo, hi] = positions.par_iter().fold(|| none, |b, &p| join(b, [p, p])).reduce(|| none, join);
+    let [lo, hi] = positions.par_iter().with_min_len(1 << 12).fold(|| none, |b, &p| join(b, [p, p])).reduce(|| none, join);
     // Halved first: the sum of two finite numbers need not be finite. Adding 0 turns -0 into 0.
     let offset: [f64; 3] = std::array::from_fn(|k| lo[k] / 2.0 + hi[k] / 2.0 + 0.0);
     // Not (hi - lo) / 2: far from the world's origin the centre itself is rounded.
@@ -191,21 +242,22 @@ pub(super) fn snap_points<P: Copy + Sync>(
     zeros: u32,
     places: &[P],
     units: impl Fn(P) -> [f64; 3] + Sync,
-) -> Vec<[i32; 3]> {
+    points: &mut [[i32; 3]],
+) {
     let len = lattice::len(levels);
     // The zero bits of each lattice point and what is inserted between what are the same for all trees.
     let m = 1 << levels;
     let zero_bits: Vec<u32> =
         (0..=m).flat_map(|j| (0..=m - j).map(move |i| vertices.zero_bits(levels, lattice::level_of(levels, (i, j)), zeros))).collect();
-    let inserted: Vec<[usize; 3]> =
-        (0..levels).flat_map(|level| lattice::inserted(levels, level)).map(|places| places.map(|p| lattice::index(levels, p))).collect();
-    let mut points = vec![[0; 3]; places.len()];
-    points.par_chunks_mut(len).zip(places.par_chunks(len)).for_each(|(points, places)| {
-        let exact: Vec<[f64; 3]> = places.iter().map(|&place| units(place)).collect();
-        for ((point, &exact), &bits) in points.iter_mut().zip(&exact).zip(&zero_bits) {
+    let inserted: Vec<Insertion> = lattice::insertions(levels).into_iter().flatten().collect();
+    points.par_chunks_mut(len).zip(places.par_chunks(len)).for_each_init(Vec::new, |exact: &mut Vec<[f64; 3]>, (points, places)| {
+        exact.clear();
+        exact.extend(places.iter().map(|&place| units(place)));
+        for ((point, &exact), &bits) in points.iter_mut().zip(&*exact).zip(&zero_bits) {
             *point = exact.map(|v| snap(v, bits));
         }
-        for &[q, a, b] in &inserted {
+        for &Insertion { own, ends, .. } in &inserted {
+            let (q, [a, b]) = (own as usize, ends.map(|end| end as usize));
             // The sum is the same in either order: so trees that share an edge agree.
             if (0..3).any(|k| (exact[q][k] - 0.5 * (exact[a][k] + exact[b][k])).abs() > FLAT) {
                 continue;
@@ -217,7 +269,6 @@ pub(super) fn snap_points<P: Copy + Sync>(
             }
         }
     });
-    points
 }
 
 /// Base vertices and points of shared base edges are the same in all trees.

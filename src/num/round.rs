@@ -6,11 +6,18 @@ use super::{BOX_SHIFT, BoundScale, COORD_LIMIT, MAX_BOUND_OFFSET, PADDING_BITS, 
 /// `zero_bits` is at most 16.
 pub fn snap(v: f64, zero_bits: u32) -> i32 {
     let bits = zero_bits.max(PADDING_BITS);
-    let step = f64::from(1u32 << bits);
     let limit = f64::from(COORD_LIMIT >> bits);
-    // Clamped to 31 bits before the cast: it cannot overflow, and NaN becomes 0.
-    let steps = (v / step).round().clamp(-limit, limit) as i32;
-    steps << bits
+    // A power of two: exact. Clamped to 31 bits before the cast: it cannot overflow, and NaN becomes 0.
+    let steps = (v * (1.0 / f64::from(1u32 << bits))).clamp(-limit, limit);
+    nearest(steps) << bits
+}
+
+/// The nearest integer, half away from zero: [`f64::round`] for magnitudes below 2^31, which on processors without an instruction for it is a call.
+#[inline]
+fn nearest(v: f64) -> i32 {
+    // The largest number below a half: with a half, what is just below one would round up.
+    const BELOW_HALF: f64 = 0.5 - f64::EPSILON / 4.0;
+    (v + BELOW_HALF.copysign(v)) as i32 // towards zero
 }
 
 /// Box code at or below coordinate `v`: floor(v / 2^16).
@@ -62,17 +69,44 @@ pub fn bound_scale(largest: u64) -> BoundScale {
 /// Smallest code that decodes to at least `bound` units; `bound` at most the scale's largest.
 #[inline]
 pub fn bound_encode(scale: BoundScale, bound: u64) -> u8 {
-    let (mut low, mut high) = (0, u8::MAX);
-    while low < high {
-        let mid = u8::midpoint(low, high);
-        if bound_decode(scale, mid) >= bound { high = mid } else { low = mid + 1 }
+    if bound == 0 {
+        return 0;
     }
-    low
+    // The octave below, and the bound in 256ths of it, rounded up: 256 to 512.
+    let octave = u64::BITS - 1 - bound.leading_zeros();
+    let parts = ((bound << 8) + ((1 << octave) - 1)) >> octave;
+    let k = 16 * u64::from(octave) + u64::from(FIRST_MANTISSAS[(parts - 256) as usize]);
+    k.saturating_sub(scale.offset.get()).clamp(1, 255) as u8 // clamped
 }
+
+/// For 256 to 512: the place of the first of the [`BOUND_MANTISSAS`] that is no less, or 16, which is that of the next octave's first.
+const FIRST_MANTISSAS: [u8; 257] = {
+    let (mut places, mut parts, mut place) = ([0; 257], 256, 0);
+    while parts <= 512 {
+        while place < 16 && (BOUND_MANTISSAS[place] as usize) < parts {
+            place += 1;
+        }
+        places[parts - 256] = place as u8; // at most 16
+        parts += 1;
+    }
+    places
+};
 
 /// Smallest integer not below the length of `d` (each component at most 2^33 in magnitude): [`sqrt_ceil`] of the squared length, faster.
 #[inline]
 pub fn length_ceil(d: [i64; 3]) -> u64 {
+    if d.iter().all(|c| c.unsigned_abs() < 1 << 31) {
+        // As below, where three squares have 64 bits; the root is below 2^32.
+        let squared: u64 = d.iter().map(|c| c.unsigned_abs() * c.unsigned_abs()).sum();
+        let mut root = (squared as f64).sqrt() as u64;
+        while root * root < squared {
+            root += 1;
+        }
+        while root > 0 && (root - 1) * (root - 1) >= squared {
+            root -= 1;
+        }
+        return root;
+    }
     let squared: u128 = d.iter().map(|c| u128::from(c.unsigned_abs()) * u128::from(c.unsigned_abs())).sum();
     // The guess is off by at most 1: the root is below 2^34 and an f64 holds it to 2^-18.
     let guess = d.iter().map(|&c| c as f64 * c as f64).sum::<f64>().sqrt().ceil();
@@ -141,7 +175,37 @@ mod tests {
         }
     }
 
+    #[test]
+    fn nearest_is_round_at_halves_and_beside_them() {
+        for whole in [0, 1, 2, 3, 1000, (1 << 27) - 1] {
+            for v in [f64::from(whole), f64::from(whole) + 0.5] {
+                for v in [v, v.next_up(), v.next_down(), -v, -v.next_up(), -v.next_down()] {
+                    assert_eq!(f64::from(nearest(v)), v.round(), "{v}");
+                }
+            }
+        }
+        assert_eq!(snap(f64::NAN, 4), 0);
+    }
+
+    #[test]
+    fn codes_are_the_least_that_reach() {
+        for offset in [0, 1, 15, 16, 100, MAX_BOUND_OFFSET] {
+            let scale = BoundScale { offset: U::new(offset) };
+            let steps = (0..=255).flat_map(|code| [-1, 0, 1].map(|by| (bound_decode(scale, code) as i64 + by).max(0) as u64));
+            for bound in steps.filter(|&bound| bound <= bound_decode(scale, 255)) {
+                let searched = (0..=255).find(|&code| bound_decode(scale, code) >= bound).unwrap();
+                assert_eq!(bound_encode(scale, bound), searched, "{bound} at offset {offset}");
+            }
+        }
+    }
+
     proptest! {
+        #[test]
+        fn nearest_is_round(v in -134_217_728.0f64..134_217_728.0, bits in 0u32..60) {
+            let v = v / (1u64 << bits) as f64;
+            prop_assert_eq!(f64::from(nearest(v)), v.round());
+        }
+
         #[test]
         fn sqrt_ceil_is_tight(v in 0u128..1 << 68) {
             let r = u128::from(sqrt_ceil(v));

@@ -17,6 +17,7 @@ mod build;
 mod given;
 mod golden;
 mod method;
+mod refit;
 mod simulate;
 
 pub use build::{BuildError, BuildOptions, moved_percent};

@@ -12,6 +12,7 @@ mod plan;
 mod promise;
 mod prune;
 mod quantise;
+mod refit;
 mod rlod;
 mod secondary;
 mod stability;

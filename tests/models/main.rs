@@ -11,5 +11,6 @@ mod paths;
 mod picture_error;
 mod pictures;
 mod programs;
+mod refit;
 mod remesh;
 mod scene_file;

@@ -5,4 +5,5 @@ mod cli;
 mod exactness;
 mod folders;
 mod layers;
+mod refit;
 mod shards;

@@ -7,11 +7,13 @@ mod obj;
 mod parts;
 mod ply;
 mod polygon;
+mod positions;
 mod stl;
 
 use super::clean::{MeshError, TriangleMesh};
 use fault::{Fault, fault, shown};
 use parts::Parts;
+pub use positions::{PositionFrames, read_positions};
 use serde::{Deserialize, Serialize};
 use std::path::{Path, PathBuf};
 
