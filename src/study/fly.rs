@@ -44,7 +44,8 @@ pub struct Flown {
 /// What `each` says: the flight ends there.
 pub fn fly<E>(what: &Fly<'_>, progress: &dyn Progress, each: &mut dyn FnMut(usize, &Shot) -> Result<(), E>) -> Result<Vec<Flown>, E> {
     let (space, method) = (ModelSpace::of(what.scene), what.method);
-    let shader = Shader::new(method.surface(what.scene), &space, Shading::Full);
+    let surface = method.surface(what.scene);
+    let shader = Shader::new(surface, &space, Shading::Full);
     let bar = progress.begin("flying", Some(what.cameras.len() as u64));
     let (mut flown, mut before): (Vec<Flown>, Option<Shot>) = (Vec::new(), None);
     for (frame, camera) in what.cameras.iter().enumerate() {
@@ -52,7 +53,7 @@ pub fn fly<E>(what: &Fly<'_>, progress: &dyn Progress, each: &mut dyn FnMut(usiz
         each(frame, &now)?;
         let sight = Sight::new(camera, &space, what.delta);
         let last = frame.checked_sub(1).map(|last| &what.cameras[last]);
-        let pops = before.as_ref().zip(last).map(|(then, last)| popping(method, &shader, &then.frame, [last, camera], &sight));
+        let pops = before.as_ref().zip(last).map(|(then, last)| popping(method, surface, &shader, &then.frame, [last, camera], &sight));
         flown.push(Flown {
             frame,
             eye: camera.eye.to_array(),

@@ -81,7 +81,7 @@ fn what_cannot_be_is_refused_and_nothing_is_written() {
     desk.refused("refit a.lod few.npy -o a.lod", FAILS, &["it is the input file"]);
     desk.refused("refit a.lod -o b.lod", USAGE, &["POSITIONS"]);
     desk.refused("refit a.lod few.npy --motion wave -o b.lod", USAGE, &["--motion"]);
-    desk.refused("refit a.lod few.npy --frames 3 -o b.lod", USAGE, &["--motion"]);
+    desk.refused("refit a.lod few.npy --frames 3 -o b.lod", FAILS, &["--frames", "--motion"]);
     desk.refused("refit a.lod --motion wave --frames 0 -o b.lod", USAGE, &["--frames"]);
     assert!(!desk.path("b.lod").exists() && !desk.path("b-00000.lod").exists());
 }
