@@ -85,7 +85,7 @@ pub fn along(file: &Path, frames: u32, camera: &CameraArgs, space: &ModelSpace) 
     anyhow::ensure!(frames > 1, "--path: needs --frames of 2 or more");
     let target = camera.camera(space, None)?.target.to_array();
     let points: Vec<_> = keys.iter().map(|key| [key.eye, key.target.unwrap_or(target)].map(DVec3::from_array)).collect();
-    between(&points, frames, camera, space).with_context(|| named())
+    between(&points, frames, camera, space).with_context(named)
 }
 
 /// Cameras at so many frames, spread evenly over the way from one of these eyes and targets, of which there are two or more, to the next.

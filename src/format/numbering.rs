@@ -82,7 +82,11 @@ mod tests {
             let mut ids = vec![u64::MAX; lattice::len(level)];
             let mut new = Vec::new();
             let before = numbering.vertices();
-            numbering.tree::<Infallible>(triangle, &mut ids, |p| Ok(new.push(p))).unwrap();
+            let keep = |p| {
+                new.push(p);
+                Ok(())
+            };
+            numbering.tree::<Infallible>(triangle, &mut ids, keep).unwrap();
             // What is new follows what there was, in order.
             let own: Vec<u64> = new.iter().map(|&p| ids[lattice::index(level, p)]).collect();
             assert!(own.into_iter().eq(before..numbering.vertices()));

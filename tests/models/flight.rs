@@ -3,7 +3,6 @@
 use lodray::format::Scene;
 use lodray::mesh::procedural::{self, Options};
 use lodray::method::bvh::NoStore;
-use lodray::method::packet::PACKET;
 use lodray::method::{Knobs, Method, Registered, discrete, lod, stochastic};
 use lodray::picture::Pops;
 use lodray::rays::{Camera, ModelSpace, View};
@@ -29,8 +28,9 @@ fn flown(scene: &Scene, registered: &Registered, knobs: &Knobs, cameras: &[Camer
     frames.iter().filter_map(|frame| frame.pops).collect()
 }
 
-fn largest(pops: &[Pops]) -> f64 {
-    pops.iter().map(|pops| pops.surface.percentile_999).fold(0.0, f64::max)
+/// Of the frame that pops most.
+fn most(pops: &[Pops]) -> f64 {
+    pops.iter().map(|pops| pops.surface.mean).fold(0.0, f64::max)
 }
 
 /// The smaller the step, the less pops of ours: its surface follows the camera. A discrete level is another surface from one frame to the next, however near these are.
@@ -38,16 +38,13 @@ fn largest(pops: &[Pops]) -> f64 {
 fn ours_changes_as_little_as_the_camera_moves_and_levels_do_not() {
     let scene = scene();
     let [coarse, fine] = [9, 129].map(|frames| cameras(&scene, 9.0, 6.0, frames));
-    let of = |registered, knobs: &Knobs| [&coarse, &fine].map(|cameras| largest(&flown(&scene, registered, knobs, cameras)));
+    let of = |registered, knobs: &Knobs| [&coarse, &fine].map(|cameras| most(&flown(&scene, registered, knobs, cameras)));
     let none = Knobs::default();
     let ours = of(&lod::METHOD, &none);
-    let packets = of(&lod::METHOD, &Knobs::default().with(&PACKET, "32").expect("a packet"));
     let levels = of(&discrete::METHOD, &none);
     let drawn = of(&stochastic::METHOD, &none);
-    println!("largest pops, 8 and 128 steps: ours {ours:?}, in packets {packets:?}, discrete {levels:?}, stochastic {drawn:?}");
-    for own in [ours, packets] {
-        assert!(own[1] < 0.5 * own[0], "sixteen times smaller steps: {own:?}");
-    }
+    println!("most pops, 8 and 128 steps: ours {ours:?}, discrete {levels:?}, stochastic {drawn:?}");
+    assert!(ours[1] < 0.25 * ours[0], "sixteen times smaller steps: {ours:?}");
     assert!(levels[1] > 0.7 * levels[0] && levels[1] > 4.0 * ours[1], "{levels:?}, {ours:?}");
     assert!(drawn[1] > 2.0 * ours[1], "{drawn:?}, {ours:?}");
 }
@@ -70,6 +67,6 @@ fn full_detail_and_a_camera_that_stands_still_pop_nothing() {
     let moving = cameras(&scene, 3.0, 2.0, 4);
     let full = Knobs::default().with(&discrete::LEVEL, "5").expect("the finest");
     for pops in flown(&scene, &lod::METHOD, &Knobs::default(), &still).iter().chain(&flown(&scene, &discrete::METHOD, &full, &moving)) {
-        assert!(pops.pixels > 500 && pops.surface.percentile_999 < 1e-3 && pops.surface.mean < 1e-4, "{pops:?}");
+        assert!(pops.pixels > 500 && pops.surface.percentile_999 < 1e-3 && pops.surface.mean < 1e-3, "{pops:?}");
     }
 }
