@@ -15,7 +15,7 @@ pub struct ExportCounts {
 }
 
 /// Writes level `level` in world coordinates. Trees share the vertices of their common base vertices and base edges; nothing is welded by position.
-/// Trees follow each other, each its new vertices (in the order of [`Numbering`]), then its faces in node order.
+/// Trees follow each other, each its new vertices (in the order of `Numbering`), then its faces in node order.
 ///
 /// # Errors
 /// The scene has no such level ([`io::ErrorKind::InvalidInput`]), or the writer fails.

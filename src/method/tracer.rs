@@ -17,7 +17,7 @@ pub trait Trace {
         false
     }
 
-    /// Its hits are mapped to the full resolution when a ray ends ([`Act::End`](crate::step::Act::End)).
+    /// Its hits are mapped to the full resolution when a ray ends ([`Act::End`]).
     fn is_mapped(&self) -> bool;
 
     /// How many rays it traces together.
@@ -58,7 +58,7 @@ pub trait Tracer {
     fn packet(&mut self, queries: &[Query], hits: &mut Vec<Option<SurfaceHit>>, steps: &mut dyn StepSink) {
         hits.extend(queries.iter().map(|query| self.heard(query, steps)));
     }
-    /// Its hits are mapped to the full resolution when a ray ends ([`Act::End`](crate::step::Act::End)).
+    /// Its hits are mapped to the full resolution when a ray ends ([`Act::End`]).
     fn is_mapped(&self) -> bool;
 }
 

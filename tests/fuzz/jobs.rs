@@ -21,7 +21,7 @@ fn lists_of_jobs() {
     let folder = tempfile::tempdir().unwrap();
     let program = assert_cmd::cargo::cargo_bin!("lodray");
     // Of this program's memory, which starts that one.
-    round("jobs", &corpus(), Limit { bytes: 1 << 20, each: 100 }, |bytes| {
+    round("jobs", corpus, Limit { bytes: 1 << 20, each: 100 }, |bytes| {
         fs::write(folder.path().join("jobs.toml"), bytes).unwrap();
         let script = format!(
             "ulimit -v {KILOBYTES}; ulimit -t {SECONDS}; exec \"$0\" cluster snakemake --shards 2 --force -o engine -- sweep jobs.toml -o out"

@@ -46,7 +46,7 @@ fn corpus() -> Vec<File> {
 fn results_of_jobs() {
     let path = folder().join("results.jsonl");
     // The page that is made of them has a program of a few hundred thousand bytes in it.
-    round("results", &corpus(), Limit { bytes: 8 << 20, each: 200 }, |bytes| {
+    round("results", corpus, Limit { bytes: 8 << 20, each: 200 }, |bytes| {
         fs::write(&path, bytes).unwrap();
         let mut rows = JobLines::<Row>::open(&path, &Silent).unwrap();
         let keys: Vec<_> = rows.done().into_iter().collect();

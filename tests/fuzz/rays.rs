@@ -37,7 +37,7 @@ fn rays() {
     let scene: Scene = scene_of(&terrain(2, 2, 0.6, 5));
     let methods = ["lod", "bvh"].map(|name| scene.method(name).unwrap());
     let path = folder().join("rays.npy");
-    round("rays", &corpus(), Limit { bytes: 2 << 20, each: 600 }, |bytes| {
+    round("rays", corpus, Limit { bytes: 2 << 20, each: 600 }, |bytes| {
         fs::write(&path, bytes).unwrap();
         match RayFile::read(&path) {
             Ok(rays) => {

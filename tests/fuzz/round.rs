@@ -70,8 +70,10 @@ impl Watch {
     }
 }
 
-/// Reads every file of the corpus, which must all be good, and then damaged ones. `read` is true for what was taken, false for what was refused.
-pub fn round(reader: &str, corpus: &[File], limit: Limit, read: impl Fn(&[u8]) -> bool) {
+/// Reads every file of the corpus, which must all be good, and then damaged ones; alone from the corpus on, as memory is counted of all threads. `read` is true for what was taken, false for what was refused.
+pub fn round(reader: &str, corpus: impl FnOnce() -> Vec<File>, limit: Limit, read: impl Fn(&[u8]) -> bool) {
+    let _alone = alone();
+    let corpus = &corpus();
     let seconds = Duration::from_secs_f64(setting("LODRAY_FUZZ_SECONDS", 1.0));
     let case = folder().join(format!("{reader}.case"));
     let watch = Watch::new(format!("{}", case.display()));
@@ -100,7 +102,6 @@ pub fn round(reader: &str, corpus: &[File], limit: Limit, read: impl Fn(&[u8]) -
     let mut first = true;
     let all = || taken.load(Ordering::Relaxed) + refused.load(Ordering::Relaxed);
     while spent < seconds || all() < FEWEST {
-        let _alone = alone();
         let start = Instant::now();
         if std::mem::take(&mut first) {
             for file in corpus {

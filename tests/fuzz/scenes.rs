@@ -48,7 +48,7 @@ fn rays(space: &ModelSpace) -> RayFile {
 #[test]
 fn scenes() {
     let path = folder().join("scene.lod");
-    round("scenes", &corpus(), Limit { bytes: 4 << 20, each: 300 }, |bytes| {
+    round("scenes", corpus, Limit { bytes: 4 << 20, each: 300 }, |bytes| {
         fs::write(&path, &sealed(bytes).0).unwrap();
         let scene = match Scene::open(&path) {
             Ok(scene) => scene,
