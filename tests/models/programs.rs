@@ -67,7 +67,7 @@ fn what_there_is_not_is_named_with_what_there_is() {
     let scene = Scene::build(&vertices, &faces, &BuildOptions::own_triangles()).unwrap();
     let why = |method: &str, knobs: &[(&str, &str)]| scene.method_with(method, knobs).err().unwrap().to_string();
     assert!(why("nanite", &[]).starts_with("there is no method 'nanite', but: lod, bvh, "));
-    assert_eq!(why("bvh32", &[("delta", "1")]), "bvh32 has no knob 'delta', but: node-order, leaf-layout, leaf-size");
+    assert_eq!(why("bvh32", &[("delta", "1")]), "bvh32 has no knob 'delta', but: node-order, leaf-layout, leaf-size, packet");
     assert!(why("lod", &[("delta", "-1")]).starts_with("delta: '-1' is not a quality"));
     assert_eq!(why("input-bvh", &[]), "the mesh that the scene was made from is not at hand");
 }
