@@ -76,7 +76,7 @@ impl FrameArgs {
     }
 }
 
-/// Cameras along the way of a file, so many frames.
+/// Reads the keys of a file, and spreads `frames` cameras over the way through them.
 pub fn along(file: &Path, frames: u32, camera: &CameraArgs, space: &ModelSpace) -> anyhow::Result<CameraPath> {
     let named = || file.display().to_string();
     let text = std::fs::read_to_string(file).with_context(named)?;
@@ -88,7 +88,7 @@ pub fn along(file: &Path, frames: u32, camera: &CameraArgs, space: &ModelSpace) 
     between(&points, frames, camera, space).with_context(named)
 }
 
-/// Cameras at so many frames, spread evenly over the way from one of these eyes and targets, of which there are two or more, to the next.
+/// Spreads `frames` cameras evenly over the way through two or more `points`, each an eye and a target.
 pub fn between(points: &[[DVec3; 2]], frames: u32, camera: &CameraArgs, space: &ModelSpace) -> anyhow::Result<CameraPath> {
     let frame = |frame: u32| {
         let way = f64::from(frame) / f64::from(frames.max(2) - 1) * (points.len() - 1) as f64;

@@ -45,7 +45,7 @@ pub struct Args {
 }
 
 pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
-    // Positions and a motion exclude each other, which is why what goes with a motion is not missed by itself.
+    // clap drops `requires` where the two arguments conflict.
     anyhow::ensure!(args.frames.is_none() || args.motion.is_some(), "--frames: goes with --motion; POSITIONS have frames of their own");
     let inputs: Vec<&Path> = std::iter::once(&args.scene).chain(&args.positions).map(PathBuf::as_path).collect();
     check_target(&args.out, &inputs)?;

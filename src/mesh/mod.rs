@@ -34,7 +34,9 @@ pub use nearest::FinestSurface;
 pub use normals::{DEFAULT_CREASE_ANGLE, corner_normals};
 pub use parts::parts;
 pub use quantise::{SurfaceError, first_not_finite, grid_holds, most_zeros, move_vertices, quantise};
-pub use read::{MESH_ENDINGS, MeshFormat, PositionFrames, ReadError, named_files, read, read_as, read_bytes, read_positions};
+pub use read::{
+    MESH_ENDINGS, MeshFormat, PositionFrames, ReadError, named_files, nests_too_deep, read, read_as, read_bytes, read_positions,
+};
 pub use remesh::{DEFAULT_MAX_ERROR, Folds, RemeshError, RemeshOptions, RemeshReport, Works, remesh};
 pub use surface::Surface;
 pub use weld::Seams;

@@ -14,6 +14,7 @@
 use super::eye::{eye_of_all, least_radius_of_all};
 use super::rows::{BATCH, query};
 use super::{Eye, ModelSpace, Query, RaySource};
+use crate::mesh::nests_too_deep;
 use npyz::{DType, NpyFile, Order, TypeChar};
 use rayon::prelude::*;
 use std::fs::File;
@@ -24,8 +25,6 @@ use thiserror::Error;
 /// Most rays of a file.
 const MOST: u64 = 1 << 28;
 
-/// Most brackets within brackets of a header: an array of rays has two, one of records four.
-const MOST_BRACKETS: usize = 8;
 /// Most bytes of a header: one of an array of rays has a hundred or so.
 const MOST_HEADER: u32 = 1 << 16;
 
@@ -86,8 +85,7 @@ impl RayFile {
             let missing = (from + u64::from(length)).saturating_sub(12);
             bytes.by_ref().take(missing).read_to_end(&mut start).map_err(Why::Io)?;
             let header = &start[from as usize..];
-            // The reader of arrays takes twice as long for each bracket within brackets.
-            if brackets(header) > MOST_BRACKETS {
+            if nests_too_deep(header) {
                 return Err(Why::Shape("no rows of one type".to_owned()));
             }
             if !is_countable(header) {
@@ -143,20 +141,6 @@ impl RayFile {
     pub fn queries(&self) -> &[Query] {
         &self.queries
     }
-}
-
-/// How deep a header's brackets lie within brackets.
-fn brackets(header: &[u8]) -> usize {
-    let (mut most, mut open) = (0, 0usize);
-    for byte in header {
-        match byte {
-            b'[' | b'(' | b'{' => open += 1,
-            b']' | b')' | b'}' => open = open.saturating_sub(1),
-            _ => (),
-        }
-        most = most.max(open);
-    }
-    most
 }
 
 /// Whether the sizes of a header's shape have a product: the reader of arrays takes that for granted.

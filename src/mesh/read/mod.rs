@@ -3,6 +3,7 @@
 mod beside;
 mod fault;
 mod gltf;
+mod header;
 mod obj;
 mod parts;
 mod ply;
@@ -12,6 +13,7 @@ mod stl;
 
 use super::clean::{MeshError, TriangleMesh};
 use fault::{Fault, fault, shown};
+pub use header::nests_too_deep;
 use parts::Parts;
 pub use positions::{PositionFrames, read_positions};
 use serde::{Deserialize, Serialize};

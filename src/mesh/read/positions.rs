@@ -1,5 +1,6 @@
 //! Positions of vertices alone, in the order of a file: for meshes of which everything else is known.
 
+use super::header::nests_too_deep;
 use super::{MeshFormat, ReadError, is_device, ply};
 use npyz::{DType, NpyFile, Order, TypeChar};
 use std::io::Error;
@@ -40,6 +41,10 @@ pub fn read_positions(path: &Path) -> Result<PositionFrames, ReadError> {
 }
 
 fn array(bytes: &[u8]) -> Result<PositionFrames, String> {
+    // A header ends with its line.
+    if bytes.split(|&byte| byte == b'\n').next().is_some_and(nests_too_deep) {
+        return Err("no array of NumPy's: its header has brackets within brackets without end".to_owned());
+    }
     let file = NpyFile::new(bytes).map_err(|error| format!("no array of NumPy's: {error}"))?;
     let (shape, order, dtype) = (file.shape().to_vec(), file.order(), file.dtype());
     let size = match &dtype {
