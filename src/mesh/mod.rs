@@ -35,7 +35,8 @@ pub use normals::{DEFAULT_CREASE_ANGLE, corner_normals};
 pub use parts::parts;
 pub use quantise::{SurfaceError, first_not_finite, grid_holds, most_zeros, move_vertices, quantise};
 pub use read::{
-    MESH_ENDINGS, MeshFormat, PositionFrames, ReadError, named_files, nests_too_deep, read, read_as, read_bytes, read_positions,
+    ArrayError, MESH_ENDINGS, MeshFormat, PositionFrames, ReadError, named_files, open_array, read, read_as, read_bytes, read_positions,
+    shape_and_type,
 };
 pub use remesh::{DEFAULT_MAX_ERROR, Folds, RemeshError, RemeshOptions, RemeshReport, Works, remesh};
 pub use surface::Surface;

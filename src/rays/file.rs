@@ -14,8 +14,8 @@
 use super::eye::{eye_of_all, least_radius_of_all};
 use super::rows::{BATCH, query};
 use super::{Eye, ModelSpace, Query, RaySource};
-use crate::mesh::nests_too_deep;
-use npyz::{DType, NpyFile, Order, TypeChar};
+use crate::mesh::{ArrayError, open_array, shape_and_type};
+use npyz::{DType, Order, TypeChar};
 use rayon::prelude::*;
 use std::fs::File;
 use std::io::{self, BufReader, Read};
@@ -24,9 +24,6 @@ use thiserror::Error;
 
 /// Most rays of a file.
 const MOST: u64 = 1 << 28;
-
-/// Most bytes of a header: one of an array of rays has a hundred or so.
-const MOST_HEADER: u32 = 1 << 16;
 
 /// Why a file of rays cannot be read.
 #[derive(Debug, Error)]
@@ -42,8 +39,8 @@ enum Why {
     Io(io::Error),
     #[error("an array of {0}, where rays are rows of 6, 8, 10, 11 or 12 floats (float32 or float64)")]
     Shape(String),
-    #[error("a header of {0} bytes, where arrays of rays have at most 2^16")]
-    Header(u32),
+    #[error("{0}")]
+    Array(#[from] ArrayError),
     #[error("{0} rays: at most 2^28")]
     TooMany(u64),
     #[error("{0} rays of 12 columns of float32, which cannot number rays beyond 2^24: take float64")]
@@ -70,39 +67,16 @@ impl RayFile {
         Self::parse(BufReader::new(file)).map_err(wrong)
     }
 
-    fn parse(mut bytes: impl Read) -> Result<Self, Why> {
-        // What the file says of its header's length is believed only if it is that of an array of rays.
-        let mut start = Vec::new();
-        bytes.by_ref().take(12).read_to_end(&mut start).map_err(Why::Io)?;
-        if start.starts_with(b"\x93NUMPY") && start.len() == 12 {
-            let (from, length) = match start[6] {
-                0 | 1 => (10, u32::from(u16::from_le_bytes([start[8], start[9]]))),
-                _ => (12, u32::from_le_bytes([start[8], start[9], start[10], start[11]])),
-            };
-            if length > MOST_HEADER {
-                return Err(Why::Header(length));
-            }
-            let missing = (from + u64::from(length)).saturating_sub(12);
-            bytes.by_ref().take(missing).read_to_end(&mut start).map_err(Why::Io)?;
-            let header = &start[from as usize..];
-            if nests_too_deep(header) {
-                return Err(Why::Shape("no rows of one type".to_owned()));
-            }
-            if !is_countable(header) {
-                return Err(Why::Shape("a shape that cannot be".to_owned()));
-            }
-        }
-        let file = NpyFile::new(start.as_slice().chain(bytes))
-            .map_err(|error| Why::Io(io::Error::new(error.kind(), format!("no array of NumPy's: {error}"))))?;
+    fn parse(bytes: impl Read) -> Result<Self, Why> {
+        let file = open_array(bytes)?;
         let (shape, order, dtype) = (file.shape().to_vec(), file.order(), file.dtype());
-        let shown = || format!("shape {shape:?} and type {}", dtype.descr());
         let size = match &dtype {
             DType::Plain(of) if of.type_char() == TypeChar::Float => of.size_field(),
             _ => 0,
         };
         let (rows, columns) = match shape[..] {
             [rows, columns] if [6, 8, 10, 11, 12].contains(&columns) && [4, 8].contains(&size) => (rows, columns as usize), // at most 12
-            _ => return Err(Why::Shape(shown())),
+            _ => return Err(Why::Shape(shape_and_type(&file))),
         };
         if rows > MOST {
             return Err(Why::TooMany(rows));
@@ -143,14 +117,6 @@ impl RayFile {
     }
 }
 
-/// Whether the sizes of a header's shape have a product: the reader of arrays takes that for granted.
-fn is_countable(header: &[u8]) -> bool {
-    let text = String::from_utf8_lossy(header);
-    let shape = text.split_once("shape").and_then(|(_, rest)| rest.split_once('(')?.1.split_once(')')).map_or("", |(shape, _)| shape);
-    let sizes = shape.split(',').map(|size| size.trim().trim_end_matches('L')).filter(|size| !size.is_empty());
-    sizes.map(|size| size.parse::<u64>().ok()).try_fold(1u64, |all, size| all.checked_mul(size?.max(1))).is_some()
-}
-
 impl RaySource for RayFile {
     fn rays(&self) -> u64 {
         self.queries.len() as u64
@@ -182,18 +148,6 @@ impl RaySource for RayFile {
 mod tests {
     use super::*;
     use npyz::WriterBuilder;
-
-    #[test]
-    fn headers_that_promise_too_much_are_refused() {
-        let head = |version: u8, length: &[u8], text: &str| [b"\x93NUMPY", &[version, 0][..], length, text.as_bytes()].concat();
-        let why = |bytes: &[u8]| RayFile::parse(bytes).unwrap_err().to_string();
-        assert_eq!(why(&head(2, &[0xff; 4], "")), "a header of 4294967295 bytes, where arrays of rays have at most 2^16");
-        for shape in ["9223372036854775807, 8", "0, 9223372036854775807, 8", "99999999999999999999, 6"] {
-            let text = format!("{{'descr': '<f8', 'fortran_order': False, 'shape': ({shape}), }}\n");
-            let said = why(&head(1, &(text.len() as u16).to_le_bytes(), &text));
-            assert!(said.starts_with("an array of a shape that cannot be"), "{said}");
-        }
-    }
 
     fn array(shape: &[u64], order: Order, values: &[f64]) -> Vec<u8> {
         let mut bytes = Vec::new();

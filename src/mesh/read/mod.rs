@@ -13,7 +13,7 @@ mod stl;
 
 use super::clean::{MeshError, TriangleMesh};
 use fault::{Fault, fault, shown};
-pub use header::nests_too_deep;
+pub use header::{ArrayError, open_array, shape_and_type};
 use parts::Parts;
 pub use positions::{PositionFrames, read_positions};
 use serde::{Deserialize, Serialize};

@@ -1,8 +1,8 @@
 //! Positions of vertices alone, in the order of a file: for meshes of which everything else is known.
 
-use super::header::nests_too_deep;
+use super::header::{open_array, shape_and_type};
 use super::{MeshFormat, ReadError, is_device, ply};
-use npyz::{DType, NpyFile, Order, TypeChar};
+use npyz::{DType, Order, TypeChar};
 use std::io::Error;
 use std::path::Path;
 
@@ -41,11 +41,7 @@ pub fn read_positions(path: &Path) -> Result<PositionFrames, ReadError> {
 }
 
 fn array(bytes: &[u8]) -> Result<PositionFrames, String> {
-    // A header ends with its line.
-    if bytes.split(|&byte| byte == b'\n').next().is_some_and(nests_too_deep) {
-        return Err("no array of NumPy's: its header has brackets within brackets without end".to_owned());
-    }
-    let file = NpyFile::new(bytes).map_err(|error| format!("no array of NumPy's: {error}"))?;
+    let file = open_array(bytes).map_err(|error| error.to_string())?;
     let (shape, order, dtype) = (file.shape().to_vec(), file.order(), file.dtype());
     let size = match &dtype {
         DType::Plain(of) if of.type_char() == TypeChar::Float => of.size_field(),
@@ -59,8 +55,8 @@ fn array(bytes: &[u8]) -> Result<PositionFrames, String> {
     if ![4, 8].contains(&size) || frames == 0 || order != Order::C {
         let order = if order == Order::C { "" } else { ", in Fortran's order" };
         return Err(format!(
-            "shape {shape:?} and type {}{order}, where positions are vertices x 3 or frames x vertices x 3 floats (float32 or float64) in C's order",
-            dtype.descr()
+            "{}{order}, where positions are vertices x 3 or frames x vertices x 3 floats (float32 or float64) in C's order",
+            shape_and_type(&file)
         ));
     }
     let values: Vec<f64> = match size {
