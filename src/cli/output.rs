@@ -73,7 +73,20 @@ pub fn explain(command: &str) -> anyhow::Result<()> {
 /// What a TOML reader complains of, in one line: its error is several, with a picture of the place; the first and the last of it say all.
 pub fn toml_in_one_line(file: &str, error: &toml::de::Error) -> anyhow::Error {
     let picture = error.to_string();
-    anyhow::anyhow!("{file}: {}: {}", picture.lines().next().unwrap_or_default(), error.message())
+    anyhow::anyhow!("{file}: {}: {}", picture.lines().next().unwrap_or_default(), brief(error.message()))
+}
+
+/// Most bytes of a word, and of an error, that quotes a file.
+const LONGEST_WORD: usize = 200;
+const LONGEST_ERROR: usize = 1500;
+
+/// An error that quotes a file, whatever the file has there: the beginnings of long words, and of all.
+pub fn brief(text: &str) -> String {
+    let cut = |text: &str, longest: usize| match text.char_indices().find(|(at, character)| at + character.len_utf8() > longest) {
+        Some((at, _)) => format!("{}...", &text[..at]),
+        None => text.to_owned(),
+    };
+    cut(&text.split(' ').map(|word| cut(word, LONGEST_WORD)).collect::<Vec<_>>().join(" "), LONGEST_ERROR)
 }
 
 /// Says on standard error what a user should know of a run that went well.
@@ -143,5 +156,13 @@ mod tests {
     fn numbers_have_four_digits() {
         let shown = [0.0, 2.0, 0.5, -1.23456, 123.456, 98765.4, 0.000_123_456, 1e-9, 2.5e9, f64::INFINITY].map(super::plain);
         assert_eq!(shown, ["0", "2", "0.5", "-1.235", "123.5", "98765", "0.0001235", "1.000e-9", "2.500e9", "inf"]);
+    }
+
+    #[test]
+    fn errors_are_as_they_are_but_for_long_words_and_long_ones() {
+        use super::brief;
+        assert_eq!(brief("unknown field `a`,  expected `b`"), "unknown field `a`,  expected `b`");
+        assert_eq!(brief(&format!("no {} here", "\u{e9}".repeat(1000))), format!("no {}... here", "\u{e9}".repeat(100)));
+        assert_eq!(brief(&"word ".repeat(1000)), format!("{}...", "word ".repeat(300)));
     }
 }

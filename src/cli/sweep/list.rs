@@ -1,6 +1,7 @@
 //! The list of jobs as it stands in its file; every value knows where.
 
 use crate::cli::method::Listed;
+use crate::cli::output::brief;
 use lodray::mesh::{BoundKind, procedural};
 use lodray::num::VertexForm;
 use lodray::run::Compute;
@@ -146,7 +147,7 @@ impl ListText<'_> {
     /// The error for a mistake that stands there.
     pub fn wrong(&self, place: Range<usize>, what: impl Display) -> anyhow::Error {
         let line = self.text.as_bytes().iter().take(place.start).filter(|&&byte| byte == b'\n').count() + 1;
-        anyhow::anyhow!("{}: line {line}: {what}", self.path.display())
+        anyhow::anyhow!("{}: line {line}: {}", self.path.display(), brief(&what.to_string()))
     }
 }
 
