@@ -62,13 +62,25 @@ pub struct Dram {
 }
 
 impl Dram {
+    /// Whether there can be such a DRAM; none of its channels is made.
+    ///
+    /// # Errors
+    /// The configuration has an impossible value.
+    pub fn check(config: &DramConfig) -> Result<(), DramError> {
+        Self::mapping(config).map(|_| ())
+    }
+
+    fn mapping(config: &DramConfig) -> Result<Mapping, DramError> {
+        config.validate()?;
+        Mapping::new(&config.mapping, config.channels, &config.device.organisation)
+    }
+
     /// A DRAM at time 0, all rows closed.
     ///
     /// # Errors
     /// The configuration has an impossible value.
     pub fn new(config: &DramConfig) -> Result<Self, DramError> {
-        config.validate()?;
-        let mapping = Mapping::new(&config.mapping, config.channels, &config.device.organisation)?;
+        let mapping = Self::mapping(config)?;
         let channel = Channel::new(&config.device, &config.controller);
         let next_ps = vec![channel.next_clock() * config.device.clock_ps; config.channels as usize];
         let events_ps = vec![u64::MAX; next_ps.len()];

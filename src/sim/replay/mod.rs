@@ -151,8 +151,7 @@ pub fn check(machine: &Machine, units: bool) -> Result<(), ReplayError> {
         return Err(ReplayError::PinnedNodes(machine.cores.pinned_nodes));
     }
     check_size(machine, units)?;
-    let dram = Dram::new(&dram_of(machine)?);
-    dram.map(|_| ()).map_err(|source| ReplayError::Dram { file: machine.dram.device.clone(), source })
+    Dram::check(&dram_of(machine)?).map_err(|source| ReplayError::Dram { file: machine.dram.device.clone(), source })
 }
 
 /// Runs the rays of `source`, which begin with `nodes`, on `machine`; compute takes no time.
