@@ -7,6 +7,7 @@ use super::input::{FILE, InputFile};
 use super::mesh::{MeshArgs, Source};
 use super::names::named;
 use super::output::{busy, check_target, print_line, progress, warn};
+use super::subdivide::SubdivideArgs;
 use anyhow::Context;
 use lodray::format::Scene;
 use lodray::mesh::{BoundKind, DEFAULT_CREASE_ANGLE, DEFAULT_MAX_ERROR, RemeshOptions, TriangleMesh};
@@ -46,7 +47,8 @@ pub struct Args {
     mesh: PathBuf,
     #[command(flatten)]
     reading: MeshArgs,
-    /// Number of 1-to-4 splits, 0 to 10 (default: as many as give the finest level once to twice the mesh's triangles; more triangles only where --max-error needs them)
+    /// Number of 1-to-4 splits, 0 to 10 (default: as many as give the finest level once to twice the mesh's triangles; more triangles only where --max-error needs them; with --subdivide 3, with --displace
+    /// as many as give a point for each texel)
     #[arg(long, value_parser = levels(), allow_negative_numbers = true)]
     levels: Option<u32>,
     /// Largest distance between mesh and result, both ways, in percent of the diagonal of the mesh's box: decides how fine the base mesh is
@@ -58,6 +60,8 @@ pub struct Args {
     /// Edges that bend by more than this stay sharp lines, and are shaded so where the mesh has no normals of its own
     #[arg(long, value_name = "DEGREES", default_value_t = DEFAULT_CREASE_ANGLE, value_parser = crease, allow_negative_numbers = true)]
     crease_angle: f64,
+    #[command(flatten)]
+    subdivide: SubdivideArgs,
     #[command(flatten)]
     form: FormArgs,
     /// Make it an error, and write nothing, if the result is further from the mesh than --max-error or has triangles that face away from it, or if anything of the file is lost
@@ -73,7 +77,12 @@ pub struct Args {
 
 pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
     let source = Source::new(&args.mesh);
-    check_target(&args.out, source.files())?;
+    let inputs: Vec<&Path> = source.files().iter().copied().chain(args.subdivide.map()).collect();
+    check_target(&args.out, &inputs)?;
+    if args.subdivide.is_wanted() {
+        let scene = args.subdivide.make(&source, &args.reading, args.levels, args.crease_angle, args.form, args.strict)?;
+        return finish(&scene, &args.out, args.json);
+    }
     let mesh = args.reading.read(&source, args.strict)?;
     let mut origin = serde_json::Map::new();
     if let Some((format, weld)) = args.reading.found_again(&source) {

@@ -19,6 +19,10 @@ pub struct TriangleMesh {
     /// Shading normals of the file at the corners of each triangle, of length 1, or zero where a corner has none; empty if the file has none.
     /// The normals in an STL file are those of its flat facets, which the triangles give as well: they are not kept.
     pub normals: Vec<[[f32; 3]; 3]>,
+    /// Texture coordinates of the file at the corners of each triangle, v upwards, no numbers where a corner has none; empty if the file has none.
+    pub texture: Vec<[[f32; 2]; 3]>,
+    /// Of each triangle the polygon of the file that it was cut from; those of one polygon stand side by side. Empty if the file has triangles alone.
+    pub polygons: Vec<u32>,
     /// Index into `colours` for each triangle; empty if there are no materials.
     pub materials: Vec<u16>,
     /// Material colours, linear RGB in 0..=1.
@@ -87,11 +91,13 @@ pub enum MeshError {
         /// Which triangle, from 0.
         triangle: usize,
     },
-    /// There is not one triple of normals for each triangle.
-    #[error("there are normals for {normals} triangles, not for {triangles}")]
-    Normals {
-        /// Triples of corner normals.
-        normals: usize,
+    /// There are not as many normals, texture coordinates or polygons as triangles.
+    #[error("there are {what} for {found} triangles, not for {triangles}")]
+    Attributes {
+        /// Normals, texture coordinates or polygons.
+        what: &'static str,
+        /// For how many triangles they are.
+        found: usize,
         /// Triangles before cleaning.
         triangles: usize,
     },
@@ -103,6 +109,17 @@ pub enum MeshError {
         /// Degenerate ones among them.
         degenerate: usize,
     },
+}
+
+/// What triangles have beside the positions of their corners: for each there is nothing, or as many as triangles.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Attributes<'a> {
+    /// Shading normals, of any length; one that is zero or not finite is none.
+    pub normals: &'a [[[f32; 3]; 3]],
+    /// Texture coordinates, v upwards; what is not finite is none.
+    pub texture: &'a [[[f32; 2]; 3]],
+    /// Polygons that they were cut from: those of one number, side by side, are one.
+    pub polygons: &'a [u32],
 }
 
 /// True if this is a coordinate that a mesh may have.
@@ -133,31 +150,34 @@ impl TriangleMesh {
         materials: &[u16],
         colours: Vec<[f32; 3]>,
     ) -> Result<TriangleMesh, MeshError> {
-        Self::with_normals(positions, triangles, &[], materials, colours)
+        Self::with_attributes(positions, triangles, Attributes::default(), materials, colours)
     }
 
-    /// The same with shading normals: `normals` is empty or has three for each triangle, one for each corner. They are brought to length 1,
-    /// and one that is zero or not finite is none. Vertices that are welded keep the normals that their corners came with.
+    /// The same with shading normals, which are brought to length 1, and texture coordinates. Vertices that are welded keep those that their corners came with.
     ///
     /// # Errors
-    /// Those of [`Self::from_parts`], or if there are normals for another number of triangles.
-    pub fn with_normals(
+    /// Those of [`Self::from_parts`], or if there are normals, texture coordinates or polygons for another number of triangles.
+    pub fn with_attributes(
         positions: &[[f64; 3]],
         triangles: &[[u32; 3]],
-        normals: &[[[f32; 3]; 3]],
+        attributes: Attributes<'_>,
         materials: &[u16],
         colours: Vec<[f32; 3]>,
     ) -> Result<TriangleMesh, MeshError> {
         check(positions, triangles, materials, &colours)?;
-        if !normals.is_empty() && normals.len() != triangles.len() {
-            return Err(MeshError::Normals { normals: normals.len(), triangles: triangles.len() });
+        let Attributes { normals, texture, polygons } = attributes;
+        for (what, found) in [("normals", normals.len()), ("texture coordinates", texture.len()), ("polygons", polygons.len())] {
+            if found != 0 && found != triangles.len() {
+                return Err(MeshError::Attributes { what, found, triangles: triangles.len() });
+            }
         }
         let mut report = CleanReport { vertices_read: positions.len(), triangles_read: triangles.len(), ..Default::default() };
         let first = weld(positions);
         report.welded_vertices = first.iter().enumerate().filter(|&(i, &f)| i != f as usize).count();
 
         let mut seen = HashSet::with_capacity(triangles.len());
-        let (mut kept, mut kept_normals, mut kept_materials) = (Vec::with_capacity(triangles.len()), Vec::new(), Vec::new());
+        let mut kept = Vec::with_capacity(triangles.len());
+        let (mut kept_normals, mut kept_texture, mut kept_polygons, mut kept_materials) = (Vec::new(), Vec::new(), Vec::new(), Vec::new());
         for (t, corners) in triangles.iter().enumerate() {
             let tri = corners.map(|v| first[v as usize]);
             let mut key = tri;
@@ -169,6 +189,8 @@ impl TriangleMesh {
             } else {
                 kept.push(tri);
                 kept_normals.extend(normals.get(t).map(|n| n.map(|n| unit(n.map(f64::from)))));
+                kept_texture.extend(texture.get(t));
+                kept_polygons.extend(polygons.get(t));
                 kept_materials.extend(materials.get(t));
             }
         }
@@ -182,10 +204,15 @@ impl TriangleMesh {
         if kept_normals.iter().all(|n| *n == [[0.0; 3]; 3]) {
             kept_normals = Vec::new();
         }
+        if !kept_texture.iter().flatten().flatten().any(|c: &f32| c.is_finite()) {
+            kept_texture = Vec::new();
+        }
         Ok(TriangleMesh {
             positions,
             triangles: kept,
             normals: kept_normals,
+            texture: kept_texture,
+            polygons: kept_polygons,
             materials: kept_materials,
             colours,
             report,

@@ -5,11 +5,11 @@ mod bounds;
 mod clean;
 mod coarsen;
 pub(crate) mod compact;
+mod displace;
 mod distance;
 mod farthest;
 mod hierarchy;
 pub mod lattice;
-mod loop_surface;
 mod motion;
 mod nearest;
 mod normals;
@@ -20,15 +20,16 @@ mod quantise;
 mod read;
 mod remesh;
 mod sets;
+mod subdivide;
 mod surface;
 mod weld;
 
 pub use borders::{EdgeUse, SharedEdges};
-pub use clean::{CleanReport, MeshError, TriangleMesh};
+pub use clean::{Attributes, CleanReport, MeshError, TriangleMesh};
 pub use coarsen::{coarsen, farthest as coarsened_by};
+pub use displace::{DisplaceError, Displaced, Displacement, HeightMap, MapFault, displace, levels_for as levels_for_map};
 pub use distance::{Distance, TwoSidedDistance};
 pub use hierarchy::{BoundKind, EdgeCodes, Hierarchy, Placement, edge_index, edges_of_level, edges_of_tree};
-pub use loop_surface::{LoopError, MAX_LOOP_TRIANGLES, check as check_loop, loop_surface};
 pub use motion::Motion;
 pub use nearest::FinestSurface;
 pub use normals::{DEFAULT_CREASE_ANGLE, corner_normals};
@@ -39,5 +40,6 @@ pub use read::{
     shape_and_type,
 };
 pub use remesh::{DEFAULT_MAX_ERROR, Folds, RemeshError, RemeshOptions, RemeshReport, Works, remesh};
+pub use subdivide::{MAX_SUBDIVIDED, SubdivideError, catmull_clark_surface, check_subdivision, flat_surface, loop_surface};
 pub use surface::Surface;
 pub use weld::Seams;

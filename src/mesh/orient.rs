@@ -39,6 +39,9 @@ impl TriangleMesh {
                 if let Some(normals) = self.normals.get_mut(t) {
                     normals.swap(1, 2);
                 }
+                if let Some(texture) = self.texture.get_mut(t) {
+                    texture.swap(1, 2);
+                }
                 turned += 1;
             }
         }

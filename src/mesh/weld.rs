@@ -1,6 +1,6 @@
 //! Seams: open edges whose ends lie a small distance apart.
 
-use super::{MeshError, TriangleMesh};
+use super::{Attributes, MeshError, TriangleMesh};
 use std::collections::HashMap;
 
 /// Distances at which seams are looked for, in parts of the diagonal of the box.
@@ -26,7 +26,8 @@ impl TriangleMesh {
     pub fn welded(&self, distance: f64) -> Result<TriangleMesh, MeshError> {
         let first = self.groups(&self.open_edges(), distance);
         let triangles: Vec<[u32; 3]> = self.triangles.iter().map(|t| t.map(|v| first[v as usize])).collect();
-        let mut mesh = Self::with_normals(&self.positions, &triangles, &self.normals, &self.materials, self.colours.clone())?;
+        let attributes = Attributes { normals: &self.normals, texture: &self.texture, polygons: &self.polygons };
+        let mut mesh = Self::with_attributes(&self.positions, &triangles, attributes, &self.materials, self.colours.clone())?;
         let (before, after) = (&self.report, &mut mesh.report);
         after.welded_vertices = before.welded_vertices + first.iter().zip(0u32..).filter(|&(&f, v)| f != v).count();
         after.unreferenced_vertices = before.unreferenced_vertices;

@@ -59,32 +59,70 @@ fn generate_and_info() {
 fn loop_surfaces_of_meshes() {
     let desk = empty();
     fs::write(desk.path("sheet.obj"), sheet(6)).unwrap();
-    let made = desk.json("generate loop sheet.obj --levels 4 -o sheet.lod");
+    let made = desk.json("build sheet.obj --subdivide loop --levels 4 -o sheet.lod");
     assert_eq!((&made["name"], &made["levels"], &made["base_triangles"]), (&"sheet".into(), &4.into(), &72.into()));
-    assert_eq!(made["origin"]["generate"], serde_json::json!({ "scene": "loop", "levels": 4 }));
+    assert_eq!(made["origin"]["subdivide"], serde_json::json!({ "rule": "loop", "levels": 4 }));
     assert_eq!(made["origin"]["mesh"]["triangles_read"], 72);
     // It was not built from that mesh: a BVH over it would hold another surface.
     assert!(made["origin"]["file"].is_null());
     assert!(desk.run("verify sheet.lod").ends_with("passed\n"));
     for threads in [1, 2, 3] {
-        desk.run(&format!("generate loop sheet.obj --levels 4 --threads {threads} -o again.lod"));
+        desk.run(&format!("build sheet.obj --subdivide loop --levels 4 --threads {threads} -o again.lod"));
         assert!(fs::read(desk.path("again.lod")).unwrap() == fs::read(desk.path("sheet.lod")).unwrap(), "{threads} threads");
     }
     // Levels and forms as those of other scenes.
-    assert_eq!(desk.json("generate loop sheet.obj -o default.lod")["levels"], 3);
-    let exact = desk.json("generate loop sheet.obj --levels 2 --vertices exact --coordinate-zeros 4 -o exact.lod");
+    assert_eq!(desk.json("build sheet.obj --subdivide loop -o default.lod")["levels"], 3);
+    let exact = desk.json("build sheet.obj --subdivide loop --levels 2 --vertices exact --coordinate-zeros 4 -o exact.lod");
     assert_eq!((&exact["vertices"], &exact["levels"]), (&"exact".into(), &2.into()));
     // What the surface does not keep is said, or refused.
     fs::write(desk.path("shaded.obj"), "v 0 0 0\nv 1 0 0\nv 0 1 0\nvn 0 0 1\nf 1//1 2//1 3//1\n").unwrap();
-    let (code, said) = desk.hear("generate loop shaded.obj -o shaded.lod --quiet");
+    let (code, said) = desk.hear("build shaded.obj --subdivide loop -o shaded.lod --quiet");
     assert!(code == 0 && said == "warning: shaded.obj: its shading normals are not kept: the subdivided surface has its own\n", "{said}");
-    let (code, said) = desk.hear("generate loop shaded.obj --strict -o none.lod");
+    let (code, said) = desk.hear("build shaded.obj --subdivide loop --strict -o none.lod");
     assert!(code == 1 && said.starts_with("error: shaded.obj: its shading normals") && !desk.path("none.lod").exists(), "{said}");
     // A seam is said with what closes it, and closed.
     fs::write(desk.path("seam.obj"), "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 1 0 1e-6\nv 0 1 1e-6\nv 1 1 0\nf 1 2 3\nf 4 6 5\n").unwrap();
-    let (_, said) = desk.hear("generate loop seam.obj -o seam.lod --quiet");
+    let (_, said) = desk.hear("build seam.obj --subdivide loop -o seam.lod --quiet");
     assert!(said.contains("open edges are seams: --weld "), "{said}");
-    assert_eq!(desk.json("generate loop seam.obj --weld 1e-5 -o seam.lod")["base_vertices"], 4);
+    assert_eq!(desk.json("build seam.obj --subdivide loop --weld 1e-5 -o seam.lod")["base_vertices"], 4);
+}
+
+#[test]
+fn displacement_maps_over_meshes() {
+    let desk = empty();
+    // A quad that a picture of 8 x 8 heights, a ramp from left to right, is laid over.
+    fs::write(desk.path("quad.obj"), "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nvt 0 0\nvt 1 0\nvt 1 1\nvt 0 1\nf 1/1 2/2 3/3 4/4\n").unwrap();
+    let ramp = image::ImageBuffer::from_fn(8, 8, |x, _| image::Luma([x as u16 * 9362]));
+    image::DynamicImage::ImageLuma16(ramp).save(desk.path("ramp.png")).unwrap();
+    // Without --levels a point for each texel.
+    let made = desk.json("build quad.obj --displace ramp.png --amount 0.5 --middle 0.25 -o ramp.lod");
+    assert_eq!((&made["levels"], &made["base_triangles"]), (&3.into(), &2.into()));
+    let told = &made["origin"]["subdivide"];
+    assert_eq!(
+        (&told["rule"], &told["displace"]["map"], &told["displace"]["size"]),
+        (&"flat".into(), &"ramp.png".into(), &vec![8, 8].into())
+    );
+    let moved = |what: &str| told["displace"]["moved"][what].as_f64().unwrap();
+    assert!((moved("least") + 0.125).abs() < 0.04 && (moved("most") - 0.375).abs() < 0.04 && moved("seam_points") == 0.0, "{told}");
+    assert!(desk.run("verify ramp.lod").ends_with("passed\n"));
+    // Over a smooth surface too, the same at any number of threads.
+    desk.run("build quad.obj --subdivide catmull-clark --displace ramp.png --amount 0.1 --levels 4 -o smooth.lod");
+    for threads in [1, 3] {
+        desk.run(&format!(
+            "build quad.obj --subdivide catmull-clark --displace ramp.png --amount 0.1 --levels 4 --threads {threads} -o again.lod"
+        ));
+        assert!(fs::read(desk.path("again.lod")).unwrap() == fs::read(desk.path("smooth.lod")).unwrap(), "{threads} threads");
+    }
+    assert!(desk.run("verify smooth.lod").ends_with("passed\n"));
+    // A mesh without texture coordinates has no place on a map.
+    fs::write(desk.path("bare.obj"), "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n").unwrap();
+    let (code, said) = desk.hear("build bare.obj --displace ramp.png --amount 1 -o none.lod");
+    assert!(
+        code == 1 && said == "error: bare.obj: it has no texture coordinates, which say where on a displacement map it lies\n",
+        "{said}"
+    );
+    let (code, said) = desk.hear("build quad.obj --displace ramp.png --amount 1 -o ramp.png");
+    assert!(code == 1 && said.contains("it is the input file") && !desk.path("none.lod").exists(), "{said}");
 }
 
 #[test]

@@ -11,7 +11,7 @@ mod polygon;
 mod positions;
 mod stl;
 
-use super::clean::{MeshError, TriangleMesh};
+use super::clean::{Attributes, MeshError, TriangleMesh};
 use fault::{Fault, fault, shown};
 pub use header::{ArrayError, open_array, shape_and_type};
 use parts::Parts;
@@ -118,7 +118,7 @@ pub fn named_files(path: &Path) -> Vec<PathBuf> {
 /// OBJ: polygons are cut into triangles; diffuse colours are taken from the material library if it can be read. PLY: faces or triangle
 /// strips. glTF: all triangles of the default scene, as its nodes place them; morph targets with their default weights, meshes with skins in
 /// their rest pose; base colour factors. STL: vertices at the same place become one. Normals at corners are kept where the format has them (not STL: its normals
-/// are those of the flat facets); textures and vertex colours are not. Triangles that run the other way around than most of those around them are turned.
+/// are those of the flat facets), and so are texture coordinates (the first set of glTF; at vertices of PLY); textures and vertex colours are not. Triangles that run the other way around than most of those around them are turned.
 /// What is lost, and what was turned, is in [`TriangleMesh::warnings`]. Devices are refused, pipes are taken; files that the mesh names must be
 /// regular files.
 ///
@@ -161,7 +161,8 @@ pub fn read_bytes(bytes: &[u8], format: MeshFormat, name: &Path, folder: &Path) 
         MeshFormat::Stl => stl::parse,
     };
     let parts = parse(bytes, folder).map_err(content)?;
-    let mut mesh = TriangleMesh::with_normals(&parts.positions, &parts.triangles, &parts.normals, &parts.materials, parts.colours)
+    let attributes = Attributes { normals: &parts.normals, texture: &parts.texture, polygons: &parts.polygons };
+    let mut mesh = TriangleMesh::with_attributes(&parts.positions, &parts.triangles, attributes, &parts.materials, parts.colours)
         .map_err(|source| ReadError::Mesh { path: name.into(), source })?;
     mesh.warnings = parts.warnings;
     mesh.orient();

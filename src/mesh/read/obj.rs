@@ -1,7 +1,7 @@
 //! Wavefront OBJ. `tobj` parses; before it every line is checked here, because its errors name no line and it lets some faults pass.
 
 use super::super::clean::{is_coordinate, unit};
-use super::{Fault, Parts, beside, fault, polygon, shown};
+use super::{Fault, Parts, beside, fault, shown};
 use std::cell::RefCell;
 use std::fmt::Write;
 use std::path::Path;
@@ -77,14 +77,20 @@ fn append(mesh: &tobj::Mesh, parts: &mut Parts) {
         let at = mesh.normal_indices.get(corner).map_or(0, |&n| 3 * n as usize);
         mesh.normals.get(at..at + 3).map_or([0.0; 3], |n| unit([n[0], n[1], n[2]]))
     };
+    let texture = |corner: usize| {
+        let at = mesh.texcoord_indices.get(corner).map_or(0, |&n| 2 * n as usize);
+        mesh.texcoords.get(at..at + 2).map_or([f32::NAN; 2], |uv| [uv[0] as f32, uv[1] as f32])
+    };
     let mut first = 0;
     for &arity in arities {
         let Some(face) = mesh.indices.get(first..first + arity as usize) else { break };
         let corners: Vec<u32> = face.iter().map(|&i| base + i).collect();
-        polygon::triangulate(&parts.positions, &corners, |tri| {
-            parts.triangles.push(tri.map(|k| corners[k]));
+        parts.polygon(&corners, |parts, tri| {
             if !mesh.normals.is_empty() {
                 parts.normals.push(tri.map(|k| normal(first + k)));
+            }
+            if !mesh.texcoords.is_empty() {
+                parts.texture.push(tri.map(|k| texture(first + k)));
             }
         });
         first += face.len();
@@ -95,13 +101,14 @@ fn append(mesh: &tobj::Mesh, parts: &mut Parts) {
     }
 }
 
-/// Checks all lines and writes out those that a mesh needs in a form that `tobj` reads the same way: indices counted from the beginning,
-/// no texture coordinates, and, if the file has normals at all, one for every corner, the first (zero) where there is none.
+/// Checks all lines and writes out those that a mesh needs in a form that `tobj` reads the same way: indices counted from the beginning and, if the
+/// file has normals or texture coordinates at all, one for every corner, the first (zero, or no numbers) where there is none.
 #[derive(Default)]
 struct Checker {
     out: String,
     has_normals: bool,
-    /// Positions and normals so far, at their places in [`KINDS`].
+    has_texture: bool,
+    /// Positions, texture coordinates and normals so far, at their places in [`KINDS`].
     counts: [i64; 3],
     faces: usize,
     /// Normals that are not finite.
@@ -122,6 +129,10 @@ impl Checker {
         self.has_normals = text.lines().any(|line| line.trim_start().starts_with("vn"));
         if self.has_normals {
             self.out.push_str("vn 0 0 0\n");
+        }
+        self.has_texture = text.lines().any(|line| line.trim_start().starts_with("vt"));
+        if self.has_texture {
+            self.out.push_str("vt nan nan\n");
         }
         let mut joined = String::new();
         let mut last = 0;
@@ -160,6 +171,10 @@ impl Checker {
         match key {
             "v" => self.position(&words),
             "vn" => self.normal(&words),
+            "vt" => {
+                self.texture(&words);
+                Ok(())
+            }
             "f" => self.face(&words, number),
             "o" | "g" | "usemtl" | "mtllib" => {
                 // Names may hold spaces, and `tobj` looks for them after exactly one.
@@ -202,6 +217,14 @@ impl Checker {
         Ok(())
     }
 
+    /// What is no pair of numbers is none: few read them.
+    fn texture(&mut self, words: &[&str]) {
+        let [u, v] = [0, 1].map(|k| words.get(k).map_or(Ok(0.0), |word| word.parse::<f32>()).unwrap_or(f32::NAN));
+        let usable = !words.is_empty() && u.is_finite() && v.is_finite();
+        _ = if usable { writeln!(self.out, "vt {u} {v}") } else { writeln!(self.out, "vt nan nan") };
+        self.counts[TEXTURE] += 1;
+    }
+
     fn face(&mut self, words: &[&str], line: usize) -> Result<(), String> {
         if words.len() < 3 {
             return Err(format!("f needs 3 vertices or more, found {}", words.len()));
@@ -219,9 +242,15 @@ impl Checker {
             if parts.next().is_some() {
                 return Err(format!("f: {} has more than three indices", shown(word)));
             }
-            let [vertex, _, normal] = indices;
-            // Behind the zero normal that comes first.
-            _ = if self.has_normals { write!(self.out, " {vertex}//{}", normal + 1) } else { write!(self.out, " {vertex}") };
+            let [vertex, texture, normal] = indices;
+            // Behind what comes first and is none.
+            let (texture, normal) = (texture + 1, normal + 1);
+            _ = match (self.has_texture, self.has_normals) {
+                (false, false) => write!(self.out, " {vertex}"),
+                (false, true) => write!(self.out, " {vertex}//{normal}"),
+                (true, false) => write!(self.out, " {vertex}/{texture}"),
+                (true, true) => write!(self.out, " {vertex}/{texture}/{normal}"),
+            };
         }
         self.out.push('\n');
         self.faces += 1;
@@ -234,11 +263,16 @@ impl Checker {
         let Ok(index) = part.parse::<i64>() else {
             return Err(format!("f: {} has no valid {name} index", shown(word)));
         };
-        if kind == TEXTURE || kind == NORMAL && !self.has_normals {
-            // Texture coordinates are not used: whether this one is there does not matter, nor what is named in a file without normals.
+        let count = self.counts[kind];
+        if kind == TEXTURE {
+            // Few need them: one that did not come before is none.
+            let index = if index < 0 { count.saturating_add(1).saturating_add(index) } else { index };
+            return Ok(if (1..=count).contains(&index) { index } else { 0 });
+        }
+        if kind == NORMAL && !self.has_normals {
+            // What is named in a file without normals does not matter.
             return Ok(index);
         }
-        let count = self.counts[kind];
         if index == 0 || index < -count || index > i64::from(u32::MAX) {
             return Err(format!("f: {name} index {index} is out of range, {count} came before it"));
         }

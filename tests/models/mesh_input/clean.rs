@@ -1,6 +1,6 @@
 //! Cleaning: every count, and what survives it.
 
-use lodray::mesh::{CleanReport, MeshError, TriangleMesh};
+use lodray::mesh::{Attributes, CleanReport, MeshError, TriangleMesh};
 
 #[test]
 fn cleaning_counts_what_it_drops_and_keeps() {
@@ -60,7 +60,10 @@ fn corner_normals_survive_cleaning() {
     let positions = [[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [1.0, 0.0, 0.0], [1.0, 1.0, 0.0], [-0.0, 1.0, 0.0]];
     let triangles = [[0, 1, 2], [0, 1, 3], [3, 4, 5], [1, 2, 0]];
     let normals: [[[f32; 3]; 3]; 4] = std::array::from_fn(|t| std::array::from_fn(|k| [t as f32, k as f32, 2.0]));
-    let mesh = TriangleMesh::with_normals(&positions, &triangles, &normals, &[], vec![]).unwrap();
+    let with = |normals: &[[[f32; 3]; 3]]| {
+        TriangleMesh::with_attributes(&positions, &triangles, Attributes { normals, ..Attributes::default() }, &[], vec![])
+    };
+    let mesh = with(&normals).unwrap();
     assert_eq!(mesh.triangles, [[0, 1, 2], [1, 3, 2]]);
     for (kept, from) in mesh.normals.iter().zip([0, 2]) {
         for k in 0..3 {
@@ -70,10 +73,32 @@ fn corner_normals_survive_cleaning() {
     }
     assert_eq!(mesh.normals.len(), 2);
     let bad = [[[0.0, f32::NAN, 0.0], [0.0, 0.0, f32::INFINITY], [0.0; 3]]; 4];
-    assert!(TriangleMesh::with_normals(&positions, &triangles, &bad, &[], vec![]).unwrap().normals.is_empty());
+    assert!(with(&bad).unwrap().normals.is_empty());
     let tiny = [[[0.0, f32::MAX, 0.0], [0.0, 0.0, f32::MIN_POSITIVE], [-1e-40, 0.0, 0.0]]; 4];
-    let mesh = TriangleMesh::with_normals(&positions, &triangles, &tiny, &[], vec![]).unwrap();
+    let mesh = with(&tiny).unwrap();
     assert_eq!(mesh.normals[0], [[0.0, 1.0, 0.0], [0.0, 0.0, 1.0], [-1.0, 0.0, 0.0]]);
-    let error = TriangleMesh::with_normals(&positions, &triangles, &normals[..3], &[], vec![]).unwrap_err();
-    assert_eq!(error, MeshError::Normals { normals: 3, triangles: 4 });
+    let error = with(&normals[..3]).unwrap_err();
+    assert_eq!(error, MeshError::Attributes { what: "normals", found: 3, triangles: 4 });
+}
+
+#[test]
+fn texture_coordinates_survive_cleaning_and_turning() {
+    let positions = [[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [1.0, 1.0, 0.0]];
+    // A flat one, two that run different ways around.
+    let triangles = [[0, 1, 1], [0, 1, 2], [1, 2, 3]];
+    let texture: [[[f32; 2]; 3]; 3] = std::array::from_fn(|t| std::array::from_fn(|k| [t as f32, k as f32]));
+    let with = |texture: &[[[f32; 2]; 3]]| {
+        TriangleMesh::with_attributes(&positions, &triangles, Attributes { texture, ..Attributes::default() }, &[], vec![])
+    };
+    let mut mesh = with(&texture).unwrap();
+    assert_eq!(mesh.texture, texture[1..]);
+    mesh.orient();
+    assert_eq!((mesh.report.turned_triangles, mesh.warnings.len()), (1, 1));
+    let place = |v: u32, t: usize| mesh.triangles[t].iter().position(|&w| w == v).unwrap();
+    for (t, (corners, own)) in [([0, 1, 2], texture[1]), ([1, 2, 3], texture[2])].into_iter().enumerate() {
+        corners.into_iter().zip(own).for_each(|(v, uv)| assert_eq!(mesh.texture[t][place(v, t)], uv));
+    }
+    assert!(with(&[[[f32::NAN, f32::INFINITY]; 3]; 3]).unwrap().texture.is_empty());
+    let error = with(&texture[..2]).unwrap_err();
+    assert_eq!(error.to_string(), "there are texture coordinates for 2 triangles, not for 3");
 }

@@ -229,7 +229,14 @@ fn items_may_be_apart_quantised_or_sparse() {
     glb.json["accessors"][1]["normalized"] = json!(true);
     glb.primitive()["attributes"] = json!({"POSITION": positions, "NORMAL": normals});
     glb.primitive()["mode"] = json!(6);
+    // Texture coordinates of 8 bits, whose v leads down.
+    let texture = glb.accessor(&[0, 255, 255, 255, 255, 0, 0, 0], U8, "VEC2", 4);
+    glb.json["accessors"][texture]["normalized"] = json!(true);
+    glb.primitive()["attributes"]["TEXCOORD_0"] = json!(texture);
+    glb.refuses("/accessors/2/type", json!("VEC3"), &["TEXCOORD_0: accessor 2: it is not of type VEC2"]);
+    glb.refuses("/accessors/2/count", json!(3), &["it has 4 positions and 3 texture coordinates"]);
     let mesh = glb.mesh();
+    assert_eq!(mesh.texture[0], [[0.0, 0.0], [1.0, 0.0], [1.0, 1.0]]);
     assert_eq!((&mesh.positions, &mesh.triangles, &mesh.normals), (&expected.positions, &expected.triangles, &expected.normals));
     let small = glb.set("/accessors/0/normalized", json!(true)).mesh();
     assert_eq!(small.positions[2], [1.0 / 65535.0, 1.0 / 65535.0, 0.0]);

@@ -123,6 +123,20 @@ fn bad_obj_files_are_named_with_the_line() {
 }
 
 #[test]
+fn obj_texture_coordinates_and_polygons_are_kept() {
+    let files = Files::new();
+    let square = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 2 0 0\nvt 0 0\nvt 0.5\nvt 1 1 0.5\nvt x 1\n";
+    let mesh = files.read("square.obj", format!("{square}f 2 5 3\nf 1/1 2/2 3/-2 4/4\n"));
+    assert_eq!((mesh.triangles.len(), &mesh.polygons), (3, &vec![0, 1, 1]));
+    assert!(mesh.texture[0].iter().flatten().all(|c| c.is_nan()));
+    assert_eq!(mesh.texture[1], [[0.0, 0.0], [0.5, 0.0], [1.0, 1.0]]);
+    assert_eq!(mesh.texture[2][..2], [[0.0, 0.0], [1.0, 1.0]]);
+    assert!(mesh.texture[2][2].iter().all(|c| c.is_nan()));
+    let plain = files.read("plain.obj", format!("{square}f 2 5 3\n"));
+    assert!(plain.texture.is_empty() && plain.polygons.is_empty());
+}
+
+#[test]
 fn obj_texture_indices_need_not_be_there() {
     let files = Files::new();
     for face in ["f 1/7 2/8 3/9", "f 1/-1 2/-2 3/-3", "f 1/0 2/0 3/0", "vt 0 nan\nf 1/1 2/2 3/1", "f 1/9/1 2/9/1 3/9/1"] {

@@ -163,6 +163,19 @@ fn malformed_lines_of_elements_are_named_in_plain_words() {
 }
 
 #[test]
+fn ply_texture_coordinates_are_those_of_the_vertices() {
+    for [u, v] in [["s", "t"], ["u", "v"], ["texture_u", "texture_v"]] {
+        let pair = format!("property float {u}\nproperty double {v}\n");
+        let rows = "0 0 0 9 0 0\n1 0 0 9 1 0\n1 1 0 9 0.5 2\n0 1 0 9 nan 1\n";
+        let mesh = Files::new().read("a.ply", ascii(&format!("{pair}{FACES}"), &format!("{rows}3 0 1 2\n3 0 2 3\n")));
+        assert_eq!(mesh.texture[0], [[0.0, 0.0], [1.0, 0.0], [0.5, 2.0]]);
+        assert!(mesh.texture[1][2][0].is_nan() && mesh.polygons.is_empty());
+    }
+    let quad = Files::new().read("a.ply", ascii(FACES, "0 0 0 9\n1 0 0 9\n1 1 0 9\n0 1 0 9\n4 0 1 2 3\n3 0 2 1\n"));
+    assert!(quad.texture.is_empty() && quad.polygons[..2] == [0, 0]);
+}
+
+#[test]
 fn ply_normals_are_those_of_the_vertices() {
     let normals = "property float nx\nproperty float ny\nproperty double nz\n";
     let rows = "0 0 0 9 2 0 0\n1 0 0 9 0 0 1e300\n1 1 0 9 nan 0 0\n0 1 0.5 9 0 -.5 0\n";

@@ -33,6 +33,18 @@ impl<'a> Reader<'a> {
         read().or_else(|what: String| fault(place, format_args!("accessor {}: {what}", index.value())))
     }
 
+    /// Texture coordinates; at most `zeros` if the accessor has no bytes for them.
+    pub(super) fn pairs(&self, index: Index<Accessor>, zeros: usize, place: &str) -> Result<Vec<[f64; 2]>, Fault> {
+        let read = || {
+            let accessor = self.accessor(index)?;
+            if accessor.type_ != Checked::Valid(Type::Vec2) {
+                return Err("it is not of type VEC2".into());
+            }
+            self.items::<2>(accessor, component(accessor)?, zeros)
+        };
+        read().or_else(|what: String| fault(place, format_args!("accessor {}: {what}", index.value())))
+    }
+
     /// Indices of vertices below `count`.
     pub(super) fn indices(&self, index: Index<Accessor>, count: usize, place: &str) -> Result<Vec<u32>, Fault> {
         let read = || {

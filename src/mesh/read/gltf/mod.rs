@@ -87,7 +87,7 @@ fn build(json: &[u8], bin: Option<&[u8]>, folder: &Path) -> Result<Parts, Fault>
         let own = root.materials.iter().map(|m| colour(m.pbr_metallic_roughness.base_color_factor.0));
         parts.colours = own.chain([NO_MATERIAL]).collect();
     }
-    let mut builder = Builder { root: &root, reader: Reader::new(&root, bin, folder), parts, has_normals: false };
+    let mut builder = Builder { root: &root, reader: Reader::new(&root, bin, folder), parts, has_normals: false, has_texture: false };
     let mut skins = 0;
     for placed in nodes::placed(&root)? {
         skins += usize::from(placed.has_skin);
@@ -108,6 +108,9 @@ fn build(json: &[u8], bin: Option<&[u8]>, folder: &Path) -> Result<Parts, Fault>
     }
     if !builder.has_normals {
         builder.parts.normals = Vec::new();
+    }
+    if !builder.has_texture {
+        builder.parts.texture = Vec::new();
     }
     Ok(builder.parts)
 }
@@ -136,6 +139,7 @@ struct Builder<'a> {
     reader: Reader<'a>,
     parts: Parts,
     has_normals: bool,
+    has_texture: bool,
 }
 
 impl Builder<'_> {
@@ -156,6 +160,13 @@ impl Builder<'_> {
         if let Some(n) = normals.as_ref().filter(|n| n.len() != positions.len()) {
             return fault(place, format_args!("it has {} positions and {} normals", positions.len(), n.len()));
         }
+        let texture = match primitive.attributes.get(&Checked::Valid(Semantic::TexCoords(0))) {
+            Some(&texture) => Some(self.reader.pairs(texture, positions.len(), &format!("{place}, TEXCOORD_0"))?),
+            None => None,
+        };
+        if let Some(t) = texture.as_ref().filter(|t| t.len() != positions.len()) {
+            return fault(place, format_args!("it has {} positions and {} texture coordinates", positions.len(), t.len()));
+        }
         let weights = placed.weights.as_deref().or(weights);
         self.morph(primitive, weights.unwrap_or_default(), &mut positions, normals.as_deref_mut(), place)?;
         let corners = match primitive.indices {
@@ -167,7 +178,7 @@ impl Builder<'_> {
         if self.parts.positions.len() + positions.len() > MAX_ITEMS || self.parts.triangles.len() + triangles.len() > MAX_ITEMS {
             return fault(place, format_args!("with it there are more than {MAX_ITEMS} vertices or triangles"));
         }
-        self.append(&positions, normals.as_deref(), &triangles, material, placed).or_else(|what| fault(place, what))
+        self.append(&positions, (normals.as_deref(), texture.as_deref()), &triangles, material, placed).or_else(|what| fault(place, what))
     }
 
     /// Moves positions and normals as the morph targets of a primitive say, each by its weight.
@@ -217,7 +228,7 @@ impl Builder<'_> {
     fn append(
         &mut self,
         positions: &[[f64; 3]],
-        normals: Option<&[[f64; 3]]>,
+        (normals, texture): (Option<&[[f64; 3]]>, Option<&[[f64; 2]]>),
         triangles: &[[u32; 3]],
         material: Option<u16>,
         placed: &Placed,
@@ -234,12 +245,16 @@ impl Builder<'_> {
         let (turn, mirrored) = turn_of_normals(DMat3::from_mat4(placed.transform));
         let normals: Option<Vec<[f32; 3]>> = normals.map(|n| n.iter().map(|&n| unit((turn * DVec3::from_array(n)).to_array())).collect());
         self.has_normals |= normals.is_some();
+        self.has_texture |= texture.is_some();
+        // The format's v leads down.
+        let upwards = |[u, v]: [f64; 2]| [u as f32, (1.0 - v) as f32];
         for &triangle in triangles {
             let [a, b, c] = triangle;
             // A mirror image runs the other way around.
             let triangle = if mirrored { [a, c, b] } else { triangle };
             parts.triangles.push(triangle.map(|v| first + v));
             parts.normals.push(normals.as_ref().map_or([[0.0; 3]; 3], |n| triangle.map(|v| n[v as usize])));
+            parts.texture.push(texture.map_or([[f32::NAN; 2]; 3], |t| triangle.map(|v| upwards(t[v as usize]))));
             parts.materials.extend(material);
         }
         Ok(())

@@ -3,7 +3,7 @@
 mod header;
 
 use super::super::clean::unit;
-use super::{Fault, Parts, fault, polygon, shown};
+use super::{Fault, Parts, fault, shown};
 use header::{is_index_list, is_scalar};
 use ply_rs_bw::parser::Parser;
 use ply_rs_bw::ply::{ElementDef, Encoding, Property, PropertyAccess, PropertyAccessResult, PropertyType, ScalarType};
@@ -11,11 +11,15 @@ use std::io::{BufRead, ErrorKind};
 use std::path::Path;
 use std::str::SplitWhitespace;
 
+/// Names that a vertex's texture coordinates have.
+const TEXTURE: [[&str; 2]; 3] = [["s", "t"], ["u", "v"], ["texture_u", "texture_v"]];
+
 /// One element of any kind: the fields that a mesh needs.
 #[derive(Default)]
 struct Row {
     position: [f64; 3],
     normal: [f64; 3],
+    texture: [f64; 2],
     indices: Option<Vec<i64>>,
 }
 
@@ -28,6 +32,8 @@ impl Row {
             "nx" => self.normal[0] = value,
             "ny" => self.normal[1] = value,
             "nz" => self.normal[2] = value,
+            "s" | "u" | "texture_u" => self.texture[0] = value,
+            "t" | "v" | "texture_v" => self.texture[1] = value,
             _ => {}
         }
     }
@@ -123,8 +129,10 @@ pub(super) fn parse(bytes: &[u8], _directory: &Path) -> Result<Parts, Fault> {
     let mut payload = Payload { parser: Parser::new(), encoding: header.encoding, rest, line };
     let has_normals = header.elements.get("vertex").is_some_and(|e| ["nx", "ny", "nz"].iter().all(|n| is_scalar(e, n)));
 
+    let has_texture = header.elements.get("vertex").is_some_and(|e| TEXTURE.iter().any(|pair| pair.iter().all(|n| is_scalar(e, n))));
+
     let mut parts = Parts::default();
-    let (mut normals, mut faces) = (Vec::new(), Vec::new());
+    let (mut normals, mut texture, mut faces) = (Vec::new(), Vec::new(), Vec::new());
     for element in header.elements.values() {
         for i in 0..element.count {
             let row = payload.next(element, i)?;
@@ -137,6 +145,9 @@ pub(super) fn parse(bytes: &[u8], _directory: &Path) -> Result<Parts, Fault> {
                     parts.positions.push(row.position);
                     if has_normals {
                         normals.push(unit(row.normal));
+                    }
+                    if has_texture {
+                        texture.push(row.texture.map(|c| c as f32));
                     }
                 }
                 // Faces may come before the vertices.
@@ -158,6 +169,9 @@ pub(super) fn parse(bytes: &[u8], _directory: &Path) -> Result<Parts, Fault> {
     }
     if has_normals {
         parts.normals = parts.triangles.iter().map(|t| t.map(|v| normals[v as usize])).collect();
+    }
+    if has_texture {
+        parts.texture = parts.triangles.iter().map(|t| t.map(|v| texture[v as usize])).collect();
     }
     Ok(parts)
 }
@@ -234,14 +248,14 @@ fn append(element: &str, indices: &[i64], parts: &mut Parts) -> Result<(), Strin
             return Err(format!("a face needs 3 vertices or more, found {}", indices.len()));
         }
         let corners: Vec<u32> = indices.iter().map(vertex).collect();
-        polygon::triangulate(&parts.positions, &corners, |tri| parts.triangles.push(tri.map(|k| corners[k])));
+        parts.polygon(&corners, |_, _| {});
         return Ok(());
     }
     // -1 ends a strip; every other triangle of a strip is wound the other way.
     for strip in indices.split(|&i| i == -1) {
         for (k, w) in strip.windows(3).enumerate() {
             let [a, b, c] = [vertex(&w[0]), vertex(&w[1]), vertex(&w[2])];
-            parts.triangles.push(if k % 2 == 0 { [a, b, c] } else { [b, a, c] });
+            parts.polygon(&if k % 2 == 0 { [a, b, c] } else { [b, a, c] }, |_, _| {});
         }
     }
     Ok(())

@@ -2,8 +2,8 @@
 
 use super::*;
 use crate::mesh::{BoundKind, Hierarchy, quantise};
-use crate::num::VertexForm;
 use crate::num::random::Random;
+use crate::num::{MAX_LEVELS, VertexForm};
 use std::collections::BTreeMap;
 
 type Point = [f64; 3];
@@ -395,7 +395,7 @@ fn colours_are_kept_and_what_is_too_large_is_refused() {
     let mesh = TriangleMesh::from_parts(&octahedron.positions, &octahedron.triangles, &materials, vec![[1.0; 3], [0.5; 3]]).unwrap();
     let surface = loop_surface(&mesh, 1).unwrap();
     assert!(surface.materials == materials && surface.colours.len() == 2 && surface.triangles == mesh.triangles);
-    assert_eq!(loop_surface(&mesh, MAX_LEVELS + 1).unwrap_err(), LoopError::Levels(MAX_LEVELS + 1));
-    assert_eq!(check(1 << 11, 10), Err(LoopError::Triangles { triangles: 1 << 11, levels: 10 }));
-    assert_eq!(check(1 << 10, 10), Ok(()));
+    assert_eq!(loop_surface(&mesh, MAX_LEVELS + 1).unwrap_err(), SubdivideError::Levels(MAX_LEVELS + 1));
+    assert_eq!(check_subdivision(1 << 11, 10), Err(SubdivideError::Triangles { triangles: 1 << 11, levels: 10 }));
+    assert_eq!(check_subdivision(1 << 10, 10), Ok(()));
 }

@@ -4,43 +4,20 @@
 //! a hierarchy wants, and all further splits would only add to them. Borders are cubic B-splines of border vertices alone; so is each curve of edges of three triangles or more.
 //! Where more or fewer than two such edges meet, and where closed fans touch in one vertex, that stays where it is.
 
-mod net;
-#[cfg(test)]
-mod tests;
-
-use super::clean::unit;
-use super::{Surface, TriangleMesh, lattice};
-use crate::num::MAX_LEVELS;
-use net::Net;
+use super::super::clean::unit;
+use super::super::{Surface, TriangleMesh, lattice};
+use super::loop_net::Net;
+use super::{SubdivideError, add, check_subdivision};
 use rayon::prelude::*;
 
-/// Most finest triangles: their edges are numbered in 32 bits.
-pub const MAX_LOOP_TRIANGLES: u64 = 1 << 30;
-
-/// Why a mesh cannot be subdivided so often.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
-pub enum LoopError {
-    /// Too many splits.
-    #[error("{0} levels are too many: 0 to {MAX_LEVELS} are possible")]
-    Levels(u32),
-    /// The result would be too large.
-    #[error("{triangles} base triangles with {levels} levels are more than {MAX_LOOP_TRIANGLES} triangles")]
-    Triangles {
-        /// Triangles of the mesh.
-        triangles: u64,
-        /// Splits.
-        levels: u32,
-    },
-}
-
-/// The Loop surface of a clean mesh, split `levels` times (0 to [`MAX_LEVELS`]).
+/// The Loop surface of a clean mesh, split `levels` times (0 to [`MAX_LEVELS`](crate::num::MAX_LEVELS)).
 ///
 /// Shading normals are the sums of the normals of the finest triangles around a vertex, by their area; at an edge of three triangles or more those of the own tree alone.
 ///
 /// # Errors
-/// Too many splits, or more than [`MAX_LOOP_TRIANGLES`] finest triangles.
-pub fn loop_surface(mesh: &TriangleMesh, levels: u32) -> Result<Surface, LoopError> {
-    check(mesh.triangles.len() as u64, levels)?;
+/// Too many splits, or more than [`MAX_SUBDIVIDED`](super::MAX_SUBDIVIDED) finest triangles.
+pub fn loop_surface(mesh: &TriangleMesh, levels: u32) -> Result<Surface, SubdivideError> {
+    check_subdivision(mesh.triangles.len() as u64, levels)?;
     let mut net = Net::new(&mesh.positions, &mesh.triangles);
     for _ in 0..levels {
         net = net.split();
@@ -82,20 +59,6 @@ pub fn loop_surface(mesh: &TriangleMesh, levels: u32) -> Result<Surface, LoopErr
     Ok(surface)
 }
 
-/// Refuses what [`loop_surface`] refuses.
-///
-/// # Errors
-/// As there.
-pub fn check(triangles: u64, levels: u32) -> Result<(), LoopError> {
-    if levels > MAX_LEVELS {
-        return Err(LoopError::Levels(levels));
-    }
-    if triangles << (2 * levels) > MAX_LOOP_TRIANGLES {
-        return Err(LoopError::Triangles { triangles, levels });
-    }
-    Ok(())
-}
-
 /// Normals of triangles, as long as twice their area, and their sums around vertices.
 struct Normals<'a> {
     positions: &'a [[f64; 3]],
@@ -121,6 +84,6 @@ impl<'a> Normals<'a> {
     }
 }
 
-fn add(sum: &mut [f64; 3], vector: [f64; 3]) {
-    sum.iter_mut().zip(vector).for_each(|(sum, c)| *sum += c);
-}
+#[cfg(test)]
+#[path = "loop_tests.rs"]
+mod tests;

@@ -6,20 +6,10 @@
 //! the limit (a + 4 v + b) / 6. Sums are taken in the order of edges and triangles, by one thread: results do not depend on how many there are.
 
 use super::super::SharedEdges;
+use super::{Rule, add, rules};
 use std::f64::consts::TAU;
 
 type Point = [f64; 3];
-
-/// What moves a vertex.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Rule {
-    /// All its neighbours: triangles lie around it like a fan, and none of its edges is on a curve.
-    Smooth,
-    /// Its two neighbours along the one curve that it lies on.
-    Curve,
-    /// Nothing: curves end or meet there, or fans touch.
-    Fixed,
-}
 
 /// The vertices, edges and triangles of one level.
 pub struct Net {
@@ -51,7 +41,9 @@ impl Net {
             uses.iter().for_each(|of| sides[of.tree as usize][usize::from(of.side)] = edges.len() as u32); // three for each triangle at most
             edges.push(uses[0].ends);
         }
-        let rules = rules(positions.len(), triangles, &edges, curves);
+        // Of each vertex every pair of neighbours that it makes a triangle with, both ways.
+        let pairs = triangles.iter().flat_map(|&[a, b, c]| [[a, b, c], [a, c, b], [b, c, a], [b, a, c], [c, a, b], [c, b, a]]).collect();
+        let rules = rules(positions.len(), pairs, &edges, curves);
         Self { positions: positions.to_vec(), rules, triangles: triangles.to_vec(), sides, edges, forks, curves }
     }
 
@@ -130,42 +122,4 @@ impl Net {
 fn loop_weight(n: u32) -> f64 {
     let n = f64::from(n);
     (5.0 / 8.0 - (3.0 / 8.0 + (TAU / n).cos() / 4.0).powi(2)) / n
-}
-
-fn add(sum: &mut Point, point: Point) {
-    sum.iter_mut().zip(point).for_each(|(sum, c)| *sum += c);
-}
-
-/// The rule of each vertex, where the first `curves` of the edges are on curves.
-fn rules(vertices: usize, triangles: &[[u32; 3]], edges: &[[u32; 2]], curves: usize) -> Vec<Rule> {
-    let mut on_curves = vec![0_u32; vertices];
-    edges[..curves].iter().flatten().for_each(|&v| on_curves[v as usize] += 1);
-    // Of each vertex every pair of neighbours that it makes a triangle with, both ways.
-    let mut pairs: Vec<[u32; 3]> =
-        triangles.iter().flat_map(|&[a, b, c]| [[a, b, c], [a, c, b], [b, c, a], [b, a, c], [c, a, b], [c, b, a]]).collect();
-    pairs.sort_unstable();
-    let mut rules = vec![Rule::Fixed; vertices];
-    for own in pairs.chunk_by(|a, b| a[0] == b[0]) {
-        let v = own[0][0] as usize;
-        rules[v] = match on_curves[v] {
-            0 if is_one_fan(own) => Rule::Smooth,
-            2 => Rule::Curve,
-            _ => Rule::Fixed,
-        };
-    }
-    rules
-}
-
-/// Whether the triangles around a vertex, of which two meet at each of its edges, are one closed fan. `pairs` are its sorted pairs of neighbours.
-fn is_one_fan(pairs: &[[u32; 3]]) -> bool {
-    let [_, start, mut to] = pairs[0];
-    let (mut from, mut met) = (start, 1);
-    while to != start {
-        // Both triangles at the edge to this neighbour, the one that was met and the next.
-        let at = pairs.partition_point(|pair| pair[1] < to);
-        let next = if pairs[at][2] == from { pairs[at + 1][2] } else { pairs[at][2] };
-        (from, to) = (to, next);
-        met += 1;
-    }
-    2 * met == pairs.len()
 }
