@@ -81,6 +81,17 @@ def against(args):
     return table(["machine", "distance", "method", "lines asked for", "tests of nodes", "LOD tests", "DRAM reads", "cycles", "energy", "mean level alone", "in packets"], rows, 3)
 
 
+def error(args):
+    """The error of packets beside that of single rays."""
+    rows = []
+    for distance in AGAINST:
+        alone, together = [rendered(args, distance, "lod", *packet, "--compare") for packet in [(), ("--packet", 32)]]
+        of = lambda frame, what: f"{frame['error']['geometry_pixels'][what]:.4f}"
+        image = lambda frame: f"{frame['error']['image']['rmse']:.3f}"
+        rows.append([f"{distance:g}", of(alone, "mean"), of(together, "mean"), of(alone, "percentile_99"), of(together, "percentile_99"), image(alone), image(together)])
+    return table(["distance", "surface off, pixels, mean: alone", "in packets", "99 of 100 below: alone", "in packets", "RMSE of the picture: alone", "in packets"], rows, 1)
+
+
 def figure_13(args):
     mean = rendered(args, FIGURE_13, "lod", "--packet", 32)["stats"]["mean_level"]
     for name, more in [("ours", ("--method", "lod", "--packet", "32")), ("stochastic", ("--method", "stochastic", "--mean-level", f"{mean:.3f}", "--packet", "32"))]:
@@ -96,6 +107,7 @@ def main():
     parser.add_argument("--out", type=Path, default=ROOT / "out" / "packets", help="folder of what is kept")
     parser.add_argument("--scene", type=Path, help="scene file (default: a terrain of 8.4 M triangles, generated)")
     parser.add_argument("--size", default="512x512")
+    parser.add_argument("--only", choices=["figure-12", "packets", "error", "figure-13"], help="make this part alone")
     args = parser.parse_args()
     args.out.mkdir(parents=True, exist_ok=True)
     if args.scene is None:
@@ -103,9 +115,15 @@ def main():
         if not args.scene.exists():
             subprocess.run([args.program, "generate", "terrain", "-o", args.scene], check=True)
     document = ROOT / "docs" / "baselines.md"
-    put(document, "<!-- figure 12 -->", "<!-- figure 12 end -->", figure_12(args))
-    put(document, "<!-- packets -->", "<!-- packets end -->", against(args))
-    figure_13(args)
+    wanted = lambda part: args.only in (None, part)
+    if wanted("figure-12"):
+        put(document, "<!-- figure 12 -->", "<!-- figure 12 end -->", figure_12(args))
+    if wanted("packets"):
+        put(document, "<!-- packets -->", "<!-- packets end -->", against(args))
+    if wanted("error"):
+        put(document, "<!-- packets' error -->", "<!-- packets' error end -->", error(args))
+    if wanted("figure-13"):
+        figure_13(args)
 
 
 if __name__ == "__main__":

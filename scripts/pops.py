@@ -17,6 +17,7 @@ METHODS = {
     "lod": ["--method", "lod"],
     "discrete": ["--method", "discrete"],
     "stochastic": ["--method", "stochastic"],
+    "cluster": ["--method", "cluster"],
 }
 # Frames of a flight: its steps in the second are an eighth as long.
 FRAMES = [61, 481]

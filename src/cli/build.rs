@@ -117,7 +117,7 @@ fn with_progress(mesh: &TriangleMesh, options: &BuildOptions) -> Result<Scene, B
 }
 
 /// A largest error.
-fn percent(s: &str) -> Result<f64, String> {
+pub fn percent(s: &str) -> Result<f64, String> {
     match s.trim_end_matches('%').parse::<f64>() {
         Ok(v) if v > 0.0 && v <= 100.0 => Ok(v),
         _ => Err(format!("'{s}' is not above 0 and at most 100 percent")),

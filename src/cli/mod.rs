@@ -18,6 +18,7 @@ mod fly;
 mod folder;
 mod frames;
 mod generate;
+mod import;
 mod info;
 mod input;
 mod lines;
@@ -67,10 +68,12 @@ pub struct Cli {
 enum Command {
     /// Render a built-in scene from three distances, LOD beside BVH and full resolution
     Demo(demo::Args),
-    /// Make a procedural scene, or a smooth one of a mesh by Loop subdivision
+    /// Make a procedural scene
     Generate(generate::Args),
-    /// Make a scene from a mesh (OBJ, PLY, glTF, GLB or STL)
+    /// Make a scene from a mesh (OBJ, PLY, glTF, GLB or STL): made anew with splits, or subdivided, or displaced
     Build(build::Args),
+    /// Make a description of several models from a glTF scene: a scene file for each mesh, and a place for each node
+    Import(import::Args),
     /// Print what a scene file holds
     Info(info::Args),
     /// Audit a scene file: recompute every promise from the vertices
@@ -139,6 +142,7 @@ pub fn run(cli: Cli) -> anyhow::Result<ExitCode> {
         Command::Demo(args) => demo::run(&args),
         Command::Generate(args) => generate::run(&args),
         Command::Build(args) => build::run(&args),
+        Command::Import(args) => import::run(&args),
         Command::Info(args) => info::run(&args),
         Command::Verify(args) => verify::run(&args),
         Command::Plan(args) => plan::run(&args),

@@ -1,12 +1,12 @@
 //! The description of a scene for path tracing: models, materials, lights, cameras, in TOML.
 
 use super::cone::Cones;
+use super::copies::CopiesTable;
 use super::light::{Environment, Light, upwards};
 use super::material::Material;
 use super::pose::Pose;
 use crate::mesh::procedural;
-use crate::num::Random;
-use glam::{DMat3, DVec3};
+use glam::DVec3;
 use serde::Deserialize;
 use std::collections::BTreeMap;
 use std::fs;
@@ -148,49 +148,6 @@ pub struct ModelTable {
     pub copies: Option<CopiesTable>,
 }
 
-/// A grid of copies of a model, each of which may stand a little elsewhere and be turned.
-#[derive(Clone, Copy, Debug, Deserialize, PartialEq)]
-#[serde(deny_unknown_fields)]
-pub struct CopiesTable {
-    /// How many along x, y and z; at most [`MOST_COPIES`] in all.
-    pub count: [u32; 3],
-    /// From one to the next along each axis.
-    pub step: [f64; 3],
-    /// Each is moved at random by at most such a part of a step along each axis.
-    #[serde(default)]
-    pub jitter: f64,
-    /// Each is turned at random about this axis; about none by default.
-    pub turn: Option<[f64; 3]>,
-    /// Each is scaled at random down to such a part.
-    #[serde(default = "one")]
-    pub least: f64,
-    /// Seed of all that is random.
-    #[serde(default)]
-    pub seed: u64,
-}
-
-/// Most copies of a model.
-pub const MOST_COPIES: u64 = 1 << 20;
-
-impl CopiesTable {
-    /// Where they stand, the first copy of the grid being the model's own place but for what is random.
-    fn poses(self) -> impl Iterator<Item = Pose> {
-        let [along, up, deep] = self.count;
-        let grid = (0..deep).flat_map(move |z| (0..up).flat_map(move |y| (0..along).map(move |x| [x, y, z])));
-        grid.zip(0..).map(move |(cell, number)| {
-            let mut random = Random::of(self.seed, number);
-            // From 0 to 1.
-            let mut part = || (random.next() >> 11) as f64 / (1u64 << 53) as f64;
-            let moved = [0, 1, 2].map(|k: usize| self.step[k] * (f64::from(cell[k]) + self.jitter * (2.0 * part() - 1.0)));
-            let scale = 1.0 - (1.0 - self.least) * part();
-            let turn = self.turn.map_or(DMat3::IDENTITY, |axis| {
-                DMat3::from_axis_angle(DVec3::from_array(axis).normalize(), part() * std::f64::consts::TAU)
-            });
-            Pose::turned(turn, scale, moved)
-        })
-    }
-}
-
 impl ModelTable {
     /// Where it stands: once, or where each of its copies does.
     ///
@@ -217,7 +174,7 @@ impl ModelTable {
     }
 }
 
-fn one() -> f64 {
+pub(super) fn one() -> f64 {
     1.0
 }
 
@@ -249,17 +206,17 @@ impl From<MeshTable> for procedural::Options {
 }
 
 /// What a number must be.
-type Rule = (&'static str, fn(f64) -> bool);
+pub(super) type Rule = (&'static str, fn(f64) -> bool);
 
 const FINITE: Rule = ("must be a finite number", f64::is_finite);
 /// Far beyond any scene, and so near that squares, and squares of squares, of distances stay numbers.
-const PLACE: Rule = ("must be from -1e12 to 1e12", |v| v.abs() <= 1e12);
+pub(super) const PLACE: Rule = ("must be from -1e12 to 1e12", |v| v.abs() <= 1e12);
 const SCALE: Rule = ("must be from 1e-12 to 1e12", |v| (1e-12..=1e12).contains(&v));
 /// Light that goes through 64 bounces and into 32-bit floats, and comes from a point as near as a millionth, stays a number.
 const LIGHT: Rule = ("must be from 0 to 1e15", |v| (0.0..=1e15).contains(&v));
 const EXPOSURE: Rule = ("must be from -100 to 100", |v| v.abs() <= 100.0);
 const NOT_NEGATIVE: Rule = ("must be at least 0 and finite", |v| v >= 0.0 && v.is_finite());
-const SHARE: Rule = ("must be from 0 to 1", |v| (0.0..=1.0).contains(&v));
+pub(super) const SHARE: Rule = ("must be from 0 to 1", |v| (0.0..=1.0).contains(&v));
 const ROUGHNESS: Rule = ("must be above 0 and at most 1", |v| v > 0.0 && v <= 1.0);
 const INDEX: Rule = ("must be from 1.05 to 4", |v| (1.05..=4.0).contains(&v));
 const VIEW: Rule = ("must be above 0 and below 180 degrees", |v| v > 0.0 && v < 180.0);
@@ -272,27 +229,27 @@ pub const MOST_DEPTH: u32 = 64;
 
 /// Looks at values under their keys, and keeps the first that breaks its rule.
 #[derive(Default)]
-struct Checked(Option<(String, String)>);
+pub(super) struct Checked(Option<(String, String)>);
 
 impl Checked {
-    fn fail(&mut self, key: impl Into<String>, rule: impl Into<String>) {
+    pub(super) fn fail(&mut self, key: impl Into<String>, rule: impl Into<String>) {
         self.0.get_or_insert((key.into(), rule.into()));
     }
 
-    fn number(&mut self, key: &str, value: f64, (rule, holds): Rule) {
+    pub(super) fn number(&mut self, key: &str, value: f64, (rule, holds): Rule) {
         if !holds(value) {
             self.fail(key, format!("{rule}, but is {value}"));
         }
     }
 
-    fn triple(&mut self, key: &str, values: [f64; 3], rule: Rule) {
+    pub(super) fn triple(&mut self, key: &str, values: [f64; 3], rule: Rule) {
         for (k, value) in values.into_iter().enumerate() {
             self.number(&format!("{key}[{k}]"), value, rule);
         }
     }
 
     /// A direction of any length.
-    fn direction(&mut self, key: &str, v: [f64; 3]) {
+    pub(super) fn direction(&mut self, key: &str, v: [f64; 3]) {
         self.triple(key, v, FINITE);
         if v == [0.0; 3] {
             self.fail(key, "must not be zero");
@@ -415,17 +372,8 @@ impl SceneFile {
                 to.fail(key("matrix"), error.to_string());
             }
         }
-        if let Some(CopiesTable { count, step, jitter, turn, least, .. }) = model.copies {
-            let all = count.iter().map(|&n| u64::from(n)).fold(1, u64::saturating_mul);
-            if all == 0 || all > MOST_COPIES {
-                to.fail(key("copies.count"), format!("must be from 1 to {MOST_COPIES} in all, but is {count:?}"));
-            }
-            to.triple(&key("copies.step"), step, PLACE);
-            to.number(&key("copies.jitter"), jitter, SHARE);
-            to.number(&key("copies.least"), least, ("must be above 0 and at most 1", |v| v > 0.0 && v <= 1.0));
-            if let Some(axis) = turn {
-                to.direction(&key("copies.turn"), axis);
-            }
+        if let Some(copies) = model.copies {
+            copies.check(to, &key("copies"));
         }
         to.triple(&key("rotate"), model.rotate, FINITE);
         to.number(&key("scale"), model.scale, SCALE);
@@ -529,6 +477,7 @@ intensity = [1, 1, 1]
 
     #[test]
     fn each_bad_value_is_named_with_file_and_key() {
+        let copies = |of: &str| format!("material = \"clay\"\ncopies = {{ {of}, step = [1, 1, 1] }}");
         for (from, to, wanted) in [
             ("eye = [0, 0, 5]", "eye = [0, nan, 5]", "a.toml: camera[0].eye[1] must be from -1e12 to 1e12, but is NaN"),
             (
@@ -567,6 +516,42 @@ intensity = [1, 1, 1]
                 "a.toml: light[0].position[1] must be from -1e12 to 1e12, but is -10000000000000",
             ),
             ("albedo = [0.5, 0.4, 0.3]", "albedo = [0.5, 1.4, 0.3]", "a.toml: material.clay.albedo[1] must be from 0 to 1, but is 1.4"),
+            (
+                "material = \"clay\"",
+                "material = \"clay\"\nmatrix = [[1, 0, 0, 0], [0, 1, 0, nan], [0, 0, 1, 0]]",
+                "a.toml: model[0].matrix[1][3] must be from -1e12 to 1e12, but is NaN",
+            ),
+            (
+                "material = \"clay\"",
+                "material = \"clay\"\nscale = 2\nmatrix = [[1, 0, 0, 0], [0, 1, 0, 0], [0, 0, 1, 0]]",
+                "a.toml: model[0].matrix must not be there beside rotate, scale or translate",
+            ),
+            (
+                "material = \"clay\"",
+                "material = \"clay\"\nmatrix = [[1, 0, 0, 0], [0, 1, 0, 0], [0, 0, 0, 0]]",
+                &format!("a.toml: model[0].matrix {}", Pose::affine([[1.0, 0.0, 0.0, 0.0], [0.0, 1.0, 0.0, 0.0], [0.0; 4]]).unwrap_err()),
+            ),
+            (
+                "material = \"clay\"",
+                &copies("count = [0, 1, 1]"),
+                "a.toml: model[0].copies.count must be from 1 to 1048576 in all, but is [0, 1, 1]",
+            ),
+            (
+                "material = \"clay\"",
+                &copies("count = [4096, 4096, 4096]"),
+                "a.toml: model[0].copies.count must be from 1 to 1048576 in all, but is [4096, 4096, 4096]",
+            ),
+            (
+                "material = \"clay\"",
+                &copies("count = [1, 1, 1], jitter = 2"),
+                "a.toml: model[0].copies.jitter must be from 0 to 1, but is 2",
+            ),
+            (
+                "material = \"clay\"",
+                &copies("count = [1, 1, 1], least = 0"),
+                "a.toml: model[0].copies.least must be above 0 and at most 1, but is 0",
+            ),
+            ("material = \"clay\"", &copies("count = [1, 1, 1], turn = [0, 0, 0]"), "a.toml: model[0].copies.turn must not be zero"),
             (GLOSSY, "kind = \"glass\"\nindex = 1", "a.toml: material.clay.index must be from 1.05 to 4, but is 1"),
             (GLOSSY, "kind = \"glass\"\nindex = 1.5\nroughness = 2", "a.toml: material.clay.roughness must be from 0 to 1, but is 2"),
         ] {

@@ -8,6 +8,7 @@ mod boxes;
 mod bsdf;
 mod cast;
 mod cone;
+mod copies;
 mod file;
 mod film;
 mod integrate;
@@ -22,6 +23,7 @@ mod rays;
 mod world;
 
 pub use cone::{Cones, PathCone};
+pub use copies::{CopiesTable, MOST_COPIES};
 pub use file::{CameraTable, MOST_DEPTH, MOST_SAMPLES, MeshTable, ModelTable, PictureTable, SceneFile, SceneFileError};
 pub use film::{Film, LightCount, light_count, picture_error};
 pub use integrate::{PathCounts, PathTracer, Paths};

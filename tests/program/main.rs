@@ -4,6 +4,7 @@ mod bad_input;
 mod cli;
 mod exactness;
 mod folders;
+mod import;
 mod layers;
 mod refit;
 mod shards;

@@ -6,6 +6,7 @@ mod gltf;
 mod header;
 mod obj;
 mod parts;
+mod placed;
 mod ply;
 mod polygon;
 mod positions;
@@ -15,6 +16,7 @@ use super::clean::{Attributes, MeshError, TriangleMesh};
 use fault::{Fault, fault, shown};
 pub use header::{ArrayError, open_array, shape_and_type};
 use parts::Parts;
+pub use placed::{MeshCamera, MeshPlace, PlacedMeshes, read_placed};
 pub use positions::{PositionFrames, read_positions};
 use serde::{Deserialize, Serialize};
 use std::path::{Path, PathBuf};
@@ -77,6 +79,12 @@ pub enum ReadError {
         /// The file.
         path: PathBuf,
     },
+    /// It is of a kind that places no meshes.
+    #[error("{}: only .gltf and .glb place meshes", path.display())]
+    NotPlaced {
+        /// The file.
+        path: PathBuf,
+    },
     /// What the file holds is not a mesh.
     #[error("{}: {place}: {what}", path.display())]
     Content {
@@ -135,12 +143,16 @@ pub fn read(path: &Path) -> Result<TriangleMesh, ReadError> {
 /// # Errors
 /// As for [`read`].
 pub fn read_as(path: &Path, format: MeshFormat) -> Result<TriangleMesh, ReadError> {
+    read_bytes(&bytes_of(path)?, format, path, path.parent().unwrap_or(Path::new("")))
+}
+
+/// What a file holds that has an end.
+fn bytes_of(path: &Path) -> Result<Vec<u8>, ReadError> {
     let io = |source| ReadError::Io { path: path.into(), source };
     if path.is_dir() {
         return Err(io(std::io::ErrorKind::IsADirectory.into()));
     }
-    let bytes = if is_device(path) { Err(std::io::Error::other("it is a device, not a file")) } else { std::fs::read(path) }.map_err(io)?;
-    read_bytes(&bytes, format, path, path.parent().unwrap_or(Path::new("")))
+    if is_device(path) { Err(std::io::Error::other("it is a device, not a file")) } else { std::fs::read(path) }.map_err(io)
 }
 
 /// The same for the bytes of a file. `name` is what errors begin with; material libraries and buffers that the file names are looked for in

@@ -4,6 +4,7 @@
 mod accessor;
 mod buffers;
 mod nodes;
+mod placed;
 
 use super::super::clean::{is_coordinate, unit};
 use super::{Fault, Parts, fault, shown};
@@ -13,6 +14,7 @@ use ::gltf::json::{Index, Root};
 use accessor::{MAX_ZEROS, Reader};
 use glam::{DMat3, DVec3};
 use nodes::Placed;
+pub(super) use placed::parse_placed;
 use std::path::Path;
 
 const MAGIC: &[u8] = b"glTF";
@@ -28,6 +30,11 @@ pub(super) fn parse(bytes: &[u8], folder: &Path) -> Result<Parts, Fault> {
 }
 
 pub(super) fn parse_binary(bytes: &[u8], folder: &Path) -> Result<Parts, Fault> {
+    in_binary(bytes, |json, bin| build(json, bin, folder))
+}
+
+/// Hands the JSON and the binary chunk of a GLB file on.
+fn in_binary<T>(bytes: &[u8], then: impl FnOnce(&[u8], Option<&[u8]>) -> Result<T, Fault>) -> Result<T, Fault> {
     if !bytes.starts_with(MAGIC) {
         return fault("header", "this is not a GLB file: it does not begin with 'glTF'");
     }
@@ -37,7 +44,7 @@ pub(super) fn parse_binary(bytes: &[u8], folder: &Path) -> Result<Parts, Fault> 
         return fault("header", "the file ends here, or its length in the header is too small");
     }
     match ::gltf::Glb::from_slice(bytes) {
-        Ok(glb) => build(&glb.json, glb.bin.as_deref(), folder),
+        Ok(glb) => then(&glb.json, glb.bin.as_deref()),
         Err(::gltf::Error::Binary(error)) => fault("header", glb_fault(&error)),
         Err(error) => fault("header", error),
     }
@@ -72,47 +79,40 @@ fn glb_fault(error: &::gltf::binary::Error) -> String {
 }
 
 fn build(json: &[u8], bin: Option<&[u8]>, folder: &Path) -> Result<Parts, Fault> {
+    let root = root(json)?;
+    let reader = Reader::new(&root, bin, folder);
+    let mut builder = Builder::new(&root, &reader);
+    let mut skins = 0;
+    for placed in nodes::placed(&root)? {
+        skins += usize::from(placed.has_skin);
+        builder.mesh(&placed)?;
+    }
+    let mut parts = builder.finish();
+    parts.warnings.extend(skinned(skins));
+    if parts.triangles.is_empty() {
+        return fault("scene", "there are no triangles in it");
+    }
+    Ok(parts)
+}
+
+/// The file's JSON, checked as far as anything here needs it.
+fn root(json: &[u8]) -> Result<Root, Fault> {
     let root: Root = ::gltf::json::deserialize::from_slice(json).or_else(|error| {
         let text = error.to_string();
         let what = text.rsplit_once(" at line ").map_or(text.as_str(), |(what, _)| what);
         fault(format_args!("JSON, line {}, column {}", error.line(), error.column()), shown(what))
     })?;
     check_asset(&root)?;
-    let mut parts = Parts::default();
     if root.materials.len() >= usize::from(u16::MAX) {
         return fault("materials", format_args!("{} are more than the 65534 that can be kept", root.materials.len()));
     }
-    if !root.materials.is_empty() {
-        let colour = |factor: [f32; 4]| std::array::from_fn(|k| factor[k].clamp(0.0, 1.0));
-        let own = root.materials.iter().map(|m| colour(m.pbr_metallic_roughness.base_color_factor.0));
-        parts.colours = own.chain([NO_MATERIAL]).collect();
-    }
-    let mut builder = Builder { root: &root, reader: Reader::new(&root, bin, folder), parts, has_normals: false, has_texture: false };
-    let mut skins = 0;
-    for placed in nodes::placed(&root)? {
-        skins += usize::from(placed.has_skin);
-        let Some(mesh) = root.meshes.get(placed.mesh) else {
-            return fault(format_args!("node {}", placed.node), format_args!("mesh {} is not there", placed.mesh));
-        };
-        for (i, primitive) in mesh.primitives.iter().enumerate() {
-            let place = format!("mesh {}, primitive {i}", placed.mesh);
-            builder.primitive(primitive, mesh.weights.as_deref(), &placed, &place)?;
-        }
-    }
-    if skins > 0 {
-        let nodes = if skins == 1 { "a node".into() } else { format!("{skins} nodes") };
-        builder.parts.warnings.push(format!("{nodes} with joints (skin): they are not applied, the mesh is in its rest pose"));
-    }
-    if builder.parts.triangles.is_empty() {
-        return fault("scene", "there are no triangles in it");
-    }
-    if !builder.has_normals {
-        builder.parts.normals = Vec::new();
-    }
-    if !builder.has_texture {
-        builder.parts.texture = Vec::new();
-    }
-    Ok(builder.parts)
+    Ok(root)
+}
+
+/// A line for nodes whose skins are not applied, if there are any.
+fn skinned(skins: usize) -> Option<String> {
+    let nodes = if skins == 1 { "a node".into() } else { format!("{skins} nodes") };
+    (skins > 0).then(|| format!("{nodes} with joints (skin): they are not applied, the mesh is in its rest pose"))
 }
 
 fn check_asset(root: &Root) -> Result<(), Fault> {
@@ -136,13 +136,47 @@ fn check_asset(root: &Root) -> Result<(), Fault> {
 
 struct Builder<'a> {
     root: &'a Root,
-    reader: Reader<'a>,
+    reader: &'a Reader<'a>,
     parts: Parts,
     has_normals: bool,
     has_texture: bool,
 }
 
-impl Builder<'_> {
+impl<'a> Builder<'a> {
+    /// Nothing yet but the file's materials.
+    fn new(root: &'a Root, reader: &'a Reader<'a>) -> Self {
+        let mut parts = Parts::default();
+        if !root.materials.is_empty() {
+            let colour = |factor: [f32; 4]| std::array::from_fn(|k| factor[k].clamp(0.0, 1.0));
+            let own = root.materials.iter().map(|m| colour(m.pbr_metallic_roughness.base_color_factor.0));
+            parts.colours = own.chain([NO_MATERIAL]).collect();
+        }
+        Self { root, reader, parts, has_normals: false, has_texture: false }
+    }
+
+    /// Adds a mesh where it is placed.
+    fn mesh(&mut self, placed: &Placed) -> Result<(), Fault> {
+        let Some(mesh) = self.root.meshes.get(placed.mesh) else {
+            return fault(format_args!("node {}", placed.node), format_args!("mesh {} is not there", placed.mesh));
+        };
+        for (i, primitive) in mesh.primitives.iter().enumerate() {
+            let place = format!("mesh {}, primitive {i}", placed.mesh);
+            self.primitive(primitive, mesh.weights.as_deref(), placed, &place)?;
+        }
+        Ok(())
+    }
+
+    /// What there is, without what no primitive has.
+    fn finish(mut self) -> Parts {
+        if !self.has_normals {
+            self.parts.normals = Vec::new();
+        }
+        if !self.has_texture {
+            self.parts.texture = Vec::new();
+        }
+        self.parts
+    }
+
     fn primitive(&mut self, primitive: &Primitive, weights: Option<&[f32]>, placed: &Placed, place: &str) -> Result<(), Fault> {
         let mode = match primitive.mode {
             Checked::Valid(Mode::Points | Mode::Lines | Mode::LineLoop | Mode::LineStrip) => return Ok(()),

@@ -15,12 +15,29 @@ pub(super) struct Placed {
     pub(super) has_skin: bool,
 }
 
-/// All meshes of the default scene, or the first if none is the default, or of all nodes if there is no scene; parents before children.
+/// A node, and where it is.
+pub(super) struct Stands<'a> {
+    pub(super) number: usize,
+    pub(super) node: &'a Node,
+    pub(super) transform: DMat4,
+}
+
+/// All meshes of the nodes that [`standing`] finds, in their order.
 pub(super) fn placed(root: &Root) -> Result<Vec<Placed>, Fault> {
-    let number = root.scene.map_or(0, |s| s.value());
-    let mut todo: Vec<(usize, DMat4)> = match root.scenes.get(number) {
+    let mesh = |stands: &Stands| {
+        let node = stands.node;
+        let (mesh, weights, has_skin) = (node.mesh?.value(), node.weights.clone(), node.skin.is_some());
+        Some(Placed { node: stands.number, mesh, transform: stands.transform, weights, has_skin })
+    };
+    Ok(standing(root)?.iter().filter_map(mesh).collect())
+}
+
+/// All nodes of the default scene, or the first if none is the default, or all nodes if there is no scene; parents before children.
+pub(super) fn standing(root: &Root) -> Result<Vec<Stands<'_>>, Fault> {
+    let first = root.scene.map_or(0, |s| s.value());
+    let mut todo: Vec<(usize, DMat4)> = match root.scenes.get(first) {
         Some(scene) => scene.nodes.iter().rev().map(|n| (n.value(), DMat4::IDENTITY)).collect(),
-        None if root.scene.is_some() => return fault("scene", format_args!("scene {number} is not there")),
+        None if root.scene.is_some() => return fault("scene", format_args!("scene {first} is not there")),
         None => parentless(root).into_iter().rev().map(|n| (n, DMat4::IDENTITY)).collect(),
     };
     let mut seen = vec![false; root.nodes.len()];
@@ -35,15 +52,7 @@ pub(super) fn placed(root: &Root) -> Result<Vec<Placed>, Fault> {
         if !transform.is_finite() {
             return fault(place, "its transform is not finite");
         }
-        if let Some(mesh) = node.mesh {
-            found.push(Placed {
-                node: number,
-                mesh: mesh.value(),
-                transform,
-                weights: node.weights.clone(),
-                has_skin: node.skin.is_some(),
-            });
-        }
+        found.push(Stands { number, node, transform });
         todo.extend(children(node).iter().rev().map(|n| (n.value(), transform)));
     }
     if root.scenes.is_empty()

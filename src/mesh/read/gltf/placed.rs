@@ -1,0 +1,94 @@
+//! The meshes of a glTF scene apart from where its nodes place them.
+
+use super::nodes::{Placed, Stands, placed, standing};
+use super::{Builder, MAGIC, Reader, in_binary, root, skinned};
+use crate::mesh::read::{Fault, Parts, fault};
+use ::gltf::json::Root;
+use glam::{DMat4, DVec3};
+use std::collections::HashMap;
+use std::path::Path;
+
+/// Most places of meshes.
+const MOST_PLACES: usize = 1 << 20;
+
+/// Meshes, places and cameras of a file.
+pub(in crate::mesh::read) struct PlacedParts {
+    /// Name and contents of each mesh, in its own space.
+    pub meshes: Vec<(String, Parts)>,
+    /// The mesh of each place, the name of its node, and rows of what takes the mesh there.
+    pub places: Vec<(usize, String, [[f64; 4]; 3])>,
+    /// Name, eye, target, up and vertical view angle in degrees of each camera.
+    pub cameras: Vec<(String, [f64; 3], [f64; 3], [f64; 3], f64)>,
+    /// What is not kept, a line each.
+    pub warnings: Vec<String>,
+}
+
+/// What a file of either form has.
+pub(in crate::mesh::read) fn parse_placed(bytes: &[u8], folder: &Path) -> Result<PlacedParts, Fault> {
+    if bytes.starts_with(MAGIC) { in_binary(bytes, |json, bin| build(json, bin, folder)) } else { build(bytes, None, folder) }
+}
+
+fn build(json: &[u8], bin: Option<&[u8]>, folder: &Path) -> Result<PlacedParts, Fault> {
+    let root = root(json)?;
+    let reader = Reader::new(&root, bin, folder);
+    let found = placed(&root)?;
+    if found.len() > MOST_PLACES {
+        return fault("nodes", format_args!("{} with meshes are more than {MOST_PLACES}", found.len()));
+    }
+    let mut all = PlacedParts { meshes: Vec::new(), places: Vec::new(), cameras: cameras(&root)?, warnings: Vec::new() };
+    all.warnings.extend(skinned(found.iter().filter(|placed| placed.has_skin).count()));
+    // A mesh with other weights of its morph targets is another one.
+    let mut known: HashMap<(usize, Option<Vec<u32>>), Option<usize>> = HashMap::new();
+    for placed in found {
+        let key = (placed.mesh, placed.weights.as_ref().map(|weights| weights.iter().map(|w| w.to_bits()).collect()));
+        let (node, transform) = (placed.node, placed.transform);
+        let own = match known.get(&key) {
+            Some(own) => *own,
+            None => {
+                let own = mesh(&root, &reader, placed, &mut all)?;
+                *known.entry(key).or_insert(own)
+            }
+        };
+        let Some(mesh) = own else { continue };
+        let name = root.nodes[node].name.clone().unwrap_or_else(|| format!("node {node}"));
+        let [x, y, z, w] = transform.to_cols_array_2d();
+        all.places.push((mesh, name, [0, 1, 2].map(|row: usize| [x[row], y[row], z[row], w[row]])));
+    }
+    if all.places.is_empty() {
+        return fault("scene", "there are no triangles in it");
+    }
+    Ok(all)
+}
+
+/// The number of a mesh that is met for the first time, none if it has no triangles.
+fn mesh(root: &Root, reader: &Reader, placed: Placed, all: &mut PlacedParts) -> Result<Option<usize>, Fault> {
+    let number = placed.mesh;
+    let mut builder = Builder::new(root, reader);
+    builder.mesh(&Placed { transform: DMat4::IDENTITY, ..placed })?;
+    let parts = builder.finish();
+    let name = root.meshes[number].name.clone().unwrap_or_else(|| format!("mesh {number}"));
+    if parts.triangles.is_empty() {
+        all.warnings.push(format!("mesh {number} has no triangles, and is left out"));
+        return Ok(None);
+    }
+    all.meshes.push((name, parts));
+    Ok(Some(all.meshes.len() - 1))
+}
+
+/// Cameras with perspective, where nodes place them: along -z, y upwards.
+fn cameras(root: &Root) -> Result<Vec<(String, [f64; 3], [f64; 3], [f64; 3], f64)>, Fault> {
+    let mut cameras = Vec::new();
+    for Stands { number, node, transform } in standing(root)? {
+        let Some(index) = node.camera else { continue };
+        let Some(camera) = root.cameras.get(index.value()) else {
+            return fault(format_args!("node {number}"), format_args!("camera {} is not there", index.value()));
+        };
+        let Some(perspective) = &camera.perspective else { continue };
+        let name = node.name.clone().or(camera.name.clone()).unwrap_or_else(|| format!("camera {number}"));
+        let eye = transform.transform_point3(DVec3::ZERO);
+        let [target, up] = [DVec3::NEG_Z, DVec3::Y].map(|way| transform.transform_vector3(way).normalize_or_zero());
+        let angle = f64::from(perspective.yfov).to_degrees();
+        cameras.push((name, eye.to_array(), (eye + target).to_array(), up.to_array(), angle));
+    }
+    Ok(cameras)
+}

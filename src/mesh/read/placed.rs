@@ -1,0 +1,70 @@
+//! Files that place meshes, read as meshes and places: the nodes of glTF.
+
+use super::gltf::parse_placed;
+use super::{Fault, MeshFormat, ReadError};
+use crate::mesh::clean::{Attributes, TriangleMesh};
+use std::path::Path;
+
+/// Meshes, each in its own space, and where they stand.
+#[derive(Clone, Debug)]
+pub struct PlacedMeshes {
+    /// Name and triangles of each.
+    pub meshes: Vec<(String, TriangleMesh)>,
+    /// Where they stand.
+    pub places: Vec<MeshPlace>,
+    /// Cameras, with perspective.
+    pub cameras: Vec<MeshCamera>,
+    /// What of the file was lost, a line each; what of a mesh was is in its own [`TriangleMesh::warnings`].
+    pub warnings: Vec<String>,
+}
+
+/// A mesh at a place.
+#[derive(Clone, Debug, PartialEq)]
+pub struct MeshPlace {
+    /// Which mesh, from 0.
+    pub mesh: usize,
+    /// Name of its node.
+    pub name: String,
+    /// Rows of the matrix that takes it there, the last column being where its origin goes.
+    pub matrix: [[f64; 4]; 3],
+}
+
+/// A camera.
+#[derive(Clone, Debug, PartialEq)]
+pub struct MeshCamera {
+    /// Its name.
+    pub name: String,
+    /// Where it is.
+    pub eye: [f64; 3],
+    /// A point that it looks at.
+    pub target: [f64; 3],
+    /// What is up.
+    pub up: [f64; 3],
+    /// Degrees from bottom to top.
+    pub fov: f64,
+}
+
+/// Reads the meshes of a glTF or GLB file's default scene, each once, and where its nodes place them. What is read of a mesh is what [`read`](super::read) reads of it.
+///
+/// # Errors
+/// One error that names the file and the element: see [`ReadError`].
+pub fn read_placed(path: &Path) -> Result<PlacedMeshes, ReadError> {
+    if !matches!(MeshFormat::of(path), Some(MeshFormat::Gltf | MeshFormat::Glb)) {
+        return Err(ReadError::NotPlaced { path: path.into() });
+    }
+    let bytes = super::bytes_of(path)?;
+    let content = |Fault { place, what }| ReadError::Content { path: path.into(), place, what };
+    let parts = parse_placed(&bytes, path.parent().unwrap_or(Path::new(""))).map_err(content)?;
+    let mut meshes = Vec::new();
+    for (name, parts) in parts.meshes {
+        let attributes = Attributes { normals: &parts.normals, texture: &parts.texture, polygons: &parts.polygons };
+        let mut mesh = TriangleMesh::with_attributes(&parts.positions, &parts.triangles, attributes, &parts.materials, parts.colours)
+            .map_err(|source| ReadError::Content { path: path.into(), place: name.clone(), what: source.to_string() })?;
+        mesh.warnings = parts.warnings;
+        mesh.orient();
+        meshes.push((name, mesh));
+    }
+    let places = parts.places.into_iter().map(|(mesh, name, matrix)| MeshPlace { mesh, name, matrix }).collect();
+    let cameras = parts.cameras.into_iter().map(|(name, eye, target, up, fov)| MeshCamera { name, eye, target, up, fov }).collect();
+    Ok(PlacedMeshes { meshes, places, cameras, warnings: parts.warnings })
+}
