@@ -4,10 +4,10 @@ Writes tables between the marks of docs/baselines.md, and docs/images/figure12.s
 """
 
 import argparse
-import json
 import subprocess
 from pathlib import Path
 
+from keep import kept
 from markdown import number, put, table
 from plot import diagram
 
@@ -17,18 +17,6 @@ DISTANCES = [round(0.5 * 40 ** (k / 23), 3) for k in range(24)]
 # Of the picture of figure 13, and of packets against single rays.
 FIGURE_13, AGAINST = 1.5, [0.8, 1.5, 3.0, 6.0]
 BEST = ["bvh", "bvh6"]
-
-
-def kept(args, words):
-    """The document of a command, from before or made now."""
-    name = "_".join(str(word) for word in words).replace("/", "-").replace("--", "")
-    path = args.out / f"{name}.json"
-    if not path.exists():
-        run = subprocess.run([args.program, *map(str, words), "--json"], check=True, stdout=subprocess.PIPE, text=True)
-        part = path.with_suffix(".part")
-        part.write_text(run.stdout, encoding="utf-8")
-        part.rename(path)
-    return json.loads(path.read_text(encoding="utf-8"))
 
 
 def simulated(args, machine, distance, method, *more):
@@ -86,8 +74,8 @@ def error(args):
     rows = []
     for distance in AGAINST:
         alone, together = [rendered(args, distance, "lod", *packet, "--compare") for packet in [(), ("--packet", 32)]]
-        of = lambda frame, what: f"{frame['error']['geometry_pixels'][what]:.4f}"
-        image = lambda frame: f"{frame['error']['image']['rmse']:.3f}"
+        of = lambda frame, what: f"{frame['error']['geometry_pixels'][what]:.5f}"
+        image = lambda frame: f"{frame['error']['rmse']:.3f}"
         rows.append([f"{distance:g}", of(alone, "mean"), of(together, "mean"), of(alone, "percentile_99"), of(together, "percentile_99"), image(alone), image(together)])
     return table(["distance", "surface off, pixels, mean: alone", "in packets", "99 of 100 below: alone", "in packets", "RMSE of the picture: alone", "in packets"], rows, 1)
 
