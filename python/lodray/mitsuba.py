@@ -126,18 +126,19 @@ class Intersector:
         owners = self._owners[faces]
         own = faces - self._first[owners]
         t = np.where(met, hits["t"], np.inf) / np.linalg.norm(_columns(rays.d), axis=1)
-        found = mi.PreliminaryIntersection3f()
         if mi.variant().startswith("scalar"):
             if len(hits) != 1:
                 raise LodrayError(f"scalar variants have one ray at a time, but these are {len(hits)}: take cast, or an llvm variant")
             if not met[0]:
                 return mi.SurfaceInteraction3f()
+            found = mi.PreliminaryIntersection3f()
             found.t, found.prim_uv, found.prim_index = float(t[0]), [float(b1[0]), float(b2[0])], int(own[0])
-            found.shape = self.shapes[int(owners[0])]
+            found.shape, found.valid = self.shapes[int(owners[0])], True
             return found.compute_surface_interaction(rays)
-        found.t, found.prim_uv, found.prim_index = mi.Float(t), mi.Point2f(mi.Float(b1), mi.Float(b2)), mi.UInt32(own)
-        found.shape = self._pointers(owners)
         active = mi.Mask(met)
+        found = dr.zeros(mi.PreliminaryIntersection3f, len(hits))
+        found.t, found.prim_uv, found.prim_index = mi.Float(t), mi.Point2f(mi.Float(b1), mi.Float(b2)), mi.UInt32(own)
+        found.shape, found.valid = self._pointers(owners), active
         return found.compute_surface_interaction(rays, mi.RayFlags.All, active)
 
     def ray_test(self, rays: Any) -> NDArray[np.bool_]:

@@ -7,7 +7,6 @@ use crate::told::{Told, beside};
 use crate::values::{document, from_python, to_python};
 use lodray::format::Scene;
 use lodray::mesh::{RemeshOptions, read};
-use lodray::method::Method;
 use lodray::paths::{Film, Instance, MOST_DEPTH, MOST_SAMPLES, ModelTable, Paths, SceneFile, Starts, World};
 use lodray::rays::{Camera, ModelSpace, View};
 use lodray::scene::{BuildOptions, SceneMethod};

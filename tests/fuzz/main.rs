@@ -8,6 +8,7 @@ mod jobs;
 mod lines;
 mod memory;
 mod meshes;
+mod positions;
 mod rays;
 mod round;
 mod scenes;

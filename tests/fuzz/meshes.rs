@@ -86,7 +86,7 @@ fn glb() {
 const CORNERS: [[f32; 3]; 4] = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.25, 0.25, 1.0]];
 
 /// A tetrahedron, with a list besides that nobody needs.
-fn binary_ply(big: bool) -> Vec<u8> {
+pub fn binary_ply(big: bool) -> Vec<u8> {
     let kind = if big { "big" } else { "little" };
     let header = "element vertex 4\nproperty float x\nproperty float y\nproperty double z\nproperty list uchar short other\nelement face 4\nproperty list int uint vertex_indices\nend_header\n";
     let mut bytes = format!("ply\nformat binary_{kind}_endian 1.0\n{header}").into_bytes();

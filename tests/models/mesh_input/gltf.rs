@@ -253,6 +253,21 @@ fn items_may_be_apart_quantised_or_sparse() {
     assert_eq!(glb.mesh().positions, expected.positions);
     glb.refuses("/accessors/0/count", json!(3), &["POSITION: accessor 0: sparse index 3 is out of range, there are 3 items"]);
     glb.refuses("/accessors/0/count", json!(1u64 << 50), &["it has no bytes for its 1125899906842624 items"]);
+    // Few words that ask for much memory.
+    glb.refuses("/accessors/0/count", json!(65537), &["POSITION: accessor 0: it has no bytes for its 65537 items"]);
+    assert_eq!(glb.set("/accessors/0/count", json!(65536)).mesh().triangles.len(), expected.triangles.len());
+    let mut other = glb.clone();
+    other.json["accessors"].as_array_mut().unwrap().push(json!({"componentType": F32, "type": "VEC3", "count": 5, "sparse": sparse}));
+    other.refuses("/meshes/0/primitives/0/attributes/NORMAL", json!(1), &["NORMAL: accessor 1: it has no bytes for its 5 items"]);
+    other.json["meshes"][0]["weights"] = json!([1.0]);
+    other.refuses(
+        "/meshes/0/primitives/0/targets",
+        json!([{"POSITION": 1}]),
+        &["target 0, POSITION: accessor 1: it has no bytes for its 5 items"],
+    );
+    let indices = json!({"componentType": U32, "type": "SCALAR", "count": 65538, "sparse": sparse});
+    other.json["accessors"][1] = indices;
+    other.refuses("/meshes/0/primitives/0/indices", json!(1), &["indices: accessor 1: it has no bytes for its 65538 items"]);
     glb.refuses("/accessors/0/sparse/count", json!(0), &["it has no items"]);
     let base = glb.view(&[0; 48]);
     assert_eq!(glb.set("/accessors/0/bufferView", json!(base)).mesh().positions, expected.positions);
