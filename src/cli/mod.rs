@@ -1,5 +1,6 @@
 //! The command line: one file per subcommand.
 
+mod aim;
 mod args;
 mod bars;
 mod build;
@@ -23,6 +24,7 @@ mod input;
 mod lines;
 mod loop_scene;
 mod machines;
+mod made;
 mod memory;
 mod merge;
 mod mesh;

@@ -65,7 +65,7 @@ pub use fly::{Flown, Fly, fly};
 pub use job_lines::{JobLine, JobLines, LinesError, aside};
 pub use jobs::{Generated, Jobs, Origin, RegionJob, SceneJobs, ViewJob};
 pub use means::{Means, Open};
-pub use pass::simulate;
+pub use pass::{simulate, simulate_models};
 pub use progress::{Progress, Silent, Work, busy};
 pub use results::{NoResult, results};
 pub use rows::{Row, csv};
