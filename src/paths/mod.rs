@@ -18,6 +18,7 @@ mod material;
 mod memory;
 #[cfg(feature = "exr")]
 mod open_exr;
+mod picture;
 mod pose;
 mod random;
 mod rays;
@@ -33,6 +34,7 @@ pub use material::Material;
 pub use memory::WorldMemory;
 #[cfg(feature = "exr")]
 pub use open_exr::ExrError;
+pub use picture::WorldView;
 pub use pose::{MOST_STRETCH, NoPose, Pose};
 pub use rays::PathFrame;
 pub use world::{Instance, Starts, World};

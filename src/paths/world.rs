@@ -83,6 +83,11 @@ impl<'a> Instance<'a> {
         Self { scene: method.surface(scene), method, pose, materials: Vec::new(), space: ModelSpace::of(scene), sight }
     }
 
+    /// Its own space.
+    pub(super) fn space(&self) -> &ModelSpace {
+        &self.space
+    }
+
     /// What its rays see of it.
     pub fn sight(&self) -> &Sight {
         &self.sight

@@ -53,6 +53,7 @@ mod sweep;
 mod turning;
 mod words;
 mod workers;
+mod world_shot;
 
 pub use cache::{Cache, LEAST_TRIANGLES, Lookup};
 pub use chosen::{Chosen, ChosenError};
@@ -74,3 +75,4 @@ pub use sweep::{sweep, sweep_part, sweep_pieces};
 pub use turning::Turning;
 pub use words::{count, grouped};
 pub use workers::{at_once, in_order};
+pub use world_shot::WorldShot;
