@@ -3,6 +3,7 @@
 use clap::Args;
 use clap::ValueEnum;
 use lodray::num::MAX_LEVELS;
+use lodray::paths::CameraTable;
 use lodray::rays::{Camera, DEFAULT_VIEW_ANGLE_DEGREES, MAX_PIXELS, MAX_SIDE, ModelSpace, View};
 use std::fmt::{self, Display};
 use std::ops::RangeInclusive;
@@ -105,9 +106,9 @@ impl NamedView {
 /// Where the camera is.
 #[derive(Args, Clone, Debug)]
 pub struct CameraArgs {
-    /// Picture size in pixels
-    #[arg(long, value_name = "WxH", default_value = "1024x1024", allow_hyphen_values = true)]
-    pub size: Size,
+    /// Picture size in pixels (default: 1024x1024)
+    #[arg(long, value_name = "WxH", allow_hyphen_values = true)]
+    size: Option<Size>,
     /// Distance from the target in bounding radii (default, unless --eye is given: the picture just holds the whole model)
     #[arg(long, value_name = "RADII", value_parser = radii, allow_hyphen_values = true)]
     pub distance: Option<f64>,
@@ -130,9 +131,12 @@ pub struct CameraArgs {
     #[arg(long, value_name = "DEGREES", value_parser = pitch, allow_hyphen_values = true)]
     pitch: Option<f64>,
     /// Vertical view angle in degrees (default: focal length 35 on a sensor of height 24)
-    #[arg(long, value_name = "DEGREES", default_value_t = DEFAULT_VIEW_ANGLE_DEGREES, hide_default_value = true, value_parser = fov, allow_hyphen_values = true)]
-    fov: f64,
+    #[arg(long, value_name = "DEGREES", value_parser = fov, allow_hyphen_values = true)]
+    fov: Option<f64>,
 }
+
+/// Of a picture, where nothing says it.
+const DEFAULT_SIZE: Size = Size(1024, 1024);
 
 impl CameraArgs {
     /// The names of all of them.
@@ -144,22 +148,48 @@ impl CameraArgs {
     pub fn camera(&self, space: &ModelSpace, distance: Option<f64>) -> anyhow::Result<Camera> {
         let plain = |v: Option<Triple>| v.map(|v| v.0);
         let (eye, target, up) = (plain(self.eye), plain(self.target), plain(self.up));
-        let view = View { eye, direction: None, target, up, distance: distance.or(self.distance), fov: self.fov };
+        let view = View { eye, direction: None, target, up, distance: distance.or(self.distance), fov: self.view_angle() };
         let angles = match (self.view, self.yaw, self.pitch) {
             (None, None, None) => None,
             (None, yaw, pitch) => Some((yaw.unwrap_or(0.0), pitch.unwrap_or(0.0))),
             (Some(named), ..) => Some(named.angles()),
         };
         let view = angles.map_or(view, |(yaw, pitch)| view.around(yaw, pitch));
-        Ok(Camera::new(&view, space, self.size.0, self.size.1)?)
+        self.on(&view, space)
     }
 }
 
 impl CameraArgs {
+    /// The same with the camera and the size of a description where nothing is said. Angles turn the description's camera about its target; `space` holds all models.
+    #[must_use]
+    pub fn or(&self, own: &CameraTable, [width, height]: [u32; 2], space: &ModelSpace) -> Self {
+        let is_turned = self.view.is_some() || self.yaw.is_some() || self.pitch.is_some();
+        let way: [f64; 3] = std::array::from_fn(|k| own.eye[k] - own.target[k]);
+        let radii = way.iter().map(|v| v * v).sum::<f64>().sqrt() / space.radius();
+        Self {
+            size: self.size.or(Some(Size(width, height))),
+            distance: self.distance.or(is_turned.then_some(radii)),
+            eye: self.eye.or((!is_turned).then_some(Triple(own.eye))),
+            target: self.target.or(Some(Triple(own.target))),
+            up: self.up.or(Some(Triple(own.up))),
+            fov: self.fov.or(Some(own.fov)),
+            ..self.clone()
+        }
+    }
+
+    fn view_angle(&self) -> f64 {
+        self.fov.unwrap_or(DEFAULT_VIEW_ANGLE_DEGREES)
+    }
+
+    fn on(&self, view: &View, space: &ModelSpace) -> anyhow::Result<Camera> {
+        let Size(width, height) = self.size.unwrap_or(DEFAULT_SIZE);
+        Ok(Camera::new(view, space, width, height)?)
+    }
+
     /// The camera at `eye`, looking at `target`.
     pub fn at(&self, space: &ModelSpace, eye: [f64; 3], target: [f64; 3]) -> anyhow::Result<Camera> {
-        let view = View { eye: Some(eye), target: Some(target), up: self.up.map(|up| up.0), fov: self.fov, ..View::default() };
-        Ok(Camera::new(&view, space, self.size.0, self.size.1)?)
+        let view = View { eye: Some(eye), target: Some(target), up: self.up.map(|up| up.0), fov: self.view_angle(), ..View::default() };
+        self.on(&view, space)
     }
 }
 

@@ -1,9 +1,9 @@
 //! `cast`: what the rays of a file meet.
 
 use super::cache::CacheArgs;
+use super::made;
 use super::method::AnyMethod;
 use super::output::{check_target, open_any, print_json, progress, remark};
-use super::paths::made;
 use crate::cli::bars::Bars;
 use anyhow::Context;
 use lodray::format::write_and_rename;
@@ -38,7 +38,7 @@ pub struct Args {
 }
 
 pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
-    if args.scene.extension().is_some_and(|ending| ending == "toml") {
+    if made::is_description(&args.scene) {
         return several(args);
     }
     check_target(&args.out, &[&args.scene, &args.rays])?;

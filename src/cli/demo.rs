@@ -136,7 +136,7 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
         let levels = levels.iter().map(outcome).collect::<anyhow::Result<Vec<_>>>()?;
         let near = levels.into_iter().filter(|level| level.error <= own.error).min_by_key(|level| level.result.cycles);
         sheet.add(&format!("{view}: ours"), &own.shot.image, None);
-        for map in [level_map(&own.shot, scene), error(&own.shot, &full.image)] {
+        for map in [level_map(&own.shot, scene.levels()), error(&own.shot, &full.image)] {
             sheet.add(&format!("{view}: {}", map.name), &map.image, Some(map.legend));
         }
         let chose = |outcome: &Outcome| {

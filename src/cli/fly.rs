@@ -22,7 +22,7 @@ const FIGURES: &str = "flight.json";
 const MOST_FRAMES: u64 = 100_000;
 
 #[derive(clap::Args)]
-#[command(mut_arg("size", |size| size.default_value("512x512")), mut_arg("distance", |distance| distance.conflicts_with("path")))]
+#[command(mut_arg("size", |size| size.help("Picture size in pixels").default_value("512x512")), mut_arg("distance", |distance| distance.conflicts_with("path")))]
 pub struct Args {
     /// Scene file
     scene: PathBuf,

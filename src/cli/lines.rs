@@ -25,7 +25,7 @@ use std::sync::Arc;
 const SIZE: &str = "512x512";
 
 #[derive(clap::Args)]
-#[command(mut_arg("size", |size| size.default_value(SIZE)))]
+#[command(mut_arg("size", |size| size.help("Picture size in pixels").default_value(SIZE)))]
 pub struct Args {
     /// Scene file
     scene: PathBuf,

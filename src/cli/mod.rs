@@ -1,5 +1,6 @@
 //! The command line: one file per subcommand.
 
+mod aim;
 mod args;
 mod bars;
 mod build;
@@ -23,6 +24,7 @@ mod info;
 mod input;
 mod lines;
 mod machines;
+mod made;
 mod memory;
 mod merge;
 mod mesh;
@@ -84,7 +86,7 @@ enum Command {
     Prune(prune::Args),
     /// Move the vertices of a scene: its trees stay, boxes and bounds are made anew; one scene, or one for each frame
     Refit(refit::Args),
-    /// Render a scene
+    /// Render a scene, or several models
     #[command(after_long_help = words::RENDER)]
     Render(render::Args),
     /// Fly a camera through a scene: numbered pictures, and what pops from one to the next

@@ -3,8 +3,7 @@
 use super::facts::Facts;
 use anyhow::Context;
 use image::RgbImage;
-use lodray::format::Scene;
-use lodray::picture::{Legend, error_map, level_map, normal_map, save_png};
+use lodray::picture::{Legend, error_map, level_map, save_png};
 use lodray::study::Shot;
 use std::path::Path;
 
@@ -17,14 +16,14 @@ pub struct Map {
     pub legend: Legend,
 }
 
-/// Levels that were chosen.
-pub fn levels(shot: &Shot, scene: &Scene) -> Map {
-    Map { name: "levels", image: level_map(&shot.frame), legend: Legend::Levels(scene.levels()) }
+/// Levels that were chosen, of a scene of so many splits.
+pub fn levels(shot: &Shot, levels: u32) -> Map {
+    Map { name: "levels", image: level_map(&shot.frame), legend: Legend::Levels(levels) }
 }
 
-/// Normals of what was met.
-pub fn normals(shot: &Shot, scene: &Scene) -> Map {
-    Map { name: "normals", image: normal_map(&shot.frame, scene), legend: Legend::Normals }
+/// Normals of what was met, as they were drawn.
+pub fn normals(image: RgbImage) -> Map {
+    Map { name: "normals", image, legend: Legend::Normals }
 }
 
 /// The error map against the true picture.

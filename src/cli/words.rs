@@ -19,6 +19,9 @@ Words of the table:
   tuple, radius (box, prism), corner, boundary, inside
                       what a line of a grid holds: where vertices of a primitive
                       are, bounds of its nodes, vertices by where they lie
+  scene_node, instance
+                      of several models: boxes over the places where they stand,
+                      and a place
   RMSE, maximum       differences of the pictures, from 0 to 255; PSNR is the
                       same in dB, more is better
   coverage            pixels that see the model in one picture only
@@ -57,7 +60,10 @@ Words of the table:
                       levels, triangles of the BVH
   tuple, radius (box, prism), corner, boundary, inside
                       what a line of a grid holds: where vertices of a primitive
-                      are, bounds of its nodes, vertices by where they lie";
+                      are, bounds of its nodes, vertices by where they lie
+  scene_node, instance
+                      of several models: boxes over the places where they stand,
+                      and a place";
 
 /// Of `lines`.
 pub const LINES: &str = "\

@@ -1,8 +1,7 @@
 //! Rays of any source through several models.
 
-use super::cone::PathCone;
-use super::world::{World, WorldRay};
-use crate::rays::{Query, RaySource};
+use super::world::{UNHEARD, World, WorldRay};
+use crate::rays::RaySource;
 use crate::run::HitRow;
 use glam::DVec3;
 use rayon::prelude::*;
@@ -16,8 +15,7 @@ impl World<'_> {
             |tracers, batch| {
                 let mut rows = Vec::new();
                 source.batch(batch, &mut |number, query| {
-                    let ray = world_ray(query);
-                    let met = self.trace(tracers, &ray, None, None);
+                    let met = self.trace(tracers, &WorldRay::of(query), None, UNHEARD);
                     let row = met.map_or(HitRow::NONE, |met| {
                         let own = &self.instances()[met.instance];
                         let mut surface = met.landing.surface;
@@ -38,18 +36,5 @@ impl World<'_> {
             hits[number as usize] = row;
         }
         hits
-    }
-}
-
-fn world_ray(query: &Query) -> WorldRay {
-    let direction = DVec3::from_array(query.direction);
-    WorldRay {
-        origin: DVec3::from_array(query.origin),
-        // Scaled first, so that squares neither overflow nor vanish.
-        direction: (direction / direction.abs().max_element()).normalize(),
-        cone: PathCone { radius: query.radius, spread: query.tan_theta },
-        t_min: query.t_min,
-        t_max: query.t_max,
-        any: query.any,
     }
 }

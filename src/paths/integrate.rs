@@ -3,7 +3,7 @@
 //! At every hit each light is asked for light, and a shadow ray says whether it comes; then the material scatters the path on. Light that a scattered ray runs into counts
 //! by how likely the other way would have found it (Veach and Guibas 1995, the balance heuristic), so that each is counted once.
 
-use super::cone::{Cones, PathCone};
+use super::cone::Cones;
 use super::light::{Environment, Light, Sent};
 use super::random::share;
 use super::world::{Listener, Met, Surface, World, WorldRay};
@@ -125,14 +125,7 @@ impl<'a> Paths<'a> {
         let query = self.camera.ray_at(place(x, &mut random), place(y, &mut random));
         Path {
             random,
-            ray: WorldRay {
-                origin: DVec3::from_array(query.origin),
-                direction: DVec3::from_array(query.direction),
-                cone: PathCone { radius: query.radius, spread: query.tan_theta },
-                t_min: 0.0,
-                t_max: f64::INFINITY,
-                any: false,
-            },
+            ray: WorldRay::of(&query),
             from: None,
             bounce: 0,
             weight: DVec3::ONE,
@@ -160,7 +153,7 @@ impl PathTracer<'_> {
         let paths = self.paths;
         let bounce = path.bounce as usize;
         let number = listener.as_ref().map(|listener| listener.number);
-        let heard = listener.as_mut().map(|listener| (&mut **listener, path.last));
+        let heard = listener.as_mut().map(|listener| listener.ray(path.last));
         let from = path.from.as_ref().map(|(of, from)| (*of, from));
         let met = paths.world.trace(&mut self.tracers, &path.ray, from, heard);
         self.run_into(path, met.as_ref());
@@ -248,7 +241,7 @@ impl PathTracer<'_> {
                     t_max: sent.distance * (1.0 - SHORT),
                     any: true,
                 };
-                let heard = listener.as_mut().map(|listener| (&mut **listener, number));
+                let heard = listener.as_mut().map(|listener| listener.ray(number));
                 let shadowed = paths.world.trace(&mut self.tracers, &ray, Some((met.instance, &met.landing.departure)), heard).is_some();
                 self.counts.shadow_rays[path.bounce as usize] += 1;
                 self.counts.shadowed[path.bounce as usize] += u64::from(shadowed);

@@ -106,3 +106,22 @@ impl Before for MovedBefore<'_> {
         self.own.batch(batch).moved(&self.moved)
     }
 }
+
+/// Work of several models before a frame, one model after the other.
+pub(super) struct AllBefore<'a>(pub Vec<Box<dyn Before + 'a>>);
+
+impl Before for AllBefore<'_> {
+    fn batches(&self) -> usize {
+        self.0.iter().map(|own| own.batches()).sum()
+    }
+
+    fn batch(&self, mut batch: usize) -> Batch {
+        for own in &self.0 {
+            match batch.checked_sub(own.batches()) {
+                Some(rest) => batch = rest,
+                None => return own.batch(batch),
+            }
+        }
+        panic!("no such batch")
+    }
+}

@@ -7,16 +7,19 @@
 mod boxes;
 mod bsdf;
 mod cast;
+mod choices;
 mod cone;
 mod copies;
 mod file;
 mod film;
+mod frame;
 mod integrate;
 mod light;
 mod material;
 mod memory;
 #[cfg(feature = "exr")]
 mod open_exr;
+mod picture;
 mod pose;
 mod random;
 mod rays;
@@ -26,12 +29,14 @@ pub use cone::{Cones, PathCone};
 pub use copies::{CopiesTable, MOST_COPIES};
 pub use file::{CameraTable, MOST_DEPTH, MOST_SAMPLES, MeshTable, ModelTable, PictureTable, SceneFile, SceneFileError};
 pub use film::{Film, LightCount, light_count, picture_error};
+pub use frame::WorldFrame;
 pub use integrate::{PathCounts, PathTracer, Paths};
 pub use light::{Environment, Light};
 pub use material::Material;
 pub use memory::WorldMemory;
 #[cfg(feature = "exr")]
 pub use open_exr::ExrError;
+pub use picture::WorldView;
 pub use pose::{MOST_STRETCH, NoPose, Pose};
 pub use rays::PathFrame;
 pub use world::{Instance, Starts, World};

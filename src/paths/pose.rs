@@ -109,6 +109,13 @@ impl Pose {
         self.turn * d
     }
 
+    /// Turns areas along normals, of the model's own world, into those of the scene; as they point out of it, also where it is mirrored. None if it is not turned, scaled or stretched.
+    pub(super) fn outward(&self) -> Option<DMat3> {
+        let is_plain = self.scale == 1.0 && self.turn == DMat3::IDENTITY;
+        // The matrix of cofactors but for the sign of the determinant.
+        (!is_plain).then(|| self.inverse.transpose() * (self.turn.determinant().abs() * self.scale * self.scale))
+    }
+
     /// A normal of the model in the scene.
     pub(super) fn normal(&self, n: DVec3) -> DVec3 {
         if self.is_rigid() { self.turn * n } else { (self.inverse.transpose() * n).normalize_or_zero() }

@@ -45,10 +45,7 @@ impl Frame for PathFrame<'_> {
     }
 
     fn before(&self, frame: usize) -> Option<Box<dyn Before + '_>> {
-        let instances = self.paths.world.instances().iter().enumerate();
-        let works = instances.filter_map(|(k, own)| Some(self.memory.before(k, own.method.before(own.sight(), frame)?)));
-        let works: Vec<_> = works.collect();
-        (!works.is_empty()).then(|| Box::new(AllBefore(works)) as Box<dyn Before>)
+        self.paths.world.before(&self.memory, frame)
     }
 
     fn models(&self) -> usize {
@@ -57,25 +54,6 @@ impl Frame for PathFrame<'_> {
 
     fn numbers_by_batch(&self) -> bool {
         true
-    }
-}
-
-/// Work of several models before a frame, one model after the other.
-struct AllBefore<'a>(Vec<Box<dyn Before + 'a>>);
-
-impl Before for AllBefore<'_> {
-    fn batches(&self) -> usize {
-        self.0.iter().map(|own| own.batches()).sum()
-    }
-
-    fn batch(&self, mut batch: usize) -> Batch {
-        for own in &self.0 {
-            match batch.checked_sub(own.batches()) {
-                Some(rest) => batch = rest,
-                None => return own.batch(batch),
-            }
-        }
-        panic!("no such batch")
     }
 }
 

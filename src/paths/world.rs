@@ -4,13 +4,13 @@ use super::boxes::{Bounds, BoxTree, Walk};
 use super::bsdf::{Bsdf, Place};
 use super::cone::PathCone;
 use super::material::Material;
-use super::memory::WorldMemory;
+use super::memory::{AllBefore, WorldMemory};
 use super::pose::Pose;
 use crate::format::Scene;
 use crate::method::leave::side;
-use crate::method::{Departure, Landing, Method, Tracer};
+use crate::method::{Before, Departure, Landing, Method, Tracer};
 use crate::rays::{Camera, Eye, ModelSpace, Query, Sight, ViewCone};
-use crate::step::{Link, MapError, Recorder, Step, StepSink};
+use crate::step::{Link, MapError, NoSteps, Recorder, Step, StepSink};
 use glam::DVec3;
 use std::cmp::Ordering;
 use std::collections::HashMap;
@@ -46,31 +46,46 @@ pub struct Instance<'a> {
 impl<'a> Instance<'a> {
     /// A model, for rays of `camera` at quality `delta`. It needs a material.
     pub fn new(scene: &'a Scene, method: &'a dyn Method, pose: Pose, materials: Vec<Material>, camera: &Camera, delta: f64) -> Self {
+        let own = Self::for_cameras(scene, method, pose, std::slice::from_ref(camera), delta);
+        let materials = materials.into_iter().map(|material| (material, Bsdf::of(&material))).collect();
+        Self { materials, ..own }
+    }
+
+    /// A model, for rays of cameras, each of one frame of several, that are not shaded.
+    pub fn for_cameras(scene: &'a Scene, method: &'a dyn Method, pose: Pose, cameras: &[Camera], delta: f64) -> Self {
         let space = ModelSpace::of(scene);
-        let eye = pose.place(camera.eye).to_array();
-        // The thinnest that a cone gets on its way to the model.
-        let tan_theta = camera.tan_theta / pose.squeezed();
-        let least_radius = tan_theta * space.distance_to(eye) / space.placement.scale;
-        let eye = Eye::at(eye, tan_theta);
-        // Of a stretched view there is no cone: it looks everywhere.
-        let eye = if pose.squeezed() == 1.0 {
-            let view = camera.view_cone();
-            eye.looking(ViewCone { axis: pose.direction(DVec3::from_array(view.axis)).to_array(), ..view })
-        } else {
-            eye
+        let seen = |camera: &Camera| {
+            let eye = pose.place(camera.eye).to_array();
+            // The thinnest that a cone gets on its way to the model.
+            let tan_theta = camera.tan_theta / pose.squeezed();
+            let least_radius = tan_theta * space.distance_to(eye) / space.placement.scale;
+            let eye = Eye::at(eye, tan_theta);
+            // Of a stretched view there is no cone: it looks everywhere.
+            let eye = if pose.squeezed() == 1.0 {
+                let view = camera.view_cone();
+                eye.looking(ViewCone { axis: pose.direction(DVec3::from_array(view.axis)).to_array(), ..view })
+            } else {
+                eye
+            };
+            (least_radius, eye.in_units(&space))
         };
-        let eyes = vec![eye.in_units(&space)];
-        Self::seen(scene, method, pose, materials, Sight { delta, least_radius, eyes, frame: None })
+        let (radii, eyes): (Vec<f64>, Vec<Eye>) = cameras.iter().map(seen).unzip();
+        let least_radius = radii.into_iter().fold(f64::INFINITY, f64::min);
+        Self::seen(scene, method, pose, Sight { delta, least_radius, eyes, frame: None })
     }
 
     /// A model, for rays that may start anywhere, however thin, and are not shaded.
     pub fn for_any_ray(scene: &'a Scene, method: &'a dyn Method, pose: Pose, delta: f64) -> Self {
-        Self::seen(scene, method, pose, Vec::new(), Sight { delta, least_radius: 0.0, eyes: vec![Eye::ANYWHERE], frame: None })
+        Self::seen(scene, method, pose, Sight { delta, least_radius: 0.0, eyes: vec![Eye::ANYWHERE], frame: None })
     }
 
-    fn seen(scene: &'a Scene, method: &'a dyn Method, pose: Pose, materials: Vec<Material>, sight: Sight) -> Self {
-        let materials = materials.into_iter().map(|material| (material, Bsdf::of(&material))).collect();
-        Self { scene: method.surface(scene), method, pose, materials, space: ModelSpace::of(scene), sight }
+    fn seen(scene: &'a Scene, method: &'a dyn Method, pose: Pose, sight: Sight) -> Self {
+        Self { scene: method.surface(scene), method, pose, materials: Vec::new(), space: ModelSpace::of(scene), sight }
+    }
+
+    /// Its own space.
+    pub(super) fn space(&self) -> &ModelSpace {
+        &self.space
     }
 
     /// What its rays see of it.
@@ -113,6 +128,26 @@ pub(super) struct WorldRay {
     pub any: bool,
 }
 
+/// How far the square of a length may be from 1 by rounding alone.
+const ROUNDING: f64 = 1e-15;
+
+impl WorldRay {
+    /// The ray of a query; a direction of length 1 stays as it is, bit for bit.
+    pub fn of(query: &Query) -> Self {
+        let direction = DVec3::from_array(query.direction);
+        let is_unit = (direction.length_squared() - 1.0).abs() <= ROUNDING;
+        Self {
+            origin: DVec3::from_array(query.origin),
+            // Scaled first, so that squares neither overflow nor vanish.
+            direction: if is_unit { direction } else { (direction / direction.abs().max_element()).normalize() },
+            cone: PathCone { radius: query.radius, spread: query.tan_theta },
+            t_min: query.t_min,
+            t_max: query.t_max,
+            any: query.any,
+        }
+    }
+}
+
 /// What a ray met.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Met {
@@ -139,6 +174,15 @@ impl Surface<'_> {
     }
 }
 
+/// Hears the steps of a ray, on the lines of all models.
+pub(super) struct Heard<'a, S> {
+    pub memory: &'a WorldMemory,
+    pub steps: &'a mut S,
+}
+
+/// Nobody hears a ray.
+pub(super) const UNHEARD: Option<Heard<'_, NoSteps>> = None;
+
 /// The steps of rays, kept, and who waits for whom.
 pub(super) struct Listener<'a> {
     pub recorder: Recorder,
@@ -153,10 +197,11 @@ impl<'a> Listener<'a> {
         Self { recorder: Recorder::default(), number: 0, memory }
     }
 
-    /// The next ray begins, behind ray `after`.
-    fn begin(&mut self, after: Option<u64>) {
+    /// Hears the next ray, which begins behind ray `after`.
+    pub fn ray(&mut self, after: Option<u64>) -> Heard<'_, Recorder> {
         self.recorder.link(Link { number: self.number, after });
         self.number += 1;
+        Heard { memory: self.memory, steps: &mut self.recorder }
     }
 }
 
@@ -202,7 +247,23 @@ impl<'a> World<'a> {
 
     /// A tracer for each model, and for each way to see it; for one thread.
     pub fn tracers(&self) -> Vec<Box<dyn Tracer + '_>> {
-        self.traced.iter().map(|&k| self.instances[k].method.tracer(&self.instances[k].sight)).collect()
+        self.tracers_of(None)
+    }
+
+    /// The same for the rays of one frame of several.
+    pub(super) fn tracers_of(&self, frame: Option<usize>) -> Vec<Box<dyn Tracer + '_>> {
+        let tracer = |&k: &usize| {
+            let own = &self.instances[k];
+            frame.map_or_else(|| own.method.tracer(&own.sight), |frame| own.method.tracer(&own.sight.of_frame(frame)))
+        };
+        self.traced.iter().map(tracer).collect()
+    }
+
+    /// Work of the models before a frame, one after the other, on the lines of all.
+    pub(super) fn before<'b>(&'b self, memory: &WorldMemory, frame: usize) -> Option<Box<dyn Before + 'b>> {
+        let works = self.instances.iter().enumerate().filter_map(|(k, own)| Some(memory.before(k, own.method.before(&own.sight, frame)?)));
+        let works: Vec<_> = works.collect();
+        (!works.is_empty()).then(|| Box::new(AllBefore(works)) as Box<dyn Before>)
     }
 
     /// The models' memories as one.
@@ -216,24 +277,20 @@ impl<'a> World<'a> {
 
     /// What `ray` meets first, or at all: of models that it meets at the same distance the first. Distances are those of the scene, each rounded from the t of its model; within a
     /// model t decides, exactly. It starts at `from`, a hit of that model, if there is one. It comes to those models whose boxes it enters before what it has met, nearest first.
-    /// The listener hears the ray, behind ray `after`.
-    pub(super) fn trace(
+    /// Whoever hears the ray hears all of it, its end too.
+    pub(super) fn trace<S: StepSink>(
         &self,
         tracers: &mut [Box<dyn Tracer + '_>],
         ray: &WorldRay,
         from: Option<(usize, &Departure)>,
-        listener: Option<(&mut Listener<'_>, Option<u64>)>,
+        mut heard: Option<Heard<'_, S>>,
     ) -> Option<Met> {
-        let mut listener = listener.map(|(listener, after)| {
-            listener.begin(after);
-            listener
-        });
         let mut origin = ray.origin;
         if let (Starts::Offset(radii), Some((of, from))) = (self.starts, from) {
             origin += self.instances[of].above(from, ray.direction) * (radii * self.instances[of].radius());
         }
         let mut best: Option<Met> = None;
-        let mut enter = |k: usize, listener: &mut Option<&mut Listener<'_>>| {
+        let mut enter = |k: usize, heard: &mut Option<Heard<'_, S>>| {
             let (own, tracer) = (&self.instances[k], &mut tracers[self.tracer_of[k]]);
             let mut own_from = from.filter(|&(of, _)| of == k).map(|(_, from)| *from);
             match self.starts {
@@ -253,8 +310,8 @@ impl<'a> World<'a> {
                     // What is as far as the best is rounded once more on its way to steps: a hair farther, and the comparison below decides.
                     .between(ray.t_min / scale, farthest * (1.0 + 1e-12) / scale)
             };
-            let landing = match listener {
-                Some(listener) => tracer.enter(&query, own_from.as_ref(), &mut listener.memory.steps_of(k, &mut listener.recorder)),
+            let landing = match heard {
+                Some(heard) => tracer.enter(&query, own_from.as_ref(), &mut heard.memory.steps_of(k, heard.steps)),
                 None => tracer.follow(&query, own_from.as_ref(), None),
             };
             if let Some(landing) = landing {
@@ -268,18 +325,18 @@ impl<'a> World<'a> {
         };
         if self.instances.len() == 1 {
             // There is no tree over one model, and its space is the ray's.
-            enter(0, &mut listener);
+            enter(0, &mut heard);
         } else {
             self.boxes.each(origin, ray.direction, ray.t_max, |walk| {
-                if let Some(listener) = &mut listener {
-                    listener.memory.walk(walk, &mut listener.recorder);
+                if let Some(heard) = &mut heard {
+                    heard.memory.walk(walk, heard.steps);
                 }
                 let Walk::Model(k) = walk else { return None };
-                Some(enter(k, &mut listener))
+                Some(enter(k, &mut heard))
             });
         }
-        if let Some(listener) = listener {
-            listener.recorder.step(Step::end(best.is_some(), tracers[0].is_mapped()));
+        if let Some(heard) = heard {
+            heard.steps.step(Step::end(best.is_some(), tracers[0].is_mapped()));
         }
         best
     }
@@ -359,7 +416,7 @@ mod tests {
                 let (origin, direction) = (DVec3::new(3.0, y, x), DVec3::new(-1.0, 0.1 * y, -0.2 * x).normalize());
                 let cone = PathCone { radius: 0.0, spread: 1e-3 };
                 let ray = WorldRay { origin, direction, cone, t_min: 0.0, t_max: f64::INFINITY, any: false };
-                if let Some(hit) = world.trace(&mut tracers, &ray, None, None) {
+                if let Some(hit) = world.trace(&mut tracers, &ray, None, UNHEARD) {
                     assert_eq!(hit.instance, first, "ray {k} of {} models", poses.len());
                     met += 1;
                 }

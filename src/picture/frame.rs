@@ -24,7 +24,7 @@ pub struct FrameStats {
     pub rays: u64,
     /// Rays that hit.
     pub hits: u64,
-    /// Groups of child boxes tested: four, of `bvh6` six.
+    /// Groups of child boxes tested: four, of `bvh6` six; of several models also those of the tree over them, and entries into models.
     pub nodes: u64,
     /// LOD tests.
     pub lod_tests: u64,
@@ -48,6 +48,19 @@ pub struct KindCount {
 }
 
 impl FrameStats {
+    /// Those of pixels, by the counts of their rays' steps and the lines that these touched, in the memory `map`.
+    pub fn new(pixels: &[Option<SurfaceHit>], counts: &StepCounts, map: &MemoryMap, sets: &LineSets) -> Self {
+        Self {
+            rays: pixels.len() as u64,
+            hits: pixels.iter().flatten().count() as u64,
+            nodes: counts.nodes,
+            lod_tests: counts.lod_tests,
+            triangles: counts.triangles,
+            lines: kind_counts(map, counts, sets),
+            mean_level: mean(pixels.iter().flatten().map(|p| f64::from(p.level))),
+        }
+    }
+
     /// Distinct 32-byte lines touched.
     pub fn distinct_lines(&self) -> u64 {
         self.lines.iter().map(|k| k.distinct).sum()
@@ -102,15 +115,7 @@ pub fn render(method: &dyn Method, space: &ModelSpace, camera: &Camera, delta: f
             a.add(&b);
             a
         });
-    let stats = FrameStats {
-        rays: pixels.len() as u64,
-        hits: pixels.iter().flatten().count() as u64,
-        nodes: counts.nodes,
-        lod_tests: counts.lod_tests,
-        triangles: counts.triangles,
-        lines: kind_counts(&map, &counts, &sets),
-        mean_level: mean(pixels.iter().flatten().map(|p| f64::from(p.level))),
-    };
+    let stats = FrameStats::new(&pixels, &counts, &map, &sets);
     (Frame { width: camera.width, height: camera.height, pixels }, stats)
 }
 

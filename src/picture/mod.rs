@@ -27,7 +27,7 @@ pub use layouts::distinct_lines;
 pub use legend::Legend;
 pub use popping::{Pop, Pops, popping};
 pub use sampled::{Sampled, sampled};
-pub use shade::{HOTTEST, error_map, level_colour, level_map, normal_map, shaded, view_cosine};
+pub use shade::{HOTTEST, cosine_to, error_map, level_colour, level_map, normal_map, normal_map_by, shaded, shaded_by, view_cosine};
 pub use shading::{Light, Shader, Shading};
 pub use sheet::Sheet;
 pub use spread::ErrorSpread;

@@ -26,25 +26,40 @@ const LEVELS: [[f32; 3]; 11] = [
 
 /// Headlight shading with the material's colour, sRGB; the picture is as large as the frame, every ray being a pixel's only one.
 pub fn shaded(frame: &Frame, shader: &Shader<'_>, camera: &Camera) -> RgbImage {
+    shaded_by(frame, camera, |_| shader)
+}
+
+/// The same where each pixel, by its number, has a shader of its own.
+pub fn shaded_by<'a>(frame: &Frame, camera: &Camera, shader: impl Fn(usize) -> &'a Shader<'a> + Sync) -> RgbImage {
     paint(frame, |index, pixel| {
         let (x, y) = (index as u32 % camera.width, index as u32 / camera.width); // below 2^16 each
         let mut light = Light::default();
-        shader.add(&mut light, &camera.ray(x, y), pixel.as_ref());
+        shader(index).add(&mut light, &camera.ray(x, y), pixel.as_ref());
         light.mean()
     })
 }
 
 /// |n.d| at pixel number `index` of a frame: full-resolution shading normal against the view direction.
 pub fn view_cosine(scene: &Scene, camera: &Camera, index: usize, pixel: &SurfaceHit) -> f32 {
+    cosine_to(pixel.normal(scene), camera, index)
+}
+
+/// |n.d| of a unit normal at pixel number `index`.
+pub fn cosine_to(normal: Vec3, camera: &Camera, index: usize) -> f32 {
     let (x, y) = (index as u32 % camera.width, index as u32 / camera.width); // below 2^16 each
     let view = DVec3::from_array(camera.ray(x, y).direction).as_vec3();
-    pixel.normal(scene).dot(view).abs()
+    normal.dot(view).abs()
 }
 
 /// Full-resolution normals as colours, (n + 1) / 2.
 pub fn normal_map(frame: &Frame, scene: &Scene) -> RgbImage {
-    map(frame, |_, pixel| match pixel {
-        Some(pixel) => normal_colour(pixel.normal(scene)),
+    normal_map_by(frame, |_, pixel| pixel.normal(scene))
+}
+
+/// The same by the unit normals that `normal` gives of pixels, by their numbers and hits.
+pub fn normal_map_by(frame: &Frame, normal: impl Fn(usize, &SurfaceHit) -> Vec3 + Sync) -> RgbImage {
+    map(frame, |index, pixel| match pixel {
+        Some(pixel) => normal_colour(normal(index, pixel)),
         None => Rgb([0, 0, 0]),
     })
 }

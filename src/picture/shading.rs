@@ -8,7 +8,7 @@ use crate::format::Scene;
 use crate::mesh::lattice;
 use crate::method::SurfaceHit;
 use crate::rays::{ModelSpace, Query};
-use glam::{DVec3, Vec3};
+use glam::{DMat3, DVec3, Vec3};
 use serde::{Deserialize, Serialize};
 use std::ops::AddAssign;
 
@@ -69,6 +69,8 @@ pub struct Shader<'a> {
     scene: &'a Scene,
     /// World units to one of the model's.
     scale: f64,
+    /// What turns areas along normals of the model's world into those of the scene that it stands in, if that is another.
+    outward: Option<DMat3>,
     shading: Shading,
 }
 
@@ -114,7 +116,33 @@ impl AddAssign for Light {
 impl<'a> Shader<'a> {
     /// Of a scene where `space` has it.
     pub fn new(scene: &'a Scene, space: &ModelSpace, shading: Shading) -> Self {
-        Self { scene, scale: space.placement.scale, shading }
+        Self { scene, scale: space.placement.scale, outward: None, shading }
+    }
+
+    /// The same of a model that stands in a larger scene, whose rays and distances are that one's: `outward` turns areas along normals, of the model's world, into those of the
+    /// scene.
+    #[must_use]
+    pub fn standing(self, outward: DMat3) -> Self {
+        Self { outward: Some(outward), ..self }
+    }
+
+    /// Full-resolution shading normal of a hit, of length 1, as rays see it.
+    pub fn normal(&self, hit: &SurfaceHit) -> Vec3 {
+        self.turned(hit.normal(self.scene))
+    }
+
+    /// A normal of the model, as rays see it.
+    fn turned(&self, normal: Vec3) -> Vec3 {
+        match self.outward {
+            Some(outward) => (outward * normal.as_dvec3()).normalize_or_zero().as_vec3(),
+            None => normal,
+        }
+    }
+
+    /// Twice the area of a triangle along its normal, in units^2, as rays see it.
+    fn area_vector(&self, corners: [[i32; 3]; 3]) -> Vec3 {
+        let area = area_vector(corners);
+        self.outward.map_or(area, |outward| (outward * area.as_dvec3()).as_vec3())
     }
 
     /// Adds a sample of a pixel: a ray, and what it hit.
@@ -135,11 +163,12 @@ impl<'a> Shader<'a> {
 
     /// Cosine of what is seen to the view, and its weight in the pixel.
     fn cosine(&self, ray: &Query, view: Vec3, hit: &SurfaceHit) -> [f32; 2] {
-        let normal = hit.normal(self.scene);
+        let normal = self.normal(hit);
         let full = normal.dot(view).abs();
         // What was met is the full resolution: nothing was left out.
         let is_finest = u32::from(hit.level) == self.scene.levels();
         let Some(plane) = hit.plane_normal().filter(|_| self.shading != Shading::Full && !is_finest) else { return [full, 1.0] };
+        let plane = self.turned(plane);
         let plane = if plane.dot(view) < 0.0 { -plane } else { plane };
         let facing = plane.dot(view).max(LEAST_VIEW);
         match self.shading {
@@ -158,7 +187,7 @@ impl<'a> Shader<'a> {
     /// faces the eye.
     fn patch(&self, ray: &Query, view: Vec3, hit: &SurfaceHit, facing: f32) -> Option<[f32; 2]> {
         let (tree, level, levels) = (hit.tree as usize, u32::from(hit.level), self.scene.levels());
-        let met = f64::from(area_vector(self.scene.triangle(tree, level, hit.node as usize)).length()) * self.scale * self.scale * 0.5;
+        let met = f64::from(self.area_vector(self.scene.triangle(tree, level, hit.node as usize)).length()) * self.scale * self.scale * 0.5;
         let pixel = (2.0 * (ray.radius + ray.tan_theta * hit.distance)).powi(2) / f64::from(facing);
         // Below it, the node of about a pixel's area around the hit.
         let splits = (0.5 * (met / pixel).log2()).round();
@@ -167,7 +196,8 @@ impl<'a> Shader<'a> {
         let node = (hit.full_node >> (2 * (levels - top))) as usize;
         // Of how much of the plane a facet stands: all alike, as samples are.
         let share = (met * 0.25f64.powi(below as i32) / (0.5 * self.scale * self.scale)) as f32 * facing; // at most ten splits
-        let mut facets = Facets { scene: self.scene, tree, view, turn: if hit.front { 1.0 } else { -1.0 }, sum: 0.0, weight: 0.0 };
+        let mut facets =
+            Facets { shader: self, scene: self.scene, tree, view, turn: if hit.front { 1.0 } else { -1.0 }, sum: 0.0, weight: 0.0 };
         facets.down(top, node, self.scene.triangle(tree, top, node));
         (facets.weight > 0.0 && share > 0.0).then(|| [facets.sum / facets.weight, facets.weight / share])
     }
@@ -187,6 +217,7 @@ fn area_vector(corners: [[i32; 3]; 3]) -> Vec3 {
 
 /// Sums over full-resolution triangles below a node.
 struct Facets<'a> {
+    shader: &'a Shader<'a>,
     scene: &'a Scene,
     tree: usize,
     view: Vec3,
@@ -211,7 +242,7 @@ impl Facets<'_> {
     }
 
     fn facet(&mut self, node: u32, corners: [[i32; 3]; 3]) {
-        let area = area_vector(corners) * self.turn;
+        let area = self.shader.area_vector(corners) * self.turn;
         let seen = area.dot(self.view);
         if seen <= 0.0 {
             return;
@@ -221,7 +252,7 @@ impl Facets<'_> {
         let levels = self.scene.levels();
         let points = lattice::node(levels, levels, node);
         let normal: Vec3 = points.into_iter().map(|p| Vec3::from_array(self.scene.normal_at(self.tree, p))).sum();
-        self.sum += weight * normal.normalize_or_zero().dot(self.view).abs();
+        self.sum += weight * self.shader.turned(normal.normalize_or_zero()).dot(self.view).abs();
         self.weight += weight;
     }
 }

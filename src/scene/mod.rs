@@ -17,6 +17,7 @@ mod build;
 mod given;
 mod golden;
 mod method;
+mod models;
 mod refit;
 mod simulate;
 
@@ -24,4 +25,5 @@ pub use build::{BuildError, BuildOptions, moved_percent};
 pub use given::Given;
 pub use golden::{Golden, Judged};
 pub use method::{MethodError, SceneMethod};
+pub use models::WorldPass;
 pub use simulate::{Outcome, Pass, PassRays, SimulateError, Target};

@@ -6,8 +6,9 @@ use crate::machine::Machine;
 use crate::method::{Knobs, Method, Registered};
 use crate::rays::{Camera, CameraPath, ModelSpace, RayFile, RaySource, Sight};
 use crate::report::result::{MachineFacts, MethodFacts, RayFileFacts, ResultError, SceneFacts, Setup, SimResult, ViewFacts};
-use crate::run::{Compute, FrameRays, Job, Traced, check, simulate};
+use crate::run::{Compute, Frame, FrameRays, Job, Traced, check, simulate};
 use crate::sim::replay::{ReplayError, Run, Window};
+use crate::step::MemoryMap;
 use std::path::PathBuf;
 use thiserror::Error;
 
@@ -63,6 +64,15 @@ pub enum SimulateError {
 pub type Outcome = Result<(SimResult, Option<Vec<u8>>), SimulateError>;
 
 impl PassRays {
+    /// The cameras, one for each frame; none of rays of a file.
+    pub fn cameras(&self) -> &[Camera] {
+        match self {
+            Self::Camera(camera) => std::slice::from_ref(camera),
+            Self::Path(path) => path.cameras(),
+            Self::File(..) => &[],
+        }
+    }
+
     /// Where they come from.
     pub fn source(&self) -> &dyn RaySource {
         match self {
@@ -79,21 +89,44 @@ impl Pass<'_> {
         let rays = self.rays.source();
         let sight = Sight::new(rays, self.space, self.knobs.delta());
         let map = self.method.map(&sight);
-        let frame = FrameRays { method: self.method, rays, sight: &sight };
+        let of_frame = Described {
+            frame: &FrameRays { method: self.method, rays, sight: &sight },
+            map: &map,
+            scene: SceneFacts::from(self.scene),
+            registered: self.registered,
+            method: MethodFacts::new(self.registered, self.knobs, &self.method.choices(&sight), map.bytes()),
+            rays: &self.rays,
+        };
+        of_frame.run(targets, look)
+    }
+}
+
+/// A frame, and what its results say of it.
+pub(super) struct Described<'a> {
+    pub frame: &'a dyn Frame,
+    pub map: &'a MemoryMap,
+    pub scene: SceneFacts,
+    pub registered: &'static Registered,
+    pub method: MethodFacts,
+    pub rays: &'a PassRays,
+}
+
+impl Described<'_> {
+    /// Traces the rays once and replays them on every target.
+    pub fn run(&self, targets: &[Target], look: &mut dyn FnMut(&Traced)) -> Vec<Outcome> {
         let job = |target: &Target| Job { machine: target.machine.description.clone(), compute: target.compute, window: target.window };
         let jobs: Vec<_> = targets.iter().map(job).collect();
-        let runs = simulate(&frame, &jobs, look);
+        let runs = simulate(self.frame, &jobs, look);
         let result = |(target, run): (&Target, Result<Run, ReplayError>)| {
             let run = run?;
-            let result = SimResult::new(self.setup(target, &sight, map.bytes()), self.registered, &map, &run).map_err(Box::new)?;
+            let result = SimResult::new(self.setup(target), self.registered, self.map, &run).map_err(Box::new)?;
             Ok((result, run.wave))
         };
         targets.iter().zip(runs).map(result).collect()
     }
 
-    fn setup(&self, target: &Target, sight: &Sight, bytes: u64) -> Setup {
-        let method = MethodFacts::new(self.registered, self.knobs, &self.method.choices(sight), bytes);
-        let (view, rays) = match &self.rays {
+    fn setup(&self, target: &Target) -> Setup {
+        let (view, rays) = match self.rays {
             PassRays::Camera(camera) => (Some(ViewFacts::new(camera)), None),
             PassRays::Path(path) => (path.cameras().first().map(ViewFacts::new), None),
             PassRays::File(rays, path) => {
@@ -101,11 +134,12 @@ impl Pass<'_> {
                 (None, Some(RayFileFacts { file, count: rays.rays() }))
             }
         };
-        let frames = match &self.rays {
+        let frames = match self.rays {
             PassRays::Path(path) => Some(path.cameras().len() as u32), // few: an option's
             _ => None,
         };
-        Setup { scene: SceneFacts::from(self.scene), method, view, frames, rays, compute: target.compute, machine: target.machine.clone() }
+        let (scene, method, machine) = (self.scene.clone(), self.method.clone(), target.machine.clone());
+        Setup { scene, method, view, frames, rays, compute: target.compute, machine }
     }
 }
 

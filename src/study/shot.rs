@@ -58,8 +58,12 @@ impl Shot {
 
     /// How far its picture is from the true one of the same camera.
     pub fn compared(&self, truth: &Self, scene: &Scene, camera: &Camera) -> Comparison {
+        self.compared_by(truth, camera, |index, pixel| f64::from(view_cosine(scene, camera, index, pixel)))
+    }
+
+    /// The same where `cosine` is that of the true surface to the view, by the pixel's number and its hit.
+    pub(super) fn compared_by(&self, truth: &Self, camera: &Camera, cosine: impl Fn(usize, &SurfaceHit) -> f64) -> Comparison {
         let differs = self.frame.pixels.iter().zip(&truth.frame.pixels).filter(|(a, b)| a.is_some() != b.is_some()).count();
-        let cosine = |index, pixel: &SurfaceHit| f64::from(view_cosine(scene, camera, index, pixel));
         Comparison {
             image: compare(&self.image, &truth.image),
             coverage_differs: differs as u64,

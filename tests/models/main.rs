@@ -4,6 +4,7 @@ mod appearance;
 mod audit;
 mod cast;
 mod chunked;
+mod descriptions;
 mod flight;
 mod instances;
 mod mesh_input;

@@ -2,7 +2,6 @@
 
 use crate::cli::output::progress;
 use anyhow::Context;
-use lodray::format::Scene;
 use lodray::paths::{PathFrame, Paths};
 use lodray::report::result::{MachineFacts, MethodFacts, RayFileFacts, SceneFacts, Setup, SimResult};
 use lodray::run::{self, Compute, Frame, Job, simulate};
@@ -29,7 +28,7 @@ pub struct Bounces {
 pub fn run(
     paths: &Paths<'_>,
     chosen: &Chosen,
-    scenes: &[Scene],
+    models: &SceneFacts,
     machine: &MachineFacts,
     compute: Compute,
     file: &str,
@@ -51,7 +50,7 @@ pub fn run(
         let own = &paths.world.instances()[0];
         let map = *frame.map();
         let setup = Setup {
-            scene: SceneFacts::of_models(file, scenes),
+            scene: models.clone(),
             method: MethodFacts::new(chosen.method, &chosen.knobs, &own.method.choices(own.sight()), map.bytes()),
             view: None,
             frames: None,

@@ -2,12 +2,12 @@
 
 mod figures;
 mod machine;
-pub(super) mod made;
 mod print;
 
 use super::args::{Change, Size, seed, whole};
 use super::cache::CacheArgs;
 use super::folder::{Overrule, RunFolder, one_run};
+use super::made::{camera, description, facts, methods, model_files, paths, scenes, world};
 use super::method::MachineMethod;
 use super::names::named;
 use super::output::{print_json, progress, write_file};
@@ -21,7 +21,6 @@ use lodray::rays::Camera;
 use lodray::run::Compute;
 use lodray::study::Cache;
 use lodray::study::Chosen;
-use made::{camera, description, methods, model_files, paths, scenes, world};
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use std::sync::Arc;
@@ -182,7 +181,8 @@ impl Subject<'_> {
         // Paths need such units, whatever the machine's are for.
         machine.description.units.secondary = true;
         let shown = args.scene.display().to_string();
-        let results = machine::run(&paths(file, &own, camera), chosen, scenes, &machine, args.compute, &shown)?;
+        let models = facts(&args.scene, file, scenes)?;
+        let results = machine::run(&paths(file, &own, camera), chosen, &models, &machine, args.compute, &shown)?;
         let bounces = machine::bounces(&results);
         let write = |name: &str, text: String| write_file(&folder.staging().join(name), text + "\n");
         write(FIGURES, serde_json::to_string_pretty(&bounces)?)?;

@@ -2,9 +2,11 @@
 
 mod files;
 pub(super) mod plots;
+mod several;
 mod table;
 mod units;
 
+use super::aim::OwnCamera;
 use super::args::{CameraArgs, Change};
 use super::cache::CacheArgs;
 use super::common::is_quiet;
@@ -12,6 +14,7 @@ use super::folder::{Overrule, RunFolder, one_run};
 use super::frames::FrameArgs;
 use super::input::{InputArgs, with_input};
 use super::machines::{machine, machine_files};
+use super::made;
 use super::method::MachineMethod;
 use super::names::named;
 use super::output::{check_target, explain, open_any, print_json, print_table, remark, warn, write_file};
@@ -20,13 +23,16 @@ use super::report::PageArgs;
 use crate::cli::bars::Bars;
 use anyhow::Context;
 use files::Files;
+use lodray::paths::SceneFile;
+use lodray::plan::Plan;
 use lodray::rays::{ModelSpace, RayFile};
 use lodray::report::page::{Documents, Simulation};
 use lodray::report::result::SimResult;
 use lodray::run::{self, Compute};
-use lodray::scene::{Pass, PassRays, Target};
+use lodray::scene::{Outcome, Pass, PassRays, Target};
 use lodray::sim::replay::Window;
 use lodray::study::{grouped, in_machine, pruned};
+use several::Several;
 use std::path::PathBuf;
 use std::process::ExitCode;
 
@@ -34,7 +40,7 @@ pub use table::amount;
 
 #[derive(clap::Args)]
 pub struct Args {
-    /// Scene file
+    /// Scene file, or the description of several models (TOML; `paths --help` has the keys): a ray for each pixel of its camera, through all of them
     scene: PathBuf,
     #[command(flatten)]
     method: MachineMethod,
@@ -53,9 +59,11 @@ pub struct Args {
     #[command(flatten)]
     camera: CameraArgs,
     #[command(flatten)]
+    own_camera: OwnCamera,
+    #[command(flatten)]
     frames: FrameArgs,
     /// File of rays in place of a camera's (.npy); `cast --help` has the columns. Each starts at its own origin; one that names an earlier ray waits for that
-    #[arg(long, value_name = "FILE", conflicts_with_all = CameraArgs::ids().into_iter().chain(FrameArgs::ids()))]
+    #[arg(long, value_name = "FILE", conflicts_with_all = CameraArgs::ids().into_iter().chain(FrameArgs::ids()).chain(OwnCamera::ids()))]
     rays: Option<PathBuf>,
     #[command(flatten)]
     cache: CacheArgs,
@@ -112,7 +120,10 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
     }
     let read =
         args.machine.iter().zip(&machines).map(|(name, machine)| machine_files(name, machine)).collect::<Result<Vec<_>, _>>()?.concat();
+    let description = made::is_description(&args.scene).then(|| made::description(&args.scene)).transpose()?;
+    let models = description.as_ref().map(|file| made::model_files(&args.scene, file)).transpose()?.unwrap_or_default();
     let inputs: Vec<_> = std::iter::once(&args.scene)
+        .chain(&models)
         .chain(&args.rays)
         .chain(args.frames.input())
         .chain(&args.input.mesh)
@@ -125,32 +136,17 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
         check_target(vcd, &inputs)?;
     }
     args.page.check(&inputs)?;
-    let scene = with_input(open_any(&args.scene)?, &args.scene, &args.input, [&args.method.0])?;
-    let space = ModelSpace::of(&scene);
-    let rays = match &args.rays {
-        Some(path) => PassRays::File(RayFile::read(path)?, path.clone()),
-        None => args.frames.rays(&args.camera, &space)?,
-    };
     let labels: Vec<_> = machines.iter().map(|machine| machine.label.as_str()).collect();
     let files = Files::new(&labels);
     let names = files.names();
     let open_folder = |out: &PathBuf| RunFolder::open(out, names.iter().map(String::as_str), &inputs, &args.overrule);
-    let folder = args.out.as_ref().map(open_folder).transpose()?;
-
-    let chosen = &args.method.0;
-    match &rays {
-        PassRays::File(rays, _) => pruned::check_rays(&scene, rays, chosen.delta())?,
-        PassRays::Camera(camera) => pruned::check(&scene, camera, chosen.delta())?,
-        PassRays::Path(path) => path.cameras().iter().try_for_each(|camera| pruned::check(&scene, camera, chosen.delta()))?,
-    }
-    if let Some(plan) = &plan {
-        anyhow::ensure!(chosen.method.name == "lod", "--plan: is of units for lod, not for {}", chosen.method.name);
-        plan::check(plan, &args.scene, &scene, rays.source(), chosen.delta())?;
-    }
-    let (method, _) = chosen.make(&scene, &args.cache.cache(args.out.as_deref())?, &Bars)?;
-    let pass = Pass { scene: &scene, space: &space, registered: chosen.method, knobs: &chosen.knobs, method: &*method, rays };
+    let open = || args.out.as_ref().map(open_folder).transpose();
     let targets: Vec<_> = machines.into_iter().map(|machine| Target { machine, compute: args.compute, window: args.window }).collect();
-    let outcomes = lodray::study::simulate(&pass, &targets, &Bars).into_iter().collect::<Result<Vec<_>, _>>()?;
+    let (folder, outcomes) = match description {
+        Some(file) => several(args, file, &targets, open)?,
+        None => one(args, plan.as_ref(), &targets, open)?,
+    };
+    let outcomes = outcomes.into_iter().collect::<Result<Vec<_>, _>>()?;
     let (results, mut waves): (Vec<SimResult>, Vec<_>) = outcomes.into_iter().unzip();
     if let (Some(window), Some(result)) = (&args.window, results.first()) {
         check_window(*window, result.cycles.saturating_sub(1))?;
@@ -181,4 +177,49 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
     }
     args.page.write(page, &inputs)?;
     Ok(ExitCode::SUCCESS)
+}
+
+/// Simulates a frame of one scene.
+fn one(
+    args: &Args,
+    plan: Option<&Plan>,
+    targets: &[Target],
+    open: impl FnOnce() -> anyhow::Result<Option<RunFolder>>,
+) -> anyhow::Result<(Option<RunFolder>, Vec<Outcome>)> {
+    args.own_camera.check()?;
+    let chosen = &args.method.0;
+    let scene = with_input(open_any(&args.scene)?, &args.scene, &args.input, [chosen])?;
+    let space = ModelSpace::of(&scene);
+    let rays = match &args.rays {
+        Some(path) => PassRays::File(RayFile::read(path)?, path.clone()),
+        None => args.frames.rays(&args.camera, &space)?,
+    };
+    let folder = open()?;
+    match &rays {
+        PassRays::File(rays, _) => pruned::check_rays(&scene, rays, chosen.delta())?,
+        cameras => cameras.cameras().iter().try_for_each(|camera| pruned::check(&scene, camera, chosen.delta()))?,
+    }
+    if let Some(plan) = plan {
+        anyhow::ensure!(chosen.method.name == "lod", "--plan: is of units for lod, not for {}", chosen.method.name);
+        plan::check(plan, &args.scene, &scene, rays.source(), chosen.delta())?;
+    }
+    let (method, _) = chosen.make(&scene, &args.cache.cache(args.out.as_deref())?, &Bars)?;
+    let pass = Pass { scene: &scene, space: &space, registered: chosen.method, knobs: &chosen.knobs, method: &*method, rays };
+    let outcomes = lodray::study::simulate(&pass, targets, &Bars);
+    Ok((folder, outcomes))
+}
+
+/// Simulates a frame of several models.
+fn several(
+    args: &Args,
+    file: SceneFile,
+    targets: &[Target],
+    open: impl FnOnce() -> anyhow::Result<Option<RunFolder>>,
+) -> anyhow::Result<(Option<RunFolder>, Vec<Outcome>)> {
+    anyhow::ensure!(args.plan.is_none(), "--plan: is of one scene, and not of several models");
+    anyhow::ensure!(args.input.mesh.is_empty(), "--mesh: goes with one scene, and not with several models");
+    let Args { scene, method, rays, camera, own_camera, frames, cache, out, .. } = args;
+    let cache = cache.cache(out.as_deref())?;
+    let all = Several { path: scene, chosen: &method.0, rays: rays.as_ref(), camera, own_camera, frames, cache: &cache };
+    all.run(file, targets, open)
 }

@@ -27,7 +27,7 @@ pub use memory::{CacheResult, ChannelResult, CrossbarResult, DramResult, WaitSha
 #[cfg(test)]
 pub(in crate::report) use roofline::LIMITS;
 pub use roofline::{Bound, Roofline};
-pub use setup::{MachineFacts, MethodFacts, RayFileFacts, SceneFacts, Setup, ViewFacts};
+pub use setup::{MachineFacts, MethodFacts, ModelFacts, ModelsFacts, RayFileFacts, SceneFacts, Setup, ViewFacts};
 pub use stalls::StallResult;
 #[cfg(test)]
 pub(in crate::report) use stalls::part_of;

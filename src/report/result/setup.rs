@@ -72,31 +72,71 @@ pub struct SceneFacts {
     /// What its displacement bounds cover; `largest` is not written.
     #[serde(default = "BoundKind::unnamed", skip_serializing_if = "BoundKind::is_unnamed")]
     pub bounds: BoundKind,
+    /// Of the models of a description: figures above are of all of them.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub models: Option<ModelsFacts>,
 }
 
 impl From<&Scene> for SceneFacts {
     fn from(scene: &Scene) -> Self {
         let name = scene.meta().name.clone();
         let (base_triangles, finest_triangles) = (scene.trees() as u64, scene.finest_triangles());
-        Self { name, levels: scene.levels(), base_triangles, finest_triangles, bounds: scene.meta().bounds }
+        Self { name, levels: scene.levels(), base_triangles, finest_triangles, bounds: scene.meta().bounds, models: None }
     }
 }
 
 impl SceneFacts {
-    /// Those of models that are in `file` together, each as often as it stands somewhere; at least one.
-    pub fn of_models(file: &str, models: &[Scene]) -> Self {
-        let all: Vec<Self> = models.iter().map(Self::from).collect();
-        if let [alone] = &all[..] {
-            return alone.clone();
-        }
+    /// Those of models that a description places together: triangles are counted as often as they stand somewhere. A model alone in one place keeps its name; else `description`
+    /// is named. `xxh3` is [`ModelsFacts::xxh3`]; each model comes with the number of its places.
+    pub fn of_models(description: &str, xxh3: String, models: &[(&Scene, u64)]) -> Self {
+        let own = |&(scene, places): &(&Scene, u64)| {
+            let Self { name, levels, base_triangles, finest_triangles, .. } = Self::from(scene);
+            ModelFacts { name, levels, base_triangles, finest_triangles, places }
+        };
+        let all: Vec<ModelFacts> = models.iter().map(own).collect();
+        let sum = |of: fn(&ModelFacts) -> u64| all.iter().map(|own| own.places * of(own)).sum::<u64>();
+        let places = all.iter().map(|own| own.places).sum::<u64>();
+        let name = match &all[..] {
+            [alone] if places == 1 => alone.name.clone(),
+            _ => format!("{description}, {places} models"),
+        };
         Self {
-            name: format!("{file}, {} models", all.len()),
+            name,
             levels: all.iter().map(|own| own.levels).max().unwrap_or(0),
-            base_triangles: all.iter().map(|own| own.base_triangles).sum(),
-            finest_triangles: all.iter().map(|own| own.finest_triangles).sum(),
-            bounds: all.first().map_or_else(BoundKind::unnamed, |own| own.bounds),
+            base_triangles: sum(|own| own.base_triangles),
+            finest_triangles: sum(|own| own.finest_triangles),
+            bounds: models.first().map_or_else(BoundKind::unnamed, |(scene, _)| scene.meta().bounds),
+            models: Some(ModelsFacts { description: description.to_owned(), xxh3, models: all }),
         }
     }
+}
+
+/// What a description places together.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct ModelsFacts {
+    /// The description's file.
+    pub description: String,
+    /// XXH3 of the bytes of the description and of the files that it names, each once, one behind the other in its order: 64 bits, hexadecimal.
+    pub xxh3: String,
+    /// The models, in its order.
+    pub models: Vec<ModelFacts>,
+}
+
+/// A model of a description.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct ModelFacts {
+    /// Its name.
+    pub name: String,
+    /// Number of splits N.
+    pub levels: u32,
+    /// Triangles of its base mesh, counted once.
+    pub base_triangles: u64,
+    /// Triangles at full resolution, counted once.
+    pub finest_triangles: u64,
+    /// Where it stands: so many places.
+    pub places: u64,
 }
 
 /// What a method is.

@@ -6,16 +6,26 @@ use crate::cli::common::is_quiet;
 use crate::cli::generate;
 use crate::cli::output::{busy, open, toml_in_one_line, warn};
 use anyhow::{Context, ensure};
+use glam::DVec3;
 use lodray::format::Scene;
-use lodray::mesh::{RemeshOptions, read};
+use lodray::mesh::{Placement, RemeshOptions, read};
 use lodray::method::Method;
-use lodray::paths::{Instance, ModelTable, Paths, SceneFile, SceneFileError, Starts, World};
+use lodray::paths::{CameraTable, Instance, ModelTable, Paths, Pose, SceneFile, SceneFileError, Starts, World};
 use lodray::rays::{Camera, ModelSpace, View};
+use lodray::report::result::SceneFacts;
 use lodray::scene::BuildOptions;
 use lodray::study::pruned::check_normals;
 use lodray::study::{Cache, Chosen};
+use std::collections::HashSet;
+use std::fs::File;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
+use xxhash_rust::xxh3::Xxh3Default;
+
+/// Whether a file is the description of several models, by its name.
+pub fn is_description(path: &Path) -> bool {
+    path.extension().is_some_and(|ending| ending == "toml")
+}
 
 /// Reads a description; what is wrong with it is said in one line.
 pub fn description(path: &Path) -> anyhow::Result<SceneFile> {
@@ -64,7 +74,11 @@ pub fn methods(file: &SceneFile, scenes: &[Scene], chosen: &Chosen, cache: &Cach
         };
         methods.push(method);
     }
-    ensure!(methods.iter().all(|method| method.leaves()), "--method {}: rays cannot leave its surface", chosen.method.name);
+    ensure!(
+        methods.iter().all(|method| method.leaves()),
+        "--method {}: rays cannot leave its surface, or go from one model to the next",
+        chosen.method.name
+    );
     Ok(methods)
 }
 
@@ -72,6 +86,62 @@ pub fn methods(file: &SceneFile, scenes: &[Scene], chosen: &Chosen, cache: &Cach
 pub fn unshaded<'a>(file: &SceneFile, scenes: &'a [Scene], methods: &'a [Arc<dyn Method>], delta: f64) -> World<'a> {
     let instances = file.places().into_iter().map(|(k, pose)| Instance::for_any_ray(&scenes[k], &*methods[k], pose, delta));
     World::new(instances.collect(), Starts::Exact)
+}
+
+/// The models for rays of cameras, each of one frame, that are not shaded; for rays from anywhere if there are none.
+pub fn seen<'a>(file: &SceneFile, scenes: &'a [Scene], methods: &'a [Arc<dyn Method>], cameras: &[Camera], delta: f64) -> World<'a> {
+    if cameras.is_empty() {
+        return unshaded(file, scenes, methods, delta);
+    }
+    let instances = file.places().into_iter().map(|(k, pose)| Instance::for_cameras(&scenes[k], &*methods[k], pose, cameras, delta));
+    World::new(instances.collect(), Starts::Exact)
+}
+
+/// What results say of the models of a description.
+pub fn facts(description: &Path, file: &SceneFile, scenes: &[Scene]) -> anyhow::Result<SceneFacts> {
+    let (mut hash, mut known) = (Xxh3Default::new(), HashSet::new());
+    for path in std::iter::once(description.to_owned()).chain(model_files(description, file)?) {
+        if !known.contains(&path) {
+            let copied = File::open(&path).and_then(|mut file| std::io::copy(&mut file, &mut hash));
+            copied.with_context(|| format!("cannot read {}", path.display()))?;
+        }
+        known.insert(path);
+    }
+    let mut places = vec![0; scenes.len()];
+    file.places().into_iter().for_each(|(k, _)| places[k] += 1);
+    let models: Vec<_> = scenes.iter().zip(places).collect();
+    let name = description.file_name().unwrap_or_default().to_string_lossy();
+    Ok(SceneFacts::of_models(&name, format!("{:016x}", hash.digest()), &models))
+}
+
+/// The space of all models: the box around theirs. Of a model alone that is not moved it is that one's.
+pub fn space(file: &SceneFile, scenes: &[Scene]) -> ModelSpace {
+    let places = file.places();
+    let unmoved = Pose::new([0.0; 3], 1.0, [0.0; 3]);
+    if let [(k, pose)] = places[..]
+        && pose == unmoved
+    {
+        return ModelSpace::of(&scenes[k]);
+    }
+    let corners = places.iter().flat_map(|&(k, pose)| corners(&ModelSpace::of(&scenes[k])).map(|corner| pose.out(corner)));
+    let none = (DVec3::INFINITY, DVec3::NEG_INFINITY);
+    let (lo, hi) = corners.fold(none, |(lo, hi), corner| (lo.min(corner), hi.max(corner)));
+    let longest = (hi - lo).max_element();
+    // In units of which there are so many along its longest side; any will do for a point.
+    let scale = if longest > 0.0 { longest / f64::from(UNITS) } else { 1.0 };
+    let hi = ((hi - lo) / scale).round().to_array().map(|side| side as i32); // at most UNITS
+    ModelSpace { placement: Placement { offset: lo.to_array(), scale }, lo: [0; 3], hi, zeros: [0; 2] }
+}
+
+/// Along the longest side of the box around models.
+const UNITS: i32 = 1 << 30;
+
+/// Corners of a model's box, in its own world.
+fn corners(space: &ModelSpace) -> [DVec3; 8] {
+    std::array::from_fn(|corner| {
+        let side = |k: usize| f64::from(if corner >> k & 1 == 1 { space.hi[k] } else { space.lo[k] });
+        DVec3::from_array([0, 1, 2].map(|k| space.placement.offset[k] + space.placement.scale * side(k)))
+    })
 }
 
 /// The model of a table.
@@ -98,10 +168,15 @@ fn load(model: &ModelTable, beside: &Path) -> anyhow::Result<Scene> {
     Ok(scene)
 }
 
+/// What the description says of the camera that was asked for.
+pub fn camera_table<'a>(file: &'a SceneFile, name: Option<&str>) -> anyhow::Result<&'a CameraTable> {
+    let known = || file.camera.iter().map(|camera| camera.name.as_str()).collect::<Vec<_>>().join(", ");
+    file.camera(name).with_context(|| format!("there is no camera '{}'; there are: {}", name.unwrap_or_default(), known()))
+}
+
 /// The camera that was asked for.
 pub fn camera(file: &SceneFile, name: Option<&str>, scenes: &[Scene]) -> anyhow::Result<Camera> {
-    let known = || file.camera.iter().map(|camera| camera.name.as_str()).collect::<Vec<_>>().join(", ");
-    let table = file.camera(name).with_context(|| format!("there is no camera '{}'; there are: {}", name.unwrap_or_default(), known()))?;
+    let table = camera_table(file, name)?;
     let view = View { eye: Some(table.eye), target: Some(table.target), up: Some(table.up), fov: table.fov, ..View::default() };
     Ok(Camera::new(&view, &ModelSpace::of(&scenes[0]), file.picture.width, file.picture.height)?)
 }
