@@ -37,7 +37,7 @@ pub use parts::parts;
 pub use quantise::{SurfaceError, first_not_finite, grid_holds, most_zeros, move_vertices, quantise};
 pub use read::{
     ArrayError, MESH_ENDINGS, MeshCamera, MeshFormat, MeshPlace, PlacedMeshes, PositionFrames, ReadError, named_files, open_array, read,
-    read_as, read_bytes, read_placed, read_positions, shape_and_type,
+    read_as, read_bytes, read_placed, read_placed_bytes, read_positions, shape_and_type,
 };
 pub use remesh::{DEFAULT_MAX_ERROR, Folds, RemeshError, RemeshOptions, RemeshReport, Works, remesh};
 pub use subdivide::{MAX_SUBDIVIDED, SubdivideError, catmull_clark_surface, check_subdivision, flat_surface, loop_surface};

@@ -4,7 +4,7 @@ use super::damage::File;
 use super::round::{Limit, round};
 use base64::Engine;
 use lodray::format::Scene;
-use lodray::mesh::{MeshFormat, read_bytes};
+use lodray::mesh::{HeightMap, MeshFormat, read_bytes, read_placed_bytes};
 use lodray::scene::BuildOptions;
 use serde_json::{Value, json};
 use std::path::Path;
@@ -35,10 +35,24 @@ fn reads(bytes: &[u8], format: MeshFormat) -> bool {
     }
 }
 
+/// A scene of nodes too, whose meshes are those of the whole.
+fn reads_places(bytes: &[u8], format: MeshFormat) -> bool {
+    let is_mesh = reads(bytes, format);
+    match read_placed_bytes(bytes, Path::new("damaged"), &Path::new(CORPUS).join(format.name())) {
+        Ok(placed) => {
+            assert!(!placed.places.is_empty() && placed.places.iter().all(|place| place.mesh < placed.meshes.len()));
+            assert!(placed.meshes.iter().all(|(_, mesh)| !mesh.triangles.is_empty()));
+        }
+        Err(error) => assert!(error.to_string().starts_with("damaged: ") && error.to_string().len() < 600, "{error}"),
+    }
+    is_mesh
+}
+
 fn fuzzed(format: MeshFormat, corpus: impl FnOnce() -> Vec<File>) {
     // A scene of own triangles takes some hundred bytes each, and a line of text has few bytes for each.
     let limit = Limit { bytes: 1 << 20, each: 1000 };
-    round(format.name(), corpus, limit, |bytes| reads(bytes, format));
+    let has_nodes = matches!(format, MeshFormat::Gltf | MeshFormat::Glb);
+    round(format.name(), corpus, limit, |bytes| if has_nodes { reads_places(bytes, format) } else { reads(bytes, format) });
 }
 
 #[test]
@@ -81,6 +95,34 @@ fn gltf() {
 fn glb() {
     let (json, bin) = gltf_parts();
     fuzzed(MeshFormat::Glb, || vec![File::new("binary", glb_bytes(&json, &bin))]);
+}
+
+/// Displacement maps: 8 and 16 bits of grey, and floats.
+#[test]
+fn maps() {
+    let corpus = || {
+        let png = |picture: image::DynamicImage| {
+            let mut bytes = std::io::Cursor::new(Vec::new());
+            picture.write_to(&mut bytes, image::ImageFormat::Png).unwrap();
+            bytes.into_inner()
+        };
+        let grey = image::DynamicImage::ImageLuma8(image::ImageBuffer::from_fn(9, 7, |x, y| image::Luma([(x * 20 + y) as u8])));
+        let fine = image::DynamicImage::ImageLuma16(image::ImageBuffer::from_fn(9, 7, |x, y| image::Luma([(x * 7000 + y) as u16])));
+        let mut floats = std::io::Cursor::new(Vec::new());
+        let channels = exr::prelude::SpecificChannels::rgb(|at: exr::math::Vec2<usize>| (at.x() as f32, at.y() as f32, 0.5f32));
+        exr::prelude::WritableImage::write(&exr::prelude::Image::from_channels((9, 7), channels)).to_buffered(&mut floats).unwrap();
+        vec![File::new("grey", png(grey)), File::new("fine", png(fine)), File::new("floats", floats.into_inner())]
+    };
+    round("map", corpus, Limit { bytes: 1 << 21, each: 20_000 }, |bytes| match HeightMap::of_bytes(bytes) {
+        Ok(map) => {
+            assert!(map.texels() > 0 && [[0.0, 0.0], [0.3, -7.9], [1e9, 1.0]].into_iter().all(|uv| map.at(uv).is_finite()));
+            true
+        }
+        Err(error) => {
+            assert!(!error.to_string().is_empty());
+            false
+        }
+    });
 }
 
 const CORNERS: [[f32; 3]; 4] = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.25, 0.25, 1.0]];

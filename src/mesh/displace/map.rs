@@ -7,6 +7,9 @@ use std::path::Path;
 /// Most texels that are read.
 const MOST_TEXELS: u64 = 1 << 30;
 
+/// Most texels for each byte of a file, and bytes of what is decoded: more than compression gives. So few bytes cannot ask for much memory.
+const MOST_PER_BYTE: u64 = 2048;
+
 /// Why a picture is no map of heights.
 #[derive(Debug, thiserror::Error)]
 pub enum MapFault {
@@ -69,7 +72,7 @@ impl HeightMap {
         }
         let mut reader = ImageReader::new(Cursor::new(bytes)).with_guessed_format()?;
         let mut limits = Limits::no_limits();
-        limits.max_alloc = Some(8 * MOST_TEXELS);
+        limits.max_alloc = Some((8 * MOST_TEXELS).min(MOST_PER_BYTE * bytes.len() as u64 + (1 << 16)));
         reader.limits(limits);
         let picture = reader.decode()?;
         let (width, texels) = (picture.width() as usize, grey(picture));
@@ -124,13 +127,15 @@ fn grey(picture: DynamicImage) -> Vec<f32> {
 
 #[cfg(feature = "exr")]
 fn open_exr(bytes: &[u8]) -> Result<HeightMap, MapFault> {
-    use exr::prelude::{ReadChannels, ReadLayers, read};
+    use exr::prelude::{MetaData, ReadChannels, ReadLayers, read};
+    let most = MOST_TEXELS.min(MOST_PER_BYTE * bytes.len() as u64);
+    let sizes = MetaData::read_from_buffered(Cursor::new(bytes), false)?.headers.into_iter().map(|header| header.layer_size);
+    if let Some(size) = sizes.into_iter().find(|size| size.0 as u64 * size.1 as u64 > most) {
+        return Err(MapFault::Content(format!("{} x {} texels are more than {most}, which so many bytes may have", size.0, size.1)));
+    }
     let image = read().no_deep_data().largest_resolution_level().all_channels().first_valid_layer().all_attributes().non_parallel();
     let layer = image.from_buffered(Cursor::new(bytes))?.layer_data;
     let (width, height) = (layer.size.0, layer.size.1);
-    if width as u64 * height as u64 > MOST_TEXELS {
-        return Err(MapFault::Content(format!("{width} x {height} texels are more than {MOST_TEXELS}")));
-    }
     let channels = &layer.channel_data.list;
     let named = |name: &str| channels.iter().find(|channel| channel.name.eq(name));
     let Some(channel) = named("Y").or_else(|| named("R")).or_else(|| channels.first()) else {

@@ -16,7 +16,7 @@ use super::clean::{Attributes, MeshError, TriangleMesh};
 use fault::{Fault, fault, shown};
 pub use header::{ArrayError, open_array, shape_and_type};
 use parts::Parts;
-pub use placed::{MeshCamera, MeshPlace, PlacedMeshes, read_placed};
+pub use placed::{MeshCamera, MeshPlace, PlacedMeshes, read_placed, read_placed_bytes};
 pub use positions::{PositionFrames, read_positions};
 use serde::{Deserialize, Serialize};
 use std::path::{Path, PathBuf};

@@ -1,7 +1,7 @@
 //! Files that place meshes, read as meshes and places: the nodes of glTF.
 
 use super::gltf::parse_placed;
-use super::{Fault, MeshFormat, ReadError};
+use super::{Fault, MeshFormat, ReadError, shown};
 use crate::mesh::clean::{Attributes, TriangleMesh};
 use std::path::Path;
 
@@ -52,17 +52,24 @@ pub fn read_placed(path: &Path) -> Result<PlacedMeshes, ReadError> {
     if !matches!(MeshFormat::of(path), Some(MeshFormat::Gltf | MeshFormat::Glb)) {
         return Err(ReadError::NotPlaced { path: path.into() });
     }
-    let bytes = super::bytes_of(path)?;
-    let content = |Fault { place, what }| ReadError::Content { path: path.into(), place, what };
-    let parts = parse_placed(&bytes, path.parent().unwrap_or(Path::new(""))).map_err(content)?;
+    read_placed_bytes(&super::bytes_of(path)?, path, path.parent().unwrap_or(Path::new("")))
+}
+
+/// The same for the bytes of a file. `name` is what errors begin with; buffers that the file names are looked for in `folder`.
+///
+/// # Errors
+/// As for [`read_placed`].
+pub fn read_placed_bytes(bytes: &[u8], name: &Path, folder: &Path) -> Result<PlacedMeshes, ReadError> {
+    let content = |Fault { place, what }| ReadError::Content { path: name.into(), place, what };
+    let parts = parse_placed(bytes, folder).map_err(content)?;
     let mut meshes = Vec::new();
-    for (name, parts) in parts.meshes {
+    for (own, parts) in parts.meshes {
         let attributes = Attributes { normals: &parts.normals, texture: &parts.texture, polygons: &parts.polygons };
         let mut mesh = TriangleMesh::with_attributes(&parts.positions, &parts.triangles, attributes, &parts.materials, parts.colours)
-            .map_err(|source| ReadError::Content { path: path.into(), place: name.clone(), what: source.to_string() })?;
+            .map_err(|source| ReadError::Content { path: name.into(), place: shown(&own), what: source.to_string() })?;
         mesh.warnings = parts.warnings;
         mesh.orient();
-        meshes.push((name, mesh));
+        meshes.push((own, mesh));
     }
     let places = parts.places.into_iter().map(|(mesh, name, matrix)| MeshPlace { mesh, name, matrix }).collect();
     let cameras = parts.cameras.into_iter().map(|(name, eye, target, up, fov)| MeshCamera { name, eye, target, up, fov }).collect();
