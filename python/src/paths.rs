@@ -141,9 +141,10 @@ fn film(
         return Err(format!("method: no path goes on from what {method} meets").into());
     }
     let delta = methods[0].knobs().delta();
-    let instances = file.places().into_iter().map(|(k, pose)| {
-        Instance::new(&scenes[k], methods[k].method(), pose, file.materials(&file.model[k]), &camera, delta)
-    });
+    let instances = file
+        .places()
+        .into_iter()
+        .map(|(k, pose)| Instance::new(&scenes[k], methods[k].method(), pose, file.materials(&file.model[k]), &camera, delta));
     let world = World::new(instances.collect(), starts);
     let picture = file.picture;
     let paths = Paths {

@@ -129,7 +129,7 @@ const NUMBERS: [&str; 38] = [
 ];
 
 /// What files nest, and what a repetition of is long.
-const DEEP: [&str; 15] = ["1,", "[", "{", "(", "{\"a\":", "[[", "\"", "a.", "[a.", "a={", "1 ", "/", "-", " ", "9"];
+const DEEP: [&str; 16] = ["1,", "[1,1,1],", "[", "{", "(", "{\"a\":", "[[", "\"", "a.", "[a.", "a={", "1 ", "/", "-", " ", "9"];
 
 /// Binary numbers at the limits of what programs take for numbers.
 const VALUES: [u64; 22] = [

@@ -13,7 +13,7 @@ const SECONDS: u32 = 15;
 
 fn corpus() -> Vec<File> {
     let list = fs::read_to_string(concat!(env!("CARGO_MANIFEST_DIR"), "/docs/jobs-example.toml")).unwrap();
-    vec![File::new("example", list)]
+    [vec![File::new("example", list)], File::all("jobs", "toml")].concat()
 }
 
 #[test]

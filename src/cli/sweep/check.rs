@@ -28,8 +28,9 @@ use xxhash_rust::xxh3::xxh3_64;
 
 /// Most jobs of a list, all of whose names are in memory at once.
 const MOST_JOBS: usize = 1 << 20;
-/// Most machines that one entry stands for.
+/// Most machines that one entry stands for, and of a list: each is read and checked.
 const MOST_VARIANTS: usize = 1 << 12;
+const MOST_MACHINES: usize = 1 << 14;
 
 /// Reads and checks a list; every error names the file.
 pub fn read_jobs(path: &Path) -> anyhow::Result<Jobs> {
@@ -91,9 +92,11 @@ fn jobs(source: &ListText<'_>) -> anyhow::Result<Jobs> {
     for entry in &list.machine {
         let (variants, read) = machines(source, entry, folder, &compute)?;
         targets.extend(variants);
+        let why = || format!("{}: more than {MOST_MACHINES} machines: share them among several lists", source.path.display());
+        anyhow::ensure!(targets.len() <= MOST_MACHINES, why());
         files.extend(read);
     }
-    let mut scenes: Vec<SceneJobs> = Vec::new();
+    let (mut scenes, mut views) = (Vec::<SceneJobs>::new(), 0usize);
     for entry in &list.scene {
         let jobs = scene(source, &list, entry, folder)?;
         if scenes.iter().any(|before| before.name == jobs.name) {
@@ -103,11 +106,12 @@ fn jobs(source: &ListText<'_>) -> anyhow::Result<Jobs> {
         if let Origin::File(file) = &jobs.origin {
             files.insert(file.clone());
         }
+        // Before the next scene's are made.
+        views += jobs.views.len();
+        let all = views.checked_mul(methods.len()).and_then(|all| all.checked_mul(targets.len())).filter(|all| *all <= MOST_JOBS);
+        anyhow::ensure!(all.is_some(), "{}: {}", source.path.display(), too_many_jobs());
         scenes.push(jobs);
     }
-    let views: usize = scenes.iter().map(|scene| scene.views.len()).sum();
-    let all = views.checked_mul(methods.len()).and_then(|all| all.checked_mul(targets.len())).filter(|all| *all <= MOST_JOBS);
-    anyhow::ensure!(all.is_some(), "{}: more than {MOST_JOBS} jobs: share them among several lists", source.path.display());
     let deltas = list.deltas.as_ref().map_or_else(Vec::new, |deltas| deltas.get_ref().iter().map(ToString::to_string).collect());
     let jobs = Jobs { scenes, methods, targets, deltas, error: list.error, intervals: list.intervals, files };
     let mut seen = HashSet::new();
@@ -115,6 +119,10 @@ fn jobs(source: &ListText<'_>) -> anyhow::Result<Jobs> {
         anyhow::ensure!(seen.insert(key.clone()), "{}: a job is there twice: {key}", source.path.display());
     }
     Ok(jobs)
+}
+
+fn too_many_jobs() -> String {
+    format!("more than {MOST_JOBS} jobs: share them among several lists")
 }
 
 /// The knobs that are the same for all methods: leaves, and those of the list's table.
@@ -340,6 +348,10 @@ fn views(source: &ListText<'_>, list: &List, spanned: &Spanned<SceneEntry>) -> a
         }
         None => vec![None],
     };
+    // Few words can name many.
+    if directions.len().checked_mul(distances.len()).is_none_or(|views| views > MOST_JOBS) {
+        return Err(source.wrong(place, format!("scene: {}", too_many_jobs())));
+    }
     let view = |direction, &distance: &f64| ViewJob { distance: Some(distance), direction, ..base.clone() };
     Ok(directions.iter().flat_map(|&direction| distances.iter().map(move |d| view(direction, d)).collect::<Vec<_>>()).collect())
 }
