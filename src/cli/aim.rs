@@ -44,15 +44,12 @@ impl Aimed {
     /// Loads the models of a description for a method.
     ///
     /// # Errors
-    /// A model cannot be had, was pruned for a job, or is of no use to the method.
+    /// A model cannot be had, or the method is of no use for several.
     pub fn load(path: &Path, file: SceneFile, chosen: &Chosen) -> anyhow::Result<Self> {
         let method = chosen.method.name;
         ensure!(!chosen.method.of_input(), "--method {method}: meshes that scenes were built from are not looked for among several models");
         ensure!(packet::chosen(&chosen.knobs) == 1, "--packet: rays through several models are traced one by one");
         let scenes = made::scenes(path, &file)?;
-        for scene in scenes.iter().filter(|scene| !scene.meta().is_whole()) {
-            anyhow::bail!("{}: scene {} was pruned for a job: among several models it must be whole", path.display(), scene.meta().name);
-        }
         let space = made::space(&file, &scenes);
         Ok(Self { file, scenes, space })
     }

