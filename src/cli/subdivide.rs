@@ -8,8 +8,8 @@ use super::output::{busy, warn};
 use anyhow::Context;
 use lodray::format::Scene;
 use lodray::mesh::{
-    Displacement, HeightMap, SubdivideError, Surface, TriangleMesh, catmull_clark_surface, check_subdivision, displace, flat_surface,
-    levels_for_map, loop_surface,
+    CornerTexture, Displacement, HeightMap, SubdivideError, Surface, TriangleMesh, catmull_clark_surface, check_subdivision, displace,
+    flat_surface, levels_for_map, loop_surface,
 };
 use lodray::num::MAX_LEVELS;
 use lodray::scene::BuildOptions;
@@ -128,7 +128,7 @@ impl SubdivideArgs {
 }
 
 /// The split surface, and the texture coordinates of its base triangles.
-fn split(rule: Rule, mesh: &TriangleMesh, levels: u32, crease_angle: f64) -> Result<(Surface, Vec<[[f32; 2]; 3]>), SubdivideError> {
+fn split(rule: Rule, mesh: &TriangleMesh, levels: u32, crease_angle: f64) -> Result<(Surface, CornerTexture), SubdivideError> {
     let surface = match rule {
         Rule::Loop => loop_surface(mesh, levels)?,
         Rule::Flat => flat_surface(mesh, levels, crease_angle)?,

@@ -40,6 +40,6 @@ pub use read::{
     read_as, read_bytes, read_placed, read_placed_bytes, read_positions, shape_and_type,
 };
 pub use remesh::{DEFAULT_MAX_ERROR, Folds, RemeshError, RemeshOptions, RemeshReport, Works, remesh};
-pub use subdivide::{MAX_SUBDIVIDED, SubdivideError, catmull_clark_surface, check_subdivision, flat_surface, loop_surface};
+pub use subdivide::{CornerTexture, MAX_SUBDIVIDED, SubdivideError, catmull_clark_surface, check_subdivision, flat_surface, loop_surface};
 pub use surface::Surface;
 pub use weld::Seams;

@@ -1,6 +1,7 @@
 //! Mesh files in: OBJ, PLY, glTF and STL, checked so that a bad file gives one error that names the place.
 
 mod beside;
+mod camera;
 mod fault;
 mod gltf;
 mod header;
@@ -13,10 +14,11 @@ mod positions;
 mod stl;
 
 use super::clean::{Attributes, MeshError, TriangleMesh};
+pub use camera::MeshCamera;
 use fault::{Fault, fault, shown};
 pub use header::{ArrayError, open_array, shape_and_type};
 use parts::Parts;
-pub use placed::{MeshCamera, MeshPlace, PlacedMeshes, read_placed, read_placed_bytes};
+pub use placed::{MeshPlace, PlacedMeshes, read_placed, read_placed_bytes};
 pub use positions::{PositionFrames, read_positions};
 use serde::{Deserialize, Serialize};
 use std::path::{Path, PathBuf};

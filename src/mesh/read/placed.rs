@@ -1,5 +1,6 @@
 //! Files that place meshes, read as meshes and places: the nodes of glTF.
 
+use super::camera::MeshCamera;
 use super::gltf::parse_placed;
 use super::{Fault, MeshFormat, ReadError, shown};
 use crate::mesh::clean::{Attributes, TriangleMesh};
@@ -27,21 +28,6 @@ pub struct MeshPlace {
     pub name: String,
     /// Rows of the matrix that takes it there, the last column being where its origin goes.
     pub matrix: [[f64; 4]; 3],
-}
-
-/// A camera.
-#[derive(Clone, Debug, PartialEq)]
-pub struct MeshCamera {
-    /// Its name.
-    pub name: String,
-    /// Where it is.
-    pub eye: [f64; 3],
-    /// A point that it looks at.
-    pub target: [f64; 3],
-    /// What is up.
-    pub up: [f64; 3],
-    /// Degrees from bottom to top.
-    pub fov: f64,
 }
 
 /// Reads the meshes of a glTF or GLB file's default scene, each once, and where its nodes place them. What is read of a mesh is what [`read`](super::read) reads of it.
@@ -72,6 +58,5 @@ pub fn read_placed_bytes(bytes: &[u8], name: &Path, folder: &Path) -> Result<Pla
         meshes.push((own, mesh));
     }
     let places = parts.places.into_iter().map(|(mesh, name, matrix)| MeshPlace { mesh, name, matrix }).collect();
-    let cameras = parts.cameras.into_iter().map(|(name, eye, target, up, fov)| MeshCamera { name, eye, target, up, fov }).collect();
-    Ok(PlacedMeshes { meshes, places, cameras, warnings: parts.warnings })
+    Ok(PlacedMeshes { meshes, places, cameras: parts.cameras, warnings: parts.warnings })
 }

@@ -8,6 +8,9 @@ use super::quad_net::Net;
 use super::{SharedPoints, SubdivideError, check_subdivision, shade};
 use std::collections::HashMap;
 
+/// Texture coordinates at the corners of triangles.
+pub type CornerTexture = Vec<[[f32; 2]; 3]>;
+
 /// A polygon of the mesh.
 struct Ring {
     corners: Vec<u32>,
@@ -21,7 +24,7 @@ struct Ring {
 ///
 /// # Errors
 /// Too many splits, or more than [`MAX_SUBDIVIDED`](super::MAX_SUBDIVIDED) finest triangles.
-pub fn catmull_clark_surface(mesh: &TriangleMesh, levels: u32) -> Result<(Surface, Vec<[[f32; 2]; 3]>), SubdivideError> {
+pub fn catmull_clark_surface(mesh: &TriangleMesh, levels: u32) -> Result<(Surface, CornerTexture), SubdivideError> {
     let mut rings = rings(mesh);
     let are_quads = rings.iter().all(|ring| ring.corners.len() == 4);
     let quads: usize = if are_quads { rings.len() } else { rings.iter().map(|ring| ring.corners.len()).sum() };

@@ -7,7 +7,7 @@ mod loop_surface;
 mod quad_net;
 mod shading;
 
-pub use catmull_clark::catmull_clark_surface;
+pub use catmull_clark::{CornerTexture, catmull_clark_surface};
 pub use flat::flat_surface;
 pub(super) use flat::{between, weights};
 pub use loop_surface::loop_surface;

@@ -146,15 +146,16 @@ impl Net {
                 *count += 1;
             }
         }
-        let moved = |((&v, &rule), (&ends, &(opposite, n))): ((&Point, &Rule), (&Point, &(Point, u32)))| {
+        let moved = |own: usize| {
+            let (v, ends, (opposite, n)) = (self.positions[own], ends[own], opposite[own]);
             let n = f64::from(n);
-            std::array::from_fn(|k| match rule {
+            std::array::from_fn(|k| match self.rules[own] {
                 Rule::Smooth => (n * n * v[k] + 4.0 * ends[k] + opposite[k]) / (n * (n + 5.0)),
                 Rule::Curve => (ends[k] + 4.0 * v[k]) / 6.0,
                 Rule::Fixed => v[k],
             })
         };
-        self.positions.iter().zip(&self.rules).zip(ends.iter().zip(&opposite)).map(moved).collect()
+        (0..self.positions.len()).map(moved).collect()
     }
 
     /// Of each vertex the sum of its neighbours: of one on a curve those along it.

@@ -212,7 +212,7 @@ impl<'a> Builder<'a> {
         if self.parts.positions.len() + positions.len() > MAX_ITEMS || self.parts.triangles.len() + triangles.len() > MAX_ITEMS {
             return fault(place, format_args!("with it there are more than {MAX_ITEMS} vertices or triangles"));
         }
-        self.append(&positions, (normals.as_deref(), texture.as_deref()), &triangles, material, placed).or_else(|what| fault(place, what))
+        self.append(&positions, normals.as_deref(), texture.as_deref(), &triangles, material, placed).or_else(|what| fault(place, what))
     }
 
     /// Moves positions and normals as the morph targets of a primitive say, each by its weight.
@@ -262,7 +262,8 @@ impl<'a> Builder<'a> {
     fn append(
         &mut self,
         positions: &[[f64; 3]],
-        (normals, texture): (Option<&[[f64; 3]]>, Option<&[[f64; 2]]>),
+        normals: Option<&[[f64; 3]]>,
+        texture: Option<&[[f64; 2]]>,
         triangles: &[[u32; 3]],
         material: Option<u16>,
         placed: &Placed,

@@ -2,6 +2,7 @@
 
 use super::nodes::{Placed, Stands, placed, standing};
 use super::{Builder, MAGIC, Reader, in_binary, root, skinned};
+use crate::mesh::read::camera::MeshCamera;
 use crate::mesh::read::{Fault, Parts, fault};
 use ::gltf::json::Root;
 use glam::{DMat4, DVec3};
@@ -17,8 +18,8 @@ pub(in crate::mesh::read) struct PlacedParts {
     pub meshes: Vec<(String, Parts)>,
     /// The mesh of each place, the name of its node, and rows of what takes the mesh there.
     pub places: Vec<(usize, String, [[f64; 4]; 3])>,
-    /// Name, eye, target, up and vertical view angle in degrees of each camera.
-    pub cameras: Vec<(String, [f64; 3], [f64; 3], [f64; 3], f64)>,
+    /// Cameras with perspective.
+    pub cameras: Vec<MeshCamera>,
     /// What is not kept, a line each.
     pub warnings: Vec<String>,
 }
@@ -76,7 +77,7 @@ fn mesh(root: &Root, reader: &Reader, placed: Placed, all: &mut PlacedParts) -> 
 }
 
 /// Cameras with perspective, where nodes place them: along -z, y upwards.
-fn cameras(root: &Root) -> Result<Vec<(String, [f64; 3], [f64; 3], [f64; 3], f64)>, Fault> {
+fn cameras(root: &Root) -> Result<Vec<MeshCamera>, Fault> {
     let mut cameras = Vec::new();
     for Stands { number, node, transform } in standing(root)? {
         let Some(index) = node.camera else { continue };
@@ -87,8 +88,8 @@ fn cameras(root: &Root) -> Result<Vec<(String, [f64; 3], [f64; 3], [f64; 3], f64
         let name = node.name.clone().or(camera.name.clone()).unwrap_or_else(|| format!("camera {number}"));
         let eye = transform.transform_point3(DVec3::ZERO);
         let [target, up] = [DVec3::NEG_Z, DVec3::Y].map(|way| transform.transform_vector3(way).normalize_or_zero());
-        let angle = f64::from(perspective.yfov).to_degrees();
-        cameras.push((name, eye.to_array(), (eye + target).to_array(), up.to_array(), angle));
+        let fov = f64::from(perspective.yfov).to_degrees();
+        cameras.push(MeshCamera { name, eye: eye.to_array(), target: (eye + target).to_array(), up: up.to_array(), fov });
     }
     Ok(cameras)
 }
