@@ -2,44 +2,18 @@
 
 use super::args::{levels, whole};
 use super::common::is_quiet;
+use super::form::FormArgs;
 use super::info;
 use super::input::{FILE, InputFile};
 use super::mesh::{MeshArgs, Source};
-use super::names::named;
 use super::output::{busy, check_target, print_line, progress, warn};
 use super::subdivide::SubdivideArgs;
 use anyhow::Context;
 use lodray::format::Scene;
-use lodray::mesh::{BoundKind, DEFAULT_CREASE_ANGLE, DEFAULT_MAX_ERROR, RemeshOptions, TriangleMesh};
-use lodray::num::{BOX_SHIFT, MOST_DIRECTION_ZEROS, VertexForm};
+use lodray::mesh::{DEFAULT_CREASE_ANGLE, DEFAULT_MAX_ERROR, RemeshOptions, TriangleMesh};
 use lodray::scene::{BuildError, BuildOptions};
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
-
-/// How a scene is stored.
-#[derive(clap::Args, Clone, Copy, Default)]
-pub struct FormArgs {
-    /// What displacement bounds cover
-    #[arg(long, value_name = "KIND", value_parser = named::<BoundKind>(), default_value = BoundKind::default().name())]
-    pub bounds: BoundKind,
-    /// How inserted vertices are stored
-    #[arg(long, value_name = "FORM", value_parser = named::<VertexForm>(), default_value = VertexForm::default().name())]
-    pub vertices: VertexForm,
-    /// Zero bits at the bottom of all coordinates, of vertices, morphed triangles and origins of rays: 0 to 16 less the splits. A hardware can leave them out
-    #[arg(long, value_name = "BITS", default_value_t = 0, value_parser = whole::<u32>(0..=u64::from(BOX_SHIFT)), allow_negative_numbers = true)]
-    pub coordinate_zeros: u32,
-    /// Zero bits at the bottom of the directions of rays, 0 to 14
-    #[arg(long, value_name = "BITS", default_value_t = 0, value_parser = whole::<u32>(0..=u64::from(MOST_DIRECTION_ZEROS)), allow_negative_numbers = true)]
-    pub direction_zeros: u32,
-}
-
-impl FormArgs {
-    /// What a scene of its own triangles is built with.
-    pub fn options(self) -> BuildOptions {
-        let Self { bounds, vertices, coordinate_zeros, direction_zeros } = self;
-        BuildOptions { bounds, vertices, coordinate_zeros, direction_zeros, ..BuildOptions::own_triangles() }
-    }
-}
 
 #[derive(clap::Args)]
 pub struct Args {

@@ -1,8 +1,8 @@
 //! `demo`: a built-in scene from three distances: what ours, the best BVH and discrete level of detail cost there, and what a traversal unit for these views can leave out.
 
 use super::bars::Bars;
-use super::build::FormArgs;
 use super::folder::{Overrule, RunFolder, one_run};
+use super::form::FormArgs;
 use super::generate;
 use super::machines::machine;
 use super::output::{busy, print_json, print_table, remark, write_file};

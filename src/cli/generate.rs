@@ -1,7 +1,8 @@
 //! `generate`: a procedural scene.
 
 use super::args::{levels, seed, whole};
-use super::build::{FormArgs, finish};
+use super::build::finish;
+use super::form::FormArgs;
 use super::memory::check_memory;
 use super::names::named;
 use super::output::{busy, check_target};

@@ -1,8 +1,9 @@
 //! `import`: a glTF scene as a description: each mesh a scene file, and a place for each node.
 
 use super::args::levels;
-use super::build::{FormArgs, percent};
+use super::build::percent;
 use super::folder::{Overrule, RunFolder, one_run};
+use super::form::FormArgs;
 use super::output::{print_json, progress, remark, warn};
 use anyhow::Context;
 use lodray::format::{Scene, write_and_rename};
@@ -95,7 +96,14 @@ fn description(file: &Path, read: &PlacedMeshes, files: &[String], spaces: &[Mod
         _ = write!(text, "\n[[camera]]\nname = {name}\neye = {eye:?}\ntarget = {target:?}\nup = {up:?}\nfov = {fov:?}\n");
     }
     for place in &read.places {
-        _ = write!(text, "\n# {}\n[[model]]\nfile = {:?}\nmatrix = {:?}\n", one_line(&place.name), files[place.mesh], place.matrix);
+        // Adding 0 leaves no zero with a sign.
+        _ = write!(
+            text,
+            "\n# {}\n[[model]]\nfile = {:?}\nmatrix = {:?}\n",
+            one_line(&place.name),
+            files[place.mesh],
+            place.matrix.map(|row| row.map(|c| c + 0.0))
+        );
     }
     text += "\n[[light]]\nkind = \"sun\"\ndirection = [0.5, 0.8, 0.35]\nhalf_angle = 0.5\nirradiance = [2.0, 1.9, 1.7]\n";
     text + "\n[environment]\nzenith = [0.3, 0.4, 0.6]\nhorizon = [0.6, 0.62, 0.66]\nground = [0.2, 0.18, 0.15]\n"

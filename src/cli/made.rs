@@ -1,8 +1,8 @@
 //! What a description comes to: models, a camera, a world.
 
 use crate::cli::bars::Bars;
-use crate::cli::build::FormArgs;
 use crate::cli::common::is_quiet;
+use crate::cli::form::FormArgs;
 use crate::cli::generate;
 use crate::cli::output::{busy, open, toml_in_one_line, warn};
 use anyhow::{Context, ensure};

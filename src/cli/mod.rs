@@ -17,6 +17,7 @@ mod export;
 mod facts;
 mod fly;
 mod folder;
+mod form;
 mod frames;
 mod generate;
 mod import;

@@ -1,6 +1,6 @@
 //! `build --subdivide`: a mesh whose own faces are split, by Loop's or Catmull and Clark's rules or where they lie, with a displacement map over them.
 
-use super::build::FormArgs;
+use super::form::FormArgs;
 use super::memory::check_memory;
 use super::mesh::{MeshArgs, Source};
 use super::names::Named;

@@ -1,6 +1,6 @@
 //! Copies of a model in a grid.
 
-use super::file::{Checked, PLACE, SHARE, one};
+use super::checked::{Checked, PLACE, SHARE, one};
 use super::pose::Pose;
 use crate::num::Random;
 use glam::{DMat3, DVec3};

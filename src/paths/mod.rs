@@ -7,6 +7,7 @@
 mod boxes;
 mod bsdf;
 mod cast;
+mod checked;
 mod choices;
 mod cone;
 mod copies;

@@ -174,7 +174,7 @@ const OF_FEATURES: [(&str, &[&str]); 11] = [
     ("clap_complete", &[]),
     ("clap_mangen", &[]),
     ("etcetera", &[]),
-    ("exr", &["paths::open_exr"]),
+    ("exr", &["mesh::displace::open_exr", "paths::open_exr"]),
     ("indicatif", &[]),
     ("plotters", &["report::diagram"]),
     ("resvg", &["report::diagram"]),

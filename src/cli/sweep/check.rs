@@ -3,7 +3,7 @@
 
 use super::list::{List, ListText, MachineEntry, Maybe, RegionEntry, SceneEntry, Spanned};
 use crate::cli::args::{CameraArgs, Change, Size, radii};
-use crate::cli::build::FormArgs;
+use crate::cli::form::FormArgs;
 use crate::cli::generate;
 use crate::cli::machines::{is_path, machine, machine_files};
 use crate::cli::method::{Listed, machine_methods};

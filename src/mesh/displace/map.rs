@@ -1,5 +1,7 @@
 //! Pictures of heights.
 
+#[cfg(feature = "exr")]
+use super::open_exr::open_exr;
 use image::{DynamicImage, ImageReader, Limits};
 use std::io::Cursor;
 use std::path::Path;
@@ -19,11 +21,7 @@ pub enum MapFault {
     /// It is no picture of a kind that is read.
     #[error("{0}")]
     Picture(#[from] image::ImageError),
-    /// OpenEXR.
-    #[cfg(feature = "exr")]
-    #[error("{0}")]
-    Exr(#[from] exr::error::Error),
-    /// It has not one height for each texel.
+    /// It has not one height for each texel, or is no OpenEXR that can be read.
     #[error("{0}")]
     Content(String),
 }
@@ -68,7 +66,8 @@ impl HeightMap {
     pub fn of_bytes(bytes: &[u8]) -> Result<Self, MapFault> {
         const EXR: [u8; 4] = [0x76, 0x2f, 0x31, 0x01];
         if bytes.starts_with(&EXR) {
-            return open_exr(bytes);
+            let most = MOST_TEXELS.min(MOST_PER_BYTE * bytes.len() as u64);
+            return open_exr(bytes, most);
         }
         let mut reader = ImageReader::new(Cursor::new(bytes)).with_guessed_format()?;
         let mut limits = Limits::no_limits();
@@ -125,30 +124,7 @@ fn grey(picture: DynamicImage) -> Vec<f32> {
     }
 }
 
-#[cfg(feature = "exr")]
-fn open_exr(bytes: &[u8]) -> Result<HeightMap, MapFault> {
-    use exr::prelude::{MetaData, ReadChannels, ReadLayers, read};
-    let most = MOST_TEXELS.min(MOST_PER_BYTE * bytes.len() as u64);
-    let sizes = MetaData::read_from_buffered(Cursor::new(bytes), false)?.headers.into_iter().map(|header| header.layer_size);
-    if let Some(size) = sizes.into_iter().find(|size| size.0 as u64 * size.1 as u64 > most) {
-        return Err(MapFault::Content(format!("{} x {} texels are more than {most}, which so many bytes may have", size.0, size.1)));
-    }
-    let image = read().no_deep_data().largest_resolution_level().all_channels().first_valid_layer().all_attributes().non_parallel();
-    let layer = image.from_buffered(Cursor::new(bytes))?.layer_data;
-    let (width, height) = (layer.size.0, layer.size.1);
-    let channels = &layer.channel_data.list;
-    let named = |name: &str| channels.iter().find(|channel| channel.name.eq(name));
-    let Some(channel) = named("Y").or_else(|| named("R")).or_else(|| channels.first()) else {
-        return Err(MapFault::Content("it has no channel".to_owned()));
-    };
-    let texels: Vec<f32> = channel.sample_data.values_as_f32().collect();
-    if texels.len() != width * height {
-        return Err(MapFault::Content("its channel has not a height for each texel".to_owned()));
-    }
-    HeightMap::new(width, texels)
-}
-
 #[cfg(not(feature = "exr"))]
-fn open_exr(_: &[u8]) -> Result<HeightMap, MapFault> {
+fn open_exr(_: &[u8], _: u64) -> Result<HeightMap, MapFault> {
     Err(MapFault::Content("it is OpenEXR, which is read only with the feature exr".to_owned()))
 }

@@ -4,6 +4,8 @@
 //! or a crease of the mesh, does not tear.
 
 mod map;
+#[cfg(feature = "exr")]
+mod open_exr;
 
 pub use map::{HeightMap, MapFault};
 
