@@ -20,7 +20,7 @@ struct Ring {
 }
 
 /// The Catmull-Clark surface of the polygons of a clean mesh, and the texture coordinates of its base triangles (none if the mesh has none): two triangles for each quad, or for each corner of each polygon if any
-/// is no quad, split `levels` times (0 to [`MAX_LEVELS`](crate::num::MAX_LEVELS)). Borders, edges of three faces and more, and normals are as in [`loop_surface`](super::loop_surface).
+/// is no quad, split `levels` times (0 to [`MAX_LEVELS`](crate::num::MAX_LEVELS)). Borders, edges of three faces and more, and normals are as in [`loop_surface`](fn@super::loop_surface).
 ///
 /// # Errors
 /// Too many splits, or more than [`MAX_SUBDIVIDED`](super::MAX_SUBDIVIDED) finest triangles.
