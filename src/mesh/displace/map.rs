@@ -67,7 +67,8 @@ impl HeightMap {
         const EXR: [u8; 4] = [0x76, 0x2f, 0x31, 0x01];
         if bytes.starts_with(&EXR) {
             let most = MOST_TEXELS.min(MOST_PER_BYTE * bytes.len() as u64);
-            return open_exr(bytes, most);
+            let (width, texels) = open_exr(bytes, most).map_err(MapFault::Content)?;
+            return Self::new(width, texels);
         }
         let mut reader = ImageReader::new(Cursor::new(bytes)).with_guessed_format()?;
         let mut limits = Limits::no_limits();
@@ -125,6 +126,6 @@ fn grey(picture: DynamicImage) -> Vec<f32> {
 }
 
 #[cfg(not(feature = "exr"))]
-fn open_exr(_: &[u8], _: u64) -> Result<HeightMap, MapFault> {
-    Err(MapFault::Content("it is OpenEXR, which is read only with the feature exr".to_owned()))
+fn open_exr(_: &[u8], _: u64) -> Result<(usize, Vec<f32>), String> {
+    Err("it is OpenEXR, which is read only with the feature exr".to_owned())
 }
