@@ -110,7 +110,8 @@ impl SubdivideArgs {
             let file = map.file_name().map_or_else(String::new, |name| name.to_string_lossy().into_owned());
             origin["displace"] = json!({ "map": file, "size": by.map.size(), "amount": by.amount, "middle": by.middle, "moved": done });
             if done.seam_points > 0 {
-                let of = "points of shared edges lie on seams of the map or on creases, and go to the mean of their places, which are at most";
+                let of =
+                    "points of shared edges lie on seams of the map or on creases, and go to the mean of their places, which are at most";
                 warn(&format!("note: {}: {} {of} {:.3e} apart", source.path.display(), done.seam_points, done.seam_gap));
             }
         }
