@@ -127,7 +127,7 @@ pub fn space(file: &SceneFile, scenes: &[Scene]) -> ModelSpace {
     let none = (DVec3::INFINITY, DVec3::NEG_INFINITY);
     let (lo, hi) = corners.fold(none, |(lo, hi), corner| (lo.min(corner), hi.max(corner)));
     let longest = (hi - lo).max_element();
-    // In units of which there are so many along its longest side; any will do for a point.
+    // Any number of units will do for a point.
     let scale = if longest > 0.0 { longest / f64::from(UNITS) } else { 1.0 };
     let hi = ((hi - lo) / scale).round().to_array().map(|side| side as i32); // at most UNITS
     ModelSpace { placement: Placement { offset: lo.to_array(), scale }, lo: [0; 3], hi, zeros: [0; 2] }

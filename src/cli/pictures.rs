@@ -16,7 +16,7 @@ pub struct Map {
     pub legend: Legend,
 }
 
-/// Levels that were chosen, of a scene of so many splits.
+/// The levels that were chosen.
 pub fn levels(shot: &Shot, levels: u32) -> Map {
     Map { name: "levels", image: level_map(&shot.frame), legend: Legend::Levels(levels) }
 }

@@ -23,24 +23,28 @@ impl<'a> Reader<'a> {
 
     /// Positions or normals; at most `zeros` if the accessor has no bytes for them.
     pub(super) fn vectors(&self, index: Index<Accessor>, zeros: usize, place: &str) -> Result<Vec<[f64; 3]>, Fault> {
-        let read = || {
-            let accessor = self.accessor(index)?;
-            if accessor.type_ != Checked::Valid(Type::Vec3) {
-                return Err("it is not of type VEC3".into());
-            }
-            self.items::<3>(accessor, component(accessor)?, zeros)
-        };
-        read().or_else(|what: String| fault(place, format_args!("accessor {}: {what}", index.value())))
+        self.rows(index, (Type::Vec3, "VEC3"), zeros, place)
     }
 
     /// Texture coordinates; at most `zeros` if the accessor has no bytes for them.
     pub(super) fn pairs(&self, index: Index<Accessor>, zeros: usize, place: &str) -> Result<Vec<[f64; 2]>, Fault> {
+        self.rows(index, (Type::Vec2, "VEC2"), zeros, place)
+    }
+
+    /// Rows of N numbers, which is what the type says.
+    fn rows<const N: usize>(
+        &self,
+        index: Index<Accessor>,
+        (kind, name): (Type, &str),
+        zeros: usize,
+        place: &str,
+    ) -> Result<Vec<[f64; N]>, Fault> {
         let read = || {
             let accessor = self.accessor(index)?;
-            if accessor.type_ != Checked::Valid(Type::Vec2) {
-                return Err("it is not of type VEC2".into());
+            if accessor.type_ != Checked::Valid(kind) {
+                return Err(format!("it is not of type {name}"));
             }
-            self.items::<2>(accessor, component(accessor)?, zeros)
+            self.items::<N>(accessor, component(accessor)?, zeros)
         };
         read().or_else(|what: String| fault(place, format_args!("accessor {}: {what}", index.value())))
     }
