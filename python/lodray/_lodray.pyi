@@ -301,6 +301,7 @@ def paths(
     samples: int | None = None,
     depth: int | None = None,
     seed: int | None = None,
+    time: float = 0.0,
     starts: str | float | None = None,
     method: str = "lod",
     progress: _Progress | None = None,

@@ -60,11 +60,11 @@ fn starts(of: &Bound<'_, PyAny>) -> PyResult<Starts> {
 ///
 /// description: the path of a description of models, materials, lights and cameras (TOML; docs/paths.md has the keys), or the same as a dictionary.
 /// models: scenes in place of its models' files, one for each, in its order. camera: by its name; the first if None.
-/// size, samples, depth, seed: in place of the description's. starts: how rays leave surfaces, "exact", "independent", or so many bounding radii above.
+/// size, samples, depth, seed: in place of the description's. time: where models stand that move, from 0 to 1. starts: how rays leave surfaces, "exact", "independent", or so many bounding radii above.
 ///
 /// Raises LodrayError: the description cannot be, with file and key; a model that cannot be read; a method whose surface rays cannot leave.
 #[pyfunction]
-#[pyo3(signature = (description, models=None, *, camera=None, size=None, samples=None, depth=None, seed=None, starts=None, method="lod", progress=None, **knobs))]
+#[pyo3(signature = (description, models=None, *, camera=None, size=None, samples=None, depth=None, seed=None, time=0.0, starts=None, method="lod", progress=None, **knobs))]
 #[expect(clippy::too_many_arguments, reason = "keywords of Python")]
 pub fn paths<'py>(
     description: &Bound<'py, PyAny>,
@@ -74,6 +74,7 @@ pub fn paths<'py>(
     samples: Option<u32>,
     depth: Option<u32>,
     seed: Option<u64>,
+    time: f64,
     starts: Option<&Bound<'py, PyAny>>,
     method: &str,
     progress: Option<&Bound<'py, PyAny>>,
@@ -81,6 +82,10 @@ pub fn paths<'py>(
 ) -> PyResult<Bound<'py, PyAny>> {
     let py = description.py();
     let (mut file, folder) = self::description(description)?;
+    if !(0.0..=1.0).contains(&time) {
+        return Err(refused(format!("time: {time} is not from 0 to 1")));
+    }
+    file.time = time;
     let starts = starts.map_or(Ok(Starts::Exact), self::starts)?;
     if let Some((width, height)) = size {
         (file.picture.width, file.picture.height) = (width, height);

@@ -100,13 +100,16 @@ def test_paths_are_pictures_of_a_description(scene: lodray.Scene) -> None:
     description = {
         "picture": {"width": 24, "height": 16, "samples": 2, "depth": 1},
         "camera": [{"eye": [0, 0, 4], "target": [0, 0, 0]}],
-        "model": [{"generate": {"scene": "sphere", "levels": 2, "base": 32}}, {"file": "own.lod", "translate": [1.0, 0.0, 0.0]}],
+        "model": [{"generate": {"scene": "sphere", "levels": 2, "base": 32}}, {"file": "own.lod", "translate": [1.0, 0.0, 0.0], "moves": {"by": [0.0, 1.0, 0.0]}}],
         "environment": {"zenith": [1, 1, 1], "horizon": [0.5, 0.5, 0.5], "ground": [0.1, 0.1, 0.1]},
     }
     made = lodray.paths(description, [scene, scene], seed=3)
     assert made["image"].shape == (16, 24, 3) and made["light"].dtype == np.float32 and made["counts"]["rays"][0] == 24 * 16 * 2
     again = lodray.paths(description, [scene, scene], seed=3)
     assert (again["light"] == made["light"]).all()
+    assert (lodray.paths(description, [scene, scene], seed=3, time=0.5)["light"] != made["light"]).any()
+    with pytest.raises(lodray.LodrayError, match="time: 2.0 is not from 0 to 1"):
+        lodray.paths(description, [scene, scene], time=2.0)
     with pytest.raises(lodray.LodrayError, match="models: 1 scenes for 2 models"):
         lodray.paths(description, [scene])
     with pytest.raises(lodray.LodrayError, match="own.lod"):

@@ -36,7 +36,7 @@ pub mod tree_deciders;
 pub mod tri_test;
 
 pub use form::{BoxesPerCycle, EdgesPerCycle, Form, MOST_DIVIDE_BITS};
-pub use operation::{INSTANCE, INSTANCE_TRANSFORM, MAX_WORKS, Operation, Operations, Work};
+pub use operation::{FIRST_SHARED, INSTANCE, INSTANCE_BIN, INSTANCE_BOX, MAX_WORKS, Operation, Operations, SHARED_WORKS, Work};
 
 use crate::num::Wire;
 use parts::Parts;

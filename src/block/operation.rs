@@ -144,15 +144,31 @@ impl Operation {
     }
 }
 
-/// Kinds of [`Work`] that steps can name: those of a method, and [`INSTANCE_TRANSFORM`].
+/// Kinds of [`Work`] that steps can name: those of a method, and [`SHARED_WORKS`].
 pub const MAX_WORKS: usize = 16;
 
-/// The number of the [`Work`] that rays through several models have, whatever the method: behind all of the method's own.
-pub const INSTANCE: u32 = 15;
+/// The number of the first of [`SHARED_WORKS`], which stand behind all of a method's own.
+pub const FIRST_SHARED: u32 = 13;
+/// The number of [`SHARED_WORKS`] by which a place is binned on a level of a tree over all.
+pub const INSTANCE_BIN: u32 = FIRST_SHARED;
+/// That of a model's box where it stands.
+pub const INSTANCE_BOX: u32 = FIRST_SHARED + 1;
+/// That of a ray that enters a model.
+pub const INSTANCE: u32 = FIRST_SHARED + 2;
 
-/// A ray's origin and direction in the space of a model: two products of a 3 x 3 matrix and a vector in 32 bits, and what is added.
-pub static INSTANCE_TRANSFORM: Work =
-    Work { name: "instance_transform", products: &[[18, 32, 32]], add_bits: 15 * 64, select_bits: 0, written_bits: 2 * 3 * 32 };
+/// The [`Work`] of scenes of several models, whatever the method, all in 32 bits: a box and its bins on three axes, and the boxes of those, which grow; a box behind a 3 x 3 matrix, by its
+/// centre and half its sides; a ray's origin and direction behind one.
+pub static SHARED_WORKS: [Work; 3] = [
+    Work {
+        name: "instance_bin",
+        products: &[[3, 32, 16]],
+        add_bits: 3 * 32 + 3 * 6 * 32,
+        select_bits: 3 * 6 * 32,
+        written_bits: 3 * 6 * 32,
+    },
+    Work { name: "instance_box", products: &[[18, 32, 32]], add_bits: 15 * 64 + 6 * 32, select_bits: 0, written_bits: 2 * 3 * 32 },
+    Work { name: "instance_transform", products: &[[18, 32, 32]], add_bits: 15 * 64, select_bits: 0, written_bits: 2 * 3 * 32 },
+];
 
 /// An operation that no block of the RTL does, such as one of work before a frame. Its energy is that of a block made of the same (`docs/energy.md`); it takes no time.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]

@@ -237,7 +237,7 @@ fn pitch(s: &str) -> Result<f64, String> {
 }
 
 /// A number for which `fits` holds, which `what` says in words.
-fn number(s: &str, fits: impl Fn(f64) -> bool, what: &str) -> Result<f64, String> {
+pub fn number(s: &str, fits: impl Fn(f64) -> bool, what: &str) -> Result<f64, String> {
     s.parse().ok().filter(|&v| fits(v)).ok_or_else(|| format!("'{s}' is not {what}"))
 }
 

@@ -61,6 +61,11 @@ impl FrameArgs {
         <Self as Args>::augment_args(clap::Command::new("any")).get_arguments().map(|arg| arg.get_id().clone()).collect::<Vec<_>>()
     }
 
+    /// How many frames there are.
+    pub fn count(&self) -> u32 {
+        self.turn.frames
+    }
+
     /// The file that is read, if one is.
     pub fn input(&self) -> Option<&PathBuf> {
         self.path.as_ref()

@@ -88,13 +88,27 @@ pub fn unshaded<'a>(file: &SceneFile, scenes: &'a [Scene], methods: &'a [Arc<dyn
     World::new(instances.collect(), Starts::Exact)
 }
 
-/// The models for rays of cameras, each of one frame, that are not shaded; for rays from anywhere if there are none.
-pub fn seen<'a>(file: &SceneFile, scenes: &'a [Scene], methods: &'a [Arc<dyn Method>], cameras: &[Camera], delta: f64) -> World<'a> {
+/// The models for rays of cameras, each of one frame, that are not shaded; for rays from anywhere if there are none. One world for each frame if models move, the first at time 0 and the last
+/// at time 1; else one for all, as it is for one camera, at the description's time.
+pub fn seen<'a>(file: &SceneFile, scenes: &'a [Scene], methods: &'a [Arc<dyn Method>], cameras: &[Camera], delta: f64) -> Vec<World<'a>> {
     if cameras.is_empty() {
-        return unshaded(file, scenes, methods, delta);
+        return vec![unshaded(file, scenes, methods, delta)];
     }
-    let instances = file.places().into_iter().map(|(k, pose)| Instance::for_cameras(&scenes[k], &*methods[k], pose, cameras, delta));
-    World::new(instances.collect(), Starts::Exact)
+    let places: Vec<_> = if file.moves() && cameras.len() > 1 {
+        (0..cameras.len()).map(|frame| file.at(frame as f64 / (cameras.len() - 1) as f64).places()).collect()
+    } else {
+        vec![file.places(); cameras.len()]
+    };
+    let mut frames: Vec<Vec<Instance<'a>>> = cameras.iter().map(|_| Vec::with_capacity(places[0].len())).collect();
+    for (place, &(k, _)) in places[0].iter().enumerate() {
+        let seen: Vec<_> = places.iter().zip(cameras).map(|(places, &camera)| (places[place].1, camera)).collect();
+        let own = Instance::for_cameras(&scenes[k], &*methods[k], &seen, delta);
+        frames.iter_mut().zip(own).for_each(|(frame, own)| frame.push(own));
+    }
+    if !file.moves() {
+        frames.truncate(1);
+    }
+    frames.into_iter().map(|instances| World::new(instances, Starts::Exact)).collect()
 }
 
 /// What results say of the models of a description.
@@ -110,13 +124,16 @@ pub fn facts(description: &Path, file: &SceneFile, scenes: &[Scene]) -> anyhow::
     let mut places = vec![0; scenes.len()];
     file.places().into_iter().for_each(|(k, _)| places[k] += 1);
     let models: Vec<_> = scenes.iter().zip(places).collect();
-    let name = description.file_name().unwrap_or_default().to_string_lossy();
+    let mut name = description.file_name().unwrap_or_default().to_string_lossy().into_owned();
+    if file.time > 0.0 {
+        name += &format!(" at time {}", file.time);
+    }
     Ok(SceneFacts::of_models(&name, format!("{:016x}", hash.digest()), &models))
 }
 
-/// The space of all models: the box around theirs. Of a model alone that is not moved it is that one's.
+/// The space of all models as they stand first, so that cameras do not move with them: the box around theirs. Of a model alone that is not moved it is that one's.
 pub fn space(file: &SceneFile, scenes: &[Scene]) -> ModelSpace {
-    let places = file.places();
+    let places = file.at(0.0).places();
     let unmoved = Pose::new([0.0; 3], 1.0, [0.0; 3]);
     if let [(k, pose)] = places[..]
         && pose == unmoved

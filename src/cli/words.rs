@@ -121,7 +121,8 @@ Keys of the description (scenes/*.toml are examples; every colour is linear):
                       material (a name) or materials (names by the model's own numbers);
                       rotate (degrees about x, y, z), scale, translate; or matrix, three rows of four, in place of these;
                       copies = { count = [x, y, z], step = [x, y, z], jitter (parts of a step; 0), turn (an axis, at random
-                      about it), least (scale at random down to; 1), seed }
+                      about it), least (scale at random down to; 1), seed };
+                      moves = { by = [x, y, z], turn (an axis through its own origin), degrees (360) }: from --time 0 to 1
   [material.NAME]     kind = \"diffuse\" (albedo), \"glossy\" (reflectance, roughness, albedo), \"mirror\" (reflectance)
                       or \"glass\" (index of refraction, roughness; 0 is smooth)
   [[light]]           kind = \"point\" (position, intensity), \"area\" (corner, along, across, radiance; shines to along x across)

@@ -5,6 +5,7 @@ use super::cone::Cones;
 use super::copies::CopiesTable;
 use super::light::{Environment, Light, upwards};
 use super::material::Material;
+use super::moves::MovesTable;
 use super::pose::Pose;
 use crate::mesh::procedural;
 use glam::DVec3;
@@ -68,6 +69,9 @@ pub struct SceneFile {
     pub light: Vec<Light>,
     /// What shines where nothing is.
     pub environment: Option<Environment>,
+    /// When, from 0 to 1: where models stand that move.
+    #[serde(skip)]
+    pub time: f64,
 }
 
 /// What is rendered.
@@ -147,25 +151,32 @@ pub struct ModelTable {
     pub matrix: Option<[[f64; 4]; 3]>,
     /// More of it, in a grid.
     pub copies: Option<CopiesTable>,
+    /// How it moves from the first frame of a sequence to the last; each of its copies does.
+    pub moves: Option<MovesTable>,
 }
 
 impl ModelTable {
-    /// Where it stands: once, or where each of its copies does.
+    /// Where it stands at a time from 0 to 1: once, or where each of its copies does.
     ///
     /// # Panics
     /// Its matrix is no pose, which no description has that was read.
-    pub fn poses(&self) -> Vec<Pose> {
+    pub fn poses(&self, time: f64) -> Vec<Pose> {
         let own = match self.matrix {
             Some(rows) => Pose::affine(rows).expect("checked when it was read"),
             None => Pose::new(self.rotate, self.scale, self.translate),
         };
-        match self.copies {
+        let first: Vec<Pose> = match self.copies {
             None => vec![own],
             Some(copies) => {
                 // Turned and scaled about the model's own origin, wherever that stands.
                 let at = own.origin();
                 copies.poses().map(|copy| own.about(at, &copy)).collect()
             }
+        };
+        match self.moves {
+            // At the first frame it stands where the description has it, bit for bit.
+            Some(moves) if time != 0.0 => first.iter().map(|pose| moves.at(pose, time)).collect(),
+            _ => first,
         }
     }
 
@@ -319,6 +330,9 @@ impl SceneFile {
         if let Some(copies) = model.copies {
             copies.check(to, &key("copies"));
         }
+        if let Some(moves) = model.moves {
+            moves.check(to, &key("moves"));
+        }
         to.triple(&key("rotate"), model.rotate, FINITE);
         to.number(&key("scale"), model.scale, SCALE);
         to.triple(&key("translate"), model.translate, PLACE);
@@ -332,9 +346,20 @@ impl SceneFile {
         }
     }
 
-    /// Where models stand: the number of each in its table, and its pose.
+    /// Where models stand at its time: the number of each in its table, and its pose.
     pub fn places(&self) -> Vec<(usize, Pose)> {
-        self.model.iter().enumerate().flat_map(|(k, model)| model.poses().into_iter().map(move |pose| (k, pose))).collect()
+        self.model.iter().enumerate().flat_map(|(k, model)| model.poses(self.time).into_iter().map(move |pose| (k, pose))).collect()
+    }
+
+    /// The same scene at another time, from 0 to 1.
+    #[must_use]
+    pub fn at(&self, time: f64) -> Self {
+        Self { time, ..self.clone() }
+    }
+
+    /// Some model moves.
+    pub fn moves(&self) -> bool {
+        self.model.iter().any(|model| model.moves.is_some())
     }
 
     /// The materials of a model, by number; its own colours, scattered evenly, if it names none.
@@ -496,6 +521,16 @@ intensity = [1, 1, 1]
                 "a.toml: model[0].copies.least must be above 0 and at most 1, but is 0",
             ),
             ("material = \"clay\"", &copies("count = [1, 1, 1], turn = [0, 0, 0]"), "a.toml: model[0].copies.turn must not be zero"),
+            (
+                "material = \"clay\"",
+                "material = \"clay\"\nmoves = { by = [0, 1e13, 0] }",
+                "a.toml: model[0].moves.by[1] must be from -1e12 to 1e12, but is 10000000000000",
+            ),
+            (
+                "material = \"clay\"",
+                "material = \"clay\"\nmoves = { turn = [0, 1, 0], degrees = inf }",
+                "a.toml: model[0].moves.degrees must be a finite number, but is inf",
+            ),
             (GLOSSY, "kind = \"glass\"\nindex = 1", "a.toml: material.clay.index must be from 1.05 to 4, but is 1"),
             (GLOSSY, "kind = \"glass\"\nindex = 1.5\nroughness = 2", "a.toml: material.clay.roughness must be from 0 to 1, but is 2"),
         ] {

@@ -9,18 +9,27 @@ use crate::step::{Batch, Link, MapError, MemoryMap, Nodes, Recorder};
 
 /// The rays of a source as a frame for machines, each from its own origin; one that names an earlier ray waits for that.
 pub struct WorldFrame<'a> {
-    world: &'a World<'a>,
+    worlds: &'a [World<'a>],
     rays: &'a dyn RaySource,
     memory: WorldMemory,
 }
 
 impl<'a> WorldFrame<'a> {
-    /// These rays through these models.
+    /// These rays through these models: one world for all frames of the rays, or one for each, of the same models elsewhere.
     ///
     /// # Errors
     /// The models have more lines than can be numbered.
-    pub fn new(world: &'a World<'a>, rays: &'a dyn RaySource) -> Result<Self, MapError> {
-        Ok(Self { world, rays, memory: world.memory()? })
+    ///
+    /// # Panics
+    /// There is no world.
+    pub fn new(worlds: &'a [World<'a>], rays: &'a dyn RaySource) -> Result<Self, MapError> {
+        let nodes = worlds.iter().map(World::nodes).max().expect("a world");
+        Ok(Self { worlds, rays, memory: worlds[0].memory_with(nodes)? })
+    }
+
+    /// The models as they stand in a frame.
+    fn world(&self, frame: usize) -> &World<'a> {
+        &self.worlds[frame.min(self.worlds.len() - 1)]
     }
 
     /// Where the lines of all models lie.
@@ -43,34 +52,36 @@ impl Frame for WorldFrame<'_> {
     }
 
     fn before(&self, frame: usize) -> Option<Box<dyn Before + '_>> {
-        self.world.before(&self.memory, frame)
+        self.world(frame).before(&self.memory, frame, frame.checked_sub(1).map(|last| self.world(last)))
     }
 
     fn models(&self) -> usize {
-        self.world.instances().len()
+        self.worlds[0].instances().len()
     }
 
     fn worker(&self, frame: usize) -> Box<dyn Worker + '_> {
         let of_several = (!self.rays.frame_starts().is_empty()).then_some(frame);
-        Box::new(WorldWorker { frame: self, tracers: self.world.tracers_of(of_several) })
+        let world = self.world(frame);
+        Box::new(WorldWorker { frame: self, world, tracers: world.tracers_of(of_several) })
     }
 }
 
 struct WorldWorker<'a> {
     frame: &'a WorldFrame<'a>,
+    world: &'a World<'a>,
     tracers: Vec<Box<dyn Tracer + 'a>>,
 }
 
 impl Worker for WorldWorker<'_> {
     fn batch(&mut self, batch: usize) -> (Batch, Vec<RayHit>) {
-        let WorldFrame { world, rays, memory } = self.frame;
+        let WorldFrame { rays, memory, .. } = self.frame;
         let (mut recorder, is_ordered) = (Recorder::default(), rays.is_ordered());
         rays.batch(batch, &mut |number, query| {
             if is_ordered {
                 recorder.link(Link { number, after: query.after });
             }
             let heard = Heard { memory, steps: &mut recorder };
-            world.trace(&mut self.tracers, &WorldRay::of(query), None, Some(heard));
+            self.world.trace(&mut self.tracers, &WorldRay::of(query), None, Some(heard));
         });
         (recorder.batch(), Vec::new())
     }

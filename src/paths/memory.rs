@@ -1,6 +1,7 @@
 //! The memory of several models on a machine, and the steps of rays that go from one to the next.
 
 use super::boxes::Walk;
+use super::rebuild::Rebuild;
 use crate::block::INSTANCE;
 use crate::method::{Before, Method};
 use crate::rays::Sight;
@@ -71,6 +72,12 @@ impl WorldMemory {
     /// Hears the steps of a ray in an instance, on the lines of its model.
     pub(super) fn steps_of<'a, S: StepSink>(&'a self, instance: usize, steps: &'a mut S) -> ModelSteps<'a, S> {
         ModelSteps { moved: &self.moved[instance], steps }
+    }
+
+    /// The work of building the tree over the models anew, of so many nodes, where some of them `moved`, by instance; none where there is no tree, or nothing moved.
+    pub(super) fn rebuild(&self, nodes: usize, moved: Vec<bool>) -> Option<Rebuild> {
+        let [node, place] = self.tree.filter(|_| moved.contains(&true))?;
+        Some(Rebuild { map: self.map, nodes: (node, NODE_LINES), places: (place, INSTANCE_LINES), count: nodes, moved })
     }
 
     /// The work of an instance's model before a frame, on the model's lines.

@@ -18,12 +18,14 @@ mod integrate;
 mod light;
 mod material;
 mod memory;
+mod moves;
 #[cfg(feature = "exr")]
 mod open_exr;
 mod picture;
 mod pose;
 mod random;
 mod rays;
+mod rebuild;
 mod world;
 
 pub use cone::{Cones, PathCone};
@@ -35,6 +37,7 @@ pub use integrate::{PathCounts, PathTracer, Paths};
 pub use light::{Environment, Light};
 pub use material::Material;
 pub use memory::WorldMemory;
+pub use moves::MovesTable;
 #[cfg(feature = "exr")]
 pub use open_exr::ExrError;
 pub use picture::WorldView;

@@ -45,7 +45,7 @@ impl Frame for PathFrame<'_> {
     }
 
     fn before(&self, frame: usize) -> Option<Box<dyn Before + '_>> {
-        self.paths.world.before(&self.memory, frame)
+        self.paths.world.before(&self.memory, frame, None)
     }
 
     fn models(&self) -> usize {

@@ -14,6 +14,7 @@ use crate::step::{Link, MapError, NoSteps, Recorder, Step, StepSink};
 use glam::DVec3;
 use std::cmp::Ordering;
 use std::collections::HashMap;
+use std::sync::Arc;
 
 /// Base colour of a model without any.
 const GREY: DVec3 = DVec3::splat(0.8);
@@ -40,21 +41,22 @@ pub struct Instance<'a> {
     /// Materials by the number that the model gives each triangle; the last one for all beyond.
     materials: Vec<(Material, Bsdf)>,
     space: ModelSpace,
-    sight: Sight,
+    /// The same in all frames of several.
+    sight: Arc<Sight>,
 }
 
 impl<'a> Instance<'a> {
     /// A model, for rays of `camera` at quality `delta`. It needs a material.
     pub fn new(scene: &'a Scene, method: &'a dyn Method, pose: Pose, materials: Vec<Material>, camera: &Camera, delta: f64) -> Self {
-        let own = Self::for_cameras(scene, method, pose, std::slice::from_ref(camera), delta);
+        let own = Self::for_cameras(scene, method, &[(pose, *camera)], delta).remove(0);
         let materials = materials.into_iter().map(|material| (material, Bsdf::of(&material))).collect();
         Self { materials, ..own }
     }
 
-    /// A model, for rays of cameras, each of one frame of several, that are not shaded.
-    pub fn for_cameras(scene: &'a Scene, method: &'a dyn Method, pose: Pose, cameras: &[Camera], delta: f64) -> Self {
+    /// The same model in each frame of several: where it then stands, for the rays of that frame's camera, which are not shaded.
+    pub fn for_cameras(scene: &'a Scene, method: &'a dyn Method, seen: &[(Pose, Camera)], delta: f64) -> Vec<Self> {
         let space = ModelSpace::of(scene);
-        let seen = |camera: &Camera| {
+        let eye = |(pose, camera): &(Pose, Camera)| {
             let eye = pose.place(camera.eye).to_array();
             // The thinnest that a cone gets on its way to the model.
             let tan_theta = camera.tan_theta / pose.squeezed();
@@ -69,17 +71,18 @@ impl<'a> Instance<'a> {
             };
             (least_radius, eye.in_units(&space))
         };
-        let (radii, eyes): (Vec<f64>, Vec<Eye>) = cameras.iter().map(seen).unzip();
+        let (radii, eyes): (Vec<f64>, Vec<Eye>) = seen.iter().map(eye).unzip();
         let least_radius = radii.into_iter().fold(f64::INFINITY, f64::min);
-        Self::seen(scene, method, pose, Sight { delta, least_radius, eyes, frame: None })
+        let sight = Arc::new(Sight { delta, least_radius, eyes, frame: None });
+        seen.iter().map(|&(pose, _)| Self::seen(scene, method, pose, Arc::clone(&sight))).collect()
     }
 
     /// A model, for rays that may start anywhere, however thin, and are not shaded.
     pub fn for_any_ray(scene: &'a Scene, method: &'a dyn Method, pose: Pose, delta: f64) -> Self {
-        Self::seen(scene, method, pose, Sight { delta, least_radius: 0.0, eyes: vec![Eye::ANYWHERE], frame: None })
+        Self::seen(scene, method, pose, Arc::new(Sight { delta, least_radius: 0.0, eyes: vec![Eye::ANYWHERE], frame: None }))
     }
 
-    fn seen(scene: &'a Scene, method: &'a dyn Method, pose: Pose, sight: Sight) -> Self {
+    fn seen(scene: &'a Scene, method: &'a dyn Method, pose: Pose, sight: Arc<Sight>) -> Self {
         Self { scene: method.surface(scene), method, pose, materials: Vec::new(), space: ModelSpace::of(scene), sight }
     }
 
@@ -259,10 +262,13 @@ impl<'a> World<'a> {
         self.traced.iter().map(tracer).collect()
     }
 
-    /// Work of the models before a frame, one after the other, on the lines of all.
-    pub(super) fn before<'b>(&'b self, memory: &WorldMemory, frame: usize) -> Option<Box<dyn Before + 'b>> {
-        let works = self.instances.iter().enumerate().filter_map(|(k, own)| Some(memory.before(k, own.method.before(&own.sight, frame)?)));
-        let works: Vec<_> = works.collect();
+    /// Work before a frame on the lines of all: the tree over them anew if they stand elsewhere than in the frame before, of which this is the world; then that of the models, one after the
+    /// other.
+    pub(super) fn before<'b>(&'b self, memory: &WorldMemory, frame: usize, last: Option<&Self>) -> Option<Box<dyn Before + 'b>> {
+        let moved = |last: &Self| self.instances.iter().zip(&last.instances).map(|(now, then)| now.pose != then.pose).collect();
+        let tree = last.and_then(|last| memory.rebuild(self.nodes(), moved(last))).map(|work| Box::new(work) as Box<dyn Before>);
+        let own = self.instances.iter().enumerate().filter_map(|(k, own)| Some(memory.before(k, own.method.before(&own.sight, frame)?)));
+        let works: Vec<_> = tree.into_iter().chain(own).collect();
         (!works.is_empty()).then(|| Box::new(AllBefore(works)) as Box<dyn Before>)
     }
 
@@ -271,8 +277,18 @@ impl<'a> World<'a> {
     /// # Errors
     /// They have more lines than can be numbered.
     pub fn memory(&self) -> Result<WorldMemory, MapError> {
-        let seen: Vec<_> = self.instances.iter().map(|own| (own.method, &own.sight)).collect();
-        WorldMemory::new(&seen, self.boxes.nodes())
+        self.memory_with(self.nodes())
+    }
+
+    /// The same with room for so many nodes of the tree over them.
+    pub(super) fn memory_with(&self, nodes: usize) -> Result<WorldMemory, MapError> {
+        let seen: Vec<_> = self.instances.iter().map(|own| (own.method, &*own.sight)).collect();
+        WorldMemory::new(&seen, nodes)
+    }
+
+    /// Nodes of the tree over them.
+    pub(super) fn nodes(&self) -> usize {
+        self.boxes.nodes()
     }
 
     /// What `ray` meets first, or at all: of models that it meets at the same distance the first. Distances are those of the scene, each rounded from the t of its model; within a

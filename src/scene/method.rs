@@ -1,6 +1,6 @@
 //! Methods by name, and rays cast with them.
 
-use crate::block::{INSTANCE, Operation};
+use crate::block::{FIRST_SHARED, Operation};
 use crate::bvh::BvhError;
 use crate::format::Scene;
 use crate::method::bvh::NoStore;
@@ -66,11 +66,15 @@ impl Scene {
     /// As above, but for the name.
     ///
     /// # Panics
-    /// It has more operations of its own than there are numbers below [`INSTANCE`], or two of one name, or one with the name of a block.
+    /// It has more operations of its own than there are numbers below [`FIRST_SHARED`], or two of one name, or one with the name of a block.
     pub fn method_of(&self, registered: &'static Registered, knobs: &[(&str, &str)]) -> Result<SceneMethod, MethodError> {
         let works: HashSet<_> = registered.works.iter().map(|work| work.name).collect();
         let is_new = Operation::ALL.into_iter().all(|block| !works.contains(block.name()));
-        assert!(works.len() == registered.works.len() && works.len() <= INSTANCE as usize && is_new, "{}: its operations", registered.name);
+        assert!(
+            works.len() == registered.works.len() && works.len() <= FIRST_SHARED as usize && is_new,
+            "{}: its operations",
+            registered.name
+        );
         let mut turned = Knobs::default();
         for &(name, value) in knobs {
             let knob = registered.knobs.iter().find(|knob| knob.name == name);

@@ -2,10 +2,13 @@
 
 use super::progress::{Progress, Silent};
 use super::shot::Shot;
+use super::world_shot::WorldShot;
 use crate::format::Scene;
 use crate::method::Method;
+use crate::paths::World;
 use crate::picture::{Pops, Shader, Shading, popping};
 use crate::rays::{Camera, ModelSpace, Sight};
+use crate::step::MapError;
 use serde::Serialize;
 
 /// What flies where.
@@ -33,7 +36,7 @@ pub struct Flown {
     pub mean_level: f64,
     /// What the method chose for the frame.
     pub choices: Vec<(&'static str, String)>,
-    /// What popped since the frame before; none of the first.
+    /// What popped since the frame before; none of the first, nor among several models, which may move themselves.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub pops: Option<Pops>,
 }
@@ -63,6 +66,37 @@ pub fn fly<E>(what: &Fly<'_>, progress: &dyn Progress, each: &mut dyn FnMut(usiz
             pops,
         });
         before = Some(now);
+        bar.step(1);
+    }
+    Ok(flown)
+}
+
+/// Frames of several models, each a world of its own; `each` sees every frame. `progress` is told of frames.
+///
+/// # Errors
+/// The models have more lines than can be numbered; besides what `each` says: the flight ends there.
+pub fn fly_models<'a, E: From<MapError>>(
+    world_of: &dyn Fn(usize) -> World<'a>,
+    cameras: &[Camera],
+    progress: &dyn Progress,
+    each: &mut dyn FnMut(usize, &Shot) -> Result<(), E>,
+) -> Result<Vec<Flown>, E> {
+    let bar = progress.begin("flying", Some(cameras.len() as u64));
+    let mut flown: Vec<Flown> = Vec::new();
+    for (frame, camera) in cameras.iter().enumerate() {
+        let world = world_of(frame);
+        let shaders = world.shaders(Shading::Full);
+        let shot = WorldShot::of(&world, &shaders, [camera, camera], ("", &Silent))?.shot;
+        each(frame, &shot)?;
+        let moved = frame.checked_sub(1).map_or(0.0, |last| (camera.eye - cameras[last].eye).length());
+        flown.push(Flown {
+            frame,
+            eye: camera.eye.to_array(),
+            moved,
+            mean_level: shot.stats.mean_level,
+            choices: world.choices(),
+            pops: None,
+        });
         bar.step(1);
     }
     Ok(flown)

@@ -62,7 +62,7 @@ pub use error_time::{
     BuildTime, ErrorTimePlan, HostTime, Measure, Measured, ViewRow, document, error_time, error_time_part, error_time_pieces, in_machine,
 };
 pub use fault::{fault, fault_at};
-pub use fly::{Flown, Fly, fly};
+pub use fly::{Flown, Fly, fly, fly_models};
 pub use job_lines::{JobLine, JobLines, LinesError, aside};
 pub use jobs::{Generated, Jobs, Origin, RegionJob, SceneJobs, ViewJob};
 pub use means::{Means, Open};

@@ -1,7 +1,7 @@
 //! Descriptions of several models as one scene, as a user types them: `simulate` and `render` give of them what they give of a model, and what they refuse is one line.
 
 use image::RgbImage;
-use lodray_test_support::program::{Desk, FAILS, write_rays};
+use lodray_test_support::program::{Desk, FAILS, USAGE, write_rays};
 use serde_json::Value;
 use xxhash_rust::xxh3::xxh3_64;
 
@@ -215,6 +215,64 @@ fn pictures_are_compared_with_full_resolution() {
     desk.run_on(1, "render ten.toml --delta 0.3 --samples 4 -o alone");
     desk.run_on(3, "render ten.toml --delta 0.3 --samples 4 -o three");
     assert!(picture(&desk, "alone/image.png") == picture(&desk, "three/image.png"));
+}
+
+/// The ten, of which the row of eight goes forwards.
+fn moving() -> String {
+    ten().replacen("step = [1.3, 0.0, 2.0] }", "step = [1.3, 0.0, 2.0] }\nmoves = { by = [0.0, 0.0, 2.0] }", 1)
+}
+
+#[test]
+fn models_move_from_frame_to_frame() {
+    let desk = desk();
+    desk.write("moving.toml", &moving());
+    // Half of the way written out.
+    desk.write("half.toml", &ten().replacen("translate = [-2.0, 0.0, -1.0]", "translate = [-2.0, 0.0, 0.0]", 1));
+    assert_eq!(result(&desk, "moving.toml")["hits"], result(&desk, "ten.toml")["hits"]);
+    for method in ["lod", "bvh", "discrete", "cluster"] {
+        let all = result(&desk, &format!("moving.toml --frames 3 --turn 0 --method {method}"));
+        let hits =
+            [0.0, 0.5, 1.0].map(|time| result(&desk, &format!("moving.toml --time {time} --method {method}"))["hits"].as_u64().unwrap());
+        // What is chosen for the whole sequence may be a little finer than for a frame alone.
+        let (sum, alone) = (all["hits"].as_u64().unwrap(), hits.iter().sum::<u64>());
+        assert!(sum.abs_diff(alone) < 10 && hits[0] != hits[1] && hits[1] != hits[2], "{method}: {sum} {hits:?}");
+        assert_eq!(hits[1], result(&desk, &format!("half.toml --method {method}"))["hits"], "{method}");
+        // The tree over ten places, of five nodes, is built anew before all frames but the first, and eight places are written.
+        let frames = all["frames"].as_array().unwrap();
+        let stores = |frame: &Value| frame["before"]["stores"].as_u64();
+        let own = stores(&frames[0]);
+        assert!(
+            (own.is_none() || method == "cluster") && frames[1..].iter().all(|frame| stores(frame) >= Some(8 * 2 + 5 * 4)),
+            "{frames:?}"
+        );
+        assert!(method == "cluster" || frames[1..].iter().all(|frame| stores(frame) == Some(8 * 2 + 5 * 4)), "{frames:?}");
+        assert!(frames[1]["before"]["energy"].as_f64() > Some(0.0) && all["operations"]["instance_box"] == 2 * 10);
+        let still = result(&desk, &format!("ten.toml --frames 3 --turn 0 --method {method}"));
+        assert!(still["operations"].get("instance_box").is_none() && (method == "cluster" || still["frames"][1].get("before").is_none()));
+    }
+    // Pictures are those of their time; a flight has one for each frame.
+    for (name, args) in [("time", "moving.toml --time 0.5"), ("half", "half.toml")] {
+        desk.run(&format!("render {args} --shading full -o {name} --quiet"));
+    }
+    let flight = desk.json("fly moving.toml --frames 3 --size 48x32 -o flight");
+    assert_eq!((flight["frames"].as_array().map(Vec::len), flight.get("worst")), (Some(3), None));
+    let [time, half, flown] = ["time/image.png", "half/image.png", "flight/frame-00001.png"].map(|name| picture(&desk, name));
+    assert!(time == half && time == flown && flown != picture(&desk, "flight/frame-00000.png"));
+    // Paths see the same time, and pages and waveforms are made of what moves.
+    for (name, args) in [("now", "moving.toml --time 0.5"), ("written", "half.toml")] {
+        desk.run(&format!("paths {args} --samples 1 -o {name} --quiet"));
+    }
+    assert!(picture(&desk, "now/paths.png") == picture(&desk, "written/paths.png"));
+    desk.run("simulate moving.toml --frames 2 --turn 5 --report moving.html -o run --quiet");
+    assert!(desk.text("moving.html").contains("moving.toml, 10 models"));
+    for (args, words) in [
+        ("simulate moving.toml --frames 2 --time 0.5", "--time: is of one frame; several lie evenly from time 0 to time 1"),
+        ("fly moving.toml --time 0.5", "--time: is of one frame"),
+        ("render a.lod --time 0.5", "--time: goes with the description of several models"),
+    ] {
+        desk.refused(&format!("{args} -o new"), FAILS, &[words]);
+    }
+    desk.refused("render moving.toml --time 1.5 -o new", USAGE, &["'1.5' is not a time from 0 to 1"]);
 }
 
 #[test]

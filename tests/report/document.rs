@@ -3,7 +3,8 @@
 use lodray::picture::save_png;
 use lodray::report::error_time::*;
 use lodray_test_support::program::Desk;
-use std::path::Path;
+use std::fs;
+use std::path::{Path, PathBuf};
 
 /// `error-time` of the scene in `a.lod`, into the desk's own folder.
 pub fn of(desk: &Desk) -> ErrorTime {
@@ -11,6 +12,16 @@ pub fn of(desk: &Desk) -> ErrorTime {
         "error-time a.lod -o . --size 160x120 --error-size 80 --distances 0.7,2,6 --samples 1,4 --values delta=0.25,1,4 --most-samples 64 --no-host --within 0.0001,1 --quiet",
     );
     serde_json::from_str(&desk.text("error-time.json")).unwrap()
+}
+
+/// All files of a folder and its folders, by their paths within it; `within` is where it lies itself.
+pub fn below(folder: &Path, within: &Path) -> Vec<(PathBuf, Vec<u8>)> {
+    let entries = fs::read_dir(folder).unwrap().map(|entry| entry.unwrap());
+    let of_entry = |entry: fs::DirEntry| {
+        let (path, name) = (entry.path(), within.join(entry.file_name()));
+        if path.is_dir() { below(&path, &name) } else { vec![(name, fs::read(&path).unwrap())] }
+    };
+    entries.flat_map(of_entry).collect()
 }
 
 /// The same of `scenes` scenes at `distances` distances, with pictures of `side` that are hard to compress: for the weight of a large page.

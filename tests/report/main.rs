@@ -9,13 +9,29 @@ use lodray::report::error_time::{COSTS, ERRORS, ErrorTime, USUAL_COSTS, USUAL_ER
 use lodray::report::page::{Documents, PICTURE_BYTES, embed, page, template};
 use lodray_test_support::program::{Desk, FAILS, USAGE};
 use std::collections::HashSet;
+use std::path::{Path, PathBuf};
+use std::sync::OnceLock;
 
-/// A folder with a scene and its document.
+fn empty() -> Desk {
+    Desk::new(assert_cmd::cargo::cargo_bin!("lodray"))
+}
+
+/// A folder with a scene and its document. What is in it is made once for all tests.
 fn desk() -> (Desk, ErrorTime) {
-    let desk = Desk::new(assert_cmd::cargo::cargo_bin!("lodray"));
-    desk.run("generate terrain --levels 3 --base 8 --seed 2 -o a.lod");
-    let document = document::of(&desk);
-    (desk, document)
+    static MADE: OnceLock<(Vec<(PathBuf, Vec<u8>)>, ErrorTime)> = OnceLock::new();
+    let (files, document) = MADE.get_or_init(|| {
+        let desk = empty();
+        desk.run("generate terrain --levels 3 --base 8 --seed 2 -o a.lod");
+        let document = document::of(&desk);
+        (document::below(desk.folder(), Path::new("")), document)
+    });
+    let desk = empty();
+    for (name, bytes) in files {
+        let path = desk.folder().join(name);
+        std::fs::create_dir_all(path.parent().unwrap()).unwrap();
+        std::fs::write(path, bytes).unwrap();
+    }
+    (desk, document.clone())
 }
 
 #[test]
@@ -144,7 +160,7 @@ fn diagrams_and_tables_are_files_that_others_read() {
     assert!(std::str::from_utf8(&time.1).unwrap().contains('\u{d7}'));
     if let Some(folder) = std::env::var_os("LODRAY_SCREENSHOTS") {
         for (name, bytes) in diagrams(&document, &USUAL_ERRORS, &USUAL_COSTS).unwrap() {
-            std::fs::write(std::path::Path::new(&folder).join(name), bytes).unwrap();
+            std::fs::write(Path::new(&folder).join(name), bytes).unwrap();
         }
     }
     let table = csv(&document);
@@ -164,7 +180,7 @@ const OLDER: &str = "The screenshots are of an older page.";
 
 #[test]
 fn screenshots_are_of_this_page_or_the_document_says_that_they_are_older() {
-    let docs = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("docs");
+    let docs = Path::new(env!("CARGO_MANIFEST_DIR")).join("docs");
     let read = |name: &str| std::fs::read_to_string(docs.join(name)).unwrap();
     let made: serde_json::Value = serde_json::from_str(&read("images/report.json")).unwrap();
     let claims = format!("{:016x}", xxhash_rust::xxh3::xxh3_64(read("claims.md").as_bytes()));

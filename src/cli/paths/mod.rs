@@ -4,6 +4,7 @@ mod figures;
 mod machine;
 mod print;
 
+use super::aim::TimeArg;
 use super::args::{Change, Size, seed, whole};
 use super::cache::CacheArgs;
 use super::folder::{Overrule, RunFolder, one_run};
@@ -52,6 +53,8 @@ pub struct Args {
     /// Camera, by its name (default: the first)
     #[arg(long, value_name = "NAME")]
     camera: Option<String>,
+    #[command(flatten)]
+    time: TimeArg,
     /// Picture size in pixels, in place of the description's
     #[arg(long, value_name = "WxH")]
     size: Option<Size>,
@@ -109,7 +112,7 @@ fn starts(s: &str) -> Result<Starts, String> {
 
 /// The description with what the command line says in its place.
 fn overruled(args: &Args) -> anyhow::Result<SceneFile> {
-    let mut file = description(&args.scene)?;
+    let mut file = args.time.of(description(&args.scene)?);
     if let Some(Size(width, height)) = args.size {
         (file.picture.width, file.picture.height) = (width, height);
     }

@@ -4,7 +4,7 @@ mod files;
 mod report;
 mod several;
 
-use super::aim::OwnCamera;
+use super::aim::AimArgs;
 use super::args::CameraArgs;
 use super::bars::Bars;
 use super::cache::CacheArgs;
@@ -41,7 +41,7 @@ pub struct Args {
     #[command(flatten)]
     camera: CameraArgs,
     #[command(flatten)]
-    own_camera: OwnCamera,
+    aim: AimArgs,
     #[command(flatten)]
     cache: CacheArgs,
     /// Folder for the pictures
@@ -110,7 +110,7 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
     if made::is_description(&args.scene) {
         return several(args);
     }
-    args.own_camera.check()?;
+    args.aim.check()?;
     let (seen, mesh) = subjects(args)?;
     let camera = args.camera.camera(&seen.space, None)?;
     let samples = camera.with_samples(args.samples).context("--samples")?;
@@ -189,12 +189,12 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
 fn several(args: &Args) -> anyhow::Result<ExitCode> {
     anyhow::ensure!(args.mesh.is_none(), "--mesh: goes with one scene, and not with several models");
     anyhow::ensure!(!args.method.original, "--method original: is of one scene, and not of several models");
-    let Args { scene, method, camera, own_camera, cache, out, overrule, compare, shading, samples, .. } = args;
+    let Args { scene, method, camera, aim, cache, out, overrule, compare, shading, samples, .. } = args;
     let all = Several {
         path: scene,
         chosen: &method.chosen,
         camera,
-        own_camera,
+        aim,
         cache: &cache.cache(Some(out))?,
         compare: *compare,
         shading: *shading,

@@ -2,7 +2,7 @@
 
 use super::files::save;
 use super::report::{PerRay, Report, Seconds};
-use crate::cli::aim::{Aimed, OwnCamera};
+use crate::cli::aim::{AimArgs, Aimed};
 use crate::cli::args::CameraArgs;
 use crate::cli::bars::Bars;
 use crate::cli::comparison::Against;
@@ -25,7 +25,7 @@ pub struct Several<'a> {
     pub path: &'a Path,
     pub chosen: &'a Chosen,
     pub camera: &'a CameraArgs,
-    pub own_camera: &'a OwnCamera,
+    pub aim: &'a AimArgs,
     pub cache: &'a Cache,
     /// Compare with full resolution.
     pub compare: bool,
@@ -40,8 +40,8 @@ impl Several<'_> {
         let Self { path, chosen, shading, .. } = *self;
         let file = made::description(path)?;
         let models = made::model_files(path, &file)?;
-        let aimed = Aimed::load(path, file, chosen)?;
-        let camera = aimed.camera(path, self.own_camera, self.camera)?.camera(&aimed.space, None)?;
+        let aimed = Aimed::load(path, file, self.aim, chosen)?;
+        let camera = aimed.camera(path, self.aim, self.camera)?.camera(&aimed.space, None)?;
         let samples = camera.with_samples(self.samples).context("--samples")?;
         let inputs: Vec<&Path> = std::iter::once(path).chain(models.iter().map(PathBuf::as_path)).collect();
         let folder = open(&inputs)?;
@@ -49,7 +49,7 @@ impl Several<'_> {
 
         let begun = Instant::now();
         let methods = made::methods(&aimed.file, &aimed.scenes, chosen, self.cache)?;
-        let world = made::seen(&aimed.file, &aimed.scenes, &methods, &[camera], chosen.delta());
+        let world = made::seen(&aimed.file, &aimed.scenes, &methods, &[camera], chosen.delta()).remove(0);
         let building = begun.elapsed().as_secs_f64();
         let begun = Instant::now();
         let shaders = world.shaders(shading);
@@ -98,7 +98,7 @@ impl Several<'_> {
     fn truth(&self, aimed: &Aimed, cameras: [&Camera; 2], drawn: &WorldShot) -> anyhow::Result<(WorldShot, Comparison)> {
         // Its hits are exact where it tolerates nothing.
         let methods = made::methods(&aimed.file, &aimed.scenes, &Chosen::plain(&lod::METHOD), self.cache)?;
-        let world = made::seen(&aimed.file, &aimed.scenes, &methods, &[*cameras[0]], f64::INFINITY);
+        let world = made::seen(&aimed.file, &aimed.scenes, &methods, &[*cameras[0]], f64::INFINITY).remove(0);
         let shaders = world.shaders(self.shading);
         let full = WorldShot::of(&world, &shaders, cameras, (Against::FullResolution.name(), &Bars))
             .with_context(|| self.path.display().to_string())?;

@@ -6,7 +6,7 @@ mod several;
 mod table;
 mod units;
 
-use super::aim::OwnCamera;
+use super::aim::AimArgs;
 use super::args::{CameraArgs, Change};
 use super::cache::CacheArgs;
 use super::common::is_quiet;
@@ -59,11 +59,11 @@ pub struct Args {
     #[command(flatten)]
     camera: CameraArgs,
     #[command(flatten)]
-    own_camera: OwnCamera,
+    aim: AimArgs,
     #[command(flatten)]
     frames: FrameArgs,
     /// File of rays in place of a camera's (.npy); `cast --help` has the columns. Each starts at its own origin; one that names an earlier ray waits for that
-    #[arg(long, value_name = "FILE", conflicts_with_all = CameraArgs::ids().into_iter().chain(FrameArgs::ids()).chain(OwnCamera::ids()))]
+    #[arg(long, value_name = "FILE", conflicts_with_all = CameraArgs::ids().into_iter().chain(FrameArgs::ids()).chain(AimArgs::camera_ids()))]
     rays: Option<PathBuf>,
     #[command(flatten)]
     cache: CacheArgs,
@@ -186,7 +186,7 @@ fn one(
     targets: &[Target],
     open: impl FnOnce() -> anyhow::Result<Option<RunFolder>>,
 ) -> anyhow::Result<(Option<RunFolder>, Vec<Outcome>)> {
-    args.own_camera.check()?;
+    args.aim.check()?;
     let chosen = &args.method.0;
     let scene = with_input(open_any(&args.scene)?, &args.scene, &args.input, [chosen])?;
     let space = ModelSpace::of(&scene);
@@ -218,8 +218,8 @@ fn several(
 ) -> anyhow::Result<(Option<RunFolder>, Vec<Outcome>)> {
     anyhow::ensure!(args.plan.is_none(), "--plan: is of one scene, and not of several models");
     anyhow::ensure!(args.input.mesh.is_empty(), "--mesh: goes with one scene, and not with several models");
-    let Args { scene, method, rays, camera, own_camera, frames, cache, out, .. } = args;
+    let Args { scene, method, rays, camera, aim, frames, cache, out, .. } = args;
     let cache = cache.cache(out.as_deref())?;
-    let all = Several { path: scene, chosen: &method.0, rays: rays.as_ref(), camera, own_camera, frames, cache: &cache };
+    let all = Several { path: scene, chosen: &method.0, rays: rays.as_ref(), camera, aim, frames, cache: &cache };
     all.run(file, targets, open)
 }

@@ -1,6 +1,6 @@
 //! A frame of several models.
 
-use crate::cli::aim::{Aimed, OwnCamera};
+use crate::cli::aim::{AimArgs, Aimed};
 use crate::cli::args::CameraArgs;
 use crate::cli::bars::Bars;
 use crate::cli::frames::FrameArgs;
@@ -20,7 +20,7 @@ pub struct Several<'a> {
     /// A file of rays, in place of a camera's.
     pub rays: Option<&'a PathBuf>,
     pub camera: &'a CameraArgs,
-    pub own_camera: &'a OwnCamera,
+    pub aim: &'a AimArgs,
     pub frames: &'a FrameArgs,
     pub cache: &'a Cache,
 }
@@ -34,16 +34,17 @@ impl Several<'_> {
         open: impl FnOnce() -> anyhow::Result<T>,
     ) -> anyhow::Result<(T, Vec<Outcome>)> {
         let Self { path, chosen, .. } = *self;
-        let aimed = Aimed::load(path, file, chosen)?;
+        let aimed = Aimed::load(path, file, self.aim, chosen)?;
+        self.aim.check_frames(self.frames.count())?;
         let rays = match self.rays {
             Some(rays) => PassRays::File(RayFile::read(rays)?, rays.clone()),
-            None => self.frames.rays(&aimed.camera(path, self.own_camera, self.camera)?, &aimed.space)?,
+            None => self.frames.rays(&aimed.camera(path, self.aim, self.camera)?, &aimed.space)?,
         };
         let opened = open()?;
         let scene = made::facts(path, &aimed.file, &aimed.scenes)?;
         let methods = made::methods(&aimed.file, &aimed.scenes, chosen, self.cache)?;
-        let world = made::seen(&aimed.file, &aimed.scenes, &methods, rays.cameras(), chosen.delta());
-        let pass = WorldPass { world: &world, scene, registered: chosen.method, knobs: &chosen.knobs, rays };
+        let worlds = made::seen(&aimed.file, &aimed.scenes, &methods, rays.cameras(), chosen.delta());
+        let pass = WorldPass { worlds: &worlds, scene, registered: chosen.method, knobs: &chosen.knobs, rays };
         let outcomes = simulate_models(&pass, targets, &Bars).with_context(|| path.display().to_string())?;
         Ok((opened, outcomes))
     }

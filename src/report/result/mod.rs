@@ -34,7 +34,7 @@ pub(in crate::report) use stalls::part_of;
 pub use traffic::{KindResult, LevelBytes, TrafficResult};
 pub use units::{BlockResult, UnitsResult};
 
-use crate::block::INSTANCE;
+use crate::block::FIRST_SHARED;
 use crate::machine::MachineError;
 use crate::method::{Computing, Registered};
 use crate::run::Compute;
@@ -150,7 +150,7 @@ impl SimResult {
             works: of.works,
         };
         let l2 = CacheResult::new(&counts.l2, run.cycles).explained(run.l2_causes, machine.l2.lines() / u64::from(machine.l2.ways));
-        let unknown: u64 = run.operations.works()[method.works.len()..INSTANCE as usize].iter().sum();
+        let unknown: u64 = run.operations.works()[method.works.len()..FIRST_SHARED as usize].iter().sum();
         assert_eq!(unknown, 0, "{}: operations that it does not have", method.name);
         let mut prices = model.prices(&energy_counts);
         let blocks = run.operations.iter().filter(|&(_, n)| n > 0).map(|(o, n)| (hardware.block(o).name().to_owned(), n));

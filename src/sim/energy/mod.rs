@@ -24,7 +24,7 @@ pub use geometry::{Geometry, Level};
 pub use prices::Prices;
 pub use report::EnergyReport;
 
-use crate::block::{INSTANCE, INSTANCE_TRANSFORM, Operation, Operations, Work};
+use crate::block::{FIRST_SHARED, Operation, Operations, SHARED_WORKS, Work};
 use crate::hardware::Hardware;
 use crate::machine::{Breach, Machine, MachineError};
 use crate::method::MethodUnit;
@@ -56,11 +56,11 @@ pub struct EnergyCounts {
 }
 
 impl EnergyCounts {
-    /// Operations that no block does, and how often they occurred: the method's own, and those of rays through several models.
+    /// Operations that no block does, and how often they occurred: the method's own, and those of scenes of several models.
     pub fn works(&self) -> impl Iterator<Item = (&'static Work, u64)> + '_ {
         let counts = self.operations.works();
-        let shared = (&INSTANCE_TRANSFORM, counts[INSTANCE as usize]);
-        self.works.iter().zip(counts.iter().copied()).chain([shared]).filter(|&(_, count)| count > 0)
+        let shared = SHARED_WORKS.iter().zip(counts[FIRST_SHARED as usize..].iter().copied());
+        self.works.iter().zip(counts.iter().copied()).chain(shared).filter(|&(_, count)| count > 0)
     }
 }
 
