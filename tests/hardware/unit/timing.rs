@@ -127,7 +127,7 @@ impl Seen {
     }
 }
 
-/// One model by all hardware that is for it, each under three of the traffics in turns: over all models each hardware meets all of them. `scripts/nightly` (`LODRAY_CYCLES`) takes all.
+/// One model by all hardware that is for it, each under two of the traffics in turns: over all models each hardware meets all of them. `scripts/nightly` (`LODRAY_CYCLES`) takes all.
 fn every_cycle_of(number: usize, name: &str, h: &Hierarchy) -> Seen {
     let mut seen = Seen::default();
     let any = any_rays(h, 40, number as u64);
@@ -143,8 +143,8 @@ fn every_cycle_of(number: usize, name: &str, h: &Hierarchy) -> Seen {
         let memory = SceneMemory::new(image, 1000);
         let rays: Vec<Ray> = any.iter().enumerate().map(|(k, ray)| ray_for(&config, &coarsened(ray, zeros), k)).collect();
         let batch = steps_of(image, &rays);
-        let (each, taken) = (traffics(), if std::env::var_os("LODRAY_CYCLES").is_some() { traffics().len() } else { 3 });
-        for traffic in each.iter().cycle().skip(3 * number).take(taken) {
+        let (each, taken) = (traffics(), if std::env::var_os("LODRAY_CYCLES").is_some() { traffics().len() } else { 2 });
+        for traffic in each.iter().cycle().skip(2 * number).take(taken) {
             let what = format!("{name}, {config:?}, {traffic:?}");
             let mut model = Noting::new(TraversalUnit::new(config, memory.config()));
             let expected = model.run(&memory, traffic, &rays);
