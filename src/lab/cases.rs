@@ -4,7 +4,7 @@ use super::model::Model;
 use super::rays::{Aim, BOUNCES, Bounce, Cones, PIXEL, Views};
 use super::stiff::{
     Scale, balls, both, coincident, edges_exact, flat_parts, flats, levels, million, needles, non_manifold, offset, one_triangle, open,
-    rebuilds, scaled, scales, sheets, slivers, spikes, turned, zero_area,
+    rebuilds, refits, scaled, scales, sheets, slivers, spikes, turned, zero_area,
 };
 use crate::format::SceneError;
 
@@ -27,6 +27,10 @@ pub struct Case {
     pub every: u64,
     /// Its part of all rays: 32, or less where a ray takes long.
     pub share: u64,
+    /// Rays go together, in packets of [`LANES`](super::judge::LANES).
+    pub is_packed: bool,
+    /// Rays come from a scene in which the model stands somewhere: stretched, mirrored, far away.
+    pub is_placed: bool,
 }
 
 /// Every how many rays of a closed model the golden traverser is asked.
@@ -38,8 +42,18 @@ const LENS: &[f64] = &[PIXEL];
 const USUAL: Views = Views { distances: &[1.2, 2.5, 20.0], deltas: &[0.25, 1.0, 8.0], tangents: LENS };
 /// Close enough to see single units.
 const CLOSE: Views = Views { distances: &[1e-5, 1e-3, 1e-1, 2.5], ..USUAL };
-const CLOSED: Case =
-    Case { name: "", about: "", models: edges_exact, aims: ALL, cones: Cones::Mixed, views: USUAL, every: SAMPLE, share: 32 };
+const CLOSED: Case = Case {
+    name: "",
+    about: "",
+    models: edges_exact,
+    aims: ALL,
+    cones: Cones::Mixed,
+    views: USUAL,
+    every: SAMPLE,
+    share: 32,
+    is_packed: false,
+    is_placed: false,
+};
 const OPEN: Case = Case { every: 1, share: 1, aims: OPEN_AIMS, ..CLOSED };
 const OPEN_AIMS: &[Aim] =
     &[Aim::Edges, Aim::View, Aim::Grazing, Aim::Inside, Aim::AlongEdge, Aim::AxisParallel, Aim::BoxFace, Aim::OnSurface];
@@ -131,6 +145,29 @@ pub const CASES: &[Case] = &[
     Case { name: "open", about: "open sheets, also folded ones", models: open, ..OPEN },
     Case { name: "non-manifold", about: "five triangles on an edge, loose and turned ones", models: non_manifold, ..OPEN },
     Case { name: "rebuilds", about: "rebuilt again and again, points jump by the whole box", models: rebuilds, share: 8, ..CLOSED },
+    Case {
+        name: "refits",
+        about: "refitted one after the other: to a plane, a line, a point, a million times as long, to corners of the box, and back",
+        models: refits,
+        share: 8,
+        ..CLOSED
+    },
+    Case { name: "packets", about: "32 rays together, a pencil or each from elsewhere", models: both, is_packed: true, ..CLOSED },
+    Case {
+        name: "packets-stiff",
+        about: "the same on needles, and on triangles two and four times in one place",
+        models: |s| Ok(needles(s)?.into_iter().chain(coincident(s)?).collect()),
+        is_packed: true,
+        share: 8,
+        ..CLOSED
+    },
+    Case {
+        name: "instances",
+        about: "rays from scenes in which the model is up to 1e6 times as long in one direction, 1e-6 to 1e6 as large, mirrored, and up to a million sizes away",
+        models: both,
+        is_placed: true,
+        ..CLOSED
+    },
     Case { name: "leave", about: "paths of up to 8 rays from hits anywhere", models: both, aims: ALL_PATHS, ..PATHS },
     Case {
         name: "leave-edges",

@@ -11,7 +11,7 @@ use super::model::Model;
 use super::rays::Shot;
 use crate::block::start_test::Below;
 use crate::block::tri_test;
-use crate::golden::Exact;
+use crate::golden::{Crossings, Exact};
 use crate::lab::crack::Closedness;
 use crate::method::lod::{LodImage, LodTraverser};
 use crate::method::{ClosestHit, Hit, HitSink, TriangleId};
@@ -22,6 +22,9 @@ use std::panic::{AssertUnwindSafe, catch_unwind};
 
 /// Stated widths and plain integers are checked at run time in this build, so that an overflow is seen where it happens.
 pub const WIDTHS_CHECKED: bool = cfg!(debug_assertions);
+
+/// Rays of a packet.
+pub(super) const LANES: u64 = 32;
 
 /// What rays have shown.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
@@ -89,6 +92,16 @@ impl Tally {
     }
 }
 
+impl Tally {
+    /// Counts what is missing of the crossings that the golden traverser has, and what is too much.
+    fn crossed(&mut self, seen: &Seen, wanted: Crossings) {
+        for (found, wanted) in [(seen.front, wanted.front), (seen.back, wanted.back)] {
+            self.misses += u64::from(wanted.saturating_sub(found));
+            self.doubles += u64::from(found.saturating_sub(wanted));
+        }
+    }
+}
+
 /// All crossings of a ray.
 #[derive(Clone, Copy, Debug, Default)]
 struct Seen {
@@ -96,6 +109,12 @@ struct Seen {
     back: u32,
     /// Set of the levels met.
     levels: u32,
+}
+
+impl Seen {
+    fn winding(&self) -> i64 {
+        i64::from(self.front) - i64::from(self.back)
+    }
 }
 
 impl HitSink for Seen {
@@ -145,13 +164,73 @@ impl<'a> Judge<'a> {
 
     /// Shoots and judges ray `number`.
     pub fn shoot(&mut self, number: u64, shot: &Shot) -> Tally {
-        // Of rays that are compared with the golden traverser and of all others, every other one.
-        self.turn = ((number / self.every.max(2)) ^ number) as usize & 1;
+        self.turn = self.turn_of(number);
         guarded(number, || {
             let mut tally = Tally { rays: 1, ..Tally::default() };
             self.judge(number, shot, &mut tally);
             tally
         })
+    }
+
+    /// Shoots and judges the rays of packet `number`, at most [`LANES`], which go together.
+    pub fn shoot_together(&mut self, number: u64, shots: &[Shot]) -> Tally {
+        self.turn = self.turn_of(number);
+        let tally = guarded(number * LANES, || {
+            let rays: Vec<Ray> = shots.iter().map(|shot| shot.ray).collect();
+            let all = self.traverser().trace_packet(&rays, &mut NoSteps, rays.iter().map(|_| Seen::default()));
+            let balance: Vec<_> = shots.iter().zip(&all).map(|(shot, seen)| self.balance(shot, seen)).collect();
+            let is_off = balance.iter().any(|off| off.unwrap_or(0) != 0);
+            let levels = self.model.hierarchy.levels;
+            let hits = (is_off || number.is_multiple_of(self.every))
+                .then(|| self.traverser().trace_packet(&rays, &mut NoSteps, rays.iter().map(|_| ClosestHit::new(levels))));
+            let mut sum = Tally::default();
+            for (k, (seen, off)) in all.iter().zip(balance).enumerate() {
+                let mut tally = Tally {
+                    crossing: u64::from(seen.front + seen.back > 0),
+                    mixed_levels: u64::from(seen.levels.count_ones() > 1),
+                    balanced: u64::from(off.is_some()),
+                    compared: u64::from(hits.is_some()),
+                    ..Tally::default()
+                };
+                if let Some(hits) = &hits {
+                    tally.crossed(seen, self.golden.crossings_in_packet(&rays[k], &rays));
+                    let wanted = self.golden.trace_in_packet(&rays[k], &rays);
+                    tally.different = u64::from(hits[k].record().as_ref().map(plain) != wanted);
+                }
+                if off.unwrap_or(0) != 0 && tally.misses + tally.doubles == 0 {
+                    tally.misses = 1;
+                }
+                sum = sum.with(&tally);
+            }
+            sum
+        });
+        Tally { rays: shots.len() as u64, ..tally }
+    }
+
+    /// The traverser for ray or packet `number`: of those that are compared with the golden traverser and of all others, every other one.
+    fn turn_of(&self, number: u64) -> usize {
+        ((number / self.every.max(2)) ^ number) as usize & 1
+    }
+
+    /// Whether it starts outside of the model's box.
+    fn is_outside(&self, ray: &Ray) -> bool {
+        let (origin, lo, hi) = (ray.origin.get(), self.model.space.lo, self.model.space.hi);
+        (0..3).any(|k| origin[k] < i64::from(lo[k]) || origin[k] > i64::from(hi[k]))
+    }
+
+    /// How far from balance it is that so many more crossings go in than out; `None` if they need not balance.
+    fn off(&self, more: i64) -> Option<u32> {
+        let more = more.unsigned_abs() as u32; // counts of 32 bits
+        match self.model.closed {
+            Closedness::Open => None,
+            Closedness::Oriented => Some(more),
+            Closedness::Even => Some(more % 2),
+        }
+    }
+
+    /// How far the crossings of a ray from outside are from balance; `None` if it starts within the box, or they need not balance.
+    fn balance(&self, shot: &Shot, seen: &Seen) -> Option<u32> {
+        if self.is_outside(&shot.ray) { self.off(seen.winding()) } else { None }
     }
 
     fn judge(&mut self, number: u64, shot: &Shot, tally: &mut Tally) {
@@ -178,39 +257,22 @@ impl<'a> Judge<'a> {
 
     /// How far the crossings are from balance; `None` if they need not balance.
     fn imbalance(&mut self, shot: &Shot, seen: &Seen) -> Option<u32> {
-        let oriented = match self.model.closed {
-            Closedness::Open => return None,
-            Closedness::Oriented => true,
-            Closedness::Even => false,
-        };
-        let winding = |s: &Seen| i64::from(s.front) - i64::from(s.back);
-        let origin = shot.ray.origin.get();
-        let (lo, hi) = (self.model.space.lo, self.model.space.hi);
-        let outside = (0..3).any(|k| origin[k] < i64::from(lo[k]) || origin[k] > i64::from(hi[k]));
-        let difference = if outside {
-            winding(seen)
-        } else {
-            let [x, y, z] = shot.other.filter(|_| shot.ray.cone.slope.get() == 0)?;
-            let other = self.seen(&Ray { direction: Direction::new(x, y, z), ..shot.ray });
-            let difference = winding(seen) - winding(&other);
-            // On an edge or vertex a ray may meet none of the triangles around: only the exact surface can tell.
-            if difference != 0 && self.golden.starts_on_surface(&shot.ray) {
-                return None;
-            }
-            difference
-        };
-        let difference = difference.unsigned_abs() as u32; // counts of 32 bits
-        Some(if oriented { difference } else { difference % 2 })
+        if self.model.closed == Closedness::Open || self.is_outside(&shot.ray) {
+            return self.balance(shot, seen);
+        }
+        let [x, y, z] = shot.other.filter(|_| shot.ray.cone.slope.get() == 0)?;
+        let other = self.seen(&Ray { direction: Direction::new(x, y, z), ..shot.ray });
+        let difference = seen.winding() - other.winding();
+        // On an edge or vertex a ray may meet none of the triangles around: only the exact surface can tell.
+        if difference != 0 && self.golden.starts_on_surface(&shot.ray) {
+            return None;
+        }
+        self.off(difference)
     }
 
     fn compare(&mut self, shot: &Shot, seen: &Seen, tally: &mut Tally) {
         tally.compared = 1;
-        let wanted = self.golden.crossings(&shot.ray);
-        let (found, wanted) = ([seen.front, seen.back], [wanted.front, wanted.back]);
-        for (found, wanted) in found.into_iter().zip(wanted) {
-            tally.misses += u64::from(wanted.saturating_sub(found));
-            tally.doubles += u64::from(found.saturating_sub(wanted));
-        }
+        tally.crossed(seen, self.golden.crossings(&shot.ray));
         let mut closest = ClosestHit::new(self.model.hierarchy.levels);
         self.traverser().trace(&shot.ray, &mut NoSteps, &mut closest);
         let hit = closest.record();

@@ -12,6 +12,7 @@ mod judge;
 mod measure;
 mod model;
 mod paths;
+mod placed;
 mod rays;
 mod shapes;
 mod stiff;

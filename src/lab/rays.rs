@@ -227,6 +227,24 @@ pub fn shot(model: &Model, aim: Aim, cones: Cones, views: &Views, random: &mut R
     Some(Shot { ray, view: None, other })
 }
 
+/// A ray of a pencil: its origin some units off another's, at a model's box or outside of it.
+pub(super) fn beside(model: &Model, first: &Shot, random: &mut Random) -> Shot {
+    let spread = 1u64 << random.below(17);
+    let (lo, hi) = (model.space.lo, model.space.hi);
+    let off = first.ray.origin.get();
+    let origin: [i64; 3] = std::array::from_fn(|k| {
+        let moved = off[k] + random.within(spread);
+        // Not across a face: whoever starts outside of the box stays there.
+        match off[k] {
+            v if v < i64::from(lo[k]) => moved.min(i64::from(lo[k]) - 1),
+            v if v > i64::from(hi[k]) => moved.max(i64::from(hi[k]) + 1),
+            _ => moved,
+        }
+        .clamp(1 - (1 << 31), (1 << 31) - 1)
+    });
+    Shot { ray: Ray { origin: Point::new(origin[0], origin[1], origin[2]), ..first.ray }, view: None, other: None }
+}
+
 fn any_cone(model: &Model, cones: Cones, random: &mut Random) -> Cone {
     match cones {
         Cones::Mixed => {

@@ -2,7 +2,7 @@
 
 use super::model::Model;
 use super::shapes::{Base, Place, bipyramid, bumpy, cube, fan, flat, octahedron, sheet, stretched, surface, tetrahedron, together};
-use crate::format::SceneError;
+use crate::format::{RefitOptions, SceneError};
 use crate::mesh::procedural::{self, Options, Scene};
 use crate::mesh::{BoundKind, Surface, quantise};
 use crate::num::{Random, VertexForm};
@@ -239,6 +239,34 @@ pub(super) fn rebuilds(scale: Scale) -> Result<Vec<Model>, SceneError> {
         })
     };
     list((0..count).map(|n| (format!("rebuild {n}"), now_and_then_flat(n, jump(n)))))
+}
+
+/// Models whose vertices jump, each from where the one before left them.
+pub(super) fn refits(scale: Scale) -> Result<Vec<Model>, SceneError> {
+    let count = if scale == Scale::Small { 6 } else { 18 };
+    let mut all = Vec::new();
+    for form in VertexForm::ALL {
+        let rest = Model::of_surface("at rest", &surface(3, &octahedron(), bumpy(0.3, 1)), form)?;
+        let mut refit = rest.scene.refitting().map_err(|error| SceneError::Build(error.to_string()))?;
+        let (first, mut random) = (refit.positions(), Random::of(77, form as u64));
+        for n in 0..count {
+            let mut move_to = |p: &[f64; 3]| {
+                let noise: [f64; 3] = std::array::from_fn(|_| random.signed());
+                match n % 6 {
+                    0 => [p[0], p[1], 0.25],
+                    1 => noise.map(f64::signum),
+                    2 => [1e6 * p[0], p[1] + 1e-3 * noise[1], p[2]],
+                    3 => [p[0], 0.5 * p[0], 2.0 * p[0]],
+                    4 => [0, 1, 2].map(|k| p[k] + 0.02 * noise[k]),
+                    _ => [0.5, 0.25, p[2].signum()],
+                }
+            };
+            let positions: Vec<_> = first.iter().map(&mut move_to).collect();
+            let moved = refit.move_to(&positions, RefitOptions::default()).map_err(|error| SceneError::Build(error.to_string()))?;
+            all.push(Model::of_scene(format!("refit {n}, {} vertices", form.name()), moved.clone()));
+        }
+    }
+    Ok(all)
 }
 
 /// A rebuild in ten leaves all points where they are: the next one jumps from there.

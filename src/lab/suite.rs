@@ -1,9 +1,10 @@
 //! Runs cases: rays in parallel, tallies in order.
 
 use super::cases::Case;
-use super::judge::{Judge, Tally, WIDTHS_CHECKED};
+use super::judge::{Judge, LANES, Tally, WIDTHS_CHECKED};
 use super::model::Model;
-use super::rays::{Aim, shot};
+use super::placed::placed;
+use super::rays::{Aim, beside, shot};
 use super::stiff::Scale;
 use crate::format::SceneError;
 use crate::golden::Exact;
@@ -100,18 +101,36 @@ pub fn shoot_batches(case: &Case, models: &[Model], rays: u64, batches: Range<u6
         let mut judge = Judge::new(model, &golden[at], every);
         let end = rays.min((batch + 1) * BATCH);
         let mut sum = Tally::default();
-        for number in batch * BATCH..end {
+        let drawn = |number: u64| {
             let mut random = Random::of(seed, number);
             let aim = case.aims[random.below(case.aims.len() as u64) as usize];
-            match shot(model, aim, case.cones, &case.views, &mut random) {
-                Some(shot) => {
-                    sum = sum.with(&match aim {
-                        Aim::Leaving(_, bounces) => judge.follow(number, &shot, bounces, case.cones, &mut random),
-                        _ => judge.shoot(number, &shot),
-                    });
+            let shot = shot(model, aim, case.cones, &case.views, &mut random);
+            (aim, if case.is_placed { shot.and_then(|shot| placed(model, &shot, &mut random)) } else { shot }, random)
+        };
+        let mut number = batch * BATCH;
+        while number < end {
+            let count = if case.is_packed { end.min(number + LANES) - number } else { 1 };
+            if case.is_packed {
+                // A pencil, or rays each from elsewhere.
+                let mut random = Random::of(seed, !number);
+                let first = drawn(number).1.filter(|_| random.below(2) == 0);
+                let shots = (number..number + count).filter_map(|own| match &first {
+                    Some(first) => Some(beside(model, first, &mut random)),
+                    None => drawn(own).1,
+                });
+                let shots: Vec<_> = shots.collect();
+                sum = sum.with(&judge.shoot_together(number / LANES, &shots));
+                sum.rays += count - shots.len() as u64;
+            } else {
+                match drawn(number) {
+                    (Aim::Leaving(_, bounces), Some(shot), mut random) => {
+                        sum = sum.with(&judge.follow(number, &shot, bounces, case.cones, &mut random));
+                    }
+                    (_, Some(shot), _) => sum = sum.with(&judge.shoot(number, &shot)),
+                    (_, None, _) => sum.rays += 1, // it misses the model's box, and so the model
                 }
-                None => sum.rays += 1, // it misses the model's box, and so the model
             }
+            number += count;
         }
         progress(end - batch * BATCH);
         sum

@@ -1,5 +1,6 @@
 //! Where a model stands in a scene: any affine map that has an inverse.
 
+use crate::rays::Query;
 use glam::{DMat3, DVec3, EulerRot};
 
 /// Where a model is put: turned, stretched, mirrored, moved. Written as `scale * turn`, the scale being the largest stretch of any direction, so that `turn` stretches none.
@@ -99,13 +100,25 @@ impl Pose {
         if self.is_rigid() { 1.0 } else { direction.length() }
     }
 
+    /// A ray of the scene, its direction of length 1, as the model has it; and how long in the scene a step of its t is.
+    pub fn enter(&self, ray: &Query) -> (Query, f64) {
+        let direction = self.direction(DVec3::from_array(ray.direction));
+        // Of the scene's lengths along the ray and across, how long they are in the model.
+        let pace = self.pace(direction);
+        let scale = self.scale / pace;
+        let own = Query::new(self.place(DVec3::from_array(ray.origin)).to_array(), direction.to_array())
+            .with_cone(ray.radius / self.scale, ray.tan_theta / pace)
+            .between(ray.t_min / scale, ray.t_max / scale);
+        (Query { any: ray.any, ..own }, scale)
+    }
+
     /// A place of the model in the scene.
     pub fn out(&self, p: DVec3) -> DVec3 {
         self.turn * p * self.scale + self.translate
     }
 
     /// A way of the model in the scene, but for the scale.
-    pub(super) fn way(&self, d: DVec3) -> DVec3 {
+    pub fn way(&self, d: DVec3) -> DVec3 {
         self.turn * d
     }
 

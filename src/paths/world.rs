@@ -314,18 +314,15 @@ impl<'a> World<'a> {
                 Starts::Independent => own_from = own_from.map(|from| Departure { prior: None, ..from }),
                 Starts::Offset(_) => own_from = None,
             }
-            let direction = own.pose.direction(ray.direction);
-            // Of the scene's lengths along the ray and across, how long they are in the model.
-            let pace = own.pose.pace(direction);
-            let scale = own.pose.scale() / pace;
             let farthest = best.map_or(ray.t_max, |best| best.distance);
-            let query = Query {
+            let of_scene = Query {
                 any: ray.any,
-                ..Query::new(own.pose.place(origin).to_array(), direction.to_array())
-                    .with_cone(ray.cone.radius / own.pose.scale(), ray.cone.spread / pace)
+                ..Query::new(origin.to_array(), ray.direction.to_array())
+                    .with_cone(ray.cone.radius, ray.cone.spread)
                     // What is as far as the best is rounded once more on its way to steps: a hair farther, and the comparison below decides.
-                    .between(ray.t_min / scale, farthest * (1.0 + 1e-12) / scale)
+                    .between(ray.t_min, farthest * (1.0 + 1e-12))
             };
+            let (query, scale) = own.pose.enter(&of_scene);
             let landing = match heard {
                 Some(heard) => tracer.enter(&query, own_from.as_ref(), &mut heard.memory.steps_of(k, heard.steps)),
                 None => tracer.follow(&query, own_from.as_ref(), None),

@@ -203,7 +203,7 @@ fn no_ray_escapes_a_closed_instance() {
         let world = World::new(vec![Instance::for_any_ray(&scene, &*method, pose, 1.0)], Starts::Exact);
         let centre = pose.out(DVec3::ZERO);
         let inside = |k: usize| {
-            let towards = if k % 2 == 0 {
+            let towards = if k.is_multiple_of(2) {
                 vector(&mut rng)
             } else {
                 // A corner of some full-resolution triangle, or the middle of one of its sides, where it stands.

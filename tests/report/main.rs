@@ -16,9 +16,12 @@ fn empty() -> Desk {
     Desk::new(assert_cmd::cargo::cargo_bin!("lodray"))
 }
 
+/// Files by their paths.
+type Files = Vec<(PathBuf, Vec<u8>)>;
+
 /// A folder with a scene and its document. What is in it is made once for all tests.
 fn desk() -> (Desk, ErrorTime) {
-    static MADE: OnceLock<(Vec<(PathBuf, Vec<u8>)>, ErrorTime)> = OnceLock::new();
+    static MADE: OnceLock<(Files, ErrorTime)> = OnceLock::new();
     let (files, document) = MADE.get_or_init(|| {
         let desk = empty();
         desk.run("generate terrain --levels 3 --base 8 --seed 2 -o a.lod");
