@@ -13,14 +13,14 @@ ROOT = Path(__file__).resolve().parent.parent
 SCENES = ["forest", "street", "wall"]
 # Each method with the knob that decides what is seen, and its settings from fine to coarse.
 METHODS = {
-    "lod": ("--delta", [0.25, 0.5, 1, 2, 4, 8]),
-    "discrete": ("--delta", [0.25, 0.5, 1, 2, 4, 8]),
-    "cluster": ("--error", [0.125, 0.25, 0.5, 1, 2, 4]),
+    "lod": ("--delta", [0.5, 1, 2, 4]),
+    "discrete": ("--delta", [0.5, 1, 2, 4]),
+    "cluster": ("--error", [0.25, 0.5, 1, 2]),
     "bvh": (None, [None]),
     "bvh6": (None, [None]),
 }
-# Mean errors, in pixels, that a method may have at most.
-WANTED = [0.125, 0.25, 0.5, 1]
+# Errors, in pixels, that 99 of 100 hits may have at most. Means are of no use here: a few rays along the ground, at an outline, meet another surface thousands of pixels away.
+WANTED = [0.25, 0.5, 1, 2]
 
 
 def measured(args, scene, method, knob, value):
@@ -36,15 +36,15 @@ def rows_of(args, scene):
     runs = {method: [measured(args, scene, method, knob, value) for value in values] for method, (knob, values) in METHODS.items()}
     for error in WANTED:
         # The cheapest in time of those whose error is no larger.
-        best = {method: min((run for run in own if run["mean"] <= error), key=lambda run: run["cycles"], default=None) for method, own in runs.items()}
+        best = {method: min((run for run in own if run["most"] <= error), key=lambda run: run["cycles"], default=None) for method, own in runs.items()}
         ours = best["lod"]
         for method, run in best.items():
             if run is None:
-                yield [scene, f"{error:g}", method, "cannot", *["-"] * 6]
+                yield [scene, f"{error:g}", method, "cannot reach", *["-"] * 5]
                 continue
             over = lambda what: f"{run[what] / ours[what]:.2f}" if ours else "-"
             setting = "-" if run["value"] is None else f"{run['value']:g}"
-            yield [scene, f"{error:g}", method, setting, f"{run['mean']:.3f}", f"{run['most']:.2f}", number(run["cycles"]), over("cycles"), over("energy"), over("lines")]
+            yield [scene, f"{error:g}", method, setting, f"{run['most']:.3f}", number(run["cycles"]), over("cycles"), over("energy"), over("lines")]
 
 
 def main():
@@ -56,7 +56,7 @@ def main():
     parser.add_argument("--scenes", nargs="+", default=SCENES, choices=SCENES)
     args = parser.parse_args()
     args.out.mkdir(parents=True, exist_ok=True)
-    head = ["scene", "error at most, pixels", "method", "setting", "mean error", "99 of 100 below", "cycles", "time over ours", "energy", "DRAM lines"]
+    head = ["scene", "error at most, pixels", "method", "setting", "99 of 100 below", "cycles", "time over ours", "energy", "DRAM lines"]
     rows = [row for scene in args.scenes for row in rows_of(args, scene)]
     put(ROOT / "docs" / "who-wins.md", "<!-- instances -->", "<!-- instances end -->", table(head, rows, 4))
 
