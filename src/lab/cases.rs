@@ -27,7 +27,7 @@ pub struct Case {
     pub every: u64,
     /// Its part of all rays: 32, or less where a ray takes long.
     pub share: u64,
-    /// Rays go together, in packets of [`LANES`](super::judge::LANES).
+    /// Rays go together, in packets of 32.
     pub is_packed: bool,
     /// Rays come from a scene in which the model stands somewhere: stretched, mirrored, far away.
     pub is_placed: bool,

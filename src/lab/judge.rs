@@ -172,7 +172,7 @@ impl<'a> Judge<'a> {
         })
     }
 
-    /// Shoots and judges the rays of packet `number`, at most [`LANES`], which go together.
+    /// Shoots and judges the rays of packet `number`, at most 32, which go together.
     pub fn shoot_together(&mut self, number: u64, shots: &[Shot]) -> Tally {
         self.turn = self.turn_of(number);
         let tally = guarded(number * LANES, || {
