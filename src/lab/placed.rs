@@ -7,7 +7,7 @@ use crate::paths::Pose;
 use crate::rays::Query;
 use glam::DVec3;
 
-/// A pose: as long as a million times in one direction and as short as that in another, of any size, mirrored or not, up to a million sizes away.
+/// A pose: squeezed along two directions by up to 10^5.9, just within what a pose may be; of any size, mirrored or not, up to a million sizes away.
 fn pose(model: &Model, random: &mut Random) -> Pose {
     loop {
         let vector = |random: &mut Random| DVec3::new(random.signed(), random.signed(), random.signed());
@@ -30,7 +30,7 @@ fn pose(model: &Model, random: &mut Random) -> Pose {
     }
 }
 
-/// The same ray as such a scene has it, in floats, and as it comes back from there into fixed point; none if it misses the model's box by then. Its cone stays.
+/// Takes a ray out to such a scene, in floats, and back into fixed point, as rays of a scene come in. Gives none if it then misses the model's box. Its cone stays.
 pub(super) fn placed(model: &Model, shot: &Shot, random: &mut Random) -> Option<Shot> {
     let (pose, placement) = (pose(model, random), model.space.placement);
     let own = DVec3::from_array(placement.offset) + DVec3::from_array(shot.ray.origin.get().map(|v| v as f64)) * placement.scale;

@@ -24,7 +24,7 @@ fn full_turn() -> f64 {
 }
 
 impl MovesTable {
-    /// Where a model is at a time from 0, the first frame, to 1, the last, that stands at `first` then.
+    /// Where a model is at a time from 0 to 1. At time 0, the first frame, it stands at `first`.
     pub(super) fn at(&self, first: &Pose, time: f64) -> Pose {
         let angle = (time * self.degrees).to_radians();
         let turn = self.turn.map_or(DMat3::IDENTITY, |axis| DMat3::from_axis_angle(DVec3::from_array(axis).normalize(), angle));

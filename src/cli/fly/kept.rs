@@ -33,7 +33,7 @@ pub struct Kept<'a> {
 }
 
 impl<'a> Kept<'a> {
-    /// The folder `out` for so many pictures, made from these files.
+    /// Opens the folder `out` for this many pictures. `inputs` are the files that they come from.
     pub fn open(out: &'a Path, pictures: usize, inputs: &[&Path], overrule: &Overrule) -> anyhow::Result<Self> {
         let pictures: Vec<_> = (0..pictures).map(picture).collect();
         let names = pictures.iter().map(String::as_str).chain([FIGURES]);
