@@ -3,6 +3,7 @@
 use crate::block::{BoxesPerCycle, EdgesPerCycle};
 use crate::hardware::Hardware;
 use crate::sim::dram::{Controller, Scheduler};
+use crate::sim::timing::Eased;
 use serde::{Deserialize, Serialize};
 
 /// Picoseconds per cycle at 1 MHz.
@@ -137,6 +138,9 @@ pub struct Units {
     /// Rays can start on a surface: blocks for exact starts, and for rays that decide for others.
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub secondary: bool,
+    /// Parts that keep no ray waiting, to see what it costs that they do: names as `simulate --ease` prints them, joined by `+`. No unit is so.
+    #[serde(default, skip_serializing_if = "Eased::is_none")]
+    pub eased: Eased,
     /// A unit of a plan: what the keys above do not say is as there. Machine files have none.
     #[serde(skip)]
     pub like: Option<Hardware>,

@@ -39,6 +39,11 @@ pub fn chosen(knobs: &super::Knobs) -> usize {
     knobs.get(&PACKET).and_then(|value| value.parse().ok()).unwrap_or(1)
 }
 
+/// Whether several rays are traced together.
+pub fn takes_packets(knobs: &super::Knobs) -> bool {
+    chosen(knobs) > 1
+}
+
 /// A ray of a packet.
 pub(super) struct Lane<H> {
     pub ray: Ray,

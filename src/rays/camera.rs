@@ -1,6 +1,6 @@
 //! The pinhole camera.
 
-use super::{DEFAULT_DIRECTION, ModelSpace, Query, View, ViewCone, orbit};
+use super::{DEFAULT_DIRECTION, ModelSpace, Query, TILE, View, ViewCone, orbit};
 use glam::DVec3;
 use std::ops::Range;
 use thiserror::Error;
@@ -15,6 +15,14 @@ const FARTHEST: f64 = 1e6;
 pub const MAX_SIDE: u32 = 1 << 16;
 /// Most pixels of a picture: traced pixels and their shading then stay below 8 GB.
 pub const MAX_PIXELS: u64 = 1 << 26;
+
+/// Most tiles whose rays are handed out in turn: of each there is one ray in a batch.
+pub const MOST_IN_TURN: u32 = TILE * TILE;
+
+/// Whether rays of so many tiles can be handed out in turn: the rays of a tile are divided evenly over batches.
+pub fn may_be_in_turn(tiles: u32) -> bool {
+    tiles.is_power_of_two() && tiles <= MOST_IN_TURN
+}
 
 /// A view that cannot be.
 #[derive(Clone, Debug, Error, PartialEq)]
@@ -61,6 +69,8 @@ pub struct Camera {
     pub stride: u32,
     /// Tangent of the half angle of every pixel's cone: half a pixel at the picture's centre.
     pub tan_theta: f64,
+    /// Tiles whose rays a machine is handed in turn: 1, or a larger power of two up to [`MOST_IN_TURN`].
+    pub(super) tiles_in_turn: u32,
 }
 
 impl Camera {
@@ -123,7 +133,24 @@ impl Camera {
             samples: 1,
             stride: 1,
             tan_theta: 0.5 * pixel,
+            tiles_in_turn: 1,
         })
+    }
+
+    /// The same camera for the simulator, its rays in batches of so many tiles that lie far apart, of each as many: a group of cores then has rays of all of them at a time, of sky and of surface,
+    /// and its units are not full in one block for one tile and in another for the next. For traversal of single rays: packets are of one tile.
+    ///
+    /// # Panics
+    /// It is no number of tiles that can be handed out in turn.
+    #[must_use]
+    pub fn in_turn(self, tiles: u32) -> Self {
+        assert!(may_be_in_turn(tiles), "{tiles} tiles in turn");
+        Self { tiles_in_turn: tiles, ..self }
+    }
+
+    /// Tiles whose rays a machine is handed in turn; 1: tile by tile.
+    pub fn tiles_in_turn(&self) -> u32 {
+        self.tiles_in_turn
     }
 
     /// A cone around all its rays.

@@ -48,6 +48,7 @@ impl Camera {
             samples: 1,
             stride: 1,
             tan_theta: view.cone,
+            tiles_in_turn: 1,
         })
     }
 }

@@ -13,7 +13,7 @@ mod source;
 mod space;
 mod view;
 
-pub use camera::{Camera, CameraError, MAX_PIXELS, MAX_SIDE};
+pub use camera::{Camera, CameraError, MAX_PIXELS, MAX_SIDE, MOST_IN_TURN, may_be_in_turn};
 pub use camera_path::CameraPath;
 pub use cone::{cone, is_full_detail};
 pub use eye::{Eye, ViewCone};

@@ -76,18 +76,26 @@ impl RaySource for Camera {
         u64::from(self.width) * u64::from(self.height)
     }
 
-    /// Tiles of 8 x 8 pixels, row by row from the top left.
+    /// Tiles of 8 x 8 pixels, row by row from the top left; of several in turn the n-th batches hold the n-th parts of tiles that lie as far apart.
     fn batches(&self) -> usize {
-        self.width.div_ceil(TILE) as usize * self.height.div_ceil(TILE) as usize
+        let [tiles, in_turn] = [tiles(self), self.tiles_in_turn() as usize];
+        tiles.div_ceil(in_turn) * in_turn
     }
 
     fn batch(&self, batch: usize, each: &mut dyn FnMut(u64, &Query)) {
+        let (tiles, in_turn) = (tiles(self), self.tiles_in_turn() as usize);
         let columns = self.width.div_ceil(TILE) as usize;
-        // Tiles of a picture of at most 2^16 columns and rows.
-        let [left, top] = [batch % columns, batch / columns].map(|at| at as u32 * TILE);
-        for y in top..self.height.min(top + TILE) {
-            for x in left..self.width.min(left + TILE) {
-                each(u64::from(y) * u64::from(self.width) + u64::from(x), &self.ray(x, y));
+        // Which of the tiles of each part of the picture, and which of its rays.
+        let (apart, part) = (tiles.div_ceil(in_turn), (TILE * TILE) as usize / in_turn);
+        let (first, rays) = (batch / in_turn, batch % in_turn * part..(batch % in_turn + 1) * part);
+        for ray in rays {
+            for tile in (first..tiles).step_by(apart) {
+                // Of a picture of at most 2^16 columns and rows.
+                let x = (tile % columns) as u32 * TILE + ray as u32 % TILE;
+                let y = (tile / columns) as u32 * TILE + ray as u32 / TILE;
+                if x < self.width && y < self.height {
+                    each(u64::from(y) * u64::from(self.width) + u64::from(x), &self.ray(x, y));
+                }
             }
         }
     }
@@ -99,6 +107,11 @@ impl RaySource for Camera {
     fn eyes(&self, _: &ModelSpace) -> Vec<Eye> {
         vec![Eye::at(self.eye.to_array(), self.tan_theta).looking(self.view_cone())]
     }
+}
+
+/// Tiles of a camera's picture.
+fn tiles(camera: &Camera) -> usize {
+    camera.width.div_ceil(TILE) as usize * camera.height.div_ceil(TILE) as usize
 }
 
 #[cfg(test)]
@@ -132,6 +145,37 @@ mod tests {
         assert!((sight.least_radius - camera.tan_theta * 200.0).abs() < 1e-9, "{sight:?}");
         let inside = Camera::new(&View { eye: Some([2.0, 1.0, 3.0]), ..view }, &space, 4, 4).unwrap();
         assert_eq!(Sight::new(&inside, &space, 2.0).least_radius, 0.0);
+    }
+
+    #[test]
+    fn tiles_in_turn_give_each_pixel_once_and_batches_of_many_tiles() {
+        let space = ModelSpace { placement: Placement { offset: [0.0; 3], scale: 1.0 }, lo: [-10; 3], hi: [10; 3], zeros: [0; 2] };
+        let view = View { eye: Some([0.0, 0.0, 50.0]), target: Some([0.0; 3]), ..View::default() };
+        for [width, height] in [[64, 64], [61, 35], [3, 3]] {
+            let plain = Camera::new(&view, &space, width, height).unwrap();
+            for tiles in [1, 2, 4, 8, 16, 32, 64] {
+                let camera = plain.in_turn(tiles);
+                let mut seen = vec![0; (width * height) as usize];
+                let mut most = 0;
+                for batch in 0..camera.batches() {
+                    let mut of_tiles = std::collections::BTreeSet::new();
+                    let mut rays = 0;
+                    camera.batch(batch, &mut |number, query| {
+                        let [x, y] = [number as u32 % width, number as u32 / width];
+                        assert_eq!(*query, plain.ray(x, y));
+                        seen[number as usize] += 1;
+                        of_tiles.insert([x / TILE, y / TILE]);
+                        rays += 1;
+                    });
+                    assert!(rays <= 64 && of_tiles.len() <= tiles as usize);
+                    most = most.max(of_tiles.len());
+                }
+                assert!(seen.iter().all(|&times| times == 1), "{width}x{height}, {tiles} in turn");
+                let all = (width.div_ceil(TILE) * height.div_ceil(TILE)) as usize;
+                assert_eq!(most, all.div_ceil(all.div_ceil(tiles as usize)), "{all} tiles, {tiles} in turn");
+            }
+        }
+        assert!([1, 4, 64].into_iter().all(crate::rays::may_be_in_turn) && ![0, 3, 128].into_iter().any(crate::rays::may_be_in_turn));
     }
 
     #[test]

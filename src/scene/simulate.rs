@@ -64,6 +64,16 @@ pub enum SimulateError {
 pub type Outcome = Result<(SimResult, Option<Vec<u8>>), SimulateError>;
 
 impl PassRays {
+    /// The same, those of cameras with rays of so many tiles in turn ([`Camera::in_turn`]).
+    #[must_use]
+    pub fn in_turn(self, tiles: u32) -> Self {
+        match self {
+            Self::Camera(camera) => Self::Camera(camera.in_turn(tiles)),
+            Self::Path(path) => Self::Path(CameraPath::new(path.cameras().iter().map(|camera| camera.in_turn(tiles)).collect())),
+            Self::File(..) => self,
+        }
+    }
+
     /// The cameras, one for each frame; none of rays of a file.
     pub fn cameras(&self) -> &[Camera] {
         match self {

@@ -92,6 +92,15 @@ pub struct ViewJob {
     pub up: Option<[f64; 3]>,
     /// Vertical view angle in degrees.
     pub fov: f64,
+    /// Tiles whose rays machines are handed in turn ([`Camera::in_turn`]).
+    // A job of tile after tile is the same as when there was nothing else.
+    #[serde(skip_serializing_if = "is_one")]
+    pub tiles_in_turn: u32,
+}
+
+#[expect(clippy::trivially_copy_pass_by_ref, reason = "as serde calls it")]
+fn is_one(tiles: &u32) -> bool {
+    *tiles == 1
 }
 
 impl SceneJobs {
@@ -135,7 +144,16 @@ impl SceneJobs {
 impl ViewJob {
     /// From this distance in bounding radii; the camera looks as in render.
     pub fn at(size: [u32; 2], distance: f64) -> Self {
-        Self { size, distance: Some(distance), direction: None, eye: None, target: None, up: None, fov: DEFAULT_VIEW_ANGLE_DEGREES }
+        Self {
+            size,
+            distance: Some(distance),
+            direction: None,
+            eye: None,
+            target: None,
+            up: None,
+            fov: DEFAULT_VIEW_ANGLE_DEGREES,
+            tiles_in_turn: 1,
+        }
     }
 
     /// The camera on a model.

@@ -1,5 +1,6 @@
 //! `simulate`: a frame, or several after one another, on one or more machines.
 
+mod ease;
 mod files;
 pub(super) mod plots;
 mod several;
@@ -23,9 +24,10 @@ use super::report::PageArgs;
 use crate::cli::bars::Bars;
 use anyhow::Context;
 use files::Files;
+use lodray::method::packet::takes_packets;
 use lodray::paths::SceneFile;
 use lodray::plan::Plan;
-use lodray::rays::{ModelSpace, RayFile};
+use lodray::rays::{MOST_IN_TURN, ModelSpace, RayFile, may_be_in_turn};
 use lodray::report::page::{Documents, Simulation};
 use lodray::report::result::SimResult;
 use lodray::run::{self, Compute};
@@ -56,6 +58,9 @@ pub struct Args {
     /// How compute is simulated
     #[arg(long, value_parser = named::<Compute>(), default_value = Compute::Free.name())]
     compute: Compute,
+    /// Also simulate the frame with each part of the traversal units in turn keeping no ray waiting: what it costs that they do; needs --compute units
+    #[arg(long, conflicts_with = "vcd")]
+    ease: bool,
     #[command(flatten)]
     camera: CameraArgs,
     #[command(flatten)]
@@ -65,6 +70,9 @@ pub struct Args {
     /// File of rays in place of a camera's (.npy); `cast --help` has the columns. Each starts at its own origin; one that names an earlier ray waits for that
     #[arg(long, value_name = "FILE", conflicts_with_all = CameraArgs::ids().into_iter().chain(FrameArgs::ids()).chain(AimArgs::camera_ids()))]
     rays: Option<PathBuf>,
+    /// Tiles of 8 x 8 pixels that lie far apart and whose rays are handed out in turn, a power of two up to 64: a unit then has rays of sky and of surface at a time (default 1: tile by tile)
+    #[arg(long, value_name = "N", default_value_t = 1, hide_default_value = true, value_parser = in_turn, allow_hyphen_values = true, conflicts_with = "rays")]
+    tiles_in_turn: u32,
     #[command(flatten)]
     cache: CacheArgs,
     #[command(flatten)]
@@ -85,6 +93,11 @@ pub struct Args {
     /// Print the figures as JSON; of several machines as an array
     #[arg(long)]
     json: bool,
+}
+
+/// A number of tiles.
+fn in_turn(s: &str) -> Result<u32, String> {
+    s.parse().ok().filter(|&tiles| may_be_in_turn(tiles)).ok_or_else(|| format!("must be a power of two from 1 to {MOST_IN_TURN}"))
 }
 
 /// A stretch of cycles.
@@ -109,6 +122,8 @@ fn check_window(window: Window, last: u64) -> anyhow::Result<()> {
 
 pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
     let read = |name: &String| machine(name, &args.set, "--set").with_context(|| format!("--machine {name}"));
+    anyhow::ensure!(!args.ease || args.compute == Compute::Units, "--ease: eases parts of traversal units, which --compute units has");
+    anyhow::ensure!(args.tiles_in_turn == 1 || !takes_packets(&args.method.0.knobs), "--tiles-in-turn: packets take the rays of one tile");
     let mut machines = args.machine.iter().map(read).collect::<anyhow::Result<Vec<_>>>()?;
     let plan = args.plan.as_deref().map(plan::read).transpose()?;
     if let (Some(plan), Some(path)) = (&plan, &args.plan) {
@@ -141,11 +156,15 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
     let names = files.names();
     let open_folder = |out: &PathBuf| RunFolder::open(out, names.iter().map(String::as_str), &inputs, &args.overrule);
     let open = || args.out.as_ref().map(open_folder).transpose();
-    let targets: Vec<_> = machines.into_iter().map(|machine| Target { machine, compute: args.compute, window: args.window }).collect();
+    let mut targets: Vec<_> = machines.into_iter().map(|machine| Target { machine, compute: args.compute, window: args.window }).collect();
+    if args.ease {
+        targets = ease::targets(&targets);
+    }
     let (folder, outcomes) = match description {
         Some(file) => several(args, file, &targets, open)?,
         None => one(args, plan.as_ref(), &targets, open)?,
     };
+    let outcomes = if args.ease { ease::joined(outcomes) } else { outcomes };
     let outcomes = outcomes.into_iter().collect::<Result<Vec<_>, _>>()?;
     let (results, mut waves): (Vec<SimResult>, Vec<_>) = outcomes.into_iter().unzip();
     if let (Some(window), Some(result)) = (&args.window, results.first()) {
@@ -192,7 +211,7 @@ fn one(
     let space = ModelSpace::of(&scene);
     let rays = match &args.rays {
         Some(path) => PassRays::File(RayFile::read(path)?, path.clone()),
-        None => args.frames.rays(&args.camera, &space)?,
+        None => args.frames.rays(&args.camera, &space)?.in_turn(args.tiles_in_turn),
     };
     let folder = open()?;
     match &rays {
@@ -220,6 +239,15 @@ fn several(
     anyhow::ensure!(args.input.mesh.is_empty(), "--mesh: goes with one scene, and not with several models");
     let Args { scene, method, rays, camera, aim, frames, cache, out, .. } = args;
     let cache = cache.cache(out.as_deref())?;
-    let all = Several { path: scene, chosen: &method.0, rays: rays.as_ref(), camera, aim, frames, cache: &cache };
+    let all = Several {
+        path: scene,
+        chosen: &method.0,
+        rays: rays.as_ref(),
+        camera,
+        aim,
+        frames,
+        tiles_in_turn: args.tiles_in_turn,
+        cache: &cache,
+    };
     all.run(file, targets, open)
 }

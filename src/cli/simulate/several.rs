@@ -22,6 +22,8 @@ pub struct Several<'a> {
     pub camera: &'a CameraArgs,
     pub aim: &'a AimArgs,
     pub frames: &'a FrameArgs,
+    /// Tiles whose rays are handed out in turn.
+    pub tiles_in_turn: u32,
     pub cache: &'a Cache,
 }
 
@@ -38,7 +40,7 @@ impl Several<'_> {
         self.aim.check_frames(self.frames.count())?;
         let rays = match self.rays {
             Some(rays) => PassRays::File(RayFile::read(rays)?, rays.clone()),
-            None => self.frames.rays(&aimed.camera(path, self.aim, self.camera)?, &aimed.space)?,
+            None => self.frames.rays(&aimed.camera(path, self.aim, self.camera)?, &aimed.space)?.in_turn(self.tiles_in_turn),
         };
         let opened = open()?;
         let scene = made::facts(path, &aimed.file, &aimed.scenes)?;

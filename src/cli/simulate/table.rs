@@ -1,6 +1,6 @@
 //! A result as text.
 
-use lodray::report::result::{CacheResult, SimResult};
+use lodray::report::result::{CacheResult, SimResult, UnitsResult};
 use lodray::study::{count, grouped};
 
 /// Columns of the name and of each figure.
@@ -150,13 +150,7 @@ fn times(lines: &mut Lines, r: &SimResult) {
         Some(units) => {
             lines.line("contexts", ["wait for lines", "compute", "idle"]);
             lines.line("", [w.memory, w.compute, w.idle].map(percent));
-            lines.line(&count(units.units, "unit"), ["operations", "utilisation", "busy", "refused"]);
-            for (name, block) in &units.blocks {
-                lines.line(
-                    &format!("  {name}"),
-                    [grouped(block.operations), percent(block.utilisation), percent(block.busy), percent(block.refused)],
-                );
-            }
+            blocks(lines, units);
         }
     }
     let stalls = by_size(r.stalls.cycles.iter().map(|(name, &cycles)| (name.as_str(), cycles as f64)));
@@ -172,6 +166,23 @@ fn times(lines: &mut Lines, r: &SimResult) {
     lines.line("latency", ["median", "90 %", "99 %", "largest"]);
     for (name, of) in [("  rays", &r.latencies.rays), ("  L1 misses", &r.latencies.l1_misses), ("  L2 misses", &r.latencies.l2_misses)] {
         lines.line(name, [of.median, of.percentile_90, of.percentile_99, of.largest].map(grouped));
+    }
+}
+
+/// What the blocks of units did, and how full they were.
+fn blocks(lines: &mut Lines, units: &UnitsResult) {
+    let eased = if units.eased.is_empty() { "" } else { "cycles, eased" };
+    lines.line(&count(units.units, "unit"), ["operations", "busy", "refused", "load", "90 % full", "the fullest", eased]);
+    for (name, block) in &units.blocks {
+        let phases = units.phases.as_ref().and_then(|phases| phases.blocks.get(name));
+        let full = phases.map_or_else(Default::default, |of| [of.load, of.full, of.fullest].map(percent));
+        let eased = units.eased.get(name).map_or(String::new(), |&cycles| grouped(cycles));
+        let done = [grouped(block.operations), percent(block.busy), percent(block.refused)];
+        lines.line(&format!("  {name}"), done.into_iter().chain(full).chain([eased]));
+    }
+    if let Some(phases) = &units.phases {
+        let all = units.eased.get("all").map_or(String::new(), |&cycles| grouped(cycles));
+        lines.line("  none, all", ["", "", "", "", "", &percent(phases.none_full), &all]);
     }
 }
 

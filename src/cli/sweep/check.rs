@@ -14,9 +14,10 @@ use lodray::format::Scene;
 use lodray::mesh::{BoundKind, Placement, procedural};
 use lodray::method::bvh::{LEAF_LAYOUT, LEAF_SIZE};
 use lodray::method::knob::DELTA;
+use lodray::method::packet::takes_packets;
 use lodray::method::{Knob, KnobError, Knobs};
 use lodray::num::VertexForm;
-use lodray::rays::{Camera, DEFAULT_VIEW_ANGLE_DEGREES, ModelSpace};
+use lodray::rays::{Camera, DEFAULT_VIEW_ANGLE_DEGREES, MOST_IN_TURN, ModelSpace, may_be_in_turn};
 use lodray::run::{self, Compute};
 use lodray::scene::Target;
 use lodray::study::{Chosen, Generated, Jobs, Origin, RegionJob, SceneJobs, ViewError, ViewJob, one_line};
@@ -102,6 +103,9 @@ fn jobs(source: &ListText<'_>) -> anyhow::Result<Jobs> {
         if scenes.iter().any(|before| before.name == jobs.name) {
             let why = format!("scene: there is another of the name {:?}; give them names of their own", jobs.name);
             return Err(source.wrong(entry.span(), why));
+        }
+        if jobs.views.iter().any(|view| view.tiles_in_turn > 1) && methods.iter().any(|chosen| takes_packets(&chosen.knobs)) {
+            return Err(source.wrong(entry.span(), "tiles_in_turn: packets take the rays of one tile"));
         }
         if let Origin::File(file) = &jobs.origin {
             files.insert(file.clone());
@@ -315,6 +319,16 @@ fn regions(source: &ListText<'_>, list: &List, spanned: &Spanned<SceneEntry>) ->
     }
 }
 
+/// Tiles whose rays are handed out in turn.
+fn tiles_in_turn(source: &ListText<'_>, list: &List, entry: &SceneEntry) -> anyhow::Result<u32> {
+    match entry.tiles_in_turn.as_ref().or(list.tiles_in_turn.as_ref()) {
+        Some(tiles) if !may_be_in_turn(*tiles.get_ref()) => {
+            Err(source.wrong(tiles.span(), format!("tiles_in_turn: must be a power of two from 1 to {MOST_IN_TURN}")))
+        }
+        tiles => Ok(tiles.map_or(1, |tiles| *tiles.get_ref())),
+    }
+}
+
 fn views(source: &ListText<'_>, list: &List, spanned: &Spanned<SceneEntry>) -> anyhow::Result<Vec<ViewJob>> {
     let entry = spanned.get_ref();
     // In place of the list's views; beside the scene's own.
@@ -327,7 +341,8 @@ fn views(source: &ListText<'_>, list: &List, spanned: &Spanned<SceneEntry>) -> a
         None => Ok(None),
     };
     let (target, up, fov) = (triple(&entry.target, "target")?, triple(&entry.up, "up")?, entry.fov.unwrap_or(DEFAULT_VIEW_ANGLE_DEGREES));
-    let base = ViewJob { size: [width, height], distance: None, direction: None, eye: None, target, up, fov };
+    let tiles_in_turn = tiles_in_turn(source, list, entry)?;
+    let base = ViewJob { size: [width, height], distance: None, direction: None, eye: None, target, up, fov, tiles_in_turn };
     if let Some(eyes) = &entry.eyes {
         if let Some(other) = entry.distances.as_ref().map(Spanned::span).or(entry.directions.as_ref().map(Spanned::span)) {
             return Err(source.wrong(other, "scene: eyes are in place of distances and directions"));

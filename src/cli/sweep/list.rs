@@ -33,6 +33,8 @@ pub struct List {
     /// Other knobs of methods, by name.
     #[serde(default)]
     pub knobs: BTreeMap<String, Spanned<Value>>,
+    /// Tiles whose rays are handed out in turn.
+    pub tiles_in_turn: Maybe<u32>,
     /// Measure the error of each picture against full resolution.
     #[serde(default)]
     pub error: bool,
@@ -61,6 +63,7 @@ pub struct SceneEntry {
     pub bounds: Maybe<BoundKind>,
     pub vertices: Maybe<VertexForm>,
     pub size: Maybe<String>,
+    pub tiles_in_turn: Maybe<u32>,
     pub distances: Maybe<Vec<f64>>,
     /// From the target to the eye, for distances.
     pub directions: Maybe<Vec<[f64; 3]>>,

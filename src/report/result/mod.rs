@@ -32,9 +32,10 @@ pub use stalls::StallResult;
 #[cfg(test)]
 pub(in crate::report) use stalls::part_of;
 pub use traffic::{KindResult, LevelBytes, TrafficResult};
-pub use units::{BlockResult, UnitsResult};
+pub use units::{BlockPhases, BlockResult, PhasesResult, UnitsResult};
 
 use crate::block::FIRST_SHARED;
+use crate::hardware::unit_gates;
 use crate::machine::MachineError;
 use crate::method::{Computing, Registered};
 use crate::run::Compute;
@@ -175,7 +176,7 @@ impl SimResult {
             units: run
                 .units
                 .as_ref()
-                .map(|counts| UnitsResult::new(counts, u64::from(machine.cores.groups) * u64::from(machine.units.per_group))),
+                .map(|counts| UnitsResult::new(counts, &run.phases, of.unit.and_then(|unit| unit_gates(unit, &hardware)))),
             operations: blocks.chain(works).collect(),
             warm: frames::warm(&frames),
             frames,

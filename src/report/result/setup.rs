@@ -40,7 +40,8 @@ impl Setup {
         let of_view = |view: &ViewFacts| {
             let place = view.distance.map_or_else(|| format!("{:?}", view.eye), |distance| format!("{distance} bounding radii"));
             let frames = self.frames.map_or(String::new(), |frames| format!("{frames} frames of "));
-            format!("{frames}{}x{} rays from {place}", view.size[0], view.size[1])
+            let order = view.tiles_in_turn.map_or(String::new(), |tiles| format!(", of {tiles} tiles in turn"));
+            format!("{frames}{}x{} rays from {place}{order}", view.size[0], view.size[1])
         };
         let of_file = |rays: &RayFileFacts| format!("{} {} of {}", rays.count, if rays.count == 1 { "ray" } else { "rays" }, rays.file);
         self.view.as_ref().map(of_view).or_else(|| self.rays.as_ref().map(of_file)).unwrap_or_default()
@@ -196,12 +197,16 @@ pub struct ViewFacts {
     pub eye: [f64; 3],
     /// Its distance from the target in bounding radii, if that is how it was placed.
     pub distance: Option<f64>,
+    /// Tiles whose rays the machine was handed in turn, if it is not tile by tile ([`Camera::in_turn`]).
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub tiles_in_turn: Option<u32>,
 }
 
 impl ViewFacts {
     /// A camera.
     pub fn new(camera: &Camera) -> Self {
-        Self { size: [camera.width, camera.height], eye: camera.eye.to_array(), distance: camera.placed }
+        let tiles_in_turn = Some(camera.tiles_in_turn()).filter(|&tiles| tiles > 1);
+        Self { size: [camera.width, camera.height], eye: camera.eye.to_array(), distance: camera.placed, tiles_in_turn }
     }
 }
 

@@ -49,6 +49,7 @@ pub use stalls::{CAUSES, Cause, Histogram, Stalls};
 pub use wave::Window;
 
 use super::dram::{ChannelCounts, Device, Dram, DramConfig, DramEnergy};
+use super::timing::Phases;
 use super::unit::{State, UnitCounts};
 use crate::block::Operations;
 use crate::machine::Machine;
@@ -99,6 +100,8 @@ pub struct Run {
     pub operations: Operations,
     /// What the traversal units did, all together; none if compute takes no time.
     pub units: Option<UnitCounts>,
+    /// How full the parts of each of them were.
+    pub phases: Vec<Phases>,
     /// Cycles of the units' contexts, by state, in which they waited for lines, but for `FETCH`.
     pub late: [u64; State::ALL.len()],
     /// Cycles of rays and of misses.
@@ -176,6 +179,7 @@ pub fn run_units(machine: &Machine, source: impl ChunkSource, how: Running) -> R
         if let Some(sum) = &mut run.units {
             sum.add(&units.counts(run.cycles));
         }
+        run.phases.extend(units.phases(run.cycles));
         let (late, port) = units.line_waits();
         run.late.iter_mut().zip(late).for_each(|(sum, cycles)| *sum += cycles);
         run.counts.stalls[Cause::Port as usize] += port;
@@ -233,6 +237,7 @@ fn drive<F: FrontEnd + Send>(
         counts,
         operations,
         units: None,
+        phases: Vec::new(),
         late: [0; State::ALL.len()],
         latencies,
         l1_banks,

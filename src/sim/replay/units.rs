@@ -13,8 +13,8 @@ use super::slots::Slots;
 use super::stalls::Cause;
 use crate::block::Operations;
 use crate::machine::Machine;
-use crate::sim::timing::{LineRequest, Ports, Steps, UnitTiming};
-use crate::sim::unit::{State, UnitCounts};
+use crate::sim::timing::{LineRequest, Phases, Ports, Steps, UnitTiming};
+use crate::sim::unit::{Resource, State, UnitCounts};
 use crate::step::Step;
 use std::collections::VecDeque;
 
@@ -65,6 +65,8 @@ pub struct Units {
     feed: Feed,
     units: Vec<Unit>,
     per_group: u32,
+    /// Lines that a unit takes in a cycle.
+    answers: u32,
     under_way: u64,
 }
 
@@ -73,7 +75,7 @@ impl Units {
     pub fn new(machine: &Machine, first: u32) -> Self {
         let (groups, per_group) = (machine.cores.groups, machine.units.per_group);
         let unit = |_| Unit {
-            timing: UnitTiming::new(machine.units.config()),
+            timing: UnitTiming::new(machine.units.config()).easing(machine.units.eased),
             wake: None,
             free: 0,
             port: RequestPort::Free,
@@ -81,7 +83,8 @@ impl Units {
             answers: Slots::default(),
         };
         let units = (0..groups * per_group).map(unit).collect();
-        Self { feed: Feed::new(first, groups, contexts_of_group(machine)), units, per_group, under_way: 0 }
+        let answers = if machine.units.eased.has(Resource::Fetch) { u32::MAX } else { 1 };
+        Self { feed: Feed::new(first, groups, contexts_of_group(machine)), units, per_group, answers, under_way: 0 }
     }
 
     /// What all units did in `cycles` cycles.
@@ -89,6 +92,11 @@ impl Units {
         let mut sum = UnitCounts::default();
         self.units.iter().for_each(|unit| sum.add(&unit.timing.counts(cycles)));
         sum
+    }
+
+    /// How full the parts of each unit were in `cycles` cycles.
+    pub fn phases(&self, cycles: u64) -> impl Iterator<Item = Phases> {
+        self.units.iter().map(move |unit| unit.timing.phases(cycles))
     }
 
     /// Cycles by state in which contexts of all units waited for lines, other than `FETCH`; and cycles in `FETCH` that no line ended.
@@ -166,7 +174,7 @@ impl FrontEnd for Units {
         let (id, tag) = (waiter >> TAG_BITS, waiter as u16);
         let now = memory.now();
         let unit = &mut self.units[id as usize];
-        let at = unit.answers.take(now, 1);
+        let at = unit.answers.take(now, self.answers);
         if at == now {
             told(id, tag, unit.timing.answer(now, tag), memory);
         } else {

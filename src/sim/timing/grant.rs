@@ -65,11 +65,11 @@ impl<R: Steps> UnitTiming<R> {
         }
     }
 
-    /// The division serves the hit queue.
-    pub(super) fn divide_hit(&mut self, now: u64) {
+    /// The division serves the hit queue; whether it would take another hit in this cycle.
+    pub(super) fn divide_hit(&mut self, now: u64) -> bool {
         let divide = &mut self.stations[Resource::Divide as usize];
         if divide.free() > now {
-            return;
+            return false;
         }
         if let Some((since, who)) = self.hits.pop(now) {
             // Contexts that ask meanwhile wait too, perhaps longer than the hit.
@@ -78,6 +78,8 @@ impl<R: Steps> UnitTiming<R> {
             let divided = divide.take(since, now);
             let selected = self.select.take(divided, divided);
             self.selected(who, selected, now);
+            return self.stations[Resource::Divide as usize].is_eased();
         }
+        false
     }
 }

@@ -16,12 +16,16 @@ mod advance;
 mod context;
 mod counts;
 mod describe;
+mod eased;
 mod grant;
 mod hits;
+mod phases;
 mod ports;
 mod station;
 mod unit;
 mod wheel;
 
+pub use eased::{Eased, EasedError};
+pub use phases::{PartPhases, Phases, STEPS, STRETCH};
 pub use ports::{LineRequest, Ports, RayCursor, Steps, tag};
 pub use unit::UnitTiming;

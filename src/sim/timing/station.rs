@@ -13,13 +13,28 @@ pub struct Station {
     behind: u64,
     /// The last cycle with an item inside.
     drained: u64,
+    /// Cycles in which it takes nothing, as it took something before; those behind the last input.
+    loaded: u64,
+    last: u64,
+    /// It takes any number of inputs in a cycle.
+    eased: bool,
     counts: BlockCounts,
 }
 
 impl Station {
     /// An empty block.
     pub fn new(timing: Timing) -> Self {
-        Self { timing, free: 0, behind: 0, drained: 0, counts: BlockCounts::default() }
+        Self { timing, free: 0, behind: 0, drained: 0, loaded: 0, last: 0, eased: false, counts: BlockCounts::default() }
+    }
+
+    /// The same one, which takes any number of inputs in a cycle.
+    pub fn eased(self) -> Self {
+        Self { eased: true, ..self }
+    }
+
+    /// It takes any number of inputs in a cycle.
+    pub fn is_eased(&self) -> bool {
+        self.eased
     }
 
     /// Cycles from an input to its result.
@@ -55,10 +70,14 @@ impl Station {
 
     #[inline(always)]
     fn begin(&mut self, interval: u32, since: u64, now: u64) {
-        self.free = now + u64::from(interval);
+        if !self.eased {
+            self.last = u64::from(interval);
+            self.free = now + self.last;
+            self.loaded += self.last;
+        }
         self.counts.taken += 1;
-        // Of what is offered it takes one as soon as it can.
-        self.counts.refused += now - since.max(self.behind);
+        // Of what is offered it takes one as soon as it can; several in a cycle wait for none.
+        self.counts.refused += now.saturating_sub(since.max(self.behind));
         self.behind = now + 1;
     }
 
@@ -68,6 +87,11 @@ impl Station {
         self.counts.busy += left.saturating_sub(self.drained.max(taken));
         self.counts.occupancy += left - taken;
         self.drained = self.drained.max(left);
+    }
+
+    /// Cycles before cycle `end` in which it took nothing, as it had taken something before; nothing was taken since.
+    pub fn loaded(&self, end: u64) -> u64 {
+        self.loaded - self.free.saturating_sub(end).min(self.last)
     }
 
     /// What it did so far, with what is inside counted to its end.

@@ -1,7 +1,9 @@
 //! The unit: its contexts, arbiters, blocks and ports.
 
 use super::context::ContextTiming;
+use super::eased::Eased;
 use super::hits::HitQueue;
+use super::phases::Watch;
 use super::ports::{LineRequest, Ports, Steps, untag};
 use super::station::Station;
 use super::wheel::{Wheel, bits};
@@ -60,6 +62,8 @@ pub struct UnitTiming<R> {
     pub(super) line_wait: Option<(u64, u64)>,
     /// What contexts have had the blocks do, counted as each act begins.
     pub(super) operations: Operations,
+    /// How full its parts are.
+    pub(super) watch: Watch,
 }
 
 impl<R: Steps> UnitTiming<R> {
@@ -119,7 +123,16 @@ impl<R: Steps> UnitTiming<R> {
             port_cycles: 0,
             line_wait: None,
             operations: Operations::default(),
+            watch: Watch::default(),
         }
+    }
+
+    /// The same unit with parts that keep nobody waiting.
+    pub fn easing(mut self, eased: Eased) -> Self {
+        for resource in Resource::ALL.into_iter().filter(|&resource| eased.has(resource)) {
+            self.stations[resource as usize] = self.stations[resource as usize].clone().eased();
+        }
+        self
     }
 
     /// What its rays have had the blocks do so far.
@@ -173,16 +186,24 @@ impl<R: Steps> UnitTiming<R> {
     pub fn tick<P: Ports<Ray = R>>(&mut self, now: u64, ports: &mut P) -> Option<u64> {
         assert!(now >= self.now && self.next.is_none_or(|next| now <= next), "cycle {now}: was to be ticked in {:?}", self.next);
         self.now = now + 1;
+        self.watch(now);
         for who in bits(self.wheel.wake(now)) {
             self.ask(who, now);
         }
 
         let latency = self.stations[Resource::Fetch as usize].latency();
+        let is_wide = self.stations[Resource::Fetch as usize].is_eased();
         let mut memory_waits = false;
-        if let Some(request) = self.request(now) {
+        while let Some(request) = self.request(now) {
             memory_waits = !ports.request(request);
-            if !memory_waits && let Some((taken, _)) = self.requests.pop_front() {
+            if memory_waits {
+                break;
+            }
+            if let Some((taken, _)) = self.requests.pop_front() {
                 self.stations[Resource::Fetch as usize].inside(taken, now);
+            }
+            if !is_wide {
+                break;
             }
         }
         let hit_waits = self.hit.as_ref().is_some_and(|(ray, found)| !ports.hit(ray, *found));
@@ -198,17 +219,23 @@ impl<R: Steps> UnitTiming<R> {
         }
 
         for resource in bits(u64::from(self.asked)).map(|k| Resource::ALL[k]) {
-            let ready = match resource {
-                Resource::Fetch => self.requests.len() < latency as usize,
-                Resource::Hit => !hit_waits,
-                Resource::Divide if self.hits.head().is_some_and(|since| since <= now) => false,
-                _ => self.stations[resource as usize].free() <= now,
-            };
-            if ready {
-                self.grant(resource, now);
+            let eased = self.stations[resource as usize].is_eased();
+            loop {
+                let ready = match resource {
+                    Resource::Fetch => eased || self.requests.len() < latency as usize,
+                    Resource::Hit => !hit_waits,
+                    Resource::Divide if self.hits.head().is_some_and(|since| since <= now) => false,
+                    _ => self.stations[resource as usize].free() <= now,
+                };
+                if ready {
+                    self.grant(resource, now);
+                }
+                if !(ready && eased) || self.asking[resource as usize] == 0 {
+                    break;
+                }
             }
         }
-        self.divide_hit(now);
+        while self.divide_hit(now) {}
 
         self.next = if another { Some(now + 1) } else { self.goes_on(now, memory_waits, hit_waits) };
         self.next
@@ -226,7 +253,7 @@ impl<R: Steps> UnitTiming<R> {
         for resource in bits(u64::from(self.asked)).map(|k| Resource::ALL[k]) {
             match resource {
                 // Full, it moves with its first request, below.
-                Resource::Fetch if self.requests.len() >= latency as usize => (),
+                Resource::Fetch if self.requests.len() >= latency as usize && !self.stations[resource as usize].is_eased() => (),
                 Resource::Hit if hit_waits => (),
                 _ => at(self.stations[resource as usize].free()),
             }

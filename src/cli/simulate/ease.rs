@@ -1,0 +1,42 @@
+//! `--ease`: the same frame again with each part of the units in turn so that it keeps no ray waiting.
+
+use lodray::report::result::SimResult;
+use lodray::scene::{Outcome, SimulateError, Target};
+use lodray::sim::timing::Eased;
+
+/// Each target, and behind it the same with each part eased.
+pub fn targets(all: &[Target]) -> Vec<Target> {
+    let eased = |target: &Target| {
+        let with = |(_, eased)| {
+            let mut target = target.clone();
+            target.machine.description.units.eased = eased;
+            target
+        };
+        std::iter::once(target.clone()).chain(Eased::each().map(with)).collect::<Vec<_>>()
+    };
+    all.iter().flat_map(eased).collect()
+}
+
+/// The outcomes of targets, each with what those behind it took.
+pub fn joined(outcomes: Vec<Outcome>) -> Vec<Outcome> {
+    let mut outcomes = outcomes.into_iter();
+    let mut all = Vec::new();
+    while let Some(first) = outcomes.next() {
+        let others: Result<Vec<_>, _> =
+            Eased::each().zip(outcomes.by_ref()).map(|((name, _), other)| Ok::<_, SimulateError>((name, other?.0.cycles))).collect();
+        all.push(first.and_then(|(result, wave)| Ok((with(result, others?), wave))));
+    }
+    all
+}
+
+/// A result with the cycles of others, by what they eased: only of what the frame asks for.
+fn with(mut result: SimResult, others: Vec<(String, u64)>) -> SimResult {
+    for (name, cycles) in others {
+        if let Some(units) = &mut result.units
+            && units.blocks.get(&name).is_none_or(|block| block.operations > 0)
+        {
+            units.eased.insert(name, cycles);
+        }
+    }
+    result
+}
