@@ -8,12 +8,16 @@
 
 mod area;
 mod context;
+mod eased;
 mod package;
 pub mod ports;
+mod resource;
 mod state;
 
 pub use area::{context_gates, unit_gates};
 pub use context::Memory;
+pub use eased::{Eased, EasedError};
+pub(crate) use resource::Resource;
 pub use state::{Fetch, RayError, State};
 
 use crate::block::{Block, BoxesPerCycle, EdgesPerCycle, Form, MOST_DIVIDE_BITS, Operation, Timing};

@@ -1,9 +1,8 @@
 //! The parts of a machine, field by field as in its file.
 
 use crate::block::{BoxesPerCycle, EdgesPerCycle};
-use crate::hardware::Hardware;
+use crate::hardware::{Eased, Hardware};
 use crate::sim::dram::{Controller, Scheduler};
-use crate::sim::timing::Eased;
 use serde::{Deserialize, Serialize};
 
 /// Picoseconds per cycle at 1 MHz.

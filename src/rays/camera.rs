@@ -1,6 +1,6 @@
 //! The pinhole camera.
 
-use super::{DEFAULT_DIRECTION, ModelSpace, Query, TILE, View, ViewCone, orbit};
+use super::{DEFAULT_DIRECTION, ModelSpace, Query, View, ViewCone, orbit};
 use glam::DVec3;
 use std::ops::Range;
 use thiserror::Error;
@@ -15,6 +15,9 @@ const FARTHEST: f64 = 1e6;
 pub const MAX_SIDE: u32 = 1 << 16;
 /// Most pixels of a picture: traced pixels and their shading then stay below 8 GB.
 pub const MAX_PIXELS: u64 = 1 << 26;
+
+/// Columns and rows of a camera's tile: a batch of its rays.
+pub const TILE: u32 = 8;
 
 /// Most tiles whose rays are handed out in turn: of each there is one ray in a batch.
 pub const MOST_IN_TURN: u32 = TILE * TILE;

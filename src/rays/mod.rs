@@ -13,13 +13,13 @@ mod source;
 mod space;
 mod view;
 
-pub use camera::{Camera, CameraError, MAX_PIXELS, MAX_SIDE, MOST_IN_TURN, may_be_in_turn};
+pub use camera::{Camera, CameraError, MAX_PIXELS, MAX_SIDE, MOST_IN_TURN, TILE, may_be_in_turn};
 pub use camera_path::CameraPath;
 pub use cone::{cone, is_full_detail};
 pub use eye::{Eye, ViewCone};
 pub use file::{RayFile, RayFileError};
 pub use query::Query;
 pub use rows::{Column, RAY_COLUMNS, RayRows, RowError};
-pub use source::{RaySource, Sight, TILE};
+pub use source::{RaySource, Sight};
 pub use space::{ModelRay, ModelSpace};
 pub use view::{DEFAULT_DIRECTION, DEFAULT_VIEW_ANGLE_DEGREES, View};

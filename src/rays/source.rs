@@ -1,9 +1,6 @@
 //! Where rays come from.
 
-use super::{Camera, Eye, ModelSpace, Query};
-
-/// Columns and rows of a camera's tile: a batch of its rays.
-pub const TILE: u32 = 8;
+use super::{Camera, Eye, ModelSpace, Query, TILE};
 
 /// Rays in batches; a group of cores takes a batch at a time.
 pub trait RaySource: Sync {

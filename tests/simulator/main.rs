@@ -10,3 +10,4 @@ mod simulate;
 mod study;
 mod sweep_jobs;
 mod trace;
+mod units;

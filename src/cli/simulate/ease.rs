@@ -1,8 +1,8 @@
 //! `--ease`: the same frame again with each part of the units in turn so that it keeps no ray waiting.
 
+use lodray::hardware::Eased;
 use lodray::report::result::SimResult;
 use lodray::scene::{Outcome, SimulateError, Target};
-use lodray::sim::timing::Eased;
 
 /// Each target, and behind it the same with each part eased.
 pub fn targets(all: &[Target]) -> Vec<Target> {

@@ -12,9 +12,10 @@ use super::group_side::GroupSide;
 use super::slots::Slots;
 use super::stalls::Cause;
 use crate::block::Operations;
+use crate::hardware::{Resource, State};
 use crate::machine::Machine;
 use crate::sim::timing::{LineRequest, Phases, Ports, Steps, UnitTiming};
-use crate::sim::unit::{Resource, State, UnitCounts};
+use crate::sim::unit::UnitCounts;
 use crate::step::Step;
 use std::collections::VecDeque;
 

@@ -7,7 +7,7 @@ use super::context::ContextTiming;
 use super::ports::{LineRequest, Steps};
 use super::unit::UnitTiming;
 use crate::block::Operation;
-use crate::sim::unit::{Resource, State};
+use crate::hardware::{Resource, State};
 use crate::step::{Act, Step};
 
 impl<R: Steps> UnitTiming<R> {

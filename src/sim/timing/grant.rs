@@ -2,7 +2,7 @@
 
 use super::ports::Steps;
 use super::unit::UnitTiming;
-use crate::sim::unit::{Resource, State};
+use crate::hardware::{Resource, State};
 
 impl<R: Steps> UnitTiming<R> {
     /// Context `who` asks for what its state needs, from cycle `now` on.

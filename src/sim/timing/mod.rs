@@ -16,7 +16,6 @@ mod advance;
 mod context;
 mod counts;
 mod describe;
-mod eased;
 mod grant;
 mod hits;
 mod phases;
@@ -25,7 +24,6 @@ mod station;
 mod unit;
 mod wheel;
 
-pub use eased::{Eased, EasedError};
 pub use phases::{PartPhases, Phases, STEPS, STRETCH};
 pub use ports::{LineRequest, Ports, RayCursor, Steps, tag};
 pub use unit::UnitTiming;

@@ -1,15 +1,6 @@
 //! How full a unit's parts were, stretch by stretch: a mean over a frame hides that a part is full in one phase of it and idle in the next.
 
-use super::station::Station;
-use super::unit::UnitTiming;
-use crate::block::Block;
-use crate::block::bary_map::BaryMap;
-use crate::block::child_test::ChildTest;
-use crate::block::hit_select::HitSelect;
-use crate::block::node_address::NodeAddress;
-use crate::block::tessellate::Tessellate;
-use crate::block::tree_deciders::TreeDeciders;
-use crate::sim::unit::Resource;
+use crate::hardware::Resource;
 
 /// Cycles of a stretch, the last of a run but for what is left.
 pub const STRETCH: u64 = 1024;
@@ -18,7 +9,7 @@ pub const STRETCH: u64 = 1024;
 pub const STEPS: usize = 10;
 
 /// Resources, and the comparison of hits.
-const PARTS: usize = Resource::COUNT + 1;
+pub(super) const PARTS: usize = Resource::COUNT + 1;
 
 /// How full each part of a unit was.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -44,9 +35,9 @@ pub struct PartPhases {
 #[derive(Clone, Debug, Default)]
 pub(super) struct Watch {
     /// Where the stretch began that has not ended.
-    since: u64,
+    pub since: u64,
     /// By part.
-    parts: [PartPhases; PARTS],
+    pub parts: [PartPhases; PARTS],
 }
 
 impl Watch {
@@ -56,7 +47,7 @@ impl Watch {
     }
 
     /// A stretch ended in cycle `end`, up to which each part was loaded for so many cycles.
-    fn close(&mut self, end: u64, loaded: [u64; PARTS]) {
+    pub fn close(&mut self, end: u64, loaded: [u64; PARTS]) {
         let length = end - self.since;
         let mut fullest = None;
         for (k, part) in self.parts.iter_mut().enumerate() {
@@ -75,60 +66,11 @@ impl Watch {
     }
 }
 
-impl<R> UnitTiming<R> {
-    /// Ends the stretches that ended in cycle `now` or before.
-    #[inline]
-    pub(super) fn watch(&mut self, now: u64) {
-        while self.watch.end() <= now {
-            let end = self.watch.end();
-            let loaded = self.loaded(end);
-            self.watch.close(end, loaded);
-        }
-    }
-
-    /// Cycles before `end` in which each part could take nothing; it has taken nothing since.
-    fn loaded(&self, end: u64) -> [u64; PARTS] {
-        std::array::from_fn(|k| self.stations.get(k).unwrap_or(&self.select).loaded(end))
-    }
-
-    /// How full its parts were in its first `cycles` cycles, behind which all contexts are idle.
-    pub fn phases(&self, cycles: u64) -> Phases {
-        let mut watch = self.watch.clone();
-        while watch.end() <= cycles {
-            watch.close(watch.end(), self.loaded(watch.end()));
-        }
-        if watch.since < cycles {
-            watch.close(cycles, self.loaded(cycles));
-        }
-        let parts = self.named().into_iter().map(|(name, at, _)| (name, watch.parts[at])).collect();
-        Phases { cycles, parts }
-    }
-
-    /// Its blocks: name, place among what is watched, and times.
-    pub(super) fn named(&self) -> Vec<(&'static str, usize, &Station)> {
-        let of = |name, resource: Resource| (name, resource as usize, &self.stations[resource as usize]);
-        let mut all = vec![
-            of(self.fitted[0], Resource::Setup),
-            of(NodeAddress::NAME, Resource::Fetch),
-            of(ChildTest::NAME, Resource::Child),
-            of(self.fitted[1], Resource::Lod),
-            of(Tessellate::NAME, Resource::Morph),
-            of(self.fitted[2], Resource::Tri),
-            of(self.fitted[3], Resource::Divide),
-            (HitSelect::NAME, Resource::COUNT, &self.select),
-            of(BaryMap::NAME, Resource::Map),
-        ];
-        if self.has_deciders {
-            all.push(of(TreeDeciders::NAME, Resource::Decide));
-        }
-        all
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::block::Timing;
+    use crate::sim::timing::station::Station;
 
     #[test]
     fn a_part_is_full_in_the_stretches_in_which_it_was() {

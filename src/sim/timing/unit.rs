@@ -1,7 +1,6 @@
 //! The unit: its contexts, arbiters, blocks and ports.
 
 use super::context::ContextTiming;
-use super::eased::Eased;
 use super::hits::HitQueue;
 use super::phases::Watch;
 use super::ports::{LineRequest, Ports, Steps, untag};
@@ -14,8 +13,9 @@ use crate::block::node_address::NodeAddress;
 use crate::block::tessellate::Tessellate;
 use crate::block::tree_deciders::TreeDeciders;
 use crate::block::{Operation, Operations, Timing};
-use crate::hardware::{Hardware, MAX_CONTEXTS};
-use crate::sim::unit::{Arbiter, Resource, State};
+use crate::hardware::{Eased, Hardware, MAX_CONTEXTS};
+use crate::hardware::{Resource, State};
+use crate::sim::unit::Arbiter;
 use crate::step::NodeShape;
 use std::collections::VecDeque;
 

@@ -27,7 +27,6 @@ pub(super) use arbiter::Arbiter;
 pub use counts::UnitCounts;
 pub use error::UnitError;
 pub use memory::{SceneMemory, file_config};
-pub(super) use operands::Resource;
 pub use register::BlockCounts;
 pub use traffic::{Latency, Stall, Traffic};
 pub use traversal_unit::{Inputs, Outputs, TraversalUnit};

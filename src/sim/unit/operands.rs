@@ -8,34 +8,11 @@ use crate::block::{
 };
 use crate::format::{SplitRecord, VertexData, last_displacements};
 use crate::hardware::ports::{Corners, HitOut, SceneConfig, SecondaryIn};
-use crate::hardware::{Fetch, RayError, State};
+use crate::hardware::{Fetch, RayError, Resource, State};
 use crate::num::{LineAddress, PADDING_BITS, Point, RayT, Start, U, VertexForm, Wire};
 
 /// Zero bits at the bottom of every stored coordinate.
 const PADDING: u64 = PADDING_BITS as u64;
-
-/// What contexts share, one arbiter each.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Resource {
-    Setup,
-    Fetch,
-    Child,
-    Decide,
-    Lod,
-    Morph,
-    Tri,
-    Divide,
-    Map,
-    Hit,
-}
-
-impl Resource {
-    /// All, by number.
-    pub const ALL: [Self; Self::COUNT] =
-        [Self::Setup, Self::Fetch, Self::Child, Self::Decide, Self::Lod, Self::Morph, Self::Tri, Self::Divide, Self::Map, Self::Hit];
-    /// How many there are.
-    pub const COUNT: usize = Self::Hit as usize + 1;
-}
 
 impl Context {
     /// Tells `ask` every resource that the context asks for in this cycle.

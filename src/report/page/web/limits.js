@@ -40,7 +40,34 @@ function limits(shown, state) {
     { name: "holds most", value: (r) => r.cost.stalls.largest }, ...causes.map((cause) => ({ name: `${cause}, % of the rays' cycles`, value: (r) => 100 * share(r, cause) })),
     { name: "a ray's latency (cycles): median", value: (r) => r.cost.latencies?.rays.median }, { name: "its 99th percentile", value: (r) => r.cost.latencies?.rays.percentile_99 }, { name: "its largest", value: (r) => r.cost.latencies?.rays.largest },
   ];
-  return h("div", {}, h("h3", {}, "What held the rays"), swatchKeys("Causes", names, fillOf), h("div", { class: "grid" }, charts), dataTable(`Limits and causes, ${state.scene}`, columns, runs), limitsOverTime(runs));
+  return h("div", {}, h("h3", {}, "What held the rays"), swatchKeys("Causes", names, fillOf), h("div", { class: "grid" }, charts), dataTable(`Limits and causes, ${state.scene}`, columns, runs), phases(runs), limitsOverTime(runs));
+}
+
+/** How full the blocks of traversal units were: the share of time with a load of nine tenths or more, a line at the mean load. */
+function phases(all) {
+  const runs = all.filter(({ cost }) => cost.units?.phases);
+  if (!runs.length) return "";
+  const share = (value) => `${num(100 * value)} % of the units’ time`;
+  const rows = runs.flatMap(({ point, cost }) => Object.entries(cost.units.phases.blocks).filter(([block]) => cost.units.blocks[block]?.operations > 0).map(([block, of]) => {
+    const eased = cost.units.eased?.[block];
+    return { point, block, of, eased, cycles: cost.cycles, run: `${point.method}, ${point.setting}, from ${place(point)}`, x: 100 * of.full, y: 0, load: 100 * of.load, method: point.method, ...tipOf(point, [[block, `full for ${share(of.full)}`], ["the fullest", share(of.fullest)], ["mean load", `${num(100 * of.load)} %`], ...(eased == null ? [] : [["cycles if it kept no ray waiting", `${num(eased)} of ${num(cost.cycles)}`]])]) };
+  }));
+  const charts = unique(rows.map((r) => r.run)).slice(0, 6).map((run) => {
+    const here = rows.filter((r) => r.run === run);
+    return diagram({
+      title: run, small: "% of the units’ time", rows: here, label: `How full the blocks of units were, ${run}`,
+      options: () => ({
+        height: 34 + 24 * here.length, marginLeft: 96, marginRight: 20, marginTop: 4, marginBottom: 26, x: { label: null, domain: [0, 100], ticks: 5 }, y: { label: null, domain: here.map((r) => r.block), padding: 0.3 }, color: { domain: here.map((r) => r.block), range: here.map((r) => fillOf(r.block)) },
+        marks: [Plot.barX(here, { x: "x", y: "block", fill: "block", className: "points", sort: null }), Plot.tickX(here, { x: "load", y: "block", strokeWidth: 2 }), Plot.ruleX([0], { strokeOpacity: 0.5 })],
+      }),
+    });
+  });
+  const columns = [
+    { name: "from", value: (r) => place(r.point) }, { name: "method", value: (r) => r.point.method }, { name: "setting", value: (r) => r.point.setting }, { name: "block", value: (r) => r.block },
+    { name: "mean load, %", value: (r) => r.load }, { name: "full, % of the units’ time", value: (r) => r.x }, { name: "of the unit with least", value: (r) => 100 * r.of.full_of_units[0] }, { name: "of the unit with most", value: (r) => 100 * r.of.full_of_units[1] },
+    { name: "the fullest, %", value: (r) => 100 * r.of.fullest }, { name: "cycles if it kept no ray waiting", value: (r) => r.eased }, { name: "cycles", value: (r) => r.cycles },
+  ];
+  return h("div", {}, h("h3", {}, "How full the blocks of units were"), h("p", { class: "note" }, "Bars: the time with a load of 90 % or more, by stretches of 1,024 cycles of each unit; lines: the mean load."), h("div", { class: "grid" }, charts), dataTable("Blocks of units", columns, rows));
 }
 
 /** The limit that was nearest its bound in each stretch of time. */

@@ -35,7 +35,7 @@ function simulationPoints(simulations) {
     const e = result.energy;
     const energy = { unit: e.unit, total: e.total, ...Object.fromEntries(ENERGY_PARTS.map((part) => [part, e[part].total])) };
     const machine = [setup.machine.label, ...setup.machine.set].join(" ");
-    points.get(key).costs.push({ keys: machineKeys(setup.machine.description), target: target(machine, setup.compute), compute: setup.compute, cycles: result.cycles, milliseconds: result.milliseconds, energy, dram_lines: result.dram.reads + result.dram.writes, dram_bytes: result.dram.bytes, l1_requests_per_ray: result.accesses_per_ray, traffic: result.traffic, intervals: result.intervals ?? [], roofline: result.roofline, stalls: result.stalls, latencies: result.latencies });
+    points.get(key).costs.push({ keys: machineKeys(setup.machine.description), target: target(machine, setup.compute), compute: setup.compute, cycles: result.cycles, milliseconds: result.milliseconds, energy, dram_lines: result.dram.reads + result.dram.writes, dram_bytes: result.dram.bytes, l1_requests_per_ray: result.accesses_per_ray, traffic: result.traffic, intervals: result.intervals ?? [], roofline: result.roofline, stalls: result.stalls, latencies: result.latencies, units: result.units });
   }
   return [...points.values()];
 }

@@ -1,6 +1,6 @@
 //! Parts of a unit that never keep anybody waiting: a cause turned off, to see what it costs. No hardware is so, and `rtl/` has nothing of it.
 
-use crate::sim::unit::Resource;
+use super::resource::Resource;
 use serde::{Deserialize, Serialize};
 
 /// Parts that take any number of items in a cycle, each after the same latency; as text their names, joined by `+`.
@@ -38,7 +38,7 @@ impl Eased {
     }
 
     /// This part is one of them.
-    pub(in crate::sim) fn has(self, resource: Resource) -> bool {
+    pub(crate) fn has(self, resource: Resource) -> bool {
         self.0 >> resource as u16 & 1 == 1
     }
 }
