@@ -135,6 +135,7 @@ class SceneMethod:
         compute: str = "free",
         frames: int = 1,
         turn: float = 3.0,
+        tiles_in_turn: int = 1,
         progress: _Progress | None = None,
     ) -> Any: ...
 
@@ -263,6 +264,7 @@ class Scene:
         compute: str = "free",
         frames: int = 1,
         turn: float = 3.0,
+        tiles_in_turn: int = 1,
         progress: _Progress | None = None,
         **knobs: Any,
     ) -> Any: ...

@@ -246,7 +246,7 @@ impl PySceneMethod {
     }
 
     /// What frames cost on a machine: a dictionary. See Scene.simulate.
-    #[pyo3(signature = (machine, camera=None, *, rays=None, compute="free", frames=1, turn=3.0, progress=None))]
+    #[pyo3(signature = (machine, camera=None, *, rays=None, compute="free", frames=1, turn=3.0, tiles_in_turn=1, progress=None))]
     #[expect(clippy::too_many_arguments, reason = "keywords of Python")]
     pub fn simulate<'py>(
         &self,
@@ -256,9 +256,10 @@ impl PySceneMethod {
         compute: &str,
         frames: u32,
         turn: f64,
+        tiles_in_turn: u32,
         progress: Option<&Bound<'py, PyAny>>,
     ) -> PyResult<Bound<'py, PyAny>> {
-        simulate(&self.0, machine, &Frame { camera, rays, frames, turn }, compute, progress)
+        simulate(&self.0, machine, &Frame { camera, rays, frames, turn, tiles_in_turn }, compute, progress)
     }
 
     fn __repr__(&self) -> String {

@@ -384,9 +384,10 @@ impl PyScene {
     /// machine: a Machine, the name of one, the path of a description or a dictionary; of a list of them the result is a list, of rays that
     /// were traced once. rays: an array as for `cast`, in place of a camera's. compute: "free", or "units" for traversal units that take time.
     /// frames, turn: so many frames after one another, the camera turned by so many degrees from one to the next.
+    /// tiles_in_turn: rays of so many tiles that lie far apart in turn, a power of two up to 64, in place of tile by tile.
     ///
     /// Raises LodrayError: a machine that cannot be, or on which the frame does not end.
-    #[pyo3(signature = (machine, camera=None, *, rays=None, method="lod", compute="free", frames=1, turn=3.0, progress=None, **knobs))]
+    #[pyo3(signature = (machine, camera=None, *, rays=None, method="lod", compute="free", frames=1, turn=3.0, tiles_in_turn=1, progress=None, **knobs))]
     #[expect(clippy::too_many_arguments, reason = "keywords of Python")]
     fn simulate<'py>(
         &self,
@@ -397,10 +398,11 @@ impl PyScene {
         compute: &str,
         frames: u32,
         turn: f64,
+        tiles_in_turn: u32,
         progress: Option<&Bound<'py, PyAny>>,
         knobs: Option<&Bound<'py, PyDict>>,
     ) -> PyResult<Bound<'py, PyAny>> {
-        self.made(machine.py(), method, knobs)?.simulate(machine, camera, rays, compute, frames, turn, progress)
+        self.made(machine.py(), method, knobs)?.simulate(machine, camera, rays, compute, frames, turn, tiles_in_turn, progress)
     }
 
     /// What an error costs, for every method: the document that `lodray error-time` writes, as a dictionary.

@@ -6,7 +6,8 @@ use crate::errors::{raised, refused};
 use crate::machine::machines;
 use crate::told::beside;
 use crate::values::{document, named};
-use lodray::rays::{ModelSpace, RayFile};
+use lodray::method::packet::takes_packets;
+use lodray::rays::{MOST_IN_TURN, ModelSpace, RayFile, may_be_in_turn};
 use lodray::run::{self, Compute};
 use lodray::scene::{Pass, PassRays, SceneMethod, Target};
 use lodray::study::pruned::{check, check_rays};
@@ -25,14 +26,16 @@ pub struct Frame<'a, 'py> {
     pub frames: u32,
     /// Degrees between them.
     pub turn: f64,
+    /// Tiles whose rays are handed out in turn.
+    pub tiles_in_turn: u32,
 }
 
 impl Frame<'_, '_> {
     fn rays(&self, method: &SceneMethod) -> PyResult<PassRays> {
         let (scene, delta) = (method.scene(), method.knobs().delta());
         if let Some(rays) = self.rays {
-            if self.camera.is_some() || self.frames != 1 {
-                return Err(refused("rays: go with neither a camera nor frames"));
+            if self.camera.is_some() || self.frames != 1 || self.tiles_in_turn != 1 {
+                return Err(refused("rays: go with neither a camera nor frames nor tiles in turn"));
             }
             let rays = RayFile::new(Rays::of(rays, None, &Asked::default())?.rows()?.queries());
             check_rays(scene, &rays, delta).map_err(raised)?;
@@ -45,6 +48,12 @@ impl Frame<'_, '_> {
                 self.frames, self.turn
             )));
         }
+        if !may_be_in_turn(self.tiles_in_turn) {
+            return Err(refused(format!("tiles_in_turn: {}; a power of two from 1 to {MOST_IN_TURN}", self.tiles_in_turn)));
+        }
+        if self.tiles_in_turn > 1 && takes_packets(method.knobs()) {
+            return Err(refused("tiles_in_turn: packets take the rays of one tile"));
+        }
         let turning = Turning { frames: self.frames, degrees: self.turn };
         let rays = if self.frames > 1 { PassRays::Path(turning.path(&camera)) } else { PassRays::Camera(camera) };
         match &rays {
@@ -52,7 +61,7 @@ impl Frame<'_, '_> {
             _ => check(scene, &camera, delta),
         }
         .map_err(raised)?;
-        Ok(rays)
+        Ok(rays.in_turn(self.tiles_in_turn))
     }
 }
 

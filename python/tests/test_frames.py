@@ -54,6 +54,11 @@ def test_frames_cost_time_and_energy(scene: lodray.Scene) -> None:
     assert len(warm["frames"]) == 4 and warm["warm"]["cycles"] < result["cycles"]
     rays = scene.simulate("haydel2023", rays=camera.rays().reshape(-1))
     assert rays["rays"] == 64 * 64 and rays["hits"] == result["hits"]
+    turns = scene.simulate("haydel2023", camera, compute="units", tiles_in_turn=4)
+    assert turns["setup"]["view"]["tiles_in_turn"] == 4 and turns["hits"] == result["hits"]
+    assert set(turns["units"]["phases"]["blocks"]) == set(turns["units"]["blocks"])
+    with pytest.raises(lodray.LodrayError, match="tiles_in_turn: 3; a power of two"):
+        scene.simulate("haydel2023", camera, tiles_in_turn=3)
     with pytest.raises(lodray.LodrayError, match="compute"):
         scene.simulate("haydel2023", camera, compute="magic")
     with pytest.raises(lodray.LodrayError, match="reference"):
