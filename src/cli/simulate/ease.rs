@@ -1,5 +1,6 @@
 //! `--ease`: the same frame again with each part of the units in turn so that it keeps no ray waiting.
 
+use lodray::block::Operation;
 use lodray::hardware::Eased;
 use lodray::report::result::SimResult;
 use lodray::scene::{Outcome, SimulateError, Target};
@@ -31,10 +32,13 @@ pub fn joined(outcomes: Vec<Outcome>) -> Vec<Outcome> {
 
 /// A result with the cycles of others, by what they eased: only of what the frame asks for.
 fn with(mut result: SimResult, others: Vec<(String, u64)>) -> SimResult {
+    let hardware = result.setup.machine.description.units.config();
+    let Some(units) = &mut result.units else { return result };
     for (name, cycles) in others {
-        if let Some(units) = &mut result.units
-            && units.blocks.get(&name).is_none_or(|block| block.operations > 0)
-        {
+        // Units for rays from a surface have other blocks in these places.
+        let block = Operation::ALL.iter().find(|operation| operation.name() == name).map(|&operation| hardware.block(operation).name());
+        let works = |block: &str| units.blocks.get(block).is_some_and(|block| block.operations > 0);
+        if block.is_none_or(works) {
             units.eased.insert(name, cycles);
         }
     }
