@@ -117,6 +117,7 @@ fn tiles_in_turn_change_when_rays_come_and_nothing_that_they_find() {
     desk.refused("simulate a.lod --rays rays.npy --tiles-in-turn 4", USAGE, &["--tiles-in-turn"]);
     desk.refused("simulate a.lod --packet 32 --tiles-in-turn 4", FAILS, &["--tiles-in-turn: packets take the rays of one tile"]);
     desk.refused("simulate a.lod --ease", FAILS, &["--ease: eases parts of traversal units, which --compute units has"]);
+    desk.refused(&format!("{SHOT} --ease --set units.eased=all"), FAILS, &["--ease: haydel2023 has eased parts already"]);
     let wrong = format!("{SHOT} --set units.eased=cache");
     desk.refused(&wrong, FAILS, &["--set units.eased = cache: `cache` is no part of a unit that can be eased: there are ray_setup,"]);
     desk.write("jobs.toml", &list.replace("= 4", "= 5"));

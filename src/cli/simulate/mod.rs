@@ -131,6 +131,7 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
     }
     for (k, machine) in machines.iter().enumerate() {
         run::check(&machine.description, args.compute).with_context(|| format!("--machine {}", args.machine[k]))?;
+        anyhow::ensure!(!args.ease || machine.description.units.eased.is_none(), "--ease: {} has eased parts already", machine.label);
         anyhow::ensure!(machines[..k].iter().all(|before| before.label != machine.label), "--machine: {} is given twice", machine.label);
     }
     let read =
