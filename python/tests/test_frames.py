@@ -113,7 +113,7 @@ def test_paths_are_pictures_of_a_description(scene: lodray.Scene) -> None:
     again = lodray.paths(description, [scene, scene], seed=3)
     assert (again["light"] == made["light"]).all()
     assert (lodray.paths(description, [scene, scene], seed=3, time=0.5)["light"] != made["light"]).any()
-    with pytest.raises(lodray.LodrayError, match="time: 2.0 is not from 0 to 1"):
+    with pytest.raises(lodray.LodrayError, match="time: 2 is not from 0 to 1"):
         lodray.paths(description, [scene, scene], time=2.0)
     with pytest.raises(lodray.LodrayError, match="models: 1 scenes for 2 models"):
         lodray.paths(description, [scene])
