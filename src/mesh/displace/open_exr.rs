@@ -1,7 +1,11 @@
 //! Heights in OpenEXR.
 
+use exr::meta::BlockDescription;
 use exr::prelude::{MetaData, ReadChannels, ReadLayers, read};
 use std::io::Cursor;
+
+/// Most texels of a tile that is larger than the picture: whoever reads it makes room for all of it.
+const MOST_OF_A_TILE: usize = 1 << 18;
 
 /// Texels across and all heights, row by row, of a file of at most `most` texels.
 ///
@@ -9,9 +13,17 @@ use std::io::Cursor;
 /// It cannot be read, or has more texels.
 pub(super) fn open_exr(bytes: &[u8], most: u64) -> Result<(usize, Vec<f32>), String> {
     let fault = |error: exr::error::Error| error.to_string();
-    let sizes = MetaData::read_from_buffered(Cursor::new(bytes), false).map_err(fault)?.headers.into_iter().map(|header| header.layer_size);
-    if let Some(size) = sizes.into_iter().find(|size| size.0 as u64 * size.1 as u64 > most) {
-        return Err(format!("{} x {} texels are more than {most}, which so many bytes may have", size.0, size.1));
+    for header in MetaData::read_from_buffered(Cursor::new(bytes), false).map_err(fault)?.headers {
+        let size = header.layer_size;
+        if size.0 as u64 * size.1 as u64 > most {
+            return Err(format!("{} x {} texels are more than {most}, which so many bytes may have", size.0, size.1));
+        }
+        if let BlockDescription::Tiles(tiles) = header.blocks {
+            let tile = tiles.tile_size;
+            if tile.0.saturating_mul(tile.1) > MOST_OF_A_TILE.max(size.area()) {
+                return Err(format!("its tiles of {} x {} texels are far larger than its picture", tile.0, tile.1));
+            }
+        }
     }
     let image = read().no_deep_data().largest_resolution_level().all_channels().first_valid_layer().all_attributes().non_parallel();
     let layer = image.from_buffered(Cursor::new(bytes)).map_err(fault)?.layer_data;
