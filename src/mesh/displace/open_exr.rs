@@ -39,3 +39,22 @@ pub(super) fn open_exr(bytes: &[u8], most: u64) -> Result<(usize, Vec<f32>), Str
     }
     Ok((width, texels))
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use exr::prelude::{Image, SpecificChannels, Vec2, WritableImage};
+
+    #[test]
+    fn tiles_far_larger_than_their_picture_are_refused() {
+        let channels = SpecificChannels::rgb(|at: Vec2<usize>| (at.x() as f32, at.y() as f32, 0.5_f32));
+        let mut bytes = Cursor::new(Vec::new());
+        Image::from_channels((9, 7), channels).write().to_buffered(&mut bytes).unwrap();
+        let mut bytes = bytes.into_inner();
+        assert_eq!(open_exr(&bytes, 63).unwrap().0, 9);
+        // What a file of 974 bytes said by damage: whoever read it held 690 MB.
+        let wide = bytes.windows(9).position(|at| at == b"tiledesc\0").unwrap() + 9 + 4;
+        bytes[wide..wide + 4].copy_from_slice(&65_600_u32.to_le_bytes());
+        assert_eq!(open_exr(&bytes, 63).unwrap_err(), "its tiles of 65600 x 64 texels are far larger than its picture");
+    }
+}
