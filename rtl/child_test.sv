@@ -44,8 +44,25 @@ module child_test #(
   lod_pkg::child_boxes_in_t  boxes_in;
   lod_pkg::child_boxes_out_t boxes;
   logic                      valid_boxes, next_node;
-  assign boxes_in = {in_i.tree, in_i.origin, in_i.halves, in_i.exponents, in_i.planes, in_i.f0, in_i.f1, in_i.f2, in_i.g0, in_i.g1, in_i.g2,
-                     in_i.p0, in_i.p1, in_i.p2, in_i.q0, in_i.q1, in_i.q2};
+  always_comb begin
+    boxes_in.tree      = in_i.tree;
+    boxes_in.origin    = in_i.origin;
+    boxes_in.halves    = in_i.halves;
+    boxes_in.exponents = in_i.exponents;
+    boxes_in.planes    = in_i.planes;
+    boxes_in.f0        = in_i.f0;
+    boxes_in.f1        = in_i.f1;
+    boxes_in.f2        = in_i.f2;
+    boxes_in.g0        = in_i.g0;
+    boxes_in.g1        = in_i.g1;
+    boxes_in.g2        = in_i.g2;
+    boxes_in.p0        = in_i.p0;
+    boxes_in.p1        = in_i.p1;
+    boxes_in.p2        = in_i.p2;
+    boxes_in.q0        = in_i.q0;
+    boxes_in.q1        = in_i.q1;
+    boxes_in.q2        = in_i.q2;
+  end
   child_boxes #(.TAG_W(1)) u_boxes (
     .clk_i, .rst_ni, .valid_i(take), .ready_o(ready_boxes), .in_i(boxes_in), .tag_i(1'b0),
     .valid_o(valid_boxes), .ready_i(next_node), .out_o(boxes), .tag_o()
@@ -81,7 +98,11 @@ module child_test #(
       assign with_it    = 1'b0;
       assign unused_tag = with_it_there;
     end
-    assign test_in = {ray_q, t_max_q, bounds[k]};
+    always_comb begin
+      test_in.ray    = ray_q;
+      test_in.t_max  = t_max_q;
+      test_in.bounds = bounds[k];
+    end
     box_test #(.TAG_W(WITH_W)) u_test (
       .clk_i, .rst_ni, .valid_i(valid_ray), .ready_o(ready_box[k]), .in_i(test_in), .tag_i(with_it),
       .valid_o(valid_box[k]), .ready_i(ready_test), .out_o(test_out), .tag_o(with_it_there)

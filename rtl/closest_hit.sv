@@ -113,7 +113,11 @@ module closest_hit (
   // Edge functions fit a numerator of t: 96 bits of 99.
   logic [EDGE_W-1:0] numerator;
   assign numerator = divide_v_i ? v_q : w_q;
-  assign divide_o  = {lod_pkg::T_NUMERATOR_W'(numerator) << ZEROS, low, lod_pkg::EDGE_FUNCTION_W'(det_q) << ZEROS};
+  always_comb begin
+    divide_o.numerator   = lod_pkg::T_NUMERATOR_W'(numerator) << ZEROS;
+    divide_o.low         = low;
+    divide_o.denominator = lod_pkg::EDGE_FUNCTION_W'(det_q) << ZEROS;
+  end
 
   // Level and node, where trees have any but their roots.
   logic [3:0]                       level;
@@ -162,8 +166,27 @@ module closest_hit (
   end
 
   // The hit's level is at most N.
-  assign map_o = {levels_i - level, node, b0, b1, b2};
-  assign hit_o = {t_max_q, front_q, 28'(tree_q), level, node, b0, b1, b2, full};
+  always_comb begin
+    map_o.levels = levels_i - level;
+    map_o.node   = node;
+    map_o.b0     = b0;
+    map_o.b1     = b1;
+    map_o.b2     = b2;
+  end
+  always_comb begin
+    hit_o.t         = t_max_q;
+    hit_o.front     = front_q;
+    hit_o.tree      = 28'(tree_q);
+    hit_o.level     = level;
+    hit_o.node      = node;
+    hit_o.b0        = b0;
+    hit_o.b1        = b1;
+    hit_o.b2        = b2;
+    hit_o.full_node = full.node;
+    hit_o.full_b0   = full.b0;
+    hit_o.full_b1   = full.b1;
+    hit_o.full_b2   = full.b2;
+  end
 
 endmodule
 

@@ -19,7 +19,9 @@ child_sort6.sv
 child_test.sv
 closest_hit.sv
 cone_tolerance.sv
+copy_turns.sv
 cross_product.sv
+divide_copies.sv
 divide_multiples.sv
 divide_step.sv
 dot_product.sv
@@ -48,6 +50,7 @@ prism_frame.sv
 prism_test.sv
 ray_context.sv
 ray_setup.sv
+setup_copies.sv
 shared_input.sv
 shared_output.sv
 split_triangles.sv

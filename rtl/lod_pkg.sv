@@ -16,6 +16,8 @@ package lod_pkg;
   localparam int unsigned LOD_EDGES_PER_CYCLE = 1;  // edges of a triangle that lod_test takes in a cycle, likewise
   localparam int unsigned DIVIDE_BITS = 3;          // bits of a quotient that hit_divide finds in a cycle, if its parameter does not say otherwise
   localparam int unsigned SETUP_BITS = 3;           // of each reciprocal that ray_setup finds, likewise
+  localparam int unsigned SETUP_COPIES = 1;         // ray_setup blocks that take turns
+  localparam int unsigned DIVIDE_COPIES = 1;        // hit_divide blocks, likewise
   localparam int unsigned BOXES_PER_CYCLE = 2;      // boxes that child_test tests in a cycle, if its parameter does not say otherwise
   localparam int unsigned LINK_REGISTERS = 0;       // between contexts and blocks: 0, 1 for operands, or 2 for results and answers of memory too
   localparam int unsigned INDEX_W = 28;             // of the number of a quad-BVH node, of a tree and its place, and of a node, where it is kept
@@ -124,6 +126,8 @@ package lod_pkg;
   localparam int unsigned CHILD_TEST_INTERVAL = 2;
   localparam int unsigned CHILD_PRISMS_LATENCY = 26;
   localparam int unsigned CHILD_PRISMS_INTERVAL = 4;
+  localparam int unsigned SETUP_INTERVAL = 11;         // of all copies of ray_setup or start_setup together
+  localparam int unsigned DIVIDE_INTERVAL = 13;        // of all copies of hit_divide or start_divide together
 
   // Cycles of parts of blocks.
   localparam int unsigned ENTRY_DISTANCE_LATENCY = 5;  // of the box tests

@@ -284,8 +284,11 @@ module ray_context (
   assign origin_whole    = lod_pkg::whole_point(origin_q);
   assign direction_whole = lod_pkg::whole_direction(direction_q);
   lod_pkg::start_t start;
-  assign start   = {origin_whole, fraction};
-  assign setup_o = {start, direction_whole};
+  assign start = {origin_whole, fraction};
+  always_comb begin
+    setup_o.start     = start;
+    setup_o.direction = direction_whole;
+  end
 
   assign fetch_request_o = state_q == lod_pkg::FETCH && want_q != '0 && error_q == lod_pkg::ERROR_NONE;
   assign fetch_epoch_o   = epoch_q;
@@ -334,8 +337,28 @@ module ray_context (
   assign {whole_p0, whole_p1, whole_p2} = {lod_pkg::whole_point(p0), lod_pkg::whole_point(p1), lod_pkg::whole_point(p2)};
   assign {whole_q0, whole_q1, whole_q2} = {lod_pkg::whole_point(q0), lod_pkg::whole_point(q1), lod_pkg::whole_point(q2)};
 
-  assign child_o = {lod_pkg::whole_setup(setup_q), t_max, present, split_there, origin, halves, exponents, planes,
-                    whole_f0, whole_f1, whole_f2, whole_g0, whole_g1, whole_g2, whole_p0, whole_p1, whole_p2, whole_q0, whole_q1, whole_q2};
+  always_comb begin
+    child_o.ray       = lod_pkg::whole_setup(setup_q);
+    child_o.t_max     = t_max;
+    child_o.present   = present;
+    child_o.tree      = split_there;
+    child_o.origin    = origin;
+    child_o.halves    = halves;
+    child_o.exponents = exponents;
+    child_o.planes    = planes;
+    child_o.f0        = whole_f0;
+    child_o.f1        = whole_f1;
+    child_o.f2        = whole_f2;
+    child_o.g0        = whole_g0;
+    child_o.g1        = whole_g1;
+    child_o.g2        = whole_g2;
+    child_o.p0        = whole_p0;
+    child_o.p1        = whole_p1;
+    child_o.p2        = whole_p2;
+    child_o.q0        = whole_q0;
+    child_o.q1        = whole_q1;
+    child_o.q2        = whole_q2;
+  end
 
   // The rays before this one that decide about levels around its start, and who decides here: in the tree, and about the node's edges.
   lod_pkg::ray_t            first, second;
@@ -366,7 +389,17 @@ module ray_context (
     assign first        = {lod_pkg::whole_point(first_origin_q), lod_pkg::whole_direction(first_direction_q), lod_pkg::CONE_W'(first_cone_q)};
     assign second       = {lod_pkg::whole_point(second_origin_q), lod_pkg::whole_direction(second_direction_q), lod_pkg::CONE_W'(second_cone_q)};
     assign prior        = prior_q;
-    assign decide_o     = {28'(last_q), a0, a1, a2, by_second_q, 28'(tree_q), whole_f0, whole_f1, whole_f2};
+    always_comb begin
+      decide_o.last   = 28'(last_q);
+      decide_o.a0     = a0;
+      decide_o.a1     = a1;
+      decide_o.a2     = a2;
+      decide_o.second = by_second_q;
+      decide_o.tree   = 28'(tree_q);
+      decide_o.p0     = whole_f0;
+      decide_o.p1     = whole_f1;
+      decide_o.p2     = whole_f2;
+    end
 
     // None until a tree's are known; of a node they are there when it is tested.
     lod_pkg::tree_deciders_out_t tree_deciders_q;
@@ -375,7 +408,11 @@ module ray_context (
       if (take_i) tree_deciders_q <= '0;
       else if (decide_valid_i) tree_deciders_q <= decide_i;
     end
-    assign node_in = {decide_valid_i ? decide_i : tree_deciders_q, level, lod_pkg::NODE_INDEX_W'(node)};
+    always_comb begin
+      node_in.tree  = decide_valid_i ? decide_i : tree_deciders_q;
+      node_in.level = level;
+      node_in.node  = lod_pkg::NODE_INDEX_W'(node);
+    end
     node_deciders #(.TAG_W(1)) u_node_deciders (
       .clk_i, .rst_ni, .valid_i(1'b1), .ready_o(), .in_i(node_in), .tag_i(1'b0), .valid_o(), .ready_i(1'b1), .out_o(by), .tag_o()
     );
@@ -412,7 +449,25 @@ module ray_context (
   end
 
   assign lod_request_o = CHOOSING && state_q == lod_pkg::LOD;
-  assign lod_o         = {origin_whole, direction_whole, cone, first, second, by, whole_p0, whole_p1, whole_p2, e0, e1, e2, scene_i.scale};
+  lod_pkg::ray_t ray;
+  always_comb begin
+    ray.origin    = origin_whole;
+    ray.direction = direction_whole;
+    ray.cone      = cone;
+  end
+  always_comb begin
+    lod_o.ray    = ray;
+    lod_o.first  = first;
+    lod_o.second = second;
+    lod_o.by     = by;
+    lod_o.p0     = whole_p0;
+    lod_o.p1     = whole_p1;
+    lod_o.p2     = whole_p2;
+    lod_o.e0     = e0;
+    lod_o.e1     = e1;
+    lod_o.e2     = e2;
+    lod_o.scale  = scene_i.scale;
+  end
 
   // It is known whether the node's triangle serves: from the LOD test, or at once.
   logic decided, refine;
@@ -423,9 +478,32 @@ module ray_context (
 
   // level < levels here.
   logic [3:0] grid;
-  assign grid         = scene_i.levels - level - 4'd1 + scene_i.zeros[3:0];
-  assign morph_o      = {compact, grid, scene_i.zeros >= 5'd4 ? 3'd0 : 3'd4 - scene_i.zeros[2:0], scene_i.scale, e0, e1, e2, lod.s0, lod.s1, lod.s2,
-                         whole_f0, whole_f1, whole_f2, whole_p0, whole_p1, whole_p2};
+  assign grid = scene_i.levels - level - 4'd1 + scene_i.zeros[3:0];
+  // The vertices are taken out of their line outside.
+  lod_pkg::tessellate_in_t morph;
+  logic [3*lod_pkg::POINT_W-1:0] unused_vertices;
+  always_comb begin
+    morph.compact = compact;
+    morph.grid    = grid;
+    morph.padding = scene_i.zeros >= 5'd4 ? 3'd0 : 3'd4 - scene_i.zeros[2:0];
+    morph.scale   = scene_i.scale;
+    morph.e0      = e0;
+    morph.e1      = e1;
+    morph.e2      = e2;
+    morph.s0      = lod.s0;
+    morph.s1      = lod.s1;
+    morph.s2      = lod.s2;
+    morph.f0      = whole_f0;
+    morph.f1      = whole_f1;
+    morph.f2      = whole_f2;
+    morph.p0      = whole_p0;
+    morph.p1      = whole_p1;
+    morph.p2      = whole_p2;
+    morph.v0      = '0;
+    morph.v1      = '0;
+    morph.v2      = '0;
+  end
+  assign {morph_o, unused_vertices} = morph;
   // Displacements are the first in a split; of last splits two siblings share a line, or if they are short four.
   localparam int unsigned DISPLACEMENTS_W = 3 * lod_pkg::DISPLACEMENT_W;
   logic [DISPLACEMENTS_W-1:0] low_line;
@@ -446,7 +524,13 @@ module ray_context (
   assign tested0  = own0 ? whole_p0 : next_q[1] ? (next_q[0] ? whole_q0 : whole_q1) : whole_q2;
   assign tested1  = own1 ? whole_p1 : next_q[1] ? (next_q[0] ? whole_q1 : whole_q0) : whole_q2;
   assign tested2  = own2 ? whole_p2 : next_q[0] ? (next_q[1] ? whole_q2 : whole_q0) : whole_q1;
-  assign tri_o    = {start, direction_whole, tested0, tested1, tested2};
+  always_comb begin
+    tri_o.start     = start;
+    tri_o.direction = direction_whole;
+    tri_o.p0        = tested0;
+    tri_o.p1        = tested1;
+    tri_o.p2        = tested2;
+  end
 
   // The corners of the closest hit, chosen likewise.
   if (SECONDARY) begin : g_corners
@@ -469,14 +553,30 @@ module ray_context (
     assign unused_closer = closer;
   end
 
-  assign select_o    = {scene_i.levels, known, t_max, best.front, best_id, hit_t_i, hit_front_i, 28'(tree_q), hit_level, lod_pkg::NODE_INDEX_W'(hit_node)};
+  always_comb begin
+    select_o.levels     = scene_i.levels;
+    select_o.known      = known;
+    select_o.best_t     = t_max;
+    select_o.best_front = best.front;
+    select_o.best_id    = best_id;
+    select_o.t          = hit_t_i;
+    select_o.front      = hit_front_i;
+    select_o.tree       = 28'(tree_q);
+    select_o.level      = hit_level;
+    select_o.node       = lod_pkg::NODE_INDEX_W'(hit_node);
+  end
 
   assign divide_request_o = state_q == lod_pkg::DIVIDE_V || state_q == lod_pkg::DIVIDE_W;
   assign divide_what_o    = (state_q == lod_pkg::DIVIDE_V) ? lod_pkg::DIVIDE_FOR_V : lod_pkg::DIVIDE_FOR_W;
   assign map_request_o = MAPPING && state_q == lod_pkg::MAP;
   assign hit_request_o = state_q == lod_pkg::DONE;
 
-  assign hit_o = {tag_q, error_q, known && error_q == lod_pkg::ERROR_NONE, best};
+  always_comb begin
+    hit_o.tag   = tag_q;
+    hit_o.error = error_q;
+    hit_o.found = known && error_q == lod_pkg::ERROR_NONE;
+    hit_o.hit   = best;
+  end
 
   // ---- What ends a ray early ----
 
@@ -558,8 +658,11 @@ module ray_context (
 
   // ---- Next state ----
 
+  // The triangles of a node, or its own, are tested from the next cycle on. What stops the context late has no part in it: then they are not.
+  logic enter_tri;
   always_comb begin
-    state_d = state_q;
+    state_d   = state_q;
+    enter_tri = 1'b0;
     case (state_q)
       lod_pkg::IDLE:       if (take_i) state_d = (error_taken == lod_pkg::ERROR_NONE) ? lod_pkg::SETUP : lod_pkg::DONE;
       lod_pkg::SETUP:      if (setup_grant_i) state_d = lod_pkg::SETUP_WAIT;
@@ -568,7 +671,10 @@ module ray_context (
       lod_pkg::FETCH: begin
         case (fetch_q)
           lod_pkg::NODE:   if (record_there) state_d = lod_pkg::CHILD;
-          lod_pkg::RECORD: if (record_there) state_d = (record.depth == '0) ? lod_pkg::TRI : DECIDING && prior ? lod_pkg::DECIDE : lod_pkg::LOD;
+          lod_pkg::RECORD: if (record_there) begin
+            state_d   = (record.depth == '0) ? lod_pkg::TRI : DECIDING && prior ? lod_pkg::DECIDE : lod_pkg::LOD;
+            enter_tri = record.depth == '0;
+          end
           // SPLIT: it may still be under way where the vertices are elsewhere.
           default:         if (want_q == '0 && !waiting_q[1] && !(compact && waiting_q[0])) state_d = lod_pkg::MORPH;
         endcase
@@ -586,11 +692,16 @@ module ray_context (
       lod_pkg::DECIDE:      if (decide_grant_i) state_d = lod_pkg::DECIDE_WAIT;
       lod_pkg::DECIDE_WAIT: if (decide_valid_i) state_d = lod_pkg::LOD;
       lod_pkg::LOD, lod_pkg::LOD_WAIT: begin
-        if (decided) state_d = refine ? lod_pkg::FETCH : lod_pkg::TRI;
-        else if (lod_grant_i) state_d = lod_pkg::LOD_WAIT;
+        if (decided) begin
+          state_d   = refine ? lod_pkg::FETCH : lod_pkg::TRI;
+          enter_tri = !refine;
+        end else if (lod_grant_i) state_d = lod_pkg::LOD_WAIT;
       end
       lod_pkg::MORPH:       if (morph_grant_i) state_d = lod_pkg::MORPH_WAIT;
-      lod_pkg::MORPH_WAIT:  if (morph_valid_i) state_d = last_split ? lod_pkg::TRI : lod_pkg::CHILD;
+      lod_pkg::MORPH_WAIT:  if (morph_valid_i) begin
+        state_d   = last_split ? lod_pkg::TRI : lod_pkg::CHILD;
+        enter_tri = last_split;
+      end
       lod_pkg::TRI:         if (left_q == '0 && pending_q == '0) state_d = lod_pkg::POP;
       lod_pkg::DIVIDE_V:    if (divide_grant_i) state_d = lod_pkg::DIVIDE_W;
       lod_pkg::DIVIDE_W:    if (divide_grant_i) state_d = lod_pkg::DIVIDE_WAIT;
@@ -784,17 +895,6 @@ module ray_context (
       sorted_q <= child_i;
       count_q  <= child_i.count;
     end else if (push) count_q <= count_q - 3'd1;
-  end
-
-  logic enter_tri;
-  // The cases in which state_d is TRI from another state, without the late ones that it is not in.
-  always_comb begin
-    case (state_q)
-      lod_pkg::FETCH:                  enter_tri = enter_root && record.depth == '0;
-      lod_pkg::LOD, lod_pkg::LOD_WAIT: enter_tri = decided && !refine;
-      lod_pkg::MORPH_WAIT:             enter_tri = morph_valid_i && last_split;
-      default:                         enter_tri = 1'b0;
-    endcase
   end
 
   always_ff @(posedge clk_i) begin

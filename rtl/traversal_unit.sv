@@ -37,13 +37,11 @@ module traversal_unit #(
   localparam int unsigned CONTEXT_W = lod_pkg::CONTEXT_W;
   localparam bit SECONDARY = lod_pkg::SECONDARY != 0;
   localparam bit DECIDING = SECONDARY && lod_pkg::LOD_TEST != 0;
-  localparam int unsigned SETUP_INTERVAL = SECONDARY ? lod_pkg::START_SETUP_INTERVAL : lod_pkg::RAY_SETUP_INTERVAL;
-  localparam int unsigned DIVIDE_INTERVAL = SECONDARY ? lod_pkg::START_DIVIDE_INTERVAL : lod_pkg::HIT_DIVIDE_INTERVAL;
 
   if (CONTEXTS < 1 || CONTEXTS > lod_pkg::MAX_CONTEXTS) begin : g_illegal_contexts
     $error("traversal_unit: CONTEXTS = %0d, must be 1 to %0d", CONTEXTS, lod_pkg::MAX_CONTEXTS);
   end
-  if (lod_pkg::HIT_DIVIDE_LATENCY <= lod_pkg::HIT_SELECT_LATENCY) begin : g_illegal_latency
+  if (lod_pkg::DIVIDE_INTERVAL <= lod_pkg::HIT_SELECT_LATENCY) begin : g_illegal_latency
     $error("traversal_unit: two hits would meet in hit_select");
   end
 
@@ -85,28 +83,18 @@ module traversal_unit #(
   lod_pkg::ray_setup_out_t setup_made, setup_out;
   logic [CONTEXT_W-1:0] setup_in_tag, setup_made_tag, setup_tag;
 
-  shared_input #(.N(N), .W(lod_pkg::START_SETUP_IN_W), .INTERVAL(SETUP_INTERVAL)) u_setup_input (
+  shared_input #(.N(N), .W(lod_pkg::START_SETUP_IN_W), .INTERVAL(lod_pkg::SETUP_INTERVAL)) u_setup_input (
     .clk_i, .rst_ni,
     .request_i(setup_request), .data_i(setup_data), .grant_o(setup_grant),
     .valid_o(setup_in_valid), .ready_i(setup_in_ready), .data_o(setup_in), .index_o(setup_in_tag)
   );
 
   // Where all rays start at whole points, what the operands have for others is 0.
-  if (SECONDARY) begin : g_start_setup
-    start_setup #(.TAG_W(CONTEXT_W)) u_start_setup (
-      .clk_i, .rst_ni,
-      .valid_i(setup_in_valid), .ready_o(setup_in_ready), .in_i(setup_in), .tag_i(setup_in_tag),
-      .valid_o(setup_made_valid), .ready_i(1'b1), .out_o(setup_made), .tag_o(setup_made_tag)
-    );
-  end else begin : g_ray_setup
-    logic unused_fraction;
-    assign unused_fraction = ^setup_in.start.fraction;
-    ray_setup #(.TAG_W(CONTEXT_W)) u_ray_setup (
-      .clk_i, .rst_ni,
-      .valid_i(setup_in_valid), .ready_o(setup_in_ready), .in_i({setup_in.start.point, setup_in.direction}), .tag_i(setup_in_tag),
-      .valid_o(setup_made_valid), .ready_i(1'b1), .out_o(setup_made), .tag_o(setup_made_tag)
-    );
-  end
+  setup_copies #(.TAG_W(CONTEXT_W)) u_setup (
+    .clk_i, .rst_ni,
+    .valid_i(setup_in_valid), .ready_o(setup_in_ready), .in_i(setup_in), .tag_i(setup_in_tag),
+    .valid_o(setup_made_valid), .out_o(setup_made), .tag_o(setup_made_tag)
+  );
 
   shared_output #(.W(lod_pkg::RAY_SETUP_OUT_W)) u_setup_output (
     .clk_i, .rst_ni,
@@ -193,7 +181,16 @@ module traversal_unit #(
   end else if (lod_pkg::LOD_TEST != 0) begin : g_lod_test
     lod_pkg::lod_test_in_t own_in;
     logic unused_others;
-    assign own_in        = {lod_in.ray, lod_in.p0, lod_in.p1, lod_in.p2, lod_in.e0, lod_in.e1, lod_in.e2, lod_in.scale};
+    always_comb begin
+      own_in.ray   = lod_in.ray;
+      own_in.p0    = lod_in.p0;
+      own_in.p1    = lod_in.p1;
+      own_in.p2    = lod_in.p2;
+      own_in.e0    = lod_in.e0;
+      own_in.e1    = lod_in.e1;
+      own_in.e2    = lod_in.e2;
+      own_in.scale = lod_in.scale;
+    end
     assign unused_others = ^{lod_in.first, lod_in.second, lod_in.by};
     lod_test #(.TAG_W(CONTEXT_W)) u_lod_test (
       .clk_i, .rst_ni,
@@ -368,7 +365,11 @@ module traversal_unit #(
   );
 
   // The port has room for the number of any context that there can be.
-  assign mem_o       = {8'(fetch_tag), fetch_epoch, fetch_out.address};
+  always_comb begin
+    mem_o.tag     = 8'(fetch_tag);
+    mem_o.epoch   = fetch_epoch;
+    mem_o.address = fetch_out.address;
+  end
   assign mem_ready_o = 1'b1;
 
   // ---- Triangles: the tag carries the triangle's number too ----
@@ -400,7 +401,13 @@ module traversal_unit #(
   end else begin : g_tri_test
     lod_pkg::tri_test_in_t whole_in;
     logic unused_fraction;
-    assign whole_in        = {tri_in.start.point, tri_in.direction, tri_in.p0, tri_in.p1, tri_in.p2};
+    always_comb begin
+      whole_in.origin    = tri_in.start.point;
+      whole_in.direction = tri_in.direction;
+      whole_in.p0        = tri_in.p0;
+      whole_in.p1        = tri_in.p1;
+      whole_in.p2        = tri_in.p2;
+    end
     assign unused_fraction = ^tri_in.start.fraction;
     assign tri_made_below  = '0;
     tri_test #(.TAG_W(lod_pkg::PLACE_TAG_W), .EDGES_PER_CYCLE(EDGES_PER_CYCLE)) u_tri_test (
@@ -420,7 +427,7 @@ module traversal_unit #(
 
   logic queue_pop, queue_empty;
   lod_pkg::queued_hit_t head, compared, chosen;
-  logic [lod_pkg::KEPT_HIT_W-1:0] kept_head, candidate_q, chosen_q;
+  logic [lod_pkg::KEPT_HIT_W-1:0] kept_head, chosen_q;
 
   assign head   = lod_pkg::QUEUED_HIT_W'(kept_head);
   assign chosen = lod_pkg::QUEUED_HIT_W'(chosen_q);
@@ -443,7 +450,7 @@ module traversal_unit #(
   lod_pkg::hit_divide_out_t divide_made, divide_out;
   logic [CONTEXT_W-1:0] own_tag, divide_owner;
   logic [lod_pkg::DIVIDE_TAG_W-1:0] divide_in_tag, divide_link_tag, divide_made_tag;
-  logic [lod_pkg::KEPT_HIT_W-1:0] divide_link_hit, candidate;
+  logic [lod_pkg::KEPT_HIT_W-1:0] divide_link_hit, divide_made_hit, candidate;
 
   shared_input #(.N(N), .W(DIVIDE_W)) u_divide_input (
     .clk_i, .rst_ni,
@@ -451,13 +458,19 @@ module traversal_unit #(
     .valid_o(own_valid), .ready_i(divide_in_ready && queue_empty), .data_o({own_what, own_in}), .index_o(own_tag)
   );
 
-  assign divide_in     = queue_empty ? own_in : {head.test.t_num, head.below.t, head.test.det};
+  lod_pkg::start_divide_in_t head_in;
+  always_comb begin
+    head_in.numerator   = head.test.t_num;
+    head_in.low         = head.below.t;
+    head_in.denominator = head.test.det;
+  end
+  assign divide_in     = queue_empty ? own_in : head_in;
   assign divide_in_tag = queue_empty ? {own_what, own_tag, 2'd0} : {lod_pkg::DIVIDE_FOR_T, head.owner, head.number};
   assign queue_pop     = divide_in_ready && !queue_empty;
 
   // The hit goes along, as far as the division.
   if (lod_pkg::LINK_REGISTERS != 0) begin : g_divide_register
-    link_register #(.W(lod_pkg::START_DIVIDE_IN_W + lod_pkg::DIVIDE_TAG_W + lod_pkg::KEPT_HIT_W), .INTERVAL(DIVIDE_INTERVAL)) u_register (
+    link_register #(.W(lod_pkg::START_DIVIDE_IN_W + lod_pkg::DIVIDE_TAG_W + lod_pkg::KEPT_HIT_W), .INTERVAL(lod_pkg::DIVIDE_INTERVAL)) u_register (
       .clk_i, .rst_ni,
       .valid_i(own_valid || !queue_empty), .ready_o(divide_in_ready), .data_i({divide_in, divide_in_tag, kept_head}),
       .valid_o(divide_link_valid), .ready_i(divide_link_ready), .data_o({divide_link, divide_link_tag, divide_link_hit})
@@ -472,25 +485,16 @@ module traversal_unit #(
     assign divide_link_pop   = queue_pop;
   end
 
-  if (SECONDARY) begin : g_start_divide
-    start_divide #(.TAG_W(lod_pkg::DIVIDE_TAG_W)) u_start_divide (
-      .clk_i, .rst_ni,
-      .valid_i(divide_link_valid), .ready_o(divide_link_ready), .in_i(divide_link), .tag_i(divide_link_tag),
-      .valid_o(divide_made_valid), .ready_i(1'b1), .out_o(divide_made), .tag_o(divide_made_tag)
-    );
-  end else begin : g_hit_divide
-    logic unused_low;
-    assign unused_low = ^divide_link.low;
-    hit_divide #(.TAG_W(lod_pkg::DIVIDE_TAG_W)) u_hit_divide (
-      .clk_i, .rst_ni,
-      .valid_i(divide_link_valid), .ready_o(divide_link_ready), .in_i({divide_link.numerator, divide_link.denominator}), .tag_i(divide_link_tag),
-      .valid_o(divide_made_valid), .ready_i(1'b1), .out_o(divide_made), .tag_o(divide_made_tag)
-    );
-  end
+  divide_copies #(.TAG_W(lod_pkg::DIVIDE_TAG_W)) u_divide (
+    .clk_i, .rst_ni,
+    .valid_i(divide_link_valid), .ready_o(divide_link_ready), .in_i(divide_link), .tag_i(divide_link_tag),
+    .keep_i(divide_link_pop), .with_i(divide_link_hit),
+    .valid_o(divide_made_valid), .out_o(divide_made), .tag_o(divide_made_tag), .with_o(divide_made_hit)
+  );
 
   shared_output #(.W(lod_pkg::HIT_DIVIDE_OUT_W + lod_pkg::KEPT_HIT_W), .TAG_W(lod_pkg::DIVIDE_TAG_W)) u_divide_output (
     .clk_i, .rst_ni,
-    .valid_i(divide_made_valid), .out_i({divide_made, candidate_q}), .tag_i(divide_made_tag),
+    .valid_i(divide_made_valid), .out_i({divide_made, divide_made_hit}), .tag_i(divide_made_tag),
     .valid_o(divide_valid), .out_o({divide_out, candidate}), .tag_o({divide_what, divide_owner, divide_number})
   );
 
@@ -520,7 +524,6 @@ module traversal_unit #(
   );
 
   always_ff @(posedge clk_i) begin
-    if (divide_link_pop) candidate_q <= divide_link_hit;
     if (t_valid) begin
       chosen_q   <= candidate;
       chosen_t_q <= divide_out.quotient;
@@ -556,7 +559,12 @@ module traversal_unit #(
   assign told_in              = ALL_TOLD_W'(told_chosen);
   assign {corners_in, hit_in} = told_in;
   assign corners_told         = hit_in.found ? corners_in : lod_pkg::CORNERS_W'(0);
-  assign hit_told             = {hit_in.tag, hit_in.error, hit_in.found, hit_in.found ? hit_in.hit : lod_pkg::HIT_W'(0)};
+  always_comb begin
+    hit_told.tag   = hit_in.tag;
+    hit_told.error = hit_in.error;
+    hit_told.found = hit_in.found;
+    hit_told.hit   = hit_in.found ? hit_in.hit : lod_pkg::HIT_W'(0);
+  end
   pipe_stage #(.W(lod_pkg::TOLD_W)) u_hit_stage (
     .clk_i, .rst_ni,
     .valid_i(hit_in_valid), .ready_o(hit_in_ready), .data_i(lod_pkg::TOLD_W'({corners_told, hit_told})),

@@ -39,8 +39,13 @@ def main():
             if options.block == [blocks.WHOLE]:
                 report.document(f"{report.BLOCKS} {blocks.WHOLE}", report.whole(figures[blocks.WHOLE]["gates"], blocks.contexts(), tools.versions))
             else:
-                # The whole unit has a table of its own.
-                report.document(report.BLOCKS, report.markdown([row for row in rows if row[0] != blocks.WHOLE], tools.versions, bool(options.block)))
+                # The whole unit has a table of its own, and blocks in turns have.
+                in_turns = {block.name for block in wanted if block.module in blocks.COPIES}
+                placed = [row for row in rows if row[0] not in {blocks.WHOLE, *in_turns}]
+                if placed:
+                    report.document(report.BLOCKS, report.markdown(placed, tools.versions, bool(options.block)))
+                if in_turns:
+                    report.document(f"{report.BLOCKS} copies", report.copies([row for row in rows if row[0] in in_turns], tools.versions))
     except Failure as why:
         sys.exit(f"scripts/synth: {why}")
     except KeyboardInterrupt:
@@ -110,7 +115,8 @@ class Run:
         with concurrent.futures.ThreadPoolExecutor(self.options.jobs) as pool:
             for block in wanted:
                 self.figures[block.name] = {}
-                if not self.options.no_fpga:
+                # What blocks in turns take is asked of gates alone.
+                if not self.options.no_fpga and block.module not in blocks.COPIES:
                     self.start(pool, block, "ecp5", ecp5.synthesise)
                 if not self.options.no_gates:
                     self.start(pool, block, "gates", gates.synthesise)

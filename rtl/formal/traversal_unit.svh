@@ -41,22 +41,23 @@
   (* hierconn *) logic [PLACES-1:0][lod_pkg::KEPT_HIT_W-1:0] \u_queue.items ;
   (* hierconn *) logic [PLACE_W-1:0] \u_queue.head_q , \u_queue.tail_q ;
   (* hierconn *) logic [$clog2(PLACES+1)-1:0] \u_queue.len_q ;
-  (* hierconn *) logic \g_hit_divide.u_hit_divide.busy_q ;
-  (* hierconn *) logic [lod_pkg::DIVIDE_TAG_W-1:0] \g_hit_divide.u_hit_divide.tag_q ;
-  (* hierconn *) logic [$clog2(lod_pkg::HIT_DIVIDE_LATENCY)-1:0] \g_hit_divide.u_hit_divide.steps_left_q ;
+  (* hierconn *) logic \u_divide.g_copy[0].g_hit_divide.u_hit_divide.busy_q ;
+  (* hierconn *) logic [lod_pkg::DIVIDE_TAG_W-1:0] \u_divide.g_copy[0].g_hit_divide.u_hit_divide.tag_q ;
+  (* hierconn *) logic [$clog2(lod_pkg::HIT_DIVIDE_LATENCY)-1:0] \u_divide.g_copy[0].g_hit_divide.u_hit_divide.steps_left_q ;
   (* hierconn *) logic \u_hit_select.valid_tree , \u_hit_select.valid_id ;
   (* hierconn *) logic [CONTEXT_W-1:0] \u_hit_select.tag_tree , \u_hit_select.tag_id ;
 
   logic [1:0]           dividing_what;
   logic [CONTEXT_W-1:0] dividing_owner;
   logic [1:0]           dividing_number;
-  assign {dividing_what, dividing_owner, dividing_number} = \g_hit_divide.u_hit_divide.tag_q ;
+  assign {dividing_what, dividing_owner, dividing_number} = \u_divide.g_copy[0].g_hit_divide.u_hit_divide.tag_q ;
 
   lod_pkg::queued_hit_t waiting;
-  assign waiting = lod_pkg::QUEUED_HIT_W'(candidate_q);
+  (* hierconn *) logic [0:0][lod_pkg::KEPT_HIT_W-1:0] \u_divide.with_q ;
+  assign waiting = lod_pkg::QUEUED_HIT_W'(\u_divide.with_q [0]);
 
   int unsigned steps_left;
-  assign steps_left = \g_hit_divide.u_hit_divide.busy_q ? 32'(\g_hit_divide.u_hit_divide.steps_left_q ) : 32'd100;
+  assign steps_left = \u_divide.g_copy[0].g_hit_divide.u_hit_divide.busy_q ? 32'(\u_divide.g_copy[0].g_hit_divide.u_hit_divide.steps_left_q ) : 32'd100;
 
   // Cycles since a tick.
   logic [lod_pkg::ANSWER_LIMIT_W-1:0] since_q;
@@ -83,7 +84,7 @@
     for (int unsigned k = 0; k < N; k++) in_queue = in_queue + queued[k];
     for (int unsigned k = 0; k < N; k++) begin
       somewhere[k] = 8'(in_tri[k][0]) + 8'(in_tri[k][1]) + 8'(in_tri[k][2]) + 8'(in_tri[k][3]) + 8'(queued[k])
-                   + 8'(\g_hit_divide.u_hit_divide.busy_q && dividing_what == lod_pkg::DIVIDE_FOR_T && 32'(dividing_owner) == k)
+                   + 8'(\u_divide.g_copy[0].g_hit_divide.u_hit_divide.busy_q && dividing_what == lod_pkg::DIVIDE_FOR_T && 32'(dividing_owner) == k)
                    + 8'(\u_hit_select.valid_tree && 32'(\u_hit_select.tag_tree ) == k) + 8'(\u_hit_select.valid_id && 32'(\u_hit_select.tag_id ) == k) + 8'(select_valid && 32'(select_owner) == k);
     end
   end
@@ -98,11 +99,11 @@
         assert (inside[k] == {1'b0, in_setup[k], in_child[k], in_lod[k], in_morph[k], in_map[k]});
         assert (8'(tested[k]) == somewhere[k]);
         assert ((in_tri[k] & ~numbers[k]) == '0);
-        assert (v_inside[k] == (\g_hit_divide.u_hit_divide.busy_q && dividing_what == lod_pkg::DIVIDE_FOR_V && 32'(dividing_owner) == k));
-        assert (w_inside[k] == (\g_hit_divide.u_hit_divide.busy_q && dividing_what == lod_pkg::DIVIDE_FOR_W && 32'(dividing_owner) == k));
+        assert (v_inside[k] == (\u_divide.g_copy[0].g_hit_divide.u_hit_divide.busy_q && dividing_what == lod_pkg::DIVIDE_FOR_V && 32'(dividing_owner) == k));
+        assert (w_inside[k] == (\u_divide.g_copy[0].g_hit_divide.u_hit_divide.busy_q && dividing_what == lod_pkg::DIVIDE_FOR_W && 32'(dividing_owner) == k));
       end
       // The numerators that a context takes with a comparison are those of its hit: the next one comes later.
-      assert (!(\g_hit_divide.u_hit_divide.busy_q && dividing_what == lod_pkg::DIVIDE_FOR_T) || (waiting.owner == dividing_owner && waiting.number == dividing_number));
+      assert (!(\u_divide.g_copy[0].g_hit_divide.u_hit_divide.busy_q && dividing_what == lod_pkg::DIVIDE_FOR_T) || (waiting.owner == dividing_owner && waiting.number == dividing_number));
       assert (!\u_hit_select.valid_tree || (chosen.owner == \u_hit_select.tag_tree && steps_left >= lod_pkg::HIT_DIVIDE_LATENCY - 1));
       assert (!\u_hit_select.valid_id || (chosen.owner == \u_hit_select.tag_id && steps_left >= lod_pkg::HIT_DIVIDE_LATENCY - 2));
       assert (!select_valid || (chosen.owner == select_owner && steps_left >= lod_pkg::HIT_DIVIDE_LATENCY - 3));

@@ -72,6 +72,7 @@ module traversal_unit_rules (
       assert (!hit_waits_q || (valid_o && out_o == hit_q && corners_o == corners_q)) else $error("out_o: a hit was withdrawn or changed before it was taken");
       assert (!request_waits_q || (mem_valid_o && mem_o == request_q)) else $error("mem_o: a request was withdrawn or changed before it was taken");
       assert (!busy_o || scene_i == scene_q) else $error("scene_i: it changed while a ray was under way");
+      assert (!(valid_i && ready_o) || scene_i == scene_q) else $error("scene_i: it changed in the cycle in which a ray was taken");
       assert (!mem_valid_i || due_q[answer_tag_i[15:8]][answer_tag_i[7:0]]) else $error("mem_i: an answer without a request, or to one from before a reset");
       assert (!mem_valid_o || new_ray || !asked_q[mem_o.tag]) else $error("mem_o: a tag that the same ray waits for");
       assert (!valid_o || rays_q != '0) else $error("out_o: a hit of no ray");

@@ -16,6 +16,8 @@ FORMS = {
     "hit_divide": [{}, {"DIVIDE_BITS": 2}, {"DIVIDE_BITS": 1}],
     "ray_setup": [{}, {"SETUP_BITS": 2}, {"SETUP_BITS": 1}],
 }
+# Blocks of one kind that take turns.
+COPIES = {"setup_copies": [{"COPIES": copies} for copies in (2, 3, 4)], "divide_copies": [{"COPIES": copies} for copies in (2, 3, 4)]}
 # Modules without a twin there that are worth a row.
 WHOLE = "traversal_unit"
 FURTHER = ["edge_function", "traversal_stack", "ray_context", WHOLE]
@@ -98,7 +100,7 @@ def twins():
 
 def every():
     """Every block."""
-    return [Block(name, tuple(form.items())) for name in twins() + FURTHER for form in FORMS.get(name, [{}])]
+    return [Block(name, tuple(form.items())) for name in twins() + FURTHER + list(COPIES) for form in (FORMS | COPIES).get(name, [{}])]
 
 
 def chosen(names):

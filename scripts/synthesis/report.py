@@ -1,6 +1,6 @@
 """The table of figures, on a terminal and in docs/hardware.md."""
 
-from .blocks import OF_UNIT, WHOLE
+from .blocks import COPIES, OF_UNIT, WHOLE
 from .gates import memory_area
 from .tools import NEXTPNR, ROOT, YOSYS, Failure, write
 
@@ -106,6 +106,12 @@ def markdown(rows, versions, some):
     unplaced = " A dash: not placed again since its RTL last changed." if any(row[-2] == "-" for row in cells.values()) else ""
     area = {name.strip("`"): int(row[0].replace(",", "")) for name, row in cells.items()}
     return "\n".join([*table(HEADINGS, [[name, *row] for name, row in cells.items()]), "", made + unplaced, "", share(area)])
+
+
+def copies(rows, versions):
+    """The table of blocks that take turns."""
+    made = f"`scripts/synth {' '.join(COPIES)} --doc`, {versions[YOSYS]}."
+    return "\n".join([*table(HEADINGS[:6], [[f"`{name}`", *row[:5]] for name, *row in rows]), "", made])
 
 
 def between(command):

@@ -13,7 +13,7 @@ use lodray::num::{Ray, U, Wire};
 use lodray::rays::{Camera, ModelSpace};
 use lodray::sim::unit::environment::RunReport;
 use lodray::sim::unit::ray_trace::RayTrace;
-use lodray::sim::unit::wave::{Waves, gtkwave_save, gtkwave_states, one_ray, surfer_commands};
+use lodray::sim::unit::wave::{Waves, gtkwave_save, one_ray, surfer_commands};
 use lodray::sim::unit::{SceneMemory, TraversalUnit, file_config};
 use lodray::study::{count, pruned};
 use std::path::{Path, PathBuf};
@@ -173,7 +173,6 @@ fn text(bench: &Bench<'_>) -> anyhow::Result<String> {
 struct Files {
     vcd: PathBuf,
     gtkw: PathBuf,
-    states: PathBuf,
     surfer: PathBuf,
 }
 
@@ -181,7 +180,7 @@ impl Files {
     /// The files beside `vcd`, refused if they cannot be written.
     fn beside(vcd: &Path, input: &Path) -> anyhow::Result<Self> {
         let with = |extension| vcd.with_extension(extension);
-        let files = Self { vcd: vcd.to_owned(), gtkw: with("gtkw"), states: with("states"), surfer: with("sucl") };
+        let files = Self { vcd: vcd.to_owned(), gtkw: with("gtkw"), surfer: with("sucl") };
         for path in files.all() {
             check_target(path, &[input])?;
         }
@@ -190,17 +189,16 @@ impl Files {
         Ok(files)
     }
 
-    fn all(&self) -> [&Path; 4] {
-        [&self.vcd, &self.gtkw, &self.states, &self.surfer]
+    fn all(&self) -> [&Path; 3] {
+        [&self.vcd, &self.gtkw, &self.surfer]
     }
 
     fn write(&self, bench: &Bench<'_>) -> anyhow::Result<RunReport> {
         let mut waves = Waves::new(bench.unit())?;
         let report = one_ray(&mut waves, &bench.memory, bench.latency, &bench.ray)?;
         // GTKWave looks for files from the folder that it was started in.
-        let whole = |path: &Path| Ok::<_, anyhow::Error>(std::path::absolute(path)?.to_string_lossy().into_owned());
-        let gtkw = gtkwave_save(&whole(&self.vcd)?, &whole(&self.states)?, waves.widths());
-        let contents = [waves.finish()?, gtkw.into_bytes(), gtkwave_states().into_bytes(), surfer_commands().into_bytes()];
+        let gtkw = gtkwave_save(&std::path::absolute(&self.vcd)?.to_string_lossy(), waves.widths());
+        let contents = [waves.finish()?, gtkw.into_bytes(), surfer_commands().into_bytes()];
         for (path, content) in self.all().into_iter().zip(contents) {
             write_file(path, &content)?;
         }

@@ -31,8 +31,22 @@ pub fn context_gates(hardware: &Hardware, has_levels: bool) -> f64 {
 
 /// Gate equivalents of one unit: its blocks, of the default sizes, and its contexts. None if a block was not measured.
 pub fn unit_gates(unit: MethodUnit, hardware: &Hardware) -> Option<f64> {
-    let blocks: f64 = hardware.blocks(unit.blocks).map(|operation| block_gates(operation, hardware)).sum::<Option<f64>>()?;
+    let blocks: f64 = hardware.blocks(unit.blocks).map(|operation| all_gates(operation, hardware)).sum::<Option<f64>>()?;
     Some(blocks + hardware.contexts as f64 * context_gates(hardware, unit.has_levels))
+}
+
+/// All copies of a block, and what lets them take turns: as measured of the default's.
+fn all_gates(operation: Operation, hardware: &Hardware) -> Option<f64> {
+    let (copies, one) = (hardware.copies(operation), block_gates(operation, hardware)?);
+    if copies == 1 {
+        return Some(one);
+    }
+    let (turns, usual) = match operation {
+        Operation::RaySetup | Operation::StartSetup => ("setup_copies", Operation::RaySetup),
+        _ => ("divide_copies", Operation::HitDivide),
+    };
+    let beside = block_row(&format!("{turns}-COPIES={copies}"))? - f64::from(copies) * block_gates(usual, &Hardware::DEFAULT)?;
+    Some(f64::from(copies) * one + beside)
 }
 
 fn block_gates(operation: Operation, hardware: &Hardware) -> Option<f64> {
@@ -103,6 +117,7 @@ mod tests {
             assert!(!are_two || boxes[1] == boxes[2], "{}: {boxes:?}", method.name);
             assert!(!has_none || boxes == [boxes[0]; 3], "{}: {boxes:?}", method.name);
             larger(0.0, &[1, 2, 3].map(|bits| of(Hardware { divide_bits: bits, setup_bits: bits, ..default })));
+            larger(5e4, &[1, 2, 3, 4].map(|copies| of(Hardware { setup_copies: copies, divide_copies: copies, ..default })));
             let lod = EdgesPerCycle::ALL.map(|lod_edges_per_cycle| of(Hardware { lod_edges_per_cycle, ..default }));
             if unit.blocks.contains(&Operation::LodTest) { larger(1e5, &lod) } else { assert_eq!(lod[0], lod[1]) }
         }

@@ -28,6 +28,8 @@ use ports::SceneConfig;
 const MAX_CONTEXT_BITS: u32 = 6;
 /// The most contexts that a unit can have.
 pub const MAX_CONTEXTS: usize = 1 << MAX_CONTEXT_BITS;
+/// The most blocks of one kind that take turns ([`Hardware::setup_copies`], [`Hardware::divide_copies`]): with more, two hits would meet in `hit_select`.
+pub const MOST_COPIES: u32 = 4;
 /// The most bits of a number of nodes, trees and lines of a section ([`L0Record`](crate::format::L0Record), [`BvhNode`](crate::format::BvhNode)).
 pub(crate) const MOST_INDEX_BITS: u32 = 28;
 
@@ -55,6 +57,10 @@ pub struct Hardware {
     pub divide_bits: u32,
     /// Bits of each reciprocal that the constants of a ray take in a cycle, 1 to 3.
     pub setup_bits: u32,
+    /// Blocks of the constants of a ray that take turns, 1 to [`MOST_COPIES`].
+    pub setup_copies: u32,
+    /// Blocks of the division of hits that take turns, 1 to [`MOST_COPIES`].
+    pub divide_copies: u32,
     /// Boxes that the test of four children tests in a cycle.
     pub boxes_per_cycle: BoxesPerCycle,
     /// Registers between contexts and blocks: 0, 1 for operands, or 2 for results and for answers of memory too. Each makes the way a cycle longer, but for addresses; an FPGA
@@ -110,6 +116,8 @@ impl Hardware {
         lod_edges_per_cycle: EdgesPerCycle::One,
         divide_bits: MOST_DIVIDE_BITS,
         setup_bits: MOST_DIVIDE_BITS,
+        setup_copies: 1,
+        divide_copies: 1,
         boxes_per_cycle: BoxesPerCycle::Two,
         link_registers: 0,
         index_bits: MOST_INDEX_BITS,
@@ -165,6 +173,8 @@ impl Hardware {
             ("contexts", self.contexts as u64, 1, 1 << self.context_bits.min(MAX_CONTEXT_BITS)),
             ("divide_bits", u64::from(self.divide_bits), 1, u64::from(MOST_DIVIDE_BITS)),
             ("setup_bits", u64::from(self.setup_bits), 1, u64::from(MOST_DIVIDE_BITS)),
+            ("setup_copies", u64::from(self.setup_copies), 1, u64::from(MOST_COPIES)),
+            ("divide_copies", u64::from(self.divide_copies), 1, u64::from(MOST_COPIES)),
             ("link_registers", u64::from(self.link_registers), 0, 2),
             ("index_bits", u64::from(self.index_bits), u64::from(self.node_bits()), u64::from(MOST_INDEX_BITS)),
             ("compact_vertices", u64::from(self.compact_vertices), u64::from(!self.exact_vertices), 1),
@@ -175,6 +185,23 @@ impl Hardware {
         match fields.into_iter().find(|(_, value, least, most)| !(least..=most).contains(&value)) {
             Some((field, value, least, most)) => Err(HardwareError { field, least, most, value }),
             None => Ok(()),
+        }
+    }
+
+    /// The same with what another one does in a cycle: contexts, and how fast its blocks are.
+    pub fn as_fast_as(&self, other: &Self) -> Self {
+        let Self { contexts, edges_per_cycle, lod_edges_per_cycle, boxes_per_cycle, .. } = *other;
+        let Self { divide_bits, setup_bits, setup_copies, divide_copies, .. } = *other;
+        Self {
+            contexts,
+            edges_per_cycle,
+            lod_edges_per_cycle,
+            boxes_per_cycle,
+            divide_bits,
+            setup_bits,
+            setup_copies,
+            divide_copies,
+            ..*self
         }
     }
 
@@ -284,6 +311,20 @@ impl Hardware {
         Timing { latency: timing.latency + self.link_registers, ..timing }
     }
 
+    /// Blocks of this kind that take turns.
+    pub const fn copies(&self, operation: Operation) -> u32 {
+        match operation {
+            Operation::RaySetup | Operation::StartSetup => self.setup_copies,
+            Operation::HitDivide | Operation::StartDivide => self.divide_copies,
+            _ => 1,
+        }
+    }
+
+    /// Cycles from one item that a block of this hardware takes to the next, by all of its kind in turns.
+    pub fn interval(&self, operation: Operation) -> u32 {
+        self.block(operation).timing(&self.form()).interval.div_ceil(self.copies(operation))
+    }
+
     /// Results of blocks and answers of memory have a register on their way to the contexts.
     pub const fn registers_results(&self) -> bool {
         self.link_registers > 1
@@ -326,6 +367,8 @@ mod tests {
         assert_eq!(wrong(Hardware { context_bits: 7, ..default }), "hardware: context_bits must be 1 to 6, but is 7");
         assert_eq!(wrong(Hardware { divide_bits: 4, ..default }), "hardware: divide_bits must be 1 to 3, but is 4");
         assert_eq!(wrong(Hardware { setup_bits: 0, ..default }), "hardware: setup_bits must be 1 to 3, but is 0");
+        assert_eq!(wrong(Hardware { setup_copies: 0, ..default }), "hardware: setup_copies must be 1 to 4, but is 0");
+        assert_eq!(wrong(Hardware { divide_copies: 5, ..default }), "hardware: divide_copies must be 1 to 4, but is 5");
         assert_eq!(wrong(Hardware { coordinate_zeros: 17, ..default }), "hardware: coordinate_zeros must be 0 to 16, but is 17");
         assert_eq!(wrong(Hardware { direction_zeros: 15, ..default }), "hardware: direction_zeros must be 0 to 14, but is 15");
         assert_eq!(

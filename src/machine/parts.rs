@@ -131,6 +131,12 @@ pub struct Units {
     /// Bits of a reciprocal that the constants of a ray take in a cycle: 1 to 3.
     #[serde(default = "Units::setup_bits")]
     pub setup_bits: u32,
+    /// Blocks of the constants of a ray that take turns: 1 to 4.
+    #[serde(default = "one", skip_serializing_if = "is_one")]
+    pub setup_copies: u32,
+    /// Blocks of the division of hits that take turns: 1 to 4.
+    #[serde(default = "one", skip_serializing_if = "is_one")]
+    pub divide_copies: u32,
     /// Boxes of a node of four that are tested in a cycle: 4, 2 or 1.
     #[serde(default = "Units::boxes_per_cycle")]
     pub boxes_per_cycle: u32,
@@ -153,7 +159,7 @@ impl Units {
         let edges_per_cycle = EdgesPerCycle::new(self.edges_per_cycle).unwrap_or(usual.edges_per_cycle);
         let lod_edges_per_cycle = EdgesPerCycle::new(self.lod_edges_per_cycle).unwrap_or(usual.lod_edges_per_cycle);
         let boxes_per_cycle = BoxesPerCycle::new(self.boxes_per_cycle).unwrap_or(usual.boxes_per_cycle);
-        let Self { divide_bits, setup_bits, .. } = *self;
+        let Self { divide_bits, setup_bits, setup_copies, divide_copies, .. } = *self;
         Hardware {
             contexts: self.contexts as usize,
             edges_per_cycle,
@@ -161,6 +167,8 @@ impl Units {
             boxes_per_cycle,
             divide_bits,
             setup_bits,
+            setup_copies,
+            divide_copies,
             secondary: self.secondary || usual.secondary,
             ..usual
         }
@@ -185,6 +193,16 @@ impl Units {
     const fn setup_bits() -> u32 {
         Hardware::DEFAULT.setup_bits
     }
+}
+
+/// Copies of a block where a file does not say.
+fn one() -> u32 {
+    1
+}
+
+#[expect(clippy::trivially_copy_pass_by_ref, reason = "as serde calls it")]
+fn is_one(copies: &u32) -> bool {
+    *copies == 1
 }
 
 /// The memory behind the L2.

@@ -4,7 +4,7 @@ use super::Machine;
 use super::error::Breach;
 use super::parts::{Cache, Memory, Tables, Units};
 use crate::block::{BoxesPerCycle, EdgesPerCycle, MOST_DIVIDE_BITS};
-use crate::hardware::MAX_CONTEXTS;
+use crate::hardware::{MAX_CONTEXTS, MOST_COPIES};
 use crate::num::LINE_BYTES;
 
 /// Groups, and cores of a group.
@@ -55,6 +55,8 @@ impl Units {
             ("contexts", self.contexts, MAX_CONTEXTS as u32),
             ("divide_bits", self.divide_bits, MOST_DIVIDE_BITS),
             ("setup_bits", self.setup_bits, MOST_DIVIDE_BITS),
+            ("setup_copies", self.setup_copies, MOST_COPIES),
+            ("divide_copies", self.divide_copies, MOST_COPIES),
         ];
         counts.iter().try_for_each(|&(name, value, most)| count(&key(name), value, most))?;
         if BoxesPerCycle::new(self.boxes_per_cycle).is_none() {

@@ -134,21 +134,9 @@ impl Plan {
             ..*hardware
         });
         let fewer_stack_entries = Some(stack_entries.clamp(2, most.stack_entries()));
-        let Hardware { contexts, edges_per_cycle, lod_edges_per_cycle, boxes_per_cycle, divide_bits, setup_bits, .. } =
-            self.speed.as_ref().map_or(*hardware, |speed| speed.units.config());
+        let speed = self.speed.as_ref().map_or(*hardware, |speed| speed.units.config());
         let [coordinate_zeros, direction_zeros] = self.zeros();
-        Hardware {
-            fewer_stack_entries,
-            contexts,
-            edges_per_cycle,
-            lod_edges_per_cycle,
-            boxes_per_cycle,
-            divide_bits,
-            setup_bits,
-            coordinate_zeros,
-            direction_zeros,
-            ..most
-        }
+        Hardware { fewer_stack_entries, coordinate_zeros, direction_zeros, ..most.as_fast_as(&speed) }
     }
 
     /// A hardware with no more of these than the plan needs.

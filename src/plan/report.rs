@@ -73,6 +73,8 @@ impl Table {
             ("boxes a cycle", [units.boxes_per_cycle, own.boxes_per_cycle]),
             ("bits of a hit's division a cycle", [units.divide_bits, own.divide_bits]),
             ("bits of a reciprocal a cycle", [units.setup_bits, own.setup_bits]),
+            ("blocks of a ray's constants", [units.setup_copies, own.setup_copies]),
+            ("blocks of a hit's division", [units.divide_copies, own.divide_copies]),
             ("units of a group", [units.per_group, own.per_group]),
         ] {
             self.add(Part::Speed, what, needed_of_full, &reason, String::new());

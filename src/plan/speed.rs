@@ -63,9 +63,7 @@ impl Speed {
 
     /// Gate equivalents of the units of a group, in all else as `hardware` is.
     pub fn gates(units: &Units, hardware: &Hardware) -> f64 {
-        let Hardware { contexts, edges_per_cycle, lod_edges_per_cycle, boxes_per_cycle, divide_bits, setup_bits, .. } = units.config();
-        let hardware = Hardware { contexts, edges_per_cycle, lod_edges_per_cycle, boxes_per_cycle, divide_bits, setup_bits, ..*hardware };
-        let unit = lod::METHOD.unit.and_then(|unit| unit_gates(unit, &hardware));
+        let unit = lod::METHOD.unit.and_then(|unit| unit_gates(unit, &hardware.as_fast_as(&units.config())));
         f64::from(units.per_group) * unit.expect("each of its blocks was measured, as the test of areas holds")
     }
 }
@@ -170,6 +168,8 @@ fn narrower(units: &Units) -> impl Iterator<Item = Units> {
         (units.boxes_per_cycle > 1).then(|| Units { boxes_per_cycle: units.boxes_per_cycle / 2, ..units.clone() }),
         (units.divide_bits > 1).then(|| Units { divide_bits: units.divide_bits - 1, ..units.clone() }),
         (units.setup_bits > 1).then(|| Units { setup_bits: units.setup_bits - 1, ..units.clone() }),
+        (units.setup_copies > 1).then(|| Units { setup_copies: units.setup_copies - 1, ..units.clone() }),
+        (units.divide_copies > 1).then(|| Units { divide_copies: units.divide_copies - 1, ..units.clone() }),
     ];
     less.into_iter().flatten()
 }

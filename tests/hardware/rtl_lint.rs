@@ -49,6 +49,8 @@ fn tops() -> Vec<(String, Vec<(&'static str, u64)>)> {
         ("hit_divide", "DIVIDE_BITS", 2),
         ("ray_setup", "SETUP_BITS", 1),
         ("ray_setup", "SETUP_BITS", 2),
+        ("setup_copies", "COPIES", 3),
+        ("divide_copies", "COPIES", 2),
         ("divide_step", "BITS", 3),
         ("divide_multiples", "BITS", 3),
         ("traversal_unit", "EDGES_PER_CYCLE", 3),

@@ -9,31 +9,29 @@ use lodray::sim::unit::{SceneMemory, TraversalUnit};
 use lodray_test_support::models::{any_rays, ball, scene_of, terrain, with_vertices};
 use std::collections::BTreeMap;
 use std::io::BufReader;
-use vcd::{Command, IdCode, Parser, ScopeItem, Value};
+use vcd::{Command, IdCode, Parser, ScopeItem, Value, VarType};
 
 /// Values of every signal by path, one per cycle.
 struct Waveform(BTreeMap<String, Vec<Vec<Value>>>);
 
 /// Generate blocks of the RTL around what hardware can lack: the model has no such scopes.
-const OPTIONAL: [&str; 13] = [
+const OPTIONAL: [&str; 9] = [
     "g_place",
     "g_morphed",
-    "g_ray_setup",
-    "g_start_setup",
     "g_deciders",
     "g_lod_test",
     "g_lod_test_by",
     "g_tessellate",
     "g_tri_test",
     "g_start_test",
-    "g_hit_divide",
-    "g_start_divide",
     "g_bary_map",
 ];
 
 fn paths(items: &[ScopeItem], within: &str, to: &mut Vec<(String, IdCode, usize)>) {
     for item in items {
         match item {
+            // Names stand beside what the RTL has.
+            ScopeItem::Var(var) if var.var_type == VarType::String => (),
             ScopeItem::Var(var) => to.push((format!("{within}{}", var.reference), var.code, var.size as usize)),
             ScopeItem::Scope(scope) if OPTIONAL.contains(&&*scope.identifier) => paths(&scope.items, within, to),
             ScopeItem::Scope(scope) => paths(&scope.items, &format!("{within}{}.", scope.identifier), to),

@@ -44,22 +44,31 @@ fn waveform_and_save_files_stand_side_by_side() {
     let state = header.find_var(&["traversal_unit", "g_context[0]", "u_context", "state_q"]).expect("the state");
     assert_eq!((state.size, header.timescale), (5, Some((1, vcd::TimescaleUnit::NS))));
     assert!(header.find_var(&["traversal_unit", "u_lod_test", "out_o", "refine"]).is_some());
+    // States by name, beside their numbers.
+    let name = header.find_var(&["traversal_unit", "g_context[0]", "u_context", "state"]).expect("its name");
+    assert_eq!(name.var_type, vcd::VarType::String);
+    let names: Vec<String> = vcd::Parser::new(&vcd[..])
+        .filter_map(|command| match command.unwrap() {
+            vcd::Command::ChangeString(id, text) if id == name.code => Some(text),
+            _ => None,
+        })
+        .collect();
+    assert!(names.starts_with(&["IDLE", "SETUP", "SETUP_WAIT", "VISIT", "FETCH"].map(String::from)), "{names:?}");
+    assert!(names.ends_with(&["DONE", "IDLE"].map(String::from)), "{names:?}");
 
     let text = |name: &str| fs::read_to_string(desk.join(name)).unwrap();
     let gtkw = text("ray.gtkw");
     // GTKWave looks from the folder that it was started in: names are whole paths.
     let whole = |name: &str| fs::canonicalize(desk).unwrap().join(name).display().to_string();
-    let (vcd_at, states_at) = (whole("ray.vcd"), whole("ray.states"));
     for words in [
-        &format!("[dumpfile] \"{vcd_at}\"")[..],
-        &format!("^1 {states_at}\ntraversal_unit.g_context[0].u_context.state_q[4:0]\n"),
+        &format!("[dumpfile] \"{}\"", whole("ray.vcd"))[..],
+        "@28\ntraversal_unit.g_context[0].u_context.state\n",
         "-Level_of_detail\n",
     ] {
         assert!(gtkw.contains(words), "{words}");
     }
-    assert!(text("ray.states").starts_with("00 IDLE\n01 SETUP\n") && text("ray.states").ends_with("16 DONE\n"));
     assert!(text("ray.sucl").contains("variable_add traversal_unit.g_context[0].u_context.lod_q.s0\n"));
-    assert_eq!(fs::read_dir(desk).unwrap().count(), 5, "left-over files");
+    assert_eq!(fs::read_dir(desk).unwrap().count(), 4, "left-over files");
 
     // The same bytes again, over the old ones.
     succeed(desk, "trace a.lod --pixel 24,24 --size 48x48 --distance 3 -o ray.vcd");

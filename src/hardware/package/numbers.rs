@@ -26,7 +26,7 @@ use crate::block::start_test::StartTest;
 use crate::block::tessellate::Tessellate;
 use crate::block::tree_deciders::{Decider, TreeDeciders};
 use crate::block::tri_test::{EdgeFunction, TNumerator, TriTest};
-use crate::block::{Block, EdgesPerCycle, Form, parts};
+use crate::block::{Block, EdgesPerCycle, Form, Operation, parts};
 use crate::hardware::Hardware;
 use crate::hardware::ports::{AnswerLimit, Epoch};
 use crate::num::{
@@ -91,6 +91,8 @@ pub(super) fn print(hardware: &Hardware, out: &mut String) {
         "bits of a quotient that hit_divide finds in a cycle, if its parameter does not say otherwise",
     )
     .put("SETUP_BITS", hardware.setup_bits, "of each reciprocal that ray_setup finds, likewise")
+    .put("SETUP_COPIES", hardware.setup_copies, "ray_setup blocks that take turns")
+    .put("DIVIDE_COPIES", hardware.divide_copies, "hit_divide blocks, likewise")
     .put(
         "BOXES_PER_CYCLE",
         hardware.boxes_per_cycle.count(),
@@ -214,7 +216,9 @@ pub(super) fn print(hardware: &Hardware, out: &mut String) {
     .put("TRI_TEST_1_INTERVAL", one.interval, "")
     .put("TRI_TEST_3_LATENCY", three.latency, "of the form with three")
     .timing::<ChildTest>(hardware)
-    .timing::<ChildPrisms>(hardware);
+    .timing::<ChildPrisms>(hardware)
+    .put("SETUP_INTERVAL", hardware.interval(Operation::RaySetup), "of all copies of ray_setup or start_setup together")
+    .put("DIVIDE_INTERVAL", hardware.interval(Operation::HitDivide), "of all copies of hit_divide or start_divide together");
     let parts = Group::new("Cycles of parts of blocks.")
         .put("ENTRY_DISTANCE_LATENCY", parts::ENTRY_DISTANCE_LATENCY, "of the box tests")
         .put("EDGE_PRODUCT_STAGES", parts::EDGE_PRODUCT_STAGES, "registers of the products of a cross product")

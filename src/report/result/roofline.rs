@@ -117,7 +117,7 @@ impl Parts<'_> {
         let of = |operation| operations.get(operation);
         // Operations, and the cycles that they take. Nodes of all kinds go through `child_test`: those of a BVH count as their sorts.
         let taken = |block: Operation| {
-            let interval = u64::from(hardware.block(block).timing(&form).interval);
+            let interval = u64::from(hardware.interval(block));
             match block {
                 Operation::ChildTest => {
                     let [fours, sixes] = [of(Operation::ChildTest) + of(Operation::ChildSort), of(Operation::ChildSort6)];

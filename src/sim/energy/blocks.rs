@@ -103,7 +103,7 @@ impl BlockTable {
             let logic = products(&parts) * prices.multiply_32_mw / (WORD * WORD)
                 + f64::from(parts.add_bits) * prices.add_32_mw / WORD
                 + f64::from(parts.select_bits) * prices.select_32_mw / WORD;
-            logic / cycles
+            f64::from(hardware.copies(operation)) * logic / cycles
         };
         let logic: f64 = hardware.blocks(unit.blocks).map(of_block).sum();
         (logic + unit_registers(unit, hardware) * prices.register_mw) * self.scale.leakage
@@ -146,7 +146,8 @@ fn products(parts: &Parts) -> f64 {
 
 /// Registers of a traversal unit.
 fn unit_registers(unit: MethodUnit, hardware: &Hardware) -> f64 {
-    let of_blocks: f64 = hardware.blocks(unit.blocks).map(|operation| f64::from(operation.parts(&hardware.form()).registers.kept)).sum();
+    let of_block = |operation: Operation| hardware.copies(operation) * operation.parts(&hardware.form()).registers.kept;
+    let of_blocks: f64 = hardware.blocks(unit.blocks).map(|operation| f64::from(of_block(operation))).sum();
     let context = hardware.context_registers(unit.has_levels);
     of_blocks + hardware.contexts as f64 * f64::from(context.kept)
 }

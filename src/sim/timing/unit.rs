@@ -84,7 +84,7 @@ impl<R: Steps> UnitTiming<R> {
             let interval = config.boxes_per_cycle.passes(facts.children);
             config.linked(Timing { latency: latency + interval - 1, interval })
         };
-        let fitted = |operation| config.block(operation).timing(&config.form());
+        let fitted = |operation| Timing { interval: config.interval(operation), ..config.block(operation).timing(&config.form()) };
         let timing = |resource| match resource {
             Resource::Setup => config.linked(fitted(Operation::RaySetup)),
             Resource::Fetch => config.timing::<NodeAddress>(),

@@ -76,9 +76,13 @@ where
     B::Out: Copy,
     <B::Primary as Block>::Out: Copy,
 {
-    /// An empty pipeline, of the block that this hardware has, with the registers of its way from the contexts and back.
-    pub fn linked(hardware: &Hardware) -> Self {
-        if hardware.secondary { Self::Secondary(Pipeline::linked(hardware)) } else { Self::Primary(Pipeline::linked(hardware)) }
+    /// An empty pipeline, of the block that this hardware has or of so many copies, with the registers of its way from the contexts and back.
+    pub fn linked(hardware: &Hardware, copies: u32) -> Self {
+        if hardware.secondary {
+            Self::Secondary(Pipeline::in_turns(hardware, copies))
+        } else {
+            Self::Primary(Pipeline::in_turns(hardware, copies))
+        }
     }
 
     /// Whether it would take an input in this cycle; its consumer is always ready.

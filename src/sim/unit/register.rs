@@ -90,7 +90,13 @@ where
 
     /// The same with the registers of its way from the contexts and back ([`Hardware::link_registers`]): as these hold nothing up, a longer pipeline.
     pub fn linked(hardware: &Hardware) -> Self {
-        Self::of(hardware.linked(hardware.timing::<B>()))
+        Self::in_turns(hardware, 1)
+    }
+
+    /// The same of so many blocks that take turns: as they take an item every so many cycles, one pipeline with a shorter interval.
+    pub fn in_turns(hardware: &Hardware, copies: u32) -> Self {
+        let timing = hardware.linked(hardware.timing::<B>());
+        Self::of(Timing { interval: timing.interval.div_ceil(copies), ..timing })
     }
 
     fn of(timing: Timing) -> Self {

@@ -93,6 +93,7 @@ pub fn in_machine(plan: &Plan, name: &str, machine: &mut MachineFacts) {
     units.lod_edges_per_cycle = own.lod_edges_per_cycle.count();
     units.boxes_per_cycle = own.boxes_per_cycle.count();
     (units.divide_bits, units.setup_bits) = (own.divide_bits, own.setup_bits);
+    (units.setup_copies, units.divide_copies) = (own.setup_copies, own.divide_copies);
     units.like = Some(own);
     machine.set.push(format!("plan={name}"));
 }

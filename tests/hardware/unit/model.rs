@@ -80,6 +80,8 @@ fn configs() -> Vec<Hardware> {
             lod_edges_per_cycle: if contexts == 3 { Three } else { edges_per_cycle },
             divide_bits: bits,
             setup_bits: 4 - bits,
+            setup_copies: bits,
+            divide_copies: 1 + contexts as u32 % 4, // at most 64
             ..Hardware::default()
         })
         .into()

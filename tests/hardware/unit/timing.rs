@@ -83,7 +83,9 @@ fn configs() -> Vec<Hardware> {
         };
     let dividing = |contexts, divide_bits, setup_bits| Hardware { contexts, divide_bits, setup_bits, ..Hardware::default() };
     let slower = [dividing(1, 1, 2), dividing(4, 2, 1), dividing(16, 1, 1)];
-    [1, 2, 4, 16, 64].into_iter().flat_map(each).chain(slower).collect()
+    let in_turns = |contexts, setup_copies, divide_copies| Hardware { contexts, setup_copies, divide_copies, ..Hardware::default() };
+    let faster = [in_turns(2, 4, 4), in_turns(16, 3, 2), in_turns(64, 2, 3)];
+    [1, 2, 4, 16, 64].into_iter().flat_map(each).chain(slower).chain(faster).collect()
 }
 
 fn models() -> Vec<(String, Hierarchy)> {

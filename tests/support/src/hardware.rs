@@ -8,8 +8,8 @@ use lodray::mesh::Hierarchy;
 use lodray::num::{Ray, U, VertexForm};
 use lodray::rays::cone;
 
-/// Small: few levels, a stack for scenes of which is known how many can wait, two rays under way, one edge, one box and one bit of each division a cycle,
-/// registers on all ways between contexts and blocks.
+/// Small: few levels, a stack for scenes of which is known how many can wait, two rays under way, one edge, one box and one bit of each division a cycle, three
+/// divisions in turns, registers on all ways between contexts and blocks.
 pub const SMALL: Hardware = Hardware {
     levels: 6,
     bvh_depth: 16,
@@ -20,12 +20,13 @@ pub const SMALL: Hardware = Hardware {
     lod_edges_per_cycle: EdgesPerCycle::One,
     divide_bits: 1,
     setup_bits: 1,
+    divide_copies: 3,
     boxes_per_cycle: BoxesPerCycle::One,
     link_registers: 2,
     ..Hardware::DEFAULT
 };
-/// Between it and the default in depth, with more rays under way, not a power of two; all edges and boxes at once, two bits of each division a cycle,
-/// and registers for operands.
+/// Between it and the default in depth, with more rays under way, not a power of two; all edges and boxes at once, two bits of each division a cycle
+/// by blocks in turns, and registers for operands.
 pub const MIDDLE: Hardware = Hardware {
     levels: 9,
     bvh_depth: 20,
@@ -36,6 +37,8 @@ pub const MIDDLE: Hardware = Hardware {
     boxes_per_cycle: BoxesPerCycle::Four,
     divide_bits: 2,
     setup_bits: 2,
+    setup_copies: 3,
+    divide_copies: 2,
     link_registers: 1,
     ..Hardware::DEFAULT
 };
@@ -48,6 +51,7 @@ pub const NARROW: Hardware = Hardware {
     edges_per_cycle: EdgesPerCycle::Three,
     lod_edges_per_cycle: EdgesPerCycle::Three,
     boxes_per_cycle: BoxesPerCycle::Two,
+    setup_copies: 4,
     coordinate_zeros: 11,
     direction_zeros: 13,
     ..Hardware::DEFAULT
@@ -86,7 +90,8 @@ pub const SHALLOW: Hardware = Hardware {
 pub const FLAT: Hardware =
     Hardware { fewer_stored_levels: Some(0), lod_test: false, start_radius: false, hit_mapping: false, contexts: 2, ..Hardware::DEFAULT };
 /// For rays from a surface too.
-pub const SECONDARY: Hardware = Hardware { contexts: 3, context_bits: 2, secondary: true, ..Hardware::DEFAULT };
+pub const SECONDARY: Hardware =
+    Hardware { contexts: 3, context_bits: 2, setup_copies: 2, divide_copies: 4, secondary: true, ..Hardware::DEFAULT };
 /// The same with all edges and boxes at once, other steps of divisions, cones from points, compact vertices and fewer bits of every number.
 pub const SECONDARY_AT_ONCE: Hardware = Hardware {
     levels: 6,

@@ -5,12 +5,12 @@
 mod save;
 mod signals;
 
-pub use save::{gtkwave_save, gtkwave_states, surfer_commands};
+pub use save::{gtkwave_save, surfer_commands};
 
 use super::environment::{RunReport, UnitPort, run};
 use super::{Inputs, Latency, Outputs, SceneMemory, Traffic, TraversalUnit, UnitError};
 use crate::num::Ray;
-use signals::{Vector, Visitor, walk};
+use signals::{Shown, Vector, Visitor, walk};
 use std::collections::BTreeMap;
 use std::io;
 use vcd::{IdCode, ReferenceIndex, SimulationCommand, TimescaleUnit, Value, VarType};
@@ -39,7 +39,7 @@ pub struct Waves {
     writer: vcd::Writer<Vec<u8>>,
     clock: IdCode,
     /// Identifier and last value of each signal, in the order of the walk.
-    signals: Vec<(IdCode, Vector)>,
+    signals: Vec<(IdCode, Shown)>,
     widths: BTreeMap<String, u32>,
     cycle: u64,
     error: Option<io::Error>,
@@ -100,9 +100,12 @@ impl Waves {
         writer.change_scalar(self.clock, Value::V1)?;
         for ((id, last), value) in self.signals.iter_mut().zip(now.0) {
             if self.cycle == 0 || *last != value {
-                match value.bits() {
-                    [bit] => writer.change_scalar(*id, *bit)?,
-                    bits => writer.change_vector(*id, bits.iter().copied())?,
+                match &value {
+                    Shown::Text(text) => writer.change_string(*id, text)?,
+                    Shown::Bits(value) => match value.bits() {
+                        [bit] => writer.change_scalar(*id, *bit)?,
+                        bits => writer.change_vector(*id, bits.iter().copied())?,
+                    },
                 }
                 *last = value;
             }
@@ -134,7 +137,7 @@ impl UnitPort for Waves {
 /// Declares every signal.
 struct Declare<'a> {
     writer: &'a mut vcd::Writer<Vec<u8>>,
-    signals: Vec<(IdCode, Vector)>,
+    signals: Vec<(IdCode, Shown)>,
     path: Vec<String>,
     widths: BTreeMap<String, u32>,
     clock: Option<IdCode>,
@@ -144,6 +147,14 @@ struct Declare<'a> {
 impl Declare<'_> {
     fn keep<T>(&mut self, result: io::Result<T>) -> Option<T> {
         result.map_err(|error| self.error = Some(error)).ok()
+    }
+
+    fn add(&mut self, kind: VarType, width: u32, name: &str, range: Option<ReferenceIndex>, value: Shown) {
+        let id = self.writer.add_var(kind, width, name, range);
+        self.widths.insert(format!("{}.{name}", self.path.join(".")), width);
+        if let Some(id) = self.keep(id) {
+            self.signals.push((id, value));
+        }
     }
 }
 
@@ -166,21 +177,23 @@ impl Visitor for Declare<'_> {
         let width = value.bits().len();
         // Signals have a few thousand bits at most.
         let range = (width > 1).then_some(ReferenceIndex::Range(width as i32 - 1, 0));
-        let id = self.writer.add_var(VarType::Wire, width as u32, name, range);
-        self.widths.insert(format!("{}.{name}", self.path.join(".")), width as u32);
-        if let Some(id) = self.keep(id) {
-            self.signals.push((id, value));
-        }
+        self.add(VarType::Wire, width as u32, name, range, Shown::Bits(value));
+    }
+    fn text(&mut self, name: &str, value: &'static str) {
+        self.add(VarType::String, 1, name, None, Shown::Text(value));
     }
 }
 
 /// Collects every signal's value.
-struct Collect(Vec<Vector>);
+struct Collect(Vec<Shown>);
 
 impl Visitor for Collect {
     fn enter(&mut self, _: &str) {}
     fn leave(&mut self) {}
     fn signal(&mut self, _: &str, value: Vector) {
-        self.0.push(value);
+        self.0.push(Shown::Bits(value));
+    }
+    fn text(&mut self, _: &str, value: &'static str) {
+        self.0.push(Shown::Text(value));
     }
 }

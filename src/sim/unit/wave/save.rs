@@ -1,15 +1,13 @@
 //! Save files for waveform viewers: which signals, in which order and groups.
 
-use crate::sim::unit::State;
 use std::collections::BTreeMap;
 use std::fmt::Write;
 
-/// How GTKWave shows a signal, as its trace flags: right-justified, and in which base; names come from a file.
+/// How GTKWave shows a signal, as its trace flags: right-justified, and in which base; a name is shown as it is.
 const HEX: &str = "@22";
 const BITS: &str = "@28";
 const DECIMAL: &str = "@24";
 const SIGNED: &str = "@420";
-const NAMES: &str = "@2022";
 
 /// Signals of one scope that are shown alike.
 type Row = (&'static str, &'static str, &'static [&'static str]);
@@ -23,7 +21,7 @@ const GROUPS: &[(&str, &[Row])] = &[
         "Journey",
         &[
             (UNIT, BITS, &["clk_i"]),
-            (CONTEXT, NAMES, &["state_q"]),
+            (CONTEXT, BITS, &["state"]),
             (CONTEXT, DECIMAL, &["entry.kind", "entry.level", "entry.index", "entry.t_near", "tree_q"]),
             (CONTEXT, DECIMAL, &["lod_q.refine", "lod_q.s0", "lod_q.s1", "lod_q.s2", "u_stack.len_q"]),
             (CONTEXT, BITS, &["u_closest.known_q"]),
@@ -75,10 +73,10 @@ const GROUPS: &[(&str, &[Row])] = &[
     (
         "Division",
         &[
-            (UNIT, BITS, &["u_hit_divide.valid_i", "u_hit_divide.ready_o"]),
-            (UNIT, HEX, &["u_hit_divide.in_i.numerator", "u_hit_divide.in_i.denominator"]),
-            (UNIT, BITS, &["u_hit_divide.valid_o"]),
-            (UNIT, HEX, &["u_hit_divide.out_o.quotient"]),
+            (UNIT, BITS, &["u_divide.valid_i", "u_divide.ready_o"]),
+            (UNIT, HEX, &["u_divide.in_i.numerator", "u_divide.in_i.denominator"]),
+            (UNIT, BITS, &["u_divide.valid_o"]),
+            (UNIT, HEX, &["u_divide.out_o.quotient"]),
         ],
     ),
     (
@@ -113,7 +111,7 @@ const GROUPS: &[(&str, &[Row])] = &[
             (UNIT, BITS, &["valid_i", "ready_o"]),
             (UNIT, SIGNED, &["in_i.ray.origin.x", "in_i.ray.origin.y", "in_i.ray.origin.z"]),
             (UNIT, SIGNED, &["in_i.ray.direction.x", "in_i.ray.direction.y", "in_i.ray.direction.z"]),
-            (UNIT, BITS, &["u_ray_setup.valid_i", "u_ray_setup.valid_o"]),
+            (UNIT, BITS, &["u_setup.valid_i", "u_setup.valid_o"]),
         ],
     ),
     (
@@ -132,10 +130,10 @@ fn signals(rows: &'static [Row]) -> impl Iterator<Item = (String, &'static str)>
     rows.iter().flat_map(|(scope, flags, names)| names.iter().map(move |name| (format!("{scope}.{name}"), *flags)))
 }
 
-/// GTKWave's save file for the waveform in file `vcd`, whose signals have these widths; `states` is the file of [`gtkwave_states`].
+/// GTKWave's save file for the waveform in file `vcd`, whose signals have these widths.
 ///
-/// GTKWave takes a relative path from the folder that it was started in, so both should be absolute.
-pub fn gtkwave_save(vcd: &str, states: &str, widths: &BTreeMap<String, u32>) -> String {
+/// GTKWave takes a relative path from the folder that it was started in, so it should be absolute.
+pub fn gtkwave_save(vcd: &str, widths: &BTreeMap<String, u32>) -> String {
     let mut text = format!(
         "[*] One ray through traversal_unit (lodray trace)\n[dumpfile] \"{vcd}\"\n[timestart] 0\n[size] 1600 1000\n[pos] -1 -1\n*-9.0 0\n[signals_width] 260\n[sst_expanded] 0\n"
     );
@@ -145,17 +143,11 @@ pub fn gtkwave_save(vcd: &str, states: &str, widths: &BTreeMap<String, u32>) -> 
         for (path, flags) in signals(rows) {
             let width = widths.get(&path).copied().unwrap_or(1);
             let range = if width > 1 { format!("[{}:0]", width - 1) } else { String::new() };
-            let names = if flags == NAMES { format!("^1 {states}\n") } else { String::new() };
-            let _ = writeln!(text, "{flags}\n{names}{path}{range}");
+            let _ = writeln!(text, "{flags}\n{path}{range}");
         }
         let _ = writeln!(text, "@1000200\n-{group}");
     }
     text
-}
-
-/// Names of the states by their numbers, as GTKWave's translation of hexadecimal values takes them.
-pub fn gtkwave_states() -> String {
-    State::ALL.iter().fold(String::new(), |text, &state| text + &format!("{:02X} {}\n", state as u8, state.name()))
 }
 
 /// A command file for Surfer that shows the same signals.

@@ -63,6 +63,15 @@ impl Vector {
     }
 }
 
+/// What a signal shows in a cycle.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Shown {
+    /// Its bits.
+    Bits(Vector),
+    /// A name: of what a signal beside it stands for.
+    Text(&'static str),
+}
+
 /// Hears of every signal, always in the same order.
 pub trait Visitor {
     /// A scope begins.
@@ -71,6 +80,8 @@ pub trait Visitor {
     fn leave(&mut self);
     /// A signal in it.
     fn signal(&mut self, name: &str, value: Vector);
+    /// A name that one of the RTL's signals stands for.
+    fn text(&mut self, name: &str, value: &'static str);
 }
 
 /// A signal of type `T`: as in the RTL's waveforms a struct is a scope of its fields, and an array its elements, unless they are single bits.
@@ -139,7 +150,7 @@ pub fn walk(unit: &TraversalUnit, inputs: &Inputs, wires: &Wires, to: &mut impl 
         to.leave();
     }
 
-    fitted(to, &unit.ray_setup, &wires.setup, 6);
+    in_turns(to, "u_setup", &unit.ray_setup, &wires.setup, 6);
     block_waiting(to, &unit.node_address, &wires.fetch, 8 + Epoch::WIDTH, inputs.mem_ready);
     children(to, unit, wires);
     if unit.hardware.has_deciders() {
@@ -151,7 +162,7 @@ pub fn walk(unit: &TraversalUnit, inputs: &Inputs, wires: &Wires, to: &mut impl 
     to.enter("u_queue");
     to.signal("len_q", Vector::number(unit.queue.len() as u64, counter_width(4 * unit.contexts.len())));
     to.leave();
-    fitted(to, &unit.hit_divide, &wires.divide, 10);
+    in_turns(to, "u_divide", &unit.hit_divide, &wires.divide, 10);
     comparison(to, unit, wires);
     block(to, &unit.bary_map, &wires.map, 6);
     to.leave();
@@ -160,6 +171,7 @@ pub fn walk(unit: &TraversalUnit, inputs: &Inputs, wires: &Wires, to: &mut impl 
 /// Registers of a context, by their names in the RTL.
 fn context_signals(c: &Context, to: &mut impl Visitor) {
     to.signal("state_q", Vector::number(c.state as u64, 5));
+    to.text("state", c.state.name());
     to.signal("fetch_q", c.fetch.known().map_or(Vector::unknown(2), |fetch| Vector::number(fetch as u64, 2)));
     typed::<Entry>(to, "entry", &Vector::register(c.entry.known()));
     to.signal("tree_q", Vector::register(c.tree.known()));
@@ -212,6 +224,25 @@ where
         }
         Fitted::Secondary(of) => block(to, of, link, tag_width),
     }
+}
+
+/// Blocks that take turns, of either form, as one that takes items more often: with the operands of both forms, and a consumer that is always ready.
+fn in_turns<B: ForSecondary>(to: &mut impl Visitor, scope: &str, block_of: &Fitted<B>, link: &Link<B::In>, tag_width: u32)
+where
+    B::Out: Copy,
+    <B::Primary as Block>::Out: Copy,
+{
+    let (input, tag) = link.input.as_ref().map(|(input, tag)| (input, *tag)).unzip();
+    to.enter(scope);
+    to.signal("valid_i", Vector::flag(link.input.is_some()));
+    to.signal("ready_o", Vector::flag(link.ready));
+    typed::<B::In>(to, "in_i", &Vector::offer(input));
+    to.signal("tag_i", Vector::number(tag.map_or(0, u64::from), tag_width));
+    let (out, tag) = block_of.offered().unzip();
+    to.signal("valid_o", Vector::flag(tag.is_some()));
+    typed::<B::Out>(to, "out_o", &Vector::register(out));
+    to.signal("tag_o", tag.map_or(Vector::unknown(tag_width), |tag| Vector::number(tag.into(), tag_width)));
+    to.leave();
 }
 
 fn block_waiting<B: Block>(to: &mut impl Visitor, pipeline: &Pipeline<B>, link: &Link<B::In>, tag_width: u32, consumer_ready: bool)
