@@ -19,8 +19,8 @@ from plot import diagram
 ROOT = Path(__file__).resolve().parent.parent
 METHODS = ["lod", "bvh6"]
 VIEWS = {"terrain": [2, 4], "cloth": [3.15]}
-KEYS = ["units.per_group", "units.contexts", "units.lod_edges_per_cycle", "units.boxes_per_cycle"]
-GRID = [[1, 2, 4], [16, 32, 64], [1, 3], [2, 4]]
+KEYS = ["units.per_group", "units.contexts", "units.lod_edges_per_cycle", "units.boxes_per_cycle", "units.setup_copies", "units.divide_copies"]
+GRID = [[1, 2, 4], [16, 32, 64], [1, 3], [2, 4], [1, 2, 4], [1, 2]]
 IN_TURN = [1, 4]
 SWEPT = [1, 2, 4, 8, 16, 64]
 
@@ -53,7 +53,8 @@ def swept(args, machine, units):
             continue
         result, (scene, turn) = row["result"], row["scene"].rsplit("-", 1)
         own = result["setup"]["machine"]["description"]["units"]
-        unit = tuple(own[key.split(".")[1]] for key in KEYS) if units else None
+        # One of a block is not written.
+        unit = tuple(own.get(key.split(".")[1], 1) for key in KEYS) if units else None
         of = found.setdefault((result["setup"]["method"]["name"], int(turn), unit), {})
         of[scene, result["setup"]["view"]["distance"]] = result
     return found
@@ -93,10 +94,10 @@ def front_rows(machine, groups, own):
         lines[method] = [(groups * of["gates"] / 1e6, of["rate"]) for of in line]
         knee = min(line, key=lambda of: of["gates"] / of["rate"])
         for of in line:
-            per_group, contexts, lod, boxes = of["unit"]
+            per_group, contexts, lod, boxes, *copies = of["unit"]
             name = f"**{method}**" if of is knee else method
             costs = [number(groups * of["gates"] / 1e6), number(of["rate"]), number(groups * of["gates"] / of["rate"]), f"{100 * of['kept']:.0f} %"]
-            rows.append([machine, name, per_group, contexts, lod if method == "lod" else "-", boxes, of["turn"], *costs])
+            rows.append([machine, name, per_group, contexts, lod if method == "lod" else "-", boxes, *copies, of["turn"], *costs])
     return rows, lines
 
 
@@ -159,7 +160,7 @@ def main():
     put(document, "<!-- balance: order -->", "<!-- balance: order end -->", table(["machine", "view, radii", "method", "compute", "cycles, tile by tile", *in_turn], turns, 4))
     both = [f"{what}, {turn} in turn" for turn in IN_TURN for what in ("load", "90 % full", "the fullest", "cycles if eased")]
     put(document, "<!-- balance: phases -->", "<!-- balance: phases end -->", table(["machine", "view, radii", "block", *both], phases, 3))
-    head = ["machine", "method", "units of a group", "contexts", "edges of LOD test", "boxes", "tiles in turn", "million GE", "million rays/s", "GE for a million rays/s", "of compute free's rate"]
+    head = ["machine", "method", "units of a group", "contexts", "edges of LOD test", "boxes", "setups", "divisions", "tiles in turn", "million GE", "million rays/s", "GE for a million rays/s", "of compute free's rate"]
     put(document, "<!-- balance: front -->", "<!-- balance: front end -->", table(head, fronts, 2))
 
 

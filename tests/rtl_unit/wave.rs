@@ -15,17 +15,8 @@ use vcd::{Command, IdCode, Parser, ScopeItem, Value, VarType};
 struct Waveform(BTreeMap<String, Vec<Vec<Value>>>);
 
 /// Generate blocks of the RTL around what hardware can lack: the model has no such scopes.
-const OPTIONAL: [&str; 9] = [
-    "g_place",
-    "g_morphed",
-    "g_deciders",
-    "g_lod_test",
-    "g_lod_test_by",
-    "g_tessellate",
-    "g_tri_test",
-    "g_start_test",
-    "g_bary_map",
-];
+const OPTIONAL: [&str; 9] =
+    ["g_place", "g_morphed", "g_deciders", "g_lod_test", "g_lod_test_by", "g_tessellate", "g_tri_test", "g_start_test", "g_bary_map"];
 
 fn paths(items: &[ScopeItem], within: &str, to: &mut Vec<(String, IdCode, usize)>) {
     for item in items {

@@ -60,11 +60,9 @@ fn waveform_and_save_files_stand_side_by_side() {
     let gtkw = text("ray.gtkw");
     // GTKWave looks from the folder that it was started in: names are whole paths.
     let whole = |name: &str| fs::canonicalize(desk).unwrap().join(name).display().to_string();
-    for words in [
-        &format!("[dumpfile] \"{}\"", whole("ray.vcd"))[..],
-        "@28\ntraversal_unit.g_context[0].u_context.state\n",
-        "-Level_of_detail\n",
-    ] {
+    for words in
+        [&format!("[dumpfile] \"{}\"", whole("ray.vcd"))[..], "@28\ntraversal_unit.g_context[0].u_context.state\n", "-Level_of_detail\n"]
+    {
         assert!(gtkw.contains(words), "{words}");
     }
     assert!(text("ray.sucl").contains("variable_add traversal_unit.g_context[0].u_context.lod_q.s0\n"));
