@@ -53,8 +53,7 @@ def swept(args, machine, units):
             continue
         result, (scene, turn) = row["result"], row["scene"].rsplit("-", 1)
         own = result["setup"]["machine"]["description"]["units"]
-        # One of a block is not written.
-        unit = tuple(own.get(key.split(".")[1], 1) for key in KEYS) if units else None
+        unit = tuple(own[key.split(".")[1]] for key in KEYS) if units else None
         of = found.setdefault((result["setup"]["method"]["name"], int(turn), unit), {})
         of[scene, result["setup"]["view"]["distance"]] = result
     return found

@@ -132,10 +132,10 @@ pub struct Units {
     #[serde(default = "Units::setup_bits")]
     pub setup_bits: u32,
     /// Blocks of the constants of a ray that take turns: 1 to 4.
-    #[serde(default = "one", skip_serializing_if = "is_one")]
+    #[serde(default = "Units::one")]
     pub setup_copies: u32,
     /// Blocks of the division of hits that take turns: 1 to 4.
-    #[serde(default = "one", skip_serializing_if = "is_one")]
+    #[serde(default = "Units::one")]
     pub divide_copies: u32,
     /// Boxes of a node of four that are tested in a cycle: 4, 2 or 1.
     #[serde(default = "Units::boxes_per_cycle")]
@@ -193,16 +193,11 @@ impl Units {
     const fn setup_bits() -> u32 {
         Hardware::DEFAULT.setup_bits
     }
-}
 
-/// Copies of a block where a file does not say.
-fn one() -> u32 {
-    1
-}
-
-#[expect(clippy::trivially_copy_pass_by_ref, reason = "as serde calls it")]
-fn is_one(copies: &u32) -> bool {
-    *copies == 1
+    /// Blocks of a kind that take turns, likewise.
+    const fn one() -> u32 {
+        1
+    }
 }
 
 /// The memory behind the L2.

@@ -1,5 +1,7 @@
 //! `lodray trace`: waveform, save files and text of one ray, and what it refuses.
 
+use lodray::hardware::State;
+use std::collections::BTreeSet;
 use std::fs;
 use std::path::Path;
 use std::process::Output;
@@ -24,7 +26,7 @@ fn succeed(folder: &Path, args: &str) -> String {
 
 /// Runs, expects failure with one line that holds `words`, and nothing written.
 fn fail(folder: &Path, args: &str, words: &str) {
-    let names = || fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().file_name()).collect::<std::collections::BTreeSet<_>>();
+    let names = || fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().file_name()).collect::<BTreeSet<_>>();
     let before = names();
     let output = lodray(folder, args);
     let err = String::from_utf8(output.stderr).unwrap();
@@ -45,14 +47,7 @@ fn waveform_and_save_files_stand_side_by_side() {
     assert_eq!((state.size, header.timescale), (5, Some((1, vcd::TimescaleUnit::NS))));
     assert!(header.find_var(&["traversal_unit", "u_lod_test", "out_o", "refine"]).is_some());
     // States by name, beside their numbers.
-    let name = header.find_var(&["traversal_unit", "g_context[0]", "u_context", "state"]).expect("its name");
-    assert_eq!(name.var_type, vcd::VarType::String);
-    let names: Vec<String> = vcd::Parser::new(&vcd[..])
-        .filter_map(|command| match command.unwrap() {
-            vcd::Command::ChangeString(id, text) if id == name.code => Some(text),
-            _ => None,
-        })
-        .collect();
+    let names = states(&vcd);
     assert!(names.starts_with(&["IDLE", "SETUP", "SETUP_WAIT", "VISIT", "FETCH"].map(String::from)), "{names:?}");
     assert!(names.ends_with(&["DONE", "IDLE"].map(String::from)), "{names:?}");
 
@@ -71,6 +66,52 @@ fn waveform_and_save_files_stand_side_by_side() {
     // The same bytes again, over the old ones.
     succeed(desk, "trace a.lod --pixel 24,24 --size 48x48 --distance 3 -o ray.vcd");
     assert_eq!(fs::read(desk.join("ray.vcd")).unwrap(), vcd);
+}
+
+/// Names that a waveform's context goes through, each change once.
+fn states(vcd: &[u8]) -> Vec<String> {
+    let header = vcd::Parser::new(vcd).parse_header().unwrap();
+    let name = header.find_var(&["traversal_unit", "g_context[0]", "u_context", "state"]).expect("the state's name");
+    assert_eq!(name.var_type, vcd::VarType::String);
+    vcd::Parser::new(vcd)
+        .filter_map(|command| match command.unwrap() {
+            vcd::Command::ChangeString(id, text) if id == name.code => Some(text),
+            _ => None,
+        })
+        .collect()
+}
+
+#[test]
+fn the_diagram_of_states_has_every_way_that_rays_take() {
+    let text = fs::read_to_string(concat!(env!("CARGO_MANIFEST_DIR"), "/docs/traversal-unit.md")).unwrap();
+    let diagram = text.split("stateDiagram-v2\n").nth(1).and_then(|rest| rest.split("```").next()).expect("the diagram");
+    let drawn: BTreeSet<(String, String)> = diagram
+        .lines()
+        .filter_map(|line| line.split(':').next()?.trim().split_once(" --> "))
+        .map(|(from, to)| (from.to_owned(), to.to_owned()))
+        .collect();
+    let named: BTreeSet<&str> = drawn.iter().flat_map(|(from, to)| [from.as_str(), to]).filter(|&name| name != "[*]").collect();
+    let all: BTreeSet<&str> = State::ALL.iter().map(|state| state.name()).collect();
+    assert_eq!(named, all);
+
+    let folder = desk();
+    let desk = folder.path();
+    let mut taken = BTreeSet::new();
+    for pixel in ["24,24", "0,0", "20,28", "30,18"] {
+        for delta in ["1", "inf"] {
+            succeed(desk, &format!("trace a.lod --pixel {pixel} --size 48x48 --distance 3 --delta {delta} -o ray.vcd"));
+            let names = states(&fs::read(desk.join("ray.vcd")).unwrap());
+            taken.extend(names.windows(2).map(|two| (two[0].clone(), two[1].clone())));
+        }
+    }
+    assert!(taken.is_subset(&drawn), "not drawn: {:?}", taken.difference(&drawn).collect::<Vec<_>>());
+    // What only rays with others, or hardware with less, take.
+    let rest: Vec<String> = drawn.difference(&taken).map(|(from, to)| format!("{from} {to}")).collect();
+    assert_eq!(
+        rest,
+        ["DECIDE DECIDE_WAIT", "DECIDE_WAIT LOD", "FETCH DECIDE", "LOD FETCH", "LOD TRI", "SUM DONE", "[*] IDLE"],
+        "ways that none of these rays took"
+    );
 }
 
 #[test]
