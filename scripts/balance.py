@@ -20,7 +20,7 @@ ROOT = Path(__file__).resolve().parent.parent
 METHODS = ["lod", "bvh6"]
 VIEWS = {"terrain": [2, 4], "cloth": [3.15]}
 KEYS = ["units.per_group", "units.contexts", "units.lod_edges_per_cycle", "units.boxes_per_cycle", "units.setup_copies", "units.divide_copies"]
-GRID = [[1, 2, 4], [16, 32, 64], [1, 3], [2, 4], [1, 2, 4], [1, 2]]
+GRID = [[1, 2, 4], [16, 32, 64], [1, 3], [2, 4], [1, 3], [1, 2]]
 IN_TURN = [1, 4]
 SWEPT = [1, 2, 4, 8, 16, 64]
 

@@ -4,7 +4,7 @@
 use crate::{SideBySide, configs, cycles_or};
 use lodray::hardware::Hardware;
 use lodray::hardware::ports::SceneConfig;
-use lodray::sim::unit::TraversalUnit;
+use lodray::sim::unit::{Inputs, TraversalUnit, UnitPort};
 use lodray_test_support::early::{each_error, each_moment};
 use lodray_test_support::hardware::OTHERS;
 use lodray_test_support::hostile::{Exposed, Hostile, Stage};
@@ -19,6 +19,8 @@ impl Exposed for SideBySide {
     fn set_scene(&mut self, scene: &SceneConfig) {
         self.model.set_scene(*scene);
         self.rtl.scene(scene);
+        // It stands still from the cycle before a ray is taken.
+        self.tick(&Inputs::default());
     }
     fn model(&self) -> &TraversalUnit {
         &self.model

@@ -114,11 +114,15 @@ fn surroundings_that_break_a_rule_are_noticed() {
     assert!(!kept(|cycle, _| Inputs { ray: Some(some(cycle as u64)), ..quiet }), "a ray was changed");
     let answer = |tag| Some(MemoryAnswer { tag: U::new(tag), ..MemoryAnswer::default() });
     assert!(!kept(|cycle, _| Inputs { answer: answer(1).filter(|_| cycle == 20), ..rays(cycle) }), "an answer without a request");
-    let moved = |cycle: usize, rtl: &mut Rtl| {
-        if cycle == 10 {
-            rtl.scene(&SceneConfig { levels: U::new(1), ..SceneConfig::default() });
-        }
-        rays(cycle)
+    let moved = |at: usize, first: usize| {
+        kept(|cycle, rtl| {
+            if cycle == at {
+                rtl.scene(&SceneConfig { levels: U::new(1), ..SceneConfig::default() });
+            }
+            if cycle < first { quiet } else { rays(cycle - first) }
+        })
     };
-    assert!(!kept(moved), "the scene was changed");
+    assert!(!moved(10, 0), "the scene was changed while a ray was under way");
+    assert!(!moved(3, 3), "the scene was changed in the cycle in which a ray was taken");
+    assert!(moved(3, 4));
 }
