@@ -1,5 +1,6 @@
 //! Triangle meshes in, hierarchies of 1-to-4 splits out.
 
+mod binding;
 mod borders;
 mod bounds;
 mod clean;
@@ -24,6 +25,7 @@ mod subdivide;
 mod surface;
 mod weld;
 
+pub use binding::{Binding, BindingError};
 pub use borders::{EdgeUse, SharedEdges};
 pub use clean::{Attributes, CleanReport, MeshError, TriangleMesh};
 pub use coarsen::{coarsen, farthest as coarsened_by};
@@ -36,8 +38,8 @@ pub use normals::{DEFAULT_CREASE_ANGLE, corner_normals};
 pub use parts::parts;
 pub use quantise::{SurfaceError, first_not_finite, grid_holds, most_zeros, move_vertices, quantise};
 pub use read::{
-    ArrayError, MESH_ENDINGS, MeshCamera, MeshFormat, MeshPlace, PlacedMeshes, PositionFrames, ReadError, named_files, open_array, read,
-    read_as, read_bytes, read_placed, read_placed_bytes, read_positions, shape_and_type,
+    ArrayError, MESH_ENDINGS, MeshCamera, MeshFormat, MeshPlace, MovingMesh, PlacedMeshes, PositionFrames, ReadError, named_files,
+    open_array, read, read_as, read_bytes, read_placed, read_placed_bytes, read_positions, shape_and_type,
 };
 pub use remesh::{DEFAULT_MAX_ERROR, Folds, RemeshError, RemeshOptions, RemeshReport, Works, remesh};
 pub use subdivide::{CornerTexture, MAX_SUBDIVIDED, SubdivideError, catmull_clark_surface, check_subdivision, flat_surface, loop_surface};

@@ -4,7 +4,7 @@ use super::damage::File;
 use super::round::{Limit, round};
 use base64::Engine;
 use lodray::format::Scene;
-use lodray::mesh::{HeightMap, MeshFormat, read_bytes, read_placed_bytes};
+use lodray::mesh::{HeightMap, MeshFormat, MovingMesh, read_bytes, read_placed_bytes};
 use lodray::scene::BuildOptions;
 use serde_json::{Value, json};
 use std::path::Path;
@@ -35,13 +35,21 @@ fn reads(bytes: &[u8], format: MeshFormat) -> bool {
     }
 }
 
-/// A scene of nodes too, whose meshes are those of the whole.
+/// A scene of nodes too, whose meshes are those of the whole, and its animations.
 fn reads_places(bytes: &[u8], format: MeshFormat) -> bool {
     let is_mesh = reads(bytes, format);
     match read_placed_bytes(bytes, Path::new("damaged"), &Path::new(CORPUS).join(format.name())) {
         Ok(placed) => {
             assert!(!placed.places.is_empty() && placed.places.iter().all(|place| place.mesh < placed.meshes.len()));
             assert!(placed.meshes.iter().all(|(_, mesh)| !mesh.triangles.is_empty()));
+        }
+        Err(error) => assert!(error.to_string().starts_with("damaged: ") && error.to_string().len() < 600, "{error}"),
+    }
+    match MovingMesh::from_bytes(bytes, Path::new("damaged"), &Path::new(CORPUS).join(format.name())) {
+        Ok(mesh) => {
+            for (clip, time) in (0..mesh.clips().count().min(4)).flat_map(|clip| [-1.0, 0.3, 1.7, 1e9].map(|time| (clip, time))) {
+                assert_eq!(mesh.at(clip, time).len(), mesh.rest().len());
+            }
         }
         Err(error) => assert!(error.to_string().starts_with("damaged: ") && error.to_string().len() < 600, "{error}"),
     }

@@ -1,7 +1,10 @@
 //! `refit` as typed.
 
+use base64::Engine;
+use base64::engine::general_purpose::STANDARD;
 use lodray_test_support::program::{Desk, FAILS, USAGE};
 use npyz::WriterBuilder;
+use serde_json::json;
 use std::fs;
 
 fn desk() -> Desk {
@@ -55,6 +58,106 @@ fn arrays_meshes_and_sequences_move_a_scene() {
         assert!(desk.bytes("quarter.lod") == desk.bytes(&format!("{motion}-00001.lod")), "{motion}");
         desk.run("verify quarter.lod --quiet");
     }
+}
+
+/// The triangles of an OBJ as a glTF file: an animation that takes them 4 along x in 2 seconds, and one that makes them twice as large.
+fn moving(obj: &str) -> serde_json::Value {
+    let at = vertices(obj);
+    let corners: Vec<u32> = obj
+        .lines()
+        .filter_map(|line| line.strip_prefix("f "))
+        .flat_map(|line| line.split_whitespace().map(|corner| corner.split('/').next().unwrap().parse::<u32>().unwrap() - 1))
+        .collect();
+    let floats = |values: &[f64]| values.iter().flat_map(|&v| (v as f32).to_le_bytes()).collect::<Vec<u8>>();
+    let indices: Vec<u8> = corners.iter().flat_map(|v| v.to_le_bytes()).collect();
+    let parts = [floats(&at), indices, floats(&[0.0, 2.0]), floats(&[0.0, 0.0, 0.0, 4.0, 0.0, 0.0]), floats(&[0.0, 1.0])];
+    let kinds =
+        [("VEC3", 5126, at.len() / 3), ("SCALAR", 5125, corners.len()), ("SCALAR", 5126, 2), ("VEC3", 5126, 2), ("SCALAR", 5126, 2)];
+    let begins: Vec<usize> = (0..parts.len()).map(|k| parts[..k].iter().map(Vec::len).sum()).collect();
+    let bytes = parts.concat();
+    let views: Vec<_> =
+        parts.iter().zip(&begins).map(|(part, begin)| json!({ "buffer": 0, "byteOffset": begin, "byteLength": part.len() })).collect();
+    let accessors: Vec<_> = kinds
+        .iter()
+        .enumerate()
+        .map(|(k, (kind, component, count))| json!({ "bufferView": k, "type": kind, "componentType": component, "count": count }))
+        .collect();
+    let clip = |name: &str, input: usize, output: usize, path: &str| {
+        json!({
+            "name": name, "samplers": [{ "input": input, "output": output }],
+            "channels": [{ "sampler": 0, "target": { "node": 0, "path": path } }],
+        })
+    };
+    json!({
+        "asset": { "version": "2.0" },
+        "buffers": [{ "byteLength": bytes.len(), "uri": format!("data:;base64,{}", STANDARD.encode(&bytes)) }],
+        "bufferViews": views, "accessors": accessors,
+        "meshes": [{ "primitives": [{ "attributes": { "POSITION": 0 }, "indices": 1, "targets": [{ "POSITION": 0 }] }] }],
+        "nodes": [{ "mesh": 0 }], "scenes": [{ "nodes": [0] }], "scene": 0,
+        "animations": [clip("slide", 2, 3, "translation"), clip("grow", 2, 4, "weights")],
+    })
+}
+
+#[test]
+fn an_animation_moves_the_scene_that_was_built_from_its_mesh() {
+    let desk = desk();
+    desk.run("generate sphere --levels 3 --base 32 -o a.lod --quiet");
+    desk.run("export a.lod -o a.obj --quiet");
+    let file = moving(&desk.text("a.obj"));
+    desk.write("m.gltf", &file.to_string());
+    let rest = vertices(&desk.text("a.obj"));
+    let moved = |options: &str| {
+        desk.run(&format!("refit a.lod m.gltf {options} -o b.lod --quiet"));
+        desk.run("verify b.lod --quiet");
+        desk.run("export b.lod -o b.obj --quiet");
+        vertices(&desk.text("b.obj"))
+    };
+    for (options, shift, scale) in [
+        ("", 0.0, 1.0),
+        ("--time 1", 2.0, 1.0),
+        ("--clip slide --time 9", 4.0, 1.0),
+        ("--clip grow --time 2", 0.0, 2.0),
+        ("--clip 1 --time 0.5", 0.0, 1.25),
+    ] {
+        let far = moved(options)
+            .iter()
+            .zip(&rest)
+            .enumerate()
+            .map(|(k, (now, rest))| (now - rest * scale - if k % 3 == 0 { shift } else { 0.0 }).abs())
+            .fold(0.0, f64::max);
+        assert!(far < 1e-5, "{options}: {far}");
+    }
+    // Frames are parts of its duration.
+    desk.run("refit a.lod m.gltf --frames 4 -o f.lod --quiet");
+    desk.run_on(1, "refit a.lod m.gltf --time 1 -o one.lod --quiet");
+    assert!(desk.bytes("f-00002.lod") == desk.bytes("one.lod"));
+
+    // A scene that was built from the file moves too, though its vertices are others.
+    desk.run("build m.gltf --levels 3 -o own.lod --quiet");
+    desk.run("refit own.lod m.gltf --clip grow --time 2 -o grown.lod --quiet");
+    desk.run("verify grown.lod --quiet");
+    let [own, grown] = ["own", "grown"].map(|name| {
+        desk.run(&format!("export {name}.lod -o {name}.obj --quiet"));
+        vertices(&desk.text(&format!("{name}.obj")))
+    });
+    assert!(own.iter().zip(&grown).all(|(own, grown)| (grown - 2.0 * own).abs() < 0.01));
+
+    desk.refused("refit a.lod m.gltf --clip none -o c.lod", FAILS, &["m.gltf", "--clip none", "there are slide, grow"]);
+    desk.refused("refit a.lod a.obj --clip slide -o c.lod", FAILS, &["--clip", "glTF"]);
+    desk.refused("refit a.lod a.obj --time 1 -o c.lod", FAILS, &["--time", "--motion"]);
+    desk.refused("refit a.lod m.gltf --motion wave -o c.lod", USAGE, &["--motion"]);
+    let without = |key: &str| {
+        let mut file = file.clone();
+        file.as_object_mut().unwrap().remove(key);
+        file.to_string()
+    };
+    desk.write("still.gltf", &without("animations"));
+    desk.refused("refit a.lod still.gltf -o c.lod", FAILS, &["still.gltf", "animations: it has none"]);
+    let mut elsewhere = file.clone();
+    elsewhere["nodes"][0]["translation"] = json!([100, 0, 0]);
+    desk.write("elsewhere.gltf", &elsewhere.to_string());
+    desk.refused("refit a.lod elsewhere.gltf -o c.lod", FAILS, &["elsewhere.gltf", "away from the mesh at rest"]);
+    assert!(!desk.path("c.lod").exists());
 }
 
 #[test]

@@ -4,7 +4,8 @@
 use crate::{SideBySide, configs, cycles_or};
 use lodray::hardware::Hardware;
 use lodray::hardware::ports::SceneConfig;
-use lodray::sim::unit::{Inputs, TraversalUnit, UnitPort};
+use lodray::sim::unit::environment::UnitPort;
+use lodray::sim::unit::{Inputs, TraversalUnit};
 use lodray_test_support::early::{each_error, each_moment};
 use lodray_test_support::hardware::OTHERS;
 use lodray_test_support::hostile::{Exposed, Hostile, Stage};

@@ -31,6 +31,21 @@ impl<'a> Reader<'a> {
         self.rows(index, (Type::Vec2, "VEC2"), zeros, place)
     }
 
+    /// Rows of four, such as rotations, joints and their weights; at most `zeros` if the accessor has no bytes for them.
+    pub(super) fn fours(&self, index: Index<Accessor>, zeros: usize, place: &str) -> Result<Vec<[f64; 4]>, Fault> {
+        self.rows(index, (Type::Vec4, "VEC4"), zeros, place)
+    }
+
+    /// Matrices, column by column; at most `zeros` if the accessor has no bytes for them.
+    pub(super) fn matrices(&self, index: Index<Accessor>, zeros: usize, place: &str) -> Result<Vec<[f64; 16]>, Fault> {
+        self.rows(index, (Type::Mat4, "MAT4"), zeros, place)
+    }
+
+    /// Numbers; at most `zeros` if the accessor has no bytes for them.
+    pub(super) fn scalars(&self, index: Index<Accessor>, zeros: usize, place: &str) -> Result<Vec<f64>, Fault> {
+        Ok(self.rows::<1>(index, (Type::Scalar, "SCALAR"), zeros, place)?.into_flattened())
+    }
+
     /// Rows of N numbers, which is what the type says.
     fn rows<const N: usize>(
         &self,

@@ -3,6 +3,7 @@
 
 mod accessor;
 mod buffers;
+mod moving;
 mod nodes;
 mod placed;
 
@@ -13,6 +14,7 @@ use ::gltf::json::validation::Checked;
 use ::gltf::json::{Index, Root};
 use accessor::{MAX_ZEROS, Reader};
 use glam::{DMat3, DVec3};
+pub(super) use moving::{MovingParts, parse_moving};
 use nodes::Placed;
 pub(super) use placed::parse_placed;
 use std::path::Path;
@@ -178,11 +180,10 @@ impl<'a> Builder<'a> {
     }
 
     fn primitive(&mut self, primitive: &Primitive, weights: Option<&[f32]>, placed: &Placed, place: &str) -> Result<(), Fault> {
-        let mode = match primitive.mode {
-            Checked::Valid(Mode::Points | Mode::Lines | Mode::LineLoop | Mode::LineStrip) => return Ok(()),
-            Checked::Valid(mode) => mode,
-            Checked::Invalid => return fault(place, "its mode is not known"),
-        };
+        if !is_triangles(primitive) {
+            return Ok(());
+        }
+        let Checked::Valid(mode) = primitive.mode else { return fault(place, "its mode is not known") };
         let Some(&positions) = primitive.attributes.get(&Checked::Valid(Semantic::Positions)) else {
             return fault(place, "it has no attribute POSITION");
         };
@@ -304,6 +305,11 @@ fn turn_of_normals(transform: DMat3) -> (DMat3, bool) {
     let mirrored = a.dot(b.cross(c)) < 0.0;
     let sign = if mirrored { -1.0 } else { 1.0 };
     (DMat3::from_cols(b.cross(c), c.cross(a), a.cross(b)) * sign, mirrored)
+}
+
+/// It has triangles, rather than points or lines.
+fn is_triangles(primitive: &Primitive) -> bool {
+    !matches!(primitive.mode, Checked::Valid(Mode::Points | Mode::Lines | Mode::LineLoop | Mode::LineStrip))
 }
 
 fn triangles(mode: Mode, corners: &[u32]) -> Result<Vec<[u32; 3]>, String> {
