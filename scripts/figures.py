@@ -271,13 +271,10 @@ def forms(own, former, values):
     values["forms"] = table(["scene", "eye at", "cycles before", "4-wide now", "6-wide now", "fewer cycles, the better", "fewer bytes of DRAM"], rows, 1)
 
 
-def units(free, charged, values):
+def of_units(free, charged):
+    """The gains with each kind and number of units, and what of compute free's they keep."""
     rows = []
     radii_of_all = free.each("radii")
-
-    def free_gains(radii, name):
-        return gains(*(free.find(radii=radii, method=m, set=name) for m in ["lod", "bvh"]))
-
     for name in charged.each("set"):
         keys = dict(part.split("=") for part in name.split())
         per_group, contexts = int(keys.get("units.per_group", 1)), int(keys["units.contexts"])
@@ -285,7 +282,7 @@ def units(free, charged, values):
         cells = [per_group, contexts, f"{rays:g}"]
         for radii in radii_of_all:
             # With fewer rays than cores, some cores would have none: one ray each is what there is to compare with.
-            whole = free_gains(radii, f"cores.rays_in_flight={max(rays, 1):g}")
+            whole = free_gains(free, radii, f"cores.rays_in_flight={max(rays, 1):g}")
             gain = gains(*(charged.find(radii=radii, method=m, set=name) for m in ["lod", "bvh"]))
             stalls = charged.find(radii=radii, method="lod", set=name)["result"]["stalls"]
             cells += [times(gain[1]), percent(gain[1] / whole[1]), times(gain[0]), percent(gain[0] / whole[0]), f"`{stalls['largest']}` {percent(stalls['largest_share'])}"]
@@ -293,12 +290,25 @@ def units(free, charged, values):
     head = ["units per group", "contexts", "rays per core"]
     for radii in radii_of_all:
         head += [f"time at {radii:g} radii", "kept", "energy", "kept", "our largest stall"]
-    values["units"] = table(head, [cells for *_, cells in sorted(rows, key=lambda row: row[:2])], 1)
+    return table(head, [cells for *_, cells in sorted(rows, key=lambda row: row[:2])], 1)
+
+
+def free_gains(free, radii, name):
+    return gains(*(free.find(radii=radii, method=m, set=name) for m in ["lod", "bvh"]))
+
+
+def turns(charged, free, values):
+    values["turns"] = of_units(free, charged)
+
+
+def units(free, charged, values):
+    values["units"] = of_units(free, charged)
     rows = []
+    radii_of_all = free.each("radii")
     for name in free.each("set"):
         cells = [name.split("=")[1]]
         for radii in radii_of_all:
-            cells += [times(g) for g in free_gains(radii, name)]
+            cells += [times(g) for g in free_gains(free, radii, name)]
         rows.append(cells)
     head = ["rays per core"] + [f"{what} at {radii:g} radii" for radii in radii_of_all for what in ["energy", "time", "DRAM lines"]]
     values["free"] = table(head, rows, 1)
@@ -406,6 +416,7 @@ PARTS = [
     (boxes, ["boxes"]),
     (forms, ["forms", "former"]),
     (units, ["free", "units"]),
+    (turns, ["turns", "free"]),
     (balance, ["balance", "balance-free"]),
     (lambda data, values: over_machines(data, values, "sensitivity"), ["sensitivity"]),
     (lambda data, values: over_machines(data, values, "starved"), ["starved"]),
