@@ -221,7 +221,16 @@ fn units_are_the_least_that_keep_the_share() {
         let (share, units) = (percent / 100.0, |key: &str| speed["units"][key].as_u64().expect("a number"));
         assert_eq!([number(&speed["share"]), number(&speed["frames"])], [share, 2.0]);
         let of = |contexts: u64| {
-            let keys = ["per_group", "edges_per_cycle", "lod_edges_per_cycle", "boxes_per_cycle", "divide_bits", "setup_bits"];
+            let keys = [
+                "per_group",
+                "edges_per_cycle",
+                "lod_edges_per_cycle",
+                "boxes_per_cycle",
+                "divide_bits",
+                "setup_bits",
+                "setup_copies",
+                "divide_copies",
+            ];
             let set = keys.map(|key| format!(" --set units.{key}={}", units(key))).concat();
             format!("{machine} --set units.contexts={contexts}{set}")
         };

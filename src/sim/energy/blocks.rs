@@ -2,7 +2,7 @@
 //!
 //! With P the sum of a x b over the products of a x b bits, A the bits added, S the bits selected, R the registers and W the bits written in them by an
 //! operation ([`Parts`]), which takes the block c cycles, its interval: one operation costs P multiply / 32^2 + A add / 32 + S select / 32 + W register.
-//! The block leaks as much hardware as it has: P / c, A / c, S / c and R.
+//! The block leaks as much hardware as it has: P / c, A / c, S / c and R; of blocks that take turns each does.
 
 use super::caches::not_negative;
 use crate::block::parts::{Parts, Registers};

@@ -241,6 +241,22 @@ fn cycles_of_a_blocks_hardware_are_its_interval() {
     }
 }
 
+/// Of blocks that take turns each leaks and has a clock; an operation takes one of them.
+#[test]
+fn blocks_in_turns_leak_each() {
+    let table = BlockTable::parse(BLOCKS, "blocks22").unwrap();
+    let unit = lod::METHOD.unit.unwrap();
+    let hardware = [1, 2, 3].map(|copies| Hardware { setup_copies: copies, divide_copies: copies, ..Hardware::DEFAULT });
+    let costs: [&dyn Fn(&Hardware) -> f64; 2] = [&|of| table.unit_leakage_mw(unit, of), &|of| table.unit_clock_pj(unit, of)];
+    for cost in costs {
+        let [one, two, three] = [0, 1, 2].map(|k| cost(&hardware[k]));
+        assert!(two > one && close(three - two, two - one), "{one}, {two}, {three}");
+    }
+    for operation in [Operation::RaySetup, Operation::HitDivide] {
+        assert!(close(table.operation_pj(operation, &hardware[0]), table.operation_pj(operation, &hardware[2])));
+    }
+}
+
 /// Registers that an operation passes through in turns are written in each; others once.
 #[test]
 fn turns_are_charged_where_they_are_taken() {
