@@ -19,8 +19,13 @@ from plot import diagram
 ROOT = Path(__file__).resolve().parent.parent
 METHODS = ["lod", "bvh6"]
 VIEWS = {"terrain": [2, 4], "cloth": [3.15]}
-KEYS = ["units.per_group", "units.contexts", "units.lod_edges_per_cycle", "units.boxes_per_cycle", "units.setup_copies", "units.divide_copies"]
-GRID = [[1, 2, 4], [16, 32, 64], [1, 3], [2, 4], [1, 3], [1, 2]]
+# Every number of units and contexts, with each of the blocks: edges of the LOD test and boxes a cycle; ray_setup and hit_divide in turns.
+NUMBERS = {"units.per_group": [1, 2, 4], "units.contexts": [16, 32, 64]}
+BLOCKS = [
+    {"units.lod_edges_per_cycle": edges, "units.boxes_per_cycle": boxes, "units.setup_copies": setups, "units.divide_copies": divides}
+    for (edges, boxes), (setups, divides) in itertools.product([(1, 2), (3, 4)], [(1, 1), (3, 2)])
+]
+KEYS = [*NUMBERS, *BLOCKS[0]]
 IN_TURN = [1, 4]
 SWEPT = [1, 2, 4, 8, 16, 64]
 
@@ -34,9 +39,10 @@ def jobs(args, machine, units):
     lines = [f'size = "{args.size}"', f"methods = {json.dumps(METHODS)}", f'compute = ["{"units" if units else "free"}"]']
     for (scene, distances), turn in itertools.product(VIEWS.items(), IN_TURN):
         lines += ["[[scene]]", f'name = "{scene}-{turn}"', f'generate = "{scene}"', f"distances = {distances}", f"tiles_in_turn = {turn}"]
-    lines += ["[[machine]]", f'name = "{machine}"']
-    if units:
-        lines.append(f"set = {values(dict(zip(KEYS, GRID)))}")
+    for blocks in BLOCKS if units else [{}]:
+        lines += ["[[machine]]", f'name = "{machine}"']
+        if units:
+            lines.append(f"set = {values({**NUMBERS, **blocks})}")
     return "\n".join(lines) + "\n"
 
 
