@@ -36,7 +36,7 @@ def values(entries):
 
 def jobs(args, machine, units):
     """A list of jobs: all views, in each order of tiles; units, or compute free where there are none."""
-    lines = [f'size = "{args.size}"', f"methods = {json.dumps(METHODS)}", f'compute = ["{"units" if units else "free"}"]']
+    lines = [f'size = "{args.front_size}"', f"methods = {json.dumps(METHODS)}", f'compute = ["{"units" if units else "free"}"]']
     for (scene, distances), turn in itertools.product(VIEWS.items(), IN_TURN):
         lines += ["[[scene]]", f'name = "{scene}-{turn}"', f'generate = "{scene}"', f"distances = {distances}", f"tiles_in_turn = {turn}"]
     for blocks in BLOCKS if units else [{}]:
@@ -145,7 +145,8 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--program", default=str(ROOT / "target" / "release" / "lodray"))
     parser.add_argument("--out", type=Path, default=ROOT / "out" / "balance", help="folder of what is kept")
-    parser.add_argument("--size", default="512x512")
+    parser.add_argument("--size", default="512x512", help="of the frames in which blocks are eased and tiles taken in turn (default 512x512)")
+    parser.add_argument("--front-size", default="256x256", help="of the frames of the front, which are many (default 256x256)")
     parser.add_argument("--machines", nargs="+", default=["haydel2023", "turing2018"])
     args = parser.parse_args()
     args.out.mkdir(parents=True, exist_ok=True)
