@@ -1,6 +1,6 @@
 """Traversal units balanced: gate equivalents against rays a second, ours and a BVH's.
 
-Every unit of a grid is simulated in every view, its rays handed out tile by tile and of several tiles in turn. What no other unit beats in both gates and rate is the front; its knee is the unit
+Every unit of a grid is simulated in every view, its rays those of several tiles in turn. What no other unit beats in both gates and rate is the front; its knee is the unit
 with the fewest gates for what it gives. Of the machine's own unit each block is eased in turn, to see what it costs. Writes tables between the marks of docs/hardware.md, and a diagram for each
 machine to docs/images. Results are kept in --out; a run that was stopped goes on.
 """
@@ -35,9 +35,9 @@ def values(entries):
 
 
 def jobs(args, machine, units):
-    """A list of jobs: all views, in each order of tiles; units, or compute free where there are none."""
-    lines = [f'size = "{args.front_size}"', f"methods = {json.dumps(METHODS)}", f'compute = ["{"units" if units else "free"}"]']
-    for (scene, distances), turn in itertools.product(VIEWS.items(), IN_TURN):
+    """A list of jobs: all views; units with tiles in turn, or compute free in each order where there are none."""
+    lines = [f'size = "{args.size}"', f"methods = {json.dumps(METHODS)}", f'compute = ["{"units" if units else "free"}"]']
+    for (scene, distances), turn in itertools.product(VIEWS.items(), IN_TURN[1:] if units else IN_TURN):
         lines += ["[[scene]]", f'name = "{scene}-{turn}"', f'generate = "{scene}"', f"distances = {distances}", f"tiles_in_turn = {turn}"]
     for blocks in BLOCKS if units else [{}]:
         lines += ["[[machine]]", f'name = "{machine}"']
@@ -102,7 +102,7 @@ def front_rows(machine, groups, own):
             per_group, contexts, lod, boxes, *copies = of["unit"]
             name = f"**{method}**" if of is knee else method
             costs = [number(groups * of["gates"] / 1e6), number(of["rate"]), number(groups * of["gates"] / of["rate"]), f"{100 * of['kept']:.0f} %"]
-            rows.append([machine, name, per_group, contexts, lod if method == "lod" else "-", boxes, *copies, of["turn"], *costs])
+            rows.append([machine, name, per_group, contexts, lod if method == "lod" else "-", boxes, *copies, *costs])
     return rows, lines
 
 
@@ -145,8 +145,7 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--program", default=str(ROOT / "target" / "release" / "lodray"))
     parser.add_argument("--out", type=Path, default=ROOT / "out" / "balance", help="folder of what is kept")
-    parser.add_argument("--size", default="512x512", help="of the frames in which blocks are eased and tiles taken in turn (default 512x512)")
-    parser.add_argument("--front-size", default="256x256", help="of the frames of the front, which are many (default 256x256)")
+    parser.add_argument("--size", default="512x512")
     parser.add_argument("--machines", nargs="+", default=["haydel2023", "turing2018"])
     args = parser.parse_args()
     args.out.mkdir(parents=True, exist_ok=True)
@@ -166,7 +165,7 @@ def main():
     put(document, "<!-- balance: order -->", "<!-- balance: order end -->", table(["machine", "view, radii", "method", "compute", "cycles, tile by tile", *in_turn], turns, 4))
     both = [f"{what}, {turn} in turn" for turn in IN_TURN for what in ("load", "90 % full", "the fullest", "cycles if eased")]
     put(document, "<!-- balance: phases -->", "<!-- balance: phases end -->", table(["machine", "view, radii", "block", *both], phases, 3))
-    head = ["machine", "method", "units of a group", "contexts", "edges of LOD test", "boxes", "setups", "divisions", "tiles in turn", "million GE", "million rays/s", "GE for a million rays/s", "of compute free's rate"]
+    head = ["machine", "method", "units of a group", "contexts", "edges of LOD test", "boxes", "setups", "divisions", "million GE", "million rays/s", "GE for a million rays/s", "of compute free's rate"]
     put(document, "<!-- balance: front -->", "<!-- balance: front end -->", table(head, fronts, 2))
 
 
