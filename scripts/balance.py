@@ -17,6 +17,7 @@ from markdown import number, put, table
 from plot import diagram
 
 ROOT = Path(__file__).resolve().parent.parent
+DOCUMENT = ROOT / "docs" / "hardware.md"
 METHODS = ["lod", "bvh6"]
 VIEWS = {"terrain": [2, 4], "cloth": [3.15]}
 # Every number of units and contexts, with each of the blocks: edges of the LOD test and boxes a cycle; ray_setup and hit_divide in turns.
@@ -149,24 +150,25 @@ def main():
     parser.add_argument("--machines", nargs="+", default=["haydel2023", "turing2018"])
     args = parser.parse_args()
     args.out.mkdir(parents=True, exist_ok=True)
-    fronts, phases, turns = [], [], []
     for machine in args.machines:
-        phases += phase_rows(args, machine)
-        turns += turn_rows(args, machine)
-        found, free = swept(args, machine, True), swept(args, machine, False)
-        own = list(points(found, free))
-        groups = next(iter(own[0]["views"].values()))["setup"]["machine"]["description"]["cores"]["groups"]
-        rows, lines = front_rows(machine, groups, own)
-        fronts += rows
-        image = ROOT / "docs" / "images" / f"balance-{machine}.svg"
-        image.write_text(diagram(f"Traversal units of {machine}", "million gate equivalents", "million rays a second", lines), encoding="utf-8")
-    document = ROOT / "docs" / "hardware.md"
+        measure(args, machine)
+
+
+def measure(args, machine):
+    """Writes a machine's tables and its diagram."""
+    put_in = lambda what, head, rows, words: put(DOCUMENT, f"<!-- balance: {what} {machine} -->", f"<!-- balance: {what} {machine} end -->", table(head, rows, words))
     in_turn = [f"{turn} tiles" for turn in SWEPT[1:]]
-    put(document, "<!-- balance: order -->", "<!-- balance: order end -->", table(["machine", "view, radii", "method", "compute", "cycles, tile by tile", *in_turn], turns, 4))
+    put_in("order", ["machine", "view, radii", "method", "compute", "cycles, tile by tile", *in_turn], list(turn_rows(args, machine)), 4)
     both = [f"{what}, {turn} in turn" for turn in IN_TURN for what in ("load", "90 % full", "the fullest", "cycles if eased")]
-    put(document, "<!-- balance: phases -->", "<!-- balance: phases end -->", table(["machine", "view, radii", "block", *both], phases, 3))
+    put_in("phases", ["machine", "view, radii", "block", *both], list(phase_rows(args, machine)), 3)
+    found, free = swept(args, machine, True), swept(args, machine, False)
+    own = list(points(found, free))
+    groups = next(iter(own[0]["views"].values()))["setup"]["machine"]["description"]["cores"]["groups"]
+    rows, lines = front_rows(machine, groups, own)
     head = ["machine", "method", "units of a group", "contexts", "edges of LOD test", "boxes", "setups", "divisions", "million GE", "million rays/s", "GE for a million rays/s", "of compute free's rate"]
-    put(document, "<!-- balance: front -->", "<!-- balance: front end -->", table(head, fronts, 2))
+    put_in("front", head, rows, 2)
+    image = ROOT / "docs" / "images" / f"balance-{machine}.svg"
+    image.write_text(diagram(f"Traversal units of {machine}", "million gate equivalents", "million rays a second", lines), encoding="utf-8")
 
 
 if __name__ == "__main__":
