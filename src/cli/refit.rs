@@ -124,6 +124,9 @@ impl Frames {
             Read::Moving(mesh) => {
                 let (clip, duration) = chosen(&mesh, args.clip.as_deref())?;
                 let binding = busy("binding", || Binding::new(mesh.rest(), mesh.triangles(), &refit.positions()))?;
+                if !args.json {
+                    remark(&format!("vertices are at most {:.4} from the file's mesh at rest", binding.farthest()))?;
+                }
                 Ok(Self { sequence, source: Source::Moving { mesh, binding, clip, start, duration } })
             }
             Read::Given(PositionFrames { positions, vertices: found, is_sequence }) => {

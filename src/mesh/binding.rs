@@ -3,7 +3,7 @@
 use super::distance::{Target, Vec3};
 use rayon::prelude::*;
 
-/// A bound vertex is at most this part of the mesh's diagonal from it.
+/// A bound vertex is at most this part of the smaller diagonal from the mesh: the mesh's own, or that of all vertices.
 const FARTHEST: f64 = 0.1;
 
 /// Vertices bound to a mesh, each to the triangle that it is nearest to at rest: it keeps its place on it, and beside it.
@@ -26,7 +26,7 @@ struct Bound {
 /// A vertex that does not belong to a mesh.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 #[error(
-    "vertex {vertex} is {distance:.3} away from the mesh at rest, more than a tenth of its diagonal of {diagonal:.3}: it was made from another mesh, or stands elsewhere"
+    "vertex {vertex} is {distance:.3} away from the mesh at rest, more than a tenth of a diagonal of {diagonal:.3}: it was made from another mesh, or stands elsewhere"
 )]
 pub struct BindingError {
     vertex: usize,
@@ -38,14 +38,14 @@ impl Binding {
     /// Binds vertices, such as those of a scene that was built from a mesh, to that mesh: its positions, and the vertices of each triangle.
     ///
     /// # Errors
-    /// A vertex is farther from it than a tenth of the mesh's diagonal.
+    /// A vertex is farther from it than a tenth of the mesh's diagonal, or of that of all vertices.
     ///
     /// # Panics
     /// A triangle names a vertex that is not there.
     pub fn new(positions: &[[f64; 3]], triangles: &[[u32; 3]], vertices: &[[f64; 3]]) -> Result<Self, BindingError> {
         let target = Target::new(triangles.iter().map(|triangle| corners(positions, triangle)).collect());
-        let all = || target.corners.iter().flatten().copied();
-        let diagonal = (all().fold(Vec3::NEG_INFINITY, Vec3::max) - all().fold(Vec3::INFINITY, Vec3::min)).length();
+        let own = diagonal(target.corners.iter().flatten().copied());
+        let diagonal = own.min(diagonal(vertices.iter().copied().map(Vec3::from)));
         let bind = |&vertex: &[f64; 3]| {
             let p = Vec3::from(vertex);
             // Flat triangles have no frame.
@@ -85,6 +85,11 @@ impl Binding {
         };
         self.vertices.par_iter().map(moved).collect()
     }
+}
+
+/// The diagonal of the box of these points.
+fn diagonal(points: impl Iterator<Item = Vec3> + Clone) -> f64 {
+    (points.clone().fold(Vec3::NEG_INFINITY, Vec3::max) - points.fold(Vec3::INFINITY, Vec3::min)).length()
 }
 
 fn corners(positions: &[[f64; 3]], triangle: &[u32; 3]) -> [Vec3; 3] {
@@ -132,10 +137,15 @@ mod tests {
 
     #[test]
     fn what_belongs_to_no_mesh_is_refused() {
-        let error = Binding::new(&SHEET, &TRIANGLES, &[[0.0; 3], [0.0, 0.0, 1.0]]).unwrap_err().to_string();
+        let refused = |vertices: &[[f64; 3]]| Binding::new(&SHEET, &TRIANGLES, vertices).unwrap_err().to_string();
         assert_eq!(
-            error,
-            "vertex 1 is 1.000 away from the mesh at rest, more than a tenth of its diagonal of 2.828: it was made from another mesh, or stands elsewhere"
+            refused(&[[0.0; 3], [0.0, 0.0, 9.0]]),
+            "vertex 1 is 9.000 away from the mesh at rest, more than a tenth of a diagonal of 2.828: it was made from another mesh, or stands elsewhere"
+        );
+        // Small beside the mesh, but not on it.
+        assert!(
+            refused(&[[1.0, 1.0, 0.1], [1.1, 1.0, 0.1]])
+                .contains("vertex 0 is 0.100 away from the mesh at rest, more than a tenth of a diagonal of 0.100")
         );
         assert!(Binding::new(&SHEET, &[[0, 1, 1]], &[[0.0; 3]]).is_err());
     }
