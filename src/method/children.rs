@@ -21,6 +21,10 @@ use crate::num::{Box16, BoxStep, RayT, TNear, U, Vec3, Wire};
 #[cfg(target_arch = "x86_64")]
 #[inline(always)]
 pub(crate) fn has_lanes() -> bool {
+    #[cfg(test)]
+    if tests::WITHOUT_LANES.get() {
+        return false;
+    }
     std::arch::is_x86_feature_detected!("avx2")
         && std::arch::is_x86_feature_detected!("bmi1")
         && std::arch::is_x86_feature_detected!("bmi2")
@@ -143,7 +147,18 @@ mod tests {
     use super::*;
     use crate::block::child_test::ChildTest;
     use crate::block::ray_setup::RaySetup;
+    use crate::format::Scene;
+    use crate::mesh::procedural::{Options, Scene as Kinds};
+    use crate::method::Method;
     use crate::num::{COORD_LIMIT, Direction, Point, Random};
+    use crate::rays::{Camera, ModelSpace, Query, Sight, View};
+    use crate::step::{Step, StepSink};
+    use std::cell::Cell;
+
+    thread_local! {
+        /// This thread's rays go as by a processor without lanes.
+        pub static WITHOUT_LANES: Cell<bool> = const { Cell::new(false) };
+    }
 
     const LIMIT: u64 = COORD_LIMIT as u64;
 
@@ -286,5 +301,45 @@ mod tests {
         assert!(met.iter().all(|&count| count > 2_000) && early > 2_000, "{met:?}, {early} ended early");
         #[cfg(target_arch = "x86_64")]
         println!("{met:?}, {early} ended early; lanes: {}", has_lanes());
+    }
+
+    /// What rays of a method meet from an eye, and from there on, with every step.
+    fn journeys(method: &dyn Method, sight: &Sight, queries: &[Query]) -> (Vec<Step>, Vec<String>) {
+        struct Kept(Vec<Step>);
+        impl StepSink for Kept {
+            fn step(&mut self, step: Step) {
+                self.0.push(step);
+            }
+        }
+        let (mut tracer, mut kept, mut met) = (method.tracer(sight), Kept(Vec::new()), Vec::new());
+        for query in queries {
+            let landing = tracer.enter(query, None, &mut kept);
+            if let Some(landing) = &landing {
+                let away = Query { direction: query.direction.map(|d| -d), ..*query };
+                met.push(format!("{:?}", tracer.enter(&away, Some(&landing.departure), &mut kept)));
+            }
+            met.push(format!("{landing:?}"));
+        }
+        (kept.0, met)
+    }
+
+    #[test]
+    fn rays_do_the_same_without_lanes() {
+        let scene = Scene::generate(&Options { levels: Some(3), ..Options::new(Kinds::Terrain) }).unwrap();
+        let space = ModelSpace::of(&scene);
+        let camera = Camera::new(&View { distance: Some(1.5), ..View::default() }, &space, 32, 32).unwrap();
+        let queries: Vec<Query> = (0..32 * 32).map(|pixel| camera.ray(pixel % 32, pixel / 32)).collect();
+        for name in ["lod", "bvh", "grid"] {
+            let method = scene.method(name).unwrap();
+            for delta in [0.0, 1.0] {
+                let sight = Sight::new(&camera, &space, delta);
+                let with = journeys(method.method(), &sight, &queries);
+                WITHOUT_LANES.set(true);
+                let without = journeys(method.method(), &sight, &queries);
+                WITHOUT_LANES.set(false);
+                assert!(with == without, "{name}, delta {delta}");
+                assert!(with.1.len() > 1200, "{name}, delta {delta}: {} of 1024 rays and those after them", with.1.len());
+            }
+        }
     }
 }

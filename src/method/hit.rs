@@ -68,6 +68,25 @@ pub trait HitSink {
     }
 }
 
+impl<H: HitSink + ?Sized> HitSink for &mut H {
+    #[inline(always)]
+    fn t_max(&self) -> RayT {
+        (**self).t_max()
+    }
+    #[inline(always)]
+    fn offer(&mut self, id: TriangleId, corners: &[Point; 3], test: &tri_test::Out, below: &Below) {
+        (**self).offer(id, corners, test, below);
+    }
+    #[inline(always)]
+    fn found(&self) -> bool {
+        (**self).found()
+    }
+    #[inline(always)]
+    fn is_done(&self) -> bool {
+        (**self).is_done()
+    }
+}
+
 /// True if a box entered at `t_near` cannot hold a hit that beats one at `t`.
 #[inline(always)]
 pub fn is_beyond(t_near: TNear, t: RayT) -> bool {

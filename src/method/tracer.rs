@@ -69,15 +69,6 @@ pub fn trace_together(tracer: &mut dyn Tracer, queries: &[Query], steps: &mut dy
     hits
 }
 
-/// A listener behind a reference.
-struct Heard<'a>(&'a mut dyn StepSink);
-
-impl StepSink for Heard<'_> {
-    fn step(&mut self, step: Step) {
-        self.0.step(step);
-    }
-}
-
 impl<T: Trace> Tracer for T {
     fn hit(&mut self, query: &Query) -> Option<SurfaceHit> {
         self.trace(query, &mut NoSteps)
@@ -88,8 +79,8 @@ impl<T: Trace> Tracer for T {
     fn recorded(&mut self, query: &Query, recorder: &mut Recorder) -> Option<SurfaceHit> {
         whole(self, query, recorder)
     }
-    fn heard(&mut self, query: &Query, steps: &mut dyn StepSink) -> Option<SurfaceHit> {
-        whole(self, query, &mut Heard(steps))
+    fn heard(&mut self, query: &Query, mut steps: &mut dyn StepSink) -> Option<SurfaceHit> {
+        whole(self, query, &mut steps)
     }
     fn follow(&mut self, query: &Query, from: Option<&Departure>, recorder: Option<&mut Recorder>) -> Option<Landing> {
         let Some(recorder) = recorder else { return Trace::follow(self, query, from, &mut NoSteps) };
@@ -97,8 +88,8 @@ impl<T: Trace> Tracer for T {
         recorder.step(Step::end(landing.is_some(), Trace::is_mapped(self)));
         landing
     }
-    fn enter(&mut self, query: &Query, from: Option<&Departure>, steps: &mut dyn StepSink) -> Option<Landing> {
-        Trace::follow(self, query, from, &mut Heard(steps))
+    fn enter(&mut self, query: &Query, from: Option<&Departure>, mut steps: &mut dyn StepSink) -> Option<Landing> {
+        Trace::follow(self, query, from, &mut steps)
     }
     fn all(&mut self, query: &Query, hits: &mut Vec<SurfaceHit>) -> bool {
         Trace::all(self, query, hits)
@@ -106,8 +97,8 @@ impl<T: Trace> Tracer for T {
     fn lanes(&self) -> usize {
         Trace::lanes(self)
     }
-    fn packet(&mut self, queries: &[Query], hits: &mut Vec<Option<SurfaceHit>>, steps: &mut dyn StepSink) {
-        let (first, mut steps) = (hits.len(), Heard(steps));
+    fn packet(&mut self, queries: &[Query], hits: &mut Vec<Option<SurfaceHit>>, mut steps: &mut dyn StepSink) {
+        let first = hits.len();
         Trace::packet(self, queries, hits, &mut steps);
         let found = hits[first..].iter().flatten().count();
         let end = Act::End { found: found as u32, mapped: Trace::is_mapped(self) }; // at most as many as a packet has

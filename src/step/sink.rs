@@ -8,6 +8,13 @@ pub trait StepSink {
     fn step(&mut self, step: Step);
 }
 
+impl<S: StepSink + ?Sized> StepSink for &mut S {
+    #[inline(always)]
+    fn step(&mut self, step: Step) {
+        (**self).step(step);
+    }
+}
+
 /// Hears nothing.
 pub struct NoSteps;
 

@@ -161,7 +161,24 @@ impl BvhTraverser {
             // SAFETY: the processor has them, as was just asked.
             return unsafe { lanes::<S, H, L, LEAVING>(self, ray, departure, steps, sink, leaf) };
         }
+        #[cfg(target_arch = "x86_64")]
+        self.without_lanes::<LEAVING>(ray, departure, steps, sink, &mut { leaf });
+        #[cfg(not(target_arch = "x86_64"))]
         self.run::<S, H, L, LEAVING>(ray, departure, steps, sink, leaf);
+    }
+
+    /// By a processor without lanes, which few have: compiled once for all sinks.
+    #[cfg(target_arch = "x86_64")]
+    #[inline(never)]
+    fn without_lanes<const LEAVING: bool>(
+        &mut self,
+        ray: &Ray,
+        departure: Option<&Departure>,
+        mut steps: &mut dyn StepSink,
+        mut sink: &mut dyn HitSink,
+        leaf: &mut dyn FnMut(&Leaf),
+    ) {
+        self.run::<_, _, _, LEAVING>(ray, departure, &mut steps, &mut sink, leaf);
     }
 
     #[inline(always)]

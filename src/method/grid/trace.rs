@@ -109,7 +109,23 @@ impl GridTraverser {
             // SAFETY: the processor has them, as was just asked.
             return unsafe { lanes::<S, H, LEAVING>(self, ray, from, steps, sink) };
         }
+        #[cfg(target_arch = "x86_64")]
+        self.without_lanes::<LEAVING>(ray, from, steps, sink);
+        #[cfg(not(target_arch = "x86_64"))]
         self.run::<S, H, LEAVING>(ray, from, steps, sink);
+    }
+
+    /// By a processor without lanes, which few have: compiled once for all sinks.
+    #[cfg(target_arch = "x86_64")]
+    #[inline(never)]
+    fn without_lanes<const LEAVING: bool>(
+        &mut self,
+        ray: &Ray,
+        from: Option<&Departure>,
+        mut steps: &mut dyn StepSink,
+        mut sink: &mut dyn HitSink,
+    ) {
+        self.run::<_, _, LEAVING>(ray, from, &mut steps, &mut sink);
     }
 
     #[inline(always)]

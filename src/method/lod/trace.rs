@@ -130,7 +130,23 @@ impl<'a> LodTraverser<'a> {
             // SAFETY: the processor has them, as was just asked.
             return unsafe { lanes::<S, H, COMPACT, FULL_DETAIL, LEAVES>(self, ray, departure, steps, sink) };
         }
+        #[cfg(target_arch = "x86_64")]
+        self.without_lanes::<COMPACT, FULL_DETAIL, LEAVES>(ray, departure, steps, sink);
+        #[cfg(not(target_arch = "x86_64"))]
         self.run::<S, H, COMPACT, FULL_DETAIL, LEAVES>(ray, departure, steps, sink);
+    }
+
+    /// By a processor without lanes, which few have: compiled once for all sinks, as each copy of the loop takes the compiler long.
+    #[cfg(target_arch = "x86_64")]
+    #[inline(never)]
+    fn without_lanes<const COMPACT: bool, const FULL_DETAIL: bool, const LEAVES: bool>(
+        &mut self,
+        ray: &Ray,
+        departure: Option<&Departure>,
+        mut steps: &mut dyn StepSink,
+        mut sink: &mut dyn HitSink,
+    ) {
+        self.run::<_, _, COMPACT, FULL_DETAIL, LEAVES>(ray, departure, &mut steps, &mut sink);
     }
 
     #[inline(always)]
@@ -177,15 +193,20 @@ impl<S: StepSink, H: HitSink, const COMPACT: bool, const FULL_DETAIL: bool, cons
 {
     #[inline(always)]
     fn visit(&mut self, entry: &Entry) -> Option<Entry> {
-        match entry.kind.get() {
-            Entry::BVH_NODE => self.bvh_node(entry.index.get() as usize),
-            Entry::TREE => self.root(entry.index.get() as usize),
+        let (level, node, corners, codes) = match entry.kind.get() {
+            Entry::BVH_NODE => return self.bvh_node(entry.index.get() as usize),
+            Entry::TREE => {
+                let (corners, codes) = self.root(entry.index.get() as usize);
+                (0, 0, [corners; 2], codes)
+            }
             _ => {
                 let (level, node) = (entry.level.get() as u32, entry.index.get() as u32);
                 let (split, child) = (&self.splits[level as usize - 1], node as usize & 3);
-                self.tree_node(level, node, [split.full.child(child), split.morphed.child(child)], [entry.e0, entry.e1, entry.e2])
+                (level, node, [split.full.child(child), split.morphed.child(child)], [entry.e0, entry.e1, entry.e2])
             }
-        }
+        };
+        // Here alone: each copy takes the compiler long.
+        self.tree_node(level, node, corners, codes)
     }
 
     /// Tests the four children of a quad-BVH node.
@@ -201,9 +222,9 @@ impl<S: StepSink, H: HitSink, const COMPACT: bool, const FULL_DETAIL: bool, cons
         })
     }
 
-    /// Enters a tree.
+    /// Enters a tree: corners and codes of its root.
     #[inline(always)]
-    fn root(&mut self, tree: usize) -> Option<Entry> {
+    fn root(&mut self, tree: usize) -> ([Point; 3], [BoundCode; 3]) {
         self.steps.step(Step::on(self.image.l0_record(tree), Act::Fetch).visiting());
         let line = self.image.record(tree);
         self.tree = TreeAt { index: tree as u32, lines: L0Record::line_tree(line) }; // an index of 28 bits
@@ -214,29 +235,18 @@ impl<S: StepSink, H: HitSink, const COMPACT: bool, const FULL_DETAIL: bool, cons
             self.deciders = prior.deciders(tree as u32, &p);
         }
         let L0Record { e0, e1, e2, .. } = record;
-        self.tree_node(0, 0, [p, p], [e0, e1, e2])
+        (p, [e0, e1, e2])
     }
 
     /// Decides whether the triangle of node (`level`, `node`) serves the ray, and tests it or goes down. Its corners are of full resolution and as morphed.
     #[inline(always)]
     fn tree_node(&mut self, level: u32, node: u32, [f, p]: [[Point; 3]; 2], codes: [BoundCode; 3]) -> Option<Entry> {
         let depth = self.tree.lines.depth;
-        if level == depth {
+        let lod = (level < depth).then(|| self.lod_test(level, node, p, codes)).filter(|lod| lod.refine);
+        let Some(lod) = lod else {
             self.triangles(level, node, [p]);
             return None;
-        }
-        let ([p0, p1, p2], [e0, e1, e2]) = (p, codes);
-        let scale = self.image.scale;
-        let lod = match FULL_DETAIL {
-            true => LodTest::of_full_detail(codes, scale),
-            false => self.lod_test(level, node, &lod_test::In { ray: *self.ray, p0, p1, p2, e0, e1, e2, scale }),
         };
-        // A tree's root was visited for its record.
-        self.steps.step(Step { visits: level > 0, ..Step::of(Act::LodTest { refine: lod.refine }) });
-        if !lod.refine {
-            self.triangles(level, node, [p]);
-            return None;
-        }
 
         let with = self.image.vertices_with(depth, level);
         self.steps.step(match with {
@@ -256,16 +266,25 @@ impl<S: StepSink, H: HitSink, const COMPACT: bool, const FULL_DETAIL: bool, cons
         self.tree_children(level, node, &split, with)
     }
 
-    /// The LOD test of a node, by the rays that decide about its edges.
+    /// The LOD test of a node with corners `p`, by the rays that decide about its edges.
     #[inline(always)]
-    fn lod_test(&self, level: u32, node: u32, input: &lod_test::In) -> lod_test::Out {
-        match self.prior {
-            Some(prior) if LEAVES && self.deciders.is_any() => {
-                let place = node_deciders::In { tree: self.deciders, level: U::new(u64::from(level)), node: U::new(u64::from(node)) };
-                LodTest::by(NodeDeciders::eval(&place).by.map(|by| prior.viewer(by).unwrap_or(self.ray)), input)
+    fn lod_test(&mut self, level: u32, node: u32, p: [Point; 3], codes: [BoundCode; 3]) -> lod_test::Out {
+        let ([p0, p1, p2], [e0, e1, e2], scale) = (p, codes, self.image.scale);
+        let lod = if FULL_DETAIL {
+            LodTest::of_full_detail(codes, scale)
+        } else {
+            let input = lod_test::In { ray: *self.ray, p0, p1, p2, e0, e1, e2, scale };
+            match self.prior {
+                Some(prior) if LEAVES && self.deciders.is_any() => {
+                    let place = node_deciders::In { tree: self.deciders, level: U::new(u64::from(level)), node: U::new(u64::from(node)) };
+                    LodTest::by(NodeDeciders::eval(&place).by.map(|by| prior.viewer(by).unwrap_or(self.ray)), &input)
+                }
+                _ => LodTest::eval(&input),
             }
-            _ => LodTest::eval(input),
-        }
+        };
+        // A tree's root was visited for its record.
+        self.steps.step(Step { visits: level > 0, ..Step::of(Act::LodTest { refine: lod.refine }) });
+        lod
     }
 
     /// Tests the boxes of the four children of a node, whose inserted vertices came `with` that.
