@@ -13,7 +13,7 @@ const SLOW: &str = "-O0";
 /// How the names of files end that run once.
 const SLOW_ENDING: &str = "__Slow.cpp";
 /// Files are compiled together up to this size.
-const UNIT_BYTES: u64 = 400_000;
+const UNIT_BYTES: u64 = 1_500_000;
 /// The runtime's files, and the options that need them.
 const RUNTIME: [(&str, Need); 4] =
     [("verilated", Need::Always), ("verilated_threads", Need::Always), ("verilated_vcd_c", Need::Trace), ("verilated_cov", Need::Coverage)];
@@ -23,6 +23,12 @@ enum Need {
     Always,
     Trace,
     Coverage,
+}
+
+/// Verilator's headers, compiled for files that run in every cycle and for those that run once.
+struct Headers {
+    fast: PathBuf,
+    slow: PathBuf,
 }
 
 /// The compiler, set up for models with or without waveforms and coverage.
@@ -51,7 +57,8 @@ impl Compiler {
     /// A shared library of all `.cpp` files of a folder and the runtime.
     pub fn library(&self, folder: &Path, runtime: &Path) -> Result<PathBuf, Error> {
         let units = units(folder)?;
-        let mut objects = self.objects(folder, folder, &units)?;
+        let headers = Headers { fast: self.header(runtime, FAST)?, slow: self.header(runtime, SLOW)? };
+        let mut objects = self.objects(folder, &units, Some(&headers))?;
         let needed = RUNTIME.into_iter().filter(|(_, need)| match need {
             Need::Always => true,
             Need::Trace => self.trace,
@@ -78,7 +85,7 @@ impl Compiler {
         }
         let work = tempfile::Builder::new().prefix("build-").tempdir_in(cache).map_err(Error::file(cache))?;
         let sources = RUNTIME.map(|(name, _)| self.include.join(name).with_extension("cpp"));
-        self.objects(work.path(), work.path(), &sources)?;
+        self.objects(work.path(), &sources, None)?;
         match std::fs::rename(work.path(), &runtime) {
             // Another process was faster.
             Err(_) if runtime.is_dir() => Ok(runtime),
@@ -86,24 +93,56 @@ impl Compiler {
         }
     }
 
+    /// Verilator's headers, compiled for files of this level of optimisation, in the runtime's folder: most of a small file's time goes into them.
+    fn header(&self, runtime: &Path, level: &str) -> Result<PathBuf, Error> {
+        static MAKING: Mutex<()> = Mutex::new(());
+        let _making = MAKING.lock().unwrap_or_else(PoisonError::into_inner);
+        let header = runtime.join(format!("verilated{level}-{}{}.h", u8::from(self.trace), u8::from(self.coverage)));
+        let compiled = header.with_extension("h.gch");
+        if !compiled.is_file() {
+            let work = tempfile::tempdir_in(runtime).map_err(Error::file(runtime))?;
+            let text = if self.trace { "#include \"verilated.h\"\n#include \"verilated_vcd_c.h\"\n" } else { "#include \"verilated.h\"\n" };
+            let (source, made) = (work.path().join("verilated-all.h"), work.path().join("made"));
+            std::fs::write(&source, text).map_err(Error::file(&source))?;
+            let mut arguments = self.options(level, runtime);
+            arguments.extend(["-x", "c++-header", "-o"].map(str::to_owned));
+            arguments.extend([made.display().to_string(), source.display().to_string()]);
+            self.run(&arguments)?;
+            // Both may be there from another process by now, which made the same. What was compiled comes last: it is what the next one looks for.
+            std::fs::rename(&source, &header).map_err(Error::file(&header))?;
+            std::fs::rename(&made, &compiled).map_err(Error::file(&compiled))?;
+        }
+        Ok(header)
+    }
+
+    /// What all runs for files of a folder have in common, at one level of optimisation.
+    fn options(&self, level: &str, folder: &Path) -> Vec<String> {
+        let mut options: Vec<String> = FLAGS.map(str::to_owned).to_vec();
+        options.push(level.to_owned());
+        for (name, on) in [("VM_TRACE", self.trace), ("VM_TRACE_VCD", self.trace), ("VM_COVERAGE", self.coverage)] {
+            options.push(format!("-D{name}={}", u32::from(on)));
+        }
+        for include in [folder, &self.include, &self.include.join("vltstd")] {
+            options.extend(["-isystem".to_owned(), include.display().to_string()]);
+        }
+        options
+    }
+
     /// Compiles each file, as many at once as there are cores.
-    fn objects(&self, folder: &Path, include: &Path, sources: &[PathBuf]) -> Result<Vec<PathBuf>, Error> {
+    fn objects(&self, folder: &Path, sources: &[PathBuf], headers: Option<&Headers>) -> Result<Vec<PathBuf>, Error> {
         std::thread::scope(|scope| {
-            let jobs: Vec<_> = sources.iter().map(|source| scope.spawn(|| self.object(folder, include, source))).collect();
+            let jobs: Vec<_> = sources.iter().map(|source| scope.spawn(|| self.object(folder, source, headers))).collect();
             jobs.into_iter().map(|job| job.join().unwrap_or_else(|panic| std::panic::resume_unwind(panic))).collect()
         })
     }
 
-    fn object(&self, folder: &Path, include: &Path, source: &Path) -> Result<PathBuf, Error> {
+    fn object(&self, folder: &Path, source: &Path, headers: Option<&Headers>) -> Result<PathBuf, Error> {
         let stem = source.file_stem().unwrap_or_default().to_string_lossy();
         let object = folder.join(format!("{stem}.o"));
-        let mut arguments: Vec<String> = FLAGS.map(str::to_owned).to_vec();
-        arguments.push(if source.to_string_lossy().ends_with(SLOW_ENDING) { SLOW } else { FAST }.to_owned());
-        for (name, on) in [("VM_TRACE", self.trace), ("VM_TRACE_VCD", self.trace), ("VM_COVERAGE", self.coverage)] {
-            arguments.push(format!("-D{name}={}", u32::from(on)));
-        }
-        for include in [include, &self.include, &self.include.join("vltstd")] {
-            arguments.extend(["-isystem".to_owned(), include.display().to_string()]);
+        let is_slow = source.to_string_lossy().ends_with(SLOW_ENDING);
+        let mut arguments = self.options(if is_slow { SLOW } else { FAST }, folder);
+        if let Some(Headers { fast, slow }) = headers {
+            arguments.extend(["-include".to_owned(), if is_slow { slow } else { fast }.display().to_string()]);
         }
         arguments.extend(["-c", "-o"].map(str::to_owned));
         arguments.extend([object.display().to_string(), source.display().to_string()]);
