@@ -139,7 +139,7 @@ def verdict(index, name, text, site, command, limit):
     shutil.copytree(RTL, rtl)
     _, start, end, new = site
     (rtl / f"{name}.sv").write_text(text[:start] + new + text[end:])
-    env = dict(os.environ, LODRAY_RTL=str(rtl), LODRAY_TRANSACTIONS="20000", LODRAY_CYCLES="200000", RUST_BACKTRACE="0")
+    env = dict(os.environ, LODRAY_RTL=str(rtl), LODRAY_TRANSACTIONS="20000", LODRAY_CYCLES="200000", LODRAY_NIGHTLY="1", RUST_BACKTRACE="0")
     try:
         run = subprocess.run(command, cwd=ROOT, env=env, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, timeout=limit)
     except subprocess.TimeoutExpired:

@@ -33,14 +33,16 @@ mod ports;
 mod sim;
 mod sources;
 mod tool;
+mod verdict;
 
 pub use build::Build;
 pub use check::{Mode, Plan, Report, check_block, seed};
 pub use error::Error;
 pub use failure::{Failure, Fault};
-pub use lint::{elaborate, lint, registers, verible, yosys};
+pub use lint::{elaborate, lint, registers, tool, verible, yosys};
 pub use model::Model;
 pub use ports::{Direction, Port};
 pub use sim::{PortId, Sim};
 pub use sources::{root, rtl};
 pub use tool::Verilator;
+pub use verdict::Question;

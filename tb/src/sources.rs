@@ -60,6 +60,18 @@ impl Sources {
         Ok(Self { files: files.iter().map(read).collect::<Result<_, Error>>()? })
     }
 
+    /// All of [`rtl`] with the package of this hardware, which comes before its users.
+    pub fn all(hardware: &Hardware) -> Result<Self, Error> {
+        let folder = rtl();
+        let entries = std::fs::read_dir(&folder).map_err(Error::file(&folder))?;
+        let mut files: Vec<PathBuf> = entries.flatten().map(|e| e.path()).filter(|p| p.extension().is_some_and(|e| e == "sv")).collect();
+        files.sort_by_key(|path| (!path.ends_with("lod_pkg.sv"), path.clone()));
+        if let (Some(package), Some(first)) = (package(hardware)?, files.first_mut()) {
+            *first = package;
+        }
+        Self::exactly(&files)
+    }
+
     fn within(folder: &Path, extra: &[PathBuf], top: &str) -> Result<Self, Error> {
         let mut known: BTreeMap<String, PathBuf> = BTreeMap::new();
         for entry in std::fs::read_dir(folder).map_err(Error::file(folder))? {

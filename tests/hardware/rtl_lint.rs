@@ -3,6 +3,7 @@
 
 use lodray::hardware::Hardware;
 use lodray_test_support::hardware::OTHERS;
+use lodray_test_support::is_nightly;
 use lodray_test_support::sv::donts;
 use std::path::PathBuf;
 use tb::Verilator;
@@ -113,13 +114,13 @@ fn hardwares() -> Vec<Hardware> {
     OTHERS.into_iter().chain([smallest, even]).collect()
 }
 
-/// All of `rtl/`: the unit with everything in it, and of what stands apart two in turns, so that each meets hardware of every kind; `scripts/nightly` (`LODRAY_CYCLES`) takes all.
+/// All of `rtl/`: the unit with everything in it, and of what stands apart two in turns, so that each meets hardware of every kind; `scripts/nightly` takes all.
 #[test]
 fn every_module_is_clean_in_other_hardware() {
     let mut wrong = Vec::new();
     let mut linted = 0;
     let apart = ["box_test32", "start_setup", "start_test", "start_divide", "tree_deciders", "node_deciders", "lod_test_by"];
-    let taken = if std::env::var_os("LODRAY_CYCLES").is_some() { apart.len() } else { 2 };
+    let taken = if is_nightly() { apart.len() } else { 2 };
     for (number, hardware) in hardwares().into_iter().enumerate() {
         hardware.validate().unwrap_or_else(|error| panic!("{error}"));
         for top in ["traversal_unit_axi"].into_iter().chain(apart.into_iter().cycle().skip(2 * number).take(taken)) {

@@ -73,7 +73,7 @@ fn compare(count: usize) -> usize {
 /// Rays in all; `LODRAY_RAYS` asks for a tenth of what closed models get, so `scripts/nightly` for ten million.
 #[test]
 fn hits_are_those_of_the_reference_on_the_same_triangles() {
-    let count: usize = std::env::var("LODRAY_RAYS").map_or(33_600, |text| text.parse::<usize>().expect("LODRAY_RAYS is a number") / 10);
+    let count: usize = std::env::var("LODRAY_RAYS").map_or(16_800, |text| text.parse::<usize>().expect("LODRAY_RAYS is a number") / 10);
     let met = compare(count / 42);
     println!("{met} hits of {count} rays");
     assert!(met * 4 > count, "{met}");

@@ -12,12 +12,12 @@ use lodray::num::{Cone, Point, Ray, Vec3, VertexForm};
 use lodray::rays::ModelSpace;
 use lodray::rays::{Camera, RaySource, Sight, View};
 use lodray::step::{NoSteps, Recorder};
-use lodray_test_support::cases;
 use lodray_test_support::models::{
     Rng, ball, build_with, coarsened, cone, full_bvhs, model, octahedron, scene_of, terrain, with_vertices, with_zeros,
 };
 use lodray_test_support::plain::plain;
 use lodray_test_support::surfaces::scene_with;
+use lodray_test_support::{cases, is_nightly};
 use proptest::prelude::*;
 use rayon::prelude::*;
 
@@ -139,15 +139,15 @@ fn camera_rays(scene: &Scene, side: u32) -> Vec<Ray> {
 
 #[test]
 fn random_balls_and_terrains() {
-    let mut hits = 0;
+    let (mut hits, count) = (0, if is_nightly() { 750 } else { 500 });
     for seed in 0..12u64 {
         let levels = seed as u32 % 5;
         let roughness = [0.05, 0.4, 1.5][seed as usize % 3];
         for form in VertexForm::ALL {
             let h = with_vertices(form, ball(levels, roughness, seed));
-            hits += compare(&h, true, rays(&h, 750, seed));
+            hits += compare(&h, true, rays(&h, count, seed));
             let h = with_vertices(form, terrain(3, levels, roughness, seed));
-            hits += compare(&h, true, rays(&h, 750, seed + 100));
+            hits += compare(&h, true, rays(&h, count, seed + 100));
         }
     }
     println!("{hits} hits compared");
@@ -167,8 +167,8 @@ fn coarser_grids() {
 
 #[test]
 fn deep_trees() {
-    // The golden traverser takes up to a tenth of a second for a ray here: `scripts/nightly` (`LODRAY_RAYS`) has five times as many.
-    let count = if std::env::var_os("LODRAY_RAYS").is_some() { 750 } else { 150 };
+    // The golden traverser takes up to a tenth of a second for a ray here.
+    let count = if is_nightly() { 750 } else { 60 };
     let each = |levels: u32, form| {
         let (base, triangles) = octahedron();
         let h = model(levels, &base, triangles[..2].to_vec(), |p, level| {
@@ -205,10 +205,12 @@ fn non_manifold_fans_and_loose_triangles() {
 fn procedural_scenes() {
     use procedural::Scene::{Cloth, Drape, Pot, Room, Sphere, Spikes, Terrain};
     let kinds = [(Terrain, 32, 4), (Cloth, 32, 3), (Sphere, 32, 4), (Spikes, 32, 3), (Room, 64, 2), (Pot, 64, 3), (Drape, 32, 3)];
-    for (kind, base, levels) in kinds {
+    for (number, (kind, base, levels)) in kinds.into_iter().enumerate() {
         let options = Options { levels: Some(levels), base: Some(base), ..Options::new(kind) };
         let surface = procedural::generate(&options).expect("options");
-        for form in VertexForm::ALL {
+        // Of the forms one in turn.
+        let forms = if is_nightly() { &VertexForm::ALL[..] } else { &VertexForm::ALL[number % 3..][..1] };
+        for &form in forms {
             let scene = build_with(&surface, form);
             let h = scene.decode();
             let mut all = camera_rays(&scene, 17);
@@ -222,7 +224,7 @@ fn procedural_scenes() {
 }
 
 proptest! {
-    #![proptest_config(cases(200))]
+    #![proptest_config(cases(if is_nightly() { 200 } else { 60 }))]
 
     #[test]
     fn any_ball(levels in 0u32..=4, roughness in 0.0f64..4.0, seed: u64, form in prop::sample::select(&VertexForm::ALL[..])) {

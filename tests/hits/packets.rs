@@ -49,7 +49,7 @@ fn packet(h: &Hierarchy, rng: &mut Rng, lanes: usize) -> Vec<Ray> {
 
 #[test]
 fn rays_of_packets_hit_what_the_golden_traverser_hits() {
-    let rays = number(20_000);
+    let rays = number(8_000);
     let models = models();
     for (name, h, _) in &models {
         for form in VertexForm::ALL {
@@ -81,7 +81,7 @@ fn rays_of_packets_hit_what_the_golden_traverser_hits() {
 
 #[test]
 fn packets_at_edges_and_vertices_neither_miss_nor_hit_twice() {
-    let rays = 10 * number(60_000);
+    let rays = 10 * number(24_000);
     let models: Vec<_> = models().into_iter().filter(|(_, _, is_closed)| *is_closed).collect();
     let each = rays / (models.len() as u64 * MOST_LANES as u64);
     for (name, h, _) in &models {

@@ -12,6 +12,7 @@ use lodray::method::lod::{LodImage, LodTraverser};
 use lodray::num::{Ray, VertexForm};
 use lodray::rays::{ModelSpace, Query};
 use lodray::step::NoSteps;
+use lodray_test_support::is_nightly;
 use lodray_test_support::models::{Rng, any_rays, ball, scene_of, terrain, with_vertices};
 
 fn number(name: &str, default: u64) -> u64 {
@@ -197,7 +198,7 @@ fn models(seed: u64) -> Vec<(String, Make)> {
     ];
     let rough = [(procedural::Scene::Terrain, Some(0.95)), (procedural::Scene::Spikes, Some(0.9))];
     for (scene, roughness) in procedural::Scene::ALL.map(|scene| (scene, None)).into_iter().chain(rough) {
-        let levels = if scene == procedural::Scene::Wall { 4 } else { 6 };
+        let levels = if scene == procedural::Scene::Wall { 4 } else { 5 + u32::from(is_nightly()) };
         let options = Options { levels: Some(levels), base: Some(128), roughness, seed, ..Options::new(scene) };
         let surface = move || procedural::generate(&options).expect("options");
         let name = format!("{}{}", scene.name(), roughness.map_or_else(String::new, |roughness| format!(" {roughness}")));

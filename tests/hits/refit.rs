@@ -16,7 +16,7 @@ use lodray_test_support::surfaces::{grid, octahedron};
 
 /// Rays over all models (`LODRAY_RAYS`).
 fn total() -> u64 {
-    std::env::var("LODRAY_RAYS").map_or(400_000, |text| text.parse().expect("LODRAY_RAYS is a number"))
+    std::env::var("LODRAY_RAYS").map_or(200_000, |text| text.parse().expect("LODRAY_RAYS is a number"))
 }
 
 /// Scenes moved: gently, turned, to a plane, by a million, and by noise of the size of finest edges and of the whole.

@@ -1,6 +1,6 @@
 //! Every block of `rtl/` against its Rust twin, at its ports: bit for bit, free-running and with random stalls on both sides.
 //!
-//! A million transactions a block and mode; `LODRAY_TRANSACTIONS` sets another number, `LODRAY_SEED` replays a seed. Each file here has the legal inputs of its
+//! 200,000 transactions a block and mode (`scripts/nightly`: a million); `LODRAY_TRANSACTIONS` sets another number, `LODRAY_SEED` replays a seed. Each file here has the legal inputs of its
 //! block by named category, and promises of what must have happened among them.
 
 mod bary_map;

@@ -1,13 +1,12 @@
 //! Rays that end early: every error, and any mischief of memory, flushes, resets and scenes, on model and RTL side by side, equal on every port in every cycle.
 //! `LODRAY_CYCLES` asks for that many cycles in place of a few hundred thousand.
 
-use crate::{SideBySide, configs, cycles_or};
+use crate::{SideBySide, configs, cycles_or, others};
 use lodray::hardware::Hardware;
 use lodray::hardware::ports::SceneConfig;
 use lodray::sim::unit::environment::UnitPort;
 use lodray::sim::unit::{Inputs, TraversalUnit};
 use lodray_test_support::early::{each_error, each_moment};
-use lodray_test_support::hardware::OTHERS;
 use lodray_test_support::hostile::{Exposed, Hostile, Stage};
 use lodray_test_support::models::Rng;
 
@@ -46,7 +45,7 @@ fn flushes_and_resets_at_any_moment() {
 
 fn mischief(lawful: bool, cycles: u64) {
     let seed = tb::seed(1).unwrap_or_else(|error| panic!("{error}"));
-    let hardware: Vec<Hardware> = configs().into_iter().chain(OTHERS).collect();
+    let hardware: Vec<Hardware> = configs().iter().chain(others()).copied().collect();
     for (seed, config) in (seed..).zip(&hardware) {
         let mut rng = Rng(seed);
         let stages: Vec<Stage> = (0..3).map(|_| Stage::random(config, &mut rng)).collect();

@@ -1,8 +1,7 @@
 //! The unit where its parts are at their limits: the hit queue full, boxes that are entered exactly where the closest hit is, and surroundings that break a rule.
 
 use crate::port::Rtl;
-use crate::{Compared, compare};
-use lodray::block::EdgesPerCycle;
+use crate::{Compared, QUEUED, compare};
 use lodray::hardware::Hardware;
 use lodray::hardware::ports::{MemoryAnswer, RayIn, SceneConfig};
 use lodray::mesh::Hierarchy;
@@ -11,6 +10,7 @@ use lodray::num::{Cone, Ray, U, VertexForm};
 use lodray::sim::unit::environment::{UnitPort, run};
 use lodray::sim::unit::ray_trace::{RayTrace, TraceEvent};
 use lodray::sim::unit::{Inputs, Latency, SceneMemory, Stall, Traffic, TraversalUnit};
+use lodray_test_support::is_nightly;
 use lodray_test_support::models::{Rng, model, ray, scene_of, with_vertices};
 
 /// A tree of one level whose four children all lie across the z axis, one behind the other: each inserted vertex is turned to where the opposite corner is.
@@ -29,9 +29,10 @@ fn stacked() -> Hierarchy {
 fn the_hit_queue_filled() {
     let h = with_vertices(VertexForm::Exact, stacked());
     let scene = scene_of(&h);
-    for contexts in [1, 4] {
-        // Tests so fast, and divisions so slow, that none but the first ends before all hits are there.
-        let config = Hardware { contexts, edges_per_cycle: EdgesPerCycle::Three, divide_bits: 1, ..Hardware::default() };
+    // None but the first division ends before all hits are there. One context too in `scripts/nightly`.
+    for contexts in if is_nightly() { &[1, 4][..] } else { &[4] } {
+        let contexts = *contexts;
+        let config = Hardware { contexts, ..QUEUED };
         let mut longest = 0;
         for seed in 0..24 {
             let mut rng = Rng(seed);

@@ -20,7 +20,10 @@ use lodray::plan::{Measure, Plan, Reach};
 use lodray::rays::{Camera, ModelSpace, View};
 use lodray::sim::unit::environment::{RunReport, UnitPort, run};
 use lodray::sim::unit::{Inputs, Latency, Outputs, SceneMemory, Stall, Traffic, TraversalUnit};
-use lodray_test_support::hardware::{OTHERS, form_for, most_levels, ray_for, scene_for};
+use lodray_test_support::hardware::{
+    FLAT, FULL_DETAIL, MIDDLE, NARROW, OTHERS, SECONDARY_AT_ONCE, SHALLOW, SMALL, form_for, most_levels, ray_for, scene_for,
+};
+use lodray_test_support::is_nightly;
 use lodray_test_support::models::{Rng, any_rays, ball, build_with, coarsened, terrain, with_vertices, with_zeros};
 use lodray_test_support::plain::plain;
 use port::Rtl;
@@ -104,10 +107,18 @@ fn cycles_wanted() -> u64 {
     cycles_or(250_000)
 }
 
+/// The others of these tests: each unit takes the C++ compiler half a minute, so `scripts/nightly` alone has all.
+fn others() -> &'static [Hardware] {
+    const SOME: [Hardware; 7] = [SMALL, MIDDLE, NARROW, FULL_DETAIL, SHALLOW, FLAT, SECONDARY_AT_ONCE];
+    if is_nightly() { &OTHERS } else { &SOME }
+}
+
+/// Tests so fast, and divisions so slow, that hits wait for them.
+const QUEUED: Hardware = Hardware { contexts: 4, edges_per_cycle: EdgesPerCycle::Three, divide_bits: 1, ..Hardware::DEFAULT };
+
 fn configs() -> [Hardware; 3] {
     let eight = Hardware { contexts: 8, ..Hardware::default() };
-    let four = Hardware { contexts: 4, edges_per_cycle: EdgesPerCycle::Three, ..Hardware::default() };
-    [Hardware::one_context(), four, eight]
+    [Hardware::one_context(), QUEUED, eight]
 }
 
 /// Any traffic: fixed and random latency, ports that stall never, in single cycles, or for long.
@@ -131,7 +142,7 @@ fn random_rays_under_random_traffic() {
 
 #[test]
 fn other_hardware_under_random_traffic() {
-    random_rays(&OTHERS, cycles_wanted() / 8);
+    random_rays(others(), cycles_wanted() / 8);
 }
 
 /// Random models, of any number of levels that the hardware is for, for so many cycles; the hardware by turns.
@@ -207,11 +218,12 @@ fn a_frame_of_a_terrain() {
     frame(procedural::Scene::Terrain, VertexForm::Short, configs()[2], Latency::Random { min: 5, max: 60, seed: 1 });
 }
 
+/// Two of them; `scripts/nightly` has four.
 #[test]
 fn frames_of_pruned_scenes_by_their_own_units() {
     use procedural::Scene::{Cloth, Room, Sphere, Terrain};
-    let scenes = [(Room, VertexForm::Exact), (Sphere, VertexForm::Compact), (Cloth, VertexForm::Short), (Terrain, VertexForm::Exact)];
-    for (kind, form) in scenes {
+    let scenes = [(Sphere, VertexForm::Compact), (Terrain, VertexForm::Exact), (Room, VertexForm::Exact), (Cloth, VertexForm::Short)];
+    for &(kind, form) in &scenes[..if is_nightly() { 4 } else { 2 }] {
         frame_of(kind, form, configs()[1], Latency::Random { min: 2, max: 80, seed: 2 }, true);
     }
 }

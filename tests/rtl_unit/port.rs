@@ -11,14 +11,14 @@ use tb::{Build, Direction, Model, PortId, Sim};
 /// Cycles of reset.
 pub const RESET: u64 = 2;
 
-/// The RTL of this hardware; `cargo test` compiles each once. That of the default's sizes takes contexts and edges as parameters, and the default none.
+/// The RTL of this hardware; `cargo test` compiles each once. That of the default's sizes takes contexts as a parameter, and the default none.
 fn model(config: Hardware) -> Arc<Model> {
-    let sizes = Hardware { contexts: Hardware::DEFAULT.contexts, edges_per_cycle: Hardware::DEFAULT.edges_per_cycle, ..config };
+    let sizes = Hardware { contexts: Hardware::DEFAULT.contexts, ..config };
     let build = Build::rtl("traversal_unit");
     let build = if config == Hardware::default() {
         build
     } else if sizes == Hardware::default() {
-        build.parameter("CONTEXTS", config.contexts).parameter("EDGES_PER_CYCLE", config.edges_per_cycle.count())
+        build.parameter("CONTEXTS", config.contexts)
     } else {
         build.hardware(&config).unwrap_or_else(|error| panic!("{error}"))
     };

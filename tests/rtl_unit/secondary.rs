@@ -11,7 +11,8 @@ use lodray::rays::{Camera, ModelSpace, View};
 use lodray::sim::unit::environment::{RunReport, run_secondary};
 use lodray::sim::unit::{Latency, SceneMemory, Traffic};
 use lodray_test_support::bounces::{Bounce, next};
-use lodray_test_support::hardware::{SECONDARIES, SECONDARY, form_for, most_levels, ray_for, scene_for};
+use lodray_test_support::hardware::{SECONDARIES, SECONDARY, SECONDARY_AT_ONCE, form_for, most_levels, ray_for, scene_for};
+use lodray_test_support::is_nightly;
 use lodray_test_support::models::{Rng, any_rays, ball, build_with, terrain, with_vertices};
 
 /// Runs these rays through model and RTL, and compares every hit with the blocks' and the golden traverser's.
@@ -30,14 +31,18 @@ fn compare(scene: &Scene, config: Hardware, traffic: &Traffic, bounces: &[Bounce
     report
 }
 
+/// One that is compiled for waveforms too.
+const ONE_CONTEXT: Hardware = Hardware { secondary: true, ..Hardware::one_context() };
+
 #[test]
 fn random_paths_under_random_traffic() {
     let (seed, wanted) = (tb::seed(1).unwrap_or_else(|error| panic!("{error}")), cycles_wanted() / 2);
+    let hardware = if is_nightly() { &SECONDARIES[..] } else { &[SECONDARY_AT_ONCE, ONE_CONTEXT] };
     let [mut cycles, mut traced, mut hits, mut decided, mut ranged] = [0; 5];
     for round in 0.. {
         let seed = seed + round;
         let mut rng = Rng(seed);
-        let config = SECONDARIES[round as usize % SECONDARIES.len()];
+        let config = hardware[round as usize % hardware.len()];
         let levels = rng.below(u64::from(most_levels(&config).min(5) + 1)) as u32;
         let roughness = [0.05, 0.4, 1.5][rng.below(3) as usize];
         let h = if rng.below(2) == 0 { ball(levels, roughness, seed) } else { terrain(2, levels, roughness, seed) };
@@ -67,13 +72,13 @@ fn random_paths_under_random_traffic() {
     assert!(hits > 100 && decided > 100 && ranged > 50);
 }
 
-/// A frame with two bounces, and at each hit a ray towards something.
+/// A frame with two bounces, and at each hit a ray towards something; in `scripts/nightly` also one of exact vertices.
 #[test]
 fn a_frame_of_two_bounces() {
     const SIDE: u32 = 64;
-    for (kind, form, config) in
-        [(procedural::Scene::Terrain, VertexForm::Compact, SECONDARIES[1]), (procedural::Scene::Sphere, VertexForm::Exact, SECONDARY)]
-    {
+    let frames =
+        [(procedural::Scene::Terrain, VertexForm::Compact, SECONDARY_AT_ONCE), (procedural::Scene::Sphere, VertexForm::Exact, SECONDARY)];
+    for &(kind, form, config) in &frames[..if is_nightly() { 2 } else { 1 }] {
         let options = Options { levels: Some(3), base: Some(32), ..Options::new(kind) };
         let scene = build_with(&procedural::generate(&options).expect("options"), form);
         let space = ModelSpace::of(&scene);

@@ -6,6 +6,7 @@ use lodray::method::lod::LodImage;
 use lodray::num::{Ray, VertexForm};
 use lodray::sim::unit::wave::{PERIOD, Waves, one_ray};
 use lodray::sim::unit::{SceneMemory, TraversalUnit};
+use lodray_test_support::is_nightly;
 use lodray_test_support::models::{any_rays, ball, scene_of, terrain, with_vertices};
 use std::collections::BTreeMap;
 use std::io::BufReader;
@@ -102,6 +103,7 @@ fn compare(config: Hardware, memory: &SceneMemory<'_>, latency: u32, ray: &Ray, 
 
 #[test]
 fn the_waveforms_of_model_and_rtl_are_equal() {
+    let rays = if is_nightly() { 8 } else { 4 };
     let (mut signals, mut cycles, mut bits) = (0, 0, 0);
     let compact = |h| with_vertices(VertexForm::Compact, h);
     for (number, h) in [compact(ball(4, 0.4, 1)), terrain(2, 2, 0.4, 2), ball(0, 0.4, 3), compact(ball(1, 0.4, 4))].iter().enumerate() {
@@ -109,7 +111,7 @@ fn the_waveforms_of_model_and_rtl_are_equal() {
         let memory = SceneMemory::new(LodImage::of(&scene), 0);
         // Of primary rays, in hardware for them alone and for others too.
         let hardware = [false, true].map(|secondary| Hardware { secondary, ..Hardware::one_context() });
-        for (ray, config) in any_rays(h, 8, number as u64).iter().zip(hardware.into_iter().cycle()) {
+        for (ray, config) in any_rays(h, rays, number as u64).iter().zip(hardware.into_iter().cycle()) {
             let (s, c, b) = compare(config, &memory, 17, ray, number as u64 + 1);
             (signals, cycles, bits) = (s, cycles + c, bits + b);
         }

@@ -1,4 +1,4 @@
-//! Hardware other than the default, which tests build and compare too.
+//! Hardware other than the default, which tests build and compare too. Of few contexts: what a unit takes to compile grows with them, and the default has sixteen.
 
 use crate::models::scene_of;
 use lodray::block::{BoxesPerCycle, EdgesPerCycle};
@@ -58,6 +58,7 @@ pub const NARROW: Hardware = Hardware {
 };
 /// A little narrower, as many limbs, one edge a cycle.
 pub const NARROWER_BY_FEW: Hardware = Hardware {
+    contexts: 4,
     coordinate_zeros: 3,
     direction_zeros: 5,
     edges_per_cycle: EdgesPerCycle::One,
@@ -78,6 +79,8 @@ pub const FULL_DETAIL: Hardware = Hardware {
 /// For views so far away that trees of up to seven levels are stored to one, of exact vertices, from inside of the model.
 pub const SHALLOW: Hardware = Hardware {
     levels: 7,
+    contexts: 2,
+    context_bits: 1,
     fewer_stored_levels: Some(1),
     lod_edges_per_cycle: EdgesPerCycle::Three,
     boxes_per_cycle: BoxesPerCycle::Four,
@@ -102,6 +105,8 @@ pub const SECONDARY_AT_ONCE: Hardware = Hardware {
     boxes_per_cycle: BoxesPerCycle::Four,
     divide_bits: 1,
     setup_bits: 2,
+    setup_copies: 2,
+    divide_copies: 4,
     index_bits: 15,
     link_registers: 2,
     start_radius: false,
@@ -110,7 +115,8 @@ pub const SECONDARY_AT_ONCE: Hardware = Hardware {
     ..Hardware::DEFAULT
 };
 /// Of full detail or none: no ray decides for another.
-pub const SECONDARY_FULL_DETAIL: Hardware = Hardware { levels: 4, divide_bits: 2, lod_test: false, secondary: true, ..Hardware::DEFAULT };
+pub const SECONDARY_FULL_DETAIL: Hardware =
+    Hardware { levels: 4, contexts: 4, context_bits: 2, divide_bits: 2, lod_test: false, secondary: true, ..Hardware::DEFAULT };
 /// All for rays from a surface.
 pub const SECONDARIES: [Hardware; 3] = [SECONDARY, SECONDARY_AT_ONCE, SECONDARY_FULL_DETAIL];
 /// The one that `scripts/synth --fpga` places.

@@ -16,6 +16,11 @@ pub mod sv;
 pub mod thin;
 pub mod timing;
 
+/// Whether `scripts/nightly` asks (`LODRAY_NIGHTLY`), where tests that take long have their full sizes.
+pub fn is_nightly() -> bool {
+    std::env::var_os("LODRAY_NIGHTLY").is_some()
+}
+
 /// `count` cases; what ever failed is kept in a file of the same name beside the test's source, to be committed and tried first.
 pub fn cases(count: u32) -> proptest::test_runner::Config {
     use proptest::test_runner::{Config, FileFailurePersistence};
