@@ -13,6 +13,7 @@ use lodray::plan::{Measure, Plan};
 use lodray::sim::unit::environment::{RunReport, UnitPort, run};
 use lodray::sim::unit::{Inputs, Latency, Outputs, SceneMemory, Stall, Traffic, TraversalUnit, UnitCounts, UnitError};
 use lodray::step::{Step, StepCounts, StepSink};
+use lodray_test_support::is_nightly;
 use lodray_test_support::models::{any_rays, ball, model, octahedron, scene_of, terrain, with_vertices};
 use lodray_test_support::plain::plain;
 use rayon::prelude::*;
@@ -132,10 +133,10 @@ fn simulate(memory: &SceneMemory<'_>, config: Hardware, traffic: &Traffic, rays:
     (report, unit.lines, unit.unit.counts())
 }
 
-/// Each model by all hardware under two of the traffics in turns: over all models each hardware meets all of them. `scripts/nightly` (`LODRAY_CYCLES`) takes all.
+/// Each model by all hardware under two of the traffics in turns: over all models each hardware meets all of them. `scripts/nightly` takes all.
 #[test]
 fn equals_the_functional_and_the_golden_traverser() {
-    let taken_traffics = if std::env::var_os("LODRAY_CYCLES").is_some() { traffics().len() } else { 2 };
+    let taken_traffics = if is_nightly() { traffics().len() } else { 2 };
     let each = |(number, Model { name, h, first_line }): (usize, &Model)| {
         let (mut traced, mut cycles) = (0u64, 0u64);
         let scene = scene_of(h);

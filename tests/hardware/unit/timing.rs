@@ -12,6 +12,7 @@ use lodray::sim::unit::{Inputs, Latency, Outputs, SceneMemory, Stall, Traffic, T
 use lodray::step::{Act, Batch, Fetch, NodeShape, SectionId, Step};
 use lodray_test_support::bounces::{Bounce, next, steps_of_bounces};
 use lodray_test_support::hardware::{OTHERS, SECONDARIES, form_for, most_levels, ray_for, scene_for};
+use lodray_test_support::is_nightly;
 use lodray_test_support::models::{Rng, any_rays, ball, coarsened, model, octahedron, scene_of, terrain, with_vertices, with_zeros};
 use lodray_test_support::timing::{Smooth, Timed, steps_of};
 use rayon::prelude::*;
@@ -129,7 +130,7 @@ impl Seen {
     }
 }
 
-/// One model by all hardware that is for it, each under two of the traffics in turns: over all models each hardware meets all of them. `scripts/nightly` (`LODRAY_CYCLES`) takes all.
+/// One model by all hardware that is for it, each under two of the traffics in turns: over all models each hardware meets all of them. `scripts/nightly` takes all.
 fn every_cycle_of(number: usize, name: &str, h: &Hierarchy) -> Seen {
     let mut seen = Seen::default();
     let any = any_rays(h, 40, number as u64);
@@ -145,7 +146,7 @@ fn every_cycle_of(number: usize, name: &str, h: &Hierarchy) -> Seen {
         let memory = SceneMemory::new(image, 1000);
         let rays: Vec<Ray> = any.iter().enumerate().map(|(k, ray)| ray_for(&config, &coarsened(ray, zeros), k)).collect();
         let batch = steps_of(image, &rays);
-        let (each, taken) = (traffics(), if std::env::var_os("LODRAY_CYCLES").is_some() { traffics().len() } else { 2 });
+        let (each, taken) = (traffics(), if is_nightly() { traffics().len() } else { 2 });
         for traffic in each.iter().cycle().skip(2 * number).take(taken) {
             let what = format!("{name}, {config:?}, {traffic:?}");
             let mut model = Noting::new(TraversalUnit::new(config, memory.config()));
