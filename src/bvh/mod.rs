@@ -76,6 +76,11 @@ pub enum BvhError {
     /// Boxes that nodes of such a number of children do not have.
     #[error("boxes are local or codes in nodes of four children, and local or oriented in nodes of six")]
     NodeBoxes,
+    /// A triangle that no block of the dense geometry format holds.
+    #[error(
+        "a triangle does not fit a block of the dense geometry format, which has coordinates of 24 bits and triangles of 16: a coarser grid may help (--coordinate-zeros of build and generate)"
+    )]
+    Dense,
     /// A hierarchy with more splits than the format allows.
     #[error("{0} levels: a hierarchy has at most 10")]
     Levels(u32),

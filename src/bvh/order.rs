@@ -73,6 +73,20 @@ pub(crate) fn by_levels<const W: usize>(nodes: &[WideNode<W>]) -> Vec<WideNode<W
     moved(nodes, &order)
 }
 
+/// The nodes depth first, whatever their order was; inner children of a node need not have stood side by side.
+pub(crate) fn by_depth<const W: usize>(nodes: &[WideNode<W>]) -> Vec<WideNode<W>> {
+    let mut order: Vec<u32> = vec![0];
+    let mut next = vec![0];
+    while let Some(at) = next.pop() {
+        let first = order.len();
+        order.extend(
+            nodes[at as usize].children.iter().filter_map(|child| if let Child::Inner(below) = child { Some(*below) } else { None }),
+        );
+        next.extend(order[first..].iter().rev());
+    }
+    moved(nodes, &order)
+}
+
 /// Van Emde Boas' order: the upper levels, then each subtree below them, each part again so, cut at powers of two of levels. Whatever the size of a line or a
 /// row, few of them have a path.
 pub(crate) fn by_halves<const W: usize>(nodes: &[WideNode<W>]) -> Vec<WideNode<W>> {
@@ -143,6 +157,12 @@ mod tests {
         let areas: Vec<f64> = nodes.iter().filter_map(Siblings::below).map(|siblings| f64::from_bits(siblings.area)).collect();
         let falls = areas.windows(2).filter(|pair| pair[1] <= pair[0]).count();
         assert!(falls * 2 > areas.len(), "{falls} of {}", areas.len());
+    }
+
+    #[test]
+    fn depth_first_is_the_order_that_trees_are_built_in() {
+        let tree = build(&cubes(), &Options::with_leaf(2)).unwrap();
+        assert_eq!(by_depth(&by_levels(&tree.nodes)), tree.nodes);
     }
 
     #[test]

@@ -3,6 +3,7 @@
 mod bounds;
 mod box_test;
 mod cluster;
+mod dense;
 mod entering;
 mod equivalence;
 mod golden;

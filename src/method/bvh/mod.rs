@@ -6,8 +6,8 @@ mod packet;
 mod trace;
 
 pub use super::mesh_bvh::{
-    FullBuilder, FullBvh, FullNodes, FullOptions, FullTree, Leaf, LeafLayout, Leaves, NoStore, NodeBoxes, NodeOrder, TreeKey, TreeStore,
-    check_hierarchy, cut_id, cut_triangle, level_ids,
+    DenseBlock, DenseStrip, FullBuilder, FullBvh, FullNodes, FullOptions, FullTree, Leaf, LeafLayout, Leaves, NoStore, NodeBoxes,
+    NodeOrder, TreeKey, TreeStore, check_hierarchy, cut_id, cut_triangle, dense_triangles, level_ids,
 };
 pub use map::{LEAVES, NODES, bvh_map};
 pub use trace::BvhTraverser;
@@ -31,9 +31,10 @@ pub static LEAF_LAYOUT: Knob = Knob {
         ("packed", "Nine 32-bit coordinates, 36 bytes"),
         ("line", "One 32-byte line of 28-bit coordinates"),
         ("block", "Leaves of up to 16 triangles that share vertices, in one to four lines"),
+        ("dgf", "Blocks of 128 bytes of AMD's dense geometry format, of up to 64 triangles in several leaves; coordinates of 24 bits"),
     ],
     of_frame: false,
-    allows: |value| LeafLayout::named(value).map(drop).ok_or_else(|| format!("'{value}' is not indexed, packed, line or block")),
+    allows: |value| LeafLayout::named(value).map(drop).ok_or_else(|| format!("'{value}' is not indexed, packed, line, block or dgf")),
 };
 
 /// Largest number of triangles in a leaf.

@@ -126,7 +126,8 @@ fn append(
 
 /// What of a BVH is each cluster's, and what is above them. A node is a cluster's if all below it is.
 fn owned(bvh: &FullBvh, firsts: &[u32]) -> (Vec<Owned>, Owned) {
-    let mut owners = Owners { bvh, firsts, owned: vec![Owned::default(); firsts.len() - 1], top: Owned::default() };
+    let is_written = vec![false; bvh.leaves.bytes().div_ceil(LINE_BYTES) as usize]; // 32 bits: the map says so
+    let mut owners = Owners { bvh, firsts, owned: vec![Owned::default(); firsts.len() - 1], top: Owned::default(), is_written };
     owners.node(0);
     (owners.owned, owners.top)
 }
@@ -136,6 +137,8 @@ struct Owners<'a> {
     firsts: &'a [u32],
     owned: Vec<Owned>,
     top: Owned,
+    /// Of each line of leaves, so that one that several leaves share is written once, with the first.
+    is_written: Vec<bool>,
 }
 
 impl Owners<'_> {
@@ -185,6 +188,9 @@ impl Owners<'_> {
         let mut lines: Vec<Range<u32>> = Vec::new();
         self.bvh.leaves.lines(&leaf, |address| {
             let line = (address / LINE_BYTES) as u32; // 32 bits: the map says so
+            if std::mem::replace(&mut self.is_written[line as usize], true) {
+                return;
+            }
             match lines.last_mut() {
                 Some(last) if last.end == line => last.end += 1,
                 _ => lines.push(line..line + 1),

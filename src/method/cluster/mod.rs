@@ -5,6 +5,7 @@
 
 mod before;
 mod cut;
+mod dense;
 mod frame;
 mod graph;
 mod map;
@@ -19,6 +20,7 @@ mod trace;
 mod works;
 
 pub use cut::{Cut, Rule};
+pub use dense::{pack_dense, unpack_dense};
 pub use frame::{FrameBvh, Owned};
 pub use graph::{Cluster, Graph, Group, Sphere};
 pub use packed::{pack, pairs, unpack, unpaired};
@@ -33,6 +35,7 @@ use crate::format::Scene;
 use crate::rays::{Eye, ModelSpace, Sight};
 use crate::step::MemoryMap;
 use before::Work;
+use dense::dense_sizes;
 use packed::{Size, sizes};
 use std::sync::{Arc, OnceLock};
 use surface::{Corners, surface};
@@ -79,6 +82,20 @@ fn partition(value: &str) -> Option<usize> {
     value.parse().ok().filter(|count| (4..=64).contains(count))
 }
 
+/// How clusters lie in memory.
+pub static CLUSTER_LAYOUT: Knob = Knob {
+    name: "cluster-layout",
+    value_name: "CLUSTER_LAYOUT",
+    help: "How clusters lie in memory",
+    default: Some("indexed"),
+    words: &[
+        ("indexed", "Vertices of 16 bits a coordinate, pairs of triangles as four indices of 8 bits"),
+        ("dgf", "Blocks of 128 bytes of AMD's dense geometry format"),
+    ],
+    of_frame: false,
+    allows: |value| if ["indexed", "dgf"].contains(&value) { Ok(()) } else { Err(format!("'{value}' is not indexed or dgf")) },
+};
+
 /// The sweep of errors: octaves from 16 pixels to 1/64.
 fn errors() -> Vec<f64> {
     (-6..=4).rev().map(|octave| f64::from(octave).exp2()).collect()
@@ -93,7 +110,7 @@ fn diagonals() -> Vec<f64> {
 pub static METHOD: Registered = Registered {
     name: "cluster",
     help: "Cluster level of detail as it ships: groups of 128-triangle clusters, chosen by error before a frame and unpacked to a BVH",
-    knobs: &[&ERROR, &PIXELS, &OFF_SCREEN, &PARTITION, &NODE_ORDER, &LEAF_LAYOUT, &LEAF_SIZE],
+    knobs: &[&ERROR, &PIXELS, &OFF_SCREEN, &PARTITION, &CLUSTER_LAYOUT, &NODE_ORDER, &LEAF_LAYOUT, &LEAF_SIZE],
     error: Some(ErrorKnob { knob: &ERROR, values: errors, in_steps: false }),
     over: Over::Either,
     unit: bvh::METHOD_SIX.unit,
@@ -105,7 +122,7 @@ pub static METHOD: Registered = Registered {
 pub static METHOD_PAPER: Registered = Registered {
     name: "cluster-paper",
     help: "Cluster level of detail as in its paper: pairs of 128-quad clusters, chosen by size before a frame and unpacked to a BVH",
-    knobs: &[&PIXELS, &ERROR, &OFF_SCREEN, &NODE_ORDER, &LEAF_LAYOUT, &LEAF_SIZE],
+    knobs: &[&PIXELS, &ERROR, &OFF_SCREEN, &CLUSTER_LAYOUT, &NODE_ORDER, &LEAF_LAYOUT, &LEAF_SIZE],
     error: Some(ErrorKnob { knob: &PIXELS, values: diagonals, in_steps: false }),
     over: Over::Either,
     unit: METHOD.unit,
@@ -190,7 +207,8 @@ impl Clusters {
         let places = || graph.places.iter().map(|&place| graph.grid.point(place));
         let corner = |of: fn(i32, i32) -> i32| places().reduce(|a, b| std::array::from_fn(|k| of(a[k], b[k]))).unwrap_or_default();
         let space = ModelSpace { lo: corner(i32::min), hi: corner(i32::max), ..ModelSpace::of(&mesh) };
-        let shared = Shared { sizes: sizes(&graph), graph, corners, mesh, space, surface: OnceLock::new() };
+        let sizes = if knobs.get(&CLUSTER_LAYOUT) == Some("dgf") { dense_sizes(&graph) } else { sizes(&graph) };
+        let shared = Shared { sizes, graph, corners, mesh, space, surface: OnceLock::new() };
         let made = Recent::new(|frame: &FrameBvh| frame.triangles.len(), KEPT);
         Ok(Self { shared: Arc::new(shared), kind, rule: Rule::chosen(knobs, kind), options, space: ModelSpace::of(scene), made })
     }

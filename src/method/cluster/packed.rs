@@ -115,22 +115,25 @@ pub struct Size {
     pub vertices: u32,
 }
 
+impl Size {
+    /// Of clusters of these bytes and vertices, each of which begins with a line.
+    pub fn one_behind_the_other(own: Vec<[u32; 2]>) -> Vec<Self> {
+        let mut first = 0;
+        own.into_iter()
+            .map(|[bytes, vertices]| {
+                let size = Self { first, bytes, vertices };
+                first += bytes.div_ceil(crate::num::LINE_BYTES as u32);
+                size
+            })
+            .collect()
+    }
+}
+
 /// The sizes of all clusters of a graph.
 pub fn sizes(graph: &Graph) -> Vec<Size> {
-    let own: Vec<(u32, u32)> = graph
-        .clusters
-        .par_iter()
-        .map(|cluster| {
-            let bytes = pack(graph, cluster);
-            (bytes.len() as u32, u32::from(bytes[0]) + 1) // a few thousand
-        })
-        .collect();
-    let mut first = 0;
-    own.into_iter()
-        .map(|(bytes, vertices)| {
-            let size = Size { first, bytes, vertices };
-            first += bytes.div_ceil(crate::num::LINE_BYTES as u32);
-            size
-        })
-        .collect()
+    let of = |cluster: &Cluster| {
+        let bytes = pack(graph, cluster);
+        [bytes.len() as u32, u32::from(bytes[0]) + 1] // a few thousand
+    };
+    Size::one_behind_the_other(graph.clusters.par_iter().map(of).collect())
 }

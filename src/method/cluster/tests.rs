@@ -117,25 +117,29 @@ fn whatever_is_chosen_has_the_borders_of_the_mesh() {
 }
 
 #[test]
-fn packed_clusters_are_read_back_in_six_bytes_a_triangle() {
+fn packed_clusters_are_read_back_in_four_to_eight_bytes_a_triangle() {
     for (of, kind, graph) in graphs() {
-        let mut bytes = 0;
+        let mut bytes = [0; 2];
         for cluster in &graph.clusters {
-            let packed = pack(&graph, cluster);
-            bytes += packed.len();
+            let (packed, (dense, _)) = (pack(&graph, cluster), pack_dense(&graph, cluster));
+            bytes[0] += packed.len();
+            bytes[1] += 128 * dense.len();
             let turned = |t: [Place; 3]| {
                 let least = (0..3).min_by_key(|&k| t[k]).unwrap();
                 [t[least], t[(least + 1) % 3], t[(least + 2) % 3]]
             };
             let places = |t: &[u32; 3]| turned(t.map(|v| graph.places[v as usize]));
             let mut own: Vec<_> = graph.triangles[cluster.triangles()].iter().map(places).collect();
-            let mut back: Vec<_> = unpack(&packed).into_iter().map(turned).collect();
             own.sort_unstable();
-            back.sort_unstable();
-            assert_eq!(own, back);
+            for back in [unpack(&packed), unpack_dense(&dense)] {
+                let mut back: Vec<_> = back.into_iter().map(turned).collect();
+                back.sort_unstable();
+                assert_eq!(own, back);
+            }
         }
-        let per = bytes as f64 / graph.triangles.len() as f64;
-        assert!((4.0..=7.0).contains(&per), "{of:?} {kind:?}: {per:.2} bytes a triangle");
+        let per = bytes.map(|bytes| bytes as f64 / graph.triangles.len() as f64);
+        println!("{of:?} {kind:?}: {per:.2?} bytes a triangle");
+        assert!(per.iter().all(|per| (4.0..=8.0).contains(per)), "{of:?} {kind:?}: {per:.2?} bytes a triangle");
     }
 }
 

@@ -11,11 +11,12 @@
 //! | 48..56 | number of triangles |
 //! | 56..64 | number of leaf blocks |
 //! | 64..80 | checksum of the first 64 bytes and all from 80 on |
-//! | from 80 on | the nodes, then the triangles' ids in leaf order, 4 bytes each, then the blocks' sizes, a byte each: triangles less one in the lower four bits, lines less one above |
+//! | from 80 on | the nodes, then the triangles' ids in leaf order, 4 bytes each, then the blocks' sizes, a byte each: triangles less one in the lower four bits, lines less one above; of the dense geometry format 128 and triangles less one |
 //!
 //! All numbers are little-endian. A file is a shortcut, not a source: whatever is not as it should be makes it none.
 
 use super::cut::are_of_one_hierarchy;
+use super::leaves::DENSE_MOST;
 use super::{FullNodes, FullOptions, FullTree, LeafLayout};
 use crate::bvh::{BvhChild32, MAX_DEPTH, MAX_DEPTH_OF_SIX, Node6, Node16, Node32, Options};
 use crate::format::{BvhChild, BvhNode, ChildRef, FileSection, Line, Scene, SixNode};
@@ -43,9 +44,13 @@ impl TreeKey {
         let Options { max_leaf, collapse, costs } = options.tree;
         let mut hash = Xxh3Default::new();
         let scale = scene.meta().bound_offset;
-        let is_block = u32::from(options.layout == LeafLayout::Block);
+        let blocks = match options.layout {
+            LeafLayout::Indexed | LeafLayout::Packed | LeafLayout::Line => 0,
+            LeafLayout::Block => 1,
+            LeafLayout::Dgf => 2,
+        };
         let [boxes, vertices] = [options.boxes as u32, scene.meta().vertices as u32];
-        for number in [VERSION, scene.levels(), level, max_leaf, collapse as u32, boxes, options.order as u32, is_block, scale, vertices] {
+        for number in [VERSION, scene.levels(), level, max_leaf, collapse as u32, boxes, options.order as u32, blocks, scale, vertices] {
             hash.update(&number.to_le_bytes());
         }
         for cost in [costs.node, costs.primitive, costs.line] {
@@ -133,6 +138,10 @@ impl FullTree {
         if !self.blocks.is_empty() && self.blocks.iter().map(|size| u64::from(size.triangles())).sum::<u64>() != triangles {
             return false;
         }
+        let are_dense = self.blocks.first().is_some_and(|size| size.is_dense());
+        if self.blocks.iter().any(|size| size.is_dense() != are_dense) {
+            return false;
+        }
         if !self.nodes.have_frames() {
             return false;
         }
@@ -153,6 +162,10 @@ impl FullTree {
                         ahead
                     }
                     ChildRef::LEAF if self.blocks.is_empty() => index + child.count.get() < triangles,
+                    ChildRef::LEAF if are_dense => {
+                        let (block, first) = (index as usize / DENSE_MOST, index % DENSE_MOST as u64);
+                        self.blocks.get(block).is_some_and(|size| first + child.count.get() < u64::from(size.triangles()))
+                    }
                     ChildRef::LEAF => lines.get(index as usize).is_some_and(|&lines| u64::from(lines) == child.count.get() + 1),
                     _ => false,
                 }
@@ -301,6 +314,22 @@ mod tests {
         let size = sound.blocks[3];
         assert!(with(3, size).is_some() && with(3, BlockSize::new(16, size.lines())).is_none());
         assert!(with(3, BlockSize::new(size.triangles() as usize, size.lines() + 1)).is_none());
+        // Dense blocks that leaves go beyond, and some among others.
+        let mut terrain = synthetic_terrain(3, 2);
+        terrain.points.iter_mut().flatten().for_each(|c| *c &= !0xffff);
+        let sound = FullBuilder::new(&terrain).unwrap().tree(&FullOptions::new(4, NodeBoxes::Six, LeafLayout::Dgf)).unwrap();
+        assert!(read(&file(&sound)).is_some_and(|read| read == sound));
+        let [one, other] = [1, 2].map(|at| sound.blocks[at].triangles() as usize);
+        let with = |sizes: [BlockSize; 2]| {
+            let mut tree = sound.clone();
+            tree.blocks[1..3].copy_from_slice(&sizes);
+            read(&file(&tree))
+        };
+        assert!(with([one, other].map(BlockSize::dense)).is_some() && with([one - 1, other + 1].map(BlockSize::dense)).is_none());
+        let mut mixed = sound.clone();
+        mixed.blocks[1] = BlockSize::new(one.min(16), 4);
+        mixed.blocks.extend((one > 16).then(|| BlockSize::dense(one - 16)));
+        assert!(read(&file(&mixed)).is_none());
     }
 
     /// Whoever changes what is built must raise [`VERSION`], so that trees of before are not taken for those of now.

@@ -4,7 +4,8 @@
 //! the triangles in the same order, so that BVHs may share them.
 
 use super::cut::Corners;
-use super::leaves::{BlockSize, MOST_LINES, MOST_TRIANGLES, block_lines};
+use super::dense;
+use super::leaves::{BlockSize, DENSE_MOST, MOST_LINES, MOST_TRIANGLES, block_lines, in_dense_range};
 use super::{LeafLayout, Leaves};
 use crate::bvh::build::{Binary, Prim, binary_tree};
 use crate::bvh::collapse::{self, BinaryTree};
@@ -13,8 +14,8 @@ use crate::bvh::order::{by_halves, by_levels, by_treelets};
 use crate::bvh::orient::{Leaves as Below, orient};
 use crate::bvh::plan::LeafCost;
 use crate::bvh::{
-    BinaryNode, BvhError, Child, Costs, MAX_DEPTH, MAX_DEPTH_OF_SIX, Node6, Node16, Node32, Options, WideNode, check_count, check_options,
-    encode_line, encode6, encode16, encode32, side_by_side,
+    BinaryNode, BvhError, Child, Costs, MAX_DEPTH, MAX_DEPTH_OF_SIX, MAX_LEAF, Node6, Node16, Node32, Options, WideNode, check_count,
+    check_options, encode_line, encode6, encode16, encode32, side_by_side,
 };
 use crate::format::Line;
 use crate::mesh::Hierarchy;
@@ -117,6 +118,7 @@ impl FullOptions {
             LeafLayout::Indexed => (0.25, 0.0),
             LeafLayout::Packed | LeafLayout::Line => (0.5, 0.0),
             LeafLayout::Block => (0.03, 0.35),
+            LeafLayout::Dgf => (0.5, 0.0),
         };
         let costs = Costs { primitive, line, ..Costs::default() };
         let max_leaf = max_leaf.min(layout.most_triangles());
@@ -271,7 +273,8 @@ impl<'a> FullBuilder<'a> {
     pub fn tree(&self, options: &FullOptions) -> Result<FullTree, BvhError> {
         let ids = || self.prims.par_iter().map(|p| p.id).collect();
         let all = |nodes, (ids, blocks)| FullTree { levels: self.mesh.levels, nodes: Arc::new(nodes), ids, blocks };
-        let as_collapsed = options.layout != LeafLayout::Block && options.order == NodeOrder::Depth;
+        let has_blocks = matches!(options.layout, LeafLayout::Block | LeafLayout::Dgf);
+        let as_collapsed = !has_blocks && options.order == NodeOrder::Depth;
         Ok(match options.boxes {
             // Nodes of such boxes can be encoded one by one.
             NodeBoxes::Codes if as_collapsed => all(FullNodes::Boxes16(self.nodes(options, MAX_DEPTH, encode16)?), (ids(), Vec::new())),
@@ -281,9 +284,9 @@ impl<'a> FullBuilder<'a> {
                 all(FullNodes::Six(nodes.par_iter().map(|node| encode6(node, 0)).collect()), rest)
             }
             NodeBoxes::Oriented => {
-                let (mut nodes, ids) = self.in_order::<6>(options, MAX_DEPTH_OF_SIX)?;
+                let (mut nodes, mut ids) = self.in_order::<6>(options, MAX_DEPTH_OF_SIX)?;
                 let rotations = self.orient(options, &mut nodes, &ids);
-                let blocks = self.blocks(options, &mut nodes, &ids)?;
+                let blocks = self.blocks(options, &mut nodes, &mut ids)?;
                 let nodes = nodes.par_iter().zip(rotations).map(|(node, rotation)| encode6(node, rotation));
                 all(FullNodes::Six(nodes.collect()), (ids, blocks))
             }
@@ -303,8 +306,17 @@ impl<'a> FullBuilder<'a> {
     fn collapsed<R, const W: usize>(&self, options: &FullOptions, of: impl FnOnce(&BinaryTree<'_, W>) -> R) -> Result<R, BvhError> {
         let FullOptions { tree: options, layout, .. } = options;
         check_options(options, layout.most_triangles())?;
-        let (of_block, of_triangles) = (self.block_cost(options), options.leaf_cost());
-        let leaf: &LeafCost<'_> = if *layout == LeafLayout::Block { &of_block } else { &of_triangles };
+        let (of_block, of_dense, of_triangles) = (self.block_cost(options), self.dense_cost(options), options.leaf_cost());
+        let leaf: &LeafCost<'_> = match layout {
+            LeafLayout::Block => &of_block,
+            LeafLayout::Dgf => {
+                if !self.prims.par_iter().all(|p| in_dense_range(&[self.mesh.triangle(p.id)])) {
+                    return Err(BvhError::Dense);
+                }
+                &of_dense
+            }
+            LeafLayout::Indexed | LeafLayout::Packed | LeafLayout::Line => &of_triangles,
+        };
         Ok(of(&BinaryTree::new(&self.prims, &self.binary, options, leaf)))
     }
 
@@ -324,28 +336,48 @@ impl<'a> FullBuilder<'a> {
         options: &FullOptions,
         depth: u32,
     ) -> Result<(Vec<WideNode<W>>, (Vec<u32>, Vec<BlockSize>)), BvhError> {
-        let (mut nodes, ids) = self.in_order(options, depth)?;
-        let blocks = self.blocks(options, &mut nodes, &ids)?;
+        let (mut nodes, mut ids) = self.in_order(options, depth)?;
+        let blocks = self.blocks(options, &mut nodes, &mut ids)?;
         Ok((nodes, (ids, blocks)))
     }
 
     /// The nodes in their order, and the triangles of those of each side by side.
     fn in_order<const W: usize>(&self, options: &FullOptions, depth: u32) -> Result<(Vec<WideNode<W>>, Vec<u32>), BvhError> {
-        let mut nodes = self.nodes(options, depth, |n: &WideNode<W>| *n)?;
+        let ids: Vec<u32> = self.prims.par_iter().map(|p| p.id).collect();
+        let is_dense = options.layout == LeafLayout::Dgf;
+        // Leaves that need blocks of their own go a node lower.
+        let mut nodes = self.nodes(options, depth - u32::from(is_dense), |n: &WideNode<W>| *n)?;
+        if is_dense {
+            nodes = dense::apart(&self.mesh, &nodes, &ids);
+        }
         match options.order {
             NodeOrder::Depth => {}
             NodeOrder::Treelets => nodes = by_treelets(&nodes, TREELET_BYTES / options.boxes.node_bytes()),
             NodeOrder::Levels => nodes = by_levels(&nodes),
             NodeOrder::VanEmdeBoas => nodes = by_halves(&nodes),
         }
-        let ids: Vec<u32> = self.prims.par_iter().map(|p| p.id).collect();
         let ids = side_by_side(&mut nodes, &ids);
         Ok((nodes, ids))
     }
 
     /// The sizes of the blocks of the leaves of such nodes, if they are any; the leaves then have the lines of their blocks in place of their triangles.
-    fn blocks<const W: usize>(&self, options: &FullOptions, nodes: &mut [WideNode<W>], ids: &[u32]) -> Result<Vec<BlockSize>, BvhError> {
-        if options.layout == LeafLayout::Block { self.to_blocks(nodes, ids) } else { Ok(Vec::new()) }
+    ///
+    /// In blocks of the dense geometry format the triangles of a leaf are put in another order.
+    fn blocks<const W: usize>(
+        &self,
+        options: &FullOptions,
+        nodes: &mut [WideNode<W>],
+        ids: &mut Vec<u32>,
+    ) -> Result<Vec<BlockSize>, BvhError> {
+        match options.layout {
+            LeafLayout::Block => self.to_blocks(nodes, ids),
+            LeafLayout::Dgf => {
+                let sizes = dense::in_blocks(&self.mesh, nodes, ids);
+                check_count((DENSE_MOST * sizes.len()) as u64)?;
+                Ok(sizes)
+            }
+            LeafLayout::Indexed | LeafLayout::Packed | LeafLayout::Line => Ok(Vec::new()),
+        }
     }
 
     /// Turns the boxes of such nodes, each node's into a frame of its own, and says which.
@@ -380,6 +412,17 @@ impl<'a> FullBuilder<'a> {
             let fits = prims.len() <= max_leaf as usize;
             let lines = if fits { self.lines(prims.iter().map(|p| p.id)) } else { None };
             Some(costs.primitive * prims.len() as f64 + costs.line * f64::from(lines?))
+        }
+    }
+
+    /// What a leaf in a block of the dense geometry format costs for each unit of its area, if its numbers are wide enough.
+    fn dense_cost(&self, options: &Options) -> impl Fn(&[Prim]) -> Option<f64> + Sync {
+        let (of_triangles, max_leaf) = (options.leaf_cost(), options.max_leaf);
+        move |prims| {
+            let mut triangles = [[[0; 3]; 3]; MAX_LEAF as usize];
+            let own = triangles.get_mut(..prims.len()).filter(|own| own.len() <= max_leaf as usize)?;
+            own.iter_mut().zip(prims).for_each(|(own, p)| *own = self.mesh.triangle(p.id));
+            if in_dense_range(own) { of_triangles(prims) } else { None }
         }
     }
 

@@ -1,4 +1,4 @@
-//! The triangles of a full-resolution quad-BVH in four layouts.
+//! The triangles of a full-resolution BVH in five layouts.
 //!
 //! | layout | bytes | read per triangle |
 //! |---|---|---|
@@ -6,10 +6,12 @@
 //! | packed | 36 per triangle | nine coordinates across two or three lines |
 //! | line | 32 per triangle | one line of 28-bit coordinates |
 //! | block | 32, 64, 96 or 128 per leaf | its lines ([`block`]) |
+//! | dgf | 128 per block of up to 64 triangles, a few leaves | its four lines, whichever of its triangles are read ([`dgf`]) |
 //!
 //! The id of each slot's triangle is kept beside the layout and charged to none: a design would look it up once per final hit.
 
 mod block;
+mod dgf;
 
 use super::cut::Corners;
 use crate::bvh::{BvhError, MAX_LEAF};
@@ -21,6 +23,8 @@ use std::ops::Range;
 
 pub(super) use block::lines as block_lines;
 pub use block::{MOST_LINES, MOST_TRIANGLES};
+pub use dgf::{Block as DenseBlock, Strip as DenseStrip, all as dense_triangles};
+pub(super) use dgf::{MOST as DENSE_MOST, in_range as in_dense_range};
 
 /// How leaf triangles lie in memory.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -33,12 +37,14 @@ pub enum LeafLayout {
     Line,
     /// Leaves of up to 16 triangles that share vertices in one to four lines.
     Block,
+    /// Blocks of 128 bytes of the dense geometry format, of up to 64 triangles in several leaves.
+    Dgf,
 }
 
 impl LeafLayout {
     /// All, with their names.
-    const NAMES: [(Self, &'static str); 4] =
-        [(Self::Indexed, "indexed"), (Self::Packed, "packed"), (Self::Line, "line"), (Self::Block, "block")];
+    const NAMES: [(Self, &'static str); 5] =
+        [(Self::Indexed, "indexed"), (Self::Packed, "packed"), (Self::Line, "line"), (Self::Block, "block"), (Self::Dgf, "dgf")];
 
     /// The layout of this name.
     pub fn named(name: &str) -> Option<Self> {
@@ -51,7 +57,7 @@ impl LeafLayout {
     }
 }
 
-/// The sizes of a leaf block: triangles less one in the lower four bits, lines less one above.
+/// The sizes of a leaf block: triangles less one in the lower four bits, lines less one above. Of a block of the dense geometry format [`BlockSize::DENSE`], and triangles less one.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default, bytemuck::Pod, bytemuck::Zeroable)]
 #[repr(transparent)]
 pub(super) struct BlockSize(u8);
@@ -62,12 +68,23 @@ impl BlockSize {
         Self((triangles as u8 - 1) | (lines as u8 - 1) << 4)
     }
 
+    const DENSE: u8 = 0x80;
+
+    /// Of 1 to 64 triangles of the dense geometry format.
+    pub fn dense(triangles: usize) -> Self {
+        Self(Self::DENSE | (triangles as u8 - 1))
+    }
+
+    pub fn is_dense(self) -> bool {
+        self.0 & Self::DENSE != 0
+    }
+
     pub fn triangles(self) -> u32 {
-        u32::from(self.0 & 15) + 1
+        u32::from(self.0 & if self.is_dense() { DENSE_MOST as u8 - 1 } else { 15 }) + 1
     }
 
     pub fn lines(self) -> u32 {
-        u32::from(self.0 >> 4) + 1
+        if self.is_dense() { dgf::LINES as u32 } else { u32::from(self.0 >> 4) + 1 }
     }
 }
 
@@ -76,7 +93,7 @@ impl BlockSize {
 pub struct Leaf {
     /// Its triangles.
     pub slots: Range<usize>,
-    /// Its lines, if it is a block.
+    /// Its lines, if it is a block or in one.
     block: Range<usize>,
 }
 
@@ -100,6 +117,11 @@ enum Storage {
     Block {
         lines: Vec<Line>,
         starts: Vec<u32>,
+    },
+    /// `turns` has how far a block has turned the corners of each slot's triangle: charged to none, as ids.
+    Dgf {
+        blocks: Vec<dgf::Block>,
+        turns: Vec<u8>,
     },
 }
 
@@ -128,6 +150,7 @@ impl Leaves {
                 Storage::Line(ids.par_iter().map(line).collect())
             }
             LeafLayout::Block => in_blocks(mesh, &ids, blocks).ok_or(BvhError::OtherHierarchy)?,
+            LeafLayout::Dgf => in_dense_blocks(mesh, &ids, blocks).ok_or(BvhError::OtherHierarchy)?,
         };
         Ok(Self { storage, ids })
     }
@@ -139,6 +162,7 @@ impl Leaves {
             Storage::Packed(_) => LeafLayout::Packed,
             Storage::Line(_) => LeafLayout::Line,
             Storage::Block { .. } => LeafLayout::Block,
+            Storage::Dgf { .. } => LeafLayout::Dgf,
         }
     }
 
@@ -169,6 +193,12 @@ impl Leaves {
                 let at = starts.partition_point(|&other| other < start);
                 block::Block::new(&lines[at..]).triangle(slot - start as usize)
             }
+            Storage::Dgf { blocks, turns } => {
+                let block = &blocks[blocks.partition_point(|block| dgf::first(block) as usize <= slot) - 1];
+                let (own, mut corners) = (slot - dgf::first(block) as usize, [[0; 3]; 3]);
+                dgf::triangles(block, own + 1, |_, triangle| corners = triangle);
+                turned_back(corners, turns[slot])
+            }
         };
         (corners, self.ids[slot])
     }
@@ -181,6 +211,11 @@ impl Leaves {
                 let (block, first) = (index..index + count, starts[index] as usize);
                 Leaf { slots: first..first + block::Block::new(&lines[block.clone()]).len(), block }
             }
+            Storage::Dgf { blocks, .. } => {
+                let block = index / dgf::MOST;
+                let first = dgf::first(&blocks[block]) as usize + index % dgf::MOST;
+                Leaf { slots: first..first + count, block: dgf::LINES * block..dgf::LINES * (block + 1) }
+            }
             _ => Leaf { slots: index..index + count, block: 0..0 },
         }
     }
@@ -191,6 +226,15 @@ impl Leaves {
         if let Storage::Block { lines, .. } = &self.storage {
             let block = block::Block::new(&lines[leaf.block.clone()]);
             leaf.slots.clone().enumerate().for_each(|(k, slot)| give(block.triangle(k), self.ids[slot]));
+        } else if let Storage::Dgf { blocks, turns } = &self.storage {
+            let block = &blocks[leaf.block.start / dgf::LINES];
+            let first = dgf::first(block) as usize;
+            dgf::triangles(block, leaf.slots.end - first, |k, corners| {
+                let slot = first + k;
+                if slot >= leaf.slots.start {
+                    give(turned_back(corners, turns[slot]), self.ids[slot]);
+                }
+            });
         } else {
             for slot in leaf.slots.clone() {
                 let (corners, id) = self.triangle(slot);
@@ -235,7 +279,7 @@ impl Leaves {
                 }
             }
             Storage::Line(_) => slots.for_each(|slot| read(LINE_BYTES * slot as u64)),
-            Storage::Block { .. } => leaf.block.clone().for_each(|line| read(LINE_BYTES * line as u64)),
+            Storage::Block { .. } | Storage::Dgf { .. } => leaf.block.clone().for_each(|line| read(LINE_BYTES * line as u64)),
         }
     }
 
@@ -245,6 +289,7 @@ impl Leaves {
             Storage::Indexed { triples, vertices } => vertex_section(triples.len()) + 12 * vertices.len() as u64,
             Storage::Packed(records) => 36 * records.len() as u64,
             Storage::Line(lines) | Storage::Block { lines, .. } => LINE_BYTES * lines.len() as u64,
+            Storage::Dgf { blocks, .. } => size_of_val(blocks.as_slice()) as u64,
         }
     }
 
@@ -257,8 +302,8 @@ impl Leaves {
     }
 }
 
-/// Blocks of these sizes; none if they do not hold these triangles.
-fn in_blocks(mesh: &Corners<'_>, ids: &[u32], sizes: &[BlockSize]) -> Option<Storage> {
+/// Of blocks of these sizes the first slots; none if they do not hold so many triangles.
+fn first_slots(sizes: &[BlockSize], triangles: usize) -> Option<Vec<u32>> {
     let firsts: Vec<u32> = sizes
         .iter()
         .scan(0, |next, size| {
@@ -267,9 +312,13 @@ fn in_blocks(mesh: &Corners<'_>, ids: &[u32], sizes: &[BlockSize]) -> Option<Sto
             Some(first)
         })
         .collect();
-    if firsts.last().zip(sizes.last()).map(|(first, size)| first + size.triangles()) != u32::try_from(ids.len()).ok() {
-        return None;
-    }
+    let all = firsts.last().zip(sizes.last()).map(|(first, size)| first + size.triangles());
+    (all == u32::try_from(triangles).ok()).then_some(firsts)
+}
+
+/// Blocks of these sizes; none if they do not hold these triangles.
+fn in_blocks(mesh: &Corners<'_>, ids: &[u32], sizes: &[BlockSize]) -> Option<Storage> {
+    let firsts = first_slots(sizes, ids.len())?;
     let encode = |(&first, size): (&u32, &BlockSize)| {
         let own = &ids[first as usize..][..size.triangles() as usize];
         let triangles: Vec<_> = own.iter().map(|&id| mesh.triangle(id)).collect();
@@ -279,6 +328,25 @@ fn in_blocks(mesh: &Corners<'_>, ids: &[u32], sizes: &[BlockSize]) -> Option<Sto
     let blocks: Option<Vec<_>> = firsts.par_iter().zip(sizes).map(encode).collect();
     let (lines, starts) = blocks?.into_iter().flatten().unzip();
     Some(Storage::Block { lines, starts })
+}
+
+/// The same in the dense geometry format.
+fn in_dense_blocks(mesh: &Corners<'_>, ids: &[u32], sizes: &[BlockSize]) -> Option<Storage> {
+    let firsts = first_slots(sizes, ids.len())?;
+    let encode = |(&first, size): (&u32, &BlockSize)| {
+        let own = &ids[first as usize..][..size.triangles() as usize];
+        let coded = DenseStrip::of(own.iter().map(|&id| mesh.triangle(id))).block(first)?;
+        Some((coded.block, coded.turns[..own.len()].to_vec()))
+    };
+    let all: Option<Vec<_>> = firsts.par_iter().zip(sizes).map(encode).collect();
+    let (blocks, turns): (Vec<_>, Vec<_>) = all?.into_iter().unzip();
+    Some(Storage::Dgf { blocks, turns: turns.concat() })
+}
+
+/// Corners that a block has turned so far, as they were.
+#[inline]
+fn turned_back(corners: [[i32; 3]; 3], turn: u8) -> [[i32; 3]; 3] {
+    std::array::from_fn(|k| corners[(k + 3 - usize::from(turn)) % 3])
 }
 
 /// Where the vertices start behind this many index triples.

@@ -2,6 +2,7 @@ use super::*;
 use crate::bvh::check::synthetic_terrain;
 use crate::bvh::{BvhChild32, BvhError};
 use crate::format::{BvhChild, ChildRef};
+use crate::mesh::Hierarchy;
 use crate::method::mesh_bvh::{FullBvh, FullNodes, FullOptions, NodeBoxes};
 use std::collections::BTreeSet;
 
@@ -64,7 +65,7 @@ fn lines_are_those_of_the_records() {
                     }
                     Storage::Packed(_) => record(36 * slot as u64, 36),
                     Storage::Line(_) => record(32 * slot as u64, 32),
-                    Storage::Block { .. } => panic!("no records"),
+                    Storage::Block { .. } | Storage::Dgf { .. } => panic!("no records"),
                 }
             }
             assert_eq!(lines.len(), bytes.len());
@@ -100,6 +101,61 @@ fn blocks_lie_one_behind_the_other_and_have_their_triangles() {
     }
     assert_eq!(triangles as u64, 5 * h.finest_triangles());
     assert!(blocks < 2000, "{blocks} blocks of {triangles} triangles");
+}
+
+/// A terrain whose coordinates have 16 bits, so that any triangle fits a dense block.
+fn coarse_terrain(quads: u32, levels: u32) -> Hierarchy {
+    let mut h = synthetic_terrain(quads, levels);
+    h.points.iter_mut().flatten().for_each(|c| *c &= !0xffff);
+    h
+}
+
+#[test]
+fn dense_blocks_have_the_triangles_of_their_leaves() {
+    let h = coarse_terrain(3, 4);
+    let mesh = Corners::new(&h).unwrap();
+    for (boxes, most) in [(NodeBoxes::Six, 4), (NodeBoxes::Oriented, 3), (NodeBoxes::Local, 2), (NodeBoxes::Wide, 1)] {
+        let bvh = FullBvh::build(&h, &FullOptions::new(most, boxes, LeafLayout::Dgf)).unwrap();
+        let Storage::Dgf { blocks, turns } = &bvh.leaves.storage else { panic!("wrong layout") };
+        assert_eq!(
+            (bvh.leaves.layout(), turns.len() as u64, bvh.leaves.bytes()),
+            (LeafLayout::Dgf, h.finest_triangles(), 128 * blocks.len() as u64)
+        );
+        assert!(blocks.len() * 12 < turns.len() && turns.iter().any(|&turn| turn > 0), "{} blocks of {}", blocks.len(), turns.len());
+        let mut seen = BTreeSet::new();
+        for at in 0..bvh.nodes.len() {
+            for child in bvh.nodes.children(at).into_iter().filter(|child| child.kind.get() == ChildRef::LEAF) {
+                let (index, count) = (child.index.get() as usize, child.count.get() as usize + 1);
+                let leaf = bvh.leaves.leaf(index, count);
+                assert_eq!((leaf.slots.len(), leaf.block.clone()), (count, index / 64 * 4..index / 64 * 4 + 4));
+                let mut slot = leaf.slots.start;
+                bvh.leaves.triangles(&leaf, |corners, id| {
+                    assert_eq!(corners, mesh.triangle(id));
+                    assert_eq!(bvh.leaves.triangle(slot), (corners, id));
+                    slot += 1;
+                    assert!(seen.insert(id));
+                });
+                assert_eq!(slot, leaf.slots.end);
+            }
+        }
+        assert_eq!(seen.len() as u64, h.finest_triangles());
+    }
+}
+
+/// Corners far apart on a fine grid: few triangles fit a block, so leaves of a node need nodes of their own.
+#[test]
+fn leaves_that_share_no_block_go_a_node_lower() {
+    let mut h = coarse_terrain(3, 2);
+    for (k, point) in h.points.iter_mut().enumerate() {
+        *point = [1, 7, 49].map(|factor| (k as i32 * factor * 7919 % 65_000 - 32_500) << 16);
+    }
+    let nodes = |layout| FullBvh::build(&h, &FullOptions::new(4, NodeBoxes::Six, layout)).unwrap();
+    let (lines, dense) = (nodes(LeafLayout::Line), nodes(LeafLayout::Dgf));
+    assert!(dense.nodes.len() > lines.nodes.len());
+    let all = |bvh: &FullBvh| {
+        (0..bvh.leaves.len()).map(|slot| bvh.leaves.triangle(slot)).map(|(corners, id)| (id, corners)).collect::<BTreeSet<_>>()
+    };
+    assert_eq!(all(&dense), all(&lines));
 }
 
 #[test]
