@@ -16,7 +16,7 @@
 //! All numbers are little-endian. A file is a shortcut, not a source: whatever is not as it should be makes it none.
 
 use super::cut::are_of_one_hierarchy;
-use super::leaves::DENSE_MOST;
+use super::leaves::{BlockSize, DENSE_PLACES, dense_named};
 use super::{FullNodes, FullOptions, FullTree, LeafLayout};
 use crate::bvh::{BvhChild32, MAX_DEPTH, MAX_DEPTH_OF_SIX, Node6, Node16, Node32, Options};
 use crate::format::{BvhChild, BvhNode, ChildRef, FileSection, Line, Scene, SixNode};
@@ -163,8 +163,11 @@ impl FullTree {
                     }
                     ChildRef::LEAF if self.blocks.is_empty() => index + child.count.get() < triangles,
                     ChildRef::LEAF if are_dense => {
-                        let (block, first) = (index as usize / DENSE_MOST, index % DENSE_MOST as u64);
-                        self.blocks.get(block).is_some_and(|size| first + child.count.get() < u64::from(size.triangles()))
+                        let (block, place) = (index as usize / DENSE_PLACES, index as usize % DENSE_PLACES); // 28 bits
+                        let last = |size: &BlockSize| {
+                            dense_named(place, size.triangles() as usize).map(|first| first + child.count.get() as usize)
+                        };
+                        self.blocks.get(block).is_some_and(|size| last(size).is_some_and(|last| last < size.triangles() as usize))
                     }
                     ChildRef::LEAF => lines.get(index as usize).is_some_and(|&lines| u64::from(lines) == child.count.get() + 1),
                     _ => false,
@@ -229,7 +232,6 @@ fn checksum(parts: &[&[u8]]) -> u128 {
 mod tests {
     use super::*;
     use crate::bvh::check::synthetic_terrain;
-    use crate::method::mesh_bvh::leaves::BlockSize;
     use crate::method::mesh_bvh::{FullBuilder, NodeBoxes};
     use crate::num::U;
     use proptest::prelude::*;

@@ -23,6 +23,8 @@ use crate::format::Line;
 pub const LINES: usize = 4;
 /// Most triangles of a block, and most vertices.
 pub const MOST: usize = 64;
+/// Names of a block's triangles: from the first on, and up to the last.
+pub const PLACES: usize = 2 * MOST;
 /// Bits of coordinates in a block's grid, of the numbers of triangles, and most of an offset.
 const ANCHOR: u32 = 24;
 const NUMBER: u32 = 29;
@@ -413,6 +415,12 @@ pub fn len(block: &Block) -> usize {
     get(block, 16, 6) as usize + 1
 }
 
+/// Which of `len` triangles of a block has a name; none if none has.
+#[inline]
+pub fn named(place: usize, len: usize) -> Option<usize> {
+    if place < MOST { Some(place) } else { (place + len).checked_sub(PLACES) }.filter(|&own| own < len)
+}
+
 /// The number of its first triangle.
 #[inline]
 pub fn first(block: &Block) -> u32 {
@@ -501,6 +509,15 @@ mod tests {
             assert_eq!(ways(best), Some(0), "{order:?}");
         }
         assert_eq!(Strip::default().best(&strip[..2]), [0, 1, 2, 3]);
+    }
+
+    #[test]
+    fn triangles_have_two_names() {
+        for (place, len, own) in
+            [(0, 1, Some(0)), (127, 1, Some(0)), (1, 1, None), (126, 1, None), (63, 64, Some(63)), (64, 64, Some(0)), (118, 10, Some(0))]
+        {
+            assert_eq!(named(place, len), own, "{place} of {len}");
+        }
     }
 
     proptest! {

@@ -24,7 +24,7 @@ use std::ops::Range;
 pub(super) use block::lines as block_lines;
 pub use block::{MOST_LINES, MOST_TRIANGLES};
 pub use dgf::{Block as DenseBlock, Strip as DenseStrip, all as dense_triangles};
-pub(super) use dgf::{MOST as DENSE_MOST, in_range as in_dense_range};
+pub(super) use dgf::{PLACES as DENSE_PLACES, in_range as in_dense_range, named as dense_named};
 
 /// How leaf triangles lie in memory.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -80,7 +80,7 @@ impl BlockSize {
     }
 
     pub fn triangles(self) -> u32 {
-        u32::from(self.0 & if self.is_dense() { DENSE_MOST as u8 - 1 } else { 15 }) + 1
+        u32::from(self.0 & if self.is_dense() { dgf::MOST as u8 - 1 } else { 15 }) + 1
     }
 
     pub fn lines(self) -> u32 {
@@ -212,8 +212,9 @@ impl Leaves {
                 Leaf { slots: first..first + block::Block::new(&lines[block.clone()]).len(), block }
             }
             Storage::Dgf { blocks, .. } => {
-                let block = index / dgf::MOST;
-                let first = dgf::first(&blocks[block]) as usize + index % dgf::MOST;
+                let (block, place) = (index / dgf::PLACES, index % dgf::PLACES);
+                let own = dgf::named(place, dgf::len(&blocks[block])).unwrap_or(0); // leaves have names
+                let first = dgf::first(&blocks[block]) as usize + own;
                 Leaf { slots: first..first + count, block: dgf::LINES * block..dgf::LINES * (block + 1) }
             }
             _ => Leaf { slots: index..index + count, block: 0..0 },
